@@ -1,0 +1,36 @@
+# SPDX-License-Identifier: Apache-2.0
+
+# trocar_module(NAME
+#   PUBLIC_HEADERS include/trocar/NAME/a.h ...   each compiles alone (target all_verify_interface_header_sets)
+#   SOURCES src/a.cpp ...
+#   DEPENDS core math ...                        modules above this one
+#   LIBRARIES Eigen3::Eigen ...                  third-party, private
+#   TESTS test/a_test.cpp ...)                   one executable NAME_tests, each case a ctest
+function(trocar_module name)
+  cmake_parse_arguments(arg "" "" "PUBLIC_HEADERS;SOURCES;DEPENDS;LIBRARIES;TESTS" ${ARGN})
+  if(arg_UNPARSED_ARGUMENTS)
+    message(FATAL_ERROR "trocar_module(${name}): unknown arguments ${arg_UNPARSED_ARGUMENTS}")
+  endif()
+  list(TRANSFORM arg_DEPENDS PREPEND trocar_)
+  if(arg_SOURCES)
+    add_library(trocar_${name} STATIC ${arg_SOURCES})
+    target_include_directories(trocar_${name} PRIVATE src)
+    target_sources(trocar_${name} PUBLIC FILE_SET HEADERS BASE_DIRS include FILES ${arg_PUBLIC_HEADERS})
+    target_link_libraries(trocar_${name} PUBLIC ${arg_DEPENDS} trocar_compile_options PRIVATE ${arg_LIBRARIES})
+    set_target_properties(trocar_${name} PROPERTIES POSITION_INDEPENDENT_CODE ON VERIFY_INTERFACE_HEADER_SETS ON)
+  else()
+    add_library(trocar_${name} INTERFACE)
+    target_sources(trocar_${name} INTERFACE FILE_SET HEADERS BASE_DIRS include FILES ${arg_PUBLIC_HEADERS})
+    target_link_libraries(trocar_${name} INTERFACE ${arg_DEPENDS} trocar_compile_options)
+    set_target_properties(trocar_${name} PROPERTIES VERIFY_INTERFACE_HEADER_SETS ON)
+  endif()
+  if(TROCAR_BUILD_TESTS AND arg_TESTS)
+    add_executable(${name}_tests ${arg_TESTS})
+    target_link_libraries(${name}_tests PRIVATE trocar_${name} ${arg_LIBRARIES} GTest::gmock GTest::gtest_main)
+    target_include_directories(${name}_tests PRIVATE src ${PROJECT_SOURCE_DIR}/tests/include)
+    target_compile_definitions(${name}_tests PRIVATE
+      TROCAR_SOURCE_DIR="${PROJECT_SOURCE_DIR}" TROCAR_SHARED_DIR="${PROJECT_SOURCE_DIR}/../shared")
+    gtest_discover_tests(${name}_tests DISCOVERY_MODE PRE_TEST
+      PROPERTIES LABELS ${name} TIMEOUT 300)
+  endif()
+endfunction()

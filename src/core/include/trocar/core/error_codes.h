@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file error_codes.h  Every error code of the project, in one table (src/error_codes.cpp). Tests assert codes.
+#pragma once
+
+#include <span>
+#include <string_view>
+
+namespace trocar::core {
+
+enum class ErrorCode {
+  kNone,
+  // files and text
+  kFileMissing,
+  kFileUnreadable,
+  kFileUnwritable,
+  kJsonSyntax,
+  kJsonField,
+  kNumberNotFinite,
+  kFileTooLarge,
+  // images
+  kImageFolderMissing,
+  kImageSliceMissing,
+  kImageSizeDiffers,
+  kImageUndecodable,
+  // anatomy
+  kControlPointOutside,
+  kContourTooShort,
+  kContourEmpty,
+  kMeshNotClosed,
+  kPatientInvalid,
+  kLabelsMismatch,
+  // geometry
+  kMeshInvalid,
+  // scene and script
+  kSceneInvalid,
+  kScriptInvalid,
+  kUnknownName,
+  // simulation
+  kStateNotFinite,
+  kOrganFrozen,
+  // drawing and video
+  kNoGraphics,
+  kGraphicsTooOld,
+  kShaderFailed,
+  kVideoFailed,
+  // window
+  kNoDisplay,
+  kWindowMissing,
+  // devices
+  kDeviceLost,
+  kDeviceStale,
+  kForceRefused,
+  // command line and benchmarks
+  kUsage,
+  kBenchmarkWrong,
+  kCount
+};
+
+struct ErrorEntry {
+  ErrorCode code;
+  std::string_view text;     ///< "E-IMG-002"
+  std::string_view meaning;  ///< one line
+};
+
+/// The table, in the order of the enumeration.
+std::span<const ErrorEntry> ErrorTable() noexcept;
+
+/// Stable text of a code, for example "E-IMG-002".
+std::string_view CodeText(ErrorCode code) noexcept;
+
+}  // namespace trocar::core

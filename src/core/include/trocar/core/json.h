@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file json.h  Checked reading of JSON: every complaint says in which file and at which field.
+#pragma once
+
+#include <filesystem>
+#include <initializer_list>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "trocar/core/result.h"
+
+namespace trocar::core {
+
+class JsonDocument;
+
+/// Closed interval that a number must lie in.
+struct NumberRange {
+  double min = -1e300;
+  double max = 1e300;
+};
+
+/// One value inside a JsonDocument.
+///
+/// Readers return a harmless value when the field is missing or wrong and note the first complaint in the document;
+/// read everything, then ask JsonDocument::Check() once. Valid as long as its document.
+class JsonView {
+ public:
+  bool Has(std::string_view key) const;
+  /// Complains about every key of this object that is not in the list, so that a misspelt setting is not lost.
+  void AllowOnly(std::initializer_list<std::string_view> keys) const;
+
+  JsonView Object(std::string_view key) const;
+  /// Elements of an array field; empty with a complaint when it is missing or no array.
+  std::vector<JsonView> Array(std::string_view key) const;
+  /// Elements of this value, which must be an array.
+  std::vector<JsonView> Elements() const;
+  /// Names of this object's fields, in alphabetical order.
+  std::vector<std::string> Keys() const;
+
+  double Number(std::string_view key, NumberRange range = {}) const;
+  double NumberOr(std::string_view key, double fallback, NumberRange range = {}) const;
+  int Integer(std::string_view key, NumberRange range = {-2147483648.0, 2147483647.0}) const;
+  int IntegerOr(std::string_view key, int fallback, NumberRange range = {-2147483648.0, 2147483647.0}) const;
+  bool BooleanOr(std::string_view key, bool fallback) const;
+  std::string Text(std::string_view key) const;
+  std::string TextOr(std::string_view key, std::string_view fallback) const;
+  /// A field that is an array of exactly `count` finite numbers.
+  std::vector<double> Numbers(std::string_view key, std::size_t count) const;
+
+  /// This value as a number, a text, or an array of exactly `count` numbers.
+  double AsNumber(NumberRange range = {}) const;
+  std::string AsText() const;
+  std::vector<double> AsNumbers(std::size_t count) const;
+
+  /// Notes a complaint about this value: "FILE: at slices[3].contours: TEXT".
+  void Complain(std::string_view text, ErrorCode code = ErrorCode::kJsonField) const;
+  /// "slices[3].contours"
+  const std::string& Path() const { return path_; }
+
+ private:
+  friend class JsonDocument;
+  JsonView(const JsonDocument* document, const void* node, std::string path)
+      : document_(document), node_(node), path_(std::move(path)) {}
+  JsonView Child(std::string_view key) const;
+
+  const JsonDocument* document_;
+  const void* node_;  // nlohmann::json, or null for a value that is not there
+  std::string path_;
+};
+
+/// A parsed file and the first complaint about it.
+class JsonDocument {
+ public:
+  /// \param source  name used in messages
+  /// \return kJsonSyntax with line and column
+  static Result<JsonDocument> Parse(std::string_view text, std::string source);
+  static Result<JsonDocument> Read(const std::filesystem::path& path);
+
+  JsonDocument(JsonDocument&&) noexcept;
+  JsonDocument& operator=(JsonDocument&&) noexcept;
+  ~JsonDocument();
+
+  JsonView Root() const;
+  /// The first complaint of any view, or success.
+  Status Check() const;
+
+ private:
+  friend class JsonView;
+  struct Content;
+  explicit JsonDocument(std::unique_ptr<Content> content);
+  std::unique_ptr<Content> content_;
+};
+
+}  // namespace trocar::core

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/core/error_codes.h"
+
+#include <cstddef>
+#include <iterator>
+
+namespace trocar::core {
+namespace {
+
+constexpr ErrorEntry kTable[] = {
+    {ErrorCode::kNone, "E-000", "no error"},
+    {ErrorCode::kFileMissing, "E-IO-001", "a file or folder does not exist"},
+    {ErrorCode::kFileUnreadable, "E-IO-002", "a file cannot be read"},
+    {ErrorCode::kFileUnwritable, "E-IO-003", "a file cannot be written"},
+    {ErrorCode::kJsonSyntax, "E-IO-004", "a file is not valid JSON"},
+    {ErrorCode::kJsonField, "E-IO-005", "a JSON field is missing, of the wrong kind or out of range"},
+    {ErrorCode::kNumberNotFinite, "E-IO-006", "a number is NaN or infinite"},
+    {ErrorCode::kFileTooLarge, "E-IO-007", "a file is larger than the reader accepts"},
+    {ErrorCode::kImageFolderMissing, "E-IMG-001", "the folder of images does not exist"},
+    {ErrorCode::kImageSliceMissing, "E-IMG-002", "a slice is missing in the folder of images"},
+    {ErrorCode::kImageSizeDiffers, "E-IMG-003", "a slice has another size than the control points expect"},
+    {ErrorCode::kImageUndecodable, "E-IMG-004", "an image cannot be decoded"},
+    {ErrorCode::kControlPointOutside, "E-ANA-001", "a control point lies outside its image"},
+    {ErrorCode::kContourTooShort, "E-ANA-002", "a contour has fewer points than a closed curve needs"},
+    {ErrorCode::kContourEmpty, "E-ANA-003", "a contour or structure encloses nothing"},
+    {ErrorCode::kMeshNotClosed, "E-ANA-004", "an organ's mesh is not closed and manifold"},
+    {ErrorCode::kPatientInvalid, "E-ANA-005", "a patient is inconsistent"},
+    {ErrorCode::kLabelsMismatch, "E-ANA-006", "reference labels do not match the images"},
+    {ErrorCode::kMeshInvalid, "E-GEO-001", "a mesh has a bad index or a coordinate that is not finite"},
+    {ErrorCode::kSceneInvalid, "E-SCN-001", "a scene is inconsistent"},
+    {ErrorCode::kScriptInvalid, "E-SCN-002", "a script is inconsistent"},
+    {ErrorCode::kUnknownName, "E-SCN-003", "a name is not known"},
+    {ErrorCode::kStateNotFinite, "E-SIM-001", "the tissue state was not finite; the last good state was restored"},
+    {ErrorCode::kOrganFrozen, "E-SIM-002", "an organ is held still after repeated failures"},
+    {ErrorCode::kNoGraphics, "E-GL-001", "no OpenGL context can be made"},
+    {ErrorCode::kGraphicsTooOld, "E-GL-002", "OpenGL is older than 3.3"},
+    {ErrorCode::kShaderFailed, "E-GL-003", "a shader does not compile"},
+    {ErrorCode::kVideoFailed, "E-VID-001", "the video cannot be written"},
+    {ErrorCode::kNoDisplay, "E-WIN-001", "there is no display for the window"},
+    {ErrorCode::kWindowMissing, "E-WIN-002", "this build has no window"},
+    {ErrorCode::kDeviceLost, "E-DEV-001", "a device was lost"},
+    {ErrorCode::kDeviceStale, "E-DEV-002", "a device sends no fresh data"},
+    {ErrorCode::kForceRefused, "E-DEV-008", "a force was refused and the output disarmed"},
+    {ErrorCode::kUsage, "E-CLI-001", "the command line is wrong"},
+    {ErrorCode::kBenchmarkWrong, "E-BEN-001", "a benchmark's result is wrong, so its time means nothing"},
+};
+static_assert(std::size(kTable) == static_cast<std::size_t>(ErrorCode::kCount));
+
+}  // namespace
+
+std::span<const ErrorEntry> ErrorTable() noexcept { return kTable; }
+
+std::string_view CodeText(ErrorCode code) noexcept { return kTable[static_cast<std::size_t>(code)].text; }
+
+}  // namespace trocar::core

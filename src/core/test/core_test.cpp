@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <set>
+#include <string>
+
+#include "trocar/core/error_codes.h"
+#include "trocar/core/result.h"
+#include "trocar/core/safe_file.h"
+#include "trocar/core/state_hash.h"
+#include "trocar/core/statistics.h"
+
+namespace trocar::core {
+namespace {
+
+TEST(ErrorTable, HasOneEntryPerCodeInOrderWithUniqueText) {
+  std::set<std::string_view> texts;
+  int index = 0;
+  for (const ErrorEntry& entry : ErrorTable()) {
+    EXPECT_EQ(static_cast<int>(entry.code), index++);
+    EXPECT_TRUE(texts.insert(entry.text).second) << entry.text;
+    EXPECT_FALSE(entry.meaning.empty());
+  }
+}
+
+TEST(Result, HoldsAValueOrAnError) {
+  const Result<int> good = 7;
+  ASSERT_TRUE(good.ok());
+  EXPECT_EQ(*good, 7);
+  const Result<int> bad = Error{ErrorCode::kImageSliceMissing, "slice 0561 is missing"};
+  ASSERT_FALSE(bad.ok());
+  EXPECT_EQ(bad.error().Text(), "E-IMG-002 slice 0561 is missing");
+}
+
+TEST(CalcPercentile, InterpolatesBetweenRanks) {
+  EXPECT_DOUBLE_EQ(CalcPercentile({4, 1, 3, 2}, 0.5), 2.5);
+  EXPECT_DOUBLE_EQ(CalcPercentile({4, 1, 3, 2}, 1.0), 4.0);
+  EXPECT_DOUBLE_EQ(CalcPercentile({}, 0.5), 0.0);
+}
+
+TEST(StateHash, ChangesWithTheLastBitAndTheOrder) {
+  StateHash a, b, c;
+  a.Add(1.0);
+  a.Add(2.0);
+  b.Add(1.0);
+  b.Add(2.0000000000000004);
+  c.Add(2.0);
+  c.Add(1.0);
+  EXPECT_NE(a.Value(), b.Value());
+  EXPECT_NE(a.Value(), c.Value());
+  EXPECT_EQ(a.Text().size(), 16u);
+}
+
+class SafeFile : public testing::Test {
+ protected:
+  void SetUp() override { std::filesystem::create_directories(folder_); }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+  std::filesystem::path folder_ = std::filesystem::path(testing::TempDir()) /
+                                  ("trocar_safe_file_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+};
+
+TEST_F(SafeFile, ReadsBackWhatItWroteAndLeavesNothingElse) {
+  ASSERT_TRUE(WriteFile(folder_ / "deep" / "a.txt", "one").ok());
+  ASSERT_TRUE(WriteFile(folder_ / "deep" / "a.txt", "two").ok());
+  EXPECT_EQ(*ReadFile(folder_ / "deep" / "a.txt"), "two");
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_ / "deep"), {}), 1);
+}
+
+TEST_F(SafeFile, NamesWhatIsWrong) {
+  EXPECT_EQ(ReadFile(folder_ / "absent").error().code, ErrorCode::kFileMissing);
+  EXPECT_EQ(ReadFile(folder_).error().code, ErrorCode::kFileUnreadable);
+  ASSERT_TRUE(WriteFile(folder_ / "long", "12345").ok());
+  EXPECT_EQ(ReadFile(folder_ / "long", 4).error().code, ErrorCode::kFileTooLarge);
+  EXPECT_EQ(WriteFile(folder_ / "long" / "below-a-file", "x").error().code, ErrorCode::kFileUnwritable);
+}
+
+}  // namespace
+}  // namespace trocar::core

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file mesh_measures.h  What can be said of a mesh: size, closedness, normals, quality.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "trocar/core/result.h"
+#include "trocar/geometry/triangle_mesh.h"
+
+namespace trocar::geometry {
+
+/// Bounding box; all zero for no points.
+Box CalcBox(std::span<const Vec3> positions);
+
+/// Normal of a triangle times twice its area [m^2].
+Vec3 CalcAreaNormal(std::span<const Vec3> positions, const Triangle& triangle);
+
+/// Sum of the triangles' areas [m^2].
+double CalcArea(std::span<const Vec3> positions, std::span<const Triangle> triangles);
+
+/// Volume by the divergence theorem, V = 1/6 sum x_a . (x_b x x_c) [m^3]; negative when inside out.
+/// \pre closed mesh; otherwise the value depends on the origin
+double CalcVolume(std::span<const Vec3> positions, std::span<const Triangle> triangles);
+
+/// Unit normals of vertices, weighted by the angles of their triangles (Thuermer and Wuethrich 1998).
+/// \param[out] normals  (nv); {0, 0, 1} where a vertex has no area
+/// \note Real-time safe: no allocation, lock or throw.
+void CalcVertexNormals(std::span<const Vec3> positions, std::span<const Triangle> triangles, std::span<Vec3> normals);
+
+/// Area that belongs to each vertex: a third of its triangles' [m^2], (nv).
+std::vector<double> CalcVertexAreas(std::span<const Vec3> positions, std::span<const Triangle> triangles);
+
+/// Findings about a mesh as a surface.
+struct MeshReport {
+  std::size_t triangles = 0;
+  std::size_t vertices = 0;
+  std::size_t edges = 0;
+  std::size_t components = 0;       ///< of vertices, by edges
+  std::size_t boundary_edges = 0;   ///< edges of one triangle
+  std::size_t odd_edges = 0;        ///< edges of three or more triangles, or of two that run the same way
+  std::size_t odd_vertices = 0;     ///< vertices whose triangles are not one fan
+  std::size_t degenerate = 0;       ///< triangles without area or with a repeated index
+  int genus = 0;                    ///< sum over the components; meaningful when closed and manifold
+  double area = 0;                  ///< [m^2]
+  double volume = 0;                ///< [m^3], positive when the triangles face outwards
+  double min_angle = 0;             ///< smallest angle of any triangle [rad]
+  bool closed = false;              ///< no boundary edge
+  bool manifold = false;            ///< no odd edge, odd vertex or degenerate triangle
+  bool outward = false;             ///< volume > 0
+};
+
+MeshReport InspectMesh(const TriangleMesh& mesh);
+
+/// Pairs of triangles that share no vertex and cut each other. Grid-accelerated; not real-time safe.
+std::size_t CountSelfIntersections(const TriangleMesh& mesh);
+
+/// Indices in range and coordinates finite, or kMeshInvalid with the first offender.
+core::Status CheckMesh(const TriangleMesh& mesh);
+
+}  // namespace trocar::geometry

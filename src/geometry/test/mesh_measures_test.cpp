@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/geometry/mesh_measures.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "trocar/geometry/mesh_topology.h"
+#include "trocar/geometry/primitives.h"
+
+namespace trocar::geometry {
+namespace {
+
+TEST(CalcVolume, OfAFineSphereApproachesTheFormula) {
+  const TriangleMesh sphere = MakeSphere({0.3, -0.2, 0.1}, 0.05, 5);
+  const double exact = 4.0 / 3.0 * M_PI * std::pow(0.05, 3);
+  EXPECT_NEAR(CalcVolume(sphere.positions, sphere.triangles) / exact, 1.0, 1e-3);
+  EXPECT_NEAR(CalcArea(sphere.positions, sphere.triangles) / (4 * M_PI * 0.05 * 0.05), 1.0, 1e-3);
+}
+
+TEST(InspectMesh, FindsASphereClosedManifoldOutwardOfGenusZero) {
+  const MeshReport report = InspectMesh(MakeSphere({0, 0, 0}, 1, 2));
+  EXPECT_EQ(report.triangles, 320u);
+  EXPECT_TRUE(report.closed && report.manifold && report.outward);
+  EXPECT_EQ(report.genus, 0);
+  EXPECT_EQ(report.components, 1u);
+}
+
+TEST(InspectMesh, SeesEachDefect) {
+  TriangleMesh open = MakeSphere({0, 0, 0}, 1, 1);
+  open.triangles.pop_back();
+  EXPECT_FALSE(InspectMesh(open).closed);
+
+  TriangleMesh inside_out = MakeSphere({0, 0, 0}, 1, 1);
+  for (Triangle& t : inside_out.triangles) std::swap(t[0], t[1]);
+  EXPECT_FALSE(InspectMesh(inside_out).outward);
+  EXPECT_TRUE(InspectMesh(inside_out).manifold);
+
+  TriangleMesh one_flipped = MakeSphere({0, 0, 0}, 1, 1);
+  std::swap(one_flipped.triangles[3][0], one_flipped.triangles[3][1]);
+  EXPECT_EQ(InspectMesh(one_flipped).odd_edges, 3u);
+
+  // two tetrahedra that touch in one vertex
+  const TriangleMesh bow{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {-1, 0, 0}, {0, -1, 0}, {0, 0, -1}},
+                         {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}, {0, 4, 5}, {0, 6, 4}, {0, 5, 6}, {4, 6, 5}}};
+  EXPECT_EQ(InspectMesh(bow).odd_vertices, 1u);
+  EXPECT_FALSE(InspectMesh(bow).manifold);
+}
+
+TEST(InspectMesh, CountsTheHandleOfATorus) {
+  constexpr std::uint32_t kN = 12;
+  TriangleMesh torus;
+  for (std::uint32_t i = 0; i < kN; ++i) {
+    for (std::uint32_t j = 0; j < kN; ++j) {
+      const double u = 2 * M_PI * i / kN, v = 2 * M_PI * j / kN;
+      torus.positions.push_back({(2 + std::cos(v)) * std::cos(u), (2 + std::cos(v)) * std::sin(u), std::sin(v)});
+      const auto at = [](std::uint32_t a, std::uint32_t b) { return (a % kN) * kN + b % kN; };
+      torus.triangles.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
+      torus.triangles.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
+    }
+  }
+  const MeshReport report = InspectMesh(torus);
+  EXPECT_TRUE(report.closed && report.manifold && report.outward);
+  EXPECT_EQ(report.genus, 1);
+}
+
+TEST(CountSelfIntersections, IsZeroForASphereAndPositiveForTwoThatOverlap) {
+  TriangleMesh mesh = MakeSphere({0, 0, 0}, 1, 2);
+  EXPECT_EQ(CountSelfIntersections(mesh), 0u);
+  const TriangleMesh other = MakeSphere({1, 0.1, 0.2}, 1, 2);
+  const auto offset = static_cast<std::uint32_t>(mesh.positions.size());
+  mesh.positions.insert(mesh.positions.end(), other.positions.begin(), other.positions.end());
+  for (const Triangle& t : other.triangles) mesh.triangles.push_back({t[0] + offset, t[1] + offset, t[2] + offset});
+  EXPECT_GT(CountSelfIntersections(mesh), 10u);
+}
+
+TEST(FindEdges, OfTheTable1GridsFollowEuler) {
+  for (const int n : {16, 112}) {
+    const TriangleMesh grid = MakeGrid(n, 0.001);
+    EXPECT_EQ(grid.triangles.size(), 2u * (n - 1) * (n - 1));
+    EXPECT_EQ(FindEdges(grid.triangles).size(), grid.positions.size() + grid.triangles.size() - 1);
+  }
+}
+
+TEST(CalcVertexNormals, OfASpherePointOutwards) {
+  const TriangleMesh sphere = MakeSphere({1, 2, 3}, 0.5, 3);
+  std::vector<Vec3> normals(sphere.positions.size());
+  CalcVertexNormals(sphere.positions, sphere.triangles, normals);
+  for (std::size_t i = 0; i < normals.size(); ++i) {
+    EXPECT_GT(math::Dot(normals[i], (sphere.positions[i] - Vec3{1, 2, 3}) / 0.5), 0.999);
+  }
+}
+
+TEST(CheckMesh, RefusesBadIndexAndNan) {
+  TriangleMesh mesh = MakeBox({0, 0, 0}, {1, 1, 1});
+  EXPECT_TRUE(CheckMesh(mesh).ok());
+  EXPECT_TRUE(InspectMesh(mesh).closed && InspectMesh(mesh).manifold && InspectMesh(mesh).outward);
+  mesh.triangles[5][1] = 8;
+  EXPECT_EQ(CheckMesh(mesh).error().code, core::ErrorCode::kMeshInvalid);
+  mesh.triangles[5][1] = 1;
+  mesh.positions[2].y = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(CheckMesh(mesh).error().code, core::ErrorCode::kMeshInvalid);
+}
+
+}  // namespace
+}  // namespace trocar::geometry
