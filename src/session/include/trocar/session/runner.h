@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file runner.h  The simulation on its own thread at its fixed rate; drawing never holds it up.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "trocar/session/simulation.h"
+
+namespace trocar::session {
+
+/// Counters since the start; the clock decides when a tick runs, never what it computes.
+struct RunnerStatistics {
+  std::uint64_t ticks = 0;
+  std::uint64_t late_ticks = 0;  ///< started more than half a tick late
+  double tick_median = 0;        ///< over the last second [s]
+  double tick_p99 = 0;           ///< over the last second [s]
+};
+
+/// Owns the simulation thread. All members are called from one other thread (the window's).
+class Runner {
+ public:
+  /// Starts paused. \param simulation  taken over
+  explicit Runner(Simulation simulation);
+  ~Runner();
+  Runner(const Runner&) = delete;
+  Runner& operator=(const Runner&) = delete;
+
+  /// The newest wish of the person; used from the next tick on until another comes.
+  void SetInput(const Input& input);
+  /// true: the scene's script moves the hands and the input's hands are ignored.
+  void SetScripted(bool is_scripted);
+  void SetPaused(bool is_paused);
+  bool IsPaused() const;
+  /// Back to tick 0; keeps paused or running.
+  void Reset();
+
+  /// The newest state; the reference stays valid until the next call.
+  const Snapshot& Latest();
+  RunnerStatistics Statistics() const;
+  const Scene& GetScene() const;
+  std::span<const SurfaceInfo> Surfaces() const;
+
+ private:
+  struct Content;
+  std::unique_ptr<Content> content_;
+};
+
+}  // namespace trocar::session

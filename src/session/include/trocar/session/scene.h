@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file scene.h  What is fixed while a simulation runs: patient, ports, tools, script. Read from scenes/*.json.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "trocar/anatomy/patient.h"
+#include "trocar/core/result.h"
+#include "trocar/instrument/tool.h"
+#include "trocar/session/input.h"
+
+namespace trocar::session {
+
+using math::Vec3;
+
+/// Straight or angled telescope in its port.
+struct LaparoscopeSetup {
+  Vec3 p_world_port;                ///< [m]
+  instrument::TrocarJoints home;    ///< where it starts
+  double view_angle = 0;            ///< 0 or 30 deg, between shaft and line of sight [rad]
+  double field_of_view = 1.308997;  ///< diagonal, 75 deg [rad]
+};
+
+struct InstrumentSetup {
+  instrument::Tool tool;
+  Vec3 p_world_port;              ///< [m]
+  instrument::TrocarJoints home;  ///< where it starts
+};
+
+/// Pose of both hands at one time; between keys the tips move smoothly along straight lines.
+struct ScriptKey {
+  double time = 0;  ///< [s]
+  std::array<Vec3, kHandCount> p_world_tip;
+  std::array<double, kHandCount> spin{};  ///< [rad]
+  std::array<double, kHandCount> jaw{};   ///< [rad]
+};
+
+/// A row of keys in time order: a deterministic pair of hands.
+struct Script {
+  std::vector<ScriptKey> keys;
+  double Duration() const { return keys.empty() ? 0.0 : keys.back().time; }
+};
+
+/// How stiff one organ is; see tissue/material.h for the formulas.
+struct OrganMaterial {
+  std::string organ;
+  double young_modulus = 0;       ///< of the wall or capsule [Pa]
+  double wall_thickness = 0;      ///< [m]
+  double foundation_modulus = 0;  ///< of what lies behind the surface [Pa]
+  double depth = 0;               ///< of that foundation [m]
+  double density = 0;             ///< [kg/m^3]
+  std::string source;
+};
+
+struct Scene {
+  std::string name;
+  std::filesystem::path patient_folder;
+  anatomy::Patient patient;
+  std::vector<OrganMaterial> materials;
+  std::array<InstrumentSetup, kHandCount> instruments;
+  LaparoscopeSetup laparoscope;
+  LiveSettings settings;            ///< at the start
+  double tick_seconds = 1.0 / 120;  ///< [s]
+  std::uint64_t seed = 0;
+  Script script;  ///< empty when the scene names none
+};
+
+/// Folder that holds assets/ and scenes/: TROCAR_DATA_DIR, else beside the program, else its source tree.
+/// \return kFileMissing with the places that were tried
+core::Result<std::filesystem::path> FindDataFolder();
+
+/// Reads a scene with its patient and script. Paths inside are relative to the scene file.
+/// \return the file's error, kSceneInvalid, kScriptInvalid or kUnknownName
+core::Result<Scene> ReadScene(const std::filesystem::path& path);
+
+/// The script's input at `time` [s], clamped to its first and last key; the home pose without a script.
+Input CalcScriptInput(const Scene& scene, double time);
+
+}  // namespace trocar::session

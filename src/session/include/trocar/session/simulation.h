@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file simulation.h  The tick: fixed, deterministic, staged and timed.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "trocar/core/result.h"
+#include "trocar/session/scene.h"
+#include "trocar/session/snapshot.h"
+
+namespace trocar::session {
+
+/// A surface that can be drawn: an organ, or the skin of a duct or vessel around its centre-line nodes.
+struct SurfaceInfo {
+  std::string name;      ///< "liver", "cystic_duct"
+  std::string material;  ///< "liver", "gallbladder", "duct", "artery"
+  std::uint32_t first_node = 0, node_count = 0;  ///< rows of Snapshot::positions
+  std::vector<geometry::Triangle> triangles;     ///< organs: indices from 0 at first_node; tubes: empty
+  std::vector<double> radii;                     ///< (node_count) tubes only [m]
+};
+
+/// One running surgery. The same scene and the same inputs give the same bits, for any number of threads.
+class Simulation {
+ public:
+  /// \param threads  used by the solver, >= 1
+  /// \return kSceneInvalid or kPatientInvalid
+  static core::Result<Simulation> Make(std::shared_ptr<const Scene> scene, int threads);
+
+  Simulation(Simulation&&) noexcept;
+  Simulation& operator=(Simulation&&) noexcept;
+  ~Simulation();
+
+  /// One tick. \note No allocation, lock, throw or file.
+  void Step(const Input& input) noexcept;
+  /// Back to the first tick.
+  void Reset();
+
+  const Scene& GetScene() const;
+  /// Organs, then tubes; constant.
+  std::span<const SurfaceInfo> Surfaces() const;
+  /// State after the last Step(); valid until the next.
+  const Snapshot& GetSnapshot() const;
+  /// Fingerprint of the whole state.
+  std::uint64_t Hash() const;
+
+ private:
+  struct Content;
+  explicit Simulation(std::unique_ptr<Content> content);
+  std::unique_ptr<Content> content_;
+};
+
+}  // namespace trocar::session
