@@ -40,6 +40,8 @@ constexpr ErrorEntry kTable[] = {
     {ErrorCode::kWindowMissing, "E-WIN-002", "this build has no window"},
     {ErrorCode::kDeviceLost, "E-DEV-001", "a device was lost"},
     {ErrorCode::kDeviceStale, "E-DEV-002", "a device sends no fresh data"},
+    {ErrorCode::kDeviceState, "E-DEV-003", "a device was asked for something out of turn"},
+    {ErrorCode::kDeviceSettings, "E-DEV-004", "the settings of a device cannot work"},
     {ErrorCode::kForceRefused, "E-DEV-008", "a force was refused and the output disarmed"},
     {ErrorCode::kUsage, "E-CLI-001", "the command line is wrong"},
     {ErrorCode::kBenchmarkWrong, "E-BEN-001", "a benchmark's result is wrong, so its time means nothing"},

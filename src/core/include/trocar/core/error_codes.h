@@ -49,6 +49,8 @@ enum class ErrorCode {
   // devices
   kDeviceLost,
   kDeviceStale,
+  kDeviceState,
+  kDeviceSettings,
   kForceRefused,
   // command line and benchmarks
   kUsage,
