@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file equilibrium.h  Quasi-static equilibrium of the mass-spring system.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "trocar/tissue/solver_settings.h"
+#include "trocar/tissue/tissue_model.h"
+
+namespace trocar::tissue {
+
+/// How a solve ended.
+struct SolveReport {
+  int iterations = 0;
+  double residual = 0;     ///< largest |R_i| of a node that is not prescribed, over `force_scale` [-]
+  double force_scale = 0;  ///< largest force that acts on any such node through one spring, load or contact [N]
+  bool converged = false;  ///< residual <= tolerance
+  int restarts = 0;        ///< how often the acceleration was taken back because the residual grew
+};
+
+/// Memory of the solvers, made once for a model so that a solve allocates nothing.
+class EquilibriumSolver {
+ public:
+  /// \param model    must outlive the solver
+  /// \param threads  >= 1; the result does not depend on it
+  EquilibriumSolver(const TissueModel& model, int threads);
+  ~EquilibriumSolver();
+  EquilibriumSolver(EquilibriumSolver&&) noexcept;
+  EquilibriumSolver& operator=(EquilibriumSolver&&) noexcept;
+
+  /// Moves every node that is not prescribed towards equilibrium, starting from the state's positions.
+  /// \note Real-time safe: no allocation, lock or throw of ours; bounded by settings.max_iterations.
+  SolveReport Solve(const SolverSettings& settings, const TissueLoad& load, TissueState& state) noexcept;
+
+  /// Force of the tissue on whatever prescribes each node of the list, summed; valid after Solve [N].
+  Vec3 CalcReaction(const TissueLoad& load, const TissueState& state,
+                    std::span<const std::uint32_t> nodes) const noexcept;
+
+  struct Content;
+
+ private:
+  std::unique_ptr<Content> content_;
+};
+
+/// Largest step of the plain relaxation that converges, alpha < 2 / lambda_max with Gershgorin's bound
+/// lambda_max <= max_i (2 sum_j k_ij + k_v) [m/N]. Contacts count with their stiffness.
+double CalcLargestAlpha(const TissueModel& model, const TissueLoad& load);
+
+}  // namespace trocar::tissue

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file state_guard.h  Finds a state that went wrong in the tick in which it did, and goes back (faults S1 and S3).
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "trocar/tissue/tissue_model.h"
+
+namespace trocar::tissue {
+
+enum class GuardVerdict {
+  kGood,
+  kRestored,  ///< bad state replaced by the last good one; try again in the next tick
+  kFrozen     ///< bad several times in a row: every node is held until Release()
+};
+
+/// Keeps the last good positions. A state is bad when a coordinate is not finite or a node is farther from rest than
+/// any organ could be.
+class StateGuard {
+ public:
+  /// \param max_displacement  from rest [m]; 0.5 m is more than the abdomen
+  explicit StateGuard(const TissueModel& model, double max_displacement = 0.5);
+
+  /// Checks, restores where needed, and remembers a good state.
+  /// \note Real-time safe.
+  GuardVerdict Check(TissueState& state) noexcept;
+  bool IsFrozen() const noexcept { return bad_in_a_row_ >= kMaxRetries; }
+  /// Takes the state as good and lets the nodes move again.
+  void Release(const TissueState& state) noexcept;
+
+  static constexpr int kMaxRetries = 3;
+
+ private:
+  const TissueModel* model_;
+  double max_displacement_;
+  std::vector<Vec3> good_;
+  int bad_in_a_row_ = 0;
+};
+
+}  // namespace trocar::tissue

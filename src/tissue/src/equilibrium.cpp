@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/tissue/equilibrium.h"
+
+#include <algorithm>
+
+#include "node_force.h"
+#include "solver_content.h"
+#include "trocar/core/assert.h"
+
+namespace trocar::tissue {
+
+EquilibriumSolver::EquilibriumSolver(const TissueModel& model, int threads) : content_(std::make_unique<Content>()) {
+  TROCAR_ASSERT(threads >= 1);
+  const std::size_t n = model.Size();
+  content_->model = &model;
+  content_->threads = threads;
+  if (threads > 1) content_->arena.initialize(threads);
+  content_->previous.resize(n);
+  content_->inverse_blocks.resize(n);
+  content_->contact_force.assign(n, Vec3{});
+  content_->chunk_residual.resize(n / kChunk + 1);
+  content_->chunk_scale.resize(n / kChunk + 1);
+  content_->chunk_is_cut_short.resize(n / kChunk + 1);
+}
+
+EquilibriumSolver::~EquilibriumSolver() = default;
+EquilibriumSolver::EquilibriumSolver(EquilibriumSolver&&) noexcept = default;
+EquilibriumSolver& EquilibriumSolver::operator=(EquilibriumSolver&&) noexcept = default;
+
+SolveReport EquilibriumSolver::Solve(const SolverSettings& settings, const TissueLoad& load,
+                                     TissueState& state) noexcept {
+  TROCAR_ASSERT(state.position.size() == content_->model->Size());
+  if (settings.kind == SolverKind::kRelaxationPaper) return SolveRelaxationPaper(*content_, settings, load, state);
+  return SolveChebyshevJacobiWang2015(*content_, settings, load, state);
+}
+
+Vec3 EquilibriumSolver::CalcReaction(const TissueLoad& load, const TissueState& state,
+                                     std::span<const std::uint32_t> nodes) const noexcept {
+  Vec3 force;
+  for (const auto node : nodes) {
+    force += GatherNodeForce(*content_->model, state.strand_is_intact, load, state.position, node);
+  }
+  return force;
+}
+
+double CalcLargestAlpha(const TissueModel& model, const TissueLoad& load) {
+  double bound = 0;
+  for (std::size_t i = 0; i < model.Size(); ++i) {
+    double links = 0;
+    for (auto h = model.spring_starts[i]; h < model.spring_starts[i + 1]; ++h) links += model.half_springs[h].stiffness;
+    for (auto h = model.strand_starts[i]; h < model.strand_starts[i + 1]; ++h) links += model.half_strands[h].stiffness;
+    bound = std::max(bound, 2.0 * load.stiffness_scale * links + load.shape_scale * model.shape_stiffness[i]);
+  }
+  double contacts = 0;
+  for (const ContactSpring& contact : load.contacts) contacts += contact.stiffness;
+  bound += contacts;
+  return bound > 0.0 ? 2.0 / bound : 0.0;
+}
+
+}  // namespace trocar::tissue

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file relaxation_paper.cpp  The paper's solver (section 3.2.1), with the sign and the update of domain facts 0b.4:
+/// for each node in turn, x_i <- x_i + alpha R_i, R_i = sum_j F_ij + m_i g + F_ext. The paper ends after a time delta;
+/// here a count and a tolerance end it, so that results repeat.
+#include <algorithm>
+#include <cmath>
+
+#include "node_force.h"
+#include "solver_content.h"
+
+namespace trocar::tissue {
+namespace {
+
+/// Force of the contacts on one node; few contacts, so a scan is enough for a reference.
+Vec3 GatherContactForce(const TissueLoad& load, std::span<const Vec3> position, std::uint32_t node) noexcept {
+  Vec3 force;
+  for (const ContactSpring& contact : load.contacts) {
+    const double depth = CalcContactDepth(contact, position);
+    if (!(depth > 0.0)) continue;
+    for (int i = 0; i < 3; ++i) {
+      if (contact.nodes[i] == node) force += (contact.weights[i] * contact.stiffness * depth) * contact.normal;
+    }
+  }
+  return force;
+}
+
+/// Largest force on node i through one spring, load or contact [N].
+double CalcForceScale(const TissueModel& model, const TissueLoad& load, std::span<const Vec3> position,
+                      std::uint32_t i) noexcept {
+  double largest = std::fmax(load.shape_scale * model.shape_stiffness[i] * math::Distance(model.rest[i], position[i]),
+                             model.mass[i] * math::Norm(load.gravity));
+  for (auto h = model.spring_starts[i]; h < model.spring_starts[i + 1]; ++h) {
+    const auto& half = model.half_springs[h];
+    const double stretch = math::Distance(position[i], position[half.other]) - half.rest_length;
+    largest = std::fmax(largest, load.stiffness_scale * half.stiffness * std::fabs(stretch));
+  }
+  if (!load.external_force.empty()) largest = std::fmax(largest, math::Norm(load.external_force[i]));
+  return largest;
+}
+
+}  // namespace
+
+SolveReport SolveRelaxationPaper(EquilibriumSolver::Content& content, const SolverSettings& settings,
+                                 const TissueLoad& load, TissueState& state) noexcept {
+  const TissueModel& model = *content.model;
+  const auto n = static_cast<std::uint32_t>(model.Size());
+  // half of the bound damps every mode of the linear system without oscillation
+  const double alpha = settings.alpha > 0.0 ? settings.alpha : 0.5 * CalcLargestAlpha(model, load);
+  SolveReport report;
+  for (report.iterations = 0; report.iterations < settings.max_iterations;) {
+    double largest = 0, scale = 0;
+    for (std::uint32_t i = 0; i < n; ++i) {
+      if (state.condition[i] == NodeCondition::kPrescribed) continue;
+      const Vec3 residual = GatherNodeForce(model, state.strand_is_intact, load, state.position, i) +
+                            GatherContactForce(load, state.position, i);
+      scale = std::fmax(scale, CalcForceScale(model, load, state.position, i));
+      largest = std::fmax(largest, math::Norm(residual));
+      state.position[i] += alpha * residual;
+    }
+    ++report.iterations;
+    report.force_scale = scale;
+    report.residual = scale > 0.0 ? largest / scale : 0.0;
+    report.converged = report.residual <= settings.tolerance;
+    if (report.converged) break;
+  }
+  return report;
+}
+
+}  // namespace trocar::tissue
