@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/device/driver.h"
+
+namespace trocar::device {
+
+std::string_view StateName(DriverState state) noexcept {
+  switch (state) {
+    case DriverState::kUnconfigured:
+      return "unconfigured";
+    case DriverState::kInactive:
+      return "inactive";
+    case DriverState::kActive:
+      return "active";
+    case DriverState::kFinalized:
+      return "finalized";
+  }
+  return "unknown";
+}
+
+core::Status Driver::CheckTurn(DriverState needed, std::string_view wish) const {
+  if (state_ == needed) return {};
+  return core::Error{core::ErrorCode::kDeviceState, name_ + " is " + std::string(StateName(state_)) +
+                                                        " and cannot " + std::string(wish) + ": it must be " +
+                                                        std::string(StateName(needed)) + " first"};
+}
+
+core::Status Driver::Configure() {
+  if (const core::Status turn = CheckTurn(DriverState::kUnconfigured, "be configured"); !turn) return turn;
+  if (core::Status done = DoConfigure(); !done) return done;
+  state_ = DriverState::kInactive;
+  return {};
+}
+
+core::Status Driver::Activate() {
+  if (const core::Status turn = CheckTurn(DriverState::kInactive, "be activated"); !turn) return turn;
+  if (core::Status done = DoActivate(); !done) return done;
+  state_ = DriverState::kActive;
+  return {};
+}
+
+core::Status Driver::Deactivate() {
+  if (const core::Status turn = CheckTurn(DriverState::kActive, "be deactivated"); !turn) return turn;
+  DoDeactivate();
+  state_ = DriverState::kInactive;
+  return {};
+}
+
+core::Status Driver::Cleanup() {
+  if (const core::Status turn = CheckTurn(DriverState::kInactive, "be cleaned up"); !turn) return turn;
+  DoCleanup();
+  state_ = DriverState::kUnconfigured;
+  return {};
+}
+
+void Driver::Finalize() noexcept {
+  if (state_ == DriverState::kActive) DoDeactivate();
+  if (state_ == DriverState::kActive || state_ == DriverState::kInactive) DoCleanup();
+  state_ = DriverState::kFinalized;
+}
+
+ReadStatus Driver::Read(std::span<HandSample> samples) noexcept {
+  TROCAR_ASSERT(static_cast<int>(samples.size()) == channel_count_);
+  const ReadStatus status = state_ == DriverState::kActive ? DoRead(samples) : ReadStatus::kNotActive;
+  if (status == ReadStatus::kLost) {
+    // a lost device never comes back by itself: it must be configured again
+    DoDeactivate();
+    DoCleanup();
+    state_ = DriverState::kUnconfigured;
+  }
+  if (status == ReadStatus::kLost || status == ReadStatus::kNotActive) {
+    for (HandSample& sample : samples) sample.is_valid = false;
+  }
+  return status;
+}
+
+}  // namespace trocar::device

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/device/driver.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <vector>
+
+namespace trocar::device {
+namespace {
+
+using core::ErrorCode;
+
+/// Counts its calls and fails where it is told to.
+class MockDriver : public Driver {
+ public:
+  MockDriver() : Driver("mock", 2) {}
+  bool fails_configure = false, fails_activate = false;
+  ReadStatus next = ReadStatus::kFresh;
+  std::vector<std::string> calls;
+
+ private:
+  core::Status DoConfigure() override {
+    calls.push_back("configure");
+    if (fails_configure) return core::Error{ErrorCode::kDeviceLost, "no such device: plug it in"};
+    return {};
+  }
+  core::Status DoActivate() override {
+    calls.push_back("activate");
+    if (fails_activate) return core::Error{ErrorCode::kDeviceStale, "no data: switch it on"};
+    return {};
+  }
+  void DoDeactivate() noexcept override { calls.push_back("deactivate"); }
+  void DoCleanup() noexcept override { calls.push_back("cleanup"); }
+  ReadStatus DoRead(std::span<HandSample> samples) noexcept override {
+    for (HandSample& sample : samples) sample.is_valid = true;
+    return next;
+  }
+};
+
+TEST(Driver, WalksThroughItsLifeInOrder) {
+  MockDriver driver;
+  EXPECT_EQ(driver.GetState(), DriverState::kUnconfigured);
+  ASSERT_TRUE(driver.Configure().ok());
+  EXPECT_EQ(driver.GetState(), DriverState::kInactive);
+  ASSERT_TRUE(driver.Activate().ok());
+  EXPECT_EQ(driver.GetState(), DriverState::kActive);
+  ASSERT_TRUE(driver.Deactivate().ok());
+  ASSERT_TRUE(driver.Cleanup().ok());
+  EXPECT_EQ(driver.GetState(), DriverState::kUnconfigured);
+  EXPECT_EQ(driver.calls, (std::vector<std::string>{"configure", "activate", "deactivate", "cleanup"}));
+}
+
+TEST(Driver, RefusesEveryTransitionOutOfTurn) {
+  const auto refuses = [](const core::Status& status) {
+    return !status.ok() && status.error().code == ErrorCode::kDeviceState;
+  };
+  MockDriver driver;
+  EXPECT_TRUE(refuses(driver.Activate()));
+  EXPECT_TRUE(refuses(driver.Deactivate()));
+  EXPECT_TRUE(refuses(driver.Cleanup()));
+  ASSERT_TRUE(driver.Configure().ok());
+  EXPECT_TRUE(refuses(driver.Configure()));
+  EXPECT_TRUE(refuses(driver.Deactivate()));
+  ASSERT_TRUE(driver.Activate().ok());
+  EXPECT_TRUE(refuses(driver.Configure()));
+  EXPECT_TRUE(refuses(driver.Activate()));
+  EXPECT_TRUE(refuses(driver.Cleanup()));
+  driver.Finalize();
+  EXPECT_TRUE(refuses(driver.Configure()));
+  EXPECT_TRUE(refuses(driver.Activate()));
+  EXPECT_EQ(driver.calls, (std::vector<std::string>{"configure", "activate", "deactivate", "cleanup"}))
+      << "a refused wish must not reach the device";
+}
+
+TEST(Driver, MessageSaysWhatToDoFirst) {
+  MockDriver driver;
+  EXPECT_EQ(driver.Activate().error().Text(),
+            "E-DEV-003 mock is unconfigured and cannot be activated: it must be inactive first");
+}
+
+TEST(Driver, FailedStepLeavesTheStateAsItWas) {
+  MockDriver driver;
+  driver.fails_configure = true;
+  EXPECT_EQ(driver.Configure().error().code, ErrorCode::kDeviceLost);
+  EXPECT_EQ(driver.GetState(), DriverState::kUnconfigured);
+  driver.fails_configure = false;
+  driver.fails_activate = true;
+  ASSERT_TRUE(driver.Configure().ok());
+  EXPECT_EQ(driver.Activate().error().code, ErrorCode::kDeviceStale);
+  EXPECT_EQ(driver.GetState(), DriverState::kInactive);
+}
+
+TEST(Driver, ReadsOnlyWhileActive) {
+  MockDriver driver;
+  std::array<HandSample, 2> samples;
+  samples[1].is_valid = true;
+  EXPECT_EQ(driver.Read(samples), ReadStatus::kNotActive);
+  EXPECT_FALSE(samples[1].is_valid);
+  ASSERT_TRUE(driver.Configure().ok());
+  EXPECT_EQ(driver.Read(samples), ReadStatus::kNotActive);
+  ASSERT_TRUE(driver.Activate().ok());
+  EXPECT_EQ(driver.Read(samples), ReadStatus::kFresh);
+  EXPECT_TRUE(samples[0].is_valid && samples[1].is_valid);
+}
+
+TEST(Driver, LostDeviceIsClosedAndComesBackOnlyWhenConfiguredAgain) {
+  MockDriver driver;
+  std::array<HandSample, 2> samples;
+  ASSERT_TRUE(driver.Configure().ok());
+  ASSERT_TRUE(driver.Activate().ok());
+  driver.next = ReadStatus::kLost;
+  EXPECT_EQ(driver.Read(samples), ReadStatus::kLost);
+  EXPECT_FALSE(samples[0].is_valid || samples[1].is_valid);
+  EXPECT_EQ(driver.GetState(), DriverState::kUnconfigured);
+  driver.next = ReadStatus::kFresh;
+  EXPECT_EQ(driver.Read(samples), ReadStatus::kNotActive);
+  EXPECT_TRUE(driver.Configure().ok());
+  EXPECT_TRUE(driver.Activate().ok());
+  EXPECT_EQ(driver.Read(samples), ReadStatus::kFresh);
+}
+
+TEST(Driver, FinalizesOnce) {
+  MockDriver driver;
+  driver.Finalize();
+  driver.Finalize();
+  EXPECT_EQ(driver.GetState(), DriverState::kFinalized);
+  EXPECT_TRUE(driver.calls.empty());
+}
+
+}  // namespace
+}  // namespace trocar::device
