@@ -10,6 +10,8 @@ find_package(CLI11 REQUIRED)
 find_package(PNG REQUIRED)
 if("anatomy" IN_LIST TROCAR_MODULES)
   find_package(meshoptimizer REQUIRED)
+  # ITK's configuration looks for HDF5, whose module compiles C
+  enable_language(C)
   # ITK with an explicit list of components, in a scope of its own: its variables reach no other target.
   function(trocar_find_itk)
     find_package(ITK REQUIRED COMPONENTS ITKCommon ITKIOImageBase ITKIOJPEG ITKIOPNG ITKIONIFTI ITKIONRRD)

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/anatomy/contour_spline.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "trocar/core/assert.h"
+#include "trocar/math/cubic_spline.h"
+
+namespace trocar::anatomy {
+namespace {
+
+/// Rounds of division; each at least halves the offending chords, so the curve ends at the polygon.
+constexpr int kMaxRounds = 12;
+/// Bulges below this are invisible and divide nothing [pixels].
+constexpr double kHarmlessBulge = 0.5;
+
+double Side(const Vec2& a, const Vec2& b, const Vec2& p) { return (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x); }
+
+bool IsBetween(const Vec2& a, const Vec2& b, const Vec2& p) {
+  return p.x >= std::min(a.x, b.x) && p.x <= std::max(a.x, b.x) && p.y >= std::min(a.y, b.y) && p.y <= std::max(a.y, b.y);
+}
+
+bool Touch(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
+  const double abc = Side(a, b, c), abd = Side(a, b, d), cda = Side(c, d, a), cdb = Side(c, d, b);
+  if (((abc > 0 && abd < 0) || (abc < 0 && abd > 0)) && ((cda > 0 && cdb < 0) || (cda < 0 && cdb > 0))) return true;
+  return (abc == 0 && IsBetween(a, b, c)) || (abd == 0 && IsBetween(a, b, d)) || (cda == 0 && IsBetween(c, d, a)) ||
+         (cdb == 0 && IsBetween(c, d, b));
+}
+
+/// Calls visit(i, j) for sides i < j that touch and are no neighbours.
+template <typename Visit>
+void VisitCrossings(std::span<const Vec2> polygon, Visit visit) {
+  const std::size_t n = polygon.size();
+  for (std::size_t i = 0; i + 2 < n; ++i) {
+    const Vec2 &a = polygon[i], &b = polygon[i + 1];
+    const double min_x = std::min(a.x, b.x), max_x = std::max(a.x, b.x);
+    const double min_y = std::min(a.y, b.y), max_y = std::max(a.y, b.y);
+    for (std::size_t j = i + 2; j < n; ++j) {
+      if (i == 0 && j == n - 1) continue;
+      const Vec2 &c = polygon[j], &d = polygon[(j + 1) % n];
+      if (std::max(c.x, d.x) < min_x || std::min(c.x, d.x) > max_x) continue;
+      if (std::max(c.y, d.y) < min_y || std::min(c.y, d.y) > max_y) continue;
+      if (Touch(a, b, c, d) && !visit(i, j)) return;
+    }
+  }
+}
+
+struct Sampled {
+  std::vector<Vec2> points;
+  std::vector<std::size_t> segment;  // of each point: the control point it follows
+};
+
+Sampled SampleSpline(const math::CubicSpline& spline, double step) {
+  Sampled sampled;
+  const auto knots = spline.Knots();
+  for (std::size_t i = 0; i + 1 < knots.size(); ++i) {
+    const double length = knots[i + 1] - knots[i];
+    const int count = std::max(2, static_cast<int>(std::ceil(length / step)));
+    for (int k = 0; k < count; ++k) {
+      const auto p = spline.Evaluate(knots[i] + length * k / count);
+      sampled.points.push_back({p.x, p.y});
+      sampled.segment.push_back(i);
+    }
+  }
+  return sampled;
+}
+
+}  // namespace
+
+bool CrossesItself(std::span<const Vec2> polygon) {
+  bool crosses = false;
+  VisitCrossings(polygon, [&](std::size_t, std::size_t) {
+    crosses = true;
+    return false;
+  });
+  return crosses;
+}
+
+std::vector<Vec2> FitContour(std::span<const Vec2> points, const ContourSplineSettings& settings) {
+  TROCAR_ASSERT(points.size() >= 3);
+  std::vector<math::Vec3> controls;
+  for (const Vec2& p : points) {
+    if (controls.empty() || controls.back().x != p.x || controls.back().y != p.y) controls.push_back({p.x, p.y, 0.0});
+  }
+  while (controls.size() > 1 && controls.back() == controls.front()) controls.pop_back();
+  const bool polygon_crosses = CrossesItself(points);
+
+  for (int round = 0;; ++round) {
+    const math::CubicSpline spline(controls, math::SplineEnds::kClosed);
+    Sampled sampled = SampleSpline(spline, settings.step_px);
+    // segments that swing out too far
+    std::set<std::size_t> irregular;
+    const std::size_t n = controls.size();
+    std::vector<double> bulge(n, 0.0);
+    for (std::size_t k = 0; k < sampled.points.size(); ++k) {
+      const std::size_t i = sampled.segment[k];
+      const Vec2 a{controls[i].x, controls[i].y}, b{controls[(i + 1) % n].x, controls[(i + 1) % n].y};
+      const Vec2 chord = b - a;
+      const double length = Norm(chord);
+      const double t = std::clamp(Dot(sampled.points[k] - a, chord) / (length * length), 0.0, 1.0);
+      const double away = Norm(sampled.points[k] - (a + t * chord));
+      if (away > kHarmlessBulge && away > settings.max_bulge * length) irregular.insert(i);
+    }
+    // segments that cross each other
+    if (!polygon_crosses) {
+      VisitCrossings(sampled.points, [&](std::size_t a, std::size_t b) {
+        irregular.insert(sampled.segment[a]);
+        irregular.insert(sampled.segment[b]);
+        return true;
+      });
+    }
+    if (irregular.empty()) return std::move(sampled.points);
+    if (round == kMaxRounds) break;
+
+    std::vector<math::Vec3> divided;
+    for (std::size_t i = 0; i < n; ++i) {
+      divided.push_back(controls[i]);
+      if (irregular.contains(i)) divided.push_back(0.5 * (controls[i] + controls[(i + 1) % n]));
+    }
+    controls = std::move(divided);
+  }
+  // the polygon itself is the limit of division
+  return {points.begin(), points.end()};
+}
+
+}  // namespace trocar::anatomy
