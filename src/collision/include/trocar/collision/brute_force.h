@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file brute_force.h  Searches that look at everything: the oracles beside the hierarchy.
+#pragma once
+
+#include <limits>
+#include <span>
+
+#include "trocar/collision/centroid_hierarchy.h"
+#include "trocar/collision/farthest_pair.h"
+#include "trocar/collision/queries.h"
+
+namespace trocar::collision {
+
+/// The same answer as CentroidHierarchy::FindNearest, to the bit, by testing every triangle.
+NearestTriangle FindNearestBruteForce(std::span<const Vec3> positions, std::span<const Triangle> triangles,
+                                      const Vec3& p,
+                                      double max_distance = std::numeric_limits<double>::infinity()) noexcept;
+
+/// Index of the centroid that is nearest to p, the lowest of equally near ones: what FindGreedy tries to
+/// find. \return kNoTriangle for no centroid
+std::uint32_t FindNearestCentroidBruteForce(std::span<const Vec3> centroids, const Vec3& p) noexcept;
+
+/// The same answer as FindNearestToSegment, to the bit, by testing every triangle.
+SegmentContact FindNearestToSegmentBruteForce(
+    std::span<const Vec3> positions, std::span<const Triangle> triangles, const Segment& segment,
+    double max_distance = std::numeric_limits<double>::infinity()) noexcept;
+
+/// The same answer as FindFarthestPair, by testing every pair.
+/// \pre at least two members (TROCAR_ASSERT)
+FarthestPair FindFarthestPairBruteForce(std::span<const Vec3> points,
+                                        std::span<const std::uint32_t> members) noexcept;
+
+}  // namespace trocar::collision

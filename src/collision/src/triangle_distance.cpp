@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/collision/triangle_distance.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace trocar::collision {
+
+using math::Cross;
+using math::Dot;
+using math::SquaredDistance;
+using math::SquaredNorm;
+
+namespace {
+
+// (twice the area / longest side squared)^2 below which the region tests of the plain formula are not trusted
+// [-]
+constexpr double kSliver2 = 1e-8;
+// (gap / size)^2 up to which the points of a segment and a triangle are the same point [-]
+constexpr double kPierceGap2 = 1e-24;
+
+/// Corner weights of a point on side `side` (from corner `side` to the next) at parameter t.
+TrianglePoint PointOnSide(const Vec3* corners, int side, double t) {
+  const int next = (side + 1) % 3;
+  TrianglePoint result;
+  result.weights[side] = 1.0 - t;
+  result.weights[next] = t;
+  result.point = t <= 0.0   ? corners[side]
+                 : t >= 1.0 ? corners[next]
+                            : (1.0 - t) * corners[side] + t * corners[next];
+  return result;
+}
+
+/// Parameters of the nearest points of segments p0-p1 and q0-q1 (Ericson 2005, section 5.1.9).
+void FindNearestParameters(const Vec3& p0, const Vec3& p1, const Vec3& q0, const Vec3& q1, double& s,
+                           double& t) {
+  const Vec3 d1 = p1 - p0, d2 = q1 - q0, r = p0 - q0;
+  const double a = SquaredNorm(d1), e = SquaredNorm(d2), f = Dot(d2, r);
+  s = t = 0.0;
+  if (!(a > 0.0) && !(e > 0.0)) return;
+  if (!(a > 0.0)) {
+    t = std::clamp(f / e, 0.0, 1.0);
+    return;
+  }
+  const double c = Dot(d1, r);
+  if (!(e > 0.0)) {
+    s = std::clamp(-c / a, 0.0, 1.0);
+    return;
+  }
+  const double b = Dot(d1, d2), denominator = a * e - b * b;
+  if (denominator > 0.0) s = std::clamp((b * f - c * e) / denominator, 0.0, 1.0);
+  t = (b * s + f) / e;
+  if (t < 0.0) {
+    t = 0.0;
+    s = std::clamp(-c / a, 0.0, 1.0);
+  } else if (t > 1.0) {
+    t = 1.0;
+    s = std::clamp((b - c) / a, 0.0, 1.0);
+  }
+}
+
+}  // namespace
+
+TrianglePoint FindNearestOnAnyTriangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) noexcept {
+  const Vec3 ab = b - a, ac = c - a;
+  const double longest2 = std::max({SquaredNorm(ab), SquaredNorm(ac), SquaredDistance(b, c)});
+  const TrianglePoint plain = geometry::FindNearestOnTriangle(p, a, b, c);
+  if (SquaredNorm(Cross(ab, ac)) > kSliver2 * longest2 * longest2) return plain;
+
+  // a sliver: the plain answer counts only if it is a point of the triangle, and only if no side is nearer
+  const Vec3 corners[3] = {a, b, c};
+  TrianglePoint best = PointOnSide(corners, 0, geometry::FindNearestOnSegment(p, a, b));
+  double best2 = SquaredDistance(best.point, p);
+  const auto consider = [&](const TrianglePoint& candidate) {
+    const double d2 = SquaredDistance(candidate.point, p);
+    if (d2 < best2) best = candidate, best2 = d2;
+  };
+  consider(PointOnSide(corners, 1, geometry::FindNearestOnSegment(p, b, c)));
+  consider(PointOnSide(corners, 2, geometry::FindNearestOnSegment(p, c, a)));
+  const bool inside =
+      std::all_of(plain.weights.begin(), plain.weights.end(), [](double w) { return w >= 0.0 && w <= 1.0; });
+  if (inside) consider(plain);
+  return best;
+}
+
+SegmentTrianglePoints FindNearestSegmentTriangle(const Vec3& start, const Vec3& end, const Vec3& a,
+                                                 const Vec3& b, const Vec3& c) noexcept {
+  const Vec3 along = end - start;
+  const Vec3 corners[3] = {a, b, c};
+  const auto at = [&](double t) { return t >= 1.0 ? end : start + t * along; };
+
+  // does it pierce the triangle? (Ericson 2005, section 5.3.6, both directions) On slivers the formula may
+  // answer with a point of its own making, so the two points that it names must coincide.
+  const Vec3 ab = b - a, ac = c - a, normal = Cross(ab, ac);
+  const double slope = -Dot(along, normal);
+  if (slope != 0.0) {
+    const double t = Dot(start - a, normal) / slope;
+    const Vec3 moment = Cross(-along, start - a);
+    const double v = Dot(ac, moment) / slope, w = -Dot(ab, moment) / slope;
+    if (t >= 0.0 && t <= 1.0 && v >= 0.0 && w >= 0.0 && v + w <= 1.0) {
+      const Vec3 on_segment = at(t), on_triangle = a + v * ab + w * ac;
+      const double size2 = SquaredNorm(along) + SquaredNorm(ab) + SquaredNorm(ac);
+      if (SquaredDistance(on_segment, on_triangle) <= kPierceGap2 * size2) {
+        return {t, on_segment, {on_segment, {1.0 - v - w, v, w}}, 0.0};
+      }
+    }
+  }
+
+  // the ends against the triangle, then the sides and corners against the segment
+  SegmentTrianglePoints best;
+  best.on_segment = start;
+  best.on_triangle = FindNearestOnAnyTriangle(start, a, b, c);
+  best.squared_distance = SquaredDistance(start, best.on_triangle.point);
+  const auto consider = [&](double parameter, const TrianglePoint& on_triangle) {
+    const Vec3 on_segment = at(parameter);
+    const double d2 = SquaredDistance(on_segment, on_triangle.point);
+    if (d2 < best.squared_distance) best = {parameter, on_segment, on_triangle, d2};
+  };
+  consider(1.0, FindNearestOnAnyTriangle(end, a, b, c));
+  for (int side = 0; side < 3; ++side) {
+    double s = 0.0, t = 0.0;
+    FindNearestParameters(start, end, corners[side], corners[(side + 1) % 3], s, t);
+    consider(s, PointOnSide(corners, side, t));
+    // near-parallel sides lose the digits of s; then a corner is as near
+    consider(geometry::FindNearestOnSegment(corners[side], start, end), PointOnSide(corners, side, 0.0));
+  }
+  return best;
+}
+
+}  // namespace trocar::collision

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/collision/triangle_distance.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "trocar/math/random.h"
+
+namespace trocar::collision {
+namespace {
+
+Vec3 RandomPoint(math::Random& random, double reach = 1.0) {
+  return {random.Uniform(-reach, reach), random.Uniform(-reach, reach), random.Uniform(-reach, reach)};
+}
+
+double DistanceToSegment(const Vec3& p, const Vec3& a, const Vec3& b) {
+  return math::Distance(p, a + geometry::FindNearestOnSegment(p, a, b) * (b - a));
+}
+
+TEST(FindNearestOnAnyTriangle, AgreesWithThePlainFormulaOnSoundTriangles) {
+  math::Random random(21);
+  for (int trial = 0; trial < 500; ++trial) {
+    const Vec3 p = RandomPoint(random, 2), a = RandomPoint(random), b = RandomPoint(random),
+               c = RandomPoint(random);
+    EXPECT_EQ(FindNearestOnAnyTriangle(p, a, b, c).point, geometry::FindNearestOnTriangle(p, a, b, c).point);
+  }
+}
+
+// Oracle: a sliver of height h lies within h of its longest side, so its distance lies within h of that
+// side's.
+TEST(FindNearestOnAnyTriangle, HoldsOnSlivers) {
+  math::Random random(22);
+  for (int trial = 0; trial < 4000; ++trial) {
+    const Vec3 a = RandomPoint(random), b = RandomPoint(random), p = RandomPoint(random, 2);
+    const double height = std::pow(10.0, random.Uniform(-20, -4));
+    const Vec3 c = a + random.Uniform() * (b - a) + height * math::AnyPerpendicular(math::Normalized(b - a));
+    const TrianglePoint nearest = FindNearestOnAnyTriangle(p, a, b, c);
+    const double distance = math::Distance(p, nearest.point);
+    EXPECT_NEAR(distance, DistanceToSegment(p, a, b), height + 1e-14)
+        << "trial " << trial << " height " << height;
+    for (const double weight : nearest.weights) {
+      EXPECT_GE(weight, 0.0);
+      EXPECT_LE(weight, 1.0);
+    }
+    const Vec3 again = nearest.weights[0] * a + nearest.weights[1] * b + nearest.weights[2] * c;
+    EXPECT_NEAR(math::Distance(again, nearest.point), 0.0, 1e-14);
+  }
+}
+
+TEST(FindNearestOnAnyTriangle, TreatsATriangleOfOnePointAsThatPoint) {
+  const Vec3 a{0.1, 0.2, 0.3};
+  EXPECT_EQ(FindNearestOnAnyTriangle({1, 1, 1}, a, a, a).point, a);
+}
+
+TEST(FindNearestSegmentTriangle, KnowsPiercingPassingAndStoppingShort) {
+  const Vec3 a{0, 0, 0}, b{4, 0, 0}, c{0, 4, 0};
+  const SegmentTrianglePoints pierces = FindNearestSegmentTriangle({1, 1, 3}, {1, 1, -1}, a, b, c);
+  EXPECT_EQ(pierces.squared_distance, 0.0);
+  EXPECT_NEAR(pierces.parameter, 0.75, 1e-15);
+  EXPECT_NEAR(math::Distance(pierces.on_triangle.point, {1, 1, 0}), 0.0, 1e-15);
+  EXPECT_NEAR(pierces.on_triangle.weights[0], 0.5, 1e-15);
+  const SegmentTrianglePoints short_of = FindNearestSegmentTriangle({1, 1, 3}, {1, 1, 0.5}, a, b, c);
+  EXPECT_NEAR(short_of.squared_distance, 0.25, 1e-15);
+  EXPECT_EQ(short_of.parameter, 1.0);
+  const SegmentTrianglePoints beside = FindNearestSegmentTriangle({1, -2, -5}, {1, -2, 5}, a, b, c);
+  EXPECT_NEAR(beside.squared_distance, 4.0, 1e-14);
+  EXPECT_NEAR(beside.parameter, 0.5, 1e-15);
+  const SegmentTrianglePoints parallel = FindNearestSegmentTriangle({-9, 1, 2}, {9, 1, 2}, a, b, c);
+  EXPECT_NEAR(parallel.squared_distance, 4.0, 1e-14);
+  const SegmentTrianglePoints point = FindNearestSegmentTriangle({1, 1, 2}, {1, 1, 2}, a, b, c);
+  EXPECT_NEAR(point.squared_distance, 4.0, 1e-14);
+}
+
+// Oracle: the exact point query at many places along the segment; between two of them the distance changes by
+// at most half their gap.
+TEST(FindNearestSegmentTriangle, AgreesWithADenseSearch) {
+  math::Random random(23);
+  int pierced = 0;
+  for (int trial = 0; trial < 600; ++trial) {
+    const Vec3 start = RandomPoint(random), end = trial % 7 == 0 ? start : RandomPoint(random);
+    const Vec3 a = RandomPoint(random), b = RandomPoint(random);
+    const Vec3 c = trial % 5 == 0   ? Lerp(a, b, random.Uniform(-0.5, 1.5))  // no area
+                   : trial % 5 == 1 ? a + (end - start) * random.Uniform(0.1, 1) +
+                                          1e-9 * RandomPoint(random)  // parallel side
+                                    : RandomPoint(random);
+    const SegmentTrianglePoints found = FindNearestSegmentTriangle(start, end, a, b, c);
+    constexpr int kSteps = 2000;
+    double best = 1e9;
+    for (int i = 0; i <= kSteps; ++i) {
+      const Vec3 p = start + (double(i) / kSteps) * (end - start);
+      best = std::min(best, math::Distance(p, FindNearestOnAnyTriangle(p, a, b, c).point));
+    }
+    const double distance = std::sqrt(found.squared_distance);
+    EXPECT_LE(distance, best + 1e-12) << "trial " << trial;
+    EXPECT_GE(distance, best - 0.5 * math::Distance(start, end) / kSteps - 1e-12) << "trial " << trial;
+    EXPECT_NEAR(math::Distance(found.on_segment, found.on_triangle.point), distance, 1e-12);
+    EXPECT_NEAR(math::Distance(found.on_segment, start + found.parameter * (end - start)), 0.0, 1e-12);
+    pierced += found.squared_distance == 0.0;
+  }
+  EXPECT_GT(pierced, 5);
+}
+
+// Slivers once made the piercing test divide nothing by nothing.
+TEST(FindNearestSegmentTriangle, NeverPiercesAFarSliver) {
+  math::Random random(24);
+  for (int trial = 0; trial < 4000; ++trial) {
+    const Vec3 a = RandomPoint(random), b = RandomPoint(random), start = RandomPoint(random),
+               end = RandomPoint(random);
+    const double height = std::pow(10.0, random.Uniform(-20, -5));
+    const Vec3 c = Lerp(a, b, random.Uniform()) + height * math::AnyPerpendicular(math::Normalized(b - a));
+    const double to_side = std::sqrt(FindNearestSegmentTriangle(start, end, a, b, b).squared_distance);
+    const double found = std::sqrt(FindNearestSegmentTriangle(start, end, a, b, c).squared_distance);
+    EXPECT_NEAR(found, to_side, height + 1e-9) << "trial " << trial;
+  }
+}
+
+}  // namespace
+}  // namespace trocar::collision
