@@ -1,0 +1,26 @@
+# SPDX-License-Identifier: Apache-2.0
+# Shared by ./run, ./test and .ci/run, which source it. Expects $root, the repository.
+
+# ccache finds the same file in another clone too
+export CCACHE_BASEDIR="$root"
+
+say() { printf '\n== %s\n' "$*"; }
+
+# configure PRESET [cmake arguments]: only when there is nothing to build from; ninja repeats it where CMake files change
+configure() {
+  local folder="$root/build/$1" fresh=()
+  if [ -f "$folder/CMakeCache.txt" ] &&
+    ! grep -qxF "CMAKE_HOME_DIRECTORY:INTERNAL=$root" "$folder/CMakeCache.txt"; then
+    fresh=(--fresh) # the folder was moved or copied here
+  fi
+  if [ ! -f "$folder/build.ninja" ] || [ ${#fresh[@]} -gt 0 ]; then
+    say "configuring build/$1"
+    (cd "$root" && cmake "${fresh[@]}" --preset "$1" "${@:2}")
+  fi
+}
+
+# build PRESET [targets]
+build() {
+  say "building build/$1"
+  ninja -C "$root/build/$1" "${@:2}"
+}
