@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trocar/tissue/equilibrium.h"
 
+#include <oneapi/tbb/info.h>
+
 #include <algorithm>
 
 #include "node_force.h"
@@ -14,6 +16,9 @@ EquilibriumSolver::EquilibriumSolver(const TissueModel& model, int threads) : co
   const std::size_t n = model.Size();
   content_->model = &model;
   content_->threads = threads;
+  if (threads > tbb::info::default_concurrency()) {
+    content_->more_workers.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+  }
   if (threads > 1) content_->arena.initialize(threads);
   content_->previous.resize(n);
   content_->inverse_blocks.resize(n);

@@ -2,9 +2,11 @@
 /// \file solver_content.h  What the solvers share.
 #pragma once
 
+#include <oneapi/tbb/global_control.h>
 #include <oneapi/tbb/task_arena.h>
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "trocar/tissue/equilibrium.h"
@@ -17,6 +19,7 @@ using Symmetric3 = std::array<double, 6>;
 struct EquilibriumSolver::Content {
   const TissueModel* model = nullptr;
   int threads = 1;
+  std::optional<tbb::global_control> more_workers;  // set when more threads are asked for than there are cores
   tbb::task_arena arena;
 
   // Chebyshev
