@@ -30,7 +30,8 @@ LiveSettings ClampSettings(const LiveSettings& settings) noexcept;
 
 struct Input {
   std::array<instrument::TrocarJoints, kHandCount> hands;
-  instrument::TrocarJoints laparoscope;  ///< jaw is not used; spin turns the picture
+  /// jaw is not used; spin turns the angled tip (the light post), the horizon of the picture stays
+  instrument::TrocarJoints laparoscope;
   LiveSettings settings;
 
   friend bool operator==(const Input&, const Input&) = default;

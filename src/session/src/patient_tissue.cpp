@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "patient_tissue.h"
+
+#include <algorithm>
+#include <string>
+
+#include "trocar/geometry/mesh_measures.h"
+#include "trocar/geometry/mesh_topology.h"
+#include "trocar/tissue/material.h"
+
+namespace trocar::session {
+namespace {
+
+/// Bending springs of a tube, as a share of its axial stiffness [-]: keeps it a smooth curve.
+constexpr double kBendingShare = 0.1;
+/// The end of a tube is tied to this many of the nearest vertices of its organ.
+constexpr std::size_t kEndStrands = 4;
+
+const OrganMaterial* FindMaterial(const Scene& scene, std::string_view name) {
+  const auto found = std::find_if(scene.materials.begin(), scene.materials.end(),
+                                  [&](const OrganMaterial& material) { return material.organ == name; });
+  return found == scene.materials.end() ? nullptr : &*found;
+}
+
+core::Error MissingMaterial(const std::string& name) {
+  return {core::ErrorCode::kSceneInvalid, "the scene has no material for \"" + name + "\"; add one to \"materials\""};
+}
+
+void AddOrgan(const anatomy::Organ& organ, const OrganMaterial& material, PatientTissue& made) {
+  auto& definition = made.definition;
+  const auto first = static_cast<std::uint32_t>(definition.rest.size());
+  const auto& mesh = organ.mesh;
+  made.surfaces.push_back({organ.name, organ.name, first, static_cast<std::uint32_t>(mesh.positions.size()), mesh.triangles, {}});
+  definition.rest.insert(definition.rest.end(), mesh.positions.begin(), mesh.positions.end());
+
+  const auto areas = geometry::CalcVertexAreas(mesh.positions, mesh.triangles);
+  const auto foundation = tissue::CalcFoundationStiffness(areas, material.foundation_modulus, material.depth);
+  definition.shape_stiffness.insert(definition.shape_stiffness.end(), foundation.begin(), foundation.end());
+  // the organ's mass, shared out by area
+  const double mass_per_area = material.density * geometry::CalcVolume(mesh.positions, mesh.triangles) /
+                               geometry::CalcArea(mesh.positions, mesh.triangles);
+  for (const double area : areas) definition.mass.push_back(mass_per_area * area);
+
+  const auto edges = geometry::FindEdges(mesh.triangles);
+  const auto stiffness = tissue::CalcEdgeStiffness(mesh.positions, mesh.triangles, edges,
+                                                   material.young_modulus * material.wall_thickness);
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    const auto [a, b] = edges[i];
+    definition.springs.push_back({first + a, first + b, stiffness[i], math::Distance(mesh.positions[a], mesh.positions[b])});
+  }
+  for (const anatomy::Region& region : organ.regions) {
+    const bool is_fixed = region.name == anatomy::kDiaphragmaticFace || region.name == anatomy::kFalciform ||
+                          region.name == anatomy::kCoronary;
+    if (!is_fixed) continue;
+    for (const auto vertex : region.vertices) definition.fixed.push_back(first + vertex);
+  }
+}
+
+void AddAttachments(const Scene& scene, const OrganMaterial& bed, PatientTissue& made) {
+  const auto& patient = scene.patient;
+  std::vector<std::vector<double>> areas;
+  for (const anatomy::Organ& organ : patient.organs) {
+    areas.push_back(geometry::CalcVertexAreas(organ.mesh.positions, organ.mesh.triangles));
+  }
+  // several strands may hang on one vertex: they share its area
+  std::vector<std::vector<int>> strands_at(patient.organs.size());
+  for (std::size_t i = 0; i < patient.organs.size(); ++i) strands_at[i].assign(areas[i].size(), 0);
+  for (const auto& attachment : patient.attachments) ++strands_at[attachment.organ_a][attachment.vertex_a];
+  for (const auto& attachment : patient.attachments) {
+    const double area = areas[attachment.organ_a][attachment.vertex_a] /
+                        strands_at[attachment.organ_a][attachment.vertex_a];
+    made.definition.strands.push_back({made.surfaces[attachment.organ_a].first_node + attachment.vertex_a,
+                                       made.surfaces[attachment.organ_b].first_node + attachment.vertex_b,
+                                       bed.young_modulus / bed.wall_thickness * area});
+  }
+}
+
+/// Ties a tube's end to the nearest nodes of a surface.
+void TieEnd(std::uint32_t end, const SurfaceInfo& surface, double stiffness, tissue::TissueDefinition& definition) {
+  std::vector<std::pair<double, std::uint32_t>> near;
+  for (std::uint32_t i = 0; i < surface.node_count; ++i) {
+    const std::uint32_t node = surface.first_node + i;
+    near.emplace_back(math::SquaredDistance(definition.rest[node], definition.rest[end]), node);
+  }
+  const std::size_t count = std::min(surface.radii.empty() ? kEndStrands : std::size_t{1}, near.size());
+  std::partial_sort(near.begin(), near.begin() + static_cast<std::ptrdiff_t>(count), near.end());
+  for (std::size_t i = 0; i < count; ++i) {
+    definition.strands.push_back({end, near[i].second, stiffness / static_cast<double>(count)});
+  }
+}
+
+void AddTube(const anatomy::Tube& tube, const OrganMaterial& material, PatientTissue& made) {
+  auto& definition = made.definition;
+  const auto first = static_cast<std::uint32_t>(definition.rest.size());
+  const auto count = static_cast<std::uint32_t>(tube.line.points.size());
+  made.surfaces.push_back({tube.name, material.organ, first, count, {}, tube.line.radii});
+  definition.rest.insert(definition.rest.end(), tube.line.points.begin(), tube.line.points.end());
+  const double spacing = geometry::CalcLength(tube.line) / (count - 1);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const double radius = tube.line.radii[i];
+    // what surrounds the tube holds it over its shadow; the weight is that of the filled tube
+    definition.shape_stiffness.push_back(material.foundation_modulus / material.depth * 2.0 * radius * spacing);
+    definition.mass.push_back(material.density * M_PI * radius * radius * spacing);
+  }
+  const auto join = [&](std::uint32_t i, std::uint32_t step, double share) {
+    const double length = math::Distance(tube.line.points[i], tube.line.points[i + step]);
+    const double stiffness = tissue::CalcTubeStiffness(material.young_modulus, tube.line.radii[i], material.wall_thickness, length);
+    definition.springs.push_back({first + i, first + i + step, share * stiffness, length});
+  };
+  for (std::uint32_t i = 0; i + 1 < count; ++i) join(i, 1, 1.0);
+  for (std::uint32_t i = 0; i + 2 < count; ++i) join(i, 2, kBendingShare);
+}
+
+void TieTubes(const Scene& scene, PatientTissue& made) {
+  for (const anatomy::Tube& tube : scene.patient.tubes) {
+    const auto self = std::find_if(made.surfaces.begin(), made.surfaces.end(),
+                                   [&](const SurfaceInfo& surface) { return surface.name == tube.name; });
+    const OrganMaterial& material = *FindMaterial(scene, self->material);
+    const std::uint32_t ends[2] = {self->first_node, self->first_node + self->node_count - 1};
+    const std::string* names[2] = {&tube.from, &tube.to};
+    for (int end = 0; end < 2; ++end) {
+      const auto other = std::find_if(made.surfaces.begin(), made.surfaces.end(),
+                                      [&](const SurfaceInfo& surface) { return surface.name == *names[end]; });
+      if (other == made.surfaces.end()) {
+        made.definition.fixed.push_back(ends[end]);  // leaves the scene
+        continue;
+      }
+      const double stiffness = tissue::CalcTubeStiffness(material.young_modulus, self->radii.front(),
+                                                         material.wall_thickness, 0.004);
+      TieEnd(ends[end], *other, stiffness, made.definition);
+    }
+  }
+}
+
+}  // namespace
+
+core::Result<PatientTissue> MakePatientTissue(const Scene& scene) {
+  PatientTissue made;
+  for (const anatomy::Organ& organ : scene.patient.organs) {
+    const OrganMaterial* material = FindMaterial(scene, organ.name);
+    if (material == nullptr) return MissingMaterial(organ.name);
+    AddOrgan(organ, *material, made);
+  }
+  if (!scene.patient.attachments.empty()) {
+    const OrganMaterial* bed = FindMaterial(scene, anatomy::kGallbladderBed);
+    if (bed == nullptr) return MissingMaterial(anatomy::kGallbladderBed);
+    AddAttachments(scene, *bed, made);
+  }
+  for (const anatomy::Tube& tube : scene.patient.tubes) {
+    const std::string kind = tube.kind == anatomy::TubeKind::kArtery ? "artery" : "duct";
+    const OrganMaterial* material = FindMaterial(scene, kind);
+    if (material == nullptr) return MissingMaterial(kind);
+    AddTube(tube, *material, made);
+  }
+  TieTubes(scene, made);
+  return made;
+}
+
+}  // namespace trocar::session

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file patient_tissue.h  From a patient and its materials to one mass-spring system.
+#pragma once
+
+#include <vector>
+
+#include "trocar/session/scene.h"
+#include "trocar/session/simulation.h"
+#include "trocar/tissue/tissue_model.h"
+
+namespace trocar::session {
+
+struct PatientTissue {
+  tissue::TissueDefinition definition;
+  std::vector<SurfaceInfo> surfaces;  ///< organs, then tubes
+};
+
+/// Nodes: every organ's vertices, then every tube's centre line. Springs: mesh edges by van Gelder, tubes along their
+/// line with bending springs between next neighbours; virtual springs by Winkler; strands for the bed and for the
+/// ends of tubes. Fixed: the paper's three regions of the liver and the tubes' ends that leave the scene.
+///
+/// \return kSceneInvalid when a material is missing
+core::Result<PatientTissue> MakePatientTissue(const Scene& scene);
+
+}  // namespace trocar::session

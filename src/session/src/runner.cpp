@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/session/runner.h"
+
+#include <time.h>
+
+#include <cerrno>
+
+#include <algorithm>
+#include <atomic>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "trocar/core/clock.h"
+#include "trocar/core/newest_slot.h"
+#include "trocar/core/statistics.h"
+
+namespace trocar::session {
+namespace {
+
+void SleepUntil(std::int64_t time_ns) noexcept {
+  timespec until{};
+  until.tv_sec = time_ns / 1'000'000'000;
+  until.tv_nsec = time_ns % 1'000'000'000;
+  while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr) == EINTR) {
+  }
+}
+
+}  // namespace
+
+struct Runner::Content {
+  explicit Content(Simulation taken) : simulation(std::move(taken)) {}
+
+  Simulation simulation;
+  core::NewestSlot<Input> input_slot;
+  core::NewestSlot<Snapshot> snapshot_slot;
+  std::atomic<bool> is_stopping{false}, is_paused{true}, is_scripted{false};
+  std::atomic<int> resets_wanted{0};
+  std::atomic<std::uint64_t> ticks{0}, late_ticks{0};
+  std::atomic<double> tick_median{0}, tick_p99{0};
+  std::thread thread;
+
+  void Publish() {
+    snapshot_slot.Back() = simulation.GetSnapshot();
+    snapshot_slot.Publish();
+  }
+  void Run();
+};
+
+void Runner::Content::Run() {
+  const auto period = static_cast<std::int64_t>(1e9 * simulation.GetScene().tick_seconds);
+  const auto window = static_cast<std::size_t>(1.0 / simulation.GetScene().tick_seconds);
+  std::vector<double> durations;
+  durations.reserve(window);
+  Input input = CalcScriptInput(simulation.GetScene(), 0.0);
+  int resets_done = 0;
+  std::int64_t next = core::NowNanoseconds();
+  while (!is_stopping.load(std::memory_order_relaxed)) {
+    if (const int wanted = resets_wanted.load(std::memory_order_acquire); wanted != resets_done) {
+      resets_done = wanted;
+      simulation.Reset();
+      Publish();
+    }
+    if (input_slot.Update()) input = input_slot.Front();
+    if (!is_paused.load(std::memory_order_relaxed)) {
+      Input now = input;
+      if (is_scripted.load(std::memory_order_relaxed)) {
+        now.hands = CalcScriptInput(simulation.GetScene(), simulation.GetSnapshot().time).hands;
+      }
+      simulation.Step(now);
+      Publish();
+      ticks.fetch_add(1, std::memory_order_relaxed);
+      durations.push_back(simulation.GetSnapshot().tick_seconds);
+      if (durations.size() == window) {
+        tick_median.store(core::CalcPercentile(durations, 0.5), std::memory_order_relaxed);
+        tick_p99.store(core::CalcPercentile(durations, 0.99), std::memory_order_relaxed);
+        durations.clear();
+      }
+    }
+    next += period;
+    const std::int64_t now = core::NowNanoseconds();
+    if (now > next + period / 2) {
+      // late: never a burst of ticks to catch up (faults D9)
+      late_ticks.fetch_add(1, std::memory_order_relaxed);
+      next = now;
+      continue;
+    }
+    SleepUntil(next);
+  }
+}
+
+Runner::Runner(Simulation simulation) : content_(std::make_unique<Content>(std::move(simulation))) {
+  content_->Publish();
+  content_->snapshot_slot.Update();
+  content_->thread = std::thread([content = content_.get()] { content->Run(); });
+}
+
+Runner::~Runner() {
+  content_->is_stopping.store(true);
+  content_->thread.join();
+}
+
+void Runner::SetInput(const Input& input) {
+  content_->input_slot.Back() = input;
+  content_->input_slot.Publish();
+}
+
+void Runner::SetScripted(bool is_scripted) { content_->is_scripted.store(is_scripted); }
+void Runner::SetPaused(bool is_paused) { content_->is_paused.store(is_paused); }
+bool Runner::IsPaused() const { return content_->is_paused.load(); }
+void Runner::Reset() { content_->resets_wanted.fetch_add(1, std::memory_order_release); }
+
+const Snapshot& Runner::Latest() {
+  content_->snapshot_slot.Update();
+  return content_->snapshot_slot.Front();
+}
+
+RunnerStatistics Runner::Statistics() const {
+  return {content_->ticks.load(), content_->late_ticks.load(), content_->tick_median.load(), content_->tick_p99.load()};
+}
+
+const Scene& Runner::GetScene() const { return content_->simulation.GetScene(); }
+std::span<const SurfaceInfo> Runner::Surfaces() const { return content_->simulation.Surfaces(); }
+
+}  // namespace trocar::session

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "script.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "trocar/core/json.h"
+
+namespace trocar::session {
+namespace {
+
+constexpr double kDegree = M_PI / 180.0;
+constexpr const char* kHandNames[kHandCount] = {"left", "right"};
+
+}  // namespace
+
+core::Result<Script> ReadScript(const std::filesystem::path& path, const anatomy::Patient& patient) {
+  auto document = core::JsonDocument::Read(path);
+  if (!document.ok()) return document.error();
+  const core::JsonView root = document->Root();
+  root.AllowOnly({"format", "version", "about", "keys"});
+  if (root.Text("format") != "trocar-script") root.Complain("format must be \"trocar-script\"");
+  if (root.Integer("version") != 1) root.Complain("version must be 1");
+
+  Script script;
+  for (const core::JsonView& view : root.Array("keys")) {
+    view.AllowOnly({"time_s", "about", "left", "right"});
+    const bool is_first = script.keys.empty();
+    ScriptKey key = is_first ? ScriptKey{} : script.keys.back();
+    key.time = view.Number("time_s", {0.0, 36000.0});
+    if (!is_first && key.time <= script.keys.back().time) {
+      view.Complain("time_s must rise from key to key", core::ErrorCode::kScriptInvalid);
+    }
+    for (int hand = 0; hand < kHandCount; ++hand) {
+      if (!view.Has(kHandNames[hand])) {
+        if (is_first) view.Complain("the first key must place both hands", core::ErrorCode::kScriptInvalid);
+        continue;
+      }
+      const core::JsonView pose = view.Object(kHandNames[hand]);
+      pose.AllowOnly({"at", "offset_mm", "spin_deg", "jaw_deg"});
+      const std::string name = pose.Text("at");
+      const anatomy::Landmark* landmark = patient.FindLandmark(name);
+      if (landmark == nullptr) {
+        std::string known;
+        for (const auto& one : patient.landmarks) known += (known.empty() ? "" : ", ") + one.name;
+        pose.Complain("there is no landmark \"" + name + "\"; the patient has " + known, core::ErrorCode::kUnknownName);
+        continue;
+      }
+      const auto offset = pose.Has("offset_mm") ? pose.Numbers("offset_mm", 3) : std::vector<double>(3, 0.0);
+      key.p_world_tip[hand] = landmark->position + 0.001 * Vec3{offset[0], offset[1], offset[2]};
+      key.spin[hand] = pose.NumberOr("spin_deg", key.spin[hand] / kDegree, {-3600.0, 3600.0}) * kDegree;
+      key.jaw[hand] = pose.NumberOr("jaw_deg", key.jaw[hand] / kDegree, {0.0, 90.0}) * kDegree;
+    }
+    script.keys.push_back(key);
+  }
+  if (script.keys.empty()) root.Complain("a script needs at least one key", core::ErrorCode::kScriptInvalid);
+  if (const auto status = document->Check(); !status.ok()) return status.error();
+  return script;
+}
+
+Input CalcScriptInput(const Scene& scene, double time) {
+  Input input;
+  for (int hand = 0; hand < kHandCount; ++hand) input.hands[hand] = scene.instruments[hand].home;
+  input.laparoscope = scene.laparoscope.home;
+  input.settings = scene.settings;
+  const auto& keys = scene.script.keys;
+  if (keys.empty()) return input;
+
+  const auto next = std::upper_bound(keys.begin(), keys.end(), time,
+                                     [](double t, const ScriptKey& key) { return t < key.time; });
+  const ScriptKey& to = next == keys.end() ? keys.back() : *next;
+  const ScriptKey& from = next == keys.begin() ? keys.front() : *(next - 1);
+  const double span = to.time - from.time;
+  const double t = span > 0.0 ? std::clamp((time - from.time) / span, 0.0, 1.0) : 1.0;
+  // minimum jerk (Flash and Hogan 1985): starts and ends at rest
+  const double s = t * t * t * (10.0 + t * (-15.0 + 6.0 * t));
+  for (int hand = 0; hand < kHandCount; ++hand) {
+    const auto blend = [&](double a, double b) { return a + s * (b - a); };
+    input.hands[hand] = instrument::FindJoints(scene.instruments[hand].p_world_port,
+                                               math::Lerp(from.p_world_tip[hand], to.p_world_tip[hand], s),
+                                               blend(from.spin[hand], to.spin[hand]), blend(from.jaw[hand], to.jaw[hand]));
+  }
+  return input;
+}
+
+}  // namespace trocar::session

@@ -1,0 +1,302 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/session/simulation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "patient_tissue.h"
+#include "trocar/core/clock.h"
+#include "trocar/core/state_hash.h"
+#include "trocar/surgery/contact.h"
+#include "trocar/surgery/grasp.h"
+#include "trocar/surgery/organ_surface.h"
+#include "trocar/tissue/equilibrium.h"
+#include "trocar/tissue/state_guard.h"
+
+namespace trocar::session {
+namespace {
+
+/// Gravity in which the organs were imaged: the body lay on its back [m/s^2].
+constexpr Vec3 kImagingGravity{0, 0, -9.81};
+/// No hand is faster; a device that jumps is slowed to this (faults D5) [m/s], [rad/s].
+constexpr double kMaxTipSpeed = 2.0;
+constexpr double kMaxTurnRate = 20.0;
+
+/// Gravity in the patient's frame when the table is tilted [m/s^2].
+Vec3 CalcGravity(const LiveSettings& settings) noexcept {
+  const double head = settings.head_up, right = settings.right_up;
+  return settings.gravity * Vec3{std::sin(right) * std::cos(head), -std::sin(head), -std::cos(right) * std::cos(head)};
+}
+
+/// The telescope looks along -z of its shaft, bent by its angle in the direction of the light post; the horizon stays.
+Pose CalcLaparoscopePose(const LaparoscopeSetup& setup, const instrument::TrocarJoints& joints) noexcept {
+  instrument::TrocarJoints unspun = joints;
+  unspun.spin = 0;
+  const Pose X_world_shaft = instrument::CalcToolPose(setup.p_world_port, unspun);
+  const math::Quaternion post = math::RotationAbout({0, 0, 1}, joints.spin);
+  const math::Quaternion bend = math::RotationAbout({1, 0, 0}, setup.view_angle);
+  return {X_world_shaft.rotation * (post * bend * math::Inverse(post)), X_world_shaft.translation};
+}
+
+}  // namespace
+
+/// Model: constant while running. State: what a tick changes. Scratch: rebuilt every tick.
+struct Simulation::Content {
+  // model
+  std::shared_ptr<const Scene> scene;
+  tissue::TissueModel tissue_model;
+  std::vector<SurfaceInfo> surfaces;
+  surgery::ContactSettings contact_settings;
+  surgery::GraspSettings grasp_settings;
+
+  // state
+  std::uint64_t tick = 0;
+  tissue::TissueState tissue;
+  std::array<instrument::TrocarJoints, kHandCount> joints;
+  std::array<surgery::ToolSamples, kHandCount> samples;
+  std::array<surgery::Grasp, kHandCount> grasps;
+  std::unique_ptr<tissue::StateGuard> guard;
+
+  // scratch
+  std::unique_ptr<tissue::EquilibriumSolver> solver;
+  std::vector<surgery::OrganSurface> organs;
+  surgery::ContactSet contacts;
+  LiveSettings settings;
+  tissue::TissueLoad load;
+  tissue::SolveReport report;
+  std::array<Pose, kHandCount> X_world_tools;
+  std::array<surgery::GraspChange, kHandCount> changes{};
+  std::array<std::int32_t, kHandCount> changed_organs{};
+  std::array<Vec3, kHandCount> forces;
+  std::array<std::int32_t, kHandCount> touched_organs{};
+  tissue::GuardVerdict verdict = tissue::GuardVerdict::kGood;
+  bool was_frozen = false;
+  Snapshot snapshot;
+
+  void ReadInputs(const Input& input) noexcept;
+  void MoveInstruments(const Input& input) noexcept;
+  void FindContacts() noexcept;
+  void ActOnTissue() noexcept;
+  void Solve() noexcept;
+  void CheckState() noexcept;
+  void UpdateHierarchy() noexcept;
+  void DetectEvents() noexcept;
+  void Publish(const Input& input) noexcept;
+  void Note(EventKind kind, int hand, std::int32_t organ, double force) noexcept;
+  void Reset();
+};
+
+// --- the stages of a tick
+
+void Simulation::Content::ReadInputs(const Input& input) noexcept {
+  settings = ClampSettings(input.settings);
+  load.gravity = CalcGravity(settings) - kImagingGravity;
+  load.stiffness_scale = settings.stiffness_scale;
+  load.shape_scale = settings.shape_scale;
+}
+
+void Simulation::Content::MoveInstruments(const Input& input) noexcept {
+  for (int hand = 0; hand < kHandCount; ++hand) {
+    const InstrumentSetup& setup = scene->instruments[hand];
+    instrument::JointLimits limits;
+    limits.max_jaw = setup.tool.max_jaw;
+    joints[hand] = instrument::LimitSpeed(joints[hand], instrument::ClampJoints(input.hands[hand], limits), kMaxTipSpeed,
+                                          kMaxTurnRate, scene->tick_seconds);
+    X_world_tools[hand] = instrument::CalcToolPose(setup.p_world_port, joints[hand]);
+  }
+}
+
+void Simulation::Content::FindContacts() noexcept {
+  contacts.Clear();
+  for (int hand = 0; hand < kHandCount; ++hand) {
+    surgery::FindContacts(scene->instruments[hand].tool, X_world_tools[hand], joints[hand].jaw,
+                          static_cast<std::uint8_t>(hand), organs, tissue.position, contact_settings,
+                          grasps[hand].organ, samples[hand], contacts);
+  }
+  load.contacts = contacts.springs;
+}
+
+void Simulation::Content::ActOnTissue() noexcept {
+  for (int hand = 0; hand < kHandCount; ++hand) {
+    const std::int32_t held = grasps[hand].organ;
+    changes[hand] = surgery::UpdateGrasp(scene->instruments[hand].tool, X_world_tools[hand], joints[hand].jaw, organs,
+                                         tissue_model, grasp_settings, grasps[hand], tissue);
+    changed_organs[hand] = changes[hand] == surgery::GraspChange::kReleased ? held : grasps[hand].organ;
+  }
+  // nodes that a tool presses are the paper's second condition
+  for (std::size_t i = 0; i < tissue.condition.size(); ++i) {
+    if (tissue.condition[i] == tissue::NodeCondition::kExternalForce) tissue.condition[i] = tissue::NodeCondition::kFree;
+  }
+  for (const auto& spring : contacts.springs) {
+    if (!(tissue::CalcContactDepth(spring, tissue.position) > 0.0)) continue;
+    for (const auto node : spring.nodes) {
+      if (tissue.condition[node] == tissue::NodeCondition::kFree) tissue.condition[node] = tissue::NodeCondition::kExternalForce;
+    }
+  }
+}
+
+void Simulation::Content::Solve() noexcept {
+  if (guard->IsFrozen()) return;
+  report = solver->Solve(settings.solver, load, tissue);
+}
+
+void Simulation::Content::CheckState() noexcept {
+  verdict = guard->Check(tissue);
+  for (int hand = 0; hand < kHandCount; ++hand) {
+    const auto contact = surgery::CalcContactReaction(contacts, static_cast<std::uint8_t>(hand), tissue.position);
+    const Vec3 held = solver->CalcReaction(load, tissue, grasps[hand].Nodes());
+    touched_organs[hand] = grasps[hand].IsHolding() ? grasps[hand].organ : contact.organ;
+    forces[hand] = verdict == tissue::GuardVerdict::kGood ? contact.force + held : Vec3{};
+    if (verdict != tissue::GuardVerdict::kGood) continue;
+    const std::int32_t organ = grasps[hand].organ;
+    if (surgery::UpdateSlip(math::Norm(held), grasp_settings, tissue_model, grasps[hand], tissue) ==
+        surgery::GraspChange::kSlipped) {
+      changes[hand] = surgery::GraspChange::kSlipped;
+      changed_organs[hand] = organ;
+    }
+  }
+}
+
+void Simulation::Content::UpdateHierarchy() noexcept {
+  for (surgery::OrganSurface& organ : organs) surgery::UpdateOrganSurface(organ, tissue.position);
+}
+
+void Simulation::Content::Note(EventKind kind, int hand, std::int32_t organ, double force) noexcept {
+  snapshot.events[snapshot.event_count % snapshot.events.size()] = {kind, tick, hand, organ, force};
+  ++snapshot.event_count;
+}
+
+void Simulation::Content::DetectEvents() noexcept {
+  for (int hand = 0; hand < kHandCount; ++hand) {
+    const double force = math::Norm(forces[hand]);
+    switch (changes[hand]) {
+      case surgery::GraspChange::kNone: break;
+      case surgery::GraspChange::kGrasped: Note(EventKind::kGrasp, hand, changed_organs[hand], force); break;
+      case surgery::GraspChange::kMissed: Note(EventKind::kGraspMissed, hand, -1, 0.0); break;
+      case surgery::GraspChange::kReleased: Note(EventKind::kRelease, hand, changed_organs[hand], force); break;
+      case surgery::GraspChange::kSlipped: Note(EventKind::kSlip, hand, changed_organs[hand], force); break;
+    }
+  }
+  if (verdict == tissue::GuardVerdict::kRestored) Note(EventKind::kStateRestored, -1, -1, 0.0);
+  if (verdict == tissue::GuardVerdict::kFrozen && !was_frozen) Note(EventKind::kOrganFrozen, -1, -1, 0.0);
+  was_frozen = verdict == tissue::GuardVerdict::kFrozen;
+}
+
+void Simulation::Content::Publish(const Input& input) noexcept {
+  snapshot.tick = tick;
+  snapshot.time = static_cast<double>(tick) * scene->tick_seconds;
+  std::copy(tissue.position.begin(), tissue.position.end(), snapshot.positions.begin());
+  for (int hand = 0; hand < kHandCount; ++hand) {
+    snapshot.instruments[hand] = {X_world_tools[hand], joints[hand], forces[hand], grasps[hand].IsHolding(),
+                                  touched_organs[hand] >= 0, touched_organs[hand]};
+  }
+  instrument::JointLimits limits;
+  limits.min_depth = 0.01;
+  snapshot.X_world_laparoscope =
+      CalcLaparoscopePose(scene->laparoscope, instrument::ClampJoints(input.laparoscope, limits));
+  snapshot.residual = report.residual;
+  snapshot.iterations = report.iterations;
+  snapshot.gravity = CalcGravity(settings);
+}
+
+// --- creation
+
+void Simulation::Content::Reset() {
+  tick = 0;
+  tissue = tissue::MakeRestState(tissue_model);
+  guard = std::make_unique<tissue::StateGuard>(tissue_model);
+  const Input home = CalcScriptInput(*scene, 0.0);
+  for (int hand = 0; hand < kHandCount; ++hand) {
+    joints[hand] = home.hands[hand];
+    grasps[hand] = {};
+    surgery::ResetToolSamples(samples[hand]);
+    X_world_tools[hand] = instrument::CalcToolPose(scene->instruments[hand].p_world_port, joints[hand]);
+    forces[hand] = {};
+    touched_organs[hand] = -1;
+  }
+  contacts.Clear();
+  load = {};
+  report = {};
+  was_frozen = false;
+  snapshot = {};
+  snapshot.positions.resize(tissue_model.Size());
+  UpdateHierarchy();
+  ReadInputs(home);
+  Publish(home);
+}
+
+core::Result<Simulation> Simulation::Make(std::shared_ptr<const Scene> scene, int threads) {
+  auto made = MakePatientTissue(*scene);
+  if (!made.ok()) return made.error();
+  auto content = std::make_unique<Content>();
+  content->scene = std::move(scene);
+  content->tissue_model = tissue::MakeTissueModel(made->definition);
+  content->surfaces = std::move(made->surfaces);
+  content->solver = std::make_unique<tissue::EquilibriumSolver>(content->tissue_model, std::max(1, threads));
+  const auto& patient = content->scene->patient;
+  for (std::size_t i = 0; i < patient.organs.size(); ++i) {
+    auto surface = surgery::MakeOrganSurface(content->tissue_model.rest, content->surfaces[i].first_node, patient.organs[i].mesh);
+    if (!surface.ok()) return surface.error();
+    content->organs.push_back(std::move(*surface));
+  }
+  for (int hand = 0; hand < kHandCount; ++hand) {
+    content->samples[hand] = surgery::MakeToolSamples(content->scene->instruments[hand].tool, content->contact_settings,
+                                                      patient.organs.size());
+  }
+  content->Reset();
+  return Simulation(std::move(content));
+}
+
+Simulation::Simulation(std::unique_ptr<Content> content) : content_(std::move(content)) {}
+Simulation::Simulation(Simulation&&) noexcept = default;
+Simulation& Simulation::operator=(Simulation&&) noexcept = default;
+Simulation::~Simulation() = default;
+
+void Simulation::Reset() { content_->Reset(); }
+
+void Simulation::Step(const Input& input) noexcept {
+  Content& c = *content_;
+  std::array<double, kStageCount> seconds{};
+  const auto timed = [&](Stage stage, auto&& work) {
+    const std::int64_t start = core::NowNanoseconds();
+    work();
+    seconds[static_cast<int>(stage)] = 1e-9 * static_cast<double>(core::NowNanoseconds() - start);
+  };
+  ++c.tick;
+  timed(Stage::kReadInputs, [&] { c.ReadInputs(input); });
+  timed(Stage::kMoveInstruments, [&] { c.MoveInstruments(input); });
+  timed(Stage::kFindContacts, [&] { c.FindContacts(); });
+  timed(Stage::kActOnTissue, [&] { c.ActOnTissue(); });
+  timed(Stage::kSolve, [&] { c.Solve(); });
+  timed(Stage::kCheckState, [&] { c.CheckState(); });
+  timed(Stage::kUpdateHierarchy, [&] { c.UpdateHierarchy(); });
+  timed(Stage::kDetectEvents, [&] { c.DetectEvents(); });
+  timed(Stage::kPublish, [&] { c.Publish(input); });
+  c.snapshot.stage_seconds = seconds;
+  c.snapshot.tick_seconds = 0;
+  for (const double part : seconds) c.snapshot.tick_seconds += part;
+}
+
+const Scene& Simulation::GetScene() const { return *content_->scene; }
+std::span<const SurfaceInfo> Simulation::Surfaces() const { return content_->surfaces; }
+const Snapshot& Simulation::GetSnapshot() const { return content_->snapshot; }
+
+std::uint64_t Simulation::Hash() const {
+  const Content& c = *content_;
+  core::StateHash hash;
+  hash.Add(c.tick);
+  for (const Vec3& p : c.tissue.position) hash.Add(p.x), hash.Add(p.y), hash.Add(p.z);
+  for (const auto condition : c.tissue.condition) hash.Add(static_cast<std::uint64_t>(condition));
+  for (const auto intact : c.tissue.strand_is_intact) hash.Add(std::uint64_t{intact});
+  for (int hand = 0; hand < kHandCount; ++hand) {
+    const instrument::TrocarJoints& j = c.joints[hand];
+    for (const double joint : {j.pan, j.tilt, j.spin, j.depth, j.jaw}) hash.Add(joint);
+    for (const auto node : c.grasps[hand].Nodes()) hash.Add(std::uint64_t{node});
+    const Vec3& force = c.forces[hand];
+    hash.Add(force.x), hash.Add(force.y), hash.Add(force.z);
+  }
+  return hash.Value();
+}
+
+}  // namespace trocar::session

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/session/runner.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <functional>
+#include <thread>
+
+#include "small_scene.h"
+
+namespace trocar::session {
+namespace {
+
+class RunnerTest : public SmallScene {
+ protected:
+  Simulation MakeSimulation() {
+    auto scene = Read();
+    EXPECT_TRUE(scene.ok());
+    return std::move(*Simulation::Make(std::make_shared<const Scene>(std::move(*scene)), 1));
+  }
+  /// Waits, for at most ten seconds, until `claim` holds.
+  static bool Eventually(const std::function<bool()>& claim) {
+    for (int i = 0; i < 2000; ++i) {
+      if (claim()) return true;
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+    return false;
+  }
+};
+
+TEST_F(RunnerTest, ShowsTheStartBeforeItRuns) {
+  Runner runner(MakeSimulation());
+  EXPECT_TRUE(runner.IsPaused());
+  EXPECT_EQ(runner.Latest().tick, 0u);
+  EXPECT_FALSE(runner.Latest().positions.empty());
+}
+
+TEST_F(RunnerTest, RunsPausesAndResets) {
+  Runner runner(MakeSimulation());
+  runner.SetScripted(true);
+  runner.SetPaused(false);
+  ASSERT_TRUE(Eventually([&] { return runner.Latest().tick > 20; }));
+  runner.SetPaused(true);
+  std::uint64_t last = 0;
+  ASSERT_TRUE(Eventually([&] {
+    const auto tick = runner.Latest().tick;
+    const bool is_still = tick == last;
+    last = tick;
+    return is_still;
+  }));
+  runner.Reset();
+  EXPECT_TRUE(Eventually([&] { return runner.Latest().tick == 0; }));
+}
+
+TEST_F(RunnerTest, UsesTheNewestInput) {
+  Runner runner(MakeSimulation());
+  Input input = CalcScriptInput(runner.GetScene(), 0.0);
+  input.hands[kRight].pan += 0.1;
+  runner.SetInput(input);
+  runner.SetPaused(false);
+  EXPECT_TRUE(Eventually([&] { return std::abs(runner.Latest().instruments[kRight].joints.pan - input.hands[kRight].pan) < 1e-12; }));
+}
+
+TEST_F(RunnerTest, EndsAtOnceEvenWhileRunning) {
+  for (int i = 0; i < 5; ++i) {
+    Runner runner(MakeSimulation());
+    runner.SetPaused(false);
+  }
+}
+
+}  // namespace
+}  // namespace trocar::session
