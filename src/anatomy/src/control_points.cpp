@@ -75,12 +75,16 @@ std::vector<std::vector<Vec2>> ReadPolygons(const ControlPoints& points, const J
 }
 
 Structure ReadStructure(const ControlPoints& points, const JsonView& view) {
-  view.AllowOnly({"name", "triangle_budget", "reference_label", "adaption", "slices"});
+  view.AllowOnly({"name", "triangle_budget", "reference_label", "reference_left_out", "adaption", "slices"});
   Structure structure;
   structure.name = view.Text("name");
   if (structure.name.empty()) view.Complain("needs a name");
   structure.triangle_budget = view.Integer("triangle_budget", {100, 1000000});
   structure.reference_label = view.IntegerOr("reference_label", 0, {0, 255});
+  if (view.Has("reference_left_out")) {
+    const auto slices = view.Numbers("reference_left_out", 2);
+    structure.reference_left_out = {static_cast<int>(slices[0]), static_cast<int>(slices[1])};
+  }
   if (view.Has("adaption")) {
     const JsonView adaption = view.Object("adaption");
     adaption.AllowOnly({"max_shift_px", "blur_px", "min_gradient", "nearness", "smoothness"});
@@ -292,7 +296,9 @@ std::string FormatControlPoints(const ControlPoints& points) {
     const Structure& s = points.structures[i];
     text += (i == 0 ? "\n  {\"name\": " : ",\n  {\"name\": ") + Quoted(s.name) +
             ", \"triangle_budget\": " + std::to_string(s.triangle_budget) +
-            ", \"reference_label\": " + std::to_string(s.reference_label) + ",\n   \"adaption\": {\"max_shift_px\": " +
+            ", \"reference_label\": " + std::to_string(s.reference_label) + ", \"reference_left_out\": [" +
+            std::to_string(s.reference_left_out[0]) + ", " + std::to_string(s.reference_left_out[1]) +
+            "],\n   \"adaption\": {\"max_shift_px\": " +
             exact(s.adaption.max_shift_px) + ", \"blur_px\": " + exact(s.adaption.blur_px) +
             ", \"min_gradient\": " + exact(s.adaption.min_gradient) + ", \"nearness\": " + exact(s.adaption.nearness) +
             ", \"smoothness\": " + exact(s.adaption.smoothness) + "},\n   \"slices\": [";

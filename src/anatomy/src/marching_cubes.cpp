@@ -51,7 +51,7 @@ std::vector<CellLoop> MakeLoops(unsigned inside) {
       // the group starts at corner k + 1; find the corner where it ends
       int last = k + 1;
       while (is_inside(last + 1)) ++last;
-      next[FindEdge(face[last & 3], face[(last + 1) & 3])] = FindEdge(face[k & 3], face[(k + 1) & 3]);
+      next[FindEdge(face[k & 3], face[(k + 1) & 3])] = FindEdge(face[last & 3], face[(last + 1) & 3]);
     }
   }
   std::vector<CellLoop> loops;

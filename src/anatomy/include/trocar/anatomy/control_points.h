@@ -26,6 +26,7 @@ struct Structure {
   std::string name;          ///< "liver"
   int triangle_budget = 0;   ///< the mesh has at most this many triangles
   int reference_label = 0;   ///< value in a reference label map, 0 if it has none
+  std::array<int, 2> reference_left_out = {0, -1};  ///< first and last slice where the reference is known to be wrong
   EdgeAdaptionSettings adaption;
   std::vector<SliceContours> slices;  ///< ascending
 };

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file overlay.h  Pictures to check contours by eye: the photograph with the stages of each contour drawn on it.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "trocar/anatomy/contour_fill.h"
+#include "trocar/anatomy/image_stack.h"
+#include "trocar/core/result.h"
+#include "trocar/math/vector.h"
+
+namespace trocar::anatomy {
+
+/// The stages of one contour.
+struct ContourStages {
+  std::vector<Vec2> placed;   ///< control points, red squares
+  std::vector<Vec2> adapted;  ///< after the edge adaption, yellow squares
+  std::vector<Vec2> curve;    ///< closed spline, green line
+};
+
+/// What is drawn on one slice.
+struct Overlay {
+  std::vector<ContourStages> contours;
+  std::vector<Mask> areas;         ///< tinted
+  std::vector<Vec2> tube_points;   ///< blue crosses
+};
+
+/// The part of the photograph around the contours, enlarged, with the overlay.
+///
+/// \param scale  pictures' pixels a photograph's pixel, 1 to 8
+ColorImage DrawOverlay(const ColorImage& photograph, const Overlay& overlay, int scale = 2);
+
+/// PNG file of 8-bit red, green, blue; written beside and renamed. \return kFileUnwritable
+core::Status WritePng(const std::filesystem::path& path, const ColorImage& image);
+
+}  // namespace trocar::anatomy

@@ -1,0 +1,315 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/anatomy/patient.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <system_error>
+
+#include "trocar/core/json.h"
+#include "trocar/core/safe_file.h"
+#include "trocar/geometry/mesh_file.h"
+#include "trocar/geometry/mesh_measures.h"
+
+namespace trocar::anatomy {
+namespace {
+
+namespace fs = std::filesystem;
+using core::Error;
+using core::ErrorCode;
+using core::JsonView;
+
+constexpr const char* kFormat = "trocar-patient";
+constexpr int kVersion = 1;
+constexpr double kMmPerMetre = 1000.0;
+
+// LPS millimetres: left, posterior, superior. World metres: left, cranial, anterior.
+Vec3 ToLps(const Vec3& p) { return {kMmPerMetre * p.x, -kMmPerMetre * p.z, kMmPerMetre * p.y}; }
+Vec3 FromLps(const Vec3& p) { return {p.x / kMmPerMetre, p.z / kMmPerMetre, -p.y / kMmPerMetre}; }
+
+geometry::TriangleMesh Converted(geometry::TriangleMesh mesh, Vec3 (*convert)(const Vec3&)) {
+  for (Vec3& p : mesh.positions) p = convert(p);
+  return mesh;
+}
+
+/// Names become file names, so they are plain words.
+bool IsPlainName(std::string_view name) {
+  return !name.empty() && name.size() <= 64 && std::all_of(name.begin(), name.end(), [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_';
+  });
+}
+
+Error Invalid(const std::string& what) {
+  return {ErrorCode::kPatientInvalid, "the patient is inconsistent: " + what + "; build it again"};
+}
+
+nlohmann::ordered_json PointJson(const Vec3& world) {
+  const Vec3 p = ToLps(world);
+  return nlohmann::ordered_json::array({p.x, p.y, p.z});
+}
+
+Vec3 PointFrom(const JsonView& view, std::string_view key) {
+  const auto p = view.Numbers(key, 3);
+  return FromLps({p[0], p[1], p[2]});
+}
+
+std::uint32_t IndexFrom(const JsonView& view) {
+  const double value = view.AsNumber({0, 4294967294.0});
+  if (value != std::floor(value)) view.Complain("must be a whole number");
+  return static_cast<std::uint32_t>(value);
+}
+
+/// One top-level field a line, long lists of numbers on one line.
+std::string FormatPatient(const Patient& patient) {
+  using Json = nlohmann::ordered_json;
+  std::string text = "{\n\"format\": \"" + std::string(kFormat) + "\",\n\"version\": " + std::to_string(kVersion) +
+                     ",\n\"name\": " + Json(patient.name).dump() + ",\n\"provenance\": " + Json(patient.provenance).dump() +
+                     ",\n\"frame\": \"LPS\",\n\"unit\": \"mm\",\n";
+  const auto append_list = [&text](const char* key, const std::vector<Json>& items, bool is_last) {
+    text += "\"" + std::string(key) + "\": [";
+    for (std::size_t i = 0; i < items.size(); ++i) text += (i == 0 ? "\n  " : ",\n  ") + items[i].dump();
+    text += is_last ? "]\n" : "],\n";
+  };
+  std::vector<Json> organs, attachments, tubes, landmarks;
+  for (const Organ& organ : patient.organs) {
+    Json regions = Json::array();
+    for (const Region& region : organ.regions) regions.push_back({{"name", region.name}, {"vertices", region.vertices}});
+    organs.push_back({{"name", organ.name}, {"mesh", organ.name + ".ply"}, {"regions", regions}});
+  }
+  // runs of attachments between the same organs share one entry
+  for (std::size_t i = 0; i < patient.attachments.size();) {
+    const Attachment& first = patient.attachments[i];
+    Json pairs = Json::array();
+    for (; i < patient.attachments.size(); ++i) {
+      const Attachment& a = patient.attachments[i];
+      if (a.name != first.name || a.organ_a != first.organ_a || a.organ_b != first.organ_b) break;
+      pairs.push_back(Json::array({a.vertex_a, a.vertex_b}));
+    }
+    attachments.push_back({{"name", first.name}, {"organ_a", first.organ_a}, {"organ_b", first.organ_b}, {"pairs", pairs}});
+  }
+  for (const Tube& tube : patient.tubes) {
+    Json points = Json::array(), radii = Json::array();
+    for (std::size_t i = 0; i < tube.line.points.size(); ++i) {
+      points.push_back(PointJson(tube.line.points[i]));
+      radii.push_back(kMmPerMetre * tube.line.radii[i]);
+    }
+    tubes.push_back({{"name", tube.name},
+                     {"kind", tube.kind == TubeKind::kDuct ? "duct" : "artery"},
+                     {"from", tube.from},
+                     {"to", tube.to},
+                     {"seen", tube.is_seen},
+                     {"points", points},
+                     {"radii", radii}});
+  }
+  for (const Landmark& landmark : patient.landmarks) {
+    landmarks.push_back({{"name", landmark.name}, {"position", PointJson(landmark.position)}});
+  }
+  append_list("organs", organs, false);
+  append_list("attachments", attachments, false);
+  append_list("tubes", tubes, false);
+  append_list("landmarks", landmarks, true);
+  return text + "}\n";
+}
+
+}  // namespace
+
+int Patient::FindOrgan(std::string_view organ_name) const {
+  for (std::size_t i = 0; i < organs.size(); ++i) {
+    if (organs[i].name == organ_name) return static_cast<int>(i);
+  }
+  return -1;
+}
+
+const Landmark* Patient::FindLandmark(std::string_view landmark_name) const {
+  for (const Landmark& landmark : landmarks) {
+    if (landmark.name == landmark_name) return &landmark;
+  }
+  return nullptr;
+}
+
+core::Result<Patient> ReadPatient(const fs::path& folder) {
+  const fs::path path = folder / "patient.json";
+  auto document = core::JsonDocument::Read(path);
+  if (!document.ok()) return document.error();
+  const JsonView root = document->Root();
+  root.AllowOnly({"format", "version", "name", "provenance", "frame", "unit", "organs", "attachments", "tubes", "landmarks"});
+  if (root.Text("format") != kFormat) root.Complain(std::string("format must be \"") + kFormat + "\"");
+  root.Integer("version", {kVersion, kVersion});
+  if (root.Text("frame") != "LPS" || root.Text("unit") != "mm") root.Complain("frame must be \"LPS\" and unit \"mm\"");
+  Patient patient;
+  patient.name = root.Text("name");
+  patient.provenance = root.Text("provenance");
+  for (const JsonView& view : root.Array("organs")) {
+    view.AllowOnly({"name", "mesh", "regions"});
+    Organ organ;
+    organ.name = view.Text("name");
+    // the mesh lies beside patient.json under the organ's own name: no path can lead out of the folder
+    if (!IsPlainName(organ.name)) view.Complain("name must consist of a-z, 0-9 and _");
+    if (view.Text("mesh") != organ.name + ".ply") view.Complain("mesh must be the organ's name and .ply");
+    for (const JsonView& region_view : view.Array("regions")) {
+      region_view.AllowOnly({"name", "vertices"});
+      Region region{region_view.Text("name"), {}};
+      for (const JsonView& vertex : region_view.Array("vertices")) region.vertices.push_back(IndexFrom(vertex));
+      organ.regions.push_back(std::move(region));
+    }
+    patient.organs.push_back(std::move(organ));
+  }
+  for (const JsonView& view : root.Array("attachments")) {
+    view.AllowOnly({"name", "organ_a", "organ_b", "pairs"});
+    Attachment attachment;
+    attachment.name = view.Text("name");
+    attachment.organ_a = static_cast<std::uint32_t>(view.Integer("organ_a", {0, 1e6}));
+    attachment.organ_b = static_cast<std::uint32_t>(view.Integer("organ_b", {0, 1e6}));
+    for (const JsonView& pair : view.Array("pairs")) {
+      const auto elements = pair.Elements();
+      if (elements.size() != 2) {
+        pair.Complain("must be a list of two vertices");
+        continue;
+      }
+      attachment.vertex_a = IndexFrom(elements[0]);
+      attachment.vertex_b = IndexFrom(elements[1]);
+      patient.attachments.push_back(attachment);
+    }
+  }
+  for (const JsonView& view : root.Array("tubes")) {
+    view.AllowOnly({"name", "kind", "from", "to", "seen", "points", "radii"});
+    Tube tube;
+    tube.name = view.Text("name");
+    const std::string kind = view.Text("kind");
+    if (kind != "duct" && kind != "artery") view.Complain("kind must be \"duct\" or \"artery\"");
+    tube.kind = kind == "artery" ? TubeKind::kArtery : TubeKind::kDuct;
+    tube.from = view.TextOr("from", "");
+    tube.to = view.TextOr("to", "");
+    tube.is_seen = view.BooleanOr("seen", true);
+    for (const JsonView& point : view.Array("points")) {
+      const auto p = point.AsNumbers(3);
+      tube.line.points.push_back(FromLps({p[0], p[1], p[2]}));
+    }
+    for (const JsonView& radius : view.Array("radii")) tube.line.radii.push_back(radius.AsNumber() / kMmPerMetre);
+    patient.tubes.push_back(std::move(tube));
+  }
+  for (const JsonView& view : root.Array("landmarks")) {
+    view.AllowOnly({"name", "position"});
+    patient.landmarks.push_back({view.Text("name"), PointFrom(view, "position")});
+  }
+  if (const auto status = document->Check(); !status.ok()) return status.error();
+  for (Organ& organ : patient.organs) {
+    auto mesh = geometry::ReadPly(folder / (organ.name + ".ply"));
+    if (!mesh.ok()) return mesh.error();
+    organ.mesh = Converted(std::move(*mesh), FromLps);
+  }
+  if (const auto status = CheckPatient(patient); !status.ok()) {
+    return Error{status.error().code, path.string() + ": " + status.error().message};
+  }
+  return patient;
+}
+
+core::Status WritePatient(const fs::path& folder, const Patient& patient) {
+  if (const auto status = CheckPatient(patient); !status.ok()) return status.error();
+  fs::path target = folder;
+  if (!target.has_filename()) target = target.parent_path();
+  const fs::path partial = target.string() + ".part" + std::to_string(::getpid());
+  const fs::path former = target.string() + ".former" + std::to_string(::getpid());
+  const auto fail = [&](const std::string& why) {
+    std::error_code ignored;
+    fs::remove_all(partial, ignored);
+    return Error{ErrorCode::kFileUnwritable, target.string() + ": " + why + "; check the folder, its rights and the space left"};
+  };
+  std::error_code failure;
+  if (fs::exists(target, failure)) {
+    // only a patient is replaced, never somebody's other folder
+    const bool is_patient = fs::is_directory(target, failure) && (fs::exists(target / "patient.json", failure) || fs::is_empty(target, failure));
+    if (!is_patient) return fail("it exists and is no patient folder");
+  }
+  fs::remove_all(partial, failure);
+  fs::create_directories(partial, failure);
+  if (failure) return fail(failure.message());
+  for (const Organ& organ : patient.organs) {
+    const auto status = geometry::WritePly(partial / (organ.name + ".ply"), Converted(organ.mesh, ToLps),
+                                           "LPS millimetres, " + organ.name);
+    if (!status.ok()) return fail(status.error().message);
+  }
+  if (const auto status = core::WriteFile(partial / "patient.json", FormatPatient(patient)); !status.ok()) {
+    return fail(status.error().message);
+  }
+  const bool replaces = fs::exists(target, failure);
+  if (replaces) {
+    fs::rename(target, former, failure);
+    if (failure) return fail(failure.message());
+  }
+  fs::rename(partial, target, failure);
+  if (failure) {
+    const std::string why = failure.message();
+    if (replaces) fs::rename(former, target, failure);
+    return fail(why);
+  }
+  fs::remove_all(former, failure);
+  return {};
+}
+
+core::Status CheckPatient(const Patient& patient) {
+  if (patient.organs.empty()) return Invalid("it has no organ");
+  std::set<std::string> names;
+  for (const Organ& organ : patient.organs) {
+    if (!IsPlainName(organ.name)) return Invalid("organ name '" + organ.name + "' must consist of a-z, 0-9 and _");
+    if (!names.insert(organ.name).second) return Invalid("the name '" + organ.name + "' is used twice");
+    if (const auto status = geometry::CheckMesh(organ.mesh); !status.ok()) return Invalid(organ.name + ": " + status.error().message);
+    const auto report = geometry::InspectMesh(organ.mesh);
+    if (!report.closed || !report.manifold) {
+      return Error{ErrorCode::kMeshNotClosed, "the mesh of " + organ.name + " is not closed and manifold (" +
+                                                  std::to_string(report.boundary_edges) + " open edges, " +
+                                                  std::to_string(report.odd_edges) + " odd edges, " +
+                                                  std::to_string(report.odd_vertices) + " odd vertices, " +
+                                                  std::to_string(report.degenerate) + " flat triangles); repair it"};
+    }
+    if (!report.outward) return Invalid("the triangles of " + organ.name + " face inwards");
+    std::set<std::string> regions;
+    for (const Region& region : organ.regions) {
+      if (!regions.insert(region.name).second) return Invalid("region '" + region.name + "' of " + organ.name + " is there twice");
+      for (std::size_t i = 0; i < region.vertices.size(); ++i) {
+        if (region.vertices[i] >= organ.mesh.positions.size()) {
+          return Invalid("region '" + region.name + "' of " + organ.name + " names a vertex that is not there");
+        }
+        if (i > 0 && region.vertices[i] <= region.vertices[i - 1]) {
+          return Invalid("the vertices of region '" + region.name + "' of " + organ.name + " do not ascend");
+        }
+      }
+    }
+  }
+  for (const Attachment& a : patient.attachments) {
+    const bool in_range = a.organ_a < patient.organs.size() && a.organ_b < patient.organs.size() &&
+                          a.vertex_a < patient.organs[a.organ_a].mesh.positions.size() &&
+                          a.vertex_b < patient.organs[a.organ_b].mesh.positions.size();
+    if (!in_range) return Invalid("an attachment '" + a.name + "' names an organ or vertex that is not there");
+  }
+  for (const Tube& tube : patient.tubes) {
+    if (!names.insert(tube.name).second) return Invalid("the name '" + tube.name + "' is used twice");
+  }
+  for (const Tube& tube : patient.tubes) {
+    if (tube.line.points.size() < 2 || tube.line.points.size() != tube.line.radii.size()) {
+      return Invalid("tube '" + tube.name + "' needs two points or more, and a radius for each");
+    }
+    for (std::size_t i = 0; i < tube.line.points.size(); ++i) {
+      const double radius = tube.line.radii[i];
+      if (!math::IsFinite(tube.line.points[i]) || !(radius > 0.0) || !std::isfinite(radius)) {
+        return Invalid("tube '" + tube.name + "' has a point that is not finite or a radius that is not positive");
+      }
+    }
+    for (const std::string& end : {tube.from, tube.to}) {
+      if (!end.empty() && !names.contains(end)) {
+        return Invalid("tube '" + tube.name + "' leads to '" + end + "', which is neither organ nor tube");
+      }
+    }
+  }
+  std::set<std::string> landmarks;
+  for (const Landmark& landmark : patient.landmarks) {
+    if (!landmarks.insert(landmark.name).second) return Invalid("landmark '" + landmark.name + "' is there twice");
+    if (!math::IsFinite(landmark.position)) return Invalid("landmark '" + landmark.name + "' is not finite");
+  }
+  return {};
+}
+
+}  // namespace trocar::anatomy

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/anatomy/reference_judge.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+namespace trocar::anatomy {
+namespace {
+
+using math::Vec3;
+
+/// Label axes may differ from the series' extent by this much [mm].
+constexpr double kExtentTolerance = 1.5;
+// moves the planes and rows off the mesh's vertices
+constexpr double kNudge = 1.7e-6;  // mm
+
+struct Segment {
+  double ax, ay, bx, by;
+};
+
+/// Where the plane z = height cuts the mesh.
+std::vector<Segment> Cut(const geometry::TriangleMesh& mesh, double height) {
+  std::vector<Segment> segments;
+  for (const auto& t : mesh.triangles) {
+    double x[2], y[2];
+    int count = 0;
+    for (int i = 0; i < 3; ++i) {
+      const Vec3 &a = mesh.positions[t[i]], &b = mesh.positions[t[(i + 1) % 3]];
+      if ((a.z < height) == (b.z < height)) continue;
+      const double part = (height - a.z) / (b.z - a.z);
+      x[count] = a.x + part * (b.x - a.x), y[count] = a.y + part * (b.y - a.y);
+      ++count;
+    }
+    if (count == 2) segments.push_back({x[0], y[0], x[1], y[1]});
+  }
+  return segments;
+}
+
+}  // namespace
+
+core::Result<Judgement> Judge(const LabelVolume& reference, const ControlPoints& points, int label,
+                              const geometry::TriangleMesh& mesh, std::array<int, 2> left_out) {
+  const auto mismatch = [](const std::string& why) {
+    return core::Error{core::ErrorCode::kLabelsMismatch,
+                       "the reference labels do not belong to these images: " + why + "; name the labels of this series"};
+  };
+  // the axes: world left, cranial, anterior against LPS left, posterior, superior
+  const auto directions = AxisDirections(points);
+  std::array<double, 3> step;  // mm
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto& d = directions[axis];
+    const double lps[3] = {d[0], -d[2], d[1]};
+    double along = 0, length = 0;
+    for (int k = 0; k < 3; ++k) along += lps[k] * reference.direction[axis][k], length += std::pow(reference.direction[axis][k], 2);
+    step[axis] = std::sqrt(length);
+    if (std::fabs(along - step[axis]) > 1e-3) return mismatch("axis " + std::to_string(axis + 1) + " points elsewhere");
+  }
+  const double extents[3] = {points.width * points.pixel_mm, points.height * points.pixel_mm,
+                             (points.last_slice - points.first_slice + 1) * points.slice_mm};
+  for (int axis = 0; axis < 3; ++axis) {
+    if (std::fabs(reference.size[axis] * step[axis] - extents[axis]) > kExtentTolerance) {
+      return mismatch("axis " + std::to_string(axis + 1) + " covers " + std::to_string(reference.size[axis] * step[axis]) +
+                      " mm, the images " + std::to_string(extents[axis]) + " mm");
+    }
+  }
+
+  std::size_t built = 0, expected = 0, both = 0;
+  std::vector<std::vector<double>> crossings(reference.size[1]);
+  for (int k = 0; k < reference.size[2]; ++k) {
+    const double slice = points.first_slice + ((k + 0.5) * step[2] - 0.5 * points.slice_mm) / points.slice_mm;
+    if (slice > left_out[0] - 0.5 && slice < left_out[1] + 0.5) continue;
+    for (auto& row : crossings) row.clear();
+    const auto row_position = [&](int j) { return (j + 0.5) * step[1] - 0.5 * points.pixel_mm + kNudge; };
+    for (Segment s : Cut(mesh, slice * points.slice_mm + kNudge)) {
+      if (s.ay > s.by) std::swap(s.ax, s.bx), std::swap(s.ay, s.by);
+      int j = std::max(0, static_cast<int>(std::floor((s.ay + 0.5 * points.pixel_mm) / step[1] - 0.5)));
+      for (; j < reference.size[1] && row_position(j) < s.by; ++j) {
+        if (row_position(j) >= s.ay) crossings[j].push_back(s.ax + (s.bx - s.ax) * (row_position(j) - s.ay) / (s.by - s.ay));
+      }
+    }
+    for (int j = 0; j < reference.size[1]; ++j) {
+      auto& row = crossings[j];
+      std::sort(row.begin(), row.end());
+      std::size_t passed = 0;
+      for (int i = 0; i < reference.size[0]; ++i) {
+        const double x = (i + 0.5) * step[0] - 0.5 * points.pixel_mm;
+        while (passed < row.size() && row[passed] < x) ++passed;
+        const bool is_built = passed % 2 == 1;
+        const std::size_t voxel = (static_cast<std::size_t>(k) * reference.size[1] + j) * reference.size[0] + i;
+        const bool is_expected = reference.labels[voxel] == label;
+        built += is_built, expected += is_expected, both += is_built && is_expected;
+      }
+    }
+  }
+  if (expected == 0) return mismatch("label " + std::to_string(label) + " does not occur");
+  const double voxel_ml = step[0] * step[1] * step[2] / 1000.0;
+  Judgement judgement;
+  judgement.volume_ml = static_cast<double>(built) * voxel_ml;
+  judgement.reference_ml = static_cast<double>(expected) * voxel_ml;
+  judgement.ratio = judgement.volume_ml / judgement.reference_ml;
+  judgement.dice = 2.0 * static_cast<double>(both) / static_cast<double>(built + expected);
+  return judgement;
+}
+
+}  // namespace trocar::anatomy

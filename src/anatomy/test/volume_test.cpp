@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/anatomy/volume.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "trocar/anatomy/marching_cubes.h"
+#include "trocar/geometry/mesh_measures.h"
+#include "trocar/math/random.h"
+
+namespace trocar::anatomy {
+namespace {
+
+Mask MakeDisc(double cx, double cy, double radius) {
+  std::vector<Vec2> circle;
+  for (int i = 0; i < 90; ++i) circle.push_back({cx + radius * std::cos(i * M_PI / 45), cy + radius * std::sin(i * M_PI / 45)});
+  return FillArea({circle}, {});
+}
+
+double VolumeOf(const ScalarVolume& volume) {
+  const auto mesh = MarchCubes(volume);
+  return geometry::CalcVolume(mesh.positions, mesh.triangles);
+}
+
+TEST(CalcSquaredDistances, EqualsBruteForce) {
+  for (std::uint64_t seed = 0; seed < 30; ++seed) {
+    math::Random random(seed);
+    const int width = 1 + static_cast<int>(random.Uniform(0, 20)), height = 1 + static_cast<int>(random.Uniform(0, 20));
+    std::vector<std::uint8_t> set(static_cast<std::size_t>(width) * height);
+    const double share = random.Uniform(0.01, 0.5);
+    for (auto& s : set) s = random.Uniform() < share;
+    const auto distances = CalcSquaredDistances(set, width, height);
+    for (int y = 0; y < height; ++y) {
+      for (int x = 0; x < width; ++x) {
+        double nearest = std::numeric_limits<double>::infinity();
+        for (int v = 0; v < height; ++v) {
+          for (int u = 0; u < width; ++u) {
+            if (set[static_cast<std::size_t>(v) * width + u]) nearest = std::min<double>(nearest, (x - u) * (x - u) + (y - v) * (y - v));
+          }
+        }
+        ASSERT_EQ(distances[static_cast<std::size_t>(y) * width + x], nearest) << "seed " << seed;
+      }
+    }
+  }
+}
+
+TEST(MakeVolume, RecoversABallFromSparseSlices) {
+  // slices every 4 mm through a ball of 30 mm, pixels of 0.5 mm
+  std::vector<FilledSlice> slices;
+  for (int z = -28; z <= 28; z += 4) slices.push_back({100.0 + z, MakeDisc(120, 130, std::sqrt(900.0 - z * z) / 0.5)});
+  const auto volume = MakeVolume(slices, 0.5, 1.0);
+  ASSERT_TRUE(volume.ok());
+  const double expected = 4.0 / 3.0 * M_PI * 27000.0;
+  EXPECT_NEAR(VolumeOf(*volume), expected, 0.02 * expected);
+  const auto mesh = MarchCubes(*volume);
+  const auto report = geometry::InspectMesh(mesh);
+  EXPECT_EQ(report.components, 1u);
+  EXPECT_EQ(report.genus, 0);
+  // closed above the last slice, within half a gap
+  const auto box = geometry::CalcBox(mesh.positions);
+  EXPECT_GT(box.max.z, 128.2);
+  EXPECT_LE(box.max.z, 130.0);
+}
+
+TEST(MakeVolume, MovesASlantedTubeSmoothly) {
+  // the centre moves by 3 mm a slice of 5 mm: the volume between is still that of the tube
+  std::vector<FilledSlice> slices;
+  for (int i = 0; i <= 6; ++i) slices.push_back({5.0 * i, MakeDisc(40 + 3 * i, 40, 12)});
+  const auto volume = MakeVolume(slices, 1.0, 1.0);
+  ASSERT_TRUE(volume.ok());
+  const double area = M_PI * 144;
+  for (int k = 0; k < volume->size[2]; ++k) {
+    const double z = volume->first[2] + k;
+    if (z < 1 || z > 29) continue;
+    double inside = 0;
+    for (int j = 0; j < volume->size[1]; ++j) {
+      for (int i = 0; i < volume->size[0]; ++i) inside += volume->values[volume->Index(i, j, k)] > 0;
+    }
+    EXPECT_NEAR(inside, area, 0.06 * area) << "at " << z;
+  }
+}
+
+TEST(MakeVolume, RefusesAnEmptySlice) {
+  const std::vector<FilledSlice> slices = {{0, MakeDisc(20, 20, 5)}, {1, Mask{0, 0, 4, 4, std::vector<std::uint8_t>(16, 0)}}};
+  const auto volume = MakeVolume(slices, 1, 1);
+  ASSERT_FALSE(volume.ok());
+  EXPECT_EQ(volume.error().code, core::ErrorCode::kContourEmpty);
+}
+
+TEST(Subtract, LeavesTheGap) {
+  const std::vector<FilledSlice> big = {{0, MakeDisc(40, 40, 20)}, {10, MakeDisc(40, 40, 20)}, {20, MakeDisc(40, 40, 20)}};
+  const std::vector<FilledSlice> small = {{5, MakeDisc(55, 40, 8)}, {10, MakeDisc(55, 40, 8)}, {15, MakeDisc(55, 40, 8)}};
+  auto volume = MakeVolume(big, 1, 1);
+  const auto other = MakeVolume(small, 1, 1);
+  ASSERT_TRUE(volume.ok() && other.ok());
+  Subtract(*volume, *other, 1.0);
+  const auto value = [&](int x, int y, int z) {
+    return volume->values[volume->Index(x - volume->first[0], y - volume->first[1], z - volume->first[2])];
+  };
+  EXPECT_LT(value(50, 40, 10), 0.0f);          // was inside both
+  EXPECT_NEAR(value(46, 40, 10), 0.0f, 0.6f);  // a millimetre before the small one's border at 47
+  EXPECT_GT(value(44, 40, 10), 0.5f);
+}
+
+TEST(KeepLargestPart, DropsIslandsAndFillsCavities) {
+  ScalarVolume volume{1.0, {0, 0, 0}, {12, 12, 12}, std::vector<float>(1728, -1.0f)};
+  for (int k = 1; k < 8; ++k) {
+    for (int j = 1; j < 8; ++j) {
+      for (int i = 1; i < 8; ++i) volume.values[volume.Index(i, j, k)] = 1.0f;
+    }
+  }
+  volume.values[volume.Index(4, 4, 4)] = -1.0f;
+  volume.values[volume.Index(10, 10, 10)] = 1.0f;
+  KeepLargestPart(volume);
+  EXPECT_GT(volume.values[volume.Index(4, 4, 4)], 0.0f);
+  EXPECT_LT(volume.values[volume.Index(10, 10, 10)], 0.0f);
+  const auto report = geometry::InspectMesh(MarchCubes(volume));
+  EXPECT_EQ(report.components, 1u);
+}
+
+}  // namespace
+}  // namespace trocar::anatomy
