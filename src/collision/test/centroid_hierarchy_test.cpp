@@ -195,6 +195,20 @@ TEST(CentroidHierarchy, KeepsToTheMaximumDistance) {
   EXPECT_TRUE(hierarchy.FindNearest(mesh.positions, {1, 1, 1}, {.max_distance = 0.0}).Found());
 }
 
+// On a vertex all its triangles are equally near; the answer is the first of them, whichever the tree visits
+// first.
+TEST(CentroidHierarchy, AnswersTiesWithTheLowestIndex) {
+  TriangleMesh mesh = geometry::MakeSphere({0.3, 0.1, 0.2}, 0.1, 2);
+  std::reverse(mesh.triangles.begin() + 100, mesh.triangles.end());
+  const CentroidHierarchy hierarchy = MakeChecked(mesh);
+  for (std::uint32_t vertex = 0; vertex < mesh.positions.size(); ++vertex) {
+    std::uint32_t lowest = 0;
+    while (std::count(mesh.triangles[lowest].begin(), mesh.triangles[lowest].end(), vertex) == 0) ++lowest;
+    EXPECT_EQ(hierarchy.FindNearest(mesh.positions, mesh.positions[vertex]).triangle, lowest);
+    EXPECT_EQ(FindNearestBruteForce(mesh.positions, mesh.triangles, mesh.positions[vertex]).triangle, lowest);
+  }
+}
+
 // A mesh with a NaN is the solver's fault to report; the search must still end, with some sound triangle or
 // none.
 TEST(CentroidHierarchy, SurvivesPositionsThatBecomeNotFinite) {

@@ -116,5 +116,40 @@ TEST(FindNearestSegmentTriangle, NeverPiercesAFarSliver) {
   }
 }
 
+// On one line with a sliver, every product of the piercing test is rounding and may come out as a hit.
+TEST(FindNearestSegmentTriangle, MeasuresTheGapToASliverOnItsOwnLine) {
+  math::Random random(25);
+  for (int trial = 0; trial < 20000; ++trial) {
+    const Vec3 a = RandomPoint(random), along = math::Normalized(RandomPoint(random));
+    const double gap = random.Uniform(0.1, 2.0);
+    const Vec3 b = a + along, c = a + random.Uniform() * along;
+    const Vec3 start = b + gap * along, end = start + random.Uniform(0.1, 2.0) * along;
+    const SegmentTrianglePoints found = FindNearestSegmentTriangle(start, end, a, b, c);
+    ASSERT_NEAR(std::sqrt(found.squared_distance), gap, 1e-12) << "trial " << trial;
+  }
+}
+
+// Segments that nearly lie on a sliver's line: the distance told must be that of the two points told. Without
+// the check of the piercing test about one in 3,000 of these was off, by up to 2 mm a metre.
+TEST(FindNearestSegmentTriangle, NamesPointsAsFarApartAsItSays) {
+  math::Random random(26);
+  const auto jitter = [&](double largest) {
+    return RandomPoint(random, std::pow(10.0, random.Uniform(-19, largest)));
+  };
+  for (int trial = 0; trial < 100000; ++trial) {
+    const double shift = trial % 3 == 0 ? 10.0 : 0.0;
+    const Vec3 a = RandomPoint(random) + Vec3{shift, shift, -shift};
+    const Vec3 along = math::Normalized(RandomPoint(random));
+    const double length = random.Uniform(0.01, 1);
+    const Vec3 b = a + length * along, c = a + random.Uniform() * length * along + jitter(-8);
+    const Vec3 start = b + random.Uniform(-1, 1) * along + jitter(-6);
+    const Vec3 end = start + random.Uniform(-1, 1) * along + jitter(-6);
+    const SegmentTrianglePoints found = FindNearestSegmentTriangle(start, end, a, b, c);
+    const auto& w = found.on_triangle.weights;
+    const double apart = math::Distance(found.on_segment, w[0] * a + w[1] * b + w[2] * c);
+    ASSERT_NEAR(std::sqrt(found.squared_distance), apart, 1e-7) << "trial " << trial;
+  }
+}
+
 }  // namespace
 }  // namespace trocar::collision

@@ -262,9 +262,9 @@ core::Status CheckInput(const MotionRecording& recording, const MetricSettings& 
     if (!not_negative(x))
       return fail("noise steps, speeds, durations and the force threshold must be at least 0");
   }
-  if (settings.sparc.pad_level < 0 || settings.sparc.pad_level > 16 || !positive(settings.sparc.cutoff_hz) ||
-      !not_negative(settings.sparc.amplitude_limit)) {
-    return fail("SPARC needs a pad level of 0 to 16, a cutoff greater than 0 and a limit of at least 0");
+  if (settings.sparc.pad_level < 0 || settings.sparc.pad_level > kMaxPadLevel ||
+      !positive(settings.sparc.cutoff_hz) || !not_negative(settings.sparc.amplitude_limit)) {
+    return fail("SPARC needs a pad level of 0 to 6, a cutoff greater than 0 and a limit of at least 0");
   }
   for (const std::optional<double>& ideal : settings.ideal_path_lengths) {
     if (ideal && !positive(*ideal)) return fail("an ideal path length must be greater than 0 m");

@@ -25,7 +25,7 @@ double FindPeak(std::span<const double> speed) {
 
 std::optional<double> CalcSparc(std::span<const double> speed, double sample_rate_hz,
                                 const SparcSettings& settings) {
-  TROCAR_ASSERT(sample_rate_hz > 0.0 && settings.pad_level >= 0 && settings.pad_level <= 16);
+  TROCAR_ASSERT(sample_rate_hz > 0.0 && settings.pad_level >= 0 && settings.pad_level <= kMaxPadLevel);
   if (!(FindPeak(speed) > 0.0)) return std::nullopt;
   const std::size_t length = std::bit_ceil(speed.size()) << settings.pad_level;
   const double df = sample_rate_hz / static_cast<double>(length);

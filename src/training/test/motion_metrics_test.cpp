@@ -250,7 +250,7 @@ TEST(SessionMetrics, RefusesBadSettingsAndSamples) {
       [](MetricSettings& s) { s.noise_step = -1; },
       [](MetricSettings& s) { s.force_release = 0; },
       [](MetricSettings& s) { s.movement_end_speed = 1; },
-      [](MetricSettings& s) { s.sparc.pad_level = 40; },
+      [](MetricSettings& s) { s.sparc.pad_level = kMaxPadLevel + 1; },
       [](MetricSettings& s) { s.ideal_path_lengths = {0.0}; },
   };
   for (const auto& fault : faults) {

@@ -8,9 +8,12 @@
 
 namespace trocar::training {
 
+/// Largest pad_level: an hour of samples at 100 Hz then takes a transform of 2^25 lines, about 0.8 GB [-].
+inline constexpr int kMaxPadLevel = 6;
+
 /// Parameters of the spectral arc length, as published.
 struct SparcSettings {
-  int pad_level = 4;              ///< transform length = 2^(ceil(log2 n) + pad_level) [-]
+  int pad_level = 4;              ///< transform length = 2^(ceil(log2 n) + pad_level), 0 to kMaxPadLevel [-]
   double cutoff_hz = 10.0;        ///< highest frequency that counts
   double amplitude_limit = 0.05;  ///< the spectrum ends where it last reaches this part of its maximum [-]
 };
