@@ -16,7 +16,9 @@ if(TROCAR_CCACHE)
 endif()
 
 add_library(trocar_compile_options INTERFACE)
-target_compile_options(trocar_compile_options INTERFACE -ffp-contract=off -Wall -Wextra -Wshadow -Wnon-virtual-dtor -Wno-missing-field-initializers)
+# sqrt without errno and comparisons without traps change no result and let loops run in lanes
+target_compile_options(trocar_compile_options INTERFACE
+  -ffp-contract=off -fno-math-errno -fno-trapping-math -Wall -Wextra -Wshadow -Wnon-virtual-dtor -Wno-missing-field-initializers)
 if(TROCAR_ENABLE_ASSERTS OR CMAKE_BUILD_TYPE STREQUAL "Debug")
   target_compile_definitions(trocar_compile_options INTERFACE TROCAR_ENABLE_ASSERTS=1)
 endif()

@@ -83,48 +83,46 @@ Symmetric3 CalcBlock(const TissueModel& model, const TissueLoad& load, const Tis
   return block;
 }
 
-/// Force on one node and the largest part of it.
+/// Force on one node and the square of its largest part.
 struct NodeForce {
   Vec3 sum;
-  double largest = 0;
+  double largest2 = 0;
 };
 
-/// GatherNodeForce with the largest part noted; the hot loop.
-NodeForce GatherForce(const TissueModel& model, const TissueLoad& load, const TissueState& state,
-                      const Vec3& contact_force, std::uint32_t i) noexcept {
-  const Vec3* position = state.position.data();
-  const Vec3 here = position[i];
-  Vec3 springs;
-  double largest = 0;
-  const auto* half = model.half_springs.data() + model.spring_starts[i];
-  const auto* end = model.half_springs.data() + model.spring_starts[i + 1];
-  for (; half != end; ++half) {
-    const Vec3 along = position[half->other] - here;
-    const double length = std::sqrt(math::SquaredNorm(along));
-    const double tension = half->stiffness * (length - half->rest_length);
-    if (length > 0.0) springs += (tension / length) * along;
-    largest = std::fmax(largest, std::fabs(tension));
-  }
+/// std::fmax without its care for NaN, which the state guard finds; a call in the hot loop otherwise.
+double Larger(double a, double b) noexcept { return a > b ? a : b; }
+
+/// Adds what acts on a node beside its springs, and notes the largest part.
+NodeForce AddOtherForces(const TissueModel& model, const TissueLoad& load, const TissueState& state,
+                         const Vec3& springs, double largest_spring, const Vec3& contact_force,
+                         std::uint32_t i) noexcept {
+  const Vec3 here = state.position[i];
+  Vec3 links = springs;
+  double largest2 = largest_spring;
   for (auto h = model.strand_starts[i]; h < model.strand_starts[i + 1]; ++h) {
     const auto& strand = model.half_strands[h];
     if (!state.strand_is_intact[strand.strand]) continue;
-    const Vec3 pull = strand.stiffness * ((position[strand.other] - here) - (model.rest[strand.other] - model.rest[i]));
-    springs += pull;
-    largest = std::fmax(largest, math::Norm(pull));
+    const Vec3 pull = strand.stiffness * ((state.position[strand.other] - here) - (model.rest[strand.other] - model.rest[i]));
+    links += pull;
+    largest2 = Larger(largest2, math::SquaredNorm(pull));
   }
   const Vec3 shape = (load.shape_scale * model.shape_stiffness[i]) * (model.rest[i] - here);
   const Vec3 weight = model.mass[i] * load.gravity;
-  NodeForce force{load.stiffness_scale * springs + shape + weight + contact_force, load.stiffness_scale * largest};
+  NodeForce force{load.stiffness_scale * links + shape + weight + contact_force,
+                  load.stiffness_scale * load.stiffness_scale * largest2};
+  for (const Vec3& part : {shape, weight, contact_force}) {
+    force.largest2 = Larger(force.largest2, math::SquaredNorm(part));
+  }
   if (!load.external_force.empty()) {
     force.sum += load.external_force[i];
-    force.largest = std::fmax(force.largest, math::Norm(load.external_force[i]));
+    force.largest2 = Larger(force.largest2, math::SquaredNorm(load.external_force[i]));
   }
-  force.largest = std::fmax(force.largest, std::sqrt(std::fmax(math::SquaredNorm(contact_force),
-                                                               std::fmax(math::SquaredNorm(shape), math::SquaredNorm(weight)))));
   return force;
 }
 
-/// Runs work(first, last) over all nodes in chunks of fixed size, on one thread or several.
+static_assert(kChunk % kLanes == 0);
+
+/// Runs work(chunk, first, last) over all nodes in chunks of fixed size, on one thread or several.
 template <typename Work>
 void ForEachChunk(EquilibriumSolver::Content& content, std::uint32_t n, const Work& work) noexcept {
   const std::uint32_t chunks = (n + kChunk - 1) / kChunk;
@@ -193,15 +191,19 @@ SolveReport SolveChebyshevJacobiWang2015(EquilibriumSolver::Content& content, co
     ForEachChunk(content, n, [&](std::uint32_t chunk, std::uint32_t first, std::uint32_t last) {
       double largest_residual = 0, largest_force = 0;
       bool is_cut_short = false;
+      SliceForce springs;
       for (auto i = first; i < last; ++i) {
+        const std::uint32_t lane = i % kLanes;
+        if (lane == 0) GatherSlice(content.springs, state.position.data(), n, i / kLanes, springs);
         const Vec3 here = state.position[i];
         if (state.condition[i] == NodeCondition::kPrescribed) {
           content.previous[i] = here;
           continue;
         }
-        const NodeForce force = GatherForce(model, load, state, content.contact_force[i], i);
-        largest_residual = std::fmax(largest_residual, math::SquaredNorm(force.sum));
-        largest_force = std::fmax(largest_force, force.largest);
+        const NodeForce force = AddOtherForces(model, load, state, {springs.x[lane], springs.y[lane], springs.z[lane]},
+                                               springs.largest_squared[lane], content.contact_force[i], i);
+        largest_residual = Larger(largest_residual, math::SquaredNorm(force.sum));
+        largest_force = Larger(largest_force, force.largest2);
         Vec3 step = damping * Multiply(blocks[i], force.sum);
         const double length2 = math::SquaredNorm(step);
         if (length2 > kMaxStep * kMaxStep) {
@@ -212,14 +214,14 @@ SolveReport SolveChebyshevJacobiWang2015(EquilibriumSolver::Content& content, co
         content.previous[i] = omega * ((here + step) - before) + before;  // becomes the current one below
       }
       content.chunk_residual[chunk] = std::sqrt(largest_residual);
-      content.chunk_scale[chunk] = largest_force;
+      content.chunk_scale[chunk] = std::sqrt(largest_force);
       content.chunk_is_cut_short[chunk] = is_cut_short;
     });
     double residual = 0, scale = 0;
     bool is_cut_short = false;
     for (std::uint32_t chunk = 0; chunk * kChunk < n; ++chunk) {
-      residual = std::fmax(residual, content.chunk_residual[chunk]);
-      scale = std::fmax(scale, content.chunk_scale[chunk]);
+      residual = Larger(residual, content.chunk_residual[chunk]);
+      scale = Larger(scale, content.chunk_scale[chunk]);
       is_cut_short = is_cut_short || content.chunk_is_cut_short[chunk] != 0;
     }
     report.force_scale = scale;

@@ -20,6 +20,7 @@ EquilibriumSolver::EquilibriumSolver(const TissueModel& model, int threads) : co
     content_->more_workers.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
   }
   if (threads > 1) content_->arena.initialize(threads);
+  content_->springs = MakeSlicedSprings(model);
   content_->previous.resize(n);
   content_->inverse_blocks.resize(n);
   content_->contact_force.assign(n, Vec3{});
