@@ -141,7 +141,7 @@ std::vector<Vec2> AdaptToEdges(const ColorImage& image, std::span<const Vec2> co
   const BlurredCrop picture(image, static_cast<int>(low.x - margin) - 1, static_cast<int>(low.y - margin) - 1,
                             static_cast<int>(high.x + margin) + 2, static_cast<int>(high.y + margin) + 2, settings.blur_px);
 
-  // colour change along the normal at each shift, one more on both sides for the parabola
+  // colour change along the normal at each shift, averaged along the contour; one shift more on both sides
   const std::size_t n = contour.size();
   const int states = 2 * reach + 1;
   const auto normals = CalcNormals(contour);
@@ -150,9 +150,14 @@ std::vector<Vec2> AdaptToEdges(const ColorImage& image, std::span<const Vec2> co
   for (std::size_t i = 0; i < n; ++i) {
     for (int k = 0; k < states + 2; ++k) {
       const Vec2 p = contour[i] + ((k - 1 - reach) * kStep) * normals[i];
-      const Colour ahead = picture.Sample(p + 0.5 * normals[i]), behind = picture.Sample(p - 0.5 * normals[i]);
+      Colour change = {0, 0, 0};
+      for (int across = -1; across <= 1; ++across) {
+        const Vec2 q = p + static_cast<double>(across) * Vec2{-normals[i].y, normals[i].x};
+        const Colour ahead = picture.Sample(q + 0.5 * normals[i]), behind = picture.Sample(q - 0.5 * normals[i]);
+        for (int c = 0; c < 3; ++c) change[c] += (across == 0 ? 0.5f : 0.25f) * (ahead[c] - behind[c]);
+      }
       double squared = 0;
-      for (int c = 0; c < 3; ++c) squared += (ahead[c] - behind[c]) * (ahead[c] - behind[c]);
+      for (int c = 0; c < 3; ++c) squared += change[c] * change[c];
       gradient[i][k] = std::sqrt(squared);
       strongest = std::max(strongest, gradient[i][k]);
     }

@@ -43,7 +43,7 @@ double RadiusOf(const Vec2& p) { return std::hypot(p.x - kCentre, p.y - kCentre)
 
 TEST(AdaptToEdges, FindsABlurredDiscInNoise) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-    const ColorImage image = MakeDisc(1.5, 12, seed);
+    const ColorImage image = MakeDisc(1.5, 8, seed);
     for (const double offset : {-2.0, 1.5, 2.5}) {
       for (const Vec2& p : AdaptToEdges(image, MakeRing(kRadius + offset), {.max_shift_px = 4})) {
         EXPECT_NEAR(RadiusOf(p), kRadius, 0.3) << "seed " << seed << ", offset " << offset;

@@ -9,7 +9,7 @@ namespace trocar::anatomy {
 
 /// Strength of the smoothing.
 struct SmoothingSettings {
-  int iterations = 30;         ///< pairs of one shrinking and one swelling step
+  int iterations = 120;        ///< pairs of one shrinking and one swelling step
   double shrink = 0.5;         ///< lambda [-], 0 to 1
   double pass_band = 0.08;     ///< spatial frequencies below it are kept [-]; mu = 1 / (pass_band - 1 / lambda)
 };

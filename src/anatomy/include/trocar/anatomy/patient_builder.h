@@ -20,11 +20,11 @@ struct StructureMesh {
 
 /// Sizes that the rules by geometry use.
 struct RegionSettings {
-  double hull_depth = 0.020;        ///< deepest place below the outer hull that counts as diaphragmatic [m]
+  double hull_depth = 0.035;        ///< deepest place below the outer hull that counts as diaphragmatic [m]
   double margin = 0.012;            ///< band along the border of the diaphragmatic face that stays free [m]
   double gallbladder_clear = 0.022; ///< around the gallbladder nothing of the liver is fixed [m]
-  double falciform_half = 0.006;    ///< half width of the falciform ligament's strip [m]
-  double bed_distance = 0.0035;     ///< gap over which gallbladder and liver are joined [m]
+  double falciform_half = 0.007;    ///< half width of the falciform ligament's strip [m]
+  double bed_distance = 0.003;     ///< gap over which gallbladder and liver are joined [m]
   double tube_spacing = 0.002;      ///< distance between centre-line points [m]
 };
 
