@@ -31,7 +31,7 @@ inline bool Wins(double d2, std::uint32_t triangle, const NearestTriangle& best)
 inline void ConsiderForPoint(std::span<const Vec3> positions, const Triangle& corners, std::uint32_t triangle,
                              const Vec3& p, NearestTriangle& best) noexcept {
   const TrianglePoint found =
-      FindNearestOnAnyTriangle(p, positions[corners[0]], positions[corners[1]], positions[corners[2]]);
+      geometry::FindNearestOnTriangle(p, positions[corners[0]], positions[corners[1]], positions[corners[2]]);
   const double d2 = math::SquaredDistance(found.point, p);
   if (Wins(d2, triangle, best)) best = {triangle, found.point, found.weights, d2};
 }

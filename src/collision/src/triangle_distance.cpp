@@ -13,9 +13,6 @@ using math::SquaredNorm;
 
 namespace {
 
-// (twice the area / longest side squared)^2 below which the region tests of the plain formula are not trusted
-// [-]
-constexpr double kSliver2 = 1e-8;
 // (gap / size)^2 up to which the points of a segment and a triangle are the same point [-]
 constexpr double kPierceGap2 = 1e-24;
 
@@ -61,28 +58,6 @@ void FindNearestParameters(const Vec3& p0, const Vec3& p1, const Vec3& q0, const
 
 }  // namespace
 
-TrianglePoint FindNearestOnAnyTriangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) noexcept {
-  const Vec3 ab = b - a, ac = c - a;
-  const double longest2 = std::max({SquaredNorm(ab), SquaredNorm(ac), SquaredDistance(b, c)});
-  const TrianglePoint plain = geometry::FindNearestOnTriangle(p, a, b, c);
-  if (SquaredNorm(Cross(ab, ac)) > kSliver2 * longest2 * longest2) return plain;
-
-  // a sliver: the plain answer counts only if it is a point of the triangle, and only if no side is nearer
-  const Vec3 corners[3] = {a, b, c};
-  TrianglePoint best = PointOnSide(corners, 0, geometry::FindNearestOnSegment(p, a, b));
-  double best2 = SquaredDistance(best.point, p);
-  const auto consider = [&](const TrianglePoint& candidate) {
-    const double d2 = SquaredDistance(candidate.point, p);
-    if (d2 < best2) best = candidate, best2 = d2;
-  };
-  consider(PointOnSide(corners, 1, geometry::FindNearestOnSegment(p, b, c)));
-  consider(PointOnSide(corners, 2, geometry::FindNearestOnSegment(p, c, a)));
-  const bool inside =
-      std::all_of(plain.weights.begin(), plain.weights.end(), [](double w) { return w >= 0.0 && w <= 1.0; });
-  if (inside) consider(plain);
-  return best;
-}
-
 SegmentTrianglePoints FindNearestSegmentTriangle(const Vec3& start, const Vec3& end, const Vec3& a,
                                                  const Vec3& b, const Vec3& c) noexcept {
   const Vec3 along = end - start;
@@ -109,14 +84,14 @@ SegmentTrianglePoints FindNearestSegmentTriangle(const Vec3& start, const Vec3& 
   // the ends against the triangle, then the sides and corners against the segment
   SegmentTrianglePoints best;
   best.on_segment = start;
-  best.on_triangle = FindNearestOnAnyTriangle(start, a, b, c);
+  best.on_triangle = geometry::FindNearestOnTriangle(start, a, b, c);
   best.squared_distance = SquaredDistance(start, best.on_triangle.point);
   const auto consider = [&](double parameter, const TrianglePoint& on_triangle) {
     const Vec3 on_segment = at(parameter);
     const double d2 = SquaredDistance(on_segment, on_triangle.point);
     if (d2 < best.squared_distance) best = {parameter, on_segment, on_triangle, d2};
   };
-  consider(1.0, FindNearestOnAnyTriangle(end, a, b, c));
+  consider(1.0, geometry::FindNearestOnTriangle(end, a, b, c));
   for (int side = 0; side < 3; ++side) {
     double s = 0.0, t = 0.0;
     FindNearestParameters(start, end, corners[side], corners[(side + 1) % 3], s, t);

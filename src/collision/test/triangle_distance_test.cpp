@@ -15,45 +15,6 @@ Vec3 RandomPoint(math::Random& random, double reach = 1.0) {
   return {random.Uniform(-reach, reach), random.Uniform(-reach, reach), random.Uniform(-reach, reach)};
 }
 
-double DistanceToSegment(const Vec3& p, const Vec3& a, const Vec3& b) {
-  return math::Distance(p, a + geometry::FindNearestOnSegment(p, a, b) * (b - a));
-}
-
-TEST(FindNearestOnAnyTriangle, AgreesWithThePlainFormulaOnSoundTriangles) {
-  math::Random random(21);
-  for (int trial = 0; trial < 500; ++trial) {
-    const Vec3 p = RandomPoint(random, 2), a = RandomPoint(random), b = RandomPoint(random),
-               c = RandomPoint(random);
-    EXPECT_EQ(FindNearestOnAnyTriangle(p, a, b, c).point, geometry::FindNearestOnTriangle(p, a, b, c).point);
-  }
-}
-
-// Oracle: a sliver of height h lies within h of its longest side, so its distance lies within h of that
-// side's.
-TEST(FindNearestOnAnyTriangle, HoldsOnSlivers) {
-  math::Random random(22);
-  for (int trial = 0; trial < 4000; ++trial) {
-    const Vec3 a = RandomPoint(random), b = RandomPoint(random), p = RandomPoint(random, 2);
-    const double height = std::pow(10.0, random.Uniform(-20, -4));
-    const Vec3 c = a + random.Uniform() * (b - a) + height * math::AnyPerpendicular(math::Normalized(b - a));
-    const TrianglePoint nearest = FindNearestOnAnyTriangle(p, a, b, c);
-    const double distance = math::Distance(p, nearest.point);
-    EXPECT_NEAR(distance, DistanceToSegment(p, a, b), height + 1e-14)
-        << "trial " << trial << " height " << height;
-    for (const double weight : nearest.weights) {
-      EXPECT_GE(weight, 0.0);
-      EXPECT_LE(weight, 1.0);
-    }
-    const Vec3 again = nearest.weights[0] * a + nearest.weights[1] * b + nearest.weights[2] * c;
-    EXPECT_NEAR(math::Distance(again, nearest.point), 0.0, 1e-14);
-  }
-}
-
-TEST(FindNearestOnAnyTriangle, TreatsATriangleOfOnePointAsThatPoint) {
-  const Vec3 a{0.1, 0.2, 0.3};
-  EXPECT_EQ(FindNearestOnAnyTriangle({1, 1, 1}, a, a, a).point, a);
-}
-
 TEST(FindNearestSegmentTriangle, KnowsPiercingPassingAndStoppingShort) {
   const Vec3 a{0, 0, 0}, b{4, 0, 0}, c{0, 4, 0};
   const SegmentTrianglePoints pierces = FindNearestSegmentTriangle({1, 1, 3}, {1, 1, -1}, a, b, c);
@@ -90,7 +51,7 @@ TEST(FindNearestSegmentTriangle, AgreesWithADenseSearch) {
     double best = 1e9;
     for (int i = 0; i <= kSteps; ++i) {
       const Vec3 p = start + (double(i) / kSteps) * (end - start);
-      best = std::min(best, math::Distance(p, FindNearestOnAnyTriangle(p, a, b, c).point));
+      best = std::min(best, math::Distance(p, geometry::FindNearestOnTriangle(p, a, b, c).point));
     }
     const double distance = std::sqrt(found.squared_distance);
     EXPECT_LE(distance, best + 1e-12) << "trial " << trial;

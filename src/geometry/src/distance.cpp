@@ -15,20 +15,17 @@ double FindNearestOnSegment(const Vec3& p, const Vec3& a, const Vec3& b) noexcep
   return std::clamp(Dot(p - a, along) / length2, 0.0, 1.0);
 }
 
-TrianglePoint FindNearestOnTriangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) noexcept {
+namespace {
+
+/// (twice the area / longest side squared)^2 below which the region tests are not trusted [-].
+constexpr double kSliver2 = 1e-8;
+
+/// Ericson's region tests; they lose their digits on slivers.
+TrianglePoint FindByRegions(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) noexcept {
   const auto result = [&](double u, double v, double w) {
     return TrianglePoint{u * a + v * b + w * c, {u, v, w}};
   };
   const Vec3 ab = b - a, ac = c - a;
-  if (!(math::SquaredNorm(Cross(ab, ac)) > 0.0)) {
-    // no area: the nearest of the three sides
-    const double tab = FindNearestOnSegment(p, a, b), tbc = FindNearestOnSegment(p, b, c), tca = FindNearestOnSegment(p, c, a);
-    const TrianglePoint sides[3] = {result(1 - tab, tab, 0), result(0, 1 - tbc, tbc), result(tca, 0, 1 - tca)};
-    return *std::min_element(sides, sides + 3, [&](const TrianglePoint& s, const TrianglePoint& t) {
-      return math::SquaredDistance(s.point, p) < math::SquaredDistance(t.point, p);
-    });
-  }
-
   // regions of the corners and sides in turn
   const Vec3 ap = p - a;
   const double d1 = Dot(ab, ap), d2 = Dot(ac, ap);
@@ -56,6 +53,38 @@ TrianglePoint FindNearestOnTriangle(const Vec3& p, const Vec3& a, const Vec3& b,
   }
   const double v = vb / (va + vb + vc), w = vc / (va + vb + vc);
   return result(1 - v - w, v, w);
+}
+
+/// Nearest point of the three sides.
+TrianglePoint FindOnSides(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) noexcept {
+  const Vec3 corners[3] = {a, b, c};
+  TrianglePoint best;
+  for (int side = 0; side < 3; ++side) {
+    const int next = (side + 1) % 3;
+    const double t = FindNearestOnSegment(p, corners[side], corners[next]);
+    TrianglePoint candidate{math::Lerp(corners[side], corners[next], t), {}};
+    if (t >= 1.0) candidate.point = corners[next];
+    candidate.weights[side] = 1.0 - t;
+    candidate.weights[next] = t;
+    if (side == 0 || math::SquaredDistance(candidate.point, p) < math::SquaredDistance(best.point, p)) best = candidate;
+  }
+  return best;
+}
+
+}  // namespace
+
+TrianglePoint FindNearestOnTriangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) noexcept {
+  const Vec3 ab = b - a, ac = c - a;
+  const double longest2 = std::max({math::SquaredNorm(ab), math::SquaredNorm(ac), math::SquaredDistance(b, c)});
+  const TrianglePoint plain = FindByRegions(p, a, b, c);
+  if (math::SquaredNorm(Cross(ab, ac)) > kSliver2 * longest2 * longest2) return plain;
+
+  // a sliver: the plain answer counts only if it is a point of the triangle, and only if no side is nearer
+  const TrianglePoint on_sides = FindOnSides(p, a, b, c);
+  const bool is_inside =
+      std::all_of(plain.weights.begin(), plain.weights.end(), [](double w) { return w >= 0.0 && w <= 1.0; });
+  const bool is_nearer = math::SquaredDistance(plain.point, p) < math::SquaredDistance(on_sides.point, p);
+  return is_inside && is_nearer ? plain : on_sides;
 }
 
 bool TrianglesIntersect(const Vec3* a, const Vec3* b) noexcept {

@@ -10,7 +10,13 @@
 namespace trocar::geometry {
 namespace {
 
-Vec3 RandomPoint(math::Random& random) { return {random.Uniform(-1, 1), random.Uniform(-1, 1), random.Uniform(-1, 1)}; }
+Vec3 RandomPoint(math::Random& random, double reach = 1.0) {
+  return {random.Uniform(-reach, reach), random.Uniform(-reach, reach), random.Uniform(-reach, reach)};
+}
+
+double DistanceToSegment(const Vec3& p, const Vec3& a, const Vec3& b) {
+  return math::Distance(p, a + FindNearestOnSegment(p, a, b) * (b - a));
+}
 
 // Oracle: no point of a fine barycentric grid is nearer, and the best grid point is not much farther.
 TEST(FindNearestOnTriangle, AgreesWithADenseSearch) {
@@ -38,6 +44,32 @@ TEST(FindNearestOnTriangle, TreatsADegenerateTriangleAsItsLongestSide) {
   EXPECT_NEAR(math::Distance(nearest.point, {1, 0, 0}), 0.0, 1e-15);
   const TrianglePoint at_point = FindNearestOnTriangle({1, 1, 0}, {2, 0, 0}, {2, 0, 0}, {2, 0, 0});
   EXPECT_EQ(at_point.point, (Vec3{2, 0, 0}));
+}
+
+// Oracle: a sliver of height h lies within h of its longest side, so its distance lies within h of that
+// side's.
+TEST(FindNearestOnTriangle, HoldsOnSlivers) {
+  math::Random random(22);
+  for (int trial = 0; trial < 4000; ++trial) {
+    const Vec3 a = RandomPoint(random), b = RandomPoint(random), p = RandomPoint(random, 2);
+    const double height = std::pow(10.0, random.Uniform(-20, -4));
+    const Vec3 c = a + random.Uniform() * (b - a) + height * math::AnyPerpendicular(math::Normalized(b - a));
+    const TrianglePoint nearest = FindNearestOnTriangle(p, a, b, c);
+    const double distance = math::Distance(p, nearest.point);
+    EXPECT_NEAR(distance, DistanceToSegment(p, a, b), height + 1e-14)
+        << "trial " << trial << " height " << height;
+    for (const double weight : nearest.weights) {
+      EXPECT_GE(weight, 0.0);
+      EXPECT_LE(weight, 1.0);
+    }
+    const Vec3 again = nearest.weights[0] * a + nearest.weights[1] * b + nearest.weights[2] * c;
+    EXPECT_NEAR(math::Distance(again, nearest.point), 0.0, 1e-14);
+  }
+}
+
+TEST(FindNearestOnTriangle, TreatsATriangleOfOnePointAsThatPoint) {
+  const Vec3 a{0.1, 0.2, 0.3};
+  EXPECT_EQ(FindNearestOnTriangle({1, 1, 1}, a, a, a).point, a);
 }
 
 TEST(TrianglesIntersect, KnowsCrossingTouchingAndApart) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file triangle_distance.h  Distances from points and segments to one triangle that also hold for slivers.
+/// \file triangle_distance.h  Distance from a segment to one triangle.
 #pragma once
 
 #include "trocar/geometry/distance.h"
@@ -8,14 +8,6 @@ namespace trocar::collision {
 
 using geometry::TrianglePoint;
 using math::Vec3;
-
-/// Nearest point of triangle (a, b, c) to p. Weights of corners and sides that do not take part are exactly
-/// zero.
-///
-/// Like geometry::FindNearestOnTriangle, whose region tests lose their digits on triangles that are flat to
-/// one part in 10^4 and more: for those the three sides are tried as well and the nearest candidate is taken.
-/// \note Real-time safe: no allocation, lock or throw.
-TrianglePoint FindNearestOnAnyTriangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) noexcept;
 
 /// Nearest points of a segment and a triangle.
 struct SegmentTrianglePoints {
