@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "benchmark.h"
+#include "command.h"
+#include "console.h"
+
+namespace trocar::cli {
+namespace {
+
+struct BenchArguments {
+  std::string suite;
+  BenchmarkOptions options;
+  bool is_list = false, is_json = false;
+};
+
+std::string ListSuites() {
+  std::vector<std::vector<std::string>> rows;
+  for (const BenchmarkSuite& suite : BenchmarkSuites()) {
+    rows.push_back({std::string(suite.name), std::string(suite.description)});
+  }
+  return FormatTable(rows);
+}
+
+void PrintJson(const std::string& suite, const BenchmarkResult& result) {
+  nlohmann::ordered_json json = {{"suite", suite}, {"machine", DescribeMachine()}};
+  json["cases"] = nlohmann::ordered_json::array();
+  for (const BenchmarkCase& entry : result.cases) {
+    json["cases"].push_back({{"name", entry.name}, {"value", entry.value}, {"unit", entry.unit}});
+  }
+  json["ratios"] = nlohmann::ordered_json::array();
+  for (const BenchmarkRatio& ratio : result.ratios) {
+    json["ratios"].push_back({{"name", ratio.name}, {"value", ratio.value}});
+  }
+  std::printf("%s\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
+}
+
+void PrintForPerson(const std::string& suite, const BenchmarkResult& result) {
+  std::printf("%s on %s\n\n", suite.c_str(), DescribeMachine().c_str());
+  std::vector<std::vector<std::string>> rows = {{"case", "value", "unit"}};
+  for (const BenchmarkCase& entry : result.cases) {
+    rows.push_back({entry.name, FormatNumber(entry.value), entry.unit == "1" ? "" : entry.unit});
+  }
+  for (const BenchmarkRatio& ratio : result.ratios)
+    rows.push_back({ratio.name, FormatNumber(ratio.value), "times"});
+  std::fputs(FormatTable(rows).c_str(), stdout);
+}
+
+core::Status Run(const BenchArguments& arguments) {
+  if (arguments.is_list) {
+    std::fputs(ListSuites().c_str(), stdout);
+    return {};
+  }
+  for (const BenchmarkSuite& suite : BenchmarkSuites()) {
+    if (suite.name != arguments.suite) continue;
+    const core::Result<BenchmarkResult> result = suite.run(arguments.options);
+    if (!result) return result.error();
+    arguments.is_json ? PrintJson(arguments.suite, *result) : PrintForPerson(arguments.suite, *result);
+    return {};
+  }
+  return core::Error{core::ErrorCode::kUsage,
+                     (arguments.suite.empty() ? std::string("name a suite")
+                                              : "there is no suite \"" + arguments.suite + "\"") +
+                         "; trocar bench --list names them"};
+}
+
+}  // namespace
+
+void AddBenchCommand(CLI::App& app, Outcome& outcome) {
+  CLI::App* command =
+      app.add_subcommand("bench", "Measure how fast this computer is; every timed answer is checked");
+  auto arguments = std::make_shared<BenchArguments>();
+  command->add_option("suite", arguments->suite, "Which suite (--list)")->type_name("SUITE");
+  command->add_flag("--list", arguments->is_list, "List the suites");
+  command->add_option("--threads", arguments->options.threads, "For what can use more than one")
+      ->check(CLI::Range(1, 256))
+      ->type_name("T")
+      ->capture_default_str();
+  command->add_option("--repeats", arguments->options.repeats, "The quickest of so many runs counts")
+      ->check(CLI::Range(1, 1000))
+      ->type_name("N")
+      ->capture_default_str();
+  command->add_flag("--json", arguments->is_json, "Machine-readable: suite, machine, cases, ratios");
+  command->footer(
+      "A case whose answer is wrong ends the suite with E-BEN-001 and exit status 1.\n"
+      "Example: trocar bench tissue --threads 2");
+  command->callback([arguments, &outcome] { outcome.status = Run(*arguments); });
+}
+
+}  // namespace trocar::cli

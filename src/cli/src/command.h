@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file command.h  The subcommands. Each lives in a file of its own and adds itself to the command line.
+#pragma once
+
+#include "trocar/core/result.h"
+
+namespace CLI {
+class App;
+}
+
+namespace trocar::cli {
+
+/// What the chosen subcommand left behind.
+struct Outcome {
+  core::Status status;       ///< an error is printed by RunCommand
+  bool has_finding = false;  ///< ran well, and what it found is not good (doctor): exit status 1
+};
+
+void AddWindowCommand(CLI::App& app, Outcome& outcome);
+void AddDemoCommand(CLI::App& app, Outcome& outcome);
+void AddSimulateCommand(CLI::App& app, Outcome& outcome);
+void AddAnatomyCommand(CLI::App& app, Outcome& outcome);
+void AddBenchCommand(CLI::App& app, Outcome& outcome);
+void AddDoctorCommand(CLI::App& app, Outcome& outcome);
+void AddErrorsCommand(CLI::App& app, Outcome& outcome);
+
+}  // namespace trocar::cli

@@ -1,0 +1,370 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "doctor_checks.h"
+
+#include <dlfcn.h>
+#include <sched.h>
+#include <sys/resource.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cerrno>
+#include <cstddef>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <optional>
+#include <system_error>
+#include <utility>
+
+#include "child_process.h"
+#include "program_folder.h"
+#include "trocar/render/image.h"
+#include "trocar/render/offscreen_context.h"
+#include "trocar/render/video_writer.h"
+#include "trocar/session/scene.h"
+
+namespace trocar::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kDriverTimeout = 30;  // the first shader cache of a cold driver takes seconds [s]
+constexpr int kWantedPriority = 50;    // of the haptic loop; below the kernel's own threads
+
+std::string ReadEnvironment(const char* name) {
+  const char* value = std::getenv(name);
+  return value ? value : "";
+}
+
+std::string ReadFirstLine(const fs::path& path) {
+  std::ifstream file(path);
+  std::string line;
+  std::getline(file, line);
+  return line;
+}
+
+/// Names in a folder that begin with `prefix`, sorted; none where the folder is missing.
+std::vector<std::string> ListNames(const fs::path& folder, std::string_view prefix) {
+  std::vector<std::string> names;
+  std::error_code failure;
+  for (fs::directory_iterator it(folder, failure), end; !failure && it != end; it.increment(failure)) {
+    const std::string name = it->path().filename().string();
+    if (name.starts_with(prefix)) names.push_back(name);
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+std::string Join(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
+  return text;
+}
+
+/// Whether a server listens on a socket of the file system, or with `is_abstract` on an abstract one.
+bool CanConnect(const std::string& path, bool is_abstract) {
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  const std::size_t offset = is_abstract ? 1 : 0;
+  if (path.empty() || path.size() + offset >= sizeof address.sun_path) return false;
+  std::memcpy(address.sun_path + offset, path.data(), path.size());
+  const int socket = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  if (socket < 0) return false;
+  const auto size =
+      static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + offset + path.size() + (1 - offset));
+  const bool is_connected = ::connect(socket, reinterpret_cast<const sockaddr*>(&address), size) == 0;
+  ::close(socket);
+  return is_connected;
+}
+
+/// What CUDA's driver says, without its headers: the numbers are those of its stable binary interface.
+bool AskCuda(std::string& text) {
+  void* library = ::dlopen("libcuda.so.1", RTLD_NOW | RTLD_LOCAL);
+  if (library == nullptr) {
+    text = "no NVIDIA driver (libcuda.so.1) is installed";
+    return false;
+  }
+  using Init = int (*)(unsigned);
+  using GetInt = int (*)(int*);
+  using GetDevice = int (*)(int*, int);
+  using GetName = int (*)(char*, int, int);
+  const auto init = reinterpret_cast<Init>(::dlsym(library, "cuInit"));
+  const auto get_version = reinterpret_cast<GetInt>(::dlsym(library, "cuDriverGetVersion"));
+  const auto get_count = reinterpret_cast<GetInt>(::dlsym(library, "cuDeviceGetCount"));
+  const auto get_device = reinterpret_cast<GetDevice>(::dlsym(library, "cuDeviceGet"));
+  const auto get_name = reinterpret_cast<GetName>(::dlsym(library, "cuDeviceGetName"));
+  if (!init || !get_version || !get_count || !get_device || !get_name) {
+    text = "libcuda.so.1 is not NVIDIA's: it lacks functions";
+    return false;
+  }
+  int code = init(0), count = 0, version = 0, device = 0;
+  if (code == 0) code = get_count(&count);
+  if (code == 0) code = get_version(&version);
+  char name[256] = "";
+  if (code == 0 && count > 0) code = get_device(&device, 0);
+  if (code == 0 && count > 0) code = get_name(name, sizeof name - 1, device);
+  if (code != 0 || count == 0) {
+    text = code != 0 ? "NVIDIA's driver answers with error " + std::to_string(code)
+                     : std::string("NVIDIA's driver is installed and sees no GPU");
+    return false;
+  }
+  text = std::to_string(count) + " GPU(s), the first: " + name + "; CUDA " + std::to_string(version / 1000) +
+         "." + std::to_string(version % 1000 / 10);
+  return true;
+}
+
+/// Encodes a moment of grey in a folder of its own, and removes it.
+bool TryVideo(std::string& text) {
+  std::string folder = (fs::temp_directory_path() / "trocar-doctor-XXXXXX").string();
+  if (::mkdtemp(folder.data()) == nullptr) {
+    text = "no temporary folder: " + std::string(std::strerror(errno));
+    return false;
+  }
+  const render::VideoSettings settings{64, 64, 30, 100'000};
+  const render::Image grey{64, 64, std::vector<std::uint8_t>(3 * 64 * 64, 128)};
+  core::Status status;
+  if (auto writer = render::VideoWriter::Make(fs::path(folder) / "doctor.webm", settings); !writer) {
+    status = writer.error();
+  } else {
+    for (int i = 0; i < 3 && status; ++i) status = writer->AddFrame(grey);
+    if (status) status = writer->Finish();
+  }
+  std::error_code ignored;
+  fs::remove_all(folder, ignored);
+  if (!status) text = status.error().Text();
+  return status.ok();
+}
+
+bool TryRealTime(std::string& text) {
+  sched_param parameter{};
+  parameter.sched_priority = kWantedPriority;
+  if (::sched_setscheduler(0, SCHED_FIFO, &parameter) == 0) return true;
+  text = std::strerror(errno);
+  return false;
+}
+
+/// A 3-D mouse by its USB vendor and product as the kernel prints them ("256F", "C635").
+bool IsThreeDMouse(std::string vendor, std::string product) {
+  for (std::string* word : {&vendor, &product}) {
+    std::transform(word->begin(), word->end(), word->begin(),
+                   [](unsigned char c) { return std::tolower(c); });
+    word->erase(0, std::min(word->find_first_not_of('0'), word->size()));
+  }
+  // 3Dconnexion; older ones carry Logitech's number
+  return vendor == "256f" || (vendor == "46d" && product.size() == 4 && product.starts_with("c62"));
+}
+
+}  // namespace
+
+std::string_view HealthName(Health health) noexcept {
+  switch (health) {
+    case Health::kGood:
+      return "good";
+    case Health::kLimited:
+      return "limited";
+    case Health::kMissing:
+      return "missing";
+  }
+  return "missing";
+}
+
+Finding CheckOpenGl() {
+  // in a child: a driver that crashes must not take the doctor with it
+  const ChildAnswer answer = AskChild(
+      [](std::string& text) {
+        const core::Result<render::OffscreenContext> context = render::OffscreenContext::Make();
+        text =
+            context ? context->RendererText() + "; OpenGL " + context->VersionText() : context.error().Text();
+        return context.ok();
+      },
+      kDriverTimeout);
+  Finding finding{"opengl", Health::kMissing, answer.text, "", ""};
+  if (answer.end != ChildEnd::kAnswered) {
+    finding.meaning =
+        "no pictures can be drawn: neither the window nor the demonstration works; trocar simulate does";
+    finding.remedy =
+        "install libegl1, libegl-mesa0 and libgl1-mesa-dri (tools/install-packages --runtime), or mend the "
+        "graphics driver";
+    return finding;
+  }
+  const bool is_software = answer.text.find("llvmpipe") != std::string::npos ||
+                           answer.text.find("softpipe") != std::string::npos ||
+                           answer.text.find("SWR") != std::string::npos;
+  finding.health = is_software ? Health::kLimited : Health::kGood;
+  finding.meaning = is_software ? "pictures are drawn by the processor: all works, with fewer frames a second"
+                                : "pictures are drawn by the graphics card";
+  if (is_software) {
+    finding.remedy = "if this computer has a graphics card, install its driver; nothing is needed otherwise";
+  }
+  return finding;
+}
+
+Finding CheckVideoEncoder() {
+  const ChildAnswer answer = AskChild(TryVideo, kDriverTimeout);
+  if (answer.end == ChildEnd::kAnswered) {
+    return {"video", Health::kGood, "WebM (VP8) by GStreamer", "the demonstration can write its video", ""};
+  }
+  return {
+      "video", Health::kMissing, answer.text, "the demonstration cannot write its video",
+      "install gstreamer1.0-plugins-base and gstreamer1.0-plugins-good (tools/install-packages --runtime)"};
+}
+
+Finding CheckGpu() {
+  const ChildAnswer answer = AskChild(AskCuda, kDriverTimeout);
+  if (answer.end == ChildEnd::kAnswered) {
+    return {"gpu", Health::kGood, answer.text,
+            "a GPU for computing is there; this version of Trocar computes tissue on the processor and does "
+            "not use it",
+            ""};
+  }
+  return {"gpu", Health::kGood, answer.text, "not needed: tissue is computed on the processor", ""};
+}
+
+Finding CheckDisplay() {
+  Finding finding{
+      "display", Health::kMissing, "",
+      "the window cannot open here; trocar demo and simulate need no display",
+      "log in to a desktop, or set DISPLAY or WAYLAND_DISPLAY; without one, use ./run --headless"};
+  const std::string wayland = ReadEnvironment("WAYLAND_DISPLAY");
+  if (!wayland.empty()) {
+    const fs::path socket =
+        fs::path(ReadEnvironment("XDG_RUNTIME_DIR")) / wayland;  // an absolute name stays as it is
+    if (CanConnect(socket.string(), false)) {
+      return {"display", Health::kGood, "Wayland, " + wayland, "the window can open", ""};
+    }
+    finding.found = "WAYLAND_DISPLAY is " + wayland + " and nothing listens there";
+  }
+  const std::string display = ReadEnvironment("DISPLAY");
+  if (!display.empty()) {
+    const std::size_t colon = display.rfind(':');
+    const std::string host = display.substr(0, std::min(colon, display.size()));
+    const std::string number =
+        colon == std::string::npos ? "" : display.substr(colon + 1, display.find('.', colon) - colon - 1);
+    const std::string socket = "/tmp/.X11-unix/X" + number;
+    if (!host.empty() && host != "unix") {
+      return {"display", Health::kLimited, "X11 on another computer, " + display,
+              "the window can open if that computer lets it; drawing over a network is slow", ""};
+    }
+    if (!number.empty() && (CanConnect(socket, false) || CanConnect(socket, true))) {
+      return {"display", Health::kGood, "X11, " + display, "the window can open", ""};
+    }
+    finding.found = "DISPLAY is " + display + " and nothing listens there";
+  }
+  if (finding.found.empty()) finding.found = "neither DISPLAY nor WAYLAND_DISPLAY is set";
+  finding.health = Health::kLimited;
+  return finding;
+}
+
+Finding CheckWindow(const fs::path& program_folder) {
+  if (::access((program_folder / "trocar-window").c_str(), X_OK) == 0) {
+    return {"window", Health::kGood, "trocar-window lies beside this program", "trocar window can start it",
+            ""};
+  }
+  return {"window", Health::kLimited, "trocar-window is not beside this program",
+          "trocar window does not work",
+          "build it: install libgtkmm-4.0-dev (tools/install-packages) and run ./run"};
+}
+
+Finding CheckRealTime() {
+  rlimit limit{};
+  ::getrlimit(RLIMIT_RTPRIO, &limit);
+  const std::string allowed = limit.rlim_cur == RLIM_INFINITY
+                                  ? "unlimited"
+                                  : std::to_string(static_cast<unsigned long>(limit.rlim_cur));
+  const ChildAnswer answer = AskChild(TryRealTime, kDriverTimeout);
+  if (answer.end == ChildEnd::kAnswered) {
+    return {"real-time", Health::kGood,
+            "priority " + std::to_string(kWantedPriority) + " granted (limit " + allowed + ")",
+            "a haptic loop could run at an even 1000 Hz", ""};
+  }
+  return {"real-time", Health::kLimited, answer.text + " (limit " + allowed + ")",
+          "nothing suffers yet: pictures and tissue need no real-time priority; a haptic device would",
+          "put \"@audio - rtprio 70\" into /etc/security/limits.d/trocar.conf, add yourself to the group "
+          "audio, log in "
+          "again"};
+}
+
+Finding CheckInputDevices(const fs::path& root) {
+  // the desktop hands mouse and keyboard to the window; the kernel's own list tells whether there are any
+  std::vector<std::string> devices;
+  for (const std::string& name : ListNames(root / "sys/class/input", "event")) {
+    devices.push_back(ReadFirstLine(root / "sys/class/input" / name / "device/name"));
+  }
+  std::erase(devices, "");
+  if (devices.empty()) {
+    return {"input", Health::kLimited, "no input device", "hands can be moved only by a script here",
+            "connect a mouse and a keyboard, or use the script of a scene"};
+  }
+  return {"input", Health::kGood, Join(devices), "mouse and keyboard drive the hands, through the desktop",
+          ""};
+}
+
+Finding CheckSerialDevices(const fs::path& root) {
+  std::vector<std::string> devices, locked;
+  for (const char* prefix : {"ttyACM", "ttyUSB"}) {
+    for (const std::string& name : ListNames(root / "dev", prefix)) {
+      const bool is_open = ::access((root / "dev" / name).c_str(), R_OK | W_OK) == 0;
+      (is_open ? devices : locked).push_back("/dev/" + name);
+    }
+  }
+  if (!locked.empty()) {
+    return {"serial", Health::kLimited, Join(locked) + " may not be opened by you",
+            "a device of your own making on that line could not be read",
+            "add yourself to the group dialout (sudo usermod -aG dialout $USER) and log in again"};
+  }
+  if (devices.empty()) {
+    return {"serial", Health::kGood, "no serial device", "not needed: this version reads no serial device",
+            ""};
+  }
+  return {"serial", Health::kGood, Join(devices), "can be opened; this version reads no serial device yet",
+          ""};
+}
+
+Finding CheckThreeDMouse(const fs::path& root) {
+  for (const std::string& name : ListNames(root / "sys/class/input", "event")) {
+    const fs::path device = root / "sys/class/input" / name / "device";
+    if (!IsThreeDMouse(ReadFirstLine(device / "id/vendor"), ReadFirstLine(device / "id/product"))) continue;
+    const bool is_open = ::access((root / "dev/input" / name).c_str(), R_OK) == 0;
+    return {"3d-mouse", is_open ? Health::kGood : Health::kLimited,
+            ReadFirstLine(device / "name") + (is_open ? "" : ", which you may not read"),
+            "it is there; this version does not read it yet",
+            is_open ? "" : "add yourself to the group input (sudo usermod -aG input $USER) and log in again"};
+  }
+  return {"3d-mouse", Health::kGood, "no 3-D mouse", "not needed: this version does not read one", ""};
+}
+
+Finding CheckDataFolder() {
+  const core::Result<fs::path> folder = session::FindDataFolder();
+  const std::string remedy =
+      "set TROCAR_DATA_DIR to the folder that holds assets/ and scenes/, or restore both from the repository";
+  if (!folder)
+    return {"data", Health::kMissing, folder.error().Text(), "the built-in patient cannot be found", remedy};
+  const core::Result<session::Scene> scene = session::ReadScene(*folder / "scenes/demonstration.json");
+  if (!scene) {
+    return {"data", Health::kMissing, scene.error().Text(), "the built-in scene cannot be read", remedy};
+  }
+  std::size_t triangles = 0;
+  for (const auto& organ : scene->patient.organs) triangles += organ.mesh.triangles.size();
+  return {"data", Health::kGood,
+          folder->string() + ": " + std::to_string(scene->patient.organs.size()) + " organs, " +
+              std::to_string(triangles) + " triangles",
+          "the built-in patient is whole", ""};
+}
+
+std::vector<Finding> CheckAll() {
+  return {CheckDataFolder(),
+          CheckOpenGl(),
+          CheckVideoEncoder(),
+          CheckDisplay(),
+          CheckWindow(FindProgramFolder()),
+          CheckGpu(),
+          CheckRealTime(),
+          CheckInputDevices("/"),
+          CheckSerialDevices("/"),
+          CheckThreeDMouse("/")};
+}
+
+}  // namespace trocar::cli

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <CLI/App.hpp>
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "command.h"
+#include "console.h"
+#include "trocar/core/error_codes.h"
+
+namespace trocar::cli {
+namespace {
+
+void PrintTable() {
+  std::vector<std::vector<std::string>> rows = {{"code", "meaning"}};
+  for (const core::ErrorEntry& entry : core::ErrorTable()) {
+    if (entry.code != core::ErrorCode::kNone)
+      rows.push_back({std::string(entry.text), std::string(entry.meaning)});
+  }
+  std::fputs(FormatTable(rows).c_str(), stdout);
+}
+
+void PrintMarkdown() {
+  std::fputs(
+      "# Error codes\n"
+      "\n"
+      "Every error that the program reports begins with one of these codes; what follows says where it "
+      "happened and\n"
+      "what to do next. A code keeps its meaning for ever. This page is the output of `trocar errors "
+      "--markdown`, and a\n"
+      "test compares the two.\n"
+      "\n"
+      "| code | meaning |\n"
+      "|---|---|\n",
+      stdout);
+  for (const core::ErrorEntry& entry : core::ErrorTable()) {
+    if (entry.code == core::ErrorCode::kNone) continue;
+    std::printf("| `%s` | %s |\n", std::string(entry.text).c_str(), std::string(entry.meaning).c_str());
+  }
+}
+
+}  // namespace
+
+void AddErrorsCommand(CLI::App& app, Outcome&) {
+  CLI::App* command = app.add_subcommand("errors", "List every error code and what it means");
+  auto is_markdown = std::make_shared<bool>(false);
+  command->add_flag("--markdown", *is_markdown, "As the page docs/errors.md");
+  command->callback([is_markdown] { *is_markdown ? PrintMarkdown() : PrintTable(); });
+}
+
+}  // namespace trocar::cli

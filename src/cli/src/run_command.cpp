@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/cli/run_command.h"
+
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <cstdio>
+#include <exception>
+#include <string>
+#include <vector>
+
+#include "command.h"
+#include "trocar/core/version.h"
+
+namespace trocar::cli {
+namespace {
+
+constexpr int kExitGood = 0;
+constexpr int kExitError = 1;
+constexpr int kExitUsage = 2;
+
+constexpr const char* kDescription =
+    "Trocar: an open laparoscopic surgery simulator.\n"
+    "Two instruments through two trocars, a laparoscope, a liver and a gallbladder made from real "
+    "cross-sections.";
+
+constexpr const char* kExamples =
+    "Examples:\n"
+    "  trocar window                                   operate, with mouse and keyboard\n"
+    "  trocar demo -o out/demo                         pictures, a video and a report of the scripted "
+    "demonstration\n"
+    "  trocar simulate scenes/demonstration.json --ticks 240 --threads 2\n"
+    "                                                  run without pictures; print state hash and stage "
+    "times\n"
+    "  trocar doctor                                   what this computer can do, and how to mend what it "
+    "cannot\n"
+    "  trocar SUBCOMMAND --help                        the options of one subcommand\n"
+    "\n"
+    "Exit status: 0 good, 1 an error (its code and remedy on standard error), 2 wrong usage.\n"
+    "Every error code: trocar errors.";
+
+int Fail(const core::Error& error, int exit_status) {
+  std::fflush(stdout);
+  std::fprintf(stderr, "trocar: %s\n", error.Text().c_str());
+  return exit_status;
+}
+
+/// The subcommand that was named, for a hint on its help.
+std::string FindChosen(const CLI::App& app) {
+  std::string chosen = "trocar";
+  const CLI::App* level = &app;
+  while (!level->get_subcommands().empty()) {
+    level = level->get_subcommands().front();
+    chosen += " " + level->get_name();
+  }
+  return chosen;
+}
+
+/// What is wrong with the command line. CLI11 notices a missing subcommand before a misspelt one.
+std::string Explain(const CLI::App& app, const CLI::ParseError& complaint) {
+  const std::vector<std::string> unknown = app.remaining(true);
+  if (complaint.get_name() != "RequiredError" || unknown.empty() || unknown.front().starts_with('-')) {
+    return complaint.what();
+  }
+  return "there is no subcommand \"" + unknown.front() + "\"";
+}
+
+int ParseAndRun(int argc, char** argv) {
+  CLI::App app(kDescription, "trocar");
+  app.set_version_flag("--version", "trocar " + std::string(core::VersionText()));
+  app.footer(kExamples);
+  app.require_subcommand(1);
+  Outcome outcome;
+  AddWindowCommand(app, outcome);
+  AddSimulateCommand(app, outcome);
+  AddAnatomyCommand(app, outcome);
+  AddBenchCommand(app, outcome);
+  AddDoctorCommand(app, outcome);
+  AddErrorsCommand(app, outcome);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& complaint) {
+    // --help and --version arrive as exceptions that mean success
+    if (complaint.get_exit_code() == 0) return app.exit(complaint);
+    return Fail({core::ErrorCode::kUsage, Explain(app, complaint) + "; see " + FindChosen(app) + " --help"},
+                kExitUsage);
+  }
+  if (!outcome.status) {
+    const bool is_usage = outcome.status.error().code == core::ErrorCode::kUsage;
+    return Fail(outcome.status.error(), is_usage ? kExitUsage : kExitError);
+  }
+  return outcome.has_finding ? kExitError : kExitGood;
+}
+
+}  // namespace
+
+int RunCommand(int argc, char** argv) {
+  // the last fence: nothing below should throw, and if memory ends the person still gets a line
+  try {
+    return ParseAndRun(argc, argv);
+  } catch (const std::exception& failure) {
+    std::fprintf(stderr, "trocar: stopped by an unexpected exception: %s; please report this\n",
+                 failure.what());
+    return kExitError;
+  }
+}
+
+}  // namespace trocar::cli

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "command.h"
+#include "console.h"
+#include "trocar/core/clock.h"
+#include "trocar/core/statistics.h"
+#include "trocar/session/simulation.h"
+
+namespace trocar::cli {
+namespace {
+
+struct SimulateOptions {
+  std::string scene;
+  int ticks = 0;
+  std::uint64_t seed = 0;
+  bool has_seed = false;
+  int threads = 1;
+  bool is_json = false;
+};
+
+struct StageTimes {
+  std::string name;
+  double median_ms = 0, p99_ms = 0;
+};
+
+struct SimulateReport {
+  std::string hash;
+  std::uint64_t ticks = 0;
+  double residual = 0;  // after the last tick
+  std::vector<StageTimes> stages;
+  double tick_p99_ms = 0;
+  double max_force_n = 0;  // largest reaction on either instrument in any tick
+};
+
+std::string FormatHash(std::uint64_t hash) {
+  char text[17];
+  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash));
+  return text;
+}
+
+core::Result<SimulateReport> Simulate(const SimulateOptions& options) {
+  core::Result<session::Scene> read = session::ReadScene(options.scene);
+  if (!read) return read.error();
+  auto scene = std::make_shared<session::Scene>(std::move(read).value());
+  if (options.has_seed) scene->seed = options.seed;
+  core::Result<session::Simulation> made = session::Simulation::Make(scene, options.threads);
+  if (!made) return made.error();
+  session::Simulation simulation = std::move(made).value();
+
+  const auto count = static_cast<std::size_t>(options.ticks);
+  std::array<std::vector<double>, session::kStageCount> stage_ms;
+  for (auto& times : stage_ms) times.reserve(count);
+  std::vector<double> tick_ms;
+  tick_ms.reserve(count);
+  SimulateReport report;
+  ProgressBar progress("simulating", options.ticks);
+  for (int tick = 0; tick < options.ticks; ++tick) {
+    const session::Input input = session::CalcScriptInput(*scene, tick * scene->tick_seconds);
+    const core::Stopwatch stopwatch;
+    simulation.Step(input);
+    tick_ms.push_back(1e3 * stopwatch.Seconds());
+    const session::Snapshot& snapshot = simulation.GetSnapshot();
+    for (std::size_t i = 0; i < stage_ms.size(); ++i) stage_ms[i].push_back(1e3 * snapshot.stage_seconds[i]);
+    for (const auto& instrument : snapshot.instruments) {
+      report.max_force_n = std::max(report.max_force_n, math::Norm(instrument.force));
+    }
+    progress.Show(tick + 1);
+  }
+  progress.Finish();
+
+  report.hash = FormatHash(simulation.Hash());
+  report.ticks = simulation.GetSnapshot().tick;
+  report.residual = simulation.GetSnapshot().residual;
+  for (int i = 0; i < session::kStageCount; ++i) {
+    const auto& times = stage_ms[static_cast<std::size_t>(i)];
+    report.stages.push_back({std::string(session::StageName(static_cast<session::Stage>(i))),
+                             core::CalcPercentile(times, 0.5), core::CalcPercentile(times, 0.99)});
+  }
+  report.tick_p99_ms = core::CalcPercentile(tick_ms, 0.99);
+  return report;
+}
+
+void PrintJson(const SimulateReport& report) {
+  nlohmann::ordered_json json = {
+      {"hash", report.hash}, {"ticks", report.ticks}, {"residual", report.residual}};
+  json["stages"] = nlohmann::ordered_json::array();
+  for (const StageTimes& stage : report.stages) {
+    json["stages"].push_back(
+        {{"name", stage.name}, {"median_ms", stage.median_ms}, {"p99_ms", stage.p99_ms}});
+  }
+  json["tick_p99_ms"] = report.tick_p99_ms;
+  json["max_force_n"] = report.max_force_n;
+  std::printf("%s\n", json.dump(2).c_str());
+}
+
+void PrintForPerson(const SimulateReport& report) {
+  std::vector<std::vector<std::string>> rows = {{"stage", "median [ms]", "p99 [ms]"}};
+  for (const StageTimes& stage : report.stages) {
+    rows.push_back({stage.name, FormatNumber(stage.median_ms, 3), FormatNumber(stage.p99_ms, 3)});
+  }
+  rows.push_back({"whole tick", "", FormatNumber(report.tick_p99_ms, 3)});
+  std::fputs(FormatTable(rows).c_str(), stdout);
+  std::printf("\n%llu ticks, state hash %s\n", static_cast<unsigned long long>(report.ticks),
+              report.hash.c_str());
+  std::printf("residual after the last tick %s, largest force on an instrument %s N\n",
+              FormatNumber(report.residual).c_str(), FormatNumber(report.max_force_n).c_str());
+}
+
+}  // namespace
+
+void AddSimulateCommand(CLI::App& app, Outcome& outcome) {
+  CLI::App* command =
+      app.add_subcommand("simulate", "Run a scene's script without pictures; print hash and times");
+  auto options = std::make_shared<SimulateOptions>();
+  command->add_option("scene", options->scene, "Scene file (JSON), which names its patient and its script")
+      ->required()
+      ->type_name("FILE");
+  command->add_option("--ticks", options->ticks, "How many ticks, each scene.tick_seconds long (1/120 s)")
+      ->required()
+      ->check(CLI::Range(1, 10'000'000))
+      ->type_name("N");
+  CLI::Option* seed =
+      command->add_option("--seed", options->seed, "In place of the scene's seed")->type_name("K");
+  command->add_option("--threads", options->threads, "Of the solver; the result is the same for any number")
+      ->check(CLI::Range(1, 256))
+      ->type_name("T")
+      ->capture_default_str();
+  command->add_flag("--json", options->is_json, "Machine-readable");
+  command->footer(
+      "The same scene, seed and ticks give the same hash, twice and with any number of threads.\n"
+      "Example: trocar simulate scenes/demonstration.json --ticks 240 --seed 1 --threads 2 --json");
+  command->callback([options, seed, &outcome] {
+    options->has_seed = seed->count() > 0;
+    const core::Result<SimulateReport> report = Simulate(*options);
+    if (!report) {
+      outcome.status = report.error();
+      return;
+    }
+    options->is_json ? PrintJson(*report) : PrintForPerson(*report);
+  });
+}
+
+}  // namespace trocar::cli

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file svg_plot.h  Line plots as SVG text, for a page that needs nothing from elsewhere.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "trocar/math/vector.h"
+
+namespace trocar::cli {
+
+/// One line of a plot. Points that are not finite are left out and break the line.
+struct PlotLine {
+  std::string name;                ///< in the legend
+  std::vector<math::Vec2> points;  ///< in the axes' units
+};
+
+struct PlotSettings {
+  std::string title, x_label, y_label;
+  bool has_equal_axes = false;  ///< one unit is as long across as up: for maps
+  int width = 640, height = 260;
+};
+
+/// At most 6 lines; each has its colour and its dashes.
+std::string FormatSvgPlot(const PlotSettings& settings, const std::vector<PlotLine>& lines);
+
+/// Marks from at or above `low` to at or below `high`, 1, 2 or 5 times a power of ten apart, about `wanted`
+/// of them. \pre low < high, wanted >= 2 (TROCAR_ASSERT)
+std::vector<double> FindAxisMarks(double low, double high, int wanted);
+
+/// At most `limit` points, keeping the lowest and highest of each stretch so that no peak is lost.
+/// \pre limit >= 2 (TROCAR_ASSERT)
+std::vector<math::Vec2> ThinOut(const std::vector<math::Vec2>& points, std::size_t limit);
+
+/// Text for HTML or SVG: & < > " ' replaced.
+std::string EscapeMarkup(std::string_view text);
+
+}  // namespace trocar::cli

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "include_rules.h"
+
+#include <algorithm>
+#include <array>
+#include <sstream>
+
+#include "trocar/core/safe_file.h"
+
+namespace trocar::layers {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Beginnings of third-party headers that a public header must not show to those who include it.
+constexpr std::array<std::string_view, 17> kPrivateLibraries = {
+    "GL/",   "epoxy/", "EGL/", "gtk",    "glib", "gst/",          "nlohmann/", "CLI/",  "itk",
+    "png.h", "spdlog", "tbb/", "oneapi", "cuda", "meshoptimizer", "iostream",  "Eigen/"};
+
+/// The word between the quotes or brackets of an include line, or nothing.
+std::string_view FindInclude(std::string_view line) {
+  const auto skip_blanks = [&] { line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size())); };
+  skip_blanks();
+  if (!line.starts_with('#')) return {};
+  line.remove_prefix(1);
+  skip_blanks();
+  if (!line.starts_with("include")) return {};
+  line.remove_prefix(7);
+  skip_blanks();
+  if (line.empty() || (line.front() != '"' && line.front() != '<')) return {};
+  const std::size_t end = line.find(line.front() == '"' ? '"' : '>', 1);
+  return end == std::string_view::npos ? std::string_view{} : line.substr(1, end - 1);
+}
+
+void CheckFile(const Layers& layers, const fs::path& source, const fs::path& path,
+               std::vector<Breach>& breaches) {
+  const std::string name = fs::relative(path, source).generic_string();
+  const std::string module = name.substr(0, name.find('/'));
+  const auto seen = layers.find(module);
+  if (seen == layers.end()) {
+    breaches.push_back({name, 0, "\"" + module + "\" is no module of the layers"});
+    return;
+  }
+  const bool is_public = name.find("/include/") != std::string::npos;
+  const core::Result<std::string> text = core::ReadFile(path);
+  if (!text) {
+    breaches.push_back({name, 0, text.error().Text()});
+    return;
+  }
+  std::istringstream lines(*text);
+  std::string line;
+  for (int number = 1; std::getline(lines, line); ++number) {
+    const std::string_view include = FindInclude(line);
+    if (include.empty()) continue;
+    if (include.starts_with("trocar/")) {
+      const std::string other(include.substr(7, include.find('/', 7) - 7));
+      if (!seen->second.contains(other))
+        breaches.push_back({name, number, module + " must not see " + other});
+    } else if (include.find("../") != std::string_view::npos) {
+      breaches.push_back({name, number, "an include that climbs out of its folder"});
+    } else if (is_public) {
+      const bool is_private =
+          std::any_of(kPrivateLibraries.begin(), kPrivateLibraries.end(),
+                      [&](std::string_view prefix) { return include.starts_with(prefix); });
+      if (is_private)
+        breaches.push_back({name, number, "a public header must not show " + std::string(include)});
+    }
+  }
+}
+
+}  // namespace
+
+core::Result<Layers> ParseLayers(std::string_view text) {
+  Layers layers;
+  std::istringstream lines{std::string(text)};
+  std::string line;
+  for (int number = 1; std::getline(lines, line); ++number) {
+    std::istringstream words(line.substr(0, line.find('#')));
+    std::string module, arrow, other;
+    if (!(words >> module)) continue;
+    const auto complain = [&](const std::string& what) {
+      return core::Error{core::ErrorCode::kJsonField, "layers, line " + std::to_string(number) + ": " + what};
+    };
+    if (!(words >> arrow) || arrow != "->") return complain("expected MODULE -> MODULES");
+    if (layers.contains(module)) return complain(module + " has a line already");
+    std::set<std::string> seen = {module};
+    while (words >> other) {
+      const auto found = layers.find(other);
+      if (found == layers.end()) return complain(other + " has no line above this one");
+      seen.insert(found->second.begin(), found->second.end());
+    }
+    layers[module] = std::move(seen);
+  }
+  return layers;
+}
+
+std::vector<Breach> FindBreaches(const Layers& layers, const fs::path& source) {
+  std::vector<fs::path> files;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(source)) {
+    const fs::path extension = entry.path().extension();
+    if (entry.is_regular_file() && (extension == ".h" || extension == ".cpp")) files.push_back(entry.path());
+  }
+  std::sort(files.begin(), files.end());
+  std::vector<Breach> breaches;
+  for (const fs::path& file : files) CheckFile(layers, source, file, breaches);
+  return breaches;
+}
+
+}  // namespace trocar::layers

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file include_rules.h  Which module may include which, and who breaks it.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "trocar/core/result.h"
+
+namespace trocar::layers {
+
+/// For each module, every module it sees: itself, those named in its line, and what those see.
+using Layers = std::map<std::string, std::set<std::string>>;
+
+/// Reads lines "module -> module module"; "#" begins a comment.
+/// \return kJsonField with the line when it is malformed, or names a module that no earlier line has (so no
+/// cycle passes)
+core::Result<Layers> ParseLayers(std::string_view text);
+
+/// A line that breaks a rule.
+struct Breach {
+  std::string file;  ///< relative to the source folder
+  int line = 0;
+  std::string what;
+};
+
+/// Looks at every .h and .cpp below `source`, a folder of modules (src/).
+///
+/// Rules: a file includes headers of modules it sees only; a folder of `source` is a module of the layers; a
+/// public header includes no header of a graphics or window library, device SDK or file format.
+std::vector<Breach> FindBreaches(const Layers& layers, const std::filesystem::path& source);
+
+}  // namespace trocar::layers

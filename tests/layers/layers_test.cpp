@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+
+#include "include_rules.h"
+#include "trocar/core/safe_file.h"
+#include "trocar_test/temporary_folder.h"
+
+namespace trocar::layers {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+const std::filesystem::path kRoot = TROCAR_SOURCE_DIR;
+
+Layers ReadLayers() {
+  const auto text = core::ReadFile(kRoot / "tools/layers.txt");
+  EXPECT_TRUE(text.ok()) << text.error().Text();
+  auto layers = ParseLayers(*text);
+  EXPECT_TRUE(layers.ok()) << layers.error().Text();
+  return *layers;
+}
+
+TEST(Layers, EveryIncludeOfTheSourceFollowsAnArrow) {
+  for (const Breach& breach : FindBreaches(ReadLayers(), kRoot / "src")) {
+    ADD_FAILURE() << "src/" << breach.file << ":" << breach.line << ": " << breach.what
+                  << "; tools/layers.txt says what a module may include";
+  }
+}
+
+TEST(Layers, ReachEverythingUpTheList) {
+  const Layers layers = ReadLayers();
+  EXPECT_TRUE(layers.at("cli").contains("core"));
+  EXPECT_TRUE(layers.at("surgery").contains("collision"));
+  EXPECT_FALSE(layers.at("tissue").contains("collision"));
+  EXPECT_FALSE(layers.at("core").contains("math"));
+}
+
+// Negative control: the check finds what is planted.
+class Planted : public testing::Test {
+ protected:
+  std::vector<Breach> Find(const std::string& file, const std::string& text) {
+    EXPECT_TRUE(core::WriteFile(folder_.Path() / file, text).ok());
+    return FindBreaches(ReadLayers(), folder_.Path());
+  }
+
+ private:
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(Planted, DownwardIncludeIsFound) {
+  const auto breaches = Find("tissue/src/spring.cpp", "// x\n#include \"trocar/surgery/grasp.h\"\n");
+  ASSERT_THAT(breaches, SizeIs(1));
+  EXPECT_EQ(breaches[0].file, "tissue/src/spring.cpp");
+  EXPECT_EQ(breaches[0].line, 2);
+  EXPECT_THAT(breaches[0].what, HasSubstr("tissue must not see surgery"));
+}
+
+TEST_F(Planted, SidewaysIncludeIsFoundHoweverItIsWritten) {
+  EXPECT_THAT(Find("tissue/test/a_test.cpp", "  #  include <trocar/collision/queries.h>\n"), SizeIs(1));
+}
+
+TEST_F(Planted, UnknownModuleIsFound) {
+  EXPECT_THAT(Find("graphics/src/a.cpp", "int x;\n"), SizeIs(1));
+}
+
+TEST_F(Planted, LibraryInPublicHeaderIsFound) {
+  EXPECT_THAT(Find("render/include/trocar/render/a.h", "#include <epoxy/gl.h>\n"), SizeIs(1));
+}
+
+TEST_F(Planted, LibraryInPrivateFileIsAllowed) {
+  EXPECT_THAT(Find("render/src/a.cpp", "#include <epoxy/gl.h>\n#include \"trocar/geometry/tube.h\"\n"),
+              IsEmpty());
+}
+
+TEST(ParseLayers, RefusesACycleAndAMalformedLine) {
+  EXPECT_FALSE(ParseLayers("a -> b\nb -> a\n").ok());
+  EXPECT_FALSE(ParseLayers("a b\n").ok());
+  EXPECT_FALSE(ParseLayers("a ->\na ->\n").ok());
+}
+
+}  // namespace
+}  // namespace trocar::layers
