@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file material.h  What a surface looks like under the laparoscope. Looks only: no mechanical property.
+#pragma once
+
+#include <optional>
+#include <string_view>
+
+namespace trocar::render {
+
+enum class Material {
+  kLiver,        ///< deep red-brown capsule, fine lobules, sharp wet highlights
+  kGallbladder,  ///< blue-green to yellow-grey translucent wall with fine vessels
+  kDuct,         ///< yellowish green
+  kArtery,       ///< red
+  kFat,          ///< yellow lobules of the omentum
+  kBowel,        ///< pink serosa
+  kPeritoneum,   ///< abdominal wall and diaphragm from inside
+  kShaft,        ///< black insulated shaft
+  kSteel,        ///< polished steel
+  kSleeve,       ///< grey plastic of a trocar
+  kForce,        ///< signal colour of the force arrows
+  kCount
+};
+
+/// "liver", "gallbladder", "duct", "artery", "fat", "bowel", "peritoneum", "shaft", "steel", "sleeve",
+/// "force".
+std::string_view MaterialName(Material material) noexcept;
+/// The material of that name, or nothing.
+std::optional<Material> FindMaterial(std::string_view name) noexcept;
+
+}  // namespace trocar::render

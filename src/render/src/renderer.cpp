@@ -1,0 +1,581 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/render/renderer.h"
+
+#include <epoxy/gl.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <initializer_list>
+#include <limits>
+#include <string>
+
+#include "material_look.h"
+#include "noise.h"
+#include "shaders.h"
+#include "trocar/core/assert.h"
+#include "trocar/geometry/mesh_measures.h"
+#include "trocar/geometry/tube.h"
+
+namespace trocar::render {
+namespace {
+
+using geometry::Triangle;
+using math::Pose;
+using math::Vec3;
+
+constexpr double kNear = 0.004;                 // m, in front of the lens
+constexpr double kFar = 1.0;                    // m, beyond any abdomen
+constexpr Vec3 kLightOffset{0, 0.0035, 0.001};  // m, camera frame: the fibres leave beside the lens
+constexpr int kNoiseSide = 64;                  // texels
+constexpr int kMaskSegments = 128;
+constexpr int kFanFirst = 2 * (kMaskSegments + 1);                // vertex after the ring's strip
+constexpr double kArrowHeadLength = 4.5, kArrowHeadRadius = 2.4;  // in radii of the arrow's shaft
+
+using Matrix4 = std::array<float, 16>;  // column after column
+using Matrix3 = std::array<float, 9>;
+
+struct Axes {
+  Vec3 x, y, z;
+};
+Axes CalcAxes(const math::Quaternion& rotation) {
+  return {math::Rotate(rotation, {1, 0, 0}), math::Rotate(rotation, {0, 1, 0}),
+          math::Rotate(rotation, {0, 0, 1})};
+}
+
+float F(double value) {
+  return static_cast<float>(value);
+}
+
+/// Pose after scaling along x, y, z.
+Matrix4 MakeMatrix(const Pose& pose, const Vec3& scale = {1, 1, 1}) {
+  const auto [x, y, z] = CalcAxes(pose.rotation);
+  const Vec3 t = pose.translation;
+  return {F(x.x * scale.x), F(x.y * scale.x), F(x.z * scale.x), 0,
+          F(y.x * scale.y), F(y.y * scale.y), F(y.z * scale.y), 0,
+          F(z.x * scale.z), F(z.y * scale.z), F(z.z * scale.z), 0,
+          F(t.x),           F(t.y),           F(t.z),           1};
+}
+
+Matrix3 MakeRotation(const math::Quaternion& rotation) {
+  const auto [x, y, z] = CalcAxes(rotation);
+  return {F(x.x), F(x.y), F(x.z), F(y.x), F(y.y), F(y.z), F(z.x), F(z.y), F(z.z)};
+}
+
+/// Pixels per unit of tangent: the angle spans the round picture.
+double CalcFocalLength(const Camera& camera, int height) {
+  return 0.5 * kMaskDiameter * height / std::tan(0.5 * std::clamp(camera.field_of_view, 0.1, 2.8));
+}
+
+Matrix4 MakeProjection(const Camera& camera, int width, int height) {
+  const double focal = CalcFocalLength(camera, height);
+  Matrix4 m{};
+  m[0] = F(2.0 * focal / width);
+  m[5] = F(2.0 * focal / height);
+  m[10] = F(-(kFar + kNear) / (kFar - kNear));
+  m[11] = -1;
+  m[14] = F(-2.0 * kFar * kNear / (kFar - kNear));
+  return m;
+}
+
+/// A vertex of the streamed buffer and one of the constant buffer.
+struct MovingVertex {
+  std::array<float, 3> position, normal;
+};
+struct RestVertex {
+  std::array<float, 3> rest;
+  float openness;
+};
+std::array<float, 3> ToFloat(const Vec3& v) {
+  return {F(v.x), F(v.y), F(v.z)};
+}
+
+struct Surface {
+  std::uint32_t generation = 0;  // odd while in use
+  Material material = Material::kLiver;
+  GLuint array = 0, moving = 0, rest = 0, indices = 0;
+  GLsizei index_count = 0;
+  std::size_t vertex_count = 0;
+};
+
+/// A linked program with the places of its uniforms.
+struct Program {
+  GLuint name = 0;
+
+  GLint Find(const char* uniform) const { return glGetUniformLocation(name, uniform); }
+  void Set(const char* uniform, float v) const { glUniform1f(Find(uniform), v); }
+  void Set(const char* uniform, int v) const { glUniform1i(Find(uniform), v); }
+  void Set(const char* uniform, const std::array<float, 2>& v) const {
+    glUniform2fv(Find(uniform), 1, v.data());
+  }
+  void Set(const char* uniform, const std::array<float, 3>& v) const {
+    glUniform3fv(Find(uniform), 1, v.data());
+  }
+  void Set(const char* uniform, const Matrix3& m) const {
+    glUniformMatrix3fv(Find(uniform), 1, GL_FALSE, m.data());
+  }
+  void Set(const char* uniform, const Matrix4& m) const {
+    glUniformMatrix4fv(Find(uniform), 1, GL_FALSE, m.data());
+  }
+};
+
+core::Error ShaderFailed(const std::string& what, const std::string& log) {
+  return {core::ErrorCode::kShaderFailed,
+          what + ": " + log + "; update the graphics driver or set LIBGL_ALWAYS_SOFTWARE=1"};
+}
+
+core::Result<GLuint> MakeShader(GLenum kind, std::initializer_list<const char*> sources) {
+  const GLuint shader = glCreateShader(kind);
+  glShaderSource(shader, static_cast<GLsizei>(sources.size()), sources.begin(), nullptr);
+  glCompileShader(shader);
+  GLint is_compiled = GL_FALSE;
+  glGetShaderiv(shader, GL_COMPILE_STATUS, &is_compiled);
+  if (is_compiled == GL_TRUE) return shader;
+  std::string log(2048, '\0');
+  GLsizei length = 0;
+  glGetShaderInfoLog(shader, static_cast<GLsizei>(log.size()), &length, log.data());
+  log.resize(static_cast<std::size_t>(length));
+  glDeleteShader(shader);
+  return ShaderFailed(
+      kind == GL_VERTEX_SHADER ? "a vertex shader does not compile" : "a fragment shader does not compile",
+      log);
+}
+
+core::Result<Program> MakeProgram(const char* vertex_source,
+                                  std::initializer_list<const char*> fragment_sources) {
+  const auto vertex = MakeShader(GL_VERTEX_SHADER, {vertex_source});
+  if (!vertex) return vertex.error();
+  const auto fragment = MakeShader(GL_FRAGMENT_SHADER, fragment_sources);
+  if (!fragment) {
+    glDeleteShader(*vertex);
+    return fragment.error();
+  }
+  const Program program{glCreateProgram()};
+  glAttachShader(program.name, *vertex);
+  glAttachShader(program.name, *fragment);
+  glLinkProgram(program.name);
+  glDeleteShader(*vertex);
+  glDeleteShader(*fragment);
+  GLint is_linked = GL_FALSE;
+  glGetProgramiv(program.name, GL_LINK_STATUS, &is_linked);
+  if (is_linked == GL_TRUE) return program;
+  std::string log(2048, '\0');
+  GLsizei length = 0;
+  glGetProgramInfoLog(program.name, static_cast<GLsizei>(log.size()), &length, log.data());
+  log.resize(static_cast<std::size_t>(length));
+  glDeleteProgram(program.name);
+  return ShaderFailed("a shader program does not link", log);
+}
+
+GLuint MakeNoiseTexture(int side, const std::vector<std::uint8_t>& texels) {
+  GLuint texture = 0;
+  glGenTextures(1, &texture);
+  glBindTexture(GL_TEXTURE_3D, texture);
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+  glTexImage3D(GL_TEXTURE_3D, 0, GL_RGBA8, side, side, side, 0, GL_RGBA, GL_UNSIGNED_BYTE, texels.data());
+  glTexParameteri(GL_TEXTURE_3D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+  glTexParameteri(GL_TEXTURE_3D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  for (const GLenum wrap : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R}) {
+    glTexParameteri(GL_TEXTURE_3D, wrap, GL_REPEAT);
+  }
+  glBindTexture(GL_TEXTURE_3D, 0);
+  return texture;
+}
+
+/// Rod and cone along +z with radius and length 1, so that each can be scaled along its axis.
+geometry::TriangleMesh MakeUnitRod() {
+  return geometry::MakeTube({{{0, 0, 0}, {0, 0, 1}}, {1.0, 1.0}}, 16);
+}
+geometry::TriangleMesh MakeUnitCone() {
+  return geometry::MakeTube({{{0, 0, 0}, {0, 0, 1}}, {1.0, 0.02}}, 16);
+}
+
+}  // namespace
+
+struct Renderer::Content {
+  Program tissue, tool, mask, smooth;
+  GLuint pattern = 0, bumps = 0;
+  GLuint mask_array = 0, mask_vertices = 0;
+  // the picture before its edges are smoothed
+  GLuint framebuffer = 0, picture = 0, depth = 0;
+  int picture_width = 0, picture_height = 0;
+  std::vector<Surface> surfaces;
+  SurfaceId rod, cone;
+  std::vector<MovingVertex> staging;  // kept, so that a frame does not allocate
+
+  Content() = default;
+  Content(const Content&) = delete;
+  Content& operator=(const Content&) = delete;
+  ~Content() {
+    for (Surface& surface : surfaces) Free(surface);
+    for (const Program& program : {tissue, tool, mask, smooth}) glDeleteProgram(program.name);
+    glDeleteTextures(1, &pattern);
+    glDeleteTextures(1, &bumps);
+    glDeleteVertexArrays(1, &mask_array);
+    glDeleteBuffers(1, &mask_vertices);
+    glDeleteFramebuffers(1, &framebuffer);
+    glDeleteTextures(1, &picture);
+    glDeleteRenderbuffers(1, &depth);
+  }
+
+  static void Free(Surface& surface) {
+    if (surface.generation % 2 == 0) return;
+    glDeleteVertexArrays(1, &surface.array);
+    for (const GLuint buffer : {surface.moving, surface.rest, surface.indices}) glDeleteBuffers(1, &buffer);
+    ++surface.generation;
+  }
+
+  Surface* FindSurface(SurfaceId id) {
+    if (id.generation % 2 == 0 || id.index >= surfaces.size()) return nullptr;
+    Surface& surface = surfaces[id.index];
+    return surface.generation == id.generation ? &surface : nullptr;
+  }
+
+  void UploadMoving(const Surface& surface, std::span<const Vec3> positions, std::span<const Vec3> normals) {
+    staging.resize(positions.size());
+    for (std::size_t i = 0; i < positions.size(); ++i)
+      staging[i] = {ToFloat(positions[i]), ToFloat(normals[i])};
+    const auto bytes = static_cast<GLsizeiptr>(staging.size() * sizeof(MovingVertex));
+    glBindBuffer(GL_ARRAY_BUFFER, surface.moving);
+    // a fresh store, so that the driver need not wait for the frame that still reads the old one
+    glBufferData(GL_ARRAY_BUFFER, bytes, nullptr, GL_STREAM_DRAW);
+    glBufferSubData(GL_ARRAY_BUFFER, 0, bytes, staging.data());
+    glBindBuffer(GL_ARRAY_BUFFER, 0);
+  }
+
+  void UploadTriangles(Surface& surface, std::span<const Triangle> triangles) {
+    for (const Triangle& t : triangles) {
+      TROCAR_ASSERT(t[0] < surface.vertex_count && t[1] < surface.vertex_count &&
+                    t[2] < surface.vertex_count);
+    }
+    surface.index_count = static_cast<GLsizei>(3 * triangles.size());
+    glBindVertexArray(surface.array);
+    glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, surface.indices);
+    glBufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(triangles.size_bytes()), triangles.data(),
+                 GL_STATIC_DRAW);
+    glBindVertexArray(0);
+  }
+
+  void MakeMask() {
+    std::vector<std::array<float, 3>> ring;
+    for (int i = 0; i <= kMaskSegments; ++i) {
+      const double angle = 2.0 * M_PI * i / kMaskSegments;
+      ring.push_back({F(std::cos(angle)), F(std::sin(angle)), 0});
+      ring.push_back({F(std::cos(angle)), F(std::sin(angle)), 1});
+    }
+    for (int i = 0; i <= kMaskSegments; ++i) ring.push_back(ring[static_cast<std::size_t>(2 * i)]);
+    glGenVertexArrays(1, &mask_array);
+    glGenBuffers(1, &mask_vertices);
+    glBindVertexArray(mask_array);
+    glBindBuffer(GL_ARRAY_BUFFER, mask_vertices);
+    glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(ring.size() * sizeof ring[0]), ring.data(),
+                 GL_STATIC_DRAW);
+    glEnableVertexAttribArray(0);
+    glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, 0, nullptr);
+    glBindVertexArray(0);
+    glBindBuffer(GL_ARRAY_BUFFER, 0);
+  }
+
+  /// Half axes of the picture's circle in clip space.
+  static std::array<float, 2> CalcCircle(int width, int height) {
+    return {F(kMaskDiameter * height / width), F(kMaskDiameter)};
+  }
+
+  void DrawMask(int width, int height) {
+    glUseProgram(mask.name);
+    mask.Set("u_inner", CalcCircle(width, height));
+    mask.Set("u_colour", Colour{0, 0, 0});
+    glBindVertexArray(mask_array);
+    glDrawArrays(GL_TRIANGLE_STRIP, 0, kFanFirst);
+  }
+
+  /// Makes the own framebuffer the target. \return false where the driver refuses it
+  bool BindPicture(int width, int height) {
+    if (framebuffer == 0) {
+      glGenFramebuffers(1, &framebuffer);
+      glGenTextures(1, &picture);
+      glGenRenderbuffers(1, &depth);
+    }
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+    if (width == picture_width && height == picture_height) return true;
+    glBindTexture(GL_TEXTURE_2D, picture);
+    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, width, height, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
+    for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
+      glTexParameteri(GL_TEXTURE_2D, filter, GL_LINEAR);
+    for (const GLenum wrap : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T})
+      glTexParameteri(GL_TEXTURE_2D, wrap, GL_CLAMP_TO_EDGE);
+    glBindTexture(GL_TEXTURE_2D, 0);
+    glBindRenderbuffer(GL_RENDERBUFFER, depth);
+    glRenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH_COMPONENT24, width, height);
+    glBindRenderbuffer(GL_RENDERBUFFER, 0);
+    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, picture, 0);
+    glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, depth);
+    const bool is_complete = glCheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
+    picture_width = is_complete ? width : 0;
+    picture_height = is_complete ? height : 0;
+    return is_complete;
+  }
+
+  /// Copies the picture into the bound framebuffer with soft edges; outside the circle it is black.
+  void DrawSmoothed(bool has_mask, int width, int height) {
+    glDisable(GL_DEPTH_TEST);
+    glDisable(GL_CULL_FACE);
+    glClearColor(0, 0, 0, 1);
+    glClear(GL_COLOR_BUFFER_BIT);
+    glUseProgram(smooth.name);
+    glActiveTexture(GL_TEXTURE0);
+    glBindTexture(GL_TEXTURE_2D, picture);
+    smooth.Set("u_picture", 0);
+    smooth.Set("u_texel", std::array<float, 2>{F(1.0 / width), F(1.0 / height)});
+    // without a mask a circle round the whole picture
+    const double wide = 1.5 * std::hypot(width, height);
+    smooth.Set("u_inner", has_mask ? CalcCircle(width, height)
+                                   : std::array<float, 2>{F(wide / width), F(wide / height)});
+    glBindVertexArray(mask_array);
+    glDrawArrays(GL_TRIANGLE_FAN, kFanFirst, kMaskSegments + 1);
+    glBindTexture(GL_TEXTURE_2D, 0);
+  }
+
+  /// Uniforms that stay the same for the whole frame.
+  void SetFrame(const Program& program, const Frame& frame, const Pose& X_camera_world,
+                const Matrix4& projection, int width, int height) {
+    glUseProgram(program.name);
+    program.Set("u_clip_from_camera", projection);
+    program.Set("u_light", ToFloat(kLightOffset));
+    program.Set("u_power", F(std::max(0.0, frame.light_power)));
+    program.Set("u_mask", Colour{F(0.5 * width), F(0.5 * height),
+                                 frame.has_mask ? F(0.5 * kMaskDiameter * height) : 0.0f});
+    std::array<float, 4 * kMaxShades> first{};
+    std::array<float, 3 * kMaxShades> second{};
+    const std::size_t count = std::min(frame.shades.size(), kMaxShades);
+    for (std::size_t i = 0; i < count; ++i) {
+      const Vec3 a = X_camera_world * frame.shades[i].a;
+      Vec3 b = X_camera_world * frame.shades[i].b;
+      if (a == b) b.z += 1e-6;  // the shader divides by the length
+      for (std::size_t k = 0; k < 3; ++k) {
+        first[4 * i + k] = F(a[static_cast<int>(k)]);
+        second[3 * i + k] = F(b[static_cast<int>(k)]);
+      }
+      first[4 * i + 3] = F(frame.shades[i].radius);
+    }
+    glUniform4fv(program.Find("u_shade_a"), kMaxShades, first.data());
+    glUniform3fv(program.Find("u_shade_b"), kMaxShades, second.data());
+    program.Set("u_shade_count", static_cast<int>(count));
+  }
+
+  void SetLook(const Program& program, const MaterialLook& look) {
+    const auto inverse = [](float tile) { return tile > 0.0f ? 1.0f / tile : 0.0f; };
+    program.Set("u_low", look.low);
+    program.Set("u_high", look.high);
+    program.Set("u_gloss", Colour{look.wet, look.wet_exponent, look.sheen});
+    if (!look.is_tissue) {
+      program.Set("u_grooves", look.grooves);
+      return;
+    }
+    program.Set("u_cell", look.cell);
+    program.Set("u_vessel", look.vessel);
+    program.Set("u_wrap", look.wrap);
+    program.Set("u_detail_scale", Colour{inverse(look.detail_tile[0]), inverse(look.detail_tile[1]),
+                                         inverse(look.detail_tile[2])});
+    program.Set("u_broad_scale", inverse(look.broad_tile));
+    program.Set("u_bump_scale", inverse(look.bump_tile));
+    program.Set("u_amounts", Colour{look.cell_amount, look.vessel_amount, look.vessel_width});
+    program.Set("u_bump", look.bump);
+    program.Set("u_glow", look.glow);
+  }
+
+  void DrawSurface(const Surface& surface, const Pose& X_camera_surface, const Vec3& scale) {
+    const MaterialLook& look = GetLook(surface.material);
+    const Program& program = look.is_tissue ? tissue : tool;
+    glUseProgram(program.name);
+    program.Set("u_camera_from_surface", MakeMatrix(X_camera_surface, scale));
+    program.Set("u_rotation", MakeRotation(X_camera_surface.rotation));
+    SetLook(program, look);
+    if (!look.is_tissue) program.Set("u_axis", ToFloat(math::Rotate(X_camera_surface.rotation, {0, 0, 1})));
+    glBindVertexArray(surface.array);
+    glDrawElements(GL_TRIANGLES, surface.index_count, GL_UNSIGNED_INT, nullptr);
+  }
+
+  void DrawArrow(const Arrow& arrow, const Pose& X_camera_world) {
+    const double length = math::Norm(arrow.span);
+    if (!(length > 0.0) || !std::isfinite(length) || !(arrow.radius > 0.0)) return;
+    const Vec3 direction = arrow.span / length;
+    const math::Quaternion rotation = math::RotationBetween({0, 0, 1}, direction);
+    const double head = std::min(kArrowHeadLength * arrow.radius, length);
+    const double rod_length = length - head;
+    if (rod_length > 0.0) {
+      DrawSurface(*FindSurface(rod), X_camera_world * Pose{rotation, arrow.p_world_tail},
+                  {arrow.radius, arrow.radius, rod_length});
+    }
+    DrawSurface(*FindSurface(cone),
+                X_camera_world * Pose{rotation, arrow.p_world_tail + rod_length * direction},
+                {kArrowHeadRadius * arrow.radius, kArrowHeadRadius * arrow.radius, head});
+  }
+};
+
+Renderer::Renderer(std::unique_ptr<Content> content) : content_(std::move(content)) {}
+Renderer::Renderer(Renderer&&) noexcept = default;
+Renderer& Renderer::operator=(Renderer&&) noexcept = default;
+Renderer::~Renderer() = default;
+
+core::Result<Renderer> Renderer::Make() {
+  if (!epoxy_is_desktop_gl() || epoxy_gl_version() < 33) {
+    const auto* version = reinterpret_cast<const char*>(glGetString(GL_VERSION));
+    return core::Error{
+        core::ErrorCode::kGraphicsTooOld,
+        std::string("OpenGL here is ") + (version == nullptr ? "unknown" : version) +
+            ", desktop OpenGL 3.3 is needed; update the graphics driver or set LIBGL_ALWAYS_SOFTWARE=1"};
+  }
+  auto content = std::make_unique<Content>();
+  auto tissue = MakeProgram(kSurfaceVertexShader, {kShadingFunctions, kTissueFragmentShader});
+  if (!tissue) return tissue.error();
+  content->tissue = *tissue;
+  auto tool = MakeProgram(kSurfaceVertexShader, {kShadingFunctions, kToolFragmentShader});
+  if (!tool) return tool.error();
+  content->tool = *tool;
+  auto mask = MakeProgram(kMaskVertexShader, {kMaskFragmentShader});
+  if (!mask) return mask.error();
+  content->mask = *mask;
+  auto smooth = MakeProgram(kScreenVertexShader, {kSmoothFragmentShader});
+  if (!smooth) return smooth.error();
+  content->smooth = *smooth;
+  const NoiseTiles tiles = MakeNoiseTiles(kNoiseSide);
+  content->pattern = MakeNoiseTexture(tiles.side, tiles.pattern);
+  content->bumps = MakeNoiseTexture(tiles.side, tiles.bumps);
+  content->MakeMask();
+  Renderer renderer(std::move(content));
+  renderer.content_->rod = renderer.AddSurface(MakeUnitRod(), Material::kForce);
+  renderer.content_->cone = renderer.AddSurface(MakeUnitCone(), Material::kForce);
+  return renderer;
+}
+
+SurfaceId Renderer::AddSurface(std::span<const Triangle> triangles, std::span<const Vec3> rest,
+                               Material material, std::span<const double> openness) {
+  TROCAR_ASSERT(openness.empty() || openness.size() == rest.size());
+  auto& surfaces = content_->surfaces;
+  auto free_place =
+      std::find_if(surfaces.begin(), surfaces.end(), [](const Surface& s) { return s.generation % 2 == 0; });
+  if (free_place == surfaces.end()) free_place = surfaces.insert(surfaces.end(), Surface{});
+  Surface& surface = *free_place;
+  ++surface.generation;
+  surface.material = material;
+  surface.vertex_count = rest.size();
+  glGenVertexArrays(1, &surface.array);
+  for (GLuint* buffer : {&surface.moving, &surface.rest, &surface.indices}) glGenBuffers(1, buffer);
+
+  glBindVertexArray(surface.array);
+  glBindBuffer(GL_ARRAY_BUFFER, surface.moving);
+  const auto offset = [](std::size_t bytes) { return reinterpret_cast<const void*>(bytes); };
+  for (const GLuint location : {0u, 1u, 2u}) glEnableVertexAttribArray(location);
+  glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, sizeof(MovingVertex), offset(0));
+  glVertexAttribPointer(1, 3, GL_FLOAT, GL_FALSE, sizeof(MovingVertex),
+                        offset(offsetof(MovingVertex, normal)));
+  glBindBuffer(GL_ARRAY_BUFFER, surface.rest);
+  glVertexAttribPointer(2, 4, GL_FLOAT, GL_FALSE, sizeof(RestVertex), offset(0));
+  std::vector<RestVertex> rest_vertices(rest.size());
+  for (std::size_t i = 0; i < rest.size(); ++i) {
+    rest_vertices[i] = {ToFloat(rest[i]), openness.empty() ? 1.0f : F(openness[i])};
+  }
+  glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(rest_vertices.size() * sizeof(RestVertex)),
+               rest_vertices.data(), GL_STATIC_DRAW);
+  glBindVertexArray(0);
+  content_->UploadTriangles(surface, triangles);
+
+  std::vector<Vec3> normals(rest.size());
+  geometry::CalcVertexNormals(rest, triangles, normals);
+  content_->UploadMoving(surface, rest, normals);
+  return {static_cast<std::uint32_t>(free_place - surfaces.begin()), surface.generation};
+}
+
+SurfaceId Renderer::AddSurface(const geometry::TriangleMesh& mesh, Material material,
+                               std::span<const double> openness) {
+  return AddSurface(mesh.triangles, mesh.positions, material, openness);
+}
+
+void Renderer::UpdateSurface(SurfaceId id, std::span<const Vec3> positions, std::span<const Vec3> normals) {
+  Surface* surface = content_->FindSurface(id);
+  TROCAR_ASSERT(surface != nullptr && positions.size() == surface->vertex_count &&
+                normals.size() == positions.size());
+  if (surface != nullptr) content_->UploadMoving(*surface, positions, normals);
+}
+
+void Renderer::UpdateTriangles(SurfaceId id, std::span<const Triangle> triangles) {
+  Surface* surface = content_->FindSurface(id);
+  TROCAR_ASSERT(surface != nullptr);
+  if (surface != nullptr) content_->UploadTriangles(*surface, triangles);
+}
+
+void Renderer::RemoveSurface(SurfaceId id) {
+  if (Surface* surface = content_->FindSurface(id)) Content::Free(*surface);
+}
+
+void Renderer::Draw(const Frame& frame, int width, int height) {
+  if (width < 1 || height < 1) return;
+  Content& c = *content_;
+  // a toolkit may have left anything behind
+  for (const GLenum state :
+       {GL_BLEND, GL_SCISSOR_TEST, GL_STENCIL_TEST, GL_FRAMEBUFFER_SRGB, GL_POLYGON_OFFSET_FILL}) {
+    glDisable(state);
+  }
+  GLint target = 0;
+  glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &target);
+  const bool is_smoothed = frame.has_smooth_edges && !frame.is_wireframe && c.BindPicture(width, height);
+  if (!is_smoothed) glBindFramebuffer(GL_DRAW_FRAMEBUFFER, static_cast<GLuint>(target));
+  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+  glDepthMask(GL_TRUE);
+  glEnable(GL_DEPTH_TEST);
+  glDepthFunc(GL_LESS);
+  glViewport(0, 0, width, height);
+  glClearColor(F(frame.clear_colour[0]), F(frame.clear_colour[1]), F(frame.clear_colour[2]), 1);
+  glClearDepth(1.0);
+  glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+  // first, at the near plane: what lies outside the circle is then never shaded
+  glDisable(GL_CULL_FACE);
+  if (frame.has_mask) c.DrawMask(width, height);
+
+  glEnable(GL_CULL_FACE);
+  glCullFace(GL_BACK);
+  glFrontFace(GL_CCW);
+  if (frame.is_wireframe) glPolygonMode(GL_FRONT_AND_BACK, GL_LINE);
+  const Pose X_camera_world = math::Inverse(frame.camera.X_world_camera);
+  const Matrix4 projection = MakeProjection(frame.camera, width, height);
+  c.SetFrame(c.tool, frame, X_camera_world, projection, width, height);
+  c.SetFrame(c.tissue, frame, X_camera_world, projection, width, height);
+  glActiveTexture(GL_TEXTURE1);
+  glBindTexture(GL_TEXTURE_3D, c.bumps);
+  glActiveTexture(GL_TEXTURE0);
+  glBindTexture(GL_TEXTURE_3D, c.pattern);
+  c.tissue.Set("u_pattern", 0);
+  c.tissue.Set("u_bumps", 1);
+  for (const Arrow& arrow : frame.arrows) c.DrawArrow(arrow, X_camera_world);
+  for (const SurfaceDraw& draw : frame.surfaces) {
+    if (const Surface* surface = c.FindSurface(draw.surface)) {
+      c.DrawSurface(*surface, X_camera_world * draw.X_world_surface, {1, 1, 1});
+    }
+  }
+
+  if (frame.is_wireframe) glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
+  glActiveTexture(GL_TEXTURE1);
+  glBindTexture(GL_TEXTURE_3D, 0);
+  glActiveTexture(GL_TEXTURE0);
+  glBindTexture(GL_TEXTURE_3D, 0);
+  if (is_smoothed) {
+    glBindFramebuffer(GL_FRAMEBUFFER, static_cast<GLuint>(target));
+    c.DrawSmoothed(frame.has_mask, width, height);
+  }
+  glBindVertexArray(0);
+  glUseProgram(0);
+  glDisable(GL_CULL_FACE);
+  glDisable(GL_DEPTH_TEST);
+}
+
+math::Vec2 CalcPixel(const Camera& camera, const Vec3& p_world, int width, int height) {
+  const Vec3 p = math::Inverse(camera.X_world_camera) * p_world;
+  constexpr double kNowhere = std::numeric_limits<double>::quiet_NaN();
+  if (!(p.z < 0.0)) return {kNowhere, kNowhere};
+  const double focal = CalcFocalLength(camera, height);
+  // pixel centres lie at whole numbers
+  return {0.5 * width - 0.5 + focal * p.x / -p.z, 0.5 * height - 0.5 - focal * p.y / -p.z};
+}
+
+}  // namespace trocar::render

@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "shaders.h"
+
+namespace trocar::render {
+
+const char* const kSurfaceVertexShader = R"(#version 330 core
+layout(location = 0) in vec3 a_position;
+layout(location = 1) in vec3 a_normal;
+layout(location = 2) in vec4 a_rest;  // rest position, openness
+uniform mat4 u_camera_from_surface;
+uniform mat3 u_rotation;              // of the above, without its scale
+uniform mat4 u_clip_from_camera;
+uniform vec4 u_shade_a[4];            // capsules that shade what is near: first end, radius
+uniform vec3 u_shade_b[4];            // second end
+uniform int u_shade_count;
+out vec3 v_position;
+out vec3 v_normal;
+out vec4 v_rest;                      // rest position, how open it lies here and now
+
+// Share of the light that the tools nearby leave. Per vertex: it is soft, and a pixel costs more than a vertex.
+float CalcToolShade(vec3 p, vec3 n) {
+  float open = 1.0;
+  for (int i = 0; i < u_shade_count; ++i) {
+    vec3 a = u_shade_a[i].xyz, along = u_shade_b[i] - a;
+    float t = clamp(dot(p - a, along) / dot(along, along), 0.0, 1.0);
+    vec3 to = a + t * along - p;
+    float squared = dot(to, to) + 1e-9, radius = u_shade_a[i].w;
+    float up = clamp(dot(n, to) * inversesqrt(squared) * 0.7 + 0.3, 0.0, 1.0);
+    open *= 1.0 - 0.9 * up * min(1.0, 2.2 * radius * radius / squared);
+  }
+  return open;
+}
+
+void main() {
+  vec4 position = u_camera_from_surface * vec4(a_position, 1.0);
+  v_position = position.xyz;
+  v_normal = u_rotation * a_normal;
+  v_rest = vec4(a_rest.xyz, a_rest.w * CalcToolShade(v_position, v_normal));
+  gl_Position = u_clip_from_camera * position;
+}
+)";
+
+// Shared by both fragment shaders: light, film and mask.
+const char* const kShadingFunctions = R"(#version 330 core
+in vec3 v_position;
+in vec3 v_normal;
+in vec4 v_rest;
+out vec4 o_colour;
+uniform vec3 u_light;        // head light beside the lens
+uniform float u_power;       // of the light, in units that a surface 0.1 m away shows unchanged
+uniform vec3 u_mask;         // centre x, y and radius [pixels]; radius 0: none
+
+// Light at a distance whose inverse is given. The bundle of fibres is wide, so that it does not burn out at the lens.
+float CalcLight(float inverse_distance, float cosine_to_axis) {
+  float squared = inverse_distance * inverse_distance;
+  return u_power * 0.0109 * squared / (1.0 + 0.0009 * squared) * (0.35 + 0.65 * cosine_to_axis * cosine_to_axis);
+}
+
+// Exposure, film curve, the lens's darker rim, the mask's soft edge, sRGB.
+vec3 Finish(vec3 light) {
+  light = light * (1.0 + 0.20 * light) / (1.0 + light);
+  if (u_mask.z > 0.0) {
+    float r = distance(gl_FragCoord.xy, u_mask.xy) / u_mask.z;
+    light *= (1.0 - 0.45 * r * r * r * r) * clamp((1.0 - r) * 60.0, 0.0, 1.0);
+  }
+  vec3 s1 = sqrt(min(light, vec3(1.0)));
+  vec3 s2 = sqrt(s1);
+  vec3 s3 = sqrt(s2);
+  return 0.662002687 * s1 + 0.684122060 * s2 - 0.323583601 * s3 - 0.0225411470 * light;
+}
+
+vec4 WithBrightness(vec3 colour) { return vec4(colour, dot(colour, vec3(0.299, 0.587, 0.114))); }
+)";
+
+const char* const kTissueFragmentShader = R"(
+uniform sampler3D u_pattern;
+uniform sampler3D u_bumps;
+uniform vec3 u_low, u_high, u_cell, u_vessel, u_wrap;
+uniform vec3 u_detail_scale;
+uniform float u_broad_scale, u_bump_scale;
+uniform vec3 u_amounts;      // cell, vessel, vessel width
+uniform float u_bump, u_glow;
+uniform vec3 u_gloss;        // wet, wet exponent, sheen
+
+void main() {
+  vec4 detail = texture(u_pattern, v_rest.xyz * u_detail_scale);
+  vec4 broad = texture(u_pattern, v_rest.xyz * u_broad_scale + vec3(0.31, 0.17, 0.53));
+  vec3 slope = texture(u_bumps, v_rest.xyz * u_bump_scale).xyz * 2.0 - 1.0;
+
+  // the lamp is a few millimetres from the lens: its direction to first order, nearly of unit length
+  float inverse_distance = inversesqrt(dot(v_position, v_position));
+  vec3 n = normalize(v_normal);
+  vec3 to_eye = -inverse_distance * v_position;
+  vec3 l = to_eye + inverse_distance * u_light;
+  float facing = max(dot(n, to_eye), 0.0);
+  slope -= n * dot(n, slope);
+  vec3 bumpy = normalize(n - u_bump * slope);
+  float to_lamp = dot(bumpy, l);
+
+  vec3 albedo = mix(u_low, u_high, clamp(0.55 * detail.r + 1.1 * broad.r - 0.32, 0.0, 1.0));
+  albedo = mix(albedo, u_cell, u_amounts.x * (1.0 - detail.a));
+  float vessel = clamp((broad.b - 1.0 + u_amounts.z) / u_amounts.z, 0.0, 1.0);
+  albedo = mix(albedo, u_vessel, u_amounts.y * vessel * vessel);
+  // a thin wall seen edge-on is brighter and paler
+  float rim = 1.0 - facing;
+  albedo += u_glow * rim * rim * (vec3(0.5) * albedo + vec3(0.06));
+
+  float ambient = v_rest.w;
+  float light = CalcLight(inverse_distance, to_eye.z);
+  vec3 diffuse = clamp((vec3(to_lamp) + u_wrap) / (1.0 + u_wrap), 0.0, 1.0);
+  // folds and the shade of tools stay reddish: light reaches them through tissue
+  vec3 shade = mix(vec3(0.30, 0.20, 0.18), vec3(1.0), ambient);
+  float half_cosine = max(0.5 * (to_lamp + dot(bumpy, to_eye)), 0.0);
+  // the wet film is broken up by fine noise
+  float wet = u_gloss.x * exp2(u_gloss.y * (half_cosine - 1.0)) * (0.4 + 1.2 * detail.r) * ambient;
+  float sheen = u_gloss.z * exp2(18.0 * (half_cosine - 1.0)) + 0.05 * rim * rim * rim * u_gloss.x;
+  vec3 bounce = vec3(0.060, 0.036, 0.028) * (0.4 + 0.6 * ambient);
+  vec3 colour = albedo * (diffuse * shade * light + bounce * (0.4 + light)) + (wet + sheen) * min(light, 2.0) * vec3(1.0, 0.98, 0.95);
+  o_colour = WithBrightness(Finish(2.1 * colour));
+}
+)";
+
+const char* const kToolFragmentShader = R"(
+uniform vec3 u_low, u_high;
+uniform vec3 u_gloss;        // wet, wet exponent, sheen
+uniform float u_grooves;     // depth of fine grooves across the shaft
+uniform vec3 u_axis;         // of the shaft, along which it was polished
+
+void main() {
+  float inverse_distance = inversesqrt(dot(v_position, v_position));
+  vec3 n = normalize(v_normal);
+  vec3 to_eye = -inverse_distance * v_position;
+  vec3 l = normalize(to_eye + inverse_distance * u_light);
+  vec3 h = normalize(l + to_eye);
+  float light = CalcLight(inverse_distance, to_eye.z);
+  float facing = max(dot(n, to_eye), 0.0);
+
+  // what the metal mirrors: warm tissue all round, the dark middle of the lens, grooves of the grinding
+  vec3 mirrored = 2.0 * dot(n, to_eye) * n - to_eye;
+  float away = 0.5 - 0.5 * mirrored.z;
+  vec3 room = mix(vec3(0.16, 0.13, 0.12), vec3(0.62, 0.30, 0.22), away * away) * (0.7 + 0.3 * mirrored.y);
+  float grooves = 1.0 - u_grooves * (0.5 + 0.5 * sin(v_rest.z * 5200.0));
+
+  float cosine = clamp(dot(n, l), 0.0, 1.0);
+  float along = dot(u_axis, h);
+  float streak = exp2(-u_gloss.y * along * along) * cosine * cosine;
+  float point = exp2(4.0 * u_gloss.y * (max(dot(n, h), 0.0) - 1.0));
+  float rim = 1.0 - facing;
+  vec3 base = mix(u_low, u_high, cosine * cosine);
+  vec3 colour = base * (0.55 * cosine + 0.04) * light * grooves;
+  colour += (u_gloss.z + 0.12 * rim * rim * rim) * room * (0.25 + 0.75 * min(light, 1.5));
+  colour += u_gloss.x * (0.45 * streak + 0.8 * point) * min(light, 2.0) * vec3(1.0, 0.98, 0.96);
+  o_colour = WithBrightness(Finish(1.6 * colour));
+}
+)";
+
+const char* const kScreenVertexShader = R"(#version 330 core
+layout(location = 0) in vec3 a_position;  // of the mask's ring: z 0 is the inner edge
+uniform vec2 u_inner;
+void main() { gl_Position = vec4(a_position.xy * u_inner, 0.0, 1.0); }
+)";
+
+const char* const kSmoothFragmentShader = R"(#version 330 core
+out vec4 o_colour;
+uniform sampler2D u_picture;  // alpha: brightness
+uniform vec2 u_texel;
+void main() {
+  vec2 at = gl_FragCoord.xy * u_texel;
+  vec4 here = texture(u_picture, at);
+  float nw = texture(u_picture, at + vec2(-0.5, 0.5) * u_texel).a;
+  float ne = texture(u_picture, at + vec2(0.5, 0.5) * u_texel).a;
+  float sw = texture(u_picture, at + vec2(-0.5, -0.5) * u_texel).a;
+  float se = texture(u_picture, at + vec2(0.5, -0.5) * u_texel).a;
+  float low = min(here.a, min(min(nw, ne), min(sw, se)));
+  float high = max(here.a, max(max(nw, ne), max(sw, se)));
+  vec2 along = vec2((sw + se) - (nw + ne), (nw + sw) - (ne + se));
+  float share = clamp((high - low - 0.03) * 20.0, 0.0, 1.0);
+  vec2 step = along * inversesqrt(dot(along, along) + 1e-8) * u_texel;
+  vec3 smoothed = 0.5 * (texture(u_picture, at + 0.6 * step).rgb + texture(u_picture, at - 0.6 * step).rgb);
+  o_colour = vec4(mix(here.rgb, smoothed, share), 1.0);
+}
+)";
+
+const char* const kMaskVertexShader = R"(#version 330 core
+layout(location = 0) in vec3 a_position;  // x, y: direction; z: 0 inner, 1 outer edge
+uniform vec2 u_inner;                     // half axes of the picture's circle in clip space
+void main() {
+  vec2 edge = a_position.xy * (a_position.z > 0.5 ? vec2(4.0) : u_inner);
+  gl_Position = vec4(edge, -1.0, 1.0);
+}
+)";
+
+const char* const kMaskFragmentShader = R"(#version 330 core
+out vec4 o_colour;
+uniform vec3 u_colour;
+void main() { o_colour = vec4(u_colour, 1.0); }
+)";
+
+}  // namespace trocar::render

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file laparoscope_view.h  What the laparoscope sees of a running simulation.
+#pragma once
+
+#include <memory>
+#include <span>
+
+#include "trocar/core/result.h"
+#include "trocar/render/renderer.h"
+#include "trocar/session/scene.h"
+#include "trocar/session/simulation.h"
+#include "trocar/session/snapshot.h"
+
+namespace trocar::view {
+
+/// What the person may switch while looking.
+struct ViewOptions {
+  bool has_force_arrows = true;
+  bool has_mask = true;
+  bool has_background = true;  ///< decoration: abdominal wall, omentum, bowel
+  bool has_smooth_edges = true;
+  bool is_wireframe = false;
+  double light_power = 1;      ///< [-], 0 to 4
+  double arrow_scale = 0.012;  ///< length of a force arrow [m/N]
+
+  friend bool operator==(const ViewOptions&, const ViewOptions&) = default;
+};
+
+/// Organs, ducts, vessels, instruments and trocars of one scene in one OpenGL context, and the abdomen round
+/// them. The context must be current whenever a member is called and at destruction.
+class LaparoscopeView {
+ public:
+  /// \param surfaces  of Simulation::Surfaces()
+  /// \param start     first snapshot: its shapes are the rest shapes that the surfaces' patterns stick to
+  /// \return the renderer's error, or kUnknownName for a material that render/material.h does not know
+  static core::Result<LaparoscopeView> Make(const session::Scene& scene,
+                                            std::span<const session::SurfaceInfo> surfaces,
+                                            const session::Snapshot& start);
+
+  LaparoscopeView(LaparoscopeView&&) noexcept;
+  LaparoscopeView& operator=(LaparoscopeView&&) noexcept;
+  ~LaparoscopeView();
+
+  void SetOptions(const ViewOptions& options);
+  const ViewOptions& GetOptions() const;
+
+  /// Takes over shapes and poses of a snapshot of the same scene.
+  void Update(const session::Snapshot& snapshot);
+  /// Draws the last snapshot into the bound framebuffer. \param width, height  of it [pixels]
+  void Draw(int width, int height);
+
+  /// The frame that Draw() draws, for read-outs and tests.
+  const render::Frame& GetFrame() const;
+
+ private:
+  struct Content;
+  explicit LaparoscopeView(std::unique_ptr<Content> content);
+  std::unique_ptr<Content> content_;
+};
+
+}  // namespace trocar::view
