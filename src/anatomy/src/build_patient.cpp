@@ -8,6 +8,7 @@
 #include <set>
 
 #include "trocar/anatomy/contour_fill.h"
+#include "trocar/anatomy/contour_morph.h"
 #include "trocar/anatomy/contour_spline.h"
 #include "trocar/anatomy/control_points.h"
 #include "trocar/anatomy/edge_adaption.h"
@@ -25,12 +26,36 @@ namespace {
 using core::Error;
 
 constexpr double kCubicMmPerMl = 1000.0;
+constexpr double kSliceStepMm = 1.0;  // slices are added down to this distance
+constexpr double kThinnestMm = 7.0;   // tips thinner than this are cut off
 
 /// The first stage of the paper for one structure: control points become filled slices.
 struct ContouredStructure {
   OrganReport report;
   std::vector<FilledSlice> slices;
+  std::vector<std::vector<std::vector<Vec2>>> curves;  // of each slice; empty where the slice has holes
 };
+
+/// Slices down to kSliceStepMm: between two single contours by matching them, elsewhere by InsertSlices.
+std::vector<FilledSlice> MakeDenseSlices(const ContouredStructure& structure) {
+  std::vector<FilledSlice> dense = {structure.slices.front()};
+  for (std::size_t s = 0; s + 1 < structure.slices.size(); ++s) {
+    const FilledSlice &a = structure.slices[s], &b = structure.slices[s + 1];
+    if (structure.curves[s].size() != 1 || structure.curves[s + 1].size() != 1) {
+      const auto between = InsertSlices(std::vector<FilledSlice>{a, b}, kSliceStepMm);
+      dense.insert(dense.end(), between.begin() + 1, between.end());
+      continue;
+    }
+    const ContourMatch match = MatchContours(structure.curves[s][0], structure.curves[s + 1][0]);
+    const int parts = static_cast<int>(std::ceil((b.position_mm - a.position_mm) / kSliceStepMm - 1e-9));
+    for (int part = 1; part < parts; ++part) {
+      const double t = static_cast<double>(part) / parts;
+      dense.push_back({a.position_mm + t * (b.position_mm - a.position_mm), FillArea({match.At(t)}, {})});
+    }
+    dense.push_back(b);
+  }
+  return dense;
+}
 
 core::Result<ContouredStructure> ExtractContours(const ControlPoints& points, const Structure& structure,
                                                  const std::map<int, ColorImage>& images,
@@ -63,11 +88,13 @@ core::Result<ContouredStructure> ExtractContours(const ControlPoints& points, co
     const auto contours = follow(slice.contours), holes = follow(slice.holes);
     FilledSlice filled{points.slice_mm * slice.slice, FillArea(contours, holes)};
     if (filled.mask.Count() == 0) {
-      return Error{core::ErrorCode::kContourEmpty, structure.name + ", slice " + std::to_string(slice.slice) +
-                                                       ": the contour encloses nothing; place it around the organ"};
+      return Error{core::ErrorCode::kContourEmpty,
+                   structure.name + ", slice " + std::to_string(slice.slice) +
+                       ": the contour encloses nothing; place it around the organ"};
     }
     overlay.areas.push_back(filled.mask);
     result.slices.push_back(std::move(filled));
+    result.curves.push_back(holes.empty() ? contours : std::vector<std::vector<Vec2>>{});
   }
   result.report.mean_shift_px = shift_sum / static_cast<double>(result.report.control_points);
   return result;
@@ -77,10 +104,12 @@ core::Status WriteOverlays(const std::filesystem::path& folder, const std::map<i
                            const std::map<int, Overlay>& overlays, const Progress& progress) {
   std::size_t done = 0;
   for (const auto& [slice, overlay] : overlays) {
-    if (progress) progress("writing overlays", static_cast<double>(done++) / static_cast<double>(overlays.size()));
+    if (progress)
+      progress("writing overlays", static_cast<double>(done++) / static_cast<double>(overlays.size()));
     char name[32];
     std::snprintf(name, sizeof(name), "overlay-%04d.png", slice);
-    if (auto status = WritePng(folder / name, DrawOverlay(images.at(slice), overlay)); !status.ok()) return status;
+    if (auto status = WritePng(folder / name, DrawOverlay(images.at(slice), overlay)); !status.ok())
+      return status;
   }
   return {};
 }
@@ -91,7 +120,8 @@ core::Result<BuildReport> BuildPatient(const BuildOptions& options, const Progre
   const auto tell = [&](std::string_view what, double part) {
     if (progress) progress(what, part);
   };
-  if (!(options.spacing_mm >= 0.4 && options.spacing_mm <= 4.0) || !(options.gap_mm >= 0.0 && options.gap_mm <= 5.0)) {
+  if (!(options.spacing_mm >= 0.4 && options.spacing_mm <= 4.0) ||
+      !(options.gap_mm >= 0.0 && options.gap_mm <= 5.0)) {
     return Error{core::ErrorCode::kUsage, "spacing_mm must lie between 0.4 and 4, gap_mm between 0 and 5"};
   }
   const auto points = ReadControlPoints(options.control_points);
@@ -109,7 +139,8 @@ core::Result<BuildReport> BuildPatient(const BuildOptions& options, const Progre
     for (const SliceContours& slice : structure.slices) used.insert(slice.slice);
   }
   const std::vector<int> numbers(used.begin(), used.end());
-  const auto images = LoadSlices({options.images, points->image_pattern, points->width, points->height}, numbers, progress);
+  const auto images =
+      LoadSlices({options.images, points->image_pattern, points->width, points->height}, numbers, progress);
   if (!images.ok()) return images.error();
 
   BuildReport report;
@@ -120,7 +151,9 @@ core::Result<BuildReport> BuildPatient(const BuildOptions& options, const Progre
     tell("following contours of " + structure.name, static_cast<double>(volumes.size()) / count);
     auto contoured = ExtractContours(*points, structure, *images, overlays);
     if (!contoured.ok()) return contoured.error();
-    auto volume = MakeVolume(contoured->slices, points->pixel_mm, options.spacing_mm);
+    auto dense = MakeDenseSlices(*contoured);
+    for (FilledSlice& slice : dense) OpenMask(slice.mask, kThinnestMm / 2 / points->pixel_mm);
+    auto volume = MakeVolume(dense, points->pixel_mm, options.spacing_mm);
     if (!volume.ok()) return Error{volume.error().code, structure.name + ": " + volume.error().message};
     volumes.push_back(std::move(*volume));
     report.organs.push_back(std::move(contoured->report));
@@ -146,7 +179,8 @@ core::Result<BuildReport> BuildPatient(const BuildOptions& options, const Progre
     }
     SmoothMesh(mesh);
     auto decimated = DecimateMesh(mesh, {.triangle_budget = structure.triangle_budget});
-    if (!decimated.ok()) return Error{decimated.error().code, structure.name + ": " + decimated.error().message};
+    if (!decimated.ok())
+      return Error{decimated.error().code, structure.name + ": " + decimated.error().message};
     OrganReport& organ = report.organs[i];
     const auto measured = geometry::InspectMesh(*decimated);
     organ.triangles = measured.triangles;
@@ -156,7 +190,8 @@ core::Result<BuildReport> BuildPatient(const BuildOptions& options, const Progre
     organ.min_angle_deg = measured.min_angle * 180.0 / M_PI;
     organ.volume_ml = measured.volume / kCubicMmPerMl;
     if (reference && structure.reference_label > 0) {
-      auto judged = Judge(*reference, *points, structure.reference_label, *decimated, structure.reference_left_out);
+      auto judged =
+          Judge(*reference, *points, structure.reference_label, *decimated, structure.reference_left_out);
       if (!judged.ok()) return judged.error();
       organ.judgement = *judged;
     }
@@ -172,7 +207,8 @@ core::Result<BuildReport> BuildPatient(const BuildOptions& options, const Progre
     if (const auto status = WritePatient(options.output, report.patient); !status.ok()) return status.error();
   }
   if (options.overlays) {
-    if (const auto status = WriteOverlays(*options.overlays, *images, overlays, progress); !status.ok()) return status.error();
+    if (const auto status = WriteOverlays(*options.overlays, *images, overlays, progress); !status.ok())
+      return status.error();
     report.overlays = overlays.size();
   }
   tell("done", 1.0);
@@ -181,18 +217,21 @@ core::Result<BuildReport> BuildPatient(const BuildOptions& options, const Progre
 
 std::string FormatReport(const BuildReport& report) {
   std::string text =
-      "organ        slices points shift mean/max px  triangles closed manifold outward genus cuts min angle  volume  "
+      "organ        slices points shift mean/max px  triangles closed manifold outward genus cuts min angle  "
+      "volume  "
       "reference ratio  Dice\n";
   for (const OrganReport& organ : report.organs) {
     char line[256];
-    std::snprintf(line, sizeof(line), "%-12s %6zu %6zu %9.2f / %-8.2f %9zu %6s %8s %7s %5d %4zu %6.1f deg %5.0f mL", organ.name.c_str(),
-                  organ.slices, organ.control_points, organ.mean_shift_px, organ.largest_shift_px, organ.triangles,
-                  organ.closed ? "yes" : "NO", organ.manifold ? "yes" : "NO", organ.outward ? "yes" : "NO", organ.genus,
+    std::snprintf(line, sizeof(line),
+                  "%-12s %6zu %6zu %9.2f / %-8.2f %9zu %6s %8s %7s %5d %4zu %6.1f deg %5.0f mL",
+                  organ.name.c_str(), organ.slices, organ.control_points, organ.mean_shift_px,
+                  organ.largest_shift_px, organ.triangles, organ.closed ? "yes" : "NO",
+                  organ.manifold ? "yes" : "NO", organ.outward ? "yes" : "NO", organ.genus,
                   organ.self_intersections, organ.min_angle_deg, organ.volume_ml);
     text += line;
     if (organ.judgement) {
-      std::snprintf(line, sizeof(line), " %7.1f mL %5.3f %5.3f", organ.judgement->reference_ml, organ.judgement->ratio,
-                    organ.judgement->dice);
+      std::snprintf(line, sizeof(line), " %7.1f mL %5.3f %5.3f", organ.judgement->reference_ml,
+                    organ.judgement->ratio, organ.judgement->dice);
       text += line;
     }
     text += "\n";

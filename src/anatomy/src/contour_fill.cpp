@@ -11,12 +11,13 @@
 namespace trocar::anatomy {
 namespace {
 
-// Pixel centres are moved by less than any contour's accuracy, so that no corner lies exactly on a centre's row or
-// column and the walls along rows and columns agree.
+// Pixel centres are moved by less than any contour's accuracy, so that no corner lies exactly on a centre's
+// row or column and the walls along rows and columns agree.
 constexpr double kNudgeX = 1.3e-7;  // pixels
 constexpr double kNudgeY = 2.9e-7;  // pixels
 
-/// Toggles, for every integer line `v = k` that side a-b crosses, the wall after the last centre before the crossing.
+/// Toggles, for every integer line `v = k` that side a-b crosses, the wall after the last centre before the
+/// crossing.
 template <typename Toggle>
 void VisitCrossings(double ua, double va, double ub, double vb, Toggle toggle) {
   if (va > vb) std::swap(ua, ub), std::swap(va, vb);
@@ -28,7 +29,9 @@ void VisitCrossings(double ua, double va, double ub, double vb, Toggle toggle) {
 
 }  // namespace
 
-std::size_t Mask::Count() const { return std::accumulate(inside.begin(), inside.end(), std::size_t{0}); }
+std::size_t Mask::Count() const {
+  return std::accumulate(inside.begin(), inside.end(), std::size_t{0});
+}
 
 void FillContour(std::span<const Vec2> contour, Mask& mask) {
   TROCAR_ASSERT(contour.size() >= 3);

@@ -16,17 +16,21 @@ constexpr int kMaxRounds = 12;
 /// Bulges below this are invisible and divide nothing [pixels].
 constexpr double kHarmlessBulge = 0.5;
 
-double Side(const Vec2& a, const Vec2& b, const Vec2& p) { return (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x); }
+double Side(const Vec2& a, const Vec2& b, const Vec2& p) {
+  return (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x);
+}
 
 bool IsBetween(const Vec2& a, const Vec2& b, const Vec2& p) {
-  return p.x >= std::min(a.x, b.x) && p.x <= std::max(a.x, b.x) && p.y >= std::min(a.y, b.y) && p.y <= std::max(a.y, b.y);
+  return p.x >= std::min(a.x, b.x) && p.x <= std::max(a.x, b.x) && p.y >= std::min(a.y, b.y) &&
+         p.y <= std::max(a.y, b.y);
 }
 
 bool Touch(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
   const double abc = Side(a, b, c), abd = Side(a, b, d), cda = Side(c, d, a), cdb = Side(c, d, b);
-  if (((abc > 0 && abd < 0) || (abc < 0 && abd > 0)) && ((cda > 0 && cdb < 0) || (cda < 0 && cdb > 0))) return true;
-  return (abc == 0 && IsBetween(a, b, c)) || (abd == 0 && IsBetween(a, b, d)) || (cda == 0 && IsBetween(c, d, a)) ||
-         (cdb == 0 && IsBetween(c, d, b));
+  if (((abc > 0 && abd < 0) || (abc < 0 && abd > 0)) && ((cda > 0 && cdb < 0) || (cda < 0 && cdb > 0)))
+    return true;
+  return (abc == 0 && IsBetween(a, b, c)) || (abd == 0 && IsBetween(a, b, d)) ||
+         (cda == 0 && IsBetween(c, d, a)) || (cdb == 0 && IsBetween(c, d, b));
 }
 
 /// Calls visit(i, j) for sides i < j that touch and are no neighbours.
@@ -82,7 +86,8 @@ std::vector<Vec2> FitContour(std::span<const Vec2> points, const ContourSplineSe
   TROCAR_ASSERT(points.size() >= 3);
   std::vector<math::Vec3> controls;
   for (const Vec2& p : points) {
-    if (controls.empty() || controls.back().x != p.x || controls.back().y != p.y) controls.push_back({p.x, p.y, 0.0});
+    if (controls.empty() || controls.back().x != p.x || controls.back().y != p.y)
+      controls.push_back({p.x, p.y, 0.0});
   }
   while (controls.size() > 1 && controls.back() == controls.front()) controls.pop_back();
   const bool polygon_crosses = CrossesItself(points);

@@ -52,8 +52,8 @@ void CheckInside(const ControlPoints& points, const JsonView& view, const Vec2& 
                 ErrorCode::kControlPointOutside);
 }
 
-std::vector<std::vector<Vec2>> ReadPolygons(const ControlPoints& points, const JsonView& slice, std::string_view key,
-                                            const std::string& where) {
+std::vector<std::vector<Vec2>> ReadPolygons(const ControlPoints& points, const JsonView& slice,
+                                            std::string_view key, const std::string& where) {
   std::vector<std::vector<Vec2>> polygons;
   for (const JsonView& polygon : slice.Array(key)) {
     std::vector<Vec2> corners;
@@ -100,7 +100,8 @@ Structure ReadStructure(const ControlPoints& points, const JsonView& view) {
     SliceContours contours;
     contours.slice = slice.Integer("slice");
     if (contours.slice < points.first_slice || contours.slice > points.last_slice) {
-      slice.Complain("slice " + std::to_string(contours.slice) + " is not between first_slice and last_slice");
+      slice.Complain("slice " + std::to_string(contours.slice) +
+                     " is not between first_slice and last_slice");
     }
     if (!structure.slices.empty() && contours.slice <= structure.slices.back().slice) {
       slice.Complain("slices must ascend; slice " + std::to_string(contours.slice) + " follows " +
@@ -110,7 +111,8 @@ Structure ReadStructure(const ControlPoints& points, const JsonView& view) {
     contours.contours = ReadPolygons(points, slice, "contours", where);
     if (slice.Has("holes")) contours.holes = ReadPolygons(points, slice, "holes", where);
     if (contours.contours.empty()) {
-      slice.Complain(where + " has no contour; remove the slice or place points", ErrorCode::kContourTooShort);
+      slice.Complain(where + " has no contour; remove the slice or place points",
+                     ErrorCode::kContourTooShort);
     }
     structure.slices.push_back(std::move(contours));
   }
@@ -157,14 +159,17 @@ std::string FormatPolygons(const std::vector<std::vector<Vec2>>& polygons) {
   for (std::size_t i = 0; i < polygons.size(); ++i) {
     text += i == 0 ? "[" : ", [";
     for (std::size_t k = 0; k < polygons[i].size(); ++k) {
-      text += (k == 0 ? "[" : ", [") + NumberText(polygons[i][k].x) + ", " + NumberText(polygons[i][k].y) + "]";
+      text +=
+          (k == 0 ? "[" : ", [") + NumberText(polygons[i][k].x) + ", " + NumberText(polygons[i][k].y) + "]";
     }
     text += "]";
   }
   return text + "]";
 }
 
-std::string Quoted(const std::string& text) { return nlohmann::json(text).dump(); }
+std::string Quoted(const std::string& text) {
+  return nlohmann::json(text).dump();
+}
 
 }  // namespace
 
@@ -189,7 +194,8 @@ std::string FormatImageName(std::string_view pattern, int slice) {
   const std::string_view inside = pattern.substr(open + 6, close - open - 6);  // "" or ":04"
   std::size_t digits = 0;
   for (const char c : inside) {
-    if (std::isdigit(static_cast<unsigned char>(c))) digits = std::min<std::size_t>(digits * 10 + (c - '0'), 12);
+    if (std::isdigit(static_cast<unsigned char>(c)))
+      digits = std::min<std::size_t>(digits * 10 + (c - '0'), 12);
   }
   std::string number = std::to_string(slice);
   if (number.size() < digits) number.insert(0, digits - number.size(), '0');
@@ -210,7 +216,8 @@ core::Result<ControlPoints> ParseControlPoints(std::string_view text, std::strin
   auto document = core::JsonDocument::Parse(text, std::string(source));
   if (!document.ok()) return document.error();
   const JsonView root = document->Root();
-  root.AllowOnly({"format", "version", "name", "provenance", "images", "origin", "structures", "tubes", "landmarks"});
+  root.AllowOnly(
+      {"format", "version", "name", "provenance", "images", "origin", "structures", "tubes", "landmarks"});
   ControlPoints points;
   if (root.Text("format") != kFormat) root.Complain(std::string("format must be \"") + kFormat + "\"");
   root.Integer("version", {kVersion, kVersion});
@@ -218,7 +225,8 @@ core::Result<ControlPoints> ParseControlPoints(std::string_view text, std::strin
   points.provenance = root.Text("provenance");
 
   const JsonView images = root.Object("images");
-  images.AllowOnly({"pattern", "first_slice", "last_slice", "width", "height", "pixel_mm", "slice_mm", "axes"});
+  images.AllowOnly(
+      {"pattern", "first_slice", "last_slice", "width", "height", "pixel_mm", "slice_mm", "axes"});
   points.image_pattern = images.Text("pattern");
   CheckPattern(images, points.image_pattern);
   points.first_slice = images.Integer("first_slice", {0, 1e6});
@@ -236,7 +244,8 @@ core::Result<ControlPoints> ParseControlPoints(std::string_view text, std::strin
     if (const Direction* direction = FindDirection(name)) used.insert(direction->axis);
   }
   if (used.size() != 3) {
-    axes.Complain("column, row and slice must be one each of left/right, superior/inferior and anterior/posterior");
+    axes.Complain(
+        "column, row and slice must be one each of left/right, superior/inferior and anterior/posterior");
   }
 
   if (root.Has("origin")) {
@@ -283,13 +292,16 @@ std::string FormatControlPoints(const ControlPoints& points) {
   text += "\"name\": " + Quoted(points.name) + ",\n\"provenance\": " + Quoted(points.provenance) + ",\n";
   text += "\"images\": {\"pattern\": " + Quoted(points.image_pattern) +
           ", \"first_slice\": " + std::to_string(points.first_slice) +
-          ", \"last_slice\": " + std::to_string(points.last_slice) + ",\n  \"width\": " + std::to_string(points.width) +
+          ", \"last_slice\": " + std::to_string(points.last_slice) +
+          ",\n  \"width\": " + std::to_string(points.width) +
           ", \"height\": " + std::to_string(points.height) + ", \"pixel_mm\": " + exact(points.pixel_mm) +
-          ", \"slice_mm\": " + exact(points.slice_mm) + ",\n  \"axes\": {\"column\": " + Quoted(points.axes[0]) +
-          ", \"row\": " + Quoted(points.axes[1]) + ", \"slice\": " + Quoted(points.axes[2]) + "}},\n";
+          ", \"slice_mm\": " + exact(points.slice_mm) +
+          ",\n  \"axes\": {\"column\": " + Quoted(points.axes[0]) + ", \"row\": " + Quoted(points.axes[1]) +
+          ", \"slice\": " + Quoted(points.axes[2]) + "}},\n";
   if (!points.origin_landmark.empty()) {
     text += "\"origin\": {\"landmark\": " + Quoted(points.origin_landmark) + ", \"world_mm\": [" +
-            exact(points.origin_mm[0]) + ", " + exact(points.origin_mm[1]) + ", " + exact(points.origin_mm[2]) + "]},\n";
+            exact(points.origin_mm[0]) + ", " + exact(points.origin_mm[1]) + ", " +
+            exact(points.origin_mm[2]) + "]},\n";
   }
   text += "\"structures\": [";
   for (std::size_t i = 0; i < points.structures.size(); ++i) {
@@ -298,9 +310,10 @@ std::string FormatControlPoints(const ControlPoints& points) {
             ", \"triangle_budget\": " + std::to_string(s.triangle_budget) +
             ", \"reference_label\": " + std::to_string(s.reference_label) + ", \"reference_left_out\": [" +
             std::to_string(s.reference_left_out[0]) + ", " + std::to_string(s.reference_left_out[1]) +
-            "],\n   \"adaption\": {\"max_shift_px\": " +
-            exact(s.adaption.max_shift_px) + ", \"blur_px\": " + exact(s.adaption.blur_px) +
-            ", \"min_gradient\": " + exact(s.adaption.min_gradient) + ", \"nearness\": " + exact(s.adaption.nearness) +
+            "],\n   \"adaption\": {\"max_shift_px\": " + exact(s.adaption.max_shift_px) +
+            ", \"blur_px\": " + exact(s.adaption.blur_px) +
+            ", \"min_gradient\": " + exact(s.adaption.min_gradient) +
+            ", \"nearness\": " + exact(s.adaption.nearness) +
             ", \"smoothness\": " + exact(s.adaption.smoothness) + "},\n   \"slices\": [";
     for (std::size_t k = 0; k < s.slices.size(); ++k) {
       text += (k == 0 ? "\n    {\"slice\": " : ",\n    {\"slice\": ") + std::to_string(s.slices[k].slice) +
@@ -313,20 +326,21 @@ std::string FormatControlPoints(const ControlPoints& points) {
   text += "],\n\"tubes\": [";
   for (std::size_t i = 0; i < points.tubes.size(); ++i) {
     const TubePoints& t = points.tubes[i];
-    text += (i == 0 ? "\n  {\"name\": " : ",\n  {\"name\": ") + Quoted(t.name) + ", \"kind\": " + Quoted(t.kind) +
-            ", \"from\": " + Quoted(t.from) + ", \"to\": " + Quoted(t.to) +
+    text += (i == 0 ? "\n  {\"name\": " : ",\n  {\"name\": ") + Quoted(t.name) +
+            ", \"kind\": " + Quoted(t.kind) + ", \"from\": " + Quoted(t.from) + ", \"to\": " + Quoted(t.to) +
             ", \"seen\": " + (t.is_seen ? "true" : "false") + ",\n   \"points\": [";
     for (std::size_t k = 0; k < t.points.size(); ++k) {
-      text += (k == 0 ? "[" : ", [") + NumberText(t.points[k].slice) + ", " + NumberText(t.points[k].pixel.x) + ", " +
-              NumberText(t.points[k].pixel.y) + ", " + NumberText(t.points[k].radius_mm) + "]";
+      text += (k == 0 ? "[" : ", [") + NumberText(t.points[k].slice) + ", " +
+              NumberText(t.points[k].pixel.x) + ", " + NumberText(t.points[k].pixel.y) + ", " +
+              NumberText(t.points[k].radius_mm) + "]";
     }
     text += "]}";
   }
   text += "],\n\"landmarks\": [";
   for (std::size_t i = 0; i < points.landmarks.size(); ++i) {
     const LandmarkPoint& l = points.landmarks[i];
-    text += (i == 0 ? "\n  {\"name\": " : ",\n  {\"name\": ") + Quoted(l.name) + ", \"point\": [" + NumberText(l.slice) +
-            ", " + NumberText(l.pixel.x) + ", " + NumberText(l.pixel.y) + "]}";
+    text += (i == 0 ? "\n  {\"name\": " : ",\n  {\"name\": ") + Quoted(l.name) + ", \"point\": [" +
+            NumberText(l.slice) + ", " + NumberText(l.pixel.x) + ", " + NumberText(l.pixel.y) + "]}";
   }
   return text + "]\n}\n";
 }

@@ -13,6 +13,8 @@ namespace trocar::anatomy {
 namespace {
 
 constexpr double kStep = 0.5;  // distance between the places tried along a normal [pixels]
+// the parabola spans a whole pixel to either side: bilinear samples in between carry the pixel grid's pattern
+constexpr int kPad = 2;  // steps
 using Colour = std::array<float, 3>;
 
 /// Part of a picture, blurred by a Gaussian.
@@ -56,7 +58,8 @@ class BlurredCrop {
   }
 
   Colour Sample(const Vec2& p) const {
-    const double x = std::clamp(p.x - x0_, 0.0, width_ - 1.001), y = std::clamp(p.y - y0_, 0.0, height_ - 1.001);
+    const double x = std::clamp(p.x - x0_, 0.0, width_ - 1.001),
+                 y = std::clamp(p.y - y0_, 0.0, height_ - 1.001);
     const int ix = static_cast<int>(x), iy = static_cast<int>(y);
     const auto fx = static_cast<float>(x - ix), fy = static_cast<float>(y - iy);
     const Colour* row = &pixels_[static_cast<std::size_t>(iy) * width_ + ix];
@@ -139,21 +142,23 @@ std::vector<Vec2> AdaptToEdges(const ColorImage& image, std::span<const Vec2> co
   }
   const double margin = settings.max_shift_px + 3.0;
   const BlurredCrop picture(image, static_cast<int>(low.x - margin) - 1, static_cast<int>(low.y - margin) - 1,
-                            static_cast<int>(high.x + margin) + 2, static_cast<int>(high.y + margin) + 2, settings.blur_px);
+                            static_cast<int>(high.x + margin) + 2, static_cast<int>(high.y + margin) + 2,
+                            settings.blur_px);
 
-  // colour change along the normal at each shift, averaged along the contour; one shift more on both sides
+  // colour change along the normal at each shift, averaged along the contour; kPad more on both sides
   const std::size_t n = contour.size();
   const int states = 2 * reach + 1;
   const auto normals = CalcNormals(contour);
-  std::vector<std::vector<double>> gradient(n, std::vector<double>(states + 2));
+  std::vector<std::vector<double>> gradient(n, std::vector<double>(states + 2 * kPad));
   double strongest = 0.0;
   for (std::size_t i = 0; i < n; ++i) {
-    for (int k = 0; k < states + 2; ++k) {
-      const Vec2 p = contour[i] + ((k - 1 - reach) * kStep) * normals[i];
+    for (int k = 0; k < states + 2 * kPad; ++k) {
+      const Vec2 p = contour[i] + ((k - kPad - reach) * kStep) * normals[i];
       Colour change = {0, 0, 0};
       for (int across = -1; across <= 1; ++across) {
         const Vec2 q = p + static_cast<double>(across) * Vec2{-normals[i].y, normals[i].x};
-        const Colour ahead = picture.Sample(q + 0.5 * normals[i]), behind = picture.Sample(q - 0.5 * normals[i]);
+        const Colour ahead = picture.Sample(q + 0.5 * normals[i]),
+                     behind = picture.Sample(q - 0.5 * normals[i]);
         for (int c = 0; c < 3; ++c) change[c] += (across == 0 ? 0.5f : 0.25f) * (ahead[c] - behind[c]);
       }
       double squared = 0;
@@ -166,8 +171,9 @@ std::vector<Vec2> AdaptToEdges(const ColorImage& image, std::span<const Vec2> co
 
   // reward only true edges: local maxima along the normal that are strong enough
   const auto is_edge = [&](std::size_t i, int state) {
-    const double here = gradient[i][state + 1];
-    return here >= settings.min_gradient && here >= gradient[i][state] && here >= gradient[i][state + 2];
+    const double here = gradient[i][state + kPad];
+    return here >= settings.min_gradient && here >= gradient[i][state + kPad - 1] &&
+           here >= gradient[i][state + kPad + 1];
   };
   std::vector<std::vector<double>> cost(n, std::vector<double>(states, 0.0));
   for (std::size_t i = 0; i < n; ++i) {
@@ -175,7 +181,8 @@ std::vector<Vec2> AdaptToEdges(const ColorImage& image, std::span<const Vec2> co
     for (int state = 0; state < states; ++state) {
       const double away = std::abs(state - reach) / static_cast<double>(reach);
       cost[i][state] = 0.02 * away;  // with no edge anywhere, staying costs least
-      if (is_edge(i, state)) cost[i][state] -= (1.0 - settings.nearness * away * away) * gradient[i][state + 1] / scale;
+      if (is_edge(i, state))
+        cost[i][state] -= (1.0 - settings.nearness * away * away) * gradient[i][state + kPad] / scale;
     }
   }
   const auto path = SolveClosed(cost, settings.smoothness);
@@ -183,9 +190,10 @@ std::vector<Vec2> AdaptToEdges(const ColorImage& image, std::span<const Vec2> co
   std::vector<double> shifts(n, 0.0);
   for (std::size_t i = 0; i < n; ++i) {
     if (!is_edge(i, path[i])) continue;
-    const double before = gradient[i][path[i]], here = gradient[i][path[i] + 1], after = gradient[i][path[i] + 2];
+    const double before = gradient[i][path[i]], here = gradient[i][path[i] + kPad],
+                 after = gradient[i][path[i] + 2 * kPad];
     const double bend = before - 2 * here + after;
-    const double offset = bend < 0 ? std::clamp(0.5 * (before - after) / bend, -0.5, 0.5) : 0.0;
+    const double offset = bend < 0 ? std::clamp(0.5 * kPad * (before - after) / bend, -1.0, 1.0) : 0.0;
     shifts[i] = std::clamp((path[i] - reach + offset) * kStep, -settings.max_shift_px, settings.max_shift_px);
   }
 
@@ -194,7 +202,8 @@ std::vector<Vec2> AdaptToEdges(const ColorImage& image, std::span<const Vec2> co
   for (double part = 1.0; part > 0.1; part *= 0.5) {
     for (std::size_t i = 0; i < n; ++i) {
       const Vec2 moved = contour[i] + (part * shifts[i]) * normals[i];
-      adapted[i] = {std::clamp(moved.x, 0.0, image.width - 1.0), std::clamp(moved.y, 0.0, image.height - 1.0)};
+      adapted[i] = {std::clamp(moved.x, 0.0, image.width - 1.0),
+                    std::clamp(moved.y, 0.0, image.height - 1.0)};
     }
     if (did_cross || !CrossesItself(adapted)) return adapted;
   }

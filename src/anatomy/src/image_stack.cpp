@@ -23,12 +23,13 @@ namespace fs = std::filesystem;
 using core::Error;
 using core::ErrorCode;
 
-constexpr std::size_t kMaxSide = 16384;              // pixels
+constexpr std::size_t kMaxSide = 16384;  // pixels
 constexpr std::size_t kMaxVoxels = std::size_t{1} << 28;
 constexpr std::size_t kMaxFileBytes = std::size_t{256} << 20;
 
 Error Undecodable(const fs::path& path, const std::string& why) {
-  return {ErrorCode::kImageUndecodable, path.string() + " cannot be decoded: " + why + "; get the file again"};
+  return {ErrorCode::kImageUndecodable,
+          path.string() + " cannot be decoded: " + why + "; get the file again"};
 }
 
 enum class Kind { kJpeg, kPng };
@@ -37,9 +38,11 @@ enum class Kind { kJpeg, kPng };
 std::optional<Kind> FindWholeKind(std::string_view bytes) {
   if (bytes.size() > 4 && bytes.substr(0, 3) == "\xff\xd8\xff") {
     const auto end = bytes.find_last_not_of('\0');
-    if (end != std::string_view::npos && end > 3 && bytes.substr(end - 1, 2) == "\xff\xd9") return Kind::kJpeg;
+    if (end != std::string_view::npos && end > 3 && bytes.substr(end - 1, 2) == "\xff\xd9")
+      return Kind::kJpeg;
   }
-  if (bytes.size() > 8 && bytes.substr(0, 8) == "\x89PNG\r\n\x1a\n" && bytes.find("IEND") != std::string_view::npos) {
+  if (bytes.size() > 8 && bytes.substr(0, 8) == "\x89PNG\r\n\x1a\n" &&
+      bytes.find("IEND") != std::string_view::npos) {
     return Kind::kPng;
   }
   return std::nullopt;
@@ -59,8 +62,10 @@ core::Result<ColorImage> Decode(const fs::path& path, ExpectedSize expected) {
   if (!kind) return Undecodable(path, "it is no whole JPEG or PNG file");
   try {
     itk::ImageIOBase::Pointer reader;
-    if (*kind == Kind::kJpeg) reader = itk::JPEGImageIO::New();
-    else reader = itk::PNGImageIO::New();
+    if (*kind == Kind::kJpeg)
+      reader = itk::JPEGImageIO::New();
+    else
+      reader = itk::PNGImageIO::New();
     reader->SetFileName(path.string());
     reader->ReadImageInformation();
     const std::size_t width = reader->GetDimensions(0), height = reader->GetDimensions(1);
@@ -68,11 +73,13 @@ core::Result<ColorImage> Decode(const fs::path& path, ExpectedSize expected) {
     if (width == 0 || height == 0 || width > kMaxSide || height > kMaxSide) {
       return Undecodable(path, "its size is not between 1 and 16384 pixels");
     }
-    if (expected.width != 0 && (static_cast<int>(width) != expected.width || static_cast<int>(height) != expected.height)) {
+    if (expected.width != 0 &&
+        (static_cast<int>(width) != expected.width || static_cast<int>(height) != expected.height)) {
       return Error{ErrorCode::kImageSizeDiffers,
                    path.string() + " has " + std::to_string(width) + " x " + std::to_string(height) +
-                       " pixels, but the control points were placed on " + std::to_string(expected.width) + " x " +
-                       std::to_string(expected.height) + "; use the images that the points belong to"};
+                       " pixels, but the control points were placed on " + std::to_string(expected.width) +
+                       " x " + std::to_string(expected.height) +
+                       "; use the images that the points belong to"};
     }
     if (reader->GetComponentType() != itk::IOComponentEnum::UCHAR || channels == 0 || channels > 4) {
       return Undecodable(path, "it does not have 8 bits a channel");
@@ -110,7 +117,9 @@ bool CopyLabels(const std::vector<char>& raw, std::vector<std::uint8_t>& labels)
 
 }  // namespace
 
-core::Result<ColorImage> ReadImage(const fs::path& path) { return Decode(path, {}); }
+core::Result<ColorImage> ReadImage(const fs::path& path) {
+  return Decode(path, {});
+}
 
 core::Result<std::map<int, ColorImage>> LoadSlices(const SliceFolder& source, std::span<const int> slices,
                                                    const Progress& progress) {
@@ -126,7 +135,8 @@ core::Result<std::map<int, ColorImage>> LoadSlices(const SliceFolder& source, st
     const std::size_t end = std::min(begin + kBatch, slices.size());
     if (progress) progress("reading slices", static_cast<double>(begin) / static_cast<double>(slices.size()));
     oneapi::tbb::parallel_for(begin, end, [&](std::size_t i) {
-      decoded[i] = Decode(source.folder / FormatImageName(source.pattern, slices[i]), {source.width, source.height});
+      decoded[i] =
+          Decode(source.folder / FormatImageName(source.pattern, slices[i]), {source.width, source.height});
     });
     for (std::size_t i = begin; i < end; ++i) {
       if (decoded[i]->ok()) continue;
@@ -178,15 +188,32 @@ core::Result<LabelVolume> ReadLabelVolume(const fs::path& path) {
     volume.labels.resize(count);
     bool is_whole = false;
     switch (reader->GetComponentType()) {
-      case itk::IOComponentEnum::UCHAR: is_whole = CopyLabels<std::uint8_t>(raw, volume.labels); break;
-      case itk::IOComponentEnum::CHAR: is_whole = CopyLabels<std::int8_t>(raw, volume.labels); break;
-      case itk::IOComponentEnum::USHORT: is_whole = CopyLabels<std::uint16_t>(raw, volume.labels); break;
-      case itk::IOComponentEnum::SHORT: is_whole = CopyLabels<std::int16_t>(raw, volume.labels); break;
-      case itk::IOComponentEnum::INT: is_whole = CopyLabels<std::int32_t>(raw, volume.labels); break;
-      case itk::IOComponentEnum::UINT: is_whole = CopyLabels<std::uint32_t>(raw, volume.labels); break;
-      case itk::IOComponentEnum::FLOAT: is_whole = CopyLabels<float>(raw, volume.labels); break;
-      case itk::IOComponentEnum::DOUBLE: is_whole = CopyLabels<double>(raw, volume.labels); break;
-      default: break;
+      case itk::IOComponentEnum::UCHAR:
+        is_whole = CopyLabels<std::uint8_t>(raw, volume.labels);
+        break;
+      case itk::IOComponentEnum::CHAR:
+        is_whole = CopyLabels<std::int8_t>(raw, volume.labels);
+        break;
+      case itk::IOComponentEnum::USHORT:
+        is_whole = CopyLabels<std::uint16_t>(raw, volume.labels);
+        break;
+      case itk::IOComponentEnum::SHORT:
+        is_whole = CopyLabels<std::int16_t>(raw, volume.labels);
+        break;
+      case itk::IOComponentEnum::INT:
+        is_whole = CopyLabels<std::int32_t>(raw, volume.labels);
+        break;
+      case itk::IOComponentEnum::UINT:
+        is_whole = CopyLabels<std::uint32_t>(raw, volume.labels);
+        break;
+      case itk::IOComponentEnum::FLOAT:
+        is_whole = CopyLabels<float>(raw, volume.labels);
+        break;
+      case itk::IOComponentEnum::DOUBLE:
+        is_whole = CopyLabels<double>(raw, volume.labels);
+        break;
+      default:
+        break;
     }
     if (!is_whole) return Undecodable(path, "its voxels are not whole numbers from 0 to 255");
     return volume;

@@ -8,9 +8,18 @@
 
 namespace trocar::anatomy {
 
-const std::array<std::array<std::uint8_t, 2>, 12> kCellEdges = {{{0, 1}, {2, 3}, {4, 5}, {6, 7},    // along x
-                                                                  {0, 2}, {1, 3}, {4, 6}, {5, 7},    // along y
-                                                                  {0, 4}, {1, 5}, {2, 6}, {3, 7}}};  // along z
+const std::array<std::array<std::uint8_t, 2>, 12> kCellEdges = {{{0, 1},
+                                                                 {2, 3},
+                                                                 {4, 5},
+                                                                 {6, 7},  // along x
+                                                                 {0, 2},
+                                                                 {1, 3},
+                                                                 {4, 6},
+                                                                 {5, 7},  // along y
+                                                                 {0, 4},
+                                                                 {1, 5},
+                                                                 {2, 6},
+                                                                 {3, 7}}};  // along z
 
 namespace {
 
@@ -21,11 +30,13 @@ using math::Vec3;
 constexpr double kEndDistance = 0.02;  // of an edge's length
 
 /// Corners of each face, counter-clockwise seen from outside the cell.
-constexpr std::uint8_t kFaces[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
+constexpr std::uint8_t kFaces[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
+                                       {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
 
 int FindEdge(int a, int b) {
   for (int e = 0; e < 12; ++e) {
-    if ((kCellEdges[e][0] == a && kCellEdges[e][1] == b) || (kCellEdges[e][0] == b && kCellEdges[e][1] == a)) return e;
+    if ((kCellEdges[e][0] == a && kCellEdges[e][1] == b) || (kCellEdges[e][0] == b && kCellEdges[e][1] == a))
+      return e;
   }
   return -1;
 }
@@ -33,7 +44,8 @@ int FindEdge(int a, int b) {
 bool ShareFace(int e, int f) {
   for (const auto& face : kFaces) {
     const auto holds = [&](int edge) {
-      return std::count(face, face + 4, kCellEdges[edge][0]) == 1 && std::count(face, face + 4, kCellEdges[edge][1]) == 1;
+      return std::count(face, face + 4, kCellEdges[edge][0]) == 1 &&
+             std::count(face, face + 4, kCellEdges[edge][1]) == 1;
     };
     if (holds(e) && holds(f)) return true;
   }
@@ -68,9 +80,11 @@ std::vector<CellLoop> MakeLoops(unsigned inside) {
     loop.has_centre = true;
     for (std::size_t apex = 0; apex < n && loop.has_centre; ++apex) {
       bool is_clear = true;
-      for (std::size_t k = 2; k + 1 < n; ++k) is_clear &= !ShareFace(loop.edges[apex], loop.edges[(apex + k) % n]);
+      for (std::size_t k = 2; k + 1 < n; ++k)
+        is_clear &= !ShareFace(loop.edges[apex], loop.edges[(apex + k) % n]);
       if (!is_clear) continue;
-      std::rotate(loop.edges.begin(), loop.edges.begin() + static_cast<std::ptrdiff_t>(apex), loop.edges.end());
+      std::rotate(loop.edges.begin(), loop.edges.begin() + static_cast<std::ptrdiff_t>(apex),
+                  loop.edges.end());
       loop.has_centre = false;
     }
     loops.push_back(std::move(loop));
@@ -103,7 +117,9 @@ TriangleMesh MarchCubes(const ScalarVolume& volume) {
   constexpr std::uint32_t kNone = 0xffffffffu;
   const std::size_t layer = static_cast<std::size_t>(nx + 2) * (ny + 2) * 3;
   std::vector<std::uint32_t> below(layer, kNone), above(layer, kNone);
-  const auto slot = [&](int i, int j, int axis) { return ((static_cast<std::size_t>(j) + 1) * (nx + 2) + i + 1) * 3 + axis; };
+  const auto slot = [&](int i, int j, int axis) {
+    return ((static_cast<std::size_t>(j) + 1) * (nx + 2) + i + 1) * 3 + axis;
+  };
 
   for (int k = -1; k < nz; ++k) {
     std::fill(above.begin(), above.end(), kNone);
@@ -122,7 +138,8 @@ TriangleMesh MarchCubes(const ScalarVolume& volume) {
           auto& table = (a >> 2 & 1) ? above : below;
           std::uint32_t& vertex = table[slot(i + (a & 1), j + (a >> 1 & 1), axis)];
           if (vertex == kNone) {
-            const double t = std::clamp(values[a] / (values[a] - values[b]), kEndDistance, 1.0 - kEndDistance);
+            const double t =
+                std::clamp(values[a] / (values[a] - values[b]), kEndDistance, 1.0 - kEndDistance);
             const Vec3 p = volume.Position(i + (a & 1), j + (a >> 1 & 1), k + (a >> 2 & 1));
             const Vec3 q = volume.Position(i + (b & 1), j + (b >> 1 & 1), k + (b >> 2 & 1));
             vertex = static_cast<std::uint32_t>(mesh.positions.size());
@@ -135,14 +152,16 @@ TriangleMesh MarchCubes(const ScalarVolume& volume) {
           std::uint32_t corners[12];
           for (std::size_t e = 0; e < n; ++e) corners[e] = vertex_on(loop.edges[e]);
           if (!loop.has_centre) {
-            for (std::size_t e = 1; e + 1 < n; ++e) mesh.triangles.push_back({corners[0], corners[e], corners[e + 1]});
+            for (std::size_t e = 1; e + 1 < n; ++e)
+              mesh.triangles.push_back({corners[0], corners[e], corners[e + 1]});
             continue;
           }
           Vec3 centre;
           for (std::size_t e = 0; e < n; ++e) centre += mesh.positions[corners[e]];
           const auto middle = static_cast<std::uint32_t>(mesh.positions.size());
           mesh.positions.push_back(centre / static_cast<double>(n));
-          for (std::size_t e = 0; e < n; ++e) mesh.triangles.push_back({middle, corners[e], corners[(e + 1) % n]});
+          for (std::size_t e = 0; e < n; ++e)
+            mesh.triangles.push_back({middle, corners[e], corners[(e + 1) % n]});
         }
       }
     }

@@ -22,8 +22,8 @@ using geometry::Triangle;
 using geometry::TriangleMesh;
 using math::Vec3;
 
-/// Weight of the distance to the planes that a vertex stands for, against the edge's length: short edges go first,
-/// except where the surface bends sharply.
+/// Weight of the distance to the planes that a vertex stands for, against the edge's length: short edges go
+/// first, except where the surface bends sharply.
 constexpr double kPlaneWeight = 40.0;
 /// Two triangles whose normals differ more than this (cosine) form a ridge that no flip may cut.
 constexpr double kFlipCosine = 0.85;
@@ -60,8 +60,12 @@ struct Quadric {
 class EditableSurface {
  public:
   explicit EditableSurface(const TriangleMesh& mesh)
-      : positions_(mesh.positions), triangles_(mesh.triangles), alive_(mesh.triangles.size(), 1),
-        around_(mesh.positions.size()), version_(mesh.positions.size(), 0), live_(mesh.triangles.size()) {
+      : positions_(mesh.positions),
+        triangles_(mesh.triangles),
+        alive_(mesh.triangles.size(), 1),
+        around_(mesh.positions.size()),
+        version_(mesh.positions.size(), 0),
+        live_(mesh.triangles.size()) {
     for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
       for (const auto v : triangles_[t]) around_[v].push_back(t);
     }
@@ -100,16 +104,19 @@ class EditableSurface {
   }
   Vec3 AreaNormal(const Triangle& t) const { return geometry::CalcAreaNormal(positions_, t); }
 
-  /// Whether the triangles around v, without those that hold `gone`, keep their side and some shape with v at p.
+  /// Whether the triangles around v, without those that hold `gone`, keep their side and some shape with v at
+  /// p.
   bool KeepsShape(std::uint32_t v, std::uint32_t gone, const Vec3& p) const {
     for (const auto t : around_[v]) {
       const Triangle& triangle = triangles_[t];
       if (std::find(triangle.begin(), triangle.end(), gone) != triangle.end()) continue;
       Vec3 corners[3];
       for (int i = 0; i < 3; ++i) corners[i] = triangle[i] == v ? p : positions_[triangle[i]];
-      const Vec3 before = AreaNormal(triangle), after = Cross(corners[1] - corners[0], corners[2] - corners[0]);
-      const double longest = std::max({SquaredDistance(corners[0], corners[1]), SquaredDistance(corners[1], corners[2]),
-                                       SquaredDistance(corners[2], corners[0])});
+      const Vec3 before = AreaNormal(triangle),
+                 after = Cross(corners[1] - corners[0], corners[2] - corners[0]);
+      const double longest =
+          std::max({SquaredDistance(corners[0], corners[1]), SquaredDistance(corners[1], corners[2]),
+                    SquaredDistance(corners[2], corners[0])});
       if (!(Norm(after) > 0.05 * longest)) return false;
       if (Dot(before, after) < kTurnCosine * Norm(before) * Norm(after)) return false;
     }
@@ -132,7 +139,8 @@ void EditableSurface::CollapseTo(std::size_t budget) {
     const double area = Norm(normal);
     if (area == 0) continue;
     const Vec3 unit = normal / area;
-    for (const auto v : triangles_[t]) quadrics[v].AddPlane(unit, -Dot(unit, positions_[triangles_[t][0]]), area);
+    for (const auto v : triangles_[t])
+      quadrics[v].AddPlane(unit, -Dot(unit, positions_[triangles_[t][0]]), area);
   }
   std::priority_queue<Candidate> queue;
   const auto offer = [&](std::uint32_t a, std::uint32_t b) {
@@ -155,7 +163,8 @@ void EditableSurface::CollapseTo(std::size_t budget) {
     // link condition: the ends share exactly the two vertices opposite of the edge
     const auto ring_a = Neighbours(edge.a), ring_b = Neighbours(edge.b);
     std::vector<std::uint32_t> shared;
-    std::set_intersection(ring_a.begin(), ring_a.end(), ring_b.begin(), ring_b.end(), std::back_inserter(shared));
+    std::set_intersection(ring_a.begin(), ring_a.end(), ring_b.begin(), ring_b.end(),
+                          std::back_inserter(shared));
     if (shared.size() != 2 || ring_a.size() + ring_b.size() < 8) continue;
     if (std::any_of(shared.begin(), shared.end(), [&](auto v) { return around_[v].size() <= 3; })) continue;
     const Vec3 middle = 0.5 * (positions_[edge.a] + positions_[edge.b]);
@@ -192,7 +201,8 @@ void EditableSurface::FlipEdges() {
       // the triangle on the other side of a-b
       std::uint32_t other = t;
       for (const auto u : around_[a]) {
-        if (u != t && std::find(triangles_[u].begin(), triangles_[u].end(), b) != triangles_[u].end()) other = u;
+        if (u != t && std::find(triangles_[u].begin(), triangles_[u].end(), b) != triangles_[u].end())
+          other = u;
       }
       if (other == t) continue;
       std::uint32_t d = a;
@@ -207,7 +217,8 @@ void EditableSurface::FlipEdges() {
       if (around_[a].size() <= 4 || around_[b].size() <= 4) continue;
       const auto ring = Neighbours(c);
       if (std::binary_search(ring.begin(), ring.end(), d)) continue;
-      const Vec3 n0 = math::Normalized(AreaNormal(triangles_[t])), n1 = math::Normalized(AreaNormal(triangles_[other]));
+      const Vec3 n0 = math::Normalized(AreaNormal(triangles_[t])),
+                 n1 = math::Normalized(AreaNormal(triangles_[other]));
       if (Dot(n0, n1) < kFlipCosine) continue;
       const Triangle first = {a, d, c}, second = {d, b, c};
       const Vec3 mean = math::Normalized(n0 + n1);
@@ -275,10 +286,12 @@ std::optional<TriangleMesh> SimplifyInBulk(const TriangleMesh& mesh, std::size_t
   for (const Triangle& t : mesh.triangles) indices.insert(indices.end(), t.begin(), t.end());
   std::vector<unsigned> kept(indices.size());
   constexpr float kAnyError = 0.05f;  // of the extent; the count is what stops it
-  kept.resize(meshopt_simplify(kept.data(), indices.data(), indices.size(), positions.data(), mesh.positions.size(),
-                               3 * sizeof(float), triangles * 3, kAnyError, 0, nullptr));
+  kept.resize(meshopt_simplify(kept.data(), indices.data(), indices.size(), positions.data(),
+                               mesh.positions.size(), 3 * sizeof(float), triangles * 3, kAnyError, 0,
+                               nullptr));
   TriangleMesh all{mesh.positions, {}};
-  for (std::size_t i = 0; i + 2 < kept.size(); i += 3) all.triangles.push_back({kept[i], kept[i + 1], kept[i + 2]});
+  for (std::size_t i = 0; i + 2 < kept.size(); i += 3)
+    all.triangles.push_back({kept[i], kept[i + 1], kept[i + 2]});
   TriangleMesh simplified = EditableSurface(all).Take();
   const auto report = geometry::InspectMesh(simplified);
   if (!report.closed || !report.manifold || !report.outward || report.genus != genus) return std::nullopt;
@@ -294,7 +307,8 @@ core::Result<TriangleMesh> DecimateMesh(const TriangleMesh& mesh, const Decimati
                        "the mesh to decimate is not closed, manifold and outward; repair it first"};
   }
   const auto budget = static_cast<std::size_t>(settings.triangle_budget);
-  // meshoptimizer does not check the link condition: where it breaks the surface, ask for less, then do without
+  // meshoptimizer does not check the link condition: where it breaks the surface, ask for less, then do
+  // without
   std::optional<TriangleMesh> bulk;
   for (double factor = settings.bulk_factor; !bulk; factor *= 2) {
     const auto wanted = static_cast<std::size_t>(factor * static_cast<double>(budget));
@@ -305,8 +319,9 @@ core::Result<TriangleMesh> DecimateMesh(const TriangleMesh& mesh, const Decimati
   surface.CollapseTo(budget);
   if (surface.TriangleCount() > budget) {
     return core::Error{core::ErrorCode::kMeshNotClosed,
-                       "the mesh cannot be reduced to " + std::to_string(budget) + " triangles without breaking it (" +
-                           std::to_string(surface.TriangleCount()) + " left); raise triangle_budget"};
+                       "the mesh cannot be reduced to " + std::to_string(budget) +
+                           " triangles without breaking it (" + std::to_string(surface.TriangleCount()) +
+                           " left); raise triangle_budget"};
   }
   const NearestSurface original(mesh);
   for (int round = 0; round < settings.relaxation_rounds; ++round) {
@@ -318,7 +333,8 @@ core::Result<TriangleMesh> DecimateMesh(const TriangleMesh& mesh, const Decimati
   SetVolume(decimated, before.volume);
   const auto after = geometry::InspectMesh(decimated);
   if (!after.closed || !after.manifold || !after.outward) {
-    return core::Error{core::ErrorCode::kMeshNotClosed, "decimation left a mesh that is not closed and manifold"};
+    return core::Error{core::ErrorCode::kMeshNotClosed,
+                       "decimation left a mesh that is not closed and manifold"};
   }
   return decimated;
 }

@@ -22,7 +22,8 @@ NearestSurface::NearestSurface(const geometry::TriangleMesh& mesh) : mesh_(mesh)
   const Vec3 extent = box.max - box.min;
   const double longest = std::max({extent.x, extent.y, extent.z, 1e-12});
   const double area = geometry::CalcArea(mesh.positions, mesh.triangles);
-  cell_ = std::max(2.0 * std::sqrt(area / static_cast<double>(mesh.triangles.size())), longest / kMaxCellsAnAxis);
+  cell_ =
+      std::max(2.0 * std::sqrt(area / static_cast<double>(mesh.triangles.size())), longest / kMaxCellsAnAxis);
   origin_ = box.min;
   for (int axis = 0; axis < 3; ++axis) size_[axis] = static_cast<int>(extent[axis] / cell_) + 1;
 
@@ -32,15 +33,18 @@ NearestSurface::NearestSurface(const geometry::TriangleMesh& mesh) : mesh_(mesh)
   for (const bool fill : {false, true}) {
     for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
       const auto& triangle = mesh.triangles[t];
-      const Vec3 corners[3] = {mesh.positions[triangle[0]], mesh.positions[triangle[1]], mesh.positions[triangle[2]]};
+      const Vec3 corners[3] = {mesh.positions[triangle[0]], mesh.positions[triangle[1]],
+                               mesh.positions[triangle[2]]};
       const geometry::Box bounds = geometry::CalcBox(corners);
       const auto low = CellOf(bounds.min), high = CellOf(bounds.max);
       for (int z = low[2]; z <= high[2]; ++z) {
         for (int y = low[1]; y <= high[1]; ++y) {
           for (int x = low[0]; x <= high[0]; ++x) {
             const std::size_t cell = (static_cast<std::size_t>(z) * size_[1] + y) * size_[0] + x;
-            if (fill) triangles_[starts_[cell]++] = t;
-            else ++starts_[cell + 1];
+            if (fill)
+              triangles_[starts_[cell]++] = t;
+            else
+              ++starts_[cell + 1];
           }
         }
       }
@@ -81,7 +85,8 @@ SurfacePoint NearestSurface::Find(const Vec3& p) const {
           const std::size_t cell = (static_cast<std::size_t>(z) * size_[1] + y) * size_[0] + x;
           for (std::uint32_t k = starts_[cell]; k < starts_[cell + 1]; ++k) {
             const auto& t = mesh_.triangles[triangles_[k]];
-            const auto at = geometry::FindNearestOnTriangle(p, mesh_.positions[t[0]], mesh_.positions[t[1]], mesh_.positions[t[2]]);
+            const auto at = geometry::FindNearestOnTriangle(p, mesh_.positions[t[0]], mesh_.positions[t[1]],
+                                                            mesh_.positions[t[2]]);
             const double squared = math::SquaredDistance(p, at.point);
             if (squared < best_squared || (squared == best_squared && triangles_[k] < best.triangle)) {
               best_squared = squared;
@@ -102,7 +107,8 @@ bool NearestSurface::IsInside(const Vec3& p) const {
   for (const auto& t : mesh_.triangles) {
     const Vec3 a = mesh_.positions[t[0]] - p, b = mesh_.positions[t[1]] - p, c = mesh_.positions[t[2]] - p;
     const double la = Norm(a), lb = Norm(b), lc = Norm(c);
-    sum += 2.0 * std::atan2(Dot(a, Cross(b, c)), la * lb * lc + Dot(a, b) * lc + Dot(b, c) * la + Dot(c, a) * lb);
+    sum += 2.0 *
+           std::atan2(Dot(a, Cross(b, c)), la * lb * lc + Dot(a, b) * lc + Dot(b, c) * la + Dot(c, a) * lb);
   }
   return sum > 2.0 * M_PI;
 }

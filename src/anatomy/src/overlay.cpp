@@ -15,7 +15,8 @@ namespace trocar::anatomy {
 namespace {
 
 using Colour = std::array<std::uint8_t, 3>;
-constexpr Colour kPlaced = {255, 40, 40}, kAdapted = {255, 230, 0}, kCurve = {40, 255, 80}, kTube = {80, 160, 255};
+constexpr Colour kPlaced = {255, 40, 40}, kAdapted = {255, 230, 0}, kCurve = {40, 255, 80},
+                 kTube = {80, 160, 255};
 constexpr Colour kTint = {255, 255, 255};
 constexpr double kTintShare = 0.15;
 constexpr int kMargin = 30;  // photograph's pixels around the contours
@@ -54,7 +55,8 @@ ColorImage DrawOverlay(const ColorImage& photograph, const Overlay& overlay, int
   for (const ContourStages& contour : overlay.contours) include(contour.placed), include(contour.curve);
   include(overlay.tube_points);
   if (low_x > high_x) low_x = low_y = 0, high_x = photograph.width - 1, high_y = photograph.height - 1;
-  const int x0 = std::max(0, static_cast<int>(low_x) - kMargin), y0 = std::max(0, static_cast<int>(low_y) - kMargin);
+  const int x0 = std::max(0, static_cast<int>(low_x) - kMargin),
+            y0 = std::max(0, static_cast<int>(low_y) - kMargin);
   const int x1 = std::min(photograph.width - 1, static_cast<int>(high_x) + kMargin);
   const int y1 = std::min(photograph.height - 1, static_cast<int>(high_y) + kMargin);
 
@@ -75,10 +77,13 @@ ColorImage DrawOverlay(const ColorImage& photograph, const Overlay& overlay, int
     }
   }
   // pixel centres of the photograph lie in the middle of scale x scale squares
-  const auto place = [&](const Vec2& p) { return Vec2{(p.x - x0 + 0.5) * scale - 0.5, (p.y - y0 + 0.5) * scale - 0.5}; };
+  const auto place = [&](const Vec2& p) {
+    return Vec2{(p.x - x0 + 0.5) * scale - 0.5, (p.y - y0 + 0.5) * scale - 0.5};
+  };
   for (const ContourStages& contour : overlay.contours) {
     for (std::size_t i = 0; i < contour.curve.size(); ++i) {
-      DrawLine(picture, place(contour.curve[i]), place(contour.curve[(i + 1) % contour.curve.size()]), kCurve);
+      DrawLine(picture, place(contour.curve[i]), place(contour.curve[(i + 1) % contour.curve.size()]),
+               kCurve);
     }
     for (const Vec2& p : contour.placed) DrawSquare(picture, place(p), 1, kPlaced);
     for (const Vec2& p : contour.adapted) DrawSquare(picture, place(p), 1, kAdapted);
@@ -100,13 +105,16 @@ core::Status WritePng(const std::filesystem::path& path, const ColorImage& image
   header.format = PNG_FORMAT_RGB;
   png_alloc_size_t bytes = 0;
   std::string content;
-  bool is_written = png_image_write_to_memory(&header, nullptr, &bytes, 0, image.samples.data(), 0, nullptr) != 0;
+  bool is_written =
+      png_image_write_to_memory(&header, nullptr, &bytes, 0, image.samples.data(), 0, nullptr) != 0;
   if (is_written) {
     content.resize(bytes);
-    is_written = png_image_write_to_memory(&header, content.data(), &bytes, 0, image.samples.data(), 0, nullptr) != 0;
+    is_written =
+        png_image_write_to_memory(&header, content.data(), &bytes, 0, image.samples.data(), 0, nullptr) != 0;
   }
   if (!is_written) {
-    return core::Error{core::ErrorCode::kFileUnwritable, path.string() + ": " + header.message + "; the picture was not written"};
+    return core::Error{core::ErrorCode::kFileUnwritable,
+                       path.string() + ": " + header.message + "; the picture was not written"};
   }
   return core::WriteFile(path, content);
 }

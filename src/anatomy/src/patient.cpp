@@ -27,8 +27,12 @@ constexpr int kVersion = 1;
 constexpr double kMmPerMetre = 1000.0;
 
 // LPS millimetres: left, posterior, superior. World metres: left, cranial, anterior.
-Vec3 ToLps(const Vec3& p) { return {kMmPerMetre * p.x, -kMmPerMetre * p.z, kMmPerMetre * p.y}; }
-Vec3 FromLps(const Vec3& p) { return {p.x / kMmPerMetre, p.z / kMmPerMetre, -p.y / kMmPerMetre}; }
+Vec3 ToLps(const Vec3& p) {
+  return {kMmPerMetre * p.x, -kMmPerMetre * p.z, kMmPerMetre * p.y};
+}
+Vec3 FromLps(const Vec3& p) {
+  return {p.x / kMmPerMetre, p.z / kMmPerMetre, -p.y / kMmPerMetre};
+}
 
 geometry::TriangleMesh Converted(geometry::TriangleMesh mesh, Vec3 (*convert)(const Vec3&)) {
   for (Vec3& p : mesh.positions) p = convert(p);
@@ -65,9 +69,10 @@ std::uint32_t IndexFrom(const JsonView& view) {
 /// One top-level field a line, long lists of numbers on one line.
 std::string FormatPatient(const Patient& patient) {
   using Json = nlohmann::ordered_json;
-  std::string text = "{\n\"format\": \"" + std::string(kFormat) + "\",\n\"version\": " + std::to_string(kVersion) +
-                     ",\n\"name\": " + Json(patient.name).dump() + ",\n\"provenance\": " + Json(patient.provenance).dump() +
-                     ",\n\"frame\": \"LPS\",\n\"unit\": \"mm\",\n";
+  std::string text =
+      "{\n\"format\": \"" + std::string(kFormat) + "\",\n\"version\": " + std::to_string(kVersion) +
+      ",\n\"name\": " + Json(patient.name).dump() + ",\n\"provenance\": " + Json(patient.provenance).dump() +
+      ",\n\"frame\": \"LPS\",\n\"unit\": \"mm\",\n";
   const auto append_list = [&text](const char* key, const std::vector<Json>& items, bool is_last) {
     text += "\"" + std::string(key) + "\": [";
     for (std::size_t i = 0; i < items.size(); ++i) text += (i == 0 ? "\n  " : ",\n  ") + items[i].dump();
@@ -76,7 +81,8 @@ std::string FormatPatient(const Patient& patient) {
   std::vector<Json> organs, attachments, tubes, landmarks;
   for (const Organ& organ : patient.organs) {
     Json regions = Json::array();
-    for (const Region& region : organ.regions) regions.push_back({{"name", region.name}, {"vertices", region.vertices}});
+    for (const Region& region : organ.regions)
+      regions.push_back({{"name", region.name}, {"vertices", region.vertices}});
     organs.push_back({{"name", organ.name}, {"mesh", organ.name + ".ply"}, {"regions", regions}});
   }
   // runs of attachments between the same organs share one entry
@@ -88,7 +94,8 @@ std::string FormatPatient(const Patient& patient) {
       if (a.name != first.name || a.organ_a != first.organ_a || a.organ_b != first.organ_b) break;
       pairs.push_back(Json::array({a.vertex_a, a.vertex_b}));
     }
-    attachments.push_back({{"name", first.name}, {"organ_a", first.organ_a}, {"organ_b", first.organ_b}, {"pairs", pairs}});
+    attachments.push_back(
+        {{"name", first.name}, {"organ_a", first.organ_a}, {"organ_b", first.organ_b}, {"pairs", pairs}});
   }
   for (const Tube& tube : patient.tubes) {
     Json points = Json::array(), radii = Json::array();
@@ -135,10 +142,12 @@ core::Result<Patient> ReadPatient(const fs::path& folder) {
   auto document = core::JsonDocument::Read(path);
   if (!document.ok()) return document.error();
   const JsonView root = document->Root();
-  root.AllowOnly({"format", "version", "name", "provenance", "frame", "unit", "organs", "attachments", "tubes", "landmarks"});
+  root.AllowOnly({"format", "version", "name", "provenance", "frame", "unit", "organs", "attachments",
+                  "tubes", "landmarks"});
   if (root.Text("format") != kFormat) root.Complain(std::string("format must be \"") + kFormat + "\"");
   root.Integer("version", {kVersion, kVersion});
-  if (root.Text("frame") != "LPS" || root.Text("unit") != "mm") root.Complain("frame must be \"LPS\" and unit \"mm\"");
+  if (root.Text("frame") != "LPS" || root.Text("unit") != "mm")
+    root.Complain("frame must be \"LPS\" and unit \"mm\"");
   Patient patient;
   patient.name = root.Text("name");
   patient.provenance = root.Text("provenance");
@@ -152,7 +161,8 @@ core::Result<Patient> ReadPatient(const fs::path& folder) {
     for (const JsonView& region_view : view.Array("regions")) {
       region_view.AllowOnly({"name", "vertices"});
       Region region{region_view.Text("name"), {}};
-      for (const JsonView& vertex : region_view.Array("vertices")) region.vertices.push_back(IndexFrom(vertex));
+      for (const JsonView& vertex : region_view.Array("vertices"))
+        region.vertices.push_back(IndexFrom(vertex));
       organ.regions.push_back(std::move(region));
     }
     patient.organs.push_back(std::move(organ));
@@ -188,7 +198,8 @@ core::Result<Patient> ReadPatient(const fs::path& folder) {
       const auto p = point.AsNumbers(3);
       tube.line.points.push_back(FromLps({p[0], p[1], p[2]}));
     }
-    for (const JsonView& radius : view.Array("radii")) tube.line.radii.push_back(radius.AsNumber() / kMmPerMetre);
+    for (const JsonView& radius : view.Array("radii"))
+      tube.line.radii.push_back(radius.AsNumber() / kMmPerMetre);
     patient.tubes.push_back(std::move(tube));
   }
   for (const JsonView& view : root.Array("landmarks")) {
@@ -216,12 +227,14 @@ core::Status WritePatient(const fs::path& folder, const Patient& patient) {
   const auto fail = [&](const std::string& why) {
     std::error_code ignored;
     fs::remove_all(partial, ignored);
-    return Error{ErrorCode::kFileUnwritable, target.string() + ": " + why + "; check the folder, its rights and the space left"};
+    return Error{ErrorCode::kFileUnwritable,
+                 target.string() + ": " + why + "; check the folder, its rights and the space left"};
   };
   std::error_code failure;
   if (fs::exists(target, failure)) {
     // only a patient is replaced, never somebody's other folder
-    const bool is_patient = fs::is_directory(target, failure) && (fs::exists(target / "patient.json", failure) || fs::is_empty(target, failure));
+    const bool is_patient = fs::is_directory(target, failure) &&
+                            (fs::exists(target / "patient.json", failure) || fs::is_empty(target, failure));
     if (!is_patient) return fail("it exists and is no patient folder");
   }
   fs::remove_all(partial, failure);
@@ -254,24 +267,29 @@ core::Status CheckPatient(const Patient& patient) {
   if (patient.organs.empty()) return Invalid("it has no organ");
   std::set<std::string> names;
   for (const Organ& organ : patient.organs) {
-    if (!IsPlainName(organ.name)) return Invalid("organ name '" + organ.name + "' must consist of a-z, 0-9 and _");
+    if (!IsPlainName(organ.name))
+      return Invalid("organ name '" + organ.name + "' must consist of a-z, 0-9 and _");
     if (!names.insert(organ.name).second) return Invalid("the name '" + organ.name + "' is used twice");
-    if (const auto status = geometry::CheckMesh(organ.mesh); !status.ok()) return Invalid(organ.name + ": " + status.error().message);
+    if (const auto status = geometry::CheckMesh(organ.mesh); !status.ok())
+      return Invalid(organ.name + ": " + status.error().message);
     const auto report = geometry::InspectMesh(organ.mesh);
     if (!report.closed || !report.manifold) {
       return Error{ErrorCode::kMeshNotClosed, "the mesh of " + organ.name + " is not closed and manifold (" +
                                                   std::to_string(report.boundary_edges) + " open edges, " +
                                                   std::to_string(report.odd_edges) + " odd edges, " +
                                                   std::to_string(report.odd_vertices) + " odd vertices, " +
-                                                  std::to_string(report.degenerate) + " flat triangles); repair it"};
+                                                  std::to_string(report.degenerate) +
+                                                  " flat triangles); repair it"};
     }
     if (!report.outward) return Invalid("the triangles of " + organ.name + " face inwards");
     std::set<std::string> regions;
     for (const Region& region : organ.regions) {
-      if (!regions.insert(region.name).second) return Invalid("region '" + region.name + "' of " + organ.name + " is there twice");
+      if (!regions.insert(region.name).second)
+        return Invalid("region '" + region.name + "' of " + organ.name + " is there twice");
       for (std::size_t i = 0; i < region.vertices.size(); ++i) {
         if (region.vertices[i] >= organ.mesh.positions.size()) {
-          return Invalid("region '" + region.name + "' of " + organ.name + " names a vertex that is not there");
+          return Invalid("region '" + region.name + "' of " + organ.name +
+                         " names a vertex that is not there");
         }
         if (i > 0 && region.vertices[i] <= region.vertices[i - 1]) {
           return Invalid("the vertices of region '" + region.name + "' of " + organ.name + " do not ascend");
@@ -283,7 +301,8 @@ core::Status CheckPatient(const Patient& patient) {
     const bool in_range = a.organ_a < patient.organs.size() && a.organ_b < patient.organs.size() &&
                           a.vertex_a < patient.organs[a.organ_a].mesh.positions.size() &&
                           a.vertex_b < patient.organs[a.organ_b].mesh.positions.size();
-    if (!in_range) return Invalid("an attachment '" + a.name + "' names an organ or vertex that is not there");
+    if (!in_range)
+      return Invalid("an attachment '" + a.name + "' names an organ or vertex that is not there");
   }
   for (const Tube& tube : patient.tubes) {
     if (!names.insert(tube.name).second) return Invalid("the name '" + tube.name + "' is used twice");
@@ -295,7 +314,8 @@ core::Status CheckPatient(const Patient& patient) {
     for (std::size_t i = 0; i < tube.line.points.size(); ++i) {
       const double radius = tube.line.radii[i];
       if (!math::IsFinite(tube.line.points[i]) || !(radius > 0.0) || !std::isfinite(radius)) {
-        return Invalid("tube '" + tube.name + "' has a point that is not finite or a radius that is not positive");
+        return Invalid("tube '" + tube.name +
+                       "' has a point that is not finite or a radius that is not positive");
       }
     }
     for (const std::string& end : {tube.from, tube.to}) {
@@ -306,7 +326,8 @@ core::Status CheckPatient(const Patient& patient) {
   }
   std::set<std::string> landmarks;
   for (const Landmark& landmark : patient.landmarks) {
-    if (!landmarks.insert(landmark.name).second) return Invalid("landmark '" + landmark.name + "' is there twice");
+    if (!landmarks.insert(landmark.name).second)
+      return Invalid("landmark '" + landmark.name + "' is there twice");
     if (!math::IsFinite(landmark.position)) return Invalid("landmark '" + landmark.name + "' is not finite");
   }
   return {};

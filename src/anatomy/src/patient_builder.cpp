@@ -17,14 +17,18 @@ namespace {
 using geometry::TriangleMesh;
 
 constexpr double kMetresPerMm = 1e-3;
-/// Directions in which the diaphragm and the abdominal wall lie, seen from the liver: right, cranial, anterior.
+/// Directions in which the diaphragm and the abdominal wall lie, seen from the liver: right, cranial,
+/// anterior.
 const Vec3 kTowardsDiaphragm = math::Normalized(Vec3{-0.45, 0.7, 0.55});
-constexpr double kFacesDiaphragm = 0.25;    // cosine to that direction
-constexpr double kSuperiorNormal = 0.3;     // y of a normal of the superior face
-constexpr double kCoronaryPosterior = 0.4;  // part of the liver's depth, from behind, in which the coronary ligament lies
-constexpr double kCarries = 0.2;            // barycentric weight from which a liver vertex carries an attachment
-constexpr double kLiverEdgeReach = 0.045;   // the liver's edge is looked for so far to either side of the fundus [m]
-constexpr double kFundusRadius = 0.006;     // the fundus is the mean of the surface so close to its extreme point [m]
+constexpr double kFacesDiaphragm = 0.25;  // cosine to that direction
+constexpr double kSuperiorNormal = 0.3;   // y of a normal of the superior face
+constexpr double kCoronaryPosterior =
+    0.4;  // part of the liver's depth, from behind, in which the coronary ligament lies
+constexpr double kCarries = 0.2;  // barycentric weight from which a liver vertex carries an attachment
+constexpr double kLiverEdgeReach =
+    0.045;  // the liver's edge is looked for so far to either side of the fundus [m]
+constexpr double kFundusRadius =
+    0.006;  // the fundus is the mean of the surface so close to its extreme point [m]
 
 /// Maps (column, row, slice) to the world without the final shift [m].
 class ImageFrame {
@@ -34,7 +38,8 @@ class ImageFrame {
   Vec3 FromMm(const Vec3& p) const {
     Vec3 world;
     for (int world_axis = 0; world_axis < 3; ++world_axis) {
-      for (int axis = 0; axis < 3; ++axis) world[world_axis] += kMetresPerMm * directions_[axis][world_axis] * p[axis];
+      for (int axis = 0; axis < 3; ++axis)
+        world[world_axis] += kMetresPerMm * directions_[axis][world_axis] * p[axis];
     }
     return world;
   }
@@ -75,7 +80,9 @@ Vec3 FindLongAxis(const TriangleMesh& mesh, Vec3& centre) {
   return axis;
 }
 
-std::vector<std::uint32_t> Ascending(std::set<std::uint32_t> vertices) { return {vertices.begin(), vertices.end()}; }
+std::vector<std::uint32_t> Ascending(std::set<std::uint32_t> vertices) {
+  return {vertices.begin(), vertices.end()};
+}
 
 /// Largest part of the marked vertices that hangs together along edges.
 void KeepLargestPatch(const geometry::Rows& neighbours, std::vector<char>& marked) {
@@ -119,8 +126,8 @@ struct LiverRegions {
   std::vector<std::uint32_t> diaphragmatic, falciform, coronary;
 };
 
-LiverRegions FindLiverRegions(const TriangleMesh& liver, const NearestSurface& gallbladder, double falciform_x,
-                              const RegionSettings& settings) {
+LiverRegions FindLiverRegions(const TriangleMesh& liver, const NearestSurface& gallbladder,
+                              double falciform_x, const RegionSettings& settings) {
   const std::size_t n = liver.positions.size();
   std::vector<Vec3> normals(n);
   geometry::CalcVertexNormals(liver.positions, liver.triangles, normals);
@@ -137,7 +144,8 @@ LiverRegions FindLiverRegions(const TriangleMesh& liver, const NearestSurface& g
   for (std::size_t v = 0; v < n; ++v) {
     const auto row = neighbours.Row(v);
     const auto count = std::count_if(row.begin(), row.end(), [&](auto w) { return face[w] != 0; });
-    if (!face[v] && 4 * count > 3 * static_cast<std::ptrdiff_t>(row.size())) smooth[v] = 1;
+    const bool is_visceral = Dot(normals[v], kTowardsDiaphragm) < 0;
+    if (!face[v] && !is_visceral && 4 * count > 3 * static_cast<std::ptrdiff_t>(row.size())) smooth[v] = 1;
   }
   face = smooth;
   std::vector<Vec3> border;
@@ -198,9 +206,9 @@ Bed FindBed(const TriangleMesh& gallbladder, const TriangleMesh& liver, double b
 
 /// Mean of the surface around the vertex that lies furthest along `direction`, put back onto the surface.
 Vec3 FindEnd(const TriangleMesh& mesh, const NearestSurface& surface, const Vec3& direction) {
-  const auto furthest = std::max_element(mesh.positions.begin(), mesh.positions.end(), [&](const Vec3& a, const Vec3& b) {
-    return Dot(a, direction) < Dot(b, direction);
-  });
+  const auto furthest =
+      std::max_element(mesh.positions.begin(), mesh.positions.end(),
+                       [&](const Vec3& a, const Vec3& b) { return Dot(a, direction) < Dot(b, direction); });
   Vec3 mean;
   int count = 0;
   for (const Vec3& p : mesh.positions) {
@@ -209,7 +217,8 @@ Vec3 FindEnd(const TriangleMesh& mesh, const NearestSurface& surface, const Vec3
   return surface.Find(mean / count).at.point;
 }
 
-Tube MakeTube(const TubePoints& points, const ImageFrame& frame, const std::set<std::string>& known, double spacing) {
+Tube MakeTube(const TubePoints& points, const ImageFrame& frame, const std::set<std::string>& known,
+              double spacing) {
   Tube tube;
   tube.name = points.name;
   tube.kind = points.kind == "artery" ? TubeKind::kArtery : TubeKind::kDuct;
@@ -227,7 +236,8 @@ Tube MakeTube(const TubePoints& points, const ImageFrame& frame, const std::set<
 
 }  // namespace
 
-core::Result<Patient> AssemblePatient(const ControlPoints& points, const std::vector<StructureMesh>& structures,
+core::Result<Patient> AssemblePatient(const ControlPoints& points,
+                                      const std::vector<StructureMesh>& structures,
                                       const RegionSettings& settings) {
   const ImageFrame frame(points);
   Patient patient;
@@ -238,8 +248,9 @@ core::Result<Patient> AssemblePatient(const ControlPoints& points, const std::ve
   }
   const int liver_index = patient.FindOrgan("liver"), gallbladder_index = patient.FindOrgan("gallbladder");
   if (liver_index < 0 || gallbladder_index < 0) {
-    return core::Error{core::ErrorCode::kPatientInvalid,
-                       "a patient needs the structures \"liver\" and \"gallbladder\"; place their control points"};
+    return core::Error{
+        core::ErrorCode::kPatientInvalid,
+        "a patient needs the structures \"liver\" and \"gallbladder\"; place their control points"};
   }
   Organ& liver = patient.organs[liver_index];
   Organ& gallbladder = patient.organs[gallbladder_index];
@@ -260,7 +271,8 @@ core::Result<Patient> AssemblePatient(const ControlPoints& points, const std::ve
   // the gallbladder's ends along its long axis; the cystic duct starts at the infundibulum
   Vec3 centre;
   Vec3 axis = FindLongAxis(gallbladder.mesh, centre);
-  const auto duct = std::find_if(patient.tubes.begin(), patient.tubes.end(), [](const Tube& t) { return t.name == "cystic_duct"; });
+  const auto duct = std::find_if(patient.tubes.begin(), patient.tubes.end(),
+                                 [](const Tube& t) { return t.name == "cystic_duct"; });
   const bool has_duct = duct != patient.tubes.end();
   const Vec3 towards_fundus = has_duct ? centre - duct->line.points.front() : Vec3{0, -1, 1};
   if (Dot(axis, towards_fundus) < 0) axis = -axis;
@@ -268,7 +280,8 @@ core::Result<Patient> AssemblePatient(const ControlPoints& points, const std::ve
   const Vec3 infundibulum = FindEnd(gallbladder.mesh, gallbladder_surface, -axis);
 
   const LandmarkPoint* fissure = points.FindLandmark("umbilical_fissure");
-  const double falciform_x = fissure ? frame.FromPixel(fissure->slice, fissure->pixel).x : infundibulum.x + 0.02;
+  const double falciform_x =
+      fissure ? frame.FromPixel(fissure->slice, fissure->pixel).x : infundibulum.x + 0.02;
   const LiverRegions regions = FindLiverRegions(liver.mesh, gallbladder_surface, falciform_x, settings);
   Bed bed = FindBed(gallbladder.mesh, liver.mesh, settings.bed_distance);
   if (bed.pairs.empty()) {
@@ -314,8 +327,9 @@ core::Result<Patient> AssemblePatient(const ControlPoints& points, const std::ve
   if (!points.origin_landmark.empty()) {
     const Landmark* anchor = patient.FindLandmark(points.origin_landmark);
     if (anchor == nullptr) {
-      return core::Error{core::ErrorCode::kPatientInvalid,
-                         "the origin's landmark '" + points.origin_landmark + "' is not known; use fundus or infundibulum"};
+      return core::Error{
+          core::ErrorCode::kPatientInvalid,
+          "the origin's landmark '" + points.origin_landmark + "' is not known; use fundus or infundibulum"};
     }
     const Vec3 wanted = kMetresPerMm * Vec3{points.origin_mm[0], points.origin_mm[1], points.origin_mm[2]};
     const Vec3 shift = wanted - anchor->position;

@@ -43,8 +43,9 @@ std::vector<Segment> Cut(const geometry::TriangleMesh& mesh, double height) {
 core::Result<Judgement> Judge(const LabelVolume& reference, const ControlPoints& points, int label,
                               const geometry::TriangleMesh& mesh, std::array<int, 2> left_out) {
   const auto mismatch = [](const std::string& why) {
-    return core::Error{core::ErrorCode::kLabelsMismatch,
-                       "the reference labels do not belong to these images: " + why + "; name the labels of this series"};
+    return core::Error{
+        core::ErrorCode::kLabelsMismatch,
+        "the reference labels do not belong to these images: " + why + "; name the labels of this series"};
   };
   // the axes: world left, cranial, anterior against LPS left, posterior, superior
   const auto directions = AxisDirections(points);
@@ -53,16 +54,19 @@ core::Result<Judgement> Judge(const LabelVolume& reference, const ControlPoints&
     const auto& d = directions[axis];
     const double lps[3] = {d[0], -d[2], d[1]};
     double along = 0, length = 0;
-    for (int k = 0; k < 3; ++k) along += lps[k] * reference.direction[axis][k], length += std::pow(reference.direction[axis][k], 2);
+    for (int k = 0; k < 3; ++k)
+      along += lps[k] * reference.direction[axis][k], length += std::pow(reference.direction[axis][k], 2);
     step[axis] = std::sqrt(length);
-    if (std::fabs(along - step[axis]) > 1e-3) return mismatch("axis " + std::to_string(axis + 1) + " points elsewhere");
+    if (std::fabs(along - step[axis]) > 1e-3)
+      return mismatch("axis " + std::to_string(axis + 1) + " points elsewhere");
   }
   const double extents[3] = {points.width * points.pixel_mm, points.height * points.pixel_mm,
                              (points.last_slice - points.first_slice + 1) * points.slice_mm};
   for (int axis = 0; axis < 3; ++axis) {
     if (std::fabs(reference.size[axis] * step[axis] - extents[axis]) > kExtentTolerance) {
-      return mismatch("axis " + std::to_string(axis + 1) + " covers " + std::to_string(reference.size[axis] * step[axis]) +
-                      " mm, the images " + std::to_string(extents[axis]) + " mm");
+      return mismatch("axis " + std::to_string(axis + 1) + " covers " +
+                      std::to_string(reference.size[axis] * step[axis]) + " mm, the images " +
+                      std::to_string(extents[axis]) + " mm");
     }
   }
 
@@ -77,7 +81,8 @@ core::Result<Judgement> Judge(const LabelVolume& reference, const ControlPoints&
       if (s.ay > s.by) std::swap(s.ax, s.bx), std::swap(s.ay, s.by);
       int j = std::max(0, static_cast<int>(std::floor((s.ay + 0.5 * points.pixel_mm) / step[1] - 0.5)));
       for (; j < reference.size[1] && row_position(j) < s.by; ++j) {
-        if (row_position(j) >= s.ay) crossings[j].push_back(s.ax + (s.bx - s.ax) * (row_position(j) - s.ay) / (s.by - s.ay));
+        if (row_position(j) >= s.ay)
+          crossings[j].push_back(s.ax + (s.bx - s.ax) * (row_position(j) - s.ay) / (s.by - s.ay));
       }
     }
     for (int j = 0; j < reference.size[1]; ++j) {
@@ -88,7 +93,8 @@ core::Result<Judgement> Judge(const LabelVolume& reference, const ControlPoints&
         const double x = (i + 0.5) * step[0] - 0.5 * points.pixel_mm;
         while (passed < row.size() && row[passed] < x) ++passed;
         const bool is_built = passed % 2 == 1;
-        const std::size_t voxel = (static_cast<std::size_t>(k) * reference.size[1] + j) * reference.size[0] + i;
+        const std::size_t voxel =
+            (static_cast<std::size_t>(k) * reference.size[1] + j) * reference.size[0] + i;
         const bool is_expected = reference.labels[voxel] == label;
         built += is_built, expected += is_expected, both += is_built && is_expected;
       }

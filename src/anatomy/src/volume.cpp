@@ -15,7 +15,8 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kMarginMm = 3.0;  // around the shape, so that the border's distances are right
 
 /// Lower envelope of the parabolas f(q) + (p - q)^2, in place (Felzenszwalb and Huttenlocher, algorithm 1).
-void TransformLine(std::vector<double>& f, std::vector<double>& result, std::vector<int>& apex, std::vector<double>& from) {
+void TransformLine(std::vector<double>& f, std::vector<double>& result, std::vector<int>& apex,
+                   std::vector<double>& from) {
   const int n = static_cast<int>(f.size());
   int k = -1;
   for (int q = 0; q < n; ++q) {
@@ -41,8 +42,10 @@ void TransformLine(std::vector<double>& f, std::vector<double>& result, std::vec
   f = result;
 }
 
-/// Slope at each knot of the monotone cubic through the values (Fritsch and Carlson; three-point start values).
-void CalcMonotoneSlopes(std::span<const double> knots, std::span<const double> values, std::span<double> slopes) {
+/// Slope at each knot of the monotone cubic through the values (Fritsch and Carlson; three-point start
+/// values).
+void CalcMonotoneSlopes(std::span<const double> knots, std::span<const double> values,
+                        std::span<double> slopes) {
   const std::size_t n = knots.size();
   const auto secant = [&](std::size_t i) { return (values[i + 1] - values[i]) / (knots[i + 1] - knots[i]); };
   slopes[0] = secant(0);
@@ -62,10 +65,167 @@ void CalcMonotoneSlopes(std::span<const double> knots, std::span<const double> v
 
 double CubicHermite(double t, double h, double a, double b, double slope_a, double slope_b) {
   const double t2 = t * t, t3 = t2 * t;
-  return (2 * t3 - 3 * t2 + 1) * a + (t3 - 2 * t2 + t) * h * slope_a + (3 * t2 - 2 * t3) * b + (t3 - t2) * h * slope_b;
+  return (2 * t3 - 3 * t2 + 1) * a + (t3 - 2 * t2 + t) * h * slope_a + (3 * t2 - 2 * t3) * b +
+         (t3 - t2) * h * slope_b;
+}
+
+/// Index of the nearest set pixel for every pixel, by the same envelopes as CalcSquaredDistances.
+/// \pre at least one pixel is set
+std::vector<std::uint32_t> FindNearestSet(std::span<const std::uint8_t> set, int width, int height) {
+  const auto longest = static_cast<std::size_t>(std::max(width, height));
+  std::vector<double> f(longest), from(longest + 1);
+  std::vector<int> apex(longest);
+  // nearest set pixel in the column, then the best column of the row
+  std::vector<int> row_of(set.size(), -1);
+  for (int x = 0; x < width; ++x) {
+    int last = -1;
+    for (int y = 0; y < height; ++y) {
+      const std::size_t i = static_cast<std::size_t>(y) * width + x;
+      if (set[i]) last = y;
+      row_of[i] = last;
+    }
+    last = -1;
+    for (int y = height - 1; y >= 0; --y) {
+      const std::size_t i = static_cast<std::size_t>(y) * width + x;
+      if (set[i]) last = y;
+      if (last >= 0 && (row_of[i] < 0 || last - y < y - row_of[i])) row_of[i] = last;
+    }
+  }
+  std::vector<std::uint32_t> nearest(set.size(), 0);
+  for (int y = 0; y < height; ++y) {
+    const std::size_t row = static_cast<std::size_t>(y) * width;
+    for (int x = 0; x < width; ++x) {
+      const int r = row_of[row + x];
+      f[x] = r < 0 ? kInfinity : static_cast<double>(r - y) * (r - y);
+    }
+    int k = -1;
+    for (int q = 0; q < width; ++q) {
+      if (f[q] == kInfinity) continue;
+      double cross = -kInfinity;
+      while (k >= 0) {
+        const int v = apex[k];
+        cross = ((f[q] + static_cast<double>(q) * q) - (f[v] + static_cast<double>(v) * v)) / (2.0 * (q - v));
+        if (cross > from[k]) break;
+        --k;
+      }
+      if (k < 0) cross = -kInfinity;
+      ++k;
+      apex[k] = q;
+      from[k] = cross;
+    }
+    int i = 0;
+    for (int x = 0; x < width; ++x) {
+      while (i < k && from[i + 1] < x) ++i;
+      nearest[row + x] =
+          static_cast<std::uint32_t>(static_cast<std::size_t>(row_of[row + apex[i]]) * width + apex[i]);
+    }
+  }
+  return nearest;
+}
+
+/// Part of the way from the shared area to the far end of the pixels that only `own` has, for each of them: 0
+/// at the shared area, 1 at the end; negative for parts that touch nothing shared.
+std::vector<float> CalcWayOut(const std::vector<std::uint8_t>& own, const std::vector<std::uint8_t>& shared,
+                              int width, int height) {
+  std::vector<float> way(own.size(), -1.0f);
+  // only parts that hang together with the shared area
+  std::vector<std::size_t> stack;
+  std::vector<std::uint8_t> reached(own.size(), 0);
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    if (shared[i]) reached[i] = 1, stack.push_back(i);
+  }
+  if (stack.empty()) return way;
+  while (!stack.empty()) {
+    const std::size_t here = stack.back();
+    stack.pop_back();
+    const int x = static_cast<int>(here % width), y = static_cast<int>(here / width);
+    for (int dy = -1; dy <= 1; ++dy) {
+      for (int dx = -1; dx <= 1; ++dx) {
+        if (x + dx < 0 || y + dy < 0 || x + dx >= width || y + dy >= height) continue;
+        const std::size_t to = static_cast<std::size_t>(y + dy) * width + x + dx;
+        if (!own[to] || reached[to]) continue;
+        reached[to] = 1;
+        stack.push_back(to);
+      }
+    }
+  }
+  const auto nearest = FindNearestSet(shared, width, height);
+  const auto distance_of = [&](std::size_t i) {
+    const double dx = static_cast<double>(i % width) - static_cast<double>(nearest[i] % width);
+    const double dy = static_cast<double>(i / width) - static_cast<double>(nearest[i] / width);
+    return static_cast<float>(std::sqrt(dx * dx + dy * dy));
+  };
+  // how far the pixels reach that start from each place of the shared border
+  std::vector<float> reach(own.size(), 0.0f);
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    if (own[i] && !shared[i] && reached[i]) reach[nearest[i]] = std::max(reach[nearest[i]], distance_of(i));
+  }
+  constexpr int kWindow = 2;  // neighbours along the border share their reach [pixels]
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    if (!own[i] || shared[i] || !reached[i]) continue;
+    const int x = static_cast<int>(nearest[i] % width), y = static_cast<int>(nearest[i] / width);
+    float longest = 0.0f;
+    for (int v = std::max(0, y - kWindow); v <= std::min(height - 1, y + kWindow); ++v) {
+      for (int u = std::max(0, x - kWindow); u <= std::min(width - 1, x + kWindow); ++u) {
+        longest = std::max(longest, reach[static_cast<std::size_t>(v) * width + u]);
+      }
+    }
+    way[i] = (distance_of(i) - 0.5f) / longest;
+  }
+  return way;
 }
 
 }  // namespace
+
+std::vector<FilledSlice> InsertSlices(std::span<const FilledSlice> slices, double step_mm) {
+  TROCAR_ASSERT(step_mm > 0);
+  std::vector<FilledSlice> dense;
+  for (std::size_t s = 0; s < slices.size(); ++s) {
+    dense.push_back(slices[s]);
+    if (s + 1 == slices.size()) break;
+    const FilledSlice &a = slices[s], &b = slices[s + 1];
+    const int parts = static_cast<int>(std::ceil((b.position_mm - a.position_mm) / step_mm - 1e-9));
+    if (parts < 2) continue;
+    // both in one rectangle
+    Mask frame;
+    frame.x0 = std::min(a.mask.x0, b.mask.x0), frame.y0 = std::min(a.mask.y0, b.mask.y0);
+    frame.width = std::max(a.mask.x0 + a.mask.width, b.mask.x0 + b.mask.width) - frame.x0;
+    frame.height = std::max(a.mask.y0 + a.mask.height, b.mask.y0 + b.mask.height) - frame.y0;
+    const std::size_t count = static_cast<std::size_t>(frame.width) * frame.height;
+    const auto place = [&](const Mask& mask) {
+      std::vector<std::uint8_t> set(count, 0);
+      for (int y = 0; y < mask.height; ++y) {
+        for (int x = 0; x < mask.width; ++x) {
+          set[static_cast<std::size_t>(y + mask.y0 - frame.y0) * frame.width + x + mask.x0 - frame.x0] =
+              mask.At(x, y);
+        }
+      }
+      return set;
+    };
+    const auto set_a = place(a.mask), set_b = place(b.mask);
+    std::vector<std::uint8_t> shared(count);
+    for (std::size_t i = 0; i < count; ++i) shared[i] = set_a[i] & set_b[i];
+    const auto way_a = CalcWayOut(set_a, shared, frame.width, frame.height);
+    const auto way_b = CalcWayOut(set_b, shared, frame.width, frame.height);
+    const auto distance_a = CalcSignedDistances(set_a, frame.width, frame.height);
+    const auto distance_b = CalcSignedDistances(set_b, frame.width, frame.height);
+    for (int part = 1; part < parts; ++part) {
+      const double t = static_cast<double>(part) / parts;
+      frame.inside.assign(count, 0);
+      for (std::size_t i = 0; i < count; ++i) {
+        bool inside = shared[i] != 0;
+        if (set_a[i] && !set_b[i]) {
+          inside = way_a[i] >= 0 ? way_a[i] < 1.0 - t : (1.0 - t) * distance_a[i] + t * distance_b[i] > 0;
+        } else if (set_b[i] && !set_a[i]) {
+          inside = way_b[i] >= 0 ? way_b[i] < t : (1.0 - t) * distance_a[i] + t * distance_b[i] > 0;
+        }
+        frame.inside[i] = inside;
+      }
+      dense.push_back({a.position_mm + t * (b.position_mm - a.position_mm), frame});
+    }
+  }
+  return dense;
+}
 
 std::vector<double> CalcSquaredDistances(std::span<const std::uint8_t> set, int width, int height) {
   TROCAR_ASSERT(set.size() == static_cast<std::size_t>(width) * height);
@@ -102,7 +262,18 @@ std::vector<double> CalcSignedDistances(std::span<const std::uint8_t> set, int w
   return signed_distance;
 }
 
-core::Result<ScalarVolume> MakeVolume(std::span<const FilledSlice> slices, double pixel_mm, double spacing_mm) {
+void OpenMask(Mask& mask, double radius_px) {
+  const auto depth = CalcSignedDistances(mask.inside, mask.width, mask.height);
+  std::vector<std::uint8_t> core(mask.inside.size());
+  for (std::size_t i = 0; i < core.size(); ++i) core[i] = depth[i] >= radius_px;
+  const auto squared = CalcSquaredDistances(core, mask.width, mask.height);
+  if (squared.empty() || squared.front() == kInfinity) return;
+  for (std::size_t i = 0; i < core.size(); ++i)
+    mask.inside[i] = mask.inside[i] && squared[i] <= (radius_px + 0.5) * (radius_px + 0.5);
+}
+
+core::Result<ScalarVolume> MakeVolume(std::span<const FilledSlice> slices, double pixel_mm,
+                                      double spacing_mm) {
   TROCAR_ASSERT(slices.size() >= 2 && pixel_mm > 0 && spacing_mm > 0);
   // common rectangle of pixels
   int x0 = std::numeric_limits<int>::max(), y0 = x0, x1 = std::numeric_limits<int>::min(), y1 = x1;
@@ -123,8 +294,10 @@ core::Result<ScalarVolume> MakeVolume(std::span<const FilledSlice> slices, doubl
   volume.spacing = spacing_mm;
   const double first_gap = 0.5 * (slices[1].position_mm - slices[0].position_mm);
   const double last_gap = 0.5 * (slices.back().position_mm - slices[slices.size() - 2].position_mm);
-  const double low[3] = {(x0 + 1) * pixel_mm, (y0 + 1) * pixel_mm, slices.front().position_mm - first_gap - spacing_mm};
-  const double high[3] = {(x1 - 2) * pixel_mm, (y1 - 2) * pixel_mm, slices.back().position_mm + last_gap + spacing_mm};
+  const double low[3] = {(x0 + 1) * pixel_mm, (y0 + 1) * pixel_mm,
+                         slices.front().position_mm - first_gap - spacing_mm};
+  const double high[3] = {(x1 - 2) * pixel_mm, (y1 - 2) * pixel_mm,
+                          slices.back().position_mm + last_gap + spacing_mm};
   for (int axis = 0; axis < 3; ++axis) {
     volume.first[axis] = static_cast<int>(std::ceil(low[axis] / spacing_mm));
     volume.size[axis] = static_cast<int>(std::floor(high[axis] / spacing_mm)) - volume.first[axis] + 1;
@@ -155,7 +328,8 @@ core::Result<ScalarVolume> MakeVolume(std::span<const FilledSlice> slices, doubl
         const double* row = &fine[static_cast<std::size_t>(iy) * width + ix];
         const double top = row[0] + (x - ix) * (row[1] - row[0]);
         const double bottom = row[width] + (x - ix) * (row[width + 1] - row[width]);
-        coarse[static_cast<std::size_t>(j) * volume.size[0] + i] = pixel_mm * (top + (y - iy) * (bottom - top));
+        coarse[static_cast<std::size_t>(j) * volume.size[0] + i] =
+            pixel_mm * (top + (y - iy) * (bottom - top));
       }
     }
     knots.push_back(slice.position_mm);
@@ -181,8 +355,8 @@ core::Result<ScalarVolume> MakeVolume(std::span<const FilledSlice> slices, doubl
       } else {
         while (knots[segment + 1] <= z) ++segment;
         const double h = knots[segment + 1] - knots[segment];
-        value = CubicHermite((z - knots[segment]) / h, h, values[segment], values[segment + 1], slopes[segment],
-                             slopes[segment + 1]);
+        value = CubicHermite((z - knots[segment]) / h, h, values[segment], values[segment + 1],
+                             slopes[segment], slopes[segment + 1]);
       }
       volume.values[plane * k + p] = static_cast<float>(value);
     }
@@ -244,7 +418,8 @@ void KeepLargestPart(ScalarVolume& volume) {
   const auto keep = static_cast<float>(0.5 * volume.spacing);
   for (const bool inside : {true, false}) {
     const auto sizes = number_parts(inside);
-    const auto largest = static_cast<std::uint32_t>(std::max_element(sizes.begin(), sizes.end()) - sizes.begin());
+    const auto largest =
+        static_cast<std::uint32_t>(std::max_element(sizes.begin(), sizes.end()) - sizes.begin());
     for (std::size_t v = 0; v < part.size(); ++v) {
       if (part[v] != 0 && part[v] != largest) volume.values[v] = inside ? -keep : keep;
     }

@@ -36,7 +36,8 @@ TEST(FillContour, EqualsTheEvenOddRuleForRandomStars) {
     FillContour(contour, mask);
     for (int y = 0; y < 50; ++y) {
       for (int x = 0; x < 50; ++x) {
-        ASSERT_EQ(mask.At(x, y) != 0, IsInside(contour, x + 1.3e-7, y + 2.9e-7)) << "seed " << seed << " at " << x << ", " << y;
+        ASSERT_EQ(mask.At(x, y) != 0, IsInside(contour, x + 1.3e-7, y + 2.9e-7))
+            << "seed " << seed << " at " << x << ", " << y;
       }
     }
   }
@@ -44,8 +45,9 @@ TEST(FillContour, EqualsTheEvenOddRuleForRandomStars) {
 
 TEST(FillContour, FindsAPocketNarrowerThanAPixel) {
   // a C whose mouth passes between two columns of centres: its inside is still outside
-  const std::vector<Vec2> contour = {{2.5, 2.5}, {20.5, 2.5}, {20.5, 9.4}, {10.5, 9.4}, {10.5, 6.5}, {6.5, 6.5},
-                                     {6.5, 14.5}, {10.5, 14.5}, {10.5, 9.6}, {20.5, 9.6}, {20.5, 18.5}, {2.5, 18.5}};
+  const std::vector<Vec2> contour = {{2.5, 2.5},  {20.5, 2.5}, {20.5, 9.4},  {10.5, 9.4},
+                                     {10.5, 6.5}, {6.5, 6.5},  {6.5, 14.5},  {10.5, 14.5},
+                                     {10.5, 9.6}, {20.5, 9.6}, {20.5, 18.5}, {2.5, 18.5}};
   Mask mask{0, 0, 24, 24, std::vector<std::uint8_t>(576, 0)};
   FillContour(contour, mask);
   EXPECT_EQ(mask.At(8, 10), 0);

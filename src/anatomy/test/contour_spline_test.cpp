@@ -12,7 +12,8 @@ namespace {
 
 TEST(FitContour, FollowsACircle) {
   std::vector<Vec2> points;
-  for (int i = 0; i < 12; ++i) points.push_back({50 + 30 * std::cos(i * M_PI / 6), 40 + 30 * std::sin(i * M_PI / 6)});
+  for (int i = 0; i < 12; ++i)
+    points.push_back({50 + 30 * std::cos(i * M_PI / 6), 40 + 30 * std::sin(i * M_PI / 6)});
   for (const Vec2& p : FitContour(points)) EXPECT_NEAR(Norm(p - Vec2{50, 40}), 30.0, 0.02);
 }
 

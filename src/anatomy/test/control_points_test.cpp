@@ -22,11 +22,14 @@ ControlPoints MakePoints() {
   points.origin_landmark = "fundus";
   points.origin_mm = {-75, 95, -70};
   Structure liver;
-  liver.name = "liver", liver.triangle_budget = 500, liver.reference_label = 1, liver.reference_left_out = {4, 6};
+  liver.name = "liver", liver.triangle_budget = 500, liver.reference_label = 1,
+  liver.reference_left_out = {4, 6};
   liver.adaption.max_shift_px = 2.5;
-  liver.slices = {{3, {{{10, 10}, {50.25, 12}, {30, 60}}}, {}}, {7, {{{10, 10}, {50, 12}, {30, 60}}}, {{{20, 20}, {25, 20}, {22, 30}}}}};
+  liver.slices = {{3, {{{10, 10}, {50.25, 12}, {30, 60}}}, {}},
+                  {7, {{{10, 10}, {50, 12}, {30, 60}}}, {{{20, 20}, {25, 20}, {22, 30}}}}};
   points.structures = {liver};
-  points.tubes = {{"cystic_duct", "duct", "gallbladder", "", false, {{3, {20, 20}, 1.5}, {4.5, {22, 20}, 1.4}}}};
+  points.tubes = {
+      {"cystic_duct", "duct", "gallbladder", "", false, {{3, {20, 20}, 1.5}, {4.5, {22, 20}, 1.4}}}};
   points.landmarks = {{"umbilical_fissure", 5, {44, 33}}};
   return points;
 }
@@ -64,13 +67,16 @@ TEST(ControlPoints, RejectAPointOutsideTheImage) {
   EXPECT_EQ(CodeOf(Replaced(text, "[50.25, 12]", "[99, 79]")), ErrorCode::kNone);
   EXPECT_EQ(CodeOf(Replaced(text, "[50.25, 12]", "[50.25, -0.5]")), ErrorCode::kControlPointOutside);
   const auto parsed = ParseControlPoints(Replaced(text, "[50.25, 12]", "[100, 12]"), "test");
-  EXPECT_NE(parsed.error().message.find("slices[0].contours[0][1]"), std::string::npos) << parsed.error().message;
+  EXPECT_NE(parsed.error().message.find("slices[0].contours[0][1]"), std::string::npos)
+      << parsed.error().message;
 }
 
 TEST(ControlPoints, RejectAContourOfTwoPoints) {
   const std::string text = FormatControlPoints(MakePoints());
-  EXPECT_EQ(CodeOf(Replaced(text, "[10, 10], [50.25, 12], [30, 60]", "[10, 10], [30, 60]")), ErrorCode::kContourTooShort);
-  EXPECT_EQ(CodeOf(Replaced(text, "[10, 10], [50.25, 12], [30, 60]", "[10, 10], [30, 60], [10, 10]")), ErrorCode::kContourTooShort);
+  EXPECT_EQ(CodeOf(Replaced(text, "[10, 10], [50.25, 12], [30, 60]", "[10, 10], [30, 60]")),
+            ErrorCode::kContourTooShort);
+  EXPECT_EQ(CodeOf(Replaced(text, "[10, 10], [50.25, 12], [30, 60]", "[10, 10], [30, 60], [10, 10]")),
+            ErrorCode::kContourTooShort);
 }
 
 TEST(ControlPoints, RejectWhatIsMisspeltOrContradicts) {

@@ -23,7 +23,8 @@ ColorImage MakeDisc(double softness, double noise, std::uint64_t seed) {
       const double outside = 0.5 * (1 + std::erf(away / (softness * std::sqrt(2.0))));
       const double low[3] = {110, 30, 25}, high[3] = {200, 170, 140};
       for (int c = 0; c < 3; ++c) {
-        const double value = low[c] + outside * (high[c] - low[c]) + noise * (random.Uniform() + random.Uniform() - 1);
+        const double value =
+            low[c] + outside * (high[c] - low[c]) + noise * (random.Uniform() + random.Uniform() - 1);
         image.At(x, y)[c] = static_cast<std::uint8_t>(std::clamp(std::round(value), 0.0, 255.0));
       }
     }
@@ -34,12 +35,15 @@ ColorImage MakeDisc(double softness, double noise, std::uint64_t seed) {
 std::vector<Vec2> MakeRing(double radius, int n = 24) {
   std::vector<Vec2> ring;
   for (int i = 0; i < n; ++i) {
-    ring.push_back({kCentre + radius * std::cos(2 * M_PI * i / n), kCentre + radius * std::sin(2 * M_PI * i / n)});
+    ring.push_back(
+        {kCentre + radius * std::cos(2 * M_PI * i / n), kCentre + radius * std::sin(2 * M_PI * i / n)});
   }
   return ring;
 }
 
-double RadiusOf(const Vec2& p) { return std::hypot(p.x - kCentre, p.y - kCentre); }
+double RadiusOf(const Vec2& p) {
+  return std::hypot(p.x - kCentre, p.y - kCentre);
+}
 
 TEST(AdaptToEdges, FindsABlurredDiscInNoise) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {

@@ -23,7 +23,8 @@ geometry::TriangleMesh MakeBumpyTorus() {
       for (int i = 0; i < 64; ++i) {
         const Vec3 p = volume.Position(i, j, k);
         const double ring = std::hypot(std::hypot(p.x, p.y) - 20, p.z);
-        volume.values[volume.Index(i, j, k)] = static_cast<float>(7.5 + std::sin(p.x * 0.4) - ring > 0 ? 0.5 : -0.5);
+        volume.values[volume.Index(i, j, k)] =
+            static_cast<float>(7.5 + std::sin(p.x * 0.4) - ring > 0 ? 0.5 : -0.5);
       }
     }
   }
@@ -81,7 +82,8 @@ TEST(DecimateMesh, RefusesAnOpenMesh) {
 TEST(DecimateMesh, GivesTheSameBitsTwice) {
   auto mesh = MakeBumpyTorus();
   SmoothMesh(mesh);
-  const auto first = DecimateMesh(mesh, {.triangle_budget = 500}), second = DecimateMesh(mesh, {.triangle_budget = 500});
+  const auto first = DecimateMesh(mesh, {.triangle_budget = 500}),
+             second = DecimateMesh(mesh, {.triangle_budget = 500});
   ASSERT_TRUE(first.ok() && second.ok());
   EXPECT_EQ(*first, *second);
 }

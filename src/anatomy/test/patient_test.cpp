@@ -21,11 +21,20 @@ Patient MakePatient() {
   Patient patient;
   patient.name = "Test";
   patient.provenance = "made up";
-  patient.organs = {{"liver", geometry::MakeSphere({0, 0.1, -0.1}, 0.05, 2), {{kDiaphragmaticFace, {1, 5, 9}}, {kFalciform, {}}}},
-                    {"gallbladder", geometry::MakeSphere({0, 0.04, -0.1}, 0.01, 1), {{kGallbladderBed, {0, 2}}}}};
+  patient.organs = {
+      {"liver",
+       geometry::MakeSphere({0, 0.1, -0.1}, 0.05, 2),
+       {{kDiaphragmaticFace, {1, 5, 9}}, {kFalciform, {}}}},
+      {"gallbladder", geometry::MakeSphere({0, 0.04, -0.1}, 0.01, 1), {{kGallbladderBed, {0, 2}}}}};
   patient.attachments = {{kGallbladderBed, 1, 0, 0, 4}, {kGallbladderBed, 1, 2, 0, 7}};
-  patient.tubes = {{"common_bile_duct", TubeKind::kDuct, "", "", {{{0, 0, 0}, {0.01, 0, 0}}, {0.003, 0.0025}}, true},
-                   {"cystic_artery", TubeKind::kArtery, "common_bile_duct", "gallbladder", {{{0, 0, 0}, {0, 0.01, 0}}, {0.001, 0.001}}, false}};
+  patient.tubes = {
+      {"common_bile_duct", TubeKind::kDuct, "", "", {{{0, 0, 0}, {0.01, 0, 0}}, {0.003, 0.0025}}, true},
+      {"cystic_artery",
+       TubeKind::kArtery,
+       "common_bile_duct",
+       "gallbladder",
+       {{{0, 0, 0}, {0, 0.01, 0}}, {0.001, 0.001}},
+       false}};
   patient.landmarks = {{"umbilicus", {0, 0, 0}}, {"fundus", {-0.075, 0.095, -0.07}}};
   return patient;
 }
@@ -33,7 +42,8 @@ Patient MakePatient() {
 class PatientFolder : public testing::Test {
  protected:
   void SetUp() override {
-    base_ = fs::path(testing::TempDir()) / ("patient_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+    base_ = fs::path(testing::TempDir()) /
+            ("patient_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
     fs::remove_all(base_);
     fs::create_directories(base_);
     folder_ = base_ / "patient";
@@ -154,14 +164,25 @@ TEST(CheckPatient, FindsEachFault) {
   EXPECT_EQ(code_after([](Patient& p) { p.organs.clear(); }), ErrorCode::kPatientInvalid);
   EXPECT_EQ(code_after([](Patient& p) { p.organs[1].name = "liver"; }), ErrorCode::kPatientInvalid);
   EXPECT_EQ(code_after([](Patient& p) { p.organs[1].name = "../liver"; }), ErrorCode::kPatientInvalid);
-  EXPECT_EQ(code_after([](Patient& p) { for (auto& t : p.organs[0].mesh.triangles) std::swap(t[0], t[1]); }), ErrorCode::kPatientInvalid);
-  EXPECT_EQ(code_after([](Patient& p) { p.organs[0].regions[0].vertices = {5, 1}; }), ErrorCode::kPatientInvalid);
+  EXPECT_EQ(code_after([](Patient& p) {
+              for (auto& t : p.organs[0].mesh.triangles) std::swap(t[0], t[1]);
+            }),
+            ErrorCode::kPatientInvalid);
+  EXPECT_EQ(code_after([](Patient& p) {
+              p.organs[0].regions[0].vertices = {5, 1};
+            }),
+            ErrorCode::kPatientInvalid);
   EXPECT_EQ(code_after([](Patient& p) { p.attachments[0].organ_b = 2; }), ErrorCode::kPatientInvalid);
   EXPECT_EQ(code_after([](Patient& p) { p.attachments[0].vertex_b = 1u << 30; }), ErrorCode::kPatientInvalid);
   EXPECT_EQ(code_after([](Patient& p) { p.tubes[0].line.radii[0] = 0; }), ErrorCode::kPatientInvalid);
-  EXPECT_EQ(code_after([](Patient& p) { p.tubes[0].line.points[0].x = std::numeric_limits<double>::quiet_NaN(); }), ErrorCode::kPatientInvalid);
+  EXPECT_EQ(
+      code_after([](Patient& p) { p.tubes[0].line.points[0].x = std::numeric_limits<double>::quiet_NaN(); }),
+      ErrorCode::kPatientInvalid);
   EXPECT_EQ(code_after([](Patient& p) { p.tubes[1].from = "aorta"; }), ErrorCode::kPatientInvalid);
-  EXPECT_EQ(code_after([](Patient& p) { p.organs[0].mesh.positions[0].x = std::numeric_limits<double>::infinity(); }), ErrorCode::kPatientInvalid);
+  EXPECT_EQ(code_after([](Patient& p) {
+              p.organs[0].mesh.positions[0].x = std::numeric_limits<double>::infinity();
+            }),
+            ErrorCode::kPatientInvalid);
   EXPECT_EQ(code_after([](Patient& p) { p.landmarks[1].name = "umbilicus"; }), ErrorCode::kPatientInvalid);
 }
 

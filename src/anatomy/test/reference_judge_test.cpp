@@ -39,7 +39,8 @@ LabelVolume MakeBall() {
 }
 
 TEST(Judge, FindsTheSameBallEqual) {
-  const auto judged = Judge(MakeBall(), MakeSeries(), 3, geometry::MakeSphere({25, 20, 125}, kRadius, 5), {0, -1});
+  const auto judged =
+      Judge(MakeBall(), MakeSeries(), 3, geometry::MakeSphere({25, 20, 125}, kRadius, 5), {0, -1});
   ASSERT_TRUE(judged.ok()) << judged.error().Text();
   EXPECT_NEAR(judged->volume_ml, 4.0 / 3.0 * M_PI * 1.728, 0.1);
   EXPECT_NEAR(judged->ratio, 1.0, 0.01);
@@ -48,7 +49,8 @@ TEST(Judge, FindsTheSameBallEqual) {
 
 TEST(Judge, HalvesOfABallOverlapAsTheFormulaSays) {
   // a ball moved by its radius shares 5/16 of its volume
-  const auto judged = Judge(MakeBall(), MakeSeries(), 3, geometry::MakeSphere({25 + kRadius, 20, 125}, kRadius, 5), {0, -1});
+  const auto judged =
+      Judge(MakeBall(), MakeSeries(), 3, geometry::MakeSphere({25 + kRadius, 20, 125}, kRadius, 5), {0, -1});
   ASSERT_TRUE(judged.ok());
   EXPECT_NEAR(judged->dice, 5.0 / 16.0, 0.02);
 }

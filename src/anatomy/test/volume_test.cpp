@@ -15,7 +15,8 @@ namespace {
 
 Mask MakeDisc(double cx, double cy, double radius) {
   std::vector<Vec2> circle;
-  for (int i = 0; i < 90; ++i) circle.push_back({cx + radius * std::cos(i * M_PI / 45), cy + radius * std::sin(i * M_PI / 45)});
+  for (int i = 0; i < 90; ++i)
+    circle.push_back({cx + radius * std::cos(i * M_PI / 45), cy + radius * std::sin(i * M_PI / 45)});
   return FillArea({circle}, {});
 }
 
@@ -27,7 +28,8 @@ double VolumeOf(const ScalarVolume& volume) {
 TEST(CalcSquaredDistances, EqualsBruteForce) {
   for (std::uint64_t seed = 0; seed < 30; ++seed) {
     math::Random random(seed);
-    const int width = 1 + static_cast<int>(random.Uniform(0, 20)), height = 1 + static_cast<int>(random.Uniform(0, 20));
+    const int width = 1 + static_cast<int>(random.Uniform(0, 20)),
+              height = 1 + static_cast<int>(random.Uniform(0, 20));
     std::vector<std::uint8_t> set(static_cast<std::size_t>(width) * height);
     const double share = random.Uniform(0.01, 0.5);
     for (auto& s : set) s = random.Uniform() < share;
@@ -37,7 +39,8 @@ TEST(CalcSquaredDistances, EqualsBruteForce) {
         double nearest = std::numeric_limits<double>::infinity();
         for (int v = 0; v < height; ++v) {
           for (int u = 0; u < width; ++u) {
-            if (set[static_cast<std::size_t>(v) * width + u]) nearest = std::min<double>(nearest, (x - u) * (x - u) + (y - v) * (y - v));
+            if (set[static_cast<std::size_t>(v) * width + u])
+              nearest = std::min<double>(nearest, (x - u) * (x - u) + (y - v) * (y - v));
           }
         }
         ASSERT_EQ(distances[static_cast<std::size_t>(y) * width + x], nearest) << "seed " << seed;
@@ -49,7 +52,8 @@ TEST(CalcSquaredDistances, EqualsBruteForce) {
 TEST(MakeVolume, RecoversABallFromSparseSlices) {
   // slices every 4 mm through a ball of 30 mm, pixels of 0.5 mm
   std::vector<FilledSlice> slices;
-  for (int z = -28; z <= 28; z += 4) slices.push_back({100.0 + z, MakeDisc(120, 130, std::sqrt(900.0 - z * z) / 0.5)});
+  for (int z = -28; z <= 28; z += 4)
+    slices.push_back({100.0 + z, MakeDisc(120, 130, std::sqrt(900.0 - z * z) / 0.5)});
   const auto volume = MakeVolume(slices, 0.5, 1.0);
   ASSERT_TRUE(volume.ok());
   const double expected = 4.0 / 3.0 * M_PI * 27000.0;
@@ -82,16 +86,72 @@ TEST(MakeVolume, MovesASlantedTubeSmoothly) {
   }
 }
 
+TEST(InsertSlices, MovesTheEndOfAThinLobeEvenly) {
+  // a plate 4 pixels thick that ends 20 pixels further in the second slice
+  const auto plate = [](double end) {
+    return FillArea({{{10.5, 10.5}, {end + 0.5, 10.5}, {end + 0.5, 14.5}, {10.5, 14.5}}}, {});
+  };
+  const auto dense = InsertSlices(std::vector<FilledSlice>{{0, plate(30)}, {10, plate(50)}}, 1.0);
+  ASSERT_EQ(dense.size(), 11u);
+  for (int i = 0; i <= 10; ++i) {
+    EXPECT_DOUBLE_EQ(dense[i].position_mm, i);
+    // 4 rows from 11 to the end
+    EXPECT_NEAR(static_cast<double>(dense[i].mask.Count()) / 4.0, 20 + 2.0 * i, 1.3) << i;
+  }
+}
+
+TEST(InsertSlices, KeepsWhatIsSharedAndShrinksWhatIsAlone) {
+  const auto square = [](double x) {
+    return std::vector<Vec2>{{x, 10.5}, {x + 10, 10.5}, {x + 10, 20.5}, {x, 20.5}};
+  };
+  const std::vector<FilledSlice> slices = {{0, FillArea({square(10.5), square(40.5)}, {})},
+                                           {4, FillArea({square(10.5)}, {})}};
+  const auto dense = InsertSlices(slices, 1.0);
+  ASSERT_EQ(dense.size(), 5u);
+  for (const auto& slice : dense) EXPECT_EQ(slice.mask.At(15 - slice.mask.x0, 15 - slice.mask.y0), 1);
+  for (std::size_t i = 1; i < dense.size(); ++i) EXPECT_LE(dense[i].mask.Count(), dense[i - 1].mask.Count());
+  EXPECT_EQ(dense[3].mask.Count(), 100u);
+}
+
+TEST(OpenMask, CutsThinTipsOnly) {
+  // a square of 20 pixels with a spike 2 pixels thick
+  Mask mask = FillArea({{{10.5, 10.5},
+                         {30.5, 10.5},
+                         {30.5, 19.5},
+                         {45.5, 19.5},
+                         {45.5, 21.5},
+                         {30.5, 21.5},
+                         {30.5, 30.5},
+                         {10.5, 30.5}}},
+                       {});
+  EXPECT_EQ(mask.Count(), 430u);
+  OpenMask(mask, 3.0);
+  EXPECT_NEAR(static_cast<double>(mask.Count()), 400.0, 14.0);
+  EXPECT_EQ(mask.At(40 - mask.x0, 20 - mask.y0), 0);
+  // a straight border stays where it is for every radius, only corners are rounded
+  for (double radius = 0.5; radius < 6; radius += 0.3) {
+    Mask square = FillArea({{{10.5, 10.5}, {40.5, 10.5}, {40.5, 40.5}, {10.5, 40.5}}}, {});
+    OpenMask(square, radius);
+    EXPECT_GE(square.Count(), 892u - static_cast<unsigned>(4 * radius * radius)) << radius;
+  }
+  Mask thin = FillArea({{{10.5, 10.5}, {30.5, 10.5}, {30.5, 12.5}, {10.5, 12.5}}}, {});
+  OpenMask(thin, 3.0);
+  EXPECT_EQ(thin.Count(), 40u);
+}
+
 TEST(MakeVolume, RefusesAnEmptySlice) {
-  const std::vector<FilledSlice> slices = {{0, MakeDisc(20, 20, 5)}, {1, Mask{0, 0, 4, 4, std::vector<std::uint8_t>(16, 0)}}};
+  const std::vector<FilledSlice> slices = {{0, MakeDisc(20, 20, 5)},
+                                           {1, Mask{0, 0, 4, 4, std::vector<std::uint8_t>(16, 0)}}};
   const auto volume = MakeVolume(slices, 1, 1);
   ASSERT_FALSE(volume.ok());
   EXPECT_EQ(volume.error().code, core::ErrorCode::kContourEmpty);
 }
 
 TEST(Subtract, LeavesTheGap) {
-  const std::vector<FilledSlice> big = {{0, MakeDisc(40, 40, 20)}, {10, MakeDisc(40, 40, 20)}, {20, MakeDisc(40, 40, 20)}};
-  const std::vector<FilledSlice> small = {{5, MakeDisc(55, 40, 8)}, {10, MakeDisc(55, 40, 8)}, {15, MakeDisc(55, 40, 8)}};
+  const std::vector<FilledSlice> big = {
+      {0, MakeDisc(40, 40, 20)}, {10, MakeDisc(40, 40, 20)}, {20, MakeDisc(40, 40, 20)}};
+  const std::vector<FilledSlice> small = {
+      {5, MakeDisc(55, 40, 8)}, {10, MakeDisc(55, 40, 8)}, {15, MakeDisc(55, 40, 8)}};
   auto volume = MakeVolume(big, 1, 1);
   const auto other = MakeVolume(small, 1, 1);
   ASSERT_TRUE(volume.ok() && other.ok());

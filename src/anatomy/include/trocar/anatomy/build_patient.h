@@ -46,8 +46,8 @@ struct BuildReport {
   std::size_t overlays = 0;  ///< pictures written
 };
 
-/// Reads control points and the slices they name, adapts, fills, builds volumes, meshes and the patient, judges them
-/// when a reference is given, and writes patient and overlays last.
+/// Reads control points and the slices they name, adapts, fills, builds volumes, meshes and the patient,
+/// judges them when a reference is given, and writes patient and overlays last.
 ///
 /// Where two structures overlap, the one later in the file keeps the place.
 /// \return the first error of any step; then nothing has been written

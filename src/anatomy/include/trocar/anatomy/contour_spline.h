@@ -14,8 +14,8 @@ using math::Vec2;
 
 /// How far a spline may swing out between two control points.
 struct ContourSplineSettings {
-  double max_bulge = 0.35;   ///< distance from the chord, as part of the chord's length [-]
-  double step_px = 0.5;      ///< distance of the sampled points [pixels]
+  double max_bulge = 0.35;  ///< distance from the chord, as part of the chord's length [-]
+  double step_px = 0.5;     ///< distance of the sampled points [pixels]
 };
 
 /// Whether two sides of a closed polygon that are no neighbours touch or cross. O(n^2).
@@ -23,11 +23,10 @@ bool CrossesItself(std::span<const Vec2> polygon);
 
 /// Samples the closed spline through `points`.
 ///
-/// Where the spline overshoots (the curve swings further from a chord than max_bulge, or crosses itself though the
-/// polygon does not) the segment is divided by a point beside the chord's middle and the spline fitted again.
-/// \param points  (n) n >= 3 distinct points [pixels]
-/// \return closed polyline [pixels]; crosses itself only if the points' own polygon does
-/// \pre n >= 3 (TROCAR_ASSERT)
+/// Where the spline overshoots (the curve swings further from a chord than max_bulge, or crosses itself
+/// though the polygon does not) the segment is divided by a point beside the chord's middle and the spline
+/// fitted again. \param points  (n) n >= 3 distinct points [pixels] \return closed polyline [pixels]; crosses
+/// itself only if the points' own polygon does \pre n >= 3 (TROCAR_ASSERT)
 std::vector<Vec2> FitContour(std::span<const Vec2> points, const ContourSplineSettings& settings = {});
 
 }  // namespace trocar::anatomy

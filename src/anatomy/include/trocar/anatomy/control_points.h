@@ -23,10 +23,11 @@ struct SliceContours {
 
 /// One organ.
 struct Structure {
-  std::string name;          ///< "liver"
-  int triangle_budget = 0;   ///< the mesh has at most this many triangles
-  int reference_label = 0;   ///< value in a reference label map, 0 if it has none
-  std::array<int, 2> reference_left_out = {0, -1};  ///< first and last slice where the reference is known to be wrong
+  std::string name;         ///< "liver"
+  int triangle_budget = 0;  ///< the mesh has at most this many triangles
+  int reference_label = 0;  ///< value in a reference label map, 0 if it has none
+  std::array<int, 2> reference_left_out = {
+      0, -1};  ///< first and last slice where the reference is known to be wrong
   EdgeAdaptionSettings adaption;
   std::vector<SliceContours> slices;  ///< ascending
 };
@@ -57,12 +58,12 @@ struct LandmarkPoint {
 struct ControlPoints {
   std::string name;
   std::string provenance;
-  std::string image_pattern;                    ///< "image-{slice:04}.jpeg"
-  int first_slice = 0, last_slice = 0;          ///< numbers of the series, first <= last
-  int width = 0, height = 0;                    ///< [pixels]
-  double pixel_mm = 1.0, slice_mm = 1.0;        ///< distance between pixels and between slices
-  std::array<std::string, 3> axes;              ///< where column, row and slice number grow to: "left", "anterior", ...
-  std::string origin_landmark;                  ///< landmark of the built patient whose place in the world is given
+  std::string image_pattern;              ///< "image-{slice:04}.jpeg"
+  int first_slice = 0, last_slice = 0;    ///< numbers of the series, first <= last
+  int width = 0, height = 0;              ///< [pixels]
+  double pixel_mm = 1.0, slice_mm = 1.0;  ///< distance between pixels and between slices
+  std::array<std::string, 3> axes;  ///< where column, row and slice number grow to: "left", "anterior", ...
+  std::string origin_landmark;      ///< landmark of the built patient whose place in the world is given
   std::array<double, 3> origin_mm = {0, 0, 0};  ///< that place: left, cranial, anterior of the umbilicus
   std::vector<Structure> structures;
   std::vector<TubePoints> tubes;
@@ -72,7 +73,8 @@ struct ControlPoints {
   const LandmarkPoint* FindLandmark(std::string_view landmark_name) const;
 };
 
-/// File name of a slice: "{slice:04}" in the pattern becomes the number with leading zeros, "{slice}" the bare number.
+/// File name of a slice: "{slice:04}" in the pattern becomes the number with leading zeros, "{slice}" the
+/// bare number.
 std::string FormatImageName(std::string_view pattern, int slice);
 
 /// Maps (column, row, slice) to directions of the world (left, cranial, anterior): +1, -1 or 0.
@@ -80,7 +82,8 @@ std::string FormatImageName(std::string_view pattern, int slice);
 /// \pre axes were checked by ParseControlPoints
 std::array<std::array<double, 3>, 3> AxisDirections(const ControlPoints& points);
 
-/// \return kJsonSyntax or kJsonField; kControlPointOutside or kContourTooShort with structure, slice and point
+/// \return kJsonSyntax or kJsonField; kControlPointOutside or kContourTooShort with structure, slice and
+/// point
 core::Result<ControlPoints> ParseControlPoints(std::string_view text, std::string_view source);
 core::Result<ControlPoints> ReadControlPoints(const std::filesystem::path& path);
 

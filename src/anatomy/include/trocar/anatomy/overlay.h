@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file overlay.h  Pictures to check contours by eye: the photograph with the stages of each contour drawn on it.
+/// \file overlay.h  Pictures to check contours by eye: the photograph with the stages of each contour drawn
+/// on it.
 #pragma once
 
 #include <filesystem>
@@ -23,8 +24,8 @@ struct ContourStages {
 /// What is drawn on one slice.
 struct Overlay {
   std::vector<ContourStages> contours;
-  std::vector<Mask> areas;         ///< tinted
-  std::vector<Vec2> tube_points;   ///< blue crosses
+  std::vector<Mask> areas;        ///< tinted
+  std::vector<Vec2> tube_points;  ///< blue crosses
 };
 
 /// The part of the photograph around the contours, enlarged, with the overlay.

@@ -51,7 +51,8 @@ struct Landmark {
   Vec3 position;     ///< world frame [m]
 };
 
-/// World frame: metres, x to the patient's left, y cranial, z anterior; origin at the umbilicus on the insufflated wall.
+/// World frame: metres, x to the patient's left, y cranial, z anterior; origin at the umbilicus on the
+/// insufflated wall.
 struct Patient {
   std::string name;
   std::string provenance;  ///< where it comes from, with credit
@@ -71,8 +72,8 @@ inline constexpr const char* kFalciform = "falciform";
 inline constexpr const char* kCoronary = "coronary";
 inline constexpr const char* kGallbladderBed = "gallbladder_bed";
 
-/// Reads a patient folder: patient.json and one PLY file an organ, in LPS millimetres; converted here, once, to the
-/// world frame. \return the file's error, or kPatientInvalid with what is inconsistent
+/// Reads a patient folder: patient.json and one PLY file an organ, in LPS millimetres; converted here, once,
+/// to the world frame. \return the file's error, or kPatientInvalid with what is inconsistent
 core::Result<Patient> ReadPatient(const std::filesystem::path& folder);
 
 /// Writes the folder that ReadPatient reads; nothing is left behind when it fails.
