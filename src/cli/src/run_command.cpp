@@ -72,6 +72,7 @@ int ParseAndRun(int argc, char** argv) {
   app.require_subcommand(1);
   Outcome outcome;
   AddWindowCommand(app, outcome);
+  AddDemoCommand(app, outcome);
   AddSimulateCommand(app, outcome);
   AddAnatomyCommand(app, outcome);
   AddBenchCommand(app, outcome);

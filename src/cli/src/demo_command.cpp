@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <unistd.h>
+
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <cstdint>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "command.h"
+#include "console.h"
+#include "motion_log.h"
+#include "report.h"
+#include "trocar/core/safe_file.h"
+#include "trocar/core/version.h"
+#include "trocar/training/motion_metrics.h"
+#include "trocar/view/demo.h"
+
+namespace trocar::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct DemoArguments {
+  std::string scene;
+  std::string output = "out/demo";
+  std::string size = "1280x720";
+  double seconds = 0;
+  int threads = 1;
+};
+
+/// A folder beside the wanted one; what is in it appears under its name only when all went well.
+class PartFolder {
+ public:
+  explicit PartFolder(const fs::path& target) : target_(target) {
+    part_ = fs::path(target.string() + ".part" + std::to_string(::getpid()));
+  }
+  ~PartFolder() {
+    std::error_code ignored;
+    fs::remove_all(part_, ignored);
+  }
+  PartFolder(const PartFolder&) = delete;
+  PartFolder& operator=(const PartFolder&) = delete;
+
+  const fs::path& Path() const { return part_; }
+
+  /// Puts every file in place, and takes away the pictures and the video of an earlier run.
+  core::Status Keep() {
+    std::error_code failure;
+    fs::create_directories(target_, failure);
+    if (failure) return Unwritable(failure);
+    std::vector<fs::path> old;
+    for (const fs::directory_entry& entry : fs::directory_iterator(target_, failure)) {
+      const std::string name = entry.path().filename().string();
+      if ((name.starts_with("picture_") && name.ends_with(".png")) || name == "demo.webm")
+        old.push_back(entry.path());
+    }
+    for (const fs::path& path : old) fs::remove(path, failure);
+    for (const fs::directory_entry& entry : fs::directory_iterator(part_, failure)) {
+      fs::rename(entry.path(), target_ / entry.path().filename(), failure);
+      if (failure) return Unwritable(failure);
+    }
+    return {};
+  }
+
+ private:
+  core::Error Unwritable(const std::error_code& failure) const {
+    return {core::ErrorCode::kFileUnwritable, target_.string() + ": " + failure.message() +
+                                                  "; check the folder, its rights and the space left"};
+  }
+
+  fs::path target_, part_;
+};
+
+std::string FormatHash(std::uint64_t hash) {
+  char text[17];
+  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash));
+  return text;
+}
+
+/// "1280x720"; false for anything else.
+bool ParseSize(const std::string& text, int& width, int& height) {
+  char end = 0;
+  return std::sscanf(text.c_str(), "%5dx%5d%c", &width, &height, &end) == 2;
+}
+
+core::Result<std::shared_ptr<const session::Scene>> ReadSceneOrBuiltIn(const std::string& path) {
+  fs::path file = path;
+  if (path.empty()) {
+    const core::Result<fs::path> folder = session::FindDataFolder();
+    if (!folder) return folder.error();
+    file = *folder / "scenes/demonstration.json";
+  }
+  core::Result<session::Scene> scene = session::ReadScene(file);
+  if (!scene) return scene.error();
+  return std::make_shared<const session::Scene>(std::move(scene).value());
+}
+
+/// The metrics, and what they were measured on.
+std::string FormatMetricsFile(const training::SessionMetrics& metrics, const session::Scene& scene,
+                              const view::DemoReport& played) {
+  nlohmann::ordered_json json = {{"program", "trocar " + std::string(core::VersionText())},
+                                 {"scene", scene.name},
+                                 {"patient", scene.patient.name},
+                                 {"seed", scene.seed},
+                                 {"ticks", played.ticks},
+                                 {"state_hash", FormatHash(played.state_hash)}};
+  json.update(nlohmann::ordered_json::parse(training::FormatMetricsJson(metrics), nullptr, false));
+  return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+}
+
+core::Result<std::string> MakePage(const session::Scene& scene, const view::DemoReport& played,
+                                   const MotionLog& log, std::string metrics_json) {
+  ReportContent content;
+  content.scene = scene.name;
+  content.patient = scene.patient.name;
+  content.provenance = scene.patient.provenance;
+  content.seed = scene.seed;
+  content.hash = FormatHash(played.state_hash);
+  content.ticks = played.ticks;
+  content.tick_seconds = scene.tick_seconds;
+  content.version = core::VersionText();
+  content.video = played.video.filename().string();
+  content.metrics_json = std::move(metrics_json);
+  for (const view::DemoPicture& picture : played.pictures) {
+    core::Result<std::string> png = core::ReadFile(picture.path);
+    if (!png) return png.error();
+    content.pictures.push_back({"after " + FormatNumber(picture.time, 3) + " s", std::move(png).value()});
+  }
+  content.times = log.Times();
+  const training::MotionRecording& recording = log.Recording();
+  for (std::size_t tool = 0; tool < recording.tools.size(); ++tool) {
+    ReportHand hand{recording.tool_names[tool], {}, {}};
+    for (const training::ToolSample& sample : recording.tools[tool]) {
+      hand.force.push_back(sample.force);
+      hand.p_world_tip.push_back(sample.tip);
+    }
+    content.hands.push_back(std::move(hand));
+  }
+  return FormatReportPage(content);
+}
+
+void PrintSummary(const view::DemoReport& played, const session::Scene& scene, const fs::path& output) {
+  std::printf("Played %s s of \"%s\": %llu ticks, state hash %s\n",
+              FormatNumber(static_cast<double>(played.ticks) * scene.tick_seconds).c_str(),
+              scene.name.c_str(), static_cast<unsigned long long>(played.ticks),
+              FormatHash(played.state_hash).c_str());
+  std::printf("Drew %llu frames with %s: median %s ms, p99 %s ms a frame\n",
+              static_cast<unsigned long long>(played.frames), played.graphics.c_str(),
+              FormatNumber(1e3 * played.draw_median, 3).c_str(),
+              FormatNumber(1e3 * played.draw_p99, 3).c_str());
+  std::printf("Wrote %s: %zu pictures, %s, metrics.json, report.html\n", output.c_str(),
+              played.pictures.size(), played.video.filename().c_str());
+}
+
+core::Status Play(const DemoArguments& arguments) {
+  view::DemoOptions options;
+  if (!ParseSize(arguments.size, options.width, options.height)) {
+    return core::Error{core::ErrorCode::kUsage, "--size: \"" + arguments.size + "\" is not like 1280x720"};
+  }
+  const auto scene = ReadSceneOrBuiltIn(arguments.scene);
+  if (!scene) return scene.error();
+  PartFolder part(arguments.output);
+  options.duration = arguments.seconds;
+  options.threads = arguments.threads;
+  options.output_folder = part.Path();
+  MotionLog log(**scene, arguments.seconds > 0 ? arguments.seconds + 1 : (*scene)->script.Duration() + 1);
+  options.on_tick = [&](const session::Snapshot& snapshot) { log.Record(snapshot); };
+  ProgressBar progress("playing", 1.0);
+  options.on_progress = [&](double done) { progress.Show(done); };
+  const core::Result<view::DemoReport> played = view::PlayDemonstration(*scene, options);
+  progress.Finish();
+  if (!played) return played.error();
+
+  const core::Result<training::SessionMetrics> metrics = training::CalcSessionMetrics(log.Recording());
+  if (!metrics) return metrics.error();
+  const std::string metrics_text = FormatMetricsFile(*metrics, **scene, *played);
+  const core::Result<std::string> page = MakePage(**scene, *played, log, metrics_text);
+  if (!page) return page.error();
+  if (auto status = core::WriteFile(part.Path() / "metrics.json", metrics_text); !status) return status;
+  if (auto status = core::WriteFile(part.Path() / "report.html", *page); !status) return status;
+  if (auto status = part.Keep(); !status) return status;
+  PrintSummary(*played, **scene, arguments.output);
+  return {};
+}
+
+}  // namespace
+
+void AddDemoCommand(CLI::App& app, Outcome& outcome) {
+  CLI::App* command =
+      app.add_subcommand("demo", "Play a scene's script into pictures, a video, metrics and a report");
+  auto arguments = std::make_shared<DemoArguments>();
+  command
+      ->add_option("scene,--scene", arguments->scene,
+                   "Scene file (JSON); the built-in demonstration if not given")
+      ->type_name("FILE");
+  command->add_option("-o,--output", arguments->output, "Folder to write")
+      ->type_name("DIR")
+      ->capture_default_str();
+  command->add_option("--size", arguments->size, "Of pictures and video [pixels]")
+      ->type_name("WxH")
+      ->capture_default_str();
+  command->add_option("--seconds", arguments->seconds, "Play so much of the script; all of it if not given")
+      ->check(CLI::Range(0.01, 3600.0))
+      ->type_name("S");
+  command->add_option("--threads", arguments->threads, "Of the solver; the result is the same for any number")
+      ->check(CLI::Range(1, 256))
+      ->type_name("T")
+      ->capture_default_str();
+  command->footer(
+      "Needs OpenGL (in software will do) and no display. When anything fails, the folder stays as it was.\n"
+      "Example: trocar demo -o out/demo --size 640x360 --seconds 5");
+  command->callback([arguments, &outcome] { outcome.status = Play(*arguments); });
+}
+
+}  // namespace trocar::cli

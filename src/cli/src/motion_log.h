@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file motion_log.h  Keeps of every tick what metrics and plots need.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "trocar/math/vector.h"
+#include "trocar/session/scene.h"
+#include "trocar/session/snapshot.h"
+#include "trocar/training/motion_recorder.h"
+
+namespace trocar::cli {
+
+/// Whether a point lies in the round picture of a laparoscope. What hides it is not asked.
+///
+/// \param field_of_view  across the round picture [rad]
+bool IsInView(const math::Pose& X_world_laparoscope, double field_of_view,
+              const math::Vec3& p_world) noexcept;
+
+class MotionLog {
+ public:
+  /// \param seconds  room for so much [s], > 0
+  MotionLog(const session::Scene& scene, double seconds);
+
+  /// Call after every tick, with every tick.
+  void Record(const session::Snapshot& snapshot);
+
+  const training::MotionRecording& Recording() const { return recorder_.Recording(); }
+  const std::vector<double>& Times() const { return times_; }  ///< (ticks) [s]
+
+ private:
+  double field_of_view_;
+  training::MotionRecorder recorder_;
+  std::vector<double> times_;
+  std::uint64_t known_events_ = 0;
+};
+
+}  // namespace trocar::cli
