@@ -1,1 +1,63 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "trocar/render/offscreen_context.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <thread>
+
+namespace trocar::render {
+namespace {
+
+TEST(OffscreenContext, NamesItsVersionAndRenderer) {
+  const auto context = OffscreenContext::Make();
+  ASSERT_TRUE(context.ok()) << context.error().Text();
+  EXPECT_FALSE(context->VersionText().empty());
+  EXPECT_FALSE(context->RendererText().empty());
+}
+
+TEST(OffscreenContext, MovesToAnotherThreadAfterRelease) {
+  auto context = OffscreenContext::Make();
+  ASSERT_TRUE(context.ok()) << context.error().Text();
+  std::thread([&] {
+    const auto refused = context->MakeCurrent();
+    ASSERT_FALSE(refused.ok());
+    EXPECT_EQ(refused.error().code, core::ErrorCode::kNoGraphics);
+  }).join();
+  context->Release();
+  std::thread([&] {
+    EXPECT_TRUE(context->MakeCurrent().ok());
+    context->Release();
+  }).join();
+  EXPECT_TRUE(context->MakeCurrent().ok());
+}
+
+/// In a process of its own: prints the error's text and ends with 0, or with 1 when there was none.
+[[noreturn]] void FailWith(const char* variable, const std::string& value) {
+  ::setenv(variable, value.c_str(), 1);
+  const auto context = OffscreenContext::Make();
+  if (!context.ok()) std::fputs(context.error().Text().c_str(), stderr);
+  std::exit(context.ok() ? 1 : 0);
+}
+
+class OffscreenContextDeathTest : public testing::Test {
+ protected:
+  void SetUp() override { GTEST_FLAG_SET(death_test_style, "threadsafe"); }
+};
+
+TEST_F(OffscreenContextDeathTest, WithoutADriverSaysWhatToInstall) {
+  const auto empty = std::filesystem::path(testing::TempDir()) / "trocar_no_egl_vendors";
+  std::filesystem::create_directories(empty);
+  EXPECT_EXIT(FailWith("__EGL_VENDOR_LIBRARY_DIRS", empty.string()), testing::ExitedWithCode(0),
+              "E-GL-001.*libegl1.*libgl1-mesa-dri");
+}
+
+TEST_F(OffscreenContextDeathTest, AnOldOpenGlIsNamed) {
+  EXPECT_EXIT(FailWith("MESA_GL_VERSION_OVERRIDE", "2.1"), testing::ExitedWithCode(0),
+              "E-GL-002.*2\\.1.*3\\.3");
+}
+
+}  // namespace
+}  // namespace trocar::render

@@ -1,1 +1,310 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "trocar/render/renderer.h"
+
+#include <epoxy/gl.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "test_scene.h"
+#include "trocar/geometry/mesh_measures.h"
+#include "trocar/geometry/primitives.h"
+
+namespace trocar::render {
+namespace {
+
+using geometry::MakeSphere;
+using math::Pose;
+using math::Vec3;
+
+constexpr double kDistance = 0.10, kRadius = 0.02;
+
+class RendererTest : public DrawingTest {
+ protected:
+  /// Mean column and row, and number, of the pixels that are not black.
+  struct Blob {
+    double x = 0, y = 0;
+    int count = 0;
+  };
+  static Blob FindBlob(const Image& image) {
+    Blob blob;
+    for (int y = 0; y < image.height; ++y) {
+      for (int x = 0; x < image.width; ++x) {
+        if (Brightness(image, x, y) == 0) continue;
+        blob.x += x;
+        blob.y += y;
+        ++blob.count;
+      }
+    }
+    if (blob.count > 0) blob.x /= blob.count, blob.y /= blob.count;
+    return blob;
+  }
+
+  SurfaceId AddBall(Material material = Material::kLiver) {
+    return renderer_->AddSurface(MakeSphere({0, 0, 0}, kRadius, 5), material);
+  }
+};
+
+// Analytic: a ball on the axis shows a disc of radius f tan(asin(R / d)), f from the field of view.
+TEST_F(RendererTest, BallHasItsProjectedRadius) {
+  Frame frame = PlainFrame();
+  frame.surfaces = {{AddBall(), {{}, {0, 0, -kDistance}}}};
+  const Image image = Draw(frame);
+  const double focal = 0.5 * kMaskDiameter * kHeight / std::tan(0.5 * frame.camera.field_of_view);
+  const double expected = focal * std::tan(std::asin(kRadius / kDistance));
+  const Blob blob = FindBlob(image);
+  EXPECT_NEAR(std::sqrt(blob.count / M_PI), expected, 0.5);
+  EXPECT_NEAR(blob.x, 0.5 * kWidth - 0.5, 0.5);
+  EXPECT_NEAR(blob.y, 0.5 * kHeight - 0.5, 0.5);
+}
+
+TEST_F(RendererTest, BallIsBrightestWhereItFacesTheHeadLight) {
+  Frame frame = PlainFrame();
+  frame.surfaces = {{AddBall(Material::kSleeve), {{}, {0, 0, -kDistance}}}};
+  const Image image = Draw(frame);
+  const double focal = 0.5 * kMaskDiameter * kHeight / std::tan(0.5 * frame.camera.field_of_view);
+  const double radius = focal * std::tan(std::asin(kRadius / kDistance));
+  int best_x = 0, best_y = 0;
+  for (int y = 0; y < kHeight; ++y) {
+    for (int x = 0; x < kWidth; ++x) {
+      if (Brightness(image, x, y) > Brightness(image, best_x, best_y)) best_x = x, best_y = y;
+    }
+  }
+  EXPECT_LT(std::hypot(best_x - 0.5 * kWidth, best_y - 0.5 * kHeight), 0.3 * radius);
+  EXPECT_GT(Brightness(image, kWidth / 2, kHeight / 2),
+            2 * Brightness(image, kWidth / 2 + static_cast<int>(0.9 * radius), kHeight / 2));
+}
+
+// The light falls with the square of the distance.
+TEST_F(RendererTest, FartherIsDarker) {
+  const SurfaceId plate =
+      renderer_->AddSurface(geometry::MakeBox({-0.5, -0.5, -0.001}, {0.5, 0.5, 0}), Material::kBowel);
+  int before = 3 * 255 + 1;
+  for (const double distance : {0.05, 0.10, 0.20, 0.40}) {
+    Frame frame = PlainFrame();
+    frame.surfaces = {{plate, {{}, {0, 0, -distance}}}};
+    const Image image = Draw(frame);
+    const int now = Brightness(image, kWidth / 2 + 20, kHeight / 2);
+    EXPECT_LT(now, before) << distance;
+    before = now;
+  }
+  EXPECT_GT(before, 0);
+}
+
+TEST_F(RendererTest, LightDoesNotBurnOutTissueNearTheLens) {
+  const SurfaceId plate =
+      renderer_->AddSurface(geometry::MakeBox({-0.5, -0.5, -0.001}, {0.5, 0.5, 0}), Material::kLiver);
+  Frame frame = PlainFrame();
+  // tilted, so that no highlight meets the lens
+  frame.surfaces = {{plate, {math::RotationAbout({1, 0, 0}, 0.7), {0, 0, -0.05}}}};
+  const Image image = Draw(frame);
+  const auto [r, g, b] = image.At(kWidth / 2, kHeight / 2);
+  EXPECT_GT(r, 40);
+  EXPECT_LT(r, 250);
+  EXPECT_GT(r, g + 20);
+}
+
+TEST_F(RendererTest, PoseMovesThePictureToTheCalculatedPixel) {
+  const SurfaceId ball = renderer_->AddSurface(MakeSphere({0, 0, 0}, 0.004, 4), Material::kFat);
+  for (const Vec3& p : {Vec3{0.02, 0, -0.1}, Vec3{-0.03, 0.02, -0.12}, Vec3{0.0, -0.015, -0.08}}) {
+    Frame frame = PlainFrame();
+    // any camera: the picture depends on relative poses only
+    frame.camera.X_world_camera = {math::Normalized({0.9, 0.1, -0.3, 0.2}), {0.01, 0.2, -0.05}};
+    const Vec3 p_world = frame.camera.X_world_camera * p;
+    frame.surfaces = {{ball, {{}, p_world}}};
+    const Blob blob = FindBlob(Draw(frame));
+    const math::Vec2 pixel = CalcPixel(frame.camera, p_world, kWidth, kHeight);
+    EXPECT_NEAR(blob.x, pixel.x, 0.7);
+    EXPECT_NEAR(blob.y, pixel.y, 0.7);
+  }
+  EXPECT_FALSE(std::isfinite(CalcPixel({}, {0, 0, 0.1}, kWidth, kHeight).x));
+}
+
+TEST_F(RendererTest, MaskBlacksWhatLiesOutsideTheCircle) {
+  // inside a big ball, so that every pixel shows something
+  geometry::TriangleMesh room = MakeSphere({0, 0, 0}, 0.15, 4);
+  for (auto& t : room.triangles) std::swap(t[1], t[2]);
+  Frame frame;
+  frame.surfaces = {{renderer_->AddSurface(room, Material::kPeritoneum), {}}};
+  for (const bool is_smooth : {false, true}) {
+    frame.has_smooth_edges = is_smooth;
+    frame.has_mask = true;
+    const Image masked = Draw(frame);
+    frame.has_mask = false;
+    const Image whole = Draw(frame);
+    const double radius = 0.5 * kMaskDiameter * kHeight;
+    for (int y = 0; y < kHeight; ++y) {
+      for (int x = 0; x < kWidth; ++x) {
+        const double r = std::hypot(x + 0.5 - 0.5 * kWidth, y + 0.5 - 0.5 * kHeight);
+        if (r > radius + 1.0) {
+          ASSERT_EQ(Brightness(masked, x, y), 0) << x << " " << y;
+        }
+        if (r < radius - 4.0) {
+          ASSERT_GT(Brightness(masked, x, y), 0) << x << " " << y;
+        }
+        ASSERT_GT(Brightness(whole, x, y), 0);
+      }
+    }
+    // vignetting: darker at the rim than without mask
+    EXPECT_LT(Brightness(masked, kWidth / 2 + static_cast<int>(0.95 * radius), kHeight / 2),
+              Brightness(whole, kWidth / 2 + static_cast<int>(0.95 * radius), kHeight / 2));
+  }
+}
+
+TEST_F(RendererTest, SameFrameGivesTheSamePixels) {
+  Frame frame;
+  frame.surfaces = {{AddBall(Material::kGallbladder), {{}, {0.01, 0, -kDistance}}}};
+  frame.arrows = {{{0, 0, -0.08}, {0.02, 0.01, 0}}};
+  const Image first = Draw(frame);
+  EXPECT_EQ(first, Draw(frame));
+  frame.surfaces[0].X_world_surface.translation.x = 0.012;
+  EXPECT_NE(first, Draw(frame));
+}
+
+TEST_F(RendererTest, DeformingSurfaceIsDrawnWhereItIsNow) {
+  const geometry::TriangleMesh rest = MakeSphere({0, 0, -kDistance}, 0.01, 4);
+  const SurfaceId surface = renderer_->AddSurface(rest, Material::kGallbladder);
+  Frame frame = PlainFrame();
+  frame.surfaces = {{surface, {}}};
+  const Blob before = FindBlob(Draw(frame));
+  std::vector<Vec3> moved = rest.positions, normals(rest.positions.size());
+  for (Vec3& p : moved) p = p + Vec3{0.02, 0, 0};
+  geometry::CalcVertexNormals(moved, rest.triangles, normals);
+  renderer_->UpdateSurface(surface, moved, normals);
+  const Blob after = FindBlob(Draw(frame));
+  const double focal = 0.5 * kMaskDiameter * kHeight / std::tan(0.5 * frame.camera.field_of_view);
+  EXPECT_NEAR(after.x - before.x, focal * 0.02 / kDistance, 1.0);
+}
+
+TEST_F(RendererTest, UpdatedTrianglesReplaceTheOldOnes) {
+  const geometry::TriangleMesh rest = MakeSphere({0, 0, -kDistance}, 0.01, 3);
+  const SurfaceId surface = renderer_->AddSurface(rest, Material::kLiver);
+  Frame frame = PlainFrame();
+  frame.surfaces = {{surface, {}}};
+  EXPECT_GT(FindBlob(Draw(frame)).count, 0);
+  renderer_->UpdateTriangles(surface, {});
+  EXPECT_EQ(FindBlob(Draw(frame)).count, 0);
+}
+
+TEST_F(RendererTest, RemovedSurfaceIsGoneAndItsIdNamesNothingNew) {
+  const SurfaceId old_id = AddBall();
+  Frame frame = PlainFrame();
+  frame.surfaces = {{old_id, {{}, {0, 0, -kDistance}}}};
+  renderer_->RemoveSurface(old_id);
+  const SurfaceId new_id = AddBall();
+  EXPECT_EQ(FindBlob(Draw(frame)).count, 0);
+  frame.surfaces[0].surface = new_id;
+  EXPECT_GT(FindBlob(Draw(frame)).count, 0);
+}
+
+TEST_F(RendererTest, NearerSurfaceHidesTheFarther) {
+  Frame frame = PlainFrame();
+  const SurfaceDraw near_ball{AddBall(Material::kLiver), {{}, {0, 0, -0.08}}};
+  const SurfaceDraw far_ball{AddBall(Material::kFat), {{}, {0, 0, -0.14}}};
+  frame.surfaces = {near_ball, far_ball};
+  const Image one = Draw(frame);
+  frame.surfaces = {far_ball, near_ball};
+  EXPECT_EQ(one, Draw(frame));
+  frame.surfaces = {near_ball};
+  EXPECT_EQ(one, Draw(frame));
+}
+
+TEST_F(RendererTest, ToolShadesTheTissueNearIt) {
+  const geometry::TriangleMesh plate = geometry::MakeGrid(60, 0.002);
+  const SurfaceId surface = renderer_->AddSurface(plate, Material::kBowel);
+  Frame frame = PlainFrame();
+  frame.surfaces = {{surface, {{}, {-0.059, -0.059, -0.1}}}};
+  const Image lit = Draw(frame);
+  frame.shades = {{{-0.02, 0, -0.097}, {0.02, 0, -0.097}, 0.0025}};
+  const Image shaded = Draw(frame);
+  EXPECT_LT(Brightness(shaded, kWidth / 2, kHeight / 2), Brightness(lit, kWidth / 2, kHeight / 2));
+  EXPECT_EQ(Brightness(shaded, kWidth / 2, 5), Brightness(lit, kWidth / 2, 5));
+}
+
+TEST_F(RendererTest, ClosedInPlacesAreDarker) {
+  const geometry::TriangleMesh ball = MakeSphere({0, 0, -kDistance}, kRadius, 4);
+  Frame frame = PlainFrame();
+  const std::vector<double> closed(ball.positions.size(), 0.2);
+  frame.surfaces = {{renderer_->AddSurface(ball, Material::kLiver, closed), {}}};
+  const int dark = Brightness(Draw(frame), kWidth / 2, kHeight / 2);
+  frame.surfaces = {{renderer_->AddSurface(ball, Material::kLiver), {}}};
+  EXPECT_LT(dark, Brightness(Draw(frame), kWidth / 2, kHeight / 2));
+}
+
+TEST_F(RendererTest, ArrowPointsAlongItsSpan) {
+  Frame frame = PlainFrame();
+  frame.arrows = {{{0, 0, -kDistance}, {0.03, 0, 0}, 0.001}};
+  const Blob right = FindBlob(Draw(frame));
+  EXPECT_GT(right.count, 50);
+  EXPECT_GT(right.x, 0.5 * kWidth + 10);
+  frame.arrows = {{{0, 0, -kDistance}, {0, 0.03, 0}, 0.001}};
+  EXPECT_LT(FindBlob(Draw(frame)).y, 0.5 * kHeight - 10);
+  // nothing sensible to draw
+  frame.arrows = {{{0, 0, -kDistance}, {0, 0, 0}, 0.001}, {{0, 0, -kDistance}, {NAN, 0, 0}, 0.001}};
+  EXPECT_EQ(FindBlob(Draw(frame)).count, 0);
+}
+
+TEST_F(RendererTest, WireframeShowsEdgesOnly) {
+  Frame frame = PlainFrame();
+  frame.surfaces = {
+      {renderer_->AddSurface(MakeSphere({0, 0, -kDistance}, kRadius, 1), Material::kLiver), {}}};
+  const int filled = FindBlob(Draw(frame)).count;
+  frame.is_wireframe = true;
+  const int edges = FindBlob(Draw(frame)).count;
+  EXPECT_GT(edges, 0);
+  EXPECT_LT(edges, filled / 2);
+}
+
+TEST_F(RendererTest, SmoothingSoftensTheStairsOfAnEdgeOnly) {
+  Frame frame = PlainFrame();
+  frame.surfaces = {{AddBall(Material::kSleeve), {{}, {0, 0, -kDistance}}}};
+  const Image hard = Draw(frame);
+  frame.has_smooth_edges = true;
+  const Image soft = Draw(frame);
+  EXPECT_EQ(hard.At(5, 5), soft.At(5, 5));
+  EXPECT_NE(hard, soft);
+  EXPECT_LT(CalcMeanDifference(hard, soft), 1.5);
+}
+
+// As under GTK: its framebuffer is not 0, it leaves scissor and blending on, and wants no depth test back.
+TEST_F(RendererTest, DrawsIntoTheBoundFramebufferWhateverStateTheToolkitLeft) {
+  Frame frame;
+  frame.surfaces = {{AddBall(), {{}, {0, 0, -kDistance}}}};
+  const Image clean = Draw(frame);
+  target_->Bind();
+  GLint bound = 0, after = 0;
+  glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &bound);
+  glEnable(GL_SCISSOR_TEST);
+  glScissor(0, 0, 3, 3);
+  glEnable(GL_BLEND);
+  glBlendFunc(GL_ZERO, GL_ONE);
+  glDepthMask(GL_FALSE);
+  glColorMask(GL_FALSE, GL_TRUE, GL_FALSE, GL_TRUE);
+  glDepthFunc(GL_NEVER);
+  renderer_->Draw(frame, kWidth, kHeight);
+  glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &after);
+  EXPECT_EQ(bound, after);
+  EXPECT_FALSE(glIsEnabled(GL_DEPTH_TEST));
+  EXPECT_FALSE(glIsEnabled(GL_SCISSOR_TEST));
+  EXPECT_FALSE(glIsEnabled(GL_CULL_FACE));
+  EXPECT_EQ(glGetError(), static_cast<GLenum>(GL_NO_ERROR));
+  Image image;
+  target_->Read(image);
+  EXPECT_EQ(clean, image);
+}
+
+TEST_F(RendererTest, DrawsNothingIntoNothing) {
+  renderer_->Draw({}, 0, 0);
+  EXPECT_EQ(glGetError(), static_cast<GLenum>(GL_NO_ERROR));
+}
+
+TEST(Material, NamesRoundTrip) {
+  for (int i = 0; i < static_cast<int>(Material::kCount); ++i) {
+    const auto material = static_cast<Material>(i);
+    EXPECT_EQ(FindMaterial(MaterialName(material)), material);
+  }
+  EXPECT_FALSE(FindMaterial("spleen").has_value());
+}
+
+}  // namespace
+}  // namespace trocar::render

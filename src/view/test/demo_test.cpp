@@ -1,1 +1,116 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "trocar/view/demo.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+
+#include "trocar/core/safe_file.h"
+#include "trocar/render/image.h"
+
+namespace trocar::view {
+namespace {
+
+namespace fs = std::filesystem;
+
+class DemoTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    auto scene = session::ReadScene(fs::path(TROCAR_SOURCE_DIR) / "scenes" / "demonstration.json");
+    ASSERT_TRUE(scene.ok()) << scene.error().Text();
+    scene_ = std::make_shared<const session::Scene>(std::move(*scene));
+    folder_ = fs::path(testing::TempDir()) / "trocar_demo";
+    fs::remove_all(folder_);
+    options_.output_folder = folder_;
+    options_.width = 320;
+    options_.height = 180;
+    options_.duration = 0.2;
+  }
+
+  std::shared_ptr<const session::Scene> scene_;
+  fs::path folder_;
+  DemoOptions options_;
+};
+
+TEST_F(DemoTest, WritesVideoAndPicturesAndCallsForEveryTick) {
+  options_.picture_times = {0.0, 0.1, 0.2, 7.0};  // the last lies beyond the end
+  std::uint64_t ticks = 0;
+  double done = 0;
+  options_.on_tick = [&](const session::Snapshot& snapshot) { EXPECT_EQ(snapshot.tick, ++ticks); };
+  options_.on_progress = [&](double share) { done = share; };
+  const auto report = PlayDemonstration(scene_, options_);
+  ASSERT_TRUE(report.ok()) << report.error().Text();
+  EXPECT_EQ(report->frames, 7u);  // 0.2 s at 30 a second, both ends
+  EXPECT_EQ(report->ticks, 24u);
+  EXPECT_EQ(ticks, 24u);
+  EXPECT_DOUBLE_EQ(done, 1.0);
+  EXPECT_GT(fs::file_size(report->video), 1000u);
+  ASSERT_EQ(report->pictures.size(), 3u);
+  for (const DemoPicture& picture : report->pictures) {
+    const auto bytes = core::ReadFile(picture.path);
+    ASSERT_TRUE(bytes.ok());
+    const auto image = render::ParsePng(*bytes, "picture");
+    ASSERT_TRUE(image.ok());
+    EXPECT_EQ(image->width, 320);
+    EXPECT_EQ(image->height, 180);
+  }
+}
+
+TEST_F(DemoTest, PlaysTheSameTwice) {
+  options_.has_video = false;
+  options_.picture_times = {0.2};
+  const auto first = PlayDemonstration(scene_, options_);
+  ASSERT_TRUE(first.ok()) << first.error().Text();
+  const auto picture = core::ReadFile(first->pictures.at(0).path);
+  options_.threads = 2;
+  const auto second = PlayDemonstration(scene_, options_);
+  ASSERT_TRUE(second.ok()) << second.error().Text();
+  EXPECT_EQ(first->state_hash, second->state_hash);
+  EXPECT_EQ(*picture, *core::ReadFile(second->pictures.at(0).path));
+  EXPECT_FALSE(fs::exists(folder_ / "demo.webm"));
+}
+
+TEST_F(DemoTest, RefusesOptionsOutOfRange) {
+  const auto expect_usage = [&](DemoOptions options) {
+    const auto report = PlayDemonstration(scene_, options);
+    ASSERT_FALSE(report.ok());
+    EXPECT_EQ(report.error().code, core::ErrorCode::kUsage);
+  };
+  DemoOptions wrong = options_;
+  wrong.duration = -1;
+  expect_usage(wrong);
+  wrong = options_;
+  wrong.duration = NAN;
+  expect_usage(wrong);
+  wrong = options_;
+  wrong.width = 0;
+  expect_usage(wrong);
+  wrong = options_;
+  wrong.frames_per_second = 0;
+  expect_usage(wrong);
+  wrong = options_;
+  wrong.threads = 0;
+  expect_usage(wrong);
+}
+
+TEST_F(DemoTest, WithoutScriptAndDurationSaysSo) {
+  session::Scene bare = *scene_;
+  bare.script.keys.clear();
+  options_.duration = 0;
+  const auto report = PlayDemonstration(std::make_shared<const session::Scene>(bare), options_);
+  ASSERT_FALSE(report.ok());
+  EXPECT_EQ(report.error().code, core::ErrorCode::kScriptInvalid);
+}
+
+TEST_F(DemoTest, AFolderThatIsAFileLeavesNothing) {
+  fs::create_directories(folder_);
+  std::ofstream(folder_ / "plain") << "x";
+  options_.output_folder = folder_ / "plain";
+  const auto report = PlayDemonstration(scene_, options_);
+  ASSERT_FALSE(report.ok());
+  EXPECT_EQ(report.error().code, core::ErrorCode::kVideoFailed);
+}
+
+}  // namespace
+}  // namespace trocar::view
