@@ -14,7 +14,11 @@ std::int64_t Read(clockid_t clock) noexcept {
 
 }  // namespace
 
-std::int64_t NowNanoseconds() noexcept { return Read(CLOCK_MONOTONIC); }
-std::int64_t ThreadCpuNanoseconds() noexcept { return Read(CLOCK_THREAD_CPUTIME_ID); }
+std::int64_t NowNanoseconds() noexcept {
+  return Read(CLOCK_MONOTONIC);
+}
+std::int64_t ThreadCpuNanoseconds() noexcept {
+  return Read(CLOCK_THREAD_CPUTIME_ID);
+}
 
 }  // namespace trocar::core

@@ -30,7 +30,8 @@ constexpr ErrorEntry kTable[] = {
     {ErrorCode::kSceneInvalid, "E-SCN-001", "a scene is inconsistent"},
     {ErrorCode::kScriptInvalid, "E-SCN-002", "a script is inconsistent"},
     {ErrorCode::kUnknownName, "E-SCN-003", "a name is not known"},
-    {ErrorCode::kStateNotFinite, "E-SIM-001", "the tissue state was not finite; the last good state was restored"},
+    {ErrorCode::kStateNotFinite, "E-SIM-001",
+     "the tissue state was not finite; the last good state was restored"},
     {ErrorCode::kOrganFrozen, "E-SIM-002", "an organ is held still after repeated failures"},
     {ErrorCode::kNoGraphics, "E-GL-001", "no OpenGL context can be made"},
     {ErrorCode::kGraphicsTooOld, "E-GL-002", "OpenGL is older than 3.3"},
@@ -50,8 +51,12 @@ static_assert(std::size(kTable) == static_cast<std::size_t>(ErrorCode::kCount));
 
 }  // namespace
 
-std::span<const ErrorEntry> ErrorTable() noexcept { return kTable; }
+std::span<const ErrorEntry> ErrorTable() noexcept {
+  return kTable;
+}
 
-std::string_view CodeText(ErrorCode code) noexcept { return kTable[static_cast<std::size_t>(code)].text; }
+std::string_view CodeText(ErrorCode code) noexcept {
+  return kTable[static_cast<std::size_t>(code)].text;
+}
 
 }  // namespace trocar::core

@@ -20,7 +20,9 @@ namespace {
 /// Deeper files are refused before the recursive parser can exhaust the stack.
 constexpr int kMaxDepth = 64;
 
-const nlohmann::json* Node(const void* node) { return static_cast<const nlohmann::json*>(node); }
+const nlohmann::json* Node(const void* node) {
+  return static_cast<const nlohmann::json*>(node);
+}
 
 bool IsTooDeep(std::string_view text) {
   int depth = 0;
@@ -41,7 +43,9 @@ bool IsTooDeep(std::string_view text) {
   return false;
 }
 
-std::string NumberText(double value) { return nlohmann::json(value).dump(); }
+std::string NumberText(double value) {
+  return nlohmann::json(value).dump();
+}
 
 }  // namespace
 
@@ -64,7 +68,9 @@ JsonView JsonView::Child(std::string_view key) const {
   return {document_, node, std::move(path)};
 }
 
-bool JsonView::Has(std::string_view key) const { return Child(key).node_ != nullptr; }
+bool JsonView::Has(std::string_view key) const {
+  return Child(key).node_ != nullptr;
+}
 
 void JsonView::AllowOnly(std::initializer_list<std::string_view> keys) const {
   if (node_ == nullptr || !Node(node_)->is_object()) return;
@@ -99,7 +105,9 @@ std::vector<JsonView> JsonView::Elements() const {
   return elements;
 }
 
-std::vector<JsonView> JsonView::Array(std::string_view key) const { return Child(key).Elements(); }
+std::vector<JsonView> JsonView::Array(std::string_view key) const {
+  return Child(key).Elements();
+}
 
 std::vector<std::string> JsonView::Keys() const {
   std::vector<std::string> keys;
@@ -126,7 +134,9 @@ double JsonView::AsNumber(NumberRange range) const {
   return value;
 }
 
-double JsonView::Number(std::string_view key, NumberRange range) const { return Child(key).AsNumber(range); }
+double JsonView::Number(std::string_view key, NumberRange range) const {
+  return Child(key).AsNumber(range);
+}
 
 double JsonView::NumberOr(std::string_view key, double fallback, NumberRange range) const {
   return Has(key) ? Number(key, range) : fallback;
@@ -161,7 +171,9 @@ std::string JsonView::AsText() const {
   return Node(node_)->get<std::string>();
 }
 
-std::string JsonView::Text(std::string_view key) const { return Child(key).AsText(); }
+std::string JsonView::Text(std::string_view key) const {
+  return Child(key).AsText();
+}
 
 std::string JsonView::TextOr(std::string_view key, std::string_view fallback) const {
   return Has(key) ? Text(key) : std::string(fallback);
@@ -188,7 +200,9 @@ JsonDocument::JsonDocument(JsonDocument&&) noexcept = default;
 JsonDocument& JsonDocument::operator=(JsonDocument&&) noexcept = default;
 JsonDocument::~JsonDocument() = default;
 
-JsonView JsonDocument::Root() const { return {this, &content_->root, ""}; }
+JsonView JsonDocument::Root() const {
+  return {this, &content_->root, ""};
+}
 
 Status JsonDocument::Check() const {
   if (content_->complaint) return *content_->complaint;
@@ -197,7 +211,8 @@ Status JsonDocument::Check() const {
 
 Result<JsonDocument> JsonDocument::Parse(std::string_view text, std::string source) {
   if (IsTooDeep(text)) {
-    return Error{ErrorCode::kJsonSyntax, source + ": nested deeper than " + std::to_string(kMaxDepth) + " levels"};
+    return Error{ErrorCode::kJsonSyntax,
+                 source + ": nested deeper than " + std::to_string(kMaxDepth) + " levels"};
   }
   auto content = std::make_unique<Content>();
   content->source = std::move(source);

@@ -9,10 +9,14 @@ namespace {
 
 spdlog::level::level_enum ToSpdlog(LogLevel level) {
   switch (level) {
-    case LogLevel::kDebug: return spdlog::level::debug;
-    case LogLevel::kInfo: return spdlog::level::info;
-    case LogLevel::kWarning: return spdlog::level::warn;
-    case LogLevel::kError: break;
+    case LogLevel::kDebug:
+      return spdlog::level::debug;
+    case LogLevel::kInfo:
+      return spdlog::level::info;
+    case LogLevel::kWarning:
+      return spdlog::level::warn;
+    case LogLevel::kError:
+      break;
   }
   return spdlog::level::err;
 }
@@ -28,8 +32,12 @@ spdlog::logger& GetLogger() {
 
 }  // namespace
 
-void SetLogLevel(LogLevel level) { GetLogger().set_level(ToSpdlog(level)); }
+void SetLogLevel(LogLevel level) {
+  GetLogger().set_level(ToSpdlog(level));
+}
 
-void Log(LogLevel level, std::string_view text) { GetLogger().log(ToSpdlog(level), "{}", text); }
+void Log(LogLevel level, std::string_view text) {
+  GetLogger().log(ToSpdlog(level), "{}", text);
+}
 
 }  // namespace trocar::core

@@ -30,11 +30,13 @@ class Descriptor {
 };
 
 Error Unreadable(const fs::path& path) {
-  return {ErrorCode::kFileUnreadable, path.string() + ": " + std::strerror(errno) + "; check the file and its rights"};
+  return {ErrorCode::kFileUnreadable,
+          path.string() + ": " + std::strerror(errno) + "; check the file and its rights"};
 }
 
 Error Unwritable(const fs::path& path, const std::string& why) {
-  return {ErrorCode::kFileUnwritable, path.string() + ": " + why + "; check the folder, its rights and the space left"};
+  return {ErrorCode::kFileUnwritable,
+          path.string() + ": " + why + "; check the folder, its rights and the space left"};
 }
 
 bool WriteAll(int fd, std::string_view content) {
@@ -64,8 +66,9 @@ Result<std::string> ReadFile(const fs::path& path, std::size_t limit_bytes) {
     return Error{ErrorCode::kFileUnreadable, path.string() + " is not a regular file; name a file"};
   }
   if (static_cast<std::size_t>(info.st_size) > limit_bytes) {
-    return Error{ErrorCode::kFileTooLarge, path.string() + " has " + std::to_string(info.st_size) + " bytes, more than the " +
-                                               std::to_string(limit_bytes) + " that are accepted"};
+    return Error{ErrorCode::kFileTooLarge, path.string() + " has " + std::to_string(info.st_size) +
+                                               " bytes, more than the " + std::to_string(limit_bytes) +
+                                               " that are accepted"};
   }
   std::string content(static_cast<std::size_t>(info.st_size), '\0');
   std::size_t have = 0;

@@ -5,6 +5,8 @@
 
 namespace trocar::core {
 
-std::string_view VersionText() noexcept { return TROCAR_VERSION; }
+std::string_view VersionText() noexcept {
+  return TROCAR_VERSION;
+}
 
 }  // namespace trocar::core

@@ -56,8 +56,9 @@ class SafeFile : public testing::Test {
  protected:
   void SetUp() override { std::filesystem::create_directories(folder_); }
   void TearDown() override { std::filesystem::remove_all(folder_); }
-  std::filesystem::path folder_ = std::filesystem::path(testing::TempDir()) /
-                                  ("trocar_safe_file_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+  std::filesystem::path folder_ =
+      std::filesystem::path(testing::TempDir()) /
+      ("trocar_safe_file_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
 };
 
 TEST_F(SafeFile, ReadsBackWhatItWroteAndLeavesNothingElse) {

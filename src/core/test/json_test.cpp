@@ -38,9 +38,13 @@ TEST(JsonDocument, RefusesRangeWholeNumberAndMisspeltFields) {
     read(document->Root());
     return document->Check().ok() ? std::string() : document->Check().error().message;
   };
-  EXPECT_THAT(complaint(R"({"k": -1})", [](JsonView v) { (void)v.Number("k", {0, 10}); }),
+  EXPECT_THAT(complaint(R"({"k": -1})",
+                        [](JsonView v) {
+                          (void)v.Number("k", {0, 10});
+                        }),
               HasSubstr("between 0.0 and 10.0"));
-  EXPECT_THAT(complaint(R"({"k": 1.5})", [](JsonView v) { (void)v.Integer("k"); }), HasSubstr("whole number"));
+  EXPECT_THAT(complaint(R"({"k": 1.5})", [](JsonView v) { (void)v.Integer("k"); }),
+              HasSubstr("whole number"));
   EXPECT_THAT(complaint(R"({"k": 1, "kk": 2})", [](JsonView v) { v.AllowOnly({"k"}); }), HasSubstr("at kk"));
 }
 

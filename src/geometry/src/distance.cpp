@@ -66,7 +66,8 @@ TrianglePoint FindOnSides(const Vec3& p, const Vec3& a, const Vec3& b, const Vec
     if (t >= 1.0) candidate.point = corners[next];
     candidate.weights[side] = 1.0 - t;
     candidate.weights[next] = t;
-    if (side == 0 || math::SquaredDistance(candidate.point, p) < math::SquaredDistance(best.point, p)) best = candidate;
+    if (side == 0 || math::SquaredDistance(candidate.point, p) < math::SquaredDistance(best.point, p))
+      best = candidate;
   }
   return best;
 }
@@ -75,7 +76,8 @@ TrianglePoint FindOnSides(const Vec3& p, const Vec3& a, const Vec3& b, const Vec
 
 TrianglePoint FindNearestOnTriangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) noexcept {
   const Vec3 ab = b - a, ac = c - a;
-  const double longest2 = std::max({math::SquaredNorm(ab), math::SquaredNorm(ac), math::SquaredDistance(b, c)});
+  const double longest2 =
+      std::max({math::SquaredNorm(ab), math::SquaredNorm(ac), math::SquaredDistance(b, c)});
   const TrianglePoint plain = FindByRegions(p, a, b, c);
   if (math::SquaredNorm(Cross(ab, ac)) > kSliver2 * longest2 * longest2) return plain;
 

@@ -15,7 +15,8 @@
 namespace trocar::geometry {
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "PLY reading and writing assumes a little-endian machine");
+static_assert(std::endian::native == std::endian::little,
+              "PLY reading and writing assumes a little-endian machine");
 
 enum class Kind { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat, kDouble };
 
@@ -25,10 +26,12 @@ std::optional<Kind> FindKind(std::string_view name) {
     Kind kind;
   };
   static constexpr Name kNames[] = {
-      {"char", Kind::kInt8},    {"int8", Kind::kInt8},      {"uchar", Kind::kUint8},   {"uint8", Kind::kUint8},
-      {"short", Kind::kInt16},  {"int16", Kind::kInt16},    {"ushort", Kind::kUint16}, {"uint16", Kind::kUint16},
-      {"int", Kind::kInt32},    {"int32", Kind::kInt32},    {"uint", Kind::kUint32},   {"uint32", Kind::kUint32},
-      {"float", Kind::kFloat},  {"float32", Kind::kFloat},  {"double", Kind::kDouble}, {"float64", Kind::kDouble}};
+      {"char", Kind::kInt8},     {"int8", Kind::kInt8},     {"uchar", Kind::kUint8},
+      {"uint8", Kind::kUint8},   {"short", Kind::kInt16},   {"int16", Kind::kInt16},
+      {"ushort", Kind::kUint16}, {"uint16", Kind::kUint16}, {"int", Kind::kInt32},
+      {"int32", Kind::kInt32},   {"uint", Kind::kUint32},   {"uint32", Kind::kUint32},
+      {"float", Kind::kFloat},   {"float32", Kind::kFloat}, {"double", Kind::kDouble},
+      {"float64", Kind::kDouble}};
   for (const Name& entry : kNames) {
     if (entry.text == name) return entry.kind;
   }
@@ -71,14 +74,22 @@ class NumberReader {
 
   double NextBytes(Kind kind) {
     switch (kind) {
-      case Kind::kInt8: return Take<std::int8_t>();
-      case Kind::kUint8: return Take<std::uint8_t>();
-      case Kind::kInt16: return Take<std::int16_t>();
-      case Kind::kUint16: return Take<std::uint16_t>();
-      case Kind::kInt32: return Take<std::int32_t>();
-      case Kind::kUint32: return Take<std::uint32_t>();
-      case Kind::kFloat: return Take<float>();
-      case Kind::kDouble: break;
+      case Kind::kInt8:
+        return Take<std::int8_t>();
+      case Kind::kUint8:
+        return Take<std::uint8_t>();
+      case Kind::kInt16:
+        return Take<std::int16_t>();
+      case Kind::kUint16:
+        return Take<std::uint16_t>();
+      case Kind::kInt32:
+        return Take<std::int32_t>();
+      case Kind::kUint32:
+        return Take<std::uint32_t>();
+      case Kind::kFloat:
+        return Take<float>();
+      case Kind::kDouble:
+        break;
     }
     return Take<double>();
   }
@@ -124,7 +135,8 @@ core::Result<Header> ParseHeader(std::string_view content, const auto& fail) {
     if (word == "format") {
       std::string format;
       line >> format;
-      if (format != "ascii" && format != "binary_little_endian") return fail("format '" + format + "' is not read; save it as ascii or binary_little_endian");
+      if (format != "ascii" && format != "binary_little_endian")
+        return fail("format '" + format + "' is not read; save it as ascii or binary_little_endian");
       header.is_ascii = format == "ascii";
       has_format = true;
     } else if (word == "element") {
@@ -176,7 +188,8 @@ std::string FormatPly(const TriangleMesh& mesh, std::string_view comment) {
 
 core::Result<TriangleMesh> ParsePly(std::string_view content, std::string_view source) {
   const auto fail = [&](const std::string& why) {
-    return core::Error{core::ErrorCode::kMeshInvalid, std::string(source) + " is not a usable PLY mesh: " + why};
+    return core::Error{core::ErrorCode::kMeshInvalid,
+                       std::string(source) + " is not a usable PLY mesh: " + why};
   };
   const auto header = ParseHeader(content, fail);
   if (!header.ok()) return header.error();
@@ -186,7 +199,8 @@ core::Result<TriangleMesh> ParsePly(std::string_view content, std::string_view s
   for (const Element& element : header->elements) {
     // each entry takes at least one byte a property: a count that lies is refused before it is believed
     if (!element.properties.empty() && element.count > reader.Left() / element.properties.size()) {
-      return fail(std::to_string(element.count) + " entries of '" + element.name + "' are announced, but the file is too short for them");
+      return fail(std::to_string(element.count) + " entries of '" + element.name +
+                  "' are announced, but the file is too short for them");
     }
     if (element.properties.empty()) continue;
     for (std::uint64_t entry = 0; entry < element.count; ++entry) {
@@ -203,18 +217,22 @@ core::Result<TriangleMesh> ParsePly(std::string_view content, std::string_view s
           continue;
         }
         const double length = reader.Next(*property.list_count);
-        if (is_face && length != 3) return fail("face " + std::to_string(entry) + " is no triangle; triangulate the mesh");
+        if (is_face && length != 3)
+          return fail("face " + std::to_string(entry) + " is no triangle; triangulate the mesh");
         for (double item = 0; item < length && reader.Ok(); ++item) {
           const double value = reader.Next(property.kind);
           if (is_face) face.push_back(value);
         }
       }
-      if (!reader.Ok()) return fail("it ends in '" + element.name + "' " + std::to_string(entry) + ", or holds something that is no number there");
+      if (!reader.Ok())
+        return fail("it ends in '" + element.name + "' " + std::to_string(entry) +
+                    ", or holds something that is no number there");
       if (element.name == "vertex") mesh.positions.push_back(position);
       if (face.size() == 3) {
         Triangle triangle;
         for (int i = 0; i < 3; ++i) {
-          if (!(face[i] >= 0 && face[i] < 4294967295.0)) return fail("face " + std::to_string(entry) + " has a bad index");
+          if (!(face[i] >= 0 && face[i] < 4294967295.0))
+            return fail("face " + std::to_string(entry) + " has a bad index");
           triangle[i] = static_cast<std::uint32_t>(face[i]);
         }
         mesh.triangles.push_back(triangle);

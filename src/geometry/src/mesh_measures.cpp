@@ -21,7 +21,9 @@ using math::Dot;
 using math::Norm;
 
 /// Angle between two directions [rad].
-double CalcAngle(const Vec3& a, const Vec3& b) { return std::atan2(Norm(Cross(a, b)), Dot(a, b)); }
+double CalcAngle(const Vec3& a, const Vec3& b) {
+  return std::atan2(Norm(Cross(a, b)), Dot(a, b));
+}
 
 /// Whether the triangles around each vertex form one fan: neighbours in the fan share an edge at the vertex.
 std::size_t CountVerticesWithSeveralFans(const TriangleMesh& mesh) {
@@ -86,7 +88,8 @@ double CalcVolume(std::span<const Vec3> positions, std::span<const Triangle> tri
   return six / 6.0;
 }
 
-void CalcVertexNormals(std::span<const Vec3> positions, std::span<const Triangle> triangles, std::span<Vec3> normals) {
+void CalcVertexNormals(std::span<const Vec3> positions, std::span<const Triangle> triangles,
+                       std::span<Vec3> normals) {
   TROCAR_ASSERT(normals.size() == positions.size());
   std::fill(normals.begin(), normals.end(), Vec3{});
   for (const Triangle& t : triangles) {
@@ -126,23 +129,29 @@ MeshReport InspectMesh(const TriangleMesh& mesh) {
   for (const Triangle& t : mesh.triangles) {
     for (int i = 0; i < 3; ++i) {
       const auto from = t[i], to = t[(i + 1) % 3];
-      const Vec3 &here = mesh.positions[from], &next = mesh.positions[to], &last = mesh.positions[t[(i + 2) % 3]];
+      const Vec3 &here = mesh.positions[from], &next = mesh.positions[to],
+                 &last = mesh.positions[t[(i + 2) % 3]];
       report.min_angle = std::min(report.min_angle, CalcAngle(next - here, last - here));
-      if (from < to) ++edges[{from, to}].forward;
-      else ++edges[{to, from}].backward;
+      if (from < to)
+        ++edges[{from, to}].forward;
+      else
+        ++edges[{to, from}].backward;
     }
     const bool repeated = t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
     if (repeated || !(Norm(CalcAreaNormal(mesh.positions, t)) > 0.0)) ++report.degenerate;
   }
   report.edges = edges.size();
   for (const auto& [edge, sides] : edges) {
-    if (sides.forward + sides.backward == 1) ++report.boundary_edges;
-    else if (sides.forward != 1 || sides.backward != 1) ++report.odd_edges;
+    if (sides.forward + sides.backward == 1)
+      ++report.boundary_edges;
+    else if (sides.forward != 1 || sides.backward != 1)
+      ++report.odd_edges;
   }
   report.odd_vertices = CountVerticesWithSeveralFans(mesh);
   const auto components = FindComponents(mesh.triangles, mesh.positions.size());
   report.components = components.empty() ? 0 : *std::max_element(components.begin(), components.end()) + 1;
-  const auto euler = static_cast<long>(report.vertices) - static_cast<long>(report.edges) + static_cast<long>(report.triangles);
+  const auto euler = static_cast<long>(report.vertices) - static_cast<long>(report.edges) +
+                     static_cast<long>(report.triangles);
   report.genus = static_cast<int>((2 * static_cast<long>(report.components) - euler) / 2);
   report.closed = report.boundary_edges == 0 && !mesh.triangles.empty();
   report.manifold = report.odd_edges == 0 && report.odd_vertices == 0 && report.degenerate == 0;
@@ -153,10 +162,13 @@ MeshReport InspectMesh(const TriangleMesh& mesh) {
 std::size_t CountSelfIntersections(const TriangleMesh& mesh) {
   if (mesh.triangles.empty()) return 0;
   // uniform grid with cells of about one edge length
-  const double cell = 2.0 * std::sqrt(CalcArea(mesh.positions, mesh.triangles) / static_cast<double>(mesh.triangles.size()));
+  const double cell =
+      2.0 * std::sqrt(CalcArea(mesh.positions, mesh.triangles) / static_cast<double>(mesh.triangles.size()));
   if (!(cell > 0.0)) return 0;
   const Vec3 origin = CalcBox(mesh.positions).min;
-  const auto cell_of = [&](const Vec3& p, int axis) { return static_cast<std::int64_t>(std::floor((p[axis] - origin[axis]) / cell)); };
+  const auto cell_of = [&](const Vec3& p, int axis) {
+    return static_cast<std::int64_t>(std::floor((p[axis] - origin[axis]) / cell));
+  };
   std::unordered_map<std::int64_t, std::vector<std::uint32_t>> grid;
   std::size_t count = 0;
   std::vector<std::uint32_t> candidates;
@@ -178,7 +190,8 @@ std::size_t CountSelfIntersections(const TriangleMesh& mesh) {
     candidates.erase(std::unique(candidates.begin(), candidates.end()), candidates.end());
     for (const auto other : candidates) {
       const Triangle& u = mesh.triangles[other];
-      const bool neighbours = std::any_of(t.begin(), t.end(), [&](auto v) { return std::find(u.begin(), u.end(), v) != u.end(); });
+      const bool neighbours = std::any_of(
+          t.begin(), t.end(), [&](auto v) { return std::find(u.begin(), u.end(), v) != u.end(); });
       const Vec3 others[3] = {mesh.positions[u[0]], mesh.positions[u[1]], mesh.positions[u[2]]};
       if (!neighbours && TrianglesIntersect(corners, others)) ++count;
     }
@@ -197,8 +210,8 @@ core::Status CheckMesh(const TriangleMesh& mesh) {
     for (const auto vertex : mesh.triangles[i]) {
       if (vertex >= mesh.positions.size()) {
         return core::Error{core::ErrorCode::kMeshInvalid,
-                           "triangle " + std::to_string(i) + " names vertex " + std::to_string(vertex) + " of " +
-                               std::to_string(mesh.positions.size()) + "; export the mesh again"};
+                           "triangle " + std::to_string(i) + " names vertex " + std::to_string(vertex) +
+                               " of " + std::to_string(mesh.positions.size()) + "; export the mesh again"};
       }
     }
   }

@@ -12,7 +12,8 @@ namespace trocar::geometry {
 
 double CalcLength(const CentreLine& line) {
   double length = 0;
-  for (std::size_t i = 1; i < line.points.size(); ++i) length += math::Distance(line.points[i - 1], line.points[i]);
+  for (std::size_t i = 1; i < line.points.size(); ++i)
+    length += math::Distance(line.points[i - 1], line.points[i]);
   return length;
 }
 
@@ -57,16 +58,20 @@ std::vector<Triangle> MakeTubeTriangles(std::size_t point_count, int sides) {
   return triangles;
 }
 
-void CalcTubeSkin(std::span<const Vec3> points, std::span<const double> radii, int sides, std::span<Vec3> skin) noexcept {
+void CalcTubeSkin(std::span<const Vec3> points, std::span<const double> radii, int sides,
+                  std::span<Vec3> skin) noexcept {
   const std::size_t n = points.size();
   TROCAR_ASSERT(radii.size() == n && skin.size() == n * static_cast<std::size_t>(sides) + 2);
   Vec3 tangent = math::Normalized(points[1] - points[0]);
   Vec3 across = math::AnyPerpendicular(tangent);
   for (std::size_t i = 0; i < n; ++i) {
-    const Vec3 along = i == 0 ? points[1] - points[0] : i + 1 == n ? points[n - 1] - points[n - 2] : points[i + 1] - points[i - 1];
+    const Vec3 along = i == 0       ? points[1] - points[0]
+                       : i + 1 == n ? points[n - 1] - points[n - 2]
+                                    : points[i + 1] - points[i - 1];
     const Vec3 next_tangent = math::Normalized(along, tangent);
     across = math::Rotate(math::RotationBetween(tangent, next_tangent), across);
-    across = math::Normalized(across - math::Dot(across, next_tangent) * next_tangent, math::AnyPerpendicular(next_tangent));
+    across = math::Normalized(across - math::Dot(across, next_tangent) * next_tangent,
+                              math::AnyPerpendicular(next_tangent));
     tangent = next_tangent;
     const Vec3 up = math::Cross(tangent, across);
     for (int side = 0; side < sides; ++side) {

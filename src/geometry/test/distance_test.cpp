@@ -22,7 +22,8 @@ double DistanceToSegment(const Vec3& p, const Vec3& a, const Vec3& b) {
 TEST(FindNearestOnTriangle, AgreesWithADenseSearch) {
   math::Random random(11);
   for (int trial = 0; trial < 200; ++trial) {
-    const Vec3 p = 2.0 * RandomPoint(random), a = RandomPoint(random), b = RandomPoint(random), c = RandomPoint(random);
+    const Vec3 p = 2.0 * RandomPoint(random), a = RandomPoint(random), b = RandomPoint(random),
+               c = RandomPoint(random);
     const TrianglePoint nearest = FindNearestOnTriangle(p, a, b, c);
     const double distance = math::Distance(p, nearest.point);
     double best = 1e9;

@@ -17,7 +17,8 @@ TEST(ParsePly, ReadsBackWhatFormatPlyWroteToTheLastBit) {
 
 TEST(ParsePly, ReadsAsciiAndSkipsOtherProperties) {
   const auto mesh = ParsePly(
-      "ply\nformat ascii 1.0\ncomment by hand\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+      "ply\nformat ascii 1.0\ncomment by hand\nelement vertex 3\nproperty float x\nproperty float "
+      "y\nproperty float z\n"
       "property uchar red\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
       "0 0 0 255\n1 0 0 255\n0 1.5 0 255\n3 0 1 2\n",
       "memory");
@@ -35,7 +36,9 @@ TEST(ParsePly, RejectsEveryTruncation) {
 }
 
 TEST(ParsePly, RejectsACountThatLiesBeforeAllocating) {
-  const auto mesh = ParsePly("ply\nformat ascii 1.0\nelement vertex 18446744073709551615\nproperty float x\nend_header\n0\n", "memory");
+  const auto mesh = ParsePly(
+      "ply\nformat ascii 1.0\nelement vertex 18446744073709551615\nproperty float x\nend_header\n0\n",
+      "memory");
   ASSERT_FALSE(mesh.ok());
   EXPECT_EQ(mesh.error().code, core::ErrorCode::kMeshInvalid);
 }

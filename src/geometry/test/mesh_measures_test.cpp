@@ -42,8 +42,9 @@ TEST(InspectMesh, SeesEachDefect) {
   EXPECT_EQ(InspectMesh(one_flipped).odd_edges, 3u);
 
   // two tetrahedra that touch in one vertex
-  const TriangleMesh bow{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {-1, 0, 0}, {0, -1, 0}, {0, 0, -1}},
-                         {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}, {0, 4, 5}, {0, 6, 4}, {0, 5, 6}, {4, 6, 5}}};
+  const TriangleMesh bow{
+      {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {-1, 0, 0}, {0, -1, 0}, {0, 0, -1}},
+      {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}, {0, 4, 5}, {0, 6, 4}, {0, 5, 6}, {4, 6, 5}}};
   EXPECT_EQ(InspectMesh(bow).odd_vertices, 1u);
   EXPECT_FALSE(InspectMesh(bow).manifold);
 }
@@ -54,7 +55,8 @@ TEST(InspectMesh, CountsTheHandleOfATorus) {
   for (std::uint32_t i = 0; i < kN; ++i) {
     for (std::uint32_t j = 0; j < kN; ++j) {
       const double u = 2 * M_PI * i / kN, v = 2 * M_PI * j / kN;
-      torus.positions.push_back({(2 + std::cos(v)) * std::cos(u), (2 + std::cos(v)) * std::sin(u), std::sin(v)});
+      torus.positions.push_back(
+          {(2 + std::cos(v)) * std::cos(u), (2 + std::cos(v)) * std::sin(u), std::sin(v)});
       const auto at = [](std::uint32_t a, std::uint32_t b) { return (a % kN) * kN + b % kN; };
       torus.triangles.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
       torus.triangles.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
@@ -71,7 +73,8 @@ TEST(CountSelfIntersections, IsZeroForASphereAndPositiveForTwoThatOverlap) {
   const TriangleMesh other = MakeSphere({1, 0.1, 0.2}, 1, 2);
   const auto offset = static_cast<std::uint32_t>(mesh.positions.size());
   mesh.positions.insert(mesh.positions.end(), other.positions.begin(), other.positions.end());
-  for (const Triangle& t : other.triangles) mesh.triangles.push_back({t[0] + offset, t[1] + offset, t[2] + offset});
+  for (const Triangle& t : other.triangles)
+    mesh.triangles.push_back({t[0] + offset, t[1] + offset, t[2] + offset});
   EXPECT_GT(CountSelfIntersections(mesh), 10u);
 }
 

@@ -10,7 +10,8 @@
 namespace trocar::instrument {
 namespace {
 
-/// Closed loft through rectangular sections along z: half width (x) and y from `low` to `high` at each section.
+/// Closed loft through rectangular sections along z: half width (x) and y from `low` to `high` at each
+/// section.
 struct Section {
   double z, half_width, low, high;
 };
@@ -18,8 +19,10 @@ struct Section {
 geometry::TriangleMesh MakeLoft(const std::vector<Section>& sections) {
   geometry::TriangleMesh mesh;
   for (const Section& s : sections) {
-    mesh.positions.insert(mesh.positions.end(), {{-s.half_width, s.low, s.z}, {s.half_width, s.low, s.z},
-                                                 {s.half_width, s.high, s.z}, {-s.half_width, s.high, s.z}});
+    mesh.positions.insert(mesh.positions.end(), {{-s.half_width, s.low, s.z},
+                                                 {s.half_width, s.low, s.z},
+                                                 {s.half_width, s.high, s.z},
+                                                 {-s.half_width, s.high, s.z}});
   }
   const auto count = static_cast<std::uint32_t>(sections.size());
   for (std::uint32_t ring = 0; ring + 1 < count; ++ring) {
@@ -56,11 +59,14 @@ geometry::TriangleMesh MakeUpperJaw(const Tool& tool) {
 
 const Tool* FindTool(std::string_view name) noexcept {
   static const std::array<Tool, 1> tools{Tool{}};
-  const auto found = std::find_if(tools.begin(), tools.end(), [&](const Tool& tool) { return tool.name == name; });
+  const auto found =
+      std::find_if(tools.begin(), tools.end(), [&](const Tool& tool) { return tool.name == name; });
   return found == tools.end() ? nullptr : &*found;
 }
 
-Vec3 JawHinge(const Tool& tool) noexcept { return {0, 0, tool.jaw_length}; }
+Vec3 JawHinge(const Tool& tool) noexcept {
+  return {0, 0, tool.jaw_length};
+}
 
 Vec3 JawTip(const Tool& tool, double jaw, int side) noexcept {
   return JawHinge(tool) + tool.jaw_length * Vec3{0, side * std::sin(0.5 * jaw), -std::cos(0.5 * jaw)};

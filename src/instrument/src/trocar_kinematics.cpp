@@ -8,14 +8,17 @@ namespace trocar::instrument {
 namespace {
 
 /// Like std::clamp, but NaN becomes `low`.
-double Clamp(double value, double low, double high) noexcept { return value > low ? std::min(value, high) : low; }
+double Clamp(double value, double low, double high) noexcept {
+  return value > low ? std::min(value, high) : low;
+}
 
 }  // namespace
 
 TrocarJoints ClampJoints(const TrocarJoints& joints, const JointLimits& limits) noexcept {
-  return {Clamp(joints.pan, -limits.max_pan, limits.max_pan), Clamp(joints.tilt, -limits.max_tilt, limits.max_tilt),
-          std::isfinite(joints.spin) ? joints.spin : 0.0, Clamp(joints.depth, limits.min_depth, limits.max_depth),
-          Clamp(joints.jaw, 0.0, limits.max_jaw)};
+  return {Clamp(joints.pan, -limits.max_pan, limits.max_pan),
+          Clamp(joints.tilt, -limits.max_tilt, limits.max_tilt),
+          std::isfinite(joints.spin) ? joints.spin : 0.0,
+          Clamp(joints.depth, limits.min_depth, limits.max_depth), Clamp(joints.jaw, 0.0, limits.max_jaw)};
 }
 
 Pose CalcToolPose(const Vec3& p_world_port, const TrocarJoints& joints) noexcept {
@@ -33,8 +36,8 @@ TrocarJoints FindJoints(const Vec3& p_world_port, const Vec3& p_world_tip, doubl
   return {std::atan2(-axis.x, -axis.z), std::asin(std::clamp(axis.y, -1.0, 1.0)), spin, depth, jaw};
 }
 
-TrocarJoints LimitSpeed(const TrocarJoints& from, const TrocarJoints& to, double max_tip_speed, double max_turn_rate,
-                        double dt) noexcept {
+TrocarJoints LimitSpeed(const TrocarJoints& from, const TrocarJoints& to, double max_tip_speed,
+                        double max_turn_rate, double dt) noexcept {
   const auto step = [](double a, double b, double most) { return a + std::clamp(b - a, -most, most); };
   // sideways the tip moves depth * angle
   const double lever = std::max({std::fabs(from.depth), std::fabs(to.depth), 0.01});

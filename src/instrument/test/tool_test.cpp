@@ -27,8 +27,12 @@ TEST(JawTip, OpensSymmetricallyAndClosesAtTheOrigin) {
 TEST(CalcPartPose, TurnsTheDrawnJawOntoItsTip) {
   const Tool tool;
   for (const double jaw : {0.0, 0.4, 1.0}) {
-    EXPECT_NEAR(math::Distance(CalcPartPose(tool, ToolPart::Kind::kUpperJaw, jaw) * Vec3{}, JawTip(tool, jaw, +1)), 0.0, 1e-15);
-    EXPECT_NEAR(math::Distance(CalcPartPose(tool, ToolPart::Kind::kLowerJaw, jaw) * Vec3{}, JawTip(tool, jaw, -1)), 0.0, 1e-15);
+    EXPECT_NEAR(
+        math::Distance(CalcPartPose(tool, ToolPart::Kind::kUpperJaw, jaw) * Vec3{}, JawTip(tool, jaw, +1)),
+        0.0, 1e-15);
+    EXPECT_NEAR(
+        math::Distance(CalcPartPose(tool, ToolPart::Kind::kLowerJaw, jaw) * Vec3{}, JawTip(tool, jaw, -1)),
+        0.0, 1e-15);
   }
 }
 

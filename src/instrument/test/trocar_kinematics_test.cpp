@@ -22,7 +22,8 @@ TEST(CalcToolPose, ShaftPassesThroughThePortWhateverTheJoints) {
   math::Random random(5);
   const Vec3 port{0.02, -0.05, 0.01};
   for (int trial = 0; trial < 100; ++trial) {
-    const TrocarJoints joints{random.Uniform(-1, 1), random.Uniform(-1, 1), random.Uniform(-3, 3), random.Uniform(0.03, 0.28), 0};
+    const TrocarJoints joints{random.Uniform(-1, 1), random.Uniform(-1, 1), random.Uniform(-3, 3),
+                              random.Uniform(0.03, 0.28), 0};
     const Pose pose = CalcToolPose(port, joints);
     EXPECT_NEAR(math::Distance(pose * Vec3{0, 0, joints.depth}, port), 0.0, 1e-15);
   }
@@ -38,7 +39,8 @@ TEST(CalcToolPose, FulcrumMovesTheTipAgainstTheHandle) {
 TEST(FindJoints, InvertsTheForwardMap) {
   math::Random random(6);
   for (int trial = 0; trial < 200; ++trial) {
-    const TrocarJoints joints{random.Uniform(-1.2, 1.2), random.Uniform(-1.2, 1.2), 0.3, random.Uniform(0.03, 0.28), 0.2};
+    const TrocarJoints joints{random.Uniform(-1.2, 1.2), random.Uniform(-1.2, 1.2), 0.3,
+                              random.Uniform(0.03, 0.28), 0.2};
     const TrocarJoints found = FindJoints({0, 0, 0}, CalcToolPose({0, 0, 0}, joints).translation, 0.3, 0.2);
     EXPECT_NEAR(found.pan, joints.pan, 1e-12);
     EXPECT_NEAR(found.tilt, joints.tilt, 1e-12);

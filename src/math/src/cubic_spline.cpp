@@ -26,10 +26,11 @@ std::vector<Vec3> MergeCoinciding(std::span<const Vec3> points, SplineEnds ends)
   return kept;
 }
 
-/// Solves a tridiagonal system with diagonal `b`, off-diagonals `a` (below) and `c` (above) by Thomas' algorithm.
+/// Solves a tridiagonal system with diagonal `b`, off-diagonals `a` (below) and `c` (above) by Thomas'
+/// algorithm.
 template <typename Value>
-std::vector<Value> SolveTridiagonal(const std::vector<double>& a, std::vector<double> b, const std::vector<double>& c,
-                                    std::vector<Value> d) {
+std::vector<Value> SolveTridiagonal(const std::vector<double>& a, std::vector<double> b,
+                                    const std::vector<double>& c, std::vector<Value> d) {
   const std::size_t n = b.size();
   for (std::size_t i = 1; i < n; ++i) {
     const double w = a[i] / b[i - 1];
@@ -50,7 +51,8 @@ CubicSpline::CubicSpline(std::span<const Vec3> points, SplineEnds ends) : ends_(
   if (ends == SplineEnds::kClosed) points_.push_back(points_.front());
 
   knots_.assign(1, 0.0);
-  for (std::size_t i = 1; i < points_.size(); ++i) knots_.push_back(knots_.back() + Distance(points_[i], points_[i - 1]));
+  for (std::size_t i = 1; i < points_.size(); ++i)
+    knots_.push_back(knots_.back() + Distance(points_[i], points_[i - 1]));
 
   const auto step = [&](std::size_t i) { return knots_[i + 1] - knots_[i]; };
   const auto slope = [&](std::size_t i) { return (points_[i + 1] - points_[i]) / step(i); };
@@ -103,7 +105,8 @@ Vec3 CubicSpline::Evaluate(double s) const {
   const double h = knots_[i + 1] - knots_[i];
   const double right = (s - knots_[i]) / h, left = 1.0 - right;
   return left * points_[i] + right * points_[i + 1] +
-         (h * h / 6.0) * ((left * left * left - left) * curvatures_[i] + (right * right * right - right) * curvatures_[i + 1]);
+         (h * h / 6.0) * ((left * left * left - left) * curvatures_[i] +
+                          (right * right * right - right) * curvatures_[i + 1]);
 }
 
 Vec3 CubicSpline::EvaluateDerivative(double s) const {

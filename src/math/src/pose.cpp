@@ -15,7 +15,9 @@ Quaternion operator*(const Quaternion& a, const Quaternion& b) {
           a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x, a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w};
 }
 
-Quaternion Inverse(const Quaternion& q) { return {q.w, -q.x, -q.y, -q.z}; }
+Quaternion Inverse(const Quaternion& q) {
+  return {q.w, -q.x, -q.y, -q.z};
+}
 
 Quaternion Normalized(const Quaternion& q) {
   const double norm = std::sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
@@ -63,6 +65,8 @@ Pose Inverse(const Pose& X_a_b) {
   return {inverse, -Rotate(inverse, X_a_b.translation)};
 }
 
-Vec3 operator*(const Pose& X_a_b, const Vec3& p_b) { return Rotate(X_a_b.rotation, p_b) + X_a_b.translation; }
+Vec3 operator*(const Pose& X_a_b, const Vec3& p_b) {
+  return Rotate(X_a_b.rotation, p_b) + X_a_b.translation;
+}
 
 }  // namespace trocar::math

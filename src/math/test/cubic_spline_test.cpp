@@ -11,7 +11,8 @@ namespace {
 
 std::vector<Vec3> CirclePoints(int count) {
   std::vector<Vec3> points;
-  for (int i = 0; i < count; ++i) points.push_back({std::cos(2 * M_PI * i / count), std::sin(2 * M_PI * i / count), 0});
+  for (int i = 0; i < count; ++i)
+    points.push_back({std::cos(2 * M_PI * i / count), std::sin(2 * M_PI * i / count), 0});
   return points;
 }
 

@@ -17,7 +17,9 @@ TEST(Rotate, QuarterTurnAboutZTakesXToY) {
 
 TEST(Pose, ComposesLikeItsMapsAndInvertsItself) {
   Random random(1);
-  const auto vector = [&] { return Vec3{random.Uniform(-1, 1), random.Uniform(-1, 1), random.Uniform(-1, 1)}; };
+  const auto vector = [&] {
+    return Vec3{random.Uniform(-1, 1), random.Uniform(-1, 1), random.Uniform(-1, 1)};
+  };
   for (int trial = 0; trial < 100; ++trial) {
     const Pose a{RotationAbout(Normalized(vector()), random.Uniform(-3, 3)), vector()};
     const Pose b{RotationAbout(Normalized(vector()), random.Uniform(-3, 3)), vector()};
@@ -29,7 +31,9 @@ TEST(Pose, ComposesLikeItsMapsAndInvertsItself) {
 
 TEST(RotationBetween, TakesAnyDirectionToAnyOther) {
   Random random(2);
-  const auto unit = [&] { return Normalized(Vec3{random.Uniform(-1, 1), random.Uniform(-1, 1), random.Uniform(-1, 1)}); };
+  const auto unit = [&] {
+    return Normalized(Vec3{random.Uniform(-1, 1), random.Uniform(-1, 1), random.Uniform(-1, 1)});
+  };
   for (int trial = 0; trial < 100; ++trial) {
     const Vec3 from = unit(), to = trial == 0 ? -from : unit();
     EXPECT_NEAR(Distance(Rotate(RotationBetween(from, to), from), to), 0.0, 1e-12);
@@ -41,7 +45,8 @@ TEST(RotationFromAxes, ReproducesTheAxesForEveryBranch) {
   for (int trial = 0; trial < 200; ++trial) {
     const Vec3 axis = Normalized(Vec3{random.Uniform(-1, 1), random.Uniform(-1, 1), random.Uniform(-1, 1)});
     const Quaternion q = RotationAbout(axis, random.Uniform(-M_PI, M_PI));
-    const Quaternion back = RotationFromAxes(Rotate(q, {1, 0, 0}), Rotate(q, {0, 1, 0}), Rotate(q, {0, 0, 1}));
+    const Quaternion back =
+        RotationFromAxes(Rotate(q, {1, 0, 0}), Rotate(q, {0, 1, 0}), Rotate(q, {0, 0, 1}));
     EXPECT_NEAR(std::abs(q.w * back.w + q.x * back.x + q.y * back.y + q.z * back.z), 1.0, 1e-12);
   }
 }

@@ -29,8 +29,8 @@ core::Result<fs::path> FindDataFolder() {
     }
     tried += (tried.empty() ? "" : ", ") + place.string();
   }
-  return core::Error{core::ErrorCode::kFileMissing,
-                     "no folder with assets/ and scenes/ was found (tried " + tried + "); set TROCAR_DATA_DIR to it"};
+  return core::Error{core::ErrorCode::kFileMissing, "no folder with assets/ and scenes/ was found (tried " +
+                                                        tried + "); set TROCAR_DATA_DIR to it"};
 }
 
 }  // namespace trocar::session

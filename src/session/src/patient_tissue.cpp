@@ -23,14 +23,16 @@ const OrganMaterial* FindMaterial(const Scene& scene, std::string_view name) {
 }
 
 core::Error MissingMaterial(const std::string& name) {
-  return {core::ErrorCode::kSceneInvalid, "the scene has no material for \"" + name + "\"; add one to \"materials\""};
+  return {core::ErrorCode::kSceneInvalid,
+          "the scene has no material for \"" + name + "\"; add one to \"materials\""};
 }
 
 void AddOrgan(const anatomy::Organ& organ, const OrganMaterial& material, PatientTissue& made) {
   auto& definition = made.definition;
   const auto first = static_cast<std::uint32_t>(definition.rest.size());
   const auto& mesh = organ.mesh;
-  made.surfaces.push_back({organ.name, organ.name, first, static_cast<std::uint32_t>(mesh.positions.size()), mesh.triangles, {}});
+  made.surfaces.push_back(
+      {organ.name, organ.name, first, static_cast<std::uint32_t>(mesh.positions.size()), mesh.triangles, {}});
   definition.rest.insert(definition.rest.end(), mesh.positions.begin(), mesh.positions.end());
 
   const auto areas = geometry::CalcVertexAreas(mesh.positions, mesh.triangles);
@@ -46,7 +48,8 @@ void AddOrgan(const anatomy::Organ& organ, const OrganMaterial& material, Patien
                                                    material.young_modulus * material.wall_thickness);
   for (std::size_t i = 0; i < edges.size(); ++i) {
     const auto [a, b] = edges[i];
-    definition.springs.push_back({first + a, first + b, stiffness[i], math::Distance(mesh.positions[a], mesh.positions[b])});
+    definition.springs.push_back(
+        {first + a, first + b, stiffness[i], math::Distance(mesh.positions[a], mesh.positions[b])});
   }
   for (const anatomy::Region& region : organ.regions) {
     const bool is_fixed = region.name == anatomy::kDiaphragmaticFace || region.name == anatomy::kFalciform ||
@@ -67,8 +70,8 @@ void AddAttachments(const Scene& scene, const OrganMaterial& bed, PatientTissue&
   for (std::size_t i = 0; i < patient.organs.size(); ++i) strands_at[i].assign(areas[i].size(), 0);
   for (const auto& attachment : patient.attachments) ++strands_at[attachment.organ_a][attachment.vertex_a];
   for (const auto& attachment : patient.attachments) {
-    const double area = areas[attachment.organ_a][attachment.vertex_a] /
-                        strands_at[attachment.organ_a][attachment.vertex_a];
+    const double area =
+        areas[attachment.organ_a][attachment.vertex_a] / strands_at[attachment.organ_a][attachment.vertex_a];
     made.definition.strands.push_back({made.surfaces[attachment.organ_a].first_node + attachment.vertex_a,
                                        made.surfaces[attachment.organ_b].first_node + attachment.vertex_b,
                                        bed.young_modulus / bed.wall_thickness * area});
@@ -76,7 +79,8 @@ void AddAttachments(const Scene& scene, const OrganMaterial& bed, PatientTissue&
 }
 
 /// Ties a tube's end to the nearest nodes of a surface.
-void TieEnd(std::uint32_t end, const SurfaceInfo& surface, double stiffness, tissue::TissueDefinition& definition) {
+void TieEnd(std::uint32_t end, const SurfaceInfo& surface, double stiffness,
+            tissue::TissueDefinition& definition) {
   std::vector<std::pair<double, std::uint32_t>> near;
   for (std::uint32_t i = 0; i < surface.node_count; ++i) {
     const std::uint32_t node = surface.first_node + i;
@@ -99,12 +103,14 @@ void AddTube(const anatomy::Tube& tube, const OrganMaterial& material, PatientTi
   for (std::uint32_t i = 0; i < count; ++i) {
     const double radius = tube.line.radii[i];
     // what surrounds the tube holds it over its shadow; the weight is that of the filled tube
-    definition.shape_stiffness.push_back(material.foundation_modulus / material.depth * 2.0 * radius * spacing);
+    definition.shape_stiffness.push_back(material.foundation_modulus / material.depth * 2.0 * radius *
+                                         spacing);
     definition.mass.push_back(material.density * M_PI * radius * radius * spacing);
   }
   const auto join = [&](std::uint32_t i, std::uint32_t step, double share) {
     const double length = math::Distance(tube.line.points[i], tube.line.points[i + step]);
-    const double stiffness = tissue::CalcTubeStiffness(material.young_modulus, tube.line.radii[i], material.wall_thickness, length);
+    const double stiffness = tissue::CalcTubeStiffness(material.young_modulus, tube.line.radii[i],
+                                                       material.wall_thickness, length);
     definition.springs.push_back({first + i, first + i + step, share * stiffness, length});
   };
   for (std::uint32_t i = 0; i + 1 < count; ++i) join(i, 1, 1.0);
@@ -119,8 +125,9 @@ void TieTubes(const Scene& scene, PatientTissue& made) {
     const std::uint32_t ends[2] = {self->first_node, self->first_node + self->node_count - 1};
     const std::string* names[2] = {&tube.from, &tube.to};
     for (int end = 0; end < 2; ++end) {
-      const auto other = std::find_if(made.surfaces.begin(), made.surfaces.end(),
-                                      [&](const SurfaceInfo& surface) { return surface.name == *names[end]; });
+      const auto other =
+          std::find_if(made.surfaces.begin(), made.surfaces.end(),
+                       [&](const SurfaceInfo& surface) { return surface.name == *names[end]; });
       if (other == made.surfaces.end()) {
         made.definition.fixed.push_back(ends[end]);  // leaves the scene
         continue;

@@ -105,10 +105,18 @@ void Runner::SetInput(const Input& input) {
   content_->input_slot.Publish();
 }
 
-void Runner::SetScripted(bool is_scripted) { content_->is_scripted.store(is_scripted); }
-void Runner::SetPaused(bool is_paused) { content_->is_paused.store(is_paused); }
-bool Runner::IsPaused() const { return content_->is_paused.load(); }
-void Runner::Reset() { content_->resets_wanted.fetch_add(1, std::memory_order_release); }
+void Runner::SetScripted(bool is_scripted) {
+  content_->is_scripted.store(is_scripted);
+}
+void Runner::SetPaused(bool is_paused) {
+  content_->is_paused.store(is_paused);
+}
+bool Runner::IsPaused() const {
+  return content_->is_paused.load();
+}
+void Runner::Reset() {
+  content_->resets_wanted.fetch_add(1, std::memory_order_release);
+}
 
 const Snapshot& Runner::Latest() {
   content_->snapshot_slot.Update();
@@ -116,10 +124,15 @@ const Snapshot& Runner::Latest() {
 }
 
 RunnerStatistics Runner::Statistics() const {
-  return {content_->ticks.load(), content_->late_ticks.load(), content_->tick_median.load(), content_->tick_p99.load()};
+  return {content_->ticks.load(), content_->late_ticks.load(), content_->tick_median.load(),
+          content_->tick_p99.load()};
 }
 
-const Scene& Runner::GetScene() const { return content_->simulation.GetScene(); }
-std::span<const SurfaceInfo> Runner::Surfaces() const { return content_->simulation.Surfaces(); }
+const Scene& Runner::GetScene() const {
+  return content_->simulation.GetScene();
+}
+std::span<const SurfaceInfo> Runner::Surfaces() const {
+  return content_->simulation.Surfaces();
+}
 
 }  // namespace trocar::session

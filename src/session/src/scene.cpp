@@ -31,8 +31,8 @@ Vec3 ReadTarget(const core::JsonView& view, std::string_view key, const anatomy:
 }
 
 OrganMaterial ReadMaterial(const core::JsonView& view) {
-  view.AllowOnly({"organ", "young_modulus_pa", "wall_thickness_mm", "foundation_modulus_pa", "foundation_depth_mm",
-                  "density_kg_m3", "source"});
+  view.AllowOnly({"organ", "young_modulus_pa", "wall_thickness_mm", "foundation_modulus_pa",
+                  "foundation_depth_mm", "density_kg_m3", "source"});
   OrganMaterial material;
   material.organ = view.Text("organ");
   material.young_modulus = view.Number("young_modulus_pa", {0.0, 1e9});
@@ -81,7 +81,8 @@ void ReadSettings(const core::JsonView& root, LiveSettings& settings) {
   settings.gravity = view.NumberOr("gravity_m_s2", settings.gravity, {0.0, 30.0});
   settings.head_up = view.NumberOr("head_up_deg", 0.0, {-30.0, 30.0}) * kDegree;
   settings.right_up = view.NumberOr("right_up_deg", 0.0, {-30.0, 30.0}) * kDegree;
-  settings.solver.max_iterations = view.IntegerOr("max_iterations", settings.solver.max_iterations, {1, 100'000});
+  settings.solver.max_iterations =
+      view.IntegerOr("max_iterations", settings.solver.max_iterations, {1, 100'000});
   settings.solver.tolerance = view.NumberOr("tolerance", settings.solver.tolerance, {0.0, 1.0});
   const std::string solver = view.TextOr("solver", "chebyshev");
   if (solver == "chebyshev") {
@@ -89,7 +90,8 @@ void ReadSettings(const core::JsonView& root, LiveSettings& settings) {
   } else if (solver == "relaxation") {
     settings.solver.kind = tissue::SolverKind::kRelaxationPaper;
   } else {
-    view.Complain("there is no solver \"" + solver + "\"; known are chebyshev, relaxation", core::ErrorCode::kUnknownName);
+    view.Complain("there is no solver \"" + solver + "\"; known are chebyshev, relaxation",
+                  core::ErrorCode::kUnknownName);
   }
 }
 

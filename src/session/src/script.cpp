@@ -44,7 +44,8 @@ core::Result<Script> ReadScript(const std::filesystem::path& path, const anatomy
       if (landmark == nullptr) {
         std::string known;
         for (const auto& one : patient.landmarks) known += (known.empty() ? "" : ", ") + one.name;
-        pose.Complain("there is no landmark \"" + name + "\"; the patient has " + known, core::ErrorCode::kUnknownName);
+        pose.Complain("there is no landmark \"" + name + "\"; the patient has " + known,
+                      core::ErrorCode::kUnknownName);
         continue;
       }
       const auto offset = pose.Has("offset_mm") ? pose.Numbers("offset_mm", 3) : std::vector<double>(3, 0.0);
@@ -77,9 +78,9 @@ Input CalcScriptInput(const Scene& scene, double time) {
   const double s = t * t * t * (10.0 + t * (-15.0 + 6.0 * t));
   for (int hand = 0; hand < kHandCount; ++hand) {
     const auto blend = [&](double a, double b) { return a + s * (b - a); };
-    input.hands[hand] = instrument::FindJoints(scene.instruments[hand].p_world_port,
-                                               math::Lerp(from.p_world_tip[hand], to.p_world_tip[hand], s),
-                                               blend(from.spin[hand], to.spin[hand]), blend(from.jaw[hand], to.jaw[hand]));
+    input.hands[hand] = instrument::FindJoints(
+        scene.instruments[hand].p_world_port, math::Lerp(from.p_world_tip[hand], to.p_world_tip[hand], s),
+        blend(from.spin[hand], to.spin[hand]), blend(from.jaw[hand], to.jaw[hand]));
   }
   return input;
 }

@@ -9,10 +9,11 @@
 
 namespace trocar::session {
 
-/// Reads keys {"time_s", "left": {"at": LANDMARK, "offset_mm": [x, y, z], "spin_deg", "jaw_deg"}, "right": ...}. A hand
-/// that a key leaves out stays as in the key before.
+/// Reads keys {"time_s", "left": {"at": LANDMARK, "offset_mm": [x, y, z], "spin_deg", "jaw_deg"}, "right":
+/// ...}. A hand that a key leaves out stays as in the key before.
 ///
-/// \return the file's error, kScriptInvalid (times that do not rise, first key without a hand) or kUnknownName
+/// \return the file's error, kScriptInvalid (times that do not rise, first key without a hand) or
+/// kUnknownName
 core::Result<Script> ReadScript(const std::filesystem::path& path, const anatomy::Patient& patient);
 
 }  // namespace trocar::session

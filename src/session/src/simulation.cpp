@@ -26,10 +26,12 @@ constexpr double kMaxTurnRate = 20.0;
 /// Gravity in the patient's frame when the table is tilted [m/s^2].
 Vec3 CalcGravity(const LiveSettings& settings) noexcept {
   const double head = settings.head_up, right = settings.right_up;
-  return settings.gravity * Vec3{std::sin(right) * std::cos(head), -std::sin(head), -std::cos(right) * std::cos(head)};
+  return settings.gravity *
+         Vec3{std::sin(right) * std::cos(head), -std::sin(head), -std::cos(right) * std::cos(head)};
 }
 
-/// The telescope looks along -z of its shaft, bent by its angle in the direction of the light post; the horizon stays.
+/// The telescope looks along -z of its shaft, bent by its angle in the direction of the light post; the
+/// horizon stays.
 Pose CalcLaparoscopePose(const LaparoscopeSetup& setup, const instrument::TrocarJoints& joints) noexcept {
   instrument::TrocarJoints unspun = joints;
   unspun.spin = 0;
@@ -101,8 +103,8 @@ void Simulation::Content::MoveInstruments(const Input& input) noexcept {
     const InstrumentSetup& setup = scene->instruments[hand];
     instrument::JointLimits limits;
     limits.max_jaw = setup.tool.max_jaw;
-    joints[hand] = instrument::LimitSpeed(joints[hand], instrument::ClampJoints(input.hands[hand], limits), kMaxTipSpeed,
-                                          kMaxTurnRate, scene->tick_seconds);
+    joints[hand] = instrument::LimitSpeed(joints[hand], instrument::ClampJoints(input.hands[hand], limits),
+                                          kMaxTipSpeed, kMaxTurnRate, scene->tick_seconds);
     X_world_tools[hand] = instrument::CalcToolPose(setup.p_world_port, joints[hand]);
   }
 }
@@ -120,18 +122,20 @@ void Simulation::Content::FindContacts() noexcept {
 void Simulation::Content::ActOnTissue() noexcept {
   for (int hand = 0; hand < kHandCount; ++hand) {
     const std::int32_t held = grasps[hand].organ;
-    changes[hand] = surgery::UpdateGrasp(scene->instruments[hand].tool, X_world_tools[hand], joints[hand].jaw, organs,
-                                         tissue_model, grasp_settings, grasps[hand], tissue);
+    changes[hand] = surgery::UpdateGrasp(scene->instruments[hand].tool, X_world_tools[hand], joints[hand].jaw,
+                                         organs, tissue_model, grasp_settings, grasps[hand], tissue);
     changed_organs[hand] = changes[hand] == surgery::GraspChange::kReleased ? held : grasps[hand].organ;
   }
   // nodes that a tool presses are the paper's second condition
   for (std::size_t i = 0; i < tissue.condition.size(); ++i) {
-    if (tissue.condition[i] == tissue::NodeCondition::kExternalForce) tissue.condition[i] = tissue::NodeCondition::kFree;
+    if (tissue.condition[i] == tissue::NodeCondition::kExternalForce)
+      tissue.condition[i] = tissue::NodeCondition::kFree;
   }
   for (const auto& spring : contacts.springs) {
     if (!(tissue::CalcContactDepth(spring, tissue.position) > 0.0)) continue;
     for (const auto node : spring.nodes) {
-      if (tissue.condition[node] == tissue::NodeCondition::kFree) tissue.condition[node] = tissue::NodeCondition::kExternalForce;
+      if (tissue.condition[node] == tissue::NodeCondition::kFree)
+        tissue.condition[node] = tissue::NodeCondition::kExternalForce;
     }
   }
 }
@@ -144,7 +148,8 @@ void Simulation::Content::Solve() noexcept {
 void Simulation::Content::CheckState() noexcept {
   verdict = guard->Check(tissue);
   for (int hand = 0; hand < kHandCount; ++hand) {
-    const auto contact = surgery::CalcContactReaction(contacts, static_cast<std::uint8_t>(hand), tissue.position);
+    const auto contact =
+        surgery::CalcContactReaction(contacts, static_cast<std::uint8_t>(hand), tissue.position);
     const Vec3 held = solver->CalcReaction(load, tissue, grasps[hand].Nodes());
     touched_organs[hand] = grasps[hand].IsHolding() ? grasps[hand].organ : contact.organ;
     forces[hand] = verdict == tissue::GuardVerdict::kGood ? contact.force + held : Vec3{};
@@ -171,11 +176,20 @@ void Simulation::Content::DetectEvents() noexcept {
   for (int hand = 0; hand < kHandCount; ++hand) {
     const double force = math::Norm(forces[hand]);
     switch (changes[hand]) {
-      case surgery::GraspChange::kNone: break;
-      case surgery::GraspChange::kGrasped: Note(EventKind::kGrasp, hand, changed_organs[hand], force); break;
-      case surgery::GraspChange::kMissed: Note(EventKind::kGraspMissed, hand, -1, 0.0); break;
-      case surgery::GraspChange::kReleased: Note(EventKind::kRelease, hand, changed_organs[hand], force); break;
-      case surgery::GraspChange::kSlipped: Note(EventKind::kSlip, hand, changed_organs[hand], force); break;
+      case surgery::GraspChange::kNone:
+        break;
+      case surgery::GraspChange::kGrasped:
+        Note(EventKind::kGrasp, hand, changed_organs[hand], force);
+        break;
+      case surgery::GraspChange::kMissed:
+        Note(EventKind::kGraspMissed, hand, -1, 0.0);
+        break;
+      case surgery::GraspChange::kReleased:
+        Note(EventKind::kRelease, hand, changed_organs[hand], force);
+        break;
+      case surgery::GraspChange::kSlipped:
+        Note(EventKind::kSlip, hand, changed_organs[hand], force);
+        break;
     }
   }
   if (verdict == tissue::GuardVerdict::kRestored) Note(EventKind::kStateRestored, -1, -1, 0.0);
@@ -188,8 +202,9 @@ void Simulation::Content::Publish(const Input& input) noexcept {
   snapshot.time = static_cast<double>(tick) * scene->tick_seconds;
   std::copy(tissue.position.begin(), tissue.position.end(), snapshot.positions.begin());
   for (int hand = 0; hand < kHandCount; ++hand) {
-    snapshot.instruments[hand] = {X_world_tools[hand], joints[hand], forces[hand], grasps[hand].IsHolding(),
-                                  touched_organs[hand] >= 0, touched_organs[hand]};
+    snapshot.instruments[hand] = {
+        X_world_tools[hand],       joints[hand],        forces[hand], grasps[hand].IsHolding(),
+        touched_organs[hand] >= 0, touched_organs[hand]};
   }
   instrument::JointLimits limits;
   limits.min_depth = 0.01;
@@ -236,13 +251,14 @@ core::Result<Simulation> Simulation::Make(std::shared_ptr<const Scene> scene, in
   content->solver = std::make_unique<tissue::EquilibriumSolver>(content->tissue_model, std::max(1, threads));
   const auto& patient = content->scene->patient;
   for (std::size_t i = 0; i < patient.organs.size(); ++i) {
-    auto surface = surgery::MakeOrganSurface(content->tissue_model.rest, content->surfaces[i].first_node, patient.organs[i].mesh);
+    auto surface = surgery::MakeOrganSurface(content->tissue_model.rest, content->surfaces[i].first_node,
+                                             patient.organs[i].mesh);
     if (!surface.ok()) return surface.error();
     content->organs.push_back(std::move(*surface));
   }
   for (int hand = 0; hand < kHandCount; ++hand) {
-    content->samples[hand] = surgery::MakeToolSamples(content->scene->instruments[hand].tool, content->contact_settings,
-                                                      patient.organs.size());
+    content->samples[hand] = surgery::MakeToolSamples(content->scene->instruments[hand].tool,
+                                                      content->contact_settings, patient.organs.size());
   }
   content->Reset();
   return Simulation(std::move(content));
@@ -253,7 +269,9 @@ Simulation::Simulation(Simulation&&) noexcept = default;
 Simulation& Simulation::operator=(Simulation&&) noexcept = default;
 Simulation::~Simulation() = default;
 
-void Simulation::Reset() { content_->Reset(); }
+void Simulation::Reset() {
+  content_->Reset();
+}
 
 void Simulation::Step(const Input& input) noexcept {
   Content& c = *content_;
@@ -278,9 +296,15 @@ void Simulation::Step(const Input& input) noexcept {
   for (const double part : seconds) c.snapshot.tick_seconds += part;
 }
 
-const Scene& Simulation::GetScene() const { return *content_->scene; }
-std::span<const SurfaceInfo> Simulation::Surfaces() const { return content_->surfaces; }
-const Snapshot& Simulation::GetSnapshot() const { return content_->snapshot; }
+const Scene& Simulation::GetScene() const {
+  return *content_->scene;
+}
+std::span<const SurfaceInfo> Simulation::Surfaces() const {
+  return content_->surfaces;
+}
+const Snapshot& Simulation::GetSnapshot() const {
+  return content_->snapshot;
+}
 
 std::uint64_t Simulation::Hash() const {
   const Content& c = *content_;

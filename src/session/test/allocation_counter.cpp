@@ -14,11 +14,17 @@ void* operator new(std::size_t size) {
   if (void* memory = std::malloc(size)) return memory;
   throw std::bad_alloc();
 }
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+void operator delete(void* memory) noexcept {
+  std::free(memory);
+}
+void operator delete(void* memory, std::size_t) noexcept {
+  std::free(memory);
+}
 
 namespace trocar::session {
 
-long CountAllocations() { return g_allocations.load(std::memory_order_relaxed); }
+long CountAllocations() {
+  return g_allocations.load(std::memory_order_relaxed);
+}
 
 }  // namespace trocar::session

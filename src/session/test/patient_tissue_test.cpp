@@ -48,7 +48,8 @@ TEST_F(PatientTissueTest, WeighsWhatTheOrgansWeigh) {
 TEST_F(PatientTissueTest, FixesThePapersRegionsAndTheEndsThatLeaveTheScene) {
   const auto& face = scene_.patient.organs[0].regions[0].vertices;
   for (const auto vertex : face) {
-    EXPECT_NE(std::find(made_.definition.fixed.begin(), made_.definition.fixed.end(), vertex), made_.definition.fixed.end());
+    EXPECT_NE(std::find(made_.definition.fixed.begin(), made_.definition.fixed.end(), vertex),
+              made_.definition.fixed.end());
   }
   EXPECT_EQ(made_.definition.fixed.size(), face.size() + 1);
   EXPECT_EQ(made_.definition.fixed.back(), made_.definition.rest.size() - 1) << "the duct's far end";

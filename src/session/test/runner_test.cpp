@@ -59,7 +59,9 @@ TEST_F(RunnerTest, UsesTheNewestInput) {
   input.hands[kRight].pan += 0.1;
   runner.SetInput(input);
   runner.SetPaused(false);
-  EXPECT_TRUE(Eventually([&] { return std::abs(runner.Latest().instruments[kRight].joints.pan - input.hands[kRight].pan) < 1e-12; }));
+  EXPECT_TRUE(Eventually([&] {
+    return std::abs(runner.Latest().instruments[kRight].joints.pan - input.hands[kRight].pan) < 1e-12;
+  }));
 }
 
 TEST_F(RunnerTest, EndsAtOnceEvenWhileRunning) {

@@ -31,14 +31,18 @@ TEST_F(SceneFile, ReadsPatientPortsMaterialsAndScript) {
   EXPECT_NEAR(scene->tick_seconds, 1.0 / 120, 1e-15);
   EXPECT_NEAR(scene->script.Duration(), 1.2, 1e-15);
   const auto& left = scene->instruments[kLeft];
-  EXPECT_NEAR(math::Distance(instrument::CalcToolPose(left.p_world_port, left.home).translation, {0, 0.056, -0.095}), 0.0, 1e-12);
+  EXPECT_NEAR(
+      math::Distance(instrument::CalcToolPose(left.p_world_port, left.home).translation, {0, 0.056, -0.095}),
+      0.0, 1e-12);
 }
 
 TEST_F(SceneFile, ScriptMovesTheTipSmoothlyFromKeyToKey) {
   const auto scene = Read();
   ASSERT_TRUE(scene.ok());
   const auto tip = [&](double time) {
-    return instrument::CalcToolPose(scene->instruments[kLeft].p_world_port, CalcScriptInput(*scene, time).hands[kLeft]).translation;
+    return instrument::CalcToolPose(scene->instruments[kLeft].p_world_port,
+                                    CalcScriptInput(*scene, time).hands[kLeft])
+        .translation;
   };
   EXPECT_NEAR(math::Distance(tip(0.4), Vec3{-0.002, 0.056, -0.109}), 0.0, 1e-9);
   EXPECT_NEAR(math::Distance(tip(0.2), math::Lerp(tip(0.0), tip(0.4), 0.5)), 0.0, 1e-9);
@@ -69,9 +73,13 @@ TEST_F(SceneFile, RefusesBadScripts) {
   EXPECT_EQ(with_keys(""), ErrorCode::kScriptInvalid);
   EXPECT_EQ(with_keys(good + "," + good), ErrorCode::kScriptInvalid) << "time does not rise";
   EXPECT_EQ(with_keys(R"({"time_s": 0, "left": {"at": "fundus"}})"), ErrorCode::kScriptInvalid);
-  EXPECT_EQ(with_keys(R"({"time_s": 0, "left": {"at": "spleen"}, "right": {"at": "fundus"}})"), ErrorCode::kUnknownName);
-  EXPECT_EQ(with_keys(R"({"time_s": NaN, "left": {"at": "fundus"}, "right": {"at": "fundus"}})"), ErrorCode::kJsonSyntax);
-  EXPECT_EQ(with_keys(R"({"time_s": 0, "left": {"at": "fundus", "offset_mm": [1, 2]}, "right": {"at": "fundus"}})"), ErrorCode::kJsonField);
+  EXPECT_EQ(with_keys(R"({"time_s": 0, "left": {"at": "spleen"}, "right": {"at": "fundus"}})"),
+            ErrorCode::kUnknownName);
+  EXPECT_EQ(with_keys(R"({"time_s": NaN, "left": {"at": "fundus"}, "right": {"at": "fundus"}})"),
+            ErrorCode::kJsonSyntax);
+  EXPECT_EQ(
+      with_keys(R"({"time_s": 0, "left": {"at": "fundus", "offset_mm": [1, 2]}, "right": {"at": "fundus"}})"),
+      ErrorCode::kJsonField);
 }
 
 TEST(ClampSettings, BoundsEverySettingAndSwallowsNan) {

@@ -109,7 +109,8 @@ TEST_F(SimulationTest, TiltOfTheTableMovesOrgansDownhillAndBack) {
   const auto mean_shift = [&] {
     Vec3 sum;
     for (std::uint32_t i = 0; i < gallbladder.node_count; ++i) {
-      sum += simulation.GetSnapshot().positions[gallbladder.first_node + i] - rest[gallbladder.first_node + i];
+      sum +=
+          simulation.GetSnapshot().positions[gallbladder.first_node + i] - rest[gallbladder.first_node + i];
     }
     return sum / gallbladder.node_count;
   };
@@ -133,7 +134,8 @@ TEST_F(SimulationTest, SurvivesNanAndWildInputs) {
   for (int i = 0; i < 100; ++i) {
     simulation.Step(i % 2 ? wild : CalcScriptInput(*scene_, 0.5));
     for (const Vec3& p : simulation.GetSnapshot().positions) ASSERT_TRUE(math::IsFinite(p)) << i;
-    for (const auto& tool : simulation.GetSnapshot().instruments) ASSERT_TRUE(math::IsFinite(tool.force)) << i;
+    for (const auto& tool : simulation.GetSnapshot().instruments)
+      ASSERT_TRUE(math::IsFinite(tool.force)) << i;
     ASSERT_TRUE(math::IsFinite(simulation.GetSnapshot().X_world_laparoscope.translation));
   }
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file small_scene.h  A patient of two spheres and a scene around it, written to a folder of the test's own.
+/// \file small_scene.h  A patient of two spheres and a scene around it, written to a folder of the test's
+/// own.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -52,15 +53,22 @@ class SmallScene : public testing::Test {
       bed.vertices.push_back(i);
       std::uint32_t nearest = 0;
       for (std::uint32_t j = 0; j < liver.mesh.positions.size(); ++j) {
-        const auto far = [&](std::uint32_t k) { return math::Distance(liver.mesh.positions[k], gallbladder.mesh.positions[i]); };
+        const auto far = [&](std::uint32_t k) {
+          return math::Distance(liver.mesh.positions[k], gallbladder.mesh.positions[i]);
+        };
         if (far(j) < far(nearest)) nearest = j;
       }
       patient.attachments.push_back({anatomy::kGallbladderBed, 1, i, 0, nearest});
     }
     gallbladder.regions.push_back(bed);
     patient.organs = {liver, gallbladder};
-    patient.tubes.push_back({"cystic_duct", anatomy::TubeKind::kDuct, "gallbladder", "",
-                             {{{0.012, 0.056, -0.12}, {0.02, 0.056, -0.122}, {0.03, 0.058, -0.125}}, {0.0015, 0.0015, 0.0015}}, true});
+    patient.tubes.push_back(
+        {"cystic_duct",
+         anatomy::TubeKind::kDuct,
+         "gallbladder",
+         "",
+         {{{0.012, 0.056, -0.12}, {0.02, 0.056, -0.122}, {0.03, 0.058, -0.125}}, {0.0015, 0.0015, 0.0015}},
+         true});
     patient.landmarks = {{"umbilicus", {0, 0, 0}}, {"fundus", {0, 0.056, -0.107}}};
     return patient;
   }
@@ -73,12 +81,16 @@ class SmallScene : public testing::Test {
         {"organ": "gallbladder", "young_modulus_pa": 255e3, "wall_thickness_mm": 0.5, "foundation_modulus_pa": 300, "foundation_depth_mm": 30, "source": "test"},
         {"organ": "gallbladder_bed", "young_modulus_pa": 20e3, "wall_thickness_mm": 1.5, "source": "test"},
         {"organ": "duct", "young_modulus_pa": 498e3, "wall_thickness_mm": 0.7, "foundation_modulus_pa": 1000, "foundation_depth_mm": 10, "source": "test"}],
-      "instruments": {"left": {"tool": ")" + tool + R"(", "port_mm": [-30, 60, 0], "tip": {"at": "fundus", "offset_mm": [0, 0, 12]}},
+      "instruments": {"left": {"tool": ")" +
+           tool + R"(", "port_mm": [-30, 60, 0], "tip": {"at": "fundus", "offset_mm": [0, 0, 12]}},
                       "right": {"tool": "grasper", "port_mm": [30, 60, 0], "tip": {"at": "fundus", "offset_mm": [20, 0, 25]}}},
-      "laparoscope": {"port_mm": [0, 0, 0], "target": {"at": "fundus"}, "depth_mm": 50})" + more + "}";
+      "laparoscope": {"port_mm": [0, 0, 0], "target": {"at": "fundus"}, "depth_mm": 50})" +
+           more + "}";
   }
 
-  void Write(const char* name, const std::string& text) { ASSERT_TRUE(core::WriteFile(folder_ / name, text).ok()); }
+  void Write(const char* name, const std::string& text) {
+    ASSERT_TRUE(core::WriteFile(folder_ / name, text).ok());
+  }
   core::Result<Scene> Read() const { return ReadScene(folder_ / "scene.json"); }
 
   std::filesystem::path folder_;

@@ -11,8 +11,9 @@
 namespace trocar::surgery {
 namespace {
 
-/// A pressed surface keeps its side while the new normal does not turn against the old one more than this [-]: deep in
-/// a thin organ the far wall becomes the nearer one, and without memory the tool would be pushed out there.
+/// A pressed surface keeps its side while the new normal does not turn against the old one more than this
+/// [-]: deep in a thin organ the far wall becomes the nearer one, and without memory the tool would be pushed
+/// out there.
 constexpr double kSideMemoryCosine = 0.2;
 
 bool IsNear(const geometry::Box& box, const Vec3& p, double distance) noexcept {
@@ -35,17 +36,18 @@ struct Touch {
   double distance;
 };
 
-Touch FindTouch(const OrganSurface& organ, std::span<const Vec3> nodes, const Vec3& centre, ContactSample& sample,
-                std::size_t organ_index) noexcept {
+Touch FindTouch(const OrganSurface& organ, std::span<const Vec3> nodes, const Vec3& centre,
+                ContactSample& sample, std::size_t organ_index) noexcept {
   const collision::SearchLimits limits{.first_guess = sample.last_triangle[organ_index]};
   const auto nearest = organ.hierarchy.FindNearest(nodes, centre, limits);
   const auto side = collision::FindSide(nodes, organ.triangles, organ.vertex_triangles, centre, nearest);
   Touch touch{nearest.triangle, nearest.point, nearest.weights, side.normal, side.distance};
-  const bool is_other_side =
-      sample.is_held[organ_index] != 0 && math::Dot(side.normal, sample.held_normal[organ_index]) < kSideMemoryCosine;
+  const bool is_other_side = sample.is_held[organ_index] != 0 &&
+                             math::Dot(side.normal, sample.held_normal[organ_index]) < kSideMemoryCosine;
   if (is_other_side) {
     const auto& held = organ.triangles[sample.last_triangle[organ_index]];
-    const auto on_held = geometry::FindNearestOnTriangle(centre, nodes[held[0]], nodes[held[1]], nodes[held[2]]);
+    const auto on_held =
+        geometry::FindNearestOnTriangle(centre, nodes[held[0]], nodes[held[1]], nodes[held[2]]);
     const Vec3 normal = FaceNormal(nodes, held);
     // the memory ends once the sphere is outside the wall it pressed
     if (math::Dot(centre - on_held.point, normal) < sample.radius) {
@@ -85,22 +87,25 @@ void AddContact(const ContactTarget& target, std::uint32_t triangle, const std::
   contacts.organ.push_back(target.organ_index);
 }
 
-/// While the centre is outside, every triangle in reach is pushed away from it: in a dent the walls hold the tool from
-/// all sides, and one nearest point alone would throw it from wall to wall.
+/// While the centre is outside, every triangle in reach is pushed away from it: in a dent the walls hold the
+/// tool from all sides, and one nearest point alone would throw it from wall to wall.
 void AddSurroundingContacts(const ContactTarget& target, double reach, ContactSet& contacts) noexcept {
   constexpr std::size_t kMost = 32;
-  constexpr double kSamePoint = 1e-6;  // [m]; neighbours share the nearest point where it is a vertex or on an edge
+  constexpr double kSamePoint =
+      1e-6;  // [m]; neighbours share the nearest point where it is a vertex or on an edge
   std::array<std::uint32_t, kMost> triangles;
   const collision::Capsule sphere{{target.centre, target.centre}, reach};
-  const std::size_t found = collision::FindTrianglesInCapsule(target.organ.hierarchy, target.nodes, sphere, triangles);
+  const std::size_t found =
+      collision::FindTrianglesInCapsule(target.organ.hierarchy, target.nodes, sphere, triangles);
   std::array<Vec3, kMost> points;
   std::size_t count = 0;
   for (std::size_t i = 0; i < std::min(found, kMost); ++i) {
     const auto& t = target.organ.triangles[triangles[i]];
-    const auto nearest = geometry::FindNearestOnTriangle(target.centre, target.nodes[t[0]], target.nodes[t[1]], target.nodes[t[2]]);
-    const bool is_known = std::any_of(points.begin(), points.begin() + static_cast<std::ptrdiff_t>(count), [&](const Vec3& p) {
-      return math::SquaredDistance(p, nearest.point) < kSamePoint * kSamePoint;
-    });
+    const auto nearest = geometry::FindNearestOnTriangle(target.centre, target.nodes[t[0]],
+                                                         target.nodes[t[1]], target.nodes[t[2]]);
+    const bool is_known = std::any_of(
+        points.begin(), points.begin() + static_cast<std::ptrdiff_t>(count),
+        [&](const Vec3& p) { return math::SquaredDistance(p, nearest.point) < kSamePoint * kSamePoint; });
     const Vec3 away = nearest.point - target.centre;
     if (is_known || !(math::SquaredNorm(away) > 0.0)) continue;
     points[count++] = nearest.point;
@@ -110,7 +115,8 @@ void AddSurroundingContacts(const ContactTarget& target, double reach, ContactSe
 
 }  // namespace
 
-ToolSamples MakeToolSamples(const instrument::Tool& tool, const ContactSettings& settings, std::size_t organ_count) {
+ToolSamples MakeToolSamples(const instrument::Tool& tool, const ContactSettings& settings,
+                            std::size_t organ_count) {
   ToolSamples made;
   const auto add = [&](ContactSample::Part part, double along, double radius) {
     ContactSample sample{part, along, radius, {}, {}, {}};
@@ -181,8 +187,8 @@ void FindContacts(const instrument::Tool& tool, const Pose& X_world_tool, double
       sample.is_held[index] = is_touching && touch.distance < sample.radius;
       sample.held_normal[index] = touch.normal;
       if (!is_touching) continue;
-      const ContactTarget target{organ, nodes, centre, sample.radius, settings.stiffness, hand,
-                                 static_cast<std::uint8_t>(index)};
+      const ContactTarget target{
+          organ, nodes, centre, sample.radius, settings.stiffness, hand, static_cast<std::uint8_t>(index)};
       if (touch.distance > 0.0) {
         AddSurroundingContacts(target, reach, contacts);
       } else {

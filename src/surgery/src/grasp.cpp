@@ -55,7 +55,8 @@ Candidates FindBetweenJaws(const OrganSurface& organ, const Vec3& hinge, const V
   if (found.count > 0) return found;
   // triangles may be larger than the reach: then the corners of the one that lies between the jaws
   const auto nodes = organ.Nodes(state.position);
-  const auto nearest = organ.hierarchy.FindNearest(nodes, math::Lerp(hinge, tip, 0.75), {.max_distance = reach});
+  const auto nearest =
+      organ.hierarchy.FindNearest(nodes, math::Lerp(hinge, tip, 0.75), {.max_distance = reach});
   if (nearest.Found()) {
     for (const auto local : organ.triangles[nearest.triangle]) {
       const std::uint32_t node = organ.first_node + local;
@@ -116,8 +117,8 @@ GraspChange UpdateGrasp(const instrument::Tool& tool, const Pose& X_world_tool, 
   return change;
 }
 
-GraspChange UpdateSlip(double pull, const GraspSettings& settings, const tissue::TissueModel& model, Grasp& grasp,
-                       tissue::TissueState& state) noexcept {
+GraspChange UpdateSlip(double pull, const GraspSettings& settings, const tissue::TissueModel& model,
+                       Grasp& grasp, tissue::TissueState& state) noexcept {
   if (!grasp.IsHolding()) return GraspChange::kNone;
   grasp.ticks_over_limit = pull > settings.HoldLimit() ? grasp.ticks_over_limit + 1 : 0;
   if (grasp.ticks_over_limit < settings.slip_ticks) return GraspChange::kNone;

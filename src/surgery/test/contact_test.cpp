@@ -17,7 +17,8 @@ class Contact : public OrganFixture {
   ContactReaction Press(const Pose& X_world_tool) {
     contacts_.Clear();
     FindContacts(tool_, X_world_tool, 0.0, 0, organs_, state_.position, settings_, -1, samples_, contacts_);
-    (void)solver_->Solve({tissue::SolverKind::kChebyshevJacobi2015, 2000, 1e-6, 0.0}, {.contacts = contacts_.springs}, state_);
+    (void)solver_->Solve({tissue::SolverKind::kChebyshevJacobi2015, 2000, 1e-6, 0.0},
+                         {.contacts = contacts_.springs}, state_);
     UpdateOrganSurface(organs_[0], state_.position);
     return CalcContactReaction(contacts_, 0, state_.position);
   }
@@ -74,7 +75,8 @@ TEST_F(Contact, LettingGoReturnsToRest) {
 
 TEST_F(Contact, ASetThatIsFullCountsWhatItDrops) {
   for (int i = 0; i < 100; ++i) {
-    FindContacts(tool_, ToolAt({0, 0, 0.016}), 0.0, 0, organs_, state_.position, settings_, -1, samples_, contacts_);
+    FindContacts(tool_, ToolAt({0, 0, 0.016}), 0.0, 0, organs_, state_.position, settings_, -1, samples_,
+                 contacts_);
   }
   EXPECT_EQ(contacts_.springs.size(), ContactSet::kCapacity);
   EXPECT_GT(contacts_.dropped, 0u);

@@ -33,7 +33,8 @@ TEST_F(Grasping, TakesWhatLiesBetweenTheJawsAndCarriesIt) {
   ASSERT_GT(grasp_.count, 0u);
   const Vec3 before = state_.position[grasp_.nodes[0]];
   EXPECT_EQ(Move({0.01, 0.002, 0.023}, kClosed), GraspChange::kNone);
-  EXPECT_NEAR(math::Distance(state_.position[grasp_.nodes[0]], before + Vec3{0.01, 0.002, 0.005}), 0.0, 1e-12);
+  EXPECT_NEAR(math::Distance(state_.position[grasp_.nodes[0]], before + Vec3{0.01, 0.002, 0.005}), 0.0,
+              1e-12);
   (void)solver_->Solve({tissue::SolverKind::kChebyshevJacobi2015, 2000, 1e-6, 0.0}, {}, state_);
   const Vec3 force = solver_->CalcReaction({}, state_, grasp_.Nodes());
   EXPECT_LT(force.x, -0.05) << "the organ pulls back";
@@ -45,9 +46,11 @@ TEST_F(Grasping, ClosingOnNothingIsAMiss) {
 }
 
 TEST_F(Grasping, NeedsOpeningBeforeEachGraspAndHasHysteresis) {
-  EXPECT_EQ(Move({0, 0, 0.018}, kClosed), GraspChange::kNone) << "closed from the start: nothing between the jaws";
+  EXPECT_EQ(Move({0, 0, 0.018}, kClosed), GraspChange::kNone)
+      << "closed from the start: nothing between the jaws";
   ASSERT_EQ(Take(), GraspChange::kGrasped);
-  EXPECT_EQ(Move({0, 0, 0.018}, 0.30 * tool_.max_jaw), GraspChange::kNone) << "between the thresholds it holds";
+  EXPECT_EQ(Move({0, 0, 0.018}, 0.30 * tool_.max_jaw), GraspChange::kNone)
+      << "between the thresholds it holds";
   EXPECT_TRUE(grasp_.IsHolding());
   EXPECT_EQ(Move({0, 0, 0.018}, 0.40 * tool_.max_jaw), GraspChange::kReleased);
   for (const auto condition : state_.condition) EXPECT_EQ(condition, tissue::NodeCondition::kFree);
@@ -59,7 +62,8 @@ TEST_F(Grasping, SlipsOnlyWhenThePullLasts) {
   for (int tick = 1; tick < settings_.slip_ticks; ++tick) {
     EXPECT_EQ(UpdateSlip(too_much, settings_, model_, grasp_, state_), GraspChange::kNone);
   }
-  EXPECT_EQ(UpdateSlip(0.1, settings_, model_, grasp_, state_), GraspChange::kNone) << "a moment of ease starts anew";
+  EXPECT_EQ(UpdateSlip(0.1, settings_, model_, grasp_, state_), GraspChange::kNone)
+      << "a moment of ease starts anew";
   for (int tick = 1; tick < settings_.slip_ticks; ++tick) {
     EXPECT_EQ(UpdateSlip(too_much, settings_, model_, grasp_, state_), GraspChange::kNone);
   }
@@ -70,10 +74,12 @@ TEST_F(Grasping, SlipsOnlyWhenThePullLasts) {
 TEST_F(Grasping, LeavesNodesThatAnotherToolHolds) {
   ASSERT_EQ(Take(), GraspChange::kGrasped);
   Grasp other;
-  EXPECT_EQ(UpdateGrasp(tool_, {{}, {0, 0, 0.018}}, kOpen, organs_, model_, settings_, other, state_), GraspChange::kNone);
+  EXPECT_EQ(UpdateGrasp(tool_, {{}, {0, 0, 0.018}}, kOpen, organs_, model_, settings_, other, state_),
+            GraspChange::kNone);
   (void)UpdateGrasp(tool_, {{}, {0, 0, 0.018}}, kClosed, organs_, model_, settings_, other, state_);
   for (const auto node : other.Nodes()) {
-    EXPECT_EQ(std::count(grasp_.nodes.begin(), grasp_.nodes.begin() + static_cast<long>(grasp_.count), node), 0);
+    EXPECT_EQ(std::count(grasp_.nodes.begin(), grasp_.nodes.begin() + static_cast<long>(grasp_.count), node),
+              0);
   }
 }
 

@@ -29,7 +29,8 @@ class OrganFixture : public testing::Test {
     const auto stiffness = tissue::CalcEdgeStiffness(mesh_.positions, mesh_.triangles, edges, 40);
     for (std::size_t i = 0; i < edges.size(); ++i) {
       const auto [a, b] = edges[i];
-      definition.springs.push_back({a, b, stiffness[i], math::Distance(mesh_.positions[a], mesh_.positions[b])});
+      definition.springs.push_back(
+          {a, b, stiffness[i], math::Distance(mesh_.positions[a], mesh_.positions[b])});
     }
     model_ = tissue::MakeTissueModel(definition);
     state_ = tissue::MakeRestState(model_);

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file chebyshev_jacobi_wang2015.cpp  Jacobi iteration with 3 x 3 blocks, accelerated by Chebyshev's recurrence.
+/// \file chebyshev_jacobi_wang2015.cpp  Jacobi iteration with 3 x 3 blocks, accelerated by Chebyshev's
+/// recurrence.
 ///
-/// Each node moves by D_i^-1 R_i, where D_i is the stiffness that the node itself feels. Blocks instead of scalars
-/// matter on surfaces: along the surface a node is held by its edges, across it only by its virtual spring, often a
-/// thousand times weaker. Every link's stiffness [K -K; -K K] is at most 2 diag(K, K), so the eigenvalues of D^-1 K
-/// lie in (0, 2] and the recurrence is stable near equilibrium. Far from it the springs turn, and the blocks no longer
-/// bound them: a residual that grows starts the recurrence again with blocks that assume more stiffness across the
-/// springs, up to the whole, which bounds every position (Liu et al., "Fast simulation of mass-spring systems", 2013).
-/// Source: Wang, "A Chebyshev semi-iterative approach for accelerating projective and position-based dynamics",
-/// ACM TOG 34(6), 2015, equations 7 to 9.
+/// Each node moves by D_i^-1 R_i, where D_i is the stiffness that the node itself feels. Blocks instead of
+/// scalars matter on surfaces: along the surface a node is held by its edges, across it only by its virtual
+/// spring, often a thousand times weaker. Every link's stiffness [K -K; -K K] is at most 2 diag(K, K), so the
+/// eigenvalues of D^-1 K lie in (0, 2] and the recurrence is stable near equilibrium. Far from it the springs
+/// turn, and the blocks no longer bound them: a residual that grows starts the recurrence again with blocks
+/// that assume more stiffness across the springs, up to the whole, which bounds every position (Liu et al.,
+/// "Fast simulation of mass-spring systems", 2013). Source: Wang, "A Chebyshev semi-iterative approach for
+/// accelerating projective and position-based dynamics", ACM TOG 34(6), 2015, equations 7 to 9.
 #include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
@@ -19,13 +20,13 @@
 namespace trocar::tissue {
 namespace {
 
-/// Share of a spring's stiffness that its node feels across the spring even where the spring is slack: stands for the
-/// stiffness that arises as soon as the spring turns, and bounds the step of an unsupported node [-].
-constexpr double kTransverseShare = 0.02;
+/// Share of a spring's stiffness that its node feels across the spring even where the spring is slack: stands
+/// for the stiffness that arises as soon as the spring turns, and bounds the step of an unsupported node [-].
+constexpr double kTransverseShare = 0.2;
 /// Growth of that share at each restart [-].
 constexpr double kShareGrowth = 4.0;
-/// No node moves farther in one Jacobi step [m]: half a triangle's edge of the built-in organs. While a step is cut
-/// short the recurrence waits, because it presumes whole steps.
+/// No node moves farther in one Jacobi step [m]: half a triangle's edge of the built-in organs. While a step
+/// is cut short the recurrence waits, because it presumes whole steps.
 constexpr double kMaxStep = 0.002;
 /// The recurrence starts again after this many iterations at the latest.
 constexpr int kMaxCycle = 200;
@@ -45,17 +46,17 @@ void AddIsotropic(Symmetric3& block, double stiffness) noexcept {
 
 /// Inverse of a positive definite block; zero for a node that nothing holds.
 Symmetric3 Invert(const Symmetric3& m) noexcept {
-  const double c00 = m[3] * m[5] - m[4] * m[4], c01 = m[2] * m[4] - m[1] * m[5], c02 = m[1] * m[4] - m[2] * m[3];
+  const double c00 = m[3] * m[5] - m[4] * m[4], c01 = m[2] * m[4] - m[1] * m[5],
+               c02 = m[1] * m[4] - m[2] * m[3];
   const double determinant = m[0] * c00 + m[1] * c01 + m[2] * c02;
   if (!(determinant > 0.0)) return {};
   const double s = 1.0 / determinant;
-  return {s * c00, s * c01, s * c02, s * (m[0] * m[5] - m[2] * m[2]), s * (m[1] * m[2] - m[0] * m[4]),
+  return {s * c00,
+          s * c01,
+          s * c02,
+          s * (m[0] * m[5] - m[2] * m[2]),
+          s * (m[1] * m[2] - m[0] * m[4]),
           s * (m[0] * m[3] - m[1] * m[1])};
-}
-
-Vec3 Multiply(const Symmetric3& m, const Vec3& v) noexcept {
-  return {m[0] * v.x + m[1] * v.y + m[2] * v.z, m[1] * v.x + m[3] * v.y + m[4] * v.z,
-          m[2] * v.x + m[4] * v.y + m[5] * v.z};
 }
 
 Symmetric3 CalcBlock(const TissueModel& model, const TissueLoad& load, const TissueState& state,
@@ -83,41 +84,9 @@ Symmetric3 CalcBlock(const TissueModel& model, const TissueLoad& load, const Tis
   return block;
 }
 
-/// Force on one node and the square of its largest part.
-struct NodeForce {
-  Vec3 sum;
-  double largest2 = 0;
-};
-
 /// std::fmax without its care for NaN, which the state guard finds; a call in the hot loop otherwise.
-double Larger(double a, double b) noexcept { return a > b ? a : b; }
-
-/// Adds what acts on a node beside its springs, and notes the largest part.
-NodeForce AddOtherForces(const TissueModel& model, const TissueLoad& load, const TissueState& state,
-                         const Vec3& springs, double largest_spring, const Vec3& contact_force,
-                         std::uint32_t i) noexcept {
-  const Vec3 here = state.position[i];
-  Vec3 links = springs;
-  double largest2 = largest_spring;
-  for (auto h = model.strand_starts[i]; h < model.strand_starts[i + 1]; ++h) {
-    const auto& strand = model.half_strands[h];
-    if (!state.strand_is_intact[strand.strand]) continue;
-    const Vec3 pull = strand.stiffness * ((state.position[strand.other] - here) - (model.rest[strand.other] - model.rest[i]));
-    links += pull;
-    largest2 = Larger(largest2, math::SquaredNorm(pull));
-  }
-  const Vec3 shape = (load.shape_scale * model.shape_stiffness[i]) * (model.rest[i] - here);
-  const Vec3 weight = model.mass[i] * load.gravity;
-  NodeForce force{load.stiffness_scale * links + shape + weight + contact_force,
-                  load.stiffness_scale * load.stiffness_scale * largest2};
-  for (const Vec3& part : {shape, weight, contact_force}) {
-    force.largest2 = Larger(force.largest2, math::SquaredNorm(part));
-  }
-  if (!load.external_force.empty()) {
-    force.sum += load.external_force[i];
-    force.largest2 = Larger(force.largest2, math::SquaredNorm(load.external_force[i]));
-  }
-  return force;
+double Larger(double a, double b) noexcept {
+  return a > b ? a : b;
 }
 
 static_assert(kChunk % kLanes == 0);
@@ -126,7 +95,9 @@ static_assert(kChunk % kLanes == 0);
 template <typename Work>
 void ForEachChunk(EquilibriumSolver::Content& content, std::uint32_t n, const Work& work) noexcept {
   const std::uint32_t chunks = (n + kChunk - 1) / kChunk;
-  const auto run = [&](std::uint32_t chunk) { work(chunk, chunk * kChunk, std::min(n, (chunk + 1) * kChunk)); };
+  const auto run = [&](std::uint32_t chunk) {
+    work(chunk, chunk * kChunk, std::min(n, (chunk + 1) * kChunk));
+  };
   if (content.threads == 1) {
     for (std::uint32_t chunk = 0; chunk < chunks; ++chunk) run(chunk);
     return;
@@ -134,26 +105,69 @@ void ForEachChunk(EquilibriumSolver::Content& content, std::uint32_t n, const Wo
   content.arena.execute([&] { tbb::parallel_for(std::uint32_t{0}, chunks, run, tbb::static_partitioner()); });
 }
 
-void SetContactForce(EquilibriumSolver::Content& content, const TissueLoad& load, const TissueState& state) noexcept {
-  for (const ContactSpring& contact : load.contacts) {
-    for (const auto node : contact.nodes) content.contact_force[node] = {};
+/// Refills the forces that change with the positions of few nodes: strands and contacts.
+void SetOtherForces(EquilibriumSolver::Content& content, const TissueLoad& load,
+                    const TissueState& state) noexcept {
+  const TissueModel& model = *content.model;
+  const auto set = [&](std::uint32_t i, const Vec3& force) {
+    for (int axis = 0; axis < 3; ++axis)
+      content.slices[i / kLanes].other_force[axis][i % kLanes] = force[axis];
+  };
+  const auto add = [&](std::uint32_t i, const Vec3& force) {
+    for (int axis = 0; axis < 3; ++axis)
+      content.slices[i / kLanes].other_force[axis][i % kLanes] += force[axis];
+  };
+  for (const std::uint32_t i : content.touched_nodes) set(i, content.constant_force[i]);
+  for (const std::uint32_t i : content.strand_nodes) {
+    Vec3 pull;
+    for (auto h = model.strand_starts[i]; h < model.strand_starts[i + 1]; ++h) {
+      const auto& strand = model.half_strands[h];
+      if (!state.strand_is_intact[strand.strand]) continue;
+      pull += strand.stiffness * ((state.position[strand.other] - state.position[i]) -
+                                  (model.rest[strand.other] - model.rest[i]));
+    }
+    set(i, content.constant_force[i] + load.stiffness_scale * pull);
   }
   for (const ContactSpring& contact : load.contacts) {
     const double depth = CalcContactDepth(contact, state.position);
     if (!(depth > 0.0)) continue;
-    for (int i = 0; i < 3; ++i) {
-      content.contact_force[contact.nodes[i]] += (contact.weights[i] * contact.stiffness * depth) * contact.normal;
-    }
+    for (int i = 0; i < 3; ++i)
+      add(contact.nodes[i], (contact.weights[i] * contact.stiffness * depth) * contact.normal);
   }
 }
 
-/// Inverse of each node's own stiffness. A touched node counts as pressed, so that a contact that opens and closes
-/// cannot make it jump.
+/// Sets what stays for the whole solve.
+void SetSlices(EquilibriumSolver::Content& content, const TissueLoad& load,
+               const TissueState& state) noexcept {
+  const TissueModel& model = *content.model;
+  const auto n = static_cast<std::uint32_t>(model.Size());
+  for (std::uint32_t i = 0; i < n; ++i) {
+    Vec3 force = model.mass[i] * load.gravity;
+    if (!load.external_force.empty()) force += load.external_force[i];
+    content.constant_force[i] = force;
+    SliceData& data = content.slices[i / kLanes];
+    const std::uint32_t lane = i % kLanes;
+    data.shape_stiffness[lane] = load.shape_scale * model.shape_stiffness[i];
+    data.is_free[lane] = state.condition[i] == NodeCondition::kPrescribed ? 0.0 : 1.0;
+    for (int axis = 0; axis < 3; ++axis) {
+      data.rest[axis][lane] = model.rest[i][axis];
+      data.other_force[axis][lane] = force[axis];
+    }
+  }
+  content.touched_nodes.clear();
+  for (const ContactSpring& contact : load.contacts) {
+    if (content.touched_nodes.size() + 3 > content.touched_nodes.capacity()) break;
+    content.touched_nodes.insert(content.touched_nodes.end(), contact.nodes.begin(), contact.nodes.end());
+  }
+}
+
+/// Inverse of each node's own stiffness. A touched node counts as pressed, so that a contact that opens and
+/// closes cannot make it jump.
 void SetBlocks(EquilibriumSolver::Content& content, const TissueLoad& load, const TissueState& state,
                double transverse_share) noexcept {
   const TissueModel& model = *content.model;
   const auto n = static_cast<std::uint32_t>(model.Size());
-  auto& blocks = content.inverse_blocks;
+  auto& blocks = content.blocks;
   ForEachChunk(content, n, [&](std::uint32_t, std::uint32_t first, std::uint32_t last) {
     for (auto i = first; i < last; ++i) blocks[i] = CalcBlock(model, load, state, transverse_share, i);
   });
@@ -163,7 +177,12 @@ void SetBlocks(EquilibriumSolver::Content& content, const TissueLoad& load, cons
     }
   }
   ForEachChunk(content, n, [&](std::uint32_t, std::uint32_t first, std::uint32_t last) {
-    for (auto i = first; i < last; ++i) blocks[i] = Invert(blocks[i]);
+    for (auto i = first; i < last; ++i) {
+      const bool is_free = state.condition[i] != NodeCondition::kPrescribed;
+      const Symmetric3 inverse = is_free ? Invert(blocks[i]) : Symmetric3{};
+      for (int entry = 0; entry < 6; ++entry)
+        content.slices[i / kLanes].inverse_block[entry][i % kLanes] = inverse[entry];
+    }
   });
 }
 
@@ -171,61 +190,43 @@ void SetBlocks(EquilibriumSolver::Content& content, const TissueLoad& load, cons
 
 SolveReport SolveChebyshevJacobiWang2015(EquilibriumSolver::Content& content, const SolverSettings& settings,
                                          const TissueLoad& load, TissueState& state) noexcept {
-  const TissueModel& model = *content.model;
-  const auto n = static_cast<std::uint32_t>(model.Size());
-  const auto& blocks = content.inverse_blocks;
-
+  const auto n = static_cast<std::uint32_t>(content.model->Size());
   const int cycle_length = std::clamp(settings.max_iterations, 1, kMaxCycle);
   // modes whose eigenvalue is below this are out of reach of one cycle
   const double lowest = std::clamp(std::pow(kCycleDamping / cycle_length, 2), 1e-4, 0.5);
   const double rho = (2.0 - lowest) / (2.0 + lowest);
-  const double damping = 2.0 / (2.0 + lowest);
 
-  SolveReport report;
-  double omega = 1.0, smallest = INFINITY, transverse_share = kTransverseShare;
-  int in_cycle = 0;
+  SetSlices(content, load, state);
+  double transverse_share = kTransverseShare;
   SetBlocks(content, load, state, transverse_share);
+  SolveReport report;
+  StepFactors factors{load.stiffness_scale, 2.0 / (2.0 + lowest), 1.0, kMaxStep, true};
+  double smallest = INFINITY;
+  int in_cycle = 0;
   while (report.iterations < settings.max_iterations) {
-    omega = in_cycle == 0 ? 1.0 : in_cycle == 1 ? 2.0 / (2.0 - rho * rho) : 4.0 / (4.0 - rho * rho * omega);
-    SetContactForce(content, load, state);
+    factors.is_first = in_cycle == 0;
+    factors.omega = in_cycle == 0   ? 1.0
+                    : in_cycle == 1 ? 2.0 / (2.0 - rho * rho)
+                                    : 4.0 / (4.0 - rho * rho * factors.omega);
+    SetOtherForces(content, load, state);
     ForEachChunk(content, n, [&](std::uint32_t chunk, std::uint32_t first, std::uint32_t last) {
-      double largest_residual = 0, largest_force = 0;
-      bool is_cut_short = false;
-      SliceForce springs;
-      for (auto i = first; i < last; ++i) {
-        const std::uint32_t lane = i % kLanes;
-        if (lane == 0) GatherSlice(content.springs, state.position.data(), n, i / kLanes, springs);
-        const Vec3 here = state.position[i];
-        if (state.condition[i] == NodeCondition::kPrescribed) {
-          content.previous[i] = here;
-          continue;
-        }
-        const NodeForce force = AddOtherForces(model, load, state, {springs.x[lane], springs.y[lane], springs.z[lane]},
-                                               springs.largest_squared[lane], content.contact_force[i], i);
-        largest_residual = Larger(largest_residual, math::SquaredNorm(force.sum));
-        largest_force = Larger(largest_force, force.largest2);
-        Vec3 step = damping * Multiply(blocks[i], force.sum);
-        const double length2 = math::SquaredNorm(step);
-        if (length2 > kMaxStep * kMaxStep) {
-          step *= kMaxStep / std::sqrt(length2);
-          is_cut_short = true;
-        }
-        const Vec3 before = in_cycle == 0 ? here : content.previous[i];
-        content.previous[i] = omega * ((here + step) - before) + before;  // becomes the current one below
+      SliceReport slice_report;
+      for (std::uint32_t slice = first / kLanes; slice * kLanes < last; ++slice) {
+        UpdateSlice(content.springs, content.slices[slice], factors, state.position.data(),
+                    content.previous.data(), n, slice, slice_report);
       }
-      content.chunk_residual[chunk] = std::sqrt(largest_residual);
-      content.chunk_scale[chunk] = std::sqrt(largest_force);
-      content.chunk_is_cut_short[chunk] = is_cut_short;
+      content.chunk_reports[chunk] = slice_report;
     });
-    double residual = 0, scale = 0;
-    bool is_cut_short = false;
+    SliceReport all;
     for (std::uint32_t chunk = 0; chunk * kChunk < n; ++chunk) {
-      residual = Larger(residual, content.chunk_residual[chunk]);
-      scale = Larger(scale, content.chunk_scale[chunk]);
-      is_cut_short = is_cut_short || content.chunk_is_cut_short[chunk] != 0;
+      const SliceReport& part = content.chunk_reports[chunk];
+      all.residual2 = Larger(all.residual2, part.residual2);
+      all.force2 = Larger(all.force2, part.force2);
+      all.is_cut_short = all.is_cut_short || part.is_cut_short;
     }
-    report.force_scale = scale;
-    report.residual = scale > 0.0 ? residual / scale : 0.0;
+    const double residual = std::sqrt(all.residual2);
+    report.force_scale = std::sqrt(all.force2);
+    report.residual = report.force_scale > 0.0 ? residual / report.force_scale : 0.0;
     report.converged = report.residual <= settings.tolerance;
     if (report.converged) break;  // the state's positions are those the residual belongs to
 
@@ -238,13 +239,11 @@ SolveReport SolveChebyshevJacobiWang2015(EquilibriumSolver::Content& content, co
       smallest = residual;
       in_cycle = 0;
       ++report.restarts;
-    } else if (in_cycle == cycle_length || is_cut_short) {
+    } else if (in_cycle == cycle_length || all.is_cut_short) {
       in_cycle = 0;
     }
-    if (in_cycle == 0 && report.iterations < settings.max_iterations) SetBlocks(content, load, state, transverse_share);
-  }
-  for (const ContactSpring& contact : load.contacts) {
-    for (const auto node : contact.nodes) content.contact_force[node] = {};
+    if (in_cycle == 0 && report.iterations < settings.max_iterations)
+      SetBlocks(content, load, state, transverse_share);
   }
   return report;
 }

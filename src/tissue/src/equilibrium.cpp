@@ -11,22 +11,27 @@
 
 namespace trocar::tissue {
 
-EquilibriumSolver::EquilibriumSolver(const TissueModel& model, int threads) : content_(std::make_unique<Content>()) {
+EquilibriumSolver::EquilibriumSolver(const TissueModel& model, int threads)
+    : content_(std::make_unique<Content>()) {
   TROCAR_ASSERT(threads >= 1);
   const std::size_t n = model.Size();
   content_->model = &model;
   content_->threads = threads;
   if (threads > tbb::info::default_concurrency()) {
-    content_->more_workers.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+    content_->more_workers.emplace(tbb::global_control::max_allowed_parallelism,
+                                   static_cast<std::size_t>(threads));
   }
   if (threads > 1) content_->arena.initialize(threads);
   content_->springs = MakeSlicedSprings(model);
   content_->previous.resize(n);
-  content_->inverse_blocks.resize(n);
-  content_->contact_force.assign(n, Vec3{});
-  content_->chunk_residual.resize(n / kChunk + 1);
-  content_->chunk_scale.resize(n / kChunk + 1);
-  content_->chunk_is_cut_short.resize(n / kChunk + 1);
+  content_->blocks.resize(n);
+  content_->slices.resize((n + kLanes - 1) / kLanes, SliceData{});
+  content_->constant_force.resize(n);
+  for (std::uint32_t i = 0; i < n; ++i) {
+    if (model.strand_starts[i] < model.strand_starts[i + 1]) content_->strand_nodes.push_back(i);
+  }
+  content_->touched_nodes.reserve(3 * kMaxContacts);
+  content_->chunk_reports.resize(n / kChunk + 1);
 }
 
 EquilibriumSolver::~EquilibriumSolver() = default;
@@ -36,7 +41,9 @@ EquilibriumSolver& EquilibriumSolver::operator=(EquilibriumSolver&&) noexcept = 
 SolveReport EquilibriumSolver::Solve(const SolverSettings& settings, const TissueLoad& load,
                                      TissueState& state) noexcept {
   TROCAR_ASSERT(state.position.size() == content_->model->Size());
-  if (settings.kind == SolverKind::kRelaxationPaper) return SolveRelaxationPaper(*content_, settings, load, state);
+  TROCAR_ASSERT(load.contacts.size() <= kMaxContacts);
+  if (settings.kind == SolverKind::kRelaxationPaper)
+    return SolveRelaxationPaper(*content_, settings, load, state);
   return SolveChebyshevJacobiWang2015(*content_, settings, load, state);
 }
 
@@ -53,8 +60,10 @@ double CalcLargestAlpha(const TissueModel& model, const TissueLoad& load) {
   double bound = 0;
   for (std::size_t i = 0; i < model.Size(); ++i) {
     double links = 0;
-    for (auto h = model.spring_starts[i]; h < model.spring_starts[i + 1]; ++h) links += model.half_springs[h].stiffness;
-    for (auto h = model.strand_starts[i]; h < model.strand_starts[i + 1]; ++h) links += model.half_strands[h].stiffness;
+    for (auto h = model.spring_starts[i]; h < model.spring_starts[i + 1]; ++h)
+      links += model.half_springs[h].stiffness;
+    for (auto h = model.strand_starts[i]; h < model.strand_starts[i + 1]; ++h)
+      links += model.half_strands[h].stiffness;
     bound = std::max(bound, 2.0 * load.stiffness_scale * links + load.shape_scale * model.shape_stiffness[i]);
   }
   double contacts = 0;

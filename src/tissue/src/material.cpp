@@ -9,7 +9,8 @@
 
 namespace trocar::tissue {
 
-std::vector<double> CalcEdgeStiffness(std::span<const Vec3> positions, std::span<const geometry::Triangle> triangles,
+std::vector<double> CalcEdgeStiffness(std::span<const Vec3> positions,
+                                      std::span<const geometry::Triangle> triangles,
                                       std::span<const geometry::Edge> edges, double membrane_modulus) {
   TROCAR_ASSERT(membrane_modulus >= 0.0);
   std::vector<double> stiffness(edges.size(), 0.0);
@@ -27,7 +28,8 @@ std::vector<double> CalcEdgeStiffness(std::span<const Vec3> positions, std::span
   return stiffness;
 }
 
-std::vector<double> CalcFoundationStiffness(std::span<const double> vertex_areas, double modulus, double depth) {
+std::vector<double> CalcFoundationStiffness(std::span<const double> vertex_areas, double modulus,
+                                            double depth) {
   TROCAR_ASSERT(modulus >= 0.0 && depth > 0.0);
   std::vector<double> stiffness;
   stiffness.reserve(vertex_areas.size());

@@ -14,7 +14,8 @@ namespace trocar::tissue {
 /// Zero-length springs exert no force: they have no direction.
 /// \note Real-time safe.
 inline Vec3 GatherNodeForce(const TissueModel& model, std::span<const std::uint8_t> strand_is_intact,
-                            const TissueLoad& load, std::span<const Vec3> position, std::uint32_t i) noexcept {
+                            const TissueLoad& load, std::span<const Vec3> position,
+                            std::uint32_t i) noexcept {
   const Vec3 here = position[i];
   Vec3 springs;
   for (auto h = model.spring_starts[i]; h < model.spring_starts[i + 1]; ++h) {
@@ -28,7 +29,8 @@ inline Vec3 GatherNodeForce(const TissueModel& model, std::span<const std::uint8
     if (!strand_is_intact[half.strand]) continue;
     springs += half.stiffness * ((position[half.other] - here) - (model.rest[half.other] - model.rest[i]));
   }
-  Vec3 force = load.stiffness_scale * springs + (load.shape_scale * model.shape_stiffness[i]) * (model.rest[i] - here) +
+  Vec3 force = load.stiffness_scale * springs +
+               (load.shape_scale * model.shape_stiffness[i]) * (model.rest[i] - here) +
                model.mass[i] * load.gravity;
   if (!load.external_force.empty()) force += load.external_force[i];
   return force;

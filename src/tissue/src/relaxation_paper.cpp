@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file relaxation_paper.cpp  The paper's solver (section 3.2.1), with the sign and the update of domain facts 0b.4:
-/// for each node in turn, x_i <- x_i + alpha R_i, R_i = sum_j F_ij + m_i g + F_ext. The paper ends after a time delta;
-/// here a count and a tolerance end it, so that results repeat.
+/// \file relaxation_paper.cpp  The paper's solver (section 3.2.1), with the sign and the update of domain
+/// facts 0b.4: for each node in turn, x_i <- x_i + alpha R_i, R_i = sum_j F_ij + m_i g + F_ext. The paper
+/// ends after a time delta; here a count and a tolerance end it, so that results repeat.
 #include <algorithm>
 #include <cmath>
 
@@ -18,7 +18,8 @@ Vec3 GatherContactForce(const TissueLoad& load, std::span<const Vec3> position, 
     const double depth = CalcContactDepth(contact, position);
     if (!(depth > 0.0)) continue;
     for (int i = 0; i < 3; ++i) {
-      if (contact.nodes[i] == node) force += (contact.weights[i] * contact.stiffness * depth) * contact.normal;
+      if (contact.nodes[i] == node)
+        force += (contact.weights[i] * contact.stiffness * depth) * contact.normal;
     }
   }
   return force;
@@ -27,8 +28,9 @@ Vec3 GatherContactForce(const TissueLoad& load, std::span<const Vec3> position, 
 /// Largest force on node i through one spring, load or contact [N].
 double CalcForceScale(const TissueModel& model, const TissueLoad& load, std::span<const Vec3> position,
                       std::uint32_t i) noexcept {
-  double largest = std::fmax(load.shape_scale * model.shape_stiffness[i] * math::Distance(model.rest[i], position[i]),
-                             model.mass[i] * math::Norm(load.gravity));
+  double largest =
+      std::fmax(load.shape_scale * model.shape_stiffness[i] * math::Distance(model.rest[i], position[i]),
+                model.mass[i] * math::Norm(load.gravity));
   for (auto h = model.spring_starts[i]; h < model.spring_starts[i + 1]; ++h) {
     const auto& half = model.half_springs[h];
     const double stretch = math::Distance(position[i], position[half.other]) - half.rest_length;

@@ -13,16 +13,13 @@
 
 namespace trocar::tissue {
 
-/// Symmetric 3 x 3 matrix: xx, xy, xz, yy, yz, zz.
-using Symmetric3 = std::array<double, 6>;
-
 /// Nodes that one pass of the spring kernel works on side by side.
 inline constexpr std::uint32_t kLanes = 8;
 
-/// Half-springs in slices of kLanes nodes, each padded to its longest row (sliced ELLPACK): what the lanes read at one
-/// step lies together. A padded entry points at its own node with no stiffness.
-/// Source: Monakov, Lokhmotov, Avetisyan, "Automatically tuning sparse matrix-vector multiplication for GPU
-/// architectures", HiPEAC 2010.
+/// Half-springs in slices of kLanes nodes, each padded to its longest row (sliced ELLPACK): what the lanes
+/// read at one step lies together. A padded entry points at its own node with no stiffness. Source: Monakov,
+/// Lokhmotov, Avetisyan, "Automatically tuning sparse matrix-vector multiplication for GPU architectures",
+/// HiPEAC 2010.
 struct SlicedSprings {
   std::vector<std::uint32_t> starts;         // (slices + 1) in steps
   std::vector<std::uint32_t> others;         // (steps * kLanes)
@@ -31,29 +28,53 @@ struct SlicedSprings {
 };
 SlicedSprings MakeSlicedSprings(const TissueModel& model);
 
-/// Forces of the springs on the nodes of one slice.
-struct SliceForce {
-  double x[kLanes], y[kLanes], z[kLanes];
-  double largest_squared[kLanes];  ///< tension of the strongest spring, squared
+/// What one iteration needs of the nodes of a slice, lane by lane. Rebuilt in every solve.
+struct SliceData {
+  double inverse_block[6][kLanes];  ///< xx, xy, xz, yy, yz, zz; zero for prescribed nodes, which then stay
+  double shape_stiffness[kLanes];   ///< scaled [N/m]
+  double rest[3][kLanes];           ///< [m]
+  double other_force[3][kLanes];    ///< weight, external force, strands and contacts [N]
+  double is_free[kLanes];           ///< 1, or 0 for prescribed nodes and padding
 };
-/// Chosen at run time for the machine; every version gives the same bits, because none contracts or reorders.
-void GatherSlice(const SlicedSprings& springs, const Vec3* position, std::uint32_t node_count, std::uint32_t slice,
-                 SliceForce& force) noexcept;
+
+/// Factors of one iteration.
+struct StepFactors {
+  double stiffness_scale, damping, omega, max_step;
+  bool is_first;  ///< of its cycle: the position before is the present one
+};
+
+/// What one slice reports.
+struct SliceReport {
+  double residual2 = 0;       ///< largest squared residual of a free node [N^2]
+  double force2 = 0;          ///< largest squared force of a spring or load on one [N^2]
+  bool is_cut_short = false;  ///< a step was longer than max_step
+};
+
+/// One Chebyshev step of the nodes of a slice, from `position` into `previous`. The version for the machine
+/// is chosen at run time; every version gives the same bits, because none contracts or reorders.
+void UpdateSlice(const SlicedSprings& springs, const SliceData& data, const StepFactors& factors,
+                 const Vec3* position, Vec3* previous, std::uint32_t node_count, std::uint32_t slice,
+                 SliceReport& report) noexcept;
+
+/// Symmetric 3 x 3 matrix: xx, xy, xz, yy, yz, zz.
+using Symmetric3 = std::array<double, 6>;
 
 struct EquilibriumSolver::Content {
   const TissueModel* model = nullptr;
   int threads = 1;
-  std::optional<tbb::global_control> more_workers;  // set when more threads are asked for than there are cores
+  std::optional<tbb::global_control>
+      more_workers;  // set when more threads are asked for than there are cores
   tbb::task_arena arena;
 
   // Chebyshev
   SlicedSprings springs;
-  std::vector<Vec3> previous;              // (n) positions of the iteration before
-  std::vector<Symmetric3> inverse_blocks;  // (n) inverse of the node's own stiffness
-  std::vector<Vec3> contact_force;         // (n) zero where no contact acts
-  std::vector<double> chunk_residual;      // largest of each chunk
-  std::vector<double> chunk_scale;
-  std::vector<std::uint8_t> chunk_is_cut_short;
+  std::vector<Vec3> previous;      // (n) positions of the iteration before
+  std::vector<Symmetric3> blocks;  // (n) the node's own stiffness
+  std::vector<SliceData> slices;
+  std::vector<Vec3> constant_force;          // (n) weight and external force
+  std::vector<std::uint32_t> strand_nodes;   // those with strands
+  std::vector<std::uint32_t> touched_nodes;  // those with contacts in this solve
+  std::vector<SliceReport> chunk_reports;
 };
 
 SolveReport SolveRelaxationPaper(EquilibriumSolver::Content& content, const SolverSettings& settings,

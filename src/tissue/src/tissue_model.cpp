@@ -48,7 +48,8 @@ TissueModel MakeTissueModel(const TissueDefinition& definition) {
     model.half_springs[next[spring.b]++] = {spring.a, spring.stiffness, spring.rest_length};
   }
   for (std::size_t i = 0; i < n; ++i) {
-    std::sort(model.half_springs.begin() + model.spring_starts[i], model.half_springs.begin() + model.spring_starts[i + 1],
+    std::sort(model.half_springs.begin() + model.spring_starts[i],
+              model.half_springs.begin() + model.spring_starts[i + 1],
               [](const auto& a, const auto& b) { return a.other < b.other; });
   }
 
@@ -77,11 +78,13 @@ TissueState MakeRestState(const TissueModel& model) {
 
 double CalcContactDepth(const ContactSpring& contact, std::span<const Vec3> position) noexcept {
   double along = 0;
-  for (int i = 0; i < 3; ++i) along += contact.weights[i] * math::Dot(contact.normal, position[contact.nodes[i]]);
+  for (int i = 0; i < 3; ++i)
+    along += contact.weights[i] * math::Dot(contact.normal, position[contact.nodes[i]]);
   return contact.offset - along;
 }
 
-void CalcResidual(const TissueModel& model, const TissueState& state, const TissueLoad& load, std::span<Vec3> residual) {
+void CalcResidual(const TissueModel& model, const TissueState& state, const TissueLoad& load,
+                  std::span<Vec3> residual) {
   TROCAR_ASSERT(residual.size() == model.Size() && state.position.size() == model.Size());
   for (std::uint32_t i = 0; i < model.Size(); ++i) {
     residual[i] = GatherNodeForce(model, state.strand_is_intact, load, state.position, i);

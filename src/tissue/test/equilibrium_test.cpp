@@ -50,7 +50,8 @@ TEST_P(BothSolvers, VirtualSpringBalancesWeight) {
   EXPECT_NEAR(state.position[0].z, 0.3 - 0.02 * 9.81 / 10.0, 1e-12);
 }
 
-// Analytic: a stretched triangular lattice answers with the membrane modulus it was made from and Poisson's ratio 1/3.
+// Analytic: a stretched triangular lattice answers with the membrane modulus it was made from and Poisson's
+// ratio 1/3.
 TEST_P(BothSolvers, StretchedPatchHasTheModulusAndPoissonRatioOfAMembrane) {
   const double modulus = 500.0, side = 0.004;
   const int columns = 31, rows = 13;
@@ -76,7 +77,8 @@ TEST_P(BothSolvers, StretchedPatchHasTheModulusAndPoissonRatioOfAMembrane) {
   const double height = (rows - 1) * side * std::sqrt(0.75);
   const double force = -solver.CalcReaction({}, state, right).x;
   EXPECT_NEAR(force / (modulus * height * strain), 1.0, 0.06);  // free edges carry half springs
-  const auto top = static_cast<std::size_t>((rows - 1) * columns + columns / 2), bottom = static_cast<std::size_t>(columns / 2);
+  const auto top = static_cast<std::size_t>((rows - 1) * columns + columns / 2),
+             bottom = static_cast<std::size_t>(columns / 2);
   const double across = ((state.position[top].y - state.position[bottom].y) / height - 1.0) / -strain;
   EXPECT_NEAR(across, 1.0 / 3.0, 0.03);
   EXPECT_NEAR(length, 0.12, 1e-12);
@@ -102,13 +104,15 @@ TEST(Chebyshev, AgreesWithTheReferenceWithinAThousandthOfTheLargestDisplacement)
   const auto solve = [&](SolverKind kind) {
     TissueState state = MakeRestState(model);
     state.condition[0] = NodeCondition::kPrescribed;
-    state.position[0] += 0.004 * math::Normalized(model.rest[0]);  // outwards, on a firm foundation: no buckling
+    state.position[0] +=
+        0.004 * math::Normalized(model.rest[0]);  // outwards, on a firm foundation: no buckling
     ContactSpring contact{{9, 10, 11}, {1. / 3, 1. / 3, 1. / 3}, {}, 0, 500.0};
     const Vec3 centre = (model.rest[9] + model.rest[10] + model.rest[11]) / 3.0;
     contact.normal = -math::Normalized(centre);
     contact.offset = math::Dot(contact.normal, centre) + 0.001;
     EquilibriumSolver solver(model, 1);
-    const auto report = solver.Solve({kind, 200'000, 1e-8, 0.0}, {.gravity = {0, 0, -1}, .contacts = {&contact, 1}}, state);
+    const auto report =
+        solver.Solve({kind, 200'000, 1e-8, 0.0}, {.gravity = {0, 0, -1}, .contacts = {&contact, 1}}, state);
     EXPECT_TRUE(report.converged) << SolverName(kind) << " " << report.residual;
     return state.position;
   };
@@ -136,13 +140,16 @@ TEST(Chebyshev, NeedsFarFewerIterationsThanTheRelaxation) {
   EXPECT_LT(10 * iterations(SolverKind::kChebyshevJacobi2015), iterations(SolverKind::kRelaxationPaper));
 }
 
-// A crumpled start is far outside the range where the recurrence is provably stable: the safeguard must bring it home.
+// A crumpled start is far outside the range where the recurrence is provably stable: the safeguard must bring
+// it home.
 TEST(Chebyshev, ComesBackFromACrumpledStart) {
   const auto mesh = geometry::MakeSphere({0, 0, 0}, 0.03, 3);
   const TissueModel model = MakeTissueModel(MakeMembrane(mesh, 400.0, 2e4));
   TissueState state = MakeRestState(model);
   for (std::size_t i = 0; i < state.position.size(); ++i) {
-    const auto wobble = [&](int salt) { return 0.01 * std::sin(12.9898 * static_cast<double>(i) + 78.233 * salt); };
+    const auto wobble = [&](int salt) {
+      return 0.01 * std::sin(12.9898 * static_cast<double>(i) + 78.233 * salt);
+    };
     state.position[i] += Vec3{wobble(1), wobble(2), wobble(3)};
   }
   const double before = CalcEnergy(model, state, {});
@@ -178,7 +185,8 @@ TEST(Relaxation, AcceptsThePapersConstantsAndItsBound) {
   EXPECT_GT(CalcLargestAlpha(model, {}), 0.1);
   TissueState state = MakeRestState(model);
   EquilibriumSolver solver(model, 1);
-  const auto report = solver.Solve({SolverKind::kRelaxationPaper, 100'000, 5e-4, 0.1}, {.gravity = {0, 0, -9.81}}, state);
+  const auto report =
+      solver.Solve({SolverKind::kRelaxationPaper, 100'000, 5e-4, 0.1}, {.gravity = {0, 0, -9.81}}, state);
   EXPECT_TRUE(report.converged);
   for (const Vec3& p : state.position) EXPECT_NEAR(p.z, -1e-4 * 9.81 / 0.02, 1e-4);
 }
@@ -211,7 +219,8 @@ TEST(Solve, ACutStrandHoldsNothing) {
     TissueState state = MakeRestState(model);
     state.strand_is_intact[0] = is_intact;
     EquilibriumSolver solver(model, 1);
-    (void)solver.Solve({SolverKind::kChebyshevJacobi2015, 10'000, 1e-12, 0.0}, {.gravity = {0, 0, -10}}, state);
+    (void)solver.Solve({SolverKind::kChebyshevJacobi2015, 10'000, 1e-12, 0.0}, {.gravity = {0, 0, -10}},
+                       state);
     return -0.001 - state.position[1].z;
   };
   EXPECT_NEAR(depth(true), 0.1 / 100.0, 1e-9);

@@ -17,7 +17,11 @@ struct RandomSystem {
   std::vector<Vec3> external;
 
   TissueLoad Load() const {
-    return {.gravity = {0.3, -9, 1}, .stiffness_scale = 1.3, .shape_scale = 0.7, .contacts = contacts, .external_force = external};
+    return {.gravity = {0.3, -9, 1},
+            .stiffness_scale = 1.3,
+            .shape_scale = 0.7,
+            .contacts = contacts,
+            .external_force = external};
   }
 };
 
@@ -56,13 +60,15 @@ TEST(CalcResidual, IsMinusTheGradientOfTheEnergy) {
         system.state.position[node][axis] = x - h;
         const double below = CalcEnergy(system.model, system.state, system.Load());
         system.state.position[node][axis] = x;
-        EXPECT_NEAR(residual[node][axis], -(above - below) / (2 * h), 1e-5) << "seed " << seed << " node " << node;
+        EXPECT_NEAR(residual[node][axis], -(above - below) / (2 * h), 1e-5)
+            << "seed " << seed << " node " << node;
       }
     }
   }
 }
 
-// Property: springs and strands act and react, so without supports the forces of a free system sum to nothing.
+// Property: springs and strands act and react, so without supports the forces of a free system sum to
+// nothing.
 TEST(CalcResidual, InnerForcesSumToZero) {
   RandomSystem system = MakeRandomSystem(9);
   std::vector<Vec3> residual(system.model.Size());

@@ -30,11 +30,13 @@ TEST(CalcFoundationStiffness, AddsUpToModulusTimesAreaOverDepth) {
   const auto mesh = geometry::MakeSphere({0, 0, 0}, 0.05, 3);
   const auto areas = geometry::CalcVertexAreas(mesh.positions, mesh.triangles);
   const auto stiffness = CalcFoundationStiffness(areas, 5400.0, 0.08);
-  EXPECT_NEAR(std::accumulate(stiffness.begin(), stiffness.end(), 0.0) / (5400.0 / 0.08 * 4 * M_PI * 0.0025), 1.0, 0.01);
+  EXPECT_NEAR(std::accumulate(stiffness.begin(), stiffness.end(), 0.0) / (5400.0 / 0.08 * 4 * M_PI * 0.0025),
+              1.0, 0.01);
 }
 
 TEST(CalcTubeStiffness, IsHookesLawOfARing) {
-  EXPECT_NEAR(CalcTubeStiffness(498e3, 0.002, 0.0007, 0.004), 498e3 * 2 * M_PI * 0.002 * 0.0007 / 0.004, 1e-9);
+  EXPECT_NEAR(CalcTubeStiffness(498e3, 0.002, 0.0007, 0.004), 498e3 * 2 * M_PI * 0.002 * 0.0007 / 0.004,
+              1e-9);
 }
 
 }  // namespace

@@ -16,7 +16,8 @@ TEST(StateGuard, RestoresTheLastGoodStateInTheSameTick) {
   StateGuard guard(model);
   state.position[1].z = -0.11;
   EXPECT_EQ(guard.Check(state), GuardVerdict::kGood);
-  for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), 3.0}) {
+  for (const double bad :
+       {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), 3.0}) {
     state.position[1].x = bad;
     EXPECT_EQ(guard.Check(state), GuardVerdict::kRestored) << bad;
     EXPECT_EQ(state.position[1], (Vec3{0, 0, -0.11}));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file error_codes.h  Every error code of the project, in one table (src/error_codes.cpp). Tests assert codes.
+/// \file error_codes.h  Every error code of the project, in one table (src/error_codes.cpp). Tests assert
+/// codes.
 #pragma once
 
 #include <span>

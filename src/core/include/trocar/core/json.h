@@ -24,12 +24,13 @@ struct NumberRange {
 
 /// One value inside a JsonDocument.
 ///
-/// Readers return a harmless value when the field is missing or wrong and note the first complaint in the document;
-/// read everything, then ask JsonDocument::Check() once. Valid as long as its document.
+/// Readers return a harmless value when the field is missing or wrong and note the first complaint in the
+/// document; read everything, then ask JsonDocument::Check() once. Valid as long as its document.
 class JsonView {
  public:
   bool Has(std::string_view key) const;
-  /// Complains about every key of this object that is not in the list, so that a misspelt setting is not lost.
+  /// Complains about every key of this object that is not in the list, so that a misspelt setting is not
+  /// lost.
   void AllowOnly(std::initializer_list<std::string_view> keys) const;
 
   JsonView Object(std::string_view key) const;

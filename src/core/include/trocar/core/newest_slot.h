@@ -8,11 +8,12 @@
 
 namespace trocar::core {
 
-/// One producer, one consumer, three buffers: neither ever waits for the other and no value is seen half-written.
+/// One producer, one consumer, three buffers: neither ever waits for the other and no value is seen
+/// half-written.
 ///
-/// The producer fills Back() and calls Publish(); the consumer calls Update() and reads Front(). Values that the
-/// consumer did not fetch in time are overwritten.
-/// \note Real-time safe: no allocation (beyond what T does when it is filled), lock or throw.
+/// The producer fills Back() and calls Publish(); the consumer calls Update() and reads Front(). Values that
+/// the consumer did not fetch in time are overwritten. \note Real-time safe: no allocation (beyond what T
+/// does when it is filled), lock or throw.
 template <typename T>
 class NewestSlot {
  public:

@@ -12,10 +12,9 @@ struct TrianglePoint {
   std::array<double, 3> weights = {0, 0, 0};  ///< barycentric, >= 0, sum 1
 };
 
-/// Nearest point of triangle (a, b, c); slivers and degenerate triangles are segments or points. Weights of corners that
-/// do not take part are exactly zero.
-/// Source: Ericson, "Real-Time Collision Detection", 2005, section 5.1.5.
-/// \note Real-time safe.
+/// Nearest point of triangle (a, b, c); slivers and degenerate triangles are segments or points. Weights of
+/// corners that do not take part are exactly zero. Source: Ericson, "Real-Time Collision Detection", 2005,
+/// section 5.1.5. \note Real-time safe.
 TrianglePoint FindNearestOnTriangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) noexcept;
 
 /// Parameter in [0, 1] of the point of segment a-b that is nearest to p; 0 for a segment without length.

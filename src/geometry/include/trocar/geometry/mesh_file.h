@@ -15,12 +15,13 @@ namespace trocar::geometry {
 /// Binary little-endian PLY text: double x y z, triangles as uchar/uint lists. Units as given.
 std::string FormatPly(const TriangleMesh& mesh, std::string_view comment = {});
 
-/// Reads ASCII and binary little-endian PLY with float or double x y z and triangle faces; other properties are skipped.
-/// \param source  name used in messages
-/// \return kMeshInvalid with what is wrong; counts are checked against the bytes present before anything is allocated
+/// Reads ASCII and binary little-endian PLY with float or double x y z and triangle faces; other properties
+/// are skipped. \param source  name used in messages \return kMeshInvalid with what is wrong; counts are
+/// checked against the bytes present before anything is allocated
 core::Result<TriangleMesh> ParsePly(std::string_view content, std::string_view source);
 
 core::Result<TriangleMesh> ReadPly(const std::filesystem::path& path);
-core::Status WritePly(const std::filesystem::path& path, const TriangleMesh& mesh, std::string_view comment = {});
+core::Status WritePly(const std::filesystem::path& path, const TriangleMesh& mesh,
+                      std::string_view comment = {});
 
 }  // namespace trocar::geometry

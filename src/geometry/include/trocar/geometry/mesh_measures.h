@@ -27,7 +27,8 @@ double CalcVolume(std::span<const Vec3> positions, std::span<const Triangle> tri
 /// Unit normals of vertices, weighted by the angles of their triangles (Thuermer and Wuethrich 1998).
 /// \param[out] normals  (nv); {0, 0, 1} where a vertex has no area
 /// \note Real-time safe: no allocation, lock or throw.
-void CalcVertexNormals(std::span<const Vec3> positions, std::span<const Triangle> triangles, std::span<Vec3> normals);
+void CalcVertexNormals(std::span<const Vec3> positions, std::span<const Triangle> triangles,
+                       std::span<Vec3> normals);
 
 /// Area that belongs to each vertex: a third of its triangles' [m^2], (nv).
 std::vector<double> CalcVertexAreas(std::span<const Vec3> positions, std::span<const Triangle> triangles);
@@ -37,18 +38,18 @@ struct MeshReport {
   std::size_t triangles = 0;
   std::size_t vertices = 0;
   std::size_t edges = 0;
-  std::size_t components = 0;       ///< of vertices, by edges
-  std::size_t boundary_edges = 0;   ///< edges of one triangle
-  std::size_t odd_edges = 0;        ///< edges of three or more triangles, or of two that run the same way
-  std::size_t odd_vertices = 0;     ///< vertices whose triangles are not one fan
-  std::size_t degenerate = 0;       ///< triangles without area or with a repeated index
-  int genus = 0;                    ///< sum over the components; meaningful when closed and manifold
-  double area = 0;                  ///< [m^2]
-  double volume = 0;                ///< [m^3], positive when the triangles face outwards
-  double min_angle = 0;             ///< smallest angle of any triangle [rad]
-  bool closed = false;              ///< no boundary edge
-  bool manifold = false;            ///< no odd edge, odd vertex or degenerate triangle
-  bool outward = false;             ///< volume > 0
+  std::size_t components = 0;      ///< of vertices, by edges
+  std::size_t boundary_edges = 0;  ///< edges of one triangle
+  std::size_t odd_edges = 0;       ///< edges of three or more triangles, or of two that run the same way
+  std::size_t odd_vertices = 0;    ///< vertices whose triangles are not one fan
+  std::size_t degenerate = 0;      ///< triangles without area or with a repeated index
+  int genus = 0;                   ///< sum over the components; meaningful when closed and manifold
+  double area = 0;                 ///< [m^2]
+  double volume = 0;               ///< [m^3], positive when the triangles face outwards
+  double min_angle = 0;            ///< smallest angle of any triangle [rad]
+  bool closed = false;             ///< no boundary edge
+  bool manifold = false;           ///< no odd edge, odd vertex or degenerate triangle
+  bool outward = false;            ///< volume > 0
 };
 
 MeshReport InspectMesh(const TriangleMesh& mesh);

@@ -13,7 +13,8 @@ TriangleMesh MakeSphere(const Vec3& centre, double radius, int subdivisions);
 /// n * n vertices, 2 (n - 1)^2 triangles, spacing [m].
 TriangleMesh MakeGrid(int n, double spacing);
 
-/// Flat patch of equilateral triangles with side `spacing` [m]: `columns` x `rows` vertices, in the plane z = 0.
+/// Flat patch of equilateral triangles with side `spacing` [m]: `columns` x `rows` vertices, in the plane z =
+/// 0.
 TriangleMesh MakeTriangularLattice(int columns, int rows, double spacing);
 
 /// Closed box between two corners, 12 triangles.

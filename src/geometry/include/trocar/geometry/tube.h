@@ -21,11 +21,12 @@ struct CentreLine {
 /// Arc length of the polygon through the points [m].
 double CalcLength(const CentreLine& line);
 
-/// The same line with points about `spacing` [m] apart along its cubic spline; ends stay exact, radii are linear.
+/// The same line with points about `spacing` [m] apart along its cubic spline; ends stay exact, radii are
+/// linear.
 CentreLine Resample(const CentreLine& line, double spacing);
 
-/// Connectivity of a tube's skin around n centre-line points: `sides` vertices a ring, capped at both ends by fans.
-/// Vertices: n rings in order, then the first and the last centre point. Closed and outward.
+/// Connectivity of a tube's skin around n centre-line points: `sides` vertices a ring, capped at both ends by
+/// fans. Vertices: n rings in order, then the first and the last centre point. Closed and outward.
 std::vector<Triangle> MakeTubeTriangles(std::size_t point_count, int sides);
 
 /// Vertex positions for MakeTubeTriangles, by parallel transport of the ring's frame along the line.
@@ -34,7 +35,8 @@ std::vector<Triangle> MakeTubeTriangles(std::size_t point_count, int sides);
 /// \param radii   (n) [m]
 /// \param[out] skin  (n * sides + 2) [m]
 /// \note Real-time safe: no allocation, lock or throw.
-void CalcTubeSkin(std::span<const Vec3> points, std::span<const double> radii, int sides, std::span<Vec3> skin) noexcept;
+void CalcTubeSkin(std::span<const Vec3> points, std::span<const double> radii, int sides,
+                  std::span<Vec3> skin) noexcept;
 
 /// MakeTubeTriangles and CalcTubeSkin together.
 TriangleMesh MakeTube(const CentreLine& line, int sides);

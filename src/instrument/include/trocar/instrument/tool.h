@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file tool.h  The shapes of laparoscopic tools. Tool frame: origin at the tip, +z back along the shaft, +y the
-/// direction in which the upper jaw opens.
+/// \file tool.h  The shapes of laparoscopic tools. Tool frame: origin at the tip, +z back along the shaft, +y
+/// the direction in which the upper jaw opens.
 #pragma once
 
 #include <string>

@@ -33,18 +33,17 @@ struct JointLimits {
 /// Clamps every joint to its limit; spin is left as it is. NaN becomes the nearest lower limit.
 TrocarJoints ClampJoints(const TrocarJoints& joints, const JointLimits& limits) noexcept;
 
-/// Pose of the tool: origin at the tip, z axis back along the shaft towards the trocar, y axis the opening direction
-/// of the jaws.
-/// \param p_world_port  trocar point [m]
-/// \note Real-time safe.
+/// Pose of the tool: origin at the tip, z axis back along the shaft towards the trocar, y axis the opening
+/// direction of the jaws. \param p_world_port  trocar point [m] \note Real-time safe.
 Pose CalcToolPose(const Vec3& p_world_port, const TrocarJoints& joints) noexcept;
 
-/// Joints that bring the tip to `p_world_tip`, with the given spin and jaw. A tip at the port itself gives depth 0.
+/// Joints that bring the tip to `p_world_tip`, with the given spin and jaw. A tip at the port itself gives
+/// depth 0.
 TrocarJoints FindJoints(const Vec3& p_world_port, const Vec3& p_world_tip, double spin, double jaw) noexcept;
 
 /// Moves `from` towards `to` no faster than the limits [m/s], [rad/s] allow in dt [s].
 /// \note Guards against device jumps (faults D5); real-time safe.
-TrocarJoints LimitSpeed(const TrocarJoints& from, const TrocarJoints& to, double max_tip_speed, double max_turn_rate,
-                        double dt) noexcept;
+TrocarJoints LimitSpeed(const TrocarJoints& from, const TrocarJoints& to, double max_tip_speed,
+                        double max_turn_rate, double dt) noexcept;
 
 }  // namespace trocar::instrument

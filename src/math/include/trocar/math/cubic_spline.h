@@ -27,7 +27,8 @@ class CubicSpline {
 
   /// Sum of the chords: the parameter runs over [0, Length()].
   double Length() const { return knots_.back(); }
-  /// Chord length at which each point (after merging) lies; a closed spline repeats its first point at the end.
+  /// Chord length at which each point (after merging) lies; a closed spline repeats its first point at the
+  /// end.
   std::span<const double> Knots() const { return knots_; }
   /// Point at parameter s, clamped to [0, Length()].
   Vec3 Evaluate(double s) const;

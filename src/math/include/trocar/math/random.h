@@ -7,7 +7,8 @@
 
 namespace trocar::math {
 
-/// SplitMix64. The standard library's distributions differ between implementations, so the map to doubles is ours.
+/// SplitMix64. The standard library's distributions differ between implementations, so the map to doubles is
+/// ours.
 class Random {
  public:
   explicit Random(std::uint64_t seed) noexcept : state_(seed) {}

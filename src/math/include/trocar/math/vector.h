@@ -12,9 +12,18 @@ struct Vec3 {
 
   double& operator[](int i) { return i == 0 ? x : i == 1 ? y : z; }
   double operator[](int i) const { return i == 0 ? x : i == 1 ? y : z; }
-  Vec3& operator+=(const Vec3& b) { x += b.x, y += b.y, z += b.z; return *this; }
-  Vec3& operator-=(const Vec3& b) { x -= b.x, y -= b.y, z -= b.z; return *this; }
-  Vec3& operator*=(double s) { x *= s, y *= s, z *= s; return *this; }
+  Vec3& operator+=(const Vec3& b) {
+    x += b.x, y += b.y, z += b.z;
+    return *this;
+  }
+  Vec3& operator-=(const Vec3& b) {
+    x -= b.x, y -= b.y, z -= b.z;
+    return *this;
+  }
+  Vec3& operator*=(double s) {
+    x *= s, y *= s, z *= s;
+    return *this;
+  }
   friend Vec3 operator+(Vec3 a, const Vec3& b) { return a += b; }
   friend Vec3 operator-(Vec3 a, const Vec3& b) { return a -= b; }
   friend Vec3 operator-(const Vec3& a) { return {-a.x, -a.y, -a.z}; }
@@ -34,16 +43,30 @@ struct Vec2 {
   friend bool operator==(const Vec2&, const Vec2&) = default;
 };
 
-inline double Dot(const Vec3& a, const Vec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-inline double Dot(const Vec2& a, const Vec2& b) { return a.x * b.x + a.y * b.y; }
+inline double Dot(const Vec3& a, const Vec3& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+inline double Dot(const Vec2& a, const Vec2& b) {
+  return a.x * b.x + a.y * b.y;
+}
 inline Vec3 Cross(const Vec3& a, const Vec3& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
-inline double SquaredNorm(const Vec3& a) { return Dot(a, a); }
-inline double Norm(const Vec3& a) { return std::sqrt(Dot(a, a)); }
-inline double Norm(const Vec2& a) { return std::sqrt(Dot(a, a)); }
-inline double Distance(const Vec3& a, const Vec3& b) { return Norm(a - b); }
-inline double SquaredDistance(const Vec3& a, const Vec3& b) { return SquaredNorm(a - b); }
+inline double SquaredNorm(const Vec3& a) {
+  return Dot(a, a);
+}
+inline double Norm(const Vec3& a) {
+  return std::sqrt(Dot(a, a));
+}
+inline double Norm(const Vec2& a) {
+  return std::sqrt(Dot(a, a));
+}
+inline double Distance(const Vec3& a, const Vec3& b) {
+  return Norm(a - b);
+}
+inline double SquaredDistance(const Vec3& a, const Vec3& b) {
+  return SquaredNorm(a - b);
+}
 
 /// a / |a|, or `fallback` where |a| is zero.
 inline Vec3 Normalized(const Vec3& a, const Vec3& fallback = {0, 0, 1}) {
@@ -51,10 +74,18 @@ inline Vec3 Normalized(const Vec3& a, const Vec3& fallback = {0, 0, 1}) {
   return norm > 0.0 ? a / norm : fallback;
 }
 
-inline Vec3 Min(const Vec3& a, const Vec3& b) { return {std::fmin(a.x, b.x), std::fmin(a.y, b.y), std::fmin(a.z, b.z)}; }
-inline Vec3 Max(const Vec3& a, const Vec3& b) { return {std::fmax(a.x, b.x), std::fmax(a.y, b.y), std::fmax(a.z, b.z)}; }
-inline Vec3 Lerp(const Vec3& a, const Vec3& b, double t) { return a + t * (b - a); }
-inline bool IsFinite(const Vec3& a) { return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z); }
+inline Vec3 Min(const Vec3& a, const Vec3& b) {
+  return {std::fmin(a.x, b.x), std::fmin(a.y, b.y), std::fmin(a.z, b.z)};
+}
+inline Vec3 Max(const Vec3& a, const Vec3& b) {
+  return {std::fmax(a.x, b.x), std::fmax(a.y, b.y), std::fmax(a.z, b.z)};
+}
+inline Vec3 Lerp(const Vec3& a, const Vec3& b, double t) {
+  return a + t * (b - a);
+}
+inline bool IsFinite(const Vec3& a) {
+  return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z);
+}
 
 /// Any unit vector perpendicular to the unit vector `a`.
 inline Vec3 AnyPerpendicular(const Vec3& a) {

@@ -15,11 +15,11 @@ inline constexpr int kHandCount = 2;
 
 /// What the person or the instructor may change while the simulation runs; acts in the next tick.
 struct LiveSettings {
-  double stiffness_scale = 1;       ///< on every structural and attachment spring [-], 0.05 to 20
-  double shape_scale = 1;           ///< on every virtual (shape) spring [-], 0 to 20
-  double gravity = 9.81;            ///< [m/s^2], 0 to 30
-  double head_up = 0;               ///< reverse Trendelenburg [rad], -0.6 to 0.6
-  double right_up = 0;              ///< patient's right side up [rad], -0.6 to 0.6
+  double stiffness_scale = 1;  ///< on every structural and attachment spring [-], 0.05 to 20
+  double shape_scale = 1;      ///< on every virtual (shape) spring [-], 0 to 20
+  double gravity = 9.81;       ///< [m/s^2], 0 to 30
+  double head_up = 0;          ///< reverse Trendelenburg [rad], -0.6 to 0.6
+  double right_up = 0;         ///< patient's right side up [rad], -0.6 to 0.6
   tissue::SolverSettings solver;
 
   friend bool operator==(const LiveSettings&, const LiveSettings&) = default;

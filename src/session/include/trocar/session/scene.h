@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file scene.h  What is fixed while a simulation runs: patient, ports, tools, script. Read from scenes/*.json.
+/// \file scene.h  What is fixed while a simulation runs: patient, ports, tools, script. Read from
+/// scenes/*.json.
 #pragma once
 
 #include <array>

@@ -16,8 +16,8 @@ namespace trocar::session {
 
 /// A surface that can be drawn: an organ, or the skin of a duct or vessel around its centre-line nodes.
 struct SurfaceInfo {
-  std::string name;      ///< "liver", "cystic_duct"
-  std::string material;  ///< "liver", "gallbladder", "duct", "artery"
+  std::string name;                              ///< "liver", "cystic_duct"
+  std::string material;                          ///< "liver", "gallbladder", "duct", "artery"
   std::uint32_t first_node = 0, node_count = 0;  ///< rows of Snapshot::positions
   std::vector<geometry::Triangle> triangles;     ///< organs: indices from 0 at first_node; tubes: empty
   std::vector<double> radii;                     ///< (node_count) tubes only [m]

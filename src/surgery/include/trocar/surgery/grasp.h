@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file grasp.h  Grasping: jaws that close on tissue carry its nodes with them until they open or the tissue slips.
-/// The carried nodes are the paper's third boundary condition, a predefined position (section 3.2.2).
+/// \file grasp.h  Grasping: jaws that close on tissue carry its nodes with them until they open or the tissue
+/// slips. The carried nodes are the paper's third boundary condition, a predefined position (section 3.2.2).
 #pragma once
 
 #include <array>
@@ -31,8 +31,9 @@ struct GraspSettings {
 /// What one tool holds. Fixed room: the nearest nodes when there are more.
 struct Grasp {
   static constexpr std::size_t kCapacity = 32;
-  bool are_jaws_closed = true;  ///< by the two thresholds; a tool starts closed and has to open before it can grasp
-  std::int32_t organ = -1;      ///< index into the organs, -1 while nothing is held
+  bool are_jaws_closed =
+      true;  ///< by the two thresholds; a tool starts closed and has to open before it can grasp
+  std::int32_t organ = -1;  ///< index into the organs, -1 while nothing is held
   std::size_t count = 0;
   std::array<std::uint32_t, kCapacity> nodes{};  ///< of the whole system
   std::array<Vec3, kCapacity> p_tool_node{};     ///< where each is held in the tool frame [m]
@@ -45,7 +46,8 @@ struct Grasp {
 
 enum class GraspChange { kNone, kGrasped, kMissed, kReleased, kSlipped };
 
-/// Follows the jaws: takes the nodes between them when they close, lets go when they open, and moves what is held.
+/// Follows the jaws: takes the nodes between them when they close, lets go when they open, and moves what is
+/// held.
 ///
 /// Nodes that anatomy or another tool prescribes are not taken.
 /// \param[in,out] state  conditions and positions of the held nodes
@@ -57,8 +59,8 @@ GraspChange UpdateGrasp(const instrument::Tool& tool, const Pose& X_world_tool, 
 
 /// Lets go when the pull was too strong for too long. \param pull  reaction of the held nodes [N]
 /// \return kSlipped or kNone
-GraspChange UpdateSlip(double pull, const GraspSettings& settings, const tissue::TissueModel& model, Grasp& grasp,
-                       tissue::TissueState& state) noexcept;
+GraspChange UpdateSlip(double pull, const GraspSettings& settings, const tissue::TissueModel& model,
+                       Grasp& grasp, tissue::TissueState& state) noexcept;
 
 /// Frees the held nodes at once.
 void ReleaseGrasp(const tissue::TissueModel& model, Grasp& grasp, tissue::TissueState& state) noexcept;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file organ_surface.h  The part of the tissue that tools can touch: one organ's triangles over the nodes of the
-/// whole system.
+/// \file organ_surface.h  The part of the tissue that tools can touch: one organ's triangles over the nodes
+/// of the whole system.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,8 @@ namespace trocar::surgery {
 
 using math::Vec3;
 
-/// One closed organ inside the system of nodes. Indices in triangles, hierarchy and rows count from first_node.
+/// One closed organ inside the system of nodes. Indices in triangles, hierarchy and rows count from
+/// first_node.
 struct OrganSurface {
   std::uint32_t first_node = 0, node_count = 0;
   std::vector<geometry::Triangle> triangles;

@@ -14,8 +14,9 @@ namespace trocar::tissue {
 /// How a solve ended.
 struct SolveReport {
   int iterations = 0;
-  double residual = 0;     ///< largest |R_i| of a node that is not prescribed, over `force_scale` [-]
-  double force_scale = 0;  ///< largest force that acts on any such node through one spring, load or contact [N]
+  double residual = 0;  ///< largest |R_i| of a node that is not prescribed, over `force_scale` [-]
+  double force_scale =
+      0;  ///< largest force that acts on any such node through one spring, load or contact [N]
   bool converged = false;  ///< residual <= tolerance
   int restarts = 0;        ///< how often the acceleration was taken back because the residual grew
 };

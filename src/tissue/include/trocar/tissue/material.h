@@ -19,8 +19,10 @@ using math::Vec3;
 /// \param edges             (ne) from geometry::FindEdges(triangles)
 /// \param membrane_modulus  E t, Young's modulus times wall thickness [N/m], >= 0
 /// \return (ne) [N/m]
-/// Source: van Gelder, "Approximate simulation of elastic membranes by triangulated spring meshes", JGT 3(2), 1998.
-std::vector<double> CalcEdgeStiffness(std::span<const Vec3> positions, std::span<const geometry::Triangle> triangles,
+/// Source: van Gelder, "Approximate simulation of elastic membranes by triangulated spring meshes", JGT 3(2),
+/// 1998.
+std::vector<double> CalcEdgeStiffness(std::span<const Vec3> positions,
+                                      std::span<const geometry::Triangle> triangles,
                                       std::span<const geometry::Edge> edges, double membrane_modulus);
 
 /// Stiffness of each node's virtual spring as a Winkler foundation: k_i = (E / h) A_i.
@@ -29,7 +31,8 @@ std::vector<double> CalcEdgeStiffness(std::span<const Vec3> positions, std::span
 /// \param modulus       E of what lies behind the surface [Pa], >= 0
 /// \param depth         h of that layer [m], > 0
 /// \return (nv) [N/m]
-std::vector<double> CalcFoundationStiffness(std::span<const double> vertex_areas, double modulus, double depth);
+std::vector<double> CalcFoundationStiffness(std::span<const double> vertex_areas, double modulus,
+                                            double depth);
 
 /// Axial stiffness of a piece of tube wall, k = E 2 pi r t / l [N/m].
 double CalcTubeStiffness(double young_modulus, double radius, double wall_thickness, double length);

@@ -17,8 +17,8 @@ std::string_view SolverName(SolverKind kind) noexcept;
 struct SolverSettings {
   SolverKind kind = SolverKind::kChebyshevJacobi2015;
   int max_iterations = 40;  ///< per tick, 1 to 100000
-  /// Stop when the largest residual of any free node is below this fraction of the largest force that any spring,
-  /// load or contact exerts [-].
+  /// Stop when the largest residual of any free node is below this fraction of the largest force that any
+  /// spring, load or contact exerts [-].
   double tolerance = 1e-4;
   double alpha = 0;  ///< step of the relaxation [m/N]; 0 takes the stability bound of Gershgorin's theorem
 

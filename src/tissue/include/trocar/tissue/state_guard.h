@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file state_guard.h  Finds a state that went wrong in the tick in which it did, and goes back (faults S1 and S3).
+/// \file state_guard.h  Finds a state that went wrong in the tick in which it did, and goes back (faults S1
+/// and S3).
 #pragma once
 
 #include <cstdint>
@@ -16,8 +17,8 @@ enum class GuardVerdict {
   kFrozen     ///< bad several times in a row: every node is held until Release()
 };
 
-/// Keeps the last good positions. A state is bad when a coordinate is not finite or a node is farther from rest than
-/// any organ could be.
+/// Keeps the last good positions. A state is bad when a coordinate is not finite or a node is farther from
+/// rest than any organ could be.
 class StateGuard {
  public:
   /// \param max_displacement  from rest [m]; 0.5 m is more than the abdomen

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file tissue_model.h  One mass-spring system for every organ: what is constant, what a tick changes, what it is
-/// loaded with.
-/// Source: "General algorithms for laparoscopic surgical simulators", sections 3.2.1 to 3.2.3.
+/// \file tissue_model.h  One mass-spring system for every organ: what is constant, what a tick changes, what
+/// it is loaded with. Source: "General algorithms for laparoscopic surgical simulators", sections 3.2.1
+/// to 3.2.3.
 #pragma once
 
 #include <array>
@@ -22,8 +22,9 @@ struct Spring {
   double rest_length = 0;  ///< l [m], >= 0
 };
 
-/// Strand that keeps the rest offset between two nodes, f_a = k ((x_b - x_a) - (rest_b - rest_a)). Strands are a
-/// millimetre long: a Hookean spring of that length would turn freely and leave the organs to slide on each other.
+/// Strand that keeps the rest offset between two nodes, f_a = k ((x_b - x_a) - (rest_b - rest_a)). Strands
+/// are a millimetre long: a Hookean spring of that length would turn freely and leave the organs to slide on
+/// each other.
 struct Strand {
   std::uint32_t a = 0, b = 0;
   double stiffness = 0;  ///< k [N/m], >= 0
@@ -38,16 +39,16 @@ enum class NodeCondition : std::uint8_t {
 
 /// Description of a system, checked once by MakeTissueModel.
 struct TissueDefinition {
-  std::vector<Vec3> rest;                ///< (n) [m]
-  std::vector<double> mass;              ///< (n) [kg], >= 0
-  std::vector<double> shape_stiffness;   ///< (n) k_virtual of the spring to the rest position [N/m], >= 0
-  std::vector<std::uint32_t> fixed;      ///< nodes held at rest by anatomy
-  std::vector<Spring> springs;           ///< structural
-  std::vector<Strand> strands;           ///< attachments: can be dissected
+  std::vector<Vec3> rest;               ///< (n) [m]
+  std::vector<double> mass;             ///< (n) [kg], >= 0
+  std::vector<double> shape_stiffness;  ///< (n) k_virtual of the spring to the rest position [N/m], >= 0
+  std::vector<std::uint32_t> fixed;     ///< nodes held at rest by anatomy
+  std::vector<Spring> springs;          ///< structural
+  std::vector<Strand> strands;          ///< attachments: can be dissected
 };
 
-/// Constant while running. Half-springs are stored with each of their two nodes, so that a node gathers its force
-/// without writing to another: the result does not depend on the number of threads.
+/// Constant while running. Half-springs are stored with each of their two nodes, so that a node gathers its
+/// force without writing to another: the result does not depend on the number of threads.
 struct TissueModel {
   std::vector<Vec3> rest;               ///< (n) [m]
   std::vector<double> mass;             ///< (n) [kg]
@@ -95,21 +96,26 @@ struct ContactSpring {
   double stiffness = 0;             ///< [N/m]
 };
 
+/// Most contacts that a solver has room for.
+inline constexpr std::size_t kMaxContacts = 1024;
+
 /// What acts on the system in one solve.
 struct TissueLoad {
-  /// Gravity now minus gravity in which the rest shape was imaged [m/s^2]: organs are photographed under their own
-  /// weight, so only the difference moves them. For the paper's own experiments, the whole of gravity.
+  /// Gravity now minus gravity in which the rest shape was imaged [m/s^2]: organs are photographed under
+  /// their own weight, so only the difference moves them. For the paper's own experiments, the whole of
+  /// gravity.
   Vec3 gravity;
-  double stiffness_scale = 1;           ///< on structural springs and strands [-]
-  double shape_scale = 1;               ///< on virtual springs [-]
-  std::span<const ContactSpring> contacts;
-  std::span<const Vec3> external_force;  ///< (n) or empty [N]
+  double stiffness_scale = 1;               ///< on structural springs and strands [-]
+  double shape_scale = 1;                   ///< on virtual springs [-]
+  std::span<const ContactSpring> contacts;  ///< at most kMaxContacts
+  std::span<const Vec3> external_force;     ///< (n) or empty [N]
 };
 
-/// Force of every spring, strand, load and contact on each node: the residual of the balance (domain facts 0b.4).
-/// \param[out] residual  (n) [N]
-/// \note Straightforward and slow: the reference for the solvers' own evaluation.
-void CalcResidual(const TissueModel& model, const TissueState& state, const TissueLoad& load, std::span<Vec3> residual);
+/// Force of every spring, strand, load and contact on each node: the residual of the balance (domain facts
+/// 0b.4). \param[out] residual  (n) [N] \note Straightforward and slow: the reference for the solvers' own
+/// evaluation.
+void CalcResidual(const TissueModel& model, const TissueState& state, const TissueLoad& load,
+                  std::span<Vec3> residual);
 
 /// Stored energy whose negative gradient is CalcResidual [J].
 double CalcEnergy(const TissueModel& model, const TissueState& state, const TissueLoad& load);
