@@ -29,11 +29,11 @@ std::array<MaterialLook, static_cast<std::size_t>(Material::kCount)> MakeLooks()
     return looks[static_cast<std::size_t>(material)];
   };
 
-  look(Material::kLiver) = {.low = FromSrgb(98, 34, 27),
-                            .high = FromSrgb(150, 62, 46),
-                            .cell = FromSrgb(168, 84, 62),
+  look(Material::kLiver) = {.low = FromSrgb(84, 28, 22),
+                            .high = FromSrgb(136, 52, 38),
+                            .cell = FromSrgb(150, 70, 50),
                             .vessel = FromSrgb(84, 24, 26),
-                            .cell_amount = 0.35f,
+                            .cell_amount = 0.26f,
                             .vessel_amount = 0.15f,
                             .vessel_width = 0.25f,
                             .detail_tile = {0.013f, 0.013f, 0.013f},
@@ -45,10 +45,10 @@ std::array<MaterialLook, static_cast<std::size_t>(Material::kCount)> MakeLooks()
                             .sheen = 0.06f,
                             .wrap = {0.22f, 0.10f, 0.08f},
                             .glow = 0.0f};
-  look(Material::kGallbladder) = {.low = FromSrgb(118, 142, 118),
-                                  .high = FromSrgb(176, 178, 138),
-                                  .cell = FromSrgb(190, 186, 150),
-                                  .vessel = FromSrgb(148, 58, 50),
+  look(Material::kGallbladder) = {.low = FromSrgb(92, 116, 100),
+                                  .high = FromSrgb(160, 156, 112),
+                                  .cell = FromSrgb(176, 166, 126),
+                                  .vessel = FromSrgb(132, 44, 38),
                                   .cell_amount = 0.10f,
                                   .vessel_amount = 0.75f,
                                   .vessel_width = 0.20f,
@@ -60,7 +60,7 @@ std::array<MaterialLook, static_cast<std::size_t>(Material::kCount)> MakeLooks()
                                   .wet_exponent = 320,
                                   .sheen = 0.09f,
                                   .wrap = {0.30f, 0.30f, 0.22f},
-                                  .glow = 0.35f};
+                                  .glow = 0.18f};
   look(Material::kDuct) = {.low = FromSrgb(158, 152, 92),
                            .high = FromSrgb(196, 188, 128),
                            .cell = FromSrgb(206, 196, 150),
@@ -93,8 +93,8 @@ std::array<MaterialLook, static_cast<std::size_t>(Material::kCount)> MakeLooks()
                              .sheen = 0.08f,
                              .wrap = {0.30f, 0.14f, 0.12f},
                              .glow = 0.15f};
-  look(Material::kFat) = {.low = FromSrgb(206, 138, 58),
-                          .high = FromSrgb(240, 196, 104),
+  look(Material::kFat) = {.low = FromSrgb(200, 136, 64),
+                          .high = FromSrgb(238, 200, 122),
                           .cell = FromSrgb(196, 104, 54),
                           .vessel = FromSrgb(164, 42, 34),
                           .cell_amount = 0.40f,
@@ -125,9 +125,9 @@ std::array<MaterialLook, static_cast<std::size_t>(Material::kCount)> MakeLooks()
                             .sheen = 0.08f,
                             .wrap = {0.30f, 0.18f, 0.14f},
                             .glow = 0.0f};
-  look(Material::kPeritoneum) = {.low = FromSrgb(150, 62, 50),
-                                 .high = FromSrgb(214, 146, 104),
-                                 .cell = FromSrgb(222, 172, 128),
+  look(Material::kPeritoneum) = {.low = FromSrgb(178, 84, 68),
+                                 .high = FromSrgb(234, 170, 134),
+                                 .cell = FromSrgb(236, 186, 150),
                                  .vessel = FromSrgb(132, 34, 34),
                                  .cell_amount = 0.25f,
                                  .vessel_amount = 0.55f,
@@ -148,12 +148,12 @@ std::array<MaterialLook, static_cast<std::size_t>(Material::kCount)> MakeLooks()
                             .wet_exponent = 60,
                             .sheen = 0.03f};
   look(Material::kSteel) = {.is_tissue = false,
-                            .low = FromSrgb(112, 114, 118),
-                            .high = FromSrgb(214, 214, 218),
+                            .low = FromSrgb(52, 54, 58),
+                            .high = FromSrgb(122, 124, 130),
                             .wet = 0.9f,
                             .wet_exponent = 90,
                             .sheen = 0.30f,
-                            .grooves = 0.16f};
+                            .grooves = 0.08f};
   look(Material::kSleeve) = {.is_tissue = false,
                              .low = FromSrgb(92, 98, 104),
                              .high = FromSrgb(176, 184, 190),

@@ -27,6 +27,7 @@ using math::Vec3;
 constexpr double kNear = 0.004;                 // m, in front of the lens
 constexpr double kFar = 1.0;                    // m, beyond any abdomen
 constexpr Vec3 kLightOffset{0, 0.0035, 0.001};  // m, camera frame: the fibres leave beside the lens
+constexpr double kOverlayDepth = 0.01;          // share of the depth buffer that is kept for arrows
 constexpr int kNoiseSide = 64;                  // texels
 constexpr int kMaskSegments = 128;
 constexpr int kFanFirst = 2 * (kMaskSegments + 1);                // vertex after the ring's strip
@@ -525,6 +526,7 @@ void Renderer::Draw(const Frame& frame, int width, int height) {
   glDepthMask(GL_TRUE);
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_LESS);
+  glDepthRange(0.0, 1.0);
   glViewport(0, 0, width, height);
   glClearColor(F(frame.clear_colour[0]), F(frame.clear_colour[1]), F(frame.clear_colour[2]), 1);
   glClearDepth(1.0);
@@ -547,13 +549,17 @@ void Renderer::Draw(const Frame& frame, int width, int height) {
   glBindTexture(GL_TEXTURE_3D, c.pattern);
   c.tissue.Set("u_pattern", 0);
   c.tissue.Set("u_bumps", 1);
+  // arrows in a slice of depth before everything else: they are a read-out, no organ may hide them
+  glDepthRange(0.001, kOverlayDepth);
   for (const Arrow& arrow : frame.arrows) c.DrawArrow(arrow, X_camera_world);
+  glDepthRange(kOverlayDepth, 1.0);
   for (const SurfaceDraw& draw : frame.surfaces) {
     if (const Surface* surface = c.FindSurface(draw.surface)) {
       c.DrawSurface(*surface, X_camera_world * draw.X_world_surface, {1, 1, 1});
     }
   }
 
+  glDepthRange(0.0, 1.0);
   if (frame.is_wireframe) glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
   glActiveTexture(GL_TEXTURE1);
   glBindTexture(GL_TEXTURE_3D, 0);

@@ -113,7 +113,7 @@ void main() {
   float half_cosine = max(0.5 * (to_lamp + dot(bumpy, to_eye)), 0.0);
   // the wet film is broken up by fine noise
   float wet = u_gloss.x * exp2(u_gloss.y * (half_cosine - 1.0)) * (0.4 + 1.2 * detail.r) * ambient;
-  float sheen = u_gloss.z * exp2(18.0 * (half_cosine - 1.0)) + 0.05 * rim * rim * rim * u_gloss.x;
+  float sheen = u_gloss.z * exp2(18.0 * (half_cosine - 1.0));
   vec3 bounce = vec3(0.060, 0.036, 0.028) * (0.4 + 0.6 * ambient);
   vec3 colour = albedo * (diffuse * shade * light + bounce * (0.4 + light)) + (wet + sheen) * min(light, 2.0) * vec3(1.0, 0.98, 0.95);
   o_colour = WithBrightness(Finish(2.1 * colour));
@@ -138,7 +138,7 @@ void main() {
   // what the metal mirrors: warm tissue all round, the dark middle of the lens, grooves of the grinding
   vec3 mirrored = 2.0 * dot(n, to_eye) * n - to_eye;
   float away = 0.5 - 0.5 * mirrored.z;
-  vec3 room = mix(vec3(0.16, 0.13, 0.12), vec3(0.62, 0.30, 0.22), away * away) * (0.7 + 0.3 * mirrored.y);
+  vec3 room = mix(vec3(0.10, 0.08, 0.08), vec3(0.58, 0.27, 0.20), away * away) * (0.55 + 0.45 * mirrored.y);
   float grooves = 1.0 - u_grooves * (0.5 + 0.5 * sin(v_rest.z * 5200.0));
 
   float cosine = clamp(dot(n, l), 0.0, 1.0);
@@ -149,7 +149,7 @@ void main() {
   vec3 base = mix(u_low, u_high, cosine * cosine);
   vec3 colour = base * (0.55 * cosine + 0.04) * light * grooves;
   colour += (u_gloss.z + 0.12 * rim * rim * rim) * room * (0.25 + 0.75 * min(light, 1.5));
-  colour += u_gloss.x * (0.45 * streak + 0.8 * point) * min(light, 2.0) * vec3(1.0, 0.98, 0.96);
+  colour += u_gloss.x * (0.30 * streak + 0.8 * point) * min(light, 2.0) * vec3(1.0, 0.98, 0.96);
   o_colour = WithBrightness(Finish(1.6 * colour));
 }
 )";
@@ -167,16 +167,15 @@ uniform vec2 u_texel;
 void main() {
   vec2 at = gl_FragCoord.xy * u_texel;
   vec4 here = texture(u_picture, at);
-  float nw = texture(u_picture, at + vec2(-0.5, 0.5) * u_texel).a;
-  float ne = texture(u_picture, at + vec2(0.5, 0.5) * u_texel).a;
-  float sw = texture(u_picture, at + vec2(-0.5, -0.5) * u_texel).a;
-  float se = texture(u_picture, at + vec2(0.5, -0.5) * u_texel).a;
-  float low = min(here.a, min(min(nw, ne), min(sw, se)));
-  float high = max(here.a, max(max(nw, ne), max(sw, se)));
-  vec2 along = vec2((sw + se) - (nw + ne), (nw + sw) - (ne + se));
-  float share = clamp((high - low - 0.03) * 20.0, 0.0, 1.0);
-  vec2 step = along * inversesqrt(dot(along, along) + 1e-8) * u_texel;
-  vec3 smoothed = 0.5 * (texture(u_picture, at + 0.6 * step).rgb + texture(u_picture, at - 0.6 * step).rgb);
+  // each tap lies between four pixels, so that together they blur a pixel a little
+  vec4 nw = texture(u_picture, at + vec2(-0.5, 0.5) * u_texel);
+  vec4 ne = texture(u_picture, at + vec2(0.5, 0.5) * u_texel);
+  vec4 sw = texture(u_picture, at + vec2(-0.5, -0.5) * u_texel);
+  vec4 se = texture(u_picture, at + vec2(0.5, -0.5) * u_texel);
+  float low = min(min(nw.a, ne.a), min(sw.a, se.a));
+  float high = max(max(nw.a, ne.a), max(sw.a, se.a));
+  float share = clamp((high - low - 0.03) * 16.0, 0.0, 1.0);
+  vec3 smoothed = 0.25 * (nw.rgb + ne.rgb + sw.rgb + se.rgb);
   o_colour = vec4(mix(here.rgb, smoothed, share), 1.0);
 }
 )";

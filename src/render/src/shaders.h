@@ -8,10 +8,9 @@ extern const char* const kSurfaceVertexShader;  ///< for both fragment shaders b
 extern const char* const kShadingFunctions;     ///< goes before either of them
 extern const char* const kTissueFragmentShader;
 extern const char* const kToolFragmentShader;
-extern const char* const kScreenVertexShader;  ///< the picture's circle or rectangle
-extern const char* const
-    kSmoothFragmentShader;                   ///< softens stairs at edges; after Lottes, "FXAA", NVIDIA 2009
-extern const char* const kMaskVertexShader;  ///< black frame round the picture, nearest of all
+extern const char* const kScreenVertexShader;    ///< the picture's circle or rectangle
+extern const char* const kSmoothFragmentShader;  ///< softens stairs where brightness jumps
+extern const char* const kMaskVertexShader;      ///< black frame round the picture, nearest of all
 extern const char* const kMaskFragmentShader;
 
 }  // namespace trocar::render

@@ -244,6 +244,18 @@ TEST_F(RendererTest, ArrowPointsAlongItsSpan) {
   EXPECT_EQ(FindBlob(Draw(frame)).count, 0);
 }
 
+TEST_F(RendererTest, NoOrganHidesAnArrow) {
+  Frame frame = PlainFrame();
+  frame.arrows = {{{0, 0, -kDistance}, {0.005, 0, 0}, 0.001}};
+  const Image bare = Draw(frame);
+  frame.surfaces = {{AddBall(), {{}, {0, 0, -kDistance}}}};
+  const Image inside = Draw(frame);
+  const math::Vec2 pixel = CalcPixel(frame.camera, {0.002, 0, -kDistance}, kWidth, kHeight);
+  const int x = static_cast<int>(std::lround(pixel.x)), y = static_cast<int>(std::lround(pixel.y));
+  EXPECT_GT(Brightness(bare, x, y), 0);
+  EXPECT_EQ(bare.At(x, y), inside.At(x, y));
+}
+
 TEST_F(RendererTest, WireframeShowsEdgesOnly) {
   Frame frame = PlainFrame();
   frame.surfaces = {

@@ -13,6 +13,7 @@
 
 #include "trocar/core/assert.h"
 #include "trocar/geometry/mesh_measures.h"
+#include "trocar/geometry/mesh_topology.h"
 #include "trocar/geometry/tube.h"
 #include "trocar/instrument/tool.h"
 #include "trocar/render/background.h"
@@ -39,7 +40,7 @@ constexpr double kSleeveOutside = 0.060;   // m
 constexpr double kSleeveMaxBore = 0.0034;  // m; a thicker shaft gets a wider sleeve
 constexpr double kShadeLength = 0.120;     // m of a shaft that shades tissue
 constexpr double kSmallestForce = 0.02;    // N; below, an arrow would only flicker
-constexpr double kLongestArrow = 0.060;    // m
+constexpr double kLongestArrow = 0.045;    // m
 
 /// Shape of one deforming surface, from snapshot nodes to the vertices that are drawn.
 struct Shape {
@@ -89,6 +90,26 @@ struct Hand {
   std::vector<Part> parts;
   render::SurfaceId sleeve;
 };
+
+/// Openness of a surface that will move: averaged over neighbours and never dark, because where it lies
+/// against another organ at rest it may later be pulled free.
+std::vector<double> SoftenOpenness(std::vector<double> openness, std::span<const Triangle> triangles) {
+  constexpr int kRounds = 4;
+  constexpr double kDarkest = 0.45;
+  const geometry::Rows neighbours = geometry::FindVertexNeighbours(triangles, openness.size());
+  for (int round = 0; round < kRounds; ++round) {
+    std::vector<double> next = openness;
+    for (std::size_t i = 0; i < openness.size(); ++i) {
+      const auto row = neighbours.Row(i);
+      double sum = openness[i];
+      for (const std::uint32_t j : row) sum += openness[j];
+      next[i] = sum / static_cast<double>(row.size() + 1);
+    }
+    openness = std::move(next);
+  }
+  for (double& value : openness) value = kDarkest + (1.0 - kDarkest) * value;
+  return openness;
+}
 
 TriangleMesh MakeSleeve(double shaft_radius) {
   const double radius = kSleeveRadius + std::max(0.0, shaft_radius - kSleeveMaxBore);
@@ -163,8 +184,9 @@ struct LaparoscopeView::Content {
 
     for (std::size_t i = 0; i < shapes.size(); ++i) {
       Shape& shape = shapes[i];
-      const auto openness =
-          render::CalcOpenness(occluders, shape.DrawnPositions(), shape.DrawnNormals(), kOpennessReach);
+      const auto openness = SoftenOpenness(
+          render::CalcOpenness(occluders, shape.DrawnPositions(), shape.DrawnNormals(), kOpennessReach),
+          shape.DrawnTriangles());
       shape.surface =
           renderer.AddSurface(shape.DrawnTriangles(), shape.DrawnPositions(), materials[i], openness);
     }

@@ -20,7 +20,8 @@ class DemoTest : public testing::Test {
     auto scene = session::ReadScene(fs::path(TROCAR_SOURCE_DIR) / "scenes" / "demonstration.json");
     ASSERT_TRUE(scene.ok()) << scene.error().Text();
     scene_ = std::make_shared<const session::Scene>(std::move(*scene));
-    folder_ = fs::path(testing::TempDir()) / "trocar_demo";
+    folder_ = fs::path(testing::TempDir()) /
+              (std::string("trocar_demo_") + testing::UnitTest::GetInstance()->current_test_info()->name());
     fs::remove_all(folder_);
     options_.output_folder = folder_;
     options_.width = 320;

@@ -36,8 +36,8 @@ class LaparoscopeViewTest : public testing::Test {
     surfaces_.push_back(duct);
     for (std::size_t hand = 0; hand < 2; ++hand) {
       scene_.instruments[hand].tool = *instrument::FindTool("grasper");
-      scene_.instruments[hand].p_world_port = {hand == 0 ? -0.12 : 0.12, 0.05, -0.02};
-      PlaceTip(hand, {hand == 0 ? -0.05 : 0.05, 0.02, -0.09});
+      scene_.instruments[hand].p_world_port = {hand == 0 ? -0.06 : 0.06, 0.06, -0.02};
+      PlaceTip(hand, {hand == 0 ? -0.04 : 0.04, 0.03, -0.09});
     }
     auto context = render::OffscreenContext::Make();
     ASSERT_TRUE(context.ok()) << context.error().Text();
@@ -138,11 +138,11 @@ TEST_F(LaparoscopeViewTest, AToolAppearsAtItsTip) {
   ViewOptions options;
   options.has_background = false;
   view_->SetOptions(options);
-  PlaceTip(0, {-0.06, 0.02, -0.09});
+  PlaceTip(0, {-0.03, 0.02, -0.10});
   const Image before = Draw();
   snapshot_.instruments[0].joints.jaw = 1.0;
   const auto hinge = snapshot_.instruments[0].X_world_tool * instrument::JawHinge(scene_.instruments[0].tool);
-  const Change change = CountChanges(before, Draw(), hinge, 40);
+  const Change change = CountChanges(before, Draw(), hinge, 60);
   EXPECT_GT(change.near, 20) << "the jaws did not open";
   EXPECT_EQ(change.far, 0);
 }

@@ -40,7 +40,7 @@ struct SurfaceDraw {
   math::Pose X_world_surface;
 };
 
-/// An arrow of light blue, for example a force at a tool's tip.
+/// An arrow of light blue, for example a force at a tool's tip. Nothing hides it.
 struct Arrow {
   math::Vec3 p_world_tail;  ///< [m]
   math::Vec3 span;          ///< from tail to head, world frame [m]

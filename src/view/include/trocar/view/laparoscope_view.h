@@ -21,7 +21,7 @@ struct ViewOptions {
   bool has_smooth_edges = true;
   bool is_wireframe = false;
   double light_power = 1;      ///< [-], 0 to 4
-  double arrow_scale = 0.012;  ///< length of a force arrow [m/N]
+  double arrow_scale = 0.008;  ///< length of a force arrow [m/N]
 
   friend bool operator==(const ViewOptions&, const ViewOptions&) = default;
 };
