@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file hints.h  The one thing that a person should know right now.
+#pragma once
+
+#include <string>
+
+namespace trocar::app {
+
+/// What the window is doing.
+struct Situation {
+  bool is_loaded = false;
+  bool is_paused = true;
+  bool is_demonstration = false;
+  bool is_demonstration_over = false;
+  bool is_pointer_taken = false;
+  bool is_laparoscope_held = false;
+  bool is_right_hand = true;
+  bool is_fulcrum_mirrored = false;
+};
+
+/// Text at the lower edge of the picture; empty when the person is at work and needs none.
+std::string HintText(const Situation& situation);
+/// What the mouse and keys move: "Right hand", "Laparoscope", "Demonstration"; empty while loading.
+std::string BadgeText(const Situation& situation);
+/// "Running", "Paused", "Demonstration", "Loading the patient"
+std::string StateText(const Situation& situation);
+
+}  // namespace trocar::app

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file key_bindings.h  What each key does, and the help that says so. One table feeds both.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "trocar/device/mouse_keyboard.h"
+
+namespace trocar::app {
+
+enum class Action {
+  kNone,
+  kMove,  ///< a device::Motion while the key is held
+  kChooseLeft,
+  kChooseRight,
+  kSwitchHand,
+  kHoldLaparoscope,  ///< while the key is held the pointer and the wheel move the laparoscope
+  kTogglePause,
+  kReset,
+  kToggleDemonstration,
+  kToggleForces,
+  kToggleMask,
+  kToggleFulcrum,
+  kToggleFullscreen,
+  kToggleHelp,
+  kReleasePointer,
+  kSwitchPane,
+  kQuit,
+};
+
+struct KeyMeaning {
+  Action action = Action::kNone;
+  device::Motion motion = device::Motion::kCount;  ///< kMove only
+
+  friend bool operator==(const KeyMeaning&, const KeyMeaning&) = default;
+};
+
+/// Meaning of a key in the picture.
+///
+/// \param keyval   X11 key symbol, as GDK gives it; letters in either case
+/// \param control  the Ctrl key is held
+KeyMeaning FindKeyMeaning(std::uint32_t keyval, bool control) noexcept;
+
+/// True if the key has its meaning even while a slider of the panel has the keyboard.
+bool WorksInPanel(Action action) noexcept;
+
+/// One line of the help.
+struct KeyHelp {
+  const char* group;
+  const char* keys;
+  const char* meaning;
+};
+std::span<const KeyHelp> KeyHelpRows() noexcept;
+
+/// The permanent line under the picture.
+const char* ShortHelp() noexcept;
+
+}  // namespace trocar::app

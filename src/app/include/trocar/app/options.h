@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file options.h  Command line of trocar-window.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "trocar/core/result.h"
+
+namespace trocar::app {
+
+struct Options {
+  std::filesystem::path scene;  ///< empty: the built-in demonstration
+  int threads = 0;              ///< of the solver; 0: chosen by the number of processors
+  bool is_fullscreen = false;
+  bool is_demonstration = false;     ///< start with the script moving both hands
+  std::filesystem::path screenshot;  ///< empty: none. Otherwise play, save the window's picture and quit
+  double screenshot_after = 5;       ///< after this many seconds of simulation [s]
+};
+
+/// What the command line asks for.
+struct Command {
+  Options options;
+  bool is_text_only = false;  ///< print `text` and leave with success: --help, --version
+  std::string text;
+};
+
+/// \return kUsage with what is wrong and how to get help
+core::Result<Command> ParseCommandLine(int argc, const char* const* argv);
+
+/// Threads for the solver when the person names none: half of the processors, at least 1, at most 4; the
+/// other half draws. \param processors  as the system counts them, 0 where it cannot
+int ChooseThreads(unsigned processors) noexcept;
+
+}  // namespace trocar::app

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file read_outs.h  Numbers and events of a running session in words that a person reads.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "trocar/anatomy/patient.h"
+#include "trocar/session/scene.h"
+#include "trocar/session/snapshot.h"
+
+namespace trocar::app {
+
+enum class ForceLevel { kCalm, kWarning, kDanger };
+
+/// Where the force of one instrument becomes a warning and where tissue may tear.
+/// Source: domain facts, section 3.3; defaults without a measured source, to be tuned with a surgeon.
+struct ForceThresholds {
+  double warning = 3;  ///< [N]
+  double danger = 6;   ///< [N]
+};
+/// Right end of the force bars [N].
+inline constexpr double kForceBarEnd = 15.0;
+
+/// Gallbladder: 8 and 12 N (traction, tear). Liver and everything else: 3 and 6 N (push, capsule tear).
+ForceThresholds FindForceThresholds(std::string_view organ) noexcept;
+/// A force that is not finite is a danger.
+ForceLevel JudgeForce(double force, const ForceThresholds& thresholds) noexcept;
+
+/// "2.1 N"; "— N" for a number that is not finite
+std::string FormatForce(double force);
+/// "4.21 ms"
+std::string FormatMilliseconds(double seconds);
+/// "1:07.3"
+std::string FormatTime(double seconds);
+/// "18,234"
+std::string FormatCount(std::uint64_t count);
+/// "3.2e-05"
+std::string FormatResidual(double residual);
+
+/// "gallbladder", "cystic duct": an organ's name with spaces; "tissue" where the index names none.
+std::string OrganLabel(const anatomy::Patient& patient, std::int32_t organ);
+/// "left grasper"
+std::string HandLabel(const session::Scene& scene, std::int32_t hand);
+
+/// "holds the gallbladder", "touches the liver", "free"
+std::string DescribeContact(const session::InstrumentSnapshot& instrument, const anatomy::Patient& patient);
+
+/// "Left grasper: grasped the gallbladder, 2.1 N", "Tissue: last good state restored".
+std::string DescribeEvent(const session::Event& event, const session::Scene& scene);
+/// True for what should be seen at once: slips, missed grasps, restored states.
+bool IsWarning(session::EventKind kind) noexcept;
+
+/// "Find contacts"
+std::string StageLabel(session::Stage stage);
+
+/// Smoothed times of the stages, fed with every snapshot that is drawn.
+class StageMeter {
+ public:
+  /// Takes the stage times of a tick; the same tick twice counts once.
+  void Add(const session::Snapshot& snapshot) noexcept;
+  /// Exponential mean over about 60 snapshots [s].
+  const std::array<double, session::kStageCount>& Seconds() const noexcept { return seconds_; }
+
+ private:
+  std::array<double, session::kStageCount> seconds_{};
+  std::uint64_t last_tick_ = 0;
+  bool has_any_ = false;
+};
+
+/// Frames drawn in the last second.
+class FrameMeter {
+ public:
+  /// \param time  of the frame [s], not falling
+  void Add(double time) noexcept;
+  /// Frames a second over the frames of the last second; 0 with fewer than two.
+  double Rate(double now) const noexcept;
+  std::uint64_t Count() const noexcept { return count_; }
+
+ private:
+  static constexpr int kCapacity = 512;
+  std::array<double, kCapacity> times_{};
+  std::uint64_t count_ = 0;
+};
+
+}  // namespace trocar::app

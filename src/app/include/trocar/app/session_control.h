@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file session_control.h  What the window's person wants, turned into the runner's input once a frame. No
+/// widget.
+#pragma once
+
+#include <memory>
+
+#include "trocar/device/mouse_keyboard.h"
+#include "trocar/session/runner.h"
+
+namespace trocar::app {
+
+/// Owns the running simulation and the mouse and keyboard that hold its instruments. Called from one thread.
+class SessionControl {
+ public:
+  /// Starts paused, with the hands at home. \return kDeviceSettings where the scene's tools cannot be held
+  static core::Result<std::unique_ptr<SessionControl>> Make(session::Simulation simulation);
+
+  /// Moves the hands on by `dt` [s] and hands the newest wish to the simulation; while paused the hands stand
+  /// still. \return the newest state, valid until the next call
+  const session::Snapshot& Advance(double dt);
+
+  void SetPaused(bool is_paused);
+  bool IsPaused() const { return runner_.IsPaused(); }
+  /// Back to the first tick, hands at home; keeps running or paused, and the settings.
+  void Reset();
+  /// true: from the first tick on the script moves both hands. false: the person takes over where they are.
+  void SetDemonstration(bool is_on);
+  bool IsDemonstration() const { return is_demonstration_; }
+  /// True if the script has come to its end.
+  bool IsDemonstrationOver() const;
+  bool HasScript() const { return !runner_.GetScene().script.keys.empty(); }
+
+  /// Hand that the mouse and keys move while the laparoscope is not held.
+  void ChooseHand(device::Channel hand);
+  void SwitchHand();
+  device::Channel GetHand() const { return hand_; }
+  /// While held, the pointer and the keys move the laparoscope.
+  void HoldLaparoscope(bool is_held);
+  bool IsLaparoscopeHeld() const { return device_.GetChosen() == device::kLaparoscope; }
+  void SetMirrorFulcrum(bool is_mirrored);
+  bool IsFulcrumMirrored() const { return is_fulcrum_mirrored_; }
+
+  /// Size of the drawn picture, so that the tip keeps up with the pointer.
+  /// \param field_of_view  over `pixels` [rad]
+  void SetPicture(double field_of_view, double pixels);
+
+  /// Settings of the next ticks; clamped to their ranges.
+  const session::LiveSettings& GetSettings() const { return input_.settings; }
+  void SetSettings(const session::LiveSettings& settings);
+  /// Those of the scene.
+  void RestoreSettings() { SetSettings(runner_.GetScene().settings); }
+
+  device::MouseKeyboard& Device() { return device_; }
+  const session::Scene& GetScene() const { return runner_.GetScene(); }
+  std::span<const session::SurfaceInfo> Surfaces() const { return runner_.Surfaces(); }
+  session::RunnerStatistics Statistics() const { return runner_.Statistics(); }
+  /// The input of the last Advance().
+  const session::Input& GetInput() const { return input_; }
+
+ private:
+  SessionControl(session::Simulation simulation, const device::MouseKeyboardSettings& settings);
+  void PlaceAtHome();
+
+  session::Runner runner_;
+  device::MouseKeyboard device_;
+  session::Input input_;
+  device::Channel hand_ = device::kRightHand;
+  bool is_demonstration_ = false;
+  bool is_fulcrum_mirrored_ = false;
+  double field_of_view_ = 1.0;  // [rad]
+  double pixels_ = 700;
+  double time_ = 0;  // of the newest snapshot [s]
+};
+
+}  // namespace trocar::app

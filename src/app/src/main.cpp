@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file main.cpp  trocar-window: the simulator window as a program of its own.
+#include <gtkmm.h>
+
+#include <cstdio>
+#include <cstdlib>
+
+#include "look.h"
+#include "simulator_window.h"
+#include "trocar/app/options.h"
+
+int main(int argc, char** argv) {
+  const trocar::core::Stopwatch since_start;
+  const trocar::core::Result<trocar::app::Command> command = trocar::app::ParseCommandLine(argc, argv);
+  if (!command) {
+    std::fprintf(stderr, "%s\n", command.error().Text().c_str());
+    return 2;
+  }
+  if (command->is_text_only) {
+    std::fputs(command->text.c_str(), stdout);
+    return EXIT_SUCCESS;
+  }
+  if (!gtk_init_check()) {
+    const trocar::core::Error error{trocar::core::ErrorCode::kNoDisplay,
+                                    "no display can be opened: start from a desktop session or set DISPLAY "
+                                    "or WAYLAND_DISPLAY; without one, "
+                                    "`trocar simulate` runs the same scene headless"};
+    std::fprintf(stderr, "%s\n", error.Text().c_str());
+    return EXIT_FAILURE;
+  }
+  const auto application = Gtk::Application::create("", Gio::Application::Flags::NON_UNIQUE);
+  std::unique_ptr<trocar::app::SimulatorWindow> window;
+  application->signal_activate().connect([&] {
+    trocar::app::ApplyLook();
+    window = std::make_unique<trocar::app::SimulatorWindow>(command->options, since_start);
+    application->add_window(*window);
+    window->present();
+  });
+  const int status = application->run();
+  const bool has_failed = window != nullptr && window->GetFailure().has_value();
+  window.reset();
+  return status != 0 || has_failed ? EXIT_FAILURE : EXIT_SUCCESS;
+}

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file panel.h  The right side of the window: read-outs and settings in cards.
+#pragma once
+
+#include <gtkmm.h>
+
+#include <array>
+#include <vector>
+
+#include "force_bar.h"
+#include "trocar/app/read_outs.h"
+#include "trocar/app/session_control.h"
+#include "trocar/app/settings_form.h"
+
+namespace trocar::app {
+
+class Panel : public Gtk::ScrolledWindow {
+ public:
+  Panel();
+
+  /// Fills in the patient and takes the settings over. \param control  outlives the panel's use
+  void SetControl(SessionControl* control);
+  /// Refreshes forces and contacts.
+  void ShowForces(const session::Snapshot& snapshot);
+  /// Refreshes solver and time read-outs.
+  void ShowTimes(const session::Snapshot& snapshot, const session::RunnerStatistics& statistics,
+                 const StageMeter& stages, double frame_rate);
+  /// Moves the sliders to the control's settings.
+  void ShowSettings();
+
+ private:
+  struct HandRow {
+    Gtk::Label name, force, contact;
+    ForceBar bar;
+  };
+  struct SliderRow {
+    Gtk::Label value;
+    Gtk::Scale slider;
+  };
+
+  Gtk::Box& AddCard(const char* title);
+  void AddHands();
+  void AddPatient();
+  void AddSettings();
+  void AddMeasures();
+  Gtk::Label& AddLine(Gtk::Box& card, const char* name, const char* tooltip);
+
+  SessionControl* control_ = nullptr;
+  bool is_showing_ = false;  // sliders are being moved by us, not by the person
+  Gtk::Box cards_{Gtk::Orientation::VERTICAL};
+  std::array<HandRow, session::kHandCount> hands_;
+  Gtk::Box* patient_card_ = nullptr;
+  Gtk::Label patient_name_, patient_organs_, patient_source_;
+  std::vector<std::unique_ptr<SliderRow>> sliders_;
+  Gtk::DropDown solver_;
+  Gtk::Button defaults_{"Settings of the scene"};
+  Gtk::Label *residual_ = nullptr, *iterations_ = nullptr, *tick_ = nullptr, *late_ = nullptr,
+             *frames_ = nullptr, *time_ = nullptr;
+  std::array<Gtk::Label, session::kStageCount> stages_;
+};
+
+}  // namespace trocar::app

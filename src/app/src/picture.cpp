@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "picture.h"
+
+namespace trocar::app {
+
+Picture::Picture() {
+  set_required_version(3, 3);
+  set_has_depth_buffer(true);
+  set_auto_render(false);
+  set_hexpand(true);
+  set_vexpand(true);
+  set_focusable(true);
+  set_size_request(320, 240);
+  add_css_class("picture");
+}
+
+void Picture::SetScene(const session::Scene* scene, std::span<const session::SurfaceInfo> surfaces) {
+  scene_ = scene;
+  surfaces_ = surfaces;
+}
+
+double Picture::FieldOfView() const {
+  return scene_ == nullptr ? 1.0 : scene_->laparoscope.field_of_view;
+}
+
+double Picture::CirclePixels() const {
+  return render::kMaskDiameter * get_height();
+}
+
+void Picture::Fail(const core::Error& error) {
+  if (has_failed_) return;
+  has_failed_ = true;
+  // never within a frame: the window may close on it
+  Glib::signal_timeout().connect_once([this, error] { signal_failed_.emit(error); }, 0);
+}
+
+void Picture::on_realize() {
+  Gtk::GLArea::on_realize();
+  if (const GError* error = gtk_gl_area_get_error(gobj()); error != nullptr) {
+    Fail({core::ErrorCode::kNoGraphics,
+          std::string("the window gets no OpenGL 3.3 (") + error->message +
+              "): install the graphics driver, or Mesa's software driver (package libgl1-mesa-dri); "
+              "LIBGL_ALWAYS_SOFTWARE=1 forces the latter"});
+  }
+}
+
+void Picture::on_unrealize() {
+  if (view_) {
+    make_current();
+    view_.reset();
+  }
+  Gtk::GLArea::on_unrealize();
+}
+
+bool Picture::on_render(const Glib::RefPtr<Gdk::GLContext>&) {
+  if (has_failed_ || scene_ == nullptr || snapshot_ == nullptr) return false;
+  if (!view_) {
+    core::Result<view::LaparoscopeView> made = view::LaparoscopeView::Make(*scene_, surfaces_, *snapshot_);
+    if (!made) {
+      Fail(made.error());
+      return false;
+    }
+    view_.emplace(std::move(made).value());
+  }
+  if (view_->GetOptions() != options_) view_->SetOptions(options_);
+  view_->Update(*snapshot_);
+  view_->Draw(get_width() * get_scale_factor(), get_height() * get_scale_factor());
+  signal_drawn_.emit();
+  return true;
+}
+
+}  // namespace trocar::app

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file picture.h  The laparoscope's picture in a GLArea.
+#pragma once
+
+#include <gtkmm.h>
+
+#include <memory>
+#include <optional>
+
+#include "trocar/core/result.h"
+#include "trocar/session/simulation.h"
+#include "trocar/view/laparoscope_view.h"
+
+namespace trocar::app {
+
+class Picture : public Gtk::GLArea {
+ public:
+  Picture();
+
+  /// What is drawn from now on; both must outlive the picture's last frame. The view itself is made in the
+  /// next frame.
+  void SetScene(const session::Scene* scene, std::span<const session::SurfaceInfo> surfaces);
+  /// State of the next frame; null draws an empty picture. Valid until the next call.
+  void SetSnapshot(const session::Snapshot* snapshot) { snapshot_ = snapshot; }
+  /// Angle that CirclePixels() span in the picture [rad].
+  double FieldOfView() const;
+  /// Diameter of the laparoscope's round picture on the screen [pixels of the window].
+  double CirclePixels() const;
+  const view::ViewOptions& GetOptions() const { return options_; }
+  void SetOptions(const view::ViewOptions& options) { options_ = options; }
+
+  /// After each frame that shows the scene.
+  sigc::signal<void()>& signal_drawn() { return signal_drawn_; }
+  /// Once, when nothing can be drawn. Never emitted within a frame.
+  sigc::signal<void(core::Error)>& signal_failed() { return signal_failed_; }
+
+ protected:
+  void on_realize() override;
+  void on_unrealize() override;
+  bool on_render(const Glib::RefPtr<Gdk::GLContext>& context) override;
+
+ private:
+  void Fail(const core::Error& error);
+
+  const session::Scene* scene_ = nullptr;
+  std::span<const session::SurfaceInfo> surfaces_;
+  const session::Snapshot* snapshot_ = nullptr;
+  std::optional<view::LaparoscopeView> view_;
+  view::ViewOptions options_;
+  bool has_failed_ = false;
+  sigc::signal<void()> signal_drawn_;
+  sigc::signal<void(core::Error)> signal_failed_;
+};
+
+}  // namespace trocar::app

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/app/read_outs.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstdio>
+
+namespace trocar::app {
+namespace {
+
+std::string WithSpaces(std::string_view name) {
+  std::string label(name);
+  std::replace(label.begin(), label.end(), '_', ' ');
+  return label;
+}
+
+std::string Capitalised(std::string text) {
+  if (!text.empty()) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+  return text;
+}
+
+template <typename... Values>
+std::string Print(const char* format, Values... values) {
+  char text[96];
+  std::snprintf(text, sizeof text, format, values...);
+  return text;
+}
+
+}  // namespace
+
+ForceThresholds FindForceThresholds(std::string_view organ) noexcept {
+  return organ == "gallbladder" ? ForceThresholds{8.0, 12.0} : ForceThresholds{3.0, 6.0};
+}
+
+ForceLevel JudgeForce(double force, const ForceThresholds& thresholds) noexcept {
+  if (force < thresholds.warning) return ForceLevel::kCalm;
+  return force < thresholds.danger ? ForceLevel::kWarning : ForceLevel::kDanger;
+}
+
+std::string FormatForce(double force) {
+  return std::isfinite(force) ? Print("%.1f N", force) : "— N";
+}
+
+std::string FormatMilliseconds(double seconds) {
+  return std::isfinite(seconds) ? Print("%.2f ms", 1e3 * seconds) : "— ms";
+}
+
+std::string FormatTime(double seconds) {
+  if (!(seconds >= 0.0) || !std::isfinite(seconds)) return "—";
+  const auto tenths = static_cast<long long>(seconds * 10.0 + 0.5);
+  return Print("%lld:%02lld.%lld", tenths / 600, tenths / 10 % 60, tenths % 10);
+}
+
+std::string FormatCount(std::uint64_t count) {
+  std::string text = std::to_string(count);
+  for (int at = static_cast<int>(text.size()) - 3; at > 0; at -= 3)
+    text.insert(static_cast<std::size_t>(at), ",");
+  return text;
+}
+
+std::string FormatResidual(double residual) {
+  return std::isfinite(residual) ? Print("%.1e", residual) : "—";
+}
+
+std::string OrganLabel(const anatomy::Patient& patient, std::int32_t organ) {
+  if (organ < 0 || organ >= static_cast<std::int32_t>(patient.organs.size())) return "tissue";
+  return WithSpaces(patient.organs[static_cast<std::size_t>(organ)].name);
+}
+
+std::string HandLabel(const session::Scene& scene, std::int32_t hand) {
+  if (hand < 0 || hand >= session::kHandCount) return "instrument";
+  return (hand == session::kLeft ? "left " : "right ") +
+         WithSpaces(scene.instruments[static_cast<std::size_t>(hand)].tool.name);
+}
+
+std::string DescribeContact(const session::InstrumentSnapshot& instrument, const anatomy::Patient& patient) {
+  if (instrument.is_grasping) return "holds the " + OrganLabel(patient, instrument.organ);
+  if (instrument.is_touching) return "touches the " + OrganLabel(patient, instrument.organ);
+  return "free";
+}
+
+std::string DescribeEvent(const session::Event& event, const session::Scene& scene) {
+  const std::string hand = Capitalised(HandLabel(scene, event.hand)) + ": ";
+  const std::string organ = OrganLabel(scene.patient, event.organ);
+  const std::string force = ", " + FormatForce(event.force);
+  switch (event.kind) {
+    case session::EventKind::kGrasp:
+      return hand + "grasped the " + organ + force;
+    case session::EventKind::kRelease:
+      return hand + "let the " + organ + " go";
+    case session::EventKind::kSlip:
+      return hand + "the " + organ + " slipped" + force;
+    case session::EventKind::kGraspMissed:
+      return hand + "closed on nothing; open the jaws and go deeper";
+    case session::EventKind::kStateRestored:
+      return Capitalised(organ) + ": was not finite, last good state restored (E-SIM-001)";
+    case session::EventKind::kOrganFrozen:
+      return Capitalised(organ) + ": held still, press R to reset (E-SIM-002)";
+  }
+  return "";
+}
+
+bool IsWarning(session::EventKind kind) noexcept {
+  return kind == session::EventKind::kSlip || kind == session::EventKind::kStateRestored ||
+         kind == session::EventKind::kOrganFrozen;
+}
+
+std::string StageLabel(session::Stage stage) {
+  return Capitalised(WithSpaces(session::StageName(stage)));
+}
+
+void StageMeter::Add(const session::Snapshot& snapshot) noexcept {
+  if (has_any_ && snapshot.tick == last_tick_) return;
+  constexpr double kWeight = 1.0 / 60;
+  for (std::size_t stage = 0; stage < seconds_.size(); ++stage) {
+    const double seconds = snapshot.stage_seconds[stage];
+    seconds_[stage] = has_any_ ? seconds_[stage] + kWeight * (seconds - seconds_[stage]) : seconds;
+  }
+  last_tick_ = snapshot.tick;
+  has_any_ = true;
+}
+
+void FrameMeter::Add(double time) noexcept {
+  times_[count_++ % kCapacity] = time;
+}
+
+double FrameMeter::Rate(double now) const noexcept {
+  const std::uint64_t kept = std::min<std::uint64_t>(count_, kCapacity);
+  double first = now, last = now;
+  std::uint64_t frames = 0;
+  for (std::uint64_t i = 0; i < kept; ++i) {
+    const double time = times_[(count_ - 1 - i) % kCapacity];
+    if (now - time > 1.0) break;
+    if (frames == 0) last = time;
+    first = time;
+    ++frames;
+  }
+  return frames < 2 || !(last > first) ? 0.0 : static_cast<double>(frames - 1) / (last - first);
+}
+
+}  // namespace trocar::app

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/app/session_control.h"
+
+#include <algorithm>
+#include <array>
+
+#include "trocar/app/pointer_map.h"
+
+namespace trocar::app {
+namespace {
+
+using device::Channel;
+using device::HandSample;
+using instrument::TrocarJoints;
+
+/// Where the laparoscope looks at, ahead of its lens: sets how fast it follows the pointer [m].
+constexpr double kLookDistance = 0.08;
+/// Part of a shaft that stays outside for the hand [m].
+constexpr double kHandlePart = 0.03;
+
+HandSample SampleOf(const TrocarJoints& joints) {
+  HandSample sample;
+  sample.pan = joints.pan;
+  sample.tilt = joints.tilt;
+  sample.spin = joints.spin;
+  sample.depth = joints.depth;
+  sample.jaw = joints.jaw;
+  return sample;
+}
+
+TrocarJoints JointsOf(const HandSample& sample) {
+  return {sample.pan, sample.tilt, sample.spin, sample.depth, sample.jaw};
+}
+
+device::MouseKeyboardSettings DeviceSettings(const session::Scene& scene) {
+  device::MouseKeyboardSettings settings;
+  settings.shaft_length = scene.instruments[0].tool.shaft_length;
+  for (const session::InstrumentSetup& setup : scene.instruments)
+    settings.shaft_length = std::min(settings.shaft_length, setup.tool.shaft_length);
+  for (int channel = 0; channel < device::kChannelCount; ++channel) {
+    device::HandLimits& limits = settings.limits[channel];
+    limits.max_depth = std::min(limits.max_depth, settings.shaft_length - kHandlePart);
+    if (channel < session::kHandCount) limits.max_jaw = scene.instruments[channel].tool.max_jaw;
+  }
+  // a laparoscope may look in from right below the wall
+  settings.limits[device::kLaparoscope].min_depth = 0.005;
+  return settings;
+}
+
+}  // namespace
+
+core::Result<std::unique_ptr<SessionControl>> SessionControl::Make(session::Simulation simulation) {
+  const device::MouseKeyboardSettings settings = DeviceSettings(simulation.GetScene());
+  std::unique_ptr<SessionControl> control(new SessionControl(std::move(simulation), settings));
+  if (const core::Status status = control->device_.Configure(); !status) return status.error();
+  if (const core::Status status = control->device_.Activate(); !status) return status.error();
+  control->PlaceAtHome();
+  control->RestoreSettings();
+  return control;
+}
+
+SessionControl::SessionControl(session::Simulation simulation, const device::MouseKeyboardSettings& settings)
+    : runner_(std::move(simulation)), device_(settings) {}
+
+void SessionControl::PlaceAtHome() {
+  const session::Scene& scene = runner_.GetScene();
+  device_.ReleaseAll();
+  device_.Place(device::kLeftHand, SampleOf(scene.instruments[session::kLeft].home));
+  device_.Place(device::kRightHand, SampleOf(scene.instruments[session::kRight].home));
+  device_.Place(device::kLaparoscope, SampleOf(scene.laparoscope.home));
+}
+
+const session::Snapshot& SessionControl::Advance(double dt) {
+  const session::Snapshot& snapshot = runner_.Latest();
+  time_ = snapshot.time;
+  if (is_demonstration_) {
+    // the person's hands rest on the script's, so that taking over makes no jump
+    for (const Channel hand : {device::kLeftHand, device::kRightHand})
+      device_.Place(hand, SampleOf(snapshot.instruments[hand].joints));
+  }
+
+  std::array<HandSample, device::kChannelCount> samples;
+  if (!runner_.IsPaused()) {
+    device_.Read(samples);
+    for (const Channel channel : {device::kLeftHand, device::kRightHand, device::kLaparoscope})
+      device_.SetPointerMap(channel,
+                            CalcPointerMap(JointsOf(samples[channel]), snapshot.X_world_laparoscope));
+    const Channel chosen = device_.GetChosen();
+    const math::Vec3 p_world_followed = chosen == device::kLaparoscope
+                                            ? snapshot.X_world_laparoscope * math::Vec3{0, 0, -kLookDistance}
+                                            : snapshot.instruments[chosen].X_world_tool.translation;
+    device_.SetMetresPerPixel(
+        CalcMetresPerPixel(snapshot.X_world_laparoscope, p_world_followed, field_of_view_, pixels_));
+    device_.Advance(dt);
+  }
+  device_.Read(samples);
+  for (const Channel hand : {device::kLeftHand, device::kRightHand})
+    if (samples[hand].is_valid) input_.hands[hand] = JointsOf(samples[hand]);
+  if (samples[device::kLaparoscope].is_valid) input_.laparoscope = JointsOf(samples[device::kLaparoscope]);
+  runner_.SetInput(input_);
+  return snapshot;
+}
+
+void SessionControl::SetPaused(bool is_paused) {
+  if (is_paused) device_.ReleaseAll();
+  runner_.SetPaused(is_paused);
+}
+
+void SessionControl::Reset() {
+  PlaceAtHome();
+  time_ = 0.0;
+  runner_.Reset();
+}
+
+void SessionControl::SetDemonstration(bool is_on) {
+  is_on = is_on && HasScript();
+  if (is_on == is_demonstration_) return;
+  is_demonstration_ = is_on;
+  device_.ReleaseAll();
+  if (is_on) Reset();
+  runner_.SetScripted(is_on);
+}
+
+bool SessionControl::IsDemonstrationOver() const {
+  return is_demonstration_ && time_ >= runner_.GetScene().script.Duration();
+}
+
+void SessionControl::ChooseHand(Channel hand) {
+  if (hand == device::kLaparoscope) return;
+  hand_ = hand;
+  if (!IsLaparoscopeHeld()) device_.Choose(hand);
+}
+
+void SessionControl::SwitchHand() {
+  ChooseHand(hand_ == device::kLeftHand ? device::kRightHand : device::kLeftHand);
+}
+
+void SessionControl::HoldLaparoscope(bool is_held) {
+  device_.Choose(is_held ? device::kLaparoscope : hand_);
+}
+
+void SessionControl::SetMirrorFulcrum(bool is_mirrored) {
+  is_fulcrum_mirrored_ = is_mirrored;
+  device_.SetMirrorFulcrum(is_mirrored);
+}
+
+void SessionControl::SetPicture(double field_of_view, double pixels) {
+  field_of_view_ = field_of_view;
+  pixels_ = pixels;
+}
+
+void SessionControl::SetSettings(const session::LiveSettings& settings) {
+  input_.settings = session::ClampSettings(settings);
+}
+
+}  // namespace trocar::app

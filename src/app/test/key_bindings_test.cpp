@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/app/key_bindings.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+#include <string>
+
+namespace trocar::app {
+namespace {
+
+using device::Motion;
+
+TEST(KeyBindings, EveryMotionHasAKey) {
+  std::set<Motion> reached;
+  for (std::uint32_t key = 0; key < 0x10000; ++key) {
+    const KeyMeaning meaning = FindKeyMeaning(key, false);
+    EXPECT_EQ(meaning.action == Action::kMove, meaning.motion != Motion::kCount);
+    if (meaning.action == Action::kMove) reached.insert(meaning.motion);
+  }
+  EXPECT_EQ(reached.size(), static_cast<std::size_t>(Motion::kCount));
+}
+
+TEST(KeyBindings, EveryActionHasAKey) {
+  std::set<Action> reached{FindKeyMeaning('q', true).action};
+  for (std::uint32_t key = 0; key < 0x10000; ++key) reached.insert(FindKeyMeaning(key, false).action);
+  EXPECT_EQ(reached.size(), static_cast<std::size_t>(Action::kQuit) + 1);
+}
+
+TEST(KeyBindings, LettersWorkInEitherCase) {
+  for (std::uint32_t letter = 'a'; letter <= 'z'; ++letter)
+    EXPECT_EQ(FindKeyMeaning(letter, false), FindKeyMeaning(letter - 'a' + 'A', false));
+}
+
+TEST(KeyBindings, NamedKeysDoWhatTheHelpSays) {
+  EXPECT_EQ(FindKeyMeaning(' ', false).action, Action::kTogglePause);
+  EXPECT_EQ(FindKeyMeaning('r', false).action, Action::kReset);
+  EXPECT_EQ(FindKeyMeaning(0xff09, false).action, Action::kSwitchHand);
+  EXPECT_EQ(FindKeyMeaning('1', false).action, Action::kChooseLeft);
+  EXPECT_EQ(FindKeyMeaning('2', false).action, Action::kChooseRight);
+  EXPECT_EQ(FindKeyMeaning(0xffbe, false).action, Action::kToggleHelp);
+  EXPECT_EQ(FindKeyMeaning(0xffc8, false).action, Action::kToggleFullscreen);
+  EXPECT_EQ(FindKeyMeaning(0xff1b, false).action, Action::kReleasePointer);
+  EXPECT_EQ(FindKeyMeaning('q', true).action, Action::kQuit);
+  EXPECT_EQ(FindKeyMeaning('q', false), (KeyMeaning{Action::kMove, Motion::kSpinLeft}));
+  EXPECT_EQ(FindKeyMeaning('r', true).action, Action::kNone) << "Ctrl+R is no reset";
+}
+
+TEST(KeyBindings, PanelKeepsTheKeysThatSlidersNeed) {
+  EXPECT_FALSE(WorksInPanel(Action::kMove));
+  EXPECT_FALSE(WorksInPanel(Action::kSwitchHand));
+  EXPECT_FALSE(WorksInPanel(Action::kTogglePause)) << "Space presses the focused button there";
+  EXPECT_TRUE(WorksInPanel(Action::kQuit));
+  EXPECT_TRUE(WorksInPanel(Action::kReleasePointer));
+}
+
+TEST(KeyBindings, HelpNamesEveryKeyThatActs) {
+  std::string all;
+  for (const KeyHelp& row : KeyHelpRows()) all += std::string(" ") + row.keys + " ";
+  for (std::uint32_t key = 'a'; key <= 'z'; ++key) {
+    const std::string name(1, static_cast<char>(key - 'a' + 'A'));
+    const bool is_named = all.find(" " + name + " ") != std::string::npos;
+    EXPECT_EQ(is_named, FindKeyMeaning(key, false).action != Action::kNone) << name;
+  }
+  for (const char* name : {"Space", "Tab", "Esc", "F1", "F6", "F11", "Ctrl+Q", "Arrows", "Wheel"})
+    EXPECT_NE(all.find(name), std::string::npos) << name;
+}
+
+}  // namespace
+}  // namespace trocar::app

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/app/read_outs.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace trocar::app {
+namespace {
+
+session::Scene TwoOrgans() {
+  session::Scene scene;
+  scene.patient.organs.resize(2);
+  scene.patient.organs[0].name = "liver";
+  scene.patient.organs[1].name = "gallbladder";
+  return scene;
+}
+
+TEST(ReadOuts, NumbersCarryUnits) {
+  EXPECT_EQ(FormatForce(2.14), "2.1 N");
+  EXPECT_EQ(FormatForce(NAN), "— N");
+  EXPECT_EQ(FormatMilliseconds(0.004213), "4.21 ms");
+  EXPECT_EQ(FormatTime(67.26), "1:07.3");
+  EXPECT_EQ(FormatTime(59.96), "1:00.0") << "rounds over the minute";
+  EXPECT_EQ(FormatTime(-1), "—");
+  EXPECT_EQ(FormatCount(0), "0");
+  EXPECT_EQ(FormatCount(999), "999");
+  EXPECT_EQ(FormatCount(1234567), "1,234,567");
+  EXPECT_EQ(FormatResidual(3.21e-5), "3.2e-05");
+}
+
+TEST(ReadOuts, ForceIsJudgedByTheOrgan) {
+  const ForceThresholds liver = FindForceThresholds("liver"),
+                        gallbladder = FindForceThresholds("gallbladder");
+  EXPECT_EQ(JudgeForce(2.9, liver), ForceLevel::kCalm);
+  EXPECT_EQ(JudgeForce(3.0, liver), ForceLevel::kWarning);
+  EXPECT_EQ(JudgeForce(6.0, liver), ForceLevel::kDanger);
+  EXPECT_EQ(JudgeForce(7.9, gallbladder), ForceLevel::kCalm);
+  EXPECT_EQ(JudgeForce(8.0, gallbladder), ForceLevel::kWarning);
+  EXPECT_EQ(JudgeForce(12.0, gallbladder), ForceLevel::kDanger);
+  EXPECT_EQ(FindForceThresholds("spleen").warning, liver.warning) << "unknown tissue is treated gently";
+  EXPECT_EQ(JudgeForce(NAN, gallbladder), ForceLevel::kDanger);
+  EXPECT_GT(kForceBarEnd, gallbladder.danger) << "both marks lie on the bar";
+}
+
+TEST(ReadOuts, ContactIsSaidInWords) {
+  const session::Scene scene = TwoOrgans();
+  session::InstrumentSnapshot instrument;
+  EXPECT_EQ(DescribeContact(instrument, scene.patient), "free");
+  instrument.is_touching = true;
+  instrument.organ = 0;
+  EXPECT_EQ(DescribeContact(instrument, scene.patient), "touches the liver");
+  instrument.is_grasping = true;
+  instrument.organ = 1;
+  EXPECT_EQ(DescribeContact(instrument, scene.patient), "holds the gallbladder");
+  instrument.organ = 9;
+  EXPECT_EQ(DescribeContact(instrument, scene.patient), "holds the tissue") << "an index of nothing";
+}
+
+TEST(ReadOuts, EventsAreSaidInWords) {
+  const session::Scene scene = TwoOrgans();
+  using session::EventKind;
+  EXPECT_EQ(DescribeEvent({EventKind::kGrasp, 10, session::kLeft, 1, 2.1}, scene),
+            "Left grasper: grasped the gallbladder, 2.1 N");
+  EXPECT_EQ(DescribeEvent({EventKind::kRelease, 10, session::kRight, 1, 0}, scene),
+            "Right grasper: let the gallbladder go");
+  EXPECT_EQ(DescribeEvent({EventKind::kSlip, 10, session::kRight, 0, 4.0}, scene),
+            "Right grasper: the liver slipped, 4.0 N");
+  EXPECT_EQ(DescribeEvent({EventKind::kStateRestored, 10, -1, 0, 0}, scene),
+            "Liver: was not finite, last good state restored (E-SIM-001)");
+  EXPECT_TRUE(IsWarning(EventKind::kSlip));
+  EXPECT_FALSE(IsWarning(EventKind::kGrasp));
+}
+
+TEST(ReadOuts, StagesHaveNamesForPeople) {
+  EXPECT_EQ(StageLabel(session::Stage::kFindContacts), "Find contacts");
+}
+
+TEST(StageMeter, SmoothsAndCountsATickOnce) {
+  StageMeter meter;
+  session::Snapshot snapshot;
+  snapshot.tick = 1;
+  snapshot.stage_seconds.fill(0.002);
+  meter.Add(snapshot);
+  EXPECT_DOUBLE_EQ(meter.Seconds()[0], 0.002) << "the first is taken as it is";
+  snapshot.stage_seconds.fill(0.062);
+  meter.Add(snapshot);
+  EXPECT_DOUBLE_EQ(meter.Seconds()[0], 0.002) << "the same tick again";
+  snapshot.tick = 2;
+  meter.Add(snapshot);
+  EXPECT_NEAR(meter.Seconds()[0], 0.003, 1e-15);
+}
+
+TEST(FrameMeter, CountsTheLastSecond) {
+  FrameMeter meter;
+  EXPECT_EQ(meter.Rate(0), 0.0);
+  for (int i = 0; i <= 100; ++i) meter.Add(0.02 * i);
+  EXPECT_NEAR(meter.Rate(2.0), 50.0, 1e-9);
+  EXPECT_EQ(meter.Count(), 101u);
+  EXPECT_EQ(meter.Rate(10.0), 0.0) << "nothing was drawn lately";
+}
+
+TEST(FrameMeter, HoldsMoreFramesThanItKeeps) {
+  FrameMeter meter;
+  for (int i = 0; i < 5000; ++i) meter.Add(0.001 * i);
+  EXPECT_NEAR(meter.Rate(4.999), 1000.0, 1.0);
+}
+
+}  // namespace
+}  // namespace trocar::app
