@@ -67,7 +67,7 @@ core::Result<SimulateReport> Simulate(const SimulateOptions& options) {
   SimulateReport report;
   ProgressBar progress("simulating", options.ticks);
   for (int tick = 0; tick < options.ticks; ++tick) {
-    const session::Input input = session::CalcScriptInput(*scene, tick * scene->tick_seconds);
+    const session::Input input = session::CalcScriptInput(*scene, simulation.GetSnapshot().time);
     const core::Stopwatch stopwatch;
     simulation.Step(input);
     tick_ms.push_back(1e3 * stopwatch.Seconds());

@@ -196,10 +196,7 @@ void MeasureMotion(const Track& track, const std::optional<double>& ideal, const
   metrics.spin_path = CalcPath(track.spin, settings.angle_noise_step, CalcDifference);
   metrics.angular_path = CalcPath(track.axis, settings.angle_noise_step, CalcAngle) + metrics.spin_path;
   if (metrics.path_length > 0.0) {
-    // the noise rule may leave the path a little shorter than the straight line
-    const double straight = math::Distance(track.tip.front(), track.tip.back());
-    metrics.economy_of_motion =
-        ideal ? *ideal / metrics.path_length : std::min(1.0, straight / metrics.path_length);
+    if (ideal) metrics.economy_of_motion = *ideal / metrics.path_length;
     if (metrics.time > 0.0) {
       const double t2 = metrics.time * metrics.time;
       metrics.motion_smoothness =

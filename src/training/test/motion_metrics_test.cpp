@@ -57,7 +57,7 @@ TEST(MotionMetrics, MeasuresAStraightLine) {
   }));
   EXPECT_NEAR(m.time, 4.0, 1e-12);
   EXPECT_NEAR(m.path_length, 0.2, 0.0005);
-  EXPECT_NEAR(*m.economy_of_motion, 1.0, 0.003);
+  EXPECT_FALSE(m.economy_of_motion) << "no shortest path was given";
   EXPECT_NEAR(m.depth_path, 0.08, 0.0005);
   EXPECT_NEAR(*m.mean_speed, 0.05, 0.0002);
   EXPECT_NEAR(*m.max_speed, 0.05, 0.0002);
@@ -77,7 +77,6 @@ TEST(MotionMetrics, MeasuresACircle) {
     return sample;
   }));
   EXPECT_NEAR(m.path_length, 4.0 * kPi * radius, 0.001);
-  EXPECT_LT(*m.economy_of_motion, 0.01);
   EXPECT_NEAR(m.spin_path, kPi, 0.01);
   // a circle of latitude is longer than its chords along great circles by a hair
   EXPECT_NEAR(m.angular_path - m.spin_path, 4.0 * kPi * std::sin(cone), 0.02);

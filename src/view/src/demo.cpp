@@ -100,8 +100,7 @@ core::Result<DemoReport> PlayDemonstration(std::shared_ptr<const session::Scene>
     const double frame_time = static_cast<double>(frame) / options.frames_per_second;
     const auto tick_goal = static_cast<std::uint64_t>(std::floor(frame_time / scene->tick_seconds + 1e-6));
     while (report.ticks < tick_goal) {
-      simulation->Step(
-          session::CalcScriptInput(*scene, static_cast<double>(report.ticks + 1) * scene->tick_seconds));
+      simulation->Step(session::CalcScriptInput(*scene, simulation->GetSnapshot().time));
       ++report.ticks;
       if (options.on_tick) options.on_tick(simulation->GetSnapshot());
     }

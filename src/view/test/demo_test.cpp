@@ -72,6 +72,19 @@ TEST_F(DemoTest, PlaysTheSameTwice) {
   EXPECT_FALSE(fs::exists(folder_ / "demo.webm"));
 }
 
+// Pictures, the command line and the window must play one and the same surgery.
+TEST_F(DemoTest, PlaysWhatTheSimulationAlonePlays) {
+  options_.has_video = false;
+  const auto report = PlayDemonstration(scene_, options_);
+  ASSERT_TRUE(report.ok()) << report.error().Text();
+  auto simulation = session::Simulation::Make(scene_, 1);
+  ASSERT_TRUE(simulation.ok());
+  for (std::uint64_t tick = 0; tick < report->ticks; ++tick) {
+    simulation->Step(session::CalcScriptInput(*scene_, simulation->GetSnapshot().time));
+  }
+  EXPECT_EQ(report->state_hash, simulation->Hash());
+}
+
 TEST_F(DemoTest, RefusesOptionsOutOfRange) {
   const auto expect_usage = [&](DemoOptions options) {
     const auto report = PlayDemonstration(scene_, options);
