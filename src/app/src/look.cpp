@@ -14,12 +14,13 @@ window.trocar { background: #14171a; color: #dfe5ea; }
 .trocar button { background: #2a3038; color: #dfe5ea; border: 1px solid #39414b; box-shadow: none; text-shadow: none; }
 .trocar button:hover { background: #343c46; }
 .trocar button:checked { background: #1f5a66; border-color: #2f8696; color: #eafcff; }
+.trocar button.small { padding: 0 8px; min-height: 20px; font-size: 12px; }
 .trocar button:disabled { color: #6d7680; background: #20252b; }
 .trocar button.primary { background: #1d7a8c; border-color: #2b9cb1; color: #ffffff; font-weight: 700; }
 .trocar button.primary:hover { background: #238fa3; }
 .trocar windowcontrols button { background: transparent; border: none; padding: 4px; min-width: 24px; }
 .trocar .panel { background: #14171a; }
-.trocar .card { background: #1d2228; border: 1px solid #2a3037; border-radius: 8px; padding: 9px 12px 10px 12px; }
+.trocar .card { background: #1d2228; border: 1px solid #2a3037; border-radius: 8px; padding: 7px 12px 8px 12px; }
 .trocar .card-title { color: #7fd0de; font-weight: 700; font-size: 12px; letter-spacing: 0.5px; }
 .trocar .name { color: #a9b3bd; font-size: 13px; }
 .trocar .value { color: #f1f5f8; font-size: 13px; font-feature-settings: "tnum"; }
@@ -30,7 +31,7 @@ window.trocar { background: #14171a; color: #dfe5ea; }
 .trocar .force.warning { color: #ffc24d; }
 .trocar .force.danger { color: #ff6b5e; }
 .trocar .stage { font-size: 12px; font-feature-settings: "tnum"; }
-.trocar scale { padding: 2px 0; min-height: 18px; }
+.trocar scale { padding: 0 8px; min-height: 18px; }
 .trocar scale trough { background: #343b44; min-height: 4px; border: none; }
 .trocar scale highlight { background: #2b9cb1; border: none; min-height: 4px; margin: 0; }
 .trocar scale slider { background: #dfe5ea; min-width: 14px; min-height: 14px; margin: -5px;

@@ -43,13 +43,14 @@ Panel::Panel() {
   set_size_request(kPanelWidth, -1);
   set_hexpand(false);
   add_css_class("panel");
-  cards_.set_spacing(8);
-  cards_.set_margin(10);
+  cards_.set_spacing(7);
+  cards_.set_margin(8);
   set_child(cards_);
   AddHands();
-  AddPatient();
   AddSettings();
   AddMeasures();
+  AddPatient();
+  AddStages();
 }
 
 void Panel::AddPatient() {
@@ -69,7 +70,7 @@ void Panel::AddPatient() {
 Gtk::Box& Panel::AddCard(const char* title) {
   auto* card = Gtk::make_managed<Gtk::Box>(Gtk::Orientation::VERTICAL);
   card->add_css_class("card");
-  card->set_spacing(4);
+  card->set_spacing(2);
   auto* label = Gtk::make_managed<Gtk::Label>(title);
   SetLabel(*label, "card-title");
   card->append(*label);
@@ -127,6 +128,7 @@ void Panel::AddSettings() {
     if (row.group != group) {
       group = row.group;
       card = &AddCard(row.group);
+      if (sliders_.empty()) AddDefaults(*card);
       if (group == "Solver") {
         std::vector<Glib::ustring> names;
         for (const SolverChoice& choice : SolverChoices()) names.emplace_back(choice.label);
@@ -169,6 +171,18 @@ void Panel::AddSettings() {
     card->append(*line);
     sliders_.push_back(std::move(widgets));
   }
+}
+
+void Panel::AddDefaults(Gtk::Box& card) {
+  // beside the title of the first card
+  auto* title = card.get_first_child();
+  auto* line = Gtk::make_managed<Gtk::Box>();
+  title->reference();
+  card.remove(*title);
+  line->append(*title);
+  title->unreference();
+  title->set_hexpand(true);
+  defaults_.add_css_class("small");
   defaults_.set_tooltip_text("Puts every slider back to what the scene says");
   defaults_.set_focus_on_click(false);
   defaults_.signal_clicked().connect([this] {
@@ -176,7 +190,8 @@ void Panel::AddSettings() {
     control_->RestoreSettings();
     ShowSettings();
   });
-  cards_.append(defaults_);
+  line->append(defaults_);
+  card.append(*line);
 }
 
 void Panel::AddMeasures() {
@@ -189,7 +204,9 @@ void Panel::AddMeasures() {
   late_ = &AddLine(card, "Late ticks", "Ticks that began more than half a tick late since the start");
   frames_ = &AddLine(card, "Pictures a second", "Frames drawn over the last second [1/s]");
   time_ = &AddLine(card, "Simulated time", "Since the last reset [min:s]");
+}
 
+void Panel::AddStages() {
   Gtk::Box& table = AddCard("Stages of a tick [ms]");
   table.set_spacing(1);
   for (int stage = 0; stage < session::kStageCount; ++stage) {
@@ -215,7 +232,7 @@ void Panel::SetControl(SessionControl* control) {
     organs += (organ == 0 ? "" : "\n") + OrganLabel(patient, static_cast<std::int32_t>(organ)) + ": " +
               FormatCount(patient.organs[organ].mesh.triangles.size()) + " triangles";
   }
-  if (!patient.tubes.empty()) organs += "; " + std::to_string(patient.tubes.size()) + " ducts and arteries";
+  if (!patient.tubes.empty()) organs += "\n" + std::to_string(patient.tubes.size()) + " ducts and arteries";
   patient_organs_.set_text(organs);
   patient_source_.set_text(patient.provenance);
   patient_card_->set_tooltip_text(patient.name + "\n" + organs + "\n" + patient.provenance);

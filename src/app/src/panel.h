@@ -42,7 +42,9 @@ class Panel : public Gtk::ScrolledWindow {
   void AddHands();
   void AddPatient();
   void AddSettings();
+  void AddDefaults(Gtk::Box& card);
   void AddMeasures();
+  void AddStages();
   Gtk::Label& AddLine(Gtk::Box& card, const char* name, const char* tooltip);
 
   SessionControl* control_ = nullptr;
@@ -53,7 +55,7 @@ class Panel : public Gtk::ScrolledWindow {
   Gtk::Label patient_name_, patient_organs_, patient_source_;
   std::vector<std::unique_ptr<SliderRow>> sliders_;
   Gtk::DropDown solver_;
-  Gtk::Button defaults_{"Settings of the scene"};
+  Gtk::Button defaults_{"Defaults"};
   Gtk::Label *residual_ = nullptr, *iterations_ = nullptr, *tick_ = nullptr, *late_ = nullptr,
              *frames_ = nullptr, *time_ = nullptr;
   std::array<Gtk::Label, session::kStageCount> stages_;

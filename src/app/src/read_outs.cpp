@@ -83,7 +83,8 @@ std::string DescribeContact(const session::InstrumentSnapshot& instrument, const
 std::string DescribeEvent(const session::Event& event, const session::Scene& scene) {
   const std::string hand = Capitalised(HandLabel(scene, event.hand)) + ": ";
   const std::string organ = OrganLabel(scene.patient, event.organ);
-  const std::string force = ", " + FormatForce(event.force);
+  // a grasp begins with no force yet: "0.0 N" would say nothing
+  const std::string force = event.force < 0.05 ? "" : ", " + FormatForce(event.force);
   switch (event.kind) {
     case session::EventKind::kGrasp:
       return hand + "grasped the " + organ + force;

@@ -68,6 +68,8 @@ TEST(ReadOuts, EventsAreSaidInWords) {
             "Right grasper: the liver slipped, 4.0 N");
   EXPECT_EQ(DescribeEvent({EventKind::kStateRestored, 10, -1, 0, 0}, scene),
             "Liver: was not finite, last good state restored (E-SIM-001)");
+  EXPECT_EQ(DescribeEvent({EventKind::kGrasp, 10, session::kLeft, 0, 0.01}, scene),
+            "Left grasper: grasped the liver");
   EXPECT_TRUE(IsWarning(EventKind::kSlip));
   EXPECT_FALSE(IsWarning(EventKind::kGrasp));
 }

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/app/session_control.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+#include <functional>
+#include <thread>
+
+namespace trocar::app {
+namespace {
+
+using device::Motion;
+
+/// The built-in scene, running on its own thread; waits are for events, never for a time that must suffice.
+class SessionControlTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    core::Result<session::Scene> scene = session::ReadScene(TROCAR_SOURCE_DIR "/scenes/demonstration.json");
+    ASSERT_TRUE(scene.ok()) << scene.error().Text();
+    core::Result<session::Simulation> simulation =
+        session::Simulation::Make(std::make_shared<const session::Scene>(std::move(scene).value()), 1);
+    ASSERT_TRUE(simulation.ok()) << simulation.error().Text();
+    core::Result<std::unique_ptr<SessionControl>> made = SessionControl::Make(std::move(simulation).value());
+    ASSERT_TRUE(made.ok()) << made.error().Text();
+    control = std::move(made).value();
+  }
+  /// Frames of 1/60 s until the snapshot satisfies `is_reached`; gives up after a minute.
+  bool AdvanceUntil(const std::function<bool(const session::Snapshot&)>& is_reached) {
+    for (int frame = 0; frame < 6000; ++frame) {
+      if (is_reached(control->Advance(1.0 / 60))) return true;
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    return false;
+  }
+  std::unique_ptr<SessionControl> control;
+};
+
+TEST_F(SessionControlTest, StartsPausedAtHomeWithTheScenesSettings) {
+  EXPECT_TRUE(control->IsPaused());
+  control->Device().SetKey(Motion::kIn, true);
+  EXPECT_EQ(control->Advance(0.05).tick, 0u);
+  EXPECT_EQ(control->GetInput().hands[session::kRight].depth,
+            control->GetScene().instruments[session::kRight].home.depth)
+      << "paused hands stand still";
+  EXPECT_EQ(control->GetSettings(), control->GetScene().settings);
+}
+
+TEST_F(SessionControlTest, HeldKeyMovesTheToolOfTheSimulation) {
+  control->SetPaused(false);
+  control->ChooseHand(device::kLeftHand);
+  ASSERT_TRUE(AdvanceUntil([](const session::Snapshot& now) { return now.tick > 2; }));
+  const math::Vec3 start = control->Advance(0).instruments[session::kLeft].X_world_tool.translation;
+  const math::Pose X_world_view = control->Advance(0).X_world_laparoscope;
+  const math::Vec3 right = math::Rotate(X_world_view.rotation, {1, 0, 0});
+  control->Device().SetKey(Motion::kRight, true);
+  EXPECT_TRUE(AdvanceUntil([&](const session::Snapshot& now) {
+    return math::Dot(now.instruments[session::kLeft].X_world_tool.translation - start, right) > 0.005;
+  })) << "the tip goes to the right in the picture";
+  const math::Vec3 moved = control->Advance(0).instruments[session::kLeft].X_world_tool.translation - start;
+  EXPECT_GT(math::Dot(moved, right), 0.95 * math::Norm(moved)) << "and nowhere else";
+}
+
+TEST_F(SessionControlTest, SettingsReachTheRunningSimulation) {
+  control->SetPaused(false);
+  session::LiveSettings settings = control->GetSettings();
+  settings.gravity = 3.0;
+  control->SetSettings(settings);
+  EXPECT_TRUE(AdvanceUntil(
+      [](const session::Snapshot& now) { return std::abs(math::Norm(now.gravity) - 3.0) < 1e-9; }));
+  settings.gravity = 1e9;
+  control->SetSettings(settings);
+  EXPECT_EQ(control->GetSettings().gravity, 30.0) << "clamped";
+  control->RestoreSettings();
+  EXPECT_EQ(control->GetSettings(), control->GetScene().settings);
+}
+
+TEST_F(SessionControlTest, DemonstrationMovesTheHandsAndIsTakenOverWithoutAJump) {
+  ASSERT_TRUE(control->HasScript());
+  control->SetDemonstration(true);
+  control->SetPaused(false);
+  const double home = control->GetScene().instruments[session::kLeft].home.depth;
+  ASSERT_TRUE(AdvanceUntil([&](const session::Snapshot& now) {
+    return std::abs(now.instruments[session::kLeft].joints.depth - home) > 0.01;
+  }));
+  const session::InstrumentSnapshot before = control->Advance(0).instruments[session::kLeft];
+  control->SetDemonstration(false);
+  control->Advance(0);
+  EXPECT_NEAR(control->GetInput().hands[session::kLeft].depth, before.joints.depth, 0.005);
+  EXPECT_NEAR(control->GetInput().hands[session::kLeft].pan, before.joints.pan, 0.05);
+}
+
+TEST_F(SessionControlTest, ResetGoesHomeAndToTheFirstTick) {
+  control->SetPaused(false);
+  control->Device().SetKey(Motion::kIn, true);
+  ASSERT_TRUE(AdvanceUntil([](const session::Snapshot& now) { return now.tick > 30; }));
+  control->SetPaused(true);
+  control->Reset();
+  EXPECT_TRUE(AdvanceUntil([](const session::Snapshot& now) { return now.tick == 0; }));
+  EXPECT_EQ(control->GetInput().hands[session::kRight].depth,
+            control->GetScene().instruments[session::kRight].home.depth);
+}
+
+TEST_F(SessionControlTest, LaparoscopeIsHeldAndGivenBackToTheSameHand) {
+  control->ChooseHand(device::kLeftHand);
+  control->HoldLaparoscope(true);
+  EXPECT_TRUE(control->IsLaparoscopeHeld());
+  control->SwitchHand();
+  EXPECT_TRUE(control->IsLaparoscopeHeld()) << "switching hands does not drop the scope";
+  control->HoldLaparoscope(false);
+  EXPECT_EQ(control->Device().GetChosen(), device::kRightHand);
+  control->ChooseHand(device::kLaparoscope);
+  EXPECT_EQ(control->GetHand(), device::kRightHand) << "no hand";
+}
+
+}  // namespace
+}  // namespace trocar::app
