@@ -2,16 +2,35 @@
 #include "script.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 
 #include "trocar/core/json.h"
+#include "trocar/math/random.h"
 
 namespace trocar::session {
 namespace {
 
 constexpr double kDegree = M_PI / 180.0;
+/// Sines that make up the tremor of one axis.
+constexpr int kTremorSines = 3;
 constexpr const char* kHandNames[kHandCount] = {"left", "right"};
+
+/// Smooth tremor of both tips at a time [m].
+std::array<Vec3, kHandCount> CalcTremor(double amplitude, std::uint64_t seed, double time) {
+  math::Random random(seed);
+  std::array<Vec3, kHandCount> offsets;
+  for (Vec3& offset : offsets) {
+    for (int axis = 0; axis < 3; ++axis) {
+      for (int sine = 0; sine < kTremorSines; ++sine) {
+        const double frequency = random.Uniform(8.0, 12.0), phase = random.Uniform(0.0, 2.0 * M_PI);
+        offset[axis] += amplitude / kTremorSines * std::sin(2.0 * M_PI * frequency * time + phase);
+      }
+    }
+  }
+  return offsets;
+}
 
 }  // namespace
 
@@ -19,11 +38,12 @@ core::Result<Script> ReadScript(const std::filesystem::path& path, const anatomy
   auto document = core::JsonDocument::Read(path);
   if (!document.ok()) return document.error();
   const core::JsonView root = document->Root();
-  root.AllowOnly({"format", "version", "about", "keys"});
+  root.AllowOnly({"format", "version", "about", "tremor_mm", "keys"});
   if (root.Text("format") != "trocar-script") root.Complain("format must be \"trocar-script\"");
   if (root.Integer("version") != 1) root.Complain("version must be 1");
 
   Script script;
+  script.tremor = 0.001 * root.NumberOr("tremor_mm", 0.0, {0.0, 5.0});
   for (const core::JsonView& view : root.Array("keys")) {
     view.AllowOnly({"time_s", "about", "left", "right"});
     const bool is_first = script.keys.empty();
@@ -76,10 +96,11 @@ Input CalcScriptInput(const Scene& scene, double time) {
   const double t = span > 0.0 ? std::clamp((time - from.time) / span, 0.0, 1.0) : 1.0;
   // minimum jerk (Flash and Hogan 1985): starts and ends at rest
   const double s = t * t * t * (10.0 + t * (-15.0 + 6.0 * t));
+  const auto tremor = CalcTremor(scene.script.tremor, scene.seed, time);
   for (int hand = 0; hand < kHandCount; ++hand) {
     const auto blend = [&](double a, double b) { return a + s * (b - a); };
     input.hands[hand] = instrument::FindJoints(
-        scene.instruments[hand].p_world_port, math::Lerp(from.p_world_tip[hand], to.p_world_tip[hand], s),
+        scene.instruments[hand].p_world_port, math::Lerp(from.p_world_tip[hand], to.p_world_tip[hand], s) + tremor[hand],
         blend(from.spin[hand], to.spin[hand]), blend(from.jaw[hand], to.jaw[hand]));
   }
   return input;

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdlib>
 
 #include "small_scene.h"
@@ -48,6 +49,24 @@ TEST_F(SceneFile, ScriptMovesTheTipSmoothlyFromKeyToKey) {
   EXPECT_NEAR(math::Distance(tip(0.2), math::Lerp(tip(0.0), tip(0.4), 0.5)), 0.0, 1e-9);
   EXPECT_LT(math::Distance(tip(0.01), tip(0.0)), 1e-4) << "starts from rest";
   EXPECT_NEAR(math::Distance(tip(99), tip(1.2)), 0.0, 1e-12);
+}
+
+TEST_F(SceneFile, TremorIsSmallAndDependsOnTheSeedAlone) {
+  auto scene = Read();
+  ASSERT_TRUE(scene.ok());
+  const auto tip = [&](double tremor, std::uint64_t seed) {
+    scene->script.tremor = tremor;
+    scene->seed = seed;
+    return instrument::CalcToolPose(scene->instruments[kLeft].p_world_port,
+                                    CalcScriptInput(*scene, 0.3).hands[kLeft])
+        .translation;
+  };
+  const Vec3 steady = tip(0.0, 1);
+  EXPECT_EQ(tip(0.0, 2), steady);
+  EXPECT_EQ(tip(1e-4, 7), tip(1e-4, 7));
+  EXPECT_NE(tip(1e-4, 7), tip(1e-4, 8));
+  EXPECT_GT(math::Distance(tip(1e-4, 7), steady), 0.0);
+  EXPECT_LE(math::Distance(tip(1e-4, 7), steady), 1e-4 * std::sqrt(3.0) + 1e-12);
 }
 
 TEST_F(SceneFile, NamesWhatIsWrongAndWhere) {

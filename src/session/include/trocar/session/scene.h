@@ -43,6 +43,7 @@ struct ScriptKey {
 /// A row of keys in time order: a deterministic pair of hands.
 struct Script {
   std::vector<ScriptKey> keys;
+  double tremor = 0;  ///< amplitude of the hands' physiological tremor, 8 to 12 Hz, different for each seed [m]
   double Duration() const { return keys.empty() ? 0.0 : keys.back().time; }
 };
 
@@ -66,7 +67,7 @@ struct Scene {
   LaparoscopeSetup laparoscope;
   LiveSettings settings;            ///< at the start
   double tick_seconds = 1.0 / 120;  ///< [s]
-  std::uint64_t seed = 0;
+  std::uint64_t seed = 0;  ///< of everything random: now the tremor of a script's hands
   Script script;  ///< empty when the scene names none
 };
 
