@@ -18,6 +18,7 @@ window.trocar { background: #14171a; color: #dfe5ea; }
 .trocar button:disabled { color: #6d7680; background: #20252b; }
 .trocar button.primary { background: #1d7a8c; border-color: #2b9cb1; color: #ffffff; font-weight: 700; }
 .trocar button.primary:hover { background: #238fa3; }
+.trocar button.primary:disabled { background: #20252b; border-color: #39414b; color: #6d7680; }
 .trocar windowcontrols button { background: transparent; border: none; padding: 4px; min-width: 24px; }
 .trocar .panel { background: #14171a; }
 .trocar .card { background: #1d2228; border: 1px solid #2a3037; border-radius: 8px; padding: 7px 12px 8px 12px; }

@@ -54,6 +54,7 @@ SimulatorWindow::SimulatorWindow(const Options& options, const core::Stopwatch& 
   picture_.signal_failed().connect(sigc::mem_fun(*this, &SimulatorWindow::Fail));
   picture_.add_tick_callback(sigc::mem_fun(*this, &SimulatorWindow::OnFrame));
   loaded_.connect(sigc::mem_fun(*this, &SimulatorWindow::FinishLoading));
+  panel_.set_sensitive(false);  // until there is something to set
   if (options_.is_fullscreen) fullscreen();
   ShowSituation();
   picture_.grab_focus();
@@ -192,6 +193,7 @@ void SimulatorWindow::FinishLoading() {
   control_ = std::move(control).value();
   control_->SetMirrorFulcrum(fulcrum_.get_active());
   panel_.SetControl(control_.get());
+  panel_.set_sensitive(true);
   hands_->SetControl(control_.get());
   picture_.SetScene(&control_->GetScene(), control_->Surfaces());
   set_title("Trocar: " + control_->GetScene().name);
@@ -230,7 +232,9 @@ void SimulatorWindow::Fail(const core::Error& error) {
   for (Gtk::Widget* widget : {static_cast<Gtk::Widget*>(&run_), static_cast<Gtk::Widget*>(&reset_),
                               static_cast<Gtk::Widget*>(&demonstration_)})
     widget->set_sensitive(false);
+  panel_.set_sensitive(false);
   SetText(event_, error.Text());
+  ShowSituation();
 }
 
 bool SimulatorWindow::OnFrame(const Glib::RefPtr<Gdk::FrameClock>& clock) {
