@@ -14,9 +14,12 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kMarginMm = 3.0;  // around the shape, so that the border's distances are right
 
-/// Lower envelope of the parabolas f(q) + (p - q)^2, in place (Felzenszwalb and Huttenlocher, algorithm 1).
-void TransformLine(std::vector<double>& f, std::vector<double>& result, std::vector<int>& apex,
-                   std::vector<double>& from) {
+/// Lower envelope of the parabolas f(q) + (p - q)^2 (Felzenszwalb and Huttenlocher, algorithm 1).
+///
+/// \param[out] apex  whole numbers q of the parabolas on the envelope, in order
+/// \param[out] from  where each begins
+/// \return index of the last one; -1 when every f is infinite
+int FindLowerEnvelope(const std::vector<double>& f, std::vector<int>& apex, std::vector<double>& from) {
   const int n = static_cast<int>(f.size());
   int k = -1;
   for (int q = 0; q < n; ++q) {
@@ -33,6 +36,14 @@ void TransformLine(std::vector<double>& f, std::vector<double>& result, std::vec
     apex[k] = q;
     from[k] = cross;
   }
+  return k;
+}
+
+/// Squared distance to the nearest parabola's apex, in place.
+void TransformLine(std::vector<double>& f, std::vector<double>& result, std::vector<int>& apex,
+                   std::vector<double>& from) {
+  const int n = static_cast<int>(f.size());
+  const int k = FindLowerEnvelope(f, apex, from);
   if (k < 0) return;
   int i = 0;
   for (int p = 0; p < n; ++p) {
@@ -72,9 +83,9 @@ double CubicHermite(double t, double h, double a, double b, double slope_a, doub
 /// Index of the nearest set pixel for every pixel, by the same envelopes as CalcSquaredDistances.
 /// \pre at least one pixel is set
 std::vector<std::uint32_t> FindNearestSet(std::span<const std::uint8_t> set, int width, int height) {
-  const auto longest = static_cast<std::size_t>(std::max(width, height));
-  std::vector<double> f(longest), from(longest + 1);
-  std::vector<int> apex(longest);
+  const auto row_length = static_cast<std::size_t>(width);
+  std::vector<double> f(row_length), from(row_length + 1);
+  std::vector<int> apex(row_length);
   // nearest set pixel in the column, then the best column of the row
   std::vector<int> row_of(set.size(), -1);
   for (int x = 0; x < width; ++x) {
@@ -98,21 +109,7 @@ std::vector<std::uint32_t> FindNearestSet(std::span<const std::uint8_t> set, int
       const int r = row_of[row + x];
       f[x] = r < 0 ? kInfinity : static_cast<double>(r - y) * (r - y);
     }
-    int k = -1;
-    for (int q = 0; q < width; ++q) {
-      if (f[q] == kInfinity) continue;
-      double cross = -kInfinity;
-      while (k >= 0) {
-        const int v = apex[k];
-        cross = ((f[q] + static_cast<double>(q) * q) - (f[v] + static_cast<double>(v) * v)) / (2.0 * (q - v));
-        if (cross > from[k]) break;
-        --k;
-      }
-      if (k < 0) cross = -kInfinity;
-      ++k;
-      apex[k] = q;
-      from[k] = cross;
-    }
+    const int k = FindLowerEnvelope(f, apex, from);
     int i = 0;
     for (int x = 0; x < width; ++x) {
       while (i < k && from[i + 1] < x) ++i;
