@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "composition.h"
 #include "look.h"
 #include "simulator_window.h"
 #include "trocar/app/options.h"
@@ -28,6 +29,7 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "%s\n", error.Text().c_str());
     return EXIT_FAILURE;
   }
+  trocar::app::ChooseComposition();
   const auto application = Gtk::Application::create("", Gio::Application::Flags::NON_UNIQUE);
   std::unique_ptr<trocar::app::SimulatorWindow> window;
   application->signal_activate().connect([&] {
