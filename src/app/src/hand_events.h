@@ -25,7 +25,7 @@ class HandEvents {
   bool IsPointerTaken() const { return is_taken_; }
   void ReleasePointer();
   /// Everything but motion.
-  sigc::signal<void(Action)>& signal_action() { return signal_action_; }
+  sigc::signal<void(Action)>& SignalAction() { return signal_action_; }
 
  private:
   bool OnKeyPressed(guint keyval, guint keycode, Gdk::ModifierType state);

@@ -30,9 +30,9 @@ class Picture : public Gtk::GLArea {
   void SetOptions(const view::ViewOptions& options) { options_ = options; }
 
   /// After each frame that shows the scene.
-  sigc::signal<void()>& signal_drawn() { return signal_drawn_; }
+  sigc::signal<void()>& SignalDrawn() { return signal_drawn_; }
   /// Once, when nothing can be drawn. Never emitted within a frame.
-  sigc::signal<void(core::Error)>& signal_failed() { return signal_failed_; }
+  sigc::signal<void(core::Error)>& SignalFailed() { return signal_failed_; }
 
  protected:
   void on_realize() override;

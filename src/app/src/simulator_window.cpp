@@ -49,9 +49,9 @@ SimulatorWindow::SimulatorWindow(const Options& options, const core::Stopwatch& 
   MakeContent();
 
   hands_ = std::make_unique<HandEvents>(*this, picture_, panel_);
-  hands_->signal_action().connect(sigc::mem_fun(*this, &SimulatorWindow::OnAction));
-  picture_.signal_drawn().connect(sigc::mem_fun(*this, &SimulatorWindow::OnDrawn));
-  picture_.signal_failed().connect(sigc::mem_fun(*this, &SimulatorWindow::Fail));
+  hands_->SignalAction().connect(sigc::mem_fun(*this, &SimulatorWindow::OnAction));
+  picture_.SignalDrawn().connect(sigc::mem_fun(*this, &SimulatorWindow::OnDrawn));
+  picture_.SignalFailed().connect(sigc::mem_fun(*this, &SimulatorWindow::Fail));
   picture_.add_tick_callback(sigc::mem_fun(*this, &SimulatorWindow::OnFrame));
   loaded_.connect(sigc::mem_fun(*this, &SimulatorWindow::FinishLoading));
   panel_.set_sensitive(false);  // until there is something to set
