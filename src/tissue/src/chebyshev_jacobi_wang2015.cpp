@@ -28,8 +28,10 @@ constexpr double kShareGrowth = 4.0;
 /// No node moves farther in one Jacobi step [m]: half a triangle's edge of the built-in organs. While a step
 /// is cut short the recurrence waits, because it presumes whole steps.
 constexpr double kMaxStep = 0.002;
-/// The recurrence starts again after this many iterations at the latest.
-constexpr int kMaxCycle = 200;
+/// The recurrence starts again after this many iterations, then after twice as many, and so on: how weak the weakest mode
+/// is need not be known, and what a short cycle can reach is not kept waiting by a long one.
+constexpr int kFirstCycle = 40;
+constexpr int kLongestCycle = 1280;
 /// ln(100) / 2: a cycle is tuned to damp what it can reach a hundredfold.
 constexpr double kCycleDamping = 2.302585;
 /// The residual may grow this much over its smallest value before the acceleration is taken back [-].
@@ -191,20 +193,22 @@ void SetBlocks(EquilibriumSolver::Content& content, const TissueLoad& load, cons
 SolveReport SolveChebyshevJacobiWang2015(EquilibriumSolver::Content& content, const SolverSettings& settings,
                                          const TissueLoad& load, TissueState& state) noexcept {
   const auto n = static_cast<std::uint32_t>(content.model->Size());
-  const int cycle_length = std::clamp(settings.max_iterations, 1, kMaxCycle);
-  // modes whose eigenvalue is below this are out of reach of one cycle
-  const double lowest = std::clamp(std::pow(kCycleDamping / cycle_length, 2), 1e-4, 0.5);
-  const double rho = (2.0 - lowest) / (2.0 + lowest);
-
   SetSlices(content, load, state);
   double transverse_share = kTransverseShare;
   SetBlocks(content, load, state, transverse_share);
   SolveReport report;
-  StepFactors factors{load.stiffness_scale, 2.0 / (2.0 + lowest), 1.0, kMaxStep, true};
-  double smallest = INFINITY;
+  int cycle_length = std::min(settings.max_iterations, kFirstCycle);
+  StepFactors factors{load.stiffness_scale, 1.0, 1.0, kMaxStep, true};
+  double smallest = INFINITY, rho = 0.0;
   int in_cycle = 0;
   while (report.iterations < settings.max_iterations) {
     factors.is_first = in_cycle == 0;
+    if (in_cycle == 0) {
+      // modes whose eigenvalue is below `lowest` are out of reach of this cycle
+      const double lowest = std::min(std::pow(kCycleDamping / cycle_length, 2), 0.5);
+      factors.damping = 2.0 / (2.0 + lowest);
+      rho = (2.0 - lowest) / (2.0 + lowest);
+    }
     factors.omega = in_cycle == 0   ? 1.0
                     : in_cycle == 1 ? 2.0 / (2.0 - rho * rho)
                                     : 4.0 / (4.0 - rho * rho * factors.omega);
@@ -240,6 +244,7 @@ SolveReport SolveChebyshevJacobiWang2015(EquilibriumSolver::Content& content, co
       in_cycle = 0;
       ++report.restarts;
     } else if (in_cycle == cycle_length || all.is_cut_short) {
+      if (in_cycle == cycle_length) cycle_length = std::min(2 * cycle_length, kLongestCycle);
       in_cycle = 0;
     }
     if (in_cycle == 0 && report.iterations < settings.max_iterations)
