@@ -201,7 +201,10 @@ void Panel::AddMeasures() {
                "Largest force out of balance on any free node, as part of the largest force at work [-]");
   iterations_ = &AddLine(card, "Iterations used", "Of the solver, in the last tick");
   tick_ = &AddLine(card, "Tick, median / p99", "Time to compute one tick, over the last second [ms]");
-  late_ = &AddLine(card, "Late ticks", "Ticks that began more than half a tick late since the start");
+  late_ = &AddLine(
+      card, "Late ticks",
+      "Ticks that began more than half a tick late since the start; \"real-time\" when the system lets the "
+      "simulation run before everything else (trocar doctor)");
   frames_ = &AddLine(card, "Pictures a second", "Frames drawn over the last second [1/s]");
   time_ = &AddLine(card, "Simulated time", "Since the last reset [min:s]");
 }
@@ -282,7 +285,8 @@ void Panel::ShowTimes(const session::Snapshot& snapshot, const session::RunnerSt
   SetText(*iterations_, std::to_string(snapshot.iterations));
   SetText(*tick_,
           FormatMilliseconds(statistics.tick_median) + " / " + FormatMilliseconds(statistics.tick_p99));
-  SetText(*late_, FormatCount(statistics.late_ticks) + " of " + FormatCount(statistics.ticks));
+  SetText(*late_, FormatCount(statistics.late_ticks) + " of " + FormatCount(statistics.ticks) +
+                      (statistics.is_real_time ? ", real-time" : ""));
   SetText(*frames_, std::to_string(static_cast<int>(frame_rate + 0.5)));
   SetText(*time_, FormatTime(snapshot.time));
   for (int stage = 0; stage < session::kStageCount; ++stage) {

@@ -424,13 +424,14 @@ void SimulatorWindow::SaveScreenshot() {
   const session::RunnerStatistics statistics = control_->Statistics();
   std::printf(
       "{\"screenshot\": \"%s\", \"width\": %d, \"height\": %d, \"first_picture_s\": %.3f, \"ticks\": %llu, "
-      "\"late_ticks\": %llu, \"tick_median_ms\": %.3f, \"tick_p99_ms\": %.3f, \"pictures\": %llu, "
+      "\"late_ticks\": %llu, \"tick_median_ms\": %.3f, \"tick_p99_ms\": %.3f, \"real_time\": %s, "
+      "\"pictures\": %llu, "
       "\"pictures_per_second\": %.1f}\n",
       options_.screenshot.filename().c_str(), get_width(), get_height(), first_picture_,
       static_cast<unsigned long long>(statistics.ticks),
       static_cast<unsigned long long>(statistics.late_ticks), 1e3 * statistics.tick_median,
-      1e3 * statistics.tick_p99, static_cast<unsigned long long>(frames_.Count()),
-      frames_.Rate(since_start_.Seconds()));
+      1e3 * statistics.tick_p99, statistics.is_real_time ? "true" : "false",
+      static_cast<unsigned long long>(frames_.Count()), frames_.Rate(since_start_.Seconds()));
   close();
 }
 
