@@ -137,7 +137,7 @@ const Landmark* Patient::FindLandmark(std::string_view landmark_name) const {
   return nullptr;
 }
 
-core::Result<Patient> ReadPatient(const fs::path& folder) {
+core::Result<UncheckedPatient> ReadPatientUnchecked(const fs::path& folder) {
   const fs::path path = folder / "patient.json";
   auto document = core::JsonDocument::Read(path);
   if (!document.ok()) return document.error();
@@ -207,15 +207,25 @@ core::Result<Patient> ReadPatient(const fs::path& folder) {
     patient.landmarks.push_back({view.Text("name"), PointFrom(view, "position")});
   }
   if (const auto status = document->Check(); !status.ok()) return status.error();
-  for (Organ& organ : patient.organs) {
+  UncheckedPatient unchecked{std::move(patient), {}};
+  for (Organ& organ : unchecked.patient.organs) {
     auto mesh = geometry::ReadPly(folder / (organ.name + ".ply"));
-    if (!mesh.ok()) return mesh.error();
-    organ.mesh = Converted(std::move(*mesh), FromLps);
+    unchecked.mesh_errors.push_back(mesh.ok() ? Error{} : mesh.error());
+    if (mesh.ok()) organ.mesh = Converted(std::move(*mesh), FromLps);
   }
-  if (const auto status = CheckPatient(patient); !status.ok()) {
-    return Error{status.error().code, path.string() + ": " + status.error().message};
+  return unchecked;
+}
+
+core::Result<Patient> ReadPatient(const fs::path& folder) {
+  auto read = ReadPatientUnchecked(folder);
+  if (!read.ok()) return read.error();
+  for (const Error& error : read->mesh_errors) {
+    if (error.code != ErrorCode::kNone) return error;
   }
-  return patient;
+  if (const auto status = CheckPatient(read->patient); !status.ok()) {
+    return Error{status.error().code, (folder / "patient.json").string() + ": " + status.error().message};
+  }
+  return std::move(read->patient);
 }
 
 core::Status WritePatient(const fs::path& folder, const Patient& patient) {

@@ -71,6 +71,7 @@ void AddAnatomyCommand(CLI::App& app, Outcome& outcome) {
       "\\\n"
       "           -o out/patient --overlays out/overlays");
   build->callback([arguments, &outcome] { outcome.status = Build(*arguments); });
+  AddAnatomyCheckCommand(*anatomy, outcome);
 }
 
 }  // namespace trocar::cli

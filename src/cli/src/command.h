@@ -20,6 +20,8 @@ void AddWindowCommand(CLI::App& app, Outcome& outcome);
 void AddDemoCommand(CLI::App& app, Outcome& outcome);
 void AddSimulateCommand(CLI::App& app, Outcome& outcome);
 void AddAnatomyCommand(CLI::App& app, Outcome& outcome);
+/// Below `trocar anatomy`.
+void AddAnatomyCheckCommand(CLI::App& anatomy, Outcome& outcome);
 void AddBenchCommand(CLI::App& app, Outcome& outcome);
 void AddDoctorCommand(CLI::App& app, Outcome& outcome);
 void AddErrorsCommand(CLI::App& app, Outcome& outcome);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
+#include <numeric>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -19,6 +20,9 @@ namespace {
 using math::Cross;
 using math::Dot;
 using math::Norm;
+
+constexpr double kMaxCellsAnAxis = 1e6;      // below 2^21, so that three numbers fit one key
+constexpr double kMaxCellsATriangle = 4096;  // larger triangles stay outside the grid
 
 /// Angle between two directions [rad].
 double CalcAngle(const Vec3& a, const Vec3& b) {
@@ -159,44 +163,63 @@ MeshReport InspectMesh(const TriangleMesh& mesh) {
   return report;
 }
 
-std::size_t CountSelfIntersections(const TriangleMesh& mesh) {
-  if (mesh.triangles.empty()) return 0;
-  // uniform grid with cells of about one edge length
-  const double cell =
+std::vector<std::array<std::uint32_t, 2>> FindSelfIntersections(const TriangleMesh& mesh) {
+  std::vector<std::array<std::uint32_t, 2>> pairs;
+  if (mesh.triangles.empty()) return pairs;
+  const Box all = CalcBox(mesh.positions);
+  const Vec3 extent = all.max - all.min;
+  const double longest = std::max({extent.x, extent.y, extent.z});
+  // uniform grid with cells of about one edge length, and never so many that their numbers overflow
+  const double edge =
       2.0 * std::sqrt(CalcArea(mesh.positions, mesh.triangles) / static_cast<double>(mesh.triangles.size()));
-  if (!(cell > 0.0)) return 0;
-  const Vec3 origin = CalcBox(mesh.positions).min;
+  const double cell = std::max(edge, longest / kMaxCellsAnAxis);
+  if (!(cell > 0.0) || !std::isfinite(cell)) return pairs;
   const auto cell_of = [&](const Vec3& p, int axis) {
-    return static_cast<std::int64_t>(std::floor((p[axis] - origin[axis]) / cell));
+    return static_cast<std::int64_t>(std::floor((p[axis] - all.min[axis]) / cell));
   };
   std::unordered_map<std::int64_t, std::vector<std::uint32_t>> grid;
-  std::size_t count = 0;
-  std::vector<std::uint32_t> candidates;
+  // needles across the whole mesh would fill the grid: they are compared with every triangle
+  std::vector<std::uint32_t> large, candidates;
   for (std::uint32_t index = 0; index < mesh.triangles.size(); ++index) {
     const Triangle& t = mesh.triangles[index];
     const Vec3 corners[3] = {mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]};
     const Box box = CalcBox(corners);
-    candidates.clear();
-    for (auto x = cell_of(box.min, 0); x <= cell_of(box.max, 0); ++x) {
-      for (auto y = cell_of(box.min, 1); y <= cell_of(box.max, 1); ++y) {
-        for (auto z = cell_of(box.min, 2); z <= cell_of(box.max, 2); ++z) {
-          auto& bucket = grid[(x * 2097152 + y) * 2097152 + z];
-          candidates.insert(candidates.end(), bucket.begin(), bucket.end());
-          bucket.push_back(index);
+    double cells = 1.0;
+    for (int axis = 0; axis < 3; ++axis) {
+      cells *= static_cast<double>(cell_of(box.max, axis) - cell_of(box.min, axis) + 1);
+    }
+    candidates = large;
+    if (cells > kMaxCellsATriangle) {
+      candidates.resize(index);
+      std::iota(candidates.begin(), candidates.end(), 0u);
+      large.push_back(index);
+    } else {
+      for (auto x = cell_of(box.min, 0); x <= cell_of(box.max, 0); ++x) {
+        for (auto y = cell_of(box.min, 1); y <= cell_of(box.max, 1); ++y) {
+          for (auto z = cell_of(box.min, 2); z <= cell_of(box.max, 2); ++z) {
+            auto& bucket = grid[(x * 2097152 + y) * 2097152 + z];
+            candidates.insert(candidates.end(), bucket.begin(), bucket.end());
+            bucket.push_back(index);
+          }
         }
       }
+      std::sort(candidates.begin(), candidates.end());
+      candidates.erase(std::unique(candidates.begin(), candidates.end()), candidates.end());
     }
-    std::sort(candidates.begin(), candidates.end());
-    candidates.erase(std::unique(candidates.begin(), candidates.end()), candidates.end());
     for (const auto other : candidates) {
       const Triangle& u = mesh.triangles[other];
       const bool neighbours = std::any_of(
           t.begin(), t.end(), [&](auto v) { return std::find(u.begin(), u.end(), v) != u.end(); });
       const Vec3 others[3] = {mesh.positions[u[0]], mesh.positions[u[1]], mesh.positions[u[2]]};
-      if (!neighbours && TrianglesIntersect(corners, others)) ++count;
+      if (!neighbours && TrianglesIntersect(corners, others)) pairs.push_back({other, index});
     }
   }
-  return count;
+  std::sort(pairs.begin(), pairs.end());
+  return pairs;
+}
+
+std::size_t CountSelfIntersections(const TriangleMesh& mesh) {
+  return FindSelfIntersections(mesh).size();
 }
 
 core::Status CheckMesh(const TriangleMesh& mesh) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "trocar/geometry/distance.h"
 #include "trocar/geometry/mesh_topology.h"
 #include "trocar/geometry/primitives.h"
 
@@ -65,6 +66,33 @@ TEST(InspectMesh, CountsTheHandleOfATorus) {
   const MeshReport report = InspectMesh(torus);
   EXPECT_TRUE(report.closed && report.manifold && report.outward);
   EXPECT_EQ(report.genus, 1);
+}
+
+// Oracle: all pairs, with needles across the whole mesh that the grid does not hold.
+TEST(FindSelfIntersections, FindsWhatAllPairsFind) {
+  TriangleMesh mesh = MakeSphere({0, 0, 0}, 1.0, 2);
+  const auto add = [&mesh](const Vec3& a, const Vec3& b, const Vec3& c) {
+    const auto n = static_cast<std::uint32_t>(mesh.positions.size());
+    mesh.positions.insert(mesh.positions.end(), {a, b, c});
+    mesh.triangles.push_back({n, n + 1, n + 2});
+  };
+  add({-40, -41, -42}, {40, 41, 42}, {40, 41, 42.0001});
+  add({-2, 0.1, 0.2}, {2, 0.1, 0.2}, {2, 0.1003, 0.2});
+  add({-9, -9, 0.05}, {9, -9, 0.05}, {0, 9, 0.05});
+  std::vector<std::array<std::uint32_t, 2>> expected;
+  for (std::uint32_t a = 0; a < mesh.triangles.size(); ++a) {
+    for (std::uint32_t b = a + 1; b < mesh.triangles.size(); ++b) {
+      Vec3 p[3], q[3];
+      bool shares = false;
+      for (int i = 0; i < 3; ++i) {
+        p[i] = mesh.positions[mesh.triangles[a][i]], q[i] = mesh.positions[mesh.triangles[b][i]];
+        for (int k = 0; k < 3; ++k) shares |= mesh.triangles[a][i] == mesh.triangles[b][k];
+      }
+      if (!shares && TrianglesIntersect(p, q)) expected.push_back({a, b});
+    }
+  }
+  EXPECT_GT(expected.size(), 20u);
+  EXPECT_EQ(FindSelfIntersections(mesh), expected);
 }
 
 TEST(CountSelfIntersections, IsZeroForASphereAndPositiveForTwoThatOverlap) {

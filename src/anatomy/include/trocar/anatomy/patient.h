@@ -76,6 +76,16 @@ inline constexpr const char* kGallbladderBed = "gallbladder_bed";
 /// to the world frame. \return the file's error, or kPatientInvalid with what is inconsistent
 core::Result<Patient> ReadPatient(const std::filesystem::path& folder);
 
+/// A patient as its folder has it, right or wrong.
+struct UncheckedPatient {
+  Patient patient;                       ///< an organ whose mesh cannot be read has none
+  std::vector<core::Error> mesh_errors;  ///< (organs) kNone where the mesh was read
+};
+
+/// Reads what ReadPatient reads without CheckPatient, for those who look for what is wrong. \return an error
+/// only where patient.json itself cannot be read
+core::Result<UncheckedPatient> ReadPatientUnchecked(const std::filesystem::path& folder);
+
 /// Writes the folder that ReadPatient reads; nothing is left behind when it fails.
 core::Status WritePatient(const std::filesystem::path& folder, const Patient& patient);
 

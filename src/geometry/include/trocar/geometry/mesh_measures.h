@@ -2,7 +2,9 @@
 /// \file mesh_measures.h  What can be said of a mesh: size, closedness, normals, quality.
 #pragma once
 
+#include <array>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -54,7 +56,12 @@ struct MeshReport {
 
 MeshReport InspectMesh(const TriangleMesh& mesh);
 
-/// Pairs of triangles that share no vertex and cut each other. Grid-accelerated; not real-time safe.
+/// Pairs of triangles that share no vertex and cut each other, smaller index first, ascending.
+/// Grid-accelerated; not real-time safe.
+/// \pre coordinates finite, indices in range
+std::vector<std::array<std::uint32_t, 2>> FindSelfIntersections(const TriangleMesh& mesh);
+
+/// How many FindSelfIntersections finds.
 std::size_t CountSelfIntersections(const TriangleMesh& mesh);
 
 /// Indices in range and coordinates finite, or kMeshInvalid with the first offender.
