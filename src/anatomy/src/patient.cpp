@@ -9,6 +9,7 @@
 #include <set>
 #include <system_error>
 
+#include "patient_frame.h"
 #include "trocar/core/json.h"
 #include "trocar/core/safe_file.h"
 #include "trocar/geometry/mesh_file.h"
@@ -24,27 +25,6 @@ using core::JsonView;
 
 constexpr const char* kFormat = "trocar-patient";
 constexpr int kVersion = 1;
-constexpr double kMmPerMetre = 1000.0;
-
-// LPS millimetres: left, posterior, superior. World metres: left, cranial, anterior.
-Vec3 ToLps(const Vec3& p) {
-  return {kMmPerMetre * p.x, -kMmPerMetre * p.z, kMmPerMetre * p.y};
-}
-Vec3 FromLps(const Vec3& p) {
-  return {p.x / kMmPerMetre, p.z / kMmPerMetre, -p.y / kMmPerMetre};
-}
-
-geometry::TriangleMesh Converted(geometry::TriangleMesh mesh, Vec3 (*convert)(const Vec3&)) {
-  for (Vec3& p : mesh.positions) p = convert(p);
-  return mesh;
-}
-
-/// Names become file names, so they are plain words.
-bool IsPlainName(std::string_view name) {
-  return !name.empty() && name.size() <= 64 && std::all_of(name.begin(), name.end(), [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_';
-  });
-}
 
 Error Invalid(const std::string& what) {
   return {ErrorCode::kPatientInvalid, "the patient is inconsistent: " + what + "; build it again"};

@@ -12,6 +12,7 @@
 #include <string_view>
 
 #include "nearest_surface.h"
+#include "patient_frame.h"
 #include "trocar/geometry/mesh_measures.h"
 
 namespace trocar::anatomy {
@@ -20,7 +21,6 @@ namespace {
 using core::ErrorCode;
 using geometry::TriangleMesh;
 
-constexpr double kMmPerMetre = 1e3;
 constexpr double kMlPerCubicMetre = 1e6;
 constexpr double kLiverSizeMin = 0.1, kLiverSizeMax = 0.4;  // longest side of the box [m]
 constexpr double kBedReach = 0.010;                         // longest attachment [m]
@@ -80,9 +80,9 @@ std::string Mm(double metres) {
 
 /// A place as the files give it.
 std::string PlaceText(const Vec3& world) {
+  const Vec3 p = ToLps(world);
   char text[128];
-  std::snprintf(text, sizeof(text), "(%.1f, %.1f, %.1f) mm", kMmPerMetre * world.x, -kMmPerMetre * world.z,
-                kMmPerMetre * world.y);
+  std::snprintf(text, sizeof(text), "(%.1f, %.1f, %.1f) mm", p.x, p.y, p.z);
   return text;
 }
 

@@ -72,6 +72,7 @@ void AddAnatomyCommand(CLI::App& app, Outcome& outcome) {
       "           -o out/patient --overlays out/overlays");
   build->callback([arguments, &outcome] { outcome.status = Build(*arguments); });
   AddAnatomyCheckCommand(*anatomy, outcome);
+  AddAnatomyExportCommand(*anatomy, outcome);
 }
 
 }  // namespace trocar::cli

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/anatomy/patient_export.h"
+
+#include <unistd.h>
+
+#include <array>
+#include <system_error>
+#include <utility>
+
+#include "patient_frame.h"
+#include "trocar/core/assert.h"
+#include "trocar/core/safe_file.h"
+#include "trocar/geometry/mesh_export.h"
+#include "trocar/geometry/mesh_file.h"
+
+namespace trocar::anatomy {
+namespace {
+
+namespace fs = std::filesystem;
+using core::Error;
+using core::ErrorCode;
+using geometry::NamedMesh;
+
+constexpr std::pair<std::string_view, MeshFormat> kFormats[] = {{"obj", MeshFormat::kObj},
+                                                                {"ply", MeshFormat::kPly},
+                                                                {"stl", MeshFormat::kStl},
+                                                                {"gltf", MeshFormat::kGltf},
+                                                                {"vtk", MeshFormat::kVtk}};
+
+// linear colours, as in the laparoscope's light
+constexpr std::array<double, 3> kLiver = {0.31, 0.07, 0.05}, kGallbladder = {0.33, 0.38, 0.20},
+                                kDuct = {0.45, 0.46, 0.16}, kArtery = {0.55, 0.06, 0.05},
+                                kOther = {0.60, 0.38, 0.32};
+
+std::array<double, 3> ColourOf(std::string_view organ) {
+  return organ == "liver" ? kLiver : organ == "gallbladder" ? kGallbladder : kOther;
+}
+
+/// Everything that has a surface, in the world frame.
+std::vector<NamedMesh> CollectMeshes(const Patient& patient, int tube_sides) {
+  std::vector<NamedMesh> meshes;
+  for (const Organ& organ : patient.organs) {
+    meshes.push_back({organ.name, organ.mesh, organ.name, ColourOf(organ.name)});
+  }
+  for (const Tube& tube : patient.tubes) {
+    const bool is_duct = tube.kind == TubeKind::kDuct;
+    meshes.push_back({tube.name, geometry::MakeTube(tube.line, tube_sides), is_duct ? "duct" : "artery",
+                      is_duct ? kDuct : kArtery});
+  }
+  return meshes;
+}
+
+struct File {
+  std::string name, content;
+};
+
+std::vector<File> FormatFiles(const Patient& patient, const ExportOptions& options) {
+  std::vector<NamedMesh> meshes = CollectMeshes(patient, options.tube_sides);
+  if (options.format == MeshFormat::kGltf)
+    return {{"patient.glb", geometry::FormatGlb(meshes, patient.provenance)}};
+  for (NamedMesh& part : meshes) part.mesh = Converted(std::move(part.mesh), ToLps);
+  const std::string unit = "LPS millimetres";
+  if (options.format == MeshFormat::kObj)
+    return {{"patient.obj", geometry::FormatObj(meshes, unit + ", " + patient.provenance)}};
+  std::vector<File> files;
+  for (const NamedMesh& part : meshes) {
+    const std::string about = unit + ", " + part.name;
+    if (options.format == MeshFormat::kPly) {
+      files.push_back({part.name + ".ply", geometry::FormatPly(part.mesh, about)});
+    } else if (options.format == MeshFormat::kStl) {
+      files.push_back({part.name + ".stl", geometry::FormatStl(part.mesh, about)});
+    } else {
+      const auto encoding = options.is_ascii ? geometry::VtkEncoding::kAscii : geometry::VtkEncoding::kBinary;
+      files.push_back({part.name + ".vtk", geometry::FormatVtk(part.mesh, about, encoding)});
+    }
+  }
+  return files;
+}
+
+}  // namespace
+
+core::Result<MeshFormat> FindMeshFormat(std::string_view name) {
+  std::string known;
+  for (const auto& [text, format] : kFormats) {
+    if (text == name) return format;
+    known += (known.empty() ? "" : ", ") + std::string(text);
+  }
+  return Error{ErrorCode::kUnknownName,
+               "there is no mesh format \"" + std::string(name) + "\"; known are " + known};
+}
+
+core::Result<std::vector<fs::path>> ExportPatient(const Patient& patient, const fs::path& folder,
+                                                  const ExportOptions& options) {
+  TROCAR_ASSERT(options.tube_sides >= 3);
+  if (const auto status = CheckPatient(patient); !status.ok()) return status.error();
+  for (const Tube& tube : patient.tubes) {
+    if (!IsPlainName(tube.name)) {
+      return Error{ErrorCode::kPatientInvalid,
+                   "the name of tube '" + tube.name + "' cannot be a file's; rename it with a-z, 0-9 and _"};
+    }
+  }
+  fs::path target = folder;
+  if (!target.has_filename()) target = target.parent_path();
+  const fs::path partial = target.string() + ".part" + std::to_string(::getpid());
+  const auto fail = [&](const std::string& why) {
+    std::error_code ignored;
+    fs::remove_all(partial, ignored);
+    return Error{ErrorCode::kFileUnwritable, target.string() + ": " + why};
+  };
+  std::error_code failure;
+  if (fs::exists(target, failure) && !(fs::is_directory(target, failure) && fs::is_empty(target, failure)))
+    return fail("it exists and is no empty folder; choose another or remove it");
+  fs::create_directories(partial, failure);
+  if (failure) return fail(failure.message() + "; check the folder, its rights and the space left");
+  std::vector<fs::path> paths;
+  for (const File& file : FormatFiles(patient, options)) {
+    if (const auto status = core::WriteFile(partial / file.name, file.content); !status.ok())
+      return fail(status.error().message);
+    paths.push_back(target / file.name);
+  }
+  // an empty folder is replaced by the full one in one step
+  fs::rename(partial, target, failure);
+  if (failure) return fail(failure.message() + "; check the folder, its rights and the space left");
+  return paths;
+}
+
+}  // namespace trocar::anatomy
