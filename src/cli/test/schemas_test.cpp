@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+// The JSON schemas against every file that is delivered, and against files made wrong in one way.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "trocar/core/safe_file.h"
+#include "trocar_test/temporary_folder.h"
+
+namespace trocar::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+const fs::path kRoot = TROCAR_SOURCE_DIR;
+constexpr int kMissing = 3;
+
+int CheckSchemas(const std::string& arguments) {
+  const int status = std::system(("'" + (kRoot / "tools/check-schemas").string() + "' " + arguments).c_str());
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+class Schemas : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (CheckSchemas("--check") == kMissing)
+      GTEST_SKIP() << "python3-jsonschema is not installed; run tools/install-packages --test";
+  }
+};
+
+TEST_F(Schemas, AcceptEveryFileInAssetsAndScenes) {
+  EXPECT_EQ(CheckSchemas(""), 0);
+}
+
+TEST_F(Schemas, RefuseWhatIsNoJsonOrOfNoKnownFormat) {
+  test::TemporaryFolder folder;
+  const fs::path file = folder.Path() / "a.json";
+  for (const char* text : {"", "{", "[]", "{}", R"({"format": "trocar-spleen"})", R"({"format": 7})"}) {
+    ASSERT_TRUE(core::WriteFile(file, text).ok());
+    EXPECT_EQ(CheckSchemas("'" + file.string() + "'"), 1) << text;
+  }
+  EXPECT_EQ(CheckSchemas("'" + (folder.Path() / "missing.json").string() + "'"), 1);
+}
+
+struct Broken {
+  const char* name;
+  const char* file;
+  std::function<void(Json&)> change;
+};
+
+void PrintTo(const Broken& broken, std::ostream* out) {
+  *out << broken.name;
+}
+
+class BrokenFile : public Schemas, public testing::WithParamInterface<Broken> {};
+
+TEST_P(BrokenFile, IsRefused) {
+  test::TemporaryFolder folder;
+  const fs::path file = folder.Path() / "broken.json";
+  Json json = Json::parse(*core::ReadFile(kRoot / GetParam().file));
+  ASSERT_TRUE(core::WriteFile(file, json.dump()).ok());
+  ASSERT_EQ(CheckSchemas("'" + file.string() + "'"), 0) << "the file is valid before it is broken";
+  GetParam().change(json);
+  ASSERT_TRUE(core::WriteFile(file, json.dump()).ok());
+  EXPECT_EQ(CheckSchemas("'" + file.string() + "'"), 1);
+}
+
+constexpr const char* kPatient = "assets/patients/visible-human-male/patient/patient.json";
+constexpr const char* kPoints = "assets/patients/visible-human-male/control_points.json";
+constexpr const char* kScene = "scenes/demonstration.json";
+constexpr const char* kScript = "scenes/demonstration.script.json";
+
+const Broken kBroken[] = {
+    {"PatientUnit", kPatient, [](Json& j) { j["unit"] = "m"; }},
+    {"PatientWithoutTubes", kPatient, [](Json& j) { j.erase("tubes"); }},
+    {"PatientMeshLeadsOut", kPatient, [](Json& j) { j["organs"][0]["mesh"] = "../liver.ply"; }},
+    {"PatientVertexNoWholeNumber", kPatient,
+     [](Json& j) { j["organs"][0]["regions"][0]["vertices"][0] = 1.5; }},
+    {"PatientRadiusZero", kPatient, [](Json& j) { j["tubes"][0]["radii"][0] = 0; }},
+    {"PatientMisspelt", kPatient, [](Json& j) { j["landmark"] = Json::array(); }},
+    {"PointsVersion", kPoints, [](Json& j) { j["version"] = 2; }},
+    {"PointsAxis", kPoints, [](Json& j) { j["images"]["axes"]["row"] = "up"; }},
+    {"PointsPatternLeadsOut", kPoints, [](Json& j) { j["images"]["pattern"] = "../{slice}.png"; }},
+    {"PointsContourOfTwo", kPoints,
+     [](Json& j) {
+       j["structures"][0]["slices"][0]["contours"][0] = {{1, 2}, {3, 4}};
+     }},
+    {"PointsRadiusMissing", kPoints, [](Json& j) { j["tubes"][0]["points"][0].erase(3); }},
+    {"SceneWithoutPatient", kScene, [](Json& j) { j.erase("patient"); }},
+    {"SceneSolver", kScene, [](Json& j) { j["settings"]["solver"] = "magic"; }},
+    {"SceneThirdHand", kScene, [](Json& j) { j["instruments"]["third"] = j["instruments"]["left"]; }},
+    {"SceneStiffnessNegative", kScene, [](Json& j) { j["materials"][0]["young_modulus_pa"] = -1; }},
+    {"ScriptFirstKeyWithOneHand", kScript, [](Json& j) { j["keys"][0].erase("right"); }},
+    {"ScriptWithoutKeys", kScript, [](Json& j) { j["keys"] = Json::array(); }},
+    {"ScriptJawTooWide", kScript, [](Json& j) { j["keys"][1]["left"]["jaw_deg"] = 120; }},
+    {"ScriptPointOfTwoNumbers", kScript,
+     [](Json& j) {
+       j["keys"][1]["left"]["offset_mm"] = {1, 2};
+     }},
+};
+
+INSTANTIATE_TEST_SUITE_P(Schemas, BrokenFile, testing::ValuesIn(kBroken),
+                         [](const auto& one) { return std::string(one.param.name); });
+
+}  // namespace
+}  // namespace trocar::cli
