@@ -15,6 +15,7 @@ namespace {
 
 struct BuildArguments {
   std::string control_points, images, output, reference, overlays;
+  bool without_overlays = false;
 };
 
 core::Status Build(const BuildArguments& arguments) {
@@ -23,7 +24,9 @@ core::Status Build(const BuildArguments& arguments) {
   options.images = arguments.images;
   options.output = arguments.output;
   if (!arguments.reference.empty()) options.reference = arguments.reference;
-  if (!arguments.overlays.empty()) options.overlays = arguments.overlays;
+  if (!arguments.without_overlays) {
+    options.overlays = arguments.overlays.empty() ? arguments.output + "-overlays" : arguments.overlays;
+  }
   ProgressBar bar("building", 1.0);
   const core::Result<anatomy::BuildReport> report =
       anatomy::BuildPatient(options, [&](std::string_view what, double fraction) {
@@ -35,7 +38,7 @@ core::Status Build(const BuildArguments& arguments) {
   std::fputs(anatomy::FormatReport(*report).c_str(), stdout);
   std::printf("\nWrote %s\n", arguments.output.c_str());
   if (report->overlays > 0) {
-    std::printf("Wrote %zu pictures to check by eye into %s\n", report->overlays, arguments.overlays.c_str());
+    std::printf("Wrote %zu pictures to check by eye into %s\n", report->overlays, options.overlays->c_str());
   }
   return {};
 }
@@ -63,13 +66,15 @@ void AddAnatomyCommand(CLI::App& app, Outcome& outcome) {
       ->type_name("FILE");
   build
       ->add_option("--overlays", arguments->overlays,
-                   "Folder for one picture a slice with the contours drawn in")
+                   "Folder for one picture a slice with the contours drawn in (default: PATIENT-overlays)")
       ->type_name("DIR");
+  build->add_flag("--no-overlays", arguments->without_overlays, "Write no pictures");
   build->footer(
-      "Prints a table of the organs. Nothing is written when any step fails.\n"
+      "Prints a table of the organs and writes a picture of each contoured slice to check by eye.\n"
+      "Nothing is written when any step fails.\n"
       "Example: trocar anatomy build assets/patients/visible-human-male/control_points.json --images SLICES "
       "\\\n"
-      "           -o out/patient --overlays out/overlays");
+      "           -o out/patient");
   build->callback([arguments, &outcome] { outcome.status = Build(*arguments); });
   AddAnatomyCheckCommand(*anatomy, outcome);
   AddAnatomyExportCommand(*anatomy, outcome);

@@ -278,10 +278,10 @@ Finding CheckRealTime() {
   if (answer.end == ChildEnd::kAnswered) {
     return {"real-time", Health::kGood,
             "priority " + std::to_string(kWantedPriority) + " granted (limit " + allowed + ")",
-            "a haptic loop could run at an even 1000 Hz", ""};
+            "the window's simulation runs before drawing, so that its ticks are even", ""};
   }
   return {"real-time", Health::kLimited, answer.text + " (limit " + allowed + ")",
-          "nothing suffers yet: pictures and tissue need no real-time priority; a haptic device would",
+          "ticks may come late while the same processor cores draw",
           "put \"@audio - rtprio 70\" into /etc/security/limits.d/trocar.conf, add yourself to the group "
           "audio, log in "
           "again"};

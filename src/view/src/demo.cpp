@@ -95,15 +95,17 @@ core::Result<DemoReport> PlayDemonstration(std::shared_ptr<const session::Scene>
   draw_seconds.reserve(frame_count);
   render::Image image;
   std::size_t next_picture = 0;
-  for (std::uint64_t frame = 0; frame < frame_count; ++frame) {
-    // whole ticks up to the frame's time
-    const double frame_time = static_cast<double>(frame) / options.frames_per_second;
-    const auto tick_goal = static_cast<std::uint64_t>(std::floor(frame_time / scene->tick_seconds + 1e-6));
+  const auto play_until = [&](double time) {
+    const auto tick_goal = static_cast<std::uint64_t>(std::floor(time / scene->tick_seconds + 1e-6));
     while (report.ticks < tick_goal) {
       simulation->Step(session::CalcScriptInput(*scene, simulation->GetSnapshot().time));
       ++report.ticks;
       if (options.on_tick) options.on_tick(simulation->GetSnapshot());
     }
+  };
+  for (std::uint64_t frame = 0; frame < frame_count; ++frame) {
+    const double frame_time = static_cast<double>(frame) / options.frames_per_second;
+    play_until(frame_time);
 
     const core::Stopwatch watch;
     view->Update(simulation->GetSnapshot());
@@ -127,6 +129,7 @@ core::Result<DemoReport> PlayDemonstration(std::shared_ptr<const session::Scene>
     if (options.on_progress)
       options.on_progress(static_cast<double>(frame + 1) / static_cast<double>(frame_count));
   }
+  play_until(*duration);  // what lies behind the last frame
   if (video) {
     if (auto status = video->Finish(); !status) return status.error();
   }

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// The same scene, seed and ticks: the same bits, twice and with any number of threads.
+#include <nlohmann/json.hpp>
+
+#include "command_fixture.h"
+
+namespace trocar {
+namespace {
+
+class Determinism : public Command {
+ protected:
+  static nlohmann::json Simulate(int ticks, int seed, int threads) {
+    const auto result =
+        Run({"simulate", Source("scenes/demonstration.json"), "--ticks", std::to_string(ticks), "--seed",
+             std::to_string(seed), "--threads", std::to_string(threads), "--json"});
+    EXPECT_EQ(result.status, 0) << result.err;
+    return nlohmann::json::parse(result.out, nullptr, false);
+  }
+};
+
+TEST_F(Determinism, SameHashTwiceAndWithOneTwoAndFourThreads) {
+  const std::string hash = Simulate(240, 1, 1).at("hash");
+  EXPECT_THAT(hash, testing::MatchesRegex("[0-9a-f]+"));
+  EXPECT_EQ(hash.size(), 16u);
+  for (const int threads : {1, 2, 4})
+    EXPECT_EQ(Simulate(240, 1, threads).at("hash"), hash) << threads << " threads";
+}
+
+// Negative control: the hash is of the state, which moves.
+TEST_F(Determinism, AnotherTickIsAnotherHash) {
+  EXPECT_NE(Simulate(30, 1, 1).at("hash"), Simulate(31, 1, 1).at("hash"));
+}
+
+TEST_F(Determinism, JsonHoldsWhatWasPromisedAndNothingElse) {
+  const nlohmann::json json = Simulate(20, 1, 1);
+  std::vector<std::string> keys;
+  for (const auto& [key, value] : json.items()) keys.push_back(key);
+  EXPECT_THAT(keys, testing::UnorderedElementsAre("hash", "ticks", "residual", "stages", "tick_p99_ms",
+                                                  "max_force_n"));
+  EXPECT_EQ(json.at("ticks"), 20);
+  EXPECT_EQ(json.at("stages").size(), 9u);
+  for (const auto& stage : json.at("stages")) {
+    EXPECT_GE(stage.at("p99_ms").get<double>(), stage.at("median_ms").get<double>()) << stage;
+    EXPECT_TRUE(stage.at("name").is_string());
+  }
+}
+
+}  // namespace
+}  // namespace trocar
