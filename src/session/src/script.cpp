@@ -99,9 +99,10 @@ Input CalcScriptInput(const Scene& scene, double time) {
   const auto tremor = CalcTremor(scene.script.tremor, scene.seed, time);
   for (int hand = 0; hand < kHandCount; ++hand) {
     const auto blend = [&](double a, double b) { return a + s * (b - a); };
-    input.hands[hand] = instrument::FindJoints(
-        scene.instruments[hand].p_world_port, math::Lerp(from.p_world_tip[hand], to.p_world_tip[hand], s) + tremor[hand],
-        blend(from.spin[hand], to.spin[hand]), blend(from.jaw[hand], to.jaw[hand]));
+    input.hands[hand] =
+        instrument::FindJoints(scene.instruments[hand].p_world_port,
+                               math::Lerp(from.p_world_tip[hand], to.p_world_tip[hand], s) + tremor[hand],
+                               blend(from.spin[hand], to.spin[hand]), blend(from.jaw[hand], to.jaw[hand]));
   }
   return input;
 }

@@ -28,8 +28,8 @@ constexpr double kShareGrowth = 4.0;
 /// No node moves farther in one Jacobi step [m]: half a triangle's edge of the built-in organs. While a step
 /// is cut short the recurrence waits, because it presumes whole steps.
 constexpr double kMaxStep = 0.002;
-/// The recurrence starts again after this many iterations, then after twice as many, and so on: how weak the weakest mode
-/// is need not be known, and what a short cycle can reach is not kept waiting by a long one.
+/// The recurrence starts again after this many iterations, then after twice as many, and so on: how weak the
+/// weakest mode is need not be known, and what a short cycle can reach is not kept waiting by a long one.
 constexpr int kFirstCycle = 40;
 constexpr int kLongestCycle = 1280;
 /// ln(100) / 2: a cycle is tuned to damp what it can reach a hundredfold.

@@ -15,8 +15,8 @@ struct RunnerStatistics {
   std::uint64_t late_ticks = 0;  ///< started more than half a tick late
   double tick_median = 0;        ///< over the last second [s]
   double tick_p99 = 0;           ///< over the last second [s]
-  /// The system let the simulation thread run before ordinary threads (SCHED_RR), so that drawing on the same cores
-  /// cannot delay a tick. `trocar doctor` says how to allow it.
+  /// The system let the simulation thread run before ordinary threads (SCHED_RR), so that drawing on the same
+  /// cores cannot delay a tick. `trocar doctor` says how to allow it.
   bool is_real_time = false;
 };
 

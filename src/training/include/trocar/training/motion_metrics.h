@@ -43,8 +43,8 @@ struct MetricSettings {
   double force_release =
       0.9;  ///< the next exceedance counts after the force fell below this part [-], in (0, 1]
   SparcSettings sparc;
-  /// Shortest path of the task for each tool [m], > 0. Where absent, economy of motion is undefined: the straight
-  /// line from first to last position says nothing of a hand that comes back.
+  /// Shortest path of the task for each tool [m], > 0. Where absent, economy of motion is undefined: the
+  /// straight line from first to last position says nothing of a hand that comes back.
   std::vector<std::optional<double>> ideal_path_lengths;
 };
 
