@@ -43,7 +43,8 @@ struct ScriptKey {
 /// A row of keys in time order: a deterministic pair of hands.
 struct Script {
   std::vector<ScriptKey> keys;
-  double tremor = 0;  ///< amplitude of the hands' physiological tremor, 8 to 12 Hz, different for each seed [m]
+  double tremor =
+      0;  ///< amplitude of the hands' physiological tremor, 8 to 12 Hz, different for each seed [m]
   double Duration() const { return keys.empty() ? 0.0 : keys.back().time; }
 };
 
@@ -67,8 +68,8 @@ struct Scene {
   LaparoscopeSetup laparoscope;
   LiveSettings settings;            ///< at the start
   double tick_seconds = 1.0 / 120;  ///< [s]
-  std::uint64_t seed = 0;  ///< of everything random: now the tremor of a script's hands
-  Script script;  ///< empty when the scene names none
+  std::uint64_t seed = 0;           ///< of everything random: now the tremor of a script's hands
+  Script script;                    ///< empty when the scene names none
 };
 
 /// Folder that holds assets/ and scenes/: TROCAR_DATA_DIR, else beside the program, else its source tree.
@@ -76,8 +77,10 @@ struct Scene {
 core::Result<std::filesystem::path> FindDataFolder();
 
 /// Reads a scene with its patient and script. Paths inside are relative to the scene file.
+/// \param patient_folder  takes the place of the scene's own patient unless it is empty
 /// \return the file's error, kSceneInvalid, kScriptInvalid or kUnknownName
-core::Result<Scene> ReadScene(const std::filesystem::path& path);
+core::Result<Scene> ReadScene(const std::filesystem::path& path,
+                              const std::filesystem::path& patient_folder = {});
 
 /// The script's input at `time` [s], clamped to its first and last key; the home pose without a script.
 Input CalcScriptInput(const Scene& scene, double time);
