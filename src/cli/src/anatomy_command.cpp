@@ -13,6 +13,7 @@
 #include "console.h"
 #include "trocar/anatomy/build_patient.h"
 #include "trocar/anatomy/generate_patient.h"
+#include "trocar/anatomy/patient_from_labels.h"
 #include "trocar/anatomy/patient_parameters.h"
 
 namespace trocar::cli {
@@ -147,6 +148,52 @@ void AddGenerateCommand(CLI::App& anatomy, Outcome& outcome) {
   generate->callback([arguments, &outcome] { outcome.status = Generate(*arguments); });
 }
 
+core::Status BuildFromLabels(const anatomy::LabelOptions& options) {
+  ProgressBar bar("building", 1.0);
+  const core::Result<anatomy::BuildReport> report =
+      anatomy::BuildPatientFromLabels(options, [&](std::string_view what, double fraction) {
+        bar.SetLabel(what);
+        bar.Show(fraction);
+      });
+  bar.Finish();
+  if (!report) return report.error();
+  std::vector<std::vector<std::string>> rows = {
+      {"organ", "slices", "triangles", "closed", "manifold", "genus", "cuts", "volume [mL]"}};
+  for (const anatomy::OrganReport& organ : report->organs) {
+    rows.push_back({organ.name, std::to_string(organ.slices), std::to_string(organ.triangles),
+                    organ.closed ? "yes" : "NO", organ.manifold ? "yes" : "NO", std::to_string(organ.genus),
+                    std::to_string(organ.self_intersections), FormatNumber(organ.volume_ml)});
+  }
+  std::fputs(FormatTable(rows).c_str(), stdout);
+  std::printf("\n%s.\nWrote %s\n", report->patient.provenance.c_str(), options.output.c_str());
+  return {};
+}
+
+void AddFromLabelsCommand(CLI::App& anatomy, Outcome& outcome) {
+  CLI::App* command =
+      anatomy.add_subcommand("from-labels", "Build a patient from a label map of liver and gallbladder");
+  auto options = std::make_shared<anatomy::LabelOptions>();
+  command->add_option("labels", options->labels, "Label map: NIfTI (.nii, .nii.gz) or NRRD (.nrrd)")
+      ->required()
+      ->type_name("FILE");
+  command->add_option("-o,--output", options->output, "Patient folder to write")
+      ->required()
+      ->type_name("PATIENT");
+  command->add_option("--liver", options->liver, "Label of the liver, if it cannot be found by itself")
+      ->check(CLI::Range(1, 255))
+      ->type_name("LABEL");
+  command->add_option("--gallbladder", options->gallbladder, "Label of the gallbladder, likewise")
+      ->check(CLI::Range(1, 255))
+      ->type_name("LABEL");
+  command->footer(
+      "Labels are found by the segment names of 3D Slicer, by TotalSegmentator's numbers (liver 5, "
+      "gallbladder "
+      "2),\nor are 1 and 2. Ducts and arteries are placed by landmarks.\n"
+      "Examples: trocar anatomy from-labels total.nii.gz -o out/patient\n"
+      "          trocar anatomy from-labels mine.nrrd --liver 3 --gallbladder 4 -o out/patient");
+  command->callback([options, &outcome] { outcome.status = BuildFromLabels(*options); });
+}
+
 }  // namespace
 
 void AddAnatomyCommand(CLI::App& app, Outcome& outcome) {
@@ -179,6 +226,7 @@ void AddAnatomyCommand(CLI::App& app, Outcome& outcome) {
       "           -o out/patient --overlays out/overlays");
   build->callback([arguments, &outcome] { outcome.status = Build(*arguments); });
   AddGenerateCommand(*anatomy, outcome);
+  AddFromLabelsCommand(*anatomy, outcome);
 }
 
 }  // namespace trocar::cli
