@@ -304,16 +304,25 @@ ScalarVolume Sample(const geometry::Box& box, double spacing, Function distance)
   return volume;
 }
 
-core::Result<StructureMesh> MakeStructure(const char* name, ScalarVolume volume,
-                                          const SmoothingSettings& smoothing, int triangles) {
+/// Meshes a volume. Where decimation folds a thin rim over itself, the rim is smoothed more and tried again.
+core::Result<StructureMesh> MakeStructure(const char* name, ScalarVolume volume, int triangles) {
+  // the distances are smooth already: little smoothing is needed
+  constexpr int kSmoothing[] = {40, 60, 90, 130, 180, 250};
   KeepLargestPart(volume);
-  auto mesh = MarchCubes(volume);
-  if (mesh.triangles.empty()) return Error{ErrorCode::kContourEmpty, std::string(name) + " encloses nothing"};
-  SmoothMesh(mesh, smoothing);
-  auto decimated = DecimateMesh(mesh, {.triangle_budget = triangles});
-  if (!decimated.ok())
-    return Error{decimated.error().code, std::string(name) + ": " + decimated.error().message};
-  return StructureMesh{name, std::move(*decimated)};
+  const auto surface = MarchCubes(volume);
+  if (surface.triangles.empty())
+    return Error{ErrorCode::kContourEmpty, std::string(name) + " encloses nothing"};
+  for (const int iterations : kSmoothing) {
+    auto mesh = surface;
+    SmoothMesh(mesh, {.iterations = iterations});
+    auto decimated = DecimateMesh(mesh, {.triangle_budget = triangles});
+    if (!decimated.ok())
+      return Error{decimated.error().code, std::string(name) + ": " + decimated.error().message};
+    if (geometry::CountSelfIntersections(*decimated) == 0) return StructureMesh{name, std::move(*decimated)};
+  }
+  return Error{ErrorCode::kMeshInvalid, std::string(name) +
+                                            ": its mesh cuts itself with these parameters; take another seed "
+                                            "or milder settings"};
 }
 
 }  // namespace
@@ -323,11 +332,9 @@ core::Result<Patient> GeneratePatient(std::uint64_t seed, std::span<const Parame
   if (!parameters.ok()) return parameters.error();
   const Body body(*parameters, seed);
 
-  // the distances are smooth already: little smoothing is needed
-  constexpr SmoothingSettings kSmoothing = {.iterations = 40};
   auto liver = MakeStructure(
       "liver", Sample(body.LiverBox(), kLiverSpacingMm, [&](const Vec3& p) { return body.LiverDistance(p); }),
-      kSmoothing, kLiverTriangles);
+      kLiverTriangles);
   if (!liver.ok()) return liver.error();
   geometry::Box box = geometry::CalcBox(body.Gallbladder().points);
   const double reach =
@@ -336,7 +343,7 @@ core::Result<Patient> GeneratePatient(std::uint64_t seed, std::span<const Parame
   auto gallbladder = MakeStructure(
       "gallbladder",
       Sample(box, kGallbladderSpacingMm, [&](const Vec3& p) { return body.GallbladderDistance(p); }),
-      kSmoothing, kGallbladderTriangles);
+      kGallbladderTriangles);
   if (!gallbladder.ok()) return gallbladder.error();
 
   ControlPoints frame = MakeWorldFrame();
