@@ -3,12 +3,15 @@
 #include "trocar/anatomy/image_stack.h"
 
 #include <itkJPEGImageIO.h>
+#include <itkMetaDataObject.h>
 #include <itkNiftiImageIO.h>
+#include <itkNrrdImageIO.h>
 #include <itkPNGImageIO.h>
 #include <oneapi/tbb/parallel_for.h>
 
 #include <atomic>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <exception>
 #include <optional>
@@ -25,6 +28,7 @@ using core::ErrorCode;
 
 constexpr std::size_t kMaxSide = 16384;  // pixels
 constexpr std::size_t kMaxVoxels = std::size_t{1} << 28;
+constexpr double kMostDeflated = 1040.0;  // no deflate stream holds more bytes for one of its own
 constexpr std::size_t kMaxFileBytes = std::size_t{256} << 20;
 
 Error Undecodable(const fs::path& path, const std::string& why) {
@@ -103,6 +107,23 @@ core::Result<ColorImage> Decode(const fs::path& path, ExpectedSize expected) {
   }
 }
 
+/// Segment names that 3D Slicer keeps: Segment0_Name, Segment0_LabelValue.
+std::vector<std::pair<std::string, int>> ReadSegmentNames(const itk::MetaDataDictionary& header) {
+  std::vector<std::pair<std::string, int>> names;
+  for (int i = 0; i < 256; ++i) {
+    const std::string segment = "Segment" + std::to_string(i);
+    std::string name, value;
+    if (!itk::ExposeMetaData<std::string>(header, segment + "_Name", name)) continue;
+    if (!itk::ExposeMetaData<std::string>(header, segment + "_LabelValue", value)) continue;
+    char* end = nullptr;
+    const long label = std::strtol(value.c_str(), &end, 10);
+    if (end != value.c_str() && *end == '\0' && label > 0 && label < 256) {
+      names.emplace_back(name, static_cast<int>(label));
+    }
+  }
+  return names;
+}
+
 template <typename Sample>
 bool CopyLabels(const std::vector<char>& raw, std::vector<std::uint8_t>& labels) {
   for (std::size_t i = 0; i < labels.size(); ++i) {
@@ -159,11 +180,12 @@ core::Result<std::map<int, ColorImage>> LoadSlices(const SliceFolder& source, st
 core::Result<LabelVolume> ReadLabelVolume(const fs::path& path) {
   std::error_code ignored;
   if (!fs::is_regular_file(path, ignored)) {
-    return Error{ErrorCode::kFileMissing, path.string() + " does not exist; name a NIfTI label map"};
+    return Error{ErrorCode::kFileMissing, path.string() + " does not exist; name a NIfTI or NRRD label map"};
   }
   try {
-    const auto reader = itk::NiftiImageIO::New();
-    if (!reader->CanReadFile(path.c_str())) return Undecodable(path, "it is no NIfTI file");
+    itk::ImageIOBase::Pointer reader = itk::NiftiImageIO::New().GetPointer();
+    if (!reader->CanReadFile(path.c_str())) reader = itk::NrrdImageIO::New().GetPointer();
+    if (!reader->CanReadFile(path.c_str())) return Undecodable(path, "it is no NIfTI or NRRD file");
     reader->SetFileName(path.string());
     reader->ReadImageInformation();
     if (reader->GetNumberOfDimensions() != 3 || reader->GetNumberOfComponents() != 1) {
@@ -182,7 +204,16 @@ core::Result<LabelVolume> ReadLabelVolume(const fs::path& path) {
       const std::vector<double> unit = reader->GetDirection(axis);
       for (unsigned k = 0; k < 3; ++k) volume.direction[axis][k] = unit[k] * reader->GetSpacing(axis);
     }
-    std::vector<char> raw(static_cast<std::size_t>(reader->GetImageSizeInBytes()));
+    const auto bytes = static_cast<std::size_t>(reader->GetImageSizeInBytes());
+    // a detached header keeps its voxels in another file, whose size the reader itself compares
+    const std::string extension = path.extension().string();
+    const double most = extension == ".nii" ? 1.0 : kMostDeflated;
+    if (extension != ".nhdr" &&
+        static_cast<double>(bytes) > most * static_cast<double>(fs::file_size(path))) {
+      return Undecodable(path, "it is too small for the size in its header");
+    }
+    volume.names = ReadSegmentNames(reader->GetMetaDataDictionary());
+    std::vector<char> raw(bytes);
     reader->SetIORegion(region);
     reader->Read(raw.data());
     volume.labels.resize(count);

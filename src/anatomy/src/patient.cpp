@@ -97,7 +97,21 @@ std::string FormatPatient(const Patient& patient) {
   append_list("organs", organs, false);
   append_list("attachments", attachments, false);
   append_list("tubes", tubes, false);
-  append_list("landmarks", landmarks, true);
+  std::vector<Json> parameters;
+  for (const Parameter& parameter : patient.parameters) {
+    Json json = {{"name", parameter.name}};
+    if (const double* number = std::get_if<double>(&parameter.value)) {
+      json["value"] = *number;
+    } else {
+      json["text"] = std::get<std::string>(parameter.value);
+    }
+    json["unit"] = parameter.unit;
+    json["source"] = parameter.source;
+    parameters.push_back(std::move(json));
+  }
+  append_list("landmarks", landmarks, parameters.empty());
+  // a patient without parameters stays readable for programs that do not know them
+  if (!parameters.empty()) append_list("parameters", parameters, true);
   return text + "}\n";
 }
 
@@ -117,13 +131,20 @@ const Landmark* Patient::FindLandmark(std::string_view landmark_name) const {
   return nullptr;
 }
 
+const Parameter* Patient::FindParameter(std::string_view parameter_name) const {
+  for (const Parameter& parameter : parameters) {
+    if (parameter.name == parameter_name) return &parameter;
+  }
+  return nullptr;
+}
+
 core::Result<UncheckedPatient> ReadPatientUnchecked(const fs::path& folder) {
   const fs::path path = folder / "patient.json";
   auto document = core::JsonDocument::Read(path);
   if (!document.ok()) return document.error();
   const JsonView root = document->Root();
   root.AllowOnly({"format", "version", "name", "provenance", "frame", "unit", "organs", "attachments",
-                  "tubes", "landmarks"});
+                  "tubes", "landmarks", "parameters"});
   if (root.Text("format") != kFormat) root.Complain(std::string("format must be \"") + kFormat + "\"");
   root.Integer("version", {kVersion, kVersion});
   if (root.Text("frame") != "LPS" || root.Text("unit") != "mm")
@@ -185,6 +206,18 @@ core::Result<UncheckedPatient> ReadPatientUnchecked(const fs::path& folder) {
   for (const JsonView& view : root.Array("landmarks")) {
     view.AllowOnly({"name", "position"});
     patient.landmarks.push_back({view.Text("name"), PointFrom(view, "position")});
+  }
+  if (root.Has("parameters")) {
+    for (const JsonView& view : root.Array("parameters")) {
+      view.AllowOnly({"name", "value", "text", "unit", "source"});
+      Parameter parameter{view.Text("name"), 0.0, view.Text("unit"), view.Text("source")};
+      if (view.Has("text")) {
+        parameter.value = view.Text("text");
+      } else {
+        parameter.value = view.Number("value");
+      }
+      patient.parameters.push_back(std::move(parameter));
+    }
   }
   if (const auto status = document->Check(); !status.ok()) return status.error();
   UncheckedPatient unchecked{std::move(patient), {}};
@@ -319,6 +352,14 @@ core::Status CheckPatient(const Patient& patient) {
     if (!landmarks.insert(landmark.name).second)
       return Invalid("landmark '" + landmark.name + "' is there twice");
     if (!math::IsFinite(landmark.position)) return Invalid("landmark '" + landmark.name + "' is not finite");
+  }
+  std::set<std::string> parameters;
+  for (const Parameter& parameter : patient.parameters) {
+    if (parameter.name.empty() || !parameters.insert(parameter.name).second)
+      return Invalid("parameter '" + parameter.name + "' has no name or is there twice");
+    const double* number = std::get_if<double>(&parameter.value);
+    if (number != nullptr && !std::isfinite(*number))
+      return Invalid("parameter '" + parameter.name + "' is not finite");
   }
   return {};
 }

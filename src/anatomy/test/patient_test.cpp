@@ -86,6 +86,23 @@ TEST_F(PatientFolder, ComesBack) {
   EXPECT_EQ(EntriesInBase(), 1u);
 }
 
+TEST_F(PatientFolder, KeepsParameters) {
+  Patient written = MakePatient();
+  ASSERT_TRUE(WritePatient(folder_, written).ok());
+  EXPECT_EQ(core::ReadFile(folder_ / "patient.json")->find("parameters"), std::string::npos);
+  EXPECT_TRUE(ReadPatient(folder_)->parameters.empty());
+  written.parameters = {{"cystic_duct_length", 35.25, "mm", "a series"},
+                        {"cystic_duct_insertion", std::string("low \"quoted\""), "", "another"}};
+  ASSERT_TRUE(WritePatient(folder_, written).ok());
+  const auto read = ReadPatient(folder_);
+  ASSERT_TRUE(read.ok()) << read.error().Text();
+  EXPECT_EQ(read->parameters, written.parameters);
+  EXPECT_EQ(read->FindParameter("cystic_duct_length")->unit, "mm");
+  EXPECT_EQ(read->FindParameter("height"), nullptr);
+  Rewrite("35.25", "\"35.25\"");
+  EXPECT_EQ(ReadPatient(folder_).error().code, ErrorCode::kJsonField);
+}
+
 TEST_F(PatientFolder, HoldsLpsMillimetres) {
   ASSERT_TRUE(WritePatient(folder_, MakePatient()).ok());
   const auto mesh = geometry::ReadPly(folder_ / "liver.ply");
@@ -181,6 +198,14 @@ TEST(CheckPatient, FindsEachFault) {
   EXPECT_EQ(code_after([](Patient& p) { p.tubes[1].from = "aorta"; }), ErrorCode::kPatientInvalid);
   EXPECT_EQ(code_after([](Patient& p) {
               p.organs[0].mesh.positions[0].x = std::numeric_limits<double>::infinity();
+            }),
+            ErrorCode::kPatientInvalid);
+  EXPECT_EQ(code_after([](Patient& p) {
+              p.parameters = {{"a", 1.0, "", ""}, {"a", 2.0, "", ""}};
+            }),
+            ErrorCode::kPatientInvalid);
+  EXPECT_EQ(code_after([](Patient& p) {
+              p.parameters = {{"a", std::numeric_limits<double>::quiet_NaN(), "", ""}};
             }),
             ErrorCode::kPatientInvalid);
   EXPECT_EQ(code_after([](Patient& p) { p.landmarks[1].name = "umbilicus"; }), ErrorCode::kPatientInvalid);

@@ -30,6 +30,7 @@ namespace fs = std::filesystem;
 
 struct DemoArguments {
   std::string scene;
+  std::string patient;  // in place of the scene's
   std::string output = "out/demo";
   std::string size = "1280x720";
   double seconds = 0;
@@ -91,14 +92,15 @@ bool ParseSize(const std::string& text, int& width, int& height) {
   return std::sscanf(text.c_str(), "%5dx%5d%c", &width, &height, &end) == 2;
 }
 
-core::Result<std::shared_ptr<const session::Scene>> ReadSceneOrBuiltIn(const std::string& path) {
+core::Result<std::shared_ptr<const session::Scene>> ReadSceneOrBuiltIn(const std::string& path,
+                                                                       const std::string& patient) {
   fs::path file = path;
   if (path.empty()) {
     const core::Result<fs::path> folder = session::FindDataFolder();
     if (!folder) return folder.error();
     file = *folder / "scenes/demonstration.json";
   }
-  core::Result<session::Scene> scene = session::ReadScene(file);
+  core::Result<session::Scene> scene = session::ReadScene(file, patient);
   if (!scene) return scene.error();
   return std::make_shared<const session::Scene>(std::move(scene).value());
 }
@@ -165,7 +167,7 @@ core::Status Play(const DemoArguments& arguments) {
   if (!ParseSize(arguments.size, options.width, options.height)) {
     return core::Error{core::ErrorCode::kUsage, "--size: \"" + arguments.size + "\" is not like 1280x720"};
   }
-  const auto scene = ReadSceneOrBuiltIn(arguments.scene);
+  const auto scene = ReadSceneOrBuiltIn(arguments.scene, arguments.patient);
   if (!scene) return scene.error();
   PartFolder part(arguments.output);
   options.duration = arguments.seconds;
@@ -201,6 +203,8 @@ void AddDemoCommand(CLI::App& app, Outcome& outcome) {
       ->add_option("scene,--scene", arguments->scene,
                    "Scene file (JSON); the built-in demonstration if not given")
       ->type_name("FILE");
+  command->add_option("--patient", arguments->patient, "Patient folder in place of the scene's")
+      ->type_name("PATIENT");
   command->add_option("-o,--output", arguments->output, "Folder to write")
       ->type_name("DIR")
       ->capture_default_str();

@@ -23,6 +23,7 @@ namespace {
 
 struct SimulateOptions {
   std::string scene;
+  std::string patient;  // in place of the scene's
   int ticks = 0;
   std::uint64_t seed = 0;
   bool has_seed = false;
@@ -51,7 +52,7 @@ std::string FormatHash(std::uint64_t hash) {
 }
 
 core::Result<SimulateReport> Simulate(const SimulateOptions& options) {
-  core::Result<session::Scene> read = session::ReadScene(options.scene);
+  core::Result<session::Scene> read = session::ReadScene(options.scene, options.patient);
   if (!read) return read.error();
   auto scene = std::make_shared<session::Scene>(std::move(read).value());
   if (options.has_seed) scene->seed = options.seed;
@@ -127,6 +128,8 @@ void AddSimulateCommand(CLI::App& app, Outcome& outcome) {
   command->add_option("scene", options->scene, "Scene file (JSON), which names its patient and its script")
       ->required()
       ->type_name("FILE");
+  command->add_option("--patient", options->patient, "Patient folder in place of the scene's")
+      ->type_name("PATIENT");
   command->add_option("--ticks", options->ticks, "How many ticks, each scene.tick_seconds long (1/120 s)")
       ->required()
       ->check(CLI::Range(1, 10'000'000))

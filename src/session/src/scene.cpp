@@ -97,7 +97,8 @@ void ReadSettings(const core::JsonView& root, LiveSettings& settings) {
 
 }  // namespace
 
-core::Result<Scene> ReadScene(const std::filesystem::path& path) {
+core::Result<Scene> ReadScene(const std::filesystem::path& path,
+                              const std::filesystem::path& patient_folder) {
   auto document = core::JsonDocument::Read(path);
   if (!document.ok()) return document.error();
   const core::JsonView root = document->Root();
@@ -109,10 +110,10 @@ core::Result<Scene> ReadScene(const std::filesystem::path& path) {
   scene.name = root.Text("name");
   scene.tick_seconds = 1.0 / root.NumberOr("tick_hz", 120.0, {10.0, 2000.0});
   scene.seed = static_cast<std::uint64_t>(root.IntegerOr("seed", 0, {0.0, 2147483647.0}));
-  const std::string patient_folder = root.Text("patient");
+  const std::string own_patient = root.Text("patient");
   if (const auto status = document->Check(); !status.ok()) return status.error();
 
-  scene.patient_folder = path.parent_path() / patient_folder;
+  scene.patient_folder = patient_folder.empty() ? path.parent_path() / own_patient : patient_folder;
   auto patient = anatomy::ReadPatient(scene.patient_folder);
   if (!patient.ok()) return patient.error();
   scene.patient = std::move(*patient);

@@ -10,6 +10,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "trocar/core/result.h"
@@ -59,10 +60,13 @@ struct LabelVolume {
   std::array<std::array<double, 3>, 3> direction = {};  ///< [axis] step of one voxel, LPS [mm]
   std::array<double, 3> origin = {0, 0, 0};             ///< centre of the first voxel, LPS [mm]
   std::vector<std::uint8_t> labels;                     ///< (size product)
+  std::vector<std::pair<std::string, int>> names;       ///< of labels, where the file has them (3D Slicer)
 };
 
-/// Reads a NIfTI label map (.nii, .nii.gz) of whole numbers from 0 to 255.
-/// \return kFileMissing, or kImageUndecodable for what is no label map or has more than 2^28 voxels
+/// Reads a NIfTI (.nii, .nii.gz) or NRRD (.nrrd, .nhdr) label map of whole numbers from 0 to 255, with the
+/// segment names that 3D Slicer puts into NRRD headers.
+/// \return kFileMissing, or kImageUndecodable for what is no label map, has more than 2^28 voxels, or is too
+/// small a file for the size in its header (checked before anything is allocated)
 core::Result<LabelVolume> ReadLabelVolume(const std::filesystem::path& path);
 
 }  // namespace trocar::anatomy

@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <string_view>
+#include <variant>
 #include <vector>
 
 #include "trocar/core/result.h"
@@ -51,6 +53,16 @@ struct Landmark {
   Vec3 position;     ///< world frame [m]
 };
 
+/// One named finding about the patient: what was drawn, set or measured. Not all of them are geometry.
+struct Parameter {
+  std::string name;                         ///< "cystic_duct_length"
+  std::variant<double, std::string> value;  ///< a finite number in `unit`, or a word
+  std::string unit;                         ///< "mm", "mL", "kPa"; "" for shares and words
+  std::string source;                       ///< publication, "set by the user", "measured on the mesh"
+
+  friend bool operator==(const Parameter&, const Parameter&) = default;
+};
+
 /// World frame: metres, x to the patient's left, y cranial, z anterior; origin at the umbilicus on the
 /// insufflated wall.
 struct Patient {
@@ -60,10 +72,12 @@ struct Patient {
   std::vector<Attachment> attachments;
   std::vector<Tube> tubes;
   std::vector<Landmark> landmarks;
+  std::vector<Parameter> parameters;  ///< none for a patient built from photographs
 
   /// Index of the organ, or -1.
   int FindOrgan(std::string_view organ_name) const;
   const Landmark* FindLandmark(std::string_view landmark_name) const;
+  const Parameter* FindParameter(std::string_view parameter_name) const;
 };
 
 /// Names of the paper's four boundary rules (section 3.2.2).
@@ -89,7 +103,8 @@ core::Result<UncheckedPatient> ReadPatientUnchecked(const std::filesystem::path&
 /// Writes the folder that ReadPatient reads; nothing is left behind when it fails.
 core::Status WritePatient(const std::filesystem::path& folder, const Patient& patient);
 
-/// Closed, manifold, outward organs; regions and attachments in range; tubes finite with positive radii.
+/// Closed, manifold, outward organs; regions and attachments in range; tubes finite with positive radii;
+/// names of parameters unique and their numbers finite.
 core::Status CheckPatient(const Patient& patient);
 
 }  // namespace trocar::anatomy

@@ -77,8 +77,10 @@ struct Scene {
 core::Result<std::filesystem::path> FindDataFolder();
 
 /// Reads a scene with its patient and script. Paths inside are relative to the scene file.
+/// \param patient_folder  takes the place of the scene's own patient unless it is empty
 /// \return the file's error, kSceneInvalid, kScriptInvalid or kUnknownName
-core::Result<Scene> ReadScene(const std::filesystem::path& path);
+core::Result<Scene> ReadScene(const std::filesystem::path& path,
+                              const std::filesystem::path& patient_folder = {});
 
 /// The script's input at `time` [s], clamped to its first and last key; the home pose without a script.
 Input CalcScriptInput(const Scene& scene, double time);

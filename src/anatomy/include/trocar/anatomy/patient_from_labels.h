@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file patient_from_labels.h  A label map that somebody else drew or computed becomes a patient.
+/// Source of the names: TotalSegmentator (Wasserthal et al., Radiology: Artificial Intelligence 2023), task
+/// "total", version 2: gallbladder 2, liver 5.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "trocar/anatomy/build_patient.h"
+#include "trocar/anatomy/image_stack.h"
+#include "trocar/core/result.h"
+
+namespace trocar::anatomy {
+
+struct LabelOptions {
+  std::filesystem::path labels;  ///< NIfTI or NRRD label map
+  std::filesystem::path output;  ///< patient folder to write; empty: nothing is written
+  int liver = 0;                 ///< label, 1 to 255; 0: found by FindLabels
+  int gallbladder = 0;           ///< likewise
+  double spacing_mm = 1.0;       ///< of the volume's lattice, 0.4 to 4
+  double gap_mm = 0.7;           ///< left free around the gallbladder
+};
+
+struct OrganLabels {
+  int liver = 0, gallbladder = 0;
+  std::string convention;  ///< how they were found, in words
+};
+
+/// Which labels are the organs: those that are named in `options`, else segments called liver and
+/// gallbladder, else TotalSegmentator's 5 and 2 where 5 occurs and is the larger, else 1 and 2.
+/// \return kLabelsMismatch when a label does not occur; it names the label and those that do
+core::Result<OrganLabels> FindLabels(const LabelVolume& volume, const LabelOptions& options);
+
+/// Fills, meshes and assembles liver and gallbladder as BuildPatient does. The header's directions (LPS or
+/// RAS, turned or mirrored axes) are obeyed. Ducts and arteries are the generator's usual ones, placed by
+/// landmarks (is_seen = false); the neck of the gallbladder is its more cranial and posterior end.
+/// \return the first error of any step; then nothing has been written
+core::Result<BuildReport> BuildPatientFromLabels(const LabelOptions& options, const Progress& progress = {});
+
+}  // namespace trocar::anatomy

@@ -1,0 +1,354 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "duct_template.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "nearest_surface.h"
+#include "trocar/geometry/mesh_measures.h"
+#include "trocar/math/cubic_spline.h"
+
+namespace trocar::anatomy {
+namespace {
+
+using geometry::TriangleMesh;
+using math::Vec3;
+
+constexpr double kClearMm = 0.6;       // between a tube's skin and an organ
+constexpr double kSampleMm = 2.5;      // between points of a line
+constexpr double kInsertionMm = 25.0;  // a low or parallel insertion lies so much further down
+constexpr double kHighShare = 0.45;    // of the common hepatic duct that is left by a high insertion
+
+// directions that anatomy gives: left, cranial, anterior
+const Vec3 kTowardsHilum = math::Normalized(Vec3{0.82, -0.40, -0.35});
+const Vec3 kTowardsHighHilum = math::Normalized(Vec3{0.90, 0.15, -0.25});
+const Vec3 kUpTheDuct = math::Normalized(Vec3{0.05, 0.97, 0.0});
+const Vec3 kDownTheDuct = math::Normalized(Vec3{0.22, -0.92, -0.30});
+const Vec3 kBehind = {0, 0, -1};
+const Vec3 kLeft = {1, 0, 0};
+
+/// A closed surface that tubes stay out of.
+class Obstacle {
+ public:
+  explicit Obstacle(const TriangleMesh& mesh) : mesh_(mesh), surface_(mesh), normals_(mesh.positions.size()) {
+    geometry::CalcVertexNormals(mesh.positions, mesh.triangles, normals_);
+  }
+  const TriangleMesh& Mesh() const { return mesh_; }
+  const std::vector<Vec3>& Normals() const { return normals_; }
+  Vec3 FindNearest(const Vec3& p) const { return surface_.Find(p).at.point; }
+
+  /// Distance to the surface, negative inside, and the way out.
+  double Find(const Vec3& p, Vec3& outward) const {
+    const SurfacePoint near = surface_.Find(p);
+    const auto& triangle = mesh_.triangles[near.triangle];
+    Vec3 normal;
+    for (int i = 0; i < 3; ++i) normal += near.at.weights[i] * normals_[triangle[i]];
+    outward = math::Normalized(normal);
+    return Dot(p - near.at.point, outward) < 0 ? -near.distance : near.distance;
+  }
+
+ private:
+  const TriangleMesh& mesh_;
+  NearestSurface surface_;
+  std::vector<Vec3> normals_;
+};
+
+class Placer {
+ public:
+  Placer(const TriangleMesh& liver, const TriangleMesh& gallbladder)
+      : liver_(liver), gallbladder_(gallbladder) {}
+  const Obstacle& Liver() const { return liver_; }
+  const Obstacle& Gallbladder() const { return gallbladder_; }
+
+  double FindClearance(const Vec3& p) const {
+    Vec3 ignored;
+    return std::min(liver_.Find(p, ignored), gallbladder_.Find(p, ignored));
+  }
+  Vec3 PushOut(Vec3 p, double distance) const {
+    constexpr int kRounds = 4;
+    for (int round = 0; round < kRounds; ++round) {
+      bool is_clear = true;
+      for (const Obstacle* obstacle : {&liver_, &gallbladder_}) {
+        Vec3 outward;
+        const double here = obstacle->Find(p, outward);
+        if (here >= distance) continue;
+        p += (distance - here) * outward;
+        is_clear = false;
+      }
+      if (is_clear) break;
+    }
+    return p;
+  }
+
+  /// Line through the waypoints, out of the organs but for its ends, bowed towards `bow` until it is `length`
+  /// long; longer only where the way itself is.
+  std::vector<Vec3> Route(const std::vector<Vec3>& waypoints, double radius, double length,
+                          const Vec3& bow) const {
+    const math::CubicSpline spline(waypoints, math::SplineEnds::kNatural);
+    const int count =
+        std::max(4, static_cast<int>(std::lround(std::max(length, spline.Length()) / kSampleMm)));
+    const auto line_at = [&](double amplitude) {
+      std::vector<Vec3> line;
+      for (int i = 0; i <= count; ++i) {
+        const double t = static_cast<double>(i) / count;
+        const double away = std::sin(M_PI * t);
+        Vec3 p = spline.Evaluate(t * spline.Length()) + (amplitude * away) * bow;
+        // near the ends the line belongs to the organ that it enters
+        if (i > 0 && i < count) p = PushOut(p, (radius + kClearMm) * std::min(1.0, 2.5 * away));
+        line.push_back(p);
+      }
+      // pushed points get a smooth line again
+      constexpr int kSmoothRounds = 2;
+      for (int round = 0; round < kSmoothRounds; ++round) {
+        std::vector<Vec3> smooth = line;
+        for (int i = 1; i < count; ++i) smooth[i] = 0.5 * line[i] + 0.25 * (line[i - 1] + line[i + 1]);
+        line = std::move(smooth);
+      }
+      return line;
+    };
+    const auto length_of = [](const std::vector<Vec3>& line) {
+      double sum = 0;
+      for (std::size_t i = 1; i < line.size(); ++i) sum += Distance(line[i - 1], line[i]);
+      return sum;
+    };
+    double low = 0, high = 0.6 * length;
+    if (length_of(line_at(low)) >= length) return line_at(low);
+    constexpr int kHalvings = 14;
+    for (int i = 0; i < kHalvings; ++i) {
+      const double middle = 0.5 * (low + high);
+      (length_of(line_at(middle)) < length ? low : high) = middle;
+    }
+    return line_at(low);
+  }
+
+ private:
+  Obstacle liver_, gallbladder_;
+};
+
+TubePoints MakeTubePoints(const char* name, const char* kind, const char* from, const char* to,
+                          const std::vector<Vec3>& line, double first_radius, double last_radius) {
+  TubePoints tube{name, kind, from, to, false, {}};
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    const double t = static_cast<double>(i) / static_cast<double>(line.size() - 1);
+    tube.points.push_back(
+        {line[i].z, {line[i].x, line[i].y}, first_radius + t * (last_radius - first_radius)});
+  }
+  return tube;
+}
+
+struct Hilum {
+  Vec3 confluence;  // on the liver, where the common hepatic duct comes out
+  Vec3 junction;    // where the cystic duct would join it
+};
+
+/// The pair of points that fits both ducts' lengths and runs as ducts do.
+Hilum FindHilum(const Placer& placer, const Vec3& neck, const Vec3& usual, double cystic_reach,
+                double hepatic_reach) {
+  const TriangleMesh& mesh = placer.Liver().Mesh();
+  // directions around the usual one
+  const Vec3 u = math::AnyPerpendicular(usual), v = Cross(usual, u);
+  std::vector<Vec3> junctions;
+  std::vector<double> costs;
+  constexpr int kRings = 3, kSpokes = 12;
+  for (int ring = 0; ring <= kRings; ++ring) {
+    for (int spoke = 0; spoke < (ring == 0 ? 1 : kSpokes); ++spoke) {
+      const double tilt = 0.28 * ring, turn = 2 * M_PI * spoke / kSpokes;
+      const Vec3 direction =
+          std::cos(tilt) * usual + std::sin(tilt) * (std::cos(turn) * u + std::sin(turn) * v);
+      const Vec3 junction = neck + cystic_reach * direction;
+      constexpr double kWanted = 6.0;  // mm between a junction and the organs
+      const double lacking = std::max(0.0, kWanted - placer.FindClearance(junction));
+      junctions.push_back(junction);
+      costs.push_back(4.0 * tilt * tilt + lacking * lacking);
+    }
+  }
+  double best = std::numeric_limits<double>::max();
+  Hilum hilum{neck, neck};
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+    const Vec3& h = mesh.positions[i];
+    if (Distance(h, neck) > cystic_reach + hepatic_reach + 10.0) continue;
+    // the hilum opens to the viscera
+    const double faces = Dot(placer.Liver().Normals()[i], Vec3{0.2, -0.9, -0.35});
+    for (std::size_t k = 0; k < junctions.size(); ++k) {
+      const Vec3 up = h - junctions[k];
+      const double distance = Norm(up);
+      const double miss = distance - hepatic_reach;
+      const double off = 1.0 - Dot(up, kUpTheDuct) / std::max(distance, 1e-9);
+      const double cost = costs[k] + miss * miss + 12.0 * off + 6.0 * (1.0 - faces);
+      if (cost < best) best = cost, hilum = {h, junctions[k]};
+    }
+  }
+  return hilum;
+}
+
+/// Vertex of the organ for which `cost` is least.
+template <typename Cost>
+Vec3 FindVertex(const TriangleMesh& mesh, Cost cost) {
+  const auto best = std::min_element(mesh.positions.begin(), mesh.positions.end(),
+                                     [&](const Vec3& a, const Vec3& b) { return cost(a) < cost(b); });
+  return *best;
+}
+
+Vec3 PointAt(const std::vector<Vec3>& line, double t) {
+  const double at = t * static_cast<double>(line.size() - 1);
+  const auto i = std::min(static_cast<std::size_t>(at), line.size() - 2);
+  return math::Lerp(line[i], line[i + 1], at - static_cast<double>(i));
+}
+
+}  // namespace
+
+std::vector<TubePoints> PlaceDucts(const TriangleMesh& liver, const TriangleMesh& gallbladder,
+                                   const Vec3& neck, std::span<const Parameter> parameters) {
+  const Placer placer(liver, gallbladder);
+  const auto number = [&](std::string_view name) { return NumberOf(parameters, name); };
+  const auto is_yes = [&](std::string_view name) { return TextOf(parameters, name) == "yes"; };
+  const std::string& insertion = TextOf(parameters, "cystic_duct_insertion");
+  const double cystic_radius = 0.5 * number("cystic_duct_diameter");
+  const double hepatic_radius = 0.5 * number("hepatic_duct_diameter");
+  const double bile_radius = 0.5 * number("bile_duct_diameter");
+  const double cystic_length = number("cystic_duct_length");
+  const bool is_parallel = insertion == "parallel", is_low = insertion == "low";
+  double hepatic_length = number("hepatic_duct_length"), bile_length = number("bile_duct_length");
+
+  // common hepatic duct down to the place where the cystic duct reaches it
+  double reach = 0.86 * cystic_length;
+  if (insertion == "medial") reach = 0.70 * cystic_length;
+  if (is_parallel || is_low) reach = 0.86 * std::max(0.35 * cystic_length, cystic_length - kInsertionMm);
+  const double upper = insertion == "high" ? kHighShare * hepatic_length : hepatic_length;
+  const Hilum hilum =
+      FindHilum(placer, neck, insertion == "high" ? kTowardsHighHilum : kTowardsHilum, reach, 0.96 * upper);
+  const Vec3 along = math::Normalized(hilum.junction - hilum.confluence, -kUpTheDuct);
+  const Vec3 right =
+      math::Normalized(neck - hilum.junction - Dot(neck - hilum.junction, along) * along, -kLeft);
+  Vec3 junction = hilum.junction;
+  std::vector<Vec3> hepatic_way = {hilum.confluence, hilum.junction};
+  if (is_parallel || is_low) {
+    junction = placer.PushOut(
+        hilum.junction + std::min(kInsertionMm, 0.6 * cystic_length) * math::Normalized(along + kDownTheDuct),
+        hepatic_radius + kClearMm);
+    const double further = Distance(junction, hilum.junction);
+    hepatic_way.push_back(junction);
+    hepatic_length += further, bile_length -= further;
+  } else {
+    bile_length += hepatic_length - upper;
+    hepatic_length = upper;
+  }
+  const auto hepatic = placer.Route(hepatic_way, hepatic_radius, hepatic_length, kLeft);
+
+  // cystic duct
+  std::vector<Vec3> cystic_way = {neck};
+  if (insertion == "medial") {
+    const double around = hepatic_radius + cystic_radius + 0.6;
+    cystic_way.push_back(junction - 5.0 * along + around * math::Normalized(right + kBehind));
+    cystic_way.push_back(junction - 2.5 * along + around * kBehind);
+    cystic_way.push_back(junction - around * right);
+  }
+  // a low or parallel duct first comes beside the common hepatic duct, then runs along it
+  std::vector<Vec3> beside;
+  if (is_parallel || is_low) {
+    const double away = hepatic_radius + cystic_radius + (is_parallel ? 0.4 : 4.0);
+    const double first = Distance(hilum.confluence, hilum.junction) /
+                         (Distance(hilum.confluence, hilum.junction) + Distance(hilum.junction, junction));
+    constexpr int kSteps = 10;
+    for (int i = 1; i <= kSteps; ++i) {
+      const double t = static_cast<double>(i) / kSteps;
+      beside.push_back(PointAt(hepatic, first + t * (1 - first)) +
+                       (away * std::min(1.0, 5 * (1 - t))) * right);
+    }
+  }
+  double along_length = 0;
+  for (std::size_t i = 1; i < beside.size(); ++i) along_length += Distance(beside[i - 1], beside[i]);
+  cystic_way.push_back(beside.empty() ? junction : beside.front());
+  const Vec3 sag = math::Normalized(kDownTheDuct - 0.3 * kLeft);
+  auto cystic = placer.Route(cystic_way, cystic_radius, cystic_length - along_length, sag);
+  if (!beside.empty()) cystic.insert(cystic.end(), beside.begin() + 1, beside.end());
+
+  // common bile duct, with its gentle curve to the pancreas
+  const Vec3 bile_end = junction + 0.96 * bile_length * kDownTheDuct;
+  const auto bile = placer.Route({junction, math::Lerp(junction, bile_end, 0.5), bile_end}, bile_radius,
+                                 bile_length, kBehind);
+
+  std::vector<TubePoints> tubes = {MakeTubePoints("cystic_duct", "duct", "gallbladder", "common_bile_duct",
+                                                  cystic, 1.25 * cystic_radius, cystic_radius),
+                                   MakeTubePoints("common_hepatic_duct", "duct", "liver", "common_bile_duct",
+                                                  hepatic, 0.85 * hepatic_radius, hepatic_radius),
+                                   MakeTubePoints("common_bile_duct", "duct", "common_hepatic_duct",
+                                                  "outside", bile, bile_radius, 0.85 * bile_radius)};
+
+  // right hepatic artery: from the left, behind the common hepatic duct, through the triangle into the liver
+  const double artery_radius = 0.5 * number("hepatic_artery_diameter");
+  const Vec3 crossing = placer.PushOut(
+      PointAt(hepatic, 0.45) + (hepatic_radius + artery_radius + 0.8) * kBehind, artery_radius + 0.5);
+  Vec3 turn = crossing + std::min(9.0, 0.4 * Distance(neck, hilum.junction)) * right - 1.0 * kBehind;
+  if (is_yes("moynihan_hump")) {
+    // the loop comes to lie on the gallbladder's neck
+    turn = neck + (artery_radius + cystic_radius + 1.5) * math::Normalized(crossing - neck + Vec3{0, 4, 0});
+  }
+  turn = placer.PushOut(turn, artery_radius + kClearMm);
+  const Vec3 entry = FindVertex(liver, [&](const Vec3& p) {
+    return Distance(p, crossing + 8.0 * right + 12.0 * kUpTheDuct) + 40.0 * (Distance(p, neck) < 6.0);
+  });
+  const Vec3 origin = placer.PushOut(crossing + Vec3{26, -7, -3}, artery_radius + kClearMm);
+  const auto artery = placer.Route({origin, crossing, turn, entry}, artery_radius, 0.0, kBehind);
+  tubes.push_back(MakeTubePoints("right_hepatic_artery", "artery", "outside", "liver", artery, artery_radius,
+                                 0.8 * artery_radius));
+
+  // cystic arteries: from the artery's turn to the gallbladder's free side, and deep to it
+  const bool is_double = is_yes("double_cystic_artery");
+  const double length = number("cystic_artery_length");
+  const double radius = 0.5 * number("cystic_artery_diameter") * (is_double ? 0.8 : 1.0);
+  const auto place_artery = [&](const char* name, const Vec3& side, const std::vector<Vec3>& from_line) {
+    const Vec3 start = *std::min_element(
+        from_line.begin(), from_line.end(),
+        [&](const Vec3& a, const Vec3& b) { return Distance(a, turn) < Distance(b, turn); });
+    const Vec3 target = FindVertex(gallbladder, [&](const Vec3& p) {
+      const double reach_miss = Distance(p, start) - 0.9 * length;
+      Vec3 outward;
+      const double depth = placer.Liver().Find(p, outward);
+      return std::fabs(reach_miss) - 0.6 * Dot(p - neck, side) + (depth < 2.0 ? 10.0 : 0.0);
+    });
+    const Vec3 middle = placer.PushOut(0.5 * (start + target), radius + kClearMm);
+    tubes.push_back(MakeTubePoints(name, "artery", "right_hepatic_artery", "gallbladder",
+                                   placer.Route({start, middle, target}, radius, length, side), radius,
+                                   0.85 * radius));
+  };
+  place_artery("cystic_artery", math::Normalized(Vec3{0.7, -0.4, 0.4}), artery);
+  if (is_double) place_artery("cystic_artery_deep", math::Normalized(Vec3{-0.5, -0.6, -0.3}), artery);
+
+  if (is_yes("subvesical_duct")) {
+    // out of the liver at the bed's medial border, along it to the common hepatic duct
+    const double small = 0.5 * number("subvesical_duct_diameter");
+    const Vec3 goal = PointAt(hepatic, 0.3);
+    const Vec3 start = FindVertex(liver, [&](const Vec3& p) {
+      Vec3 outward;
+      const double away = placer.Gallbladder().Find(p, outward);
+      return std::fabs(away - 4.0) + 0.5 * std::fabs(Distance(p, neck) - 28.0) - 0.2 * Dot(p - neck, kLeft);
+    });
+    tubes.push_back(
+        MakeTubePoints("subvesical_duct", "duct", "liver", "common_hepatic_duct",
+                       placer.Route({start, placer.PushOut(0.5 * (start + goal), small + kClearMm), goal},
+                                    small, 0.0, kLeft),
+                       small, small));
+  }
+  return tubes;
+}
+
+double CalcLengthMm(const TubePoints& tube) {
+  double sum = 0;
+  for (std::size_t i = 1; i < tube.points.size(); ++i) {
+    const TubePoint &a = tube.points[i - 1], &b = tube.points[i];
+    sum += Norm(Vec3{b.pixel.x - a.pixel.x, b.pixel.y - a.pixel.y, b.slice - a.slice});
+  }
+  return sum;
+}
+
+ControlPoints MakeWorldFrame() {
+  ControlPoints points;
+  points.axes = {"left", "superior", "anterior"};
+  points.origin_landmark = "fundus";
+  points.origin_mm = {-75, 95, -70};
+  return points;
+}
+
+}  // namespace trocar::anatomy

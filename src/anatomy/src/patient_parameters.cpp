@@ -1,0 +1,539 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/anatomy/patient_parameters.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstdlib>
+#include <iterator>
+
+#include "trocar/core/assert.h"
+#include "trocar/math/random.h"
+
+namespace trocar::anatomy {
+namespace {
+
+using core::Error;
+using core::ErrorCode;
+
+constexpr const char* kCommonVein = "thecommonvein.net: liver dimensions";
+constexpr const char* kRadiology = "introductiontoradiology: gallbladder 70 to 100 mm x 30 mm, 30 to 50 mL";
+constexpr const char* kHindawi = "Hindawi, Radiology Research and Practice 2016, MRCP, n = 198";
+constexpr const char* kLaparoscopic = "JGMDS 2025, laparoscopic series, n = 65";
+constexpr const char* kArteryMeta = "meta-analysis of the cystic artery, 53 studies, 2024 (PubMed 38767077)";
+constexpr const char* kGeneral = "general knowledge";
+constexpr const char* kSlider = "a person's choice; what it does is general knowledge";
+
+constexpr Choice kSeries[] = {{"hindawi_2016", 1}, {"iran_mrcp", 0}};
+constexpr Choice kHindawiTypes[] = {{"lateral", 0.51},   {"medial", 0.16}, {"low", 0.09},
+                                    {"parallel", 0.075}, {"high", 0.06},   {"short", 0.01}};
+constexpr Choice kIranTypes[] = {{"lateral", 0.77},  {"medial", 0.076}, {"low", 0.028},
+                                 {"parallel", 0.01}, {"high", 0.10},    {"short", 0.003}};
+constexpr Choice kLengthClasses[] = {{"normal", 0.831}, {"short", 0.092}, {"long", 0.077}};
+
+using enum Distribution;
+
+constexpr ParameterRule kRules[] = {
+    {"liver_transverse", kNormal, 212, 7, 200, 225, 160, 260, {}, "mm", "width, right to left", kCommonVein},
+    {"liver_vertical",
+     kNormal,
+     162,
+     7,
+     150,
+     175,
+     120,
+     210,
+     {},
+     "mm",
+     "height of the right lobe",
+     kCommonVein},
+    {"liver_depth", kNormal, 112, 7, 100, 125, 80, 150, {}, "mm", "front to back", kCommonVein},
+    {"gallbladder_length",
+     kNormal,
+     85,
+     8,
+     70,
+     100,
+     40,
+     150,
+     {},
+     "mm",
+     "neck to fundus along the axis",
+     kRadiology},
+    {"gallbladder_diameter", kNormal, 32, 3, 27, 40, 15, 60, {}, "mm", "largest", kRadiology},
+    {"gallbladder_wall",
+     kNormal,
+     2.0,
+     0.4,
+     1,
+     3,
+     0.5,
+     10,
+     {},
+     "mm",
+     "thickness; not meshed",
+     "radiology: at most 3 mm; mean and deviation: general knowledge"},
+    {"gallbladder_bend",
+     kNormal,
+     20,
+     8,
+     0,
+     40,
+     0,
+     60,
+     {},
+     "deg",
+     "of the axis from neck to fundus",
+     kGeneral},
+    {"gallbladder_embedding",
+     kNormal,
+     0.36,
+     0.05,
+     0.25,
+     0.48,
+     0.2,
+     0.6,
+     {},
+     "",
+     "share of its diameter that lies in the fossa",
+     kGeneral},
+    {"fundus_overhang",
+     kNormal,
+     8,
+     3,
+     2,
+     14,
+     0,
+     25,
+     {},
+     "mm",
+     "fundus in front of the liver's edge",
+     kGeneral},
+    {"cystic_duct_series", kChoice, 0, 0, 0, 0, 0, 0, kSeries, "", "whose frequencies the insertion follows",
+     "docs/patients.md"},
+    {"cystic_duct_insertion", kChoice, 0, 0, 0, 0, 0, 0, kHindawiTypes, "",
+     "lateral, medial (from behind), low, parallel, high or short", kHindawi},
+    {"cystic_duct_class", kChoice, 0, 0, 0, 0, 0, 0, kLengthClasses, "", "length class", kLaparoscopic},
+    {"cystic_duct_length",
+     kNormal,
+     35,
+     2.5,
+     30,
+     40,
+     8,
+     60,
+     {},
+     "mm",
+     "30 to 40; class short 8 to 20, long 42 to 60",
+     "radiology: 30 to 40 mm; ranges of the other classes: general knowledge"},
+    {"cystic_duct_diameter", kLognormal, 2.5, 0.2, 1, 5, 1, 8, {}, "mm", "outer", kGeneral},
+    {"hepatic_duct_length",
+     kNormal,
+     30,
+     3,
+     24,
+     36,
+     10,
+     60,
+     {},
+     "mm",
+     "common hepatic duct before the insertion moves its end",
+     "radiology: about 30 mm"},
+    {"hepatic_duct_diameter",
+     kNormal,
+     4.5,
+     0.6,
+     3,
+     6,
+     2,
+     12,
+     {},
+     "mm",
+     "common hepatic duct",
+     "radiology: at most 6 mm"},
+    {"bile_duct_length",
+     kNormal,
+     75,
+     2.5,
+     70,
+     80,
+     30,
+     110,
+     {},
+     "mm",
+     "common bile duct before the insertion moves its start",
+     "radiology: 70 to 80 mm"},
+    {"bile_duct_diameter",
+     kNormal,
+     4.1,
+     1.0,
+     2.5,
+     6,
+     2,
+     15,
+     {},
+     "mm",
+     "common bile duct",
+     "radiology: 4.1 +- 1.0 mm, at most 6 mm"},
+    {"cystic_artery_length", kLognormal, 20.8, 0.2, 10, 35, 6, 50, {}, "mm", "each branch", kArteryMeta},
+    {"cystic_artery_diameter",
+     kLognormal,
+     1.91,
+     0.15,
+     1,
+     3,
+     0.8,
+     4,
+     {},
+     "mm",
+     "a branch of two has 0.8 of it",
+     kArteryMeta},
+    {"hepatic_artery_diameter", kNormal, 3.0, 0.4, 2, 4, 1.5, 6, {}, "mm", "right hepatic artery", kGeneral},
+    {"double_cystic_artery", kChance, 0.13, 0, 0, 0, 0, 0, {}, "", "two branches", kArteryMeta},
+    {"moynihan_hump",
+     kChance,
+     0.0381,
+     0,
+     0,
+     0,
+     0,
+     0,
+     {},
+     "",
+     "the right hepatic artery loops to the gallbladder's neck",
+     "Asghar 2023, pooled, n = 8418"},
+    {"subvesical_duct",
+     kChance,
+     0.04,
+     0,
+     0,
+     0,
+     0,
+     0,
+     {},
+     "",
+     "small duct along the gallbladder's bed",
+     "Schnelldorfer 2012"},
+    {"subvesical_duct_diameter",
+     kLognormal,
+     2.0,
+     0.25,
+     1,
+     3,
+     1,
+     6,
+     {},
+     "mm",
+     "where there is one",
+     "Schnelldorfer 2012: 2 mm (1 to 18); spread and upper limit: general knowledge"},
+    {"phrygian_cap",
+     kChance,
+     0.035,
+     0,
+     0,
+     0,
+     0,
+     0,
+     {},
+     "",
+     "the fundus is folded over",
+     "general knowledge: 1 to 6 %"},
+    {"hydrops", kFixed, 0, 0, 0, 0, 0, 1, {}, "", "0 none to 1: half as long again, a third wider", kSlider},
+    {"acute_cholecystitis",
+     kFixed,
+     0,
+     0,
+     0,
+     0,
+     0,
+     1,
+     {},
+     "",
+     "0 none to 1: 80 x 40 mm at least (Tokyo guidelines)",
+     kSlider},
+    {"scleroatrophy", kFixed, 0, 0, 0, 0, 0, 1, {}, "", "0 none to 1: 45 mm long, a third narrower", kSlider},
+    {"steatosis",
+     kFixed,
+     0,
+     0,
+     0,
+     0,
+     0,
+     1,
+     {},
+     "",
+     "0 none to 1: a quarter more volume, rounded edge",
+     kSlider},
+    {"cirrhosis",
+     kFixed,
+     0,
+     0,
+     0,
+     0,
+     0,
+     1,
+     {},
+     "",
+     "0 none to 1: nodules, small right lobe, large caudate lobe",
+     kSlider},
+    {"triangle_fibrosis",
+     kFixed,
+     0,
+     0,
+     0,
+     0,
+     0,
+     1,
+     {},
+     "",
+     "0 none to 1, of the hepatocystic triangle; no geometry",
+     kSlider},
+    {"adhesions",
+     kFixed,
+     0,
+     0,
+     0,
+     0,
+     0,
+     1,
+     {},
+     "",
+     "0 none to 1, to omentum and bowel; no geometry",
+     kSlider},
+};
+
+/// Standard normal number (Box and Muller 1958).
+double DrawNormal(math::Random& random) {
+  const double u = 1.0 - random.Uniform(), v = random.Uniform();
+  return std::sqrt(-2.0 * std::log(u)) * std::cos(2.0 * M_PI * v);
+}
+
+/// Draws until the value lies within the limits, which leave most of the distribution.
+double DrawNumber(math::Random& random, Distribution distribution, double centre, double spread, double low,
+                  double high) {
+  constexpr int kMaxDraws = 1000;
+  double value = centre;
+  for (int i = 0; i < kMaxDraws; ++i) {
+    const double z = spread * DrawNormal(random);
+    value = distribution == kLognormal ? centre * std::exp(z) : centre + z;
+    if (value >= low && value <= high) return value;
+  }
+  return std::clamp(value, low, high);
+}
+
+std::string_view DrawChoice(math::Random& random, std::span<const Choice> choices) {
+  double total = 0;
+  for (const Choice& choice : choices) total += choice.weight;
+  double left = total * random.Uniform();
+  for (const Choice& choice : choices) {
+    if (left < choice.weight) return choice.name;
+    left -= choice.weight;
+  }
+  return choices.front().name;
+}
+
+/// One stream a parameter and round: FNV-1a of the name, mixed with the seed.
+math::Random MakeStream(std::uint64_t seed, std::string_view name, int round) {
+  std::uint64_t hash = 0xcbf29ce484222325ULL;
+  for (const char c : name) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ULL;
+  math::Random mixed(seed ^ hash);
+  const std::uint64_t word = mixed.NextWord();
+  return math::Random(word + static_cast<std::uint64_t>(round) * 0x9e3779b97f4a7c15ULL * 7919);
+}
+
+const ParameterRule* FindRule(std::string_view name) {
+  const auto* found =
+      std::find_if(std::begin(kRules), std::end(kRules), [&](const auto& rule) { return rule.name == name; });
+  return found == std::end(kRules) ? nullptr : found;
+}
+
+core::Result<Parameter> ReadSetting(const ParameterRule& rule, const std::string& text) {
+  Parameter parameter{std::string(rule.name), 0.0, std::string(rule.unit), "set by the user"};
+  const auto one_of = [&](std::span<const Choice> choices) -> core::Result<Parameter> {
+    std::string known;
+    for (const Choice& choice : choices) {
+      if (choice.name == text) {
+        parameter.value = text;
+        return parameter;
+      }
+      known += (known.empty() ? "" : ", ") + std::string(choice.name);
+    }
+    return Error{ErrorCode::kUnknownName,
+                 parameter.name + " cannot be \"" + text + "\"; it is one of " + known};
+  };
+  constexpr Choice kYesNo[] = {{"yes", 0}, {"no", 0}};
+  if (rule.distribution == kChance) return one_of(kYesNo);
+  if (rule.distribution == kChoice) return one_of(rule.choices);
+  char* end = nullptr;
+  const double value = std::strtod(text.c_str(), &end);
+  const bool is_number = !text.empty() && *end == '\0' && std::isfinite(value);
+  if (!is_number || value < rule.set_low || value > rule.set_high) {
+    char range[96];
+    std::snprintf(range, sizeof range, "%g to %g %s", rule.set_low, rule.set_high,
+                  std::string(rule.unit).c_str());
+    return Error{ErrorCode::kUsage, parameter.name + ": \"" + text + "\" is no number of the range " + range};
+  }
+  parameter.value = value;
+  return parameter;
+}
+
+// The generator's liver fills this share of its bounding box (measured; a test holds it)
+constexpr double kLiverFill = 0.327;
+constexpr double kMlPerCubicMm = 1e-3;
+
+}  // namespace
+
+double CalcGallbladderProfile(double t) {
+  // neck, body, fundus: knots of a smooth blend
+  constexpr double kKnots[][2] = {{0.0, 0.26}, {0.14, 0.42}, {0.4, 0.84},
+                                  {0.68, 1.0}, {0.86, 0.93}, {1.0, 0.74}};
+  t = std::clamp(t, 0.0, 1.0);
+  for (std::size_t i = 0; i + 1 < std::size(kKnots); ++i) {
+    if (t > kKnots[i + 1][0]) continue;
+    const double part = (t - kKnots[i][0]) / (kKnots[i + 1][0] - kKnots[i][0]);
+    const auto slope = [&](std::size_t k) {
+      const std::size_t a = k == 0 ? 0 : k - 1, b = std::min(k + 1, std::size(kKnots) - 1);
+      return (kKnots[b][1] - kKnots[a][1]) / (kKnots[b][0] - kKnots[a][0]);
+    };
+    const double h = kKnots[i + 1][0] - kKnots[i][0];
+    const double p2 = part * part, p3 = p2 * part;
+    return (2 * p3 - 3 * p2 + 1) * kKnots[i][1] + (p3 - 2 * p2 + part) * h * slope(i) +
+           (3 * p2 - 2 * p3) * kKnots[i + 1][1] + (p3 - p2) * h * slope(i + 1);
+  }
+  return kKnots[std::size(kKnots) - 1][1];
+}
+
+namespace {
+
+/// Volume of a gallbladder of that length and diameter [mL]: the body of revolution with round ends.
+double CalcGallbladderVolume(double length, double diameter) {
+  const double radius = 0.5 * diameter;
+  const double first = radius * CalcGallbladderProfile(0), last = radius * CalcGallbladderProfile(1);
+  const double body = length - first - last;
+  constexpr int kSteps = 64;
+  double volume = 2.0 / 3.0 * M_PI * (std::pow(first, 3) + std::pow(last, 3));
+  for (int i = 0; i < kSteps; ++i) {
+    volume += M_PI * std::pow(radius * CalcGallbladderProfile((i + 0.5) / kSteps), 2) * body / kSteps;
+  }
+  return kMlPerCubicMm * volume;
+}
+
+}  // namespace
+
+std::span<const ParameterRule> ParameterRules() {
+  return kRules;
+}
+
+std::span<const Choice> FindInsertionSeries(std::string_view series) {
+  if (series == "hindawi_2016") return kHindawiTypes;
+  if (series == "iran_mrcp") return kIranTypes;
+  return {};
+}
+
+LengthRange FindCysticDuctRange(std::string_view length_class) {
+  if (length_class == "short") return {14, 3, 8, 20};
+  if (length_class == "long") return {50, 4, 42, 60};
+  return {35, 2.5, 30, 40};
+}
+
+double NumberOf(std::span<const Parameter> parameters, std::string_view name) {
+  const auto found = std::find_if(parameters.begin(), parameters.end(),
+                                  [&](const Parameter& parameter) { return parameter.name == name; });
+  TROCAR_ASSERT(found != parameters.end() && std::holds_alternative<double>(found->value));
+  return std::get<double>(found->value);
+}
+
+const std::string& TextOf(std::span<const Parameter> parameters, std::string_view name) {
+  const auto found = std::find_if(parameters.begin(), parameters.end(),
+                                  [&](const Parameter& parameter) { return parameter.name == name; });
+  TROCAR_ASSERT(found != parameters.end() && std::holds_alternative<std::string>(found->value));
+  return std::get<std::string>(found->value);
+}
+
+core::Result<std::vector<Parameter>> DrawParameters(std::uint64_t seed,
+                                                    std::span<const ParameterSetting> settings) {
+  std::vector<Parameter> set;
+  for (const auto& [name, text] : settings) {
+    const ParameterRule* rule = FindRule(name);
+    if (rule == nullptr) {
+      std::string known;
+      for (const ParameterRule& each : kRules) known += (known.empty() ? "" : ", ") + std::string(each.name);
+      return Error{ErrorCode::kUnknownName, "there is no parameter \"" + name + "\"; known are " + known};
+    }
+    core::Result<Parameter> parameter = ReadSetting(*rule, text);
+    if (!parameter.ok()) return parameter.error();
+    std::erase_if(set, [&](const Parameter& earlier) { return earlier.name == name; });
+    set.push_back(std::move(*parameter));
+  }
+  const auto find_set = [&](std::string_view name) -> const Parameter* {
+    const auto found = std::find_if(set.begin(), set.end(), [&](const auto& p) { return p.name == name; });
+    return found == set.end() ? nullptr : &*found;
+  };
+
+  std::vector<Parameter> drawn;
+  for (const ParameterRule& rule : kRules) {
+    if (const Parameter* parameter = find_set(rule.name)) {
+      drawn.push_back(*parameter);
+      continue;
+    }
+    math::Random random = MakeStream(seed, rule.name, 0);
+    Parameter parameter{std::string(rule.name), 0.0, std::string(rule.unit), std::string(rule.source)};
+    if (rule.name == "cystic_duct_series") {
+      parameter.value = std::string(rule.choices.front().name);
+    } else if (rule.name == "cystic_duct_insertion") {
+      const std::string& series = TextOf(drawn, "cystic_duct_series");
+      parameter.value = std::string(DrawChoice(random, FindInsertionSeries(series)));
+      if (series == "iran_mrcp") parameter.source = "IJMS, MRCP, Iran, n = 290";
+    } else if (rule.name == "cystic_duct_class" && TextOf(drawn, "cystic_duct_insertion") == "short") {
+      parameter.value = std::string("short");
+      parameter.source = "follows from the insertion";
+    } else if (rule.name == "cystic_duct_length") {
+      const LengthRange range = FindCysticDuctRange(TextOf(drawn, "cystic_duct_class"));
+      parameter.value = DrawNumber(random, kNormal, range.mean, range.deviation, range.low, range.high);
+    } else if (rule.distribution == kChance) {
+      parameter.value = std::string(random.Uniform() < rule.centre ? "yes" : "no");
+    } else if (rule.distribution == kChoice) {
+      parameter.value = std::string(DrawChoice(random, rule.choices));
+    } else if (rule.distribution == kFixed) {
+      parameter.value = rule.centre;
+      parameter.source = "not present unless it is set";
+    } else {
+      parameter.value = DrawNumber(random, rule.distribution, rule.centre, rule.spread, rule.low, rule.high);
+    }
+    drawn.push_back(std::move(parameter));
+  }
+
+  // sizes together, until the volume fits
+  const auto redraw = [&](std::initializer_list<std::string_view> names, auto volume_of, double low,
+                          double high) {
+    constexpr int kMaxRounds = 1000;
+    if (std::any_of(names.begin(), names.end(), [&](auto name) { return find_set(name) != nullptr; })) return;
+    for (int round = 1; round < kMaxRounds && (volume_of() < low || volume_of() > high); ++round) {
+      for (const auto name : names) {
+        const ParameterRule& rule = *FindRule(name);
+        math::Random random = MakeStream(seed, name, round);
+        const auto parameter =
+            std::find_if(drawn.begin(), drawn.end(), [&](auto& p) { return p.name == name; });
+        parameter->value =
+            DrawNumber(random, rule.distribution, rule.centre, rule.spread, rule.low, rule.high);
+      }
+    }
+  };
+  redraw(
+      {"liver_transverse", "liver_vertical", "liver_depth"},
+      [&] {
+        return kMlPerCubicMm * kLiverFill * NumberOf(drawn, "liver_transverse") *
+               NumberOf(drawn, "liver_vertical") * NumberOf(drawn, "liver_depth");
+      },
+      1200, 1500);
+  redraw(
+      {"gallbladder_length", "gallbladder_diameter"},
+      [&] {
+        return CalcGallbladderVolume(NumberOf(drawn, "gallbladder_length"),
+                                     NumberOf(drawn, "gallbladder_diameter"));
+      },
+      30, 50);
+  return drawn;
+}
+
+}  // namespace trocar::anatomy

@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/anatomy/patient_from_labels.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "trocar/core/safe_file.h"
+#include "trocar/geometry/mesh_measures.h"
+
+namespace trocar::anatomy {
+namespace {
+
+namespace fs = std::filesystem;
+using core::ErrorCode;
+using testing::HasSubstr;
+
+constexpr int kX = 70, kY = 60, kZ = 52;  // voxels of 3 mm
+
+/// A liver of a ball above and an egg below it, 1 mm apart from left/right symmetry. Index axes are right,
+/// anterior, superior (RAS).
+std::vector<std::uint8_t> MakeLabels(int liver, int gallbladder) {
+  std::vector<std::uint8_t> labels(static_cast<std::size_t>(kX) * kY * kZ, 0);
+  for (int k = 0; k < kZ; ++k) {
+    for (int j = 0; j < kY; ++j) {
+      for (int i = 0; i < kX; ++i) {
+        // mm: right of, in front of and above the middle
+        const double r = 3.0 * (i - 35), a = 3.0 * (j - 30), s = 3.0 * (k - 26);
+        auto& label = labels[(static_cast<std::size_t>(k) * kY + j) * kX + i];
+        if (r * r / (85.0 * 85) + a * a / (62.0 * 62) + (s - 10) * (s - 10) / (50.0 * 50) < 1)
+          label = static_cast<std::uint8_t>(liver);
+        const double egg_r = r - 20, egg_a = a - 8, egg_s = s + 45;
+        if (egg_r * egg_r / (14.0 * 14) + egg_a * egg_a / (38.0 * 38) + egg_s * egg_s / (15.0 * 15) < 1)
+          label = static_cast<std::uint8_t>(gallbladder);
+      }
+    }
+  }
+  return labels;
+}
+
+template <typename T>
+void Put(std::string& text, std::size_t at, T value) {
+  std::memcpy(&text[at], &value, sizeof value);
+}
+
+/// NIfTI-1 file with 8-bit voxels of 3 mm; index axes run to the right (or left), anterior and superior.
+std::string FormatNifti(const std::vector<std::uint8_t>& labels, bool mirrored = false) {
+  std::string text(352, '\0');
+  Put<std::int32_t>(text, 0, 348);
+  const std::int16_t dims[8] = {3, kX, kY, kZ, 1, 1, 1, 1};
+  std::memcpy(&text[40], dims, sizeof dims);
+  Put<std::int16_t>(text, 70, 2);  // unsigned bytes
+  Put<std::int16_t>(text, 72, 8);
+  const float sizes[8] = {1, 3, 3, 3, 1, 1, 1, 1};
+  std::memcpy(&text[76], sizes, sizeof sizes);
+  Put<float>(text, 108, 352);
+  Put<float>(text, 112, 1);
+  Put<char>(text, 123, 2);          // mm
+  Put<std::int16_t>(text, 254, 1);  // the rows below hold
+  const float x = mirrored ? -3.0f : 3.0f;
+  const float rows[12] = {x, 0, 0, 10, 0, 3, 0, -20, 0, 0, 3, 30};
+  std::memcpy(&text[280], rows, sizeof rows);
+  std::memcpy(&text[344], "n+1", 4);
+  text.append(reinterpret_cast<const char*>(labels.data()), labels.size());
+  return text;
+}
+
+/// NRRD as 3D Slicer writes it, LPS, the same body.
+std::string FormatNrrd(const std::vector<std::uint8_t>& labels, int liver, int gallbladder) {
+  std::string text =
+      "NRRD0004\ntype: unsigned char\ndimension: 3\nspace: left-posterior-superior\nsizes: " +
+      std::to_string(kX) + " " + std::to_string(kY) + " " + std::to_string(kZ) +
+      "\nspace directions: (-3,0,0) (0,-3,0) (0,0,3)\nkinds: domain domain domain\nencoding: raw\n"
+      "space origin: (0,0,0)\nSegment0_LabelValue:=" +
+      std::to_string(liver) + "\nSegment0_Name:=Liver\nSegment1_LabelValue:=" + std::to_string(gallbladder) +
+      "\nSegment1_Name:=gall bladder\n\n";
+  text.append(reinterpret_cast<const char*>(labels.data()), labels.size());
+  return text;
+}
+
+class FromLabels : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::path(testing::TempDir()) /
+              ("labels_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  fs::path Write(const char* name, const std::string& content) {
+    EXPECT_TRUE(core::WriteFile(folder_ / name, content).ok());
+    return folder_ / name;
+  }
+  core::Result<BuildReport> Build(const fs::path& labels, int liver = 0, int gallbladder = 0) {
+    LabelOptions options;
+    options.labels = labels, options.output = folder_ / "patient";
+    options.liver = liver, options.gallbladder = gallbladder;
+    options.spacing_mm = 2.0;
+    return BuildPatientFromLabels(options);
+  }
+  core::Error Failure(const fs::path& labels, int liver = 0, int gallbladder = 0) {
+    const auto report = Build(labels, liver, gallbladder);
+    EXPECT_FALSE(fs::exists(folder_ / "patient"));
+    return report.ok() ? core::Error{} : report.error();
+  }
+
+  fs::path folder_;
+};
+
+void ExpectThatBody(const BuildReport& report) {
+  ASSERT_EQ(report.organs.size(), 2u);
+  for (const OrganReport& organ : report.organs) {
+    EXPECT_TRUE(organ.closed && organ.manifold && organ.outward) << organ.name;
+    EXPECT_EQ(organ.genus, 0) << organ.name;
+    EXPECT_EQ(organ.self_intersections, 0u) << organ.name;
+  }
+  EXPECT_NEAR(report.organs[1].volume_ml, 4.0 / 3 * M_PI * 14 * 38 * 15 / 1000, 3.0);
+  // the gallbladder lies to the right of the liver's middle, below it, its long axis to the front
+  const Patient& patient = report.patient;
+  EXPECT_TRUE(CheckPatient(patient).ok());
+  const auto liver = geometry::CalcBox(patient.organs[0].mesh.positions);
+  const auto gallbladder = geometry::CalcBox(patient.organs[1].mesh.positions);
+  const Vec3 offset = 0.5 * (gallbladder.min + gallbladder.max) - 0.5 * (liver.min + liver.max);
+  EXPECT_NEAR(offset.x, -0.020, 0.004);
+  EXPECT_LT(offset.y, -0.040);
+  EXPECT_NEAR(offset.z, 0.008, 0.004);
+  EXPECT_GT(patient.FindLandmark("fundus")->position.z,
+            patient.FindLandmark("infundibulum")->position.z + 0.04);
+  EXPECT_GE(patient.tubes.size(), 5u);
+  for (const Tube& tube : patient.tubes) EXPECT_FALSE(tube.is_seen) << tube.name;
+}
+
+TEST_F(FromLabels, BuildsAPatientFromNifti) {
+  const auto report = Build(Write("total.nii", FormatNifti(MakeLabels(5, 2))));
+  ASSERT_TRUE(report.ok()) << report.error().Text();
+  ExpectThatBody(*report);
+  EXPECT_THAT(report->patient.provenance, HasSubstr("TotalSegmentator"));
+  EXPECT_TRUE(ReadPatient(folder_ / "patient").ok());
+}
+
+TEST_F(FromLabels, FollowsTheHeadersDirections) {
+  // a header whose first axis runs to the left mirrors the body: the gallbladder lies on the left
+  const auto report = Build(Write("mirrored.nii", FormatNifti(MakeLabels(1, 2), true)));
+  ASSERT_TRUE(report.ok()) << report.error().Text();
+  const auto liver = geometry::CalcBox(report->patient.organs[0].mesh.positions);
+  const auto gallbladder = geometry::CalcBox(report->patient.organs[1].mesh.positions);
+  EXPECT_NEAR(0.5 * (gallbladder.min.x + gallbladder.max.x) - 0.5 * (liver.min.x + liver.max.x), 0.020,
+              0.004);
+}
+
+TEST_F(FromLabels, KnowsSlicersSegmentNames) {
+  const auto report = Build(Write("mine.seg.nrrd", FormatNrrd(MakeLabels(7, 9), 7, 9)));
+  ASSERT_TRUE(report.ok()) << report.error().Text();
+  ExpectThatBody(*report);
+  EXPECT_THAT(report->patient.provenance, HasSubstr("segment names"));
+}
+
+TEST_F(FromLabels, NamesTheLabelThatIsMissing) {
+  const fs::path file = Write("odd.nii", FormatNifti(MakeLabels(3, 4)));
+  const core::Error error = Failure(file);
+  EXPECT_EQ(error.code, ErrorCode::kLabelsMismatch);
+  EXPECT_THAT(error.message, HasSubstr("liver"));
+  EXPECT_THAT(error.message, HasSubstr("3, 4"));
+  EXPECT_THAT(Failure(file, 3, 8).message, HasSubstr("--gallbladder"));
+  EXPECT_EQ(Failure(file, 3, 3).code, ErrorCode::kLabelsMismatch);
+  EXPECT_TRUE(Build(file, 3, 4).ok());
+}
+
+TEST_F(FromLabels, RefusesDamagedFiles) {
+  EXPECT_EQ(Failure(folder_ / "nowhere.nii").code, ErrorCode::kFileMissing);
+  EXPECT_EQ(Failure(Write("text.nii", "not an image")).code, ErrorCode::kImageUndecodable);
+  const std::string whole = FormatNifti(MakeLabels(5, 2));
+  for (const std::size_t length : {100u, 348u, 352u, 5000u, 100'000u}) {
+    EXPECT_EQ(Failure(Write("cut.nii", whole.substr(0, length))).code, ErrorCode::kImageUndecodable)
+        << length;
+  }
+  // a header that promises more than is there
+  std::string lying = whole;
+  Put<std::int16_t>(lying, 46, 30'000);
+  EXPECT_EQ(Failure(Write("lying.nii", lying)).code, ErrorCode::kImageUndecodable);
+  const std::string nrrd = FormatNrrd(MakeLabels(7, 9), 7, 9);
+  EXPECT_EQ(Failure(Write("cut.nrrd", nrrd.substr(0, 2000))).code, ErrorCode::kImageUndecodable);
+}
+
+TEST(FromLabelsSlow, RebuildsTheReferenceOfTheVisibleHuman) {
+  const fs::path labels = fs::path(TROCAR_SHARED_DIR) / "data/visible-human-male/reference/labels.nii.gz";
+  if (!fs::exists(labels)) GTEST_SKIP() << labels.parent_path() << " is not there";
+  LabelOptions options;
+  options.labels = labels;
+  const auto report = BuildPatientFromLabels(options);
+  ASSERT_TRUE(report.ok()) << report.error().Text();
+  EXPECT_NEAR(report->organs[0].volume_ml, 1766, 0.03 * 1766);
+  EXPECT_NEAR(report->organs[1].volume_ml, 28.6, 0.08 * 28.6);
+  for (const OrganReport& organ : report->organs) {
+    EXPECT_TRUE(organ.closed && organ.manifold && organ.outward) << organ.name;
+  }
+  EXPECT_TRUE(CheckPatient(report->patient).ok());
+}
+
+}  // namespace
+}  // namespace trocar::anatomy

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "trocar/anatomy/patient.h"
+#include "trocar/cli/run_command.h"
+
+namespace trocar::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+int RunWords(std::vector<std::string> words) {
+  words.insert(words.begin(), "trocar");
+  std::vector<char*> argv;
+  for (std::string& word : words) argv.push_back(word.data());
+  return RunCommand(static_cast<int>(argv.size()), argv.data());
+}
+
+class AnatomyCommand : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::path(testing::TempDir()) /
+              ("anatomy_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+    fs::remove_all(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+  fs::path folder_;
+};
+
+TEST_F(AnatomyCommand, GenerateWritesAPatientThatListsItsParameters) {
+  ASSERT_EQ(RunWords({"anatomy", "generate", "--seed", "11", "--set", "cystic_duct_length=36.5", "--set",
+                      "phrygian_cap=no", "-o", folder_.string()}),
+            0);
+  const auto patient = anatomy::ReadPatient(folder_);
+  ASSERT_TRUE(patient.ok()) << patient.error().Text();
+  ASSERT_NE(patient->FindParameter("cystic_duct_length"), nullptr);
+  EXPECT_EQ(std::get<double>(patient->FindParameter("cystic_duct_length")->value), 36.5);
+  EXPECT_EQ(patient->FindParameter("cystic_duct_length")->source, "set by the user");
+}
+
+TEST_F(AnatomyCommand, GenerateRefusesBadSettingsAndWritesNothing) {
+  const std::string out = folder_.string();
+  EXPECT_EQ(RunWords({"anatomy", "generate"}), 2) << "no folder";
+  EXPECT_EQ(RunWords({"anatomy", "generate", "-o", out, "--seed", "minus"}), 2);
+  EXPECT_EQ(RunWords({"anatomy", "generate", "-o", out, "--set", "hydrops"}), 2);
+  EXPECT_EQ(RunWords({"anatomy", "generate", "-o", out, "--set", "hydrops=7"}), 2);
+  EXPECT_EQ(RunWords({"anatomy", "generate", "-o", out, "--set", "no_such_thing=1"}), 1);
+  EXPECT_FALSE(fs::exists(folder_));
+  EXPECT_EQ(RunWords({"anatomy", "generate", "--list"}), 0);
+}
+
+}  // namespace
+}  // namespace trocar::cli
