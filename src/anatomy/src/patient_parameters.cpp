@@ -462,7 +462,7 @@ core::Result<std::vector<Parameter>> DrawParameters(std::uint64_t seed,
     }
     core::Result<Parameter> parameter = ReadSetting(*rule, text);
     if (!parameter.ok()) return parameter.error();
-    std::erase_if(set, [&](const Parameter& earlier) { return earlier.name == name; });
+    std::erase_if(set, [rule](const Parameter& earlier) { return earlier.name == rule->name; });
     set.push_back(std::move(*parameter));
   }
   const auto find_set = [&](std::string_view name) -> const Parameter* {
