@@ -227,8 +227,8 @@ core::Result<ControlPoints> ParseControlPoints(std::string_view text, std::strin
   const JsonView images = root.Object("images");
   images.AllowOnly(
       {"pattern", "first_slice", "last_slice", "width", "height", "pixel_mm", "slice_mm", "axes"});
-  points.image_pattern = images.Text("pattern");
-  CheckPattern(images, points.image_pattern);
+  points.image_pattern = images.TextOr("pattern", "");
+  if (images.Has("pattern")) CheckPattern(images, points.image_pattern);
   points.first_slice = images.Integer("first_slice", {0, 1e6});
   points.last_slice = images.Integer("last_slice", {0, 1e6});
   if (points.last_slice < points.first_slice) images.Complain("last_slice comes before first_slice");
@@ -290,8 +290,9 @@ std::string FormatControlPoints(const ControlPoints& points) {
   std::string text = "{\n";
   text += "\"format\": \"" + std::string(kFormat) + "\",\n\"version\": " + std::to_string(kVersion) + ",\n";
   text += "\"name\": " + Quoted(points.name) + ",\n\"provenance\": " + Quoted(points.provenance) + ",\n";
-  text += "\"images\": {\"pattern\": " + Quoted(points.image_pattern) +
-          ", \"first_slice\": " + std::to_string(points.first_slice) +
+  text += "\"images\": {";
+  if (!points.image_pattern.empty()) text += "\"pattern\": " + Quoted(points.image_pattern) + ", ";
+  text += "\"first_slice\": " + std::to_string(points.first_slice) +
           ", \"last_slice\": " + std::to_string(points.last_slice) +
           ",\n  \"width\": " + std::to_string(points.width) +
           ", \"height\": " + std::to_string(points.height) + ", \"pixel_mm\": " + exact(points.pixel_mm) +

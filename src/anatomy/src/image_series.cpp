@@ -14,6 +14,7 @@
 #include "image_frame.h"
 #include "import_worker.h"
 #include "slice_names.h"
+#include "trocar/anatomy/control_points.h"
 #include "trocar/core/assert.h"
 #include "trocar/core/printable.h"
 #include "volume_file.h"
@@ -256,10 +257,10 @@ core::Status OpenStack(const fs::path& folder, std::span<const std::string> name
   ImageSeriesInfo& info = content.info;
   for (const int wanted : options.slices) {
     if (named->files.contains(wanted)) continue;
-    return Error{ErrorCode::kImageSliceMissing,
-                 "slice " + std::to_string(wanted) + " is missing: there is no file like " +
-                     core::Printable(named->pattern) +
-                     " for it; complete the folder or correct the naming pattern"};
+    return Error{ErrorCode::kImageSliceMissing, "slice " + std::to_string(wanted) +
+                                                    " is missing: there is no " +
+                                                    core::Printable(FormatImageName(named->pattern, wanted)) +
+                                                    "; complete the folder or correct the naming pattern"};
   }
   for (const auto& [number, name] : named->files) {
     if (!options.slices.empty() && !std::binary_search(options.slices.begin(), options.slices.end(), number))
@@ -286,17 +287,19 @@ core::Status OpenStack(const fs::path& folder, std::span<const std::string> name
   if (!status) return status;
   for (std::size_t i = 0; i < content.headers.size(); ++i) {
     const ImageHeader &first = content.headers[0], &header = content.headers[i];
-    const std::string name = "slice " + std::to_string(info.slice_numbers[i]);
+    const auto name_of = [&](std::size_t k) {
+      return "slice " + std::to_string(info.slice_numbers[k]) + " (" +
+             core::Printable(content.files[k].filename().string()) + ")";
+    };
     if (header.depth != 1 || header.kind > FileKind::kTiff) {
-      return Error{ErrorCode::kImageSeriesMixed, name + " (" + core::Printable(content.files[i].string()) +
-                                                     ") is no single picture; open it by itself"};
+      return Error{ErrorCode::kImageSeriesMixed, name_of(i) + " is no single picture; open it by itself"};
     }
     if (header.width != first.width || header.height != first.height) {
-      return Error{ErrorCode::kImageSizeDiffers, name + " has " + std::to_string(header.width) + " x " +
-                                                     std::to_string(header.height) + " pixels, slice " +
-                                                     std::to_string(info.slice_numbers[0]) + " has " +
-                                                     std::to_string(first.width) + " x " +
-                                                     std::to_string(first.height) + "; give all one size"};
+      return Error{ErrorCode::kImageSizeDiffers, name_of(i) + " has " + std::to_string(header.width) + " x " +
+                                                     std::to_string(header.height) + " pixels, " +
+                                                     name_of(0) + " has " + std::to_string(first.width) +
+                                                     " x " + std::to_string(first.height) +
+                                                     "; give all one size"};
     }
   }
   info.format = FormatName(content.headers[0].kind);
@@ -325,7 +328,7 @@ core::Status OpenDicom(const fs::path& folder, std::span<const std::string> name
         const auto reply = content.pool->Probe(*file);
         // reports, plans and folders of contents lie among the slices
         if (!reply && reply.error().code == ErrorCode::kImageUnsupported && names.size() > 1 &&
-            reply.error().message.find("without a picture") != std::string::npos)
+            reply.error().message.find(kWithoutPicture) != std::string::npos)
           return {};
         if (!reply) return reply.error();
         found[i] = DicomSlice{names[i], reply->header};
@@ -455,6 +458,10 @@ core::Result<ImageSeries> ImageSeries::Open(const fs::path& path, const ImageSer
       status = Error{status.error().code, core::Printable(path.string()) + ": " + status.error().message};
   } else {
     const auto file = ImportFile::Open(path, Links::kFollow);
+    if (!file && file.error().code == ErrorCode::kFileMissing) {
+      return Error{ErrorCode::kImageFolderMissing,
+                   core::Printable(path.string()) + " does not exist; name the folder or file of the images"};
+    }
     if (!file) return file.error();
     if (SniffKind(file->ReadBegin(348)) == FileKind::kDicom) {
       const std::string name = path.filename().string();

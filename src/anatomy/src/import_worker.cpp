@@ -220,7 +220,10 @@ Error ImportWorker::FindCause() {
   pid_t ended = 0;
   const core::Stopwatch stopwatch;
   while ((ended = ::waitpid(process_, &status, WNOHANG)) == 0 && stopwatch.Seconds() < 1.0) ::usleep(1000);
-  if (ended == 0) status = End();
+  if (ended == 0) {
+    End();
+    return {ErrorCode::kImportCrashed, "its reader answered nonsense"};
+  }
   process_ = -1;
   if (WIFEXITED(status) && WEXITSTATUS(status) == kExitOutOfMemory)
     return {ErrorCode::kImportOutOfMemory, "it needs more memory than its reader may have"};
