@@ -9,11 +9,9 @@
 #include <vector>
 
 #include "duct_template.h"
-#include "trocar/anatomy/marching_cubes.h"
-#include "trocar/anatomy/mesh_decimation.h"
-#include "trocar/anatomy/mesh_smoothing.h"
 #include "trocar/anatomy/patient_builder.h"
 #include "trocar/anatomy/volume.h"
+#include "trocar/anatomy/volume_mesher.h"
 #include "trocar/geometry/mesh_measures.h"
 
 namespace trocar::anatomy {
@@ -23,9 +21,6 @@ using core::Error;
 using core::ErrorCode;
 using math::Vec3;
 
-constexpr int kLiverTriangles = 5132;        // as the built-in patient
-constexpr int kGallbladderTriangles = 1798;  // likewise
-constexpr double kCubicMmPerMl = 1000.0;
 constexpr double kThinnestMm = 5.0;  // what is thinner within a slice is cut off
 constexpr double kBlurMm = 2.0;      // width of the blur, about 1.4 times its standard deviation
 constexpr double kLargestVoxelMm = 20.0;
@@ -256,30 +251,19 @@ core::Result<BuildReport> BuildPatientFromLabels(const LabelOptions& options, co
   std::vector<StructureMesh> meshes;
   for (std::size_t i = 0; i < volumes.size(); ++i) {
     tell(std::string("meshing ") + parts[i].name, 0.3 + 0.3 * static_cast<double>(i));
-    KeepLargestPart(volumes[i]);
-    auto mesh = MarchCubes(volumes[i]);
-    if (mesh.triangles.empty()) {
-      return Error{ErrorCode::kContourEmpty,
-                   std::string(parts[i].name) + " encloses nothing; check its label"};
-    }
-    SmoothMesh(mesh);
-    auto decimated = DecimateMesh(mesh, {.triangle_budget = parts[i].triangles});
-    if (!decimated.ok())
-      return Error{decimated.error().code, std::string(parts[i].name) + ": " + decimated.error().message};
-    for (Vec3& p : decimated->positions) p = p.x * axes[0] + p.y * axes[1] + p.z * axes[2];
+    MeshingSettings settings;
+    settings.triangle_budget = parts[i].triangles;
+    auto meshed = MeshVolume(std::move(volumes[i]), settings);
+    if (!meshed.ok())
+      return Error{meshed.error().code, std::string(parts[i].name) + ": " + meshed.error().message};
+    AddMeshQuality(report.organs[i], meshed->quality);
+    geometry::TriangleMesh& mesh = meshed->mesh;
+    for (Vec3& p : mesh.positions) p = p.x * axes[0] + p.y * axes[1] + p.z * axes[2];
     // a mirrored frame turns the triangles inside out
-    if (geometry::CalcVolume(decimated->positions, decimated->triangles) < 0) {
-      for (auto& t : decimated->triangles) std::swap(t[1], t[2]);
+    if (geometry::CalcVolume(mesh.positions, mesh.triangles) < 0) {
+      for (auto& t : mesh.triangles) std::swap(t[1], t[2]);
     }
-    OrganReport& organ = report.organs[i];
-    const auto measured = geometry::InspectMesh(*decimated);
-    organ.triangles = measured.triangles;
-    organ.closed = measured.closed, organ.manifold = measured.manifold, organ.outward = measured.outward;
-    organ.genus = measured.genus;
-    organ.self_intersections = geometry::CountSelfIntersections(*decimated);
-    organ.min_angle_deg = measured.min_angle * 180.0 / M_PI;
-    organ.volume_ml = measured.volume / kCubicMmPerMl;
-    meshes.push_back({parts[i].name, std::move(*decimated)});
+    meshes.push_back({parts[i].name, std::move(mesh)});
   }
 
   tell("assembling the patient", 0.9);
