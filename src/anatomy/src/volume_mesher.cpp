@@ -4,9 +4,11 @@
 #include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "trocar/anatomy/marching_cubes.h"
 #include "trocar/anatomy/mesh_decimation.h"
@@ -16,16 +18,15 @@ namespace {
 
 using geometry::TriangleMesh;
 
-/// Triangles of the first surface for each one wanted: fewer show the lattice, more only take time.
-constexpr double kTrianglesForEach = 12.0;
 /// Share of the budget that repair may not go below.
 constexpr double kFewest = 0.98;
 /// How much more smoothing each further attempt gets [-].
 constexpr double kMoreSmoothing[] = {1.0, 1.6, 2.5};
 /// A halved lattice needs this share of the rounds for the same effect in millimetres.
 constexpr double kRoundsWhenHalved = 0.25;
-/// Volume that halving may change before it is given up: thin parts were lost.
-constexpr double kVolumeLost = 0.01;
+/// Halving is given up where it changes more of the volume than this, or loses more of it: samples inside
+/// that have no coarse sample inside around them.
+constexpr double kVolumeChanged = 0.01, kVolumeLost = 2e-4;
 
 double CalcVolume(const TriangleMesh& mesh) {
   return geometry::CalcVolume(mesh.positions, mesh.triangles);
@@ -36,6 +37,39 @@ struct FirstSurface {
   TriangleMesh mesh;
   double rounds = 1.0;  // as a share of those asked for
 };
+
+/// Share of the samples inside whose nearest sample of the halved volume lies outside with all its
+/// neighbours.
+double CalcShareLost(const ScalarVolume& volume, const ScalarVolume& half) {
+  // what lies within one sample of the inside, by one axis after the other
+  std::vector<std::uint8_t> near(half.values.size());
+  for (std::size_t v = 0; v < near.size(); ++v) near[v] = half.values[v] > 0;
+  const std::array<std::size_t, 3> strides = {1, static_cast<std::size_t>(half.size[0]),
+                                              static_cast<std::size_t>(half.size[0]) * half.size[1]};
+  for (const std::size_t stride : strides) {
+    const std::vector<std::uint8_t> before = near;
+    for (std::size_t v = stride; v + stride < near.size(); ++v)
+      near[v] = before[v - stride] | before[v] | before[v + stride];
+  }
+  std::vector<std::size_t> inside(static_cast<std::size_t>(volume.size[2])), lost(inside.size());
+  oneapi::tbb::parallel_for(0, volume.size[2], [&](int k) {
+    const auto coarse = [&](int axis, int fine) {
+      return std::clamp(static_cast<int>(std::floor((volume.first[axis] + fine) / 2.0)) - half.first[axis], 0,
+                        half.size[axis] - 1);
+    };
+    for (int j = 0; j < volume.size[1]; ++j) {
+      const float* row = &volume.values[volume.Index(0, j, k)];
+      for (int i = 0; i < volume.size[0]; ++i) {
+        if (!(row[i] > 0)) continue;
+        ++inside[static_cast<std::size_t>(k)];
+        if (!near[half.Index(coarse(0, i), coarse(1, j), coarse(2, k))]) ++lost[static_cast<std::size_t>(k)];
+      }
+    }
+  });
+  std::size_t all = 0, gone = 0;
+  for (std::size_t k = 0; k < inside.size(); ++k) all += inside[k], gone += lost[k];
+  return static_cast<double>(gone) / static_cast<double>(all);
+}
 
 /// Halves the volume while its surface stays fine enough for the budget and keeps its parts.
 std::optional<FirstSurface> MakeCoarserSurface(const ScalarVolume& volume, const TriangleMesh& fine,
@@ -48,8 +82,10 @@ std::optional<FirstSurface> MakeCoarserSurface(const ScalarVolume& volume, const
        triangles /= 4) {
     ScalarVolume next = HalveResolution(*from);
     KeepLargestPart(next);
+    if (CalcShareLost(*from, next) > kVolumeLost) break;
     TriangleMesh mesh = MarchCubes(next);
-    if (mesh.triangles.empty() || std::fabs(CalcVolume(mesh) / CalcVolume(fine) - 1.0) > kVolumeLost) break;
+    if (mesh.triangles.empty() || std::fabs(CalcVolume(mesh) / CalcVolume(fine) - 1.0) > kVolumeChanged)
+      break;
     if (geometry::InspectMesh(mesh).genus > genus) break;
     coarser = FirstSurface{std::move(mesh), kRoundsWhenHalved * (coarser ? coarser->rounds : 1.0)};
     halved = std::move(next);
@@ -114,7 +150,7 @@ core::Result<MeshedVolume> MeshVolume(ScalarVolume volume, const MeshingSettings
                        "the volume encloses nothing; check its contours or labels"};
   }
   const double enclosed = CalcVolume(fine);
-  const auto coarser = MakeCoarserSurface(volume, fine, kTrianglesForEach * settings.triangle_budget);
+  const auto coarser = MakeCoarserSurface(volume, fine, settings.oversampling * settings.triangle_budget);
   const TriangleMesh& surface = coarser ? coarser->mesh : fine;
 
   std::optional<MeshedVolume> best;

@@ -18,6 +18,7 @@ inline constexpr int kGallbladderTriangles = 1798;
 struct MeshingSettings {
   int triangle_budget = kLiverTriangles;  ///< at most this many triangles, at least 98 % of it; >= 8
   SmoothingSettings smoothing;            ///< of the surface at the volume's own spacing
+  double oversampling = 12.0;             ///< least triangles of the first surface for each one wanted
   double min_angle_deg = 8.0;             ///< smaller angles are repaired where that is possible
   std::size_t distance_samples = 20000;   ///< for the distance to the volume's surface, each way; 0: none
 };
