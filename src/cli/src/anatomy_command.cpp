@@ -120,15 +120,9 @@ core::Status Generate(const GenerateArguments& arguments) {
   if (arguments.output.empty()) {
     return core::Error{core::ErrorCode::kUsage, "name the patient folder to write with -o PATIENT"};
   }
-  std::vector<anatomy::ParameterSetting> settings;
-  for (const std::string& text : arguments.settings) {
-    const auto at = text.find('=');
-    if (at == std::string::npos || at == 0) {
-      return core::Error{core::ErrorCode::kUsage, "--set: \"" + text + "\" is not like hydrops=0.5"};
-    }
-    settings.emplace_back(text.substr(0, at), text.substr(at + 1));
-  }
-  const core::Result<anatomy::Patient> patient = anatomy::GeneratePatient(arguments.seed, settings);
+  const auto settings = ParseSettings(arguments.settings);
+  if (!settings) return settings.error();
+  const core::Result<anatomy::Patient> patient = anatomy::GeneratePatient(arguments.seed, *settings);
   if (!patient) return patient.error();
   if (auto status = anatomy::WritePatient(arguments.output, *patient); !status) return status;
   PrintParameters(*patient);
@@ -207,6 +201,18 @@ void AddFromLabelsCommand(CLI::App& anatomy, Outcome& outcome) {
 
 }  // namespace
 
+core::Result<std::vector<anatomy::ParameterSetting>> ParseSettings(const std::vector<std::string>& texts) {
+  std::vector<anatomy::ParameterSetting> settings;
+  for (const std::string& text : texts) {
+    const auto at = text.find('=');
+    if (at == std::string::npos || at == 0) {
+      return core::Error{core::ErrorCode::kUsage, "--set: \"" + text + "\" is not like hydrops=0.5"};
+    }
+    settings.emplace_back(text.substr(0, at), text.substr(at + 1));
+  }
+  return settings;
+}
+
 void AddAnatomyCommand(CLI::App& app, Outcome& outcome) {
   CLI::App* anatomy = app.add_subcommand("anatomy", "A patient from cross-sections, or from none");
   anatomy->require_subcommand(1);
@@ -250,6 +256,8 @@ void AddAnatomyCommand(CLI::App& app, Outcome& outcome) {
   build->callback([arguments, &outcome] { outcome.status = Build(*arguments); });
   AddAnatomyCheckCommand(*anatomy, outcome);
   AddAnatomyExportCommand(*anatomy, outcome);
+  AddAnatomyPhantomCommand(*anatomy, outcome);
+  AddAnatomyViewCommand(*anatomy, outcome);
   AddAnatomyImagesCommand(*anatomy, outcome);
   AddGenerateCommand(*anatomy, outcome);
   AddFromLabelsCommand(*anatomy, outcome);
