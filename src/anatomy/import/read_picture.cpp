@@ -121,10 +121,15 @@ void ReadPicture(const Job& job, FileKind kind, ImportReply& reply) {
     throw Failure{ErrorCode::kImageTruncated, "it is too small for the size in its header"};
   if (job.samples == nullptr) return;
 
-  std::vector<char> raw(raw_bytes);
   itk::ImageIORegion region(dimensions);
   for (unsigned axis = 0; axis < dimensions; ++axis) region.SetSize(axis, reader->GetDimensions(axis));
   reader->SetIORegion(region);
+  // what is laid out as it is handed over needs no copy
+  if (channels == header.channels && (is_grey || is_byte)) {
+    reader->Read(job.samples);
+    return;
+  }
+  std::vector<char> raw(raw_bytes);
   reader->Read(raw.data());
   if (is_grey) {
     if (is_byte) return TakeGrey<std::uint8_t>(raw, channels, pixels, job.samples);
