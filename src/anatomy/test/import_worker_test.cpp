@@ -11,6 +11,8 @@
 #include <cerrno>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <thread>
 #include <vector>
 
@@ -61,6 +63,11 @@ class ImportWorkers : public testing::Test {
     return reply.ok() ? core::Error{} : reply.error();
   }
 
+  static std::string ReadProc(const fs::path& path) {
+    std::ifstream stream(path);
+    return {std::istreambuf_iterator<char>(stream), {}};
+  }
+
   fs::path folder_;
 };
 
@@ -99,6 +106,31 @@ TEST_F(ImportWorkers, AReaderInheritsNothing) {
   EXPECT_THAT(seen, Not(HasSubstr("SECRET")));
   // standard streams, the socket, and the file that came with the request
   EXPECT_THAT(seen, HasSubstr("descriptors 0 1 2 3 4 variables"));
+}
+
+TEST_F(ImportWorkers, TheSandboxAllowsReadingOnly) {
+  const fs::path file = Write("a.png", test::MakePng(8, 6, 6));
+  EXPECT_THAT(ProbeFailure(Misbehaving("boxed"), file).message, HasSubstr("could read;"));
+}
+
+TEST_F(ImportWorkers, TheRealReaderIsInTheSandbox) {
+  const auto file = ImportFile::Open(Write("a.png", test::MakePng(8, 6, 6)), Links::kFollow);
+  ASSERT_TRUE(file.ok());
+  ImportLimits limits;
+  limits.reader_bytes = std::uint64_t{1234567} << 10;
+  ImportPool pool(limits, 1);
+  ASSERT_TRUE(pool.Probe(*file).ok());
+  std::string status, limit;
+  for (const auto& entry : fs::directory_iterator("/proc")) {
+    const std::string text = ReadProc(entry.path() / "status");
+    if (text.find("PPid:\t" + std::to_string(::getpid()) + "\n") == std::string::npos) continue;
+    status = text;
+    limit = ReadProc(entry.path() / "limits");
+  }
+  EXPECT_THAT(status, HasSubstr("Name:\ttrocar-import"));
+  EXPECT_THAT(status, HasSubstr("Seccomp:\t2"));
+  EXPECT_THAT(status, HasSubstr("NoNewPrivs:\t1"));
+  EXPECT_THAT(limit, HasSubstr(std::to_string(limits.reader_bytes)));
 }
 
 // Negative controls: without our guards the very same files do kill the reader.

@@ -2,9 +2,12 @@
 /// \file misbehaving_reader.cpp  Speaks import_protocol.h and does what a reader must not; what, its own name
 /// says.
 #include <dirent.h>
+#include <fcntl.h>
+#include <sys/socket.h>
 #include <unistd.h>
 
 #include <array>
+#include <cerrno>
 #include <cmath>
 #include <csignal>
 #include <cstdlib>
@@ -14,6 +17,7 @@
 
 #include "import_protocol.h"
 #include "import_socket.h"
+#include "reader.h"
 
 extern char** environ;
 
@@ -43,6 +47,25 @@ std::string Spy() {
   for (char** variable = environ; *variable != nullptr; ++variable)
     seen += " " + std::string(*variable, std::strcspn(*variable, "="));
   return seen;
+}
+
+/// Enters the real sandbox and tries what it must not allow.
+std::string TryInsideSandbox() {
+  import::EnterSandbox(std::uint64_t{256} << 20);
+  std::string could;
+  const auto note = [&](const char* what, bool is_possible) {
+    could += is_possible ? std::string(" ") + what : "";
+  };
+  note("socket", ::socket(AF_UNIX, SOCK_STREAM, 0) >= 0);
+  note("write", ::open("/tmp/trocar-sandbox-test", O_WRONLY | O_CREAT, 0600) >= 0);
+  char* const none[] = {nullptr};
+  ::execve("/bin/true", none, none);  // on success there is no reply at all
+  note("remove", ::unlink("/tmp/trocar-sandbox-none") == 0 || errno != EPERM);
+  void* memory = std::malloc(std::size_t{1} << 30);
+  note("memory", memory != nullptr);
+  std::free(memory);
+  note("read", ::open("/proc/self/exe", O_RDONLY) >= 0);
+  return "could" + could;
 }
 
 void Send(const ImportReply& reply) {
@@ -78,6 +101,7 @@ int main(int, char** argv) {
     if (how == "code") reply.code = 1;
     if (how == "control") reply.code = 11, std::strcpy(reply.why, "red \x1b[31m\ntext");
     if (how == "spy") reply.code = 11, Spy().copy(reply.why, sizeof(reply.why) - 1);
+    if (how == "boxed") reply.code = 11, TryInsideSandbox().copy(reply.why, sizeof(reply.why) - 1);
     Send(reply);
   }
   return 0;
