@@ -68,6 +68,9 @@ core::Status OpenFolder(const fs::path& folder, const ImageSeriesOptions& option
                         Content& content) {
   auto found = LookInto(folder);
   if (!found) return found.error();
+  if (found->files.empty())
+    return Error{ErrorCode::kImageSliceMissing,
+                 "the folder holds no files; name the one that the slices lie in"};
   if (options.pattern.empty() && !found->dicom.empty()) {
     content.info.ignored_files = found->files.size() - found->dicom.size();
     return OpenDicom(folder, found->dicom, Links::kRefuse, options, progress, content);
