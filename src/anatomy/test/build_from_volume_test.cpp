@@ -20,7 +20,8 @@ using core::ErrorCode;
 class BuildFromVolume : public testing::Test {
  protected:
   void SetUp() override {
-    folder_ = fs::path(testing::TempDir()) / "build_from_volume";
+    folder_ = fs::path(testing::TempDir()) /
+              ("volume_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
     fs::remove_all(folder_);
     const auto patient = GeneratePatient(3);
     ASSERT_TRUE(patient.ok()) << patient.error().Text();
