@@ -97,6 +97,30 @@ core::Result<ContouredStructure> ExtractContours(const ControlPoints& points, co
   return result;
 }
 
+/// The pictures that the points were placed on. What the images say of size and place must agree with the
+/// points.
+core::Result<std::map<int, ColorImage>> ReadContouredSlices(const ControlPoints& points,
+                                                            const std::vector<int>& numbers,
+                                                            const BuildOptions& options,
+                                                            const Progress& progress) {
+  ImageSeriesOptions series_options;
+  series_options.pixel_mm = points.pixel_mm;
+  series_options.slice_mm = points.slice_mm;
+  series_options.axes = points.axes;
+  series_options.pattern = points.image_pattern;
+  series_options.slices = numbers;
+  const auto series = ImageSeries::Open(options.images, series_options, progress);
+  if (!series.ok()) return series.error();
+  const ImageSeriesInfo& info = series->Info();
+  if (info.width != points.width || info.height != points.height) {
+    return Error{core::ErrorCode::kImageSizeDiffers,
+                 "the images have " + std::to_string(info.width) + " x " + std::to_string(info.height) +
+                     " pixels, but the control points were placed on " + std::to_string(points.width) +
+                     " x " + std::to_string(points.height) + "; use the images that the points belong to"};
+  }
+  return ReadSlices(*series, numbers, options.window.value_or(info.suggested_window), progress);
+}
+
 core::Status WriteOverlays(const std::filesystem::path& folder, const std::map<int, ColorImage>& images,
                            const std::map<int, Overlay>& overlays, const Progress& progress) {
   std::size_t done = 0;
@@ -136,8 +160,7 @@ core::Result<BuildReport> BuildPatient(const BuildOptions& options, const Progre
     for (const SliceContours& slice : structure.slices) used.insert(slice.slice);
   }
   const std::vector<int> numbers(used.begin(), used.end());
-  const auto images =
-      LoadSlices({options.images, points->image_pattern, points->width, points->height}, numbers, progress);
+  const auto images = ReadContouredSlices(*points, numbers, options, progress);
   if (!images.ok()) return images.error();
 
   BuildReport report;
