@@ -15,7 +15,7 @@ using math::Vec3;
 namespace {
 constexpr int kMaxCellsAnAxis = 160;
 constexpr double kRounded = 1.0 + 1e-9;  // a ball that rounding cannot make too small
-}
+}  // namespace
 
 NearestSurface::NearestSurface(const geometry::TriangleMesh& mesh) : mesh_(mesh) {
   TROCAR_ASSERT(!mesh.triangles.empty());
