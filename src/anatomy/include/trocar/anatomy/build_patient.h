@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
+#include "trocar/anatomy/build_organs.h"
 #include "trocar/anatomy/image_stack.h"
 #include "trocar/anatomy/patient.h"
-#include "trocar/anatomy/reference_judge.h"
 #include "trocar/core/result.h"
 
 namespace trocar::anatomy {
@@ -24,20 +24,6 @@ struct BuildOptions {
   std::optional<std::filesystem::path> overlays;   ///< folder for one PNG a slice
   double spacing_mm = 1.0;                         ///< of the volume's lattice, 0.4 to 4
   double gap_mm = 0.7;                             ///< left free around an organ where another one touches it
-};
-
-/// One organ in the table of results.
-struct OrganReport {
-  std::string name;
-  std::size_t slices = 0, control_points = 0;
-  double mean_shift_px = 0, largest_shift_px = 0;  ///< of the edge adaption
-  std::size_t triangles = 0;
-  bool closed = false, manifold = false, outward = false;
-  int genus = 0;
-  std::size_t self_intersections = 0;
-  double min_angle_deg = 0;
-  double volume_ml = 0;
-  std::optional<Judgement> judgement;  ///< with a reference only
 };
 
 struct BuildReport {
