@@ -7,11 +7,8 @@
 #include "trocar/anatomy/contour_fill.h"
 #include "trocar/anatomy/contour_fit.h"
 #include "trocar/anatomy/contour_morph.h"
-#include "trocar/anatomy/marching_cubes.h"
-#include "trocar/anatomy/mesh_decimation.h"
-#include "trocar/anatomy/mesh_smoothing.h"
 #include "trocar/anatomy/volume.h"
-#include "trocar/geometry/mesh_measures.h"
+#include "trocar/anatomy/volume_mesher.h"
 
 namespace trocar::anatomy {
 namespace {
@@ -99,6 +96,29 @@ core::Result<ContouredStructure> ExtractContours(const ControlPoints& points, co
 
 }  // namespace
 
+core::Result<std::map<int, ColorImage>> ReadContouredSlices(const ControlPoints& points,
+                                                            const std::filesystem::path& folder,
+                                                            const std::vector<int>& numbers,
+                                                            std::optional<DisplayWindow> window,
+                                                            const Progress& progress) {
+  ImageSeriesOptions series_options;
+  series_options.pixel_mm = points.pixel_mm;
+  series_options.slice_mm = points.slice_mm;
+  series_options.axes = points.axes;
+  series_options.pattern = points.image_pattern;
+  series_options.slices = numbers;
+  const auto series = ImageSeries::Open(folder, series_options, progress);
+  if (!series.ok()) return series.error();
+  const ImageSeriesInfo& info = series->Info();
+  if (info.width != points.width || info.height != points.height) {
+    return Error{core::ErrorCode::kImageSizeDiffers,
+                 "the images have " + std::to_string(info.width) + " x " + std::to_string(info.height) +
+                     " pixels, but the control points were placed on " + std::to_string(points.width) +
+                     " x " + std::to_string(points.height) + "; use the images that the points belong to"};
+  }
+  return ReadSlices(*series, numbers, window.value_or(info.suggested_window), progress);
+}
+
 core::Result<BuiltOrgans> BuildOrgans(const ControlPoints& points, const std::map<int, ColorImage>& images,
                                       const OrganOptions& options, const Progress& progress) {
   const auto tell = [&](std::string_view what, double part) {
@@ -136,33 +156,37 @@ core::Result<BuiltOrgans> BuildOrgans(const ControlPoints& points, const std::ma
   for (std::size_t i = 0; i < volumes.size(); ++i) {
     const Structure& structure = points.structures[i];
     tell("meshing " + structure.name, static_cast<double>(i) / count);
-    KeepLargestPart(volumes[i]);
-    auto mesh = MarchCubes(volumes[i]);
-    if (mesh.triangles.empty()) {
-      return Error{core::ErrorCode::kContourEmpty, structure.name + " encloses nothing; check its contours"};
-    }
-    SmoothMesh(mesh);
-    auto decimated = DecimateMesh(mesh, {.triangle_budget = structure.triangle_budget});
-    if (!decimated.ok())
-      return Error{decimated.error().code, structure.name + ": " + decimated.error().message};
+    MeshingSettings settings;
+    settings.triangle_budget = structure.triangle_budget;
+    auto meshed = MeshVolume(std::move(volumes[i]), settings);
+    if (!meshed.ok()) return Error{meshed.error().code, structure.name + ": " + meshed.error().message};
     OrganReport& organ = built.organs[i];
-    const auto measured = geometry::InspectMesh(*decimated);
-    organ.triangles = measured.triangles;
-    organ.closed = measured.closed, organ.manifold = measured.manifold, organ.outward = measured.outward;
-    organ.genus = measured.genus;
-    organ.self_intersections = geometry::CountSelfIntersections(*decimated);
-    organ.min_angle_deg = measured.min_angle * 180.0 / M_PI;
-    organ.volume_ml = measured.volume / kCubicMmPerMl;
+    AddMeshQuality(organ, meshed->quality);
     if (options.reference != nullptr && structure.reference_label > 0) {
-      auto judged = Judge(*options.reference, points, structure.reference_label, *decimated,
+      auto judged = Judge(*options.reference, points, structure.reference_label, meshed->mesh,
                           structure.reference_left_out);
       if (!judged.ok()) return judged.error();
       organ.judgement = *judged;
     }
-    built.meshes.push_back({structure.name, std::move(*decimated)});
+    built.meshes.push_back({structure.name, std::move(meshed->mesh)});
   }
 
   return built;
+}
+
+void AddMeshQuality(OrganReport& report, const MeshQuality& quality) {
+  const geometry::MeshReport& surface = quality.surface;
+  report.triangles = surface.triangles;
+  report.closed = surface.closed, report.manifold = surface.manifold, report.outward = surface.outward;
+  report.genus = surface.genus;
+  report.self_intersections = quality.self_intersections;
+  report.min_angle_deg = surface.min_angle * 180.0 / M_PI;
+  report.mean_min_angle_deg = surface.mean_min_angle * 180.0 / M_PI;
+  report.volume_ml = surface.volume / kCubicMmPerMl;
+  report.volume_change = quality.volume_change;
+  report.hausdorff_mm = quality.distance.Hausdorff();
+  report.mean_distance_mm = quality.distance.mean_from_mesh;
+  report.samples_per_square_mm = static_cast<double>(quality.distance.mesh_samples) / surface.area;
 }
 
 }  // namespace trocar::anatomy

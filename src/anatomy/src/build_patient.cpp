@@ -49,8 +49,7 @@ core::Result<BuildReport> BuildPatient(const BuildOptions& options, const Progre
     for (const SliceContours& slice : structure.slices) used.insert(slice.slice);
   }
   const std::vector<int> numbers(used.begin(), used.end());
-  const auto images =
-      LoadSlices({options.images, points->image_pattern, points->width, points->height}, numbers, progress);
+  const auto images = ReadContouredSlices(*points, options.images, numbers, options.window, progress);
   if (!images.ok()) return images.error();
 
   auto built = BuildOrgans(*points, *images,
@@ -79,16 +78,17 @@ core::Result<BuildReport> BuildPatient(const BuildOptions& options, const Progre
 std::string FormatReport(const BuildReport& report) {
   std::string text =
       "organ        slices points shift mean/max px  triangles closed manifold outward genus cuts min angle  "
-      "volume  "
+      "distance max/mean mm  volume  "
       "reference ratio  Dice\n";
   for (const OrganReport& organ : report.organs) {
     char line[256];
-    std::snprintf(line, sizeof(line),
-                  "%-12s %6zu %6zu %9.2f / %-8.2f %9zu %6s %8s %7s %5d %4zu %6.1f deg %5.0f mL",
-                  organ.name.c_str(), organ.slices, organ.control_points, organ.mean_shift_px,
-                  organ.largest_shift_px, organ.triangles, organ.closed ? "yes" : "NO",
-                  organ.manifold ? "yes" : "NO", organ.outward ? "yes" : "NO", organ.genus,
-                  organ.self_intersections, organ.min_angle_deg, organ.volume_ml);
+    std::snprintf(
+        line, sizeof(line),
+        "%-12s %6zu %6zu %9.2f / %-8.2f %9zu %6s %8s %7s %5d %4zu %6.1f deg %11.2f / %-6.3f %5.0f mL",
+        organ.name.c_str(), organ.slices, organ.control_points, organ.mean_shift_px, organ.largest_shift_px,
+        organ.triangles, organ.closed ? "yes" : "NO", organ.manifold ? "yes" : "NO",
+        organ.outward ? "yes" : "NO", organ.genus, organ.self_intersections, organ.min_angle_deg,
+        organ.hausdorff_mm, organ.mean_distance_mm, organ.volume_ml);
     text += line;
     if (organ.judgement) {
       std::snprintf(line, sizeof(line), " %7.1f mL %5.3f %5.3f", organ.judgement->reference_ml,

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 
+#include "edge_cost.h"
 #include "edge_strip.h"
 #include "trocar/core/assert.h"
 
@@ -14,7 +16,6 @@ namespace {
 constexpr double kRowStep = 2.0;     // distance of the rows of the band [pixels]
 constexpr double kColumnStep = 0.5;  // of its columns [pixels]
 constexpr int kMaxJump = 2;          // columns between neighbouring rows
-constexpr int kPad = 2;              // columns beyond reach, for the gradient at its ends
 constexpr int kMaxRounds = 6;        // of insertion
 constexpr std::size_t kClosest = 3;  // rows between two points at least
 
@@ -29,32 +30,22 @@ EdgePath FindEdge(const EdgeField& field, std::span<const Vec2> polyline,
                   const EdgeAdaptionSettings& settings) {
   EdgePath edge;
   edge.curve = ResampleClosed(polyline, kRowStep);
-  const EdgeStrip strip =
-      SampleStrip(field, edge.curve, settings.max_shift_px + kPad * kColumnStep, kColumnStep);
-  const int reach = strip.reach - kPad, columns = 2 * reach + 1;
-  std::vector<float> gradient(strip.rows * columns), cost(strip.rows * columns);
-  float strongest = 0;
-  for (std::size_t row = 0; row < strip.rows; ++row) {
-    const Colour* colours = strip.Row(row) + kPad;
-    for (int k = 0; k < columns; ++k) {
-      float squared = 0;
-      for (std::size_t c = 0; c < 3; ++c) {
-        const float change = colours[k + 1][c] - colours[k - 1][c];
-        squared += change * change;
-      }
-      gradient[row * columns + k] = std::sqrt(squared);
-      strongest = std::max(strongest, gradient[row * columns + k]);
-    }
-  }
+  static const double kBand = getenv("BAND") ? atof(getenv("BAND")) : 6.0;
+  static const double kRegion = getenv("REGION") ? atof(getenv("REGION")) : 0.1;
+  const EdgeStrip strip = SampleStrip(field, edge.curve, settings.max_shift_px + kBand, kColumnStep);
+  const EdgeEvidence evidence = CalcEdgeEvidence(strip, settings.max_shift_px, kRowStep);
+  const int reach = evidence.reach, columns = evidence.Columns();
+  const auto& gradient = evidence.gradient;
+  std::vector<float> cost(gradient.size());
   const auto least = static_cast<float>(settings.min_gradient);
   for (std::size_t row = 0; row < strip.rows; ++row) {
     const float* here = &gradient[row * columns];
     const float scale = std::max(*std::max_element(here, here + columns), least);
     for (int k = 0; k < columns; ++k) {
       const double away = std::abs(k - reach) / static_cast<double>(reach);
-      cost[row * columns + k] =
-          static_cast<float>(0.02 * away - (1.0 - settings.nearness * away * away) *
-                                               (here[k] >= least ? here[k] / scale : 0.0f));
+      cost[row * columns + k] = static_cast<float>(
+          0.02 * away + kRegion * evidence.region[row * columns + k] -
+          (1.0 - settings.nearness * away * away) * (here[k] >= least ? here[k] / scale : 0.0f));
     }
   }
   const auto path = FindClosedPath(cost, strip.rows, columns, settings.smoothness, kMaxJump);

@@ -99,7 +99,7 @@ Structure SimulateUser(const LabelVolume& labels, const ControlPoints& series, c
   if (!step.ok()) return clicked;
   math::Random random(seed);
   const int phase = static_cast<int>(random.Uniform(0, settings.every));
-  const double shortest_px = std::max(8 * settings.noise_mm, M_PI * kSmallestMm) / series.pixel_mm;
+  const double shortest_px = std::max(16 * settings.noise_mm, M_PI * kSmallestMm) / series.pixel_mm;
   for (const int slice : PickSlices(series, structure, settings.every, phase)) {
     SliceContours contours;
     contours.slice = slice;
@@ -164,7 +164,7 @@ core::Result<std::vector<OrganRehearsal>> RehearseContours(const RehearsalOption
     }
     const std::vector<int> numbers(missing.begin(), missing.end());
     tell("reading slices", 0.0);
-    auto loaded = LoadSlices({options.images, series->image_pattern, series->width, series->height}, numbers);
+    auto loaded = ReadContouredSlices(*series, options.images, numbers);
     if (!loaded.ok()) return loaded.error();
     images.merge(*loaded);
 

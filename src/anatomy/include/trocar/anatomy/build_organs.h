@@ -4,13 +4,15 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "trocar/anatomy/control_points.h"
-#include "trocar/anatomy/image_stack.h"
+#include "trocar/anatomy/image_series.h"
+#include "trocar/anatomy/mesh_quality.h"
 #include "trocar/anatomy/overlay.h"
 #include "trocar/anatomy/patient_builder.h"
 #include "trocar/anatomy/reference_judge.h"
@@ -28,7 +30,12 @@ struct OrganReport {
   int genus = 0;
   std::size_t self_intersections = 0;
   double min_angle_deg = 0;
+  double mean_min_angle_deg = 0;  ///< mean over the triangles of their smallest angle
   double volume_ml = 0;
+  double volume_change = 0;            ///< against the volume's own surface, as a share of it [-]
+  double hausdorff_mm = 0;             ///< between mesh and the volume's own surface, both ways, sampled
+  double mean_distance_mm = 0;         ///< of the mesh from that surface
+  double samples_per_square_mm = 0;    ///< density of the samples on the mesh
   std::optional<Judgement> judgement;  ///< with a reference only
 };
 
@@ -45,6 +52,19 @@ struct BuiltOrgans {
   std::map<int, Overlay> overlays;  ///< of each contoured slice
 };
 
+/// The pictures that the points were placed on. What the images say of size and place must agree with the
+/// points.
+///
+/// \param folder  any series that image_series.h opens
+/// \param numbers  slices, ascending
+/// \param window  of grey images; the suggested one if not given
+/// \return picture by slice number; kImageSizeDiffers, and what ImageSeries and ReadSlices return
+core::Result<std::map<int, ColorImage>> ReadContouredSlices(const ControlPoints& points,
+                                                            const std::filesystem::path& folder,
+                                                            const std::vector<int>& numbers,
+                                                            std::optional<DisplayWindow> window = {},
+                                                            const Progress& progress = {});
+
 /// Follows the contours, fills them, interpolates between the slices and meshes the volumes.
 ///
 /// Where two structures overlap, the one later in the list keeps the place.
@@ -53,5 +73,8 @@ struct BuiltOrgans {
 /// judging return
 core::Result<BuiltOrgans> BuildOrgans(const ControlPoints& points, const std::map<int, ColorImage>& images,
                                       const OrganOptions& options = {}, const Progress& progress = {});
+
+/// Writes what is said of a mesh [mm] into the report.
+void AddMeshQuality(OrganReport& report, const MeshQuality& quality);
 
 }  // namespace trocar::anatomy

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "trocar/anatomy/build_organs.h"
-#include "trocar/anatomy/image_stack.h"
+#include "trocar/anatomy/image_series.h"
 #include "trocar/anatomy/patient.h"
 #include "trocar/core/result.h"
 
@@ -18,7 +18,8 @@ namespace trocar::anatomy {
 
 struct BuildOptions {
   std::filesystem::path control_points;            ///< file, see control_points.h
-  std::filesystem::path images;                    ///< folder of slices
+  std::filesystem::path images;                    ///< any series that image_series.h opens
+  std::optional<DisplayWindow> window;             ///< of grey images; the suggested one if not given
   std::filesystem::path output;                    ///< patient folder to write; empty: nothing is written
   std::optional<std::filesystem::path> reference;  ///< NIfTI label map that judges the result
   std::optional<std::filesystem::path> overlays;   ///< folder for one PNG a slice
