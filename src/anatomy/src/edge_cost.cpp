@@ -14,9 +14,12 @@ using Vec = std::array<double, 3>;
 
 constexpr double kWindowPx =
     40.0;  // of the contour to either side from which a place learns its colours [pixels]
-constexpr double kGapPx = 1.5;     // next to the curve, where the colours mix [pixels]
-constexpr double kNoise = 4.0;     // colours differ by this much within one tissue anyway [grey levels]
-constexpr double kClearest = 2.0;  // log-likelihood ratios are cut off here [-]
+constexpr double kNoise = 2.0;  // colours differ by this much within one tissue anyway [grey levels]
+constexpr int kAlongRows = 2;   // averaged to either side along the curve
+constexpr double kFar = 3.0;    // a colour this many standard deviations away belongs to something else [-]
+// the inside is learned up to this part of the reach from the curve, where it is not sure to be inside any
+// more [-]
+constexpr double kDoubtful = 0.3;
 
 /// Sums of colours and of their products.
 struct Moments {
@@ -45,10 +48,6 @@ struct Moments {
   }
 };
 
-struct Bands {
-  Moments inside, outside;
-};
-
 /// Solves the symmetric system a x = b by Cramer's rule; a is positive definite.
 Vec Solve(const std::array<double, 6>& a, const Vec& b) {
   const double c0 = a[3] * a[5] - a[4] * a[4], c1 = a[2] * a[4] - a[1] * a[5], c2 = a[1] * a[4] - a[2] * a[3];
@@ -58,32 +57,24 @@ Vec Solve(const std::array<double, 6>& a, const Vec& b) {
           (c2 * b[0] + c4 * b[1] + c5 * b[2]) / det};
 }
 
-double Dot3(const Vec& a, const Vec& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
+/// What the inside looks like: a normal distribution of colours.
+struct Tissue {
+  Vec mean = {};
+  std::array<double, 6> inverse = {};  // of the covariance
 
-/// Combination of the channels that tells the two sides apart.
-struct Fisher {
-  std::array<float, 3> weight;       // unit length; the value falls outwards
-  double middle = 0, certainty = 0;  // value between the sides; log-likelihood ratio a grey level
+  double Distance(const Colour& c) const {
+    const double x = c[0] - mean[0], y = c[1] - mean[1], z = c[2] - mean[2];
+    return std::sqrt(std::max(0.0, inverse[0] * x * x + inverse[3] * y * y + inverse[5] * z * z +
+                                       2 * (inverse[1] * x * y + inverse[2] * x * z + inverse[4] * y * z)));
+  }
 };
 
-Fisher Separate(const Bands& bands) {
-  const Vec in = bands.inside.Mean(), out = bands.outside.Mean();
-  const Vec away = {in[0] - out[0], in[1] - out[1], in[2] - out[2]};
-  const auto scatter_in = bands.inside.Scatter(), scatter_out = bands.outside.Scatter();
-  const double count = bands.inside.count + bands.outside.count;
-  std::array<double, 6> spread;
-  for (std::size_t i = 0; i < 6; ++i) spread[i] = (scatter_in[i] + scatter_out[i]) / count;
+Tissue DescribeTissue(const Moments& moments) {
+  auto spread = moments.Scatter();
+  for (double& value : spread) value /= moments.count;
   for (const std::size_t i : {0, 3, 5}) spread[i] += kNoise * kNoise;
-  const Vec w = Solve(spread, away);
-  const double norm = std::sqrt(Dot3(w, w));
-  Fisher fisher{};
-  if (!(norm > 0)) return fisher;
-  for (std::size_t i = 0; i < 3; ++i) fisher.weight[i] = static_cast<float>(w[i] / norm);
-  fisher.middle = 0.5 * (Dot3(w, in) + Dot3(w, out)) / norm;
-  fisher.certainty = norm;  // linear discriminant: w . (c - middle) is the log-likelihood ratio
-  return fisher;
+  const Vec x = Solve(spread, {1, 0, 0}), y = Solve(spread, {0, 1, 0}), z = Solve(spread, {0, 0, 1});
+  return {moments.Mean(), {x[0], x[1], x[2], y[1], y[2], z[2]}};
 }
 
 }  // namespace
@@ -95,42 +86,55 @@ EdgeEvidence CalcEdgeEvidence(const EdgeStrip& strip, double reach_px, double ro
   TROCAR_ASSERT(pad >= 1);
   const auto rows = static_cast<int>(strip.rows);
 
-  // colours of either side, of each row and then of the rows about it
-  const int gap = static_cast<int>(std::ceil(kGapPx / strip.step_px));
-  std::vector<Bands> bands(strip.rows);
+  // averaged along the curve, which blurs no edge that runs along it
+  std::vector<Colour> smooth(strip.colours.size());
+  const int along = std::min(kAlongRows, (rows - 1) / 2);
   for (int row = 0; row < rows; ++row) {
-    const Colour* colours = strip.Row(row);
-    for (int k = 0; k <= strip.reach - gap; k += 2) {
-      bands[row].inside.Add(colours[k]);
-      bands[row].outside.Add(colours[all - 1 - k]);
+    Colour* to = &smooth[static_cast<std::size_t>(row) * all];
+    for (int d = -along; d <= along; ++d) {
+      const Colour* from = strip.Row(static_cast<std::size_t>((row + d + rows) % rows));
+      for (int k = 0; k < all; ++k) {
+        for (std::size_t c = 0; c < 4; ++c) to[k][c] += from[k][c] / static_cast<float>(2 * along + 1);
+      }
     }
   }
+  // colours of the inside, of each row and then of the rows about it
+  std::vector<Moments> inside(strip.rows);
+  const int deepest = strip.reach - static_cast<int>(kDoubtful * evidence.reach);
+  for (int row = 0; row < rows; ++row) {
+    const Colour* colours = &smooth[static_cast<std::size_t>(row) * all];
+    for (int k = 0; k <= deepest; k += 2) inside[row].Add(colours[k]);
+  }
   const int window = std::min(static_cast<int>(kWindowPx / row_px), (rows - 1) / 2);
-  Bands about;
+  Moments about;
   const auto slide = [&](int row, double sign) {
-    const Bands& one = bands[static_cast<std::size_t>((row % rows + rows) % rows)];
-    about.inside.Add(one.inside, sign), about.outside.Add(one.outside, sign);
+    about.Add(inside[static_cast<std::size_t>((row % rows + rows) % rows)], sign);
   };
   for (int row = -window; row <= window; ++row) slide(row, 1);
 
-  evidence.gradient.resize(strip.rows * columns), evidence.region.resize(strip.rows * columns);
-  std::vector<float> value(all);
+  evidence.gradient.resize(strip.rows * columns), evidence.rise.resize(strip.rows * columns);
+  evidence.region.resize(strip.rows * columns);
+  std::vector<float> unlike(all);
   for (int row = 0; row < rows; ++row) {
-    const Fisher fisher = Separate(about);
-    const Colour* colours = strip.Row(row);
-    for (int k = 0; k < all; ++k) {
-      value[k] = 0;
-      for (std::size_t c = 0; c < 3; ++c) value[k] += fisher.weight[c] * colours[k][c];
-    }
+    const Tissue tissue = DescribeTissue(about);
+    const Colour* colours = &smooth[static_cast<std::size_t>(row) * all];
+    for (int k = 0; k < all; ++k)
+      unlike[k] = static_cast<float>(std::min(tissue.Distance(colours[k]), kFar) / kFar);
     float* gradient = &evidence.gradient[static_cast<std::size_t>(row) * columns];
+    float* rise = &evidence.rise[static_cast<std::size_t>(row) * columns];
     float* region = &evidence.region[static_cast<std::size_t>(row) * columns];
     double cost = 0, least = 0;
     for (int k = 0; k < columns; ++k) {
-      const float* here = &value[k + pad];
-      gradient[k] = (here[-1] - here[1]) / static_cast<float>(2 * strip.step_px);
-      // the places before the border are paid for if they look like the outside
-      const double ratio = (fisher.middle - here[-1]) * fisher.certainty;
-      cost += std::clamp(ratio, -kClearest, kClearest) / kClearest * strip.step_px;
+      const int at = k + pad;
+      float squared = 0;
+      for (std::size_t c = 0; c < 3; ++c) {
+        const float change = colours[at + 1][c] - colours[at - 1][c];
+        squared += change * change;
+      }
+      const auto width = static_cast<float>(2 * strip.step_px);
+      gradient[k] = std::sqrt(squared) / width;
+      rise[k] = (unlike[at + 1] - unlike[at - 1]) / width;
+      cost += (2.0 * unlike[at - 1] - 1.0) * strip.step_px;
       region[k] = static_cast<float>(cost);
       least = k == 0 ? cost : std::min(least, cost);
     }

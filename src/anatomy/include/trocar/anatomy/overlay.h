@@ -17,11 +17,11 @@ namespace trocar::anatomy {
 
 /// The stages of one contour.
 struct ContourStages {
-  std::string structure;       ///< whose contour it is
   std::vector<Vec2> placed;    ///< control points, red squares
   std::vector<Vec2> adapted;   ///< after the edge adaption, yellow squares
-  std::vector<Vec2> inserted;  ///< added on the edge, cyan squares
   std::vector<Vec2> curve;     ///< closed spline, green line
+  std::vector<Vec2> inserted;  ///< added on the edge, cyan squares
+  std::string structure;       ///< whose contour it is
   std::size_t notes = 0;       ///< places where the curve does not fit, see contour_fit.h
 };
 
