@@ -85,7 +85,9 @@ void ReadSettings(const core::JsonView& root, LiveSettings& settings) {
       view.IntegerOr("max_iterations", settings.solver.max_iterations, {1, 100'000});
   settings.solver.tolerance = view.NumberOr("tolerance", settings.solver.tolerance, {0.0, 1.0});
   const std::string solver = view.TextOr("solver", "chebyshev");
-  if (solver == "chebyshev") {
+  if (solver == "newton") {
+    settings.solver.kind = tissue::SolverKind::kNewtonMultigrid;
+  } else if (solver == "chebyshev") {
     settings.solver.kind = tissue::SolverKind::kChebyshevJacobi2015;
   } else if (solver == "relaxation") {
     settings.solver.kind = tissue::SolverKind::kRelaxationPaper;
