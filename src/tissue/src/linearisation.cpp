@@ -147,7 +147,8 @@ void Linearise(const OrderedModel& model, const OrderedLoad& load, std::span<con
       const double shape = load.shape_scale * model.shape[i];
       const Vec3 offset = model.rest[i] - position[i];
       force += shape * offset + load.constant[i];
-      sum.energy += 0.5 * shape * math::SquaredNorm(offset) - math::Dot(load.constant[i], position[i]);
+      // from rest, so that the difference of two energies keeps its digits
+      sum.energy += 0.5 * shape * math::SquaredNorm(offset) + math::Dot(load.constant[i], offset);
       largest = std::fmax(largest, shape * math::Norm(offset));
       balance.node_force[i] = std::fmax(largest, math::Norm(load.constant[i]));
       balance.residual[i] = force;

@@ -13,9 +13,14 @@ namespace {
 constexpr double kLinearShare = 0.3;
 /// The preconditioned residual sees at least this part of the error [-]; measured, see docs/tissue.md.
 constexpr double kEstimateShare = 0.5;
-/// Longest move of a node in one Newton step, in mean spring lengths [-]: the stiffness is that of springs that
-/// have not turned far.
-constexpr double kMaxStep = 2.0;
+/// Longest move of a node in the first Newton step, in mean spring lengths [-]: the stiffness is that of springs that
+/// have not turned far. Conjugate gradients stop where they leave this range (Steihaug, "The conjugate gradient method
+/// and trust regions in large scale optimization", SIAM J. Numer. Anal. 20, 1983): by then the stiff part of the step
+/// is solved, and the soft one goes on in the next step.
+constexpr double kFirstRadius = 0.1;
+/// The range grows by this where a step used all of it and lowered the energy as predicted, and shrinks to as many
+/// times what was left of a step that did not [-].
+constexpr double kRadiusGrowth = 2.0;
 /// Halvings of a step that does not lower the energy.
 constexpr int kMaxHalvings = 6;
 /// Part of the predicted loss of energy that a step must bring (Armijo) [-].
@@ -28,6 +33,11 @@ Float4 ToFloat(const Vec3& v) {
 }
 Vec3 ToDouble(const Float4& v) {
   return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
+}
+
+double FindLongest(Workers& workers, const std::vector<Float4>& vectors) noexcept {
+  return std::sqrt(
+      FindLargestOfNodes(workers, vectors.size(), [&](std::uint32_t i) { return Dot(vectors[i], vectors[i]); }));
 }
 
 }  // namespace
@@ -87,22 +97,27 @@ void NewtonMultigrid::Multiply(const Kernels& kernels, Workers& workers, const F
 }
 
 NewtonMultigrid::LinearReport NewtonMultigrid::SolveLinear(const Kernels& kernels, Workers& workers,
-                                                           int max_iterations, double tolerance) noexcept {
+                                                           int max_iterations, double tolerance,
+                                                           double radius) noexcept {
   LinearReport report;
   const std::size_t n = step_.size();
   std::fill(step_.begin(), step_.end(), Float4{});
   // z_ is the preconditioned residual already
   std::copy(z_.begin(), z_.end(), p_.begin());
+  double reached = 0;  // bound of the longest move so far
   double rz = SumOverNodes(workers, n, [&](std::uint32_t i) { return Dot(r_[i], z_[i]); });
   while (report.iterations < max_iterations && rz > 0.0) {
     Multiply(kernels, workers, p_.data(), q_.data());
     const double pq = SumOverNodes(workers, n, [&](std::uint32_t i) { return Dot(p_[i], q_[i]); });
-    if (!(pq > 0.0)) {
-      report.met_negative_curvature = true;
-      if (report.iterations == 0) std::copy(p_.begin(), p_.end(), step_.begin());
-      break;
-    }
-    const auto alpha = static_cast<float>(rz / pq);
+    report.met_negative_curvature = !(pq > 0.0);
+    const double longest = FindLongest(workers, p_);
+    // along a direction of negative curvature the energy only falls: as far as the range reaches
+    double length = report.met_negative_curvature ? INFINITY : rz / pq;
+    const bool is_leaving = reached + length * longest > radius;
+    report.reached_radius = is_leaving;
+    if (is_leaving) length = std::fmax(0.0, radius - reached) / longest;
+    reached += length * longest;
+    const auto alpha = static_cast<float>(length);
     ForEachNodeChunk(workers, n, [&](std::uint32_t first, std::uint32_t last, std::uint32_t) {
       for (std::uint32_t i = first; i < last; ++i) {
         step_[i].x += alpha * p_[i].x, step_[i].y += alpha * p_[i].y, step_[i].z += alpha * p_[i].z;
@@ -110,10 +125,9 @@ NewtonMultigrid::LinearReport NewtonMultigrid::SolveLinear(const Kernels& kernel
       }
     });
     ++report.iterations;
+    if (is_leaving) break;
     hierarchy_.Apply(kernels, workers, r_.data(), z_.data());
-    const double left2 =
-        FindLargestOfNodes(workers, n, [&](std::uint32_t i) { return Dot(z_[i], z_[i]); });
-    if (left2 <= tolerance * tolerance) break;
+    if (FindLongest(workers, z_) <= tolerance) break;
     const double next =
         SumOverNodes(workers, n, [&](std::uint32_t i) { return Dot(r_[i], z_[i]); });
     const auto beta = static_cast<float>(next / rz);
@@ -147,29 +161,28 @@ SolveReport NewtonMultigrid::Solve(const Kernels& kernels, Workers& workers, con
     hierarchy_.Apply(kernels, workers, r_.data(), z_.data());
     scale = std::sqrt(FindLargestOfNodes(
         workers, n, [&](std::uint32_t i) { return math::SquaredDistance(position_[i], model_.rest[i]); }));
-    const double largest =
-        std::sqrt(FindLargestOfNodes(workers, n, [&](std::uint32_t i) { return Dot(z_[i], z_[i]); }));
+    const double largest = FindLongest(workers, z_);
     report.error = scale > 0.0 ? largest / (kEstimateShare * scale) : largest > 0.0 ? INFINITY : 0.0;
     report.residual = balance_.force_scale > 0.0 ? balance_.largest_residual / balance_.force_scale : 0.0;
     report.force_scale = balance_.force_scale;
     report.converged = report.error <= settings.max_error;
   };
 
+  double radius = edge_length_ > 0.0 ? kFirstRadius * edge_length_ : INFINITY;
   linearise();
   hierarchy_.Update(stiffness_);
   estimate();
   while (!report.converged && report.iterations < settings.max_newton_steps && balance_.is_finite) {
     const double before = balance_.energy;
     const double tolerance = kLinearShare * kEstimateShare * settings.max_error * scale;
-    const LinearReport linear = SolveLinear(kernels, workers, settings.max_linear_iterations, tolerance);
+    const LinearReport linear = SolveLinear(kernels, workers, settings.max_linear_iterations, tolerance, radius);
     report.linear_iterations += linear.iterations;
     report.negative_curvatures += linear.met_negative_curvature;
-    const double length =
-        std::sqrt(FindLargestOfNodes(workers, n, [&](std::uint32_t i) { return Dot(step_[i], step_[i]); }));
+    const double length = FindLongest(workers, step_);
     if (!(length > 0.0 && length < INFINITY)) break;
     const double slope = -SumOverNodes(
         workers, n, [&](std::uint32_t i) { return math::Dot(balance_.residual[i], ToDouble(step_[i])); });
-    double share = edge_length_ > 0.0 ? std::fmin(1.0, kMaxStep * edge_length_ / length) : 1.0;
+    double share = 1.0;
     std::copy(position_.begin(), position_.end(), start_.begin());
     bool is_lower = false;
     for (int halving = 0; halving <= kMaxHalvings && !is_lower; ++halving, share *= 0.5) {
@@ -180,6 +193,12 @@ SolveReport NewtonMultigrid::Solve(const Kernels& kernels, Workers& workers, con
       report.restarts += !is_lower;
     }
     ++report.iterations;
+    share *= 2.0;  // the one that was tried last
+    if (share < 1.0) {
+      radius = kRadiusGrowth * share * length;
+    } else if (linear.reached_radius) {
+      radius *= kRadiusGrowth;
+    }
     if (!is_lower) {
       std::copy(start_.begin(), start_.end(), position_.begin());
       linearise();

@@ -24,10 +24,12 @@ class NewtonMultigrid {
   struct LinearReport {
     int iterations = 0;
     bool met_negative_curvature = false;
+    bool reached_radius = false;
   };
   /// Solves K step_ = residual until the preconditioned remainder, an estimate of the error left in the step,
-  /// is below `tolerance` [m].
-  LinearReport SolveLinear(const Kernels& kernels, Workers& workers, int max_iterations, double tolerance) noexcept;
+  /// is below `tolerance` [m], or until a node has moved by `radius` [m].
+  LinearReport SolveLinear(const Kernels& kernels, Workers& workers, int max_iterations, double tolerance,
+                           double radius) noexcept;
   void Multiply(const Kernels& kernels, Workers& workers, const Float4* x, Float4* out) noexcept;
   void AddContactGround() noexcept;
 
