@@ -18,6 +18,8 @@ constexpr int kFirstCycle = 40;
 constexpr int kLongestCycle = 640;
 /// ln(2 / 1e-2): a cycle damps what it can reach a hundredfold.
 constexpr double kCycleDamping = 5.3;
+/// Iterations between two looks at the displacements, and at the caller's constraints.
+constexpr int kCheckEvery = 160;
 /// The residual is looked at this often.
 constexpr int kMeasureEvery = 8;
 
@@ -79,6 +81,13 @@ int RunCycles(System& system, const Kernels& kernels, Workers& workers, int max_
 }  // namespace
 
 AcceleratedDescent::AcceleratedDescent(const TissueModel& model, bool use_grid) : model_(&model) {
+  if (!model.half_springs.empty()) edge_length_ = model.half_springs.front().rest_length;
+  lowest_ratio_ = INFINITY;
+  for (std::size_t i = 0; i < model.Size(); ++i) {
+    double sum = 0;
+    for (auto h = model.spring_starts[i]; h < model.spring_starts[i + 1]; ++h) sum += model.half_springs[h].stiffness;
+    if (sum > 0.0 && !model.is_fixed[i]) lowest_ratio_ = std::min(lowest_ratio_, model.shape_stiffness[i] / sum);
+  }
   const auto shape = use_grid ? FindGridShape(model) : std::nullopt;
   if (!shape) {
     ordered_ = MakeOrderedModel(model);
@@ -98,7 +107,21 @@ AcceleratedDescent::AcceleratedDescent(const TissueModel& model, bool use_grid) 
   }
 }
 
-void AcceleratedDescent::SetGridLoads(const TissueLoad& load, const TissueState& state) noexcept {
+bool AcceleratedDescent::IsCold(const TissueState& state) const noexcept {
+  double largest = 0;
+  for (std::size_t i = 0; i < model_->Size(); ++i) {
+    if (state.condition[i] == NodeCondition::kPrescribed) continue;
+    largest = std::max(largest, math::SquaredDistance(state.position[i], model_->rest[i]));
+  }
+  return largest <= std::pow(kColdShare * edge_length_, 2);
+}
+
+bool AcceleratedDescent::IsWellConditioned(const TissueLoad& load) const noexcept {
+  const double ratio = load.shape_scale * lowest_ratio_ / load.stiffness_scale;
+  return ratio / (2.0 + ratio) > CalcLowest(kLongestCycle);
+}
+
+void AcceleratedDescent::SetGridLoads(const TissueLoad& load, const TissueState& state, std::size_t levels) noexcept {
   GridLoad& finest = loads_.front();
   for (std::uint32_t i = 0; i < finest.force.size(); ++i) {
     finest.force[i] = model_->mass[i] * load.gravity;
@@ -113,7 +136,7 @@ void AcceleratedDescent::SetGridLoads(const TissueLoad& load, const TissueState&
       finest.force[contact.nodes[corner]] += (contact.weights[corner] * contact.stiffness * depth) * contact.normal;
   }
   grids_.front().SetLoad(finest, load.stiffness_scale);
-  for (std::size_t level = 1; level < grids_.size(); ++level) {
+  for (std::size_t level = 1; level < levels; ++level) {
     const GridLoad& fine = loads_[level - 1];
     GridLoad& coarse = loads_[level];
     const GridShape from = grids_[level - 1].Shape(), to = grids_[level].Shape();
@@ -141,62 +164,73 @@ void AcceleratedDescent::SetGridLoads(const TissueLoad& load, const TissueState&
 }
 
 SolveReport AcceleratedDescent::SolveGrid(const Kernels& kernels, Workers& workers, const SolverSettings& settings,
-                                          const TissueLoad& load, TissueState& state) noexcept {
-  SetGridLoads(load, state);
+                                          const TissueLoad& load, TissueState& state,
+                                      const SolveHook* hook) noexcept {
+  // well conditioned, the finest grid alone is as fast
+  const std::size_t levels = IsCold(state) && !IsWellConditioned(load) ? grids_.size() : 1;
+  SetGridLoads(load, state, levels);
   SolveReport report;
   SpringGrid& finest = grids_.front();
   const auto n = static_cast<std::uint32_t>(model_->Size());
-  double largest = 0;
-  for (std::uint32_t i = 0; i < n; ++i) {
-    const Vec3 u = state.position[i] - model_->rest[i];
-    finest.SetDisplacement(i, u);
-    if (state.condition[i] != NodeCondition::kPrescribed) largest = std::max(largest, math::SquaredNorm(u));
-  }
-  const auto force_for = [&](const SpringGrid& grid) {
-    return settings.max_error * grid.LargestDisplacement() * grid.SmallestShape();
+  const auto read_state = [&] {
+    for (std::uint32_t i = 0; i < n; ++i) finest.SetDisplacement(i, state.position[i] - model_->rest[i]);
   };
-  double residual = 0;
-  const double edge = math::Distance(model_->rest[1], model_->rest[0]);
-  if (largest <= kColdShare * kColdShare * edge * edge) {
-    for (std::size_t level = grids_.size(); level-- > 1;) {
-      SpringGrid& grid = grids_[level];
-      if (level + 1 < grids_.size()) grid.Interpolate(grids_[level + 1]);
-      if (level + 1 == grids_.size()) {
-        for (std::uint32_t i = 0; i < grid.Shape().rows * grid.Shape().columns; ++i) grid.SetDisplacement(i, {});
-      }
-      (void)RunCycles(grid, kernels, workers, kCoarseIterations, 0.0, residual, [] {});
-      ++report.coarse_levels;
+  const auto write_state = [&] {
+    for (std::uint32_t i = 0; i < n; ++i) {
+      if (state.condition[i] != NodeCondition::kPrescribed)
+        state.position[i] = model_->rest[i] + finest.GetDisplacement(i);
     }
-    if (grids_.size() > 1) finest.Interpolate(grids_[1]);
+  };
+  read_state();
+  double residual = 0;
+  for (std::size_t level = levels; level-- > 1;) {
+    SpringGrid& grid = grids_[level];
+    for (std::uint32_t i = 0; level + 1 == levels && i < grid.Shape().rows * grid.Shape().columns; ++i) {
+      grid.SetDisplacement(i, {});
+    }
+    if (level + 1 < levels) grid.Interpolate(grids_[level + 1]);
+    (void)RunCycles(grid, kernels, workers, kCoarseIterations, 0.0, residual, [] {});
+    ++report.coarse_levels;
   }
+  if (levels > 1) finest.Interpolate(grids_[1]);
   while (report.iterations < settings.max_iterations) {
     // the scale of the error is known only from the displacements
-    const int some = std::min(settings.max_iterations - report.iterations, 4 * kFirstCycle);
-    const double force = force_for(finest);
+    const int some = std::min(settings.max_iterations - report.iterations, kCheckEvery);
+    const double force = settings.max_error * finest.LargestDisplacement() * finest.SmallestShape();
     report.iterations += RunCycles(finest, kernels, workers, some, force, residual, [] {});
-    report.error = finest.SmallestShape() > 0.0 && finest.LargestDisplacement() > 0.0
-                       ? residual / (finest.SmallestShape() * finest.LargestDisplacement())
-                       : NAN;
+    const double bound = finest.SmallestShape() * finest.LargestDisplacement();
+    report.error = bound > 0.0 ? residual / bound : NAN;
     if (report.error <= settings.max_error || !std::isfinite(residual)) break;
+    if (hook == nullptr) continue;
+    write_state();
+    hook->act(hook->self, state, {});
+    read_state();
+    SetGridLoads(load, state, 1);
   }
-  report.converged = report.error <= settings.max_error;
-  for (std::uint32_t i = 0; i < n; ++i) {
-    if (state.condition[i] != NodeCondition::kPrescribed)
-      state.position[i] = model_->rest[i] + finest.GetDisplacement(i);
-  }
+  report.converged = report.error <= settings.max_error && load.contacts.empty();
+  write_state();
   return report;
 }
 
 SolveReport AcceleratedDescent::SolveSlices(const Kernels& kernels, Workers& workers,
                                             const SolverSettings& settings, const TissueLoad& load,
-                                            TissueState& state) noexcept {
+                                            TissueState& state, const SolveHook* hook) noexcept {
   SolveReport report;
-  SetOrderedLoad(ordered_, load, state, ordered_load_);
   const std::uint32_t n = ordered_.Size();
-  for (std::uint32_t i = 0; i < n; ++i) {
-    slices_->SetDisplacement(i, state.position[ordered_.old_of_new[i]] - ordered_.rest[i]);
-  }
-  slices_->SetLoad(ordered_, ordered_load_, state.strand_is_intact);
+  const auto read_state = [&] {
+    SetOrderedLoad(ordered_, load, state, ordered_load_);
+    slices_->SetLoad(ordered_, ordered_load_, state.strand_is_intact);
+    for (std::uint32_t i = 0; i < n; ++i) {
+      slices_->SetDisplacement(i, state.position[ordered_.old_of_new[i]] - ordered_.rest[i]);
+    }
+  };
+  const auto write_state = [&] {
+    for (std::uint32_t i = 0; i < n; ++i) {
+      if (ordered_load_.is_free[i])
+        state.position[ordered_.old_of_new[i]] = ordered_.rest[i] + slices_->GetDisplacement(i);
+    }
+  };
+  read_state();
   const auto refresh = [&] {
     if (ordered_load_.contacts.empty()) return;
     slices_->SetLoad(ordered_, ordered_load_, state.strand_is_intact);
@@ -217,26 +251,28 @@ SolveReport AcceleratedDescent::SolveSlices(const Kernels& kernels, Workers& wor
   };
   double residual = 0;
   while (report.iterations < settings.max_iterations) {
-    const int some = std::min(settings.max_iterations - report.iterations, 4 * kFirstCycle);
+    const int some = std::min(settings.max_iterations - report.iterations, kCheckEvery);
     const double scale = slices_->LargestDisplacement();
     report.iterations += RunCycles(*slices_, kernels, workers, some,
                                    settings.max_error * scale * slices_->SmallestShape(), residual, refresh);
     const double reached = slices_->SmallestShape() * slices_->LargestDisplacement();
     report.error = reached > 0.0 ? residual / reached : NAN;
     if (report.error <= settings.max_error || !std::isfinite(residual)) break;
+    if (hook == nullptr) continue;
+    write_state();
+    hook->act(hook->self, state, {});
+    read_state();
   }
   report.converged = report.error <= settings.max_error && load.contacts.empty();
-  for (std::uint32_t i = 0; i < n; ++i) {
-    if (ordered_load_.is_free[i])
-      state.position[ordered_.old_of_new[i]] = ordered_.rest[i] + slices_->GetDisplacement(i);
-  }
+  write_state();
   return report;
 }
 
 SolveReport AcceleratedDescent::Solve(const Kernels& kernels, Workers& workers, const SolverSettings& settings,
-                                      const TissueLoad& load, TissueState& state) noexcept {
-  return IsStructured() ? SolveGrid(kernels, workers, settings, load, state)
-                        : SolveSlices(kernels, workers, settings, load, state);
+                                      const TissueLoad& load, TissueState& state,
+                                      const SolveHook* hook) noexcept {
+  return IsStructured() ? SolveGrid(kernels, workers, settings, load, state, hook)
+                        : SolveSlices(kernels, workers, settings, load, state, hook);
 }
 
 }  // namespace trocar::tissue

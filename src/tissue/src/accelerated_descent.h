@@ -26,19 +26,25 @@ class AcceleratedDescent {
   AcceleratedDescent(const TissueModel& model, bool use_grid);
 
   bool IsStructured() const { return !grids_.empty(); }
+  /// True where every free node is at rest, and a coarse-to-fine start will be made.
+  bool IsCold(const TissueState& state) const noexcept;
+  /// True where virtual springs bound the lowest eigenvalue so well that one cycle damps everything.
+  bool IsWellConditioned(const TissueLoad& load) const noexcept;
   /// Moves the free nodes from where they are. Contacts count by their force at the start of every cycle.
   /// \note Real-time safe; bounded by settings.max_iterations.
   SolveReport Solve(const Kernels& kernels, Workers& workers, const SolverSettings& settings,
-                    const TissueLoad& load, TissueState& state) noexcept;
+                    const TissueLoad& load, TissueState& state, const SolveHook* hook) noexcept;
 
  private:
   SolveReport SolveGrid(const Kernels& kernels, Workers& workers, const SolverSettings& settings,
-                        const TissueLoad& load, TissueState& state) noexcept;
+                        const TissueLoad& load, TissueState& state, const SolveHook* hook) noexcept;
   SolveReport SolveSlices(const Kernels& kernels, Workers& workers, const SolverSettings& settings,
-                          const TissueLoad& load, TissueState& state) noexcept;
-  void SetGridLoads(const TissueLoad& load, const TissueState& state) noexcept;
+                          const TissueLoad& load, TissueState& state, const SolveHook* hook) noexcept;
+  void SetGridLoads(const TissueLoad& load, const TissueState& state, std::size_t levels) noexcept;
 
   const TissueModel* model_;
+  double edge_length_ = 0;   // of the first spring [m]
+  double lowest_ratio_ = 0;  // smallest k_virtual / sum k of a node [-]
   // structured
   std::vector<SpringGrid> grids_;  // finest first
   std::vector<GridLoad> loads_;

@@ -44,23 +44,23 @@ bool EquilibriumSolver::IsStructured() const noexcept {
 }
 
 SolveReport EquilibriumSolver::Solve(const SolverSettings& settings, const TissueLoad& load,
-                                     TissueState& state) noexcept {
+                                     TissueState& state, const SolveHook* hook) noexcept {
   TROCAR_ASSERT(state.position.size() == content_->model->Size());
   TROCAR_ASSERT(load.contacts.size() <= kMaxContacts);
   Content& c = *content_;
-  if (settings.kind == SolverKind::kRelaxationPaper) return SolveRelaxationPaper(c, settings, load, state);
+  if (settings.kind == SolverKind::kRelaxationPaper) return SolveRelaxationPaper(c, settings, load, state, hook);
   if (settings.kind == SolverKind::kGaussSeidelBrown2001)
-    return SolveGaussSeidelBrown2001(c, settings, load, state);
+    return SolveGaussSeidelBrown2001(c, settings, load, state, hook);
   const Workers::Session session(*c.workers);
   switch (settings.kind) {
     case SolverKind::kChebyshevJacobi2015:
-      return SolveChebyshevJacobiWang2015(c, settings, load, state);
+      return SolveChebyshevJacobiWang2015(c, settings, load, state, hook);
     case SolverKind::kAcceleratedDescent:
-      return c.accelerated->Solve(*c.kernels, *c.workers, settings, load, state);
+      return c.accelerated->Solve(*c.kernels, *c.workers, settings, load, state, hook);
     case SolverKind::kNewtonMultigrid:
-      return c.newton->Solve(*c.kernels, *c.workers, settings, load, state);
+      return c.newton->Solve(*c.kernels, *c.workers, settings, load, state, hook);
     default:
-      return SolveAdaptive(c, settings, load, state);
+      return SolveAdaptive(c, settings, load, state, hook);
   }
 }
 

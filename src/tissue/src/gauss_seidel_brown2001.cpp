@@ -35,7 +35,7 @@ double CalcNodeStiffness(const TissueModel& model, const TissueLoad& load, const
 }  // namespace
 
 SolveReport SolveGaussSeidelBrown2001(EquilibriumSolver::Content& content, const SolverSettings& settings,
-                                      const TissueLoad& load, TissueState& state) noexcept {
+                                      const TissueLoad& load, TissueState& state, const SolveHook* hook) noexcept {
   const TissueModel& model = *content.model;
   const auto n = static_cast<std::uint32_t>(model.Size());
   std::vector<std::uint32_t>& wave = content.wave;
@@ -80,6 +80,7 @@ SolveReport SolveGaussSeidelBrown2001(EquilibriumSolver::Content& content, const
       for (auto h = model.spring_starts[i]; h < model.spring_starts[i + 1]; ++h) reach(model.half_springs[h].other);
       for (auto h = model.strand_starts[i]; h < model.strand_starts[i + 1]; ++h) reach(model.half_strands[h].other);
     }
+    if (hook != nullptr && report.iterations % hook->interval == 0) hook->act(hook->self, state, {});
   }
 }
 

@@ -142,7 +142,8 @@ NewtonMultigrid::LinearReport NewtonMultigrid::SolveLinear(const Kernels& kernel
 }
 
 SolveReport NewtonMultigrid::Solve(const Kernels& kernels, Workers& workers, const SolverSettings& settings,
-                                   const TissueLoad& load, TissueState& state) noexcept {
+                                   const TissueLoad& load, TissueState& state,
+                                   const SolveHook* hook) noexcept {
   const std::uint32_t n = model_.Size();
   SetOrderedLoad(model_, load, state, load_);
   for (std::uint32_t i = 0; i < n; ++i) position_[i] = state.position[model_.old_of_new[i]];
@@ -151,6 +152,19 @@ SolveReport NewtonMultigrid::Solve(const Kernels& kernels, Workers& workers, con
   const auto linearise = [&] {
     Linearise(model_, load_, state.strand_is_intact, position_, workers, hierarchy_.Finest(), stiffness_, balance_);
     AddContactGround();
+  };
+  const auto write_back = [&] {
+    for (std::uint32_t i = 0; i < n; ++i) {
+      if (load_.is_free[i]) state.position[model_.old_of_new[i]] = position_[i];
+    }
+  };
+  const auto call_hook = [&] {
+    if (hook == nullptr) return;
+    write_back();
+    hook->act(hook->self, state, {});
+    for (std::uint32_t i = 0; i < n; ++i) position_[i] = state.position[model_.old_of_new[i]];
+    SetOrderedLoad(model_, load, state, load_);
+    linearise();
   };
   double scale = 0;  // largest distance from rest [m]
   // estimate of the distance to the equilibrium; leaves the preconditioned residual in z_
@@ -206,12 +220,12 @@ SolveReport NewtonMultigrid::Solve(const Kernels& kernels, Workers& workers, con
       estimate();
       break;
     }
+    // a constraint is kept after every step, whatever the hook's interval: a step here is worth many iterations
+    call_hook();
     hierarchy_.Update(stiffness_);
     estimate();
   }
-  for (std::uint32_t i = 0; i < n; ++i) {
-    if (load_.is_free[i]) state.position[model_.old_of_new[i]] = position_[i];
-  }
+  write_back();
   return report;
 }
 

@@ -18,7 +18,7 @@ class NewtonMultigrid {
 
   /// \note Real-time safe; bounded by settings.max_newton_steps and max_linear_iterations.
   SolveReport Solve(const Kernels& kernels, Workers& workers, const SolverSettings& settings,
-                    const TissueLoad& load, TissueState& state) noexcept;
+                    const TissueLoad& load, TissueState& state, const SolveHook* hook) noexcept;
 
  private:
   struct LinearReport {
