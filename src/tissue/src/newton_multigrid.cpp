@@ -12,7 +12,7 @@ namespace {
 /// The part of the tolerated error that the linear solution may leave [-].
 constexpr double kLinearShare = 0.3;
 /// The preconditioned residual sees at least this part of the error [-]; measured, see docs/tissue.md.
-constexpr double kEstimateShare = 0.5;
+constexpr double kEstimateShare = 0.2;
 /// Longest move of a node in the first Newton step, in mean spring lengths [-]: the stiffness is that of springs that
 /// have not turned far. Conjugate gradients stop where they leave this range (Steihaug, "The conjugate gradient method
 /// and trust regions in large scale optimization", SIAM J. Numer. Anal. 20, 1983): by then the stiff part of the step
