@@ -24,6 +24,8 @@ struct EdgeAdaptionSettings {
   double nearness = 0.5;  ///< part of an edge's strength that is lost at max_shift_px [-], 0 to 1
   double smoothness =
       0.1;  ///< cost of neighbours that move differently by one pixel, against the strongest edge [-]
+
+  friend bool operator==(const EdgeAdaptionSettings&, const EdgeAdaptionSettings&) = default;
 };
 
 /// Points on their edges.

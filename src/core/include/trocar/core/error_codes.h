@@ -47,6 +47,7 @@ enum class ErrorCode {
   // window
   kNoDisplay,
   kWindowMissing,
+  kEditRefused,
   // devices
   kDeviceLost,
   kDeviceStale,
