@@ -232,6 +232,7 @@ void AddAnatomyCommand(CLI::App& app, Outcome& outcome) {
   build->callback([arguments, &outcome] { outcome.status = Build(*arguments); });
   AddAnatomyCheckCommand(*anatomy, outcome);
   AddAnatomyExportCommand(*anatomy, outcome);
+  AddAnatomyViewCommand(*anatomy, outcome);
   AddGenerateCommand(*anatomy, outcome);
   AddFromLabelsCommand(*anatomy, outcome);
 }

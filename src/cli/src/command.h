@@ -23,6 +23,7 @@ void AddAnatomyCommand(CLI::App& app, Outcome& outcome);
 /// Below `trocar anatomy`.
 void AddAnatomyCheckCommand(CLI::App& anatomy, Outcome& outcome);
 void AddAnatomyExportCommand(CLI::App& anatomy, Outcome& outcome);
+void AddAnatomyViewCommand(CLI::App& anatomy, Outcome& outcome);
 void AddBenchCommand(CLI::App& app, Outcome& outcome);
 void AddDoctorCommand(CLI::App& app, Outcome& outcome);
 void AddErrorsCommand(CLI::App& app, Outcome& outcome);
