@@ -62,6 +62,7 @@ enum class ErrorCode {
   kNoDisplay,
   kWindowMissing,
   kEditRefused,
+  kCancelled,
   // devices
   kDeviceLost,
   kDeviceStale,
