@@ -149,6 +149,14 @@ core::Status ContourDocument::DropOpenContour(int structure, int slice) {
   return EditSlice(structure, slice, std::move(after), "drop the points of an open contour");
 }
 
+core::Status ContourDocument::RemoveLastPoint(int structure, int slice) {
+  if (auto status = CheckPlace(structure, slice); !status.ok()) return status;
+  SliceContours after = At(structure, slice);
+  if (after.open.empty()) return Refused("no contour is being drawn here");
+  after.open.pop_back();
+  return EditSlice(structure, slice, std::move(after), "remove the last point");
+}
+
 // closed contours
 
 core::Status ContourDocument::MovePoint(const ContourId& id, std::size_t point, const Vec2& to) {

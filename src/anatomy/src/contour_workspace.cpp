@@ -163,7 +163,7 @@ core::Result<Propagation> ContourWorkspace::Propagate(int structure, int from, i
     return Refused("there is no further slice to carry the contour to");
   }
   if (!document_->At(structure, to).contours.empty() && !is_replacing) {
-    return Refused("slice " + std::to_string(to) + " has contours already; replace them with Shift+P, or go there");
+    return Refused("slice " + std::to_string(to) + " has contours already; clear it there first (Ctrl+Delete), or go on from it");
   }
   PropagationSettings settings;
   settings.adaption = document_->Points().structures[structure].adaption;

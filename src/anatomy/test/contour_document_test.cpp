@@ -49,6 +49,7 @@ std::vector<Command> EveryCommand() {
          return d.AddPath(0, 12, path);
        }},
       {"CloseContour", [](ContourDocument& d) { return d.CloseContour(0, 15); }},
+      {"RemoveLastPoint", [](ContourDocument& d) { return d.RemoveLastPoint(0, 15); }},
       {"DropOpenContour", [](ContourDocument& d) { return d.DropOpenContour(0, 15); }},
       {"MovePoint", [](ContourDocument& d) { return d.MovePoint(kFirst, 2, {70, 55}); }},
       {"InsertPoint", [](ContourDocument& d) { return d.InsertPoint(kHole, 3, {21, 26}); }},
@@ -115,6 +116,7 @@ TEST(ContourDocument, RefusedCommandsNameTheReasonAndChangeNothing) {
       {"slice outside", [](ContourDocument& d) { return d.AddPoint(0, 31, {1, 1}); }},
       {"no number", [nan](ContourDocument& d) { return d.AddPoint(0, 12, {nan, 1}); }},
       {"nothing open", [](ContourDocument& d) { return d.CloseContour(0, 12); }},
+      {"nothing to remove", [](ContourDocument& d) { return d.RemoveLastPoint(0, 12); }},
       {"nothing to drop", [](ContourDocument& d) { return d.DropOpenContour(0, 12); }},
       {"hole without contour", [](ContourDocument& d) { return d.CloseContour(0, 15, true); }},
       {"no contour", [](ContourDocument& d) { return d.MovePoint({0, 12, false, 1}, 0, {1, 1}); }},

@@ -60,6 +60,8 @@ class ContourDocument {
   /// Appends the points of a path, as intelligent scissors find it.
   core::Status AddPath(int structure, int slice, std::span<const Vec2> path);
   core::Status CloseContour(int structure, int slice, bool is_hole = false);
+  /// Takes back the newest point of the open contour.
+  core::Status RemoveLastPoint(int structure, int slice);
   core::Status DropOpenContour(int structure, int slice);
 
   // closed contours
