@@ -65,6 +65,11 @@ constexpr ErrorEntry kTable[] = {
     {ErrorCode::kForceRefused, "E-DEV-008", "a force was refused and the output disarmed"},
     {ErrorCode::kUsage, "E-CLI-001", "the command line is wrong"},
     {ErrorCode::kBenchmarkWrong, "E-BEN-001", "a benchmark's result is wrong, so its time means nothing"},
+    {ErrorCode::kGpuMissing, "E-GPU-001", "there is no NVIDIA GPU, no driver, or no GPU code in this build"},
+    {ErrorCode::kGpuTooOld, "E-GPU-002", "the GPU or its driver is too old"},
+    {ErrorCode::kGpuFailed, "E-GPU-003", "the GPU failed; the processor goes on"},
+    {ErrorCode::kGpuMemory, "E-GPU-004", "the GPU has not enough memory"},
+    {ErrorCode::kGpuLayout, "E-GPU-005", "a memory layout cannot hold this tissue or load"},
 };
 static_assert(std::size(kTable) == static_cast<std::size_t>(ErrorCode::kCount));
 

@@ -6,8 +6,10 @@
 #include <array>
 #include <cstddef>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -45,7 +47,8 @@ struct ImageSeriesInfo {
   std::size_t ignored_files = 0;  ///< in the folder, that are no part of the series
 };
 
-/// What a person adds where the files do not say it, and what the import may use up.
+/// What a person adds where the files do not say it, and what the import may use up. Where a file does say
+/// it, what is given here must agree.
 struct ImageSeriesOptions {
   std::optional<double> pixel_mm;  ///< side of a square pixel, 0.01 to 20
   std::optional<double> slice_mm;  ///< between slice number n and n + 1, 0.01 to 50
@@ -54,6 +57,7 @@ struct ImageSeriesOptions {
   std::optional<std::array<std::string, 3>> axes;
   std::string pattern;      ///< only files with such names: "image-{slice:04}.jpeg"; empty: find it
   std::vector<int> slices;  ///< only these numbers, ascending; empty: all, which must have no gaps
+  int series = 0;           ///< of several DICOM series in a folder: 1, 2, ...; 0: there must be one
   std::size_t memory_bytes = std::size_t{2} << 30;  ///< most that the decoded series may take
 };
 
@@ -65,7 +69,9 @@ class ImageSeries {
   ///              .nhdr, .mha, .mhd, .tif)
   /// \return kFileMissing; kImageSpacingUnknown with the options to give; kImageSeriesMixed,
   ///         kImageSeriesGap or kImageSeriesUneven with the slice numbers or files concerned; and what
-  ///         docs/images.md lists for damaged files
+  ///         docs/images.md lists for damaged files. No file can crash this program: strangers' files are
+  ///         decoded by processes of their own.
+  /// \note Safe in a program with threads. Progress is called from the calling thread.
   static core::Result<ImageSeries> Open(const std::filesystem::path& path,
                                         const ImageSeriesOptions& options = {},
                                         const Progress& progress = {});
@@ -79,10 +85,19 @@ class ImageSeries {
   /// \note Thread-safe.
   core::Result<ColorImage> ReadSlice(int number, const DisplayWindow& window) const;
 
+  struct Content;  ///< of image_series.cpp
+
  private:
-  struct Content;
   explicit ImageSeries(std::shared_ptr<const Content> content);
   std::shared_ptr<const Content> content_;  // shared: a view and a background build may outlive each other
 };
+
+/// Several slices as pictures, decoded in parallel.
+///
+/// \param numbers  ascending
+/// \return picture by slice number; or the error of the lowest slice that has one, with its number
+core::Result<std::map<int, ColorImage>> ReadSlices(const ImageSeries& series, std::span<const int> numbers,
+                                                   const DisplayWindow& window,
+                                                   const Progress& progress = {});
 
 }  // namespace trocar::anatomy

@@ -72,6 +72,12 @@ enum class ErrorCode {
   // command line and benchmarks
   kUsage,
   kBenchmarkWrong,
+  // graphics processor for computing
+  kGpuMissing,
+  kGpuTooOld,
+  kGpuFailed,
+  kGpuMemory,
+  kGpuLayout,
   kCount
 };
 
