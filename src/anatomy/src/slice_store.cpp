@@ -59,4 +59,39 @@ std::size_t SliceStore::UsedBytes() const {
   return used_;
 }
 
+SlicePrefetcher::SlicePrefetcher(std::shared_ptr<SliceStore> store)
+    : store_(std::move(store)), thread_([this] { Run(); }) {}
+
+SlicePrefetcher::~SlicePrefetcher() {
+  {
+    const std::lock_guard lock(mutex_);
+    is_ending_ = true;
+  }
+  wake_.notify_all();
+  thread_.join();
+}
+
+void SlicePrefetcher::Request(std::vector<int> slices) {
+  std::reverse(slices.begin(), slices.end());
+  {
+    const std::lock_guard lock(mutex_);
+    waiting_ = std::move(slices);
+  }
+  wake_.notify_all();
+}
+
+void SlicePrefetcher::Run() {
+  std::unique_lock lock(mutex_);
+  while (true) {
+    wake_.wait(lock, [this] { return is_ending_ || !waiting_.empty(); });
+    if (is_ending_) return;
+    const int slice = waiting_.back();
+    waiting_.pop_back();
+    lock.unlock();
+    // who looks at a slice that cannot be read is told so then
+    (void)store_->Picture(slice).ok();
+    lock.lock();
+  }
+}
+
 }  // namespace trocar::anatomy

@@ -28,6 +28,7 @@ void AddAnatomyCommand(CLI::App& app, Outcome& outcome);
 core::Result<std::vector<anatomy::ParameterSetting>> ParseSettings(const std::vector<std::string>& texts);
 /// Below `trocar anatomy`.
 void AddAnatomyCheckCommand(CLI::App& anatomy, Outcome& outcome);
+void AddAnatomyContoursCommand(CLI::App& anatomy, Outcome& outcome);
 void AddAnatomyExportCommand(CLI::App& anatomy, Outcome& outcome);
 void AddAnatomyPhantomCommand(CLI::App& anatomy, Outcome& outcome);
 void AddAnatomyViewCommand(CLI::App& anatomy, Outcome& outcome);

@@ -2,13 +2,16 @@
 /// \file slice_store.h  Slices of a series, decoded and made ready for edges once, within a limit of memory.
 #pragma once
 
+#include <condition_variable>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <list>
 #include <memory>
 #include <mutex>
+#include <thread>
 #include <utility>
+#include <vector>
 
 #include "trocar/anatomy/edge_field.h"
 #include "trocar/anatomy/image_stack.h"
@@ -48,6 +51,28 @@ class SliceStore {
   mutable std::mutex mutex_;   // guards what follows; never held while decoding
   std::list<Entry> entries_;  // last used first
   std::size_t used_ = 0;
+};
+
+/// Decodes slices that will be looked at next, on a thread of its own.
+class SlicePrefetcher {
+ public:
+  explicit SlicePrefetcher(std::shared_ptr<SliceStore> store);
+  ~SlicePrefetcher();
+  SlicePrefetcher(const SlicePrefetcher&) = delete;
+  SlicePrefetcher& operator=(const SlicePrefetcher&) = delete;
+
+  /// In this order; what was asked for before and is not begun is dropped. Returns at once.
+  void Request(std::vector<int> slices);
+
+ private:
+  void Run();
+
+  std::shared_ptr<SliceStore> store_;  // shared with the window
+  std::mutex mutex_;                   // guards what follows
+  std::condition_variable wake_;
+  std::vector<int> waiting_;  // next one last
+  bool is_ending_ = false;
+  std::thread thread_;
 };
 
 }  // namespace trocar::anatomy
