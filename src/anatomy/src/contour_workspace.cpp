@@ -9,6 +9,7 @@
 
 #include "trocar/anatomy/contour_propagation.h"
 #include "trocar/anatomy/reference_judge.h"
+#include "trocar/anatomy/volume_mesher.h"
 #include "trocar/core/safe_file.h"
 
 namespace trocar::anatomy {
@@ -17,7 +18,6 @@ namespace {
 using core::Error;
 using core::ErrorCode;
 
-constexpr int kLiverTriangles = 5000, kGallbladderTriangles = 1800;
 constexpr double kPathTolerance = 1.0;  // pixels
 
 Error Refused(std::string why) {

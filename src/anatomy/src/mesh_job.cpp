@@ -6,10 +6,9 @@
 #include <utility>
 
 #include "trocar/anatomy/contour_fill.h"
-#include "trocar/anatomy/marching_cubes.h"
-#include "trocar/anatomy/mesh_decimation.h"
-#include "trocar/anatomy/mesh_smoothing.h"
+#include "trocar/anatomy/contour_morph.h"
 #include "trocar/anatomy/volume.h"
+#include "trocar/anatomy/volume_mesher.h"
 #include "trocar/core/clock.h"
 #include "trocar/geometry/mesh_measures.h"
 
@@ -21,7 +20,27 @@ using core::ErrorCode;
 
 constexpr int kCoarseSamples = 56, kFineSamples = 112;  // along the longest side
 constexpr double kCubicMmPerMl = 1000.0;
-constexpr int kCoarseSmoothing = 20, kFineSmoothing = 60;  // pairs of steps; the lattice is coarse already
+constexpr double kCoarseOversampling = 3;
+
+/// Slices between slices, where single contours can be matched: thin lobes then have no teeth.
+std::vector<FilledSlice> InsertMatched(const std::vector<FilledSlice>& slices,
+                                       const std::vector<std::vector<std::vector<Vec2>>>& curves, double step_mm) {
+  std::vector<FilledSlice> dense;
+  for (std::size_t s = 0; s < slices.size(); ++s) {
+    dense.push_back(slices[s]);
+    if (s + 1 == slices.size() || curves[s].size() != 1 || curves[s + 1].size() != 1) continue;
+    const double gap = slices[s + 1].position_mm - slices[s].position_mm;
+    const int parts = static_cast<int>(std::ceil(gap / step_mm - 1e-9));
+    if (parts < 2) continue;
+    const ContourMatch match = MatchContours(curves[s][0], curves[s + 1][0]);
+    for (int part = 1; part < parts; ++part) {
+      const double t = static_cast<double>(part) / parts;
+      FilledSlice between{slices[s].position_mm + t * gap, FillArea({match.At(t)}, {})};
+      if (between.mask.Count() > 0) dense.push_back(std::move(between));
+    }
+  }
+  return dense;
+}
 
 }  // namespace
 
@@ -40,7 +59,7 @@ core::Result<OrganMesh> MakePreviewMesh(const MeshRequest& request, SliceFits& f
   };
   const auto& slices = request.content.slices;
   std::vector<FilledSlice> filled;
-  double extent = 0;
+  std::vector<std::vector<std::vector<Vec2>>> curves;  // of each slice; empty where it has holes
   int low_x = 1 << 30, low_y = low_x, high_x = -low_x, high_y = -low_x;
   for (std::size_t i = 0; i < slices.size(); ++i) {
     if (!tell("following contours", 0.4 * static_cast<double>(i) / static_cast<double>(slices.size()))) {
@@ -56,39 +75,32 @@ core::Result<OrganMesh> MakePreviewMesh(const MeshRequest& request, SliceFits& f
     low_x = std::min(low_x, slice.mask.x0), high_x = std::max(high_x, slice.mask.x0 + slice.mask.width);
     low_y = std::min(low_y, slice.mask.y0), high_y = std::max(high_y, slice.mask.y0 + slice.mask.height);
     filled.push_back(std::move(slice));
+    curves.push_back((*fit)->holes.empty() ? (*fit)->ContourCurves() : std::vector<std::vector<Vec2>>{});
   }
   if (filled.size() < 2) {
     return Error{ErrorCode::kContourTooShort,
                  request.content.name + ": a volume needs closed contours in two slices; " +
                      (filled.empty() ? "there is none yet" : "there is one so far")};
   }
-  extent = std::max({request.pixel_mm * (high_x - low_x), request.pixel_mm * (high_y - low_y),
+  const double extent = std::max({request.pixel_mm * (high_x - low_x), request.pixel_mm * (high_y - low_y),
                      filled.back().position_mm - filled.front().position_mm});
   OrganMesh organ;
   organ.level = level;
   organ.spacing_mm = CalcPreviewSpacing(extent, request.pixel_mm, level);
 
   if (!tell("interpolating slices", 0.4)) return given_up;
+  if (level == MeshLevel::kFine) filled = InsertMatched(filled, curves, organ.spacing_mm);
   auto volume = MakeVolume(filled, request.pixel_mm, organ.spacing_mm);
   if (!volume.ok()) return Error{volume.error().code, request.content.name + ": " + volume.error().message};
-  KeepLargestPart(*volume);
-  if (!tell("marching cubes", 0.6)) return given_up;
-  organ.mesh = MarchCubes(*volume);
-  if (organ.mesh.triangles.empty()) {
-    return Error{ErrorCode::kContourEmpty,
-                 request.content.name + " is thinner than " + std::to_string(organ.spacing_mm) +
-                     " mm everywhere and has no preview; check its contours"};
-  }
-  if (!tell("smoothing", 0.7)) return given_up;
-  SmoothMesh(organ.mesh, {.iterations = level == MeshLevel::kCoarse ? kCoarseSmoothing : kFineSmoothing});
-  if (!tell("reducing triangles", 0.8)) return given_up;
-  if (static_cast<int>(organ.mesh.triangles.size()) > request.content.triangle_budget) {
-    auto reduced = DecimateMesh(organ.mesh, {.triangle_budget = request.content.triangle_budget,
-                                             .relaxation_rounds = level == MeshLevel::kCoarse ? 2 : 6});
-    if (!reduced.ok()) return Error{reduced.error().code, request.content.name + ": " + reduced.error().message};
-    organ.mesh = std::move(*reduced);
-  }
-  const auto report = geometry::InspectMesh(organ.mesh);
+  if (!tell("making the surface", 0.7)) return given_up;
+  MeshingSettings settings;
+  settings.triangle_budget = request.content.triangle_budget;
+  settings.distance_samples = 0;
+  if (level == MeshLevel::kCoarse) settings.oversampling = kCoarseOversampling;
+  auto meshed = MeshVolume(std::move(*volume), settings);
+  if (!meshed.ok()) return Error{meshed.error().code, request.content.name + ": " + meshed.error().message};
+  organ.mesh = std::move(meshed->mesh);
+  const geometry::MeshReport& report = meshed->quality.surface;
   organ.is_closed = report.closed;
   organ.is_manifold = report.manifold;
   organ.volume_ml = report.volume / kCubicMmPerMl;

@@ -246,6 +246,8 @@ void ContourPainter::PaintOrgan(const CairoContext& cairo, ContourEditor& editor
 void ContourPainter::PaintPoints(const CairoContext& cairo, ContourEditor& editor, const anatomy::SliceFit& fit) {
   const auto& here = editor.Here();
   const auto on_canvas = [&](const Vec2& p) { return ToCanvas(editor.view, editor.size, p); };
+  // seen from far, points must not hide the curve
+  const double size = std::clamp(0.45 + 0.3 * editor.view.zoom, 0.6, 1.0);
   for (const bool is_hole : {false, true}) {
     const auto& polygons = is_hole ? here.holes : here.contours;
     const auto& fits = is_hole ? fit.holes : fit.contours;
@@ -274,7 +276,7 @@ void ContourPainter::PaintPoints(const CairoContext& cairo, ContourEditor& edito
         SetColour(cairo, kWarning, 0.95);
         cairo->stroke();
       }
-      for (const Vec2& p : stages.inserted) Disc(cairo, on_canvas(p), 2.2, kAdapted);
+      for (const Vec2& p : stages.inserted) Disc(cairo, on_canvas(p), 1.8 * size, kAdapted);
       for (std::size_t i = 0; i < polygons[c].size(); ++i) {
         const Vec2 from = on_canvas(polygons[c][i]), to = on_canvas(stages.adapted[i]);
         cairo->move_to(from.x, from.y);
@@ -282,8 +284,8 @@ void ContourPainter::PaintPoints(const CairoContext& cairo, ContourEditor& edito
         cairo->set_line_width(1.2);
         SetColour(cairo, kAdapted, 0.9);
         cairo->stroke();
-        Square(cairo, from, 2.6, kClicked);
-        Disc(cairo, to, 3.4, kAdapted);
+        Disc(cairo, to, 3.4 * size, kAdapted);
+        Square(cairo, from, 2.4 * size, kClicked);
       }
       const auto& choice = editor.Choice();
       const anatomy::ContourId id{editor.Structure(), editor.Slice(), is_hole, static_cast<int>(c)};

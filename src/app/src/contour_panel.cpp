@@ -50,6 +50,10 @@ ContourPanel::ContourPanel() : Gtk::Box(Gtk::Orientation::VERTICAL) {
   AddSurface();
 }
 
+ContourPanel::~ContourPanel() {
+  name_popover_.unparent();
+}
+
 Gtk::Box& ContourPanel::AddCard(const char* title, bool is_growing) {
   auto* card = Gtk::make_managed<Gtk::Box>(Gtk::Orientation::VERTICAL);
   card->add_css_class("card");
@@ -106,7 +110,6 @@ void ContourPanel::AddOrgans() {
     name_popover_.popdown();
     signal_edited_.emit();
   });
-  signal_destroy().connect([this] { name_popover_.unparent(); });
 }
 
 void ContourPanel::NameOrgan(bool is_new) {
@@ -188,11 +191,13 @@ void ContourPanel::AddEdges() {
 }
 
 void ContourPanel::AddSurface() {
-  Gtk::Box& card = AddCard("Surface", true);
+  Gtk::Box& card = AddCard("Surface (preview)", true);
   view_.set_vexpand(true);
   view_.set_hexpand(true);
   card.append(view_);
   SetLabel(mesh_text_, "stage");
+  mesh_text_.set_tooltip_text(
+      "A preview; the last number is the distance of the lattice it was made on. Build patient makes the finer one");
   card.append(mesh_text_);
   auto* row = Gtk::make_managed<Gtk::Box>();
   row->set_spacing(8);

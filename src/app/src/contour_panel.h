@@ -18,6 +18,7 @@ namespace trocar::app {
 class ContourPanel : public Gtk::Box {
  public:
   ContourPanel();
+  ~ContourPanel() override;
 
   /// \param editor  outlives the panel's use
   void SetEditor(ContourEditor* editor);

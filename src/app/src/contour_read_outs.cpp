@@ -120,7 +120,7 @@ std::string SeriesText(const anatomy::ImageSeriesInfo& series) {
 std::string MeshText(const std::string& name, const anatomy::OrganMesh& mesh) {
   return name + ": " + Thousands(mesh.mesh.triangles.size()) + Format(" triangles, %.0f mL", mesh.volume_ml) +
          (mesh.is_closed && mesh.is_manifold ? "" : ", NOT CLOSED") +
-         Format(" \u00b7 lattice %.1f mm, %.2f s", mesh.spacing_mm, mesh.seconds);
+         Format(" \u00b7 %.1f mm", mesh.spacing_mm);
 }
 
 }  // namespace trocar::app

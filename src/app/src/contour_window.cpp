@@ -425,7 +425,7 @@ void ContourWindow::ShowAll() {
                                             : "Redo (Ctrl+Shift+Z)");
   const auto& file = workspace_->Options().points;
   const std::string name = file.empty() ? "new contours" : file.filename().string();
-  set_title((document.IsDirty() ? "\u2022 " : "") + name + " \u2013 Trocar contours");
+  set_title((document.IsDirty() ? "\u2022 " : "") + name);
   if (!builder_.joinable()) {
     std::string state = "Saved";
     if (document.IsDirty()) {

@@ -64,7 +64,7 @@ window.trocar { background: #14171a; color: #dfe5ea; }
 .trocar .bar.notice { background: #1d3136; color: #e4f4f6; }
 .trocar .bar.question { background: #33301f; color: #f6f0dc; }
 .trocar progressbar trough { background: #343b44; min-height: 4px; border: none; }
-.trocar progressbar progress { background: #2b9cb1; min-height: 4px; border: none; }
+.trocar progressbar progress { background: #2b9cb1; min-height: 4px; min-width: 2px; border: none; margin: 0; }
 tooltip { background: #2a3038; color: #f1f5f8; border: 1px solid #434c57; }
 )css";
 

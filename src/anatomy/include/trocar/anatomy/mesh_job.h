@@ -28,8 +28,8 @@ enum class MeshLevel {
 
 /// A preview of one organ.
 ///
-/// It is made from the fitted contours by shape interpolation, marching cubes, smoothing and decimation, on a
-/// lattice that is coarser than the one `trocar anatomy build` uses; organs that overlap are not cut apart.
+/// It goes the way of `trocar anatomy build` (fitted contours, slices between them, volume, MeshVolume) on a
+/// coarser lattice; thin tips are not taken off and organs that overlap are not cut apart.
 struct OrganMesh {
   geometry::TriangleMesh mesh;  ///< in the frame of the pictures: column, row, slice times distances [mm]
   MeshLevel level = MeshLevel::kCoarse;

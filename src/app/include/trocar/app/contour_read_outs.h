@@ -19,7 +19,7 @@ std::string SliceNotes(ContourEditor& editor);
 std::string PointerText(const ContourEditor& editor);
 /// "1280 x 720 px of 0.528 mm, slices of 1 mm · columns to left, rows to anterior · file: LPS"
 std::string SeriesText(const anatomy::ImageSeriesInfo& series);
-/// "liver: 5,000 triangles, 1403 mL · preview of 2.1 mm in 0.42 s"
+/// "liver: 5,000 triangles, 1403 mL · 2.1 mm": the lattice it was made on
 std::string MeshText(const std::string& name, const anatomy::OrganMesh& mesh);
 
 /// Area that the fitted contours enclose, holes taken off [mm^2].
