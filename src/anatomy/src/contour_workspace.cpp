@@ -137,10 +137,10 @@ core::Result<ColorImage> ContourWorkspace::PictureInWindow(int slice, const Disp
   return series_->ReadSlice(slice, window);
 }
 
-core::Result<std::shared_ptr<const SliceFit>> ContourWorkspace::Fit(int structure, int slice) {
+core::Result<std::shared_ptr<const SliceFit>> ContourWorkspace::Fit(int structure, int slice, FitEffort effort) {
   const SliceContours& contours = document_->At(structure, slice);
   if (contours.contours.empty()) return std::make_shared<const SliceFit>();
-  return fits_->Find(structure, contours, document_->Points().structures[structure].adaption);
+  return fits_->Find(structure, contours, document_->Points().structures[structure].adaption, effort);
 }
 
 MeshRequest ContourWorkspace::MakeMeshRequest(int structure) const {

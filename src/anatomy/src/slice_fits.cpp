@@ -25,8 +25,9 @@ std::vector<std::vector<Vec2>> SliceFit::HoleCurves() const {
 SliceFits::SliceFits(std::shared_ptr<SliceStore> store) : store_(std::move(store)) {}
 
 core::Result<std::shared_ptr<const SliceFit>> SliceFits::Find(int structure, const SliceContours& contours,
-                                                              const EdgeAdaptionSettings& adaption) {
-  const std::pair key(structure, contours.slice);
+                                                              const EdgeAdaptionSettings& adaption,
+                                                              FitEffort effort) {
+  const std::tuple key(structure, contours.slice, effort);
   Source known;
   {
     const std::lock_guard lock(mutex_);
@@ -57,6 +58,7 @@ core::Result<std::shared_ptr<const SliceFit>> SliceFits::Find(int structure, con
       }
       ContourFitSettings settings;
       settings.adaption = adaption;
+      settings.is_inserting = effort == FitEffort::kWhole;
       fits.push_back(std::make_shared<const ContourFit>(FitContourToEdges(*field, polygon, settings)));
       ++computed;
     }

@@ -207,9 +207,9 @@ void ContourPainter::PaintOrgan(const CairoContext& cairo, ContourEditor& editor
                                 int structure) {
   auto& workspace = editor.Workspace();
   const auto& organ = workspace.Document().Points().structures[structure];
-  const auto fit = workspace.Fit(structure, editor.Slice());
-  if (!fit.ok() || (*fit)->contours.empty()) return;
   const bool is_chosen = structure == editor.Structure();
+  const auto fit = is_chosen ? editor.Fit() : workspace.Fit(structure, editor.Slice());
+  if (!fit.ok() || (*fit)->contours.empty()) return;
   const Colour3 colour = OrganColour(organ.name, structure);
   const auto add_all = [&] {
     for (const auto* group : {&(*fit)->contours, &(*fit)->holes}) {

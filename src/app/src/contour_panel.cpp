@@ -334,7 +334,11 @@ void ContourPanel::ShowSurfaces() {
       surfaces.push_back(std::move(surface));
     }
   }
+  // a new organ may lie where the camera does not look
+  const bool has_more = surfaces.size() > shown_surfaces_;
+  shown_surfaces_ = surfaces.size();
   view_.SetSurfaces(std::move(surfaces));
+  if (has_more) view_.LookFrom(render::Viewpoint::kAnterior);
   ShowMeshText();
 }
 

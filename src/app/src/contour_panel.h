@@ -67,6 +67,7 @@ class ContourPanel : public Gtk::Box {
   Gtk::Button cancel_{"Cancel"};
   std::map<int, anatomy::OrganMesh> meshes_;
   std::map<int, std::string> problems_;
+  std::size_t shown_surfaces_ = 0;
   sigc::signal<void()> signal_edited_, signal_cancel_;
   sigc::signal<void(ContourAction)> signal_action_;
 };

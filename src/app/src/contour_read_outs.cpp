@@ -68,7 +68,7 @@ std::string SliceText(ContourEditor& editor) {
   std::string text = Count(here.contours.size(), "contour");
   if (!here.holes.empty()) text += ", " + Count(here.holes.size(), "hole");
   text += " \u00b7 " + Count(points, "point");
-  const auto fit = editor.Workspace().Fit(editor.Structure(), editor.Slice());
+  const auto fit = editor.Fit();
   constexpr double kSquareMmPerSquareCm = 100.0;
   if (fit.ok()) {
     text += Format(" \u00b7 %.1f cm\u00b2",
@@ -78,7 +78,7 @@ std::string SliceText(ContourEditor& editor) {
 }
 
 std::string SliceNotes(ContourEditor& editor) {
-  const auto fit = editor.Workspace().Fit(editor.Structure(), editor.Slice());
+  const auto fit = editor.Fit();
   if (!fit.ok()) return {};
   std::map<anatomy::FitProblem, std::pair<std::size_t, double>> problems;  // how many, and their length
   for (const auto* group : {&(*fit)->contours, &(*fit)->holes}) {

@@ -123,7 +123,7 @@ void ContourWindow::MeasureFrame(double now) {
   const Vec2 start = ToCanvas(editor_->view, editor_->size, here.contours[0][0]);
   const core::Stopwatch stopwatch;
   editor_->Drag(start + Vec2{3 * std::cos(angle), 3 * std::sin(angle)});
-  (void)workspace_->Fit(editor_->Structure(), editor_->Slice()).ok();
+  (void)editor_->Fit().ok();
   measured_.fit.push_back(stopwatch.Seconds());
   OnEdited();
 }

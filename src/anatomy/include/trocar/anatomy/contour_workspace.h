@@ -70,7 +70,8 @@ class ContourWorkspace {
   std::shared_ptr<SliceFits> Fits() const { return fits_; }
 
   /// Fit of the closed contours of a slice.
-  core::Result<std::shared_ptr<const SliceFit>> Fit(int structure, int slice);
+  core::Result<std::shared_ptr<const SliceFit>> Fit(int structure, int slice,
+                                                    FitEffort effort = FitEffort::kWhole);
   /// A copy of what the organ's surface depends on.
   MeshRequest MakeMeshRequest(int structure) const;
 

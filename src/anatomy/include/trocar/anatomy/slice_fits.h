@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <tuple>
 #include <vector>
 
 #include "trocar/anatomy/contour_fill.h"
@@ -26,6 +27,12 @@ struct SliceFit {
   std::vector<std::vector<Vec2>> HoleCurves() const;
 };
 
+/// How much work a fit is worth.
+enum class FitEffort {
+  kQuick,  ///< while a point is dragged: adaption and spline, no points inserted between
+  kWhole,
+};
+
 /// Remembers the fit of each contour by what it was computed from. Thread-safe.
 class SliceFits {
  public:
@@ -35,7 +42,8 @@ class SliceFits {
   /// or not. \param structure  index, under which the fit is remembered
   /// \return why the picture cannot be had
   core::Result<std::shared_ptr<const SliceFit>> Find(int structure, const SliceContours& contours,
-                                                     const EdgeAdaptionSettings& adaption);
+                                                     const EdgeAdaptionSettings& adaption,
+                                                     FitEffort effort = FitEffort::kWhole);
 
   /// How many contours were computed since the beginning.
   std::size_t ComputedCount() const;
@@ -50,7 +58,7 @@ class SliceFits {
   };
   std::shared_ptr<SliceStore> store_;  // shared with the threads that fit
   mutable std::mutex mutex_;           // guards what follows; never held while fitting
-  std::map<std::pair<int, int>, Source> sources_;  // by structure and slice
+  std::map<std::tuple<int, int, FitEffort>, Source> sources_;  // by structure, slice and effort
   std::size_t computed_ = 0;
 };
 

@@ -60,6 +60,11 @@ class ContourEditor {
   bool IsDragging() const { return is_dragging_; }
   /// Place of the pointer [pixels of the picture]; nothing when it is elsewhere.
   const std::optional<Vec2>& Pointer() const { return pointer_; }
+  /// Fit of the slice that is shown; the quick one while a point of it is dragged.
+  core::Result<std::shared_ptr<const anatomy::SliceFit>> Fit() {
+    return workspace_->Fit(structure_, slice_,
+                           is_dragging_ ? anatomy::FitEffort::kQuick : anatomy::FitEffort::kWhole);
+  }
   /// From the open contour's last point to the pointer, as a click would add it; empty when nothing is open.
   std::vector<Vec2> RubberLine();
 
