@@ -30,9 +30,9 @@ core::Result<std::optional<ControlPoints>> FindAutosaved(const fs::path& autosav
     kept += ".unreadable";
     std::error_code failure;
     fs::rename(autosave_file, kept, failure);
-    return core::Error{points.error().code,
-                       points.error().message + " (autosaved contours of an earlier session; kept as " +
-                           (failure ? autosave_file : kept).string() + ")"};
+    return core::Error{points.error().code, points.error().message +
+                                                " (autosaved contours of an earlier session; kept as " +
+                                                (failure ? autosave_file : kept).string() + ")"};
   }
   return std::optional<ControlPoints>(std::move(*points));
 }

@@ -133,7 +133,8 @@ core::Status ContourDocument::AddPath(int structure, int slice, std::span<const 
 core::Status ContourDocument::CloseContour(int structure, int slice, bool is_hole) {
   if (auto status = CheckPlace(structure, slice); !status.ok()) return status;
   SliceContours after = At(structure, slice);
-  if (after.open.empty()) return Refused("no contour is being drawn here; click points around the organ first");
+  if (after.open.empty())
+    return Refused("no contour is being drawn here; click points around the organ first");
   if (is_hole && after.contours.empty()) {
     return Refused("a hole lies in a contour; draw the contour around it first");
   }
@@ -195,7 +196,8 @@ core::Status ContourDocument::DeleteContour(const ContourId& id) {
   auto& group = id.is_hole ? after.holes : after.contours;
   group.erase(group.begin() + id.index);
   if (after.contours.empty()) after.holes.clear();
-  return EditSlice(id.structure, id.slice, std::move(after), id.is_hole ? "delete a hole" : "delete a contour");
+  return EditSlice(id.structure, id.slice, std::move(after),
+                   id.is_hole ? "delete a hole" : "delete a contour");
 }
 
 core::Status ContourDocument::ToggleHole(const ContourId& id) {
@@ -296,7 +298,8 @@ core::Status ContourDocument::SetAdaption(int structure, const EdgeAdaptionSetti
 
 // doing, undoing
 
-core::Status ContourDocument::EditSlice(int structure, int slice, SliceContours after, std::string_view what) {
+core::Status ContourDocument::EditSlice(int structure, int slice, SliceContours after,
+                                        std::string_view what) {
   after.slice = slice;
   for (const auto* group : {&after.contours, &after.holes}) {
     for (const auto& polygon : *group) {
@@ -308,7 +311,8 @@ core::Status ContourDocument::EditSlice(int structure, int slice, SliceContours 
     }
   }
   if (after.open.size() > kMaxPoints) return Refused("a contour has at most 10,000 points");
-  if (!after.holes.empty() && after.contours.empty()) return Refused("a hole lies in a contour; draw one first");
+  if (!after.holes.empty() && after.contours.empty())
+    return Refused("a hole lies in a contour; draw one first");
   SliceContours before = At(structure, slice);
   before.slice = slice;
   if (before == after) return {};
@@ -364,7 +368,8 @@ void ContourDocument::Record(Edit edit, EditPlace place) {
   // the positions that a dragged point passed are no steps
   auto* last = gesture_.edits.empty() ? nullptr : std::get_if<SliceEdit>(&gesture_.edits.back());
   auto* next = std::get_if<SliceEdit>(&edit);
-  if (last != nullptr && next != nullptr && last->structure == next->structure && last->slice == next->slice) {
+  if (last != nullptr && next != nullptr && last->structure == next->structure &&
+      last->slice == next->slice) {
     last->after = std::move(next->after);
   } else {
     gesture_.edits.push_back(std::move(edit));

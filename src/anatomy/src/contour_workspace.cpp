@@ -88,13 +88,15 @@ core::Result<ContourWorkspace> ContourWorkspace::Open(const WorkspaceOptions& op
   if (points && (points->width != info.width || points->height != info.height)) {
     return Error{ErrorCode::kImageSizeDiffers,
                  options.points.filename().string() + " was drawn on pictures of " +
-                     std::to_string(points->width) + " x " + std::to_string(points->height) + " pixels, these have " +
-                     std::to_string(info.width) + " x " + std::to_string(info.height) + "; name its own pictures"};
+                     std::to_string(points->width) + " x " + std::to_string(points->height) +
+                     " pixels, these have " + std::to_string(info.width) + " x " +
+                     std::to_string(info.height) + "; name its own pictures"};
   }
   workspace.document_ =
       std::make_unique<ContourDocument>(points ? std::move(*points) : BeginPoints(info, options.images));
-  workspace.store_ = std::make_shared<SliceStore>(
-      [source = *workspace.series_](int slice) { return source.ReadSlice(slice, source.Info().suggested_window); });
+  workspace.store_ = std::make_shared<SliceStore>([source = *workspace.series_](int slice) {
+    return source.ReadSlice(slice, source.Info().suggested_window);
+  });
   workspace.fits_ = std::make_shared<SliceFits>(workspace.store_);
   if (!options.reference.empty()) {
     auto reference = ReadLabelVolume(options.reference);
@@ -137,7 +139,8 @@ core::Result<ColorImage> ContourWorkspace::PictureInWindow(int slice, const Disp
   return series_->ReadSlice(slice, window);
 }
 
-core::Result<std::shared_ptr<const SliceFit>> ContourWorkspace::Fit(int structure, int slice, FitEffort effort) {
+core::Result<std::shared_ptr<const SliceFit>> ContourWorkspace::Fit(int structure, int slice,
+                                                                    FitEffort effort) {
   const SliceContours& contours = document_->At(structure, slice);
   if (contours.contours.empty()) return std::make_shared<const SliceFit>();
   return fits_->Find(structure, contours, document_->Points().structures[structure].adaption, effort);
@@ -163,7 +166,8 @@ core::Result<Propagation> ContourWorkspace::Propagate(int structure, int from, i
     return Refused("there is no further slice to carry the contour to");
   }
   if (!document_->At(structure, to).contours.empty() && !is_replacing) {
-    return Refused("slice " + std::to_string(to) + " has contours already; clear it there first (Ctrl+Delete), or go on from it");
+    return Refused("slice " + std::to_string(to) +
+                   " has contours already; clear it there first (Ctrl+Delete), or go on from it");
   }
   PropagationSettings settings;
   settings.adaption = document_->Points().structures[structure].adaption;
@@ -192,7 +196,8 @@ core::Result<Propagation> ContourWorkspace::Propagate(int structure, int from, i
   return result;
 }
 
-core::Result<std::vector<Vec2>> ContourWorkspace::FindScissorsPath(int structure, int slice, const Vec2& target) {
+core::Result<std::vector<Vec2>> ContourWorkspace::FindScissorsPath(int structure, int slice,
+                                                                   const Vec2& target) {
   const auto& open = document_->At(structure, slice).open;
   if (open.empty()) return std::vector<Vec2>{target};
   if (scissors_ == nullptr || scissors_slice_ != slice) {
@@ -268,7 +273,8 @@ std::vector<ContourWorkspace::ReferenceLines> ContourWorkspace::FindReference(in
   return result;
 }
 
-std::optional<std::array<double, 3>> FindPatientPlace(const ImageSeriesInfo& series, int slice, const Vec2& p) {
+std::optional<std::array<double, 3>> FindPatientPlace(const ImageSeriesInfo& series, int slice,
+                                                      const Vec2& p) {
   if (series.file_frame.empty() || series.slice_numbers.empty()) return std::nullopt;
   const double along[3] = {p.x * series.pixel_mm, p.y * series.pixel_mm,
                            (slice - series.slice_numbers.front()) * series.slice_mm};

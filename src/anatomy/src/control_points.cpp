@@ -278,7 +278,8 @@ core::Result<ControlPoints> ParseControlPoints(std::string_view text, std::strin
     points.structures.push_back(ReadStructure(points, view, completeness));
     if (!names.insert(points.structures.back().name).second) view.Complain("this name is used twice");
   }
-  if (points.structures.empty() && completeness == Completeness::kPatient) root.Complain("there are no structures");
+  if (points.structures.empty() && completeness == Completeness::kPatient)
+    root.Complain("there are no structures");
   if (root.Has("tubes")) {
     for (const JsonView& view : root.Array("tubes")) {
       points.tubes.push_back(ReadTube(points, view));

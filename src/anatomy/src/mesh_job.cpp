@@ -24,7 +24,8 @@ constexpr double kCoarseOversampling = 3;
 
 /// Slices between slices, where single contours can be matched: thin lobes then have no teeth.
 std::vector<FilledSlice> InsertMatched(const std::vector<FilledSlice>& slices,
-                                       const std::vector<std::vector<std::vector<Vec2>>>& curves, double step_mm) {
+                                       const std::vector<std::vector<std::vector<Vec2>>>& curves,
+                                       double step_mm) {
   std::vector<FilledSlice> dense;
   for (std::size_t s = 0; s < slices.size(); ++s) {
     dense.push_back(slices[s]);
@@ -83,7 +84,7 @@ core::Result<OrganMesh> MakePreviewMesh(const MeshRequest& request, SliceFits& f
                      (filled.empty() ? "there is none yet" : "there is one so far")};
   }
   const double extent = std::max({request.pixel_mm * (high_x - low_x), request.pixel_mm * (high_y - low_y),
-                     filled.back().position_mm - filled.front().position_mm});
+                                  filled.back().position_mm - filled.front().position_mm});
   OrganMesh organ;
   organ.level = level;
   organ.spacing_mm = CalcPreviewSpacing(extent, request.pixel_mm, level);

@@ -31,7 +31,8 @@ core::Result<std::shared_ptr<const SliceFit>> SliceFits::Find(int structure, con
   Source known;
   {
     const std::lock_guard lock(mutex_);
-    if (const auto found = sources_.find(key); found != sources_.end() && found->second.adaption == adaption) {
+    if (const auto found = sources_.find(key);
+        found != sources_.end() && found->second.adaption == adaption) {
       known = found->second;
     }
   }

@@ -42,7 +42,10 @@ struct Command {
 // one of every command, each allowed on MakePoints with an open contour of three points in slice 15
 std::vector<Command> EveryCommand() {
   return {
-      {"AddPoint", [](ContourDocument& d) { return d.AddPoint(0, 16, {5, 6}); }},
+      {"AddPoint",
+       [](ContourDocument& d) {
+         return d.AddPoint(0, 16, {5, 6});
+       }},
       {"AddPath",
        [](ContourDocument& d) {
          const std::vector<Vec2> path = {{1, 2}, {3, 4}, {9, 9}};
@@ -51,8 +54,14 @@ std::vector<Command> EveryCommand() {
       {"CloseContour", [](ContourDocument& d) { return d.CloseContour(0, 15); }},
       {"RemoveLastPoint", [](ContourDocument& d) { return d.RemoveLastPoint(0, 15); }},
       {"DropOpenContour", [](ContourDocument& d) { return d.DropOpenContour(0, 15); }},
-      {"MovePoint", [](ContourDocument& d) { return d.MovePoint(kFirst, 2, {70, 55}); }},
-      {"InsertPoint", [](ContourDocument& d) { return d.InsertPoint(kHole, 3, {21, 26}); }},
+      {"MovePoint",
+       [](ContourDocument& d) {
+         return d.MovePoint(kFirst, 2, {70, 55});
+       }},
+      {"InsertPoint",
+       [](ContourDocument& d) {
+         return d.InsertPoint(kHole, 3, {21, 26});
+       }},
       {"DeletePoint", [](ContourDocument& d) { return d.DeletePoint(kFirst, 0); }},
       {"DeleteContour", [](ContourDocument& d) { return d.DeleteContour(kSecond); }},
       {"DeleteContourWithItsHole", [](ContourDocument& d) { return d.DeleteContour(kFirst); }},
@@ -60,7 +69,9 @@ std::vector<Command> EveryCommand() {
       {"ToggleHole", [](ContourDocument& d) { return d.ToggleHole(kSecond); }},
       {"ToggleHoleBack", [](ContourDocument& d) { return d.ToggleHole(kHole); }},
       {"SetContours",
-       [](ContourDocument& d) { return d.SetContours(0, 13, {{{1, 1}, {9, 1}, {5, 8}}}, {}, "propagate"); }},
+       [](ContourDocument& d) {
+         return d.SetContours(0, 13, {{{1, 1}, {9, 1}, {5, 8}}}, {}, "propagate");
+       }},
       {"ClearSlice", [](ContourDocument& d) { return d.ClearSlice(0, 20); }},
       {"AddStructure", [](ContourDocument& d) { return d.AddStructure("gallbladder", 500); }},
       {"RenameStructure", [](ContourDocument& d) { return d.RenameStructure(0, "liver \"left\""); }},
@@ -111,24 +122,60 @@ TEST(ContourDocument, EveryStateReadsBackUnchanged) {
 TEST(ContourDocument, RefusedCommandsNameTheReasonAndChangeNothing) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const std::vector<Command> refused = {
-      {"no such organ", [](ContourDocument& d) { return d.AddPoint(1, 12, {1, 1}); }},
-      {"negative organ", [](ContourDocument& d) { return d.AddPoint(-1, 12, {1, 1}); }},
-      {"slice outside", [](ContourDocument& d) { return d.AddPoint(0, 31, {1, 1}); }},
-      {"no number", [nan](ContourDocument& d) { return d.AddPoint(0, 12, {nan, 1}); }},
+      {"no such organ",
+       [](ContourDocument& d) {
+         return d.AddPoint(1, 12, {1, 1});
+       }},
+      {"negative organ",
+       [](ContourDocument& d) {
+         return d.AddPoint(-1, 12, {1, 1});
+       }},
+      {"slice outside",
+       [](ContourDocument& d) {
+         return d.AddPoint(0, 31, {1, 1});
+       }},
+      {"no number",
+       [nan](ContourDocument& d) {
+         return d.AddPoint(0, 12, {nan, 1});
+       }},
       {"nothing open", [](ContourDocument& d) { return d.CloseContour(0, 12); }},
       {"nothing to remove", [](ContourDocument& d) { return d.RemoveLastPoint(0, 12); }},
       {"nothing to drop", [](ContourDocument& d) { return d.DropOpenContour(0, 12); }},
       {"hole without contour", [](ContourDocument& d) { return d.CloseContour(0, 15, true); }},
-      {"no contour", [](ContourDocument& d) { return d.MovePoint({0, 12, false, 1}, 0, {1, 1}); }},
-      {"negative contour", [](ContourDocument& d) { return d.DeleteContour({0, 12, false, -1}); }},
-      {"no point", [](ContourDocument& d) { return d.MovePoint(kFirst, 4, {1, 1}); }},
-      {"point moved to no number", [nan](ContourDocument& d) { return d.MovePoint(kFirst, 0, {1, nan}); }},
-      {"no place", [](ContourDocument& d) { return d.InsertPoint(kFirst, 5, {1, 1}); }},
+      {"no contour",
+       [](ContourDocument& d) {
+         return d.MovePoint({0, 12, false, 1}, 0, {1, 1});
+       }},
+      {"negative contour",
+       [](ContourDocument& d) {
+         return d.DeleteContour({0, 12, false, -1});
+       }},
+      {"no point",
+       [](ContourDocument& d) {
+         return d.MovePoint(kFirst, 4, {1, 1});
+       }},
+      {"point moved to no number",
+       [nan](ContourDocument& d) {
+         return d.MovePoint(kFirst, 0, {1, nan});
+       }},
+      {"no place",
+       [](ContourDocument& d) {
+         return d.InsertPoint(kFirst, 5, {1, 1});
+       }},
       {"two would remain", [](ContourDocument& d) { return d.DeletePoint(kHole, 0); }},
-      {"two places would remain", [](ContourDocument& d) { return d.MovePoint(kHole, 0, {30, 20}); }},
+      {"two places would remain",
+       [](ContourDocument& d) {
+         return d.MovePoint(kHole, 0, {30, 20});
+       }},
       {"only contour as hole", [](ContourDocument& d) { return d.ToggleHole(kFirst); }},
-      {"contour of two", [](ContourDocument& d) { return d.SetContours(0, 13, {{{1, 1}, {2, 2}}}, {}, "x"); }},
-      {"only a hole", [](ContourDocument& d) { return d.SetContours(0, 13, {}, {{{1, 1}, {2, 2}, {3, 0}}}, "x"); }},
+      {"contour of two",
+       [](ContourDocument& d) {
+         return d.SetContours(0, 13, {{{1, 1}, {2, 2}}}, {}, "x");
+       }},
+      {"only a hole",
+       [](ContourDocument& d) {
+         return d.SetContours(0, 13, {}, {{{1, 1}, {2, 2}, {3, 0}}}, "x");
+       }},
       {"empty slice", [](ContourDocument& d) { return d.ClearSlice(0, 13); }},
       {"name used", [](ContourDocument& d) { return d.AddStructure("liver", 500); }},
       {"no name", [](ContourDocument& d) { return d.RenameStructure(0, ""); }},
@@ -225,7 +272,8 @@ TEST(ContourDocument, RandomSequencesUndoneToTheStartGiveTheSameBytes) {
       };
       const auto status = run();
       refused += !status.ok();
-      if (document.Revision() != revision && document.Text() != texts.back()) texts.push_back(document.Text());
+      if (document.Revision() != revision && document.Text() != texts.back())
+        texts.push_back(document.Text());
     }
     EXPECT_GT(texts.size(), 80u) << refused << " refused";
     const std::string last = document.Text();

@@ -113,7 +113,8 @@ TEST_F(Workspace, FitsAreComputedOnlyWhereSomethingChanged) {
   ASSERT_TRUE(document.SetAdaption(0, {.max_shift_px = 0}).ok());
   const auto still = workspace.Fit(0, 2);
   ASSERT_TRUE(still.ok());
-  for (std::size_t i = 0; i < 12; ++i) EXPECT_EQ((*still)->contours[0]->adapted[i], document.At(0, 2).contours[0][i]);
+  for (std::size_t i = 0; i < 12; ++i)
+    EXPECT_EQ((*still)->contours[0]->adapted[i], document.At(0, 2).contours[0][i]);
 }
 
 TEST_F(Workspace, CarriesContoursAlongAndDoesNotOverwriteThem) {
@@ -190,7 +191,8 @@ TEST_F(Workspace, PreviewOfACylinderHasItsVolume) {
     EXPECT_TRUE(mesh->is_closed);
     EXPECT_TRUE(mesh->is_manifold);
     EXPECT_LE(mesh->mesh.triangles.size(), 5000u);
-    // 5 gaps of 4 mm, and half a gap of caps that close as paraboloids: between the bare and the padded column
+    // 5 gaps of 4 mm, and half a gap of caps that close as paraboloids: between the bare and the padded
+    // column
     const double disc = M_PI * kRadius * kRadius / 1000;
     EXPECT_GT(mesh->volume_ml, 20 * disc);
     EXPECT_LT(mesh->volume_ml, 30 * disc);
@@ -222,16 +224,19 @@ std::vector<MeshOutcome> Collect(MeshJob& job, IsEnough is_enough) {
 TEST_F(Workspace, MeshJobGivesCoarseThenFineAndTheNewestWins) {
   auto workspace = Open();
   auto& document = workspace.Document();
-  for (const int slice : {1, 3, 6}) ASSERT_TRUE(document.SetContours(0, slice, {Circle(slice, 20)}, {}, "set").ok());
+  for (const int slice : {1, 3, 6})
+    ASSERT_TRUE(document.SetContours(0, slice, {Circle(slice, 20)}, {}, "set").ok());
   std::atomic<int> changes = 0;
   MeshJob job(workspace.Fits(), [&changes] { ++changes; });
   for (int i = 0; i < 20; ++i) job.Request(workspace.MakeMeshRequest(0));
   // the last request has other contours than those before
   ASSERT_TRUE(document.SetAdaption(0, {.max_shift_px = 0}).ok());
-  for (const int slice : {1, 3, 6}) ASSERT_TRUE(document.SetContours(0, slice, {Circle(slice, 10)}, {}, "set").ok());
+  for (const int slice : {1, 3, 6})
+    ASSERT_TRUE(document.SetContours(0, slice, {Circle(slice, 10)}, {}, "set").ok());
   job.Request(workspace.MakeMeshRequest(0));
   const auto all = Collect(job, [](const auto& outcomes) {
-    return !outcomes.empty() && outcomes.back().result.ok() && outcomes.back().result.value().level == MeshLevel::kFine &&
+    return !outcomes.empty() && outcomes.back().result.ok() &&
+           outcomes.back().result.value().level == MeshLevel::kFine &&
            outcomes.back().result.value().volume_ml < 12;
   });
   ASSERT_FALSE(all.empty());
@@ -252,7 +257,8 @@ TEST_F(Workspace, MeshJobIsCancelledAndTellsProblems) {
   const auto all = Collect(job, [](const auto& outcomes) { return !outcomes.empty(); });
   ASSERT_EQ(all.size(), 1u);
   EXPECT_EQ(all[0].result.error().code, core::ErrorCode::kContourTooShort);
-  for (const int slice : {3, 6}) ASSERT_TRUE(document.SetContours(0, slice, {Circle(slice, 20)}, {}, "set").ok());
+  for (const int slice : {3, 6})
+    ASSERT_TRUE(document.SetContours(0, slice, {Circle(slice, 20)}, {}, "set").ok());
   for (int i = 0; i < 5; ++i) {
     job.Request(workspace.MakeMeshRequest(0));
     job.Cancel();

@@ -61,8 +61,7 @@ void FitPicture(CanvasView& view, const CanvasSize& size, int picture_width, int
 
 void FitBox(CanvasView& view, const CanvasSize& size, const Vec2& low, const Vec2& high) noexcept {
   const double width = std::max(high.x - low.x, 1.0), height = std::max(high.y - low.y, 1.0);
-  view.zoom =
-      std::clamp(kMargin * std::min(size.width / width, size.height / height), kLeastZoom, kMostZoom);
+  view.zoom = std::clamp(kMargin * std::min(size.width / width, size.height / height), kLeastZoom, kMostZoom);
   view.centre = 0.5 * (low + high);
 }
 
@@ -94,7 +93,8 @@ std::optional<CurveHit> HitCurve(const CanvasView& view, const CanvasSize& size,
   for (std::size_t i = 0; i < curve.size(); ++i) {
     const Vec2 a = curve[i], chord = curve[(i + 1) % curve.size()] - a;
     const double length = Dot(chord, chord);
-    const double t = length > 0 ? std::clamp(Dot(ToPicture(view, size, at) - a, chord) / length, 0.0, 1.0) : 0.0;
+    const double t =
+        length > 0 ? std::clamp(Dot(ToPicture(view, size, at) - a, chord) / length, 0.0, 1.0) : 0.0;
     const Vec2 here = a + t * chord;
     const double distance = Norm(ToCanvas(view, size, here) - at);
     if (distance <= best) best = distance, nearest = CurveHit{here, i, distance};
@@ -102,7 +102,8 @@ std::optional<CurveHit> HitCurve(const CanvasView& view, const CanvasSize& size,
   return nearest;
 }
 
-std::size_t FindInsertion(std::span<const Vec2> curve, std::span<const Vec2> controls, std::size_t side) noexcept {
+std::size_t FindInsertion(std::span<const Vec2> curve, std::span<const Vec2> controls,
+                          std::size_t side) noexcept {
   // the place of each control point along the curve, in order from the first one on
   const std::size_t m = curve.size();
   std::vector<std::size_t> place(controls.size());

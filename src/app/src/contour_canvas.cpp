@@ -10,9 +10,9 @@ namespace trocar::app {
 namespace {
 
 constexpr guint kLeftButton = 1, kMiddleButton = 2, kRightButton = 3;
-constexpr double kZoomStep = 1.15;      // a notch of the wheel
-constexpr double kClickSlop = 4;        // a right press that moves less is a click [pixels]
-constexpr double kWindowPerPixel = 2;   // grey values a pixel of the drag, of a width of 400
+constexpr double kZoomStep = 1.15;     // a notch of the wheel
+constexpr double kClickSlop = 4;       // a right press that moves less is a click [pixels]
+constexpr double kWindowPerPixel = 2;  // grey values a pixel of the drag, of a width of 400
 
 }  // namespace
 

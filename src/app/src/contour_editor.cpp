@@ -218,8 +218,9 @@ void ContourEditor::Propagate(int direction) {
   SetSlice(to);
   if (!on_event) return;
   const int percent = static_cast<int>(100 * carried->confidence + 0.5);
-  on_event("Carried " + std::to_string(carried->contours) + (carried->contours == 1 ? " contour" : " contours") +
-           " to slice " + std::to_string(to) + "; the least certain point agrees to " + std::to_string(percent) +
+  on_event("Carried " + std::to_string(carried->contours) +
+           (carried->contours == 1 ? " contour" : " contours") + " to slice " + std::to_string(to) +
+           "; the least certain point agrees to " + std::to_string(percent) +
            " %. Correct it where it is wrong.");
 }
 
@@ -228,8 +229,8 @@ void ContourEditor::GoTo(const std::optional<anatomy::EditPlace>& place, const c
   choice_.reset();
   ChooseStructure(place->structure);
   // an undone organ may have gone
-  structure_ = std::clamp(structure_, 0,
-                          std::max(0, static_cast<int>(workspace_->Document().Points().structures.size()) - 1));
+  structure_ = std::clamp(
+      structure_, 0, std::max(0, static_cast<int>(workspace_->Document().Points().structures.size()) - 1));
   if (place->slice) SetSlice(*place->slice);
   if (on_event) on_event(std::string(verb) + ": " + place->what);
 }

@@ -15,14 +15,15 @@ constexpr Colour3 kClicked{0.98, 0.30, 0.26}, kAdapted{1.00, 0.85, 0.20}, kSplin
 constexpr Colour3 kReference{0.35, 0.85, 1.00}, kWarning{1.00, 0.62, 0.15};
 constexpr Colour3 kPalette[] = {{0.90, 0.52, 0.42}, {0.52, 0.86, 0.50}, {0.62, 0.60, 0.98},
                                 {0.98, 0.78, 0.40}, {0.90, 0.55, 0.85}, {0.45, 0.85, 0.88}};
-constexpr double kNearestZoom = 6;   // beyond it, pixels are shown as they are
-constexpr int kFarthestGhost = 16;   // slices
+constexpr double kNearestZoom = 6;  // beyond it, pixels are shown as they are
+constexpr int kFarthestGhost = 16;  // slices
 
 void SetColour(const CairoContext& cairo, const Colour3& c, double alpha = 1) {
   cairo->set_source_rgba(c[0], c[1], c[2], alpha);
 }
 
-void AddPath(const CairoContext& cairo, const ContourEditor& editor, std::span<const Vec2> points, bool is_closed) {
+void AddPath(const CairoContext& cairo, const ContourEditor& editor, std::span<const Vec2> points,
+             bool is_closed) {
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Vec2 at = ToCanvas(editor.view, editor.size, points[i]);
     if (i == 0) {
@@ -63,7 +64,8 @@ void Square(const CairoContext& cairo, const Vec2& at, double half, const Colour
   cairo->stroke();
 }
 
-void TextOutlined(const CairoContext& cairo, double x, double y, const std::string& text, const Colour3& colour) {
+void TextOutlined(const CairoContext& cairo, double x, double y, const std::string& text,
+                  const Colour3& colour) {
   cairo->move_to(x, y);
   cairo->text_path(text);
   cairo->set_line_join(Cairo::Context::LineJoin::ROUND);
@@ -98,8 +100,8 @@ Colour3 OrganColour(const std::string& name, int structure) {
   return kPalette[2 + std::max(structure, 0) % 4];
 }
 
-core::Status ContourPainter::Paint(const CairoContext& cairo, ContourEditor& editor, const PaintOptions& options,
-                                   int scale) {
+core::Status ContourPainter::Paint(const CairoContext& cairo, ContourEditor& editor,
+                                   const PaintOptions& options, int scale) {
   cairo->set_source_rgb(0, 0, 0);
   cairo->paint();
   const core::Status status = PreparePicture(editor, options);
@@ -243,7 +245,8 @@ void ContourPainter::PaintOrgan(const CairoContext& cairo, ContourEditor& editor
   if (is_chosen && options.has_points) PaintPoints(cairo, editor, **fit);
 }
 
-void ContourPainter::PaintPoints(const CairoContext& cairo, ContourEditor& editor, const anatomy::SliceFit& fit) {
+void ContourPainter::PaintPoints(const CairoContext& cairo, ContourEditor& editor,
+                                 const anatomy::SliceFit& fit) {
   const auto& here = editor.Here();
   const auto on_canvas = [&](const Vec2& p) { return ToCanvas(editor.view, editor.size, p); };
   // seen from far, points must not hide the curve
@@ -359,7 +362,8 @@ void ContourPainter::PaintMargins(const CairoContext& cairo, const ContourEditor
   } else {
     std::snprintf(text, sizeof(text), "%g mm", bar_mm);
   }
-  cairo->select_font_face("sans-serif", Cairo::ToyFontFace::Slant::NORMAL, Cairo::ToyFontFace::Weight::NORMAL);
+  cairo->select_font_face("sans-serif", Cairo::ToyFontFace::Slant::NORMAL,
+                          Cairo::ToyFontFace::Weight::NORMAL);
   cairo->set_font_size(12);
   Cairo::TextExtents extents;
   cairo->get_text_extents(text, extents);

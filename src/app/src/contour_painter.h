@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file contour_painter.h  Draws a slice and its contours with Cairo.
 ///
-/// The three stages of the paper's Fig. 2: clicked points red, points on the edge yellow, the spline green with
-/// the filled area.
+/// The three stages of the paper's Fig. 2: clicked points red, points on the edge yellow, the spline green
+/// with the filled area.
 #pragma once
 
 #include <cairomm/cairomm.h>

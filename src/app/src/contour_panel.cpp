@@ -149,8 +149,8 @@ void ContourPanel::AddSlice() {
 
 void ContourPanel::AddEdges() {
   Gtk::Box& card = AddCard("Edge search and steps");
-  const auto add = [&](const char* name, const char* tooltip, Gtk::Scale& scale, Gtk::Label& value, double low,
-                       double high, double step) {
+  const auto add = [&](const char* name, const char* tooltip, Gtk::Scale& scale, Gtk::Label& value,
+                       double low, double high, double step) {
     auto* row = Gtk::make_managed<Gtk::Box>();
     row->set_spacing(6);
     auto* label = Gtk::make_managed<Gtk::Label>(name);
@@ -197,7 +197,8 @@ void ContourPanel::AddSurface() {
   card.append(view_);
   SetLabel(mesh_text_, "stage");
   mesh_text_.set_tooltip_text(
-      "A preview; the last number is the distance of the lattice it was made on. Build patient makes the finer one");
+      "A preview; the last number is the distance of the lattice it was made on. Build patient makes the "
+      "finer one");
   card.append(mesh_text_);
   auto* row = Gtk::make_managed<Gtk::Box>();
   row->set_spacing(8);
@@ -237,7 +238,8 @@ void ContourPanel::Refresh() {
     SetText(reach_value_, text);
   }
   step_.set_value(editor_->SliceStep());
-  SetText(step_value_, std::to_string(editor_->SliceStep()) + (editor_->SliceStep() == 1 ? " slice" : " slices"));
+  SetText(step_value_,
+          std::to_string(editor_->SliceStep()) + (editor_->SliceStep() == 1 ? " slice" : " slices"));
   is_showing_ = false;
 }
 
@@ -260,7 +262,8 @@ void ContourPanel::RefreshOrgans() {
     auto* row = Gtk::make_managed<Gtk::Box>();
     row->set_spacing(8);
     auto* swatch = Gtk::make_managed<Gtk::Label>();
-    swatch->set_markup("<span foreground=\"" + HexColour(OrganColour(structures[s].name, s)) + "\">\u25cf</span>");
+    swatch->set_markup("<span foreground=\"" + HexColour(OrganColour(structures[s].name, s)) +
+                       "\">\u25cf</span>");
     auto* name = Gtk::make_managed<Gtk::Label>(structures[s].name);
     name->set_ellipsize(Pango::EllipsizeMode::END);
     name->set_hexpand(true);
@@ -325,7 +328,8 @@ void ContourPanel::ShowSurfaces() {
       for (const auto& p : organ.mesh.positions) {
         math::Vec3 world;
         for (int axis = 0; axis < 3; ++axis) {
-          world[axis] = (p.x * directions[0][axis] + p.y * directions[1][axis] + p.z * directions[2][axis]) / kMmPerM;
+          world[axis] =
+              (p.x * directions[0][axis] + p.y * directions[1][axis] + p.z * directions[2][axis]) / kMmPerM;
         }
         surface.positions.push_back(world);
       }

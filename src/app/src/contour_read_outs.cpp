@@ -60,7 +60,8 @@ std::string SliceText(ContourEditor& editor) {
     return Count(here.open.size(), "point") + " of an open contour" +
            (here.open.size() < 3 ? "" : "; Enter or a double click closes it");
   }
-  if (here.contours.empty()) return "No contour. Click points around the organ, or carry one here from a neighbour.";
+  if (here.contours.empty())
+    return "No contour. Click points around the organ, or carry one here from a neighbour.";
   std::size_t points = 0;
   for (const auto* group : {&here.contours, &here.holes}) {
     for (const auto& polygon : *group) points += polygon.size();
@@ -111,8 +112,8 @@ std::string PointerText(const ContourEditor& editor) {
 }
 
 std::string SeriesText(const anatomy::ImageSeriesInfo& series) {
-  return Format("%s, %d x %d pixels of %.4g mm, slices of %.4g mm \u00b7 ", series.format.c_str(), series.width,
-                series.height, series.pixel_mm, series.slice_mm) +
+  return Format("%s, %d x %d pixels of %.4g mm, slices of %.4g mm \u00b7 ", series.format.c_str(),
+                series.width, series.height, series.pixel_mm, series.slice_mm) +
          "columns to " + series.axes[0] + ", rows to " + series.axes[1] + ", slices to " + series.axes[2] +
          (series.file_frame.empty() ? "" : " \u00b7 file in " + series.file_frame);
 }

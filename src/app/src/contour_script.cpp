@@ -202,7 +202,8 @@ core::Result<bool> RunScriptStep(const ScriptStep& step, ContourEditor& editor) 
   if (verb == "click" || verb == "edge") {
     const Vec2 p = words.Place(0);
     return run([&] {
-      return verb == "click" ? document.AddPoint(structure, slice, p) : workspace.FollowEdge(structure, slice, p);
+      return verb == "click" ? document.AddPoint(structure, slice, p)
+                             : workspace.FollowEdge(structure, slice, p);
     });
   }
   if (verb == "close" || verb == "close-hole") {
@@ -261,7 +262,8 @@ core::Result<bool> RunScriptStep(const ScriptStep& step, ContourEditor& editor) 
   if (verb == "reach") {
     const double reach = words.Number(0);
     return run([&]() -> core::Status {
-      if (document.Points().structures.empty()) return Error{ErrorCode::kEditRefused, "there is no organ yet"};
+      if (document.Points().structures.empty())
+        return Error{ErrorCode::kEditRefused, "there is no organ yet"};
       auto adaption = document.Points().structures[structure].adaption;
       adaption.max_shift_px = reach;
       return document.SetAdaption(structure, adaption);

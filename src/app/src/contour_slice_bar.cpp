@@ -83,7 +83,8 @@ void ContourSliceBar::Draw(const Cairo::RefPtr<Cairo::Context>& cairo, int width
   cairo->set_source_rgb(0.17, 0.61, 0.69);
   cairo->stroke();
 
-  cairo->select_font_face("sans-serif", Cairo::ToyFontFace::Slant::NORMAL, Cairo::ToyFontFace::Weight::NORMAL);
+  cairo->select_font_face("sans-serif", Cairo::ToyFontFace::Slant::NORMAL,
+                          Cairo::ToyFontFace::Weight::NORMAL);
   cairo->set_font_size(12);
   const auto write = [&](double at, double y, const std::string& text, double grey) {
     Cairo::TextExtents extents;

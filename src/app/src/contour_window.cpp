@@ -187,7 +187,8 @@ void ContourWindow::MakeRoutes() {
   canvas_.SignalWindow().connect([this] {
     const auto& window = canvas_.Options().window;
     Tell("Window " + std::to_string(static_cast<int>(window.width)) + ", level " +
-         std::to_string(static_cast<int>(window.centre)) + "; edges are still sought in the suggested window");
+         std::to_string(static_cast<int>(window.centre)) +
+         "; edges are still sought in the suggested window");
   });
   canvas_.SignalFailed().connect(sigc::mem_fun(*this, &ContourWindow::Report));
   slices_.SignalSlice().connect(sigc::mem_fun(*this, &ContourWindow::GoToSlice));
@@ -304,14 +305,13 @@ void ContourWindow::OfferRecovered() {
   const auto saved = workspace_->Document().Points();
   workspace_->Replace(std::move(**found));
   bars_.Ask("The last session ended without saving. What it had is shown; it is not in the file yet.",
-            {{"Go on with it", [] {}, true},
-             {"Back to the file", [this, saved] {
-                if (workspace_ == nullptr) return;
-                workspace_->Replace(saved);
-                workspace_->Document().MarkSaved();
-                if (autosave_ != nullptr) autosave_->Discard();
-                OnEdited();
-              }}});
+            {{"Go on with it", [] {}, true}, {"Back to the file", [this, saved] {
+                                                if (workspace_ == nullptr) return;
+                                                workspace_->Replace(saved);
+                                                workspace_->Document().MarkSaved();
+                                                if (autosave_ != nullptr) autosave_->Discard();
+                                                OnEdited();
+                                              }}});
 }
 
 // editing
@@ -411,9 +411,9 @@ void ContourWindow::ShowAll() {
   points_mode_.set_active(has_document && !editor_->IsScissors());
   scissors_mode_.set_active(has_document && editor_->IsScissors());
   is_showing_ = false;
-  for (Gtk::Widget* widget :
-       {static_cast<Gtk::Widget*>(&save_), static_cast<Gtk::Widget*>(&fit_), static_cast<Gtk::Widget*>(&points_mode_),
-        static_cast<Gtk::Widget*>(&scissors_mode_), static_cast<Gtk::Widget*>(&panel_)})
+  for (Gtk::Widget* widget : {static_cast<Gtk::Widget*>(&save_), static_cast<Gtk::Widget*>(&fit_),
+                              static_cast<Gtk::Widget*>(&points_mode_),
+                              static_cast<Gtk::Widget*>(&scissors_mode_), static_cast<Gtk::Widget*>(&panel_)})
     widget->set_sensitive(has_document);
   build_.set_sensitive(has_document && !builder_.joinable());
   undo_.set_sensitive(has_document && workspace_->Document().CanUndo());
@@ -429,7 +429,8 @@ void ContourWindow::ShowAll() {
   if (!builder_.joinable()) {
     std::string state = "Saved";
     if (document.IsDirty()) {
-      state = autosave_ != nullptr && autosave_->WrittenCount() > 0 ? "Not saved \u00b7 autosaved" : "Not saved";
+      state =
+          autosave_ != nullptr && autosave_->WrittenCount() > 0 ? "Not saved \u00b7 autosaved" : "Not saved";
     } else if (file.empty()) {
       state = "New";
     }
@@ -459,7 +460,8 @@ void ContourWindow::RequestMeshes(bool is_all) {
     auto request = workspace_->MakeMeshRequest(s);
     anatomy::Structure& before = meshed_[static_cast<std::size_t>(s)];
     const auto& now = request.content;
-    if (!is_all && before.slices == now.slices && before.adaption == now.adaption && before.name == now.name) continue;
+    if (!is_all && before.slices == now.slices && before.adaption == now.adaption && before.name == now.name)
+      continue;
     before = now;
     // an organ nobody has begun needs no message
     if (workspace_->Document().ContouredSlices(s).empty()) {
@@ -484,7 +486,8 @@ void ContourWindow::TakeMeshes() {
 
 void ContourWindow::PrefetchNeighbours() {
   std::vector<int> wanted;
-  for (const int step : {1, -1, 2, -2, 3, -3}) wanted.push_back(workspace_->StepSlice(editor_->Slice(), step));
+  for (const int step : {1, -1, 2, -2, 3, -3})
+    wanted.push_back(workspace_->StepSlice(editor_->Slice(), step));
   prefetcher_->Request(std::move(wanted));
 }
 

@@ -78,7 +78,8 @@ class ContourWindow : public Gtk::ApplicationWindow {
   std::optional<core::Error> failure_;
 
   Gtk::HeaderBar header_;
-  Gtk::Button open_{"Open"}, save_{"Save"}, undo_{"Undo"}, redo_{"Redo"}, fit_{"Fit"}, build_{"Build patient"};
+  Gtk::Button open_{"Open"}, save_{"Save"}, undo_{"Undo"}, redo_{"Redo"}, fit_{"Fit"},
+      build_{"Build patient"};
   Gtk::ToggleButton points_mode_{"Points"}, scissors_mode_{"Scissors"}, reference_{"Reference"},
       ghosts_{"Neighbours"}, help_{"Help"};
   Gtk::Overlay overlay_;

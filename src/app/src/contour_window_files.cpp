@@ -7,7 +7,8 @@
 namespace trocar::app {
 
 void ContourWindow::ChooseAndOpen() {
-  chooser_ = Gtk::FileChooserNative::create("Open contours", *this, Gtk::FileChooser::Action::OPEN, "Open", "Cancel");
+  chooser_ = Gtk::FileChooserNative::create("Open contours", *this, Gtk::FileChooser::Action::OPEN, "Open",
+                                            "Cancel");
   const auto filter = Gtk::FileFilter::create();
   filter->set_name("Contours (JSON)");
   filter->add_pattern("*.json");
@@ -48,8 +49,8 @@ bool ContourWindow::Save() {
 }
 
 void ContourWindow::ChooseAndSave(std::function<void()> then) {
-  chooser_ =
-      Gtk::FileChooserNative::create("Save contours", *this, Gtk::FileChooser::Action::SAVE, "Save", "Cancel");
+  chooser_ = Gtk::FileChooserNative::create("Save contours", *this, Gtk::FileChooser::Action::SAVE, "Save",
+                                            "Cancel");
   chooser_->set_current_name("control_points.json");
   chooser_->signal_response().connect([this, then = std::move(then)](int response) {
     if (response != static_cast<int>(Gtk::ResponseType::ACCEPT)) return;
@@ -74,8 +75,8 @@ void ContourWindow::ChooseAndBuild() {
     if (workspace_->Options().points.empty()) return ChooseAndSave([this] { ChooseAndBuild(); });
     if (!Save()) return;
   }
-  chooser_ = Gtk::FileChooserNative::create("Folder for the patient", *this, Gtk::FileChooser::Action::SAVE, "Build",
-                                            "Cancel");
+  chooser_ = Gtk::FileChooserNative::create("Folder for the patient", *this, Gtk::FileChooser::Action::SAVE,
+                                            "Build", "Cancel");
   chooser_->set_current_name("patient");
   chooser_->signal_response().connect([this](int response) {
     if (response != static_cast<int>(Gtk::ResponseType::ACCEPT)) return;
@@ -129,12 +130,11 @@ bool ContourWindow::OnClose() {
   const bool is_watched = options_.screenshot.empty() && !options_.is_measuring;
   if (is_closing_ || !is_watched || workspace_ == nullptr || !workspace_->Document().IsDirty()) {
     if (builder_.joinable() && !is_closing_) {
-      bars_.Ask("The patient is still being built.", {{"Wait", [] {}, true},
-                                                      {"Close when it is done",
-                                                       [this] {
-                                                         is_closing_ = true;
-                                                         close();
-                                                       }}});
+      bars_.Ask("The patient is still being built.",
+                {{"Wait", [] {}, true}, {"Close when it is done", [this] {
+                                           is_closing_ = true;
+                                           close();
+                                         }}});
       return true;
     }
     if (autosave_ != nullptr) autosave_->Discard();
@@ -145,7 +145,11 @@ bool ContourWindow::OnClose() {
     close();
   };
   bars_.Ask("The contours are not saved.",
-            {{"Save and close", [this, leave] { workspace_->Options().points.empty() ? ChooseAndSave(leave) : Save() ? leave() : void(); }, true},
+            {{"Save and close",
+              [this, leave] {
+                workspace_->Options().points.empty() ? ChooseAndSave(leave) : Save() ? leave() : void();
+              },
+              true},
              {"Close without saving", leave},
              {"Stay", [] {}}});
   return true;

@@ -11,9 +11,9 @@
 namespace trocar::app {
 namespace {
 
-constexpr double kLongestRun = 180;     // a run that hangs must not hang a test [s]
-constexpr double kMeasureSeconds = 6;   // of dragging
-constexpr std::size_t kWarmUp = 10;     // first frames do not count
+constexpr double kLongestRun = 180;    // a run that hangs must not hang a test [s]
+constexpr double kMeasureSeconds = 6;  // of dragging
+constexpr std::size_t kWarmUp = 10;    // first frames do not count
 
 double Quantile(std::vector<double> values, double part) {
   if (values.empty()) return 0;
@@ -77,7 +77,8 @@ void ContourWindow::RunScript() {
 bool ContourWindow::OnFrame(const Glib::RefPtr<Gdk::FrameClock>& clock) {
   if (failure_ || is_screenshot_due_) return true;
   if (since_start_.Seconds() > kLongestRun) {
-    Abandon({core::ErrorCode::kUsage, "the run did not end in three minutes; this computer is too slow for it"});
+    Abandon(
+        {core::ErrorCode::kUsage, "the run did not end in three minutes; this computer is too slow for it"});
     return true;
   }
   if (editor_ == nullptr || canvas_.PaintCount() == 0) return true;
@@ -131,12 +132,14 @@ void ContourWindow::MeasureFrame(double now) {
 void ContourWindow::FinishMeasuring() {
   editor_->Do(ContourAction::kCancel);
   for (auto* values : {&measured_.fit, &measured_.paint, &measured_.frame}) {
-    values->erase(values->begin(), values->begin() + static_cast<std::ptrdiff_t>(std::min(kWarmUp, values->size())));
+    values->erase(values->begin(),
+                  values->begin() + static_cast<std::ptrdiff_t>(std::min(kWarmUp, values->size())));
   }
   std::string organs;
   for (const auto& [structure, mesh] : panel_.Meshes()) {
     char text[160];
-    std::snprintf(text, sizeof(text), "%s{\"triangles\": %zu, \"volume_ml\": %.1f, \"spacing_mm\": %.2f, \"s\": %.3f}",
+    std::snprintf(text, sizeof(text),
+                  "%s{\"triangles\": %zu, \"volume_ml\": %.1f, \"spacing_mm\": %.2f, \"s\": %.3f}",
                   organs.empty() ? "" : ", ", mesh.mesh.triangles.size(), mesh.volume_ml, mesh.spacing_mm,
                   mesh.seconds);
     organs += text;
@@ -158,15 +161,15 @@ void ContourWindow::SaveScreenshot() {
   const auto snapshot = Gtk::Snapshot::create();
   paintable->snapshot(snapshot, get_width(), get_height());
   GskRenderNode* node = gtk_snapshot_to_node(snapshot->gobj());
-  GdkTexture* texture =
-      node == nullptr ? nullptr
-                      : gsk_renderer_render_texture(gtk_native_get_renderer(GTK_NATIVE(gobj())), node, nullptr);
+  GdkTexture* texture = node == nullptr ? nullptr
+                                        : gsk_renderer_render_texture(
+                                              gtk_native_get_renderer(GTK_NATIVE(gobj())), node, nullptr);
   const bool is_saved = texture != nullptr && gdk_texture_save_to_png(texture, options_.screenshot.c_str());
   if (texture != nullptr) g_object_unref(texture);
   if (node != nullptr) gsk_render_node_unref(node);
   if (!is_saved) {
-    return Abandon({core::ErrorCode::kFileUnwritable,
-                    "cannot write " + options_.screenshot.string() + ": check the folder and its permissions"});
+    return Abandon({core::ErrorCode::kFileUnwritable, "cannot write " + options_.screenshot.string() +
+                                                          ": check the folder and its permissions"});
   }
   const auto& document = workspace_->Document();
   std::size_t contoured = 0, triangles = 0;

@@ -61,7 +61,8 @@ void MessageBars::ShowError(const core::Error& error) {
   auto* close = Gtk::make_managed<Gtk::Button>("Read");
   close->add_css_class("small");
   close->set_valign(Gtk::Align::CENTER);
-  close->signal_clicked().connect([this, &bar] { Glib::signal_idle().connect_once([this, &bar] { Remove(bar); }); });
+  close->signal_clicked().connect(
+      [this, &bar] { Glib::signal_idle().connect_once([this, &bar] { Remove(bar); }); });
   bar.append(*close);
 }
 
@@ -70,7 +71,8 @@ void MessageBars::ShowNotice(const std::string& text) {
   auto* close = Gtk::make_managed<Gtk::Button>("Read");
   close->add_css_class("small");
   close->set_valign(Gtk::Align::CENTER);
-  close->signal_clicked().connect([this, &bar] { Glib::signal_idle().connect_once([this, &bar] { Remove(bar); }); });
+  close->signal_clicked().connect(
+      [this, &bar] { Glib::signal_idle().connect_once([this, &bar] { Remove(bar); }); });
   bar.append(*close);
 }
 

@@ -33,12 +33,13 @@ core::Result<Command> ParseCommandLine(int argc, const char* const* argv) {
       ->check(CLI::Range(0.0, 3600.0))
       ->needs(screenshot)
       ->capture_default_str();
-  CLI::Option* contours = app.add_option("--contours", options.images,
-                                         "Open the contour window on these pictures: a folder, a DICOM series or a "
-                                         "volume")
-                              ->excludes("--scene")
-                              ->excludes("--demonstration")
-                              ->excludes("--threads");
+  CLI::Option* contours =
+      app.add_option("--contours", options.images,
+                     "Open the contour window on these pictures: a folder, a DICOM series or a "
+                     "volume")
+          ->excludes("--scene")
+          ->excludes("--demonstration")
+          ->excludes("--threads");
   app.add_option("--points", options.points,
                  "With --contours: file of contours to go on with, or to begin (control points, JSON)")
       ->needs(contours);
@@ -62,10 +63,10 @@ core::Result<Command> ParseCommandLine(int argc, const char* const* argv) {
   app.add_flag("--measure", options.is_measuring,
                "With --contours: drag points by itself, print the times as JSON, and quit")
       ->needs(contours);
-  app.footer(
-      "Commands of --script:\n" + DescribeContourScript() +
-      "\nKeys are shown in the window: press H, in the contour window F1. Without a display, `trocar simulate` runs the same scene "
-      "headless.");
+  app.footer("Commands of --script:\n" + DescribeContourScript() +
+             "\nKeys are shown in the window: press H, in the contour window F1. Without a display, `trocar "
+             "simulate` runs the same scene "
+             "headless.");
   try {
     app.parse(argc, argv);
   } catch (const CLI::CallForHelp&) {
@@ -90,9 +91,10 @@ core::Result<Command> ParseCommandLine(int argc, const char* const* argv) {
       at = end + 1;
     }
     if (count != names.size()) {
-      return core::Error{core::ErrorCode::kUsage,
-                         "--axes takes three directions, for example left,posterior,superior; see trocar-window "
-                         "--help"};
+      return core::Error{
+          core::ErrorCode::kUsage,
+          "--axes takes three directions, for example left,posterior,superior; see trocar-window "
+          "--help"};
     }
     options.series.axes = names;
   }

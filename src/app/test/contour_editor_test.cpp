@@ -28,7 +28,8 @@ class Editor : public testing::Test {
           for (int c = 0; c < 3; ++c) image.At(x, y)[c] = static_cast<std::uint8_t>(40 + 160 * inside);
         }
       }
-      ASSERT_TRUE(anatomy::WritePng(folder_.Path() / "slices" / ("s" + std::to_string(slice) + ".png"), image).ok());
+      ASSERT_TRUE(
+          anatomy::WritePng(folder_.Path() / "slices" / ("s" + std::to_string(slice) + ".png"), image).ok());
     }
     anatomy::WorkspaceOptions options;
     options.images = folder_.Path() / "slices";
@@ -205,7 +206,8 @@ TEST_F(Editor, EveryScriptVerbRuns) {
       "hole h0\nhole 1\nundo\nredo\npropagate 3\nclear\nclick 5 5\ndrop\nreach 6\norgan gallbladder\n"
       "add-organ spleen 700\nrename-organ milt\ndelete-organ\nscissors on\nscissors off\npointer 60 50\n"
       "view 60 50 3\nfit organ\nfit picture\nedge 30 50\nedge 60 20\ndrop\nslice 2\ndelete 0\nundo\n"
-      "show reference on\nawait mesh\nsave " + saved + "\n";
+      "show reference on\nawait mesh\nsave " +
+      saved + "\n";
   const auto steps = ParseContourScript(script, "script");
   ASSERT_TRUE(steps.ok()) << steps.error().Text();
   std::set<std::string> window_verbs;

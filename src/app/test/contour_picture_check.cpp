@@ -35,7 +35,8 @@ int Make(const fs::path& folder) {
       for (int x = 0; x < kWidth; ++x) {
         const double part = std::fmin(1, std::fmax(0, Radius(slice) - std::hypot(x - 160.0, y - 120.0)));
         const double shade[] = {190 - 80 * part, 165 - 125 * part, 130 - 100 * part};
-        for (int c = 0; c < 3; ++c) image.At(x, y)[c] = static_cast<std::uint8_t>(shade[c] + (x * 7 + y * 13) % 9);
+        for (int c = 0; c < 3; ++c)
+          image.At(x, y)[c] = static_cast<std::uint8_t>(shade[c] + (x * 7 + y * 13) % 9);
       }
     }
     if (!trocar::anatomy::WritePng(folder / "slices" / ("s" + std::to_string(slice) + ".png"), image).ok())
@@ -48,7 +49,8 @@ int Make(const fs::path& folder) {
               std::to_string(120 + r * std::sin(angle)) + "\n";
   }
   script += "close\npropagate 4\npropagate 6\npropagate 8\nslice 6\npointer 160 60\nawait mesh\n";
-  return trocar::core::WriteFile(folder / "contours.script", script).ok() ? 0 : Fail("cannot write the script");
+  return trocar::core::WriteFile(folder / "contours.script", script).ok() ? 0
+                                                                          : Fail("cannot write the script");
 }
 
 int Check(const char* picture, const char* report_file) {

@@ -36,15 +36,18 @@ void AddAnatomyContoursCommand(CLI::App& anatomy, Outcome& outcome) {
       anatomy.add_subcommand("contours", "Open the contour window: draw organs on cross-sections");
   auto arguments = std::make_shared<ContoursArguments>();
   command
-      ->add_option("images", arguments->images,
-                   "Cross-sections: folder of pictures, DICOM series or volume, as trocar anatomy images reads")
+      ->add_option(
+          "images", arguments->images,
+          "Cross-sections: folder of pictures, DICOM series or volume, as trocar anatomy images reads")
       ->required()
       ->type_name("PATH");
   command
-      ->add_option("--points", arguments->points,
-                   "File of contours (control points) to go on with; a new one is begun where it does not exist")
+      ->add_option(
+          "--points", arguments->points,
+          "File of contours (control points) to go on with; a new one is begun where it does not exist")
       ->type_name("FILE");
-  command->add_option("--reference", arguments->reference, "Label map (NIfTI, NRRD) to show beside the contours")
+  command
+      ->add_option("--reference", arguments->reference, "Label map (NIfTI, NRRD) to show beside the contours")
       ->type_name("LABELS");
   command->add_option("--pixel-mm", arguments->pixel_mm, "Side of a pixel, where the files do not say it")
       ->check(CLI::Range(0.01, 20.0))
@@ -55,8 +58,9 @@ void AddAnatomyContoursCommand(CLI::App& anatomy, Outcome& outcome) {
       ->check(CLI::Range(0.01, 50.0))
       ->type_name("MM");
   command
-      ->add_option("--axes", arguments->axes,
-                   "Where columns, rows and slice numbers grow to in the patient, where the files do not say it")
+      ->add_option(
+          "--axes", arguments->axes,
+          "Where columns, rows and slice numbers grow to in the patient, where the files do not say it")
       ->type_name("DIR,DIR,DIR");
   command
       ->add_option("--script", arguments->script,
@@ -64,7 +68,8 @@ void AddAnatomyContoursCommand(CLI::App& anatomy, Outcome& outcome) {
       ->type_name("FILE");
   command->footer(
       "Work that was not saved is found again after a crash. Keys are shown in the window: press F1.\n"
-      "Examples: trocar anatomy contours SLICES --points assets/patients/visible-human-male/control_points.json\n"
+      "Examples: trocar anatomy contours SLICES --points "
+      "assets/patients/visible-human-male/control_points.json\n"
       "          trocar anatomy contours CT-FOLDER --points mine.json\n"
       "          trocar anatomy contours PHOTOS --pixel-mm 0.33 --slice-mm 1 --axes left,posterior,inferior");
   command->callback([arguments, &outcome] { outcome.status = Start(*arguments); });

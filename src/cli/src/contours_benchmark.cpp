@@ -52,10 +52,14 @@ core::Status AddFitCase(const BenchmarkOptions& options, BenchmarkResult& result
   anatomy::ContourFit fit;
   double turn = 0;
   const double seconds = TimeShortest(
-      options.repeats, [&] { points[0] = centre + Vec2{radius + std::cos(turn), std::sin(turn)}, turn += 0.5; },
+      options.repeats,
+      [&] {
+        points[0] = centre + Vec2{radius + std::cos(turn), std::sin(turn)}, turn += 0.5;
+      },
       [&] { fit = anatomy::FitContourToEdges(field, points); });
   for (const Vec2& p : fit.spline) {
-    if (std::fabs(Norm(p - centre) - radius) > 1.5) return WrongAnswer("refit", "the curve left the disc's edge");
+    if (std::fabs(Norm(p - centre) - radius) > 1.5)
+      return WrongAnswer("refit", "the curve left the disc's edge");
   }
   result.cases.push_back({"refit of a contour while a point is dragged, 1280 x 720", 1e3 * seconds, "ms"});
   return {};
@@ -79,7 +83,8 @@ core::Status AddPreviewCases(const BenchmarkOptions& options, BenchmarkResult& r
     request.content.slices.push_back({slice, {PlacePoints(centre, radius_px(slice) + 2)}, {}, {}});
   }
   for (const auto& slice : request.content.slices) {
-    if (auto field = store->Field(slice.slice, request.content.adaption.blur_px); !field) return field.error();
+    if (auto field = store->Field(slice.slice, request.content.adaption.blur_px); !field)
+      return field.error();
   }
   const double ball_ml = 4.0 / 3.0 * M_PI * std::pow(kRadiusMm, 3) / 1000;
   auto fits = std::make_unique<anatomy::SliceFits>(store);
@@ -88,11 +93,15 @@ core::Status AddPreviewCases(const BenchmarkOptions& options, BenchmarkResult& r
   for (const MeshLevel level : {MeshLevel::kCoarse, MeshLevel::kFine}) {
     const double seconds = TimeShortest(
         options.repeats,
-        [&] { request.content.slices[15].contours[0][0] = centre + Vec2{radius_px(129) + std::cos(turn += 0.5), 0}; },
+        [&] {
+          request.content.slices[15].contours[0][0] =
+              centre + Vec2{radius_px(129) + std::cos(turn += 0.5), 0};
+        },
         [&] { mesh = anatomy::MakePreviewMesh(request, *fits, level); });
     if (!mesh) return mesh.error();
     if (!mesh->is_closed || !mesh->is_manifold) return WrongAnswer("preview", "the surface is not closed");
-    if (std::fabs(mesh->volume_ml / ball_ml - 1) > 0.02) return WrongAnswer("preview", "the ball has another volume");
+    if (std::fabs(mesh->volume_ml / ball_ml - 1) > 0.02)
+      return WrongAnswer("preview", "the ball has another volume");
     result.cases.push_back({std::string(level == MeshLevel::kCoarse ? "coarse" : "fine") +
                                 " preview of one organ after an edit, 512 x 512 x 250",
                             1e3 * seconds, "ms"});

@@ -30,8 +30,8 @@ struct WorkspaceOptions {
 
 /// Points that a propagated contour got, and how far the pictures agree there.
 struct Propagation {
-  int slice = 0;            ///< the slice that was filled
-  double confidence = 1;    ///< of the least certain point, 0 to 1
+  int slice = 0;             ///< the slice that was filled
+  double confidence = 1;     ///< of the least certain point, 0 to 1
   std::size_t contours = 0;  ///< holes too
 };
 
@@ -111,6 +111,7 @@ class ContourWorkspace {
 };
 
 /// Place of a pixel in the patient, LPS [mm], when the series says where it lies; else nothing.
-std::optional<std::array<double, 3>> FindPatientPlace(const ImageSeriesInfo& series, int slice, const Vec2& p);
+std::optional<std::array<double, 3>> FindPatientPlace(const ImageSeriesInfo& series, int slice,
+                                                      const Vec2& p);
 
 }  // namespace trocar::anatomy

@@ -48,7 +48,7 @@ class SliceStore {
 
   SliceReader reader_;
   std::size_t limit_;
-  mutable std::mutex mutex_;   // guards what follows; never held while decoding
+  mutable std::mutex mutex_;  // guards what follows; never held while decoding
   std::list<Entry> entries_;  // last used first
   std::size_t used_ = 0;
 };

@@ -72,7 +72,8 @@ std::optional<CurveHit> HitCurve(const CanvasView& view, const CanvasSize& size,
 /// \param curve    closed, through or near the control points in their order
 /// \param side     of a CurveHit on it
 /// \return 1 to the number of control points
-std::size_t FindInsertion(std::span<const Vec2> curve, std::span<const Vec2> controls, std::size_t side) noexcept;
+std::size_t FindInsertion(std::span<const Vec2> curve, std::span<const Vec2> controls,
+                          std::size_t side) noexcept;
 
 /// Length of a scale bar that takes about `pixels` of the window: 1, 2 or 5 times a power of ten [mm].
 double ChooseScaleBar(double zoom, double pixel_mm, double pixels) noexcept;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file contour_script.h  The contour window's commands as text, one a line: for samples, tests and pictures.
+/// \file contour_script.h  The contour window's commands as text, one a line: for samples, tests and
+/// pictures.
 #pragma once
 
 #include <string>
