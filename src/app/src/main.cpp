@@ -6,6 +6,7 @@
 #include <cstdlib>
 
 #include "composition.h"
+#include "contour_window.h"
 #include "look.h"
 #include "simulator_window.h"
 #include "trocar/app/options.h"
@@ -32,14 +33,23 @@ int main(int argc, char** argv) {
   trocar::app::ChooseComposition();
   const auto application = Gtk::Application::create("", Gio::Application::Flags::NON_UNIQUE);
   std::unique_ptr<trocar::app::SimulatorWindow> window;
+  std::unique_ptr<trocar::app::ContourWindow> contours;
   application->signal_activate().connect([&] {
     trocar::app::ApplyLook();
+    if (!command->options.images.empty()) {
+      contours = std::make_unique<trocar::app::ContourWindow>(command->options, since_start);
+      application->add_window(*contours);
+      contours->present();
+      return;
+    }
     window = std::make_unique<trocar::app::SimulatorWindow>(command->options, since_start);
     application->add_window(*window);
     window->present();
   });
   const int status = application->run();
-  const bool has_failed = window != nullptr && window->GetFailure().has_value();
+  const bool has_failed = (window != nullptr && window->GetFailure().has_value()) ||
+                          (contours != nullptr && contours->GetFailure().has_value());
   window.reset();
+  contours.reset();
   return status != 0 || has_failed ? EXIT_FAILURE : EXIT_SUCCESS;
 }

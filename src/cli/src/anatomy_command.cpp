@@ -160,6 +160,7 @@ void AddAnatomyCommand(CLI::App& app, Outcome& outcome) {
       "           -o out/patient");
   build->callback([arguments, &outcome] { outcome.status = Build(*arguments); });
   AddAnatomyCheckCommand(*anatomy, outcome);
+  AddAnatomyContoursCommand(*anatomy, outcome);
   AddAnatomyExportCommand(*anatomy, outcome);
   AddAnatomyRehearseCommand(*anatomy, outcome);
   AddAnatomyPhantomCommand(*anatomy, outcome);

@@ -8,6 +8,8 @@ constexpr BenchmarkSuite kSuites[] = {
     {"anatomy", "label maps to smooth closed meshes with their quality reports", RunAnatomyBenchmark},
     {"collision", "nearest triangle to a point and to a shaft: hierarchy against brute force",
      RunCollisionBenchmark},
+    {"contours", "the contour window: refit while a point is dragged, preview of an organ",
+     RunContoursBenchmark},
     {"tissue", "equilibrium of mass-spring grids and of the built-in patient", RunTissueBenchmark},
 };
 

@@ -48,6 +48,7 @@ std::span<const BenchmarkSuite> BenchmarkSuites() noexcept;
 /// \return kBenchmarkWrong when an answer is wrong, or the error of a scene that cannot be read
 core::Result<BenchmarkResult> RunAnatomyBenchmark(const BenchmarkOptions& options);
 core::Result<BenchmarkResult> RunCollisionBenchmark(const BenchmarkOptions& options);
+core::Result<BenchmarkResult> RunContoursBenchmark(const BenchmarkOptions& options);
 core::Result<BenchmarkResult> RunTissueBenchmark(const BenchmarkOptions& options);
 
 /// Processor, cores, compiler and kind of build; no name of the computer or its owner.

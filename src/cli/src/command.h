@@ -29,6 +29,7 @@ core::Result<std::vector<anatomy::ParameterSetting>> ParseSettings(const std::ve
 /// Below `trocar anatomy`.
 void AddAnatomyGenerateCommand(CLI::App& anatomy, Outcome& outcome);
 void AddAnatomyCheckCommand(CLI::App& anatomy, Outcome& outcome);
+void AddAnatomyContoursCommand(CLI::App& anatomy, Outcome& outcome);
 void AddAnatomyExportCommand(CLI::App& anatomy, Outcome& outcome);
 void AddAnatomyRehearseCommand(CLI::App& anatomy, Outcome& outcome);
 void AddAnatomyPhantomCommand(CLI::App& anatomy, Outcome& outcome);

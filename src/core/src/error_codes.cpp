@@ -60,6 +60,8 @@ constexpr ErrorEntry kTable[] = {
     {ErrorCode::kVideoFailed, "E-VID-001", "the video cannot be written"},
     {ErrorCode::kNoDisplay, "E-WIN-001", "there is no display for the window"},
     {ErrorCode::kWindowMissing, "E-WIN-002", "this build has no window"},
+    {ErrorCode::kEditRefused, "E-WIN-003", "the contours do not allow this edit"},
+    {ErrorCode::kCancelled, "E-WIN-004", "the work was given up on request"},
     {ErrorCode::kDeviceLost, "E-DEV-001", "a device was lost"},
     {ErrorCode::kDeviceStale, "E-DEV-002", "a device sends no fresh data"},
     {ErrorCode::kDeviceState, "E-DEV-003", "a device was asked for something out of turn"},

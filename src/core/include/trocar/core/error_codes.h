@@ -64,6 +64,8 @@ enum class ErrorCode {
   // window
   kNoDisplay,
   kWindowMissing,
+  kEditRefused,
+  kCancelled,
   // devices
   kDeviceLost,
   kDeviceStale,
