@@ -5,6 +5,8 @@
 #include <cmath>
 #include <set>
 
+#include "duct_template.h"
+#include "gallbladder_bed.h"
 #include "liver_regions.h"
 #include "nearest_surface.h"
 #include "trocar/anatomy/tube_graph.h"
@@ -17,7 +19,6 @@ namespace {
 using geometry::TriangleMesh;
 
 constexpr double kMetresPerMm = 1e-3;
-constexpr double kCarries = 0.2;  // barycentric weight from which a liver vertex carries an attachment
 constexpr double kLiverEdgeReach =
     0.045;  // the liver's edge is looked for so far to either side of the fundus [m]
 constexpr double kFundusRadius =
@@ -71,39 +72,6 @@ Vec3 FindLongAxis(const TriangleMesh& mesh, Vec3& centre) {
     axis = math::Normalized(next);
   }
   return axis;
-}
-
-std::vector<std::uint32_t> Ascending(std::set<std::uint32_t> vertices) {
-  return {vertices.begin(), vertices.end()};
-}
-
-struct Bed {
-  std::vector<std::uint32_t> gallbladder, liver;
-  std::vector<std::array<std::uint32_t, 2>> pairs;  // gallbladder vertex, liver vertex
-};
-
-Bed FindBed(const TriangleMesh& gallbladder, const TriangleMesh& liver, double bed_distance) {
-  std::vector<Vec3> normals(gallbladder.positions.size());
-  geometry::CalcVertexNormals(gallbladder.positions, gallbladder.triangles, normals);
-  const NearestSurface surface(liver);
-  std::set<std::uint32_t> of_gallbladder, of_liver;
-  Bed bed;
-  for (std::uint32_t v = 0; v < gallbladder.positions.size(); ++v) {
-    const SurfacePoint near = surface.Find(gallbladder.positions[v]);
-    if (near.distance > bed_distance) continue;
-    const auto& triangle = liver.triangles[near.triangle];
-    // the surfaces face each other
-    if (Dot(normals[v], geometry::CalcAreaNormal(liver.positions, triangle)) >= 0) continue;
-    of_gallbladder.insert(v);
-    for (int corner = 0; corner < 3; ++corner) {
-      if (near.at.weights[corner] < kCarries) continue;
-      bed.pairs.push_back({v, triangle[corner]});
-      of_liver.insert(triangle[corner]);
-    }
-  }
-  bed.gallbladder = Ascending(of_gallbladder);
-  bed.liver = Ascending(of_liver);
-  return bed;
 }
 
 /// Mean of the surface around the vertex that lies furthest along `direction`, put back onto the surface.
@@ -182,6 +150,12 @@ core::Result<Patient> AssemblePatient(const ControlPoints& points,
   if (Dot(axis, towards_fundus) < 0) axis = -axis;
   const Vec3 fundus = FindEnd(gallbladder.mesh, gallbladder_surface, axis);
   const Vec3 infundibulum = FindEnd(gallbladder.mesh, gallbladder_surface, -axis);
+
+  // pictures that show no duct at all: the usual ones, placed by the landmarks
+  if (points.tubes.empty()) {
+    patient.tubes = MakeTemplateTubes(liver.mesh, gallbladder.mesh, infundibulum, {});
+    JoinTubes(patient);
+  }
 
   const LandmarkPoint* fissure = points.FindLandmark("umbilical_fissure");
   const double falciform_x =

@@ -436,6 +436,17 @@ LengthRange FindCysticDuctRange(std::string_view length_class) {
   return {35, 2.5, 30, 40};
 }
 
+std::vector<ParameterSetting> MakeUsualSettings() {
+  std::vector<ParameterSetting> settings;
+  for (const ParameterRule& rule : ParameterRules()) {
+    std::string value = std::to_string(rule.centre);
+    if (rule.distribution == Distribution::kChance) value = "no";
+    if (rule.distribution == Distribution::kChoice) value = std::string(rule.choices.front().name);
+    settings.emplace_back(std::string(rule.name), value);
+  }
+  return settings;
+}
+
 double NumberOf(std::span<const Parameter> parameters, std::string_view name) {
   const auto found = std::find_if(parameters.begin(), parameters.end(),
                                   [&](const Parameter& parameter) { return parameter.name == name; });

@@ -42,6 +42,7 @@ struct RegionSettings {
 /// - coronary: the posterior part of the superior face, right of the falciform, margin included.
 /// - gallbladder_bed (both organs): where they face each other within bed_distance. Every such vertex of the
 ///   gallbladder is attached to the corners of the nearest liver triangle that carry it.
+/// Without any tube the usual ducts and arteries are placed by the landmarks (is_seen = false).
 /// \return kPatientInvalid when "liver" or "gallbladder" is missing or they do not touch
 core::Result<Patient> AssemblePatient(const ControlPoints& points,
                                       const std::vector<StructureMesh>& structures,
