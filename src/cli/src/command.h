@@ -31,6 +31,7 @@ void AddAnatomyCheckCommand(CLI::App& anatomy, Outcome& outcome);
 void AddAnatomyExportCommand(CLI::App& anatomy, Outcome& outcome);
 void AddAnatomyPhantomCommand(CLI::App& anatomy, Outcome& outcome);
 void AddAnatomyViewCommand(CLI::App& anatomy, Outcome& outcome);
+void AddAnatomyImagesCommand(CLI::App& anatomy, Outcome& outcome);
 void AddBenchCommand(CLI::App& app, Outcome& outcome);
 void AddDoctorCommand(CLI::App& app, Outcome& outcome);
 void AddErrorsCommand(CLI::App& app, Outcome& outcome);
