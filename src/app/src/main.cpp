@@ -7,6 +7,7 @@
 
 #include "composition.h"
 #include "look.h"
+#include "patient_editor_window.h"
 #include "simulator_window.h"
 #include "trocar/app/options.h"
 
@@ -32,14 +33,23 @@ int main(int argc, char** argv) {
   trocar::app::ChooseComposition();
   const auto application = Gtk::Application::create("", Gio::Application::Flags::NON_UNIQUE);
   std::unique_ptr<trocar::app::SimulatorWindow> window;
+  std::unique_ptr<trocar::app::PatientEditorWindow> patient_editor;
   application->signal_activate().connect([&] {
     trocar::app::ApplyLook();
+    if (!command->options.patient.empty()) {
+      patient_editor = std::make_unique<trocar::app::PatientEditorWindow>(command->options);
+      application->add_window(*patient_editor);
+      patient_editor->present();
+      return;
+    }
     window = std::make_unique<trocar::app::SimulatorWindow>(command->options, since_start);
     application->add_window(*window);
     window->present();
   });
   const int status = application->run();
-  const bool has_failed = window != nullptr && window->GetFailure().has_value();
+  const bool has_failed = (window != nullptr && window->GetFailure().has_value()) ||
+                          (patient_editor != nullptr && patient_editor->GetFailure().has_value());
   window.reset();
+  patient_editor.reset();
   return status != 0 || has_failed ? EXIT_FAILURE : EXIT_SUCCESS;
 }

@@ -16,6 +16,10 @@ struct Options {
   bool is_demonstration = false;     ///< start with the script moving both hands
   std::filesystem::path screenshot;  ///< empty: none. Otherwise play, save the window's picture and quit
   double screenshot_after = 5;       ///< after this many seconds of simulation [s]
+
+  // the patient editor
+  std::filesystem::path patient;     ///< not empty: open the patient editor on this folder
+  std::string editor_tool = "look";  ///< "look", "paint", "tubes" or "landmarks"
 };
 
 /// What the command line asks for.
