@@ -23,7 +23,7 @@ Gtk::Label* MakeLabel(const Glib::ustring& text, const char* style, bool wraps =
   label->set_hexpand(true);
   if (wraps) {
     label->set_wrap(true);
-    label->set_max_width_chars(38);
+    label->set_max_width_chars(40);
   } else {
     label->set_ellipsize(Pango::EllipsizeMode::END);
   }
@@ -66,7 +66,8 @@ PatientEditorPanel::PatientEditorPanel() : Gtk::Box(Gtk::Orientation::VERTICAL) 
   add_css_class("panel");
   set_spacing(8);
   set_margin(10);
-  set_size_request(320, -1);
+  set_size_request(330, -1);
+  set_hexpand(false);
   MakeTools();
   MakePaintCard();
   MakeTubeCard();

@@ -91,12 +91,14 @@ void PatientEditorWindow::MakeContent() {
   hint_.set_halign(Gtk::Align::CENTER);
   hint_.set_valign(Gtk::Align::END);
   hint_.set_can_target(false);
+  hint_.set_ellipsize(Pango::EllipsizeMode::END);
   overlay->add_overlay(hint_);
   overlay->set_hexpand(true);
   middle->append(*overlay);
   auto* scrolled = Gtk::make_managed<Gtk::ScrolledWindow>();
   scrolled->set_policy(Gtk::PolicyType::NEVER, Gtk::PolicyType::AUTOMATIC);
   scrolled->set_child(panel_);
+  scrolled->set_hexpand(false);
   middle->append(*scrolled);
   middle->set_vexpand(true);
   auto* all = Gtk::make_managed<Gtk::Box>(Gtk::Orientation::VERTICAL);

@@ -256,6 +256,7 @@ void AddAnatomyCommand(CLI::App& app, Outcome& outcome) {
   build->callback([arguments, &outcome] { outcome.status = Build(*arguments); });
   AddAnatomyCheckCommand(*anatomy, outcome);
   AddAnatomyExportCommand(*anatomy, outcome);
+  AddAnatomyEditCommand(*anatomy, outcome);
   AddAnatomyPhantomCommand(*anatomy, outcome);
   AddAnatomyViewCommand(*anatomy, outcome);
   AddAnatomyImagesCommand(*anatomy, outcome);

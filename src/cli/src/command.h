@@ -29,6 +29,7 @@ core::Result<std::vector<anatomy::ParameterSetting>> ParseSettings(const std::ve
 /// Below `trocar anatomy`.
 void AddAnatomyCheckCommand(CLI::App& anatomy, Outcome& outcome);
 void AddAnatomyExportCommand(CLI::App& anatomy, Outcome& outcome);
+void AddAnatomyEditCommand(CLI::App& anatomy, Outcome& outcome);
 void AddAnatomyPhantomCommand(CLI::App& anatomy, Outcome& outcome);
 void AddAnatomyViewCommand(CLI::App& anatomy, Outcome& outcome);
 void AddAnatomyImagesCommand(CLI::App& anatomy, Outcome& outcome);
