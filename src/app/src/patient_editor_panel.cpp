@@ -103,7 +103,7 @@ void PatientEditorPanel::MakeTools() {
     button->signal_toggled().connect([this, button, i] {
       if (is_showing_ || editor_ == nullptr || !button->get_active()) return;
       editor_->tool = static_cast<EditorTool>(i);
-      signal_changed_.emit();
+      Announce();
     });
     tools_.push_back(button);
     row->append(*button);
@@ -118,7 +118,7 @@ void PatientEditorPanel::MakePaintCard() {
     const guint chosen = regions_.get_selected();
     if (is_showing_ || editor_ == nullptr || chosen >= region_choices_.size()) return;
     editor_->region = region_choices_[chosen];
-    signal_changed_.emit();
+    Announce();
   });
   auto* row = Gtk::make_managed<Gtk::Box>(Gtk::Orientation::HORIZONTAL);
   row->add_css_class("linked");
@@ -132,7 +132,7 @@ void PatientEditorPanel::MakePaintCard() {
   erase_.signal_toggled().connect([this] {
     if (is_showing_ || editor_ == nullptr) return;
     editor_->is_erasing = erase_.get_active();
-    signal_changed_.emit();
+    Announce();
   });
   paint_card_->append(*row);
   paint_card_->append(*MakeLabel("Radius of the brush [mm], Ctrl+wheel", "name"));
@@ -143,7 +143,7 @@ void PatientEditorPanel::MakePaintCard() {
   brush_.signal_value_changed().connect([this] {
     if (is_showing_ || editor_ == nullptr) return;
     editor_->brush_radius = brush_.get_value() / kMmPerMetre;
-    signal_changed_.emit();
+    Announce();
   });
   paint_card_->append(brush_);
 }
@@ -154,7 +154,7 @@ void PatientEditorPanel::MakeTubeCard() {
   tubes_.signal_row_selected().connect([this](Gtk::ListBoxRow* row) {
     if (is_showing_ || editor_ == nullptr || row == nullptr) return;
     editor_->ChooseTube(static_cast<std::uint32_t>(row->get_index()));
-    signal_changed_.emit();
+    Announce();
   });
   tube_card_->append(*MakeScrolled(tubes_, kListHeight));
   tube_facts_.set_xalign(0);
@@ -189,7 +189,7 @@ void PatientEditorPanel::MakeTubeCard() {
     button.signal_clicked().connect([this, operation] {
       if (editor_ == nullptr) return;
       Report(operation());
-      signal_changed_.emit();
+      Announce();
     });
     row->append(button);
   };
@@ -220,7 +220,7 @@ void PatientEditorPanel::MakeTubeCard() {
         "add " + name, [&name](anatomy::Patient& p) { return anatomy::AddTemplateTube(p, name); });
     if (status) editor_->ChooseTube(static_cast<std::uint32_t>(editor_->GetPatient().tubes.size() - 1));
     Report(status);
-    signal_changed_.emit();
+    Announce();
   });
   template_row->append(add_tube_);
   tube_card_->append(*template_row);
@@ -231,7 +231,7 @@ void PatientEditorPanel::MakeLandmarkCard() {
   landmarks_.signal_row_selected().connect([this](Gtk::ListBoxRow* row) {
     if (is_showing_ || editor_ == nullptr || row == nullptr) return;
     editor_->ChooseLandmark(static_cast<std::uint32_t>(row->get_index()));
-    signal_changed_.emit();
+    Announce();
   });
   landmark_card_->append(*MakeScrolled(landmarks_, kListHeight));
   landmark_card_->append(*MakeLabel(
@@ -250,7 +250,7 @@ void PatientEditorPanel::MakeLookCard() {
       editor_->look.has_regions = colours_.get_active();
       editor_->look.has_edges = edges_.get_active();
       editor_->look.has_attachments = strands_.get_active();
-      signal_changed_.emit();
+      Announce();
     });
   }
   card.append(*row);
@@ -260,7 +260,7 @@ void PatientEditorPanel::MakeLookCard() {
   opacity_.signal_value_changed().connect([this] {
     if (is_showing_ || editor_ == nullptr) return;
     editor_->look.liver_opacity = opacity_.get_value();
-    signal_changed_.emit();
+    Announce();
   });
   card.append(opacity_);
 }
@@ -285,6 +285,18 @@ void PatientEditorPanel::SetEditor(PatientEditor* editor) {
   Refresh();
 }
 
+void PatientEditorPanel::Announce() {
+  if (is_announced_) return;
+  is_announced_ = true;
+  // the lists are made anew, which must not happen within their own signals
+  Glib::signal_timeout().connect_once(sigc::mem_fun(*this, &PatientEditorPanel::EmitChanged), 0);
+}
+
+void PatientEditorPanel::EmitChanged() {
+  is_announced_ = false;
+  signal_changed_.emit();
+}
+
 void PatientEditorPanel::Report(const core::Status& status) {
   if (!status) signal_refused_.emit(status.error());
 }
@@ -297,7 +309,7 @@ void PatientEditorPanel::JoinChosen(anatomy::TubeEnd end, const Gtk::DropDown& n
   Report(editor_->Document().Edit("join " + editor_->GetPatient().tubes[tube].name, [&](anatomy::Patient& p) {
     return anatomy::JoinTubeEnd(p, tube, end, name);
   }));
-  signal_changed_.emit();
+  Announce();
 }
 
 void PatientEditorPanel::RefreshRegions() {

@@ -35,6 +35,8 @@ class PatientEditorPanel : public Gtk::Box {
   void MakeLandmarkCard();
   void MakeLookCard();
   void MakeFindingsCard();
+  void Announce();
+  void EmitChanged();
   void Report(const core::Status& status);
   void RefreshRegions();
   void RefreshTubes();
@@ -43,7 +45,8 @@ class PatientEditorPanel : public Gtk::Box {
   void JoinChosen(anatomy::TubeEnd end, const Gtk::DropDown& names);
 
   PatientEditor* editor_ = nullptr;
-  bool is_showing_ = false;  // widgets are being set by us
+  bool is_showing_ = false;    // widgets are being set by us
+  bool is_announced_ = false;  // SignalChanged follows
 
   std::vector<Gtk::ToggleButton*> tools_;
   Gtk::Box *paint_card_ = nullptr, *tube_card_ = nullptr, *landmark_card_ = nullptr;
