@@ -12,6 +12,8 @@
 namespace trocar::anatomy {
 namespace {
 
+using geometry::TriangleMesh;
+
 constexpr double kStrandReach = 0.010;  // longest strand of the bed [m], as the linter has it
 constexpr double kThinnest = 0.0001, kThickest = 0.015;  // radius of a tube [m]
 
@@ -75,9 +77,15 @@ void FollowBed(Patient& patient, std::uint32_t gallbladder, const Region& bed) {
     if (std::binary_search(tied.begin(), tied.end(), v)) continue;
     const SurfacePoint near = surface.Find(patient.organs[gallbladder].mesh.positions[v]);
     if (near.distance > kStrandReach) continue;
-    for (const auto carrier : FindCarriers(patient.organs[liver].mesh, near))
+    const TriangleMesh& liver_mesh = patient.organs[liver].mesh;
+    for (const auto carrier : FindCarriers(liver_mesh, near)) {
+      // a large triangle's corners may lie further away than it does
+      if (Distance(patient.organs[gallbladder].mesh.positions[v], liver_mesh.positions[carrier]) >
+          kStrandReach)
+        continue;
       patient.attachments.push_back(
           {kGallbladderBed, gallbladder, v, static_cast<std::uint32_t>(liver), carrier});
+    }
   }
   // one order whatever was painted first
   std::stable_sort(patient.attachments.begin(), patient.attachments.end(),
