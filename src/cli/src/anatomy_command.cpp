@@ -163,6 +163,7 @@ void AddAnatomyCommand(CLI::App& app, Outcome& outcome) {
   AddAnatomyContoursCommand(*anatomy, outcome);
   AddAnatomyExportCommand(*anatomy, outcome);
   AddAnatomyRehearseCommand(*anatomy, outcome);
+  AddAnatomyEditCommand(*anatomy, outcome);
   AddAnatomyPhantomCommand(*anatomy, outcome);
   AddAnatomyViewCommand(*anatomy, outcome);
   AddAnatomyImagesCommand(*anatomy, outcome);

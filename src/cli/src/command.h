@@ -32,6 +32,7 @@ void AddAnatomyCheckCommand(CLI::App& anatomy, Outcome& outcome);
 void AddAnatomyContoursCommand(CLI::App& anatomy, Outcome& outcome);
 void AddAnatomyExportCommand(CLI::App& anatomy, Outcome& outcome);
 void AddAnatomyRehearseCommand(CLI::App& anatomy, Outcome& outcome);
+void AddAnatomyEditCommand(CLI::App& anatomy, Outcome& outcome);
 void AddAnatomyPhantomCommand(CLI::App& anatomy, Outcome& outcome);
 void AddAnatomyViewCommand(CLI::App& anatomy, Outcome& outcome);
 void AddAnatomyImagesCommand(CLI::App& anatomy, Outcome& outcome);
