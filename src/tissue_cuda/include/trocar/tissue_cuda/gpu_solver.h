@@ -53,6 +53,12 @@ struct GpuInformation {
 /// \return kGpuMissing (no driver, no GPU, or a build without GPU code), kGpuTooOld, kGpuFailed
 core::Result<GpuInformation> FindGpu();
 
+/// Time of one solve by the GPU's clock [s].
+struct GpuTimes {
+  double kernels = 0;  ///< from the first launch to the end of the last
+  double whole = 0;    ///< with the copies to and fro
+};
+
 /// Solver of one model on the GPU.
 class GpuSolver {
  public:
@@ -76,15 +82,14 @@ class GpuSolver {
                                           tissue::TissueState& state) noexcept;
 
   const GpuInformation& Information() const noexcept;
-  /// Time that the GPU worked in the last solve, copies included, by its own clock [s].
-  double LastSeconds() const noexcept;
+  GpuTimes LastTimes() const noexcept;
   /// kTiled: whether all tiles stay on the GPU's multiprocessors.
   bool IsResident() const noexcept;
 
   struct Content;
+  explicit GpuSolver(std::unique_ptr<Content> content);
 
  private:
-  explicit GpuSolver(std::unique_ptr<Content> content);
   std::unique_ptr<Content> content_;
 };
 
