@@ -103,9 +103,10 @@ core::Result<FoundGpu> LookAtGpu(const DriverFunctions& driver, const DriverSour
 
 }  // namespace
 
-core::Result<DriverFunctions> LoadDriver(const std::string& library) {
+core::Result<DriverFunctions> LoadDriver(const DriverSource& source) {
+  if (source.functions) return *source.functions;
   // never closed: NVIDIA's driver does not like to be unloaded
-  void* const handle = ::dlopen(library.c_str(), RTLD_NOW | RTLD_LOCAL);
+  void* const handle = ::dlopen(source.library.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (handle == nullptr) {
     return Error{ErrorCode::kGpuMissing,
                  "no NVIDIA driver (libcuda.so.1) is installed" + std::string(kCpuGoesOn)};
@@ -136,7 +137,7 @@ Status CheckCall(const DriverFunctions& driver, CudaCode code, const char* what)
 }
 
 core::Result<GpuInformation> FindGpu(const DriverSource& source) {
-  const core::Result<DriverFunctions> driver = LoadDriver(source.library);
+  const core::Result<DriverFunctions> driver = LoadDriver(source);
   if (!driver) return driver.error();
   core::Result<FoundGpu> found = LookAtGpu(*driver, source);
   if (!found) return found.error();
@@ -154,7 +155,7 @@ core::Result<std::unique_ptr<Gpu>> Gpu::Open(const DriverSource& source) {
 }
 
 Status Gpu::Start(const DriverSource& source) {
-  core::Result<DriverFunctions> driver = LoadDriver(source.library);
+  core::Result<DriverFunctions> driver = LoadDriver(source);
   if (!driver) return driver.error();
   driver_ = *driver;
   core::Result<FoundGpu> found = LookAtGpu(driver_, source);
@@ -272,6 +273,10 @@ Status Gpu::CopyToGpu(CudaAddress to, const void* from, std::size_t bytes) noexc
 Status Gpu::CopyFromGpu(void* to, CudaAddress from, std::size_t bytes) noexcept {
   if (bytes == 0) return {};
   return CheckCall(driver_, driver_.copy_from(to, from, bytes, stream_), "copying from the GPU");
+}
+
+Status Gpu::CopyWithinGpu(CudaAddress to, CudaAddress from, std::size_t bytes) noexcept {
+  return CheckCall(driver_, driver_.copy_within(to, from, bytes, stream_), "copying on the GPU");
 }
 
 Status Gpu::Clear(CudaAddress address, std::size_t bytes) noexcept {

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -18,6 +19,7 @@ namespace trocar::tissue_cuda {
 /// Where driver and GPU code come from; tests give a stand-in.
 struct DriverSource {
   std::string library = "libcuda.so.1";
+  std::optional<DriverFunctions> functions;  ///< taken instead of the library where given
   std::span<const unsigned char> code;  ///< fat binary of kernels/kernels.cu; empty in a build without nvcc
   int code_version = 0;                 ///< CUDA version that compiled it, 1000 major + 10 minor
 };
@@ -28,7 +30,7 @@ DriverSource BuiltInSource();
 inline constexpr int kOldestCapability = 75;
 
 /// The driver's functions without a GPU; enough to say what there is.
-core::Result<DriverFunctions> LoadDriver(const std::string& library);
+core::Result<DriverFunctions> LoadDriver(const DriverSource& source);
 
 /// What a call of the driver came to.
 /// \param what  what was tried, for the message: "copying positions to the GPU"
@@ -67,6 +69,7 @@ class Gpu {
   // these join the queue and return at once
   core::Status CopyToGpu(CudaAddress to, const void* from, std::size_t bytes) noexcept;
   core::Status CopyFromGpu(void* to, CudaAddress from, std::size_t bytes) noexcept;
+  core::Status CopyWithinGpu(CudaAddress to, CudaAddress from, std::size_t bytes) noexcept;
   core::Status Clear(CudaAddress address, std::size_t bytes) noexcept;
   /// \param arguments  addresses of the kernel's arguments
   core::Status Launch(CudaFunction kernel, const LaunchShape& shape, void** arguments) noexcept;

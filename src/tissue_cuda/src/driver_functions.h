@@ -59,6 +59,8 @@ inline constexpr int kMaxDynamicSharedBytes = 8;
   X(free_host, cuMemFreeHost, (void* address))                                                               \
   X(copy_to, cuMemcpyHtoDAsync_v2, (CudaAddress to, const void* from, std::size_t bytes, CudaStream stream)) \
   X(copy_from, cuMemcpyDtoHAsync_v2, (void* to, CudaAddress from, std::size_t bytes, CudaStream stream))     \
+  X(copy_within, cuMemcpyDtoDAsync_v2,                                                                       \
+    (CudaAddress to, CudaAddress from, std::size_t bytes, CudaStream stream))                                \
   X(fill_bytes, cuMemsetD8Async,                                                                             \
     (CudaAddress address, unsigned char value, std::size_t bytes, CudaStream stream))                        \
   X(launch, cuLaunchKernel,                                                                                  \

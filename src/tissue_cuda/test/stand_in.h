@@ -20,7 +20,7 @@ class StandIn {
   /// The stand-in takes any code; only its presence counts.
   static DriverSource Source() {
     static constexpr unsigned char kCode[] = {1};
-    return {TROCAR_STAND_IN_CUDA, kCode, 12040};
+    return {TROCAR_STAND_IN_CUDA, std::nullopt, kCode, 12040};
   }
 };
 

@@ -133,7 +133,9 @@ TEST(TiledChebyshev, ResidentAndStreamingGiveTheSameBitsInAnyOrder) {
 
 // Single precision holds because displacements are stored: 1e-5 of the largest displacement at equilibrium.
 TEST(TiledChebyshev, SinglePrecisionReachesTheReferencesEquilibrium) {
+  const std::set<std::string> sizes = {"1 x 1", "16 x 16", "31 x 33", "sphere of 162"};
   for (const auto& [name, definition] : MakeDefinitions()) {
+    if (!sizes.contains(name)) continue;
     SCOPED_TRACE(name);
     const auto given = MakeCase(definition, true);
     TissueState expected = given->state;
