@@ -63,7 +63,6 @@ class PaperSolve final : public GpuSolve {
       status = RunSteps(std::min(kStepsBetweenLooks, settings.max_iterations - report.iterations), report);
       report.converged = report.residual <= settings.tolerance;
     }
-    if (status) status = gpu_->Mark(kMarkLastLaunch);
     if (status) status = Download(positions_, buffers_[report.iterations % 2]);
     if (status) status = gpu_->Mark(kMarkEnd);
     if (status) status = gpu_->Finish();
@@ -117,7 +116,8 @@ class PaperSolve final : public GpuSolve {
       ++report.iterations;
     }
     Key found[2] = {};
-    Status status = gpu_->CopyFromGpu(found, largest, sizeof found);
+    Status status = gpu_->Mark(kMarkLastLaunch);
+    if (status) status = gpu_->CopyFromGpu(found, largest, sizeof found);
     if (status) status = gpu_->Finish();
     if (!status) return status;
     report.force_scale = std::sqrt(static_cast<double>(FromKey<Real>(found[1])));

@@ -3,9 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include "check_systems.h"
 #include "gpu_solve.h"
 #include "stand_in.h"
-#include "test_systems.h"
 
 namespace trocar::tissue_cuda {
 namespace {
