@@ -27,6 +27,16 @@ core::Error MissingMaterial(const std::string& name) {
           "the scene has no material for \"" + name + "\"; add one to \"materials\""};
 }
 
+/// Only a closed surface has a volume to keep.
+core::Status CheckClosed(const anatomy::Organ& organ) {
+  const geometry::MeshReport report = geometry::InspectMesh(organ.mesh);
+  if (report.closed && report.outward) return {};
+  return core::Error{core::ErrorCode::kSceneInvalid,
+                     "the surface of \"" + organ.name + "\" " +
+                         (report.closed ? "faces inwards" : "has holes") +
+                         ", so its volume cannot be kept; look at it with trocar anatomy check"};
+}
+
 void AddOrgan(const anatomy::Organ& organ, const OrganMaterial& material, PatientTissue& made) {
   auto& definition = made.definition;
   const auto first = static_cast<std::uint32_t>(definition.rest.size());
@@ -34,6 +44,8 @@ void AddOrgan(const anatomy::Organ& organ, const OrganMaterial& material, Patien
   made.surfaces.push_back(
       {organ.name, organ.name, first, static_cast<std::uint32_t>(mesh.positions.size()), mesh.triangles, {}});
   definition.rest.insert(definition.rest.end(), mesh.positions.begin(), mesh.positions.end());
+  made.conservation.organs.push_back(
+      {first, static_cast<std::uint32_t>(mesh.positions.size()), mesh.triangles, tissue::kBileDensity});
 
   const auto areas = geometry::CalcVertexAreas(mesh.positions, mesh.triangles);
   const auto foundation = tissue::CalcFoundationStiffness(areas, material.foundation_modulus, material.depth);
@@ -75,6 +87,7 @@ void AddAttachments(const Scene& scene, const OrganMaterial& bed, PatientTissue&
     made.definition.strands.push_back({made.surfaces[attachment.organ_a].first_node + attachment.vertex_a,
                                        made.surfaces[attachment.organ_b].first_node + attachment.vertex_b,
                                        bed.young_modulus / bed.wall_thickness * area});
+    made.conservation.strand_binds.push_back(1);
   }
 }
 
@@ -146,6 +159,7 @@ core::Result<PatientTissue> MakePatientTissue(const Scene& scene) {
   for (const anatomy::Organ& organ : scene.patient.organs) {
     const OrganMaterial* material = FindMaterial(scene, organ.name);
     if (material == nullptr) return MissingMaterial(organ.name);
+    if (const auto closed = CheckClosed(organ); !closed.ok()) return closed.error();
     AddOrgan(organ, *material, made);
   }
   if (!scene.patient.attachments.empty()) {
@@ -160,6 +174,7 @@ core::Result<PatientTissue> MakePatientTissue(const Scene& scene) {
     AddTube(tube, *material, made);
   }
   TieTubes(scene, made);
+  made.conservation.strand_binds.resize(made.definition.strands.size(), 0);
   return made;
 }
 

@@ -6,12 +6,14 @@
 
 #include "trocar/session/scene.h"
 #include "trocar/session/simulation.h"
+#include "trocar/tissue/conservation.h"
 #include "trocar/tissue/tissue_model.h"
 
 namespace trocar::session {
 
 struct PatientTissue {
   tissue::TissueDefinition definition;
+  tissue::ConservationSettings conservation;  ///< every organ keeps its volume; bed strands bind, tube ends turn
   std::vector<SurfaceInfo> surfaces;  ///< organs, then tubes
 };
 

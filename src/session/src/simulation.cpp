@@ -11,6 +11,7 @@
 #include "trocar/surgery/contact.h"
 #include "trocar/surgery/grasp.h"
 #include "trocar/surgery/organ_surface.h"
+#include "trocar/tissue/conservation.h"
 #include "trocar/tissue/equilibrium.h"
 #include "trocar/tissue/state_guard.h"
 
@@ -55,6 +56,7 @@ struct Simulation::Content {
   // state
   std::uint64_t tick = 0;
   tissue::TissueState tissue;
+  tissue::ConservationState conserved;
   std::array<instrument::TrocarJoints, kHandCount> joints;
   std::array<surgery::ToolSamples, kHandCount> samples;
   std::array<surgery::Grasp, kHandCount> grasps;
@@ -62,6 +64,7 @@ struct Simulation::Content {
 
   // scratch
   std::unique_ptr<tissue::EquilibriumSolver> solver;
+  std::unique_ptr<tissue::Conservation> conservation;
   std::vector<surgery::OrganSurface> organs;
   surgery::ContactSet contacts;
   LiveSettings settings;
@@ -142,7 +145,9 @@ void Simulation::Content::ActOnTissue() noexcept {
 
 void Simulation::Content::Solve() noexcept {
   if (guard->IsFrozen()) return;
-  report = solver->Solve(settings.solver, load, tissue);
+  load.external_force = {};
+  report = tissue::SolveConserving(*solver, settings.solver, scene->tick_seconds, *conservation, load, tissue,
+                                   conserved);
 }
 
 void Simulation::Content::CheckState() noexcept {
@@ -210,6 +215,10 @@ void Simulation::Content::Publish(const Input& input) noexcept {
   limits.min_depth = 0.01;
   snapshot.X_world_laparoscope =
       CalcLaparoscopePose(scene->laparoscope, instrument::ClampJoints(input.laparoscope, limits));
+  for (std::size_t i = 0; i < conserved.organs.size(); ++i) {
+    const tissue::OrganVolume& organ = conserved.organs[i];
+    snapshot.organs[i] = {organ.volume, organ.target, organ.pressure, organ.leaked};
+  }
   snapshot.residual = report.residual;
   snapshot.iterations = report.iterations;
   snapshot.gravity = CalcGravity(settings);
@@ -220,6 +229,7 @@ void Simulation::Content::Publish(const Input& input) noexcept {
 void Simulation::Content::Reset() {
   tick = 0;
   tissue = tissue::MakeRestState(tissue_model);
+  conserved = conservation->MakeState(tissue);
   guard = std::make_unique<tissue::StateGuard>(tissue_model);
   const Input home = CalcScriptInput(*scene, 0.0);
   for (int hand = 0; hand < kHandCount; ++hand) {
@@ -236,6 +246,7 @@ void Simulation::Content::Reset() {
   was_frozen = false;
   snapshot = {};
   snapshot.positions.resize(tissue_model.Size());
+  snapshot.organs.resize(conserved.organs.size());
   UpdateHierarchy();
   ReadInputs(home);
   Publish(home);
@@ -249,6 +260,9 @@ core::Result<Simulation> Simulation::Make(std::shared_ptr<const Scene> scene, in
   content->tissue_model = tissue::MakeTissueModel(made->definition);
   content->surfaces = std::move(made->surfaces);
   content->solver = std::make_unique<tissue::EquilibriumSolver>(content->tissue_model, std::max(1, threads));
+  made->conservation.imaging_gravity = kImagingGravity;
+  content->conservation =
+      std::make_unique<tissue::Conservation>(content->tissue_model, std::move(made->conservation));
   const auto& patient = content->scene->patient;
   for (std::size_t i = 0; i < patient.organs.size(); ++i) {
     auto surface = surgery::MakeOrganSurface(content->tissue_model.rest, content->surfaces[i].first_node,
@@ -312,6 +326,16 @@ std::uint64_t Simulation::Hash() const {
   hash.Add(c.tick);
   for (const Vec3& p : c.tissue.position) hash.Add(p.x), hash.Add(p.y), hash.Add(p.z);
   for (const auto condition : c.tissue.condition) hash.Add(static_cast<std::uint64_t>(condition));
+  for (const tissue::OrganVolume& organ : c.conserved.organs) {
+    for (const double value : {organ.target, organ.pressure, organ.opening_area, organ.leaked}) hash.Add(value);
+  }
+  for (std::uint32_t region = 0; region < c.conserved.regions.count; ++region) {
+    const Pose& X = c.conserved.X_world_rest[region];
+    for (const double value : {X.rotation.w, X.rotation.x, X.rotation.y, X.rotation.z, X.translation.x,
+                               X.translation.y, X.translation.z}) {
+      hash.Add(value);
+    }
+  }
   for (const auto intact : c.tissue.strand_is_intact) hash.Add(std::uint64_t{intact});
   for (int hand = 0; hand < kHandCount; ++hand) {
     const instrument::TrocarJoints& j = c.joints[hand];

@@ -138,24 +138,31 @@ void SetOtherForces(EquilibriumSolver::Content& content, const TissueLoad& load,
   }
 }
 
+/// Weight and external force of every node; strands and contacts are added in every iteration.
+void SetConstantForces(EquilibriumSolver::Content& content, const TissueLoad& load) noexcept {
+  const TissueModel& model = *content.model;
+  for (std::uint32_t i = 0; i < model.Size(); ++i) {
+    Vec3 force = model.mass[i] * load.gravity;
+    if (!load.external_force.empty()) force += load.external_force[i];
+    content.constant_force[i] = force;
+    for (int axis = 0; axis < 3; ++axis)
+      content.slices[i / kLanes].other_force[axis][i % kLanes] = force[axis];
+  }
+}
+
 /// Sets what stays for the whole solve.
 void SetSlices(EquilibriumSolver::Content& content, const TissueLoad& load,
                const TissueState& state) noexcept {
   const TissueModel& model = *content.model;
   const auto n = static_cast<std::uint32_t>(model.Size());
   for (std::uint32_t i = 0; i < n; ++i) {
-    Vec3 force = model.mass[i] * load.gravity;
-    if (!load.external_force.empty()) force += load.external_force[i];
-    content.constant_force[i] = force;
     SliceData& data = content.slices[i / kLanes];
     const std::uint32_t lane = i % kLanes;
     data.shape_stiffness[lane] = load.shape_scale * model.shape_stiffness[i];
     data.is_free[lane] = state.condition[i] == NodeCondition::kPrescribed ? 0.0 : 1.0;
-    for (int axis = 0; axis < 3; ++axis) {
-      data.rest[axis][lane] = model.rest[i][axis];
-      data.other_force[axis][lane] = force[axis];
-    }
+    for (int axis = 0; axis < 3; ++axis) data.rest[axis][lane] = model.rest[i][axis];
   }
+  SetConstantForces(content, load);
   content.touched_nodes.clear();
   for (const ContactSpring& contact : load.contacts) {
     if (content.touched_nodes.size() + 3 > content.touched_nodes.capacity()) break;
@@ -191,7 +198,8 @@ void SetBlocks(EquilibriumSolver::Content& content, const TissueLoad& load, cons
 }  // namespace
 
 SolveReport SolveChebyshevJacobiWang2015(EquilibriumSolver::Content& content, const SolverSettings& settings,
-                                         const TissueLoad& load, TissueState& state) noexcept {
+                                         const TissueLoad& load, TissueState& state,
+                                         const SolveHook* hook) noexcept {
   const auto n = static_cast<std::uint32_t>(content.model->Size());
   SetSlices(content, load, state);
   double transverse_share = kTransverseShare;
@@ -237,6 +245,10 @@ SolveReport SolveChebyshevJacobiWang2015(EquilibriumSolver::Content& content, co
     ++report.iterations;
     std::swap(state.position, content.previous);
     ++in_cycle;
+    if (hook != nullptr && report.iterations % hook->interval == 0) {
+      hook->act(hook->self, state, content.previous);
+      SetConstantForces(content, load);
+    }
     smallest = std::fmin(smallest, residual);
     if (residual > kGrowthLimit * smallest) {
       transverse_share = std::fmin(kShareGrowth * transverse_share, 1.0);

@@ -39,12 +39,12 @@ EquilibriumSolver::EquilibriumSolver(EquilibriumSolver&&) noexcept = default;
 EquilibriumSolver& EquilibriumSolver::operator=(EquilibriumSolver&&) noexcept = default;
 
 SolveReport EquilibriumSolver::Solve(const SolverSettings& settings, const TissueLoad& load,
-                                     TissueState& state) noexcept {
+                                     TissueState& state, const SolveHook* hook) noexcept {
   TROCAR_ASSERT(state.position.size() == content_->model->Size());
   TROCAR_ASSERT(load.contacts.size() <= kMaxContacts);
   if (settings.kind == SolverKind::kRelaxationPaper)
-    return SolveRelaxationPaper(*content_, settings, load, state);
-  return SolveChebyshevJacobiWang2015(*content_, settings, load, state);
+    return SolveRelaxationPaper(*content_, settings, load, state, hook);
+  return SolveChebyshevJacobiWang2015(*content_, settings, load, state, hook);
 }
 
 Vec3 EquilibriumSolver::CalcReaction(const TissueLoad& load, const TissueState& state,

@@ -43,7 +43,7 @@ double CalcForceScale(const TissueModel& model, const TissueLoad& load, std::spa
 }  // namespace
 
 SolveReport SolveRelaxationPaper(EquilibriumSolver::Content& content, const SolverSettings& settings,
-                                 const TissueLoad& load, TissueState& state) noexcept {
+                                 const TissueLoad& load, TissueState& state, const SolveHook* hook) noexcept {
   const TissueModel& model = *content.model;
   const auto n = static_cast<std::uint32_t>(model.Size());
   // half of the bound damps every mode of the linear system without oscillation
@@ -63,6 +63,7 @@ SolveReport SolveRelaxationPaper(EquilibriumSolver::Content& content, const Solv
     report.force_scale = scale;
     report.residual = scale > 0.0 ? largest / scale : 0.0;
     report.converged = report.residual <= settings.tolerance;
+    if (hook != nullptr && report.iterations % hook->interval == 0) hook->act(hook->self, state, {});
     if (report.converged) break;
   }
   return report;

@@ -78,9 +78,10 @@ struct EquilibriumSolver::Content {
 };
 
 SolveReport SolveRelaxationPaper(EquilibriumSolver::Content& content, const SolverSettings& settings,
-                                 const TissueLoad& load, TissueState& state) noexcept;
+                                 const TissueLoad& load, TissueState& state, const SolveHook* hook) noexcept;
 SolveReport SolveChebyshevJacobiWang2015(EquilibriumSolver::Content& content, const SolverSettings& settings,
-                                         const TissueLoad& load, TissueState& state) noexcept;
+                                         const TissueLoad& load, TissueState& state,
+                                         const SolveHook* hook) noexcept;
 
 /// Nodes a task works on; fixed, so that results do not depend on the number of threads.
 inline constexpr std::uint32_t kChunk = 256;

@@ -25,6 +25,14 @@ struct InstrumentSnapshot {
   std::int32_t organ = -1;  ///< index into Patient::organs of what is grasped or touched, or -1
 };
 
+/// Volume of one organ after a tick.
+struct OrganSnapshot {
+  double volume = 0;    ///< enclosed by its surface [m^3]
+  double target = 0;    ///< of what is inside: kept, or let out through a hole [m^3]
+  double pressure = 0;  ///< inside above outside [Pa]
+  double leaked = 0;    ///< since the start [m^3]
+};
+
 /// Stages of the tick, in order.
 enum class Stage {
   kReadInputs,
@@ -61,6 +69,7 @@ struct Snapshot {
   /// (nodes) organ after organ as in Patient::organs, then the centre-line nodes of tube after tube [m]
   std::vector<Vec3> positions;
   std::array<InstrumentSnapshot, kHandCount> instruments;
+  std::vector<OrganSnapshot> organs;  ///< (organs) as in Patient::organs
   Pose X_world_laparoscope;  ///< origin at the lens, looking along -z, +y up in the picture
   double residual = 0;       ///< largest node residual, relative: see tissue/solver_settings.h [-]
   int iterations = 0;        ///< of the solver in this tick

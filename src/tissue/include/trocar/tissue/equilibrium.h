@@ -21,6 +21,15 @@ struct SolveReport {
   int restarts = 0;        ///< how often the acceleration was taken back because the residual grew
 };
 
+/// Called between iterations: keeps a constraint, and may change the forces that load.external_force views.
+struct SolveHook {
+  /// \param before  positions of the iteration before, (n), where the solver extrapolates from them, else empty: what
+  ///                shifts the present must shift the past alike, or the extrapolation repeats the shift
+  void (*act)(void* self, TissueState& state, std::span<Vec3> before) noexcept = nullptr;
+  void* self = nullptr;
+  int interval = 1;  ///< iterations from one call to the next, >= 1
+};
+
 /// Memory of the solvers, made once for a model so that a solve allocates nothing.
 class EquilibriumSolver {
  public:
@@ -33,7 +42,9 @@ class EquilibriumSolver {
 
   /// Moves every node that is not prescribed towards equilibrium, starting from the state's positions.
   /// \note Real-time safe: no allocation, lock or throw of ours; bounded by settings.max_iterations.
-  SolveReport Solve(const SolverSettings& settings, const TissueLoad& load, TissueState& state) noexcept;
+  /// \param hook  nullptr, or what is to be called between iterations; a solve that it disturbs has not converged
+  SolveReport Solve(const SolverSettings& settings, const TissueLoad& load, TissueState& state,
+                    const SolveHook* hook = nullptr) noexcept;
 
   /// Force of the tissue on whatever prescribes each node of the list, summed; valid after Solve [N].
   Vec3 CalcReaction(const TissueLoad& load, const TissueState& state,

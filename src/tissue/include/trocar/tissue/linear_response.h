@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file linear_response.h  How the tissue answers a small force: K u = f with the stiffness of the present state.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "trocar/tissue/tissue_model.h"
+
+namespace trocar::tissue {
+
+/// How a linear solve ended.
+struct LinearReport {
+  int iterations = 0;
+  double residual = 0;  ///< |f - K u| / |f| [-]
+};
+
+/// Stiffness of a state, applied without being assembled, and a conjugate gradient solver for it. Springs that are
+/// shorter than at rest count along their direction only, so that the matrix stays positive definite.
+class LinearResponse {
+ public:
+  /// \param model  must outlive this
+  explicit LinearResponse(const TissueModel& model);
+
+  /// Solves K u = f over the nodes that are not prescribed; u is zero on the others. Conjugate gradients,
+  /// preconditioned by each node's own 3 x 3 stiffness; contacts are not counted.
+  ///
+  /// \param force      (n) [N]
+  /// \param tolerance  on |f - K u| / |f| [-]
+  /// \param[in,out] response  (n) in: a first guess; out: u [m]
+  /// \note Real-time safe: no allocation; serial, so that results do not depend on threads.
+  LinearReport Solve(const TissueState& state, const TissueLoad& load, std::span<const Vec3> force,
+                     int max_iterations, double tolerance, std::span<Vec3> response) noexcept;
+
+ private:
+  void SetStiffness(const TissueState& state, const TissueLoad& load) noexcept;
+  void Apply(std::span<const Vec3> u, std::span<Vec3> product) const noexcept;
+
+  struct Link {
+    Vec3 along;               // sqrt(k (1 - across)) times the direction
+    double isotropic = 0;     // k times the share that acts across
+  };
+  const TissueModel* model_;
+  std::vector<Link> springs_;        // (half-springs)
+  std::vector<double> strands_;      // (half-strands)
+  std::vector<double> own_;          // (n) isotropic stiffness of the node's own virtual spring
+  std::vector<std::uint8_t> is_free_;
+  std::vector<std::array<double, 6>> inverse_;
+  std::vector<Vec3> residual_, preconditioned_, direction_, product_;
+};
+
+}  // namespace trocar::tissue

@@ -1,0 +1,385 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/tissue/conservation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "trocar/core/assert.h"
+
+namespace trocar::tissue {
+namespace {
+
+/// Relative volume error at which the projection ends [-]; a thousandth of what is promised.
+constexpr double kVolumeTolerance = 1e-7;
+constexpr int kMaxProjections = 8;
+/// No projection changes a volume by more than this share [-]: what is farther off comes home over several ticks.
+constexpr double kMaxVolumeStep = 0.1;
+/// The responses need no more accuracy than this: they steer the search, the constraint itself is exact [-].
+constexpr double kResponseTolerance = 0.02;
+constexpr double kFirstResponseTolerance = 1e-4;
+constexpr int kFirstResponseIterations = 5000;
+/// Iterations a tick while the responses follow a change of topology or of the stiffness scales.
+constexpr int kResponseIterationsPerTick = 12;
+
+using SmallVector = std::array<double, kMaxClosedOrgans>;
+
+/// Solves a x = b for the first `count` rows by elimination with row pivots; false when singular.
+bool SolveSmall(SmallMatrix a, SmallVector b, std::size_t count, SmallVector& x) noexcept {
+  for (std::size_t column = 0; column < count; ++column) {
+    std::size_t pivot = column;
+    for (std::size_t row = column + 1; row < count; ++row) {
+      if (std::fabs(a[row][column]) > std::fabs(a[pivot][column])) pivot = row;
+    }
+    if (!(std::fabs(a[pivot][column]) > 0.0)) return false;
+    std::swap(a[pivot], a[column]);
+    std::swap(b[pivot], b[column]);
+    for (std::size_t row = column + 1; row < count; ++row) {
+      const double factor = a[row][column] / a[column][column];
+      for (std::size_t k = column; k < count; ++k) a[row][k] -= factor * a[column][k];
+      b[row] -= factor * b[column];
+    }
+  }
+  for (std::size_t row = count; row-- > 0;) {
+    double sum = b[row];
+    for (std::size_t k = row + 1; k < count; ++k) sum -= a[row][k] * x[k];
+    x[row] = sum / a[row][row];
+  }
+  return true;
+}
+
+std::uint64_t CountIntact(const TissueState& tissue) noexcept {
+  return std::accumulate(tissue.strand_is_intact.begin(), tissue.strand_is_intact.end(), std::uint64_t{0});
+}
+
+}  // namespace
+
+// --- creation
+
+Conservation::Conservation(const TissueModel& model, ConservationSettings settings)
+    : model_(&model), settings_(std::move(settings)), linear_(model), rest_(MakeRestState(model)) {
+  const std::size_t n = model.Size();
+  TROCAR_ASSERT(settings_.organs.size() <= kMaxClosedOrgans);
+  gradient_.resize(n);
+  base_force_.resize(n);
+  force_.resize(n);
+  next_regions_.of_node.resize(n);
+  responses_.assign(settings_.organs.size(), std::vector<Vec3>(n));
+  (void)UpdateResponses(rest_, {}, kFirstResponseIterations, kFirstResponseTolerance);
+  response_strands_ = CountIntact(rest_);
+  responses_settled_ = true;
+}
+
+ConservationState Conservation::MakeState(const TissueState& rest_state) const {
+  ConservationState state;
+  for (const ClosedOrgan& organ : settings_.organs) {
+    TROCAR_ASSERT(std::size_t{organ.first_node} + organ.node_count <= model_->Size());
+    OrganVolume volume;
+    volume.target = volume.volume = CalcClosedVolume(
+        std::span(rest_state.position).subspan(organ.first_node, organ.node_count), organ.triangles);
+    TROCAR_ASSERT(volume.target > 0.0);
+    state.organs.push_back(volume);
+  }
+  state.regions.of_node.resize(model_->Size());
+  FindFreeRegions(*model_, rest_state.strand_is_intact, settings_.strand_binds, {}, state.regions);
+  state.intact_strands = CountIntact(rest_state);
+  state.last_position = rest_state.position;
+  return state;
+}
+
+std::span<Vec3> Conservation::OrganPart(std::size_t organ, std::span<Vec3> nodes) const noexcept {
+  return nodes.subspan(settings_.organs[organ].first_node, settings_.organs[organ].node_count);
+}
+
+/// The displacement by which the tissue at rest, with the strands and scales of now, answers one pascal in each
+/// organ.
+bool Conservation::UpdateResponses(const TissueState& tissue, const TissueLoad& load, int max_iterations,
+                                   double tolerance) noexcept {
+  std::copy(tissue.strand_is_intact.begin(), tissue.strand_is_intact.end(), rest_.strand_is_intact.begin());
+  bool is_settled = true;
+  for (std::size_t organ = 0; organ < settings_.organs.size(); ++organ) {
+    std::fill(gradient_.begin(), gradient_.end(), Vec3{});
+    const ClosedOrgan& surface = settings_.organs[organ];
+    (void)CalcVolumeGradient(std::span(model_->rest).subspan(surface.first_node, surface.node_count),
+                             surface.triangles, OrganPart(organ, gradient_));
+    const auto report = linear_.Solve(rest_, load, gradient_, max_iterations, tolerance, responses_[organ]);
+    is_settled = is_settled && report.residual <= tolerance;
+  }
+  stiffness_scale_ = load.stiffness_scale;
+  shape_scale_ = load.shape_scale;
+  return is_settled;
+}
+
+void Conservation::Perforate(std::size_t organ, double area, ConservationState& state) const {
+  TROCAR_ASSERT(organ < state.organs.size() && area >= 0.0);
+  state.organs[organ].opening_area += area;
+}
+
+// --- before a solve
+
+void Conservation::UpdateRegions(const TissueState& tissue, ConservationState& state) noexcept {
+  const std::uint64_t intact = CountIntact(tissue);
+  if (intact == state.intact_strands) return;
+  FindFreeRegions(*model_, tissue.strand_is_intact, settings_.strand_binds, {}, next_regions_);
+  // a piece that splits goes on from where it was
+  std::array<Pose, kMaxFreeRegions> poses;
+  std::uint32_t next = 0;
+  for (std::size_t i = 0; i < next_regions_.of_node.size() && next < next_regions_.count; ++i) {
+    if (next_regions_.of_node[i] != next) continue;
+    const std::uint32_t before = state.regions.of_node[i];
+    poses[next++] = before == kPinnedRegion ? Pose{} : state.X_world_rest[before];
+  }
+  state.X_world_rest = poses;
+  std::swap(state.regions, next_regions_);
+  state.intact_strands = intact;
+}
+
+bool Conservation::IsHeld(std::uint32_t region, const TissueState& tissue,
+                          const ConservationState& state) const noexcept {
+  for (std::size_t i = 0; i < state.regions.of_node.size(); ++i) {
+    if (state.regions.of_node[i] == region && tissue.condition[i] == NodeCondition::kPrescribed) return true;
+  }
+  return false;
+}
+
+void Conservation::CarryAlong(TissueState& tissue, ConservationState& state) noexcept {
+  UpdateRegions(tissue, state);
+  for (std::uint32_t region = 0; region < state.regions.count; ++region) {
+    MotionMoments moments;
+    for (std::size_t i = 0; i < state.regions.of_node.size(); ++i) {
+      if (state.regions.of_node[i] != region || tissue.condition[i] != NodeCondition::kPrescribed) continue;
+      moments.AddPoint(1.0, state.last_position[i], tissue.position[i]);
+    }
+    const Pose motion = FitRigidMotion(moments, {});
+    if (!(moments.weight > 0.0) || !math::IsFinite(motion.translation)) continue;
+    for (std::size_t i = 0; i < state.regions.of_node.size(); ++i) {
+      if (state.regions.of_node[i] != region || tissue.condition[i] == NodeCondition::kPrescribed) continue;
+      tissue.position[i] = motion * tissue.position[i];
+    }
+    state.X_world_rest[region] = motion * state.X_world_rest[region];
+  }
+}
+
+std::span<const Vec3> Conservation::CalcForce(const TissueState& tissue, const TissueLoad& load,
+                                              ConservationState& state) noexcept {
+  TROCAR_ASSERT(load.external_force.data() != force_.data());
+  if (load.external_force.empty()) {
+    std::fill(base_force_.begin(), base_force_.end(), Vec3{});
+  } else {
+    std::copy(load.external_force.begin(), load.external_force.end(), base_force_.begin());
+  }
+  AddFrameForce(tissue, load, state);
+  (void)CalcSlopes(tissue, state);
+  SetPressureForce(state);
+  return force_;
+}
+
+void Conservation::SetPressureForce(const ConservationState& state) noexcept {
+  std::copy(base_force_.begin(), base_force_.end(), force_.begin());
+  for (std::size_t organ = 0; organ < settings_.organs.size(); ++organ) {
+    const auto gradient = OrganPart(organ, gradient_), force = OrganPart(organ, force_);
+    for (std::size_t i = 0; i < force.size(); ++i) force[i] += state.organs[organ].pressure * gradient[i];
+  }
+}
+
+/// The springs of a free piece pull towards its rest shape where that is now.
+void Conservation::AddFrameForce(const TissueState& tissue, const TissueLoad& load,
+                                 const ConservationState& state) noexcept {
+  const TissueModel& model = *model_;
+  if (state.regions.count == 0) return;
+  std::array<bool, kMaxFreeRegions> is_held{};
+  for (std::uint32_t region = 0; region < state.regions.count; ++region) {
+    is_held[region] = IsHeld(region, tissue, state);
+  }
+  for (std::uint32_t i = 0; i < model.Size(); ++i) {
+    const std::uint32_t region = state.regions.of_node[i];
+    if (region == kPinnedRegion) continue;
+    const Pose& X = state.X_world_rest[region];
+    base_force_[i] += load.shape_scale * model.shape_stiffness[i] * (X * model.rest[i] - model.rest[i]);
+    if (is_held[region]) base_force_[i] += model.mass[i] * settings_.imaging_gravity;
+    for (auto h = model.strand_starts[i]; h < model.strand_starts[i + 1]; ++h) {
+      const auto& strand = model.half_strands[h];
+      if (!tissue.strand_is_intact[strand.strand]) continue;
+      // a strand between two pieces turns with the lower one; both ends must agree
+      const std::uint32_t other = state.regions.of_node[strand.other];
+      if (other < region) continue;
+      const Vec3 offset = model.rest[strand.other] - model.rest[i];
+      const Vec3 change =
+          load.stiffness_scale * strand.stiffness * (math::Rotate(X.rotation, offset) - offset);
+      base_force_[i] -= change;
+      if (other != region) base_force_[strand.other] += change;
+    }
+  }
+}
+
+// --- after a solve
+
+void Conservation::FitFrames(const TissueLoad& load, const TissueState& tissue,
+                             ConservationState& state) const noexcept {
+  const TissueModel& model = *model_;
+  for (std::uint32_t region = 0; region < state.regions.count; ++region) {
+    // what no hand holds lies still: nothing else in the model would carry it
+    if (!IsHeld(region, tissue, state)) continue;
+    MotionMoments moments;
+    for (std::uint32_t i = 0; i < model.Size(); ++i) {
+      if (state.regions.of_node[i] != region) continue;
+      // weighted by the springs' stiffness: the fit then lowers the very energy that the solver lowers
+      moments.AddPoint(load.shape_scale * model.shape_stiffness[i], model.rest[i], tissue.position[i]);
+      for (auto h = model.strand_starts[i]; h < model.strand_starts[i + 1]; ++h) {
+        const auto& strand = model.half_strands[h];
+        const std::uint32_t other = state.regions.of_node[strand.other];
+        if (!tissue.strand_is_intact[strand.strand] || other < region) continue;
+        const double share = other == region ? 0.5 : 1.0;  // met from both ends
+        moments.AddOffset(share * load.stiffness_scale * strand.stiffness, model.rest[strand.other] - model.rest[i],
+                          tissue.position[strand.other] - tissue.position[i]);
+      }
+    }
+    const Pose fit = FitRigidMotion(moments, state.X_world_rest[region].rotation);
+    if (moments.weight > 0.0 && math::IsFinite(fit.translation)) state.X_world_rest[region] = fit;
+  }
+}
+
+/// Displacement of a node by one pascal in an organ, where the node is now [m/Pa].
+Vec3 Conservation::CalcResponse(std::size_t organ, std::size_t node, const TissueState& tissue,
+                                const ConservationState& state) const noexcept {
+  if (tissue.condition[node] == NodeCondition::kPrescribed) return {};
+  const std::uint32_t region = state.regions.of_node[node];
+  const Vec3& u = responses_[organ][node];
+  return region == kPinnedRegion ? u : math::Rotate(state.X_world_rest[region].rotation, u);
+}
+
+/// Volumes, their gradients, and how each answers the pressure in each; false when the state is not finite.
+bool Conservation::CalcSlopes(const TissueState& tissue, ConservationState& state) noexcept {
+  bool is_good = true;
+  for (std::size_t i = 0; i < settings_.organs.size(); ++i) {
+    const ClosedOrgan& surface = settings_.organs[i];
+    const auto gradient = OrganPart(i, gradient_);
+    state.organs[i].volume =
+        CalcVolumeGradient(std::span(tissue.position).subspan(surface.first_node, surface.node_count),
+                           surface.triangles, gradient);
+    for (std::size_t j = 0; j < settings_.organs.size(); ++j) {
+      slopes_[i][j] = 0;
+      for (std::uint32_t k = 0; k < surface.node_count; ++k) {
+        slopes_[i][j] += math::Dot(gradient[k], CalcResponse(j, surface.first_node + k, tissue, state));
+      }
+    }
+    is_good = is_good && std::isfinite(state.organs[i].volume) && slopes_[i][i] > 0.0;
+  }
+  return is_good;
+}
+
+/// One Newton step on all volumes with the slopes at hand; false when every volume is at its target.
+bool Conservation::ProjectOnce(TissueState& tissue, std::span<Vec3> before, ConservationState& state) noexcept {
+  const std::size_t count = settings_.organs.size();
+  SmallVector error{}, lambda{};
+  bool is_done = true;
+  for (std::size_t i = 0; i < count; ++i) {
+    const OrganVolume& organ = state.organs[i];
+    const bool is_open = organ.opening_area > 0.0 && organ.pressure == 0.0 && organ.volume > organ.target;
+    const double limit = kMaxVolumeStep * organ.target;
+    error[i] = is_open ? 0.0 : std::clamp(organ.target - organ.volume, -limit, limit);
+    is_done = is_done && std::fabs(error[i]) <= kVolumeTolerance * organ.target;
+  }
+  if (is_done || !SolveSmall(slopes_, error, count, lambda)) return false;
+  for (std::size_t i = 0; i < count; ++i) {
+    OrganVolume& organ = state.organs[i];
+    // through a hole gas enters before the sac is sucked in
+    if (organ.opening_area > 0.0) lambda[i] = std::fmax(lambda[i], -organ.pressure);
+    organ.pressure += lambda[i];
+  }
+  for (std::size_t k = 0; k < tissue.position.size(); ++k) {
+    Vec3 shift;
+    for (std::size_t j = 0; j < count; ++j) shift += lambda[j] * CalcResponse(j, k, tissue, state);
+    tissue.position[k] += shift;
+    if (!before.empty()) before[k] += shift;
+  }
+  return true;
+}
+
+void Conservation::KeepVolumes(TissueState& tissue, std::span<Vec3> before, ConservationState& state) noexcept {
+  if (!CalcSlopes(tissue, state)) return;
+  (void)ProjectOnce(tissue, before, state);
+  SetPressureForce(state);
+}
+
+void Conservation::Leak(double dt, ConservationState& state) const noexcept {
+  for (std::size_t i = 0; i < settings_.organs.size(); ++i) {
+    OrganVolume& organ = state.organs[i];
+    const double outflow = CalcOutflow(organ.pressure, organ.compliance, organ.opening_area,
+                                       settings_.organs[i].fluid_density, dt);
+    organ.target -= outflow;
+    organ.leaked += outflow;
+  }
+}
+
+void Conservation::Enforce(const TissueLoad& load, double dt, TissueState& tissue,
+                           ConservationState& state) noexcept {
+  if (load.stiffness_scale != stiffness_scale_ || load.shape_scale != shape_scale_ ||
+      state.intact_strands != response_strands_) {
+    responses_settled_ = false;
+    response_strands_ = state.intact_strands;
+  }
+  if (!responses_settled_) {
+    responses_settled_ = UpdateResponses(tissue, load, kResponseIterationsPerTick, kResponseTolerance);
+  }
+  if (!CalcSlopes(tissue, state)) return;
+  for (std::size_t i = 0; i < settings_.organs.size(); ++i) state.organs[i].compliance = slopes_[i][i];
+  Leak(dt, state);
+  for (int projection = 0; projection < kMaxProjections && ProjectOnce(tissue, {}, state); ++projection) {
+    for (std::size_t i = 0; i < settings_.organs.size(); ++i) {
+      const ClosedOrgan& surface = settings_.organs[i];
+      state.organs[i].volume = CalcClosedVolume(
+          std::span(tissue.position).subspan(surface.first_node, surface.node_count), surface.triangles);
+    }
+  }
+  FitFrames(load, tissue, state);
+  std::copy(tissue.position.begin(), tissue.position.end(), state.last_position.begin());
+}
+
+SolveReport SolveConserving(EquilibriumSolver& solver, const SolverSettings& settings, double dt,
+                            Conservation& conservation, TissueLoad& load, TissueState& tissue,
+                            ConservationState& state) noexcept {
+  conservation.CarryAlong(tissue, state);
+  load.external_force = conservation.CalcForce(tissue, load, state);
+  struct Context {
+    Conservation* conservation;
+    ConservationState* state;
+  } context{&conservation, &state};
+  const SolveHook hook{[](void* self, TissueState& moved, std::span<Vec3> before) noexcept {
+                         const Context& kept = *static_cast<Context*>(self);
+                         kept.conservation->KeepVolumes(moved, before, *kept.state);
+                       },
+                       &context, kProjectionInterval};
+  const SolveReport report = solver.Solve(settings, load, tissue, &hook);
+  conservation.Enforce(load, dt, tissue, state);
+  return report;
+}
+
+double FillToPressure(EquilibriumSolver& solver, std::size_t organ, double pressure, const TissueLoad& load,
+                      Conservation& conservation, TissueState& tissue, ConservationState& state) {
+  TROCAR_ASSERT(organ < state.organs.size() && std::fabs(pressure) <= 20e3);
+  constexpr int kMaxFillings = 400;
+  constexpr double kStill = 1e-6;
+  const SolverSettings exact{.max_iterations = 2000, .tolerance = 1e-6};
+  const ClosedOrgan& surface = conservation.Settings().organs[organ];
+  OrganVolume& filled = state.organs[organ];
+  double change = 1;
+  int still = 0;
+  for (int filling = 0; filling < kMaxFillings && still < 3; ++filling) {
+    // a pressure acts along normals that turn as the sac swells: step by step it stays near its equilibrium
+    filled.pressure = pressure * std::fmin(1.0, (filling + 1) / 8.0);
+    conservation.CarryAlong(tissue, state);
+    TissueLoad loaded = load;
+    loaded.external_force = conservation.CalcForce(tissue, load, state);
+    (void)solver.Solve(exact, loaded, tissue);
+    const double volume = CalcClosedVolume(
+        std::span(tissue.position).subspan(surface.first_node, surface.node_count), surface.triangles);
+    change = std::fabs(volume / filled.volume - 1.0);
+    filled.volume = volume;
+    still = filling >= 8 && change < kStill ? still + 1 : 0;
+  }
+  filled.target = filled.volume;
+  return change;
+}
+
+}  // namespace trocar::tissue

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/tissue/linear_response.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "trocar/core/assert.h"
+
+namespace trocar::tissue {
+namespace {
+
+using Symmetric3 = std::array<double, 6>;  // xx, xy, xz, yy, yz, zz
+
+void AddIsotropic(Symmetric3& m, double k) noexcept {
+  m[0] += k, m[3] += k, m[5] += k;
+}
+
+void AddSquare(Symmetric3& m, const Vec3& v) noexcept {
+  m[0] += v.x * v.x, m[1] += v.x * v.y, m[2] += v.x * v.z;
+  m[3] += v.y * v.y, m[4] += v.y * v.z, m[5] += v.z * v.z;
+}
+
+/// Inverse of a positive definite matrix; zero for a node that nothing holds.
+Symmetric3 Invert(const Symmetric3& m) noexcept {
+  const double a = m[3] * m[5] - m[4] * m[4], b = m[2] * m[4] - m[1] * m[5], c = m[1] * m[4] - m[2] * m[3];
+  const double determinant = m[0] * a + m[1] * b + m[2] * c;
+  if (!(determinant > 0.0)) return {};
+  const double s = 1.0 / determinant;
+  return {s * a,
+          s * b,
+          s * c,
+          s * (m[0] * m[5] - m[2] * m[2]),
+          s * (m[1] * m[2] - m[0] * m[4]),
+          s * (m[0] * m[3] - m[1] * m[1])};
+}
+
+Vec3 Multiply(const Symmetric3& m, const Vec3& v) noexcept {
+  return {m[0] * v.x + m[1] * v.y + m[2] * v.z, m[1] * v.x + m[3] * v.y + m[4] * v.z,
+          m[2] * v.x + m[4] * v.y + m[5] * v.z};
+}
+
+double SumOfProducts(std::span<const Vec3> a, std::span<const Vec3> b) noexcept {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += math::Dot(a[i], b[i]);
+  return sum;
+}
+
+}  // namespace
+
+LinearResponse::LinearResponse(const TissueModel& model)
+    : model_(&model),
+      springs_(model.half_springs.size()),
+      strands_(model.half_strands.size()),
+      own_(model.Size()),
+      is_free_(model.Size()),
+      inverse_(model.Size()),
+      residual_(model.Size()),
+      preconditioned_(model.Size()),
+      direction_(model.Size()),
+      product_(model.Size()) {}
+
+void LinearResponse::SetStiffness(const TissueState& state, const TissueLoad& load) noexcept {
+  const TissueModel& model = *model_;
+  for (std::uint32_t i = 0; i < model.Size(); ++i) {
+    Symmetric3 block{};
+    for (auto h = model.spring_starts[i]; h < model.spring_starts[i + 1]; ++h) {
+      const auto& half = model.half_springs[h];
+      const Vec3 along = state.position[half.other] - state.position[i];
+      const double length = math::Norm(along), stiffness = load.stiffness_scale * half.stiffness;
+      const double across = length > 0.0 ? std::fmax(0.0, 1.0 - half.rest_length / length) : 1.0;
+      Link& link = springs_[h];
+      link.isotropic = stiffness * across;
+      link.along = length > 0.0 ? (std::sqrt(stiffness * (1.0 - across)) / length) * along : Vec3{};
+      AddSquare(block, link.along);
+      AddIsotropic(block, link.isotropic);
+    }
+    for (auto h = model.strand_starts[i]; h < model.strand_starts[i + 1]; ++h) {
+      const auto& half = model.half_strands[h];
+      strands_[h] = state.strand_is_intact[half.strand] ? load.stiffness_scale * half.stiffness : 0.0;
+      AddIsotropic(block, strands_[h]);
+    }
+    own_[i] = load.shape_scale * model.shape_stiffness[i];
+    AddIsotropic(block, own_[i]);
+    is_free_[i] = state.condition[i] != NodeCondition::kPrescribed;
+    inverse_[i] = is_free_[i] ? Invert(block) : Symmetric3{};
+  }
+}
+
+void LinearResponse::Apply(std::span<const Vec3> u, std::span<Vec3> product) const noexcept {
+  const TissueModel& model = *model_;
+  for (std::uint32_t i = 0; i < model.Size(); ++i) {
+    Vec3 sum = own_[i] * u[i];
+    for (auto h = model.spring_starts[i]; h < model.spring_starts[i + 1]; ++h) {
+      const Vec3 apart = u[i] - u[model.half_springs[h].other];
+      sum += springs_[h].isotropic * apart + math::Dot(springs_[h].along, apart) * springs_[h].along;
+    }
+    for (auto h = model.strand_starts[i]; h < model.strand_starts[i + 1]; ++h) {
+      sum += strands_[h] * (u[i] - u[model.half_strands[h].other]);
+    }
+    product[i] = is_free_[i] ? sum : Vec3{};
+  }
+}
+
+LinearReport LinearResponse::Solve(const TissueState& state, const TissueLoad& load, std::span<const Vec3> force,
+                                   int max_iterations, double tolerance, std::span<Vec3> response) noexcept {
+  const std::size_t n = model_->Size();
+  TROCAR_ASSERT(force.size() == n && response.size() == n && state.position.size() == n);
+  SetStiffness(state, load);
+  double force2 = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    if (!is_free_[i]) response[i] = {};
+    force2 += is_free_[i] ? math::SquaredNorm(force[i]) : 0.0;
+  }
+  LinearReport report;
+  if (!(force2 > 0.0)) {
+    std::fill(response.begin(), response.end(), Vec3{});
+    return report;
+  }
+  Apply(response, product_);
+  for (std::size_t i = 0; i < n; ++i) residual_[i] = is_free_[i] ? force[i] - product_[i] : Vec3{};
+  double before = 0;
+  for (report.iterations = 0;; ++report.iterations) {
+    report.residual = std::sqrt(SumOfProducts(residual_, residual_) / force2);
+    if (report.residual <= tolerance || report.iterations == max_iterations) return report;
+    for (std::size_t i = 0; i < n; ++i) preconditioned_[i] = Multiply(inverse_[i], residual_[i]);
+    const double now = SumOfProducts(residual_, preconditioned_);
+    const double beta = report.iterations == 0 ? 0.0 : now / before;
+    for (std::size_t i = 0; i < n; ++i) direction_[i] = preconditioned_[i] + beta * direction_[i];
+    Apply(direction_, product_);
+    const double curvature = SumOfProducts(direction_, product_);
+    if (!(curvature > 0.0)) return report;
+    const double step = now / curvature;
+    for (std::size_t i = 0; i < n; ++i) {
+      response[i] += step * direction_[i];
+      residual_[i] -= step * product_[i];
+    }
+    before = now;
+  }
+}
+
+}  // namespace trocar::tissue
