@@ -5,20 +5,8 @@
 
 namespace trocar::tissue_cuda {
 
-GpuOrCpuSolver::GpuOrCpuSolver(const tissue::TissueModel& model, int threads,
-                               const std::optional<GpuOptions>& gpu)
-    : cpu_(model, threads) {
-  if (!gpu) return;
-  core::Result<GpuSolver> solver = GpuSolver::Make(model, *gpu);
-  if (solver) {
-    gpu_ = std::move(solver).value();
-  } else {
-    gpu_error_ = solver.error();
-  }
-}
-
 GpuOrCpuSolver::GpuOrCpuSolver(const tissue::TissueModel& model, int threads, core::Result<GpuSolver> gpu)
-    : cpu_(model, threads) {
+    : EquilibriumSolver(model, threads) {
   if (gpu) {
     gpu_ = std::move(gpu).value();
   } else {
@@ -26,21 +14,18 @@ GpuOrCpuSolver::GpuOrCpuSolver(const tissue::TissueModel& model, int threads, co
   }
 }
 
+GpuOrCpuSolver::~GpuOrCpuSolver() = default;
+
 tissue::SolveReport GpuOrCpuSolver::Solve(const tissue::SolverSettings& settings,
-                                          const tissue::TissueLoad& load,
-                                          tissue::TissueState& state) noexcept {
+                                          const tissue::TissueLoad& load, tissue::TissueState& state,
+                                          const tissue::SolveHook* hook) noexcept {
   if (gpu_ && settings.kind == tissue::SolverKind::kChebyshevJacobi2015) {
-    const core::Result<tissue::SolveReport> report = gpu_->Solve(settings, load, state);
+    const core::Result<tissue::SolveReport> report = gpu_->Solve(settings, load, state, hook);
     if (report) return *report;
     gpu_error_ = report.error();
     gpu_.reset();
   }
-  return cpu_.Solve(settings, load, state);
-}
-
-math::Vec3 GpuOrCpuSolver::CalcReaction(const tissue::TissueLoad& load, const tissue::TissueState& state,
-                                        std::span<const std::uint32_t> nodes) const noexcept {
-  return cpu_.CalcReaction(load, state, nodes);
+  return EquilibriumSolver::Solve(settings, load, state, hook);
 }
 
 }  // namespace trocar::tissue_cuda

@@ -13,10 +13,10 @@ namespace trocar::tissue_cuda {
 class GpuSolve {
  public:
   virtual ~GpuSolve() = default;
-  /// \return an error, and the state as it was
+  /// \return an error, and the state's positions as they were
   virtual core::Result<tissue::SolveReport> Run(const tissue::SolverSettings& settings,
-                                                const tissue::TissueLoad& load,
-                                                tissue::TissueState& state) = 0;
+                                                const tissue::TissueLoad& load, tissue::TissueState& state,
+                                                const tissue::SolveHook* hook) = 0;
   virtual bool IsResident() const noexcept { return false; }
 };
 

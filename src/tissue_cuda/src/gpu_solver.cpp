@@ -41,8 +41,8 @@ core::Result<GpuSolver> GpuSolver::Make(const tissue::TissueModel& model, const 
 }
 
 core::Result<tissue::SolveReport> GpuSolver::Solve(const tissue::SolverSettings& settings,
-                                                   const tissue::TissueLoad& load,
-                                                   tissue::TissueState& state) noexcept {
+                                                   const tissue::TissueLoad& load, tissue::TissueState& state,
+                                                   const tissue::SolveHook* hook) noexcept {
   TROCAR_ASSERT(state.position.size() == content_->nodes && state.condition.size() == content_->nodes);
   TROCAR_ASSERT(load.contacts.size() <= tissue::kMaxContacts && settings.max_iterations >= 1);
   if (content_->failed) return *content_->failed;
@@ -50,7 +50,7 @@ core::Result<tissue::SolveReport> GpuSolver::Solve(const tissue::SolverSettings&
     content_->failed = status.error();
     return status.error();
   }
-  core::Result<tissue::SolveReport> report = content_->solve->Run(settings, load, state);
+  core::Result<tissue::SolveReport> report = content_->solve->Run(settings, load, state, hook);
   if (!report && report.error().code != core::ErrorCode::kGpuLayout) content_->failed = report.error();
   return report;
 }

@@ -43,11 +43,12 @@ class PaperSolve final : public GpuSolve {
   }
 
   core::Result<tissue::SolveReport> Run(const tissue::SolverSettings& settings,
-                                        const tissue::TissueLoad& load, tissue::TissueState& state) override {
-    if (!load.contacts.empty()) {
+                                        const tissue::TissueLoad& load, tissue::TissueState& state,
+                                        const tissue::SolveHook* hook) override {
+    if (!load.contacts.empty() || hook != nullptr) {
       return core::Error{core::ErrorCode::kGpuLayout,
                          "the layout \"" + std::string(LayoutName(arrays_.layout)) +
-                             "\" has no place for contacts, which the paper does not have; "
+                             "\" has no place for contacts and constraints, which the paper does not have; "
                              "use the layout \"tiled\""};
     }
     FillPoints(arrays_, *model_, state, load, positions_, forces_);

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <utility>
 
@@ -32,23 +34,70 @@ class TiledSolve final : public GpuSolve {
   }
 
   core::Result<tissue::SolveReport> Run(const tissue::SolverSettings& settings,
-                                        const tissue::TissueLoad& load, tissue::TissueState& state) override {
-    const std::size_t n = model_->Size();
+                                        const tissue::TissueLoad& load, tissue::TissueState& state,
+                                        const tissue::SolveHook* hook) override {
     SetTiledLoad(settings, load, args_);
-    Status status = gpu_->Mark(kMarkBegin);
+    if (hook == nullptr) {
+      args_.before_positions = nullptr;
+      args_.is_resumed = false;
+      if (const Status status = Launch(load, state); !status) return status.error();
+      TakePositions(host_positions_, state.position);
+      return MakeReport();
+    }
+    // to the hook and back: the state may already be changed when the GPU fails
+    start_ = state.position;
+    args_.before_positions = before_positions_;
+    args_.is_resumed = false;
+    for (int done = 0;; args_.is_resumed = true) {
+      args_.settings.pause_at = static_cast<std::uint32_t>((done / hook->interval + 1) * hook->interval);
+      if (const Status status = Launch(load, state); !status) {
+        state.position = start_;
+        return status.error();
+      }
+      TakePositions(host_positions_, state.position);
+      TakePositions(host_before_, before_);
+      const tissue::SolveReport report = MakeReport();
+      done = report.iterations;
+      if (!report.converged && done % hook->interval == 0) {
+        hook->act(hook->self, state, before_);
+        PutPositions(before_, host_before_);
+      }
+      if (report.converged || done >= settings.max_iterations || std::isnan(report.residual)) return report;
+    }
+  }
+
+  bool IsResident() const noexcept override { return is_resident_; }
+
+ private:
+  using Args = TiledArgs<Real, RawMemory>;
+
+  /// One launch, with what goes up before it and comes down behind it.
+  Status Launch(const tissue::TissueLoad& load, const tissue::TissueState& state) {
+    const std::size_t n = model_->Size();
+    Status status = args_.is_resumed ? Status() : gpu_->Mark(kMarkBegin);
     if (status) status = Upload(load, state);
     if (status) status = gpu_->Clear(reinterpret_cast<CudaAddress>(arrived_), sizeof *arrived_);
-    if (status) status = gpu_->Mark(kMarkFirstLaunch);
+    if (status && !args_.is_resumed) status = gpu_->Mark(kMarkFirstLaunch);
     void* arguments[] = {&args_, &arrived_};
     if (status) status = gpu_->Launch(kernel_, shape_, arguments);
     if (status) status = gpu_->Mark(kMarkLastLaunch);
     if (status) status = Download(host_positions_, args_.positions, n);
+    if (status && args_.before_positions != nullptr)
+      status = Download(host_before_, args_.before_positions, n);
     if (status) status = Download(host_report_, args_.report, 1);
     if (status) status = gpu_->Mark(kMarkEnd);
     if (status) status = gpu_->Finish();
-    if (!status) return status.error();
+    return status;
+  }
 
-    std::memcpy(static_cast<void*>(state.position.data()), host_positions_, n * sizeof(math::Vec3));
+  static void TakePositions(const Triple<double>* from, std::vector<math::Vec3>& to) {
+    std::memcpy(static_cast<void*>(to.data()), from, to.size() * sizeof(math::Vec3));
+  }
+  static void PutPositions(std::span<const math::Vec3> from, Triple<double>* to) {
+    std::memcpy(static_cast<void*>(to), from.data(), from.size() * sizeof(math::Vec3));
+  }
+
+  tissue::SolveReport MakeReport() const {
     tissue::SolveReport report;
     report.iterations = static_cast<int>(host_report_->iterations);
     report.residual = host_report_->residual;
@@ -58,11 +107,6 @@ class TiledSolve final : public GpuSolve {
     return report;
   }
 
-  bool IsResident() const noexcept override { return is_resident_; }
-
- private:
-  using Args = TiledArgs<Real, RawMemory>;
-
   /// For everything that a solve brings, so that no solve allocates.
   void MakeRoom() {
     const std::size_t n = model_->Size();
@@ -70,6 +114,7 @@ class TiledSolve final : public GpuSolve {
     args_.positions = memory_.Array<Triple<double>>("positions", n);
     args_.prescribed = memory_.Array<std::uint8_t>("prescribed", n);
     external_force_ = memory_.Array<Triple<double>>("external_force", n);
+    before_positions_ = memory_.Array<Triple<double>>("before_positions", n);
     args_.intact = memory_.Array<std::uint8_t>("intact", model_->strand_count);
     args_.contacts = memory_.Array<ContactEntry>("contacts", tissue::kMaxContacts);
     args_.touched_nodes = memory_.Array<std::uint32_t>("touched_nodes", kMaxTouched);
@@ -79,6 +124,9 @@ class TiledSolve final : public GpuSolve {
     host_positions_ = memory_.HostArray<Triple<double>>(n);
     host_prescribed_ = memory_.HostArray<std::uint8_t>(n);
     host_external_force_ = memory_.HostArray<Triple<double>>(n);
+    host_before_ = memory_.HostArray<Triple<double>>(n);
+    start_.resize(n);
+    before_.resize(n);
     host_report_ = memory_.HostArray<TiledReport>(1);
     contacts_.contacts.reserve(tissue::kMaxContacts);
     contacts_.touched_nodes.reserve(kMaxTouched);
@@ -131,15 +179,15 @@ class TiledSolve final : public GpuSolve {
 
   Status Upload(const tissue::TissueLoad& load, const tissue::TissueState& state) {
     const std::size_t n = model_->Size();
-    std::memcpy(static_cast<void*>(host_positions_), state.position.data(), n * sizeof(math::Vec3));
+    PutPositions(state.position, host_positions_);
     for (std::size_t i = 0; i < n; ++i)
       host_prescribed_[i] = state.condition[i] == NodeCondition::kPrescribed;
     Status status = Copy(args_.positions, host_positions_, n);
     if (status) status = Copy(args_.prescribed, host_prescribed_, n);
+    if (status && args_.is_resumed) status = Copy(before_positions_, host_before_, n);
     args_.external_force = load.external_force.empty() ? nullptr : external_force_;
     if (status && !load.external_force.empty()) {
-      std::memcpy(static_cast<void*>(host_external_force_), load.external_force.data(),
-                  n * sizeof(math::Vec3));
+      PutPositions(load.external_force, host_external_force_);
       status = Copy(external_force_, host_external_force_, n);
     }
     if (status) status = Copy(args_.intact, state.strand_is_intact.data(), state.strand_is_intact.size());
@@ -161,12 +209,13 @@ class TiledSolve final : public GpuSolve {
   std::vector<std::uint32_t> renumbered_;
   GpuMemory memory_;
   Args args_;
-  Triple<double>* external_force_ = nullptr;
+  Triple<double>*external_force_ = nullptr, *before_positions_ = nullptr;
   unsigned* arrived_ = nullptr;
-  Triple<double>*host_positions_ = nullptr, *host_external_force_ = nullptr;
+  Triple<double>*host_positions_ = nullptr, *host_external_force_ = nullptr, *host_before_ = nullptr;
   std::uint8_t* host_prescribed_ = nullptr;
   TiledReport* host_report_ = nullptr;
   TiledContacts contacts_;
+  std::vector<math::Vec3> start_, before_;  // of a solve with a hook
   CudaFunction kernel_ = nullptr;
   LaunchShape shape_;
   bool is_resident_ = false;

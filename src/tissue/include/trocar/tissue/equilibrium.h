@@ -36,15 +36,15 @@ class EquilibriumSolver {
   /// \param model    must outlive the solver
   /// \param threads  >= 1; the result does not depend on it
   EquilibriumSolver(const TissueModel& model, int threads);
-  ~EquilibriumSolver();
+  virtual ~EquilibriumSolver();
   EquilibriumSolver(EquilibriumSolver&&) noexcept;
   EquilibriumSolver& operator=(EquilibriumSolver&&) noexcept;
 
   /// Moves every node that is not prescribed towards equilibrium, starting from the state's positions.
   /// \note Real-time safe: no allocation, lock or throw of ours; bounded by settings.max_iterations.
   /// \param hook  nullptr, or what is to be called between iterations; a solve that it disturbs has not converged
-  SolveReport Solve(const SolverSettings& settings, const TissueLoad& load, TissueState& state,
-                    const SolveHook* hook = nullptr) noexcept;
+  virtual SolveReport Solve(const SolverSettings& settings, const TissueLoad& load, TissueState& state,
+                            const SolveHook* hook = nullptr) noexcept;
 
   /// Force of the tissue on whatever prescribes each node of the list, summed; valid after Solve [N].
   Vec3 CalcReaction(const TissueLoad& load, const TissueState& state,

@@ -9,25 +9,20 @@
 
 namespace trocar::tissue_cuda {
 
-/// Has the face of tissue::EquilibriumSolver.
-class GpuOrCpuSolver {
+class GpuOrCpuSolver final : public tissue::EquilibriumSolver {
  public:
-  /// \param model       must outlive the solver
-  /// \param threads     of the processor, >= 1
-  /// \param gpu         options of the GPU, or nothing: the processor alone
-  GpuOrCpuSolver(const tissue::TissueModel& model, int threads, const std::optional<GpuOptions>& gpu);
-  /// With a solver that the GPU was already opened for, or why it could not be.
+  /// \param model    must outlive the solver
+  /// \param threads  of the processor, >= 1
+  /// \param gpu      a solver of the same model, or why there is none
   GpuOrCpuSolver(const tissue::TissueModel& model, int threads, core::Result<GpuSolver> gpu);
+  ~GpuOrCpuSolver() override;
 
-  /// As tissue::EquilibriumSolver::Solve. The Chebyshev iteration runs on the GPU, other solvers on the
-  /// processor. When the GPU fails, the processor solves from the positions that the call began with. \note
-  /// Allocates nothing, but once for the text of a failure.
+  /// The Chebyshev iteration runs on the GPU, other solvers on the processor. When the GPU fails, the
+  /// processor solves from the positions that the call began with. \note Allocates nothing, but once for the
+  /// text of a failure.
   tissue::SolveReport Solve(const tissue::SolverSettings& settings, const tissue::TissueLoad& load,
-                            tissue::TissueState& state) noexcept;
-
-  /// As tissue::EquilibriumSolver::CalcReaction [N].
-  math::Vec3 CalcReaction(const tissue::TissueLoad& load, const tissue::TissueState& state,
-                          std::span<const std::uint32_t> nodes) const noexcept;
+                            tissue::TissueState& state,
+                            const tissue::SolveHook* hook = nullptr) noexcept override;
 
   /// The GPU in use; none once it failed.
   const GpuInformation* Gpu() const noexcept { return gpu_ ? &gpu_->Information() : nullptr; }
@@ -35,7 +30,6 @@ class GpuOrCpuSolver {
   const std::optional<core::Error>& GpuError() const noexcept { return gpu_error_; }
 
  private:
-  tissue::EquilibriumSolver cpu_;
   std::optional<GpuSolver> gpu_;
   std::optional<core::Error> gpu_error_;
 };
