@@ -9,6 +9,8 @@ constexpr BenchmarkSuite kSuites[] = {
     {"collision", "nearest triangle to a point and to a shaft: hierarchy against brute force",
      RunCollisionBenchmark},
     {"tissue", "equilibrium of mass-spring grids and of the built-in patient", RunTissueBenchmark},
+    {"tissue_cuda", "the GPU's memory layouts: checked, and timed where there is a GPU",
+     RunTissueCudaBenchmark},
 };
 
 /// Value of the first line "key : value".

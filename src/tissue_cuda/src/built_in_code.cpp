@@ -7,17 +7,17 @@
 asm(R"(
   .pushsection .rodata
   .balign 64
-  .hidden trocar_gpu_code
-  .global trocar_gpu_code
-trocar_gpu_code:
+  .hidden kTrocarGpuCode
+  .global kTrocarGpuCode
+kTrocarGpuCode:
   .incbin ")" TROCAR_GPU_CODE_FILE R"("
-  .hidden trocar_gpu_code_end
-  .global trocar_gpu_code_end
-trocar_gpu_code_end:
+  .hidden kTrocarGpuCodeEnd
+  .global kTrocarGpuCodeEnd
+kTrocarGpuCodeEnd:
   .byte 0
   .popsection
 )");
-extern "C" const unsigned char trocar_gpu_code[], trocar_gpu_code_end[];
+extern "C" const unsigned char kTrocarGpuCode[], kTrocarGpuCodeEnd[];
 #endif
 
 namespace trocar::tissue_cuda {
@@ -25,7 +25,7 @@ namespace trocar::tissue_cuda {
 DriverSource BuiltInSource() {
   DriverSource source;
 #if TROCAR_HAS_GPU_CODE
-  source.code = {trocar_gpu_code, static_cast<std::size_t>(trocar_gpu_code_end - trocar_gpu_code)};
+  source.code = {kTrocarGpuCode, static_cast<std::size_t>(kTrocarGpuCodeEnd - kTrocarGpuCode)};
   source.code_version = TROCAR_CUDA_VERSION;
 #endif
   return source;

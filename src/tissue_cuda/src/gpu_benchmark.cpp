@@ -77,7 +77,7 @@ double CalcRelativeError(const std::vector<Vec3>& found, const std::vector<Vec3>
 }
 
 core::Result<GpuBenchmarkResult> RunGpuBenchmark(const GpuBenchmarkOptions& options) {
-  GpuBenchmarkRun run{options, BuiltInSource(), {}};
+  GpuBenchmarkRun run{options, BuiltInSource(), {}, {}};
   const core::Result<GpuInformation> gpu = FindGpu(run.source);
   run.result.has_gpu = gpu.ok() && !options.on_host;
   if (run.result.has_gpu) {
@@ -97,7 +97,7 @@ core::Result<GpuBenchmarkResult> RunGpuBenchmark(const GpuBenchmarkOptions& opti
     if (Status status = part(run); !status) return status.error();
   }
   if (!run.result.has_gpu || options.is_quick) return std::move(run.result);
-  for (Status (*part)(GpuBenchmarkRun&) : {TimeSteps, TimeFrame, TimeMillion}) {
+  for (Status (*part)(GpuBenchmarkRun&) : {TimeSteps, TimeFrame, TimeLarge}) {
     if (Status status = part(run); !status) return status.error();
   }
   return std::move(run.result);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "check_systems.h"
 #include "gpu_solve.h"
@@ -10,11 +11,22 @@
 
 namespace trocar::tissue_cuda {
 
+/// What is timed: the paper's meshes (its Table 1), unless a test asks for less.
+struct GpuBenchmarkSizes {
+  std::vector<std::uint32_t> sides = {16, 112, 176, 208};  ///< of the grids whose steps are timed
+  int steps = 50;                   ///< of the paper's layouts: as many as go without a look at the residual
+  int iterations = 1000;            ///< of ours: one launch
+  std::uint32_t frame_side = 208;   ///< of the grid that is brought to equilibrium
+  std::uint32_t large_side = 1000;  ///< of the grid that does not stay resident
+  std::size_t copy_bytes = std::size_t{2} << 30;  ///< to measure the roof of memory
+};
+
 /// One run of the benchmark.
 struct GpuBenchmarkRun {
   GpuBenchmarkOptions options;
   DriverSource source;  ///< of the GPU, or of the host executor
   GpuBenchmarkResult result;
+  GpuBenchmarkSizes sizes;
 };
 
 /// "tiled-streaming single", and so on.
@@ -63,6 +75,6 @@ core::Status CheckEquilibrium(GpuBenchmarkRun& run);
 // timings (gpu_benchmark_times.cpp)
 core::Status TimeSteps(GpuBenchmarkRun& run);
 core::Status TimeFrame(GpuBenchmarkRun& run);
-core::Status TimeMillion(GpuBenchmarkRun& run);
+core::Status TimeLarge(GpuBenchmarkRun& run);
 
 }  // namespace trocar::tissue_cuda

@@ -4,6 +4,7 @@
 ///   init=CODE load=CODE               what cuInit and cuModuleLoadData answer
 ///   version=N devices=N capability=N  what there is
 ///   multiprocessors=N memory=BYTES    how much of it
+///   spoil=N                           one bit of the Nth copy from the GPU is wrong
 ///   fail=FUNCTION:N:CODE              the Nth call of a function fails, and every call after it, as on a
 ///   real GPU
 #include <cstdlib>
@@ -128,6 +129,17 @@ TROCAR_API cuMemAlloc_v2(CudaAddress* address, std::size_t bytes) {
     return kCudaOutOfMemory;
   return Host().allocate(address, bytes);
 }
+TROCAR_API cuMemcpyDtoHAsync_v2(void* to, CudaAddress from, std::size_t bytes, CudaStream stream) {
+  if (const CudaCode code = Count("cuMemcpyDtoHAsync_v2")) return code;
+  const CudaCode code = Host().copy_from(to, from, bytes, stream);
+  if (ThePlan().calls["cuMemcpyDtoHAsync_v2"] == ThePlan().Number("spoil", 0))
+    *static_cast<unsigned char*>(to) ^= 1;
+  return code;
+}
+TROCAR_API cuEventElapsedTime(float* milliseconds, CudaEvent, CudaEvent) {
+  *milliseconds = 1.0f;
+  return Count("cuEventElapsedTime");
+}
 TROCAR_PASS(get_device, cuDeviceGet, (CudaDevice * device, int ordinal), (device, ordinal))
 TROCAR_PASS(retain_context, cuDevicePrimaryCtxRetain, (CudaContext * context, CudaDevice device),
             (context, device))
@@ -148,8 +160,6 @@ TROCAR_PASS(free_host, cuMemFreeHost, (void* address), (address))
 TROCAR_PASS(copy_to, cuMemcpyHtoDAsync_v2,
             (CudaAddress to, const void* from, std::size_t bytes, CudaStream stream),
             (to, from, bytes, stream))
-TROCAR_PASS(copy_from, cuMemcpyDtoHAsync_v2,
-            (void* to, CudaAddress from, std::size_t bytes, CudaStream stream), (to, from, bytes, stream))
 TROCAR_PASS(copy_within, cuMemcpyDtoDAsync_v2,
             (CudaAddress to, CudaAddress from, std::size_t bytes, CudaStream stream),
             (to, from, bytes, stream))
@@ -171,5 +181,3 @@ TROCAR_PASS(synchronize, cuStreamSynchronize, (CudaStream stream), (stream))
 TROCAR_PASS(create_event, cuEventCreate, (CudaEvent * event, unsigned flags), (event, flags))
 TROCAR_PASS(destroy_event, cuEventDestroy_v2, (CudaEvent event), (event))
 TROCAR_PASS(record_event, cuEventRecord, (CudaEvent event, CudaStream stream), (event, stream))
-TROCAR_PASS(elapsed, cuEventElapsedTime, (float* milliseconds, CudaEvent start, CudaEvent end),
-            (milliseconds, start, end))
