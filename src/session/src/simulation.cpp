@@ -14,6 +14,7 @@
 #include "trocar/tissue/conservation.h"
 #include "trocar/tissue/equilibrium.h"
 #include "trocar/tissue/state_guard.h"
+#include "trocar/tissue_cuda/gpu_or_cpu_solver.h"
 
 namespace trocar::session {
 namespace {
@@ -64,6 +65,7 @@ struct Simulation::Content {
 
   // scratch
   std::unique_ptr<tissue::EquilibriumSolver> solver;
+  const tissue_cuda::GpuOrCpuSolver* gpu_solver = nullptr;  // the same, where the GPU was asked for
   std::unique_ptr<tissue::Conservation> conservation;
   std::vector<surgery::OrganSurface> organs;
   surgery::ContactSet contacts;
@@ -92,6 +94,7 @@ struct Simulation::Content {
   void Publish(const Input& input) noexcept;
   void Note(EventKind kind, int hand, std::int32_t organ, double force) noexcept;
   void Reset();
+  void MakeSolver(int threads, SolveOn solve_on);
 };
 
 // --- the stages of a tick
@@ -263,14 +266,25 @@ void Simulation::Content::Reset() {
   Publish(home);
 }
 
-core::Result<Simulation> Simulation::Make(std::shared_ptr<const Scene> scene, int threads) {
+void Simulation::Content::MakeSolver(int threads, SolveOn solve_on) {
+  if (solve_on == SolveOn::kProcessor) {
+    solver = std::make_unique<tissue::EquilibriumSolver>(tissue_model, threads);
+    return;
+  }
+  auto made = std::make_unique<tissue_cuda::GpuOrCpuSolver>(tissue_model, threads,
+                                                            tissue_cuda::GpuSolver::Make(tissue_model));
+  gpu_solver = made.get();
+  solver = std::move(made);
+}
+
+core::Result<Simulation> Simulation::Make(std::shared_ptr<const Scene> scene, int threads, SolveOn solve_on) {
   auto made = MakePatientTissue(*scene);
   if (!made.ok()) return made.error();
   auto content = std::make_unique<Content>();
   content->scene = std::move(scene);
   content->tissue_model = tissue::MakeTissueModel(made->definition);
   content->surfaces = std::move(made->surfaces);
-  content->solver = std::make_unique<tissue::EquilibriumSolver>(content->tissue_model, std::max(1, threads));
+  content->MakeSolver(std::max(1, threads), solve_on);
   made->conservation.imaging_gravity = kImagingGravity;
   content->conservation =
       std::make_unique<tissue::Conservation>(content->tissue_model, std::move(made->conservation));
@@ -351,6 +365,16 @@ double Simulation::CalcEquilibriumError() const {
   return scale > 0.0 ? error / scale : 0.0;
 }
 
+std::string_view Simulation::GpuName() const {
+  const auto* gpu = content_->gpu_solver != nullptr ? content_->gpu_solver->Gpu() : nullptr;
+  return gpu != nullptr ? std::string_view(gpu->name) : std::string_view();
+}
+
+const core::Error* Simulation::GpuError() const {
+  const auto* solver = content_->gpu_solver;
+  return solver != nullptr && solver->GpuError() ? &*solver->GpuError() : nullptr;
+}
+
 std::uint64_t Simulation::Hash() const {
   const Content& c = *content_;
   core::StateHash hash;
@@ -358,7 +382,8 @@ std::uint64_t Simulation::Hash() const {
   for (const Vec3& p : c.tissue.position) hash.Add(p.x), hash.Add(p.y), hash.Add(p.z);
   for (const auto condition : c.tissue.condition) hash.Add(static_cast<std::uint64_t>(condition));
   for (const tissue::OrganVolume& organ : c.conserved.organs) {
-    for (const double value : {organ.target, organ.pressure, organ.opening_area, organ.leaked}) hash.Add(value);
+    for (const double value : {organ.target, organ.pressure, organ.opening_area, organ.leaked})
+      hash.Add(value);
   }
   for (std::uint32_t region = 0; region < c.conserved.regions.count; ++region) {
     const Pose& X = c.conserved.X_world_rest[region];

@@ -69,15 +69,15 @@ class EquilibriumSolver {
   EquilibriumSolver(const TissueModel& model, int threads);
   /// \pre HasSimdLevel(options.simd)
   EquilibriumSolver(const TissueModel& model, const SolverOptions& options);
-  ~EquilibriumSolver();
+  virtual ~EquilibriumSolver();
   EquilibriumSolver(EquilibriumSolver&&) noexcept;
   EquilibriumSolver& operator=(EquilibriumSolver&&) noexcept;
 
   /// Moves every node that is not prescribed towards equilibrium, starting from the state's positions.
   /// \note Real-time safe: no allocation, lock or throw of ours; bounded by settings.max_iterations.
   /// \param hook  nullptr, or what is to be called between iterations; a solve that it disturbs has not converged
-  SolveReport Solve(const SolverSettings& settings, const TissueLoad& load, TissueState& state,
-                    const SolveHook* hook = nullptr) noexcept;
+  virtual SolveReport Solve(const SolverSettings& settings, const TissueLoad& load, TissueState& state,
+                            const SolveHook* hook = nullptr) noexcept;
 
   /// True where the model is a structured mesh and runs as a stencil.
   bool IsStructured() const noexcept;
