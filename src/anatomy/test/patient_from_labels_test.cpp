@@ -202,6 +202,10 @@ TEST(FromLabelsSlow, RebuildsTheReferenceOfTheVisibleHuman) {
   EXPECT_NEAR(report->organs[1].volume_ml, 28.6, 0.08 * 28.6);
   for (const OrganReport& organ : report->organs) {
     EXPECT_TRUE(organ.closed && organ.manifold && organ.outward) << organ.name;
+    EXPECT_EQ(organ.self_intersections, 0u) << organ.name;
+    EXPECT_GT(organ.min_angle_deg, 5.0) << organ.name;
+    EXPECT_LT(std::fabs(organ.volume_change), 0.005) << organ.name;
+    EXPECT_LT(organ.mean_distance_mm, 0.3) << organ.name;
   }
   EXPECT_TRUE(CheckPatient(report->patient).ok());
 }
