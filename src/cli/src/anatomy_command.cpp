@@ -161,6 +161,7 @@ void AddAnatomyCommand(CLI::App& app, Outcome& outcome) {
   build->callback([arguments, &outcome] { outcome.status = Build(*arguments); });
   AddAnatomyCheckCommand(*anatomy, outcome);
   AddAnatomyExportCommand(*anatomy, outcome);
+  AddAnatomyRehearseCommand(*anatomy, outcome);
   AddAnatomyPhantomCommand(*anatomy, outcome);
   AddAnatomyViewCommand(*anatomy, outcome);
   AddAnatomyImagesCommand(*anatomy, outcome);

@@ -30,6 +30,7 @@ core::Result<std::vector<anatomy::ParameterSetting>> ParseSettings(const std::ve
 void AddAnatomyGenerateCommand(CLI::App& anatomy, Outcome& outcome);
 void AddAnatomyCheckCommand(CLI::App& anatomy, Outcome& outcome);
 void AddAnatomyExportCommand(CLI::App& anatomy, Outcome& outcome);
+void AddAnatomyRehearseCommand(CLI::App& anatomy, Outcome& outcome);
 void AddAnatomyPhantomCommand(CLI::App& anatomy, Outcome& outcome);
 void AddAnatomyViewCommand(CLI::App& anatomy, Outcome& outcome);
 void AddAnatomyImagesCommand(CLI::App& anatomy, Outcome& outcome);

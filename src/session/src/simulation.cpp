@@ -70,6 +70,8 @@ struct Simulation::Content {
   LiveSettings settings;
   tissue::TissueLoad load;
   tissue::SolveReport report;
+  tissue::ConservationState good_conserved;             // after the last good tick
+  std::vector<tissue::NodeCondition> solved_condition;  // a grasp may slip once the forces are known
   std::array<Pose, kHandCount> X_world_tools;
   std::array<surgery::GraspChange, kHandCount> changes{};
   std::array<std::int32_t, kHandCount> changed_organs{};
@@ -145,13 +147,20 @@ void Simulation::Content::ActOnTissue() noexcept {
 
 void Simulation::Content::Solve() noexcept {
   if (guard->IsFrozen()) return;
+  std::copy(tissue.condition.begin(), tissue.condition.end(), solved_condition.begin());
   load.external_force = {};
   report = tissue::SolveConserving(*solver, settings.solver, scene->tick_seconds, *conservation, load, tissue,
                                    conserved);
 }
 
 void Simulation::Content::CheckState() noexcept {
-  verdict = guard->Check(tissue);
+  verdict = guard->Check(tissue, report.is_finite);
+  // what a bad tick left in the pressures and frames goes with it
+  if (verdict == tissue::GuardVerdict::kGood) {
+    good_conserved = conserved;
+  } else {
+    conserved = good_conserved;
+  }
   for (int hand = 0; hand < kHandCount; ++hand) {
     const auto contact =
         surgery::CalcContactReaction(contacts, static_cast<std::uint8_t>(hand), tissue.position);
@@ -246,6 +255,8 @@ void Simulation::Content::Reset() {
   was_frozen = false;
   snapshot = {};
   snapshot.positions.resize(tissue_model.Size());
+  solved_condition = tissue.condition;
+  good_conserved = conserved;
   snapshot.organs.resize(conserved.organs.size());
   UpdateHierarchy();
   ReadInputs(home);
@@ -318,6 +329,26 @@ std::span<const SurfaceInfo> Simulation::Surfaces() const {
 }
 const Snapshot& Simulation::GetSnapshot() const {
   return content_->snapshot;
+}
+
+double Simulation::CalcEquilibriumError() const {
+  const Content& c = *content_;
+  tissue::TissueState state = c.tissue;
+  state.condition = c.solved_condition;
+  tissue::SolverSettings exact;
+  exact.kind = tissue::SolverKind::kNewtonMultigrid;
+  exact.max_error = 1e-7;
+  exact.max_newton_steps = 200;
+  exact.max_linear_iterations = 300;
+  tissue::EquilibriumSolver judge(c.tissue_model, 1);
+  const tissue::SolveReport solved = judge.Solve(exact, c.load, state);
+  if (!solved.converged) return std::nan("");
+  double error = 0, scale = 0;
+  for (std::size_t i = 0; i < state.position.size(); ++i) {
+    error = std::max(error, math::Distance(state.position[i], c.tissue.position[i]));
+    scale = std::max(scale, math::Distance(state.position[i], c.tissue_model.rest[i]));
+  }
+  return scale > 0.0 ? error / scale : 0.0;
 }
 
 std::uint64_t Simulation::Hash() const {
