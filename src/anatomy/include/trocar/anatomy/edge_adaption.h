@@ -26,6 +26,8 @@ struct EdgeAdaptionSettings {
   double smoothness =
       0.1;  ///< cost of neighbours that move differently by one pixel, against the strongest edge [-]
   bool inserts_points = true;  ///< the contour chain divides splines by points on the edge, see contour_fit.h
+
+  friend bool operator==(const EdgeAdaptionSettings&, const EdgeAdaptionSettings&) = default;
 };
 
 /// Points on their edges.
