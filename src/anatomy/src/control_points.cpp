@@ -97,13 +97,15 @@ Structure ReadStructure(const ControlPoints& points, const JsonView& view, Compl
   }
   if (view.Has("adaption")) {
     const JsonView adaption = view.Object("adaption");
-    adaption.AllowOnly({"max_shift_px", "blur_px", "min_gradient", "nearness", "smoothness"});
+    adaption.AllowOnly(
+        {"max_shift_px", "blur_px", "min_gradient", "nearness", "smoothness", "insert_points"});
     EdgeAdaptionSettings& s = structure.adaption;
     s.max_shift_px = adaption.NumberOr("max_shift_px", s.max_shift_px, {0.0, 30.0});
     s.blur_px = adaption.NumberOr("blur_px", s.blur_px, {0.3, 10.0});
     s.min_gradient = adaption.NumberOr("min_gradient", s.min_gradient, {0.0, 1000.0});
     s.nearness = adaption.NumberOr("nearness", s.nearness, {0.0, 1.0});
     s.smoothness = adaption.NumberOr("smoothness", s.smoothness, {0.0, 100.0});
+    s.inserts_points = adaption.BooleanOr("insert_points", s.inserts_points);
   }
   for (const JsonView& slice : view.Array("slices")) {
     slice.AllowOnly({"slice", "contours", "holes", "open"});
@@ -245,8 +247,8 @@ core::Result<ControlPoints> ParseControlPoints(std::string_view text, std::strin
   const JsonView images = root.Object("images");
   images.AllowOnly(
       {"pattern", "first_slice", "last_slice", "width", "height", "pixel_mm", "slice_mm", "axes"});
-  points.image_pattern = images.Text("pattern");
-  CheckPattern(images, points.image_pattern);
+  points.image_pattern = images.TextOr("pattern", "");
+  if (images.Has("pattern")) CheckPattern(images, points.image_pattern);
   points.first_slice = images.Integer("first_slice", {0, 1e6});
   points.last_slice = images.Integer("last_slice", {0, 1e6});
   if (points.last_slice < points.first_slice) images.Complain("last_slice comes before first_slice");
@@ -309,8 +311,9 @@ std::string FormatControlPoints(const ControlPoints& points) {
   std::string text = "{\n";
   text += "\"format\": \"" + std::string(kFormat) + "\",\n\"version\": " + std::to_string(kVersion) + ",\n";
   text += "\"name\": " + Quoted(points.name) + ",\n\"provenance\": " + Quoted(points.provenance) + ",\n";
-  text += "\"images\": {\"pattern\": " + Quoted(points.image_pattern) +
-          ", \"first_slice\": " + std::to_string(points.first_slice) +
+  text += "\"images\": {";
+  if (!points.image_pattern.empty()) text += "\"pattern\": " + Quoted(points.image_pattern) + ", ";
+  text += "\"first_slice\": " + std::to_string(points.first_slice) +
           ", \"last_slice\": " + std::to_string(points.last_slice) +
           ",\n  \"width\": " + std::to_string(points.width) +
           ", \"height\": " + std::to_string(points.height) + ", \"pixel_mm\": " + exact(points.pixel_mm) +
@@ -333,7 +336,8 @@ std::string FormatControlPoints(const ControlPoints& points) {
             ", \"blur_px\": " + exact(s.adaption.blur_px) +
             ", \"min_gradient\": " + exact(s.adaption.min_gradient) +
             ", \"nearness\": " + exact(s.adaption.nearness) +
-            ", \"smoothness\": " + exact(s.adaption.smoothness) + "},\n   \"slices\": [";
+            ", \"smoothness\": " + exact(s.adaption.smoothness) +
+            (s.adaption.inserts_points ? "" : ", \"insert_points\": false") + "},\n   \"slices\": [";
     for (std::size_t k = 0; k < s.slices.size(); ++k) {
       text += (k == 0 ? "\n    {\"slice\": " : ",\n    {\"slice\": ") + std::to_string(s.slices[k].slice) +
               ", \"contours\": " + FormatPolygons(s.slices[k].contours);

@@ -6,6 +6,8 @@
 #include <limits>
 
 #include "nearest_surface.h"
+#include "patient_frame.h"
+#include "trocar/core/assert.h"
 #include "trocar/geometry/mesh_measures.h"
 #include "trocar/math/cubic_spline.h"
 
@@ -330,6 +332,41 @@ std::vector<TubePoints> PlaceDucts(const TriangleMesh& liver, const TriangleMesh
                        placer.Route({start, placer.PushOut(0.5 * (start + goal), small + kClearMm), goal},
                                     small, 0.0, kLeft),
                        small, small));
+  }
+  return tubes;
+}
+
+std::vector<Tube> MakeTemplateTubes(const TriangleMesh& liver, const TriangleMesh& gallbladder,
+                                    const Vec3& neck, std::span<const Parameter> parameters) {
+  constexpr double kSpacing = 0.002;  // m
+  const auto in_mm = [](TriangleMesh mesh) {
+    for (Vec3& p : mesh.positions) p *= kMmPerMetre;
+    return mesh;
+  };
+  const auto rules = ParameterRules();
+  const bool is_whole = std::all_of(rules.begin(), rules.end(), [&](const ParameterRule& rule) {
+    return std::any_of(parameters.begin(), parameters.end(),
+                       [&](const Parameter& parameter) { return parameter.name == rule.name; });
+  });
+  auto usual = DrawParameters(0, MakeUsualSettings());
+  TROCAR_ASSERT(usual.ok());
+  const auto placed = PlaceDucts(in_mm(liver), in_mm(gallbladder), kMmPerMetre * neck,
+                                 is_whole ? parameters : std::span<const Parameter>(*usual));
+  std::vector<Tube> tubes;
+  for (const TubePoints& points : placed) {
+    const auto name_of = [](const std::string& end) { return end == "outside" ? std::string() : end; };
+    Tube tube{points.name,
+              points.kind == "artery" ? TubeKind::kArtery : TubeKind::kDuct,
+              name_of(points.from),
+              name_of(points.to),
+              {},
+              false};
+    for (const TubePoint& point : points.points) {
+      tube.line.points.push_back(Vec3{point.pixel.x, point.pixel.y, point.slice} / kMmPerMetre);
+      tube.line.radii.push_back(point.radius_mm / kMmPerMetre);
+    }
+    tube.line = geometry::Resample(tube.line, kSpacing);
+    tubes.push_back(std::move(tube));
   }
   return tubes;
 }

@@ -24,6 +24,13 @@ std::vector<TubePoints> PlaceDucts(const geometry::TriangleMesh& liver,
                                    const geometry::TriangleMesh& gallbladder, const math::Vec3& neck,
                                    std::span<const Parameter> parameters);
 
+/// The usual tubes for a patient whose pictures show none, in the world frame [m]; is_seen = false.
+/// \param neck  where the cystic duct leaves the gallbladder, world frame [m]
+/// \param parameters  as DrawParameters returns them; where one is missing the usual ones take their place
+std::vector<Tube> MakeTemplateTubes(const geometry::TriangleMesh& liver,
+                                    const geometry::TriangleMesh& gallbladder, const math::Vec3& neck,
+                                    std::span<const Parameter> parameters);
+
 /// Length of the polygon through a tube's points, in the frame of PlaceDucts [mm].
 double CalcLengthMm(const TubePoints& tube);
 

@@ -3,13 +3,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <set>
 
+#include "duct_template.h"
+#include "gallbladder_bed.h"
+#include "liver_regions.h"
 #include "nearest_surface.h"
+#include "trocar/anatomy/tube_graph.h"
 #include "trocar/core/assert.h"
 #include "trocar/geometry/mesh_measures.h"
-#include "trocar/geometry/mesh_topology.h"
 
 namespace trocar::anatomy {
 namespace {
@@ -17,14 +19,6 @@ namespace {
 using geometry::TriangleMesh;
 
 constexpr double kMetresPerMm = 1e-3;
-/// Directions in which the diaphragm and the abdominal wall lie, seen from the liver: right, cranial,
-/// anterior.
-const Vec3 kTowardsDiaphragm = math::Normalized(Vec3{-0.45, 0.7, 0.55});
-constexpr double kFacesDiaphragm = 0.25;  // cosine to that direction
-constexpr double kSuperiorNormal = 0.3;   // y of a normal of the superior face
-constexpr double kCoronaryPosterior =
-    0.4;  // part of the liver's depth, from behind, in which the coronary ligament lies
-constexpr double kCarries = 0.2;  // barycentric weight from which a liver vertex carries an attachment
 constexpr double kLiverEdgeReach =
     0.045;  // the liver's edge is looked for so far to either side of the fundus [m]
 constexpr double kFundusRadius =
@@ -78,130 +72,6 @@ Vec3 FindLongAxis(const TriangleMesh& mesh, Vec3& centre) {
     axis = math::Normalized(next);
   }
   return axis;
-}
-
-std::vector<std::uint32_t> Ascending(std::set<std::uint32_t> vertices) {
-  return {vertices.begin(), vertices.end()};
-}
-
-/// Largest part of the marked vertices that hangs together along edges.
-void KeepLargestPatch(const geometry::Rows& neighbours, std::vector<char>& marked) {
-  std::vector<int> part(marked.size(), -1);
-  std::vector<std::size_t> sizes;
-  std::vector<std::uint32_t> stack;
-  for (std::uint32_t seed = 0; seed < marked.size(); ++seed) {
-    if (!marked[seed] || part[seed] >= 0) continue;
-    const int number = static_cast<int>(sizes.size());
-    sizes.push_back(0);
-    stack.assign(1, seed);
-    part[seed] = number;
-    while (!stack.empty()) {
-      const auto here = stack.back();
-      stack.pop_back();
-      ++sizes[number];
-      for (const auto w : neighbours.Row(here)) {
-        if (!marked[w] || part[w] >= 0) continue;
-        part[w] = number;
-        stack.push_back(w);
-      }
-    }
-  }
-  if (sizes.empty()) return;
-  const int largest = static_cast<int>(std::max_element(sizes.begin(), sizes.end()) - sizes.begin());
-  for (std::size_t v = 0; v < marked.size(); ++v) marked[v] = part[v] == largest;
-}
-
-/// Depth of each vertex below the plane that touches the mesh in the direction of its normal [m].
-std::vector<double> CalcHullDepths(const TriangleMesh& mesh, const std::vector<Vec3>& normals) {
-  std::vector<double> depths(mesh.positions.size());
-  for (std::size_t v = 0; v < depths.size(); ++v) {
-    double highest = -std::numeric_limits<double>::max();
-    for (const Vec3& p : mesh.positions) highest = std::max(highest, Dot(p, normals[v]));
-    depths[v] = highest - Dot(mesh.positions[v], normals[v]);
-  }
-  return depths;
-}
-
-struct LiverRegions {
-  std::vector<std::uint32_t> diaphragmatic, falciform, coronary;
-};
-
-LiverRegions FindLiverRegions(const TriangleMesh& liver, const NearestSurface& gallbladder,
-                              double falciform_x, const RegionSettings& settings) {
-  const std::size_t n = liver.positions.size();
-  std::vector<Vec3> normals(n);
-  geometry::CalcVertexNormals(liver.positions, liver.triangles, normals);
-  const auto depths = CalcHullDepths(liver, normals);
-  const auto neighbours = geometry::FindVertexNeighbours(liver.triangles, n);
-
-  std::vector<char> face(n, 0);
-  for (std::size_t v = 0; v < n; ++v) {
-    face[v] = Dot(normals[v], kTowardsDiaphragm) > kFacesDiaphragm && depths[v] < settings.hull_depth;
-  }
-  KeepLargestPatch(neighbours, face);
-  // single holes belong to the face
-  std::vector<char> smooth = face;
-  for (std::size_t v = 0; v < n; ++v) {
-    const auto row = neighbours.Row(v);
-    const auto count = std::count_if(row.begin(), row.end(), [&](auto w) { return face[w] != 0; });
-    const bool is_visceral = Dot(normals[v], kTowardsDiaphragm) < 0;
-    if (!face[v] && !is_visceral && 4 * count > 3 * static_cast<std::ptrdiff_t>(row.size())) smooth[v] = 1;
-  }
-  face = smooth;
-  std::vector<Vec3> border;
-  for (std::size_t v = 0; v < n; ++v) {
-    if (!face[v]) border.push_back(liver.positions[v]);
-  }
-  std::vector<char> fixed = face;
-  for (std::size_t v = 0; v < n; ++v) {
-    if (!face[v]) continue;
-    const bool is_margin = std::any_of(border.begin(), border.end(), [&](const Vec3& p) {
-      return Distance(p, liver.positions[v]) < settings.margin;
-    });
-    if (is_margin || gallbladder.Find(liver.positions[v]).distance < settings.gallbladder_clear) fixed[v] = 0;
-  }
-  KeepLargestPatch(neighbours, fixed);
-
-  const geometry::Box box = geometry::CalcBox(liver.positions);
-  std::set<std::uint32_t> diaphragmatic, falciform, coronary;
-  for (std::uint32_t v = 0; v < n; ++v) {
-    if (!fixed[v]) continue;
-    const Vec3& p = liver.positions[v];
-    diaphragmatic.insert(v);
-    if (std::fabs(p.x - falciform_x) <= settings.falciform_half) falciform.insert(v);
-    const bool is_posterior = p.z < box.min.z + kCoronaryPosterior * (box.max.z - box.min.z);
-    if (is_posterior && normals[v].y > kSuperiorNormal && p.x < falciform_x) coronary.insert(v);
-  }
-  return {Ascending(diaphragmatic), Ascending(falciform), Ascending(coronary)};
-}
-
-struct Bed {
-  std::vector<std::uint32_t> gallbladder, liver;
-  std::vector<std::array<std::uint32_t, 2>> pairs;  // gallbladder vertex, liver vertex
-};
-
-Bed FindBed(const TriangleMesh& gallbladder, const TriangleMesh& liver, double bed_distance) {
-  std::vector<Vec3> normals(gallbladder.positions.size());
-  geometry::CalcVertexNormals(gallbladder.positions, gallbladder.triangles, normals);
-  const NearestSurface surface(liver);
-  std::set<std::uint32_t> of_gallbladder, of_liver;
-  Bed bed;
-  for (std::uint32_t v = 0; v < gallbladder.positions.size(); ++v) {
-    const SurfacePoint near = surface.Find(gallbladder.positions[v]);
-    if (near.distance > bed_distance) continue;
-    const auto& triangle = liver.triangles[near.triangle];
-    // the surfaces face each other
-    if (Dot(normals[v], geometry::CalcAreaNormal(liver.positions, triangle)) >= 0) continue;
-    of_gallbladder.insert(v);
-    for (int corner = 0; corner < 3; ++corner) {
-      if (near.at.weights[corner] < kCarries) continue;
-      bed.pairs.push_back({v, triangle[corner]});
-      of_liver.insert(triangle[corner]);
-    }
-  }
-  bed.gallbladder = Ascending(of_gallbladder);
-  bed.liver = Ascending(of_liver);
-  return bed;
 }
 
 /// Mean of the surface around the vertex that lies furthest along `direction`, put back onto the surface.
@@ -267,6 +137,8 @@ core::Result<Patient> AssemblePatient(const ControlPoints& points,
     if (tube.to == "gallbladder") snap(tube.line.points.back());
     patient.tubes.push_back(std::move(tube));
   }
+  // joints become exact; what lies too far away stays, for the linter to find
+  JoinTubes(patient);
 
   // the gallbladder's ends along its long axis; the cystic duct starts at the infundibulum
   Vec3 centre;
@@ -278,6 +150,12 @@ core::Result<Patient> AssemblePatient(const ControlPoints& points,
   if (Dot(axis, towards_fundus) < 0) axis = -axis;
   const Vec3 fundus = FindEnd(gallbladder.mesh, gallbladder_surface, axis);
   const Vec3 infundibulum = FindEnd(gallbladder.mesh, gallbladder_surface, -axis);
+
+  // pictures that show no duct at all: the usual ones, placed by the landmarks
+  if (points.tubes.empty()) {
+    patient.tubes = MakeTemplateTubes(liver.mesh, gallbladder.mesh, infundibulum, {});
+    JoinTubes(patient);
+  }
 
   const LandmarkPoint* fissure = points.FindLandmark("umbilical_fissure");
   const double falciform_x =

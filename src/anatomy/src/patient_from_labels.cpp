@@ -55,18 +55,6 @@ Vec3 FindNeck(const geometry::TriangleMesh& gallbladder) {
   return Dot(one, upwards) > Dot(other, upwards) ? one : other;
 }
 
-/// The middle of every distribution, and no variation.
-std::vector<ParameterSetting> MakeUsualSettings() {
-  std::vector<ParameterSetting> settings;
-  for (const ParameterRule& rule : ParameterRules()) {
-    std::string value = std::to_string(rule.centre);
-    if (rule.distribution == Distribution::kChance) value = "no";
-    if (rule.distribution == Distribution::kChoice) value = std::string(rule.choices.front().name);
-    settings.emplace_back(std::string(rule.name), value);
-  }
-  return settings;
-}
-
 }  // namespace
 
 core::Result<OrganLabels> FindLabels(const LabelVolume& volume, const LabelOptions& options) {

@@ -71,7 +71,7 @@ constexpr ParameterRule kRules[] = {
      10,
      {},
      "mm",
-     "thickness; not meshed",
+     "thickness; not meshed, makes the wall stiffer",
      "radiology: at most 3 mm; mean and deviation: general knowledge"},
     {"gallbladder_bend",
      kNormal,
@@ -238,7 +238,7 @@ constexpr ParameterRule kRules[] = {
      "",
      "the fundus is folded over",
      "general knowledge: 1 to 6 %"},
-    {"hydrops", kFixed, 0, 0, 0, 0, 0, 1, {}, "", "0 none to 1: half as long again, a third wider", kSlider},
+    {"hydrops", kFixed, 0, 0, 0, 0, 0, 1, {}, "", "0 none to 1: half as long again, a third wider; tense", kSlider},
     {"acute_cholecystitis",
      kFixed,
      0,
@@ -249,9 +249,9 @@ constexpr ParameterRule kRules[] = {
      1,
      {},
      "",
-     "0 none to 1: 80 x 40 mm at least (Tokyo guidelines)",
+     "0 none to 1: 80 x 40 mm at least (Tokyo guidelines); thick wall",
      kSlider},
-    {"scleroatrophy", kFixed, 0, 0, 0, 0, 0, 1, {}, "", "0 none to 1: 45 mm long, a third narrower", kSlider},
+    {"scleroatrophy", kFixed, 0, 0, 0, 0, 0, 1, {}, "", "0 none to 1: 45 mm long, a third narrower; thick, stiff wall", kSlider},
     {"steatosis",
      kFixed,
      0,
@@ -274,7 +274,7 @@ constexpr ParameterRule kRules[] = {
      1,
      {},
      "",
-     "0 none to 1: nodules, small right lobe, large caudate lobe",
+     "0 none to 1: nodules, small right lobe, large caudate lobe; 11 times as stiff",
      kSlider},
     {"triangle_fibrosis",
      kFixed,
@@ -286,7 +286,7 @@ constexpr ParameterRule kRules[] = {
      1,
      {},
      "",
-     "0 none to 1, of the hepatocystic triangle; no geometry",
+     "0 none to 1, of the hepatocystic triangle: ducts and arteries held firmly",
      kSlider},
     {"adhesions",
      kFixed,
@@ -298,7 +298,7 @@ constexpr ParameterRule kRules[] = {
      1,
      {},
      "",
-     "0 none to 1, to omentum and bowel; no geometry",
+     "0 none to 1: share of the free wall near the liver that has grown to it",
      kSlider},
 };
 
@@ -434,6 +434,17 @@ LengthRange FindCysticDuctRange(std::string_view length_class) {
   if (length_class == "short") return {14, 3, 8, 20};
   if (length_class == "long") return {50, 4, 42, 60};
   return {35, 2.5, 30, 40};
+}
+
+std::vector<ParameterSetting> MakeUsualSettings() {
+  std::vector<ParameterSetting> settings;
+  for (const ParameterRule& rule : ParameterRules()) {
+    std::string value = std::to_string(rule.centre);
+    if (rule.distribution == Distribution::kChance) value = "no";
+    if (rule.distribution == Distribution::kChoice) value = std::string(rule.choices.front().name);
+    settings.emplace_back(std::string(rule.name), value);
+  }
+  return settings;
 }
 
 double NumberOf(std::span<const Parameter> parameters, std::string_view name) {

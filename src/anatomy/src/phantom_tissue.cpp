@@ -279,7 +279,7 @@ Substance PhantomBody::Find(const Vec3& place, const std::vector<Pipe>& pipes, d
   constexpr double kBend = 3.0, kBendLength = 34;
   const Vec3 p = place + kBend * Vec3{noise_.At(place, kBendLength), 0,
                                       noise_.At(place + Vec3{91, 57, 23}, kBendLength)};
-  const double depth = OutlineDepth(p);
+  const double depth = OutlineDepth(place);
   if (depth < 0) return Substance::kGel;
   const double wall = kFatMm * (1 + 0.25 * noise_.At(p, 150)) + kMuscleMm;
   bool is_spine = false;

@@ -38,6 +38,9 @@ window.trocar { background: #14171a; color: #dfe5ea; }
 .trocar scale slider { background: #dfe5ea; min-width: 14px; min-height: 14px; margin: -5px;
   border: none; box-shadow: none; }
 .trocar dropdown button { padding: 2px 8px; min-height: 24px; font-size: 13px; }
+.trocar list { background: #171b20; border-radius: 6px; }
+.trocar list row { padding: 3px 8px; border-radius: 6px; }
+.trocar list row:selected { background: #1f5a66; }
 .trocar .picture { background: #000000; }
 .trocar .keys { color: #9aa5b0; font-size: 12px; padding: 5px 10px; background: #191d21; border-top: 1px solid #262c32; }
 .trocar .status { background: #1b1f24; border-top: 1px solid #2b3138; padding: 5px 12px; font-size: 13px; }

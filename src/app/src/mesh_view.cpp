@@ -169,6 +169,7 @@ void MeshView::LookFrom(render::Viewpoint viewpoint) {
 }
 
 void MeshView::LookAt(const math::Vec3& p_world, double span) {
+  is_fitted_ = true;
   camera_.target = p_world;
   camera_.distance = 0.5 * span / std::tan(0.5 * camera_.field_of_view);
   area_.queue_render();

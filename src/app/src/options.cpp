@@ -25,10 +25,10 @@ core::Result<Command> ParseCommandLine(int argc, const char* const* argv) {
   app.add_flag("--fullscreen", options.is_fullscreen, "Start in full screen (F11 switches)");
   app.add_flag("--demonstration", options.is_demonstration,
                "Start with the demonstration: the script moves both hands");
-  CLI::Option* screenshot =
-      app.add_option("--screenshot", options.screenshot,
-                     "Play the demonstration, save the window's picture in this PNG file, "
-                     "print what was measured as JSON, and quit");
+  CLI::Option* screenshot = app.add_option(
+      "--screenshot", options.screenshot,
+      "Play the demonstration (with --edit-patient: show the patient), save the window's picture "
+      "in this PNG file, print what was measured as JSON, and quit");
   app.add_option("--after", options.screenshot_after, "With --screenshot: after this many seconds")
       ->check(CLI::Range(0.0, 3600.0))
       ->needs(screenshot)
@@ -63,6 +63,15 @@ core::Result<Command> ParseCommandLine(int argc, const char* const* argv) {
   app.add_flag("--measure", options.is_measuring,
                "With --contours: drag points by itself, print the times as JSON, and quit")
       ->needs(contours);
+  CLI::Option* patient = app.add_option("--edit-patient", options.patient,
+                                        "Open the patient editor on this folder: regions, ducts, landmarks")
+                             ->excludes("--scene")
+                             ->excludes("--demonstration")
+                             ->excludes(contours);
+  app.add_option("--tool", options.editor_tool, "With --edit-patient: tool to begin with")
+      ->check(CLI::IsMember({"look", "paint", "tubes", "landmarks"}))
+      ->needs(patient)
+      ->capture_default_str();
   app.footer("Commands of --script:\n" + DescribeContourScript() +
              "\nKeys are shown in the window: press H, in the contour window F1. Without a display, `trocar "
              "simulate` runs the same scene "

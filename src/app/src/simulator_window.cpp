@@ -5,6 +5,7 @@
 #include <string>
 
 #include "trocar/core/log.h"
+#include "window_screenshot.h"
 
 namespace trocar::app {
 namespace {
@@ -407,20 +408,8 @@ void SimulatorWindow::SaveScreenshotWhenDue(const session::Snapshot& snapshot) {
 }
 
 void SimulatorWindow::SaveScreenshot() {
-  const auto paintable = Gtk::WidgetPaintable::create(*this);
-  const auto snapshot = Gtk::Snapshot::create();
-  paintable->snapshot(snapshot, get_width(), get_height());
-  GskRenderNode* node = gtk_snapshot_to_node(snapshot->gobj());
-  GdkTexture* texture = node == nullptr ? nullptr
-                                        : gsk_renderer_render_texture(
-                                              gtk_native_get_renderer(GTK_NATIVE(gobj())), node, nullptr);
-  const bool is_saved = texture != nullptr && gdk_texture_save_to_png(texture, options_.screenshot.c_str());
-  if (texture != nullptr) g_object_unref(texture);
-  if (node != nullptr) gsk_render_node_unref(node);
-  if (!is_saved) {
-    return Fail({core::ErrorCode::kFileUnwritable,
-                 "cannot write " + options_.screenshot.string() + ": check the folder and its permissions"});
-  }
+  if (const auto status = app::SaveScreenshot(*this, options_.screenshot); !status)
+    return Fail(status.error());
   const session::RunnerStatistics statistics = control_->Statistics();
   std::printf(
       "{\"screenshot\": \"%s\", \"width\": %d, \"height\": %d, \"first_picture_s\": %.3f, \"ticks\": %llu, "

@@ -11,6 +11,8 @@ constexpr BenchmarkSuite kSuites[] = {
     {"contours", "the contour window: refit while a point is dragged, preview of an organ",
      RunContoursBenchmark},
     {"tissue", "equilibrium of mass-spring grids and of the built-in patient", RunTissueBenchmark},
+    {"tissue_cuda", "the GPU's memory layouts: checked, and timed where there is a GPU",
+     RunTissueCudaBenchmark},
 };
 
 /// Value of the first line "key : value".

@@ -2,8 +2,10 @@
 #include "patient_tissue.h"
 
 #include <algorithm>
+#include <span>
 #include <string>
 
+#include "pathology.h"
 #include "trocar/geometry/mesh_measures.h"
 #include "trocar/geometry/mesh_topology.h"
 #include "trocar/tissue/material.h"
@@ -16,10 +18,10 @@ constexpr double kBendingShare = 0.1;
 /// The end of a tube is tied to this many of the nearest vertices of its organ.
 constexpr std::size_t kEndStrands = 4;
 
-const OrganMaterial* FindMaterial(const Scene& scene, std::string_view name) {
-  const auto found = std::find_if(scene.materials.begin(), scene.materials.end(),
+const OrganMaterial* FindMaterial(std::span<const OrganMaterial> materials, std::string_view name) {
+  const auto found = std::find_if(materials.begin(), materials.end(),
                                   [&](const OrganMaterial& material) { return material.organ == name; });
-  return found == scene.materials.end() ? nullptr : &*found;
+  return found == materials.end() ? nullptr : &*found;
 }
 
 core::Error MissingMaterial(const std::string& name) {
@@ -91,6 +93,21 @@ void AddAttachments(const Scene& scene, const OrganMaterial& bed, PatientTissue&
   }
 }
 
+/// Where the gallbladder's free wall has grown to the liver: strands as strong as the bed's, to be dissected.
+void AddAdhesions(const Scene& scene, const OrganMaterial& bed, double share, PatientTissue& made) {
+  const auto pairs = FindAdhesions(scene.patient, share);
+  if (pairs.empty()) return;
+  const int liver = scene.patient.FindOrgan("liver"), gallbladder = scene.patient.FindOrgan("gallbladder");
+  const auto& mesh = scene.patient.organs[gallbladder].mesh;
+  const auto areas = geometry::CalcVertexAreas(mesh.positions, mesh.triangles);
+  for (const auto& pair : pairs) {
+    made.definition.strands.push_back({made.surfaces[gallbladder].first_node + pair.first,
+                                       made.surfaces[liver].first_node + pair.second,
+                                       bed.young_modulus / bed.wall_thickness * areas[pair.first]});
+    made.conservation.strand_binds.push_back(1);
+  }
+}
+
 /// Ties a tube's end to the nearest nodes of a surface.
 void TieEnd(std::uint32_t end, const SurfaceInfo& surface, double stiffness,
             tissue::TissueDefinition& definition) {
@@ -130,11 +147,11 @@ void AddTube(const anatomy::Tube& tube, const OrganMaterial& material, PatientTi
   for (std::uint32_t i = 0; i + 2 < count; ++i) join(i, 2, kBendingShare);
 }
 
-void TieTubes(const Scene& scene, PatientTissue& made) {
+void TieTubes(const Scene& scene, std::span<const OrganMaterial> materials, PatientTissue& made) {
   for (const anatomy::Tube& tube : scene.patient.tubes) {
     const auto self = std::find_if(made.surfaces.begin(), made.surfaces.end(),
                                    [&](const SurfaceInfo& surface) { return surface.name == tube.name; });
-    const OrganMaterial& material = *FindMaterial(scene, self->material);
+    const OrganMaterial& material = *FindMaterial(materials, self->material);
     const std::uint32_t ends[2] = {self->first_node, self->first_node + self->node_count - 1};
     const std::string* names[2] = {&tube.from, &tube.to};
     for (int end = 0; end < 2; ++end) {
@@ -155,25 +172,28 @@ void TieTubes(const Scene& scene, PatientTissue& made) {
 }  // namespace
 
 core::Result<PatientTissue> MakePatientTissue(const Scene& scene) {
+  const Pathology pathology = CalcPathology(scene.patient);
+  const auto materials = CalcPatientMaterials(scene, pathology);
   PatientTissue made;
   for (const anatomy::Organ& organ : scene.patient.organs) {
-    const OrganMaterial* material = FindMaterial(scene, organ.name);
+    const OrganMaterial* material = FindMaterial(materials, organ.name);
     if (material == nullptr) return MissingMaterial(organ.name);
     if (const auto closed = CheckClosed(organ); !closed.ok()) return closed.error();
     AddOrgan(organ, *material, made);
   }
   if (!scene.patient.attachments.empty()) {
-    const OrganMaterial* bed = FindMaterial(scene, anatomy::kGallbladderBed);
+    const OrganMaterial* bed = FindMaterial(materials, anatomy::kGallbladderBed);
     if (bed == nullptr) return MissingMaterial(anatomy::kGallbladderBed);
     AddAttachments(scene, *bed, made);
+    AddAdhesions(scene, *bed, pathology.adhesions, made);
   }
   for (const anatomy::Tube& tube : scene.patient.tubes) {
     const std::string kind = tube.kind == anatomy::TubeKind::kArtery ? "artery" : "duct";
-    const OrganMaterial* material = FindMaterial(scene, kind);
+    const OrganMaterial* material = FindMaterial(materials, kind);
     if (material == nullptr) return MissingMaterial(kind);
     AddTube(tube, *material, made);
   }
-  TieTubes(scene, made);
+  TieTubes(scene, materials, made);
   made.conservation.strand_binds.resize(made.definition.strands.size(), 0);
   return made;
 }

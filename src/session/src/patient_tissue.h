@@ -20,7 +20,7 @@ struct PatientTissue {
 /// Nodes: every organ's vertices, then every tube's centre line. Springs: mesh edges by van Gelder, tubes
 /// along their line with bending springs between next neighbours; virtual springs by Winkler; strands for the
 /// bed and for the ends of tubes. Fixed: the paper's three regions of the liver and the tubes' ends that
-/// leave the scene.
+/// leave the scene. The patient's diseases change materials and add adhesions (pathology.h).
 ///
 /// \return kSceneInvalid when a material is missing
 core::Result<PatientTissue> MakePatientTissue(const Scene& scene);

@@ -61,7 +61,7 @@ struct LandmarkPoint {
 struct ControlPoints {
   std::string name;
   std::string provenance;
-  std::string image_pattern;              ///< "image-{slice:04}.jpeg"
+  std::string image_pattern;  ///< "image-{slice:04}.jpeg"; empty for a series that is no stack of pictures
   int first_slice = 0, last_slice = 0;    ///< numbers of the series, first <= last
   int width = 0, height = 0;              ///< [pixels]
   double pixel_mm = 1.0, slice_mm = 1.0;  ///< distance between pixels and between slices

@@ -21,6 +21,8 @@ using math::Vec3;
 struct Region {
   std::string name;
   std::vector<std::uint32_t> vertices;  ///< ascending
+
+  friend bool operator==(const Region&, const Region&) = default;
 };
 
 /// One closed organ.
@@ -35,6 +37,8 @@ struct Attachment {
   std::string name;  ///< "gallbladder_bed"
   std::uint32_t organ_a = 0, vertex_a = 0;
   std::uint32_t organ_b = 0, vertex_b = 0;
+
+  friend bool operator==(const Attachment&, const Attachment&) = default;
 };
 
 enum class TubeKind { kDuct, kArtery };
@@ -46,11 +50,15 @@ struct Tube {
   std::string from, to;
   geometry::CentreLine line;  ///< world frame [m]
   bool is_seen = true;        ///< false: placed by landmarks because the images do not show it
+
+  friend bool operator==(const Tube&, const Tube&) = default;
 };
 
 struct Landmark {
   std::string name;  ///< "umbilicus", "fundus", "infundibulum"
   Vec3 position;     ///< world frame [m]
+
+  friend bool operator==(const Landmark&, const Landmark&) = default;
 };
 
 /// One named finding about the patient: what was drawn, set or measured. Not all of them are geometry.

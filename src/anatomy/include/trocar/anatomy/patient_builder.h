@@ -33,16 +33,16 @@ struct RegionSettings {
 /// want it.
 ///
 /// Regions of the liver, by geometry:
-/// - diaphragmatic_face: vertices whose normal points superior, anterior or right (not to the viscera) and
-/// that lie
-///   close to the outer hull in that direction; the largest connected patch, without a free margin along its
-///   border.
-/// - falciform: strip of the anterior and superior face at the sagittal plane through the landmark
-/// "umbilical_fissure",
-///   or 20 mm to the left of the infundibulum where it is not given.
-/// - coronary: the posterior part of the superior face, right of the falciform.
+/// - diaphragmatic_face: vertices whose normal, blurred over 10 mm, points superior, anterior or right (not
+/// to
+///   the viscera) and that lie close to the outer hull in that direction; the largest connected patch with
+///   what it encloses, without a free margin along its border and around the gallbladder.
+/// - falciform: strip of that face, margin included, at the sagittal plane through the landmark
+///   "umbilical_fissure", or 20 mm to the left of the infundibulum where it is not given.
+/// - coronary: the posterior part of the superior face, right of the falciform, margin included.
 /// - gallbladder_bed (both organs): where they face each other within bed_distance. Every such vertex of the
 ///   gallbladder is attached to the corners of the nearest liver triangle that carry it.
+/// Without any tube the usual ducts and arteries are placed by the landmarks (is_seen = false).
 /// \return kPatientInvalid when "liver" or "gallbladder" is missing or they do not touch
 core::Result<Patient> AssemblePatient(const ControlPoints& points,
                                       const std::vector<StructureMesh>& structures,

@@ -68,6 +68,9 @@ using ParameterSetting = std::pair<std::string, std::string>;
 core::Result<std::vector<Parameter>> DrawParameters(std::uint64_t seed,
                                                     std::span<const ParameterSetting> settings = {});
 
+/// The middle of every distribution, and no variation: for DrawParameters.
+std::vector<ParameterSetting> MakeUsualSettings();
+
 /// \pre the parameter is there and of that kind (TROCAR_ASSERT)
 double NumberOf(std::span<const Parameter> parameters, std::string_view name);
 const std::string& TextOf(std::span<const Parameter> parameters, std::string_view name);

@@ -25,6 +25,9 @@ struct Options {
   anatomy::ImageSeriesOptions series;  ///< what the pictures do not say
   std::filesystem::path script;        ///< commands to begin with; empty: none
   bool is_measuring = false;           ///< drag a point for some seconds, print the times and quit
+  // the patient editor
+  std::filesystem::path patient;     ///< not empty: open the patient editor on this folder
+  std::string editor_tool = "look";  ///< "look", "paint", "tubes" or "landmarks"
 };
 
 /// What the command line asks for.

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file liver_regions.h  Where the liver is held: diaphragmatic face, falciform and coronary ligament, found
+/// from its shape.
+/// Source: "General algorithms for laparoscopic surgical simulators", section 3.2.2.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "nearest_surface.h"
+#include "trocar/anatomy/patient_builder.h"
+
+namespace trocar::anatomy {
+
+/// Directions in which the diaphragm and the abdominal wall lie, seen from the liver: right, cranial,
+/// anterior.
+extern const math::Vec3 kTowardsDiaphragm;
+
+struct LiverRegions {
+  std::vector<std::uint32_t> diaphragmatic, falciform, coronary;  ///< vertices, ascending
+};
+
+/// \param liver  closed, outward; world frame [m]
+/// \param falciform_x  sagittal plane of the falciform ligament [m]
+LiverRegions FindLiverRegions(const geometry::TriangleMesh& liver, const NearestSurface& gallbladder,
+                              double falciform_x, const RegionSettings& settings);
+
+}  // namespace trocar::anatomy

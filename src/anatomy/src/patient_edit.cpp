@@ -1,0 +1,357 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/anatomy/patient_edit.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "duct_template.h"
+#include "gallbladder_bed.h"
+#include "nearest_surface.h"
+#include "patient_frame.h"
+
+namespace trocar::anatomy {
+namespace {
+
+using geometry::TriangleMesh;
+
+constexpr double kStrandReach = 0.010;  // longest strand of the bed [m], as the linter has it
+constexpr double kThinnest = 0.0001, kThickest = 0.015;  // radius of a tube [m]
+
+core::Error Invalid(const std::string& text) {
+  return {core::ErrorCode::kPatientInvalid, text};
+}
+
+core::Status CheckPoint(const Patient& patient, std::uint32_t tube, std::uint32_t point) {
+  if (tube >= patient.tubes.size() || point >= patient.tubes[tube].line.points.size())
+    return Invalid("there is no such point of a duct or artery; choose one in the picture");
+  return {};
+}
+
+/// 1 at the middle, 0 from `reach` on, smooth.
+double CalcFollow(double away, double reach) {
+  if (away >= reach) return away == 0 ? 1.0 : 0.0;
+  const double t = away / reach;
+  return std::pow(1 - t * t, 2);
+}
+
+/// Distance along the line from one point to every other [m].
+std::vector<double> CalcAway(const geometry::CentreLine& line, std::uint32_t point) {
+  std::vector<double> away(line.points.size(), 0.0);
+  for (std::size_t i = point + 1; i < away.size(); ++i)
+    away[i] = away[i - 1] + Distance(line.points[i], line.points[i - 1]);
+  for (std::size_t i = point; i > 0; --i)
+    away[i - 1] = away[i] + Distance(line.points[i], line.points[i - 1]);
+  return away;
+}
+
+/// Moves one point of a line by `shift`, its neighbours less and less. \return how far each moved
+std::vector<Vec3> Drag(geometry::CentreLine& line, std::uint32_t point, const Vec3& shift, double reach) {
+  const auto away = CalcAway(line, point);
+  std::vector<Vec3> shifts(away.size());
+  for (std::size_t i = 0; i < away.size(); ++i) {
+    shifts[i] = CalcFollow(away[i], reach) * shift;
+    line.points[i] += shifts[i];
+  }
+  return shifts;
+}
+
+/// Strands of the gallbladder's bed after its region has changed.
+void FollowBed(Patient& patient, std::uint32_t gallbladder, const Region& bed) {
+  const int liver = patient.FindOrgan("liver");
+  if (liver < 0 || patient.organs[liver].mesh.triangles.empty()) return;
+  const auto is_in_bed = [&](std::uint32_t v) {
+    return std::binary_search(bed.vertices.begin(), bed.vertices.end(), v);
+  };
+  const auto is_strand = [&](const Attachment& a) {
+    return a.name == kGallbladderBed && a.organ_a == gallbladder;
+  };
+  std::erase_if(patient.attachments,
+                [&](const Attachment& a) { return is_strand(a) && !is_in_bed(a.vertex_a); });
+  std::vector<std::uint32_t> tied;
+  for (const Attachment& a : patient.attachments) {
+    if (is_strand(a)) tied.push_back(a.vertex_a);
+  }
+  std::sort(tied.begin(), tied.end());
+  const NearestSurface surface(patient.organs[liver].mesh);
+  for (const auto v : bed.vertices) {
+    if (std::binary_search(tied.begin(), tied.end(), v)) continue;
+    const SurfacePoint near = surface.Find(patient.organs[gallbladder].mesh.positions[v]);
+    if (near.distance > kStrandReach) continue;
+    const TriangleMesh& liver_mesh = patient.organs[liver].mesh;
+    for (const auto carrier : FindCarriers(liver_mesh, near)) {
+      // a large triangle's corners may lie further away than it does
+      if (Distance(patient.organs[gallbladder].mesh.positions[v], liver_mesh.positions[carrier]) >
+          kStrandReach)
+        continue;
+      patient.attachments.push_back(
+          {kGallbladderBed, gallbladder, v, static_cast<std::uint32_t>(liver), carrier});
+    }
+  }
+  // one order whatever was painted first
+  std::stable_sort(patient.attachments.begin(), patient.attachments.end(),
+                   [&](const Attachment& a, const Attachment& b) {
+                     return is_strand(a) && is_strand(b) && a.vertex_a < b.vertex_a;
+                   });
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> FindBrushVertices(const geometry::TriangleMesh& mesh,
+                                             const geometry::Rows& neighbours, std::uint32_t vertex,
+                                             const Vec3& place, double radius) {
+  std::vector<std::uint32_t> found = {vertex}, stack = {vertex};
+  std::vector<char> is_seen(mesh.positions.size(), 0);
+  is_seen[vertex] = 1;
+  while (!stack.empty()) {
+    const auto here = stack.back();
+    stack.pop_back();
+    for (const auto w : neighbours.Row(here)) {
+      if (is_seen[w] || Distance(mesh.positions[w], place) > radius) continue;
+      is_seen[w] = 1;
+      found.push_back(w);
+      stack.push_back(w);
+    }
+  }
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+core::Status PaintRegion(Patient& patient, std::string_view organ_name, std::string_view region_name,
+                         std::span<const std::uint32_t> vertices, bool is_added) {
+  const int index = patient.FindOrgan(organ_name);
+  if (index < 0) return Invalid("there is no organ \"" + std::string(organ_name) + "\"");
+  Organ& organ = patient.organs[index];
+  if (!IsPlainName(region_name)) return Invalid("a region's name consists of a-z, 0-9 and _");
+  if (std::any_of(vertices.begin(), vertices.end(), [&](auto v) { return v >= organ.mesh.positions.size(); }))
+    return Invalid("a vertex is not in the mesh of " + organ.name);
+  auto region = std::find_if(organ.regions.begin(), organ.regions.end(),
+                             [&](const Region& each) { return each.name == region_name; });
+  if (region == organ.regions.end()) {
+    if (!is_added) return {};
+    region = organ.regions.insert(organ.regions.end(), Region{std::string(region_name), {}});
+  }
+  std::vector<std::uint32_t> brush(vertices.begin(), vertices.end()), painted;
+  std::sort(brush.begin(), brush.end());
+  brush.erase(std::unique(brush.begin(), brush.end()), brush.end());
+  const auto& old = region->vertices;
+  if (is_added) {
+    std::set_union(old.begin(), old.end(), brush.begin(), brush.end(), std::back_inserter(painted));
+  } else {
+    std::set_difference(old.begin(), old.end(), brush.begin(), brush.end(), std::back_inserter(painted));
+  }
+  region->vertices = std::move(painted);
+  if (organ.name == "gallbladder" && region->name == kGallbladderBed)
+    FollowBed(patient, static_cast<std::uint32_t>(index), *region);
+  return {};
+}
+
+core::Status MoveTubePoint(Patient& patient, std::uint32_t tube, std::uint32_t point, const Vec3& position,
+                           double reach) {
+  if (const auto status = CheckPoint(patient, tube, point); !status) return status;
+  if (!math::IsFinite(position) || !(reach >= 0)) return Invalid("the place is not finite");
+  const TubeGraph graph = MakeTubeGraph(patient);
+  const auto shifts =
+      Drag(patient.tubes[tube].line, point, position - patient.tubes[tube].line.points[point], reach);
+  // what is joined to a point that moved moves as far
+  for (const TubeNode& node : graph.nodes) {
+    const auto own = std::find_if(node.vertices.begin(), node.vertices.end(),
+                                  [&](const TubeVertex& v) { return v.tube == tube; });
+    if (own == node.vertices.end() || shifts[own->point] == Vec3{}) continue;
+    for (const TubeVertex& other : node.vertices) {
+      if (other.tube != tube) Drag(patient.tubes[other.tube].line, other.point, shifts[own->point], reach);
+    }
+  }
+  return {};
+}
+
+core::Status InsertTubePoint(Patient& patient, std::uint32_t tube, std::uint32_t after,
+                             const Vec3& position) {
+  if (const auto status = CheckPoint(patient, tube, after + 1); !status) return status;
+  if (!math::IsFinite(position)) return Invalid("the place is not finite");
+  auto& line = patient.tubes[tube].line;
+  const auto at = static_cast<std::ptrdiff_t>(after) + 1;
+  const double before = Distance(line.points[after], position),
+               behind = Distance(position, line.points[after + 1]);
+  const double share = before + behind > 0 ? before / (before + behind) : 0.5;
+  line.radii.insert(line.radii.begin() + at,
+                    line.radii[after] + share * (line.radii[after + 1] - line.radii[after]));
+  line.points.insert(line.points.begin() + at, position);
+  return {};
+}
+
+core::Status DeleteTubePoint(Patient& patient, std::uint32_t tube, std::uint32_t point) {
+  if (const auto status = CheckPoint(patient, tube, point); !status) return status;
+  auto& line = patient.tubes[tube].line;
+  if (line.points.size() <= 2)
+    return Invalid(patient.tubes[tube].name + " needs two points; remove it as a whole");
+  line.points.erase(line.points.begin() + point);
+  line.radii.erase(line.radii.begin() + point);
+  return {};
+}
+
+core::Status ScaleTubeRadius(Patient& patient, std::uint32_t tube, std::uint32_t point, double factor,
+                             double reach) {
+  if (const auto status = CheckPoint(patient, tube, point); !status) return status;
+  if (!(factor > 0) || !std::isfinite(factor) || !(reach >= 0))
+    return Invalid("a radius grows by a factor above 0");
+  auto& line = patient.tubes[tube].line;
+  const auto away = CalcAway(line, point);
+  for (std::size_t i = 0; i < away.size(); ++i) {
+    line.radii[i] =
+        std::clamp(line.radii[i] * std::pow(factor, CalcFollow(away[i], reach)), kThinnest, kThickest);
+  }
+  return {};
+}
+
+core::Status JoinTubeEnd(Patient& patient, std::uint32_t tube, TubeEnd end, std::string_view name) {
+  if (const auto status = CheckPoint(patient, tube, 0); !status) return status;
+  Tube& self = patient.tubes[tube];
+  if (name == self.name) return Invalid(self.name + " cannot join itself");
+  std::string known;
+  bool is_known = name.empty();
+  const auto look = [&](const std::string& each) {
+    is_known |= each == name;
+    known += (known.empty() ? "" : ", ") + each;
+  };
+  for (const Organ& organ : patient.organs) look(organ.name);
+  for (const Tube& other : patient.tubes) look(other.name);
+  if (!is_known) {
+    return core::Error{core::ErrorCode::kUnknownName,
+                       "there is no organ or tube \"" + std::string(name) + "\"; known are " + known};
+  }
+  (end == TubeEnd::kFrom ? self.from : self.to) = name;
+  // only this end is to move, however far
+  Patient part;
+  part.organs = patient.organs;
+  part.tubes = patient.tubes;
+  for (std::uint32_t t = 0; t < part.tubes.size(); ++t) {
+    if (t != tube || end != TubeEnd::kFrom) part.tubes[t].from.clear();
+    if (t != tube || end != TubeEnd::kTo) part.tubes[t].to.clear();
+  }
+  constexpr double kAnywhere = 10.0;  // m
+  JoinTubes(part, kAnywhere);
+  self.line = std::move(part.tubes[tube].line);
+  return {};
+}
+
+core::Status AddTube(Patient& patient, Tube tube) {
+  const bool is_taken = patient.FindOrgan(tube.name) >= 0 ||
+                        std::any_of(patient.tubes.begin(), patient.tubes.end(),
+                                    [&](const Tube& other) { return other.name == tube.name; });
+  if (is_taken || !IsPlainName(tube.name))
+    return Invalid("the name \"" + tube.name + "\" is taken or no plain word (a-z, 0-9 and _)");
+  const auto& line = tube.line;
+  const bool is_usable =
+      line.points.size() >= 2 && line.points.size() == line.radii.size() &&
+      std::all_of(line.points.begin(), line.points.end(), [](const Vec3& p) { return math::IsFinite(p); }) &&
+      std::all_of(line.radii.begin(), line.radii.end(), [](double r) { return r > 0 && std::isfinite(r); });
+  if (!is_usable) return Invalid("a duct or artery needs two points or more, each with a radius");
+  patient.tubes.push_back(std::move(tube));
+  return {};
+}
+
+core::Status RemoveTube(Patient& patient, std::uint32_t tube) {
+  if (const auto status = CheckPoint(patient, tube, 0); !status) return status;
+  const std::string name = patient.tubes[tube].name;
+  patient.tubes.erase(patient.tubes.begin() + tube);
+  for (Tube& other : patient.tubes) {
+    if (other.from == name) other.from.clear();
+    if (other.to == name) other.to.clear();
+  }
+  return {};
+}
+
+std::vector<std::string> FindMissingTubes(const Patient& patient) {
+  std::vector<std::string> missing;
+  for (const char* name :
+       {"cystic_duct", "common_hepatic_duct", "common_bile_duct", "right_hepatic_artery", "cystic_artery"}) {
+    if (std::none_of(patient.tubes.begin(), patient.tubes.end(),
+                     [&](const Tube& t) { return t.name == name; }))
+      missing.emplace_back(name);
+  }
+  return missing;
+}
+
+core::Status AddTemplateTube(Patient& patient, std::string_view name) {
+  const int liver = patient.FindOrgan("liver"), gallbladder = patient.FindOrgan("gallbladder");
+  const Landmark* neck = patient.FindLandmark("infundibulum");
+  if (liver < 0 || gallbladder < 0 || neck == nullptr)
+    return Invalid("ducts are placed by liver, gallbladder and the landmark infundibulum; place it first");
+  auto tubes = MakeTemplateTubes(patient.organs[liver].mesh, patient.organs[gallbladder].mesh, neck->position,
+                                 patient.parameters);
+  const auto wanted =
+      std::find_if(tubes.begin(), tubes.end(), [&](const Tube& tube) { return tube.name == name; });
+  if (wanted == tubes.end())
+    return core::Error{core::ErrorCode::kUnknownName,
+                       "\"" + std::string(name) + "\" is none of the usual tubes"};
+  if (auto status = AddTube(patient, std::move(*wanted)); !status) return status;
+  // its ends meet the patient's own tubes, wherever those run
+  const auto index = static_cast<std::uint32_t>(patient.tubes.size() - 1);
+  for (const TubeEnd end : {TubeEnd::kFrom, TubeEnd::kTo}) {
+    const std::string target = end == TubeEnd::kFrom ? patient.tubes[index].from : patient.tubes[index].to;
+    if (!JoinTubeEnd(patient, index, end, target)) {
+      // what it would join is missing, too: it leaves the scene there
+      if (auto status = JoinTubeEnd(patient, index, end, ""); !status) return status;
+    }
+  }
+  return {};
+}
+
+core::Status PlaceLandmark(Patient& patient, std::string_view name, const Vec3& position) {
+  if (!IsPlainName(name)) return Invalid("a landmark's name consists of a-z, 0-9 and _");
+  if (!math::IsFinite(position)) return Invalid("the place is not finite");
+  Vec3 place = position;
+  const int gallbladder = patient.FindOrgan("gallbladder");
+  if ((name == "fundus" || name == "infundibulum") && gallbladder >= 0 &&
+      !patient.organs[gallbladder].mesh.triangles.empty()) {
+    place = NearestSurface(patient.organs[gallbladder].mesh).Find(position).at.point;
+  }
+  for (Landmark& landmark : patient.landmarks) {
+    if (landmark.name != name) continue;
+    landmark.position = place;
+    return {};
+  }
+  patient.landmarks.push_back({std::string(name), place});
+  return {};
+}
+
+std::optional<Vec3> FindWhere(const Patient& patient, std::string_view where) {
+  const auto slash = where.find('/');
+  const std::string_view name = where.substr(0, slash);
+  const std::string_view part =
+      slash == std::string_view::npos ? std::string_view() : where.substr(slash + 1);
+  const auto middle = [](std::span<const Vec3> points) -> std::optional<Vec3> {
+    Vec3 sum;
+    for (const Vec3& p : points) sum += p;
+    if (points.empty() || !math::IsFinite(sum)) return std::nullopt;
+    return sum / static_cast<double>(points.size());
+  };
+  for (const Organ& organ : patient.organs) {
+    if (organ.name != name) continue;
+    for (const Region& region : organ.regions) {
+      if (region.name != part) continue;
+      std::vector<Vec3> points;
+      for (const auto v : region.vertices) {
+        if (v < organ.mesh.positions.size()) points.push_back(organ.mesh.positions[v]);
+      }
+      if (const auto found = middle(points)) return found;
+    }
+    return middle(organ.mesh.positions);
+  }
+  for (const Tube& tube : patient.tubes) {
+    if (tube.name != name || tube.line.points.empty()) continue;
+    if (part == "from") return tube.line.points.front();
+    if (part == "to") return tube.line.points.back();
+    return tube.line.points[tube.line.points.size() / 2];
+  }
+  if (const Landmark* landmark = patient.FindLandmark(name)) return landmark->position;
+  std::vector<Vec3> points;
+  for (const Attachment& a : patient.attachments) {
+    if (a.name == name && a.organ_a < patient.organs.size() &&
+        a.vertex_a < patient.organs[a.organ_a].mesh.positions.size())
+      points.push_back(patient.organs[a.organ_a].mesh.positions[a.vertex_a]);
+  }
+  return middle(points);
+}
+
+}  // namespace trocar::anatomy

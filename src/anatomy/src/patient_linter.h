@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file patient_linter.h  One pass over a patient: what the stages of the check share.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "trocar/anatomy/patient_lint.h"
+
+namespace trocar::anatomy {
+
+/// Each stage adds its findings; later stages use what earlier ones found usable.
+class Linter {
+ public:
+  /// \param mesh_errors  (organs), or empty where all meshes were read
+  Linter(const Patient& patient, const std::vector<core::Error>& mesh_errors)
+      : patient_(patient), mesh_errors_(mesh_errors) {}
+
+  LintReport Run();
+
+ private:
+  void Add(const char* code, std::string where, std::string text);
+  const Organ* FindUsable(std::string_view name) const;
+  const Tube* FindTube(std::string_view name) const;
+  /// A finite landmark's place.
+  std::optional<Vec3> FindPlace(std::string_view name) const;
+
+  // patient_lint.cpp
+  void LintNames();
+  // patient_lint_mesh.cpp
+  void LintMesh(std::size_t index);
+  void LintSurface(const Organ& organ, MeshSummary& summary);
+  void LintUnit();
+  void LintVolumes();
+  // patient_lint_regions.cpp
+  void LintRegions(std::size_t index);
+  void LintFixedFaces();
+  void LintAttachments();
+  // patient_lint_tubes.cpp
+  void LintTubes();
+  void LintTubeEnd(const Tube& tube, const std::string& target, const Vec3& end, const std::string& where);
+  void LintTubeLinks(const Tube& tube);
+  void LintTubeSize(const Tube& tube);
+  void LintTubeGraph();
+  // patient_lint_places.cpp
+  void LintLandmarks();
+  void LintSides();
+  void LintDepth();
+
+  const Patient& patient_;
+  const std::vector<core::Error>& mesh_errors_;
+  std::vector<bool> is_usable_;  // (organs) finite, indices in range, not empty
+  bool is_unit_right_ = true;
+  LintReport report_;
+};
+
+struct Range {
+  double min = 0, max = 0;
+};
+
+/// A number with about four digits.
+std::string Rounded(double value, int digits = 1);
+/// A length in metres as millimetres.
+std::string Mm(double metres);
+/// A place as the files give it.
+std::string PlaceText(const Vec3& world);
+/// "1 vertex", "7 vertices".
+std::string Count(std::size_t count, const char* one, const char* many);
+/// Two points or more, a radius for each, all finite.
+bool IsWellFormed(const Tube& tube);
+/// The mesh with its triangles outwards: an inside-out mesh is one finding, not several.
+geometry::TriangleMesh Outward(geometry::TriangleMesh mesh);
+
+}  // namespace trocar::anatomy

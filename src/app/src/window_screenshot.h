@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file window_screenshot.h  A window's picture as a PNG file.
+#pragma once
+
+#include <gtkmm.h>
+
+#include <filesystem>
+
+#include "trocar/core/result.h"
+
+namespace trocar::app {
+
+/// Call it outside of a frame. \return kFileUnwritable
+core::Status SaveScreenshot(Gtk::Window& window, const std::filesystem::path& path);
+
+}  // namespace trocar::app
