@@ -13,9 +13,9 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Beginnings of third-party headers that a public header must not show to those who include it.
-constexpr std::array<std::string_view, 17> kPrivateLibraries = {
-    "GL/",   "epoxy/", "EGL/", "gtk",    "glib", "gst/",          "nlohmann/", "CLI/",  "itk",
-    "png.h", "spdlog", "tbb/", "oneapi", "cuda", "meshoptimizer", "iostream",  "Eigen/"};
+constexpr std::array<std::string_view, 18> kPrivateLibraries = {
+    "GL/",  "epoxy/", "EGL/",   "gtk",  "glib",   "gst/", "nlohmann/",     "CLI/",     "itk",
+    "gdcm", "png.h",  "spdlog", "tbb/", "oneapi", "cuda", "meshoptimizer", "iostream", "Eigen/"};
 
 /// The word between the quotes or brackets of an include line, or nothing.
 std::string_view FindInclude(std::string_view line) {

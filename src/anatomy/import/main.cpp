@@ -76,23 +76,32 @@ namespace {
 /// Memory of the other program, for as long as one picture is decoded.
 class SampleMemory {
  public:
-  SampleMemory(int fd, std::uint64_t offset, std::uint64_t room) : bytes_(offset + room) {
+  SampleMemory(int fd, std::uint64_t offset, std::uint64_t room) {
+    // a mapping begins with a page
+    const auto page = static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
+    const std::uint64_t begin = offset / page * page;
     struct stat info {};
-    if (offset > bytes_ || ::fstat(fd, &info) != 0 || static_cast<std::uint64_t>(info.st_size) < bytes_) {
+    std::uint64_t end = 0;
+    if (__builtin_add_overflow(offset, room, &end) || ::fstat(fd, &info) != 0 ||
+        static_cast<std::uint64_t>(info.st_size) < end) {
       throw Failure{ErrorCode::kImportCrashed, "the memory for its samples is too small"};
     }
-    void* begin = ::mmap(nullptr, bytes_, PROT_READ | PROT_WRITE, MAP_SHARED, fd, 0);
-    if (begin == MAP_FAILED) throw std::bad_alloc();
-    begin_ = static_cast<std::byte*>(begin);
+    bytes_ = end - begin;
+    void* mapped = ::mmap(nullptr, bytes_, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_POPULATE, fd,
+                          static_cast<off_t>(begin));
+    if (mapped == MAP_FAILED) throw std::bad_alloc();
+    begin_ = static_cast<std::byte*>(mapped);
+    samples_ = begin_ + (offset - begin);
   }
   ~SampleMemory() { ::munmap(begin_, bytes_); }
   SampleMemory(const SampleMemory&) = delete;
   SampleMemory& operator=(const SampleMemory&) = delete;
-  std::byte* At(std::uint64_t offset) const { return begin_ + offset; }
+  std::byte* Samples() const { return samples_; }
 
  private:
   std::byte* begin_ = nullptr;
-  std::uint64_t bytes_;
+  std::byte* samples_ = nullptr;
+  std::uint64_t bytes_ = 0;
 };
 
 InputFile Measure(const Descriptor& descriptor) {
@@ -134,7 +143,7 @@ void Answer(const ImportRequest& request, std::span<const Descriptor> descriptor
   std::optional<SampleMemory> memory;
   if (request.operation == ImportOperation::kDecode) {
     memory.emplace(descriptors[request.has_data_file != 0 ? 2 : 1].Get(), request.offset, request.room);
-    job.samples = memory->At(request.offset);
+    job.samples = memory->Samples();
     job.request.most_bytes = std::min(request.most_bytes, request.room);
   }
   Read(job, reply);

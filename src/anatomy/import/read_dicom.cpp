@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The only file that sees GDCM. Source: DICOM PS3.3 sections C.7.6.2, C.7.6.3 and C.11.
 #include <gdcmImageReader.h>
+#include <gdcmMediaStorage.h>
 #include <gdcmReader.h>
 #include <gdcmTag.h>
 #include <gdcmTrace.h>
@@ -14,7 +15,7 @@
 #include <string_view>
 #include <vector>
 
-#include "byte_source.h"
+#include "dicom_structure.h"
 #include "header_text.h"
 #include "reader.h"
 
@@ -115,7 +116,8 @@ void ReadGreyValues(const gdcm::DataSet& data, ImageHeader& header) {
   }
 }
 
-void ReadPixelKind(const gdcm::DataSet& data, ImageHeader& header) {
+/// \return bits allocated for a sample
+unsigned ReadPixelKind(const gdcm::DataSet& data, ImageHeader& header) {
   const std::string_view shown = FindText(data, Tag(0x0028, 0x0004));
   const unsigned channels = FindShort(data, Tag(0x0028, 0x0002)).value_or(1);
   const auto allocated = FindShort(data, Tag(0x0028, 0x0100));
@@ -139,10 +141,13 @@ void ReadPixelKind(const gdcm::DataSet& data, ImageHeader& header) {
                    : is_signed          ? SampleKind::kInt16
                    : *allocated == 8    ? SampleKind::kUint8
                                         : SampleKind::kUint16;
+  return *allocated;
 }
 
 /// All but the pixels.
 void ReadHeader(const Job& job, ImageHeader& header) {
+  DicomStructure structure;
+  if (job.request.is_size_believed == 0) structure = CheckStructure(job.file);
   std::ifstream stream(job.file.Path(), std::ios::binary);
   gdcm::Reader reader;
   reader.SetStream(stream);
@@ -150,8 +155,12 @@ void ReadHeader(const Job& job, ImageHeader& header) {
     throw Failure{ErrorCode::kImageUndecodable, "its DICOM elements are damaged"};
   const gdcm::DataSet& data = reader.GetFile().GetDataSet();
   const auto rows = FindShort(data, Tag(0x0028, 0x0010)), columns = FindShort(data, Tag(0x0028, 0x0011));
-  if (!rows && !columns && !data.FindDataElement(Tag(0x0028, 0x0100)))
-    throw Failure{ErrorCode::kImageUnsupported, "it is a DICOM file without a picture"};
+  gdcm::MediaStorage storage;
+  storage.SetFromFile(reader.GetFile());
+  if (!rows && !columns && !gdcm::MediaStorage::IsImage(storage))
+    throw Failure{ErrorCode::kImageUnsupported, kWithoutPicture};
+  if (job.request.is_size_believed == 0 && !structure.has_pixels)
+    throw Failure{ErrorCode::kImageTruncated, "it ends before its pixels"};
   if (!rows || !columns)
     throw Failure{ErrorCode::kImageUndecodable, "Rows or Columns is missing or no unsigned short"};
   header.width = *columns;
@@ -161,7 +170,7 @@ void ReadHeader(const Job& job, ImageHeader& header) {
   if (!frames.empty() && frames[0] != 1)
     throw Failure{ErrorCode::kImageUnsupported,
                   "it holds several frames; split it into one file a slice, or convert it to NIfTI"};
-  ReadPixelKind(data, header);
+  const std::uint64_t allocated_bytes = ReadPixelKind(data, header) / 8;
   ReadGreyValues(data, header);
   ReadGeometry(data, header);
   CheckGeometry(header);
@@ -173,12 +182,12 @@ void ReadHeader(const Job& job, ImageHeader& header) {
   if (!instance.empty() && std::fabs(instance[0]) < 1e6)
     header.instance_number = static_cast<std::int32_t>(instance[0]);
 
-  const gdcm::TransferSyntax& syntax = reader.GetFile().GetHeader().GetDataSetTransferSyntax();
-  const std::uint64_t bytes = header.SampleCount() * (header.bits > 8 ? 2 : 1);
-  if (job.request.is_size_believed == 0 && !syntax.IsEncapsulated() && bytes > job.file.bytes) {
-    throw Failure{ErrorCode::kImageTruncated,
-                  "its header announces " + std::to_string(bytes) + " bytes of pixels, which the " +
-                      std::to_string(job.file.bytes) + " bytes there cannot hold"};
+  if (job.request.is_size_believed != 0) return;
+  const std::uint64_t needed = header.SampleCount() * allocated_bytes;
+  if (!structure.is_encapsulated && structure.pixel_bytes < needed) {
+    throw Failure{ErrorCode::kImageTruncated, "its header announces " + std::to_string(needed) +
+                                                  " bytes of pixels, and it holds " +
+                                                  std::to_string(structure.pixel_bytes)};
   }
 }
 
@@ -193,11 +202,6 @@ void ReadPixels(const Job& job, const ImageHeader& header) {
   if (image.GetNumberOfDimensions() != 2 || image.GetDimension(0) != header.width ||
       image.GetDimension(1) != header.height || image.GetBufferLength() != expected) {
     throw Failure{ErrorCode::kImageUndecodable, "its pixels are not as many as its header says"};
-  }
-  if (job.request.is_size_believed == 0 && !image.GetTransferSyntax().IsEncapsulated()) {
-    const gdcm::ByteValue* stored = image.GetDataElement().GetByteValue();
-    if (stored == nullptr || stored->GetLength() < expected)
-      throw Failure{ErrorCode::kImageTruncated, "its pixel data are shorter than its header says"};
   }
   std::vector<char> raw(expected);
   if (!image.GetBuffer(raw.data()))

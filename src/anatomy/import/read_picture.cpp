@@ -3,6 +3,7 @@
 #include <itkJPEGImageIO.h>
 #include <itkPNGImageIO.h>
 #include <itkTIFFImageIO.h>
+#include <zlib.h>
 
 #include <algorithm>
 #include <cstring>
@@ -30,6 +31,22 @@ void CheckWhole(const InputFile& file, FileKind kind) {
     is_whole = end != std::string::npos && end > 3 && tail.substr(end - 1, 2) == "\xff\xd9";
   }
   if (!is_whole) throw Failure{ErrorCode::kImageTruncated, "its end is missing"};
+}
+
+/// ITK's PNG reader ends the process where libpng refuses the first chunk.
+void CheckPngBegin(const InputFile& file) {
+  constexpr std::size_t kBegin = 8 + 4 + 4 + 13 + 4;
+  const std::string begin = ReadBegin(file, kBegin);
+  const auto number = [&](std::size_t at) {
+    std::uint32_t value = 0;
+    for (std::size_t i = 0; i < 4; ++i) value = value << 8 | static_cast<unsigned char>(begin[at + i]);
+    return value;
+  };
+  const bool is_first = begin.size() == kBegin && number(8) == 13 && begin.substr(12, 4) == "IHDR";
+  if (!is_first || number(16) == 0 || number(20) == 0 ||
+      ::crc32(0, reinterpret_cast<const Bytef*>(begin.data() + 12), 17) != number(29)) {
+    throw Failure{ErrorCode::kImageUndecodable, "its PNG header is damaged"};
+  }
 }
 
 /// Fewest bytes that a picture of this size can be packed into.
@@ -63,7 +80,8 @@ void TakeGrey(const std::vector<char>& raw, std::size_t channels, std::uint64_t 
 void ReadPicture(const Job& job, FileKind kind, ImportReply& reply) {
   ImageHeader& header = reply.header;
   header.kind = kind;
-  if (job.samples != nullptr && job.request.is_size_believed == 0) CheckWhole(job.file, kind);
+  if (kind == FileKind::kPng) CheckPngBegin(job.file);
+  if (job.request.is_size_believed == 0) CheckWhole(job.file, kind);
   const itk::ImageIOBase::Pointer reader = MakeReader(kind);
   reader->SetFileName(job.file.Path());
   reader->ReadImageInformation();
@@ -103,10 +121,15 @@ void ReadPicture(const Job& job, FileKind kind, ImportReply& reply) {
     throw Failure{ErrorCode::kImageTruncated, "it is too small for the size in its header"};
   if (job.samples == nullptr) return;
 
-  std::vector<char> raw(raw_bytes);
   itk::ImageIORegion region(dimensions);
   for (unsigned axis = 0; axis < dimensions; ++axis) region.SetSize(axis, reader->GetDimensions(axis));
   reader->SetIORegion(region);
+  // what is laid out as it is handed over needs no copy
+  if (channels == header.channels && (is_grey || is_byte)) {
+    reader->Read(job.samples);
+    return;
+  }
+  std::vector<char> raw(raw_bytes);
   reader->Read(raw.data());
   if (is_grey) {
     if (is_byte) return TakeGrey<std::uint8_t>(raw, channels, pixels, job.samples);

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 
+#include "edge_cost.h"
 #include "edge_strip.h"
 #include "trocar/core/assert.h"
 
@@ -13,8 +15,11 @@ namespace {
 
 constexpr double kRowStep = 2.0;     // distance of the rows of the band [pixels]
 constexpr double kColumnStep = 0.5;  // of its columns [pixels]
+constexpr double kBand = 6.0;        // beyond the reach, where the colours of the inside are learned [pixels]
+constexpr double kRegion =
+    0.1;  // weight of the colours on either side, a pixel, against the strongest edge [-]
+constexpr double kSlightest = 0.05;  // rises below this count in full nowhere [1 / pixel]
 constexpr int kMaxJump = 2;          // columns between neighbouring rows
-constexpr int kPad = 2;              // columns beyond reach, for the gradient at its ends
 constexpr int kMaxRounds = 6;        // of insertion
 constexpr std::size_t kClosest = 3;  // rows between two points at least
 
@@ -25,53 +30,43 @@ struct EdgePath {
   std::vector<std::uint8_t> is_edge;  // (rows) a clear edge is there
 };
 
-EdgePath FindEdge(const EdgeField& field, std::span<const Vec2> polyline,
+EdgePath FindEdge(const EdgeField& field, std::span<const Vec2> polyline, double max_shift,
                   const EdgeAdaptionSettings& settings) {
   EdgePath edge;
   edge.curve = ResampleClosed(polyline, kRowStep);
-  const EdgeStrip strip =
-      SampleStrip(field, edge.curve, settings.max_shift_px + kPad * kColumnStep, kColumnStep);
-  const int reach = strip.reach - kPad, columns = 2 * reach + 1;
-  std::vector<float> gradient(strip.rows * columns), cost(strip.rows * columns);
-  float strongest = 0;
-  for (std::size_t row = 0; row < strip.rows; ++row) {
-    const Colour* colours = strip.Row(row) + kPad;
-    for (int k = 0; k < columns; ++k) {
-      float squared = 0;
-      for (std::size_t c = 0; c < 3; ++c) {
-        const float change = colours[k + 1][c] - colours[k - 1][c];
-        squared += change * change;
-      }
-      gradient[row * columns + k] = std::sqrt(squared);
-      strongest = std::max(strongest, gradient[row * columns + k]);
-    }
-  }
+  const EdgeStrip strip = SampleStrip(field, edge.curve, max_shift + kBand, kColumnStep);
+  const EdgeEvidence evidence = CalcEdgeEvidence(strip, max_shift, kRowStep);
+  const int reach = evidence.reach, columns = evidence.Columns();
+  const auto& gradient = evidence.gradient;
+  std::vector<float> cost(gradient.size());
   const auto least = static_cast<float>(settings.min_gradient);
   for (std::size_t row = 0; row < strip.rows; ++row) {
     const float* here = &gradient[row * columns];
-    const float scale = std::max(*std::max_element(here, here + columns), least);
+    const float* rise = &evidence.rise[row * columns];
+    const float scale = std::max(*std::max_element(rise, rise + columns), static_cast<float>(kSlightest));
     for (int k = 0; k < columns; ++k) {
       const double away = std::abs(k - reach) / static_cast<double>(reach);
       cost[row * columns + k] =
-          static_cast<float>(0.02 * away - (1.0 - settings.nearness * away * away) *
-                                               (here[k] >= least ? here[k] / scale : 0.0f));
+          static_cast<float>(0.02 * away + kRegion * evidence.region[row * columns + k] -
+                             (1.0 - settings.nearness * away * away) *
+                                 (here[k] >= least ? std::max(0.0f, rise[k]) / scale : 0.0f));
     }
   }
   const auto path = FindClosedPath(cost, strip.rows, columns, settings.smoothness, kMaxJump);
   for (std::size_t row = 0; row < strip.rows; ++row) {
     const float* here = &gradient[row * columns];
     const int k = path[row];
+    const bool is_edge = here[k] >= least && evidence.rise[row * columns + k] > 0;
     double offset = 0.0;
     if (k > 0 && k + 1 < columns) {
       const double bend = here[k - 1] - 2.0 * here[k] + here[k + 1];
       if (bend < 0) offset = std::clamp(0.5 * (here[k - 1] - here[k + 1]) / bend, -1.0, 1.0);
     }
-    const double shift =
-        std::clamp((k - reach + offset) * kColumnStep, -settings.max_shift_px, settings.max_shift_px);
+    const double shift = std::clamp((k - reach + offset) * kColumnStep, -max_shift, max_shift);
     const Vec2 at = edge.curve.at[row] + shift * edge.curve.normal[row];
     edge.at.push_back(
         {std::clamp(at.x, 0.0, field.Width() - 1.0), std::clamp(at.y, 0.0, field.Height() - 1.0)});
-    edge.is_edge.push_back(here[k] >= least && here[k] > 0);
+    edge.is_edge.push_back(is_edge);
   }
   return edge;
 }
@@ -97,6 +92,40 @@ struct Control {
   std::size_t row;
   bool is_inserted;
 };
+
+/// Divides the spline through the controls by points on the edge until it follows the edge.
+ContourCurve InsertPoints(const EdgePath& edge, const ContourFitSettings& settings,
+                          std::vector<Control>& controls) {
+  const std::size_t rows = edge.at.size();
+  for (int round = 0;; ++round) {
+    std::vector<Vec2> points;
+    for (const Control& c : controls) points.push_back(c.at);
+    ContourCurve curve = FitContourCurve(points, settings.spline);
+    if (round == kMaxRounds) return curve;
+    std::vector<Control> denser;
+    for (std::size_t i = 0; i < controls.size(); ++i) {
+      denser.push_back(controls[i]);
+      const std::size_t first_row = controls[i].row, last_row = controls[(i + 1) % controls.size()].row;
+      const std::size_t between = (last_row + rows - first_row) % rows;
+      const auto [begin, end] = std::equal_range(curve.segment.begin(), curve.segment.end(), i);
+      const auto first = static_cast<std::size_t>(begin - curve.segment.begin());
+      const auto last = static_cast<std::size_t>(end - curve.segment.begin());
+      double furthest = settings.tolerance_px;
+      std::size_t worst = 0;
+      for (std::size_t r = kClosest; r + kClosest <= between; ++r) {
+        const std::size_t row = (first_row + r) % rows;
+        if (!edge.is_edge[row]) continue;
+        const double away = DistanceToCurve(edge.at[row], curve, first, last);
+        if (away > furthest) furthest = away, worst = r;
+      }
+      if (worst == 0) continue;
+      const std::size_t row = (first_row + worst) % rows;
+      denser.push_back({edge.at[row], row, true});
+    }
+    if (denser.size() == controls.size()) return curve;
+    controls = std::move(denser);
+  }
+}
 
 }  // namespace
 
@@ -129,47 +158,24 @@ ContourFit FitContourToEdges(const EdgeField& field, std::span<const Vec2> click
     fit.spline = FitContour(clicked, settings.spline);
     return fit;
   }
-  const auto start = FitContour(clicked, settings.spline);
-  const EdgePath edge = FindEdge(field, start, settings.adaption);
-  const std::size_t rows = edge.at.size();
-
+  if (!settings.adaption.inserts_points) {
+    fit.adapted = AdaptToEdges(field, clicked, settings.adaption);
+    fit.spline = FitContour(fit.adapted, settings.spline);
+    return fit;
+  }
+  const double max_shift = settings.adaption.max_shift_px;
+  const EdgePath edge = FindEdge(field, FitContour(clicked, settings.spline), max_shift, settings.adaption);
   std::vector<Control> controls;
   for (const Vec2& p : clicked) {
     const std::size_t row = FindNearest(edge.curve.at, p);
-    const Vec2 at = edge.is_edge[row] ? edge.at[row] : p;
-    controls.push_back({at, row, false});
-    fit.adapted.push_back(at);
+    // the row lies beside the point by up to half a row, which counts against its reach
+    const Vec2 shift = edge.is_edge[row] ? edge.at[row] - p : Vec2{};
+    const double length = Norm(shift);
+    controls.push_back({p + (length > max_shift ? max_shift / length : 1.0) * shift, row, false});
+    fit.adapted.push_back(controls.back().at);
   }
-  ContourCurve curve;
-  for (int round = 0;; ++round) {
-    std::vector<Vec2> points;
-    for (const Control& c : controls) points.push_back(c.at);
-    curve = FitContourCurve(points, settings.spline);
-    if (!settings.is_inserting || round == kMaxRounds) break;
-    std::vector<Control> denser;
-    for (std::size_t i = 0; i < controls.size(); ++i) {
-      denser.push_back(controls[i]);
-      const std::size_t first_row = controls[i].row, last_row = controls[(i + 1) % controls.size()].row;
-      const std::size_t between = (last_row + rows - first_row) % rows;
-      const auto first = static_cast<std::size_t>(
-          std::lower_bound(curve.segment.begin(), curve.segment.end(), i) - curve.segment.begin());
-      const auto last = static_cast<std::size_t>(
-          std::upper_bound(curve.segment.begin(), curve.segment.end(), i) - curve.segment.begin());
-      double furthest = settings.tolerance_px;
-      std::size_t worst = 0;
-      for (std::size_t r = kClosest; r + kClosest <= between; ++r) {
-        const std::size_t row = (first_row + r) % rows;
-        if (!edge.is_edge[row]) continue;
-        const double away = DistanceToCurve(edge.at[row], curve, first, last);
-        if (away > furthest) furthest = away, worst = r;
-      }
-      if (worst == 0) continue;
-      const std::size_t row = (first_row + worst) % rows;
-      denser.push_back({edge.at[row], row, true});
-    }
-    if (denser.size() == controls.size()) break;
-    controls = std::move(denser);
-  }
+  ContourCurve curve = InsertPoints(edge, settings, controls);
+  const std::size_t rows = edge.at.size();
   fit.spline = std::move(curve.points);
   for (const Control& c : controls) {
     if (c.is_inserted) fit.inserted.push_back(c.at);

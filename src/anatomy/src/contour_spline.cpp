@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 
 #include "trocar/core/assert.h"
@@ -33,19 +34,44 @@ bool Touch(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
          (cda == 0 && IsBetween(c, d, a)) || (cdb == 0 && IsBetween(c, d, b));
 }
 
-/// Calls visit(i, j) for sides i < j that touch and are no neighbours.
+/// Rectangle around a run of sides.
+struct Box {
+  double min_x = std::numeric_limits<double>::max(), max_x = std::numeric_limits<double>::lowest();
+  double min_y = min_x, max_y = max_x;
+
+  void Include(const Vec2& p) {
+    min_x = std::min(min_x, p.x), max_x = std::max(max_x, p.x);
+    min_y = std::min(min_y, p.y), max_y = std::max(max_y, p.y);
+  }
+  bool IsApartFrom(const Box& b) const {
+    return b.max_x < min_x || b.min_x > max_x || b.max_y < min_y || b.min_y > max_y;
+  }
+};
+
+/// Calls visit(i, j) for sides i < j that touch and are no neighbours. Runs of sides whose boxes lie apart
+/// are passed over.
 template <typename Visit>
 void VisitCrossings(std::span<const Vec2> polygon, Visit visit) {
   const std::size_t n = polygon.size();
+  constexpr std::size_t kRun = 16;
+  std::vector<Box> boxes((n + kRun - 1) / kRun);
+  for (std::size_t i = 0; i < n; ++i) {
+    boxes[i / kRun].Include(polygon[i]);
+    boxes[i / kRun].Include(polygon[(i + 1) % n]);
+  }
   for (std::size_t i = 0; i + 2 < n; ++i) {
     const Vec2 &a = polygon[i], &b = polygon[i + 1];
-    const double min_x = std::min(a.x, b.x), max_x = std::max(a.x, b.x);
-    const double min_y = std::min(a.y, b.y), max_y = std::max(a.y, b.y);
+    Box side;
+    side.Include(a), side.Include(b);
     for (std::size_t j = i + 2; j < n; ++j) {
+      if (side.IsApartFrom(boxes[j / kRun])) {
+        j = (j / kRun + 1) * kRun - 1;
+        continue;
+      }
       if (i == 0 && j == n - 1) continue;
       const Vec2 &c = polygon[j], &d = polygon[(j + 1) % n];
-      if (std::max(c.x, d.x) < min_x || std::min(c.x, d.x) > max_x) continue;
-      if (std::max(c.y, d.y) < min_y || std::min(c.y, d.y) > max_y) continue;
+      if (std::max(c.x, d.x) < side.min_x || std::min(c.x, d.x) > side.max_x) continue;
+      if (std::max(c.y, d.y) < side.min_y || std::min(c.y, d.y) > side.max_y) continue;
       if (Touch(a, b, c, d) && !visit(i, j)) return;
     }
   }

@@ -74,7 +74,17 @@ std::vector<std::vector<Vec2>> ReadPolygons(const ControlPoints& points, const J
   return polygons;
 }
 
-Structure ReadStructure(const ControlPoints& points, const JsonView& view) {
+std::vector<Vec2> ReadOpenContour(const ControlPoints& points, const JsonView& slice) {
+  std::vector<Vec2> open;
+  for (const JsonView& corner : slice.Array("open")) {
+    const auto xy = corner.AsNumbers(2);
+    open.push_back({xy[0], xy[1]});
+    CheckInside(points, corner, open.back());
+  }
+  return open;
+}
+
+Structure ReadStructure(const ControlPoints& points, const JsonView& view, Completeness completeness) {
   view.AllowOnly({"name", "triangle_budget", "reference_label", "reference_left_out", "adaption", "slices"});
   Structure structure;
   structure.name = view.Text("name");
@@ -87,16 +97,18 @@ Structure ReadStructure(const ControlPoints& points, const JsonView& view) {
   }
   if (view.Has("adaption")) {
     const JsonView adaption = view.Object("adaption");
-    adaption.AllowOnly({"max_shift_px", "blur_px", "min_gradient", "nearness", "smoothness"});
+    adaption.AllowOnly(
+        {"max_shift_px", "blur_px", "min_gradient", "nearness", "smoothness", "insert_points"});
     EdgeAdaptionSettings& s = structure.adaption;
     s.max_shift_px = adaption.NumberOr("max_shift_px", s.max_shift_px, {0.0, 30.0});
     s.blur_px = adaption.NumberOr("blur_px", s.blur_px, {0.3, 10.0});
     s.min_gradient = adaption.NumberOr("min_gradient", s.min_gradient, {0.0, 1000.0});
     s.nearness = adaption.NumberOr("nearness", s.nearness, {0.0, 1.0});
     s.smoothness = adaption.NumberOr("smoothness", s.smoothness, {0.0, 100.0});
+    s.inserts_points = adaption.BooleanOr("insert_points", s.inserts_points);
   }
   for (const JsonView& slice : view.Array("slices")) {
-    slice.AllowOnly({"slice", "contours", "holes"});
+    slice.AllowOnly({"slice", "contours", "holes", "open"});
     SliceContours contours;
     contours.slice = slice.Integer("slice");
     if (contours.slice < points.first_slice || contours.slice > points.last_slice) {
@@ -110,13 +122,19 @@ Structure ReadStructure(const ControlPoints& points, const JsonView& view) {
     const std::string where = structure.name + ", slice " + std::to_string(contours.slice);
     contours.contours = ReadPolygons(points, slice, "contours", where);
     if (slice.Has("holes")) contours.holes = ReadPolygons(points, slice, "holes", where);
-    if (contours.contours.empty()) {
+    if (slice.Has("open")) contours.open = ReadOpenContour(points, slice);
+    const bool is_draft = completeness == Completeness::kDraft;
+    if (!is_draft && !contours.open.empty()) {
+      slice.Complain(where + " has a contour that is not closed; close or drop it in the contour window",
+                     ErrorCode::kContourTooShort);
+    }
+    if (contours.contours.empty() && !(is_draft && contours.holes.empty() && !contours.open.empty())) {
       slice.Complain(where + " has no contour; remove the slice or place points",
                      ErrorCode::kContourTooShort);
     }
     structure.slices.push_back(std::move(contours));
   }
-  if (structure.slices.size() < 2) {
+  if (structure.slices.size() < 2 && completeness == Completeness::kPatient) {
     view.Complain("a volume needs contours in at least two slices", ErrorCode::kContourTooShort);
   }
   return structure;
@@ -154,16 +172,17 @@ void CheckPattern(const JsonView& root, const std::string& pattern) {
   if (!is_usable) root.Complain("image_pattern must be a file name with {slice} or {slice:04} in it");
 }
 
+std::string FormatPolygon(const std::vector<Vec2>& polygon) {
+  std::string text = "[";
+  for (std::size_t k = 0; k < polygon.size(); ++k) {
+    text += (k == 0 ? "[" : ", [") + NumberText(polygon[k].x) + ", " + NumberText(polygon[k].y) + "]";
+  }
+  return text + "]";
+}
+
 std::string FormatPolygons(const std::vector<std::vector<Vec2>>& polygons) {
   std::string text = "[";
-  for (std::size_t i = 0; i < polygons.size(); ++i) {
-    text += i == 0 ? "[" : ", [";
-    for (std::size_t k = 0; k < polygons[i].size(); ++k) {
-      text +=
-          (k == 0 ? "[" : ", [") + NumberText(polygons[i][k].x) + ", " + NumberText(polygons[i][k].y) + "]";
-    }
-    text += "]";
-  }
+  for (std::size_t i = 0; i < polygons.size(); ++i) text += (i == 0 ? "" : ", ") + FormatPolygon(polygons[i]);
   return text + "]";
 }
 
@@ -212,7 +231,8 @@ std::array<std::array<double, 3>, 3> AxisDirections(const ControlPoints& points)
   return directions;
 }
 
-core::Result<ControlPoints> ParseControlPoints(std::string_view text, std::string_view source) {
+core::Result<ControlPoints> ParseControlPoints(std::string_view text, std::string_view source,
+                                               Completeness completeness) {
   auto document = core::JsonDocument::Parse(text, std::string(source));
   if (!document.ok()) return document.error();
   const JsonView root = document->Root();
@@ -227,8 +247,8 @@ core::Result<ControlPoints> ParseControlPoints(std::string_view text, std::strin
   const JsonView images = root.Object("images");
   images.AllowOnly(
       {"pattern", "first_slice", "last_slice", "width", "height", "pixel_mm", "slice_mm", "axes"});
-  points.image_pattern = images.Text("pattern");
-  CheckPattern(images, points.image_pattern);
+  points.image_pattern = images.TextOr("pattern", "");
+  if (images.Has("pattern")) CheckPattern(images, points.image_pattern);
   points.first_slice = images.Integer("first_slice", {0, 1e6});
   points.last_slice = images.Integer("last_slice", {0, 1e6});
   if (points.last_slice < points.first_slice) images.Complain("last_slice comes before first_slice");
@@ -257,10 +277,11 @@ core::Result<ControlPoints> ParseControlPoints(std::string_view text, std::strin
   }
   std::set<std::string> names;
   for (const JsonView& view : root.Array("structures")) {
-    points.structures.push_back(ReadStructure(points, view));
+    points.structures.push_back(ReadStructure(points, view, completeness));
     if (!names.insert(points.structures.back().name).second) view.Complain("this name is used twice");
   }
-  if (points.structures.empty()) root.Complain("there are no structures");
+  if (points.structures.empty() && completeness == Completeness::kPatient)
+    root.Complain("there are no structures");
   if (root.Has("tubes")) {
     for (const JsonView& view : root.Array("tubes")) {
       points.tubes.push_back(ReadTube(points, view));
@@ -279,10 +300,10 @@ core::Result<ControlPoints> ParseControlPoints(std::string_view text, std::strin
   return points;
 }
 
-core::Result<ControlPoints> ReadControlPoints(const std::filesystem::path& path) {
+core::Result<ControlPoints> ReadControlPoints(const std::filesystem::path& path, Completeness completeness) {
   const auto text = core::ReadFile(path);
   if (!text.ok()) return text.error();
-  return ParseControlPoints(*text, path.string());
+  return ParseControlPoints(*text, path.string(), completeness);
 }
 
 std::string FormatControlPoints(const ControlPoints& points) {
@@ -290,8 +311,9 @@ std::string FormatControlPoints(const ControlPoints& points) {
   std::string text = "{\n";
   text += "\"format\": \"" + std::string(kFormat) + "\",\n\"version\": " + std::to_string(kVersion) + ",\n";
   text += "\"name\": " + Quoted(points.name) + ",\n\"provenance\": " + Quoted(points.provenance) + ",\n";
-  text += "\"images\": {\"pattern\": " + Quoted(points.image_pattern) +
-          ", \"first_slice\": " + std::to_string(points.first_slice) +
+  text += "\"images\": {";
+  if (!points.image_pattern.empty()) text += "\"pattern\": " + Quoted(points.image_pattern) + ", ";
+  text += "\"first_slice\": " + std::to_string(points.first_slice) +
           ", \"last_slice\": " + std::to_string(points.last_slice) +
           ",\n  \"width\": " + std::to_string(points.width) +
           ", \"height\": " + std::to_string(points.height) + ", \"pixel_mm\": " + exact(points.pixel_mm) +
@@ -314,11 +336,13 @@ std::string FormatControlPoints(const ControlPoints& points) {
             ", \"blur_px\": " + exact(s.adaption.blur_px) +
             ", \"min_gradient\": " + exact(s.adaption.min_gradient) +
             ", \"nearness\": " + exact(s.adaption.nearness) +
-            ", \"smoothness\": " + exact(s.adaption.smoothness) + "},\n   \"slices\": [";
+            ", \"smoothness\": " + exact(s.adaption.smoothness) +
+            (s.adaption.inserts_points ? "" : ", \"insert_points\": false") + "},\n   \"slices\": [";
     for (std::size_t k = 0; k < s.slices.size(); ++k) {
       text += (k == 0 ? "\n    {\"slice\": " : ",\n    {\"slice\": ") + std::to_string(s.slices[k].slice) +
               ", \"contours\": " + FormatPolygons(s.slices[k].contours);
       if (!s.slices[k].holes.empty()) text += ", \"holes\": " + FormatPolygons(s.slices[k].holes);
+      if (!s.slices[k].open.empty()) text += ", \"open\": " + FormatPolygon(s.slices[k].open);
       text += "}";
     }
     text += "]}";

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trocar/anatomy/generate_patient.h"
 
+#include <oneapi/tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -282,8 +284,13 @@ class Body {
   Vec3 neck_;
 };
 
+/// Samples of minus the distance. Only the surface's place counts: a block of samples whose middle lies so
+/// far from the surface that all of it must be on the same side takes the middle's value.
 template <typename Function>
 ScalarVolume Sample(const geometry::Box& box, double spacing, Function distance) {
+  constexpr int kBlock = 4;           // samples along each side
+  constexpr double kSteepness = 2.5;  // no distance grows faster than this; they are first-order estimates
+  const double clear = kSteepness * 0.5 * std::sqrt(3.0) * (kBlock + 1) * spacing;
   ScalarVolume volume;
   volume.spacing = spacing;
   for (int axis = 0; axis < 3; ++axis) {
@@ -291,12 +298,25 @@ ScalarVolume Sample(const geometry::Box& box, double spacing, Function distance)
     volume.size[axis] = static_cast<int>(std::ceil(box.max[axis] / spacing)) + 2 - volume.first[axis];
   }
   volume.values.resize(static_cast<std::size_t>(volume.size[0]) * volume.size[1] * volume.size[2]);
-  for (int k = 0; k < volume.size[2]; ++k) {
-    for (int j = 0; j < volume.size[1]; ++j) {
-      for (int i = 0; i < volume.size[0]; ++i)
-        volume.values[volume.Index(i, j, k)] = static_cast<float>(-distance(volume.Position(i, j, k)));
+  const auto blocks = [&](int axis) { return (volume.size[axis] + kBlock - 1) / kBlock; };
+  oneapi::tbb::parallel_for(0, blocks(2) * blocks(1), [&](int row) {
+    const int k0 = row / blocks(1) * kBlock, j0 = row % blocks(1) * kBlock;
+    for (int i0 = 0; i0 < volume.size[0]; i0 += kBlock) {
+      constexpr double kMiddle = 0.5 * (kBlock - 1);
+      const Vec3 middle = spacing * Vec3{volume.first[0] + i0 + kMiddle, volume.first[1] + j0 + kMiddle,
+                                         volume.first[2] + k0 + kMiddle};
+      const double there = distance(middle);
+      const bool is_clear = std::fabs(there) > clear;
+      for (int k = k0; k < std::min(k0 + kBlock, volume.size[2]); ++k) {
+        for (int j = j0; j < std::min(j0 + kBlock, volume.size[1]); ++j) {
+          for (int i = i0; i < std::min(i0 + kBlock, volume.size[0]); ++i) {
+            volume.values[volume.Index(i, j, k)] =
+                static_cast<float>(is_clear ? -there : -distance(volume.Position(i, j, k)));
+          }
+        }
+      }
     }
-  }
+  });
   return volume;
 }
 

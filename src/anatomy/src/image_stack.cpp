@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trocar/anatomy/image_stack.h"
 
-#include <cmath>
-
 #include "trocar/core/printable.h"
 #include "volume_file.h"
 
@@ -68,12 +66,8 @@ core::Result<LabelVolume> ReadLabelVolume(const fs::path& path) {
     for (int k = 0; k < 3; ++k) volume.direction[axis][k] = header.direction[axis][k] * header.spacing[axis];
   }
   volume.labels.resize(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    const double label = header.slope * SampleAt(header, decoded->samples.Data(), i) + header.intercept;
-    if (!(label >= 0.0 && label <= 255.0) || label != std::floor(label))
-      return Undecodable(path, "its voxels are not whole numbers from 0 to 255; name a label map");
-    volume.labels[i] = static_cast<std::uint8_t>(label);
-  }
+  if (!CopyLabels(header, decoded->samples.Data(), volume.labels))
+    return Undecodable(path, "its voxels are not whole numbers from 0 to 255; name a label map");
   volume.names = std::move(decoded->names);
   return volume;
 }

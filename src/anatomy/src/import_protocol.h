@@ -20,6 +20,9 @@ inline constexpr int kExitOutOfMemory = 40;         // exit status of the reader
 inline constexpr std::size_t kMostDescriptors = 3;  // of one request
 inline constexpr std::size_t kMostSegments = 255;
 
+/// Why a DICOM report or plan is not read; among slices it is passed over.
+inline constexpr const char* kWithoutPicture = "it is a DICOM file without a picture";
+
 enum class FileKind : std::uint32_t { kUnknown, kJpeg, kPng, kTiff, kDicom, kNifti, kNrrd, kMetaImage };
 enum class ImportOperation : std::uint32_t { kProbe = 1, kDecode = 2 };
 

@@ -14,7 +14,8 @@ using math::Vec3;
 
 namespace {
 constexpr int kMaxCellsAnAxis = 160;
-}
+constexpr double kRounded = 1.0 + 1e-9;  // a ball that rounding cannot make too small
+}  // namespace
 
 NearestSurface::NearestSurface(const geometry::TriangleMesh& mesh) : mesh_(mesh) {
   TROCAR_ASSERT(!mesh.triangles.empty());
@@ -27,6 +28,14 @@ NearestSurface::NearestSurface(const geometry::TriangleMesh& mesh) : mesh_(mesh)
   origin_ = box.min;
   for (int axis = 0; axis < 3; ++axis) size_[axis] = static_cast<int>(extent[axis] / cell_) + 1;
 
+  balls_.reserve(mesh.triangles.size());
+  for (const auto& t : mesh.triangles) {
+    const Vec3 &a = mesh.positions[t[0]], &b = mesh.positions[t[1]], &c = mesh.positions[t[2]];
+    const Vec3 centre = (a + b + c) / 3.0;
+    const double squared = std::max({math::SquaredDistance(centre, a), math::SquaredDistance(centre, b),
+                                     math::SquaredDistance(centre, c)});
+    balls_.push_back({centre, kRounded * std::sqrt(squared)});
+  }
   const std::size_t cells = static_cast<std::size_t>(size_[0]) * size_[1] * size_[2];
   starts_.assign(cells + 1, 0);
   // two passes: count, then fill
@@ -84,6 +93,9 @@ SurfacePoint NearestSurface::Find(const Vec3& p) const {
           if (x < 0 || x >= size_[0]) continue;
           const std::size_t cell = (static_cast<std::size_t>(z) * size_[1] + y) * size_[0] + x;
           for (std::uint32_t k = starts_[cell]; k < starts_[cell + 1]; ++k) {
+            const Ball& ball = balls_[triangles_[k]];
+            const double clearance = std::sqrt(math::SquaredDistance(p, ball.centre)) - ball.radius;
+            if (clearance > 0 && clearance * clearance > best_squared) continue;
             const auto& t = mesh_.triangles[triangles_[k]];
             const auto at = geometry::FindNearestOnTriangle(p, mesh_.positions[t[0]], mesh_.positions[t[1]],
                                                             mesh_.positions[t[2]]);

@@ -32,7 +32,14 @@ class NearestSurface {
  private:
   std::array<int, 3> CellOf(const math::Vec3& p) const;
 
+  /// Ball around a triangle: whatever lies further away than the best so far is left out quickly.
+  struct Ball {
+    math::Vec3 centre;
+    double radius = 0;
+  };
+
   const geometry::TriangleMesh& mesh_;
+  std::vector<Ball> balls_;  // (nt)
   math::Vec3 origin_;
   double cell_ = 1.0;
   std::array<int, 3> size_ = {1, 1, 1};

@@ -15,8 +15,8 @@ namespace trocar::anatomy {
 namespace {
 
 using Colour = std::array<std::uint8_t, 3>;
-constexpr Colour kPlaced = {255, 40, 40}, kAdapted = {255, 230, 0}, kCurve = {40, 255, 80},
-                 kTube = {80, 160, 255};
+constexpr Colour kPlaced = {255, 40, 40}, kAdapted = {255, 230, 0}, kInserted = {40, 230, 255},
+                 kCurve = {40, 255, 80}, kTube = {80, 160, 255}, kReference = {255, 60, 255};
 constexpr Colour kTint = {255, 255, 255};
 constexpr double kTintShare = 0.15;
 constexpr int kMargin = 30;  // photograph's pixels around the contours
@@ -80,13 +80,16 @@ ColorImage DrawOverlay(const ColorImage& photograph, const Overlay& overlay, int
   const auto place = [&](const Vec2& p) {
     return Vec2{(p.x - x0 + 0.5) * scale - 0.5, (p.y - y0 + 0.5) * scale - 0.5};
   };
+  const auto draw_closed = [&](const std::vector<Vec2>& line, const Colour& colour) {
+    for (std::size_t i = 0; i < line.size(); ++i)
+      DrawLine(picture, place(line[i]), place(line[(i + 1) % line.size()]), colour);
+  };
+  for (const auto& outline : overlay.reference) draw_closed(outline, kReference);
   for (const ContourStages& contour : overlay.contours) {
-    for (std::size_t i = 0; i < contour.curve.size(); ++i) {
-      DrawLine(picture, place(contour.curve[i]), place(contour.curve[(i + 1) % contour.curve.size()]),
-               kCurve);
-    }
+    draw_closed(contour.curve, kCurve);
     for (const Vec2& p : contour.placed) DrawSquare(picture, place(p), 1, kPlaced);
     for (const Vec2& p : contour.adapted) DrawSquare(picture, place(p), 1, kAdapted);
+    for (const Vec2& p : contour.inserted) DrawSquare(picture, place(p), 1, kInserted);
   }
   for (const Vec2& p : overlay.tube_points) {
     const Vec2 at = place(p);

@@ -7,12 +7,11 @@
 #include <vector>
 
 #include "mesh_slice.h"
+#include "trocar/anatomy/reference_contours.h"
 
 namespace trocar::anatomy {
 namespace {
 
-/// Label axes may differ from the series' extent by this much [mm].
-constexpr double kExtentTolerance = 1.5;
 // moves the planes and rows off the mesh's vertices
 constexpr double kNudge = 1.7e-6;  // mm
 
@@ -20,33 +19,9 @@ constexpr double kNudge = 1.7e-6;  // mm
 
 core::Result<Judgement> Judge(const LabelVolume& reference, const ControlPoints& points, int label,
                               const geometry::TriangleMesh& mesh, std::array<int, 2> left_out) {
-  const auto mismatch = [](const std::string& why) {
-    return core::Error{
-        core::ErrorCode::kLabelsMismatch,
-        "the reference labels do not belong to these images: " + why + "; name the labels of this series"};
-  };
-  // the axes: world left, cranial, anterior against LPS left, posterior, superior
-  const auto directions = AxisDirections(points);
-  std::array<double, 3> step;  // mm
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto& d = directions[axis];
-    const double lps[3] = {d[0], -d[2], d[1]};
-    double along = 0, length = 0;
-    for (int k = 0; k < 3; ++k)
-      along += lps[k] * reference.direction[axis][k], length += std::pow(reference.direction[axis][k], 2);
-    step[axis] = std::sqrt(length);
-    if (std::fabs(along - step[axis]) > 1e-3)
-      return mismatch("axis " + std::to_string(axis + 1) + " points elsewhere");
-  }
-  const double extents[3] = {points.width * points.pixel_mm, points.height * points.pixel_mm,
-                             (points.last_slice - points.first_slice + 1) * points.slice_mm};
-  for (int axis = 0; axis < 3; ++axis) {
-    if (std::fabs(reference.size[axis] * step[axis] - extents[axis]) > kExtentTolerance) {
-      return mismatch("axis " + std::to_string(axis + 1) + " covers " +
-                      std::to_string(reference.size[axis] * step[axis]) + " mm, the images " +
-                      std::to_string(extents[axis]) + " mm");
-    }
-  }
+  const auto found = FindLabelStep(reference, points);
+  if (!found.ok()) return found.error();
+  const std::array<double, 3>& step = *found;
 
   std::size_t built = 0, expected = 0, both = 0;
   std::vector<std::vector<double>> crossings(reference.size[1]);
@@ -78,7 +53,11 @@ core::Result<Judgement> Judge(const LabelVolume& reference, const ControlPoints&
       }
     }
   }
-  if (expected == 0) return mismatch("label " + std::to_string(label) + " does not occur");
+  if (expected == 0) {
+    return core::Error{core::ErrorCode::kLabelsMismatch,
+                       "the reference labels do not belong to these images: label " + std::to_string(label) +
+                           " does not occur; name the labels of this series"};
+  }
   const double voxel_ml = step[0] * step[1] * step[2] / 1000.0;
   Judgement judgement;
   judgement.volume_ml = static_cast<double>(built) * voxel_ml;

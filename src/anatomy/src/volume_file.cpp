@@ -92,6 +92,17 @@ double SampleAt(const ImageHeader& header, const std::byte* samples, std::size_t
   return WithReader(header, samples, [i](const auto& at) { return at(i); });
 }
 
+bool CopyLabels(const ImageHeader& header, const std::byte* samples, std::span<std::uint8_t> labels) {
+  return WithReader(header, samples, [&](const auto& at) {
+    for (std::size_t i = 0; i < labels.size(); ++i) {
+      const double label = header.slope * at(i) + header.intercept;
+      if (!(label >= 0.0 && label <= 255.0) || label != std::floor(label)) return false;
+      labels[i] = static_cast<std::uint8_t>(label);
+    }
+    return true;
+  });
+}
+
 GreyStatistics MeasureGrey(const ImageHeader& header, const std::byte* samples, std::size_t count) {
   constexpr std::size_t kBins = 4096;
   constexpr double kLeftOut = 0.005;  // at either end

@@ -20,8 +20,9 @@ using geometry::TriangleMesh;
 
 /// Share of the budget that repair may not go below.
 constexpr double kFewest = 0.98;
-/// How much more smoothing each further attempt gets [-].
-constexpr double kMoreSmoothing[] = {1.0, 1.6, 2.5};
+/// Smoothing of each attempt, as a share of what was asked for. Thin necks are cut by too much of it, thin
+/// rims by too little.
+constexpr double kSmoothingShares[] = {1.0, 0.4, 0.16, 0.07, 1.6, 2.5};
 /// A halved lattice needs this share of the rounds for the same effect in millimetres.
 constexpr double kRoundsWhenHalved = 0.25;
 /// Halving is given up where it changes more of the volume than this, or loses more of it: samples inside
@@ -154,11 +155,11 @@ core::Result<MeshedVolume> MeshVolume(ScalarVolume volume, const MeshingSettings
   const TriangleMesh& surface = coarser ? coarser->mesh : fine;
 
   std::optional<MeshedVolume> best;
-  for (const double more : kMoreSmoothing) {
+  for (const double share : kSmoothingShares) {
     TriangleMesh smooth = surface;
     SmoothingSettings smoothing = settings.smoothing;
     smoothing.iterations =
-        static_cast<int>(std::lround(more * (coarser ? coarser->rounds : 1.0) * smoothing.iterations));
+        static_cast<int>(std::lround(share * (coarser ? coarser->rounds : 1.0) * smoothing.iterations));
     SmoothMesh(smooth, smoothing);
     SetVolume(smooth, enclosed);
     auto decimated = DecimateMesh(smooth, {.triangle_budget = settings.triangle_budget});

@@ -56,7 +56,7 @@ TEST(FitContourToEdges, InsertsPointsWhereTheSplineLeavesTheEdge) {
   };
   const ContourFitSettings settings = {.adaption = {.max_shift_px = 14}};
   ContourFitSettings plain = settings;
-  plain.is_inserting = false;
+  plain.adaption.inserts_points = false;
   const ContourFit without = FitContourToEdges(image, clicked, plain);
   const ContourFit with = FitContourToEdges(image, clicked, settings);
   EXPECT_TRUE(without.inserted.empty());

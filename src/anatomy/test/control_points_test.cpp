@@ -61,6 +61,19 @@ TEST(ControlPoints, ComeBackUnchanged) {
   EXPECT_NE(parsed->FindLandmark("umbilical_fissure"), nullptr);
 }
 
+TEST(ControlPoints, NeedAPatternForPicturesOnly) {
+  ControlPoints points = MakePoints();
+  points.image_pattern.clear();
+  const std::string text = FormatControlPoints(points);
+  const auto parsed = ParseControlPoints(text, "test");
+  ASSERT_TRUE(parsed.ok()) << parsed.error().Text();
+  EXPECT_EQ(parsed->image_pattern, "");
+  EXPECT_EQ(FormatControlPoints(*parsed), text);
+  const std::string with = FormatControlPoints(MakePoints());
+  EXPECT_EQ(CodeOf(Replaced(with, "slice-{slice:03}.png", "slice.png")), ErrorCode::kJsonField);
+  EXPECT_EQ(CodeOf(Replaced(with, "slice-{slice:03}.png", "../{slice}.png")), ErrorCode::kJsonField);
+}
+
 TEST(ControlPoints, RejectAPointOutsideTheImage) {
   const std::string text = FormatControlPoints(MakePoints());
   EXPECT_EQ(CodeOf(Replaced(text, "[50.25, 12]", "[100, 12]")), ErrorCode::kControlPointOutside);

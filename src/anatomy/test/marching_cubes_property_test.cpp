@@ -136,6 +136,15 @@ TEST(MarchCubes, RandomVolumesGiveClosedManifoldOutwardSurfaces) {
   }
 }
 
+TEST(MarchCubes, NoTrianglesCutEachOther) {
+  for (std::uint64_t seed = 0; seed < 30; ++seed) {
+    math::Random random(seed);
+    ScalarVolume volume = MakeEmpty(6, 5, 6);
+    for (float& value : volume.values) value = static_cast<float>(random.Uniform(-1, 1));
+    EXPECT_EQ(geometry::CountSelfIntersections(MarchCubes(volume)), 0u) << "seed " << seed;
+  }
+}
+
 TEST(MarchCubes, ThinStructuresGiveClosedManifoldOutwardSurfaces) {
   math::Random random(5);
   const auto make = [&](const char* what, auto is_inside) {

@@ -185,6 +185,46 @@ TEST(Subtract, LeavesTheGap) {
   EXPECT_GT(value(44, 40, 10), 0.5f);
 }
 
+// Oracle: flood fill of each side, sample by sample.
+TEST(KeepLargestPart, KeepsWhatAFloodReaches) {
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    math::Random random(seed);
+    ScalarVolume volume{1.0, {0, 0, 0}, {9, 8, 7}, std::vector<float>(504)};
+    const double share = random.Uniform(0.3, 0.7);
+    for (float& value : volume.values) value = random.Uniform() < share ? 1.0f : -1.0f;
+    const auto largest_part = [&](const std::vector<float>& values, bool inside) {
+      std::vector<char> seen(values.size(), 0);
+      std::vector<std::size_t> best;
+      for (std::size_t start = 0; start < values.size(); ++start) {
+        if (seen[start] || (values[start] > 0) != inside) continue;
+        std::vector<std::size_t> part = {start};
+        seen[start] = 1;
+        for (std::size_t n = 0; n < part.size(); ++n) {
+          const int i = static_cast<int>(part[n] % 9), j = static_cast<int>(part[n] / 9 % 8),
+                    k = static_cast<int>(part[n] / 72);
+          const int next[6][3] = {{i - 1, j, k}, {i + 1, j, k}, {i, j - 1, k},
+                                  {i, j + 1, k}, {i, j, k - 1}, {i, j, k + 1}};
+          for (const auto& [x, y, z] : next) {
+            if (x < 0 || y < 0 || z < 0 || x >= 9 || y >= 8 || z >= 7) continue;
+            const std::size_t to = volume.Index(x, y, z);
+            if (seen[to] || (values[to] > 0) != inside) continue;
+            seen[to] = 1;
+            part.push_back(to);
+          }
+        }
+        if (part.size() > best.size()) best = part;
+      }
+      return best;
+    };
+    std::vector<float> expected(504, -1.0f);
+    for (const auto v : largest_part(volume.values, true)) expected[v] = 1.0f;
+    std::vector<float> filled(504, 1.0f);
+    for (const auto v : largest_part(expected, false)) filled[v] = -1.0f;
+    KeepLargestPart(volume);
+    for (std::size_t v = 0; v < 504; ++v) EXPECT_EQ(volume.values[v] > 0, filled[v] > 0) << "seed " << seed;
+  }
+}
+
 TEST(KeepLargestPart, DropsIslandsAndFillsCavities) {
   ScalarVolume volume{1.0, {0, 0, 0}, {12, 12, 12}, std::vector<float>(1728, -1.0f)};
   for (int k = 1; k < 8; ++k) {

@@ -3,11 +3,9 @@
 
 #include <string_view>
 
-#include "trocar/app/key_bindings.h"
-
 namespace trocar::app {
 
-HelpCard::HelpCard() {
+HelpCard::HelpCard(std::span<const KeyHelp> rows) {
   add_css_class("help");
   set_halign(Gtk::Align::CENTER);
   set_valign(Gtk::Align::CENTER);
@@ -16,7 +14,7 @@ HelpCard::HelpCard() {
   grid->set_row_spacing(3);
   std::string_view group;
   int row = 0;
-  for (const KeyHelp& help : KeyHelpRows()) {
+  for (const KeyHelp& help : rows) {
     if (help.group != group) {
       group = help.group;
       auto* title = Gtk::make_managed<Gtk::Label>(help.group);

@@ -4,11 +4,15 @@
 
 #include <gtkmm.h>
 
+#include <span>
+
+#include "trocar/app/key_bindings.h"
+
 namespace trocar::app {
 
 class HelpCard : public Gtk::Box {
  public:
-  HelpCard();
+  explicit HelpCard(std::span<const KeyHelp> rows);
 };
 
 }  // namespace trocar::app

@@ -57,6 +57,17 @@ window.trocar { background: #14171a; color: #dfe5ea; }
 .trocar .failure { background: #24191a; border: 1px solid #7a3b38; border-radius: 12px; padding: 20px 26px; }
 .trocar .failure .code { color: #ff8a7e; font-weight: 700; font-size: 16px; }
 .trocar .failure .text { color: #f3e6e5; font-size: 14px; }
+.trocar .hint.warning { color: #ffd48a; }
+.trocar .note { color: #ffb45c; font-size: 12px; }
+.trocar button.organ { padding: 3px 10px; min-height: 24px; background: #20262d; border-color: #2a3037; }
+.trocar button.organ:checked { background: #234049; border-color: #2f8696; }
+.trocar .bar { padding: 7px 14px; border-bottom: 1px solid #3b3032; font-size: 13px; }
+.trocar .bar.error { background: #3a2022; color: #f6e4e2; }
+.trocar .bar.error .code { color: #ff8a7e; font-weight: 700; }
+.trocar .bar.notice { background: #1d3136; color: #e4f4f6; }
+.trocar .bar.question { background: #33301f; color: #f6f0dc; }
+.trocar progressbar trough { background: #343b44; min-height: 4px; border: none; }
+.trocar progressbar progress { background: #2b9cb1; min-height: 4px; min-width: 2px; border: none; margin: 0; }
 tooltip { background: #2a3038; color: #f1f5f8; border: 1px solid #434c57; }
 )css";
 

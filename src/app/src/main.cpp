@@ -6,6 +6,7 @@
 #include <cstdlib>
 
 #include "composition.h"
+#include "contour_window.h"
 #include "look.h"
 #include "patient_editor_window.h"
 #include "simulator_window.h"
@@ -32,24 +33,34 @@ int main(int argc, char** argv) {
   }
   trocar::app::ChooseComposition();
   const auto application = Gtk::Application::create("", Gio::Application::Flags::NON_UNIQUE);
-  std::unique_ptr<trocar::app::SimulatorWindow> window;
+  std::unique_ptr<trocar::app::SimulatorWindow> simulator;
+  std::unique_ptr<trocar::app::ContourWindow> contours;
   std::unique_ptr<trocar::app::PatientEditorWindow> patient_editor;
+  const auto show = [&](Gtk::ApplicationWindow& window) {
+    application->add_window(window);
+    window.present();
+  };
   application->signal_activate().connect([&] {
     trocar::app::ApplyLook();
-    if (!command->options.patient.empty()) {
+    if (!command->options.images.empty()) {
+      contours = std::make_unique<trocar::app::ContourWindow>(command->options, since_start);
+      show(*contours);
+    } else if (!command->options.patient.empty()) {
       patient_editor = std::make_unique<trocar::app::PatientEditorWindow>(command->options);
-      application->add_window(*patient_editor);
-      patient_editor->present();
-      return;
+      show(*patient_editor);
+    } else {
+      simulator = std::make_unique<trocar::app::SimulatorWindow>(command->options, since_start);
+      show(*simulator);
     }
-    window = std::make_unique<trocar::app::SimulatorWindow>(command->options, since_start);
-    application->add_window(*window);
-    window->present();
   });
   const int status = application->run();
-  const bool has_failed = (window != nullptr && window->GetFailure().has_value()) ||
-                          (patient_editor != nullptr && patient_editor->GetFailure().has_value());
-  window.reset();
+  const auto has_failed = [](const auto& window) {
+    return window != nullptr && window->GetFailure().has_value();
+  };
+  const bool is_good =
+      status == 0 && !has_failed(simulator) && !has_failed(contours) && !has_failed(patient_editor);
+  simulator.reset();
+  contours.reset();
   patient_editor.reset();
-  return status != 0 || has_failed ? EXIT_FAILURE : EXIT_SUCCESS;
+  return is_good ? EXIT_SUCCESS : EXIT_FAILURE;
 }

@@ -3,8 +3,10 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
+#include "trocar/app/contour_script.h"
 #include "trocar/core/version.h"
 
 namespace trocar::app {
@@ -31,17 +33,49 @@ core::Result<Command> ParseCommandLine(int argc, const char* const* argv) {
       ->check(CLI::Range(0.0, 3600.0))
       ->needs(screenshot)
       ->capture_default_str();
+  CLI::Option* contours =
+      app.add_option("--contours", options.images,
+                     "Open the contour window on these pictures: a folder, a DICOM series or a "
+                     "volume")
+          ->excludes("--scene")
+          ->excludes("--demonstration")
+          ->excludes("--threads");
+  app.add_option("--points", options.points,
+                 "With --contours: file of contours to go on with, or to begin (control points, JSON)")
+      ->needs(contours);
+  app.add_option("--reference", options.reference, "With --contours: label map to compare with (NIfTI, NRRD)")
+      ->needs(contours);
+  app.add_option("--pixel-mm", options.series.pixel_mm,
+                 "With --contours: side of a pixel, where the files do not say it [mm]")
+      ->check(CLI::Range(0.01, 20.0))
+      ->needs(contours);
+  app.add_option("--slice-mm", options.series.slice_mm,
+                 "With --contours: between two slices, where the files do not say it [mm]")
+      ->check(CLI::Range(0.01, 50.0))
+      ->needs(contours);
+  std::string axes;
+  app.add_option("--axes", axes,
+                 "With --contours: where columns, rows and slices go to, where the files do not say it, for "
+                 "example left,posterior,superior")
+      ->needs(contours);
+  app.add_option("--script", options.script, "With --contours: commands to begin with, one a line (below)")
+      ->needs(contours);
+  app.add_flag("--measure", options.is_measuring,
+               "With --contours: drag points by itself, print the times as JSON, and quit")
+      ->needs(contours);
   CLI::Option* patient = app.add_option("--edit-patient", options.patient,
                                         "Open the patient editor on this folder: regions, ducts, landmarks")
                              ->excludes("--scene")
-                             ->excludes("--demonstration");
+                             ->excludes("--demonstration")
+                             ->excludes(contours);
   app.add_option("--tool", options.editor_tool, "With --edit-patient: tool to begin with")
       ->check(CLI::IsMember({"look", "paint", "tubes", "landmarks"}))
       ->needs(patient)
       ->capture_default_str();
-  app.footer(
-      "Keys are shown in the window: press H. Without a display, `trocar simulate` runs the same scene "
-      "headless.");
+  app.footer("Commands of --script:\n" + DescribeContourScript() +
+             "\nKeys are shown in the window: press H, in the contour window F1. Without a display, `trocar "
+             "simulate` runs the same scene "
+             "headless.");
   try {
     app.parse(argc, argv);
   } catch (const CLI::CallForHelp&) {
@@ -56,6 +90,22 @@ core::Result<Command> ParseCommandLine(int argc, const char* const* argv) {
   if (!std::isfinite(options.screenshot_after)) {
     return core::Error{core::ErrorCode::kUsage,
                        "--after must be a number of seconds; see trocar-window --help"};
+  }
+  if (!axes.empty()) {
+    std::array<std::string, 3> names;
+    std::size_t count = 0;
+    for (std::size_t at = 0; at <= axes.size(); ++count) {
+      const std::size_t end = std::min(axes.find(',', at), axes.size());
+      if (count < names.size()) names[count] = axes.substr(at, end - at);
+      at = end + 1;
+    }
+    if (count != names.size()) {
+      return core::Error{
+          core::ErrorCode::kUsage,
+          "--axes takes three directions, for example left,posterior,superior; see trocar-window "
+          "--help"};
+    }
+    options.series.axes = names;
   }
   return command;
 }

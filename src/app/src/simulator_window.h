@@ -57,7 +57,7 @@ class SimulatorWindow : public Gtk::ApplicationWindow {
   Gtk::Overlay overlay_;
   Picture picture_;
   Panel panel_;
-  HelpCard help_card_;
+  HelpCard help_card_{KeyHelpRows()};
   Gtk::Label badge_, hint_, event_, state_;
   Gtk::Box failure_card_{Gtk::Orientation::VERTICAL};
   std::unique_ptr<HandEvents> hands_;

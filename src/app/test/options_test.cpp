@@ -36,6 +36,30 @@ TEST(Options, ReadsEveryOption) {
   EXPECT_EQ(command->options.screenshot_after, 1.5);
 }
 
+TEST(Options, ReadsTheContourWindowsOptions) {
+  const core::Result<Command> command =
+      Parse({"--contours", "slices", "--points", "p.json", "--reference", "l.nii.gz", "--pixel-mm", "0.5",
+             "--slice-mm", "2", "--axes", "left,posterior,superior", "--script", "s", "--measure"});
+  ASSERT_TRUE(command.ok()) << command.error().Text();
+  const Options& options = command->options;
+  EXPECT_EQ(options.images, "slices");
+  EXPECT_EQ(options.points, "p.json");
+  EXPECT_EQ(options.reference, "l.nii.gz");
+  EXPECT_EQ(options.series.pixel_mm, 0.5);
+  EXPECT_EQ(options.series.slice_mm, 2.0);
+  EXPECT_EQ((*options.series.axes)[1], "posterior");
+  EXPECT_EQ(options.script, "s");
+  EXPECT_TRUE(options.is_measuring);
+  for (const auto& wrong : std::initializer_list<std::initializer_list<const char*>>{
+           {"--points", "p.json"},
+           {"--contours", "a", "--scene", "b"},
+           {"--contours", "a", "--axes", "left,posterior"},
+           {"--contours", "a", "--axes", "left,posterior,superior,left"},
+           {"--contours", "a", "--pixel-mm", "0"}}) {
+    EXPECT_FALSE(Parse(wrong).ok());
+  }
+}
+
 TEST(Options, HelpAndVersionArePrinted) {
   const core::Result<Command> help = Parse({"--help"});
   ASSERT_TRUE(help.ok());

@@ -2,20 +2,16 @@
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
-#include <cstdint>
 #include <cstdio>
 #include <memory>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "command.h"
 #include "console.h"
 #include "image_options.h"
 #include "trocar/anatomy/build_patient.h"
-#include "trocar/anatomy/generate_patient.h"
 #include "trocar/anatomy/patient_from_labels.h"
-#include "trocar/anatomy/patient_parameters.h"
 
 namespace trocar::cli {
 namespace {
@@ -55,102 +51,6 @@ core::Status Build(const BuildArguments& arguments) {
   return {};
 }
 
-struct GenerateArguments {
-  std::uint64_t seed = 0;
-  std::string output;
-  std::vector<std::string> settings;
-  bool is_list = false;
-};
-
-std::string FormatValue(const std::variant<double, std::string>& value) {
-  const double* number = std::get_if<double>(&value);
-  return number != nullptr ? FormatNumber(*number) : std::get<std::string>(value);
-}
-
-/// What a parameter is drawn from, in words.
-std::string FormatRule(const anatomy::ParameterRule& rule) {
-  const auto number = [](double value) { return FormatNumber(value); };
-  switch (rule.distribution) {
-    case anatomy::Distribution::kNormal:
-      return number(rule.centre) + " +- " + number(rule.spread) + ", " + number(rule.low) + " to " +
-             number(rule.high);
-    case anatomy::Distribution::kLognormal:
-      return "median " + number(rule.centre) + ", log deviation " + number(rule.spread) + ", " +
-             number(rule.low) + " to " + number(rule.high);
-    case anatomy::Distribution::kChance:
-      return "yes in " + number(100 * rule.centre) + " %";
-    case anatomy::Distribution::kChoice: {
-      double total = 0;
-      for (const anatomy::Choice& choice : rule.choices) total += choice.weight;
-      std::string text;
-      for (const anatomy::Choice& choice : rule.choices) {
-        text += (text.empty() ? "" : ", ") + std::string(choice.name) + " " +
-                FormatNumber(100 * choice.weight / total, 3) + " %";
-      }
-      return text;
-    }
-    case anatomy::Distribution::kFixed:
-      return number(rule.centre) + " unless set, " + number(rule.set_low) + " to " + number(rule.set_high);
-  }
-  return {};
-}
-
-void PrintRules() {
-  std::vector<std::vector<std::string>> rows = {{"name", "unit", "drawn from", "what it is", "source"}};
-  for (const anatomy::ParameterRule& rule : anatomy::ParameterRules()) {
-    rows.push_back({std::string(rule.name), std::string(rule.unit), FormatRule(rule), std::string(rule.about),
-                    std::string(rule.source)});
-  }
-  std::fputs(FormatTable(rows).c_str(), stdout);
-}
-
-void PrintParameters(const anatomy::Patient& patient) {
-  std::vector<std::vector<std::string>> rows = {{"parameter", "value", "unit", "source"}};
-  for (const anatomy::Parameter& parameter : patient.parameters) {
-    rows.push_back({parameter.name, FormatValue(parameter.value), parameter.unit, parameter.source});
-  }
-  std::fputs(FormatTable(rows).c_str(), stdout);
-}
-
-core::Status Generate(const GenerateArguments& arguments) {
-  if (arguments.is_list) {
-    PrintRules();
-    return {};
-  }
-  if (arguments.output.empty()) {
-    return core::Error{core::ErrorCode::kUsage, "name the patient folder to write with -o PATIENT"};
-  }
-  const auto settings = ParseSettings(arguments.settings);
-  if (!settings) return settings.error();
-  const core::Result<anatomy::Patient> patient = anatomy::GeneratePatient(arguments.seed, *settings);
-  if (!patient) return patient.error();
-  if (auto status = anatomy::WritePatient(arguments.output, *patient); !status) return status;
-  PrintParameters(*patient);
-  std::printf("\nWrote %s\n", arguments.output.c_str());
-  return {};
-}
-
-void AddGenerateCommand(CLI::App& anatomy, Outcome& outcome) {
-  CLI::App* generate = anatomy.add_subcommand("generate", "Make a plausible patient without any images");
-  auto arguments = std::make_shared<GenerateArguments>();
-  generate->add_option("--seed", arguments->seed, "The same seed and settings give the same patient")
-      ->type_name("N")
-      ->capture_default_str();
-  generate->add_option("-o,--output", arguments->output, "Patient folder to write")->type_name("PATIENT");
-  generate
-      ->add_option("--set", arguments->settings,
-                   "Value in place of a drawn one, name=value; may be given several times")
-      ->type_name("NAME=VALUE")
-      ->allow_extra_args(false);
-  generate->add_flag("--list", arguments->is_list, "Print every parameter with its distribution and source");
-  generate->footer(
-      "Every value that was drawn, set or measured is listed and kept in the patient's file.\n"
-      "Examples: trocar anatomy generate --seed 7 -o out/seven\n"
-      "          trocar anatomy generate --seed 7 --set moynihan_hump=yes --set hydrops=1 -o out/seven\n"
-      "          trocar demo --patient out/seven -o out/demo");
-  generate->callback([arguments, &outcome] { outcome.status = Generate(*arguments); });
-}
-
 core::Status BuildFromLabels(const anatomy::LabelOptions& options) {
   ProgressBar bar("building", 1.0);
   const core::Result<anatomy::BuildReport> report =
@@ -160,14 +60,19 @@ core::Status BuildFromLabels(const anatomy::LabelOptions& options) {
       });
   bar.Finish();
   if (!report) return report.error();
-  std::vector<std::vector<std::string>> rows = {
-      {"organ", "slices", "triangles", "closed", "manifold", "genus", "cuts", "volume [mL]"}};
+  std::vector<std::vector<std::string>> rows = {{"organ", "slices", "triangles", "closed", "manifold",
+                                                 "genus", "cuts", "min angle [deg]", "volume [mL]",
+                                                 "volume change [%]", "distance [mm]", "mean [mm]"}};
   for (const anatomy::OrganReport& organ : report->organs) {
     rows.push_back({organ.name, std::to_string(organ.slices), std::to_string(organ.triangles),
                     organ.closed ? "yes" : "NO", organ.manifold ? "yes" : "NO", std::to_string(organ.genus),
-                    std::to_string(organ.self_intersections), FormatNumber(organ.volume_ml)});
+                    std::to_string(organ.self_intersections), FormatNumber(organ.min_angle_deg, 3),
+                    FormatNumber(organ.volume_ml), FormatNumber(100 * organ.volume_change, 2),
+                    FormatNumber(organ.hausdorff_mm, 3), FormatNumber(organ.mean_distance_mm, 3)});
   }
   std::fputs(FormatTable(rows).c_str(), stdout);
+  std::printf(
+      "Distance: of mesh and label surface from each other, the largest both ways, and the mesh's mean.\n");
   std::printf("\n%s.\nWrote %s\n", report->patient.provenance.c_str(), options.output.c_str());
   return {};
 }
@@ -255,12 +160,14 @@ void AddAnatomyCommand(CLI::App& app, Outcome& outcome) {
       "           -o out/patient");
   build->callback([arguments, &outcome] { outcome.status = Build(*arguments); });
   AddAnatomyCheckCommand(*anatomy, outcome);
+  AddAnatomyContoursCommand(*anatomy, outcome);
   AddAnatomyExportCommand(*anatomy, outcome);
+  AddAnatomyRehearseCommand(*anatomy, outcome);
   AddAnatomyEditCommand(*anatomy, outcome);
   AddAnatomyPhantomCommand(*anatomy, outcome);
   AddAnatomyViewCommand(*anatomy, outcome);
   AddAnatomyImagesCommand(*anatomy, outcome);
-  AddGenerateCommand(*anatomy, outcome);
+  AddAnatomyGenerateCommand(*anatomy, outcome);
   AddFromLabelsCommand(*anatomy, outcome);
 }
 

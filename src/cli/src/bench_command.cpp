@@ -30,7 +30,9 @@ std::string ListSuites() {
 }
 
 void PrintJson(const std::string& suite, const BenchmarkResult& result) {
-  nlohmann::ordered_json json = {{"suite", suite}, {"machine", DescribeMachine()}};
+  nlohmann::ordered_json json = {{"suite", suite},
+                                 {"machine", result.machine.empty() ? DescribeMachine() : result.machine}};
+  if (!result.notes.empty()) json["notes"] = result.notes;
   json["cases"] = nlohmann::ordered_json::array();
   for (const BenchmarkCase& entry : result.cases) {
     json["cases"].push_back({{"name", entry.name}, {"value", entry.value}, {"unit", entry.unit}});
@@ -43,7 +45,9 @@ void PrintJson(const std::string& suite, const BenchmarkResult& result) {
 }
 
 void PrintForPerson(const std::string& suite, const BenchmarkResult& result) {
-  std::printf("%s on %s\n\n", suite.c_str(), DescribeMachine().c_str());
+  std::printf("%s on %s\n\n", suite.c_str(),
+              (result.machine.empty() ? DescribeMachine() : result.machine).c_str());
+  for (const std::string& note : result.notes) std::printf("%s\n", note.c_str());
   std::vector<std::vector<std::string>> rows = {{"case", "value", "unit"}};
   for (const BenchmarkCase& entry : result.cases) {
     rows.push_back({entry.name, FormatNumber(entry.value), entry.unit == "1" ? "" : entry.unit});

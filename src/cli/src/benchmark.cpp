@@ -8,7 +8,11 @@ constexpr BenchmarkSuite kSuites[] = {
     {"anatomy", "label maps to smooth closed meshes with their quality reports", RunAnatomyBenchmark},
     {"collision", "nearest triangle to a point and to a shaft: hierarchy against brute force",
      RunCollisionBenchmark},
+    {"contours", "the contour window: refit while a point is dragged, preview of an organ",
+     RunContoursBenchmark},
     {"tissue", "equilibrium of mass-spring grids and of the built-in patient", RunTissueBenchmark},
+    {"tissue_cuda", "the GPU's memory layouts: checked, and timed where there is a GPU",
+     RunTissueCudaBenchmark},
 };
 
 /// Value of the first line "key : value".

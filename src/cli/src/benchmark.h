@@ -32,6 +32,8 @@ struct BenchmarkRatio {
 };
 
 struct BenchmarkResult {
+  std::string machine;             ///< in place of DescribeMachine(), where that is not what was measured
+  std::vector<std::string> notes;  ///< what a reader must know beside the figures
   std::vector<BenchmarkCase> cases;
   std::vector<BenchmarkRatio> ratios;
 };
@@ -48,7 +50,9 @@ std::span<const BenchmarkSuite> BenchmarkSuites() noexcept;
 /// \return kBenchmarkWrong when an answer is wrong, or the error of a scene that cannot be read
 core::Result<BenchmarkResult> RunAnatomyBenchmark(const BenchmarkOptions& options);
 core::Result<BenchmarkResult> RunCollisionBenchmark(const BenchmarkOptions& options);
+core::Result<BenchmarkResult> RunContoursBenchmark(const BenchmarkOptions& options);
 core::Result<BenchmarkResult> RunTissueBenchmark(const BenchmarkOptions& options);
+core::Result<BenchmarkResult> RunTissueCudaBenchmark(const BenchmarkOptions& options);
 
 /// Processor, cores, compiler and kind of build; no name of the computer or its owner.
 std::string DescribeMachine();

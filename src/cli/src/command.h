@@ -27,8 +27,11 @@ void AddAnatomyCommand(CLI::App& app, Outcome& outcome);
 /// Words like "hydrops=0.5". \return kUsage for one that is not like that
 core::Result<std::vector<anatomy::ParameterSetting>> ParseSettings(const std::vector<std::string>& texts);
 /// Below `trocar anatomy`.
+void AddAnatomyGenerateCommand(CLI::App& anatomy, Outcome& outcome);
 void AddAnatomyCheckCommand(CLI::App& anatomy, Outcome& outcome);
+void AddAnatomyContoursCommand(CLI::App& anatomy, Outcome& outcome);
 void AddAnatomyExportCommand(CLI::App& anatomy, Outcome& outcome);
+void AddAnatomyRehearseCommand(CLI::App& anatomy, Outcome& outcome);
 void AddAnatomyEditCommand(CLI::App& anatomy, Outcome& outcome);
 void AddAnatomyPhantomCommand(CLI::App& anatomy, Outcome& outcome);
 void AddAnatomyViewCommand(CLI::App& anatomy, Outcome& outcome);

@@ -25,6 +25,7 @@
 #include "trocar/render/offscreen_context.h"
 #include "trocar/render/video_writer.h"
 #include "trocar/session/scene.h"
+#include "trocar/tissue_cuda/gpu_solver.h"
 
 namespace trocar::cli {
 namespace {
@@ -80,39 +81,16 @@ bool CanConnect(const std::string& path, bool is_abstract) {
   return is_connected;
 }
 
-/// What CUDA's driver says, without its headers: the numbers are those of its stable binary interface.
-bool AskCuda(std::string& text) {
-  void* library = ::dlopen("libcuda.so.1", RTLD_NOW | RTLD_LOCAL);
-  if (library == nullptr) {
-    text = "no NVIDIA driver (libcuda.so.1) is installed";
+/// The GPU that tissue can be computed on, or why there is none.
+bool AskGpu(std::string& text) {
+  const core::Result<tissue_cuda::GpuInformation> gpu = tissue_cuda::FindGpu();
+  if (!gpu) {
+    text = gpu.error().Text();
     return false;
   }
-  using Init = int (*)(unsigned);
-  using GetInt = int (*)(int*);
-  using GetDevice = int (*)(int*, int);
-  using GetName = int (*)(char*, int, int);
-  const auto init = reinterpret_cast<Init>(::dlsym(library, "cuInit"));
-  const auto get_version = reinterpret_cast<GetInt>(::dlsym(library, "cuDriverGetVersion"));
-  const auto get_count = reinterpret_cast<GetInt>(::dlsym(library, "cuDeviceGetCount"));
-  const auto get_device = reinterpret_cast<GetDevice>(::dlsym(library, "cuDeviceGet"));
-  const auto get_name = reinterpret_cast<GetName>(::dlsym(library, "cuDeviceGetName"));
-  if (!init || !get_version || !get_count || !get_device || !get_name) {
-    text = "libcuda.so.1 is not NVIDIA's: it lacks functions";
-    return false;
-  }
-  int code = init(0), count = 0, version = 0, device = 0;
-  if (code == 0) code = get_count(&count);
-  if (code == 0) code = get_version(&version);
-  char name[256] = "";
-  if (code == 0 && count > 0) code = get_device(&device, 0);
-  if (code == 0 && count > 0) code = get_name(name, sizeof name - 1, device);
-  if (code != 0 || count == 0) {
-    text = code != 0 ? "NVIDIA's driver answers with error " + std::to_string(code)
-                     : std::string("NVIDIA's driver is installed and sees no GPU");
-    return false;
-  }
-  text = std::to_string(count) + " GPU(s), the first: " + name + "; CUDA " + std::to_string(version / 1000) +
-         "." + std::to_string(version % 1000 / 10);
+  text = gpu->name + ", compute capability " + std::to_string(gpu->compute_capability / 10) + "." +
+         std::to_string(gpu->compute_capability % 10) + "; driver of CUDA " +
+         std::to_string(gpu->driver_version / 1000) + "." + std::to_string(gpu->driver_version % 1000 / 10);
   return true;
 }
 
@@ -213,14 +191,16 @@ Finding CheckVideoEncoder() {
 }
 
 Finding CheckGpu() {
-  const ChildAnswer answer = AskChild(AskCuda, kDriverTimeout);
+  const ChildAnswer answer = AskChild(AskGpu, kDriverTimeout);
   if (answer.end == ChildEnd::kAnswered) {
     return {"gpu", Health::kGood, answer.text,
-            "a GPU for computing is there; this version of Trocar computes tissue on the processor and does "
-            "not use it",
-            ""};
+            "trocar simulate --gpu and trocar bench tissue_cuda compute tissue on it", ""};
   }
-  return {"gpu", Health::kGood, answer.text, "not needed: tissue is computed on the processor", ""};
+  const bool is_none = answer.text.starts_with(core::CodeText(core::ErrorCode::kGpuMissing));
+  if (is_none)
+    return {"gpu", Health::kGood, answer.text, "not needed: tissue is computed on the processor", ""};
+  return {"gpu", Health::kLimited, answer.text, "tissue is computed on the processor",
+          "update NVIDIA's driver, restart, and look again (docs/gpu.md)"};
 }
 
 Finding CheckDisplay() {

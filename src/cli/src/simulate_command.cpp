@@ -15,6 +15,7 @@
 #include "command.h"
 #include "console.h"
 #include "trocar/core/clock.h"
+#include "trocar/core/log.h"
 #include "trocar/core/statistics.h"
 #include "trocar/session/simulation.h"
 
@@ -28,6 +29,7 @@ struct SimulateOptions {
   std::uint64_t seed = 0;
   bool has_seed = false;
   int threads = 1;
+  bool uses_gpu = false;
   bool is_json = false;
 };
 
@@ -43,6 +45,7 @@ struct SimulateReport {
   std::vector<StageTimes> stages;
   double tick_p99_ms = 0;
   double max_force_n = 0;  // largest reaction on either instrument in any tick
+  std::string gpu;         // name; or why it was not used to the end
 };
 
 std::string FormatHash(std::uint64_t hash) {
@@ -51,12 +54,20 @@ std::string FormatHash(std::uint64_t hash) {
   return text;
 }
 
+/// One line in the tick in which the processor takes over from the GPU.
+void WarnOnce(const session::Simulation& simulation, std::string& said) {
+  if (!said.empty() || simulation.GpuError() == nullptr) return;
+  said = simulation.GpuError()->Text();
+  core::Log(core::LogLevel::kWarning, said);
+}
+
 core::Result<SimulateReport> Simulate(const SimulateOptions& options) {
   core::Result<session::Scene> read = session::ReadScene(options.scene, options.patient);
   if (!read) return read.error();
   auto scene = std::make_shared<session::Scene>(std::move(read).value());
   if (options.has_seed) scene->seed = options.seed;
-  core::Result<session::Simulation> made = session::Simulation::Make(scene, options.threads);
+  core::Result<session::Simulation> made = session::Simulation::Make(
+      scene, options.threads, options.uses_gpu ? session::SolveOn::kGpu : session::SolveOn::kProcessor);
   if (!made) return made.error();
   session::Simulation simulation = std::move(made).value();
 
@@ -77,10 +88,12 @@ core::Result<SimulateReport> Simulate(const SimulateOptions& options) {
     for (const auto& instrument : snapshot.instruments) {
       report.max_force_n = std::max(report.max_force_n, math::Norm(instrument.force));
     }
+    WarnOnce(simulation, report.gpu);
     progress.Show(tick + 1);
   }
   progress.Finish();
 
+  if (report.gpu.empty()) report.gpu = simulation.GpuName();
   report.hash = FormatHash(simulation.Hash());
   report.ticks = simulation.GetSnapshot().tick;
   report.residual = simulation.GetSnapshot().residual;
@@ -103,7 +116,8 @@ void PrintJson(const SimulateReport& report) {
   }
   json["tick_p99_ms"] = report.tick_p99_ms;
   json["max_force_n"] = report.max_force_n;
-  std::printf("%s\n", json.dump(2).c_str());
+  if (!report.gpu.empty()) json["gpu"] = report.gpu;
+  std::printf("%s\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
 }
 
 void PrintForPerson(const SimulateReport& report) {
@@ -113,6 +127,7 @@ void PrintForPerson(const SimulateReport& report) {
   }
   rows.push_back({"whole tick", "", FormatNumber(report.tick_p99_ms, 3)});
   std::fputs(FormatTable(rows).c_str(), stdout);
+  if (!report.gpu.empty()) std::printf("\nGPU: %s\n", report.gpu.c_str());
   std::printf("\n%llu ticks, state hash %s\n", static_cast<unsigned long long>(report.ticks),
               report.hash.c_str());
   std::printf("residual after the last tick %s, largest force on an instrument %s N\n",
@@ -140,6 +155,8 @@ void AddSimulateCommand(CLI::App& app, Outcome& outcome) {
       ->check(CLI::Range(1, 256))
       ->type_name("T")
       ->capture_default_str();
+  command->add_flag("--gpu", options->uses_gpu,
+                    "Solve on the GPU (single precision, so another hash); without one the processor does");
   command->add_flag("--json", options->is_json, "Machine-readable");
   command->footer(
       "The same scene, seed and ticks give the same hash, twice and with any number of threads.\n"

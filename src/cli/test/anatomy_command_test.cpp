@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "run_trocar.h"
 #include "trocar/anatomy/patient.h"
 #include "trocar/cli/run_command.h"
 
@@ -40,6 +41,19 @@ TEST_F(AnatomyCommand, GenerateWritesAPatientThatListsItsParameters) {
   ASSERT_NE(patient->FindParameter("cystic_duct_length"), nullptr);
   EXPECT_EQ(std::get<double>(patient->FindParameter("cystic_duct_length")->value), 36.5);
   EXPECT_EQ(patient->FindParameter("cystic_duct_length")->source, "set by the user");
+}
+
+TEST_F(AnatomyCommand, GenerateMakesAndCountsSeveralPatients) {
+  const Printed printed =
+      RunTrocar({"anatomy", "generate", "--seed", "3", "--count", "2", "-o", folder_.string()});
+  EXPECT_EQ(printed.status, 0) << printed.err;
+  for (const char* name : {"seed-3", "seed-4"})
+    EXPECT_TRUE(anatomy::ReadPatient(folder_ / name).ok()) << name;
+  EXPECT_NE(printed.out.find("linter: silent for every patient"), std::string::npos) << printed.out;
+  EXPECT_NE(printed.out.find("moynihan_hump"), std::string::npos);
+  // a summary needs no folder
+  EXPECT_EQ(RunTrocar({"anatomy", "generate", "--seed", "3", "--summary"}).status, 0);
+  EXPECT_EQ(RunTrocar({"anatomy", "generate", "--count", "0", "--summary"}).status, 2);
 }
 
 TEST_F(AnatomyCommand, GenerateRefusesBadSettingsAndWritesNothing) {

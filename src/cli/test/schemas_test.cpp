@@ -91,6 +91,12 @@ const Broken kBroken[] = {
      [](Json& j) {
        j["structures"][0]["slices"][0]["contours"][0] = {{1, 2}, {3, 4}};
      }},
+    {"PointsSliceOfNothing", kPoints,
+     [](Json& j) { j["structures"][0]["slices"][0]["contours"] = Json::array(); }},
+    {"PointsOpenContourOfNumbers", kPoints,
+     [](Json& j) {
+       j["structures"][0]["slices"][0]["open"] = {1, 2};
+     }},
     {"PointsRadiusMissing", kPoints, [](Json& j) { j["tubes"][0]["points"][0].erase(3); }},
     {"SceneWithoutPatient", kScene, [](Json& j) { j.erase("patient"); }},
     {"SceneSolver", kScene, [](Json& j) { j["settings"]["solver"] = "magic"; }},

@@ -14,6 +14,7 @@
 #include "trocar/tissue/conservation.h"
 #include "trocar/tissue/equilibrium.h"
 #include "trocar/tissue/state_guard.h"
+#include "trocar/tissue_cuda/gpu_or_cpu_solver.h"
 
 namespace trocar::session {
 namespace {
@@ -64,12 +65,15 @@ struct Simulation::Content {
 
   // scratch
   std::unique_ptr<tissue::EquilibriumSolver> solver;
+  const tissue_cuda::GpuOrCpuSolver* gpu_solver = nullptr;  // the same, where the GPU was asked for
   std::unique_ptr<tissue::Conservation> conservation;
   std::vector<surgery::OrganSurface> organs;
   surgery::ContactSet contacts;
   LiveSettings settings;
   tissue::TissueLoad load;
   tissue::SolveReport report;
+  tissue::ConservationState good_conserved;             // after the last good tick
+  std::vector<tissue::NodeCondition> solved_condition;  // a grasp may slip once the forces are known
   std::array<Pose, kHandCount> X_world_tools;
   std::array<surgery::GraspChange, kHandCount> changes{};
   std::array<std::int32_t, kHandCount> changed_organs{};
@@ -90,6 +94,7 @@ struct Simulation::Content {
   void Publish(const Input& input) noexcept;
   void Note(EventKind kind, int hand, std::int32_t organ, double force) noexcept;
   void Reset();
+  void MakeSolver(int threads, SolveOn solve_on);
 };
 
 // --- the stages of a tick
@@ -145,13 +150,20 @@ void Simulation::Content::ActOnTissue() noexcept {
 
 void Simulation::Content::Solve() noexcept {
   if (guard->IsFrozen()) return;
+  std::copy(tissue.condition.begin(), tissue.condition.end(), solved_condition.begin());
   load.external_force = {};
   report = tissue::SolveConserving(*solver, settings.solver, scene->tick_seconds, *conservation, load, tissue,
                                    conserved);
 }
 
 void Simulation::Content::CheckState() noexcept {
-  verdict = guard->Check(tissue);
+  verdict = guard->Check(tissue, report.is_finite);
+  // what a bad tick left in the pressures and frames goes with it
+  if (verdict == tissue::GuardVerdict::kGood) {
+    good_conserved = conserved;
+  } else {
+    conserved = good_conserved;
+  }
   for (int hand = 0; hand < kHandCount; ++hand) {
     const auto contact =
         surgery::CalcContactReaction(contacts, static_cast<std::uint8_t>(hand), tissue.position);
@@ -246,20 +258,33 @@ void Simulation::Content::Reset() {
   was_frozen = false;
   snapshot = {};
   snapshot.positions.resize(tissue_model.Size());
+  solved_condition = tissue.condition;
+  good_conserved = conserved;
   snapshot.organs.resize(conserved.organs.size());
   UpdateHierarchy();
   ReadInputs(home);
   Publish(home);
 }
 
-core::Result<Simulation> Simulation::Make(std::shared_ptr<const Scene> scene, int threads) {
+void Simulation::Content::MakeSolver(int threads, SolveOn solve_on) {
+  if (solve_on == SolveOn::kProcessor) {
+    solver = std::make_unique<tissue::EquilibriumSolver>(tissue_model, threads);
+    return;
+  }
+  auto made = std::make_unique<tissue_cuda::GpuOrCpuSolver>(tissue_model, threads,
+                                                            tissue_cuda::GpuSolver::Make(tissue_model));
+  gpu_solver = made.get();
+  solver = std::move(made);
+}
+
+core::Result<Simulation> Simulation::Make(std::shared_ptr<const Scene> scene, int threads, SolveOn solve_on) {
   auto made = MakePatientTissue(*scene);
   if (!made.ok()) return made.error();
   auto content = std::make_unique<Content>();
   content->scene = std::move(scene);
   content->tissue_model = tissue::MakeTissueModel(made->definition);
   content->surfaces = std::move(made->surfaces);
-  content->solver = std::make_unique<tissue::EquilibriumSolver>(content->tissue_model, std::max(1, threads));
+  content->MakeSolver(std::max(1, threads), solve_on);
   made->conservation.imaging_gravity = kImagingGravity;
   content->conservation =
       std::make_unique<tissue::Conservation>(content->tissue_model, std::move(made->conservation));
@@ -320,6 +345,36 @@ const Snapshot& Simulation::GetSnapshot() const {
   return content_->snapshot;
 }
 
+double Simulation::CalcEquilibriumError() const {
+  const Content& c = *content_;
+  tissue::TissueState state = c.tissue;
+  state.condition = c.solved_condition;
+  tissue::SolverSettings exact;
+  exact.kind = tissue::SolverKind::kNewtonMultigrid;
+  exact.max_error = 1e-7;
+  exact.max_newton_steps = 200;
+  exact.max_linear_iterations = 300;
+  tissue::EquilibriumSolver judge(c.tissue_model, 1);
+  const tissue::SolveReport solved = judge.Solve(exact, c.load, state);
+  if (!solved.converged) return std::nan("");
+  double error = 0, scale = 0;
+  for (std::size_t i = 0; i < state.position.size(); ++i) {
+    error = std::max(error, math::Distance(state.position[i], c.tissue.position[i]));
+    scale = std::max(scale, math::Distance(state.position[i], c.tissue_model.rest[i]));
+  }
+  return scale > 0.0 ? error / scale : 0.0;
+}
+
+std::string_view Simulation::GpuName() const {
+  const auto* gpu = content_->gpu_solver != nullptr ? content_->gpu_solver->Gpu() : nullptr;
+  return gpu != nullptr ? std::string_view(gpu->name) : std::string_view();
+}
+
+const core::Error* Simulation::GpuError() const {
+  const auto* solver = content_->gpu_solver;
+  return solver != nullptr && solver->GpuError() ? &*solver->GpuError() : nullptr;
+}
+
 std::uint64_t Simulation::Hash() const {
   const Content& c = *content_;
   core::StateHash hash;
@@ -327,7 +382,8 @@ std::uint64_t Simulation::Hash() const {
   for (const Vec3& p : c.tissue.position) hash.Add(p.x), hash.Add(p.y), hash.Add(p.z);
   for (const auto condition : c.tissue.condition) hash.Add(static_cast<std::uint64_t>(condition));
   for (const tissue::OrganVolume& organ : c.conserved.organs) {
-    for (const double value : {organ.target, organ.pressure, organ.opening_area, organ.leaked}) hash.Add(value);
+    for (const double value : {organ.target, organ.pressure, organ.opening_area, organ.leaked})
+      hash.Add(value);
   }
   for (std::uint32_t region = 0; region < c.conserved.regions.count; ++region) {
     const Pose& X = c.conserved.X_world_rest[region];

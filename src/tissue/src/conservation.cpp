@@ -60,6 +60,8 @@ Conservation::Conservation(const TissueModel& model, ConservationSettings settin
     : model_(&model), settings_(std::move(settings)), linear_(model), rest_(MakeRestState(model)) {
   const std::size_t n = model.Size();
   TROCAR_ASSERT(settings_.organs.size() <= kMaxClosedOrgans);
+  static_assert(kMaxClosedOrgans <= kMaxHookConstraints);
+  for (const ClosedOrgan& organ : settings_.organs) constraints_.push_back({organ.first_node, organ.node_count});
   gradient_.resize(n);
   base_force_.resize(n);
   force_.resize(n);
@@ -275,7 +277,7 @@ bool Conservation::ProjectOnce(TissueState& tissue, std::span<Vec3> before, Cons
   bool is_done = true;
   for (std::size_t i = 0; i < count; ++i) {
     const OrganVolume& organ = state.organs[i];
-    const bool is_open = organ.opening_area > 0.0 && organ.pressure == 0.0 && organ.volume > organ.target;
+    const bool is_open = !IsSealed(organ);
     const double limit = kMaxVolumeStep * organ.target;
     error[i] = is_open ? 0.0 : std::clamp(organ.target - organ.volume, -limit, limit);
     is_done = is_done && std::fabs(error[i]) <= kVolumeTolerance * organ.target;
@@ -299,6 +301,13 @@ bool Conservation::ProjectOnce(TissueState& tissue, std::span<Vec3> before, Cons
 void Conservation::KeepVolumes(TissueState& tissue, std::span<Vec3> before, ConservationState& state) noexcept {
   if (!CalcSlopes(tissue, state)) return;
   (void)ProjectOnce(tissue, before, state);
+  SetPressureForce(state);
+}
+
+void Conservation::AddPressure(std::size_t organ, double change, ConservationState& state) noexcept {
+  double& pressure = state.organs[organ].pressure;
+  pressure += change;
+  if (state.organs[organ].opening_area > 0.0) pressure = std::fmax(pressure, 0.0);
   SetPressureForce(state);
 }
 
@@ -345,11 +354,20 @@ SolveReport SolveConserving(EquilibriumSolver& solver, const SolverSettings& set
     Conservation* conservation;
     ConservationState* state;
   } context{&conservation, &state};
-  const SolveHook hook{[](void* self, TissueState& moved, std::span<Vec3> before) noexcept {
-                         const Context& kept = *static_cast<Context*>(self);
-                         kept.conservation->KeepVolumes(moved, before, *kept.state);
-                       },
-                       &context, kProjectionInterval};
+  SolveHook hook{[](void* self, TissueState& moved, std::span<Vec3> before) noexcept {
+                   const Context& kept = *static_cast<Context*>(self);
+                   kept.conservation->KeepVolumes(moved, before, *kept.state);
+                 },
+                 &context, kProjectionInterval};
+  hook.constraints = conservation.Constraints();
+  hook.gradient = conservation.VolumeGradient();
+  hook.is_active = [](void* self, std::size_t organ) noexcept {
+    return Conservation::IsSealed(static_cast<Context*>(self)->state->organs[organ]);
+  };
+  hook.add_multiplier = [](void* self, std::size_t organ, double change) noexcept {
+    const Context& kept = *static_cast<Context*>(self);
+    kept.conservation->AddPressure(organ, change, *kept.state);
+  };
   const SolveReport report = solver.Solve(settings, load, tissue, &hook);
   conservation.Enforce(load, dt, tissue, state);
   return report;
@@ -360,7 +378,8 @@ double FillToPressure(EquilibriumSolver& solver, std::size_t organ, double press
   TROCAR_ASSERT(organ < state.organs.size() && std::fabs(pressure) <= 20e3);
   constexpr int kMaxFillings = 400;
   constexpr double kStill = 1e-6;
-  const SolverSettings exact{.max_iterations = 2000, .tolerance = 1e-6};
+  const SolverSettings exact{
+      .kind = SolverKind::kChebyshevJacobi2015, .max_iterations = 2000, .tolerance = 1e-6};
   const ClosedOrgan& surface = conservation.Settings().organs[organ];
   OrganVolume& filled = state.organs[organ];
   double change = 1;

@@ -66,6 +66,7 @@ TiledArgs<Real, typename Heap::Memory> BindTiledArrays(const TiledArrays<Real>& 
   args.displacements = heap.template Array<Quad<Real>>("displacements", 2 * all);
   args.node_constants = heap.template Array<Quad<Real>>("node_constants", 3 * all);
   args.maxima = heap.template Array<Key>("maxima", kMaximaSets * kMaxima);
+  args.control = heap.template Array<ChebyshevControl<Real>>("control", 1);
   args.report = heap.template Array<TiledReport>("report", 1);
   return args;
 }

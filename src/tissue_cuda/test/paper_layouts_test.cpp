@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "check_systems.h"
 #include "checked_runs.h"
-#include "test_systems.h"
 #include "trocar/tissue/equilibrium.h"
 
 namespace trocar::tissue_cuda {

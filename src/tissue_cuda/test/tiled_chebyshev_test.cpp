@@ -5,8 +5,8 @@
 
 #include <set>
 
+#include "check_systems.h"
 #include "checked_runs.h"
-#include "test_systems.h"
 #include "tile_order.h"
 #include "trocar/tissue/equilibrium.h"
 
@@ -19,42 +19,6 @@ using tissue::TissueModel;
 using tissue::TissueState;
 
 constexpr double kCpuMaxStep = 0.002;  // of the CPU's solver [m]
-
-/// Everything that a load can hold.
-struct Case {
-  TissueModel model;
-  TissueState state;
-  std::vector<Vec3> forces;
-  std::vector<tissue::ContactSpring> contacts;
-  tissue::TissueLoad load;
-};
-
-/// A tissue of millimetres with strands (one cut), contacts (one open), forces, gravity and a held node.
-std::unique_ptr<Case> MakeCase(tissue::TissueDefinition definition, bool has_all) {
-  auto made = std::make_unique<Case>();
-  const auto n = static_cast<std::uint32_t>(definition.rest.size());
-  if (has_all && n > 20) {
-    for (std::uint32_t i = 0; i < 6; ++i) definition.strands.push_back({2 * i, n - 1 - 3 * i, 0.3 + 0.1 * i});
-  }
-  made->model = tissue::MakeTissueModel(definition);
-  made->state = MakeMovedState(made->model, 3e-4);
-  made->load.gravity = {0, 0, -0.5};
-  if (!has_all) return made;
-  if (!made->state.strand_is_intact.empty()) made->state.strand_is_intact[2] = 0;
-  made->forces = MakeForces(n);
-  for (Vec3& force : made->forces) force *= 0.01;
-  for (std::uint32_t c = 0; c < 4 && n > 20; ++c) {
-    tissue::ContactSpring contact{{c, n / 2 + c, (7 * c + 3) % n}, {0.2, 0.3, 0.5}, {0.6, 0, 0.8}, 0, 2.0};
-    const double depth = tissue::CalcContactDepth(contact, made->model.rest);
-    contact.offset = 0.002 - depth - (c == 1 ? 0.01 : 0.0);
-    made->contacts.push_back(contact);
-  }
-  made->load.stiffness_scale = 1.25;
-  made->load.shape_scale = 0.5;
-  made->load.external_force = made->forces;
-  made->load.contacts = made->contacts;
-  return made;
-}
 
 struct Solved {
   std::vector<Vec3> position;
@@ -133,7 +97,9 @@ TEST(TiledChebyshev, ResidentAndStreamingGiveTheSameBitsInAnyOrder) {
 
 // Single precision holds because displacements are stored: 1e-5 of the largest displacement at equilibrium.
 TEST(TiledChebyshev, SinglePrecisionReachesTheReferencesEquilibrium) {
+  const std::set<std::string> sizes = {"1 x 1", "16 x 16", "31 x 33", "sphere of 162"};
   for (const auto& [name, definition] : MakeDefinitions()) {
+    if (!sizes.contains(name)) continue;
     SCOPED_TRACE(name);
     const auto given = MakeCase(definition, true);
     TissueState expected = given->state;

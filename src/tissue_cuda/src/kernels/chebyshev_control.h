@@ -13,8 +13,9 @@ namespace trocar::tissue_cuda {
 template <typename Real>
 struct ChebyshevSettings {
   std::uint32_t max_iterations = 40;
-  Real tolerance = Real(1e-4);  ///< [-]
-  Real max_step = Real(0.002);  ///< no node moves farther in one Jacobi step [m]
+  std::uint32_t pause_at = 0xffffffffu;  ///< the launch ends at this iteration, to be resumed
+  Real tolerance = Real(1e-4);           ///< [-]
+  Real max_step = Real(0.002);           ///< no node moves farther in one Jacobi step [m]
   Real transverse_share = Real(0.2), share_growth = 4;
   std::uint32_t first_cycle = 40, longest_cycle = 1280;
   Real cycle_damping = Real(2.302585);  ///< ln(100) / 2
@@ -44,6 +45,9 @@ struct ChebyshevControl {
     transverse_share = settings.transverse_share;
     SetFactors(settings);
   }
+
+  /// In another launch, from where the last one paused.
+  TROCAR_HD void Resume() { ended = false; }
 
   /// Whether the position before counts as the present one.
   TROCAR_HD bool IsFirst() const { return in_cycle == 0; }
@@ -76,7 +80,7 @@ struct ChebyshevControl {
       in_cycle = 0;
     }
     // a residual that is not a number ends the solve: the state's guard looks at what came out
-    ended = iterations >= settings.max_iterations || !(norm == norm);
+    ended = iterations >= settings.max_iterations || iterations >= settings.pause_at || !(norm == norm);
     needs_blocks = in_cycle == 0;
     SetFactors(settings);
   }

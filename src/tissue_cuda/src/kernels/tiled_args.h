@@ -92,9 +92,15 @@ struct TiledArgs {
   Array<std::uint32_t> touch_starts{};   ///< (touched + 1)
   Array<std::uint32_t> touch_entries{};  ///< 4 * contact + corner
 
+  // of a solve that the host interrupts, to be resumed in another launch
+  bool is_resumed = false;
+  Array<ChebyshevControl<Real>> control{};  ///< (1) out; in when resumed
+  Array<Triple<double>>
+      before_positions{};  ///< likewise, in the model's order: the iteration before [m]; or none
+
   // work
   Array<Quad<Real>> displacements{};   ///< (2 * 256 tiles) two buffers [m]
-  Array<Quad<Real>> node_constants{};  ///< (3 * 256 tiles) streaming kernel only: see NodeConstants
+  Array<Quad<Real>> node_constants{};  ///< (3 * 256 tiles) see StoreConstants
   Array<Key> maxima{};                 ///< (3 sets of 3)
   Array<TiledReport> report{};         ///< (1)
 };

@@ -64,6 +64,7 @@ struct MaximaExchange {
   static TROCAR_HD void WriteReport(const ThreadIndex& where, const Args& args,
                                     const ChebyshevControl<Real>& control) {
     if (where.block != 0 || where.thread != 0) return;
+    if (Exists(args.control)) Store(args.control, 0, control);
     Store(args.report, 0,
           TiledReport{double(control.residual), double(control.force_scale), control.iterations,
                       control.restarts, control.converged ? 1u : 0u});
@@ -72,9 +73,10 @@ struct MaximaExchange {
 
 /// Displacement of a node from the host's position [m].
 template <typename Real, typename Memory>
-TROCAR_HD Triple<Real> ReadDisplacement(const TiledArgs<Real, Memory>& args, std::uint32_t node,
-                                        std::uint32_t model) {
-  const Triple<double> u = Load(args.positions, model) - Load(args.rest, node);
+TROCAR_HD Triple<Real> ReadDisplacement(const TiledArgs<Real, Memory>& args,
+                                        const typename Memory::template Array<Triple<double>>& positions,
+                                        std::uint32_t node, std::uint32_t model) {
+  const Triple<double> u = Load(positions, model) - Load(args.rest, node);
   return {Real(u.x), Real(u.y), Real(u.z)};
 }
 
@@ -94,18 +96,86 @@ TROCAR_HD NodeConstants<Real> ReadConstants(const TiledArgs<Real, Memory>& args,
   return constants;
 }
 
-/// Writes a free node's position; a prescribed one stays as the host gave it.
 template <typename Real, typename Memory>
-TROCAR_HD void WritePosition(const TiledArgs<Real, Memory>& args, std::uint32_t node, std::uint32_t model,
-                             Triple<Real> u) {
+TROCAR_HD void WritePosition(const TiledArgs<Real, Memory>& args,
+                             const typename Memory::template Array<Triple<double>>& positions,
+                             std::uint32_t node, std::uint32_t model, Triple<Real> u) {
   const Triple<double> rest = Load(args.rest, node);
-  Store(args.positions, model,
-        Triple<double>{rest.x + double(u.x), rest.y + double(u.y), rest.z + double(u.z)});
+  Store(positions, model, Triple<double>{rest.x + double(u.x), rest.y + double(u.y), rest.z + double(u.z)});
 }
 
 template <typename Real>
 TROCAR_HD Quad<Real> ToQuad(Triple<Real> u) {
   return {u.x, u.y, u.z, Real(0)};
+}
+
+/// Constants in three records of four: block; block, stiffness and flags; force.
+template <typename Real, typename Memory>
+TROCAR_HD void StoreConstants(const TiledArgs<Real, Memory>& args, std::uint32_t node,
+                              const NodeConstants<Real>& constants) {
+  const std::size_t all = static_cast<std::size_t>(args.tiles) * kTileNodes;
+  const Symmetric<Real>& m = constants.inverse;
+  const int flags =
+      (constants.is_free ? 1 : 0) + (constants.is_touched ? 2 : 0) + (constants.has_strands ? 4 : 0);
+  Store(args.node_constants, node, Quad<Real>{m.xx, m.xy, m.xz, m.yy});
+  Store(args.node_constants, all + node, Quad<Real>{m.yz, m.zz, constants.shape_stiffness, Real(flags)});
+  Store(args.node_constants, 2 * all + node,
+        Quad<Real>{constants.force.x, constants.force.y, constants.force.z, 0});
+}
+template <typename Real, typename Memory>
+TROCAR_HD NodeConstants<Real> LoadConstants(const TiledArgs<Real, Memory>& args, std::uint32_t node) {
+  const std::size_t all = static_cast<std::size_t>(args.tiles) * kTileNodes;
+  const Quad<Real> a = Load(args.node_constants, node), b = Load(args.node_constants, all + node);
+  const Quad<Real> c = Load(args.node_constants, 2 * all + node);
+  const int flags = static_cast<int>(b.w);
+  return {
+      {a.x, a.y, a.z, a.w, b.x, b.y}, b.z, First3(c), (flags & 1) != 0, (flags & 2) != 0, (flags & 4) != 0};
+}
+
+/// What a launch begins with for one node.
+template <typename Real>
+struct NodeStart {
+  NodeConstants<Real> constants;
+  Triple<Real> here{0, 0, 0}, before{0, 0, 0};
+};
+
+/// From the host's positions; when resumed, with the inverse block and the iteration before as they were.
+template <typename Real, typename Memory>
+TROCAR_HD NodeStart<Real> ReadStart(const TiledArgs<Real, Memory>& args, std::uint32_t node,
+                                    std::uint32_t model) {
+  NodeStart<Real> start;
+  if (model == kNoNode) return start;
+  start.constants = ReadConstants(args, node, model);
+  start.here = start.before = ReadDisplacement(args, args.positions, node, model);
+  if (args.is_resumed) {
+    start.constants.inverse = LoadConstants(args, node).inverse;
+    start.before = ReadDisplacement(args, args.before_positions, node, model);
+  }
+  return start;
+}
+
+template <typename Real, typename Memory>
+TROCAR_HD ChebyshevControl<Real> ReadControl(const TiledArgs<Real, Memory>& args) {
+  ChebyshevControl<Real> control;
+  if (args.is_resumed) {
+    control = Load(args.control, 0);
+    control.Resume();
+  } else {
+    control.Begin(args.settings);
+  }
+  return control;
+}
+
+/// Ends a launch for one node.
+template <typename Real, typename Memory>
+TROCAR_HD void WriteEnd(const TiledArgs<Real, Memory>& args, std::uint32_t node, std::uint32_t model,
+                        const NodeConstants<Real>& constants, Triple<Real> here, Triple<Real> before) {
+  if (model == kNoNode) return;
+  // a prescribed node stays to the bit as the host gave it
+  if (constants.is_free) WritePosition(args, args.positions, node, model, here);
+  if (!Exists(args.before_positions)) return;
+  WritePosition(args, args.before_positions, node, model, before);
+  StoreConstants(args, node, constants);
 }
 
 template <typename Real, typename Memory>
@@ -174,12 +244,12 @@ struct TiledResident {
       registers.first_link = Load(args.slice_starts, slice) - first + node % kSliceNodes;
       registers.last_link = Load(args.slice_starts, slice + 1) - first;
       registers.model = Load(args.model_index, node);
-      if (registers.model != kNoNode) {
-        registers.constants = ReadConstants(args, node, registers.model);
-        registers.here = registers.before = ReadDisplacement(args, node, registers.model);
-      }
-      Store(args.displacements, node, ToQuad(registers.here));
-      control.Begin(args.settings);
+      control = ReadControl(args);
+      const NodeStart<Real> start = ReadStart(args, node, registers.model);
+      registers.constants = start.constants;
+      registers.here = start.here;
+      registers.before = start.before;
+      Store(args.displacements, control.Parity() * all + node, ToQuad(registers.here));
     } else if constexpr (kPhase == 1) {
       Store(shared.displacements, where.thread, ToQuad(registers.here));
       const std::uint32_t first = Load(args.border_starts, where.block),
@@ -210,7 +280,7 @@ struct TiledResident {
         registers.here = registers.next;
       }
     } else {
-      if (registers.constants.is_free) WritePosition(args, node, registers.model, registers.here);
+      WriteEnd(args, node, registers.model, registers.constants, registers.here, registers.before);
       Exchange::WriteReport(where, args, control);
     }
   }
@@ -240,26 +310,6 @@ struct TiledStreaming {
 
   static TROCAR_HD bool GoesOn(const Registers& registers) { return !registers.control.ended; }
 
-  /// Constants in three records of four: block; block, stiffness and flags; force.
-  static TROCAR_HD void StoreConstants(const Args& args, std::uint32_t node,
-                                       const NodeConstants<Real>& constants) {
-    const std::size_t all = static_cast<std::size_t>(args.tiles) * kTileNodes;
-    const Symmetric<Real>& m = constants.inverse;
-    const int flags =
-        (constants.is_free ? 1 : 0) + (constants.is_touched ? 2 : 0) + (constants.has_strands ? 4 : 0);
-    Store(args.node_constants, node, Quad<Real>{m.xx, m.xy, m.xz, m.yy});
-    Store(args.node_constants, all + node, Quad<Real>{m.yz, m.zz, constants.shape_stiffness, Real(flags)});
-    Store(args.node_constants, 2 * all + node, ToQuad(constants.force));
-  }
-  static TROCAR_HD NodeConstants<Real> LoadConstants(const Args& args, std::uint32_t node) {
-    const std::size_t all = static_cast<std::size_t>(args.tiles) * kTileNodes;
-    const Quad<Real> a = Load(args.node_constants, node), b = Load(args.node_constants, all + node);
-    const Quad<Real> c = Load(args.node_constants, 2 * all + node);
-    const int flags = static_cast<int>(b.w);
-    return {
-        {a.x, a.y, a.z, a.w, b.x, b.y}, b.z, First3(c), (flags & 1) != 0, (flags & 2) != 0, (flags & 4) != 0};
-  }
-
   template <int kPhase>
   static TROCAR_HD void Run(const ThreadIndex& where, const Args& args, Shared& shared,
                             Registers& registers) {
@@ -268,14 +318,13 @@ struct TiledStreaming {
     ChebyshevControl<Real>& control = registers.control;
     if constexpr (kPhase == 0) {
       Exchange::Clear(where, args, shared.maxima);
+      control = ReadControl(args);
       for (std::uint32_t node = first_node; node < all; node += stride) {
-        const std::uint32_t model = Load(args.model_index, node);
-        const bool is_node = model != kNoNode;
-        StoreConstants(args, node, is_node ? ReadConstants(args, node, model) : NodeConstants<Real>{});
-        Store(args.displacements, node,
-              is_node ? ToQuad(ReadDisplacement(args, node, model)) : Quad<Real>{0, 0, 0, 0});
+        const NodeStart<Real> start = ReadStart(args, node, Load(args.model_index, node));
+        StoreConstants(args, node, start.constants);
+        Store(args.displacements, std::size_t(control.Parity()) * all + node, ToQuad(start.here));
+        Store(args.displacements, std::size_t(1 - control.Parity()) * all + node, ToQuad(start.before));
       }
-      control.Begin(args.settings);
     } else if constexpr (kPhase == 1) {
       IterationMaxima<Real> maxima;
       for (std::uint32_t node = first_node; node < all; node += stride) {
@@ -310,9 +359,9 @@ struct TiledStreaming {
       ++registers.round;
     } else {
       for (std::uint32_t node = first_node; node < all; node += stride) {
-        if (!LoadConstants(args, node).is_free) continue;
-        WritePosition(args, node, Load(args.model_index, node),
-                      LoadDisplacement(args, control.Parity(), node));
+        WriteEnd(args, node, Load(args.model_index, node), LoadConstants(args, node),
+                 LoadDisplacement(args, control.Parity(), node),
+                 LoadDisplacement(args, 1 - control.Parity(), node));
       }
       Exchange::WriteReport(where, args, control);
     }

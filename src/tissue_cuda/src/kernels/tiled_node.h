@@ -115,6 +115,11 @@ TROCAR_HD void ForEachContact(const TiledArgs<Real, Memory>& args, std::uint32_t
   }
 }
 
+/// Weight of a corner; chosen by comparisons, because an index would move the entry from registers to memory.
+TROCAR_HD double CornerWeight(const ContactEntry& contact, std::uint32_t corner) {
+  return corner == 0 ? contact.weights[0] : corner == 1 ? contact.weights[1] : contact.weights[2];
+}
+
 /// Strands and pressing contacts at a node, which few nodes have [N]; strands unscaled in the sum, as
 /// springs.
 template <typename Real, typename Memory>
@@ -139,7 +144,7 @@ TROCAR_HD Triple<Real> CalcOtherForce(const TiledArgs<Real, Memory>& args,
         depth -= Real(contact.weights[c]) * Dot(normal, LoadDisplacement(args, parity, contact.nodes[c]));
       }
       if (depth > Real(0))
-        force = force + (Real(contact.weights[corner]) * Real(contact.stiffness) * depth) * normal;
+        force = force + (Real(CornerWeight(contact, corner)) * Real(contact.stiffness) * depth) * normal;
     });
   }
   return force;
@@ -178,7 +183,7 @@ TROCAR_HD Symmetric<Real> CalcInverseBlock(const TiledArgs<Real, Memory>& args,
   if (constants.is_touched) {
     ForEachContact(args, node, [&](const ContactEntry& contact, std::uint32_t corner) {
       block.AddDirection({Real(contact.normal[0]), Real(contact.normal[1]), Real(contact.normal[2])},
-                         Real(contact.weights[corner]) * Real(contact.stiffness));
+                         Real(CornerWeight(contact, corner)) * Real(contact.stiffness));
     });
   }
   return block.Inverse();

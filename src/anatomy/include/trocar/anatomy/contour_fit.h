@@ -35,7 +35,6 @@ struct FitNote {
 struct ContourFitSettings {
   EdgeAdaptionSettings adaption;
   ContourSplineSettings spline;
-  bool is_inserting = true;  ///< points are inserted on the edge between the clicked ones
   double tolerance_px =
       1.0;  ///< the spline may lie this far from the edge before a point is inserted [pixels]
 };
@@ -50,6 +49,11 @@ struct ContourFit {
 
 /// Moves the clicked points to the edge, draws the closed spline, and divides it by points on the edge until
 /// it follows the edge or the notes say where it does not.
+///
+/// How: the band of the picture along the spline through the clicked points is straightened; the edge is the
+/// closed path through it on which the colours become unlike those inside, found by dynamic programming; the
+/// clicked points move onto it. With adaption.inserts_points off, the points alone are adapted (AdaptToEdges)
+/// and the spline goes through them undivided: for points that a person placed densely.
 ///
 /// Equal inputs give equal bits.
 /// \param field    of the slice, blurred by settings.adaption.blur_px

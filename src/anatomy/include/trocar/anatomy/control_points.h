@@ -19,6 +19,9 @@ struct SliceContours {
   int slice = 0;
   std::vector<std::vector<Vec2>> contours;  ///< each >= 3 points
   std::vector<std::vector<Vec2>> holes;     ///< cut out of the contours
+  std::vector<Vec2> open;                   ///< points of a contour that is not closed yet; drafts only
+
+  friend bool operator==(const SliceContours&, const SliceContours&) = default;
 };
 
 /// One organ.
@@ -58,7 +61,7 @@ struct LandmarkPoint {
 struct ControlPoints {
   std::string name;
   std::string provenance;
-  std::string image_pattern;              ///< "image-{slice:04}.jpeg"
+  std::string image_pattern;  ///< "image-{slice:04}.jpeg"; empty for a series that is no stack of pictures
   int first_slice = 0, last_slice = 0;    ///< numbers of the series, first <= last
   int width = 0, height = 0;              ///< [pixels]
   double pixel_mm = 1.0, slice_mm = 1.0;  ///< distance between pixels and between slices
@@ -82,10 +85,18 @@ std::string FormatImageName(std::string_view pattern, int slice);
 /// \pre axes were checked by ParseControlPoints
 std::array<std::array<double, 3>, 3> AxisDirections(const ControlPoints& points);
 
+/// What a file of control points must hold.
+enum class Completeness {
+  kPatient,  ///< a volume can be made: every structure has contours in two slices, none is open
+  kDraft,    ///< work in progress: structures and slices may still be empty, contours open
+};
+
 /// \return kJsonSyntax or kJsonField; kControlPointOutside or kContourTooShort with structure, slice and
 /// point
-core::Result<ControlPoints> ParseControlPoints(std::string_view text, std::string_view source);
-core::Result<ControlPoints> ReadControlPoints(const std::filesystem::path& path);
+core::Result<ControlPoints> ParseControlPoints(std::string_view text, std::string_view source,
+                                               Completeness completeness = Completeness::kPatient);
+core::Result<ControlPoints> ReadControlPoints(const std::filesystem::path& path,
+                                              Completeness completeness = Completeness::kPatient);
 
 /// JSON with one contour a line; ParseControlPoints reads it back unchanged (coordinates to 0.01 pixel).
 std::string FormatControlPoints(const ControlPoints& points);

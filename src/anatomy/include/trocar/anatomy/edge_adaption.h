@@ -21,10 +21,13 @@ struct EdgeAdaptionSettings {
   double max_shift_px = 4.0;  ///< no point moves further [pixels], 0 switches the adaption off
   double blur_px = 1.5;       ///< standard deviation of the Gaussian before the gradient [pixels], > 0
   double min_gradient =
-      4.0;  ///< colour change along the normal below which there is no edge [grey levels / pixel]
-  double nearness = 0.5;  ///< part of an edge's strength that is lost at max_shift_px [-], 0 to 1
+      2.0;  ///< colour change along the normal below which there is no edge [grey levels / pixel]
+  double nearness = 0.8;  ///< part of an edge's strength that is lost at max_shift_px [-], 0 to 1
   double smoothness =
       0.1;  ///< cost of neighbours that move differently by one pixel, against the strongest edge [-]
+  bool inserts_points = true;  ///< the contour chain divides splines by points on the edge, see contour_fit.h
+
+  friend bool operator==(const EdgeAdaptionSettings&, const EdgeAdaptionSettings&) = default;
 };
 
 /// Points on their edges.

@@ -67,7 +67,7 @@ class ImageSeries {
  public:
   /// \param path  DICOM folder or file, folder of numbered pictures, or a volume (.nii, .nii.gz, .nrrd,
   ///              .nhdr, .mha, .mhd, .tif)
-  /// \return kFileMissing; kImageSpacingUnknown with the options to give; kImageSeriesMixed,
+  /// \return kImageFolderMissing; kImageSpacingUnknown with the options to give; kImageSeriesMixed,
   ///         kImageSeriesGap or kImageSeriesUneven with the slice numbers or files concerned; and what
   ///         docs/images.md lists for damaged files. No file can crash this program: strangers' files are
   ///         decoded by processes of their own.

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file options.h  Command line of trocar-window.
+/// \file options.h  Command line of trocar-window: the simulator, or with --contours the contour window.
 #pragma once
 
 #include <filesystem>
 #include <string>
 
+#include "trocar/anatomy/image_series.h"
 #include "trocar/core/result.h"
 
 namespace trocar::app {
@@ -17,6 +18,13 @@ struct Options {
   std::filesystem::path screenshot;  ///< empty: none. Otherwise play, save the window's picture and quit
   double screenshot_after = 5;       ///< after this many seconds of simulation [s]
 
+  // the contour window
+  std::filesystem::path images;        ///< not empty: open the contour window on these pictures
+  std::filesystem::path points;        ///< file of contours, which need not exist yet; empty: none
+  std::filesystem::path reference;     ///< label map to compare with; empty: none
+  anatomy::ImageSeriesOptions series;  ///< what the pictures do not say
+  std::filesystem::path script;        ///< commands to begin with; empty: none
+  bool is_measuring = false;           ///< drag a point for some seconds, print the times and quit
   // the patient editor
   std::filesystem::path patient;     ///< not empty: open the patient editor on this folder
   std::string editor_tool = "look";  ///< "look", "paint", "tubes" or "landmarks"

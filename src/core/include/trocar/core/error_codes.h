@@ -53,6 +53,9 @@ enum class ErrorCode {
   // simulation
   kStateNotFinite,
   kOrganFrozen,
+  kTissueInvalid,
+  kUnstableStep,
+  kOutOfMemory,
   // drawing and video
   kNoGraphics,
   kGraphicsTooOld,
@@ -61,6 +64,8 @@ enum class ErrorCode {
   // window
   kNoDisplay,
   kWindowMissing,
+  kEditRefused,
+  kCancelled,
   // devices
   kDeviceLost,
   kDeviceStale,

@@ -6,6 +6,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "trocar/core/result.h"
@@ -23,12 +24,19 @@ struct SurfaceInfo {
   std::vector<double> radii;                     ///< (node_count) tubes only [m]
 };
 
+/// Where equilibrium is found.
+enum class SolveOn {
+  kProcessor,
+  kGpu  ///< where there is one, else on the processor; other bits than the processor's, in single precision
+};
+
 /// One running surgery. The same scene and the same inputs give the same bits, for any number of threads.
 class Simulation {
  public:
   /// \param threads  used by the solver, >= 1
   /// \return kSceneInvalid or kPatientInvalid
-  static core::Result<Simulation> Make(std::shared_ptr<const Scene> scene, int threads);
+  static core::Result<Simulation> Make(std::shared_ptr<const Scene> scene, int threads,
+                                       SolveOn solve_on = SolveOn::kProcessor);
 
   Simulation(Simulation&&) noexcept;
   Simulation& operator=(Simulation&&) noexcept;
@@ -44,6 +52,15 @@ class Simulation {
   std::span<const SurfaceInfo> Surfaces() const;
   /// State after the last Step(); valid until the next.
   const Snapshot& GetSnapshot() const;
+  /// How far the tissue was from equilibrium when the last tick's solve ended: the largest distance of a node
+  /// to the equilibrium that an exact solver reaches from there under the same load, over the largest
+  /// distance of any node from rest [-]. NaN where that solver does not come to rest.
+  /// \note For tests and benchmarks: takes many times as long as a tick, and allocates.
+  double CalcEquilibriumError() const;
+  /// Name of the GPU that solves; empty when the processor does.
+  std::string_view GpuName() const;
+  /// Why the GPU that was asked for does not solve, from the tick in which it failed; else nullptr.
+  const core::Error* GpuError() const;
   /// Fingerprint of the whole state.
   std::uint64_t Hash() const;
 

@@ -88,6 +88,18 @@ class Conservation {
   /// \note Real-time safe.
   void KeepVolumes(TissueState& tissue, std::span<Vec3> before, ConservationState& state) noexcept;
 
+  /// Gradient of each node's organ's volume where it was last evaluated, (n) [m^2].
+  std::span<const Vec3> VolumeGradient() const { return gradient_; }
+  /// The nodes of each organ, for SolveHook::constraints.
+  std::span<const SolveHook::Constraint> Constraints() const { return constraints_; }
+  /// False for an organ out of which fluid runs freely.
+  static bool IsSealed(const OrganVolume& organ) noexcept {
+    return !(organ.opening_area > 0.0 && organ.pressure == 0.0 && organ.volume > organ.target);
+  }
+  /// Adds to an organ's pressure, not below zero where it has a hole; the force of CalcForce follows. [Pa]
+  /// \note Real-time safe.
+  void AddPressure(std::size_t organ, double change, ConservationState& state) noexcept;
+
   /// After a solve: lets fluid leak for `dt` [s], brings each volume to its target exactly, and moves the frames of
   /// held free regions to their best fit.
   /// \note Real-time safe; a state that is not finite is left for the state guard.
@@ -124,6 +136,7 @@ class Conservation {
   std::vector<Vec3> gradient_;    // (n) of each node's organ; zero elsewhere
   std::vector<Vec3> base_force_;  // (n) without pressure
   std::vector<Vec3> force_;       // (n)
+  std::vector<SolveHook::Constraint> constraints_;
   SmallMatrix slopes_{};          // dV_i by one pascal in organ j [m^3/Pa]
   FreeRegions next_regions_;
 };

@@ -53,6 +53,12 @@ struct GpuInformation {
 /// \return kGpuMissing (no driver, no GPU, or a build without GPU code), kGpuTooOld, kGpuFailed
 core::Result<GpuInformation> FindGpu();
 
+/// Time of one solve by the GPU's clock [s].
+struct GpuTimes {
+  double kernels = 0;  ///< from the first launch to the end of the last
+  double whole = 0;    ///< with the copies to and fro
+};
+
 /// Solver of one model on the GPU.
 class GpuSolver {
  public:
@@ -66,25 +72,25 @@ class GpuSolver {
   GpuSolver& operator=(GpuSolver&&) noexcept;
 
   /// As tissue::EquilibriumSolver::Solve. kTiled takes the steps of the Chebyshev iteration, the paper's
-  /// layouts those of the relaxation with all nodes moving at once.
+  /// layouts those of the relaxation with all nodes moving at once. With a hook, positions travel to the host
+  /// and back at each call of it.
   ///
-  /// \return kGpuFailed after an error of the GPU or its driver, kGpuLayout for a load that the layout cannot
-  /// hold; the state is then as it was before the call
-  /// \note Allocates and throws nothing of ours unless it fails.
+  /// \return kGpuFailed after an error of the GPU or its driver, kGpuLayout for a load or a hook that the
+  /// layout cannot serve; the state is then as it was before the call \note Allocates and throws nothing of
+  /// ours unless it fails.
   core::Result<tissue::SolveReport> Solve(const tissue::SolverSettings& settings,
-                                          const tissue::TissueLoad& load,
-                                          tissue::TissueState& state) noexcept;
+                                          const tissue::TissueLoad& load, tissue::TissueState& state,
+                                          const tissue::SolveHook* hook = nullptr) noexcept;
 
   const GpuInformation& Information() const noexcept;
-  /// Time that the GPU worked in the last solve, copies included, by its own clock [s].
-  double LastSeconds() const noexcept;
+  GpuTimes LastTimes() const noexcept;
   /// kTiled: whether all tiles stay on the GPU's multiprocessors.
   bool IsResident() const noexcept;
 
   struct Content;
+  explicit GpuSolver(std::unique_ptr<Content> content);
 
  private:
-  explicit GpuSolver(std::unique_ptr<Content> content);
   std::unique_ptr<Content> content_;
 };
 

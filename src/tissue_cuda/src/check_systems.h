@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file test_systems.h  Systems of awkward sizes for the kernels, and a plain iteration to judge them by.
+/// \file check_systems.h  Systems of awkward sizes for checking the kernels, and a plain iteration to judge
+/// them by: for the tests and for the check on a GPU machine.
 #pragma once
 
 #include <algorithm>
+#include <memory>
 #include <numeric>
 #include <utility>
 #include <vector>
@@ -61,19 +63,35 @@ inline tissue::TissueDefinition MakeGridSystem(std::uint32_t columns, std::uint3
   return definition;
 }
 
+/// The whole numbers below `count` in an order drawn from a seed.
+inline std::vector<std::uint32_t> MakeRandomOrder(std::size_t count, std::uint64_t seed) {
+  math::Random random(seed);
+  std::vector<std::uint32_t> order(count);
+  std::iota(order.begin(), order.end(), 0u);
+  for (std::size_t i = count; i > 1; --i) std::swap(order[i - 1], order[random.NextWord() % i]);
+  return order;
+}
+
+/// Moves node i to place[i].
+inline void Renumber(const std::vector<std::uint32_t>& place, tissue::TissueDefinition& definition) {
+  const tissue::TissueDefinition old = definition;
+  for (std::size_t i = 0; i < place.size(); ++i) {
+    definition.rest[place[i]] = old.rest[i];
+    definition.mass[place[i]] = old.mass[i];
+    definition.shape_stiffness[place[i]] = old.shape_stiffness[i];
+  }
+  for (std::uint32_t& node : definition.fixed) node = place[node];
+  for (tissue::Spring& spring : definition.springs) spring.a = place[spring.a], spring.b = place[spring.b];
+  for (tissue::Strand& strand : definition.strands) strand.a = place[strand.a], strand.b = place[strand.b];
+}
+
 /// Sphere whose nodes are numbered at random, so that neighbours lie anywhere.
 inline tissue::TissueDefinition MakeScatteredSphere(int subdivisions, Springs springs, double radius = 5.0) {
   const geometry::TriangleMesh mesh = geometry::MakeSphere({1, 2, 3}, radius, subdivisions);
-  math::Random random(7);
-  std::vector<std::uint32_t> place(mesh.positions.size());
-  std::iota(place.begin(), place.end(), 0u);
-  for (std::size_t i = place.size(); i > 1; --i) std::swap(place[i - 1], place[random.NextWord() % i]);
-  std::vector<Vec3> rest(place.size());
-  for (std::size_t i = 0; i < place.size(); ++i) rest[place[i]] = mesh.positions[i];
-  std::vector<geometry::Edge> edges = geometry::FindEdges(mesh.triangles);
-  for (geometry::Edge& edge : edges) edge = {place[edge[0]], place[edge[1]]};
-  tissue::TissueDefinition definition = MakeSystem(std::move(rest), edges, springs, 11);
+  tissue::TissueDefinition definition =
+      MakeSystem(mesh.positions, geometry::FindEdges(mesh.triangles), springs, 11);
   definition.fixed = {0, 5};
+  Renumber(MakeRandomOrder(mesh.positions.size(), 7), definition);
   return definition;
 }
 
@@ -95,6 +113,42 @@ inline std::vector<Vec3> MakeForces(std::size_t count) {
   std::vector<Vec3> forces(count);
   for (std::size_t i = 0; i < count; i += 3) forces[i] = {0.01, -0.02, 0.03 * static_cast<double>(i % 5)};
   return forces;
+}
+
+/// Everything that a load can hold.
+struct Case {
+  tissue::TissueModel model;
+  tissue::TissueState state;
+  std::vector<Vec3> forces;
+  std::vector<tissue::ContactSpring> contacts;
+  tissue::TissueLoad load;
+};
+
+/// A tissue of millimetres with strands (one cut), contacts (one open), forces, gravity and a held node.
+inline std::unique_ptr<Case> MakeCase(tissue::TissueDefinition definition, bool has_all) {
+  auto made = std::make_unique<Case>();
+  const auto n = static_cast<std::uint32_t>(definition.rest.size());
+  if (has_all && n > 20) {
+    for (std::uint32_t i = 0; i < 6; ++i) definition.strands.push_back({2 * i, n - 1 - 3 * i, 0.3 + 0.1 * i});
+  }
+  made->model = tissue::MakeTissueModel(definition);
+  made->state = MakeMovedState(made->model, 3e-4);
+  made->load.gravity = {0, 0, -0.5};
+  if (!has_all) return made;
+  if (!made->state.strand_is_intact.empty()) made->state.strand_is_intact[2] = 0;
+  made->forces = MakeForces(n);
+  for (Vec3& force : made->forces) force *= 0.01;
+  for (std::uint32_t c = 0; c < 4 && n > 20; ++c) {
+    tissue::ContactSpring contact{{c, n / 2 + c, (7 * c + 3) % n}, {0.2, 0.3, 0.5}, {0.6, 0, 0.8}, 0, 2.0};
+    const double depth = tissue::CalcContactDepth(contact, made->model.rest);
+    contact.offset = 0.002 - depth - (c == 1 ? 0.01 : 0.0);
+    made->contacts.push_back(contact);
+  }
+  made->load.stiffness_scale = 1.25;
+  made->load.shape_scale = 0.5;
+  made->load.external_force = made->forces;
+  made->load.contacts = made->contacts;
+  return made;
 }
 
 /// Judge: `steps` times x <- x + alpha R with all nodes at once, R by the plain evaluation that no solver

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file build_organs.h  Control points and photographs become one closed mesh an organ.
+/// Source: "General algorithms for laparoscopic surgical simulators", section 3.1 and Fig. 1.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "trocar/anatomy/control_points.h"
+#include "trocar/anatomy/image_series.h"
+#include "trocar/anatomy/mesh_quality.h"
+#include "trocar/anatomy/overlay.h"
+#include "trocar/anatomy/patient_builder.h"
+#include "trocar/anatomy/reference_judge.h"
+#include "trocar/core/result.h"
+
+namespace trocar::anatomy {
+
+/// One organ in the table of results.
+struct OrganReport {
+  std::string name;
+  std::size_t slices = 0, control_points = 0;
+  double mean_shift_px = 0, largest_shift_px = 0;  ///< of the edge adaption
+  std::size_t triangles = 0;
+  bool closed = false, manifold = false, outward = false;
+  int genus = 0;
+  std::size_t self_intersections = 0;
+  double min_angle_deg = 0;
+  double mean_min_angle_deg = 0;  ///< mean over the triangles of their smallest angle
+  double volume_ml = 0;
+  double volume_change = 0;            ///< against the volume's own surface, as a share of it [-]
+  double hausdorff_mm = 0;             ///< between mesh and the volume's own surface, both ways, sampled
+  double mean_distance_mm = 0;         ///< of the mesh from that surface
+  double samples_per_square_mm = 0;    ///< density of the samples on the mesh
+  std::optional<Judgement> judgement;  ///< with a reference only
+};
+
+struct OrganOptions {
+  double spacing_mm = 1.0;                 ///< of the volume's lattice, 0.4 to 4
+  double gap_mm = 0.7;                     ///< left free around an organ where another one touches it, 0 to 5
+  const LabelVolume* reference = nullptr;  ///< judges the result; may be null
+};
+
+struct BuiltOrgans {
+  std::vector<OrganReport> organs;  ///< in the order of the structures
+  std::vector<StructureMesh>
+      meshes;  ///< in the frame of the pictures: column, row, slice times their distances [mm]
+  std::map<int, Overlay> overlays;  ///< of each contoured slice
+};
+
+/// The pictures that the points were placed on. What the images say of size and place must agree with the
+/// points.
+///
+/// \param folder  any series that image_series.h opens
+/// \param numbers  slices, ascending
+/// \param window  of grey images; the suggested one if not given
+/// \return picture by slice number; kImageSizeDiffers, and what ImageSeries and ReadSlices return
+core::Result<std::map<int, ColorImage>> ReadContouredSlices(const ControlPoints& points,
+                                                            const std::filesystem::path& folder,
+                                                            const std::vector<int>& numbers,
+                                                            std::optional<DisplayWindow> window = {},
+                                                            const Progress& progress = {});
+
+/// Follows the contours, fills them, interpolates between the slices and meshes the volumes.
+///
+/// Where two structures overlap, the one later in the list keeps the place.
+/// \param images  at least the slices that the control points name, of the size that they name
+/// \return kUsage for options out of range; kContourEmpty with structure and slice; what decimation and
+/// judging return
+core::Result<BuiltOrgans> BuildOrgans(const ControlPoints& points, const std::map<int, ColorImage>& images,
+                                      const OrganOptions& options = {}, const Progress& progress = {});
+
+/// Writes what is said of a mesh [mm] into the report.
+void AddMeshQuality(OrganReport& report, const MeshQuality& quality);
+
+}  // namespace trocar::anatomy

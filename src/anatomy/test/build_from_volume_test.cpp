@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+// The chain takes any series: the same pictures as a stack and as one volume give the same patient.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+
+#include "trocar/anatomy/build_patient.h"
+#include "trocar/anatomy/control_points.h"
+#include "trocar/anatomy/generate_patient.h"
+#include "trocar/anatomy/phantom.h"
+#include "trocar/core/safe_file.h"
+
+namespace trocar::anatomy {
+namespace {
+
+namespace fs = std::filesystem;
+using core::ErrorCode;
+
+class BuildFromVolume : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::path(testing::TempDir()) /
+              ("volume_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+    fs::remove_all(folder_);
+    const auto patient = GeneratePatient(3);
+    ASSERT_TRUE(patient.ok()) << patient.error().Text();
+    PhantomOptions coarse;
+    coarse.pixel_mm = 2, coarse.slice_mm = 3, coarse.every = 3;
+    ASSERT_TRUE(WritePhantom(folder_, *patient, coarse).ok());
+    WriteVolume();
+    stack_.control_points = folder_ / "control_points.json";
+    stack_.images = folder_ / "slices";
+    stack_.spacing_mm = 2;
+    volume_ = stack_;
+    volume_.control_points = folder_ / "volume_points.json";
+    volume_.images = folder_ / "volume.nrrd";
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  /// The slices in one colour NRRD, whose numbers begin with 0; and control points without a pattern.
+  void WriteVolume() const {
+    auto points = ReadControlPoints(folder_ / "control_points.json");
+    ASSERT_TRUE(points.ok());
+    ImageSeriesOptions options;
+    options.pixel_mm = points->pixel_mm, options.slice_mm = points->slice_mm, options.axes = points->axes;
+    const auto series = ImageSeries::Open(folder_ / "slices", options);
+    ASSERT_TRUE(series.ok()) << series.error().Text();
+    const ImageSeriesInfo& info = series->Info();
+    ASSERT_EQ(info.slice_numbers.front(), 1);
+    std::string samples(static_cast<std::size_t>(info.width) * info.height * 3, '\0');  // slice 0
+    for (const int number : info.slice_numbers) {
+      const auto picture = series->ReadSlice(number, {});
+      ASSERT_TRUE(picture.ok());
+      samples.append(picture->samples.begin(), picture->samples.end());
+    }
+    std::string header =
+        "NRRD0004\ntype: uchar\ndimension: 4\nkinds: RGB-color domain domain domain\nencoding: raw\n"
+        "space: left-posterior-superior\nsizes: 3 " +
+        std::to_string(info.width) + " " + std::to_string(info.height) + " " +
+        std::to_string(info.slice_numbers.size() + 1) + "\nspace directions: none";
+    const double steps[] = {info.pixel_mm, info.pixel_mm, info.slice_mm};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const auto& d = info.direction[axis];
+      header += " (" + std::to_string(d[0] * steps[axis]) + "," + std::to_string(d[1] * steps[axis]) + "," +
+                std::to_string(d[2] * steps[axis]) + ")";
+    }
+    ASSERT_TRUE(core::WriteFile(folder_ / "volume.nrrd", header + "\n\n" + samples).ok());
+    points->image_pattern.clear();
+    ASSERT_TRUE(WriteControlPoints(folder_ / "volume_points.json", *points).ok());
+  }
+
+  fs::path folder_;
+  BuildOptions stack_, volume_;
+};
+
+TEST_F(BuildFromVolume, GivesTheSamePatientAsTheStack) {
+  const auto a = BuildPatient(stack_), b = BuildPatient(volume_);
+  ASSERT_TRUE(a.ok()) << a.error().Text();
+  ASSERT_TRUE(b.ok()) << b.error().Text();
+  ASSERT_EQ(a->patient.organs.size(), b->patient.organs.size());
+  for (std::size_t i = 0; i < a->patient.organs.size(); ++i)
+    EXPECT_EQ(a->patient.organs[i].mesh.positions, b->patient.organs[i].mesh.positions);
+}
+
+TEST_F(BuildFromVolume, RefusesAVolumeThatLiesOtherwiseThanThePoints) {
+  auto points = ReadControlPoints(volume_.control_points);
+  ASSERT_TRUE(points.ok());
+  points->axes[0] = points->axes[0] == "left" ? "right" : "left";
+  ASSERT_TRUE(WriteControlPoints(volume_.control_points, *points).ok());
+  EXPECT_EQ(BuildPatient(volume_).error().code, ErrorCode::kImageGeometryInvalid);
+}
+
+}  // namespace
+}  // namespace trocar::anatomy

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+// Control points and patient folders from strangers: each damage has its code, and nothing waits or crashes.
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <filesystem>
+#include <string>
+
+#include "trocar/anatomy/control_points.h"
+#include "trocar/anatomy/generate_patient.h"
+#include "trocar/anatomy/patient.h"
+#include "trocar/core/safe_file.h"
+
+namespace trocar::anatomy {
+namespace {
+
+namespace fs = std::filesystem;
+using core::ErrorCode;
+
+class HostileFiles : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::path(testing::TempDir()) /
+              ("hostile_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+  ErrorCode PointsCode(const std::string& text) const {
+    EXPECT_TRUE(core::WriteFile(folder_ / "points.json", text).ok());
+    const auto points = ReadControlPoints(folder_ / "points.json");
+    return points.ok() ? ErrorCode::kNone : points.error().code;
+  }
+  fs::path folder_;
+};
+
+TEST_F(HostileFiles, ControlPoints) {
+  EXPECT_EQ(PointsCode(std::string(1000000, '[')), ErrorCode::kJsonSyntax);
+  std::string deep;
+  for (int i = 0; i < 200000; ++i) deep += "{\"a\":";
+  EXPECT_EQ(PointsCode(deep), ErrorCode::kJsonSyntax);
+  EXPECT_EQ(PointsCode("{\"format\": NaN}"), ErrorCode::kJsonSyntax);
+  EXPECT_EQ(PointsCode("{\"format\": \"\xff\xfe\"}"), ErrorCode::kJsonSyntax);
+  EXPECT_EQ(PointsCode(std::string("\0\0\0", 3)), ErrorCode::kJsonSyntax);
+  EXPECT_EQ(PointsCode(""), ErrorCode::kJsonSyntax);
+  EXPECT_EQ(PointsCode("{\"format\": \"trocar-control-points\", \"version\": 1e308}"), ErrorCode::kJsonField);
+  ASSERT_EQ(::mkfifo((folder_ / "pipe.json").c_str(), 0600), 0);
+  EXPECT_EQ(ReadControlPoints(folder_ / "pipe.json").error().code, ErrorCode::kFileUnreadable);
+  EXPECT_EQ(ReadControlPoints(folder_).error().code, ErrorCode::kFileUnreadable);
+  EXPECT_EQ(ReadControlPoints("/dev/zero").error().code, ErrorCode::kFileUnreadable);
+  EXPECT_EQ(ReadControlPoints(folder_ / "none.json").error().code, ErrorCode::kFileMissing);
+}
+
+TEST_F(HostileFiles, PatientFolders) {
+  const auto patient = GeneratePatient(1);
+  ASSERT_TRUE(patient.ok());
+  const fs::path whole = folder_ / "whole";
+  ASSERT_TRUE(WritePatient(whole, *patient).ok());
+  fs::path mesh;
+  for (const auto& entry : fs::directory_iterator(whole)) {
+    if (entry.path().extension() == ".ply") mesh = entry.path().filename();
+  }
+  ASSERT_FALSE(mesh.empty());
+  const std::string sound = *core::ReadFile(whole / mesh);
+  const auto refuses = [&](const char* what, const std::string& content) {
+    ASSERT_TRUE(core::WriteFile(whole / mesh, content).ok());
+    const auto read = ReadPatient(whole);
+    ASSERT_FALSE(read.ok()) << what;
+    EXPECT_NE(read.error().message.find(mesh.string()), std::string::npos)
+        << what << ": " << read.error().message;
+  };
+  refuses("cut", sound.substr(0, sound.size() / 2));
+  refuses("empty", "");
+  refuses("noise", std::string(5000, '\x7f'));
+  std::string lying = sound;
+  const auto at = lying.find("element vertex ");
+  ASSERT_NE(at, std::string::npos);
+  lying.insert(at + 15, "9999999");
+  refuses("billions of vertices", lying);
+  ASSERT_TRUE(core::WriteFile(whole / mesh, sound).ok());
+  EXPECT_TRUE(ReadPatient(whole).ok());
+  fs::remove(whole / mesh);
+  ASSERT_EQ(::mkfifo((whole / mesh).c_str(), 0600), 0);
+  EXPECT_FALSE(ReadPatient(whole).ok()) << "a pipe";
+}
+
+}  // namespace
+}  // namespace trocar::anatomy

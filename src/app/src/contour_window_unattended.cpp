@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: Apache-2.0
+// Runs of the contour window that nobody watches: scripts, screenshots, measurements.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "contour_window.h"
+#include "trocar/core/log.h"
+#include "trocar/core/safe_file.h"
+
+namespace trocar::app {
+namespace {
+
+constexpr double kLongestRun = 180;    // a run that hangs must not hang a test [s]
+constexpr double kMeasureSeconds = 6;  // of dragging
+constexpr std::size_t kWarmUp = 10;    // first frames do not count
+
+double Quantile(std::vector<double> values, double part) {
+  if (values.empty()) return 0;
+  std::sort(values.begin(), values.end());
+  return values[static_cast<std::size_t>(part * static_cast<double>(values.size() - 1))];
+}
+
+}  // namespace
+
+void ContourWindow::Abandon(const core::Error& error) {
+  if (failure_) return;
+  failure_ = error;
+  core::Log(core::LogLevel::kError, error.Text());
+  Glib::signal_timeout().connect_once([this] { close(); }, 0);
+}
+
+void ContourWindow::RunScript() {
+  if (!is_script_read_) {
+    is_script_read_ = true;
+    if (!options_.script.empty()) {
+      const auto text = core::ReadFile(options_.script);
+      if (!text.ok()) return Abandon(text.error());
+      auto steps = ParseContourScript(*text, options_.script.filename().string());
+      if (!steps.ok()) return Abandon(steps.error());
+      script_.assign(steps->begin(), steps->end());
+    }
+  }
+  while (!script_.empty()) {
+    const ScriptStep step = script_.front();
+    if (step.verb == "await") {
+      if (coarse_timer_.connected() || meshes_->GetState().is_busy) return;
+      script_.pop_front();
+      continue;
+    }
+    script_.pop_front();
+    const auto done = RunScriptStep(step, *editor_);
+    if (!done.ok()) return Abandon(done.error());
+    if (!*done && step.verb == "show") {
+      const bool is_on = step.words[1] == "on";
+      auto& options = canvas_.Options();
+      if (step.words[0] == "reference") {
+        reference_.set_active(is_on);
+      } else if (step.words[0] == "ghosts") {
+        ghosts_.set_active(is_on);
+      } else if (step.words[0] == "points") {
+        options.has_points = is_on;
+      } else if (step.words[0] == "fill") {
+        options.has_fill = is_on;
+      } else if (step.words[0] == "help") {
+        help_.set_active(is_on);
+      } else {
+        return Abandon({core::ErrorCode::kScriptInvalid,
+                        "line " + std::to_string(step.line) +
+                            " of the script: show reference, ghosts, points, fill or help"});
+      }
+    }
+    OnEdited();
+  }
+}
+
+bool ContourWindow::OnFrame(const Glib::RefPtr<Gdk::FrameClock>& clock) {
+  if (failure_ || is_screenshot_due_) return true;
+  if (since_start_.Seconds() > kLongestRun) {
+    Abandon(
+        {core::ErrorCode::kUsage, "the run did not end in three minutes; this computer is too slow for it"});
+    return true;
+  }
+  if (editor_ == nullptr || canvas_.PaintCount() == 0) return true;
+  RunScript();
+  if (failure_ || !script_.empty()) return true;
+  if (options_.is_measuring) {
+    MeasureFrame(1e-6 * static_cast<double>(clock->get_frame_time()));
+    return true;
+  }
+  const bool is_idle = !coarse_timer_.connected() && !meshes_->GetState().is_busy;
+  if (since_start_.Seconds() < options_.screenshot_after || !is_idle) {
+    canvas_.queue_draw();
+    return true;
+  }
+  is_screenshot_due_ = true;
+  // outside of the frame, and after the last surface has been drawn
+  Glib::signal_timeout().connect_once(sigc::mem_fun(*this, &ContourWindow::SaveScreenshot), 300);
+  return true;
+}
+
+void ContourWindow::MeasureFrame(double now) {
+  if (measure_begin_ == 0) measure_begin_ = now;
+  const auto& here = editor_->Here();
+  if (here.contours.empty()) {
+    return Abandon({core::ErrorCode::kUsage, "--measure needs a contour to drag: name --points with some"});
+  }
+  if (now - measure_begin_ > kMeasureSeconds) {
+    is_screenshot_due_ = true;
+    Glib::signal_timeout().connect_once(sigc::mem_fun(*this, &ContourWindow::FinishMeasuring), 0);
+    return;
+  }
+  if (canvas_.PaintCount() > last_paints_ && last_frame_ > 0) {
+    measured_.frame.push_back(now - last_frame_);
+    measured_.paint.push_back(canvas_.LastPaintSeconds());
+  }
+  last_paints_ = canvas_.PaintCount();
+  last_frame_ = now;
+  // as a hand would: press on a point, move it round in a small circle, each frame another place
+  const double angle = 7.0 * (now - measure_begin_);
+  if (!editor_->IsDragging()) {
+    editor_->Press(ToCanvas(editor_->view, editor_->size, here.contours[0][0]), false);
+  }
+  const Vec2 start = ToCanvas(editor_->view, editor_->size, here.contours[0][0]);
+  const core::Stopwatch stopwatch;
+  editor_->Drag(start + Vec2{3 * std::cos(angle), 3 * std::sin(angle)});
+  (void)editor_->Fit().ok();
+  measured_.fit.push_back(stopwatch.Seconds());
+  OnEdited();
+}
+
+void ContourWindow::FinishMeasuring() {
+  editor_->Do(ContourAction::kCancel);
+  for (auto* values : {&measured_.fit, &measured_.paint, &measured_.frame}) {
+    values->erase(values->begin(),
+                  values->begin() + static_cast<std::ptrdiff_t>(std::min(kWarmUp, values->size())));
+  }
+  std::string organs;
+  for (const auto& [structure, mesh] : panel_.Meshes()) {
+    char text[160];
+    std::snprintf(text, sizeof(text),
+                  "%s{\"triangles\": %zu, \"volume_ml\": %.1f, \"spacing_mm\": %.2f, \"s\": %.3f}",
+                  organs.empty() ? "" : ", ", mesh.mesh.triangles.size(), mesh.volume_ml, mesh.spacing_mm,
+                  mesh.seconds);
+    organs += text;
+  }
+  std::printf(
+      "{\"canvas\": [%d, %d], \"picture\": [%d, %d], \"frames\": %zu, \"refit_median_ms\": %.2f, "
+      "\"refit_p95_ms\": %.2f, \"paint_median_ms\": %.2f, \"paint_p95_ms\": %.2f, \"frame_median_ms\": %.2f, "
+      "\"redraws_per_second\": %.1f, \"previews\": [%s]}\n",
+      canvas_.get_width(), canvas_.get_height(), workspace_->Series().width, workspace_->Series().height,
+      measured_.frame.size(), 1e3 * Quantile(measured_.fit, 0.5), 1e3 * Quantile(measured_.fit, 0.95),
+      1e3 * Quantile(measured_.paint, 0.5), 1e3 * Quantile(measured_.paint, 0.95),
+      1e3 * Quantile(measured_.frame, 0.5), static_cast<double>(measured_.frame.size()) / kMeasureSeconds,
+      organs.c_str());
+  close();
+}
+
+void ContourWindow::SaveScreenshot() {
+  const auto paintable = Gtk::WidgetPaintable::create(*this);
+  const auto snapshot = Gtk::Snapshot::create();
+  paintable->snapshot(snapshot, get_width(), get_height());
+  GskRenderNode* node = gtk_snapshot_to_node(snapshot->gobj());
+  GdkTexture* texture = node == nullptr ? nullptr
+                                        : gsk_renderer_render_texture(
+                                              gtk_native_get_renderer(GTK_NATIVE(gobj())), node, nullptr);
+  const bool is_saved = texture != nullptr && gdk_texture_save_to_png(texture, options_.screenshot.c_str());
+  if (texture != nullptr) g_object_unref(texture);
+  if (node != nullptr) gsk_render_node_unref(node);
+  if (!is_saved) {
+    return Abandon({core::ErrorCode::kFileUnwritable, "cannot write " + options_.screenshot.string() +
+                                                          ": check the folder and its permissions"});
+  }
+  const auto& document = workspace_->Document();
+  std::size_t contoured = 0, triangles = 0;
+  for (int s = 0; s < static_cast<int>(document.Points().structures.size()); ++s) {
+    contoured += document.ContouredSlices(s).size();
+  }
+  for (const auto& [structure, mesh] : panel_.Meshes()) triangles += mesh.mesh.triangles.size();
+  std::printf(
+      "{\"screenshot\": \"%s\", \"width\": %d, \"height\": %d, \"slice\": %d, \"contoured_slices\": %zu, "
+      "\"surfaces\": %zu, \"triangles\": %zu, \"can_undo\": %s}\n",
+      options_.screenshot.filename().c_str(), get_width(), get_height(), editor_->Slice(), contoured,
+      panel_.Meshes().size(), triangles, document.CanUndo() ? "true" : "false");
+  close();
+}
+
+}  // namespace trocar::app

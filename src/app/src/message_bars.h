@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file message_bars.h  Messages over the whole width that stay until somebody has read them.
+#pragma once
+
+#include <gtkmm.h>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "trocar/core/result.h"
+
+namespace trocar::app {
+
+class MessageBars : public Gtk::ScrolledWindow {
+ public:
+  struct Answer {
+    std::string label;
+    std::function<void()> act;
+    bool is_suggested = false;
+  };
+
+  MessageBars();
+
+  /// Code, and message with the remedy. The same error again is counted, not repeated.
+  void ShowError(const core::Error& error);
+  void ShowNotice(const std::string& text);
+  /// Goes with the first answer. A question with the same text takes the place of the old one.
+  void Ask(const std::string& text, std::vector<Answer> answers);
+
+ private:
+  Gtk::Box& AddBar(const std::string& style, const std::string& code, const std::string& text);
+  void Remove(Gtk::Widget& bar);
+
+  struct Shown {
+    Gtk::Box* bar;
+    std::string text;
+    Gtk::Label* count;
+    int times;
+  };
+  Gtk::Box bars_{Gtk::Orientation::VERTICAL};
+  std::vector<Shown> shown_;
+};
+
+}  // namespace trocar::app

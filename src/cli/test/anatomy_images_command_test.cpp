@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "run_trocar.h"
+#include "trocar/anatomy/image_stack.h"
+#include "trocar/anatomy/overlay.h"
+#include "trocar/core/safe_file.h"
+
+namespace trocar::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+class ImagesCommand : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::path(testing::TempDir()) /
+              ("images_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+    fs::remove_all(folder_);
+    for (int i = 3; i <= 9; ++i) {
+      const anatomy::ColorImage picture{
+          40, 30, std::vector<std::uint8_t>(40 * 30 * 3, static_cast<std::uint8_t>(20 * i))};
+      ASSERT_TRUE(anatomy::WritePng(folder_ / "stack" / ("s" + std::to_string(i) + ".png"), picture).ok());
+    }
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+  std::string Path(const std::string& name) const { return folder_ / name; }
+  Printed Run(std::vector<std::string> words) const {
+    words.insert(words.begin(), {"anatomy", "images"});
+    return RunTrocar(words);
+  }
+  static std::vector<std::string> With(std::vector<std::string> words) {
+    for (const char* word : {"--pixel-mm", "0.7", "--slice-mm", "2", "--axes", "left,posterior,superior"})
+      words.emplace_back(word);
+    return words;
+  }
+  /// One line with this code, nothing else.
+  static void ExpectRefused(const Printed& printed, const std::string& code, int status = 1) {
+    EXPECT_EQ(printed.status, status);
+    EXPECT_EQ(printed.out, "");
+    EXPECT_THAT(printed.err, HasSubstr("trocar: " + code + " "));
+    EXPECT_EQ(std::count(printed.err.begin(), printed.err.end(), '\n'), 1) << printed.err;
+  }
+
+  fs::path folder_;
+};
+
+TEST_F(ImagesCommand, SaysWhatASeriesIs) {
+  const Printed printed = Run(With({Path("stack"), "--preview", Path("preview.png")}));
+  ASSERT_EQ(printed.status, 0) << printed.err;
+  for (const char* text :
+       {"PNG, files s{slice}.png", "7, number 3 to 9", "40 x 30 pixels", "0.7 mm", "posterior", "colour"})
+    EXPECT_THAT(printed.out, HasSubstr(text));
+  const auto preview = anatomy::ReadImage(Path("preview.png"));
+  ASSERT_TRUE(preview.ok()) << preview.error().Text();
+  EXPECT_EQ(preview->At(preview->width - 300, 100)[0] % 20, 0) << "a slice of one shade";
+}
+
+TEST_F(ImagesCommand, SaysItToPrograms) {
+  const Printed printed = Run(With({Path("stack"), "--json"}));
+  ASSERT_EQ(printed.status, 0) << printed.err;
+  const auto json = nlohmann::json::parse(printed.out);
+  EXPECT_EQ(json["format"], "PNG");
+  EXPECT_EQ(json["slice_numbers"], (std::vector{3, 4, 5, 6, 7, 8, 9}));
+  EXPECT_EQ(json["pixel_mm"], 0.7);
+  EXPECT_EQ(json["axes"]["slice"], "superior");
+  EXPECT_EQ(json["file_frame"], "");
+  EXPECT_EQ(json["window"]["width"], 255.0);
+}
+
+TEST_F(ImagesCommand, AsksAndExplains) {
+  const Printed asked = Run({Path("stack")});
+  ExpectRefused(asked, "E-IMG-005");
+  EXPECT_THAT(asked.err, HasSubstr("--axes COLUMN,ROW,SLICE"));
+  ExpectRefused(Run({Path("stack"), "--axes", "left,up"}), "E-CLI-001", 2);
+  ExpectRefused(Run({Path("stack"), "--window", "40"}), "E-CLI-001", 2);
+  ExpectRefused(Run({Path("stack"), "--window", "40,-2"}), "E-CLI-001", 2);
+  ExpectRefused(Run({Path("stack"), "--pixel-mm", "zero"}), "E-CLI-001", 2);
+  ExpectRefused(Run({}), "E-CLI-001", 2);
+  const Printed help = Run({"--help"});
+  EXPECT_EQ(help.status, 0);
+  EXPECT_THAT(help.out, HasSubstr("docs/images.md"));
+}
+
+TEST_F(ImagesCommand, DamagedFilesAreOneLineAndNoPreview) {
+  const auto refuses = [&](const std::string& name, const std::string& content, const std::string& code) {
+    ASSERT_TRUE(core::WriteFile(folder_ / name, content).ok());
+    ExpectRefused(Run(With({Path(name), "--preview", Path("preview.png")})), code);
+    EXPECT_FALSE(fs::exists(Path("preview.png")));
+  };
+  refuses("noise.nii", "nothing", "E-IMG-004");
+  refuses("bomb.nrrd", "NRRD0004\ntype: short\ndimension: 3\nsizes: 16000 16000 16000\nencoding: raw\n\n",
+          "E-IMG-010");
+  refuses("short.nrrd", "NRRD0004\ntype: short\ndimension: 3\nsizes: 16 16 16\nencoding: raw\n\n",
+          "E-IMG-011");
+  refuses("path.nhdr",
+          "NRRD0004\ntype: short\ndimension: 3\nsizes: 2 2 2\nencoding: raw\ndata file: ../../x\n",
+          "E-IMG-013");
+  const std::string whole = *core::ReadFile(Path("stack/s5.png"));
+  refuses("stack/s5.png", whole.substr(0, whole.size() / 2), "E-IMG-011");
+  fs::remove(Path("stack/s5.png"));
+  const Printed gap = Run(With({Path("stack")}));
+  ExpectRefused(gap, "E-IMG-007");
+  EXPECT_THAT(gap.err, HasSubstr("missing: 5;"));
+  ExpectRefused(Run({"/dev/zero"}), "E-IMG-013");
+}
+
+}  // namespace
+}  // namespace trocar::cli

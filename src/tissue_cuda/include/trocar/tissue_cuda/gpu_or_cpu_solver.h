@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file gpu_or_cpu_solver.h  The equilibrium solver of a simulation that may use the GPU: it asks the GPU
+/// where there is one, and after the GPU's first failure goes on with the processor, in the same call.
+#pragma once
+
+#include <optional>
+
+#include "trocar/tissue_cuda/gpu_solver.h"
+
+namespace trocar::tissue_cuda {
+
+class GpuOrCpuSolver final : public tissue::EquilibriumSolver {
+ public:
+  /// \param model    must outlive the solver
+  /// \param threads  of the processor, >= 1
+  /// \param gpu      a solver of the same model, or why there is none
+  GpuOrCpuSolver(const tissue::TissueModel& model, int threads, core::Result<GpuSolver> gpu);
+  ~GpuOrCpuSolver() override;
+
+  /// The Chebyshev iteration runs on the GPU, other solvers on the processor. When the GPU fails, the
+  /// processor solves from the positions that the call began with. \note Allocates nothing, but once for the
+  /// text of a failure.
+  tissue::SolveReport Solve(const tissue::SolverSettings& settings, const tissue::TissueLoad& load,
+                            tissue::TissueState& state,
+                            const tissue::SolveHook* hook = nullptr) noexcept override;
+
+  /// The GPU in use; none once it failed.
+  const GpuInformation* Gpu() const noexcept { return gpu_ ? &gpu_->Information() : nullptr; }
+  /// Why the GPU is not used although it was asked for: one line for the person who runs the program.
+  const std::optional<core::Error>& GpuError() const noexcept { return gpu_error_; }
+
+ private:
+  std::optional<GpuSolver> gpu_;
+  std::optional<core::Error> gpu_error_;
+};
+
+}  // namespace trocar::tissue_cuda

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/tissue_cuda/gpu_or_cpu_solver.h"
+
+#include <utility>
+
+namespace trocar::tissue_cuda {
+
+GpuOrCpuSolver::GpuOrCpuSolver(const tissue::TissueModel& model, int threads, core::Result<GpuSolver> gpu)
+    : EquilibriumSolver(model, threads) {
+  if (gpu) {
+    gpu_ = std::move(gpu).value();
+  } else {
+    gpu_error_ = gpu.error();
+  }
+}
+
+GpuOrCpuSolver::~GpuOrCpuSolver() = default;
+
+tissue::SolveReport GpuOrCpuSolver::Solve(const tissue::SolverSettings& settings,
+                                          const tissue::TissueLoad& load, tissue::TissueState& state,
+                                          const tissue::SolveHook* hook) noexcept {
+  if (gpu_ && settings.kind == tissue::SolverKind::kChebyshevJacobi2015) {
+    const core::Result<tissue::SolveReport> report = gpu_->Solve(settings, load, state, hook);
+    if (report) return *report;
+    gpu_error_ = report.error();
+    gpu_.reset();
+  }
+  return EquilibriumSolver::Solve(settings, load, state, hook);
+}
+
+}  // namespace trocar::tissue_cuda

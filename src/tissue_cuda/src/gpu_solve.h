@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file gpu_solve.h  What stands behind GpuSolver: one class for the paper's layouts, one for ours.
+#pragma once
+
+#include <memory>
+
+#include "driver.h"
+#include "trocar/tissue_cuda/gpu_solver.h"
+
+namespace trocar::tissue_cuda {
+
+/// A model on the GPU in one layout. Chosen once per solver, called once per tick.
+class GpuSolve {
+ public:
+  virtual ~GpuSolve() = default;
+  /// \return an error, and the state's positions as they were
+  virtual core::Result<tissue::SolveReport> Run(const tissue::SolverSettings& settings,
+                                                const tissue::TissueLoad& load, tissue::TissueState& state,
+                                                const tissue::SolveHook* hook) = 0;
+  virtual bool IsResident() const noexcept { return false; }
+};
+
+core::Result<std::unique_ptr<GpuSolve>> MakePaperSolve(Gpu& gpu, const tissue::TissueModel& model,
+                                                       const GpuOptions& options);
+core::Result<std::unique_ptr<GpuSolve>> MakeTiledSolve(Gpu& gpu, const tissue::TissueModel& model,
+                                                       const GpuOptions& options);
+
+/// FindGpu and GpuSolver::Make with a driver and code of the caller's.
+core::Result<GpuSolver> MakeGpuSolver(const tissue::TissueModel& model, const GpuOptions& options,
+                                      const DriverSource& source);
+
+// marks on the GPU's clock
+inline constexpr int kMarkBegin = 0, kMarkFirstLaunch = 1, kMarkLastLaunch = 2, kMarkEnd = 3;
+
+}  // namespace trocar::tissue_cuda
