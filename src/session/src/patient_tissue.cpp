@@ -2,6 +2,7 @@
 #include "patient_tissue.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "trocar/geometry/mesh_measures.h"
@@ -25,6 +26,33 @@ const OrganMaterial* FindMaterial(const Scene& scene, std::string_view name) {
 core::Error MissingMaterial(const std::string& name) {
   return {core::ErrorCode::kSceneInvalid,
           "the scene has no material for \"" + name + "\"; add one to \"materials\""};
+}
+
+/// Edges and bending springs, which share the wall's modulus.
+void AddWall(const geometry::TriangleMesh& mesh, const OrganMaterial& material, std::uint32_t first,
+             tissue::TissueDefinition& definition) {
+  const double modulus = material.young_modulus * material.wall_thickness;
+  const double mean_area = geometry::CalcArea(mesh.positions, mesh.triangles) / mesh.triangles.size();
+  const double share = tissue::CalcBendingShare(material.wall_thickness, std::sqrt(std::sqrt(3.0) * mean_area));
+  const auto edges = geometry::FindEdges(mesh.triangles);
+  auto stiffness =
+      tissue::CalcEdgeStiffness(mesh.positions, mesh.triangles, edges, (1.0 - share) * modulus);
+  const auto add = [&](std::uint32_t a, std::uint32_t b, double k) {
+    definition.springs.push_back(
+        {first + a, first + b, k, math::Distance(mesh.positions[a], mesh.positions[b])});
+  };
+  std::vector<tissue::BendingSpring> across;
+  if (share > 0.0) across = tissue::CalcBendingSprings(mesh.positions, mesh.triangles, share * modulus);
+  for (const tissue::BendingSpring& bending : across) {
+    // corners that an edge joins already, around a vertex of three triangles, keep that one spring
+    const auto at = std::lower_bound(edges.begin(), edges.end(), geometry::Edge{bending.a, bending.b});
+    if (at != edges.end() && *at == geometry::Edge{bending.a, bending.b}) {
+      stiffness[static_cast<std::size_t>(at - edges.begin())] += bending.stiffness;
+    } else {
+      add(bending.a, bending.b, bending.stiffness);
+    }
+  }
+  for (std::size_t i = 0; i < edges.size(); ++i) add(edges[i][0], edges[i][1], stiffness[i]);
 }
 
 /// Only a closed surface has a volume to keep.
@@ -55,14 +83,7 @@ void AddOrgan(const anatomy::Organ& organ, const OrganMaterial& material, Patien
                                geometry::CalcArea(mesh.positions, mesh.triangles);
   for (const double area : areas) definition.mass.push_back(mass_per_area * area);
 
-  const auto edges = geometry::FindEdges(mesh.triangles);
-  const auto stiffness = tissue::CalcEdgeStiffness(mesh.positions, mesh.triangles, edges,
-                                                   material.young_modulus * material.wall_thickness);
-  for (std::size_t i = 0; i < edges.size(); ++i) {
-    const auto [a, b] = edges[i];
-    definition.springs.push_back(
-        {first + a, first + b, stiffness[i], math::Distance(mesh.positions[a], mesh.positions[b])});
-  }
+  AddWall(mesh, material, first, definition);
   for (const anatomy::Region& region : organ.regions) {
     const bool is_fixed = region.name == anatomy::kDiaphragmaticFace || region.name == anatomy::kFalciform ||
                           region.name == anatomy::kCoronary;
@@ -156,6 +177,11 @@ void TieTubes(const Scene& scene, PatientTissue& made) {
 
 core::Result<PatientTissue> MakePatientTissue(const Scene& scene) {
   PatientTissue made;
+  if (scene.patient.organs.size() > tissue::kMaxClosedOrgans) {
+    return core::Error{core::ErrorCode::kSceneInvalid,
+                       "the patient has " + std::to_string(scene.patient.organs.size()) + " organs; at most " +
+                           std::to_string(tissue::kMaxClosedOrgans) + " can be simulated"};
+  }
   for (const anatomy::Organ& organ : scene.patient.organs) {
     const OrganMaterial* material = FindMaterial(scene, organ.name);
     if (material == nullptr) return MissingMaterial(organ.name);

@@ -20,7 +20,7 @@
 namespace trocar::tissue {
 
 /// Most organs whose volume is kept.
-inline constexpr std::size_t kMaxClosedOrgans = 8;
+inline constexpr std::size_t kMaxClosedOrgans = 16;
 
 /// A closed surface among the nodes of a model.
 struct ClosedOrgan {
@@ -103,8 +103,7 @@ class Conservation {
                        double tolerance) noexcept;
   void UpdateRegions(const TissueState& tissue, ConservationState& state) noexcept;
   void AddFrameForce(const TissueState& tissue, const TissueLoad& load, const ConservationState& state) noexcept;
-  Vec3 CalcResponse(std::size_t organ, std::size_t node, const TissueState& tissue,
-                    const ConservationState& state) const noexcept;
+  bool MeasureVolumes(const TissueState& tissue, ConservationState& state) noexcept;
   bool CalcSlopes(const TissueState& tissue, ConservationState& state) noexcept;
   bool ProjectOnce(TissueState& tissue, std::span<Vec3> before, ConservationState& state) noexcept;
   void SetPressureForce(const ConservationState& state) noexcept;
@@ -118,18 +117,20 @@ class Conservation {
   LinearResponse linear_;
   TissueState rest_;
   std::vector<std::vector<Vec3>> responses_;  // per organ (n): displacement by 1 Pa, in the rest frame [m/Pa]
+  std::vector<std::vector<Vec3>> shifts_;     // the same where nodes are now; zero where they are held
   double stiffness_scale_ = 1, shape_scale_ = 1;  // for which the responses were found
   std::uint64_t response_strands_ = 0;
   bool responses_settled_ = false;
   std::vector<Vec3> gradient_;    // (n) of each node's organ; zero elsewhere
   std::vector<Vec3> base_force_;  // (n) without pressure
   std::vector<Vec3> force_;       // (n)
-  SmallMatrix slopes_{};          // dV_i by one pascal in organ j [m^3/Pa]
+  SmallMatrix slopes_{};          // dV_i by one pascal in organ j, of this tick [m^3/Pa]
+  bool has_slopes_ = false;
   FreeRegions next_regions_;
 };
 
-/// Iterations from one projection to the next. Projections alone every 40 let a sac under 10 kPa swing by a tenth of
-/// its volume; every 5 hold it to 1e-7 (Conservation.* tests).
+/// Iterations from one projection to the next. Solves at constant pressure let a sac under 10 kPa swing by a tenth
+/// of its volume from tick to tick: the softer it gets, the less may happen between two projections.
 inline constexpr int kProjectionInterval = 5;
 
 /// One tick's equilibrium with shape and volume kept: carry along, solve with projections, enforce.
