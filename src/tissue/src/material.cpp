@@ -92,6 +92,10 @@ std::vector<double> CalcFoundationStiffness(std::span<const double> vertex_areas
   return stiffness;
 }
 
+double CalcPunchStiffness(double young_modulus, double poisson_ratio, double radius) {
+  return 2.0 * radius * young_modulus / (1.0 - poisson_ratio * poisson_ratio);
+}
+
 double CalcTubeStiffness(double young_modulus, double radius, double wall_thickness, double length) {
   TROCAR_ASSERT(length > 0.0);
   return young_modulus * 2.0 * M_PI * radius * wall_thickness / length;
