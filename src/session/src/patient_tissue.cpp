@@ -109,12 +109,15 @@ void AddAttachments(const Scene& scene, const OrganMaterial& bed, PatientTissue&
                                        made.surfaces[attachment.organ_b].first_node + attachment.vertex_b,
                                        bed.young_modulus / bed.wall_thickness * area});
     made.conservation.strand_binds.push_back(1);
+    made.max_elongation.push_back(bed.failure_strain * bed.wall_thickness);
+    made.strand_organs.push_back(static_cast<std::int32_t>(attachment.organ_a));
   }
 }
 
 /// Ties a tube's end to the nearest nodes of a surface.
-void TieEnd(std::uint32_t end, const SurfaceInfo& surface, double stiffness,
-            tissue::TissueDefinition& definition) {
+void TieEnd(std::uint32_t end, const SurfaceInfo& surface, double stiffness, double failure_force,
+            PatientTissue& made) {
+  auto& definition = made.definition;
   std::vector<std::pair<double, std::uint32_t>> near;
   for (std::uint32_t i = 0; i < surface.node_count; ++i) {
     const std::uint32_t node = surface.first_node + i;
@@ -124,6 +127,10 @@ void TieEnd(std::uint32_t end, const SurfaceInfo& surface, double stiffness,
   std::partial_sort(near.begin(), near.begin() + static_cast<std::ptrdiff_t>(count), near.end());
   for (std::size_t i = 0; i < count; ++i) {
     definition.strands.push_back({end, near[i].second, stiffness / static_cast<double>(count)});
+    made.conservation.strand_binds.push_back(0);
+    made.max_elongation.push_back(failure_force / stiffness);
+    made.strand_organs.push_back(surface.radii.empty() ? static_cast<std::int32_t>(&surface - made.surfaces.data())
+                                                       : -1);
   }
 }
 
@@ -168,7 +175,7 @@ void TieTubes(const Scene& scene, PatientTissue& made) {
       }
       const double stiffness = tissue::CalcTubeStiffness(material.young_modulus, self->radii.front(),
                                                          material.wall_thickness, 0.004);
-      TieEnd(ends[end], *other, stiffness, made.definition);
+      TieEnd(ends[end], *other, stiffness, material.failure_force, made);
     }
   }
 }
@@ -187,6 +194,7 @@ core::Result<PatientTissue> MakePatientTissue(const Scene& scene) {
     if (material == nullptr) return MissingMaterial(organ.name);
     if (const auto closed = CheckClosed(organ); !closed.ok()) return closed.error();
     AddOrgan(organ, *material, made);
+    made.internal_pressure.push_back(material->internal_pressure);
   }
   if (!scene.patient.attachments.empty()) {
     const OrganMaterial* bed = FindMaterial(scene, anatomy::kGallbladderBed);
@@ -200,7 +208,6 @@ core::Result<PatientTissue> MakePatientTissue(const Scene& scene) {
     AddTube(tube, *material, made);
   }
   TieTubes(scene, made);
-  made.conservation.strand_binds.resize(made.definition.strands.size(), 0);
   return made;
 }
 

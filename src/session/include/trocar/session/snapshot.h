@@ -50,8 +50,8 @@ enum class Stage {
 std::string_view StageName(Stage stage) noexcept;
 inline constexpr int kStageCount = static_cast<int>(Stage::kCount);
 
-enum class EventKind { kGrasp, kRelease, kSlip, kGraspMissed, kStateRestored, kOrganFrozen };
-/// "grasp", "release", "slip", "grasp_missed", "state_restored", "organ_frozen"
+enum class EventKind { kGrasp, kRelease, kSlip, kGraspMissed, kStateRestored, kOrganFrozen, kTear };
+/// "grasp", "release", "slip", "grasp_missed", "state_restored", "organ_frozen", "tear"
 std::string_view EventName(EventKind kind) noexcept;
 
 struct Event {
