@@ -12,13 +12,10 @@
 #include "trocar/anatomy/contour_spline.h"
 #include "trocar/anatomy/control_points.h"
 #include "trocar/anatomy/edge_adaption.h"
-#include "trocar/anatomy/marching_cubes.h"
-#include "trocar/anatomy/mesh_decimation.h"
-#include "trocar/anatomy/mesh_smoothing.h"
 #include "trocar/anatomy/overlay.h"
 #include "trocar/anatomy/patient_builder.h"
 #include "trocar/anatomy/volume.h"
-#include "trocar/geometry/mesh_measures.h"
+#include "trocar/anatomy/volume_mesher.h"
 
 namespace trocar::anatomy {
 namespace {
@@ -100,6 +97,30 @@ core::Result<ContouredStructure> ExtractContours(const ControlPoints& points, co
   return result;
 }
 
+/// The pictures that the points were placed on. What the images say of size and place must agree with the
+/// points.
+core::Result<std::map<int, ColorImage>> ReadContouredSlices(const ControlPoints& points,
+                                                            const std::vector<int>& numbers,
+                                                            const BuildOptions& options,
+                                                            const Progress& progress) {
+  ImageSeriesOptions series_options;
+  series_options.pixel_mm = points.pixel_mm;
+  series_options.slice_mm = points.slice_mm;
+  series_options.axes = points.axes;
+  series_options.pattern = points.image_pattern;
+  series_options.slices = numbers;
+  const auto series = ImageSeries::Open(options.images, series_options, progress);
+  if (!series.ok()) return series.error();
+  const ImageSeriesInfo& info = series->Info();
+  if (info.width != points.width || info.height != points.height) {
+    return Error{core::ErrorCode::kImageSizeDiffers,
+                 "the images have " + std::to_string(info.width) + " x " + std::to_string(info.height) +
+                     " pixels, but the control points were placed on " + std::to_string(points.width) +
+                     " x " + std::to_string(points.height) + "; use the images that the points belong to"};
+  }
+  return ReadSlices(*series, numbers, options.window.value_or(info.suggested_window), progress);
+}
+
 core::Status WriteOverlays(const std::filesystem::path& folder, const std::map<int, ColorImage>& images,
                            const std::map<int, Overlay>& overlays, const Progress& progress) {
   std::size_t done = 0;
@@ -139,8 +160,7 @@ core::Result<BuildReport> BuildPatient(const BuildOptions& options, const Progre
     for (const SliceContours& slice : structure.slices) used.insert(slice.slice);
   }
   const std::vector<int> numbers(used.begin(), used.end());
-  const auto images =
-      LoadSlices({options.images, points->image_pattern, points->width, points->height}, numbers, progress);
+  const auto images = ReadContouredSlices(*points, numbers, options, progress);
   if (!images.ok()) return images.error();
 
   BuildReport report;
@@ -172,30 +192,19 @@ core::Result<BuildReport> BuildPatient(const BuildOptions& options, const Progre
   for (std::size_t i = 0; i < volumes.size(); ++i) {
     const Structure& structure = points->structures[i];
     tell("meshing " + structure.name, static_cast<double>(i) / count);
-    KeepLargestPart(volumes[i]);
-    auto mesh = MarchCubes(volumes[i]);
-    if (mesh.triangles.empty()) {
-      return Error{core::ErrorCode::kContourEmpty, structure.name + " encloses nothing; check its contours"};
-    }
-    SmoothMesh(mesh);
-    auto decimated = DecimateMesh(mesh, {.triangle_budget = structure.triangle_budget});
-    if (!decimated.ok())
-      return Error{decimated.error().code, structure.name + ": " + decimated.error().message};
+    MeshingSettings settings;
+    settings.triangle_budget = structure.triangle_budget;
+    auto meshed = MeshVolume(std::move(volumes[i]), settings);
+    if (!meshed.ok()) return Error{meshed.error().code, structure.name + ": " + meshed.error().message};
     OrganReport& organ = report.organs[i];
-    const auto measured = geometry::InspectMesh(*decimated);
-    organ.triangles = measured.triangles;
-    organ.closed = measured.closed, organ.manifold = measured.manifold, organ.outward = measured.outward;
-    organ.genus = measured.genus;
-    organ.self_intersections = geometry::CountSelfIntersections(*decimated);
-    organ.min_angle_deg = measured.min_angle * 180.0 / M_PI;
-    organ.volume_ml = measured.volume / kCubicMmPerMl;
+    AddMeshQuality(organ, meshed->quality);
     if (reference && structure.reference_label > 0) {
       auto judged =
-          Judge(*reference, *points, structure.reference_label, *decimated, structure.reference_left_out);
+          Judge(*reference, *points, structure.reference_label, meshed->mesh, structure.reference_left_out);
       if (!judged.ok()) return judged.error();
       organ.judgement = *judged;
     }
-    meshes.push_back({structure.name, std::move(*decimated)});
+    meshes.push_back({structure.name, std::move(meshed->mesh)});
   }
 
   tell("assembling the patient", 0.0);
@@ -215,19 +224,35 @@ core::Result<BuildReport> BuildPatient(const BuildOptions& options, const Progre
   return report;
 }
 
+void AddMeshQuality(OrganReport& report, const MeshQuality& quality) {
+  const geometry::MeshReport& surface = quality.surface;
+  report.triangles = surface.triangles;
+  report.closed = surface.closed, report.manifold = surface.manifold, report.outward = surface.outward;
+  report.genus = surface.genus;
+  report.self_intersections = quality.self_intersections;
+  report.min_angle_deg = surface.min_angle * 180.0 / M_PI;
+  report.mean_min_angle_deg = surface.mean_min_angle * 180.0 / M_PI;
+  report.volume_ml = surface.volume / kCubicMmPerMl;
+  report.volume_change = quality.volume_change;
+  report.hausdorff_mm = quality.distance.Hausdorff();
+  report.mean_distance_mm = quality.distance.mean_from_mesh;
+  report.samples_per_square_mm = static_cast<double>(quality.distance.mesh_samples) / surface.area;
+}
+
 std::string FormatReport(const BuildReport& report) {
   std::string text =
       "organ        slices points shift mean/max px  triangles closed manifold outward genus cuts min angle  "
-      "volume  "
+      "distance max/mean mm  volume  "
       "reference ratio  Dice\n";
   for (const OrganReport& organ : report.organs) {
     char line[256];
-    std::snprintf(line, sizeof(line),
-                  "%-12s %6zu %6zu %9.2f / %-8.2f %9zu %6s %8s %7s %5d %4zu %6.1f deg %5.0f mL",
-                  organ.name.c_str(), organ.slices, organ.control_points, organ.mean_shift_px,
-                  organ.largest_shift_px, organ.triangles, organ.closed ? "yes" : "NO",
-                  organ.manifold ? "yes" : "NO", organ.outward ? "yes" : "NO", organ.genus,
-                  organ.self_intersections, organ.min_angle_deg, organ.volume_ml);
+    std::snprintf(
+        line, sizeof(line),
+        "%-12s %6zu %6zu %9.2f / %-8.2f %9zu %6s %8s %7s %5d %4zu %6.1f deg %11.2f / %-6.3f %5.0f mL",
+        organ.name.c_str(), organ.slices, organ.control_points, organ.mean_shift_px, organ.largest_shift_px,
+        organ.triangles, organ.closed ? "yes" : "NO", organ.manifold ? "yes" : "NO",
+        organ.outward ? "yes" : "NO", organ.genus, organ.self_intersections, organ.min_angle_deg,
+        organ.hausdorff_mm, organ.mean_distance_mm, organ.volume_ml);
     text += line;
     if (organ.judgement) {
       std::snprintf(line, sizeof(line), " %7.1f mL %5.3f %5.3f", organ.judgement->reference_ml,

@@ -83,22 +83,31 @@ bool CrossesItself(std::span<const Vec2> polygon) {
 }
 
 std::vector<Vec2> FitContour(std::span<const Vec2> points, const ContourSplineSettings& settings) {
+  return FitContourCurve(points, settings).points;
+}
+
+ContourCurve FitContourCurve(std::span<const Vec2> points, const ContourSplineSettings& settings) {
   TROCAR_ASSERT(points.size() >= 3);
   std::vector<math::Vec3> controls;
-  for (const Vec2& p : points) {
-    if (controls.empty() || controls.back().x != p.x || controls.back().y != p.y)
+  std::vector<std::size_t> given;  // point that each control is or follows
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Vec2& p = points[i];
+    if (controls.empty() || controls.back().x != p.x || controls.back().y != p.y) {
       controls.push_back({p.x, p.y, 0.0});
+      given.push_back(i);
+    }
   }
-  while (controls.size() > 1 && controls.back() == controls.front()) controls.pop_back();
+  while (controls.size() > 1 && controls.back() == controls.front()) controls.pop_back(), given.pop_back();
   const bool polygon_crosses = CrossesItself(points);
 
+  ContourCurve curve;
+  std::set<std::size_t> divided;
   for (int round = 0;; ++round) {
     const math::CubicSpline spline(controls, math::SplineEnds::kClosed);
     Sampled sampled = SampleSpline(spline, settings.step_px);
     // segments that swing out too far
     std::set<std::size_t> irregular;
     const std::size_t n = controls.size();
-    std::vector<double> bulge(n, 0.0);
     for (std::size_t k = 0; k < sampled.points.size(); ++k) {
       const std::size_t i = sampled.segment[k];
       const Vec2 a{controls[i].x, controls[i].y}, b{controls[(i + 1) % n].x, controls[(i + 1) % n].y};
@@ -116,18 +125,28 @@ std::vector<Vec2> FitContour(std::span<const Vec2> points, const ContourSplineSe
         return true;
       });
     }
-    if (irregular.empty()) return std::move(sampled.points);
+    for (const std::size_t i : irregular) divided.insert(given[i]);
+    curve.divided.assign(divided.begin(), divided.end());
+    if (irregular.empty()) {
+      curve.points = std::move(sampled.points);
+      for (const std::size_t i : sampled.segment) curve.segment.push_back(given[i]);
+      return curve;
+    }
     if (round == kMaxRounds) break;
 
-    std::vector<math::Vec3> divided;
+    std::vector<math::Vec3> denser;
+    std::vector<std::size_t> denser_given;
     for (std::size_t i = 0; i < n; ++i) {
-      divided.push_back(controls[i]);
-      if (irregular.contains(i)) divided.push_back(0.5 * (controls[i] + controls[(i + 1) % n]));
+      denser.push_back(controls[i]), denser_given.push_back(given[i]);
+      if (!irregular.contains(i)) continue;
+      denser.push_back(0.5 * (controls[i] + controls[(i + 1) % n])), denser_given.push_back(given[i]);
     }
-    controls = std::move(divided);
+    controls = std::move(denser), given = std::move(denser_given);
   }
   // the polygon itself is the limit of division
-  return {points.begin(), points.end()};
+  curve.points.assign(points.begin(), points.end());
+  for (std::size_t i = 0; i < points.size(); ++i) curve.segment.push_back(i);
+  return curve;
 }
 
 }  // namespace trocar::anatomy

@@ -2,7 +2,6 @@
 #include "trocar/anatomy/edge_adaption.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
@@ -15,67 +14,6 @@ namespace {
 constexpr double kStep = 0.5;  // distance between the places tried along a normal [pixels]
 // the parabola spans a whole pixel to either side: bilinear samples in between carry the pixel grid's pattern
 constexpr int kPad = 2;  // steps
-using Colour = std::array<float, 3>;
-
-/// Part of a picture, blurred by a Gaussian.
-class BlurredCrop {
- public:
-  BlurredCrop(const ColorImage& image, int x0, int y0, int x1, int y1, double sigma)
-      : x0_(x0), y0_(y0), width_(x1 - x0 + 1), height_(y1 - y0 + 1) {
-    const int radius = static_cast<int>(std::ceil(3.0 * sigma));
-    std::vector<float> kernel(2 * radius + 1);
-    float sum = 0;
-    for (int i = -radius; i <= radius; ++i) {
-      kernel[i + radius] = static_cast<float>(std::exp(-0.5 * i * i / (sigma * sigma)));
-      sum += kernel[i + radius];
-    }
-    for (float& weight : kernel) weight /= sum;
-    // along rows, then along columns; pixels beyond the picture repeat its border
-    const int tall = height_ + 2 * radius;
-    std::vector<Colour> rows(static_cast<std::size_t>(width_) * tall);
-    for (int y = 0; y < tall; ++y) {
-      const int source_y = std::clamp(y0 + y - radius, 0, image.height - 1);
-      for (int x = 0; x < width_; ++x) {
-        Colour value = {0, 0, 0};
-        for (int k = -radius; k <= radius; ++k) {
-          const auto* sample = image.At(std::clamp(x0 + x + k, 0, image.width - 1), source_y);
-          for (int c = 0; c < 3; ++c) value[c] += kernel[k + radius] * sample[c];
-        }
-        rows[static_cast<std::size_t>(y) * width_ + x] = value;
-      }
-    }
-    pixels_.resize(static_cast<std::size_t>(width_) * height_);
-    for (int y = 0; y < height_; ++y) {
-      for (int x = 0; x < width_; ++x) {
-        Colour value = {0, 0, 0};
-        for (int k = 0; k <= 2 * radius; ++k) {
-          const Colour& sample = rows[static_cast<std::size_t>(y + k) * width_ + x];
-          for (int c = 0; c < 3; ++c) value[c] += kernel[k] * sample[c];
-        }
-        pixels_[static_cast<std::size_t>(y) * width_ + x] = value;
-      }
-    }
-  }
-
-  Colour Sample(const Vec2& p) const {
-    const double x = std::clamp(p.x - x0_, 0.0, width_ - 1.001),
-                 y = std::clamp(p.y - y0_, 0.0, height_ - 1.001);
-    const int ix = static_cast<int>(x), iy = static_cast<int>(y);
-    const auto fx = static_cast<float>(x - ix), fy = static_cast<float>(y - iy);
-    const Colour* row = &pixels_[static_cast<std::size_t>(iy) * width_ + ix];
-    Colour value;
-    for (int c = 0; c < 3; ++c) {
-      const float top = row[0][c] * (1 - fx) + row[1][c] * fx;
-      const float low = row[width_][c] * (1 - fx) + row[width_ + 1][c] * fx;
-      value[c] = top * (1 - fy) + low * fy;
-    }
-    return value;
-  }
-
- private:
-  int x0_, y0_, width_, height_;
-  std::vector<Colour> pixels_;
-};
 
 /// Outward or inward normal at each corner: perpendicular to the line between its neighbours.
 std::vector<Vec2> CalcNormals(std::span<const Vec2> contour) {
@@ -130,20 +68,15 @@ std::vector<int> SolveClosed(const std::vector<std::vector<double>>& cost, doubl
 
 std::vector<Vec2> AdaptToEdges(const ColorImage& image, std::span<const Vec2> contour,
                                const EdgeAdaptionSettings& settings) {
+  return AdaptToEdges(EdgeField(image, settings.blur_px), contour, settings);
+}
+
+std::vector<Vec2> AdaptToEdges(const EdgeField& picture, std::span<const Vec2> contour,
+                               const EdgeAdaptionSettings& settings) {
   TROCAR_ASSERT(contour.size() >= 3);
   std::vector<Vec2> adapted(contour.begin(), contour.end());
   const int reach = static_cast<int>(std::floor(settings.max_shift_px / kStep));
   if (reach < 1) return adapted;
-
-  Vec2 low = contour[0], high = contour[0];
-  for (const Vec2& p : contour) {
-    low = {std::min(low.x, p.x), std::min(low.y, p.y)};
-    high = {std::max(high.x, p.x), std::max(high.y, p.y)};
-  }
-  const double margin = settings.max_shift_px + 3.0;
-  const BlurredCrop picture(image, static_cast<int>(low.x - margin) - 1, static_cast<int>(low.y - margin) - 1,
-                            static_cast<int>(high.x + margin) + 2, static_cast<int>(high.y + margin) + 2,
-                            settings.blur_px);
 
   // colour change along the normal at each shift, averaged along the contour; kPad more on both sides
   const std::size_t n = contour.size();
@@ -154,15 +87,16 @@ std::vector<Vec2> AdaptToEdges(const ColorImage& image, std::span<const Vec2> co
   for (std::size_t i = 0; i < n; ++i) {
     for (int k = 0; k < states + 2 * kPad; ++k) {
       const Vec2 p = contour[i] + ((k - kPad - reach) * kStep) * normals[i];
-      Colour change = {0, 0, 0};
+      Colour change = {};
       for (int across = -1; across <= 1; ++across) {
         const Vec2 q = p + static_cast<double>(across) * Vec2{-normals[i].y, normals[i].x};
         const Colour ahead = picture.Sample(q + 0.5 * normals[i]),
                      behind = picture.Sample(q - 0.5 * normals[i]);
-        for (int c = 0; c < 3; ++c) change[c] += (across == 0 ? 0.5f : 0.25f) * (ahead[c] - behind[c]);
+        for (std::size_t c = 0; c < 3; ++c)
+          change[c] += (across == 0 ? 0.5f : 0.25f) * (ahead[c] - behind[c]);
       }
       double squared = 0;
-      for (int c = 0; c < 3; ++c) squared += change[c] * change[c];
+      for (std::size_t c = 0; c < 3; ++c) squared += change[c] * change[c];
       gradient[i][k] = std::sqrt(squared);
       strongest = std::max(strongest, gradient[i][k]);
     }
@@ -202,8 +136,8 @@ std::vector<Vec2> AdaptToEdges(const ColorImage& image, std::span<const Vec2> co
   for (double part = 1.0; part > 0.1; part *= 0.5) {
     for (std::size_t i = 0; i < n; ++i) {
       const Vec2 moved = contour[i] + (part * shifts[i]) * normals[i];
-      adapted[i] = {std::clamp(moved.x, 0.0, image.width - 1.0),
-                    std::clamp(moved.y, 0.0, image.height - 1.0)};
+      adapted[i] = {std::clamp(moved.x, 0.0, picture.Width() - 1.0),
+                    std::clamp(moved.y, 0.0, picture.Height() - 1.0)};
     }
     if (did_cross || !CrossesItself(adapted)) return adapted;
   }

@@ -8,11 +8,8 @@
 #include <vector>
 
 #include "duct_template.h"
-#include "trocar/anatomy/marching_cubes.h"
-#include "trocar/anatomy/mesh_decimation.h"
-#include "trocar/anatomy/mesh_smoothing.h"
 #include "trocar/anatomy/patient_builder.h"
-#include "trocar/anatomy/volume.h"
+#include "trocar/anatomy/volume_mesher.h"
 #include "trocar/geometry/distance.h"
 #include "trocar/geometry/mesh_measures.h"
 #include "trocar/math/random.h"
@@ -24,8 +21,7 @@ using core::Error;
 using core::ErrorCode;
 using math::Vec3;
 
-constexpr int kLiverTriangles = 5132;        // as the built-in patient
-constexpr int kGallbladderTriangles = 1798;  // likewise
+constexpr int kSmoothingRounds = 40;  // the distances are smooth already: little smoothing is needed
 constexpr double kLiverSpacingMm = 2.0;
 constexpr double kGallbladderSpacingMm = 1.25;
 constexpr double kGapMm = 1.3;  // between liver and gallbladder, so that their meshes do not touch
@@ -304,25 +300,20 @@ ScalarVolume Sample(const geometry::Box& box, double spacing, Function distance)
   return volume;
 }
 
-/// Meshes a volume. Where decimation folds a thin rim over itself, the rim is smoothed more and tried again.
 core::Result<StructureMesh> MakeStructure(const char* name, ScalarVolume volume, int triangles) {
-  // the distances are smooth already: little smoothing is needed
-  constexpr int kSmoothing[] = {40, 60, 90, 130, 180, 250};
-  KeepLargestPart(volume);
-  const auto surface = MarchCubes(volume);
-  if (surface.triangles.empty())
-    return Error{ErrorCode::kContourEmpty, std::string(name) + " encloses nothing"};
-  for (const int iterations : kSmoothing) {
-    auto mesh = surface;
-    SmoothMesh(mesh, {.iterations = iterations});
-    auto decimated = DecimateMesh(mesh, {.triangle_budget = triangles});
-    if (!decimated.ok())
-      return Error{decimated.error().code, std::string(name) + ": " + decimated.error().message};
-    if (geometry::CountSelfIntersections(*decimated) == 0) return StructureMesh{name, std::move(*decimated)};
+  MeshingSettings settings;
+  settings.triangle_budget = triangles;
+  settings.smoothing.iterations = kSmoothingRounds;
+  settings.distance_samples = 0;
+  auto meshed = MeshVolume(std::move(volume), settings);
+  if (!meshed.ok()) return Error{meshed.error().code, std::string(name) + ": " + meshed.error().message};
+  if (!meshed->quality.IsSound()) {
+    return Error{ErrorCode::kMeshInvalid,
+                 std::string(name) +
+                     ": its mesh cuts itself with these parameters; take another seed "
+                     "or milder settings"};
   }
-  return Error{ErrorCode::kMeshInvalid, std::string(name) +
-                                            ": its mesh cuts itself with these parameters; take another seed "
-                                            "or milder settings"};
+  return StructureMesh{name, std::move(meshed->mesh)};
 }
 
 }  // namespace

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trocar/anatomy/mesh_smoothing.h"
 
+#include <oneapi/tbb/parallel_for.h>
+
 #include <cmath>
 #include <vector>
 
@@ -18,13 +20,13 @@ void SmoothMesh(geometry::TriangleMesh& mesh, const SmoothingSettings& settings)
   const auto neighbours = geometry::FindVertexNeighbours(mesh.triangles, mesh.positions.size());
   std::vector<Vec3> moved(mesh.positions.size());
   const auto step = [&](double factor) {
-    for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+    oneapi::tbb::parallel_for(std::size_t{0}, mesh.positions.size(), [&](std::size_t v) {
       const auto row = neighbours.Row(v);
       Vec3 mean;
       for (const auto other : row) mean += mesh.positions[other];
       const Vec3 here = mesh.positions[v];
       moved[v] = row.empty() ? here : here + factor * (mean / static_cast<double>(row.size()) - here);
-    }
+    });
     std::swap(moved, mesh.positions);
   };
   const double swell = 1.0 / (settings.pass_band - 1.0 / settings.shrink);

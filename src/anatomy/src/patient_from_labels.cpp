@@ -5,15 +5,13 @@
 #include <array>
 #include <cctype>
 #include <cmath>
-#include <functional>
 #include <vector>
 
 #include "duct_template.h"
-#include "trocar/anatomy/marching_cubes.h"
-#include "trocar/anatomy/mesh_decimation.h"
-#include "trocar/anatomy/mesh_smoothing.h"
+#include "trocar/anatomy/label_volume.h"
 #include "trocar/anatomy/patient_builder.h"
 #include "trocar/anatomy/volume.h"
+#include "trocar/anatomy/volume_mesher.h"
 #include "trocar/geometry/mesh_measures.h"
 
 namespace trocar::anatomy {
@@ -23,11 +21,6 @@ using core::Error;
 using core::ErrorCode;
 using math::Vec3;
 
-constexpr int kLiverTriangles = 5132;        // as the built-in patient
-constexpr int kGallbladderTriangles = 1798;  // likewise
-constexpr double kCubicMmPerMl = 1000.0;
-constexpr double kThinnestMm = 5.0;  // what is thinner within a slice is cut off
-constexpr double kBlurMm = 2.0;      // width of the blur, about 1.4 times its standard deviation
 constexpr double kLargestVoxelMm = 20.0;
 constexpr double kMaxPixels = 4e6;  // of one slice after it was given square pixels
 
@@ -46,83 +39,6 @@ std::string LowerCase(std::string text) {
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   std::erase_if(text, [](char c) { return c == ' ' || c == '_' || c == '-'; });
   return text;
-}
-
-/// Slices of one label along the third axis, with square pixels of `pixel_mm`.
-std::vector<FilledSlice> FillSlices(const LabelVolume& volume, int label, const std::array<double, 3>& step,
-                                    double pixel_mm) {
-  std::vector<FilledSlice> slices;
-  const auto plane = static_cast<std::size_t>(volume.size[0]) * volume.size[1];
-  const int width = static_cast<int>(std::ceil(volume.size[0] * step[0] / pixel_mm));
-  const int height = static_cast<int>(std::ceil(volume.size[1] * step[1] / pixel_mm));
-  for (int k = 0; k < volume.size[2]; ++k) {
-    FilledSlice slice;
-    slice.position_mm = k * step[2];
-    slice.mask.x0 = 0, slice.mask.y0 = 0, slice.mask.width = width, slice.mask.height = height;
-    slice.mask.inside.assign(static_cast<std::size_t>(width) * height, 0);
-    bool is_empty = true;
-    for (int y = 0; y < height; ++y) {
-      const int j = std::min(volume.size[1] - 1, static_cast<int>(std::lround(y * pixel_mm / step[1])));
-      for (int x = 0; x < width; ++x) {
-        const int i = std::min(volume.size[0] - 1, static_cast<int>(std::lround(x * pixel_mm / step[0])));
-        const bool inside =
-            volume.labels[plane * k + static_cast<std::size_t>(j) * volume.size[0] + i] == label;
-        slice.mask.inside[static_cast<std::size_t>(y) * width + x] = inside;
-        is_empty &= !inside;
-      }
-    }
-    if (is_empty) continue;
-    // only the rectangle that is filled
-    int x0 = width, x1 = 0, y0 = height, y1 = 0;
-    for (int y = 0; y < height; ++y) {
-      for (int x = 0; x < width; ++x) {
-        if (!slice.mask.inside[static_cast<std::size_t>(y) * width + x]) continue;
-        x0 = std::min(x0, x), x1 = std::max(x1, x + 1), y0 = std::min(y0, y), y1 = std::max(y1, y + 1);
-      }
-    }
-    Mask small;
-    small.x0 = x0, small.y0 = y0, small.width = x1 - x0, small.height = y1 - y0;
-    for (int y = y0; y < y1; ++y) {
-      const auto* row = &slice.mask.inside[static_cast<std::size_t>(y) * width];
-      small.inside.insert(small.inside.end(), row + x0, row + x1);
-    }
-    slice.mask = std::move(small);
-    slices.push_back(std::move(slice));
-  }
-  return slices;
-}
-
-/// Binomial blur of the distances along every axis: label maps have tunnels and threads of a voxel or two
-/// that no organ has.
-void Blur(ScalarVolume& volume, int rounds) {
-  const std::array<std::size_t, 3> strides = {
-      1, static_cast<std::size_t>(volume.size[0]),
-      static_cast<std::size_t>(volume.size[0]) * static_cast<std::size_t>(volume.size[1])};
-  std::vector<float> blurred(volume.values.size());
-  for (int round = 0; round < rounds; ++round) {
-    for (int axis = 0; axis < 3; ++axis) {
-      const auto length = static_cast<std::size_t>(volume.size[axis]);
-      for (std::size_t i = 0; i < volume.values.size(); ++i) {
-        const std::size_t at = i / strides[axis] % length;
-        const float here = volume.values[i];
-        const float before = at > 0 ? volume.values[i - strides[axis]] : here;
-        const float after = at + 1 < length ? volume.values[i + strides[axis]] : here;
-        blurred[i] = 0.25f * before + 0.5f * here + 0.25f * after;
-      }
-      std::swap(blurred, volume.values);
-    }
-  }
-}
-
-/// Moves the surface so that `volume_mm3` lies inside: what a blur took comes back.
-void SetInsideVolume(ScalarVolume& volume, double volume_mm3) {
-  const double wanted = volume_mm3 / std::pow(volume.spacing, 3);
-  const auto rank = std::min(static_cast<std::size_t>(wanted), volume.values.size() - 1);
-  std::vector<float> sorted = volume.values;
-  const auto nth = sorted.begin() + static_cast<std::ptrdiff_t>(rank);
-  std::nth_element(sorted.begin(), nth, sorted.end(), std::greater<>());
-  const float level = *nth;
-  for (float& value : volume.values) value -= level;
 }
 
 /// The end of the gallbladder that is more cranial and posterior.
@@ -234,21 +150,19 @@ core::Result<BuildReport> BuildPatientFromLabels(const LabelOptions& options, co
   std::vector<ScalarVolume> volumes;
   for (const Part& part : parts) {
     tell(std::string("filling ") + part.name, 0.1);
-    auto slices = FillSlices(*volume, part.label, step, pixel);
-    for (FilledSlice& slice : slices) OpenMask(slice.mask, 0.5 * kThinnestMm / pixel);
-    if (slices.size() < 2) {
-      return Error{ErrorCode::kContourEmpty, std::string(part.name) + ": label " +
-                                                 std::to_string(part.label) +
-                                                 " lies in one slice only; at least two are needed"};
-    }
-    auto distances = MakeVolume(slices, pixel, options.spacing_mm);
-    if (!distances.ok()) return distances.error();
-    Blur(*distances, static_cast<int>(std::lround(std::pow(kBlurMm / options.spacing_mm, 2))));
-    SetInsideVolume(*distances, static_cast<double>(counts[part.label]) * step[0] * step[1] * step[2]);
-    volumes.push_back(std::move(*distances));
+    auto slices = FillLabelSlices(*volume, part.label, step, pixel);
     OrganReport organ;
     organ.name = part.name;
     organ.slices = slices.size();
+    LabelVolumeSettings settings;
+    settings.spacing_mm = options.spacing_mm;
+    const double enclosed = static_cast<double>(counts[part.label]) * step[0] * step[1] * step[2];
+    auto distances = MakeLabelVolume(std::move(slices), pixel, enclosed, settings);
+    if (!distances.ok()) {
+      return Error{distances.error().code, std::string(part.name) + ", label " + std::to_string(part.label) +
+                                               ": " + distances.error().message};
+    }
+    volumes.push_back(std::move(*distances));
     report.organs.push_back(organ);
   }
   Subtract(volumes[0], volumes[1], options.gap_mm);
@@ -256,30 +170,19 @@ core::Result<BuildReport> BuildPatientFromLabels(const LabelOptions& options, co
   std::vector<StructureMesh> meshes;
   for (std::size_t i = 0; i < volumes.size(); ++i) {
     tell(std::string("meshing ") + parts[i].name, 0.3 + 0.3 * static_cast<double>(i));
-    KeepLargestPart(volumes[i]);
-    auto mesh = MarchCubes(volumes[i]);
-    if (mesh.triangles.empty()) {
-      return Error{ErrorCode::kContourEmpty,
-                   std::string(parts[i].name) + " encloses nothing; check its label"};
-    }
-    SmoothMesh(mesh);
-    auto decimated = DecimateMesh(mesh, {.triangle_budget = parts[i].triangles});
-    if (!decimated.ok())
-      return Error{decimated.error().code, std::string(parts[i].name) + ": " + decimated.error().message};
-    for (Vec3& p : decimated->positions) p = p.x * axes[0] + p.y * axes[1] + p.z * axes[2];
+    MeshingSettings settings;
+    settings.triangle_budget = parts[i].triangles;
+    auto meshed = MeshVolume(std::move(volumes[i]), settings);
+    if (!meshed.ok())
+      return Error{meshed.error().code, std::string(parts[i].name) + ": " + meshed.error().message};
+    AddMeshQuality(report.organs[i], meshed->quality);
+    geometry::TriangleMesh& mesh = meshed->mesh;
+    for (Vec3& p : mesh.positions) p = p.x * axes[0] + p.y * axes[1] + p.z * axes[2];
     // a mirrored frame turns the triangles inside out
-    if (geometry::CalcVolume(decimated->positions, decimated->triangles) < 0) {
-      for (auto& t : decimated->triangles) std::swap(t[1], t[2]);
+    if (geometry::CalcVolume(mesh.positions, mesh.triangles) < 0) {
+      for (auto& t : mesh.triangles) std::swap(t[1], t[2]);
     }
-    OrganReport& organ = report.organs[i];
-    const auto measured = geometry::InspectMesh(*decimated);
-    organ.triangles = measured.triangles;
-    organ.closed = measured.closed, organ.manifold = measured.manifold, organ.outward = measured.outward;
-    organ.genus = measured.genus;
-    organ.self_intersections = geometry::CountSelfIntersections(*decimated);
-    organ.min_angle_deg = measured.min_angle * 180.0 / M_PI;
-    organ.volume_ml = measured.volume / kCubicMmPerMl;
-    meshes.push_back({parts[i].name, std::move(*decimated)});
+    meshes.push_back({parts[i].name, std::move(mesh)});
   }
 
   tell("assembling the patient", 0.9);

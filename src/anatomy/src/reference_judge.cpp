@@ -6,37 +6,15 @@
 #include <string>
 #include <vector>
 
+#include "mesh_slice.h"
+
 namespace trocar::anatomy {
 namespace {
-
-using math::Vec3;
 
 /// Label axes may differ from the series' extent by this much [mm].
 constexpr double kExtentTolerance = 1.5;
 // moves the planes and rows off the mesh's vertices
 constexpr double kNudge = 1.7e-6;  // mm
-
-struct Segment {
-  double ax, ay, bx, by;
-};
-
-/// Where the plane z = height cuts the mesh.
-std::vector<Segment> Cut(const geometry::TriangleMesh& mesh, double height) {
-  std::vector<Segment> segments;
-  for (const auto& t : mesh.triangles) {
-    double x[2], y[2];
-    int count = 0;
-    for (int i = 0; i < 3; ++i) {
-      const Vec3 &a = mesh.positions[t[i]], &b = mesh.positions[t[(i + 1) % 3]];
-      if ((a.z < height) == (b.z < height)) continue;
-      const double part = (height - a.z) / (b.z - a.z);
-      x[count] = a.x + part * (b.x - a.x), y[count] = a.y + part * (b.y - a.y);
-      ++count;
-    }
-    if (count == 2) segments.push_back({x[0], y[0], x[1], y[1]});
-  }
-  return segments;
-}
 
 }  // namespace
 
@@ -77,12 +55,12 @@ core::Result<Judgement> Judge(const LabelVolume& reference, const ControlPoints&
     if (slice > left_out[0] - 0.5 && slice < left_out[1] + 0.5) continue;
     for (auto& row : crossings) row.clear();
     const auto row_position = [&](int j) { return (j + 0.5) * step[1] - 0.5 * points.pixel_mm + kNudge; };
-    for (Segment s : Cut(mesh, slice * points.slice_mm + kNudge)) {
-      if (s.ay > s.by) std::swap(s.ax, s.bx), std::swap(s.ay, s.by);
-      int j = std::max(0, static_cast<int>(std::floor((s.ay + 0.5 * points.pixel_mm) / step[1] - 0.5)));
-      for (; j < reference.size[1] && row_position(j) < s.by; ++j) {
-        if (row_position(j) >= s.ay)
-          crossings[j].push_back(s.ax + (s.bx - s.ax) * (row_position(j) - s.ay) / (s.by - s.ay));
+    for (SliceSegment s : CutMesh(mesh, slice * points.slice_mm + kNudge)) {
+      if (s.a.y > s.b.y) std::swap(s.a, s.b);
+      int j = std::max(0, static_cast<int>(std::floor((s.a.y + 0.5 * points.pixel_mm) / step[1] - 0.5)));
+      for (; j < reference.size[1] && row_position(j) < s.b.y; ++j) {
+        if (row_position(j) >= s.a.y)
+          crossings[j].push_back(s.a.x + (s.b.x - s.a.x) * (row_position(j) - s.a.y) / (s.b.y - s.a.y));
       }
     }
     for (int j = 0; j < reference.size[1]; ++j) {

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trocar/anatomy/volume.h"
 
+#include <oneapi/tbb/parallel_for.h>
+
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <string>
 
+#include "banded_distance.h"
 #include "trocar/core/assert.h"
 
 namespace trocar::anatomy {
@@ -13,6 +17,9 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kMarginMm = 3.0;  // around the shape, so that the border's distances are right
+/// Distances are exact up to the largest of these, and do not grow beyond: a length, and so many times the
+/// lattice's spacing and the widest distance between slices.
+constexpr double kBandMm = 6.0, kBandSpacings = 3.0, kBandGaps = 2.0;
 
 /// Lower envelope of the parabolas f(q) + (p - q)^2 (Felzenszwalb and Huttenlocher, algorithm 1).
 ///
@@ -53,31 +60,69 @@ void TransformLine(std::vector<double>& f, std::vector<double>& result, std::vec
   f = result;
 }
 
-/// Slope at each knot of the monotone cubic through the values (Fritsch and Carlson; three-point start
-/// values).
-void CalcMonotoneSlopes(std::span<const double> knots, std::span<const double> values,
-                        std::span<double> slopes) {
-  const std::size_t n = knots.size();
-  const auto secant = [&](std::size_t i) { return (values[i + 1] - values[i]) / (knots[i + 1] - knots[i]); };
-  slopes[0] = secant(0);
-  slopes[n - 1] = secant(n - 2);
-  for (std::size_t i = 1; i + 1 < n; ++i) {
-    const double before = secant(i - 1), after = secant(i);
-    if (before * after <= 0.0) {
-      slopes[i] = 0.0;
-      continue;
-    }
-    const double h0 = knots[i] - knots[i - 1], h1 = knots[i + 1] - knots[i];
-    const double mean = (h1 * before + h0 * after) / (h0 + h1);
-    const double limit = 3.0 * std::min(std::fabs(before), std::fabs(after));
-    slopes[i] = std::clamp(mean, -limit, limit);
+/// One plane between slices a and a + 1 by the monotone cubic through all slices (Fritsch and Carlson;
+/// three-point start values).
+class PlaneBetween {
+ public:
+  PlaneBetween(const std::vector<double>& knots, std::size_t a, double z) {
+    const auto gap = [&](std::size_t i) { return static_cast<float>(knots[i + 1] - knots[i]); };
+    has_before_ = a > 0, has_after_ = a + 2 < knots.size();
+    before_ = has_before_ ? gap(a - 1) : 1.0f;
+    here_ = gap(a);
+    after_ = has_after_ ? gap(a + 1) : 1.0f;
+    const auto t = static_cast<float>((z - knots[a]) / (knots[a + 1] - knots[a]));
+    const float t2 = t * t, t3 = t2 * t;
+    from_a_ = 2 * t3 - 3 * t2 + 1, from_b_ = 3 * t2 - 2 * t3;
+    slope_from_a_ = (t3 - 2 * t2 + t) * here_, slope_from_b_ = (t3 - t2) * here_;
   }
-}
 
-double CubicHermite(double t, double h, double a, double b, double slope_a, double slope_b) {
-  const double t2 = t * t, t3 = t2 * t;
-  return (2 * t3 - 3 * t2 + 1) * a + (t3 - 2 * t2 + t) * h * slope_a + (3 * t2 - 2 * t3) * b +
-         (t3 - t2) * h * slope_b;
+  /// Value from those of the four slices around; the outer ones do not count where there is none.
+  float At(float v0, float v1, float v2, float v3) const {
+    const float middle = (v2 - v1) / here_;
+    const float slope_a = has_before_ ? Slope((v1 - v0) / before_, middle, before_, here_) : middle;
+    const float slope_b = has_after_ ? Slope(middle, (v3 - v2) / after_, here_, after_) : middle;
+    return from_a_ * v1 + slope_from_a_ * slope_a + from_b_ * v2 + slope_from_b_ * slope_b;
+  }
+
+ private:
+  static float Slope(float before, float after, float h0, float h1) {
+    const float mean = (h1 * before + h0 * after) / (h0 + h1);
+    const float limit = 3.0f * std::min(std::fabs(before), std::fabs(after));
+    return before * after <= 0.0f ? 0.0f : std::min(std::max(mean, -limit), limit);
+  }
+
+  bool has_before_, has_after_;
+  float before_, here_, after_;
+  float from_a_, from_b_, slope_from_a_, slope_from_b_;
+};
+
+/// Distances of one slice [pixels] at the lattice's columns and rows [mm], bilinear.
+/// \param corner  of the slice's rectangle [pixels]
+std::vector<float> SampleSlice(const std::vector<float>& fine, int width, std::array<int, 2> corner,
+                               double pixel_mm, const ScalarVolume& lattice) {
+  std::vector<int> column(static_cast<std::size_t>(lattice.size[0]));
+  std::vector<float> part(column.size());
+  for (int i = 0; i < lattice.size[0]; ++i) {
+    const double x = (lattice.first[0] + i) * lattice.spacing / pixel_mm - corner[0];
+    column[static_cast<std::size_t>(i)] = static_cast<int>(x);
+    part[static_cast<std::size_t>(i)] = static_cast<float>(x - column[static_cast<std::size_t>(i)]);
+  }
+  std::vector<float> coarse;
+  coarse.reserve(column.size() * static_cast<std::size_t>(lattice.size[1]));
+  const auto scale = static_cast<float>(pixel_mm);
+  for (int j = 0; j < lattice.size[1]; ++j) {
+    const double y = (lattice.first[1] + j) * lattice.spacing / pixel_mm - corner[1];
+    const int iy = static_cast<int>(y);
+    const auto part_y = static_cast<float>(y - iy);
+    const float* row = &fine[static_cast<std::size_t>(iy) * width];
+    for (std::size_t i = 0; i < column.size(); ++i) {
+      const float* at = row + column[i];
+      const float top = at[0] + part[i] * (at[1] - at[0]);
+      const float bottom = at[width] + part[i] * (at[width + 1] - at[width]);
+      coarse.push_back(scale * (top + part_y * (bottom - top)));
+    }
+  }
+  return coarse;
 }
 
 /// Index of the nearest set pixel for every pixel, by the same envelopes as CalcSquaredDistances.
@@ -260,13 +305,16 @@ std::vector<double> CalcSignedDistances(std::span<const std::uint8_t> set, int w
 }
 
 void OpenMask(Mask& mask, double radius_px) {
-  const auto depth = CalcSignedDistances(mask.inside, mask.width, mask.height);
+  const int band = static_cast<int>(std::ceil(radius_px)) + 2;
+  if (band > kWidestBand || mask.inside.empty()) return;
+  const auto depth = CalcBandedDistances(mask.inside, mask.width, mask.height, band);
   std::vector<std::uint8_t> core(mask.inside.size());
-  for (std::size_t i = 0; i < core.size(); ++i) core[i] = depth[i] >= radius_px;
-  const auto squared = CalcSquaredDistances(core, mask.width, mask.height);
-  if (squared.empty() || squared.front() == kInfinity) return;
+  for (std::size_t i = 0; i < core.size(); ++i) core[i] = depth[i] >= static_cast<float>(radius_px);
+  if (std::find(core.begin(), core.end(), 1) == core.end()) return;
+  // the distance to the core's border is half a pixel less than that to its nearest pixel
+  const auto around = CalcBandedDistances(core, mask.width, mask.height, band);
   for (std::size_t i = 0; i < core.size(); ++i)
-    mask.inside[i] = mask.inside[i] && squared[i] <= (radius_px + 0.5) * (radius_px + 0.5);
+    mask.inside[i] = mask.inside[i] && around[i] >= static_cast<float>(-radius_px - 1e-4);
 }
 
 core::Result<ScalarVolume> MakeVolume(std::span<const FilledSlice> slices, double pixel_mm,
@@ -303,61 +351,50 @@ core::Result<ScalarVolume> MakeVolume(std::span<const FilledSlice> slices, doubl
   volume.values.resize(plane * volume.size[2]);
 
   // signed distances of each slice at the lattice's columns and rows [mm]
-  std::vector<double> knots;
-  std::vector<std::vector<double>> distances;
-  std::vector<double> deepest;
-  for (const FilledSlice& slice : slices) {
+  const std::size_t n = slices.size();
+  double widest_gap = 0;
+  std::vector<double> knots(n);
+  for (std::size_t s = 0; s < n; ++s) {
+    knots[s] = slices[s].position_mm;
+    if (s > 0) widest_gap = std::max(widest_gap, knots[s] - knots[s - 1]);
+  }
+  const double band_mm = std::max({kBandMm, kBandSpacings * spacing_mm, kBandGaps * widest_gap});
+  const int band = std::clamp(static_cast<int>(std::ceil(band_mm / pixel_mm)), 4, kWidestBand);
+  std::vector<std::vector<float>> distances(n);
+  std::vector<float> deepest(n);
+  oneapi::tbb::parallel_for(std::size_t{0}, n, [&](std::size_t s) {
+    const FilledSlice& slice = slices[s];
     std::vector<std::uint8_t> set(static_cast<std::size_t>(width) * height, 0);
     for (int y = 0; y < slice.mask.height; ++y) {
-      for (int x = 0; x < slice.mask.width; ++x) {
-        const int to_x = x + slice.mask.x0 - x0, to_y = y + slice.mask.y0 - y0;
-        set[static_cast<std::size_t>(to_y) * width + to_x] = slice.mask.At(x, y);
-      }
+      const auto* from = &slice.mask.inside[static_cast<std::size_t>(y) * slice.mask.width];
+      const auto to = static_cast<std::size_t>(y + slice.mask.y0 - y0) * width + (slice.mask.x0 - x0);
+      for (int x = 0; x < slice.mask.width; ++x) set[to + x] = from[x] != 0;
     }
-    const auto fine = CalcSignedDistances(set, width, height);
-    std::vector<double> coarse(plane);
-    for (int j = 0; j < volume.size[1]; ++j) {
-      const double y = (volume.first[1] + j) * spacing_mm / pixel_mm - y0;
-      const int iy = static_cast<int>(y);
-      for (int i = 0; i < volume.size[0]; ++i) {
-        const double x = (volume.first[0] + i) * spacing_mm / pixel_mm - x0;
-        const int ix = static_cast<int>(x);
-        const double* row = &fine[static_cast<std::size_t>(iy) * width + ix];
-        const double top = row[0] + (x - ix) * (row[1] - row[0]);
-        const double bottom = row[width] + (x - ix) * (row[width + 1] - row[width]);
-        coarse[static_cast<std::size_t>(j) * volume.size[0] + i] =
-            pixel_mm * (top + (y - iy) * (bottom - top));
-      }
-    }
-    knots.push_back(slice.position_mm);
-    deepest.push_back(pixel_mm * *std::max_element(fine.begin(), fine.end()));
-    distances.push_back(std::move(coarse));
-  }
+    const auto fine = CalcBandedDistances(set, width, height, band);
+    deepest[s] = static_cast<float>(pixel_mm) * *std::max_element(fine.begin(), fine.end());
+    distances[s] = SampleSlice(fine, width, {x0, y0}, pixel_mm, volume);
+  });
 
-  const std::size_t n = slices.size();
-  std::vector<double> values(n), slopes(n);
-  for (std::size_t p = 0; p < plane; ++p) {
-    for (std::size_t s = 0; s < n; ++s) values[s] = distances[s][p];
-    CalcMonotoneSlopes(knots, values, slopes);
-    std::size_t segment = 0;
-    for (int k = 0; k < volume.size[2]; ++k) {
-      const double z = (volume.first[2] + k) * spacing_mm;
-      double value;
-      if (z < knots.front()) {
-        const double part = (knots.front() - z) / first_gap;
-        value = values.front() - deepest.front() * part * part;
-      } else if (z >= knots.back()) {
-        const double part = (z - knots.back()) / last_gap;
-        value = values.back() - deepest.back() * part * part;
-      } else {
-        while (knots[segment + 1] <= z) ++segment;
-        const double h = knots[segment + 1] - knots[segment];
-        value = CubicHermite((z - knots[segment]) / h, h, values[segment], values[segment + 1],
-                             slopes[segment], slopes[segment + 1]);
-      }
-      volume.values[plane * k + p] = static_cast<float>(value);
+  // each lattice plane between its two slices, with the slopes that their neighbours give
+  oneapi::tbb::parallel_for(0, volume.size[2], [&](int k) {
+    float* out = &volume.values[plane * static_cast<std::size_t>(k)];
+    const double z = (volume.first[2] + k) * spacing_mm;
+    if (z < knots.front() || z >= knots.back()) {
+      const bool is_below = z < knots.front();
+      const std::size_t end = is_below ? 0 : n - 1;
+      const double part = is_below ? (knots.front() - z) / first_gap : (z - knots.back()) / last_gap;
+      const float less = deepest[end] * static_cast<float>(part * part);
+      for (std::size_t p = 0; p < plane; ++p) out[p] = distances[end][p] - less;
+      return;
     }
-  }
+    const auto after = std::upper_bound(knots.begin(), knots.end(), z);
+    const auto a = static_cast<std::size_t>(after - knots.begin()) - 1;
+    const PlaneBetween between(knots, a, z);
+    const std::size_t before_a = a == 0 ? 0 : a - 1, after_b = a + 2 == n ? a + 1 : a + 2;
+    const float *p0 = distances[before_a].data(), *p1 = distances[a].data(), *p2 = distances[a + 1].data(),
+                *p3 = distances[after_b].data();
+    for (std::size_t p = 0; p < plane; ++p) out[p] = between.At(p0[p], p1[p], p2[p], p3[p]);
+  });
   return volume;
 }
 
@@ -375,50 +412,6 @@ void Subtract(ScalarVolume& volume, const ScalarVolume& other, double gap_mm) {
         float& value = volume.values[volume.Index(to_i, to_j, to_k)];
         value = std::min(value, static_cast<float>(-other.values[other.Index(i, j, k)] - gap_mm));
       }
-    }
-  }
-}
-
-void KeepLargestPart(ScalarVolume& volume) {
-  const int nx = volume.size[0], ny = volume.size[1], nz = volume.size[2];
-  std::vector<std::uint32_t> part(volume.values.size(), 0);
-  std::vector<std::size_t> stack;
-  // parts of one side, numbered from 1; returns the size of each
-  const auto number_parts = [&](bool inside) {
-    std::fill(part.begin(), part.end(), 0u);
-    std::vector<std::size_t> sizes = {0};
-    for (std::size_t seed = 0; seed < part.size(); ++seed) {
-      if (part[seed] != 0 || (volume.values[seed] > 0) != inside) continue;
-      const auto number = static_cast<std::uint32_t>(sizes.size());
-      sizes.push_back(0);
-      stack.assign(1, seed);
-      part[seed] = number;
-      while (!stack.empty()) {
-        const std::size_t here = stack.back();
-        stack.pop_back();
-        ++sizes[number];
-        const int i = static_cast<int>(here % nx), j = static_cast<int>(here / nx % ny);
-        const int k = static_cast<int>(here / (static_cast<std::size_t>(nx) * ny));
-        const auto visit = [&](bool exists, std::size_t to) {
-          if (!exists || part[to] != 0 || (volume.values[to] > 0) != inside) return;
-          part[to] = number;
-          stack.push_back(to);
-        };
-        const std::size_t row = nx, layer = static_cast<std::size_t>(nx) * ny;
-        visit(i > 0, here - 1), visit(i + 1 < nx, here + 1);
-        visit(j > 0, here - row), visit(j + 1 < ny, here + row);
-        visit(k > 0, here - layer), visit(k + 1 < nz, here + layer);
-      }
-    }
-    return sizes;
-  };
-  const auto keep = static_cast<float>(0.5 * volume.spacing);
-  for (const bool inside : {true, false}) {
-    const auto sizes = number_parts(inside);
-    const auto largest =
-        static_cast<std::uint32_t>(std::max_element(sizes.begin(), sizes.end()) - sizes.begin());
-    for (std::size_t v = 0; v < part.size(); ++v) {
-      if (part[v] != 0 && part[v] != largest) volume.values[v] = inside ? -keep : keep;
     }
   }
 }

@@ -3,9 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "banded_distance.h"
 #include "trocar/anatomy/marching_cubes.h"
 #include "trocar/geometry/mesh_measures.h"
 #include "trocar/math/random.h"
@@ -45,6 +47,25 @@ TEST(CalcSquaredDistances, EqualsBruteForce) {
         }
         ASSERT_EQ(distances[static_cast<std::size_t>(y) * width + x], nearest) << "seed " << seed;
       }
+    }
+  }
+}
+
+// Oracle: the unbounded transform.
+TEST(CalcBandedDistances, EqualsTheExactOnesWithinTheBand) {
+  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+    math::Random random(seed);
+    const int width = 1 + static_cast<int>(random.Uniform(0, 150)),
+              height = 1 + static_cast<int>(random.Uniform(0, 40));
+    std::vector<std::uint8_t> set(static_cast<std::size_t>(width) * height);
+    const double share = seed % 2 == 0 ? random.Uniform(0.001, 0.02) : random.Uniform(0.98, 1.0);
+    for (auto& s : set) s = random.Uniform() < share;
+    const int band = seed == 0 ? kWidestBand : 1 + static_cast<int>(random.Uniform(0, 12));
+    const auto exact = CalcSignedDistances(set, width, height);
+    const auto banded = CalcBandedDistances(set, width, height, band);
+    for (std::size_t i = 0; i < set.size(); ++i) {
+      const double expected = std::clamp(exact[i], -band - 0.5, band + 0.5);
+      ASSERT_NEAR(banded[i], expected, 1e-5) << "seed " << seed << ", pixel " << i;
     }
   }
 }

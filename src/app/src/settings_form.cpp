@@ -82,7 +82,8 @@ constexpr SettingRow kRows[] = {
 };
 
 constexpr SolverChoice kSolvers[] = {
-    {tissue::SolverKind::kChebyshevJacobi2015, "Chebyshev (fast)",
+    {tissue::SolverKind::kAdaptive, "Adaptive", "Newton with multigrid, as many steps as the error asks for"},
+    {tissue::SolverKind::kChebyshevJacobi2015, "Chebyshev",
      "Jacobi iteration accelerated by Chebyshev's recurrence (Wang 2015)"},
     {tissue::SolverKind::kRelaxationPaper, "Relaxation (reference)",
      "Node after node along its residual, as the paper prints it; slow to converge"},

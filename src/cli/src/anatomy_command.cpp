@@ -11,6 +11,7 @@
 
 #include "command.h"
 #include "console.h"
+#include "image_options.h"
 #include "trocar/anatomy/build_patient.h"
 #include "trocar/anatomy/generate_patient.h"
 #include "trocar/anatomy/patient_from_labels.h"
@@ -20,7 +21,7 @@ namespace trocar::cli {
 namespace {
 
 struct BuildArguments {
-  std::string control_points, images, output, reference, overlays;
+  std::string control_points, images, window, output, reference, overlays;
   bool without_overlays = false;
 };
 
@@ -28,6 +29,11 @@ core::Status Build(const BuildArguments& arguments) {
   anatomy::BuildOptions options;
   options.control_points = arguments.control_points;
   options.images = arguments.images;
+  if (!arguments.window.empty()) {
+    const auto window = ParseWindow(arguments.window);
+    if (!window) return window.error();
+    options.window = *window;
+  }
   options.output = arguments.output;
   if (!arguments.reference.empty()) options.reference = arguments.reference;
   if (!arguments.without_overlays) {
@@ -114,15 +120,9 @@ core::Status Generate(const GenerateArguments& arguments) {
   if (arguments.output.empty()) {
     return core::Error{core::ErrorCode::kUsage, "name the patient folder to write with -o PATIENT"};
   }
-  std::vector<anatomy::ParameterSetting> settings;
-  for (const std::string& text : arguments.settings) {
-    const auto at = text.find('=');
-    if (at == std::string::npos || at == 0) {
-      return core::Error{core::ErrorCode::kUsage, "--set: \"" + text + "\" is not like hydrops=0.5"};
-    }
-    settings.emplace_back(text.substr(0, at), text.substr(at + 1));
-  }
-  const core::Result<anatomy::Patient> patient = anatomy::GeneratePatient(arguments.seed, settings);
+  const auto settings = ParseSettings(arguments.settings);
+  if (!settings) return settings.error();
+  const core::Result<anatomy::Patient> patient = anatomy::GeneratePatient(arguments.seed, *settings);
   if (!patient) return patient.error();
   if (auto status = anatomy::WritePatient(arguments.output, *patient); !status) return status;
   PrintParameters(*patient);
@@ -176,7 +176,9 @@ void AddFromLabelsCommand(CLI::App& anatomy, Outcome& outcome) {
   CLI::App* command =
       anatomy.add_subcommand("from-labels", "Build a patient from a label map of liver and gallbladder");
   auto options = std::make_shared<anatomy::LabelOptions>();
-  command->add_option("labels", options->labels, "Label map: NIfTI (.nii, .nii.gz) or NRRD (.nrrd)")
+  command
+      ->add_option("labels", options->labels,
+                   "Label map: NIfTI (.nii, .nii.gz), NRRD (.nrrd) or MetaImage (.mha)")
       ->required()
       ->type_name("FILE");
   command->add_option("-o,--output", options->output, "Patient folder to write")
@@ -199,6 +201,18 @@ void AddFromLabelsCommand(CLI::App& anatomy, Outcome& outcome) {
 
 }  // namespace
 
+core::Result<std::vector<anatomy::ParameterSetting>> ParseSettings(const std::vector<std::string>& texts) {
+  std::vector<anatomy::ParameterSetting> settings;
+  for (const std::string& text : texts) {
+    const auto at = text.find('=');
+    if (at == std::string::npos || at == 0) {
+      return core::Error{core::ErrorCode::kUsage, "--set: \"" + text + "\" is not like hydrops=0.5"};
+    }
+    settings.emplace_back(text.substr(0, at), text.substr(at + 1));
+  }
+  return settings;
+}
+
 void AddAnatomyCommand(CLI::App& app, Outcome& outcome) {
   CLI::App* anatomy = app.add_subcommand("anatomy", "A patient from cross-sections, or from none");
   anatomy->require_subcommand(1);
@@ -208,9 +222,19 @@ void AddAnatomyCommand(CLI::App& app, Outcome& outcome) {
   build->add_option("control_points", arguments->control_points, "Control points (JSON)")
       ->required()
       ->type_name("FILE");
-  build->add_option("--images", arguments->images, "Folder of the slices that the control points name")
+  build
+      ->add_option(
+          "--images", arguments->images,
+          "The series that the control points were placed on: folder or file, as trocar anatomy images "
+          "reads it")
       ->required()
-      ->type_name("DIR");
+      ->type_name("PATH");
+  build
+      ->add_option(
+          "--window", arguments->window,
+          "Grey values to find edges in, as they were shown when the points were placed (default: the "
+          "window that trocar anatomy images suggests)")
+      ->type_name("CENTRE,WIDTH");
   build->add_option("-o,--output", arguments->output, "Patient folder to write")
       ->required()
       ->type_name("PATIENT");
@@ -232,6 +256,9 @@ void AddAnatomyCommand(CLI::App& app, Outcome& outcome) {
   build->callback([arguments, &outcome] { outcome.status = Build(*arguments); });
   AddAnatomyCheckCommand(*anatomy, outcome);
   AddAnatomyExportCommand(*anatomy, outcome);
+  AddAnatomyPhantomCommand(*anatomy, outcome);
+  AddAnatomyViewCommand(*anatomy, outcome);
+  AddAnatomyImagesCommand(*anatomy, outcome);
   AddGenerateCommand(*anatomy, outcome);
   AddFromLabelsCommand(*anatomy, outcome);
 }

@@ -5,6 +5,7 @@ namespace trocar::cli {
 namespace {
 
 constexpr BenchmarkSuite kSuites[] = {
+    {"anatomy", "label maps to smooth closed meshes with their quality reports", RunAnatomyBenchmark},
     {"collision", "nearest triangle to a point and to a shaft: hierarchy against brute force",
      RunCollisionBenchmark},
     {"tissue", "equilibrium of mass-spring grids and of the built-in patient", RunTissueBenchmark},

@@ -46,6 +46,7 @@ struct BenchmarkSuite {
 std::span<const BenchmarkSuite> BenchmarkSuites() noexcept;
 
 /// \return kBenchmarkWrong when an answer is wrong, or the error of a scene that cannot be read
+core::Result<BenchmarkResult> RunAnatomyBenchmark(const BenchmarkOptions& options);
 core::Result<BenchmarkResult> RunCollisionBenchmark(const BenchmarkOptions& options);
 core::Result<BenchmarkResult> RunTissueBenchmark(const BenchmarkOptions& options);
 

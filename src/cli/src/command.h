@@ -2,6 +2,10 @@
 /// \file command.h  The subcommands. Each lives in a file of its own and adds itself to the command line.
 #pragma once
 
+#include <string>
+#include <vector>
+
+#include "trocar/anatomy/patient_parameters.h"
 #include "trocar/core/result.h"
 
 namespace CLI {
@@ -20,9 +24,14 @@ void AddWindowCommand(CLI::App& app, Outcome& outcome);
 void AddDemoCommand(CLI::App& app, Outcome& outcome);
 void AddSimulateCommand(CLI::App& app, Outcome& outcome);
 void AddAnatomyCommand(CLI::App& app, Outcome& outcome);
+/// Words like "hydrops=0.5". \return kUsage for one that is not like that
+core::Result<std::vector<anatomy::ParameterSetting>> ParseSettings(const std::vector<std::string>& texts);
 /// Below `trocar anatomy`.
 void AddAnatomyCheckCommand(CLI::App& anatomy, Outcome& outcome);
 void AddAnatomyExportCommand(CLI::App& anatomy, Outcome& outcome);
+void AddAnatomyPhantomCommand(CLI::App& anatomy, Outcome& outcome);
+void AddAnatomyViewCommand(CLI::App& anatomy, Outcome& outcome);
+void AddAnatomyImagesCommand(CLI::App& anatomy, Outcome& outcome);
 void AddBenchCommand(CLI::App& app, Outcome& outcome);
 void AddDoctorCommand(CLI::App& app, Outcome& outcome);
 void AddErrorsCommand(CLI::App& app, Outcome& outcome);

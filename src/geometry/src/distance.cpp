@@ -2,6 +2,7 @@
 #include "trocar/geometry/distance.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace trocar::geometry {
 
@@ -110,6 +111,22 @@ bool TrianglesIntersect(const Vec3* a, const Vec3* b) noexcept {
     if (separates(Cross(nb, side_b))) return false;
   }
   return true;
+}
+
+bool SegmentPiercesTriangle(const Vec3& p, const Vec3& q, const Vec3* triangle) noexcept {
+  constexpr double kInPlane = 1e-7;  // of the longest side
+  const Vec3 &a = triangle[0], &b = triangle[1], &c = triangle[2];
+  const Vec3 normal = Cross(b - a, c - a);
+  const double longest = std::sqrt(
+      std::max({math::SquaredDistance(a, b), math::SquaredDistance(b, c), math::SquaredDistance(c, a)}));
+  const double in_plane = kInPlane * longest * math::Norm(normal);
+  const double from = Dot(normal, p - a), to = Dot(normal, q - a);
+  if (!(std::fabs(from) > in_plane && std::fabs(to) > in_plane) || (from > 0) == (to > 0)) return false;
+  // the line runs on the same side of all three sides
+  const Vec3 along = q - p;
+  const double u = Dot(along, Cross(a - p, b - p)), v = Dot(along, Cross(b - p, c - p)),
+               w = Dot(along, Cross(c - p, a - p));
+  return (u > 0 && v > 0 && w > 0) || (u < 0 && v < 0 && w < 0);
 }
 
 }  // namespace trocar::geometry

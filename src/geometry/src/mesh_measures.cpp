@@ -4,10 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <map>
 #include <numeric>
 #include <string>
-#include <unordered_map>
 #include <vector>
 
 #include "trocar/core/assert.h"
@@ -126,29 +124,37 @@ MeshReport InspectMesh(const TriangleMesh& mesh) {
   report.volume = CalcVolume(mesh.positions, mesh.triangles);
   report.min_angle = mesh.triangles.empty() ? 0.0 : M_PI;
 
-  struct Sides {
-    int forward = 0, backward = 0;
+  // every side of every triangle as (lower vertex, higher vertex, runs upwards)
+  struct Side {
+    Edge edge;
+    bool is_forward;
+    bool operator<(const Side& other) const { return edge < other.edge; }
   };
-  std::map<Edge, Sides> edges;
+  std::vector<Side> sides;
+  sides.reserve(3 * mesh.triangles.size());
   for (const Triangle& t : mesh.triangles) {
+    double smallest = M_PI;
     for (int i = 0; i < 3; ++i) {
       const auto from = t[i], to = t[(i + 1) % 3];
       const Vec3 &here = mesh.positions[from], &next = mesh.positions[to],
                  &last = mesh.positions[t[(i + 2) % 3]];
-      report.min_angle = std::min(report.min_angle, CalcAngle(next - here, last - here));
-      if (from < to)
-        ++edges[{from, to}].forward;
-      else
-        ++edges[{to, from}].backward;
+      smallest = std::min(smallest, CalcAngle(next - here, last - here));
+      sides.push_back({from < to ? Edge{from, to} : Edge{to, from}, from < to});
     }
+    report.min_angle = std::min(report.min_angle, smallest);
+    report.mean_min_angle += smallest / static_cast<double>(mesh.triangles.size());
     const bool repeated = t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
     if (repeated || !(Norm(CalcAreaNormal(mesh.positions, t)) > 0.0)) ++report.degenerate;
   }
-  report.edges = edges.size();
-  for (const auto& [edge, sides] : edges) {
-    if (sides.forward + sides.backward == 1)
+  std::sort(sides.begin(), sides.end());
+  for (std::size_t first = 0, last = 0; first < sides.size(); first = last) {
+    std::size_t forward = 0;
+    for (last = first; last < sides.size() && sides[last].edge == sides[first].edge; ++last)
+      forward += sides[last].is_forward ? 1 : 0;
+    ++report.edges;
+    if (last - first == 1)
       ++report.boundary_edges;
-    else if (sides.forward != 1 || sides.backward != 1)
+    else if (last - first != 2 || forward != 1)
       ++report.odd_edges;
   }
   report.odd_vertices = CountVerticesWithSeveralFans(mesh);
@@ -163,6 +169,48 @@ MeshReport InspectMesh(const TriangleMesh& mesh) {
   return report;
 }
 
+namespace {
+
+/// Corners and box of one triangle.
+struct PlacedTriangle {
+  Triangle triangle;
+  Vec3 corners[3];
+  Box box;
+
+  PlacedTriangle(const TriangleMesh& mesh, std::uint32_t index)
+      : triangle(mesh.triangles[index]),
+        corners{mesh.positions[triangle[0]], mesh.positions[triangle[1]], mesh.positions[triangle[2]]},
+        box(CalcBox(corners)) {}
+};
+
+bool Cut(const PlacedTriangle& a, const PlacedTriangle& b) {
+  return BoxesOverlap(a.box, b.box) && TrianglesCut(a.triangle, a.corners, b.triangle, b.corners);
+}
+
+}  // namespace
+
+bool BoxesOverlap(const Box& a, const Box& b) noexcept {
+  for (int axis = 0; axis < 3; ++axis) {
+    if (a.max[axis] < b.min[axis] || b.max[axis] < a.min[axis]) return false;
+  }
+  return true;
+}
+
+bool TrianglesCut(const Triangle& a, const Vec3* a_corners, const Triangle& b,
+                  const Vec3* b_corners) noexcept {
+  int shared = 0, at_a = 0, at_b = 0;
+  for (int i = 0; i < 3; ++i) {
+    for (int k = 0; k < 3; ++k) {
+      if (a[i] == b[k]) ++shared, at_a = i, at_b = k;
+    }
+  }
+  if (shared == 0) return TrianglesIntersect(a_corners, b_corners);
+  if (shared > 1) return false;
+  // beyond the common corner they meet only where the side opposite of it pierces the other triangle
+  return SegmentPiercesTriangle(a_corners[(at_a + 1) % 3], a_corners[(at_a + 2) % 3], b_corners) ||
+         SegmentPiercesTriangle(b_corners[(at_b + 1) % 3], b_corners[(at_b + 2) % 3], a_corners);
+}
+
 std::vector<std::array<std::uint32_t, 2>> FindSelfIntersections(const TriangleMesh& mesh) {
   std::vector<std::array<std::uint32_t, 2>> pairs;
   if (mesh.triangles.empty()) return pairs;
@@ -174,44 +222,57 @@ std::vector<std::array<std::uint32_t, 2>> FindSelfIntersections(const TriangleMe
       2.0 * std::sqrt(CalcArea(mesh.positions, mesh.triangles) / static_cast<double>(mesh.triangles.size()));
   const double cell = std::max(edge, longest / kMaxCellsAnAxis);
   if (!(cell > 0.0) || !std::isfinite(cell)) return pairs;
-  const auto cell_of = [&](const Vec3& p, int axis) {
-    return static_cast<std::int64_t>(std::floor((p[axis] - all.min[axis]) / cell));
+  const auto key_of = [&](const Vec3& p) {
+    std::array<std::int64_t, 3> index{};
+    for (int axis = 0; axis < 3; ++axis)
+      index[axis] = static_cast<std::int64_t>(std::floor((p[axis] - all.min[axis]) / cell));
+    return index;
   };
-  std::unordered_map<std::int64_t, std::vector<std::uint32_t>> grid;
-  // needles across the whole mesh would fill the grid: they are compared with every triangle
-  std::vector<std::uint32_t> large, candidates;
+  const auto number = [](const std::array<std::int64_t, 3>& at) {
+    return (at[0] * 2097152 + at[1]) * 2097152 + at[2];
+  };
+  // (cell, triangle); needles across the whole mesh would fill the grid: they are compared with every
+  // triangle
+  std::vector<std::pair<std::int64_t, std::uint32_t>> entries;
+  std::vector<std::uint32_t> large;
+  std::vector<PlacedTriangle> placed;
+  placed.reserve(mesh.triangles.size());
   for (std::uint32_t index = 0; index < mesh.triangles.size(); ++index) {
-    const Triangle& t = mesh.triangles[index];
-    const Vec3 corners[3] = {mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]};
-    const Box box = CalcBox(corners);
+    placed.emplace_back(mesh, index);
+    const auto low = key_of(placed.back().box.min), high = key_of(placed.back().box.max);
     double cells = 1.0;
-    for (int axis = 0; axis < 3; ++axis) {
-      cells *= static_cast<double>(cell_of(box.max, axis) - cell_of(box.min, axis) + 1);
-    }
-    candidates = large;
+    for (int axis = 0; axis < 3; ++axis) cells *= static_cast<double>(high[axis] - low[axis] + 1);
     if (cells > kMaxCellsATriangle) {
-      candidates.resize(index);
-      std::iota(candidates.begin(), candidates.end(), 0u);
       large.push_back(index);
-    } else {
-      for (auto x = cell_of(box.min, 0); x <= cell_of(box.max, 0); ++x) {
-        for (auto y = cell_of(box.min, 1); y <= cell_of(box.max, 1); ++y) {
-          for (auto z = cell_of(box.min, 2); z <= cell_of(box.max, 2); ++z) {
-            auto& bucket = grid[(x * 2097152 + y) * 2097152 + z];
-            candidates.insert(candidates.end(), bucket.begin(), bucket.end());
-            bucket.push_back(index);
-          }
-        }
-      }
-      std::sort(candidates.begin(), candidates.end());
-      candidates.erase(std::unique(candidates.begin(), candidates.end()), candidates.end());
+      continue;
     }
-    for (const auto other : candidates) {
-      const Triangle& u = mesh.triangles[other];
-      const bool neighbours = std::any_of(
-          t.begin(), t.end(), [&](auto v) { return std::find(u.begin(), u.end(), v) != u.end(); });
-      const Vec3 others[3] = {mesh.positions[u[0]], mesh.positions[u[1]], mesh.positions[u[2]]};
-      if (!neighbours && TrianglesIntersect(corners, others)) pairs.push_back({other, index});
+    for (auto x = low[0]; x <= high[0]; ++x) {
+      for (auto y = low[1]; y <= high[1]; ++y) {
+        for (auto z = low[2]; z <= high[2]; ++z) entries.emplace_back(number({x, y, z}), index);
+      }
+    }
+  }
+  for (const auto index : large) {
+    for (std::uint32_t other = 0; other < placed.size(); ++other) {
+      const bool is_other_large = std::binary_search(large.begin(), large.end(), other);
+      if (other == index || (is_other_large && other > index)) continue;
+      if (Cut(placed[index], placed[other]))
+        pairs.push_back({std::min(index, other), std::max(index, other)});
+    }
+  }
+  std::sort(entries.begin(), entries.end());
+  for (std::size_t first = 0, last = 0; first < entries.size(); first = last) {
+    for (last = first; last < entries.size() && entries[last].first == entries[first].first;) ++last;
+    for (std::size_t i = first; i < last; ++i) {
+      const PlacedTriangle& a = placed[entries[i].second];
+      for (std::size_t k = i + 1; k < last; ++k) {
+        const PlacedTriangle& b = placed[entries[k].second];
+        if (!BoxesOverlap(a.box, b.box)) continue;
+        // a pair that shares several cells counts in the one where its common box begins
+        if (number(key_of(math::Max(a.box.min, b.box.min))) != entries[first].first) continue;
+        if (TrianglesCut(a.triangle, a.corners, b.triangle, b.corners))
+          pairs.push_back({entries[i].second, entries[k].second});
+      }
     }
   }
   std::sort(pairs.begin(), pairs.end());

@@ -8,18 +8,26 @@
 namespace trocar::geometry {
 namespace {
 
+using Pair = std::pair<std::uint32_t, std::uint32_t>;
+
 /// Rows from (row, value) pairs: sorted within a row, repeated pairs kept once.
-Rows MakeRows(std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs, std::size_t count) {
-  std::sort(pairs.begin(), pairs.end());
-  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+Rows MakeRows(std::span<const Pair> pairs, std::size_t count) {
+  // counting sort by row, then each short row by itself
+  std::vector<std::uint32_t> ends(count + 1, 0), values(pairs.size());
+  for (const Pair& pair : pairs) ++ends[pair.first + 1];
+  for (std::size_t i = 0; i < count; ++i) ends[i + 1] += ends[i];
+  for (const Pair& pair : pairs) values[ends[pair.first]++] = pair.second;
   Rows rows;
-  rows.starts.assign(count + 1, 0);
+  rows.starts.reserve(count + 1);
+  rows.starts.push_back(0);
   rows.values.reserve(pairs.size());
-  for (const auto& [row, value] : pairs) {
-    ++rows.starts[row + 1];
-    rows.values.push_back(value);
+  for (std::size_t i = 0; i < count; ++i) {
+    // filling moved each row's start to its end
+    const auto begin = values.begin() + (i == 0 ? 0 : ends[i - 1]), end = values.begin() + ends[i];
+    std::sort(begin, end);
+    rows.values.insert(rows.values.end(), begin, std::unique(begin, end));
+    rows.starts.push_back(static_cast<std::uint32_t>(rows.values.size()));
   }
-  for (std::size_t i = 0; i < count; ++i) rows.starts[i + 1] += rows.starts[i];
   return rows;
 }
 
@@ -40,7 +48,7 @@ std::vector<Edge> FindEdges(std::span<const Triangle> triangles) {
 }
 
 Rows FindVertexNeighbours(std::span<const Triangle> triangles, std::size_t vertex_count) {
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
+  std::vector<Pair> pairs;
   pairs.reserve(6 * triangles.size());
   for (const Triangle& t : triangles) {
     for (int i = 0; i < 3; ++i) {
@@ -48,16 +56,16 @@ Rows FindVertexNeighbours(std::span<const Triangle> triangles, std::size_t verte
       pairs.emplace_back(t[(i + 1) % 3], t[i]);
     }
   }
-  return MakeRows(std::move(pairs), vertex_count);
+  return MakeRows(pairs, vertex_count);
 }
 
 Rows FindVertexTriangles(std::span<const Triangle> triangles, std::size_t vertex_count) {
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
+  std::vector<Pair> pairs;
   pairs.reserve(3 * triangles.size());
   for (std::uint32_t i = 0; i < triangles.size(); ++i) {
     for (const std::uint32_t vertex : triangles[i]) pairs.emplace_back(vertex, i);
   }
-  return MakeRows(std::move(pairs), vertex_count);
+  return MakeRows(pairs, vertex_count);
 }
 
 std::vector<std::uint32_t> FindComponents(std::span<const Triangle> triangles, std::size_t vertex_count) {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -83,16 +84,51 @@ TEST(FindSelfIntersections, FindsWhatAllPairsFind) {
   for (std::uint32_t a = 0; a < mesh.triangles.size(); ++a) {
     for (std::uint32_t b = a + 1; b < mesh.triangles.size(); ++b) {
       Vec3 p[3], q[3];
-      bool shares = false;
-      for (int i = 0; i < 3; ++i) {
+      for (int i = 0; i < 3; ++i)
         p[i] = mesh.positions[mesh.triangles[a][i]], q[i] = mesh.positions[mesh.triangles[b][i]];
-        for (int k = 0; k < 3; ++k) shares |= mesh.triangles[a][i] == mesh.triangles[b][k];
-      }
-      if (!shares && TrianglesIntersect(p, q)) expected.push_back({a, b});
+      if (TrianglesCut(mesh.triangles[a], p, mesh.triangles[b], q)) expected.push_back({a, b});
     }
   }
   EXPECT_GT(expected.size(), 20u);
   EXPECT_EQ(FindSelfIntersections(mesh), expected);
+}
+
+TEST(TrianglesCut, SeesWhatHappensBeyondACommonCorner) {
+  const Vec3 a[3] = {{0, 0, 0}, {4, -2, 0}, {4, 2, 0}};
+  const Vec3 through[3] = {{0, 0, 0}, {3, 0, -1}, {3, 0, 1}},
+             beside[3] = {{0, 0, 0}, {-3, 0, -1}, {-3, 0, 1}};
+  const Vec3 above[3] = {{0, 0, 0}, {3, 0, 1}, {3, 1, 1}}, in_plane[3] = {{0, 0, 0}, {0, 3, 0}, {-3, 3, 0}};
+  const Triangle one = {0, 1, 2}, other = {0, 3, 4}, turned = {4, 0, 3};
+  EXPECT_TRUE(TrianglesCut(one, a, other, through));
+  EXPECT_TRUE(TrianglesCut(other, through, one, a));
+  const Vec3 turned_through[3] = {through[2], through[0], through[1]};
+  EXPECT_TRUE(TrianglesCut(one, a, turned, turned_through));
+  for (const auto* corners : {beside, above, in_plane}) EXPECT_FALSE(TrianglesCut(one, a, other, corners));
+  // the same two triangles without a common vertex touch
+  EXPECT_TRUE(TrianglesCut(one, a, {5, 3, 4}, beside));
+  // neighbours along an edge never cut, however folded
+  EXPECT_FALSE(TrianglesCut(one, a, {1, 0, 3}, a));
+}
+
+TEST(FindSelfIntersections, FindsAFanThatPassesThroughItself) {
+  const TriangleMesh fan{{{0, 0, 0}, {4, -2, 0}, {4, 2, 0}, {3, 0, -1}, {3, 0, 1}, {-3, 0, 0}},
+                         {{0, 1, 2}, {0, 3, 4}, {0, 4, 5}}};
+  const std::vector<std::array<std::uint32_t, 2>> expected = {{0, 1}};
+  EXPECT_EQ(FindSelfIntersections(fan), expected);
+}
+
+TEST(FindVertexNeighbours, HasEveryNeighbourOnceInOrder) {
+  const Rows rows = FindVertexNeighbours(MakeBox({0, 0, 0}, {1, 1, 1}).triangles, 9);
+  ASSERT_EQ(rows.Count(), 9u);
+  std::size_t sum = 0;
+  for (std::size_t v = 0; v < 8; ++v) {
+    const auto row = rows.Row(v);
+    EXPECT_TRUE(std::is_sorted(row.begin(), row.end()));
+    EXPECT_EQ(std::adjacent_find(row.begin(), row.end()), row.end());
+    sum += row.size();
+  }
+  EXPECT_EQ(sum, 2u * 18u);
+  EXPECT_TRUE(rows.Row(8).empty());
 }
 
 TEST(CountSelfIntersections, IsZeroForASphereAndPositiveForTwoThatOverlap) {

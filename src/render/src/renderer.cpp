@@ -8,10 +8,10 @@
 #include <cstddef>
 #include <initializer_list>
 #include <limits>
-#include <string>
 
 #include "material_look.h"
 #include "noise.h"
+#include "shader_program.h"
 #include "shaders.h"
 #include "trocar/core/assert.h"
 #include "trocar/geometry/mesh_measures.h"
@@ -32,9 +32,6 @@ constexpr int kNoiseSide = 64;                  // texels
 constexpr int kMaskSegments = 128;
 constexpr int kFanFirst = 2 * (kMaskSegments + 1);                // vertex after the ring's strip
 constexpr double kArrowHeadLength = 4.5, kArrowHeadRadius = 2.4;  // in radii of the arrow's shaft
-
-using Matrix4 = std::array<float, 16>;  // column after column
-using Matrix3 = std::array<float, 9>;
 
 struct Axes {
   Vec3 x, y, z;
@@ -98,75 +95,6 @@ struct Surface {
   GLsizei index_count = 0;
   std::size_t vertex_count = 0;
 };
-
-/// A linked program with the places of its uniforms.
-struct Program {
-  GLuint name = 0;
-
-  GLint Find(const char* uniform) const { return glGetUniformLocation(name, uniform); }
-  void Set(const char* uniform, float v) const { glUniform1f(Find(uniform), v); }
-  void Set(const char* uniform, int v) const { glUniform1i(Find(uniform), v); }
-  void Set(const char* uniform, const std::array<float, 2>& v) const {
-    glUniform2fv(Find(uniform), 1, v.data());
-  }
-  void Set(const char* uniform, const std::array<float, 3>& v) const {
-    glUniform3fv(Find(uniform), 1, v.data());
-  }
-  void Set(const char* uniform, const Matrix3& m) const {
-    glUniformMatrix3fv(Find(uniform), 1, GL_FALSE, m.data());
-  }
-  void Set(const char* uniform, const Matrix4& m) const {
-    glUniformMatrix4fv(Find(uniform), 1, GL_FALSE, m.data());
-  }
-};
-
-core::Error ShaderFailed(const std::string& what, const std::string& log) {
-  return {core::ErrorCode::kShaderFailed,
-          what + ": " + log + "; update the graphics driver or set LIBGL_ALWAYS_SOFTWARE=1"};
-}
-
-core::Result<GLuint> MakeShader(GLenum kind, std::initializer_list<const char*> sources) {
-  const GLuint shader = glCreateShader(kind);
-  glShaderSource(shader, static_cast<GLsizei>(sources.size()), sources.begin(), nullptr);
-  glCompileShader(shader);
-  GLint is_compiled = GL_FALSE;
-  glGetShaderiv(shader, GL_COMPILE_STATUS, &is_compiled);
-  if (is_compiled == GL_TRUE) return shader;
-  std::string log(2048, '\0');
-  GLsizei length = 0;
-  glGetShaderInfoLog(shader, static_cast<GLsizei>(log.size()), &length, log.data());
-  log.resize(static_cast<std::size_t>(length));
-  glDeleteShader(shader);
-  return ShaderFailed(
-      kind == GL_VERTEX_SHADER ? "a vertex shader does not compile" : "a fragment shader does not compile",
-      log);
-}
-
-core::Result<Program> MakeProgram(const char* vertex_source,
-                                  std::initializer_list<const char*> fragment_sources) {
-  const auto vertex = MakeShader(GL_VERTEX_SHADER, {vertex_source});
-  if (!vertex) return vertex.error();
-  const auto fragment = MakeShader(GL_FRAGMENT_SHADER, fragment_sources);
-  if (!fragment) {
-    glDeleteShader(*vertex);
-    return fragment.error();
-  }
-  const Program program{glCreateProgram()};
-  glAttachShader(program.name, *vertex);
-  glAttachShader(program.name, *fragment);
-  glLinkProgram(program.name);
-  glDeleteShader(*vertex);
-  glDeleteShader(*fragment);
-  GLint is_linked = GL_FALSE;
-  glGetProgramiv(program.name, GL_LINK_STATUS, &is_linked);
-  if (is_linked == GL_TRUE) return program;
-  std::string log(2048, '\0');
-  GLsizei length = 0;
-  glGetProgramInfoLog(program.name, static_cast<GLsizei>(log.size()), &length, log.data());
-  log.resize(static_cast<std::size_t>(length));
-  glDeleteProgram(program.name);
-  return ShaderFailed("a shader program does not link", log);
-}
 
 GLuint MakeNoiseTexture(int side, const std::vector<std::uint8_t>& texels) {
   GLuint texture = 0;
@@ -420,13 +348,7 @@ Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 Renderer::~Renderer() = default;
 
 core::Result<Renderer> Renderer::Make() {
-  if (!epoxy_is_desktop_gl() || epoxy_gl_version() < 33) {
-    const auto* version = reinterpret_cast<const char*>(glGetString(GL_VERSION));
-    return core::Error{
-        core::ErrorCode::kGraphicsTooOld,
-        std::string("OpenGL here is ") + (version == nullptr ? "unknown" : version) +
-            ", desktop OpenGL 3.3 is needed; update the graphics driver or set LIBGL_ALWAYS_SOFTWARE=1"};
-  }
+  if (const auto status = CheckGraphicsVersion(); !status) return status.error();
   auto content = std::make_unique<Content>();
   auto tissue = MakeProgram(kSurfaceVertexShader, {kShadingFunctions, kTissueFragmentShader});
   if (!tissue) return tissue.error();

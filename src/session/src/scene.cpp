@@ -62,7 +62,7 @@ void ReadSettings(const core::JsonView& root, LiveSettings& settings) {
   if (!root.Has("settings")) return;
   const core::JsonView view = root.Object("settings");
   view.AllowOnly({"stiffness_scale", "shape_scale", "gravity_m_s2", "head_up_deg", "right_up_deg", "solver",
-                  "max_iterations", "tolerance"});
+                  "max_iterations", "tolerance", "max_error", "max_newton_steps"});
   settings.stiffness_scale = view.NumberOr("stiffness_scale", settings.stiffness_scale, {0.05, 20.0});
   settings.shape_scale = view.NumberOr("shape_scale", settings.shape_scale, {0.0, 20.0});
   settings.gravity = view.NumberOr("gravity_m_s2", settings.gravity, {0.0, 30.0});
@@ -71,14 +71,16 @@ void ReadSettings(const core::JsonView& root, LiveSettings& settings) {
   settings.solver.max_iterations =
       view.IntegerOr("max_iterations", settings.solver.max_iterations, {1, 100'000});
   settings.solver.tolerance = view.NumberOr("tolerance", settings.solver.tolerance, {0.0, 1.0});
-  const std::string solver = view.TextOr("solver", "chebyshev");
-  if (solver == "chebyshev") {
-    settings.solver.kind = tissue::SolverKind::kChebyshevJacobi2015;
-  } else if (solver == "relaxation") {
-    settings.solver.kind = tissue::SolverKind::kRelaxationPaper;
+  settings.solver.max_error = view.NumberOr("max_error", settings.solver.max_error, {1e-9, 1.0});
+  settings.solver.max_newton_steps = view.IntegerOr("max_newton_steps", settings.solver.max_newton_steps, {1, 1000});
+  const std::string solver = view.TextOr("solver", "adaptive");
+  if (const auto kind = tissue::FindSolverKind(solver); kind) {
+    settings.solver.kind = *kind;
   } else {
-    view.Complain("there is no solver \"" + solver + "\"; known are chebyshev, relaxation",
-                  core::ErrorCode::kUnknownName);
+    std::string names;
+    for (const auto known : tissue::kSolverKinds)
+      names += (names.empty() ? "" : ", ") + std::string(tissue::SolverName(known));
+    view.Complain("there is no solver \"" + solver + "\"; known are " + names, core::ErrorCode::kUnknownName);
   }
 }
 

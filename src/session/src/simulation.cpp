@@ -78,6 +78,7 @@ struct Simulation::Content {
   LiveSettings settings;
   tissue::TissueLoad load;
   tissue::SolveReport report;
+  std::vector<tissue::NodeCondition> solved_condition;  // a grasp may slip once the forces are known
   std::array<Pose, kHandCount> X_world_tools;
   std::array<surgery::GraspChange, kHandCount> changes{};
   std::array<std::int32_t, kHandCount> changed_organs{};
@@ -157,6 +158,7 @@ void Simulation::Content::ActOnTissue() noexcept {
 
 void Simulation::Content::Solve() noexcept {
   if (guard->IsFrozen()) return;
+  std::copy(tissue.condition.begin(), tissue.condition.end(), solved_condition.begin());
   load.external_force = {};
   report = tissue::SolveConserving(*solver, settings.solver, scene->tick_seconds, *conservation, load, tissue,
                                    conserved);
@@ -266,6 +268,7 @@ void Simulation::Content::Reset() {
   torn_count = 0;
   snapshot = {};
   snapshot.positions.resize(tissue_model.Size());
+  solved_condition = tissue.condition;
   snapshot.organs.resize(conserved.organs.size());
   UpdateHierarchy();
   ReadInputs(home);
@@ -359,6 +362,26 @@ std::span<const SurfaceInfo> Simulation::Surfaces() const {
 }
 const Snapshot& Simulation::GetSnapshot() const {
   return content_->snapshot;
+}
+
+double Simulation::CalcEquilibriumError() const {
+  const Content& c = *content_;
+  tissue::TissueState state = c.tissue;
+  state.condition = c.solved_condition;
+  tissue::SolverSettings exact;
+  exact.kind = tissue::SolverKind::kNewtonMultigrid;
+  exact.max_error = 1e-7;
+  exact.max_newton_steps = 200;
+  exact.max_linear_iterations = 300;
+  tissue::EquilibriumSolver judge(c.tissue_model, 1);
+  const tissue::SolveReport solved = judge.Solve(exact, c.load, state);
+  if (!solved.converged) return std::nan("");
+  double error = 0, scale = 0;
+  for (std::size_t i = 0; i < state.position.size(); ++i) {
+    error = std::max(error, math::Distance(state.position[i], c.tissue.position[i]));
+    scale = std::max(scale, math::Distance(state.position[i], c.tissue_model.rest[i]));
+  }
+  return scale > 0.0 ? error / scale : 0.0;
 }
 
 std::uint64_t Simulation::Hash() const {

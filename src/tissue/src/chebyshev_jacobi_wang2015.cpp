@@ -10,8 +10,6 @@
 /// that assume more stiffness across the springs, up to the whole, which bounds every position (Liu et al.,
 /// "Fast simulation of mass-spring systems", 2013). Source: Wang, "A Chebyshev semi-iterative approach for
 /// accelerating projective and position-based dynamics", ACM TOG 34(6), 2015, equations 7 to 9.
-#include <oneapi/tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -36,30 +34,6 @@ constexpr int kLongestCycle = 1280;
 constexpr double kCycleDamping = 2.302585;
 /// The residual may grow this much over its smallest value before the acceleration is taken back [-].
 constexpr double kGrowthLimit = 4.0;
-
-void AddDirection(Symmetric3& block, const Vec3& u, double stiffness) noexcept {
-  block[0] += stiffness * u.x * u.x, block[1] += stiffness * u.x * u.y, block[2] += stiffness * u.x * u.z;
-  block[3] += stiffness * u.y * u.y, block[4] += stiffness * u.y * u.z, block[5] += stiffness * u.z * u.z;
-}
-
-void AddIsotropic(Symmetric3& block, double stiffness) noexcept {
-  block[0] += stiffness, block[3] += stiffness, block[5] += stiffness;
-}
-
-/// Inverse of a positive definite block; zero for a node that nothing holds.
-Symmetric3 Invert(const Symmetric3& m) noexcept {
-  const double c00 = m[3] * m[5] - m[4] * m[4], c01 = m[2] * m[4] - m[1] * m[5],
-               c02 = m[1] * m[4] - m[2] * m[3];
-  const double determinant = m[0] * c00 + m[1] * c01 + m[2] * c02;
-  if (!(determinant > 0.0)) return {};
-  const double s = 1.0 / determinant;
-  return {s * c00,
-          s * c01,
-          s * c02,
-          s * (m[0] * m[5] - m[2] * m[2]),
-          s * (m[1] * m[2] - m[0] * m[4]),
-          s * (m[0] * m[3] - m[1] * m[1])};
-}
 
 Symmetric3 CalcBlock(const TissueModel& model, const TissueLoad& load, const TissueState& state,
                      double transverse_share, std::uint32_t i) noexcept {
@@ -91,20 +65,13 @@ double Larger(double a, double b) noexcept {
   return a > b ? a : b;
 }
 
-static_assert(kChunk % kLanes == 0);
-
 /// Runs work(chunk, first, last) over all nodes in chunks of fixed size, on one thread or several.
 template <typename Work>
 void ForEachChunk(EquilibriumSolver::Content& content, std::uint32_t n, const Work& work) noexcept {
-  const std::uint32_t chunks = (n + kChunk - 1) / kChunk;
-  const auto run = [&](std::uint32_t chunk) {
-    work(chunk, chunk * kChunk, std::min(n, (chunk + 1) * kChunk));
-  };
-  if (content.threads == 1) {
-    for (std::uint32_t chunk = 0; chunk < chunks; ++chunk) run(chunk);
-    return;
-  }
-  content.arena.execute([&] { tbb::parallel_for(std::uint32_t{0}, chunks, run, tbb::static_partitioner()); });
+  const std::uint32_t size = CalcChunk(n);
+  content.workers->Run((n + size - 1) / size, [&](std::uint32_t chunk) {
+    work(chunk, chunk * size, std::min(n, (chunk + 1) * size));
+  });
 }
 
 /// Refills the forces that change with the positions of few nodes: strands and contacts.
@@ -230,7 +197,7 @@ SolveReport SolveChebyshevJacobiWang2015(EquilibriumSolver::Content& content, co
       content.chunk_reports[chunk] = slice_report;
     });
     SliceReport all;
-    for (std::uint32_t chunk = 0; chunk * kChunk < n; ++chunk) {
+    for (std::uint32_t chunk = 0; chunk * CalcChunk(n) < n; ++chunk) {
       const SliceReport& part = content.chunk_reports[chunk];
       all.residual2 = Larger(all.residual2, part.residual2);
       all.force2 = Larger(all.force2, part.force2);

@@ -370,7 +370,8 @@ double FillToPressure(EquilibriumSolver& solver, std::size_t organ, double press
   TROCAR_ASSERT(organ < state.organs.size() && std::fabs(pressure) <= 20e3);
   constexpr int kMaxFillings = 400;
   constexpr double kStill = 1e-6;
-  const SolverSettings exact{.max_iterations = 2000, .tolerance = 1e-6};
+  const SolverSettings exact{
+      .kind = SolverKind::kChebyshevJacobi2015, .max_iterations = 2000, .tolerance = 1e-6};
   const ClosedOrgan& surface = conservation.Settings().organs[organ];
   OrganVolume& filled = state.organs[organ];
   double change = 1;

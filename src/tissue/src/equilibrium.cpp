@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trocar/tissue/equilibrium.h"
 
-#include <oneapi/tbb/info.h>
-
 #include <algorithm>
 
 #include "node_force.h"
@@ -12,16 +10,19 @@
 namespace trocar::tissue {
 
 EquilibriumSolver::EquilibriumSolver(const TissueModel& model, int threads)
+    : EquilibriumSolver(model, SolverOptions{.threads = threads}) {}
+
+EquilibriumSolver::EquilibriumSolver(const TissueModel& model, const SolverOptions& options)
     : content_(std::make_unique<Content>()) {
-  TROCAR_ASSERT(threads >= 1);
   const std::size_t n = model.Size();
   content_->model = &model;
-  content_->threads = threads;
-  if (threads > tbb::info::default_concurrency()) {
-    content_->more_workers.emplace(tbb::global_control::max_allowed_parallelism,
-                                   static_cast<std::size_t>(threads));
-  }
-  if (threads > 1) content_->arena.initialize(threads);
+  content_->kernels = &GetKernels(options.simd);
+  content_->workers = std::make_unique<Workers>(options.threads);
+  content_->newton = std::make_unique<NewtonMultigrid>(model);
+  content_->accelerated = std::make_unique<AcceleratedDescent>(model, options.recognises_grids);
+  content_->wave.reserve(n);
+  content_->visited.resize(n);
+  content_->residual.resize(n);
   content_->springs = MakeSlicedSprings(model);
   content_->previous.resize(n);
   content_->blocks.resize(n);
@@ -31,20 +32,36 @@ EquilibriumSolver::EquilibriumSolver(const TissueModel& model, int threads)
     if (model.strand_starts[i] < model.strand_starts[i + 1]) content_->strand_nodes.push_back(i);
   }
   content_->touched_nodes.reserve(3 * kMaxContacts);
-  content_->chunk_reports.resize(n / kChunk + 1);
+  content_->chunk_reports.resize(n / CalcChunk(n) + 1);
 }
 
 EquilibriumSolver::~EquilibriumSolver() = default;
 EquilibriumSolver::EquilibriumSolver(EquilibriumSolver&&) noexcept = default;
 EquilibriumSolver& EquilibriumSolver::operator=(EquilibriumSolver&&) noexcept = default;
 
+bool EquilibriumSolver::IsStructured() const noexcept {
+  return content_->accelerated->IsStructured();
+}
+
 SolveReport EquilibriumSolver::Solve(const SolverSettings& settings, const TissueLoad& load,
                                      TissueState& state, const SolveHook* hook) noexcept {
   TROCAR_ASSERT(state.position.size() == content_->model->Size());
   TROCAR_ASSERT(load.contacts.size() <= kMaxContacts);
-  if (settings.kind == SolverKind::kRelaxationPaper)
-    return SolveRelaxationPaper(*content_, settings, load, state, hook);
-  return SolveChebyshevJacobiWang2015(*content_, settings, load, state, hook);
+  Content& c = *content_;
+  if (settings.kind == SolverKind::kRelaxationPaper) return SolveRelaxationPaper(c, settings, load, state, hook);
+  if (settings.kind == SolverKind::kGaussSeidelBrown2001)
+    return SolveGaussSeidelBrown2001(c, settings, load, state, hook);
+  const Workers::Session session(*c.workers);
+  switch (settings.kind) {
+    case SolverKind::kChebyshevJacobi2015:
+      return SolveChebyshevJacobiWang2015(c, settings, load, state, hook);
+    case SolverKind::kAcceleratedDescent:
+      return c.accelerated->Solve(*c.kernels, *c.workers, settings, load, state, hook);
+    case SolverKind::kNewtonMultigrid:
+      return c.newton->Solve(*c.kernels, *c.workers, settings, load, state, hook);
+    default:
+      return SolveAdaptive(c, settings, load, state, hook);
+  }
 }
 
 Vec3 EquilibriumSolver::CalcReaction(const TissueLoad& load, const TissueState& state,

@@ -5,43 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "node_force.h"
+#include "node_balance.h"
 #include "solver_content.h"
 
 namespace trocar::tissue {
-namespace {
-
-/// Force of the contacts on one node; few contacts, so a scan is enough for a reference.
-Vec3 GatherContactForce(const TissueLoad& load, std::span<const Vec3> position, std::uint32_t node) noexcept {
-  Vec3 force;
-  for (const ContactSpring& contact : load.contacts) {
-    const double depth = CalcContactDepth(contact, position);
-    if (!(depth > 0.0)) continue;
-    for (int i = 0; i < 3; ++i) {
-      if (contact.nodes[i] == node)
-        force += (contact.weights[i] * contact.stiffness * depth) * contact.normal;
-    }
-  }
-  return force;
-}
-
-/// Largest force on node i through one spring, load or contact [N].
-double CalcForceScale(const TissueModel& model, const TissueLoad& load, std::span<const Vec3> position,
-                      std::uint32_t i) noexcept {
-  double largest =
-      std::fmax(load.shape_scale * model.shape_stiffness[i] * math::Distance(model.rest[i], position[i]),
-                model.mass[i] * math::Norm(load.gravity));
-  for (auto h = model.spring_starts[i]; h < model.spring_starts[i + 1]; ++h) {
-    const auto& half = model.half_springs[h];
-    const double stretch = math::Distance(position[i], position[half.other]) - half.rest_length;
-    largest = std::fmax(largest, load.stiffness_scale * half.stiffness * std::fabs(stretch));
-  }
-  if (!load.external_force.empty()) largest = std::fmax(largest, math::Norm(load.external_force[i]));
-  return largest;
-}
-
-}  // namespace
-
 SolveReport SolveRelaxationPaper(EquilibriumSolver::Content& content, const SolverSettings& settings,
                                  const TissueLoad& load, TissueState& state, const SolveHook* hook) noexcept {
   const TissueModel& model = *content.model;

@@ -2,13 +2,13 @@
 /// \file solver_content.h  What the solvers share.
 #pragma once
 
-#include <oneapi/tbb/global_control.h>
-#include <oneapi/tbb/task_arena.h>
-
+#include <algorithm>
 #include <array>
-#include <optional>
+#include <memory>
 #include <vector>
 
+#include "accelerated_descent.h"
+#include "newton_multigrid.h"
 #include "trocar/tissue/equilibrium.h"
 
 namespace trocar::tissue {
@@ -56,15 +56,17 @@ void UpdateSlice(const SlicedSprings& springs, const SliceData& data, const Step
                  const Vec3* position, Vec3* previous, std::uint32_t node_count, std::uint32_t slice,
                  SliceReport& report) noexcept;
 
-/// Symmetric 3 x 3 matrix: xx, xy, xz, yy, yz, zz.
-using Symmetric3 = std::array<double, 6>;
-
 struct EquilibriumSolver::Content {
   const TissueModel* model = nullptr;
-  int threads = 1;
-  std::optional<tbb::global_control>
-      more_workers;  // set when more threads are asked for than there are cores
-  tbb::task_arena arena;
+  std::unique_ptr<Workers> workers;
+  const Kernels* kernels = nullptr;
+  std::unique_ptr<NewtonMultigrid> newton;
+  std::unique_ptr<AcceleratedDescent> accelerated;
+
+  // Gauss-Seidel
+  std::vector<std::uint32_t> wave;     // nodes of a sweep, in the order in which they are reached
+  std::vector<std::uint32_t> visited;  // (n) last sweep that came by
+  std::vector<double> residual;        // (n) [N]
 
   // Chebyshev
   SlicedSprings springs;
@@ -79,11 +81,20 @@ struct EquilibriumSolver::Content {
 
 SolveReport SolveRelaxationPaper(EquilibriumSolver::Content& content, const SolverSettings& settings,
                                  const TissueLoad& load, TissueState& state, const SolveHook* hook) noexcept;
+SolveReport SolveGaussSeidelBrown2001(EquilibriumSolver::Content& content, const SolverSettings& settings,
+                                      const TissueLoad& load, TissueState& state, const SolveHook* hook) noexcept;
 SolveReport SolveChebyshevJacobiWang2015(EquilibriumSolver::Content& content, const SolverSettings& settings,
                                          const TissueLoad& load, TissueState& state,
                                          const SolveHook* hook) noexcept;
 
-/// Nodes a task works on; fixed, so that results do not depend on the number of threads.
-inline constexpr std::uint32_t kChunk = 256;
+/// Accelerated descent where a structured mesh starts cold, then Newton until the error is small enough.
+SolveReport SolveAdaptive(EquilibriumSolver::Content& content, const SolverSettings& settings, const TissueLoad& load,
+                          TissueState& state, const SolveHook* hook) noexcept;
+
+/// Nodes a thread takes at a time; depends on the model alone, so that results do not depend on the threads.
+inline std::uint32_t CalcChunk(std::size_t node_count) noexcept {
+  const auto least = static_cast<std::uint32_t>(node_count / Workers::kMaxChunks + 1);
+  return std::max(256u, (least + kLanes - 1) / kLanes * kLanes);
+}
 
 }  // namespace trocar::tissue

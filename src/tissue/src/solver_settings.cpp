@@ -4,7 +4,28 @@
 namespace trocar::tissue {
 
 std::string_view SolverName(SolverKind kind) noexcept {
-  return kind == SolverKind::kRelaxationPaper ? "relaxation" : "chebyshev";
+  switch (kind) {
+    case SolverKind::kRelaxationPaper:
+      return "relaxation";
+    case SolverKind::kGaussSeidelBrown2001:
+      return "gauss_seidel";
+    case SolverKind::kChebyshevJacobi2015:
+      return "chebyshev";
+    case SolverKind::kAcceleratedDescent:
+      return "accelerated";
+    case SolverKind::kNewtonMultigrid:
+      return "newton";
+    case SolverKind::kAdaptive:
+      return "adaptive";
+  }
+  return "";
+}
+
+std::optional<SolverKind> FindSolverKind(std::string_view name) noexcept {
+  for (const SolverKind kind : kSolverKinds) {
+    if (SolverName(kind) == name) return kind;
+  }
+  return std::nullopt;
 }
 
 }  // namespace trocar::tissue

@@ -9,7 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "trocar/anatomy/image_stack.h"
+#include "trocar/anatomy/image_series.h"
+#include "trocar/anatomy/mesh_quality.h"
 #include "trocar/anatomy/patient.h"
 #include "trocar/anatomy/reference_judge.h"
 #include "trocar/core/result.h"
@@ -18,7 +19,8 @@ namespace trocar::anatomy {
 
 struct BuildOptions {
   std::filesystem::path control_points;            ///< file, see control_points.h
-  std::filesystem::path images;                    ///< folder of slices
+  std::filesystem::path images;                    ///< any series that image_series.h opens
+  std::optional<DisplayWindow> window;             ///< of grey images; the suggested one if not given
   std::filesystem::path output;                    ///< patient folder to write; empty: nothing is written
   std::optional<std::filesystem::path> reference;  ///< NIfTI label map that judges the result
   std::optional<std::filesystem::path> overlays;   ///< folder for one PNG a slice
@@ -36,7 +38,12 @@ struct OrganReport {
   int genus = 0;
   std::size_t self_intersections = 0;
   double min_angle_deg = 0;
+  double mean_min_angle_deg = 0;  ///< mean over the triangles of their smallest angle
   double volume_ml = 0;
+  double volume_change = 0;            ///< against the volume's own surface, as a share of it [-]
+  double hausdorff_mm = 0;             ///< between mesh and the volume's own surface, both ways, sampled
+  double mean_distance_mm = 0;         ///< of the mesh from that surface
+  double samples_per_square_mm = 0;    ///< density of the samples on the mesh
   std::optional<Judgement> judgement;  ///< with a reference only
 };
 
@@ -52,6 +59,9 @@ struct BuildReport {
 /// Where two structures overlap, the one later in the file keeps the place.
 /// \return the first error of any step; then nothing has been written
 core::Result<BuildReport> BuildPatient(const BuildOptions& options, const Progress& progress = {});
+
+/// Writes what is said of a mesh [mm] into the report.
+void AddMeshQuality(OrganReport& report, const MeshQuality& quality);
 
 /// The table of results as text, one line an organ.
 std::string FormatReport(const BuildReport& report);

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "trocar/anatomy/edge_field.h"
 #include "trocar/anatomy/image_stack.h"
 #include "trocar/math/vector.h"
 
@@ -34,6 +35,10 @@ struct EdgeAdaptionSettings {
 ///         itself moves by half, a quarter ... or not at all
 /// \pre n >= 3 (TROCAR_ASSERT)
 std::vector<Vec2> AdaptToEdges(const ColorImage& image, std::span<const Vec2> contour,
+                               const EdgeAdaptionSettings& settings);
+
+/// The same on a picture that was made ready; settings.blur_px is the field's affair.
+std::vector<Vec2> AdaptToEdges(const EdgeField& field, std::span<const Vec2> contour,
                                const EdgeAdaptionSettings& settings);
 
 }  // namespace trocar::anatomy

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file image_stack.h  Cross-sectional photographs and label volumes, decoded.
+/// \file image_stack.h  Pictures and label volumes, decoded.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
-#include <map>
-#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -32,27 +30,11 @@ struct ColorImage {
   std::uint8_t* At(int x, int y) { return &samples[3 * (static_cast<std::size_t>(y) * width + x)]; }
 };
 
-/// Decodes a JPEG or PNG file (grey or colour, 8 bits). The size in the header is checked before anything is
-/// decoded.
+/// Decodes one JPEG, PNG or TIFF picture of 8 bits, grey or colour, in a process of its own.
 ///
-/// \return kFileMissing, or kImageUndecodable for what is no whole picture or larger than 16384 x 16384
+/// \return kFileMissing, kImagePathUnsafe, kImageTruncated, kImageTooLarge (more than 16384 x 16384 pixels),
+///         kImageUnsupported or kImageUndecodable
 core::Result<ColorImage> ReadImage(const std::filesystem::path& path);
-
-/// A folder of slices named by number.
-struct SliceFolder {
-  std::filesystem::path folder;
-  std::string pattern;        ///< "image-{slice:04}.jpeg"
-  int width = 0, height = 0;  ///< what every slice must measure [pixels]
-};
-
-/// Decodes the named slices, in parallel.
-///
-/// \param slices  numbers, ascending; only these files are opened
-/// \return picture by slice number; kImageFolderMissing, or for the lowest offending slice
-/// kImageSliceMissing,
-///         kImageSizeDiffers or kImageUndecodable, with its number
-core::Result<std::map<int, ColorImage>> LoadSlices(const SliceFolder& source, std::span<const int> slices,
-                                                   const Progress& progress = {});
 
 /// Integer labels on a grid.
 struct LabelVolume {
@@ -63,10 +45,13 @@ struct LabelVolume {
   std::vector<std::pair<std::string, int>> names;       ///< of labels, where the file has them (3D Slicer)
 };
 
-/// Reads a NIfTI (.nii, .nii.gz) or NRRD (.nrrd, .nhdr) label map of whole numbers from 0 to 255, with the
-/// segment names that 3D Slicer puts into NRRD headers.
-/// \return kFileMissing, or kImageUndecodable for what is no label map, has more than 2^28 voxels, or is too
-/// small a file for the size in its header (checked before anything is allocated)
+/// Reads a label map (NIfTI, NRRD or MetaImage) of whole numbers from 0 to 255 in a process of its own, with
+/// the segment names that 3D Slicer puts into NRRD headers.
+///
+/// \return kFileMissing; kImageUndecodable for what is no label map; kImageSpacingUnknown where the file does
+/// not
+///         say how it lies in the body; kImageTooLarge for more than 2^28 voxels; and what docs/images.md
+///         lists
 core::Result<LabelVolume> ReadLabelVolume(const std::filesystem::path& path);
 
 }  // namespace trocar::anatomy

@@ -23,6 +23,20 @@ enum class ErrorCode {
   kImageSliceMissing,
   kImageSizeDiffers,
   kImageUndecodable,
+  kImageSpacingUnknown,
+  kImageSeriesMixed,
+  kImageSeriesGap,
+  kImageSeriesUneven,
+  kImageGeometryInvalid,
+  kImageTooLarge,
+  kImageTruncated,
+  kImageUnsupported,
+  kImagePathUnsafe,
+  kImageChanged,
+  kImportProgramMissing,
+  kImportCrashed,
+  kImportTimedOut,
+  kImportOutOfMemory,
   // anatomy
   kControlPointOutside,
   kContourTooShort,
@@ -56,6 +70,12 @@ enum class ErrorCode {
   // command line and benchmarks
   kUsage,
   kBenchmarkWrong,
+  // graphics processor for computing
+  kGpuMissing,
+  kGpuTooOld,
+  kGpuFailed,
+  kGpuMemory,
+  kGpuLayout,
   kCount
 };
 

@@ -24,4 +24,8 @@ double FindNearestOnSegment(const Vec3& p, const Vec3& a, const Vec3& b) noexcep
 /// Source: separating-axis theorem over the two normals and the nine (or, in a plane, six) edge directions.
 bool TrianglesIntersect(const Vec3* a, const Vec3* b) noexcept;
 
+/// Whether segment p-q passes through triangle (three corners) from one side to the other. What lies in the
+/// triangle's plane, to 1e-7 of its longest side, does not pass. \note Real-time safe.
+bool SegmentPiercesTriangle(const Vec3& p, const Vec3& q, const Vec3* triangle) noexcept;
+
 }  // namespace trocar::geometry

@@ -49,6 +49,7 @@ struct MeshReport {
   double area = 0;                 ///< [m^2]
   double volume = 0;               ///< [m^3], positive when the triangles face outwards
   double min_angle = 0;            ///< smallest angle of any triangle [rad]
+  double mean_min_angle = 0;       ///< mean over the triangles of their smallest angle [rad]
   bool closed = false;             ///< no boundary edge
   bool manifold = false;           ///< no odd edge, odd vertex or degenerate triangle
   bool outward = false;            ///< volume > 0
@@ -56,7 +57,16 @@ struct MeshReport {
 
 MeshReport InspectMesh(const TriangleMesh& mesh);
 
-/// Pairs of triangles that share no vertex and cut each other, smaller index first, ascending.
+/// Whether two boxes share a point.
+bool BoxesOverlap(const Box& a, const Box& b) noexcept;
+
+/// Whether two triangles of a mesh cut each other: without a common vertex, if they share any point; with
+/// one, if they meet beyond it. Neighbours along an edge never do. \param a_corners, b_corners  (3) positions
+/// \note Real-time safe.
+bool TrianglesCut(const Triangle& a, const Vec3* a_corners, const Triangle& b,
+                  const Vec3* b_corners) noexcept;
+
+/// Pairs of triangles that cut each other (TrianglesCut), smaller index first, ascending.
 /// Grid-accelerated; not real-time safe.
 /// \pre coordinates finite, indices in range
 std::vector<std::array<std::uint32_t, 2>> FindSelfIntersections(const TriangleMesh& mesh);

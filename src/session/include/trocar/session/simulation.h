@@ -44,6 +44,11 @@ class Simulation {
   std::span<const SurfaceInfo> Surfaces() const;
   /// State after the last Step(); valid until the next.
   const Snapshot& GetSnapshot() const;
+  /// How far the tissue was from equilibrium when the last tick's solve ended: the largest distance of a node
+  /// to the equilibrium that an exact solver reaches from there under the same load, over the largest
+  /// distance of any node from rest [-]. NaN where that solver does not come to rest.
+  /// \note For tests and benchmarks: takes many times as long as a tick, and allocates.
+  double CalcEquilibriumError() const;
   /// Fingerprint of the whole state.
   std::uint64_t Hash() const;
 

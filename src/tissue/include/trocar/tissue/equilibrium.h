@@ -2,10 +2,12 @@
 /// \file equilibrium.h  Quasi-static equilibrium of the mass-spring system.
 #pragma once
 
+#include <cmath>
 #include <memory>
 #include <span>
 #include <vector>
 
+#include "trocar/tissue/simd_level.h"
 #include "trocar/tissue/solver_settings.h"
 #include "trocar/tissue/tissue_model.h"
 
@@ -18,7 +20,20 @@ struct SolveReport {
   double force_scale =
       0;  ///< largest force that acts on any such node through one spring, load or contact [N]
   bool converged = false;  ///< residual <= tolerance
+  /// Newton: estimated largest distance of a node to the equilibrium, over the largest distance of any node
+  /// from rest [-]; NaN where the solver has no estimate.
+  double error = NAN;
+  int coarse_levels = 0;        ///< grids that a coarse-to-fine start went through
+  int linear_iterations = 0;    ///< of conjugate gradients, all Newton steps together
+  int negative_curvatures = 0;  ///< Newton steps that met a direction in which the energy is not convex
   int restarts = 0;        ///< how often the acceleration was taken back because the residual grew
+};
+
+/// How a solver runs; none of it changes what it finds.
+struct SolverOptions {
+  int threads = 1;                      ///< >= 1
+  SimdLevel simd = FindSimdLevel();     ///< the bits of AVX2 and AVX-512 agree; the baseline's differ in the last place
+  bool recognises_grids = true;         ///< take structured meshes as stencils
 };
 
 /// Called between iterations: keeps a constraint, and may change the forces that load.external_force views.
@@ -36,6 +51,8 @@ class EquilibriumSolver {
   /// \param model    must outlive the solver
   /// \param threads  >= 1; the result does not depend on it
   EquilibriumSolver(const TissueModel& model, int threads);
+  /// \pre HasSimdLevel(options.simd)
+  EquilibriumSolver(const TissueModel& model, const SolverOptions& options);
   ~EquilibriumSolver();
   EquilibriumSolver(EquilibriumSolver&&) noexcept;
   EquilibriumSolver& operator=(EquilibriumSolver&&) noexcept;
@@ -45,6 +62,9 @@ class EquilibriumSolver {
   /// \param hook  nullptr, or what is to be called between iterations; a solve that it disturbs has not converged
   SolveReport Solve(const SolverSettings& settings, const TissueLoad& load, TissueState& state,
                     const SolveHook* hook = nullptr) noexcept;
+
+  /// True where the model is a structured mesh and runs as a stencil.
+  bool IsStructured() const noexcept;
 
   /// Force of the tissue on whatever prescribes each node of the list, summed; valid after Solve [N].
   Vec3 CalcReaction(const TissueLoad& load, const TissueState& state,

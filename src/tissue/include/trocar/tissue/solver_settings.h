@@ -2,25 +2,41 @@
 /// \file solver_settings.h  Choice of the equilibrium solver and its bounds.
 #pragma once
 
+#include <optional>
 #include <string_view>
 
 namespace trocar::tissue {
 
 enum class SolverKind {
   kRelaxationPaper,      ///< x_i <- x_i + alpha R_i, node after node, as the paper prints it: the reference
-  kChebyshevJacobi2015,  ///< Jacobi accelerated by Chebyshev's recurrence (Wang 2015): the one that runs
+  kGaussSeidelBrown2001,  ///< waves from the nodes that are out of balance, breadth first
+  kChebyshevJacobi2015,  ///< Jacobi with 3 x 3 blocks accelerated by Chebyshev's recurrence, in double precision
+  kAcceleratedDescent,   ///< the same recurrence in single precision and scalar steps; coarse to fine on grids
+  kNewtonMultigrid,      ///< Newton's method, each step by multigrid-preconditioned conjugate gradients
+  kAdaptive,             ///< what runs: accelerated descent from a cold start on a grid, then Newton as needed
 };
-/// "relaxation", "chebyshev"
+inline constexpr SolverKind kSolverKinds[] = {
+    SolverKind::kRelaxationPaper,    SolverKind::kGaussSeidelBrown2001, SolverKind::kChebyshevJacobi2015,
+    SolverKind::kAcceleratedDescent, SolverKind::kNewtonMultigrid,      SolverKind::kAdaptive};
+/// "relaxation", "gauss_seidel", "chebyshev", "accelerated", "newton", "adaptive"
 std::string_view SolverName(SolverKind kind) noexcept;
+/// The kind of that name; nothing for an unknown one.
+std::optional<SolverKind> FindSolverKind(std::string_view name) noexcept;
 
 /// Work is bounded by counts and tolerances, never by the clock, so that results repeat.
 struct SolverSettings {
-  SolverKind kind = SolverKind::kChebyshevJacobi2015;
+  SolverKind kind = SolverKind::kAdaptive;
   int max_iterations = 40;  ///< per tick, 1 to 100000
   /// Stop when the largest residual of any free node is below this fraction of the largest force that any
   /// spring, load or contact exerts [-].
   double tolerance = 1e-4;
   double alpha = 0;  ///< step of the relaxation [m/N]; 0 takes the stability bound of Gershgorin's theorem
+
+  /// Newton: stop when the estimated distance of any node to the equilibrium is below this fraction of the
+  /// largest distance of any node from rest [-].
+  double max_error = 5e-4;
+  int max_newton_steps = 4;        ///< per tick
+  int max_linear_iterations = 60;  ///< of conjugate gradients, per Newton step
 
   friend bool operator==(const SolverSettings&, const SolverSettings&) = default;
 };

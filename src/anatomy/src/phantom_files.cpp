@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <tbb/parallel_for.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "trocar/anatomy/overlay.h"
+#include "trocar/anatomy/phantom.h"
+#include "trocar/core/safe_file.h"
+
+namespace trocar::anatomy {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string FormatVector(const std::array<double, 3>& v) {
+  char text[128];
+  std::snprintf(text, sizeof(text), "(%.17g,%.17g,%.17g)", v[0], v[1], v[2]);
+  return text;
+}
+
+core::Status WriteContent(const fs::path& folder, const Phantom& phantom, const Patient& patient,
+                          const Progress& progress) {
+  std::error_code failure;
+  fs::create_directories(folder / "slices", failure);
+  if (failure) {
+    return core::Error{
+        core::ErrorCode::kFileUnwritable,
+        folder.string() + ": " + failure.message() + "; check the folder, its rights and the space left"};
+  }
+  const ControlPoints points = phantom.MakeControlPoints();
+  // some slices at a time, so that progress is told from one thread
+  constexpr int kBatch = 8;
+  std::array<core::Status, kBatch> written;
+  for (int first = 1; first <= phantom.SliceCount(); first += kBatch) {
+    const int count = std::min(kBatch, phantom.SliceCount() - first + 1);
+    tbb::parallel_for(0, count, [&](int i) {
+      written[i] = WritePng(folder / "slices" / FormatImageName(points.image_pattern, first + i),
+                            phantom.DrawSlice(first + i));
+    });
+    for (int i = 0; i < count; ++i) {
+      if (!written[i]) return written[i];
+    }
+    if (progress) progress("slices", 0.9 * (first + count - 1) / phantom.SliceCount());
+  }
+  if (auto status = WriteLabelVolume(folder / "labels.nrrd", phantom.MakeLabels()); !status) return status;
+  if (progress) progress("labels", 0.98);
+  if (auto status = WriteControlPoints(folder / "control_points.json", points); !status) return status;
+  return WritePatient(folder / "patient", patient);
+}
+
+}  // namespace
+
+core::Status WriteLabelVolume(const fs::path& path, const LabelVolume& volume) {
+  std::string text = "NRRD0004\ntype: uint8\ndimension: 3\nspace: left-posterior-superior\nsizes: " +
+                     std::to_string(volume.size[0]) + " " + std::to_string(volume.size[1]) + " " +
+                     std::to_string(volume.size[2]) + "\nspace directions:";
+  for (const auto& direction : volume.direction) text += " " + FormatVector(direction);
+  text += "\nkinds: domain domain domain\nencoding: raw\nspace origin: " + FormatVector(volume.origin) + "\n";
+  for (std::size_t i = 0; i < volume.names.size(); ++i) {
+    const std::string segment = "Segment" + std::to_string(i);
+    text += segment + "_ID:=" + volume.names[i].first + "\n";
+    text += segment + "_LabelValue:=" + std::to_string(volume.names[i].second) + "\n";
+    text += segment + "_Layer:=0\n";
+    text += segment + "_Name:=" + volume.names[i].first + "\n";
+  }
+  text += "\n";
+  text.append(volume.labels.begin(), volume.labels.end());
+  return core::WriteFile(path, text);
+}
+
+core::Status WritePhantom(const fs::path& folder, const Patient& patient, const PhantomOptions& options,
+                          const Progress& progress) {
+  const auto phantom = Phantom::Make(patient, options);
+  if (!phantom) return phantom.error();
+  fs::path target = folder;
+  if (!target.has_filename()) target = target.parent_path();
+  std::error_code failure;
+  if (fs::exists(target, failure) && !(fs::is_directory(target, failure) && fs::is_empty(target, failure))) {
+    return core::Error{core::ErrorCode::kFileUnwritable,
+                       target.string() + ": it exists and is no empty folder; name another one"};
+  }
+  const fs::path partial = target.string() + ".part" + std::to_string(::getpid());
+  fs::remove_all(partial, failure);
+  auto status = WriteContent(partial, *phantom, patient, progress);
+  if (status) {
+    // an empty folder may stand in the way
+    fs::remove(target, failure);
+    fs::rename(partial, target, failure);
+    if (failure)
+      status = core::Error{core::ErrorCode::kFileUnwritable,
+                           target.string() + ": " + failure.message() + "; check the folder and its rights"};
+  }
+  if (!status) fs::remove_all(partial, failure);
+  return status;
+}
+
+}  // namespace trocar::anatomy

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/anatomy/contour_fit.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "phantom_picture.h"
+
+namespace trocar::anatomy {
+namespace {
+
+constexpr double kRadius = 45.0;
+const Vec2 kCentre{80, 80};
+
+double DistanceToCircle(const Vec2& p) {
+  return Norm(p - kCentre) - kRadius;
+}
+
+ColorImage MakeDisc() {
+  return DrawPhantom({}, [](double x, double y) { return DistanceToCircle({x, y}); });
+}
+
+TEST(FitContourToEdges, BringsNoisyClicksToACircle) {
+  const ColorImage image = MakeDisc();
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    math::Random random(seed);
+    auto clicked = MakePolar(kCentre, 10, [](double) { return kRadius; });
+    for (Vec2& p : clicked) {
+      const double angle = random.Uniform(0, 2 * M_PI);
+      p = p + 5.0 * Vec2{std::cos(angle), std::sin(angle)};
+    }
+    const ContourFit fit = FitContourToEdges(image, clicked, {.adaption = {.max_shift_px = 8}});
+    ASSERT_EQ(fit.adapted.size(), clicked.size());
+    for (const Vec2& p : fit.adapted) EXPECT_NEAR(DistanceToCircle(p), 0.0, 0.7) << "seed " << seed;
+    for (const Vec2& p : fit.spline) EXPECT_NEAR(DistanceToCircle(p), 0.0, 1.2) << "seed " << seed;
+    EXPECT_TRUE(fit.notes.empty()) << "seed " << seed;
+  }
+}
+
+TEST(FitContourToEdges, InsertsPointsWhereTheSplineLeavesTheEdge) {
+  // a star of three lobes clicked at too few places
+  const auto radius = [](double angle) { return 45.0 + 5.0 * std::cos(6 * angle); };
+  const ColorImage image = DrawPhantom({}, [&](double x, double y) {
+    const Vec2 away = Vec2{x, y} - kCentre;
+    return (Norm(away) - radius(std::atan2(away.y, away.x))) * 0.85;
+  });
+  const auto clicked = MakePolar(kCentre, 6, radius);
+  const auto error = [&](const ContourFit& fit) {
+    double sum = 0;
+    for (const Vec2& p : fit.spline) {
+      const Vec2 away = p - kCentre;
+      sum += std::fabs(Norm(away) - radius(std::atan2(away.y, away.x)));
+    }
+    return sum / static_cast<double>(fit.spline.size());
+  };
+  const ContourFitSettings settings = {.adaption = {.max_shift_px = 14}};
+  ContourFitSettings plain = settings;
+  plain.is_inserting = false;
+  const ContourFit without = FitContourToEdges(image, clicked, plain);
+  const ContourFit with = FitContourToEdges(image, clicked, settings);
+  EXPECT_TRUE(without.inserted.empty());
+  EXPECT_GE(with.inserted.size(), 6u);
+  EXPECT_GT(error(without), 3.0);
+  EXPECT_LT(error(with), 0.7);
+}
+
+TEST(FitContourToEdges, SaysWhereThereIsNoEdge) {
+  ColorImage image = MakeDisc();
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 85; x < image.width; ++x) std::copy_n(image.At(80, 80), 3, image.At(x, y));
+  }
+  const auto clicked = MakePolar(kCentre, 16, [](double) { return kRadius; });
+  const ContourFit fit = FitContourToEdges(image, clicked);
+  ASSERT_EQ(fit.notes.size(), 1u);
+  EXPECT_EQ(fit.notes[0].problem, FitProblem::kNoEdge);
+  EXPECT_GT(fit.notes[0].at.x, 115.0);
+  EXPECT_NEAR(fit.notes[0].length_px, M_PI * kRadius, 25.0);
+}
+
+TEST(FitContourToEdges, SaysThatClicksCross) {
+  const std::vector<Vec2> eight = {{40, 40}, {120, 120}, {120, 40}, {40, 120}};
+  const ContourFit fit = FitContourToEdges(MakeDisc(), eight);
+  ASSERT_EQ(fit.notes.size(), 1u);
+  EXPECT_EQ(fit.notes[0].problem, FitProblem::kCrossesItself);
+  EXPECT_EQ(fit.adapted, eight);
+}
+
+}  // namespace
+}  // namespace trocar::anatomy

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "command.h"
+#include "console.h"
+#include "image_options.h"
+#include "trocar/anatomy/contact_sheet.h"
+#include "trocar/anatomy/image_series.h"
+#include "trocar/anatomy/overlay.h"
+#include "trocar/core/printable.h"
+
+namespace trocar::cli {
+namespace {
+
+struct ImagesArguments {
+  std::string path, axes, window, preview;
+  anatomy::ImageSeriesOptions options;
+  double memory_mb = 2048;
+  bool is_json = false;
+};
+
+std::string FormatSlices(const anatomy::ImageSeriesInfo& info) {
+  const int first = info.slice_numbers.front(), last = info.slice_numbers.back();
+  std::string text = std::to_string(info.slice_numbers.size()) + ", number " + std::to_string(first);
+  if (last == first) return text;
+  text += " to " + std::to_string(last);
+  const int step = info.slice_numbers[1] - first;
+  return step == 1 ? text : text + " in steps of " + std::to_string(step);
+}
+
+void PrintForPerson(const anatomy::ImageSeriesInfo& info, const anatomy::DisplayWindow& window) {
+  std::vector<std::vector<std::string>> rows = {{"what", "found"}};
+  rows.push_back(
+      {"format", info.format + (info.pattern.empty() ? "" : ", files " + core::Printable(info.pattern))});
+  rows.push_back({"slices", FormatSlices(info)});
+  rows.push_back({"size", std::to_string(info.width) + " x " + std::to_string(info.height) + " pixels"});
+  rows.push_back({"pixel", FormatNumber(info.pixel_mm) + " mm"});
+  rows.push_back({"slice distance", FormatNumber(info.slice_mm) + " mm from one number to the next"});
+  rows.push_back({"columns grow to", info.axes[0]});
+  rows.push_back({"rows grow to", info.axes[1]});
+  rows.push_back({"slice numbers grow to", info.axes[2]});
+  rows.push_back({"frame in the file", info.file_frame.empty() ? "not said" : info.file_frame});
+  if (info.tilt_deg > 0.05) rows.push_back({"oblique by", FormatNumber(info.tilt_deg, 3) + " degrees"});
+  rows.push_back({"samples", std::string(info.is_color ? "colour" : "grey") + ", " +
+                                 std::to_string(info.bits) + " bits"});
+  if (!info.is_color) {
+    rows.push_back(
+        {"grey values", FormatNumber(info.grey_range[0]) + " to " + FormatNumber(info.grey_range[1])});
+    rows.push_back(
+        {"window", FormatNumber(window.centre) + "," + FormatNumber(window.width) + " (centre,width)"});
+  }
+  if (info.ignored_files > 0) rows.push_back({"other files, ignored", std::to_string(info.ignored_files)});
+  std::fputs(FormatTable(rows).c_str(), stdout);
+}
+
+void PrintJson(const anatomy::ImageSeriesInfo& info, const anatomy::DisplayWindow& window) {
+  nlohmann::ordered_json json;
+  json["format"] = info.format;
+  json["pattern"] = info.pattern;
+  json["slice_numbers"] = info.slice_numbers;
+  json["width"] = info.width;
+  json["height"] = info.height;
+  json["pixel_mm"] = info.pixel_mm;
+  json["slice_mm"] = info.slice_mm;
+  json["axes"] = {{"column", info.axes[0]}, {"row", info.axes[1]}, {"slice", info.axes[2]}};
+  json["file_frame"] = info.file_frame;
+  json["origin_lps_mm"] = info.origin_mm;
+  json["direction_lps"] = info.direction;
+  json["tilt_deg"] = info.tilt_deg;
+  json["is_color"] = info.is_color;
+  json["bits"] = info.bits;
+  json["grey_range"] = info.grey_range;
+  json["window"] = {{"centre", window.centre}, {"width", window.width}};
+  json["ignored_files"] = info.ignored_files;
+  // names come from a folder and may hold any bytes
+  std::printf("%s\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
+}
+
+core::Status Show(ImagesArguments arguments) {
+  if (!arguments.axes.empty()) {
+    const auto axes = ParseAxes(arguments.axes);
+    if (!axes) return axes.error();
+    arguments.options.axes = *axes;
+  }
+  std::optional<anatomy::DisplayWindow> window;
+  if (!arguments.window.empty()) {
+    const auto parsed = ParseWindow(arguments.window);
+    if (!parsed) return parsed.error();
+    window = *parsed;
+  }
+  arguments.options.memory_bytes = static_cast<std::size_t>(arguments.memory_mb) << 20;
+  ProgressBar bar("opening", 1.0);
+  const anatomy::Progress progress = [&](std::string_view what, double fraction) {
+    bar.SetLabel(what);
+    bar.Show(fraction);
+  };
+  const auto series = anatomy::ImageSeries::Open(arguments.path, arguments.options, progress);
+  if (!series) {
+    bar.Finish();
+    return series.error();
+  }
+  const anatomy::ImageSeriesInfo& info = series->Info();
+  const anatomy::DisplayWindow shown = window.value_or(info.suggested_window);
+  if (!arguments.preview.empty()) {
+    const auto sheet = anatomy::DrawContactSheet(*series, shown, {}, progress);
+    bar.Finish();
+    if (!sheet) return sheet.error();
+    if (auto status = anatomy::WritePng(arguments.preview, *sheet); !status) return status;
+  }
+  bar.Finish();
+  arguments.is_json ? PrintJson(info, shown) : PrintForPerson(info, shown);
+  if (!arguments.preview.empty() && !arguments.is_json)
+    std::printf("\nWrote %s\n", arguments.preview.c_str());
+  return {};
+}
+
+}  // namespace
+
+void AddAnatomyImagesCommand(CLI::App& anatomy, Outcome& outcome) {
+  CLI::App* images = anatomy.add_subcommand("images", "Say what a series of images is, and show it");
+  auto arguments = std::make_shared<ImagesArguments>();
+  images
+      ->add_option("path", arguments->path,
+                   "DICOM folder or file, folder of numbered pictures (PNG, JPEG, TIFF), or a volume: NIfTI "
+                   "(.nii, .nii.gz), NRRD (.nrrd, .nhdr), MetaImage (.mha, .mhd), TIFF of several pages")
+      ->required()
+      ->type_name("PATH");
+  images
+      ->add_option("--pixel-mm", arguments->options.pixel_mm,
+                   "Side of a pixel, where the files do not say it")
+      ->check(CLI::Range(0.01, 20.0))
+      ->type_name("MM");
+  images
+      ->add_option("--slice-mm", arguments->options.slice_mm,
+                   "Distance from one slice number to the next, where the files do not say it")
+      ->check(CLI::Range(0.01, 50.0))
+      ->type_name("MM");
+  images
+      ->add_option(
+          "--axes", arguments->axes,
+          "Where columns, rows and slice numbers grow to in the patient, where the files do not say it: one "
+          "each of left/right, anterior/posterior, superior/inferior")
+      ->type_name("COLUMN,ROW,SLICE");
+  images
+      ->add_option(
+          "--pattern", arguments->options.pattern,
+          "Only pictures with such names, where a folder holds several stacks: image-{slice:04}.jpeg")
+      ->type_name("NAME");
+  images
+      ->add_option("--series", arguments->options.series, "Which DICOM series, where a folder holds several")
+      ->check(CLI::Range(1, 100000))
+      ->type_name("N");
+  images
+      ->add_option("--window", arguments->window,
+                   "Grey values to show: centre and width, in the file's units (HU for CT)")
+      ->type_name("CENTRE,WIDTH");
+  images->add_option("--preview", arguments->preview, "Write up to 20 slices side by side into a PNG")
+      ->type_name("FILE");
+  images->add_option("--memory-mb", arguments->memory_mb, "Most memory that the samples may take")
+      ->check(CLI::Range(1.0, 1048576.0))
+      ->capture_default_str()
+      ->type_name("MB");
+  images->add_flag("--json", arguments->is_json, "Machine-readable: the same as one JSON object");
+  images->footer(
+      "Nothing is changed. Files are read by a process of its own with little memory, no network and a time "
+      "limit, so "
+      "that\na damaged or hostile file ends in a message. What is read and what is refused: docs/images.md.\n"
+      "Examples: trocar anatomy images ct-dicom --preview out/ct.png --window 60,350\n"
+      "          trocar anatomy images slices --pixel-mm 0.528 --slice-mm 1 --axes left,anterior,inferior "
+      "--json");
+  images->callback([arguments, &outcome] { outcome.status = Show(*arguments); });
+}
+
+}  // namespace trocar::cli

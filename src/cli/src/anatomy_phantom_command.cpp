@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "command.h"
+#include "console.h"
+#include "trocar/anatomy/generate_patient.h"
+#include "trocar/anatomy/phantom.h"
+
+namespace trocar::cli {
+namespace {
+
+struct PhantomArguments {
+  anatomy::PhantomOptions options;
+  std::string output, patient;
+  std::vector<std::string> settings;
+};
+
+core::Status MakePhantom(const PhantomArguments& arguments) {
+  const auto settings = ParseSettings(arguments.settings);
+  if (!settings) return settings.error();
+  if (!arguments.patient.empty() && !settings->empty()) {
+    return core::Error{core::ErrorCode::kUsage, "--set belongs to a generated patient; leave out --patient"};
+  }
+  const auto patient = arguments.patient.empty() ? anatomy::GeneratePatient(arguments.options.seed, *settings)
+                                                 : anatomy::ReadPatient(arguments.patient);
+  if (!patient) return patient.error();
+  ProgressBar bar("drawing", 1.0);
+  const auto status = anatomy::WritePhantom(arguments.output, *patient, arguments.options,
+                                            [&](std::string_view what, double share) {
+                                              bar.SetLabel(what);
+                                              bar.Show(share);
+                                            });
+  bar.Finish();
+  if (!status) return status;
+  const std::string& o = arguments.output;
+  std::printf(
+      "Wrote %s: slices/ (the pictures), labels.nrrd (the truth), control_points.json, patient/ (the truth "
+      "as "
+      "meshes)\n"
+      "Next: trocar anatomy build %s/control_points.json --images %s/slices --reference %s/labels.nrrd -o "
+      "%s-built\n",
+      o.c_str(), o.c_str(), o.c_str(), o.c_str(), o.c_str());
+  return {};
+}
+
+}  // namespace
+
+void AddAnatomyPhantomCommand(CLI::App& anatomy, Outcome& outcome) {
+  CLI::App* command =
+      anatomy.add_subcommand("phantom", "Draw cryosection pictures of a generated patient, with the truth");
+  auto arguments = std::make_shared<PhantomArguments>();
+  auto& options = arguments->options;
+  command->add_option("--seed", options.seed, "Of the patient, the textures and the clicks")
+      ->type_name("N")
+      ->capture_default_str();
+  command->add_option("-o,--output", arguments->output, "Folder to make; it must not exist, or be empty")
+      ->required()
+      ->type_name("DIR");
+  command->add_option("--set", arguments->settings, "A parameter of the patient, as for generate: name=value")
+      ->type_name("NAME=VALUE")
+      ->allow_extra_args(false);
+  command->add_option("--patient", arguments->patient, "Draw this patient instead of a generated one")
+      ->type_name("PATIENT");
+  command
+      ->add_option("--noise", options.noise,
+                   "Grain and uneven light: 0 none, 1 as a fair photograph, up to 5")
+      ->capture_default_str();
+  command->add_option("--blur", options.blur_px, "Of the lens [pixels]")->capture_default_str();
+  command->add_option("--pixel-mm", options.pixel_mm, "Size of a pixel")->capture_default_str();
+  command->add_option("--slice-mm", options.slice_mm, "Distance of the slices")->capture_default_str();
+  command->add_option("--every", options.every, "Control points on every n-th slice")->capture_default_str();
+  command->add_option("--points", options.points, "Control points on the largest contour of a slice")
+      ->capture_default_str();
+  command->add_option("--slip-mm", options.slip_mm, "How far each control point lies beside the true border")
+      ->capture_default_str();
+  command->footer(
+      "The whole chain can be tried without any data. Axial slices, columns to the left, rows to posterior.\n"
+      "Example: trocar anatomy phantom --seed 7 -o out/phantom\n"
+      "         trocar anatomy build out/phantom/control_points.json --images out/phantom/slices \\\n"
+      "           --reference out/phantom/labels.nrrd -o out/built");
+  command->callback([arguments, &outcome] { outcome.status = MakePhantom(*arguments); });
+}
+
+}  // namespace trocar::cli

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file adaptive.cpp  The solver that runs: fast where the start is far away, exact where it is near.
+///
+/// Newton's method with multigrid is exact and, from the last tick's positions, short; from a flat start it would walk
+/// in steps of a fraction of a spring's length. There, on a structured mesh, accelerated descent from coarse to fine comes
+/// within a thousandth for the price of one or two Newton steps; and where virtual springs bound the lowest eigenvalue it
+/// ends by itself, with a bound on its error. See docs/decisions/0014.
+#include "solver_content.h"
+
+namespace trocar::tissue {
+SolveReport SolveAdaptive(EquilibriumSolver::Content& c, const SolverSettings& settings, const TissueLoad& load,
+                          TissueState& state, const SolveHook* hook) noexcept {
+  SolveReport descent;
+  if (c.accelerated->IsStructured()) {
+    if (c.accelerated->IsCold(state) || c.accelerated->IsWellConditioned(load)) {
+      descent = c.accelerated->Solve(*c.kernels, *c.workers, settings, load, state, hook);
+      if (descent.converged) return descent;
+    }
+  }
+  SolveReport report = c.newton->Solve(*c.kernels, *c.workers, settings, load, state, hook);
+  report.coarse_levels = descent.coarse_levels;
+  report.iterations += descent.iterations;
+  return report;
+}
+
+}  // namespace trocar::tissue

@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file kernel_lanes.h  A vector of TROCAR_LANES floats. Included by kernels_*.cpp only, each with its own
+/// compiler options: nothing here may have a name that the linker could share between them.
+#pragma once
+
+#if TROCAR_LANES > 4 || defined(__SSE2__)
+#include <immintrin.h>
+#define TROCAR_HAS_X86 1
+#endif
+
+#include "kernels.h"
+
+namespace trocar::tissue {
+namespace {
+
+typedef float Lanes __attribute__((vector_size(4 * TROCAR_LANES)));
+typedef std::int32_t LaneMask __attribute__((vector_size(4 * TROCAR_LANES)));
+
+inline Lanes Load(const float* from) {
+  Lanes v;
+  __builtin_memcpy(&v, from, sizeof v);
+  return v;
+}
+inline void Store(float* to, Lanes v) {
+  __builtin_memcpy(to, &v, sizeof v);
+}
+inline Lanes All(float value) {
+  return value - Lanes{};
+}
+inline Lanes Larger(Lanes a, Lanes b) {
+  return a > b ? a : b;
+}
+
+/// a b + c, rounded once where the level has an instruction for it.
+#if TROCAR_LANES == 16
+inline Lanes MulAdd(Lanes a, Lanes b, Lanes c) {
+  return (Lanes)_mm512_fmadd_ps((__m512)a, (__m512)b, (__m512)c);
+}
+#elif TROCAR_LANES == 8
+inline Lanes MulAdd(Lanes a, Lanes b, Lanes c) {
+  return (Lanes)_mm256_fmadd_ps((__m256)a, (__m256)b, (__m256)c);
+}
+#else
+inline Lanes MulAdd(Lanes a, Lanes b, Lanes c) {
+  return a * b + c;
+}
+#endif
+
+#if TROCAR_LANES == 16
+inline Lanes Sqrt(Lanes v) {
+  return (Lanes)_mm512_sqrt_ps((__m512)v);
+}
+#elif TROCAR_LANES == 8
+inline Lanes Sqrt(Lanes v) {
+  return (Lanes)_mm256_sqrt_ps((__m256)v);
+}
+#elif defined(TROCAR_HAS_X86)
+inline Lanes Sqrt(Lanes v) {
+  return (Lanes)_mm_sqrt_ps((__m128)v);
+}
+#else
+inline Lanes Sqrt(Lanes v) {
+  for (int lane = 0; lane < TROCAR_LANES; ++lane) v[lane] = __builtin_sqrtf(v[lane]);
+  return v;
+}
+#endif
+
+#if TROCAR_LANES == 16
+#define TROCAR_LANE_INDICES(OFFSET)                                                                       \
+  OFFSET, OFFSET + 1, OFFSET + 2, OFFSET + 3, OFFSET + 4, OFFSET + 5, OFFSET + 6, OFFSET + 7, OFFSET + 8, \
+      OFFSET + 9, OFFSET + 10, OFFSET + 11, OFFSET + 12, OFFSET + 13, OFFSET + 14, OFFSET + 15
+#elif TROCAR_LANES == 8
+#define TROCAR_LANE_INDICES(OFFSET) \
+  OFFSET, OFFSET + 1, OFFSET + 2, OFFSET + 3, OFFSET + 4, OFFSET + 5, OFFSET + 6, OFFSET + 7
+#else
+#define TROCAR_LANE_INDICES(OFFSET) OFFSET, OFFSET + 1, OFFSET + 2, OFFSET + 3
+#endif
+
+/// Lane i of the result is lane i - 1 of `v`; lane 0 is the last of `before`.
+inline Lanes ShiftUp(Lanes before, Lanes v) {
+  return __builtin_shufflevector(before, v, TROCAR_LANE_INDICES(TROCAR_LANES - 1));
+}
+struct Vector {
+  Lanes x, y, z;
+};
+
+/// TROCAR_LANES nodes: one load of 16 bytes each, then a transpose in registers.
+#if defined(TROCAR_HAS_X86)
+template <typename At>
+inline Vector LoadNodes(const Float4* nodes, const At& at) {
+  const auto node = [&](int lane) { return _mm_load_ps(&nodes[at(lane)].x); };
+#if TROCAR_LANES == 16
+  const auto column = [&](int i) {
+    const __m256 low = _mm256_insertf128_ps(_mm256_castps128_ps256(node(i)), node(i + 4), 1);
+    const __m256 high = _mm256_insertf128_ps(_mm256_castps128_ps256(node(i + 8)), node(i + 12), 1);
+    return _mm512_insertf32x8(_mm512_castps256_ps512(low), high, 1);
+  };
+  const __m512 a = column(0), b = column(1), c = column(2), d = column(3);
+  const __m512d ab = (__m512d)_mm512_unpacklo_ps(a, b), cd = (__m512d)_mm512_unpacklo_ps(c, d);
+  const __m512d abz = (__m512d)_mm512_unpackhi_ps(a, b), cdz = (__m512d)_mm512_unpackhi_ps(c, d);
+  return {(Lanes)_mm512_unpacklo_pd(ab, cd), (Lanes)_mm512_unpackhi_pd(ab, cd),
+          (Lanes)_mm512_unpacklo_pd(abz, cdz)};
+#elif TROCAR_LANES == 8
+  const auto column = [&](int i) {
+    return _mm256_insertf128_ps(_mm256_castps128_ps256(node(i)), node(i + 4), 1);
+  };
+  const __m256 a = column(0), b = column(1), c = column(2), d = column(3);
+  const __m256d ab = (__m256d)_mm256_unpacklo_ps(a, b), cd = (__m256d)_mm256_unpacklo_ps(c, d);
+  const __m256d abz = (__m256d)_mm256_unpackhi_ps(a, b), cdz = (__m256d)_mm256_unpackhi_ps(c, d);
+  return {(Lanes)_mm256_unpacklo_pd(ab, cd), (Lanes)_mm256_unpackhi_pd(ab, cd),
+          (Lanes)_mm256_unpacklo_pd(abz, cdz)};
+#else
+  const __m128 a = node(0), b = node(1), c = node(2), d = node(3);
+  const __m128d ab = (__m128d)_mm_unpacklo_ps(a, b), cd = (__m128d)_mm_unpacklo_ps(c, d);
+  const __m128d abz = (__m128d)_mm_unpackhi_ps(a, b), cdz = (__m128d)_mm_unpackhi_ps(c, d);
+  return {(Lanes)_mm_unpacklo_pd(ab, cd), (Lanes)_mm_unpackhi_pd(ab, cd), (Lanes)_mm_unpacklo_pd(abz, cdz)};
+#endif
+}
+#else
+template <typename At>
+inline Vector LoadNodes(const Float4* nodes, const At& at) {
+  Vector v;
+  for (int lane = 0; lane < TROCAR_LANES; ++lane) {
+    const Float4& node = nodes[at(lane)];
+    v.x[lane] = node.x, v.y[lane] = node.y, v.z[lane] = node.z;
+  }
+  return v;
+}
+#endif
+
+inline Vector GatherNodes(const Float4* nodes, const std::uint32_t* indices) {
+  return LoadNodes(nodes, [indices](int lane) { return indices[lane]; });
+}
+inline Vector LoadNodes(const Float4* nodes) {
+  return LoadNodes(nodes, [](int lane) { return lane; });
+}
+
+/// TROCAR_LANES nodes side by side: a transpose, then one store of 16 bytes each.
+inline void StoreNodes(Float4* nodes, const Vector& v) {
+#if defined(TROCAR_HAS_X86)
+  for (int part = 0; part < TROCAR_LANES; part += 4) {
+    __m128 x, y, z, w = _mm_setzero_ps();
+    __builtin_memcpy(&x, reinterpret_cast<const char*>(&v.x) + 4 * part, sizeof x);
+    __builtin_memcpy(&y, reinterpret_cast<const char*>(&v.y) + 4 * part, sizeof y);
+    __builtin_memcpy(&z, reinterpret_cast<const char*>(&v.z) + 4 * part, sizeof z);
+    _MM_TRANSPOSE4_PS(x, y, z, w);
+    _mm_store_ps(&nodes[part].x, x);
+    _mm_store_ps(&nodes[part + 1].x, y);
+    _mm_store_ps(&nodes[part + 2].x, z);
+    _mm_store_ps(&nodes[part + 3].x, w);
+  }
+#else
+  for (int lane = 0; lane < TROCAR_LANES; ++lane) nodes[lane] = {v.x[lane], v.y[lane], v.z[lane], 0.0f};
+#endif
+}
+
+inline Vector operator+(const Vector& a, const Vector& b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+inline Vector operator-(const Vector& a, const Vector& b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+inline Vector operator*(Lanes s, const Vector& v) {
+  return {s * v.x, s * v.y, s * v.z};
+}
+inline Vector operator-(const Vector& v) {
+  return {-v.x, -v.y, -v.z};
+}
+inline Vector MulAdd(Lanes s, const Vector& v, const Vector& to) {
+  return {MulAdd(s, v.x, to.x), MulAdd(s, v.y, to.y), MulAdd(s, v.z, to.z)};
+}
+/// |v|^2 + to
+inline Lanes AddSquaredNorm(const Vector& v, Lanes to) {
+  return MulAdd(v.z, v.z, MulAdd(v.y, v.y, MulAdd(v.x, v.x, to)));
+}
+
+/// to + m v for symmetric 3 x 3 matrices that lie kSliceNodes apart: xx, xy, xz, yy, yz, zz.
+inline Vector MulAddSymmetric(const float* m, const Vector& v, const Vector& to) {
+  const Lanes xx = Load(m), xy = Load(m + kSliceNodes), xz = Load(m + 2 * kSliceNodes),
+              yy = Load(m + 3 * kSliceNodes), yz = Load(m + 4 * kSliceNodes), zz = Load(m + 5 * kSliceNodes);
+  return {MulAdd(xz, v.z, MulAdd(xy, v.y, MulAdd(xx, v.x, to.x))),
+          MulAdd(yz, v.z, MulAdd(yy, v.y, MulAdd(xy, v.x, to.y))),
+          MulAdd(zz, v.z, MulAdd(yz, v.y, MulAdd(xz, v.x, to.z)))};
+}
+
+/// Secant stiffness of a spring with this extent, k - k l / length: its force on the near node is that times the
+/// extent.
+inline Lanes CalcSecant(Lanes k, Lanes k_times_rest, const Vector& along) {
+  // A spring shorter than the root of this has no direction [m^2]; its force is then nought because its extent
+  // is. Longer ones do not feel it.
+  constexpr float kNoLength2 = 1e-30f;
+  return k - k_times_rest / Sqrt(AddSquaredNorm(along, All(kNoLength2)));
+}
+
+/// Largest squared residual of the free nodes; NaN where one is not finite.
+struct LargestResidual {
+  Lanes largest = {}, poison = {};
+
+  void Add(Lanes step_length, const Vector& force) {
+    const Lanes is_free = step_length > 0.0f ? All(1.0f) : All(0.0f);
+    const Lanes squared = AddSquaredNorm(is_free * force, Lanes{});
+    largest = Larger(squared, largest);
+    poison = poison + All(0.0f) * squared;
+  }
+  float Find() const {
+    float found = 0, sum = 0;
+    for (int lane = 0; lane < TROCAR_LANES; ++lane) {
+      found = largest[lane] > found ? largest[lane] : found;
+      sum += poison[lane];
+    }
+    return found + sum;
+  }
+};
+
+}  // namespace
+}  // namespace trocar::tissue

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file kernels.h  The solvers' inner loops in single precision, compiled once for each SimdLevel.
+///
+/// Nodes are taken in slices of kSliceNodes; what the nodes of a slice read at one step lies together (sliced
+/// ELLPACK: Monakov, Lokhmotov, Avetisyan, "Automatically tuning sparse matrix-vector multiplication for GPU
+/// architectures", HiPEAC 2010). A node is 16 bytes, so a neighbour is one vector load; sixteen of them are
+/// transposed in registers, which is several times faster than the processor's gather.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "trocar/tissue/simd_level.h"
+
+namespace trocar::tissue {
+
+/// Nodes of a slice, whatever the width of a vector, so that the layout and the bits do not depend on it.
+inline constexpr std::uint32_t kSliceNodes = 16;
+
+/// A node's vector, padded to 16 bytes.
+struct alignas(16) Float4 {
+  float x = 0, y = 0, z = 0, w = 0;
+};
+
+/// Neighbours by slice and step; entry (step, lane) of a slice is at (starts[slice] + step) * kSliceNodes +
+/// lane. A padded entry points at its own node.
+struct SliceTable {
+  const std::uint32_t* starts;  // (slices + 1) in steps
+  const std::uint32_t* others;  // (steps * kSliceNodes)
+};
+
+/// y = K x of a system of springs with symmetric 3 x 3 stiffness: (K x)_i = G_i x_i + sum_j S_ij (x_i - x_j).
+struct LinkMatrix {
+  SliceTable table;
+  const float* links;    // (steps, 6, kSliceNodes): S as xx, xy, xz, yy, yz, zz
+  const float* ground;   // (slices, 6, kSliceNodes): G
+  const float* inverse;  // (slices, 6, kSliceNodes): inverse of the node's own block; zero where it is held
+  const float* is_free;  // (slices * kSliceNodes): 1, or 0 where the node is held
+};
+
+/// What a pass over a LinkMatrix writes.
+enum class LinkPass {
+  kStart,     ///< out = factor D^-1 b; x is not read
+  kProduct,   ///< out = K x
+  kResidual,  ///< out = b - K x
+  kSmooth     ///< out = x + factor D^-1 (b - K x)
+};
+
+/// One step of the nonlinear iteration on a sliced system.
+struct SliceStep {
+  SliceTable table;
+  const float* springs;  // (steps, 5, kSliceNodes): rest offset x, y, z [m], k [N/m], k l [N]
+  const float* nodes;    // (slices, 5, kSliceNodes): load x, y, z [N], k_virtual [N/m], step length [m/N]
+  const Float4* u;       // (n) displacements [m]
+  Float4* previous;      // (n) those of the iteration before; receives the next
+  float omega, damping;  // of Chebyshev's recurrence [-]
+  bool is_first;         // of its cycle: the displacement before is the present one
+  bool is_measured;      // whether to report the residual
+};
+
+/// The neighbours that a node's own springs go to; the other four are theirs.
+enum GridDirection { kEast, kSouth, kSouthEast, kSouthWest, kGridDirections };
+
+/// Three directions of (3, stride) with a block of margin on either side.
+inline constexpr std::size_t ReactionFloats(std::uint32_t stride) {
+  return 3 * (std::size_t{3} * stride + 2 * kSliceNodes);
+}
+
+/// One step of the nonlinear iteration on a structured mesh: every spring is taken once. A row's numbers of one kind
+/// lie side by side, x before y before z, so that the neighbour in the next column is an unaligned load.
+struct GridStep {
+  std::uint32_t rows, stride;  // columns, rounded up to a multiple of kSliceNodes
+  const float* springs;        // (rows, stride / kSliceNodes, kGridDirections, 5, kSliceNodes), or one row where all
+                               // are alike: rest offset x, y, z [m], k [N/m], k l [N]
+  std::uint32_t spring_row;    // floats from row to row, or 0
+  const float* last_springs;   // those of the last row, which has nothing below
+  bool has_south_west;
+  bool is_aligned;     // rest offsets: x alone to the east, y alone to the south, no z
+  const float* nodes;  // (rows, stride / kSliceNodes, 5, kSliceNodes): load x, y, z [N], k_virtual [N/m], step [m/N]
+  const float* u;      // (rows + 1, 3, stride) displacements [m], one block of margin on either side
+  float* previous;     // the same, of the iteration before; receives the next
+  float omega, damping;  // of Chebyshev's recurrence [-]
+  bool is_first;
+  bool is_measured;  // whether to report the residual
+  float* reaction;   // (2 ReactionFloats): forces of a row's springs to the south, south-east and south-west on its own
+                     // nodes, by turns for even and odd rows; zero at first
+};
+
+/// Steps return the largest squared residual of a free node before the step [N^2], NaN where one is, or 0 where it is
+/// not measured.
+struct Kernels {
+  void (*multiply)(const LinkMatrix& matrix, LinkPass pass, const Float4* x, const Float4* b, float factor,
+                   Float4* out, std::uint32_t first_slice, std::uint32_t last_slice);
+  float (*step_slices)(const SliceStep& step, std::uint32_t first_slice, std::uint32_t last_slice);
+  float (*step_rows)(const GridStep& step, std::uint32_t first_row, std::uint32_t last_row);
+};
+/// \pre HasSimdLevel(level)
+const Kernels& GetKernels(SimdLevel level) noexcept;
+
+}  // namespace trocar::tissue

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file kernels_baseline.cpp  The inner loops, what every processor of the architecture has.
+#define TROCAR_LANES 4
+#include "kernel_bodies.h"
+#include "kernel_table.h"
+
+namespace trocar::tissue {
+
+const Kernels& GetKernelsBaseline() noexcept {
+  static constexpr Kernels kKernels = {MultiplyLinks, StepSlices, StepRows};
+  return kKernels;
+}
+
+}  // namespace trocar::tissue

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file link_hierarchy.h  Algebraic multigrid for systems of springs: an approximate inverse of their
+/// stiffness.
+///
+/// Nodes are joined along their stiffest links into aggregates, aggregates into larger ones, and so on. What
+/// an aggregate's nodes share is their translation, so the sum of the links between two aggregates is again a
+/// link with a symmetric 3 x 3 stiffness: every level is a LinkMatrix. A step of a coarse function is steeper
+/// than the slope it stands for, which makes coarse links too stiff; they are scaled down instead of
+/// smoothing the prolongation, which would fill the coarse matrices. Sources: Notay, "An aggregation-based
+/// algebraic multigrid method", ETNA 37, 2010 (pairwise aggregation); Braess, "Towards algebraic multigrid for
+/// elliptic problems of second order", Computing 55, 1995 (scaling).
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "slice_layout.h"
+#include "symmetric3.h"
+#include "workers.h"
+
+namespace trocar::tissue {
+
+/// One level's matrix, its way to the next, and room for a cycle.
+struct LinkLevel {
+  SliceLayout layout;
+  std::vector<float> links, ground, inverse, is_free;  // as in LinkMatrix
+  std::vector<std::uint32_t> aggregate;                // (n) node of the next level; empty on the last
+  std::vector<std::uint32_t> coarse_entry;             // (entries) place of the link there, or kNoEntry
+  std::vector<Float4> x, b, r;                         // (padded nodes)
+
+  static constexpr std::uint32_t kNoEntry = ~std::uint32_t{0};
+
+  std::uint32_t Size() const { return layout.node_count; }
+  LinkMatrix Matrix() const;
+};
+
+/// The level's pass over all nodes, in chunks of fixed size.
+void RunPass(const Kernels& kernels, Workers& workers, const LinkLevel& level, LinkPass pass, const Float4* x,
+             const Float4* b, float factor, Float4* out) noexcept;
+
+class LinkHierarchy {
+ public:
+  /// \param graph      of the finest level, in its order
+  /// \param stiffness  (graph.others) what joins nodes into aggregates, >= 0
+  LinkHierarchy(const NodeGraph& graph, std::span<const double> stiffness);
+
+  /// Matrix of the finest level: links, ground and is_free are the caller's to fill.
+  LinkLevel& Finest() { return levels_.front(); }
+  const LinkLevel& Finest() const { return levels_.front(); }
+  std::span<const LinkLevel> Levels() const { return levels_; }
+
+  /// Computes the finest level's inverse blocks and all coarser levels. Links may be indefinite where springs
+  /// are compressed; here they count as slack.
+  ///
+  /// \param stiffness  (entries) k of each link [N/m], of which its 3 x 3 matrix keeps at least the part along
+  void Update(std::span<const float> stiffness) noexcept;
+
+  /// x = about K^-1 b, a V-cycle with one damped block-Jacobi step on either side: symmetric and, where the
+  /// matrix is, positive definite. Held nodes get 0. \note Real-time safe.
+  void Apply(const Kernels& kernels, Workers& workers, const Float4* b, Float4* x) noexcept;
+
+ private:
+  void Cycle(const Kernels& kernels, Workers& workers, std::size_t at) noexcept;
+  void UpdateCoarse(std::size_t at, std::span<const float> stiffness) noexcept;
+  void Factorise() noexcept;
+  void SolveCoarsest() noexcept;
+
+  std::vector<LinkLevel> levels_;
+  std::vector<double> factor_, right_;  // Cholesky factor of the coarsest level, dense
+  bool is_factorised_ = false;
+};
+
+}  // namespace trocar::tissue

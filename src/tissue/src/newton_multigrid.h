@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file newton_multigrid.h  Newton's method; each step by conjugate gradients that LinkHierarchy
+/// preconditions.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "linearisation.h"
+#include "trocar/tissue/equilibrium.h"
+
+namespace trocar::tissue {
+
+/// Memory and methods of the Newton solver.
+class NewtonMultigrid {
+ public:
+  explicit NewtonMultigrid(const TissueModel& model);
+
+  /// \note Real-time safe; bounded by settings.max_newton_steps and max_linear_iterations.
+  SolveReport Solve(const Kernels& kernels, Workers& workers, const SolverSettings& settings,
+                    const TissueLoad& load, TissueState& state, const SolveHook* hook) noexcept;
+
+ private:
+  struct LinearReport {
+    int iterations = 0;
+    bool met_negative_curvature = false;
+    bool reached_radius = false;
+  };
+  /// Solves K step_ = residual until the preconditioned remainder, an estimate of the error left in the step,
+  /// is below `tolerance` [m], or until a node has moved by `radius` [m].
+  LinearReport SolveLinear(const Kernels& kernels, Workers& workers, int max_iterations, double tolerance,
+                           double radius) noexcept;
+  void Multiply(const Kernels& kernels, Workers& workers, const Float4* x, Float4* out) noexcept;
+  void AddContactGround() noexcept;
+
+  OrderedModel model_;
+  OrderedLoad load_;
+  LinkHierarchy hierarchy_;
+  std::vector<float> stiffness_;  // (entries)
+  std::vector<Vec3> position_, start_;
+  Balance balance_;
+  std::vector<std::uint8_t> is_pressing_;  // (contacts) when last linearised
+  std::vector<Float4> step_, r_, z_, p_, q_;
+  double edge_length_ = 0;  // mean rest length of the springs [m]
+};
+
+}  // namespace trocar::tissue

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "spring_slices.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace trocar::tissue {
+namespace {
+
+/// Slices a thread takes at a time; fixed.
+constexpr std::uint32_t kChunkSlices = 64;
+constexpr std::size_t kSpringFloats = 5 * kSliceNodes;
+
+}  // namespace
+
+SpringSlices::SpringSlices(const OrderedModel& model) : layout_(model.layout) {
+  springs_.assign(layout_.Steps() * kSpringFloats, 0.0f);
+  nodes_.assign(layout_.PaddedNodes() * 5, 0.0f);
+  u_.resize(layout_.PaddedNodes());
+  previous_ = u_;
+  for (std::uint32_t i = 0; i < model.Size(); ++i) {
+    for (std::uint32_t step = 0; step < layout_.RowSteps(i); ++step) {
+      const std::size_t entry = layout_.Entry(i, step);
+      float* const spring = springs_.data() + entry / kSliceNodes * kSpringFloats + entry % kSliceNodes;
+      const Vec3 offset = model.rest[layout_.others[entry]] - model.rest[i];
+      for (int axis = 0; axis < 3; ++axis) spring[axis * kSliceNodes] = static_cast<float>(offset[axis]);
+    }
+  }
+}
+
+void SpringSlices::SetLoad(const OrderedModel& model, const OrderedLoad& load,
+                           std::span<const std::uint8_t> strand_is_intact) noexcept {
+  lowest_ = 1.0;
+  smallest_shape_ = INFINITY;
+  const auto spring_at = [&](std::size_t entry) {
+    return springs_.data() + entry / kSliceNodes * kSpringFloats + entry % kSliceNodes;
+  };
+  for (const auto& strand : model.strands) {
+    // A strand keeps its offset: a spring of no rest length about its rest offset. That its force is
+    // k (rest + extent) then, not k extent, is put right in the load.
+    spring_at(strand.entry)[3 * kSliceNodes] =
+        strand_is_intact[strand.strand] ? static_cast<float>(load.stiffness_scale * strand.stiffness) : 0.0f;
+  }
+  for (std::uint32_t i = 0; i < model.Size(); ++i) {
+    double sum = 0;
+    for (std::uint32_t step = 0; step < layout_.RowSteps(i); ++step) {
+      const std::size_t entry = layout_.Entry(i, step);
+      if (layout_.others[entry] == i) break;
+      const double k = load.stiffness_scale * model.stiffness[entry];
+      float* const spring = spring_at(entry);
+      if (k > 0.0) {
+        spring[3 * kSliceNodes] = static_cast<float>(k);
+        spring[4 * kSliceNodes] = static_cast<float>(k * model.rest_length[entry]);
+      }
+      sum += static_cast<double>(spring[3 * kSliceNodes]);
+    }
+    const double shape = load.shape_scale * model.shape[i], bound = 2.0 * sum + shape;
+    float* const node = nodes_.data() + std::size_t{i / kSliceNodes} * 5 * kSliceNodes + i % kSliceNodes;
+    for (int axis = 0; axis < 3; ++axis) node[axis * kSliceNodes] = static_cast<float>(load.constant[i][axis]);
+    node[3 * kSliceNodes] = static_cast<float>(shape);
+    const bool is_free = load.is_free[i] != 0 && bound > 0.0;
+    node[4 * kSliceNodes] = is_free ? static_cast<float>(1.0 / bound) : 0.0f;
+    if (!is_free) continue;
+    lowest_ = std::min(lowest_, shape / bound);
+    smallest_shape_ = std::min(smallest_shape_, shape);
+  }
+  for (const auto& strand : model.strands) {
+    const double k = strand_is_intact[strand.strand] ? load.stiffness_scale * strand.stiffness : 0.0;
+    AddForce(strand.node, -k * (model.rest[strand.other] - model.rest[strand.node]));
+  }
+}
+
+void SpringSlices::AddForce(std::uint32_t node, const Vec3& force) noexcept {
+  float* const values = nodes_.data() + std::size_t{node / kSliceNodes} * 5 * kSliceNodes + node % kSliceNodes;
+  for (int axis = 0; axis < 3; ++axis) values[axis * kSliceNodes] += static_cast<float>(force[axis]);
+}
+
+void SpringSlices::SetDisplacement(std::uint32_t node, const Vec3& u) noexcept {
+  u_[node] = previous_[node] = {static_cast<float>(u.x), static_cast<float>(u.y), static_cast<float>(u.z), 0.0f};
+}
+
+double SpringSlices::Step(const Kernels& kernels, Workers& workers, float omega, float damping, bool is_first,
+                          bool is_measured) noexcept {
+  const std::uint32_t slices = layout_.Slices();
+  const std::uint32_t chunk_slices = std::max(kChunkSlices, slices / Workers::kMaxChunks + 1);
+  const std::uint32_t chunks = (slices + chunk_slices - 1) / chunk_slices;
+  std::array<float, Workers::kMaxChunks> largest2;
+  const SliceStep step{layout_.Table(),  springs_.data(), nodes_.data(), u_.data(),
+                       previous_.data(), omega,           damping,       is_first,      is_measured};
+  workers.Run(chunks, [&](std::uint32_t chunk) {
+    largest2[chunk] =
+        kernels.step_slices(step, chunk * chunk_slices, std::min(slices, (chunk + 1) * chunk_slices));
+  });
+  std::swap(u_, previous_);
+  double largest = 0;
+  for (std::uint32_t chunk = 0; chunk < chunks; ++chunk) {
+    if (!(static_cast<double>(largest2[chunk]) <= largest)) largest = static_cast<double>(largest2[chunk]);
+  }
+  return std::sqrt(largest);
+}
+
+double SpringSlices::LargestDisplacement() const noexcept {
+  double largest2 = 0;
+  for (std::uint32_t i = 0; i < layout_.node_count; ++i) {
+    largest2 = std::max(largest2, math::SquaredNorm(GetDisplacement(i)));
+  }
+  return std::sqrt(largest2);
+}
+
+}  // namespace trocar::tissue

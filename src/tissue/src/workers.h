@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file workers.h  Threads that share the chunks of short loops within one solve.
+#pragma once
+
+#include <oneapi/tbb/global_control.h>
+#include <oneapi/tbb/task_arena.h>
+#include <oneapi/tbb/task_group.h>
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <optional>
+
+namespace trocar::tissue {
+
+/// A loop of an iterative solver takes some ten microseconds, less than it takes to wake a thread. Helpers
+/// therefore stay awake for the length of a solve (Session) and take chunks as they come. The calling thread
+/// waits only for chunks that somebody has begun: a helper that never gets a processor holds nobody up. What
+/// a chunk computes must not depend on who runs it or when; then results do not depend on the threads.
+class Workers {
+ public:
+  /// \param threads  >= 1, with the caller
+  explicit Workers(int threads);
+  Workers(const Workers&) = delete;
+  Workers& operator=(const Workers&) = delete;
+
+  int Threads() const { return threads_; }
+
+  /// Keeps the helpers awake until it goes.
+  class Session {
+   public:
+    explicit Session(Workers& workers) noexcept;
+    ~Session();
+    Session(const Session&) = delete;
+    Session& operator=(const Session&) = delete;
+
+   private:
+    Workers& workers_;
+  };
+
+  /// Most chunks of one loop.
+  static constexpr std::uint32_t kMaxChunks = 256;
+
+  /// Calls work(chunk) for every chunk from 0 to count - 1, and returns when all are done.
+  template <typename Work>
+  void Run(std::uint32_t count, const Work& work) noexcept {
+    if (threads_ == 1 || count < 2) {
+      for (std::uint32_t chunk = 0; chunk < count; ++chunk) work(chunk);
+      return;
+    }
+    RunShared(
+        count, [](const void* context, std::uint32_t chunk) { (*static_cast<const Work*>(context))(chunk); },
+        &work);
+  }
+
+ private:
+  using Call = void (*)(const void*, std::uint32_t);
+
+  void RunShared(std::uint32_t count, Call call, const void* context) noexcept;
+  void TakeChunks(std::uint32_t loop, int seat) noexcept;
+  void Help(int seat) noexcept;
+
+  int threads_;
+  std::optional<tbb::global_control> more_workers_;  // when more threads are asked for than there are cores
+  tbb::task_arena arena_;
+  tbb::task_group helpers_;
+
+  std::atomic<bool> is_open_ = false;
+  std::atomic<std::uint32_t> loop_ = 0;  // number of the present loop
+  std::atomic<std::uint32_t> count_ = 0, done_ = 0;
+  std::atomic<Call> call_ = nullptr;
+  std::atomic<const void*> context_ = nullptr;
+  std::array<std::atomic<std::uint32_t>, kMaxChunks> taken_{};  // the last loop in which the chunk was taken
+};
+
+}  // namespace trocar::tissue

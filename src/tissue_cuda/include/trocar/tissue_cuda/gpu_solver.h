@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file gpu_solver.h  The tissue model's equilibrium on an NVIDIA GPU: the paper's four memory layouts and
+/// ours. Source: "General algorithms for laparoscopic surgical simulators", section 3.2.4.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "trocar/core/result.h"
+#include "trocar/tissue/equilibrium.h"
+
+namespace trocar::tissue_cuda {
+
+/// Where the mesh lies in the GPU's memory.
+enum class Layout {
+  kPaperGlobal,           ///< a point's fields behind one another, in global memory
+  kPaperCoalesced,        ///< each field of all points together
+  kPaperShared,           ///< structured meshes: neighbours from a tile in shared memory
+  kPaperSharedCoalesced,  ///< both
+  kTiled                  ///< ours: any mesh, one launch a solve
+};
+/// "global", "coalesced", "shared", "shared-coalesced", "tiled"
+std::string_view LayoutName(Layout layout) noexcept;
+/// All of them, in the order above.
+std::span<const Layout> AllLayouts() noexcept;
+
+enum class Precision {
+  kSingle,
+  kDouble  ///< for checking, and for systems that single precision cannot resolve
+};
+/// "single", "double"
+std::string_view PrecisionName(Precision precision) noexcept;
+
+struct GpuOptions {
+  Layout layout = Layout::kTiled;
+  Precision precision = Precision::kSingle;
+  bool forbid_resident = false;  ///< kTiled: stream from global memory even where all tiles would fit at once
+};
+
+/// The GPU that would be used.
+struct GpuInformation {
+  std::string name;
+  int compute_capability = 0;  ///< 10 major + minor, such as 90
+  int driver_version = 0;      ///< CUDA version of the driver, 1000 major + 10 minor
+  int multiprocessors = 0;
+  std::size_t memory_bytes = 0;
+  double memory_bandwidth = 0;  ///< by the clock and width that the driver names [B/s]; 0 where it names none
+};
+
+/// Looks for an NVIDIA GPU that this build can use.
+/// \return kGpuMissing (no driver, no GPU, or a build without GPU code), kGpuTooOld, kGpuFailed
+core::Result<GpuInformation> FindGpu();
+
+/// Solver of one model on the GPU.
+class GpuSolver {
+ public:
+  /// Copies the model to the GPU.
+  ///
+  /// \param model  must outlive the solver
+  /// \return those of FindGpu, kGpuMemory, or kGpuLayout when the layout cannot hold the model
+  static core::Result<GpuSolver> Make(const tissue::TissueModel& model, const GpuOptions& options = {});
+  ~GpuSolver();
+  GpuSolver(GpuSolver&&) noexcept;
+  GpuSolver& operator=(GpuSolver&&) noexcept;
+
+  /// As tissue::EquilibriumSolver::Solve. kTiled takes the steps of the Chebyshev iteration, the paper's
+  /// layouts those of the relaxation with all nodes moving at once.
+  ///
+  /// \return kGpuFailed after an error of the GPU or its driver, kGpuLayout for a load that the layout cannot
+  /// hold; the state is then as it was before the call
+  /// \note Allocates and throws nothing of ours unless it fails.
+  core::Result<tissue::SolveReport> Solve(const tissue::SolverSettings& settings,
+                                          const tissue::TissueLoad& load,
+                                          tissue::TissueState& state) noexcept;
+
+  const GpuInformation& Information() const noexcept;
+  /// Time that the GPU worked in the last solve, copies included, by its own clock [s].
+  double LastSeconds() const noexcept;
+  /// kTiled: whether all tiles stay on the GPU's multiprocessors.
+  bool IsResident() const noexcept;
+
+  struct Content;
+
+ private:
+  explicit GpuSolver(std::unique_ptr<Content> content);
+  std::unique_ptr<Content> content_;
+};
+
+}  // namespace trocar::tissue_cuda

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file test_systems.h  Systems of awkward sizes for the kernels, and a plain iteration to judge them by.
+#pragma once
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+#include "trocar/geometry/mesh_topology.h"
+#include "trocar/geometry/primitives.h"
+#include "trocar/math/random.h"
+#include "trocar/tissue/tissue_model.h"
+
+namespace trocar::tissue_cuda {
+
+using math::Vec3;
+using tissue::NodeCondition;
+
+/// How a system's springs differ.
+enum class Springs {
+  kUniform,  ///< as in the paper: one constant, at rest in the mesh, no virtual springs
+  kVaried    ///< each its own constant and rest length; virtual springs
+};
+
+/// Definition over nodes and edges, drawn from a seed.
+inline tissue::TissueDefinition MakeSystem(std::vector<Vec3> rest, const std::vector<geometry::Edge>& edges,
+                                           Springs springs, std::uint64_t seed) {
+  math::Random random(seed);
+  tissue::TissueDefinition definition;
+  definition.rest = std::move(rest);
+  const bool is_varied = springs == Springs::kVaried;
+  for (std::size_t i = 0; i < definition.rest.size(); ++i) {
+    definition.mass.push_back(random.Uniform(0.0005, 0.002));
+    definition.shape_stiffness.push_back(is_varied ? random.Uniform(0.05, 0.5) : 0.0);
+  }
+  for (const auto& [a, b] : edges) {
+    const double length = math::Distance(definition.rest[a], definition.rest[b]);
+    definition.springs.push_back({a, b, is_varied ? random.Uniform(0.5, 2.0) : 1.0,
+                                  is_varied ? length * random.Uniform(0.97, 1.03) : length});
+  }
+  return definition;
+}
+
+/// Grid of `columns` x `rows` with one diagonal a cell; one end fixed.
+inline tissue::TissueDefinition MakeGridSystem(std::uint32_t columns, std::uint32_t rows, Springs springs,
+                                               double spacing = 1.0) {
+  std::vector<Vec3> rest;
+  std::vector<geometry::Edge> edges;
+  for (std::uint32_t row = 0; row < rows; ++row) {
+    for (std::uint32_t column = 0; column < columns; ++column) {
+      const std::uint32_t i = row * columns + column;
+      rest.push_back({spacing * column, spacing * row, 0});
+      if (column + 1 < columns) edges.push_back({i, i + 1});
+      if (row + 1 < rows) edges.push_back({i, i + columns});
+      if (column + 1 < columns && row + 1 < rows) edges.push_back({i, i + columns + 1});
+    }
+  }
+  tissue::TissueDefinition definition = MakeSystem(std::move(rest), edges, springs, columns * 1000 + rows);
+  if (columns * rows > 1) definition.fixed = {0, columns * rows - 1};
+  return definition;
+}
+
+/// Sphere whose nodes are numbered at random, so that neighbours lie anywhere.
+inline tissue::TissueDefinition MakeScatteredSphere(int subdivisions, Springs springs, double radius = 5.0) {
+  const geometry::TriangleMesh mesh = geometry::MakeSphere({1, 2, 3}, radius, subdivisions);
+  math::Random random(7);
+  std::vector<std::uint32_t> place(mesh.positions.size());
+  std::iota(place.begin(), place.end(), 0u);
+  for (std::size_t i = place.size(); i > 1; --i) std::swap(place[i - 1], place[random.NextWord() % i]);
+  std::vector<Vec3> rest(place.size());
+  for (std::size_t i = 0; i < place.size(); ++i) rest[place[i]] = mesh.positions[i];
+  std::vector<geometry::Edge> edges = geometry::FindEdges(mesh.triangles);
+  for (geometry::Edge& edge : edges) edge = {place[edge[0]], place[edge[1]]};
+  tissue::TissueDefinition definition = MakeSystem(std::move(rest), edges, springs, 11);
+  definition.fixed = {0, 5};
+  return definition;
+}
+
+/// A state away from rest: every free node moved a little, one node prescribed elsewhere.
+inline tissue::TissueState MakeMovedState(const tissue::TissueModel& model, double extent) {
+  tissue::TissueState state = tissue::MakeRestState(model);
+  math::Random random(3);
+  for (std::size_t i = 0; i < model.Size(); ++i) {
+    const Vec3 move{random.Uniform(-extent, extent), random.Uniform(-extent, extent),
+                    random.Uniform(-extent, extent)};
+    if (!model.is_fixed[i]) state.position[i] += move;
+  }
+  if (model.Size() > 2) state.condition[model.Size() / 2] = NodeCondition::kPrescribed;
+  return state;
+}
+
+/// External forces on every third node.
+inline std::vector<Vec3> MakeForces(std::size_t count) {
+  std::vector<Vec3> forces(count);
+  for (std::size_t i = 0; i < count; i += 3) forces[i] = {0.01, -0.02, 0.03 * static_cast<double>(i % 5)};
+  return forces;
+}
+
+/// Judge: `steps` times x <- x + alpha R with all nodes at once, R by the plain evaluation that no solver
+/// shares.
+inline void RelaxPlainly(const tissue::TissueModel& model, const tissue::TissueLoad& load, double alpha,
+                         int steps, tissue::TissueState& state) {
+  std::vector<Vec3> residual(model.Size());
+  for (int step = 0; step < steps; ++step) {
+    tissue::CalcResidual(model, state, load, residual);
+    for (std::size_t i = 0; i < model.Size(); ++i) {
+      if (state.condition[i] != NodeCondition::kPrescribed) state.position[i] += alpha * residual[i];
+    }
+  }
+}
+
+/// Largest distance between the nodes of two states, and of one state from rest.
+inline double CalcLargestDistance(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
+  double largest = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const double distance = math::Distance(a[i], b[i]);
+    if (!(distance <= largest)) largest = distance;  // NaN stays
+  }
+  return largest;
+}
+
+}  // namespace trocar::tissue_cuda
