@@ -21,9 +21,9 @@ core::Result<OrganMaterial> ReadMaterialFile(const std::filesystem::path& path) 
   auto document = core::JsonDocument::Read(path);
   if (!document.ok()) return document.error();
   const core::JsonView root = document->Root();
-  root.AllowOnly({"format", "version", "about", "young_modulus_pa", "wall_thickness_mm", "foundation_modulus_pa",
-                  "foundation_depth_mm", "density_kg_m3", "failure_strain", "failure_force_n",
-                  "internal_pressure_pa", "sources"});
+  root.AllowOnly({"format", "version", "about", "young_modulus_pa", "wall_thickness_mm",
+                  "foundation_modulus_pa", "foundation_depth_mm", "density_kg_m3", "failure_strain",
+                  "failure_force_n", "internal_pressure_pa", "sources"});
   if (root.Text("format") != "trocar-material") root.Complain("format must be \"trocar-material\"");
   if (root.Integer("version") != 1) root.Complain("version must be 1");
   OrganMaterial material;

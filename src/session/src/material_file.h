@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file material_file.h  Materials as a scene lists them: written out, or in files of their own with sources.
+/// \file material_file.h  Materials as a scene lists them: written out, or in files of their own with
+/// sources.
 #pragma once
 
 #include <filesystem>

@@ -33,10 +33,10 @@ void AddWall(const geometry::TriangleMesh& mesh, const OrganMaterial& material, 
              tissue::TissueDefinition& definition) {
   const double modulus = material.young_modulus * material.wall_thickness;
   const double mean_area = geometry::CalcArea(mesh.positions, mesh.triangles) / mesh.triangles.size();
-  const double share = tissue::CalcBendingShare(material.wall_thickness, std::sqrt(std::sqrt(3.0) * mean_area));
+  const double share =
+      tissue::CalcBendingShare(material.wall_thickness, std::sqrt(std::sqrt(3.0) * mean_area));
   const auto edges = geometry::FindEdges(mesh.triangles);
-  auto stiffness =
-      tissue::CalcEdgeStiffness(mesh.positions, mesh.triangles, edges, (1.0 - share) * modulus);
+  auto stiffness = tissue::CalcEdgeStiffness(mesh.positions, mesh.triangles, edges, (1.0 - share) * modulus);
   const auto add = [&](std::uint32_t a, std::uint32_t b, double k) {
     definition.springs.push_back(
         {first + a, first + b, k, math::Distance(mesh.positions[a], mesh.positions[b])});
@@ -129,8 +129,8 @@ void TieEnd(std::uint32_t end, const SurfaceInfo& surface, double stiffness, dou
     definition.strands.push_back({end, near[i].second, stiffness / static_cast<double>(count)});
     made.conservation.strand_binds.push_back(0);
     made.max_elongation.push_back(failure_force / stiffness);
-    made.strand_organs.push_back(surface.radii.empty() ? static_cast<std::int32_t>(&surface - made.surfaces.data())
-                                                       : -1);
+    made.strand_organs.push_back(
+        surface.radii.empty() ? static_cast<std::int32_t>(&surface - made.surfaces.data()) : -1);
   }
 }
 
@@ -186,8 +186,9 @@ core::Result<PatientTissue> MakePatientTissue(const Scene& scene) {
   PatientTissue made;
   if (scene.patient.organs.size() > tissue::kMaxClosedOrgans) {
     return core::Error{core::ErrorCode::kSceneInvalid,
-                       "the patient has " + std::to_string(scene.patient.organs.size()) + " organs; at most " +
-                           std::to_string(tissue::kMaxClosedOrgans) + " can be simulated"};
+                       "the patient has " + std::to_string(scene.patient.organs.size()) +
+                           " organs; at most " + std::to_string(tissue::kMaxClosedOrgans) +
+                           " can be simulated"};
   }
   for (const anatomy::Organ& organ : scene.patient.organs) {
     const OrganMaterial* material = FindMaterial(scene, organ.name);

@@ -13,11 +13,12 @@ namespace trocar::session {
 
 struct PatientTissue {
   tissue::TissueDefinition definition;
-  tissue::ConservationSettings conservation;  ///< every organ keeps its volume; bed strands bind, tube ends turn
-  std::vector<double> max_elongation;        ///< (strands) at which each tears [m]
-  std::vector<std::int32_t> strand_organs;   ///< (strands) index into Patient::organs that it holds, or -1
-  std::vector<double> internal_pressure;     ///< (organs) under which each is filled at the start [Pa]
-  std::vector<SurfaceInfo> surfaces;  ///< organs, then tubes
+  tissue::ConservationSettings
+      conservation;                    ///< every organ keeps its volume; bed strands bind, tube ends turn
+  std::vector<double> max_elongation;  ///< (strands) at which each tears [m]
+  std::vector<std::int32_t> strand_organs;  ///< (strands) index into Patient::organs that it holds, or -1
+  std::vector<double> internal_pressure;    ///< (organs) under which each is filled at the start [Pa]
+  std::vector<SurfaceInfo> surfaces;        ///< organs, then tubes
 };
 
 /// Nodes: every organ's vertices, then every tube's centre line. Springs: mesh edges by van Gelder, tubes

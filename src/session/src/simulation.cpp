@@ -284,10 +284,11 @@ core::Status Simulation::Content::Fill(const std::vector<double>& internal_press
     const double unrest = tissue::FillToPressure(*solver, organ, internal_pressure[organ], {}, *conservation,
                                                  tissue_at_start, conserved_at_start);
     if (!(unrest < kFilledTolerance)) {
-      return core::Error{core::ErrorCode::kSceneInvalid,
-                         "the wall of \"" + surfaces[organ].name +
-                             "\" does not hold its internal pressure; lower internal_pressure_pa, or make the "
-                             "wall stiffer"};
+      return core::Error{
+          core::ErrorCode::kSceneInvalid,
+          "the wall of \"" + surfaces[organ].name +
+              "\" does not hold its internal pressure; lower internal_pressure_pa, or make the "
+              "wall stiffer"};
     }
   }
   return {};
@@ -391,7 +392,8 @@ std::uint64_t Simulation::Hash() const {
   for (const Vec3& p : c.tissue.position) hash.Add(p.x), hash.Add(p.y), hash.Add(p.z);
   for (const auto condition : c.tissue.condition) hash.Add(static_cast<std::uint64_t>(condition));
   for (const tissue::OrganVolume& organ : c.conserved.organs) {
-    for (const double value : {organ.target, organ.pressure, organ.opening_area, organ.leaked}) hash.Add(value);
+    for (const double value : {organ.target, organ.pressure, organ.opening_area, organ.leaked})
+      hash.Add(value);
   }
   for (std::uint32_t region = 0; region < c.conserved.regions.count; ++region) {
     const Pose& X = c.conserved.X_world_rest[region];

@@ -47,7 +47,8 @@ TEST_F(MaterialFile, AFigureWithoutASourceIsRefused) {
   ASSERT_FALSE(missing.ok());
   EXPECT_EQ(missing.error().code, core::ErrorCode::kJsonField);
   EXPECT_NE(missing.error().message.find("young_modulus_pa"), std::string::npos) << missing.error().message;
-  EXPECT_FALSE(ReadOne(Replace(kWall, "\"a table\"", "\"a table\", \"density_kg_m3\": \"nobody asked\"")).ok());
+  EXPECT_FALSE(
+      ReadOne(Replace(kWall, "\"a table\"", "\"a table\", \"density_kg_m3\": \"nobody asked\"")).ok());
 }
 
 TEST_F(MaterialFile, RefusesWhatIsWrong) {
@@ -57,7 +58,8 @@ TEST_F(MaterialFile, RefusesWhatIsWrong) {
   EXPECT_FALSE(ReadOne(Replace(kWall, "\"failure_force_n\": 9", "\"failure_force_n\": 0")).ok());
   EXPECT_FALSE(ReadOne(Replace(kWall, "internal_pressure_pa\": 300", "internal_pressure_pa\": 1e6")).ok());
   const std::string text = kWall;
-  for (std::size_t length = 0; length < text.size(); length += 7) EXPECT_FALSE(ReadOne(text.substr(0, length)).ok());
+  for (std::size_t length = 0; length < text.size(); length += 7)
+    EXPECT_FALSE(ReadOne(text.substr(0, length)).ok());
   std::filesystem::remove(folder_ / "wall.json");
   auto document = core::JsonDocument::Parse(R"({"organ": "gallbladder", "file": "wall.json"})", "test");
   EXPECT_FALSE(ReadMaterial(document->Root(), folder_).ok());
@@ -67,7 +69,8 @@ TEST_F(MaterialFile, ATenseGallbladderStartsUnderItsPressure) {
   Write("wall.json", Replace(kWall, "\"failure_force_n\": 9, ", ""));
   std::string wall = Replace(kWall, " \"failure_force_n\": 9,", "");
   wall = Replace(wall, ", \"failure_force_n\": \"a tunable\"", "");
-  wall = Replace(wall, "\"sources\": {", "\"foundation_modulus_pa\": 3000, \"sources\": {\"foundation_modulus_pa\": \"test\", ");
+  wall = Replace(wall, "\"sources\": {",
+                 "\"foundation_modulus_pa\": 3000, \"sources\": {\"foundation_modulus_pa\": \"test\", ");
   Write("wall.json", wall);
   std::string scene = SceneText();
   const auto from = scene.find("{\"organ\": \"gallbladder\","), to = scene.find('}', from);

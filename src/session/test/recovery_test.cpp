@@ -11,8 +11,8 @@
 namespace trocar::session {
 namespace {
 
-// The demonstration grasps the fundus, lifts it, strokes the body, pulls the infundibulum, and lets go of both: 3 to 5 mm
-// of dent used to stay in the gallbladder.
+// The demonstration grasps the fundus, lifts it, strokes the body, pulls the infundibulum, and lets go of
+// both: 3 to 5 mm of dent used to stay in the gallbladder.
 TEST(Recovery, TheGallbladderComesHomeAfterTheDemonstration) {
   const auto data = FindDataFolder();
   ASSERT_TRUE(data.ok());
@@ -24,7 +24,8 @@ TEST(Recovery, TheGallbladderComesHomeAfterTheDemonstration) {
   const Input home = CalcScriptInput(*scene, 0.0);
   for (int tick = 0; tick < 400; ++tick) still->Step(home);
   double volume_error = 0, highest_pressure = 0;
-  for (int tick = 0; tick < static_cast<int>((scene->script.Duration() + 3.0) / scene->tick_seconds); ++tick) {
+  for (int tick = 0; tick < static_cast<int>((scene->script.Duration() + 3.0) / scene->tick_seconds);
+       ++tick) {
     played->Step(CalcScriptInput(*scene, played->GetSnapshot().time));
     for (const OrganSnapshot& organ : played->GetSnapshot().organs) {
       volume_error = std::max(volume_error, std::fabs(organ.volume / organ.target - 1.0));
@@ -36,7 +37,8 @@ TEST(Recovery, TheGallbladderComesHomeAfterTheDemonstration) {
   const SurfaceInfo& gallbladder = played->Surfaces()[1];
   ASSERT_EQ(gallbladder.name, "gallbladder");
   for (std::uint32_t i = gallbladder.first_node; i < gallbladder.first_node + gallbladder.node_count; ++i) {
-    EXPECT_LT(math::Distance(played->GetSnapshot().positions[i], still->GetSnapshot().positions[i]), 1e-4) << i;
+    EXPECT_LT(math::Distance(played->GetSnapshot().positions[i], still->GetSnapshot().positions[i]), 1e-4)
+        << i;
   }
 }
 

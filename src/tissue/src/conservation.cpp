@@ -13,7 +13,8 @@ namespace {
 /// Relative volume error at which the projection ends [-]; a thousandth of what is promised.
 constexpr double kVolumeTolerance = 1e-7;
 constexpr int kMaxProjections = 8;
-/// No projection changes a volume by more than this share [-]: what is farther off comes home over several ticks.
+/// No projection changes a volume by more than this share [-]: what is farther off comes home over several
+/// ticks.
 constexpr double kMaxVolumeStep = 0.1;
 /// The responses need no more accuracy than this: they steer the search, the constraint itself is exact [-].
 constexpr double kResponseTolerance = 0.02;
@@ -92,8 +93,8 @@ std::span<Vec3> Conservation::OrganPart(std::size_t organ, std::span<Vec3> nodes
   return nodes.subspan(settings_.organs[organ].first_node, settings_.organs[organ].node_count);
 }
 
-/// The displacement by which the tissue at rest, with the strands and scales of now, answers one pascal in each
-/// organ.
+/// The displacement by which the tissue at rest, with the strands and scales of now, answers one pascal in
+/// each organ.
 bool Conservation::UpdateResponses(const TissueState& tissue, const TissueLoad& load, int max_iterations,
                                    double tolerance) noexcept {
   std::copy(tissue.strand_is_intact.begin(), tissue.strand_is_intact.end(), rest_.strand_is_intact.begin());
@@ -231,7 +232,8 @@ void Conservation::FitFrames(const TissueLoad& load, const TissueState& tissue,
         const std::uint32_t other = state.regions.of_node[strand.other];
         if (!tissue.strand_is_intact[strand.strand] || other < region) continue;
         const double share = other == region ? 0.5 : 1.0;  // met from both ends
-        moments.AddOffset(share * load.stiffness_scale * strand.stiffness, model.rest[strand.other] - model.rest[i],
+        moments.AddOffset(share * load.stiffness_scale * strand.stiffness,
+                          model.rest[strand.other] - model.rest[i],
                           tissue.position[strand.other] - tissue.position[i]);
       }
     }
@@ -262,7 +264,8 @@ bool Conservation::CalcSlopes(const TissueState& tissue, ConservationState& stat
       const std::uint32_t region = state.regions.of_node[i];
       const Vec3& u = responses_[organ][i];
       shifts_[organ][i] = tissue.condition[i] == NodeCondition::kPrescribed ? Vec3{}
-                          : region == kPinnedRegion ? u : math::Rotate(state.X_world_rest[region].rotation, u);
+                          : region == kPinnedRegion                         ? u
+                                                    : math::Rotate(state.X_world_rest[region].rotation, u);
     }
   }
   bool is_good = true;
@@ -280,7 +283,8 @@ bool Conservation::CalcSlopes(const TissueState& tissue, ConservationState& stat
 }
 
 /// One Newton step on all volumes with the slopes at hand; false when every volume is at its target.
-bool Conservation::ProjectOnce(TissueState& tissue, std::span<Vec3> before, ConservationState& state) noexcept {
+bool Conservation::ProjectOnce(TissueState& tissue, std::span<Vec3> before,
+                               ConservationState& state) noexcept {
   const std::size_t count = settings_.organs.size();
   SmallVector error{}, lambda{};
   bool is_done = true;
@@ -307,7 +311,8 @@ bool Conservation::ProjectOnce(TissueState& tissue, std::span<Vec3> before, Cons
   return true;
 }
 
-void Conservation::KeepVolumes(TissueState& tissue, std::span<Vec3> before, ConservationState& state) noexcept {
+void Conservation::KeepVolumes(TissueState& tissue, std::span<Vec3> before,
+                               ConservationState& state) noexcept {
   if (!has_slopes_ || !MeasureVolumes(tissue, state)) return;
   (void)ProjectOnce(tissue, before, state);
   SetPressureForce(state);
@@ -342,6 +347,10 @@ void Conservation::Enforce(const TissueLoad& load, double dt, TissueState& tissu
           std::span(tissue.position).subspan(surface.first_node, surface.node_count), surface.triangles);
     }
   }
+  // the forces that load.external_force views become those of the state that is left: reactions and judges
+  // read them
+  (void)MeasureVolumes(tissue, state);
+  SetPressureForce(state);
   FitFrames(load, tissue, state);
   std::copy(tissue.position.begin(), tissue.position.end(), state.last_position.begin());
 }

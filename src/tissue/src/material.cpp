@@ -80,7 +80,8 @@ double CalcBendingShare(double thickness, double height) {
   constexpr double kMostBending = 0.75;
   constexpr double kPoisson = 1.0 / 3.0, kRightAngle = 0.5 * M_PI;
   const double ratio = thickness / height;
-  return std::min(kMostBending, 16.0 / 3.0 / (1.0 - kPoisson * kPoisson) / (kRightAngle * kRightAngle) * ratio * ratio);
+  return std::min(kMostBending,
+                  16.0 / 3.0 / (1.0 - kPoisson * kPoisson) / (kRightAngle * kRightAngle) * ratio * ratio);
 }
 
 std::vector<double> CalcFoundationStiffness(std::span<const double> vertex_areas, double modulus,

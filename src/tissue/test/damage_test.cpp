@@ -15,7 +15,8 @@ class TearStrandsTest : public testing::Test {
     for (int i = 0; i < 4; ++i) {
       definition.rest.push_back({0.01 * i, 0, 0});
       definition.rest.push_back({0.01 * i, 0, 0.001});
-      definition.strands.push_back({static_cast<std::uint32_t>(2 * i), static_cast<std::uint32_t>(2 * i + 1), 50.0});
+      definition.strands.push_back(
+          {static_cast<std::uint32_t>(2 * i), static_cast<std::uint32_t>(2 * i + 1), 50.0});
     }
     definition.mass.assign(8, 0.0);
     definition.shape_stiffness.assign(8, 1.0);

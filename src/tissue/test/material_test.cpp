@@ -34,7 +34,8 @@ TEST(CalcBendingSprings, OfEquilateralTrianglesAreTheSecondNeighbourLattice) {
   EXPECT_EQ(springs.size(), 40u) << "one for each inner edge";
   for (const BendingSpring& spring : springs) {
     EXPECT_LT(spring.a, spring.b);
-    EXPECT_NEAR(math::Distance(mesh.positions[spring.a], mesh.positions[spring.b]), 0.003 * std::sqrt(3.0), 1e-12);
+    EXPECT_NEAR(math::Distance(mesh.positions[spring.a], mesh.positions[spring.b]), 0.003 * std::sqrt(3.0),
+                1e-12);
     EXPECT_NEAR(spring.stiffness, std::sqrt(3.0) / 6.0 * 510.0, 1e-9);
   }
 }
@@ -46,8 +47,8 @@ TEST(CalcBendingSprings, CornersThatFaceEachOtherTwiceShareOneSpring) {
   EXPECT_EQ(CalcBendingSprings(mesh.positions, mesh.triangles, 1.0).size(), 6u);
 }
 
-/// Modulus E t and Poisson's ratio of a periodic-free patch in plane strain, from energies of small pure strains of its
-/// inner springs: exact for any lattice whose springs deform affinely.
+/// Modulus E t and Poisson's ratio of a periodic-free patch in plane strain, from energies of small pure
+/// strains of its inner springs: exact for any lattice whose springs deform affinely.
 struct Elasticity {
   double modulus, poisson;
 };
@@ -56,7 +57,8 @@ Elasticity MeasureLattice(double bending_share) {
   const double side = 0.003, membrane = 510.0;
   const auto mesh = geometry::MakeTriangularLattice(n, n, side);
   const auto edges = geometry::FindEdges(mesh.triangles);
-  const auto stiffness = CalcEdgeStiffness(mesh.positions, mesh.triangles, edges, (1 - bending_share) * membrane);
+  const auto stiffness =
+      CalcEdgeStiffness(mesh.positions, mesh.triangles, edges, (1 - bending_share) * membrane);
   struct Link {
     Vec3 along;
     double k;

@@ -13,8 +13,8 @@ namespace trocar::tissue {
 /// A strand that nothing tears [m].
 inline constexpr double kNeverTears = std::numeric_limits<double>::infinity();
 
-/// Tears every intact strand that is longer than at rest by more than its limit. Elongation does not change when a
-/// freed organ is turned, so no frame is needed; a force limit F is the elongation F / k.
+/// Tears every intact strand that is longer than at rest by more than its limit. Elongation does not change
+/// when a freed organ is turned, so no frame is needed; a force limit F is the elongation F / k.
 ///
 /// \param max_elongation  (strands) [m], > 0 or kNeverTears
 /// \param[out] torn       indices of the strands torn now, lowest first; more tear than it has room for
