@@ -20,6 +20,8 @@ constexpr double kMaxVolumeStep = 0.1;
 constexpr double kResponseTolerance = 0.02;
 constexpr double kFirstResponseTolerance = 1e-4;
 constexpr int kFirstResponseIterations = 5000;
+/// Least share of a projection's pressure that is taken over [-].
+constexpr double kLeastPressureShare = 0.02;
 /// Iterations a tick while the responses follow a change of topology or of the stiffness scales.
 constexpr int kResponseIterationsPerTick = 12;
 
@@ -172,6 +174,7 @@ std::span<const Vec3> Conservation::CalcForce(const TissueState& tissue, const T
   }
   AddFrameForce(tissue, load, state);
   has_slopes_ = CalcSlopes(tissue, state);
+  for (OrganVolume& organ : state.organs) organ.last_excess = 0;
   SetPressureForce(state);
   return force_;
 }
@@ -300,7 +303,7 @@ bool Conservation::ProjectOnce(TissueState& tissue, std::span<Vec3> before,
     OrganVolume& organ = state.organs[i];
     // through a hole gas enters before the sac is sucked in
     if (organ.opening_area > 0.0) lambda[i] = std::fmax(lambda[i], -organ.pressure);
-    organ.pressure += lambda[i];
+    organ.pressure += organ.pressure_share * lambda[i];
   }
   for (std::size_t k = 0; k < tissue.position.size(); ++k) {
     Vec3 shift;
@@ -311,9 +314,26 @@ bool Conservation::ProjectOnce(TissueState& tissue, std::span<Vec3> before,
   return true;
 }
 
+/// Aitken's rule: the pressure moved by the share, the excess fell from `last` to `now`; a share for which it
+/// would have fallen to nothing. A wrinkled sac answers a pressure by far more volume than the sac at rest
+/// did.
+void Conservation::LearnPressureShare(ConservationState& state) const noexcept {
+  for (OrganVolume& organ : state.organs) {
+    const double now = organ.volume - organ.target, last = organ.last_excess;
+    organ.last_excess = now;
+    const double share = organ.pressure_share * last / (last - now);
+    if (std::fabs(last) > kVolumeTolerance * organ.target && share > 0.0) {
+      organ.pressure_share = std::clamp(share, kLeastPressureShare, 1.0);
+    }
+  }
+}
+
 void Conservation::KeepVolumes(TissueState& tissue, std::span<Vec3> before,
                                ConservationState& state) noexcept {
   if (!has_slopes_ || !MeasureVolumes(tissue, state)) return;
+  // a solver that extrapolates is under way between two projections; its volumes do not answer the pressure
+  // yet
+  if (before.empty()) LearnPressureShare(state);
   (void)ProjectOnce(tissue, before, state);
   SetPressureForce(state);
 }

@@ -46,6 +46,10 @@ struct OrganVolume {
   double compliance = 0;    ///< dV/dP of the last Enforce [m^3/Pa]
   double opening_area = 0;  ///< of perforations [m^2]; 0: sealed
   double leaked = 0;        ///< since the start [m^3]
+  /// Share of a projection's pressure that is taken over [-]: what the response overestimates is learnt from
+  /// two volumes in a row, while a solver that goes the whole way answers each pressure.
+  double pressure_share = 1;
+  double last_excess = 0;  ///< volume above its target before the last projection of this solve [m^3]
 };
 
 /// What a tick changes; saved and restored by copying, beside TissueState.
@@ -104,6 +108,7 @@ class Conservation {
                      const ConservationState& state) noexcept;
   bool MeasureVolumes(const TissueState& tissue, ConservationState& state) noexcept;
   bool CalcSlopes(const TissueState& tissue, ConservationState& state) noexcept;
+  void LearnPressureShare(ConservationState& state) const noexcept;
   bool ProjectOnce(TissueState& tissue, std::span<Vec3> before, ConservationState& state) noexcept;
   void SetPressureForce(const ConservationState& state) noexcept;
   void Leak(double dt, ConservationState& state) const noexcept;
