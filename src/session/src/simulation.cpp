@@ -78,6 +78,7 @@ struct Simulation::Content {
   LiveSettings settings;
   tissue::TissueLoad load;
   tissue::SolveReport report;
+  tissue::ConservationState good_conserved;             // after the last good tick
   std::vector<tissue::NodeCondition> solved_condition;  // a grasp may slip once the forces are known
   std::array<Pose, kHandCount> X_world_tools;
   std::array<surgery::GraspChange, kHandCount> changes{};
@@ -165,7 +166,13 @@ void Simulation::Content::Solve() noexcept {
 }
 
 void Simulation::Content::CheckState() noexcept {
-  verdict = guard->Check(tissue);
+  verdict = guard->Check(tissue, report.is_finite);
+  // what a bad tick left in the pressures and frames goes with it
+  if (verdict == tissue::GuardVerdict::kGood) {
+    good_conserved = conserved;
+  } else {
+    conserved = good_conserved;
+  }
   for (int hand = 0; hand < kHandCount; ++hand) {
     const auto contact =
         surgery::CalcContactReaction(contacts, static_cast<std::uint8_t>(hand), tissue.position);
@@ -269,6 +276,7 @@ void Simulation::Content::Reset() {
   snapshot = {};
   snapshot.positions.resize(tissue_model.Size());
   solved_condition = tissue.condition;
+  good_conserved = conserved;
   snapshot.organs.resize(conserved.organs.size());
   UpdateHierarchy();
   ReadInputs(home);

@@ -4,16 +4,21 @@
 /// Newton's method with multigrid is exact and, from the last tick's positions, short; from a flat start it would walk
 /// in steps of a fraction of a spring's length. There, on a structured mesh, accelerated descent from coarse to fine comes
 /// within a thousandth for the price of one or two Newton steps; and where virtual springs bound the lowest eigenvalue it
-/// ends by itself, with a bound on its error. See docs/decisions/0014.
+/// ends by itself, with a bound on its error. With a hook that does not name its constraints the double-precision
+/// recurrence runs. See
+/// docs/decisions/0014.
 #include "solver_content.h"
 
 namespace trocar::tissue {
 SolveReport SolveAdaptive(EquilibriumSolver::Content& c, const SolverSettings& settings, const TissueLoad& load,
                           TissueState& state, const SolveHook* hook) noexcept {
+  // A hook that does not say what it keeps: a whole Newton step between two projections undoes it, and
+  // pressure and shape then swing about each other. The recurrence takes it along every few iterations.
+  if (hook != nullptr && hook->constraints.empty()) return SolveChebyshevJacobiWang2015(c, settings, load, state, hook);
   SolveReport descent;
-  if (c.accelerated->IsStructured()) {
+  if (hook == nullptr && c.accelerated->IsStructured()) {
     if (c.accelerated->IsCold(state) || c.accelerated->IsWellConditioned(load)) {
-      descent = c.accelerated->Solve(*c.kernels, *c.workers, settings, load, state, hook);
+      descent = c.accelerated->Solve(*c.kernels, *c.workers, settings, load, state, nullptr);
       if (descent.converged) return descent;
     }
   }

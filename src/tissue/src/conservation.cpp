@@ -20,8 +20,6 @@ constexpr double kMaxVolumeStep = 0.1;
 constexpr double kResponseTolerance = 0.02;
 constexpr double kFirstResponseTolerance = 1e-4;
 constexpr int kFirstResponseIterations = 5000;
-/// Least share of a projection's pressure that is taken over [-].
-constexpr double kLeastPressureShare = 0.02;
 /// Iterations a tick while the responses follow a change of topology or of the stiffness scales.
 constexpr int kResponseIterationsPerTick = 12;
 
@@ -63,6 +61,9 @@ Conservation::Conservation(const TissueModel& model, ConservationSettings settin
     : model_(&model), settings_(std::move(settings)), linear_(model), rest_(MakeRestState(model)) {
   const std::size_t n = model.Size();
   TROCAR_ASSERT(settings_.organs.size() <= kMaxClosedOrgans);
+  static_assert(kMaxClosedOrgans <= kMaxHookConstraints);
+  for (const ClosedOrgan& organ : settings_.organs)
+    constraints_.push_back({organ.first_node, organ.node_count});
   gradient_.resize(n);
   base_force_.resize(n);
   force_.resize(n);
@@ -174,7 +175,6 @@ std::span<const Vec3> Conservation::CalcForce(const TissueState& tissue, const T
   }
   AddFrameForce(tissue, load, state);
   has_slopes_ = CalcSlopes(tissue, state);
-  for (OrganVolume& organ : state.organs) organ.last_excess = 0;
   SetPressureForce(state);
   return force_;
 }
@@ -293,7 +293,7 @@ bool Conservation::ProjectOnce(TissueState& tissue, std::span<Vec3> before,
   bool is_done = true;
   for (std::size_t i = 0; i < count; ++i) {
     const OrganVolume& organ = state.organs[i];
-    const bool is_open = organ.opening_area > 0.0 && organ.pressure == 0.0 && organ.volume > organ.target;
+    const bool is_open = !IsSealed(organ);
     const double limit = kMaxVolumeStep * organ.target;
     error[i] = is_open ? 0.0 : std::clamp(organ.target - organ.volume, -limit, limit);
     is_done = is_done && std::fabs(error[i]) <= kVolumeTolerance * organ.target;
@@ -303,7 +303,7 @@ bool Conservation::ProjectOnce(TissueState& tissue, std::span<Vec3> before,
     OrganVolume& organ = state.organs[i];
     // through a hole gas enters before the sac is sucked in
     if (organ.opening_area > 0.0) lambda[i] = std::fmax(lambda[i], -organ.pressure);
-    organ.pressure += organ.pressure_share * lambda[i];
+    organ.pressure += lambda[i];
   }
   for (std::size_t k = 0; k < tissue.position.size(); ++k) {
     Vec3 shift;
@@ -314,27 +314,17 @@ bool Conservation::ProjectOnce(TissueState& tissue, std::span<Vec3> before,
   return true;
 }
 
-/// Aitken's rule: the pressure moved by the share, the excess fell from `last` to `now`; a share for which it
-/// would have fallen to nothing. A wrinkled sac answers a pressure by far more volume than the sac at rest
-/// did.
-void Conservation::LearnPressureShare(ConservationState& state) const noexcept {
-  for (OrganVolume& organ : state.organs) {
-    const double now = organ.volume - organ.target, last = organ.last_excess;
-    organ.last_excess = now;
-    const double share = organ.pressure_share * last / (last - now);
-    if (std::fabs(last) > kVolumeTolerance * organ.target && share > 0.0) {
-      organ.pressure_share = std::clamp(share, kLeastPressureShare, 1.0);
-    }
-  }
-}
-
 void Conservation::KeepVolumes(TissueState& tissue, std::span<Vec3> before,
                                ConservationState& state) noexcept {
   if (!has_slopes_ || !MeasureVolumes(tissue, state)) return;
-  // a solver that extrapolates is under way between two projections; its volumes do not answer the pressure
-  // yet
-  if (before.empty()) LearnPressureShare(state);
   (void)ProjectOnce(tissue, before, state);
+  SetPressureForce(state);
+}
+
+void Conservation::AddPressure(std::size_t organ, double change, ConservationState& state) noexcept {
+  double& pressure = state.organs[organ].pressure;
+  pressure += change;
+  if (state.organs[organ].opening_area > 0.0) pressure = std::fmax(pressure, 0.0);
   SetPressureForce(state);
 }
 
@@ -384,11 +374,20 @@ SolveReport SolveConserving(EquilibriumSolver& solver, const SolverSettings& set
     Conservation* conservation;
     ConservationState* state;
   } context{&conservation, &state};
-  const SolveHook hook{[](void* self, TissueState& moved, std::span<Vec3> before) noexcept {
-                         const Context& kept = *static_cast<Context*>(self);
-                         kept.conservation->KeepVolumes(moved, before, *kept.state);
-                       },
-                       &context, kProjectionInterval};
+  SolveHook hook{[](void* self, TissueState& moved, std::span<Vec3> before) noexcept {
+                   const Context& kept = *static_cast<Context*>(self);
+                   kept.conservation->KeepVolumes(moved, before, *kept.state);
+                 },
+                 &context, kProjectionInterval};
+  hook.constraints = conservation.Constraints();
+  hook.gradient = conservation.VolumeGradient();
+  hook.is_active = [](void* self, std::size_t organ) noexcept {
+    return Conservation::IsSealed(static_cast<Context*>(self)->state->organs[organ]);
+  };
+  hook.add_multiplier = [](void* self, std::size_t organ, double change) noexcept {
+    const Context& kept = *static_cast<Context*>(self);
+    kept.conservation->AddPressure(organ, change, *kept.state);
+  };
   const SolveReport report = solver.Solve(settings, load, tissue, &hook);
   conservation.Enforce(load, dt, tissue, state);
   return report;

@@ -2,12 +2,29 @@
 #include "trocar/tissue/equilibrium.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "node_force.h"
 #include "solver_content.h"
 #include "trocar/core/assert.h"
 
 namespace trocar::tissue {
+
+namespace {
+
+/// True where everything that a solve takes is finite.
+bool IsFinite(const TissueLoad& load, const TissueState& state) noexcept {
+  bool is_finite = math::IsFinite(load.gravity) && std::isfinite(load.stiffness_scale) && std::isfinite(load.shape_scale);
+  for (const ContactSpring& c : load.contacts) {
+    is_finite = is_finite && math::IsFinite(c.normal) && std::isfinite(c.offset) && std::isfinite(c.stiffness) &&
+                std::isfinite(c.weights[0]) && std::isfinite(c.weights[1]) && std::isfinite(c.weights[2]);
+  }
+  for (const Vec3& f : load.external_force) is_finite = is_finite && math::IsFinite(f);
+  for (const Vec3& p : state.position) is_finite = is_finite && math::IsFinite(p);
+  return is_finite;
+}
+
+}  // namespace
 
 EquilibriumSolver::EquilibriumSolver(const TissueModel& model, int threads)
     : EquilibriumSolver(model, SolverOptions{.threads = threads}) {}
@@ -48,6 +65,7 @@ SolveReport EquilibriumSolver::Solve(const SolverSettings& settings, const Tissu
   TROCAR_ASSERT(state.position.size() == content_->model->Size());
   TROCAR_ASSERT(load.contacts.size() <= kMaxContacts);
   Content& c = *content_;
+  if (!IsFinite(load, state)) return {.is_finite = false};
   if (settings.kind == SolverKind::kRelaxationPaper) return SolveRelaxationPaper(c, settings, load, state, hook);
   if (settings.kind == SolverKind::kGaussSeidelBrown2001)
     return SolveGaussSeidelBrown2001(c, settings, load, state, hook);

@@ -46,28 +46,31 @@ Vec3 LineariseSprings(const OrderedModel& model, double scale, std::span<const V
                       LinkLevel& level, std::span<float> stiffness, double& largest, double& energy) noexcept {
   const Vec3 here = position[i];
   Vec3 force;
-  for (std::uint32_t step = 0; step < model.layout.RowSteps(i); ++step) {
-    const std::size_t entry = model.layout.Entry(i, step);
+  const std::size_t first = model.layout.Entry(i, 0), last = first + std::size_t{model.layout.RowSteps(i)} * kSliceNodes;
+  float* link = level.links.data() + first / kSliceNodes * 6 * kSliceNodes + first % kSliceNodes;
+  double stored = 0, most = 0;
+  for (std::size_t entry = first; entry < last; entry += kSliceNodes, link += 6 * kSliceNodes) {
     const std::uint32_t other = model.layout.others[entry];
     if (other == i) break;
     const double k = scale * model.stiffness[entry], rest = model.rest_length[entry];
     const Vec3 along = position[other] - here;
     const double length = std::sqrt(math::SquaredNorm(along));
-    Symmetric3 link{};
-    if (length > 0.0) {
-      const double inverse = 1.0 / length, b = k * rest * inverse;
-      force += (k - b) * along;
-      AddIsotropic(link, k - b);
-      AddDirection(link, inverse * along, b);
-    } else {
-      AddIsotropic(link, k);
-    }
-    const double stretch = length - rest;
-    largest = std::fmax(largest, k * std::fabs(stretch));
-    energy += 0.25 * k * stretch * stretch;
-    Write(link, level.links.data() + entry / kSliceNodes * 6 * kSliceNodes + entry % kSliceNodes);
+    const double inverse = length > 0.0 ? 1.0 / length : 0.0, b = k * rest * inverse, across = k - b;
+    const double bend = b * inverse * inverse;  // times the extent twice: b u u^T
+    force += across * along;
+    link[0] = static_cast<float>(across + bend * along.x * along.x);
+    link[kSliceNodes] = static_cast<float>(bend * along.x * along.y);
+    link[2 * kSliceNodes] = static_cast<float>(bend * along.x * along.z);
+    link[3 * kSliceNodes] = static_cast<float>(across + bend * along.y * along.y);
+    link[4 * kSliceNodes] = static_cast<float>(bend * along.y * along.z);
+    link[5 * kSliceNodes] = static_cast<float>(across + bend * along.z * along.z);
     stiffness[entry] = static_cast<float>(k);
+    const double tension = k * std::fabs(length - rest);
+    most = tension > most ? tension : most;
+    stored += tension * std::fabs(length - rest);
   }
+  largest = most;
+  energy += 0.25 * stored;
   return force;
 }
 

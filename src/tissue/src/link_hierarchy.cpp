@@ -190,11 +190,13 @@ void LinkHierarchy::UpdateCoarse(std::size_t at, std::span<const float> stiffnes
       next->is_free[level.aggregate[i]] = 1.0f;
       AddTo(block, 1.0, next->ground, GroundAt(level.aggregate[i]));
     }
-    for (std::uint32_t step = 0; step < level.layout.RowSteps(i); ++step) {
-      const std::size_t entry = level.layout.Entry(i, step);
+    const std::size_t first = level.layout.Entry(i, 0), last = first + std::size_t{level.layout.RowSteps(i)} * kSliceNodes;
+    const float* from = level.links.data() + LinkAt(first);
+    for (std::size_t entry = first; entry < last; entry += kSliceNodes, from += 6 * kSliceNodes) {
       const std::uint32_t other = level.layout.others[entry];
-      if (other == i) continue;
-      Symmetric3 link = ReadSymmetric(level.links, LinkAt(entry));
+      if (other == i) break;
+      Symmetric3 link;
+      for (std::size_t v = 0; v < 6; ++v) link[v] = static_cast<double>(from[v * kSliceNodes]);
       if (at == 0) RemoveCompression(link, static_cast<double>(stiffness[entry]));
       for (std::size_t v = 0; v < 6; ++v) block[v] += link[v];
       if (next == nullptr) continue;

@@ -12,7 +12,7 @@ namespace {
 /// The part of the tolerated error that the linear solution may leave [-].
 constexpr double kLinearShare = 0.3;
 /// The preconditioned residual sees at least this part of the error [-]; measured, see docs/tissue.md.
-constexpr double kEstimateShare = 0.5;
+constexpr double kEstimateShare = 0.2;
 /// Longest move of a node in the first Newton step, in mean spring lengths [-]: the stiffness is that of springs that
 /// have not turned far. Conjugate gradients stop where they leave this range (Steihaug, "The conjugate gradient method
 /// and trust regions in large scale optimization", SIAM J. Numer. Anal. 20, 1983): by then the stiff part of the step
@@ -27,6 +27,7 @@ constexpr int kMaxHalvings = 6;
 constexpr double kLeastDecrease = 1e-4;
 /// Rounding of the energy, as a part of it [-].
 constexpr double kEnergyRounding = 1e-12;
+constexpr std::uint8_t kNoConstraint = 255;
 
 Float4 ToFloat(const Vec3& v) {
   return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z), 0.0f};
@@ -53,6 +54,9 @@ NewtonMultigrid::NewtonMultigrid(const TissueModel& model)
   balance_.residual.resize(n), balance_.node_force.resize(n);
   is_pressing_.resize(kMaxContacts);
   for (auto* vector : {&step_, &r_, &z_, &p_, &q_}) vector->resize(padded);
+  constraint_of_node_.assign(n, kNoConstraint);
+  gradient_.resize(padded);
+  for (auto& answer : answers_) answer.resize(padded);
   double sum = 0;
   std::size_t count = 0;
   for (const double rest : model_.rest_length) sum += rest, count += rest > 0.0;
@@ -96,6 +100,67 @@ void NewtonMultigrid::Multiply(const Kernels& kernels, Workers& workers, const F
   }
 }
 
+void NewtonMultigrid::SetConstraints(const Kernels& kernels, Workers& workers, const SolveHook* hook) noexcept {
+  constraint_count_ = 0;
+  if (hook == nullptr || hook->constraints.empty()) return;
+  std::fill(constraint_of_node_.begin(), constraint_of_node_.end(), kNoConstraint);
+  std::fill(gradient_.begin(), gradient_.end(), Float4{});
+  for (std::size_t index = 0; index < hook->constraints.size(); ++index) {
+    if (!hook->is_active(hook->self, index)) continue;
+    const auto place = static_cast<std::uint8_t>(constraint_count_);
+    const SolveHook::Constraint& constraint = hook->constraints[index];
+    std::fill(q_.begin(), q_.end(), Float4{});
+    for (std::uint32_t k = 0; k < constraint.node_count; ++k) {
+      const std::uint32_t i = model_.new_of_old[constraint.first_node + k];
+      if (!load_.is_free[i]) continue;
+      constraint_of_node_[i] = place;
+      q_[i] = gradient_[i] = ToFloat(hook->gradient[constraint.first_node + k]);
+    }
+    hierarchy_.Apply(kernels, workers, q_.data(), answers_[place].data());
+    constraint_index_[place] = index;
+    ++constraint_count_;
+  }
+  for (auto& row : gram_) row.fill(0.0);
+  for (std::uint32_t i = 0; i < model_.Size(); ++i) {
+    if (constraint_of_node_[i] == kNoConstraint) continue;
+    for (std::size_t b = 0; b < constraint_count_; ++b)
+      gram_[constraint_of_node_[i]][b] += Dot(gradient_[i], answers_[b][i]);
+  }
+}
+
+void NewtonMultigrid::Precondition(const Kernels& kernels, Workers& workers) noexcept {
+  hierarchy_.Apply(kernels, workers, r_.data(), z_.data());
+  multipliers_.fill(0.0);
+  if (constraint_count_ == 0) return;
+  std::array<double, kMaxHookConstraints> along{};
+  for (std::uint32_t i = 0; i < model_.Size(); ++i) {
+    if (constraint_of_node_[i] != kNoConstraint) along[constraint_of_node_[i]] += Dot(gradient_[i], z_[i]);
+  }
+  // few and well apart: elimination without pivots; the matrix is positive definite
+  auto matrix = gram_;
+  for (std::size_t c = 0; c < constraint_count_; ++c) {
+    for (std::size_t row = c + 1; row < constraint_count_; ++row) {
+      const double factor = matrix[c][c] > 0.0 ? matrix[row][c] / matrix[c][c] : 0.0;
+      for (std::size_t k = c; k < constraint_count_; ++k) matrix[row][k] -= factor * matrix[c][k];
+      along[row] -= factor * along[c];
+    }
+  }
+  for (std::size_t c = constraint_count_; c-- > 0;) {
+    double sum = along[c];
+    for (std::size_t k = c + 1; k < constraint_count_; ++k) sum -= matrix[c][k] * multipliers_[k];
+    multipliers_[c] = matrix[c][c] > 0.0 ? sum / matrix[c][c] : 0.0;
+  }
+  for (std::size_t c = 0; c < constraint_count_; ++c) {
+    const auto m = static_cast<float>(multipliers_[c]);
+    const std::vector<Float4>& answer = answers_[c];
+    ForEachNodeChunk(workers, z_.size(), [&](std::uint32_t first, std::uint32_t last, std::uint32_t) {
+      for (std::uint32_t i = first; i < last; ++i) {
+        z_[i].x -= m * answer[i].x, z_[i].y -= m * answer[i].y, z_[i].z -= m * answer[i].z;
+      }
+    });
+  }
+}
+
 NewtonMultigrid::LinearReport NewtonMultigrid::SolveLinear(const Kernels& kernels, Workers& workers,
                                                            int max_iterations, double tolerance,
                                                            double radius) noexcept {
@@ -125,8 +190,9 @@ NewtonMultigrid::LinearReport NewtonMultigrid::SolveLinear(const Kernels& kernel
       }
     });
     ++report.iterations;
+    if (is_leaving && constraint_count_ == 0) break;
+    Precondition(kernels, workers);
     if (is_leaving) break;
-    hierarchy_.Apply(kernels, workers, r_.data(), z_.data());
     if (FindLongest(workers, z_) <= tolerance) break;
     const double next =
         SumOverNodes(workers, n, [&](std::uint32_t i) { return Dot(r_[i], z_[i]); });
@@ -161,6 +227,8 @@ SolveReport NewtonMultigrid::Solve(const Kernels& kernels, Workers& workers, con
   const auto call_hook = [&] {
     if (hook == nullptr) return;
     write_back();
+    for (std::size_t c = 0; c < constraint_count_; ++c)
+      hook->add_multiplier(hook->self, constraint_index_[c], -multipliers_[c]);
     hook->act(hook->self, state, {});
     for (std::uint32_t i = 0; i < n; ++i) position_[i] = state.position[model_.old_of_new[i]];
     SetOrderedLoad(model_, load, state, load_);
@@ -172,7 +240,8 @@ SolveReport NewtonMultigrid::Solve(const Kernels& kernels, Workers& workers, con
     ForEachNodeChunk(workers, n, [&](std::uint32_t first, std::uint32_t last, std::uint32_t) {
       for (std::uint32_t i = first; i < last; ++i) r_[i] = ToFloat(balance_.residual[i]);
     });
-    hierarchy_.Apply(kernels, workers, r_.data(), z_.data());
+    SetConstraints(kernels, workers, hook);
+    Precondition(kernels, workers);
     scale = std::sqrt(FindLargestOfNodes(
         workers, n, [&](std::uint32_t i) { return math::SquaredDistance(position_[i], model_.rest[i]); }));
     const double largest = FindLongest(workers, z_);
@@ -189,6 +258,7 @@ SolveReport NewtonMultigrid::Solve(const Kernels& kernels, Workers& workers, con
   while (!report.converged && report.iterations < settings.max_newton_steps && balance_.is_finite) {
     const double before = balance_.energy;
     const double tolerance = kLinearShare * kEstimateShare * settings.max_error * scale;
+    const auto first_multipliers = multipliers_;
     const LinearReport linear = SolveLinear(kernels, workers, settings.max_linear_iterations, tolerance, radius);
     report.linear_iterations += linear.iterations;
     report.negative_curvatures += linear.met_negative_curvature;
@@ -220,6 +290,9 @@ SolveReport NewtonMultigrid::Solve(const Kernels& kernels, Workers& workers, con
       estimate();
       break;
     }
+    // what the constraints carry of the residual after this part of the step
+    for (std::size_t c = 0; c < constraint_count_; ++c)
+      multipliers_[c] = std::fmin(share, 1.0) * multipliers_[c] + (1.0 - std::fmin(share, 1.0)) * first_multipliers[c];
     // a constraint is kept after every step, whatever the hook's interval: a step here is worth many iterations
     call_hook();
     hierarchy_.Update(stiffness_);

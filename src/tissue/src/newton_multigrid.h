@@ -3,6 +3,7 @@
 /// preconditions.
 #pragma once
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -30,6 +31,10 @@ class NewtonMultigrid {
   /// is below `tolerance` [m], or until a node has moved by `radius` [m].
   LinearReport SolveLinear(const Kernels& kernels, Workers& workers, int max_iterations, double tolerance,
                            double radius) noexcept;
+  /// Takes the gradients of the active constraints, and what the preconditioner answers to each.
+  void SetConstraints(const Kernels& kernels, Workers& workers, const SolveHook* hook) noexcept;
+  /// z_ = about K^-1 r_ on the constraints; multipliers_ is what of r_ they carry.
+  void Precondition(const Kernels& kernels, Workers& workers) noexcept;
   void Multiply(const Kernels& kernels, Workers& workers, const Float4* x, Float4* out) noexcept;
   void AddContactGround() noexcept;
 
@@ -41,6 +46,14 @@ class NewtonMultigrid {
   Balance balance_;
   std::vector<std::uint8_t> is_pressing_;  // (contacts) when last linearised
   std::vector<Float4> step_, r_, z_, p_, q_;
+  // constraints of the present step; their gradients share no node
+  std::size_t constraint_count_ = 0;
+  std::array<std::size_t, kMaxHookConstraints> constraint_index_{};  // in the hook
+  std::vector<std::uint8_t> constraint_of_node_;                      // (n) place in this list, or kNoConstraint
+  std::vector<Float4> gradient_;                                      // (padded)
+  std::array<std::vector<Float4>, kMaxHookConstraints> answers_;      // (padded) M^-1 gradient
+  std::array<std::array<double, kMaxHookConstraints>, kMaxHookConstraints> gram_{};  // gradient . answer
+  std::array<double, kMaxHookConstraints> multipliers_{};
   double edge_length_ = 0;  // mean rest length of the springs [m]
 };
 

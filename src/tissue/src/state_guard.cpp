@@ -8,8 +8,8 @@ namespace trocar::tissue {
 StateGuard::StateGuard(const TissueModel& model, double max_displacement)
     : model_(&model), max_displacement_(max_displacement), good_(model.rest) {}
 
-GuardVerdict StateGuard::Check(TissueState& state) noexcept {
-  bool is_good = !IsFrozen();
+GuardVerdict StateGuard::Check(TissueState& state, bool is_solve_finite) noexcept {
+  bool is_good = !IsFrozen() && is_solve_finite;
   const double limit2 = max_displacement_ * max_displacement_;
   for (std::size_t i = 0; is_good && i < good_.size(); ++i) {
     // a NaN fails every comparison, so it is caught here too

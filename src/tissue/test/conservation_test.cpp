@@ -265,8 +265,9 @@ TEST(Conservation, AFreedOrganIsCarriedAwayUndeformed) {
   EXPECT_GT(CarryAway(false), 5e-3) << "negative control: a fixed frame holds it back";
 }
 
-// Newton's method goes the whole way at each pressure; a sac that hangs wrinkled answers a pressure by more
-// volume than at rest, and without learning that the two would swing for ever.
+// A sac that hangs wrinkled answers a pressure by more volume than at rest: a solver that went the whole way
+// at each pressure would swing for ever. Wrinkles have several equilibria close to each other, hence a
+// hundredth.
 TEST(Conservation, NewtonSettlesOnTheSamePressureAsTheChebyshevIteration) {
   const auto hang = [](const SolverSettings& settings) {
     Sac sac(3e4);
@@ -290,7 +291,7 @@ TEST(Conservation, NewtonSettlesOnTheSamePressureAsTheChebyshevIteration) {
   newton.kind = SolverKind::kNewtonMultigrid;
   newton.max_error = 1e-6;
   EXPECT_GT(chebyshev, 100.0);
-  EXPECT_NEAR(hang(newton) / chebyshev, 1.0, 1e-3);
+  EXPECT_NEAR(hang(newton) / chebyshev, 1.0, 1e-2);
 }
 
 // Imaged organs lie on others; what hangs on the jaws alone weighs on them whole.

@@ -53,6 +53,9 @@ enum class ErrorCode {
   // simulation
   kStateNotFinite,
   kOrganFrozen,
+  kTissueInvalid,
+  kUnstableStep,
+  kOutOfMemory,
   // drawing and video
   kNoGraphics,
   kGraphicsTooOld,

@@ -20,7 +20,7 @@
 namespace trocar::tissue {
 
 /// Most organs whose volume is kept.
-inline constexpr std::size_t kMaxClosedOrgans = 16;
+inline constexpr std::size_t kMaxClosedOrgans = 8;
 
 /// A closed surface among the nodes of a model.
 struct ClosedOrgan {
@@ -46,10 +46,6 @@ struct OrganVolume {
   double compliance = 0;    ///< dV/dP of the last Enforce [m^3/Pa]
   double opening_area = 0;  ///< of perforations [m^2]; 0: sealed
   double leaked = 0;        ///< since the start [m^3]
-  /// Share of a projection's pressure that is taken over [-]: what the response overestimates is learnt from
-  /// two volumes in a row, while a solver that goes the whole way answers each pressure.
-  double pressure_share = 1;
-  double last_excess = 0;  ///< volume above its target before the last projection of this solve [m^3]
 };
 
 /// What a tick changes; saved and restored by copying, beside TissueState.
@@ -75,7 +71,9 @@ class Conservation {
 
   /// Takes held free pieces along: the rigid motion that their held nodes made since the last Enforce moves
   /// the rest of the piece and its frame. A better start for the solver than a piece left behind, which would
-  /// crumple. \note Real-time safe.
+  /// crumple.
+  ///
+  /// \note Real-time safe.
   void CarryAlong(TissueState& tissue, ConservationState& state) noexcept;
 
   /// Force of pressure, frames and weight of free pieces, for one solve.
@@ -87,15 +85,31 @@ class Conservation {
                                   ConservationState& state) noexcept;
 
   /// Between iterations: one projection of the volumes, with the pressures that go with it; the force of
-  /// CalcForce follows. \param before  see SolveHook \note Real-time safe.
+  /// CalcForce follows. \param before  see SolveHook
+  ///
+  /// \note Real-time safe.
   void KeepVolumes(TissueState& tissue, std::span<Vec3> before, ConservationState& state) noexcept;
+
+  /// Gradient of each node's organ's volume where it was last evaluated, (n) [m^2].
+  std::span<const Vec3> VolumeGradient() const { return gradient_; }
+  /// The nodes of each organ, for SolveHook::constraints.
+  std::span<const SolveHook::Constraint> Constraints() const { return constraints_; }
+  /// False for an organ out of which fluid runs freely.
+  static bool IsSealed(const OrganVolume& organ) noexcept {
+    return !(organ.opening_area > 0.0 && organ.pressure == 0.0 && organ.volume > organ.target);
+  }
+  /// Adds to an organ's pressure, not below zero where it has a hole; the force of CalcForce follows. [Pa]
+  /// \note Real-time safe.
+  void AddPressure(std::size_t organ, double change, ConservationState& state) noexcept;
 
   /// After a solve: lets fluid leak for `dt` [s], brings each volume to its target exactly, and moves the
   /// frames of held free regions to their best fit. \note Real-time safe; a state that is not finite is left
   /// for the state guard.
   void Enforce(const TissueLoad& load, double dt, TissueState& tissue, ConservationState& state) noexcept;
 
-  /// Makes a hole, or a larger one, in an organ. \param area  [m^2], >= 0, added
+  /// Makes a hole, or a larger one, in an organ.
+  ///
+  /// \param area  [m^2], >= 0, added
   void Perforate(std::size_t organ, double area, ConservationState& state) const;
 
   const ConservationSettings& Settings() const { return settings_; }
@@ -108,7 +122,6 @@ class Conservation {
                      const ConservationState& state) noexcept;
   bool MeasureVolumes(const TissueState& tissue, ConservationState& state) noexcept;
   bool CalcSlopes(const TissueState& tissue, ConservationState& state) noexcept;
-  void LearnPressureShare(ConservationState& state) const noexcept;
   bool ProjectOnce(TissueState& tissue, std::span<Vec3> before, ConservationState& state) noexcept;
   void SetPressureForce(const ConservationState& state) noexcept;
   void Leak(double dt, ConservationState& state) const noexcept;
@@ -128,7 +141,8 @@ class Conservation {
   std::vector<Vec3> gradient_;    // (n) of each node's organ; zero elsewhere
   std::vector<Vec3> base_force_;  // (n) without pressure
   std::vector<Vec3> force_;       // (n)
-  SmallMatrix slopes_{};          // dV_i by one pascal in organ j, of this tick [m^3/Pa]
+  std::vector<SolveHook::Constraint> constraints_;
+  SmallMatrix slopes_{};  // dV_i by one pascal in organ j, of this tick [m^3/Pa]
   bool has_slopes_ = false;
   FreeRegions next_regions_;
 };
@@ -140,7 +154,9 @@ inline constexpr int kProjectionInterval = 5;
 /// One tick's equilibrium with shape and volume kept: carry along, solve with projections, enforce.
 ///
 /// \param[in,out] load  external_force is added to, and left as the solver saw it, so that CalcReaction
-/// agrees \param dt  length of the tick, for what leaks [s] \note Real-time safe.
+/// agrees \param dt  length of the tick, for what leaks [s]
+///
+/// \note Real-time safe.
 SolveReport SolveConserving(EquilibriumSolver& solver, const SolverSettings& settings, double dt,
                             Conservation& conservation, TissueLoad& load, TissueState& tissue,
                             ConservationState& state) noexcept;

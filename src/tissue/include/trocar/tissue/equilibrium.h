@@ -26,6 +26,9 @@ struct SolveReport {
   int coarse_levels = 0;        ///< grids that a coarse-to-fine start went through
   int linear_iterations = 0;    ///< of conjugate gradients, all Newton steps together
   int negative_curvatures = 0;  ///< Newton steps that met a direction in which the energy is not convex
+  /// False where positions, loads, scales or contacts were not finite; then nothing was solved, or not to the end. Give
+  /// it to StateGuard::Check.
+  bool is_finite = true;
   int restarts = 0;        ///< how often the acceleration was taken back because the residual grew
 };
 
@@ -43,7 +46,20 @@ struct SolveHook {
   void (*act)(void* self, TissueState& state, std::span<Vec3> before) noexcept = nullptr;
   void* self = nullptr;
   int interval = 1;  ///< iterations from one call to the next, >= 1
+
+  /// The constraints themselves, for a solver whose steps are too long to leave them to act(): constraint c keeps
+  /// sum_i gradient_i . x_i over its nodes, and its multiplier pushes each node along its gradient. Steps then stay on
+  /// the constraints, and act() corrects what is of second order.
+  struct Constraint {
+    std::uint32_t first_node = 0, node_count = 0;
+  };
+  std::span<const Constraint> constraints;  ///< at most kMaxHookConstraints
+  std::span<const Vec3> gradient;           ///< (n), of each node's constraint; act() keeps it up to date
+  bool (*is_active)(void* self, std::size_t constraint) noexcept = nullptr;
+  /// Adds to a multiplier; the forces that load.external_force views follow.
+  void (*add_multiplier)(void* self, std::size_t constraint, double change) noexcept = nullptr;
 };
+inline constexpr std::size_t kMaxHookConstraints = 8;
 
 /// Memory of the solvers, made once for a model so that a solve allocates nothing.
 class EquilibriumSolver {

@@ -25,8 +25,10 @@ class StateGuard {
   explicit StateGuard(const TissueModel& model, double max_displacement = 0.5);
 
   /// Checks, restores where needed, and remembers a good state.
+  /// \param is_solve_finite  SolveReport::is_finite: what a tick takes from elsewhere may be bad although the positions
+  ///                         are not
   /// \note Real-time safe.
-  GuardVerdict Check(TissueState& state) noexcept;
+  GuardVerdict Check(TissueState& state, bool is_solve_finite = true) noexcept;
   bool IsFrozen() const noexcept { return bad_in_a_row_ >= kMaxRetries; }
   /// Takes the state as good and lets the nodes move again.
   void Release(const TissueState& state) noexcept;
