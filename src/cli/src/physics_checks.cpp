@@ -160,8 +160,8 @@ PhysicsCheck CheckIndentation() {
                      "beside each other do not pull "
                      "on each other, so a small tool feels far less until the capsule is stretched.",
                      {},
-                     {"Force on the punch", "depth [mm]", "force [N]"},
-                     {{"simulated", {}}, {"foundation alone", {}}, {"half-space", {}}}};
+                     {"Punch force", "depth [mm]", "force [N]"},
+                     {{"simulated", {}}, {"foundation", {}}, {"half-space", {}}}};
   const double half_space = tissue::CalcPunchStiffness(5400.0, 0.5, radius);
   double area = 0;
   std::vector<std::uint32_t> punch;
