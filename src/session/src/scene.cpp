@@ -85,7 +85,8 @@ void ReadSettings(const core::JsonView& root, LiveSettings& settings) {
       view.IntegerOr("max_iterations", settings.solver.max_iterations, {1, 100'000});
   settings.solver.tolerance = view.NumberOr("tolerance", settings.solver.tolerance, {0.0, 1.0});
   settings.solver.max_error = view.NumberOr("max_error", settings.solver.max_error, {1e-9, 1.0});
-  settings.solver.max_newton_steps = view.IntegerOr("max_newton_steps", settings.solver.max_newton_steps, {1, 1000});
+  settings.solver.max_newton_steps =
+      view.IntegerOr("max_newton_steps", settings.solver.max_newton_steps, {1, 1000});
   const std::string solver = view.TextOr("solver", "adaptive");
   if (const auto kind = tissue::FindSolverKind(solver); kind) {
     settings.solver.kind = *kind;

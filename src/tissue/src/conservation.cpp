@@ -13,7 +13,8 @@ namespace {
 /// Relative volume error at which the projection ends [-]; a thousandth of what is promised.
 constexpr double kVolumeTolerance = 1e-7;
 constexpr int kMaxProjections = 8;
-/// No projection changes a volume by more than this share [-]: what is farther off comes home over several ticks.
+/// No projection changes a volume by more than this share [-]: what is farther off comes home over several
+/// ticks.
 constexpr double kMaxVolumeStep = 0.1;
 /// The responses need no more accuracy than this: they steer the search, the constraint itself is exact [-].
 constexpr double kResponseTolerance = 0.02;
@@ -61,7 +62,8 @@ Conservation::Conservation(const TissueModel& model, ConservationSettings settin
   const std::size_t n = model.Size();
   TROCAR_ASSERT(settings_.organs.size() <= kMaxClosedOrgans);
   static_assert(kMaxClosedOrgans <= kMaxHookConstraints);
-  for (const ClosedOrgan& organ : settings_.organs) constraints_.push_back({organ.first_node, organ.node_count});
+  for (const ClosedOrgan& organ : settings_.organs)
+    constraints_.push_back({organ.first_node, organ.node_count});
   gradient_.resize(n);
   base_force_.resize(n);
   force_.resize(n);
@@ -93,8 +95,8 @@ std::span<Vec3> Conservation::OrganPart(std::size_t organ, std::span<Vec3> nodes
   return nodes.subspan(settings_.organs[organ].first_node, settings_.organs[organ].node_count);
 }
 
-/// The displacement by which the tissue at rest, with the strands and scales of now, answers one pascal in each
-/// organ.
+/// The displacement by which the tissue at rest, with the strands and scales of now, answers one pascal in
+/// each organ.
 bool Conservation::UpdateResponses(const TissueState& tissue, const TissueLoad& load, int max_iterations,
                                    double tolerance) noexcept {
   std::copy(tissue.strand_is_intact.begin(), tissue.strand_is_intact.end(), rest_.strand_is_intact.begin());
@@ -232,7 +234,8 @@ void Conservation::FitFrames(const TissueLoad& load, const TissueState& tissue,
         const std::uint32_t other = state.regions.of_node[strand.other];
         if (!tissue.strand_is_intact[strand.strand] || other < region) continue;
         const double share = other == region ? 0.5 : 1.0;  // met from both ends
-        moments.AddOffset(share * load.stiffness_scale * strand.stiffness, model.rest[strand.other] - model.rest[i],
+        moments.AddOffset(share * load.stiffness_scale * strand.stiffness,
+                          model.rest[strand.other] - model.rest[i],
                           tissue.position[strand.other] - tissue.position[i]);
       }
     }
@@ -271,7 +274,8 @@ bool Conservation::CalcSlopes(const TissueState& tissue, ConservationState& stat
 }
 
 /// One Newton step on all volumes with the slopes at hand; false when every volume is at its target.
-bool Conservation::ProjectOnce(TissueState& tissue, std::span<Vec3> before, ConservationState& state) noexcept {
+bool Conservation::ProjectOnce(TissueState& tissue, std::span<Vec3> before,
+                               ConservationState& state) noexcept {
   const std::size_t count = settings_.organs.size();
   SmallVector error{}, lambda{};
   bool is_done = true;
@@ -298,7 +302,8 @@ bool Conservation::ProjectOnce(TissueState& tissue, std::span<Vec3> before, Cons
   return true;
 }
 
-void Conservation::KeepVolumes(TissueState& tissue, std::span<Vec3> before, ConservationState& state) noexcept {
+void Conservation::KeepVolumes(TissueState& tissue, std::span<Vec3> before,
+                               ConservationState& state) noexcept {
   if (!CalcSlopes(tissue, state)) return;
   (void)ProjectOnce(tissue, before, state);
   SetPressureForce(state);
