@@ -110,7 +110,7 @@ ContourCurve InsertPoints(const EdgePath& edge, const ContourFitSettings& settin
     std::vector<Vec2> points;
     for (const Control& c : controls) points.push_back(c.at);
     ContourCurve curve = FitContourCurve(points, settings.spline);
-    if (round == kMaxRounds) return curve;
+    if (!settings.is_inserting || round == kMaxRounds) return curve;
     std::vector<Control> denser;
     for (std::size_t i = 0; i < controls.size(); ++i) {
       denser.push_back(controls[i]);
