@@ -190,7 +190,7 @@ TEST_F(Workspace, PreviewOfACylinderHasItsVolume) {
     ASSERT_TRUE(mesh.ok()) << mesh.error().Text();
     EXPECT_TRUE(mesh->is_closed);
     EXPECT_TRUE(mesh->is_manifold);
-    EXPECT_LE(mesh->mesh.triangles.size(), 5000u);
+    EXPECT_LE(mesh->mesh.triangles.size(), 5132u) << "the liver's budget";
     // 5 gaps of 4 mm, and half a gap of caps that close as paraboloids: between the bare and the padded
     // column
     const double disc = M_PI * kRadius * kRadius / 1000;
@@ -309,7 +309,7 @@ class Autosave : public testing::Test {
     points.axes = {"left", "posterior", "superior"};
     Structure liver{.name = "liver", .triangle_budget = 1000};
     SliceContours slice{1, {}, {}, {}};
-    for (int i = 0; i < count; ++i) slice.open.push_back({i % 1000 + 0.5, i / 1000 + 0.25});
+    for (int i = 0; i < count; ++i) slice.open.push_back({i % 900 + 0.5, i / 900 + 0.25});
     if (count > 0) liver.slices = {slice};
     points.structures = {liver};
     return points;

@@ -250,6 +250,9 @@ void ContourWindow::FinishLoading() {
   autosave_.reset();
   prefetcher_.reset();
   workspace_ = std::make_unique<anatomy::ContourWorkspace>(std::move(*opened));
+  // a run that nobody watches leaves no side file and asks nothing
+  const bool is_watched = options_.screenshot.empty() && !options_.is_measuring;
+  if (is_watched) OfferRecovered();
   editor_ = std::make_unique<ContourEditor>(*workspace_);
   editor_->on_error = [this](const core::Error& error) {
     if (error.code == core::ErrorCode::kEditRefused) return Tell(error.message, true);
@@ -264,9 +267,7 @@ void ContourWindow::FinishLoading() {
   reference_.set_sensitive(workspace_->HasReference());
   reference_.set_active(workspace_->HasReference() && options_.screenshot.empty());
   SetText(series_text_, SeriesText(workspace_->Series()));
-  // a run that nobody watches leaves no side file and asks nothing
-  if (options_.screenshot.empty() && !options_.is_measuring) {
-    OfferRecovered();
+  if (is_watched) {
     autosave_ = std::make_unique<anatomy::ContourAutosave>(AutosaveFile());
     if (workspace_->Document().IsDirty()) autosave_->Offer(workspace_->Document().Text());
     autosave_timer_.disconnect();
@@ -309,6 +310,8 @@ void ContourWindow::OfferRecovered() {
                                                 if (workspace_ == nullptr) return;
                                                 workspace_->Replace(saved);
                                                 workspace_->Document().MarkSaved();
+                editor_->Choose({});
+                editor_->ChooseStructure(0);
                                                 if (autosave_ != nullptr) autosave_->Discard();
                                                 OnEdited();
                                               }}});

@@ -121,6 +121,7 @@ class ContourWindow : public Gtk::ApplicationWindow {
     std::vector<double> fit, paint, frame;  // [s]
   };
   Measured measured_;
+  int screenshot_tries_ = 0;
   double last_frame_ = 0, measure_begin_ = 0;
   std::uint64_t last_paints_ = 0;
 };

@@ -37,7 +37,6 @@ bool ContourWindow::Save() {
     ChooseAndSave([] {});
     return false;
   }
-  const auto before = AutosaveFile();
   if (const auto status = workspace_->Save(file); !status.ok()) {
     Report(status.error());
     return false;

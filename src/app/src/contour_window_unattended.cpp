@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kLongestRun = 180;    // a run that hangs must not hang a test [s]
 constexpr double kMeasureSeconds = 6;  // of dragging
+constexpr int kMostTries = 20;         // for a screenshot
 constexpr std::size_t kWarmUp = 10;    // first frames do not count
 
 double Quantile(std::vector<double> values, double part) {
@@ -165,8 +166,14 @@ void ContourWindow::SaveScreenshot() {
                                         : gsk_renderer_render_texture(
                                               gtk_native_get_renderer(GTK_NATIVE(gobj())), node, nullptr);
   const bool is_saved = texture != nullptr && gdk_texture_save_to_png(texture, options_.screenshot.c_str());
+  const bool is_drawn = texture != nullptr;
   if (texture != nullptr) g_object_unref(texture);
   if (node != nullptr) gsk_render_node_unref(node);
+  // a window that is being laid out anew has nothing to show for a moment
+  if (!is_drawn && ++screenshot_tries_ < kMostTries) {
+    Glib::signal_timeout().connect_once(sigc::mem_fun(*this, &ContourWindow::SaveScreenshot), 100);
+    return;
+  }
   if (!is_saved) {
     return Abandon({core::ErrorCode::kFileUnwritable, "cannot write " + options_.screenshot.string() +
                                                           ": check the folder and its permissions"});

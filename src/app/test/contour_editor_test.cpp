@@ -71,8 +71,10 @@ TEST_F(Editor, ClicksDrawAContourAndADoubleClickClosesIt) {
   EXPECT_TRUE(editor_->Here().open.empty());
   ASSERT_EQ(editor_->Here().contours.size(), 1u);
   EXPECT_EQ(editor_->Here().contours[0].size(), 8u);
-  // 30 pixels of 0.5 mm: 7.07 cm2
-  EXPECT_NE(SliceText(*editor_).find("7.1 cm"), std::string::npos) << SliceText(*editor_);
+  // 30 pixels of 0.5 mm
+  const double area = CalcArea(**editor_->Fit(), 0.5);
+  EXPECT_NEAR(area, M_PI * 15 * 15, 0.04 * M_PI * 15 * 15);
+  EXPECT_NE(SliceText(*editor_).find("1 contour \u00b7 8 points"), std::string::npos) << SliceText(*editor_);
 }
 
 TEST_F(Editor, AClickOnTheFirstPointCloses) {

@@ -29,7 +29,7 @@ struct SliceFit {
 
 /// How much work a fit is worth.
 enum class FitEffort {
-  kQuick,  ///< while a point is dragged: adaption and spline, no points inserted between
+  kQuick,  ///< while a point is dragged: adaption and a coarser spline, no points inserted between
   kWhole,
 };
 

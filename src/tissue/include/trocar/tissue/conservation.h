@@ -71,7 +71,9 @@ class Conservation {
 
   /// Takes held free pieces along: the rigid motion that their held nodes made since the last Enforce moves
   /// the rest of the piece and its frame. A better start for the solver than a piece left behind, which would
-  /// crumple. \note Real-time safe.
+  /// crumple.
+  ///
+  /// \note Real-time safe.
   void CarryAlong(TissueState& tissue, ConservationState& state) noexcept;
 
   /// Force of pressure, frames and weight of free pieces, for one solve.
@@ -83,7 +85,9 @@ class Conservation {
                                   ConservationState& state) noexcept;
 
   /// Between iterations: one projection of the volumes, with the pressures that go with it; the force of
-  /// CalcForce follows. \param before  see SolveHook \note Real-time safe.
+  /// CalcForce follows. \param before  see SolveHook
+  ///
+  /// \note Real-time safe.
   void KeepVolumes(TissueState& tissue, std::span<Vec3> before, ConservationState& state) noexcept;
 
   /// Gradient of each node's organ's volume where it was last evaluated, (n) [m^2].
@@ -103,7 +107,9 @@ class Conservation {
   /// for the state guard.
   void Enforce(const TissueLoad& load, double dt, TissueState& tissue, ConservationState& state) noexcept;
 
-  /// Makes a hole, or a larger one, in an organ. \param area  [m^2], >= 0, added
+  /// Makes a hole, or a larger one, in an organ.
+  ///
+  /// \param area  [m^2], >= 0, added
   void Perforate(std::size_t organ, double area, ConservationState& state) const;
 
   const ConservationSettings& Settings() const { return settings_; }
@@ -114,8 +120,7 @@ class Conservation {
   void UpdateRegions(const TissueState& tissue, ConservationState& state) noexcept;
   void AddFrameForce(const TissueState& tissue, const TissueLoad& load,
                      const ConservationState& state) noexcept;
-  Vec3 CalcResponse(std::size_t organ, std::size_t node, const TissueState& tissue,
-                    const ConservationState& state) const noexcept;
+  bool MeasureVolumes(const TissueState& tissue, ConservationState& state) noexcept;
   bool CalcSlopes(const TissueState& tissue, ConservationState& state) noexcept;
   bool ProjectOnce(TissueState& tissue, std::span<Vec3> before, ConservationState& state) noexcept;
   void SetPressureForce(const ConservationState& state) noexcept;
@@ -129,6 +134,7 @@ class Conservation {
   LinearResponse linear_;
   TissueState rest_;
   std::vector<std::vector<Vec3>> responses_;  // per organ (n): displacement by 1 Pa, in the rest frame [m/Pa]
+  std::vector<std::vector<Vec3>> shifts_;     // the same where nodes are now; zero where they are held
   double stiffness_scale_ = 1, shape_scale_ = 1;  // for which the responses were found
   std::uint64_t response_strands_ = 0;
   bool responses_settled_ = false;
@@ -136,18 +142,21 @@ class Conservation {
   std::vector<Vec3> base_force_;  // (n) without pressure
   std::vector<Vec3> force_;       // (n)
   std::vector<SolveHook::Constraint> constraints_;
-  SmallMatrix slopes_{};  // dV_i by one pascal in organ j [m^3/Pa]
+  SmallMatrix slopes_{};  // dV_i by one pascal in organ j, of this tick [m^3/Pa]
+  bool has_slopes_ = false;
   FreeRegions next_regions_;
 };
 
-/// Iterations from one projection to the next. Projections alone every 40 let a sac under 10 kPa swing by a
-/// tenth of its volume; every 5 hold it to 1e-7 (Conservation.* tests).
+/// Iterations from one projection to the next. Solves at constant pressure let a sac under 10 kPa swing by a
+/// tenth of its volume from tick to tick: the softer it gets, the less may happen between two projections.
 inline constexpr int kProjectionInterval = 5;
 
 /// One tick's equilibrium with shape and volume kept: carry along, solve with projections, enforce.
 ///
 /// \param[in,out] load  external_force is added to, and left as the solver saw it, so that CalcReaction
-/// agrees \param dt  length of the tick, for what leaks [s] \note Real-time safe.
+/// agrees \param dt  length of the tick, for what leaks [s]
+///
+/// \note Real-time safe.
 SolveReport SolveConserving(EquilibriumSolver& solver, const SolverSettings& settings, double dt,
                             Conservation& conservation, TissueLoad& load, TissueState& tissue,
                             ConservationState& state) noexcept;

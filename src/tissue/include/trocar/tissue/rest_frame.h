@@ -29,7 +29,9 @@ struct MotionMoments {
   Vec3 rest_sum, sum;             ///< weighted, about the origins
   std::array<double, 9> outer{};  ///< sum w x r^T, row by row, about the origins
 
-  /// Counts |x - (R r + t)|^2 with `w`. \param w  [N/m], >= 0
+  /// Counts |x - (R r + t)|^2 with `w`.
+  ///
+  /// \param w  [N/m], >= 0
   void AddPoint(double w, const Vec3& rest, const Vec3& position) noexcept;
   /// Counts |d - R o|^2 with `w`: an offset that turns with the piece but does not place it.
   void AddOffset(double w, const Vec3& rest_offset, const Vec3& offset) noexcept;
@@ -43,7 +45,9 @@ struct MotionMoments {
 /// The completion vanishes when the rotation repeats, so a rotation that has settled is the exact best fit.
 ///
 /// \param previous  rotation of the last fit: the result is continuous from there, sign of the quaternion
-/// included \return `previous` and no shift when nothing has weight \note Real-time safe. Source: Horn,
+/// included \return `previous` and no shift when nothing has weight
+///
+/// \note Real-time safe. Source: Horn,
 /// "Closed-form solution of absolute orientation using unit quaternions", JOSA A 4(4), 1987.
 Pose FitRigidMotion(const MotionMoments& moments, const Quaternion& previous) noexcept;
 
