@@ -199,9 +199,10 @@ SolveReport AcceleratedDescent::SolveGrid(const Kernels& kernels, Workers& worke
     ++report.coarse_levels;
   }
   if (levels > 1) finest.Interpolate(grids_[1]);
+  const int check_every = IsWellConditioned(load) ? CalcCycle(finest.LowestEigenvalue()) : kCheckEvery;
   while (report.iterations < settings.max_iterations) {
     // the scale of the error is known only from the displacements
-    const int some = std::min(settings.max_iterations - report.iterations, kCheckEvery);
+    const int some = std::min(settings.max_iterations - report.iterations, check_every);
     const double force = settings.max_error * finest.LargestDisplacement() * finest.SmallestShape();
     report.iterations += RunCycles(finest, kernels, workers, some, force, residual, [] {});
     const double bound = finest.SmallestShape() * finest.LargestDisplacement();
@@ -256,8 +257,9 @@ SolveReport AcceleratedDescent::SolveSlices(const Kernels& kernels, Workers& wor
     }
   };
   double residual = 0;
+  const int check_every = IsWellConditioned(load) ? CalcCycle(slices_->LowestEigenvalue()) : kCheckEvery;
   while (report.iterations < settings.max_iterations) {
-    const int some = std::min(settings.max_iterations - report.iterations, kCheckEvery);
+    const int some = std::min(settings.max_iterations - report.iterations, check_every);
     const double scale = slices_->LargestDisplacement();
     report.iterations += RunCycles(*slices_, kernels, workers, some,
                                    settings.max_error * scale * slices_->SmallestShape(), residual, refresh);
