@@ -19,6 +19,7 @@ constexpr double kBand = 6.0;        // beyond the reach, where the colours of t
 constexpr double kRegion =
     0.1;  // weight of the colours on either side, a pixel, against the strongest edge [-]
 constexpr double kSlightest = 0.05;  // rises below this count in full nowhere [1 / pixel]
+constexpr int kClimb = 6;            // columns from where the inside ends to the steepest place
 constexpr int kMaxJump = 2;          // columns between neighbouring rows
 constexpr int kMaxRounds = 6;        // of insertion
 constexpr std::size_t kClosest = 3;  // rows between two points at least
@@ -55,8 +56,16 @@ EdgePath FindEdge(const EdgeField& field, std::span<const Vec2> polyline, double
   const auto path = FindClosedPath(cost, strip.rows, columns, settings.smoothness, kMaxJump);
   for (std::size_t row = 0; row < strip.rows; ++row) {
     const float* here = &gradient[row * columns];
-    const int k = path[row];
-    const bool is_edge = here[k] >= least && evidence.rise[row * columns + k] > 0;
+    int k = path[row];
+    // the inside ends where the blurred edge begins; the edge itself is the steepest place next to it
+    for (int climbed = 0; climbed < kClimb; ++climbed) {
+      const int next = k + 1 < columns && here[k + 1] > here[k] ? k + 1
+                       : k > 0 && here[k - 1] > here[k]         ? k - 1
+                                                                : k;
+      if (next == k) break;
+      k = next;
+    }
+    const bool is_edge = here[k] >= least && evidence.rise[row * columns + path[row]] > 0;
     double offset = 0.0;
     if (k > 0 && k + 1 < columns) {
       const double bend = here[k - 1] - 2.0 * here[k] + here[k + 1];
@@ -101,7 +110,7 @@ ContourCurve InsertPoints(const EdgePath& edge, const ContourFitSettings& settin
     std::vector<Vec2> points;
     for (const Control& c : controls) points.push_back(c.at);
     ContourCurve curve = FitContourCurve(points, settings.spline);
-    if (round == kMaxRounds) return curve;
+    if (!settings.is_inserting || round == kMaxRounds) return curve;
     std::vector<Control> denser;
     for (std::size_t i = 0; i < controls.size(); ++i) {
       denser.push_back(controls[i]);

@@ -207,6 +207,9 @@ std::vector<TubePoints> PlaceDucts(const TriangleMesh& liver, const TriangleMesh
   const auto is_yes = [&](std::string_view name) { return TextOf(parameters, name) == "yes"; };
   const std::string& insertion = TextOf(parameters, "cystic_duct_insertion");
   const double cystic_radius = 0.5 * number("cystic_duct_diameter");
+  // the duct leaves the gallbladder as a funnel, but no wider than a cystic duct may be
+  constexpr double kWidestMouthMm = 2.45;
+  const double cystic_mouth = std::max(cystic_radius, std::min(1.25 * cystic_radius, kWidestMouthMm));
   const double hepatic_radius = 0.5 * number("hepatic_duct_diameter");
   const double bile_radius = 0.5 * number("bile_duct_diameter");
   const double cystic_length = number("cystic_duct_length");
@@ -272,7 +275,7 @@ std::vector<TubePoints> PlaceDucts(const TriangleMesh& liver, const TriangleMesh
                                  bile_length, kBehind);
 
   std::vector<TubePoints> tubes = {MakeTubePoints("cystic_duct", "duct", "gallbladder", "common_bile_duct",
-                                                  cystic, 1.25 * cystic_radius, cystic_radius),
+                                                  cystic, cystic_mouth, cystic_radius),
                                    MakeTubePoints("common_hepatic_duct", "duct", "liver", "common_bile_duct",
                                                   hepatic, 0.85 * hepatic_radius, hepatic_radius),
                                    MakeTubePoints("common_bile_duct", "duct", "common_hepatic_duct",

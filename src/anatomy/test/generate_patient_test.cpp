@@ -94,6 +94,12 @@ TEST(GeneratePatient, TwentySeedsAreSoundAndOfTheirSize) {
   }
 }
 
+TEST(GeneratePatient, AWideCysticDuctHasAMouthThatTheLinterAccepts) {
+  const auto patient = GeneratePatient(30, std::vector<ParameterSetting>{{"cystic_duct_diameter", "4.9"}});
+  ASSERT_TRUE(patient.ok());
+  ExpectSound(*patient, "4.9 mm");
+}
+
 TEST(GeneratePatient, SameSeedGivesTheSameBits) {
   const auto first = GeneratePatient(5), second = GeneratePatient(5), other = GeneratePatient(6);
   ASSERT_TRUE(first.ok() && second.ok() && other.ok());

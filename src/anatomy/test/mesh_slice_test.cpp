@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "../src/mesh_slice.h"
+#include "mesh_slice.h"
 
 #include <gtest/gtest.h>
 

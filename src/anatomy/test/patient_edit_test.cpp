@@ -90,7 +90,8 @@ TEST(PaintRegion, StrandsFollowTheBed) {
   };
   const auto now = as_set(patient), once = as_set(BuiltIn());
   std::vector<std::pair<std::uint32_t, std::uint32_t>> different;
-  std::set_symmetric_difference(now.begin(), now.end(), once.begin(), once.end(), std::back_inserter(different));
+  std::set_symmetric_difference(now.begin(), now.end(), once.begin(), once.end(),
+                                std::back_inserter(different));
   EXPECT_LT(different.size(), once.size() / 50);
   // a vertex far from the liver joins the region, and no strand crosses the belly
   Patient whole = BuiltIn();

@@ -310,8 +310,8 @@ void ContourWindow::OfferRecovered() {
                                                 if (workspace_ == nullptr) return;
                                                 workspace_->Replace(saved);
                                                 workspace_->Document().MarkSaved();
-                editor_->Choose({});
-                editor_->ChooseStructure(0);
+                                                editor_->Choose({});
+                                                editor_->ChooseStructure(0);
                                                 if (autosave_ != nullptr) autosave_->Discard();
                                                 OnEdited();
                                               }}});

@@ -98,13 +98,15 @@ std::string DescribeEvent(const session::Event& event, const session::Scene& sce
       return Capitalised(organ) + ": was not finite, last good state restored (E-SIM-001)";
     case session::EventKind::kOrganFrozen:
       return Capitalised(organ) + ": held still, press R to reset (E-SIM-002)";
+    case session::EventKind::kTear:
+      return event.organ < 0 ? "A duct or vessel was torn off" : Capitalised(organ) + ": an attachment tore";
   }
   return "";
 }
 
 bool IsWarning(session::EventKind kind) noexcept {
   return kind == session::EventKind::kSlip || kind == session::EventKind::kStateRestored ||
-         kind == session::EventKind::kOrganFrozen;
+         kind == session::EventKind::kOrganFrozen || kind == session::EventKind::kTear;
 }
 
 std::string StageLabel(session::Stage stage) {

@@ -37,6 +37,7 @@ void AddAnatomyPhantomCommand(CLI::App& anatomy, Outcome& outcome);
 void AddAnatomyViewCommand(CLI::App& anatomy, Outcome& outcome);
 void AddAnatomyImagesCommand(CLI::App& anatomy, Outcome& outcome);
 void AddBenchCommand(CLI::App& app, Outcome& outcome);
+void AddReproduceCommand(CLI::App& app, Outcome& outcome);
 void AddDoctorCommand(CLI::App& app, Outcome& outcome);
 void AddErrorsCommand(CLI::App& app, Outcome& outcome);
 

@@ -56,6 +56,7 @@ void MotionLog::Record(const session::Snapshot& snapshot) {
         break;
       case EventKind::kStateRestored:
       case EventKind::kOrganFrozen:
+      case EventKind::kTear:
         break;
     }
   }

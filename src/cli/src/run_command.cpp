@@ -76,6 +76,7 @@ int ParseAndRun(int argc, char** argv) {
   AddSimulateCommand(app, outcome);
   AddAnatomyCommand(app, outcome);
   AddBenchCommand(app, outcome);
+  AddReproduceCommand(app, outcome);
   AddDoctorCommand(app, outcome);
   AddErrorsCommand(app, outcome);
   try {

@@ -18,7 +18,7 @@ using math::Vec3;
 using tissue::SolverKind;
 
 constexpr double kNodeLoad = 0.001, kCentreLoad = 0.5;  // [N]
-constexpr double kPaperAlpha = 0.1;                     // alpha k, generous: the printed constants are 500 times slower
+constexpr double kPaperAlpha = 0.1;  // alpha k, generous: the printed constants are 500 times slower
 // what the plain evaluation of the balance may leave at the truth, as a part of the load on a node [-]
 constexpr double kTrueBalance = 1e-6;
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file tissue_benchmark_grids.cpp  The largest grid of the paper: one iteration, and the way to equilibrium.
+/// \file tissue_benchmark_grids.cpp  The largest grid of the paper: one iteration, and the way to
+/// equilibrium.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -18,17 +19,18 @@ using tissue::TissueState;
 constexpr int kSide = 208;
 // the iterations of a solve less those of a shorter one: what a solve costs once does not count
 constexpr int kShortRun = 100, kLongRun = 300;
-constexpr int kPaperIterations = 4;    // at a time, by turns with ours
-constexpr int kPaperCheck = 50;        // iterations between two looks at the relaxation's error
+constexpr int kPaperIterations = 4;  // at a time, by turns with ours
+constexpr int kPaperCheck = 50;      // iterations between two looks at the relaxation's error
 constexpr int kPaperLimit = 20'000;
-constexpr double kAllowedError = 5e-4;   // of the largest displacement [-]
-constexpr double kWarmError = 0.01;      // of the change [-]
+constexpr double kAllowedError = 5e-4;  // of the largest displacement [-]
+constexpr double kWarmError = 0.01;     // of the change [-]
 
 double LargestDisplacement(const GridCase& grid, const TissueState& state) {
   return CalcDistance(state, grid.start);
 }
 
-/// Time of one accelerated iteration [s], by turns with the paper's; every number of threads gives the same bits.
+/// Time of one accelerated iteration [s], by turns with the paper's; every number of threads gives the same
+/// bits.
 core::Status RunIterations(const std::string& name, const GridCase& grid, bool as_grid,
                            const BenchmarkOptions& options, BenchmarkResult& result) {
   const auto make = [&](int threads) {
@@ -86,10 +88,9 @@ core::Result<double> TimeRelaxation(const std::string& name, const GridCase& gri
   return WrongAnswer(name, "the paper's relaxation does not get there");
 }
 
-core::Status AddSolve(const std::string& name, double seconds, const tissue::SolveReport& report, double error,
-                      double allowed, BenchmarkResult& result) {
-  if (!(error < allowed))
-    return WrongAnswer(name, "the true error is " + std::to_string(error));
+core::Status AddSolve(const std::string& name, double seconds, const tissue::SolveReport& report,
+                      double error, double allowed, BenchmarkResult& result) {
+  if (!(error < allowed)) return WrongAnswer(name, "the true error is " + std::to_string(error));
   result.cases.push_back({name, 1e3 * seconds, "ms"});
   result.cases.push_back({name + "/iterations", static_cast<double>(report.iterations), "1"});
   result.cases.push_back({name + "/true_error", error, "1"});
@@ -97,8 +98,8 @@ core::Status AddSolve(const std::string& name, double seconds, const tissue::Sol
 }
 
 /// From flat to the allowed error with the solver that runs.
-core::Result<TissueState> RunCold(const std::string& name, const GridCase& grid, const BenchmarkOptions& options,
-                                  double& seconds, BenchmarkResult& result) {
+core::Result<TissueState> RunCold(const std::string& name, const GridCase& grid,
+                                  const BenchmarkOptions& options, double& seconds, BenchmarkResult& result) {
   tissue::EquilibriumSolver solver(grid.model, options.threads);
   const SolverSettings settings;
   TissueState state = grid.start;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file tissue_benchmark_patient.cpp  The whole tick on the built-in patient, both hands pulling for a minute.
+/// \file tissue_benchmark_patient.cpp  The whole tick on the built-in patient, both hands pulling for a
+/// minute.
 #include <algorithm>
 #include <cmath>
 #include <memory>

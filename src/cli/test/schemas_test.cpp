@@ -74,6 +74,7 @@ TEST_P(BrokenFile, IsRefused) {
 constexpr const char* kPatient = "assets/patients/visible-human-male/patient/patient.json";
 constexpr const char* kPoints = "assets/patients/visible-human-male/control_points.json";
 constexpr const char* kScene = "scenes/demonstration.json";
+constexpr const char* kMaterial = "assets/materials/liver.json";
 constexpr const char* kScript = "scenes/demonstration.script.json";
 
 const Broken kBroken[] = {
@@ -102,6 +103,9 @@ const Broken kBroken[] = {
     {"SceneSolver", kScene, [](Json& j) { j["settings"]["solver"] = "magic"; }},
     {"SceneThirdHand", kScene, [](Json& j) { j["instruments"]["third"] = j["instruments"]["left"]; }},
     {"SceneStiffnessNegative", kScene, [](Json& j) { j["materials"][0]["young_modulus_pa"] = -1; }},
+    {"MaterialWithoutASource", kMaterial, [](Json& j) { j["sources"].erase("density_kg_m3"); }},
+    {"MaterialStiffnessNegative", kMaterial, [](Json& j) { j["young_modulus_pa"] = -1; }},
+    {"MaterialMisspelt", kMaterial, [](Json& j) { j["densty_kg_m3"] = 1; }},
     {"ScriptFirstKeyWithOneHand", kScript, [](Json& j) { j["keys"][0].erase("right"); }},
     {"ScriptWithoutKeys", kScript, [](Json& j) { j["keys"] = Json::array(); }},
     {"ScriptJawTooWide", kScript, [](Json& j) { j["keys"][1]["left"]["jaw_deg"] = 120; }},

@@ -2,6 +2,7 @@
 #include "patient_tissue.h"
 
 #include <algorithm>
+#include <cmath>
 #include <span>
 #include <string>
 
@@ -27,6 +28,33 @@ const OrganMaterial* FindMaterial(std::span<const OrganMaterial> materials, std:
 core::Error MissingMaterial(const std::string& name) {
   return {core::ErrorCode::kSceneInvalid,
           "the scene has no material for \"" + name + "\"; add one to \"materials\""};
+}
+
+/// Edges and bending springs, which share the wall's modulus.
+void AddWall(const geometry::TriangleMesh& mesh, const OrganMaterial& material, std::uint32_t first,
+             tissue::TissueDefinition& definition) {
+  const double modulus = material.young_modulus * material.wall_thickness;
+  const double mean_area = geometry::CalcArea(mesh.positions, mesh.triangles) / mesh.triangles.size();
+  const double share =
+      tissue::CalcBendingShare(material.wall_thickness, std::sqrt(std::sqrt(3.0) * mean_area));
+  const auto edges = geometry::FindEdges(mesh.triangles);
+  auto stiffness = tissue::CalcEdgeStiffness(mesh.positions, mesh.triangles, edges, (1.0 - share) * modulus);
+  const auto add = [&](std::uint32_t a, std::uint32_t b, double k) {
+    definition.springs.push_back(
+        {first + a, first + b, k, math::Distance(mesh.positions[a], mesh.positions[b])});
+  };
+  std::vector<tissue::BendingSpring> across;
+  if (share > 0.0) across = tissue::CalcBendingSprings(mesh.positions, mesh.triangles, share * modulus);
+  for (const tissue::BendingSpring& bending : across) {
+    // corners that an edge joins already, around a vertex of three triangles, keep that one spring
+    const auto at = std::lower_bound(edges.begin(), edges.end(), geometry::Edge{bending.a, bending.b});
+    if (at != edges.end() && *at == geometry::Edge{bending.a, bending.b}) {
+      stiffness[static_cast<std::size_t>(at - edges.begin())] += bending.stiffness;
+    } else {
+      add(bending.a, bending.b, bending.stiffness);
+    }
+  }
+  for (std::size_t i = 0; i < edges.size(); ++i) add(edges[i][0], edges[i][1], stiffness[i]);
 }
 
 /// Only a closed surface has a volume to keep.
@@ -57,14 +85,7 @@ void AddOrgan(const anatomy::Organ& organ, const OrganMaterial& material, Patien
                                geometry::CalcArea(mesh.positions, mesh.triangles);
   for (const double area : areas) definition.mass.push_back(mass_per_area * area);
 
-  const auto edges = geometry::FindEdges(mesh.triangles);
-  const auto stiffness = tissue::CalcEdgeStiffness(mesh.positions, mesh.triangles, edges,
-                                                   material.young_modulus * material.wall_thickness);
-  for (std::size_t i = 0; i < edges.size(); ++i) {
-    const auto [a, b] = edges[i];
-    definition.springs.push_back(
-        {first + a, first + b, stiffness[i], math::Distance(mesh.positions[a], mesh.positions[b])});
-  }
+  AddWall(mesh, material, first, definition);
   for (const anatomy::Region& region : organ.regions) {
     const bool is_fixed = region.name == anatomy::kDiaphragmaticFace || region.name == anatomy::kFalciform ||
                           region.name == anatomy::kCoronary;
@@ -90,6 +111,8 @@ void AddAttachments(const Scene& scene, const OrganMaterial& bed, PatientTissue&
                                        made.surfaces[attachment.organ_b].first_node + attachment.vertex_b,
                                        bed.young_modulus / bed.wall_thickness * area});
     made.conservation.strand_binds.push_back(1);
+    made.max_elongation.push_back(bed.failure_strain * bed.wall_thickness);
+    made.strand_organs.push_back(static_cast<std::int32_t>(attachment.organ_a));
   }
 }
 
@@ -105,12 +128,15 @@ void AddAdhesions(const Scene& scene, const OrganMaterial& bed, double share, Pa
                                        made.surfaces[liver].first_node + pair.second,
                                        bed.young_modulus / bed.wall_thickness * areas[pair.first]});
     made.conservation.strand_binds.push_back(1);
+    made.max_elongation.push_back(bed.failure_strain * bed.wall_thickness);
+    made.strand_organs.push_back(gallbladder);
   }
 }
 
 /// Ties a tube's end to the nearest nodes of a surface.
-void TieEnd(std::uint32_t end, const SurfaceInfo& surface, double stiffness,
-            tissue::TissueDefinition& definition) {
+void TieEnd(std::uint32_t end, const SurfaceInfo& surface, double stiffness, double failure_force,
+            PatientTissue& made) {
+  auto& definition = made.definition;
   std::vector<std::pair<double, std::uint32_t>> near;
   for (std::uint32_t i = 0; i < surface.node_count; ++i) {
     const std::uint32_t node = surface.first_node + i;
@@ -120,6 +146,10 @@ void TieEnd(std::uint32_t end, const SurfaceInfo& surface, double stiffness,
   std::partial_sort(near.begin(), near.begin() + static_cast<std::ptrdiff_t>(count), near.end());
   for (std::size_t i = 0; i < count; ++i) {
     definition.strands.push_back({end, near[i].second, stiffness / static_cast<double>(count)});
+    made.conservation.strand_binds.push_back(0);
+    made.max_elongation.push_back(failure_force / stiffness);
+    made.strand_organs.push_back(
+        surface.radii.empty() ? static_cast<std::int32_t>(&surface - made.surfaces.data()) : -1);
   }
 }
 
@@ -164,7 +194,7 @@ void TieTubes(const Scene& scene, std::span<const OrganMaterial> materials, Pati
       }
       const double stiffness = tissue::CalcTubeStiffness(material.young_modulus, self->radii.front(),
                                                          material.wall_thickness, 0.004);
-      TieEnd(ends[end], *other, stiffness, made.definition);
+      TieEnd(ends[end], *other, stiffness, material.failure_force, made);
     }
   }
 }
@@ -175,11 +205,18 @@ core::Result<PatientTissue> MakePatientTissue(const Scene& scene) {
   const Pathology pathology = CalcPathology(scene.patient);
   const auto materials = CalcPatientMaterials(scene, pathology);
   PatientTissue made;
+  if (scene.patient.organs.size() > tissue::kMaxClosedOrgans) {
+    return core::Error{core::ErrorCode::kSceneInvalid,
+                       "the patient has " + std::to_string(scene.patient.organs.size()) +
+                           " organs; at most " + std::to_string(tissue::kMaxClosedOrgans) +
+                           " can be simulated"};
+  }
   for (const anatomy::Organ& organ : scene.patient.organs) {
     const OrganMaterial* material = FindMaterial(materials, organ.name);
     if (material == nullptr) return MissingMaterial(organ.name);
     if (const auto closed = CheckClosed(organ); !closed.ok()) return closed.error();
     AddOrgan(organ, *material, made);
+    made.internal_pressure.push_back(material->internal_pressure);
   }
   if (!scene.patient.attachments.empty()) {
     const OrganMaterial* bed = FindMaterial(materials, anatomy::kGallbladderBed);
@@ -194,7 +231,6 @@ core::Result<PatientTissue> MakePatientTissue(const Scene& scene) {
     AddTube(tube, *material, made);
   }
   TieTubes(scene, materials, made);
-  made.conservation.strand_binds.resize(made.definition.strands.size(), 0);
   return made;
 }
 

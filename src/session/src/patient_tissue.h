@@ -13,8 +13,12 @@ namespace trocar::session {
 
 struct PatientTissue {
   tissue::TissueDefinition definition;
-  tissue::ConservationSettings conservation;  ///< every organ keeps its volume; bed strands bind, tube ends turn
-  std::vector<SurfaceInfo> surfaces;  ///< organs, then tubes
+  tissue::ConservationSettings
+      conservation;                    ///< every organ keeps its volume; bed strands bind, tube ends turn
+  std::vector<double> max_elongation;  ///< (strands) at which each tears [m]
+  std::vector<std::int32_t> strand_organs;  ///< (strands) index into Patient::organs that it holds, or -1
+  std::vector<double> internal_pressure;    ///< (organs) under which each is filled at the start [Pa]
+  std::vector<SurfaceInfo> surfaces;        ///< organs, then tubes
 };
 
 /// Nodes: every organ's vertices, then every tube's centre line. Springs: mesh edges by van Gelder, tubes
@@ -22,7 +26,7 @@ struct PatientTissue {
 /// bed and for the ends of tubes. Fixed: the paper's three regions of the liver and the tubes' ends that
 /// leave the scene. The patient's diseases change materials and add adhesions (pathology.h).
 ///
-/// \return kSceneInvalid when a material is missing
+/// \return kSceneInvalid when a material is missing, an organ is not closed, or there are too many
 core::Result<PatientTissue> MakePatientTissue(const Scene& scene);
 
 }  // namespace trocar::session

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "material_file.h"
 #include "script.h"
 #include "trocar/core/json.h"
 
@@ -28,20 +29,6 @@ Vec3 ReadTarget(const core::JsonView& view, std::string_view key, const anatomy:
     return {};
   }
   return landmark->position + (target.Has("offset_mm") ? ReadPoint(target, "offset_mm") : Vec3{});
-}
-
-OrganMaterial ReadMaterial(const core::JsonView& view) {
-  view.AllowOnly({"organ", "young_modulus_pa", "wall_thickness_mm", "foundation_modulus_pa",
-                  "foundation_depth_mm", "density_kg_m3", "source"});
-  OrganMaterial material;
-  material.organ = view.Text("organ");
-  material.young_modulus = view.Number("young_modulus_pa", {0.0, 1e9});
-  material.wall_thickness = 0.001 * view.Number("wall_thickness_mm", {0.001, 100.0});
-  material.foundation_modulus = view.NumberOr("foundation_modulus_pa", 0.0, {0.0, 1e9});
-  material.depth = 0.001 * view.NumberOr("foundation_depth_mm", 10.0, {0.1, 1000.0});
-  material.density = view.NumberOr("density_kg_m3", 1060.0, {0.0, 20'000.0});
-  material.source = view.Text("source");
-  return material;
 }
 
 void ReadInstrument(const core::JsonView& root, const char* hand, const anatomy::Patient& patient,
@@ -85,7 +72,8 @@ void ReadSettings(const core::JsonView& root, LiveSettings& settings) {
       view.IntegerOr("max_iterations", settings.solver.max_iterations, {1, 100'000});
   settings.solver.tolerance = view.NumberOr("tolerance", settings.solver.tolerance, {0.0, 1.0});
   settings.solver.max_error = view.NumberOr("max_error", settings.solver.max_error, {1e-9, 1.0});
-  settings.solver.max_newton_steps = view.IntegerOr("max_newton_steps", settings.solver.max_newton_steps, {1, 1000});
+  settings.solver.max_newton_steps =
+      view.IntegerOr("max_newton_steps", settings.solver.max_newton_steps, {1, 1000});
   const std::string solver = view.TextOr("solver", "adaptive");
   if (const auto kind = tissue::FindSolverKind(solver); kind) {
     settings.solver.kind = *kind;
@@ -120,7 +108,11 @@ core::Result<Scene> ReadScene(const std::filesystem::path& path,
   if (!patient.ok()) return patient.error();
   scene.patient = std::move(*patient);
 
-  for (const core::JsonView& view : root.Array("materials")) scene.materials.push_back(ReadMaterial(view));
+  for (const core::JsonView& view : root.Array("materials")) {
+    auto material = ReadMaterial(view, path.parent_path());
+    if (!material.ok()) return material.error();
+    scene.materials.push_back(std::move(*material));
+  }
   ReadSettings(root, scene.settings);
   root.Object("instruments").AllowOnly({"left", "right"});
   ReadInstrument(root, "left", scene.patient, scene.instruments[kLeft]);

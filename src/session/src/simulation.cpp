@@ -12,6 +12,7 @@
 #include "trocar/surgery/grasp.h"
 #include "trocar/surgery/organ_surface.h"
 #include "trocar/tissue/conservation.h"
+#include "trocar/tissue/damage.h"
 #include "trocar/tissue/equilibrium.h"
 #include "trocar/tissue/state_guard.h"
 #include "trocar/tissue_cuda/gpu_or_cpu_solver.h"
@@ -24,6 +25,9 @@ constexpr Vec3 kImagingGravity{0, 0, -9.81};
 /// No hand is faster; a device that jumps is slowed to this (faults D5) [m/s], [rad/s].
 constexpr double kMaxTipSpeed = 2.0;
 constexpr double kMaxTurnRate = 20.0;
+
+/// Relative change of a filled organ's volume below which it counts as at rest [-].
+constexpr double kFilledTolerance = 1e-4;
 
 /// Gravity in the patient's frame when the table is tilted [m/s^2].
 Vec3 CalcGravity(const LiveSettings& settings) noexcept {
@@ -51,6 +55,10 @@ struct Simulation::Content {
   std::shared_ptr<const Scene> scene;
   tissue::TissueModel tissue_model;
   std::vector<SurfaceInfo> surfaces;
+  std::vector<double> max_elongation;
+  std::vector<std::int32_t> strand_organs;
+  tissue::TissueState tissue_at_start;
+  tissue::ConservationState conserved_at_start;
   surgery::ContactSettings contact_settings;
   surgery::GraspSettings grasp_settings;
 
@@ -81,6 +89,8 @@ struct Simulation::Content {
   std::array<std::int32_t, kHandCount> touched_organs{};
   tissue::GuardVerdict verdict = tissue::GuardVerdict::kGood;
   bool was_frozen = false;
+  std::array<std::uint32_t, 8> torn{};  // lowest of the strands that tore in this tick
+  std::size_t torn_count = 0;
   Snapshot snapshot;
 
   void ReadInputs(const Input& input) noexcept;
@@ -93,6 +103,8 @@ struct Simulation::Content {
   void DetectEvents() noexcept;
   void Publish(const Input& input) noexcept;
   void Note(EventKind kind, int hand, std::int32_t organ, double force) noexcept;
+  void TearTissue() noexcept;
+  core::Status Fill(const std::vector<double>& internal_pressure);
   void Reset();
   void MakeSolver(int threads, SolveOn solve_on);
 };
@@ -180,6 +192,12 @@ void Simulation::Content::CheckState() noexcept {
   }
 }
 
+void Simulation::Content::TearTissue() noexcept {
+  torn_count = verdict == tissue::GuardVerdict::kGood
+                   ? tissue::TearStrands(tissue_model, max_elongation, tissue, torn)
+                   : 0;
+}
+
 void Simulation::Content::UpdateHierarchy() noexcept {
   for (surgery::OrganSurface& organ : organs) surgery::UpdateOrganSurface(organ, tissue.position);
 }
@@ -209,6 +227,7 @@ void Simulation::Content::DetectEvents() noexcept {
         break;
     }
   }
+  if (torn_count > 0) Note(EventKind::kTear, -1, strand_organs[torn[0]], 0.0);
   if (verdict == tissue::GuardVerdict::kRestored) Note(EventKind::kStateRestored, -1, -1, 0.0);
   if (verdict == tissue::GuardVerdict::kFrozen && !was_frozen) Note(EventKind::kOrganFrozen, -1, -1, 0.0);
   was_frozen = verdict == tissue::GuardVerdict::kFrozen;
@@ -240,8 +259,8 @@ void Simulation::Content::Publish(const Input& input) noexcept {
 
 void Simulation::Content::Reset() {
   tick = 0;
-  tissue = tissue::MakeRestState(tissue_model);
-  conserved = conservation->MakeState(tissue);
+  tissue = tissue_at_start;
+  conserved = conserved_at_start;
   guard = std::make_unique<tissue::StateGuard>(tissue_model);
   const Input home = CalcScriptInput(*scene, 0.0);
   for (int hand = 0; hand < kHandCount; ++hand) {
@@ -256,6 +275,7 @@ void Simulation::Content::Reset() {
   load = {};
   report = {};
   was_frozen = false;
+  torn_count = 0;
   snapshot = {};
   snapshot.positions.resize(tissue_model.Size());
   solved_condition = tissue.condition;
@@ -277,6 +297,25 @@ void Simulation::Content::MakeSolver(int threads, SolveOn solve_on) {
   solver = std::move(made);
 }
 
+/// Rest, with tense organs filled.
+core::Status Simulation::Content::Fill(const std::vector<double>& internal_pressure) {
+  tissue_at_start = tissue::MakeRestState(tissue_model);
+  conserved_at_start = conservation->MakeState(tissue_at_start);
+  for (std::size_t organ = 0; organ < internal_pressure.size(); ++organ) {
+    if (internal_pressure[organ] == 0.0) continue;
+    const double unrest = tissue::FillToPressure(*solver, organ, internal_pressure[organ], {}, *conservation,
+                                                 tissue_at_start, conserved_at_start);
+    if (!(unrest < kFilledTolerance)) {
+      return core::Error{
+          core::ErrorCode::kSceneInvalid,
+          "the wall of \"" + surfaces[organ].name +
+              "\" does not hold its internal pressure; lower internal_pressure_pa, or make the "
+              "wall stiffer"};
+    }
+  }
+  return {};
+}
+
 core::Result<Simulation> Simulation::Make(std::shared_ptr<const Scene> scene, int threads, SolveOn solve_on) {
   auto made = MakePatientTissue(*scene);
   if (!made.ok()) return made.error();
@@ -288,6 +327,9 @@ core::Result<Simulation> Simulation::Make(std::shared_ptr<const Scene> scene, in
   made->conservation.imaging_gravity = kImagingGravity;
   content->conservation =
       std::make_unique<tissue::Conservation>(content->tissue_model, std::move(made->conservation));
+  content->max_elongation = std::move(made->max_elongation);
+  content->strand_organs = std::move(made->strand_organs);
+  if (const auto filled = content->Fill(made->internal_pressure); !filled.ok()) return filled.error();
   const auto& patient = content->scene->patient;
   for (std::size_t i = 0; i < patient.organs.size(); ++i) {
     auto surface = surgery::MakeOrganSurface(content->tissue_model.rest, content->surfaces[i].first_node,
@@ -326,7 +368,7 @@ void Simulation::Step(const Input& input) noexcept {
   timed(Stage::kFindContacts, [&] { c.FindContacts(); });
   timed(Stage::kActOnTissue, [&] { c.ActOnTissue(); });
   timed(Stage::kSolve, [&] { c.Solve(); });
-  timed(Stage::kCheckState, [&] { c.CheckState(); });
+  timed(Stage::kCheckState, [&] { c.CheckState(), c.TearTissue(); });
   timed(Stage::kUpdateHierarchy, [&] { c.UpdateHierarchy(); });
   timed(Stage::kDetectEvents, [&] { c.DetectEvents(); });
   timed(Stage::kPublish, [&] { c.Publish(input); });

@@ -23,9 +23,11 @@ std::string_view EventName(EventKind kind) noexcept {
     case EventKind::kStateRestored:
       return "state_restored";
     case EventKind::kOrganFrozen:
+      return "organ_frozen";
+    case EventKind::kTear:
       break;
   }
-  return "organ_frozen";
+  return "tear";
 }
 
 }  // namespace trocar::session

@@ -55,6 +55,35 @@ TEST_F(PatientTissueTest, FixesThePapersRegionsAndTheEndsThatLeaveTheScene) {
   EXPECT_EQ(made_.definition.fixed.back(), made_.definition.rest.size() - 1) << "the duct's far end";
 }
 
+TEST_F(PatientTissueTest, KeepsTheVolumeOfEachOrganAndLetsOnlyTheBedBind) {
+  ASSERT_EQ(made_.conservation.organs.size(), 2u);
+  EXPECT_EQ(made_.conservation.organs[1].first_node, made_.surfaces[1].first_node);
+  const auto& binds = made_.conservation.strand_binds;
+  ASSERT_EQ(binds.size(), made_.definition.strands.size());
+  EXPECT_EQ(std::accumulate(binds.begin(), binds.end(), std::size_t{0}), scene_.patient.attachments.size());
+  EXPECT_EQ(binds.back(), 0) << "the duct's end is a joint";
+}
+
+TEST_F(PatientTissueTest, AnOrganWithAHoleIsNamed) {
+  scene_.patient.organs[1].mesh.triangles.pop_back();
+  const auto made = MakePatientTissue(scene_);
+  ASSERT_FALSE(made.ok());
+  EXPECT_EQ(made.error().code, core::ErrorCode::kSceneInvalid);
+  EXPECT_NE(made.error().message.find("gallbladder"), std::string::npos);
+}
+
+TEST_F(PatientTissueTest, NoPairOfNodesIsJoinedTwice) {
+  auto springs = made_.definition.springs;
+  for (auto& spring : springs) {
+    if (spring.a > spring.b) std::swap(spring.a, spring.b);
+  }
+  std::sort(springs.begin(), springs.end(),
+            [](const auto& a, const auto& b) { return std::pair(a.a, a.b) < std::pair(b.a, b.b); });
+  for (std::size_t i = 1; i < springs.size(); ++i) {
+    EXPECT_FALSE(springs[i - 1].a == springs[i].a && springs[i - 1].b == springs[i].b) << springs[i].a;
+  }
+}
+
 TEST_F(PatientTissueTest, TiesBedAndDuctWithStrands) {
   EXPECT_EQ(made_.definition.strands.size(), scene_.patient.attachments.size() + 4);
 }

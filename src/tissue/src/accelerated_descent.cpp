@@ -9,7 +9,8 @@ namespace {
 
 /// The smallest grid of the coarse-to-fine start has at least this many rows and columns.
 constexpr std::uint32_t kSmallestGrid = 9;
-/// Iterations on each coarser grid: its springs are few, and what is not solved here must be solved on a finer one.
+/// Iterations on each coarser grid: its springs are few, and what is not solved here must be solved on a
+/// finer one.
 constexpr int kCoarseIterations = 400;
 /// A start whose nodes are all nearer to rest than this part of a spring is cold [-].
 constexpr double kColdShare = 1e-3;
@@ -85,8 +86,10 @@ AcceleratedDescent::AcceleratedDescent(const TissueModel& model, bool use_grid) 
   lowest_ratio_ = INFINITY;
   for (std::size_t i = 0; i < model.Size(); ++i) {
     double sum = 0;
-    for (auto h = model.spring_starts[i]; h < model.spring_starts[i + 1]; ++h) sum += model.half_springs[h].stiffness;
-    if (sum > 0.0 && !model.is_fixed[i]) lowest_ratio_ = std::min(lowest_ratio_, model.shape_stiffness[i] / sum);
+    for (auto h = model.spring_starts[i]; h < model.spring_starts[i + 1]; ++h)
+      sum += model.half_springs[h].stiffness;
+    if (sum > 0.0 && !model.is_fixed[i])
+      lowest_ratio_ = std::min(lowest_ratio_, model.shape_stiffness[i] / sum);
   }
   const auto shape = use_grid ? FindGridShape(model) : std::nullopt;
   if (!shape) {
@@ -121,7 +124,8 @@ bool AcceleratedDescent::IsWellConditioned(const TissueLoad& load) const noexcep
   return ratio / (2.0 + ratio) > CalcLowest(kLongestCycle);
 }
 
-void AcceleratedDescent::SetGridLoads(const TissueLoad& load, const TissueState& state, std::size_t levels) noexcept {
+void AcceleratedDescent::SetGridLoads(const TissueLoad& load, const TissueState& state,
+                                      std::size_t levels) noexcept {
   GridLoad& finest = loads_.front();
   for (std::uint32_t i = 0; i < finest.force.size(); ++i) {
     finest.force[i] = model_->mass[i] * load.gravity;
@@ -133,7 +137,8 @@ void AcceleratedDescent::SetGridLoads(const TissueLoad& load, const TissueState&
     const double depth = CalcContactDepth(contact, state.position);
     if (!(depth > 0.0)) continue;
     for (int corner = 0; corner < 3; ++corner)
-      finest.force[contact.nodes[corner]] += (contact.weights[corner] * contact.stiffness * depth) * contact.normal;
+      finest.force[contact.nodes[corner]] +=
+          (contact.weights[corner] * contact.stiffness * depth) * contact.normal;
   }
   grids_.front().SetLoad(finest, load.stiffness_scale);
   for (std::size_t level = 1; level < levels; ++level) {
@@ -150,7 +155,8 @@ void AcceleratedDescent::SetGridLoads(const TissueLoad& load, const TissueState&
       for (const std::uint32_t down : {0u, 1u}) {
         for (const std::uint32_t right : {0u, 1u}) {
           const double row_share = static_cast<double>(r.share), column_share = static_cast<double>(c.share);
-          const double share = (down == 1 ? row_share : 1.0 - row_share) * (right == 1 ? column_share : 1.0 - column_share);
+          const double share =
+              (down == 1 ? row_share : 1.0 - row_share) * (right == 1 ? column_share : 1.0 - column_share);
           const std::uint32_t node = corner + down * to.columns + right;
           coarse.force[node] += share * fine.force[i];
           coarse.shape[node] += share * fine.shape[i];
@@ -163,9 +169,9 @@ void AcceleratedDescent::SetGridLoads(const TissueLoad& load, const TissueState&
   }
 }
 
-SolveReport AcceleratedDescent::SolveGrid(const Kernels& kernels, Workers& workers, const SolverSettings& settings,
-                                          const TissueLoad& load, TissueState& state,
-                                      const SolveHook* hook) noexcept {
+SolveReport AcceleratedDescent::SolveGrid(const Kernels& kernels, Workers& workers,
+                                          const SolverSettings& settings, const TissueLoad& load,
+                                          TissueState& state, const SolveHook* hook) noexcept {
   // well conditioned, the finest grid alone is as fast
   const std::size_t levels = IsCold(state) && !IsWellConditioned(load) ? grids_.size() : 1;
   SetGridLoads(load, state, levels);
@@ -193,9 +199,10 @@ SolveReport AcceleratedDescent::SolveGrid(const Kernels& kernels, Workers& worke
     ++report.coarse_levels;
   }
   if (levels > 1) finest.Interpolate(grids_[1]);
+  const int check_every = IsWellConditioned(load) ? CalcCycle(finest.LowestEigenvalue()) : kCheckEvery;
   while (report.iterations < settings.max_iterations) {
     // the scale of the error is known only from the displacements
-    const int some = std::min(settings.max_iterations - report.iterations, kCheckEvery);
+    const int some = std::min(settings.max_iterations - report.iterations, check_every);
     const double force = settings.max_error * finest.LargestDisplacement() * finest.SmallestShape();
     report.iterations += RunCycles(finest, kernels, workers, some, force, residual, [] {});
     const double bound = finest.SmallestShape() * finest.LargestDisplacement();
@@ -250,8 +257,9 @@ SolveReport AcceleratedDescent::SolveSlices(const Kernels& kernels, Workers& wor
     }
   };
   double residual = 0;
+  const int check_every = IsWellConditioned(load) ? CalcCycle(slices_->LowestEigenvalue()) : kCheckEvery;
   while (report.iterations < settings.max_iterations) {
-    const int some = std::min(settings.max_iterations - report.iterations, kCheckEvery);
+    const int some = std::min(settings.max_iterations - report.iterations, check_every);
     const double scale = slices_->LargestDisplacement();
     report.iterations += RunCycles(*slices_, kernels, workers, some,
                                    settings.max_error * scale * slices_->SmallestShape(), residual, refresh);
@@ -268,9 +276,9 @@ SolveReport AcceleratedDescent::SolveSlices(const Kernels& kernels, Workers& wor
   return report;
 }
 
-SolveReport AcceleratedDescent::Solve(const Kernels& kernels, Workers& workers, const SolverSettings& settings,
-                                      const TissueLoad& load, TissueState& state,
-                                      const SolveHook* hook) noexcept {
+SolveReport AcceleratedDescent::Solve(const Kernels& kernels, Workers& workers,
+                                      const SolverSettings& settings, const TissueLoad& load,
+                                      TissueState& state, const SolveHook* hook) noexcept {
   return IsStructured() ? SolveGrid(kernels, workers, settings, load, state, hook)
                         : SolveSlices(kernels, workers, settings, load, state, hook);
 }

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file accelerated_descent.h  Chebyshev's recurrence in single precision, with a coarse-to-fine start on structured
-/// meshes: the fast solver for meshes of many thousand nodes.
+/// \file accelerated_descent.h  Chebyshev's recurrence in single precision, with a coarse-to-fine start on
+/// structured meshes: the fast solver for meshes of many thousand nodes.
 ///
-/// Each node moves by R_i / (2 sum_j k_ij + k_v), a step that no position of the springs makes unstable (Gershgorin),
-/// and the moves are accelerated by Chebyshev's recurrence (Wang, "A Chebyshev semi-iterative approach for
-/// accelerating projective and position-based dynamics", ACM TOG 34(6), 2015). Where virtual springs bound the lowest
-/// eigenvalue, the recurrence is tuned to it; where they do not, its cycles double. On a structured mesh the start is
-/// solved on coarser meshes first (nested iteration: Brandt, "Multi-level adaptive solutions to boundary-value
-/// problems", Math. Comp. 31, 1977).
+/// Each node moves by R_i / (2 sum_j k_ij + k_v), a step that no position of the springs makes unstable
+/// (Gershgorin), and the moves are accelerated by Chebyshev's recurrence (Wang, "A Chebyshev semi-iterative
+/// approach for accelerating projective and position-based dynamics", ACM TOG 34(6), 2015). Where virtual
+/// springs bound the lowest eigenvalue, the recurrence is tuned to it; where they do not, its cycles double.
+/// On a structured mesh the start is solved on coarser meshes first (nested iteration: Brandt, "Multi-level
+/// adaptive solutions to boundary-value problems", Math. Comp. 31, 1977).
 #pragma once
 
 #include <memory>

@@ -1,24 +1,34 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file adaptive.cpp  The solver that runs: fast where the start is far away, exact where it is near.
 ///
-/// Newton's method with multigrid is exact and, from the last tick's positions, short; from a flat start it would walk
-/// in steps of a fraction of a spring's length. There, on a structured mesh, accelerated descent from coarse to fine comes
-/// within a thousandth for the price of one or two Newton steps; and where virtual springs bound the lowest eigenvalue it
-/// ends by itself, with a bound on its error. With a hook that does not name its constraints the double-precision
-/// recurrence runs. See
-/// docs/decisions/0014.
+/// Newton's method with multigrid is exact and, from the last tick's positions, short; from a flat start it
+/// would walk in steps of a fraction of a spring's length. There, on a structured mesh, accelerated descent
+/// from coarse to fine comes within a thousandth for the price of one or two Newton steps; and where virtual
+/// springs bound the lowest eigenvalue it ends by itself, with a bound on its error. With a hook that does
+/// not name its constraints the double-precision recurrence runs. See docs/decisions/0014.
 #include "solver_content.h"
 
 namespace trocar::tissue {
-SolveReport SolveAdaptive(EquilibriumSolver::Content& c, const SolverSettings& settings, const TissueLoad& load,
-                          TissueState& state, const SolveHook* hook) noexcept {
+namespace {
+
+/// Iterations of a descent: on the largest grid of the paper they cost what one Newton step does, and come
+/// within a thousandth (docs/tissue.md).
+constexpr int kDescentIterations = 400;
+
+}  // namespace
+
+SolveReport SolveAdaptive(EquilibriumSolver::Content& c, const SolverSettings& settings,
+                          const TissueLoad& load, TissueState& state, const SolveHook* hook) noexcept {
   // A hook that does not say what it keeps: a whole Newton step between two projections undoes it, and
   // pressure and shape then swing about each other. The recurrence takes it along every few iterations.
-  if (hook != nullptr && hook->constraints.empty()) return SolveChebyshevJacobiWang2015(c, settings, load, state, hook);
+  if (hook != nullptr && hook->constraints.empty())
+    return SolveChebyshevJacobiWang2015(c, settings, load, state, hook);
   SolveReport descent;
   if (hook == nullptr && c.accelerated->IsStructured()) {
     if (c.accelerated->IsCold(state) || c.accelerated->IsWellConditioned(load)) {
-      descent = c.accelerated->Solve(*c.kernels, *c.workers, settings, load, state, nullptr);
+      SolverSettings long_enough = settings;
+      long_enough.max_iterations = kDescentIterations;
+      descent = c.accelerated->Solve(*c.kernels, *c.workers, long_enough, load, state, nullptr);
       if (descent.converged) return descent;
     }
   }

@@ -13,7 +13,8 @@ namespace {
 /// Relative volume error at which the projection ends [-]; a thousandth of what is promised.
 constexpr double kVolumeTolerance = 1e-7;
 constexpr int kMaxProjections = 8;
-/// No projection changes a volume by more than this share [-]: what is farther off comes home over several ticks.
+/// No projection changes a volume by more than this share [-]: what is farther off comes home over several
+/// ticks.
 constexpr double kMaxVolumeStep = 0.1;
 /// The responses need no more accuracy than this: they steer the search, the constraint itself is exact [-].
 constexpr double kResponseTolerance = 0.02;
@@ -61,12 +62,14 @@ Conservation::Conservation(const TissueModel& model, ConservationSettings settin
   const std::size_t n = model.Size();
   TROCAR_ASSERT(settings_.organs.size() <= kMaxClosedOrgans);
   static_assert(kMaxClosedOrgans <= kMaxHookConstraints);
-  for (const ClosedOrgan& organ : settings_.organs) constraints_.push_back({organ.first_node, organ.node_count});
+  for (const ClosedOrgan& organ : settings_.organs)
+    constraints_.push_back({organ.first_node, organ.node_count});
   gradient_.resize(n);
   base_force_.resize(n);
   force_.resize(n);
   next_regions_.of_node.resize(n);
   responses_.assign(settings_.organs.size(), std::vector<Vec3>(n));
+  shifts_ = responses_;
   (void)UpdateResponses(rest_, {}, kFirstResponseIterations, kFirstResponseTolerance);
   response_strands_ = CountIntact(rest_);
   responses_settled_ = true;
@@ -93,8 +96,8 @@ std::span<Vec3> Conservation::OrganPart(std::size_t organ, std::span<Vec3> nodes
   return nodes.subspan(settings_.organs[organ].first_node, settings_.organs[organ].node_count);
 }
 
-/// The displacement by which the tissue at rest, with the strands and scales of now, answers one pascal in each
-/// organ.
+/// The displacement by which the tissue at rest, with the strands and scales of now, answers one pascal in
+/// each organ.
 bool Conservation::UpdateResponses(const TissueState& tissue, const TissueLoad& load, int max_iterations,
                                    double tolerance) noexcept {
   std::copy(tissue.strand_is_intact.begin(), tissue.strand_is_intact.end(), rest_.strand_is_intact.begin());
@@ -171,7 +174,7 @@ std::span<const Vec3> Conservation::CalcForce(const TissueState& tissue, const T
     std::copy(load.external_force.begin(), load.external_force.end(), base_force_.begin());
   }
   AddFrameForce(tissue, load, state);
-  (void)CalcSlopes(tissue, state);
+  has_slopes_ = CalcSlopes(tissue, state);
   SetPressureForce(state);
   return force_;
 }
@@ -232,7 +235,8 @@ void Conservation::FitFrames(const TissueLoad& load, const TissueState& tissue,
         const std::uint32_t other = state.regions.of_node[strand.other];
         if (!tissue.strand_is_intact[strand.strand] || other < region) continue;
         const double share = other == region ? 0.5 : 1.0;  // met from both ends
-        moments.AddOffset(share * load.stiffness_scale * strand.stiffness, model.rest[strand.other] - model.rest[i],
+        moments.AddOffset(share * load.stiffness_scale * strand.stiffness,
+                          model.rest[strand.other] - model.rest[i],
                           tissue.position[strand.other] - tissue.position[i]);
       }
     }
@@ -241,37 +245,49 @@ void Conservation::FitFrames(const TissueLoad& load, const TissueState& tissue,
   }
 }
 
-/// Displacement of a node by one pascal in an organ, where the node is now [m/Pa].
-Vec3 Conservation::CalcResponse(std::size_t organ, std::size_t node, const TissueState& tissue,
-                                const ConservationState& state) const noexcept {
-  if (tissue.condition[node] == NodeCondition::kPrescribed) return {};
-  const std::uint32_t region = state.regions.of_node[node];
-  const Vec3& u = responses_[organ][node];
-  return region == kPinnedRegion ? u : math::Rotate(state.X_world_rest[region].rotation, u);
-}
-
-/// Volumes, their gradients, and how each answers the pressure in each; false when the state is not finite.
-bool Conservation::CalcSlopes(const TissueState& tissue, ConservationState& state) noexcept {
+/// Volumes and their gradients; false when the state is not finite.
+bool Conservation::MeasureVolumes(const TissueState& tissue, ConservationState& state) noexcept {
   bool is_good = true;
   for (std::size_t i = 0; i < settings_.organs.size(); ++i) {
     const ClosedOrgan& surface = settings_.organs[i];
-    const auto gradient = OrganPart(i, gradient_);
     state.organs[i].volume =
         CalcVolumeGradient(std::span(tissue.position).subspan(surface.first_node, surface.node_count),
-                           surface.triangles, gradient);
-    for (std::size_t j = 0; j < settings_.organs.size(); ++j) {
-      slopes_[i][j] = 0;
-      for (std::uint32_t k = 0; k < surface.node_count; ++k) {
-        slopes_[i][j] += math::Dot(gradient[k], CalcResponse(j, surface.first_node + k, tissue, state));
-      }
+                           surface.triangles, OrganPart(i, gradient_));
+    is_good = is_good && std::isfinite(state.organs[i].volume);
+  }
+  return is_good;
+}
+
+/// How each volume answers the pressure in each organ, with the nodes that are held now.
+bool Conservation::CalcSlopes(const TissueState& tissue, ConservationState& state) noexcept {
+  if (!MeasureVolumes(tissue, state)) return false;
+  const std::size_t count = settings_.organs.size();
+  for (std::size_t organ = 0; organ < count; ++organ) {
+    for (std::size_t i = 0; i < model_->Size(); ++i) {
+      const std::uint32_t region = state.regions.of_node[i];
+      const Vec3& u = responses_[organ][i];
+      shifts_[organ][i] = tissue.condition[i] == NodeCondition::kPrescribed ? Vec3{}
+                          : region == kPinnedRegion                         ? u
+                                                    : math::Rotate(state.X_world_rest[region].rotation, u);
     }
-    is_good = is_good && std::isfinite(state.organs[i].volume) && slopes_[i][i] > 0.0;
+  }
+  bool is_good = true;
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto gradient = OrganPart(i, gradient_);
+    for (std::size_t j = 0; j < count; ++j) {
+      const auto shift = OrganPart(i, shifts_[j]);
+      slopes_[i][j] = 0;
+      for (std::size_t k = 0; k < gradient.size(); ++k) slopes_[i][j] += math::Dot(gradient[k], shift[k]);
+    }
+    is_good = is_good && slopes_[i][i] > 0.0;
+    state.organs[i].compliance = slopes_[i][i];
   }
   return is_good;
 }
 
 /// One Newton step on all volumes with the slopes at hand; false when every volume is at its target.
-bool Conservation::ProjectOnce(TissueState& tissue, std::span<Vec3> before, ConservationState& state) noexcept {
+bool Conservation::ProjectOnce(TissueState& tissue, std::span<Vec3> before,
+                               ConservationState& state) noexcept {
   const std::size_t count = settings_.organs.size();
   SmallVector error{}, lambda{};
   bool is_done = true;
@@ -291,15 +307,16 @@ bool Conservation::ProjectOnce(TissueState& tissue, std::span<Vec3> before, Cons
   }
   for (std::size_t k = 0; k < tissue.position.size(); ++k) {
     Vec3 shift;
-    for (std::size_t j = 0; j < count; ++j) shift += lambda[j] * CalcResponse(j, k, tissue, state);
+    for (std::size_t j = 0; j < count; ++j) shift += lambda[j] * shifts_[j][k];
     tissue.position[k] += shift;
     if (!before.empty()) before[k] += shift;
   }
   return true;
 }
 
-void Conservation::KeepVolumes(TissueState& tissue, std::span<Vec3> before, ConservationState& state) noexcept {
-  if (!CalcSlopes(tissue, state)) return;
+void Conservation::KeepVolumes(TissueState& tissue, std::span<Vec3> before,
+                               ConservationState& state) noexcept {
+  if (!has_slopes_ || !MeasureVolumes(tissue, state)) return;
   (void)ProjectOnce(tissue, before, state);
   SetPressureForce(state);
 }
@@ -331,8 +348,7 @@ void Conservation::Enforce(const TissueLoad& load, double dt, TissueState& tissu
   if (!responses_settled_) {
     responses_settled_ = UpdateResponses(tissue, load, kResponseIterationsPerTick, kResponseTolerance);
   }
-  if (!CalcSlopes(tissue, state)) return;
-  for (std::size_t i = 0; i < settings_.organs.size(); ++i) state.organs[i].compliance = slopes_[i][i];
+  if (!has_slopes_ || !MeasureVolumes(tissue, state)) return;
   Leak(dt, state);
   for (int projection = 0; projection < kMaxProjections && ProjectOnce(tissue, {}, state); ++projection) {
     for (std::size_t i = 0; i < settings_.organs.size(); ++i) {
@@ -341,6 +357,10 @@ void Conservation::Enforce(const TissueLoad& load, double dt, TissueState& tissu
           std::span(tissue.position).subspan(surface.first_node, surface.node_count), surface.triangles);
     }
   }
+  // the forces that load.external_force views become those of the state that is left: reactions and judges
+  // read them
+  (void)MeasureVolumes(tissue, state);
+  SetPressureForce(state);
   FitFrames(load, tissue, state);
   std::copy(tissue.position.begin(), tissue.position.end(), state.last_position.begin());
 }

@@ -14,10 +14,12 @@ namespace {
 
 /// True where everything that a solve takes is finite.
 bool IsFinite(const TissueLoad& load, const TissueState& state) noexcept {
-  bool is_finite = math::IsFinite(load.gravity) && std::isfinite(load.stiffness_scale) && std::isfinite(load.shape_scale);
+  bool is_finite =
+      math::IsFinite(load.gravity) && std::isfinite(load.stiffness_scale) && std::isfinite(load.shape_scale);
   for (const ContactSpring& c : load.contacts) {
-    is_finite = is_finite && math::IsFinite(c.normal) && std::isfinite(c.offset) && std::isfinite(c.stiffness) &&
-                std::isfinite(c.weights[0]) && std::isfinite(c.weights[1]) && std::isfinite(c.weights[2]);
+    is_finite = is_finite && math::IsFinite(c.normal) && std::isfinite(c.offset) &&
+                std::isfinite(c.stiffness) && std::isfinite(c.weights[0]) && std::isfinite(c.weights[1]) &&
+                std::isfinite(c.weights[2]);
   }
   for (const Vec3& f : load.external_force) is_finite = is_finite && math::IsFinite(f);
   for (const Vec3& p : state.position) is_finite = is_finite && math::IsFinite(p);
@@ -66,7 +68,8 @@ SolveReport EquilibriumSolver::Solve(const SolverSettings& settings, const Tissu
   TROCAR_ASSERT(load.contacts.size() <= kMaxContacts);
   Content& c = *content_;
   if (!IsFinite(load, state)) return {.is_finite = false};
-  if (settings.kind == SolverKind::kRelaxationPaper) return SolveRelaxationPaper(c, settings, load, state, hook);
+  if (settings.kind == SolverKind::kRelaxationPaper)
+    return SolveRelaxationPaper(c, settings, load, state, hook);
   if (settings.kind == SolverKind::kGaussSeidelBrown2001)
     return SolveGaussSeidelBrown2001(c, settings, load, state, hook);
   const Workers::Session session(*c.workers);

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file gauss_seidel_brown2001.cpp  Gauss-Seidel in waves: what is out of balance moves first, then its neighbours.
+/// \file gauss_seidel_brown2001.cpp  Gauss-Seidel in waves: what is out of balance moves first, then its
+/// neighbours.
 ///
-/// A sweep starts at the nodes whose residual is above the tolerance. After a tool has moved a few nodes those are
-/// their neighbours, so that a local deformation costs what its surroundings cost, not what the organ does. Each node
-/// moves by R_i / (sum_j k_ij + k_v), which lowers the energy wherever the others are, and hands the wave on to its
-/// neighbours; a node in balance stops it. Source: Brown, Sorkin, Bruyns, Latombe, Montgomery, Stephanides, "Real-time
-/// simulation of deformable objects: tools and application", Computer Animation 2001 (the paper's reference [8]).
+/// A sweep starts at the nodes whose residual is above the tolerance. After a tool has moved a few nodes
+/// those are their neighbours, so that a local deformation costs what its surroundings cost, not what the
+/// organ does. Each node moves by R_i / (sum_j k_ij + k_v), which lowers the energy wherever the others are,
+/// and hands the wave on to its neighbours; a node in balance stops it. Source: Brown, Sorkin, Bruyns,
+/// Latombe, Montgomery, Stephanides, "Real-time simulation of deformable objects: tools and application",
+/// Computer Animation 2001 (the paper's reference [8]).
 #include <algorithm>
 #include <cmath>
 
@@ -19,14 +21,16 @@ namespace {
 double CalcNodeStiffness(const TissueModel& model, const TissueLoad& load, const TissueState& state,
                          std::uint32_t i) noexcept {
   double links = 0;
-  for (auto h = model.spring_starts[i]; h < model.spring_starts[i + 1]; ++h) links += model.half_springs[h].stiffness;
+  for (auto h = model.spring_starts[i]; h < model.spring_starts[i + 1]; ++h)
+    links += model.half_springs[h].stiffness;
   for (auto h = model.strand_starts[i]; h < model.strand_starts[i + 1]; ++h) {
     if (state.strand_is_intact[model.half_strands[h].strand]) links += model.half_strands[h].stiffness;
   }
   double contacts = 0;
   for (const ContactSpring& contact : load.contacts) {
     for (int corner = 0; corner < 3; ++corner) {
-      if (contact.nodes[corner] == i) contacts += contact.weights[corner] * contact.weights[corner] * contact.stiffness;
+      if (contact.nodes[corner] == i)
+        contacts += contact.weights[corner] * contact.weights[corner] * contact.stiffness;
     }
   }
   return load.stiffness_scale * links + load.shape_scale * model.shape_stiffness[i] + contacts;
@@ -35,7 +39,8 @@ double CalcNodeStiffness(const TissueModel& model, const TissueLoad& load, const
 }  // namespace
 
 SolveReport SolveGaussSeidelBrown2001(EquilibriumSolver::Content& content, const SolverSettings& settings,
-                                      const TissueLoad& load, TissueState& state, const SolveHook* hook) noexcept {
+                                      const TissueLoad& load, TissueState& state,
+                                      const SolveHook* hook) noexcept {
   const TissueModel& model = *content.model;
   const auto n = static_cast<std::uint32_t>(model.Size());
   std::vector<std::uint32_t>& wave = content.wave;
@@ -57,7 +62,8 @@ SolveReport SolveGaussSeidelBrown2001(EquilibriumSolver::Content& content, const
     report.force_scale = scale;
     report.residual = scale > 0.0 ? largest / scale : 0.0;
     report.converged = report.residual <= settings.tolerance;
-    if (report.converged || report.iterations >= settings.max_iterations || !std::isfinite(largest)) return report;
+    if (report.converged || report.iterations >= settings.max_iterations || !std::isfinite(largest))
+      return report;
     const double threshold = settings.tolerance * scale;
     const auto sweep = static_cast<std::uint32_t>(++report.iterations);
     wave.clear();
@@ -77,8 +83,10 @@ SolveReport SolveGaussSeidelBrown2001(EquilibriumSolver::Content& content, const
         content.visited[other] = sweep;
         wave.push_back(other);
       };
-      for (auto h = model.spring_starts[i]; h < model.spring_starts[i + 1]; ++h) reach(model.half_springs[h].other);
-      for (auto h = model.strand_starts[i]; h < model.strand_starts[i + 1]; ++h) reach(model.half_strands[h].other);
+      for (auto h = model.spring_starts[i]; h < model.spring_starts[i + 1]; ++h)
+        reach(model.half_springs[h].other);
+      for (auto h = model.strand_starts[i]; h < model.strand_starts[i + 1]; ++h)
+        reach(model.half_strands[h].other);
     }
     if (hook != nullptr && report.iterations % hook->interval == 0) hook->act(hook->self, state, {});
   }

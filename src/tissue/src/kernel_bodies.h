@@ -71,7 +71,8 @@ float StepSlices(const SliceStep& s, std::uint32_t first_slice, std::uint32_t la
       const Lanes shape = Load(node + 3 * kSliceNodes), step_length = Load(node + 4 * kSliceNodes);
       force = MulAdd(-shape, here, force) + load;
       const Vector before = s.is_first ? here : LoadNodes(s.previous + i);
-      StoreNodes(s.previous + i, MulAdd(All(s.omega), MulAdd(All(s.damping) * step_length, force, here) - before, before));
+      StoreNodes(s.previous + i,
+                 MulAdd(All(s.omega), MulAdd(All(s.damping) * step_length, force, here) - before, before));
       if (s.is_measured) largest.Add(step_length, force);
     }
   }
@@ -88,8 +89,9 @@ inline Vector ShiftUp(const Vector& before, const Vector& v) {
   return {ShiftUp(before.x, v.x), ShiftUp(before.y, v.y), ShiftUp(before.z, v.z)};
 }
 
-/// Force of a row's springs whose ends are `extent` farther apart than at rest. On an aligned mesh the rest offsets
-/// lie along the columns, along the rows, or in their plane, and the rest of their components is zero.
+/// Force of a row's springs whose ends are `extent` farther apart than at rest. On an aligned mesh the rest
+/// offsets lie along the columns, along the rows, or in their plane, and the rest of their components is
+/// zero.
 template <bool kIsAligned>
 inline Vector CalcLinkForce(const float* springs, GridDirection direction, Vector along) {
   const float* const spring = springs + direction * 5 * kSliceNodes;
@@ -99,8 +101,8 @@ inline Vector CalcLinkForce(const float* springs, GridDirection direction, Vecto
   return CalcSecant(Load(spring + 3 * kSliceNodes), Load(spring + 4 * kSliceNodes), along) * along;
 }
 
-/// One row: updates its nodes unless it is only the halo of the rows below, and leaves in `reaction` the forces of its
-/// springs to the next row, which feels the opposite.
+/// One row: updates its nodes unless it is only the halo of the rows below, and leaves in `reaction` the
+/// forces of its springs to the next row, which feels the opposite.
 template <bool kHasWest, bool kIsAligned, bool kIsHalo>
 void StepRow(const GridStep& s, std::uint32_t row, LargestResidual& largest) {
   const std::size_t stride = s.stride;
@@ -116,13 +118,15 @@ void StepRow(const GridStep& s, std::uint32_t row, LargestResidual& largest) {
   Vector east_before = {};
   for (std::size_t column = 0; column < stride; column += TROCAR_LANES) {
     const Vector here = LoadRow(u + column, stride);
-    const Vector on_south = CalcLinkForce<kIsAligned>(springs, kSouth, LoadRow(below + column, stride) - here);
+    const Vector on_south =
+        CalcLinkForce<kIsAligned>(springs, kSouth, LoadRow(below + column, stride) - here);
     const Vector on_south_east =
         CalcLinkForce<kIsAligned>(springs, kSouthEast, LoadRow(below + column + 1, stride) - here);
     Vector force = on_south + on_south_east;
     Vector on_south_west;
     if constexpr (kHasWest) {
-      on_south_west = CalcLinkForce<kIsAligned>(springs, kSouthWest, LoadRow(below + column - 1, stride) - here);
+      on_south_west =
+          CalcLinkForce<kIsAligned>(springs, kSouthWest, LoadRow(below + column - 1, stride) - here);
       force = force + on_south_west;
     }
     if constexpr (!kIsHalo) {
@@ -130,13 +134,15 @@ void StepRow(const GridStep& s, std::uint32_t row, LargestResidual& largest) {
       force = force - LoadRow(above + column, stride);
       force = force - LoadRow(above + direction + column - 1, stride);
       if constexpr (kHasWest) force = force - LoadRow(above + 2 * direction + column + 1, stride);
-      const Vector on_east = CalcLinkForce<kIsAligned>(springs, kEast, LoadRow(u + column + 1, stride) - here);
+      const Vector on_east =
+          CalcLinkForce<kIsAligned>(springs, kEast, LoadRow(u + column + 1, stride) - here);
       force = (force + on_east) - ShiftUp(east_before, on_east);
       east_before = on_east;
       force = MulAdd(-Load(node + 3 * kSliceNodes), here, force) + LoadRow(node, kSliceNodes);
       const Lanes step_length = Load(node + 4 * kSliceNodes);
       const Vector before = s.is_first ? here : LoadRow(previous + column, stride);
-      StoreRow(previous + column, stride, MulAdd(omega, MulAdd(All(s.damping) * step_length, force, here) - before, before));
+      StoreRow(previous + column, stride,
+               MulAdd(omega, MulAdd(All(s.damping) * step_length, force, here) - before, before));
       if (s.is_measured) largest.Add(step_length, force);
     }
     StoreRow(reaction + column, stride, on_south);

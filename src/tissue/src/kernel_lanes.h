@@ -183,11 +183,11 @@ inline Vector MulAddSymmetric(const float* m, const Vector& v, const Vector& to)
           MulAdd(zz, v.z, MulAdd(yz, v.y, MulAdd(xz, v.x, to.z)))};
 }
 
-/// Secant stiffness of a spring with this extent, k - k l / length: its force on the near node is that times the
-/// extent.
+/// Secant stiffness of a spring with this extent, k - k l / length: its force on the near node is that times
+/// the extent.
 inline Lanes CalcSecant(Lanes k, Lanes k_times_rest, const Vector& along) {
-  // A spring shorter than the root of this has no direction [m^2]; its force is then nought because its extent
-  // is. Longer ones do not feel it.
+  // A spring shorter than the root of this has no direction [m^2]; its force is then nought because its
+  // extent is. Longer ones do not feel it.
   constexpr float kNoLength2 = 1e-30f;
   return k - k_times_rest / Sqrt(AddSquaredNorm(along, All(kNoLength2)));
 }

@@ -66,28 +66,30 @@ inline constexpr std::size_t ReactionFloats(std::uint32_t stride) {
   return 3 * (std::size_t{3} * stride + 2 * kSliceNodes);
 }
 
-/// One step of the nonlinear iteration on a structured mesh: every spring is taken once. A row's numbers of one kind
-/// lie side by side, x before y before z, so that the neighbour in the next column is an unaligned load.
+/// One step of the nonlinear iteration on a structured mesh: every spring is taken once. A row's numbers of
+/// one kind lie side by side, x before y before z, so that the neighbour in the next column is an unaligned
+/// load.
 struct GridStep {
   std::uint32_t rows, stride;  // columns, rounded up to a multiple of kSliceNodes
-  const float* springs;        // (rows, stride / kSliceNodes, kGridDirections, 5, kSliceNodes), or one row where all
-                               // are alike: rest offset x, y, z [m], k [N/m], k l [N]
-  std::uint32_t spring_row;    // floats from row to row, or 0
-  const float* last_springs;   // those of the last row, which has nothing below
+  const float* springs;  // (rows, stride / kSliceNodes, kGridDirections, 5, kSliceNodes), or one row where
+                         // all are alike: rest offset x, y, z [m], k [N/m], k l [N]
+  std::uint32_t spring_row;   // floats from row to row, or 0
+  const float* last_springs;  // those of the last row, which has nothing below
   bool has_south_west;
-  bool is_aligned;     // rest offsets: x alone to the east, y alone to the south, no z
-  const float* nodes;  // (rows, stride / kSliceNodes, 5, kSliceNodes): load x, y, z [N], k_virtual [N/m], step [m/N]
-  const float* u;      // (rows + 1, 3, stride) displacements [m], one block of margin on either side
-  float* previous;     // the same, of the iteration before; receives the next
+  bool is_aligned;  // rest offsets: x alone to the east, y alone to the south, no z
+  const float*
+      nodes;  // (rows, stride / kSliceNodes, 5, kSliceNodes): load x, y, z [N], k_virtual [N/m], step [m/N]
+  const float* u;        // (rows + 1, 3, stride) displacements [m], one block of margin on either side
+  float* previous;       // the same, of the iteration before; receives the next
   float omega, damping;  // of Chebyshev's recurrence [-]
   bool is_first;
   bool is_measured;  // whether to report the residual
-  float* reaction;   // (2 ReactionFloats): forces of a row's springs to the south, south-east and south-west on its own
-                     // nodes, by turns for even and odd rows; zero at first
+  float* reaction;   // (2 ReactionFloats): forces of a row's springs to the south, south-east and south-west
+                     // on its own nodes, by turns for even and odd rows; zero at first
 };
 
-/// Steps return the largest squared residual of a free node before the step [N^2], NaN where one is, or 0 where it is
-/// not measured.
+/// Steps return the largest squared residual of a free node before the step [N^2], NaN where one is, or 0
+/// where it is not measured.
 struct Kernels {
   void (*multiply)(const LinkMatrix& matrix, LinkPass pass, const Float4* x, const Float4* b, float factor,
                    Float4* out, std::uint32_t first_slice, std::uint32_t last_slice);

@@ -101,8 +101,9 @@ void LinearResponse::Apply(std::span<const Vec3> u, std::span<Vec3> product) con
   }
 }
 
-LinearReport LinearResponse::Solve(const TissueState& state, const TissueLoad& load, std::span<const Vec3> force,
-                                   int max_iterations, double tolerance, std::span<Vec3> response) noexcept {
+LinearReport LinearResponse::Solve(const TissueState& state, const TissueLoad& load,
+                                   std::span<const Vec3> force, int max_iterations, double tolerance,
+                                   std::span<Vec3> response) noexcept {
   const std::size_t n = model_->Size();
   TROCAR_ASSERT(force.size() == n && response.size() == n && state.position.size() == n);
   SetStiffness(state, load);

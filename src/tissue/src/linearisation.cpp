@@ -42,11 +42,13 @@ void Write(const Symmetric3& m, float* to) noexcept {
 }
 
 /// Force, energy and stiffness of the springs of one node.
-Vec3 LineariseSprings(const OrderedModel& model, double scale, std::span<const Vec3> position, std::uint32_t i,
-                      LinkLevel& level, std::span<float> stiffness, double& largest, double& energy) noexcept {
+Vec3 LineariseSprings(const OrderedModel& model, double scale, std::span<const Vec3> position,
+                      std::uint32_t i, LinkLevel& level, std::span<float> stiffness, double& largest,
+                      double& energy) noexcept {
   const Vec3 here = position[i];
   Vec3 force;
-  const std::size_t first = model.layout.Entry(i, 0), last = first + std::size_t{model.layout.RowSteps(i)} * kSliceNodes;
+  const std::size_t first = model.layout.Entry(i, 0),
+                    last = first + std::size_t{model.layout.RowSteps(i)} * kSliceNodes;
   float* link = level.links.data() + first / kSliceNodes * 6 * kSliceNodes + first % kSliceNodes;
   double stored = 0, most = 0;
   for (std::size_t entry = first; entry < last; entry += kSliceNodes, link += 6 * kSliceNodes) {
@@ -131,9 +133,9 @@ void SetOrderedLoad(const OrderedModel& model, const TissueLoad& load, const Tis
   }
 }
 
-void Linearise(const OrderedModel& model, const OrderedLoad& load, std::span<const std::uint8_t> strand_is_intact,
-               std::span<const Vec3> position, Workers& workers, LinkLevel& level, std::span<float> stiffness,
-               Balance& balance) noexcept {
+void Linearise(const OrderedModel& model, const OrderedLoad& load,
+               std::span<const std::uint8_t> strand_is_intact, std::span<const Vec3> position,
+               Workers& workers, LinkLevel& level, std::span<float> stiffness, Balance& balance) noexcept {
   const std::uint32_t slices = model.layout.Slices();
   const std::uint32_t chunk_slices = std::max(kChunkSlices, slices / Workers::kMaxChunks + 1);
   const std::uint32_t chunks = (slices + chunk_slices - 1) / chunk_slices;
@@ -146,7 +148,8 @@ void Linearise(const OrderedModel& model, const OrderedLoad& load, std::span<con
     ChunkSums& sum = sums[chunk];
     nodes_of(chunk, [&](std::uint32_t i) {
       double largest = 0;
-      Vec3 force = LineariseSprings(model, load.stiffness_scale, position, i, level, stiffness, largest, sum.energy);
+      Vec3 force =
+          LineariseSprings(model, load.stiffness_scale, position, i, level, stiffness, largest, sum.energy);
       const double shape = load.shape_scale * model.shape[i];
       const Vec3 offset = model.rest[i] - position[i];
       force += shape * offset + load.constant[i];
@@ -166,14 +169,15 @@ void Linearise(const OrderedModel& model, const OrderedLoad& load, std::span<con
   double energy = 0;
   for (const auto& strand : model.strands) {
     const double k = strand_is_intact[strand.strand] ? load.stiffness_scale * strand.stiffness : 0.0;
-    const Vec3 offset =
-        (position[strand.other] - position[strand.node]) - (model.rest[strand.other] - model.rest[strand.node]);
+    const Vec3 offset = (position[strand.other] - position[strand.node]) -
+                        (model.rest[strand.other] - model.rest[strand.node]);
     balance.residual[strand.node] += k * offset;
     balance.node_force[strand.node] = std::fmax(balance.node_force[strand.node], k * math::Norm(offset));
     energy += 0.25 * k * math::SquaredNorm(offset);
     Symmetric3 link{};
     AddIsotropic(link, k);
-    Write(link, level.links.data() + strand.entry / kSliceNodes * 6 * kSliceNodes + strand.entry % kSliceNodes);
+    Write(link,
+          level.links.data() + strand.entry / kSliceNodes * 6 * kSliceNodes + strand.entry % kSliceNodes);
     stiffness[strand.entry] = static_cast<float>(k);
   }
   for (const ContactSpring& contact : load.contacts) {

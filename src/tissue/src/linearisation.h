@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file linearisation.h  Residual, energy and stiffness of a model in double precision, in the order in which
-/// the solvers hold its nodes.
+/// \file linearisation.h  Residual, energy and stiffness of a model in double precision, in the order in
+/// which the solvers hold its nodes.
 #pragma once
 
 #include <span>
@@ -62,8 +62,8 @@ struct Balance {
 /// \param position  (n) [m], in the solvers' order
 /// \note Real-time safe. Source: Hooke's law; stiffness of a spring of extent d u: (k - b) I + b u u^T with
 /// b = k l / d.
-void Linearise(const OrderedModel& model, const OrderedLoad& load, std::span<const std::uint8_t> strand_is_intact,
-               std::span<const Vec3> position, Workers& workers, LinkLevel& level, std::span<float> stiffness,
-               Balance& balance) noexcept;
+void Linearise(const OrderedModel& model, const OrderedLoad& load,
+               std::span<const std::uint8_t> strand_is_intact, std::span<const Vec3> position,
+               Workers& workers, LinkLevel& level, std::span<float> stiffness, Balance& balance) noexcept;
 
 }  // namespace trocar::tissue

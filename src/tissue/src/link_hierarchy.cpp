@@ -34,7 +34,8 @@ std::vector<std::uint32_t> JoinPairs(const NodeGraph& graph, std::span<const dou
     std::uint32_t best = kNone;
     double most = 0;
     for (auto h = graph.starts[i]; h < graph.starts[i + 1]; ++h) {
-      if (aggregate[graph.others[h]] == kNone && stiffness[h] > most) most = stiffness[h], best = graph.others[h];
+      if (aggregate[graph.others[h]] == kNone && stiffness[h] > most)
+        most = stiffness[h], best = graph.others[h];
     }
     if (best != kNone) aggregate[best] = count;
     ++count;
@@ -190,7 +191,8 @@ void LinkHierarchy::UpdateCoarse(std::size_t at, std::span<const float> stiffnes
       next->is_free[level.aggregate[i]] = 1.0f;
       AddTo(block, 1.0, next->ground, GroundAt(level.aggregate[i]));
     }
-    const std::size_t first = level.layout.Entry(i, 0), last = first + std::size_t{level.layout.RowSteps(i)} * kSliceNodes;
+    const std::size_t first = level.layout.Entry(i, 0),
+                      last = first + std::size_t{level.layout.RowSteps(i)} * kSliceNodes;
     const float* from = level.links.data() + LinkAt(first);
     for (std::size_t entry = first; entry < last; entry += kSliceNodes, from += 6 * kSliceNodes) {
       const std::uint32_t other = level.layout.others[entry];
@@ -305,9 +307,11 @@ void LinkHierarchy::Cycle(const Kernels& kernels, Workers& workers, std::size_t 
   for (std::uint32_t i = 0; i < level.Size(); ++i) {
     const Float4& coarse = next.x[level.aggregate[i]];
     const float is_free = level.is_free[i];
-    level.x[i].x += is_free * coarse.x, level.x[i].y += is_free * coarse.y, level.x[i].z += is_free * coarse.z;
+    level.x[i].x += is_free * coarse.x, level.x[i].y += is_free * coarse.y,
+        level.x[i].z += is_free * coarse.z;
   }
-  RunPass(kernels, workers, level, LinkPass::kSmooth, level.x.data(), level.b.data(), kDamping, level.r.data());
+  RunPass(kernels, workers, level, LinkPass::kSmooth, level.x.data(), level.b.data(), kDamping,
+          level.r.data());
   std::swap(level.x, level.r);
 }
 

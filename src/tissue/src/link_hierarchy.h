@@ -7,8 +7,8 @@
 /// link with a symmetric 3 x 3 stiffness: every level is a LinkMatrix. A step of a coarse function is steeper
 /// than the slope it stands for, which makes coarse links too stiff; they are scaled down instead of
 /// smoothing the prolongation, which would fill the coarse matrices. Sources: Notay, "An aggregation-based
-/// algebraic multigrid method", ETNA 37, 2010 (pairwise aggregation); Braess, "Towards algebraic multigrid for
-/// elliptic problems of second order", Computing 55, 1995 (scaling).
+/// algebraic multigrid method", ETNA 37, 2010 (pairwise aggregation); Braess, "Towards algebraic multigrid
+/// for elliptic problems of second order", Computing 55, 1995 (scaling).
 #pragma once
 
 #include <cstdint>
@@ -53,7 +53,8 @@ class LinkHierarchy {
   /// Computes the finest level's inverse blocks and all coarser levels. Links may be indefinite where springs
   /// are compressed; here they count as slack.
   ///
-  /// \param stiffness  (entries) k of each link [N/m], of which its 3 x 3 matrix keeps at least the part along
+  /// \param stiffness  (entries) k of each link [N/m], of which its 3 x 3 matrix keeps at least the part
+  /// along
   void Update(std::span<const float> stiffness) noexcept;
 
   /// x = about K^-1 b, a V-cycle with one damped block-Jacobi step on either side: symmetric and, where the

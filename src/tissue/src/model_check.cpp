@@ -13,8 +13,8 @@
 namespace trocar::tissue {
 namespace {
 
-/// Of model, state, the layouts of all solvers and the multigrid levels, measured on grids of 40,000 and 160,000 nodes
-/// and rounded up [bytes].
+/// Of model, state, the layouts of all solvers and the multigrid levels, measured on grids of 40,000 and
+/// 160,000 nodes and rounded up [bytes].
 constexpr std::size_t kBytesPerNode = 1600, kBytesPerLink = 700;
 
 core::Error Invalid(const std::string& what) {
@@ -40,7 +40,8 @@ std::size_t MergeDuplicates(std::vector<Spring>& springs) {
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
   const auto ends = [&](std::size_t i) { return std::minmax(springs[i].a, springs[i].b); };
   std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return std::make_tuple(ends(a).first, ends(a).second, a) < std::make_tuple(ends(b).first, ends(b).second, b);
+    return std::make_tuple(ends(a).first, ends(a).second, a) <
+           std::make_tuple(ends(b).first, ends(b).second, b);
   });
   std::vector<std::uint8_t> is_gone(springs.size(), 0);
   for (std::size_t i = 0, first = 0; i < order.size(); ++i) {
@@ -95,7 +96,8 @@ std::size_t FindPhysicalMemory() noexcept {
 
 std::string TissueRepairs::Text() const {
   std::string text;
-  if (merged_springs > 0) text = std::to_string(merged_springs) + " duplicate springs were joined with the first";
+  if (merged_springs > 0)
+    text = std::to_string(merged_springs) + " duplicate springs were joined with the first";
   if (held_nodes > 0) {
     text += std::string(text.empty() ? "" : "; ") + std::to_string(held_nodes) +
             " nodes that nothing holds were fixed where they are";
@@ -111,13 +113,15 @@ std::size_t CalcTissueMemory(const TissueDefinition& definition) noexcept {
 core::Result<TissueRepairs> CheckTissue(TissueDefinition& definition, std::size_t memory_bytes) {
   const std::size_t n = definition.rest.size();
   if (definition.mass.size() != n || definition.shape_stiffness.size() != n)
-    return Invalid("there must be one mass and one virtual spring for each of the " + std::to_string(n) + " nodes");
+    return Invalid("there must be one mass and one virtual spring for each of the " + std::to_string(n) +
+                   " nodes");
   const std::size_t needed = CalcTissueMemory(definition);
   const std::size_t allowed = memory_bytes > 0 ? memory_bytes : FindPhysicalMemory();
   if (needed > allowed || n >= UINT32_MAX / 64) {
     return core::Error{core::ErrorCode::kOutOfMemory,
-                       "a model of " + std::to_string(n) + " nodes needs about " + std::to_string(needed >> 20) +
-                           " MiB and may take " + std::to_string(allowed >> 20) + "; decimate the mesh"};
+                       "a model of " + std::to_string(n) + " nodes needs about " +
+                           std::to_string(needed >> 20) + " MiB and may take " +
+                           std::to_string(allowed >> 20) + "; decimate the mesh"};
   }
   for (std::size_t i = 0; i < n; ++i) {
     if (!math::IsFinite(definition.rest[i]))
@@ -131,7 +135,8 @@ core::Result<TissueRepairs> CheckTissue(TissueDefinition& definition, std::size_
   for (std::size_t i = 0; i < definition.springs.size(); ++i) {
     const Spring& spring = definition.springs[i];
     std::string fault = FindFault(spring, n);
-    if (fault.empty() && !IsAmount(spring.rest_length)) fault = "has a rest length that is negative or not a number";
+    if (fault.empty() && !IsAmount(spring.rest_length))
+      fault = "has a rest length that is negative or not a number";
     if (fault.empty() && spring.rest_length > 0.0 && definition.rest[spring.a] == definition.rest[spring.b])
       fault = "has no direction: its ends lie in one point at rest; merge the two nodes";
     if (!fault.empty()) return Invalid("spring " + std::to_string(i) + " " + fault);
@@ -146,7 +151,8 @@ core::Result<TissueRepairs> CheckTissue(TissueDefinition& definition, std::size_
   return repairs;
 }
 
-core::Status CheckSolverSettings(const SolverSettings& settings, const TissueModel& model, const TissueLoad& load) {
+core::Status CheckSolverSettings(const SolverSettings& settings, const TissueModel& model,
+                                 const TissueLoad& load) {
   const double largest = CalcLargestAlpha(model, load);
   if (settings.kind != SolverKind::kRelaxationPaper || settings.alpha <= largest) return {};
   return core::Error{core::ErrorCode::kUnstableStep,

@@ -13,13 +13,13 @@ namespace {
 constexpr double kLinearShare = 0.3;
 /// The preconditioned residual sees at least this part of the error [-]; measured, see docs/tissue.md.
 constexpr double kEstimateShare = 0.2;
-/// Longest move of a node in the first Newton step, in mean spring lengths [-]: the stiffness is that of springs that
-/// have not turned far. Conjugate gradients stop where they leave this range (Steihaug, "The conjugate gradient method
-/// and trust regions in large scale optimization", SIAM J. Numer. Anal. 20, 1983): by then the stiff part of the step
-/// is solved, and the soft one goes on in the next step.
+/// Longest move of a node in the first Newton step, in mean spring lengths [-]: the stiffness is that of
+/// springs that have not turned far. Conjugate gradients stop where they leave this range (Steihaug, "The
+/// conjugate gradient method and trust regions in large scale optimization", SIAM J. Numer. Anal. 20, 1983):
+/// by then the stiff part of the step is solved, and the soft one goes on in the next step.
 constexpr double kFirstRadius = 0.1;
-/// The range grows by this where a step used all of it and lowered the energy as predicted, and shrinks to as many
-/// times what was left of a step that did not [-].
+/// The range grows by this where a step used all of it and lowered the energy as predicted, and shrinks to as
+/// many times what was left of a step that did not [-].
 constexpr double kRadiusGrowth = 2.0;
 /// Halvings of a step that does not lower the energy.
 constexpr int kMaxHalvings = 6;
@@ -37,8 +37,8 @@ Vec3 ToDouble(const Float4& v) {
 }
 
 double FindLongest(Workers& workers, const std::vector<Float4>& vectors) noexcept {
-  return std::sqrt(
-      FindLargestOfNodes(workers, vectors.size(), [&](std::uint32_t i) { return Dot(vectors[i], vectors[i]); }));
+  return std::sqrt(FindLargestOfNodes(workers, vectors.size(),
+                                      [&](std::uint32_t i) { return Dot(vectors[i], vectors[i]); }));
 }
 
 }  // namespace
@@ -74,13 +74,15 @@ void NewtonMultigrid::AddContactGround() noexcept {
       AddDirection(m, contact.normal, contact.weights[corner] * contact.stiffness);
       const std::uint32_t i = contact.nodes[corner];
       for (std::size_t v = 0; v < 6; ++v) {
-        ground[(std::size_t{i / kSliceNodes} * 6 + v) * kSliceNodes + i % kSliceNodes] += static_cast<float>(m[v]);
+        ground[(std::size_t{i / kSliceNodes} * 6 + v) * kSliceNodes + i % kSliceNodes] +=
+            static_cast<float>(m[v]);
       }
     }
   }
 }
 
-void NewtonMultigrid::Multiply(const Kernels& kernels, Workers& workers, const Float4* x, Float4* out) noexcept {
+void NewtonMultigrid::Multiply(const Kernels& kernels, Workers& workers, const Float4* x,
+                               Float4* out) noexcept {
   RunPass(kernels, workers, hierarchy_.Finest(), LinkPass::kProduct, x, nullptr, 0.0f, out);
   // a contact's ground stands for each corner alone; what it does to the corners together makes up the rest
   for (std::size_t c = 0; c < load_.contacts.size(); ++c) {
@@ -100,7 +102,8 @@ void NewtonMultigrid::Multiply(const Kernels& kernels, Workers& workers, const F
   }
 }
 
-void NewtonMultigrid::SetConstraints(const Kernels& kernels, Workers& workers, const SolveHook* hook) noexcept {
+void NewtonMultigrid::SetConstraints(const Kernels& kernels, Workers& workers,
+                                     const SolveHook* hook) noexcept {
   constraint_count_ = 0;
   if (hook == nullptr || hook->constraints.empty()) return;
   std::fill(constraint_of_node_.begin(), constraint_of_node_.end(), kNoConstraint);
@@ -194,8 +197,7 @@ NewtonMultigrid::LinearReport NewtonMultigrid::SolveLinear(const Kernels& kernel
     Precondition(kernels, workers);
     if (is_leaving) break;
     if (FindLongest(workers, z_) <= tolerance) break;
-    const double next =
-        SumOverNodes(workers, n, [&](std::uint32_t i) { return Dot(r_[i], z_[i]); });
+    const double next = SumOverNodes(workers, n, [&](std::uint32_t i) { return Dot(r_[i], z_[i]); });
     const auto beta = static_cast<float>(next / rz);
     rz = next;
     ForEachNodeChunk(workers, n, [&](std::uint32_t first, std::uint32_t last, std::uint32_t) {
@@ -216,7 +218,8 @@ SolveReport NewtonMultigrid::Solve(const Kernels& kernels, Workers& workers, con
 
   SolveReport report;
   const auto linearise = [&] {
-    Linearise(model_, load_, state.strand_is_intact, position_, workers, hierarchy_.Finest(), stiffness_, balance_);
+    Linearise(model_, load_, state.strand_is_intact, position_, workers, hierarchy_.Finest(), stiffness_,
+              balance_);
     AddContactGround();
   };
   const auto write_back = [&] {
@@ -259,7 +262,8 @@ SolveReport NewtonMultigrid::Solve(const Kernels& kernels, Workers& workers, con
     const double before = balance_.energy;
     const double tolerance = kLinearShare * kEstimateShare * settings.max_error * scale;
     const auto first_multipliers = multipliers_;
-    const LinearReport linear = SolveLinear(kernels, workers, settings.max_linear_iterations, tolerance, radius);
+    const LinearReport linear =
+        SolveLinear(kernels, workers, settings.max_linear_iterations, tolerance, radius);
     report.linear_iterations += linear.iterations;
     report.negative_curvatures += linear.met_negative_curvature;
     const double length = FindLongest(workers, step_);
@@ -272,8 +276,8 @@ SolveReport NewtonMultigrid::Solve(const Kernels& kernels, Workers& workers, con
     for (int halving = 0; halving <= kMaxHalvings && !is_lower; ++halving, share *= 0.5) {
       for (std::uint32_t i = 0; i < n; ++i) position_[i] = start_[i] + share * ToDouble(step_[i]);
       linearise();
-      is_lower = balance_.is_finite &&
-                 balance_.energy <= before + kLeastDecrease * share * slope + kEnergyRounding * std::fabs(before);
+      is_lower = balance_.is_finite && balance_.energy <= before + kLeastDecrease * share * slope +
+                                                              kEnergyRounding * std::fabs(before);
       report.restarts += !is_lower;
     }
     ++report.iterations;
@@ -292,8 +296,10 @@ SolveReport NewtonMultigrid::Solve(const Kernels& kernels, Workers& workers, con
     }
     // what the constraints carry of the residual after this part of the step
     for (std::size_t c = 0; c < constraint_count_; ++c)
-      multipliers_[c] = std::fmin(share, 1.0) * multipliers_[c] + (1.0 - std::fmin(share, 1.0)) * first_multipliers[c];
-    // a constraint is kept after every step, whatever the hook's interval: a step here is worth many iterations
+      multipliers_[c] =
+          std::fmin(share, 1.0) * multipliers_[c] + (1.0 - std::fmin(share, 1.0)) * first_multipliers[c];
+    // a constraint is kept after every step, whatever the hook's interval: a step here is worth many
+    // iterations
     call_hook();
     hierarchy_.Update(stiffness_);
     estimate();

@@ -49,9 +49,9 @@ class NewtonMultigrid {
   // constraints of the present step; their gradients share no node
   std::size_t constraint_count_ = 0;
   std::array<std::size_t, kMaxHookConstraints> constraint_index_{};  // in the hook
-  std::vector<std::uint8_t> constraint_of_node_;                      // (n) place in this list, or kNoConstraint
-  std::vector<Float4> gradient_;                                      // (padded)
-  std::array<std::vector<Float4>, kMaxHookConstraints> answers_;      // (padded) M^-1 gradient
+  std::vector<std::uint8_t> constraint_of_node_;                  // (n) place in this list, or kNoConstraint
+  std::vector<Float4> gradient_;                                  // (padded)
+  std::array<std::vector<Float4>, kMaxHookConstraints> answers_;  // (padded) M^-1 gradient
   std::array<std::array<double, kMaxHookConstraints>, kMaxHookConstraints> gram_{};  // gradient . answer
   std::array<double, kMaxHookConstraints> multipliers_{};
   double edge_length_ = 0;  // mean rest length of the springs [m]

@@ -21,7 +21,8 @@ std::uint32_t ForEachNodeChunk(Workers& workers, std::size_t count, const Work& 
   const auto n = static_cast<std::uint32_t>(count);
   const std::uint32_t size = std::max(kVectorChunk, n / Workers::kMaxChunks + 1);
   const std::uint32_t chunks = (n + size - 1) / size;
-  workers.Run(chunks, [&](std::uint32_t chunk) { work(chunk * size, std::min(n, (chunk + 1) * size), chunk); });
+  workers.Run(chunks,
+              [&](std::uint32_t chunk) { work(chunk * size, std::min(n, (chunk + 1) * size), chunk); });
   return chunks;
 }
 

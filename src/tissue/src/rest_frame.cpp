@@ -76,7 +76,8 @@ std::array<double, 4> FindLargestEigenvector(Matrix4 a) noexcept {
 /// Rotation R that makes the trace of R^T m largest.
 Quaternion FindRotation(const Matrix3& m) noexcept {
   // Horn's S_ab = sum r_a x_b is the transpose of m
-  const double xx = m[0], xy = m[3], xz = m[6], yx = m[1], yy = m[4], yz = m[7], zx = m[2], zy = m[5], zz = m[8];
+  const double xx = m[0], xy = m[3], xz = m[6], yx = m[1], yy = m[4], yz = m[7], zx = m[2], zy = m[5],
+               zz = m[8];
   const Matrix4 n{{{xx + yy + zz, yz - zy, zx - xz, xy - yx},
                    {yz - zy, xx - yy - zz, xy + yx, zx + xz},
                    {zx - xz, xy + yx, -xx + yy - zz, yz + zy},
@@ -128,11 +129,10 @@ Pose FitRigidMotion(const MotionMoments& moments, const Quaternion& previous) no
   const double trace = largest > 0.0 ? kPriorShare * largest : 1.0;
   for (int i = 0; i < 9; ++i) m[i] += trace * prior[i];
   Quaternion rotation = FindRotation(m);
-  const double same = rotation.w * previous.w + rotation.x * previous.x + rotation.y * previous.y +
-                      rotation.z * previous.z;
+  const double same =
+      rotation.w * previous.w + rotation.x * previous.x + rotation.y * previous.y + rotation.z * previous.z;
   if (same < 0.0) rotation = {-rotation.w, -rotation.x, -rotation.y, -rotation.z};
-  return {rotation,
-          moments.origin + centre - math::Rotate(rotation, moments.rest_origin + rest_centre)};
+  return {rotation, moments.origin + centre - math::Rotate(rotation, moments.rest_origin + rest_centre)};
 }
 
 void FindFreeRegions(const TissueModel& model, std::span<const std::uint8_t> strand_is_intact,
@@ -155,7 +155,8 @@ void FindFreeRegions(const TissueModel& model, std::span<const std::uint8_t> str
     }
   }
   for (std::uint32_t i = 0; i < n; ++i) parent[i] = FindRoot(parent, i);
-  // a fixed node pins its whole piece: a mark in the root's own entry, to which no other node's entry leads now
+  // a fixed node pins its whole piece: a mark in the root's own entry, to which no other node's entry leads
+  // now
   for (std::uint32_t i = 0; i < n; ++i) {
     const std::uint32_t root = parent[i] & ~kPinnedMark;
     if (model.is_fixed[i]) parent[root] = root | kPinnedMark;

@@ -82,14 +82,15 @@ struct EquilibriumSolver::Content {
 SolveReport SolveRelaxationPaper(EquilibriumSolver::Content& content, const SolverSettings& settings,
                                  const TissueLoad& load, TissueState& state, const SolveHook* hook) noexcept;
 SolveReport SolveGaussSeidelBrown2001(EquilibriumSolver::Content& content, const SolverSettings& settings,
-                                      const TissueLoad& load, TissueState& state, const SolveHook* hook) noexcept;
+                                      const TissueLoad& load, TissueState& state,
+                                      const SolveHook* hook) noexcept;
 SolveReport SolveChebyshevJacobiWang2015(EquilibriumSolver::Content& content, const SolverSettings& settings,
                                          const TissueLoad& load, TissueState& state,
                                          const SolveHook* hook) noexcept;
 
 /// Accelerated descent where a structured mesh starts cold, then Newton until the error is small enough.
-SolveReport SolveAdaptive(EquilibriumSolver::Content& content, const SolverSettings& settings, const TissueLoad& load,
-                          TissueState& state, const SolveHook* hook) noexcept;
+SolveReport SolveAdaptive(EquilibriumSolver::Content& content, const SolverSettings& settings,
+                          const TissueLoad& load, TissueState& state, const SolveHook* hook) noexcept;
 
 /// Nodes a thread takes at a time; depends on the model alone, so that results do not depend on the threads.
 inline std::uint32_t CalcChunk(std::size_t node_count) noexcept {

@@ -51,7 +51,8 @@ std::optional<GridShape> FindGridShape(const TissueModel& model) {
       const std::uint32_t other = model.half_springs[h].other;
       if (other <= i + 1) continue;
       for (const std::uint32_t columns : {other - i - 1, other - i, other - i + 1}) {
-        if (IsGrid(model, columns)) return GridShape{static_cast<std::uint32_t>(model.Size()) / columns, columns};
+        if (IsGrid(model, columns))
+          return GridShape{static_cast<std::uint32_t>(model.Size()) / columns, columns};
       }
       return std::nullopt;
     }
@@ -88,13 +89,16 @@ GridPlace FindGridPlace(std::uint32_t at, std::uint32_t count, std::uint32_t oth
 GridModel MakeCoarseGrid(const GridModel& fine) {
   const auto [rows, columns] = fine.shape;
   GridModel coarse{{(rows + 1) / 2, (columns + 1) / 2}, {}, {}};
-  const auto fine_at = [&](std::uint32_t row, std::uint32_t column) { return row * fine.shape.columns + column; };
+  const auto fine_at = [&](std::uint32_t row, std::uint32_t column) {
+    return row * fine.shape.columns + column;
+  };
   for (std::uint32_t row = 0; row < coarse.shape.rows; ++row) {
     const GridPlace r = FindGridPlace(row, coarse.shape.rows, fine.shape.rows);
     for (std::uint32_t column = 0; column < coarse.shape.columns; ++column) {
       const GridPlace c = FindGridPlace(column, coarse.shape.columns, fine.shape.columns);
       const auto across = [&](std::uint32_t at_row) {
-        const Vec3 left = fine.rest[fine_at(at_row, c.index)], right = fine.rest[fine_at(at_row, c.index + 1)];
+        const Vec3 left = fine.rest[fine_at(at_row, c.index)],
+                   right = fine.rest[fine_at(at_row, c.index + 1)];
         return left + static_cast<double>(c.share) * (right - left);
       };
       const Vec3 above = across(r.index), below = across(r.index + 1);
@@ -109,15 +113,17 @@ GridModel MakeCoarseGrid(const GridModel& fine) {
     to.rest_length.assign(coarse.Size(), 0.0);
     for (std::uint32_t row = 0; row < coarse.shape.rows; ++row) {
       for (std::uint32_t column = 0; column < coarse.shape.columns; ++column) {
-        const std::int64_t other_row = row + kOffsets[direction].row, other_column = column + kOffsets[direction].column;
-        if (other_row >= coarse.shape.rows || other_column < 0 || other_column >= coarse.shape.columns) continue;
+        const std::int64_t other_row = row + kOffsets[direction].row,
+                           other_column = column + kOffsets[direction].column;
+        if (other_row >= coarse.shape.rows || other_column < 0 || other_column >= coarse.shape.columns)
+          continue;
         const GridPlace r = FindGridPlace(row, coarse.shape.rows, fine.shape.rows);
         const GridPlace c = FindGridPlace(column, coarse.shape.columns, fine.shape.columns);
         const std::uint32_t source = fine_at(r.index, std::max(c.index, direction == kSouthWest ? 1u : 0u));
         const std::uint32_t node = row * coarse.shape.columns + column;
-        const Vec3 offset =
-            coarse.rest[static_cast<std::size_t>(other_row) * coarse.shape.columns + static_cast<std::size_t>(other_column)] -
-            coarse.rest[node];
+        const Vec3 offset = coarse.rest[static_cast<std::size_t>(other_row) * coarse.shape.columns +
+                                        static_cast<std::size_t>(other_column)] -
+                            coarse.rest[node];
         if (!(from.stiffness[source] > 0.0) || !(math::SquaredNorm(offset) > 0.0)) continue;
         to.rest_offset[node] = offset;
         to.stiffness[node] = from.stiffness[source];
@@ -147,7 +153,8 @@ SpringGrid::SpringGrid(const GridModel& model)
                       (direction != kSouth || offset.x == 0.0);
         has_south_west_ = has_south_west_ || direction == kSouthWest;
         sum_stiffness_[node] += k;
-        sum_stiffness_[node + static_cast<std::size_t>(kOffsets[direction].row * columns + kOffsets[direction].column)] += k;
+        sum_stiffness_[node + static_cast<std::size_t>(kOffsets[direction].row * columns +
+                                                       kOffsets[direction].column)] += k;
       }
       const std::uint32_t first = node % columns;
       if (node / columns + 1 == rows) continue;  // the last row has its own
@@ -176,7 +183,8 @@ SpringGrid::SpringGrid(const GridModel& model)
     }
   };
   for (std::uint32_t node = 0; node < (is_alike_ ? columns : model.Size()); ++node) set(springs_, node, node);
-  for (std::uint32_t column = 0; column < columns; ++column) set(last_springs_, column, (rows - 1) * columns + column);
+  for (std::uint32_t column = 0; column < columns; ++column)
+    set(last_springs_, column, (rows - 1) * columns + column);
   nodes_.assign(std::size_t{rows} * stride_ * 5, 0.0f);
   u_.assign(std::size_t{rows + 1} * stride_ * 3 + 2 * kMargin, 0.0f);
   previous_ = u_;
@@ -190,18 +198,21 @@ void SpringGrid::SetLoad(const GridLoad& load, double scale) noexcept {
     for (int direction = 0; direction < kGridDirections; ++direction) {
       float* const values = to.data() + At(place, kGridDirections * 5) + direction * 5 * kSliceNodes;
       for (int value = 0; value < 2; ++value) {
-        values[(3 + value) * kSliceNodes] =
-            static_cast<float>(scale * unscaled_[(std::size_t{node} * kGridDirections + direction) * 2 + value]);
+        values[(3 + value) * kSliceNodes] = static_cast<float>(
+            scale * unscaled_[(std::size_t{node} * kGridDirections + direction) * 2 + value]);
       }
     }
   };
-  for (std::uint32_t node = 0; node < (is_alike_ ? columns : rows * columns); ++node) set(springs_, node, node);
-  for (std::uint32_t column = 0; column < columns; ++column) set(last_springs_, column, (rows - 1) * columns + column);
+  for (std::uint32_t node = 0; node < (is_alike_ ? columns : rows * columns); ++node)
+    set(springs_, node, node);
+  for (std::uint32_t column = 0; column < columns; ++column)
+    set(last_springs_, column, (rows - 1) * columns + column);
   lowest_ = 1.0;
   smallest_shape_ = INFINITY;
   for (std::uint32_t node = 0; node < load.force.size(); ++node) {
     float* const values = nodes_.data() + At(node, 5);
-    for (int axis = 0; axis < 3; ++axis) values[axis * kSliceNodes] = static_cast<float>(load.force[node][axis]);
+    for (int axis = 0; axis < 3; ++axis)
+      values[axis * kSliceNodes] = static_cast<float>(load.force[node][axis]);
     values[3 * kSliceNodes] = static_cast<float>(load.shape[node]);
     const double bound = 2.0 * scale * sum_stiffness_[node] + load.shape[node];
     const bool is_free = load.is_free[node] != 0 && bound > 0.0;
@@ -221,7 +232,8 @@ void SpringGrid::SetDisplacement(std::uint32_t node, const Vec3& u) noexcept {
 
 Vec3 SpringGrid::GetDisplacement(std::uint32_t node) const noexcept {
   const float* const u = u_.data() + DisplacementAt(node);
-  return {static_cast<double>(u[0]), static_cast<double>(u[stride_]), static_cast<double>(u[2 * std::size_t{stride_}])};
+  return {static_cast<double>(u[0]), static_cast<double>(u[stride_]),
+          static_cast<double>(u[2 * std::size_t{stride_}])};
 }
 
 void SpringGrid::Interpolate(const SpringGrid& coarse) noexcept {
@@ -258,7 +270,8 @@ double SpringGrid::Step(const Kernels& kernels, Workers& workers, float omega, f
   workers.Run(chunks, [&](std::uint32_t chunk) {
     GridStep own = step;
     own.reaction = reaction_.data() + std::size_t{chunk} * 2 * ReactionFloats(stride_);
-    largest2[chunk] = kernels.step_rows(own, chunk * chunk_rows, std::min(shape_.rows, (chunk + 1) * chunk_rows));
+    largest2[chunk] =
+        kernels.step_rows(own, chunk * chunk_rows, std::min(shape_.rows, (chunk + 1) * chunk_rows));
   });
   std::swap(u_, previous_);
   double largest = 0;

@@ -13,13 +13,13 @@
 #include <vector>
 
 #include "kernels.h"
-#include "workers.h"
 #include "trocar/tissue/tissue_model.h"
+#include "workers.h"
 
 namespace trocar::tissue {
 
-/// Rows and columns of a model whose node (row, column) has the index row * columns + column and whose springs
-/// go to at most its eight neighbours.
+/// Rows and columns of a model whose node (row, column) has the index row * columns + column and whose
+/// springs go to at most its eight neighbours.
 struct GridShape {
   std::uint32_t rows = 0, columns = 0;
 };
@@ -43,8 +43,9 @@ struct GridModel {
 };
 GridModel MakeGridModel(const TissueModel& model, const GridShape& shape);
 
-/// About half as many rows and columns, over the same rectangle: rest positions interpolated, stiffness that of
-/// the nearest springs (a membrane's springs keep theirs when all lengths double), the same strain at rest.
+/// About half as many rows and columns, over the same rectangle: rest positions interpolated, stiffness that
+/// of the nearest springs (a membrane's springs keep theirs when all lengths double), the same strain at
+/// rest.
 GridModel MakeCoarseGrid(const GridModel& fine);
 
 /// Where a row or column of one grid lies in another of the same extent.
@@ -74,7 +75,8 @@ class SpringGrid {
   /// Sets the free nodes' displacements by interpolation from a coarser grid.
   void Interpolate(const SpringGrid& coarse) noexcept;
   /// One iteration. \return largest residual before it [N], NaN where one is; 0 unless measured
-  double Step(const Kernels& kernels, Workers& workers, float omega, float damping, bool is_first, bool is_measured) noexcept;
+  double Step(const Kernels& kernels, Workers& workers, float omega, float damping, bool is_first,
+              bool is_measured) noexcept;
   /// Smallest k_virtual / (2 sum k + k_virtual) of a free node: no eigenvalue is lower where no spring is
   /// compressed [-].
   double LowestEigenvalue() const { return lowest_; }

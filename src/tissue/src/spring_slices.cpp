@@ -56,7 +56,8 @@ void SpringSlices::SetLoad(const OrderedModel& model, const OrderedLoad& load,
     }
     const double shape = load.shape_scale * model.shape[i], bound = 2.0 * sum + shape;
     float* const node = nodes_.data() + std::size_t{i / kSliceNodes} * 5 * kSliceNodes + i % kSliceNodes;
-    for (int axis = 0; axis < 3; ++axis) node[axis * kSliceNodes] = static_cast<float>(load.constant[i][axis]);
+    for (int axis = 0; axis < 3; ++axis)
+      node[axis * kSliceNodes] = static_cast<float>(load.constant[i][axis]);
     node[3 * kSliceNodes] = static_cast<float>(shape);
     const bool is_free = load.is_free[i] != 0 && bound > 0.0;
     node[4 * kSliceNodes] = is_free ? static_cast<float>(1.0 / bound) : 0.0f;
@@ -71,12 +72,14 @@ void SpringSlices::SetLoad(const OrderedModel& model, const OrderedLoad& load,
 }
 
 void SpringSlices::AddForce(std::uint32_t node, const Vec3& force) noexcept {
-  float* const values = nodes_.data() + std::size_t{node / kSliceNodes} * 5 * kSliceNodes + node % kSliceNodes;
+  float* const values =
+      nodes_.data() + std::size_t{node / kSliceNodes} * 5 * kSliceNodes + node % kSliceNodes;
   for (int axis = 0; axis < 3; ++axis) values[axis * kSliceNodes] += static_cast<float>(force[axis]);
 }
 
 void SpringSlices::SetDisplacement(std::uint32_t node, const Vec3& u) noexcept {
-  u_[node] = previous_[node] = {static_cast<float>(u.x), static_cast<float>(u.y), static_cast<float>(u.z), 0.0f};
+  u_[node] =
+      previous_[node] = {static_cast<float>(u.x), static_cast<float>(u.y), static_cast<float>(u.z), 0.0f};
 }
 
 double SpringSlices::Step(const Kernels& kernels, Workers& workers, float omega, float damping, bool is_first,
@@ -85,8 +88,8 @@ double SpringSlices::Step(const Kernels& kernels, Workers& workers, float omega,
   const std::uint32_t chunk_slices = std::max(kChunkSlices, slices / Workers::kMaxChunks + 1);
   const std::uint32_t chunks = (slices + chunk_slices - 1) / chunk_slices;
   std::array<float, Workers::kMaxChunks> largest2;
-  const SliceStep step{layout_.Table(),  springs_.data(), nodes_.data(), u_.data(),
-                       previous_.data(), omega,           damping,       is_first,      is_measured};
+  const SliceStep step{layout_.Table(), springs_.data(), nodes_.data(), u_.data(),  previous_.data(),
+                       omega,           damping,         is_first,      is_measured};
   workers.Run(chunks, [&](std::uint32_t chunk) {
     largest2[chunk] =
         kernels.step_slices(step, chunk * chunk_slices, std::min(slices, (chunk + 1) * chunk_slices));

@@ -18,12 +18,14 @@ class SpringSlices {
                std::span<const std::uint8_t> strand_is_intact) noexcept;
   void SetDisplacement(std::uint32_t node, const Vec3& u) noexcept;
   Vec3 GetDisplacement(std::uint32_t node) const noexcept {
-    return {static_cast<double>(u_[node].x), static_cast<double>(u_[node].y), static_cast<double>(u_[node].z)};
+    return {static_cast<double>(u_[node].x), static_cast<double>(u_[node].y),
+            static_cast<double>(u_[node].z)};
   }
   /// Adds to the load on a node, until the next SetLoad [N].
   void AddForce(std::uint32_t node, const Vec3& force) noexcept;
   /// One iteration. \return largest residual before it [N], NaN where one is; 0 unless measured
-  double Step(const Kernels& kernels, Workers& workers, float omega, float damping, bool is_first, bool is_measured) noexcept;
+  double Step(const Kernels& kernels, Workers& workers, float omega, float damping, bool is_first,
+              bool is_measured) noexcept;
   double LowestEigenvalue() const { return lowest_; }
   double SmallestShape() const { return smallest_shape_; }
   double LargestDisplacement() const noexcept;

@@ -27,7 +27,8 @@ double CalcVolumeGradient(std::span<const Vec3> position, std::span<const geomet
   return six_volumes / 6.0;
 }
 
-double CalcClosedVolume(std::span<const Vec3> position, std::span<const geometry::Triangle> triangles) noexcept {
+double CalcClosedVolume(std::span<const Vec3> position,
+                        std::span<const geometry::Triangle> triangles) noexcept {
   if (position.empty()) return 0.0;
   const Vec3 origin = position.front();
   double six_volumes = 0;

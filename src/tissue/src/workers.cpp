@@ -83,7 +83,8 @@ void Workers::TakeChunks(std::uint32_t loop, int seat) noexcept {
     }
     // A helper that was late may hold a chunk of a loop that has ended. A loop ends only after its last
     // chunk, so a chunk of the present loop keeps it present.
-    if (loop_.load(std::memory_order_acquire) != loop || chunk >= count_.load(std::memory_order_acquire)) return;
+    if (loop_.load(std::memory_order_acquire) != loop || chunk >= count_.load(std::memory_order_acquire))
+      return;
     call_.load(std::memory_order_acquire)(context_.load(std::memory_order_acquire), chunk);
     done_.fetch_add(1, std::memory_order_acq_rel);
   }

@@ -39,7 +39,8 @@ TEST(LinearResponse, IsTheAnswerOfTheModelToASmallForce) {
 }
 
 TEST(LinearResponse, AGoodFirstGuessNeedsNoIteration) {
-  const TissueModel model = MakeTissueModel(MakeMembrane(geometry::MakeSphere({0, 0, 0}, 0.03, 1), 100.0, 3e4));
+  const TissueModel model =
+      MakeTissueModel(MakeMembrane(geometry::MakeSphere({0, 0, 0}, 0.03, 1), 100.0, 3e4));
   const TissueState state = MakeRestState(model);
   const std::vector<Vec3> force(model.Size(), Vec3{0, 0, 1});
   std::vector<Vec3> response(model.Size());

@@ -14,7 +14,9 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-TissueDefinition MakeGood() { return MakeMembrane(geometry::MakeGrid(4, 0.01), 100.0, 1e4); }
+TissueDefinition MakeGood() {
+  return MakeMembrane(geometry::MakeGrid(4, 0.01), 100.0, 1e4);
+}
 
 TEST(CheckTissue, LeavesAGoodModelAlone) {
   TissueDefinition definition = MakeGood();
@@ -55,7 +57,8 @@ TEST(CheckTissue, JoinsDuplicateSpringsIntoOneOfTheSameForce) {
   EXPECT_NE(repairs->Text().find("duplicate"), std::string::npos);
   ASSERT_EQ(definition.springs.size(), 1u);
   EXPECT_DOUBLE_EQ(definition.springs[0].stiffness, 50.0);
-  EXPECT_NEAR(50.0 * (0.2 - definition.springs[0].rest_length), 20.0 * (0.2 - 0.1) + 30.0 * (0.2 - 0.12), 1e-12);
+  EXPECT_NEAR(50.0 * (0.2 - definition.springs[0].rest_length), 20.0 * (0.2 - 0.1) + 30.0 * (0.2 - 0.12),
+              1e-12);
 }
 
 TEST(CheckTissue, FixesANodeThatNothingHolds) {
@@ -93,8 +96,8 @@ TEST(CheckSolverSettings, NamesAnUnstableStepAndTheLargestThatIsNot) {
   EXPECT_EQ(status.error().code, core::ErrorCode::kUnstableStep);
 }
 
-// A NaN or infinity in anything that a tick takes is found in that tick: by the guard in the positions, by the solve in
-// everything else.
+// A NaN or infinity in anything that a tick takes is found in that tick: by the guard in the positions, by
+// the solve in everything else.
 TEST(Faults, ANaNInAnyArrayIsFoundInItsTick) {
   const auto mesh = geometry::MakeSphere({0, 0, 0}, 0.03, 2);
   const TissueModel model = MakeTissueModel(MakeMembrane(mesh, 100.0, 2e4));

@@ -22,7 +22,8 @@ std::vector<Vec3> RandomPoints(math::Random& random, int count, const Vec3& exte
 }
 
 Quaternion RandomRotation(math::Random& random) {
-  const Vec3 axis = math::Normalized(Vec3{random.Uniform(-1, 1), random.Uniform(-1, 1), random.Uniform(-1, 1)});
+  const Vec3 axis =
+      math::Normalized(Vec3{random.Uniform(-1, 1), random.Uniform(-1, 1), random.Uniform(-1, 1)});
   return math::RotationAbout(axis, random.Uniform(-M_PI, M_PI));
 }
 
@@ -58,7 +59,8 @@ TEST(FitRigidMotion, RecoversAnyRigidMotionFarFromTheOrigin) {
   }
 }
 
-// Oracle: no nearby rigid motion fits noisy points better, and the springs of the fit exert neither force nor torque.
+// Oracle: no nearby rigid motion fits noisy points better, and the springs of the fit exert neither force nor
+// torque.
 TEST(FitRigidMotion, IsTheBestFitAndLeavesNoNetForceOrTorque) {
   math::Random random(2);
   for (int trial = 0; trial < 50; ++trial) {
@@ -75,7 +77,8 @@ TEST(FitRigidMotion, IsTheBestFitAndLeavesNoNetForceOrTorque) {
     for (int i = 0; i < 4; ++i) fit = Fit(weights, rest, now, fit.rotation);
     const auto error = [&](const Pose& X) {
       double sum = 0;
-      for (std::size_t i = 0; i < rest.size(); ++i) sum += weights[i] * math::SquaredDistance(X * rest[i], now[i]);
+      for (std::size_t i = 0; i < rest.size(); ++i)
+        sum += weights[i] * math::SquaredDistance(X * rest[i], now[i]);
       return sum;
     };
     Vec3 force, torque;
@@ -108,7 +111,8 @@ TEST(FitRigidMotion, KeepsThePreviousTurnWhereThePointsLeaveItOpen) {
 
 // A flat piece that passes through its own mirror image: the fit may not jump while the shape moves a little.
 TEST(FitRigidMotion, IsContinuousWhileAPieceIsPressedFlatAndInsideOut) {
-  const std::vector<Vec3> rest{{0.03, 0, 0}, {-0.03, 0, 0}, {0, 0.02, 0}, {0, -0.02, 0}, {0, 0, 0.01}, {0, 0, -0.01}};
+  const std::vector<Vec3> rest{{0.03, 0, 0},  {-0.03, 0, 0}, {0, 0.02, 0},
+                               {0, -0.02, 0}, {0, 0, 0.01},  {0, 0, -0.01}};
   const std::vector<double> weights(rest.size(), 1.0);
   Quaternion last;
   for (int step = 0; step <= 400; ++step) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file solvers_test.cpp  Every solver against the paper's relaxation in double precision, and the promises that hold
-/// for all of them.
+/// \file solvers_test.cpp  Every solver against the paper's relaxation in double precision, and the promises
+/// that hold for all of them.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -42,7 +42,8 @@ Sheet MakeSheet(int side, double shape_stiffness, bool is_shuffled = false) {
   }
   const auto edge = static_cast<std::uint32_t>(side);
   for (std::uint32_t i = 0; i < n; ++i) {
-    if (i % edge == 0 || i % edge + 1 == edge || i < edge || i + edge >= n) definition.fixed.push_back(place(i));
+    if (i % edge == 0 || i % edge + 1 == edge || i < edge || i + edge >= n)
+      definition.fixed.push_back(place(i));
   }
   Sheet sheet{MakeTissueModel(definition), {}, std::vector<Vec3>(n)};
   sheet.start = MakeRestState(sheet.model);
@@ -152,7 +153,8 @@ TEST_P(EverySolver, LeavesPrescribedNodesExactlyWhereTheyAre) {
 // A NaN anywhere ends the solve, and is there afterwards for the guard to find.
 TEST_P(EverySolver, EndsAtWhatIsNotFinite) {
   const Sheet sheet = MakeSheet(12, 0.05);
-  for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+  for (const double bad :
+       {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
     TissueState state = sheet.start;
     state.position[50].y = bad;
     EquilibriumSolver solver(sheet.model, 1);
@@ -290,7 +292,9 @@ TEST(Newton, ComesHomeFromACrumpledStart) {
   const TissueModel model = MakeTissueModel(MakeMembrane(mesh, 400.0, 2e4));
   TissueState state = MakeRestState(model);
   for (std::size_t i = 0; i < state.position.size(); ++i) {
-    const auto wobble = [&](int salt) { return 0.01 * std::sin(12.9898 * static_cast<double>(i) + 78.233 * salt); };
+    const auto wobble = [&](int salt) {
+      return 0.01 * std::sin(12.9898 * static_cast<double>(i) + 78.233 * salt);
+    };
     state.position[i] += Vec3{wobble(1), wobble(2), wobble(3)};
   }
   const double before = CalcEnergy(model, state, {});
@@ -310,7 +314,8 @@ TEST(Newton, BalancesContactsAndStrands) {
   const Vec3 centre = (model.rest[9] + model.rest[10] + model.rest[11]) / 3.0;
   contact.normal = -math::Normalized(centre);
   contact.offset = math::Dot(contact.normal, centre) + 0.0005;  // too shallow to buckle
-  const TissueLoad load{.gravity = {1, 2, -3}, .stiffness_scale = 1.5, .shape_scale = 0.7, .contacts = {&contact, 1}};
+  const TissueLoad load{
+      .gravity = {1, 2, -3}, .stiffness_scale = 1.5, .shape_scale = 0.7, .contacts = {&contact, 1}};
   const auto solve = [&](SolverSettings settings) {
     TissueState state = MakeRestState(model);
     state.strand_is_intact[1] = 0;

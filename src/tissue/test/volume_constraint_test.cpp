@@ -15,7 +15,8 @@ namespace {
 TEST(CalcVolumeGradient, AgreesWithTheVolumeAndItsFiniteDifferences) {
   auto mesh = geometry::MakeSphere({0.4, -0.2, 0.1}, 0.02, 2);
   for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
-    mesh.positions[i] += 0.002 * Vec3{std::sin(3.0 * static_cast<double>(i)), std::cos(5.0 * static_cast<double>(i)), 0};
+    mesh.positions[i] +=
+        0.002 * Vec3{std::sin(3.0 * static_cast<double>(i)), std::cos(5.0 * static_cast<double>(i)), 0};
   }
   std::vector<Vec3> gradient(mesh.positions.size());
   const double volume = CalcVolumeGradient(mesh.positions, mesh.triangles, gradient);

@@ -4,6 +4,14 @@
 #include <utility>
 
 namespace trocar::tissue_cuda {
+namespace {
+
+/// The GPU's own solver, by its name or where the choice is left open.
+bool RunsOnGpu(tissue::SolverKind kind) noexcept {
+  return kind == tissue::SolverKind::kChebyshevJacobi2015 || kind == tissue::SolverKind::kAdaptive;
+}
+
+}  // namespace
 
 GpuOrCpuSolver::GpuOrCpuSolver(const tissue::TissueModel& model, int threads, core::Result<GpuSolver> gpu)
     : EquilibriumSolver(model, threads) {
@@ -19,7 +27,7 @@ GpuOrCpuSolver::~GpuOrCpuSolver() = default;
 tissue::SolveReport GpuOrCpuSolver::Solve(const tissue::SolverSettings& settings,
                                           const tissue::TissueLoad& load, tissue::TissueState& state,
                                           const tissue::SolveHook* hook) noexcept {
-  if (gpu_ && settings.kind == tissue::SolverKind::kChebyshevJacobi2015) {
+  if (gpu_ && RunsOnGpu(settings.kind)) {
     const core::Result<tissue::SolveReport> report = gpu_->Solve(settings, load, state, hook);
     if (report) return *report;
     gpu_error_ = report.error();

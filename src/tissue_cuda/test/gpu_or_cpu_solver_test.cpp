@@ -19,6 +19,7 @@ TissueModel MakeModel() {
   return tissue::MakeTissueModel(MakeScatteredSphere(2, Springs::kVaried, 0.03));
 }
 const tissue::TissueLoad kLoad{.gravity = {0, 0, -0.3}};
+const SolverSettings kChebyshev{.kind = SolverKind::kChebyshevJacobi2015};
 
 TEST(GpuOrCpuSolver, WithoutAGpuGivesTheProcessorsBits) {
   const TissueModel model = MakeModel();
@@ -30,8 +31,8 @@ TEST(GpuOrCpuSolver, WithoutAGpuGivesTheProcessorsBits) {
   EXPECT_EQ(solver.GpuError()->code, core::ErrorCode::kGpuMissing);
   TissueState expected = MakeMovedState(model, 3e-4), found = expected;
   tissue::EquilibriumSolver cpu(model, 1);
-  (void)cpu.Solve({}, kLoad, expected);
-  (void)solver.Solve({}, kLoad, found);
+  (void)cpu.Solve(kChebyshev, kLoad, expected);
+  (void)solver.Solve(kChebyshev, kLoad, found);
   EXPECT_EQ(found.position, expected.position);
 }
 
@@ -46,8 +47,8 @@ TEST(GpuOrCpuSolver, TheProcessorGoesOnInTheTickInWhichTheGpuFails) {
     for (int tick = 1; tick <= 5; ++tick) {
       TissueState expected = state;
       tissue::EquilibriumSolver cpu(model, 1);
-      const auto wanted = cpu.Solve({}, kLoad, expected);
-      const auto report = solver.Solve({}, kLoad, state);
+      const auto wanted = cpu.Solve(kChebyshev, kLoad, expected);
+      const auto report = solver.Solve(kChebyshev, kLoad, state);
       EXPECT_EQ(solver.Gpu() != nullptr, tick < fails_at);
       if (tick < fails_at) {
         EXPECT_LT(CalcLargestDistance(state.position, expected.position), 1e-6);
@@ -61,14 +62,14 @@ TEST(GpuOrCpuSolver, TheProcessorGoesOnInTheTickInWhichTheGpuFails) {
   }
 }
 
-TEST(GpuOrCpuSolver, OnlyTheChebyshevIterationGoesToTheGpu) {
+TEST(GpuOrCpuSolver, TheChebyshevIterationAndAnOpenChoiceGoToTheGpu) {
   const StandIn stand_in("fail=cuLaunchCooperativeKernel:1:700");
   const TissueModel model = MakeModel();
   GpuOrCpuSolver solver(model, 1, MakeGpuSolver(model, {}, StandIn::Source()));
   TissueState state = MakeMovedState(model, 3e-4);
   (void)solver.Solve({SolverKind::kRelaxationPaper, 3, 1e-9, 0.0}, kLoad, state);
   EXPECT_NE(solver.Gpu(), nullptr);  // it was not asked, so it did not fail
-  (void)solver.Solve({}, kLoad, state);
+  (void)solver.Solve({.kind = SolverKind::kAdaptive}, kLoad, state);
   EXPECT_EQ(solver.Gpu(), nullptr);
 }
 
@@ -135,8 +136,8 @@ TEST(GpuOrCpuSolver, AFailureBetweenTwoCallsOfTheHookStartsTheTickAgain) {
   Shift on_cpu{&model, std::vector<Vec3>(model.Size())}, on_gpu = on_cpu;
   const tissue::SolveHook hook_cpu{Shift::Act, &on_cpu, 5}, hook_gpu{Shift::Act, &on_gpu, 5};
   tissue::EquilibriumSolver cpu(model, 1);
-  (void)cpu.Solve({}, kLoad, expected, &hook_cpu);
-  (void)solver.Solve({}, kLoad, found, &hook_gpu);
+  (void)cpu.Solve(kChebyshev, kLoad, expected, &hook_cpu);
+  (void)solver.Solve(kChebyshev, kLoad, found, &hook_gpu);
   EXPECT_EQ(solver.Gpu(), nullptr);
   EXPECT_EQ(on_gpu.calls, on_cpu.calls + 2);
   // this hook's force is not in the load: from the same start the processor finds the same end

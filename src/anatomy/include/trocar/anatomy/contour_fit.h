@@ -35,6 +35,7 @@ struct FitNote {
 struct ContourFitSettings {
   EdgeAdaptionSettings adaption;
   ContourSplineSettings spline;
+  bool is_inserting = true;  ///< off: the points move to the edge but none is added, as while one is dragged
   double tolerance_px =
       1.0;  ///< the spline may lie this far from the edge before a point is inserted [pixels]
 };

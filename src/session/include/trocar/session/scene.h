@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -56,6 +57,11 @@ struct OrganMaterial {
   double foundation_modulus = 0;  ///< of what lies behind the surface [Pa]
   double depth = 0;               ///< of that foundation [m]
   double density = 0;             ///< [kg/m^3]
+  /// Strands of this material tear when longer than at rest by this share of the thickness [-].
+  double failure_strain = std::numeric_limits<double>::infinity();
+  /// The end of a tube of this material is torn out of its organ by this force [N].
+  double failure_force = std::numeric_limits<double>::infinity();
+  double internal_pressure = 0;  ///< under which the organ is filled and sealed before the first tick [Pa]
   std::string source;
 };
 

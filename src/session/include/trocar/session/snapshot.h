@@ -50,8 +50,8 @@ enum class Stage {
 std::string_view StageName(Stage stage) noexcept;
 inline constexpr int kStageCount = static_cast<int>(Stage::kCount);
 
-enum class EventKind { kGrasp, kRelease, kSlip, kGraspMissed, kStateRestored, kOrganFrozen };
-/// "grasp", "release", "slip", "grasp_missed", "state_restored", "organ_frozen"
+enum class EventKind { kGrasp, kRelease, kSlip, kGraspMissed, kStateRestored, kOrganFrozen, kTear };
+/// "grasp", "release", "slip", "grasp_missed", "state_restored", "organ_frozen", "tear"
 std::string_view EventName(EventKind kind) noexcept;
 
 struct Event {
@@ -70,10 +70,10 @@ struct Snapshot {
   std::vector<Vec3> positions;
   std::array<InstrumentSnapshot, kHandCount> instruments;
   std::vector<OrganSnapshot> organs;  ///< (organs) as in Patient::organs
-  Pose X_world_laparoscope;  ///< origin at the lens, looking along -z, +y up in the picture
-  double residual = 0;       ///< largest node residual, relative: see tissue/solver_settings.h [-]
-  int iterations = 0;        ///< of the solver in this tick
-  Vec3 gravity;              ///< world frame [m/s^2]
+  Pose X_world_laparoscope;           ///< origin at the lens, looking along -z, +y up in the picture
+  double residual = 0;                ///< largest node residual, relative: see tissue/solver_settings.h [-]
+  int iterations = 0;                 ///< of the solver in this tick
+  Vec3 gravity;                       ///< world frame [m/s^2]
   std::array<double, kStageCount> stage_seconds{};  ///< wall time of each stage of the last tick
   double tick_seconds = 0;                          ///< sum of the stages [s]
   std::uint64_t event_count = 0;                    ///< since the start; the newest are in `events`

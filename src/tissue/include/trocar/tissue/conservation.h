@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file conservation.h  Shape and volume of organs, kept while any solver finds their equilibrium.
 ///
-/// All of it acts through TissueLoad::external_force: a turned rest shape and a pressure are, between two iterations,
-/// constant forces. So every solver serves that calls a hook now and then; there the volume is projected and the
-/// pressure follows. docs/conservation.md derives why that converges.
+/// All of it acts through TissueLoad::external_force: a turned rest shape and a pressure are, between two
+/// iterations, constant forces. So every solver serves that calls a hook now and then; there the volume is
+/// projected and the pressure follows. docs/conservation.md derives why that converges.
 #pragma once
 
 #include <array>
@@ -32,13 +32,13 @@ struct ClosedOrgan {
 struct ConservationSettings {
   std::vector<ClosedOrgan> organs;         ///< at most kMaxClosedOrgans, each a closed surface
   std::vector<std::uint8_t> strand_binds;  ///< see FindFreeRegions; empty: all bind
-  /// Gravity in which the rest shape was imaged [m/s^2]. A piece that hangs free feels its whole weight, not the
-  /// difference to this.
+  /// Gravity in which the rest shape was imaged [m/s^2]. A piece that hangs free feels its whole weight, not
+  /// the difference to this.
   Vec3 imaging_gravity;
 };
 
-/// Volume of one organ. Sealed: volume = target at any pressure. Perforated: pressure >= 0, and target + leaked
-/// is what was inside before.
+/// Volume of one organ. Sealed: volume = target at any pressure. Perforated: pressure >= 0, and target +
+/// leaked is what was inside before.
 struct OrganVolume {
   double target = 0;        ///< of the fluid inside [m^3]
   double volume = 0;        ///< enclosed by the surface after the last Enforce [m^3]
@@ -54,7 +54,7 @@ struct ConservationState {
   FreeRegions regions;
   std::array<Pose, kMaxFreeRegions> X_world_rest;  ///< of each region: identity where it was imaged
   std::uint64_t intact_strands = 0;                ///< for which `regions` hold
-  std::vector<Vec3> last_position;                 ///< (n) after the last Enforce: where held nodes came from [m]
+  std::vector<Vec3> last_position;  ///< (n) after the last Enforce: where held nodes came from [m]
 };
 
 using SmallMatrix = std::array<std::array<double, kMaxClosedOrgans>, kMaxClosedOrgans>;
@@ -69,8 +69,10 @@ class Conservation {
   /// State at rest: every organ at its rest volume and without pressure, frames where anatomy was imaged.
   ConservationState MakeState(const TissueState& rest_state) const;
 
-  /// Takes held free pieces along: the rigid motion that their held nodes made since the last Enforce moves the rest
-  /// of the piece and its frame. A better start for the solver than a piece left behind, which would crumple.
+  /// Takes held free pieces along: the rigid motion that their held nodes made since the last Enforce moves
+  /// the rest of the piece and its frame. A better start for the solver than a piece left behind, which would
+  /// crumple.
+  ///
   /// \note Real-time safe.
   void CarryAlong(TissueState& tissue, ConservationState& state) noexcept;
 
@@ -82,9 +84,9 @@ class Conservation {
   std::span<const Vec3> CalcForce(const TissueState& tissue, const TissueLoad& load,
                                   ConservationState& state) noexcept;
 
-  /// Between iterations: one projection of the volumes, with the pressures that go with it; the force of CalcForce
-  /// follows.
-  /// \param before  see SolveHook
+  /// Between iterations: one projection of the volumes, with the pressures that go with it; the force of
+  /// CalcForce follows. \param before  see SolveHook
+  ///
   /// \note Real-time safe.
   void KeepVolumes(TissueState& tissue, std::span<Vec3> before, ConservationState& state) noexcept;
 
@@ -100,12 +102,14 @@ class Conservation {
   /// \note Real-time safe.
   void AddPressure(std::size_t organ, double change, ConservationState& state) noexcept;
 
-  /// After a solve: lets fluid leak for `dt` [s], brings each volume to its target exactly, and moves the frames of
-  /// held free regions to their best fit.
-  /// \note Real-time safe; a state that is not finite is left for the state guard.
+  /// After a solve: lets fluid leak for `dt` [s], brings each volume to its target exactly, and moves the
+  /// frames of held free regions to their best fit. \note Real-time safe; a state that is not finite is left
+  /// for the state guard.
   void Enforce(const TissueLoad& load, double dt, TissueState& tissue, ConservationState& state) noexcept;
 
-  /// Makes a hole, or a larger one, in an organ. \param area  [m^2], >= 0, added
+  /// Makes a hole, or a larger one, in an organ.
+  ///
+  /// \param area  [m^2], >= 0, added
   void Perforate(std::size_t organ, double area, ConservationState& state) const;
 
   const ConservationSettings& Settings() const { return settings_; }
@@ -114,9 +118,9 @@ class Conservation {
   bool UpdateResponses(const TissueState& tissue, const TissueLoad& load, int max_iterations,
                        double tolerance) noexcept;
   void UpdateRegions(const TissueState& tissue, ConservationState& state) noexcept;
-  void AddFrameForce(const TissueState& tissue, const TissueLoad& load, const ConservationState& state) noexcept;
-  Vec3 CalcResponse(std::size_t organ, std::size_t node, const TissueState& tissue,
-                    const ConservationState& state) const noexcept;
+  void AddFrameForce(const TissueState& tissue, const TissueLoad& load,
+                     const ConservationState& state) noexcept;
+  bool MeasureVolumes(const TissueState& tissue, ConservationState& state) noexcept;
   bool CalcSlopes(const TissueState& tissue, ConservationState& state) noexcept;
   bool ProjectOnce(TissueState& tissue, std::span<Vec3> before, ConservationState& state) noexcept;
   void SetPressureForce(const ConservationState& state) noexcept;
@@ -130,6 +134,7 @@ class Conservation {
   LinearResponse linear_;
   TissueState rest_;
   std::vector<std::vector<Vec3>> responses_;  // per organ (n): displacement by 1 Pa, in the rest frame [m/Pa]
+  std::vector<std::vector<Vec3>> shifts_;     // the same where nodes are now; zero where they are held
   double stiffness_scale_ = 1, shape_scale_ = 1;  // for which the responses were found
   std::uint64_t response_strands_ = 0;
   bool responses_settled_ = false;
@@ -137,24 +142,27 @@ class Conservation {
   std::vector<Vec3> base_force_;  // (n) without pressure
   std::vector<Vec3> force_;       // (n)
   std::vector<SolveHook::Constraint> constraints_;
-  SmallMatrix slopes_{};          // dV_i by one pascal in organ j [m^3/Pa]
+  SmallMatrix slopes_{};  // dV_i by one pascal in organ j, of this tick [m^3/Pa]
+  bool has_slopes_ = false;
   FreeRegions next_regions_;
 };
 
-/// Iterations from one projection to the next. Projections alone every 40 let a sac under 10 kPa swing by a tenth of
-/// its volume; every 5 hold it to 1e-7 (Conservation.* tests).
+/// Iterations from one projection to the next. Solves at constant pressure let a sac under 10 kPa swing by a
+/// tenth of its volume from tick to tick: the softer it gets, the less may happen between two projections.
 inline constexpr int kProjectionInterval = 5;
 
 /// One tick's equilibrium with shape and volume kept: carry along, solve with projections, enforce.
 ///
-/// \param[in,out] load  external_force is added to, and left as the solver saw it, so that CalcReaction agrees
-/// \param dt  length of the tick, for what leaks [s]
+/// \param[in,out] load  external_force is added to, and left as the solver saw it, so that CalcReaction
+/// agrees \param dt  length of the tick, for what leaks [s]
+///
 /// \note Real-time safe.
 SolveReport SolveConserving(EquilibriumSolver& solver, const SolverSettings& settings, double dt,
                             Conservation& conservation, TissueLoad& load, TissueState& tissue,
                             ConservationState& state) noexcept;
 
-/// Fills an organ until it stands under `pressure` in equilibrium, and seals that volume: a tense gallbladder.
+/// Fills an organ until it stands under `pressure` in equilibrium, and seals that volume: a tense
+/// gallbladder.
 ///
 /// \param pressure  [Pa], within +-20 kPa
 /// \return relative difference between the last two volumes; small when the filling came to rest

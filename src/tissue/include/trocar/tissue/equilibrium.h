@@ -26,30 +26,32 @@ struct SolveReport {
   int coarse_levels = 0;        ///< grids that a coarse-to-fine start went through
   int linear_iterations = 0;    ///< of conjugate gradients, all Newton steps together
   int negative_curvatures = 0;  ///< Newton steps that met a direction in which the energy is not convex
-  /// False where positions, loads, scales or contacts were not finite; then nothing was solved, or not to the end. Give
-  /// it to StateGuard::Check.
+  /// False where positions, loads, scales or contacts were not finite; then nothing was solved, or not to the
+  /// end. Give it to StateGuard::Check.
   bool is_finite = true;
-  int restarts = 0;        ///< how often the acceleration was taken back because the residual grew
+  int restarts = 0;  ///< how often the acceleration was taken back because the residual grew
 };
 
 /// How a solver runs; none of it changes what it finds.
 struct SolverOptions {
-  int threads = 1;                      ///< >= 1
-  SimdLevel simd = FindSimdLevel();     ///< the bits of AVX2 and AVX-512 agree; the baseline's differ in the last place
-  bool recognises_grids = true;         ///< take structured meshes as stencils
+  int threads = 1;  ///< >= 1
+  SimdLevel simd =
+      FindSimdLevel();  ///< the bits of AVX2 and AVX-512 agree; the baseline's differ in the last place
+  bool recognises_grids = true;  ///< take structured meshes as stencils
 };
 
 /// Called between iterations: keeps a constraint, and may change the forces that load.external_force views.
 struct SolveHook {
-  /// \param before  positions of the iteration before, (n), where the solver extrapolates from them, else empty: what
+  /// \param before  positions of the iteration before, (n), where the solver extrapolates from them, else
+  /// empty: what
   ///                shifts the present must shift the past alike, or the extrapolation repeats the shift
   void (*act)(void* self, TissueState& state, std::span<Vec3> before) noexcept = nullptr;
   void* self = nullptr;
   int interval = 1;  ///< iterations from one call to the next, >= 1
 
-  /// The constraints themselves, for a solver whose steps are too long to leave them to act(): constraint c keeps
-  /// sum_i gradient_i . x_i over its nodes, and its multiplier pushes each node along its gradient. Steps then stay on
-  /// the constraints, and act() corrects what is of second order.
+  /// The constraints themselves, for a solver whose steps are too long to leave them to act(): constraint c
+  /// keeps sum_i gradient_i . x_i over its nodes, and its multiplier pushes each node along its gradient.
+  /// Steps then stay on the constraints, and act() corrects what is of second order.
   struct Constraint {
     std::uint32_t first_node = 0, node_count = 0;
   };
@@ -75,7 +77,8 @@ class EquilibriumSolver {
 
   /// Moves every node that is not prescribed towards equilibrium, starting from the state's positions.
   /// \note Real-time safe: no allocation, lock or throw of ours; bounded by settings.max_iterations.
-  /// \param hook  nullptr, or what is to be called between iterations; a solve that it disturbs has not converged
+  /// \param hook  nullptr, or what is to be called between iterations; a solve that it disturbs has not
+  /// converged
   virtual SolveReport Solve(const SolverSettings& settings, const TissueLoad& load, TissueState& state,
                             const SolveHook* hook = nullptr) noexcept;
 

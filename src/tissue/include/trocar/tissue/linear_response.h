@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file linear_response.h  How the tissue answers a small force: K u = f with the stiffness of the present state.
+/// \file linear_response.h  How the tissue answers a small force: K u = f with the stiffness of the present
+/// state.
 #pragma once
 
 #include <span>
@@ -15,8 +16,9 @@ struct LinearReport {
   double residual = 0;  ///< |f - K u| / |f| [-]
 };
 
-/// Stiffness of a state, applied without being assembled, and a conjugate gradient solver for it. Springs that are
-/// shorter than at rest count along their direction only, so that the matrix stays positive definite.
+/// Stiffness of a state, applied without being assembled, and a conjugate gradient solver for it. Springs
+/// that are shorter than at rest count along their direction only, so that the matrix stays positive
+/// definite.
 class LinearResponse {
  public:
   /// \param model  must outlive this
@@ -37,13 +39,13 @@ class LinearResponse {
   void Apply(std::span<const Vec3> u, std::span<Vec3> product) const noexcept;
 
   struct Link {
-    Vec3 along;               // sqrt(k (1 - across)) times the direction
-    double isotropic = 0;     // k times the share that acts across
+    Vec3 along;            // sqrt(k (1 - across)) times the direction
+    double isotropic = 0;  // k times the share that acts across
   };
   const TissueModel* model_;
-  std::vector<Link> springs_;        // (half-springs)
-  std::vector<double> strands_;      // (half-strands)
-  std::vector<double> own_;          // (n) isotropic stiffness of the node's own virtual spring
+  std::vector<Link> springs_;    // (half-springs)
+  std::vector<double> strands_;  // (half-strands)
+  std::vector<double> own_;      // (n) isotropic stiffness of the node's own virtual spring
   std::vector<std::uint8_t> is_free_;
   std::vector<std::array<double, 6>> inverse_;
   std::vector<Vec3> residual_, preconditioned_, direction_, product_;

@@ -6,9 +6,9 @@
 
 namespace trocar::tissue {
 
-/// The inner loops exist once for each level. None reorders or approximates, and each rounds a product and a sum
-/// together only where it says so: one level's bits do not depend on compiler or optimisation. AVX2 and AVX-512 give
-/// the same bits; the baseline has no fused multiply-add and differs in the last place.
+/// The inner loops exist once for each level. None reorders or approximates, and each rounds a product and a
+/// sum together only where it says so: one level's bits do not depend on compiler or optimisation. AVX2 and
+/// AVX-512 give the same bits; the baseline has no fused multiply-add and differs in the last place.
 enum class SimdLevel {
   kBaseline,  ///< what every processor of the architecture has (x86-64: SSE2, 4 floats)
   kAvx2,      ///< 8 floats: AVX2 and FMA

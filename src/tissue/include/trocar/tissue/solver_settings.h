@@ -8,12 +8,13 @@
 namespace trocar::tissue {
 
 enum class SolverKind {
-  kRelaxationPaper,      ///< x_i <- x_i + alpha R_i, node after node, as the paper prints it: the reference
+  kRelaxationPaper,       ///< x_i <- x_i + alpha R_i, node after node, as the paper prints it: the reference
   kGaussSeidelBrown2001,  ///< waves from the nodes that are out of balance, breadth first
-  kChebyshevJacobi2015,  ///< Jacobi with 3 x 3 blocks accelerated by Chebyshev's recurrence, in double precision
-  kAcceleratedDescent,   ///< the same recurrence in single precision and scalar steps; coarse to fine on grids
-  kNewtonMultigrid,      ///< Newton's method, each step by multigrid-preconditioned conjugate gradients
-  kAdaptive,             ///< what runs: accelerated descent from a cold start on a grid, then Newton as needed
+  kChebyshevJacobi2015,   ///< Jacobi with 3 x 3 blocks accelerated by Chebyshev's recurrence, in double
+                          ///< precision
+  kAcceleratedDescent,  ///< the same recurrence in single precision and scalar steps; coarse to fine on grids
+  kNewtonMultigrid,     ///< Newton's method, each step by multigrid-preconditioned conjugate gradients
+  kAdaptive,            ///< what runs: accelerated descent from a cold start on a grid, then Newton as needed
 };
 inline constexpr SolverKind kSolverKinds[] = {
     SolverKind::kRelaxationPaper,    SolverKind::kGaussSeidelBrown2001, SolverKind::kChebyshevJacobi2015,

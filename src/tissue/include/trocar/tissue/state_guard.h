@@ -25,7 +25,8 @@ class StateGuard {
   explicit StateGuard(const TissueModel& model, double max_displacement = 0.5);
 
   /// Checks, restores where needed, and remembers a good state.
-  /// \param is_solve_finite  SolveReport::is_finite: what a tick takes from elsewhere may be bad although the positions
+  /// \param is_solve_finite  SolveReport::is_finite: what a tick takes from elsewhere may be bad although the
+  /// positions
   ///                         are not
   /// \note Real-time safe.
   GuardVerdict Check(TissueState& state, bool is_solve_finite = true) noexcept;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file volume_constraint.h  The volume of a closed organ as one scalar constraint, its pressure, and what leaves
-/// through a hole.
+/// \file volume_constraint.h  The volume of a closed organ as one scalar constraint, its pressure, and what
+/// leaves through a hole.
 ///
 /// Pure functions over plain values; tissue/conservation.h puts them into a tick.
-/// Source: Hong, Jung, Choi, Welch, "Fast volume preservation for a mass-spring system", IEEE CG&A 26(5), 2006:
-/// one constraint V(x) = V_0 with the divergence theorem's volume and gradient. The paper steps in time; here the
-/// multiplier is found in equilibrium, where it is the pressure.
+/// Source: Hong, Jung, Choi, Welch, "Fast volume preservation for a mass-spring system", IEEE CG&A 26(5),
+/// 2006: one constraint V(x) = V_0 with the divergence theorem's volume and gradient. The paper steps in
+/// time; here the multiplier is found in equilibrium, where it is the pressure.
 #pragma once
 
 #include <cstdint>
@@ -30,7 +30,8 @@ double CalcVolumeGradient(std::span<const Vec3> position, std::span<const geomet
 
 /// Volume alone, about the first node, so that organs far from the origin lose no digits [m^3].
 /// \note Real-time safe.
-double CalcClosedVolume(std::span<const Vec3> position, std::span<const geometry::Triangle> triangles) noexcept;
+double CalcClosedVolume(std::span<const Vec3> position,
+                        std::span<const geometry::Triangle> triangles) noexcept;
 
 /// Fluid that leaves a closed sac through an opening within one tick.
 ///
@@ -44,8 +45,8 @@ double CalcClosedVolume(std::span<const Vec3> position, std::span<const geometry
 /// \param dt          [s], >= 0
 /// \return dV [m^3], in [0, c P]
 /// \note Real-time safe.
-/// Source: Torricelli's law with a discharge coefficient for a sharp-edged hole (Batchelor, "An Introduction to
-/// Fluid Dynamics", 1967, section 6.3).
+/// Source: Torricelli's law with a discharge coefficient for a sharp-edged hole (Batchelor, "An Introduction
+/// to Fluid Dynamics", 1967, section 6.3).
 double CalcOutflow(double pressure, double compliance, double area, double density, double dt) noexcept;
 
 /// C_d of a thin sharp-edged hole [-].
