@@ -146,7 +146,9 @@ std::vector<MeshOutcome> MeshJob::Take() {
 
 MeshJob::State MeshJob::GetState() const {
   const std::lock_guard lock(mutex_);
-  return state_;
+  State state = state_;
+  state.is_busy = state.is_busy || !waiting_.empty();
+  return state;
 }
 
 std::optional<MeshJob::Waiting> MeshJob::NextWaiting() const {

@@ -9,8 +9,6 @@ namespace {
 
 /// Of the quick spline; its crossings are sought over all pairs of steps [pixels].
 constexpr double kQuickStep = 2.0;
-/// Distance from the edge at which the quick spline is divided [pixels].
-constexpr double kNever = 1e9;
 
 std::vector<std::vector<Vec2>> CurvesOf(const std::vector<std::shared_ptr<const ContourFit>>& fits) {
   std::vector<std::vector<Vec2>> curves;
@@ -65,7 +63,7 @@ core::Result<std::shared_ptr<const SliceFit>> SliceFits::Find(int structure, con
       ContourFitSettings settings;
       settings.adaption = adaption;
       if (effort == FitEffort::kQuick) {
-        settings.tolerance_px = kNever;
+        settings.is_inserting = false;
         settings.spline.step_px = kQuickStep;
       }
       fits.push_back(std::make_shared<const ContourFit>(FitContourToEdges(*field, polygon, settings)));

@@ -86,7 +86,7 @@ class MeshJob {
   std::vector<MeshOutcome> Take();
 
   struct State {
-    bool is_busy = false;
+    bool is_busy = false;  ///< something is being made or waits
     int structure = 0;  ///< what is being made
     std::string what;   ///< "marching cubes"
     double fraction = 0;
