@@ -67,7 +67,27 @@ void FillHoles(const geometry::Rows& neighbours, std::vector<char>& marked) {
   for (std::size_t v = 0; v < marked.size(); ++v) marked[v] = !rest[v];
 }
 
-/// Normals of the surface as if it were blurred over about kSmoothing.
+/// Depth of each vertex below the plane that touches the mesh in the direction of its normal [m].
+std::vector<double> CalcHullDepths(const TriangleMesh& mesh, const std::vector<Vec3>& normals) {
+  std::vector<double> depths(mesh.positions.size());
+  for (std::size_t v = 0; v < depths.size(); ++v) {
+    double highest = -std::numeric_limits<double>::max();
+    for (const Vec3& p : mesh.positions) highest = std::max(highest, Dot(p, normals[v]));
+    depths[v] = highest - Dot(mesh.positions[v], normals[v]);
+  }
+  return depths;
+}
+
+std::vector<std::uint32_t> ListMarked(const std::vector<char>& marked) {
+  std::vector<std::uint32_t> vertices;
+  for (std::uint32_t v = 0; v < marked.size(); ++v) {
+    if (marked[v]) vertices.push_back(v);
+  }
+  return vertices;
+}
+
+}  // namespace
+
 std::vector<Vec3> CalcBroadNormals(const TriangleMesh& mesh, const geometry::Rows& neighbours) {
   std::vector<Vec3> normals(mesh.positions.size());
   geometry::CalcVertexNormals(mesh.positions, mesh.triangles, normals);
@@ -89,27 +109,6 @@ std::vector<Vec3> CalcBroadNormals(const TriangleMesh& mesh, const geometry::Row
   }
   return normals;
 }
-
-/// Depth of each vertex below the plane that touches the mesh in the direction of its normal [m].
-std::vector<double> CalcHullDepths(const TriangleMesh& mesh, const std::vector<Vec3>& normals) {
-  std::vector<double> depths(mesh.positions.size());
-  for (std::size_t v = 0; v < depths.size(); ++v) {
-    double highest = -std::numeric_limits<double>::max();
-    for (const Vec3& p : mesh.positions) highest = std::max(highest, Dot(p, normals[v]));
-    depths[v] = highest - Dot(mesh.positions[v], normals[v]);
-  }
-  return depths;
-}
-
-std::vector<std::uint32_t> ListMarked(const std::vector<char>& marked) {
-  std::vector<std::uint32_t> vertices;
-  for (std::uint32_t v = 0; v < marked.size(); ++v) {
-    if (marked[v]) vertices.push_back(v);
-  }
-  return vertices;
-}
-
-}  // namespace
 
 LiverRegions FindLiverRegions(const TriangleMesh& liver, const NearestSurface& gallbladder,
                               double falciform_x, const RegionSettings& settings) {

@@ -9,12 +9,18 @@
 
 #include "nearest_surface.h"
 #include "trocar/anatomy/patient_builder.h"
+#include "trocar/geometry/mesh_topology.h"
 
 namespace trocar::anatomy {
 
 /// Directions in which the diaphragm and the abdominal wall lie, seen from the liver: right, cranial,
 /// anterior.
 extern const math::Vec3 kTowardsDiaphragm;
+
+/// (vertices) unit normals of the surface as if it were blurred over a centimetre: which way a face looks,
+/// whatever its nodules and dents.
+std::vector<math::Vec3> CalcBroadNormals(const geometry::TriangleMesh& mesh,
+                                         const geometry::Rows& neighbours);
 
 struct LiverRegions {
   std::vector<std::uint32_t> diaphragmatic, falciform, coronary;  ///< vertices, ascending

@@ -55,8 +55,8 @@ void Linter::LintFixedFaces() {
   const Organ* liver = FindUsable("liver");
   if (liver == nullptr) return;
   const TriangleMesh mesh = Outward(liver->mesh);
-  std::vector<Vec3> normals(mesh.positions.size());
-  geometry::CalcVertexNormals(mesh.positions, mesh.triangles, normals);
+  const auto normals =
+      CalcBroadNormals(mesh, geometry::FindVertexNeighbours(mesh.triangles, mesh.positions.size()));
   const auto areas = geometry::CalcVertexAreas(mesh.positions, mesh.triangles);
   std::set<std::uint32_t> bed;
   for (const Region& region : liver->regions) {

@@ -47,7 +47,7 @@ TEST(SettingsForm, OffersEverySetting) {
   }
   EXPECT_EQ(labels, (std::set<std::string>{"Stiffness", "Virtual springs", "Gravity", "Head up",
                                            "Right side up", "Iterations", "Tolerance"}));
-  EXPECT_EQ(SolverChoices().size(), 2u);
+  EXPECT_EQ(SolverChoices().size(), 3u);
 }
 
 TEST(SettingsForm, WritesValuesWithUnits) {
