@@ -42,7 +42,7 @@ constexpr std::array<Look, static_cast<std::size_t>(Substance::kCount)> kLooks =
     {{80, 26, 34}, {98, 40, 44}, 0.7, 4},        // spleen
     {{206, 176, 128}, {226, 200, 156}, 0.7, 5},  // connective
     {{98, 46, 32}, {126, 66, 46}, 0.8, 11},      // liver
-    {{172, 144, 92}, {190, 164, 116}, 0.6, 5},   // gallbladder wall
+    {{96, 92, 42}, {114, 106, 54}, 0.6, 5},      // gallbladder wall, stained by bile
     {{62, 68, 26}, {84, 90, 40}, 0.7, 14},       // bile
     {{168, 158, 84}, {186, 176, 108}, 0.5, 4},   // duct
     {{150, 44, 36}, {170, 66, 54}, 0.5, 4},      // artery
