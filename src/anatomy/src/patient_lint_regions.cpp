@@ -53,7 +53,7 @@ void Linter::LintRegions(std::size_t index) {
 
 void Linter::LintFixedFaces() {
   const Organ* liver = FindUsable("liver");
-  if (liver == nullptr) return;
+  if (liver == nullptr || !is_unit_right_) return;
   const TriangleMesh mesh = Outward(liver->mesh);
   const auto normals =
       CalcBroadNormals(mesh, geometry::FindVertexNeighbours(mesh.triangles, mesh.positions.size()));
