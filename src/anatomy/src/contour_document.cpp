@@ -60,11 +60,11 @@ ContourDocument::ContourDocument(ControlPoints points, std::size_t history_bytes
     : points_(std::move(points)), history_limit_(history_bytes) {}
 
 const SliceContours& ContourDocument::At(int structure, int slice) const {
-  static const SliceContours kNothing;
-  if (structure < 0 || structure >= static_cast<int>(points_.structures.size())) return kNothing;
+  static const SliceContours nothing;
+  if (structure < 0 || structure >= static_cast<int>(points_.structures.size())) return nothing;
   const auto& slices = points_.structures[structure].slices;
   const auto found = FindSlice(slices, slice);
-  return found != slices.end() && found->slice == slice ? *found : kNothing;
+  return found != slices.end() && found->slice == slice ? *found : nothing;
 }
 
 std::span<const Vec2> ContourDocument::Find(const ContourId& id) const {

@@ -71,8 +71,8 @@ core::Result<std::shared_ptr<const SliceFit>> SliceFits::Find(int structure, con
     }
     return {};
   };
-  static const SliceFit kNone;
-  const SliceFit& old = known.fit != nullptr ? *known.fit : kNone;
+  static const SliceFit none;
+  const SliceFit& old = known.fit != nullptr ? *known.fit : none;
   if (auto status = follow(contours.contours, known.contours, old.contours, fit->contours); !status.ok()) {
     return status.error();
   }
