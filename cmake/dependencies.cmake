@@ -15,6 +15,7 @@ if("anatomy" IN_LIST TROCAR_MODULES)
   enable_language(C)
   # ITK with explicit lists of components, in scopes of their own: their variables reach no other target.
   function(trocar_find_itk target)
+    set(CMAKE_MESSAGE_LOG_LEVEL NOTICE)  # its GDCM lists tools that Debian keeps in another package
     find_package(ITK REQUIRED COMPONENTS ITKCommon ITKIOImageBase ${ARGN})
     add_library(${target} INTERFACE)
     target_include_directories(${target} SYSTEM INTERFACE ${ITK_INCLUDE_DIRS})
