@@ -87,8 +87,8 @@ class MeshJob {
 
   struct State {
     bool is_busy = false;  ///< something is being made or waits
-    int structure = 0;  ///< what is being made
-    std::string what;   ///< "marching cubes"
+    int structure = 0;     ///< what is being made
+    std::string what;      ///< "marching cubes"
     double fraction = 0;
   };
   State GetState() const;
