@@ -91,13 +91,13 @@ void PatientEditorPanel::MakeTools() {
   row->set_homogeneous(true);
   const struct {
     const char *name, *tooltip;
-  } kTools[] = {{"Look", "Turn and look (1)"},
-                {"Regions", "Paint where the liver is held and where the gallbladder grows on it (2)"},
-                {"Ducts", "Move, insert and delete points of ducts and arteries (3)"},
-                {"Landmarks", "Move landmarks (4)"}};
-  for (std::size_t i = 0; i < std::size(kTools); ++i) {
-    auto* button = Gtk::make_managed<Gtk::ToggleButton>(kTools[i].name);
-    button->set_tooltip_text(kTools[i].tooltip);
+  } tools[] = {{"Look", "Turn and look (1)"},
+               {"Regions", "Paint where the liver is held and where the gallbladder grows on it (2)"},
+               {"Ducts", "Move, insert and delete points of ducts and arteries (3)"},
+               {"Landmarks", "Move landmarks (4)"}};
+  for (std::size_t i = 0; i < std::size(tools); ++i) {
+    auto* button = Gtk::make_managed<Gtk::ToggleButton>(tools[i].name);
+    button->set_tooltip_text(tools[i].tooltip);
     button->set_focus_on_click(false);
     if (!tools_.empty()) button->set_group(*tools_.front());
     button->signal_toggled().connect([this, button, i] {
