@@ -24,7 +24,8 @@ class ByteSource {
 
 /// From byte `begin` of the file on.
 std::unique_ptr<ByteSource> OpenPlain(const InputFile& file, std::uint64_t begin);
-/// Likewise, unpacking gzip or zlib. \note Read throws Failure kImageUndecodable for a damaged stream
+/// Likewise, unpacking gzip or zlib.
+/// \note Read throws Failure kImageUndecodable for a damaged stream
 std::unique_ptr<ByteSource> OpenDeflated(const InputFile& file, std::uint64_t begin);
 
 /// Whether the file begins like gzip.

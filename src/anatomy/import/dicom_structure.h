@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file dicom_structure.h  The skeleton of a DICOM file, walked before GDCM sees it: GDCM 3.0 crashes on
-/// some sequences that never end, and takes pixel data that were cut off for whole. Source: DICOM PS3.5
-/// sections 7.1, 7.5 and A.4, PS3.10 section 7.1.
+/// some sequences that never end, and takes pixel data that were cut off for whole.
+/// Source: DICOM PS3.5 sections 7.1, 7.5 and A.4, PS3.10 section 7.1.
 #pragma once
 
 #include <cstdint>

@@ -27,7 +27,8 @@ std::vector<double> ParseNumbers(std::string_view text, const char* field);
 void SetSides(const std::vector<std::int64_t>& sides, const Job& job, ImageHeader& header);
 
 /// The file that holds the samples of a detached header: notes its name for the other program, which opens
-/// it. \return whether it is there already
+/// it.
+/// \return whether it is there already
 bool FindDataFile(const Job& job, std::string_view name, ImageHeader& header);
 
 }  // namespace trocar::anatomy::import

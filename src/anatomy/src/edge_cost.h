@@ -3,9 +3,9 @@
 ///
 /// The colours inside are learned along the contour: mean and covariance, so that the combination of channels
 /// that tells the organ from its surroundings counts, and a step from liver to muscle, small but surer than
-/// the noise, as much as one from muscle to fat. Source: Mahalanobis, "On the generalised distance in
-/// statistics", 1936; the region term is that of Chan and Vese, "Active contours without edges", IEEE TIP
-/// 2001, along each normal.
+/// the noise, as much as one from muscle to fat.
+/// Source: Mahalanobis, "On the generalised distance in statistics", 1936; the region term is that of Chan
+/// and Vese, "Active contours without edges", IEEE TIP 2001, along each normal.
 #pragma once
 
 #include <vector>

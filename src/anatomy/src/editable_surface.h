@@ -52,7 +52,8 @@ class EditableSurface {
   /// Whether c and d are no neighbours yet and a and b keep three triangles.
   bool CanFlip(const EdgeNeighbours& edge) const;
 
-  /// b goes into a, which moves to p. \pre CanCollapse
+  /// b goes into a, which moves to p.
+  /// \pre CanCollapse
   void Collapse(std::uint32_t a, std::uint32_t b, const math::Vec3& p);
   /// \pre CanFlip
   void Flip(const EdgeNeighbours& edge);

@@ -24,8 +24,8 @@ struct NamedAxes {
 /// \return kImageGeometryInvalid when they are not at right angles (0.5 degrees) or too oblique
 core::Result<NamedAxes> NameAxes(const std::array<math::Vec3, 3>& direction);
 
-/// Unit vectors, LPS, of three words. \return kUsage unless they are one each of left/right,
-/// anterior/posterior and superior/inferior
+/// Unit vectors, LPS, of three words.
+/// \return kUsage unless they are one each of left/right, anterior/posterior and superior/inferior
 core::Result<std::array<math::Vec3, 3>> FindDirections(const std::array<std::string, 3>& axes);
 
 }  // namespace trocar::anatomy

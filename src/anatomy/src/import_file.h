@@ -21,8 +21,8 @@ enum class Links {
 /// An open file and what it was like then.
 class ImportFile {
  public:
-  /// Never waits (FIFO, device). \return kFileMissing, kFileUnreadable, or kImagePathUnsafe for what is no
-  /// regular file
+  /// Never waits (FIFO, device).
+  /// \return kFileMissing, kFileUnreadable, or kImagePathUnsafe for what is no regular file
   static core::Result<ImportFile> Open(const std::filesystem::path& path, Links links);
 
   int Get() const { return descriptor_.Get(); }

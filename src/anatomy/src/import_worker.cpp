@@ -134,7 +134,8 @@ bool ImportWorker::IsReady() const {
   return IsAlive() && ::poll(&state, 1, 0) == 0;
 }
 
-/// Ends the process for certain. \return how it ended, as waitpid says it
+/// Ends the process for certain.
+/// \return how it ended, as waitpid says it
 int ImportWorker::End() {
   ::kill(process_, SIGKILL);
   int status = 0;

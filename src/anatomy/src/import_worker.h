@@ -56,7 +56,8 @@ class SampleBuffer {
 class ImportWorker {
  public:
   /// Safe in a program with threads (posix_spawn, no fork). The reader inherits no descriptor, no variable of
-  /// the environment but LD_LIBRARY_PATH, and no output. \return kImportProgramMissing
+  /// the environment but LD_LIBRARY_PATH, and no output.
+  /// \return kImportProgramMissing
   static core::Result<std::unique_ptr<ImportWorker>> Start(const ImportLimits& limits);
   ~ImportWorker();
   ImportWorker(const ImportWorker&) = delete;

@@ -44,7 +44,8 @@ std::vector<double> CalcAway(const geometry::CentreLine& line, std::uint32_t poi
   return away;
 }
 
-/// Moves one point of a line by `shift`, its neighbours less and less. \return how far each moved
+/// Moves one point of a line by `shift`, its neighbours less and less.
+/// \return how far each moved
 std::vector<Vec3> Drag(geometry::CentreLine& line, std::uint32_t point, const Vec3& shift, double reach) {
   const auto away = CalcAway(line, point);
   std::vector<Vec3> shifts(away.size());

@@ -76,8 +76,8 @@ class PhantomBody {
 
   /// Pipes that come near the slice at height y.
   std::vector<Pipe> FindPipes(double y) const;
-  /// \param pipes  as FindPipes(p.y) gave them; \param liver_distance  in the slice, to the liver or
-  /// gallbladder [mm]
+  /// \param pipes  as FindPipes(p.y) gave them;
+  /// \param liver_distance  in the slice, to the liver or gallbladder [mm]
   Substance Find(const math::Vec3& p, const std::vector<Pipe>& pipes, double liver_distance) const;
   /// Blood inside the liver, or the liver itself.
   Substance FindInLiver(const math::Vec3& p, const std::vector<Pipe>& veins) const;

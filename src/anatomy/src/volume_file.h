@@ -27,7 +27,8 @@ core::Result<DecodedFile> DecodeFile(const std::filesystem::path& path, Links li
 /// Sample number `i` of all, in the file's units (slope and intercept not applied).
 double SampleAt(const ImageHeader& header, const std::byte* samples, std::size_t i);
 
-/// Grey samples as labels. \return whether all are whole numbers from 0 to 255
+/// Grey samples as labels.
+/// \return whether all are whole numbers from 0 to 255
 bool CopyLabels(const ImageHeader& header, const std::byte* samples, std::span<std::uint8_t> labels);
 
 /// Least and greatest grey value (slope and intercept applied), and a window that shows the most of it.

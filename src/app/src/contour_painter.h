@@ -30,7 +30,8 @@ struct PaintOptions {
 
 class ContourPainter {
  public:
-  /// Draws everything. \param scale  device pixels a pixel of the window
+  /// Draws everything.
+  /// \param scale  device pixels a pixel of the window
   /// \return why the picture cannot be had; then the rest is drawn on black
   core::Status Paint(const Cairo::RefPtr<Cairo::Context>& cairo, ContourEditor& editor,
                      const PaintOptions& options, int scale);

@@ -36,7 +36,9 @@ class MeshView : public Gtk::Overlay {
 
   /// Shows everything from there.
   void LookFrom(render::Viewpoint viewpoint);
-  /// Brings a place into the middle and comes near it. \param p_world [m]; \param span  of what is shown [m]
+  /// Brings a place into the middle and comes near it.
+  /// \param p_world [m];
+  /// \param span  of what is shown [m]
   void LookAt(const math::Vec3& p_world, double span);
   const render::OrbitCamera& Camera() const { return camera_; }
   void SetCamera(const render::OrbitCamera& camera);

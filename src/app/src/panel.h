@@ -18,7 +18,8 @@ class Panel : public Gtk::ScrolledWindow {
  public:
   Panel();
 
-  /// Fills in the patient and takes the settings over. \param control  outlives the panel's use
+  /// Fills in the patient and takes the settings over.
+  /// \param control  outlives the panel's use
   void SetControl(SessionControl* control);
   /// Refreshes forces and contacts.
   void ShowForces(const session::Snapshot& snapshot);

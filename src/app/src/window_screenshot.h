@@ -10,7 +10,8 @@
 
 namespace trocar::app {
 
-/// Call it outside of a frame. \return kFileUnwritable
+/// Call it outside of a frame.
+/// \return kFileUnwritable
 core::Status SaveScreenshot(Gtk::Window& window, const std::filesystem::path& path);
 
 }  // namespace trocar::app

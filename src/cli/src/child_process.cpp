@@ -43,7 +43,8 @@ constexpr std::size_t kLongestAnswer = 4096;  // fits into a pipe, so the child 
   ::_exit(is_good && is_written ? 0 : 1);
 }
 
-/// Reads until the child closes its end. \return false when the time ran out
+/// Reads until the child closes its end.
+/// \return false when the time ran out
 bool ReadAll(int pipe_end, double timeout, std::string& text) {
   const core::Stopwatch stopwatch;
   char part[kLongestAnswer];

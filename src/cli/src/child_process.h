@@ -19,7 +19,9 @@ struct ChildAnswer {
 /// caller.
 ///
 /// \param question  returns whether it succeeded, and writes its answer or complaint into the text (at most
-/// 4096 bytes) \param timeout   then the child is ended [s] \pre the calling process has one thread
+/// 4096 bytes)
+/// \param timeout   then the child is ended [s]
+/// \pre the calling process has one thread
 ChildAnswer AskChild(const std::function<bool(std::string& text)>& question, double timeout);
 
 }  // namespace trocar::cli

@@ -24,7 +24,8 @@ void AddWindowCommand(CLI::App& app, Outcome& outcome);
 void AddDemoCommand(CLI::App& app, Outcome& outcome);
 void AddSimulateCommand(CLI::App& app, Outcome& outcome);
 void AddAnatomyCommand(CLI::App& app, Outcome& outcome);
-/// Words like "hydrops=0.5". \return kUsage for one that is not like that
+/// Words like "hydrops=0.5".
+/// \return kUsage for one that is not like that
 core::Result<std::vector<anatomy::ParameterSetting>> ParseSettings(const std::vector<std::string>& texts);
 /// Below `trocar anatomy`.
 void AddAnatomyGenerateCommand(CLI::App& anatomy, Outcome& outcome);

@@ -21,7 +21,8 @@ std::string FormatTable(const std::vector<std::vector<std::string>>& rows);
 /// second.
 class ProgressBar {
  public:
-  /// \param label  what is going on; \param total  steps, > 0
+  /// \param label  what is going on;
+  /// \param total  steps, > 0
   ProgressBar(std::string label, double total);
   ~ProgressBar();
   ProgressBar(const ProgressBar&) = delete;

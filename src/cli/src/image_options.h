@@ -11,10 +11,12 @@
 
 namespace trocar::cli {
 
-/// "left,posterior,superior". \return kUsage unless there are three words
+/// "left,posterior,superior".
+/// \return kUsage unless there are three words
 core::Result<std::array<std::string, 3>> ParseAxes(const std::string& text);
 
-/// "40,400": centre and width. \return kUsage unless these are two numbers, the second above 0
+/// "40,400": centre and width.
+/// \return kUsage unless these are two numbers, the second above 0
 core::Result<anatomy::DisplayWindow> ParseWindow(const std::string& text);
 
 }  // namespace trocar::cli

@@ -26,7 +26,8 @@ struct PlotSettings {
 std::string FormatSvgPlot(const PlotSettings& settings, const std::vector<PlotLine>& lines);
 
 /// Marks from at or above `low` to at or below `high`, 1, 2 or 5 times a power of ten apart, about `wanted`
-/// of them. \pre low < high, wanted >= 2 (TROCAR_ASSERT)
+/// of them.
+/// \pre low < high, wanted >= 2 (TROCAR_ASSERT)
 std::vector<double> FindAxisMarks(double low, double high, int wanted);
 
 /// At most `limit` points, keeping the lowest and highest of each stretch so that no peak is lost.

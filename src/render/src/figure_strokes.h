@@ -23,7 +23,8 @@ struct Strokes {
   std::vector<StrokeVertex> on_top;
 };
 
-/// \param width, height  of the picture [pixels]; \param scale  its pixels a pixel of the marks' sizes
+/// \param width, height  of the picture [pixels];
+/// \param scale  its pixels a pixel of the marks' sizes
 Strokes MakeStrokes(const FigureMarks& marks, const OrbitCamera& camera, int width, int height, double scale);
 
 /// The body's axes as seen by the camera, with the letters L, S and A at their ends, in the lower left

@@ -11,7 +11,8 @@
 
 namespace trocar::render {
 
-/// Gradient noise, about -1 to 1, one bump per unit. \param period  repeats after that many units; 0 never
+/// Gradient noise, about -1 to 1, one bump per unit.
+/// \param period  repeats after that many units; 0 never
 double CalcGradientNoise(const math::Vec3& p, int period) noexcept;
 
 /// Distances to the nearest and the second nearest of one random point per unit cell.

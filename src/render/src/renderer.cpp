@@ -218,7 +218,8 @@ struct Renderer::Content {
     glDrawArrays(GL_TRIANGLE_STRIP, 0, kFanFirst);
   }
 
-  /// Makes the own framebuffer the target. \return false where the driver refuses it
+  /// Makes the own framebuffer the target.
+  /// \return false where the driver refuses it
   bool BindPicture(int width, int height) {
     if (framebuffer == 0) {
       glGenFramebuffers(1, &framebuffer);

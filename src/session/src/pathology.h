@@ -33,7 +33,8 @@ Pathology CalcPathology(const anatomy::Patient& patient);
 std::vector<OrganMaterial> CalcPatientMaterials(const Scene& scene, const Pathology& pathology);
 
 /// Adhesions: strands between the gallbladder's wall outside of its bed and the liver's surface within 15 mm,
-/// in patches that grow with the share. \return pairs of gallbladder and liver vertices, ascending
+/// in patches that grow with the share.
+/// \return pairs of gallbladder and liver vertices, ascending
 std::vector<std::pair<std::uint32_t, std::uint32_t>> FindAdhesions(const anatomy::Patient& patient,
                                                                    double share);
 

@@ -8,8 +8,9 @@
 /// eigenvalues of D^-1 K lie in (0, 2] and the recurrence is stable near equilibrium. Far from it the springs
 /// turn, and the blocks no longer bound them: a residual that grows starts the recurrence again with blocks
 /// that assume more stiffness across the springs, up to the whole, which bounds every position (Liu et al.,
-/// "Fast simulation of mass-spring systems", 2013). Source: Wang, "A Chebyshev semi-iterative approach for
-/// accelerating projective and position-based dynamics", ACM TOG 34(6), 2015, equations 7 to 9.
+/// "Fast simulation of mass-spring systems", 2013).
+/// Source: Wang, "A Chebyshev semi-iterative approach for accelerating projective and position-based
+/// dynamics", ACM TOG 34(6), 2015, equations 7 to 9.
 #include <algorithm>
 #include <cmath>
 

@@ -5,9 +5,9 @@
 /// A sweep starts at the nodes whose residual is above the tolerance. After a tool has moved a few nodes
 /// those are their neighbours, so that a local deformation costs what its surroundings cost, not what the
 /// organ does. Each node moves by R_i / (sum_j k_ij + k_v), which lowers the energy wherever the others are,
-/// and hands the wave on to its neighbours; a node in balance stops it. Source: Brown, Sorkin, Bruyns,
-/// Latombe, Montgomery, Stephanides, "Real-time simulation of deformable objects: tools and application",
-/// Computer Animation 2001 (the paper's reference [8]).
+/// and hands the wave on to its neighbours; a node in balance stops it.
+/// Source: Brown, Sorkin, Bruyns, Latombe, Montgomery, Stephanides, "Real-time simulation of deformable
+/// objects: tools and application", Computer Animation 2001 (the paper's reference [8]).
 #include <algorithm>
 #include <cmath>
 

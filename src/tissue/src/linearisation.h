@@ -42,7 +42,8 @@ struct OrderedLoad {
   std::vector<ContactSpring> contacts;
   double stiffness_scale = 1, shape_scale = 1;
 };
-/// Fills `ordered`, whose vectors have room, from the caller's order. \note Real-time safe.
+/// Fills `ordered`, whose vectors have room, from the caller's order.
+/// \note Real-time safe.
 void SetOrderedLoad(const OrderedModel& model, const TissueLoad& load, const TissueState& state,
                     OrderedLoad& ordered) noexcept;
 
@@ -60,7 +61,8 @@ struct Balance {
 /// for LinkHierarchy::Update. Contacts are left out of the stiffness; see ContactMatrix.
 ///
 /// \param position  (n) [m], in the solvers' order
-/// \note Real-time safe. Source: Hooke's law; stiffness of a spring of extent d u: (k - b) I + b u u^T with
+/// \note Real-time safe.
+/// Source: Hooke's law; stiffness of a spring of extent d u: (k - b) I + b u u^T with
 /// b = k l / d.
 void Linearise(const OrderedModel& model, const OrderedLoad& load,
                std::span<const std::uint8_t> strand_is_intact, std::span<const Vec3> position,

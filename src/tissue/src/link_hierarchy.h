@@ -58,7 +58,8 @@ class LinkHierarchy {
   void Update(std::span<const float> stiffness) noexcept;
 
   /// x = about K^-1 b, a V-cycle with one damped block-Jacobi step on either side: symmetric and, where the
-  /// matrix is, positive definite. Held nodes get 0. \note Real-time safe.
+  /// matrix is, positive definite. Held nodes get 0.
+  /// \note Real-time safe.
   void Apply(const Kernels& kernels, Workers& workers, const Float4* b, Float4* x) noexcept;
 
  private:

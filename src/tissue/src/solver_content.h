@@ -17,9 +17,9 @@ namespace trocar::tissue {
 inline constexpr std::uint32_t kLanes = 8;
 
 /// Half-springs in slices of kLanes nodes, each padded to its longest row (sliced ELLPACK): what the lanes
-/// read at one step lies together. A padded entry points at its own node with no stiffness. Source: Monakov,
-/// Lokhmotov, Avetisyan, "Automatically tuning sparse matrix-vector multiplication for GPU architectures",
-/// HiPEAC 2010.
+/// read at one step lies together. A padded entry points at its own node with no stiffness.
+/// Source: Monakov, Lokhmotov, Avetisyan, "Automatically tuning sparse matrix-vector multiplication for GPU
+/// architectures", HiPEAC 2010.
 struct SlicedSprings {
   std::vector<std::uint32_t> starts;         // (slices + 1) in steps
   std::vector<std::uint32_t> others;         // (steps * kLanes)

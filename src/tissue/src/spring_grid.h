@@ -74,7 +74,8 @@ class SpringGrid {
   Vec3 GetDisplacement(std::uint32_t node) const noexcept;
   /// Sets the free nodes' displacements by interpolation from a coarser grid.
   void Interpolate(const SpringGrid& coarse) noexcept;
-  /// One iteration. \return largest residual before it [N], NaN where one is; 0 unless measured
+  /// One iteration.
+  /// \return largest residual before it [N], NaN where one is; 0 unless measured
   double Step(const Kernels& kernels, Workers& workers, float omega, float damping, bool is_first,
               bool is_measured) noexcept;
   /// Smallest k_virtual / (2 sum k + k_virtual) of a free node: no eigenvalue is lower where no spring is

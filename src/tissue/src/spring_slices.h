@@ -23,7 +23,8 @@ class SpringSlices {
   }
   /// Adds to the load on a node, until the next SetLoad [N].
   void AddForce(std::uint32_t node, const Vec3& force) noexcept;
-  /// One iteration. \return largest residual before it [N], NaN where one is; 0 unless measured
+  /// One iteration.
+  /// \return largest residual before it [N], NaN where one is; 0 unless measured
   double Step(const Kernels& kernels, Workers& workers, float omega, float damping, bool is_first,
               bool is_measured) noexcept;
   double LowestEigenvalue() const { return lowest_; }

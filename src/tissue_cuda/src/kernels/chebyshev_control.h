@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file chebyshev_control.h  When the Chebyshev recurrence starts again, when it is taken back, and when it
 /// ends: the decisions of tissue/chebyshev_jacobi_wang2015.cpp, taken by every thread alike from the same
-/// three maxima, so that no iteration waits for the host. Source: Wang, "A Chebyshev semi-iterative approach
-/// for accelerating projective and position-based dynamics", ACM TOG 34(6), 2015, equations 7 to 9.
+/// three maxima, so that no iteration waits for the host.
+/// Source: Wang, "A Chebyshev semi-iterative approach for accelerating projective and position-based
+/// dynamics", ACM TOG 34(6), 2015, equations 7 to 9.
 #pragma once
 
 #include "portable.h"

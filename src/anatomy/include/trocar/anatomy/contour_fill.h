@@ -27,10 +27,11 @@ struct Mask {
 ///
 /// Fills from a corner of the mask, which is outside. The walls are the places where the polyline passes
 /// between two neighbouring pixel centres; a step through a wall changes sides, so that a pocket narrower
-/// than a pixel is found too. Equal to the even-odd rule at every pixel centre. \param contour  (n) n >= 3
-/// closed polyline [pixels] \param[in,out] mask  pixels inside become 1, the others keep their value; the
-/// contour must lie inside the rectangle \pre a border of one pixel of the mask is outside the contour
-/// (TROCAR_ASSERT)
+/// than a pixel is found too. Equal to the even-odd rule at every pixel centre.
+/// \param contour  (n) n >= 3 closed polyline [pixels]
+/// \param[in,out] mask  pixels inside become 1, the others keep their value; the
+/// contour must lie inside the rectangle
+/// \pre a border of one pixel of the mask is outside the contour (TROCAR_ASSERT)
 void FillContour(std::span<const Vec2> contour, Mask& mask);
 
 /// Union of the contours without the holes.

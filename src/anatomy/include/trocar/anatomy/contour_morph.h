@@ -26,7 +26,8 @@ struct ContourMatch {
 /// Matches two closed contours in order, so that near points with like normals belong together.
 ///
 /// A thin lobe that moves sideways by more than its thickness from slice to slice keeps its length in
-/// between. \param a, b  closed polylines [pixels], n >= 3, of any sense of rotation
+/// between.
+/// \param a, b  closed polylines [pixels], n >= 3, of any sense of rotation
 ContourMatch MatchContours(std::span<const Vec2> a, std::span<const Vec2> b);
 
 }  // namespace trocar::anatomy

@@ -3,8 +3,9 @@
 ///
 /// The band of the picture along the contour is straightened in both slices. Each point moves along its
 /// normal to where the bands correlate best, neighbours together (dynamic programming over the closed
-/// contour), and then to the edge. Source: normalised cross-correlation, Lewis, "Fast normalized
-/// cross-correlation", Vision Interface 1995; Amini, Weymouth, Jain, PAMI 1990.
+/// contour), and then to the edge.
+/// Source: normalised cross-correlation, Lewis, "Fast normalized cross-correlation", Vision Interface 1995;
+/// Amini, Weymouth, Jain, PAMI 1990.
 #pragma once
 
 #include <span>

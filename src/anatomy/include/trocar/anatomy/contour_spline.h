@@ -34,8 +34,10 @@ struct ContourCurve {
 ///
 /// Where the spline overshoots (the curve swings further from a chord than max_bulge, or crosses itself
 /// though the polygon does not) the segment is divided by a point beside the chord's middle and the spline
-/// fitted again. \param points  (n) n >= 3 distinct points [pixels] \return closed polyline [pixels]; crosses
-/// itself only if the points' own polygon does \pre n >= 3 (TROCAR_ASSERT)
+/// fitted again.
+/// \param points  (n) n >= 3 distinct points [pixels]
+/// \return closed polyline [pixels]; crosses itself only if the points' own polygon does
+/// \pre n >= 3 (TROCAR_ASSERT)
 std::vector<Vec2> FitContour(std::span<const Vec2> points, const ContourSplineSettings& settings = {});
 
 /// The same, with where each point belongs.

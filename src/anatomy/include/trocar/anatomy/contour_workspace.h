@@ -55,7 +55,8 @@ class ContourWorkspace {
   void Replace(ControlPoints points);
   /// Text of the file as it was last read or written; empty for a new one.
   const std::string& SavedText() const { return saved_text_; }
-  /// Writes the contours. \param path  becomes the document's file
+  /// Writes the contours.
+  /// \param path  becomes the document's file
   core::Status Save(const std::filesystem::path& path);
 
   /// Slices that there are pictures of, ascending.

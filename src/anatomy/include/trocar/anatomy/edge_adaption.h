@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file edge_adaption.h  Moves control points along the contour's normal to the nearest strong edge of the
-/// picture. Source: "General algorithms for laparoscopic surgical simulators", section 3.1.1, second step;
+/// picture.
+/// Source: "General algorithms for laparoscopic surgical simulators", section 3.1.1, second step;
 /// the closed contour is solved by dynamic programming as in Amini, Weymouth, Jain, "Using dynamic
 /// programming for solving variational problems in vision", PAMI 1990.
 #pragma once

@@ -27,7 +27,8 @@ class EdgeField {
   double BlurPx() const { return blur_px_; }
 
   const Colour& At(int x, int y) const { return pixels_[static_cast<std::size_t>(y) * width_ + x]; }
-  /// Colour between pixels, bilinear; beyond the picture its border repeats. \param p  finite [pixels]
+  /// Colour between pixels, bilinear; beyond the picture its border repeats.
+  /// \param p  finite [pixels]
   Colour Sample(const Vec2& p) const;
 
  private:

@@ -19,7 +19,8 @@ namespace trocar::anatomy {
 /// a curved axis in its fossa) that go through the same marching cubes, smoothing and decimation as pictures
 /// do; regions, bed and landmarks are found by AssemblePatient, ducts and arteries placed by landmarks.
 /// The patient lists every parameter, and the sizes measured on the result. The same seed and settings give
-/// the same patient. \param settings  see DrawParameters
+/// the same patient.
+/// \param settings  see DrawParameters
 /// \return the error of the settings, or of the step that failed
 core::Result<Patient> GeneratePatient(std::uint64_t seed, std::span<const ParameterSetting> settings = {});
 

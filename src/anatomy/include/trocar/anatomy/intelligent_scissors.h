@@ -26,10 +26,12 @@ struct ScissorsSettings {
 /// Shortest paths over the pixels of one slice, short where edges are strong.
 class IntelligentScissors {
  public:
-  /// Computes the cost of every pixel. \pre the picture is at least 3 x 3 (TROCAR_ASSERT)
+  /// Computes the cost of every pixel.
+  /// \pre the picture is at least 3 x 3 (TROCAR_ASSERT)
   explicit IntelligentScissors(const ColorImage& image, const ScissorsSettings& settings = {});
 
-  /// Finds the paths to all pixels within reach. \param seed  moved into the picture if outside [pixels]
+  /// Finds the paths to all pixels within reach.
+  /// \param seed  moved into the picture if outside [pixels]
   void SetSeed(const Vec2& seed);
 
   /// \param target  [pixels]; beyond reach, the path runs to the nearest pixel within reach and straight on
@@ -52,7 +54,8 @@ class IntelligentScissors {
 };
 
 /// The few points of a path that a polyline through them stays within `tolerance_px` of; first and last are
-/// kept. Source: Douglas and Peucker, "Algorithms for the reduction of the number of points", 1973.
+/// kept.
+/// Source: Douglas and Peucker, "Algorithms for the reduction of the number of points", 1973.
 ///
 /// \param path  (n) open polyline [pixels]; fewer than three points come back unchanged
 std::vector<Vec2> SimplifyPath(std::span<const Vec2> path, double tolerance_px = 1.0);

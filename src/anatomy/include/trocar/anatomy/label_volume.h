@@ -32,7 +32,9 @@ core::Result<ScalarVolume> MakeLabelVolume(std::vector<FilledSlice> slices, doub
 /// Spacing of a lattice whose surface has about 18 triangles for each one wanted: finer shows no more [mm].
 ///
 /// The area is that of the exposed sides of the filled pixels, which a surface of all directions has one and
-/// a half times. \param triangle_budget  > 0 \pre at least two slices (TROCAR_ASSERT)
+/// a half times.
+/// \param triangle_budget  > 0
+/// \pre at least two slices (TROCAR_ASSERT)
 double SuggestSpacing(std::span<const FilledSlice> slices, double pixel_mm, int triangle_budget);
 
 }  // namespace trocar::anatomy

@@ -38,7 +38,8 @@ const std::vector<CellLoop>& FindCellLoops(unsigned inside, unsigned joined);
 
 /// The asymptotic decider: whether the bilinear interpolant of a face is inside at its saddle, a c > b d.
 /// Products of floats are exact in double, so that both cells of a face always agree; a tie keeps them apart.
-/// \param a, c  values of the inside corners, > 0; \param b, d  of the others, <= 0
+/// \param a, c  values of the inside corners, > 0;
+/// \param b, d  of the others, <= 0
 inline bool IsJoinedAtSaddle(float a, float b, float c, float d) {
   return static_cast<double>(a) * c > static_cast<double>(b) * d;
 }

@@ -24,8 +24,9 @@ struct SurfaceDistance {
 /// Distances of samples of either surface to the nearest point of the other.
 ///
 /// The mesh is sampled at its vertices and evenly over its area, the reference at its vertices, every n-th of
-/// them where there are more than asked for. \param samples  each way, about; > 0 \pre both have triangles
-/// (TROCAR_ASSERT)
+/// them where there are more than asked for.
+/// \param samples  each way, about; > 0
+/// \pre both have triangles (TROCAR_ASSERT)
 SurfaceDistance CalcSurfaceDistance(const geometry::TriangleMesh& mesh,
                                     const geometry::TriangleMesh& reference, std::size_t samples);
 

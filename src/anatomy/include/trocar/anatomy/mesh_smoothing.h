@@ -15,7 +15,8 @@ struct SmoothingSettings {
 };
 
 /// Smooths by the umbrella operator, then moves all vertices along their normals until the volume is as
-/// before. \pre closed, manifold, outward mesh (TROCAR_ASSERT on the volume)
+/// before.
+/// \pre closed, manifold, outward mesh (TROCAR_ASSERT on the volume)
 void SmoothMesh(geometry::TriangleMesh& mesh, const SmoothingSettings& settings = {});
 
 /// Moves all vertices by one distance along their normals so that the mesh encloses `volume`, to 1e-6 of it.

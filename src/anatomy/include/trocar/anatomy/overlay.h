@@ -38,7 +38,8 @@ struct Overlay {
 /// \param scale  pictures' pixels a photograph's pixel, 1 to 8
 ColorImage DrawOverlay(const ColorImage& photograph, const Overlay& overlay, int scale = 2);
 
-/// PNG file of 8-bit red, green, blue; written beside and renamed. \return kFileUnwritable
+/// PNG file of 8-bit red, green, blue; written beside and renamed.
+/// \return kFileUnwritable
 core::Status WritePng(const std::filesystem::path& path, const ColorImage& image);
 
 }  // namespace trocar::anatomy

@@ -95,7 +95,8 @@ inline constexpr const char* kCoronary = "coronary";
 inline constexpr const char* kGallbladderBed = "gallbladder_bed";
 
 /// Reads a patient folder: patient.json and one PLY file an organ, in LPS millimetres; converted here, once,
-/// to the world frame. \return the file's error, or kPatientInvalid with what is inconsistent
+/// to the world frame.
+/// \return the file's error, or kPatientInvalid with what is inconsistent
 core::Result<Patient> ReadPatient(const std::filesystem::path& folder);
 
 /// A patient as its folder has it, right or wrong.
@@ -104,8 +105,8 @@ struct UncheckedPatient {
   std::vector<core::Error> mesh_errors;  ///< (organs) kNone where the mesh was read
 };
 
-/// Reads what ReadPatient reads without CheckPatient, for those who look for what is wrong. \return an error
-/// only where patient.json itself cannot be read
+/// Reads what ReadPatient reads without CheckPatient, for those who look for what is wrong.
+/// \return an error only where patient.json itself cannot be read
 core::Result<UncheckedPatient> ReadPatientUnchecked(const std::filesystem::path& folder);
 
 /// Writes the folder that ReadPatient reads; nothing is left behind when it fails.

@@ -29,7 +29,8 @@ class PatientDocument {
   std::uint64_t Revision() const { return revision_; }
 
   /// Runs an operation of patient_edit.h. Nothing changes when it fails, and nothing is remembered when it
-  /// changes nothing. \param name  in words, for "Undo ..."
+  /// changes nothing.
+  /// \param name  in words, for "Undo ..."
   core::Status Edit(const std::string& name, const std::function<core::Status(Patient&)>& operation);
   /// Edits up to EndGroup are one step of undo: a stroke of the brush, a drag.
   void BeginGroup(const std::string& name);
@@ -55,7 +56,8 @@ class PatientDocument {
   static std::filesystem::path AutosaveFolder(const std::filesystem::path& folder);
   /// Whether a copy lies there that was written after the patient itself.
   static bool HasAutosave(const std::filesystem::path& folder);
-  /// Writes the copy where something has changed since the last one. \return true when it wrote
+  /// Writes the copy where something has changed since the last one.
+  /// \return true when it wrote
   core::Result<bool> Autosave();
   void DiscardAutosave();
 

@@ -26,13 +26,14 @@ std::vector<std::uint32_t> FindBrushVertices(const geometry::TriangleMesh& mesh,
 
 /// Adds vertices to a region, which is made when there is none, or takes them away.
 /// Where the gallbladder's bed changes, its strands follow: new vertices are tied to the nearest liver
-/// triangle within 10 mm, and the strands of vertices that left are removed. \return kPatientInvalid for an
-/// organ or vertex that is not there, or a region name that is no plain word
+/// triangle within 10 mm, and the strands of vertices that left are removed.
+/// \return kPatientInvalid for an organ or vertex that is not there, or a region name that is no plain word
 core::Status PaintRegion(Patient& patient, std::string_view organ, std::string_view region,
                          std::span<const std::uint32_t> vertices, bool is_added);
 
 /// Moves a point of a centre line. Points within `reach` along the line follow less and less; so do the ends
-/// of other tubes that are joined to what moves. \param reach [m], >= 0
+/// of other tubes that are joined to what moves.
+/// \param reach [m], >= 0
 core::Status MoveTubePoint(Patient& patient, std::uint32_t tube, std::uint32_t point, const Vec3& position,
                            double reach);
 /// New point on the line between `after` and the next one; its radius lies between theirs.
@@ -44,8 +45,8 @@ core::Status ScaleTubeRadius(Patient& patient, std::uint32_t tube, std::uint32_t
                              double reach);
 
 /// Joins an end to an organ or another tube: it moves onto the nearest point of the surface or centre line,
-/// and the points near it follow. An empty name lets the end leave the scene. \return kUnknownName with those
-/// that are known; kPatientInvalid for a tube that would join itself
+/// and the points near it follow. An empty name lets the end leave the scene.
+/// \return kUnknownName with those that are known; kPatientInvalid for a tube that would join itself
 core::Status JoinTubeEnd(Patient& patient, std::uint32_t tube, TubeEnd end, std::string_view name);
 
 /// \return kPatientInvalid when the name is taken or no plain word, or the line is not usable

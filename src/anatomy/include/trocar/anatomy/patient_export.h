@@ -14,7 +14,8 @@ namespace trocar::anatomy {
 
 enum class MeshFormat { kObj, kPly, kStl, kGltf, kVtk };
 
-/// "obj", "ply", "stl", "gltf" or "vtk". \return kUnknownName with those that are known
+/// "obj", "ply", "stl", "gltf" or "vtk".
+/// \return kUnknownName with those that are known
 core::Result<MeshFormat> FindMeshFormat(std::string_view name);
 
 struct ExportOptions {

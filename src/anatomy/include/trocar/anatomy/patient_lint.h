@@ -37,11 +37,13 @@ struct LintReport {
 /// Looks at every organ, region, attachment, tube and landmark. Accepts whatever the structures can hold:
 /// indices out of range and numbers that are not finite are findings. What a finding makes meaningless is not
 /// judged: sizes and distances where the unit is wrong, a mesh's sides where it is open.
-/// Sources of the ranges: docs/patient-check.md. \note Not real-time safe; pure.
+/// Sources of the ranges: docs/patient-check.md.
+/// \note Not real-time safe; pure.
 LintReport LintPatient(const Patient& patient);
 
 /// Reads a folder and looks at it, also where ReadPatient refuses it; a mesh that cannot be read is a
-/// finding. \return an error only where patient.json cannot be read
+/// finding.
+/// \return an error only where patient.json cannot be read
 core::Result<LintReport> LintPatientFolder(const std::filesystem::path& folder);
 
 }  // namespace trocar::anatomy

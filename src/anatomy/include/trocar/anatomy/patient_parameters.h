@@ -44,7 +44,8 @@ struct ParameterRule {
 std::span<const ParameterRule> ParameterRules();
 
 /// Share of the series' patients with each type of cystic-duct insertion, as published (they need not sum to
-/// 1). \return empty for a series that is not known
+/// 1).
+/// \return empty for a series that is not known
 std::span<const Choice> FindInsertionSeries(std::string_view series);
 
 /// Ranges of the cystic duct's length for "normal", "short" and "long": mean, deviation, low, high [mm].

@@ -41,11 +41,15 @@ struct VariationCount {
 std::vector<VariationCount> CountVariations(std::span<const std::vector<Parameter>> patients);
 
 /// Deviation of a count from what is configured, in standard deviations of the binomial distribution; 0 where
-/// it has none. \param configured  probability \param trials  how often it was drawn
+/// it has none.
+/// \param configured  probability
+/// \param trials  how often it was drawn
 double CalcBinomialDeviation(double configured, std::size_t observed, std::size_t trials);
 
 /// Probability that a chi-square variable is at least `chi_square`: the regularised upper incomplete gamma
-/// function Q(degrees / 2, chi_square / 2). Source: Abramowitz and Stegun 1964, 26.4.19. \param degrees  >= 1
+/// function Q(degrees / 2, chi_square / 2).
+/// Source: Abramowitz and Stegun 1964, 26.4.19.
+/// \param degrees  >= 1
 double CalcChiSquareTail(double chi_square, int degrees);
 
 struct PopulationSettings {

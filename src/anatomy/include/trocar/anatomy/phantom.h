@@ -47,7 +47,8 @@ class Phantom {
   /// One picture: surroundings, organs with smooth borders, texture, blur and grain.
   /// \param slice  1 to SliceCount() (TROCAR_ASSERT)
   ColorImage DrawSlice(int slice) const;
-  /// Which organ each pixel's centre lies in. \return (height * width)
+  /// Which organ each pixel's centre lies in.
+  /// \return (height * width)
   std::vector<std::uint8_t> LabelSlice(int slice) const;
 
   /// How the pictures lie, and what a hasty person would have clicked: points beside the true contours on

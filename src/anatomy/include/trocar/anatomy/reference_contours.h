@@ -16,7 +16,8 @@ namespace trocar::anatomy {
 /// Step of one voxel along column, row and slice of the series [mm].
 ///
 /// The label map must cover the series: its first slice is first_slice, its corner the picture's corner, its
-/// axes the picture's. \return kLabelsMismatch when it does not
+/// axes the picture's.
+/// \return kLabelsMismatch when it does not
 core::Result<std::array<double, 3>> FindLabelStep(const LabelVolume& labels, const ControlPoints& points);
 
 /// A closed outline: contours run clockwise as the picture is seen, holes the other way round.
@@ -34,7 +35,8 @@ struct Outline {
 std::vector<Outline> TraceLabel(const LabelVolume& labels, const ControlPoints& points,
                                 const std::array<double, 3>& step, int label, int slice);
 
-/// Distance of a point to the nearest outline [pixels]. \pre at least one outline (TROCAR_ASSERT)
+/// Distance of a point to the nearest outline [pixels].
+/// \pre at least one outline (TROCAR_ASSERT)
 double DistanceToOutlines(const Vec2& p, std::span<const Outline> outlines);
 
 }  // namespace trocar::anatomy

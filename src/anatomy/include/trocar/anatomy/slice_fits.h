@@ -39,7 +39,8 @@ class SliceFits {
   explicit SliceFits(std::shared_ptr<SliceStore> store);
 
   /// Fit of the closed contours of a slice. Equal contours, settings and pictures give equal bits, remembered
-  /// or not. \param structure  index, under which the fit is remembered
+  /// or not.
+  /// \param structure  index, under which the fit is remembered
   /// \return why the picture cannot be had
   core::Result<std::shared_ptr<const SliceFit>> Find(int structure, const SliceContours& contours,
                                                      const EdgeAdaptionSettings& adaption,

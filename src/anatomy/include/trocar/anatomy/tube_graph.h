@@ -56,7 +56,8 @@ struct TubeGraph {
 /// Ends that name an organ count as joined to it: whether they reach it is the linter's question.
 TubeGraph MakeTubeGraph(const Patient& patient);
 
-/// Tubes with an end in the organ, ascending; each once. \return indices into patient.tubes
+/// Tubes with an end in the organ, ascending; each once.
+/// \return indices into patient.tubes
 std::vector<std::uint32_t> FindEnteringTubes(const Patient& patient, const TubeGraph& graph,
                                              std::string_view organ);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file volume.h  Filled slices become a volume of signed distances, interpolated between the slices by
-/// shape. Source: Raya and Udupa, "Shape-based interpolation of multidimensional objects", IEEE TMI 1990;
+/// shape.
+/// Source: Raya and Udupa, "Shape-based interpolation of multidimensional objects", IEEE TMI 1990;
 /// Felzenszwalb and Huttenlocher, "Distance transforms of sampled functions", Theory of Computing 2012;
 /// Fritsch and Carlson, "Monotone piecewise cubic interpolation", SIAM J. Numer. Anal. 1980.
 #pragma once
@@ -54,8 +55,9 @@ std::vector<double> CalcSignedDistances(std::span<const std::uint8_t> set, int w
 /// What two neighbours share is inside all the way. Where only one of them is inside, the border moves evenly
 /// from the shared part outwards along the lines of nearest distance: a thin lobe whose end lies elsewhere in
 /// each slice gets a straight edge, where interpolated distances would leave a tooth at every slice. Parts
-/// that touch nothing shared shrink as their signed distances say. Source: the idea of Iwanowski and Serra,
-/// "The morphological-affine object deformation", ISMM 2000 (median sets).
+/// that touch nothing shared shrink as their signed distances say.
+/// Source: the idea of Iwanowski and Serra, "The morphological-affine object deformation", ISMM 2000 (median
+/// sets).
 std::vector<FilledSlice> InsertSlices(std::span<const FilledSlice> slices, double step_mm);
 
 /// Takes away what is thinner than twice `radius_px` within the slice (a morphological opening by a disc):
@@ -66,8 +68,9 @@ void OpenMask(Mask& mask, double radius_px);
 ///
 /// Between two slices the distances are interpolated by a monotone cubic, so the shape moves over smoothly.
 /// Beyond the first and last slice the shape closes as a paraboloid within half the distance to the next
-/// slice. \param slices  ascending positions, at least two \return kContourEmpty when a slice or the whole
-/// has no pixel inside
+/// slice.
+/// \param slices  ascending positions, at least two
+/// \return kContourEmpty when a slice or the whole has no pixel inside
 core::Result<ScalarVolume> MakeVolume(std::span<const FilledSlice> slices, double pixel_mm,
                                       double spacing_mm);
 

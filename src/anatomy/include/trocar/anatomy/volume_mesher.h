@@ -35,8 +35,10 @@ struct MeshedVolume {
 /// volume that is far finer than the budget can show is first halved in resolution by a binomial filter, as
 /// often as the surface keeps a dozen triangles for each one wanted. Where triangles still cut each other,
 /// the surface is smoothed more and tried again. The mesh encloses what the volume's surface encloses, to 0.5
-/// %. \return kContourEmpty when nothing is inside, kMeshNotClosed when the budget cannot be reached. A mesh
-/// that still cuts itself is returned: `quality` says so. \note The same bits for any number of threads.
+/// %.
+/// \return kContourEmpty when nothing is inside, kMeshNotClosed when the budget cannot be reached. A mesh
+/// that still cuts itself is returned: `quality` says so.
+/// \note The same bits for any number of threads.
 core::Result<MeshedVolume> MeshVolume(ScalarVolume volume, const MeshingSettings& settings = {});
 
 /// Every second sample after a binomial filter (1 2 1) / 4 along each axis; outside counts as outside.

@@ -39,7 +39,8 @@ void ZoomAt(CanvasView& view, const CanvasSize& size, const Vec2& at, double fac
 void PanBy(CanvasView& view, double dx, double dy, int picture_width, int picture_height) noexcept;
 /// The whole picture, with a small margin.
 void FitPicture(CanvasView& view, const CanvasSize& size, int picture_width, int picture_height) noexcept;
-/// A part of the picture. \param low, high  corners [pixels of the picture]
+/// A part of the picture.
+/// \param low, high  corners [pixels of the picture]
 void FitBox(CanvasView& view, const CanvasSize& size, const Vec2& low, const Vec2& high) noexcept;
 
 /// Mirrors the picture as radiology shows it: on a cross-section anterior is above and the patient's right at

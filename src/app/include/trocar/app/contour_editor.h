@@ -68,7 +68,8 @@ class ContourEditor {
   /// From the open contour's last point to the pointer, as a click would add it; empty when nothing is open.
   std::vector<Vec2> RubberLine();
 
-  /// Does what needs no window. \return false when the action is the window's affair
+  /// Does what needs no window.
+  /// \return false when the action is the window's affair
   bool Do(ContourAction action);
 
   /// A command was refused or failed; never called without something that a person should read.

@@ -41,7 +41,8 @@ struct Command {
 core::Result<Command> ParseCommandLine(int argc, const char* const* argv);
 
 /// Threads for the solver when the person names none: half of the processors, at least 1, at most 4; the
-/// other half draws. \param processors  as the system counts them, 0 where it cannot
+/// other half draws.
+/// \param processors  as the system counts them, 0 where it cannot
 int ChooseThreads(unsigned processors) noexcept;
 
 }  // namespace trocar::app

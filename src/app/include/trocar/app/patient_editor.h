@@ -18,7 +18,8 @@ namespace trocar::app {
 
 enum class EditorTool { kLook, kPaint, kTubes, kLandmarks };
 
-/// "look", "paint", "tubes", "landmarks". \return nothing for another word
+/// "look", "paint", "tubes", "landmarks".
+/// \return nothing for another word
 std::optional<EditorTool> FindEditorTool(std::string_view name) noexcept;
 
 /// A region of an organ, by names.
@@ -57,17 +58,20 @@ class PatientEditor {
   /// The patient as it is, with what is chosen and the brush at `hover`.
   view::PatientFigure MakeFigure(const std::optional<render::SurfaceHit>& hover) const;
 
-  /// The primary button goes down. \param is_other  a second meaning is asked for (Shift): the brush does the
-  /// opposite, a tube gets a point where it was pressed
+  /// The primary button goes down.
+  /// \param is_other  a second meaning is asked for (Shift): the brush does the opposite, a tube gets a point
+  /// where it was pressed
   /// \return whether a stroke or drag has begun; otherwise the view turns
   bool Press(const std::optional<render::SurfaceHit>& surface, const std::optional<std::size_t>& point,
              bool is_other);
-  /// The pointer has moved. \param in_plane  under the pointer at the depth of Grabbed()
+  /// The pointer has moved.
+  /// \param in_plane  under the pointer at the depth of Grabbed()
   core::Status Drag(const std::optional<render::SurfaceHit>& surface, const math::Vec3& in_plane);
   void Release();
   /// Place that is being dragged [m].
   math::Vec3 Grabbed() const { return grabbed_; }
-  /// The wheel over a point, or with Ctrl: brush or tube grow or shrink. \return whether it meant something
+  /// The wheel over a point, or with Ctrl: brush or tube grow or shrink.
+  /// \return whether it meant something
   bool Wheel(const std::optional<std::size_t>& point, bool is_wanted, double steps);
 
   core::Status DeletePoint();

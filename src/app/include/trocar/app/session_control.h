@@ -13,11 +13,13 @@ namespace trocar::app {
 /// Owns the running simulation and the mouse and keyboard that hold its instruments. Called from one thread.
 class SessionControl {
  public:
-  /// Starts paused, with the hands at home. \return kDeviceSettings where the scene's tools cannot be held
+  /// Starts paused, with the hands at home.
+  /// \return kDeviceSettings where the scene's tools cannot be held
   static core::Result<std::unique_ptr<SessionControl>> Make(session::Simulation simulation);
 
   /// Moves the hands on by `dt` [s] and hands the newest wish to the simulation; while paused the hands stand
-  /// still. \return the newest state, valid until the next call
+  /// still.
+  /// \return the newest state, valid until the next call
   const session::Snapshot& Advance(double dt);
 
   void SetPaused(bool is_paused);

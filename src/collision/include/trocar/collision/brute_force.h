@@ -17,7 +17,8 @@ NearestTriangle FindNearestBruteForce(std::span<const Vec3> positions, std::span
                                       double max_distance = std::numeric_limits<double>::infinity()) noexcept;
 
 /// Index of the centroid that is nearest to p, the lowest of equally near ones: what FindGreedy tries to
-/// find. \return kNoTriangle for no centroid
+/// find.
+/// \return kNoTriangle for no centroid
 std::uint32_t FindNearestCentroidBruteForce(std::span<const Vec3> centroids, const Vec3& p) noexcept;
 
 /// The same answer as FindNearestToSegment, to the bit, by testing every triangle.

@@ -99,13 +99,16 @@ class CentroidHierarchy {
   void UpdateAll(std::span<const Vec3> positions) noexcept;
 
   /// The same for a list of modified triangles and the nodes above them (section 3.3.4); repeated entries do
-  /// no harm. \param modified  indices of triangles, each < Triangles().size() (TROCAR_ASSERT) \note
-  /// Real-time safe: no allocation, lock or throw.
+  /// no harm.
+  /// \param modified  indices of triangles, each < Triangles().size() (TROCAR_ASSERT)
+  /// \note Real-time safe: no allocation, lock or throw.
   void Update(std::span<const Vec3> positions, std::span<const std::uint32_t> modified) noexcept;
 
   /// The paper's search: from the root always to the child whose representative centroid is nearer
-  /// (section 3.3.3). \return a triangle that is near and often not the nearest; kNoTriangle in an empty
-  /// hierarchy \note Real-time safe: no allocation, lock or throw.
+  /// (section 3.3.3).
+  /// \return a triangle that is near and often not the nearest; kNoTriangle in an empty
+  /// hierarchy
+  /// \note Real-time safe: no allocation, lock or throw.
   std::uint32_t FindGreedy(const Vec3& p) const noexcept;
 
   /// The nearest triangle to p; of equally near ones that of lowest index.

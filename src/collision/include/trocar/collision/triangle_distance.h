@@ -20,8 +20,9 @@ struct SegmentTrianglePoints {
 /// Nearest points of segment start-end and triangle (a, b, c); either may be degenerate.
 ///
 /// A segment that does not pierce the triangle is nearest at one of its ends or beside one of the triangle's
-/// sides. Source: Ericson, "Real-Time Collision Detection", 2005, sections 5.1.9, 5.1.10 and 5.3.6. \note
-/// Real-time safe: no allocation, lock or throw.
+/// sides.
+/// Source: Ericson, "Real-Time Collision Detection", 2005, sections 5.1.9, 5.1.10 and 5.3.6.
+/// \note Real-time safe: no allocation, lock or throw.
 SegmentTrianglePoints FindNearestSegmentTriangle(const Vec3& start, const Vec3& end, const Vec3& a,
                                                  const Vec3& b, const Vec3& c) noexcept;
 

@@ -12,8 +12,8 @@ namespace trocar::core {
 /// half-written.
 ///
 /// The producer fills Back() and calls Publish(); the consumer calls Update() and reads Front(). Values that
-/// the consumer did not fetch in time are overwritten. \note Real-time safe: no allocation (beyond what T
-/// does when it is filled), lock or throw.
+/// the consumer did not fetch in time are overwritten.
+/// \note Real-time safe: no allocation (beyond what T does when it is filled), lock or throw.
 template <typename T>
 class NewestSlot {
  public:

@@ -18,7 +18,8 @@ namespace trocar::core {
 Result<std::string> ReadFile(const std::filesystem::path& path, std::size_t limit_bytes = 64u << 20);
 
 /// Writes `content` beside `path`, then renames it: a reader sees the old file or the new one, never a part.
-/// Makes the parent folders. \return kFileUnwritable
+/// Makes the parent folders.
+/// \return kFileUnwritable
 Status WriteFile(const std::filesystem::path& path, std::string_view content);
 
 }  // namespace trocar::core

@@ -35,14 +35,17 @@ class Driver {
   Driver(const Driver&) = delete;
   Driver& operator=(const Driver&) = delete;
 
-  /// Unconfigured -> Inactive. \return kDeviceState out of turn, or the device's own error (stays
-  /// unconfigured)
+  /// Unconfigured -> Inactive.
+  /// \return kDeviceState out of turn, or the device's own error (stays unconfigured)
   core::Status Configure();
-  /// Inactive -> Active. \return kDeviceState out of turn, or the device's own error (stays inactive)
+  /// Inactive -> Active.
+  /// \return kDeviceState out of turn, or the device's own error (stays inactive)
   core::Status Activate();
-  /// Active -> Inactive. \return kDeviceState out of turn
+  /// Active -> Inactive.
+  /// \return kDeviceState out of turn
   core::Status Deactivate();
-  /// Inactive -> Unconfigured. \return kDeviceState out of turn
+  /// Inactive -> Unconfigured.
+  /// \return kDeviceState out of turn
   core::Status Cleanup();
   /// Any state -> Finalized; a second call changes nothing.
   void Finalize() noexcept;

@@ -13,8 +13,9 @@ struct TrianglePoint {
 };
 
 /// Nearest point of triangle (a, b, c); slivers and degenerate triangles are segments or points. Weights of
-/// corners that do not take part are exactly zero. Source: Ericson, "Real-Time Collision Detection", 2005,
-/// section 5.1.5. \note Real-time safe.
+/// corners that do not take part are exactly zero.
+/// Source: Ericson, "Real-Time Collision Detection", 2005, section 5.1.5.
+/// \note Real-time safe.
 TrianglePoint FindNearestOnTriangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) noexcept;
 
 /// Parameter in [0, 1] of the point of segment a-b that is nearest to p; 0 for a segment without length.
@@ -25,7 +26,8 @@ double FindNearestOnSegment(const Vec3& p, const Vec3& a, const Vec3& b) noexcep
 bool TrianglesIntersect(const Vec3* a, const Vec3* b) noexcept;
 
 /// Whether segment p-q passes through triangle (three corners) from one side to the other. What lies in the
-/// triangle's plane, to 1e-7 of its longest side, does not pass. \note Real-time safe.
+/// triangle's plane, to 1e-7 of its longest side, does not pass.
+/// \note Real-time safe.
 bool SegmentPiercesTriangle(const Vec3& p, const Vec3& q, const Vec3* triangle) noexcept;
 
 }  // namespace trocar::geometry

@@ -26,23 +26,26 @@ struct NamedMesh {
 /// \param comment  first line; control characters become spaces
 std::string FormatObj(std::span<const NamedMesh> meshes, std::string_view comment = {});
 
-/// Binary STL: single precision, triangles with their normals, no names. Source: 3D Systems,
-/// "StereoLithography Interface Specification", 1989.
+/// Binary STL: single precision, triangles with their normals, no names.
+/// Source: 3D Systems, "StereoLithography Interface Specification", 1989.
 ///
 /// \param comment  at most 80 bytes of it are kept
 std::string FormatStl(const TriangleMesh& mesh, std::string_view comment = {});
 
 /// glTF 2.0 in one binary file: one node and mesh for each mesh, positions and normals in single precision,
-/// one material for each name. Source: Khronos, "glTF 2.0 Specification", sections 3 and 4.
+/// one material for each name.
+/// Source: Khronos, "glTF 2.0 Specification", sections 3 and 4.
 ///
-/// \param meshes  [m], right-handed, y up, z forward; \param copyright  credit, UTF-8; other bytes are
-/// replaced \pre every mesh has a triangle, and all vertices are finite in single precision (TROCAR_ASSERT)
+/// \param meshes  [m], right-handed, y up, z forward;
+/// \param copyright  credit, UTF-8; other bytes are replaced
+/// \pre every mesh has a triangle, and all vertices are finite in single precision (TROCAR_ASSERT)
 std::string FormatGlb(std::span<const NamedMesh> meshes, std::string_view copyright = {});
 
 enum class VtkEncoding { kAscii, kBinary };
 
 /// VTK legacy file, version 3.0, data set POLYDATA in double precision; binary is big-endian, as VTK wants
-/// it. Source: Kitware, "VTK File Formats", simple legacy formats.
+/// it.
+/// Source: Kitware, "VTK File Formats", simple legacy formats.
 ///
 /// \param title  second line; control characters become spaces, at most 255 bytes are kept
 std::string FormatVtk(const TriangleMesh& mesh, std::string_view title, VtkEncoding encoding);

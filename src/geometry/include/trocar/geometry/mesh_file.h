@@ -16,8 +16,10 @@ namespace trocar::geometry {
 std::string FormatPly(const TriangleMesh& mesh, std::string_view comment = {});
 
 /// Reads ASCII and binary little-endian PLY with float or double x y z and triangle faces; other properties
-/// are skipped. \param source  name used in messages \return kMeshInvalid with what is wrong; counts are
-/// checked against the bytes present before anything is allocated
+/// are skipped.
+/// \param source  name used in messages
+/// \return kMeshInvalid with what is wrong; counts are checked against the bytes present before anything is
+/// allocated
 core::Result<TriangleMesh> ParsePly(std::string_view content, std::string_view source);
 
 core::Result<TriangleMesh> ReadPly(const std::filesystem::path& path);

@@ -61,7 +61,8 @@ MeshReport InspectMesh(const TriangleMesh& mesh);
 bool BoxesOverlap(const Box& a, const Box& b) noexcept;
 
 /// Whether two triangles of a mesh cut each other: without a common vertex, if they share any point; with
-/// one, if they meet beyond it. Neighbours along an edge never do. \param a_corners, b_corners  (3) positions
+/// one, if they meet beyond it. Neighbours along an edge never do.
+/// \param a_corners, b_corners  (3) positions
 /// \note Real-time safe.
 bool TrianglesCut(const Triangle& a, const Vec3* a_corners, const Triangle& b,
                   const Vec3* b_corners) noexcept;

@@ -26,7 +26,8 @@ struct Tool {
   double max_jaw = 1.0471975511965976;  ///< whole opening, 60 deg [rad]
 };
 
-/// Atraumatic grasper. \return the tool of that name; an empty optional for an unknown one is a null pointer
+/// Atraumatic grasper.
+/// \return the tool of that name; an empty optional for an unknown one is a null pointer
 const Tool* FindTool(std::string_view name) noexcept;
 
 /// Hinge of the jaws in the tool frame [m].

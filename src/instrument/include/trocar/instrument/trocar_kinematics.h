@@ -34,7 +34,9 @@ struct JointLimits {
 TrocarJoints ClampJoints(const TrocarJoints& joints, const JointLimits& limits) noexcept;
 
 /// Pose of the tool: origin at the tip, z axis back along the shaft towards the trocar, y axis the opening
-/// direction of the jaws. \param p_world_port  trocar point [m] \note Real-time safe.
+/// direction of the jaws.
+/// \param p_world_port  trocar point [m]
+/// \note Real-time safe.
 Pose CalcToolPose(const Vec3& p_world_port, const TrocarJoints& joints) noexcept;
 
 /// Joints that bring the tip to `p_world_tip`, with the given spin and jaw. A tip at the port itself gives

@@ -37,7 +37,8 @@ core::Result<std::string> FormatPng(const Image& image);
 /// \return kImageUndecodable; kFileTooLarge beyond 16384 pixels a side
 core::Result<Image> ParsePng(std::string_view content, std::string_view source);
 
-/// Writes a PNG file; a reader sees the old file or the new one, never a part. \return kFileUnwritable
+/// Writes a PNG file; a reader sees the old file or the new one, never a part.
+/// \return kFileUnwritable
 core::Status WritePng(const std::filesystem::path& path, const Image& image);
 
 }  // namespace trocar::render

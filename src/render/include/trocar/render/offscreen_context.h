@@ -20,7 +20,8 @@ class OffscreenContext {
   OffscreenContext& operator=(OffscreenContext&&) noexcept;
   ~OffscreenContext();
 
-  /// Makes it current on the calling thread. \return kNoGraphics when it is current on another one
+  /// Makes it current on the calling thread.
+  /// \return kNoGraphics when it is current on another one
   core::Status MakeCurrent();
   /// Leaves the calling thread without a context, so that another one may take it.
   void Release();

@@ -41,13 +41,15 @@ struct OrbitCamera {
   friend bool operator==(const OrbitCamera&, const OrbitCamera&) = default;
 };
 
-/// Camera that sees the whole box. \param aspect  width over height of the picture, > 0
+/// Camera that sees the whole box.
+/// \param aspect  width over height of the picture, > 0
 OrbitCamera LookFrom(Viewpoint viewpoint, const geometry::Box& box, double aspect);
 
 /// Turns about the target: sideways about the body's long axis, up and down about the picture's horizontal.
 /// \param dx, dy  pixels dragged to the right and down; half a turn is as long as the picture is high
 void Orbit(OrbitCamera& camera, double dx, double dy, int height);
-/// Moves the target with the pointer, so that what lies at its depth stays under it. \param dx, dy  [pixels]
+/// Moves the target with the pointer, so that what lies at its depth stays under it.
+/// \param dx, dy  [pixels]
 void Pan(OrbitCamera& camera, double dx, double dy, int height);
 /// \param steps  of a wheel; > 0 comes nearer. The distance stays between 1 mm and 100 m.
 void Zoom(OrbitCamera& camera, double steps);
@@ -55,7 +57,8 @@ void Zoom(OrbitCamera& camera, double steps);
 struct Ray {
   math::Vec3 origin, direction;  ///< world frame [m]; unit
 };
-/// Ray through a place of the picture. \param x, y  [pixels] from the left and from the top
+/// Ray through a place of the picture.
+/// \param x, y  [pixels] from the left and from the top
 Ray CalcRay(const OrbitCamera& camera, double x, double y, int width, int height);
 
 /// Where a world point falls in the picture [pixels], x from the left, y from the top; not finite behind the

@@ -101,9 +101,9 @@ class Renderer {
   void RemoveSurface(SurfaceId surface);
 
   /// Draws into the bound framebuffer, which must have depth. Leaves depth test, culling and masks off, so
-  /// that a toolkit can go on; leaves no program and no vertex array bound. \param width, height  of the
-  /// framebuffer [pixels]; nothing happens when either is below 1 \note The same frame gives the same pixels.
-  /// Surfaces that were removed are left out.
+  /// that a toolkit can go on; leaves no program and no vertex array bound.
+  /// \param width, height  of the framebuffer [pixels]; nothing happens when either is below 1
+  /// \note The same frame gives the same pixels. Surfaces that were removed are left out.
   void Draw(const Frame& frame, int width, int height);
 
  private:

@@ -20,7 +20,8 @@ struct VideoSettings {
 /// is destroyed before leaves nothing.
 class VideoWriter {
  public:
-  /// Makes the parent folders. \return kVideoFailed (a plug-in or the folder is missing, a setting is out of
+  /// Makes the parent folders.
+  /// \return kVideoFailed (a plug-in or the folder is missing, a setting is out of
   /// range)
   static core::Result<VideoWriter> Make(const std::filesystem::path& path, const VideoSettings& settings);
 
@@ -31,7 +32,8 @@ class VideoWriter {
   /// Appends one frame, shown for 1 / frames_per_second. Waits while the encoder is busy.
   /// \return kVideoFailed when the size differs or the encoder or the disk fails
   core::Status AddFrame(const Image& image);
-  /// Ends the file and gives it its name. \return kVideoFailed, also without any frame
+  /// Ends the file and gives it its name.
+  /// \return kVideoFailed, also without any frame
   core::Status Finish();
 
  private:

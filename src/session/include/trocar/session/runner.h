@@ -23,7 +23,8 @@ struct RunnerStatistics {
 /// Owns the simulation thread. All members are called from one other thread (the window's).
 class Runner {
  public:
-  /// Starts paused. \param simulation  taken over
+  /// Starts paused.
+  /// \param simulation  taken over
   explicit Runner(Simulation simulation);
   ~Runner();
   Runner(const Runner&) = delete;

@@ -42,7 +42,8 @@ class Simulation {
   Simulation& operator=(Simulation&&) noexcept;
   ~Simulation();
 
-  /// One tick. \note No allocation, lock, throw or file.
+  /// One tick.
+  /// \note No allocation, lock, throw or file.
   void Step(const Input& input) noexcept;
   /// Back to the first tick.
   void Reset();

@@ -67,7 +67,8 @@ struct ContactSet {
 /// Adds the springs of one tool against every organ.
 ///
 /// \param grasped_organ  organ in the tool's jaws, whose tissue lies between them and is left to the grasp;
-/// or -1 \note Real-time safe.
+/// or -1
+/// \note Real-time safe.
 void FindContacts(const instrument::Tool& tool, const Pose& X_world_tool, double jaw, std::uint8_t hand,
                   std::span<const OrganSurface> organs, std::span<const Vec3> positions,
                   const ContactSettings& settings, std::int32_t grasped_organ, ToolSamples& samples,

@@ -57,7 +57,8 @@ GraspChange UpdateGrasp(const instrument::Tool& tool, const Pose& X_world_tool, 
                         std::span<const OrganSurface> organs, const tissue::TissueModel& model,
                         const GraspSettings& settings, Grasp& grasp, tissue::TissueState& state) noexcept;
 
-/// Lets go when the pull was too strong for too long. \param pull  reaction of the held nodes [N]
+/// Lets go when the pull was too strong for too long.
+/// \param pull  reaction of the held nodes [N]
 /// \return kSlipped or kNone
 GraspChange UpdateSlip(double pull, const GraspSettings& settings, const tissue::TissueModel& model,
                        Grasp& grasp, tissue::TissueState& state) noexcept;

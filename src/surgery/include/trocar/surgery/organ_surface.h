@@ -36,7 +36,8 @@ struct OrganSurface {
 core::Result<OrganSurface> MakeOrganSurface(std::span<const Vec3> positions, std::uint32_t first_node,
                                             const geometry::TriangleMesh& mesh);
 
-/// Refits hierarchy and box to the nodes. \note Real-time safe.
+/// Refits hierarchy and box to the nodes.
+/// \note Real-time safe.
 void UpdateOrganSurface(OrganSurface& surface, std::span<const Vec3> positions) noexcept;
 
 }  // namespace trocar::surgery

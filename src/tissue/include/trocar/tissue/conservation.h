@@ -85,7 +85,8 @@ class Conservation {
                                   ConservationState& state) noexcept;
 
   /// Between iterations: one projection of the volumes, with the pressures that go with it; the force of
-  /// CalcForce follows. \param before  see SolveHook
+  /// CalcForce follows.
+  /// \param before  see SolveHook
   ///
   /// \note Real-time safe.
   void KeepVolumes(TissueState& tissue, std::span<Vec3> before, ConservationState& state) noexcept;
@@ -103,8 +104,8 @@ class Conservation {
   void AddPressure(std::size_t organ, double change, ConservationState& state) noexcept;
 
   /// After a solve: lets fluid leak for `dt` [s], brings each volume to its target exactly, and moves the
-  /// frames of held free regions to their best fit. \note Real-time safe; a state that is not finite is left
-  /// for the state guard.
+  /// frames of held free regions to their best fit.
+  /// \note Real-time safe; a state that is not finite is left for the state guard.
   void Enforce(const TissueLoad& load, double dt, TissueState& tissue, ConservationState& state) noexcept;
 
   /// Makes a hole, or a larger one, in an organ.
@@ -154,7 +155,8 @@ inline constexpr int kProjectionInterval = 5;
 /// One tick's equilibrium with shape and volume kept: carry along, solve with projections, enforce.
 ///
 /// \param[in,out] load  external_force is added to, and left as the solver saw it, so that CalcReaction
-/// agrees \param dt  length of the tick, for what leaks [s]
+/// agrees
+/// \param dt  length of the tick, for what leaks [s]
 ///
 /// \note Real-time safe.
 SolveReport SolveConserving(EquilibriumSolver& solver, const SolverSettings& settings, double dt,

@@ -69,11 +69,11 @@ std::vector<double> CalcFoundationStiffness(std::span<const double> vertex_areas
                                             double depth);
 
 /// Stiffness that a flat round punch feels on an elastic half-space, F / depth = 2 a E / (1 - nu^2) [N/m]:
-/// what a surface on a foundation is judged against. \param poisson_ratio  [-], in (-1, 1)
+/// what a surface on a foundation is judged against.
+/// \param poisson_ratio  [-], in (-1, 1)
 ///
-/// \param radius a
-/// [m] Source: Sneddon, "The relation between load and penetration in the axisymmetric Boussinesq problem",
-/// 1965.
+/// \param radius a [m] Source: Sneddon, "The relation between load and penetration in the axisymmetric
+/// Boussinesq problem", 1965.
 double CalcPunchStiffness(double young_modulus, double poisson_ratio, double radius);
 
 /// Axial stiffness of a piece of tube wall, k = E 2 pi r t / l [N/m].

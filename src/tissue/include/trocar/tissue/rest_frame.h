@@ -45,10 +45,11 @@ struct MotionMoments {
 /// The completion vanishes when the rotation repeats, so a rotation that has settled is the exact best fit.
 ///
 /// \param previous  rotation of the last fit: the result is continuous from there, sign of the quaternion
-/// included \return `previous` and no shift when nothing has weight
+/// included
+/// \return `previous` and no shift when nothing has weight
 ///
-/// \note Real-time safe. Source: Horn,
-/// "Closed-form solution of absolute orientation using unit quaternions", JOSA A 4(4), 1987.
+/// \note Real-time safe.
+/// Source: Horn, "Closed-form solution of absolute orientation using unit quaternions", JOSA A 4(4), 1987.
 Pose FitRigidMotion(const MotionMoments& moments, const Quaternion& previous) noexcept;
 
 /// Region of nodes that anatomy holds in place.

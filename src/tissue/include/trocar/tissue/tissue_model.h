@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file tissue_model.h  One mass-spring system for every organ: what is constant, what a tick changes, what
-/// it is loaded with. Source: "General algorithms for laparoscopic surgical simulators", sections 3.2.1
+/// it is loaded with.
+/// Source: "General algorithms for laparoscopic surgical simulators", sections 3.2.1
 /// to 3.2.3.
 #pragma once
 
@@ -112,8 +113,9 @@ struct TissueLoad {
 };
 
 /// Force of every spring, strand, load and contact on each node: the residual of the balance (domain facts
-/// 0b.4). \param[out] residual  (n) [N] \note Straightforward and slow: the reference for the solvers' own
-/// evaluation.
+/// 0b.4).
+/// \param[out] residual  (n) [N]
+/// \note Straightforward and slow: the reference for the solvers' own evaluation.
 void CalcResidual(const TissueModel& model, const TissueState& state, const TissueLoad& load,
                   std::span<Vec3> residual);
 

@@ -19,7 +19,8 @@ class GpuOrCpuSolver final : public tissue::EquilibriumSolver {
 
   /// The Chebyshev iteration runs on the GPU, also where the choice is left open (kAdaptive); other solvers
   /// run on the processor. When the GPU fails, the processor solves from the positions that the call began
-  /// with. \note Allocates nothing, but once for the text of a failure.
+  /// with.
+  /// \note Allocates nothing, but once for the text of a failure.
   tissue::SolveReport Solve(const tissue::SolverSettings& settings, const tissue::TissueLoad& load,
                             tissue::TissueState& state,
                             const tissue::SolveHook* hook = nullptr) noexcept override;

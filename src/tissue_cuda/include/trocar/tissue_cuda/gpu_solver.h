@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file gpu_solver.h  The tissue model's equilibrium on an NVIDIA GPU: the paper's four memory layouts and
-/// ours. Source: "General algorithms for laparoscopic surgical simulators", section 3.2.4.
+/// ours.
+/// Source: "General algorithms for laparoscopic surgical simulators", section 3.2.4.
 #pragma once
 
 #include <memory>
@@ -76,8 +77,8 @@ class GpuSolver {
   /// and back at each call of it.
   ///
   /// \return kGpuFailed after an error of the GPU or its driver, kGpuLayout for a load or a hook that the
-  /// layout cannot serve; the state is then as it was before the call \note Allocates and throws nothing of
-  /// ours unless it fails.
+  /// layout cannot serve; the state is then as it was before the call
+  /// \note Allocates and throws nothing of ours unless it fails.
   core::Result<tissue::SolveReport> Solve(const tissue::SolverSettings& settings,
                                           const tissue::TissueLoad& load, tissue::TissueState& state,
                                           const tissue::SolveHook* hook = nullptr) noexcept;

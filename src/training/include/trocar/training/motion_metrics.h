@@ -92,7 +92,8 @@ struct SessionMetrics {
 };
 
 /// \return kNumberNotFinite for a setting, dt or sample that is not finite or out of its range, named in the
-/// message \note Not real-time safe: allocates.
+/// message
+/// \note Not real-time safe: allocates.
 core::Result<SessionMetrics> CalcSessionMetrics(const MotionRecording& recording,
                                                 const MetricSettings& settings = {});
 

@@ -29,7 +29,8 @@ std::vector<double> FilterLowPass(std::span<const double> values, double step, d
 /// |X_k| of the discrete Fourier transform for k < count, by a radix-2 FFT.
 ///
 /// \param length  transform length, a power of two >= values.size(); the signal is padded with zeros
-/// (TROCAR_ASSERT) \param count   <= length (TROCAR_ASSERT)
+/// (TROCAR_ASSERT)
+/// \param count   <= length (TROCAR_ASSERT)
 std::vector<double> CalcAmplitudeSpectrum(std::span<const double> values, std::size_t length,
                                           std::size_t count);
 

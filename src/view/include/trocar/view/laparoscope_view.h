@@ -46,7 +46,8 @@ class LaparoscopeView {
 
   /// Takes over shapes and poses of a snapshot of the same scene.
   void Update(const session::Snapshot& snapshot);
-  /// Draws the last snapshot into the bound framebuffer. \param width, height  of it [pixels]
+  /// Draws the last snapshot into the bound framebuffer.
+  /// \param width, height  of it [pixels]
   void Draw(int width, int height);
 
   /// The frame that Draw() draws, for read-outs and tests.
