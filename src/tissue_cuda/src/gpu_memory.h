@@ -16,7 +16,7 @@ class GpuMemory {
   using Memory = RawMemory;
   explicit GpuMemory(Gpu& gpu) : gpu_(&gpu) {}
   ~GpuMemory() {
-    if (!gpu_->Enter()) return;
+    (void)gpu_->Enter();  // after an error too: what the driver still takes back is not lost
     for (const CudaAddress address : device_) gpu_->Free(address);
     for (void* const address : host_) gpu_->FreeHost(address);
   }

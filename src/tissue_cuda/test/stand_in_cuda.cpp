@@ -87,6 +87,14 @@ CudaCode Answer(const char* function, int* value, long answer) {
     return Host().name values;                             \
   }
 
+/// Memory goes back even when the call is to fail: nothing else would free it here, as a broken driver's process does.
+#define TROCAR_GIVE_BACK(name, symbol, arguments, values)  \
+  TROCAR_API symbol arguments {                            \
+    const CudaCode done = Host().name values;              \
+    if (const CudaCode code = Count(#symbol)) return code; \
+    return done;                                           \
+  }
+
 TROCAR_API cuInit(unsigned) {
   ReadPlan();
   return static_cast<CudaCode>(ThePlan().Number("init", 0));
@@ -153,10 +161,10 @@ TROCAR_PASS(set_function_attribute, cuFuncSetAttribute, (CudaFunction function, 
 TROCAR_PASS(count_active_blocks, cuOccupancyMaxActiveBlocksPerMultiprocessor,
             (int* blocks, CudaFunction function, int threads, std::size_t bytes),
             (blocks, function, threads, bytes))
-TROCAR_PASS(free, cuMemFree_v2, (CudaAddress address), (address))
+TROCAR_GIVE_BACK(free, cuMemFree_v2, (CudaAddress address), (address))
 TROCAR_PASS(allocate_host, cuMemHostAlloc, (void** address, std::size_t bytes, unsigned flags),
             (address, bytes, flags))
-TROCAR_PASS(free_host, cuMemFreeHost, (void* address), (address))
+TROCAR_GIVE_BACK(free_host, cuMemFreeHost, (void* address), (address))
 TROCAR_PASS(copy_to, cuMemcpyHtoDAsync_v2,
             (CudaAddress to, const void* from, std::size_t bytes, CudaStream stream),
             (to, from, bytes, stream))
