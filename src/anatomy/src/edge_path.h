@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file edge_path.h  The edge along a closed curve, as one place beside each of the curve's rows.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "edge_strip.h"
+#include "trocar/anatomy/edge_adaption.h"
+#include "trocar/anatomy/edge_field.h"
+
+namespace trocar::anatomy {
+
+/// Distance of an edge path's rows along the curve [pixels].
+inline constexpr double kEdgeRowStep = 2.0;
+
+/// A contour's edge.
+struct EdgePath {
+  ClosedCurve curve;                  ///< (rows) where it was looked for
+  std::vector<Vec2> at;               ///< (rows) the edge beside each row [pixels]
+  std::vector<std::uint8_t> is_edge;  ///< (rows) a clear edge is there
+};
+
+/// Finds the edge within max_shift_px of a closed curve through clicked points.
+///
+/// Found twice: along the clicks' curve, and again in a narrow band along what was found, where the inside
+/// is known better and the average along the curve blurs nothing. With a wall (wall_px > 0) the first border
+/// is that of the lumen; a second one is sought beside it, and the clicks tell which of the two is meant: the
+/// one from which they lie less to one side.
+/// \param polyline  (m) m >= 3 closed [pixels]
+/// \param clicked   (n) the points that it was drawn through [pixels]
+EdgePath FindEdgePath(const EdgeField& field, std::span<const Vec2> polyline, std::span<const Vec2> clicked,
+                      const EdgeAdaptionSettings& settings);
+
+}  // namespace trocar::anatomy
