@@ -20,6 +20,7 @@ constexpr double kSecondReach = 2.5;     // of the second search [pixels]
 constexpr double kSecondNearness = 0.3;  // part of an edge's strength that is lost at its ends [-]
 constexpr std::size_t kSmoothRows = 2;   // to either side over which a found path is averaged
 constexpr double kThinnest = 0.4, kThickest = 1.6;  // a wall, as part of the one expected [-]
+constexpr double kWallNearness = 0.5;  // part of a border's strength that is lost at those ends [-]
 constexpr double kWallBend = 0.3;  // cost of a wall's thickness that changes by a column a row, against its
                                    // strongest border [-]
 
@@ -98,7 +99,10 @@ std::vector<Vec2> FindOuterBorder(const EdgeField& field, const ClosedCurve& lum
   for (std::size_t row = 0; row < strip.rows; ++row) {
     const float* gradient = &evidence.gradient[row * evidence.Columns() + evidence.reach + thinnest];
     const float most = std::max(*std::max_element(gradient, gradient + columns), 1.0f);
-    for (int k = 0; k < columns; ++k) cost.push_back(-gradient[k] / most);
+    for (int k = 0; k < columns; ++k) {
+      const double away = ((k + thinnest) * kColumnStep / wall_px - 1.0) / (kThickest - 1.0);
+      cost.push_back(static_cast<float>(-(1.0 - kWallNearness * away * away) * gradient[k] / most));
+    }
   }
   const auto path = FindClosedPath(cost, strip.rows, columns, kWallBend, 1);
   std::vector<Vec2> outer;
