@@ -16,6 +16,7 @@ constexpr ErrorEntry kTable[] = {
     {ErrorCode::kJsonField, "E-IO-005", "a JSON field is missing, of the wrong kind or out of range"},
     {ErrorCode::kNumberNotFinite, "E-IO-006", "a number is NaN or infinite"},
     {ErrorCode::kFileTooLarge, "E-IO-007", "a file is larger than the reader accepts"},
+    {ErrorCode::kFileInUse, "E-IO-008", "another program works on a file or device"},
     {ErrorCode::kImageFolderMissing, "E-IMG-001", "the folder or file of images does not exist"},
     {ErrorCode::kImageSliceMissing, "E-IMG-002", "a slice is missing in the folder of images"},
     {ErrorCode::kImageSizeDiffers, "E-IMG-003",

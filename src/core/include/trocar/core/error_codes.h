@@ -18,6 +18,7 @@ enum class ErrorCode {
   kJsonField,
   kNumberNotFinite,
   kFileTooLarge,
+  kFileInUse,
   // images
   kImageFolderMissing,
   kImageSliceMissing,
