@@ -26,7 +26,9 @@ struct ContouredStructure {
   std::vector<std::vector<std::vector<Vec2>>> curves;  // of each slice; empty where the slice has holes
 };
 
-Error GivenUp() { return {core::ErrorCode::kCancelled, "the organs were given up"}; }
+Error GivenUp() {
+  return {core::ErrorCode::kCancelled, "the organs were given up"};
+}
 
 /// Slices down to kSliceStepMm: between two single contours by matching them, elsewhere by InsertSlices.
 std::vector<FilledSlice> MakeDenseSlices(const ContouredStructure& structure) {

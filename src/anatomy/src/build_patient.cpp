@@ -54,9 +54,9 @@ core::Result<BuildReport> BuildPatient(const BuildOptions& options, const Progre
   if (!images.ok()) return images.error();
   if (options.stop.stop_requested()) return given_up;
 
-  auto built = BuildOrgans(*points, *images,
-                           {options.spacing_mm, options.gap_mm, reference ? &*reference : nullptr, options.stop},
-                           progress);
+  auto built = BuildOrgans(
+      *points, *images, {options.spacing_mm, options.gap_mm, reference ? &*reference : nullptr, options.stop},
+      progress);
   if (!built.ok()) return built.error();
   BuildReport report;
   report.organs = std::move(built->organs);

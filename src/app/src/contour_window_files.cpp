@@ -140,18 +140,17 @@ bool ContourWindow::OnClose() {
   const bool is_watched = options_.screenshot.empty() && !options_.is_measuring;
   if (is_closing_ || !is_watched || workspace_ == nullptr || !workspace_->Document().IsDirty()) {
     if (builder_.joinable() && !is_closing_) {
-      bars_.Ask("The patient is still being built.",
-                {{"Wait", [] {}, true},
-                 {"Give it up and close",
-                  [this] {
-                    build_stop_.request_stop();
-                    is_closing_ = true;
-                    close();
-                  }},
-                 {"Close when it is done", [this] {
-                    is_closing_ = true;
-                    close();
-                  }}});
+      bars_.Ask("The patient is still being built.", {{"Wait", [] {}, true},
+                                                      {"Give it up and close",
+                                                       [this] {
+                                                         build_stop_.request_stop();
+                                                         is_closing_ = true;
+                                                         close();
+                                                       }},
+                                                      {"Close when it is done", [this] {
+                                                         is_closing_ = true;
+                                                         close();
+                                                       }}});
       return true;
     }
     if (autosave_ != nullptr) autosave_->Discard();

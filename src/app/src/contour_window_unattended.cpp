@@ -88,7 +88,8 @@ core::Status ContourWindow::RunWindowStep(const ScriptStep& step) {
     std::string label = step.words[0];
     for (std::size_t i = 1; i < step.words.size(); ++i) label += " " + step.words[i];
     if (!bars_.Press(label)) {
-      return core::Error{core::ErrorCode::kScriptInvalid, "no question is shown that \"" + label + "\" answers"};
+      return core::Error{core::ErrorCode::kScriptInvalid,
+                         "no question is shown that \"" + label + "\" answers"};
     }
   } else if (step.verb == "build") {
     if (builder_.joinable() || workspace_->Options().points.empty() || workspace_->Document().IsDirty()) {

@@ -141,5 +141,7 @@ int main(int argc, char** argv) {
   if (argc == 3 && std::string(argv[1]) == "check-second") return CheckSecond(argv[2]);
   if (argc == 3 && std::string(argv[1]) == "make") return Make(argv[2]);
   if (argc == 4 && std::string(argv[1]) == "check") return Check(argv[2], argv[3]);
-  return Fail("usage: contour_picture_check make FOLDER | check PICTURE.png REPORT.json | check-built FOLDER SLICES | check-second FOLDER");
+  return Fail(
+      "usage: contour_picture_check make FOLDER | check PICTURE.png REPORT.json | check-built FOLDER SLICES "
+      "| check-second FOLDER");
 }

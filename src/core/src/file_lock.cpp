@@ -28,7 +28,8 @@ long ReadOwner(int descriptor) {
 
 /// The file that was locked is still the one that the path names: its last owner may have removed it.
 bool IsStillThere(int descriptor, const std::filesystem::path& path) {
-  struct stat held {}, named {};
+  struct stat held {
+  }, named{};
   return fstat(descriptor, &held) == 0 && stat(path.c_str(), &named) == 0 && held.st_ino == named.st_ino &&
          held.st_dev == named.st_dev;
 }
@@ -41,8 +42,8 @@ Result<FileLock> FileLock::Take(const std::filesystem::path& path) {
   for (int tries = 0; tries < kMostTries; ++tries) {
     const int descriptor = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0644);
     if (descriptor < 0) {
-      return Error{ErrorCode::kFileUnwritable, "cannot make the lock file " + Printable(path.string()) + ": " +
-                                                   std::strerror(errno)};
+      return Error{ErrorCode::kFileUnwritable,
+                   "cannot make the lock file " + Printable(path.string()) + ": " + std::strerror(errno)};
     }
     if (flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
       const long owner = ReadOwner(descriptor);
