@@ -22,9 +22,8 @@ struct HeatConstants {
   double conductivity = 0.52;   ///< [W/(m K)]
   double water_share = 0.75;    ///< of the mass [-]
   double latent_heat = 2.26e6;  ///< of water [J/kg]
-  double perfusion =
-      6.4e-3;  ///< blood's heat exchange with a liver at 1 mL a minute and gram, as share of the node's
-               ///< heat a second [1/s] times the tissue's; 0 for a clipped or cut piece
+  /// Share of a node's warmth that blood carries away in a second, until damage seals its vessels [1/s].
+  double perfusion = 6.4e-3;
   double damage_rate = 7.39e39;    ///< Arrhenius' frequency factor, liver [1/s]
   double damage_energy = 2.577e5;  ///< Arrhenius' activation energy, liver [J/mol]
   double char_temperature = 180;   ///< where dry tissue blackens [deg C]
