@@ -39,6 +39,7 @@ double CalcSpeedShare(const GateSettings& settings, const Vec3& force, const Vec
 /// Share of the force that the motors' heat allows.
 double CalcHeatShare(const GateSettings& settings, double size, double heat, bool is_warm) noexcept {
   const double room = std::clamp((1.0 - heat) / (1.0 - kDeratingHeat), 0.0, 1.0);
+  if (room >= 1.0 && !is_warm) return 1.0;
   double allowed =
       settings.max_continuous_force + (settings.max_force - settings.max_continuous_force) * room;
   if (is_warm) allowed = kWarmShare * settings.max_continuous_force;
@@ -120,8 +121,8 @@ void ForceGate::UpdateArming(Fault fault, double wanted) noexcept {
   if (fault != Fault::kNone) {
     state_ = ArmState::kUnarmed;
     reason_ = fault;
-    // a wish may wait for the safety switch, and for nothing else
-    if (fault != Fault::kDeadMan) request_ticks_ = IsOn(Guard::kLatch) ? 0 : 1 << 20;
+    // no wish outlives a fault
+    request_ticks_ = IsOn(Guard::kLatch) ? 0 : 1 << 20;
     ramp_ = 0;
     good_ticks_ = 0;
   }
