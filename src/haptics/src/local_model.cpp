@@ -71,7 +71,7 @@ LocalAnswer LocalModel::Content::Solve(const Pose& X_world_hand) noexcept {
   segment.SetDirection(X_world_hand.rotation);
   const int sweeps = is_new ? settings.first_sweeps : settings.sweeps;
   // the last one runs inwards: what the hand feels comes last
-  for (int i = sweeps; i > 0; --i) segment.Sweep(hand, settings.coupling_stiffness, i % 2 == 0);
+  for (int i = sweeps; i > 0; --i) segment.Sweep(hand, settings.coupling_stiffness, i % 2 == 0, i == sweeps);
   segment.SweepDerivative(settings.coupling_stiffness);
   answer.p_world_tool = segment.GetTool();
   answer.force = settings.coupling_stiffness * (answer.p_world_tool - hand);

@@ -10,6 +10,9 @@ namespace {
 constexpr double kNearlyTouching = 0.0002;
 /// Added to each block so that a node that nothing holds in one direction keeps its place there [N/m].
 constexpr double kLeastStiffness = 1e-3;
+/// A block that is older than the sweep serves for steps up to this [m]: a flat sheet is soft across until it is
+/// stretched, and a long step with the soft block would overshoot.
+constexpr double kStepOfOldBlock = 0.0001;
 
 Vec3 Solve(const Matrix3& block, const Vec3& force) noexcept {
   return FromEigen(block.inverse() * ToEigen(force));
@@ -98,12 +101,42 @@ Vec3 SegmentSolver::AddLinkForce(std::size_t node, Matrix3& block) const noexcep
   return force;
 }
 
+/// The same force alone.
 Vec3 SegmentSolver::CalcLinkForce(std::size_t node) const noexcept {
-  Matrix3 unused = Matrix3::Zero();
-  return AddLinkForce(node, unused);
+  const Vec3 here = position_[node];
+  Vec3 force;
+  for (std::size_t l = patch_.link_starts[node]; l < patch_.link_starts[node + 1]; ++l) {
+    const LocalPatch::Link& link = patch_.links[l];
+    if (IsHeld(node) && IsHeld(link.other)) continue;
+    const Vec3 along = position_[link.other] - here;
+    if (link.is_strand) {
+      force += link.stiffness * (along - (patch_.position[link.other] - patch_.position[node]));
+      continue;
+    }
+    const double length = math::Norm(along);
+    if (length > 0.0) force += (link.stiffness * (1.0 - link.rest_length / length)) * along;
+  }
+  return force;
 }
 
-void SegmentSolver::RelaxNode(std::size_t node) noexcept {
+void SegmentSolver::RelaxUnpressed(std::size_t node, bool renews) noexcept {
+  const Vec3 others =
+      patch_.own_stiffness[node] * (patch_.position[node] - position_[node]) - force_at_cut_[node];
+  if (!renews) {
+    const Vec3 step = FromEigen(inverse_[node] * ToEigen(others + CalcLinkForce(node)));
+    if (math::SquaredNorm(step) < kStepOfOldBlock * kStepOfOldBlock) {
+      position_[node] += step;
+      return;
+    }
+  }
+  Matrix3 block = Matrix3::Zero();
+  AddIsotropic(block, patch_.own_stiffness[node] + kLeastStiffness);
+  const Vec3 force = others + AddLinkForce(node, block);
+  inverse_[node] = block.inverse();
+  position_[node] += FromEigen(inverse_[node] * ToEigen(force));
+}
+
+void SegmentSolver::RelaxPressed(std::size_t node) noexcept {
   Matrix3 block = Matrix3::Zero();
   AddIsotropic(block, patch_.own_stiffness[node] + kLeastStiffness);
   // what acts beside links and contacts is what balanced them at the cut
@@ -137,17 +170,25 @@ void SegmentSolver::RelaxTool(const Vec3& p_world_hand, double coupling_stiffnes
   MoveHeld();
 }
 
-void SegmentSolver::Sweep(const Vec3& p_world_hand, double coupling_stiffness, bool is_outwards) noexcept {
-  for (std::size_t i = 0; i < patch_.free_count; ++i) RelaxNode(is_outwards ? i : patch_.free_count - 1 - i);
+void SegmentSolver::Sweep(const Vec3& p_world_hand, double coupling_stiffness, bool is_outwards,
+                          bool is_first) noexcept {
+  for (std::size_t i = 0; i < patch_.free_count; ++i) {
+    const std::size_t node = is_outwards ? i : patch_.free_count - 1 - i;
+    if (IsPressed(node)) {
+      RelaxPressed(node);
+    } else {
+      RelaxUnpressed(node, is_first);
+    }
+  }
   RelaxTool(p_world_hand, coupling_stiffness);
 }
 
-void SegmentSolver::DifferentiateNode(std::size_t node) noexcept {
-  Matrix3 block = Matrix3::Zero();
-  AddIsotropic(block, patch_.own_stiffness[node] + kLeastStiffness);
-  Matrix3 pull = kLeastStiffness * derivative_[node];
+/// What the neighbours of a node move it by, times its block; `block` takes the links' stiffness.
+Matrix3 SegmentSolver::PullByLinks(std::size_t node, Matrix3& block) const noexcept {
+  Matrix3 pull = Matrix3::Zero();
   for (std::size_t l = patch_.link_starts[node]; l < patch_.link_starts[node + 1]; ++l) {
     const LocalPatch::Link& link = patch_.links[l];
+    if (IsHeld(node) && IsHeld(link.other)) continue;
     const Matrix3& other = derivative_[link.other];
     if (link.is_strand) {
       AddIsotropic(block, link.stiffness);
@@ -159,6 +200,17 @@ void SegmentSolver::DifferentiateNode(std::size_t node) noexcept {
         CalcLinkStiffness(along, math::Norm(along), link.stiffness, link.rest_length);
     AddLink(block, stiffness);
     pull += stiffness.isotropic * other + stiffness.axial * Project(stiffness.direction, other);
+  }
+  return pull;
+}
+
+void SegmentSolver::DifferentiateNode(std::size_t node) noexcept {
+  Matrix3 block = Matrix3::Zero();
+  AddIsotropic(block, patch_.own_stiffness[node] + kLeastStiffness);
+  Matrix3 pull = PullByLinks(node, block) + kLeastStiffness * derivative_[node];
+  if (!IsPressed(node)) {
+    derivative_[node] = inverse_[node] * pull;
+    return;
   }
   for (std::size_t k = contact_starts_[node]; k < contact_starts_[node + 1]; ++k) {
     const LocalPatch::Contact& contact = patch_.contacts[node_contacts_[k].contact];
@@ -185,23 +237,8 @@ void SegmentSolver::DifferentiateTool(double coupling_stiffness) noexcept {
     AddAxial(block, contact.normal, contact.stiffness);
     pull += contact.stiffness * Project(contact.normal, nodes);
   }
-  for (std::size_t i = patch_.free_count; i < patch_.free_count + patch_.held_count; ++i) {
-    for (std::size_t l = patch_.link_starts[i]; l < patch_.link_starts[i + 1]; ++l) {
-      const LocalPatch::Link& link = patch_.links[l];
-      if (IsHeld(link.other)) continue;
-      const Matrix3& other = derivative_[link.other];
-      if (link.is_strand) {
-        AddIsotropic(block, link.stiffness);
-        pull += link.stiffness * other;
-        continue;
-      }
-      const Vec3 along = position_[link.other] - position_[i];
-      const LinkStiffness stiffness =
-          CalcLinkStiffness(along, math::Norm(along), link.stiffness, link.rest_length);
-      AddLink(block, stiffness);
-      pull += stiffness.isotropic * other + stiffness.axial * Project(stiffness.direction, other);
-    }
-  }
+  for (std::size_t i = patch_.free_count; i < patch_.free_count + patch_.held_count; ++i)
+    pull += PullByLinks(i, block);
   tool_derivative_ = block.inverse() * pull;
   for (std::size_t i = patch_.free_count; i < patch_.free_count + patch_.held_count; ++i)
     derivative_[i] = tool_derivative_;

@@ -18,9 +18,10 @@ class SegmentSolver {
   void Load(const LocalPatch& patch, const Vec3& p_world_tool) noexcept;
   /// Turns what the tool carries: contacts' levers and held nodes.
   void SetDirection(const math::Quaternion& hand) noexcept;
-  /// One sweep over the nodes, outwards or inwards, and then the tool.
-  void Sweep(const Vec3& p_world_hand, double coupling_stiffness, bool is_outwards) noexcept;
-  /// The same for the derivatives; positions stay.
+  /// One sweep over the nodes, outwards or inwards, and then the tool. The first of a tick renews the blocks of
+  /// nodes that nothing presses; the others use them again.
+  void Sweep(const Vec3& p_world_hand, double coupling_stiffness, bool is_outwards, bool is_first) noexcept;
+  /// The same for the derivatives, with the blocks of the tick; positions stay.
   void SweepDerivative(double coupling_stiffness) noexcept;
 
   const Vec3& GetTool() const noexcept { return tool_; }
@@ -39,9 +40,14 @@ class SegmentSolver {
   double CalcDepth(const LocalPatch::Contact& contact, double turned) const noexcept;
   Vec3 CalcLinkForce(std::size_t node) const noexcept;
   Vec3 AddLinkForce(std::size_t node, Matrix3& block) const noexcept;
-  void RelaxNode(std::size_t node) noexcept;
+  bool IsPressed(std::size_t node) const noexcept {
+    return contact_starts_[node] < contact_starts_[node + 1];
+  }
+  void RelaxPressed(std::size_t node) noexcept;
+  void RelaxUnpressed(std::size_t node, bool renews) noexcept;
   void RelaxTool(const Vec3& p_world_hand, double coupling_stiffness) noexcept;
   void MoveHeld() noexcept;
+  Matrix3 PullByLinks(std::size_t node, Matrix3& block) const noexcept;
   void DifferentiateNode(std::size_t node) noexcept;
   void DifferentiateTool(double coupling_stiffness) noexcept;
 
@@ -52,7 +58,8 @@ class SegmentSolver {
   std::array<Vec3, LocalPatch::kMaxNodes> position_;       // [m]
   std::array<Vec3, LocalPatch::kMaxNodes> force_at_cut_;   // of the links, free and held [N]
   std::array<Matrix3, LocalPatch::kMaxNodes> derivative_;  // d(node) / d(hand)
-  std::array<double, LocalPatch::kMaxContacts> turned_;    // depth that the hand's turning adds [m]
+  std::array<Matrix3, LocalPatch::kMaxNodes> inverse_;   // of the blocks of nodes that nothing presses [m/N]
+  std::array<double, LocalPatch::kMaxContacts> turned_;  // depth that the hand's turning adds [m]
   std::array<std::uint16_t, LocalPatch::kMaxNodes + 1> contact_starts_;
   std::array<NodeContact, 3 * LocalPatch::kMaxContacts> node_contacts_;
 };
