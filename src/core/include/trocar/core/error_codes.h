@@ -82,6 +82,18 @@ enum class ErrorCode {
   kGpuFailed,
   kGpuMemory,
   kGpuLayout,
+  // haptics
+  kHapticNotArmed,
+  kHapticSamplesBad,
+  kHapticJump,
+  kHapticOverrun,
+  kHapticSupervisor,
+  kHapticWarm,
+  kHapticDeadMan,
+  kHapticCheckPose,
+  kHapticNotCalibrated,
+  kHapticOverspeed,
+  kHapticSimulation,
   kCount
 };
 
