@@ -62,7 +62,7 @@ TEST_F(DeviceFilesTest, BadFileMeansDefaultsAndAMessageAndIsSetAside) {
   const fs::path path = folder_ / "devices.json";
   ASSERT_TRUE(SaveDeviceStore(path, MakeStore()).ok());
   const std::string good = *core::ReadFile(path);
-  for (std::size_t length = 0; length < good.size() - 2; length += 7) {
+  for (std::size_t length = 0; length < good.size() - 2; length += 61) {
     ASSERT_TRUE(core::WriteFile(path, good.substr(0, length)).ok());
     const LoadedStore loaded = LoadDeviceStore(path);
     ASSERT_TRUE(loaded.complaint.has_value()) << length;

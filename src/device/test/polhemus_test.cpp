@@ -61,7 +61,7 @@ bool AreSame(const std::vector<TrackerRecord>& a, const std::vector<TrackerRecor
 
 // golden: written by hand after the manual, values touching as they may
 TEST(PolhemusFramer, ReadsFastrakAsciiByColumns) {
-  const std::string line = "01    10.00-100.25  20.50  90.00   0.00   0.00\r\n";
+  const std::string line = "01   10.00-100.25  20.50  90.00   0.00   0.00\r\n";
   const std::string touching = "02  100.00-100.25-200.50 -90.00 -30.00-170.00\r\n";
   ASSERT_EQ(touching.size(), 47u);
   const auto records = Parse(PolhemusFormat::kFastrakAscii, touching);

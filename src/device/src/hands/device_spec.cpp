@@ -33,7 +33,7 @@ Error Usage(const std::string& text) {
   return {ErrorCode::kUsage, text};
 }
 
-DriverResult MakePolhemus(PolhemusFormat format, const DeviceSpec& spec, const DeviceStore& store, Clock& clock) {
+core::Result<std::unique_ptr<PoseDriver>> MakePolhemus(PolhemusFormat format, const DeviceSpec& spec, const DeviceStore& store, Clock& clock) {
   const TrackerEntry entry = store.Tracker(spec.kind);
   core::Result<TrackedHandsSettings> hands = MakeHandsSettings(entry);
   if (!hands) return hands.error();
@@ -42,28 +42,35 @@ DriverResult MakePolhemus(PolhemusFormat format, const DeviceSpec& spec, const D
   settings.stations = entry.stations;
   settings.hands = *hands;
   const int baud = spec.baud > 0 ? spec.baud : entry.baud;
-  return DriverResult(std::make_unique<PolhemusTracker>(
+  return std::unique_ptr<PoseDriver>(std::make_unique<PolhemusTracker>(
       settings, [path = spec.address, baud] { return OpenSerialPort(path, baud); }, clock));
 }
 
-DriverResult MakeJaw(const DeviceSpec& spec, const DeviceStore& store, Clock& clock) {
+std::unique_ptr<JawSensor> MakeJaw(const DeviceSpec& spec, const std::array<JawCalibration, kJawTools>& calibrations,
+                                   Clock& clock) {
   constexpr int kBaud = 115200;  // without meaning for boards with native USB
   JawSettings settings;
-  settings.calibrations = store.jaws;
+  settings.calibrations = calibrations;
   if (spec.kind == "jaw-hid") {
     settings.format = JawFormat::kHid;
-    return DriverResult(
-        std::make_unique<JawSensor>(settings, [path = spec.address] { return OpenHidSensor(path); }, clock));
+    return std::make_unique<JawSensor>(settings, [path = spec.address] { return OpenHidSensor(path); }, clock);
   }
   const int baud = spec.baud > 0 ? spec.baud : kBaud;
-  return DriverResult(std::make_unique<JawSensor>(
-      settings, [path = spec.address, baud] { return OpenSerialPort(path, baud); }, clock));
+  return std::make_unique<JawSensor>(
+      settings, [path = spec.address, baud] { return OpenSerialPort(path, baud); }, clock);
+}
+
+/// A result of a kind of driver, as one of any driver.
+template <typename Kind>
+DriverResult AsDriver(core::Result<std::unique_ptr<Kind>> made) {
+  if (!made) return made.error();
+  return DriverResult(std::unique_ptr<Driver>(std::move(*made)));
 }
 
 DriverResult MakeOne(const DeviceSpec& spec, const DeviceStore& store, Clock& clock) {
-  if (const auto format = FindFormat(spec.kind)) return MakePolhemus(*format, spec, store, clock);
+  if (const auto format = FindFormat(spec.kind)) return AsDriver(MakePolhemus(*format, spec, store, clock));
   if (spec.kind == "play") return DriverResult(std::make_unique<HandPlayer>(spec.address, clock));
-  return MakeJaw(spec, store, clock);
+  return DriverResult(MakeJaw(spec, store.jaws, clock));
 }
 
 bool IsJaw(const DeviceSpec& spec) {
@@ -119,6 +126,20 @@ DriverResult MakeDriver(std::string_view text, const DeviceStore& store, Clock& 
   DriverResult second = MakeOne(*jaws, store, clock);
   if (!second) return second;
   return DriverResult(std::make_unique<HandRig>(std::move(*first), std::move(*second)));
+}
+
+core::Result<std::unique_ptr<PoseDriver>> MakeTracker(std::string_view text, const DeviceStore& store, Clock& clock) {
+  const core::Result<DeviceSpec> spec = ParseDeviceSpec(text);
+  if (!spec) return spec.error();
+  if (const auto format = FindFormat(spec->kind)) return MakePolhemus(*format, *spec, store, clock);
+  return Usage("\"" + spec->kind + "\" is no tracker with sensors to calibrate");
+}
+
+core::Result<std::unique_ptr<JawSensor>> MakeJawSensor(std::string_view text, Clock& clock) {
+  const core::Result<DeviceSpec> spec = ParseDeviceSpec(text);
+  if (!spec) return spec.error();
+  if (!IsJaw(*spec)) return Usage("\"" + spec->kind + "\" is no jaw sensor; write jaw:/dev/... or jaw-hid");
+  return MakeJaw(*spec, {}, clock);
 }
 
 std::vector<FoundDevice> ListDevices() {
