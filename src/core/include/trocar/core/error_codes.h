@@ -73,6 +73,9 @@ enum class ErrorCode {
   kDeviceState,
   kDeviceSettings,
   kForceRefused,
+  kDeviceBusy,
+  kCalibrationPoor,
+  kDeviceUnsupported,
   // command line and benchmarks
   kUsage,
   kBenchmarkWrong,
