@@ -60,10 +60,10 @@ double CalcSmallestAngle(const std::array<Vec3, 4>& quad, const QuadSplit& split
 }  // namespace
 
 TrenchBuilder::TrenchBuilder(std::size_t vertex_capacity, std::size_t triangle_capacity) {
-  state_.assign(vertex_capacity, Bottom::kNotLooked);
+  state_.assign(vertex_capacity, Bottom::kUnseen);
   place_.resize(vertex_capacity);
   bottom_of_.assign(vertex_capacity, kNone);
-  vertices_.reserve(3 * triangle_capacity);
+  vertices_.reserve(vertex_capacity);
   scored_.reserve(3 * triangle_capacity);
   open_sides_.reserve(12 * triangle_capacity);
 }
@@ -164,21 +164,27 @@ bool TrenchBuilder::FindBottom(std::uint32_t v, const FlatSweep& sweep, const Cu
 /// is to be planned anew.
 bool TrenchBuilder::PlanBottoms(std::span<const std::uint32_t> path, const FlatSweep& sweep,
                                 const CutSettings& settings, EditableMesh& mesh, CutReport& report) noexcept {
+  for (const auto v : vertices_) state_[v] = Bottom::kUnseen;
   vertices_.clear();
   scored_.clear();
-  for (const auto v : path) {
+  const auto see = [&](std::uint32_t v) {
+    if (state_[v] != Bottom::kUnseen) return;
+    state_[v] = mesh.CountCopies(v) > 0 ? Bottom::kNotLooked : Bottom::kIsEnd;
+    vertices_.push_back(v);
+  };
+  for (const auto v : path) see(v);
+  // whoever is parted takes all of its scored edges along
+  for (std::size_t next = 0; next < vertices_.size(); ++next) {
+    const std::uint32_t v = vertices_[next];
     mesh.ForEachAround(v, [&](std::uint32_t h) {
       if (!mesh.IsScored(h)) return;
+      if (state_[v] == Bottom::kIsEnd && next >= path.size()) return;
       scored_.push_back(std::min(h, mesh.Twin(h)));
-      vertices_.push_back(v);
-      vertices_.push_back(mesh.To(h));
+      see(mesh.To(h));
     });
   }
-  for (auto* list : {&scored_, &vertices_}) {
-    std::sort(list->begin(), list->end());
-    list->erase(std::unique(list->begin(), list->end()), list->end());
-  }
-  for (const auto v : vertices_) state_[v] = mesh.CountCopies(v) > 0 ? Bottom::kNotLooked : Bottom::kIsEnd;
+  std::sort(scored_.begin(), scored_.end());
+  scored_.erase(std::unique(scored_.begin(), scored_.end()), scored_.end());
   for (const auto v : vertices_) {
     if (state_[v] == Bottom::kIsEnd) continue;
     if (FindBottom(v, sweep, settings, mesh)) {

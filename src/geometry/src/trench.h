@@ -23,7 +23,8 @@ class TrenchBuilder {
             EditableMesh& mesh, CutReport& report) noexcept;
 
  private:
-  enum class Bottom : std::uint8_t { kNotLooked, kIsEnd, kPlanned };
+  /// kUnseen: no end of an edge that is to be opened. kIsEnd: of one that stays whole.
+  enum class Bottom : std::uint8_t { kUnseen, kNotLooked, kIsEnd, kPlanned };
   /// A position at rest and now.
   struct Place {
     Vec3 rest, now;
@@ -42,7 +43,7 @@ class TrenchBuilder {
   std::vector<Place> place_;              // (nv) of the bottom that is planned below
   std::vector<std::uint32_t> bottom_of_;  // (nv) vertex below, made by this opening, or kNone
   std::uint32_t first_copy_ = 0;          // vertices from here on are copies made by this opening
-  std::vector<std::uint32_t> vertices_;   // ends of scored edges
+  std::vector<std::uint32_t> vertices_;   // ends of scored edges, those of the path first
   std::vector<std::uint32_t> scored_;     // half-edges
   std::vector<std::uint32_t> open_sides_; // half-edges that wait for their neighbour
 };
