@@ -11,11 +11,14 @@
 namespace trocar::geometry {
 namespace {
 
-/// Deepest and shallowest trench, as a share of the length of the edges cut [-]: beyond, walls have small angles.
-constexpr double kDeepest = 3.0;
-constexpr double kShallowest = 0.15;
+/// Deepest trench, in mean lengths of the edges cut, and shallowest, in lengths of the shortest [-]: beyond, walls have
+/// small angles.
+constexpr double kDeepest = 8.0;
+constexpr double kShallowest = 0.1;
 /// Of the tissue below, at most this share is cut [-].
 constexpr double kShareOfThickness = 0.45;
+/// Surface met within this share of a ray's length is where it starts [-].
+constexpr double kAtStart = 1e-6;
 /// How far a bottom is moved along the cut where straight down is no good, in lengths of the edges cut [-].
 constexpr double kShift = 0.4;
 
@@ -28,17 +31,23 @@ Vec3 CalcNormal(const EditableMesh& mesh, std::span<const Vec3> x, std::uint32_t
   return math::Normalized(sum);
 }
 
-/// How far tissue reaches below a vertex, until the surface is met again [m].
+/// How far tissue reaches below a vertex, until the surface is met again [m]. Walls do not count: those of the
+/// same cut lie in the same plane.
 double CalcThickness(const EditableMesh& mesh, std::span<const Vec3> x, std::uint32_t v, const Vec3& down,
                      double reach) {
   double nearest = std::numeric_limits<double>::infinity();
   const BladeEdge ray{x[v], x[v] + reach * down};
   const Box box{math::Min(ray.a, ray.b), math::Max(ray.a, ray.b)};
-  for (const Triangle& t : mesh.Triangles()) {
-    if (t[0] == v || t[1] == v || t[2] == v) continue;
-    const Vec3 &a = x[t[0]], &b = x[t[1]], &c = x[t[2]];
+  for (std::size_t t = 0; t < mesh.TriangleCount(); ++t) {
+    if (mesh.Kinds()[t] == TriangleKind::kWall) continue;
+    const Triangle& corners = mesh.Triangles()[t];
+    const Vec3 &a = x[corners[0]], &b = x[corners[1]], &c = x[corners[2]];
     if (!BoxesOverlap(box, {math::Min(math::Min(a, b), c), math::Max(math::Max(a, b), c)})) continue;
-    if (const auto hit = FindPiercing(ray, a, b, c)) nearest = std::min(nearest, math::Distance(ray.a, *hit));
+    const auto hit = FindPiercing(ray, a, b, c);
+    if (!hit) continue;
+    // the triangles around the vertex, and around its copies on the other side of a cut, start the ray
+    const double distance = math::Distance(ray.a, *hit);
+    if (distance > kAtStart * reach) nearest = std::min(nearest, distance);
   }
   return nearest;
 }
@@ -113,7 +122,7 @@ bool TrenchBuilder::WallsAreGood(std::uint32_t v, const Place& bottom, double mi
 bool TrenchBuilder::FindBottom(std::uint32_t v, const FlatSweep& sweep, const CutSettings& settings,
                                const EditableMesh& mesh) noexcept {
   const auto now = mesh.Positions(), rest = mesh.Rest();
-  double length = 0;
+  double length = 0, shortest = std::numeric_limits<double>::infinity();
   Vec3 along, first_now, first_rest;
   int count = 0;
   mesh.ForEachAround(v, [&](std::uint32_t h) {
@@ -121,6 +130,7 @@ bool TrenchBuilder::FindBottom(std::uint32_t v, const FlatSweep& sweep, const Cu
     const Vec3 edge = now[mesh.To(h)] - now[v];
     if (count == 0) first_now = edge, first_rest = rest[mesh.To(h)] - rest[v];
     length += math::Norm(edge);
+    shortest = std::min(shortest, math::Norm(edge));
     along += math::Normalized(edge);
     ++count;
   });
@@ -149,7 +159,7 @@ bool TrenchBuilder::FindBottom(std::uint32_t v, const FlatSweep& sweep, const Cu
                                     CalcThickness(mesh, rest, v, to_rest(down), reach));
   const double deepest = std::min(wanted, kShareOfThickness * thickness);
   for (const double shift : {0.0, kShift}) {
-    for (double depth = deepest; depth >= kShallowest * length; depth *= 0.6) {
+    for (double depth = deepest; depth >= kShallowest * shortest; depth *= 0.6) {
       const Vec3 offset = depth * down + shift * length * along;
       const Place bottom{rest[v] + to_rest(offset), now[v] + offset};
       if (!WallsAreGood(v, bottom, settings.min_angle, mesh)) continue;

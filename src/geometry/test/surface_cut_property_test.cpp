@@ -20,7 +20,7 @@ TEST(SurfaceCutProperty, RandomCutsLeaveGoodSurfaces) {
   Report(counts);
   EXPECT_EQ(counts.strokes, 1000u);
   // the strokes do cut
-  EXPECT_GT(counts.opened, 5000u);
+  EXPECT_GT(counts.opened, 3000u);
   EXPECT_GT(counts.walls, 1000u);
   EXPECT_GT(counts.full, 5u);
 }
