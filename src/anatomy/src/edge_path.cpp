@@ -24,12 +24,6 @@ constexpr double kWallNearness = 0.5;  // part of a border's strength that is lo
 constexpr double kWallBend = 0.3;  // cost of a wall's thickness that changes by a column a row, against its
                                    // strongest border [-]
 
-struct Search {
-  double reach_px = 0;
-  double nearness = 0;   // part of an edge's strength that is lost at the reach [-]
-  double passed_px = 0;  // the colours of the inside are learned this much further inside
-};
-
 /// The steepest place next to a column, between columns.
 double Climb(const float* gradient, int columns, int k) {
   for (int climbed = 0; climbed < kClimb; ++climbed) {
@@ -44,11 +38,11 @@ double Climb(const float* gradient, int columns, int k) {
   return bend < 0 ? k + std::clamp(0.5 * (gradient[k - 1] - gradient[k + 1]) / bend, -1.0, 1.0) : k;
 }
 
-/// The best closed path along a curve on which the colours become unlike those inside.
-EdgePath FollowEdge(const EdgeField& field, ClosedCurve curve, const Search& search,
+}  // namespace
+
+EdgePath FollowEdge(const EdgeField& field, ClosedCurve curve, const EdgeSearch& search,
                     const EdgeAdaptionSettings& settings) {
-  const EdgeStrip strip =
-      SampleStrip(field, curve, search.reach_px + search.passed_px + kBand, kColumnStep);
+  const EdgeStrip strip = SampleStrip(field, curve, search.reach_px + search.passed_px + kBand, kColumnStep);
   const EdgeEvidence evidence = CalcEdgeEvidence(strip, search.reach_px, kEdgeRowStep, search.passed_px);
   const int reach = evidence.reach, columns = evidence.Columns();
   std::vector<float> cost(evidence.gradient.size());
@@ -72,18 +66,20 @@ EdgePath FollowEdge(const EdgeField& field, ClosedCurve curve, const Search& sea
     // the inside ends where the blurred edge begins; the edge itself is the steepest place next to it
     const double k = Climb(gradient, columns, path[row]);
     edge.at.push_back(curve.at[row] + ((k - reach) * kColumnStep) * curve.normal[row]);
-    edge.is_edge.push_back(gradient[std::lround(k)] >= least &&
-                           evidence.rise[row * columns + path[row]] > 0);
+    edge.is_edge.push_back(gradient[std::lround(k)] >= least && evidence.rise[row * columns + path[row]] > 0);
   }
   edge.curve = std::move(curve);
   return edge;
 }
 
+namespace {
+
 ClosedCurve Smooth(const std::vector<Vec2>& path) {
   const std::size_t n = path.size();
   std::vector<Vec2> smooth(n);
   for (std::size_t i = 0; i < n; ++i) {
-    for (std::size_t d = 0; d <= 2 * kSmoothRows; ++d) smooth[i] = smooth[i] + path[(i + n + d - kSmoothRows) % n];
+    for (std::size_t d = 0; d <= 2 * kSmoothRows; ++d)
+      smooth[i] = smooth[i] + path[(i + n + d - kSmoothRows) % n];
     smooth[i] = (1.0 / (2 * kSmoothRows + 1)) * smooth[i];
   }
   return MakeClosedCurve(std::move(smooth));
@@ -93,7 +89,8 @@ ClosedCurve Smooth(const std::vector<Vec2>& path) {
 std::vector<Vec2> FindOuterBorder(const EdgeField& field, const ClosedCurve& lumen, double wall_px) {
   const EdgeStrip strip = SampleStrip(field, lumen, kThickest * wall_px + 1.0, kColumnStep);
   const EdgeEvidence evidence = CalcEdgeEvidence(strip, kThickest * wall_px, kEdgeRowStep);
-  const int thinnest = std::min(static_cast<int>(std::ceil(kThinnest * wall_px / kColumnStep)), evidence.reach);
+  const int thinnest =
+      std::min(static_cast<int>(std::ceil(kThinnest * wall_px / kColumnStep)), evidence.reach);
   const int columns = evidence.reach + 1 - thinnest;
   std::vector<float> cost;
   for (std::size_t row = 0; row < strip.rows; ++row) {

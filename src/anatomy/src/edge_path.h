@@ -22,6 +22,17 @@ struct EdgePath {
   std::vector<std::uint8_t> is_edge;  ///< (rows) a clear edge is there
 };
 
+/// Where an edge is looked for.
+struct EdgeSearch {
+  double reach_px = 0;   ///< to either side of the curve, >= 0.5
+  double nearness = 0;   ///< part of an edge's strength that is lost at the reach [-]
+  double passed_px = 0;  ///< the colours of the inside are learned this much further inside
+};
+
+/// The best closed path along a curve on which the colours become unlike those inside.
+EdgePath FollowEdge(const EdgeField& field, ClosedCurve curve, const EdgeSearch& search,
+                    const EdgeAdaptionSettings& settings);
+
 /// Finds the edge within max_shift_px of a closed curve through clicked points.
 ///
 /// Found twice: along the clicks' curve, and again in a narrow band along what was found, where the inside
