@@ -94,7 +94,6 @@ Structure SimulateUser(const LabelVolume& labels, const ControlPoints& series, c
   Structure clicked = structure;
   clicked.slices.clear();
   clicked.adaption = EdgeAdaptionSettings{};
-  clicked.adaption.wall_px = structure.adaption.wall_px;
   clicked.adaption.max_shift_px = settings.reach_mm / series.pixel_mm;
   const auto step = FindLabelStep(labels, series);
   if (!step.ok()) return clicked;

@@ -79,7 +79,7 @@ Tissue DescribeTissue(const Moments& moments) {
 
 }  // namespace
 
-EdgeEvidence CalcEdgeEvidence(const EdgeStrip& strip, double reach_px, double row_px, double passed_px) {
+EdgeEvidence CalcEdgeEvidence(const EdgeStrip& strip, double reach_px, double row_px) {
   EdgeEvidence evidence;
   evidence.reach = static_cast<int>(std::floor(reach_px / strip.step_px + 1e-9));
   const int columns = evidence.Columns(), all = strip.Columns(), pad = strip.reach - evidence.reach;
@@ -100,8 +100,7 @@ EdgeEvidence CalcEdgeEvidence(const EdgeStrip& strip, double reach_px, double ro
   }
   // colours of the inside, of each row and then of the rows about it
   std::vector<Moments> inside(strip.rows);
-  const int deepest =
-      std::max(0, strip.reach - static_cast<int>(kDoubtful * evidence.reach + passed_px / strip.step_px));
+  const int deepest = strip.reach - static_cast<int>(kDoubtful * evidence.reach);
   for (int row = 0; row < rows; ++row) {
     const Colour* colours = &smooth[static_cast<std::size_t>(row) * all];
     for (int k = 0; k <= deepest; k += 2) inside[row].Add(colours[k]);

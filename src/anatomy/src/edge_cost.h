@@ -29,7 +29,6 @@ struct EdgeEvidence {
 /// \param strip       band that is wider than the shifts on both sides
 /// \param reach_px    largest shift [pixels]
 /// \param row_px      distance of the strip's rows [pixels]
-/// \param passed_px   the colours inside are learned this much further inside, as behind a wall [pixels]
-EdgeEvidence CalcEdgeEvidence(const EdgeStrip& strip, double reach_px, double row_px, double passed_px = 0);
+EdgeEvidence CalcEdgeEvidence(const EdgeStrip& strip, double reach_px, double row_px);
 
 }  // namespace trocar::anatomy

@@ -19,10 +19,6 @@ constexpr int kMaxJump = 2;              // columns between neighbouring rows
 constexpr double kSecondReach = 2.5;     // of the second search [pixels]
 constexpr double kSecondNearness = 0.3;  // part of an edge's strength that is lost at its ends [-]
 constexpr std::size_t kSmoothRows = 2;   // to either side over which a found path is averaged
-constexpr double kThinnest = 0.4, kThickest = 1.6;  // a wall, as part of the one expected [-]
-constexpr double kWallNearness = 0.5;  // part of a border's strength that is lost at those ends [-]
-constexpr double kWallBend = 0.3;  // cost of a wall's thickness that changes by a column a row, against its
-                                   // strongest border [-]
 
 /// The steepest place next to a column, between columns.
 double Climb(const float* gradient, int columns, int k) {
@@ -42,8 +38,8 @@ double Climb(const float* gradient, int columns, int k) {
 
 EdgePath FollowEdge(const EdgeField& field, ClosedCurve curve, const EdgeSearch& search,
                     const EdgeAdaptionSettings& settings) {
-  const EdgeStrip strip = SampleStrip(field, curve, search.reach_px + search.passed_px + kBand, kColumnStep);
-  const EdgeEvidence evidence = CalcEdgeEvidence(strip, search.reach_px, kEdgeRowStep, search.passed_px);
+  const EdgeStrip strip = SampleStrip(field, curve, search.reach_px + kBand, kColumnStep);
+  const EdgeEvidence evidence = CalcEdgeEvidence(strip, search.reach_px, kEdgeRowStep);
   const int reach = evidence.reach, columns = evidence.Columns();
   std::vector<float> cost(evidence.gradient.size());
   const auto least = static_cast<float>(settings.min_gradient);
@@ -85,54 +81,14 @@ ClosedCurve Smooth(const std::vector<Vec2>& path) {
   return MakeClosedCurve(std::move(smooth));
 }
 
-/// The strongest border that runs outside a lumen's, about a wall's thickness away.
-std::vector<Vec2> FindOuterBorder(const EdgeField& field, const ClosedCurve& lumen, double wall_px) {
-  const EdgeStrip strip = SampleStrip(field, lumen, kThickest * wall_px + 1.0, kColumnStep);
-  const EdgeEvidence evidence = CalcEdgeEvidence(strip, kThickest * wall_px, kEdgeRowStep);
-  const int thinnest =
-      std::min(static_cast<int>(std::ceil(kThinnest * wall_px / kColumnStep)), evidence.reach);
-  const int columns = evidence.reach + 1 - thinnest;
-  std::vector<float> cost;
-  for (std::size_t row = 0; row < strip.rows; ++row) {
-    const float* gradient = &evidence.gradient[row * evidence.Columns() + evidence.reach + thinnest];
-    const float most = std::max(*std::max_element(gradient, gradient + columns), 1.0f);
-    for (int k = 0; k < columns; ++k) {
-      const double away = ((k + thinnest) * kColumnStep / wall_px - 1.0) / (kThickest - 1.0);
-      cost.push_back(static_cast<float>(-(1.0 - kWallNearness * away * away) * gradient[k] / most));
-    }
-  }
-  const auto path = FindClosedPath(cost, strip.rows, columns, kWallBend, 1);
-  std::vector<Vec2> outer;
-  for (std::size_t row = 0; row < strip.rows; ++row)
-    outer.push_back(lumen.at[row] + ((path[row] + thinnest) * kColumnStep) * lumen.normal[row]);
-  return outer;
-}
-
-/// How far points lie outside a curve on average; negative inside [pixels].
-double CalcMeanOffset(std::span<const Vec2> points, const ClosedCurve& curve) {
-  double sum = 0;
-  for (const Vec2& p : points) {
-    const std::size_t row = FindNearest(curve.at, p);
-    sum += Dot(p - curve.at[row], curve.normal[row]);
-  }
-  return sum / static_cast<double>(points.size());
-}
-
 }  // namespace
 
-EdgePath FindEdgePath(const EdgeField& field, std::span<const Vec2> polyline, std::span<const Vec2> clicked,
+EdgePath FindEdgePath(const EdgeField& field, std::span<const Vec2> polyline,
                       const EdgeAdaptionSettings& settings) {
-  const double most = settings.max_shift_px, wall = settings.wall_px;
+  const double most = settings.max_shift_px;
   const EdgePath first =
       FollowEdge(field, ResampleClosed(polyline, kEdgeRowStep), {most, settings.nearness}, settings);
-  ClosedCurve found = Smooth(first.at);
-  if (wall > 0) {
-    const EdgePath inner =
-        FollowEdge(field, first.curve, {most + 0.5 * wall, settings.nearness, wall}, settings);
-    const ClosedCurve lumen = Smooth(inner.at), outer = Smooth(FindOuterBorder(field, lumen, wall));
-    if (std::abs(CalcMeanOffset(clicked, outer)) < std::abs(CalcMeanOffset(clicked, lumen))) found = outer;
-  }
-  EdgePath edge = FollowEdge(field, std::move(found), {kSecondReach, kSecondNearness}, settings);
+  EdgePath edge = FollowEdge(field, Smooth(first.at), {kSecondReach, kSecondNearness}, settings);
   // the rows are still those of the clicks' curve, which no place may leave too far
   edge.curve = first.curve;
   for (std::size_t row = 0; row < edge.at.size(); ++row) {

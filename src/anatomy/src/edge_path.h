@@ -24,9 +24,8 @@ struct EdgePath {
 
 /// Where an edge is looked for.
 struct EdgeSearch {
-  double reach_px = 0;   ///< to either side of the curve, >= 0.5
-  double nearness = 0;   ///< part of an edge's strength that is lost at the reach [-]
-  double passed_px = 0;  ///< the colours of the inside are learned this much further inside
+  double reach_px = 0;  ///< to either side of the curve, >= 0.5
+  double nearness = 0;  ///< part of an edge's strength that is lost at the reach [-]
 };
 
 /// The best closed path along a curve on which the colours become unlike those inside.
@@ -36,12 +35,9 @@ EdgePath FollowEdge(const EdgeField& field, ClosedCurve curve, const EdgeSearch&
 /// Finds the edge within max_shift_px of a closed curve through clicked points.
 ///
 /// Found twice: along the clicks' curve, and again in a narrow band along what was found, where the inside
-/// is known better and the average along the curve blurs nothing. With a wall (wall_px > 0) the first border
-/// is that of the lumen; a second one is sought beside it, and the clicks tell which of the two is meant: the
-/// one from which they lie less to one side.
+/// is known better and the average along the curve blurs nothing.
 /// \param polyline  (m) m >= 3 closed [pixels]
-/// \param clicked   (n) the points that it was drawn through [pixels]
-EdgePath FindEdgePath(const EdgeField& field, std::span<const Vec2> polyline, std::span<const Vec2> clicked,
+EdgePath FindEdgePath(const EdgeField& field, std::span<const Vec2> polyline,
                       const EdgeAdaptionSettings& settings);
 
 }  // namespace trocar::anatomy

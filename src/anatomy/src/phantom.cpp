@@ -309,7 +309,6 @@ ControlPoints Phantom::MakeControlPoints() const {
     structure.reference_label = target.label;
     structure.adaption.max_shift_px =
         std::max(structure.adaption.max_shift_px, std::ceil(1.5 * c.options.slip_mm / c.grid.pixel));
-    if (target.label == kGallbladderLabel) structure.adaption.wall_px = c.wall_mm / c.grid.pixel;
     math::Random random(c.options.seed * 0xd1342543de82ef95ULL + target.label);
     std::vector<SliceContours> all;
     for (int slice = 1; slice <= c.slices; ++slice) {

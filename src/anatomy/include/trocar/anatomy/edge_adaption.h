@@ -26,9 +26,6 @@ struct EdgeAdaptionSettings {
   double nearness = 0.8;  ///< part of an edge's strength that is lost at max_shift_px [-], 0 to 1
   double smoothness =
       0.1;  ///< cost of neighbours that move differently by one pixel, against the strongest edge [-]
-  /// thickness of the organ's wall, where the wall shows as a ring of its own colour and its outer border is
-  /// what is clicked, 0.4 to 1.6 times this in the picture; 0: the inside has no wall [pixels]
-  double wall_px = 0.0;
   bool inserts_points = true;  ///< the contour chain divides splines by points on the edge, see contour_fit.h
 
   friend bool operator==(const EdgeAdaptionSettings&, const EdgeAdaptionSettings&) = default;
