@@ -339,8 +339,8 @@ core::Result<Simulation> Simulation::Make(std::shared_ptr<const Scene> scene, in
   content->max_elongation = std::move(made->max_elongation);
   content->strand_organs = std::move(made->strand_organs);
   if (const auto filled = content->Fill(made->internal_pressure); !filled.ok()) return filled.error();
-  auto touch = ToolContacts::Make(*content->scene, content->tissue_model, content->surfaces,
-                                  content->tissue_at_start);
+  auto touch =
+      ToolContacts::Make(*content->scene, content->tissue_model, content->surfaces, content->tissue_at_start);
   if (!touch.ok()) return touch.error();
   content->touch = std::move(*touch);
   content->Reset();

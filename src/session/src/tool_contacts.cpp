@@ -68,8 +68,7 @@ core::Result<ToolContacts> ToolContacts::Make(const Scene& scene, const tissue::
   return made;
 }
 
-void ToolContacts::Reset(const Scene& scene,
-                         const std::array<instrument::TrocarJoints, kHandCount>& joints,
+void ToolContacts::Reset(const Scene& scene, const std::array<instrument::TrocarJoints, kHandCount>& joints,
                          const tissue::TissueState& tissue) noexcept {
   for (int hand = 0; hand < kHandCount; ++hand) {
     X_world_device_[hand] = instrument::CalcToolPose(scene.instruments[hand].p_world_port, joints[hand]);
@@ -101,14 +100,9 @@ std::span<const tissue::ContactSpring> ToolContacts::Find(const Scene& scene, co
   for (int hand = 0; hand < kHandCount; ++hand) {
     const InstrumentSetup& setup = scene.instruments[hand];
     X_world_device_[hand] = instrument::CalcToolPose(setup.p_world_port, now.joints[hand]);
-    motions[hand] = {&setup.tool,
-                     static_cast<std::uint8_t>(hand),
-                     X_world_proxy_before_[hand],
-                     X_world_proxy_[hand],
-                     X_world_device_[hand],
-                     jaw_before_[hand],
-                     now.joints[hand].jaw,
-                     now.grasped_surfaces[hand]};
+    motions[hand] = {&setup.tool,          static_cast<std::uint8_t>(hand), X_world_proxy_before_[hand],
+                     X_world_proxy_[hand], X_world_device_[hand],           jaw_before_[hand],
+                     now.joints[hand].jaw, now.grasped_surfaces[hand]};
     surgery::FindContacts(motions[hand], touchables, settings_, last_, contacts_);
     limits_[hand].limits.clear();
   }
@@ -137,7 +131,8 @@ std::array<ToolTouch, kHandCount> ToolContacts::CalcTouch(const tissue::TissueSt
   return touch;
 }
 
-void ToolContacts::Update(const Scene& scene, const ToolsNow& now, const tissue::TissueState& tissue) noexcept {
+void ToolContacts::Update(const Scene& scene, const ToolsNow& now,
+                          const tissue::TissueState& tissue) noexcept {
   double tube_motion = 0;
   for (std::size_t i = 0; i < organs_.size(); ++i) {
     surgery::UpdateOrganSurface(organs_[i], tissue.position);
@@ -167,8 +162,8 @@ void ToolContacts::PlaceProxy(const Scene& scene, int hand, const ToolsNow& now,
     proxy = surgery::FindProxy(drive, offset_[hand], limits.limits);
     X_world_proxy_[hand] = instrument::CalcToolPose(setup.p_world_port, proxy);
     overlap_[hand] =
-        surgery::AddOverlapLimits(setup.tool, X_world_proxy_[hand], X_world_device_[hand], now.joints[hand].jaw,
-                                  touchables, now.grasped_surfaces[hand], limits);
+        surgery::AddOverlapLimits(setup.tool, X_world_proxy_[hand], X_world_device_[hand],
+                                  now.joints[hand].jaw, touchables, now.grasped_surfaces[hand], limits);
     if (overlap_[hand] == 0.0 || round == kOverlapRounds) break;
   }
   offset_[hand] = {proxy.pan - drive.device.pan, proxy.tilt - drive.device.tilt, 0.0,
@@ -182,7 +177,8 @@ void ToolContacts::AddTo(core::StateHash& hash) const {
   }
   for (const surgery::ContactLink& link : contacts_.links) {
     hash.Add(link.key);
-    for (const double value : {link.p_tool_stuck.x, link.p_tool_stuck.y, link.p_tool_stuck.z, link.normal_force})
+    for (const double value :
+         {link.p_tool_stuck.x, link.p_tool_stuck.y, link.p_tool_stuck.z, link.normal_force})
       hash.Add(value);
   }
 }

@@ -59,7 +59,8 @@ class ToolContacts {
 
  private:
   surgery::Touchables MakeTouchables(const tissue::TissueState& tissue) const noexcept;
-  void PlaceProxy(const Scene& scene, int hand, const ToolsNow& now, const surgery::Touchables& touchables) noexcept;
+  void PlaceProxy(const Scene& scene, int hand, const ToolsNow& now,
+                  const surgery::Touchables& touchables) noexcept;
 
   /// Strand that ties a vertex of a pair to the pair's surface.
   struct Tie {

@@ -79,8 +79,7 @@ Vec3 FindStretch(const Search& search, std::uint64_t key, const Vec3& normal) no
   const std::ptrdiff_t at = FindLast(search.last, key);
   if (at < 0) return {};
   const ContactLink& before = search.last.links[static_cast<std::size_t>(at)];
-  const Vec3 tissue =
-      PointOf(search.last.springs[static_cast<std::size_t>(at)], search.touchables.positions);
+  const Vec3 tissue = PointOf(search.last.springs[static_cast<std::size_t>(at)], search.touchables.positions);
   const Vec3 carried = search.motion.X_world_device * before.p_tool_stuck - tissue;
   const Vec3 along = carried - math::Dot(carried, normal) * normal;
   const double most = search.settings.friction * before.normal_force / search.settings.stiffness;
@@ -99,6 +98,7 @@ void AddContact(const Search& search, const Meeting& meeting, std::size_t surfac
   link.key = key;
   link.hand = search.motion.hand;
   link.surface = static_cast<std::uint8_t>(surface);
+  link.is_pinch = IsPinch(search.body, search.motion.X_world_device, meeting.normal);
   link.p_device = p_device;
   link.p_tool_stuck = math::Inverse(search.motion.X_world_device) * stuck;
   AddSpring({meeting.nodes, meeting.weights, meeting.normal,
@@ -131,7 +131,8 @@ bool HasSnapped(const Search& search, std::span<const std::uint32_t> nodes) noex
 }
 
 /// \return false where the body does not come near the triangle, or only from inside of the organ
-bool MeetTriangle(const Search& search, const std::array<std::uint32_t, 3>& nodes, Meeting& meeting) noexcept {
+bool MeetTriangle(const Search& search, const std::array<std::uint32_t, 3>& nodes,
+                  Meeting& meeting) noexcept {
   const auto corners = [&](std::span<const Vec3> positions) {
     return std::array<Vec3, 3>{positions[nodes[0]], positions[nodes[1]], positions[nodes[2]]};
   };
@@ -147,8 +148,8 @@ bool MeetTriangle(const Search& search, const std::array<std::uint32_t, 3>& node
   };
   const std::array<Vec3, 3> now = corners(search.touchables.positions);
   const auto sweep = collision::SweepToTriangle(search.way, {now, now}, search.radius);
-  const bool is_near = sweep.is_hit || std::sqrt(sweep.points.squared_distance) <
-                                           search.radius + search.settings.margin;
+  const bool is_near =
+      sweep.is_hit || std::sqrt(sweep.points.squared_distance) < search.radius + search.settings.margin;
   if (is_near && take(sweep, now)) return true;
   // tissue that shot past the tool in the last solve is met where it passed
   if (!HasSnapped(search, nodes)) return false;
@@ -169,14 +170,15 @@ bool MeetPiece(const Search& search, const collision::TubePiece& piece, std::uin
     const double distance = math::Norm(away);
     if (!(distance > kSamePoint)) return false;
     const double t = sweep.points.parameter_b;
-    meeting = {{piece.a, piece.b, other}, {1.0 - t, t, 0.0}, sweep.points.parameter_a, away / distance, reach};
+    meeting = {
+        {piece.a, piece.b, other}, {1.0 - t, t, 0.0}, sweep.points.parameter_a, away / distance, reach};
     return true;
   };
   const Segment now = axis(search.touchables.positions);
   const std::uint32_t nodes[2] = {piece.a, piece.b};
   if (HasSnapped(search, nodes)) {
-    const auto passed = collision::SweepToSegment(
-        search.way_before, {axis(search.touchables.positions_before), now}, reach);
+    const auto passed =
+        collision::SweepToSegment(search.way_before, {axis(search.touchables.positions_before), now}, reach);
     if (passed.is_hit && passed.time > 0.0) return take(passed);
   }
   const auto sweep = collision::SweepToSegment(search.way, {now, now}, reach);
@@ -186,7 +188,8 @@ bool MeetPiece(const Search& search, const collision::TubePiece& piece, std::uin
 }
 
 /// A body that lies inside of an organ all the same pushes the wall that is nearest to it back across itself.
-void PushOut(const Search& search, const OrganSurface& organ, std::size_t surface, ContactSet& contacts) noexcept {
+void PushOut(const Search& search, const OrganSurface& organ, std::size_t surface,
+             ContactSet& contacts) noexcept {
   const auto nodes = organ.Nodes(search.touchables.positions);
   const auto& axis = search.way.from;
   const auto near = organ.tree.FindNearestToSegment(nodes, axis, {.max_distance = search.radius});
@@ -195,9 +198,11 @@ void PushOut(const Search& search, const OrganSurface& organ, std::size_t surfac
   const Vec3 outward = math::Cross(nodes[t[1]] - nodes[t[0]], nodes[t[2]] - nodes[t[0]]);
   const Vec3 normal = math::Normalized(outward, Vec3{});
   if (!(math::SquaredNorm(normal) > 0.0)) return;
-  const Meeting meeting{
-      {organ.first_node + t[0], organ.first_node + t[1], organ.first_node + t[2]}, near.nearest.weights,
-      near.parameter, -normal, search.radius};
+  const Meeting meeting{{organ.first_node + t[0], organ.first_node + t[1], organ.first_node + t[2]},
+                        near.nearest.weights,
+                        near.parameter,
+                        -normal,
+                        search.radius};
   AddContact(search, meeting, surface, near.nearest.triangle, contacts);
 }
 
@@ -208,8 +213,7 @@ void FindOnOrgan(const Search& search, std::size_t surface, ContactSet& contacts
   const Capsule swept = collision::CalcSweptCapsule(search.way, search.radius + slack);
   if (!Overlaps(organ.box, swept)) return;
   std::array<std::uint32_t, kMostCandidates> found;
-  const std::size_t count =
-      organ.tree.FindWithin(organ.Nodes(search.touchables.positions), swept, found);
+  const std::size_t count = organ.tree.FindWithin(organ.Nodes(search.touchables.positions), swept, found);
   contacts.dropped += count > found.size() ? count - found.size() : 0;
   const std::size_t before = contacts.springs.size();
   for (std::size_t i = 0; i < std::min(count, found.size()); ++i) {
@@ -263,6 +267,13 @@ std::array<Capsule, kToolBodyCount> CalcToolBodies(const instrument::Tool& tool,
   return bodies;
 }
 
+bool IsPinch(ToolBody body, const Pose& X_world_tool, const Vec3& normal) noexcept {
+  constexpr double kInwards = 0.5;  // within 60 degrees of the direction in which the jaw closes
+  if (body == ToolBody::kShaft) return false;
+  const double opening = math::Dot(normal, math::Rotate(X_world_tool.rotation, {0, 1, 0}));
+  return body == ToolBody::kUpperJaw ? opening < -kInwards : opening > kInwards;
+}
+
 ContactSet::ContactSet() {
   springs.reserve(kCapacity);
   links.reserve(kCapacity);
@@ -290,8 +301,8 @@ void FindContacts(const ToolMotion& motion, const Touchables& touchables, const 
                         {before[body].axis, proxy[body].axis},
                         device[body].radius};
     for (std::size_t surface = 0; surface < touchables.organs.size(); ++surface) {
-      const bool is_in_jaws = search.body != ToolBody::kShaft &&
-                              static_cast<std::int32_t>(surface) == motion.grasped_surface;
+      const bool is_in_jaws =
+          search.body != ToolBody::kShaft && static_cast<std::int32_t>(surface) == motion.grasped_surface;
       if (!is_in_jaws) FindOnOrgan(search, surface, contacts);
     }
     if (touchables.tubes != nullptr) FindOnTubes(search, contacts);

@@ -53,10 +53,9 @@ Candidates FindBetweenJaws(const OrganSurface& organ, const Vec3& hinge, const V
     if (distance2 <= reach * reach && CanTake(state, node)) found.Offer(node, distance2);
   }
   if (found.count > 0) return found;
-  // triangles may be larger than the reach: then the corners of the one that lies between the jaws
+  // triangles may be larger than the reach: then the corners of the one that is nearest to the jaws
   const auto nodes = organ.Nodes(state.position);
-  const auto nearest =
-      organ.tree.FindNearest(nodes, math::Lerp(hinge, tip, 0.75), {.max_distance = reach});
+  const auto nearest = organ.tree.FindNearestToSegment(nodes, {hinge, tip}, {.max_distance = reach}).nearest;
   if (nearest.Found()) {
     for (const auto local : organ.triangles[nearest.triangle]) {
       const std::uint32_t node = organ.first_node + local;
@@ -74,16 +73,15 @@ Candidates FindTubeBetweenJaws(const TubeSurface& tube, const Vec3& hinge, const
     const std::uint32_t node = tube.first_node + local;
     const Vec3& p = state.position[node];
     const double t = geometry::FindNearestOnSegment(p, hinge, tip);
-    const double distance =
-        std::max(0.0, math::Distance(p, math::Lerp(hinge, tip, t)) - tube.radii[local]);
+    const double distance = std::max(0.0, math::Distance(p, math::Lerp(hinge, tip, t)) - tube.radii[local]);
     if (distance <= reach && CanTake(state, node)) found.Offer(node, distance * distance);
   }
   return found;
 }
 
 /// Pinch that damages a bite: more for one that fills more of the jaws [N].
-double CalcDamagePinch(const instrument::Tool& tool, std::span<const OrganSurface> organs, const TubeSet* tubes,
-                       const Grasp& grasp, std::span<const Vec3> rest) noexcept {
+double CalcDamagePinch(const instrument::Tool& tool, std::span<const OrganSurface> organs,
+                       const TubeSet* tubes, const Grasp& grasp, std::span<const Vec3> rest) noexcept {
   const double jaw_area = tool.jaw_length * tool.jaw_width;
   double area = 0, small = OrganSurface{}.damage_pinch_small, full = OrganSurface{}.damage_pinch_full;
   const auto surface = static_cast<std::size_t>(grasp.surface);
@@ -156,8 +154,7 @@ GraspChange UpdateGrasp(const instrument::Tool& tool, const Pose& X_world_tool, 
       grasp.p_tool_node[i] = X_device_world * state.position[best.list[i].node];
       state.condition[best.list[i].node] = NodeCondition::kPrescribed;
     }
-    if (grasp.IsHolding())
-      grasp.damage_pinch = CalcDamagePinch(tool, organs, tubes, grasp, model.rest);
+    if (grasp.IsHolding()) grasp.damage_pinch = CalcDamagePinch(tool, organs, tubes, grasp, model.rest);
     change = grasp.IsHolding() ? GraspChange::kGrasped : GraspChange::kMissed;
   }
   if (!grasp.IsHolding()) return change;

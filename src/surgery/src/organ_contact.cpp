@@ -32,8 +32,8 @@ Place FindPlace(const OrganSurface& organ, std::span<const Vec3> nodes, const Ve
 }  // namespace
 
 OrganPair MakeOrganPair(std::span<const OrganSurface> organs, std::span<const Vec3> positions,
-                        std::uint8_t vertices_of, std::uint8_t surface_of, std::span<const std::uint32_t> bound,
-                        const OrganContactSettings& settings) {
+                        std::uint8_t vertices_of, std::uint8_t surface_of,
+                        std::span<const std::uint32_t> bound, const OrganContactSettings& settings) {
   const OrganSurface &from = organs[vertices_of], &to = organs[surface_of];
   OrganPair pair{vertices_of, surface_of, {}, {}, {}};
   pair.allowed.assign(from.node_count, 0.0);
@@ -65,7 +65,7 @@ void FindOrganContacts(std::span<const OrganSurface> organs, std::span<const Vec
     if (!place.is_near) continue;
     pair.last_triangle[i] = place.nearest.triangle;
     const double room = place.side.distance - pair.allowed[i];
-    if (room > settings.margin) continue;
+    if (room > settings.ahead) continue;
     if (contacts.springs.size() + 2 > ContactSet::kCapacity) {
       ++contacts.dropped;
       continue;
@@ -83,6 +83,7 @@ void FindOrganContacts(std::span<const OrganSurface> organs, std::span<const Vec
                                 math::Dot(n, p) - 0.5 * room,
                                 settings.stiffness});
     contacts.links.push_back(link);
+    if (room > settings.margin) continue;
     link.surface = pair.surface_of;
     contacts.springs.push_back({{to.first_node + t[0], to.first_node + t[1], to.first_node + t[2]},
                                 place.nearest.weights,

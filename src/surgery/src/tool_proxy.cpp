@@ -25,7 +25,8 @@ Row CalcRow(const ToolDrive& drive, const ProxyLimit& limit) noexcept {
   const Vec3 arm = limit.point - drive.p_world_port;
   const Vec3 pan_axis{0, 1, 0};
   const Vec3 tilt_axis = math::Rotate(math::RotationAbout(pan_axis, drive.device.pan), {1, 0, 0});
-  const Vec3 inwards = math::Rotate(instrument::CalcToolPose(drive.p_world_port, drive.device).rotation, {0, 0, -1});
+  const Vec3 inwards =
+      math::Rotate(instrument::CalcToolPose(drive.p_world_port, drive.device).rotation, {0, 0, -1});
   return {math::Dot(limit.normal, math::Cross(pan_axis, arm)),
           math::Dot(limit.normal, math::Cross(tilt_axis, arm)), math::Dot(limit.normal, inwards)};
 }
@@ -46,7 +47,7 @@ void AddContactLimits(std::uint8_t hand, const ContactSet& contacts, std::span<c
                       ProxyLimits& limits) noexcept {
   for (std::size_t i = 0; i < contacts.springs.size(); ++i) {
     const ContactLink& link = contacts.links[i];
-    if (link.hand != hand || link.is_friction) continue;
+    if (link.hand != hand || link.is_friction || link.is_pinch) continue;
     const tissue::ContactSpring& spring = contacts.springs[i];
     limits.Add({link.p_device, spring.normal, -tissue::CalcContactDepth(spring, positions)});
   }
@@ -91,10 +92,11 @@ TrocarJoints FindProxy(const ToolDrive& drive, const TrocarJoints& last_offset,
 double AddOverlapLimits(const instrument::Tool& tool, const Pose& X_world_proxy, const Pose& X_world_device,
                         double jaw, const Touchables& touchables, std::int32_t grasped_surface,
                         ProxyLimits& limits) noexcept {
-  const auto proxy = CalcToolBodies(tool, jaw, X_world_proxy), device = CalcToolBodies(tool, jaw, X_world_device);
+  const auto proxy = CalcToolBodies(tool, jaw, X_world_proxy),
+             device = CalcToolBodies(tool, jaw, X_world_device);
   double greatest = 0;
   const auto add = [&](int body, double parameter, const Vec3& normal, double depth) {
-    if (!(depth > kTouching)) return;
+    if (!(depth > kTouching) || IsPinch(static_cast<ToolBody>(body), X_world_proxy, normal)) return;
     greatest = std::max(greatest, depth);
     AddOverlap(math::Lerp(proxy[body].axis.start, proxy[body].axis.end, parameter),
                math::Lerp(device[body].axis.start, device[body].axis.end, parameter), normal, depth, limits);

@@ -141,7 +141,7 @@ TEST_F(Contact, TissueThatSnappedPastTheToolIsCaught) {
 TEST_F(Contact, ASetThatIsFullCountsWhatItDrops) {
   Place(JointsAt({0, 0, 0.0215}));
   const ToolMotion motion{&tool_, 0, X_proxy_, X_proxy_, PoseAt(JointsAt({0, 0, 0.016})), 0, 0, -1};
-  for (int i = 0; i < 200; ++i) FindContacts(motion, GetTouchables(), settings_, last_, contacts_);
+  for (int i = 0; i < 300; ++i) FindContacts(motion, GetTouchables(), settings_, last_, contacts_);
   EXPECT_EQ(contacts_.springs.size(), ContactSet::kCapacity);
   EXPECT_GT(contacts_.dropped, 0u);
 }
@@ -180,22 +180,22 @@ TEST_F(Friction, GrowsWithTheCoefficientAndIsNoneWithoutIt) {
   EXPECT_EQ(DragAlong(0.002, 40).tangential, 0.0);
   state_ = tissue::MakeRestState(model_);
   UpdateOrganSurface(organs_[0], state_.position);
-  settings_.friction = 0.1;
+  settings_.friction = 0.02;
   const double little = DragAlong(0.002, 40).tangential;
   state_ = tissue::MakeRestState(model_);
   UpdateOrganSurface(organs_[0], state_.position);
-  settings_.friction = 0.5;
+  settings_.friction = 0.25;
   EXPECT_GT(DragAlong(0.002, 40).tangential, 1.5 * little);
 }
 
-// Stick: what has not slipped comes back to where it was when the tool does.
+// Stick and slip come to rest: held still, a tool does not go on to creep through the tissue.
 TEST_F(Friction, AToolThatStaysHoldsItsTissueStill) {
   Place(JointsAt({0, 0, 0.03}));
-  (void)PressTo({0, 0, 0.0185}, 20);
+  (void)PressTo({0, 0, 0.0185}, 120);
   const std::vector<Vec3> settled = state_.position;
-  (void)PressTo({0, 0, 0.0185}, 20);
+  (void)PressTo({0, 0, 0.0185}, 60);
   for (std::size_t i = 0; i < settled.size(); ++i) {
-    EXPECT_NEAR(math::Distance(settled[i], state_.position[i]), 0.0, 1e-5);
+    ASSERT_NEAR(math::Distance(settled[i], state_.position[i]), 0.0, 1e-5) << i;
   }
 }
 

@@ -53,7 +53,9 @@ TEST_F(Grasping, NeedsOpeningBeforeEachGraspAndHasHysteresis) {
       << "between the thresholds it holds";
   EXPECT_TRUE(grasp_.IsHolding());
   EXPECT_EQ(Move({0, 0, 0.018}, 0.40 * tool_.max_jaw), GraspChange::kReleased);
-  for (const auto condition : state_.condition) EXPECT_EQ(condition, tissue::NodeCondition::kFree);
+  for (std::size_t i = 0; i < model_.Size(); ++i) {
+    EXPECT_EQ(state_.condition[i] == tissue::NodeCondition::kFree, model_.is_fixed[i] == 0);
+  }
 }
 
 TEST_F(Grasping, SlipsOnlyWhenThePullLasts) {

@@ -31,7 +31,7 @@ class OrganContact : public testing::Test {
       }
       return first;
     };
-    const auto first_large = add(large, 5.0), first_small = add(small, 0.05);
+    const auto first_large = add(large, 5.0), first_small = add(small, 0.02);
     model_ = tissue::MakeTissueModel(definition);
     state_ = tissue::MakeRestState(model_);
     organs_.clear();
@@ -70,9 +70,9 @@ class OrganContact : public testing::Test {
 
 TEST_F(OrganContact, AnOrganThatFallsOnAnotherRestsOnIt) {
   Make(0.001);
-  const Vec3 down{0, 0, -200};  // sinks 4 cm on its soft foundation
+  const Vec3 down{0, 0, -20};  // would sink 10 mm on its soft foundation
   for (int tick = 0; tick < 200; ++tick) Tick(down);
-  EXPECT_LT(DeepestOverlap(), 0.0015);
+  EXPECT_LT(DeepestOverlap(), 0.001);
   EXPECT_FALSE(contacts_.springs.empty());
   // the springs on both sides carry the same
   Vec3 sum;
@@ -83,14 +83,14 @@ TEST_F(OrganContact, AnOrganThatFallsOnAnotherRestsOnIt) {
     sum += (spring.stiffness * depth) * spring.normal;
     total += spring.stiffness * depth;
   }
-  EXPECT_GT(total, 0.05);
+  EXPECT_GT(total, 0.01) << "weight that the foundation no longer bears";
   EXPECT_LT(math::Norm(sum), 0.05 * total) << "action and reaction";
 }
 
 // Negative control.
 TEST_F(OrganContact, WithoutContactItWouldFallIn) {
   Make(0.001);
-  for (int tick = 0; tick < 20; ++tick) Tick({0, 0, -200}, false);
+  for (int tick = 0; tick < 20; ++tick) Tick({0, 0, -20}, false);
   EXPECT_GT(DeepestOverlap(), 0.005);
 }
 

@@ -49,8 +49,8 @@ class OrganFixture : public testing::Test {
     auto surface = MakeOrganSurface(state_.position, 0, mesh_);
     EXPECT_TRUE(surface.ok());
     organs_.push_back(std::move(*surface));
-    auto tubes = MakeTubeSet(state_.position, {{first_duct_node_, kDuctNodes,
-                                                std::vector<double>(kDuctNodes, kDuctRadius)}});
+    auto tubes = MakeTubeSet(state_.position,
+                             {{first_duct_node_, kDuctNodes, std::vector<double>(kDuctNodes, kDuctRadius)}});
     EXPECT_TRUE(tubes.ok());
     tubes_ = std::move(*tubes);
     before_ = state_.position;
@@ -70,11 +70,11 @@ class OrganFixture : public testing::Test {
   ContactReaction Tick(const instrument::TrocarJoints& device, std::int32_t grasped = -1) {
     std::swap(contacts_, last_);
     contacts_.Clear();
-    const ToolMotion motion{&tool_,  0,          X_proxy_before_,       X_proxy_, PoseAt(device),
-                            last_jaw_, device.jaw, grasped};
+    const ToolMotion motion{&tool_,         0,         X_proxy_before_, X_proxy_,
+                            PoseAt(device), last_jaw_, device.jaw,      grasped};
     FindContacts(motion, GetTouchables(), settings_, last_, contacts_);
     before_ = state_.position;
-    const auto solved = solver_->Solve({tissue::SolverKind::kChebyshevJacobi2015, 3000, 1e-6, 0.0},
+    const auto solved = solver_->Solve({tissue::SolverKind::kChebyshevJacobi2015, 800, 1e-6, 0.0},
                                        {.contacts = contacts_.springs}, state_);
     EXPECT_TRUE(solved.is_finite);
     const ContactReaction reaction = CalcContactReaction(0, state_.position, contacts_);
@@ -91,7 +91,8 @@ class OrganFixture : public testing::Test {
     for (int round = 0; round < 4; ++round) {
       const auto proxy = FindProxy({kPort, device}, offset_, limits.limits);
       X_proxy_ = PoseAt(proxy);
-      overlap_ = AddOverlapLimits(tool_, X_proxy_, PoseAt(device), device.jaw, GetTouchables(), grasped, limits);
+      overlap_ =
+          AddOverlapLimits(tool_, X_proxy_, PoseAt(device), device.jaw, GetTouchables(), grasped, limits);
       proxy_ = proxy;
       if (overlap_ == 0.0) break;
     }
@@ -108,9 +109,7 @@ class OrganFixture : public testing::Test {
     last_.Clear();
   }
 
-  Touchables GetTouchables() const {
-    return {organs_, &tubes_, state_.position, before_, motion_};
-  }
+  Touchables GetTouchables() const { return {organs_, &tubes_, state_.position, before_, motion_}; }
   Vec3 DuctMiddle() const { return state_.position[first_duct_node_ + kDuctNodes / 2]; }
 
   static constexpr Vec3 kPort{0, 0, 0.15};

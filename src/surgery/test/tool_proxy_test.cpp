@@ -39,13 +39,25 @@ TEST_F(ToolProxy, ComesBackToTheDeviceSmoothly) {
   for (int tick = 0; tick < 20; ++tick) (void)Tick(JointsAt({0, 0, 0.014}));
   const auto out = JointsAt({0, 0, 0.04});
   double last = std::abs(offset_.depth);
-  EXPECT_GT(last, 1e-4);
+  EXPECT_GT(last, 2e-5);
   for (int tick = 0; tick < 60; ++tick) {
     (void)Tick(out);
     EXPECT_LE(std::abs(offset_.depth), last + 1e-12);
     last = std::abs(offset_.depth);
   }
   EXPECT_EQ(proxy_, out);
+}
+
+// Jaws that close around a fold do not throw the tool back.
+TEST_F(ToolProxy, IsNotPushedOutByWhatItsJawsPinch) {
+  Place(JointsAt({0, 0, 0.03}, 0.8));
+  for (double z = 0.028; z > 0.016; z -= 0.001) (void)Tick(JointsAt({0, 0, z}, 0.8));
+  double farthest = 0;
+  for (double jaw = 0.8; jaw > 0.22; jaw -= 0.02) {
+    (void)Tick(JointsAt({0, 0, 0.016}, jaw));
+    farthest = std::max(farthest, std::abs(offset_.depth));
+  }
+  EXPECT_LT(farthest, 0.003);
 }
 
 // The trocar is a fixed point of the proxy too.

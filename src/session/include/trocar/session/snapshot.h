@@ -25,10 +25,10 @@ struct InstrumentSnapshot {
   /// Index into Simulation::Surfaces() of what is grasped or touched (Patient::organs first, then its tubes), or
   /// -1.
   std::int32_t organ = -1;
-  Pose X_world_device;             ///< where the hand is: may lie in the tissue that it presses
-  double pinch = 0;                ///< of the jaws on what they hold [N]
-  double overlap = 0;              ///< of the tool that is seen with tissue, what is left of it [m]
-  bool is_touching_tool = false;   ///< the other instrument
+  Pose X_world_device;            ///< where the hand is: may lie in the tissue that it presses
+  double pinch = 0;               ///< of the jaws on what they hold [N]
+  double overlap = 0;             ///< of the tool that is seen with tissue, what is left of it [m]
+  bool is_touching_tool = false;  ///< the other instrument
 };
 
 /// Volume of one organ after a tick.
@@ -90,8 +90,8 @@ struct Snapshot {
   Pose X_world_laparoscope;           ///< origin at the lens, looking along -z, +y up in the picture
   double residual = 0;                ///< largest node residual, relative: see tissue/solver_settings.h [-]
   int iterations = 0;                 ///< of the solver in this tick
-  std::size_t contacts = 0;          ///< contact springs of this tick
-  std::size_t dropped_contacts = 0;  ///< for which there was no room
+  std::size_t contacts = 0;           ///< contact springs of this tick
+  std::size_t dropped_contacts = 0;   ///< for which there was no room
   Vec3 gravity;                       ///< world frame [m/s^2]
   std::array<double, kStageCount> stage_seconds{};  ///< wall time of each stage of the last tick
   double tick_seconds = 0;                          ///< sum of the stages [s]

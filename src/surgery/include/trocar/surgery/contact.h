@@ -26,7 +26,8 @@ using math::Pose;
 
 struct ContactSettings {
   double stiffness = 300.0;  ///< of one spring, along the normal and along the surface [N/m]
-  double margin = 0.001;     ///< springs are made this far ahead of touch, so that they can close in the solve [m]
+  double margin =
+      0.001;  ///< springs are made this far ahead of touch, so that they can close in the solve [m]
   /// Coulomb's coefficient of smooth steel on wet tissue [-]. Source: domain facts, section 3.3.
   double friction = 0.25;
 };
@@ -39,30 +40,36 @@ inline constexpr int kToolBodyCount = 3;
 std::array<collision::Capsule, kToolBodyCount> CalcToolBodies(const instrument::Tool& tool, double jaw,
                                                               const Pose& X_world_tool) noexcept;
 
+/// Whether a jaw that pushes tissue along `normal` pushes it towards the other jaw: tissue between the jaws, which
+/// does not push the tool away.
+/// \note Real-time safe.
+bool IsPinch(ToolBody body, const Pose& X_world_tool, const Vec3& normal) noexcept;
+
 /// What a tool touches. Surfaces are counted as organs first, then tubes.
 struct Touchables {
   std::span<const OrganSurface> organs;
-  const TubeSet* tubes = nullptr;              ///< or nullptr for none
-  std::span<const Vec3> positions;             ///< (n) of the whole system, now [m]
-  std::span<const Vec3> positions_before;      ///< (n) before the last solve [m]
-  std::span<const double> surface_motion;      ///< (organs + 1) farthest that a node went in it; last: tubes [m]
+  const TubeSet* tubes = nullptr;          ///< or nullptr for none
+  std::span<const Vec3> positions;         ///< (n) of the whole system, now [m]
+  std::span<const Vec3> positions_before;  ///< (n) before the last solve [m]
+  std::span<const double> surface_motion;  ///< (organs + 1) farthest that a node went in it; last: tubes [m]
 };
 
 /// One contact beside its spring; remembered for a tick.
 struct ContactLink {
-  std::uint64_t key = 0;        ///< hand, body, surface and triangle or piece
-  std::uint8_t hand = 0;        ///< whose tool
-  std::uint8_t surface = 0;     ///< organ, or organs + tube
-  bool is_friction = false;     ///< the spring runs along the surface; its normal contact stands before it
-  Vec3 p_device;                ///< point of the device's axis that presses [m]
-  Vec3 p_tool_stuck;            ///< point of the tool that sticks to the tissue, tool frame [m]
-  double normal_force = 0;      ///< after the solve [N]
+  std::uint64_t key = 0;     ///< hand, body, surface and triangle or piece
+  std::uint8_t hand = 0;     ///< whose tool
+  std::uint8_t surface = 0;  ///< organ, or organs + tube
+  bool is_friction = false;  ///< the spring runs along the surface; its normal contact stands before it
+  bool is_pinch = false;     ///< of a jaw's inner side
+  Vec3 p_device;             ///< point of the device's axis that presses [m]
+  Vec3 p_tool_stuck;         ///< point of the tool that sticks to the tissue, tool frame [m]
+  double normal_force = 0;   ///< after the solve [N]
 };
 
 /// Contact springs of a tick with what they belong to. Fixed room: when full, later contacts of the tick are
 /// dropped and counted.
 struct ContactSet {
-  static constexpr std::size_t kCapacity = 640;
+  static constexpr std::size_t kCapacity = 960;
   std::vector<tissue::ContactSpring> springs;  ///< reserved to kCapacity
   std::vector<ContactLink> links;              ///< (springs)
   std::size_t dropped = 0;

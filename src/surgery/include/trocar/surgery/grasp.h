@@ -40,9 +40,9 @@ struct Grasp {
   std::array<std::uint32_t, kCapacity> nodes{};  ///< of the whole system
   std::array<Vec3, kCapacity> p_tool_node{};     ///< where each is held in the tool frame [m]
   double jaw_at_closing = 0;                     ///< [rad]
-  double pinch = 0;           ///< of the jaws on what they hold [N]
-  double damage_pinch = 0;    ///< that this bite bears [N]
-  bool is_damaged = false;    ///< it has been pinched harder
+  double pinch = 0;                              ///< of the jaws on what they hold [N]
+  double damage_pinch = 0;                       ///< that this bite bears [N]
+  bool is_damaged = false;                       ///< it has been pinched harder
   int ticks_over_limit = 0;
 
   bool IsHolding() const { return count > 0; }

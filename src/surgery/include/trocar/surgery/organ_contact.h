@@ -2,7 +2,8 @@
 /// \file organ_contact.h  Organ against organ: a gallbladder that has come off its bed rests on the liver.
 ///
 /// Each vertex of one organ is kept out of the other by two one-sided springs, one on either side of the plane
-/// half way between them. The shapes as they were imaged may overlap by a little where they touch: that much
+/// half way between them. They are made well ahead of touch, so an organ that falls in one solve is stopped half
+/// way to the other in this tick and comes to rest on it in the next ones. The shapes as they were imaged may overlap by a little where they touch: that much
 /// stays allowed, so that nothing moves before anything acts.
 #pragma once
 
@@ -16,7 +17,8 @@ namespace trocar::surgery {
 
 struct OrganContactSettings {
   double stiffness = 100.0;  ///< of each spring [N/m]
-  double margin = 0.0003;    ///< springs are made this far ahead of touch [m]
+  double ahead = 0.003;      ///< a vertex is watched from this far ahead of touch [m]
+  double margin = 0.0003;    ///< the other organ's surface is, from this far [m]
   double reach = 0.008;      ///< a vertex deeper than this has no near wall to be pushed back through [m]
 };
 
@@ -31,8 +33,8 @@ struct OrganPair {
 /// \param positions  (n) of the whole system, at rest [m]
 /// \param bound      nodes of the first organ that strands hold to the other
 OrganPair MakeOrganPair(std::span<const OrganSurface> organs, std::span<const Vec3> positions,
-                        std::uint8_t vertices_of, std::uint8_t surface_of, std::span<const std::uint32_t> bound,
-                        const OrganContactSettings& settings);
+                        std::uint8_t vertices_of, std::uint8_t surface_of,
+                        std::span<const std::uint32_t> bound, const OrganContactSettings& settings);
 
 /// Adds the springs of one pair; links carry kNoHand.
 /// \note Real-time safe.

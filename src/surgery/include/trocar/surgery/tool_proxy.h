@@ -41,7 +41,7 @@ struct ProxyLimits {
   }
 };
 
-/// Adds the limits that one hand's contacts set after the solve.
+/// Adds the limits that one hand's contacts set after the solve; tissue between the jaws sets none.
 /// \note Real-time safe.
 void AddContactLimits(std::uint8_t hand, const ContactSet& contacts, std::span<const Vec3> positions,
                       ProxyLimits& limits) noexcept;
@@ -56,7 +56,7 @@ instrument::TrocarJoints FindProxy(const ToolDrive& drive, const instrument::Tro
                                    std::span<const ProxyLimit> limits) noexcept;
 
 /// Looks whether the proxy overlaps organs or tubes after all, and adds a limit for each body and surface where
-/// it does.
+/// it does; tissue between the jaws does not count.
 ///
 /// \param touchables       trees and positions of now
 /// \param grasped_surface  left out for the jaws, or -1
