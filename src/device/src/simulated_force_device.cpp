@@ -33,9 +33,7 @@ ForceLimits MakeTouchLimits() noexcept {
 }
 
 SimulatedForceDevice::SimulatedForceDevice(SimulatedForceSettings settings)
-    : ForceDriver("simulated haptic device", settings.channel_count),
-      settings_(std::move(settings)),
-      buttons_(settings_.buttons) {
+    : ForceDriver("simulated haptic device", settings.channel_count), settings_(std::move(settings)) {
   TROCAR_ASSERT(settings_.path && settings_.channel_count >= 1 &&
                 settings_.channel_count <= SimulatedForceSettings::kMaxChannels);
   if (!(settings_.limits.max_force > 0.0)) settings_.limits = MakeTouchLimits();
@@ -94,7 +92,7 @@ ReadStatus SimulatedForceDevice::DoReadForceSamples(std::span<ForceSample> sampl
     if (fault == SimulatedFault::kJumped) sample.position.z -= 0.05;
     sample.velocity = {};
     sample.orientation = {};
-    sample.buttons = buttons_.load(std::memory_order_relaxed);
+    sample.buttons = buttons_[channel].load(std::memory_order_relaxed);
     sample.jaw = std::numeric_limits<double>::quiet_NaN();
     sample.temperature = std::numeric_limits<double>::quiet_NaN();
     sample.sequence = sequence_;

@@ -20,6 +20,8 @@ namespace {
 
 /// Above the simulation's thread, below the supervisor.
 constexpr int kPriorityAboveLowest = 10;
+/// Between two attempts to open a lost device again [ns].
+constexpr std::int64_t kTryAgain = 500'000'000;
 
 bool AskForRealTime() noexcept {
   sched_param parameters{};
@@ -56,6 +58,7 @@ struct HapticLoop::Content {
   TimeHistogram periods, cpu;          // of this second
   std::thread thread;
 
+  core::Status Connect();
   void Run() noexcept;
   HapticTickInput TakeInput(std::int64_t start, std::int64_t due) noexcept {
     HapticTickInput input;
@@ -73,12 +76,28 @@ struct HapticLoop::Content {
   }
 };
 
+/// Opens the device and gives its wires to the supervisor. Not real-time safe.
+core::Status HapticLoop::Content::Connect() {
+  if (core::Status done = driver->Configure(); !done) return done;
+  if (core::Status done = driver->Activate(); !done) {
+    static_cast<void>(driver->Cleanup());
+    return done;
+  }
+  if (!supervisor) return {};
+  supervisor->ForgetWires();
+  for (int c = 0; c < driver->GetChannelCount(); ++c) {
+    if (core::Status done = supervisor->AddWire(driver->GetSupervisedWire(c)); !done) return done;
+  }
+  return {};
+}
+
 void HapticLoop::Content::Run() noexcept {
   const bool is_real_time = AskForRealTime();
   const auto period = static_cast<std::int64_t>(1e9 * settings.period);
   const auto spin = static_cast<std::int64_t>(1e9 * settings.spin);
   HapticStatus told;
-  std::int64_t due = core::NowNanoseconds() + period, last_start = 0, second_start = due, last_told = 0;
+  std::int64_t due = core::NowNanoseconds() + period, last_start = 0, second_start = due, last_told = 0,
+               last_try = 0;
   while (!is_stopping.load(std::memory_order_relaxed)) {
     WaitUntil(due, spin);
     const std::int64_t start = core::NowNanoseconds();
@@ -108,6 +127,11 @@ void HapticLoop::Content::Run() noexcept {
       status.Publish();
       last_told = start;
     }
+    if (driver->GetState() == device::DriverState::kUnconfigured && start - last_try >= kTryAgain) {
+      // lost: there is no force to keep up, so this may take its time; what comes back is unarmed and unconfirmed
+      static_cast<void>(Connect());
+      last_try = core::NowNanoseconds();
+    }
     due += period;
     // late: never a burst of ticks to catch up (faults D9)
     if (core::NowNanoseconds() > due + period / 2) due = core::NowNanoseconds();
@@ -126,17 +150,12 @@ core::Result<std::unique_ptr<HapticLoop>> HapticLoop::Start(std::unique_ptr<devi
   auto content = std::make_unique<Content>();
   content->settings = settings;
   content->driver = std::move(driver);
-  if (auto done = content->driver->Configure(); !done) return done.error();
-  if (auto done = content->driver->Activate(); !done) return done.error();
   if (!settings.supervisor.empty()) {
     auto supervisor = SupervisorLink::Start(settings.supervisor);
     if (!supervisor) return supervisor.error();
     content->supervisor.emplace(std::move(*supervisor));
-    for (int c = 0; c < content->driver->GetChannelCount(); ++c) {
-      if (auto done = content->supervisor->AddWire(content->driver->GetSupervisedWire(c)); !done)
-        return done.error();
-    }
   }
+  if (auto done = content->Connect(); !done) return done.error();
   content->tick.emplace(*content->driver, settings, link);
   std::unique_ptr<HapticLoop> loop(new HapticLoop(std::move(content)));
   return loop;

@@ -84,8 +84,8 @@ void HapticTick::Run(const HapticTickInput& input) noexcept {
   check_pose_.Step(devices_);
 
   const haptics::LoopTiming timing = loop_guard_.Step(input.lateness);
-  const haptics::ChannelConditions conditions{input.is_supervised, check_pose_.IsConfirmed(), input.is_pedal_held,
-                                              input.is_supervisor_tripped};
+  const haptics::ChannelConditions conditions{input.is_supervised, check_pose_.IsConfirmed(),
+                                              input.is_pedal_held, input.is_supervisor_tripped};
   for (std::size_t c = 0; c < channels_.size(); ++c) {
     if (input.wants_stop) channels_[c].Stop();
     if (input.wants_arm) channels_[c].RequestArm();

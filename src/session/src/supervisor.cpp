@@ -54,7 +54,10 @@ struct Supervisor {
       if (size < 0) return errno == EAGAIN || errno == EINTR;
       if (size == 0) return false;
       const cmsghdr* carried = CMSG_FIRSTHDR(&header);
-      if (carried == nullptr || carried->cmsg_type != SCM_RIGHTS) continue;
+      if (carried == nullptr || carried->cmsg_type != SCM_RIGHTS) {
+        while (wire_count > 0) ::close(wires[--wire_count].file);
+        continue;
+      }
       int file = -1;
       std::memcpy(&file, CMSG_DATA(carried), sizeof file);
       if (size != sizeof message || message.size > device::SupervisedWire::kMaxBytes ||

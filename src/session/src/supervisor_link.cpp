@@ -119,6 +119,11 @@ core::Status SupervisorLink::AddWire(const device::SupervisedWire& wire) {
   return {};
 }
 
+void SupervisorLink::ForgetWires() noexcept {
+  const WireMessage message;
+  [[maybe_unused]] const ssize_t sent = ::send(content_->socket, &message, sizeof message, MSG_NOSIGNAL);
+}
+
 void SupervisorLink::Beat() noexcept {
   content_->page->beats.fetch_add(1, std::memory_order_release);
 }

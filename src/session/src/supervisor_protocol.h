@@ -17,7 +17,7 @@ struct SupervisorPage {
 };
 static_assert(std::atomic<std::uint64_t>::is_always_lock_free);
 
-/// Travels with the wire's descriptor.
+/// Travels with the wire's descriptor; without one it means: forget the wires.
 struct WireMessage {
   std::uint32_t size = 0;
   std::uint8_t is_closed_after = 0;

@@ -3,6 +3,8 @@
 /// clock that the test moves.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <memory>
 
 #include "haptic_tick.h"
@@ -19,7 +21,7 @@ class HapticBench {
     patch = sheet.Cut(rings);
     device::SimulatedForceSettings simulated;
     simulated.channel_count = 2;
-    simulated.path = [this](int, double) { return hand; };
+    simulated.path = [this](int, double) { return hand; };  // both hands alike
     device = std::make_unique<device::SimulatedForceDevice>(simulated);
     EXPECT_TRUE(device->Configure().ok() && device->Activate().ok());
     for (const Hand side : {kLeft, kRight}) {
@@ -47,11 +49,30 @@ class HapticBench {
   void Run(int ticks) {
     for (int i = 0; i < ticks; ++i) Step();
   }
-  /// Both hands answer the check pose: the simulated device moves both at once, so one after the other by buttons.
-  void Confirm();
+  void SetButtons(std::uint32_t left, std::uint32_t right) {
+    device->SetButtons(0, left);
+    device->SetButtons(1, right);
+  }
+  /// Answers the check pose with one button after the other, then holds both.
+  void Confirm() {
+    input.wants_check_pose = true;
+    SetButtons(0, 0), Run(5);
+    SetButtons(1, 0), Run(210);
+    SetButtons(0, 0), Run(5);
+    SetButtons(0, 1), Run(210);
+    SetButtons(1, 1), Run(5);
+  }
   void Arm() {
+    Confirm();
     input.wants_arm = true;
     Run(2100);
+  }
+  /// Armed, with both tools in tissue.
+  void ArmAndTouch() {
+    Arm();
+    is_touching = true;
+    hand = {0, 0, -0.006};
+    Run(100);
   }
   const HapticHandStatus& Right() const { return tick->GetStatus().hands[kRight]; }
 

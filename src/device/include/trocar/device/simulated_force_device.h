@@ -37,8 +37,7 @@ struct SimulatedForceSettings {
   ForceLimits limits;     ///< of every channel; a Touch by default (domain facts 3.4)
   /// Where the hand leads a channel at a time since activation [s]; device frame [m]. Called in every read.
   std::function<math::Vec3(int channel, double time)> path;
-  std::uint32_t buttons = 1;  ///< that are held
-  int wire = -1;              ///< file that every force is written to, or -1; stays the caller's
+  int wire = -1;  ///< file that every force is written to, or -1; stays the caller's
 };
 /// Limits of the Touch as in the domain facts, sections 0, 3.4 and 3.5.
 ForceLimits MakeTouchLimits() noexcept;
@@ -50,7 +49,10 @@ class SimulatedForceDevice : public ForceDriver {
 
   /// From the next read on; any thread. An unplugged device refuses to be configured.
   void SetFault(SimulatedFault fault) noexcept { fault_.store(fault); }
-  void SetButtons(std::uint32_t buttons) noexcept { buttons_.store(buttons); }
+  /// Buttons that are held; none at first.
+  void SetButtons(int channel, std::uint32_t buttons) noexcept {
+    buttons_[static_cast<std::size_t>(channel)].store(buttons);
+  }
   /// Size of the last force that was sent [N]; any thread.
   double GetForce(int channel) const noexcept { return force_[static_cast<std::size_t>(channel)].load(); }
 
@@ -68,7 +70,7 @@ class SimulatedForceDevice : public ForceDriver {
 
   SimulatedForceSettings settings_;
   std::atomic<SimulatedFault> fault_{SimulatedFault::kNone};
-  std::atomic<std::uint32_t> buttons_;
+  std::array<std::atomic<std::uint32_t>, SimulatedForceSettings::kMaxChannels> buttons_{};
   std::array<std::atomic<double>, SimulatedForceSettings::kMaxChannels> force_{};  // [N]
   std::int64_t start_ = 0;                                                         // [ns]
   std::uint64_t sequence_ = 0;

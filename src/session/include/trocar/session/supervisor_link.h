@@ -29,6 +29,8 @@ class SupervisorLink {
   /// Gives the supervisor a copy of a wire.
   /// \return kHapticSupervisor
   core::Status AddWire(const device::SupervisedWire& wire);
+  /// The supervisor closes its copies: the device is gone, or comes back on another wire.
+  void ForgetWires() noexcept;
 
   /// We live. Watching begins with the first.
   /// \note Real-time safe.
