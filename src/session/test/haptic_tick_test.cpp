@@ -127,7 +127,7 @@ TEST(HapticTick, StatusIsOneLineForAPerson) {
               testing::HasSubstr("left off: it is not confirmed which device is which hand"));
   bench.ArmAndTouch();
   EXPECT_THAT(DescribeHaptics(bench.tick->GetStatus()),
-              testing::ContainsRegex("left armed 0\\.[0-9]+ N; right armed"));
+              testing::ContainsRegex("left armed [0-9]\\.[0-9]+ N; right armed"));
   bench.device->SetFault(SimulatedFault::kWarm);
   bench.Run(3);
   EXPECT_THAT(DescribeHaptics(bench.tick->GetStatus()), testing::HasSubstr("motors warm"));
