@@ -47,11 +47,14 @@ void WaitUntil(std::int64_t due, std::int64_t spin) noexcept {
 
 struct HapticLoop::Content {
   HapticLoopSettings settings;
+  HapticLink* link = nullptr;
   std::unique_ptr<device::ForceDriver> driver;
   std::optional<SupervisorLink> supervisor;
   std::optional<HapticTick> tick;
 
   std::atomic<bool> is_stopping{false}, is_pedal_held{false};
+  std::atomic<bool> wants_clear{false};
+  std::atomic<std::uint64_t> allocated{0};
   std::atomic<bool> wants_arm{false}, wants_stop{false}, wants_check_pose{false};
   core::NewestSlot<HapticStatus> status;
   TimeHistogram all_periods, all_cpu;  // read by others after the thread has ended, or roughly before
@@ -95,6 +98,7 @@ void HapticLoop::Content::Run() noexcept {
   const bool is_real_time = AskForRealTime();
   const auto period = static_cast<std::int64_t>(1e9 * settings.period);
   const auto spin = static_cast<std::int64_t>(1e9 * settings.spin);
+  const CountAllocations count = settings.count_allocations;
   HapticStatus told;
   std::int64_t due = core::NowNanoseconds() + period, last_start = 0, second_start = due, last_told = 0,
                last_try = 0;
@@ -102,9 +106,16 @@ void HapticLoop::Content::Run() noexcept {
     WaitUntil(due, spin);
     const std::int64_t start = core::NowNanoseconds();
     const std::int64_t cpu_before = core::ThreadCpuNanoseconds();
+    const std::uint64_t allocated_before = count != nullptr ? count() : 0;
     tick->Run(TakeInput(start, due));
+    if (count != nullptr) allocated.fetch_add(count() - allocated_before, std::memory_order_relaxed);
     if (supervisor) supervisor->Beat();
     const std::int64_t used = core::ThreadCpuNanoseconds() - cpu_before;
+    if (wants_clear.exchange(false)) {
+      all_cpu.Clear(), all_periods.Clear();
+      allocated.store(0);
+      last_start = 0;
+    }
     cpu.Add(used), all_cpu.Add(used);
     if (last_start != 0) periods.Add(start - last_start), all_periods.Add(start - last_start);
     last_start = start;
@@ -149,6 +160,7 @@ core::Result<std::unique_ptr<HapticLoop>> HapticLoop::Start(std::unique_ptr<devi
   }
   auto content = std::make_unique<Content>();
   content->settings = settings;
+  content->link = &link;
   content->driver = std::move(driver);
   if (!settings.supervisor.empty()) {
     auto supervisor = SupervisorLink::Start(settings.supervisor);
@@ -162,12 +174,14 @@ core::Result<std::unique_ptr<HapticLoop>> HapticLoop::Start(std::unique_ptr<devi
 }
 
 HapticLoop::HapticLoop(std::unique_ptr<Content> content) : content_(std::move(content)) {
+  content_->link->is_used.store(true);
   content_->thread = std::thread([running = content_.get()] { running->Run(); });
 }
 
 HapticLoop::~HapticLoop() {
   content_->is_stopping.store(true);
   content_->thread.join();
+  content_->link->is_used.store(false);
   content_->driver->Finalize();
 }
 
@@ -189,6 +203,12 @@ const HapticStatus& HapticLoop::Latest() noexcept {
   return content_->status.Front();
 }
 
+std::uint64_t HapticLoop::CountAllocated() const noexcept {
+  return content_->allocated.load();
+}
+void HapticLoop::ClearTimes() noexcept {
+  content_->wants_clear.store(true);
+}
 double HapticLoop::CalcPeriodPercentile(double fraction) const noexcept {
   return content_->all_periods.CalcPercentile(fraction);
 }

@@ -57,7 +57,7 @@ struct Runner::Content {
     snapshot_slot.Publish();
   }
   void TakeHapticHands(Input& input) {
-    if (haptics == nullptr) return;
+    if (haptics == nullptr || !haptics->is_used.load(std::memory_order_relaxed)) return;
     haptics->hands.Update();
     const HapticHands& hands = haptics->hands.Front();
     for (int hand = 0; hand < kHandCount; ++hand) {
@@ -65,7 +65,7 @@ struct Runner::Content {
     }
   }
   void PublishPatches() {
-    if (haptics == nullptr) return;
+    if (haptics == nullptr || !haptics->is_used.load(std::memory_order_relaxed)) return;
     for (const Hand hand : {kLeft, kRight}) {
       simulation.CutPatch(hand, haptics->patches[hand].Back());
       haptics->patches[hand].Publish();
@@ -95,9 +95,11 @@ void Runner::Content::Run() {
       if (is_scripted.load(std::memory_order_relaxed)) {
         now.hands = CalcScriptInput(simulation.GetScene(), simulation.GetSnapshot().time).hands;
       }
-      TakeHapticHands(now);
+      // while the script moves the tools, nothing of theirs may be felt
+      const bool is_felt = !is_scripted.load(std::memory_order_relaxed);
+      if (is_felt) TakeHapticHands(now);
       simulation.Step(now);
-      PublishPatches();
+      if (is_felt) PublishPatches();
       Publish();
       ticks.fetch_add(1, std::memory_order_relaxed);
       durations.push_back(simulation.GetSnapshot().tick_seconds);

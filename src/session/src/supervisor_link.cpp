@@ -10,6 +10,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <system_error>
 #include <utility>
 
 #include "supervisor_protocol.h"
@@ -46,6 +47,11 @@ struct SupervisorLink::Content {
     if (process > 0) ::waitpid(process, nullptr, 0);
   }
 };
+
+std::filesystem::path SupervisorLink::FindProgram() {
+  std::error_code failure;
+  return std::filesystem::read_symlink("/proc/self/exe", failure).parent_path() / "trocar-supervisor";
+}
 
 core::Result<SupervisorLink> SupervisorLink::Start(const std::filesystem::path& program) {
   auto content = std::make_unique<Content>();

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -30,6 +31,9 @@ struct HapticHand {
   Vec3 p_device_check;              ///< check pose, device frame [m]
   std::uint32_t dead_man_mask = 1;  ///< buttons of which one must be held; 0: the pedal
 };
+
+/// Allocations of the calling thread so far; for benchmarks.
+using CountAllocations = std::uint64_t (*)() noexcept;
 
 /// Device in front of a seated person who looks at the laparoscope's picture: the device's right, up and towards the
 /// person are the picture's, and the middle of the device's workspace is the tool's home.
@@ -75,15 +79,17 @@ std::string DescribeHaptics(const HapticStatus& status);
 
 /// Mailboxes between the simulation's thread and the loop's; neither waits for the other.
 struct HapticLink {
+  std::atomic<bool> is_used{false};  ///< a loop runs: the simulation cuts patches only then
   std::array<core::NewestSlot<haptics::LocalPatch>, kHandCount> patches;  ///< simulation to loop
   core::NewestSlot<HapticHands> hands;                                    ///< loop to simulation
 };
 
 struct HapticLoopSettings {
-  std::vector<HapticHand> hands;     ///< one a channel of the driver
-  std::filesystem::path supervisor;  ///< program trocar-supervisor; empty: none, and no force
-  double period = 0.001;             ///< [s]
-  double spin = 0.00025;             ///< waited for actively before each tick, because sleep wakes late [s]
+  std::vector<HapticHand> hands;                 ///< one a channel of the driver
+  std::filesystem::path supervisor;              ///< program trocar-supervisor; empty: none, and no force
+  double period = 0.001;                         ///< [s]
+  CountAllocations count_allocations = nullptr;  ///< counts what the ticks allocate, for benchmarks
+  double spin = 0.00025;  ///< waited for actively before each tick, because sleep wakes late [s]
 };
 
 /// Owns the driver and the thread.
@@ -116,6 +122,10 @@ class HapticLoop {
   /// Percentile over the whole run [s]; for benchmarks. \param fraction  [-] in [0, 1]
   double CalcPeriodPercentile(double fraction) const noexcept;
   double CalcCpuPercentile(double fraction) const noexcept;
+  /// Of all ticks since ClearTimes(); 0 without a counter.
+  std::uint64_t CountAllocated() const noexcept;
+  /// The percentiles and counts over the whole run begin anew.
+  void ClearTimes() noexcept;
 
  private:
   struct Content;

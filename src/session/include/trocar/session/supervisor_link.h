@@ -18,6 +18,8 @@ class SupervisorLink {
   /// Silence after which the supervisor acts [s]; with its round of 2 ms, zero is out well within 30 ms.
   static constexpr double kLongestSilence = 0.012;
 
+  /// trocar-supervisor beside this program.
+  static std::filesystem::path FindProgram();
   /// Starts the program.
   /// \return kHapticSupervisor
   static core::Result<SupervisorLink> Start(const std::filesystem::path& program);
