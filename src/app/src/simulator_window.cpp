@@ -472,16 +472,20 @@ void SimulatorWindow::SaveScreenshot() {
   if (const auto status = app::SaveScreenshot(*this, options_.screenshot); !status)
     return Fail(status.error());
   const session::RunnerStatistics statistics = control_->Statistics();
+  const std::string haptics = control_->Haptics() != nullptr
+                                  ? session::FormatHapticsJson(control_->Haptics()->Latest())
+                                  : std::string();
   std::printf(
       "{\"screenshot\": \"%s\", \"width\": %d, \"height\": %d, \"first_picture_s\": %.3f, \"ticks\": %llu, "
       "\"late_ticks\": %llu, \"tick_median_ms\": %.3f, \"tick_p99_ms\": %.3f, \"real_time\": %s, "
       "\"pictures\": %llu, "
-      "\"pictures_per_second\": %.1f}\n",
+      "\"pictures_per_second\": %.1f%s%s}\n",
       options_.screenshot.filename().c_str(), get_width(), get_height(), first_picture_,
       static_cast<unsigned long long>(statistics.ticks),
       static_cast<unsigned long long>(statistics.late_ticks), 1e3 * statistics.tick_median,
       1e3 * statistics.tick_p99, statistics.is_real_time ? "true" : "false",
-      static_cast<unsigned long long>(frames_.Count()), frames_.Rate(since_start_.Seconds()));
+      static_cast<unsigned long long>(frames_.Count()), frames_.Rate(since_start_.Seconds()),
+      haptics.empty() ? "" : ", \"haptics\": ", haptics.c_str());
   close();
 }
 

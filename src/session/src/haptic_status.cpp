@@ -44,6 +44,37 @@ std::string DescribeHaptics(const HapticStatus& status) {
   return line;
 }
 
+std::string FormatHapticsJson(const HapticStatus& status) {
+  char text[512];
+  std::snprintf(
+      text, sizeof text,
+      "{\"ticks\": %llu, \"late_ticks\": %llu, \"overruns\": %llu, \"rate\": %.1f, \"period_p50_us\": %.0f, "
+      "\"period_p99.9_us\": %.0f, \"period_max_us\": %.0f, \"tick_cpu_p99.9_us\": %.0f, \"real_time\": %s, "
+      "\"supervised\": %s",
+      static_cast<unsigned long long>(status.ticks), static_cast<unsigned long long>(status.late_ticks),
+      static_cast<unsigned long long>(status.overruns), status.rate, 1e6 * status.period_p50,
+      1e6 * status.period_p999, 1e6 * status.period_max, 1e6 * status.cpu_p999,
+      status.is_real_time ? "true" : "false", status.is_supervised ? "true" : "false");
+  std::string json = text;
+  for (const Hand side : {kLeft, kRight}) {
+    const HapticHandStatus& hand = status.hands[side];
+    if (!hand.is_present) continue;
+    const haptics::FaultEntry& fault = haptics::FindFault(hand.reason);
+    std::snprintf(text, sizeof text,
+                  ", \"%s\": {\"state\": \"%s\", \"reason\": \"%s\", \"code\": \"%s\", \"force\": %.4f, "
+                  "\"heat\": %.4f, "
+                  "\"warm\": %s, \"bad_samples\": %llu, \"jumps\": %llu, \"silences\": %llu}",
+                  side == kLeft ? "left" : "right", std::string(haptics::ArmStateName(hand.state)).c_str(),
+                  std::string(fault.name).c_str(), std::string(core::CodeText(fault.code)).c_str(),
+                  hand.force, hand.heat, hand.is_warm ? "true" : "false",
+                  static_cast<unsigned long long>(hand.counts.bad),
+                  static_cast<unsigned long long>(hand.counts.jumps),
+                  static_cast<unsigned long long>(hand.counts.silences));
+    json += text;
+  }
+  return json + "}";
+}
+
 HapticHand MakeHapticHand(const Scene& scene, const Pose& X_world_laparoscope, Hand hand, double scale) {
   const InstrumentSetup& setup = scene.instruments[hand];
   HapticHand made;

@@ -50,7 +50,9 @@ struct SupervisorLink::Content {
 
 std::filesystem::path SupervisorLink::FindProgram() {
   std::error_code failure;
-  return std::filesystem::read_symlink("/proc/self/exe", failure).parent_path() / "trocar-supervisor";
+  const auto folder = std::filesystem::read_symlink("/proc/self/exe", failure).parent_path();
+  const auto installed = folder.parent_path() / "libexec/trocar/trocar-supervisor";
+  return std::filesystem::exists(installed, failure) ? installed : folder / "trocar-supervisor";
 }
 
 core::Result<SupervisorLink> SupervisorLink::Start(const std::filesystem::path& program) {

@@ -9,7 +9,7 @@
 #include "haptic_bench.h"
 #include "realtime_watch.h"
 #include "time_histogram.h"
-#include "trocar/core/clock.h"
+#include "trocar/core/json.h"
 
 namespace trocar::session {
 namespace {
@@ -128,6 +128,8 @@ TEST(HapticTick, StatusIsOneLineForAPerson) {
   bench.ArmAndTouch();
   EXPECT_THAT(DescribeHaptics(bench.tick->GetStatus()),
               testing::ContainsRegex("left armed [0-9]\\.[0-9]+ N; right armed"));
+  const auto record = core::JsonDocument::Parse(FormatHapticsJson(bench.tick->GetStatus()), "record");
+  ASSERT_TRUE(record.ok());
   bench.device->SetFault(SimulatedFault::kWarm);
   bench.Run(3);
   EXPECT_THAT(DescribeHaptics(bench.tick->GetStatus()), testing::HasSubstr("motors warm"));

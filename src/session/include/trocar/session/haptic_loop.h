@@ -76,6 +76,8 @@ struct HapticStatus {
 /// One line for a person, for example "Force 1000 Hz: left armed 0.8 N, right off: nobody holds the safety switch (hold
 /// the button or pedal and switch force on again)".
 std::string DescribeHaptics(const HapticStatus& status);
+/// The same as one JSON object for a record: times in microseconds (_us), forces in newtons, states and reasons by name.
+std::string FormatHapticsJson(const HapticStatus& status);
 
 /// Mailboxes between the simulation's thread and the loop's; neither waits for the other.
 struct HapticLink {

@@ -18,7 +18,7 @@ class SupervisorLink {
   /// Silence after which the supervisor acts [s]; with its round of 2 ms, zero is out well within 30 ms.
   static constexpr double kLongestSilence = 0.012;
 
-  /// trocar-supervisor beside this program.
+  /// trocar-supervisor beside this program, or in ../libexec/trocar.
   static std::filesystem::path FindProgram();
   /// Starts the program.
   /// \return kHapticSupervisor
