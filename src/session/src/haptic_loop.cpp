@@ -5,6 +5,7 @@
 #include <sched.h>
 #include <time.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <optional>
@@ -57,16 +58,16 @@ struct HapticLoop::Content {
   std::atomic<std::uint64_t> allocated{0};
   std::atomic<bool> wants_arm{false}, wants_stop{false}, wants_check_pose{false};
   core::NewestSlot<HapticStatus> status;
-  TimeHistogram all_periods, all_cpu;  // read by others after the thread has ended, or roughly before
+  TimeHistogram all_periods, all_cpu;  // since ClearTimes
   TimeHistogram periods, cpu;          // of this second
   std::thread thread;
 
   core::Status Connect();
   void Run() noexcept;
-  HapticTickInput TakeInput(std::int64_t start, std::int64_t due) noexcept {
+  HapticTickInput TakeInput(std::int64_t start, std::int64_t late) noexcept {
     HapticTickInput input;
     input.now = 1e-9 * static_cast<double>(start);
-    input.lateness = 1e-9 * static_cast<double>(start - due);
+    input.lateness = 1e-9 * static_cast<double>(late);
     input.wants_arm = wants_arm.exchange(false);
     input.wants_stop = wants_stop.exchange(false);
     input.wants_check_pose = wants_check_pose.exchange(false);
@@ -107,14 +108,15 @@ void HapticLoop::Content::Run() noexcept {
     const std::int64_t start = core::NowNanoseconds();
     const std::int64_t cpu_before = core::ThreadCpuNanoseconds();
     const std::uint64_t allocated_before = count != nullptr ? count() : 0;
-    tick->Run(TakeInput(start, due));
+    // a tick that stood still inside shows in the next one's distance to it
+    const std::int64_t late = std::max(start - due, last_start != 0 ? start - last_start - period : 0);
+    tick->Run(TakeInput(start, late));
     if (count != nullptr) allocated.fetch_add(count() - allocated_before, std::memory_order_relaxed);
     if (supervisor) supervisor->Beat();
     const std::int64_t used = core::ThreadCpuNanoseconds() - cpu_before;
     if (wants_clear.exchange(false)) {
       all_cpu.Clear(), all_periods.Clear();
       allocated.store(0);
-      last_start = 0;
     }
     cpu.Add(used), all_cpu.Add(used);
     if (last_start != 0) periods.Add(start - last_start), all_periods.Add(start - last_start);

@@ -130,6 +130,8 @@ TEST(HapticTick, StatusIsOneLineForAPerson) {
               testing::ContainsRegex("left armed [0-9]\\.[0-9]+ N; right armed"));
   const auto record = core::JsonDocument::Parse(FormatHapticsJson(bench.tick->GetStatus()), "record");
   ASSERT_TRUE(record.ok());
+  EXPECT_THAT(FormatHapticsJson(bench.tick->GetStatus()),
+              testing::HasSubstr("\"right\": {\"state\": \"armed\", \"reason\": \"none\""));
   bench.device->SetFault(SimulatedFault::kWarm);
   bench.Run(3);
   EXPECT_THAT(DescribeHaptics(bench.tick->GetStatus()), testing::HasSubstr("motors warm"));
