@@ -74,7 +74,7 @@ core::Result<SimulateReport> Simulate(const SimulateOptions& options) {
   session::Simulation simulation = std::move(made).value();
   std::unique_ptr<DeviceInput> device;
   if (!options.device.empty()) {
-    auto opened = DeviceInput::Open(options.device);
+    auto opened = DeviceInput::Open(options.device, *scene);
     if (!opened) return opened.error();
     device = std::move(*opened);
   }

@@ -31,6 +31,15 @@ void ApplyHands(const std::array<HandSample, device::kChannelCount>& samples, In
   if (laparoscope.is_valid && IsFinite(laparoscope)) input.laparoscope = JointsOf(laparoscope);
 }
 
+void PlaceAtHome(const Scene& scene, device::Driver& driver) noexcept {
+  const std::array<instrument::TrocarJoints, device::kChannelCount> homes = {
+      scene.instruments[kLeft].home, scene.instruments[kRight].home, scene.laparoscope.home};
+  for (std::size_t i = 0; i < homes.size(); ++i) {
+    const instrument::TrocarJoints& home = homes[i];
+    driver.PlaceHand(static_cast<int>(i), {home.pan, home.tilt, home.spin, home.depth, home.jaw, 0.0, true});
+  }
+}
+
 struct DeviceThread::Content {
   std::unique_ptr<device::Driver> driver;
   core::NewestSlot<DeviceReport> slot;

@@ -68,6 +68,9 @@ struct JawEmulation {
 /// 100 lines a second for each tool.
 std::unique_ptr<Emulator> MakeJawEmulator(JawEmulation emulation);
 
+/// An OpenIGTLink server: 60 times a second the left hand as TRANSFORM, the right one as TDATA.
+std::unique_ptr<Emulator> MakeIgtlEmulator(SensorMotion motion);
+
 // --- faults
 
 enum class FaultKind {
