@@ -62,6 +62,10 @@ core::Result<Command> ParseCommandLine(int argc, const char* const* argv) {
       ->needs(contours);
   app.add_option("--script", options.script, "With --contours: commands to begin with, one a line (below)")
       ->needs(contours);
+  app.add_flag("--autosave", options.has_autosave,
+               "With --screenshot: keep and recover unsaved work, as a window that somebody watches does")
+      ->needs(contours)
+      ->needs(screenshot);
   app.add_flag("--measure", options.is_measuring,
                "With --contours: drag points by itself, print the times as JSON, and quit")
       ->needs(contours);

@@ -16,6 +16,7 @@ constexpr ErrorEntry kTable[] = {
     {ErrorCode::kJsonField, "E-IO-005", "a JSON field is missing, of the wrong kind or out of range"},
     {ErrorCode::kNumberNotFinite, "E-IO-006", "a number is NaN or infinite"},
     {ErrorCode::kFileTooLarge, "E-IO-007", "a file is larger than the reader accepts"},
+    {ErrorCode::kFileInUse, "E-IO-008", "another program works on a file or device"},
     {ErrorCode::kImageFolderMissing, "E-IMG-001", "the folder or file of images does not exist"},
     {ErrorCode::kImageSliceMissing, "E-IMG-002", "a slice is missing in the folder of images"},
     {ErrorCode::kImageSizeDiffers, "E-IMG-003",
@@ -77,6 +78,17 @@ constexpr ErrorEntry kTable[] = {
     {ErrorCode::kGpuFailed, "E-GPU-003", "the GPU failed; the processor goes on"},
     {ErrorCode::kGpuMemory, "E-GPU-004", "the GPU has not enough memory"},
     {ErrorCode::kGpuLayout, "E-GPU-005", "a memory layout cannot hold this tissue or load"},
+    {ErrorCode::kHapticNotArmed, "E-HAP-001", "force feedback is not armed"},
+    {ErrorCode::kHapticSamplesBad, "E-HAP-002", "a haptic device sends nonsense"},
+    {ErrorCode::kHapticJump, "E-HAP-003", "a haptic device's position jumped"},
+    {ErrorCode::kHapticOverrun, "E-HAP-004", "the haptic loop stood still"},
+    {ErrorCode::kHapticSupervisor, "E-HAP-005", "the haptic supervisor is missing, gone, or had to stop the force"},
+    {ErrorCode::kHapticWarm, "E-HAP-006", "the motors of a haptic device are too hot"},
+    {ErrorCode::kHapticDeadMan, "E-HAP-007", "nobody holds the safety switch of a haptic device"},
+    {ErrorCode::kHapticCheckPose, "E-HAP-008", "it is not confirmed which haptic device is which hand"},
+    {ErrorCode::kHapticNotCalibrated, "E-HAP-009", "a haptic device is not calibrated"},
+    {ErrorCode::kHapticOverspeed, "E-HAP-010", "a haptic device ran away with its force"},
+    {ErrorCode::kHapticSimulation, "E-HAP-011", "the simulation has no good tissue state for the haptic loop"},
 };
 static_assert(std::size(kTable) == static_cast<std::size_t>(ErrorCode::kCount));
 

@@ -25,6 +25,7 @@ struct Options {
   std::filesystem::path reference;     ///< label map to compare with; empty: none
   anatomy::ImageSeriesOptions series;  ///< what the pictures do not say
   std::filesystem::path script;        ///< commands to begin with; empty: none
+  bool has_autosave = false;           ///< also in a run that nobody watches
   bool is_measuring = false;           ///< drag a point for some seconds, print the times and quit
   // the patient editor
   std::filesystem::path patient;     ///< not empty: open the patient editor on this folder
