@@ -2,13 +2,9 @@
 #include "trocar/device/rate_hands.h"
 
 #include <gtest/gtest.h>
-#include <sys/socket.h>
-#include <sys/un.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <cstdlib>
-#include <filesystem>
 
 #if TROCAR_HAS_SDL2
 #include <SDL.h>
