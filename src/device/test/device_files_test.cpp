@@ -123,7 +123,7 @@ TEST(HandRecording, RefusesDamageWithTheLine) {
   std::string nan = good;
   nan.replace(good.find('\n') + 1, 1, "nan");
   EXPECT_FALSE(ParseHandFrames(nan, "x").ok());
-  EXPECT_FALSE(ParseHandFrames(good + "0" + good.substr(good.rfind("\n1.6") + 4), "x").ok()) << "time falls";
+  EXPECT_FALSE(ParseHandFrames(good + good.substr(good.find('\n') + 1), "x").ok()) << "time falls";
 }
 
 TEST_F(DeviceFilesTest, PlayerPlaysWhatWasRecorded) {

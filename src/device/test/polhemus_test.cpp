@@ -63,7 +63,9 @@ bool AreSame(const std::vector<TrackerRecord>& a, const std::vector<TrackerRecor
 TEST(PolhemusFramer, ReadsFastrakAsciiByColumns) {
   const std::string line = "01   10.00-100.25  20.50  90.00   0.00   0.00\r\n";
   const std::string touching = "02  100.00-100.25-200.50 -90.00 -30.00-170.00\r\n";
+  ASSERT_EQ(line.size(), 47u);
   ASSERT_EQ(touching.size(), 47u);
+  EXPECT_EQ(Parse(PolhemusFormat::kFastrakAscii, line).size(), 1u);
   const auto records = Parse(PolhemusFormat::kFastrakAscii, touching);
   ASSERT_EQ(records.size(), 1u);
   EXPECT_EQ(records[0].station, 2);
@@ -71,7 +73,7 @@ TEST(PolhemusFramer, ReadsFastrakAsciiByColumns) {
   EXPECT_NEAR(records[0].position.y, -100.25 * 0.0254, 1e-12);
   EXPECT_NEAR(records[0].position.z, -200.50 * 0.0254, 1e-12);
   // one column too many is no record
-  EXPECT_TRUE(Parse(PolhemusFormat::kFastrakAscii, line + " ").empty());
+  EXPECT_TRUE(Parse(PolhemusFormat::kFastrakAscii, "01 " + line.substr(2)).empty());
 }
 
 TEST(PolhemusFramer, TurnsByAzimuthThenElevationThenRoll) {

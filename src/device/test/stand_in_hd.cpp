@@ -18,7 +18,7 @@ struct ErrorInfo {
 };
 
 std::atomic<unsigned int> pending_error{0};
-std::atomic<int> devices{0}, open_frames{0}, misuses{0}, callbacks{0};
+std::atomic<int> devices{0}, open_frames{0}, misuses{0}, callbacks{0}, drops{0};
 std::array<std::array<std::atomic<double>, 3>, 2> forces;
 std::array<std::atomic<bool>, 2> is_pushing;
 std::atomic<unsigned int> current{0};
@@ -36,6 +36,8 @@ STAND_IN void StandInForce(int device, double* force) {
 }
 STAND_IN int StandInMisuses() { return misuses; }
 STAND_IN int StandInCallbacks() { return callbacks; }
+/// Times that a force gave way to zero.
+STAND_IN int StandInDrops() { return drops; }
 STAND_IN int StandInDevices() { return devices; }
 
 // --- the interface
@@ -83,7 +85,9 @@ STAND_IN void hdGetDoublev(unsigned int what, double* values) {
 STAND_IN void hdGetIntegerv(unsigned int, int* value) { *value = current == 0 ? 1 : 0; }
 STAND_IN void hdSetDoublev(unsigned int what, const double* values) {
   if (what != 0x2700 || open_frames != 1 || !is_pushing[current]) ++misuses;
-  for (std::size_t i = 0; i < 3; ++i) forces[current][i] = values[i];
+  auto& force = forces[current];
+  if (force[0] != 0 && values[0] == 0) ++drops;
+  for (std::size_t i = 0; i < 3; ++i) force[i] = values[i];
 }
 STAND_IN unsigned int hdCheckCalibration() { return 0x5000; }
 STAND_IN ErrorInfo hdGetError() { return {pending_error.exchange(0), 0, current}; }

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "trocar/device/rate_hands.h"
+
 #if TROCAR_HAS_SPNAV
-#include <spnav.h>
 #include <sys/socket.h>
 
+// last: it includes Xlib, whose macro Status would change our own name
+#include <spnav.h>
+#undef Status
 #endif
-
-#include "trocar/device/rate_hands.h"
 
 namespace trocar::device {
 namespace {
