@@ -7,7 +7,8 @@
 
 namespace trocar::cli {
 
-core::Result<std::unique_ptr<DeviceInput>> DeviceInput::Open(const std::string& spec, const session::Scene& scene) {
+core::Result<std::unique_ptr<DeviceInput>> DeviceInput::Open(const std::string& spec,
+                                                             const session::Scene& scene) {
   std::unique_ptr<DeviceInput> input(new DeviceInput);
   input->clock_ = spec.starts_with("play:") ? &input->simulated_ : &device::SystemClock();
   auto driver = device::MakeDriver(spec, LoadStoreOrWarn(), *input->clock_);

@@ -30,6 +30,13 @@ struct EmulateOptions {
 core::Result<std::unique_ptr<Emulator>> MakeEmulator(const EmulateOptions& options,
                                                      const std::vector<device::Fault>& faults) {
   const device::HandMotion motion = options.motion == "rest" ? device::CalcRest : device::CalcHandMotion;
+  if (options.kind == "haply") {
+    const auto position = [motion](int device, double time) {
+      const device::HandSample hand = motion(time)[static_cast<std::size_t>(device)];
+      return math::Vec3{-0.1 * hand.pan, 0.15 + hand.depth, 0.1 * hand.tilt};
+    };
+    return device::MakeHaplyEmulator({2, position}, std::make_shared<device::HaplyForces>());
+  }
   if (options.kind == "jaw") return device::MakeJawEmulator({{}, motion});
   const auto hands = device::MakeHandsSettings(device::DefaultTracker());
   if (!hands) return hands.error();
@@ -54,7 +61,7 @@ core::Status Emulate(const EmulateOptions& options) {
   }
   auto emulator = MakeEmulator(options, faults);
   if (!emulator) return emulator.error();
-  const auto host = options.kind == "igtl"
+  const auto host = options.kind == "igtl" || options.kind == "haply"
                         ? device::EmulatorHost::MakeTcp(std::move(*emulator), options.port, faults)
                         : device::EmulatorHost::MakeSerial(std::move(*emulator), faults);
   if (!host) return host.error();
@@ -76,22 +83,30 @@ core::Status Emulate(const EmulateOptions& options) {
 }  // namespace
 
 void AddDevicesEmulateCommand(CLI::App& devices, Outcome& outcome) {
-  CLI::App* command = devices.add_subcommand("emulate", "A device in software, byte for byte, with faults on demand");
+  CLI::App* command =
+      devices.add_subcommand("emulate", "A device in software, byte for byte, with faults on demand");
   auto options = std::make_shared<EmulateOptions>();
   command->add_option("kind", options->kind, "Which device")
       ->required()
-      ->check(CLI::IsMember({"fastrak", "fastrak-binary", "liberty", "patriot", "jaw", "igtl"}))
+      ->check(CLI::IsMember({"fastrak", "fastrak-binary", "liberty", "patriot", "jaw", "igtl", "haply"}))
       ->type_name("KIND");
   command
       ->add_option("--fault", options->faults,
-                   "KIND[=RATE][@START][+DURATION], in seconds; kinds: silence, garbage, flips (RATE of bits), unplug, "
+                   "KIND[=RATE][@START][+DURATION], in seconds; kinds: silence, garbage, flips (RATE of "
+                   "bits), unplug, "
                    "flood, jump. May be given several times")
       ->type_name("FAULT");
-  command->add_option("--motion", options->motion, "What the instruments do; tip: they swing about their tips, for calibration")
+  command
+      ->add_option("--motion", options->motion,
+                   "What the instruments do; tip: they swing about their tips, for calibration")
       ->check(CLI::IsMember({"hands", "tip", "rest"}))
       ->capture_default_str();
-  command->add_option("--stations", options->stations, "Sensors plugged in")->check(CLI::Range(1, 3))->capture_default_str();
-  command->add_option("--port", options->port, "igtl: port on this machine; chosen by the system if not given")
+  command->add_option("--stations", options->stations, "Sensors plugged in")
+      ->check(CLI::Range(1, 3))
+      ->capture_default_str();
+  command
+      ->add_option("--port", options->port,
+                   "igtl, haply: port on this machine; chosen by the system if not given")
       ->check(CLI::Range(0, 65535))
       ->type_name("PORT");
   command->add_option("--seconds", options->seconds, "How long; until Ctrl+C if not given")

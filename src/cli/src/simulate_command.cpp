@@ -88,7 +88,8 @@ core::Result<SimulateReport> Simulate(const SimulateOptions& options) {
     auto listening = net::IgtlServer::Make(settings, simulation.Surfaces());
     if (!listening) return listening.error();
     server = std::move(*listening);
-    core::Log(core::LogLevel::kInfo, "OpenIGTLink: viewers may connect to localhost:" + std::to_string(server->Port()));
+    core::Log(core::LogLevel::kInfo,
+              "OpenIGTLink: viewers may connect to localhost:" + std::to_string(server->Port()));
   }
 
   const auto count = static_cast<std::size_t>(options.ticks);
@@ -185,8 +186,9 @@ void AddSimulateCommand(CLI::App& app, Outcome& outcome) {
                    "Hands of a device in place of the script's; play:FILE repeats a recording bit for bit")
       ->type_name("DEVICE");
   command
-      ->add_option("--igtl", options->igtl_port,
-                   "Show tools and organs to 3D Slicer on this port of this machine (OpenIGTLink, RAS; 0: any port)")
+      ->add_option(
+          "--igtl", options->igtl_port,
+          "Show tools and organs to 3D Slicer on this port of this machine (OpenIGTLink, RAS; 0: any port)")
       ->check(CLI::Range(0, 65535))
       ->type_name("PORT");
   command->add_flag("--gpu", options->uses_gpu,

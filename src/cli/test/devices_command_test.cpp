@@ -48,7 +48,8 @@ class DevicesCommand : public testing::Test {
                     std::vector<device::Fault> faults = {}) {
     host_ = *device::EmulatorHost::MakeSerial(std::move(emulator), std::move(faults));
     thread_ = std::thread([this] {
-      for (const core::Stopwatch watch; is_running_; device::SystemClock().Sleep(0.001)) host_->Step(watch.Seconds());
+      for (const core::Stopwatch watch; is_running_; device::SystemClock().Sleep(0.001))
+        host_->Step(watch.Seconds());
     });
     return kind + ":" + host_->Address();
   }
@@ -64,7 +65,8 @@ class DevicesCommand : public testing::Test {
 TEST_F(DevicesCommand, ListsKinds) {
   const Printed printed = RunTrocar({"devices", "list"});
   EXPECT_EQ(printed.status, 0);
-  for (const char* kind : {"fastrak", "liberty", "patriot", "jaw-hid", "igtl", "gamepad", "spacemouse", "play"})
+  for (const char* kind :
+       {"fastrak", "liberty", "patriot", "jaw-hid", "igtl", "gamepad", "spacemouse", "play"})
     EXPECT_NE(printed.out.find(kind), std::string::npos) << kind;
   EXPECT_EQ(RunTrocar({"devices", "list", "--json"}).out.front(), '{');
 }
@@ -101,8 +103,8 @@ TEST_F(DevicesCommand, CalibratesTipThenTrocarAndKeepsThem) {
   EXPECT_LT(math::Distance(entry.hands[device::kLeftHand].p_sensor_tip, left.p_sensor_tip), 1e-4);
   EXPECT_EQ(entry.hands[device::kRightHand], device::DefaultTracker().hands[device::kRightHand]);
   // about its tip is no movement in a trocar: refused, and what there is stays
-  const Printed refused =
-      RunTrocar({"devices", "calibrate", "trocar", name, "--hand", "right", "--seconds", "0.5", "--wait", "0"});
+  const Printed refused = RunTrocar(
+      {"devices", "calibrate", "trocar", name, "--hand", "right", "--seconds", "0.5", "--wait", "0"});
   EXPECT_EQ(refused.status, 1);
   EXPECT_EQ(Store().Tracker("liberty"), entry);
 }
@@ -119,15 +121,20 @@ TEST_F(DevicesCommand, EmulatesAndPrintsTheNameToUse) {
   const Printed printed = RunTrocar({"devices", "emulate", "patriot", "--seconds", "0.1"});
   EXPECT_EQ(printed.status, 0);
   EXPECT_EQ(printed.out.substr(0, 13), "patriot:/dev/");
-  EXPECT_EQ(RunTrocar({"devices", "emulate", "igtl", "--seconds", "0.1"}).out.substr(0, 15), "igtl:localhost:");
+  EXPECT_EQ(RunTrocar({"devices", "emulate", "igtl", "--seconds", "0.1"}).out.substr(0, 15),
+            "igtl:localhost:");
 }
 
 TEST_F(DevicesCommand, RefusesWrongUse) {
   for (const std::vector<std::string>& words :
-       {std::vector<std::string>{"devices"}, {"devices", "test"}, {"devices", "test", "libery:/dev/x"},
-        {"devices", "test", "liberty"}, {"devices", "emulate", "toaster"},
+       {std::vector<std::string>{"devices"},
+        {"devices", "test"},
+        {"devices", "test", "libery:/dev/x"},
+        {"devices", "test", "liberty"},
+        {"devices", "emulate", "toaster"},
         {"devices", "emulate", "liberty", "--fault", "gremlins", "--seconds", "0.1"},
-        {"devices", "calibrate", "tip", "gamepad"}, {"devices", "calibrate", "jaw", "liberty:/dev/x"}}) {
+        {"devices", "calibrate", "tip", "gamepad"},
+        {"devices", "calibrate", "jaw", "liberty:/dev/x"}}) {
     EXPECT_EQ(RunTrocar(words).status, 2) << words.back();
   }
   EXPECT_EQ(RunTrocar({"devices", "test", "liberty:/dev/no_such_line"}).status, 1);
@@ -148,7 +155,8 @@ TEST_F(DevicesCommand, RecordingRepeatsASimulationBitForBit) {
   for (int i = 0; i < 60; ++i) frames.push_back({i / 60.0, device::CalcHandMotion(i / 60.0)});
   ASSERT_TRUE(core::WriteFile(Path("hands.csv"), device::FormatHandFrames(frames)).ok());
   const auto run = [&](std::vector<std::string> more) {
-    std::vector<std::string> words = {"simulate", TROCAR_SOURCE_DIR "/scenes/demonstration.json", "--ticks", "20", "--json"};
+    std::vector<std::string> words = {"simulate", TROCAR_SOURCE_DIR "/scenes/demonstration.json", "--ticks",
+                                      "20", "--json"};
     words.insert(words.end(), more.begin(), more.end());
     const Printed printed = RunTrocar(words);
     EXPECT_EQ(printed.status, 0) << printed.err;

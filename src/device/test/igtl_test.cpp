@@ -57,8 +57,8 @@ std::string Message(const std::string& type, const std::string& body, std::uint6
     text.resize(length, '\0');
     return text;
   };
-  return Big(static_cast<std::uint64_t>(version), 2) + padded(type, 12) + padded("left", 20) + Big(0, 8) + Big(size, 8) +
-         Big(CalcIgtlCrc(body), 8) + body;
+  return Big(static_cast<std::uint64_t>(version), 2) + padded(type, 12) + padded("left", 20) + Big(0, 8) +
+         Big(size, 8) + Big(CalcIgtlCrc(body), 8) + body;
 }
 
 // golden: the check value of the polynomial (domain facts, section 0)
@@ -73,23 +73,27 @@ TEST(Igtl, HasTheLengthsOfTheProtocol) {
   EXPECT_EQ(FormatIgtlTrackingData("tools", tools, 0).size(), 58u + 2 * 70u);
   // golden: an upright pose 1 mm along x; a column after the other, then millimetres
   const std::string message = FormatIgtlTransform("A", {{}, {0.001, 0, 0}}, 0);
-  EXPECT_EQ(message.substr(58), Big(0x3f800000, 4) + Big(0, 12) + Big(0x3f800000, 4) + Big(0, 12) + Big(0x3f800000, 4) +
-                                    Big(0x3f800000, 4) + Big(0, 8));
+  EXPECT_EQ(message.substr(58), Big(0x3f800000, 4) + Big(0, 12) + Big(0x3f800000, 4) + Big(0, 12) +
+                                    Big(0x3f800000, 4) + Big(0x3f800000, 4) + Big(0, 8));
   EXPECT_EQ(message.substr(0, 14), Big(1, 2) + std::string("TRANSFORM\0\0\0", 12));
 }
 
 TEST(Igtl, GivesBackWhatWasSentInAnyChunks) {
-  const IgtlTool tools[] = {{"left", MakePose()}, {"a name longer than twenty bytes", math::Inverse(MakePose())}};
-  const std::string bytes = FormatIgtlTransform("right", MakePose(), 1.5) + Message("IMAGE", std::string(9000, 'x'), 9000) +
-                            FormatIgtlTrackingData("tools", tools, 2) + FormatIgtlTransform("right", MakePose(), 3);
+  const IgtlTool tools[] = {{"left", MakePose()},
+                            {"a name longer than twenty bytes", math::Inverse(MakePose())}};
+  const std::string bytes =
+      FormatIgtlTransform("right", MakePose(), 1.5) + Message("IMAGE", std::string(9000, 'x'), 9000) +
+      FormatIgtlTrackingData("tools", tools, 2) + FormatIgtlTransform("right", MakePose(), 3);
   for (const std::size_t chunk : {1u << 20, 1u, 2u, 3u, 57u, 58u, 59u, 106u, 4096u}) {
     const Got got = Read(bytes, chunk);
-    ASSERT_EQ(got.names, (std::vector<std::string>{"right", "left", "a name longer than t", "right"})) << chunk;
+    ASSERT_EQ(got.names, (std::vector<std::string>{"right", "left", "a name longer than t", "right"}))
+        << chunk;
     EXPECT_EQ(got.counts.messages, 3u);
     EXPECT_EQ(got.counts.skipped, 1u);
     EXPECT_EQ(got.counts.bad, 0u);
     EXPECT_LT(math::Distance(got.poses[0].translation, MakePose().translation), 1e-7);
-    EXPECT_LT(math::Distance(got.poses[2] * math::Vec3{0.1, 0.2, 0.3}, math::Inverse(MakePose()) * math::Vec3{0.1, 0.2, 0.3}),
+    EXPECT_LT(math::Distance(got.poses[2] * math::Vec3{0.1, 0.2, 0.3},
+                             math::Inverse(MakePose()) * math::Vec3{0.1, 0.2, 0.3}),
               1e-6);
   }
 }
@@ -112,7 +116,8 @@ TEST(Igtl, ReadsTheExtendedHeader) {
 // faults D7
 TEST(Igtl, RefusesSizesThatLie) {
   const std::string body = FormatIgtlTransform("left", MakePose(), 0).substr(58);
-  for (const std::uint64_t size : {std::uint64_t{1} << 32, ~std::uint64_t{0} - 57, ~std::uint64_t{0}, std::uint64_t{1} << 63})
+  for (const std::uint64_t size :
+       {std::uint64_t{1} << 32, ~std::uint64_t{0} - 57, ~std::uint64_t{0}, std::uint64_t{1} << 63})
     EXPECT_FALSE(Read(Message("IMAGE", body, size)).is_followed) << size;
   // small lies about kinds that are read: refused, the stream goes on
   for (const std::uint64_t size : {0u, 47u, 49u, 5000u}) {
@@ -142,7 +147,8 @@ TEST(Igtl, RefusesWrongChecksumsAndWhatIsNoPose) {
   const std::string scaled = Big(0x40000000, 4) + std::string(44, '\0');
   EXPECT_EQ(Read(Message("TRANSFORM", scaled, 48)).counts.bad, 1u);
   // a mirror is no rotation
-  const std::string mirror = Big(0xbf800000, 4) + Big(0, 12) + Big(0x3f800000, 4) + Big(0, 12) + Big(0x3f800000, 4) + Big(0, 12);
+  const std::string mirror =
+      Big(0xbf800000, 4) + Big(0, 12) + Big(0x3f800000, 4) + Big(0, 12) + Big(0x3f800000, 4) + Big(0, 12);
   EXPECT_EQ(Read(Message("TRANSFORM", mirror, 48)).counts.bad, 1u);
 }
 
@@ -151,7 +157,8 @@ TEST(Igtl, SurvivesRandomBytes) {
   const std::string good = FormatIgtlTransform("left", MakePose(), 0);
   for (int trial = 0; trial < 3000; ++trial) {
     std::string bytes = good + good;
-    for (int i = 0; i < 4; ++i) bytes[random.NextWord() % bytes.size()] = static_cast<char>(random.NextWord());
+    for (int i = 0; i < 4; ++i)
+      bytes[random.NextWord() % bytes.size()] = static_cast<char>(random.NextWord());
     const Got whole = Read(bytes);
     const Got parts = Read(bytes, 13);
     EXPECT_EQ(whole.poses.size(), parts.poses.size()) << "seed 21, trial " << trial;
@@ -170,12 +177,14 @@ TEST(IgtlOracle, UnderstandsTheLibraryBothWays) {
   for (int column = 0; column < 3; ++column) {
     math::Vec3 unit;
     unit[column] = 1;
-    for (int row = 0; row < 3; ++row) matrix[row][column] = static_cast<float>(math::Rotate(pose.rotation, unit)[row]);
+    for (int row = 0; row < 3; ++row)
+      matrix[row][column] = static_cast<float>(math::Rotate(pose.rotation, unit)[row]);
   }
   for (int row = 0; row < 3; ++row) matrix[row][3] = static_cast<float>(1000 * pose.translation[row]);
   message->SetMatrix(matrix);
   message->Pack();
-  const Got got = Read({static_cast<const char*>(message->GetPackPointer()), static_cast<std::size_t>(message->GetPackSize())});
+  const Got got = Read({static_cast<const char*>(message->GetPackPointer()),
+                        static_cast<std::size_t>(message->GetPackSize())});
   ASSERT_EQ(got.poses.size(), 1u);
   EXPECT_LT(math::Distance(got.poses[0] * math::Vec3{1, 1, 1}, pose * math::Vec3{1, 1, 1}), 1e-5);
 
@@ -221,11 +230,13 @@ class IgtlTrackerTest : public testing::Test {
   void Make(std::vector<Fault> faults = {}) {
     settings_.hands = *MakeHandsSettings(DefaultTracker());
     settings_.hands.has_hemisphere_doubt = false;
-    host_ = *EmulatorHost::MakeTcp(MakeIgtlEmulator(MoveHands(settings_.hands, CalcHandMotion)), 0, std::move(faults));
+    host_ = *EmulatorHost::MakeTcp(MakeIgtlEmulator(MoveHands(settings_.hands, CalcHandMotion)), 0,
+                                   std::move(faults));
     clock_.Add(*host_);
     const std::string address = host_->Address();
     const int port = std::stoi(address.substr(address.find(':') + 1));
-    driver_ = std::make_unique<IgtlTracker>(settings_, [port] { return ConnectTcp("localhost", port); }, clock_);
+    driver_ = std::make_unique<IgtlTracker>(
+        settings_, [port] { return ConnectTcp("localhost", port); }, clock_);
   }
   IgtlSettings settings_;
   std::unique_ptr<EmulatorHost> host_;
@@ -259,7 +270,8 @@ TEST_F(IgtlTrackerTest, SaysWhichNamesItWants) {
   settings_.names = {"port", "starboard", "periscope"};
   const std::string address = host_->Address();
   const int port = std::stoi(address.substr(address.find(':') + 1));
-  IgtlTracker driver(settings_, [port] { return ConnectTcp("localhost", port); }, clock_);
+  IgtlTracker driver(
+      settings_, [port] { return ConnectTcp("localhost", port); }, clock_);
   const core::Status status = driver.Configure();
   ASSERT_FALSE(status.ok());
   EXPECT_EQ(status.error().code, ErrorCode::kDeviceStale);

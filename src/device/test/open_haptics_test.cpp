@@ -114,7 +114,8 @@ TEST_F(OpenHapticsTest, WarmMotorsDropTheForceAndPass) {
       driver.SendForce(1, haptics::ForceGate::Make({1, 0, 0}));
       Find<void(unsigned int)>("StandInRaise")(error);
       return Find<int()>("StandInDrops")() > before;
-    })) << std::hex << error;
+    })) << std::hex
+        << error;
     EXPECT_NE(driver.ReadForceSamples(samples), ReadStatus::kLost);
   }
   driver.Finalize();
@@ -134,7 +135,8 @@ TEST_F(OpenHapticsTest, OtherErrorsLoseTheDeviceAtZeroForce) {
     ASSERT_TRUE(WaitFor([&] {
       driver.SendForce(0, haptics::ForceGate::Make({1, 0, 0}));
       return driver.ReadForceSamples(samples) == ReadStatus::kLost;
-    })) << std::hex << error;
+    })) << std::hex
+        << error;
     EXPECT_EQ(driver.GetState(), DriverState::kUnconfigured);
     EXPECT_EQ(Force(0), math::Vec3{});
     EXPECT_EQ(Find<int()>("StandInMisuses")(), 0);

@@ -29,7 +29,8 @@ class FakeDaemon {
     address.sun_family = AF_UNIX;
     std::strncpy(address.sun_path, path.c_str(), sizeof address.sun_path - 1);
     ::unlink(path.c_str());
-    is_good_ = ::bind(listener_, reinterpret_cast<sockaddr*>(&address), sizeof address) == 0 && ::listen(listener_, 1) == 0;
+    is_good_ = ::bind(listener_, reinterpret_cast<sockaddr*>(&address), sizeof address) == 0 &&
+               ::listen(listener_, 1) == 0;
     thread_ = std::thread([this] {
       pollfd wait{listener_, POLLIN, 0};
       if (::poll(&wait, 1, 5000) == 1) caller_ = ::accept(listener_, nullptr, nullptr);

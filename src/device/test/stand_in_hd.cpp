@@ -30,15 +30,25 @@ void* callback_data = nullptr;
 }  // namespace
 
 // --- what the tests turn
-STAND_IN void StandInRaise(unsigned int error) { pending_error = error; }
+STAND_IN void StandInRaise(unsigned int error) {
+  pending_error = error;
+}
 STAND_IN void StandInForce(int device, double* force) {
   for (std::size_t i = 0; i < 3; ++i) force[i] = forces[static_cast<std::size_t>(device)][i];
 }
-STAND_IN int StandInMisuses() { return misuses; }
-STAND_IN int StandInCallbacks() { return callbacks; }
+STAND_IN int StandInMisuses() {
+  return misuses;
+}
+STAND_IN int StandInCallbacks() {
+  return callbacks;
+}
 /// Times that a force gave way to zero.
-STAND_IN int StandInDrops() { return drops; }
-STAND_IN int StandInDevices() { return devices; }
+STAND_IN int StandInDrops() {
+  return drops;
+}
+STAND_IN int StandInDevices() {
+  return devices;
+}
 
 // --- the interface
 STAND_IN unsigned int hdInitDevice(const char* name) {
@@ -55,7 +65,9 @@ STAND_IN void hdDisableDevice(unsigned int) {
   if (is_running) ++misuses;
   --devices;
 }
-STAND_IN void hdMakeCurrentDevice(unsigned int device) { current = device; }
+STAND_IN void hdMakeCurrentDevice(unsigned int device) {
+  current = device;
+}
 STAND_IN void hdBeginFrame(unsigned int device) {
   if (open_frames++ != 0) ++misuses;
   current = device;
@@ -82,22 +94,32 @@ STAND_IN void hdGetDoublev(unsigned int what, double* values) {
   if (what == 0x2604) *values = 0.88;
   if (what == 0x2605) values[0] = 0.2, values[1] = 0.4, values[2] = 0.1;
 }
-STAND_IN void hdGetIntegerv(unsigned int, int* value) { *value = current == 0 ? 1 : 0; }
+STAND_IN void hdGetIntegerv(unsigned int, int* value) {
+  *value = current == 0 ? 1 : 0;
+}
 STAND_IN void hdSetDoublev(unsigned int what, const double* values) {
   if (what != 0x2700 || open_frames != 1 || !is_pushing[current]) ++misuses;
   auto& force = forces[current];
   if (force[0] != 0 && values[0] == 0) ++drops;
   for (std::size_t i = 0; i < 3; ++i) force[i] = values[i];
 }
-STAND_IN unsigned int hdCheckCalibration() { return 0x5000; }
-STAND_IN ErrorInfo hdGetError() { return {pending_error.exchange(0), 0, current}; }
-STAND_IN const char* hdGetErrorString(unsigned int) { return "a stand-in's error"; }
+STAND_IN unsigned int hdCheckCalibration() {
+  return 0x5000;
+}
+STAND_IN ErrorInfo hdGetError() {
+  return {pending_error.exchange(0), 0, current};
+}
+STAND_IN const char* hdGetErrorString(unsigned int) {
+  return "a stand-in's error";
+}
 STAND_IN unsigned long hdScheduleAsynchronous(unsigned int (*wanted)(void*), void* data, unsigned short) {
   callback = wanted;
   callback_data = data;
   return 1;
 }
-STAND_IN void hdUnschedule(unsigned long) { callback = nullptr; }
+STAND_IN void hdUnschedule(unsigned long) {
+  callback = nullptr;
+}
 STAND_IN void hdStartScheduler() {
   is_running = true;
   scheduler = std::thread([] {

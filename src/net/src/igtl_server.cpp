@@ -23,7 +23,8 @@ std::string FormatTools(const session::Snapshot& snapshot) {
       {"Laparoscope", RasFromWorld(snapshot.X_world_laparoscope)},
   }};
   std::string bytes;
-  for (const device::IgtlTool& tool : tools) bytes += device::FormatIgtlTransform(tool.name, tool.pose, snapshot.time);
+  for (const device::IgtlTool& tool : tools)
+    bytes += device::FormatIgtlTransform(tool.name, tool.pose, snapshot.time);
   return bytes + device::FormatIgtlTrackingData("Tools", tools, snapshot.time);
 }
 
@@ -37,7 +38,8 @@ std::string FormatOrgans(std::span<const session::SurfaceInfo> organs, const ses
     corners.clear();
     for (std::uint32_t node = 0; node < organ.node_count; ++node)
       points.push_back(RasFromWorld(snapshot.positions[organ.first_node + node]));
-    for (const geometry::Triangle& triangle : organ.triangles) corners.insert(corners.end(), triangle.begin(), triangle.end());
+    for (const geometry::Triangle& triangle : organ.triangles)
+      corners.insert(corners.end(), triangle.begin(), triangle.end());
     bytes += device::FormatIgtlPolyData(organ.name, points, corners, snapshot.time);
   }
   return bytes;
@@ -50,7 +52,8 @@ math::Vec3 RasFromWorld(const math::Vec3& p_world) noexcept {
 }
 
 math::Pose RasFromWorld(const math::Pose& X_world_tool) {
-  return {math::Normalized(RotationRasWorld() * X_world_tool.rotation), RasFromWorld(X_world_tool.translation)};
+  return {math::Normalized(RotationRasWorld() * X_world_tool.rotation),
+          RasFromWorld(X_world_tool.translation)};
 }
 
 IgtlServer::IgtlServer(const IgtlServerSettings& settings, std::unique_ptr<device::TcpListener> listener)

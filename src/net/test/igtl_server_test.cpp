@@ -19,7 +19,8 @@ TEST(RasFromWorld, TurnsLeftCranialAnteriorIntoRightAnteriorSuperior) {
   EXPECT_EQ(RasFromWorld(Vec3{0, 1, 0}), (Vec3{0, 0, 1})) << "cranial is superior";
   EXPECT_EQ(RasFromWorld(Vec3{0, 0, 1}), (Vec3{0, 1, 0})) << "anterior";
   // a pose moves points as the map of points does
-  const math::Pose X_world_tool{math::RotationAbout(math::Normalized(Vec3{1, -2, 0.5}), 1.1), {0.1, 0.2, 0.3}};
+  const math::Pose X_world_tool{math::RotationAbout(math::Normalized(Vec3{1, -2, 0.5}), 1.1),
+                                {0.1, 0.2, 0.3}};
   for (const Vec3 p : {Vec3{0, 0, 0}, Vec3{0.1, 0, 0}, Vec3{0, 0.1, 0.2}})
     EXPECT_LT(math::Distance(RasFromWorld(X_world_tool) * p, RasFromWorld(X_world_tool * p)), 1e-12);
 }
@@ -122,7 +123,10 @@ TEST_F(IgtlServerTest, IgnoresWhatItIsTold) {
   const auto viewer = Connect();
   Tick(1);
   const session::Snapshot before = snapshot_;
-  ASSERT_GT(viewer->Write(device::FormatIgtlTransform("LeftTool", {{}, {9, 9, 9}}, 0) + std::string(20000, 'x')).count, 0u);
+  ASSERT_GT(
+      viewer->Write(device::FormatIgtlTransform("LeftTool", {{}, {9, 9, 9}}, 0) + std::string(20000, 'x'))
+          .count,
+      0u);
   Tick(10);
   EXPECT_EQ(server_->ViewerCount(), 1u);
   EXPECT_EQ(snapshot_.instruments[0].X_world_tool, before.instruments[0].X_world_tool);

@@ -73,7 +73,8 @@ bool DeviceThread::Content::Connect() {
   }
   const bool was_lost = report.losses > 0;
   if (done) {
-    Say(DeviceReport::Phase::kRunning, driver->GetName() + (was_lost ? " is connected again" : " is connected"));
+    Say(DeviceReport::Phase::kRunning,
+        driver->GetName() + (was_lost ? " is connected again" : " is connected"));
   } else {
     Say(was_lost ? DeviceReport::Phase::kLost : DeviceReport::Phase::kConnecting,
         done.error().Text() + "; trying again");
@@ -97,7 +98,8 @@ void DeviceThread::Content::Run() {
       case device::ReadStatus::kLost:
         ++report.losses;
         Say(DeviceReport::Phase::kLost,
-            core::Error{core::ErrorCode::kDeviceLost, driver->GetName() + " was lost; check plug and power"}.Text());
+            core::Error{core::ErrorCode::kDeviceLost, driver->GetName() + " was lost; check plug and power"}
+                .Text());
         Nap(kRetryPeriod);
         break;
     }

@@ -18,7 +18,8 @@ core::Status StartSdl() {
   SDL_SetHint(SDL_HINT_JOYSTICK_ALLOW_BACKGROUND_EVENTS, "1");
   SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1");
   if (SDL_InitSubSystem(SDL_INIT_GAMECONTROLLER) == 0) return {};
-  return core::Error{core::ErrorCode::kDeviceLost, std::string("gamepad: SDL does not start: ") + SDL_GetError()};
+  return core::Error{core::ErrorCode::kDeviceLost,
+                     std::string("gamepad: SDL does not start: ") + SDL_GetError()};
 }
 
 int FindGamepad() {
@@ -49,7 +50,9 @@ class SdlGamepad : public GamepadSource {
     const auto axis = [this](SDL_GameControllerAxis which) {
       return std::max(-1.0, SDL_GameControllerGetAxis(pad_, which) / kFull);
     };
-    const auto is_down = [this](SDL_GameControllerButton which) { return SDL_GameControllerGetButton(pad_, which) != 0; };
+    const auto is_down = [this](SDL_GameControllerButton which) {
+      return SDL_GameControllerGetButton(pad_, which) != 0;
+    };
     state.sides[0] = {axis(SDL_CONTROLLER_AXIS_LEFTX), axis(SDL_CONTROLLER_AXIS_LEFTY),
                       axis(SDL_CONTROLLER_AXIS_TRIGGERLEFT), is_down(SDL_CONTROLLER_BUTTON_LEFTSHOULDER)};
     state.sides[1] = {axis(SDL_CONTROLLER_AXIS_RIGHTX), axis(SDL_CONTROLLER_AXIS_RIGHTY),

@@ -39,7 +39,8 @@ Error Usage(const std::string& text) {
   return {ErrorCode::kUsage, text};
 }
 
-core::Result<std::unique_ptr<PoseDriver>> MakePolhemus(PolhemusFormat format, const DeviceSpec& spec, const DeviceStore& store, Clock& clock) {
+core::Result<std::unique_ptr<PoseDriver>> MakePolhemus(PolhemusFormat format, const DeviceSpec& spec,
+                                                       const DeviceStore& store, Clock& clock) {
   const TrackerEntry entry = store.Tracker(spec.kind);
   core::Result<TrackedHandsSettings> hands = MakeHandsSettings(entry);
   if (!hands) return hands.error();
@@ -53,7 +54,8 @@ core::Result<std::unique_ptr<PoseDriver>> MakePolhemus(PolhemusFormat format, co
 }
 
 /// "host:port", "host" or nothing for this machine.
-core::Result<std::unique_ptr<PoseDriver>> MakeIgtl(const DeviceSpec& spec, const DeviceStore& store, Clock& clock) {
+core::Result<std::unique_ptr<PoseDriver>> MakeIgtl(const DeviceSpec& spec, const DeviceStore& store,
+                                                   Clock& clock) {
   core::Result<TrackedHandsSettings> hands = MakeHandsSettings(store.Tracker(spec.kind));
   if (!hands) return hands.error();
   IgtlSettings settings;
@@ -70,18 +72,19 @@ core::Result<std::unique_ptr<PoseDriver>> MakeIgtl(const DeviceSpec& spec, const
     host.resize(colon);
   }
   if (host.empty()) host = "localhost";
-  return std::unique_ptr<PoseDriver>(
-      std::make_unique<IgtlTracker>(settings, [host, port] { return ConnectTcp(host, port); }, clock));
+  return std::unique_ptr<PoseDriver>(std::make_unique<IgtlTracker>(
+      settings, [host, port] { return ConnectTcp(host, port); }, clock));
 }
 
-std::unique_ptr<JawSensor> MakeJaw(const DeviceSpec& spec, const std::array<JawCalibration, kJawTools>& calibrations,
-                                   Clock& clock) {
+std::unique_ptr<JawSensor> MakeJaw(const DeviceSpec& spec,
+                                   const std::array<JawCalibration, kJawTools>& calibrations, Clock& clock) {
   constexpr int kBaud = 115200;  // without meaning for boards with native USB
   JawSettings settings;
   settings.calibrations = calibrations;
   if (spec.kind == "jaw-hid") {
     settings.format = JawFormat::kHid;
-    return std::make_unique<JawSensor>(settings, [path = spec.address] { return OpenHidSensor(path); }, clock);
+    return std::make_unique<JawSensor>(
+        settings, [path = spec.address] { return OpenHidSensor(path); }, clock);
   }
   const int baud = spec.baud > 0 ? spec.baud : kBaud;
   return std::make_unique<JawSensor>(
@@ -99,7 +102,8 @@ DriverResult MakeOne(const DeviceSpec& spec, const DeviceStore& store, Clock& cl
   if (const auto format = FindFormat(spec.kind)) return AsDriver(MakePolhemus(*format, spec, store, clock));
   if (spec.kind == "igtl") return AsDriver(MakeIgtl(spec, store, clock));
   if (spec.kind == "gamepad") return DriverResult(std::make_unique<Gamepad>(MakeSdlGamepad(), clock));
-  if (spec.kind == "spacemouse") return DriverResult(std::make_unique<SpaceMouse>(MakeSpacenavSource(), clock));
+  if (spec.kind == "spacemouse")
+    return DriverResult(std::make_unique<SpaceMouse>(MakeSpacenavSource(), clock));
   if (spec.kind == "play") return DriverResult(std::make_unique<HandPlayer>(spec.address, clock));
   return DriverResult(MakeJaw(spec, store.jaws, clock));
 }
@@ -119,8 +123,8 @@ core::Result<DeviceSpec> ParseDeviceSpec(std::string_view text) {
   const std::string whole(text);
   const std::size_t colon = std::min(text.find(':'), text.size());
   spec.kind = text.substr(0, colon);
-  const auto* const kind =
-      std::find_if(std::begin(kKinds), std::end(kKinds), [&](const DeviceKind& one) { return one.name == spec.kind; });
+  const auto* const kind = std::find_if(std::begin(kKinds), std::end(kKinds),
+                                        [&](const DeviceKind& one) { return one.name == spec.kind; });
   if (kind == std::end(kKinds)) {
     std::string known;
     for (const DeviceKind& one : kKinds) known.append(known.empty() ? "" : ", ").append(one.name);
@@ -153,13 +157,15 @@ DriverResult MakeDriver(std::string_view text, const DeviceStore& store, Clock& 
   const core::Result<DeviceSpec> jaws = ParseDeviceSpec(text.substr(plus + 1));
   if (!jaws) return jaws.error();
   if (IsJaw(*hands) || !IsJaw(*jaws))
-    return Usage("\"" + std::string(text) + "\": a jaw sensor goes behind the +, something with hands before it");
+    return Usage("\"" + std::string(text) +
+                 "\": a jaw sensor goes behind the +, something with hands before it");
   DriverResult second = MakeOne(*jaws, store, clock);
   if (!second) return second;
   return DriverResult(std::make_unique<HandRig>(std::move(*first), std::move(*second)));
 }
 
-core::Result<std::unique_ptr<PoseDriver>> MakeTracker(std::string_view text, const DeviceStore& store, Clock& clock) {
+core::Result<std::unique_ptr<PoseDriver>> MakeTracker(std::string_view text, const DeviceStore& store,
+                                                      Clock& clock) {
   const core::Result<DeviceSpec> spec = ParseDeviceSpec(text);
   if (!spec) return spec.error();
   if (const auto format = FindFormat(spec->kind)) return MakePolhemus(*format, *spec, store, clock);
@@ -184,7 +190,8 @@ std::vector<FoundDevice> ListDevices() {
     found.push_back({(kind.empty() ? "KIND" : kind) + ":" + port.path, port.description});
   }
   for (const std::string& name : ListGamepads()) found.push_back({"gamepad", name});
-  for (const HidInfo& sensor : ListHidSensors()) found.push_back({"jaw-hid:" + sensor.path, sensor.description});
+  for (const HidInfo& sensor : ListHidSensors())
+    found.push_back({"jaw-hid:" + sensor.path, sensor.description});
   return found;
 }
 

@@ -8,10 +8,10 @@
 namespace trocar::device {
 namespace {
 
-constexpr double kAcross = 0.7;    // pan and tilt at full deflection [rad/s]
-constexpr double kTurn = 2.5;      // spin at full deflection [rad/s]
-constexpr double kIn = 0.06;       // depth at full deflection [m/s]
-constexpr double kJaw = 2.0;       // of a button [rad/s]
+constexpr double kAcross = 0.7;       // pan and tilt at full deflection [rad/s]
+constexpr double kTurn = 2.5;         // spin at full deflection [rad/s]
+constexpr double kIn = 0.06;          // depth at full deflection [m/s]
+constexpr double kJaw = 2.0;          // of a button [rad/s]
 constexpr double kLongestStep = 0.1;  // a program that stood still makes no jump [s]
 constexpr double kStickDeadZone = 0.12;
 constexpr double kCapDeadZone = 0.05;

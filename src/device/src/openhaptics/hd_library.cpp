@@ -13,10 +13,11 @@ core::Result<std::unique_ptr<Library>> Library::Load(const std::string& name) {
   auto library = std::make_unique<Library>();
   library->file = ::dlopen(name.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (library->file == nullptr) {
-    return core::Error{core::ErrorCode::kDeviceUnsupported,
-                       "OpenHaptics is not installed (" + name +
-                           " is not found): install it and the device's driver from its maker, and set the device up "
-                           "there"};
+    return core::Error{
+        core::ErrorCode::kDeviceUnsupported,
+        "OpenHaptics is not installed (" + name +
+            " is not found): install it and the device's driver from its maker, and set the device up "
+            "there"};
   }
   std::string missing;
   const auto find = [&](const char* function, auto& pointer) {

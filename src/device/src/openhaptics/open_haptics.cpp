@@ -6,10 +6,10 @@
 #include <atomic>
 #include <cmath>
 
+#include "../hands/stylus_hand.h"
 #include "hd_library.h"
 #include "trocar/core/clock.h"
 #include "trocar/core/newest_slot.h"
-#include "trocar/device/mouse_keyboard.h"
 #include "trocar/device/ports.h"
 
 namespace trocar::device {
@@ -40,7 +40,8 @@ Vec3 FromMillimetres(const double* v) noexcept {
 /// Rotation of a column-major 4 x 4 matrix.
 math::Quaternion RotationOf(const std::array<double, 16>& m) noexcept {
   const Vec3 x = math::Normalized(Vec3{m[0], m[1], m[2]}, {1, 0, 0});
-  const Vec3 y = math::Normalized(Vec3{m[4], m[5], m[6]} - x * math::Dot(x, Vec3{m[4], m[5], m[6]}), {0, 1, 0});
+  const Vec3 y =
+      math::Normalized(Vec3{m[4], m[5], m[6]} - x * math::Dot(x, Vec3{m[4], m[5], m[6]}), {0, 1, 0});
   return math::RotationFromAxes(x, y, math::Cross(x, y));
 }
 
@@ -57,8 +58,8 @@ struct OpenHaptics::Content {
 
   core::NewestSlot<Reports> reports;
   core::NewestSlot<Command> commands;
-  Command command;      // of the haptic loop
-  Reports newest;       // of the library's thread
+  Command command;  // of the haptic loop
+  Reports newest;   // of the library's thread
   std::array<bool, kMaxDevices> is_warm{};
   std::atomic<bool> is_stopping{false}, has_stopped{false}, is_lost{false};
 
@@ -94,8 +95,9 @@ core::Status OpenHaptics::Content::OpenDevice(const std::string& name) {
   limit.workspace_min = FromMillimetres(box.data());
   limit.workspace_max = FromMillimetres(box.data() + 3);
   if (!(limit.max_force > 0.0) || !std::isfinite(limit.max_force)) {
-    return core::Error{ErrorCode::kDeviceSettings,
-                       "\"" + name + "\" does not say how much force it bears; no force can be sent to it safely"};
+    return core::Error{
+        ErrorCode::kDeviceSettings,
+        "\"" + name + "\" does not say how much force it bears; no force can be sent to it safely"};
   }
   limits.push_back(limit);
   library->enable(hd::kForceOutput);
@@ -161,7 +163,8 @@ hd::CallbackCode OpenHaptics::Content::Tick() noexcept {
 }
 
 OpenHaptics::OpenHaptics(const OpenHapticsSettings& settings)
-    : ForceDriver("openhaptics", static_cast<int>(std::clamp<std::size_t>(settings.names.size(), 1, kMaxDevices))),
+    : ForceDriver("openhaptics",
+                  static_cast<int>(std::clamp<std::size_t>(settings.names.size(), 1, kMaxDevices))),
       content_(std::make_unique<Content>(settings)) {}
 
 OpenHaptics::~OpenHaptics() {
@@ -207,7 +210,8 @@ core::Status OpenHaptics::DoActivate() {
   c.is_warm = {};
   c.callback = c.library->schedule(&Content::OnTick, &c, hd::kMaxPriority);
   c.library->start_scheduler();
-  if (const hd::ErrorInfo error = c.library->get_error(); error.code != hd::kSuccess && !hd::IsPassing(error.code)) {
+  if (const hd::ErrorInfo error = c.library->get_error();
+      error.code != hd::kSuccess && !hd::IsPassing(error.code)) {
     DoDeactivate();
     return c.LibraryError("the haptic scheduler does not start", error.code);
   }
@@ -218,7 +222,8 @@ core::Status OpenHaptics::DoActivate() {
 void OpenHaptics::DoDeactivate() noexcept {
   Content& c = *content_;
   c.is_stopping.store(true, std::memory_order_release);
-  for (double waited = 0; !c.has_stopped.load(std::memory_order_acquire) && waited < kLongestWait; waited += 0.001)
+  for (double waited = 0; !c.has_stopped.load(std::memory_order_acquire) && waited < kLongestWait;
+       waited += 0.001)
     SystemClock().Sleep(0.001);
   c.library->stop_scheduler();
   c.library->unschedule(c.callback);
@@ -241,23 +246,12 @@ ReadStatus OpenHaptics::DoReadForceSamples(std::span<ForceSample> samples) noexc
   return is_fresh ? ReadStatus::kFresh : ReadStatus::kUnchanged;
 }
 
-/// The stylus's point as the tip of an instrument in a virtual trocar; the first button closes the jaws.
 ReadStatus OpenHaptics::DoRead(std::span<HandSample> samples) noexcept {
   Content& c = *content_;
   if (c.is_lost.load(std::memory_order_acquire)) return ReadStatus::kLost;
   const bool is_fresh = c.reports.Update();
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    const ForceSample& report = c.reports.Front()[i];
-    // device: x right, y up, z towards the person; world: x right, y away from the person, z up
-    const Vec3 way = report.position - c.settings.p_device_trocar;
-    const Vec3 a = math::Normalized(Vec3{way.x, -way.z, way.y}, {0, 0, -1});
-    samples[i].pan = std::atan2(-a.x, -a.z);
-    samples[i].tilt = std::asin(std::clamp(a.y, -1.0, 1.0));
-    samples[i].depth = math::Norm(way);
-    samples[i].spin = 2.0 * std::atan2(report.orientation.z, report.orientation.w);
-    samples[i].jaw = (report.buttons & 1u) != 0 ? 0.0 : HandLimits{}.max_jaw;
-    samples[i].is_valid = report.sequence > 0 && report.is_calibrated;
-  }
+  for (std::size_t i = 0; i < samples.size(); ++i)
+    SetHand(c.reports.Front()[i], c.settings.p_device_trocar, samples[i]);
   return is_fresh ? ReadStatus::kFresh : ReadStatus::kUnchanged;
 }
 

@@ -10,7 +10,8 @@ namespace {
 
 using math::Vec3;
 
-constexpr std::size_t kTypeAt = 2, kTypeSize = 12, kNameAt = 14, kNameSize = 20, kBodySizeAt = 42, kCrcAt = 50;
+constexpr std::size_t kTypeAt = 2, kTypeSize = 12, kNameAt = 14, kNameSize = 20, kBodySizeAt = 42,
+                      kCrcAt = 50;
 constexpr std::size_t kTransformSize = 48;
 constexpr std::size_t kToolSize = 70, kToolPoseAt = 22;
 constexpr std::size_t kExtendedHeaderSize = 12;
@@ -41,7 +42,8 @@ bool ReadPose(std::string_view bytes, math::Pose& pose) noexcept {
   }
   const auto is_unit = [](const Vec3& v) { return std::fabs(math::Norm(v) - 1.0) <= kUnitTolerance; };
   if (!is_unit(columns[0]) || !is_unit(columns[1]) || !is_unit(columns[2])) return false;
-  if (!(math::Dot(math::Cross(columns[0], columns[1]), columns[2]) >= 1.0 - 3.0 * kUnitTolerance)) return false;
+  if (!(math::Dot(math::Cross(columns[0], columns[1]), columns[2]) >= 1.0 - 3.0 * kUnitTolerance))
+    return false;
   pose.translation = columns[3] / 1000.0;
   if (!(math::Norm(pose.translation) <= kReach)) return false;
   const Vec3 x = math::Normalized(columns[0]);

@@ -64,7 +64,8 @@ core::Status IgtlTracker::DoConfigure() {
   transport_.reset();
   return core::Error{core::ErrorCode::kDeviceStale,
                      "igtl: no TRANSFORM or TDATA came whose name begins with " + settings_.names[0] + ", " +
-                         settings_.names[1] + " or " + settings_.names[2] + "; name the transforms so at the server"};
+                         settings_.names[1] + " or " + settings_.names[2] +
+                         "; name the transforms so at the server"};
 }
 
 core::Status IgtlTracker::DoActivate() {

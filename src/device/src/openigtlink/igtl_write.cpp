@@ -64,7 +64,8 @@ constexpr std::array<std::uint64_t, 256> kCrcTable = MakeCrcTable();
 
 std::uint64_t CalcIgtlCrc(std::string_view bytes) noexcept {
   std::uint64_t crc = 0;
-  for (const char byte : bytes) crc = kCrcTable[(crc >> 56 ^ static_cast<unsigned char>(byte)) & 0xff] ^ (crc << 8);
+  for (const char byte : bytes)
+    crc = kCrcTable[(crc >> 56 ^ static_cast<unsigned char>(byte)) & 0xff] ^ (crc << 8);
   return crc;
 }
 
@@ -90,8 +91,8 @@ std::string FormatIgtlPolyData(std::string_view name, std::span<const math::Vec3
                                std::span<const std::uint32_t> triangles, double time) {
   const auto triangle_count = static_cast<std::uint32_t>(triangles.size() / 3);
   // counts and sizes: points, vertices, lines, polygons, triangle strips, attributes
-  const std::uint32_t counts[] = {static_cast<std::uint32_t>(points.size()), 0, 0, 0, 0, triangle_count,
-                                  16 * triangle_count, 0, 0, 0};
+  const std::uint32_t counts[] = {
+      static_cast<std::uint32_t>(points.size()), 0, 0, 0, 0, triangle_count, 16 * triangle_count, 0, 0, 0};
   std::string body;
   body.reserve(sizeof counts + 12 * points.size() + 16 * triangle_count);
   for (const std::uint32_t count : counts) Append(body, count);

@@ -24,9 +24,10 @@ class SpacenavSource : public SpaceMouseSource {
       is_open_ = true;
       return {};
     }
-    return core::Error{core::ErrorCode::kDeviceLost,
-                       "spacenavd does not answer: install spacenavd, start it (sudo systemctl start spacenavd), plug "
-                       "the SpaceMouse in"};
+    return core::Error{
+        core::ErrorCode::kDeviceLost,
+        "spacenavd does not answer: install spacenavd, start it (sudo systemctl start spacenavd), plug "
+        "the SpaceMouse in"};
   }
 
   bool Poll(SpaceMouseState& state) noexcept override {

@@ -53,9 +53,9 @@ class IgtlReader {
   /// Largest message that is read: a header and a TDATA body of 58 tools [bytes].
   static constexpr std::size_t kCapacity = 4160;
   std::array<char, kCapacity> buffer_{};
-  std::size_t size_ = 0;         // bytes there
+  std::size_t size_ = 0;  // bytes there
   std::size_t wanted_ = kIgtlHeaderSize;
-  std::uint64_t to_skip_ = 0;    // bytes of a body that is not read
+  std::uint64_t to_skip_ = 0;  // bytes of a body that is not read
   IgtlCounts counts_;
 };
 

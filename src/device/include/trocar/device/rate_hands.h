@@ -30,8 +30,8 @@ double WithoutDeadZone(double deflection, double dead_zone) noexcept;
 /// Sticks to the right and down are positive, as SDL has it.
 struct GamepadState {
   struct Side {
-    double x = 0, y = 0;         ///< stick, -1 to 1
-    double trigger = 0;          ///< 0 to 1, pulled
+    double x = 0, y = 0;  ///< stick, -1 to 1
+    double trigger = 0;   ///< 0 to 1, pulled
     bool is_shoulder_down = false;
   };
   std::array<Side, 2> sides;  ///< left, right

@@ -20,10 +20,10 @@ math::Vec3 RasFromWorld(const math::Vec3& p_world) noexcept;
 math::Pose RasFromWorld(const math::Pose& X_world_tool);
 
 struct IgtlServerSettings {
-  int port = device::kIgtlPort;  ///< 0 lets the system choose
-  bool is_local_only = true;     ///< false: other machines may look on, too
+  int port = device::kIgtlPort;   ///< 0 lets the system choose
+  bool is_local_only = true;      ///< false: other machines may look on, too
   double tool_period = 1.0 / 30;  ///< between two sets of tools, simulated time [s]
-  double organ_period = 0.5;     ///< between two sets of organs, simulated time [s]
+  double organ_period = 0.5;      ///< between two sets of organs, simulated time [s]
 };
 
 /// A server that only speaks: whatever a viewer sends is thrown away, so that no message from a network can change anything.
