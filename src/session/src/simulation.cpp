@@ -99,6 +99,7 @@ struct Simulation::Content {
   std::vector<std::uint32_t> torn_springs;  // (springs) those of the walls that tore in this tick, first
   std::size_t torn_spring_count = 0;
   Snapshot snapshot;
+  std::unique_ptr<haptics::PatchCutter> patch_cutter;
 
   void ReadInputs(const Input& input) noexcept;
   void MoveInstruments(const Input& input) noexcept;
@@ -362,6 +363,7 @@ core::Result<Simulation> Simulation::Make(std::shared_ptr<const Scene> scene, in
   auto content = std::make_unique<Content>();
   content->scene = std::move(scene);
   content->tissue_model = tissue::MakeTissueModel(made->definition);
+  content->patch_cutter = std::make_unique<haptics::PatchCutter>(content->tissue_model.Size());
   content->surfaces = std::move(made->surfaces);
   content->MakeSolver(std::max(1, threads), solve_on);
   made->conservation.imaging_gravity = kImagingGravity;
@@ -426,6 +428,14 @@ std::span<const SurfaceInfo> Simulation::Surfaces() const {
 }
 const Snapshot& Simulation::GetSnapshot() const {
   return content_->snapshot;
+}
+
+void Simulation::CutPatch(Hand hand, haptics::LocalPatch& patch) noexcept {
+  const Content& c = *content_;
+  content_->patch_cutter->Cut({c.tissue_model, c.tissue, c.load, c.contacts.springs, c.contacts.hand,
+                               static_cast<std::uint8_t>(hand), c.grasps[hand].Nodes(), c.X_world_tools[hand],
+                               c.forces[hand], c.verdict == tissue::GuardVerdict::kGood, c.tick},
+                              patch);
 }
 
 double Simulation::CalcEquilibriumError() const {
