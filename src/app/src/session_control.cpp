@@ -105,6 +105,7 @@ const session::Snapshot& SessionControl::Advance(double dt) {
 }
 
 void SessionControl::UseDevice(std::unique_ptr<device::Driver> driver) {
+  session::PlaceAtHome(runner_.GetScene(), *driver);
   device_thread_ = std::make_unique<session::DeviceThread>(std::move(driver));
 }
 

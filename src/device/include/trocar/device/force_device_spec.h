@@ -11,7 +11,9 @@
 
 namespace trocar::device {
 
-/// "simulated": two devices that move slowly and whose buttons nobody presses.
+/// - "simulated": two devices that move slowly and whose buttons nobody presses
+/// - "openhaptics", "openhaptics:Left,Right": by the names that the maker's program gave them
+/// - "haply", "haply:2", "haply:2:10001": how many, and the port of the maker's service on this machine
 ///
 /// \return unconfigured; kDeviceSettings with the kinds that there are
 core::Result<std::unique_ptr<ForceDriver>> MakeForceDriver(std::string_view text);
