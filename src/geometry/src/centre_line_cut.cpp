@@ -48,13 +48,20 @@ std::size_t CutCentreLines(const FlatSweep& sweep, CentreLineGraph& graph, std::
   std::size_t count = 0;
   const std::size_t edges_before = graph.edges.size();
   for (std::uint32_t e = 0; e < edges_before && count < cuts.size(); ++e) {
-    const auto [a, b] = graph.edges[e];
+    const std::uint32_t a = graph.edges[e][0], b = graph.edges[e][1];
     const auto at = FindCrossing(sweep, graph.positions[a], graph.positions[b]);
     if (!at) continue;
     const double length = math::Distance(graph.positions[a], graph.positions[b]);
     if ((graph.is_cut_end[a] && *at * length < kLeastStump) ||
         (graph.is_cut_end[b] && (1.0 - *at) * length < kLeastStump))
       continue;
+    // a joint of two edges is cut once
+    const Vec3 here = math::Lerp(graph.positions[a], graph.positions[b], *at);
+    const bool is_cut_already = std::any_of(cuts.begin(), cuts.begin() + static_cast<std::ptrdiff_t>(count), [&](const CentreLineCut& cut) {
+      const bool shares_point = cut.a == a || cut.b == a || cut.a == b || cut.b == b;
+      return shares_point && math::Distance(graph.positions[cut.ends[0]], here) < kShortest * length + kLeastStump;
+    });
+    if (is_cut_already) continue;
     if (graph.RoomForCuts() == 0) break;
     CentreLineCut cut{e, static_cast<std::uint32_t>(graph.edges.size()), a, b, std::clamp(*at, kShortest, 1.0 - kShortest), {}};
     for (auto& end : cut.ends) end = AddEnd(graph, a, b, cut.t);

@@ -30,31 +30,17 @@ core::Error MissingMaterial(const std::string& name) {
           "the scene has no material for \"" + name + "\"; add one to \"materials\""};
 }
 
-/// Edges and bending springs, which share the wall's modulus.
-void AddWall(const geometry::TriangleMesh& mesh, const OrganMaterial& material, std::uint32_t first,
-             tissue::TissueDefinition& definition) {
-  const double modulus = material.young_modulus * material.wall_thickness;
-  const double mean_area = geometry::CalcArea(mesh.positions, mesh.triangles) / mesh.triangles.size();
-  const double share =
-      tissue::CalcBendingShare(material.wall_thickness, std::sqrt(std::sqrt(3.0) * mean_area));
-  const auto edges = geometry::FindEdges(mesh.triangles);
-  auto stiffness = tissue::CalcEdgeStiffness(mesh.positions, mesh.triangles, edges, (1.0 - share) * modulus);
-  const auto add = [&](std::uint32_t a, std::uint32_t b, double k) {
-    definition.springs.push_back(
-        {first + a, first + b, k, math::Distance(mesh.positions[a], mesh.positions[b])});
-  };
-  std::vector<tissue::BendingSpring> across;
-  if (share > 0.0) across = tissue::CalcBendingSprings(mesh.positions, mesh.triangles, share * modulus);
-  for (const tissue::BendingSpring& bending : across) {
-    // corners that an edge joins already, around a vertex of three triangles, keep that one spring
-    const auto at = std::lower_bound(edges.begin(), edges.end(), geometry::Edge{bending.a, bending.b});
-    if (at != edges.end() && *at == geometry::Edge{bending.a, bending.b}) {
-      stiffness[static_cast<std::size_t>(at - edges.begin())] += bending.stiffness;
-    } else {
-      add(bending.a, bending.b, bending.stiffness);
-    }
-  }
-  for (std::size_t i = 0; i < edges.size(); ++i) add(edges[i][0], edges[i][1], stiffness[i]);
+/// What an organ's wall is made of, by area.
+surgery::WallMaterial CalcWallMaterial(const geometry::TriangleMesh& mesh, const OrganMaterial& material) {
+  const double area = geometry::CalcArea(mesh.positions, mesh.triangles);
+  const double mean_area = area / mesh.triangles.size();
+  surgery::WallMaterial wall;
+  wall.membrane_modulus = material.young_modulus * material.wall_thickness;
+  wall.bending_share = tissue::CalcBendingShare(material.wall_thickness, std::sqrt(std::sqrt(3.0) * mean_area));
+  wall.foundation = material.foundation_modulus / material.depth;
+  // the organ's mass, shared out by area
+  wall.mass_by_area = material.density * geometry::CalcVolume(mesh.positions, mesh.triangles) / area;
+  return wall;
 }
 
 /// Only a closed surface has a volume to keep.
@@ -77,15 +63,16 @@ void AddOrgan(const anatomy::Organ& organ, const OrganMaterial& material, Patien
   made.conservation.organs.push_back(
       {first, static_cast<std::uint32_t>(mesh.positions.size()), mesh.triangles, tissue::kBileDensity});
 
+  const surgery::WallMaterial wall = CalcWallMaterial(mesh, material);
+  made.walls.push_back(wall);
   const auto areas = geometry::CalcVertexAreas(mesh.positions, mesh.triangles);
   const auto foundation = tissue::CalcFoundationStiffness(areas, material.foundation_modulus, material.depth);
   definition.shape_stiffness.insert(definition.shape_stiffness.end(), foundation.begin(), foundation.end());
-  // the organ's mass, shared out by area
-  const double mass_per_area = material.density * geometry::CalcVolume(mesh.positions, mesh.triangles) /
-                               geometry::CalcArea(mesh.positions, mesh.triangles);
-  for (const double area : areas) definition.mass.push_back(mass_per_area * area);
-
-  AddWall(mesh, material, first, definition);
+  for (const double area : areas) definition.mass.push_back(wall.mass_by_area * area);
+  for (tissue::Spring spring : surgery::CalcWallSprings(mesh, wall)) {
+    spring.a += first, spring.b += first;
+    definition.springs.push_back(spring);
+  }
   for (const anatomy::Region& region : organ.regions) {
     const bool is_fixed = region.name == anatomy::kDiaphragmaticFace || region.name == anatomy::kFalciform ||
                           region.name == anatomy::kCoronary;

@@ -6,6 +6,7 @@
 
 #include "trocar/session/scene.h"
 #include "trocar/session/simulation.h"
+#include "trocar/surgery/wall.h"
 #include "trocar/tissue/conservation.h"
 #include "trocar/tissue/tissue_model.h"
 
@@ -19,6 +20,7 @@ struct PatientTissue {
   std::vector<std::int32_t> strand_organs;  ///< (strands) index into Patient::organs that it holds, or -1
   std::vector<double> internal_pressure;    ///< (organs) under which each is filled at the start [Pa]
   std::vector<SurfaceInfo> surfaces;        ///< organs, then tubes
+  std::vector<surgery::WallMaterial> walls;  ///< (organs) what a cut makes new springs from
 };
 
 /// Nodes: every organ's vertices, then every tube's centre line. Springs: mesh edges by van Gelder, tubes
