@@ -9,6 +9,7 @@
 #include "pathology.h"
 #include "trocar/geometry/mesh_measures.h"
 #include "trocar/geometry/mesh_topology.h"
+#include "trocar/surgery/topology_change.h"
 #include "trocar/tissue/material.h"
 
 namespace trocar::session {
@@ -31,7 +32,8 @@ core::Error MissingMaterial(const std::string& name) {
 }
 
 /// What an organ's wall is made of, by area.
-surgery::WallMaterial CalcWallMaterial(const geometry::TriangleMesh& mesh, const OrganMaterial& material) {
+surgery::WallMaterial CalcWallMaterial(const geometry::TriangleMesh& mesh, const OrganMaterial& material,
+                                       tissue::TissueDefinition& definition) {
   const double area = geometry::CalcArea(mesh.positions, mesh.triangles);
   const double mean_area = area / mesh.triangles.size();
   surgery::WallMaterial wall;
@@ -40,6 +42,10 @@ surgery::WallMaterial CalcWallMaterial(const geometry::TriangleMesh& mesh, const
   wall.foundation = material.foundation_modulus / material.depth;
   // the organ's mass, shared out by area
   wall.mass_by_area = material.density * geometry::CalcVolume(mesh.positions, mesh.triangles) / area;
+  if (!(material.wall_law == tissue::SpringLaw{})) {
+    wall.law = static_cast<std::uint32_t>(definition.laws.size());
+    definition.laws.push_back(material.wall_law);
+  }
   return wall;
 }
 
@@ -53,7 +59,8 @@ core::Status CheckClosed(const anatomy::Organ& organ) {
                          ", so its volume cannot be kept; look at it with trocar anatomy check"};
 }
 
-void AddOrgan(const anatomy::Organ& organ, const OrganMaterial& material, PatientTissue& made) {
+void AddOrgan(const anatomy::Organ& organ, const OrganMaterial& material, const SpareNodes& spare,
+              PatientTissue& made) {
   auto& definition = made.definition;
   const auto first = static_cast<std::uint32_t>(definition.rest.size());
   const auto& mesh = organ.mesh;
@@ -63,7 +70,7 @@ void AddOrgan(const anatomy::Organ& organ, const OrganMaterial& material, Patien
   made.conservation.organs.push_back(
       {first, static_cast<std::uint32_t>(mesh.positions.size()), mesh.triangles, tissue::kBileDensity});
 
-  const surgery::WallMaterial wall = CalcWallMaterial(mesh, material);
+  const surgery::WallMaterial wall = CalcWallMaterial(mesh, material, definition);
   made.walls.push_back(wall);
   const auto areas = geometry::CalcVertexAreas(mesh.positions, mesh.triangles);
   const auto foundation = tissue::CalcFoundationStiffness(areas, material.foundation_modulus, material.depth);
@@ -73,6 +80,9 @@ void AddOrgan(const anatomy::Organ& organ, const OrganMaterial& material, Patien
     spring.a += first, spring.b += first;
     definition.springs.push_back(spring);
   }
+  made.spring_organs.resize(definition.springs.size(), static_cast<std::int32_t>(made.surfaces.size() - 1));
+  // room for what cuts add: they follow the organ's nodes, so that these stay in one piece
+  if (spare.by_organ > 0) surgery::AddSpareNodes(spare.by_organ, definition);
   for (const anatomy::Region& region : organ.regions) {
     const bool is_fixed = region.name == anatomy::kDiaphragmaticFace || region.name == anatomy::kFalciform ||
                           region.name == anatomy::kCoronary;
@@ -188,7 +198,7 @@ void TieTubes(const Scene& scene, std::span<const OrganMaterial> materials, Pati
 
 }  // namespace
 
-core::Result<PatientTissue> MakePatientTissue(const Scene& scene) {
+core::Result<PatientTissue> MakePatientTissue(const Scene& scene, const SpareNodes& spare) {
   const Pathology pathology = CalcPathology(scene.patient);
   const auto materials = CalcPatientMaterials(scene, pathology);
   PatientTissue made;
@@ -202,7 +212,7 @@ core::Result<PatientTissue> MakePatientTissue(const Scene& scene) {
     const OrganMaterial* material = FindMaterial(materials, organ.name);
     if (material == nullptr) return MissingMaterial(organ.name);
     if (const auto closed = CheckClosed(organ); !closed.ok()) return closed.error();
-    AddOrgan(organ, *material, made);
+    AddOrgan(organ, *material, spare, made);
     made.internal_pressure.push_back(material->internal_pressure);
   }
   if (!scene.patient.attachments.empty()) {
@@ -218,6 +228,7 @@ core::Result<PatientTissue> MakePatientTissue(const Scene& scene) {
     AddTube(tube, *material, made);
   }
   TieTubes(scene, materials, made);
+  if (spare.tubes > 0) surgery::AddSpareNodes(spare.tubes, made.definition);
   return made;
 }
 

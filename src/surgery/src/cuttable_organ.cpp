@@ -148,7 +148,7 @@ void CuttableOrgan::ListChanges(TopologyChange& change) noexcept {
     if (spring.stiffness <= 0.0 && pair[1] >= old_count) continue;
     const std::uint32_t a = Node(pair[0]), b = Node(pair[1]);
     change.springs.push_back(
-        {std::min(a, b), std::max(a, b), spring.stiffness, spring.rest_length, FindParent(pair[0], pair[1])});
+        {std::min(a, b), std::max(a, b), spring.stiffness, spring.rest_length, spring.law, FindParent(pair[0], pair[1])});
   }
 }
 

@@ -23,15 +23,15 @@ bool Joins(const auto& spring, std::uint32_t a, std::uint32_t b) {
 tissue::Spring FindSpring(const TopologyChange& change, const tissue::TissueDefinition& definition, std::uint32_t a,
                           std::uint32_t b) {
   for (const SpringChange& spring : change.springs) {
-    if (Joins(spring, a, b)) return {a, b, spring.stiffness, spring.rest_length};
+    if (Joins(spring, a, b)) return {a, b, spring.stiffness, spring.rest_length, spring.law};
   }
   for (const tissue::Spring& spring : definition.springs) {
     if (Joins(spring, a, b)) return spring;
   }
-  return {a, b, 0.0, 0.0};
+  return {a, b, 0.0, 0.0, 0};
 }
 
-void SetSpring(std::uint32_t a, std::uint32_t b, double stiffness, double rest_length,
+void SetSpring(std::uint32_t a, std::uint32_t b, double stiffness, double rest_length, std::uint32_t law,
                const std::array<std::uint32_t, 2>& inherits, TopologyChange& change) {
   for (SpringChange& spring : change.springs) {
     if (!Joins(spring, a, b)) continue;
@@ -39,7 +39,7 @@ void SetSpring(std::uint32_t a, std::uint32_t b, double stiffness, double rest_l
     spring.rest_length = rest_length;
     return;
   }
-  change.springs.push_back({std::min(a, b), std::max(a, b), stiffness, rest_length, inherits});
+  change.springs.push_back({std::min(a, b), std::max(a, b), stiffness, rest_length, law, inherits});
 }
 
 /// The node's entry in the change, made from the definition where there is none yet.
@@ -116,17 +116,17 @@ void CuttableTubes::ListCut(const geometry::CentreLineCut& cut, const tissue::Ti
   share_out(&NodeChange::shape_stiffness);
 
   const tissue::Spring whole = FindSpring(change, definition, a, b);
-  SetSpring(a, b, 0.0, 0.0, {kNone, kNone}, change);
-  SetSpring(a, ends[0], whole.stiffness / shares[0], whole.rest_length * shares[0], {a, b}, change);
-  SetSpring(ends[1], b, whole.stiffness / shares[1], whole.rest_length * shares[1], {a, b}, change);
+  SetSpring(a, b, 0.0, 0.0, 0, {kNone, kNone}, change);
+  SetSpring(a, ends[0], whole.stiffness / shares[0], whole.rest_length * shares[0], whole.law, {a, b}, change);
+  SetSpring(ends[1], b, whole.stiffness / shares[1], whole.rest_length * shares[1], whole.law, {a, b}, change);
   // bending springs over the cut end in the stump
   const auto shorten = [&](std::uint32_t kept_point, std::uint32_t lost, std::size_t end) {
     const std::uint32_t kept = nodes_[kept_point];
     const tissue::Spring bending = FindSpring(change, definition, kept, lost);
     if (bending.stiffness <= 0.0) return;
     const double length = math::Distance(graph_.rest[kept_point], graph_.rest[cut.ends[end]]);
-    SetSpring(kept, lost, 0.0, 0.0, {kNone, kNone}, change);
-    SetSpring(kept, ends[end], bending.stiffness * bending.rest_length / length, length, {kept, lost}, change);
+    SetSpring(kept, lost, 0.0, 0.0, 0, {kNone, kNone}, change);
+    SetSpring(kept, ends[end], bending.stiffness * bending.rest_length / length, length, bending.law, {kept, lost}, change);
   };
   for (std::uint32_t e = 0; e < graph_.edges.size(); ++e) {
     const auto& edge = graph_.edges[e];

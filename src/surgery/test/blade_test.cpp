@@ -66,7 +66,7 @@ TEST(Blade, CutsTheStrandsThatItCrosses) {
   change.cut_strands.resize(64);
   change.cut_strands.resize(FindCutStrands(kMove, definition.strands, state, change.cut_strands));
   EXPECT_EQ(change.cut_strands, (std::vector<std::uint32_t>{0, 1, 2, 4, 5, 6, 7, 8, 9, 10}));
-  ApplyChange(change, model, state);
+  ApplyChange(change, {}, model, state);
   for (std::size_t i = 0; i < 20; ++i) EXPECT_EQ(state.strand_is_intact[i], i > 10 ? 1 : 0);
   EXPECT_EQ(FindCutStrands(kMove, definition.strands, state, change.cut_strands), 0u);
 }

@@ -47,9 +47,9 @@ struct CuttableSystem {
   geometry::CutReport Cut(const geometry::BladeEdge& before, const geometry::BladeEdge& now) {
     change.Clear();
     const auto report = organ->Cut(before, now, state.position, front, change);
-    ApplyChange(change, definition);
+    const auto origins = ApplyChange(change, definition);
     Rebuild();
-    ApplyChange(change, model, state);
+    ApplyChange(change, origins, model, state);
     return report;
   }
 

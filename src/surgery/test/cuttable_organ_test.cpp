@@ -175,6 +175,34 @@ TEST(CuttableOrgan, SpringsInheritFromTheOneTheyArePartOf) {
   EXPECT_GT(fresh, 10u);
 }
 
+// What was weakened before stays weak: the parts of a torn edge are torn.
+TEST(CuttableOrgan, PartsOfAWeakSpringAreWeak) {
+  CuttableSystem system(MakeSheet(), kWall, {});
+  for (std::size_t i = 0; i < system.state.spring_factor.size(); ++i) {
+    system.state.spring_factor[i] = system.definition.springs[i].a % 2 == 0 ? 0.25 : 0.5;
+    system.state.spring_damage[i] = system.state.spring_factor[i] / 2;
+  }
+  system.Cut(Upright(-0.01, 0.0187), Upright(0.07, 0.0187));
+  ASSERT_EQ(system.state.spring_factor.size(), system.definition.springs.size());
+  std::size_t weak = 0, fresh = 0;
+  for (std::size_t i = 0; i < system.definition.springs.size(); ++i) {
+    const tissue::Spring& spring = system.definition.springs[i];
+    const double factor = system.state.spring_factor[i];
+    if (factor == 1.0) {
+      ++fresh;
+      EXPECT_GE(std::max(spring.a, spring.b), 16u * 12u) << "only springs of new nodes are whole";
+      EXPECT_EQ(system.state.spring_damage[i], 0.0);
+    } else {
+      ++weak;
+      EXPECT_EQ(system.state.spring_damage[i], factor / 2);
+      const bool is_old = spring.a < 16 * 12 && spring.b < 16 * 12;
+      EXPECT_TRUE(!is_old || factor == (spring.a % 2 == 0 ? 0.25 : 0.5));
+    }
+  }
+  EXPECT_GT(fresh, 10u);
+  EXPECT_GT(weak, 500u);
+}
+
 TEST(CuttableOrgan, NewNodesOnFixedEdgesAreFixed) {
   CuttableSystem system(MakeSheet(), kWall, {});
   for (std::uint32_t v = 0; v < 16 * 12; ++v) system.definition.fixed.push_back(v);

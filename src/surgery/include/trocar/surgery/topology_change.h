@@ -8,6 +8,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "trocar/geometry/editable_mesh.h"
@@ -33,6 +34,7 @@ struct SpringChange {
   std::uint32_t a = 0, b = 0;  ///< a < b
   double stiffness = 0;        ///< k [N/m]; 0: there is none any more
   double rest_length = 0;      ///< l [m]
+  std::uint32_t law = 0;       ///< index in TissueDefinition::laws
   /// Nodes of the spring of which this is a part or a side: a factor on that one's stiffness holds for this one too.
   /// kNone where it is new.
   std::array<std::uint32_t, 2> inherits = {geometry::kNone, geometry::kNone};
@@ -56,11 +58,16 @@ std::uint32_t AddSpareNodes(std::size_t count, tissue::TissueDefinition& definit
 
 /// Takes a change into a description: constants of nodes, springs replaced, removed and added. New nodes are no longer
 /// fixed, unless all that they are made of is. Springs stay in their order; new ones follow.
+///
+/// \return (springs after) the spring of before whose factor and damage each one has, or kNone for a fresh one
 /// \note Not real-time safe: allocates; linear in the number of springs.
-void ApplyChange(const TopologyChange& change, tissue::TissueDefinition& definition);
+std::vector<std::uint32_t> ApplyChange(const TopologyChange& change, tissue::TissueDefinition& definition);
 
-/// Takes a change into a state of the model that was made from the changed description: new nodes get their positions, follow
-/// the balance of forces unless fixed, and strands are cut.
-void ApplyChange(const TopologyChange& change, const tissue::TissueModel& model, tissue::TissueState& state);
+/// Takes a change into a state of the model that was made from the changed description: new nodes get their positions and
+/// follow the balance of forces unless fixed, springs keep their factor and damage or inherit it, strands are cut.
+///
+/// \param spring_origins  what the other ApplyChange returned
+void ApplyChange(const TopologyChange& change, std::span<const std::uint32_t> spring_origins,
+                 const tissue::TissueModel& model, tissue::TissueState& state);
 
 }  // namespace trocar::surgery

@@ -19,6 +19,7 @@ struct WallMaterial {
   double bending_share = 0;     ///< of it that bending springs carry, see tissue::CalcBendingShare [-]
   double foundation = 0;        ///< stiffness of the virtual springs by area, E / h of what lies behind [N/m^3]
   double mass_by_area = 0;      ///< [kg/m^2]
+  std::uint32_t law = 0;        ///< of the wall's springs, index in TissueDefinition::laws
 };
 
 /// Modulus of a trench's walls, as a share of the surface's: cut parenchyma has no capsule [-], a tunable.
