@@ -3,13 +3,14 @@
 /// file is named, draws the two.
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
+#include <ctime>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "trocar/anatomy/patient.h"
-#include "trocar/core/clock.h"
 #include "trocar/geometry/mesh_measures.h"
 #include "trocar/geometry/openings.h"
 #include "trocar/render/figure_picture.h"
@@ -22,7 +23,7 @@ namespace {
 using namespace trocar;
 using math::Vec3;
 
-constexpr std::uint32_t kSpare = 2000;
+constexpr std::uint32_t kSpare = 600;
 constexpr int kTicks = 90;
 constexpr double kLength = 0.030;  // of a cut [m]
 
@@ -34,24 +35,26 @@ struct Wall {
   Vec3 seen_from;
   double drawn;  // each side, to let the cut gape [m]
 };
-constexpr Wall kWalls[] = {{"liver", 1e6, 4e-5, 5400, 0.080, true, {-0.2, -0.45, 0.87}, 0.004},
-                           {"gallbladder", 255e3, 0.002, 1000, 0.030, false, {-0.1, -0.75, 0.65}, 0.004}};
+constexpr Wall kWalls[] = {{"liver", 1e6, 4e-5, 5400, 0.080, true, {-0.2, -0.45, 0.87}, 0.003},
+                           {"gallbladder", 255e3, 0.002, 1000, 0.030, false, {-0.1, -0.75, 0.65}, 0.003}};
 
 surgery::WallMaterial MakeWallMaterial(const geometry::TriangleMesh& mesh, const Wall& wall) {
   const double area = geometry::CalcArea(mesh.positions, mesh.triangles);
   const double height = std::sqrt(std::sqrt(3.0) * area / static_cast<double>(mesh.triangles.size()));
   return {wall.young_modulus * wall.thickness, tissue::CalcBendingShare(wall.thickness, height),
-          wall.foundation_modulus / wall.depth, 1060 * geometry::CalcVolume(mesh.positions, mesh.triangles) / area};
+          wall.foundation_modulus / wall.depth,
+          1060 * geometry::CalcVolume(mesh.positions, mesh.triangles) / area};
 }
 
-/// One organ, its system, and the time of each stage of a cutting tick.
+/// The organs, their system, and the processor time of each stage of a cutting tick.
 struct Theatre {
   tissue::TissueDefinition definition;
   tissue::TissueModel model;
   tissue::TissueState state;
   std::vector<surgery::CuttableOrgan> organs;
   surgery::TopologyChange change;
-  std::array<double, 5> worst{};  // [s]
+  std::array<double, 5> worst{}, sum{};  // [s]
+  int cutting_ticks = 0;
 };
 constexpr const char* kStages[] = {"cut", "change", "model", "solver", "solve"};
 
@@ -112,15 +115,13 @@ geometry::CutReport CutThrough(const Site& site, std::size_t index, Theatre& the
   };
   for (int tick = 1; tick <= kTicks; ++tick) {
     std::array<double, 6> at{};
-    const auto now = [] { return 1e-9 * static_cast<double>(core::NowNanoseconds()); };
+    const auto now = [] { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; };
     at[0] = now();
     theatre.change.Clear();
-    const auto report = theatre.organs[index].Cut(blade(tick - 1), blade(tick), theatre.state.position, front, theatre.change);
+    const auto report = theatre.organs[index].Cut(blade(tick - 1), blade(tick), theatre.state.position, front,
+                                                  theatre.change);
     at[1] = now();
-    if (theatre.change.IsEmpty()) {
-      theatre.worst[0] = std::max(theatre.worst[0], at[1] - at[0]);
-      continue;
-    }
+    if (theatre.change.IsEmpty()) continue;
     const auto origins = surgery::ApplyChange(theatre.change, theatre.definition);
     at[2] = now();
     theatre.model = tissue::MakeTissueModel(theatre.definition);
@@ -130,7 +131,11 @@ geometry::CutReport CutThrough(const Site& site, std::size_t index, Theatre& the
     at[4] = now();
     solver.Solve({}, {}, theatre.state);
     at[5] = now();
-    for (std::size_t i = 0; i < 5; ++i) theatre.worst[i] = std::max(theatre.worst[i], at[i + 1] - at[i]);
+    ++theatre.cutting_ticks;
+    for (std::size_t i = 0; i < 5; ++i) {
+      theatre.worst[i] = std::max(theatre.worst[i], at[i + 1] - at[i]);
+      theatre.sum[i] += at[i + 1] - at[i];
+    }
     sum.opened += report.opened;
     sum.copies += report.copies;
     sum.wall_triangles += report.wall_triangles;
@@ -145,8 +150,8 @@ void DrawApart(const Site& site, std::size_t index, double distance, Theatre& th
   for (std::uint32_t v = 0; v < mesh.VertexCount(); ++v) {
     const Vec3 from = mesh.Rest()[v] - site.middle;
     const double side = math::Dot(from, site.across), along = math::Dot(from, site.along);
-    if (std::fabs(along) > 0.008 || std::fabs(side) < 0.004 || std::fabs(side) > 0.011 ||
-        std::fabs(math::Dot(from, site.out)) > 0.010)
+    if (std::fabs(along) > 0.010 || std::fabs(side) < 0.007 || std::fabs(side) > 0.018 ||
+        std::fabs(math::Dot(from, site.out)) > 0.012)
       continue;
     const std::uint32_t node = theatre.organs[index].Node(v);
     theatre.state.condition[node] = tissue::NodeCondition::kPrescribed;
@@ -161,17 +166,16 @@ std::vector<render::FigureSurface> MakeFigure(const Theatre& theatre, std::size_
   const auto& organ = theatre.organs[index];
   const auto& mesh = organ.Mesh();
   render::FigureSurface outside, inside;
-  for (std::uint32_t v = 0; v < mesh.VertexCount(); ++v) outside.positions.push_back(theatre.state.position[organ.Node(v)]);
+  for (std::uint32_t v = 0; v < mesh.VertexCount(); ++v)
+    outside.positions.push_back(theatre.state.position[organ.Node(v)]);
   inside.positions = outside.positions;
-  outside.colours = {index == 0 ? render::SrgbColour{0.66, 0.36, 0.31} : render::SrgbColour{0.49, 0.62, 0.38}};
+  outside.colours = {index == 0 ? render::SrgbColour{0.66, 0.36, 0.31}
+                                : render::SrgbColour{0.49, 0.62, 0.38}};
   inside.colours = {index == 0 ? render::SrgbColour{0.45, 0.08, 0.07} : render::SrgbColour{0.75, 0.68, 0.30}};
   outside.has_edges = inside.has_edges = has_edges;
   for (std::size_t t = 0; t < mesh.TriangleCount(); ++t) {
     const bool is_wall = mesh.Kinds()[t] == geometry::TriangleKind::kWall;
     (is_wall ? inside : outside).triangles.push_back(mesh.Triangles()[t]);
-    // a hollow organ is seen from inside through its opening
-    const geometry::Triangle& corners = mesh.Triangles()[t];
-    if (index != 0) inside.triangles.push_back({corners[0], corners[2], corners[1]});
   }
   return {outside, inside};
 }
@@ -182,10 +186,10 @@ core::Status DrawSites(const Theatre& theatre, const std::array<Site, 2>& sites,
     for (std::size_t i = 0; i < 2; ++i) {
       const Site& site = sites[i];
       // from aside, to look into the cut
-      const Vec3 back = math::Normalized(site.out + 0.35 * site.across - 0.25 * site.along);
+      const Vec3 back = math::Normalized(site.out + 0.25 * site.across - 0.2 * site.along);
       render::OrbitCamera camera;
       camera.target = site.middle;
-      camera.distance = 0.13;
+      camera.distance = 0.095;
       const Vec3 right = math::Normalized(math::Cross(site.along, back));
       camera.R_world_camera = math::RotationFromAxes(right, math::Cross(back, right), back);
       auto drawn = render::DrawPictures(MakeFigure(theatre, i, has_edges), {}, {&camera, 1}, {}, 700, 560);
@@ -232,13 +236,18 @@ int main(int count, char** arguments) {
     const auto& mesh = theatre.organs[i].Mesh();
     std::array<geometry::Opening, 4> openings;
     const std::size_t open = geometry::FindOpenings(mesh, openings);
-    std::printf("%s: %zu edges opened, %zu left uncut, %zu wall triangles, %zu openings", kWalls[i].organ, report.opened,
-                report.refused, report.wall_triangles, open);
+    std::printf("%s: %zu edges opened, %zu left uncut, %zu wall triangles, %zu openings", kWalls[i].organ,
+                report.opened, report.refused, report.wall_triangles, open);
     if (open > 0) std::printf(", the first with a rim of %.1f mm", 1e3 * openings[0].length);
-    std::printf("; the worst tick:");
-    for (std::size_t k = 0; k < 5; ++k) std::printf(" %s %.2f ms", kStages[k], 1e3 * theatre.worst[k]);
+    std::printf("\n  %zu nodes; processor time of %d cutting ticks, mean and worst:", theatre.model.Size(),
+                theatre.cutting_ticks);
+    for (std::size_t k = 0; k < 5; ++k) {
+      std::printf(" %s %.2f (%.2f) ms", kStages[k], 1e3 * theatre.sum[k] / theatre.cutting_ticks,
+                  1e3 * theatre.worst[k]);
+    }
     std::printf("\n");
-    theatre.worst = {};
+    theatre.worst = theatre.sum = {};
+    theatre.cutting_ticks = 0;
   }
   if (count == 3) {
     if (const auto drawn = DrawSites(theatre, sites, arguments[2]); !drawn.ok()) return fail(drawn.error());

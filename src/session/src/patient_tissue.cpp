@@ -38,7 +38,8 @@ surgery::WallMaterial CalcWallMaterial(const geometry::TriangleMesh& mesh, const
   const double mean_area = area / mesh.triangles.size();
   surgery::WallMaterial wall;
   wall.membrane_modulus = material.young_modulus * material.wall_thickness;
-  wall.bending_share = tissue::CalcBendingShare(material.wall_thickness, std::sqrt(std::sqrt(3.0) * mean_area));
+  wall.bending_share =
+      tissue::CalcBendingShare(material.wall_thickness, std::sqrt(std::sqrt(3.0) * mean_area));
   wall.foundation = material.foundation_modulus / material.depth;
   // the organ's mass, shared out by area
   wall.mass_by_area = material.density * geometry::CalcVolume(mesh.positions, mesh.triangles) / area;

@@ -7,6 +7,7 @@
 #include <memory>
 #include <utility>
 
+#include "allocation_counter.h"
 #include "patient_tissue.h"
 #include "trocar/geometry/mesh_measures.h"
 #include "trocar/geometry/openings.h"
@@ -47,9 +48,12 @@ class CutPatient : public testing::Test {
     return std::move(*organ);
   }
 
-  void CutTick(surgery::CuttableOrgan& organ, const BladeEdge& before, const BladeEdge& now, geometry::CutFront& front) {
+  void CutTick(surgery::CuttableOrgan& organ, const BladeEdge& before, const BladeEdge& now,
+               geometry::CutFront& front) {
     change_.Clear();
+    const long allocations = CountAllocations();
     organ.Cut(before, now, state_.position, front, change_);
+    EXPECT_EQ(CountAllocations(), allocations) << "a cut allocates";
     if (change_.IsEmpty()) return;
     const auto origins = surgery::ApplyChange(change_, made_.definition);
     model_ = tissue::MakeTissueModel(made_.definition);
@@ -102,7 +106,8 @@ class CutPatient : public testing::Test {
   std::uint32_t FindLowest(std::size_t index) const {
     const auto& x = patient_.organs[index].mesh.positions;
     return static_cast<std::uint32_t>(
-        std::min_element(x.begin(), x.end(), [](const Vec3& a, const Vec3& b) { return a.y < b.y; }) - x.begin());
+        std::min_element(x.begin(), x.end(), [](const Vec3& a, const Vec3& b) { return a.y < b.y; }) -
+        x.begin());
   }
 
   anatomy::Patient patient_;

@@ -18,8 +18,9 @@ geometry::BladeEdge CalcScissorsEdge(const instrument::Tool& tool, const Pose& X
 
 }  // namespace
 
-std::optional<BladeMove> MoveBlade(const instrument::Tool& tool, const Pose& X_world_tool, double jaw, bool has_power,
-                                   const BladeSettings& settings, BladeState& state) noexcept {
+std::optional<BladeMove> MoveBlade(const instrument::Tool& tool, const Pose& X_world_tool, double jaw,
+                                   bool has_power, const BladeSettings& settings,
+                                   BladeState& state) noexcept {
   const bool is_scissors = settings.kind == BladeKind::kScissors;
   const bool cuts = is_scissors ? jaw < state.jaw : has_power;
   const double jaw_before = state.jaw;
@@ -28,9 +29,9 @@ std::optional<BladeMove> MoveBlade(const instrument::Tool& tool, const Pose& X_w
     state.edge.reset();
     return std::nullopt;
   }
-  const geometry::BladeEdge now =
-      is_scissors ? CalcScissorsEdge(tool, X_world_tool, jaw)
-                  : geometry::BladeEdge{X_world_tool * settings.p_tool_hook.a, X_world_tool * settings.p_tool_hook.b};
+  const geometry::BladeEdge now = is_scissors ? CalcScissorsEdge(tool, X_world_tool, jaw)
+                                              : geometry::BladeEdge{X_world_tool * settings.p_tool_hook.a,
+                                                                    X_world_tool * settings.p_tool_hook.b};
   // the first tick of a bite starts from where the jaws were; that of a hook from where power came on
   if (!state.edge) state.edge = is_scissors ? CalcScissorsEdge(tool, X_world_tool, jaw_before) : now;
   const BladeMove move{*state.edge, now};

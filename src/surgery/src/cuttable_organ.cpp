@@ -41,16 +41,18 @@ core::Result<CuttableOrgan> CuttableOrgan::Make(const geometry::TriangleMesh& me
   auto editable = EditableMesh::Make(mesh, settings.spare_count, kTrianglesAVertex * settings.spare_count);
   if (!editable.ok()) return editable.error();
   if (settings.cut.has_walls && !geometry::InspectMesh(mesh).closed) {
-    return core::Error{core::ErrorCode::kMeshNotClosed,
-                       "a solid organ has holes, so a cut in it cannot be closed by walls; close its surface, or cut it "
-                       "as a hollow organ"};
+    return core::Error{
+        core::ErrorCode::kMeshNotClosed,
+        "a solid organ has holes, so a cut in it cannot be closed by walls; close its surface, or cut it "
+        "as a hollow organ"};
   }
   return CuttableOrgan(std::move(*editable), settings);
 }
 
 void CuttableOrgan::ReserveFor(TopologyChange& change) const {
   change.Reserve(change.nodes.capacity() + mesh_.VertexCapacity(),
-                 change.springs.capacity() + kPairsATriangle * mesh_.TriangleCapacity(), change.cut_strands.capacity());
+                 change.springs.capacity() + kPairsATriangle * mesh_.TriangleCapacity(),
+                 change.cut_strands.capacity());
 }
 
 std::vector<Triangle> CuttableOrgan::NodeTriangles() const {
@@ -91,13 +93,15 @@ void CuttableOrgan::ListPairs() noexcept {
   pairs_.clear();
   vertices_.clear();
   const auto list_now = [&](std::uint32_t t) {
-    ListTriangle(mesh_.Triangles()[t], {mesh_.Across(3 * t), mesh_.Across(3 * t + 1), mesh_.Across(3 * t + 2)});
+    ListTriangle(mesh_.Triangles()[t],
+                 {mesh_.Across(3 * t), mesh_.Across(3 * t + 1), mesh_.Across(3 * t + 2)});
   };
   for (const geometry::TouchedTriangle& touched : mesh_.Journal()) {
     ListTriangle(touched.corners, touched.across);
     list_now(touched.triangle);
   }
-  for (auto t = static_cast<std::uint32_t>(mesh_.JournalTriangles()); t < mesh_.TriangleCount(); ++t) list_now(t);
+  for (auto t = static_cast<std::uint32_t>(mesh_.JournalTriangles()); t < mesh_.TriangleCount(); ++t)
+    list_now(t);
   SortUnique(pairs_);
   SortUnique(vertices_);
 }
@@ -135,7 +139,8 @@ void CuttableOrgan::ListChanges(TopologyChange& change) noexcept {
     node.shape_stiffness = wall.shape_stiffness;
     if (node.is_new) {
       const geometry::VertexSource& source = mesh_.Sources()[v];
-      for (std::size_t i = 0; i < 3; ++i) node.from[i] = source.from[i] == kNone ? kNone : Node(source.from[i]);
+      for (std::size_t i = 0; i < 3; ++i)
+        node.from[i] = source.from[i] == kNone ? kNone : Node(source.from[i]);
       node.weights = source.weights;
       node.rest = mesh_.Rest()[v];
       node.position = mesh_.Positions()[v];
@@ -147,8 +152,8 @@ void CuttableOrgan::ListChanges(TopologyChange& change) noexcept {
     // a pair that never had a spring and has none now, between vertices that came and went within the tick
     if (spring.stiffness <= 0.0 && pair[1] >= old_count) continue;
     const std::uint32_t a = Node(pair[0]), b = Node(pair[1]);
-    change.springs.push_back(
-        {std::min(a, b), std::max(a, b), spring.stiffness, spring.rest_length, spring.law, FindParent(pair[0], pair[1])});
+    change.springs.push_back({std::min(a, b), std::max(a, b), spring.stiffness, spring.rest_length,
+                              spring.law, FindParent(pair[0], pair[1])});
   }
 }
 

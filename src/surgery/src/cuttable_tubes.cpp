@@ -20,8 +20,8 @@ bool Joins(const auto& spring, std::uint32_t a, std::uint32_t b) {
 }
 
 /// The spring between two nodes with what the tick changed so far; stiffness 0 where there is none.
-tissue::Spring FindSpring(const TopologyChange& change, const tissue::TissueDefinition& definition, std::uint32_t a,
-                          std::uint32_t b) {
+tissue::Spring FindSpring(const TopologyChange& change, const tissue::TissueDefinition& definition,
+                          std::uint32_t a, std::uint32_t b) {
   for (const SpringChange& spring : change.springs) {
     if (Joins(spring, a, b)) return {a, b, spring.stiffness, spring.rest_length, spring.law};
   }
@@ -60,7 +60,8 @@ NodeChange& EditNode(std::uint32_t node, const tissue::TissueDefinition& definit
 CuttableTubes::CuttableTubes(std::uint32_t first_spare, std::uint32_t spare_count)
     : next_spare_(first_spare), end_spare_(first_spare + spare_count) {}
 
-void CuttableTubes::AddTube(std::uint32_t first_node, std::span<const Vec3> points, std::span<const double> radii) {
+void CuttableTubes::AddTube(std::uint32_t first_node, std::span<const Vec3> points,
+                            std::span<const double> radii) {
   TROCAR_ASSERT(next_spare_ <= end_spare_);
   geometry::AddLine(points, radii, graph_);
   for (std::uint32_t i = 0; i < points.size(); ++i) nodes_.push_back(first_node + i);
@@ -70,8 +71,8 @@ void CuttableTubes::AddTube(std::uint32_t first_node, std::span<const Vec3> poin
 }
 
 void CuttableTubes::ReserveFor(TopologyChange& change) const {
-  change.Reserve(change.nodes.capacity() + kNodesACut * kMostCuts, change.springs.capacity() + kSpringsACut * kMostCuts,
-                 change.cut_strands.capacity());
+  change.Reserve(change.nodes.capacity() + kNodesACut * kMostCuts,
+                 change.springs.capacity() + kSpringsACut * kMostCuts, change.cut_strands.capacity());
 }
 
 std::size_t CuttableTubes::Cut(const BladeMove& move, const tissue::TissueDefinition& definition,
@@ -81,7 +82,8 @@ std::size_t CuttableTubes::Cut(const BladeMove& move, const tissue::TissueDefini
   std::size_t count = 0;
   const geometry::BladeMoves moves = geometry::MakeFlatMoves(move.before, move.now);
   for (const geometry::FlatMove& part : moves.Moves()) {
-    const std::size_t room = std::min<std::size_t>({cuts.size() - count, kMostCuts - count, (end_spare_ - next_spare_) / 2});
+    const std::size_t room =
+        std::min<std::size_t>({cuts.size() - count, kMostCuts - count, (end_spare_ - next_spare_) / 2});
     const std::size_t made = geometry::CutCentreLines(part.sweep, graph_, cuts.subspan(count, room));
     for (std::size_t i = 0; i < 2 * made; ++i) nodes_.push_back(next_spare_++);
     for (std::size_t i = count; i < count + made; ++i) ListCut(cuts[i], definition, change);
@@ -97,7 +99,8 @@ void CuttableTubes::ListCut(const geometry::CentreLineCut& cut, const tissue::Ti
   const double shares[2] = {cut.t, 1.0 - cut.t};
   // half of each end's mass and foundation belongs to the edge; its pieces share that by length
   const auto share_out = [&](double NodeChange::*amount) {
-    const double edge = 0.5 * (EditNode(a, definition, change).*amount + EditNode(b, definition, change).*amount);
+    const double edge =
+        0.5 * (EditNode(a, definition, change).*amount + EditNode(b, definition, change).*amount);
     EditNode(a, definition, change).*amount *= 0.5;
     EditNode(b, definition, change).*amount *= 0.5;
     EditNode(a, definition, change).*amount += 0.5 * shares[0] * edge;
@@ -117,8 +120,10 @@ void CuttableTubes::ListCut(const geometry::CentreLineCut& cut, const tissue::Ti
 
   const tissue::Spring whole = FindSpring(change, definition, a, b);
   SetSpring(a, b, 0.0, 0.0, 0, {kNone, kNone}, change);
-  SetSpring(a, ends[0], whole.stiffness / shares[0], whole.rest_length * shares[0], whole.law, {a, b}, change);
-  SetSpring(ends[1], b, whole.stiffness / shares[1], whole.rest_length * shares[1], whole.law, {a, b}, change);
+  SetSpring(a, ends[0], whole.stiffness / shares[0], whole.rest_length * shares[0], whole.law, {a, b},
+            change);
+  SetSpring(ends[1], b, whole.stiffness / shares[1], whole.rest_length * shares[1], whole.law, {a, b},
+            change);
   // bending springs over the cut end in the stump
   const auto shorten = [&](std::uint32_t kept_point, std::uint32_t lost, std::size_t end) {
     const std::uint32_t kept = nodes_[kept_point];
@@ -126,7 +131,8 @@ void CuttableTubes::ListCut(const geometry::CentreLineCut& cut, const tissue::Ti
     if (bending.stiffness <= 0.0) return;
     const double length = math::Distance(graph_.rest[kept_point], graph_.rest[cut.ends[end]]);
     SetSpring(kept, lost, 0.0, 0.0, 0, {kNone, kNone}, change);
-    SetSpring(kept, ends[end], bending.stiffness * bending.rest_length / length, length, bending.law, {kept, lost}, change);
+    SetSpring(kept, ends[end], bending.stiffness * bending.rest_length / length, length, bending.law,
+              {kept, lost}, change);
   };
   for (std::uint32_t e = 0; e < graph_.edges.size(); ++e) {
     const auto& edge = graph_.edges[e];

@@ -70,7 +70,8 @@ std::vector<std::uint32_t> ApplyChange(const TopologyChange& change, tissue::Tis
   for (std::uint32_t i = 0; i < change.springs.size(); ++i) {
     const SpringChange& spring = change.springs[i];
     named.push_back({Ends(spring.a, spring.b), i, kNone});
-    if (spring.inherits[0] != kNone) named.push_back({Ends(spring.inherits[0], spring.inherits[1]), kNone, kNone});
+    if (spring.inherits[0] != kNone)
+      named.push_back({Ends(spring.inherits[0], spring.inherits[1]), kNone, kNone});
   }
   const auto before = [](const Named& one, const Named& other) {
     return one.ends != other.ends ? one.ends < other.ends : one.change < other.change;
@@ -118,7 +119,8 @@ void ApplyChange(const TopologyChange& change, std::span<const std::uint32_t> sp
     state.condition[node.node] =
         model.is_fixed[node.node] ? tissue::NodeCondition::kPrescribed : tissue::NodeCondition::kFree;
   }
-  const std::vector<double> factor = std::exchange(state.spring_factor, {}), damage = std::exchange(state.spring_damage, {});
+  const std::vector<double> factor = std::exchange(state.spring_factor, {}),
+                            damage = std::exchange(state.spring_damage, {});
   for (const auto origin : spring_origins) {
     state.spring_factor.push_back(origin == kNone ? 1.0 : factor[origin]);
     state.spring_damage.push_back(origin == kNone ? 0.0 : damage[origin]);

@@ -14,7 +14,8 @@ using geometry::EditableMesh;
 using geometry::kNone;
 using geometry::TriangleKind;
 
-std::vector<tissue::Spring> CalcWallSprings(const geometry::TriangleMesh& mesh, const WallMaterial& material) {
+std::vector<tissue::Spring> CalcWallSprings(const geometry::TriangleMesh& mesh,
+                                            const WallMaterial& material) {
   const auto edges = geometry::FindEdges(mesh.triangles);
   auto stiffness = tissue::CalcEdgeStiffness(mesh.positions, mesh.triangles, edges,
                                              (1.0 - material.bending_share) * material.membrane_modulus);
@@ -54,7 +55,8 @@ tissue::Spring CalcWallSpring(const EditableMesh& mesh, std::uint32_t a, std::ui
   const auto is_surface = [&](std::uint32_t t) { return mesh.Kinds()[t] == TriangleKind::kSurface; };
   mesh.ForEachAround(a, [&](std::uint32_t h) {
     const std::uint32_t t = EditableMesh::TriangleOf(h);
-    if (mesh.To(h) == b || mesh.Opposite(h) == b) edge_area += (is_surface(t) ? 1.0 : kTrenchShare) * CalcArea(mesh, t);
+    if (mesh.To(h) == b || mesh.Opposite(h) == b)
+      edge_area += (is_surface(t) ? 1.0 : kTrenchShare) * CalcArea(mesh, t);
     const std::uint32_t twin = mesh.Twin(EditableMesh::Next(h));
     if (twin == kNone || mesh.Opposite(twin) != b) return;
     const std::uint32_t other = EditableMesh::TriangleOf(twin);

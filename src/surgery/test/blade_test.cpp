@@ -55,7 +55,8 @@ TEST(Blade, CutsTheStrandsThatItCrosses) {
   tissue::TissueDefinition definition;
   for (int i = 0; i < 20; ++i) {
     for (const double y : {-0.001, 0.001}) definition.rest.push_back({0.001 * i, y, 0});
-    definition.strands.push_back({static_cast<std::uint32_t>(2 * i), static_cast<std::uint32_t>(2 * i + 1), 1.0});
+    definition.strands.push_back(
+        {static_cast<std::uint32_t>(2 * i), static_cast<std::uint32_t>(2 * i + 1), 1.0});
   }
   definition.mass.assign(40, 0.0);
   definition.shape_stiffness.assign(40, 1.0);
@@ -115,7 +116,8 @@ TEST(CuttableTubes, TwoStumpsShareStiffnessMassAndFoundation) {
     const bool above = ((spring.a > 4 && spring.a <= 8) || spring.a == high) &&
                        ((spring.b > 4 && spring.b <= 8) || spring.b == high);
     EXPECT_TRUE(below || above) << spring.a << " " << spring.b;
-    EXPECT_NEAR(math::Distance(definition.rest[spring.a], definition.rest[spring.b]), spring.rest_length, 1e-12);
+    EXPECT_NEAR(math::Distance(definition.rest[spring.a], definition.rest[spring.b]), spring.rest_length,
+                1e-12);
     if (spring.stiffness > 50.0) compliance += 1.0 / spring.stiffness;
   }
   EXPECT_NEAR(compliance, 8 / 100.0, 1e-12);
@@ -135,7 +137,8 @@ TEST(CuttableTubes, CutsUntilTheSpareNodesAreUsedUp) {
   tubes.ReserveFor(change);
   std::array<geometry::CentreLineCut, CuttableTubes::kMostCuts> cuts;
   EXPECT_EQ(tubes.Cut(kMove, definition, definition.rest, change, cuts), 1u);
-  const BladeMove other{{{-0.001, 0.009, -0.01}, {-0.001, 0.009, 0.01}}, {{0.0101, 0.009, -0.01}, {0.0101, 0.009, 0.01}}};
+  const BladeMove other{{{-0.001, 0.009, -0.01}, {-0.001, 0.009, 0.01}},
+                        {{0.0101, 0.009, -0.01}, {0.0101, 0.009, 0.01}}};
   EXPECT_EQ(tubes.Cut(other, definition, definition.rest, change, cuts), 0u);
 }
 

@@ -23,8 +23,8 @@ struct CuttableSystem {
   TopologyChange change;
   geometry::CutFront front;
 
-  CuttableSystem(const geometry::TriangleMesh& mesh, const WallMaterial& wall, const geometry::CutSettings& cut,
-                 std::uint32_t spare_count = 2000) {
+  CuttableSystem(const geometry::TriangleMesh& mesh, const WallMaterial& wall,
+                 const geometry::CutSettings& cut, std::uint32_t spare_count = 2000) {
     definition.rest = mesh.positions;
     for (const double area : geometry::CalcVertexAreas(mesh.positions, mesh.triangles)) {
       definition.mass.push_back(wall.mass_by_area * area);

@@ -19,7 +19,9 @@ constexpr WallMaterial kWall{510.0, 0.4, 2e4, 2.0};
 std::map<geometry::Edge, tissue::Spring> BySprings(const std::vector<tissue::Spring>& springs) {
   std::map<geometry::Edge, tissue::Spring> map;
   for (const tissue::Spring& spring : springs) {
-    EXPECT_TRUE(map.emplace(geometry::Edge{std::min(spring.a, spring.b), std::max(spring.a, spring.b)}, spring).second);
+    EXPECT_TRUE(
+        map.emplace(geometry::Edge{std::min(spring.a, spring.b), std::max(spring.a, spring.b)}, spring)
+            .second);
   }
   return map;
 }
@@ -66,7 +68,9 @@ TEST(CuttableOrgan, ATrenchMakesNoMass) {
   cut.depth = 0.004;
   CuttableSystem system(geometry::MakeSphere({}, 0.03, 3), kWall, cut);
   const double mass = SumMass(system.definition);
-  ASSERT_GT(system.CutLine({{0.02, -0.01, 0.001}, {0.04, -0.01, 0.001}}, {{0.02, 0.01, 0.001}, {0.04, 0.01, 0.001}}, 25), 8u);
+  ASSERT_GT(system.CutLine({{0.02, -0.01, 0.001}, {0.04, -0.01, 0.001}},
+                           {{0.02, 0.01, 0.001}, {0.04, 0.01, 0.001}}, 25),
+            8u);
   EXPECT_NEAR(SumMass(system.definition) / mass, 1.0, 1e-12);
   // the bottom is held by what lies below it
   const auto& mesh = system.organ->Mesh();
@@ -135,7 +139,8 @@ TEST_P(CutAndSolve, AHundredTicksAfterEveryStrokeAreFinite) {
     CuttableSystem system(geometry::MakeSphere({}, 0.03, 2), kWall, cut);
     for (int stroke = 0; stroke < 3; ++stroke) {
       const double z = random.Uniform(-0.02, 0.02), y = random.Uniform(-0.02, 0.0);
-      system.CutLine({{0.01, y, z}, {0.05, y, z}}, {{0.01, y + 0.02, z + 0.006}, {0.05, y + 0.02, z + 0.006}}, 8);
+      system.CutLine({{0.01, y, z}, {0.05, y, z}}, {{0.01, y + 0.02, z + 0.006}, {0.05, y + 0.02, z + 0.006}},
+                     8);
       tissue::EquilibriumSolver solver(system.model, 1);
       tissue::SolverSettings settings;
       settings.max_iterations = 20;

@@ -45,8 +45,8 @@ struct BladeMove {
 /// \param has_power  of the hook; ignored for scissors
 /// \return the move, or nothing while it does not cut
 /// \note Real-time safe.
-std::optional<BladeMove> MoveBlade(const instrument::Tool& tool, const Pose& X_world_tool, double jaw, bool has_power,
-                                   const BladeSettings& settings, BladeState& state) noexcept;
+std::optional<BladeMove> MoveBlade(const instrument::Tool& tool, const Pose& X_world_tool, double jaw,
+                                   bool has_power, const BladeSettings& settings, BladeState& state) noexcept;
 
 /// Finds the intact strands that a move crosses.
 ///

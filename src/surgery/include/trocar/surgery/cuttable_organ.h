@@ -26,7 +26,8 @@ class CuttableOrgan {
  public:
   /// \param mesh  rest shape; a solid organ must be closed
   /// \return kMeshInvalid
-  static core::Result<CuttableOrgan> Make(const geometry::TriangleMesh& mesh, const CuttableOrganSettings& settings);
+  static core::Result<CuttableOrgan> Make(const geometry::TriangleMesh& mesh,
+                                          const CuttableOrganSettings& settings);
 
   std::uint32_t Node(std::uint32_t v) const {
     return v < given_count_ ? settings_.first_node + v
@@ -42,7 +43,8 @@ class CuttableOrgan {
   /// \param[in,out] change  gets what the cut changes in the system; it must have room for it (CalcRoom)
   /// \note Real-time safe: no allocation while `change` has room.
   geometry::CutReport Cut(const geometry::BladeEdge& before, const geometry::BladeEdge& now,
-                          std::span<const Vec3> position, geometry::CutFront& front, TopologyChange& change) noexcept;
+                          std::span<const Vec3> position, geometry::CutFront& front,
+                          TopologyChange& change) noexcept;
 
   /// Reserves what any cut of this organ can change.
   void ReserveFor(TopologyChange& change) const;
@@ -62,9 +64,9 @@ class CuttableOrgan {
   geometry::SurfaceCutter cutter_;
   CuttableOrganSettings settings_;
   std::size_t given_count_ = 0;
-  std::vector<Vec3> positions_;              // (nv)
-  std::vector<geometry::Edge> pairs_;        // vertices whose spring may have changed
-  std::vector<std::uint32_t> vertices_;      // whose mass and foundation may have changed
+  std::vector<Vec3> positions_;          // (nv)
+  std::vector<geometry::Edge> pairs_;    // vertices whose spring may have changed
+  std::vector<std::uint32_t> vertices_;  // whose mass and foundation may have changed
 };
 
 }  // namespace trocar::surgery

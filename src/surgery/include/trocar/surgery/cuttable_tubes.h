@@ -36,15 +36,17 @@ class CuttableTubes {
   /// \param[out] cuts   one for each cut; room for kMostCuts
   /// \return how many cuts
   /// \note Real-time safe while `change` has room.
-  std::size_t Cut(const BladeMove& move, const tissue::TissueDefinition& definition, std::span<const Vec3> position,
-                  TopologyChange& change, std::span<geometry::CentreLineCut> cuts) noexcept;
+  std::size_t Cut(const BladeMove& move, const tissue::TissueDefinition& definition,
+                  std::span<const Vec3> position, TopologyChange& change,
+                  std::span<geometry::CentreLineCut> cuts) noexcept;
 
   /// Most cuts in one tick.
   static constexpr std::size_t kMostCuts = 8;
   void ReserveFor(TopologyChange& change) const;
 
  private:
-  void ListCut(const geometry::CentreLineCut& cut, const tissue::TissueDefinition& definition, TopologyChange& change) noexcept;
+  void ListCut(const geometry::CentreLineCut& cut, const tissue::TissueDefinition& definition,
+               TopologyChange& change) noexcept;
 
   geometry::CentreLineGraph graph_;
   std::vector<std::uint32_t> nodes_;  // (np)

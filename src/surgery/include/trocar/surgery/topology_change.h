@@ -22,11 +22,12 @@ using math::Vec3;
 struct NodeChange {
   std::uint32_t node = 0;
   bool is_new = false;
-  std::array<std::uint32_t, 3> from = {geometry::kNone, geometry::kNone, geometry::kNone};  ///< nodes; kNone where fewer
-  std::array<double, 3> weights = {0, 0, 0};                                             ///< sum 1 [-]
-  Vec3 rest, position;         ///< of a new one [m]
-  double mass = 0;             ///< [kg]
-  double shape_stiffness = 0;  ///< [N/m]
+  std::array<std::uint32_t, 3> from = {geometry::kNone, geometry::kNone,
+                                       geometry::kNone};  ///< nodes; kNone where fewer
+  std::array<double, 3> weights = {0, 0, 0};              ///< sum 1 [-]
+  Vec3 rest, position;                                    ///< of a new one [m]
+  double mass = 0;                                        ///< [kg]
+  double shape_stiffness = 0;                             ///< [N/m]
 };
 
 /// The spring between two nodes from now on.
@@ -43,8 +44,8 @@ struct SpringChange {
 /// All changes of one tick. Fixed room, so that a tick allocates nothing.
 struct TopologyChange {
   std::vector<NodeChange> nodes;
-  std::vector<SpringChange> springs;        ///< one for each pair of nodes
-  std::vector<std::uint32_t> cut_strands;   ///< indices, ascending
+  std::vector<SpringChange> springs;       ///< one for each pair of nodes
+  std::vector<std::uint32_t> cut_strands;  ///< indices, ascending
 
   /// Room for so many of each.
   void Reserve(std::size_t node_count, std::size_t spring_count, std::size_t strand_count);

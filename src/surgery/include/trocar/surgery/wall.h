@@ -17,9 +17,9 @@ using math::Vec3;
 struct WallMaterial {
   double membrane_modulus = 0;  ///< E t, Young's modulus times thickness [N/m]
   double bending_share = 0;     ///< of it that bending springs carry, see tissue::CalcBendingShare [-]
-  double foundation = 0;        ///< stiffness of the virtual springs by area, E / h of what lies behind [N/m^3]
-  double mass_by_area = 0;      ///< [kg/m^2]
-  std::uint32_t law = 0;        ///< of the wall's springs, index in TissueDefinition::laws
+  double foundation = 0;    ///< stiffness of the virtual springs by area, E / h of what lies behind [N/m^3]
+  double mass_by_area = 0;  ///< [kg/m^2]
+  std::uint32_t law = 0;    ///< of the wall's springs, index in TissueDefinition::laws
 };
 
 /// Modulus of a trench's walls, as a share of the surface's: cut parenchyma has no capsule [-], a tunable.
@@ -46,6 +46,7 @@ struct WallNode {
   double shape_stiffness = 0;  ///< [N/m]; walls hold the bottom of a trench, not its rim
 };
 /// \note Real-time safe.
-WallNode CalcWallNode(const geometry::EditableMesh& mesh, std::uint32_t v, const WallMaterial& material) noexcept;
+WallNode CalcWallNode(const geometry::EditableMesh& mesh, std::uint32_t v,
+                      const WallMaterial& material) noexcept;
 
 }  // namespace trocar::surgery
