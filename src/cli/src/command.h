@@ -39,6 +39,8 @@ void AddAnatomyViewCommand(CLI::App& anatomy, Outcome& outcome);
 void AddAnatomyImagesCommand(CLI::App& anatomy, Outcome& outcome);
 void AddBenchCommand(CLI::App& app, Outcome& outcome);
 void AddReproduceCommand(CLI::App& app, Outcome& outcome);
+/// Below `trocar reproduce`.
+void AddReportCardCommand(CLI::App& reproduce, Outcome& outcome);
 void AddDoctorCommand(CLI::App& app, Outcome& outcome);
 void AddErrorsCommand(CLI::App& app, Outcome& outcome);
 

@@ -27,6 +27,9 @@ constexpr int kMaxHalvings = 6;
 constexpr double kLeastDecrease = 1e-4;
 /// Rounding of the energy, as a part of it [-].
 constexpr double kEnergyRounding = 1e-12;
+/// Conjugate gradients end where r . z, of single precision, has fallen to this part of its start [-]: from a state
+/// at rest the tolerance is zero, and what follows is rounding.
+constexpr double kLinearRounding = 1e-12;
 constexpr std::uint8_t kNoConstraint = 255;
 
 Float4 ToFloat(const Vec3& v) {
@@ -174,7 +177,8 @@ NewtonMultigrid::LinearReport NewtonMultigrid::SolveLinear(const Kernels& kernel
   std::copy(z_.begin(), z_.end(), p_.begin());
   double reached = 0;  // bound of the longest move so far
   double rz = SumOverNodes(workers, n, [&](std::uint32_t i) { return Dot(r_[i], z_[i]); });
-  while (report.iterations < max_iterations && rz > 0.0) {
+  const double rounding = kLinearRounding * rz;
+  while (report.iterations < max_iterations && rz > rounding) {
     Multiply(kernels, workers, p_.data(), q_.data());
     const double pq = SumOverNodes(workers, n, [&](std::uint32_t i) { return Dot(p_[i], q_[i]); });
     report.met_negative_curvature = !(pq > 0.0);
