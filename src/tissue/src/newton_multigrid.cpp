@@ -30,6 +30,9 @@ constexpr double kEnergyRounding = 1e-12;
 /// Conjugate gradients end where r . z, of single precision, has fallen to this part of its start [-]: from a state
 /// at rest the tolerance is zero, and what follows is rounding.
 constexpr double kLinearRounding = 1e-12;
+/// Coarser levels are computed again when a node may have gone so far, in mean spring lengths [-]: they follow
+/// the springs' directions, which have hardly turned before.
+constexpr double kStaleMove = 0.2;
 constexpr std::uint8_t kNoConstraint = 255;
 
 Float4 ToFloat(const Vec3& v) {
@@ -39,23 +42,19 @@ Vec3 ToDouble(const Float4& v) {
   return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
 }
 
-double FindLongest(Workers& workers, const std::vector<Float4>& vectors) noexcept {
-  return std::sqrt(FindLargestOfNodes(workers, vectors.size(),
-                                      [&](std::uint32_t i) { return Dot(vectors[i], vectors[i]); }));
-}
-
 }  // namespace
 
 NewtonMultigrid::NewtonMultigrid(const TissueModel& model)
-    : model_(MakeOrderedModel(model)), hierarchy_(model_.graph, model_.graph_stiffness) {
+    : model_(MakeOrderedModel(model)),
+      hierarchy_(model_.graph, model_.graph_stiffness),
+      linearisation_(model_) {
   const std::size_t n = model_.Size(), padded = model_.layout.PaddedNodes();
   load_.constant.resize(n);
   load_.is_free.resize(n);
   load_.contacts.reserve(kMaxContacts);
-  stiffness_.resize(model_.layout.Steps() * kSliceNodes);
-  position_.resize(n), start_.resize(n);
-  balance_.residual.resize(n), balance_.node_force.resize(n);
-  is_pressing_.resize(kMaxContacts);
+  position_.resize(padded), start_.resize(padded);
+  balance_.residual.resize(padded);
+  balance_.is_pressing.resize(kMaxContacts);
   for (auto* vector : {&step_, &r_, &z_, &p_, &q_}) vector->resize(padded);
   constraint_of_node_.assign(n, kNoConstraint);
   gradient_.resize(padded);
@@ -66,30 +65,12 @@ NewtonMultigrid::NewtonMultigrid(const TissueModel& model)
   edge_length_ = count > 0 ? sum / static_cast<double>(count) : 0.0;
 }
 
-void NewtonMultigrid::AddContactGround() noexcept {
-  auto& ground = hierarchy_.Finest().ground;
-  for (std::size_t c = 0; c < load_.contacts.size(); ++c) {
-    const ContactSpring& contact = load_.contacts[c];
-    is_pressing_[c] = CalcContactDepth(contact, position_) > 0.0;
-    if (!is_pressing_[c]) continue;
-    for (int corner = 0; corner < 3; ++corner) {
-      Symmetric3 m{};
-      AddDirection(m, contact.normal, contact.weights[corner] * contact.stiffness);
-      const std::uint32_t i = contact.nodes[corner];
-      for (std::size_t v = 0; v < 6; ++v) {
-        ground[(std::size_t{i / kSliceNodes} * 6 + v) * kSliceNodes + i % kSliceNodes] +=
-            static_cast<float>(m[v]);
-      }
-    }
-  }
-}
-
 void NewtonMultigrid::Multiply(const Kernels& kernels, Workers& workers, const Float4* x,
                                Float4* out) noexcept {
   RunPass(kernels, workers, hierarchy_.Finest(), LinkPass::kProduct, x, nullptr, 0.0f, out);
   // a contact's ground stands for each corner alone; what it does to the corners together makes up the rest
   for (std::size_t c = 0; c < load_.contacts.size(); ++c) {
-    if (!is_pressing_[c]) continue;
+    if (!balance_.is_pressing[c]) continue;
     const ContactSpring& contact = load_.contacts[c];
     double along[3], together = 0;
     for (int corner = 0; corner < 3; ++corner) {
@@ -161,7 +142,8 @@ void NewtonMultigrid::Precondition(const Kernels& kernels, Workers& workers) noe
     const std::vector<Float4>& answer = answers_[c];
     ForEachNodeChunk(workers, z_.size(), [&](std::uint32_t first, std::uint32_t last, std::uint32_t) {
       for (std::uint32_t i = first; i < last; ++i) {
-        z_[i].x -= m * answer[i].x, z_[i].y -= m * answer[i].y, z_[i].z -= m * answer[i].z;
+        z_[i].x -= m * answer[i].x, z_[i].y -= m * answer[i].y, z_[i].z -= m * answer[i].z,
+            z_[i].w -= m * answer[i].w;
       }
     });
   }
@@ -176,13 +158,13 @@ NewtonMultigrid::LinearReport NewtonMultigrid::SolveLinear(const Kernels& kernel
   // z_ is the preconditioned residual already
   std::copy(z_.begin(), z_.end(), p_.begin());
   double reached = 0;  // bound of the longest move so far
-  double rz = SumOverNodes(workers, n, [&](std::uint32_t i) { return Dot(r_[i], z_[i]); });
+  double rz = CalcDot(kernels, workers, r_, z_);
   const double rounding = kLinearRounding * rz;
   while (report.iterations < max_iterations && rz > rounding) {
     Multiply(kernels, workers, p_.data(), q_.data());
-    const double pq = SumOverNodes(workers, n, [&](std::uint32_t i) { return Dot(p_[i], q_[i]); });
+    const double pq = CalcDot(kernels, workers, p_, q_);
     report.met_negative_curvature = !(pq > 0.0);
-    const double longest = FindLongest(workers, p_);
+    const double longest = FindLongest(kernels, workers, p_);
     // along a direction of negative curvature the energy only falls: as far as the range reaches
     double length = report.met_negative_curvature ? INFINITY : rz / pq;
     const bool is_leaving = reached + length * longest > radius;
@@ -191,23 +173,18 @@ NewtonMultigrid::LinearReport NewtonMultigrid::SolveLinear(const Kernels& kernel
     reached += length * longest;
     const auto alpha = static_cast<float>(length);
     ForEachNodeChunk(workers, n, [&](std::uint32_t first, std::uint32_t last, std::uint32_t) {
-      for (std::uint32_t i = first; i < last; ++i) {
-        step_[i].x += alpha * p_[i].x, step_[i].y += alpha * p_[i].y, step_[i].z += alpha * p_[i].z;
-        r_[i].x -= alpha * q_[i].x, r_[i].y -= alpha * q_[i].y, r_[i].z -= alpha * q_[i].z;
-      }
+      kernels.vectors.advance(alpha, p_.data(), q_.data(), step_.data(), r_.data(), first, last);
     });
     ++report.iterations;
     if (is_leaving && constraint_count_ == 0) break;
     Precondition(kernels, workers);
     if (is_leaving) break;
-    if (FindLongest(workers, z_) <= tolerance) break;
-    const double next = SumOverNodes(workers, n, [&](std::uint32_t i) { return Dot(r_[i], z_[i]); });
+    if (FindLongest(kernels, workers, z_) <= tolerance) break;
+    const double next = CalcDot(kernels, workers, r_, z_);
     const auto beta = static_cast<float>(next / rz);
     rz = next;
     ForEachNodeChunk(workers, n, [&](std::uint32_t first, std::uint32_t last, std::uint32_t) {
-      for (std::uint32_t i = first; i < last; ++i) {
-        p_[i] = {z_[i].x + beta * p_[i].x, z_[i].y + beta * p_[i].y, z_[i].z + beta * p_[i].z, 0.0f};
-      }
+      kernels.vectors.scale_and_add(beta, z_.data(), p_.data(), first, last);
     });
   }
   return report;
@@ -217,19 +194,28 @@ SolveReport NewtonMultigrid::Solve(const Kernels& kernels, Workers& workers, con
                                    const TissueLoad& load, TissueState& state,
                                    const SolveHook* hook) noexcept {
   const std::uint32_t n = model_.Size();
-  SetOrderedLoad(model_, load, state, load_);
-  for (std::uint32_t i = 0; i < n; ++i) position_[i] = state.position[model_.old_of_new[i]];
-
-  SolveReport report;
-  const auto linearise = [&] {
-    Linearise(model_, load_, state.strand_is_intact, position_, workers, hierarchy_.Finest(), stiffness_,
-              balance_);
-    AddContactGround();
+  const auto set_load = [&] {
+    SetOrderedLoad(model_, load, state, load_);
+    linearisation_.SetLoad(load_, state.strand_is_intact, hierarchy_.Finest());
+  };
+  const auto read_positions = [&] {
+    for (std::uint32_t i = 0; i < n; ++i) {
+      const Vec3& p = state.position[model_.old_of_new[i]];
+      position_[i] = {p.x, p.y, p.z, 0.0};
+    }
   };
   const auto write_back = [&] {
     for (std::uint32_t i = 0; i < n; ++i) {
-      if (load_.is_free[i]) state.position[model_.old_of_new[i]] = position_[i];
+      if (load_.is_free[i])
+        state.position[model_.old_of_new[i]] = {position_[i].x, position_[i].y, position_[i].z};
     }
+  };
+  set_load();
+  read_positions();
+
+  SolveReport report;
+  const auto linearise = [&] {
+    linearisation_.Linearise(kernels, workers, position_, hierarchy_.Finest(), balance_);
   };
   const auto call_hook = [&] {
     if (hook == nullptr) return;
@@ -237,30 +223,31 @@ SolveReport NewtonMultigrid::Solve(const Kernels& kernels, Workers& workers, con
     for (std::size_t c = 0; c < constraint_count_; ++c)
       hook->add_multiplier(hook->self, constraint_index_[c], -multipliers_[c]);
     hook->act(hook->self, state, {});
-    for (std::uint32_t i = 0; i < n; ++i) position_[i] = state.position[model_.old_of_new[i]];
-    SetOrderedLoad(model_, load, state, load_);
-    linearise();
+    read_positions();
+    set_load();
   };
   double scale = 0;  // largest distance from rest [m]
   // estimate of the distance to the equilibrium; leaves the preconditioned residual in z_
   const auto estimate = [&] {
-    ForEachNodeChunk(workers, n, [&](std::uint32_t first, std::uint32_t last, std::uint32_t) {
-      for (std::uint32_t i = first; i < last; ++i) r_[i] = ToFloat(balance_.residual[i]);
-    });
+    std::copy(balance_.residual.begin(), balance_.residual.end(), r_.begin());
     SetConstraints(kernels, workers, hook);
     Precondition(kernels, workers);
-    scale = std::sqrt(FindLargestOfNodes(
-        workers, n, [&](std::uint32_t i) { return math::SquaredDistance(position_[i], model_.rest[i]); }));
-    const double largest = FindLongest(workers, z_);
+    scale = balance_.largest_distance;
+    const double largest = FindLongest(kernels, workers, z_);
     report.error = scale > 0.0 ? largest / (kEstimateShare * scale) : largest > 0.0 ? INFINITY : 0.0;
     report.residual = balance_.force_scale > 0.0 ? balance_.largest_residual / balance_.force_scale : 0.0;
     report.force_scale = balance_.force_scale;
     report.converged = report.error <= settings.max_error;
   };
 
+  double moved = 0;  // bound of how far any node went since the coarser levels were computed [m]
+  const auto update_coarse = [&] {
+    hierarchy_.UpdateCoarse(kernels, workers, linearisation_.Slack());
+    moved = 0;
+  };
   double radius = edge_length_ > 0.0 ? kFirstRadius * edge_length_ : INFINITY;
   linearise();
-  hierarchy_.Update(stiffness_);
+  update_coarse();
   estimate();
   while (!report.converged && report.iterations < settings.max_newton_steps && balance_.is_finite) {
     const double before = balance_.energy;
@@ -270,16 +257,26 @@ SolveReport NewtonMultigrid::Solve(const Kernels& kernels, Workers& workers, con
         SolveLinear(kernels, workers, settings.max_linear_iterations, tolerance, radius);
     report.linear_iterations += linear.iterations;
     report.negative_curvatures += linear.met_negative_curvature;
-    const double length = FindLongest(workers, step_);
+    const double length = FindLongest(kernels, workers, step_);
     if (!(length > 0.0 && length < INFINITY)) break;
-    const double slope = -SumOverNodes(
-        workers, n, [&](std::uint32_t i) { return math::Dot(balance_.residual[i], ToDouble(step_[i])); });
+    const double slope = -CalcDot(kernels, workers, balance_.residual, step_);
     double share = 1.0;
     std::copy(position_.begin(), position_.end(), start_.begin());
     bool is_lower = false;
     for (int halving = 0; halving <= kMaxHalvings && !is_lower; ++halving, share *= 0.5) {
-      for (std::uint32_t i = 0; i < n; ++i) position_[i] = start_[i] + share * ToDouble(step_[i]);
-      linearise();
+      ForEachNodeChunk(workers, n, [&](std::uint32_t first, std::uint32_t last, std::uint32_t) {
+        for (std::uint32_t i = first; i < last; ++i) {
+          position_[i] = {start_[i].x + share * static_cast<double>(step_[i].x),
+                          start_[i].y + share * static_cast<double>(step_[i].y),
+                          start_[i].z + share * static_cast<double>(step_[i].z), 0.0};
+        }
+      });
+      // a hook will change the balance again
+      if (hook == nullptr) {
+        linearise();
+      } else {
+        linearisation_.CalcBalance(kernels, workers, position_, balance_);
+      }
       is_lower = balance_.is_finite && balance_.energy <= before + kLeastDecrease * share * slope +
                                                               kEnergyRounding * std::fabs(before);
       report.restarts += !is_lower;
@@ -294,18 +291,20 @@ SolveReport NewtonMultigrid::Solve(const Kernels& kernels, Workers& workers, con
     if (!is_lower) {
       std::copy(start_.begin(), start_.end(), position_.begin());
       linearise();
-      hierarchy_.Update(stiffness_);
       estimate();
       break;
     }
     // what the constraints carry of the residual after this part of the step
     for (std::size_t c = 0; c < constraint_count_; ++c)
-      multipliers_[c] =
-          std::fmin(share, 1.0) * multipliers_[c] + (1.0 - std::fmin(share, 1.0)) * first_multipliers[c];
+      multipliers_[c] = share * multipliers_[c] + (1.0 - share) * first_multipliers[c];
     // a constraint is kept after every step, whatever the hook's interval: a step here is worth many
     // iterations
-    call_hook();
-    hierarchy_.Update(stiffness_);
+    if (hook != nullptr) {
+      call_hook();
+      linearise();
+    }
+    moved += share * length;
+    if (moved > kStaleMove * edge_length_) update_coarse();
     estimate();
   }
   write_back();

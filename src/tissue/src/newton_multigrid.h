@@ -39,16 +39,14 @@ class NewtonMultigrid {
   /// z_ = about K^-1 r_ on the constraints; multipliers_ is what of r_ they carry.
   void Precondition(const Kernels& kernels, Workers& workers) noexcept;
   void Multiply(const Kernels& kernels, Workers& workers, const Float4* x, Float4* out) noexcept;
-  void AddContactGround() noexcept;
 
   OrderedModel model_;
   OrderedLoad load_;
   LinkHierarchy hierarchy_;
-  std::vector<float> stiffness_;  // (entries)
-  std::vector<Vec3> position_, start_;
+  Linearisation linearisation_;
+  std::vector<Double4> position_, start_;  // (padded)
   Balance balance_;
-  std::vector<std::uint8_t> is_pressing_;  // (contacts) when last linearised
-  std::vector<Float4> step_, r_, z_, p_, q_;
+  std::vector<Float4> step_, r_, z_, p_, q_;  // (padded)
   // constraints of the present step; their gradients share no node
   std::size_t constraint_count_ = 0;
   std::array<std::size_t, kMaxHookConstraints> constraint_index_{};  // in the hook
