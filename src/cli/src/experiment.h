@@ -21,9 +21,9 @@ struct ExperimentCell {
   std::string text;
   double number = NAN;
 
-  ExperimentCell(std::string words) : text(std::move(words)) {}           // NOLINT(google-explicit-constructor)
-  ExperimentCell(const char* words) : text(words) {}                      // NOLINT(google-explicit-constructor)
-  ExperimentCell(double value, int digits = 4);                           // NOLINT(google-explicit-constructor)
+  ExperimentCell(std::string words) : text(std::move(words)) {}  // NOLINT(google-explicit-constructor)
+  ExperimentCell(const char* words) : text(words) {}             // NOLINT(google-explicit-constructor)
+  ExperimentCell(double value, int digits = 4);                  // NOLINT(google-explicit-constructor)
 };
 
 struct ExperimentTable {

@@ -24,7 +24,8 @@ std::string FormatTableHtml(const ExperimentTable& table) {
   for (const auto& row : table.rows) {
     html += "<tr>";
     for (const ExperimentCell& cell : row) {
-      html += (std::isfinite(cell.number) ? "<td class=\"number\">" : "<td>") + EscapeMarkup(cell.text) + "</td>";
+      html +=
+          (std::isfinite(cell.number) ? "<td class=\"number\">" : "<td>") + EscapeMarkup(cell.text) + "</td>";
     }
     html += "</tr>\n";
   }
@@ -117,9 +118,10 @@ std::string FormatExperimentPage(const Experiment& experiment, const std::string
 
 std::string FormatExperimentIndex(std::span<const Experiment> experiments, const std::string& machine) {
   std::string html = BeginPage("The paper's experiments");
-  html += "<p>\"General algorithms for laparoscopic surgical simulators\", its tables and figures done again by "
-          "Trocar " +
-          EscapeMarkup(core::VersionText()) + " on " + EscapeMarkup(machine) + ".</p>\n<ul>\n";
+  html +=
+      "<p>\"General algorithms for laparoscopic surgical simulators\", its tables and figures done again by "
+      "Trocar " +
+      EscapeMarkup(core::VersionText()) + " on " + EscapeMarkup(machine) + ".</p>\n<ul>\n";
   for (const Experiment& experiment : experiments) {
     html += "<li><a href=\"" + EscapeMarkup(experiment.name) + ".html\">" + EscapeMarkup(experiment.title) +
             "</a></li>\n";
@@ -148,8 +150,9 @@ std::string FormatSvgFile(const ExperimentPlot& plot) {
   const std::string open = "<svg ";
   svg.replace(0, open.size(), "<svg xmlns=\"http://www.w3.org/2000/svg\" ");
   const std::size_t inside = svg.find(">\n") + 2;
-  return svg.insert(inside, "<style>" + std::string(kPlotStyle) + "</style>\n<rect width=\"100%\" "
-                                                                  "height=\"100%\" fill=\"#fafafa\"/>\n");
+  return svg.insert(inside, "<style>" + std::string(kPlotStyle) +
+                                "</style>\n<rect width=\"100%\" "
+                                "height=\"100%\" fill=\"#fafafa\"/>\n");
 }
 
 core::Result<std::string> ReplaceGeneratedPart(std::string_view document, std::string_view generated) {

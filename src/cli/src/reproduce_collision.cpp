@@ -66,8 +66,7 @@ std::vector<Vec3> MakeTips(const TriangleMesh& mesh, const std::vector<Vec3>& po
   math::Random random(20240611);
   std::vector<Vec3> tips;
   for (int i = 0; i < kQueries; ++i) {
-    const std::size_t triangle =
-        static_cast<std::size_t>(i) * mesh.triangles.size() / kQueries;
+    const std::size_t triangle = static_cast<std::size_t>(i) * mesh.triangles.size() / kQueries;
     tips.push_back(collision::CalcCentroid(positions, mesh.triangles[triangle]) +
                    reach * Vec3{random.Uniform(-1, 1), random.Uniform(-1, 1), random.Uniform(-1, 1)});
   }
@@ -99,12 +98,18 @@ core::Result<Times> Measure(const NamedMesh& named, const ExperimentOptions& opt
   times.update_some = TimeShortest(repeats, nothing, [&] { hierarchy.Update(deformed, modified); });
   std::vector<std::uint32_t> greedy(tips.size());
   std::vector<collision::NearestTriangle> exact(tips.size());
-  times.greedy = TimeShortest(repeats, nothing, [&] {
-    for (std::size_t i = 0; i < tips.size(); ++i) greedy[i] = hierarchy.FindGreedy(tips[i]);
-  }) / kQueries;
-  times.exact = TimeShortest(repeats, nothing, [&] {
-    for (std::size_t i = 0; i < tips.size(); ++i) exact[i] = hierarchy.FindNearest(deformed, tips[i]);
-  }) / kQueries;
+  times.greedy = TimeShortest(repeats, nothing,
+                              [&] {
+                                for (std::size_t i = 0; i < tips.size(); ++i)
+                                  greedy[i] = hierarchy.FindGreedy(tips[i]);
+                              }) /
+                 kQueries;
+  times.exact = TimeShortest(repeats, nothing,
+                             [&] {
+                               for (std::size_t i = 0; i < tips.size(); ++i)
+                                 exact[i] = hierarchy.FindNearest(deformed, tips[i]);
+                             }) /
+                kQueries;
   int missed = 0, checked = 0;
   const core::Stopwatch stopwatch;
   for (std::size_t i = 0; i < tips.size(); i += 10, ++checked) {
@@ -144,7 +149,8 @@ PlotSettings LogPlot(const char* title, const char* y_label) {
 }
 
 constexpr const char* kMeshes =
-    "Balls of 80 to 20,480 triangles, a grid of 4,050, and the built-in gallbladder and liver, each under a smooth push "
+    "Balls of 80 to 20,480 triangles, a grid of 4,050, and the built-in gallbladder and liver, each under a "
+    "smooth push "
     "of a tenth of its size. ";
 
 }  // namespace
@@ -154,21 +160,30 @@ ExperimentResult ReproduceFigure6(const ExperimentOptions& options, ExperimentSt
       "fig6",
       "Figure 6: collision search over mesh size",
       std::string(kMeshes) +
-          "A thousand tips around each; time of one search in the paper's hierarchy: its own greedy descent, the exact "
-          "branch and bound over the same tree, and brute force over all triangles. Exact answers are checked against "
+          "A thousand tips around each; time of one search in the paper's hierarchy: its own greedy descent, "
+          "the exact "
+          "branch and bound over the same tree, and brute force over all triangles. Exact answers are "
+          "checked against "
           "brute force.",
       {},
       {"The curve stands only in the paper's picture. Its text names one time, on an Intel Core2 Duo.",
-       "The greedy descent never turns back: what it finds is often not the nearest triangle (column missed)."},
+       "The greedy descent never turns back: what it finds is often not the nearest triangle (column "
+       "missed)."},
       {}};
-  ExperimentTable table{"Time of one search",
-                        {"mesh", "triangles", "paper", "greedy [us]", "exact [us]", "brute force [us]", "missed [%]"},
-                        {}};
+  ExperimentTable table{
+      "Time of one search",
+      {"mesh", "triangles", "paper", "greedy [us]", "exact [us]", "brute force [us]", "missed [%]"},
+      {}};
   std::vector<PlotLine> lines = {{"greedy (paper)", {}}, {"exact", {}}, {"brute force", {}}};
   const core::Status status =
       ForEachMesh(options, [&](const NamedMesh& named, double triangles, const Times& times) {
-        table.rows.push_back({named.name, {triangles, 9}, PaperCell(triangles), {1e6 * times.greedy},
-                              {1e6 * times.exact}, {1e6 * times.brute}, {times.missed, 3}});
+        table.rows.push_back({named.name,
+                              {triangles, 9},
+                              PaperCell(triangles),
+                              {1e6 * times.greedy},
+                              {1e6 * times.exact},
+                              {1e6 * times.brute},
+                              {times.missed, 3}});
         lines[0].points.push_back({triangles, 1e6 * times.greedy});
         lines[1].points.push_back({triangles, 1e6 * times.exact});
         lines[2].points.push_back({triangles, 1e6 * times.brute});
@@ -184,7 +199,8 @@ ExperimentResult ReproduceFigure7(const ExperimentOptions& options, ExperimentSt
       "fig7",
       "Figure 7: update of the hierarchy over mesh size",
       std::string(kMeshes) +
-          "Time to recompute every centroid and every node bottom-up, the same for a list of 100 modified triangles, and "
+          "Time to recompute every centroid and every node bottom-up, the same for a list of 100 modified "
+          "triangles, and "
           "for one tick: update everything, then search.",
       {},
       {"The curve stands only in the paper's picture. Its text names one time, on an Intel Core2 Duo."},
@@ -193,12 +209,18 @@ ExperimentResult ReproduceFigure7(const ExperimentOptions& options, ExperimentSt
                         {"mesh", "triangles", "paper", "update all [us]", "update 100 [us]",
                          "update all and greedy search [us]", "update all and exact search [us]"},
                         {}};
-  std::vector<PlotLine> lines = {{"update all", {}}, {"update 100 triangles", {}}, {"all + exact search", {}}};
+  std::vector<PlotLine> lines = {
+      {"update all", {}}, {"update 100 triangles", {}}, {"all + exact search", {}}};
   const core::Status status =
       ForEachMesh(options, [&](const NamedMesh& named, double triangles, const Times& times) {
         const double both = times.update_all + times.exact;
-        table.rows.push_back({named.name, {triangles, 9}, PaperCell(triangles), {1e6 * times.update_all},
-                              {1e6 * times.update_some}, {1e6 * (times.update_all + times.greedy)}, {1e6 * both}});
+        table.rows.push_back({named.name,
+                              {triangles, 9},
+                              PaperCell(triangles),
+                              {1e6 * times.update_all},
+                              {1e6 * times.update_some},
+                              {1e6 * (times.update_all + times.greedy)},
+                              {1e6 * both}});
         lines[0].points.push_back({triangles, 1e6 * times.update_all});
         lines[1].points.push_back({triangles, 1e6 * times.update_some});
         lines[2].points.push_back({triangles, 1e6 * both});

@@ -35,7 +35,8 @@ struct Arguments {
   bool is_json = false;
 };
 
-core::Result<std::vector<Experiment>> Run(std::span<const ExperimentEntry> entries, const Arguments& arguments) {
+core::Result<std::vector<Experiment>> Run(std::span<const ExperimentEntry> entries,
+                                          const Arguments& arguments) {
   std::vector<Experiment> done;
   ExperimentStore store;
   for (const ExperimentEntry& entry : entries) {
@@ -46,7 +47,8 @@ core::Result<std::vector<Experiment>> Run(std::span<const ExperimentEntry> entri
     bar.Finish();
     if (!result) return result.error();
     if (options.is_quick)
-      result->notes.emplace_back("A quick run: smaller meshes, fewer repeats; its times are no figures to quote.");
+      result->notes.emplace_back(
+          "A quick run: smaller meshes, fewer repeats; its times are no figures to quote.");
     // a person reads on while the next one runs
     if (!arguments.is_json) {
       std::printf("%s\n", FormatExperimentText(*result).c_str());
@@ -57,8 +59,8 @@ core::Result<std::vector<Experiment>> Run(std::span<const ExperimentEntry> entri
   return done;
 }
 
-core::Status WritePages(const std::vector<Experiment>& experiments, const Arguments& arguments, bool has_index,
-                        const std::string& machine) {
+core::Status WritePages(const std::vector<Experiment>& experiments, const Arguments& arguments,
+                        bool has_index, const std::string& machine) {
   const std::filesystem::path folder = arguments.folder;
   std::error_code failure;
   std::filesystem::create_directories(folder, failure);  // a failure shows where a file is written
@@ -104,7 +106,9 @@ core::Status Reproduce(std::span<const ExperimentEntry> entries, const Arguments
 }
 
 void AddOptions(CLI::App& command, const std::shared_ptr<Arguments>& arguments) {
-  command.add_option("-o,--output", arguments->folder, "Folder for the page (HTML), the plots (SVG) and the numbers (JSON)")
+  command
+      .add_option("-o,--output", arguments->folder,
+                  "Folder for the page (HTML), the plots (SVG) and the numbers (JSON)")
       ->type_name("FOLDER");
   command.add_flag("--quick", arguments->options.is_quick, "Smaller meshes: seconds instead of minutes");
   command.add_option("--threads", arguments->options.threads, "Of the solvers that can use more than one")

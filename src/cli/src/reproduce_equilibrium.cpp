@@ -55,9 +55,10 @@ Arrival TimeRelaxation(const GridCase& grid, const tissue::TissueState& truth) {
 }
 
 /// The fewest iterations, in steps of a quarter, that lead there from flat in one solve.
-Arrival TimeSolver(const GridCase& grid, const tissue::TissueState& truth, SolverKind kind, bool recognises_grids,
-                   const ExperimentOptions& options) {
-  tissue::EquilibriumSolver solver(grid.model, {.threads = options.threads, .recognises_grids = recognises_grids});
+Arrival TimeSolver(const GridCase& grid, const tissue::TissueState& truth, SolverKind kind,
+                   bool recognises_grids, const ExperimentOptions& options) {
+  tissue::EquilibriumSolver solver(grid.model,
+                                   {.threads = options.threads, .recognises_grids = recognises_grids});
   const bool counts_steps = kind == SolverKind::kNewtonMultigrid;
   SolverSettings settings;
   settings.kind = kind;
@@ -115,9 +116,14 @@ core::Status AddGrid(const ExperimentOptions& options, Experiment& experiment) {
                         {}};
   double paper_seconds = NAN;
   const auto add = [&](const std::string& name, const char* paper, const Arrival& arrival) {
-    table.rows.push_back({name, paper, {double(arrival.iterations), 9}, {1e3 * arrival.seconds}, {arrival.error},
-                          !arrival.note.empty()            ? arrival.note
-                          : arrival.seconds < kFrame ? "yes" : "no",
+    table.rows.push_back({name,
+                          paper,
+                          {double(arrival.iterations), 9},
+                          {1e3 * arrival.seconds},
+                          {arrival.error},
+                          !arrival.note.empty()      ? arrival.note
+                          : arrival.seconds < kFrame ? "yes"
+                                                     : "no",
                           {paper_seconds / arrival.seconds, 3}});
   };
   const Arrival paper = TimeRelaxation(grid, *truth);
@@ -163,7 +169,8 @@ core::Status AddPatient(const ExperimentOptions& options, Experiment& experiment
   if (errors.empty()) return WrongAnswer("equilibrium", "no tick of the patient could be judged");
   const auto below = static_cast<double>(
       std::count_if(errors.begin(), errors.end(), [](double error) { return error < kWantedError; }));
-  ExperimentTable table{"The built-in patient while both hands pull", {"figure", "paper", "ours", "unit"}, {}};
+  ExperimentTable table{
+      "The built-in patient while both hands pull", {"figure", "paper", "ours", "unit"}, {}};
   const auto row = [&](const char* name, const char* paper, double value, const char* unit) {
     table.rows.push_back({name, paper, {value}, unit});
   };
@@ -188,17 +195,23 @@ ExperimentResult ReproduceEquilibrium(const ExperimentOptions& options, Experime
   Experiment experiment{
       "equilibrium",
       "Equilibrium in each frame",
-      "True error: largest distance of a node to the equilibrium over the largest distance of any node from rest, the "
-      "equilibrium found by Newton's method to ten digits and checked by the plain balance of forces. Grid: " +
+      "True error: largest distance of a node to the equilibrium over the largest distance of any node from "
+      "rest, the "
+      "equilibrium found by Newton's method to ten digits and checked by the plain balance of forces. "
+      "Grid: " +
           side + " x " + side +
-          " points, unit spacing, k = 1 N/m, k_virtual = 0.05, border held, 0.001 N on every node and 0.5 N at the "
-          "centre the other way; the relaxation runs with alpha k = 0.1. Patient: scenes/retraction.json, every " +
+          " points, unit spacing, k = 1 N/m, k_virtual = 0.05, border held, 0.001 N on every node and 0.5 N "
+          "at the "
+          "centre the other way; the relaxation runs with alpha k = 0.1. Patient: scenes/retraction.json, "
+          "every " +
           std::to_string(kJudgeEvery) + "th of " + (options.is_quick ? "121" : "1801") + " ticks judged. " +
           std::to_string(options.threads) + (options.threads == 1 ? " thread." : " threads."),
       {},
-      {"The paper reaches an error below 0.0005 with alpha = 0.1 and 20 ms a frame on organs of a few thousand "
+      {"The paper reaches an error below 0.0005 with alpha = 0.1 and 20 ms a frame on organs of a few "
+       "thousand "
        "triangles; it does not say what the error is relative to. 20 ms do not fit into a frame at 60 Hz.",
-       "With the printed k_mesh = 0.002 and alpha = 0.1, alpha k is 0.0002: the same number of iterations goes a "
+       "With the printed k_mesh = 0.002 and alpha = 0.1, alpha k is 0.0002: the same number of iterations "
+       "goes a "
        "five-hundredth of the way of the relaxation timed here."},
       {}};
   if (core::Status status = AddGrid(options, experiment); !status) return status.error();

@@ -134,30 +134,41 @@ ExperimentResult ReproduceTable2(const ExperimentOptions& options, ExperimentSto
   printed.max_iterations = options.is_quick ? kQuickIterations : kIterations;
 
   const std::string side = options.is_quick ? "11" : "51";
-  Experiment experiment{
-      "table2",
-      "Table 2: shape conservation",
-      std::string("A mesh sags under gravity; diff shape^k = 100 error^k / error^0 for eleven stiffnesses of the virtual springs, "
-      "k_mesh = 0.002 N/m on every edge and alpha = 0.1 m/N as printed. Liver: the built-in one, held by the paper's "
-      "three rules, gravity towards the back. Grid: ") +
-          side + " x " + side + " points, 5 mm apart, hanging by its upper edge. Mass of a "
-      "node: 1e-9 kg (the paper names none), so small that errors are proportional to it and it cancels. Stopped: "
-      "after " + std::to_string(printed.max_iterations) + " iterations of the paper's solver from rest.",
-      {},
-      {"The paper does not define error_shape and names no number of iterations. Its column is found again when its "
-       "solver is stopped after about 15,000 iterations and the error is the square root of the mean displacement: "
-       "15,000 is fitted here to the printed column, all other constants are the paper's. A law that fits as well: 100 "
-       "(K / (K + k))^0.52 with K = 0.00081 N/m.",
-       "Stopped so early the solver is far from equilibrium where virtual springs are weak: k_virtual = 0 has gone a "
-       "small part of its way, so that every ratio to it is too large. At rest (Newton's method to 1e-5 of the largest "
-       "displacement) virtual springs conserve far more of the shape than Table 2 says.",
-       "The mean, the root of the mean square (RMS) and the maximum fall as 1 / k_virtual for stiff virtual springs."},
-      {}};
+  Experiment experiment{"table2",
+                        "Table 2: shape conservation",
+                        std::string("A mesh sags under gravity; diff shape^k = 100 error^k / error^0 for "
+                                    "eleven stiffnesses of the virtual springs, "
+                                    "k_mesh = 0.002 N/m on every edge and alpha = 0.1 m/N as printed. Liver: "
+                                    "the built-in one, held by the paper's "
+                                    "three rules, gravity towards the back. Grid: ") +
+                            side + " x " + side +
+                            " points, 5 mm apart, hanging by its upper edge. Mass of a "
+                            "node: 1e-9 kg (the paper names none), so small that errors are proportional to "
+                            "it and it cancels. Stopped: "
+                            "after " +
+                            std::to_string(printed.max_iterations) +
+                            " iterations of the paper's solver from rest.",
+                        {},
+                        {"The paper does not define error_shape and names no number of iterations. Its "
+                         "column is found again when its "
+                         "solver is stopped after about 15,000 iterations and the error is the square root "
+                         "of the mean displacement: "
+                         "15,000 is fitted here to the printed column, all other constants are the paper's. "
+                         "A law that fits as well: 100 "
+                         "(K / (K + k))^0.52 with K = 0.00081 N/m.",
+                         "Stopped so early the solver is far from equilibrium where virtual springs are "
+                         "weak: k_virtual = 0 has gone a "
+                         "small part of its way, so that every ratio to it is too large. At rest (Newton's "
+                         "method to 1e-5 of the largest "
+                         "displacement) virtual springs conserve far more of the shape than Table 2 says.",
+                         "The mean, the root of the mean square (RMS) and the maximum fall as 1 / k_virtual "
+                         "for stiff virtual springs."},
+                        {}};
   int done = 0;
   for (const Shape& shape : shapes) {
     ExperimentTable table{"Shape error of the " + shape.name + " [% of that without virtual springs]",
-                          {"k virtual [N/m]", "paper", "stopped: root of mean", "stopped: mean", "stopped: RMS",
-                           "stopped: max", "at rest: root of mean", "at rest: RMS"},
+                          {"k virtual [N/m]", "paper", "stopped: root of mean", "stopped: mean",
+                           "stopped: RMS", "stopped: max", "at rest: root of mean", "at rest: RMS"},
                           {}};
     std::optional<ShapeError> first, first_printed;
     std::vector<PlotLine> lines = {
@@ -172,9 +183,14 @@ ExperimentResult ReproduceTable2(const ExperimentOptions& options, ExperimentSto
       const double stopped_root = 100 * std::sqrt(early->mean / first_printed->mean),
                    stopped_rms = 100 * early->rms / first_printed->rms,
                    root = 100 * std::sqrt(error->mean / first->mean), rms = 100 * error->rms / first->rms;
-      table.rows.push_back({{row.stiffness}, {row.percent}, {stopped_root, 3},
-                            {100 * early->mean / first_printed->mean, 3}, {stopped_rms, 3},
-                            {100 * early->max / first_printed->max, 3}, {root, 3}, {rms, 3}});
+      table.rows.push_back({{row.stiffness},
+                            {row.percent},
+                            {stopped_root, 3},
+                            {100 * early->mean / first_printed->mean, 3},
+                            {stopped_rms, 3},
+                            {100 * early->max / first_printed->max, 3},
+                            {root, 3},
+                            {rms, 3}});
       // zero has no place on a logarithmic axis
       lines[0].points.push_back({row.stiffness, row.percent});
       lines[1].points.push_back({row.stiffness, stopped_root});
@@ -186,8 +202,8 @@ ExperimentResult ReproduceTable2(const ExperimentOptions& options, ExperimentSto
     PlotSettings settings{"Shape error of the " + shape.name, "k virtual [N/m]", "error [%]"};
     settings.is_log_x = settings.is_log_y = true;
     experiment.plots.push_back({settings, lines});
-    experiment.notes.push_back("The column \"stopped: root of mean\" of the " + shape.name +
-                               " is within " + FormatNumber(100 * largest_gap, 2) + " % of the printed one.");
+    experiment.notes.push_back("The column \"stopped: root of mean\" of the " + shape.name + " is within " +
+                               FormatNumber(100 * largest_gap, 2) + " % of the printed one.");
     experiment.notes.push_back("At rest, without virtual springs the " + shape.name + " sags by " +
                                FormatNumber(1e3 * first->mean) + " mm in the mean and " +
                                FormatNumber(1e3 * first->max) + " mm at most.");

@@ -82,11 +82,11 @@ core::Result<SolverTimes> MeasureSolvers(const ExperimentOptions& options) {
     const double updates = options.is_quick ? kQuickNodeUpdates : kNodeUpdates;
     const int iterations = std::max(20, static_cast<int>(updates / (side * side)));
     std::vector<math::Vec3> relaxed = grid.start.position;
-    times.rows[0].seconds.push_back(
-        TimeShortest(
-            options.is_quick ? 1 : options.repeats, [&] { relaxed = grid.start.position; },
-            [&] { RelaxAsPrinted(grid, iterations, relaxed); }) /
-        iterations);
+    times.rows[0].seconds.push_back(TimeShortest(
+                                        options.is_quick ? 1 : options.repeats,
+                                        [&] { relaxed = grid.start.position; },
+                                        [&] { RelaxAsPrinted(grid, iterations, relaxed); }) /
+                                    iterations);
     for (std::size_t i = 0; i < kContenders.size(); ++i) {
       const auto seconds = TimeIteration(grid, kContenders[i], iterations, options);
       if (!seconds) return seconds.error();
@@ -123,7 +123,8 @@ std::vector<std::string> MakeHeading(const SolverTimes& times, const std::string
 
 /// One row and one line per solver; `value` of the seconds of a row on the s-th mesh.
 template <typename Value>
-void AddRows(const SolverTimes& times, const Value& value, ExperimentTable& table, std::vector<PlotLine>& lines) {
+void AddRows(const SolverTimes& times, const Value& value, ExperimentTable& table,
+             std::vector<PlotLine>& lines) {
   for (const SolverTimes::Row& row : times.rows) {
     table.rows.push_back({row.solver});
     PlotLine line{row.solver, {}};
@@ -141,7 +142,8 @@ void AddRows(const SolverTimes& times, const Value& value, ExperimentTable& tabl
 }
 
 std::string DescribeProblem(const ExperimentOptions& options) {
-  return "The four grids of Table 1: unit spacing, springs of 1 N/m on every edge, k_virtual 0.05, border held, 0.001 N "
+  return "The four grids of Table 1: unit spacing, springs of 1 N/m on every edge, k_virtual 0.05, border "
+         "held, 0.001 N "
          "on every node and 0.5 N at the centre the other way. Solvers with " +
          std::to_string(options.threads) + (options.threads == 1 ? " thread" : " threads") +
          "; a long run less a short one, the quickest of " +
@@ -151,7 +153,8 @@ std::string DescribeProblem(const ExperimentOptions& options) {
 
 }  // namespace
 
-void AddGpuRows(const tissue_cuda::GpuBenchmarkResult* measured, const std::string& note, SolverTimes& times) {
+void AddGpuRows(const tissue_cuda::GpuBenchmarkResult* measured, const std::string& note,
+                SolverTimes& times) {
   for (const tissue_cuda::Layout layout : tissue_cuda::AllLayouts()) {
     const std::string name(tissue_cuda::LayoutName(layout));
     SolverTimes::Row row{"GPU, " + name, note, {}, true};
@@ -172,20 +175,22 @@ void AddGpuRows(const tissue_cuda::GpuBenchmarkResult* measured, const std::stri
 ExperimentResult ReproduceFigure8(const ExperimentOptions& options, ExperimentStore& store) {
   const auto found = FindTimes(options, store);
   if (!found) return found.error();
-  Experiment experiment{
-      "fig8",
-      "Figure 8: time of an iteration over mesh size",
-      DescribeProblem(options),
-      {},
-      {std::string("The curves stand only in the paper's picture; its text says: ") + kPaperLimit +
-           ", on a GeForce 8800 GT.",
-       "Iterations of different solvers do not do the same work: what counts is the time to equilibrium (experiment "
-       "equilibrium).",
-       "A row without a GPU has no time: the host executor checks the kernels and is no measure of their speed."},
-      {}};
+  Experiment experiment{"fig8",
+                        "Figure 8: time of an iteration over mesh size",
+                        DescribeProblem(options),
+                        {},
+                        {std::string("The curves stand only in the paper's picture; its text says: ") +
+                             kPaperLimit + ", on a GeForce 8800 GT.",
+                         "Iterations of different solvers do not do the same work: what counts is the time "
+                         "to equilibrium (experiment "
+                         "equilibrium).",
+                         "A row without a GPU has no time: the host executor checks the kernels and is no "
+                         "measure of their speed."},
+                        {}};
   ExperimentTable table{"Time of one iteration [us]", MakeHeading(**found, ""), {}};
   std::vector<PlotLine> lines;
-  AddRows(**found, [](const SolverTimes::Row& row, std::size_t s) { return 1e6 * row.seconds[s]; }, table, lines);
+  AddRows(
+      **found, [](const SolverTimes::Row& row, std::size_t s) { return 1e6 * row.seconds[s]; }, table, lines);
   experiment.tables = {table};
   PlotSettings settings{"Time of one iteration", "points", "time [us]"};
   settings.is_log_x = settings.is_log_y = true;
@@ -201,11 +206,14 @@ ExperimentResult ReproduceFigure9(const ExperimentOptions& options, ExperimentSt
   Experiment experiment{
       "fig9",
       "Figure 9: speed-up over the paper's relaxation",
-      DescribeProblem(options) + " Time of the paper's relaxation, scalar in double precision, over that of each solver.",
+      DescribeProblem(options) +
+          " Time of the paper's relaxation, scalar in double precision, over that of each solver.",
       {},
-      {"The curves stand only in the paper's picture; its text says that shared with coalesced memory was the fastest "
+      {"The curves stand only in the paper's picture; its text says that shared with coalesced memory was "
+       "the fastest "
        "of its four layouts.",
-       "A row without a GPU has no time: the host executor checks the kernels and is no measure of their speed."},
+       "A row without a GPU has no time: the host executor checks the kernels and is no measure of their "
+       "speed."},
       {}};
   ExperimentTable table{"Speed-up of one iteration [times]", MakeHeading(times, ""), {}};
   std::vector<PlotLine> lines;

@@ -19,8 +19,8 @@ using math::Vec2;
 // told apart by dashes as well as by colour (Okabe and Ito 2008)
 constexpr std::array<const char*, 8> kColours = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
                                                  "#e69f00", "#56b4e9", "#000000", "#7a6a00"};
-constexpr std::array<const char*, 8> kDashes = {"none",  "6 3", "2 2",  "8 2 2 2",
-                                                "1 3", "10 4", "4 1 1 1", "12 2 2 2"};
+constexpr std::array<const char*, 8> kDashes = {"none", "6 3",  "2 2",     "8 2 2 2",
+                                                "1 3",  "10 4", "4 1 1 1", "12 2 2 2"};
 constexpr double kLeft = 62, kRight = 14, kTop = 30, kBottom = 44;  // margins [px]
 constexpr double kLegendLetter = 8, kColumnLetter = 6.2;            // room for a letter [px]
 constexpr std::size_t kMostPoints = 1200;                           // of one line: two to a pixel

@@ -20,12 +20,9 @@ using testing::HasSubstr;
 using testing::Not;
 
 Experiment MakeExample() {
-  return {"fig<0>",
-          "Figure 0: a < b",
-          "how & why",
-          {{"Table & title", {"mesh", "a|b"}, {{"one", {1.25}}, {"two", kNotReadable}}}},
-          {"a note"},
-          {{{"plot", "x", "y"}, {{"line", {{1, 1}, {2, 4}}}}}}};
+  return {"fig<0>",    "Figure 0: a < b",
+          "how & why", {{"Table & title", {"mesh", "a|b"}, {{"one", {1.25}}, {"two", kNotReadable}}}},
+          {"a note"},  {{{"plot", "x", "y"}, {{"line", {{1, 1}, {2, 4}}}}}}};
 }
 
 // The paper's own columns, and Euler's formula where the paper slips.
@@ -46,14 +43,15 @@ TEST(ReproduceTable1, CountsThePapersMeshes) {
 TEST(ExperimentPages, SayEachFigureOnceAndEscapeText) {
   const Experiment example = MakeExample();
   const std::string page = FormatExperimentPage(example, "a machine");
-  for (const char* text : {"Figure 0: a &lt; b", "how &amp; why", "a|b", "1.25", "not readable", "a note", "<svg",
-                           "a machine", "fig&lt;0&gt;"}) {
+  for (const char* text : {"Figure 0: a &lt; b", "how &amp; why", "a|b", "1.25", "not readable", "a note",
+                           "<svg", "a machine", "fig&lt;0&gt;"}) {
     EXPECT_THAT(page, HasSubstr(text));
   }
   EXPECT_THAT(page, Not(HasSubstr("http"))) << "nothing from elsewhere";
   const std::string index = FormatExperimentIndex(std::span(&example, 1), "a machine");
   EXPECT_THAT(index, HasSubstr("href=\"fig&lt;0&gt;.html\""));
-  EXPECT_THAT(FormatExperimentsMarkdown(std::span(&example, 1), "m"), HasSubstr("| mesh | a\\|b |\n|---|---|\n"));
+  EXPECT_THAT(FormatExperimentsMarkdown(std::span(&example, 1), "m"),
+              HasSubstr("| mesh | a\\|b |\n|---|---|\n"));
   EXPECT_THAT(FormatExperimentText(example), HasSubstr("two   not readable"));
   const std::string svg = FormatSvgFile(example.plots[0]);
   EXPECT_THAT(svg, HasSubstr("<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox="));
@@ -74,7 +72,8 @@ TEST(ReplaceGeneratedPart, LeavesTheRestAloneAndRefusesWhatIsNotSound) {
   ASSERT_TRUE(replaced);
   EXPECT_EQ(*replaced, "before\n" + begin + "\n\nnew\n" + end + "\nafter\n");
   EXPECT_EQ(*ReplaceGeneratedPart(*replaced, "new\n"), *replaced) << "twice is once";
-  for (const std::string& bad : {std::string(), begin, end, end + begin, begin + begin + end, begin + end + end}) {
+  for (const std::string& bad :
+       {std::string(), begin, end, end + begin, begin + begin + end, begin + end + end}) {
     const auto result = ReplaceGeneratedPart(bad, "new");
     ASSERT_FALSE(result) << bad;
     EXPECT_EQ(result.error().code, core::ErrorCode::kUsage);
