@@ -26,6 +26,10 @@ struct ContouredStructure {
   std::vector<std::vector<std::vector<Vec2>>> curves;  // of each slice; empty where the slice has holes
 };
 
+Error GivenUp() {
+  return {core::ErrorCode::kCancelled, "the organs were given up"};
+}
+
 /// Slices down to kSliceStepMm: between two single contours by matching them, elsewhere by InsertSlices.
 std::vector<FilledSlice> MakeDenseSlices(const ContouredStructure& structure) {
   std::vector<FilledSlice> dense = {structure.slices.front()};
@@ -49,12 +53,14 @@ std::vector<FilledSlice> MakeDenseSlices(const ContouredStructure& structure) {
 
 core::Result<ContouredStructure> ExtractContours(const ControlPoints& points, const Structure& structure,
                                                  const std::map<int, ColorImage>& images,
+                                                 const std::stop_token& stop,
                                                  std::map<int, Overlay>& overlays) {
   ContouredStructure result;
   result.report.name = structure.name;
   result.report.slices = structure.slices.size();
   double shift_sum = 0;
   for (const SliceContours& slice : structure.slices) {
+    if (stop.stop_requested()) return GivenUp();
     const EdgeField field(images.at(slice.slice), structure.adaption.blur_px);
     Overlay& overlay = overlays[slice.slice];
     const auto follow = [&](const std::vector<std::vector<Vec2>>& polygons) {
@@ -134,7 +140,7 @@ core::Result<BuiltOrgans> BuildOrgans(const ControlPoints& points, const std::ma
   const auto count = static_cast<double>(points.structures.size());
   for (const Structure& structure : points.structures) {
     tell("following contours of " + structure.name, static_cast<double>(volumes.size()) / count);
-    auto contoured = ExtractContours(points, structure, images, overlays);
+    auto contoured = ExtractContours(points, structure, images, options.stop, overlays);
     if (!contoured.ok()) return contoured.error();
     auto dense = MakeDenseSlices(*contoured);
     for (FilledSlice& slice : dense) OpenMask(slice.mask, kThinnestMm / 2 / points.pixel_mm);
@@ -155,6 +161,7 @@ core::Result<BuiltOrgans> BuildOrgans(const ControlPoints& points, const std::ma
 
   for (std::size_t i = 0; i < volumes.size(); ++i) {
     const Structure& structure = points.structures[i];
+    if (options.stop.stop_requested()) return GivenUp();
     tell("meshing " + structure.name, static_cast<double>(i) / count);
     MeshingSettings settings;
     settings.triangle_budget = structure.triangle_budget;

@@ -34,6 +34,7 @@ core::Result<BuildReport> BuildPatient(const BuildOptions& options, const Progre
   const auto tell = [&](std::string_view what, double part) {
     if (progress) progress(what, part);
   };
+  const Error given_up{core::ErrorCode::kCancelled, "the patient was given up; nothing was written"};
   const auto points = ReadControlPoints(options.control_points);
   if (!points.ok()) return points.error();
   std::optional<LabelVolume> reference;
@@ -51,9 +52,11 @@ core::Result<BuildReport> BuildPatient(const BuildOptions& options, const Progre
   const std::vector<int> numbers(used.begin(), used.end());
   const auto images = ReadContouredSlices(*points, options.images, numbers, options.window, progress);
   if (!images.ok()) return images.error();
+  if (options.stop.stop_requested()) return given_up;
 
-  auto built = BuildOrgans(*points, *images,
-                           {options.spacing_mm, options.gap_mm, reference ? &*reference : nullptr}, progress);
+  auto built = BuildOrgans(
+      *points, *images, {options.spacing_mm, options.gap_mm, reference ? &*reference : nullptr, options.stop},
+      progress);
   if (!built.ok()) return built.error();
   BuildReport report;
   report.organs = std::move(built->organs);
@@ -61,6 +64,7 @@ core::Result<BuildReport> BuildPatient(const BuildOptions& options, const Progre
   auto patient = AssemblePatient(*points, built->meshes);
   if (!patient.ok()) return patient.error();
   report.patient = std::move(*patient);
+  if (options.stop.stop_requested()) return given_up;
 
   if (!options.output.empty()) {
     if (const auto status = WritePatient(options.output, report.patient); !status.ok()) return status.error();

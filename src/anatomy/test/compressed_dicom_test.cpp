@@ -241,6 +241,72 @@ TEST_F(DicomFolder, ReadsColour) {
     ASSERT_EQ(picture->samples[i], static_cast<std::uint8_t>(i + 2));
 }
 
+TEST_F(DicomFolder, TurnsLumaAndChromaIntoColours) {
+  for (int slice = 1; slice <= 2; ++slice) {
+    DicomFields fields = MakeFields(slice);
+    fields.shown = "YBR_FULL";
+    fields.allocated = fields.stored = 8, fields.high = 7, fields.is_signed = 0;
+    fields.intercept = "0";
+    fields.pixels.clear();
+    // red, green, blue, white and black by PS3.3 C.7.6.3.1.2, then grey
+    const unsigned char known[6][3] = {{76, 85, 255},   {150, 44, 21}, {29, 255, 107},
+                                       {255, 128, 128}, {0, 128, 128}, {100, 128, 128}};
+    for (int i = 0; i < kWidth * kHeight; ++i) {
+      for (const unsigned char value : known[std::min(i, 5)]) fields.pixels += static_cast<char>(value);
+    }
+    ASSERT_TRUE(core::WriteFile(folder_ / std::to_string(slice), test::MakeDicom(fields)).ok());
+  }
+  const auto series = ImageSeries::Open(folder_);
+  ASSERT_TRUE(series.ok()) << series.error().Text();
+  EXPECT_TRUE(series->Info().is_color);
+  const auto picture = series->ReadSlice(1, {});
+  const int expected[6][3] = {{255, 0, 0},     {0, 255, 0}, {0, 0, 255},
+                              {255, 255, 255}, {0, 0, 0},   {100, 100, 100}};
+  for (int i = 0; i < 6; ++i) {
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(picture->samples[3 * i + c], expected[i][c], 2) << i << " " << c;
+  }
+}
+
+TEST_F(DicomFolder, LooksColoursUpInAPalette) {
+  for (const int bits : {8, 16}) {
+    const auto folder = folder_ / std::to_string(bits);
+    for (int slice = 1; slice <= 2; ++slice) {
+      DicomFields fields = MakeFields(slice);
+      fields.shown = "PALETTE COLOR";
+      fields.allocated = fields.stored = 8, fields.high = 7, fields.is_signed = 0;
+      fields.intercept = "0";
+      // four colours, the first for the stored value 10
+      for (std::uint16_t c = 0; c < 3; ++c) {
+        const auto about = static_cast<std::uint16_t>(0x1101 + c);
+        fields.palette += test::Element(0x28, about, "US",
+                                        test::Bytes<std::uint16_t>(4) + test::Bytes<std::uint16_t>(10) +
+                                            test::Bytes(static_cast<std::uint16_t>(bits)));
+      }
+      for (std::uint16_t c = 0; c < 3; ++c) {
+        std::string entries;
+        for (int i = 0; i < 4; ++i) {
+          const int value = 50 * i + 10 * c + 1;
+          entries += bits == 8 ? std::string(1, static_cast<char>(value))
+                               : test::Bytes(static_cast<std::uint16_t>(value << 8 | 0x7F));
+        }
+        fields.palette += test::Element(0x28, static_cast<std::uint16_t>(0x1201 + c), "OW", entries);
+      }
+      fields.pixels.clear();
+      for (int i = 0; i < kWidth * kHeight; ++i) fields.pixels += static_cast<char>(8 + i % 8);
+      ASSERT_TRUE(core::WriteFile(folder / std::to_string(slice), test::MakeDicom(fields)).ok());
+    }
+    const auto series = ImageSeries::Open(folder);
+    ASSERT_TRUE(series.ok()) << series.error().Text();
+    EXPECT_TRUE(series->Info().is_color);
+    const auto picture = series->ReadSlice(2, {});
+    for (int i = 0; i < kWidth * kHeight; ++i) {
+      const int entry = std::clamp(8 + i % 8 - 10, 0, 3);  // values beyond the table take its ends
+      for (int c = 0; c < 3; ++c)
+        ASSERT_EQ(picture->samples[3 * i + c], 50 * entry + 10 * c + 1) << bits << i;
+    }
+  }
+}
+
 TEST_F(DicomFolder, MakesPixelsSquare) {
   for (int slice = 1; slice <= 3; ++slice) {
     DicomFields fields = MakeFields(slice);

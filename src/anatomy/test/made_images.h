@@ -207,6 +207,7 @@ struct DicomFields {
   std::string shown = "MONOCHROME2", slope = "1", intercept = "-1024", window;
   std::uint16_t allocated = 16, stored = 16, high = 15, is_signed = 1;
   std::string more;           ///< elements after group 20, as bytes
+  std::string palette;        ///< elements before the pixels, as bytes
   std::string dimensions;     ///< in place of Rows and Columns
   std::string pixels;         ///< in place of Samples(columns, rows, 1)
   std::string pixel_element;  ///< in place of the whole last element
@@ -230,8 +231,9 @@ inline std::string MakeDicom(const DicomFields& f) {
   if (!f.position.empty()) file += Element(0x20, 0x32, "DS", f.position);
   if (!f.orientation.empty()) file += Element(0x20, 0x37, "DS", f.orientation);
   file += Element(0x20, 0x52, "UI", f.frame) + f.more;
-  file += number(0x28, 2, f.shown == "RGB" ? 3 : 1) + Element(0x28, 4, "CS", f.shown);
-  if (f.shown == "RGB") file += number(0x28, 6, 0);
+  const bool has_three = f.shown == "RGB" || f.shown.starts_with("YBR");
+  file += number(0x28, 2, has_three ? 3 : 1) + Element(0x28, 4, "CS", f.shown);
+  if (has_three) file += number(0x28, 6, 0);
   file += f.dimensions.empty() ? number(0x28, 0x10, static_cast<std::uint16_t>(f.rows)) +
                                      number(0x28, 0x11, static_cast<std::uint16_t>(f.columns))
                                : f.dimensions;
@@ -244,6 +246,7 @@ inline std::string MakeDicom(const DicomFields& f) {
             Element(0x28, 0x1051, "DS", f.window.substr(comma + 1));
   }
   file += Element(0x28, 0x1052, "DS", f.intercept) + Element(0x28, 0x1053, "DS", f.slope);
+  file += f.palette;
   if (!f.pixel_element.empty()) return file + f.pixel_element;
   return file + Element(0x7FE0, 0x10, "OW", f.pixels.empty() ? Samples(f.columns, f.rows, 1) : f.pixels);
 }

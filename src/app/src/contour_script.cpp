@@ -46,7 +46,10 @@ constexpr Verb kVerbs[] = {
     {"view", 3, 3, "X Y ZOOM", "window: what lies in the middle, pixels of the screen a pixel"},
     {"fit", 1, 1, "picture|organ", "window: show the whole"},
     {"show", 2, 2, "PART on|off", "window: reference, ghosts, points, fill or help"},
-    {"await", 1, 1, "mesh", "window: wait until the surfaces are made"},
+    {"answer", 1, 8, "LABEL", "window: press the button LABEL of a question that is shown"},
+    {"build", 1, 1, "FOLDER", "window: build the patient of the saved contours"},
+    {"stop-build", 0, 0, "", "window: give the patient up that is being built"},
+    {"await", 1, 1, "mesh|build", "window: wait until the surfaces, or the patient, are made"},
 };
 
 const Verb* FindVerb(std::string_view name) {

@@ -142,8 +142,12 @@ void ContourWindow::MakeContent() {
   place_.add_css_class("numbers");
   busy_.set_valign(Gtk::Align::CENTER);
   busy_.set_visible(false);
+  stop_build_.set_visible(false);
+  stop_build_.add_css_class("small");
+  stop_build_.set_tooltip_text("Give up the patient that is being built; nothing is written");
   for (Gtk::Widget* widget : {static_cast<Gtk::Widget*>(&series_text_), static_cast<Gtk::Widget*>(&place_),
-                              static_cast<Gtk::Widget*>(&busy_), static_cast<Gtk::Widget*>(&state_)})
+                              static_cast<Gtk::Widget*>(&busy_), static_cast<Gtk::Widget*>(&stop_build_),
+                              static_cast<Gtk::Widget*>(&state_)})
     status->append(*widget);
   auto* all = Gtk::make_managed<Gtk::Box>(Gtk::Orientation::VERTICAL);
   all->append(bars_);
@@ -201,6 +205,7 @@ void ContourWindow::MakeRoutes() {
   mesh_changed_.connect(sigc::mem_fun(*this, &ContourWindow::TakeMeshes));
   loaded_.connect(sigc::mem_fun(*this, &ContourWindow::FinishLoading));
   built_.connect(sigc::mem_fun(*this, &ContourWindow::FinishBuild));
+  stop_build_.signal_clicked().connect(sigc::mem_fun(*this, &ContourWindow::StopBuild));
   progressed_.connect([this] {
     const std::lock_guard lock(progress_mutex_);
     busy_.set_fraction(progress_fraction_);
@@ -252,7 +257,8 @@ void ContourWindow::FinishLoading() {
   workspace_ = std::make_unique<anatomy::ContourWorkspace>(std::move(*opened));
   // a run that nobody watches leaves no side file and asks nothing
   const bool is_watched = options_.screenshot.empty() && !options_.is_measuring;
-  if (is_watched) OfferRecovered();
+  lock_.reset();
+  if ((is_watched || options_.has_autosave) && TakeLock()) OfferRecovered();
   editor_ = std::make_unique<ContourEditor>(*workspace_);
   editor_->on_error = [this](const core::Error& error) {
     if (error.code == core::ErrorCode::kEditRefused) return Tell(error.message, true);
@@ -267,19 +273,7 @@ void ContourWindow::FinishLoading() {
   reference_.set_sensitive(workspace_->HasReference());
   reference_.set_active(workspace_->HasReference() && options_.screenshot.empty());
   SetText(series_text_, SeriesText(workspace_->Series()));
-  if (is_watched) {
-    autosave_ = std::make_unique<anatomy::ContourAutosave>(AutosaveFile());
-    if (workspace_->Document().IsDirty()) autosave_->Offer(workspace_->Document().Text());
-    autosave_timer_.disconnect();
-    autosave_timer_ = Glib::signal_timeout().connect(
-        [this] {
-          if (autosave_ == nullptr) return false;
-          if (const auto status = autosave_->LastStatus(); !status.ok()) Report(status.error());
-          ShowAll();
-          return true;
-        },
-        kAutosaveLook);
-  }
+  if (lock_) StartAutosave();
   shown_revision_ = workspace_->Document().Revision();
   RequestMeshes(true);
   canvas_.grab_focus();
@@ -297,6 +291,38 @@ std::filesystem::path ContourWindow::AutosaveFile() const {
   if (name.size() > kLongestName) name.erase(0, name.size() - kLongestName);
   return anatomy::AutosavePath(std::filesystem::path(Glib::get_user_data_dir()) / "trocar" / "contours" /
                                (name + ".json"));
+}
+
+bool ContourWindow::TakeLock() {
+  lock_.reset();
+  auto taken = core::FileLock::Take(AutosaveFile().string() + ".lock");
+  if (taken.ok()) {
+    lock_.emplace(std::move(*taken));
+    return true;
+  }
+  if (taken.error().code != core::ErrorCode::kFileInUse) {
+    Report(taken.error());
+    return false;
+  }
+  core::Log(core::LogLevel::kWarning, taken.error().Text());
+  bars_.Ask("These contours are open in another window: " + taken.error().message +
+                ". Whichever saves last overwrites the other.",
+            {{"Close this window", [this] { close(); }, true}, {"Go on without autosave", [] {}}});
+  return false;
+}
+
+void ContourWindow::StartAutosave() {
+  autosave_ = std::make_unique<anatomy::ContourAutosave>(AutosaveFile());
+  if (workspace_->Document().IsDirty()) autosave_->Offer(workspace_->Document().Text());
+  autosave_timer_.disconnect();
+  autosave_timer_ = Glib::signal_timeout().connect(
+      [this] {
+        if (autosave_ == nullptr) return false;
+        if (const auto status = autosave_->LastStatus(); !status.ok()) Report(status.error());
+        ShowAll();
+        return true;
+      },
+      kAutosaveLook);
 }
 
 void ContourWindow::OfferRecovered() {

@@ -8,6 +8,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <stop_token>
 #include <thread>
 #include <vector>
 
@@ -21,6 +22,7 @@
 #include "trocar/app/contour_script.h"
 #include "trocar/app/options.h"
 #include "trocar/core/clock.h"
+#include "trocar/core/file_lock.h"
 
 namespace trocar::app {
 
@@ -41,7 +43,9 @@ class ContourWindow : public Gtk::ApplicationWindow {
   // opening
   void StartLoading(anatomy::WorkspaceOptions options);
   void FinishLoading();
+  bool TakeLock();
   void OfferRecovered();
+  void StartAutosave();
 
   // editing
   void OnAction(ContourAction action);
@@ -61,12 +65,14 @@ class ContourWindow : public Gtk::ApplicationWindow {
   void ChooseAndSave(std::function<void()> then);
   void ChooseAndBuild();
   void StartBuild(const std::filesystem::path& folder);
+  void StopBuild();
   void FinishBuild();
   bool OnClose();
   std::filesystem::path AutosaveFile() const;
 
   // runs that nobody watches
   void RunScript();
+  core::Status RunWindowStep(const ScriptStep& step);
   bool OnFrame(const Glib::RefPtr<Gdk::FrameClock>& clock);
   void MeasureFrame(double now);
   void FinishMeasuring();
@@ -90,11 +96,13 @@ class ContourWindow : public Gtk::ApplicationWindow {
   HelpCard help_card_;
   Gtk::Label hint_, place_, series_text_, state_;
   Gtk::ProgressBar busy_;
+  Gtk::Button stop_build_{"Stop"};
   bool is_showing_ = false;  // buttons are being set by us
 
   // order matters: what computes goes before what it computes on
   std::unique_ptr<anatomy::ContourWorkspace> workspace_;
   std::unique_ptr<ContourEditor> editor_;
+  std::optional<core::FileLock> lock_;  // of the side file, which belongs to one window
   std::unique_ptr<anatomy::ContourAutosave> autosave_;
   std::unique_ptr<anatomy::SlicePrefetcher> prefetcher_;
   std::unique_ptr<anatomy::MeshJob> meshes_;
@@ -108,6 +116,7 @@ class ContourWindow : public Gtk::ApplicationWindow {
   anatomy::WorkspaceOptions loading_options_;
   std::optional<core::Result<anatomy::ContourWorkspace>> loading_;
   std::optional<core::Result<anatomy::BuildReport>> building_;
+  std::stop_source build_stop_;
   std::filesystem::path build_folder_;
   std::mutex progress_mutex_;  // guards the next two
   std::string progress_what_;

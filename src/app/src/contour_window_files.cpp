@@ -56,10 +56,9 @@ void ContourWindow::ChooseAndSave(std::function<void()> then) {
     const std::filesystem::path file = chooser_->get_file()->get_path();
     if (const auto status = workspace_->Save(file); !status.ok()) return Report(status.error());
     // the side file goes with the name
-    if (autosave_ != nullptr) {
-      autosave_->Discard();
-      autosave_ = std::make_unique<anatomy::ContourAutosave>(AutosaveFile());
-    }
+    if (autosave_ != nullptr) autosave_->Discard();
+    autosave_.reset();
+    if (TakeLock()) StartAutosave();
     Tell("Saved " + file.filename().string());
     ShowAll();
     then();
@@ -91,7 +90,11 @@ void ContourWindow::StartBuild(const std::filesystem::path& folder) {
   options.images = workspace_->Options().images;
   options.output = folder;
   if (!workspace_->Options().reference.empty()) options.reference = workspace_->Options().reference;
+  build_stop_ = {};
+  options.stop = build_stop_.get_token();
   busy_.set_visible(true);
+  stop_build_.set_visible(true);
+  stop_build_.set_sensitive(true);
   builder_ = std::thread([this, options] {
     building_.emplace(anatomy::BuildPatient(options, [this](std::string_view what, double fraction) {
       {
@@ -106,12 +109,20 @@ void ContourWindow::StartBuild(const std::filesystem::path& folder) {
   ShowAll();
 }
 
+void ContourWindow::StopBuild() {
+  build_stop_.request_stop();
+  stop_build_.set_sensitive(false);
+}
+
 void ContourWindow::FinishBuild() {
   builder_.join();
   busy_.set_visible(false);
+  stop_build_.set_visible(false);
   const auto report = std::move(*building_);
   building_.reset();
-  if (!report.ok()) {
+  if (!report.ok() && report.error().code == core::ErrorCode::kCancelled) {
+    Tell("The patient was given up; nothing was written");
+  } else if (!report.ok()) {
     Report(report.error());
   } else {
     std::string text = "Wrote the patient " + build_folder_.string() + ":";
@@ -129,11 +140,17 @@ bool ContourWindow::OnClose() {
   const bool is_watched = options_.screenshot.empty() && !options_.is_measuring;
   if (is_closing_ || !is_watched || workspace_ == nullptr || !workspace_->Document().IsDirty()) {
     if (builder_.joinable() && !is_closing_) {
-      bars_.Ask("The patient is still being built.",
-                {{"Wait", [] {}, true}, {"Close when it is done", [this] {
-                                           is_closing_ = true;
-                                           close();
-                                         }}});
+      bars_.Ask("The patient is still being built.", {{"Wait", [] {}, true},
+                                                      {"Give it up and close",
+                                                       [this] {
+                                                         build_stop_.request_stop();
+                                                         is_closing_ = true;
+                                                         close();
+                                                       }},
+                                                      {"Close when it is done", [this] {
+                                                         is_closing_ = true;
+                                                         close();
+                                                       }}});
       return true;
     }
     if (autosave_ != nullptr) autosave_->Discard();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <nlohmann/json.hpp>
 
 #include "contour_window.h"
 #include "trocar/core/log.h"
@@ -45,34 +46,61 @@ void ContourWindow::RunScript() {
   while (!script_.empty()) {
     const ScriptStep step = script_.front();
     if (step.verb == "await") {
-      if (coarse_timer_.connected() || meshes_->GetState().is_busy) return;
+      const bool is_waiting = step.words[0] == "build"
+                                  ? builder_.joinable()
+                                  : coarse_timer_.connected() || meshes_->GetState().is_busy;
+      if (is_waiting) return;
       script_.pop_front();
       continue;
     }
     script_.pop_front();
     const auto done = RunScriptStep(step, *editor_);
     if (!done.ok()) return Abandon(done.error());
-    if (!*done && step.verb == "show") {
-      const bool is_on = step.words[1] == "on";
-      auto& options = canvas_.Options();
-      if (step.words[0] == "reference") {
-        reference_.set_active(is_on);
-      } else if (step.words[0] == "ghosts") {
-        ghosts_.set_active(is_on);
-      } else if (step.words[0] == "points") {
-        options.has_points = is_on;
-      } else if (step.words[0] == "fill") {
-        options.has_fill = is_on;
-      } else if (step.words[0] == "help") {
-        help_.set_active(is_on);
-      } else {
-        return Abandon({core::ErrorCode::kScriptInvalid,
-                        "line " + std::to_string(step.line) +
-                            " of the script: show reference, ghosts, points, fill or help"});
+    if (!*done) {
+      if (const auto status = RunWindowStep(step); !status.ok()) {
+        return Abandon({status.error().code,
+                        "line " + std::to_string(step.line) + " of the script: " + status.error().message});
       }
     }
     OnEdited();
   }
+}
+
+core::Status ContourWindow::RunWindowStep(const ScriptStep& step) {
+  if (step.verb == "show") {
+    const bool is_on = step.words[1] == "on";
+    const std::string& part = step.words[0];
+    auto& options = canvas_.Options();
+    if (part == "reference") {
+      reference_.set_active(is_on);
+    } else if (part == "ghosts") {
+      ghosts_.set_active(is_on);
+    } else if (part == "points") {
+      options.has_points = is_on;
+    } else if (part == "fill") {
+      options.has_fill = is_on;
+    } else if (part == "help") {
+      help_.set_active(is_on);
+    } else {
+      return core::Error{core::ErrorCode::kScriptInvalid, "show reference, ghosts, points, fill or help"};
+    }
+  } else if (step.verb == "answer") {
+    std::string label = step.words[0];
+    for (std::size_t i = 1; i < step.words.size(); ++i) label += " " + step.words[i];
+    if (!bars_.Press(label)) {
+      return core::Error{core::ErrorCode::kScriptInvalid,
+                         "no question is shown that \"" + label + "\" answers"};
+    }
+  } else if (step.verb == "build") {
+    if (builder_.joinable() || workspace_->Options().points.empty() || workspace_->Document().IsDirty()) {
+      return core::Error{core::ErrorCode::kScriptInvalid,
+                         "build needs saved contours, and no patient that is being built"};
+    }
+    StartBuild(step.words[0]);
+  } else if (step.verb == "stop-build") {
+    StopBuild();
+  }
+  return {};
 }
 
 bool ContourWindow::OnFrame(const Glib::RefPtr<Gdk::FrameClock>& clock) {
@@ -184,11 +212,18 @@ void ContourWindow::SaveScreenshot() {
     contoured += document.ContouredSlices(s).size();
   }
   for (const auto& [structure, mesh] : panel_.Meshes()) triangles += mesh.mesh.triangles.size();
-  std::printf(
-      "{\"screenshot\": \"%s\", \"width\": %d, \"height\": %d, \"slice\": %d, \"contoured_slices\": %zu, "
-      "\"surfaces\": %zu, \"triangles\": %zu, \"can_undo\": %s}\n",
-      options_.screenshot.filename().c_str(), get_width(), get_height(), editor_->Slice(), contoured,
-      panel_.Meshes().size(), triangles, document.CanUndo() ? "true" : "false");
+  const nlohmann::ordered_json report = {{"screenshot", options_.screenshot.filename().string()},
+                                         {"width", get_width()},
+                                         {"height", get_height()},
+                                         {"slice", editor_->Slice()},
+                                         {"contoured_slices", contoured},
+                                         {"surfaces", panel_.Meshes().size()},
+                                         {"triangles", triangles},
+                                         {"can_undo", document.CanUndo()},
+                                         {"is_saved", !document.IsDirty()},
+                                         {"has_autosave", autosave_ != nullptr},
+                                         {"messages", bars_.Texts()}};
+  std::printf("%s\n", report.dump().c_str());
   close();
 }
 

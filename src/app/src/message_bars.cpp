@@ -40,7 +40,7 @@ Gtk::Box& MessageBars::AddBar(const std::string& style, const std::string& code,
   count->add_css_class("code");
   bar->append(*count);
   bars_.append(*bar);
-  shown_.push_back({bar, text, count, 1});
+  shown_.push_back({bar, text, count, 1, {}});
   set_visible(true);
   return *bar;
 }
@@ -81,12 +81,12 @@ void MessageBars::Ask(const std::string& text, std::vector<Answer> answers) {
       std::find_if(shown_.begin(), shown_.end(), [&](const Shown& shown) { return shown.text == text; });
   if (old != shown_.end()) Remove(*old->bar);
   Gtk::Box& bar = AddBar("question", "", text);
-  for (Answer& answer : answers) {
+  for (const Answer& answer : answers) {
     auto* button = Gtk::make_managed<Gtk::Button>(answer.label);
     button->set_valign(Gtk::Align::CENTER);
     if (answer.is_suggested) button->add_css_class("primary");
     // the bar goes after the click is over: it holds the button
-    button->signal_clicked().connect([this, &bar, act = std::move(answer.act)] {
+    button->signal_clicked().connect([this, &bar, act = answer.act] {
       Glib::signal_idle().connect_once([this, &bar, act] {
         Remove(bar);
         act();
@@ -94,6 +94,26 @@ void MessageBars::Ask(const std::string& text, std::vector<Answer> answers) {
     });
     bar.append(*button);
   }
+  shown_.back().answers = std::move(answers);
+}
+
+bool MessageBars::Press(const std::string& label) {
+  for (const Shown& shown : shown_) {
+    for (const Answer& answer : shown.answers) {
+      if (answer.label != label) continue;
+      const auto act = answer.act;
+      Remove(*shown.bar);
+      act();
+      return true;
+    }
+  }
+  return false;
+}
+
+std::vector<std::string> MessageBars::Texts() const {
+  std::vector<std::string> texts;
+  for (const Shown& shown : shown_) texts.push_back(shown.text);
+  return texts;
 }
 
 }  // namespace trocar::app

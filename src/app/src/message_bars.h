@@ -27,6 +27,11 @@ class MessageBars : public Gtk::ScrolledWindow {
   void ShowNotice(const std::string& text);
   /// Goes with the first answer. A question with the same text takes the place of the old one.
   void Ask(const std::string& text, std::vector<Answer> answers);
+  /// Gives the answer of that label to the first question that has it, as a click would.
+  /// \return false where none has it
+  bool Press(const std::string& label);
+  /// Texts of what is shown, from the top.
+  std::vector<std::string> Texts() const;
 
  private:
   Gtk::Box& AddBar(const std::string& style, const std::string& code, const std::string& text);
@@ -37,6 +42,7 @@ class MessageBars : public Gtk::ScrolledWindow {
     std::string text;
     Gtk::Label* count;
     int times;
+    std::vector<Answer> answers;
   };
   Gtk::Box bars_{Gtk::Orientation::VERTICAL};
   std::vector<Shown> shown_;

@@ -22,6 +22,8 @@ core::Result<Command> ParseCommandLine(int argc, const char* const* argv) {
   app.add_option("--threads", options.threads, "Threads of the solver; 0 chooses by the processors")
       ->check(CLI::Range(0, 256))
       ->capture_default_str();
+  app.add_option("--device", options.device,
+                 "Hands of a tracker or other device in place of the mouse's, as `trocar devices list` names it");
   app.add_flag("--fullscreen", options.is_fullscreen, "Start in full screen (F11 switches)");
   app.add_flag("--demonstration", options.is_demonstration,
                "Start with the demonstration: the script moves both hands");
@@ -60,6 +62,10 @@ core::Result<Command> ParseCommandLine(int argc, const char* const* argv) {
       ->needs(contours);
   app.add_option("--script", options.script, "With --contours: commands to begin with, one a line (below)")
       ->needs(contours);
+  app.add_flag("--autosave", options.has_autosave,
+               "With --screenshot: keep and recover unsaved work, as a window that somebody watches does")
+      ->needs(contours)
+      ->needs(screenshot);
   app.add_flag("--measure", options.is_measuring,
                "With --contours: drag points by itself, print the times as JSON, and quit")
       ->needs(contours);

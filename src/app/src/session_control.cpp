@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "trocar/app/pointer_map.h"
 
@@ -97,8 +98,35 @@ const session::Snapshot& SessionControl::Advance(double dt) {
   for (const Channel hand : {device::kLeftHand, device::kRightHand})
     if (samples[hand].is_valid) input_.hands[hand] = JointsOf(samples[hand]);
   if (samples[device::kLaparoscope].is_valid) input_.laparoscope = JointsOf(samples[device::kLaparoscope]);
+  if (device_thread_ != nullptr) ApplyDevice();
   runner_.SetInput(input_);
   return snapshot;
+}
+
+void SessionControl::UseDevice(std::unique_ptr<device::Driver> driver) {
+  device_thread_ = std::make_unique<session::DeviceThread>(std::move(driver));
+}
+
+void SessionControl::ApplyDevice() {
+  const session::DeviceReport& report = device_thread_->Latest();
+  if (report.message != device_message_) {
+    device_message_ = report.message;
+    is_device_message_new_ = true;
+  }
+  if (report.losses != device_losses_) {
+    device_losses_ = report.losses;
+    SetPaused(true);
+  }
+  if (is_demonstration_) return;
+  session::ApplyHands(report.samples, input_);
+  // the mouse's hands rest on the device's, so that losing sight of one makes no jump
+  for (const Channel hand : {device::kLeftHand, device::kRightHand}) {
+    if (report.samples[hand].is_valid) device_.Place(hand, SampleOf(input_.hands[hand]));
+  }
+}
+
+std::string SessionControl::TakeDeviceMessage() {
+  return std::exchange(is_device_message_new_, false) ? device_message_ : std::string();
 }
 
 void SessionControl::SetPaused(bool is_paused) {

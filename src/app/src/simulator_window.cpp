@@ -5,6 +5,7 @@
 #include <string>
 
 #include "trocar/core/log.h"
+#include "trocar/device/device_spec.h"
 #include "window_screenshot.h"
 
 namespace trocar::app {
@@ -193,6 +194,7 @@ void SimulatorWindow::FinishLoading() {
   if (!control) return Fail(control.error());
   control_ = std::move(control).value();
   control_->SetMirrorFulcrum(fulcrum_.get_active());
+  if (!UseDevice()) return;
   panel_.SetControl(control_.get());
   panel_.set_sensitive(true);
   hands_->SetControl(control_.get());
@@ -202,6 +204,21 @@ void SimulatorWindow::FinishLoading() {
   SetText(event_, "Ready.");
   if (options_.is_demonstration || !options_.screenshot.empty()) SetDemonstration(true);
   SetPaused(false);
+}
+
+/// \return false, with the failure shown, where the options name a device that cannot be
+bool SimulatorWindow::UseDevice() {
+  if (options_.device.empty()) return true;
+  const device::LoadedStore loaded = device::LoadDeviceStore(device::FindDeviceStore());
+  if (loaded.complaint) core::Log(core::LogLevel::kWarning, loaded.complaint->Text());
+  core::Result<std::unique_ptr<device::Driver>> driver =
+      device::MakeDriver(options_.device, loaded.store, device::SystemClock());
+  if (!driver) {
+    Fail(driver.error());
+    return false;
+  }
+  control_->UseDevice(std::move(driver).value());
+  return true;
 }
 
 void SimulatorWindow::Fail(const core::Error& error) {
@@ -250,6 +267,10 @@ bool SimulatorWindow::OnFrame(const Glib::RefPtr<Gdk::FrameClock>& clock) {
   picture_.queue_render();
   stages_.Add(snapshot);
   ShowEvents(snapshot);
+  if (const std::string message = control_->TakeDeviceMessage(); !message.empty()) {
+    SetText(event_, message);
+    ShowSituation();
+  }
   if (now - last_forces_ > kForcePeriod) {
     last_forces_ = now;
     panel_.ShowForces(snapshot);

@@ -34,6 +34,7 @@ class SimulatorWindow : public Gtk::ApplicationWindow {
   void MakeContent();
   void StartLoading();
   void FinishLoading();
+  bool UseDevice();
   bool OnFrame(const Glib::RefPtr<Gdk::FrameClock>& clock);
   void OnDrawn();
   void OnAction(Action action);

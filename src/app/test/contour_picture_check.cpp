@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -56,9 +57,9 @@ int Make(const fs::path& folder) {
 int Check(const char* picture, const char* report_file) {
   const auto text = trocar::core::ReadFile(report_file);
   if (!text) return Fail(text.error().Text());
-  const std::size_t begin = text.value().find("{\"screenshot\""), end = text.value().find('}', begin);
+  const std::size_t begin = text.value().find("{\"screenshot\""), end = text.value().find('\n', begin);
   if (begin == std::string::npos || end == std::string::npos) return Fail("there is no report");
-  const auto report = nlohmann::json::parse(text.value().substr(begin, end - begin + 1), nullptr, false);
+  const auto report = nlohmann::json::parse(text.value().substr(begin, end - begin), nullptr, false);
   if (report.is_discarded()) return Fail("the report is no JSON");
   if (report.at("contoured_slices") != 4) return Fail("the script made other contours than four");
   if (report.at("surfaces") != 1) return Fail("there is no surface");
@@ -96,10 +97,51 @@ int Check(const char* picture, const char* report_file) {
   return 0;
 }
 
+/// The report that trocar-window printed among other lines.
+nlohmann::json ReadReport(const char* file) {
+  const auto text = trocar::core::ReadFile(file);
+  if (!text) return nullptr;
+  const std::size_t begin = text.value().find("{\"screenshot\"");
+  if (begin == std::string::npos) return nullptr;
+  return nlohmann::json::parse(text.value().substr(begin, text.value().find('\n', begin) - begin), nullptr,
+                               false);
+}
+
+/// A recovered session that was saved and built, with nothing left beside the file.
+int CheckBuilt(const fs::path& folder, int recovered_slices) {
+  const auto report = ReadReport((folder / "report.json").c_str());
+  if (!report.is_object()) return Fail("there is no report");
+  if (report.at("contoured_slices") != recovered_slices)
+    return Fail("not the recovered contours are shown: " + report.dump());
+  if (report.at("is_saved") != true) return Fail("the recovered contours are not saved: " + report.dump());
+  const std::string messages = report.at("messages").dump();
+  if (messages.find("Wrote the patient") == std::string::npos || messages.find("liver") == std::string::npos)
+    return Fail("the window does not say what it built: " + messages);
+  if (!fs::exists(folder / "built" / "patient.json")) return Fail("no patient was written");
+  if (fs::exists(folder / "given-up")) return Fail("a patient that was given up was written");
+  for (const char* name : {"points.json.autosave", "points.json.autosave.lock"}) {
+    if (fs::exists(folder / name)) return Fail(std::string(name) + " was left behind");
+  }
+  return 0;
+}
+
+/// A second window on the same file.
+int CheckSecond(const fs::path& folder) {
+  const auto report = ReadReport((folder / "second.json").c_str());
+  if (!report.is_object()) return Fail("there is no report");
+  if (report.at("has_autosave") != false) return Fail("two windows keep the same side file");
+  if (!fs::exists(folder / "points.json.autosave")) return Fail("the other window's side file is gone");
+  return 0;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
+  if (argc == 4 && std::string(argv[1]) == "check-built") return CheckBuilt(argv[2], std::atoi(argv[3]));
+  if (argc == 3 && std::string(argv[1]) == "check-second") return CheckSecond(argv[2]);
   if (argc == 3 && std::string(argv[1]) == "make") return Make(argv[2]);
   if (argc == 4 && std::string(argv[1]) == "check") return Check(argv[2], argv[3]);
-  return Fail("usage: contour_picture_check make FOLDER | check PICTURE.png REPORT.json");
+  return Fail(
+      "usage: contour_picture_check make FOLDER | check PICTURE.png REPORT.json | check-built FOLDER SLICES "
+      "| check-second FOLDER");
 }

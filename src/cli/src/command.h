@@ -11,6 +11,9 @@
 namespace CLI {
 class App;
 }
+namespace trocar::device {
+struct DeviceStore;
+}
 
 namespace trocar::cli {
 
@@ -37,6 +40,12 @@ void AddAnatomyEditCommand(CLI::App& anatomy, Outcome& outcome);
 void AddAnatomyPhantomCommand(CLI::App& anatomy, Outcome& outcome);
 void AddAnatomyViewCommand(CLI::App& anatomy, Outcome& outcome);
 void AddAnatomyImagesCommand(CLI::App& anatomy, Outcome& outcome);
+void AddDevicesCommand(CLI::App& app, Outcome& outcome);
+/// Below `trocar devices`.
+void AddDevicesCalibrateCommand(CLI::App& devices, Outcome& outcome);
+void AddDevicesEmulateCommand(CLI::App& devices, Outcome& outcome);
+/// The person's settings of devices; where their file is bad, the defaults and a warning.
+device::DeviceStore LoadStoreOrWarn();
 void AddBenchCommand(CLI::App& app, Outcome& outcome);
 void AddReproduceCommand(CLI::App& app, Outcome& outcome);
 void AddDoctorCommand(CLI::App& app, Outcome& outcome);

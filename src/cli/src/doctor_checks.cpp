@@ -248,6 +248,17 @@ Finding CheckWindow(const fs::path& program_folder) {
           "build it: install libgtkmm-4.0-dev (tools/install-packages) and run ./run"};
 }
 
+Finding CheckImageReader(const fs::path& program_folder) {
+  for (const fs::path& program :
+       {program_folder / "trocar-import", program_folder.parent_path() / "libexec/trocar/trocar-import"}) {
+    if (::access(program.c_str(), X_OK) == 0)
+      return {"images", Health::kGood, "trocar-import can be started", "images can be read", ""};
+  }
+  return {"images", Health::kMissing, "trocar-import is not beside this program",
+          "no image can be read: trocar anatomy images, build and contours do not work",
+          "build it: run ./run, or ninja trocar-import"};
+}
+
 Finding CheckRealTime() {
   rlimit limit{};
   ::getrlimit(RLIMIT_RTPRIO, &limit);
@@ -340,6 +351,7 @@ std::vector<Finding> CheckAll() {
           CheckVideoEncoder(),
           CheckDisplay(),
           CheckWindow(FindProgramFolder()),
+          CheckImageReader(FindProgramFolder()),
           CheckGpu(),
           CheckRealTime(),
           CheckInputDevices("/"),

@@ -14,6 +14,7 @@
 
 #include "command.h"
 #include "console.h"
+#include "device_input.h"
 #include "trocar/core/clock.h"
 #include "trocar/core/log.h"
 #include "trocar/core/statistics.h"
@@ -25,6 +26,7 @@ namespace {
 struct SimulateOptions {
   std::string scene;
   std::string patient;  // in place of the scene's
+  std::string device;   // in place of the script's hands
   int ticks = 0;
   std::uint64_t seed = 0;
   bool has_seed = false;
@@ -70,6 +72,12 @@ core::Result<SimulateReport> Simulate(const SimulateOptions& options) {
       scene, options.threads, options.uses_gpu ? session::SolveOn::kGpu : session::SolveOn::kProcessor);
   if (!made) return made.error();
   session::Simulation simulation = std::move(made).value();
+  std::unique_ptr<DeviceInput> device;
+  if (!options.device.empty()) {
+    auto opened = DeviceInput::Open(options.device);
+    if (!opened) return opened.error();
+    device = std::move(*opened);
+  }
 
   const auto count = static_cast<std::size_t>(options.ticks);
   std::array<std::vector<double>, session::kStageCount> stage_ms;
@@ -79,7 +87,8 @@ core::Result<SimulateReport> Simulate(const SimulateOptions& options) {
   SimulateReport report;
   ProgressBar progress("simulating", options.ticks);
   for (int tick = 0; tick < options.ticks; ++tick) {
-    const session::Input input = session::CalcScriptInput(*scene, simulation.GetSnapshot().time);
+    session::Input input = session::CalcScriptInput(*scene, simulation.GetSnapshot().time);
+    if (device != nullptr) device->Apply(simulation.GetSnapshot().time, input);
     const core::Stopwatch stopwatch;
     simulation.Step(input);
     tick_ms.push_back(1e3 * stopwatch.Seconds());
@@ -92,6 +101,9 @@ core::Result<SimulateReport> Simulate(const SimulateOptions& options) {
     progress.Show(tick + 1);
   }
   progress.Finish();
+  if (device != nullptr) {
+    if (const core::Status whole = device->Check(); !whole) return whole.error();
+  }
 
   if (report.gpu.empty()) report.gpu = simulation.GpuName();
   report.hash = FormatHash(simulation.Hash());
@@ -155,6 +167,10 @@ void AddSimulateCommand(CLI::App& app, Outcome& outcome) {
       ->check(CLI::Range(1, 256))
       ->type_name("T")
       ->capture_default_str();
+  command
+      ->add_option("--device", options->device,
+                   "Hands of a device in place of the script's; play:FILE repeats a recording bit for bit")
+      ->type_name("DEVICE");
   command->add_flag("--gpu", options->uses_gpu,
                     "Solve on the GPU (single precision, so another hash); without one the processor does");
   command->add_flag("--json", options->is_json, "Machine-readable");

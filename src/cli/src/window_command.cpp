@@ -14,10 +14,18 @@ void AddWindowCommand(CLI::App& app, Outcome& outcome) {
   auto scene = std::make_shared<std::string>();
   command->add_option("scene", *scene, "Scene file (JSON); the built-in patient if not given")
       ->type_name("FILE");
-  command->footer("Example: trocar window scenes/demonstration.json");
-  command->callback([scene, &outcome] {
+  auto device = std::make_shared<std::string>();
+  command
+      ->add_option("--device", *device,
+                   "Hands of a tracker or other device (trocar devices list) in place of the mouse's, where it sees them")
+      ->type_name("DEVICE");
+  command->footer(
+      "Examples: trocar window scenes/demonstration.json\n"
+      "          trocar window --device liberty:/dev/ttyUSB0+jaw:/dev/ttyACM0");
+  command->callback([scene, device, &outcome] {
     std::vector<std::string> arguments;
     if (!scene->empty()) arguments = {"--scene", *scene};
+    if (!device->empty()) arguments.insert(arguments.end(), {"--device", *device});
     outcome.status = StartWindow(arguments);
   });
 }

@@ -94,6 +94,15 @@ TEST(CheckWindow, SeesWhetherTheProgramIsThere) {
   EXPECT_EQ(CheckWindow(folder.Path()).health, Health::kGood);
 }
 
+TEST(CheckImageReader, SeesWhetherTheProgramIsThere) {
+  test::TemporaryFolder folder;
+  EXPECT_EQ(CheckImageReader(folder.Path()).health, Health::kMissing);
+  ASSERT_TRUE(core::WriteFile(folder.Path() / "trocar-import", "").ok());
+  EXPECT_EQ(CheckImageReader(folder.Path()).health, Health::kMissing) << "it cannot be run";
+  std::filesystem::permissions(folder.Path() / "trocar-import", std::filesystem::perms::owner_all);
+  EXPECT_EQ(CheckImageReader(folder.Path()).health, Health::kGood);
+}
+
 TEST(CheckDataFolder, FindsTheBuiltInPatientAndMissesAnEmptyFolder) {
   ::setenv("TROCAR_DATA_DIR", TROCAR_SOURCE_DIR, 1);
   const Finding whole = CheckDataFolder();

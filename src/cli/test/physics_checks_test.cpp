@@ -11,8 +11,9 @@ namespace {
 void ExpectAllPass(const PhysicsCheck& check) {
   EXPECT_FALSE(check.figures.empty());
   for (const CheckFigure& figure : check.figures) {
-    if (!figure.is_known_limit)
+    if (!figure.is_known_limit) {
       EXPECT_TRUE(figure.Passes()) << check.title << ": " << figure.name << " " << figure.value;
+    }
   }
 }
 

@@ -33,6 +33,11 @@ core::Error MissingMaterial(const std::string& name) {
 /// Edges and bending springs, which share the wall's modulus.
 void AddWall(const geometry::TriangleMesh& mesh, const OrganMaterial& material, std::uint32_t first,
              tissue::TissueDefinition& definition) {
+  std::uint32_t law = 0;
+  if (!(material.wall_law == tissue::SpringLaw{})) {
+    law = static_cast<std::uint32_t>(definition.laws.size());
+    definition.laws.push_back(material.wall_law);
+  }
   const double modulus = material.young_modulus * material.wall_thickness;
   const double mean_area = geometry::CalcArea(mesh.positions, mesh.triangles) / mesh.triangles.size();
   const double share =
@@ -41,7 +46,7 @@ void AddWall(const geometry::TriangleMesh& mesh, const OrganMaterial& material, 
   auto stiffness = tissue::CalcEdgeStiffness(mesh.positions, mesh.triangles, edges, (1.0 - share) * modulus);
   const auto add = [&](std::uint32_t a, std::uint32_t b, double k) {
     definition.springs.push_back(
-        {first + a, first + b, k, math::Distance(mesh.positions[a], mesh.positions[b])});
+        {first + a, first + b, k, math::Distance(mesh.positions[a], mesh.positions[b]), law});
   };
   std::vector<tissue::BendingSpring> across;
   if (share > 0.0) across = tissue::CalcBendingSprings(mesh.positions, mesh.triangles, share * modulus);
@@ -86,6 +91,7 @@ void AddOrgan(const anatomy::Organ& organ, const OrganMaterial& material, Patien
   for (const double area : areas) definition.mass.push_back(mass_per_area * area);
 
   AddWall(mesh, material, first, definition);
+  made.spring_organs.resize(definition.springs.size(), static_cast<std::int32_t>(made.surfaces.size() - 1));
   for (const anatomy::Region& region : organ.regions) {
     const bool is_fixed = region.name == anatomy::kDiaphragmaticFace || region.name == anatomy::kFalciform ||
                           region.name == anatomy::kCoronary;

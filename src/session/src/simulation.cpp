@@ -8,6 +8,7 @@
 #include "patient_tissue.h"
 #include "trocar/core/clock.h"
 #include "trocar/core/state_hash.h"
+#include "trocar/geometry/mesh_measures.h"
 #include "trocar/surgery/contact.h"
 #include "trocar/surgery/grasp.h"
 #include "trocar/surgery/organ_surface.h"
@@ -59,6 +60,10 @@ struct Simulation::Content {
   std::vector<std::int32_t> strand_organs;
   tissue::TissueState tissue_at_start;
   tissue::ConservationState conserved_at_start;
+  std::vector<std::int32_t> spring_organs;  // (springs) organ whose wall it is part of, or -1
+  std::vector<double> spring_areas;         // (springs) part of that organ's surface [m^2]
+  bool walls_tear = false;
+  std::int32_t hollow_organ = -1;  // leaks when its wall tears
   surgery::ContactSettings contact_settings;
   surgery::GraspSettings grasp_settings;
 
@@ -91,6 +96,8 @@ struct Simulation::Content {
   bool was_frozen = false;
   std::array<std::uint32_t, 8> torn{};  // lowest of the strands that tore in this tick
   std::size_t torn_count = 0;
+  std::vector<std::uint32_t> torn_springs;  // (springs) those of the walls that tore in this tick, first
+  std::size_t torn_spring_count = 0;
   Snapshot snapshot;
 
   void ReadInputs(const Input& input) noexcept;
@@ -104,6 +111,7 @@ struct Simulation::Content {
   void Publish(const Input& input) noexcept;
   void Note(EventKind kind, int hand, std::int32_t organ, double force) noexcept;
   void TearTissue() noexcept;
+  void SetWalls(const tissue::TissueDefinition& definition, std::vector<std::int32_t> organs_of_springs);
   core::Status Fill(const std::vector<double>& internal_pressure);
   void Reset();
   void MakeSolver(int threads, SolveOn solve_on);
@@ -196,6 +204,15 @@ void Simulation::Content::TearTissue() noexcept {
   torn_count = verdict == tissue::GuardVerdict::kGood
                    ? tissue::TearStrands(tissue_model, max_elongation, tissue, torn)
                    : 0;
+  torn_spring_count = 0;
+  if (!walls_tear || verdict != tissue::GuardVerdict::kGood) return;
+  torn_spring_count = tissue::TearSprings(tissue_model, scene->tick_seconds, tissue, torn_springs);
+  // a hollow organ leaks through what the spring no longer closes
+  for (std::size_t i = 0; i < torn_spring_count; ++i) {
+    const std::int32_t organ = spring_organs[torn_springs[i]];
+    if (organ == hollow_organ)
+      conservation->Perforate(static_cast<std::size_t>(organ), spring_areas[torn_springs[i]], conserved);
+  }
 }
 
 void Simulation::Content::UpdateHierarchy() noexcept {
@@ -228,6 +245,7 @@ void Simulation::Content::DetectEvents() noexcept {
     }
   }
   if (torn_count > 0) Note(EventKind::kTear, -1, strand_organs[torn[0]], 0.0);
+  if (torn_spring_count > 0) Note(EventKind::kTear, -1, spring_organs[torn_springs[0]], 0.0);
   if (verdict == tissue::GuardVerdict::kRestored) Note(EventKind::kStateRestored, -1, -1, 0.0);
   if (verdict == tissue::GuardVerdict::kFrozen && !was_frozen) Note(EventKind::kOrganFrozen, -1, -1, 0.0);
   was_frozen = verdict == tissue::GuardVerdict::kFrozen;
@@ -275,7 +293,7 @@ void Simulation::Content::Reset() {
   load = {};
   report = {};
   was_frozen = false;
-  torn_count = 0;
+  torn_count = torn_spring_count = 0;
   snapshot = {};
   snapshot.positions.resize(tissue_model.Size());
   solved_condition = tissue.condition;
@@ -295,6 +313,28 @@ void Simulation::Content::MakeSolver(int threads, SolveOn solve_on) {
                                                             tissue_cuda::GpuSolver::Make(tissue_model));
   gpu_solver = made.get();
   solver = std::move(made);
+}
+
+/// What tears in the walls, and how large a hole it leaves: a spring's part of its organ's surface.
+void Simulation::Content::SetWalls(const tissue::TissueDefinition& definition,
+                                   std::vector<std::int32_t> organs_of_springs) {
+  spring_organs = std::move(organs_of_springs);
+  walls_tear = tissue::HasTearingSprings(tissue_model);
+  hollow_organ = scene->patient.FindOrgan("gallbladder");
+  torn_springs.resize(tissue_model.SpringCount());
+  spring_areas.resize(tissue_model.SpringCount());
+  std::vector<double> areas, square_lengths(scene->patient.organs.size(), 0.0);
+  for (const anatomy::Organ& organ : scene->patient.organs)
+    areas.push_back(geometry::CalcArea(organ.mesh.positions, organ.mesh.triangles));
+  const auto square_length = [&](std::size_t i) {
+    return definition.springs[i].rest_length * definition.springs[i].rest_length;
+  };
+  for (std::size_t i = 0; i < spring_organs.size(); ++i) square_lengths[spring_organs[i]] += square_length(i);
+  for (std::size_t i = 0; i < spring_organs.size(); ++i) {
+    const std::int32_t organ = spring_organs[i];
+    spring_areas[i] = areas[organ] * square_length(i) / square_lengths[organ];
+  }
+  spring_organs.resize(tissue_model.SpringCount(), -1);
 }
 
 /// Rest, with tense organs filled.
@@ -329,6 +369,7 @@ core::Result<Simulation> Simulation::Make(std::shared_ptr<const Scene> scene, in
       std::make_unique<tissue::Conservation>(content->tissue_model, std::move(made->conservation));
   content->max_elongation = std::move(made->max_elongation);
   content->strand_organs = std::move(made->strand_organs);
+  content->SetWalls(made->definition, std::move(made->spring_organs));
   if (const auto filled = content->Fill(made->internal_pressure); !filled.ok()) return filled.error();
   const auto& patient = content->scene->patient;
   for (std::size_t i = 0; i < patient.organs.size(); ++i) {
@@ -396,6 +437,8 @@ double Simulation::CalcEquilibriumError() const {
   exact.max_error = 1e-7;
   exact.max_newton_steps = 200;
   exact.max_linear_iterations = 300;
+  exact.law_error = 1e-7;
+  exact.max_rounds = 50;
   tissue::EquilibriumSolver judge(c.tissue_model, 1);
   const tissue::SolveReport solved = judge.Solve(exact, c.load, state);
   if (!solved.converged) return std::nan("");
@@ -435,6 +478,12 @@ std::uint64_t Simulation::Hash() const {
     }
   }
   for (const auto intact : c.tissue.strand_is_intact) hash.Add(std::uint64_t{intact});
+  // a spring that is whole and unharmed says nothing: hashes stay when springs learn to tear
+  for (std::size_t i = 0; i < c.tissue.spring_factor.size(); ++i) {
+    const double factor = c.tissue.spring_factor[i], damage = c.tissue.spring_damage[i];
+    if (factor == 1.0 && damage == 0.0) continue;
+    hash.Add(std::uint64_t{i}), hash.Add(factor), hash.Add(damage);
+  }
   for (int hand = 0; hand < kHandCount; ++hand) {
     const instrument::TrocarJoints& j = c.joints[hand];
     for (const double joint : {j.pan, j.tilt, j.spin, j.depth, j.jaw}) hash.Add(joint);

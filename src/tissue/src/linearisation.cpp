@@ -63,11 +63,12 @@ OrderedModel MakeOrderedModel(const TissueModel& model) {
   made.layout = MakeSliceLayout(made.graph);
   made.stiffness.assign(made.layout.Steps() * kSliceNodes, 0.0);
   made.rest_length.assign(made.layout.Steps() * kSliceNodes, 0.0);
+  made.spring_entries.resize(model.half_springs.size());
   for (std::uint32_t i = 0; i < n; ++i) {
     const std::uint32_t old = made.old_of_new[i];
     std::uint32_t place = 0;
     for (auto h = model.spring_starts[old]; h < model.spring_starts[old + 1]; ++h, ++place) {
-      const std::size_t entry = made.layout.Entry(i, place);
+      const std::size_t entry = made.spring_entries[h] = made.layout.Entry(i, place);
       made.stiffness[entry] = model.half_springs[h].stiffness;
       made.rest_length[entry] = model.half_springs[h].rest_length;
     }

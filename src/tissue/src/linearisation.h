@@ -20,6 +20,7 @@ struct OrderedModel {
   SliceLayout layout;
   std::vector<double> stiffness;    // (entries) k of springs [N/m]; 0 for strands and padding
   std::vector<double> rest_length;  // (entries) [m]
+  std::vector<std::size_t> spring_entries;  // (half-springs of the model) place of each
   std::vector<Vec3> rest;           // (n) [m]
   std::vector<double> mass;         // (n) [kg]
   std::vector<double> shape;        // (n) k_virtual [N/m]

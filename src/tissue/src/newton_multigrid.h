@@ -24,6 +24,9 @@ class NewtonMultigrid {
   SolveReport Solve(const Kernels& kernels, Workers& workers, const SolverSettings& settings,
                     const TissueLoad& load, TissueState& state, const SolveHook* hook) noexcept;
 
+  /// The springs it works with, for SpringLines to keep up to date.
+  OrderedModel& Springs() noexcept { return model_; }
+
  private:
   struct LinearReport {
     int iterations = 0;

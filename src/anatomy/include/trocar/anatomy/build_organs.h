@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -43,6 +44,7 @@ struct OrganOptions {
   double spacing_mm = 1.0;                 ///< of the volume's lattice, 0.4 to 4
   double gap_mm = 0.7;                     ///< left free around an organ where another one touches it, 0 to 5
   const LabelVolume* reference = nullptr;  ///< judges the result; may be null
+  std::stop_token stop;                    ///< gives up at the next slice or mesh: kCancelled
 };
 
 struct BuiltOrgans {
@@ -69,8 +71,8 @@ core::Result<std::map<int, ColorImage>> ReadContouredSlices(const ControlPoints&
 ///
 /// Where two structures overlap, the one later in the list keeps the place.
 /// \param images  at least the slices that the control points name, of the size that they name
-/// \return kUsage for options out of range; kContourEmpty with structure and slice; what decimation and
-/// judging return
+/// \return kUsage for options out of range; kContourEmpty with structure and slice; kCancelled; what decimation
+/// and judging return
 core::Result<BuiltOrgans> BuildOrgans(const ControlPoints& points, const std::map<int, ColorImage>& images,
                                       const OrganOptions& options = {}, const Progress& progress = {});
 

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,7 @@ struct BuildOptions {
   std::optional<std::filesystem::path> overlays;   ///< folder for one PNG a slice
   double spacing_mm = 1.0;                         ///< of the volume's lattice, 0.4 to 4
   double gap_mm = 0.7;                             ///< left free around an organ where another one touches it
+  std::stop_token stop;                            ///< gives up before anything is written: kCancelled
 };
 
 struct BuildReport {

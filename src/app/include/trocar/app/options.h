@@ -13,6 +13,7 @@ namespace trocar::app {
 struct Options {
   std::filesystem::path scene;  ///< empty: the built-in demonstration
   int threads = 0;              ///< of the solver; 0: chosen by the number of processors
+  std::string device;           ///< hands of a device, as `trocar devices list` names it; empty: mouse and keyboard
   bool is_fullscreen = false;
   bool is_demonstration = false;     ///< start with the script moving both hands
   std::filesystem::path screenshot;  ///< empty: none. Otherwise play, save the window's picture and quit
@@ -24,6 +25,7 @@ struct Options {
   std::filesystem::path reference;     ///< label map to compare with; empty: none
   anatomy::ImageSeriesOptions series;  ///< what the pictures do not say
   std::filesystem::path script;        ///< commands to begin with; empty: none
+  bool has_autosave = false;           ///< also in a run that nobody watches
   bool is_measuring = false;           ///< drag a point for some seconds, print the times and quit
   // the patient editor
   std::filesystem::path patient;     ///< not empty: open the patient editor on this folder

@@ -4,8 +4,10 @@
 #pragma once
 
 #include <memory>
+#include <string>
 
 #include "trocar/device/mouse_keyboard.h"
+#include "trocar/session/device_thread.h"
 #include "trocar/session/runner.h"
 
 namespace trocar::app {
@@ -16,6 +18,13 @@ class SessionControl {
   /// Starts paused, with the hands at home.
   /// \return kDeviceSettings where the scene's tools cannot be held
   static core::Result<std::unique_ptr<SessionControl>> Make(session::Simulation simulation);
+
+  /// Lets a device hold the hands that it sees; the mouse keeps the others. Where the device is lost the simulation is
+  /// paused, and stays so when it comes back until the person starts it.
+  /// \param driver  of device::kChannelCount channels, unconfigured
+  void UseDevice(std::unique_ptr<device::Driver> driver);
+  /// What the device last said about itself, once each; empty where there is nothing new.
+  std::string TakeDeviceMessage();
 
   /// Moves the hands on by `dt` [s] and hands the newest wish to the simulation; while paused the hands stand
   /// still.
@@ -63,8 +72,13 @@ class SessionControl {
  private:
   SessionControl(session::Simulation simulation, const device::MouseKeyboardSettings& settings);
   void PlaceAtHome();
+  void ApplyDevice();
 
   session::Runner runner_;
+  std::unique_ptr<session::DeviceThread> device_thread_;  // may be null
+  std::string device_message_;                            // the newest
+  bool is_device_message_new_ = false;
+  std::uint64_t device_losses_ = 0;
   device::MouseKeyboard device_;
   session::Input input_;
   device::Channel hand_ = device::kRightHand;

@@ -39,6 +39,11 @@ struct SolverSettings {
   int max_newton_steps = 40;       ///< per tick; two as a rule, many where a fold snaps through
   int max_linear_iterations = 60;  ///< of conjugate gradients, per Newton step
 
+  /// Springs that stiffen are taken as lines that touch their law, solve after solve, until the lines are off
+  /// by less than this part of the largest tension [-].
+  double law_error = 1e-3;
+  int max_rounds = 4;  ///< solves per tick, >= 1; they share the bounds above
+
   friend bool operator==(const SolverSettings&, const SolverSettings&) = default;
 };
 

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/core/file_lock.h"
+
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <optional>
+#include <string>
+
+#include "trocar/core/safe_file.h"
+
+namespace trocar::core {
+namespace {
+
+class FileLockTest : public testing::Test {
+ protected:
+  void SetUp() override { std::filesystem::create_directories(folder_); }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+  std::filesystem::path folder_ =
+      std::filesystem::path(testing::TempDir()) /
+      ("trocar_lock_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+  std::filesystem::path path_ = folder_ / "sub" / "a.lock";
+};
+
+TEST_F(FileLockTest, IsHeldByOneAndNamesIt) {
+  auto first = FileLock::Take(path_);
+  ASSERT_TRUE(first.ok()) << first.error().Text();
+  const auto second = FileLock::Take(path_);
+  ASSERT_FALSE(second.ok());
+  EXPECT_EQ(second.error().code, ErrorCode::kFileInUse);
+  EXPECT_NE(second.error().message.find("process " + std::to_string(getpid())), std::string::npos)
+      << second.error().message;
+}
+
+TEST_F(FileLockTest, IsGivenBackWithItsFile) {
+  {
+    auto first = FileLock::Take(path_);
+    ASSERT_TRUE(first.ok());
+    const FileLock moved = std::move(*first);
+    EXPECT_FALSE(FileLock::Take(path_).ok());
+  }
+  EXPECT_FALSE(std::filesystem::exists(path_));
+  EXPECT_TRUE(FileLock::Take(path_).ok());
+}
+
+TEST_F(FileLockTest, OutlivesNoProgram) {
+  int ready[2];
+  ASSERT_EQ(pipe(ready), 0);
+  const pid_t child = fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    const auto lock = FileLock::Take(path_);
+    const char told = lock.ok() ? 'y' : 'n';
+    (void)!write(ready[1], &told, 1);
+    pause();
+    _exit(0);
+  }
+  char told = 0;
+  ASSERT_EQ(read(ready[0], &told, 1), 1);
+  EXPECT_EQ(told, 'y');
+  const auto held = FileLock::Take(path_);
+  EXPECT_FALSE(held.ok());
+  EXPECT_NE(held.error().message.find(std::to_string(child)), std::string::npos);
+  kill(child, SIGKILL);
+  waitpid(child, nullptr, 0);
+  EXPECT_TRUE(FileLock::Take(path_).ok()) << "a dead program holds the file";
+  close(ready[0]);
+  close(ready[1]);
+}
+
+TEST_F(FileLockTest, DoesNotFollowALink) {
+  std::filesystem::create_directories(path_.parent_path());
+  ASSERT_TRUE(WriteFile(folder_ / "precious", "kept").ok());
+  std::filesystem::create_symlink(folder_ / "precious", path_);
+  EXPECT_EQ(FileLock::Take(path_).error().code, ErrorCode::kFileUnwritable);
+  EXPECT_EQ(ReadFile(folder_ / "precious").value(), "kept");
+}
+
+}  // namespace
+}  // namespace trocar::core
