@@ -19,6 +19,8 @@ class NewtonMultigrid {
   using SmallMatrix = std::array<SmallVector, kMaxHookConstraints>;
 
   explicit NewtonMultigrid(const TissueModel& model);
+  NewtonMultigrid(const NewtonMultigrid&) = delete;  // parts point at each other
+  NewtonMultigrid& operator=(const NewtonMultigrid&) = delete;
 
   /// \note Real-time safe; bounded by settings.max_newton_steps and max_linear_iterations.
   SolveReport Solve(const Kernels& kernels, Workers& workers, const SolverSettings& settings,
