@@ -49,6 +49,8 @@ void AddDevicesEmulateCommand(CLI::App& devices, Outcome& outcome);
 device::DeviceStore LoadStoreOrWarn();
 void AddBenchCommand(CLI::App& app, Outcome& outcome);
 void AddReproduceCommand(CLI::App& app, Outcome& outcome);
+/// Below `trocar reproduce`.
+void AddReportCardCommand(CLI::App& reproduce, Outcome& outcome);
 void AddDoctorCommand(CLI::App& app, Outcome& outcome);
 void AddErrorsCommand(CLI::App& app, Outcome& outcome);
 
