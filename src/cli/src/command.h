@@ -37,6 +37,7 @@ void AddAnatomyContoursCommand(CLI::App& anatomy, Outcome& outcome);
 void AddAnatomyExportCommand(CLI::App& anatomy, Outcome& outcome);
 void AddAnatomyRehearseCommand(CLI::App& anatomy, Outcome& outcome);
 void AddAnatomyEditCommand(CLI::App& anatomy, Outcome& outcome);
+void AddAnatomyLabelEdgesCommand(CLI::App& anatomy, Outcome& outcome);
 void AddAnatomyPhantomCommand(CLI::App& anatomy, Outcome& outcome);
 void AddAnatomyViewCommand(CLI::App& anatomy, Outcome& outcome);
 void AddAnatomyImagesCommand(CLI::App& anatomy, Outcome& outcome);
@@ -48,6 +49,8 @@ void AddDevicesEmulateCommand(CLI::App& devices, Outcome& outcome);
 device::DeviceStore LoadStoreOrWarn();
 void AddBenchCommand(CLI::App& app, Outcome& outcome);
 void AddReproduceCommand(CLI::App& app, Outcome& outcome);
+/// Below `trocar reproduce`.
+void AddReportCardCommand(CLI::App& reproduce, Outcome& outcome);
 void AddDoctorCommand(CLI::App& app, Outcome& outcome);
 void AddErrorsCommand(CLI::App& app, Outcome& outcome);
 

@@ -29,13 +29,15 @@ bool MaySplit(const EditableMesh& mesh, std::uint32_t h, double t, double min_an
   for (const auto side : sides) {
     if (side == kNone) continue;
     if (!(halves(mesh.Rest(), side) >= min_angle)) return false;
-    if (!(halves(mesh.Positions(), side) >= min_angle) && whole(mesh.Positions(), side) >= min_angle) return false;
+    if (!(halves(mesh.Positions(), side) >= min_angle) && whole(mesh.Positions(), side) >= min_angle)
+      return false;
   }
   return sides[1] == kNone || mesh.Opposite(sides[0]) != mesh.Opposite(sides[1]);
 }
 
 /// Whether a vertex may be put into a triangle, judged as for edges.
-bool MayInsert(const EditableMesh& mesh, std::uint32_t t, const std::array<double, 3>& weights, double min_angle) {
+bool MayInsert(const EditableMesh& mesh, std::uint32_t t, const std::array<double, 3>& weights,
+               double min_angle) {
   const Triangle& corners = mesh.Triangles()[t];
   const auto thirds = [&](std::span<const Vec3> x) {
     const Vec3 &a = x[corners[0]], &b = x[corners[1]], &c = x[corners[2]];
@@ -219,9 +221,7 @@ int SurfaceCutter::Content::SideOf(std::uint32_t t, const FlatSweep& sweep) cons
 
 /// Whether an edge is all that still holds one of its two triangles.
 bool SurfaceCutter::Content::LeavesLooseTriangle(std::uint32_t h) const noexcept {
-  const auto is_held = [&](std::uint32_t side) {
-    return mesh->Twin(side) != kNone && !mesh->IsScored(side);
-  };
+  const auto is_held = [&](std::uint32_t side) { return mesh->Twin(side) != kNone && !mesh->IsScored(side); };
   for (const auto side : {h, mesh->Twin(h)}) {
     if (!is_held(EditableMesh::Next(side)) && !is_held(EditableMesh::Previous(side))) return true;
   }
@@ -297,7 +297,8 @@ std::uint32_t SurfaceCutter::Content::FindEnd(const Pierced& at, const CutFront&
   for (const auto v : mesh->Triangles()[at.triangle]) {
     const bool is_of_stroke = tick_stamp[v] == tick || std::find(tips.begin(), tips.end(), v) != tips.end();
     if (!is_of_stroke || passed_stamp[v] == tick) continue;
-    if (nearest == kNone || math::SquaredDistance(x[v], at.point) < math::SquaredDistance(x[nearest], at.point))
+    if (nearest == kNone ||
+        math::SquaredDistance(x[v], at.point) < math::SquaredDistance(x[nearest], at.point))
       nearest = v;
   }
   return nearest;

@@ -166,7 +166,7 @@ TEST_F(SimulationTest, MissingMaterialIsNamed) {
 TEST(StageName, HasANameForEachStageAndEvent) {
   std::set<std::string_view> names;
   for (int i = 0; i < kStageCount; ++i) EXPECT_TRUE(names.insert(StageName(static_cast<Stage>(i))).second);
-  for (int i = 0; i <= static_cast<int>(EventKind::kTear); ++i) {
+  for (int i = 0; i <= static_cast<int>(EventKind::kToolsTouch); ++i) {
     EXPECT_TRUE(names.insert(EventName(static_cast<EventKind>(i))).second);
   }
 }

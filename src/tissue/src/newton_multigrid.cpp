@@ -34,6 +34,9 @@ constexpr int kMaxHalvings = 6;
 constexpr double kLeastDecrease = 1e-4;
 /// Rounding of the energy, as a part of it [-].
 constexpr double kEnergyRounding = 1e-12;
+/// Conjugate gradients end where r . z, of single precision, has fallen to this part of its start [-]: from a state
+/// at rest the tolerance is zero, and what follows is rounding.
+constexpr double kLinearRounding = 1e-12;
 /// Coarser levels are computed again when a node may have gone so far, in mean spring lengths [-]: they follow
 /// the springs' directions, which have hardly turned before.
 constexpr double kStaleMove = 0.2;
@@ -180,7 +183,8 @@ NewtonMultigrid::LinearReport NewtonMultigrid::SolveLinear(const Kernels& kernel
   double beta = 0;
   SmallestRitz ritz;
   double rz = CalcDot(kernels, workers, r_, z_);
-  while (report.iterations < max_iterations && rz > 0.0) {
+  const double rounding = kLinearRounding * rz;
+  while (report.iterations < max_iterations && rz > rounding) {
     Multiply(kernels, workers, p_.data(), q_.data());
     const double pq = CalcDot(kernels, workers, p_, q_);
     report.met_negative_curvature = !(pq > 0.0);
