@@ -8,6 +8,7 @@
 #include <cmath>
 #include <functional>
 
+#include "trocar/device/force_device_spec.h"
 #include "trocar/device/ports.h"
 
 namespace trocar::haptics {
@@ -184,6 +185,20 @@ TEST_F(OpenHapticsTest, IsOnlyOneAtATime) {
   EXPECT_EQ(second.Configure().error().code, ErrorCode::kDeviceBusy);
   ASSERT_TRUE(first.Cleanup().ok());
   EXPECT_TRUE(second.Configure().ok());
+}
+
+TEST(ForceDeviceSpec, MakesTheDeviceThatIsNamed) {
+  const auto channels = [](const char* text) {
+    const auto made = MakeForceDriver(text);
+    return made.ok() ? (*made)->GetName() + std::to_string((*made)->GetChannelCount())
+                     : made.error().Text().substr(0, 9);
+  };
+  EXPECT_EQ(channels("openhaptics"), "openhaptics1");
+  EXPECT_EQ(channels("openhaptics:Left,Right"), "openhaptics2");
+  EXPECT_EQ(channels("haply"), "haply1");
+  EXPECT_EQ(channels("haply:2:4000"), "haply2");
+  for (const char* bad : {"", "toaster", "haply:two", "haply:0", "haply:2:99999"})
+    EXPECT_EQ(channels(bad), "E-DEV-004") << bad;
 }
 
 }  // namespace
