@@ -114,7 +114,6 @@ struct CutCounts {
 };
 
 /// Cuts and checks; `after` sees every mesh after its last cut.
-/// \param limit  triangles beyond which a mesh is given up for a fresh one
 template <typename After>
 CutCounts RunRandomCuts(std::uint64_t seed, std::size_t strokes, After after) {
   const auto surfaces = MakeSurfaces();
