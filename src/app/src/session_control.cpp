@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "trocar/app/pointer_map.h"
+#include "trocar/device/force_device_spec.h"
 
 namespace trocar::app {
 namespace {
@@ -61,7 +62,7 @@ core::Result<std::unique_ptr<SessionControl>> SessionControl::Make(session::Simu
 }
 
 SessionControl::SessionControl(session::Simulation simulation, const device::MouseKeyboardSettings& settings)
-    : runner_(std::move(simulation)), device_(settings) {}
+    : runner_(std::move(simulation), &haptic_link_), device_(settings) {}
 
 void SessionControl::PlaceAtHome() {
   const session::Scene& scene = runner_.GetScene();
@@ -104,7 +105,29 @@ const session::Snapshot& SessionControl::Advance(double dt) {
 }
 
 void SessionControl::UseDevice(std::unique_ptr<device::Driver> driver) {
+  session::PlaceAtHome(runner_.GetScene(), *driver);
   device_thread_ = std::make_unique<session::DeviceThread>(std::move(driver));
+}
+
+core::Status SessionControl::UseHaptics(std::string_view name) {
+  auto driver = device::MakeForceDriver(name);
+  if (!driver) return driver.error();
+  const int channels = (*driver)->GetChannelCount();
+  if (channels > session::kHandCount) {
+    return core::Error{core::ErrorCode::kDeviceSettings,
+                       (*driver)->GetName() + " has more channels than a person has hands"};
+  }
+  session::HapticLoopSettings settings;
+  settings.supervisor = session::SupervisorLink::FindProgram();
+  for (int channel = 0; channel < channels; ++channel) {
+    const session::Hand hand = channels == 1 || channel == 1 ? session::kRight : session::kLeft;
+    settings.hands.push_back(
+        session::MakeHapticHand(runner_.GetScene(), runner_.Latest().X_world_laparoscope, hand));
+  }
+  auto loop = session::HapticLoop::Start(std::move(*driver), settings, haptic_link_);
+  if (!loop) return loop.error();
+  haptic_loop_ = std::move(*loop);
+  return {};
 }
 
 void SessionControl::ApplyDevice() {

@@ -19,9 +19,9 @@ using collision::TriangleTree;
 using geometry::TriangleMesh;
 using math::Vec3;
 
-constexpr std::size_t kChecked = 1000;     // queries against brute force, each on another shape
+constexpr std::size_t kChecked = 1000;      // queries against brute force, each on another shape
 constexpr std::size_t kRoundsARepeat = 60;  // deformations that are timed
-constexpr double kShaftRadius = 0.0025;    // [m]
+constexpr double kShaftRadius = 0.0025;     // [m]
 /// Embree works in single precision: what its answer may differ by [m].
 constexpr double kSinglePrecision = 1e-6;
 
@@ -39,7 +39,8 @@ TriangleMesh MakeBody(std::uint32_t around, std::uint32_t along) {
   }
   for (std::uint32_t j = 0; j < along; ++j) {
     for (std::uint32_t i = 0; i < around; ++i) {
-      const std::uint32_t a = j * around + i, b = j * around + (i + 1) % around, c = a + around, d = b + around;
+      const std::uint32_t a = j * around + i, b = j * around + (i + 1) % around, c = a + around,
+                          d = b + around;
       mesh.triangles.push_back({a, d, b});
       mesh.triangles.push_back({a, c, d});
     }
@@ -172,8 +173,8 @@ core::Status TimeShafts(const BenchmarkOptions& options, BenchmarkResult& result
 
 core::Status AddTreeBenchmark(const BenchmarkOptions& options, BenchmarkResult& result) {
   const TriangleMesh body = MakeBody(50, 40), fine_body = MakeBody(180, 120);  // 4,000 and 43,200
-  for (const auto& [name, mesh] : {std::pair{"update_and_query_4000", &body},
-                                   std::pair{"update_and_query_43200", &fine_body}}) {
+  for (const auto& [name, mesh] :
+       {std::pair{"update_and_query_4000", &body}, std::pair{"update_and_query_43200", &fine_body}}) {
     if (core::Status timed = TimeUpdateAndQuery(name, *mesh, options, result); !timed.ok()) return timed;
   }
   if (core::Status timed = TimeShafts(options, result); !timed.ok()) return timed;

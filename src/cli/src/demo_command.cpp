@@ -179,7 +179,7 @@ core::Status Play(const DemoArguments& arguments) {
   options.on_tick = [&](const session::Snapshot& snapshot) { log.Record(snapshot); };
   std::unique_ptr<DeviceInput> device;
   if (!arguments.device.empty()) {
-    auto opened = DeviceInput::Open(arguments.device);
+    auto opened = DeviceInput::Open(arguments.device, **scene);
     if (!opened) return opened.error();
     device = std::move(*opened);
     options.change_input = [&](double time, session::Input& input) { device->Apply(time, input); };

@@ -7,12 +7,14 @@
 
 namespace trocar::cli {
 
-core::Result<std::unique_ptr<DeviceInput>> DeviceInput::Open(const std::string& spec) {
+core::Result<std::unique_ptr<DeviceInput>> DeviceInput::Open(const std::string& spec,
+                                                             const session::Scene& scene) {
   std::unique_ptr<DeviceInput> input(new DeviceInput);
   input->clock_ = spec.starts_with("play:") ? &input->simulated_ : &device::SystemClock();
   auto driver = device::MakeDriver(spec, LoadStoreOrWarn(), *input->clock_);
   if (!driver) return driver.error();
   input->driver_ = std::move(*driver);
+  session::PlaceAtHome(scene, *input->driver_);
   if (const core::Status done = input->driver_->Configure(); !done) return done.error();
   if (const core::Status done = input->driver_->Activate(); !done) return done.error();
   input->start_ = input->clock_->Now();

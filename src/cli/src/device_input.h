@@ -16,7 +16,8 @@ namespace trocar::cli {
 class DeviceInput {
  public:
   /// \return the device's error
-  static core::Result<std::unique_ptr<DeviceInput>> Open(const std::string& spec);
+  static core::Result<std::unique_ptr<DeviceInput>> Open(const std::string& spec,
+                                                         const session::Scene& scene);
 
   /// Replaces the hands that the device sees. A hand that it does not see, and all once it is lost, stay where they were.
   ///

@@ -15,12 +15,14 @@
 #include "trocar/core/log.h"
 #include "trocar/core/safe_file.h"
 #include "trocar/device/device_spec.h"
+#include "trocar/device/force_device_spec.h"
 #include "trocar/device/hand_recording.h"
 
 namespace trocar::cli {
 namespace {
 
-constexpr const char* kSpecHelp = "Device, such as liberty:/dev/ttyUSB0 or fastrak:/dev/ttyS0,baud=19200+jaw:/dev/ttyACM0";
+constexpr const char* kSpecHelp =
+    "Device, such as liberty:/dev/ttyUSB0 or fastrak:/dev/ttyS0,baud=19200+jaw:/dev/ttyACM0";
 
 void List(bool is_json) {
   const std::vector<device::FoundDevice> found = device::ListDevices();
@@ -35,14 +37,16 @@ void List(bool is_json) {
     return;
   }
   std::printf("Found:\n");
-  for (const device::FoundDevice& one : found) std::printf("  %s   %s\n", one.spec.c_str(), one.description.c_str());
+  for (const device::FoundDevice& one : found)
+    std::printf("  %s   %s\n", one.spec.c_str(), one.description.c_str());
   if (found.empty()) std::printf("  nothing but mouse and keyboard\n");
   std::printf("\nKinds of device (write KIND:ADDRESS):\n");
   std::vector<std::vector<std::string>> rows;
   for (const device::DeviceKind& kind : device::DeviceKinds())
     rows.push_back({"  " + std::string(kind.name), std::string(kind.address), std::string(kind.text)});
   std::fputs(FormatTable(rows).c_str(), stdout);
-  std::printf("\nSettings and calibrations: %s\n", device::FindDeviceStore().c_str());
+  std::printf("\nHaptic devices (--haptics): %s\n", device::ListForceDrivers().c_str());
+  std::printf("Settings and calibrations: %s\n", device::FindDeviceStore().c_str());
 }
 
 core::Result<std::unique_ptr<device::Driver>> OpenDevice(const std::string& spec) {
@@ -84,17 +88,21 @@ core::Status Record(const std::string& spec, const std::string& path, double sec
   HandPlot plot;
   const auto report = WatchDevice(
       **driver, seconds,
-      [&](const HandSamples& samples, double time) { frames.push_back({time, samples}); },
+      [&](const HandSamples& samples, double time) {
+        frames.push_back({time, samples});
+      },
       [&](const HandSamples& samples, double time) { plot.Show(samples, time); });
   if (!report) return report.error();
   if (frames.empty()) {
-    return core::Error{core::ErrorCode::kDeviceStale, (*driver)->GetName() + " sent nothing to record; try trocar devices "
-                                                                             "test first"};
+    return core::Error{core::ErrorCode::kDeviceStale, (*driver)->GetName() +
+                                                          " sent nothing to record; try trocar devices "
+                                                          "test first"};
   }
-  if (core::Status written = core::WriteFile(path, device::FormatHandFrames(frames)); !written) return written;
+  if (core::Status written = core::WriteFile(path, device::FormatHandFrames(frames)); !written)
+    return written;
   PrintReport(*report);
-  std::printf("\nWrote %s: %zu frames. Play it with: trocar devices play %s, or --device play:%s\n", path.c_str(),
-              frames.size(), path.c_str(), path.c_str());
+  std::printf("\nWrote %s: %zu frames. Play it with: trocar devices play %s, or --device play:%s\n",
+              path.c_str(), frames.size(), path.c_str(), path.c_str());
   return report->is_lost ? LostError(**driver) : core::Status{};
 }
 
@@ -126,13 +134,15 @@ CLI::App* AddWatching(CLI::App& devices, const char* name, const char* text, Dev
 device::DeviceStore LoadStoreOrWarn() {
   device::LoadedStore loaded = device::LoadDeviceStore(device::FindDeviceStore());
   if (loaded.complaint) {
-    core::Log(core::LogLevel::kWarning, loaded.complaint->Text() + "; going on with the defaults, uncalibrated");
+    core::Log(core::LogLevel::kWarning,
+              loaded.complaint->Text() + "; going on with the defaults, uncalibrated");
   }
   return std::move(loaded.store);
 }
 
 void AddDevicesCommand(CLI::App& app, Outcome& outcome) {
-  CLI::App* devices = app.add_subcommand("devices", "Trackers, jaw sensors and other hands: find, try, calibrate, record");
+  CLI::App* devices =
+      app.add_subcommand("devices", "Trackers, jaw sensors and other hands: find, try, calibrate, record");
   devices->require_subcommand(1);
   devices->footer(
       "Examples:\n"
@@ -154,7 +164,8 @@ void AddDevicesCommand(CLI::App& app, Outcome& outcome) {
   CLI::App* record = AddWatching(*devices, "record", "Keep what a device says in a file (CSV)", *options);
   record->add_option("device", options->spec, kSpecHelp)->required()->type_name("DEVICE");
   record->add_option("file", options->file, "File to write")->required()->type_name("FILE");
-  record->callback([options, &outcome] { outcome.status = Record(options->spec, options->file, options->seconds); });
+  record->callback(
+      [options, &outcome] { outcome.status = Record(options->spec, options->file, options->seconds); });
 
   CLI::App* play = AddWatching(*devices, "play", "Show a recording", *options);
   play->add_option("file", options->file, "File of trocar devices record")->required()->type_name("FILE");

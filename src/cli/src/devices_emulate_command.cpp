@@ -23,22 +23,32 @@ struct EmulateOptions {
   std::string motion = "hands";
   std::vector<std::string> faults;
   double seconds = 0;
+  int port = 0;
   int stations = 2;
 };
 
 core::Result<std::unique_ptr<Emulator>> MakeEmulator(const EmulateOptions& options,
                                                      const std::vector<device::Fault>& faults) {
   const device::HandMotion motion = options.motion == "rest" ? device::CalcRest : device::CalcHandMotion;
+  if (options.kind == "haply") {
+    const auto position = [motion](int device, double time) {
+      const device::HandSample hand = motion(time)[static_cast<std::size_t>(device)];
+      return math::Vec3{-0.1 * hand.pan, 0.15 + hand.depth, 0.1 * hand.tilt};
+    };
+    return device::MakeHaplyEmulator({2, position}, std::make_shared<device::HaplyForces>());
+  }
   if (options.kind == "jaw") return device::MakeJawEmulator({{}, motion});
-  const auto format = device::FindFormat(options.kind);
-  if (!format) return core::Error{core::ErrorCode::kUsage, "\"" + options.kind + "\" is not emulated"};
   const auto hands = device::MakeHandsSettings(device::DefaultTracker());
   if (!hands) return hands.error();
+  const device::SensorMotion sensors = device::SpoilMotion(
+      faults, options.motion == "tip" ? device::MoveAboutTip(*hands) : device::MoveHands(*hands, motion));
+  if (options.kind == "igtl") return device::MakeIgtlEmulator(sensors);
+  const auto format = device::FindFormat(options.kind);
+  if (!format) return core::Error{core::ErrorCode::kUsage, "\"" + options.kind + "\" is not emulated"};
   device::PolhemusEmulation emulation;
   emulation.format = *format;
   emulation.stations = options.stations;
-  emulation.motion = device::SpoilMotion(
-      faults, options.motion == "tip" ? device::MoveAboutTip(*hands) : device::MoveHands(*hands, motion));
+  emulation.motion = sensors;
   return device::MakePolhemusEmulator(std::move(emulation));
 }
 
@@ -51,7 +61,9 @@ core::Status Emulate(const EmulateOptions& options) {
   }
   auto emulator = MakeEmulator(options, faults);
   if (!emulator) return emulator.error();
-  const auto host = device::EmulatorHost::MakeSerial(std::move(*emulator), faults);
+  const auto host = options.kind == "igtl" || options.kind == "haply"
+                        ? device::EmulatorHost::MakeTcp(std::move(*emulator), options.port, faults)
+                        : device::EmulatorHost::MakeSerial(std::move(*emulator), faults);
   if (!host) return host.error();
   std::printf("%s:%s\n", options.kind.c_str(), (*host)->Address().c_str());
   std::fflush(stdout);
@@ -71,21 +83,32 @@ core::Status Emulate(const EmulateOptions& options) {
 }  // namespace
 
 void AddDevicesEmulateCommand(CLI::App& devices, Outcome& outcome) {
-  CLI::App* command = devices.add_subcommand("emulate", "A device in software, byte for byte, with faults on demand");
+  CLI::App* command =
+      devices.add_subcommand("emulate", "A device in software, byte for byte, with faults on demand");
   auto options = std::make_shared<EmulateOptions>();
   command->add_option("kind", options->kind, "Which device")
       ->required()
-      ->check(CLI::IsMember({"fastrak", "fastrak-binary", "liberty", "patriot", "jaw"}))
+      ->check(CLI::IsMember({"fastrak", "fastrak-binary", "liberty", "patriot", "jaw", "igtl", "haply"}))
       ->type_name("KIND");
   command
       ->add_option("--fault", options->faults,
-                   "KIND[=RATE][@START][+DURATION], in seconds; kinds: silence, garbage, flips (RATE of bits), unplug, "
+                   "KIND[=RATE][@START][+DURATION], in seconds; kinds: silence, garbage, flips (RATE of "
+                   "bits), unplug, "
                    "flood, jump. May be given several times")
       ->type_name("FAULT");
-  command->add_option("--motion", options->motion, "What the instruments do; tip: they swing about their tips, for calibration")
+  command
+      ->add_option("--motion", options->motion,
+                   "What the instruments do; tip: they swing about their tips, for calibration")
       ->check(CLI::IsMember({"hands", "tip", "rest"}))
       ->capture_default_str();
-  command->add_option("--stations", options->stations, "Sensors plugged in")->check(CLI::Range(1, 3))->capture_default_str();
+  command->add_option("--stations", options->stations, "Sensors plugged in")
+      ->check(CLI::Range(1, 3))
+      ->capture_default_str();
+  command
+      ->add_option("--port", options->port,
+                   "igtl, haply: port on this machine; chosen by the system if not given")
+      ->check(CLI::Range(0, 65535))
+      ->type_name("PORT");
   command->add_option("--seconds", options->seconds, "How long; until Ctrl+C if not given")
       ->check(CLI::Range(0.05, 86400.0))
       ->type_name("S");

@@ -26,11 +26,12 @@ constexpr const char* kLibrary = TROCAR_EMBREE == 3 ? "libembree3.so.3" : "libem
 
 /// What is used of the library, by name.
 struct Embree {
-#define TROCAR_EMBREE_FUNCTIONS(DO)                                                                          \
-  DO(rtcNewDevice) DO(rtcReleaseDevice) DO(rtcNewScene) DO(rtcReleaseScene) DO(rtcSetSceneFlags)             \
-  DO(rtcSetSceneBuildQuality) DO(rtcCommitScene) DO(rtcNewGeometry) DO(rtcReleaseGeometry)                   \
-  DO(rtcSetGeometryBuildQuality) DO(rtcSetNewGeometryBuffer) DO(rtcUpdateGeometryBuffer)                     \
-  DO(rtcCommitGeometry) DO(rtcAttachGeometry) DO(rtcPointQuery)
+#define TROCAR_EMBREE_FUNCTIONS(DO)                                                                         \
+  DO(rtcNewDevice)                                                                                          \
+  DO(rtcReleaseDevice) DO(rtcNewScene) DO(rtcReleaseScene) DO(rtcSetSceneFlags) DO(rtcSetSceneBuildQuality) \
+      DO(rtcCommitScene) DO(rtcNewGeometry) DO(rtcReleaseGeometry) DO(rtcSetGeometryBuildQuality)           \
+          DO(rtcSetNewGeometryBuffer) DO(rtcUpdateGeometryBuffer) DO(rtcCommitGeometry)                     \
+              DO(rtcAttachGeometry) DO(rtcPointQuery)
 #define TROCAR_DECLARE(NAME) decltype(&::NAME) NAME = nullptr;
   TROCAR_EMBREE_FUNCTIONS(TROCAR_DECLARE)
 #undef TROCAR_DECLARE
@@ -42,11 +43,11 @@ struct Embree {
       why_not = "Embree is not installed (libembree-dev): nothing to compare with";
       return false;
     }
-#define TROCAR_FIND(NAME)                                                 \
-  NAME = reinterpret_cast<decltype(&::NAME)>(dlsym(library, #NAME));      \
-  if (NAME == nullptr) {                                                  \
-    why_not = std::string(kLibrary) + " has no " #NAME;                   \
-    return false;                                                         \
+#define TROCAR_FIND(NAME)                                            \
+  NAME = reinterpret_cast<decltype(&::NAME)>(dlsym(library, #NAME)); \
+  if (NAME == nullptr) {                                             \
+    why_not = std::string(kLibrary) + " has no " #NAME;              \
+    return false;                                                    \
   }
     TROCAR_EMBREE_FUNCTIONS(TROCAR_FIND)
 #undef TROCAR_FIND

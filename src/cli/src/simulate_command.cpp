@@ -18,6 +18,7 @@
 #include "trocar/core/clock.h"
 #include "trocar/core/log.h"
 #include "trocar/core/statistics.h"
+#include "trocar/net/igtl_server.h"
 #include "trocar/session/simulation.h"
 
 namespace trocar::cli {
@@ -27,6 +28,7 @@ struct SimulateOptions {
   std::string scene;
   std::string patient;  // in place of the scene's
   std::string device;   // in place of the script's hands
+  int igtl_port = -1;   // -1: nobody looks on
   int ticks = 0;
   std::uint64_t seed = 0;
   bool has_seed = false;
@@ -74,9 +76,20 @@ core::Result<SimulateReport> Simulate(const SimulateOptions& options) {
   session::Simulation simulation = std::move(made).value();
   std::unique_ptr<DeviceInput> device;
   if (!options.device.empty()) {
-    auto opened = DeviceInput::Open(options.device);
+    auto opened = DeviceInput::Open(options.device, *scene);
     if (!opened) return opened.error();
     device = std::move(*opened);
+  }
+
+  std::unique_ptr<net::IgtlServer> server;
+  if (options.igtl_port >= 0) {
+    net::IgtlServerSettings settings;
+    settings.port = options.igtl_port;
+    auto listening = net::IgtlServer::Make(settings, simulation.Surfaces());
+    if (!listening) return listening.error();
+    server = std::move(*listening);
+    core::Log(core::LogLevel::kInfo,
+              "OpenIGTLink: viewers may connect to localhost:" + std::to_string(server->Port()));
   }
 
   const auto count = static_cast<std::size_t>(options.ticks);
@@ -97,6 +110,7 @@ core::Result<SimulateReport> Simulate(const SimulateOptions& options) {
     for (const auto& instrument : snapshot.instruments) {
       report.max_force_n = std::max(report.max_force_n, math::Norm(instrument.force));
     }
+    if (server != nullptr) server->Publish(snapshot);
     WarnOnce(simulation, report.gpu);
     progress.Show(tick + 1);
   }
@@ -171,6 +185,12 @@ void AddSimulateCommand(CLI::App& app, Outcome& outcome) {
       ->add_option("--device", options->device,
                    "Hands of a device in place of the script's; play:FILE repeats a recording bit for bit")
       ->type_name("DEVICE");
+  command
+      ->add_option(
+          "--igtl", options->igtl_port,
+          "Show tools and organs to 3D Slicer on this port of this machine (OpenIGTLink, RAS; 0: any port)")
+      ->check(CLI::Range(0, 65535))
+      ->type_name("PORT");
   command->add_flag("--gpu", options->uses_gpu,
                     "Solve on the GPU (single precision, so another hash); without one the processor does");
   command->add_flag("--json", options->is_json, "Machine-readable");

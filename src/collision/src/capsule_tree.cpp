@@ -43,12 +43,12 @@ bool IsFinite(const Segment& segment) noexcept {
 
 }  // namespace
 
-core::Result<CapsuleTree> CapsuleTree::Make(std::span<const Vec3> positions, std::span<const TubePiece> pieces,
-                                            core::SimdLevel simd) {
+core::Result<CapsuleTree> CapsuleTree::Make(std::span<const Vec3> positions,
+                                            std::span<const TubePiece> pieces, core::SimdLevel simd) {
   TROCAR_ASSERT(core::HasSimdLevel(simd));
   const auto fail = [](std::size_t piece, const char* what) {
-    return core::Error{core::ErrorCode::kMeshInvalid,
-                       "piece " + std::to_string(piece) + " of a tube has " + what + ": check the centre lines"};
+    return core::Error{core::ErrorCode::kMeshInvalid, "piece " + std::to_string(piece) + " of a tube has " +
+                                                          what + ": check the centre lines"};
   };
   const auto is_good = [](double value) { return std::fabs(value) <= kLargestCoordinate; };
   CapsuleTree made;
@@ -56,7 +56,8 @@ core::Result<CapsuleTree> CapsuleTree::Make(std::span<const Vec3> positions, std
   std::vector<double> radii;
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     const TubePiece& piece = pieces[i];
-    if (piece.a >= positions.size() || piece.b >= positions.size()) return fail(i, "an end that does not exist");
+    if (piece.a >= positions.size() || piece.b >= positions.size())
+      return fail(i, "an end that does not exist");
     for (const std::uint32_t end : {piece.a, piece.b}) {
       const Vec3& p = positions[end];
       if (!is_good(p.x) || !is_good(p.y) || !is_good(p.z)) return fail(i, "a coordinate that is not finite");

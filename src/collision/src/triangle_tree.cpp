@@ -29,7 +29,8 @@ core::Status CheckMesh(std::span<const Vec3> positions, std::span<const Triangle
     const Vec3& p = positions[i];
     const bool is_good = std::fabs(p.x) <= kLargestCoordinate && std::fabs(p.y) <= kLargestCoordinate &&
                          std::fabs(p.z) <= kLargestCoordinate;
-    if (!is_good) return fail("vertex " + std::to_string(i) + " has a coordinate that is not finite or too large");
+    if (!is_good)
+      return fail("vertex " + std::to_string(i) + " has a coordinate that is not finite or too large");
   }
   return {};
 }

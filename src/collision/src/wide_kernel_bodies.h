@@ -66,8 +66,8 @@ inline void FitLeaf(const WideLeaf& leaf, const std::uint32_t* leaf_points, cons
   }
 }
 
-void RefitNodes(WideNode* nodes, std::size_t node_count, const WideLeaf* leaves, const std::uint32_t* leaf_points,
-                const WidePoint* points) {
+void RefitNodes(WideNode* nodes, std::size_t node_count, const WideLeaf* leaves,
+                const std::uint32_t* leaf_points, const WidePoint* points) {
   for (std::size_t i = node_count; i-- > 0;) {
     WideNode& node = nodes[i];
     for (std::uint32_t lane = 0; lane < node.count; ++lane) {
@@ -167,13 +167,13 @@ struct SegmentQuery {
     const auto gap = [&](Lanes a_low, Lanes a_high, Lanes b_low, Lanes b_high) {
       return Larger(Larger(a_low - b_high, b_low - a_high) - slack, Lanes{});
     };
-    const Lanes dx = gap(box_low.x, box_high.x, low.x, high.x), dy = gap(box_low.y, box_high.y, low.y, high.y),
+    const Lanes dx = gap(box_low.x, box_high.x, low.x, high.x),
+                dy = gap(box_low.y, box_high.y, low.y, high.y),
                 dz = gap(box_low.z, box_high.z, low.z, high.z);
     const Vector centre = All(0.5f) * (box_low + box_high), half = All(0.5f) * (box_high - box_low);
     const Vector away = centre - FindOnSegment(from, along, length2, centre);
     const Vector n = Direction(away);
-    const Lanes box_reach =
-        Absolute(n.x) * half.x + Absolute(n.y) * half.y + Absolute(n.z) * half.z;
+    const Lanes box_reach = Absolute(n.x) * half.x + Absolute(n.y) * half.y + Absolute(n.z) * half.z;
     const Lanes apart = Smaller(Dot(n, centre - from), Dot(n, centre - to)) - box_reach - slack;
     // a direction that is not a number says nothing
     return Larger(SquareOfBound(apart), (dx * dx + dy * dy + dz * dz) * (1.0f - kSquareSlack) - kTiny);
@@ -257,7 +257,8 @@ void SearchPoint(const WideNode* nodes, const WideLeaf* leaves, const WidePoint*
   SearchTree(PointQuery(search), nodes, leaves, points, search);
 }
 
-void SearchSegment(const WideNode* nodes, const WideLeaf* leaves, const WidePoint* points, WideSearch& search) {
+void SearchSegment(const WideNode* nodes, const WideLeaf* leaves, const WidePoint* points,
+                   WideSearch& search) {
   SearchTree(SegmentQuery(search), nodes, leaves, points, search);
 }
 

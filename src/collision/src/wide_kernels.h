@@ -26,8 +26,8 @@ struct WideKernels {
   /// Positions to single precision.
   void (*convert)(const double* xyz, std::size_t count, WidePoint* points);
   /// Boxes of all nodes, from the last to the first.
-  void (*refit)(WideNode* nodes, std::size_t node_count, const WideLeaf* leaves, const std::uint32_t* leaf_points,
-                const WidePoint* points);
+  void (*refit)(WideNode* nodes, std::size_t node_count, const WideLeaf* leaves,
+                const std::uint32_t* leaf_points, const WidePoint* points);
   void (*search_point)(const WideNode* nodes, const WideLeaf* leaves, const WidePoint* points,
                        WideSearch& search);
   void (*search_segment)(const WideNode* nodes, const WideLeaf* leaves, const WidePoint* points,

@@ -74,7 +74,8 @@ WideNode MakeEmptyNode() {
   WideNode node{};
   for (int axis = 0; axis < 3; ++axis) {
     std::fill(std::begin(node.low[axis]), std::end(node.low[axis]), std::numeric_limits<float>::infinity());
-    std::fill(std::begin(node.high[axis]), std::end(node.high[axis]), -std::numeric_limits<float>::infinity());
+    std::fill(std::begin(node.high[axis]), std::end(node.high[axis]),
+              -std::numeric_limits<float>::infinity());
   }
   return node;
 }
@@ -123,7 +124,8 @@ void BuildWideTree(std::span<const Vec3> positions, std::span<const Triangle> co
   for (std::uint32_t i = 0; i < corners.size(); ++i) {
     const auto& [a, b, c] = corners[i];
     const Vec3 sum = positions[a] + positions[b] + positions[c];
-    tree.build_items[i] = {{static_cast<float>(sum.x), static_cast<float>(sum.y), static_cast<float>(sum.z)}, i};
+    tree.build_items[i] = {{static_cast<float>(sum.x), static_cast<float>(sum.y), static_cast<float>(sum.z)},
+                           i};
   }
   if (corners.empty()) return;
   const std::size_t leaves = CountLeaves(tree.build_items);

@@ -115,7 +115,8 @@ TEST(SweepToSegment, ATipAtTwoMetresASecondNeverPassesADuctBetweenTwoTicks) {
 
 // Analytic: straight towards a plate, along it, and away from it.
 TEST(SweepToTriangle, KnowsTheMomentOfAStraightApproach) {
-  const MovingTriangle plate{{Vec3{-1, -1, 0}, {1, -1, 0}, {0, 2, 0}}, {Vec3{-1, -1, 0}, {1, -1, 0}, {0, 2, 0}}};
+  const MovingTriangle plate{{Vec3{-1, -1, 0}, {1, -1, 0}, {0, 2, 0}},
+                             {Vec3{-1, -1, 0}, {1, -1, 0}, {0, 2, 0}}};
   const auto tip = [](const Vec3& from, const Vec3& to) { return MovingSegment{{from, from}, {to, to}}; };
   const TriangleSweep hit = SweepToTriangle(tip({0, 0, 0.10}, {0, 0, -0.10}), plate, 0.02);
   EXPECT_TRUE(hit.is_hit);

@@ -19,7 +19,8 @@ using core::ErrorCode;
 
 class DeviceFilesTest : public testing::Test {
  protected:
-  DeviceFilesTest() : folder_(fs::path(testing::TempDir()) / ("trocar_devices_" + std::to_string(::getpid()))) {
+  DeviceFilesTest()
+      : folder_(fs::path(testing::TempDir()) / ("trocar_devices_" + std::to_string(::getpid()))) {
     fs::remove_all(folder_);
     fs::create_directories(folder_);
   }
@@ -74,9 +75,10 @@ TEST_F(DeviceFilesTest, BadFileMeansDefaultsAndAMessageAndIsSetAside) {
     EXPECT_NE(at, std::string::npos) << from;
     return text.replace(at, from.size(), to);
   };
-  for (const std::string& text : {replaced("\"version\": 1", "\"version\": 2"), replaced("\"baud\"", "\"bud\""),
-                                  replaced("812", "4096"), replaced("0.31234567890123", "1e300"),
-                                  replaced("0.31234567890123", "\"far\"")}) {
+  for (const std::string& text :
+       {replaced("\"version\": 1", "\"version\": 2"), replaced("\"baud\"", "\"bud\""),
+        replaced("812", "4096"), replaced("0.31234567890123", "1e300"),
+        replaced("0.31234567890123", "\"far\"")}) {
     ASSERT_TRUE(core::WriteFile(path, text).ok());
     EXPECT_TRUE(LoadDeviceStore(path).complaint.has_value()) << text;
   }
@@ -123,7 +125,7 @@ TEST(HandRecording, RefusesDamageWithTheLine) {
   std::string nan = good;
   nan.replace(good.find('\n') + 1, 1, "nan");
   EXPECT_FALSE(ParseHandFrames(nan, "x").ok());
-  EXPECT_FALSE(ParseHandFrames(good + "0" + good.substr(good.rfind("\n1.6") + 4), "x").ok()) << "time falls";
+  EXPECT_FALSE(ParseHandFrames(good + good.substr(good.find('\n') + 1), "x").ok()) << "time falls";
 }
 
 TEST_F(DeviceFilesTest, PlayerPlaysWhatWasRecorded) {
@@ -181,7 +183,8 @@ TEST(Faults, AreParsed) {
   EXPECT_EQ(fault->duration, 1.0);
   EXPECT_FALSE(fault->IsOn(2.4) || fault->IsOn(3.6));
   EXPECT_TRUE(fault->IsOn(3.0));
-  for (const char* bad : {"", "noise", "flips=", "flips=2", "unplug@", "unplug@-1", "unplug@1x", "silence@nan"})
+  for (const char* bad :
+       {"", "noise", "flips=", "flips=2", "unplug@", "unplug@-1", "unplug@1x", "silence@nan"})
     EXPECT_EQ(ParseFault(bad).error().code, ErrorCode::kUsage) << bad;
 }
 
@@ -225,7 +228,8 @@ TEST(SerialPort, CarriesEveryByteAsItIs) {
 TEST(SerialPort, AreListedByIdFirst) {
   const fs::path dev = fs::path(testing::TempDir()) / ("trocar_dev_" + std::to_string(::getpid()));
   fs::create_directories(dev / "serial/by-id");
-  for (const char* name : {"ttyUSB0", "ttyACM0", "ttyS0", "null"}) ASSERT_TRUE(core::WriteFile(dev / name, "").ok());
+  for (const char* name : {"ttyUSB0", "ttyACM0", "ttyS0", "null"})
+    ASSERT_TRUE(core::WriteFile(dev / name, "").ok());
   fs::create_symlink("../../ttyUSB0", dev / "serial/by-id/usb-Polhemus_LIBERTY-if00-port0");
   const auto ports = ListSerialPorts(dev.string());
   fs::remove_all(dev);

@@ -29,19 +29,23 @@ std::vector<TrackerRecord> Parse(PolhemusFormat format, std::string_view bytes, 
 }
 
 Quaternion RandomRotation(math::Random& random) {
-  return math::RotationAbout(math::Normalized(Vec3{random.Uniform(-1, 1), random.Uniform(-1, 1), random.Uniform(-1, 1)}),
-                             random.Uniform(0, 3.1));
+  return math::RotationAbout(
+      math::Normalized(Vec3{random.Uniform(-1, 1), random.Uniform(-1, 1), random.Uniform(-1, 1)}),
+      random.Uniform(0, 3.1));
 }
 
 TrackerRecord RandomRecord(math::Random& random) {
-  return {1 + static_cast<int>(random.NextWord() % 2), ' ',
-          {random.Uniform(-1, 1), random.Uniform(-1, 1), random.Uniform(-1, 1)}, RandomRotation(random)};
+  return {1 + static_cast<int>(random.NextWord() % 2),
+          ' ',
+          {random.Uniform(-1, 1), random.Uniform(-1, 1), random.Uniform(-1, 1)},
+          RandomRotation(random)};
 }
 
 std::string RandomStream(PolhemusFormat format, math::Random& random, int records) {
   std::string bytes;
   for (int i = 0; i < records; ++i)
-    bytes += FormatRecord(format, RequestedItems(format), RandomRecord(random), false, random.NextWord() & 0xffff);
+    bytes +=
+        FormatRecord(format, RequestedItems(format), RandomRecord(random), false, random.NextWord() & 0xffff);
   return bytes;
 }
 
@@ -63,7 +67,9 @@ bool AreSame(const std::vector<TrackerRecord>& a, const std::vector<TrackerRecor
 TEST(PolhemusFramer, ReadsFastrakAsciiByColumns) {
   const std::string line = "01   10.00-100.25  20.50  90.00   0.00   0.00\r\n";
   const std::string touching = "02  100.00-100.25-200.50 -90.00 -30.00-170.00\r\n";
+  ASSERT_EQ(line.size(), 47u);
   ASSERT_EQ(touching.size(), 47u);
+  EXPECT_EQ(Parse(PolhemusFormat::kFastrakAscii, line).size(), 1u);
   const auto records = Parse(PolhemusFormat::kFastrakAscii, touching);
   ASSERT_EQ(records.size(), 1u);
   EXPECT_EQ(records[0].station, 2);
@@ -71,7 +77,7 @@ TEST(PolhemusFramer, ReadsFastrakAsciiByColumns) {
   EXPECT_NEAR(records[0].position.y, -100.25 * 0.0254, 1e-12);
   EXPECT_NEAR(records[0].position.z, -200.50 * 0.0254, 1e-12);
   // one column too many is no record
-  EXPECT_TRUE(Parse(PolhemusFormat::kFastrakAscii, line + " ").empty());
+  EXPECT_TRUE(Parse(PolhemusFormat::kFastrakAscii, "01 " + line.substr(2)).empty());
 }
 
 TEST(PolhemusFramer, TurnsByAzimuthThenElevationThenRoll) {
@@ -137,7 +143,8 @@ TEST(PolhemusFramer, GivesTheSameRecordsForAnyChunking) {
         bytes[random.NextWord() % bytes.size()] = static_cast<char>(random.NextWord());
       const auto whole = Parse(format, bytes);
       for (const std::size_t chunk : {1, 2, 3, 5, 7, 31, 32, 33, 47, 64, 100})
-        EXPECT_TRUE(AreSame(whole, Parse(format, bytes, chunk))) << FormatName(format) << " seed 11, chunk " << chunk;
+        EXPECT_TRUE(AreSame(whole, Parse(format, bytes, chunk)))
+            << FormatName(format) << " seed 11, chunk " << chunk;
       if (trial % 2 == 0) {
         EXPECT_EQ(whole.size(), 12u) << FormatName(format);
       }
@@ -170,8 +177,8 @@ TEST(PolhemusFramer, RefusesEveryTruncation) {
 }
 
 TEST(PolhemusFramer, RefusesSizesThatLie) {
-  const std::string good =
-      FormatRecord(PolhemusFormat::kLiberty, RequestedItems(PolhemusFormat::kLiberty), {1, ' ', {0.1, 0, 0}, {}});
+  const std::string good = FormatRecord(PolhemusFormat::kLiberty, RequestedItems(PolhemusFormat::kLiberty),
+                                        {1, ' ', {0.1, 0, 0}, {}});
   ASSERT_EQ(Parse(PolhemusFormat::kLiberty, good).size(), 1u);
   for (const int size : {0, 1, 25, 27, 32, 34, 255, 0xffff}) {
     std::string lie = good;

@@ -40,7 +40,8 @@ std::optional<FlatSweep> MakeQuad(const std::array<Vec3, 4>& corners) {
   sweep.normal = normal / area;
   for (std::size_t i = 0; i < 4; ++i) {
     if (std::fabs(sweep.Height(corners[i])) > kFlatness * size) return std::nullopt;
-    const Vec3 turn = math::Cross(corners[(i + 1) % 4] - corners[i], corners[(i + 2) % 4] - corners[(i + 1) % 4]);
+    const Vec3 turn =
+        math::Cross(corners[(i + 1) % 4] - corners[i], corners[(i + 2) % 4] - corners[(i + 1) % 4]);
     if (!(math::Dot(turn, sweep.normal) > kLeastArea * size * size)) return std::nullopt;
   }
   return sweep;
@@ -54,8 +55,7 @@ BladeMoves MakeFlatMoves(const BladeEdge& before, const BladeEdge& now) noexcept
     moves.moves[moves.count++] = {before, now, *quad};
     return moves;
   }
-  const bool b_goes_first =
-      math::SquaredDistance(before.a, now.b) <= math::SquaredDistance(before.b, now.a);
+  const bool b_goes_first = math::SquaredDistance(before.a, now.b) <= math::SquaredDistance(before.b, now.a);
   const BladeEdge between = b_goes_first ? BladeEdge{before.a, now.b} : BladeEdge{now.a, before.b};
   const auto first = MakeTriangle(before.a, before.b, b_goes_first ? now.b : now.a);
   if (first) moves.moves[moves.count++] = {before, between, *first};
@@ -81,7 +81,8 @@ bool Contains(const FlatSweep& sweep, const Vec3& p) noexcept {
   const double border = kBorder * CalcSize(sweep);
   for (std::size_t i = 0; i < sweep.count; ++i) {
     const Vec3 side = sweep.corners[(i + 1) % sweep.count] - sweep.corners[i];
-    if (math::Dot(math::Cross(side, p - sweep.corners[i]), sweep.normal) < -border * math::Norm(side)) return false;
+    if (math::Dot(math::Cross(side, p - sweep.corners[i]), sweep.normal) < -border * math::Norm(side))
+      return false;
   }
   return true;
 }
@@ -95,7 +96,8 @@ std::optional<double> FindCrossing(const FlatSweep& sweep, const Vec3& a, const 
   return t;
 }
 
-std::optional<Vec3> FindPiercing(const BladeEdge& segment, const Vec3& a, const Vec3& b, const Vec3& c) noexcept {
+std::optional<Vec3> FindPiercing(const BladeEdge& segment, const Vec3& a, const Vec3& b,
+                                 const Vec3& c) noexcept {
   const auto triangle = MakeTriangle(a, b, c);
   if (!triangle) return std::nullopt;
   const auto t = FindCrossing(*triangle, segment.a, segment.b);

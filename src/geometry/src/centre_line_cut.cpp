@@ -29,7 +29,8 @@ void CentreLineGraph::ReserveCuts(std::size_t count) {
 }
 
 std::size_t CentreLineGraph::RoomForCuts() const {
-  const std::size_t points = std::min({rest.capacity(), positions.capacity(), radii.capacity(), is_cut_end.capacity()});
+  const std::size_t points =
+      std::min({rest.capacity(), positions.capacity(), radii.capacity(), is_cut_end.capacity()});
   return std::min((points - rest.size()) / 2, edges.capacity() - edges.size());
 }
 
@@ -44,19 +45,30 @@ std::uint32_t AddLine(std::span<const Vec3> points, std::span<const double> radi
   return first;
 }
 
-std::size_t CutCentreLines(const FlatSweep& sweep, CentreLineGraph& graph, std::span<CentreLineCut> cuts) noexcept {
+std::size_t CutCentreLines(const FlatSweep& sweep, CentreLineGraph& graph,
+                           std::span<CentreLineCut> cuts) noexcept {
   std::size_t count = 0;
   const std::size_t edges_before = graph.edges.size();
   for (std::uint32_t e = 0; e < edges_before && count < cuts.size(); ++e) {
-    const auto [a, b] = graph.edges[e];
+    const std::uint32_t a = graph.edges[e][0], b = graph.edges[e][1];
     const auto at = FindCrossing(sweep, graph.positions[a], graph.positions[b]);
     if (!at) continue;
     const double length = math::Distance(graph.positions[a], graph.positions[b]);
     if ((graph.is_cut_end[a] && *at * length < kLeastStump) ||
         (graph.is_cut_end[b] && (1.0 - *at) * length < kLeastStump))
       continue;
+    // a joint of two edges is cut once
+    const Vec3 here = math::Lerp(graph.positions[a], graph.positions[b], *at);
+    const bool is_cut_already = std::any_of(
+        cuts.begin(), cuts.begin() + static_cast<std::ptrdiff_t>(count), [&](const CentreLineCut& cut) {
+          const bool shares_point = cut.a == a || cut.b == a || cut.a == b || cut.b == b;
+          return shares_point &&
+                 math::Distance(graph.positions[cut.ends[0]], here) < kShortest * length + kLeastStump;
+        });
+    if (is_cut_already) continue;
     if (graph.RoomForCuts() == 0) break;
-    CentreLineCut cut{e, static_cast<std::uint32_t>(graph.edges.size()), a, b, std::clamp(*at, kShortest, 1.0 - kShortest), {}};
+    CentreLineCut cut{e, static_cast<std::uint32_t>(graph.edges.size()), a,
+                      b, std::clamp(*at, kShortest, 1.0 - kShortest),    {}};
     for (auto& end : cut.ends) end = AddEnd(graph, a, b, cut.t);
     graph.edges[e] = {a, cut.ends[0]};
     graph.edges.push_back({cut.ends[1], b});

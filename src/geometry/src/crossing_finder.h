@@ -15,7 +15,7 @@ namespace trocar::geometry {
 /// An edge that the sweep crosses. Named by its ends, which splits of other edges leave alone.
 struct Crossing {
   std::uint32_t a = 0, b = 0;
-  double t = 0;                                         ///< from a to b [-]
+  double t = 0;                                             ///< from a to b [-]
   std::array<std::uint32_t, 2> triangles = {kNone, kNone};  ///< on either side
   bool is_chosen = false;
 };

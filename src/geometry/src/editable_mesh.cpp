@@ -16,8 +16,8 @@ core::Result<EditableMesh> EditableMesh::Make(const TriangleMesh& rest, std::siz
   if (!report.manifold || rest.triangles.empty()) {
     return core::Error{core::ErrorCode::kMeshInvalid,
                        "the surface cannot be cut: it has " + std::to_string(report.odd_edges) +
-                           " edges and " + std::to_string(report.odd_vertices) + " vertices of more than one sheet and " +
-                           std::to_string(report.degenerate) +
+                           " edges and " + std::to_string(report.odd_vertices) +
+                           " vertices of more than one sheet and " + std::to_string(report.degenerate) +
                            " triangles without area; repair it with trocar anatomy build or another program"};
   }
   EditableMesh mesh;
@@ -156,8 +156,9 @@ std::uint32_t EditableMesh::SplitEdge(std::uint32_t h, double t) noexcept {
   const std::uint32_t a = From(h), b = To(h), c = Opposite(h);
   const std::uint32_t g = twins_[h];
   const std::uint8_t is_scored = scored_[h];
-  const std::uint32_t p = AddVertex({VertexOrigin::kSplit, {a, b, kNone}, {1.0 - t, t, 0.0}}, math::Lerp(rest_[a], rest_[b], t),
-                                    math::Lerp(positions_[a], positions_[b], t));
+  const std::uint32_t p =
+      AddVertex({VertexOrigin::kSplit, {a, b, kNone}, {1.0 - t, t, 0.0}}, math::Lerp(rest_[a], rest_[b], t),
+                math::Lerp(positions_[a], positions_[b], t));
   // (a, b, c) becomes (a, p, c) and (p, b, c)
   Touch(TriangleOf(h));
   const std::uint32_t side = Next(h);

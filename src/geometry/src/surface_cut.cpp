@@ -7,58 +7,13 @@
 #include <vector>
 
 #include "crossing_finder.h"
+#include "split_quality.h"
 #include "trench.h"
 #include "trocar/core/assert.h"
 #include "trocar/geometry/mesh_measures.h"
 
 namespace trocar::geometry {
 namespace {
-
-/// Whether edge h may be split at t: neither at rest nor now does a triangle get an angle below the limit. A
-/// triangle that is squashed now is judged by its rest shape alone.
-bool MaySplit(const EditableMesh& mesh, std::uint32_t h, double t, double min_angle) {
-  const auto halves = [&](std::span<const Vec3> x, std::uint32_t side) {
-    const Vec3 &a = x[mesh.From(side)], &b = x[mesh.To(side)], &c = x[mesh.Opposite(side)];
-    const Vec3 p = math::Lerp(a, b, side == h ? t : 1.0 - t);
-    return std::min(CalcSmallestAngle(a, p, c), CalcSmallestAngle(p, b, c));
-  };
-  const auto whole = [&](std::span<const Vec3> x, std::uint32_t side) {
-    return CalcSmallestAngle(x[mesh.From(side)], x[mesh.To(side)], x[mesh.Opposite(side)]);
-  };
-  const std::uint32_t sides[2] = {h, mesh.Twin(h)};
-  for (const auto side : sides) {
-    if (side == kNone) continue;
-    if (!(halves(mesh.Rest(), side) >= min_angle)) return false;
-    if (!(halves(mesh.Positions(), side) >= min_angle) && whole(mesh.Positions(), side) >= min_angle) return false;
-  }
-  return sides[1] == kNone || mesh.Opposite(sides[0]) != mesh.Opposite(sides[1]);
-}
-
-/// Whether a vertex may be put into a triangle, judged as for edges.
-bool MayInsert(const EditableMesh& mesh, std::uint32_t t, const std::array<double, 3>& weights, double min_angle) {
-  const Triangle& corners = mesh.Triangles()[t];
-  const auto thirds = [&](std::span<const Vec3> x) {
-    const Vec3 &a = x[corners[0]], &b = x[corners[1]], &c = x[corners[2]];
-    const Vec3 p = weights[0] * a + weights[1] * b + weights[2] * c;
-    return std::min({CalcSmallestAngle(a, b, p), CalcSmallestAngle(b, c, p), CalcSmallestAngle(c, a, p)});
-  };
-  return weights[0] > 0.0 && weights[1] > 0.0 && weights[2] > 0.0 && thirds(mesh.Rest()) >= min_angle &&
-         thirds(mesh.Positions()) >= min_angle;
-}
-
-/// Barycentric weights of a point of a triangle, present positions.
-std::array<double, 3> CalcWeights(const EditableMesh& mesh, std::uint32_t t, const Vec3& p) {
-  const Triangle& corners = mesh.Triangles()[t];
-  const auto x = mesh.Positions();
-  const Vec3 normal = CalcAreaNormal(x, corners);
-  const double twice_area = math::SquaredNorm(normal);
-  const auto weight = [&](int i) {
-    const Vec3 &a = x[corners[(i + 1) % 3]], &b = x[corners[(i + 2) % 3]];
-    return math::Dot(math::Cross(b - a, p - a), normal) / twice_area;
-  };
-  const double first = weight(0), second = weight(1);
-  return {first, second, 1.0 - first - second};
-}
 
 /// A vertex put into a triangle leaves no angle below this many times the limit: the cut goes on from there [-].
 constexpr double kInsertAngles = 3.0;
@@ -219,9 +174,7 @@ int SurfaceCutter::Content::SideOf(std::uint32_t t, const FlatSweep& sweep) cons
 
 /// Whether an edge is all that still holds one of its two triangles.
 bool SurfaceCutter::Content::LeavesLooseTriangle(std::uint32_t h) const noexcept {
-  const auto is_held = [&](std::uint32_t side) {
-    return mesh->Twin(side) != kNone && !mesh->IsScored(side);
-  };
+  const auto is_held = [&](std::uint32_t side) { return mesh->Twin(side) != kNone && !mesh->IsScored(side); };
   for (const auto side : {h, mesh->Twin(h)}) {
     if (!is_held(EditableMesh::Next(side)) && !is_held(EditableMesh::Previous(side))) return true;
   }
@@ -297,7 +250,8 @@ std::uint32_t SurfaceCutter::Content::FindEnd(const Pierced& at, const CutFront&
   for (const auto v : mesh->Triangles()[at.triangle]) {
     const bool is_of_stroke = tick_stamp[v] == tick || std::find(tips.begin(), tips.end(), v) != tips.end();
     if (!is_of_stroke || passed_stamp[v] == tick) continue;
-    if (nearest == kNone || math::SquaredDistance(x[v], at.point) < math::SquaredDistance(x[nearest], at.point))
+    if (nearest == kNone ||
+        math::SquaredDistance(x[v], at.point) < math::SquaredDistance(x[nearest], at.point))
       nearest = v;
   }
   return nearest;

@@ -25,9 +25,8 @@ constexpr double kShift = 0.4;
 /// Sum of the area normals around a vertex, of unit length.
 Vec3 CalcNormal(const EditableMesh& mesh, std::span<const Vec3> x, std::uint32_t v) {
   Vec3 sum;
-  mesh.ForEachAround(v, [&](std::uint32_t h) {
-    sum += CalcAreaNormal(x, mesh.Triangles()[EditableMesh::TriangleOf(h)]);
-  });
+  mesh.ForEachAround(
+      v, [&](std::uint32_t h) { sum += CalcAreaNormal(x, mesh.Triangles()[EditableMesh::TriangleOf(h)]); });
   return math::Normalized(sum);
 }
 
@@ -155,8 +154,8 @@ bool TrenchBuilder::FindBottom(std::uint32_t v, const FlatSweep& sweep, const Cu
   };
   const double wanted = std::min(settings.depth, kDeepest * length);
   const double reach = wanted / kShareOfThickness;
-  const double thickness = std::min(CalcThickness(mesh, now, v, down, reach),
-                                    CalcThickness(mesh, rest, v, to_rest(down), reach));
+  const double thickness =
+      std::min(CalcThickness(mesh, now, v, down, reach), CalcThickness(mesh, rest, v, to_rest(down), reach));
   const double deepest = std::min(wanted, kShareOfThickness * thickness);
   for (const double shift : {0.0, kShift}) {
     for (double depth = deepest; depth >= kShallowest * shortest; depth *= 0.6) {
@@ -258,8 +257,8 @@ void TrenchBuilder::JoinWalls(EditableMesh& mesh) noexcept {
   }
 }
 
-void TrenchBuilder::Open(std::span<const std::uint32_t> path, const FlatSweep& sweep, const CutSettings& settings,
-                         EditableMesh& mesh, CutReport& report) noexcept {
+void TrenchBuilder::Open(std::span<const std::uint32_t> path, const FlatSweep& sweep,
+                         const CutSettings& settings, EditableMesh& mesh, CutReport& report) noexcept {
   AddValleys(path, mesh);
   while (!PlanBottoms(path, sweep, settings, mesh, report)) {
   }
@@ -275,8 +274,8 @@ void TrenchBuilder::Open(std::span<const std::uint32_t> path, const FlatSweep& s
   const std::size_t triangles_before = mesh.TriangleCount();
   for (const auto v : vertices_) {
     if (state_[v] != Bottom::kPlanned) continue;
-    bottom_of_[v] = mesh.AddVertex({VertexOrigin::kTrench, {v, kNone, kNone}, {1.0, 0.0, 0.0}}, place_[v].rest,
-                                   place_[v].now);
+    bottom_of_[v] = mesh.AddVertex({VertexOrigin::kTrench, {v, kNone, kNone}, {1.0, 0.0, 0.0}},
+                                   place_[v].rest, place_[v].now);
   }
   first_copy_ = static_cast<std::uint32_t>(mesh.VertexCount());
   for (const auto v : vertices_) mesh.SeparateParts(v);

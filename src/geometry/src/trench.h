@@ -33,19 +33,21 @@ class TrenchBuilder {
   void AddValleys(std::span<const std::uint32_t> path, EditableMesh& mesh) noexcept;
   bool PlanBottoms(std::span<const std::uint32_t> path, const FlatSweep& sweep, const CutSettings& settings,
                    EditableMesh& mesh, CutReport& report) noexcept;
-  bool FindBottom(std::uint32_t v, const FlatSweep& sweep, const CutSettings& settings, const EditableMesh& mesh) noexcept;
-  bool WallsAreGood(std::uint32_t v, const Place& bottom, double min_angle, const EditableMesh& mesh) const noexcept;
+  bool FindBottom(std::uint32_t v, const FlatSweep& sweep, const CutSettings& settings,
+                  const EditableMesh& mesh) noexcept;
+  bool WallsAreGood(std::uint32_t v, const Place& bottom, double min_angle,
+                    const EditableMesh& mesh) const noexcept;
   void BuildWalls(std::uint32_t h, EditableMesh& mesh) noexcept;
   void JoinWalls(EditableMesh& mesh) noexcept;
   void AddWall(const Triangle& corners, EditableMesh& mesh) noexcept;
 
-  std::vector<Bottom> state_;             // (nv)
-  std::vector<Place> place_;              // (nv) of the bottom that is planned below
-  std::vector<std::uint32_t> bottom_of_;  // (nv) vertex below, made by this opening, or kNone
-  std::uint32_t first_copy_ = 0;          // vertices from here on are copies made by this opening
-  std::vector<std::uint32_t> vertices_;   // ends of scored edges, those of the path first
-  std::vector<std::uint32_t> scored_;     // half-edges
-  std::vector<std::uint32_t> open_sides_; // half-edges that wait for their neighbour
+  std::vector<Bottom> state_;              // (nv)
+  std::vector<Place> place_;               // (nv) of the bottom that is planned below
+  std::vector<std::uint32_t> bottom_of_;   // (nv) vertex below, made by this opening, or kNone
+  std::uint32_t first_copy_ = 0;           // vertices from here on are copies made by this opening
+  std::vector<std::uint32_t> vertices_;    // ends of scored edges, those of the path first
+  std::vector<std::uint32_t> scored_;      // half-edges
+  std::vector<std::uint32_t> open_sides_;  // half-edges that wait for their neighbour
 };
 
 }  // namespace trocar::geometry

@@ -31,7 +31,8 @@ std::size_t CountPieces(const CentreLineGraph& graph) {
   std::vector<std::uint32_t> piece(graph.rest.size());
   for (std::uint32_t i = 0; i < piece.size(); ++i) piece[i] = i;
   for (std::size_t round = 0; round < piece.size(); ++round) {
-    for (const Edge& edge : graph.edges) piece[edge[0]] = piece[edge[1]] = std::min(piece[edge[0]], piece[edge[1]]);
+    for (const Edge& edge : graph.edges)
+      piece[edge[0]] = piece[edge[1]] = std::min(piece[edge[0]], piece[edge[1]]);
   }
   std::size_t count = 0;
   for (std::uint32_t i = 0; i < piece.size(); ++i) count += piece[i] == i ? 1 : 0;
@@ -45,7 +46,10 @@ double CalcLength(const CentreLineGraph& graph) {
 }
 
 FlatSweep Across(double x, double y) {
-  return MakeFlatMoves({{x, y - 0.005, -0.005}, {x, y - 0.005, 0.005}}, {{x, y + 0.005, -0.005}, {x, y + 0.005, 0.005}}).moves[0].sweep;
+  return MakeFlatMoves({{x, y - 0.005, -0.005}, {x, y - 0.005, 0.005}},
+                       {{x, y + 0.005, -0.005}, {x, y + 0.005, 0.005}})
+      .moves[0]
+      .sweep;
 }
 
 TEST(CentreLineCut, DividesWhereTheBladePasses) {
@@ -79,11 +83,13 @@ TEST(CentreLineCut, RandomCutsKeepLengthAndCountPieces) {
   math::Random random(7);
   std::size_t made = 0;
   std::array<CentreLineCut, 8> cuts;
-  for (int i = 0; i < 400; ++i) made += CutCentreLines(Across(random.Uniform(-0.01, 0.06), random.Uniform(-0.01, 0.03)), graph, cuts);
+  for (int i = 0; i < 400; ++i)
+    made += CutCentreLines(Across(random.Uniform(-0.01, 0.06), random.Uniform(-0.01, 0.03)), graph, cuts);
   EXPECT_GT(made, 15u);
   EXPECT_EQ(CountPieces(graph), 1u + made);
   EXPECT_NEAR(CalcLength(graph), length, 1e-12);
-  for (const Edge& edge : graph.edges) EXPECT_GT(math::Distance(graph.rest[edge[0]], graph.rest[edge[1]]), 1e-6);
+  for (const Edge& edge : graph.edges)
+    EXPECT_GT(math::Distance(graph.rest[edge[0]], graph.rest[edge[1]]), 1e-6);
 }
 
 TEST(CentreLineCut, StopsWhenItsRoomIsUsedUp) {

@@ -19,8 +19,8 @@ namespace trocar::geometry {
 
 /// What must stay the same over any number of cuts.
 struct Uncut {
-  double rest_area = 0, area = 0;       ///< of the surface without walls [m^2]
-  std::size_t small_angles = 0;         ///< triangles with an angle below one degree at rest
+  double rest_area = 0, area = 0;  ///< of the surface without walls [m^2]
+  std::size_t small_angles = 0;    ///< triangles with an angle below one degree at rest
   bool is_closed = false;
 };
 
@@ -53,13 +53,16 @@ inline std::string FindFault(const EditableMesh& mesh, const Uncut& uncut, bool 
   const MeshReport report = InspectMesh(mesh.RestMesh());
   if (!report.manifold) {
     return "not manifold: " + std::to_string(report.odd_edges) + " edges, " +
-           std::to_string(report.odd_vertices) + " vertices, " + std::to_string(report.degenerate) + " degenerate";
+           std::to_string(report.odd_vertices) + " vertices, " + std::to_string(report.degenerate) +
+           " degenerate";
   }
   if (has_walls && uncut.is_closed && !report.closed) return "no longer closed";
   const double area = CalcKindArea(mesh, mesh.Rest(), TriangleKind::kSurface);
-  if (!(std::fabs(area / uncut.rest_area - 1.0) < 1e-9)) return "area at rest " + std::to_string(area / uncut.rest_area);
+  if (!(std::fabs(area / uncut.rest_area - 1.0) < 1e-9))
+    return "area at rest " + std::to_string(area / uncut.rest_area);
   const double area_now = CalcKindArea(mesh, mesh.Positions(), TriangleKind::kSurface);
-  if (!(std::fabs(area_now / uncut.area - 1.0) < 1e-9)) return "area now " + std::to_string(area_now / uncut.area);
+  if (!(std::fabs(area_now / uncut.area - 1.0) < 1e-9))
+    return "area now " + std::to_string(area_now / uncut.area);
   if (CountSmallAngles(mesh) > uncut.small_angles) return "a sliver";
   std::vector<int> uses(mesh.VertexCount(), 0);
   std::vector<Triangle> sorted;

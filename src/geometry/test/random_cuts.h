@@ -36,7 +36,9 @@ inline std::vector<NamedSurface> MakeSurfaces() {
   surfaces.push_back({"lattice", MakeTriangularLattice(15, 12, 0.004)});
   surfaces.push_back({"slender grid", scaled(MakeGrid(9, 0.005), {1, 0.04, 1})});
   surfaces.push_back({"one triangle", {{{0, 0, 0}, {0.01, 0, 0}, {0, 0.01, 0}}, {{0, 1, 2}}}});
-  surfaces.push_back({"tube", MakeTube(Resample({{{0, 0, 0}, {0.02, 0.01, 0}, {0.04, 0, 0.01}}, {0.003, 0.002, 0.003}}, 0.002), 8)});
+  surfaces.push_back(
+      {"tube",
+       MakeTube(Resample({{{0, 0, 0}, {0.02, 0.01, 0}, {0.04, 0, 0.01}}, {0.003, 0.002, 0.003}}, 0.002), 8)});
   const std::filesystem::path patient =
       std::filesystem::path(TROCAR_SOURCE_DIR) / "assets/patients/visible-human-male/patient";
   for (const char* organ : {"gallbladder.ply", "liver.ply"}) {
@@ -67,16 +69,19 @@ inline Stroke MakeStroke(const EditableMesh& mesh, math::Random& random) {
   const Box box = CalcBox(x);
   const double size = math::Distance(box.min, box.max);
   double w[3] = {random.Uniform(0.05, 1), random.Uniform(0.05, 1), random.Uniform(0.05, 1)};
-  if (random.Uniform() < 0.1) w[0] = 0;          // starts on an edge
+  if (random.Uniform() < 0.1) w[0] = 0;         // starts on an edge
   if (random.Uniform() < 0.1) w[1] = w[2] = 0;  // starts at a vertex
   if (w[0] + w[1] + w[2] <= 0) w[0] = 1;
   const double sum = w[0] + w[1] + w[2];
-  const Vec3 start = (w[0] / sum) * x[corners[0]] + (w[1] / sum) * x[corners[1]] + (w[2] / sum) * x[corners[2]];
+  const Vec3 start =
+      (w[0] / sum) * x[corners[0]] + (w[1] / sum) * x[corners[1]] + (w[2] / sum) * x[corners[2]];
   const Vec3 normal = math::Normalized(CalcAreaNormal(x, corners), RandomDirection(random));
   Vec3 along = math::Normalized(math::Cross(normal, RandomDirection(random)), math::AnyPerpendicular(normal));
   if (random.Uniform() < 0.15) along = math::Normalized(x[corners[1]] - x[corners[0]], along);
   const double kind = random.Uniform();
-  const Vec3 upright = kind < 0.7 ? normal : kind < 0.9 ? RandomDirection(random) : along;  // the last one grazes
+  const Vec3 upright = kind < 0.7   ? normal
+                       : kind < 0.9 ? RandomDirection(random)
+                                    : along;  // the last one grazes
   const double length = size * std::pow(10.0, random.Uniform(-3.0, 0.3));
   const double reach = size * std::pow(10.0, random.Uniform(-2.0, 0.3));
   const int ticks = random.Uniform() < 0.3 ? 1 : 1 + static_cast<int>(random.Uniform() * 12);
@@ -109,7 +114,6 @@ struct CutCounts {
 };
 
 /// Cuts and checks; `after` sees every mesh after its last cut.
-/// \param limit  triangles beyond which a mesh is given up for a fresh one
 template <typename After>
 CutCounts RunRandomCuts(std::uint64_t seed, std::size_t strokes, After after) {
   const auto surfaces = MakeSurfaces();
@@ -150,10 +154,11 @@ CutCounts RunRandomCuts(std::uint64_t seed, std::size_t strokes, After after) {
         counts.full += report.is_full ? 1 : 0;
         // large meshes are looked at once a stroke
         if (is_large && i + 1 < stroke.size()) continue;
-        const std::string fault = report.HasChanged() ? FindFault(mesh, uncut, settings.has_walls) : std::string();
+        const std::string fault =
+            report.HasChanged() ? FindFault(mesh, uncut, settings.has_walls) : std::string();
         if (!fault.empty()) {
-          ADD_FAILURE() << fault << ": seed " << seed << ", stroke " << counts.strokes << ", tick " << i << ", "
-                        << surface.name << (settings.has_walls ? ", walls" : "");
+          ADD_FAILURE() << fault << ": seed " << seed << ", stroke " << counts.strokes << ", tick " << i
+                        << ", " << surface.name << (settings.has_walls ? ", walls" : "");
           return counts;
         }
       }

@@ -9,10 +9,11 @@ namespace trocar::geometry {
 namespace {
 
 void Report(const CutCounts& counts) {
-  std::printf("%zu strokes, %zu ticks: %zu edges split, %zu vertices inserted, %zu edges opened, %zu wall triangles, "
-              "%zu edges left uncut, pools full in %zu ticks\n",
-              counts.strokes, counts.ticks, counts.splits, counts.inserted, counts.opened, counts.walls, counts.refused,
-              counts.full);
+  std::printf(
+      "%zu strokes, %zu ticks: %zu edges split, %zu vertices inserted, %zu edges opened, %zu wall triangles, "
+      "%zu edges left uncut, pools full in %zu ticks\n",
+      counts.strokes, counts.ticks, counts.splits, counts.inserted, counts.opened, counts.walls,
+      counts.refused, counts.full);
 }
 
 TEST(SurfaceCutProperty, RandomCutsLeaveGoodSurfaces) {
@@ -35,8 +36,10 @@ TEST(SurfaceCutProperty, TenThousandRandomCutsLeaveGoodSurfaces) {
 // The same strokes give the same bits.
 TEST(SurfaceCutProperty, RepeatsItself) {
   std::vector<TriangleMesh> first, second;
-  RunRandomCuts(3, 40, [&](const std::string&, const EditableMesh& mesh) { first.push_back(mesh.PresentMesh()); });
-  RunRandomCuts(3, 40, [&](const std::string&, const EditableMesh& mesh) { second.push_back(mesh.PresentMesh()); });
+  RunRandomCuts(3, 40,
+                [&](const std::string&, const EditableMesh& mesh) { first.push_back(mesh.PresentMesh()); });
+  RunRandomCuts(3, 40,
+                [&](const std::string&, const EditableMesh& mesh) { second.push_back(mesh.PresentMesh()); });
   EXPECT_EQ(first, second);
 }
 

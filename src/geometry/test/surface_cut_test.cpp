@@ -151,7 +151,8 @@ TEST(SurfaceCut, NothingChangesWithoutABlade) {
 TEST(SurfaceCut, HollowSphereGetsOneRim) {
   EditableMesh mesh = MakeEditable(MakeSphere({}, 0.02, 3));
   const Uncut uncut = Measure(mesh);
-  const BladeEdge from{{0.015, -0.006, 0.001}, {0.025, -0.006, 0.001}}, to{{0.015, 0.006, 0.001}, {0.025, 0.006, 0.001}};
+  const BladeEdge from{{0.015, -0.006, 0.001}, {0.025, -0.006, 0.001}},
+      to{{0.015, 0.006, 0.001}, {0.025, 0.006, 0.001}};
   CutLine(mesh, from, to, 30);
   EXPECT_EQ(FindFault(mesh, uncut, false), "");
   std::array<Opening, 4> openings;
@@ -162,8 +163,11 @@ TEST(SurfaceCut, HollowSphereGetsOneRim) {
   std::vector<Vec3> drawn(mesh.Rest().begin(), mesh.Rest().end());
   for (std::uint32_t h = openings[0].half_edge, i = 0; i < openings[0].edges; ++i, h = NextOnRim(mesh, h)) {
     Vec3 middle;
-    mesh.ForEachAround(mesh.From(h), [&](std::uint32_t g) { middle += mesh.Rest()[mesh.To(g)] - mesh.Rest()[mesh.From(h)]; });
-    if (mesh.Sources()[mesh.From(h)].origin == VertexOrigin::kCopy) drawn[mesh.From(h)].z += middle.z > 0 ? 0.001 : -0.001;
+    mesh.ForEachAround(mesh.From(h), [&](std::uint32_t g) {
+      middle += mesh.Rest()[mesh.To(g)] - mesh.Rest()[mesh.From(h)];
+    });
+    if (mesh.Sources()[mesh.From(h)].origin == VertexOrigin::kCopy)
+      drawn[mesh.From(h)].z += middle.z > 0 ? 0.001 : -0.001;
   }
   mesh.SetPositions(drawn);
   FindOpenings(mesh, openings);
@@ -184,7 +188,8 @@ TEST_P(SolidCut, StaysClosedWithATrench) {
   CutSettings settings;
   settings.has_walls = true;
   settings.depth = 0.004;
-  const BladeEdge from{{0.015, -0.008, 0.001}, {0.025, -0.008, 0.001}}, to{{0.015, 0.008, 0.001}, {0.025, 0.008, 0.001}};
+  const BladeEdge from{{0.015, -0.008, 0.001}, {0.025, -0.008, 0.001}},
+      to{{0.015, 0.008, 0.001}, {0.025, 0.008, 0.001}};
   const CutReport report = CutLine(mesh, from, to, GetParam(), settings);
   EXPECT_EQ(FindFault(mesh, uncut, true), "");
   EXPECT_GT(report.wall_triangles, 8u);
@@ -197,7 +202,8 @@ TEST_P(SolidCut, StaysClosedWithATrench) {
   // the walls lie below the cut, as deep as asked
   double deepest = 1;
   for (std::uint32_t v = 0; v < mesh.VertexCount(); ++v) {
-    if (mesh.Sources()[v].origin == VertexOrigin::kTrench) deepest = std::min(deepest, math::Norm(mesh.Rest()[v]));
+    if (mesh.Sources()[v].origin == VertexOrigin::kTrench)
+      deepest = std::min(deepest, math::Norm(mesh.Rest()[v]));
   }
   EXPECT_NEAR(deepest, 0.016, 0.0005);
 }
@@ -210,15 +216,16 @@ TEST(SurfaceCut, TrenchesCross) {
   CutSettings settings;
   settings.has_walls = true;
   settings.depth = 0.003;
-  CutLine(mesh, {{0.012, -0.008, 0.001}, {0.025, -0.008, 0.001}}, {{0.012, 0.008, 0.001}, {0.025, 0.008, 0.001}}, 30, settings);
+  CutLine(mesh, {{0.012, -0.008, 0.001}, {0.025, -0.008, 0.001}},
+          {{0.012, 0.008, 0.001}, {0.025, 0.008, 0.001}}, 30, settings);
   ASSERT_EQ(FindFault(mesh, uncut, true), "");
   // drawn apart, so that the second meets its walls
   std::vector<Vec3> drawn(mesh.Rest().begin(), mesh.Rest().end());
   for (Vec3& p : drawn) p.z += p.z > 0.001 ? 0.0005 : 0.0;
   mesh.SetPositions(drawn);
   const Uncut once = Measure(mesh);
-  const CutReport report =
-      CutLine(mesh, {{0.012, 0.0012, -0.008}, {0.025, 0.0012, -0.008}}, {{0.012, 0.0012, 0.008}, {0.025, 0.0012, 0.008}}, 40, settings);
+  const CutReport report = CutLine(mesh, {{0.012, 0.0012, -0.008}, {0.025, 0.0012, -0.008}},
+                                   {{0.012, 0.0012, 0.008}, {0.025, 0.0012, 0.008}}, 40, settings);
   EXPECT_EQ(FindFault(mesh, once, true), "");
   EXPECT_GT(report.opened, 6u);
 }

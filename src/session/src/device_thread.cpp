@@ -31,6 +31,15 @@ void ApplyHands(const std::array<HandSample, device::kChannelCount>& samples, In
   if (laparoscope.is_valid && IsFinite(laparoscope)) input.laparoscope = JointsOf(laparoscope);
 }
 
+void PlaceAtHome(const Scene& scene, device::Driver& driver) noexcept {
+  const std::array<instrument::TrocarJoints, device::kChannelCount> homes = {
+      scene.instruments[kLeft].home, scene.instruments[kRight].home, scene.laparoscope.home};
+  for (std::size_t i = 0; i < homes.size(); ++i) {
+    const instrument::TrocarJoints& home = homes[i];
+    driver.PlaceHand(static_cast<int>(i), {home.pan, home.tilt, home.spin, home.depth, home.jaw, 0.0, true});
+  }
+}
+
 struct DeviceThread::Content {
   std::unique_ptr<device::Driver> driver;
   core::NewestSlot<DeviceReport> slot;
@@ -64,7 +73,8 @@ bool DeviceThread::Content::Connect() {
   }
   const bool was_lost = report.losses > 0;
   if (done) {
-    Say(DeviceReport::Phase::kRunning, driver->GetName() + (was_lost ? " is connected again" : " is connected"));
+    Say(DeviceReport::Phase::kRunning,
+        driver->GetName() + (was_lost ? " is connected again" : " is connected"));
   } else {
     Say(was_lost ? DeviceReport::Phase::kLost : DeviceReport::Phase::kConnecting,
         done.error().Text() + "; trying again");
@@ -88,7 +98,8 @@ void DeviceThread::Content::Run() {
       case device::ReadStatus::kLost:
         ++report.losses;
         Say(DeviceReport::Phase::kLost,
-            core::Error{core::ErrorCode::kDeviceLost, driver->GetName() + " was lost; check plug and power"}.Text());
+            core::Error{core::ErrorCode::kDeviceLost, driver->GetName() + " was lost; check plug and power"}
+                .Text());
         Nap(kRetryPeriod);
         break;
     }

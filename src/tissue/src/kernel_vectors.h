@@ -63,6 +63,12 @@ void Advance(float alpha, const Float4* p, const Float4* q, Float4* step, Float4
   });
 }
 
+void AddScaled(float factor, const Float4* v, Float4* to, std::uint32_t first, std::uint32_t last) {
+  const Lanes by = All(factor);
+  ForEachLanes(first, last,
+               [&](std::size_t at) { Store(&to->x + at, MulAdd(by, Load(&v->x + at), Load(&to->x + at))); });
+}
+
 void ScaleAndAdd(float beta, const Float4* a, Float4* to, std::uint32_t first, std::uint32_t last) {
   const Lanes by = All(beta);
   ForEachLanes(first, last,

@@ -140,6 +140,8 @@ struct VectorKernels {
   /// step += alpha p, r -= alpha q
   void (*advance)(float alpha, const Float4* p, const Float4* q, Float4* step, Float4* r, std::uint32_t first,
                   std::uint32_t last);
+  /// to += factor v
+  void (*add_scaled)(float factor, const Float4* v, Float4* to, std::uint32_t first, std::uint32_t last);
   /// to = a + beta to
   void (*scale_and_add)(float beta, const Float4* a, Float4* to, std::uint32_t first, std::uint32_t last);
 };

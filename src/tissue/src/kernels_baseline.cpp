@@ -11,7 +11,7 @@ namespace trocar::tissue {
 const Kernels& GetKernelsBaseline() noexcept {
   static constexpr Kernels kKernels = {
       MultiplyLinks,  StepSlices,   StepRows,
-      CalcBalance,    InvertBlocks, {CalcDot, FindLargest2, Advance, ScaleAndAdd}};
+      CalcBalance,    InvertBlocks, {CalcDot, FindLargest2, Advance, AddScaled, ScaleAndAdd}};
   return kKernels;
 }
 

@@ -121,10 +121,10 @@ void RunPass(const Kernels& kernels, Workers& workers, const LinkLevel& level, L
   });
 }
 
-LinkHierarchy::LinkHierarchy(const NodeGraph& graph, std::span<const double> stiffness) {
+LinkHierarchy::LinkHierarchy(const NodeGraph& graph, std::span<const double> stiffness)
+    : levels_({MakeLevel(graph)}), chains_(graph, levels_.front().layout) {
   NodeGraph fine = graph;
   std::vector<double> weights(stiffness.begin(), stiffness.end());
-  levels_.push_back(MakeLevel(fine));
   while (fine.Size() > kDirectNodes) {
     std::vector<std::uint32_t> aggregate(fine.Size());
     std::iota(aggregate.begin(), aggregate.end(), 0u);
@@ -312,6 +312,7 @@ void LinkHierarchy::Cycle(const Kernels& kernels, Workers& workers, std::size_t 
   const bool is_last = at + 1 == levels_.size();
   if (is_last && is_inverted_) return SolveCoarsest(b, x);
   RunPass(kernels, workers, level, LinkPass::kStart, nullptr, b, kDamping, level.x.data());
+  if (at == 0) chains_.Solve(level, nullptr, b, kDamping, level.x.data());
   if (is_last) {
     for (int sweep = 1; sweep < kCoarsestSweeps; ++sweep) {
       RunPass(kernels, workers, level, LinkPass::kSmooth, level.x.data(), b, kDamping, x);
@@ -342,6 +343,7 @@ void LinkHierarchy::Cycle(const Kernels& kernels, Workers& workers, std::size_t 
     }
   });
   RunPass(kernels, workers, level, LinkPass::kSmooth, level.x.data(), b, kDamping, x);
+  if (at == 0) chains_.Solve(level, level.x.data(), b, kDamping, x);
 }
 
 void LinkHierarchy::Apply(const Kernels& kernels, Workers& workers, const Float4* b, Float4* x) noexcept {

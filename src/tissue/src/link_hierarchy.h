@@ -15,6 +15,7 @@
 #include <span>
 #include <vector>
 
+#include "link_chains.h"
 #include "slice_layout.h"
 #include "symmetric3.h"
 #include "workers.h"
@@ -57,6 +58,9 @@ class LinkHierarchy {
   /// \param slack  (entries) what is to be added to each finest link's stiffness, in every direction [N/m]
   /// \note Real-time safe.
   void UpdateCoarse(const Kernels& kernels, Workers& workers, std::span<const float> slack) noexcept;
+  /// Follows a change of the finest level without the coarser ones.
+  /// \note Real-time safe.
+  void UpdateChains(std::span<const float> slack) noexcept { chains_.Factorise(levels_.front(), slack); }
 
   /// x = about K^-1 b, a V-cycle with one damped block-Jacobi step on either side: symmetric and, where the
   /// matrix is, positive definite. Held nodes get 0.
@@ -71,6 +75,7 @@ class LinkHierarchy {
   void SolveCoarsest(const Float4* b, Float4* x) const noexcept;
 
   std::vector<LinkLevel> levels_;
+  LinkChains chains_;
   std::vector<double> factor_, rows_;  // room for the inversion of the coarsest level, dense
   std::vector<float> inverse_;         // of the coarsest level; empty where that is too large
   bool is_inverted_ = false;

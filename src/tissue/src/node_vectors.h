@@ -54,8 +54,12 @@ inline double FindLongest(const Kernels& kernels, Workers& workers, const std::v
   return std::sqrt(static_cast<double>(largest2));
 }
 
-inline double Dot(const Float4& a, const Float4& b) noexcept {
-  return static_cast<double>(a.x * b.x + a.y * b.y + a.z * b.z);
+/// to += factor v
+inline void AddScaled(const Kernels& kernels, Workers& workers, float factor, const std::vector<Float4>& v,
+                      std::vector<Float4>& to) noexcept {
+  ForEachNodeChunk(workers, v.size(), [&](std::uint32_t first, std::uint32_t last, std::uint32_t) {
+    kernels.vectors.add_scaled(factor, v.data(), to.data(), first, last);
+  });
 }
 
 }  // namespace trocar::tissue

@@ -26,7 +26,8 @@ struct NearestPiece {
   static constexpr std::uint32_t kNone = 0xffffffffu;
   std::uint32_t piece = kNone;
   SegmentSegmentPoints axes;  ///< a: the query, b: the piece's axis
-  double distance = std::numeric_limits<double>::infinity();  ///< from the query to the surface, negative inside [m]
+  double distance =
+      std::numeric_limits<double>::infinity();  ///< from the query to the surface, negative inside [m]
 
   bool Found() const { return piece != kNone; }
 };
@@ -72,8 +73,8 @@ class CapsuleTree {
 };
 
 /// The same answer as CapsuleTree::FindNearest, to the bit, by testing every piece.
-NearestPiece FindNearestPieceBruteForce(std::span<const Vec3> positions, std::span<const TubePiece> pieces,
-                                        const Segment& segment,
-                                        double max_distance = std::numeric_limits<double>::infinity()) noexcept;
+NearestPiece FindNearestPieceBruteForce(
+    std::span<const Vec3> positions, std::span<const TubePiece> pieces, const Segment& segment,
+    double max_distance = std::numeric_limits<double>::infinity()) noexcept;
 
 }  // namespace trocar::collision

@@ -56,7 +56,7 @@ class Emulator {
 
 struct PolhemusEmulation {
   PolhemusFormat format = PolhemusFormat::kFastrakAscii;
-  int stations = 2;      ///< with a sensor plugged in; station n is channel n - 1
+  int stations = 2;  ///< with a sensor plugged in; station n is channel n - 1
   SensorMotion motion;
 };
 std::unique_ptr<Emulator> MakePolhemusEmulator(PolhemusEmulation emulation);
@@ -67,6 +67,23 @@ struct JawEmulation {
 };
 /// 100 lines a second for each tool.
 std::unique_ptr<Emulator> MakeJawEmulator(JawEmulation emulation);
+
+/// An OpenIGTLink server: 60 times a second the left hand as TRANSFORM, the right one as TDATA.
+std::unique_ptr<Emulator> MakeIgtlEmulator(SensorMotion motion);
+
+struct HaplyEmulation {
+  int devices = 1;  ///< 1 or 2
+  std::function<Vec3(int device, double time)>
+      position;  ///< of the cursors, device frame of force_driver.h [m]
+};
+/// What a driver last sent to the emulated service.
+struct HaplyForces {
+  std::array<Vec3, 2> newtons;  ///< device frame [N]
+  std::uint64_t messages = 0;
+};
+/// The service of Haply's Inverse3: WebSocket, a state for every message of forces.
+/// \param forces  written as they come in
+std::unique_ptr<Emulator> MakeHaplyEmulator(HaplyEmulation emulation, std::shared_ptr<HaplyForces> forces);
 
 // --- faults
 
@@ -83,9 +100,9 @@ std::string_view FaultName(FaultKind kind) noexcept;
 
 struct Fault {
   FaultKind kind = FaultKind::kSilence;
-  double start = 0;        ///< [s]
-  double duration = 1e9;   ///< [s]
-  double rate = 1e-3;      ///< kFlips: turned bits per bit [-]
+  double start = 0;       ///< [s]
+  double duration = 1e9;  ///< [s]
+  double rate = 1e-3;     ///< kFlips: turned bits per bit [-]
 
   bool IsOn(double time) const noexcept { return time >= start && time < start + duration; }
 };
@@ -95,7 +112,8 @@ struct Fault {
 core::Result<Fault> ParseFault(std::string_view text);
 
 /// Spoils what a device sends. `jump` is left to SpoilMotion().
-std::string SpoilBytes(const std::vector<Fault>& faults, double time, std::string bytes, math::Random& random);
+std::string SpoilBytes(const std::vector<Fault>& faults, double time, std::string bytes,
+                       math::Random& random);
 /// Adds the jumps to what a tracker measures.
 SensorMotion SpoilMotion(std::vector<Fault> faults, SensorMotion motion);
 
@@ -106,10 +124,12 @@ class EmulatorHost {
  public:
   /// \param seed  of the faults
   static core::Result<std::unique_ptr<EmulatorHost>> MakeSerial(std::unique_ptr<Emulator> emulator,
-                                                                std::vector<Fault> faults = {}, std::uint64_t seed = 1);
+                                                                std::vector<Fault> faults = {},
+                                                                std::uint64_t seed = 1);
   /// \param port  0 lets the system choose
   static core::Result<std::unique_ptr<EmulatorHost>> MakeTcp(std::unique_ptr<Emulator> emulator, int port,
-                                                             std::vector<Fault> faults = {}, std::uint64_t seed = 1);
+                                                             std::vector<Fault> faults = {},
+                                                             std::uint64_t seed = 1);
 
   /// Takes in what came and sends what is due. Call it every few milliseconds.
   /// \param time  since the start [s], not falling

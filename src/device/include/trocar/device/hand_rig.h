@@ -17,6 +17,7 @@ class HandRig : public Driver {
   /// \pre both have kChannelCount channels and are unconfigured (TROCAR_ASSERT)
   HandRig(std::unique_ptr<Driver> hands, std::unique_ptr<Driver> jaws);
 
+  void PlaceHand(int channel, const HandSample& home) noexcept override { hands_->PlaceHand(channel, home); }
   Driver& Hands() noexcept { return *hands_; }
   Driver& Jaws() noexcept { return *jaws_; }
 

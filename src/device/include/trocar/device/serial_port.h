@@ -25,7 +25,7 @@ struct SerialPortInfo {
   std::string description;  ///< "Polhemus LIBERTY", or what the by-id name says
 };
 
-/// USB serial lines and built-in ones with hardware behind them, sorted by path.
+/// USB serial lines, sorted by path. Built-in ones have to be named: the system lists those without a plug, too.
 /// \param dev  folder to look in, /dev but in tests
 std::vector<SerialPortInfo> ListSerialPorts(const std::string& dev = "/dev");
 

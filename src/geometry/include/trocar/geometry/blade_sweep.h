@@ -61,6 +61,7 @@ bool Contains(const FlatSweep& sweep, const Vec3& p) noexcept;
 std::optional<double> FindCrossing(const FlatSweep& sweep, const Vec3& a, const Vec3& b) noexcept;
 
 /// Where the segment meets a triangle, as a point of the triangle [m].
-std::optional<Vec3> FindPiercing(const BladeEdge& segment, const Vec3& a, const Vec3& b, const Vec3& c) noexcept;
+std::optional<Vec3> FindPiercing(const BladeEdge& segment, const Vec3& a, const Vec3& b,
+                                 const Vec3& c) noexcept;
 
 }  // namespace trocar::geometry

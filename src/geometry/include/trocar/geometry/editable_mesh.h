@@ -68,10 +68,10 @@ class EditableMesh {
     return VertexCount() + vertices <= vertex_capacity_ && TriangleCount() + triangles <= triangle_capacity_;
   }
 
-  std::span<const Vec3> Rest() const { return rest_; }           ///< (nv) [m]
+  std::span<const Vec3> Rest() const { return rest_; }            ///< (nv) [m]
   std::span<const Vec3> Positions() const { return positions_; }  ///< (nv) now [m]
   std::span<const Triangle> Triangles() const { return triangles_; }
-  std::span<const TriangleKind> Kinds() const { return kinds_; }    ///< (nt)
+  std::span<const TriangleKind> Kinds() const { return kinds_; }      ///< (nt)
   std::span<const VertexSource> Sources() const { return sources_; }  ///< (nv)
   TriangleMesh RestMesh() const { return {rest_, triangles_}; }
   TriangleMesh PresentMesh() const { return {positions_, triangles_}; }
@@ -174,8 +174,8 @@ class EditableMesh {
   std::vector<std::uint32_t> outgoing_;
   std::vector<Triangle> triangles_;
   std::vector<TriangleKind> kinds_;
-  std::vector<std::uint32_t> twins_;   // (3 nt)
-  std::vector<std::uint8_t> scored_;   // (3 nt)
+  std::vector<std::uint32_t> twins_;  // (3 nt)
+  std::vector<std::uint8_t> scored_;  // (3 nt)
   std::vector<TouchedTriangle> journal_;
   std::vector<std::uint8_t> is_touched_;  // (nt)
   std::size_t journal_vertices_ = 0, journal_triangles_ = 0;

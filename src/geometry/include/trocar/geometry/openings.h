@@ -15,7 +15,8 @@ struct Opening {
   std::uint32_t half_edge = kNone;  ///< lowest of the rim; the others by NextOnRim
   std::size_t edges = 0;
   double length = 0;  ///< of the rim now [m]
-  double area = 0;    ///< of the rim's flat projection with the largest area, now [m^2]; 0 for a slit not yet drawn apart
+  double area =
+      0;  ///< of the rim's flat projection with the largest area, now [m^2]; 0 for a slit not yet drawn apart
 };
 
 /// The boundary half-edge that follows along the rim.

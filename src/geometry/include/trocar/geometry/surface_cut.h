@@ -18,7 +18,7 @@
 namespace trocar::geometry {
 
 struct CutSettings {
-  double snap = 0.2;         ///< crossings nearer to a vertex than this share of the edge go there [-], [0.05, 0.5]
+  double snap = 0.2;  ///< crossings nearer to a vertex than this share of the edge go there [-], [0.05, 0.5]
   double min_angle = 0.052;  ///< no new triangle has a smaller angle: 3 deg [rad]
   /// A cut grows within a triangle by so much at a time; where the triangle does not allow it, from edge to edge [m]
   double step = 0.0015;
@@ -39,16 +39,16 @@ struct CutFront {
 
 /// What a tick's cut did.
 struct CutReport {
-  std::size_t crossings = 0;     ///< edges that the sweep crossed
-  std::size_t splits = 0;        ///< of them split
-  std::size_t snaps = 0;         ///< of them that went to a vertex
-  std::size_t inserted = 0;      ///< vertices put into triangles, where a cut starts or grows
-  std::size_t scored = 0;        ///< edges marked as cut
-  std::size_t opened = 0;        ///< of them opened, now or those of ticks before
-  std::size_t copies = 0;        ///< vertices on the other side
+  std::size_t crossings = 0;  ///< edges that the sweep crossed
+  std::size_t splits = 0;     ///< of them split
+  std::size_t snaps = 0;      ///< of them that went to a vertex
+  std::size_t inserted = 0;   ///< vertices put into triangles, where a cut starts or grows
+  std::size_t scored = 0;     ///< edges marked as cut
+  std::size_t opened = 0;     ///< of them opened, now or those of ticks before
+  std::size_t copies = 0;     ///< vertices on the other side
   std::size_t wall_triangles = 0;
-  std::size_t refused = 0;       ///< edges left uncut: a sliver, a loose single triangle or a wall without place
-  bool is_full = false;          ///< the pools are used up; what no longer fitted was left uncut
+  std::size_t refused = 0;  ///< edges left uncut: a sliver, a loose single triangle or a wall without place
+  bool is_full = false;     ///< the pools are used up; what no longer fitted was left uncut
 
   bool HasChanged() const { return splits + inserted + opened > 0; }
 };

@@ -9,13 +9,16 @@
 
 #include "trocar/device/mouse_keyboard.h"
 #include "trocar/device/ports.h"
-#include "trocar/session/input.h"
+#include "trocar/session/scene.h"
 
 namespace trocar::session {
 
 /// Takes every hand that the device sees; the others stay as they are. A hand's numbers go through the same limits of
 /// joints and speed as any other input.
 void ApplyHands(const std::array<device::HandSample, device::kChannelCount>& samples, Input& input) noexcept;
+
+/// Tells a device that knows motion only where the scene's instruments start. Call it before the device is used.
+void PlaceAtHome(const Scene& scene, device::Driver& driver) noexcept;
 
 /// What a device is doing.
 struct DeviceReport {

@@ -36,7 +36,7 @@ struct SolverSettings {
   /// Newton: stop when the estimated distance of any node to the equilibrium is below this fraction of the
   /// largest distance of any node from rest [-].
   double max_error = 5e-4;
-  int max_newton_steps = 12;       ///< per tick
+  int max_newton_steps = 40;       ///< per tick; two as a rule, many where a fold snaps through
   int max_linear_iterations = 60;  ///< of conjugate gradients, per Newton step
 
   /// Springs that stiffen are taken as lines that touch their law, solve after solve, until the lines are off
