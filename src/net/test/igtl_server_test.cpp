@@ -94,7 +94,9 @@ TEST_F(IgtlServerTest, SendsToolsOftenAndOrgansSeldom) {
   Tick(121);
   const std::string bytes = ReadAll(*viewer);
   const auto counts = Count(bytes);
-  EXPECT_NEAR(counts.at("TDATA"), 30, 2);
+  // thirty a second at most; a sender that the system lets wait sends the newest, not all
+  EXPECT_LE(counts.at("TDATA"), 32);
+  EXPECT_GE(counts.at("TDATA"), 4 * counts.at("POLYDATA"));
   EXPECT_EQ(counts.at("TRANSFORM"), 3 * counts.at("TDATA"));
   EXPECT_NEAR(counts.at("POLYDATA"), 3, 1) << "one at once, then two a second; no ducts";
   device::IgtlReader reader;

@@ -292,6 +292,7 @@ void Simulation::Content::Reset() {
   tick = 0;
   tissue = tissue_at_start;
   conserved = conserved_at_start;
+  conservation->Reset();
   guard = std::make_unique<tissue::StateGuard>(tissue_model);
   const Input home = CalcScriptInput(*scene, 0.0);
   for (int hand = 0; hand < kHandCount; ++hand) {

@@ -73,7 +73,17 @@ Conservation::Conservation(const TissueModel& model, ConservationSettings settin
   responses_.assign(settings_.organs.size(), std::vector<Vec3>(n));
   shifts_ = responses_;
   (void)UpdateResponses(rest_, {}, kFirstResponseIterations, kFirstResponseTolerance);
-  response_links_ = CountIntact(rest_);
+  first_responses_ = responses_;
+  first_links_ = CountIntact(rest_);
+  Reset();
+}
+
+void Conservation::Reset() noexcept {
+  std::copy(first_responses_.begin(), first_responses_.end(), responses_.begin());
+  const TissueLoad usual;
+  stiffness_scale_ = usual.stiffness_scale;
+  shape_scale_ = usual.shape_scale;
+  response_links_ = first_links_;
   responses_settled_ = true;
 }
 

@@ -69,6 +69,10 @@ class Conservation {
   /// State at rest: every organ at its rest volume and without pressure, frames where anatomy was imaged.
   ConservationState MakeState(const TissueState& rest_state) const;
 
+  /// As made: how volumes answer pressures is worked out over some ticks after something tore, and that of before
+  /// would shine through in a surgery that begins again.
+  void Reset() noexcept;
+
   /// Takes held free pieces along: the rigid motion that their held nodes made since the last Enforce moves
   /// the rest of the piece and its frame. A better start for the solver than a piece left behind, which would
   /// crumple.
@@ -137,7 +141,8 @@ class Conservation {
   std::vector<std::vector<Vec3>> responses_;  // per organ (n): displacement by 1 Pa, in the rest frame [m/Pa]
   std::vector<std::vector<Vec3>> shifts_;     // the same where nodes are now; zero where they are held
   double stiffness_scale_ = 1, shape_scale_ = 1;  // for which the responses were found
-  std::uint64_t response_links_ = 0;
+  std::vector<std::vector<Vec3>> first_responses_;  // of the whole tissue under the usual scales
+  std::uint64_t response_links_ = 0, first_links_ = 0;
   bool responses_settled_ = false;
   std::vector<Vec3> gradient_;    // (n) of each node's organ; zero elsewhere
   std::vector<Vec3> base_force_;  // (n) without pressure
