@@ -437,11 +437,11 @@ void Simulation::CutPatch(Hand hand, haptics::LocalPatch& patch) noexcept {
   const surgery::ContactSet& contacts = c.touch.Contacts();
   std::array<std::uint8_t, surgery::ContactSet::kCapacity> hands;
   for (std::size_t i = 0; i < contacts.links.size(); ++i) hands[i] = contacts.links[i].hand;
-  content_->patch_cutter->Cut({c.tissue_model, c.tissue, c.load, contacts.springs,
-                               std::span(hands).first(contacts.links.size()), static_cast<std::uint8_t>(hand),
-                               c.grasps[hand].Nodes(), c.touch.Device(hand), c.forces[hand],
-                               c.verdict == tissue::GuardVerdict::kGood, c.tick},
-                              patch);
+  content_->patch_cutter->Cut(
+      {c.tissue_model, c.tissue, c.load, contacts.springs, std::span(hands).first(contacts.links.size()),
+       static_cast<std::uint8_t>(hand), c.grasps[hand].Nodes(), c.touch.Device(hand), c.forces[hand],
+       c.verdict == tissue::GuardVerdict::kGood, c.tick},
+      patch);
 }
 
 double Simulation::CalcEquilibriumError() const {
