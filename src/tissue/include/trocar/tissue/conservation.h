@@ -53,7 +53,7 @@ struct ConservationState {
   std::vector<OrganVolume> organs;
   FreeRegions regions;
   std::array<Pose, kMaxFreeRegions> X_world_rest;  ///< of each region: identity where it was imaged
-  std::uint64_t intact_links = 0;  ///< strands and springs, for which `regions` hold
+  std::uint64_t intact_links = 0;                  ///< strands and springs, for which `regions` hold
   std::vector<Vec3> last_position;  ///< (n) after the last Enforce: where held nodes came from [m]
 };
 
@@ -140,7 +140,7 @@ class Conservation {
   TissueState rest_;
   std::vector<std::vector<Vec3>> responses_;  // per organ (n): displacement by 1 Pa, in the rest frame [m/Pa]
   std::vector<std::vector<Vec3>> shifts_;     // the same where nodes are now; zero where they are held
-  double stiffness_scale_ = 1, shape_scale_ = 1;  // for which the responses were found
+  double stiffness_scale_ = 1, shape_scale_ = 1;    // for which the responses were found
   std::vector<std::vector<Vec3>> first_responses_;  // of the whole tissue under the usual scales
   std::uint64_t response_links_ = 0, first_links_ = 0;
   bool responses_settled_ = false;
