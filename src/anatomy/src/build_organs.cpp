@@ -55,6 +55,10 @@ core::Result<ContouredStructure> ExtractContours(const ControlPoints& points, co
                                                  const std::map<int, ColorImage>& images,
                                                  const std::stop_token& stop,
                                                  std::map<int, Overlay>& overlays) {
+  if (structure.slices.size() < 2) {
+    return Error{core::ErrorCode::kContourTooShort,
+                 structure.name + " has contours in fewer than two slices; a volume needs two"};
+  }
   ContouredStructure result;
   result.report.name = structure.name;
   result.report.slices = structure.slices.size();
@@ -144,7 +148,12 @@ core::Result<BuiltOrgans> BuildOrgans(const ControlPoints& points, const std::ma
     if (!contoured.ok()) return contoured.error();
     auto dense = MakeDenseSlices(*contoured);
     for (FilledSlice& slice : dense) OpenMask(slice.mask, kThinnestMm / 2 / points.pixel_mm);
-    auto volume = MakeVolume(dense, points.pixel_mm, options.spacing_mm);
+    const auto& clicked = contoured->slices;
+    const auto half_way = [&](std::size_t a, std::size_t b) {
+      return 0.5 * (clicked[b].position_mm - clicked[a].position_mm);
+    };
+    auto volume = MakeVolume(dense, points.pixel_mm, options.spacing_mm,
+                             std::array{half_way(0, 1), half_way(clicked.size() - 2, clicked.size() - 1)});
     if (!volume.ok()) return Error{volume.error().code, structure.name + ": " + volume.error().message};
     volumes.push_back(std::move(*volume));
     built.organs.push_back(std::move(contoured->report));

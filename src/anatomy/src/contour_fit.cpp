@@ -3,90 +3,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
-#include <cstdlib>
 
-#include "edge_cost.h"
-#include "edge_strip.h"
+#include "edge_path.h"
 #include "trocar/core/assert.h"
 
 namespace trocar::anatomy {
 namespace {
 
-constexpr double kRowStep = 2.0;     // distance of the rows of the band [pixels]
-constexpr double kColumnStep = 0.5;  // of its columns [pixels]
-constexpr double kBand = 6.0;        // beyond the reach, where the colours of the inside are learned [pixels]
-constexpr double kRegion =
-    0.1;  // weight of the colours on either side, a pixel, against the strongest edge [-]
-constexpr double kSlightest = 0.05;  // rises below this count in full nowhere [1 / pixel]
-constexpr int kClimb = 6;            // columns from where the inside ends to the steepest place
-constexpr int kMaxJump = 2;          // columns between neighbouring rows
+constexpr double kLeastShift = 0.5;  // a smaller reach moves nothing [pixels]
 constexpr int kMaxRounds = 6;        // of insertion
 constexpr std::size_t kClosest = 3;  // rows between two points at least
-
-/// A contour's edge: one place a row of the band.
-struct EdgePath {
-  ClosedCurve curve;
-  std::vector<Vec2> at;               // (rows)
-  std::vector<std::uint8_t> is_edge;  // (rows) a clear edge is there
-};
-
-EdgePath FindEdge(const EdgeField& field, std::span<const Vec2> polyline, double max_shift,
-                  const EdgeAdaptionSettings& settings) {
-  EdgePath edge;
-  edge.curve = ResampleClosed(polyline, kRowStep);
-  const EdgeStrip strip = SampleStrip(field, edge.curve, max_shift + kBand, kColumnStep);
-  const EdgeEvidence evidence = CalcEdgeEvidence(strip, max_shift, kRowStep);
-  const int reach = evidence.reach, columns = evidence.Columns();
-  const auto& gradient = evidence.gradient;
-  std::vector<float> cost(gradient.size());
-  const auto least = static_cast<float>(settings.min_gradient);
-  for (std::size_t row = 0; row < strip.rows; ++row) {
-    const float* here = &gradient[row * columns];
-    const float* rise = &evidence.rise[row * columns];
-    const float scale = std::max(*std::max_element(rise, rise + columns), static_cast<float>(kSlightest));
-    for (int k = 0; k < columns; ++k) {
-      const double away = std::abs(k - reach) / static_cast<double>(reach);
-      cost[row * columns + k] =
-          static_cast<float>(0.02 * away + kRegion * evidence.region[row * columns + k] -
-                             (1.0 - settings.nearness * away * away) *
-                                 (here[k] >= least ? std::max(0.0f, rise[k]) / scale : 0.0f));
-    }
-  }
-  const auto path = FindClosedPath(cost, strip.rows, columns, settings.smoothness, kMaxJump);
-  for (std::size_t row = 0; row < strip.rows; ++row) {
-    const float* here = &gradient[row * columns];
-    int k = path[row];
-    // the inside ends where the blurred edge begins; the edge itself is the steepest place next to it
-    for (int climbed = 0; climbed < kClimb; ++climbed) {
-      const int next = k + 1 < columns && here[k + 1] > here[k] ? k + 1
-                       : k > 0 && here[k - 1] > here[k]         ? k - 1
-                                                                : k;
-      if (next == k) break;
-      k = next;
-    }
-    const bool is_edge = here[k] >= least && evidence.rise[row * columns + path[row]] > 0;
-    double offset = 0.0;
-    if (k > 0 && k + 1 < columns) {
-      const double bend = here[k - 1] - 2.0 * here[k] + here[k + 1];
-      if (bend < 0) offset = std::clamp(0.5 * (here[k - 1] - here[k + 1]) / bend, -1.0, 1.0);
-    }
-    const double shift = std::clamp((k - reach + offset) * kColumnStep, -max_shift, max_shift);
-    const Vec2 at = edge.curve.at[row] + shift * edge.curve.normal[row];
-    edge.at.push_back(
-        {std::clamp(at.x, 0.0, field.Width() - 1.0), std::clamp(at.y, 0.0, field.Height() - 1.0)});
-    edge.is_edge.push_back(is_edge);
-  }
-  return edge;
-}
-
-std::size_t FindNearest(std::span<const Vec2> points, const Vec2& p) {
-  std::size_t nearest = 0;
-  for (std::size_t i = 1; i < points.size(); ++i) {
-    if (Norm(points[i] - p) < Norm(points[nearest] - p)) nearest = i;
-  }
-  return nearest;
-}
 
 double DistanceToCurve(const Vec2& p, const ContourCurve& curve, std::size_t first, std::size_t last) {
   double nearest = 1e300;
@@ -162,7 +88,7 @@ ContourFit FitContourToEdges(const EdgeField& field, std::span<const Vec2> click
   if (CrossesItself(clicked)) {
     fit.notes.push_back({FitProblem::kCrossesItself, clicked[0], 0.0});
   }
-  if (settings.adaption.max_shift_px < kColumnStep || !fit.notes.empty()) {
+  if (settings.adaption.max_shift_px < kLeastShift || !fit.notes.empty()) {
     fit.adapted.assign(clicked.begin(), clicked.end());
     fit.spline = FitContour(clicked, settings.spline);
     return fit;
@@ -173,7 +99,7 @@ ContourFit FitContourToEdges(const EdgeField& field, std::span<const Vec2> click
     return fit;
   }
   const double max_shift = settings.adaption.max_shift_px;
-  const EdgePath edge = FindEdge(field, FitContour(clicked, settings.spline), max_shift, settings.adaption);
+  const EdgePath edge = FindEdgePath(field, FitContour(clicked, settings.spline), settings.adaption);
   std::vector<Control> controls;
   for (const Vec2& p : clicked) {
     const std::size_t row = FindNearest(edge.curve.at, p);
@@ -193,7 +119,7 @@ ContourFit FitContourToEdges(const EdgeField& field, std::span<const Vec2> click
   std::size_t begin = 0;
   while (begin < rows && !edge.is_edge[begin]) ++begin;
   if (begin == rows) {
-    fit.notes.push_back({FitProblem::kNoEdge, edge.at[0], kRowStep * static_cast<double>(rows)});
+    fit.notes.push_back({FitProblem::kNoEdge, edge.at[0], kEdgeRowStep * static_cast<double>(rows)});
     return fit;
   }
   for (std::size_t i = 0, run = 0; i <= rows; ++i) {
@@ -204,7 +130,7 @@ ContourFit FitContourToEdges(const EdgeField& field, std::span<const Vec2> click
     }
     if (run >= 4) {
       fit.notes.push_back({FitProblem::kNoEdge, edge.at[(row + rows - run / 2 - 1) % rows],
-                           kRowStep * static_cast<double>(run)});
+                           kEdgeRowStep * static_cast<double>(run)});
     }
     run = 0;
   }

@@ -60,16 +60,12 @@ int Trace(const std::vector<std::int8_t>& from, std::size_t rows, int columns, i
 ClosedCurve ResampleClosed(std::span<const Vec2> polyline, double step_px, std::size_t most) {
   const std::size_t m = polyline.size();
   TROCAR_ASSERT(m >= 3 && step_px > 0 && most >= kFewest);
-  double length = 0.0, area = 0.0;
-  for (std::size_t i = 0; i < m; ++i) {
-    const Vec2 &p = polyline[i], &q = polyline[(i + 1) % m];
-    length += Norm(q - p);
-    area += p.x * q.y - q.x * p.y;
-  }
+  double length = 0.0;
+  for (std::size_t i = 0; i < m; ++i) length += Norm(polyline[(i + 1) % m] - polyline[i]);
   const auto count = static_cast<std::size_t>(
       std::clamp(std::ceil(length / step_px), static_cast<double>(kFewest), static_cast<double>(most)));
-  ClosedCurve curve;
-  curve.at.reserve(count), curve.normal.reserve(count);
+  std::vector<Vec2> at;
+  at.reserve(count);
   double passed = 0.0;
   std::size_t side = 0;
   double side_length = Norm(polyline[1] - polyline[0]);
@@ -81,15 +77,40 @@ ClosedCurve ResampleClosed(std::span<const Vec2> polyline, double step_px, std::
       side_length = Norm(polyline[(side + 1) % m] - polyline[side]);
     }
     const double part = side_length > 0 ? std::min(1.0, (wanted - passed) / side_length) : 0.0;
-    curve.at.push_back(polyline[side] + part * (polyline[(side + 1) % m] - polyline[side]));
+    at.push_back(polyline[side] + part * (polyline[(side + 1) % m] - polyline[side]));
+  }
+  return MakeClosedCurve(std::move(at));
+}
+
+ClosedCurve MakeClosedCurve(std::vector<Vec2> at) {
+  const std::size_t count = at.size();
+  TROCAR_ASSERT(count >= 3);
+  double area = 0.0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Vec2 &p = at[i], &q = at[(i + 1) % count];
+    area += p.x * q.y - q.x * p.y;
   }
   const double outwards = area < 0 ? -1.0 : 1.0;
+  ClosedCurve curve;
+  curve.normal.reserve(count);
   for (std::size_t k = 0; k < count; ++k) {
-    const Vec2 along = curve.at[(k + kNormalReach) % count] - curve.at[(k + count - kNormalReach) % count];
+    const Vec2 along = at[(k + kNormalReach) % count] - at[(k + count - kNormalReach) % count];
     const double norm = Norm(along);
     curve.normal.push_back(norm > 0 ? (outwards / norm) * Vec2{along.y, -along.x} : Vec2{});
   }
+  curve.at = std::move(at);
   return curve;
+}
+
+std::size_t FindNearest(std::span<const Vec2> points, const Vec2& p) {
+  std::size_t nearest = 0;
+  double least = std::numeric_limits<double>::max();
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Vec2 away = points[i] - p;
+    const double squared = Dot(away, away);
+    if (squared < least) least = squared, nearest = i;
+  }
+  return nearest;
 }
 
 EdgeStrip SampleStrip(const EdgeField& field, const ClosedCurve& curve, double reach_px, double step_px) {

@@ -21,6 +21,14 @@ struct ClosedCurve {
 /// \param step_px   distance of the points, > 0; at least 8 and at most `most` points are made
 ClosedCurve ResampleClosed(std::span<const Vec2> polyline, double step_px, std::size_t most = 4000);
 
+/// The same points with their normals.
+/// \param at  (n) n >= 3 points of a closed curve at about equal steps [pixels]
+ClosedCurve MakeClosedCurve(std::vector<Vec2> at);
+
+/// Index of the point nearest to p.
+/// \pre at least one point
+std::size_t FindNearest(std::span<const Vec2> points, const Vec2& p);
+
 /// Colours on a grid of offsets (columns) along the normals of a curve's points (rows).
 struct EdgeStrip {
   std::size_t rows = 0;

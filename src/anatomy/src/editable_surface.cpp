@@ -2,7 +2,6 @@
 #include "editable_surface.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "trocar/geometry/mesh_measures.h"
 
@@ -138,14 +137,6 @@ TriangleMesh DropUnusedVertices(const TriangleMesh& mesh) {
   for (const Triangle& t : mesh.triangles)
     dense.triangles.push_back({number[t[0]], number[t[1]], number[t[2]]});
   return dense;
-}
-
-double CalcSmallestAngle(const Vec3& a, const Vec3& b, const Vec3& c) {
-  const auto angle = [](const Vec3& at, const Vec3& one, const Vec3& other) {
-    const Vec3 p = one - at, q = other - at;
-    return std::atan2(Norm(Cross(p, q)), Dot(p, q));
-  };
-  return std::min({angle(a, b, c), angle(b, c, a), angle(c, a, b)});
 }
 
 }  // namespace trocar::anatomy

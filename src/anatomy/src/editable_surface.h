@@ -73,7 +73,4 @@ class EditableSurface {
 /// The mesh without the vertices that no triangle names.
 geometry::TriangleMesh DropUnusedVertices(const geometry::TriangleMesh& mesh);
 
-/// Smallest angle of a triangle [rad].
-double CalcSmallestAngle(const math::Vec3& a, const math::Vec3& b, const math::Vec3& c);
-
 }  // namespace trocar::anatomy

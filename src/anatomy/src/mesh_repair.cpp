@@ -95,7 +95,7 @@ class Repairer {
     return placed;
   }
   double AngleOf(const PlacedTriangle& t) const {
-    return CalcSmallestAngle(t.corners[0], t.corners[1], t.corners[2]);
+    return geometry::CalcSmallestAngle(t.corners[0], t.corners[1], t.corners[2]);
   }
   bool IsSliver(std::uint32_t t) const { return AngleOf(Place(t, surface_.TriangleAt(t))) < least_angle_; }
   static bool Cut(const PlacedTriangle& a, const PlacedTriangle& b) {

@@ -317,8 +317,8 @@ void OpenMask(Mask& mask, double radius_px) {
     mask.inside[i] = mask.inside[i] && around[i] >= static_cast<float>(-radius_px - 1e-4);
 }
 
-core::Result<ScalarVolume> MakeVolume(std::span<const FilledSlice> slices, double pixel_mm,
-                                      double spacing_mm) {
+core::Result<ScalarVolume> MakeVolume(std::span<const FilledSlice> slices, double pixel_mm, double spacing_mm,
+                                      std::optional<std::array<double, 2>> ends_mm) {
   TROCAR_ASSERT(slices.size() >= 2 && pixel_mm > 0 && spacing_mm > 0);
   // common rectangle of pixels
   int x0 = std::numeric_limits<int>::max(), y0 = x0, x1 = std::numeric_limits<int>::min(), y1 = x1;
@@ -337,12 +337,14 @@ core::Result<ScalarVolume> MakeVolume(std::span<const FilledSlice> slices, doubl
 
   ScalarVolume volume;
   volume.spacing = spacing_mm;
-  const double first_gap = 0.5 * (slices[1].position_mm - slices[0].position_mm);
-  const double last_gap = 0.5 * (slices.back().position_mm - slices[slices.size() - 2].position_mm);
+  const std::array<double, 2> ends =
+      ends_mm.value_or(std::array{0.5 * (slices[1].position_mm - slices[0].position_mm),
+                                  0.5 * (slices.back().position_mm - slices[slices.size() - 2].position_mm)});
+  TROCAR_ASSERT(ends[0] > 0 && ends[1] > 0);
   const double low[3] = {(x0 + 1) * pixel_mm, (y0 + 1) * pixel_mm,
-                         slices.front().position_mm - first_gap - spacing_mm};
+                         slices.front().position_mm - ends[0] - spacing_mm};
   const double high[3] = {(x1 - 2) * pixel_mm, (y1 - 2) * pixel_mm,
-                          slices.back().position_mm + last_gap + spacing_mm};
+                          slices.back().position_mm + ends[1] + spacing_mm};
   for (int axis = 0; axis < 3; ++axis) {
     volume.first[axis] = static_cast<int>(std::ceil(low[axis] / spacing_mm));
     volume.size[axis] = static_cast<int>(std::floor(high[axis] / spacing_mm)) - volume.first[axis] + 1;
@@ -382,7 +384,7 @@ core::Result<ScalarVolume> MakeVolume(std::span<const FilledSlice> slices, doubl
     if (z < knots.front() || z >= knots.back()) {
       const bool is_below = z < knots.front();
       const std::size_t end = is_below ? 0 : n - 1;
-      const double part = is_below ? (knots.front() - z) / first_gap : (z - knots.back()) / last_gap;
+      const double part = is_below ? (knots.front() - z) / ends[0] : (z - knots.back()) / ends[1];
       const float less = deepest[end] * static_cast<float>(part * part);
       for (std::size_t p = 0; p < plane; ++p) out[p] = distances[end][p] - less;
       return;

@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 #include "phantom_picture.h"
 
@@ -68,6 +70,52 @@ TEST(FitContourToEdges, InsertsPointsWhereTheSplineLeavesTheEdge) {
   EXPECT_GE(with.inserted.size(), 6u);
   EXPECT_GT(error(without), 3.0);
   EXPECT_LT(error(with), 0.7);
+}
+
+// a dark lumen of radius kRadius - kWall in a pale wall, liver around it
+constexpr double kWall = 7.0;
+
+ColorImage MakeHollowOrgan(std::uint64_t seed) {
+  ColorImage image =
+      DrawPhantom({.inside = {72, 78, 34}, .outside = {178, 138, 108}, .seed = seed}, [](double x, double y) {
+        return DistanceToCircle({x, y}) + kWall;
+      });
+  const ColorImage liver =
+      DrawPhantom({.inside = {112, 52, 40}, .outside = {112, 52, 40}, .seed = seed + 100},
+                  [](double, double) { return 1.0; });
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      const auto away = DistanceToCircle({static_cast<double>(x), static_cast<double>(y)});
+      const double share = std::clamp(0.5 + away / 2.0, 0.0, 1.0);
+      for (int c = 0; c < 3; ++c) {
+        image.At(x, y)[c] = static_cast<std::uint8_t>(
+            std::lround((1 - share) * image.At(x, y)[c] + share * liver.At(x, y)[c]));
+      }
+    }
+  }
+  return image;
+}
+
+/// Mean signed distance of the fitted curve from the outer border [pixels].
+double FitHollowOrgan(double clicked_radius, std::uint64_t seed) {
+  math::Random random(seed);
+  auto clicked = MakePolar(kCentre, 12, [&](double) { return clicked_radius; });
+  for (std::size_t i = 0; i < clicked.size(); ++i) {
+    // to either side in turn, so that the clicks say which border they mean
+    const double slip = (i % 2 == 0 ? 1.0 : -1.0) * random.Uniform(0.5, 3.0);
+    clicked[i] = clicked[i] + (slip / Norm(clicked[i] - kCentre)) * (clicked[i] - kCentre);
+  }
+  const ContourFit fit = FitContourToEdges(MakeHollowOrgan(seed), clicked, {.adaption = {.max_shift_px = 9}});
+  double sum = 0;
+  for (const Vec2& p : fit.spline) sum += DistanceToCircle(p);
+  return sum / static_cast<double>(fit.spline.size());
+}
+
+TEST(FitContourToEdges, TakesTheBorderOfAWallThatTheClicksMean) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    EXPECT_NEAR(FitHollowOrgan(kRadius, seed), 0.0, 0.5) << "outer, seed " << seed;
+    EXPECT_NEAR(FitHollowOrgan(kRadius - kWall, seed), -kWall, 0.5) << "lumen, seed " << seed;
+  }
 }
 
 TEST(FitContourToEdges, SaysWhereThereIsNoEdge) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -132,6 +133,101 @@ TEST(InsertSlices, KeepsWhatIsSharedAndShrinksWhatIsAlone) {
   for (const auto& slice : dense) EXPECT_EQ(slice.mask.At(15 - slice.mask.x0, 15 - slice.mask.y0), 1);
   for (std::size_t i = 1; i < dense.size(); ++i) EXPECT_LE(dense[i].mask.Count(), dense[i - 1].mask.Count());
   EXPECT_EQ(dense[3].mask.Count(), 100u);
+}
+
+TEST(InsertSlices, OpensTheGapOfASplittingContourEvenly) {
+  // a bar of 60 x 10 pixels that splits into two squares 20 pixels apart, and the other way round
+  const auto bar = [](double from, double to) {
+    return std::vector<Vec2>{{from + 0.5, 10.5}, {to + 0.5, 10.5}, {to + 0.5, 20.5}, {from + 0.5, 20.5}};
+  };
+  const FilledSlice whole{0, FillArea({bar(10, 70)}, {})},
+      split{10, FillArea({bar(10, 30), bar(50, 70)}, {})};
+  const auto splitting = InsertSlices(std::vector<FilledSlice>{whole, split}, 1.0);
+  const auto merging = InsertSlices(std::vector<FilledSlice>{{0, split.mask}, {10, whole.mask}}, 1.0);
+  ASSERT_EQ(splitting.size(), 11u);
+  for (int i = 0; i <= 10; ++i) {
+    // the gap grows from its middle: 20 t wide
+    EXPECT_NEAR(static_cast<double>(splitting[i].mask.Count()) / 10.0, 60 - 2.0 * i, 2.0) << i;
+    EXPECT_NEAR(static_cast<double>(merging[i].mask.Count()) / 10.0, 40 + 2.0 * i, 2.0) << i;
+  }
+}
+
+TEST(InsertSlices, WidensAHoleEvenly) {
+  const auto circle = [](double radius) {
+    std::vector<Vec2> points;
+    for (int i = 0; i < 360; ++i)
+      points.push_back({60 + radius * std::cos(i * M_PI / 180), 60 + radius * std::sin(i * M_PI / 180)});
+    return points;
+  };
+  const auto dense = InsertSlices(std::vector<FilledSlice>{{0, FillArea({circle(40)}, {circle(8)})},
+                                                           {10, FillArea({circle(40)}, {circle(20)})}},
+                                  1.0);
+  ASSERT_EQ(dense.size(), 11u);
+  for (int i = 0; i <= 10; ++i) {
+    const double radius = 8 + 1.2 * i, expected = M_PI * (40 * 40 - radius * radius);
+    EXPECT_NEAR(static_cast<double>(dense[i].mask.Count()), expected, 2 * M_PI * radius * 0.8) << i;
+  }
+}
+
+// Properties that hold for any two slices, by looking at every pixel of every slice.
+TEST(InsertSlices, NeverInventsOrForgetsAndChangesEachPixelOnce) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    math::Random random(seed);
+    const auto make = [&] {
+      std::vector<std::vector<Vec2>> squares;
+      const int count = 1 + static_cast<int>(random.Uniform(0, 3));
+      for (int i = 0; i < count; ++i) {
+        const double x = std::floor(random.Uniform(0, 40)) + 0.5, y = std::floor(random.Uniform(0, 40)) + 0.5;
+        const double w = std::floor(random.Uniform(3, 18)), h = std::floor(random.Uniform(3, 18));
+        squares.push_back({{x, y}, {x + w, y}, {x + w, y + h}, {x, y + h}});
+      }
+      const auto& first = squares.front();
+      const Vec2 middle = 0.5 * (first[0] + first[2]);
+      return FillArea(squares, {{{middle.x - 1, middle.y - 1},
+                                 {middle.x + 1, middle.y - 1},
+                                 {middle.x + 1, middle.y + 1},
+                                 {middle.x - 1, middle.y + 1}}});
+    };
+    const std::vector<FilledSlice> slices = {{0, make()}, {6, make()}};
+    const auto dense = InsertSlices(slices, 1.0);
+    ASSERT_EQ(dense.size(), 7u);
+    const auto is_in = [](const Mask& mask, int x, int y) {
+      x -= mask.x0, y -= mask.y0;
+      return x >= 0 && y >= 0 && x < mask.width && y < mask.height && mask.At(x, y) != 0;
+    };
+    for (int y = -3; y < 65; ++y) {
+      for (int x = -3; x < 65; ++x) {
+        int changes = 0;
+        for (std::size_t i = 1; i < dense.size(); ++i)
+          changes += is_in(dense[i].mask, x, y) != is_in(dense[i - 1].mask, x, y);
+        const bool differs = is_in(slices[0].mask, x, y) != is_in(slices[1].mask, x, y);
+        ASSERT_EQ(changes, differs ? 1 : 0) << "seed " << seed << " at " << x << ", " << y;
+      }
+    }
+  }
+}
+
+TEST(MakeVolume, ClosesItsEndsWhereItIsTold) {
+  std::vector<Vec2> circle;
+  for (int i = 0; i < 180; ++i)
+    circle.push_back({40 + 20 * std::cos(i * M_PI / 90), 40 + 20 * std::sin(i * M_PI / 90)});
+  const Mask disc = FillArea({circle}, {});
+  const std::vector<FilledSlice> slices = {{0, disc}, {1, disc}, {2, disc}};
+  const auto highest = [](const ScalarVolume& volume) {
+    double z = -1e9;
+    for (int k = 0; k < volume.size[2]; ++k) {
+      for (int j = 0; j < volume.size[1]; ++j) {
+        for (int i = 0; i < volume.size[0]; ++i) {
+          if (volume.values[volume.Index(i, j, k)] > 0) z = std::max(z, volume.Position(i, j, k).z);
+        }
+      }
+    }
+    return z;
+  };
+  const auto close = MakeVolume(slices, 1.0, 0.5), far = MakeVolume(slices, 1.0, 0.5, std::array{0.5, 6.0});
+  ASSERT_TRUE(close.ok() && far.ok());
+  EXPECT_LE(highest(*close), 2.5);
+  EXPECT_NEAR(highest(*far), 8.0, 0.6);
 }
 
 TEST(OpenMask, CutsThinTipsOnly) {

@@ -8,6 +8,7 @@
 
 #include "trocar/app/contour_script.h"
 #include "trocar/core/version.h"
+#include "trocar/device/force_device_spec.h"
 
 namespace trocar::app {
 
@@ -22,6 +23,11 @@ core::Result<Command> ParseCommandLine(int argc, const char* const* argv) {
   app.add_option("--threads", options.threads, "Threads of the solver; 0 chooses by the processors")
       ->check(CLI::Range(0, 256))
       ->capture_default_str();
+  app.add_option(
+      "--device", options.device,
+      "Hands of a tracker or other device in place of the mouse's, as `trocar devices list` names it");
+  app.add_option("--haptics", options.haptics,
+                 "Hands of a haptic device, with force: " + device::ListForceDrivers());
   app.add_flag("--fullscreen", options.is_fullscreen, "Start in full screen (F11 switches)");
   app.add_flag("--demonstration", options.is_demonstration,
                "Start with the demonstration: the script moves both hands");

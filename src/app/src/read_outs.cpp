@@ -64,8 +64,12 @@ std::string FormatResidual(double residual) {
 }
 
 std::string OrganLabel(const anatomy::Patient& patient, std::int32_t organ) {
-  if (organ < 0 || organ >= static_cast<std::int32_t>(patient.organs.size())) return "tissue";
-  return WithSpaces(patient.organs[static_cast<std::size_t>(organ)].name);
+  // organs first, then tubes, as in Simulation::Surfaces()
+  if (organ < 0) return "tissue";
+  auto index = static_cast<std::size_t>(organ);
+  if (index < patient.organs.size()) return WithSpaces(patient.organs[index].name);
+  index -= patient.organs.size();
+  return index < patient.tubes.size() ? WithSpaces(patient.tubes[index].name) : "tissue";
 }
 
 std::string HandLabel(const session::Scene& scene, std::int32_t hand) {
@@ -100,13 +104,18 @@ std::string DescribeEvent(const session::Event& event, const session::Scene& sce
       return Capitalised(organ) + ": held still, press R to reset (E-SIM-002)";
     case session::EventKind::kTear:
       return event.organ < 0 ? "A duct or vessel was torn off" : Capitalised(organ) + ": an attachment tore";
+    case session::EventKind::kPinchDamage:
+      return hand + "pinched the " + organ + " too hard" + force;
+    case session::EventKind::kToolsTouch:
+      return "The instruments met";
   }
   return "";
 }
 
 bool IsWarning(session::EventKind kind) noexcept {
   return kind == session::EventKind::kSlip || kind == session::EventKind::kStateRestored ||
-         kind == session::EventKind::kOrganFrozen || kind == session::EventKind::kTear;
+         kind == session::EventKind::kOrganFrozen || kind == session::EventKind::kTear ||
+         kind == session::EventKind::kPinchDamage;
 }
 
 std::string StageLabel(session::Stage stage) {

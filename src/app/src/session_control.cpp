@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "trocar/app/pointer_map.h"
+#include "trocar/device/force_device_spec.h"
 
 namespace trocar::app {
 namespace {
@@ -60,7 +62,7 @@ core::Result<std::unique_ptr<SessionControl>> SessionControl::Make(session::Simu
 }
 
 SessionControl::SessionControl(session::Simulation simulation, const device::MouseKeyboardSettings& settings)
-    : runner_(std::move(simulation)), device_(settings) {}
+    : runner_(std::move(simulation), &haptic_link_), device_(settings) {}
 
 void SessionControl::PlaceAtHome() {
   const session::Scene& scene = runner_.GetScene();
@@ -97,8 +99,57 @@ const session::Snapshot& SessionControl::Advance(double dt) {
   for (const Channel hand : {device::kLeftHand, device::kRightHand})
     if (samples[hand].is_valid) input_.hands[hand] = JointsOf(samples[hand]);
   if (samples[device::kLaparoscope].is_valid) input_.laparoscope = JointsOf(samples[device::kLaparoscope]);
+  if (device_thread_ != nullptr) ApplyDevice();
   runner_.SetInput(input_);
   return snapshot;
+}
+
+void SessionControl::UseDevice(std::unique_ptr<device::Driver> driver) {
+  session::PlaceAtHome(runner_.GetScene(), *driver);
+  device_thread_ = std::make_unique<session::DeviceThread>(std::move(driver));
+}
+
+core::Status SessionControl::UseHaptics(std::string_view name) {
+  auto driver = device::MakeForceDriver(name);
+  if (!driver) return driver.error();
+  const int channels = (*driver)->GetChannelCount();
+  if (channels > session::kHandCount) {
+    return core::Error{core::ErrorCode::kDeviceSettings,
+                       (*driver)->GetName() + " has more channels than a person has hands"};
+  }
+  session::HapticLoopSettings settings;
+  settings.supervisor = session::SupervisorLink::FindProgram();
+  for (int channel = 0; channel < channels; ++channel) {
+    const session::Hand hand = channels == 1 || channel == 1 ? session::kRight : session::kLeft;
+    settings.hands.push_back(
+        session::MakeHapticHand(runner_.GetScene(), runner_.Latest().X_world_laparoscope, hand));
+  }
+  auto loop = session::HapticLoop::Start(std::move(*driver), settings, haptic_link_);
+  if (!loop) return loop.error();
+  haptic_loop_ = std::move(*loop);
+  return {};
+}
+
+void SessionControl::ApplyDevice() {
+  const session::DeviceReport& report = device_thread_->Latest();
+  if (report.message != device_message_) {
+    device_message_ = report.message;
+    is_device_message_new_ = true;
+  }
+  if (report.losses != device_losses_) {
+    device_losses_ = report.losses;
+    SetPaused(true);
+  }
+  if (is_demonstration_) return;
+  session::ApplyHands(report.samples, input_);
+  // the mouse's hands rest on the device's, so that losing sight of one makes no jump
+  for (const Channel hand : {device::kLeftHand, device::kRightHand}) {
+    if (report.samples[hand].is_valid) device_.Place(hand, SampleOf(input_.hands[hand]));
+  }
+}
+
+std::string SessionControl::TakeDeviceMessage() {
+  return std::exchange(is_device_message_new_, false) ? device_message_ : std::string();
 }
 
 void SessionControl::SetPaused(bool is_paused) {

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "simulator_window.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <string>
 
 #include "trocar/core/log.h"
+#include "trocar/device/device_spec.h"
 #include "window_screenshot.h"
 
 namespace trocar::app {
@@ -88,11 +90,17 @@ void SimulatorWindow::MakeHeader() {
   button(fullscreen_, "Full screen and back (F11)");
   button(help_, "All keys (H or F1)");
   button(quit_, "Leave the program (Ctrl+Q)");
+  button(force_,
+         "Force feedback of the haptic device: asks for it, or takes it away (Esc takes it away, too)");
+  button(check_pose_, "Confirm which haptic device is which hand");
+  for (Gtk::Widget* widget : {static_cast<Gtk::Widget*>(&force_), static_cast<Gtk::Widget*>(&check_pose_)})
+    widget->set_visible(!options_.haptics.empty());
   forces_.set_active(true);
   mask_.set_active(true);
   for (Gtk::Widget* widget :
        {static_cast<Gtk::Widget*>(&run_), static_cast<Gtk::Widget*>(&reset_),
-        static_cast<Gtk::Widget*>(&demonstration_), static_cast<Gtk::Widget*>(&fulcrum_)})
+        static_cast<Gtk::Widget*>(&demonstration_), static_cast<Gtk::Widget*>(&fulcrum_),
+        static_cast<Gtk::Widget*>(&check_pose_), static_cast<Gtk::Widget*>(&force_)})
     header_.pack_start(*widget);
   for (Gtk::Widget* widget : {static_cast<Gtk::Widget*>(&quit_), static_cast<Gtk::Widget*>(&help_),
                               static_cast<Gtk::Widget*>(&fullscreen_), static_cast<Gtk::Widget*>(&mask_),
@@ -110,6 +118,14 @@ void SimulatorWindow::MakeHeader() {
   act(quit_, Action::kQuit);
   demonstration_.signal_toggled().connect([this] {
     if (!is_showing_) SetDemonstration(demonstration_.get_active());
+  });
+  force_.signal_toggled().connect([this] {
+    session::HapticLoop* haptics = control_ != nullptr ? control_->Haptics() : nullptr;
+    if (is_showing_ || haptics == nullptr) return;
+    force_.get_active() ? haptics->RequestArm() : haptics->Stop();
+  });
+  check_pose_.signal_clicked().connect([this] {
+    if (control_ != nullptr && control_->Haptics() != nullptr) control_->Haptics()->BeginCheckPose();
   });
   const auto look = [this] {
     view::ViewOptions view = picture_.GetOptions();
@@ -170,8 +186,14 @@ void SimulatorWindow::MakeContent() {
   status->append(event_);
   status->append(state_);
 
+  haptics_.set_visible(!options_.haptics.empty());
+  haptics_.add_css_class("status");
+  haptics_.set_halign(Gtk::Align::START);
+  haptics_.set_ellipsize(Pango::EllipsizeMode::END);
+
   auto* all = Gtk::make_managed<Gtk::Box>(Gtk::Orientation::VERTICAL);
   all->append(*middle);
+  all->append(haptics_);
   all->append(*status);
   set_child(*all);
 }
@@ -193,6 +215,11 @@ void SimulatorWindow::FinishLoading() {
   if (!control) return Fail(control.error());
   control_ = std::move(control).value();
   control_->SetMirrorFulcrum(fulcrum_.get_active());
+  if (!UseDevice()) return;
+  if (!options_.haptics.empty()) {
+    if (const core::Status started = control_->UseHaptics(options_.haptics); !started)
+      return Fail(started.error());
+  }
   panel_.SetControl(control_.get());
   panel_.set_sensitive(true);
   hands_->SetControl(control_.get());
@@ -202,6 +229,21 @@ void SimulatorWindow::FinishLoading() {
   SetText(event_, "Ready.");
   if (options_.is_demonstration || !options_.screenshot.empty()) SetDemonstration(true);
   SetPaused(false);
+}
+
+/// \return false, with the failure shown, where the options name a device that cannot be
+bool SimulatorWindow::UseDevice() {
+  if (options_.device.empty()) return true;
+  const device::LoadedStore loaded = device::LoadDeviceStore(device::FindDeviceStore());
+  if (loaded.complaint) core::Log(core::LogLevel::kWarning, loaded.complaint->Text());
+  core::Result<std::unique_ptr<device::Driver>> driver =
+      device::MakeDriver(options_.device, loaded.store, device::SystemClock());
+  if (!driver) {
+    Fail(driver.error());
+    return false;
+  }
+  control_->UseDevice(std::move(driver).value());
+  return true;
 }
 
 void SimulatorWindow::Fail(const core::Error& error) {
@@ -250,9 +292,14 @@ bool SimulatorWindow::OnFrame(const Glib::RefPtr<Gdk::FrameClock>& clock) {
   picture_.queue_render();
   stages_.Add(snapshot);
   ShowEvents(snapshot);
+  if (const std::string message = control_->TakeDeviceMessage(); !message.empty()) {
+    SetText(event_, message);
+    ShowSituation();
+  }
   if (now - last_forces_ > kForcePeriod) {
     last_forces_ = now;
     panel_.ShowForces(snapshot);
+    ShowHaptics();
     ShowSituation();
   }
   if (now - last_times_ > kTimesPeriod) {
@@ -262,6 +309,19 @@ bool SimulatorWindow::OnFrame(const Glib::RefPtr<Gdk::FrameClock>& clock) {
   }
   SaveScreenshotWhenDue(snapshot);
   return true;
+}
+
+void SimulatorWindow::ShowHaptics() {
+  session::HapticLoop* haptics = control_->Haptics();
+  if (haptics == nullptr) return;
+  const session::HapticStatus& status = haptics->Latest();
+  SetText(haptics_, session::DescribeHaptics(status));
+  // the button shows what is, not what was wished
+  is_showing_ = true;
+  force_.set_active(std::any_of(
+      status.hands.begin(), status.hands.end(),
+      [](const session::HapticHandStatus& hand) { return hand.state != haptics::ArmState::kUnarmed; }));
+  is_showing_ = false;
 }
 
 void SimulatorWindow::OnDrawn() {
@@ -372,6 +432,7 @@ void SimulatorWindow::OnAction(Action action) {
       ShowSituation();
       break;
     case Action::kReleasePointer:
+      if (control_ != nullptr && control_->Haptics() != nullptr) control_->Haptics()->Stop();
       picture_.grab_focus();
       help_.set_active(false);
       ShowSituation();
@@ -411,16 +472,20 @@ void SimulatorWindow::SaveScreenshot() {
   if (const auto status = app::SaveScreenshot(*this, options_.screenshot); !status)
     return Fail(status.error());
   const session::RunnerStatistics statistics = control_->Statistics();
+  const std::string haptics = control_->Haptics() != nullptr
+                                  ? session::FormatHapticsJson(control_->Haptics()->Latest())
+                                  : std::string();
   std::printf(
       "{\"screenshot\": \"%s\", \"width\": %d, \"height\": %d, \"first_picture_s\": %.3f, \"ticks\": %llu, "
       "\"late_ticks\": %llu, \"tick_median_ms\": %.3f, \"tick_p99_ms\": %.3f, \"real_time\": %s, "
       "\"pictures\": %llu, "
-      "\"pictures_per_second\": %.1f}\n",
+      "\"pictures_per_second\": %.1f%s%s}\n",
       options_.screenshot.filename().c_str(), get_width(), get_height(), first_picture_,
       static_cast<unsigned long long>(statistics.ticks),
       static_cast<unsigned long long>(statistics.late_ticks), 1e3 * statistics.tick_median,
       1e3 * statistics.tick_p99, statistics.is_real_time ? "true" : "false",
-      static_cast<unsigned long long>(frames_.Count()), frames_.Rate(since_start_.Seconds()));
+      static_cast<unsigned long long>(frames_.Count()), frames_.Rate(since_start_.Seconds()),
+      haptics.empty() ? "" : ", \"haptics\": ", haptics.c_str());
   close();
 }
 

@@ -34,8 +34,10 @@ class SimulatorWindow : public Gtk::ApplicationWindow {
   void MakeContent();
   void StartLoading();
   void FinishLoading();
+  bool UseDevice();
   bool OnFrame(const Glib::RefPtr<Gdk::FrameClock>& clock);
   void OnDrawn();
+  void ShowHaptics();
   void OnAction(Action action);
   void Fail(const core::Error& error);
   void ShowSituation();
@@ -54,11 +56,13 @@ class SimulatorWindow : public Gtk::ApplicationWindow {
   Gtk::Button run_{"Start"}, reset_{"Reset"}, fullscreen_{"Full screen"}, quit_{"Quit"};
   Gtk::ToggleButton demonstration_{"Demonstration"}, forces_{"Forces"}, mask_{"Mask"},
       fulcrum_{"Real trocar"}, help_{"Help"};
+  Gtk::ToggleButton force_{"Force"};
+  Gtk::Button check_pose_{"Check pose"};
   Gtk::Overlay overlay_;
   Picture picture_;
   Panel panel_;
   HelpCard help_card_{KeyHelpRows()};
-  Gtk::Label badge_, hint_, event_, state_;
+  Gtk::Label badge_, hint_, event_, state_, haptics_;
   Gtk::Box failure_card_{Gtk::Orientation::VERTICAL};
   std::unique_ptr<HandEvents> hands_;
   bool is_showing_ = false;  // buttons are being set by us

@@ -164,6 +164,7 @@ void AddAnatomyCommand(CLI::App& app, Outcome& outcome) {
   AddAnatomyExportCommand(*anatomy, outcome);
   AddAnatomyRehearseCommand(*anatomy, outcome);
   AddAnatomyEditCommand(*anatomy, outcome);
+  AddAnatomyLabelEdgesCommand(*anatomy, outcome);
   AddAnatomyPhantomCommand(*anatomy, outcome);
   AddAnatomyViewCommand(*anatomy, outcome);
   AddAnatomyImagesCommand(*anatomy, outcome);

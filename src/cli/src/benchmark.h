@@ -51,6 +51,7 @@ std::span<const BenchmarkSuite> BenchmarkSuites() noexcept;
 core::Result<BenchmarkResult> RunAnatomyBenchmark(const BenchmarkOptions& options);
 core::Result<BenchmarkResult> RunCollisionBenchmark(const BenchmarkOptions& options);
 core::Result<BenchmarkResult> RunContoursBenchmark(const BenchmarkOptions& options);
+core::Result<BenchmarkResult> RunHapticsBenchmark(const BenchmarkOptions& options);
 core::Result<BenchmarkResult> RunTissueBenchmark(const BenchmarkOptions& options);
 core::Result<BenchmarkResult> RunTissueCudaBenchmark(const BenchmarkOptions& options);
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "benchmark.h"
+#include "collision_tree_benchmark.h"
 #include "trocar/collision/brute_force.h"
 #include "trocar/geometry/mesh_measures.h"
 #include "trocar/geometry/primitives.h"
@@ -156,7 +157,8 @@ core::Status RunMesh(const std::string& name, const TriangleMesh& mesh, const Be
 
 core::Result<BenchmarkResult> RunCollisionBenchmark(const BenchmarkOptions& options) {
   BenchmarkResult result;
-  // a ball with as many triangles as the paper's liver (5132), which needs no file
+  if (core::Status status = AddTreeBenchmark(options, result); !status) return status.error();
+  // the paper's hierarchy, greedy and exact, on a ball with as many triangles as the paper's liver (5132), which needs no file
   if (core::Status status = RunMesh("sphere", geometry::MakeSphere({0, 0, 0}, 0.1, 4), options, result);
       !status) {
     return status.error();

@@ -11,6 +11,9 @@
 namespace CLI {
 class App;
 }
+namespace trocar::device {
+struct DeviceStore;
+}
 
 namespace trocar::cli {
 
@@ -34,11 +37,20 @@ void AddAnatomyContoursCommand(CLI::App& anatomy, Outcome& outcome);
 void AddAnatomyExportCommand(CLI::App& anatomy, Outcome& outcome);
 void AddAnatomyRehearseCommand(CLI::App& anatomy, Outcome& outcome);
 void AddAnatomyEditCommand(CLI::App& anatomy, Outcome& outcome);
+void AddAnatomyLabelEdgesCommand(CLI::App& anatomy, Outcome& outcome);
 void AddAnatomyPhantomCommand(CLI::App& anatomy, Outcome& outcome);
 void AddAnatomyViewCommand(CLI::App& anatomy, Outcome& outcome);
 void AddAnatomyImagesCommand(CLI::App& anatomy, Outcome& outcome);
+void AddDevicesCommand(CLI::App& app, Outcome& outcome);
+/// Below `trocar devices`.
+void AddDevicesCalibrateCommand(CLI::App& devices, Outcome& outcome);
+void AddDevicesEmulateCommand(CLI::App& devices, Outcome& outcome);
+/// The person's settings of devices; where their file is bad, the defaults and a warning.
+device::DeviceStore LoadStoreOrWarn();
 void AddBenchCommand(CLI::App& app, Outcome& outcome);
 void AddReproduceCommand(CLI::App& app, Outcome& outcome);
+/// Below `trocar reproduce`.
+void AddReportCardCommand(CLI::App& reproduce, Outcome& outcome);
 void AddDoctorCommand(CLI::App& app, Outcome& outcome);
 void AddErrorsCommand(CLI::App& app, Outcome& outcome);
 

@@ -16,6 +16,7 @@
 
 #include "command.h"
 #include "console.h"
+#include "device_input.h"
 #include "motion_log.h"
 #include "report.h"
 #include "trocar/core/safe_file.h"
@@ -31,6 +32,7 @@ namespace fs = std::filesystem;
 struct DemoArguments {
   std::string scene;
   std::string patient;  // in place of the scene's
+  std::string device;   // in place of the script's hands
   std::string output = "out/demo";
   std::string size = "1280x720";
   double seconds = 0;
@@ -175,6 +177,13 @@ core::Status Play(const DemoArguments& arguments) {
   options.output_folder = part.Path();
   MotionLog log(**scene, arguments.seconds > 0 ? arguments.seconds + 1 : (*scene)->script.Duration() + 1);
   options.on_tick = [&](const session::Snapshot& snapshot) { log.Record(snapshot); };
+  std::unique_ptr<DeviceInput> device;
+  if (!arguments.device.empty()) {
+    auto opened = DeviceInput::Open(arguments.device, **scene);
+    if (!opened) return opened.error();
+    device = std::move(*opened);
+    options.change_input = [&](double time, session::Input& input) { device->Apply(time, input); };
+  }
   ProgressBar progress("playing", 1.0);
   options.on_progress = [&](double done) { progress.Show(done); };
   const core::Result<view::DemoReport> played = view::PlayDemonstration(*scene, options);
@@ -205,6 +214,10 @@ void AddDemoCommand(CLI::App& app, Outcome& outcome) {
       ->type_name("FILE");
   command->add_option("--patient", arguments->patient, "Patient folder in place of the scene's")
       ->type_name("PATIENT");
+  command
+      ->add_option("--device", arguments->device,
+                   "Hands of a device in place of the script's; play:FILE repeats a recording bit for bit")
+      ->type_name("DEVICE");
   command->add_option("-o,--output", arguments->output, "Folder to write")
       ->type_name("DIR")
       ->capture_default_str();

@@ -259,6 +259,18 @@ Finding CheckImageReader(const fs::path& program_folder) {
           "build it: run ./run, or ninja trocar-import"};
 }
 
+Finding CheckSupervisor(const fs::path& program_folder) {
+  for (const fs::path& program : {program_folder / "trocar-supervisor",
+                                  program_folder.parent_path() / "libexec/trocar/trocar-supervisor"}) {
+    if (::access(program.c_str(), X_OK) == 0)
+      return {"haptics", Health::kGood, "trocar-supervisor can be started", "haptic devices may push back",
+              ""};
+  }
+  return {"haptics", Health::kLimited, "trocar-supervisor is not beside this program",
+          "haptic devices move the tools, but without force",
+          "build it: run ./run, or ninja trocar-supervisor"};
+}
+
 Finding CheckRealTime() {
   rlimit limit{};
   ::getrlimit(RLIMIT_RTPRIO, &limit);
@@ -352,6 +364,7 @@ std::vector<Finding> CheckAll() {
           CheckDisplay(),
           CheckWindow(FindProgramFolder()),
           CheckImageReader(FindProgramFolder()),
+          CheckSupervisor(FindProgramFolder()),
           CheckGpu(),
           CheckRealTime(),
           CheckInputDevices("/"),

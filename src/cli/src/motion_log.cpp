@@ -57,6 +57,8 @@ void MotionLog::Record(const session::Snapshot& snapshot) {
       case EventKind::kStateRestored:
       case EventKind::kOrganFrozen:
       case EventKind::kTear:
+      case EventKind::kPinchDamage:
+      case EventKind::kToolsTouch:
         break;
     }
   }

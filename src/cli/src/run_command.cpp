@@ -75,6 +75,7 @@ int ParseAndRun(int argc, char** argv) {
   AddDemoCommand(app, outcome);
   AddSimulateCommand(app, outcome);
   AddAnatomyCommand(app, outcome);
+  AddDevicesCommand(app, outcome);
   AddBenchCommand(app, outcome);
   AddReproduceCommand(app, outcome);
   AddDoctorCommand(app, outcome);

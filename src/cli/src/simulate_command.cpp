@@ -14,9 +14,11 @@
 
 #include "command.h"
 #include "console.h"
+#include "device_input.h"
 #include "trocar/core/clock.h"
 #include "trocar/core/log.h"
 #include "trocar/core/statistics.h"
+#include "trocar/net/igtl_server.h"
 #include "trocar/session/simulation.h"
 
 namespace trocar::cli {
@@ -25,6 +27,8 @@ namespace {
 struct SimulateOptions {
   std::string scene;
   std::string patient;  // in place of the scene's
+  std::string device;   // in place of the script's hands
+  int igtl_port = -1;   // -1: nobody looks on
   int ticks = 0;
   std::uint64_t seed = 0;
   bool has_seed = false;
@@ -70,6 +74,23 @@ core::Result<SimulateReport> Simulate(const SimulateOptions& options) {
       scene, options.threads, options.uses_gpu ? session::SolveOn::kGpu : session::SolveOn::kProcessor);
   if (!made) return made.error();
   session::Simulation simulation = std::move(made).value();
+  std::unique_ptr<DeviceInput> device;
+  if (!options.device.empty()) {
+    auto opened = DeviceInput::Open(options.device, *scene);
+    if (!opened) return opened.error();
+    device = std::move(*opened);
+  }
+
+  std::unique_ptr<net::IgtlServer> server;
+  if (options.igtl_port >= 0) {
+    net::IgtlServerSettings settings;
+    settings.port = options.igtl_port;
+    auto listening = net::IgtlServer::Make(settings, simulation.Surfaces());
+    if (!listening) return listening.error();
+    server = std::move(*listening);
+    core::Log(core::LogLevel::kInfo,
+              "OpenIGTLink: viewers may connect to localhost:" + std::to_string(server->Port()));
+  }
 
   const auto count = static_cast<std::size_t>(options.ticks);
   std::array<std::vector<double>, session::kStageCount> stage_ms;
@@ -79,7 +100,8 @@ core::Result<SimulateReport> Simulate(const SimulateOptions& options) {
   SimulateReport report;
   ProgressBar progress("simulating", options.ticks);
   for (int tick = 0; tick < options.ticks; ++tick) {
-    const session::Input input = session::CalcScriptInput(*scene, simulation.GetSnapshot().time);
+    session::Input input = session::CalcScriptInput(*scene, simulation.GetSnapshot().time);
+    if (device != nullptr) device->Apply(simulation.GetSnapshot().time, input);
     const core::Stopwatch stopwatch;
     simulation.Step(input);
     tick_ms.push_back(1e3 * stopwatch.Seconds());
@@ -88,10 +110,14 @@ core::Result<SimulateReport> Simulate(const SimulateOptions& options) {
     for (const auto& instrument : snapshot.instruments) {
       report.max_force_n = std::max(report.max_force_n, math::Norm(instrument.force));
     }
+    if (server != nullptr) server->Publish(snapshot);
     WarnOnce(simulation, report.gpu);
     progress.Show(tick + 1);
   }
   progress.Finish();
+  if (device != nullptr) {
+    if (const core::Status whole = device->Check(); !whole) return whole.error();
+  }
 
   if (report.gpu.empty()) report.gpu = simulation.GpuName();
   report.hash = FormatHash(simulation.Hash());
@@ -155,6 +181,16 @@ void AddSimulateCommand(CLI::App& app, Outcome& outcome) {
       ->check(CLI::Range(1, 256))
       ->type_name("T")
       ->capture_default_str();
+  command
+      ->add_option("--device", options->device,
+                   "Hands of a device in place of the script's; play:FILE repeats a recording bit for bit")
+      ->type_name("DEVICE");
+  command
+      ->add_option(
+          "--igtl", options->igtl_port,
+          "Show tools and organs to 3D Slicer on this port of this machine (OpenIGTLink, RAS; 0: any port)")
+      ->check(CLI::Range(0, 65535))
+      ->type_name("PORT");
   command->add_flag("--gpu", options->uses_gpu,
                     "Solve on the GPU (single precision, so another hash); without one the processor does");
   command->add_flag("--json", options->is_json, "Machine-readable");

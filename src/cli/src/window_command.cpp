@@ -6,6 +6,7 @@
 
 #include "command.h"
 #include "start_window.h"
+#include "trocar/device/force_device_spec.h"
 
 namespace trocar::cli {
 
@@ -14,10 +15,25 @@ void AddWindowCommand(CLI::App& app, Outcome& outcome) {
   auto scene = std::make_shared<std::string>();
   command->add_option("scene", *scene, "Scene file (JSON); the built-in patient if not given")
       ->type_name("FILE");
-  command->footer("Example: trocar window scenes/demonstration.json");
-  command->callback([scene, &outcome] {
+  auto device = std::make_shared<std::string>();
+  command
+      ->add_option("--device", *device,
+                   "Hands of a tracker or other device (trocar devices list) in place of the mouse's, where "
+                   "it sees them")
+      ->type_name("DEVICE");
+  auto haptics = std::make_shared<std::string>();
+  command
+      ->add_option("--haptics", *haptics,
+                   "Hands of a haptic device, with force: " + device::ListForceDrivers())
+      ->type_name("DEVICE");
+  command->footer(
+      "Examples: trocar window scenes/demonstration.json\n"
+      "          trocar window --device liberty:/dev/ttyUSB0+jaw:/dev/ttyACM0");
+  command->callback([scene, device, haptics, &outcome] {
     std::vector<std::string> arguments;
     if (!scene->empty()) arguments = {"--scene", *scene};
+    if (!device->empty()) arguments.insert(arguments.end(), {"--device", *device});
+    if (!haptics->empty()) arguments.insert(arguments.end(), {"--haptics", *haptics});
     outcome.status = StartWindow(arguments);
   });
 }

@@ -103,6 +103,14 @@ TEST(CheckImageReader, SeesWhetherTheProgramIsThere) {
   EXPECT_EQ(CheckImageReader(folder.Path()).health, Health::kGood);
 }
 
+TEST(CheckSupervisor, SeesWhetherTheProgramIsThere) {
+  test::TemporaryFolder folder;
+  EXPECT_EQ(CheckSupervisor(folder.Path()).health, Health::kLimited);
+  ASSERT_TRUE(core::WriteFile(folder.Path() / "trocar-supervisor", "").ok());
+  std::filesystem::permissions(folder.Path() / "trocar-supervisor", std::filesystem::perms::owner_all);
+  EXPECT_EQ(CheckSupervisor(folder.Path()).health, Health::kGood);
+}
+
 TEST(CheckDataFolder, FindsTheBuiltInPatientAndMissesAnEmptyFolder) {
   ::setenv("TROCAR_DATA_DIR", TROCAR_SOURCE_DIR, 1);
   const Finding whole = CheckDataFolder();

@@ -55,6 +55,27 @@ TEST(FormatSvgPlot, LeavesAGapWhereAValueIsNotFinite) {
   EXPECT_EQ(std::count(path.begin(), path.begin() + static_cast<long>(path.find("/>")), 'M'), 2);
 }
 
+TEST(FindLogMarks, ArePowersOfTenWithTwosAndFivesWhereTheyAreFew) {
+  EXPECT_THAT(FindLogMarks(0.9, 1.1e4), ElementsAre(1, 10, 100, 1000, 10'000));
+  EXPECT_THAT(FindLogMarks(3, 60), ElementsAre(5, 10, 20, 50));
+}
+
+TEST(FormatSvgPlot, LogarithmicAxesMakePowersALineAndLeaveZeroOut) {
+  PlotSettings settings{"t", "x", "y"};
+  settings.is_log_x = settings.is_log_y = true;
+  const std::string svg = FormatSvgPlot(settings, {{"a", {{0, 1}, {1, 1}, {10, 100}, {100, 10'000}}}});
+  EXPECT_THAT(svg, HasSubstr("M82.9 209.1L344.0 123.0L605.1 36.9")) << svg;
+  EXPECT_THAT(svg, HasSubstr(">10000<"));
+}
+
+TEST(FormatSvgPlot, ALegendThatDoesNotFitBesideTheTitleStandsInAColumn) {
+  std::vector<PlotLine> lines;
+  for (int i = 0; i < 8; ++i) lines.push_back({"a line with a long name", {{0, 0}, {1, double(i)}}});
+  const std::string svg = FormatSvgPlot({"a title", "x", "y"}, lines);
+  EXPECT_THAT(svg, Not(HasSubstr("x=\"-")));
+  EXPECT_THAT(svg, HasSubstr("y=\"168.0\" text-anchor=\"start\"")) << "the eighth, 18 below each other";
+}
+
 TEST(FormatSvgPlot, SurvivesNothingAndOnePoint) {
   EXPECT_THAT(FormatSvgPlot({"t", "x", "y"}, {}), HasSubstr("</svg>"));
   EXPECT_THAT(FormatSvgPlot({"t", "x", "y"}, {{"a", {{5, 5}}}}), Not(HasSubstr("nan")));

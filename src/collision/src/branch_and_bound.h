@@ -47,6 +47,17 @@ inline void ConsiderForSegment(std::span<const Vec3> positions, const Triangle& 
           found.on_segment};
 }
 
+/// What the nearest triangle to a capsule's axis says of the capsule.
+inline CapsuleContact MakeCapsuleContact(const SegmentContact& axis, double radius) noexcept {
+  CapsuleContact contact;
+  contact.axis = axis;
+  if (!contact.Found()) return contact;
+  const Vec3 towards = math::Normalized(axis.nearest.point - axis.on_segment, {0, 0, 0});
+  contact.distance = std::sqrt(axis.nearest.squared_distance) - radius;
+  contact.on_capsule = axis.on_segment + radius * towards;
+  return contact;
+}
+
 /// Visits leaves, the nearer child first, and leaves out every node that the bound excludes.
 ///
 /// \param calc_bound  (box) -> no point in the box is nearer than this [m^2]

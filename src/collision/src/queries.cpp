@@ -86,14 +86,8 @@ CapsuleContact FindNearestToCapsule(const CentroidHierarchy& hierarchy, std::spa
                                     const Capsule& capsule, const SearchLimits& limits) noexcept {
   SearchLimits axis_limits = limits;
   axis_limits.max_distance += capsule.radius;
-  CapsuleContact contact;
-  contact.axis = FindNearestToSegment(hierarchy, positions, capsule.axis, axis_limits);
-  if (!contact.Found()) return contact;
-  const double axis_distance = std::sqrt(contact.axis.nearest.squared_distance);
-  const Vec3 towards = math::Normalized(contact.axis.nearest.point - contact.axis.on_segment, {0, 0, 0});
-  contact.distance = axis_distance - capsule.radius;
-  contact.on_capsule = contact.axis.on_segment + capsule.radius * towards;
-  return contact;
+  return MakeCapsuleContact(FindNearestToSegment(hierarchy, positions, capsule.axis, axis_limits),
+                            capsule.radius);
 }
 
 std::size_t FindTrianglesInCapsule(const CentroidHierarchy& hierarchy, std::span<const Vec3> positions,

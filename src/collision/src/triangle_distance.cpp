@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "trocar/collision/segment_distance.h"
+
 namespace trocar::collision {
 
 using math::Cross;
@@ -26,34 +28,6 @@ TrianglePoint PointOnSide(const Vec3* corners, int side, double t) {
                  : t >= 1.0 ? corners[next]
                             : (1.0 - t) * corners[side] + t * corners[next];
   return result;
-}
-
-/// Parameters of the nearest points of segments p0-p1 and q0-q1 (Ericson 2005, section 5.1.9).
-void FindNearestParameters(const Vec3& p0, const Vec3& p1, const Vec3& q0, const Vec3& q1, double& s,
-                           double& t) {
-  const Vec3 d1 = p1 - p0, d2 = q1 - q0, r = p0 - q0;
-  const double a = SquaredNorm(d1), e = SquaredNorm(d2), f = Dot(d2, r);
-  s = t = 0.0;
-  if (!(a > 0.0) && !(e > 0.0)) return;
-  if (!(a > 0.0)) {
-    t = std::clamp(f / e, 0.0, 1.0);
-    return;
-  }
-  const double c = Dot(d1, r);
-  if (!(e > 0.0)) {
-    s = std::clamp(-c / a, 0.0, 1.0);
-    return;
-  }
-  const double b = Dot(d1, d2), denominator = a * e - b * b;
-  if (denominator > 0.0) s = std::clamp((b * f - c * e) / denominator, 0.0, 1.0);
-  t = (b * s + f) / e;
-  if (t < 0.0) {
-    t = 0.0;
-    s = std::clamp(-c / a, 0.0, 1.0);
-  } else if (t > 1.0) {
-    t = 1.0;
-    s = std::clamp((b - c) / a, 0.0, 1.0);
-  }
 }
 
 }  // namespace

@@ -8,7 +8,10 @@
 #include <new>
 #include <vector>
 
+#include "trocar/collision/capsule_tree.h"
 #include "trocar/collision/queries.h"
+#include "trocar/collision/sweep.h"
+#include "trocar/collision/triangle_tree.h"
 #include "trocar/geometry/primitives.h"
 
 namespace {
@@ -77,6 +80,29 @@ TEST(RealTime, SearchesAndUpdatesAllocateNothing) {
   // the counter itself works
   const std::vector<int> memory(10);
   EXPECT_GT(allocations, before);
+}
+
+TEST(RealTime, TreesAllocateNothing) {
+  const geometry::TriangleMesh mesh = geometry::MakeSphere({0, 0, 0}, 0.1, 3);
+  const std::vector<TubePiece> pieces{{0, 9, 0.002}, {9, 20, 0.002}, {20, 33, 0.003}};
+  TriangleTree tree = TriangleTree::Make(mesh.positions, mesh.triangles).value();
+  CapsuleTree tubes = CapsuleTree::Make(mesh.positions, pieces).value();
+  std::uint32_t found[64];
+  const Capsule jaw{{{0.09, 0, 0}, {0.2, 0.05, 0.1}}, 0.01};
+
+  const int before = allocations;
+  tree.Update(mesh.positions);
+  tubes.Update(mesh.positions);
+  const bool is_found = tree.FindNearest(mesh.positions, {0.11, 0.01, 0.02}).Found() &&
+                        tree.FindNearestToCapsule(mesh.positions, jaw).Found() &&
+                        tubes.FindNearest(mesh.positions, jaw.axis).Found();
+  const std::size_t count = tree.FindWithin(mesh.positions, jaw, found);
+  (void)tubes.FindWithin(mesh.positions, jaw, found);
+  (void)SweepToSegment({jaw.axis, jaw.axis}, {jaw.axis, jaw.axis}, 0.001);
+  const bool is_rebuilt = tree.Rebuild(mesh.positions, mesh.triangles).ok();
+  EXPECT_EQ(allocations, before);
+  EXPECT_TRUE(is_found && is_rebuilt);
+  EXPECT_GT(count, 0u);
 }
 
 }  // namespace

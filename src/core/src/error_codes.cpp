@@ -68,6 +68,9 @@ constexpr ErrorEntry kTable[] = {
     {ErrorCode::kDeviceState, "E-DEV-003", "a device was asked for something out of turn"},
     {ErrorCode::kDeviceSettings, "E-DEV-004", "the settings of a device cannot work"},
     {ErrorCode::kForceRefused, "E-DEV-008", "a force was refused and the output disarmed"},
+    {ErrorCode::kDeviceBusy, "E-DEV-020", "a device or port is used by another program"},
+    {ErrorCode::kCalibrationPoor, "E-DEV-021", "a calibration does not fit what was measured"},
+    {ErrorCode::kDeviceUnsupported, "E-DEV-022", "this build lacks the library that a device needs"},
     {ErrorCode::kUsage, "E-CLI-001", "the command line is wrong"},
     {ErrorCode::kBenchmarkWrong, "E-BEN-001", "a benchmark's result is wrong, so its time means nothing"},
     {ErrorCode::kGpuMissing, "E-GPU-001", "there is no NVIDIA GPU, no driver, or no GPU code in this build"},
@@ -75,6 +78,17 @@ constexpr ErrorEntry kTable[] = {
     {ErrorCode::kGpuFailed, "E-GPU-003", "the GPU failed; the processor goes on"},
     {ErrorCode::kGpuMemory, "E-GPU-004", "the GPU has not enough memory"},
     {ErrorCode::kGpuLayout, "E-GPU-005", "a memory layout cannot hold this tissue or load"},
+    {ErrorCode::kHapticNotArmed, "E-HAP-001", "force feedback is not armed"},
+    {ErrorCode::kHapticSamplesBad, "E-HAP-002", "a haptic device sends nonsense"},
+    {ErrorCode::kHapticJump, "E-HAP-003", "a haptic device's position jumped"},
+    {ErrorCode::kHapticOverrun, "E-HAP-004", "the haptic loop stood still"},
+    {ErrorCode::kHapticSupervisor, "E-HAP-005", "the haptic supervisor is missing, gone, or had to stop the force"},
+    {ErrorCode::kHapticWarm, "E-HAP-006", "the motors of a haptic device are too hot"},
+    {ErrorCode::kHapticDeadMan, "E-HAP-007", "nobody holds the safety switch of a haptic device"},
+    {ErrorCode::kHapticCheckPose, "E-HAP-008", "it is not confirmed which haptic device is which hand"},
+    {ErrorCode::kHapticNotCalibrated, "E-HAP-009", "a haptic device is not calibrated"},
+    {ErrorCode::kHapticOverspeed, "E-HAP-010", "a haptic device ran away with its force"},
+    {ErrorCode::kHapticSimulation, "E-HAP-011", "the simulation has no good tissue state for the haptic loop"},
 };
 static_assert(std::size(kTable) == static_cast<std::size_t>(ErrorCode::kCount));
 

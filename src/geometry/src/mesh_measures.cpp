@@ -73,6 +73,10 @@ Vec3 CalcAreaNormal(std::span<const Vec3> positions, const Triangle& t) {
   return Cross(positions[t[1]] - positions[t[0]], positions[t[2]] - positions[t[0]]);
 }
 
+double CalcSmallestAngle(const Vec3& a, const Vec3& b, const Vec3& c) noexcept {
+  return std::min({CalcAngle(b - a, c - a), CalcAngle(c - b, a - b), CalcAngle(a - c, b - c)});
+}
+
 double CalcArea(std::span<const Vec3> positions, std::span<const Triangle> triangles) {
   double twice = 0;
   for (const Triangle& t : triangles) twice += Norm(CalcAreaNormal(positions, t));

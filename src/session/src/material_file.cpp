@@ -14,6 +14,14 @@ void ReadFigures(const core::JsonView& view, OrganMaterial& material) {
   material.density = view.NumberOr("density_kg_m3", 1060.0, {0.0, 20'000.0});
   material.failure_strain = view.NumberOr("failure_strain", material.failure_strain, {1e-9, 100.0});
   material.failure_force = view.NumberOr("failure_force_n", material.failure_force, {1e-9, 1000.0});
+  tissue::SpringLaw& law = material.wall_law;
+  law.stiffening = view.NumberOr("stiffening", law.stiffening, {0.0, 1e4});
+  law.stiffening_strain = view.NumberOr("stiffening_strain", law.stiffening_strain, {0.0, 10.0});
+  law.failure_strain = view.NumberOr("wall_failure_strain", law.failure_strain, {1e-3, 100.0});
+  law.damage_rate = view.NumberOr("wall_damage_per_s", law.damage_rate, {0.0, 1e6});
+  law.damage_exponent = view.NumberOr("wall_damage_exponent", law.damage_exponent, {1.0, 100.0});
+  if (law.damage_rate > 0.0 && !view.Has("wall_failure_strain"))
+    view.Complain("wall_damage_per_s needs wall_failure_strain, under whose tension it counts");
   material.internal_pressure = view.NumberOr("internal_pressure_pa", 0.0, {-20e3, 20e3});
 }
 
@@ -23,7 +31,8 @@ core::Result<OrganMaterial> ReadMaterialFile(const std::filesystem::path& path) 
   const core::JsonView root = document->Root();
   root.AllowOnly({"format", "version", "about", "young_modulus_pa", "wall_thickness_mm",
                   "foundation_modulus_pa", "foundation_depth_mm", "density_kg_m3", "failure_strain",
-                  "failure_force_n", "internal_pressure_pa", "sources"});
+                  "failure_force_n", "internal_pressure_pa", "stiffening", "stiffening_strain",
+                  "wall_failure_strain", "wall_damage_per_s", "wall_damage_exponent", "sources"});
   if (root.Text("format") != "trocar-material") root.Complain("format must be \"trocar-material\"");
   if (root.Integer("version") != 1) root.Complain("version must be 1");
   OrganMaterial material;
@@ -56,7 +65,8 @@ core::Result<OrganMaterial> ReadMaterial(const core::JsonView& view, const std::
   } else {
     view.AllowOnly({"organ", "young_modulus_pa", "wall_thickness_mm", "foundation_modulus_pa",
                     "foundation_depth_mm", "density_kg_m3", "failure_strain", "failure_force_n",
-                    "internal_pressure_pa", "source"});
+                    "internal_pressure_pa", "stiffening", "stiffening_strain", "wall_failure_strain",
+                    "wall_damage_per_s", "wall_damage_exponent", "source"});
     ReadFigures(view, material);
     material.source = view.Text("source");
   }

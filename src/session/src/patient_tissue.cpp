@@ -9,6 +9,7 @@
 #include "pathology.h"
 #include "trocar/geometry/mesh_measures.h"
 #include "trocar/geometry/mesh_topology.h"
+#include "trocar/surgery/topology_change.h"
 #include "trocar/tissue/material.h"
 
 namespace trocar::session {
@@ -30,31 +31,23 @@ core::Error MissingMaterial(const std::string& name) {
           "the scene has no material for \"" + name + "\"; add one to \"materials\""};
 }
 
-/// Edges and bending springs, which share the wall's modulus.
-void AddWall(const geometry::TriangleMesh& mesh, const OrganMaterial& material, std::uint32_t first,
-             tissue::TissueDefinition& definition) {
-  const double modulus = material.young_modulus * material.wall_thickness;
-  const double mean_area = geometry::CalcArea(mesh.positions, mesh.triangles) / mesh.triangles.size();
-  const double share =
+/// What an organ's wall is made of, by area.
+surgery::WallMaterial CalcWallMaterial(const geometry::TriangleMesh& mesh, const OrganMaterial& material,
+                                       tissue::TissueDefinition& definition) {
+  const double area = geometry::CalcArea(mesh.positions, mesh.triangles);
+  const double mean_area = area / mesh.triangles.size();
+  surgery::WallMaterial wall;
+  wall.membrane_modulus = material.young_modulus * material.wall_thickness;
+  wall.bending_share =
       tissue::CalcBendingShare(material.wall_thickness, std::sqrt(std::sqrt(3.0) * mean_area));
-  const auto edges = geometry::FindEdges(mesh.triangles);
-  auto stiffness = tissue::CalcEdgeStiffness(mesh.positions, mesh.triangles, edges, (1.0 - share) * modulus);
-  const auto add = [&](std::uint32_t a, std::uint32_t b, double k) {
-    definition.springs.push_back(
-        {first + a, first + b, k, math::Distance(mesh.positions[a], mesh.positions[b])});
-  };
-  std::vector<tissue::BendingSpring> across;
-  if (share > 0.0) across = tissue::CalcBendingSprings(mesh.positions, mesh.triangles, share * modulus);
-  for (const tissue::BendingSpring& bending : across) {
-    // corners that an edge joins already, around a vertex of three triangles, keep that one spring
-    const auto at = std::lower_bound(edges.begin(), edges.end(), geometry::Edge{bending.a, bending.b});
-    if (at != edges.end() && *at == geometry::Edge{bending.a, bending.b}) {
-      stiffness[static_cast<std::size_t>(at - edges.begin())] += bending.stiffness;
-    } else {
-      add(bending.a, bending.b, bending.stiffness);
-    }
+  wall.foundation = material.foundation_modulus / material.depth;
+  // the organ's mass, shared out by area
+  wall.mass_by_area = material.density * geometry::CalcVolume(mesh.positions, mesh.triangles) / area;
+  if (!(material.wall_law == tissue::SpringLaw{})) {
+    wall.law = static_cast<std::uint32_t>(definition.laws.size());
+    definition.laws.push_back(material.wall_law);
   }
-  for (std::size_t i = 0; i < edges.size(); ++i) add(edges[i][0], edges[i][1], stiffness[i]);
+  return wall;
 }
 
 /// Only a closed surface has a volume to keep.
@@ -67,7 +60,8 @@ core::Status CheckClosed(const anatomy::Organ& organ) {
                          ", so its volume cannot be kept; look at it with trocar anatomy check"};
 }
 
-void AddOrgan(const anatomy::Organ& organ, const OrganMaterial& material, PatientTissue& made) {
+void AddOrgan(const anatomy::Organ& organ, const OrganMaterial& material, const SpareNodes& spare,
+              PatientTissue& made) {
   auto& definition = made.definition;
   const auto first = static_cast<std::uint32_t>(definition.rest.size());
   const auto& mesh = organ.mesh;
@@ -77,15 +71,19 @@ void AddOrgan(const anatomy::Organ& organ, const OrganMaterial& material, Patien
   made.conservation.organs.push_back(
       {first, static_cast<std::uint32_t>(mesh.positions.size()), mesh.triangles, tissue::kBileDensity});
 
+  const surgery::WallMaterial wall = CalcWallMaterial(mesh, material, definition);
+  made.walls.push_back(wall);
   const auto areas = geometry::CalcVertexAreas(mesh.positions, mesh.triangles);
   const auto foundation = tissue::CalcFoundationStiffness(areas, material.foundation_modulus, material.depth);
   definition.shape_stiffness.insert(definition.shape_stiffness.end(), foundation.begin(), foundation.end());
-  // the organ's mass, shared out by area
-  const double mass_per_area = material.density * geometry::CalcVolume(mesh.positions, mesh.triangles) /
-                               geometry::CalcArea(mesh.positions, mesh.triangles);
-  for (const double area : areas) definition.mass.push_back(mass_per_area * area);
-
-  AddWall(mesh, material, first, definition);
+  for (const double area : areas) definition.mass.push_back(wall.mass_by_area * area);
+  for (tissue::Spring spring : surgery::CalcWallSprings(mesh, wall)) {
+    spring.a += first, spring.b += first;
+    definition.springs.push_back(spring);
+  }
+  made.spring_organs.resize(definition.springs.size(), static_cast<std::int32_t>(made.surfaces.size() - 1));
+  // room for what cuts add: they follow the organ's nodes, so that these stay in one piece
+  if (spare.by_organ > 0) surgery::AddSpareNodes(spare.by_organ, definition);
   for (const anatomy::Region& region : organ.regions) {
     const bool is_fixed = region.name == anatomy::kDiaphragmaticFace || region.name == anatomy::kFalciform ||
                           region.name == anatomy::kCoronary;
@@ -201,7 +199,7 @@ void TieTubes(const Scene& scene, std::span<const OrganMaterial> materials, Pati
 
 }  // namespace
 
-core::Result<PatientTissue> MakePatientTissue(const Scene& scene) {
+core::Result<PatientTissue> MakePatientTissue(const Scene& scene, const SpareNodes& spare) {
   const Pathology pathology = CalcPathology(scene.patient);
   const auto materials = CalcPatientMaterials(scene, pathology);
   PatientTissue made;
@@ -215,7 +213,7 @@ core::Result<PatientTissue> MakePatientTissue(const Scene& scene) {
     const OrganMaterial* material = FindMaterial(materials, organ.name);
     if (material == nullptr) return MissingMaterial(organ.name);
     if (const auto closed = CheckClosed(organ); !closed.ok()) return closed.error();
-    AddOrgan(organ, *material, made);
+    AddOrgan(organ, *material, spare, made);
     made.internal_pressure.push_back(material->internal_pressure);
   }
   if (!scene.patient.attachments.empty()) {
@@ -231,6 +229,7 @@ core::Result<PatientTissue> MakePatientTissue(const Scene& scene) {
     AddTube(tube, *material, made);
   }
   TieTubes(scene, materials, made);
+  if (spare.tubes > 0) surgery::AddSpareNodes(spare.tubes, made.definition);
   return made;
 }
 

@@ -6,6 +6,7 @@
 
 #include "trocar/session/scene.h"
 #include "trocar/session/simulation.h"
+#include "trocar/surgery/wall.h"
 #include "trocar/tissue/conservation.h"
 #include "trocar/tissue/tissue_model.h"
 
@@ -17,8 +18,16 @@ struct PatientTissue {
       conservation;                    ///< every organ keeps its volume; bed strands bind, tube ends turn
   std::vector<double> max_elongation;  ///< (strands) at which each tears [m]
   std::vector<std::int32_t> strand_organs;  ///< (strands) index into Patient::organs that it holds, or -1
+  std::vector<std::int32_t> spring_organs;  ///< (walls' springs, which come first) index into Patient::organs
   std::vector<double> internal_pressure;    ///< (organs) under which each is filled at the start [Pa]
   std::vector<SurfaceInfo> surfaces;        ///< organs, then tubes
+  std::vector<surgery::WallMaterial> walls;  ///< (organs) what a cut makes new springs from
+};
+
+/// Nodes that cuts may use, see surgery::AddSpareNodes: after each organ's own, and at the end.
+struct SpareNodes {
+  std::uint32_t by_organ = 0;
+  std::uint32_t tubes = 0;
 };
 
 /// Nodes: every organ's vertices, then every tube's centre line. Springs: mesh edges by van Gelder, tubes
@@ -27,6 +36,6 @@ struct PatientTissue {
 /// leave the scene. The patient's diseases change materials and add adhesions (pathology.h).
 ///
 /// \return kSceneInvalid when a material is missing, an organ is not closed, or there are too many
-core::Result<PatientTissue> MakePatientTissue(const Scene& scene);
+core::Result<PatientTissue> MakePatientTissue(const Scene& scene, const SpareNodes& spare = {});
 
 }  // namespace trocar::session

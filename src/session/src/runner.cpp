@@ -39,9 +39,10 @@ bool AskForRealTime() noexcept {
 }  // namespace
 
 struct Runner::Content {
-  explicit Content(Simulation taken) : simulation(std::move(taken)) {}
+  Content(Simulation taken, HapticLink* link) : simulation(std::move(taken)), haptics(link) {}
 
   Simulation simulation;
+  HapticLink* haptics;
   core::NewestSlot<Input> input_slot;
   core::NewestSlot<Snapshot> snapshot_slot;
   std::atomic<bool> is_stopping{false}, is_paused{true}, is_scripted{false};
@@ -54,6 +55,21 @@ struct Runner::Content {
   void Publish() {
     snapshot_slot.Back() = simulation.GetSnapshot();
     snapshot_slot.Publish();
+  }
+  void TakeHapticHands(Input& input) {
+    if (haptics == nullptr || !haptics->is_used.load(std::memory_order_relaxed)) return;
+    haptics->hands.Update();
+    const HapticHands& hands = haptics->hands.Front();
+    for (int hand = 0; hand < kHandCount; ++hand) {
+      if (hands.is_driven[hand]) input.hands[hand] = hands.joints[hand];
+    }
+  }
+  void PublishPatches() {
+    if (haptics == nullptr || !haptics->is_used.load(std::memory_order_relaxed)) return;
+    for (const Hand hand : {kLeft, kRight}) {
+      simulation.CutPatch(hand, haptics->patches[hand].Back());
+      haptics->patches[hand].Publish();
+    }
   }
   void Run();
 };
@@ -79,7 +95,11 @@ void Runner::Content::Run() {
       if (is_scripted.load(std::memory_order_relaxed)) {
         now.hands = CalcScriptInput(simulation.GetScene(), simulation.GetSnapshot().time).hands;
       }
+      // while the script moves the tools, nothing of theirs may be felt
+      const bool is_felt = !is_scripted.load(std::memory_order_relaxed);
+      if (is_felt) TakeHapticHands(now);
       simulation.Step(now);
+      if (is_felt) PublishPatches();
       Publish();
       ticks.fetch_add(1, std::memory_order_relaxed);
       durations.push_back(simulation.GetSnapshot().tick_seconds);
@@ -101,7 +121,8 @@ void Runner::Content::Run() {
   }
 }
 
-Runner::Runner(Simulation simulation) : content_(std::make_unique<Content>(std::move(simulation))) {
+Runner::Runner(Simulation simulation, HapticLink* haptics)
+    : content_(std::make_unique<Content>(std::move(simulation), haptics)) {
   content_->Publish();
   content_->snapshot_slot.Update();
   content_->thread = std::thread([content = content_.get()] { content->Run(); });

@@ -6,11 +6,11 @@
 #include <utility>
 
 #include "patient_tissue.h"
+#include "tool_contacts.h"
 #include "trocar/core/clock.h"
 #include "trocar/core/state_hash.h"
-#include "trocar/surgery/contact.h"
+#include "trocar/geometry/mesh_measures.h"
 #include "trocar/surgery/grasp.h"
-#include "trocar/surgery/organ_surface.h"
 #include "trocar/tissue/conservation.h"
 #include "trocar/tissue/damage.h"
 #include "trocar/tissue/equilibrium.h"
@@ -59,7 +59,10 @@ struct Simulation::Content {
   std::vector<std::int32_t> strand_organs;
   tissue::TissueState tissue_at_start;
   tissue::ConservationState conserved_at_start;
-  surgery::ContactSettings contact_settings;
+  std::vector<std::int32_t> spring_organs;  // (springs) organ whose wall it is part of, or -1
+  std::vector<double> spring_areas;         // (springs) part of that organ's surface [m^2]
+  bool walls_tear = false;
+  std::int32_t hollow_organ = -1;  // leaks when its wall tears
   surgery::GraspSettings grasp_settings;
 
   // state
@@ -67,7 +70,7 @@ struct Simulation::Content {
   tissue::TissueState tissue;
   tissue::ConservationState conserved;
   std::array<instrument::TrocarJoints, kHandCount> joints;
-  std::array<surgery::ToolSamples, kHandCount> samples;
+  ToolContacts touch;
   std::array<surgery::Grasp, kHandCount> grasps;
   std::unique_ptr<tissue::StateGuard> guard;
 
@@ -75,26 +78,28 @@ struct Simulation::Content {
   std::unique_ptr<tissue::EquilibriumSolver> solver;
   const tissue_cuda::GpuOrCpuSolver* gpu_solver = nullptr;  // the same, where the GPU was asked for
   std::unique_ptr<tissue::Conservation> conservation;
-  std::vector<surgery::OrganSurface> organs;
-  surgery::ContactSet contacts;
   LiveSettings settings;
   tissue::TissueLoad load;
   tissue::SolveReport report;
   tissue::ConservationState good_conserved;             // after the last good tick
   std::vector<tissue::NodeCondition> solved_condition;  // a grasp may slip once the forces are known
-  std::array<Pose, kHandCount> X_world_tools;
   std::array<surgery::GraspChange, kHandCount> changes{};
   std::array<std::int32_t, kHandCount> changed_organs{};
   std::array<Vec3, kHandCount> forces;
   std::array<std::int32_t, kHandCount> touched_organs{};
   tissue::GuardVerdict verdict = tissue::GuardVerdict::kGood;
   bool was_frozen = false;
+  bool were_tools_touching = false;
   std::array<std::uint32_t, 8> torn{};  // lowest of the strands that tore in this tick
   std::size_t torn_count = 0;
+  std::vector<std::uint32_t> torn_springs;  // (springs) those of the walls that tore in this tick, first
+  std::size_t torn_spring_count = 0;
   Snapshot snapshot;
+  std::unique_ptr<haptics::PatchCutter> patch_cutter;
 
   void ReadInputs(const Input& input) noexcept;
   void MoveInstruments(const Input& input) noexcept;
+  ToolsNow GetTools() const noexcept;
   void FindContacts() noexcept;
   void ActOnTissue() noexcept;
   void Solve() noexcept;
@@ -104,6 +109,7 @@ struct Simulation::Content {
   void Publish(const Input& input) noexcept;
   void Note(EventKind kind, int hand, std::int32_t organ, double force) noexcept;
   void TearTissue() noexcept;
+  void SetWalls(const tissue::TissueDefinition& definition, std::vector<std::int32_t> organs_of_springs);
   core::Status Fill(const std::vector<double>& internal_pressure);
   void Reset();
   void MakeSolver(int threads, SolveOn solve_on);
@@ -125,33 +131,33 @@ void Simulation::Content::MoveInstruments(const Input& input) noexcept {
     limits.max_jaw = setup.tool.max_jaw;
     joints[hand] = instrument::LimitSpeed(joints[hand], instrument::ClampJoints(input.hands[hand], limits),
                                           kMaxTipSpeed, kMaxTurnRate, scene->tick_seconds);
-    X_world_tools[hand] = instrument::CalcToolPose(setup.p_world_port, joints[hand]);
   }
 }
 
+ToolsNow Simulation::Content::GetTools() const noexcept {
+  ToolsNow now{joints, {}};
+  for (int hand = 0; hand < kHandCount; ++hand) now.grasped_surfaces[hand] = grasps[hand].surface;
+  return now;
+}
+
 void Simulation::Content::FindContacts() noexcept {
-  contacts.Clear();
-  for (int hand = 0; hand < kHandCount; ++hand) {
-    surgery::FindContacts(scene->instruments[hand].tool, X_world_tools[hand], joints[hand].jaw,
-                          static_cast<std::uint8_t>(hand), organs, tissue.position, contact_settings,
-                          grasps[hand].organ, samples[hand], contacts);
-  }
-  load.contacts = contacts.springs;
+  load.contacts = touch.Find(*scene, GetTools(), tissue);
 }
 
 void Simulation::Content::ActOnTissue() noexcept {
   for (int hand = 0; hand < kHandCount; ++hand) {
-    const std::int32_t held = grasps[hand].organ;
-    changes[hand] = surgery::UpdateGrasp(scene->instruments[hand].tool, X_world_tools[hand], joints[hand].jaw,
-                                         organs, tissue_model, grasp_settings, grasps[hand], tissue);
-    changed_organs[hand] = changes[hand] == surgery::GraspChange::kReleased ? held : grasps[hand].organ;
+    const std::int32_t held = grasps[hand].surface;
+    changes[hand] = surgery::UpdateGrasp(scene->instruments[hand].tool, touch.Proxy(hand), touch.Device(hand),
+                                         joints[hand].jaw, touch.Organs(), &touch.Tubes(), tissue_model,
+                                         grasp_settings, grasps[hand], tissue);
+    changed_organs[hand] = changes[hand] == surgery::GraspChange::kReleased ? held : grasps[hand].surface;
   }
   // nodes that a tool presses are the paper's second condition
   for (std::size_t i = 0; i < tissue.condition.size(); ++i) {
     if (tissue.condition[i] == tissue::NodeCondition::kExternalForce)
       tissue.condition[i] = tissue::NodeCondition::kFree;
   }
-  for (const auto& spring : contacts.springs) {
+  for (const auto& spring : load.contacts) {
     if (!(tissue::CalcContactDepth(spring, tissue.position) > 0.0)) continue;
     for (const auto node : spring.nodes) {
       if (tissue.condition[node] == tissue::NodeCondition::kFree)
@@ -176,18 +182,18 @@ void Simulation::Content::CheckState() noexcept {
   } else {
     conserved = good_conserved;
   }
+  const bool is_good = verdict == tissue::GuardVerdict::kGood;
+  const auto touched = touch.CalcTouch(tissue, is_good);
   for (int hand = 0; hand < kHandCount; ++hand) {
-    const auto contact =
-        surgery::CalcContactReaction(contacts, static_cast<std::uint8_t>(hand), tissue.position);
     const Vec3 held = solver->CalcReaction(load, tissue, grasps[hand].Nodes());
-    touched_organs[hand] = grasps[hand].IsHolding() ? grasps[hand].organ : contact.organ;
-    forces[hand] = verdict == tissue::GuardVerdict::kGood ? contact.force + held : Vec3{};
-    if (verdict != tissue::GuardVerdict::kGood) continue;
-    const std::int32_t organ = grasps[hand].organ;
+    touched_organs[hand] = grasps[hand].IsHolding() ? grasps[hand].surface : touched[hand].surface;
+    forces[hand] = is_good ? touched[hand].force + held : Vec3{};
+    if (!is_good) continue;
+    const std::int32_t surface = grasps[hand].surface;
     if (surgery::UpdateSlip(math::Norm(held), grasp_settings, tissue_model, grasps[hand], tissue) ==
         surgery::GraspChange::kSlipped) {
       changes[hand] = surgery::GraspChange::kSlipped;
-      changed_organs[hand] = organ;
+      changed_organs[hand] = surface;
     }
   }
 }
@@ -196,10 +202,19 @@ void Simulation::Content::TearTissue() noexcept {
   torn_count = verdict == tissue::GuardVerdict::kGood
                    ? tissue::TearStrands(tissue_model, max_elongation, tissue, torn)
                    : 0;
+  torn_spring_count = 0;
+  if (!walls_tear || verdict != tissue::GuardVerdict::kGood) return;
+  torn_spring_count = tissue::TearSprings(tissue_model, scene->tick_seconds, tissue, torn_springs);
+  // a hollow organ leaks through what the spring no longer closes
+  for (std::size_t i = 0; i < torn_spring_count; ++i) {
+    const std::int32_t organ = spring_organs[torn_springs[i]];
+    if (organ == hollow_organ)
+      conservation->Perforate(static_cast<std::size_t>(organ), spring_areas[torn_springs[i]], conserved);
+  }
 }
 
 void Simulation::Content::UpdateHierarchy() noexcept {
-  for (surgery::OrganSurface& organ : organs) surgery::UpdateOrganSurface(organ, tissue.position);
+  touch.Update(*scene, GetTools(), tissue);
 }
 
 void Simulation::Content::Note(EventKind kind, int hand, std::int32_t organ, double force) noexcept {
@@ -225,9 +240,15 @@ void Simulation::Content::DetectEvents() noexcept {
       case surgery::GraspChange::kSlipped:
         Note(EventKind::kSlip, hand, changed_organs[hand], force);
         break;
+      case surgery::GraspChange::kDamaged:
+        Note(EventKind::kPinchDamage, hand, changed_organs[hand], grasps[hand].pinch);
+        break;
     }
   }
+  if (touch.AreToolsTouching() && !were_tools_touching) Note(EventKind::kToolsTouch, -1, -1, 0.0);
+  were_tools_touching = touch.AreToolsTouching();
   if (torn_count > 0) Note(EventKind::kTear, -1, strand_organs[torn[0]], 0.0);
+  if (torn_spring_count > 0) Note(EventKind::kTear, -1, spring_organs[torn_springs[0]], 0.0);
   if (verdict == tissue::GuardVerdict::kRestored) Note(EventKind::kStateRestored, -1, -1, 0.0);
   if (verdict == tissue::GuardVerdict::kFrozen && !was_frozen) Note(EventKind::kOrganFrozen, -1, -1, 0.0);
   was_frozen = verdict == tissue::GuardVerdict::kFrozen;
@@ -238,10 +259,20 @@ void Simulation::Content::Publish(const Input& input) noexcept {
   snapshot.time = static_cast<double>(tick) * scene->tick_seconds;
   std::copy(tissue.position.begin(), tissue.position.end(), snapshot.positions.begin());
   for (int hand = 0; hand < kHandCount; ++hand) {
-    snapshot.instruments[hand] = {
-        X_world_tools[hand],       joints[hand],        forces[hand], grasps[hand].IsHolding(),
-        touched_organs[hand] >= 0, touched_organs[hand]};
+    InstrumentSnapshot& tool = snapshot.instruments[hand];
+    tool.X_world_tool = touch.Proxy(hand);
+    tool.joints = joints[hand];
+    tool.force = forces[hand];
+    tool.is_grasping = grasps[hand].IsHolding();
+    tool.is_touching = touched_organs[hand] >= 0;
+    tool.organ = touched_organs[hand];
+    tool.X_world_device = touch.Device(hand);
+    tool.pinch = grasps[hand].pinch;
+    tool.overlap = touch.Overlap(hand);
+    tool.is_touching_tool = touch.AreToolsTouching();
   }
+  snapshot.contacts = touch.Contacts().springs.size();
+  snapshot.dropped_contacts = touch.Contacts().dropped;
   instrument::JointLimits limits;
   limits.min_depth = 0.01;
   snapshot.X_world_laparoscope =
@@ -266,22 +297,19 @@ void Simulation::Content::Reset() {
   for (int hand = 0; hand < kHandCount; ++hand) {
     joints[hand] = home.hands[hand];
     grasps[hand] = {};
-    surgery::ResetToolSamples(samples[hand]);
-    X_world_tools[hand] = instrument::CalcToolPose(scene->instruments[hand].p_world_port, joints[hand]);
     forces[hand] = {};
     touched_organs[hand] = -1;
   }
-  contacts.Clear();
+  touch.Reset(*scene, joints, tissue);
   load = {};
   report = {};
-  was_frozen = false;
-  torn_count = 0;
+  was_frozen = were_tools_touching = false;
+  torn_count = torn_spring_count = 0;
   snapshot = {};
   snapshot.positions.resize(tissue_model.Size());
   solved_condition = tissue.condition;
   good_conserved = conserved;
   snapshot.organs.resize(conserved.organs.size());
-  UpdateHierarchy();
   ReadInputs(home);
   Publish(home);
 }
@@ -295,6 +323,28 @@ void Simulation::Content::MakeSolver(int threads, SolveOn solve_on) {
                                                             tissue_cuda::GpuSolver::Make(tissue_model));
   gpu_solver = made.get();
   solver = std::move(made);
+}
+
+/// What tears in the walls, and how large a hole it leaves: a spring's part of its organ's surface.
+void Simulation::Content::SetWalls(const tissue::TissueDefinition& definition,
+                                   std::vector<std::int32_t> organs_of_springs) {
+  spring_organs = std::move(organs_of_springs);
+  walls_tear = tissue::HasTearingSprings(tissue_model);
+  hollow_organ = scene->patient.FindOrgan("gallbladder");
+  torn_springs.resize(tissue_model.SpringCount());
+  spring_areas.resize(tissue_model.SpringCount());
+  std::vector<double> areas, square_lengths(scene->patient.organs.size(), 0.0);
+  for (const anatomy::Organ& organ : scene->patient.organs)
+    areas.push_back(geometry::CalcArea(organ.mesh.positions, organ.mesh.triangles));
+  const auto square_length = [&](std::size_t i) {
+    return definition.springs[i].rest_length * definition.springs[i].rest_length;
+  };
+  for (std::size_t i = 0; i < spring_organs.size(); ++i) square_lengths[spring_organs[i]] += square_length(i);
+  for (std::size_t i = 0; i < spring_organs.size(); ++i) {
+    const std::int32_t organ = spring_organs[i];
+    spring_areas[i] = areas[organ] * square_length(i) / square_lengths[organ];
+  }
+  spring_organs.resize(tissue_model.SpringCount(), -1);
 }
 
 /// Rest, with tense organs filled.
@@ -322,6 +372,7 @@ core::Result<Simulation> Simulation::Make(std::shared_ptr<const Scene> scene, in
   auto content = std::make_unique<Content>();
   content->scene = std::move(scene);
   content->tissue_model = tissue::MakeTissueModel(made->definition);
+  content->patch_cutter = std::make_unique<haptics::PatchCutter>(content->tissue_model.Size());
   content->surfaces = std::move(made->surfaces);
   content->MakeSolver(std::max(1, threads), solve_on);
   made->conservation.imaging_gravity = kImagingGravity;
@@ -329,18 +380,12 @@ core::Result<Simulation> Simulation::Make(std::shared_ptr<const Scene> scene, in
       std::make_unique<tissue::Conservation>(content->tissue_model, std::move(made->conservation));
   content->max_elongation = std::move(made->max_elongation);
   content->strand_organs = std::move(made->strand_organs);
+  content->SetWalls(made->definition, std::move(made->spring_organs));
   if (const auto filled = content->Fill(made->internal_pressure); !filled.ok()) return filled.error();
-  const auto& patient = content->scene->patient;
-  for (std::size_t i = 0; i < patient.organs.size(); ++i) {
-    auto surface = surgery::MakeOrganSurface(content->tissue_model.rest, content->surfaces[i].first_node,
-                                             patient.organs[i].mesh);
-    if (!surface.ok()) return surface.error();
-    content->organs.push_back(std::move(*surface));
-  }
-  for (int hand = 0; hand < kHandCount; ++hand) {
-    content->samples[hand] = surgery::MakeToolSamples(content->scene->instruments[hand].tool,
-                                                      content->contact_settings, patient.organs.size());
-  }
+  auto touch =
+      ToolContacts::Make(*content->scene, content->tissue_model, content->surfaces, content->tissue_at_start);
+  if (!touch.ok()) return touch.error();
+  content->touch = std::move(*touch);
   content->Reset();
   return Simulation(std::move(content));
 }
@@ -387,6 +432,18 @@ const Snapshot& Simulation::GetSnapshot() const {
   return content_->snapshot;
 }
 
+void Simulation::CutPatch(Hand hand, haptics::LocalPatch& patch) noexcept {
+  const Content& c = *content_;
+  const surgery::ContactSet& contacts = c.touch.Contacts();
+  std::array<std::uint8_t, surgery::ContactSet::kCapacity> hands;
+  for (std::size_t i = 0; i < contacts.links.size(); ++i) hands[i] = contacts.links[i].hand;
+  content_->patch_cutter->Cut({c.tissue_model, c.tissue, c.load, contacts.springs,
+                               std::span(hands).first(contacts.links.size()), static_cast<std::uint8_t>(hand),
+                               c.grasps[hand].Nodes(), c.touch.Device(hand), c.forces[hand],
+                               c.verdict == tissue::GuardVerdict::kGood, c.tick},
+                              patch);
+}
+
 double Simulation::CalcEquilibriumError() const {
   const Content& c = *content_;
   tissue::TissueState state = c.tissue;
@@ -396,6 +453,8 @@ double Simulation::CalcEquilibriumError() const {
   exact.max_error = 1e-7;
   exact.max_newton_steps = 200;
   exact.max_linear_iterations = 300;
+  exact.law_error = 1e-7;
+  exact.max_rounds = 50;
   tissue::EquilibriumSolver judge(c.tissue_model, 1);
   const tissue::SolveReport solved = judge.Solve(exact, c.load, state);
   if (!solved.converged) return std::nan("");
@@ -435,6 +494,12 @@ std::uint64_t Simulation::Hash() const {
     }
   }
   for (const auto intact : c.tissue.strand_is_intact) hash.Add(std::uint64_t{intact});
+  // a spring that is whole and unharmed says nothing: hashes stay when springs learn to tear
+  for (std::size_t i = 0; i < c.tissue.spring_factor.size(); ++i) {
+    const double factor = c.tissue.spring_factor[i], damage = c.tissue.spring_damage[i];
+    if (factor == 1.0 && damage == 0.0) continue;
+    hash.Add(std::uint64_t{i}), hash.Add(factor), hash.Add(damage);
+  }
   for (int hand = 0; hand < kHandCount; ++hand) {
     const instrument::TrocarJoints& j = c.joints[hand];
     for (const double joint : {j.pan, j.tilt, j.spin, j.depth, j.jaw}) hash.Add(joint);
@@ -442,6 +507,7 @@ std::uint64_t Simulation::Hash() const {
     const Vec3& force = c.forces[hand];
     hash.Add(force.x), hash.Add(force.y), hash.Add(force.z);
   }
+  c.touch.AddTo(hash);
   return hash.Value();
 }
 

@@ -25,9 +25,13 @@ std::string_view EventName(EventKind kind) noexcept {
     case EventKind::kOrganFrozen:
       return "organ_frozen";
     case EventKind::kTear:
+      return "tear";
+    case EventKind::kPinchDamage:
+      return "pinch_damage";
+    case EventKind::kToolsTouch:
       break;
   }
-  return "tear";
+  return "tools_touch";
 }
 
 }  // namespace trocar::session

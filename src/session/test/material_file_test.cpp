@@ -118,5 +118,61 @@ TEST_F(MaterialFile, AWeakBedTearsUnderTractionAndTheEventSaysSo) {
   EXPECT_TRUE(seen.count(EventKind::kTear));
 }
 
+TEST_F(MaterialFile, AWallThatStiffensAndTearsIsRead) {
+  const auto with = [&](const std::string& figures) {
+    return ReadOne(Replace(kWall, "\"sources\": {", figures));
+  };
+  const auto material = with(R"("stiffening": 10, "stiffening_strain": 0.25, "wall_failure_strain": 0.43, )"
+                             R"("wall_damage_per_s": 0.5, "wall_damage_exponent": 3, "sources": {)"
+                             R"("stiffening": "a", "stiffening_strain": "b", "wall_failure_strain": "c", )"
+                             R"("wall_damage_per_s": "d", "wall_damage_exponent": "e", )");
+  ASSERT_TRUE(material.ok()) << material.error().Text();
+  EXPECT_EQ(material->wall_law, (tissue::SpringLaw{10, 0.25, 0.43, 0.5, 3}));
+  EXPECT_EQ(ReadOne(kWall)->wall_law, tissue::SpringLaw{}) << "not given: Hooke's law, and nothing tears";
+  const auto alone = with(R"("wall_damage_per_s": 0.5, "sources": {"wall_damage_per_s": "d", )");
+  ASSERT_FALSE(alone.ok());
+  EXPECT_NE(alone.error().message.find("needs wall_failure_strain"), std::string::npos);
+  EXPECT_FALSE(with(R"("stiffening": -1, "sources": {"stiffening": "a", )").ok());
+}
+
+TEST_F(MaterialFile, AWeakWallTearsUnderTractionAndLeaks) {
+  std::string text = SceneText();
+  const auto at = text.find("\"young_modulus_pa\"", text.find("{\"organ\": \"gallbladder\","));
+  ASSERT_NE(at, std::string::npos);
+  text.insert(at, R"("stiffening": 10, "wall_failure_strain": 0.05, )");
+  Write("scene.json", text);
+  auto read = Read();
+  ASSERT_TRUE(read.ok()) << read.error().Text();
+  const auto scene = std::make_shared<const Scene>(std::move(*read));
+  std::uint64_t hash = 0;
+  for (const int threads : {1, 3}) {
+    auto simulation = Simulation::Make(scene, threads);
+    ASSERT_TRUE(simulation.ok());
+    int tears = 0;
+    std::uint64_t events = 0;
+    for (int tick = 0; tick < 150; ++tick) {
+      simulation->Step(CalcScriptInput(*scene, simulation->GetSnapshot().time));
+      const Snapshot& now = simulation->GetSnapshot();
+      EXPECT_TRUE(std::isfinite(now.residual));
+      for (; events < now.event_count; ++events) {
+        const Event& event = now.events[events % now.events.size()];
+        if (event.kind != EventKind::kTear) continue;
+        EXPECT_EQ(event.organ, 1) << "the gallbladder";
+        ++tears;
+      }
+    }
+    EXPECT_GT(tears, 0);
+    const auto& organs = simulation->GetSnapshot().organs;
+    EXPECT_EQ(organs[0].leaked, 0.0) << "a liver is not hollow";
+    EXPECT_GE(organs[1].leaked, 0.0);
+    if (threads == 1) hash = simulation->Hash();
+    EXPECT_EQ(simulation->Hash(), hash);
+    simulation->Reset();
+    for (int tick = 0; tick < 150; ++tick)
+      simulation->Step(CalcScriptInput(*scene, simulation->GetSnapshot().time));
+    EXPECT_EQ(simulation->Hash(), hash) << "what tore is whole again after a reset";
+  }
+}
+
 }  // namespace
 }  // namespace trocar::session

@@ -153,6 +153,78 @@ TEST_F(SimulationTest, SlowsAJumpOfTheDevice) {
   EXPECT_GT(math::Distance(before, after), 0.01);
 }
 
+// The hand goes into the gallbladder; the tool that is seen does not.
+TEST_F(SimulationTest, ToolThatIsSeenStaysOutsideOfTissue) {
+  Simulation simulation = Make();
+  Input input = CalcScriptInput(*scene_, 0.0);
+  const auto& setup = scene_->instruments[kLeft];
+  const Vec3 fundus{0, 0.056, -0.107};
+  double deepest = 0;
+  for (int i = 0; i < 60; ++i) {
+    const Vec3 tip = fundus + Vec3{0, 0, 0.012 - 0.0004 * i};
+    input.hands[kLeft] = instrument::FindJoints(setup.p_world_port, tip, 0.0, 0.0);
+    simulation.Step(input);
+    const InstrumentSnapshot& tool = simulation.GetSnapshot().instruments[kLeft];
+    EXPECT_LT(tool.overlap, 2e-4) << i;
+    deepest =
+        std::max(deepest, math::Distance(tool.X_world_device.translation, tool.X_world_tool.translation));
+  }
+  const InstrumentSnapshot& tool = simulation.GetSnapshot().instruments[kLeft];
+  EXPECT_EQ(tool.organ, 1);
+  EXPECT_GT(math::Norm(tool.force), 0.01);
+  EXPECT_GT(deepest, 1e-4);
+}
+
+TEST_F(SimulationTest, DuctsAreGraspedAndNamed) {
+  Simulation simulation = Make();
+  Input input = CalcScriptInput(*scene_, 0.0);
+  const auto& setup = scene_->instruments[kRight];
+  const auto& duct = simulation.Surfaces()[2];
+  ASSERT_EQ(duct.name, "cystic_duct");
+  const std::uint32_t node = duct.first_node + duct.node_count / 2;
+  const Vec3 at = simulation.GetSnapshot().positions[node];
+  const auto move = [&](const Vec3& tip, double jaw, int ticks) {
+    for (int i = 0; i < ticks; ++i) {
+      input.hands[kRight] = instrument::FindJoints(setup.p_world_port, tip, 0.0, jaw);
+      simulation.Step(input);
+    }
+  };
+  move(at + Vec3{0, 0, 0.012}, 0.8, 40);
+  move(at + Vec3{0, 0, 0.001}, 0.8, 20);
+  move(at + Vec3{0, 0, 0.001}, 0.05, 20);
+  const InstrumentSnapshot& tool = simulation.GetSnapshot().instruments[kRight];
+  ASSERT_TRUE(tool.is_grasping);
+  EXPECT_EQ(tool.organ, 2) << "organs first, then tubes";
+  EXPECT_GT(tool.pinch, 3.0);
+  move(at + Vec3{0, 0, 0.008}, 0.05, 30);
+  EXPECT_GT(simulation.GetSnapshot().positions[node].z, at.z + 0.002) << "the duct comes along";
+}
+
+TEST_F(SimulationTest, ToolsThatMeetSaySoAndPushBack) {
+  Simulation simulation = Make();
+  Input input = CalcScriptInput(*scene_, 0.0);
+  const Vec3 meeting{0, 0.03, -0.06};
+  bool is_met = false;
+  for (int i = 0; i <= 60; ++i) {
+    const double apart = 0.02 * (60 - i) / 60;
+    for (int hand = 0; hand < kHandCount; ++hand) {
+      // each tip goes past the other's shaft
+      const Vec3 side{hand == kLeft ? 0.01 : -0.01, hand == kLeft ? apart : -apart, 0};
+      input.hands[hand] =
+          instrument::FindJoints(scene_->instruments[hand].p_world_port, meeting + side, 0.0, 0.0);
+    }
+    simulation.Step(input);
+    is_met = is_met || simulation.GetSnapshot().instruments[kLeft].is_touching_tool;
+  }
+  EXPECT_TRUE(is_met);
+  const Snapshot& now = simulation.GetSnapshot();
+  bool is_said = false;
+  for (const Event& event : now.events)
+    is_said = is_said || (event.kind == EventKind::kToolsTouch && event.tick > 0);
+  EXPECT_TRUE(is_said);
+  EXPECT_GT(math::Norm(now.instruments[kLeft].force), 0.1);
+}
+
 TEST_F(SimulationTest, MissingMaterialIsNamed) {
   auto scene = Read();
   ASSERT_TRUE(scene.ok());
@@ -166,7 +238,7 @@ TEST_F(SimulationTest, MissingMaterialIsNamed) {
 TEST(StageName, HasANameForEachStageAndEvent) {
   std::set<std::string_view> names;
   for (int i = 0; i < kStageCount; ++i) EXPECT_TRUE(names.insert(StageName(static_cast<Stage>(i))).second);
-  for (int i = 0; i <= static_cast<int>(EventKind::kTear); ++i) {
+  for (int i = 0; i <= static_cast<int>(EventKind::kToolsTouch); ++i) {
     EXPECT_TRUE(names.insert(EventName(static_cast<EventKind>(i))).second);
   }
 }

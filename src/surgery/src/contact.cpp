@@ -4,212 +4,325 @@
 #include <algorithm>
 #include <cmath>
 
-#include "trocar/collision/queries.h"
 #include "trocar/core/assert.h"
-#include "trocar/geometry/distance.h"
 
 namespace trocar::surgery {
 namespace {
 
-/// A pressed surface keeps its side while the new normal does not turn against the old one more than this
-/// [-]: deep in a thin organ the far wall becomes the nearer one, and without memory the tool would be pushed
-/// out there.
-constexpr double kSideMemoryCosine = 0.2;
+using collision::Capsule;
+using collision::MovingSegment;
+using collision::Segment;
 
-bool IsNear(const geometry::Box& box, const Vec3& p, double distance) noexcept {
-  for (int axis = 0; axis < 3; ++axis) {
-    if (p[axis] < box.min[axis] - distance || p[axis] > box.max[axis] + distance) return false;
-  }
-  return true;
-}
+/// Triangles or pieces that one body of a tool can meet in a tick.
+constexpr std::size_t kMostCandidates = 512;
+/// Tissue that snaps back farther than this in one solve is followed only so far [m].
+constexpr double kMostMotion = 0.03;
+/// Nearer than this, two points name no direction [m].
+constexpr double kSamePoint = 1e-9;
 
-Vec3 FaceNormal(std::span<const Vec3> nodes, const geometry::Triangle& t) noexcept {
-  return math::Normalized(math::Cross(nodes[t[1]] - nodes[t[0]], nodes[t[2]] - nodes[t[0]]), Vec3{});
-}
+/// A body's way, and what is looked for on it.
+struct Search {
+  const ToolMotion& motion;
+  const Touchables& touchables;
+  const ContactSettings& settings;
+  const ContactSet& last;
+  ToolBody body;
+  MovingSegment way;         // from the proxy to the device
+  MovingSegment way_before;  // of the proxy during the last solve
+  double radius;
+};
 
-/// Nearest surface point with its outward normal and the sphere's signed distance.
-struct Touch {
-  std::uint32_t triangle;
-  Vec3 point;
+/// Where a body meets a surface: point of the tissue by its nodes, and the direction away from the tool.
+struct Meeting {
+  std::array<std::uint32_t, 3> nodes;
   std::array<double, 3> weights;
-  Vec3 normal;
-  double distance;
+  double parameter;  // on the body's axis
+  Vec3 normal;       // unit
+  double reach;      // sum of the radii [m]
 };
 
-Touch FindTouch(const OrganSurface& organ, std::span<const Vec3> nodes, const Vec3& centre,
-                ContactSample& sample, std::size_t organ_index) noexcept {
-  const collision::SearchLimits limits{.first_guess = sample.last_triangle[organ_index]};
-  const auto nearest = organ.hierarchy.FindNearest(nodes, centre, limits);
-  const auto side = collision::FindSide(nodes, organ.triangles, organ.vertex_triangles, centre, nearest);
-  Touch touch{nearest.triangle, nearest.point, nearest.weights, side.normal, side.distance};
-  const bool is_other_side = sample.is_held[organ_index] != 0 &&
-                             math::Dot(side.normal, sample.held_normal[organ_index]) < kSideMemoryCosine;
-  if (is_other_side) {
-    const auto& held = organ.triangles[sample.last_triangle[organ_index]];
-    const auto on_held =
-        geometry::FindNearestOnTriangle(centre, nodes[held[0]], nodes[held[1]], nodes[held[2]]);
-    const Vec3 normal = FaceNormal(nodes, held);
-    // the memory ends once the sphere is outside the wall it pressed
-    if (math::Dot(centre - on_held.point, normal) < sample.radius) {
-      touch = {sample.last_triangle[organ_index], on_held.point, on_held.weights, normal,
-               math::Dot(centre - on_held.point, normal)};
-    }
-  }
-  return touch;
+Vec3 PointOf(const Meeting& meeting, std::span<const Vec3> positions) noexcept {
+  Vec3 point;
+  for (int i = 0; i < 3; ++i) point += meeting.weights[i] * positions[meeting.nodes[i]];
+  return point;
 }
 
-/// One sphere against one organ.
-struct ContactTarget {
-  const OrganSurface& organ;
-  std::span<const Vec3> nodes;
-  Vec3 centre;
-  double radius, stiffness;
-  std::uint8_t hand, organ_index;
-};
+Vec3 PointOf(const tissue::ContactSpring& spring, std::span<const Vec3> positions) noexcept {
+  Vec3 point;
+  for (int i = 0; i < 3; ++i) point += spring.weights[i] * positions[spring.nodes[i]];
+  return point;
+}
 
-/// Spring that pushes a point of a triangle along `normal` out of the sphere.
-void AddContact(const ContactTarget& target, std::uint32_t triangle, const std::array<double, 3>& weights,
-                const Vec3& normal, ContactSet& contacts) noexcept {
+std::uint64_t MakeKey(const Search& search, std::size_t surface, std::uint32_t item) noexcept {
+  return (static_cast<std::uint64_t>(search.motion.hand) << 56) |
+         (static_cast<std::uint64_t>(search.body) << 48) | (static_cast<std::uint64_t>(surface) << 32) | item;
+}
+
+/// The same contact in the tick before; keys ascend.
+std::ptrdiff_t FindLast(const ContactSet& last, std::uint64_t key) noexcept {
+  const auto at = std::lower_bound(last.links.begin(), last.links.end(), key,
+                                   [](const ContactLink& link, std::uint64_t k) { return link.key < k; });
+  return at != last.links.end() && at->key == key ? at - last.links.begin() : -1;
+}
+
+void AddSpring(const tissue::ContactSpring& spring, const ContactLink& link, ContactSet& contacts) noexcept {
   if (contacts.springs.size() == ContactSet::kCapacity) {
     ++contacts.dropped;
     return;
   }
-  tissue::ContactSpring spring;
-  for (int corner = 0; corner < 3; ++corner) {
-    spring.nodes[corner] = target.organ.first_node + target.organ.triangles[triangle][corner];
-  }
-  spring.weights = weights;
-  spring.normal = normal;
-  spring.offset = math::Dot(normal, target.centre) + target.radius;
-  spring.stiffness = target.stiffness;
   contacts.springs.push_back(spring);
-  contacts.hand.push_back(target.hand);
-  contacts.organ.push_back(target.organ_index);
+  contacts.links.push_back(link);
 }
 
-/// While the centre is outside, every triangle in reach is pushed away from it: in a dent the walls hold the
-/// tool from all sides, and one nearest point alone would throw it from wall to wall.
-void AddSurroundingContacts(const ContactTarget& target, double reach, ContactSet& contacts) noexcept {
-  constexpr std::size_t kMost = 32;
-  constexpr double kSamePoint =
-      1e-6;  // [m]; neighbours share the nearest point where it is a vertex or on an edge
-  std::array<std::uint32_t, kMost> triangles;
-  const collision::Capsule sphere{{target.centre, target.centre}, reach};
-  const std::size_t found =
-      collision::FindTrianglesInCapsule(target.organ.hierarchy, target.nodes, sphere, triangles);
-  std::array<Vec3, kMost> points;
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < std::min(found, kMost); ++i) {
-    const auto& t = target.organ.triangles[triangles[i]];
-    const auto nearest = geometry::FindNearestOnTriangle(target.centre, target.nodes[t[0]],
-                                                         target.nodes[t[1]], target.nodes[t[2]]);
-    const bool is_known = std::any_of(
-        points.begin(), points.begin() + static_cast<std::ptrdiff_t>(count),
-        [&](const Vec3& p) { return math::SquaredDistance(p, nearest.point) < kSamePoint * kSamePoint; });
-    const Vec3 away = nearest.point - target.centre;
-    if (is_known || !(math::SquaredNorm(away) > 0.0)) continue;
-    points[count++] = nearest.point;
-    AddContact(target, triangles[i], nearest.weights, math::Normalized(away), contacts);
+/// How far the tool has carried its sticking point along the surface, within Coulomb's limit [m].
+Vec3 FindStretch(const Search& search, std::uint64_t key, const Vec3& normal) noexcept {
+  const std::ptrdiff_t at = FindLast(search.last, key);
+  if (at < 0) return {};
+  const ContactLink& before = search.last.links[static_cast<std::size_t>(at)];
+  const Vec3 tissue = PointOf(search.last.springs[static_cast<std::size_t>(at)], search.touchables.positions);
+  const Vec3 carried = search.motion.X_world_device * before.p_tool_stuck - tissue;
+  const Vec3 along = carried - math::Dot(carried, normal) * normal;
+  const double most = search.settings.friction * before.normal_force / search.settings.stiffness;
+  const double length = math::Norm(along);
+  return length > most ? (most / length) * along : along;
+}
+
+void AddContact(const Search& search, const Meeting& meeting, std::size_t surface, std::uint32_t item,
+                ContactSet& contacts) noexcept {
+  const Vec3 p_device = math::Lerp(search.way.to.start, search.way.to.end, meeting.parameter);
+  const std::uint64_t key = MakeKey(search, surface, item);
+  const Vec3 tissue = PointOf(meeting, search.touchables.positions);
+  const Vec3 stretch = FindStretch(search, key, meeting.normal);
+  const Vec3 stuck = tissue + stretch;
+  ContactLink link;
+  link.key = key;
+  link.hand = search.motion.hand;
+  link.surface = static_cast<std::uint8_t>(surface);
+  link.is_pinch = IsPinch(search.body, search.motion.X_world_device, meeting.normal);
+  link.p_device = p_device;
+  link.p_tool_stuck = math::Inverse(search.motion.X_world_device) * stuck;
+  AddSpring({meeting.nodes, meeting.weights, meeting.normal,
+             math::Dot(meeting.normal, p_device) + meeting.reach, search.settings.stiffness},
+            link, contacts);
+  const double length = math::Norm(stretch);
+  if (!(length > kSamePoint)) return;
+  const Vec3 along = stretch / length;
+  link.is_friction = true;
+  AddSpring({meeting.nodes, meeting.weights, along, math::Dot(along, stuck), search.settings.stiffness}, link,
+            contacts);
+}
+
+bool Overlaps(const geometry::Box& box, const Capsule& capsule) noexcept {
+  for (int axis = 0; axis < 3; ++axis) {
+    const double low = std::min(capsule.axis.start[axis], capsule.axis.end[axis]) - capsule.radius;
+    const double high = std::max(capsule.axis.start[axis], capsule.axis.end[axis]) + capsule.radius;
+    if (high < box.min[axis] || low > box.max[axis]) return false;
+  }
+  return true;
+}
+
+/// Whether some corner went farther in the last solve than springs are made ahead.
+bool HasSnapped(const Search& search, std::span<const std::uint32_t> nodes) noexcept {
+  const double margin2 = search.settings.margin * search.settings.margin;
+  return std::any_of(nodes.begin(), nodes.end(), [&](std::uint32_t node) {
+    return math::SquaredDistance(search.touchables.positions[node],
+                                 search.touchables.positions_before[node]) > margin2;
+  });
+}
+
+/// \return false where the body does not come near the triangle, or only from inside of the organ
+bool MeetTriangle(const Search& search, const std::array<std::uint32_t, 3>& nodes,
+                  Meeting& meeting) noexcept {
+  const auto corners = [&](std::span<const Vec3> positions) {
+    return std::array<Vec3, 3>{positions[nodes[0]], positions[nodes[1]], positions[nodes[2]]};
+  };
+  const auto take = [&](const collision::TriangleSweep& sweep, const std::array<Vec3, 3>& at) {
+    const Vec3 away = sweep.points.on_triangle.point - sweep.points.on_segment;
+    const double distance = math::Norm(away);
+    if (!(distance > kSamePoint)) return false;
+    const Vec3 outward = math::Cross(at[1] - at[0], at[2] - at[0]);
+    if (!(math::Dot(away, outward) < 0.0)) return false;
+    meeting = {nodes, sweep.points.on_triangle.weights, sweep.points.parameter, away / distance,
+               search.radius};
+    return true;
+  };
+  const std::array<Vec3, 3> now = corners(search.touchables.positions);
+  const auto sweep = collision::SweepToTriangle(search.way, {now, now}, search.radius);
+  const bool is_near =
+      sweep.is_hit || std::sqrt(sweep.points.squared_distance) < search.radius + search.settings.margin;
+  if (is_near && take(sweep, now)) return true;
+  // tissue that shot past the tool in the last solve is met where it passed
+  if (!HasSnapped(search, nodes)) return false;
+  const std::array<Vec3, 3> before = corners(search.touchables.positions_before);
+  const collision::MovingTriangle moving{before, now};
+  const auto passed = collision::SweepToTriangle(search.way_before, moving, search.radius);
+  return passed.is_hit && take(passed, moving.At(passed.time));
+}
+
+bool MeetPiece(const Search& search, const collision::TubePiece& piece, std::uint32_t other,
+               Meeting& meeting) noexcept {
+  const auto axis = [&](std::span<const Vec3> positions) {
+    return Segment{positions[piece.a], positions[piece.b]};
+  };
+  const double reach = search.radius + piece.radius;
+  const auto take = [&](const collision::TubeSweep& sweep) {
+    const Vec3 away = sweep.points.on_b - sweep.points.on_a;
+    const double distance = math::Norm(away);
+    if (!(distance > kSamePoint)) return false;
+    const double t = sweep.points.parameter_b;
+    meeting = {
+        {piece.a, piece.b, other}, {1.0 - t, t, 0.0}, sweep.points.parameter_a, away / distance, reach};
+    return true;
+  };
+  const Segment now = axis(search.touchables.positions);
+  const std::uint32_t nodes[2] = {piece.a, piece.b};
+  if (HasSnapped(search, nodes)) {
+    const auto passed =
+        collision::SweepToSegment(search.way_before, {axis(search.touchables.positions_before), now}, reach);
+    if (passed.is_hit && passed.time > 0.0) return take(passed);
+  }
+  const auto sweep = collision::SweepToSegment(search.way, {now, now}, reach);
+  const bool is_near =
+      sweep.is_hit || std::sqrt(sweep.points.squared_distance) < reach + search.settings.margin;
+  return is_near && take(sweep);
+}
+
+/// A body that lies inside of an organ all the same pushes the wall that is nearest to it back across itself.
+void PushOut(const Search& search, const OrganSurface& organ, std::size_t surface,
+             ContactSet& contacts) noexcept {
+  const auto nodes = organ.Nodes(search.touchables.positions);
+  const auto& axis = search.way.from;
+  const auto near = organ.tree.FindNearestToSegment(nodes, axis, {.max_distance = search.radius});
+  if (!near.Found()) return;
+  const auto& t = organ.triangles[near.nearest.triangle];
+  const Vec3 outward = math::Cross(nodes[t[1]] - nodes[t[0]], nodes[t[2]] - nodes[t[0]]);
+  const Vec3 normal = math::Normalized(outward, Vec3{});
+  if (!(math::SquaredNorm(normal) > 0.0)) return;
+  const Meeting meeting{{organ.first_node + t[0], organ.first_node + t[1], organ.first_node + t[2]},
+                        near.nearest.weights,
+                        near.parameter,
+                        -normal,
+                        search.radius};
+  AddContact(search, meeting, surface, near.nearest.triangle, contacts);
+}
+
+void FindOnOrgan(const Search& search, std::size_t surface, ContactSet& contacts) noexcept {
+  const OrganSurface& organ = search.touchables.organs[surface];
+  const double motion = std::min(kMostMotion, search.touchables.surface_motion[surface]);
+  const double slack = search.settings.margin + (motion > search.settings.margin ? motion : 0.0);
+  const Capsule swept = collision::CalcSweptCapsule(search.way, search.radius + slack);
+  if (!Overlaps(organ.box, swept)) return;
+  std::array<std::uint32_t, kMostCandidates> found;
+  const std::size_t count = organ.tree.FindWithin(organ.Nodes(search.touchables.positions), swept, found);
+  contacts.dropped += count > found.size() ? count - found.size() : 0;
+  const std::size_t before = contacts.springs.size();
+  for (std::size_t i = 0; i < std::min(count, found.size()); ++i) {
+    std::array<std::uint32_t, 3> nodes = organ.triangles[found[i]];
+    for (std::uint32_t& node : nodes) node += organ.first_node;
+    Meeting meeting;
+    if (MeetTriangle(search, nodes, meeting)) AddContact(search, meeting, surface, found[i], contacts);
+  }
+  if (count > 0 && contacts.springs.size() == before) PushOut(search, organ, surface, contacts);
+}
+
+void FindOnTubes(const Search& search, ContactSet& contacts) noexcept {
+  const TubeSet& set = *search.touchables.tubes;
+  const std::size_t organ_count = search.touchables.organs.size();
+  const double motion = std::min(kMostMotion, search.touchables.surface_motion[organ_count]);
+  const double slack = search.settings.margin + (motion > search.settings.margin ? motion : 0.0);
+  const Capsule swept = collision::CalcSweptCapsule(search.way, search.radius + slack);
+  std::array<std::uint32_t, kMostCandidates> found;
+  const std::size_t count = set.tree.FindWithin(search.touchables.positions, swept, found);
+  contacts.dropped += count > found.size() ? count - found.size() : 0;
+  for (std::size_t i = 0; i < std::min(count, found.size()); ++i) {
+    const std::uint32_t tube = set.tube_of_piece[found[i]];
+    const std::size_t surface = organ_count + tube;
+    if (search.body != ToolBody::kShaft &&
+        static_cast<std::int32_t>(surface) == search.motion.grasped_surface)
+      continue;
+    const collision::TubePiece& piece = set.tree.Pieces()[found[i]];
+    // a spring has three nodes; the third, which bears nothing, is any other
+    std::uint32_t other = 0;
+    while (other == piece.a || other == piece.b) ++other;
+    Meeting meeting;
+    if (MeetPiece(search, piece, other, meeting)) AddContact(search, meeting, surface, found[i], contacts);
   }
 }
 
 }  // namespace
 
-ToolSamples MakeToolSamples(const instrument::Tool& tool, const ContactSettings& settings,
-                            std::size_t organ_count) {
-  ToolSamples made;
-  const auto add = [&](ContactSample::Part part, double along, double radius) {
-    ContactSample sample{part, along, radius, {}, {}, {}};
-    sample.last_triangle.assign(organ_count, collision::kNoTriangle);
-    sample.held_normal.assign(organ_count, Vec3{});
-    sample.is_held.assign(organ_count, 0);
-    made.samples.push_back(std::move(sample));
-  };
-  const auto add_row = [&](ContactSample::Part part, double length, double radius) {
-    const int steps = std::max(1, static_cast<int>(std::lround(length / settings.sample_step)));
-    for (int i = 1; i <= steps; ++i) add(part, length * i / steps, radius);
-  };
-  // the jaw's last sphere ends where the metal ends
-  const double jaw_radius = 0.5 * tool.jaw_width;
-  add_row(ContactSample::Part::kUpperJaw, tool.jaw_length - jaw_radius, jaw_radius);
-  add_row(ContactSample::Part::kLowerJaw, tool.jaw_length - jaw_radius, jaw_radius);
-  add(ContactSample::Part::kShaft, 0.0, tool.shaft_radius);
-  add_row(ContactSample::Part::kShaft, settings.shaft_reach, tool.shaft_radius);
-  return made;
-}
-
-void ResetToolSamples(ToolSamples& samples) noexcept {
-  for (ContactSample& sample : samples.samples) {
-    std::fill(sample.last_triangle.begin(), sample.last_triangle.end(), collision::kNoTriangle);
-    std::fill(sample.is_held.begin(), sample.is_held.end(), std::uint8_t{0});
+std::array<Capsule, kToolBodyCount> CalcToolBodies(const instrument::Tool& tool, double jaw,
+                                                   const Pose& X_world_tool) noexcept {
+  const auto shapes = instrument::CalcCapsules(tool, jaw, tool.shaft_length);
+  std::array<Capsule, kToolBodyCount> bodies;
+  const instrument::Capsule* const parts[] = {&shapes.upper_jaw, &shapes.lower_jaw, &shapes.shaft};
+  for (int i = 0; i < kToolBodyCount; ++i) {
+    bodies[i] = {{X_world_tool * parts[i]->a, X_world_tool * parts[i]->b}, parts[i]->radius};
   }
+  // the jaw's round end lies where the metal ends
+  for (int jaw_body = 0; jaw_body < 2; ++jaw_body) {
+    Segment& axis = bodies[jaw_body].axis;
+    axis.start = math::Lerp(axis.start, axis.end, bodies[jaw_body].radius / tool.jaw_length);
+  }
+  return bodies;
 }
 
-Vec3 CalcSampleCentre(const instrument::Tool& tool, const ContactSample& sample, double jaw) noexcept {
-  const Vec3 hinge = instrument::JawHinge(tool);
-  if (sample.part == ContactSample::Part::kShaft) return hinge + Vec3{0, 0, sample.along};
-  const int side = sample.part == ContactSample::Part::kUpperJaw ? +1 : -1;
-  return math::Lerp(hinge, instrument::JawTip(tool, jaw, side), sample.along / tool.jaw_length);
+bool IsPinch(ToolBody body, const Pose& X_world_tool, const Vec3& normal) noexcept {
+  constexpr double kInwards = 0.5;  // within 60 degrees of the direction in which the jaw closes
+  if (body == ToolBody::kShaft) return false;
+  const double opening = math::Dot(normal, math::Rotate(X_world_tool.rotation, {0, 1, 0}));
+  return body == ToolBody::kUpperJaw ? opening < -kInwards : opening > kInwards;
 }
 
 ContactSet::ContactSet() {
   springs.reserve(kCapacity);
-  hand.reserve(kCapacity);
-  organ.reserve(kCapacity);
+  links.reserve(kCapacity);
 }
 
 void ContactSet::Clear() noexcept {
   springs.clear();
-  hand.clear();
-  organ.clear();
+  links.clear();
   dropped = 0;
 }
 
-void FindContacts(const instrument::Tool& tool, const Pose& X_world_tool, double jaw, std::uint8_t hand,
-                  std::span<const OrganSurface> organs, std::span<const Vec3> positions,
-                  const ContactSettings& settings, std::int32_t grasped_organ, ToolSamples& samples,
-                  ContactSet& contacts) noexcept {
-  for (ContactSample& sample : samples.samples) {
-    const Vec3 centre = X_world_tool * CalcSampleCentre(tool, sample, jaw);
-    for (std::size_t index = 0; index < organs.size(); ++index) {
-      const OrganSurface& organ = organs[index];
+void FindContacts(const ToolMotion& motion, const Touchables& touchables, const ContactSettings& settings,
+                  const ContactSet& last, ContactSet& contacts) noexcept {
+  TROCAR_ASSERT(touchables.surface_motion.size() == touchables.organs.size() + 1);
+  const auto before = CalcToolBodies(*motion.tool, motion.jaw_before, motion.X_world_proxy_before);
+  const auto proxy = CalcToolBodies(*motion.tool, motion.jaw_before, motion.X_world_proxy);
+  const auto device = CalcToolBodies(*motion.tool, motion.jaw, motion.X_world_device);
+  for (int body = 0; body < kToolBodyCount; ++body) {
+    const Search search{motion,
+                        touchables,
+                        settings,
+                        last,
+                        static_cast<ToolBody>(body),
+                        {proxy[body].axis, device[body].axis},
+                        {before[body].axis, proxy[body].axis},
+                        device[body].radius};
+    for (std::size_t surface = 0; surface < touchables.organs.size(); ++surface) {
       const bool is_in_jaws =
-          static_cast<std::int32_t>(index) == grasped_organ && sample.part != ContactSample::Part::kShaft;
-      const double reach = sample.radius + settings.margin;
-      if (is_in_jaws || !IsNear(organ.box, centre, reach)) {
-        sample.is_held[index] = 0;
-        continue;
-      }
-      const auto nodes = organ.Nodes(positions);
-      const Touch touch = FindTouch(organ, nodes, centre, sample, index);
-      sample.last_triangle[index] = touch.triangle;
-      const bool is_touching = touch.distance < reach && math::SquaredNorm(touch.normal) > 0.0;
-      sample.is_held[index] = is_touching && touch.distance < sample.radius;
-      sample.held_normal[index] = touch.normal;
-      if (!is_touching) continue;
-      const ContactTarget target{
-          organ, nodes, centre, sample.radius, settings.stiffness, hand, static_cast<std::uint8_t>(index)};
-      if (touch.distance > 0.0) {
-        AddSurroundingContacts(target, reach, contacts);
-      } else {
-        AddContact(target, touch.triangle, touch.weights, -touch.normal, contacts);
-      }
+          search.body != ToolBody::kShaft && static_cast<std::int32_t>(surface) == motion.grasped_surface;
+      if (!is_in_jaws) FindOnOrgan(search, surface, contacts);
     }
+    if (touchables.tubes != nullptr) FindOnTubes(search, contacts);
   }
 }
 
-ContactReaction CalcContactReaction(const ContactSet& contacts, std::uint8_t hand,
-                                    std::span<const Vec3> positions) noexcept {
+ContactReaction CalcContactReaction(std::uint8_t hand, std::span<const Vec3> positions,
+                                    ContactSet& contacts) noexcept {
   ContactReaction reaction;
   for (std::size_t i = 0; i < contacts.springs.size(); ++i) {
-    if (contacts.hand[i] != hand) continue;
+    ContactLink& link = contacts.links[i];
+    if (link.hand != hand) continue;
     const tissue::ContactSpring& spring = contacts.springs[i];
     const double depth = tissue::CalcContactDepth(spring, positions);
+    link.normal_force = !link.is_friction && depth > 0.0 ? spring.stiffness * depth : 0.0;
     if (!(depth > 0.0)) continue;
     reaction.force -= (spring.stiffness * depth) * spring.normal;
-    if (depth > reaction.deepest) {
+    if (!link.is_friction && depth > reaction.deepest) {
       reaction.deepest = depth;
-      reaction.organ = contacts.organ[i];
+      reaction.surface = link.surface;
     }
   }
   return reaction;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trocar/surgery/organ_surface.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "trocar/core/assert.h"
@@ -16,16 +17,36 @@ core::Result<OrganSurface> MakeOrganSurface(std::span<const Vec3> positions, std
   surface.node_count = static_cast<std::uint32_t>(mesh.positions.size());
   surface.triangles = mesh.triangles;
   surface.vertex_triangles = geometry::FindVertexTriangles(mesh.triangles, mesh.positions.size());
-  auto hierarchy = collision::CentroidHierarchy::Make(surface.Nodes(positions), surface.triangles);
-  if (!hierarchy.ok()) return hierarchy.error();
-  surface.hierarchy = std::move(*hierarchy);
+  surface.vertex_areas = geometry::CalcVertexAreas(surface.Nodes(positions), mesh.triangles);
+  auto tree = collision::TriangleTree::Make(surface.Nodes(positions), surface.triangles);
+  if (!tree.ok()) return tree.error();
+  surface.tree = std::move(*tree);
   UpdateOrganSurface(surface, positions);
   return surface;
 }
 
 void UpdateOrganSurface(OrganSurface& surface, std::span<const Vec3> positions) noexcept {
-  surface.hierarchy.UpdateAll(surface.Nodes(positions));
+  surface.tree.Update(surface.Nodes(positions));
   surface.box = geometry::CalcBox(surface.Nodes(positions));
+}
+
+core::Result<TubeSet> MakeTubeSet(std::span<const Vec3> positions, std::vector<TubeSurface> tubes) {
+  TubeSet made;
+  std::vector<collision::TubePiece> pieces;
+  for (std::uint32_t tube = 0; tube < tubes.size(); ++tube) {
+    const TubeSurface& surface = tubes[tube];
+    TROCAR_ASSERT(surface.radii.size() == surface.node_count);
+    for (std::uint32_t i = 0; i + 1 < surface.node_count; ++i) {
+      const std::uint32_t node = surface.first_node + i;
+      pieces.push_back({node, node + 1, std::max(surface.radii[i], surface.radii[i + 1])});
+      made.tube_of_piece.push_back(tube);
+    }
+  }
+  auto tree = collision::CapsuleTree::Make(positions, pieces);
+  if (!tree.ok()) return tree.error();
+  made.tree = std::move(*tree);
+  made.tubes = std::move(tubes);
+  return made;
 }
 
 }  // namespace trocar::surgery

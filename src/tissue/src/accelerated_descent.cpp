@@ -44,7 +44,8 @@ class Recurrence {
 
 /// Lowest eigenvalue that a cycle of this length damps as kCycleDamping says.
 double CalcLowest(int cycle) noexcept {
-  return std::min(0.5, std::pow(kCycleDamping / (2.0 * cycle), 2));
+  const double root = kCycleDamping / (2.0 * cycle);
+  return std::min(0.5, root * root);
 }
 
 /// Iterations that damp everything down to `lowest` to a ten-thousandth.
@@ -116,7 +117,8 @@ bool AcceleratedDescent::IsCold(const TissueState& state) const noexcept {
     if (state.condition[i] == NodeCondition::kPrescribed) continue;
     largest = std::max(largest, math::SquaredDistance(state.position[i], model_->rest[i]));
   }
-  return largest <= std::pow(kColdShare * edge_length_, 2);
+  const double limit = kColdShare * edge_length_;
+  return largest <= limit * limit;
 }
 
 bool AcceleratedDescent::IsWellConditioned(const TissueLoad& load) const noexcept {

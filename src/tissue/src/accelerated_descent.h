@@ -25,6 +25,8 @@ class AcceleratedDescent {
   /// \param use_grid  take a structured mesh as a stencil where the model is one
   AcceleratedDescent(const TissueModel& model, bool use_grid);
 
+  /// The springs it works with where the mesh is irregular, for SpringLines to keep up to date.
+  OrderedModel& Springs() noexcept { return ordered_; }
   bool IsStructured() const { return !grids_.empty(); }
   /// True where every free node is at rest, and a coarse-to-fine start will be made.
   bool IsCold(const TissueState& state) const noexcept;

@@ -24,7 +24,7 @@ SolveReport SolveAdaptive(EquilibriumSolver::Content& c, const SolverSettings& s
   if (hook != nullptr && hook->constraints.empty())
     return SolveChebyshevJacobiWang2015(c, settings, load, state, hook);
   SolveReport descent;
-  if (hook == nullptr && c.accelerated->IsStructured()) {
+  if (hook == nullptr && c.accelerated->IsStructured() && c.lines->ArePlain()) {
     if (c.accelerated->IsCold(state) || c.accelerated->IsWellConditioned(load)) {
       SolverSettings long_enough = settings;
       long_enough.max_iterations = kDescentIterations;

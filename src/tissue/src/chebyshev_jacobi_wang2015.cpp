@@ -181,7 +181,8 @@ SolveReport SolveChebyshevJacobiWang2015(EquilibriumSolver::Content& content, co
     factors.is_first = in_cycle == 0;
     if (in_cycle == 0) {
       // modes whose eigenvalue is below `lowest` are out of reach of this cycle
-      const double lowest = std::min(std::pow(kCycleDamping / cycle_length, 2), 0.5);
+      const double root = kCycleDamping / cycle_length;
+      const double lowest = std::min(root * root, 0.5);
       factors.damping = 2.0 / (2.0 + lowest);
       rho = (2.0 - lowest) / (2.0 + lowest);
     }

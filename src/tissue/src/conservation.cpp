@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "trocar/core/assert.h"
 
@@ -50,7 +49,10 @@ bool SolveSmall(SmallMatrix a, SmallVector b, std::size_t count, SmallVector& x)
 }
 
 std::uint64_t CountIntact(const TissueState& tissue) noexcept {
-  return std::accumulate(tissue.strand_is_intact.begin(), tissue.strand_is_intact.end(), std::uint64_t{0});
+  std::uint64_t count = 0;
+  for (const auto is_intact : tissue.strand_is_intact) count += is_intact;
+  for (const double factor : tissue.spring_factor) count += factor > 0.0;
+  return count;
 }
 
 }  // namespace
@@ -71,7 +73,7 @@ Conservation::Conservation(const TissueModel& model, ConservationSettings settin
   responses_.assign(settings_.organs.size(), std::vector<Vec3>(n));
   shifts_ = responses_;
   (void)UpdateResponses(rest_, {}, kFirstResponseIterations, kFirstResponseTolerance);
-  response_strands_ = CountIntact(rest_);
+  response_links_ = CountIntact(rest_);
   responses_settled_ = true;
 }
 
@@ -86,8 +88,8 @@ ConservationState Conservation::MakeState(const TissueState& rest_state) const {
     state.organs.push_back(volume);
   }
   state.regions.of_node.resize(model_->Size());
-  FindFreeRegions(*model_, rest_state.strand_is_intact, settings_.strand_binds, {}, state.regions);
-  state.intact_strands = CountIntact(rest_state);
+  FindFreeRegions(*model_, rest_state.strand_is_intact, settings_.strand_binds, rest_state.spring_factor, state.regions);
+  state.intact_links = CountIntact(rest_state);
   state.last_position = rest_state.position;
   return state;
 }
@@ -96,11 +98,12 @@ std::span<Vec3> Conservation::OrganPart(std::size_t organ, std::span<Vec3> nodes
   return nodes.subspan(settings_.organs[organ].first_node, settings_.organs[organ].node_count);
 }
 
-/// The displacement by which the tissue at rest, with the strands and scales of now, answers one pascal in
+/// The displacement by which the tissue at rest, with the strands, springs and scales of now, answers one pascal in
 /// each organ.
 bool Conservation::UpdateResponses(const TissueState& tissue, const TissueLoad& load, int max_iterations,
                                    double tolerance) noexcept {
   std::copy(tissue.strand_is_intact.begin(), tissue.strand_is_intact.end(), rest_.strand_is_intact.begin());
+  std::copy(tissue.spring_factor.begin(), tissue.spring_factor.end(), rest_.spring_factor.begin());
   bool is_settled = true;
   for (std::size_t organ = 0; organ < settings_.organs.size(); ++organ) {
     std::fill(gradient_.begin(), gradient_.end(), Vec3{});
@@ -124,8 +127,8 @@ void Conservation::Perforate(std::size_t organ, double area, ConservationState& 
 
 void Conservation::UpdateRegions(const TissueState& tissue, ConservationState& state) noexcept {
   const std::uint64_t intact = CountIntact(tissue);
-  if (intact == state.intact_strands) return;
-  FindFreeRegions(*model_, tissue.strand_is_intact, settings_.strand_binds, {}, next_regions_);
+  if (intact == state.intact_links) return;
+  FindFreeRegions(*model_, tissue.strand_is_intact, settings_.strand_binds, tissue.spring_factor, next_regions_);
   // a piece that splits goes on from where it was
   std::array<Pose, kMaxFreeRegions> poses;
   std::uint32_t next = 0;
@@ -136,7 +139,7 @@ void Conservation::UpdateRegions(const TissueState& tissue, ConservationState& s
   }
   state.X_world_rest = poses;
   std::swap(state.regions, next_regions_);
-  state.intact_strands = intact;
+  state.intact_links = intact;
 }
 
 bool Conservation::IsHeld(std::uint32_t region, const TissueState& tissue,
@@ -341,9 +344,9 @@ void Conservation::Leak(double dt, ConservationState& state) const noexcept {
 void Conservation::Enforce(const TissueLoad& load, double dt, TissueState& tissue,
                            ConservationState& state) noexcept {
   if (load.stiffness_scale != stiffness_scale_ || load.shape_scale != shape_scale_ ||
-      state.intact_strands != response_strands_) {
+      state.intact_links != response_links_) {
     responses_settled_ = false;
-    response_strands_ = state.intact_strands;
+    response_links_ = state.intact_links;
   }
   if (!responses_settled_) {
     responses_settled_ = UpdateResponses(tissue, load, kResponseIterationsPerTick, kResponseTolerance);

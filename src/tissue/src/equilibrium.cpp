@@ -26,6 +26,37 @@ bool IsFinite(const TissueLoad& load, const TissueState& state) noexcept {
   return is_finite;
 }
 
+/// True where an intact strand holds the node.
+bool HangsOnStrand(const TissueModel& model, const TissueState& state, std::uint32_t node) noexcept {
+  for (auto h = model.strand_starts[node]; h < model.strand_starts[node + 1]; ++h) {
+    if (state.strand_is_intact[model.half_strands[h].strand]) return true;
+  }
+  return false;
+}
+
+/// One solve with the springs as they stand.
+SolveReport SolveLines(EquilibriumSolver::Content& c, const SolverSettings& settings, const TissueLoad& load,
+                       TissueState& state, const SolveHook* hook) noexcept {
+  if (settings.kind == SolverKind::kRelaxationPaper)
+    return SolveRelaxationPaper(c, settings, load, state, hook);
+  if (settings.kind == SolverKind::kGaussSeidelBrown2001)
+    return SolveGaussSeidelBrown2001(c, settings, load, state, hook);
+  const Workers::Session session(*c.workers);
+  switch (settings.kind) {
+    case SolverKind::kChebyshevJacobi2015:
+      return SolveChebyshevJacobiWang2015(c, settings, load, state, hook);
+    case SolverKind::kAcceleratedDescent:
+      // a stencil has no place for springs of their own; the recurrence in double precision has
+      if (c.accelerated->IsStructured() && !c.lines->ArePlain())
+        return SolveChebyshevJacobiWang2015(c, settings, load, state, hook);
+      return c.accelerated->Solve(*c.kernels, *c.workers, settings, load, state, hook);
+    case SolverKind::kNewtonMultigrid:
+      return c.newton->Solve(*c.kernels, *c.workers, settings, load, state, hook);
+    default:
+      return SolveAdaptive(c, settings, load, state, hook);
+  }
+}
+
 }  // namespace
 
 EquilibriumSolver::EquilibriumSolver(const TissueModel& model, int threads)
@@ -34,7 +65,7 @@ EquilibriumSolver::EquilibriumSolver(const TissueModel& model, int threads)
 EquilibriumSolver::EquilibriumSolver(const TissueModel& model, const SolverOptions& options)
     : content_(std::make_unique<Content>()) {
   const std::size_t n = model.Size();
-  content_->model = &model;
+  content_->laws = &model;
   content_->kernels = &GetKernels(options.simd);
   content_->workers = std::make_unique<Workers>(options.threads);
   content_->newton = std::make_unique<NewtonMultigrid>(model);
@@ -43,6 +74,10 @@ EquilibriumSolver::EquilibriumSolver(const TissueModel& model, const SolverOptio
   content_->visited.resize(n);
   content_->residual.resize(n);
   content_->springs = MakeSlicedSprings(model);
+  content_->lines = std::make_unique<SpringLines>(
+      model, content_->springs, std::array{&content_->newton->Springs(), &content_->accelerated->Springs()});
+  content_->model = &content_->lines->Model();
+  content_->adrift_condition.resize(n);
   content_->previous.resize(n);
   content_->blocks.resize(n);
   content_->slices.resize((n + kLanes - 1) / kLanes, SliceData{});
@@ -68,29 +103,24 @@ SolveReport EquilibriumSolver::Solve(const SolverSettings& settings, const Tissu
   TROCAR_ASSERT(load.contacts.size() <= kMaxContacts);
   Content& c = *content_;
   if (!IsFinite(load, state)) return {.is_finite = false};
-  if (settings.kind == SolverKind::kRelaxationPaper)
-    return SolveRelaxationPaper(c, settings, load, state, hook);
-  if (settings.kind == SolverKind::kGaussSeidelBrown2001)
-    return SolveGaussSeidelBrown2001(c, settings, load, state, hook);
-  const Workers::Session session(*c.workers);
-  switch (settings.kind) {
-    case SolverKind::kChebyshevJacobi2015:
-      return SolveChebyshevJacobiWang2015(c, settings, load, state, hook);
-    case SolverKind::kAcceleratedDescent:
-      return c.accelerated->Solve(*c.kernels, *c.workers, settings, load, state, hook);
-    case SolverKind::kNewtonMultigrid:
-      return c.newton->Solve(*c.kernels, *c.workers, settings, load, state, hook);
-    default:
-      return SolveAdaptive(c, settings, load, state, hook);
+  if (!c.lines->TakeFactors(state)) return {.is_finite = false};
+  // a node without any spring has no equilibrium: it stays where it is
+  const std::span<const std::uint32_t> adrift = c.lines->Adrift();
+  for (std::size_t i = 0; i < adrift.size(); ++i) {
+    c.adrift_condition[i] = state.condition[adrift[i]];
+    if (!HangsOnStrand(*c.laws, state, adrift[i])) state.condition[adrift[i]] = NodeCondition::kPrescribed;
   }
+  const SolveReport report = c.lines->Follow(settings, state, [&](const SolverSettings& rest) noexcept {
+    return SolveLines(c, rest, load, state, hook);
+  });
+  for (std::size_t i = 0; i < adrift.size(); ++i) state.condition[adrift[i]] = c.adrift_condition[i];
+  return report;
 }
 
 Vec3 EquilibriumSolver::CalcReaction(const TissueLoad& load, const TissueState& state,
                                      std::span<const std::uint32_t> nodes) const noexcept {
   Vec3 force;
-  for (const auto node : nodes) {
-    force += GatherNodeForce(*content_->model, state.strand_is_intact, load, state.position, node);
-  }
+  for (const auto node : nodes) force += GatherLawForce(*content_->laws, state, load, node);
   return force;
 }
 

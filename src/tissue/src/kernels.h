@@ -21,6 +21,10 @@ inline constexpr std::uint32_t kSliceNodes = 16;
 struct alignas(16) Float4 {
   float x = 0, y = 0, z = 0, w = 0;
 };
+/// The same in double precision, padded to 32 bytes.
+struct alignas(32) Double4 {
+  double x = 0, y = 0, z = 0, w = 0;
+};
 
 /// Neighbours by slice and step; entry (step, lane) of a slice is at (starts[slice] + step) * kSliceNodes +
 /// lane. A padded entry points at its own node.
@@ -44,6 +48,45 @@ enum class LinkPass {
   kProduct,   ///< out = K x
   kResidual,  ///< out = b - K x
   kSmooth     ///< out = x + factor D^-1 (b - K x)
+};
+
+/// What the balance of forces needs of a node.
+enum BalanceValue {
+  kRestX,        ///< [m]
+  kRestY,        ///< [m]
+  kRestZ,        ///< [m]
+  kOuterX,       ///< force of everything but springs [N]
+  kOuterY,       ///< [N]
+  kOuterZ,       ///< [N]
+  kOuterSize,    ///< largest single one of these forces [N]
+  kShape,        ///< k_virtual, scaled [N/m]
+  kStrands,      ///< sum of the node's strands, scaled [N/m]
+  kFree,         ///< 1, or 0 where the node is held
+  kBalanceValues
+};
+
+/// Forces, energy and stiffness of a sliced system in double precision.
+struct BalancePass {
+  SliceTable table;
+  const double* stiffness;    // (entries) k [N/m]; 0 where there is no spring
+  const double* rest_length;  // (entries) l [m]
+  double stiffness_scale;     // on k [-]
+  const double* nodes;        // (slices, kBalanceValues, kSliceNodes)
+  const Double4* position;    // (padded nodes) [m]
+  Float4* residual;           // (padded nodes) out: force on the node [N], 0 where it is held
+  bool has_stiffness;         // whether what follows is written
+  float* links;               // (steps, 6, kSliceNodes) out: as in LinkMatrix
+  float* slack;               // (entries) out: what compression takes from the stiffness across, >= 0 [N/m]
+  const float* ground;        // (slices, 6, kSliceNodes)
+  float* inverse;             // (slices, 6, kSliceNodes) out: of the node's own block, compression left out
+};
+/// What a pass found over its slices; the same for every width of a vector.
+struct BalanceSums {
+  double energy = 0;     ///< springs half, being met from both ends, virtual springs and outer forces [J]
+  double residual2 = 0;  ///< largest squared force out of balance on a free node [N^2]
+  double force = 0;      ///< largest force of one spring or load on a free node [N]
+  double distance2 = 0;  ///< largest squared distance of a node from rest [m^2]
+  bool is_finite = true;
 };
 
 /// One step of the nonlinear iteration on a sliced system.
@@ -88,6 +131,21 @@ struct GridStep {
                      // on its own nodes, by turns for even and odd rows; zero at first
 };
 
+/// Sums and combinations of node vectors, from node `first` to before `last`, both multiples of kSliceNodes.
+struct VectorKernels {
+  /// a . b in double precision
+  double (*dot)(const Float4* a, const Float4* b, std::uint32_t first, std::uint32_t last);
+  /// largest squared norm; NaN where one is
+  float (*find_largest2)(const Float4* v, std::uint32_t first, std::uint32_t last);
+  /// step += alpha p, r -= alpha q
+  void (*advance)(float alpha, const Float4* p, const Float4* q, Float4* step, Float4* r, std::uint32_t first,
+                  std::uint32_t last);
+  /// to += factor v
+  void (*add_scaled)(float factor, const Float4* v, Float4* to, std::uint32_t first, std::uint32_t last);
+  /// to = a + beta to
+  void (*scale_and_add)(float beta, const Float4* a, Float4* to, std::uint32_t first, std::uint32_t last);
+};
+
 /// Steps return the largest squared residual of a free node before the step [N^2], NaN where one is, or 0
 /// where it is not measured.
 struct Kernels {
@@ -95,6 +153,11 @@ struct Kernels {
                    Float4* out, std::uint32_t first_slice, std::uint32_t last_slice);
   float (*step_slices)(const SliceStep& step, std::uint32_t first_slice, std::uint32_t last_slice);
   float (*step_rows)(const GridStep& step, std::uint32_t first_row, std::uint32_t last_row);
+  BalanceSums (*balance)(const BalancePass& pass, std::uint32_t first_slice, std::uint32_t last_slice);
+  /// Inverses of the nodes' own blocks, ground + sum of links; 0 where a node is held or nothing holds it.
+  void (*invert_blocks)(const LinkMatrix& matrix, float* inverse, std::uint32_t first_slice,
+                        std::uint32_t last_slice);
+  VectorKernels vectors;
 };
 /// \pre HasSimdLevel(level)
 const Kernels& GetKernels(SimdLevel level) noexcept;

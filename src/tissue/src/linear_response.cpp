@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "trocar/core/assert.h"
+#include "trocar/tissue/spring_law.h"
 
 namespace trocar::tissue {
 namespace {
@@ -66,8 +67,12 @@ void LinearResponse::SetStiffness(const TissueState& state, const TissueLoad& lo
     for (auto h = model.spring_starts[i]; h < model.spring_starts[i + 1]; ++h) {
       const auto& half = model.half_springs[h];
       const Vec3 along = state.position[half.other] - state.position[i];
-      const double length = math::Norm(along), stiffness = load.stiffness_scale * half.stiffness;
-      const double across = length > 0.0 ? std::fmax(0.0, 1.0 - half.rest_length / length) : 1.0;
+      const double length = math::Norm(along);
+      const SpringLine line = CalcSpringLine(model.laws[model.spring_law[half.spring]],
+                                             state.spring_factor[half.spring], half.stiffness,
+                                             half.rest_length, length);
+      const double stiffness = load.stiffness_scale * line.stiffness;
+      const double across = length > 0.0 ? std::fmax(0.0, 1.0 - line.rest_length / length) : 1.0;
       Link& link = springs_[h];
       link.isotropic = stiffness * across;
       link.along = length > 0.0 ? (std::sqrt(stiffness * (1.0 - across)) / length) * along : Vec3{};

@@ -30,50 +30,13 @@ NodeGraph MakeGraph(const TissueModel& model, std::vector<double>& stiffness) {
   return graph;
 }
 
-/// Partial sums of a chunk.
-struct ChunkSums {
-  double energy = 0, residual2 = 0, force = 0;
-  bool is_finite = true;
-};
-
-/// Six floats of a symmetric matrix, kSliceNodes apart.
-void Write(const Symmetric3& m, float* to) noexcept {
-  for (std::size_t i = 0; i < 6; ++i) to[i * kSliceNodes] = static_cast<float>(m[i]);
+/// Place of the first of a node's six ground values.
+std::size_t GroundAt(std::uint32_t i) {
+  return std::size_t{i / kSliceNodes} * 6 * kSliceNodes + i % kSliceNodes;
 }
 
-/// Force, energy and stiffness of the springs of one node.
-Vec3 LineariseSprings(const OrderedModel& model, double scale, std::span<const Vec3> position,
-                      std::uint32_t i, LinkLevel& level, std::span<float> stiffness, double& largest,
-                      double& energy) noexcept {
-  const Vec3 here = position[i];
-  Vec3 force;
-  const std::size_t first = model.layout.Entry(i, 0),
-                    last = first + std::size_t{model.layout.RowSteps(i)} * kSliceNodes;
-  float* link = level.links.data() + first / kSliceNodes * 6 * kSliceNodes + first % kSliceNodes;
-  double stored = 0, most = 0;
-  for (std::size_t entry = first; entry < last; entry += kSliceNodes, link += 6 * kSliceNodes) {
-    const std::uint32_t other = model.layout.others[entry];
-    if (other == i) break;
-    const double k = scale * model.stiffness[entry], rest = model.rest_length[entry];
-    const Vec3 along = position[other] - here;
-    const double length = std::sqrt(math::SquaredNorm(along));
-    const double inverse = length > 0.0 ? 1.0 / length : 0.0, b = k * rest * inverse, across = k - b;
-    const double bend = b * inverse * inverse;  // times the extent twice: b u u^T
-    force += across * along;
-    link[0] = static_cast<float>(across + bend * along.x * along.x);
-    link[kSliceNodes] = static_cast<float>(bend * along.x * along.y);
-    link[2 * kSliceNodes] = static_cast<float>(bend * along.x * along.z);
-    link[3 * kSliceNodes] = static_cast<float>(across + bend * along.y * along.y);
-    link[4 * kSliceNodes] = static_cast<float>(bend * along.y * along.z);
-    link[5 * kSliceNodes] = static_cast<float>(across + bend * along.z * along.z);
-    stiffness[entry] = static_cast<float>(k);
-    const double tension = k * std::fabs(length - rest);
-    most = tension > most ? tension : most;
-    stored += tension * std::fabs(length - rest);
-  }
-  largest = most;
-  energy += 0.25 * stored;
-  return force;
+Vec3 ToVec3(const Double4& v) {
+  return {v.x, v.y, v.z};
 }
 
 }  // namespace
@@ -100,11 +63,12 @@ OrderedModel MakeOrderedModel(const TissueModel& model) {
   made.layout = MakeSliceLayout(made.graph);
   made.stiffness.assign(made.layout.Steps() * kSliceNodes, 0.0);
   made.rest_length.assign(made.layout.Steps() * kSliceNodes, 0.0);
+  made.spring_entries.resize(model.half_springs.size());
   for (std::uint32_t i = 0; i < n; ++i) {
     const std::uint32_t old = made.old_of_new[i];
     std::uint32_t place = 0;
     for (auto h = model.spring_starts[old]; h < model.spring_starts[old + 1]; ++h, ++place) {
-      const std::size_t entry = made.layout.Entry(i, place);
+      const std::size_t entry = made.spring_entries[h] = made.layout.Entry(i, place);
       made.stiffness[entry] = model.half_springs[h].stiffness;
       made.rest_length[entry] = model.half_springs[h].rest_length;
     }
@@ -133,87 +97,161 @@ void SetOrderedLoad(const OrderedModel& model, const TissueLoad& load, const Tis
   }
 }
 
-void Linearise(const OrderedModel& model, const OrderedLoad& load,
-               std::span<const std::uint8_t> strand_is_intact, std::span<const Vec3> position,
-               Workers& workers, LinkLevel& level, std::span<float> stiffness, Balance& balance) noexcept {
-  const std::uint32_t slices = model.layout.Slices();
-  const std::uint32_t chunk_slices = std::max(kChunkSlices, slices / Workers::kMaxChunks + 1);
-  const std::uint32_t chunks = (slices + chunk_slices - 1) / chunk_slices;
-  std::array<ChunkSums, Workers::kMaxChunks> sums;
-  const auto nodes_of = [&](std::uint32_t chunk, const auto& work) {
-    const std::uint32_t last = std::min(model.Size(), (chunk + 1) * chunk_slices * kSliceNodes);
-    for (std::uint32_t i = chunk * chunk_slices * kSliceNodes; i < last; ++i) work(i);
-  };
-  workers.Run(chunks, [&](std::uint32_t chunk) {
-    ChunkSums& sum = sums[chunk];
-    nodes_of(chunk, [&](std::uint32_t i) {
-      double largest = 0;
-      Vec3 force =
-          LineariseSprings(model, load.stiffness_scale, position, i, level, stiffness, largest, sum.energy);
-      const double shape = load.shape_scale * model.shape[i];
-      const Vec3 offset = model.rest[i] - position[i];
-      force += shape * offset + load.constant[i];
-      // from rest, so that the difference of two energies keeps its digits
-      sum.energy += 0.5 * shape * math::SquaredNorm(offset) + math::Dot(load.constant[i], offset);
-      largest = std::fmax(largest, shape * math::Norm(offset));
-      balance.node_force[i] = std::fmax(largest, math::Norm(load.constant[i]));
-      balance.residual[i] = force;
-      Symmetric3 ground{};
-      AddIsotropic(ground, shape);
-      Write(ground, level.ground.data() + std::size_t{i / kSliceNodes} * 6 * kSliceNodes + i % kSliceNodes);
-      level.is_free[i] = load.is_free[i] != 0 ? 1.0f : 0.0f;
-    });
-  });
+Linearisation::Linearisation(const OrderedModel& model) : model_(&model) {
+  nodes_.assign(model.layout.PaddedNodes() * kBalanceValues, 0.0);
+  slack_.assign(model.layout.Steps() * kSliceNodes, 0.0f);
+  for (std::uint32_t i = 0; i < model.Size(); ++i) {
+    for (int axis = 0; axis < 3; ++axis) At(i, static_cast<BalanceValue>(kRestX + axis)) = model.rest[i][axis];
+  }
+  for (const auto& strand : model.strands) {
+    if (strand_nodes_.empty() || strand_nodes_.back() != strand.node) strand_nodes_.push_back(strand.node);
+  }
+}
 
-  // strands and contacts: few, and each changes two or three nodes
+void Linearisation::SetLoad(const OrderedLoad& load, std::span<const std::uint8_t> strand_is_intact,
+                            LinkLevel& level) noexcept {
+  load_ = &load;
+  strand_is_intact_ = strand_is_intact;
+  for (std::uint32_t i = 0; i < model_->Size(); ++i) {
+    const double shape = load.shape_scale * model_->shape[i];
+    for (int axis = 0; axis < 3; ++axis)
+      At(i, static_cast<BalanceValue>(kOuterX + axis)) = load.constant[i][axis];
+    At(i, kOuterSize) = math::Norm(load.constant[i]);
+    At(i, kShape) = shape;
+    At(i, kFree) = load.is_free[i] != 0 ? 1.0 : 0.0;
+    level.is_free[i] = load.is_free[i] != 0 ? 1.0f : 0.0f;
+    float* const ground = level.ground.data() + GroundAt(i);
+    for (std::size_t v = 0; v < 6; ++v)
+      ground[v * kSliceNodes] = v == 0 || v == 3 || v == 5 ? static_cast<float>(shape) : 0.0f;
+  }
+  for (const std::uint32_t node : strand_nodes_) At(node, kStrands) = 0.0;
+  for (const auto& strand : model_->strands) {
+    if (strand_is_intact[strand.strand]) At(strand.node, kStrands) += load.stiffness_scale * strand.stiffness;
+  }
+}
+
+void Linearisation::AddOuter(std::uint32_t node, const Vec3& force, double size) noexcept {
+  for (int axis = 0; axis < 3; ++axis) At(node, static_cast<BalanceValue>(kOuterX + axis)) += force[axis];
+  At(node, kOuterSize) = std::fmax(At(node, kOuterSize), size);
+}
+
+/// Strands and contacts are few, and each changes two or three nodes: their force joins the constant one.
+/// \return their energy, less that of a constant force of the same size [J]
+double Linearisation::AddStrandsAndContacts(std::span<const Double4> position, Balance& balance) noexcept {
+  const OrderedModel& model = *model_;
+  const OrderedLoad& load = *load_;
+  const auto reset = [&](std::uint32_t node) {
+    for (int axis = 0; axis < 3; ++axis)
+      At(node, static_cast<BalanceValue>(kOuterX + axis)) = load.constant[node][axis];
+    At(node, kOuterSize) = math::Norm(load.constant[node]);
+  };
+  for (const std::uint32_t node : strand_nodes_) reset(node);
+  for (const ContactSpring& contact : load.contacts) {
+    for (const std::uint32_t node : contact.nodes) reset(node);
+  }
   double energy = 0;
   for (const auto& strand : model.strands) {
-    const double k = strand_is_intact[strand.strand] ? load.stiffness_scale * strand.stiffness : 0.0;
-    const Vec3 offset = (position[strand.other] - position[strand.node]) -
-                        (model.rest[strand.other] - model.rest[strand.node]);
-    balance.residual[strand.node] += k * offset;
-    balance.node_force[strand.node] = std::fmax(balance.node_force[strand.node], k * math::Norm(offset));
-    energy += 0.25 * k * math::SquaredNorm(offset);
-    Symmetric3 link{};
-    AddIsotropic(link, k);
-    Write(link,
-          level.links.data() + strand.entry / kSliceNodes * 6 * kSliceNodes + strand.entry % kSliceNodes);
-    stiffness[strand.entry] = static_cast<float>(k);
+    if (!strand_is_intact_[strand.strand]) continue;
+    const double k = load.stiffness_scale * strand.stiffness;
+    const Vec3 here = ToVec3(position[strand.node]);
+    const Vec3 offset = (ToVec3(position[strand.other]) - here) - (model.rest[strand.other] - model.rest[strand.node]);
+    const double length2 = math::SquaredNorm(offset);
+    AddOuter(strand.node, k * offset, k * std::sqrt(length2));
+    energy += 0.25 * k * length2 - k * math::Dot(offset, model.rest[strand.node] - here);
   }
-  for (const ContactSpring& contact : load.contacts) {
-    const double depth = CalcContactDepth(contact, position);
+  for (std::size_t c = 0; c < load.contacts.size(); ++c) {
+    const ContactSpring& contact = load.contacts[c];
+    double depth = contact.offset;
+    for (int corner = 0; corner < 3; ++corner)
+      depth -= contact.weights[corner] * math::Dot(contact.normal, ToVec3(position[contact.nodes[corner]]));
+    balance.is_pressing[c] = depth > 0.0;
     if (!(depth > 0.0)) continue;
     energy += 0.5 * contact.stiffness * depth * depth;
     for (int corner = 0; corner < 3; ++corner) {
+      const std::uint32_t node = contact.nodes[corner];
       const double force = contact.weights[corner] * contact.stiffness * depth;
-      balance.residual[contact.nodes[corner]] += force * contact.normal;
-      balance.node_force[contact.nodes[corner]] =
-          std::fmax(balance.node_force[contact.nodes[corner]], std::fabs(force));
+      AddOuter(node, force * contact.normal, std::fabs(force));
+      energy -= force * math::Dot(contact.normal, model.rest[node] - ToVec3(position[node]));
     }
   }
+  return energy;
+}
 
-  workers.Run(chunks, [&](std::uint32_t chunk) {
-    ChunkSums& sum = sums[chunk];
-    nodes_of(chunk, [&](std::uint32_t i) {
-      // what is not finite fails the comparison, a held node's force included
-      sum.is_finite = sum.is_finite && math::SquaredNorm(balance.residual[i]) < INFINITY;
-      if (!load.is_free[i]) {
-        balance.residual[i] = {};
-        return;
-      }
-      sum.residual2 = std::fmax(sum.residual2, math::SquaredNorm(balance.residual[i]));
-      sum.force = std::fmax(sum.force, balance.node_force[i]);
-    });
-  });
-  balance.largest_residual = balance.force_scale = 0;
-  balance.is_finite = true;
-  for (std::uint32_t chunk = 0; chunk < chunks; ++chunk) {
-    energy += sums[chunk].energy;
-    balance.largest_residual = std::fmax(balance.largest_residual, std::sqrt(sums[chunk].residual2));
-    balance.force_scale = std::fmax(balance.force_scale, sums[chunk].force);
-    balance.is_finite = balance.is_finite && sums[chunk].is_finite;
+void Linearisation::AddContactGround(LinkLevel& level, const Balance& balance) noexcept {
+  for (const ContactSpring& contact : load_->contacts) {
+    for (const std::uint32_t node : contact.nodes) {
+      const auto shape = static_cast<float>(At(node, kShape));
+      for (std::size_t v = 0; v < 6; ++v)
+        level.ground[GroundAt(node) + v * kSliceNodes] = v == 0 || v == 3 || v == 5 ? shape : 0.0f;
+    }
   }
-  balance.energy = energy;
+  for (std::size_t c = 0; c < load_->contacts.size(); ++c) {
+    if (!balance.is_pressing[c]) continue;
+    const ContactSpring& contact = load_->contacts[c];
+    for (int corner = 0; corner < 3; ++corner) {
+      Symmetric3 m{};
+      AddDirection(m, contact.normal, contact.weights[corner] * contact.stiffness);
+      for (std::size_t v = 0; v < 6; ++v)
+        level.ground[GroundAt(contact.nodes[corner]) + v * kSliceNodes] += static_cast<float>(m[v]);
+    }
+  }
+}
+
+void Linearisation::Run(const Kernels& kernels, Workers& workers, BalancePass pass, double energy,
+                        Balance& balance) noexcept {
+  pass.table = model_->layout.Table();
+  pass.stiffness = model_->stiffness.data(), pass.rest_length = model_->rest_length.data();
+  pass.stiffness_scale = load_->stiffness_scale;
+  pass.nodes = nodes_.data();
+  pass.residual = balance.residual.data();
+  const std::uint32_t slices = model_->layout.Slices();
+  const std::uint32_t chunk_slices = std::max(kChunkSlices, slices / Workers::kMaxChunks + 1);
+  const std::uint32_t chunks = (slices + chunk_slices - 1) / chunk_slices;
+  std::array<BalanceSums, Workers::kMaxChunks> sums;
+  workers.Run(chunks, [&](std::uint32_t chunk) {
+    sums[chunk] = kernels.balance(pass, chunk * chunk_slices, std::min(slices, (chunk + 1) * chunk_slices));
+  });
+  BalanceSums all;
+  all.energy = energy;
+  for (std::uint32_t chunk = 0; chunk < chunks; ++chunk) {
+    all.energy += sums[chunk].energy;
+    all.residual2 = std::fmax(all.residual2, sums[chunk].residual2);
+    all.force = std::fmax(all.force, sums[chunk].force);
+    all.distance2 = std::fmax(all.distance2, sums[chunk].distance2);
+    all.is_finite = all.is_finite && sums[chunk].is_finite;
+  }
+  balance.energy = all.energy;
+  balance.largest_residual = std::sqrt(all.residual2);
+  balance.force_scale = all.force;
+  balance.largest_distance = std::sqrt(all.distance2);
+  balance.is_finite = all.is_finite;
+}
+
+void Linearisation::CalcBalance(const Kernels& kernels, Workers& workers, std::span<const Double4> position,
+                                Balance& balance) noexcept {
+  const double energy = AddStrandsAndContacts(position, balance);
+  Run(kernels, workers, {.position = position.data(), .has_stiffness = false}, energy, balance);
+}
+
+void Linearisation::Linearise(const Kernels& kernels, Workers& workers, std::span<const Double4> position,
+                              LinkLevel& level, Balance& balance) noexcept {
+  const double energy = AddStrandsAndContacts(position, balance);
+  AddContactGround(level, balance);
+  Run(kernels, workers,
+      {.position = position.data(),
+       .has_stiffness = true,
+       .links = level.links.data(),
+       .slack = slack_.data(),
+       .ground = level.ground.data(),
+       .inverse = level.inverse.data()},
+      energy, balance);
+  for (const auto& strand : model_->strands) {
+    const double k = strand_is_intact_[strand.strand] ? load_->stiffness_scale * strand.stiffness : 0.0;
+    float* const link =
+        level.links.data() + strand.entry / kSliceNodes * 6 * kSliceNodes + strand.entry % kSliceNodes;
+    for (std::size_t v = 0; v < 6; ++v)
+      link[v * kSliceNodes] = v == 0 || v == 3 || v == 5 ? static_cast<float>(k) : 0.0f;
+  }
 }
 
 }  // namespace trocar::tissue

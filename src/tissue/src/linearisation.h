@@ -20,6 +20,7 @@ struct OrderedModel {
   SliceLayout layout;
   std::vector<double> stiffness;    // (entries) k of springs [N/m]; 0 for strands and padding
   std::vector<double> rest_length;  // (entries) [m]
+  std::vector<std::size_t> spring_entries;  // (half-springs of the model) place of each
   std::vector<Vec3> rest;           // (n) [m]
   std::vector<double> mass;         // (n) [kg]
   std::vector<double> shape;        // (n) k_virtual [N/m]
@@ -49,23 +50,56 @@ void SetOrderedLoad(const OrderedModel& model, const TissueLoad& load, const Tis
 
 /// Balance of forces at one set of positions.
 struct Balance {
-  std::vector<Vec3> residual;      // (n) R_i [N]; zero where the node is held
-  std::vector<double> node_force;  // (n) largest force of one spring or load on the node [N]
-  double energy = 0;               // [J]
-  double largest_residual = 0;     // [N]
-  double force_scale = 0;          // largest force of one spring, load or contact on a free node [N]
+  std::vector<Float4> residual;           // (padded) R_i [N]; zero where the node is held
+  std::vector<std::uint8_t> is_pressing;  // (contacts)
+  double energy = 0;                      // [J]
+  double largest_residual = 0;            // [N]
+  double force_scale = 0;       // largest force of one spring, load or contact on a free node [N]
+  double largest_distance = 0;  // of a node from rest [m]
   bool is_finite = true;
 };
 
-/// Evaluates the balance, and with it the stiffness -dR/dx: links and ground of `level`, and k of each entry
-/// for LinkHierarchy::Update. Contacts are left out of the stiffness; see ContactMatrix.
-///
-/// \param position  (n) [m], in the solvers' order
-/// \note Real-time safe.
-/// Source: Hooke's law; stiffness of a spring of extent d u: (k - b) I + b u u^T with
-/// b = k l / d.
-void Linearise(const OrderedModel& model, const OrderedLoad& load,
-               std::span<const std::uint8_t> strand_is_intact, std::span<const Vec3> position,
-               Workers& workers, LinkLevel& level, std::span<float> stiffness, Balance& balance) noexcept;
+/// Evaluates the balance of a model and its stiffness -dR/dx.
+class Linearisation {
+ public:
+  explicit Linearisation(const OrderedModel& model);
+
+  /// Takes what acts in one solve; sets is_free and ground of `level`.
+  /// \note Real-time safe.
+  void SetLoad(const OrderedLoad& load, std::span<const std::uint8_t> strand_is_intact,
+               LinkLevel& level) noexcept;
+
+  /// Forces and energy.
+  ///
+  /// \param position  (padded nodes) [m], in the solvers' order
+  /// \note Real-time safe.
+  void CalcBalance(const Kernels& kernels, Workers& workers, std::span<const Double4> position,
+                   Balance& balance) noexcept;
+  /// The same, and the stiffness: links, ground and inverse of `level`. Of the contacts' stiffness only what
+  /// each does to its corners alone is in the ground.
+  /// \note Real-time safe.
+  void Linearise(const Kernels& kernels, Workers& workers, std::span<const Double4> position,
+                 LinkLevel& level, Balance& balance) noexcept;
+  /// What compression takes from the stiffness of each link across, (entries), of the last Linearise() [N/m].
+  std::span<const float> Slack() const { return slack_; }
+
+ private:
+  double& At(std::uint32_t node, BalanceValue value) {
+    return nodes_[(std::size_t{node / kSliceNodes} * kBalanceValues + value) * kSliceNodes +
+                  node % kSliceNodes];
+  }
+  void AddOuter(std::uint32_t node, const Vec3& force, double size) noexcept;
+  double AddStrandsAndContacts(std::span<const Double4> position, Balance& balance) noexcept;
+  void AddContactGround(LinkLevel& level, const Balance& balance) noexcept;
+  void Run(const Kernels& kernels, Workers& workers, BalancePass pass, double energy,
+           Balance& balance) noexcept;
+
+  const OrderedModel* model_;
+  const OrderedLoad* load_ = nullptr;
+  std::span<const std::uint8_t> strand_is_intact_;
+  std::vector<double> nodes_;                // (slices, kBalanceValues, kSliceNodes)
+  std::vector<float> slack_;                 // (entries) [N/m]
+  std::vector<std::uint32_t> strand_nodes_;  // those with strands, each once
+};
 
 }  // namespace trocar::tissue

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "node_vectors.h"
+
 namespace trocar::tissue {
 namespace {
 
@@ -20,6 +22,14 @@ constexpr double kCoarseLinkScale = 0.5;
 constexpr float kDamping = 0.65f;
 /// Sweeps on a coarsest level that is too large for a direct solution: links are gone, so one would do.
 constexpr int kCoarsestSweeps = 4;
+
+/// Calls work(first, last) for every chunk of the slices.
+template <typename Work>
+void ForEachSliceChunk(Workers& workers, std::uint32_t slices, const Work& work) noexcept {
+  const std::uint32_t size = std::max(kChunkSlices, slices / Workers::kMaxChunks + 1);
+  workers.Run((slices + size - 1) / size,
+              [&](std::uint32_t chunk) { work(chunk * size, std::min(slices, (chunk + 1) * size)); });
+}
 
 /// Joins each node with the unjoined neighbour that it is most stiffly linked to.
 /// \return (n) number of each node's aggregate, in order of first appearance
@@ -97,19 +107,6 @@ Symmetric3 ReadSymmetric(const std::vector<float>& values, std::size_t at) {
   for (std::size_t i = 0; i < 6; ++i) m[i] = static_cast<double>(values[at + i * kSliceNodes]);
   return m;
 }
-void WriteSymmetric(const Symmetric3& m, std::vector<float>& values, std::size_t at) {
-  for (std::size_t i = 0; i < 6; ++i) values[at + i * kSliceNodes] = static_cast<float>(m[i]);
-}
-void AddTo(const Symmetric3& m, double scale, std::vector<float>& values, std::size_t at) {
-  for (std::size_t i = 0; i < 6; ++i) values[at + i * kSliceNodes] += static_cast<float>(scale * m[i]);
-}
-
-/// A spring's 3 x 3 matrix is (k - b) I + b u u^T; where it is compressed, b > k. Gives it k u u^T then.
-void RemoveCompression(Symmetric3& link, double k) {
-  const double across = 0.5 * (link[0] + link[3] + link[5] - k);
-  if (across < 0.0) AddIsotropic(link, -across);
-}
-
 }  // namespace
 
 LinkMatrix LinkLevel::Matrix() const {
@@ -118,19 +115,16 @@ LinkMatrix LinkLevel::Matrix() const {
 
 void RunPass(const Kernels& kernels, Workers& workers, const LinkLevel& level, LinkPass pass, const Float4* x,
              const Float4* b, float factor, Float4* out) noexcept {
-  const std::uint32_t slices = level.layout.Slices();
-  const std::uint32_t chunk_slices = std::max(kChunkSlices, slices / Workers::kMaxChunks + 1);
   const LinkMatrix matrix = level.Matrix();
-  workers.Run((slices + chunk_slices - 1) / chunk_slices, [&](std::uint32_t chunk) {
-    kernels.multiply(matrix, pass, x, b, factor, out, chunk * chunk_slices,
-                     std::min(slices, (chunk + 1) * chunk_slices));
+  ForEachSliceChunk(workers, level.layout.Slices(), [&](std::uint32_t first, std::uint32_t last) {
+    kernels.multiply(matrix, pass, x, b, factor, out, first, last);
   });
 }
 
-LinkHierarchy::LinkHierarchy(const NodeGraph& graph, std::span<const double> stiffness) {
+LinkHierarchy::LinkHierarchy(const NodeGraph& graph, std::span<const double> stiffness)
+    : levels_({MakeLevel(graph)}), chains_(graph, levels_.front().layout) {
   NodeGraph fine = graph;
   std::vector<double> weights(stiffness.begin(), stiffness.end());
-  levels_.push_back(MakeLevel(fine));
   while (fine.Size() > kDirectNodes) {
     std::vector<std::uint32_t> aggregate(fine.Size());
     std::iota(aggregate.begin(), aggregate.end(), 0u);
@@ -162,6 +156,12 @@ LinkHierarchy::LinkHierarchy(const NodeGraph& graph, std::span<const double> sti
             static_cast<std::uint32_t>(next.Entry(from, static_cast<std::uint32_t>(place)));
       }
     }
+    level.member_starts.assign(coarse.Size() + 1, 0);
+    for (const std::uint32_t a : aggregate) ++level.member_starts[a + 1];
+    std::partial_sum(level.member_starts.begin(), level.member_starts.end(), level.member_starts.begin());
+    level.members.resize(fine.Size());
+    auto next_member = level.member_starts;
+    for (std::uint32_t i = 0; i < fine.Size(); ++i) level.members[next_member[aggregate[i]]++] = i;
     level.aggregate = std::move(aggregate);
     fine = std::move(coarse);
     weights = std::move(sums);
@@ -169,55 +169,62 @@ LinkHierarchy::LinkHierarchy(const NodeGraph& graph, std::span<const double> sti
   if (levels_.back().Size() <= kDirectNodes) {
     const std::size_t unknowns = 3 * levels_.back().Size();
     factor_.resize(unknowns * unknowns);
-    right_.resize(unknowns);
+    rows_.resize(unknowns * unknowns);
+    inverse_.resize(unknowns * unknowns);
   }
 }
 
-void LinkHierarchy::UpdateCoarse(std::size_t at, std::span<const float> stiffness) noexcept {
-  LinkLevel& level = levels_[at];
-  LinkLevel* const next = at + 1 < levels_.size() ? &levels_[at + 1] : nullptr;
-  if (next != nullptr) {
-    std::fill(next->links.begin(), next->links.end(), 0.0f);
-    std::fill(next->ground.begin(), next->ground.end(), 0.0f);
-    std::fill(next->is_free.begin(), next->is_free.end(), 0.0f);
-  }
+void LinkHierarchy::Coarsen(std::size_t at, std::span<const float> slack) noexcept {
+  const LinkLevel& level = levels_[at];
+  LinkLevel& next = levels_[at + 1];
+  std::fill(next.links.begin(), next.links.end(), 0.0f);
+  std::fill(next.ground.begin(), next.ground.end(), 0.0f);
+  std::fill(next.is_free.begin(), next.is_free.end(), 0.0f);
+  const auto add = [](const float(&m)[6], float scale, float* to) {
+    for (std::size_t v = 0; v < 6; ++v) to[v * kSliceNodes] += scale * m[v];
+  };
   for (std::uint32_t i = 0; i < level.Size(); ++i) {
-    if (level.is_free[i] == 0.0f) {
-      WriteSymmetric({}, level.inverse, GroundAt(i));
-      continue;
-    }
-    Symmetric3 block = ReadSymmetric(level.ground, GroundAt(i));
-    if (next != nullptr) {
-      next->is_free[level.aggregate[i]] = 1.0f;
-      AddTo(block, 1.0, next->ground, GroundAt(level.aggregate[i]));
-    }
+    if (level.is_free[i] == 0.0f) continue;
+    next.is_free[level.aggregate[i]] = 1.0f;
+    float* const ground = next.ground.data() + GroundAt(level.aggregate[i]);
+    for (std::size_t v = 0; v < 6; ++v)
+      ground[v * kSliceNodes] += level.ground[GroundAt(i) + v * kSliceNodes];
     const std::size_t first = level.layout.Entry(i, 0),
                       last = first + std::size_t{level.layout.RowSteps(i)} * kSliceNodes;
     const float* from = level.links.data() + LinkAt(first);
     for (std::size_t entry = first; entry < last; entry += kSliceNodes, from += 6 * kSliceNodes) {
       const std::uint32_t other = level.layout.others[entry];
       if (other == i) break;
-      Symmetric3 link;
-      for (std::size_t v = 0; v < 6; ++v) link[v] = static_cast<double>(from[v * kSliceNodes]);
-      if (at == 0) RemoveCompression(link, static_cast<double>(stiffness[entry]));
-      for (std::size_t v = 0; v < 6; ++v) block[v] += link[v];
-      if (next == nullptr) continue;
-      if (level.is_free[other] == 0.0f) {
-        AddTo(link, 1.0, next->ground, GroundAt(level.aggregate[i]));
-      } else if (const std::uint32_t coarse = level.coarse_entry[entry]; coarse != LinkLevel::kNoEntry) {
-        AddTo(link, kCoarseLinkScale, next->links, LinkAt(coarse));
-      }
+      const bool is_grounded = level.is_free[other] == 0.0f;
+      const std::uint32_t coarse = level.coarse_entry[entry];
+      if (!is_grounded && coarse == LinkLevel::kNoEntry) continue;
+      const float firmer = slack.empty() ? 0.0f : slack[entry];
+      const float link[6] = {from[0] + firmer,
+                             from[kSliceNodes],
+                             from[2 * kSliceNodes],
+                             from[3 * kSliceNodes] + firmer,
+                             from[4 * kSliceNodes],
+                             from[5 * kSliceNodes] + firmer};
+      is_grounded ? add(link, 1.0f, ground) : add(link, kCoarseLinkScale, next.links.data() + LinkAt(coarse));
     }
-    WriteSymmetric(Invert(block), level.inverse, GroundAt(i));
   }
 }
 
-void LinkHierarchy::Update(std::span<const float> stiffness) noexcept {
-  for (std::size_t at = 0; at < levels_.size(); ++at) UpdateCoarse(at, stiffness);
-  if (!factor_.empty()) Factorise();
+void LinkHierarchy::UpdateCoarse(const Kernels& kernels, Workers& workers,
+                                 std::span<const float> slack) noexcept {
+  for (std::size_t at = 0; at + 1 < levels_.size(); ++at) {
+    Coarsen(at, at == 0 ? slack : std::span<const float>());
+    LinkLevel& next = levels_[at + 1];
+    const LinkMatrix matrix = next.Matrix();
+    ForEachSliceChunk(workers, next.layout.Slices(), [&](std::uint32_t first, std::uint32_t last) {
+      kernels.invert_blocks(matrix, next.inverse.data(), first, last);
+    });
+  }
+  if (!inverse_.empty()) InvertCoarsest();
 }
 
-void LinkHierarchy::Factorise() noexcept {
+/// K = L L^T, then K^-1 = L^-T L^-1, row by row.
+void LinkHierarchy::InvertCoarsest() noexcept {
   const LinkLevel& level = levels_.back();
   const std::size_t n = 3 * level.Size();
   std::fill(factor_.begin(), factor_.end(), 0.0);
@@ -242,84 +249,105 @@ void LinkHierarchy::Factorise() noexcept {
       if (level.is_free[other] != 0.0f) add(i, other, link, -1.0);
     }
   }
-  is_factorised_ = true;
-  for (std::size_t j = 0; j < n && is_factorised_; ++j) {
-    double pivot = factor_[j * n + j];
-    const double whole = pivot;
-    for (std::size_t k = 0; k < j; ++k) pivot -= factor_[j * n + k] * factor_[j * n + k];
+  // L^T in place, row by row; the diagonal as it was is kept beside it
+  for (std::size_t j = 0; j < n; ++j) rows_[j] = factor_[j * n + j];
+  is_inverted_ = true;
+  for (std::size_t j = 0; j < n && is_inverted_; ++j) {
+    double* const row = factor_.data() + j * n;
+    double pivot = row[j];
+    const double whole = rows_[j];
     // what nothing holds stays where it is
     if (!(pivot > 1e-9 * whole)) pivot = whole > 0.0 ? 1e9 * whole : 1.0;
-    is_factorised_ = std::isfinite(pivot);
+    is_inverted_ = std::isfinite(pivot);
     const double root = std::sqrt(pivot);
-    factor_[j * n + j] = root;
+    row[j] = root;
+    for (std::size_t k = j + 1; k < n; ++k) row[k] /= root;
     for (std::size_t i = j + 1; i < n; ++i) {
-      double sum = factor_[i * n + j];
-      for (std::size_t k = 0; k < j; ++k) sum -= factor_[i * n + k] * factor_[j * n + k];
-      factor_[i * n + j] = sum / root;
+      double* const below = factor_.data() + i * n;
+      const double share = row[i];
+      for (std::size_t k = i; k < n; ++k) below[k] -= share * row[k];
     }
   }
-}
-
-void LinkHierarchy::SolveCoarsest() noexcept {
-  LinkLevel& level = levels_.back();
-  const std::size_t n = right_.size();
-  for (std::uint32_t i = 0; i < level.Size(); ++i) {
-    const Float4& b = level.b[i];
-    right_[3 * i] = static_cast<double>(b.x), right_[3 * i + 1] = static_cast<double>(b.y);
-    right_[3 * i + 2] = static_cast<double>(b.z);
-  }
+  // L^-1
+  std::fill(rows_.begin(), rows_.end(), 0.0);
   for (std::size_t i = 0; i < n; ++i) {
-    double sum = right_[i];
-    for (std::size_t k = 0; k < i; ++k) sum -= factor_[i * n + k] * right_[k];
-    right_[i] = sum / factor_[i * n + i];
+    double* const row = rows_.data() + i * n;
+    row[i] = 1.0;
+    for (std::size_t k = 0; k < i; ++k) {
+      const double* const above = rows_.data() + k * n;
+      const double share = factor_[k * n + i];
+      for (std::size_t c = 0; c <= k; ++c) row[c] -= share * above[c];
+    }
+    const double scale = 1.0 / factor_[i * n + i];
+    for (std::size_t c = 0; c <= i; ++c) row[c] *= scale;
   }
-  for (std::size_t i = n; i-- > 0;) {
-    double sum = right_[i];
-    for (std::size_t k = i + 1; k < n; ++k) sum -= factor_[k * n + i] * right_[k];
-    right_[i] = sum / factor_[i * n + i];
+  std::fill(factor_.begin(), factor_.end(), 0.0);
+  for (std::size_t k = 0; k < n; ++k) {
+    const double* const row = rows_.data() + k * n;
+    for (std::size_t i = 0; i <= k; ++i) {
+      double* const to = factor_.data() + i * n;
+      for (std::size_t c = 0; c <= k; ++c) to[c] += row[i] * row[c];
+    }
   }
-  for (std::uint32_t i = 0; i < level.Size(); ++i) {
-    level.x[i] = {static_cast<float>(right_[3 * i]), static_cast<float>(right_[3 * i + 1]),
-                  static_cast<float>(right_[3 * i + 2]), 0.0f};
-  }
+  for (std::size_t i = 0; i < n * n; ++i) inverse_[i] = static_cast<float>(factor_[i]);
 }
 
-void LinkHierarchy::Cycle(const Kernels& kernels, Workers& workers, std::size_t at) noexcept {
+void LinkHierarchy::SolveCoarsest(const Float4* b, Float4* x) const noexcept {
+  const std::uint32_t nodes = levels_.back().Size();
+  const std::size_t n = 3 * std::size_t{nodes};
+  std::array<float, 3 * kDirectNodes> sum{};
+  for (std::uint32_t i = 0; i < nodes; ++i) {
+    const float here[3] = {b[i].x, b[i].y, b[i].z};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const float* const row = inverse_.data() + (3 * i + axis) * n;
+      for (std::size_t c = 0; c < n; ++c) sum[c] += here[axis] * row[c];
+    }
+  }
+  for (std::uint32_t i = 0; i < nodes; ++i) x[i] = {sum[3 * i], sum[3 * i + 1], sum[3 * i + 2], 0.0f};
+}
+
+void LinkHierarchy::Cycle(const Kernels& kernels, Workers& workers, std::size_t at, const Float4* b,
+                          Float4* x) noexcept {
   LinkLevel& level = levels_[at];
-  if (at + 1 == levels_.size() && is_factorised_) return SolveCoarsest();
-  RunPass(kernels, workers, level, LinkPass::kStart, nullptr, level.b.data(), kDamping, level.x.data());
-  if (at + 1 == levels_.size()) {
+  const bool is_last = at + 1 == levels_.size();
+  if (is_last && is_inverted_) return SolveCoarsest(b, x);
+  RunPass(kernels, workers, level, LinkPass::kStart, nullptr, b, kDamping, level.x.data());
+  if (at == 0) chains_.Solve(level, nullptr, b, kDamping, level.x.data());
+  if (is_last) {
     for (int sweep = 1; sweep < kCoarsestSweeps; ++sweep) {
-      RunPass(kernels, workers, level, LinkPass::kSmooth, level.x.data(), level.b.data(), kDamping,
-              level.r.data());
-      std::swap(level.x, level.r);
+      RunPass(kernels, workers, level, LinkPass::kSmooth, level.x.data(), b, kDamping, x);
+      std::copy(x, x + level.x.size(), level.x.begin());
     }
     return;
   }
-  RunPass(kernels, workers, level, LinkPass::kResidual, level.x.data(), level.b.data(), 0.0f, level.r.data());
+  RunPass(kernels, workers, level, LinkPass::kResidual, level.x.data(), b, 0.0f, level.r.data());
   LinkLevel& next = levels_[at + 1];
-  std::fill(next.b.begin(), next.b.end(), Float4{});
-  for (std::uint32_t i = 0; i < level.Size(); ++i) {
-    Float4& sum = next.b[level.aggregate[i]];
-    sum.x += level.r[i].x, sum.y += level.r[i].y, sum.z += level.r[i].z;
-  }
-  Cycle(kernels, workers, at + 1);
-  for (std::uint32_t i = 0; i < level.Size(); ++i) {
-    const Float4& coarse = next.x[level.aggregate[i]];
-    const float is_free = level.is_free[i];
-    level.x[i].x += is_free * coarse.x, level.x[i].y += is_free * coarse.y,
-        level.x[i].z += is_free * coarse.z;
-  }
-  RunPass(kernels, workers, level, LinkPass::kSmooth, level.x.data(), level.b.data(), kDamping,
-          level.r.data());
-  std::swap(level.x, level.r);
+  ForEachNodeChunk(workers, next.Size(), [&](std::uint32_t first, std::uint32_t last, std::uint32_t) {
+    for (std::uint32_t a = first; a < last; ++a) {
+      Float4 sum;
+      for (auto m = level.member_starts[a]; m < level.member_starts[a + 1]; ++m) {
+        const Float4& r = level.r[level.members[m]];
+        sum.x += r.x, sum.y += r.y, sum.z += r.z, sum.w += r.w;
+      }
+      next.b[a] = sum;
+    }
+  });
+  Cycle(kernels, workers, at + 1, next.b.data(), next.r.data());
+  ForEachNodeChunk(workers, level.Size(), [&](std::uint32_t first, std::uint32_t last, std::uint32_t) {
+    for (std::uint32_t i = first; i < last; ++i) {
+      const Float4& coarse = next.r[level.aggregate[i]];
+      const float is_free = level.is_free[i];
+      Float4& here = level.x[i];
+      here.x += is_free * coarse.x, here.y += is_free * coarse.y, here.z += is_free * coarse.z,
+          here.w += is_free * coarse.w;
+    }
+  });
+  RunPass(kernels, workers, level, LinkPass::kSmooth, level.x.data(), b, kDamping, x);
+  if (at == 0) chains_.Solve(level, level.x.data(), b, kDamping, x);
 }
 
 void LinkHierarchy::Apply(const Kernels& kernels, Workers& workers, const Float4* b, Float4* x) noexcept {
-  LinkLevel& finest = levels_.front();
-  std::copy(b, b + finest.b.size(), finest.b.begin());
-  Cycle(kernels, workers, 0);
-  std::copy(finest.x.begin(), finest.x.end(), x);
+  Cycle(kernels, workers, 0, b, x);
 }
 
 }  // namespace trocar::tissue

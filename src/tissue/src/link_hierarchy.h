@@ -15,6 +15,7 @@
 #include <span>
 #include <vector>
 
+#include "link_chains.h"
 #include "slice_layout.h"
 #include "symmetric3.h"
 #include "workers.h"
@@ -26,6 +27,7 @@ struct LinkLevel {
   SliceLayout layout;
   std::vector<float> links, ground, inverse, is_free;  // as in LinkMatrix
   std::vector<std::uint32_t> aggregate;                // (n) node of the next level; empty on the last
+  std::vector<std::uint32_t> member_starts, members;   // nodes of each aggregate
   std::vector<std::uint32_t> coarse_entry;             // (entries) place of the link there, or kNoEntry
   std::vector<Float4> x, b, r;                         // (padded nodes)
 
@@ -50,12 +52,15 @@ class LinkHierarchy {
   const LinkLevel& Finest() const { return levels_.front(); }
   std::span<const LinkLevel> Levels() const { return levels_; }
 
-  /// Computes the finest level's inverse blocks and all coarser levels. Links may be indefinite where springs
-  /// are compressed; here they count as slack.
+  /// Computes all coarser levels. Links may be indefinite where springs are compressed; here they count as
+  /// slack. The finest level, its inverse blocks included, is the caller's.
   ///
-  /// \param stiffness  (entries) k of each link [N/m], of which its 3 x 3 matrix keeps at least the part
-  /// along
-  void Update(std::span<const float> stiffness) noexcept;
+  /// \param slack  (entries) what is to be added to each finest link's stiffness, in every direction [N/m]
+  /// \note Real-time safe.
+  void UpdateCoarse(const Kernels& kernels, Workers& workers, std::span<const float> slack) noexcept;
+  /// Follows a change of the finest level without the coarser ones.
+  /// \note Real-time safe.
+  void UpdateChains(std::span<const float> slack) noexcept { chains_.Factorise(levels_.front(), slack); }
 
   /// x = about K^-1 b, a V-cycle with one damped block-Jacobi step on either side: symmetric and, where the
   /// matrix is, positive definite. Held nodes get 0.
@@ -63,14 +68,17 @@ class LinkHierarchy {
   void Apply(const Kernels& kernels, Workers& workers, const Float4* b, Float4* x) noexcept;
 
  private:
-  void Cycle(const Kernels& kernels, Workers& workers, std::size_t at) noexcept;
-  void UpdateCoarse(std::size_t at, std::span<const float> stiffness) noexcept;
-  void Factorise() noexcept;
-  void SolveCoarsest() noexcept;
+  /// x = about K^-1 b on the level.
+  void Cycle(const Kernels& kernels, Workers& workers, std::size_t at, const Float4* b, Float4* x) noexcept;
+  void Coarsen(std::size_t at, std::span<const float> slack) noexcept;
+  void InvertCoarsest() noexcept;
+  void SolveCoarsest(const Float4* b, Float4* x) const noexcept;
 
   std::vector<LinkLevel> levels_;
-  std::vector<double> factor_, right_;  // Cholesky factor of the coarsest level, dense
-  bool is_factorised_ = false;
+  LinkChains chains_;
+  std::vector<double> factor_, rows_;  // room for the inversion of the coarsest level, dense
+  std::vector<float> inverse_;         // of the coarsest level; empty where that is too large
+  bool is_inverted_ = false;
 };
 
 }  // namespace trocar::tissue

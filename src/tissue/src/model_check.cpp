@@ -15,7 +15,7 @@ namespace {
 
 /// Of model, state, the layouts of all solvers and the multigrid levels, measured on grids of 40,000 and
 /// 160,000 nodes and rounded up [bytes].
-constexpr std::size_t kBytesPerNode = 1600, kBytesPerLink = 700;
+constexpr std::size_t kBytesPerNode = 1600, kBytesPerLink = 900;
 
 core::Error Invalid(const std::string& what) {
   return {core::ErrorCode::kTissueInvalid, what};
@@ -34,7 +34,7 @@ std::string FindFault(const Link& link, std::size_t node_count) {
   return {};
 }
 
-/// Joins springs between the same two nodes; the first keeps its place.
+/// Joins springs between the same two nodes; the first keeps its place and its law.
 std::size_t MergeDuplicates(std::vector<Spring>& springs) {
   std::vector<std::size_t> order(springs.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
@@ -129,6 +129,13 @@ core::Result<TissueRepairs> CheckTissue(TissueDefinition& definition, std::size_
     if (!IsAmount(definition.mass[i]) || !IsAmount(definition.shape_stiffness[i]))
       return Invalid("mass or virtual spring of node " + std::to_string(i) + " is negative or not a number");
   }
+  for (std::size_t i = 0; i < definition.laws.size(); ++i) {
+    const SpringLaw& law = definition.laws[i];
+    if (!IsAmount(law.stiffening) || !IsAmount(law.stiffening_strain) || !IsAmount(law.damage_rate) ||
+        !(law.failure_strain > 0.0) || !(law.damage_exponent >= 1.0 && std::isfinite(law.damage_exponent)))
+      return Invalid("spring law " + std::to_string(i) +
+                     " has a number that is negative, not finite, or an exponent below one");
+  }
   for (const std::uint32_t node : definition.fixed) {
     if (node >= n) return Invalid("fixed node " + std::to_string(node) + " does not exist");
   }
@@ -139,6 +146,8 @@ core::Result<TissueRepairs> CheckTissue(TissueDefinition& definition, std::size_
       fault = "has a rest length that is negative or not a number";
     if (fault.empty() && spring.rest_length > 0.0 && definition.rest[spring.a] == definition.rest[spring.b])
       fault = "has no direction: its ends lie in one point at rest; merge the two nodes";
+    if (fault.empty() && spring.law >= definition.laws.size())
+      fault = "follows law " + std::to_string(spring.law) + ", which does not exist";
     if (!fault.empty()) return Invalid("spring " + std::to_string(i) + " " + fault);
   }
   for (std::size_t i = 0; i < definition.strands.size(); ++i) {

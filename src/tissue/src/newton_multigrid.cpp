@@ -5,14 +5,21 @@
 #include <cmath>
 
 #include "node_vectors.h"
+#include "smallest_ritz.h"
 
 namespace trocar::tissue {
 namespace {
 
 /// The part of the tolerated error that the linear solution may leave [-].
 constexpr double kLinearShare = 0.3;
-/// The preconditioned residual sees at least this part of the error [-]; measured, see docs/tissue.md.
-constexpr double kEstimateShare = 0.2;
+/// The part of the error that the preconditioned residual shows [-]: in the built-in patient a thirtieth to a
+/// fifth, and less next to a fold, where conjugate gradients meet the mode that turns soft: their smallest Ritz
+/// value then bounds it. Below the least one the springs let go: what they would do is not near.
+constexpr double kSeenShare = 0.03;
+constexpr double kLeastSeenShare = 1e-3;
+/// A step is solved until the preconditioned residual is this part of what it was, or the error small enough
+/// [-]: what is of second order is left over anyway.
+constexpr double kForcing = 0.03;
 /// Longest move of a node in the first Newton step, in mean spring lengths [-]: the stiffness is that of
 /// springs that have not turned far. Conjugate gradients stop where they leave this range (Steihaug, "The
 /// conjugate gradient method and trust regions in large scale optimization", SIAM J. Numer. Anal. 20, 1983):
@@ -27,7 +34,16 @@ constexpr int kMaxHalvings = 6;
 constexpr double kLeastDecrease = 1e-4;
 /// Rounding of the energy, as a part of it [-].
 constexpr double kEnergyRounding = 1e-12;
-constexpr std::uint8_t kNoConstraint = 255;
+/// Conjugate gradients end where r . z, of single precision, has fallen to this part of its start [-]: from a state
+/// at rest the tolerance is zero, and what follows is rounding.
+constexpr double kLinearRounding = 1e-12;
+/// Coarser levels are computed again when a node may have gone so far, in mean spring lengths [-]: they follow
+/// the springs' directions, which have hardly turned before.
+constexpr double kStaleMove = 0.2;
+
+double CalcSeenShare(double smallest_ritz) noexcept {
+  return std::clamp(smallest_ritz, kLeastSeenShare, kSeenShare);
+}
 
 Float4 ToFloat(const Vec3& v) {
   return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z), 0.0f};
@@ -36,49 +52,42 @@ Vec3 ToDouble(const Float4& v) {
   return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
 }
 
-double FindLongest(Workers& workers, const std::vector<Float4>& vectors) noexcept {
-  return std::sqrt(FindLargestOfNodes(workers, vectors.size(),
-                                      [&](std::uint32_t i) { return Dot(vectors[i], vectors[i]); }));
+/// Solves a x = b for the first `count` rows by elimination without pivots: constraints are few and well apart.
+void SolveSmall(NewtonMultigrid::SmallMatrix a, NewtonMultigrid::SmallVector b, std::size_t count,
+                NewtonMultigrid::SmallVector& x) noexcept {
+  for (std::size_t c = 0; c < count; ++c) {
+    for (std::size_t row = c + 1; row < count; ++row) {
+      const double factor = a[c][c] > 0.0 ? a[row][c] / a[c][c] : 0.0;
+      for (std::size_t k = c; k < count; ++k) a[row][k] -= factor * a[c][k];
+      b[row] -= factor * b[c];
+    }
+  }
+  for (std::size_t c = count; c-- > 0;) {
+    double sum = b[c];
+    for (std::size_t k = c + 1; k < count; ++k) sum -= a[c][k] * x[k];
+    x[c] = a[c][c] > 0.0 ? sum / a[c][c] : 0.0;
+  }
 }
 
 }  // namespace
 
 NewtonMultigrid::NewtonMultigrid(const TissueModel& model)
-    : model_(MakeOrderedModel(model)), hierarchy_(model_.graph, model_.graph_stiffness) {
+    : model_(MakeOrderedModel(model)),
+      hierarchy_(model_.graph, model_.graph_stiffness),
+      linearisation_(model_) {
   const std::size_t n = model_.Size(), padded = model_.layout.PaddedNodes();
   load_.constant.resize(n);
   load_.is_free.resize(n);
   load_.contacts.reserve(kMaxContacts);
-  stiffness_.resize(model_.layout.Steps() * kSliceNodes);
-  position_.resize(n), start_.resize(n);
-  balance_.residual.resize(n), balance_.node_force.resize(n);
-  is_pressing_.resize(kMaxContacts);
+  position_.resize(padded), start_.resize(padded);
+  balance_.residual.resize(padded);
+  balance_.is_pressing.resize(kMaxContacts);
   for (auto* vector : {&step_, &r_, &z_, &p_, &q_}) vector->resize(padded);
-  constraint_of_node_.assign(n, kNoConstraint);
-  gradient_.resize(padded);
-  for (auto& answer : answers_) answer.resize(padded);
+  for (Constraint& c : constraints_room_) c.gradient.resize(padded), c.answer.resize(padded);
   double sum = 0;
   std::size_t count = 0;
   for (const double rest : model_.rest_length) sum += rest, count += rest > 0.0;
   edge_length_ = count > 0 ? sum / static_cast<double>(count) : 0.0;
-}
-
-void NewtonMultigrid::AddContactGround() noexcept {
-  auto& ground = hierarchy_.Finest().ground;
-  for (std::size_t c = 0; c < load_.contacts.size(); ++c) {
-    const ContactSpring& contact = load_.contacts[c];
-    is_pressing_[c] = CalcContactDepth(contact, position_) > 0.0;
-    if (!is_pressing_[c]) continue;
-    for (int corner = 0; corner < 3; ++corner) {
-      Symmetric3 m{};
-      AddDirection(m, contact.normal, contact.weights[corner] * contact.stiffness);
-      const std::uint32_t i = contact.nodes[corner];
-      for (std::size_t v = 0; v < 6; ++v) {
-        ground[(std::size_t{i / kSliceNodes} * 6 + v) * kSliceNodes + i % kSliceNodes] +=
-            static_cast<float>(m[v]);
-      }
-    }
-  }
 }
 
 void NewtonMultigrid::Multiply(const Kernels& kernels, Workers& workers, const Float4* x,
@@ -86,7 +95,7 @@ void NewtonMultigrid::Multiply(const Kernels& kernels, Workers& workers, const F
   RunPass(kernels, workers, hierarchy_.Finest(), LinkPass::kProduct, x, nullptr, 0.0f, out);
   // a contact's ground stands for each corner alone; what it does to the corners together makes up the rest
   for (std::size_t c = 0; c < load_.contacts.size(); ++c) {
-    if (!is_pressing_[c]) continue;
+    if (!balance_.is_pressing[c]) continue;
     const ContactSpring& contact = load_.contacts[c];
     double along[3], together = 0;
     for (int corner = 0; corner < 3; ++corner) {
@@ -102,70 +111,68 @@ void NewtonMultigrid::Multiply(const Kernels& kernels, Workers& workers, const F
   }
 }
 
-void NewtonMultigrid::SetConstraints(const Kernels& kernels, Workers& workers,
-                                     const SolveHook* hook) noexcept {
-  constraint_count_ = 0;
-  if (hook == nullptr || hook->constraints.empty()) return;
-  std::fill(constraint_of_node_.begin(), constraint_of_node_.end(), kNoConstraint);
-  std::fill(gradient_.begin(), gradient_.end(), Float4{});
-  for (std::size_t index = 0; index < hook->constraints.size(); ++index) {
-    if (!hook->is_active(hook->self, index)) continue;
-    const auto place = static_cast<std::uint8_t>(constraint_count_);
-    const SolveHook::Constraint& constraint = hook->constraints[index];
-    std::fill(q_.begin(), q_.end(), Float4{});
-    for (std::uint32_t k = 0; k < constraint.node_count; ++k) {
-      const std::uint32_t i = model_.new_of_old[constraint.first_node + k];
-      if (!load_.is_free[i]) continue;
-      constraint_of_node_[i] = place;
-      q_[i] = gradient_[i] = ToFloat(hook->gradient[constraint.first_node + k]);
+void NewtonMultigrid::SetConstraints(const SolveHook* hook) noexcept {
+  const std::size_t count_before = constraints_.size();
+  std::size_t count = 0;
+  if (hook != nullptr) {
+    for (std::size_t index = 0; index < hook->constraints.size(); ++index) {
+      if (!hook->is_active(hook->self, index)) continue;
+      Constraint& c = constraints_room_[count++];
+      has_answers_ = has_answers_ && c.index == index;
+      c.index = index;
+      std::fill(c.gradient.begin(), c.gradient.end(), Float4{});
+      const SolveHook::Constraint& nodes = hook->constraints[index];
+      for (std::uint32_t k = 0; k < nodes.node_count; ++k) {
+        const std::uint32_t i = model_.new_of_old[nodes.first_node + k];
+        if (load_.is_free[i]) c.gradient[i] = ToFloat(hook->gradient[nodes.first_node + k]);
+      }
     }
-    hierarchy_.Apply(kernels, workers, q_.data(), answers_[place].data());
-    constraint_index_[place] = index;
-    ++constraint_count_;
   }
-  for (auto& row : gram_) row.fill(0.0);
-  for (std::uint32_t i = 0; i < model_.Size(); ++i) {
-    if (constraint_of_node_[i] == kNoConstraint) continue;
-    for (std::size_t b = 0; b < constraint_count_; ++b)
-      gram_[constraint_of_node_[i]][b] += Dot(gradient_[i], answers_[b][i]);
+  constraints_ = std::span(constraints_room_).first(count);
+  has_answers_ = has_answers_ && count == count_before;
+  multipliers_.fill(0.0);
+}
+
+void NewtonMultigrid::SetAnswers(const Kernels& kernels, Workers& workers) noexcept {
+  if (!has_answers_) {
+    for (Constraint& c : constraints_) hierarchy_.Apply(kernels, workers, c.gradient.data(), c.answer.data());
+    has_answers_ = true;
+  }
+  for (std::size_t row = 0; row < constraints_.size(); ++row) {
+    for (std::size_t column = 0; column < constraints_.size(); ++column)
+      gram_[row][column] = CalcDot(kernels, workers, constraints_[row].gradient, constraints_[column].answer);
+  }
+}
+
+void NewtonMultigrid::ProjectResidual(const Kernels& kernels, Workers& workers) noexcept {
+  SmallVector along{}, share{};
+  for (std::size_t c = 0; c < constraints_.size(); ++c)
+    along[c] = CalcDot(kernels, workers, constraints_[c].answer, r_);
+  SmallMatrix transposed = gram_;
+  for (std::size_t row = 0; row < constraints_.size(); ++row) {
+    for (std::size_t column = 0; column < constraints_.size(); ++column)
+      transposed[row][column] = gram_[column][row];
+  }
+  SolveSmall(transposed, along, constraints_.size(), share);
+  for (std::size_t c = 0; c < constraints_.size(); ++c) {
+    AddScaled(kernels, workers, static_cast<float>(-share[c]), constraints_[c].gradient, r_);
+    multipliers_[c] += share[c];
   }
 }
 
 void NewtonMultigrid::Precondition(const Kernels& kernels, Workers& workers) noexcept {
+  ProjectResidual(kernels, workers);
   hierarchy_.Apply(kernels, workers, r_.data(), z_.data());
-  multipliers_.fill(0.0);
-  if (constraint_count_ == 0) return;
-  std::array<double, kMaxHookConstraints> along{};
-  for (std::uint32_t i = 0; i < model_.Size(); ++i) {
-    if (constraint_of_node_[i] != kNoConstraint) along[constraint_of_node_[i]] += Dot(gradient_[i], z_[i]);
-  }
-  // few and well apart: elimination without pivots; the matrix is positive definite
-  auto matrix = gram_;
-  for (std::size_t c = 0; c < constraint_count_; ++c) {
-    for (std::size_t row = c + 1; row < constraint_count_; ++row) {
-      const double factor = matrix[c][c] > 0.0 ? matrix[row][c] / matrix[c][c] : 0.0;
-      for (std::size_t k = c; k < constraint_count_; ++k) matrix[row][k] -= factor * matrix[c][k];
-      along[row] -= factor * along[c];
-    }
-  }
-  for (std::size_t c = constraint_count_; c-- > 0;) {
-    double sum = along[c];
-    for (std::size_t k = c + 1; k < constraint_count_; ++k) sum -= matrix[c][k] * multipliers_[k];
-    multipliers_[c] = matrix[c][c] > 0.0 ? sum / matrix[c][c] : 0.0;
-  }
-  for (std::size_t c = 0; c < constraint_count_; ++c) {
-    const auto m = static_cast<float>(multipliers_[c]);
-    const std::vector<Float4>& answer = answers_[c];
-    ForEachNodeChunk(workers, z_.size(), [&](std::uint32_t first, std::uint32_t last, std::uint32_t) {
-      for (std::uint32_t i = first; i < last; ++i) {
-        z_[i].x -= m * answer[i].x, z_[i].y -= m * answer[i].y, z_[i].z -= m * answer[i].z;
-      }
-    });
-  }
+  SmallVector along{}, share{};
+  for (std::size_t c = 0; c < constraints_.size(); ++c)
+    along[c] = CalcDot(kernels, workers, constraints_[c].gradient, z_);
+  SolveSmall(gram_, along, constraints_.size(), share);
+  for (std::size_t c = 0; c < constraints_.size(); ++c)
+    AddScaled(kernels, workers, static_cast<float>(-share[c]), constraints_[c].answer, z_);
 }
 
 NewtonMultigrid::LinearReport NewtonMultigrid::SolveLinear(const Kernels& kernels, Workers& workers,
-                                                           int max_iterations, double tolerance,
+                                                           int max_iterations, double loose, double tolerance,
                                                            double radius) noexcept {
   LinearReport report;
   const std::size_t n = step_.size();
@@ -173,12 +180,17 @@ NewtonMultigrid::LinearReport NewtonMultigrid::SolveLinear(const Kernels& kernel
   // z_ is the preconditioned residual already
   std::copy(z_.begin(), z_.end(), p_.begin());
   double reached = 0;  // bound of the longest move so far
-  double rz = SumOverNodes(workers, n, [&](std::uint32_t i) { return Dot(r_[i], z_[i]); });
-  while (report.iterations < max_iterations && rz > 0.0) {
+  double beta = 0;
+  SmallestRitz ritz;
+  double rz = CalcDot(kernels, workers, r_, z_);
+  const double rounding = kLinearRounding * rz;
+  while (report.iterations < max_iterations && rz > rounding) {
     Multiply(kernels, workers, p_.data(), q_.data());
-    const double pq = SumOverNodes(workers, n, [&](std::uint32_t i) { return Dot(p_[i], q_[i]); });
+    const double pq = CalcDot(kernels, workers, p_, q_);
     report.met_negative_curvature = !(pq > 0.0);
-    const double longest = FindLongest(workers, p_);
+    const double longest = FindLongest(kernels, workers, p_);
+    if (pq > 0.0) ritz.Add(rz / pq, beta);
+    report.smallest_ritz = ritz.Value();
     // along a direction of negative curvature the energy only falls: as far as the range reaches
     double length = report.met_negative_curvature ? INFINITY : rz / pq;
     const bool is_leaving = reached + length * longest > radius;
@@ -187,23 +199,21 @@ NewtonMultigrid::LinearReport NewtonMultigrid::SolveLinear(const Kernels& kernel
     reached += length * longest;
     const auto alpha = static_cast<float>(length);
     ForEachNodeChunk(workers, n, [&](std::uint32_t first, std::uint32_t last, std::uint32_t) {
-      for (std::uint32_t i = first; i < last; ++i) {
-        step_[i].x += alpha * p_[i].x, step_[i].y += alpha * p_[i].y, step_[i].z += alpha * p_[i].z;
-        r_[i].x -= alpha * q_[i].x, r_[i].y -= alpha * q_[i].y, r_[i].z -= alpha * q_[i].z;
-      }
+      kernels.vectors.advance(alpha, p_.data(), q_.data(), step_.data(), r_.data(), first, last);
     });
     ++report.iterations;
-    if (is_leaving && constraint_count_ == 0) break;
+    if (is_leaving) {
+      ProjectResidual(kernels, workers);  // what the constraints carry is asked for
+      break;
+    }
     Precondition(kernels, workers);
-    if (is_leaving) break;
-    if (FindLongest(workers, z_) <= tolerance) break;
-    const double next = SumOverNodes(workers, n, [&](std::uint32_t i) { return Dot(r_[i], z_[i]); });
-    const auto beta = static_cast<float>(next / rz);
+    const double left = FindLongest(kernels, workers, z_);
+    if (left <= loose || left <= tolerance * CalcSeenShare(ritz.Value())) break;
+    const double next = CalcDot(kernels, workers, r_, z_);
+    beta = next / rz;
     rz = next;
     ForEachNodeChunk(workers, n, [&](std::uint32_t first, std::uint32_t last, std::uint32_t) {
-      for (std::uint32_t i = first; i < last; ++i) {
-        p_[i] = {z_[i].x + beta * p_[i].x, z_[i].y + beta * p_[i].y, z_[i].z + beta * p_[i].z, 0.0f};
-      }
+      kernels.vectors.scale_and_add(static_cast<float>(beta), z_.data(), p_.data(), first, last);
     });
   }
   return report;
@@ -213,69 +223,96 @@ SolveReport NewtonMultigrid::Solve(const Kernels& kernels, Workers& workers, con
                                    const TissueLoad& load, TissueState& state,
                                    const SolveHook* hook) noexcept {
   const std::uint32_t n = model_.Size();
-  SetOrderedLoad(model_, load, state, load_);
-  for (std::uint32_t i = 0; i < n; ++i) position_[i] = state.position[model_.old_of_new[i]];
-
-  SolveReport report;
-  const auto linearise = [&] {
-    Linearise(model_, load_, state.strand_is_intact, position_, workers, hierarchy_.Finest(), stiffness_,
-              balance_);
-    AddContactGround();
+  const auto set_load = [&] {
+    SetOrderedLoad(model_, load, state, load_);
+    linearisation_.SetLoad(load_, state.strand_is_intact, hierarchy_.Finest());
+  };
+  const auto read_positions = [&] {
+    for (std::uint32_t i = 0; i < n; ++i) {
+      const Vec3& p = state.position[model_.old_of_new[i]];
+      position_[i] = {p.x, p.y, p.z, 0.0};
+    }
   };
   const auto write_back = [&] {
     for (std::uint32_t i = 0; i < n; ++i) {
-      if (load_.is_free[i]) state.position[model_.old_of_new[i]] = position_[i];
+      if (load_.is_free[i])
+        state.position[model_.old_of_new[i]] = {position_[i].x, position_[i].y, position_[i].z};
     }
+  };
+  set_load();
+  read_positions();
+
+  SolveReport report;
+  const auto linearise = [&] {
+    linearisation_.Linearise(kernels, workers, position_, hierarchy_.Finest(), balance_);
   };
   const auto call_hook = [&] {
     if (hook == nullptr) return;
     write_back();
-    for (std::size_t c = 0; c < constraint_count_; ++c)
-      hook->add_multiplier(hook->self, constraint_index_[c], -multipliers_[c]);
+    for (std::size_t c = 0; c < constraints_.size(); ++c)
+      hook->add_multiplier(hook->self, constraints_[c].index, -multipliers_[c]);
     hook->act(hook->self, state, {});
-    for (std::uint32_t i = 0; i < n; ++i) position_[i] = state.position[model_.old_of_new[i]];
-    SetOrderedLoad(model_, load, state, load_);
-    linearise();
+    read_positions();
+    set_load();
   };
-  double scale = 0;  // largest distance from rest [m]
+  double scale = 0;                 // largest distance from rest [m]
+  double preconditioned = 0;        // longest of z_ [m]
+  double smallest_ritz = INFINITY;  // of all steps
   // estimate of the distance to the equilibrium; leaves the preconditioned residual in z_
   const auto estimate = [&] {
-    ForEachNodeChunk(workers, n, [&](std::uint32_t first, std::uint32_t last, std::uint32_t) {
-      for (std::uint32_t i = first; i < last; ++i) r_[i] = ToFloat(balance_.residual[i]);
-    });
-    SetConstraints(kernels, workers, hook);
+    hierarchy_.UpdateChains(linearisation_.Slack());
+    std::copy(balance_.residual.begin(), balance_.residual.end(), r_.begin());
+    SetConstraints(hook);
+    SetAnswers(kernels, workers);
     Precondition(kernels, workers);
-    scale = std::sqrt(FindLargestOfNodes(
-        workers, n, [&](std::uint32_t i) { return math::SquaredDistance(position_[i], model_.rest[i]); }));
-    const double largest = FindLongest(workers, z_);
-    report.error = scale > 0.0 ? largest / (kEstimateShare * scale) : largest > 0.0 ? INFINITY : 0.0;
+    scale = balance_.largest_distance;
+    const double largest = FindLongest(kernels, workers, z_);
+    preconditioned = largest;
+    report.error = scale > 0.0 ? largest / (CalcSeenShare(smallest_ritz) * scale) : largest > 0.0 ? INFINITY : 0.0;
     report.residual = balance_.force_scale > 0.0 ? balance_.largest_residual / balance_.force_scale : 0.0;
     report.force_scale = balance_.force_scale;
     report.converged = report.error <= settings.max_error;
   };
 
+  double moved = 0;  // bound of how far any node went since the coarser levels were computed [m]
+  const auto update_coarse = [&] {
+    hierarchy_.UpdateCoarse(kernels, workers, linearisation_.Slack());
+    has_answers_ = false;
+    moved = 0;
+  };
   double radius = edge_length_ > 0.0 ? kFirstRadius * edge_length_ : INFINITY;
   linearise();
-  hierarchy_.Update(stiffness_);
+  update_coarse();
   estimate();
   while (!report.converged && report.iterations < settings.max_newton_steps && balance_.is_finite) {
     const double before = balance_.energy;
-    const double tolerance = kLinearShare * kEstimateShare * settings.max_error * scale;
     const auto first_multipliers = multipliers_;
     const LinearReport linear =
-        SolveLinear(kernels, workers, settings.max_linear_iterations, tolerance, radius);
+        SolveLinear(kernels, workers, settings.max_linear_iterations, kForcing * preconditioned,
+                    kLinearShare * settings.max_error * scale, radius);
+    smallest_ritz = std::fmin(smallest_ritz, linear.smallest_ritz);
     report.linear_iterations += linear.iterations;
     report.negative_curvatures += linear.met_negative_curvature;
-    const double length = FindLongest(workers, step_);
+    const double length = FindLongest(kernels, workers, step_);
     if (!(length > 0.0 && length < INFINITY)) break;
-    const double slope = -SumOverNodes(
-        workers, n, [&](std::uint32_t i) { return math::Dot(balance_.residual[i], ToDouble(step_[i])); });
+    const double slope = -CalcDot(kernels, workers, balance_.residual, step_);
     double share = 1.0;
     std::copy(position_.begin(), position_.end(), start_.begin());
     bool is_lower = false;
     for (int halving = 0; halving <= kMaxHalvings && !is_lower; ++halving, share *= 0.5) {
-      for (std::uint32_t i = 0; i < n; ++i) position_[i] = start_[i] + share * ToDouble(step_[i]);
-      linearise();
+      ForEachNodeChunk(workers, n, [&](std::uint32_t first, std::uint32_t last, std::uint32_t) {
+        for (std::uint32_t i = first; i < last; ++i) {
+          position_[i] = {start_[i].x + share * static_cast<double>(step_[i].x),
+                          start_[i].y + share * static_cast<double>(step_[i].y),
+                          start_[i].z + share * static_cast<double>(step_[i].z), 0.0};
+        }
+      });
+      // a hook will change the balance again
+      if (hook == nullptr) {
+        linearise();
+      } else {
+        linearisation_.CalcBalance(kernels, workers, position_, balance_);
+      }
       is_lower = balance_.is_finite && balance_.energy <= before + kLeastDecrease * share * slope +
                                                               kEnergyRounding * std::fabs(before);
       report.restarts += !is_lower;
@@ -290,18 +327,20 @@ SolveReport NewtonMultigrid::Solve(const Kernels& kernels, Workers& workers, con
     if (!is_lower) {
       std::copy(start_.begin(), start_.end(), position_.begin());
       linearise();
-      hierarchy_.Update(stiffness_);
       estimate();
       break;
     }
     // what the constraints carry of the residual after this part of the step
-    for (std::size_t c = 0; c < constraint_count_; ++c)
-      multipliers_[c] =
-          std::fmin(share, 1.0) * multipliers_[c] + (1.0 - std::fmin(share, 1.0)) * first_multipliers[c];
+    for (std::size_t c = 0; c < constraints_.size(); ++c)
+      multipliers_[c] = share * multipliers_[c] + (1.0 - share) * first_multipliers[c];
     // a constraint is kept after every step, whatever the hook's interval: a step here is worth many
     // iterations
-    call_hook();
-    hierarchy_.Update(stiffness_);
+    if (hook != nullptr) {
+      call_hook();
+      linearise();
+    }
+    moved += share * length;
+    if (moved > kStaleMove * edge_length_) update_coarse();
     estimate();
   }
   write_back();

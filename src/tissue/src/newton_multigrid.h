@@ -15,45 +15,61 @@ namespace trocar::tissue {
 /// Memory and methods of the Newton solver.
 class NewtonMultigrid {
  public:
+  using SmallVector = std::array<double, kMaxHookConstraints>;
+  using SmallMatrix = std::array<SmallVector, kMaxHookConstraints>;
+
   explicit NewtonMultigrid(const TissueModel& model);
+  NewtonMultigrid(const NewtonMultigrid&) = delete;  // parts point at each other
+  NewtonMultigrid& operator=(const NewtonMultigrid&) = delete;
 
   /// \note Real-time safe; bounded by settings.max_newton_steps and max_linear_iterations.
   SolveReport Solve(const Kernels& kernels, Workers& workers, const SolverSettings& settings,
                     const TissueLoad& load, TissueState& state, const SolveHook* hook) noexcept;
+
+  /// The springs it works with, for SpringLines to keep up to date.
+  OrderedModel& Springs() noexcept { return model_; }
 
  private:
   struct LinearReport {
     int iterations = 0;
     bool met_negative_curvature = false;
     bool reached_radius = false;
+    double smallest_ritz = INFINITY;  // see SmallestRitz
   };
-  /// Solves K step_ = residual until the preconditioned remainder, an estimate of the error left in the step,
-  /// is below `tolerance` [m], or until a node has moved by `radius` [m].
-  LinearReport SolveLinear(const Kernels& kernels, Workers& workers, int max_iterations, double tolerance,
-                           double radius) noexcept;
-  /// Takes the gradients of the active constraints, and what the preconditioner answers to each.
-  void SetConstraints(const Kernels& kernels, Workers& workers, const SolveHook* hook) noexcept;
-  /// z_ = about K^-1 r_ on the constraints; multipliers_ is what of r_ they carry.
+  /// Solves K step_ = residual until the preconditioned remainder is below `loose`, or the error left in the
+  /// step is estimated below `tolerance` [m], or until a node has moved by `radius` [m].
+  LinearReport SolveLinear(const Kernels& kernels, Workers& workers, int max_iterations, double loose,
+                           double tolerance, double radius) noexcept;
+  /// Takes the gradients of the active constraints.
+  void SetConstraints(const SolveHook* hook) noexcept;
+  /// What the preconditioner answers to each gradient; from the step before while the preconditioner stays.
+  void SetAnswers(const Kernels& kernels, Workers& workers) noexcept;
+  /// Lets the constraints carry of r_ what they can; multipliers_ is all that they carry.
+  void ProjectResidual(const Kernels& kernels, Workers& workers) noexcept;
+  /// z_ = about K^-1 r_ on the constraints: P M^-1 P^T r_ with P = I - Y (G^T Y)^-1 G^T, which is symmetric and
+  /// stays on the constraints whatever Y is, and is best with Y = M^-1 G (Gould, Hribar, Nocedal, "On the
+  /// solution of equality constrained quadratic programming problems arising in optimization", SIAM J. Sci.
+  /// Comput. 23, 2001).
   void Precondition(const Kernels& kernels, Workers& workers) noexcept;
   void Multiply(const Kernels& kernels, Workers& workers, const Float4* x, Float4* out) noexcept;
-  void AddContactGround() noexcept;
 
   OrderedModel model_;
   OrderedLoad load_;
   LinkHierarchy hierarchy_;
-  std::vector<float> stiffness_;  // (entries)
-  std::vector<Vec3> position_, start_;
+  Linearisation linearisation_;
+  std::vector<Double4> position_, start_;  // (padded)
   Balance balance_;
-  std::vector<std::uint8_t> is_pressing_;  // (contacts) when last linearised
-  std::vector<Float4> step_, r_, z_, p_, q_;
-  // constraints of the present step; their gradients share no node
-  std::size_t constraint_count_ = 0;
-  std::array<std::size_t, kMaxHookConstraints> constraint_index_{};  // in the hook
-  std::vector<std::uint8_t> constraint_of_node_;                  // (n) place in this list, or kNoConstraint
-  std::vector<Float4> gradient_;                                  // (padded)
-  std::array<std::vector<Float4>, kMaxHookConstraints> answers_;  // (padded) M^-1 gradient
-  std::array<std::array<double, kMaxHookConstraints>, kMaxHookConstraints> gram_{};  // gradient . answer
-  std::array<double, kMaxHookConstraints> multipliers_{};
+  std::vector<Float4> step_, r_, z_, p_, q_;  // (padded)
+  struct Constraint {
+    std::size_t index = 0;         // in the hook
+    std::vector<Float4> gradient;  // (padded) G
+    std::vector<Float4> answer;    // (padded) Y
+  };
+  std::array<Constraint, kMaxHookConstraints> constraints_room_;
+  std::span<Constraint> constraints_;  // of the present step
+  bool has_answers_ = false;
+  SmallMatrix gram_{};  // G^T Y
+  SmallVector multipliers_{};
   double edge_length_ = 0;  // mean rest length of the springs [m]
 };
 

@@ -6,23 +6,26 @@
 #include <cstdint>
 #include <span>
 
+#include "trocar/tissue/spring_law.h"
 #include "trocar/tissue/tissue_model.h"
 
 namespace trocar::tissue {
 
 /// Springs, strands, virtual spring, weight and external force on node i; contacts are added apart [N].
 /// Zero-length springs exert no force: they have no direction.
+/// \param tension  of a half-spring at a length [m]: [N] before load.stiffness_scale
 /// \note Real-time safe.
-inline Vec3 GatherNodeForce(const TissueModel& model, std::span<const std::uint8_t> strand_is_intact,
-                            const TissueLoad& load, std::span<const Vec3> position,
-                            std::uint32_t i) noexcept {
+template <typename Tension>
+Vec3 GatherForce(const TissueModel& model, std::span<const std::uint8_t> strand_is_intact,
+                 const TissueLoad& load, std::span<const Vec3> position, std::uint32_t i,
+                 const Tension& tension) noexcept {
   const Vec3 here = position[i];
   Vec3 springs;
   for (auto h = model.spring_starts[i]; h < model.spring_starts[i + 1]; ++h) {
     const auto& half = model.half_springs[h];
     const Vec3 along = position[half.other] - here;
     const double length = std::sqrt(math::SquaredNorm(along));
-    if (length > 0.0) springs += (half.stiffness * (length - half.rest_length) / length) * along;
+    if (length > 0.0) springs += (tension(half, length) / length) * along;
   }
   for (auto h = model.strand_starts[i]; h < model.strand_starts[i + 1]; ++h) {
     const auto& half = model.half_strands[h];
@@ -34,6 +37,27 @@ inline Vec3 GatherNodeForce(const TissueModel& model, std::span<const std::uint8
                model.mass[i] * load.gravity;
   if (!load.external_force.empty()) force += load.external_force[i];
   return force;
+}
+
+/// By Hooke's law, every spring whole: what the solvers see, whose springs are lines (spring_lines.h).
+inline Vec3 GatherNodeForce(const TissueModel& model, std::span<const std::uint8_t> strand_is_intact,
+                            const TissueLoad& load, std::span<const Vec3> position,
+                            std::uint32_t i) noexcept {
+  return GatherForce(model, strand_is_intact, load, position, i,
+                     [](const TissueModel::HalfSpring& half, double length) {
+                       return half.stiffness * (length - half.rest_length);
+                     });
+}
+
+/// By each spring's own law and what is left of it.
+inline Vec3 GatherLawForce(const TissueModel& model, const TissueState& state, const TissueLoad& load,
+                           std::uint32_t i) noexcept {
+  return GatherForce(model, state.strand_is_intact, load, state.position, i,
+                     [&](const TissueModel::HalfSpring& half, double length) {
+                       return state.spring_factor[half.spring] *
+                              CalcSpringTension(model.laws[model.spring_law[half.spring]], half.stiffness,
+                                                half.rest_length, length);
+                     });
 }
 
 /// Adds every pressing contact's force to its three nodes.

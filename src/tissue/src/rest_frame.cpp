@@ -136,17 +136,18 @@ Pose FitRigidMotion(const MotionMoments& moments, const Quaternion& previous) no
 }
 
 void FindFreeRegions(const TissueModel& model, std::span<const std::uint8_t> strand_is_intact,
-                     std::span<const std::uint8_t> strand_binds, std::span<const std::uint8_t> spring_holds,
+                     std::span<const std::uint8_t> strand_binds, std::span<const double> spring_factor,
                      FreeRegions& regions) noexcept {
   const auto n = static_cast<std::uint32_t>(model.Size());
   TROCAR_ASSERT(regions.of_node.size() == n && strand_is_intact.size() == model.strand_count);
   TROCAR_ASSERT(strand_binds.empty() || strand_binds.size() == model.strand_count);
-  TROCAR_ASSERT(spring_holds.empty() || spring_holds.size() == model.half_springs.size());
+  TROCAR_ASSERT(spring_factor.empty() || spring_factor.size() == model.SpringCount());
   const std::span<std::uint32_t> parent = regions.of_node;
   for (std::uint32_t i = 0; i < n; ++i) parent[i] = i;
   for (std::uint32_t i = 0; i < n; ++i) {
     for (auto h = model.spring_starts[i]; h < model.spring_starts[i + 1]; ++h) {
-      if (spring_holds.empty() || spring_holds[h]) Join(parent, i, model.half_springs[h].other);
+      const auto& half = model.half_springs[h];
+      if (spring_factor.empty() || spring_factor[half.spring] > 0.0) Join(parent, i, half.other);
     }
     for (auto h = model.strand_starts[i]; h < model.strand_starts[i + 1]; ++h) {
       const auto& strand = model.half_strands[h];

@@ -29,7 +29,7 @@ SlicedSprings MakeSlicedSprings(const TissueModel& model) {
         const std::uint32_t i = std::min(first + lane, n - 1);
         const std::uint32_t h = model.spring_starts[i] + step;
         const bool is_padding = first + lane >= n || h >= model.spring_starts[i + 1];
-        const auto half = is_padding ? TissueModel::HalfSpring{i, 0.0, 0.0} : model.half_springs[h];
+        const auto half = is_padding ? TissueModel::HalfSpring{i, 0, 0.0, 0.0} : model.half_springs[h];
         sliced.others.push_back(half.other);
         sliced.stiffness.push_back(half.stiffness);
         sliced.stiffness_times_rest.push_back(half.stiffness * half.rest_length);

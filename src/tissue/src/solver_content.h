@@ -9,24 +9,10 @@
 
 #include "accelerated_descent.h"
 #include "newton_multigrid.h"
+#include "spring_lines.h"
 #include "trocar/tissue/equilibrium.h"
 
 namespace trocar::tissue {
-
-/// Nodes that one pass of the spring kernel works on side by side.
-inline constexpr std::uint32_t kLanes = 8;
-
-/// Half-springs in slices of kLanes nodes, each padded to its longest row (sliced ELLPACK): what the lanes
-/// read at one step lies together. A padded entry points at its own node with no stiffness.
-/// Source: Monakov, Lokhmotov, Avetisyan, "Automatically tuning sparse matrix-vector multiplication for GPU
-/// architectures", HiPEAC 2010.
-struct SlicedSprings {
-  std::vector<std::uint32_t> starts;         // (slices + 1) in steps
-  std::vector<std::uint32_t> others;         // (steps * kLanes)
-  std::vector<double> stiffness;             // (steps * kLanes) k
-  std::vector<double> stiffness_times_rest;  // (steps * kLanes) k l
-};
-SlicedSprings MakeSlicedSprings(const TissueModel& model);
 
 /// What one iteration needs of the nodes of a slice, lane by lane. Rebuilt in every solve.
 struct SliceData {
@@ -57,7 +43,10 @@ void UpdateSlice(const SlicedSprings& springs, const SliceData& data, const Step
                  SliceReport& report) noexcept;
 
 struct EquilibriumSolver::Content {
-  const TissueModel* model = nullptr;
+  const TissueModel* laws = nullptr;   // the caller's: springs with their laws
+  const TissueModel* model = nullptr;  // the same with the springs as lines; what the solvers take
+  std::unique_ptr<SpringLines> lines;
+  std::vector<NodeCondition> adrift_condition;  // of the nodes that a solve holds because nothing else does
   std::unique_ptr<Workers> workers;
   const Kernels* kernels = nullptr;
   std::unique_ptr<NewtonMultigrid> newton;

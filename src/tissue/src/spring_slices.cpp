@@ -35,6 +35,16 @@ void SpringSlices::SetLoad(const OrderedModel& model, const OrderedLoad& load,
   const auto spring_at = [&](std::size_t entry) {
     return springs_.data() + entry / kSliceNodes * kSpringFloats + entry % kSliceNodes;
   };
+  for (std::uint32_t i = 0; i < model.Size(); ++i) {
+    for (std::uint32_t step = 0; step < layout_.RowSteps(i); ++step) {
+      const std::size_t entry = layout_.Entry(i, step);
+      if (layout_.others[entry] == i) break;
+      const double k = load.stiffness_scale * model.stiffness[entry];
+      float* const spring = spring_at(entry);
+      spring[3 * kSliceNodes] = static_cast<float>(k);
+      spring[4 * kSliceNodes] = static_cast<float>(k * model.rest_length[entry]);
+    }
+  }
   for (const auto& strand : model.strands) {
     // A strand keeps its offset: a spring of no rest length about its rest offset. That its force is
     // k (rest + extent) then, not k extent, is put right in the load.
@@ -46,13 +56,7 @@ void SpringSlices::SetLoad(const OrderedModel& model, const OrderedLoad& load,
     for (std::uint32_t step = 0; step < layout_.RowSteps(i); ++step) {
       const std::size_t entry = layout_.Entry(i, step);
       if (layout_.others[entry] == i) break;
-      const double k = load.stiffness_scale * model.stiffness[entry];
-      float* const spring = spring_at(entry);
-      if (k > 0.0) {
-        spring[3 * kSliceNodes] = static_cast<float>(k);
-        spring[4 * kSliceNodes] = static_cast<float>(k * model.rest_length[entry]);
-      }
-      sum += static_cast<double>(spring[3 * kSliceNodes]);
+      sum += static_cast<double>(spring_at(entry)[3 * kSliceNodes]);
     }
     const double shape = load.shape_scale * model.shape[i], bound = 2.0 * sum + shape;
     float* const node = nodes_.data() + std::size_t{i / kSliceNodes} * 5 * kSliceNodes + i % kSliceNodes;

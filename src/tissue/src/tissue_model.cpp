@@ -44,9 +44,13 @@ TissueModel MakeTissueModel(const TissueDefinition& definition) {
   std::vector<std::uint32_t> next = model.spring_starts;
   for (const Spring& spring : definition.springs) {
     TROCAR_ASSERT(std::isfinite(spring.rest_length) && spring.rest_length >= 0.0);
-    model.half_springs[next[spring.a]++] = {spring.b, spring.stiffness, spring.rest_length};
-    model.half_springs[next[spring.b]++] = {spring.a, spring.stiffness, spring.rest_length};
+    TROCAR_ASSERT(spring.law < definition.laws.size());
+    const auto index = static_cast<std::uint32_t>(model.spring_law.size());
+    model.half_springs[next[spring.a]++] = {spring.b, index, spring.stiffness, spring.rest_length};
+    model.half_springs[next[spring.b]++] = {spring.a, index, spring.stiffness, spring.rest_length};
+    model.spring_law.push_back(spring.law);
   }
+  model.laws = definition.laws;
   for (std::size_t i = 0; i < n; ++i) {
     std::sort(model.half_springs.begin() + model.spring_starts[i],
               model.half_springs.begin() + model.spring_starts[i + 1],
@@ -73,6 +77,8 @@ TissueState MakeRestState(const TissueModel& model) {
     if (model.is_fixed[i]) state.condition[i] = NodeCondition::kPrescribed;
   }
   state.strand_is_intact.assign(model.strand_count, 1);
+  state.spring_factor.assign(model.SpringCount(), 1.0);
+  state.spring_damage.assign(model.SpringCount(), 0.0);
   return state;
 }
 
@@ -87,7 +93,7 @@ void CalcResidual(const TissueModel& model, const TissueState& state, const Tiss
                   std::span<Vec3> residual) {
   TROCAR_ASSERT(residual.size() == model.Size() && state.position.size() == model.Size());
   for (std::uint32_t i = 0; i < model.Size(); ++i) {
-    residual[i] = GatherNodeForce(model, state.strand_is_intact, load, state.position, i);
+    residual[i] = GatherLawForce(model, state, load, i);
   }
   AddContactForce(load.contacts, state.position, residual);
 }
@@ -99,8 +105,9 @@ double CalcEnergy(const TissueModel& model, const TissueState& state, const Tiss
     // each pair is met from both of its ends, so each end counts half
     for (auto h = model.spring_starts[i]; h < model.spring_starts[i + 1]; ++h) {
       const auto& half = model.half_springs[h];
-      const double stretch = math::Distance(x[i], x[half.other]) - half.rest_length;
-      energy += 0.25 * load.stiffness_scale * half.stiffness * stretch * stretch;
+      energy += 0.5 * load.stiffness_scale * state.spring_factor[half.spring] *
+                CalcSpringEnergy(model.laws[model.spring_law[half.spring]], half.stiffness, half.rest_length,
+                                 math::Distance(x[i], x[half.other]));
     }
     for (auto h = model.strand_starts[i]; h < model.strand_starts[i + 1]; ++h) {
       const auto& half = model.half_strands[h];

@@ -230,7 +230,7 @@ double CarryAway(bool follows, std::uint64_t* hash = nullptr, int threads = 1) {
   EquilibriumSolver solver(sac.model, threads);
   ConservationState state = conservation.MakeState(sac.tissue);
   for (auto& intact : sac.tissue.strand_is_intact) intact = 0;
-  if (!follows) state.intact_strands = 0;
+  if (!follows) state.intact_links = sac.model.SpringCount();
   const auto pole = sac.Pole({0, -1, 0}, 0.9);
   const Vec3 centre{0.02, 0.05, -0.1};
   TissueLoad load;

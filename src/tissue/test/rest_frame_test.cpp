@@ -171,13 +171,13 @@ TEST(FindFreeRegions, AJointDoesNotPinAndTornSpringsSplit) {
   FindFreeRegions(model, state.strand_is_intact, joints, {}, regions);
   EXPECT_EQ(regions.count, 1u);
   // tear node 17 off
-  std::vector<std::uint8_t> holds(model.half_springs.size(), 1);
+  std::vector<double> factor(model.SpringCount(), 1.0);
   for (std::uint32_t i = 0; i < model.Size(); ++i) {
     for (auto h = model.spring_starts[i]; h < model.spring_starts[i + 1]; ++h) {
-      if (i == 17 || model.half_springs[h].other == 17) holds[h] = 0;
+      if (model.half_springs[h].other == 17) factor[model.half_springs[h].spring] = 0.0;
     }
   }
-  FindFreeRegions(model, state.strand_is_intact, joints, holds, regions);
+  FindFreeRegions(model, state.strand_is_intact, joints, factor, regions);
   EXPECT_EQ(regions.count, 2u);
   EXPECT_EQ(regions.of_node[17], 1u);
   EXPECT_EQ(regions.of_node[16], 0u);

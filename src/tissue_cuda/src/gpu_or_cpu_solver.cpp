@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trocar/tissue_cuda/gpu_or_cpu_solver.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace trocar::tissue_cuda {
@@ -9,6 +10,12 @@ namespace {
 /// The GPU's own solver, by its name or where the choice is left open.
 bool RunsOnGpu(tissue::SolverKind kind) noexcept {
   return kind == tissue::SolverKind::kChebyshevJacobi2015 || kind == tissue::SolverKind::kAdaptive;
+}
+
+/// The GPU's copy of the springs is Hooke's and whole.
+bool HasPlainSprings(const tissue::TissueState& state) noexcept {
+  return std::all_of(state.spring_factor.begin(), state.spring_factor.end(),
+                     [](double factor) { return factor == 1.0; });
 }
 
 }  // namespace
@@ -27,7 +34,7 @@ GpuOrCpuSolver::~GpuOrCpuSolver() = default;
 tissue::SolveReport GpuOrCpuSolver::Solve(const tissue::SolverSettings& settings,
                                           const tissue::TissueLoad& load, tissue::TissueState& state,
                                           const tissue::SolveHook* hook) noexcept {
-  if (gpu_ && RunsOnGpu(settings.kind)) {
+  if (gpu_ && RunsOnGpu(settings.kind) && HasPlainSprings(state)) {
     const core::Result<tissue::SolveReport> report = gpu_->Solve(settings, load, state, hook);
     if (report) return *report;
     gpu_error_ = report.error();

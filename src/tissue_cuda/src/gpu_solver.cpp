@@ -9,6 +9,16 @@
 
 namespace trocar::tissue_cuda {
 
+namespace {
+
+core::Error NotHookes() {
+  return {core::ErrorCode::kGpuLayout,
+          "the GPU's springs follow Hooke's law and are whole; cut, weakened and stiffening springs are solved on "
+          "the processor"};
+}
+
+}  // namespace
+
 struct GpuSolver::Content {
   std::size_t nodes = 0;
   std::unique_ptr<Gpu> gpu;
@@ -23,6 +33,9 @@ GpuSolver& GpuSolver::operator=(GpuSolver&&) noexcept = default;
 
 core::Result<GpuSolver> MakeGpuSolver(const tissue::TissueModel& model, const GpuOptions& options,
                                       const DriverSource& source) {
+  for (const std::uint32_t law : model.spring_law) {
+    if (model.laws[law].stiffening > 0.0) return NotHookes();
+  }
   core::Result<std::unique_ptr<Gpu>> gpu = Gpu::Open(source);
   if (!gpu) return gpu.error();
   core::Result<std::unique_ptr<GpuSolve>> solve = options.layout == Layout::kTiled
@@ -46,6 +59,9 @@ core::Result<tissue::SolveReport> GpuSolver::Solve(const tissue::SolverSettings&
   TROCAR_ASSERT(state.position.size() == content_->nodes && state.condition.size() == content_->nodes);
   TROCAR_ASSERT(load.contacts.size() <= tissue::kMaxContacts && settings.max_iterations >= 1);
   if (content_->failed) return *content_->failed;
+  for (const double factor : state.spring_factor) {
+    if (factor != 1.0) return NotHookes();
+  }
   if (core::Status status = content_->gpu->Enter(); !status) {
     content_->failed = status.error();
     return status.error();

@@ -62,6 +62,36 @@ TEST(GpuOrCpuSolver, TheProcessorGoesOnInTheTickInWhichTheGpuFails) {
   }
 }
 
+TEST(GpuOrCpuSolver, CutSpringsAreSolvedOnTheProcessorAndTheGpuIsKept) {
+  const StandIn stand_in;
+  const TissueModel model = MakeModel();
+  GpuOrCpuSolver solver(model, 1, MakeGpuSolver(model, {}, StandIn::Source()));
+  ASSERT_NE(solver.Gpu(), nullptr);
+  TissueState state = MakeMovedState(model, 3e-4);
+  state.spring_factor[5] = 0.0;
+  TissueState expected = state;
+  tissue::EquilibriumSolver cpu(model, 1);
+  (void)cpu.Solve(kChebyshev, kLoad, expected);
+  (void)solver.Solve(kChebyshev, kLoad, state);
+  EXPECT_EQ(state.position, expected.position);
+  EXPECT_NE(solver.Gpu(), nullptr);
+  // asked directly, the GPU's solver says no instead of solving another tissue
+  core::Result<GpuSolver> alone = MakeGpuSolver(model, {}, StandIn::Source());
+  ASSERT_TRUE(alone);
+  EXPECT_EQ(alone->Solve(kChebyshev, kLoad, state).error().code, core::ErrorCode::kGpuLayout);
+}
+
+TEST(GpuOrCpuSolver, SpringsThatStiffenAreRefused) {
+  const StandIn stand_in;
+  auto definition = MakeScatteredSphere(2, Springs::kVaried, 0.03);
+  definition.laws.push_back({.stiffening = 5.0});
+  definition.springs[0].law = 1;
+  const TissueModel model = tissue::MakeTissueModel(definition);
+  const core::Result<GpuSolver> made = MakeGpuSolver(model, {}, StandIn::Source());
+  ASSERT_FALSE(made);
+  EXPECT_EQ(made.error().code, core::ErrorCode::kGpuLayout);
+}
+
 TEST(GpuOrCpuSolver, TheChebyshevIterationAndAnOpenChoiceGoToTheGpu) {
   const StandIn stand_in("fail=cuLaunchCooperativeKernel:1:700");
   const TissueModel model = MakeModel();

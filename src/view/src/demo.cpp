@@ -98,7 +98,10 @@ core::Result<DemoReport> PlayDemonstration(std::shared_ptr<const session::Scene>
   const auto play_until = [&](double time) {
     const auto tick_goal = static_cast<std::uint64_t>(std::floor(time / scene->tick_seconds + 1e-6));
     while (report.ticks < tick_goal) {
-      simulation->Step(session::CalcScriptInput(*scene, simulation->GetSnapshot().time));
+      const double now = simulation->GetSnapshot().time;
+      session::Input input = session::CalcScriptInput(*scene, now);
+      if (options.change_input) options.change_input(now, input);
+      simulation->Step(input);
       ++report.ticks;
       if (options.on_tick) options.on_tick(simulation->GetSnapshot());
     }

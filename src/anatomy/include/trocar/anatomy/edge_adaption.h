@@ -20,7 +20,7 @@ using math::Vec2;
 /// How far and how willingly points move.
 struct EdgeAdaptionSettings {
   double max_shift_px = 4.0;  ///< no point moves further [pixels], 0 switches the adaption off
-  double blur_px = 1.5;       ///< standard deviation of the Gaussian before the gradient [pixels], > 0
+  double blur_px = 0.6;       ///< standard deviation of the Gaussian before the gradient [pixels], > 0
   double min_gradient =
       2.0;  ///< colour change along the normal below which there is no edge [grey levels / pixel]
   double nearness = 0.8;  ///< part of an edge's strength that is lost at max_shift_px [-], 0 to 1

@@ -9,6 +9,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -67,12 +68,14 @@ void OpenMask(Mask& mask, double radius_px);
 /// Volume of signed distances [mm] in the frame (column, row, stack) [mm].
 ///
 /// Between two slices the distances are interpolated by a monotone cubic, so the shape moves over smoothly.
-/// Beyond the first and last slice the shape closes as a paraboloid within half the distance to the next
-/// slice.
-/// \param slices  ascending positions, at least two
+/// Beyond the first and last slice the shape closes as a paraboloid within `ends_mm`.
+/// \param slices   ascending positions, at least two
+/// \param ends_mm  how far the shape goes on before the first and behind the last slice [mm], > 0; by default
+///                 half the distance to the next slice. Slices between which others were inserted say it
+///                 themselves: on average an organ ends half way to the next slice that does not show it
 /// \return kContourEmpty when a slice or the whole has no pixel inside
-core::Result<ScalarVolume> MakeVolume(std::span<const FilledSlice> slices, double pixel_mm,
-                                      double spacing_mm);
+core::Result<ScalarVolume> MakeVolume(std::span<const FilledSlice> slices, double pixel_mm, double spacing_mm,
+                                      std::optional<std::array<double, 2>> ends_mm = {});
 
 /// Takes `other`, grown by `gap_mm`, away from `volume`.
 /// \pre both have the same spacing (TROCAR_ASSERT)

@@ -13,6 +13,8 @@ namespace trocar::app {
 struct Options {
   std::filesystem::path scene;  ///< empty: the built-in demonstration
   int threads = 0;              ///< of the solver; 0: chosen by the number of processors
+  std::string device;   ///< hands of a device, as `trocar devices list` names it; empty: mouse and keyboard
+  std::string haptics;  ///< haptic device; empty: none
   bool is_fullscreen = false;
   bool is_demonstration = false;     ///< start with the script moving both hands
   std::filesystem::path screenshot;  ///< empty: none. Otherwise play, save the window's picture and quit

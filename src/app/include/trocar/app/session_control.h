@@ -4,8 +4,11 @@
 #pragma once
 
 #include <memory>
+#include <string>
 
 #include "trocar/device/mouse_keyboard.h"
+#include "trocar/session/device_thread.h"
+#include "trocar/session/haptic_loop.h"
 #include "trocar/session/runner.h"
 
 namespace trocar::app {
@@ -16,6 +19,20 @@ class SessionControl {
   /// Starts paused, with the hands at home.
   /// \return kDeviceSettings where the scene's tools cannot be held
   static core::Result<std::unique_ptr<SessionControl>> Make(session::Simulation simulation);
+
+  /// Lets a device hold the hands that it sees; the mouse keeps the others. Where the device is lost the simulation is
+  /// paused, and stays so when it comes back until the person starts it.
+  /// \param driver  of device::kChannelCount channels, unconfigured
+  void UseDevice(std::unique_ptr<device::Driver> driver);
+  /// What the device last said about itself, once each; empty where there is nothing new.
+  std::string TakeDeviceMessage();
+
+  /// Lets a haptic device hold the hands that it has channels for (the right one, or both), with force.
+  /// \param name  as device::MakeForceDriver reads it
+  /// \return kDeviceSettings, the driver's error or kHapticSupervisor
+  core::Status UseHaptics(std::string_view name);
+  /// The haptic loop, or nullptr without one.
+  session::HapticLoop* Haptics() { return haptic_loop_.get(); }
 
   /// Moves the hands on by `dt` [s] and hands the newest wish to the simulation; while paused the hands stand
   /// still.
@@ -63,9 +80,16 @@ class SessionControl {
  private:
   SessionControl(session::Simulation simulation, const device::MouseKeyboardSettings& settings);
   void PlaceAtHome();
+  void ApplyDevice();
 
+  session::HapticLink haptic_link_;  // outlives both ends
   session::Runner runner_;
+  std::unique_ptr<session::DeviceThread> device_thread_;  // may be null
+  std::string device_message_;                            // the newest
+  bool is_device_message_new_ = false;
+  std::uint64_t device_losses_ = 0;
   device::MouseKeyboard device_;
+  std::unique_ptr<session::HapticLoop> haptic_loop_;  // may be null
   session::Input input_;
   device::Channel hand_ = device::kRightHand;
   bool is_demonstration_ = false;

@@ -73,6 +73,9 @@ enum class ErrorCode {
   kDeviceState,
   kDeviceSettings,
   kForceRefused,
+  kDeviceBusy,
+  kCalibrationPoor,
+  kDeviceUnsupported,
   // command line and benchmarks
   kUsage,
   kBenchmarkWrong,
@@ -82,6 +85,18 @@ enum class ErrorCode {
   kGpuFailed,
   kGpuMemory,
   kGpuLayout,
+  // haptics
+  kHapticNotArmed,
+  kHapticSamplesBad,
+  kHapticJump,
+  kHapticOverrun,
+  kHapticSupervisor,
+  kHapticWarm,
+  kHapticDeadMan,
+  kHapticCheckPose,
+  kHapticNotCalibrated,
+  kHapticOverspeed,
+  kHapticSimulation,
   kCount
 };
 

@@ -57,6 +57,10 @@ class Driver {
   /// \note Real-time safe: no allocation, lock or throw.
   ReadStatus Read(std::span<HandSample> samples) noexcept;
 
+  /// Where a hand starts, for devices that know motion only. Devices that know places ignore it. Called before Activate().
+  /// A sample that is not finite is ignored.
+  virtual void PlaceHand(int /*channel*/, const HandSample& /*home*/) noexcept {}
+
   DriverState GetState() const noexcept { return state_; }
   /// Name for messages, for example "mouse and keyboard".
   const std::string& GetName() const noexcept { return name_; }

@@ -19,6 +19,10 @@ Box CalcBox(std::span<const Vec3> positions);
 /// Normal of a triangle times twice its area [m^2].
 Vec3 CalcAreaNormal(std::span<const Vec3> positions, const Triangle& triangle);
 
+/// Smallest angle of a triangle [rad].
+/// \note Real-time safe.
+double CalcSmallestAngle(const Vec3& a, const Vec3& b, const Vec3& c) noexcept;
+
 /// Sum of the triangles' areas [m^2].
 double CalcArea(std::span<const Vec3> positions, std::span<const Triangle> triangles);
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 
+#include "trocar/session/haptic_loop.h"
 #include "trocar/session/simulation.h"
 
 namespace trocar::session {
@@ -25,7 +26,9 @@ class Runner {
  public:
   /// Starts paused.
   /// \param simulation  taken over
-  explicit Runner(Simulation simulation);
+  /// \param haptics     nullptr, or the mailboxes of a haptic loop, which must outlive this: hands that it drives take
+  ///                    the place of the input's, and every tick publishes their tissue
+  explicit Runner(Simulation simulation, HapticLink* haptics = nullptr);
   ~Runner();
   Runner(const Runner&) = delete;
   Runner& operator=(const Runner&) = delete;

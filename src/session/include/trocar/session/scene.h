@@ -14,6 +14,7 @@
 #include "trocar/core/result.h"
 #include "trocar/instrument/tool.h"
 #include "trocar/session/input.h"
+#include "trocar/tissue/tissue_model.h"
 
 namespace trocar::session {
 
@@ -61,6 +62,7 @@ struct OrganMaterial {
   double failure_strain = std::numeric_limits<double>::infinity();
   /// The end of a tube of this material is torn out of its organ by this force [N].
   double failure_force = std::numeric_limits<double>::infinity();
+  tissue::SpringLaw wall_law;    ///< of the wall's edges: how it stiffens and tears
   double internal_pressure = 0;  ///< under which the organ is filled and sealed before the first tick [Pa]
   std::string source;
 };

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "trocar/core/result.h"
+#include "trocar/haptics/local_patch.h"
 #include "trocar/session/scene.h"
 #include "trocar/session/snapshot.h"
 
@@ -53,6 +54,9 @@ class Simulation {
   std::span<const SurfaceInfo> Surfaces() const;
   /// State after the last Step(); valid until the next.
   const Snapshot& GetSnapshot() const;
+  /// Cuts out the tissue around one tool for the haptic loop, after a Step.
+  /// \note Real-time safe: no allocation, lock or throw.
+  void CutPatch(Hand hand, haptics::LocalPatch& patch) noexcept;
   /// How far the tissue was from equilibrium when the last tick's solve ended: the largest distance of a node
   /// to the equilibrium that an exact solver reaches from there under the same load, over the largest
   /// distance of any node from rest [-]. NaN where that solver does not come to rest.

@@ -17,12 +17,18 @@ using math::Vec3;
 
 /// One instrument after a tick.
 struct InstrumentSnapshot {
-  Pose X_world_tool;                ///< tool frame of instrument/tool.h
-  instrument::TrocarJoints joints;  ///< after limits
-  Vec3 force;                       ///< of the tissue on the tool, world frame [N]
+  Pose X_world_tool;  ///< of the tool that is seen: stays outside of the tissue; frame of instrument/tool.h
+  instrument::TrocarJoints joints;  ///< of the hand, after limits
+  Vec3 force;                       ///< of tissue and the other tool on the tool, world frame [N]
   bool is_grasping = false;
   bool is_touching = false;
-  std::int32_t organ = -1;  ///< index into Patient::organs of what is grasped or touched, or -1
+  /// Index into Simulation::Surfaces() of what is grasped or touched (Patient::organs first, then its tubes), or
+  /// -1.
+  std::int32_t organ = -1;
+  Pose X_world_device;            ///< where the hand is: may lie in the tissue that it presses
+  double pinch = 0;               ///< of the jaws on what they hold [N]
+  double overlap = 0;             ///< of the tool that is seen with tissue, what is left of it [m]
+  bool is_touching_tool = false;  ///< the other instrument
 };
 
 /// Volume of one organ after a tick.
@@ -50,15 +56,26 @@ enum class Stage {
 std::string_view StageName(Stage stage) noexcept;
 inline constexpr int kStageCount = static_cast<int>(Stage::kCount);
 
-enum class EventKind { kGrasp, kRelease, kSlip, kGraspMissed, kStateRestored, kOrganFrozen, kTear };
-/// "grasp", "release", "slip", "grasp_missed", "state_restored", "organ_frozen", "tear"
+enum class EventKind {
+  kGrasp,
+  kRelease,
+  kSlip,
+  kGraspMissed,
+  kStateRestored,
+  kOrganFrozen,
+  kTear,
+  kPinchDamage,  ///< jaws pinched a bite harder than it bears; force is the pinch
+  kToolsTouch    ///< the instruments met
+};
+/// "grasp", "release", "slip", "grasp_missed", "state_restored", "organ_frozen", "tear",
+/// "pinch_damage", "tools_touch"
 std::string_view EventName(EventKind kind) noexcept;
 
 struct Event {
   EventKind kind;
   std::uint64_t tick;
   std::int32_t hand;   ///< Hand, or -1
-  std::int32_t organ;  ///< index into Patient::organs, or -1
+  std::int32_t organ;  ///< index into Simulation::Surfaces(), or -1
   double force;        ///< [N], 0 where it means nothing
 };
 
@@ -73,6 +90,8 @@ struct Snapshot {
   Pose X_world_laparoscope;           ///< origin at the lens, looking along -z, +y up in the picture
   double residual = 0;                ///< largest node residual, relative: see tissue/solver_settings.h [-]
   int iterations = 0;                 ///< of the solver in this tick
+  std::size_t contacts = 0;           ///< contact springs of this tick
+  std::size_t dropped_contacts = 0;   ///< for which there was no room
   Vec3 gravity;                       ///< world frame [m/s^2]
   std::array<double, kStageCount> stage_seconds{};  ///< wall time of each stage of the last tick
   double tick_seconds = 0;                          ///< sum of the stages [s]

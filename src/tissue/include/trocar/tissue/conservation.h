@@ -53,7 +53,7 @@ struct ConservationState {
   std::vector<OrganVolume> organs;
   FreeRegions regions;
   std::array<Pose, kMaxFreeRegions> X_world_rest;  ///< of each region: identity where it was imaged
-  std::uint64_t intact_strands = 0;                ///< for which `regions` hold
+  std::uint64_t intact_links = 0;  ///< strands and springs, for which `regions` hold
   std::vector<Vec3> last_position;  ///< (n) after the last Enforce: where held nodes came from [m]
 };
 
@@ -137,7 +137,7 @@ class Conservation {
   std::vector<std::vector<Vec3>> responses_;  // per organ (n): displacement by 1 Pa, in the rest frame [m/Pa]
   std::vector<std::vector<Vec3>> shifts_;     // the same where nodes are now; zero where they are held
   double stiffness_scale_ = 1, shape_scale_ = 1;  // for which the responses were found
-  std::uint64_t response_strands_ = 0;
+  std::uint64_t response_links_ = 0;
   bool responses_settled_ = false;
   std::vector<Vec3> gradient_;    // (n) of each node's organ; zero elsewhere
   std::vector<Vec3> base_force_;  // (n) without pressure

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file damage.h  Strands that are stretched too far tear.
+/// \file damage.h  Strands and springs that are stretched too far, or too long, tear.
 #pragma once
 
 #include <cstdint>
@@ -22,5 +22,21 @@ inline constexpr double kNeverTears = std::numeric_limits<double>::infinity();
 /// \note Real-time safe.
 std::size_t TearStrands(const TissueModel& model, std::span<const double> max_elongation, TissueState& state,
                         std::span<std::uint32_t> torn) noexcept;
+
+/// Tears every spring that is stretched beyond its law's failure strain, and gathers the damage of the others:
+/// D grows by damage_rate (T / T_f)^m dt, with T_f the tension at the failure strain, and the spring tears when D
+/// reaches one. Slack springs gather none. A torn spring has the factor zero, and nothing makes it whole again.
+///
+/// \param dt           length of the tick [s], >= 0
+/// \param[out] torn    indices of the springs torn now, lowest first; more tear than it has room for
+/// \return how many tore
+/// \note Real-time safe.
+/// Source: ultimate strains of wall and liver: domain facts 3.1; D += (sigma / sigma_0)^m dt: domain facts 3.3, with
+/// sigma_0 = T_f damage_rate^(-1/m).
+std::size_t TearSprings(const TissueModel& model, double dt, TissueState& state,
+                        std::span<std::uint32_t> torn) noexcept;
+
+/// True where the springs of a model can tear.
+bool HasTearingSprings(const TissueModel& model) noexcept;
 
 }  // namespace trocar::tissue

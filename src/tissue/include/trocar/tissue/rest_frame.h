@@ -70,11 +70,11 @@ struct FreeRegions {
 /// \param strand_binds  (strands) 1 when a strand shares its place (the gallbladder bed), 0 when it is a
 /// joint
 ///                      that lets what hangs on it turn (the end of a duct); empty: all bind
-/// \param spring_holds  (half-springs of the model) 0 for a torn one; empty: all hold
+/// \param spring_factor  TissueState::spring_factor, 0 for a spring that does not hold; empty: all hold
 /// \param[out] regions  of_node must have the model's size
 /// \note Real-time safe: no allocation.
 void FindFreeRegions(const TissueModel& model, std::span<const std::uint8_t> strand_is_intact,
-                     std::span<const std::uint8_t> strand_binds, std::span<const std::uint8_t> spring_holds,
+                     std::span<const std::uint8_t> strand_binds, std::span<const double> spring_factor,
                      FreeRegions& regions) noexcept;
 
 }  // namespace trocar::tissue

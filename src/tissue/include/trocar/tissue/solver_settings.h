@@ -36,8 +36,13 @@ struct SolverSettings {
   /// Newton: stop when the estimated distance of any node to the equilibrium is below this fraction of the
   /// largest distance of any node from rest [-].
   double max_error = 5e-4;
-  int max_newton_steps = 12;       ///< per tick
+  int max_newton_steps = 40;       ///< per tick; two as a rule, many where a fold snaps through
   int max_linear_iterations = 60;  ///< of conjugate gradients, per Newton step
+
+  /// Springs that stiffen are taken as lines that touch their law, solve after solve, until the lines are off
+  /// by less than this part of the largest tension [-].
+  double law_error = 1e-3;
+  int max_rounds = 4;  ///< solves per tick, >= 1; they share the bounds above
 
   friend bool operator==(const SolverSettings&, const SolverSettings&) = default;
 };

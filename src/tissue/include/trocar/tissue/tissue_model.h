@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -16,11 +17,25 @@ namespace trocar::tissue {
 
 using math::Vec3;
 
-/// Hookean spring between two nodes, f_a = k (|x_b - x_a| - l) u_ab.
+/// What a spring does beyond Hooke's law; strains are eps = (|x_b - x_a| - l) / l. See spring_law.h.
+struct SpringLaw {
+  double stiffening = 0;           ///< beta: growth of the stiffness with strain [-], >= 0; 0 is Hooke's law
+  double stiffening_strain = 0.2;  ///< eps_0: up to here Hooke's law holds [-], >= 0
+  /// Strain at which the spring tears [-], > 0.
+  double failure_strain = std::numeric_limits<double>::infinity();
+  /// Damage a second under the tension at failure_strain [1/s], >= 0; one is a tear.
+  double damage_rate = 0;
+  double damage_exponent = 4;  ///< m: damage grows with tension to this power [-], >= 1
+
+  friend bool operator==(const SpringLaw&, const SpringLaw&) = default;
+};
+
+/// Spring between two nodes, f_a = k (|x_b - x_a| - l) u_ab, or as its law says.
 struct Spring {
   std::uint32_t a = 0, b = 0;
   double stiffness = 0;    ///< k [N/m], >= 0
   double rest_length = 0;  ///< l [m], >= 0
+  std::uint32_t law = 0;   ///< index in TissueDefinition::laws
 };
 
 /// Strand that keeps the rest offset between two nodes, f_a = k ((x_b - x_a) - (rest_b - rest_a)). Strands
@@ -45,6 +60,7 @@ struct TissueDefinition {
   std::vector<double> shape_stiffness;  ///< (n) k_virtual of the spring to the rest position [N/m], >= 0
   std::vector<std::uint32_t> fixed;     ///< nodes held at rest by anatomy
   std::vector<Spring> springs;          ///< structural
+  std::vector<SpringLaw> laws{1};       ///< the first: Hooke's, and nothing tears
   std::vector<Strand> strands;          ///< attachments: can be dissected
 };
 
@@ -58,6 +74,7 @@ struct TissueModel {
 
   struct HalfSpring {
     std::uint32_t other;
+    std::uint32_t spring;  ///< index for TissueState::spring_factor
     double stiffness, rest_length;
   };
   std::vector<std::uint32_t> spring_starts;  ///< (n + 1)
@@ -72,7 +89,11 @@ struct TissueModel {
   std::vector<HalfStrand> half_strands;
   std::size_t strand_count = 0;
 
+  std::vector<SpringLaw> laws;
+  std::vector<std::uint32_t> spring_law;  ///< (springs) index in `laws`
+
   std::size_t Size() const { return rest.size(); }
+  std::size_t SpringCount() const { return spring_law.size(); }
 };
 
 /// \pre sizes agree, indices are in range, stiffness and masses are finite and >= 0 (TROCAR_ASSERT)
@@ -83,9 +104,13 @@ struct TissueState {
   std::vector<Vec3> position;                  ///< (n) [m]
   std::vector<NodeCondition> condition;        ///< (n)
   std::vector<std::uint8_t> strand_is_intact;  ///< (strands)
+  /// (springs) on each spring's stiffness [-]: 1 intact, 0 cut or torn, between them weakened; >= 0. May change
+  /// from solve to solve; nothing is rebuilt.
+  std::vector<double> spring_factor;
+  std::vector<double> spring_damage;  ///< (springs) gathered under load [-]: 1 tears
 };
 
-/// At rest, nothing grasped, every strand intact; fixed nodes prescribed.
+/// At rest, nothing grasped, every strand and spring intact; fixed nodes prescribed.
 TissueState MakeRestState(const TissueModel& model);
 
 /// One-sided spring between a tool and a point of a triangle: pushes while normal . x < offset.

@@ -18,7 +18,7 @@ class GpuOrCpuSolver final : public tissue::EquilibriumSolver {
   ~GpuOrCpuSolver() override;
 
   /// The Chebyshev iteration runs on the GPU, also where the choice is left open (kAdaptive); other solvers
-  /// run on the processor. When the GPU fails, the processor solves from the positions that the call began
+  /// run on the processor, and so does a state whose springs are cut or weakened. When the GPU fails, the processor solves from the positions that the call began
   /// with.
   /// \note Allocates nothing, but once for the text of a failure.
   tissue::SolveReport Solve(const tissue::SolverSettings& settings, const tissue::TissueLoad& load,

@@ -66,7 +66,8 @@ class GpuSolver {
   /// Copies the model to the GPU.
   ///
   /// \param model  must outlive the solver
-  /// \return those of FindGpu, kGpuMemory, or kGpuLayout when the layout cannot hold the model
+  /// \return those of FindGpu, kGpuMemory, or kGpuLayout when the layout cannot hold the model,
+  /// as none holds springs that stiffen
   static core::Result<GpuSolver> Make(const tissue::TissueModel& model, const GpuOptions& options = {});
   ~GpuSolver();
   GpuSolver(GpuSolver&&) noexcept;
@@ -77,7 +78,7 @@ class GpuSolver {
   /// and back at each call of it.
   ///
   /// \return kGpuFailed after an error of the GPU or its driver, kGpuLayout for a load or a hook that the
-  /// layout cannot serve; the state is then as it was before the call
+  /// layout cannot serve, and for springs that are cut or weakened; the state is then as it was before the call
   /// \note Allocates and throws nothing of ours unless it fails.
   core::Result<tissue::SolveReport> Solve(const tissue::SolverSettings& settings,
                                           const tissue::TissueLoad& load, tissue::TissueState& state,

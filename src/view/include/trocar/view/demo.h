@@ -25,6 +25,8 @@ struct DemoOptions {
   int threads = 1;                      ///< of the solver
   bool has_video = true;
   ViewOptions view;
+  /// may change the script's input of a tick at that time [s]; may be empty
+  std::function<void(double, session::Input&)> change_input;
   std::function<void(const session::Snapshot&)> on_tick;  ///< after every tick; may be empty
   std::function<void(double)> on_progress;                ///< share done, 0 to 1, once a frame; may be empty
 };

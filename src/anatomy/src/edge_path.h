@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file edge_path.h  The edge along a closed curve, as one place beside each of the curve's rows.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "edge_strip.h"
+#include "trocar/anatomy/edge_adaption.h"
+#include "trocar/anatomy/edge_field.h"
+
+namespace trocar::anatomy {
+
+/// Distance of an edge path's rows along the curve [pixels].
+inline constexpr double kEdgeRowStep = 2.0;
+
+/// A contour's edge.
+struct EdgePath {
+  ClosedCurve curve;                  ///< (rows) where it was looked for
+  std::vector<Vec2> at;               ///< (rows) the edge beside each row [pixels]
+  std::vector<std::uint8_t> is_edge;  ///< (rows) a clear edge is there
+};
+
+/// Where an edge is looked for.
+struct EdgeSearch {
+  double reach_px = 0;  ///< to either side of the curve, >= 0.5
+  double nearness = 0;  ///< part of an edge's strength that is lost at the reach [-]
+};
+
+/// The best closed path along a curve on which the colours become unlike those inside.
+EdgePath FollowEdge(const EdgeField& field, ClosedCurve curve, const EdgeSearch& search,
+                    const EdgeAdaptionSettings& settings);
+
+/// Finds the edge within max_shift_px of a closed curve through clicked points.
+///
+/// Found twice: along the clicks' curve, and again in a narrow band along what was found, where the inside
+/// is known better and the average along the curve blurs nothing.
+/// \param polyline  (m) m >= 3 closed [pixels]
+EdgePath FindEdgePath(const EdgeField& field, std::span<const Vec2> polyline,
+                      const EdgeAdaptionSettings& settings);
+
+}  // namespace trocar::anatomy

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "command.h"
+#include "console.h"
+#include "trocar/anatomy/label_edges.h"
+
+namespace trocar::cli {
+namespace {
+
+struct Arguments {
+  anatomy::LabelEdgeOptions options;
+  std::string control_points, images, reference;
+  bool is_json = false;
+};
+
+std::string Format(const char* format, double value) {
+  char text[32];
+  std::snprintf(text, sizeof(text), format, value);
+  return text;
+}
+
+void PrintTable(const anatomy::LabelEdges& edges) {
+  std::vector<std::vector<std::string>> rows = {{"organ", "labels", "places", "edge seen",
+                                                 "mean distance [mm]", "median", "signed mean", "within 1 mm",
+                                                 "drawn contours [mm]"}};
+  const auto add = [&](const std::vector<anatomy::LabelEdgeReport>& reports, const char* labels) {
+    for (const auto& report : reports) {
+      rows.push_back({report.name, labels, std::to_string(report.places), Format("%.2f", report.seen),
+                      Format("%.2f", report.mean_mm), Format("%.2f", report.median_mm),
+                      Format("%+.2f", report.signed_mean_mm), Format("%.2f", report.within_1mm),
+                      Format("%.2f", report.drawn_mm)});
+    }
+  };
+  add(edges.as_given, "as given");
+  add(edges.shifted, "shifted");
+  std::fputs(FormatTable(rows).c_str(), stdout);
+  std::printf("\nShifted by %+.2f mm along columns, %+.2f mm along rows, %+.2f mm along slices.\n",
+              edges.shift_mm[0], edges.shift_mm[1], edges.shift_mm[2]);
+}
+
+void PrintJson(const anatomy::LabelEdges& edges) {
+  const auto list = [](const std::vector<anatomy::LabelEdgeReport>& reports) {
+    nlohmann::json all = nlohmann::json::array();
+    for (const auto& report : reports) {
+      all.push_back({{"name", report.name},
+                     {"places", report.places},
+                     {"seen", report.seen},
+                     {"mean_mm", report.mean_mm},
+                     {"median_mm", report.median_mm},
+                     {"signed_mean_mm", report.signed_mean_mm},
+                     {"within_1mm", report.within_1mm},
+                     {"drawn_mm", report.drawn_mm}});
+    }
+    return all;
+  };
+  const nlohmann::json all = {
+      {"as_given", list(edges.as_given)}, {"shifted", list(edges.shifted)}, {"shift_mm", edges.shift_mm}};
+  std::printf("%s\n", all.dump(2).c_str());
+}
+
+core::Status Measure(const Arguments& arguments) {
+  anatomy::LabelEdgeOptions options = arguments.options;
+  options.control_points = arguments.control_points;
+  options.images = arguments.images;
+  options.reference = arguments.reference;
+  ProgressBar bar("measuring", 1.0);
+  const auto edges = anatomy::MeasureLabelEdges(options, [&](std::string_view what, double fraction) {
+    bar.SetLabel(what);
+    bar.Show(fraction);
+  });
+  bar.Finish();
+  if (!edges) return edges.error();
+  if (arguments.is_json) {
+    PrintJson(*edges);
+  } else {
+    PrintTable(*edges);
+  }
+  return {};
+}
+
+}  // namespace
+
+void AddAnatomyLabelEdgesCommand(CLI::App& anatomy, Outcome& outcome) {
+  CLI::App* command = anatomy.add_subcommand(
+      "label-edges", "Measure how far a label map's borders lie from the edges that the pictures show");
+  auto arguments = std::make_shared<Arguments>();
+  auto& options = arguments->options;
+  command->add_option("--images", arguments->images, "Folder of slices")->required()->type_name("DIR");
+  command->add_option("--reference", arguments->reference, "Label map (NIfTI, NRRD)")
+      ->required()
+      ->type_name("FILE");
+  command
+      ->add_option("--control-points", arguments->control_points,
+                   "Control points (JSON) of the series: sizes, organs, labels, and contours to compare with")
+      ->required()
+      ->type_name("FILE");
+  command->add_option("--every", options.every, "Slices from one measured slice to the next")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  command->add_option("--reach-mm", options.reach_mm, "How far from the label an edge is looked for")
+      ->type_name("MM")
+      ->check(CLI::Range(1.0, 30.0))
+      ->capture_default_str();
+  command->add_option("--most-slices", options.most_slices, "The labels are shifted by up to so many slices")
+      ->type_name("N")
+      ->check(CLI::Range(0, 20))
+      ->capture_default_str();
+  command->add_flag("--json", arguments->is_json, "The table as JSON");
+  command->footer(
+      "Tells whether a label map can judge an edge follower at all, and whether it lies beside the pictures\n"
+      "as a whole. Signed: positive where the edge lies outside the label.\n"
+      "Example: trocar anatomy label-edges --images SLICES --reference LABELS.nii.gz \\\n"
+      "           --control-points assets/patients/visible-human-male/control_points.json");
+  command->callback([arguments, &outcome] { outcome.status = Measure(*arguments); });
+}
+
+}  // namespace trocar::cli

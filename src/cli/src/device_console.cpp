@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "device_console.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <csignal>
+#include <cstdio>
+
+#include "trocar/device/ports.h"
+
+namespace trocar::cli {
+namespace {
+
+constexpr double kReadPeriod = 0.002;   // [s]
+constexpr double kDrawPeriod = 0.050;   // [s]
+constexpr double kPrintPeriod = 0.500;  // without a terminal [s]
+constexpr double kDegrees = 57.29577951308232;
+
+volatile std::sig_atomic_t is_interrupted = 0;
+
+void OnInterrupt(int) {
+  is_interrupted = 1;
+}
+
+/// "[-----|--#--]": where `value` lies between low and high.
+std::string Bar(double value, double low, double high) {
+  constexpr int kCells = 15;
+  const double place = std::clamp((value - low) / (high - low), 0.0, 1.0);
+  std::string bar(kCells, '-');
+  if (low < 0.0) bar[kCells / 2] = '|';
+  bar[static_cast<std::size_t>(std::lround(place * (kCells - 1)))] = '#';
+  return "[" + bar + "]";
+}
+
+}  // namespace
+
+InterruptWatch::InterruptWatch() {
+  is_interrupted = 0;
+  std::signal(SIGINT, OnInterrupt);
+  std::signal(SIGTERM, OnInterrupt);
+}
+
+InterruptWatch::~InterruptWatch() {
+  std::signal(SIGINT, SIG_DFL);
+  std::signal(SIGTERM, SIG_DFL);
+}
+
+bool InterruptWatch::IsInterrupted() const noexcept {
+  return is_interrupted != 0;
+}
+
+core::Result<WatchReport> WatchDevice(device::Driver& driver, double seconds,
+                                      const std::function<void(const HandSamples&, double)>& on_sample,
+                                      const std::function<void(const HandSamples&, double)>& on_idle) {
+  const InterruptWatch interrupt;
+  if (const core::Status done = driver.Configure(); !done) return done.error();
+  if (const core::Status done = driver.Activate(); !done) return done.error();
+  device::Clock& clock = device::SystemClock();
+  const double start = clock.Now();
+  WatchReport report;
+  HandSamples samples, before;
+  double next_draw = 0;
+  while (!interrupt.IsInterrupted() && (seconds <= 0.0 || report.seconds < seconds)) {
+    const device::ReadStatus status = driver.Read(samples);
+    report.seconds = clock.Now() - start;
+    if (status == device::ReadStatus::kLost) {
+      report.is_lost = true;
+      break;
+    }
+    if (status == device::ReadStatus::kFresh) {
+      for (std::size_t hand = 0; hand < samples.size(); ++hand) {
+        report.fresh[hand] += samples[hand].is_valid && samples[hand] != before[hand] ? 1 : 0;
+        report.unseen[hand] += !samples[hand].is_valid && before[hand].is_valid ? 1 : 0;
+      }
+      before = samples;
+      on_sample(samples, report.seconds);
+    }
+    if (on_idle && report.seconds >= next_draw) {
+      next_draw = report.seconds + kDrawPeriod;
+      on_idle(samples, report.seconds);
+    }
+    clock.Sleep(kReadPeriod);
+  }
+  driver.Finalize();
+  return report;
+}
+
+std::string FormatHands(const HandSamples& samples) {
+  static constexpr const char* kNames[] = {"left", "right", "laparoscope"};
+  std::string text;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const device::HandSample& hand = samples[i];
+    char line[240];
+    if (hand.is_valid) {
+      std::snprintf(line, sizeof line,
+                    "%-11s pan %6.1f %s  tilt %6.1f %s  spin %7.1f  depth %6.1f mm %s  jaw %5.1f %s\n", kNames[i],
+                    kDegrees * hand.pan, Bar(hand.pan, -1.4, 1.4).c_str(), kDegrees * hand.tilt,
+                    Bar(hand.tilt, -1.4, 1.4).c_str(), kDegrees * hand.spin, 1e3 * hand.depth,
+                    Bar(hand.depth, 0.0, 0.28).c_str(), kDegrees * hand.jaw, Bar(hand.jaw, 0.0, 1.05).c_str());
+    } else {
+      std::snprintf(line, sizeof line, "%-11s not seen\n", kNames[i]);
+    }
+    text += line;
+  }
+  return text;
+}
+
+HandPlot::HandPlot() : is_terminal_(::isatty(STDOUT_FILENO) == 1) {}
+
+void HandPlot::Show(const HandSamples& samples, double time) {
+  if (!is_terminal_) {
+    if (time < next_) return;
+    next_ = time + kPrintPeriod;
+    std::printf("%.1f s\n%s", time, FormatHands(samples).c_str());
+    std::fflush(stdout);
+    return;
+  }
+  // back over the last drawing, and wipe each line to its end
+  if (is_drawn_) std::printf("\033[%zuA", samples.size());
+  is_drawn_ = true;
+  std::string text = FormatHands(samples);
+  for (std::size_t at = text.find('\n'); at != std::string::npos; at = text.find('\n', at + 4)) text.insert(at, "\033[K");
+  std::fputs(text.c_str(), stdout);
+  std::fflush(stdout);
+}
+
+}  // namespace trocar::cli

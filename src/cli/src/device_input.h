@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file device_input.h  A device's hands in place of a script's, for runs without a window.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "trocar/core/result.h"
+#include "trocar/device/driver.h"
+#include "trocar/device/ports.h"
+#include "trocar/session/device_thread.h"
+
+namespace trocar::cli {
+
+/// A recording (play:FILE) runs on simulated time: the same file gives the same bits. Any other device runs in real time.
+class DeviceInput {
+ public:
+  /// \return the device's error
+  static core::Result<std::unique_ptr<DeviceInput>> Open(const std::string& spec,
+                                                         const session::Scene& scene);
+
+  /// Replaces the hands that the device sees. A hand that it does not see, and all once it is lost, stay where they were.
+  ///
+  /// \param time  of the tick [s]; with a real device, waits until so much time has passed since Open()
+  void Apply(double time, session::Input& input);
+  /// kDeviceLost once the device was lost.
+  core::Status Check() const;
+
+ private:
+  DeviceInput() = default;
+
+  device::ManualClock simulated_;
+  device::Clock* clock_ = nullptr;
+  double start_ = 0;  // [s]
+  std::unique_ptr<device::Driver> driver_;
+  std::array<device::HandSample, device::kChannelCount> samples_;
+  session::Input held_;
+  bool has_held_ = false;
+  bool is_lost_ = false;
+};
+
+}  // namespace trocar::cli

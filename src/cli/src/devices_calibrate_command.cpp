@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "command.h"
+#include "console.h"
+#include "device_console.h"
+#include "trocar/device/device_spec.h"
+
+namespace trocar::cli {
+namespace {
+
+using device::HandCalibration;
+using device::Pose;
+
+struct CalibrateOptions {
+  std::string spec, hand = "left";
+  double seconds = 12;
+  double wait = 3;  // before measuring begins [s]
+};
+
+int FindHand(const std::string& name) {
+  return name == "left" ? device::kLeftHand : name == "right" ? device::kRightHand : device::kLaparoscope;
+}
+
+void Announce(const std::string& text, double wait) {
+  std::printf("%s\n", text.c_str());
+  for (int left = static_cast<int>(wait); left > 0; --left) {
+    std::printf("  starting in %d s\n", left);
+    std::fflush(stdout);
+    device::SystemClock().Sleep(1.0);
+  }
+}
+
+/// Poses of one hand's sensor while the person moves it.
+core::Result<std::vector<Pose>> CollectPoses(device::PoseDriver& driver, int hand, double seconds) {
+  std::vector<Pose> poses;
+  ProgressBar progress("measuring", seconds);
+  const auto report = WatchDevice(driver, seconds, [&](const HandSamples& samples, double time) {
+    progress.Show(time);
+    const Pose* pose = driver.GetSensorPose(hand);
+    if (pose == nullptr || !samples[static_cast<std::size_t>(hand)].is_valid) return;
+    if (poses.empty() || !(poses.back() == *pose)) poses.push_back(*pose);
+  });
+  progress.Finish();
+  if (!report) return report.error();
+  if (report->is_lost)
+    return core::Error{core::ErrorCode::kDeviceLost, driver.GetName() + " was lost; check plug and power, and repeat"};
+  // evenly thinned: more than this says nothing new
+  constexpr std::size_t kMost = 400;
+  std::vector<Pose> thinned;
+  for (std::size_t i = 0; i < std::min(kMost, poses.size()); ++i)
+    thinned.push_back(poses[i * poses.size() / std::min(kMost, poses.size())]);
+  return thinned;
+}
+
+void PrintQuality(const device::FitQuality& quality, std::size_t poses) {
+  std::printf("  from %zu poses: residual %.2f mm RMS (3 allowed), worst %.2f mm, turned by %.0f degrees (30 needed)\n",
+              poses, 1e3 * quality.residual, 1e3 * quality.worst, 57.29577951308232 * quality.spread);
+}
+
+core::Status Keep(const device::DeviceStore& store) {
+  const auto path = device::FindDeviceStore();
+  core::Status saved = device::SaveDeviceStore(path, store);
+  if (saved) std::printf("Wrote %s\n", path.c_str());
+  return saved;
+}
+
+/// Where the tip and the shaft are: the two steps of a tracked instrument.
+core::Status CalibrateTracker(const CalibrateOptions& options, bool is_tip) {
+  device::DeviceStore store = LoadStoreOrWarn();
+  const core::Result<device::DeviceSpec> spec = device::ParseDeviceSpec(options.spec);
+  if (!spec) return spec.error();
+  const auto driver = device::MakeTracker(options.spec, store, device::SystemClock());
+  if (!driver) return driver.error();
+  const int hand = FindHand(options.hand);
+  Announce(is_tip ? "Put the " + options.hand + " instrument's tip into a small hole and keep it there; swing the handle "
+                    "round in all directions, by more than 30 degrees."
+                  : "Leave the " + options.hand + " instrument in its trocar; swing it in all directions by more than 30 "
+                    "degrees, and move it in and out.",
+           options.wait);
+  const auto poses = CollectPoses(**driver, hand, options.seconds);
+  if (!poses) return poses.error();
+
+  device::TrackerEntry entry = store.Tracker(spec->kind);
+  HandCalibration& calibration = entry.hands[static_cast<std::size_t>(hand)];
+  if (is_tip) {
+    const auto fit = device::FitPivot(*poses);
+    if (!fit) return fit.error();
+    calibration.p_sensor_tip = fit->p_sensor_pivot;
+    PrintQuality(fit->quality, poses->size());
+    std::printf("Next: trocar devices calibrate trocar %s --hand %s\n", options.spec.c_str(), options.hand.c_str());
+  } else {
+    const auto fit = device::FitTrocar(*poses, calibration.p_sensor_tip);
+    if (!fit) return fit.error();
+    calibration.p_source_trocar = fit->p_source_trocar;
+    calibration.axis_sensor = fit->axis_sensor;
+    calibration.is_measured = true;
+    PrintQuality(fit->quality, poses->size());
+  }
+  store.trackers[spec->kind] = entry;
+  return Keep(store);
+}
+
+core::Result<std::vector<int>> CollectRaw(const std::string& spec, int tool, double seconds) {
+  auto sensor = device::MakeJawSensor(spec, device::SystemClock());
+  if (!sensor) return sensor.error();
+  std::vector<int> values;
+  const auto report = WatchDevice(**sensor, seconds, [&](const HandSamples&, double) {
+    if (const auto raw = (*sensor)->GetRaw(tool)) values.push_back(*raw);
+  });
+  if (!report) return report.error();
+  return values;
+}
+
+core::Status CalibrateJaw(const CalibrateOptions& options) {
+  const int tool = FindHand(options.hand);
+  if (tool >= device::kJawTools)
+    return core::Error{core::ErrorCode::kUsage, "a laparoscope has no jaws; --hand is left or right"};
+  const double seconds = options.seconds / 2;
+  Announce("Close the " + options.hand + " jaws and hold them closed.", options.wait);
+  const auto closed = CollectRaw(options.spec, tool, seconds);
+  if (!closed) return closed.error();
+  Announce("Open the " + options.hand + " jaws fully and hold them open.", options.wait);
+  const auto open = CollectRaw(options.spec, tool, seconds);
+  if (!open) return open.error();
+  auto fit = device::FitJaw(*closed, *open);
+  if (!fit) return fit.error();
+  device::DeviceStore store = LoadStoreOrWarn();
+  device::JawCalibration& kept = store.jaws[static_cast<std::size_t>(tool)];
+  fit->max_jaw = kept.max_jaw;
+  kept = *fit;
+  std::printf("  closed %d, open %d of 0 to 1023\n", kept.closed, kept.open);
+  return Keep(store);
+}
+
+CLI::App* AddStep(CLI::App& calibrate, const char* name, const char* text, CalibrateOptions& options) {
+  CLI::App* step = calibrate.add_subcommand(name, text);
+  step->add_option("device", options.spec, "Device, such as liberty:/dev/ttyUSB0")->required()->type_name("DEVICE");
+  step->add_option("--hand", options.hand, "Which instrument")
+      ->check(CLI::IsMember({"left", "right", "laparoscope"}))
+      ->capture_default_str();
+  step->add_option("--seconds", options.seconds, "How long to measure")
+      ->check(CLI::Range(0.5, 300.0))
+      ->type_name("S")
+      ->capture_default_str();
+  step->add_option("--wait", options.wait, "Before measuring begins")
+      ->check(CLI::Range(0.0, 60.0))
+      ->type_name("S")
+      ->capture_default_str();
+  return step;
+}
+
+}  // namespace
+
+void AddDevicesCalibrateCommand(CLI::App& devices, Outcome& outcome) {
+  CLI::App* calibrate = devices.add_subcommand("calibrate", "Find tip, shaft and trocar of a tracked instrument; range of jaws");
+  calibrate->require_subcommand(1);
+  auto options = std::make_shared<CalibrateOptions>();
+  calibrate->footer(
+      "First tip, then trocar, for each hand; jaw for each sensor. A fit that is poor is refused and changes nothing.\n"
+      "Example: trocar devices calibrate tip liberty:/dev/ttyUSB0 --hand right");
+  AddStep(*calibrate, "tip", "Where the tip is, seen from its sensor", *options)->callback([options, &outcome] {
+    outcome.status = CalibrateTracker(*options, true);
+  });
+  AddStep(*calibrate, "trocar", "Where the trocar is and which way the shaft points", *options)
+      ->callback([options, &outcome] { outcome.status = CalibrateTracker(*options, false); });
+  AddStep(*calibrate, "jaw", "What the jaw sensor reads closed and open", *options)->callback([options, &outcome] {
+    outcome.status = CalibrateJaw(*options);
+  });
+}
+
+}  // namespace trocar::cli

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "command.h"
+#include "console.h"
+#include "device_console.h"
+#include "trocar/core/log.h"
+#include "trocar/core/safe_file.h"
+#include "trocar/device/device_spec.h"
+#include "trocar/device/force_device_spec.h"
+#include "trocar/device/hand_recording.h"
+
+namespace trocar::cli {
+namespace {
+
+constexpr const char* kSpecHelp =
+    "Device, such as liberty:/dev/ttyUSB0 or fastrak:/dev/ttyS0,baud=19200+jaw:/dev/ttyACM0";
+
+void List(bool is_json) {
+  const std::vector<device::FoundDevice> found = device::ListDevices();
+  if (is_json) {
+    nlohmann::ordered_json json = {{"devices", nlohmann::ordered_json::array()},
+                                   {"kinds", nlohmann::ordered_json::array()}};
+    for (const device::FoundDevice& one : found)
+      json["devices"].push_back({{"device", one.spec}, {"description", one.description}});
+    for (const device::DeviceKind& kind : device::DeviceKinds())
+      json["kinds"].push_back({{"name", kind.name}, {"address", kind.address}, {"description", kind.text}});
+    std::printf("%s\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
+    return;
+  }
+  std::printf("Found:\n");
+  for (const device::FoundDevice& one : found)
+    std::printf("  %s   %s\n", one.spec.c_str(), one.description.c_str());
+  if (found.empty()) std::printf("  nothing but mouse and keyboard\n");
+  std::printf("\nKinds of device (write KIND:ADDRESS):\n");
+  std::vector<std::vector<std::string>> rows;
+  for (const device::DeviceKind& kind : device::DeviceKinds())
+    rows.push_back({"  " + std::string(kind.name), std::string(kind.address), std::string(kind.text)});
+  std::fputs(FormatTable(rows).c_str(), stdout);
+  std::printf("\nHaptic devices (--haptics): %s\n", device::ListForceDrivers().c_str());
+  std::printf("Settings and calibrations: %s\n", device::FindDeviceStore().c_str());
+}
+
+core::Result<std::unique_ptr<device::Driver>> OpenDevice(const std::string& spec) {
+  return device::MakeDriver(spec, LoadStoreOrWarn(), device::SystemClock());
+}
+
+void PrintReport(const WatchReport& report) {
+  static constexpr const char* kNames[] = {"left", "right", "laparoscope"};
+  std::vector<std::vector<std::string>> rows = {{"hand", "samples", "a second", "out of sight"}};
+  for (std::size_t i = 0; i < report.fresh.size(); ++i) {
+    rows.push_back({kNames[i], std::to_string(report.fresh[i]),
+                    FormatNumber(report.seconds > 0 ? report.fresh[i] / report.seconds : 0, 3),
+                    std::to_string(report.unseen[i])});
+  }
+  std::fputs(("\n" + FormatTable(rows)).c_str(), stdout);
+}
+
+core::Status LostError(const device::Driver& driver) {
+  return core::Error{core::ErrorCode::kDeviceLost, driver.GetName() + " was lost; check plug and power"};
+}
+
+core::Status Test(const std::string& spec, double seconds) {
+  const auto driver = OpenDevice(spec);
+  if (!driver) return driver.error();
+  HandPlot plot;
+  const auto report = WatchDevice(
+      **driver, seconds, [](const HandSamples&, double) {},
+      [&](const HandSamples& samples, double time) { plot.Show(samples, time); });
+  if (!report) return report.error();
+  PrintReport(*report);
+  return report->is_lost ? LostError(**driver) : core::Status{};
+}
+
+/// What came in before a loss or Ctrl+C is kept.
+core::Status Record(const std::string& spec, const std::string& path, double seconds) {
+  const auto driver = OpenDevice(spec);
+  if (!driver) return driver.error();
+  std::vector<device::HandFrame> frames;
+  HandPlot plot;
+  const auto report = WatchDevice(
+      **driver, seconds,
+      [&](const HandSamples& samples, double time) {
+        frames.push_back({time, samples});
+      },
+      [&](const HandSamples& samples, double time) { plot.Show(samples, time); });
+  if (!report) return report.error();
+  if (frames.empty()) {
+    return core::Error{core::ErrorCode::kDeviceStale, (*driver)->GetName() +
+                                                          " sent nothing to record; try trocar devices "
+                                                          "test first"};
+  }
+  if (core::Status written = core::WriteFile(path, device::FormatHandFrames(frames)); !written)
+    return written;
+  PrintReport(*report);
+  std::printf("\nWrote %s: %zu frames. Play it with: trocar devices play %s, or --device play:%s\n",
+              path.c_str(), frames.size(), path.c_str(), path.c_str());
+  return report->is_lost ? LostError(**driver) : core::Status{};
+}
+
+core::Status Play(const std::string& path, double seconds) {
+  device::HandPlayer player(path, device::SystemClock());
+  // once for its length; a file that is no recording is refused here
+  if (core::Status good = player.Configure(); !good) return good;
+  const double length = player.Duration();
+  player.Finalize();
+  return Test("play:" + path, seconds > 0 ? seconds : length + 0.1);
+}
+
+struct DeviceOptions {
+  std::string spec, file;
+  double seconds = 0;
+  bool is_json = false;
+};
+
+CLI::App* AddWatching(CLI::App& devices, const char* name, const char* text, DeviceOptions& options) {
+  CLI::App* command = devices.add_subcommand(name, text);
+  command->add_option("--seconds", options.seconds, "How long; until Ctrl+C (play: to its end) if not given")
+      ->check(CLI::Range(0.05, 86400.0))
+      ->type_name("S");
+  return command;
+}
+
+}  // namespace
+
+device::DeviceStore LoadStoreOrWarn() {
+  device::LoadedStore loaded = device::LoadDeviceStore(device::FindDeviceStore());
+  if (loaded.complaint) {
+    core::Log(core::LogLevel::kWarning,
+              loaded.complaint->Text() + "; going on with the defaults, uncalibrated");
+  }
+  return std::move(loaded.store);
+}
+
+void AddDevicesCommand(CLI::App& app, Outcome& outcome) {
+  CLI::App* devices =
+      app.add_subcommand("devices", "Trackers, jaw sensors and other hands: find, try, calibrate, record");
+  devices->require_subcommand(1);
+  devices->footer(
+      "Examples:\n"
+      "  trocar devices list\n"
+      "  trocar devices test liberty:/dev/ttyUSB0+jaw:/dev/ttyACM0\n"
+      "  trocar devices emulate liberty          a tracker in software; prints the line it is on\n"
+      "  trocar window --device liberty:/dev/ttyUSB0\n"
+      "Setting up each device: docs/devices.md");
+
+  auto options = std::make_shared<DeviceOptions>();
+  CLI::App* list = devices->add_subcommand("list", "What is plugged in, and which kinds of device there are");
+  list->add_flag("--json", options->is_json, "Machine-readable");
+  list->callback([options] { List(options->is_json); });
+
+  CLI::App* test = AddWatching(*devices, "test", "Show what a device says, live", *options);
+  test->add_option("device", options->spec, kSpecHelp)->required()->type_name("DEVICE");
+  test->callback([options, &outcome] { outcome.status = Test(options->spec, options->seconds); });
+
+  CLI::App* record = AddWatching(*devices, "record", "Keep what a device says in a file (CSV)", *options);
+  record->add_option("device", options->spec, kSpecHelp)->required()->type_name("DEVICE");
+  record->add_option("file", options->file, "File to write")->required()->type_name("FILE");
+  record->callback(
+      [options, &outcome] { outcome.status = Record(options->spec, options->file, options->seconds); });
+
+  CLI::App* play = AddWatching(*devices, "play", "Show a recording", *options);
+  play->add_option("file", options->file, "File of trocar devices record")->required()->type_name("FILE");
+  play->callback([options, &outcome] { outcome.status = Play(options->file, options->seconds); });
+
+  AddDevicesCalibrateCommand(*devices, outcome);
+  AddDevicesEmulateCommand(*devices, outcome);
+}
+
+}  // namespace trocar::cli

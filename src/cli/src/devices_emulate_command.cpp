@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "command.h"
+#include "device_console.h"
+#include "trocar/device/device_store.h"
+#include "trocar/device/emulator.h"
+
+namespace trocar::cli {
+namespace {
+
+using device::Emulator;
+
+struct EmulateOptions {
+  std::string kind;
+  std::string motion = "hands";
+  std::vector<std::string> faults;
+  double seconds = 0;
+  int port = 0;
+  int stations = 2;
+};
+
+core::Result<std::unique_ptr<Emulator>> MakeEmulator(const EmulateOptions& options,
+                                                     const std::vector<device::Fault>& faults) {
+  const device::HandMotion motion = options.motion == "rest" ? device::CalcRest : device::CalcHandMotion;
+  if (options.kind == "haply") {
+    const auto position = [motion](int device, double time) {
+      const device::HandSample hand = motion(time)[static_cast<std::size_t>(device)];
+      return math::Vec3{-0.1 * hand.pan, 0.15 + hand.depth, 0.1 * hand.tilt};
+    };
+    return device::MakeHaplyEmulator({2, position}, std::make_shared<device::HaplyForces>());
+  }
+  if (options.kind == "jaw") return device::MakeJawEmulator({{}, motion});
+  const auto hands = device::MakeHandsSettings(device::DefaultTracker());
+  if (!hands) return hands.error();
+  const device::SensorMotion sensors = device::SpoilMotion(
+      faults, options.motion == "tip" ? device::MoveAboutTip(*hands) : device::MoveHands(*hands, motion));
+  if (options.kind == "igtl") return device::MakeIgtlEmulator(sensors);
+  const auto format = device::FindFormat(options.kind);
+  if (!format) return core::Error{core::ErrorCode::kUsage, "\"" + options.kind + "\" is not emulated"};
+  device::PolhemusEmulation emulation;
+  emulation.format = *format;
+  emulation.stations = options.stations;
+  emulation.motion = sensors;
+  return device::MakePolhemusEmulator(std::move(emulation));
+}
+
+core::Status Emulate(const EmulateOptions& options) {
+  std::vector<device::Fault> faults;
+  for (const std::string& text : options.faults) {
+    const auto fault = device::ParseFault(text);
+    if (!fault) return fault.error();
+    faults.push_back(*fault);
+  }
+  auto emulator = MakeEmulator(options, faults);
+  if (!emulator) return emulator.error();
+  const auto host = options.kind == "igtl" || options.kind == "haply"
+                        ? device::EmulatorHost::MakeTcp(std::move(*emulator), options.port, faults)
+                        : device::EmulatorHost::MakeSerial(std::move(*emulator), faults);
+  if (!host) return host.error();
+  std::printf("%s:%s\n", options.kind.c_str(), (*host)->Address().c_str());
+  std::fflush(stdout);
+  std::fprintf(stderr, "Emulating; try: trocar devices test %s:%s   (Ctrl+C ends)\n", options.kind.c_str(),
+               (*host)->Address().c_str());
+  const InterruptWatch interrupt;
+  device::Clock& clock = device::SystemClock();
+  const double start = clock.Now();
+  for (double time = 0; !interrupt.IsInterrupted() && (options.seconds <= 0.0 || time < options.seconds);
+       time = clock.Now() - start) {
+    (*host)->Step(time);
+    clock.Sleep(0.001);
+  }
+  return {};
+}
+
+}  // namespace
+
+void AddDevicesEmulateCommand(CLI::App& devices, Outcome& outcome) {
+  CLI::App* command =
+      devices.add_subcommand("emulate", "A device in software, byte for byte, with faults on demand");
+  auto options = std::make_shared<EmulateOptions>();
+  command->add_option("kind", options->kind, "Which device")
+      ->required()
+      ->check(CLI::IsMember({"fastrak", "fastrak-binary", "liberty", "patriot", "jaw", "igtl", "haply"}))
+      ->type_name("KIND");
+  command
+      ->add_option("--fault", options->faults,
+                   "KIND[=RATE][@START][+DURATION], in seconds; kinds: silence, garbage, flips (RATE of "
+                   "bits), unplug, "
+                   "flood, jump. May be given several times")
+      ->type_name("FAULT");
+  command
+      ->add_option("--motion", options->motion,
+                   "What the instruments do; tip: they swing about their tips, for calibration")
+      ->check(CLI::IsMember({"hands", "tip", "rest"}))
+      ->capture_default_str();
+  command->add_option("--stations", options->stations, "Sensors plugged in")
+      ->check(CLI::Range(1, 3))
+      ->capture_default_str();
+  command
+      ->add_option("--port", options->port,
+                   "igtl, haply: port on this machine; chosen by the system if not given")
+      ->check(CLI::Range(0, 65535))
+      ->type_name("PORT");
+  command->add_option("--seconds", options->seconds, "How long; until Ctrl+C if not given")
+      ->check(CLI::Range(0.05, 86400.0))
+      ->type_name("S");
+  command->footer(
+      "Prints the device's name for --device and trocar devices test, then serves it.\n"
+      "Example: trocar devices emulate liberty --fault silence@5+2 --fault flips=0.001@10");
+  command->callback([options, &outcome] { outcome.status = Emulate(*options); });
+}
+
+}  // namespace trocar::cli

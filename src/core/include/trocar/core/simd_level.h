@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file simd_level.h  Which vector instructions the inner loops use.
+#pragma once
+
+#include <string_view>
+
+namespace trocar::core {
+
+/// Inner loops that are worth it exist once for each level; what each module promises about their bits stands
+/// with its loops.
+enum class SimdLevel {
+  kBaseline,  ///< what every processor of the architecture has (x86-64: SSE2, 4 floats)
+  kAvx2,      ///< 8 floats: AVX2 and FMA
+  kAvx512     ///< 16 floats: AVX-512 F, VL, DQ and BW (x86-64-v4)
+};
+/// "baseline", "avx2", "avx512"
+std::string_view SimdLevelName(SimdLevel level) noexcept;
+
+/// The widest level that this processor and this build have.
+SimdLevel FindSimdLevel() noexcept;
+/// True where this processor and this build have `level`.
+bool HasSimdLevel(SimdLevel level) noexcept;
+
+}  // namespace trocar::core

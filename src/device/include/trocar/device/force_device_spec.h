@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file force_device_spec.h  Haptic devices by the name that a command line gives.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "trocar/core/result.h"
+#include "trocar/device/force_driver.h"
+
+namespace trocar::device {
+
+/// - "simulated": two devices that move slowly and whose buttons nobody presses
+/// - "openhaptics", "openhaptics:Left,Right": by the names that the maker's program gave them
+/// - "haply", "haply:2", "haply:2:10001": how many, and the port of the maker's service on this machine
+///
+/// \return unconfigured; kDeviceSettings with the kinds that there are
+core::Result<std::unique_ptr<ForceDriver>> MakeForceDriver(std::string_view text);
+
+/// The kinds, for help and messages.
+std::string ListForceDrivers();
+
+}  // namespace trocar::device

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file force_driver.h  Devices that push back: what they report, what they can bear, and the one kind of force
+/// that they accept.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "trocar/device/driver.h"
+#include "trocar/math/pose.h"
+#include "trocar/math/vector.h"
+
+namespace trocar::haptics {
+class ForceGate;  // the only maker of forces that are not zero; see haptics/force_gate.h
+}
+
+namespace trocar::device {
+
+/// A force that may be sent. Only haptics::ForceGate makes one that is not zero, so that no path around the gate
+/// compiles; a driver stores and sends it as it is and never computes one.
+class GatedForce {
+ public:
+  /// Zero, which anybody may send at any time.
+  constexpr GatedForce() noexcept = default;
+  /// On the hand, device frame [N].
+  const math::Vec3& Get() const noexcept { return force_; }
+
+ private:
+  friend class haptics::ForceGate;
+  explicit GatedForce(const math::Vec3& force) noexcept : force_(force) {}
+  math::Vec3 force_;
+};
+
+/// What one device can do and bear, by its maker or by measurement. 0 where it is not known, except max_force.
+struct ForceLimits {
+  double max_force = 0;                     ///< nominal maximum [N], > 0
+  double max_continuous_force = 0;          ///< that the motors bear for ever [N]
+  double max_stiffness = 0;                 ///< stiffest stable wall [N/m]
+  double damping = 0;                       ///< of the mechanism, viscous: b [N s/m]
+  double friction = 0;                      ///< of the mechanism, Coulomb: f_c [N]
+  double mass = 0;                          ///< apparent, at the point that the hand holds [kg]
+  double position_step = 0;                 ///< of the encoders at that point: Delta [m]
+  math::Vec3 workspace_min, workspace_max;  ///< box in the device frame; equal where it is not known [m]
+};
+
+enum class ForceDeviceStatus : std::uint8_t {
+  kOk,
+  kWarm,  ///< motors warm or another error that passes by itself: this force was not applied in full
+  kLost   ///< gone, or an error that does not pass; the driver must be configured again
+};
+
+/// What one device reports. Device frame: x to the person's right, y up, z towards the person; metres.
+struct ForceSample {
+  math::Vec3 position;           ///< of the point where the force acts [m]
+  math::Vec3 velocity;           ///< of that point, measured or derived by the driver [m/s]
+  math::Quaternion orientation;  ///< of the stylus, X_device_stylus
+  std::uint32_t buttons = 0;     ///< bit 0 is the first button; bit n is set while it is held
+  double jaw = 0;                ///< opening by a gripper [rad]; NaN where the device has none
+  double temperature = 0;      ///< of the motors as a share of what they bear, 0 to 1 [-]; NaN where unknown
+  std::uint64_t sequence = 0;  ///< grows with every new report of the device; equal = nothing new
+  bool is_calibrated = false;  ///< the device says that its encoders are referenced
+  ForceDeviceStatus status = ForceDeviceStatus::kLost;
+};
+
+/// A wire that another process can take over when ours dies: the file that the forces go out by, and the bytes
+/// that mean zero force on it.
+struct SupervisedWire {
+  static constexpr std::size_t kMaxBytes = 512;
+  int file = -1;         ///< descriptor, stays the driver's; -1: the device is reached through a library
+                         ///< of its maker, and only that library and the device can stop it
+  std::size_t size = 0;  ///< of zero_frame, <= kMaxBytes
+  std::array<std::uint8_t, kMaxBytes> zero_frame{};
+  bool is_closed_after = false;  ///< sockets: shut down once the frame has been sent
+};
+
+/// A device with force output. One thread, the haptic loop, calls everything but the life cycle; the life cycle is
+/// called before that thread starts and after it ends.
+///
+/// Duties of a device family beside the private functions:
+/// - nothing is sent before DoActivate; DoActivate, DoDeactivate and a lost device send zero, as far as they can;
+/// - a force lives kForceLife: without a newer SendForce the driver's own thread, if it has one, sends zero;
+/// - Read() gives HandSamples as any driver does; ReadForceSamples() the raw reports for the loop.
+class ForceDriver : public Driver {
+ public:
+  /// Longest time that a force acts without being renewed [s].
+  static constexpr double kForceLife = 0.010;
+
+  /// \param channel  0 to GetChannelCount() - 1
+  /// \return the limits read from the device or known for its model; meaningful from Inactive on
+  virtual ForceLimits GetLimits(int channel) const noexcept = 0;
+
+  /// The newest report of every channel.
+  ///
+  /// \param[out] samples  (GetChannelCount())
+  /// \return as Read(); after kLost every sample says kLost and the driver is unconfigured
+  /// \pre samples has exactly that size (TROCAR_ASSERT)
+  /// \note Real-time safe: no allocation, lock, wait or throw.
+  ReadStatus ReadForceSamples(std::span<ForceSample> samples) noexcept;
+
+  /// Sends a force, or leaves it to the driver's own thread to send at once. Does nothing unless active.
+  /// \note Real-time safe: no allocation, lock, wait or throw; a full wire drops the older force, not this one.
+  void SendForce(int channel, const GatedForce& force) noexcept;
+
+  /// For the supervisor process; the descriptor is duplicated by whoever asks.
+  virtual SupervisedWire GetSupervisedWire(int channel) const noexcept;
+
+ protected:
+  using Driver::Driver;
+
+ private:
+  virtual ReadStatus DoReadForceSamples(std::span<ForceSample> samples) noexcept = 0;
+  virtual void DoSendForce(int channel, const GatedForce& force) noexcept = 0;
+};
+
+}  // namespace trocar::device

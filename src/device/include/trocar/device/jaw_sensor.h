@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file jaw_sensor.h  How far the jaws are open, by a potentiometer in the handle: docs/hardware/jaw-sensor.md.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "trocar/device/driver.h"
+#include "trocar/device/framer.h"
+#include "trocar/device/mouse_keyboard.h"
+#include "trocar/device/ports.h"
+
+namespace trocar::device {
+
+inline constexpr int kJawTools = 2;   ///< left, right
+inline constexpr int kMaxJawRaw = 1023;  ///< of a 10-bit converter
+
+/// One value of one tool.
+struct JawReading {
+  int tool = 0;                    ///< 0 left, 1 right
+  std::uint32_t milliseconds = 0;  ///< of the sensor's own clock, which runs over [ms]
+  int raw = 0;                     ///< 0 to kMaxJawRaw
+};
+
+enum class JawFormat {
+  kText,  ///< lines "J,<tool>,<ms>,<raw>" over USB serial
+  kHid    ///< 4-byte HID reports: left and right, 16 bits each, low byte first
+};
+
+/// Takes lines apart. A line is right to the last character or it is garbage.
+class JawFramer {
+ public:
+  template <typename Sink>
+  void Feed(std::string_view bytes, Sink&& sink) {
+    framer_.Feed(bytes, Parse, sink);
+  }
+  void Restart() noexcept { framer_.Restart(); }
+  const FramerCounts& Counts() const noexcept { return framer_.Counts(); }
+
+ private:
+  static Parsed Parse(std::string_view bytes, JawReading& reading) noexcept;
+  Framer<JawReading, 32> framer_;
+};
+
+/// "J,1,1234,512\r\n"
+std::string FormatReading(const JawReading& reading);
+
+struct JawCalibration {
+  int closed = 0;           ///< raw value with closed jaws
+  int open = kMaxJawRaw;    ///< and with fully open ones; may be less than `closed`
+  double max_jaw = 1.0471975511965976;  ///< what fully open means, 60 degrees [rad]
+
+  friend bool operator==(const JawCalibration&, const JawCalibration&) = default;
+};
+/// Raw steps that closed and open must differ by.
+inline constexpr int kMinJawRange = 50;
+
+/// \param closed, open  raw values read while the jaws were held so; the medians count
+/// \return kCalibrationPoor where there are too few or they hardly differ
+core::Result<JawCalibration> FitJaw(std::span<const int> closed, std::span<const int> open);
+
+/// Median of three, then a first-order low pass.
+class JawFilter {
+ public:
+  static constexpr double kCutOff = 15.0;  ///< [Hz]
+  /// \return the filtered raw value; the first one passes unchanged, and so does the first after a gap
+  double Filter(const JawReading& reading) noexcept;
+  void Reset() noexcept { *this = {}; }
+
+ private:
+  std::array<int, 3> last_{};
+  int count_ = 0;
+  std::uint32_t time_ = 0;  // [ms]
+  double value_ = 0;
+};
+
+struct JawSettings {
+  JawFormat format = JawFormat::kText;
+  std::array<JawCalibration, kJawTools> calibrations;
+  double answer_time = 1.5;    ///< within which the first value comes, the board's start included [s], > 0
+  double stale_after = 0.100;  ///< without a value a tool is not seen [s], > 0
+  double lost_after = 0.500;   ///< without any value the sensor is lost [s], > stale_after
+};
+
+/// Fills the jaw of the left and the right hand, nothing else. See HandRig for the rest of the hand.
+class JawSensor : public Driver {
+ public:
+  /// \param clock  outlives the driver
+  JawSensor(const JawSettings& settings, TransportOpener opener, Clock& clock);
+
+  /// The newest unfiltered value of a tool, for calibration.
+  std::optional<int> GetRaw(int tool) const noexcept;
+  const FramerCounts& GetFramerCounts() const noexcept { return framer_.Counts(); }
+
+ private:
+  core::Status DoConfigure() override;
+  core::Status DoActivate() override;
+  void DoDeactivate() noexcept override {}
+  void DoCleanup() noexcept override { transport_.reset(); }
+  ReadStatus DoRead(std::span<HandSample> samples) noexcept override;
+
+  IoResult Drain(double now) noexcept;
+  void Take(const JawReading& reading, double now) noexcept;
+
+  struct Tool {
+    JawFilter filter;
+    std::optional<int> raw;
+    double time = 0;  // of the last value [s]
+    HandSample sample;
+  };
+  JawSettings settings_;
+  TransportOpener opener_;
+  Clock& clock_;
+  std::unique_ptr<Transport> transport_;
+  JawFramer framer_;
+  std::array<Tool, kJawTools> tools_;
+  double last_reading_ = 0;  // [s]
+  bool is_new_ = false;
+};
+
+/// A HID device on this machine that may be a jaw sensor.
+struct HidInfo {
+  std::string path;         ///< "/dev/hidraw3"
+  std::string description;  ///< maker and product
+};
+/// Boards with the USB numbers of docs/hardware/jaw-sensor.md; empty in a build without hidapi.
+std::vector<HidInfo> ListHidSensors();
+/// \param path  empty: the first that is found
+/// \return kDeviceLost, or kDeviceUnsupported in a build without hidapi
+core::Result<std::unique_ptr<Transport>> OpenHidSensor(const std::string& path);
+
+}  // namespace trocar::device

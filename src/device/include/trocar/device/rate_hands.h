@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file rate_hands.h  Hands from devices that say how fast, not where: gamepads and SpaceMice.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "trocar/device/driver.h"
+#include "trocar/device/mouse_keyboard.h"
+#include "trocar/device/ports.h"
+
+namespace trocar::device {
+
+/// How fast the joints of a hand move.
+struct HandRates {
+  double pan = 0, tilt = 0, spin = 0;  ///< [rad/s]
+  double depth = 0;                    ///< [m/s]
+  double jaw = 0;                      ///< [rad/s]
+};
+/// Moves a hand on by `dt` [s] within its limits.
+/// \note Real-time safe.
+void MoveHand(const HandRates& rates, double dt, const HandLimits& limits, HandSample& hand) noexcept;
+/// A stick or cap's deflection without the middle, where it never rests at exactly 0; -1 to 1. NaN gives 0.
+double WithoutDeadZone(double deflection, double dead_zone) noexcept;
+
+// --- gamepad
+
+/// Sticks to the right and down are positive, as SDL has it.
+struct GamepadState {
+  struct Side {
+    double x = 0, y = 0;  ///< stick, -1 to 1
+    double trigger = 0;   ///< 0 to 1, pulled
+    bool is_shoulder_down = false;
+  };
+  std::array<Side, 2> sides;  ///< left, right
+};
+
+/// Where the state comes from: SDL, or a test.
+class GamepadSource {
+ public:
+  virtual ~GamepadSource() = default;
+  /// \return kDeviceLost where there is none, kDeviceUnsupported in a build without SDL
+  virtual core::Status Open() = 0;
+  /// \return false where the gamepad is gone
+  virtual bool Poll(GamepadState& state) noexcept = 0;
+  virtual void Close() noexcept = 0;
+};
+/// The first gamepad that SDL finds.
+std::unique_ptr<GamepadSource> MakeSdlGamepad();
+/// Names of the gamepads that are plugged in.
+std::vector<std::string> ListGamepads();
+
+/// Each stick moves the tip of its hand across; with the shoulder button held, in and out, and it turns the shaft. The
+/// trigger closes the jaws: as far as it is pulled.
+class Gamepad : public Driver {
+ public:
+  /// \param clock  outlives the driver
+  Gamepad(std::unique_ptr<GamepadSource> source, Clock& clock);
+  void PlaceHand(int channel, const HandSample& home) noexcept override;
+
+ private:
+  core::Status DoConfigure() override;
+  core::Status DoActivate() override;
+  void DoDeactivate() noexcept override {}
+  void DoCleanup() noexcept override { source_->Close(); }
+  ReadStatus DoRead(std::span<HandSample> samples) noexcept override;
+
+  std::unique_ptr<GamepadSource> source_;
+  Clock& clock_;
+  std::array<HandSample, kChannelCount> hands_;
+  double time_ = 0;  // of the last Read [s]
+};
+
+// --- SpaceMouse
+
+/// A cap that is pushed and turned: x right, y up, z towards the person; counts as the daemon sends them, about -350 to 350.
+struct SpaceMouseState {
+  std::array<double, 3> push{}, turn{};
+  std::array<bool, 2> is_button_down{};
+};
+
+class SpaceMouseSource {
+ public:
+  virtual ~SpaceMouseSource() = default;
+  virtual core::Status Open() = 0;
+  /// \return false where the daemon or the device is gone
+  virtual bool Poll(SpaceMouseState& state) noexcept = 0;
+  virtual void Close() noexcept = 0;
+};
+/// Through spacenavd, which must run.
+std::unique_ptr<SpaceMouseSource> MakeSpacenavSource();
+
+/// Moves one hand; the left button closes and opens its jaws while held, the right one changes hands.
+class SpaceMouse : public Driver {
+ public:
+  SpaceMouse(std::unique_ptr<SpaceMouseSource> source, Clock& clock);
+  void PlaceHand(int channel, const HandSample& home) noexcept override;
+
+ private:
+  core::Status DoConfigure() override;
+  core::Status DoActivate() override;
+  void DoDeactivate() noexcept override {}
+  void DoCleanup() noexcept override { source_->Close(); }
+  ReadStatus DoRead(std::span<HandSample> samples) noexcept override;
+
+  std::unique_ptr<SpaceMouseSource> source_;
+  Clock& clock_;
+  std::array<HandSample, kChannelCount> hands_;
+  Channel chosen_ = kRightHand;
+  bool was_switch_down_ = false;
+  double time_ = 0;  // of the last Read [s]
+};
+
+}  // namespace trocar::device

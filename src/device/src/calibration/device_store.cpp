@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/device/device_store.h"
+
+#include <cmath>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "trocar/core/json.h"
+#include "trocar/core/safe_file.h"
+
+namespace trocar::device {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kVersion = 1;
+constexpr const char* kHandNames[kChannelCount] = {"left", "right", "laparoscope"};
+constexpr double kDegree = 0.017453292519943295;
+constexpr double kMostMetres = 5.0;
+/// Raw values of the converter.
+constexpr core::NumberRange kRaw{0, kMaxJawRaw};
+
+Vec3 ReadVector(const core::JsonView& view, const char* key) {
+  const std::vector<double> v = view.Numbers(key, 3);
+  if (v.size() != 3) return {};
+  const Vec3 vector{v[0], v[1], v[2]};
+  if (!(math::Norm(vector) <= kMostMetres)) view.Complain(std::string(key) + " is larger than 5 m");
+  return vector;
+}
+
+Vec3 ReadDirection(const core::JsonView& view, const char* key) {
+  const Vec3 v = ReadVector(view, key);
+  if (!(math::Norm(v) > 0.5)) view.Complain(std::string(key) + " must be a direction of length 1");
+  return math::Normalized(v);
+}
+
+HandCalibration ReadHand(const core::JsonView& view) {
+  view.AllowOnly({"tip_m", "axis", "up", "trocar_m", "measured"});
+  HandCalibration hand;
+  hand.p_sensor_tip = ReadVector(view, "tip_m");
+  hand.axis_sensor = ReadDirection(view, "axis");
+  hand.up_sensor = ReadDirection(view, "up");
+  hand.p_source_trocar = ReadVector(view, "trocar_m");
+  hand.is_measured = view.BooleanOr("measured", false);
+  return hand;
+}
+
+TrackerEntry ReadTracker(const core::JsonView& view) {
+  view.AllowOnly({"baud", "stations", "right", "up", "hemisphere", "hands"});
+  TrackerEntry entry = DefaultTracker();
+  entry.baud = view.IntegerOr("baud", entry.baud, {1, 1e7});
+  const std::vector<double> stations = view.Numbers("stations", kChannelCount);
+  for (std::size_t i = 0; i < stations.size(); ++i) entry.stations[i] = static_cast<int>(stations[i]);
+  entry.source_right = ReadDirection(view, "right");
+  entry.source_up = ReadDirection(view, "up");
+  entry.hemisphere = ReadDirection(view, "hemisphere");
+  const core::JsonView hands = view.Object("hands");
+  hands.AllowOnly({kHandNames[0], kHandNames[1], kHandNames[2]});
+  for (std::size_t i = 0; i < entry.hands.size(); ++i) {
+    if (hands.Has(kHandNames[i])) entry.hands[i] = ReadHand(hands.Object(kHandNames[i]));
+  }
+  return entry;
+}
+
+DeviceStore ReadStore(const core::JsonView& root) {
+  DeviceStore store;
+  root.AllowOnly({"version", "trackers", "jaw"});
+  if (const int version = root.Integer("version"); version != kVersion)
+    root.Complain("version " + std::to_string(version) + " is not known to this program");
+  if (root.Has("trackers")) {
+    const core::JsonView trackers = root.Object("trackers");
+    for (const std::string& kind : trackers.Keys()) store.trackers[kind] = ReadTracker(trackers.Object(kind));
+  }
+  if (!root.Has("jaw")) return store;
+  const core::JsonView jaws = root.Object("jaw");
+  jaws.AllowOnly({kHandNames[0], kHandNames[1]});
+  for (std::size_t i = 0; i < store.jaws.size(); ++i) {
+    if (!jaws.Has(kHandNames[i])) continue;
+    const core::JsonView jaw = jaws.Object(kHandNames[i]);
+    jaw.AllowOnly({"closed", "open", "max_jaw_deg"});
+    store.jaws[i].closed = jaw.Integer("closed", kRaw);
+    store.jaws[i].open = jaw.Integer("open", kRaw);
+    store.jaws[i].max_jaw = kDegree * jaw.Number("max_jaw_deg", {1, 170});
+  }
+  return store;
+}
+
+nlohmann::ordered_json Numbers(const Vec3& v) {
+  return {v.x, v.y, v.z};
+}
+
+nlohmann::ordered_json WriteTracker(const TrackerEntry& entry) {
+  nlohmann::ordered_json json = {{"baud", entry.baud},
+                                 {"stations", entry.stations},
+                                 {"right", Numbers(entry.source_right)},
+                                 {"up", Numbers(entry.source_up)},
+                                 {"hemisphere", Numbers(entry.hemisphere)}};
+  for (std::size_t i = 0; i < entry.hands.size(); ++i) {
+    const HandCalibration& hand = entry.hands[i];
+    json["hands"][kHandNames[i]] = {{"tip_m", Numbers(hand.p_sensor_tip)},
+                                    {"axis", Numbers(hand.axis_sensor)},
+                                    {"up", Numbers(hand.up_sensor)},
+                                    {"trocar_m", Numbers(hand.p_source_trocar)},
+                                    {"measured", hand.is_measured}};
+  }
+  return json;
+}
+
+std::string FormatStore(const DeviceStore& store) {
+  nlohmann::ordered_json json = {{"version", kVersion}};
+  for (const auto& [kind, entry] : store.trackers) json["trackers"][kind] = WriteTracker(entry);
+  for (std::size_t i = 0; i < store.jaws.size(); ++i) {
+    const JawCalibration& jaw = store.jaws[i];
+    json["jaw"][kHandNames[i]] = {
+        {"closed", jaw.closed}, {"open", jaw.open}, {"max_jaw_deg", jaw.max_jaw / kDegree}};
+  }
+  return json.dump(2) + "\n";
+}
+
+}  // namespace
+
+TrackerEntry DefaultTracker() {
+  TrackerEntry entry;
+  entry.hands[kLeftHand].p_source_trocar = {0.40, -0.06, 0};
+  entry.hands[kRightHand].p_source_trocar = {0.40, 0.06, 0};
+  entry.hands[kLaparoscope].p_source_trocar = {0.36, 0, 0};
+  return entry;
+}
+
+core::Result<TrackedHandsSettings> MakeHandsSettings(const TrackerEntry& entry) {
+  const core::Result<Quaternion> rotation = FindSourceRotation(entry.source_right, entry.source_up);
+  if (!rotation) return rotation.error();
+  TrackedHandsSettings settings;
+  settings.calibrations = entry.hands;
+  settings.R_world_source = *rotation;
+  settings.hemisphere = entry.hemisphere;
+  return settings;
+}
+
+TrackerEntry DeviceStore::Tracker(const std::string& kind) const {
+  const auto found = trackers.find(kind);
+  return found == trackers.end() ? DefaultTracker() : found->second;
+}
+
+fs::path FindDeviceStore() {
+  const auto variable = [](const char* name) -> std::string {
+    const char* value = std::getenv(name);
+    return value == nullptr ? "" : value;
+  };
+  if (const std::string folder = variable("TROCAR_CONFIG_DIR"); !folder.empty()) return fs::path(folder) / "devices.json";
+  if (const std::string folder = variable("XDG_CONFIG_HOME"); !folder.empty())
+    return fs::path(folder) / "trocar/devices.json";
+  return fs::path(variable("HOME")) / ".config/trocar/devices.json";
+}
+
+LoadedStore LoadDeviceStore(const fs::path& path) {
+  LoadedStore loaded;
+  const core::Result<core::JsonDocument> document = core::JsonDocument::Read(path);
+  if (!document) {
+    if (document.error().code != core::ErrorCode::kFileMissing) loaded.complaint = document.error();
+    return loaded;
+  }
+  DeviceStore store = ReadStore(document->Root());
+  const core::Status good = document->Check();
+  if (good) {
+    loaded.store = std::move(store);
+  } else {
+    loaded.complaint = good.error();
+  }
+  return loaded;
+}
+
+core::Status SaveDeviceStore(const fs::path& path, const DeviceStore& store) {
+  if (LoadDeviceStore(path).complaint) {
+    std::error_code failure;
+    fs::rename(path, path.string() + ".bad", failure);
+    if (failure) {
+      return core::Error{core::ErrorCode::kFileUnwritable,
+                         path.string() + " is damaged and cannot be set aside: " + failure.message()};
+    }
+  }
+  return core::WriteFile(path, FormatStore(store));
+}
+
+}  // namespace trocar::device

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+#include <utility>
+
+#include "trocar/device/emulator.h"
+
+namespace trocar::device {
+namespace {
+
+constexpr double kPeriod = 0.010;       // between two values of one tool [s]
+constexpr double kLongestStep = 0.250;  // as in the trackers [s]
+
+class JawEmulator : public Emulator {
+ public:
+  explicit JawEmulator(JawEmulation emulation) : emulation_(std::move(emulation)) {}
+
+  void Receive(std::string_view) override {}
+  std::string Advance(double time) override {
+    std::string bytes;
+    if (next_ < time - kLongestStep) next_ = time;
+    for (; next_ <= time; next_ += kPeriod) {
+      const HandSamples hands = emulation_.motion(next_);
+      for (int tool = 0; tool < kJawTools; ++tool) {
+        const JawCalibration& sensor = emulation_.calibrations[static_cast<std::size_t>(tool)];
+        const double opening = hands[static_cast<std::size_t>(tool)].jaw / sensor.max_jaw;
+        bytes += FormatReading({tool, static_cast<std::uint32_t>(1e3 * next_),
+                                static_cast<int>(std::lround(sensor.closed + opening * (sensor.open - sensor.closed)))});
+      }
+    }
+    return bytes;
+  }
+
+ private:
+  JawEmulation emulation_;
+  double next_ = 0;  // [s]
+};
+
+}  // namespace
+
+std::unique_ptr<Emulator> MakeJawEmulator(JawEmulation emulation) {
+  return std::make_unique<JawEmulator>(std::move(emulation));
+}
+
+}  // namespace trocar::device

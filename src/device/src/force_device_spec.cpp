@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/device/force_device_spec.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "trocar/device/haply.h"
+#include "trocar/device/open_haptics.h"
+#include "trocar/device/simulated_force_device.h"
+#include "trocar/device/tcp_port.h"
+
+namespace trocar::device {
+namespace {
+
+constexpr int kHaplyPort = 10001;
+
+/// The part before the first `mark`; takes it and the mark away from the front of `text`.
+std::string_view TakePart(std::string_view& text, char mark) {
+  const std::string_view part = text.substr(0, text.find(mark));
+  text.remove_prefix(std::min(part.size() + 1, text.size()));
+  return part;
+}
+
+/// "Left,Right": the names that the maker's program gave to the devices.
+std::unique_ptr<ForceDriver> MakeOpenHaptics(std::string_view names) {
+  OpenHapticsSettings settings;
+  if (!names.empty()) settings.names.clear();
+  while (!names.empty()) settings.names.emplace_back(TakePart(names, ','));
+  return std::make_unique<OpenHaptics>(settings);
+}
+
+/// "2:10001": how many devices, and the port of the service.
+core::Result<std::unique_ptr<ForceDriver>> MakeHaply(std::string_view text) {
+  HaplySettings settings;
+  int port = kHaplyPort;
+  for (int* const number : {&settings.devices, &port}) {
+    if (text.empty()) break;
+    const std::string_view part = TakePart(text, ':');
+    const auto [end, failure] = std::from_chars(part.data(), part.data() + part.size(), *number);
+    if (failure != std::errc() || end != part.data() + part.size() || *number < 1 || *number > 65535)
+      return core::Error{core::ErrorCode::kDeviceSettings, "haply takes two numbers: haply:2:10001"};
+  }
+  return std::unique_ptr<ForceDriver>(
+      std::make_unique<Haply>(settings, [port] { return ConnectTcp("localhost", port); }));
+}
+
+}  // namespace
+
+std::string ListForceDrivers() {
+  return "simulated, openhaptics[:NAME[,NAME]], haply[:COUNT[:PORT]]";
+}
+
+core::Result<std::unique_ptr<ForceDriver>> MakeForceDriver(std::string_view text) {
+  if (text == "simulated") {
+    SimulatedForceSettings settings;
+    settings.channel_count = 2;
+    settings.path = [](int channel, double time) {
+      const double side = channel == 0 ? -1.0 : 1.0;
+      return math::Vec3{0.010 * side * std::sin(0.9 * time), 0.006 * std::sin(0.7 * time),
+                        -0.015 * (1.0 - std::cos(0.5 * time))};
+    };
+    return std::unique_ptr<ForceDriver>(std::make_unique<SimulatedForceDevice>(settings));
+  }
+  std::string_view rest = text;
+  const std::string_view kind = TakePart(rest, ':');
+  if (kind == "openhaptics") return MakeOpenHaptics(rest);
+  if (kind == "haply") return MakeHaply(rest);
+  return core::Error{
+      core::ErrorCode::kDeviceSettings,
+      "there is no haptic device of the kind \"" + std::string(text) + "\"; there are " + ListForceDrivers()};
+}
+
+}  // namespace trocar::device

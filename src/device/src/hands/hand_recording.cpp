@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/device/hand_recording.h"
+
+#include <charconv>
+#include <cmath>
+
+#include "trocar/core/safe_file.h"
+
+namespace trocar::device {
+namespace {
+
+constexpr std::string_view kHands[kChannelCount] = {"left", "right", "laparoscope"};
+constexpr std::string_view kJoints[] = {"seen", "pan_rad", "tilt_rad", "spin_rad", "depth_m", "jaw_rad"};
+constexpr std::size_t kColumnCount = 1 + kChannelCount * std::size(kJoints);
+
+std::string Heading() {
+  std::string line = "time_s";
+  for (const std::string_view hand : kHands) {
+    for (const std::string_view joint : kJoints) line.append(",").append(hand).append("_").append(joint);
+  }
+  return line;
+}
+
+void Append(std::string& text, double value) {
+  char digits[32];
+  const auto [end, failure] = std::to_chars(digits, digits + sizeof digits, value);
+  text.append(digits, failure == std::errc() ? end : digits);
+}
+
+/// Exactly `values.size()` finite numbers with commas between.
+bool ReadRow(std::string_view line, std::span<double> values) {
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (i > 0) {
+      if (!line.starts_with(',')) return false;
+      line.remove_prefix(1);
+    }
+    const auto [end, failure] = std::from_chars(line.data(), line.data() + line.size(), values[i]);
+    if (failure != std::errc() || !std::isfinite(values[i])) return false;
+    line.remove_prefix(static_cast<std::size_t>(end - line.data()));
+  }
+  return line.empty();
+}
+
+HandFrame MakeFrame(std::span<const double> row) {
+  HandFrame frame;
+  frame.time = row[0];
+  for (std::size_t i = 0; i < frame.hands.size(); ++i) {
+    const auto joints = row.subspan(1 + i * std::size(kJoints), std::size(kJoints));
+    frame.hands[i] = {joints[1], joints[2], joints[3], joints[4], joints[5], frame.time, joints[0] != 0.0};
+  }
+  return frame;
+}
+
+}  // namespace
+
+std::string FormatHandFrames(const std::vector<HandFrame>& frames) {
+  std::string text = Heading() + "\n";
+  for (const HandFrame& frame : frames) {
+    Append(text, frame.time);
+    for (const HandSample& hand : frame.hands) {
+      text += hand.is_valid ? ",1" : ",0";
+      for (const double joint : {hand.pan, hand.tilt, hand.spin, hand.depth, hand.jaw}) {
+        text += ',';
+        Append(text, joint);
+      }
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+core::Result<std::vector<HandFrame>> ParseHandFrames(std::string_view text, const std::string& name) {
+  const auto fail = [&](std::size_t line, const std::string& why) {
+    return core::Error{core::ErrorCode::kDeviceSettings, name + ": line " + std::to_string(line) + ": " + why};
+  };
+  std::vector<HandFrame> frames;
+  std::array<double, kColumnCount> row;
+  for (std::size_t line = 1; !text.empty(); ++line) {
+    const std::size_t end = text.find('\n');
+    if (end == std::string_view::npos) return fail(line, "cut short; take this line away to play the rest");
+    std::string_view words = text.substr(0, end);
+    text.remove_prefix(end + 1);
+    if (words.ends_with('\r')) words.remove_suffix(1);
+    if (line == 1) {
+      if (words != Heading()) return fail(1, "no recording of hands; trocar devices record makes one");
+      continue;
+    }
+    if (!ReadRow(words, row)) return fail(line, "not " + std::to_string(kColumnCount) + " finite numbers");
+    if (!frames.empty() && row[0] < frames.back().time) return fail(line, "the time falls");
+    frames.push_back(MakeFrame(row));
+  }
+  if (frames.empty()) return fail(1, "no frame in it; record again");
+  return frames;
+}
+
+HandPlayer::HandPlayer(std::filesystem::path path, Clock& clock)
+    : Driver("recording", kChannelCount), path_(std::move(path)), clock_(clock) {}
+
+core::Status HandPlayer::DoConfigure() {
+  const core::Result<std::string> text = core::ReadFile(path_);
+  if (!text) return text.error();
+  core::Result<std::vector<HandFrame>> frames = ParseHandFrames(*text, path_.string());
+  if (!frames) return frames.error();
+  frames_ = std::move(*frames);
+  return {};
+}
+
+core::Status HandPlayer::DoActivate() {
+  start_ = clock_.Now();
+  next_ = 0;
+  return {};
+}
+
+ReadStatus HandPlayer::DoRead(std::span<HandSample> samples) noexcept {
+  const double time = clock_.Now() - start_;
+  const std::size_t before = next_;
+  while (next_ < frames_.size() && frames_[next_].time <= time) ++next_;
+  for (std::size_t i = 0; i < samples.size(); ++i)
+    samples[i] = next_ > 0 ? frames_[next_ - 1].hands[i] : HandSample{};
+  return next_ != before ? ReadStatus::kFresh : ReadStatus::kUnchanged;
+}
+
+}  // namespace trocar::device

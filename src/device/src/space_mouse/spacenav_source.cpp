@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/device/rate_hands.h"
+
+#if TROCAR_HAS_SPNAV
+#include <sys/socket.h>
+
+// last: it includes Xlib, whose macro Status would change our own name
+#include <spnav.h>
+#undef Status
+#endif
+
+namespace trocar::device {
+namespace {
+
+#if TROCAR_HAS_SPNAV
+/// libspnav keeps one connection for the whole program.
+class SpacenavSource : public SpaceMouseSource {
+ public:
+  ~SpacenavSource() override { Close(); }
+
+  core::Status Open() override {
+    state_ = {};
+    if (spnav_open() != -1) {
+      is_open_ = true;
+      return {};
+    }
+    return core::Error{
+        core::ErrorCode::kDeviceLost,
+        "spacenavd does not answer: install spacenavd, start it (sudo systemctl start spacenavd), plug "
+        "the SpaceMouse in"};
+  }
+
+  bool Poll(SpaceMouseState& state) noexcept override {
+    spnav_event event;
+    // bounded, so that a flood cannot hold it up
+    for (int i = 0; i < 64 && spnav_poll_event(&event) != 0; ++i) {
+      if (event.type == SPNAV_EVENT_MOTION) {
+        const spnav_event_motion& motion = event.motion;
+        // the daemon's z points away from the person
+        state_.push = {double(motion.x), double(motion.y), -double(motion.z)};
+        state_.turn = {double(motion.rx), double(motion.ry), -double(motion.rz)};
+      } else if (event.type == SPNAV_EVENT_BUTTON && event.button.bnum >= 0 && event.button.bnum < 2) {
+        state_.is_button_down[static_cast<std::size_t>(event.button.bnum)] = event.button.press != 0;
+      }
+    }
+    state = state_;
+    // the library does not say that the daemon has ended
+    char byte = 0;
+    return ::recv(spnav_fd(), &byte, 1, MSG_PEEK | MSG_DONTWAIT) != 0;
+  }
+
+  void Close() noexcept override {
+    if (is_open_) spnav_close();
+    is_open_ = false;
+  }
+
+ private:
+  SpaceMouseState state_;
+  bool is_open_ = false;
+};
+#else
+class SpacenavSource : public SpaceMouseSource {
+ public:
+  core::Status Open() override {
+    return core::Error{core::ErrorCode::kDeviceUnsupported,
+                       "this build has no SpaceMouse: install libspnav-dev and build again"};
+  }
+  bool Poll(SpaceMouseState&) noexcept override { return false; }
+  void Close() noexcept override {}
+};
+#endif
+
+}  // namespace
+
+std::unique_ptr<SpaceMouseSource> MakeSpacenavSource() {
+  return std::make_unique<SpacenavSource>();
+}
+
+}  // namespace trocar::device

@@ -1,0 +1,263 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+
+#include "emulated_line.h"
+#include "trocar/core/safe_file.h"
+#include "trocar/device/device_spec.h"
+#include "trocar/device/hand_recording.h"
+
+namespace trocar::device {
+namespace {
+
+namespace fs = std::filesystem;
+using core::ErrorCode;
+
+class DeviceFilesTest : public testing::Test {
+ protected:
+  DeviceFilesTest()
+      : folder_(fs::path(testing::TempDir()) / ("trocar_devices_" + std::to_string(::getpid()))) {
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+  ~DeviceFilesTest() override { fs::remove_all(folder_); }
+  fs::path folder_;
+};
+
+DeviceStore MakeStore() {
+  DeviceStore store;
+  TrackerEntry entry = DefaultTracker();
+  entry.baud = 19200;
+  entry.stations = {2, 1, 3};
+  entry.hands[1].p_sensor_tip = {0.31234567890123, -0.02, 0.001};
+  entry.hands[1].is_measured = true;
+  store.trackers["fastrak"] = entry;
+  store.jaws[0] = {812, 204, 0.9};
+  return store;
+}
+
+TEST_F(DeviceFilesTest, StoreComesBackAsItWas) {
+  const fs::path path = folder_ / "new/devices.json";
+  ASSERT_TRUE(SaveDeviceStore(path, MakeStore()).ok());
+  const LoadedStore loaded = LoadDeviceStore(path);
+  EXPECT_FALSE(loaded.complaint.has_value());
+  EXPECT_NEAR(loaded.store.jaws[0].max_jaw, 0.9, 1e-12);
+  DeviceStore expected = MakeStore();
+  expected.jaws = loaded.store.jaws;  // degrees in the file
+  EXPECT_EQ(loaded.store, expected);
+}
+
+TEST_F(DeviceFilesTest, NoFileMeansDefaultsWithoutComplaint) {
+  const LoadedStore loaded = LoadDeviceStore(folder_ / "devices.json");
+  EXPECT_FALSE(loaded.complaint.has_value());
+  EXPECT_EQ(loaded.store, DeviceStore{});
+  EXPECT_EQ(loaded.store.Tracker("liberty"), DefaultTracker());
+}
+
+// faults G6: every truncation and wrong field is a message, the defaults work, the file is not lost
+TEST_F(DeviceFilesTest, BadFileMeansDefaultsAndAMessageAndIsSetAside) {
+  const fs::path path = folder_ / "devices.json";
+  ASSERT_TRUE(SaveDeviceStore(path, MakeStore()).ok());
+  const std::string good = *core::ReadFile(path);
+  for (std::size_t length = 0; length < good.size() - 2; length += 61) {
+    ASSERT_TRUE(core::WriteFile(path, good.substr(0, length)).ok());
+    const LoadedStore loaded = LoadDeviceStore(path);
+    ASSERT_TRUE(loaded.complaint.has_value()) << length;
+    EXPECT_EQ(loaded.store, DeviceStore{});
+  }
+  const auto replaced = [&](const std::string& from, const std::string& to) {
+    std::string text = good;
+    const auto at = text.find(from);
+    EXPECT_NE(at, std::string::npos) << from;
+    return text.replace(at, from.size(), to);
+  };
+  for (const std::string& text :
+       {replaced("\"version\": 1", "\"version\": 2"), replaced("\"baud\"", "\"bud\""),
+        replaced("812", "4096"), replaced("0.31234567890123", "1e300"),
+        replaced("0.31234567890123", "\"far\"")}) {
+    ASSERT_TRUE(core::WriteFile(path, text).ok());
+    EXPECT_TRUE(LoadDeviceStore(path).complaint.has_value()) << text;
+  }
+  ASSERT_TRUE(core::WriteFile(path, "{ my own notes").ok());
+  ASSERT_TRUE(SaveDeviceStore(path, MakeStore()).ok());
+  EXPECT_EQ(*core::ReadFile(path.string() + ".bad"), "{ my own notes");
+  EXPECT_FALSE(LoadDeviceStore(path).complaint.has_value());
+}
+
+TEST_F(DeviceFilesTest, StoreLiesInThePersonsFolder) {
+  ::setenv("TROCAR_CONFIG_DIR", folder_.c_str(), 1);
+  EXPECT_EQ(FindDeviceStore(), folder_ / "devices.json");
+  ::unsetenv("TROCAR_CONFIG_DIR");
+  EXPECT_EQ(FindDeviceStore().filename(), "devices.json");
+}
+
+std::vector<HandFrame> MakeFrames() {
+  std::vector<HandFrame> frames;
+  for (int i = 0; i < 50; ++i) {
+    HandFrame frame;
+    frame.time = i / 30.0;
+    frame.hands = CalcHandMotion(frame.time);
+    frame.hands[kLaparoscope].is_valid = i % 2 == 0;
+    frames.push_back(frame);
+  }
+  return frames;
+}
+
+TEST(HandRecording, GivesTheSameBitsBack) {
+  const auto frames = MakeFrames();
+  const auto read = ParseHandFrames(FormatHandFrames(frames), "test");
+  ASSERT_TRUE(read.ok()) << read.error().Text();
+  EXPECT_EQ(*read, frames);
+}
+
+TEST(HandRecording, RefusesDamageWithTheLine) {
+  const std::string good = FormatHandFrames(MakeFrames());
+  EXPECT_FALSE(ParseHandFrames("", "x").ok());
+  EXPECT_FALSE(ParseHandFrames("time,pan\n1,2\n", "x").ok());
+  EXPECT_FALSE(ParseHandFrames(good.substr(0, good.find('\n') + 1), "x").ok());
+  const auto cut = ParseHandFrames(good.substr(0, good.size() - 9), "x");
+  ASSERT_FALSE(cut.ok());
+  EXPECT_NE(cut.error().message.find("line 51"), std::string::npos) << cut.error().message;
+  std::string nan = good;
+  nan.replace(good.find('\n') + 1, 1, "nan");
+  EXPECT_FALSE(ParseHandFrames(nan, "x").ok());
+  EXPECT_FALSE(ParseHandFrames(good + good.substr(good.find('\n') + 1), "x").ok()) << "time falls";
+}
+
+TEST_F(DeviceFilesTest, PlayerPlaysWhatWasRecorded) {
+  const fs::path path = folder_ / "hands.csv";
+  const auto frames = MakeFrames();
+  ASSERT_TRUE(core::WriteFile(path, FormatHandFrames(frames)).ok());
+  ManualClock clock;
+  clock.Set(100);
+  auto player = MakeDriver("play:" + path.string(), {}, clock);
+  ASSERT_TRUE(player.ok());
+  ASSERT_TRUE((*player)->Configure().ok());
+  ASSERT_TRUE((*player)->Activate().ok());
+  HandSamples samples;
+  for (const HandFrame& frame : frames) {
+    clock.Set(100 + frame.time + 1e-6);
+    EXPECT_EQ((*player)->Read(samples), ReadStatus::kFresh);
+    EXPECT_EQ(samples, frame.hands);
+    EXPECT_EQ((*player)->Read(samples), ReadStatus::kUnchanged);
+  }
+  clock.Set(1000);
+  EXPECT_EQ((*player)->Read(samples), ReadStatus::kUnchanged);
+  EXPECT_EQ(samples, frames.back().hands) << "the last pose is held";
+}
+
+TEST(DeviceSpec, IsTakenApart) {
+  const auto spec = ParseDeviceSpec("liberty:/dev/serial/by-id/usb-x:1.0-port0,baud=9600");
+  ASSERT_TRUE(spec.ok());
+  EXPECT_EQ(spec->kind, "liberty");
+  EXPECT_EQ(spec->address, "/dev/serial/by-id/usb-x:1.0-port0");
+  EXPECT_EQ(spec->baud, 9600);
+  for (const char* bad : {"", "libery:/dev/x", "liberty", "liberty:", "play", "fastrak:/dev/x,baud=fast",
+                          "fastrak:/dev/x,baud=-1"}) {
+    const auto refused = ParseDeviceSpec(bad);
+    ASSERT_FALSE(refused.ok()) << bad;
+    EXPECT_EQ(refused.error().code, ErrorCode::kUsage);
+  }
+}
+
+TEST(DeviceSpec, PutsARigTogether) {
+  ManualClock clock;
+  const auto rig = MakeDriver("liberty:/dev/nothing+jaw:/dev/nothing_either", {}, clock);
+  ASSERT_TRUE(rig.ok());
+  EXPECT_EQ((*rig)->GetName(), "liberty and jaw");
+  EXPECT_EQ((*rig)->Configure().error().code, ErrorCode::kDeviceLost);
+  EXPECT_FALSE(MakeDriver("jaw:/dev/x+liberty:/dev/y", {}, clock).ok());
+  EXPECT_FALSE(MakeDriver("liberty:/dev/x+fastrak:/dev/y", {}, clock).ok());
+}
+
+TEST(Faults, AreParsed) {
+  const auto fault = ParseFault("flips=0.01@2.5+1");
+  ASSERT_TRUE(fault.ok());
+  EXPECT_EQ(fault->kind, FaultKind::kFlips);
+  EXPECT_EQ(fault->rate, 0.01);
+  EXPECT_EQ(fault->start, 2.5);
+  EXPECT_EQ(fault->duration, 1.0);
+  EXPECT_FALSE(fault->IsOn(2.4) || fault->IsOn(3.6));
+  EXPECT_TRUE(fault->IsOn(3.0));
+  for (const char* bad :
+       {"", "noise", "flips=", "flips=2", "unplug@", "unplug@-1", "unplug@1x", "silence@nan"})
+    EXPECT_EQ(ParseFault(bad).error().code, ErrorCode::kUsage) << bad;
+}
+
+TEST(SerialPort, RefusesSpeedsAndFilesThatCannotBe) {
+  const auto code = [](const std::string& path, int baud) {
+    const auto opened = OpenSerialPort(path, baud);
+    return opened.ok() ? ErrorCode::kNone : opened.error().code;
+  };
+  const auto terminal = *PseudoTerminal::Make();
+  EXPECT_EQ(code(terminal->Path(), 115200), ErrorCode::kNone);
+  EXPECT_EQ(code(terminal->Path(), 1200), ErrorCode::kDeviceSettings) << "resets jaw sensor boards";
+  EXPECT_EQ(code(terminal->Path(), 115201), ErrorCode::kDeviceSettings);
+  EXPECT_EQ(code("/dev/null", 9600), ErrorCode::kDeviceSettings);
+  EXPECT_EQ(code("/dev/no_such_line", 9600), ErrorCode::kDeviceLost);
+}
+
+// faults G7
+TEST(SerialPort, IsHeldByOneProgramOnly) {
+  const auto terminal = *PseudoTerminal::Make();
+  const auto first = OpenSerialPort(terminal->Path(), 9600);
+  ASSERT_TRUE(first.ok());
+  EXPECT_EQ(OpenSerialPort(terminal->Path(), 9600).error().code, ErrorCode::kDeviceBusy);
+}
+
+TEST(SerialPort, CarriesEveryByteAsItIs) {
+  const auto terminal = *PseudoTerminal::Make();
+  const auto port = *OpenSerialPort(terminal->Path(), 9600);
+  std::string all;
+  for (int i = 0; i < 256; ++i) all += static_cast<char>(i);
+  std::array<char, 1000> buffer;
+  EXPECT_EQ(port->Read(buffer).count, 0u);
+  EXPECT_FALSE(port->Read(buffer).is_lost) << "nothing yet is not lost";
+  EXPECT_EQ(terminal->Write(all).count, all.size());
+  EXPECT_EQ(std::string(buffer.data(), port->Read(buffer).count), all);
+  EXPECT_EQ(port->Write(all).count, all.size());
+  EXPECT_EQ(std::string(buffer.data(), terminal->Read(buffer).count), all);
+  terminal->Unplug();
+  EXPECT_TRUE(port->Read(buffer).is_lost);
+}
+
+TEST(SerialPort, AreListedByIdFirst) {
+  const fs::path dev = fs::path(testing::TempDir()) / ("trocar_dev_" + std::to_string(::getpid()));
+  fs::create_directories(dev / "serial/by-id");
+  for (const char* name : {"ttyUSB0", "ttyACM0", "ttyS0", "null"})
+    ASSERT_TRUE(core::WriteFile(dev / name, "").ok());
+  fs::create_symlink("../../ttyUSB0", dev / "serial/by-id/usb-Polhemus_LIBERTY-if00-port0");
+  const auto ports = ListSerialPorts(dev.string());
+  fs::remove_all(dev);
+  ASSERT_EQ(ports.size(), 2u);
+  EXPECT_EQ(ports[0].description, "Polhemus LIBERTY");
+  EXPECT_NE(ports[0].path.find("by-id"), std::string::npos);
+  EXPECT_EQ(fs::path(ports[1].path).filename(), "ttyACM0");
+}
+
+TEST(TcpPort, CarriesBytesAndNoticesTheEnd) {
+  const auto listener = *TcpListener::Make(0);
+  EXPECT_EQ(listener->Accept(), nullptr);
+  auto near = ConnectTcp("localhost", listener->Port());
+  ASSERT_TRUE(near.ok()) << near.error().Text();
+  auto far = listener->Accept();
+  for (int i = 0; i < 1000 && far == nullptr; ++i) far = listener->Accept();
+  ASSERT_NE(far, nullptr);
+  std::array<char, 16> buffer;
+  EXPECT_EQ((*near)->Write("hello").count, 5u);
+  IoResult got;
+  for (int i = 0; i < 100'000 && got.count == 0; ++i) got = far->Read(buffer);
+  EXPECT_EQ(std::string(buffer.data(), got.count), "hello");
+  far.reset();
+  for (int i = 0; i < 100'000 && !got.is_lost; ++i) got = (*near)->Read(buffer);
+  EXPECT_TRUE(got.is_lost);
+  EXPECT_EQ(ConnectTcp("localhost", 1).error().code, ErrorCode::kDeviceLost);
+  EXPECT_EQ(TcpListener::Make(listener->Port()).error().code, ErrorCode::kDeviceBusy);
+}
+
+}  // namespace
+}  // namespace trocar::device

@@ -1,0 +1,282 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/device/igtl.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "emulated_line.h"
+#include "trocar/device/igtl_tracker.h"
+
+#if TROCAR_HAS_OPENIGTLINK
+#include <igtlPolyDataMessage.h>
+#include <igtlTrackingDataMessage.h>
+#include <igtlTransformMessage.h>
+#endif
+
+namespace trocar::device {
+namespace {
+
+using core::ErrorCode;
+
+math::Pose MakePose() {
+  return {math::RotationAbout(math::Normalized(math::Vec3{1, 2, 3}), 0.7), {0.1, -0.25, 1.5}};
+}
+
+struct Got {
+  std::vector<std::string> names;
+  std::vector<math::Pose> poses;
+  IgtlCounts counts;
+  bool is_followed = true;
+};
+
+Got Read(std::string_view bytes, std::size_t chunk = 1u << 20) {
+  IgtlReader reader;
+  Got got;
+  for (; !bytes.empty() && got.is_followed; bytes.remove_prefix(std::min(chunk, bytes.size()))) {
+    got.is_followed = reader.Feed(bytes.substr(0, chunk), [&](const IgtlPose& pose) {
+      got.names.emplace_back(pose.name);
+      got.poses.push_back(pose.pose);
+    });
+  }
+  got.counts = reader.Counts();
+  return got;
+}
+
+std::string Big(std::uint64_t word, int size) {
+  std::string bytes;
+  for (int shift = 8 * (size - 1); shift >= 0; shift -= 8) bytes += static_cast<char>(word >> shift & 0xff);
+  return bytes;
+}
+
+std::string Message(const std::string& type, const std::string& body, std::uint64_t size, int version = 1) {
+  const auto padded = [](std::string text, std::size_t length) {
+    text.resize(length, '\0');
+    return text;
+  };
+  return Big(static_cast<std::uint64_t>(version), 2) + padded(type, 12) + padded("left", 20) + Big(0, 8) +
+         Big(size, 8) + Big(CalcIgtlCrc(body), 8) + body;
+}
+
+// golden: the check value of the polynomial (domain facts, section 0)
+TEST(Igtl, HasTheChecksumOfTheProtocol) {
+  EXPECT_EQ(CalcIgtlCrc("123456789"), 0x6C40DF5F0B497347u);
+  EXPECT_EQ(CalcIgtlCrc(""), 0u);
+}
+
+TEST(Igtl, HasTheLengthsOfTheProtocol) {
+  EXPECT_EQ(FormatIgtlTransform("left", MakePose(), 0).size(), 58u + 48u);
+  const IgtlTool tools[] = {{"left", MakePose()}, {"right", MakePose()}};
+  EXPECT_EQ(FormatIgtlTrackingData("tools", tools, 0).size(), 58u + 2 * 70u);
+  // golden: an upright pose 1 mm along x; a column after the other, then millimetres
+  const std::string message = FormatIgtlTransform("A", {{}, {0.001, 0, 0}}, 0);
+  EXPECT_EQ(message.substr(58), Big(0x3f800000, 4) + Big(0, 12) + Big(0x3f800000, 4) + Big(0, 12) +
+                                    Big(0x3f800000, 4) + Big(0x3f800000, 4) + Big(0, 8));
+  EXPECT_EQ(message.substr(0, 14), Big(1, 2) + std::string("TRANSFORM\0\0\0", 12));
+}
+
+TEST(Igtl, GivesBackWhatWasSentInAnyChunks) {
+  const IgtlTool tools[] = {{"left", MakePose()},
+                            {"a name longer than twenty bytes", math::Inverse(MakePose())}};
+  const std::string bytes =
+      FormatIgtlTransform("right", MakePose(), 1.5) + Message("IMAGE", std::string(9000, 'x'), 9000) +
+      FormatIgtlTrackingData("tools", tools, 2) + FormatIgtlTransform("right", MakePose(), 3);
+  for (const std::size_t chunk : {1u << 20, 1u, 2u, 3u, 57u, 58u, 59u, 106u, 4096u}) {
+    const Got got = Read(bytes, chunk);
+    ASSERT_EQ(got.names, (std::vector<std::string>{"right", "left", "a name longer than t", "right"}))
+        << chunk;
+    EXPECT_EQ(got.counts.messages, 3u);
+    EXPECT_EQ(got.counts.skipped, 1u);
+    EXPECT_EQ(got.counts.bad, 0u);
+    EXPECT_LT(math::Distance(got.poses[0].translation, MakePose().translation), 1e-7);
+    EXPECT_LT(math::Distance(got.poses[2] * math::Vec3{0.1, 0.2, 0.3},
+                             math::Inverse(MakePose()) * math::Vec3{0.1, 0.2, 0.3}),
+              1e-6);
+  }
+}
+
+TEST(Igtl, ReadsTheExtendedHeader) {
+  const std::string content = FormatIgtlTransform("left", MakePose(), 0).substr(58);
+  const std::string body = Big(12, 2) + Big(4, 2) + Big(7, 4) + Big(1, 4) + content + "metameta!!!";
+  EXPECT_EQ(Read(Message("TRANSFORM", body, body.size(), 2)).poses.size(), 1u);
+  for (const auto& lie : {Big(0, 2), Big(11, 2), Big(0xffff, 2)}) {
+    std::string bad = body;
+    bad.replace(0, 2, lie);
+    EXPECT_EQ(Read(Message("TRANSFORM", bad, bad.size(), 2)).counts.bad, 1u);
+  }
+  std::string bad = body;
+  bad.replace(4, 4, Big(0xffffffff, 4));
+  EXPECT_EQ(Read(Message("TRANSFORM", bad, bad.size(), 2)).counts.bad, 1u);
+  EXPECT_EQ(Read(Message("TRANSFORM", "", 0, 2)).counts.bad, 1u);
+}
+
+// faults D7
+TEST(Igtl, RefusesSizesThatLie) {
+  const std::string body = FormatIgtlTransform("left", MakePose(), 0).substr(58);
+  for (const std::uint64_t size :
+       {std::uint64_t{1} << 32, ~std::uint64_t{0} - 57, ~std::uint64_t{0}, std::uint64_t{1} << 63})
+    EXPECT_FALSE(Read(Message("IMAGE", body, size)).is_followed) << size;
+  // small lies about kinds that are read: refused, the stream goes on
+  for (const std::uint64_t size : {0u, 47u, 49u, 5000u}) {
+    const Got got = Read(Message("TRANSFORM", body, size) + std::string(6000, '\0'));
+    EXPECT_TRUE(got.poses.empty()) << size;
+    EXPECT_GE(got.counts.bad, 1u);
+  }
+  EXPECT_FALSE(Read(std::string(58, 'x')).is_followed) << "no version, no message";
+  EXPECT_FALSE(Read(Message("TRANS\x01", body, 48)).is_followed);
+}
+
+TEST(Igtl, RefusesWrongChecksumsAndWhatIsNoPose) {
+  std::string bytes = FormatIgtlTransform("left", MakePose(), 0);
+  for (std::size_t at = 50; at < bytes.size(); ++at) {
+    std::string flipped = bytes;
+    flipped[at] = static_cast<char>(flipped[at] ^ 0x10);
+    EXPECT_TRUE(Read(flipped).poses.empty()) << at;
+  }
+  const auto with_column = [&](double value) {
+    math::Pose pose = MakePose();
+    pose.translation.x = value;
+    return Read(FormatIgtlTransform("left", pose, 0)).counts.bad;
+  };
+  EXPECT_EQ(with_column(std::nan("")), 1u);
+  EXPECT_EQ(with_column(INFINITY), 1u);
+  EXPECT_EQ(with_column(1e6), 1u);
+  const std::string scaled = Big(0x40000000, 4) + std::string(44, '\0');
+  EXPECT_EQ(Read(Message("TRANSFORM", scaled, 48)).counts.bad, 1u);
+  // a mirror is no rotation
+  const std::string mirror =
+      Big(0xbf800000, 4) + Big(0, 12) + Big(0x3f800000, 4) + Big(0, 12) + Big(0x3f800000, 4) + Big(0, 12);
+  EXPECT_EQ(Read(Message("TRANSFORM", mirror, 48)).counts.bad, 1u);
+}
+
+TEST(Igtl, SurvivesRandomBytes) {
+  math::Random random(21);
+  const std::string good = FormatIgtlTransform("left", MakePose(), 0);
+  for (int trial = 0; trial < 3000; ++trial) {
+    std::string bytes = good + good;
+    for (int i = 0; i < 4; ++i)
+      bytes[random.NextWord() % bytes.size()] = static_cast<char>(random.NextWord());
+    const Got whole = Read(bytes);
+    const Got parts = Read(bytes, 13);
+    EXPECT_EQ(whole.poses.size(), parts.poses.size()) << "seed 21, trial " << trial;
+    EXPECT_EQ(whole.is_followed, parts.is_followed);
+  }
+}
+
+#if TROCAR_HAS_OPENIGTLINK
+// oracle: the reference library writes, we read; we write, it reads
+TEST(IgtlOracle, UnderstandsTheLibraryBothWays) {
+  const math::Pose pose = MakePose();
+  igtl::TransformMessage::Pointer message = igtl::TransformMessage::New();
+  message->SetDeviceName("left");
+  igtl::Matrix4x4 matrix;
+  igtl::IdentityMatrix(matrix);
+  for (int column = 0; column < 3; ++column) {
+    math::Vec3 unit;
+    unit[column] = 1;
+    for (int row = 0; row < 3; ++row)
+      matrix[row][column] = static_cast<float>(math::Rotate(pose.rotation, unit)[row]);
+  }
+  for (int row = 0; row < 3; ++row) matrix[row][3] = static_cast<float>(1000 * pose.translation[row]);
+  message->SetMatrix(matrix);
+  message->Pack();
+  const Got got = Read({static_cast<const char*>(message->GetPackPointer()),
+                        static_cast<std::size_t>(message->GetPackSize())});
+  ASSERT_EQ(got.poses.size(), 1u);
+  EXPECT_LT(math::Distance(got.poses[0] * math::Vec3{1, 1, 1}, pose * math::Vec3{1, 1, 1}), 1e-5);
+
+  const auto unpack = [](igtl::MessageBase* into, const std::string& bytes) {
+    igtl::MessageHeader::Pointer header = igtl::MessageHeader::New();
+    header->InitPack();
+    std::copy_n(bytes.data(), 58, static_cast<char*>(header->GetPackPointer()));
+    header->Unpack();
+    into->SetMessageHeader(header);
+    into->AllocatePack();
+    std::copy(bytes.begin() + 58, bytes.end(), static_cast<char*>(into->GetPackBodyPointer()));
+    return (into->Unpack(1) & igtl::MessageHeader::UNPACK_BODY) != 0;
+  };
+  igtl::TransformMessage::Pointer back = igtl::TransformMessage::New();
+  ASSERT_TRUE(unpack(back, FormatIgtlTransform("left", pose, 12.5)));
+  igtl::Matrix4x4 read;
+  back->GetMatrix(read);
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 4; ++column) EXPECT_NEAR(read[row][column], matrix[row][column], 1e-4);
+  }
+  EXPECT_STREQ(back->GetDeviceName(), "left");
+
+  const IgtlTool tools[] = {{"left", pose}, {"right", pose}};
+  igtl::TrackingDataMessage::Pointer tracking = igtl::TrackingDataMessage::New();
+  ASSERT_TRUE(unpack(tracking, FormatIgtlTrackingData("tools", tools, 1)));
+  EXPECT_EQ(tracking->GetNumberOfTrackingDataElements(), 2);
+
+  const math::Vec3 points[] = {{0, 0, 0}, {0.01, 0, 0}, {0, 0.01, 0}, {0, 0, 0.01}};
+  const std::uint32_t triangles[] = {0, 1, 2, 0, 2, 3};
+  igtl::PolyDataMessage::Pointer poly = igtl::PolyDataMessage::New();
+  ASSERT_TRUE(unpack(poly, FormatIgtlPolyData("liver", points, triangles, 1)));
+  EXPECT_EQ(poly->GetPoints()->GetNumberOfPoints(), 4);
+  EXPECT_EQ(poly->GetPolygons()->GetNumberOfCells(), 2u);
+}
+#else
+TEST(IgtlOracle, UnderstandsTheLibraryBothWays) {
+  GTEST_SKIP() << "libopenigtlink-dev was not there when this was built";
+}
+#endif
+
+class IgtlTrackerTest : public testing::Test {
+ protected:
+  void Make(std::vector<Fault> faults = {}) {
+    settings_.hands = *MakeHandsSettings(DefaultTracker());
+    settings_.hands.has_hemisphere_doubt = false;
+    host_ = *EmulatorHost::MakeTcp(MakeIgtlEmulator(MoveHands(settings_.hands, CalcHandMotion)), 0,
+                                   std::move(faults));
+    clock_.Add(*host_);
+    const std::string address = host_->Address();
+    const int port = std::stoi(address.substr(address.find(':') + 1));
+    driver_ = std::make_unique<IgtlTracker>(
+        settings_, [port] { return ConnectTcp("localhost", port); }, clock_);
+  }
+  IgtlSettings settings_;
+  std::unique_ptr<EmulatorHost> host_;
+  EmulatorClock clock_;
+  std::unique_ptr<IgtlTracker> driver_;
+  HandSamples samples_;
+};
+
+TEST_F(IgtlTrackerTest, SeesBothHandsOverLoopback) {
+  Make();
+  const core::Status done = driver_->Configure();
+  ASSERT_TRUE(done.ok()) << done.error().Text();
+  ASSERT_TRUE(driver_->Activate().ok());
+  for (int i = 0; i < 100; ++i) {
+    clock_.Sleep(0.01);
+    ASSERT_NE(driver_->Read(samples_), ReadStatus::kLost);
+  }
+  for (const Channel hand : {kLeftHand, kRightHand}) {
+    EXPECT_TRUE(samples_[hand].is_valid);
+    EXPECT_NEAR(samples_[hand].pan, CalcHandMotion(clock_.Now())[hand].pan, 0.03);
+  }
+  host_->Unplug();
+  ReadStatus status = ReadStatus::kUnchanged;
+  // the kernel needs a moment to say that the other side is gone
+  for (int i = 0; i < 20000 && status != ReadStatus::kLost; ++i) status = driver_->Read(samples_);
+  EXPECT_EQ(status, ReadStatus::kLost);
+}
+
+TEST_F(IgtlTrackerTest, SaysWhichNamesItWants) {
+  Make();
+  settings_.names = {"port", "starboard", "periscope"};
+  const std::string address = host_->Address();
+  const int port = std::stoi(address.substr(address.find(':') + 1));
+  IgtlTracker driver(
+      settings_, [port] { return ConnectTcp("localhost", port); }, clock_);
+  const core::Status status = driver.Configure();
+  ASSERT_FALSE(status.ok());
+  EXPECT_EQ(status.error().code, ErrorCode::kDeviceStale);
+  EXPECT_NE(status.error().message.find("starboard"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace trocar::device

@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/device/jaw_sensor.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "emulated_line.h"
+#include "trocar/device/hand_rig.h"
+
+namespace trocar::device {
+namespace {
+
+using core::ErrorCode;
+
+std::vector<JawReading> Parse(std::string_view bytes, std::size_t chunk = 1000, FramerCounts* counts = nullptr) {
+  JawFramer framer;
+  std::vector<JawReading> readings;
+  for (; !bytes.empty(); bytes.remove_prefix(std::min(chunk, bytes.size())))
+    framer.Feed(bytes.substr(0, chunk), [&](const JawReading& reading) { readings.push_back(reading); });
+  if (counts != nullptr) *counts = framer.Counts();
+  return readings;
+}
+
+TEST(JawFramer, ReadsLinesWithAndWithoutCarriageReturn) {
+  const auto readings = Parse("J,0,17,512\r\nJ,1,4294967295,1023\nJ,0,0,0\n");
+  ASSERT_EQ(readings.size(), 3u);
+  EXPECT_EQ(readings[0].tool, 0);
+  EXPECT_EQ(readings[0].milliseconds, 17u);
+  EXPECT_EQ(readings[0].raw, 512);
+  EXPECT_EQ(readings[1].tool, 1);
+  EXPECT_EQ(readings[1].milliseconds, 4294967295u);
+  EXPECT_EQ(readings[1].raw, 1023);
+}
+
+TEST(JawFramer, RefusesWhatIsNotExactlyALine) {
+  for (const char* line :
+       {"J,2,1,1\n", "J,0,1,1024\n", "J,0,4294967296,1\n", "J,0,1,-1\n", "J,0,1,1 \n", "J,0,1\n", "J,0,,1\n", "j,0,1,1\n",
+        "J,0,1,01\n", "J,0,1,1\r\r\n", "J 0 1 1\n", "J,0,1,1e2\n", "J,0,1,99999999999999999999999999999999\n", "\n"}) {
+    FramerCounts counts;
+    EXPECT_TRUE(Parse(line, 1000, &counts).empty()) << line;
+    EXPECT_GT(counts.garbage, 0u) << line;
+  }
+  // the good line after a broken one is read
+  EXPECT_EQ(Parse("J,0,1J,0,1,5\n").size(), 1u);
+}
+
+TEST(JawFramer, GivesTheSameLinesForAnyChunking) {
+  math::Random random(2);
+  std::string bytes;
+  for (int i = 0; i < 300; ++i) {
+    bytes += FormatReading({static_cast<int>(random.NextWord() % 2), static_cast<std::uint32_t>(random.NextWord()),
+                            static_cast<int>(random.NextWord() % 1024)});
+    if (i % 7 == 0) bytes += static_cast<char>(random.NextWord());
+  }
+  const std::size_t whole = Parse(bytes).size();
+  EXPECT_EQ(whole, 300u);
+  for (const std::size_t chunk : {1, 2, 3, 10, 33}) EXPECT_EQ(Parse(bytes, chunk).size(), whole);
+}
+
+TEST(JawFilter, TakesOutASpikeAndFollowsAStepAtFifteenHertz) {
+  JawFilter filter;
+  std::uint32_t time = 0;
+  for (int i = 0; i < 20; ++i) EXPECT_EQ(filter.Filter({0, time += 5, i == 10 ? 900 : 300}), 300);
+  // a step: median of three lags one value, then 1 - exp(-2 pi 15 t)
+  double value = 0;
+  for (int i = 0; i < 8; ++i) value = filter.Filter({0, time += 5, 700});
+  const double seconds = 7 * 0.005;
+  EXPECT_NEAR(value, 700 - 400 * std::exp(-2 * 3.14159265358979 * 15 * seconds), 0.01);
+}
+
+TEST(JawFilter, StartsAnewAfterAGapAndWhenTheClockRunsOver) {
+  JawFilter filter;
+  filter.Filter({0, 100, 0});
+  EXPECT_EQ(filter.Filter({0, 5000, 800}), 800);
+  EXPECT_LT(filter.Filter({0, 5005, 100}), 801);
+  JawFilter over;
+  over.Filter({0, 0xffffffff, 500});
+  over.Filter({0, 4, 500});
+  EXPECT_LT(over.Filter({0, 9, 600}), 501) << "5 ms, not a gap";
+}
+
+TEST(FitJaw, TakesMediansAndEitherSense) {
+  std::vector<int> closed(21, 800), open(21, 210);
+  closed[3] = 0;
+  open[7] = 1023;
+  const auto fit = FitJaw(closed, open);
+  ASSERT_TRUE(fit.ok());
+  EXPECT_EQ(fit->closed, 800);
+  EXPECT_EQ(fit->open, 210);
+  EXPECT_EQ(FitJaw(closed, closed).error().code, ErrorCode::kCalibrationPoor);
+  EXPECT_EQ(FitJaw({}, open).error().code, ErrorCode::kCalibrationPoor);
+}
+
+class JawSensorTest : public testing::Test {
+ protected:
+  void Make(std::vector<Fault> faults = {}) {
+    settings_.calibrations[0] = {850, 150};
+    settings_.calibrations[1] = {100, 900};
+    host_ = *EmulatorHost::MakeSerial(MakeJawEmulator({settings_.calibrations, CalcHandMotion}), std::move(faults));
+    clock_.Add(*host_);
+    driver_ = std::make_unique<JawSensor>(
+        settings_, [this] { return OpenSerialPort(host_->Address(), 115200); }, clock_);
+  }
+  JawSettings settings_;
+  std::unique_ptr<EmulatorHost> host_;
+  EmulatorClock clock_;
+  std::unique_ptr<JawSensor> driver_;
+  HandSamples samples_;
+};
+
+TEST_F(JawSensorTest, FollowsBothJaws) {
+  Make();
+  ASSERT_TRUE(driver_->Configure().ok());
+  ASSERT_TRUE(driver_->Activate().ok());
+  for (int i = 0; i < 200; ++i) {
+    clock_.Sleep(0.01);
+    driver_->Read(samples_);
+    for (const Channel hand : {kLeftHand, kRightHand}) {
+      ASSERT_TRUE(samples_[hand].is_valid);
+      // the filter lags by about 10 + 10 ms at 1.1 rad/s
+      EXPECT_NEAR(samples_[hand].jaw, CalcHandMotion(clock_.Now())[hand].jaw, 0.05);
+    }
+  }
+  EXPECT_EQ(driver_->GetFramerCounts().garbage, 0u);
+}
+
+TEST_F(JawSensorTest, IsStaleAfterATenthAndLostAfterHalfASecond) {
+  Make({{FaultKind::kSilence, 0.5, 1e9, 0}});
+  ASSERT_TRUE(driver_->Configure().ok());
+  ASSERT_TRUE(driver_->Activate().ok());
+  double stale = 0, lost = 0;
+  while (lost == 0 && clock_.Now() < 3) {
+    clock_.Sleep(0.004);
+    if (driver_->Read(samples_) == ReadStatus::kLost) lost = clock_.Now();
+    if (stale == 0 && !samples_[0].is_valid) stale = clock_.Now();
+  }
+  EXPECT_NEAR(stale - 0.5, 0.1, 0.015);
+  EXPECT_NEAR(lost - 0.5, 0.5, 0.015);
+}
+
+TEST_F(JawSensorTest, RefusesACalibrationThatCannotBe) {
+  Make();
+  settings_.calibrations[1] = {500, 520};
+  JawSensor driver(settings_, [this] { return OpenSerialPort(host_->Address(), 115200); }, clock_);
+  EXPECT_EQ(driver.Configure().error().code, ErrorCode::kDeviceSettings);
+}
+
+TEST_F(JawSensorTest, SaysThatTheLineIsSilent) {
+  Make({{FaultKind::kSilence, 0, 1e9, 0}});
+  EXPECT_EQ(driver_->Configure().error().code, ErrorCode::kDeviceStale);
+}
+
+/// Gives 4-byte reports as a HID device does.
+class FakeHid : public Transport {
+ public:
+  IoResult Read(std::span<char> buffer) noexcept override {
+    if (is_gone) return {0, true};
+    if (!has_report) return {};
+    has_report = false;
+    std::copy(report.begin(), report.end(), buffer.begin());
+    return {report.size(), false};
+  }
+  IoResult Write(std::string_view) noexcept override { return {}; }
+  std::string report = {'\x00', '\x02', '\xff', '\x03'};  // 512, 1023
+  bool has_report = true, is_gone = false;
+};
+
+TEST(JawSensorHid, ReadsReports) {
+  JawSettings settings;
+  settings.format = JawFormat::kHid;
+  ManualClock clock;
+  FakeHid* hid = nullptr;
+  JawSensor driver(
+      settings,
+      [&]() -> core::Result<std::unique_ptr<Transport>> {
+        auto made = std::make_unique<FakeHid>();
+        hid = made.get();
+        return std::unique_ptr<Transport>(std::move(made));
+      },
+      clock);
+  ASSERT_TRUE(driver.Configure().ok());
+  ASSERT_TRUE(driver.Activate().ok());
+  EXPECT_EQ(driver.GetRaw(0), 512);
+  EXPECT_EQ(driver.GetRaw(1), 1023);
+  hid->report = {'\x00', '\x7f', '\x10', '\x00'};  // 32512 is no value of this converter
+  hid->has_report = true;
+  HandSamples samples;
+  driver.Read(samples);
+  EXPECT_EQ(driver.GetRaw(0), 512);
+  EXPECT_EQ(driver.GetRaw(1), 16);
+  hid->is_gone = true;
+  EXPECT_EQ(driver.Read(samples), ReadStatus::kLost);
+}
+
+TEST(HandRig, PutsHandsAndJawsTogetherAndIsLostWithEither) {
+  EmulatedTracker tracker(PolhemusFormat::kLiberty);
+  JawSettings settings;
+  auto jaw_host = *EmulatorHost::MakeSerial(MakeJawEmulator({settings.calibrations, CalcHandMotion}));
+  tracker.clock.Add(*jaw_host);
+  HandRig rig(std::move(tracker.driver),
+              std::make_unique<JawSensor>(
+                  settings, [&] { return OpenSerialPort(jaw_host->Address(), 115200); }, tracker.clock));
+  EXPECT_EQ(rig.GetName(), "liberty and jaw");
+  ASSERT_TRUE(rig.Configure().ok());
+  ASSERT_TRUE(rig.Activate().ok());
+  tracker.clock.Sleep(0.2);
+  HandSamples samples;
+  EXPECT_EQ(rig.Read(samples), ReadStatus::kFresh);
+  const HandSamples truth = CalcHandMotion(tracker.clock.Now());
+  EXPECT_TRUE(samples[kRightHand].is_valid);
+  EXPECT_NEAR(samples[kRightHand].pan, truth[kRightHand].pan, 0.02);
+  EXPECT_NEAR(samples[kRightHand].jaw, truth[kRightHand].jaw, 0.06);
+  jaw_host->Unplug();
+  EXPECT_EQ(rig.Read(samples), ReadStatus::kLost);
+  EXPECT_EQ(rig.Hands().GetState(), DriverState::kUnconfigured);
+  EXPECT_EQ(rig.GetState(), DriverState::kUnconfigured);
+  // and the tracker alone cannot be had through a rig without its jaws
+  EXPECT_FALSE(rig.Configure().ok());
+  EXPECT_EQ(rig.Hands().GetState(), DriverState::kUnconfigured);
+}
+
+}  // namespace
+}  // namespace trocar::device

@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/device/open_haptics.h"
+
+#include <dlfcn.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <functional>
+
+#include "trocar/device/force_device_spec.h"
+#include "trocar/device/ports.h"
+
+namespace trocar::haptics {
+/// The real gate lies further down the house; here a test sends what it likes to a stand-in.
+class ForceGate {
+ public:
+  static device::GatedForce Make(const math::Vec3& force) { return device::GatedForce(force); }
+};
+}  // namespace trocar::haptics
+
+namespace trocar::device {
+namespace {
+
+using core::ErrorCode;
+
+class OpenHapticsTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    settings_.library = TROCAR_STAND_IN_HD;
+    settings_.names = {"Left", "Right"};
+    // held open, so that its counters can be asked after the driver has let go
+    library_ = ::dlopen(TROCAR_STAND_IN_HD, RTLD_NOW);
+    ASSERT_NE(library_, nullptr) << ::dlerror();
+  }
+  void TearDown() override { ::dlclose(library_); }
+  template <typename Function>
+  Function* Find(const char* name) {
+    return reinterpret_cast<Function*>(::dlsym(library_, name));
+  }
+  math::Vec3 Force(int device) {
+    std::array<double, 3> force{};
+    Find<void(int, double*)>("StandInForce")(device, force.data());
+    return {force[0], force[1], force[2]};
+  }
+  static bool WaitFor(const std::function<bool()>& is_reached) {
+    for (int i = 0; i < 3000; ++i) {
+      if (is_reached()) return true;
+      SystemClock().Sleep(0.001);
+    }
+    return false;
+  }
+  OpenHapticsSettings settings_;
+  void* library_ = nullptr;
+};
+
+TEST_F(OpenHapticsTest, ReadsTwoDevicesInSiUnits) {
+  OpenHaptics driver(settings_);
+  ASSERT_TRUE(driver.Configure().ok());
+  EXPECT_EQ(driver.GetChannelCount(), 2);
+  EXPECT_EQ(driver.GetLimits(0).max_force, 3.3);
+  EXPECT_NEAR(driver.GetLimits(1).max_stiffness, 1020, 1e-9) << "N/m";
+  EXPECT_NEAR(driver.GetLimits(1).workspace_max.x, 0.08, 1e-12);
+  ASSERT_TRUE(driver.Activate().ok());
+  std::array<ForceSample, 2> samples;
+  ASSERT_TRUE(WaitFor([&] { return driver.ReadForceSamples(samples) == ReadStatus::kFresh; }));
+  EXPECT_NEAR(samples[0].position.x, -0.04, 1e-12);
+  EXPECT_NEAR(samples[1].position.x, 0.04, 1e-12);
+  EXPECT_NEAR(samples[0].velocity.x, 0.1, 1e-12);
+  EXPECT_EQ(samples[0].buttons, 1u);
+  EXPECT_EQ(samples[1].temperature, 0.4);
+  EXPECT_TRUE(samples[0].is_calibrated);
+  EXPECT_EQ(samples[0].status, ForceDeviceStatus::kOk);
+  std::array<HandSample, 2> hands;
+  driver.Read(hands);
+  EXPECT_EQ(hands[0].jaw, 0.0) << "the button is held";
+  EXPECT_GT(hands[1].jaw, 0.5);
+  EXPECT_GT(hands[0].pan, 0.1) << "to the left";
+  EXPECT_LT(hands[1].pan, -0.1);
+  driver.Finalize();
+  EXPECT_EQ(Find<int()>("StandInMisuses")(), 0) << "frames, order of devices and scheduler";
+  EXPECT_EQ(Find<int()>("StandInDevices")(), 0);
+}
+
+TEST_F(OpenHapticsTest, AForceLivesTenMilliseconds) {
+  OpenHaptics driver(settings_);
+  ASSERT_TRUE(driver.Configure().ok());
+  ASSERT_TRUE(driver.Activate().ok());
+  EXPECT_EQ(Force(0), math::Vec3{}) << "nothing before it is asked for";
+  ASSERT_TRUE(WaitFor([&] {
+    driver.SendForce(1, haptics::ForceGate::Make({0, 1.5, 0}));
+    return Force(1).y == 1.5;
+  }));
+  EXPECT_EQ(Force(0), math::Vec3{}) << "only the device that is meant";
+  // nobody renews it: the library's own thread lets it end
+  EXPECT_TRUE(WaitFor([&] { return Force(1) == math::Vec3{}; }));
+  driver.Finalize();
+}
+
+TEST_F(OpenHapticsTest, WarmMotorsDropTheForceAndPass) {
+  OpenHaptics driver(settings_);
+  ASSERT_TRUE(driver.Configure().ok());
+  ASSERT_TRUE(driver.Activate().ok());
+  std::array<ForceSample, 2> samples;
+  for (const unsigned int error : {0x0200u, 0x0201u, 0x0202u, 0x0203u, 0x0204u}) {
+    ASSERT_TRUE(WaitFor([&] {
+      driver.SendForce(0, haptics::ForceGate::Make({1, 0, 0}));
+      driver.SendForce(1, haptics::ForceGate::Make({1, 0, 0}));
+      return Force(0).x == 1 && Force(1).x == 1;
+    }));
+    // a machine that is busy may let a force run out by itself: raise until a drop follows the error
+    const int before = Find<int()>("StandInDrops")();
+    ASSERT_TRUE(WaitFor([&] {
+      driver.SendForce(0, haptics::ForceGate::Make({1, 0, 0}));
+      driver.SendForce(1, haptics::ForceGate::Make({1, 0, 0}));
+      Find<void(unsigned int)>("StandInRaise")(error);
+      return Find<int()>("StandInDrops")() > before;
+    })) << std::hex
+        << error;
+    EXPECT_NE(driver.ReadForceSamples(samples), ReadStatus::kLost);
+  }
+  driver.Finalize();
+}
+
+TEST_F(OpenHapticsTest, OtherErrorsLoseTheDeviceAtZeroForce) {
+  for (const unsigned int error : {0x0302u, 0x0304u, 0x0104u, 0x0300u}) {
+    OpenHaptics driver(settings_);
+    ASSERT_TRUE(driver.Configure().ok());
+    ASSERT_TRUE(driver.Activate().ok());
+    ASSERT_TRUE(WaitFor([&] {
+      driver.SendForce(0, haptics::ForceGate::Make({1, 0, 0}));
+      return Force(0).x == 1;
+    }));
+    Find<void(unsigned int)>("StandInRaise")(error);
+    std::array<ForceSample, 2> samples;
+    ASSERT_TRUE(WaitFor([&] {
+      driver.SendForce(0, haptics::ForceGate::Make({1, 0, 0}));
+      return driver.ReadForceSamples(samples) == ReadStatus::kLost;
+    })) << std::hex
+        << error;
+    EXPECT_EQ(driver.GetState(), DriverState::kUnconfigured);
+    EXPECT_EQ(Force(0), math::Vec3{});
+    EXPECT_EQ(Find<int()>("StandInMisuses")(), 0);
+    // it can be had again
+    EXPECT_TRUE(driver.Configure().ok());
+  }
+}
+
+TEST_F(OpenHapticsTest, LeavesZeroBehind) {
+  OpenHaptics driver(settings_);
+  ASSERT_TRUE(driver.Configure().ok());
+  ASSERT_TRUE(driver.Activate().ok());
+  ASSERT_TRUE(WaitFor([&] {
+    driver.SendForce(0, haptics::ForceGate::Make({0, 0, 2}));
+    return Force(0).z == 2;
+  }));
+  driver.SendForce(0, haptics::ForceGate::Make({0, 0, 2}));
+  ASSERT_TRUE(driver.Deactivate().ok());
+  EXPECT_EQ(Force(0), math::Vec3{});
+  const int callbacks = Find<int()>("StandInCallbacks")();
+  SystemClock().Sleep(0.01);
+  EXPECT_EQ(Find<int()>("StandInCallbacks")(), callbacks) << "the scheduler has ended";
+}
+
+TEST_F(OpenHapticsTest, SaysWhatIsMissing) {
+  settings_.library = "libHD_that_nobody_has.so";
+  OpenHaptics without(settings_);
+  const core::Status status = without.Configure();
+  ASSERT_FALSE(status.ok());
+  EXPECT_EQ(status.error().code, ErrorCode::kDeviceUnsupported);
+  EXPECT_NE(status.error().message.find("install"), std::string::npos);
+
+  settings_.library = "libm.so.6";
+  EXPECT_EQ(OpenHaptics(settings_).Configure().error().code, ErrorCode::kDeviceUnsupported);
+
+  settings_.library = TROCAR_STAND_IN_HD;
+  settings_.names = {"Left", "nobody"};
+  EXPECT_EQ(OpenHaptics(settings_).Configure().error().code, ErrorCode::kDeviceLost);
+  EXPECT_EQ(Find<int()>("StandInDevices")(), 0) << "the first is given back";
+}
+
+TEST_F(OpenHapticsTest, IsOnlyOneAtATime) {
+  OpenHaptics first(settings_), second(settings_);
+  ASSERT_TRUE(first.Configure().ok());
+  EXPECT_EQ(second.Configure().error().code, ErrorCode::kDeviceBusy);
+  ASSERT_TRUE(first.Cleanup().ok());
+  EXPECT_TRUE(second.Configure().ok());
+}
+
+TEST(ForceDeviceSpec, MakesTheDeviceThatIsNamed) {
+  const auto channels = [](const char* text) {
+    const auto made = MakeForceDriver(text);
+    return made.ok() ? (*made)->GetName() + std::to_string((*made)->GetChannelCount())
+                     : made.error().Text().substr(0, 9);
+  };
+  EXPECT_EQ(channels("openhaptics"), "openhaptics1");
+  EXPECT_EQ(channels("openhaptics:Left,Right"), "openhaptics2");
+  EXPECT_EQ(channels("haply"), "haply1");
+  EXPECT_EQ(channels("haply:2:4000"), "haply2");
+  for (const char* bad : {"", "toaster", "haply:two", "haply:0", "haply:2:99999"})
+    EXPECT_EQ(channels(bad), "E-DEV-004") << bad;
+}
+
+}  // namespace
+}  // namespace trocar::device

@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/device/polhemus_tracker.h"
+
+#include <dirent.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "emulated_line.h"
+
+namespace trocar::device {
+namespace {
+
+using core::ErrorCode;
+
+class PolhemusTrackerTest : public testing::TestWithParam<PolhemusFormat> {
+ protected:
+  double Tolerance() const { return GetParam() == PolhemusFormat::kFastrakAscii ? 0.006 : 1e-5; }
+};
+INSTANTIATE_TEST_SUITE_P(Formats, PolhemusTrackerTest,
+                         testing::Values(PolhemusFormat::kFastrakAscii, PolhemusFormat::kFastrakBinary,
+                                         PolhemusFormat::kLiberty, PolhemusFormat::kPatriot));
+
+TEST_P(PolhemusTrackerTest, SeesBothHandsOverAPseudoTerminal) {
+  EmulatedTracker tracker(GetParam());
+  ASSERT_TRUE(tracker.Start());
+  int fresh = 0;
+  for (int i = 0; i < 300; ++i) {
+    tracker.clock.Sleep(0.008);
+    if (tracker.Read() != ReadStatus::kFresh) continue;
+    ++fresh;
+    for (const Channel hand : {kLeftHand, kRightHand}) {
+      ASSERT_TRUE(tracker.samples[hand].is_valid);
+      // within the age of the record
+      const HandSample truth = CalcHandMotion(tracker.clock.Now())[hand];
+      EXPECT_NEAR(tracker.samples[hand].pan, truth.pan, Tolerance() + 0.02);
+      EXPECT_NEAR(tracker.samples[hand].tilt, truth.tilt, Tolerance() + 0.02);
+      EXPECT_NEAR(tracker.samples[hand].depth, truth.depth, Tolerance() + 0.003);
+    }
+    EXPECT_FALSE(tracker.samples[kLaparoscope].is_valid);
+  }
+  EXPECT_GT(fresh, 100);
+  EXPECT_EQ(tracker.driver->GetFramerCounts().garbage, 0u);
+  EXPECT_EQ(tracker.driver->GetPoseCounts().jumps, 0u);
+}
+
+// faults D1, D2
+TEST_P(PolhemusTrackerTest, IsLostWhenUnpluggedAndComesBackOnlyWhenConfigured) {
+  EmulatedTracker tracker(GetParam());
+  ASSERT_TRUE(tracker.Start());
+  tracker.clock.Sleep(0.1);
+  EXPECT_EQ(tracker.Read(), ReadStatus::kFresh);
+  tracker.host->Unplug();
+  // the very next read says so
+  EXPECT_EQ(tracker.Read(), ReadStatus::kLost);
+  EXPECT_FALSE(tracker.samples[kLeftHand].is_valid);
+  EXPECT_EQ(tracker.driver->GetState(), DriverState::kUnconfigured);
+  EXPECT_EQ(tracker.Read(), ReadStatus::kNotActive);
+  EXPECT_EQ(tracker.driver->Configure().error().code, ErrorCode::kDeviceLost);
+}
+
+TEST(PolhemusTracker, HidesTheHandsInSilenceAndIsLostAfterHalfASecond) {
+  EmulatedTracker tracker(PolhemusFormat::kLiberty, {{FaultKind::kSilence, 0.5, 1e9, 0}});
+  ASSERT_TRUE(tracker.Start());
+  double hidden = 0, lost = 0;
+  while (tracker.clock.Now() < 2.0) {
+    tracker.clock.Sleep(0.002);
+    const ReadStatus status = tracker.Read();
+    if (tracker.clock.Now() < 0.5) continue;
+    if (hidden == 0 && !tracker.samples[kLeftHand].is_valid) hidden = tracker.clock.Now();
+    if (status == ReadStatus::kLost) {
+      lost = tracker.clock.Now();
+      break;
+    }
+  }
+  EXPECT_NEAR(hidden - 0.5, 0.050, 0.012);
+  EXPECT_NEAR(lost - 0.5, 0.500, 0.012);
+}
+
+TEST(PolhemusTracker, ShowsNoJumpThatTheTrackerMakes) {
+  EmulatedTracker tracker(PolhemusFormat::kLiberty, {{FaultKind::kJump, 0.3, 1e9, 0}});
+  ASSERT_TRUE(tracker.Start());
+  double worst = 0;
+  while (tracker.clock.Now() < 4.0) {
+    tracker.clock.Sleep(0.004);
+    tracker.Read();
+    const HandSample truth = CalcHandMotion(tracker.clock.Now())[kLeftHand];
+    worst = std::max(worst, std::fabs(tracker.samples[kLeftHand].pan - truth.pan));
+  }
+  EXPECT_GT(tracker.driver->GetPoseCounts().jumps, 50u);
+  EXPECT_LT(worst, 0.02);
+}
+
+// faults D3
+TEST(PolhemusTracker, StandsTurnedBitsAndGarbage) {
+  for (const double rate : {1e-5, 1e-4, 1e-3, 1e-2, 1e-1}) {
+    EmulatedTracker tracker(PolhemusFormat::kLiberty, {{FaultKind::kFlips, 0.2, 1.0, rate}, {FaultKind::kGarbage, 0.2, 1.0, 0}});
+    ASSERT_TRUE(tracker.Start());
+    ReadStatus status = ReadStatus::kUnchanged;
+    double worst = 0;
+    while (tracker.clock.Now() < 1.6 && status != ReadStatus::kLost) {
+      tracker.clock.Sleep(0.004);
+      status = tracker.Read();
+      const HandSample truth = CalcHandMotion(tracker.clock.Now())[kLeftHand];
+      if (tracker.samples[kLeftHand].is_valid && tracker.clock.Now() > 1.25)
+        worst = std::max(worst, std::fabs(tracker.samples[kLeftHand].pan - truth.pan));
+    }
+    if (rate < 0.05) {
+      EXPECT_EQ(status, ReadStatus::kFresh) << rate;
+      EXPECT_TRUE(tracker.samples[kLeftHand].is_valid) << rate;
+      EXPECT_LT(worst, 0.02) << rate;
+    }
+    EXPECT_GT(tracker.driver->GetFramerCounts().garbage, 0u);
+  }
+}
+
+// faults D14
+TEST(PolhemusTracker, TakesTheNewestOfAFlood) {
+  EmulatedTracker tracker(PolhemusFormat::kLiberty, {{FaultKind::kFlood, 0.2, 1e9, 0}});
+  ASSERT_TRUE(tracker.Start());
+  while (tracker.clock.Now() < 1.0) {
+    tracker.clock.Sleep(0.004);
+    ASSERT_NE(tracker.Read(), ReadStatus::kLost);
+  }
+  EXPECT_TRUE(tracker.samples[kLeftHand].is_valid);
+}
+
+TEST(PolhemusTracker, SaysWhichStationDoesNotAnswer) {
+  EmulatedTracker tracker(PolhemusFormat::kLiberty, {}, 1);
+  const core::Status status = tracker.driver->Configure();
+  ASSERT_FALSE(status.ok());
+  EXPECT_EQ(status.error().Text(),
+            "E-DEV-002 liberty: station 2 does not answer; is its sensor plugged in and switched on?");
+}
+
+TEST(PolhemusTracker, SaysThatAnotherTrackerAnswers) {
+  EmulatedTracker tracker(PolhemusFormat::kLiberty);
+  tracker.settings.format = PolhemusFormat::kFastrakBinary;
+  PolhemusTracker wrong(tracker.settings, [&] { return OpenSerialPort(tracker.host->Address(), 115200); },
+                        tracker.clock);
+  const core::Status status = wrong.Configure();
+  ASSERT_FALSE(status.ok());
+  EXPECT_EQ(status.error().code, ErrorCode::kDeviceStale);
+}
+
+TEST(PolhemusTracker, RefusesSettingsThatCannotWork) {
+  EmulatedTracker tracker(PolhemusFormat::kPatriot);
+  const auto code = [&](std::array<int, kChannelCount> stations) {
+    tracker.settings.stations = stations;
+    PolhemusTracker driver(tracker.settings, [&] { return OpenSerialPort(tracker.host->Address(), 115200); },
+                           tracker.clock);
+    const core::Status status = driver.Configure();
+    return status.ok() ? ErrorCode::kNone : status.error().code;
+  };
+  EXPECT_EQ(code({1, 2, 0}), ErrorCode::kNone);
+  EXPECT_EQ(code({1, 1, 0}), ErrorCode::kDeviceSettings);
+  EXPECT_EQ(code({1, 3, 0}), ErrorCode::kDeviceSettings) << "a PATRIOT has two stations";
+  EXPECT_EQ(code({0, 0, 0}), ErrorCode::kDeviceSettings);
+}
+
+TEST(PolhemusTracker, CanBeStoppedAndStartedAgain) {
+  EmulatedTracker tracker(PolhemusFormat::kFastrakAscii);
+  ASSERT_TRUE(tracker.Start());
+  tracker.clock.Sleep(0.1);
+  EXPECT_EQ(tracker.Read(), ReadStatus::kFresh);
+  ASSERT_TRUE(tracker.driver->Deactivate().ok());
+  tracker.clock.Sleep(0.1);
+  ASSERT_TRUE(tracker.driver->Activate().ok());
+  tracker.clock.Sleep(0.1);
+  EXPECT_EQ(tracker.Read(), ReadStatus::kFresh);
+  ASSERT_TRUE(tracker.driver->Deactivate().ok());
+  ASSERT_TRUE(tracker.driver->Cleanup().ok());
+  ASSERT_TRUE(tracker.Start());
+}
+
+int CountOpenFiles() {
+  int count = 0;
+  DIR* folder = ::opendir("/proc/self/fd");
+  while (::readdir(folder) != nullptr) ++count;
+  ::closedir(folder);
+  return count;
+}
+
+// faults D1: nothing leaks, however often the plug is pulled
+TEST(PolhemusTracker, LeavesNoFileOpenAfterManyUnplugs) {
+  const int before = CountOpenFiles();
+  math::Random random(4);
+  for (int i = 0; i < 50; ++i) {
+    EmulatedTracker tracker(PolhemusFormat::kLiberty);
+    ASSERT_TRUE(tracker.Start());
+    tracker.clock.Sleep(random.Uniform(0.0, 0.05));
+    tracker.host->Unplug();
+    EXPECT_EQ(tracker.Read(), ReadStatus::kLost);
+  }
+  EXPECT_EQ(CountOpenFiles(), before);
+}
+
+}  // namespace
+}  // namespace trocar::device

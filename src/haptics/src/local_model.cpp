@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/haptics/local_model.h"
+
+#include <algorithm>
+
+#include "segment_solver.h"
+#include "trocar/core/assert.h"
+
+namespace trocar::haptics {
+namespace {
+
+Matrix3 ToMatrix(const Matrix3Rows& rows) noexcept {
+  Matrix3 m;
+  for (int row = 0; row < 3; ++row) m.row(row) = ToEigen(rows[row]).transpose();
+  return m;
+}
+
+Matrix3Rows ToRows(const Matrix3& m) noexcept {
+  return {FromEigen(m.row(0).transpose()), FromEigen(m.row(1).transpose()), FromEigen(m.row(2).transpose())};
+}
+
+/// Force per metre of the coupling when the tool follows the hand by `derivative` [N/m].
+Matrix3Rows CalcJacobian(double coupling_stiffness, const Matrix3& derivative) noexcept {
+  return ToRows(coupling_stiffness * (derivative - Matrix3::Identity()));
+}
+
+}  // namespace
+
+struct LocalModel::Content {
+  explicit Content(const LocalModelSettings& given) : settings(given) {}
+
+  LocalModelSettings settings;
+  LocalPatch::Kind kind = LocalPatch::Kind::kNone;
+  bool is_new = false;
+  SegmentSolver segment;
+  // linear
+  Vec3 force, p_world_cut;
+  Matrix3 jacobian = Matrix3::Zero();
+  bool is_one_sided = false;
+
+  bool has_tool = false;
+  Vec3 tool;        // [m]
+  Vec3 last_force;  // that was answered in the tick before [N]
+  Vec3 step;        // between the force before a new segment and its own [N]
+  double step_share = 0;
+
+  LocalAnswer Solve(const Pose& X_world_hand) noexcept;
+  LocalAnswer SolveLinear(const Vec3& hand) const noexcept;
+};
+
+LocalAnswer LocalModel::Content::SolveLinear(const Vec3& hand) const noexcept {
+  const double k = settings.coupling_stiffness;
+  LocalAnswer answer;
+  answer.p_world_tool = hand;
+  const Matrix3 inverse = (k * Matrix3::Identity() - jacobian).inverse();
+  const Eigen::Vector3d moved = inverse * (k * ToEigen(hand - p_world_cut) + ToEigen(force));
+  const Vec3 answered = k * (p_world_cut + FromEigen(moved) - hand);
+  if (is_one_sided && math::Dot(answered, force) <= 0.0) return answer;
+  answer.force = answered;
+  answer.p_world_tool = p_world_cut + FromEigen(moved);
+  answer.jacobian = CalcJacobian(k, k * inverse);
+  return answer;
+}
+
+LocalAnswer LocalModel::Content::Solve(const Pose& X_world_hand) noexcept {
+  const Vec3& hand = X_world_hand.translation;
+  if (kind == LocalPatch::Kind::kLinear) return SolveLinear(hand);
+  LocalAnswer answer;
+  answer.p_world_tool = hand;
+  if (kind == LocalPatch::Kind::kNone) return answer;
+  segment.SetDirection(X_world_hand.rotation);
+  const int sweeps = is_new ? settings.first_sweeps : settings.sweeps;
+  // the last one runs inwards: what the hand feels comes last
+  for (int i = sweeps; i > 0; --i) segment.Sweep(hand, settings.coupling_stiffness, i % 2 == 0, i == sweeps);
+  segment.SweepDerivative(settings.coupling_stiffness);
+  answer.p_world_tool = segment.GetTool();
+  answer.force = settings.coupling_stiffness * (answer.p_world_tool - hand);
+  answer.jacobian = CalcJacobian(settings.coupling_stiffness, segment.GetToolDerivative());
+  return answer;
+}
+
+LocalModel::LocalModel(const LocalModelSettings& settings) : content_(std::make_unique<Content>(settings)) {
+  TROCAR_ASSERT(settings.coupling_stiffness > 0.0 && settings.sweeps >= 1 && settings.first_sweeps >= 1);
+  TROCAR_ASSERT(settings.blend_time > 0.0 && settings.tick > 0.0);
+}
+LocalModel::~LocalModel() = default;
+LocalModel::LocalModel(LocalModel&&) noexcept = default;
+LocalModel& LocalModel::operator=(LocalModel&&) noexcept = default;
+
+void LocalModel::Take(const LocalPatch& patch) noexcept {
+  Content& c = *content_;
+  c.kind = patch.kind;
+  c.is_new = true;
+  c.force = patch.force;
+  c.p_world_cut = patch.X_world_tool.translation;
+  if (patch.kind == LocalPatch::Kind::kLinear) {
+    c.jacobian = ToMatrix(patch.jacobian);
+    c.is_one_sided = patch.is_one_sided;
+  }
+  if (patch.kind == LocalPatch::Kind::kSegment)
+    c.segment.Load(patch, c.has_tool ? c.tool : patch.X_world_tool.translation);
+}
+
+LocalAnswer LocalModel::Step(const Pose& X_world_hand) noexcept {
+  Content& c = *content_;
+  LocalAnswer answer = c.Solve(X_world_hand);
+  c.tool = answer.p_world_tool;
+  c.has_tool = true;
+  if (c.is_new) {
+    c.step = c.last_force - answer.force;
+    c.step_share = 1.0;
+    c.is_new = false;
+  } else {
+    c.step_share = std::max(0.0, c.step_share - c.settings.tick / c.settings.blend_time);
+  }
+  answer.force += c.step_share * c.step;
+  answer.is_in_contact = math::SquaredNorm(answer.force) > 0.0;
+  c.last_force = answer.force;
+  return answer;
+}
+
+void LocalModel::Clear() noexcept {
+  Content& c = *content_;
+  c.kind = LocalPatch::Kind::kNone;
+  c.is_new = false;
+  c.has_tool = false;
+  c.last_force = {};
+  c.step = {};
+  c.step_share = 0;
+}
+
+}  // namespace trocar::haptics

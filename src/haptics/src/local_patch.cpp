@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/haptics/local_patch.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "link_stiffness.h"
+#include "trocar/core/assert.h"
+
+namespace trocar::haptics {
+namespace {
+
+constexpr std::uint16_t kNowhere = std::numeric_limits<std::uint16_t>::max();
+
+bool IsPrescribed(const PatchSource& source, std::uint32_t node) noexcept {
+  return source.state.condition[node] == tissue::NodeCondition::kPrescribed;
+}
+
+/// Calls visit(other) for every node that `node` hangs on.
+template <typename Visit>
+void ForEachNeighbour(const PatchSource& source, std::uint32_t node, Visit&& visit) {
+  const tissue::TissueModel& model = source.model;
+  for (auto h = model.spring_starts[node]; h < model.spring_starts[node + 1]; ++h)
+    visit(model.half_springs[h].other);
+  for (auto h = model.strand_starts[node]; h < model.strand_starts[node + 1]; ++h) {
+    if (source.state.strand_is_intact[model.half_strands[h].strand]) visit(model.half_strands[h].other);
+  }
+}
+
+/// Stiffness of all that holds a node while its neighbours stand still.
+Matrix3 CalcNodeBlock(const PatchSource& source, std::uint32_t node) noexcept {
+  const tissue::TissueModel& model = source.model;
+  const Vec3 here = source.state.position[node];
+  Matrix3 block = Matrix3::Zero();
+  AddIsotropic(block, source.load.shape_scale * model.shape_stiffness[node]);
+  for (auto h = model.spring_starts[node]; h < model.spring_starts[node + 1]; ++h) {
+    const auto& half = model.half_springs[h];
+    const Vec3 along = source.state.position[half.other] - here;
+    AddLink(block, CalcLinkStiffness(along, math::Norm(along), source.load.stiffness_scale * half.stiffness,
+                                     half.rest_length));
+  }
+  for (auto h = model.strand_starts[node]; h < model.strand_starts[node + 1]; ++h) {
+    const auto& half = model.half_strands[h];
+    if (source.state.strand_is_intact[half.strand])
+      AddIsotropic(block, source.load.stiffness_scale * half.stiffness);
+  }
+  return block;
+}
+
+bool IsMine(const PatchSource& source, std::size_t contact) noexcept {
+  return source.contact_tools[contact] == source.tool;
+}
+
+/// Point of the tool that presses [m].
+Vec3 CalcPressingPoint(const tissue::ContactSpring& contact, std::span<const Vec3> position,
+                       double depth) noexcept {
+  Vec3 point = depth * contact.normal;
+  for (int i = 0; i < 3; ++i) point += contact.weights[i] * position[contact.nodes[i]];
+  return point;
+}
+
+}  // namespace
+
+PatchCutter::PatchCutter(std::size_t node_count) : place_(node_count, kNowhere) {}
+
+/// Lists the nodes and gives each its place.
+struct PatchCutter::Growth {
+  const PatchSource& source;
+  LocalPatch& patch;
+  std::vector<std::uint16_t>& place;
+  bool fits = true;
+
+  void Add(std::uint32_t node) noexcept {
+    if (!fits || place[node] != kNowhere) return;
+    if (patch.node_count == LocalPatch::kMaxNodes) {
+      fits = false;
+      return;
+    }
+    place[node] = static_cast<std::uint16_t>(patch.node_count);
+    patch.node[patch.node_count++] = node;
+  }
+  void AddFree(std::uint32_t node) noexcept {
+    if (!IsPrescribed(source, node)) Add(node);
+  }
+  void AddNeighbours(std::size_t first, std::size_t last) noexcept {
+    for (std::size_t i = first; i < last && fits; ++i)
+      ForEachNeighbour(source, patch.node[i], [&](std::uint32_t other) { AddFree(other); });
+  }
+};
+
+bool PatchCutter::Grow(const PatchSource& source, int rings, LocalPatch& patch) noexcept {
+  patch.node_count = 0;
+  Growth growth{source, patch, place_};
+  for (std::size_t c = 0; c < source.contacts.size(); ++c) {
+    if (!IsMine(source, c)) continue;
+    for (const std::uint32_t node : source.contacts[c].nodes) growth.AddFree(node);
+  }
+  const std::size_t pressed = patch.node_count;
+  for (const std::uint32_t node : source.held)
+    ForEachNeighbour(source, node, [&](std::uint32_t other) { growth.AddFree(other); });
+  // what hangs on a held node is its first ring
+  std::size_t first = 0, last = pressed;
+  for (int ring = 0; ring < rings; ++ring) {
+    growth.AddNeighbours(first, last);
+    first = ring == 0 ? pressed : last;
+    last = patch.node_count;
+  }
+  patch.free_count = patch.node_count;
+  for (const std::uint32_t node : source.held) growth.Add(node);
+  patch.held_count = patch.node_count - patch.free_count;
+  for (std::size_t i = 0; i < patch.free_count + patch.held_count && growth.fits; ++i)
+    ForEachNeighbour(source, patch.node[i], [&](std::uint32_t other) { growth.Add(other); });
+  // corners of a pressed triangle that somebody else holds
+  for (std::size_t c = 0; c < source.contacts.size(); ++c) {
+    if (!IsMine(source, c)) continue;
+    for (const std::uint32_t node : source.contacts[c].nodes) growth.Add(node);
+  }
+  return growth.fits && AddLinks(source, patch);
+}
+
+bool PatchCutter::AddLinks(const PatchSource& source, LocalPatch& patch) noexcept {
+  const tissue::TissueModel& model = source.model;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < patch.free_count + patch.held_count; ++i) {
+    patch.link_starts[i] = static_cast<std::uint16_t>(count);
+    const std::uint32_t node = patch.node[i];
+    for (auto h = model.spring_starts[node]; h < model.spring_starts[node + 1]; ++h) {
+      const auto& half = model.half_springs[h];
+      if (count == LocalPatch::kMaxLinks) return false;
+      patch.links[count++] = {place_[half.other], false, source.load.stiffness_scale * half.stiffness,
+                              half.rest_length};
+    }
+    for (auto h = model.strand_starts[node]; h < model.strand_starts[node + 1]; ++h) {
+      const auto& half = model.half_strands[h];
+      if (!source.state.strand_is_intact[half.strand]) continue;
+      if (count == LocalPatch::kMaxLinks) return false;
+      patch.links[count++] = {place_[half.other], true, source.load.stiffness_scale * half.stiffness, 0.0};
+    }
+  }
+  patch.link_starts[patch.free_count + patch.held_count] = static_cast<std::uint16_t>(count);
+  for (std::size_t i = 0; i < patch.node_count; ++i) {
+    const std::uint32_t node = patch.node[i];
+    patch.position[i] = source.state.position[node];
+    patch.own_stiffness[i] = source.load.shape_scale * model.shape_stiffness[node];
+  }
+  return true;
+}
+
+void PatchCutter::SetLinear(const PatchSource& source, LocalPatch& patch) const noexcept {
+  patch.kind = LocalPatch::Kind::kLinear;
+  patch.is_one_sided = source.held.empty();
+  Matrix3 stiffness = Matrix3::Zero();
+  for (std::size_t c = 0; c < source.contacts.size(); ++c) {
+    const tissue::ContactSpring& contact = source.contacts[c];
+    if (!IsMine(source, c) || !(tissue::CalcContactDepth(contact, source.state.position) > 0.0)) continue;
+    // the contact in row with what its point gives way
+    double compliance = 1.0 / contact.stiffness;
+    const Eigen::Vector3d normal = ToEigen(contact.normal);
+    for (int i = 0; i < 3; ++i) {
+      if (IsPrescribed(source, contact.nodes[i])) continue;
+      const Matrix3 block = CalcNodeBlock(source, contact.nodes[i]);
+      compliance += contact.weights[i] * contact.weights[i] * normal.dot(block.inverse() * normal);
+    }
+    AddAxial(stiffness, contact.normal, 1.0 / compliance);
+  }
+  for (const std::uint32_t node : source.held) stiffness += CalcNodeBlock(source, node);
+  for (int row = 0; row < 3; ++row)
+    patch.jacobian[row] = {-stiffness(row, 0), -stiffness(row, 1), -stiffness(row, 2)};
+}
+
+void PatchCutter::Cut(const PatchSource& source, LocalPatch& patch, int max_rings) noexcept {
+  TROCAR_ASSERT(source.model.Size() == place_.size() &&
+                source.contacts.size() == source.contact_tools.size());
+  TROCAR_ASSERT(max_rings >= 1 && max_rings <= kMaxRings);
+  patch.kind = LocalPatch::Kind::kNone;
+  patch.is_healthy = source.is_healthy && math::IsFinite(source.force);
+  patch.tick = source.tick;
+  patch.X_world_tool = source.X_world_tool;
+  patch.force = source.force;
+  patch.free_count = patch.held_count = patch.node_count = patch.contact_count = 0;
+  if (!patch.is_healthy) return;
+
+  std::size_t mine = 0;
+  for (std::size_t c = 0; c < source.contacts.size(); ++c) mine += IsMine(source, c) ? 1 : 0;
+  if (mine == 0 && source.held.empty()) {
+    patch.force = {};
+    return;
+  }
+  bool is_cut = false;
+  for (int rings = max_rings; rings >= 1 && !is_cut && mine <= LocalPatch::kMaxContacts; --rings) {
+    is_cut = Grow(source, rings, patch);
+    if (is_cut) {
+      for (std::size_t c = 0; c < source.contacts.size(); ++c) {
+        if (!IsMine(source, c)) continue;
+        const tissue::ContactSpring& contact = source.contacts[c];
+        const double depth = tissue::CalcContactDepth(contact, source.state.position);
+        LocalPatch::Contact& copy = patch.contacts[patch.contact_count++];
+        for (int i = 0; i < 3; ++i) copy.nodes[i] = place_[contact.nodes[i]];
+        copy.weights = contact.weights;
+        copy.normal = contact.normal;
+        copy.lever =
+            CalcPressingPoint(contact, source.state.position, depth) - source.X_world_tool.translation;
+        copy.depth = depth;
+        copy.stiffness = contact.stiffness;
+      }
+    }
+    for (std::size_t i = 0; i < patch.node_count; ++i) place_[patch.node[i]] = kNowhere;
+  }
+  patch.kind = LocalPatch::Kind::kSegment;
+  if (!is_cut) SetLinear(source, patch);
+}
+
+}  // namespace trocar::haptics

@@ -1,0 +1,489 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fault_campaign.h"
+
+#include <array>
+#include <limits>
+
+#include "haptic_rig.h"
+#include "trocar/haptics/check_pose.h"
+#include "trocar/math/random.h"
+
+namespace trocar::haptics {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+/// After a fault: zero now, the reason told, and zero for good although all is well again.
+std::string CheckStaysOff(HapticRig& rig, Fault reason) {
+  rig.Forbid();
+  if (rig.Size() != 0.0) rig.Complain("force after the fault");
+  if (rig.output.gate.reason != reason)
+    rig.Complain("reason " + std::string(FindFault(rig.output.gate.reason).name));
+  return rig.complaint;
+}
+std::string CheckNeverArmsItself(HapticRig& rig) {
+  rig.sample.status = device::ForceDeviceStatus::kOk;
+  rig.sample.buttons = 1;
+  rig.sample.temperature = kNan;
+  rig.is_reporting = true;
+  rig.conditions.is_supervised = rig.conditions.is_pose_confirmed = true;
+  rig.is_tripped = false;
+  rig.Press(0.1);
+  rig.Forbid();
+  rig.Run(3000);
+  rig.Request();
+  rig.Run(2200);
+  if (rig.output.gate.state != ArmState::kArmed) rig.Complain("no force after a new request");
+  return rig.complaint;
+}
+
+std::string NotAskedFor() {
+  HapticRig rig;
+  rig.Press(0.2);
+  rig.Run(3000);
+  rig.Press(2.0);
+  rig.Run(100);
+  // a request against pressed tissue is refused and lapses
+  rig.channel.RequestArm();
+  rig.Run(600);
+  if (rig.output.gate.reason != Fault::kForceAtArming) rig.Complain("armed against pressed tissue");
+  rig.Press(0.0);
+  rig.Run(3000);
+  return rig.complaint;
+}
+
+std::string Ramp() {
+  HapticRig rig;
+  rig.Run(20);
+  rig.Request();
+  rig.Run(4);
+  if (rig.output.gate.state != ArmState::kRamping) rig.Complain("not ramping after four good ticks");
+  rig.Press(2.0);
+  rig.Run(500);
+  if (rig.Size() < 0.3 || rig.Size() > 0.6) rig.Complain("not a quarter of the force after 0.5 s");
+  rig.Run(1600);
+  if (std::fabs(rig.Size() - 2.0) > 0.01 || rig.output.gate.state != ArmState::kArmed)
+    rig.Complain("not the whole force after 2 s");
+  // after a short fault 0.5 s
+  rig.sample.buttons = 0;
+  rig.Tick();
+  rig.sample.buttons = 1;
+  rig.Press(0.0);
+  rig.Run(50);
+  rig.Request();
+  rig.Run(520);
+  if (rig.output.gate.state != ArmState::kArmed) rig.Complain("not armed 0.5 s after a short fault");
+  return rig.complaint;
+}
+
+std::string Clamp() {
+  HapticRig rig;
+  rig.ArmAndPress(30.0);
+  if (std::fabs(rig.Size() - HapticRig::kMaxForce) > 0.01) rig.Complain("not at the clamp");
+  return rig.complaint;
+}
+
+std::string Rise() {
+  HapticRig rig;
+  rig.ArmAndPress(0.1);
+  rig.Press(-3.0);
+  rig.patch.jacobian = {};
+  rig.is_patch_new = true;
+  rig.Run(20);
+  rig.Press(3.0);
+  rig.is_patch_new = true;
+  rig.Run(20);
+  if (rig.output.local.force.x < 2.9) rig.Complain("the rig did not press");
+  return rig.complaint;
+}
+
+std::string D1Lost() {
+  HapticRig rig;
+  rig.ArmAndPress(2.0);
+  rig.sample.status = device::ForceDeviceStatus::kLost;
+  rig.Tick();
+  const std::string wrong = CheckStaysOff(rig, Fault::kDeviceLost);
+  return wrong.empty() ? CheckNeverArmsItself(rig) : wrong;
+}
+
+std::string D2Silent() {
+  HapticRig rig;
+  rig.ArmAndPress(2.0);
+  const double before = rig.Size();
+  rig.is_reporting = false;
+  rig.Run(9);
+  if (std::fabs(rig.Size() - before) > 1e-6) rig.Complain("a short gap is not bridged");
+  for (int i = 9; i < 20; ++i) {
+    const double last = rig.Size();
+    rig.Tick();
+    if (rig.Size() > last + 1e-6) rig.Complain("the force grows while the device is silent");
+  }
+  const std::string wrong = CheckStaysOff(rig, Fault::kSilent);
+  return wrong.empty() ? CheckNeverArmsItself(rig) : wrong;
+}
+
+std::string D4Nonsense() {
+  for (const int kind : {0, 1, 2, 3}) {
+    HapticRig rig;
+    rig.ArmAndPress(2.0);
+    const device::ForceSample good = rig.sample;
+    const auto spoil = [&] {
+      if (kind == 0) rig.sample.position.y = kNan;
+      if (kind == 1) rig.sample.position.z = 40.0;
+      if (kind == 2) rig.sample.orientation.w = 0.5;
+      if (kind == 3) rig.sample.orientation.x = -std::numeric_limits<double>::infinity();
+    };
+    const auto restore = [&] {
+      rig.sample.position = good.position;
+      rig.sample.orientation = good.orientation;
+    };
+    const double before = rig.Size();
+    spoil();
+    rig.Run(2);
+    if (std::fabs(rig.Size() - before) > 1e-6) rig.Complain("a bad report changed the force");
+    restore();
+    rig.Run(5);
+    if (rig.output.gate.state != ArmState::kArmed) rig.Complain("two bad reports were a fault");
+    spoil();
+    rig.Run(3);
+    const std::string wrong = CheckStaysOff(rig, Fault::kBadSamples);
+    if (!wrong.empty()) return wrong;
+    restore();
+    const std::string later = CheckNeverArmsItself(rig);
+    if (!later.empty()) return later;
+  }
+  return {};
+}
+
+std::string D5Jump() {
+  HapticRig rig;
+  rig.patch.jacobian[0] = {-300, 0, 0};
+  rig.ArmAndPress(1.0);
+  const double before = rig.Size();
+  // a glitch into the tissue and back, and a quaternion that flips its sign
+  rig.sample.position = {-0.05, 0, 0};
+  rig.Tick();
+  if (std::fabs(rig.Size() - before) > 1e-9) rig.Complain("a jump made a force");
+  rig.sample.position = {};
+  rig.sample.orientation = {-1, 0, 0, 0};
+  rig.Run(5);
+  if (rig.output.gate.state != ArmState::kArmed || rig.channel.GetCounts().jumps != 1)
+    rig.Complain("a sign flip or a glitch of one report counts as a jump that stays");
+  // a jump that stays
+  rig.sample.position = {-0.05, 0, 0};
+  rig.Run(3);
+  const std::string wrong = CheckStaysOff(rig, Fault::kJump);
+  if (!wrong.empty()) return wrong;
+  rig.patch.X_world_tool.translation = rig.sample.position;
+  return CheckNeverArmsItself(rig);
+}
+
+std::string D8NotFinite() {
+  for (const double bad : {kNan, std::numeric_limits<double>::infinity()}) {
+    HapticRig rig;
+    rig.ArmAndPress(2.0);
+    rig.Press(bad);
+    rig.is_patch_new = true;
+    rig.Tick();
+    const std::string wrong = CheckStaysOff(rig, Fault::kForceNotFinite);
+    if (!wrong.empty()) return wrong;
+    const std::string later = CheckNeverArmsItself(rig);
+    if (!later.empty()) return later;
+  }
+  return {};
+}
+
+std::string D8Implausible() {
+  HapticRig rig;
+  rig.ArmAndPress(2.0);
+  rig.Press(5000.0);
+  for (int i = 0; i < 3; ++i) rig.is_patch_new = true, rig.Tick();
+  rig.Run(20);
+  const std::string wrong = CheckStaysOff(rig, Fault::kForceImplausible);
+  return wrong.empty() ? CheckNeverArmsItself(rig) : wrong;
+}
+
+std::string D9Overrun() {
+  HapticRig rig;
+  rig.ArmAndPress(2.0);
+  rig.lateness = 0.002;
+  rig.Tick();
+  if (std::fabs(rig.Size() - 2.0) > 0.01) rig.Complain("one late tick changed the force");
+  rig.lateness = 0.008;
+  rig.Tick();
+  if (std::fabs(rig.Size() - 1.0) > 0.1) rig.Complain("8 ms late did not soften");
+  rig.Run(700);
+  if (std::fabs(rig.Size() - 2.0) > 0.01) rig.Complain("the stiffness did not come back");
+  rig.lateness = 0.025;
+  rig.sample.sequence += 20;
+  rig.Tick();
+  // the stall also made the device's last report old: either names it
+  rig.Forbid();
+  if (rig.Size() != 0.0 || rig.output.gate.state != ArmState::kUnarmed) rig.Complain("force after a stall");
+  return rig.complaint.empty() ? CheckNeverArmsItself(rig) : rig.complaint;
+}
+
+std::string D10Supervisor() {
+  {
+    HapticRig rig;
+    rig.ArmAndPress(2.0);
+    rig.is_tripped = true;
+    rig.Tick();
+    const std::string wrong = CheckStaysOff(rig, Fault::kSupervisor);
+    if (!wrong.empty()) return wrong;
+    const std::string later = CheckNeverArmsItself(rig);
+    if (!later.empty()) return later;
+  }
+  HapticRig rig;
+  rig.conditions.is_supervised = false;
+  rig.Run(20);
+  rig.channel.RequestArm();
+  rig.Press(0.2);
+  rig.Run(3000);
+  return rig.complaint;
+}
+
+std::string D11Heat() {
+  HapticRig rig;
+  rig.ArmAndPress(3.0);
+  rig.Run(80'000);
+  if (rig.Size() > 1.05 * HapticRig::kContinuous) rig.Complain("a steady force above what the motors bear");
+  if (rig.Size() < 0.8 * HapticRig::kContinuous) rig.Complain("the derating took too much");
+  if ((rig.output.gate.limits & kHeatLimited) == 0) rig.Complain("the derating is not told");
+  rig.sample.status = device::ForceDeviceStatus::kWarm;
+  rig.Run(5);
+  if (rig.Size() > 0.5 * HapticRig::kContinuous + 1e-9) rig.Complain("a warm device is not spared");
+  rig.sample.status = device::ForceDeviceStatus::kOk;
+  rig.sample.temperature = 1.01;
+  rig.Tick();
+  const std::string wrong = CheckStaysOff(rig, Fault::kOverheated);
+  return wrong.empty() ? CheckNeverArmsItself(rig) : wrong;
+}
+
+std::string D12DeadMan() {
+  HapticRig rig;
+  rig.ArmAndPress(2.0);
+  rig.sample.buttons = 0;
+  rig.Tick();
+  const std::string wrong = CheckStaysOff(rig, Fault::kDeadMan);
+  return wrong.empty() ? CheckNeverArmsItself(rig) : wrong;
+}
+
+/// The check pose with devices that move as told; returns the state it ends in.
+CheckPoseState RunCheckPose(bool are_swapped, Vec3 offset) {
+  CheckPoseSettings settings;
+  settings.p_device[0] = settings.p_device[1] = {0, -0.05, 0.02};
+  settings.ticks = 50;
+  CheckPose check(settings);
+  std::array<GuardedDevice, 2> devices;
+  for (GuardedDevice& device : devices)
+    device.has_pose = device.is_calibrated = true, device.fault = Fault::kNone;
+  check.Begin();
+  for (std::size_t hand = 0; hand < 2; ++hand) {
+    GuardedDevice& moved = devices[are_swapped ? 1 - hand : hand];
+    check.Step(devices);
+    for (int i = 0; i <= 100; ++i) {
+      moved.position = (i / 100.0) * (settings.p_device[hand] + offset);
+      check.Step(devices);
+    }
+    moved.buttons = 1;
+    for (int i = 0; i < 60; ++i) check.Step(devices);
+    moved.buttons = 0;
+  }
+  return check.GetState();
+}
+
+std::string D13CheckPose() {
+  if (RunCheckPose(false, {}) != CheckPoseState::kConfirmed) return "the right devices are not confirmed";
+  if (RunCheckPose(true, {}) != CheckPoseState::kWrongDevice) return "swapped devices are confirmed";
+  if (RunCheckPose(false, {0.03, 0, 0}) == CheckPoseState::kConfirmed)
+    return "a device that is 30 mm out of calibration is confirmed";
+  for (const bool is_pose : {false, true}) {
+    HapticRig rig;
+    rig.conditions.is_pose_confirmed = is_pose;
+    rig.sample.is_calibrated = !is_pose;
+    rig.Run(20);
+    rig.channel.RequestArm();
+    rig.Press(0.2);
+    rig.Run(3000);
+    if (!rig.complaint.empty()) return rig.complaint;
+    if (rig.output.gate.reason != (is_pose ? Fault::kNotCalibrated : Fault::kPoseUnconfirmed))
+      return "the missing condition is not named";
+  }
+  return {};
+}
+
+std::string D14Flood() {
+  HapticRig rig;
+  rig.ArmAndPress(2.0);
+  for (int i = 0; i < 200; ++i) {
+    rig.sample.sequence += 9;  // nine of ten reports were overwritten before they were read
+    rig.Tick();
+  }
+  if (rig.output.gate.state != ArmState::kArmed || rig.channel.GetCounts().bad != 0)
+    rig.Complain("a flood of good reports is a fault");
+  return rig.complaint;
+}
+
+std::string Overspeed() {
+  HapticRig rig;
+  rig.ArmAndPress(2.0);
+  // the force drives the device off: 20 m/s^2 up to beyond the speed of a runaway
+  rig.patch.jacobian = {};
+  double speed = 0;
+  while (speed < 1.95) {
+    speed += 0.02;
+    rig.sample.position.x += 0.001 * speed;
+    rig.Tick();
+  }
+  if (rig.Size() > 0.3) rig.Complain("the force drives a fast device on");
+  return rig.complaint;
+}
+
+std::string SimulationStands() {
+  HapticRig rig;
+  rig.ArmAndPress(2.0);
+  rig.patch.is_healthy = false;
+  rig.is_patch_new = true;
+  rig.Tick();
+  const std::string wrong = CheckStaysOff(rig, Fault::kSimulation);
+  if (!wrong.empty()) return wrong;
+  rig.patch.is_healthy = true;
+  return CheckNeverArmsItself(rig);
+}
+
+/// 100,000 faults of every kind, one after another, into a channel that is armed again and again.
+std::string AnyFault() {
+  math::Random random(20'261'121);
+  HapticRig rig;
+  rig.patch.jacobian[0] = {-300, 0, 0};
+  long armed_ticks = 0, force_ticks = 0;
+  const auto chance = [&](double p) { return random.Uniform() < p; };
+  const auto any = [&] { return random.Uniform(-1, 1); };
+  for (int fault = 0; fault < 100'000; ++fault) {
+    // a good stretch
+    rig.sample.position = {0.003 * any(), 0.003 * any(), 0.003 * any()};
+    rig.sample.status = device::ForceDeviceStatus::kOk;
+    rig.sample.buttons = 1;
+    rig.sample.is_calibrated = true;
+    rig.sample.temperature = kNan;
+    rig.sample.orientation = {};
+    rig.patch.is_healthy = true;
+    rig.is_reporting = true;
+    rig.conditions = {true, true, false, false};
+    rig.is_tripped = false;
+    rig.Press(0.0);
+    rig.patch.X_world_tool.translation = rig.sample.position;
+    rig.is_patch_new = true;
+    rig.Run(12);
+    const bool was_asked = chance(0.8);
+    if (was_asked) rig.Request();
+    rig.Run(5);
+    if (was_asked && rig.output.gate.state == ArmState::kUnarmed &&
+        rig.output.gate.reason == Fault::kNotRequested)
+      rig.Complain("a request is not answered");
+    const int stretch = chance(0.02) ? 2200 : 10 + static_cast<int>(40 * random.Uniform());
+    for (int i = 0; i < stretch; ++i) {
+      if (chance(0.05)) rig.Press(4.0 * any());
+      rig.Tick();
+      armed_ticks += rig.output.gate.state == ArmState::kArmed;
+      force_ticks += rig.Size() > 0.0;
+    }
+    // the fault; those that forbid force do so from their own tick on
+    const double huge = std::pow(10.0, random.Uniform(1.9, 300.0));
+    switch (random.NextWord() % 14) {
+      case 0:
+        rig.sample.status = device::ForceDeviceStatus::kLost;
+        rig.Forbid();
+        break;
+      case 1:
+        rig.is_reporting = false;
+        break;
+      case 2:
+        rig.sample.position.x = chance(0.5) ? kNan : huge;
+        break;
+      case 3:
+        rig.sample.position += Vec3{any(), any(), any()};
+        break;
+      case 4:
+        rig.Press(kNan);
+        rig.is_patch_new = true;
+        rig.Forbid();
+        break;
+      case 5:
+        rig.Press(huge);
+        rig.is_patch_new = true;
+        break;
+      case 6:
+        rig.lateness = random.Uniform(0.0, 0.018);
+        break;
+      case 7:
+        rig.lateness = random.Uniform(0.021, 3.0);
+        rig.Forbid();
+        break;
+      case 8:
+        rig.is_tripped = true;
+        rig.Forbid();
+        break;
+      case 9:
+        rig.sample.temperature = random.Uniform(0.8, 1.2);
+        if (rig.sample.temperature >= 1.0) rig.Forbid();
+        break;
+      case 10:
+        rig.sample.buttons = 0;
+        rig.Forbid();
+        break;
+      case 11:
+        rig.sample.is_calibrated = false;
+        rig.Forbid();
+        break;
+      case 12:
+        rig.patch.is_healthy = false;
+        rig.is_patch_new = true;
+        rig.Forbid();
+        break;
+      case 13:
+        rig.patch.jacobian[0] = {huge * any(), huge * any(), huge * any()};
+        rig.is_patch_new = true;
+        break;
+    }
+    rig.Run(1 + static_cast<int>(4 * random.Uniform()));
+    rig.patch.jacobian = {};
+    rig.patch.jacobian[0] = {-300, 0, 0};
+    if (!rig.complaint.empty()) return rig.complaint + ", fault " + std::to_string(fault);
+  }
+  if (armed_ticks < 100'000 || force_ticks < 500'000)
+    return "the campaign was hardly ever armed: " + std::to_string(armed_ticks) + ", " +
+           std::to_string(force_ticks);
+  return {};
+}
+
+constexpr CampaignRow kRows[] = {
+    {"not asked for", NotAskedFor},
+    {"ramp", Ramp},
+    {"clamp", Clamp},
+    {"rise", Rise},
+    {"D1 lost", D1Lost},
+    {"D2 silent", D2Silent},
+    {"D4 nonsense", D4Nonsense},
+    {"D5 jump", D5Jump},
+    {"D8 not finite", D8NotFinite},
+    {"D8 implausible", D8Implausible},
+    {"D9 overrun", D9Overrun},
+    {"D10 supervisor", D10Supervisor},
+    {"D11 heat", D11Heat},
+    {"D12 dead man", D12DeadMan},
+    {"D13 check pose", D13CheckPose},
+    {"D14 flood", D14Flood},
+    {"overspeed", Overspeed},
+    {"S1 simulation", SimulationStands},
+    {"any fault", AnyFault},
+};
+
+}  // namespace
+
+std::span<const CampaignRow> CampaignRows() {
+  return kRows;
+}
+
+}  // namespace trocar::haptics

@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/haptics/local_model.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "pressed_sheet.h"
+
+namespace trocar::haptics {
+namespace {
+
+/// A model that puts the tool almost into the hand, so that its place can be chosen.
+LocalModelSettings MakeStiff() {
+  LocalModelSettings settings;
+  settings.coupling_stiffness = 1e5;
+  settings.sweeps = 8;
+  return settings;
+}
+
+/// Force once the sweeps have come to rest, of the tissue on the tool at `tool`.
+LocalAnswer FindRest(LocalModel& model, const Vec3& hand, int ticks = 400) {
+  LocalAnswer answer;
+  for (int i = 0; i < ticks; ++i) answer = model.Step({{}, hand});
+  return answer;
+}
+
+TEST(LocalModel, AnswersWithTheTicksForceWhereItWasCut) {
+  PressedSheet sheet;
+  sheet.Solve({0, 0, -0.003});
+  ASSERT_GT(sheet.force.z, 0.1);
+  const LocalPatch patch = sheet.Cut();
+  ASSERT_EQ(patch.kind, LocalPatch::Kind::kSegment);
+  for (const double coupling : {50.0, 400.0, 1e5}) {
+    LocalModelSettings settings;
+    settings.coupling_stiffness = coupling;
+    LocalModel model(settings);
+    model.Take(patch);
+    // the hand so far beyond that the coupling carries just this force
+    const Vec3 hand = sheet.p_world_tool - sheet.force / coupling;
+    const LocalAnswer answer = FindRest(model, hand, 40);
+    EXPECT_LT(math::Distance(answer.force, sheet.force), 1e-9) << coupling;
+    EXPECT_LT(math::Distance(answer.p_world_tool, sheet.p_world_tool), 1e-12) << coupling;
+  }
+}
+
+// Oracle: the whole sheet's equilibrium with the tool elsewhere. The rim stands still, so a segment is too stiff, and
+// the less the wider it is.
+TEST(LocalModel, FollowsTheWholeSystemTheBetterTheWiderItIs) {
+  for (const Vec3 step : {Vec3{0, 0, -0.0008}, Vec3{0, 0, 0.0008}}) {
+    double error_before = 1;
+    for (int rings = 1; rings <= 3; ++rings) {
+      PressedSheet sheet;
+      sheet.Solve({0, 0, -0.003});
+      const Vec3 force_at_cut = sheet.force;
+      LocalModel model(MakeStiff());
+      model.Take(sheet.Cut(rings));
+      const LocalAnswer answer = FindRest(model, sheet.p_world_tool + step);
+      const Vec3 tool = answer.p_world_tool;
+      sheet.Solve(tool);
+      const double change = math::Norm(sheet.force - force_at_cut);
+      const double error = math::Distance(answer.force, sheet.force) / change;
+      EXPECT_LT(error, error_before) << rings;
+      if (step.z < 0.0) {
+        EXPECT_GT(answer.force.z, sheet.force.z) << rings;
+      }
+      RecordProperty("error_" + std::to_string(rings), std::to_string(error));
+      error_before = error;
+    }
+    EXPECT_LT(error_before, 0.05) << "three rings";
+  }
+}
+
+TEST(LocalModel, LetsGoWhereTheToolLeaves) {
+  PressedSheet sheet;
+  sheet.Solve({0, 0, -0.003});
+  LocalModelSettings settings;
+  LocalModel model(settings);
+  model.Take(sheet.Cut());
+  const LocalAnswer away = FindRest(model, {0, 0, 0.002}, 100);
+  EXPECT_LT(math::Norm(away.force), 1e-6);
+  EXPECT_LT(math::Distance(away.p_world_tool, {0, 0, 0.002}), 1e-6);
+}
+
+TEST(LocalModel, PullsByWhatTheJawsHold) {
+  PressedSheet sheet;
+  sheet.Hold();
+  sheet.Solve({0, 0, 0.004});
+  ASSERT_LT(sheet.force.z, -0.1);
+  const LocalPatch patch = sheet.Cut();
+  ASSERT_EQ(patch.held_count, 2u);
+  LocalModel model(MakeStiff());
+  model.Take(patch);
+  EXPECT_LT(math::Distance(FindRest(model, sheet.p_world_tool - sheet.force / 1e5).force, sheet.force), 1e-6);
+  const Vec3 further = sheet.p_world_tool + Vec3{0.0005, 0, 0.001};
+  const LocalAnswer answer = FindRest(model, further);
+  const Vec3 before = sheet.force;
+  sheet.Solve(answer.p_world_tool);
+  EXPECT_LT(math::Distance(answer.force, sheet.force), 0.25 * math::Distance(before, sheet.force));
+}
+
+// Finite differences of converged answers; springs shorter than at rest count along their direction only.
+TEST(LocalModel, JacobianIsTheForcesDerivative) {
+  for (const bool holds : {false, true}) {
+    PressedSheet sheet;
+    if (holds) sheet.Hold();
+    sheet.Solve({0.0002, 0, holds ? 0.004 : -0.003});
+    const LocalPatch patch = sheet.Cut();
+    LocalModelSettings settings;
+    settings.coupling_stiffness = 400;
+    settings.sweeps = 8;
+    const Vec3 hand = sheet.p_world_tool - sheet.force / 400.0;
+    LocalModel middle(settings);
+    middle.Take(patch);
+    const LocalAnswer answer = FindRest(middle, hand, 500);
+    for (int axis = 0; axis < 3; ++axis) {
+      constexpr double kStep = 2e-6;
+      Vec3 nudge;
+      nudge[axis] = kStep;
+      LocalModel up(settings), down(settings);
+      up.Take(patch), down.Take(patch);
+      const Vec3 change = FindRest(up, hand + nudge, 500).force - FindRest(down, hand - nudge, 500).force;
+      for (int row = 0; row < 3; ++row)
+        EXPECT_NEAR(answer.jacobian[row][axis], change[row] / (2 * kStep), 0.01 * 400)
+            << row << axis << holds;
+    }
+    EXPECT_LT(answer.jacobian[2].z, -50.0);
+    EXPECT_GT(answer.jacobian[2].z, -400.0) << "stiffer than the coupling";
+  }
+}
+
+TEST(LocalModel, ForceIsContinuousWhenSegmentsChange) {
+  PressedSheet sheet;
+  LocalModel model{LocalModelSettings{}};
+  Vec3 last;
+  double largest = 0;
+  const auto step = [&](const Vec3& hand) {
+    const Vec3 force = model.Step({{}, hand}).force;
+    largest = std::fmax(largest, math::Distance(force, last));
+    last = force;
+  };
+  // segments that have little to do with each other, one every eight ticks, at a hand that stands
+  const Vec3 hand{0, 0, -0.006};
+  for (const double depth : {0.003, 0.001, 0.004, 0.0, 0.0035}) {
+    sheet.Solve({0, 0, -depth});
+    LocalPatch patch = sheet.Cut();
+    if (depth == 0.0) patch.kind = LocalPatch::Kind::kNone;
+    model.Take(patch);
+    const Vec3 before = last;
+    step(hand);
+    EXPECT_LT(math::Distance(before, last), 1e-12) << depth;
+    for (int i = 0; i < 8; ++i) step(hand);
+  }
+  EXPECT_GT(math::Norm(last), 0.2);
+  EXPECT_LT(largest, 0.25) << "a jump within a segment or its blending";
+}
+
+TEST(LocalModel, TurningTheShaftMovesWhatItPresses) {
+  PressedSheet sheet;
+  sheet.Solve({0, 0, -0.003});
+  LocalPatch patch = sheet.Cut();
+  // the tool's origin lies 50 mm to the side of what presses
+  patch.X_world_tool.translation = {-0.05, 0, -0.003};
+  for (std::uint32_t c = 0; c < patch.contact_count; ++c) patch.contacts[c].lever += Vec3{0.05, 0, 0};
+  LocalModel model(MakeStiff());
+  model.Take(patch);
+  const auto turned = [&](double angle) {
+    LocalAnswer answer;
+    for (int i = 0; i < 300; ++i)
+      answer = model.Step({math::RotationAbout({0, 1, 0}, angle), patch.X_world_tool.translation});
+    return answer.force.z;
+  };
+  const double straight = turned(0.0);
+  EXPECT_GT(turned(0.02), straight + 0.05);  // about +y: +x goes down, deeper
+  EXPECT_LT(turned(-0.02), straight - 0.05);
+}
+
+TEST(LocalModel, NothingTouchedIsNoForce) {
+  LocalModel model{LocalModelSettings{}};
+  EXPECT_FALSE(model.Step({{}, {0.1, 0.2, 0.3}}).is_in_contact);
+  LocalPatch patch;
+  patch.is_healthy = true;
+  model.Take(patch);
+  const LocalAnswer answer = model.Step({{}, {0.1, 0.2, 0.3}});
+  EXPECT_EQ(answer.force, Vec3());
+  EXPECT_EQ(answer.p_world_tool, (Vec3{0.1, 0.2, 0.3}));
+}
+
+TEST(PatchCutter, TakesTheLinearModelWhereTooMuchIsTouched) {
+  PressedSheet wide(20.0, 5);  // 121 contacts
+  wide.Solve({0, 0, -0.003});
+  const LocalPatch patch = wide.Cut();
+  ASSERT_EQ(patch.kind, LocalPatch::Kind::kLinear);
+  LocalModel model(MakeStiff());
+  model.Take(patch);
+  EXPECT_LT(math::Distance(FindRest(model, wide.p_world_tool - wide.force / 1e5).force, wide.force), 1e-6);
+  // never softer than the tissue, and one-sided
+  const LocalAnswer deeper = FindRest(model, wide.p_world_tool - Vec3{0, 0, 0.001});
+  const Vec3 at_cut = wide.force;
+  wide.Solve(deeper.p_world_tool);
+  EXPECT_GT(deeper.force.z, wide.force.z);
+  EXPECT_GT(wide.force.z, at_cut.z);
+  EXPECT_EQ(FindRest(model, wide.p_world_tool + Vec3{0, 0, 0.02}).force, Vec3());
+}
+
+TEST(PatchCutter, NarrowsTheSegmentUntilItFits) {
+  PressedSheet sheet(20.0, 3);  // 49 contacts: three rings of nodes do not fit
+  sheet.Solve({0, 0, -0.002});
+  const LocalPatch patch = sheet.Cut();
+  EXPECT_EQ(patch.kind, LocalPatch::Kind::kSegment);
+  EXPECT_LE(patch.node_count, LocalPatch::kMaxNodes);
+  EXPECT_EQ(patch.contact_count, 49u);
+}
+
+TEST(PatchCutter, LeavesOutWhatAnotherToolTouches) {
+  PressedSheet sheet;
+  sheet.Solve({0, 0, -0.003});
+  sheet.tools.assign(sheet.tools.size(), 1);
+  EXPECT_EQ(sheet.Cut().kind, LocalPatch::Kind::kNone);
+  sheet.tools[0] = 0;
+  EXPECT_EQ(sheet.Cut().contact_count, 1u);
+}
+
+TEST(PatchCutter, MarksABadTick) {
+  PressedSheet sheet;
+  sheet.Solve({0, 0, -0.003});
+  PatchSource source = sheet.Source();
+  LocalPatch patch;
+  PatchCutter cutter(sheet.model.Size());
+  source.is_healthy = false;
+  cutter.Cut(source, patch);
+  EXPECT_FALSE(patch.is_healthy);
+  source.is_healthy = true;
+  source.force.x = NAN;
+  cutter.Cut(source, patch);
+  EXPECT_FALSE(patch.is_healthy);
+  // and forgets nothing of its own: the next cut is whole
+  source.force = sheet.force;
+  cutter.Cut(source, patch);
+  EXPECT_TRUE(patch.is_healthy);
+  EXPECT_EQ(patch.node_count, sheet.Cut().node_count);
+}
+
+}  // namespace
+}  // namespace trocar::haptics

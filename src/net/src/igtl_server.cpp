@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/net/igtl_server.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+namespace trocar::net {
+namespace {
+
+constexpr std::size_t kMostViewers = 8;
+constexpr double kPatience = 10.0;  // with a viewer that takes nothing [s]
+
+/// Columns are the world's axes in RAS.
+math::Quaternion RotationRasWorld() {
+  return math::RotationFromAxes({-1, 0, 0}, {0, 0, 1}, {0, 1, 0});
+}
+
+std::string FormatTools(const session::Snapshot& snapshot) {
+  const std::array<device::IgtlTool, 3> tools = {{
+      {"LeftTool", RasFromWorld(snapshot.instruments[session::kLeft].X_world_tool)},
+      {"RightTool", RasFromWorld(snapshot.instruments[session::kRight].X_world_tool)},
+      {"Laparoscope", RasFromWorld(snapshot.X_world_laparoscope)},
+  }};
+  std::string bytes;
+  for (const device::IgtlTool& tool : tools)
+    bytes += device::FormatIgtlTransform(tool.name, tool.pose, snapshot.time);
+  return bytes + device::FormatIgtlTrackingData("Tools", tools, snapshot.time);
+}
+
+std::string FormatOrgans(std::span<const session::SurfaceInfo> organs, const session::Snapshot& snapshot) {
+  std::string bytes;
+  std::vector<math::Vec3> points;
+  std::vector<std::uint32_t> corners;
+  for (const session::SurfaceInfo& organ : organs) {
+    if (organ.first_node + std::size_t{organ.node_count} > snapshot.positions.size()) continue;
+    points.clear();
+    corners.clear();
+    for (std::uint32_t node = 0; node < organ.node_count; ++node)
+      points.push_back(RasFromWorld(snapshot.positions[organ.first_node + node]));
+    for (const geometry::Triangle& triangle : organ.triangles)
+      corners.insert(corners.end(), triangle.begin(), triangle.end());
+    bytes += device::FormatIgtlPolyData(organ.name, points, corners, snapshot.time);
+  }
+  return bytes;
+}
+
+}  // namespace
+
+math::Vec3 RasFromWorld(const math::Vec3& p_world) noexcept {
+  return {-p_world.x, p_world.z, p_world.y};
+}
+
+math::Pose RasFromWorld(const math::Pose& X_world_tool) {
+  return {math::Normalized(RotationRasWorld() * X_world_tool.rotation),
+          RasFromWorld(X_world_tool.translation)};
+}
+
+IgtlServer::IgtlServer(const IgtlServerSettings& settings, std::unique_ptr<device::TcpListener> listener)
+    : settings_(settings), listener_(std::move(listener)) {}
+
+core::Result<std::unique_ptr<IgtlServer>> IgtlServer::Make(const IgtlServerSettings& settings,
+                                                           std::span<const session::SurfaceInfo> surfaces) {
+  auto listener = device::TcpListener::Make(settings.port, settings.is_local_only);
+  if (!listener) return listener.error();
+  std::unique_ptr<IgtlServer> server(new IgtlServer(settings, std::move(*listener)));
+  for (const session::SurfaceInfo& surface : surfaces) {
+    if (!surface.triangles.empty()) server->organs_.push_back(surface);
+  }
+  return server;
+}
+
+void IgtlServer::Accept(double time) {
+  while (std::unique_ptr<device::Transport> line = listener_->Accept()) {
+    // more than that and the newest caller is sent away
+    if (viewers_.size() < kMostViewers) viewers_.push_back({std::move(line), {}, time, false});
+  }
+}
+
+/// Sends what is left over, and throws away what a viewer says. A viewer that is gone loses its line.
+void IgtlServer::Serve(Viewer& viewer, double time) {
+  std::array<char, 4096> ignored;
+  device::IoResult heard;
+  constexpr int kMostReads = 16;
+  for (int i = 0; i < kMostReads && (heard = viewer.line->Read(ignored)).count > 0; ++i) {
+  }
+  const device::IoResult sent = viewer.line->Write(viewer.unsent);
+  viewer.unsent.erase(0, sent.count);
+  if (sent.count > 0 || viewer.unsent.empty()) viewer.last_sent = time;
+  if (heard.is_lost || sent.is_lost || time - viewer.last_sent > kPatience) viewer.line.reset();
+}
+
+void IgtlServer::Publish(const session::Snapshot& snapshot) {
+  const double time = snapshot.time;
+  // back at the first tick
+  if (next_tools_ > time + settings_.organ_period + settings_.tool_period) {
+    next_tools_ = next_organs_ = time;
+    for (Viewer& viewer : viewers_) viewer.last_sent = time;
+  }
+  Accept(time);
+  const bool has_tools = time >= next_tools_, has_organs = time >= next_organs_;
+  if (has_tools) next_tools_ = time + settings_.tool_period;
+  if (has_organs) next_organs_ = time + settings_.organ_period;
+  std::string tools, organs;
+  for (Viewer& viewer : viewers_) {
+    // whole sets or none: what does not fit now is left out, the next one is newer
+    if (viewer.unsent.empty() && (has_organs || !viewer.has_organs)) {
+      if (organs.empty()) organs = FormatOrgans(organs_, snapshot);
+      viewer.unsent += organs;
+      viewer.has_organs = true;
+    }
+    if (has_tools && viewer.unsent.size() <= organs.size()) {
+      if (tools.empty()) tools = FormatTools(snapshot);
+      viewer.unsent += tools;
+    }
+    Serve(viewer, time);
+  }
+  std::erase_if(viewers_, [](const Viewer& viewer) { return viewer.line == nullptr; });
+}
+
+}  // namespace trocar::net

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file device_thread.h  A device on a thread of its own: neither setting it up nor finding it again holds anybody up.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "trocar/device/mouse_keyboard.h"
+#include "trocar/device/ports.h"
+#include "trocar/session/scene.h"
+
+namespace trocar::session {
+
+/// Takes every hand that the device sees; the others stay as they are. A hand's numbers go through the same limits of
+/// joints and speed as any other input.
+void ApplyHands(const std::array<device::HandSample, device::kChannelCount>& samples, Input& input) noexcept;
+
+/// Tells a device that knows motion only where the scene's instruments start. Call it before the device is used.
+void PlaceAtHome(const Scene& scene, device::Driver& driver) noexcept;
+
+/// What a device is doing.
+struct DeviceReport {
+  enum class Phase { kConnecting, kRunning, kLost };
+  Phase phase = Phase::kConnecting;
+  std::array<device::HandSample, device::kChannelCount> samples;
+  std::uint64_t losses = 0;  ///< since the start
+  std::string message;       ///< for a person: "liberty is connected", "E-DEV-001 ..."
+};
+
+/// Reads a driver 500 times a second. A device that is lost, or was not there at the start, is tried again every half
+/// second. It comes back as an input only: nothing that a person has to switch on is switched on again from here.
+class DeviceThread {
+ public:
+  /// \param driver  unconfigured, of device::kChannelCount channels; uses device::SystemClock()
+  explicit DeviceThread(std::unique_ptr<device::Driver> driver);
+  ~DeviceThread();
+  DeviceThread(const DeviceThread&) = delete;
+  DeviceThread& operator=(const DeviceThread&) = delete;
+
+  /// The newest report, valid until the next call. Called from one thread.
+  const DeviceReport& Latest();
+
+ private:
+  struct Content;
+  std::unique_ptr<Content> content_;
+};
+
+}  // namespace trocar::session

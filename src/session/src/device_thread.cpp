@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/session/device_thread.h"
+
+#include <algorithm>
+#include <atomic>
+#include <thread>
+#include <utility>
+
+#include "trocar/core/newest_slot.h"
+
+namespace trocar::session {
+namespace {
+
+using device::HandSample;
+
+constexpr double kReadPeriod = 0.002;  // [s]
+constexpr double kRetryPeriod = 0.5;   // [s]
+constexpr double kNap = 0.02;          // longest wait that a stop has to bear [s]
+
+instrument::TrocarJoints JointsOf(const HandSample& sample) noexcept {
+  return {sample.pan, sample.tilt, sample.spin, sample.depth, sample.jaw};
+}
+
+}  // namespace
+
+void ApplyHands(const std::array<HandSample, device::kChannelCount>& samples, Input& input) noexcept {
+  for (const device::Channel hand : {device::kLeftHand, device::kRightHand}) {
+    if (samples[hand].is_valid && IsFinite(samples[hand])) input.hands[hand] = JointsOf(samples[hand]);
+  }
+  const HandSample& laparoscope = samples[device::kLaparoscope];
+  if (laparoscope.is_valid && IsFinite(laparoscope)) input.laparoscope = JointsOf(laparoscope);
+}
+
+void PlaceAtHome(const Scene& scene, device::Driver& driver) noexcept {
+  const std::array<instrument::TrocarJoints, device::kChannelCount> homes = {
+      scene.instruments[kLeft].home, scene.instruments[kRight].home, scene.laparoscope.home};
+  for (std::size_t i = 0; i < homes.size(); ++i) {
+    const instrument::TrocarJoints& home = homes[i];
+    driver.PlaceHand(static_cast<int>(i), {home.pan, home.tilt, home.spin, home.depth, home.jaw, 0.0, true});
+  }
+}
+
+struct DeviceThread::Content {
+  std::unique_ptr<device::Driver> driver;
+  core::NewestSlot<DeviceReport> slot;
+  DeviceReport report;
+  std::atomic<bool> is_stopping{false};
+  std::thread thread;
+
+  void Publish() {
+    slot.Back() = report;
+    slot.Publish();
+  }
+  void Say(DeviceReport::Phase phase, std::string message) {
+    report.phase = phase;
+    report.message = std::move(message);
+    Publish();
+  }
+  void Nap(double seconds) {
+    for (double slept = 0; slept < seconds && !is_stopping.load(std::memory_order_relaxed); slept += kNap)
+      device::SystemClock().Sleep(std::min(kNap, seconds - slept));
+  }
+  bool Connect();
+  void Run();
+};
+
+/// Brings the driver to life. \return false, with the reason published, where that failed
+bool DeviceThread::Content::Connect() {
+  core::Status done = driver->Configure();
+  if (done) {
+    done = driver->Activate();
+    if (!done) (void)driver->Cleanup();
+  }
+  const bool was_lost = report.losses > 0;
+  if (done) {
+    Say(DeviceReport::Phase::kRunning,
+        driver->GetName() + (was_lost ? " is connected again" : " is connected"));
+  } else {
+    Say(was_lost ? DeviceReport::Phase::kLost : DeviceReport::Phase::kConnecting,
+        done.error().Text() + "; trying again");
+  }
+  return done.ok();
+}
+
+void DeviceThread::Content::Run() {
+  while (!is_stopping.load(std::memory_order_relaxed)) {
+    if (report.phase != DeviceReport::Phase::kRunning && !Connect()) {
+      Nap(kRetryPeriod);
+      continue;
+    }
+    switch (driver->Read(report.samples)) {
+      case device::ReadStatus::kFresh:
+        Publish();
+        break;
+      case device::ReadStatus::kUnchanged:
+        break;
+      case device::ReadStatus::kNotActive:
+      case device::ReadStatus::kLost:
+        ++report.losses;
+        Say(DeviceReport::Phase::kLost,
+            core::Error{core::ErrorCode::kDeviceLost, driver->GetName() + " was lost; check plug and power"}
+                .Text());
+        Nap(kRetryPeriod);
+        break;
+    }
+    device::SystemClock().Sleep(kReadPeriod);
+  }
+  driver->Finalize();
+}
+
+DeviceThread::DeviceThread(std::unique_ptr<device::Driver> driver) : content_(std::make_unique<Content>()) {
+  content_->driver = std::move(driver);
+  content_->report.message = content_->driver->GetName() + " is being connected";
+  content_->Publish();
+  content_->slot.Update();
+  content_->thread = std::thread([content = content_.get()] { content->Run(); });
+}
+
+DeviceThread::~DeviceThread() {
+  content_->is_stopping.store(true);
+  content_->thread.join();
+}
+
+const DeviceReport& DeviceThread::Latest() {
+  content_->slot.Update();
+  return content_->slot.Front();
+}
+
+}  // namespace trocar::session

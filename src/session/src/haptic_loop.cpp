@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/session/haptic_loop.h"
+
+#include <pthread.h>
+#include <sched.h>
+#include <time.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cerrno>
+#include <optional>
+#include <thread>
+#include <utility>
+
+#include "haptic_tick.h"
+#include "time_histogram.h"
+#include "trocar/core/clock.h"
+
+namespace trocar::session {
+namespace {
+
+/// Above the simulation's thread, below the supervisor.
+constexpr int kPriorityAboveLowest = 10;
+/// Between two attempts to open a lost device again [ns].
+constexpr std::int64_t kTryAgain = 500'000'000;
+
+bool AskForRealTime() noexcept {
+  sched_param parameters{};
+  parameters.sched_priority = sched_get_priority_min(SCHED_FIFO) + kPriorityAboveLowest;
+  return pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameters) == 0;
+}
+
+/// Sleeps until shortly before, then spins: sleep alone wakes late.
+void WaitUntil(std::int64_t due, std::int64_t spin) noexcept {
+  const std::int64_t sleep_until = due - spin;
+  if (core::NowNanoseconds() < sleep_until) {
+    timespec until{};
+    until.tv_sec = sleep_until / 1'000'000'000;
+    until.tv_nsec = sleep_until % 1'000'000'000;
+    while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr) == EINTR) {
+    }
+  }
+  while (core::NowNanoseconds() < due) {
+  }
+}
+
+}  // namespace
+
+struct HapticLoop::Content {
+  HapticLoopSettings settings;
+  HapticLink* link = nullptr;
+  std::unique_ptr<device::ForceDriver> driver;
+  std::optional<SupervisorLink> supervisor;
+  std::optional<HapticTick> tick;
+
+  std::atomic<bool> is_stopping{false}, is_pedal_held{false};
+  std::atomic<bool> wants_clear{false};
+  std::atomic<std::uint64_t> allocated{0};
+  std::atomic<bool> wants_arm{false}, wants_stop{false}, wants_check_pose{false};
+  core::NewestSlot<HapticStatus> status;
+  TimeHistogram all_periods, all_cpu;  // since ClearTimes
+  TimeHistogram periods, cpu;          // of this second
+  std::thread thread;
+
+  core::Status Connect();
+  void Run() noexcept;
+  HapticTickInput TakeInput(std::int64_t start, std::int64_t late) noexcept {
+    HapticTickInput input;
+    input.now = 1e-9 * static_cast<double>(start);
+    input.lateness = 1e-9 * static_cast<double>(late);
+    input.wants_arm = wants_arm.exchange(false);
+    input.wants_stop = wants_stop.exchange(false);
+    input.wants_check_pose = wants_check_pose.exchange(false);
+    input.is_pedal_held = is_pedal_held.load(std::memory_order_relaxed);
+    if (supervisor) {
+      input.is_supervised = supervisor->IsAlive(input.now);
+      input.is_supervisor_tripped = supervisor->TakeTrip();
+    }
+    return input;
+  }
+};
+
+/// Opens the device and gives its wires to the supervisor. Not real-time safe.
+core::Status HapticLoop::Content::Connect() {
+  if (core::Status done = driver->Configure(); !done) return done;
+  if (core::Status done = driver->Activate(); !done) {
+    static_cast<void>(driver->Cleanup());
+    return done;
+  }
+  if (!supervisor) return {};
+  supervisor->ForgetWires();
+  for (int c = 0; c < driver->GetChannelCount(); ++c) {
+    if (core::Status done = supervisor->AddWire(driver->GetSupervisedWire(c)); !done) return done;
+  }
+  return {};
+}
+
+void HapticLoop::Content::Run() noexcept {
+  const bool is_real_time = AskForRealTime();
+  const auto period = static_cast<std::int64_t>(1e9 * settings.period);
+  const auto spin = static_cast<std::int64_t>(1e9 * settings.spin);
+  const CountAllocations count = settings.count_allocations;
+  HapticStatus told;
+  std::int64_t due = core::NowNanoseconds() + period, last_start = 0, second_start = due, last_told = 0,
+               last_try = 0;
+  while (!is_stopping.load(std::memory_order_relaxed)) {
+    WaitUntil(due, spin);
+    const std::int64_t start = core::NowNanoseconds();
+    const std::int64_t cpu_before = core::ThreadCpuNanoseconds();
+    const std::uint64_t allocated_before = count != nullptr ? count() : 0;
+    // a tick that stood still inside shows in the next one's distance to it
+    const std::int64_t late = std::max(start - due, last_start != 0 ? start - last_start - period : 0);
+    tick->Run(TakeInput(start, late));
+    if (count != nullptr) allocated.fetch_add(count() - allocated_before, std::memory_order_relaxed);
+    if (supervisor) supervisor->Beat();
+    const std::int64_t used = core::ThreadCpuNanoseconds() - cpu_before;
+    if (wants_clear.exchange(false)) {
+      all_cpu.Clear(), all_periods.Clear();
+      allocated.store(0);
+    }
+    cpu.Add(used), all_cpu.Add(used);
+    if (last_start != 0) periods.Add(start - last_start), all_periods.Add(start - last_start);
+    last_start = start;
+    if (start - second_start >= 1'000'000'000) {
+      told.rate = static_cast<double>(periods.Count()) / (1e-9 * static_cast<double>(start - second_start));
+      told.period_p50 = periods.CalcPercentile(0.5);
+      told.period_p999 = periods.CalcPercentile(0.999);
+      told.period_max = periods.Longest();
+      told.cpu_p999 = cpu.CalcPercentile(0.999);
+      periods.Clear(), cpu.Clear();
+      second_start = start;
+    }
+    if (start - last_told >= 50'000'000) {
+      HapticStatus& next = status.Back();
+      next = tick->GetStatus();
+      next.rate = told.rate;
+      next.period_p50 = told.period_p50, next.period_p999 = told.period_p999;
+      next.period_max = told.period_max, next.cpu_p999 = told.cpu_p999;
+      next.is_real_time = is_real_time;
+      status.Publish();
+      last_told = start;
+    }
+    if (driver->GetState() == device::DriverState::kUnconfigured && start - last_try >= kTryAgain) {
+      // lost: there is no force to keep up, so this may take its time; what comes back is unarmed and unconfirmed
+      static_cast<void>(Connect());
+      last_try = core::NowNanoseconds();
+    }
+    due += period;
+    // late: never a burst of ticks to catch up (faults D9)
+    if (core::NowNanoseconds() > due + period / 2) due = core::NowNanoseconds();
+  }
+}
+
+core::Result<std::unique_ptr<HapticLoop>> HapticLoop::Start(std::unique_ptr<device::ForceDriver> driver,
+                                                            const HapticLoopSettings& settings,
+                                                            HapticLink& link) {
+  if (static_cast<int>(settings.hands.size()) != driver->GetChannelCount()) {
+    return core::Error{core::ErrorCode::kDeviceSettings,
+                       driver->GetName() + " has " + std::to_string(driver->GetChannelCount()) +
+                           " channels for " + std::to_string(settings.hands.size()) +
+                           " hands; name as many hands as the device has channels"};
+  }
+  auto content = std::make_unique<Content>();
+  content->settings = settings;
+  content->link = &link;
+  content->driver = std::move(driver);
+  if (!settings.supervisor.empty()) {
+    auto supervisor = SupervisorLink::Start(settings.supervisor);
+    if (!supervisor) return supervisor.error();
+    content->supervisor.emplace(std::move(*supervisor));
+  }
+  if (auto done = content->Connect(); !done) return done.error();
+  content->tick.emplace(*content->driver, settings, link);
+  std::unique_ptr<HapticLoop> loop(new HapticLoop(std::move(content)));
+  return loop;
+}
+
+HapticLoop::HapticLoop(std::unique_ptr<Content> content) : content_(std::move(content)) {
+  content_->link->is_used.store(true);
+  content_->thread = std::thread([running = content_.get()] { running->Run(); });
+}
+
+HapticLoop::~HapticLoop() {
+  content_->is_stopping.store(true);
+  content_->thread.join();
+  content_->link->is_used.store(false);
+  content_->driver->Finalize();
+}
+
+void HapticLoop::RequestArm() noexcept {
+  content_->wants_arm.store(true);
+}
+void HapticLoop::Stop() noexcept {
+  content_->wants_stop.store(true);
+}
+void HapticLoop::BeginCheckPose() noexcept {
+  content_->wants_check_pose.store(true);
+}
+void HapticLoop::SetPedal(bool is_held) noexcept {
+  content_->is_pedal_held.store(is_held);
+}
+
+const HapticStatus& HapticLoop::Latest() noexcept {
+  content_->status.Update();
+  return content_->status.Front();
+}
+
+std::uint64_t HapticLoop::CountAllocated() const noexcept {
+  return content_->allocated.load();
+}
+void HapticLoop::ClearTimes() noexcept {
+  content_->wants_clear.store(true);
+}
+double HapticLoop::CalcPeriodPercentile(double fraction) const noexcept {
+  return content_->all_periods.CalcPercentile(fraction);
+}
+double HapticLoop::CalcCpuPercentile(double fraction) const noexcept {
+  return content_->all_cpu.CalcPercentile(fraction);
+}
+
+}  // namespace trocar::session

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cstdio>
+
+#include "trocar/session/haptic_loop.h"
+
+namespace trocar::session {
+namespace {
+
+std::string DescribeHand(const HapticHandStatus& hand, const char* name) {
+  char text[64];
+  std::string line = name;
+  if (hand.state == haptics::ArmState::kUnarmed) {
+    const haptics::FaultEntry& fault = haptics::FindFault(hand.reason);
+    line += " off";
+    if (!fault.what.empty()) line += ": " + std::string(fault.what) + " (" + std::string(fault.remedy) + ")";
+  } else {
+    std::snprintf(text, sizeof text, " %s %.2f N", std::string(haptics::ArmStateName(hand.state)).c_str(),
+                  hand.force);
+    line += text;
+  }
+  if (hand.is_warm) line += ", motors warm";
+  return line;
+}
+
+}  // namespace
+
+std::string DescribeHaptics(const HapticStatus& status) {
+  char text[96];
+  std::snprintf(text, sizeof text, "Force %.0f Hz%s:", status.rate,
+                status.is_real_time ? "" : " (not real-time)");
+  std::string line = text;
+  if (status.check_pose == haptics::CheckPoseState::kAsking) {
+    line += std::string(" check pose: bring the ") + (status.asked == kLeft ? "left" : "right") +
+            " device to its place and hold its button.";
+  }
+  if (status.check_pose == haptics::CheckPoseState::kWrongDevice)
+    line += " check pose: another device answered, are they swapped?";
+  const char* separator = " ";
+  for (const Hand hand : {kLeft, kRight}) {
+    if (!status.hands[hand].is_present) continue;
+    line += separator + DescribeHand(status.hands[hand], hand == kLeft ? "left" : "right");
+    separator = "; ";
+  }
+  return line;
+}
+
+std::string FormatHapticsJson(const HapticStatus& status) {
+  char text[512];
+  std::snprintf(
+      text, sizeof text,
+      "{\"ticks\": %llu, \"late_ticks\": %llu, \"overruns\": %llu, \"rate\": %.1f, \"period_p50_us\": %.0f, "
+      "\"period_p99.9_us\": %.0f, \"period_max_us\": %.0f, \"tick_cpu_p99.9_us\": %.0f, \"real_time\": %s, "
+      "\"supervised\": %s",
+      static_cast<unsigned long long>(status.ticks), static_cast<unsigned long long>(status.late_ticks),
+      static_cast<unsigned long long>(status.overruns), status.rate, 1e6 * status.period_p50,
+      1e6 * status.period_p999, 1e6 * status.period_max, 1e6 * status.cpu_p999,
+      status.is_real_time ? "true" : "false", status.is_supervised ? "true" : "false");
+  std::string json = text;
+  for (const Hand side : {kLeft, kRight}) {
+    const HapticHandStatus& hand = status.hands[side];
+    if (!hand.is_present) continue;
+    const haptics::FaultEntry& fault = haptics::FindFault(hand.reason);
+    std::snprintf(text, sizeof text,
+                  ", \"%s\": {\"state\": \"%s\", \"reason\": \"%s\", \"code\": \"%s\", \"force\": %.4f, "
+                  "\"heat\": %.4f, "
+                  "\"warm\": %s, \"bad_samples\": %llu, \"jumps\": %llu, \"silences\": %llu}",
+                  side == kLeft ? "left" : "right", std::string(haptics::ArmStateName(hand.state)).c_str(),
+                  std::string(fault.name).c_str(), std::string(core::CodeText(fault.code)).c_str(),
+                  hand.force, hand.heat, hand.is_warm ? "true" : "false",
+                  static_cast<unsigned long long>(hand.counts.bad),
+                  static_cast<unsigned long long>(hand.counts.jumps),
+                  static_cast<unsigned long long>(hand.counts.silences));
+    json += text;
+  }
+  return json + "}";
+}
+
+HapticHand MakeHapticHand(const Scene& scene, const Pose& X_world_laparoscope, Hand hand, double scale) {
+  const InstrumentSetup& setup = scene.instruments[hand];
+  HapticHand made;
+  made.hand = hand;
+  made.p_world_port = setup.p_world_port;
+  made.max_jaw = setup.tool.max_jaw;
+  made.map.X_world_device = {X_world_laparoscope.rotation,
+                             instrument::CalcToolPose(setup.p_world_port, setup.home).translation};
+  made.map.force_scale = scale;
+  return made;
+}
+
+}  // namespace trocar::session

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file supervisor_protocol.h  What simulator and supervisor share: a page of counters, and messages that carry wires.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+
+#include "trocar/device/force_driver.h"
+
+namespace trocar::session {
+
+/// In shared memory, zero at first.
+struct SupervisorPage {
+  std::atomic<std::uint64_t> beats;             ///< of the simulator
+  std::atomic<std::uint64_t> supervisor_beats;  ///< of the supervisor
+  std::atomic<std::uint64_t> trips;             ///< how often the supervisor had to act
+};
+static_assert(std::atomic<std::uint64_t>::is_always_lock_free);
+
+/// Travels with the wire's descriptor; without one it means: forget the wires.
+struct WireMessage {
+  std::uint32_t size = 0;
+  std::uint8_t is_closed_after = 0;
+  std::uint8_t zero_frame[device::SupervisedWire::kMaxBytes] = {};
+};
+
+/// Descriptors in the supervisor process.
+inline constexpr int kSupervisorSocket = 3;
+inline constexpr int kSupervisorPage = 4;
+inline constexpr int kMaxWires = 8;
+
+}  // namespace trocar::session

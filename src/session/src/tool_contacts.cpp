@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tool_contacts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace trocar::session {
+namespace {
+
+/// Corrections of a proxy that overlaps tissue after its contacts have placed it.
+constexpr int kOverlapRounds = 3;
+/// Pinch that leaves a mark on the liver [N]. Source: domain facts, section 3.3.
+constexpr double kLiverDamagePinch = 2.0;
+
+/// Farthest that one of the nodes went [m].
+double CalcMotion(std::span<const Vec3> before, std::span<const Vec3> now) noexcept {
+  double largest2 = 0;
+  for (std::size_t i = 0; i < now.size(); ++i) {
+    largest2 = std::max(largest2, math::SquaredDistance(before[i], now[i]));
+  }
+  return std::sqrt(largest2);
+}
+
+}  // namespace
+
+core::Result<ToolContacts> ToolContacts::Make(const Scene& scene, const tissue::TissueModel& model,
+                                              std::span<const SurfaceInfo> surfaces,
+                                              const tissue::TissueState& at_start) {
+  ToolContacts made;
+  const auto& organs = scene.patient.organs;
+  for (std::size_t i = 0; i < organs.size(); ++i) {
+    auto surface = surgery::MakeOrganSurface(model.rest, surfaces[i].first_node, organs[i].mesh);
+    if (!surface.ok()) return surface.error();
+    if (surfaces[i].material == "liver") {
+      surface->damage_pinch_small = surface->damage_pinch_full = kLiverDamagePinch;
+    }
+    surgery::UpdateOrganSurface(*surface, at_start.position);
+    made.organs_.push_back(std::move(*surface));
+  }
+  std::vector<surgery::TubeSurface> tubes;
+  for (const SurfaceInfo& surface : surfaces.subspan(organs.size())) {
+    tubes.push_back({surface.first_node, surface.node_count, surface.radii});
+  }
+  auto set = surgery::MakeTubeSet(model.rest, std::move(tubes));
+  if (!set.ok()) return set.error();
+  made.tubes_ = std::move(*set);
+
+  // the gallbladder lies on the liver; of other organs nothing is known to touch
+  const int liver = scene.patient.FindOrgan("liver"), gallbladder = scene.patient.FindOrgan("gallbladder");
+  if (liver >= 0 && gallbladder >= 0) {
+    made.pairs_.push_back(surgery::MakeOrganPair(made.organs_, at_start.position,
+                                                 static_cast<std::uint8_t>(gallbladder),
+                                                 static_cast<std::uint8_t>(liver), {}, made.organ_settings_));
+    const surgery::OrganSurface &from = made.organs_[gallbladder], &to = made.organs_[liver];
+    const auto is_of = [](const surgery::OrganSurface& organ, std::uint32_t node) {
+      return node >= organ.first_node && node < organ.first_node + organ.node_count;
+    };
+    for (std::uint32_t node = from.first_node; node < from.first_node + from.node_count; ++node) {
+      for (auto h = model.strand_starts[node]; h < model.strand_starts[node + 1]; ++h) {
+        const auto& half = model.half_strands[h];
+        if (is_of(to, half.other)) made.ties_.push_back({0, half.strand, node - from.first_node});
+      }
+    }
+  }
+  made.positions_before_ = at_start.position;
+  made.surface_motion_.assign(organs.size() + 1, 0.0);
+  return made;
+}
+
+void ToolContacts::Reset(const Scene& scene, const std::array<instrument::TrocarJoints, kHandCount>& joints,
+                         const tissue::TissueState& tissue) noexcept {
+  for (int hand = 0; hand < kHandCount; ++hand) {
+    X_world_device_[hand] = instrument::CalcToolPose(scene.instruments[hand].p_world_port, joints[hand]);
+    X_world_proxy_[hand] = X_world_proxy_before_[hand] = X_world_device_[hand];
+    offset_[hand] = {};
+    jaw_before_[hand] = joints[hand].jaw;
+    overlap_[hand] = 0;
+    limits_[hand].limits.clear();
+  }
+  contacts_.Clear();
+  last_.Clear();
+  tools_ = {};
+  std::copy(tissue.position.begin(), tissue.position.end(), positions_before_.begin());
+  std::fill(surface_motion_.begin(), surface_motion_.end(), 0.0);
+  for (surgery::OrganSurface& organ : organs_) surgery::UpdateOrganSurface(organ, tissue.position);
+  tubes_.tree.Update(tissue.position);
+}
+
+surgery::Touchables ToolContacts::MakeTouchables(const tissue::TissueState& tissue) const noexcept {
+  return {organs_, &tubes_, tissue.position, positions_before_, surface_motion_};
+}
+
+std::span<const tissue::ContactSpring> ToolContacts::Find(const Scene& scene, const ToolsNow& now,
+                                                          const tissue::TissueState& tissue) noexcept {
+  std::swap(contacts_, last_);
+  contacts_.Clear();
+  std::array<surgery::ToolMotion, kHandCount> motions;
+  const surgery::Touchables touchables = MakeTouchables(tissue);
+  for (int hand = 0; hand < kHandCount; ++hand) {
+    const InstrumentSetup& setup = scene.instruments[hand];
+    X_world_device_[hand] = instrument::CalcToolPose(setup.p_world_port, now.joints[hand]);
+    motions[hand] = {&setup.tool,          static_cast<std::uint8_t>(hand), X_world_proxy_before_[hand],
+                     X_world_proxy_[hand], X_world_device_[hand],           jaw_before_[hand],
+                     now.joints[hand].jaw, now.grasped_surfaces[hand]};
+    surgery::FindContacts(motions[hand], touchables, settings_, last_, contacts_);
+    limits_[hand].limits.clear();
+  }
+  tools_ = surgery::FindToolsContact(motions, limits_);
+
+  for (surgery::OrganPair& pair : pairs_) std::fill(pair.is_bound.begin(), pair.is_bound.end(), 0);
+  for (const Tie& tie : ties_) {
+    if (tissue.strand_is_intact[tie.strand]) pairs_[tie.pair].is_bound[tie.vertex] = 1;
+  }
+  for (surgery::OrganPair& pair : pairs_) {
+    surgery::FindOrganContacts(organs_, tissue.position, organ_settings_, pair, contacts_);
+  }
+  std::copy(tissue.position.begin(), tissue.position.end(), positions_before_.begin());
+  return contacts_.springs;
+}
+
+std::array<ToolTouch, kHandCount> ToolContacts::CalcTouch(const tissue::TissueState& tissue,
+                                                          bool is_good) noexcept {
+  std::array<ToolTouch, kHandCount> touch;
+  for (int hand = 0; hand < kHandCount; ++hand) {
+    const auto reaction =
+        surgery::CalcContactReaction(static_cast<std::uint8_t>(hand), tissue.position, contacts_);
+    if (is_good) touch[hand] = {reaction.force + tools_.force[hand], reaction.surface};
+  }
+  if (!is_good) contacts_.Clear();
+  return touch;
+}
+
+void ToolContacts::Update(const Scene& scene, const ToolsNow& now,
+                          const tissue::TissueState& tissue) noexcept {
+  double tube_motion = 0;
+  for (std::size_t i = 0; i < organs_.size(); ++i) {
+    surgery::UpdateOrganSurface(organs_[i], tissue.position);
+    surface_motion_[i] = CalcMotion(organs_[i].Nodes(positions_before_), organs_[i].Nodes(tissue.position));
+  }
+  tubes_.tree.Update(tissue.position);
+  for (const surgery::TubeSurface& tube : tubes_.tubes) {
+    const auto nodes_of = [&](std::span<const Vec3> positions) {
+      return positions.subspan(tube.first_node, tube.node_count);
+    };
+    tube_motion = std::max(tube_motion, CalcMotion(nodes_of(positions_before_), nodes_of(tissue.position)));
+  }
+  surface_motion_.back() = tube_motion;
+  const surgery::Touchables touchables = MakeTouchables(tissue);
+  for (int hand = 0; hand < kHandCount; ++hand) PlaceProxy(scene, hand, now, touchables);
+}
+
+void ToolContacts::PlaceProxy(const Scene& scene, int hand, const ToolsNow& now,
+                              const surgery::Touchables& touchables) noexcept {
+  const InstrumentSetup& setup = scene.instruments[hand];
+  const surgery::ToolDrive drive{setup.p_world_port, now.joints[hand]};
+  surgery::ProxyLimits& limits = limits_[hand];
+  surgery::AddContactLimits(static_cast<std::uint8_t>(hand), contacts_, touchables.positions, limits);
+  instrument::TrocarJoints proxy;
+  X_world_proxy_before_[hand] = X_world_proxy_[hand];
+  for (int round = 0;; ++round) {
+    proxy = surgery::FindProxy(drive, offset_[hand], limits.limits);
+    X_world_proxy_[hand] = instrument::CalcToolPose(setup.p_world_port, proxy);
+    overlap_[hand] =
+        surgery::AddOverlapLimits(setup.tool, X_world_proxy_[hand], X_world_device_[hand],
+                                  now.joints[hand].jaw, touchables, now.grasped_surfaces[hand], limits);
+    if (overlap_[hand] == 0.0 || round == kOverlapRounds) break;
+  }
+  offset_[hand] = {proxy.pan - drive.device.pan, proxy.tilt - drive.device.tilt, 0.0,
+                   proxy.depth - drive.device.depth, 0.0};
+  jaw_before_[hand] = now.joints[hand].jaw;
+}
+
+void ToolContacts::AddTo(core::StateHash& hash) const {
+  for (int hand = 0; hand < kHandCount; ++hand) {
+    for (const double value : {offset_[hand].pan, offset_[hand].tilt, offset_[hand].depth}) hash.Add(value);
+  }
+  for (const surgery::ContactLink& link : contacts_.links) {
+    hash.Add(link.key);
+    for (const double value :
+         {link.p_tool_stuck.x, link.p_tool_stuck.y, link.p_tool_stuck.z, link.normal_force})
+      hash.Add(value);
+  }
+}
+
+}  // namespace trocar::session

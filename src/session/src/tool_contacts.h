@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file tool_contacts.h  What tools, organs and tubes touch in a tick, and where the tools that are seen stand.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "trocar/core/state_hash.h"
+#include "trocar/session/simulation.h"
+#include "trocar/surgery/organ_contact.h"
+#include "trocar/surgery/tools_contact.h"
+
+namespace trocar::session {
+
+/// The devices' poses of a tick and what the tools hold.
+struct ToolsNow {
+  std::array<instrument::TrocarJoints, kHandCount> joints;
+  std::array<std::int32_t, kHandCount> grasped_surfaces;  ///< or -1
+};
+
+/// Touch on one tool after the solve.
+struct ToolTouch {
+  Vec3 force;                 ///< of tissue and the other tool [N]
+  std::int32_t surface = -1;  ///< of tissue pressed most, or -1
+};
+
+/// Called in the order of its members, once a tick each; nothing allocates but Make.
+class ToolContacts {
+ public:
+  /// \param model     whose rest shape the trees are built over
+  /// \param surfaces  organs, then tubes
+  /// \return kMeshInvalid
+  static core::Result<ToolContacts> Make(const Scene& scene, const tissue::TissueModel& model,
+                                         std::span<const SurfaceInfo> surfaces,
+                                         const tissue::TissueState& at_start);
+
+  /// Tools at these joints, touching nothing.
+  void Reset(const Scene& scene, const std::array<instrument::TrocarJoints, kHandCount>& joints,
+             const tissue::TissueState& tissue) noexcept;
+
+  /// Contacts on the way from the proxies to the devices.
+  /// \return the springs; valid until the next call
+  std::span<const tissue::ContactSpring> Find(const Scene& scene, const ToolsNow& now,
+                                              const tissue::TissueState& tissue) noexcept;
+  /// Forces of the contacts after the solve. \param is_good  false: forgets what sticks where
+  std::array<ToolTouch, kHandCount> CalcTouch(const tissue::TissueState& tissue, bool is_good) noexcept;
+  /// Refits the trees, and places the tools that are seen.
+  void Update(const Scene& scene, const ToolsNow& now, const tissue::TissueState& tissue) noexcept;
+
+  std::span<const surgery::OrganSurface> Organs() const { return organs_; }
+  const surgery::TubeSet& Tubes() const { return tubes_; }
+  const surgery::ContactSet& Contacts() const { return contacts_; }
+  const Pose& Proxy(int hand) const { return X_world_proxy_[hand]; }
+  const Pose& Device(int hand) const { return X_world_device_[hand]; }
+  double Overlap(int hand) const { return overlap_[hand]; }  ///< of the proxy with tissue, what is left [m]
+  bool AreToolsTouching() const { return tools_.is_touching; }
+  void AddTo(core::StateHash& hash) const;
+
+ private:
+  surgery::Touchables MakeTouchables(const tissue::TissueState& tissue) const noexcept;
+  void PlaceProxy(const Scene& scene, int hand, const ToolsNow& now,
+                  const surgery::Touchables& touchables) noexcept;
+
+  /// Strand that ties a vertex of a pair to the pair's surface.
+  struct Tie {
+    std::size_t pair;
+    std::uint32_t strand, vertex;
+  };
+
+  // constant
+  surgery::ContactSettings settings_;
+  surgery::OrganContactSettings organ_settings_;
+  std::vector<Tie> ties_;
+
+  // state
+  std::array<Pose, kHandCount> X_world_proxy_, X_world_proxy_before_, X_world_device_;
+  std::array<instrument::TrocarJoints, kHandCount> offset_;  // proxy less device
+  std::array<double, kHandCount> jaw_before_{};
+  surgery::ContactSet contacts_, last_;
+  std::vector<surgery::OrganPair> pairs_;
+  std::vector<Vec3> positions_before_;  // (n) before the last solve
+
+  // scratch
+  std::vector<surgery::OrganSurface> organs_;
+  surgery::TubeSet tubes_;
+  std::vector<double> surface_motion_;  // (organs + 1)
+  std::array<surgery::ProxyLimits, kHandCount> limits_;
+  surgery::ToolsContact tools_;
+  std::array<double, kHandCount> overlap_{};
+};
+
+}  // namespace trocar::session

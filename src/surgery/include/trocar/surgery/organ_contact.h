@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file organ_contact.h  Organ against organ: a gallbladder that has come off its bed rests on the liver.
+///
+/// Each vertex of one organ is kept out of the other by two one-sided springs, one on either side of the plane
+/// half way between them. They are made well ahead of touch, so an organ that falls in one solve is stopped half
+/// way to the other in this tick and comes to rest on it in the next ones. The shapes as they were imaged may overlap by a little where they touch: that much
+/// stays allowed, so that nothing moves before anything acts.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "trocar/surgery/contact.h"
+
+namespace trocar::surgery {
+
+struct OrganContactSettings {
+  double stiffness = 100.0;  ///< of each spring [N/m]
+  double ahead = 0.003;      ///< a vertex is watched from this far ahead of touch [m]
+  double margin = 0.0003;    ///< the other organ's surface is, from this far [m]
+  double reach = 0.008;      ///< a vertex deeper than this has no near wall to be pushed back through [m]
+};
+
+/// One organ's vertices against another organ's surface.
+struct OrganPair {
+  std::uint8_t vertices_of = 0, surface_of = 0;  ///< organs
+  std::vector<double> allowed;                   ///< (vertices) signed distance that is allowed, <= 0 [m]
+  std::vector<std::uint8_t> is_bound;            ///< (vertices) tied to the other organ: left to its strands
+  std::vector<std::uint32_t> last_triangle;      ///< (vertices) where the search starts
+};
+
+/// \param positions  (n) of the whole system, at rest [m]
+/// \param bound      nodes of the first organ that strands hold to the other
+OrganPair MakeOrganPair(std::span<const OrganSurface> organs, std::span<const Vec3> positions,
+                        std::uint8_t vertices_of, std::uint8_t surface_of,
+                        std::span<const std::uint32_t> bound, const OrganContactSettings& settings);
+
+/// Adds the springs of one pair; links carry kNoHand.
+/// \note Real-time safe.
+void FindOrganContacts(std::span<const OrganSurface> organs, std::span<const Vec3> positions,
+                       const OrganContactSettings& settings, OrganPair& pair, ContactSet& contacts) noexcept;
+
+/// Hand of a contact that no tool makes.
+inline constexpr std::uint8_t kNoHand = 0xff;
+
+}  // namespace trocar::surgery

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/surgery/organ_contact.h"
+
+#include <algorithm>
+
+#include "trocar/collision/queries.h"
+
+namespace trocar::surgery {
+namespace {
+
+/// Signed distance of a node to an organ's surface, with the nearest point.
+struct Place {
+  bool is_near = false;
+  collision::NearestTriangle nearest;
+  collision::SurfaceSide side;
+};
+
+Place FindPlace(const OrganSurface& organ, std::span<const Vec3> nodes, const Vec3& p, double reach,
+                std::uint32_t guess) noexcept {
+  for (int axis = 0; axis < 3; ++axis) {
+    if (p[axis] < organ.box.min[axis] - reach || p[axis] > organ.box.max[axis] + reach) return {};
+  }
+  Place place;
+  // a guess that is far by now would widen the search: it counts only within reach
+  place.nearest = organ.tree.FindNearest(nodes, p, {.max_distance = reach, .first_guess = guess});
+  if (!place.nearest.Found()) return place;
+  place.side = collision::FindSide(nodes, organ.triangles, organ.vertex_triangles, p, place.nearest);
+  place.is_near = math::SquaredNorm(place.side.normal) > 0.0;
+  return place;
+}
+
+}  // namespace
+
+OrganPair MakeOrganPair(std::span<const OrganSurface> organs, std::span<const Vec3> positions,
+                        std::uint8_t vertices_of, std::uint8_t surface_of,
+                        std::span<const std::uint32_t> bound, const OrganContactSettings& settings) {
+  const OrganSurface &from = organs[vertices_of], &to = organs[surface_of];
+  OrganPair pair{vertices_of, surface_of, {}, {}, {}};
+  pair.allowed.assign(from.node_count, 0.0);
+  pair.is_bound.assign(from.node_count, 0);
+  pair.last_triangle.assign(from.node_count, collision::kNoTriangle);
+  for (const std::uint32_t node : bound) {
+    if (node >= from.first_node && node < from.first_node + from.node_count)
+      pair.is_bound[node - from.first_node] = 1;
+  }
+  for (std::uint32_t i = 0; i < from.node_count; ++i) {
+    const Place place = FindPlace(to, to.Nodes(positions), positions[from.first_node + i], settings.reach,
+                                  collision::kNoTriangle);
+    if (!place.nearest.Found()) continue;
+    pair.last_triangle[i] = place.nearest.triangle;
+    pair.allowed[i] = std::min(0.0, place.side.distance);
+  }
+  return pair;
+}
+
+void FindOrganContacts(std::span<const OrganSurface> organs, std::span<const Vec3> positions,
+                       const OrganContactSettings& settings, OrganPair& pair, ContactSet& contacts) noexcept {
+  const OrganSurface &from = organs[pair.vertices_of], &to = organs[pair.surface_of];
+  const auto nodes = to.Nodes(positions);
+  for (std::uint32_t i = 0; i < from.node_count; ++i) {
+    if (pair.is_bound[i] != 0) continue;
+    const std::uint32_t node = from.first_node + i;
+    const Vec3& p = positions[node];
+    const Place place = FindPlace(to, nodes, p, settings.reach, pair.last_triangle[i]);
+    if (!place.is_near) continue;
+    pair.last_triangle[i] = place.nearest.triangle;
+    const double room = place.side.distance - pair.allowed[i];
+    if (room > settings.ahead) continue;
+    if (contacts.springs.size() + 2 > ContactSet::kCapacity) {
+      ++contacts.dropped;
+      continue;
+    }
+    const Vec3& n = place.side.normal;
+    ContactLink link;
+    link.hand = kNoHand;
+    link.key = ~std::uint64_t{0};
+    link.surface = pair.vertices_of;
+    // each gives way by half of what is missing
+    const auto& t = to.triangles[place.nearest.triangle];
+    contacts.springs.push_back({{node, to.first_node + t[0], to.first_node + t[1]},
+                                {1.0, 0.0, 0.0},
+                                n,
+                                math::Dot(n, p) - 0.5 * room,
+                                settings.stiffness});
+    contacts.links.push_back(link);
+    if (room > settings.margin) continue;
+    link.surface = pair.surface_of;
+    contacts.springs.push_back({{to.first_node + t[0], to.first_node + t[1], to.first_node + t[2]},
+                                place.nearest.weights,
+                                -n,
+                                -math::Dot(n, place.nearest.point) - 0.5 * room,
+                                settings.stiffness});
+    contacts.links.push_back(link);
+  }
+}
+
+}  // namespace trocar::surgery

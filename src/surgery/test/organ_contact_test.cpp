@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/surgery/organ_contact.h"
+
+#include <gtest/gtest.h>
+
+#include <optional>
+
+#include "trocar/geometry/primitives.h"
+#include "trocar/tissue/equilibrium.h"
+
+namespace trocar::surgery {
+namespace {
+
+/// A small ball above a large one, each on its own foundation.
+class OrganContact : public testing::Test {
+ protected:
+  void Make(double gap) {
+    const auto large = geometry::MakeSphere({0, 0, 0}, 0.03, 3);
+    const auto small = geometry::MakeSphere({0, 0, 0.04 + gap}, 0.01, 2);
+    tissue::TissueDefinition definition;
+    const auto add = [&](const geometry::TriangleMesh& mesh, double shape) {
+      const auto first = static_cast<std::uint32_t>(definition.rest.size());
+      for (const Vec3& p : mesh.positions) {
+        definition.rest.push_back(p);
+        definition.mass.push_back(1e-5);
+        definition.shape_stiffness.push_back(shape);
+      }
+      for (const auto& [a, b] : geometry::FindEdges(mesh.triangles)) {
+        definition.springs.push_back(
+            {first + a, first + b, 30.0, math::Distance(mesh.positions[a], mesh.positions[b])});
+      }
+      return first;
+    };
+    const auto first_large = add(large, 5.0), first_small = add(small, 0.02);
+    model_ = tissue::MakeTissueModel(definition);
+    state_ = tissue::MakeRestState(model_);
+    organs_.clear();
+    organs_.push_back(MakeOrganSurface(state_.position, first_large, large).value());
+    organs_.push_back(MakeOrganSurface(state_.position, first_small, small).value());
+    pair_ = MakeOrganPair(organs_, state_.position, 1, 0, {}, settings_);
+    solver_.emplace(model_, 1);
+  }
+  void Tick(const Vec3& gravity, bool has_contact = true) {
+    contacts_.Clear();
+    if (has_contact) FindOrganContacts(organs_, state_.position, settings_, pair_, contacts_);
+    (void)solver_->Solve({tissue::SolverKind::kChebyshevJacobi2015, 500, 1e-6, 0.0},
+                         {.gravity = gravity, .contacts = contacts_.springs}, state_);
+    for (OrganSurface& organ : organs_) UpdateOrganSurface(organ, state_.position);
+  }
+  double DeepestOverlap() const {
+    double deepest = 0;
+    for (std::uint32_t i = 0; i < organs_[1].node_count; ++i) {
+      const Vec3& p = state_.position[organs_[1].first_node + i];
+      const auto near = organs_[0].tree.FindNearest(organs_[0].Nodes(state_.position), p);
+      const auto side = collision::FindSide(organs_[0].Nodes(state_.position), organs_[0].triangles,
+                                            organs_[0].vertex_triangles, p, near);
+      deepest = std::max(deepest, -side.distance);
+    }
+    return deepest;
+  }
+
+  OrganContactSettings settings_;
+  tissue::TissueModel model_;
+  tissue::TissueState state_;
+  std::vector<OrganSurface> organs_;
+  OrganPair pair_;
+  ContactSet contacts_;
+  std::optional<tissue::EquilibriumSolver> solver_;
+};
+
+TEST_F(OrganContact, AnOrganThatFallsOnAnotherRestsOnIt) {
+  Make(0.001);
+  const Vec3 down{0, 0, -20};  // would sink 10 mm on its soft foundation
+  for (int tick = 0; tick < 200; ++tick) Tick(down);
+  EXPECT_LT(DeepestOverlap(), 0.001);
+  EXPECT_FALSE(contacts_.springs.empty());
+  // the springs on both sides carry the same
+  Vec3 sum;
+  double total = 0;
+  for (const auto& spring : contacts_.springs) {
+    const double depth = tissue::CalcContactDepth(spring, state_.position);
+    if (!(depth > 0.0)) continue;
+    sum += (spring.stiffness * depth) * spring.normal;
+    total += spring.stiffness * depth;
+  }
+  EXPECT_GT(total, 0.01) << "weight that the foundation no longer bears";
+  EXPECT_LT(math::Norm(sum), 0.05 * total) << "action and reaction";
+}
+
+// Negative control.
+TEST_F(OrganContact, WithoutContactItWouldFallIn) {
+  Make(0.001);
+  for (int tick = 0; tick < 20; ++tick) Tick({0, 0, -20}, false);
+  EXPECT_GT(DeepestOverlap(), 0.005);
+}
+
+TEST_F(OrganContact, WhatOverlappedWhenImagedIsLeftAlone) {
+  Make(-0.002);
+  EXPECT_GT(DeepestOverlap(), 0.001);
+  for (int tick = 0; tick < 10; ++tick) Tick({});
+  for (std::size_t i = 0; i < model_.Size(); ++i) {
+    ASSERT_NEAR(math::Distance(state_.position[i], model_.rest[i]), 0.0, 1e-9) << i;
+  }
+}
+
+TEST_F(OrganContact, BoundVerticesAreLeftToTheirStrands) {
+  Make(-0.002);
+  FindOrganContacts(organs_, state_.position, settings_, pair_, contacts_);
+  EXPECT_GT(contacts_.springs.size(), 0u);
+  std::fill(pair_.is_bound.begin(), pair_.is_bound.end(), std::uint8_t{1});
+  contacts_.Clear();
+  FindOrganContacts(organs_, state_.position, settings_, pair_, contacts_);
+  EXPECT_EQ(contacts_.springs.size(), 0u);
+}
+
+}  // namespace
+}  // namespace trocar::surgery

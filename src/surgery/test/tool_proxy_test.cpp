@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/surgery/tool_proxy.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "organ_fixture.h"
+#include "trocar/surgery/tools_contact.h"
+
+namespace trocar::surgery {
+namespace {
+
+using ToolProxy = OrganFixture;
+
+TEST_F(ToolProxy, IsTheDeviceInFreeAir) {
+  Place(JointsAt({0.01, 0, 0.05}));
+  const auto device = JointsAt({0.012, 0.003, 0.045});
+  (void)Tick(device);
+  EXPECT_EQ(proxy_, device);
+  EXPECT_EQ(overlap_, 0.0);
+}
+
+TEST_F(ToolProxy, StaysOutsideWhereTheDeviceEnters) {
+  Place(JointsAt({0, 0, 0.03}));
+  double deepest = 0;
+  for (double z = 0.024; z > 0.008; z -= 0.0005) {
+    const auto device = JointsAt({0.001, 0, z});
+    (void)Tick(device);
+    EXPECT_LT(overlap_, 2e-5) << z;
+    deepest = std::max(deepest, device.depth - proxy_.depth);
+  }
+  EXPECT_GT(deepest, 0.0005) << "the hand is deeper than the tool";
+  EXPECT_LT(deepest, 0.01) << "and the tissue gives way with the tool";
+}
+
+TEST_F(ToolProxy, ComesBackToTheDeviceSmoothly) {
+  Place(JointsAt({0, 0, 0.03}));
+  for (int tick = 0; tick < 20; ++tick) (void)Tick(JointsAt({0, 0, 0.014}));
+  const auto out = JointsAt({0, 0, 0.04});
+  double last = std::abs(offset_.depth);
+  EXPECT_GT(last, 2e-5);
+  for (int tick = 0; tick < 60; ++tick) {
+    (void)Tick(out);
+    EXPECT_LE(std::abs(offset_.depth), last + 1e-12);
+    last = std::abs(offset_.depth);
+  }
+  EXPECT_EQ(proxy_, out);
+}
+
+// Jaws that close around a fold do not throw the tool back.
+TEST_F(ToolProxy, IsNotPushedOutByWhatItsJawsPinch) {
+  Place(JointsAt({0, 0, 0.03}, 0.8));
+  for (double z = 0.028; z > 0.016; z -= 0.001) (void)Tick(JointsAt({0, 0, z}, 0.8));
+  double farthest = 0;
+  for (double jaw = 0.8; jaw > 0.22; jaw -= 0.02) {
+    (void)Tick(JointsAt({0, 0, 0.016}, jaw));
+    farthest = std::max(farthest, std::abs(offset_.depth));
+  }
+  EXPECT_LT(farthest, 0.003);
+}
+
+// The trocar is a fixed point of the proxy too.
+TEST_F(ToolProxy, PassesThroughTheTrocar) {
+  Place(JointsAt({0.03, 0, -0.08}));
+  for (double x = 0.03; x > 0.012; x -= 0.001) {
+    (void)Tick(JointsAt({x, 0, -0.08}));
+    const Vec3 tip = X_proxy_.translation, up = X_proxy_ * Vec3{0, 0, 1} - tip;
+    const Vec3 nearest = tip + math::Dot(kPort - tip, up) * up;
+    EXPECT_LT(math::Distance(nearest, kPort), 1e-12);
+  }
+}
+
+// Analytic: one plane across the shaft's way moves the depth alone; one beside the tip turns the shaft.
+TEST(FindProxy, GivesWayInTheJointThatHelps) {
+  const ToolDrive drive{{0, 0, 0.2}, instrument::FindJoints({0, 0, 0.2}, {0, 0, 0}, 0.3, 0.1)};
+  const auto above = FindProxy(drive, {}, std::vector<ProxyLimit>{{{0, 0, 0}, {0, 0, -1}, -0.003}});
+  EXPECT_NEAR(above.depth, 0.197, 1e-6);
+  EXPECT_NEAR(above.pan, drive.device.pan, 1e-9);
+  EXPECT_EQ(above.spin, 0.3);
+  EXPECT_EQ(above.jaw, 0.1);
+  const auto beside = FindProxy(drive, {}, std::vector<ProxyLimit>{{{0, 0, 0}, {1, 0, 0}, -0.002}});
+  const Vec3 tip = instrument::CalcToolPose(drive.p_world_port, beside).translation;
+  EXPECT_NEAR(tip.x, -0.002, 1e-5);
+  EXPECT_NEAR(beside.depth, 0.2, 1e-9);
+  const auto free = FindProxy(drive, {}, std::vector<ProxyLimit>{{{0, 0, 0}, {1, 0, 0}, 0.002}});
+  EXPECT_EQ(free, drive.device) << "a plane that is not reached does nothing";
+}
+
+class Tools : public testing::Test {
+ protected:
+  static constexpr Vec3 kLeftPort{-0.1, 0, 0.15}, kRightPort{0.1, 0, 0.15};
+  /// Left: at rest. Right: from one place of its tip to another in one tick.
+  ToolsContact Move(const Vec3& left_tip, const Vec3& right_from, const Vec3& right_to) {
+    const auto pose = [](const Vec3& port, const Vec3& tip) {
+      return instrument::CalcToolPose(port, instrument::FindJoints(port, tip, 0, 0));
+    };
+    const Pose left = pose(kLeftPort, left_tip), from = pose(kRightPort, right_from);
+    motions_ = {ToolMotion{&tool_, 0, left, left, left, 0, 0, -1},
+                ToolMotion{&tool_, 1, from, from, pose(kRightPort, right_to), 0, 0, -1}};
+    for (auto& limits : limits_) limits.limits.clear();
+    return FindToolsContact(motions_, limits_);
+  }
+  instrument::Tool tool_;
+  std::array<ToolMotion, 2> motions_;
+  std::array<ProxyLimits, 2> limits_;
+};
+
+TEST_F(Tools, ApartTheyFeelNothing) {
+  const ToolsContact contact = Move({0, 0, 0}, {0.05, 0.02, 0}, {0.04, 0.02, 0});
+  EXPECT_FALSE(contact.is_touching);
+  EXPECT_EQ(math::Norm(contact.force[0]), 0.0);
+}
+
+TEST_F(Tools, CrossedShaftsPushEachOtherApart) {
+  const ToolsContact contact = Move({0.02, 0, 0}, {-0.02, 0.02, 0}, {-0.02, 0.004, 0});
+  ASSERT_TRUE(contact.is_touching);
+  EXPECT_GT(contact.force[1].y, 0.1) << "the right tool came from +y and is held back";
+  EXPECT_EQ(math::Norm(contact.force[0] + contact.force[1]), 0.0) << "action and reaction";
+}
+
+TEST_F(Tools, DoNotPassThroughEachOtherBetweenTwoTicks) {
+  const ToolsContact contact = Move({0.02, 0, 0}, {-0.02, 0.012, 0}, {-0.02, -0.012, 0});
+  ASSERT_TRUE(contact.is_touching);
+  EXPECT_GT(contact.force[1].y, 1.0);
+  ASSERT_FALSE(limits_[1].limits.empty());
+  // with half of the way each, the proxies do not overlap
+  const Vec3* ports[2] = {&kLeftPort, &kRightPort};
+  const Vec3 tips[2] = {{0.02, 0, 0}, {-0.02, -0.012, 0}};
+  std::array<std::array<collision::Capsule, 3>, 2> bodies;
+  for (int hand = 0; hand < 2; ++hand) {
+    const auto proxy = FindProxy({*ports[hand], instrument::FindJoints(*ports[hand], tips[hand], 0, 0)}, {},
+                                 limits_[hand].limits);
+    bodies[hand] = CalcToolBodies(tool_, 0, instrument::CalcToolPose(*ports[hand], proxy));
+  }
+  for (const auto& a : bodies[0]) {
+    for (const auto& b : bodies[1]) EXPECT_GT(collision::FindCapsuleGap(a, b).distance, -5e-4);
+  }
+}
+
+}  // namespace
+}  // namespace trocar::surgery

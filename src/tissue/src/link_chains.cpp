@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "link_chains.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "link_hierarchy.h"
+
+namespace trocar::tissue {
+namespace {
+
+/// A node of a chain has at most so many neighbours: two on either side, and one where it hangs on something. Most
+/// nodes of a surface have six.
+constexpr std::uint32_t kMostNeighbours = 5;
+/// A chain's matrix is at most so many nodes wide: more is a surface.
+constexpr std::uint32_t kWidest = 12;
+
+/// Pivots below this part of the diagonal are not positive for sure [-].
+constexpr double kLeastPivot = 1e-7;
+
+/// Breadth-first order of the candidates that `root` is connected with, from the one found last.
+/// \param[in,out] mark  (n) different from `round` and `round` + 1 before
+std::vector<std::uint32_t> OrderChain(const NodeGraph& graph, std::span<const std::uint8_t> is_candidate,
+                                      std::uint32_t root, std::uint32_t round, std::span<std::uint32_t> mark) {
+  std::vector<std::uint32_t> order;
+  for (const std::uint32_t pass : {round, round + 1}) {
+    order = {root};
+    mark[root] = pass;
+    for (std::size_t at = 0; at < order.size(); ++at) {
+      for (auto h = graph.starts[order[at]]; h < graph.starts[order[at] + 1]; ++h) {
+        const std::uint32_t other = graph.others[h];
+        if (!is_candidate[other] || mark[other] == pass) continue;
+        mark[other] = pass;
+        order.push_back(other);
+      }
+    }
+    root = order.back();  // an end of the chain
+  }
+  return order;
+}
+
+std::size_t GroundAt(std::uint32_t i) {
+  return std::size_t{i / kSliceNodes} * 6 * kSliceNodes + i % kSliceNodes;
+}
+std::size_t LinkAt(std::size_t entry) {
+  return entry / kSliceNodes * 6 * kSliceNodes + entry % kSliceNodes;
+}
+/// Place of (row, column) among xx, xy, xz, yy, yz, zz.
+constexpr std::size_t kAt[3][3] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}};
+
+}  // namespace
+
+LinkChains::LinkChains(const NodeGraph& graph, const SliceLayout& layout) {
+  const std::uint32_t n = graph.Size();
+  constexpr std::uint32_t kNone = ~std::uint32_t{0};
+  std::vector<std::uint8_t> is_candidate(n);
+  for (std::uint32_t i = 0; i < n; ++i) {
+    const std::uint32_t neighbours = graph.starts[i + 1] - graph.starts[i];
+    is_candidate[i] = neighbours > 0 && neighbours <= kMostNeighbours;
+  }
+  std::vector<std::uint32_t> place(n, kNone), mark(n, 0);
+  for (std::uint32_t root = 0; root < n; ++root) {
+    if (!is_candidate[root]) continue;
+    const auto order = OrderChain(graph, is_candidate, root, 2 * root + 1, mark);
+    for (const std::uint32_t i : order) is_candidate[i] = 0;
+    const auto first = static_cast<std::uint32_t>(nodes_.size());
+    for (std::uint32_t k = 0; k < order.size(); ++k) place[order[k]] = first + k;
+    std::uint32_t widest = 0;
+    for (const std::uint32_t i : order) {
+      for (auto h = graph.starts[i]; h < graph.starts[i + 1]; ++h) {
+        const std::uint32_t other = place[graph.others[h]];
+        if (other != kNone && other < place[i]) widest = std::max(widest, place[i] - other);
+      }
+    }
+    if (order.size() == 1 || widest > kWidest) {
+      for (const std::uint32_t i : order) place[i] = kNone;
+    } else {
+      nodes_.insert(nodes_.end(), order.begin(), order.end());
+    }
+  }
+  row_starts_.push_back(0);
+  for (std::uint32_t row = 0; row < nodes_.size(); ++row) {
+    const std::uint32_t i = nodes_[row];
+    std::uint32_t first = row;
+    for (auto h = graph.starts[i]; h < graph.starts[i + 1]; ++h) {
+      const std::uint32_t column = place[graph.others[h]];
+      if (column == kNone || column >= row) continue;
+      first = std::min(first, column);
+      links_.push_back({row, column, static_cast<std::uint32_t>(layout.Entry(i, h - graph.starts[i]))});
+    }
+    for (std::uint32_t axis = 0; axis < 3; ++axis) {
+      first_.push_back(3 * first);
+      row_starts_.push_back(row_starts_.back() + 3 * (row - first) + axis + 1);
+    }
+  }
+  factor_.resize(row_starts_.back());
+  lower_.resize(row_starts_.back());
+  values_.resize(3 * nodes_.size());
+}
+
+/// False where the matrix is not positive definite.
+bool LinkChains::FactoriseOnce(const LinkLevel& level, std::span<const float> slack) noexcept {
+  std::fill(factor_.begin(), factor_.end(), 0.0);
+  for (std::size_t row = 0; row < nodes_.size(); ++row) {
+    const std::uint32_t i = nodes_[row];
+    std::array<double, 6> block = {1, 0, 0, 1, 0, 1};
+    if (level.is_free[i] != 0.0f) {
+      for (std::size_t v = 0; v < 6; ++v)
+        block[v] = static_cast<double>(level.ground[GroundAt(i) + v * kSliceNodes]);
+      for (std::uint32_t step = 0; step < level.layout.RowSteps(i); ++step) {
+        const std::size_t entry = level.layout.Entry(i, step);
+        if (level.layout.others[entry] == i) break;
+        for (std::size_t v = 0; v < 6; ++v)
+          block[v] += static_cast<double>(level.links[LinkAt(entry) + v * kSliceNodes]);
+        for (const std::size_t v : {0u, 3u, 5u}) block[v] += slack.empty() ? 0.0 : static_cast<double>(slack[entry]);
+      }
+    }
+    for (std::size_t a = 0; a < 3; ++a) {
+      for (std::size_t b = 0; b <= a; ++b) At(3 * row + a, 3 * row + b) = block[kAt[a][b]];
+    }
+  }
+  for (const Link& link : links_) {
+    if (level.is_free[nodes_[link.row]] == 0.0f || level.is_free[nodes_[link.column]] == 0.0f) continue;
+    const double firmer = slack.empty() ? 0.0 : static_cast<double>(slack[link.entry]);
+    for (std::size_t a = 0; a < 3; ++a) {
+      for (std::size_t b = 0; b < 3; ++b) {
+        At(3 * link.row + a, 3 * link.column + b) -=
+            static_cast<double>(level.links[LinkAt(link.entry) + kAt[a][b] * kSliceNodes]) +
+            (a == b ? firmer : 0.0);
+      }
+    }
+  }
+  for (std::size_t row = 0; row < first_.size(); ++row) {
+    double* const here = factor_.data() + row_starts_[row];
+    double pivot = here[row - first_[row]];
+    const double whole = pivot;
+    for (std::size_t column = first_[row]; column < row; ++column) {
+      const double* const above = factor_.data() + row_starts_[column];
+      double sum = here[column - first_[row]];
+      for (std::size_t k = std::max(first_[row], first_[column]); k < column; ++k)
+        sum -= here[k - first_[row]] * above[k - first_[column]];
+      sum /= above[column - first_[column]];
+      here[column - first_[row]] = sum;
+      pivot -= sum * sum;
+    }
+    if (!(pivot > kLeastPivot * whole) || !std::isfinite(pivot)) return false;
+    here[row - first_[row]] = std::sqrt(pivot);
+  }
+  return true;
+}
+
+void LinkChains::Factorise(const LinkLevel& level, std::span<const float> slack) noexcept {
+  is_factorised_ = FactoriseOnce(level, {}) || FactoriseOnce(level, slack);
+  if (!is_factorised_) return;
+  for (std::size_t row = 0; row < first_.size(); ++row) {
+    const std::size_t diagonal = row_starts_[row + 1] - 1;
+    for (std::size_t at = row_starts_[row]; at < diagonal; ++at) lower_[at] = static_cast<float>(factor_[at]);
+    lower_[diagonal] = static_cast<float>(1.0 / factor_[diagonal]);
+  }
+}
+
+void LinkChains::Solve(const LinkLevel& level, const Float4* from, const Float4* b, float factor,
+                       Float4* x) noexcept {
+  if (!is_factorised_) return;
+  for (std::size_t row = 0; row < nodes_.size(); ++row) {
+    const std::uint32_t i = nodes_[row];
+    std::array<float, 3> r = {b[i].x, b[i].y, b[i].z};
+    if (from != nullptr) {
+      const auto subtract = [&](const float* m, float dx, float dy, float dz) {
+        r[0] -= m[0] * dx + m[kSliceNodes] * dy + m[2 * kSliceNodes] * dz;
+        r[1] -= m[kSliceNodes] * dx + m[3 * kSliceNodes] * dy + m[4 * kSliceNodes] * dz;
+        r[2] -= m[2 * kSliceNodes] * dx + m[4 * kSliceNodes] * dy + m[5 * kSliceNodes] * dz;
+      };
+      const Float4& here = from[i];
+      subtract(level.ground.data() + GroundAt(i), here.x, here.y, here.z);
+      for (std::uint32_t step = 0; step < level.layout.RowSteps(i); ++step) {
+        const std::size_t entry = level.layout.Entry(i, step);
+        const std::uint32_t other = level.layout.others[entry];
+        if (other == i) break;
+        const Float4& there = from[other];
+        subtract(level.links.data() + LinkAt(entry), here.x - there.x, here.y - there.y, here.z - there.z);
+      }
+    }
+    for (std::size_t axis = 0; axis < 3; ++axis) values_[3 * row + axis] = level.is_free[i] * r[axis];
+  }
+  for (std::size_t row = 0; row < first_.size(); ++row) {
+    const float* const here = lower_.data() + row_starts_[row];
+    const std::size_t first = first_[row];
+    float sum = values_[row];
+    for (std::size_t column = first; column < row; ++column) sum -= here[column - first] * values_[column];
+    values_[row] = sum * here[row - first];
+  }
+  for (std::size_t row = first_.size(); row-- > 0;) {
+    const float* const here = lower_.data() + row_starts_[row];
+    const std::size_t first = first_[row];
+    const float value = values_[row] *= here[row - first];
+    for (std::size_t column = first; column < row; ++column) values_[column] -= here[column - first] * value;
+  }
+  for (std::size_t row = 0; row < nodes_.size(); ++row) {
+    const std::uint32_t i = nodes_[row];
+    const Float4 start = from == nullptr ? Float4{} : from[i];
+    x[i] = {start.x + factor * values_[3 * row], start.y + factor * values_[3 * row + 1],
+            start.z + factor * values_[3 * row + 2], 0.0f};
+  }
+}
+
+}  // namespace trocar::tissue

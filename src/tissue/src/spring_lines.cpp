@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "spring_lines.h"
+
+#include <algorithm>
+
+#include "trocar/core/assert.h"
+#include "trocar/tissue/spring_law.h"
+
+namespace trocar::tissue {
+
+SpringLines::SpringLines(const TissueModel& model, SlicedSprings& sliced, std::array<OrderedModel*, 2> ordered)
+    : model_(&model),
+      sliced_(&sliced),
+      ordered_(ordered),
+      lines_(model),
+      ends_(model.SpringCount()),
+      factor_(model.SpringCount(), 1.0),
+      is_changed_(model.SpringCount(), 0) {
+  for (std::uint32_t i = 0; i < model.Size(); ++i) {
+    const std::size_t first = std::size_t{sliced.starts[i / kLanes]} * kLanes + i % kLanes;
+    for (auto h = model.spring_starts[i]; h < model.spring_starts[i + 1]; ++h) {
+      const auto& half = model.half_springs[h];
+      const std::size_t place = first + std::size_t{h - model.spring_starts[i]} * kLanes;
+      Ends& ends = ends_[half.spring];
+      if (i < half.other) {
+        ends.a = i, ends.half_a = h, ends.sliced_a = place;
+      } else {
+        ends.b = i, ends.half_b = h, ends.sliced_b = place;
+      }
+    }
+  }
+  adrift_.reserve(model.Size());
+  for (std::uint32_t spring = 0; spring < model.SpringCount(); ++spring) {
+    if (model.laws[model.spring_law[spring]].stiffening > 0.0) elastic_.push_back(spring);
+  }
+}
+
+bool SpringLines::TakeFactors(const TissueState& state) noexcept {
+  TROCAR_ASSERT(state.spring_factor.size() == factor_.size());
+  bool has_changed = false;
+  for (std::uint32_t spring = 0; spring < factor_.size(); ++spring) {
+    const double factor = state.spring_factor[spring];
+    if (factor == factor_[spring]) continue;
+    if (!(factor >= 0.0 && std::isfinite(factor))) return false;
+    factor_[spring] = factor;
+    has_changed = true;
+    const auto& half = model_->half_springs[ends_[spring].half_a];
+    SetLine(spring, factor * half.stiffness, half.rest_length);
+  }
+  if (has_changed) FindAdrift();
+  return true;
+}
+
+void SpringLines::FindAdrift() noexcept {
+  adrift_.clear();
+  for (std::uint32_t i = 0; i < model_->Size(); ++i) {
+    bool had_spring = false, has_spring = false;
+    for (auto h = model_->spring_starts[i]; h < model_->spring_starts[i + 1]; ++h) {
+      had_spring = had_spring || model_->half_springs[h].stiffness > 0.0;
+      has_spring = has_spring || lines_.half_springs[h].stiffness > 0.0;
+    }
+    if (had_spring && !has_spring && model_->shape_stiffness[i] == 0.0) adrift_.push_back(i);
+  }
+}
+
+double SpringLines::TakeLengths(const TissueState& state) noexcept {
+  double error = 0, largest = 0;
+  for (const std::uint32_t spring : elastic_) {
+    const Ends& ends = ends_[spring];
+    const auto& half = model_->half_springs[ends.half_a];
+    const auto& line = lines_.half_springs[ends.half_a];
+    const double length = math::Distance(state.position[ends.a], state.position[ends.b]);
+    const SpringLine next = CalcSpringLine(model_->laws[model_->spring_law[spring]], factor_[spring],
+                                           half.stiffness, half.rest_length, length);
+    const double tension = next.stiffness * (length - next.rest_length);
+    error = std::fmax(error, std::fabs(tension - line.stiffness * (length - line.rest_length)));
+    largest = std::fmax(largest, std::fabs(tension));
+    if (next.stiffness != line.stiffness || next.rest_length != line.rest_length)
+      SetLine(spring, next.stiffness, next.rest_length);
+  }
+  return error > 0.0 ? error / largest : 0.0;
+}
+
+void SpringLines::SetLine(std::uint32_t spring, double stiffness, double rest_length) noexcept {
+  const Ends& ends = ends_[spring];
+  const auto& own = model_->half_springs[ends.half_a];
+  const bool is_changed = stiffness != own.stiffness || rest_length != own.rest_length;
+  changed_count_ += is_changed;
+  changed_count_ -= is_changed_[spring];
+  is_changed_[spring] = is_changed;
+  for (const std::uint32_t h : {ends.half_a, ends.half_b}) {
+    lines_.half_springs[h].stiffness = stiffness;
+    lines_.half_springs[h].rest_length = rest_length;
+    for (OrderedModel* ordered : ordered_) {
+      if (ordered->spring_entries.empty()) continue;
+      ordered->stiffness[ordered->spring_entries[h]] = stiffness;
+      ordered->rest_length[ordered->spring_entries[h]] = rest_length;
+    }
+  }
+  for (const std::size_t place : {ends.sliced_a, ends.sliced_b}) {
+    sliced_->stiffness[place] = stiffness;
+    sliced_->stiffness_times_rest[place] = stiffness * rest_length;
+  }
+}
+
+void SpringLines::Add(const SolveReport& round, SolveReport& sum) noexcept {
+  SolveReport next = round;
+  next.rounds = sum.rounds + 1;
+  next.iterations += sum.iterations;
+  next.coarse_levels = std::max(next.coarse_levels, sum.coarse_levels);
+  next.linear_iterations += sum.linear_iterations;
+  next.negative_curvatures += sum.negative_curvatures;
+  next.restarts += sum.restarts;
+  sum = next;
+}
+
+}  // namespace trocar::tissue

@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file newton_parts_test.cpp  The parts of Newton's method, each against a slow and plain one.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "linearisation.h"
+#include "link_chains.h"
+#include "smallest_ritz.h"
+#include "test_systems.h"
+#include "trocar/tissue/equilibrium.h"
+
+namespace trocar::tissue {
+namespace {
+
+/// A pressed and pulled sphere with strands, a duct of two rows of springs at its pole, and a spring whose ends meet.
+struct Patient {
+  TissueDefinition definition;
+  std::vector<std::uint32_t> duct;
+  std::vector<ContactSpring> contacts;
+
+  explicit Patient(int duct_nodes = 20) {
+    definition = MakeMembrane(geometry::MakeSphere({0, 0, 0}, 0.03, 3), 100.0, 1e5);
+    std::uint32_t last = 0;
+    const auto surface = static_cast<std::uint32_t>(definition.rest.size());
+    for (int i = 0; i < duct_nodes; ++i) {
+      const auto node = static_cast<std::uint32_t>(definition.rest.size());
+      definition.rest.push_back(definition.rest[0] + Vec3{0.001 * std::sin(0.3 * i), 0.0005 * i, 0.002 * (i + 1)});
+      definition.mass.push_back(1e-4);
+      definition.shape_stiffness.push_back(0.5);
+      if (i == 0) {
+        definition.strands.push_back({last, node, 900.0});
+      } else {
+        AddSpring(last, node, 1500.0);
+      }
+      if (i > 1) AddSpring(node - 2, node, 300.0);
+      duct.push_back(node);
+      last = node;
+    }
+    definition.strands.push_back({surface / 2, surface / 3, 40.0});
+    contacts = {{{9, 10, 11}, {1. / 3, 1. / 3, 1. / 3}, {0, 0, 1}, 0.031, 500.0}};
+  }
+
+  void AddSpring(std::uint32_t a, std::uint32_t b, double k) {
+    definition.springs.push_back({a, b, k, math::Distance(definition.rest[a], definition.rest[b])});
+  }
+};
+
+TissueState Shake(const TissueModel& model, double by, unsigned seed) {
+  TissueState state = MakeRestState(model);
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> offset(-by, by);
+  for (Vec3& p : state.position) p += {offset(random), offset(random), offset(random)};
+  state.condition[5] = NodeCondition::kPrescribed;
+  return state;
+}
+
+/// The balance and the stiffness of one state, in the solvers' order.
+struct Evaluated {
+  OrderedModel model;
+  OrderedLoad load;
+  LinkHierarchy hierarchy;
+  Linearisation linearisation;
+  Balance balance;
+  std::vector<Double4> position;
+  Workers workers{1};
+  const Kernels* kernels;
+
+  Evaluated(const TissueModel& from, const TissueLoad& loads, const TissueState& state, SimdLevel level)
+      : model(MakeOrderedModel(from)),
+        hierarchy(model.graph, model.graph_stiffness),
+        linearisation(model),
+        kernels(&GetKernels(level)) {
+    load.constant.resize(model.Size()), load.is_free.resize(model.Size());
+    load.contacts.reserve(kMaxContacts);
+    SetOrderedLoad(model, loads, state, load);
+    balance.residual.resize(model.layout.PaddedNodes());
+    balance.is_pressing.resize(kMaxContacts);
+    position.resize(model.layout.PaddedNodes());
+    for (std::uint32_t i = 0; i < model.Size(); ++i) {
+      const Vec3& p = state.position[model.old_of_new[i]];
+      position[i] = {p.x, p.y, p.z, 0.0};
+    }
+    linearisation.SetLoad(load, state.strand_is_intact, hierarchy.Finest());
+    linearisation.Linearise(*kernels, workers, position, hierarchy.Finest(), balance);
+  }
+};
+
+std::vector<SimdLevel> Levels() {
+  std::vector<SimdLevel> levels;
+  for (const SimdLevel level : {SimdLevel::kBaseline, SimdLevel::kAvx2, SimdLevel::kAvx512}) {
+    if (HasSimdLevel(level)) levels.push_back(level);
+  }
+  return levels;
+}
+
+double Norm(const Float4& v) {
+  return std::sqrt(static_cast<double>(v.x * v.x + v.y * v.y + v.z * v.z));
+}
+
+// Oracle: forces and differences of energy against the plain evaluation, with every kind of spring.
+TEST(Linearisation, AgreesWithThePlainResidualAndEnergy) {
+  Patient patient;
+  patient.definition.rest.push_back(patient.definition.rest.back());
+  patient.definition.mass.push_back(1e-4), patient.definition.shape_stiffness.push_back(1.0);
+  const auto n = static_cast<std::uint32_t>(patient.definition.rest.size());
+  patient.definition.springs.push_back({n - 2, n - 1, 50.0, 0.001});
+  const TissueModel model = MakeTissueModel(patient.definition);
+  const TissueLoad load{.gravity = {1, 2, -9.81}, .stiffness_scale = 1.3, .shape_scale = 0.7, .contacts = patient.contacts};
+  const TissueState rest = MakeRestState(model), state = Shake(model, 5e-4, 7);
+  std::vector<Vec3> expected(model.Size());
+  CalcResidual(model, state, load, expected);
+  double largest = 0;
+  for (const Vec3& f : expected) largest = std::max(largest, math::Norm(f));
+  for (const SimdLevel level : Levels()) {
+    const Evaluated here(model, load, state, level), before(model, load, rest, level);
+    EXPECT_TRUE(here.balance.is_pressing[0] != 0);
+    for (std::uint32_t i = 0; i < model.Size(); ++i) {
+      const std::uint32_t old = here.model.old_of_new[i];
+      const Float4& found = here.balance.residual[i];
+      const Vec3 force{found.x, found.y, found.z};
+      const Vec3 wanted = state.condition[old] == NodeCondition::kPrescribed ? Vec3{} : expected[old];
+      ASSERT_LT(math::Distance(force, wanted), 1e-6 * largest) << SimdLevelName(level) << " node " << old;
+    }
+    const double change = CalcEnergy(model, state, load) - CalcEnergy(model, rest, load);
+    EXPECT_NEAR(here.balance.energy - before.balance.energy, change, 1e-9 * std::fabs(change)) << SimdLevelName(level);
+  }
+}
+
+// The stiffness is the change of the residual, by differences.
+TEST(Linearisation, StiffnessIsTheDerivativeOfTheResidual) {
+  const Patient patient;
+  const TissueModel model = MakeTissueModel(patient.definition);
+  const TissueLoad load{};
+  const TissueState state = Shake(model, 5e-4, 8);
+  const double by = 1e-8;
+  for (const SimdLevel level : Levels()) {
+    Evaluated here(model, load, state, level);
+    std::vector<Float4> direction(here.balance.residual.size()), product = direction;
+    TissueState moved = state;
+    std::mt19937 random(3);
+    std::uniform_real_distribution<float> part(-1, 1);
+    for (std::uint32_t i = 0; i < model.Size(); ++i) {
+      if (!here.load.is_free[i]) continue;
+      const Float4 d = direction[i] = {part(random), part(random), part(random), 0};
+      moved.position[here.model.old_of_new[i]] +=
+          by * Vec3{static_cast<double>(d.x), static_cast<double>(d.y), static_cast<double>(d.z)};
+    }
+    RunPass(*here.kernels, here.workers, here.hierarchy.Finest(), LinkPass::kProduct, direction.data(), nullptr, 0.0f,
+            product.data());
+    std::vector<Vec3> before(model.Size()), after(model.Size());
+    CalcResidual(model, state, load, before);
+    CalcResidual(model, moved, load, after);
+    double largest = 0;
+    for (const Float4& f : product) largest = std::max(largest, Norm(f));
+    for (std::uint32_t i = 0; i < model.Size(); ++i) {
+      const std::uint32_t old = here.model.old_of_new[i];
+      if (!here.load.is_free[i]) continue;
+      const Vec3 wanted = (before[old] - after[old]) / by;
+      const Vec3 found{product[i].x, product[i].y, product[i].z};
+      ASSERT_LT(math::Distance(found, wanted), 1e-4 * largest) << SimdLevelName(level) << " node " << old;
+    }
+  }
+}
+
+TEST(Linearisation, WideVectorsGiveTheSameBits) {
+  if (!HasSimdLevel(SimdLevel::kAvx512)) GTEST_SKIP() << "this processor has no AVX-512";
+  const Patient patient;
+  const TissueModel model = MakeTissueModel(patient.definition);
+  const TissueLoad load{.gravity = {0, 0, -9.81}, .contacts = patient.contacts};
+  const TissueState state = Shake(model, 1e-3, 9);
+  const Evaluated a(model, load, state, SimdLevel::kAvx2), b(model, load, state, SimdLevel::kAvx512);
+  EXPECT_EQ(a.balance.energy, b.balance.energy);
+  EXPECT_EQ(a.hierarchy.Finest().links, b.hierarchy.Finest().links);
+  EXPECT_EQ(a.hierarchy.Finest().inverse, b.hierarchy.Finest().inverse);
+  for (std::size_t i = 0; i < a.balance.residual.size(); ++i) {
+    ASSERT_EQ(a.balance.residual[i].x, b.balance.residual[i].x);
+    ASSERT_EQ(a.balance.residual[i].z, b.balance.residual[i].z);
+  }
+}
+
+// A duct is found, a surface is not, and the solution balances: K x = b where all but the chain stand still.
+TEST(LinkChains, SolveTheDuctExactly) {
+  const Patient patient;
+  const TissueModel model = MakeTissueModel(patient.definition);
+  const TissueState state = MakeRestState(model);
+  Evaluated here(model, {}, state, SimdLevel::kBaseline);
+  LinkChains chains(here.model.graph, here.model.layout);
+  std::vector<std::uint32_t> found;
+  for (const std::uint32_t i : chains.Nodes()) found.push_back(here.model.old_of_new[i]);
+  std::sort(found.begin(), found.end());
+  ASSERT_EQ(found, patient.duct);
+  std::vector<Float4> b(here.balance.residual.size()), x = b, product = b;
+  for (const std::uint32_t i : chains.Nodes()) b[i] = {1.0f, -0.5f, 0.25f, 0.0f};
+  chains.Factorise(here.hierarchy.Finest(), here.linearisation.Slack());
+  chains.Solve(here.hierarchy.Finest(), nullptr, b.data(), 1.0f, x.data());
+  RunPass(*here.kernels, here.workers, here.hierarchy.Finest(), LinkPass::kProduct, x.data(), nullptr, 0.0f,
+          product.data());
+  for (const std::uint32_t i : chains.Nodes())
+    EXPECT_LT(Norm({product[i].x - b[i].x, product[i].y - b[i].y, product[i].z - b[i].z, 0}), 2e-3);
+  // from there nothing is left to correct
+  std::vector<Float4> again = x;
+  chains.Solve(here.hierarchy.Finest(), x.data(), b.data(), 1.0f, again.data());
+  for (const std::uint32_t i : chains.Nodes())
+    EXPECT_LT(Norm({again[i].x - x[i].x, again[i].y - x[i].y, again[i].z - x[i].z, 0}), 2e-3 * Norm(x[i]));
+}
+
+TEST(LinkChains, ASurfaceIsNone) {
+  const TissueModel model = MakeTissueModel(MakeMembrane(geometry::MakeSphere({0, 0, 0}, 0.03, 3), 100.0, 1e5));
+  const OrderedModel ordered = MakeOrderedModel(model);
+  EXPECT_TRUE(LinkChains(ordered.graph, ordered.layout).Nodes().empty());
+}
+
+// What the solver promises, where it is hardest: a soft duct on a stiff surface.
+TEST(NewtonMultigrid, KeepsItsPromiseOnADuct) {
+  const Patient patient(60);
+  const TissueModel model = MakeTissueModel(patient.definition);
+  TissueState state = MakeRestState(model);
+  state.condition[patient.duct.back()] = NodeCondition::kPrescribed;
+  EquilibriumSolver solver(model, 1), judge(model, 1);
+  SolverSettings settings;
+  settings.kind = SolverKind::kNewtonMultigrid;
+  SolverSettings exact = settings;
+  exact.max_error = 1e-9, exact.max_newton_steps = 200, exact.max_linear_iterations = 1000;
+  for (int tick = 0; tick < 20; ++tick) {
+    state.position[patient.duct.back()] += {0.0002, 0.0005, 0.0};
+    const SolveReport report = solver.Solve(settings, {}, state);
+    ASSERT_TRUE(report.converged) << "tick " << tick;
+    TissueState truth = state;
+    (void)judge.Solve(exact, {}, truth);
+    double error = 0, scale = 0;
+    for (std::size_t i = 0; i < model.Size(); ++i) {
+      error = std::max(error, math::Distance(state.position[i], truth.position[i]));
+      scale = std::max(scale, math::Distance(truth.position[i], model.rest[i]));
+    }
+    EXPECT_LT(error, 1e-3 * scale) << "tick " << tick;
+  }
+}
+
+// Conjugate gradients on a diagonal matrix whose eigenvalues are known.
+TEST(SmallestRitz, SinksToTheSmallestEigenvalue) {
+  const std::vector<double> eigenvalues = {0.013, 0.2, 0.31, 0.5, 0.62, 0.7, 0.81, 0.9, 1.0, 1.1};
+  std::vector<double> r(eigenvalues.size(), 1.0), p = r;
+  SmallestRitz ritz;
+  EXPECT_EQ(ritz.Value(), INFINITY);
+  double beta = 0, last = INFINITY;
+  for (std::size_t step = 0; step < eigenvalues.size(); ++step) {
+    double rr = 0, pq = 0, next = 0;
+    for (std::size_t i = 0; i < r.size(); ++i) rr += r[i] * r[i], pq += p[i] * eigenvalues[i] * p[i];
+    const double alpha = rr / pq;
+    ritz.Add(alpha, beta);
+    EXPECT_LE(ritz.Value(), last);
+    EXPECT_GE(ritz.Value(), 0.97 * eigenvalues[0]);
+    last = ritz.Value();
+    for (std::size_t i = 0; i < r.size(); ++i) r[i] -= alpha * eigenvalues[i] * p[i], next += r[i] * r[i];
+    beta = next / rr;
+    for (std::size_t i = 0; i < r.size(); ++i) p[i] = r[i] + beta * p[i];
+  }
+  EXPECT_NEAR(ritz.Value(), eigenvalues[0], 0.03 * eigenvalues[0]);
+}
+
+}  // namespace
+}  // namespace trocar::tissue

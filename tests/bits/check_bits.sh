@@ -1,0 +1,60 @@
+#!/bin/bash
+# SPDX-License-Identifier: Apache-2.0
+# Compiles the tissue solvers with g++ and clang++ at -O1, -O2 and -O3 and compares what they find, bit by bit.
+# usage: check_bits.sh SOURCE_FOLDER SCRATCH_FOLDER [COMPILER...]     exit status 77: a compiler is missing
+set -euo pipefail
+source_folder=$1 scratch=$2
+shift 2
+compilers=("${@:-g++}")
+[ $# -gt 0 ] || compilers=(g++ clang++)
+levels=(${TROCAR_BITS_LEVELS:--O1 -O2 -O3})
+for compiler in "${compilers[@]}"; do
+  command -v "$compiler" > /dev/null || { echo "skipped: there is no $compiler here; tools/install-packages brings it"; exit 77; }
+done
+
+tissue=$source_folder/src/tissue
+sources=("$source_folder/tests/bits/solve_bits.cpp" "$source_folder"/src/core/src/{assert,simd_level}.cpp)
+for file in "$tissue"/src/*.cpp; do
+  case $(basename "$file" .cpp) in
+    conservation | damage | linear_response | material | model_check | rest_frame | state_guard | volume_constraint)
+      ;;  # no solver needs them
+    *) sources+=("$file") ;;
+  esac
+done
+# what CMakeLists.txt gives them, but for the optimisation
+flags=(-std=c++20 -ffp-contract=off -fno-math-errno -fno-trapping-math -DNDEBUG -w -I"$tissue/src")
+for module in tissue geometry math core; do flags+=(-I"$source_folder/src/$module/include"); done
+architecture=$(uname -m)
+
+first=
+for compiler in "${compilers[@]}"; do
+  for level in "${levels[@]}"; do
+    folder=$scratch/$compiler$level
+    rm -rf "$folder"
+    mkdir -p "$folder"
+    for file in "${sources[@]}"; do
+      own=()
+      if [ "$architecture" = x86_64 ]; then
+        case $file in
+          *kernels_avx2.cpp) own=(-mavx2 -mfma) ;;
+          *kernels_avx512.cpp)
+            own=(-mavx512f -mavx512vl -mavx512dq -mavx512bw -mfma -mprefer-vector-width=512) ;;
+        esac
+      fi
+      "$compiler" "${flags[@]}" "$level" "${own[@]}" -c "$file" -o "$folder/$(basename "$file" .cpp).o"
+    done
+    "$compiler" "$folder"/*.o -ltbb -lpthread -o "$folder/solve_bits"
+    "$folder/solve_bits" > "$folder/bits"
+    [ -s "$folder/bits" ] || { echo "$compiler $level: nothing was printed"; exit 1; }
+    if [ -z "$first" ]; then
+      first=$folder/bits
+      cat "$first"
+    elif ! diff "$first" "$folder/bits"; then
+      echo "$compiler $level finds other bits than the first"
+      exit 1
+    else
+      echo "$compiler $level: the same"
+    fi
+    rm -f "$folder"/*.o
+  done
+done
