@@ -53,7 +53,8 @@ Sheet MakeSheet(std::uint32_t n, bool is_irregular) {
       add_spring(last, next, 400.0);
       last = next;
     }
-    for (std::uint32_t row = 0; row + 2 < n; row += 2) definition.strands.push_back({at(row, 2), at(row + 2, 4), 30.0});
+    for (std::uint32_t row = 0; row + 2 < n; row += 2)
+      definition.strands.push_back({at(row, 2), at(row + 2, 4), 30.0});
   }
   definition.mass.assign(definition.rest.size(), 1e-3);
   definition.shape_stiffness.assign(definition.rest.size(), is_irregular ? 0.3 : 1.0);
@@ -91,9 +92,10 @@ int main() {
     if (!HasSimdLevel(level)) continue;
     for (const SolverKind kind : kSolverKinds) {
       for (const bool is_irregular : {false, true}) {
-        std::printf("%s %s %s %016llx\n", std::string(SimdLevelName(level)).c_str(),
-                    std::string(SolverName(kind)).c_str(), is_irregular ? "irregular" : "grid",
-                    static_cast<unsigned long long>(CalcFingerprint(MakeSheet(20, is_irregular), kind, level)));
+        std::printf(
+            "%s %s %s %016llx\n", std::string(SimdLevelName(level)).c_str(),
+            std::string(SolverName(kind)).c_str(), is_irregular ? "irregular" : "grid",
+            static_cast<unsigned long long>(CalcFingerprint(MakeSheet(20, is_irregular), kind, level)));
       }
     }
   }

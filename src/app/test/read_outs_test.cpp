@@ -66,6 +66,9 @@ TEST(ReadOuts, EventsAreSaidInWords) {
             "Right grasper: let the gallbladder go");
   EXPECT_EQ(DescribeEvent({EventKind::kSlip, 10, session::kRight, 0, 4.0}, scene),
             "Right grasper: the liver slipped, 4.0 N");
+  EXPECT_EQ(DescribeEvent({EventKind::kPinchDamage, 10, session::kRight, 0, 3.0}, scene),
+            "Right grasper: pinched the liver too hard, 3.0 N");
+  EXPECT_EQ(DescribeEvent({EventKind::kToolsTouch, 10, -1, -1, 0}, scene), "The instruments met");
   EXPECT_EQ(DescribeEvent({EventKind::kStateRestored, 10, -1, 0, 0}, scene),
             "Liver: was not finite, last good state restored (E-SIM-001)");
   EXPECT_EQ(DescribeEvent({EventKind::kGrasp, 10, session::kLeft, 0, 0.01}, scene),

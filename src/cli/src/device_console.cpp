@@ -95,10 +95,11 @@ std::string FormatHands(const HandSamples& samples) {
     char line[240];
     if (hand.is_valid) {
       std::snprintf(line, sizeof line,
-                    "%-11s pan %6.1f %s  tilt %6.1f %s  spin %7.1f  depth %6.1f mm %s  jaw %5.1f %s\n", kNames[i],
-                    kDegrees * hand.pan, Bar(hand.pan, -1.4, 1.4).c_str(), kDegrees * hand.tilt,
+                    "%-11s pan %6.1f %s  tilt %6.1f %s  spin %7.1f  depth %6.1f mm %s  jaw %5.1f %s\n",
+                    kNames[i], kDegrees * hand.pan, Bar(hand.pan, -1.4, 1.4).c_str(), kDegrees * hand.tilt,
                     Bar(hand.tilt, -1.4, 1.4).c_str(), kDegrees * hand.spin, 1e3 * hand.depth,
-                    Bar(hand.depth, 0.0, 0.28).c_str(), kDegrees * hand.jaw, Bar(hand.jaw, 0.0, 1.05).c_str());
+                    Bar(hand.depth, 0.0, 0.28).c_str(), kDegrees * hand.jaw,
+                    Bar(hand.jaw, 0.0, 1.05).c_str());
     } else {
       std::snprintf(line, sizeof line, "%-11s not seen\n", kNames[i]);
     }
@@ -121,7 +122,8 @@ void HandPlot::Show(const HandSamples& samples, double time) {
   if (is_drawn_) std::printf("\033[%zuA", samples.size());
   is_drawn_ = true;
   std::string text = FormatHands(samples);
-  for (std::size_t at = text.find('\n'); at != std::string::npos; at = text.find('\n', at + 4)) text.insert(at, "\033[K");
+  for (std::size_t at = text.find('\n'); at != std::string::npos; at = text.find('\n', at + 4))
+    text.insert(at, "\033[K");
   std::fputs(text.c_str(), stdout);
   std::fflush(stdout);
 }

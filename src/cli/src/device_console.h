@@ -28,7 +28,7 @@ using HandSamples = std::array<device::HandSample, device::kChannelCount>;
 /// What was seen of a device.
 struct WatchReport {
   double seconds = 0;
-  std::array<int, device::kChannelCount> fresh{};  ///< samples of each hand
+  std::array<int, device::kChannelCount> fresh{};   ///< samples of each hand
   std::array<int, device::kChannelCount> unseen{};  ///< times that a hand went out of sight
   bool is_lost = false;
 };

@@ -51,7 +51,8 @@ core::Result<std::vector<Pose>> CollectPoses(device::PoseDriver& driver, int han
   progress.Finish();
   if (!report) return report.error();
   if (report->is_lost)
-    return core::Error{core::ErrorCode::kDeviceLost, driver.GetName() + " was lost; check plug and power, and repeat"};
+    return core::Error{core::ErrorCode::kDeviceLost,
+                       driver.GetName() + " was lost; check plug and power, and repeat"};
   // evenly thinned: more than this says nothing new
   constexpr std::size_t kMost = 400;
   std::vector<Pose> thinned;
@@ -61,8 +62,10 @@ core::Result<std::vector<Pose>> CollectPoses(device::PoseDriver& driver, int han
 }
 
 void PrintQuality(const device::FitQuality& quality, std::size_t poses) {
-  std::printf("  from %zu poses: residual %.2f mm RMS (3 allowed), worst %.2f mm, turned by %.0f degrees (30 needed)\n",
-              poses, 1e3 * quality.residual, 1e3 * quality.worst, 57.29577951308232 * quality.spread);
+  std::printf(
+      "  from %zu poses: residual %.2f mm RMS (3 allowed), worst %.2f mm, turned by %.0f degrees (30 "
+      "needed)\n",
+      poses, 1e3 * quality.residual, 1e3 * quality.worst, 57.29577951308232 * quality.spread);
 }
 
 core::Status Keep(const device::DeviceStore& store) {
@@ -80,10 +83,12 @@ core::Status CalibrateTracker(const CalibrateOptions& options, bool is_tip) {
   const auto driver = device::MakeTracker(options.spec, store, device::SystemClock());
   if (!driver) return driver.error();
   const int hand = FindHand(options.hand);
-  Announce(is_tip ? "Put the " + options.hand + " instrument's tip into a small hole and keep it there; swing the handle "
-                    "round in all directions, by more than 30 degrees."
-                  : "Leave the " + options.hand + " instrument in its trocar; swing it in all directions by more than 30 "
-                    "degrees, and move it in and out.",
+  Announce(is_tip ? "Put the " + options.hand +
+                        " instrument's tip into a small hole and keep it there; swing the handle "
+                        "round in all directions, by more than 30 degrees."
+                  : "Leave the " + options.hand +
+                        " instrument in its trocar; swing it in all directions by more than 30 "
+                        "degrees, and move it in and out.",
            options.wait);
   const auto poses = CollectPoses(**driver, hand, options.seconds);
   if (!poses) return poses.error();
@@ -95,7 +100,8 @@ core::Status CalibrateTracker(const CalibrateOptions& options, bool is_tip) {
     if (!fit) return fit.error();
     calibration.p_sensor_tip = fit->p_sensor_pivot;
     PrintQuality(fit->quality, poses->size());
-    std::printf("Next: trocar devices calibrate trocar %s --hand %s\n", options.spec.c_str(), options.hand.c_str());
+    std::printf("Next: trocar devices calibrate trocar %s --hand %s\n", options.spec.c_str(),
+                options.hand.c_str());
   } else {
     const auto fit = device::FitTrocar(*poses, calibration.p_sensor_tip);
     if (!fit) return fit.error();
@@ -142,7 +148,9 @@ core::Status CalibrateJaw(const CalibrateOptions& options) {
 
 CLI::App* AddStep(CLI::App& calibrate, const char* name, const char* text, CalibrateOptions& options) {
   CLI::App* step = calibrate.add_subcommand(name, text);
-  step->add_option("device", options.spec, "Device, such as liberty:/dev/ttyUSB0")->required()->type_name("DEVICE");
+  step->add_option("device", options.spec, "Device, such as liberty:/dev/ttyUSB0")
+      ->required()
+      ->type_name("DEVICE");
   step->add_option("--hand", options.hand, "Which instrument")
       ->check(CLI::IsMember({"left", "right", "laparoscope"}))
       ->capture_default_str();
@@ -160,20 +168,20 @@ CLI::App* AddStep(CLI::App& calibrate, const char* name, const char* text, Calib
 }  // namespace
 
 void AddDevicesCalibrateCommand(CLI::App& devices, Outcome& outcome) {
-  CLI::App* calibrate = devices.add_subcommand("calibrate", "Find tip, shaft and trocar of a tracked instrument; range of jaws");
+  CLI::App* calibrate = devices.add_subcommand(
+      "calibrate", "Find tip, shaft and trocar of a tracked instrument; range of jaws");
   calibrate->require_subcommand(1);
   auto options = std::make_shared<CalibrateOptions>();
   calibrate->footer(
-      "First tip, then trocar, for each hand; jaw for each sensor. A fit that is poor is refused and changes nothing.\n"
+      "First tip, then trocar, for each hand; jaw for each sensor. A fit that is poor is refused and changes "
+      "nothing.\n"
       "Example: trocar devices calibrate tip liberty:/dev/ttyUSB0 --hand right");
-  AddStep(*calibrate, "tip", "Where the tip is, seen from its sensor", *options)->callback([options, &outcome] {
-    outcome.status = CalibrateTracker(*options, true);
-  });
+  AddStep(*calibrate, "tip", "Where the tip is, seen from its sensor", *options)
+      ->callback([options, &outcome] { outcome.status = CalibrateTracker(*options, true); });
   AddStep(*calibrate, "trocar", "Where the trocar is and which way the shaft points", *options)
       ->callback([options, &outcome] { outcome.status = CalibrateTracker(*options, false); });
-  AddStep(*calibrate, "jaw", "What the jaw sensor reads closed and open", *options)->callback([options, &outcome] {
-    outcome.status = CalibrateJaw(*options);
-  });
+  AddStep(*calibrate, "jaw", "What the jaw sensor reads closed and open", *options)
+      ->callback([options, &outcome] { outcome.status = CalibrateJaw(*options); });
 }
 
 }  // namespace trocar::cli

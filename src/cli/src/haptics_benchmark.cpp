@@ -24,11 +24,13 @@ using math::Vec3;
 using session::Hand;
 
 constexpr double kSecondsPerRepeat = 4;
-constexpr double kPressDepth = 0.004;  // beyond where a tool would touch [m]
+constexpr double kPressDepth = 0.008;  // beyond where a tool would touch [m]
 constexpr double kStroke = 0.002;      // the hands' motion meanwhile [m]
 constexpr double kStrokeRate = 1.5;    // [1/s]
 constexpr double kReach = 0.4;         // of the way to the tissue in a second [-]
-constexpr double kArmingTime = 30;     // given up after [s]
+/// Safety switch, and jaws closed: open ones would take the tissue between them.
+constexpr std::uint32_t kSwitchAndJaws = 3;
+constexpr double kArmingTime = 30;  // given up after [s]
 
 void Sleep(double seconds) {
   std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
@@ -161,7 +163,7 @@ struct Person {
     const core::Stopwatch watch;
     while (watch.Seconds() < kArmingTime) {
       for (Lead& lead : leads) lead.is_pressing.store(false);
-      for (int hand = 0; hand < session::kHandCount; ++hand) device.SetButtons(hand, 1);
+      for (int hand = 0; hand < session::kHandCount; ++hand) device.SetButtons(hand, kSwitchAndJaws);
       Sleep(2.6);
       loop.RequestArm();
       const bool is_armed = WaitFor(3.0, [](const session::HapticStatus& status) {
@@ -259,8 +261,11 @@ core::Result<BenchmarkResult> RunHapticsBenchmark(const BenchmarkOptions& option
   }
   const double passed = watch.Seconds();
   const session::HapticStatus status = (*loop)->Latest();
-  if (touched < 0.5 * looks)
-    return WrongAnswer("contact", "the hands did not touch the tissue half of the time");
+  if (touched < 0.5 * looks) {
+    return WrongAnswer("contact", "both hands touched the tissue in " + std::to_string(touched / looks) +
+                                      " of the looks, armed in " + std::to_string(armed / looks) +
+                                      ", largest force " + std::to_string(largest) + " N");
+  }
   if (!(largest > 0.05)) return WrongAnswer("force", "no force came out");
 
   BenchmarkResult result;

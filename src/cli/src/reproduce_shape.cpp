@@ -159,7 +159,7 @@ ExperimentResult ReproduceTable2(const ExperimentOptions& options, ExperimentSto
                          "Stopped so early the solver is far from equilibrium where virtual springs are "
                          "weak: k_virtual = 0 has gone a "
                          "small part of its way, so that every ratio to it is too large. At rest (Newton's "
-                         "method to 1e-5 of the largest "
+                         "method to an estimated 1e-5 of the largest "
                          "displacement) virtual springs conserve far more of the shape than Table 2 says.",
                          "The mean, the root of the mean square (RMS) and the maximum fall as 1 / k_virtual "
                          "for stiff virtual springs."},

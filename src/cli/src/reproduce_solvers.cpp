@@ -9,6 +9,7 @@
 #include "benchmark.h"
 #include "console.h"
 #include "experiment.h"
+#include "processor_time.h"
 #include "solver_times.h"
 #include "tissue_benchmark.h"
 #include "trocar/tissue_cuda/gpu_benchmark.h"
@@ -56,8 +57,8 @@ core::Result<double> TimeIteration(const GridCase& grid, const Contender& conten
   int counted = 0;
   const auto time = [&](int count) {
     settings.max_iterations = settings.max_newton_steps = count;
-    return TimeShortest(
-        options.is_quick ? 1 : options.repeats, [&] { state.position = start.position; },
+    return TimeShortestWork(
+        options.threads, options.is_quick ? 1 : options.repeats, [&] { state.position = start.position; },
         [&] { counted = solver.Solve(settings, grid.Load(), state).iterations; });
   };
   const bool is_newton = contender.kind == SolverKind::kNewtonMultigrid;
@@ -82,8 +83,8 @@ core::Result<SolverTimes> MeasureSolvers(const ExperimentOptions& options) {
     const double updates = options.is_quick ? kQuickNodeUpdates : kNodeUpdates;
     const int iterations = std::max(20, static_cast<int>(updates / (side * side)));
     std::vector<math::Vec3> relaxed = grid.start.position;
-    times.rows[0].seconds.push_back(TimeShortest(
-                                        options.is_quick ? 1 : options.repeats,
+    times.rows[0].seconds.push_back(TimeShortestWork(
+                                        1, options.is_quick ? 1 : options.repeats,
                                         [&] { relaxed = grid.start.position; },
                                         [&] { RelaxAsPrinted(grid, iterations, relaxed); }) /
                                     iterations);
@@ -146,7 +147,7 @@ std::string DescribeProblem(const ExperimentOptions& options) {
          "held, 0.001 N "
          "on every node and 0.5 N at the centre the other way. Solvers with " +
          std::to_string(options.threads) + (options.threads == 1 ? " thread" : " threads") +
-         "; a long run less a short one, the quickest of " +
+         "; processor time where it is one, a long run less a short one, the quickest of " +
          std::to_string(options.is_quick ? 1 : options.repeats) +
          ". After each the stored energy must be lower than before.";
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A simulated user on a coarse phantom: small enough for every run of the tests.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
@@ -18,7 +19,7 @@ namespace fs = std::filesystem;
 class RehearseCommand : public testing::Test {
  protected:
   static void SetUpTestSuite() {
-    folder_ = new fs::path(fs::path(testing::TempDir()) / "rehearse_phantom");
+    folder_ = new fs::path(fs::path(testing::TempDir()) / ("rehearse_phantom_" + std::to_string(getpid())));
     fs::remove_all(*folder_);
     const Printed printed = RunTrocar(
         {"anatomy", "phantom", "--seed", "7", "--pixel-mm", "2", "--slice-mm", "4", "-o", folder_->string()});

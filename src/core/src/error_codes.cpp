@@ -82,13 +82,15 @@ constexpr ErrorEntry kTable[] = {
     {ErrorCode::kHapticSamplesBad, "E-HAP-002", "a haptic device sends nonsense"},
     {ErrorCode::kHapticJump, "E-HAP-003", "a haptic device's position jumped"},
     {ErrorCode::kHapticOverrun, "E-HAP-004", "the haptic loop stood still"},
-    {ErrorCode::kHapticSupervisor, "E-HAP-005", "the haptic supervisor is missing, gone, or had to stop the force"},
+    {ErrorCode::kHapticSupervisor, "E-HAP-005",
+     "the haptic supervisor is missing, gone, or had to stop the force"},
     {ErrorCode::kHapticWarm, "E-HAP-006", "the motors of a haptic device are too hot"},
     {ErrorCode::kHapticDeadMan, "E-HAP-007", "nobody holds the safety switch of a haptic device"},
     {ErrorCode::kHapticCheckPose, "E-HAP-008", "it is not confirmed which haptic device is which hand"},
     {ErrorCode::kHapticNotCalibrated, "E-HAP-009", "a haptic device is not calibrated"},
     {ErrorCode::kHapticOverspeed, "E-HAP-010", "a haptic device ran away with its force"},
-    {ErrorCode::kHapticSimulation, "E-HAP-011", "the simulation has no good tissue state for the haptic loop"},
+    {ErrorCode::kHapticSimulation, "E-HAP-011",
+     "the simulation has no good tissue state for the haptic loop"},
 };
 static_assert(std::size(kTable) == static_cast<std::size_t>(ErrorCode::kCount));
 

@@ -33,7 +33,8 @@ std::vector<Pose> Sample(const SensorMotion& motion, int count = 100, double sec
 void AddNoise(std::vector<Pose>& poses, double size, std::uint64_t seed) {
   math::Random random(seed);
   for (Pose& pose : poses)
-    pose.translation += Vec3{random.Uniform(-size, size), random.Uniform(-size, size), random.Uniform(-size, size)};
+    pose.translation +=
+        Vec3{random.Uniform(-size, size), random.Uniform(-size, size), random.Uniform(-size, size)};
 }
 
 // analytic: two turns about a point that is known
@@ -65,7 +66,8 @@ TEST(FitPivot, RefusesTooFewTooLittleAndNotStill) {
   };
   EXPECT_EQ(code(Sample(MoveAboutTip(truth), 11)), ErrorCode::kCalibrationPoor);
   EXPECT_EQ(code(Sample(MoveAboutTip(truth), 100, 0.2)), ErrorCode::kCalibrationPoor) << "hardly turned";
-  EXPECT_EQ(code(Sample(MoveHands(truth, CalcHandMotion))), ErrorCode::kCalibrationPoor) << "the tip moved about";
+  EXPECT_EQ(code(Sample(MoveHands(truth, CalcHandMotion))), ErrorCode::kCalibrationPoor)
+      << "the tip moved about";
   std::vector<Pose> poses = Sample(MoveAboutTip(truth));
   poses[5].translation.y = std::nan("");
   EXPECT_EQ(code(poses), ErrorCode::kCalibrationPoor);
@@ -111,7 +113,8 @@ TEST(SourceRotation, PutsThePersonsRightAndUpIntoTheWorld) {
   ASSERT_TRUE(rotation.ok());
   EXPECT_LT(math::Distance(math::Rotate(*rotation, {0, 1, 0}), {1, 0, 0}), 1e-12);
   EXPECT_LT(math::Distance(math::Rotate(*rotation, {0, 0, -1}), {0, 0, 1}), 1e-12);
-  EXPECT_LT(math::Distance(math::Rotate(*rotation, {1, 0, 0}), {0, 1, 0}), 1e-12) << "away from the person is cranial";
+  EXPECT_LT(math::Distance(math::Rotate(*rotation, {1, 0, 0}), {0, 1, 0}), 1e-12)
+      << "away from the person is cranial";
   EXPECT_FALSE(FindSourceRotation({1, 0, 0}, {1, 0.5, 0}).ok());
   EXPECT_FALSE(FindSourceRotation({0, 0, 0}, {0, 0, 1}).ok());
 }

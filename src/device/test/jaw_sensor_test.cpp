@@ -15,7 +15,8 @@ namespace {
 
 using core::ErrorCode;
 
-std::vector<JawReading> Parse(std::string_view bytes, std::size_t chunk = 1000, FramerCounts* counts = nullptr) {
+std::vector<JawReading> Parse(std::string_view bytes, std::size_t chunk = 1000,
+                              FramerCounts* counts = nullptr) {
   JawFramer framer;
   std::vector<JawReading> readings;
   for (; !bytes.empty(); bytes.remove_prefix(std::min(chunk, bytes.size())))
@@ -36,9 +37,9 @@ TEST(JawFramer, ReadsLinesWithAndWithoutCarriageReturn) {
 }
 
 TEST(JawFramer, RefusesWhatIsNotExactlyALine) {
-  for (const char* line :
-       {"J,2,1,1\n", "J,0,1,1024\n", "J,0,4294967296,1\n", "J,0,1,-1\n", "J,0,1,1 \n", "J,0,1\n", "J,0,,1\n", "j,0,1,1\n",
-        "J,0,1,01\n", "J,0,1,1\r\r\n", "J 0 1 1\n", "J,0,1,1e2\n", "J,0,1,99999999999999999999999999999999\n", "\n"}) {
+  for (const char* line : {"J,2,1,1\n", "J,0,1,1024\n", "J,0,4294967296,1\n", "J,0,1,-1\n", "J,0,1,1 \n",
+                           "J,0,1\n", "J,0,,1\n", "j,0,1,1\n", "J,0,1,01\n", "J,0,1,1\r\r\n", "J 0 1 1\n",
+                           "J,0,1,1e2\n", "J,0,1,99999999999999999999999999999999\n", "\n"}) {
     FramerCounts counts;
     EXPECT_TRUE(Parse(line, 1000, &counts).empty()) << line;
     EXPECT_GT(counts.garbage, 0u) << line;
@@ -51,8 +52,9 @@ TEST(JawFramer, GivesTheSameLinesForAnyChunking) {
   math::Random random(2);
   std::string bytes;
   for (int i = 0; i < 300; ++i) {
-    bytes += FormatReading({static_cast<int>(random.NextWord() % 2), static_cast<std::uint32_t>(random.NextWord()),
-                            static_cast<int>(random.NextWord() % 1024)});
+    bytes +=
+        FormatReading({static_cast<int>(random.NextWord() % 2), static_cast<std::uint32_t>(random.NextWord()),
+                       static_cast<int>(random.NextWord() % 1024)});
     if (i % 7 == 0) bytes += static_cast<char>(random.NextWord());
   }
   const std::size_t whole = Parse(bytes).size();
@@ -99,7 +101,8 @@ class JawSensorTest : public testing::Test {
   void Make(std::vector<Fault> faults = {}) {
     settings_.calibrations[0] = {850, 150};
     settings_.calibrations[1] = {100, 900};
-    host_ = *EmulatorHost::MakeSerial(MakeJawEmulator({settings_.calibrations, CalcHandMotion}), std::move(faults));
+    host_ = *EmulatorHost::MakeSerial(MakeJawEmulator({settings_.calibrations, CalcHandMotion}),
+                                      std::move(faults));
     clock_.Add(*host_);
     driver_ = std::make_unique<JawSensor>(
         settings_, [this] { return OpenSerialPort(host_->Address(), 115200); }, clock_);
@@ -144,7 +147,8 @@ TEST_F(JawSensorTest, IsStaleAfterATenthAndLostAfterHalfASecond) {
 TEST_F(JawSensorTest, RefusesACalibrationThatCannotBe) {
   Make();
   settings_.calibrations[1] = {500, 520};
-  JawSensor driver(settings_, [this] { return OpenSerialPort(host_->Address(), 115200); }, clock_);
+  JawSensor driver(
+      settings_, [this] { return OpenSerialPort(host_->Address(), 115200); }, clock_);
   EXPECT_EQ(driver.Configure().error().code, ErrorCode::kDeviceSettings);
 }
 

@@ -94,7 +94,8 @@ TEST(PolhemusTracker, ShowsNoJumpThatTheTrackerMakes) {
 // faults D3
 TEST(PolhemusTracker, StandsTurnedBitsAndGarbage) {
   for (const double rate : {1e-5, 1e-4, 1e-3, 1e-2, 1e-1}) {
-    EmulatedTracker tracker(PolhemusFormat::kLiberty, {{FaultKind::kFlips, 0.2, 1.0, rate}, {FaultKind::kGarbage, 0.2, 1.0, 0}});
+    EmulatedTracker tracker(PolhemusFormat::kLiberty,
+                            {{FaultKind::kFlips, 0.2, 1.0, rate}, {FaultKind::kGarbage, 0.2, 1.0, 0}});
     ASSERT_TRUE(tracker.Start());
     ReadStatus status = ReadStatus::kUnchanged;
     double worst = 0;
@@ -136,8 +137,8 @@ TEST(PolhemusTracker, SaysWhichStationDoesNotAnswer) {
 TEST(PolhemusTracker, SaysThatAnotherTrackerAnswers) {
   EmulatedTracker tracker(PolhemusFormat::kLiberty);
   tracker.settings.format = PolhemusFormat::kFastrakBinary;
-  PolhemusTracker wrong(tracker.settings, [&] { return OpenSerialPort(tracker.host->Address(), 115200); },
-                        tracker.clock);
+  PolhemusTracker wrong(
+      tracker.settings, [&] { return OpenSerialPort(tracker.host->Address(), 115200); }, tracker.clock);
   const core::Status status = wrong.Configure();
   ASSERT_FALSE(status.ok());
   EXPECT_EQ(status.error().code, ErrorCode::kDeviceStale);
@@ -147,8 +148,8 @@ TEST(PolhemusTracker, RefusesSettingsThatCannotWork) {
   EmulatedTracker tracker(PolhemusFormat::kPatriot);
   const auto code = [&](std::array<int, kChannelCount> stations) {
     tracker.settings.stations = stations;
-    PolhemusTracker driver(tracker.settings, [&] { return OpenSerialPort(tracker.host->Address(), 115200); },
-                           tracker.clock);
+    PolhemusTracker driver(
+        tracker.settings, [&] { return OpenSerialPort(tracker.host->Address(), 115200); }, tracker.clock);
     const core::Status status = driver.Configure();
     return status.ok() ? ErrorCode::kNone : status.error().code;
   };

@@ -160,7 +160,8 @@ TEST_F(TrackedHandsTest, SpinDoesNotJumpAtHalfATurn) {
   for (int i = 0; i < 400; ++i) {
     HandSample joints = CalcRest(0)[kLeftHand];
     joints.spin = 0.02 * i;
-    hands_.Accept(kLeftHand, CalcSensorPose(settings_.calibrations[kLeftHand], settings_.R_world_source, joints),
+    hands_.Accept(kLeftHand,
+                  CalcSensorPose(settings_.calibrations[kLeftHand], settings_.R_world_source, joints),
                   kStep * i);
     EXPECT_NEAR(Left(kStep * i).spin - last, i == 0 ? 0.0 : 0.02, 1e-9);
     last = Left(kStep * i).spin;

@@ -106,13 +106,18 @@ bool TrenchBuilder::WallsAreGood(std::uint32_t v, const Place& bottom, double mi
   mesh.ForEachAround(v, [&](std::uint32_t h) {
     const std::uint32_t w = mesh.To(h);
     if (!is_good || !mesh.IsScored(h) || state_[w] == Bottom::kNotLooked) return;
-    const auto smallest = [&](std::span<const Vec3> x, const Vec3& below_v, const Vec3& below_w) {
-      if (state_[w] == Bottom::kIsEnd) return geometry::CalcSmallestAngle(x[w], x[v], below_v);
-      const std::array<Vec3, 4> quad = {x[w], x[v], below_v, below_w};
-      return std::max(CalcSmallestAngle(quad, kOverAC), CalcSmallestAngle(quad, kOverBD));
+    const auto rest = mesh.Rest(), now = mesh.Positions();
+    if (state_[w] == Bottom::kIsEnd) {
+      is_good = geometry::CalcSmallestAngle(rest[w], rest[v], bottom.rest) >= min_angle &&
+                geometry::CalcSmallestAngle(now[w], now[v], bottom.now) >= min_angle;
+      return;
+    }
+    // one way of dividing the wall must be good both at rest and now
+    const auto is_good_over = [&](const QuadSplit& split) {
+      return CalcSmallestAngle({rest[w], rest[v], bottom.rest, place_[w].rest}, split) >= min_angle &&
+             CalcSmallestAngle({now[w], now[v], bottom.now, place_[w].now}, split) >= min_angle;
     };
-    is_good = smallest(mesh.Rest(), bottom.rest, place_[w].rest) >= min_angle &&
-              smallest(mesh.Positions(), bottom.now, place_[w].now) >= min_angle;
+    is_good = is_good_over(kOverAC) || is_good_over(kOverBD);
   });
   return is_good;
 }

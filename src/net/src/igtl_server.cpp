@@ -16,6 +16,14 @@ math::Quaternion RotationRasWorld() {
   return math::RotationFromAxes({-1, 0, 0}, {0, 0, 1}, {0, 1, 0});
 }
 
+/// True once a period, in step with the periods before it as long as nothing is late.
+bool IsDue(double time, double period, double& next) noexcept {
+  constexpr double kRounding = 1e-9;  // ticks are sums of fractions [s]
+  if (time < next - kRounding) return false;
+  next = std::max(next + period, time);
+  return true;
+}
+
 std::string FormatTools(const session::Snapshot& snapshot) {
   const std::array<device::IgtlTool, 3> tools = {{
       {"LeftTool", RasFromWorld(snapshot.instruments[session::kLeft].X_world_tool)},
@@ -98,9 +106,8 @@ void IgtlServer::Publish(const session::Snapshot& snapshot) {
     for (Viewer& viewer : viewers_) viewer.last_sent = time;
   }
   Accept(time);
-  const bool has_tools = time >= next_tools_, has_organs = time >= next_organs_;
-  if (has_tools) next_tools_ = time + settings_.tool_period;
-  if (has_organs) next_organs_ = time + settings_.organ_period;
+  const bool has_tools = IsDue(time, settings_.tool_period, next_tools_);
+  const bool has_organs = IsDue(time, settings_.organ_period, next_organs_);
   std::string tools, organs;
   for (Viewer& viewer : viewers_) {
     // whole sets or none: what does not fit now is left out, the next one is newer

@@ -27,16 +27,17 @@ TEST(RasFromWorld, TurnsLeftCranialAnteriorIntoRightAnteriorSuperior) {
 
 class IgtlServerTest : public testing::Test {
  protected:
+  static constexpr std::uint32_t kNodes = 2000;
   void SetUp() override {
     session::SurfaceInfo organ;
     organ.name = "liver";
-    organ.node_count = 4;
+    organ.node_count = kNodes;
     organ.triangles = {{0, 1, 2}, {0, 2, 3}};
     session::SurfaceInfo duct;
     duct.name = "cystic_duct";
-    duct.first_node = 4;
+    duct.first_node = kNodes;
     duct.node_count = 2;
-    snapshot_.positions = {{0, 0, 0}, {0.1, 0, 0}, {0, 0.1, 0}, {0, 0, 0.1}, {1, 1, 1}, {2, 2, 2}};
+    snapshot_.positions.resize(kNodes + 2, {0.1, 0.2, 0.3});
     snapshot_.instruments[session::kLeft].X_world_tool.translation = {0.01, 0.02, 0.03};
     IgtlServerSettings settings;
     settings.port = 0;
@@ -93,7 +94,9 @@ TEST_F(IgtlServerTest, SendsToolsOftenAndOrgansSeldom) {
   Tick(121);
   const std::string bytes = ReadAll(*viewer);
   const auto counts = Count(bytes);
-  EXPECT_NEAR(counts.at("TDATA"), 30, 2);
+  // thirty a second at most; a sender that the system lets wait sends the newest, not all
+  EXPECT_LE(counts.at("TDATA"), 32);
+  EXPECT_GE(counts.at("TDATA"), 4 * counts.at("POLYDATA"));
   EXPECT_EQ(counts.at("TRANSFORM"), 3 * counts.at("TDATA"));
   EXPECT_NEAR(counts.at("POLYDATA"), 3, 1) << "one at once, then two a second; no ducts";
   device::IgtlReader reader;
@@ -107,11 +110,11 @@ TEST_F(IgtlServerTest, SendsToolsOftenAndOrgansSeldom) {
 
 // faults N1: a viewer that does not read costs nobody anything and is let go
 TEST_F(IgtlServerTest, LetsGoOfAViewerThatTakesNothing) {
-  snapshot_.positions.resize(4);
   const auto sleeper = Connect(), reader = Connect();
   std::size_t most = 0;
-  for (int second = 0; second < 400 && server_->ViewerCount() != 1; ++second) {
-    Tick(120);
+  // what a sleeper's machine buffers for it is some megabytes
+  for (int round = 0; round < 200 && server_->ViewerCount() != 1; ++round) {
+    Tick(600);
     most = std::max(most, ReadAll(*reader).size());
   }
   EXPECT_EQ(server_->ViewerCount(), 1u);

@@ -35,6 +35,11 @@ std::string DescribeHaptics(const HapticStatus& status) {
   }
   if (status.check_pose == haptics::CheckPoseState::kWrongDevice)
     line += " check pose: another device answered, are they swapped?";
+  const HapticHandStatus &left = status.hands[kLeft], &right = status.hands[kRight];
+  const bool are_alike = left.is_present && right.is_present && left.state == haptics::ArmState::kUnarmed &&
+                         right.state == left.state && right.reason == left.reason &&
+                         right.is_warm == left.is_warm;
+  if (are_alike) return line + " " + DescribeHand(left, "both");
   const char* separator = " ";
   for (const Hand hand : {kLeft, kRight}) {
     if (!status.hands[hand].is_present) continue;

@@ -292,6 +292,7 @@ void Simulation::Content::Reset() {
   tick = 0;
   tissue = tissue_at_start;
   conserved = conserved_at_start;
+  conservation->Reset();
   guard = std::make_unique<tissue::StateGuard>(tissue_model);
   const Input home = CalcScriptInput(*scene, 0.0);
   for (int hand = 0; hand < kHandCount; ++hand) {
@@ -437,11 +438,11 @@ void Simulation::CutPatch(Hand hand, haptics::LocalPatch& patch) noexcept {
   const surgery::ContactSet& contacts = c.touch.Contacts();
   std::array<std::uint8_t, surgery::ContactSet::kCapacity> hands;
   for (std::size_t i = 0; i < contacts.links.size(); ++i) hands[i] = contacts.links[i].hand;
-  content_->patch_cutter->Cut({c.tissue_model, c.tissue, c.load, contacts.springs,
-                               std::span(hands).first(contacts.links.size()), static_cast<std::uint8_t>(hand),
-                               c.grasps[hand].Nodes(), c.touch.Device(hand), c.forces[hand],
-                               c.verdict == tissue::GuardVerdict::kGood, c.tick},
-                              patch);
+  content_->patch_cutter->Cut(
+      {c.tissue_model, c.tissue, c.load, contacts.springs, std::span(hands).first(contacts.links.size()),
+       static_cast<std::uint8_t>(hand), c.grasps[hand].Nodes(), c.touch.Device(hand), c.forces[hand],
+       c.verdict == tissue::GuardVerdict::kGood, c.tick},
+      patch);
 }
 
 double Simulation::CalcEquilibriumError() const {

@@ -8,8 +8,8 @@
 #include <limits>
 #include <thread>
 
-#include "trocar/device/device_spec.h"
 #include "trocar/core/clock.h"
+#include "trocar/device/device_spec.h"
 #include "trocar/device/emulator.h"
 #include "trocar/device/polhemus_tracker.h"
 #include "trocar/instrument/trocar_kinematics.h"
@@ -55,12 +55,14 @@ class DeviceThreadTest : public testing::Test {
   void Plug() {
     device::PolhemusEmulation emulation;
     emulation.format = device::PolhemusFormat::kLiberty;
-    emulation.motion = device::MoveHands(*device::MakeHandsSettings(device::DefaultTracker()), device::CalcHandMotion);
+    emulation.motion =
+        device::MoveHands(*device::MakeHandsSettings(device::DefaultTracker()), device::CalcHandMotion);
     host_ = *device::EmulatorHost::MakeSerial(device::MakePolhemusEmulator(emulation));
     path_ = host_->Address();
     is_running_ = true;
     emulator_ = std::thread([this] {
-      for (const core::Stopwatch watch; is_running_; device::SystemClock().Sleep(0.002)) host_->Step(watch.Seconds());
+      for (const core::Stopwatch watch; is_running_; device::SystemClock().Sleep(0.002))
+        host_->Step(watch.Seconds());
     });
   }
   void Unplug() {
@@ -110,7 +112,8 @@ TEST_F(DeviceThreadTest, ConnectsLosesAndFindsADeviceAgain) {
 TEST_F(DeviceThreadTest, SaysWhyADeviceIsNotThere) {
   path_ = "/dev/no_such_line";
   DeviceThread thread(MakeTracker());
-  ASSERT_TRUE(WaitFor(thread, [](const DeviceReport& report) { return report.message.starts_with("E-DEV-001"); }));
+  ASSERT_TRUE(
+      WaitFor(thread, [](const DeviceReport& report) { return report.message.starts_with("E-DEV-001"); }));
   EXPECT_EQ(thread.Latest().phase, Phase::kConnecting);
   EXPECT_EQ(thread.Latest().losses, 0u);
 }

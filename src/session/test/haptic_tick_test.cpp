@@ -124,7 +124,7 @@ TEST(HapticTick, StatusIsOneLineForAPerson) {
   HapticBench bench;
   bench.Run(5);
   EXPECT_THAT(DescribeHaptics(bench.tick->GetStatus()),
-              testing::HasSubstr("left off: it is not confirmed which device is which hand"));
+              testing::HasSubstr(": both off: it is not confirmed which device is which hand"));
   bench.ArmAndTouch();
   EXPECT_THAT(DescribeHaptics(bench.tick->GetStatus()),
               testing::ContainsRegex("left armed [0-9]\\.[0-9]+ N; right armed"));

@@ -73,7 +73,17 @@ Conservation::Conservation(const TissueModel& model, ConservationSettings settin
   responses_.assign(settings_.organs.size(), std::vector<Vec3>(n));
   shifts_ = responses_;
   (void)UpdateResponses(rest_, {}, kFirstResponseIterations, kFirstResponseTolerance);
-  response_links_ = CountIntact(rest_);
+  first_responses_ = responses_;
+  first_links_ = CountIntact(rest_);
+  Reset();
+}
+
+void Conservation::Reset() noexcept {
+  std::copy(first_responses_.begin(), first_responses_.end(), responses_.begin());
+  const TissueLoad usual;
+  stiffness_scale_ = usual.stiffness_scale;
+  shape_scale_ = usual.shape_scale;
+  response_links_ = first_links_;
   responses_settled_ = true;
 }
 
@@ -88,7 +98,8 @@ ConservationState Conservation::MakeState(const TissueState& rest_state) const {
     state.organs.push_back(volume);
   }
   state.regions.of_node.resize(model_->Size());
-  FindFreeRegions(*model_, rest_state.strand_is_intact, settings_.strand_binds, rest_state.spring_factor, state.regions);
+  FindFreeRegions(*model_, rest_state.strand_is_intact, settings_.strand_binds, rest_state.spring_factor,
+                  state.regions);
   state.intact_links = CountIntact(rest_state);
   state.last_position = rest_state.position;
   return state;
@@ -128,7 +139,8 @@ void Conservation::Perforate(std::size_t organ, double area, ConservationState& 
 void Conservation::UpdateRegions(const TissueState& tissue, ConservationState& state) noexcept {
   const std::uint64_t intact = CountIntact(tissue);
   if (intact == state.intact_links) return;
-  FindFreeRegions(*model_, tissue.strand_is_intact, settings_.strand_binds, tissue.spring_factor, next_regions_);
+  FindFreeRegions(*model_, tissue.strand_is_intact, settings_.strand_binds, tissue.spring_factor,
+                  next_regions_);
   // a piece that splits goes on from where it was
   std::array<Pose, kMaxFreeRegions> poses;
   std::uint32_t next = 0;

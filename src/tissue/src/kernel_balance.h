@@ -180,7 +180,8 @@ void CalcGroupBalance(const BalancePass& pass, std::uint32_t slice, std::uint32_
     const std::uint32_t* const others = pass.table.others + entry;
     const DoubleVector along =
         LoadNodes(pass.position, [others](std::uint32_t at) { return others[at]; }) - here;
-    const Doubles k = scale * LoadDoubles(pass.stiffness + entry), rest = LoadDoubles(pass.rest_length + entry);
+    const Doubles k = scale * LoadDoubles(pass.stiffness + entry),
+                  rest = LoadDoubles(pass.rest_length + entry);
     const Doubles length2 = Dot(along, along), length = Sqrt(length2);
     const Doubles inverse = length2 > 0.0 ? AllDoubles(1.0) / length : none;
     const Doubles b = k * rest * inverse, across = k - b;
@@ -193,9 +194,9 @@ void CalcGroupBalance(const BalancePass& pass, std::uint32_t slice, std::uint32_
       const Doubles x = bend * along.x, y = bend * along.y, z = bend * along.z;
       const DoubleSymmetric square = {x * along.x, x * along.y, x * along.z,
                                       y * along.y, y * along.z, z * along.z};
-      StoreSymmetric(pass.links + std::size_t{step} * 6 * kSliceNodes + lane,
-                     {across + square.xx, square.xy, square.xz, across + square.yy, square.yz,
-                      across + square.zz});
+      StoreSymmetric(
+          pass.links + std::size_t{step} * 6 * kSliceNodes + lane,
+          {across + square.xx, square.xy, square.xz, across + square.yy, square.yz, across + square.zz});
       StoreFloats(pass.slack + entry, Larger(-across, none));
       const Doubles firm = Larger(across, none);
       block.xx += firm + square.xx, block.xy += square.xy, block.xz += square.xz;

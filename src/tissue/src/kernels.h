@@ -52,16 +52,16 @@ enum class LinkPass {
 
 /// What the balance of forces needs of a node.
 enum BalanceValue {
-  kRestX,        ///< [m]
-  kRestY,        ///< [m]
-  kRestZ,        ///< [m]
-  kOuterX,       ///< force of everything but springs [N]
-  kOuterY,       ///< [N]
-  kOuterZ,       ///< [N]
-  kOuterSize,    ///< largest single one of these forces [N]
-  kShape,        ///< k_virtual, scaled [N/m]
-  kStrands,      ///< sum of the node's strands, scaled [N/m]
-  kFree,         ///< 1, or 0 where the node is held
+  kRestX,      ///< [m]
+  kRestY,      ///< [m]
+  kRestZ,      ///< [m]
+  kOuterX,     ///< force of everything but springs [N]
+  kOuterY,     ///< [N]
+  kOuterZ,     ///< [N]
+  kOuterSize,  ///< largest single one of these forces [N]
+  kShape,      ///< k_virtual, scaled [N/m]
+  kStrands,    ///< sum of the node's strands, scaled [N/m]
+  kFree,       ///< 1, or 0 where the node is held
   kBalanceValues
 };
 

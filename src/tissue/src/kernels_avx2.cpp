@@ -11,8 +11,8 @@ namespace trocar::tissue {
 
 const Kernels& GetKernelsAvx2() noexcept {
   static constexpr Kernels kKernels = {
-      MultiplyLinks,  StepSlices,   StepRows,
-      CalcBalance,    InvertBlocks, {CalcDot, FindLargest2, Advance, AddScaled, ScaleAndAdd}};
+      MultiplyLinks, StepSlices,   StepRows,
+      CalcBalance,   InvertBlocks, {CalcDot, FindLargest2, Advance, AddScaled, ScaleAndAdd}};
   return kKernels;
 }
 

@@ -10,8 +10,8 @@ namespace trocar::tissue {
 
 const Kernels& GetKernelsBaseline() noexcept {
   static constexpr Kernels kKernels = {
-      MultiplyLinks,  StepSlices,   StepRows,
-      CalcBalance,    InvertBlocks, {CalcDot, FindLargest2, Advance, AddScaled, ScaleAndAdd}};
+      MultiplyLinks, StepSlices,   StepRows,
+      CalcBalance,   InvertBlocks, {CalcDot, FindLargest2, Advance, AddScaled, ScaleAndAdd}};
   return kKernels;
 }
 

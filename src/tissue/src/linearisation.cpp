@@ -101,7 +101,8 @@ Linearisation::Linearisation(const OrderedModel& model) : model_(&model) {
   nodes_.assign(model.layout.PaddedNodes() * kBalanceValues, 0.0);
   slack_.assign(model.layout.Steps() * kSliceNodes, 0.0f);
   for (std::uint32_t i = 0; i < model.Size(); ++i) {
-    for (int axis = 0; axis < 3; ++axis) At(i, static_cast<BalanceValue>(kRestX + axis)) = model.rest[i][axis];
+    for (int axis = 0; axis < 3; ++axis)
+      At(i, static_cast<BalanceValue>(kRestX + axis)) = model.rest[i][axis];
   }
   for (const auto& strand : model.strands) {
     if (strand_nodes_.empty() || strand_nodes_.back() != strand.node) strand_nodes_.push_back(strand.node);
@@ -154,7 +155,8 @@ double Linearisation::AddStrandsAndContacts(std::span<const Double4> position, B
     if (!strand_is_intact_[strand.strand]) continue;
     const double k = load.stiffness_scale * strand.stiffness;
     const Vec3 here = ToVec3(position[strand.node]);
-    const Vec3 offset = (ToVec3(position[strand.other]) - here) - (model.rest[strand.other] - model.rest[strand.node]);
+    const Vec3 offset =
+        (ToVec3(position[strand.other]) - here) - (model.rest[strand.other] - model.rest[strand.node]);
     const double length2 = math::SquaredNorm(offset);
     AddOuter(strand.node, k * offset, k * std::sqrt(length2));
     energy += 0.25 * k * length2 - k * math::Dot(offset, model.rest[strand.node] - here);

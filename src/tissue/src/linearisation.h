@@ -18,12 +18,12 @@ struct OrderedModel {
   NodeGraph graph;                        // springs, then strands, of each node
   std::vector<double> graph_stiffness;    // (graph.others) k [N/m]
   SliceLayout layout;
-  std::vector<double> stiffness;    // (entries) k of springs [N/m]; 0 for strands and padding
-  std::vector<double> rest_length;  // (entries) [m]
+  std::vector<double> stiffness;            // (entries) k of springs [N/m]; 0 for strands and padding
+  std::vector<double> rest_length;          // (entries) [m]
   std::vector<std::size_t> spring_entries;  // (half-springs of the model) place of each
-  std::vector<Vec3> rest;           // (n) [m]
-  std::vector<double> mass;         // (n) [kg]
-  std::vector<double> shape;        // (n) k_virtual [N/m]
+  std::vector<Vec3> rest;                   // (n) [m]
+  std::vector<double> mass;                 // (n) [kg]
+  std::vector<double> shape;                // (n) k_virtual [N/m]
 
   struct StrandEntry {
     std::uint32_t node, other, strand;
@@ -54,8 +54,8 @@ struct Balance {
   std::vector<std::uint8_t> is_pressing;  // (contacts)
   double energy = 0;                      // [J]
   double largest_residual = 0;            // [N]
-  double force_scale = 0;       // largest force of one spring, load or contact on a free node [N]
-  double largest_distance = 0;  // of a node from rest [m]
+  double force_scale = 0;                 // largest force of one spring, load or contact on a free node [N]
+  double largest_distance = 0;            // of a node from rest [m]
   bool is_finite = true;
 };
 

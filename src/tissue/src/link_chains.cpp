@@ -22,7 +22,8 @@ constexpr double kLeastPivot = 1e-7;
 /// Breadth-first order of the candidates that `root` is connected with, from the one found last.
 /// \param[in,out] mark  (n) different from `round` and `round` + 1 before
 std::vector<std::uint32_t> OrderChain(const NodeGraph& graph, std::span<const std::uint8_t> is_candidate,
-                                      std::uint32_t root, std::uint32_t round, std::span<std::uint32_t> mark) {
+                                      std::uint32_t root, std::uint32_t round,
+                                      std::span<std::uint32_t> mark) {
   std::vector<std::uint32_t> order;
   for (const std::uint32_t pass : {round, round + 1}) {
     order = {root};
@@ -113,7 +114,8 @@ bool LinkChains::FactoriseOnce(const LinkLevel& level, std::span<const float> sl
         if (level.layout.others[entry] == i) break;
         for (std::size_t v = 0; v < 6; ++v)
           block[v] += static_cast<double>(level.links[LinkAt(entry) + v * kSliceNodes]);
-        for (const std::size_t v : {0u, 3u, 5u}) block[v] += slack.empty() ? 0.0 : static_cast<double>(slack[entry]);
+        for (const std::size_t v : {0u, 3u, 5u})
+          block[v] += slack.empty() ? 0.0 : static_cast<double>(slack[entry]);
       }
     }
     for (std::size_t a = 0; a < 3; ++a) {

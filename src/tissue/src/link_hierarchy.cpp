@@ -199,12 +199,9 @@ void LinkHierarchy::Coarsen(std::size_t at, std::span<const float> slack) noexce
       const std::uint32_t coarse = level.coarse_entry[entry];
       if (!is_grounded && coarse == LinkLevel::kNoEntry) continue;
       const float firmer = slack.empty() ? 0.0f : slack[entry];
-      const float link[6] = {from[0] + firmer,
-                             from[kSliceNodes],
-                             from[2 * kSliceNodes],
-                             from[3 * kSliceNodes] + firmer,
-                             from[4 * kSliceNodes],
-                             from[5 * kSliceNodes] + firmer};
+      const float link[6] = {from[0] + firmer,      from[kSliceNodes],
+                             from[2 * kSliceNodes], from[3 * kSliceNodes] + firmer,
+                             from[4 * kSliceNodes], from[5 * kSliceNodes] + firmer};
       is_grounded ? add(link, 1.0f, ground) : add(link, kCoarseLinkScale, next.links.data() + LinkAt(coarse));
     }
   }

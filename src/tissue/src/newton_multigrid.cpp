@@ -268,7 +268,9 @@ SolveReport NewtonMultigrid::Solve(const Kernels& kernels, Workers& workers, con
     scale = balance_.largest_distance;
     const double largest = FindLongest(kernels, workers, z_);
     preconditioned = largest;
-    report.error = scale > 0.0 ? largest / (CalcSeenShare(smallest_ritz) * scale) : largest > 0.0 ? INFINITY : 0.0;
+    report.error = scale > 0.0     ? largest / (CalcSeenShare(smallest_ritz) * scale)
+                   : largest > 0.0 ? INFINITY
+                                   : 0.0;
     report.residual = balance_.force_scale > 0.0 ? balance_.largest_residual / balance_.force_scale : 0.0;
     report.force_scale = balance_.force_scale;
     report.converged = report.error <= settings.max_error;

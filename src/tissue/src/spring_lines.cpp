@@ -8,7 +8,8 @@
 
 namespace trocar::tissue {
 
-SpringLines::SpringLines(const TissueModel& model, SlicedSprings& sliced, std::array<OrderedModel*, 2> ordered)
+SpringLines::SpringLines(const TissueModel& model, SlicedSprings& sliced,
+                         std::array<OrderedModel*, 2> ordered)
     : model_(&model),
       sliced_(&sliced),
       ordered_(ordered),

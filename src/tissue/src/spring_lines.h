@@ -56,7 +56,8 @@ class SpringLines {
     if (elastic_.empty()) return solve(settings);
     (void)TakeLengths(state);
     // which of the two bounds a solver keeps to; the choice that is left open keeps to both
-    const bool counts_steps = settings.kind == SolverKind::kNewtonMultigrid || settings.kind == SolverKind::kAdaptive;
+    const bool counts_steps =
+        settings.kind == SolverKind::kNewtonMultigrid || settings.kind == SolverKind::kAdaptive;
     const bool counts_iterations = settings.kind != SolverKind::kNewtonMultigrid;
     // without virtual springs it cannot tell that it arrived, and would leave nothing for a second round
     const bool ends_by_count = settings.kind == SolverKind::kAcceleratedDescent;
@@ -70,7 +71,8 @@ class SpringLines {
       report.converged = report.converged && holds;
       next.max_newton_steps -= counts_steps ? round.iterations : 0;
       next.max_iterations -= counts_iterations && !ends_by_count ? round.iterations : 0;
-      if (report.rounds >= settings.max_rounds || next.max_newton_steps <= 0 || next.max_iterations <= 0) break;
+      if (report.rounds >= settings.max_rounds || next.max_newton_steps <= 0 || next.max_iterations <= 0)
+        break;
       round = solve(next);
       Add(round, report);
     }
@@ -94,9 +96,9 @@ class SpringLines {
   SlicedSprings* sliced_;
   std::array<OrderedModel*, 2> ordered_;
   TissueModel lines_;
-  std::vector<Ends> ends_;              // (springs)
-  std::vector<double> factor_;          // (springs) as the lines have it
-  std::vector<std::uint32_t> elastic_;  // springs whose law stiffens
+  std::vector<Ends> ends_;                // (springs)
+  std::vector<double> factor_;            // (springs) as the lines have it
+  std::vector<std::uint32_t> elastic_;    // springs whose law stiffens
   std::vector<std::uint8_t> is_changed_;  // (springs) line other than the model's spring
   std::size_t changed_count_ = 0;
   std::vector<std::uint32_t> adrift_;

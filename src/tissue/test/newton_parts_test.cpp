@@ -28,7 +28,8 @@ struct Patient {
     const auto surface = static_cast<std::uint32_t>(definition.rest.size());
     for (int i = 0; i < duct_nodes; ++i) {
       const auto node = static_cast<std::uint32_t>(definition.rest.size());
-      definition.rest.push_back(definition.rest[0] + Vec3{0.001 * std::sin(0.3 * i), 0.0005 * i, 0.002 * (i + 1)});
+      definition.rest.push_back(definition.rest[0] +
+                                Vec3{0.001 * std::sin(0.3 * i), 0.0005 * i, 0.002 * (i + 1)});
       definition.mass.push_back(1e-4);
       definition.shape_stiffness.push_back(0.5);
       if (i == 0) {
@@ -109,7 +110,8 @@ TEST(Linearisation, AgreesWithThePlainResidualAndEnergy) {
   const auto n = static_cast<std::uint32_t>(patient.definition.rest.size());
   patient.definition.springs.push_back({n - 2, n - 1, 50.0, 0.001});
   const TissueModel model = MakeTissueModel(patient.definition);
-  const TissueLoad load{.gravity = {1, 2, -9.81}, .stiffness_scale = 1.3, .shape_scale = 0.7, .contacts = patient.contacts};
+  const TissueLoad load{
+      .gravity = {1, 2, -9.81}, .stiffness_scale = 1.3, .shape_scale = 0.7, .contacts = patient.contacts};
   const TissueState rest = MakeRestState(model), state = Shake(model, 5e-4, 7);
   std::vector<Vec3> expected(model.Size());
   CalcResidual(model, state, load, expected);
@@ -126,7 +128,8 @@ TEST(Linearisation, AgreesWithThePlainResidualAndEnergy) {
       ASSERT_LT(math::Distance(force, wanted), 1e-6 * largest) << SimdLevelName(level) << " node " << old;
     }
     const double change = CalcEnergy(model, state, load) - CalcEnergy(model, rest, load);
-    EXPECT_NEAR(here.balance.energy - before.balance.energy, change, 1e-9 * std::fabs(change)) << SimdLevelName(level);
+    EXPECT_NEAR(here.balance.energy - before.balance.energy, change, 1e-9 * std::fabs(change))
+        << SimdLevelName(level);
   }
 }
 
@@ -149,8 +152,8 @@ TEST(Linearisation, StiffnessIsTheDerivativeOfTheResidual) {
       moved.position[here.model.old_of_new[i]] +=
           by * Vec3{static_cast<double>(d.x), static_cast<double>(d.y), static_cast<double>(d.z)};
     }
-    RunPass(*here.kernels, here.workers, here.hierarchy.Finest(), LinkPass::kProduct, direction.data(), nullptr, 0.0f,
-            product.data());
+    RunPass(*here.kernels, here.workers, here.hierarchy.Finest(), LinkPass::kProduct, direction.data(),
+            nullptr, 0.0f, product.data());
     std::vector<Vec3> before(model.Size()), after(model.Size());
     CalcResidual(model, state, load, before);
     CalcResidual(model, moved, load, after);
@@ -209,7 +212,8 @@ TEST(LinkChains, SolveTheDuctExactly) {
 }
 
 TEST(LinkChains, ASurfaceIsNone) {
-  const TissueModel model = MakeTissueModel(MakeMembrane(geometry::MakeSphere({0, 0, 0}, 0.03, 3), 100.0, 1e5));
+  const TissueModel model =
+      MakeTissueModel(MakeMembrane(geometry::MakeSphere({0, 0, 0}, 0.03, 3), 100.0, 1e5));
   const OrderedModel ordered = MakeOrderedModel(model);
   EXPECT_TRUE(LinkChains(ordered.graph, ordered.layout).Nodes().empty());
 }

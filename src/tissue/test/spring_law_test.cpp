@@ -55,8 +55,8 @@ TEST(SpringLaw, TensionIsTheSlopeOfTheEnergyAndStiffnessThatOfTheTension) {
     EXPECT_NEAR(slope(CalcSpringEnergy), CalcSpringTension(kWall, k, l, length), 1e-6) << strain;
     EXPECT_NEAR(slope(CalcSpringTension), CalcSpringStiffness(kWall, k, l, length), 1e-4) << strain;
     const SpringLine line = CalcSpringLine(kWall, 0.5, k, l, length);
-    EXPECT_NEAR(line.stiffness * (length - line.rest_length),
-                0.5 * CalcSpringTension(kWall, k, l, length), 1e-12);
+    EXPECT_NEAR(line.stiffness * (length - line.rest_length), 0.5 * CalcSpringTension(kWall, k, l, length),
+                1e-12);
   }
 }
 
@@ -69,8 +69,8 @@ TEST(SpringLaw, ResidualIsMinusTheGradientOfTheEnergy) {
   const TissueModel model = MakeTissueModel(definition);
   TissueState state = MakeRestState(model);
   for (Vec3& p : state.position) {
-    p = 1.4 * p + Vec3{random.Uniform(-0.006, 0.006), random.Uniform(-0.006, 0.006),
-                       random.Uniform(-0.006, 0.006)};
+    p = 1.4 * p +
+        Vec3{random.Uniform(-0.006, 0.006), random.Uniform(-0.006, 0.006), random.Uniform(-0.006, 0.006)};
   }
   state.spring_factor[3] = 0.0;
   state.spring_factor[8] = 0.25;
@@ -310,7 +310,8 @@ TissueModel MakeRow(const SpringLaw& law) {
 
 TEST(TearSprings, TearsBeyondTheFailureStrainAndNothingElse) {
   std::vector<std::uint32_t> torn(4, 99);
-  const TissueModel gallbladder = MakeRow({.failure_strain = 0.43}), liver = MakeRow({.failure_strain = 0.38});
+  const TissueModel gallbladder = MakeRow({.failure_strain = 0.43}),
+                    liver = MakeRow({.failure_strain = 0.38});
   TissueState state = MakeStretched(gallbladder);
   EXPECT_EQ(TearSprings(gallbladder, 0.01, state, torn), 1u);
   EXPECT_EQ(torn[0], 2u);

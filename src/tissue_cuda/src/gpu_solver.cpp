@@ -13,7 +13,8 @@ namespace {
 
 core::Error NotHookes() {
   return {core::ErrorCode::kGpuLayout,
-          "the GPU's springs follow Hooke's law and are whole; cut, weakened and stiffening springs are solved on "
+          "the GPU's springs follow Hooke's law and are whole; cut, weakened and stiffening springs are "
+          "solved on "
           "the processor"};
 }
 

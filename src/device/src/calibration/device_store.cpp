@@ -150,7 +150,8 @@ fs::path FindDeviceStore() {
     const char* value = std::getenv(name);
     return value == nullptr ? "" : value;
   };
-  if (const std::string folder = variable("TROCAR_CONFIG_DIR"); !folder.empty()) return fs::path(folder) / "devices.json";
+  if (const std::string folder = variable("TROCAR_CONFIG_DIR"); !folder.empty())
+    return fs::path(folder) / "devices.json";
   if (const std::string folder = variable("XDG_CONFIG_HOME"); !folder.empty())
     return fs::path(folder) / "trocar/devices.json";
   return fs::path(variable("HOME")) / ".config/trocar/devices.json";

@@ -46,7 +46,8 @@ core::Status CheckPoses(std::span<const Pose> poses) {
 double FindSpread(const std::vector<Vec3>& directions) {
   double least = 1.0;
   for (std::size_t i = 0; i < directions.size(); ++i) {
-    for (std::size_t j = i + 1; j < directions.size(); ++j) least = std::min(least, math::Dot(directions[i], directions[j]));
+    for (std::size_t j = i + 1; j < directions.size(); ++j)
+      least = std::min(least, math::Dot(directions[i], directions[j]));
   }
   return std::acos(std::clamp(least, -1.0, 1.0));
 }
@@ -77,13 +78,15 @@ FitQuality MakeQuality(const std::vector<double>& distances, double spread) {
 core::Status CheckQuality(const FitQuality& quality, const char* still) {
   char text[200];
   if (!(quality.spread >= kMinFitSpread)) {
-    std::snprintf(text, sizeof text, "it was turned by %.0f degrees only, 30 are needed; swing it further and repeat",
+    std::snprintf(text, sizeof text,
+                  "it was turned by %.0f degrees only, 30 are needed; swing it further and repeat",
                   quality.spread * 57.29577951308232);
     return Poor(text);
   }
   if (!(quality.residual <= kMaxFitResidual)) {
     std::snprintf(text, sizeof text,
-                  "%s did not stand still: %.1f mm RMS, 3 are allowed; fix it, keep metal away from the source, and repeat",
+                  "%s did not stand still: %.1f mm RMS, 3 are allowed; fix it, keep metal away from the "
+                  "source, and repeat",
                   still, 1e3 * quality.residual);
     return Poor(text);
   }
@@ -113,8 +116,8 @@ core::Result<PivotFit> FitPivot(std::span<const Pose> poses) {
   for (Eigen::Index i = 0; i < count; ++i) {
     const Pose& pose = poses[static_cast<std::size_t>(i)];
     Matrix3 rotation;
-    rotation << ToEigen(math::Rotate(pose.rotation, {1, 0, 0})), ToEigen(math::Rotate(pose.rotation, {0, 1, 0})),
-        ToEigen(math::Rotate(pose.rotation, {0, 0, 1}));
+    rotation << ToEigen(math::Rotate(pose.rotation, {1, 0, 0})),
+        ToEigen(math::Rotate(pose.rotation, {0, 1, 0})), ToEigen(math::Rotate(pose.rotation, {0, 0, 1}));
     rows.block<3, 3>(3 * i, 0) = rotation;
     rows.block<3, 3>(3 * i, 3) = -Matrix3::Identity();
     right.segment<3>(3 * i) = -ToEigen(pose.translation);
@@ -124,7 +127,8 @@ core::Result<PivotFit> FitPivot(std::span<const Pose> poses) {
   fit.p_sensor_pivot = FromEigen(solved.head<3>());
   fit.p_source_pivot = FromEigen(solved.tail<3>());
   std::vector<double> distances;
-  for (const Pose& pose : poses) distances.push_back(math::Distance(pose * fit.p_sensor_pivot, fit.p_source_pivot));
+  for (const Pose& pose : poses)
+    distances.push_back(math::Distance(pose * fit.p_sensor_pivot, fit.p_source_pivot));
   fit.quality = MakeQuality(distances, FindTurn(poses));
   if (const core::Status good = CheckQuality(fit.quality, "the tip"); !good) return good.error();
   return fit;
@@ -139,7 +143,8 @@ core::Result<TrocarFit> FitTrocar(std::span<const Pose> poses, const Vec3& p_sen
   TrocarFit fit;
   fit.axis_sensor = math::Normalized(p_sensor_tip, {1, 0, 0});
   for (int round = 0; round < kMaxRounds; ++round) {
-    for (std::size_t i = 0; i < poses.size(); ++i) shafts[i] = math::Rotate(poses[i].rotation, fit.axis_sensor);
+    for (std::size_t i = 0; i < poses.size(); ++i)
+      shafts[i] = math::Rotate(poses[i].rotation, fit.axis_sensor);
     fit.p_source_trocar = MeetingPoint(tips, shafts);
     // the direction that the ways from the trocar to the tip share, seen from the sensor
     Matrix3 sum = Matrix3::Zero();

@@ -23,8 +23,8 @@ Quaternion PanTilt(double pan, double tilt) noexcept {
 
 }  // namespace
 
-void SetJoints(const HandCalibration& calibration, const Quaternion& R_world_source, const Pose& X_source_sensor,
-               HandSample& sample) noexcept {
+void SetJoints(const HandCalibration& calibration, const Quaternion& R_world_source,
+               const Pose& X_source_sensor, HandSample& sample) noexcept {
   const Vec3 shaft = math::Rotate(X_source_sensor.rotation, calibration.axis_sensor);
   const Vec3 way = X_source_sensor * calibration.p_sensor_tip - calibration.p_source_trocar;
   const double inside = math::Dot(way, shaft);
@@ -36,10 +36,11 @@ void SetJoints(const HandCalibration& calibration, const Quaternion& R_world_sou
   sample.tilt = std::asin(std::clamp(a.y, -1.0, 1.0));
   sample.pan = std::atan2(-a.x, -a.z);
 
-  const Vec3 up =
-      math::Rotate(R_world_source, math::Rotate(X_source_sensor.rotation * ToolInSensor(calibration), {0, 1, 0}));
+  const Vec3 up = math::Rotate(R_world_source,
+                               math::Rotate(X_source_sensor.rotation * ToolInSensor(calibration), {0, 1, 0}));
   const Quaternion unspun = PanTilt(sample.pan, sample.tilt);
-  sample.spin = std::atan2(-math::Dot(up, math::Rotate(unspun, {1, 0, 0})), math::Dot(up, math::Rotate(unspun, {0, 1, 0})));
+  sample.spin = std::atan2(-math::Dot(up, math::Rotate(unspun, {1, 0, 0})),
+                           math::Dot(up, math::Rotate(unspun, {0, 1, 0})));
 }
 
 Pose CalcSensorPose(const HandCalibration& calibration, const Quaternion& R_world_source,
@@ -48,7 +49,8 @@ Pose CalcSensorPose(const HandCalibration& calibration, const Quaternion& R_worl
   const Quaternion unspun = PanTilt(joints.pan, joints.tilt);
   const Quaternion R_world_tool = unspun * math::RotationAbout({0, 0, 1}, joints.spin);
   Pose X_source_sensor;
-  X_source_sensor.rotation = math::Normalized(R_source_world * R_world_tool * math::Inverse(ToolInSensor(calibration)));
+  X_source_sensor.rotation =
+      math::Normalized(R_source_world * R_world_tool * math::Inverse(ToolInSensor(calibration)));
   const Vec3 a = math::Rotate(unspun, {0, 0, -1});
   const Vec3 tip = calibration.p_source_trocar + math::Rotate(R_source_world, a * joints.depth);
   X_source_sensor.translation = tip - math::Rotate(X_source_sensor.rotation, calibration.p_sensor_tip);
@@ -59,9 +61,10 @@ core::Result<Quaternion> FindSourceRotation(const Vec3& right, const Vec3& up) {
   constexpr double kMostCosine = 0.17364817766693033;  // of 80 degrees
   const double lengths = math::Norm(right) * math::Norm(up);
   if (!(lengths > 0.0) || !(std::fabs(math::Dot(right, up)) <= kMostCosine * lengths)) {
-    return core::Error{core::ErrorCode::kDeviceSettings,
-                       "the directions \"right\" and \"up\" of the tracker's source are not at right angles; look at the "
-                       "axes printed on it"};
+    return core::Error{
+        core::ErrorCode::kDeviceSettings,
+        "the directions \"right\" and \"up\" of the tracker's source are not at right angles; look at the "
+        "axes printed on it"};
   }
   // rows are the world's axes as the source sees them
   const Vec3 z = math::Normalized(up);

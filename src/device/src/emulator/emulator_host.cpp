@@ -13,7 +13,8 @@ constexpr std::size_t kMostUnsent = 1u << 16;
 }  // namespace
 
 core::Result<std::unique_ptr<EmulatorHost>> EmulatorHost::MakeSerial(std::unique_ptr<Emulator> emulator,
-                                                                     std::vector<Fault> faults, std::uint64_t seed) {
+                                                                     std::vector<Fault> faults,
+                                                                     std::uint64_t seed) {
   core::Result<std::unique_ptr<PseudoTerminal>> terminal = PseudoTerminal::Make();
   if (!terminal) return terminal.error();
   std::unique_ptr<EmulatorHost> host(new EmulatorHost(std::move(emulator), std::move(faults), seed));
@@ -22,8 +23,9 @@ core::Result<std::unique_ptr<EmulatorHost>> EmulatorHost::MakeSerial(std::unique
   return host;
 }
 
-core::Result<std::unique_ptr<EmulatorHost>> EmulatorHost::MakeTcp(std::unique_ptr<Emulator> emulator, int port,
-                                                                  std::vector<Fault> faults, std::uint64_t seed) {
+core::Result<std::unique_ptr<EmulatorHost>> EmulatorHost::MakeTcp(std::unique_ptr<Emulator> emulator,
+                                                                  int port, std::vector<Fault> faults,
+                                                                  std::uint64_t seed) {
   core::Result<std::unique_ptr<TcpListener>> listener = TcpListener::Make(port);
   if (!listener) return listener.error();
   std::unique_ptr<EmulatorHost> host(new EmulatorHost(std::move(emulator), std::move(faults), seed));

@@ -9,8 +9,9 @@
 namespace trocar::device {
 namespace {
 
-constexpr std::array kNames = {std::string_view("silence"), std::string_view("garbage"), std::string_view("flips"),
-                               std::string_view("unplug"),  std::string_view("flood"),   std::string_view("jump")};
+constexpr std::array kNames = {std::string_view("silence"), std::string_view("garbage"),
+                               std::string_view("flips"),   std::string_view("unplug"),
+                               std::string_view("flood"),   std::string_view("jump")};
 /// One flooded record becomes so many.
 constexpr int kFloodFactor = 100;
 constexpr double kJumpSize = 0.050;  // [m]
@@ -42,10 +43,11 @@ std::string_view FaultName(FaultKind kind) noexcept {
 core::Result<Fault> ParseFault(std::string_view text) {
   const std::string whole(text);
   const auto fail = [&] {
-    return core::Error{core::ErrorCode::kUsage,
-                       "--fault " + whole +
-                           ": not like silence, flips=0.01 or unplug@5+2; kinds are silence, garbage, flips, unplug, "
-                           "flood and jump"};
+    return core::Error{
+        core::ErrorCode::kUsage,
+        "--fault " + whole +
+            ": not like silence, flips=0.01 or unplug@5+2; kinds are silence, garbage, flips, unplug, "
+            "flood and jump"};
   };
   Fault fault;
   std::size_t kind = 0;
@@ -63,7 +65,8 @@ core::Result<Fault> ParseFault(std::string_view text) {
   return fault;
 }
 
-std::string SpoilBytes(const std::vector<Fault>& faults, double time, std::string bytes, math::Random& random) {
+std::string SpoilBytes(const std::vector<Fault>& faults, double time, std::string bytes,
+                       math::Random& random) {
   for (const Fault& fault : faults) {
     if (!fault.IsOn(time)) continue;
     switch (fault.kind) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <utility>
 
-#include "../haply/haply_messages.h"
-#include "../haply/web_socket.h"
+#include "haply/haply_messages.h"
+#include "haply/web_socket.h"
 #include "trocar/device/emulator.h"
 
 namespace trocar::device {

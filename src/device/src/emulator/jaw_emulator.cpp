@@ -23,8 +23,9 @@ class JawEmulator : public Emulator {
       for (int tool = 0; tool < kJawTools; ++tool) {
         const JawCalibration& sensor = emulation_.calibrations[static_cast<std::size_t>(tool)];
         const double opening = hands[static_cast<std::size_t>(tool)].jaw / sensor.max_jaw;
-        bytes += FormatReading({tool, static_cast<std::uint32_t>(1e3 * next_),
-                                static_cast<int>(std::lround(sensor.closed + opening * (sensor.open - sensor.closed)))});
+        bytes += FormatReading(
+            {tool, static_cast<std::uint32_t>(1e3 * next_),
+             static_cast<int>(std::lround(sensor.closed + opening * (sensor.open - sensor.closed)))});
       }
     }
     return bytes;

@@ -56,7 +56,8 @@ SensorMotion MoveAboutTip(const TrackedHandsSettings& settings) {
     Pose pose = CalcSensorPose(calibration, settings.R_world_source, joints);
     // the same turning, but the tip stays where it was
     joints = CalcRest(time)[index];
-    const Vec3 dimple = CalcSensorPose(calibration, settings.R_world_source, joints) * calibration.p_sensor_tip;
+    const Vec3 dimple =
+        CalcSensorPose(calibration, settings.R_world_source, joints) * calibration.p_sensor_tip;
     pose.translation = dimple - math::Rotate(pose.rotation, calibration.p_sensor_tip);
     return pose;
   };

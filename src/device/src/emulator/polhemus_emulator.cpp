@@ -124,7 +124,8 @@ void PolhemusEmulator::ObeyShared(char command, const std::vector<double>& list)
   if (list.empty() || !(list[0] >= 1.0 && list[0] <= static_cast<double>(stations_.size()))) return;
   Station& station = stations_[static_cast<std::size_t>(list[0]) - 1];
   if (command == 'O') station.items.assign(list.begin() + 1, list.end());
-  if (command == 'H' && list.size() == 4) station.hemisphere = math::Normalized(Vec3{list[1], list[2], list[3]});
+  if (command == 'H' && list.size() == 4)
+    station.hemisphere = math::Normalized(Vec3{list[1], list[2], list[3]});
 }
 
 std::string PolhemusEmulator::FormatStation(int number, double time) {
@@ -136,7 +137,8 @@ std::string PolhemusEmulator::FormatStation(int number, double time) {
   if (math::Dot(record.position, station.hemisphere) < 0.0) record.position = -record.position;
   PolhemusFormat format = emulation_.format;
   if (IsFastrak(format)) format = is_binary_ ? PolhemusFormat::kFastrakBinary : PolhemusFormat::kFastrakAscii;
-  return FormatRecord(format, station.items, record, is_metric_, static_cast<std::uint32_t>(1e3 * time), ++frame_);
+  return FormatRecord(format, station.items, record, is_metric_, static_cast<std::uint32_t>(1e3 * time),
+                      ++frame_);
 }
 
 /// Between two records of one station [s].

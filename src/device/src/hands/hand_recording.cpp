@@ -71,7 +71,8 @@ std::string FormatHandFrames(const std::vector<HandFrame>& frames) {
 
 core::Result<std::vector<HandFrame>> ParseHandFrames(std::string_view text, const std::string& name) {
   const auto fail = [&](std::size_t line, const std::string& why) {
-    return core::Error{core::ErrorCode::kDeviceSettings, name + ": line " + std::to_string(line) + ": " + why};
+    return core::Error{core::ErrorCode::kDeviceSettings,
+                       name + ": line " + std::to_string(line) + ": " + why};
   };
   std::vector<HandFrame> frames;
   std::array<double, kColumnCount> row;

@@ -49,7 +49,8 @@ ReadStatus HandRig::DoRead(std::span<HandSample> samples) noexcept {
     if (jaw_samples_[i].is_valid) jaw_[i] = jaw_samples_[i].jaw;
     samples[i].jaw = jaw_[i];
   }
-  return hands == ReadStatus::kFresh || jaws == ReadStatus::kFresh ? ReadStatus::kFresh : ReadStatus::kUnchanged;
+  return hands == ReadStatus::kFresh || jaws == ReadStatus::kFresh ? ReadStatus::kFresh
+                                                                   : ReadStatus::kUnchanged;
 }
 
 }  // namespace trocar::device

@@ -63,7 +63,8 @@ bool TrackedHands::Gate(Hand& hand, Pose& pose, double time) noexcept {
     ++counts_.flips;
   }
   if (math::Distance(pose.translation, before) > kPositionSlack + settings_.max_speed * gap ||
-      AngleBetween(pose.rotation, hand.X_source_sensor.rotation) > kAngleSlack + settings_.max_turn_rate * gap) {
+      AngleBetween(pose.rotation, hand.X_source_sensor.rotation) >
+          kAngleSlack + settings_.max_turn_rate * gap) {
     ++counts_.jumps;
     return false;
   }
@@ -87,7 +88,8 @@ void TrackedHands::Accept(int channel, const Pose& X_source_sensor, double time)
   hand.time = time;
   hand.has_pose = true;
   hand.bad_in_row = 0;
-  SetJoints(settings_.calibrations[static_cast<std::size_t>(channel)], settings_.R_world_source, pose, hand.sample);
+  SetJoints(settings_.calibrations[static_cast<std::size_t>(channel)], settings_.R_world_source, pose,
+            hand.sample);
   if (had_pose) hand.sample.spin = Unwrapped(hand.sample.spin, spin_before);
   hand.sample.time = time;
   hand.sample.is_valid = true;

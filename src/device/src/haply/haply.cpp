@@ -7,7 +7,7 @@
 #include <thread>
 #include <utility>
 
-#include "../hands/stylus_hand.h"
+#include "hands/stylus_hand.h"
 #include "haply_messages.h"
 #include "trocar/core/clock.h"
 #include "trocar/core/newest_slot.h"

@@ -35,7 +35,8 @@ class HidTransport : public Transport {
 
 std::string Narrow(const wchar_t* text) {
   std::string narrow;
-  for (; text != nullptr && *text != L'\0'; ++text) narrow += *text > 31 && *text < 127 ? static_cast<char>(*text) : '?';
+  for (; text != nullptr && *text != L'\0'; ++text)
+    narrow += *text > 31 && *text < 127 ? static_cast<char>(*text) : '?';
   return narrow;
 }
 
@@ -45,7 +46,8 @@ std::vector<HidInfo> ListHidSensors() {
   std::vector<HidInfo> found;
   hid_device_info* devices = hid_enumerate(kVendor, kProduct);
   for (const hid_device_info* device = devices; device != nullptr; device = device->next) {
-    found.push_back({device->path, Narrow(device->manufacturer_string) + " " + Narrow(device->product_string)});
+    found.push_back(
+        {device->path, Narrow(device->manufacturer_string) + " " + Narrow(device->product_string)});
   }
   hid_free_enumeration(devices);
   return found;
@@ -54,9 +56,10 @@ std::vector<HidInfo> ListHidSensors() {
 core::Result<std::unique_ptr<Transport>> OpenHidSensor(const std::string& path) {
   hid_device* device = path.empty() ? hid_open(kVendor, kProduct, nullptr) : hid_open_path(path.c_str());
   if (device == nullptr) {
-    return core::Error{core::ErrorCode::kDeviceLost,
-                       "no jaw sensor opens as HID device" + (path.empty() ? std::string() : " " + path) +
-                           "; is it plugged in, and may you read /dev/hidraw*? docs/devices.md has the udev rule"};
+    return core::Error{
+        core::ErrorCode::kDeviceLost,
+        "no jaw sensor opens as HID device" + (path.empty() ? std::string() : " " + path) +
+            "; is it plugged in, and may you read /dev/hidraw*? docs/devices.md has the udev rule"};
   }
   hid_set_nonblocking(device, 1);
   return std::unique_ptr<Transport>(std::make_unique<HidTransport>(device));
@@ -67,8 +70,9 @@ std::vector<HidInfo> ListHidSensors() {
 }
 
 core::Result<std::unique_ptr<Transport>> OpenHidSensor(const std::string&) {
-  return core::Error{core::ErrorCode::kDeviceUnsupported,
-                     "this build has no HID support: install libhidapi-dev and build again, or use the sensor's text lines"};
+  return core::Error{
+      core::ErrorCode::kDeviceUnsupported,
+      "this build has no HID support: install libhidapi-dev and build again, or use the sensor's text lines"};
 }
 #endif
 

@@ -20,7 +20,8 @@ constexpr std::size_t kMinFitValues = 10;
 
 int Median(std::span<const int> values) {
   std::vector<int> sorted(values.begin(), values.end());
-  std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2), sorted.end());
+  std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2),
+                   sorted.end());
   return sorted[sorted.size() / 2];
 }
 
@@ -29,9 +30,10 @@ core::Status CheckCalibration(const JawCalibration& calibration) {
   if (is_raw(calibration.closed) && is_raw(calibration.open) &&
       std::abs(calibration.open - calibration.closed) >= kMinJawRange && calibration.max_jaw > 0.0)
     return {};
-  return core::Error{ErrorCode::kDeviceSettings,
-                     "jaw: closed and open must be raw values of 0 to 1023 that differ by at least 50; run trocar "
-                     "devices calibrate jaw"};
+  return core::Error{
+      ErrorCode::kDeviceSettings,
+      "jaw: closed and open must be raw values of 0 to 1023 that differ by at least 50; run trocar "
+      "devices calibrate jaw"};
 }
 
 double Opening(const JawCalibration& calibration, double raw) noexcept {
@@ -42,7 +44,8 @@ double Opening(const JawCalibration& calibration, double raw) noexcept {
 
 core::Result<JawCalibration> FitJaw(std::span<const int> closed, std::span<const int> open) {
   if (closed.size() < kMinFitValues || open.size() < kMinFitValues) {
-    return core::Error{ErrorCode::kCalibrationPoor, "jaw: too few values came in; check the wiring and repeat"};
+    return core::Error{ErrorCode::kCalibrationPoor,
+                       "jaw: too few values came in; check the wiring and repeat"};
   }
   JawCalibration calibration;
   calibration.closed = Median(closed);
@@ -64,7 +67,8 @@ double JawFilter::Filter(const JawReading& reading) noexcept {
     count_ = 1;
   } else {
     last_ = {last_[1], last_[2], reading.raw};
-    const int median = std::max(std::min(last_[0], last_[1]), std::min(std::max(last_[0], last_[1]), last_[2]));
+    const int median =
+        std::max(std::min(last_[0], last_[1]), std::min(std::max(last_[0], last_[1]), last_[2]));
     constexpr double kTwoPi = 6.283185307179586;
     value_ += (median - value_) * (1.0 - std::exp(-kTwoPi * kCutOff * 1e-3 * gap));
   }
@@ -94,10 +98,11 @@ core::Status JawSensor::DoConfigure() {
   }
   if (tools_[0].raw || tools_[1].raw) return {};
   transport_.reset();
-  return core::Error{ErrorCode::kDeviceStale,
-                     framer_.Counts().garbage > 0
-                         ? "jaw: what comes in are no lines J,<tool>,<ms>,<raw>; is this the jaw sensor's line?"
-                         : "jaw: the sensor sends nothing; check its firmware and wiring"};
+  return core::Error{
+      ErrorCode::kDeviceStale,
+      framer_.Counts().garbage > 0
+          ? "jaw: what comes in are no lines J,<tool>,<ms>,<raw>; is this the jaw sensor's line?"
+          : "jaw: the sensor sends nothing; check its firmware and wiring"};
 }
 
 core::Status JawSensor::DoActivate() {
@@ -133,7 +138,8 @@ IoResult JawSensor::Drain(double now) noexcept {
       const auto low = static_cast<unsigned char>(bytes[static_cast<std::size_t>(2 * tool)]);
       const auto high = static_cast<unsigned char>(bytes[static_cast<std::size_t>(2 * tool + 1)]);
       const int raw = low | high << 8;
-      if (raw <= kMaxJawRaw) Take({tool, static_cast<std::uint32_t>(static_cast<std::uint64_t>(1e3 * now)), raw}, now);
+      if (raw <= kMaxJawRaw)
+        Take({tool, static_cast<std::uint32_t>(static_cast<std::uint64_t>(1e3 * now)), raw}, now);
     }
   }
   return got;

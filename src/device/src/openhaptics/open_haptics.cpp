@@ -6,7 +6,7 @@
 #include <atomic>
 #include <cmath>
 
-#include "../hands/stylus_hand.h"
+#include "hands/stylus_hand.h"
 #include "hd_library.h"
 #include "trocar/core/clock.h"
 #include "trocar/core/newest_slot.h"

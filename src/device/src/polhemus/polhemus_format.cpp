@@ -30,8 +30,8 @@ void AppendColumns(std::string& bytes, const Vec3& values) {
   }
 }
 
-void AppendItem(std::string& bytes, PolhemusFormat format, int item, const TrackerRecord& record, bool is_metric,
-                std::uint32_t milliseconds, std::uint32_t frame) {
+void AppendItem(std::string& bytes, PolhemusFormat format, int item, const TrackerRecord& record,
+                bool is_metric, std::uint32_t milliseconds, std::uint32_t frame) {
   const bool is_ascii = format == PolhemusFormat::kFastrakAscii;
   const Quaternion& q = record.rotation;
   const auto append_vector = [&](const Vec3& values) {
@@ -88,11 +88,12 @@ std::span<const int> RequestedItems(PolhemusFormat format) noexcept {
   return kFrame;
 }
 
-std::string FormatRecord(PolhemusFormat format, std::span<const int> items, const TrackerRecord& record, bool is_metric,
-                         std::uint32_t milliseconds, std::uint32_t frame) {
+std::string FormatRecord(PolhemusFormat format, std::span<const int> items, const TrackerRecord& record,
+                         bool is_metric, std::uint32_t milliseconds, std::uint32_t frame) {
   std::string payload;
   for (const int item : items) AppendItem(payload, format, item, record, is_metric, milliseconds, frame);
-  if (IsFastrak(format)) return std::string{'0', static_cast<char>('0' + record.station), record.error} + payload;
+  if (IsFastrak(format))
+    return std::string{'0', static_cast<char>('0' + record.station), record.error} + payload;
   std::string header(Preamble(format));
   header += {static_cast<char>(record.station), 'C', record.error, '\0'};
   header += {static_cast<char>(payload.size() & 0xff), static_cast<char>(payload.size() >> 8 & 0xff)};
@@ -115,7 +116,8 @@ std::string SetUpCommands(PolhemusFormat format, std::span<const int> stations, 
     for (const int item : RequestedItems(format)) commands += "," + std::to_string(item);
     commands += "\r";
     char text[96];
-    std::snprintf(text, sizeof text, "H%d,%.3f,%.3f,%.3f\r", station, hemisphere.x, hemisphere.y, hemisphere.z);
+    std::snprintf(text, sizeof text, "H%d,%.3f,%.3f,%.3f\r", station, hemisphere.x, hemisphere.y,
+                  hemisphere.z);
     commands += text;
   }
   return commands;

@@ -17,7 +17,7 @@ inline constexpr std::size_t kColumns = 7;        // Sxxx.xx
 inline constexpr std::size_t kFastrakAsciiLength = kFastrakHeader + 6 * kColumns + 2;
 inline constexpr std::size_t kFastrakBinaryLength = kFastrakHeader + 7 * 4 + 1;
 
-inline constexpr std::size_t kFrameHeader = 8;                   // preamble, station, command, error, reserved, size
+inline constexpr std::size_t kFrameHeader = 8;  // preamble, station, command, error, reserved, size
 inline constexpr std::size_t kQuaternionPayload = 7 * 4 + 4 + 1;  // list 2,7,8,0
 inline constexpr std::size_t kEulerPayload = 6 * 4 + 2;           // list 2,4,1, the trackers' default
 

@@ -24,7 +24,8 @@ constexpr double kUnitTolerance = 0.01;
 
 float ReadFloat(std::string_view bytes, std::size_t at) noexcept {
   std::uint32_t word = 0;
-  for (int i = 3; i >= 0; --i) word = word << 8 | static_cast<unsigned char>(bytes[at + static_cast<std::size_t>(i)]);
+  for (int i = 3; i >= 0; --i)
+    word = word << 8 | static_cast<unsigned char>(bytes[at + static_cast<std::size_t>(i)]);
   return std::bit_cast<float>(word);
 }
 
@@ -61,8 +62,9 @@ bool SetEuler(const Vec3& degrees, TrackerRecord& record) noexcept {
 }
 
 bool ReadQuaternion(std::string_view bytes, std::size_t at, TrackerRecord& record) noexcept {
-  return SetRotation({ReadFloat(bytes, at), ReadFloat(bytes, at + 4), ReadFloat(bytes, at + 8), ReadFloat(bytes, at + 12)},
-                     record);
+  return SetRotation(
+      {ReadFloat(bytes, at), ReadFloat(bytes, at + 4), ReadFloat(bytes, at + 8), ReadFloat(bytes, at + 12)},
+      record);
 }
 
 // --- FASTRAK, ASCII: columns, because values may touch
@@ -104,7 +106,8 @@ Parsed ParseFastrakAscii(std::string_view bytes, TrackerRecord& record) noexcept
   Vec3 inches, degrees;
   for (int i = 0; i < 3; ++i) {
     inches[i] = ReadColumns(bytes.substr(kFastrakHeader + kColumns * static_cast<std::size_t>(i), kColumns));
-    degrees[i] = ReadColumns(bytes.substr(kFastrakHeader + kColumns * static_cast<std::size_t>(i + 3), kColumns));
+    degrees[i] =
+        ReadColumns(bytes.substr(kFastrakHeader + kColumns * static_cast<std::size_t>(i + 3), kColumns));
   }
   if (!SetPosition(inches, record) || !SetEuler(degrees, record)) return kGarbage;
   return {Verdict::kRecord, kFastrakAsciiLength};
@@ -147,12 +150,14 @@ Parsed ParseFrame(PolhemusFormat format, std::string_view bytes, TrackerRecord& 
   record.error = bytes[4];
   if (bytes.size() < kFrameHeader) return kIncomplete;
   // a size that is none of the two lists is a lie, or not ours: never waited for
-  const std::size_t size = static_cast<unsigned char>(bytes[6]) | static_cast<std::size_t>(static_cast<unsigned char>(bytes[7])) << 8;
+  const std::size_t size = static_cast<unsigned char>(bytes[6]) |
+                           static_cast<std::size_t>(static_cast<unsigned char>(bytes[7])) << 8;
   if (size != kQuaternionPayload && size != kEulerPayload) return kGarbage;
   if (bytes.size() < kFrameHeader + size) return kIncomplete;
   if (!SetPosition(ReadFloats3(bytes, kFrameHeader), record)) return kGarbage;
   if (size == kQuaternionPayload) {
-    if (bytes[kFrameHeader + size - 1] != ' ' || !ReadQuaternion(bytes, kFrameHeader + 12, record)) return kGarbage;
+    if (bytes[kFrameHeader + size - 1] != ' ' || !ReadQuaternion(bytes, kFrameHeader + 12, record))
+      return kGarbage;
   } else if (bytes.substr(kFrameHeader + size - 2, 2) != "\r\n" ||
              !SetEuler(ReadFloats3(bytes, kFrameHeader + 12), record)) {
     return kGarbage;

@@ -42,7 +42,8 @@ core::Status PolhemusTracker::CheckSettings() const {
       return fail("it has stations 1 to " + std::to_string(StationCount(settings_.format)) + ", not " +
                   std::to_string(station));
     }
-    if (FindChannel(station) != channel) return fail("station " + std::to_string(station) + " is given to two hands");
+    if (FindChannel(station) != channel)
+      return fail("station " + std::to_string(station) + " is given to two hands");
   }
   if (used == 0) return fail("no hand has a station; give at least one");
   const TrackedHandsSettings& hands = settings_.hands;
@@ -90,13 +91,15 @@ core::Status PolhemusTracker::AwaitStations() {
   while (!waiting.empty() && clock_.Now() < end) {
     const IoResult got = transport_->Read(bytes);
     if (got.is_lost) return core::Error{ErrorCode::kDeviceLost, GetName() + " hung up; check plug and power"};
-    framer_.Feed({bytes.data(), got.count}, [&](const TrackerRecord& record) { std::erase(waiting, record.station); });
+    framer_.Feed({bytes.data(), got.count},
+                 [&](const TrackerRecord& record) { std::erase(waiting, record.station); });
     if (got.count == 0) clock_.Sleep(0.002);
   }
   if (waiting.empty()) return {};
   if (framer_.Counts().records != before.records) {
-    return core::Error{ErrorCode::kDeviceStale, GetName() + ": station " + std::to_string(waiting.front()) +
-                                                    " does not answer; is its sensor plugged in and switched on?"};
+    return core::Error{ErrorCode::kDeviceStale,
+                       GetName() + ": station " + std::to_string(waiting.front()) +
+                           " does not answer; is its sensor plugged in and switched on?"};
   }
   const std::uint64_t garbage = framer_.Counts().garbage - before.garbage;
   return core::Error{ErrorCode::kDeviceStale,

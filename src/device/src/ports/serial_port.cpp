@@ -31,10 +31,11 @@ core::Result<speed_t> FindSpeed(int baud) {
   for (const auto& [value, speed] : kSpeeds) {
     if (value == baud) return speed;
   }
-  return core::Error{ErrorCode::kDeviceSettings,
-                     std::to_string(baud) +
-                         " baud is no speed for a tracker or sensor; use one of 2400, 4800, 9600, 19200, 38400, "
-                         "57600, 115200, 230400, 460800, 921600, as its switches say"};
+  return core::Error{
+      ErrorCode::kDeviceSettings,
+      std::to_string(baud) +
+          " baud is no speed for a tracker or sensor; use one of 2400, 4800, 9600, 19200, 38400, "
+          "57600, 115200, 230400, 460800, 921600, as its switches say"};
 }
 
 /// Bytes as they are, at that speed; a read gives what is there.
@@ -54,8 +55,10 @@ bool MakeRaw(int file, speed_t speed) noexcept {
 
 core::Error OpenError(const std::string& path) {
   if (errno == EACCES || errno == EPERM) {
-    return {ErrorCode::kDeviceLost, path + " may not be opened: add yourself to its group (sudo usermod -aG dialout "
-                                           "$USER), then log in again"};
+    return {ErrorCode::kDeviceLost,
+            path +
+                " may not be opened: add yourself to its group (sudo usermod -aG dialout "
+                "$USER), then log in again"};
   }
   if (errno == EBUSY) return {ErrorCode::kDeviceBusy, path + " is used by another program; close it"};
   return {ErrorCode::kDeviceLost, path + ": " + std::strerror(errno) + "; is it plugged in and switched on?"};
@@ -78,7 +81,8 @@ core::Result<std::unique_ptr<Transport>> OpenSerialPort(const std::string& path,
   if (file < 0) return OpenError(path);
   auto transport = std::make_unique<FileTransport>(file);
   if (::isatty(file) == 0) {
-    return core::Error{ErrorCode::kDeviceSettings, path + " is no serial line; trocar devices list shows them"};
+    return core::Error{ErrorCode::kDeviceSettings,
+                       path + " is no serial line; trocar devices list shows them"};
   }
   if (::flock(file, LOCK_EX | LOCK_NB) != 0) {
     return core::Error{ErrorCode::kDeviceBusy, path + " is used by another program; close it"};
@@ -102,7 +106,8 @@ std::vector<SerialPortInfo> ListSerialPorts(const std::string& dev) {
     const std::string name = entry.path().filename().string();
     if (!name.starts_with("ttyUSB") && !name.starts_with("ttyACM")) continue;
     const std::string path = entry.path().string();
-    if (std::none_of(ports.begin(), ports.end(), [&](const SerialPortInfo& port) { return port.device == path; }))
+    if (std::none_of(ports.begin(), ports.end(),
+                     [&](const SerialPortInfo& port) { return port.device == path; }))
       ports.push_back({path, path, "serial line"});
   }
   std::sort(ports.begin(), ports.end(),
@@ -114,7 +119,8 @@ core::Result<std::unique_ptr<PseudoTerminal>> PseudoTerminal::Make() {
   const auto fail = [](int file) {
     const std::string why = std::strerror(errno);
     if (file >= 0) ::close(file);
-    return core::Error{ErrorCode::kDeviceLost, "no pseudo-terminal can be made: " + why + "; is /dev/pts mounted?"};
+    return core::Error{ErrorCode::kDeviceLost,
+                       "no pseudo-terminal can be made: " + why + "; is /dev/pts mounted?"};
   };
   const int master = ::posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC | O_NONBLOCK);
   if (master < 0) return fail(-1);

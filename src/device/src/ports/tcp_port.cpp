@@ -48,7 +48,8 @@ core::Result<std::unique_ptr<Transport>> ConnectTcp(const std::string& host, int
   hints.ai_family = AF_UNSPEC;
   hints.ai_socktype = SOCK_STREAM;
   addrinfo* found = nullptr;
-  if (const int failure = ::getaddrinfo(host.c_str(), std::to_string(port).c_str(), &hints, &found); failure != 0)
+  if (const int failure = ::getaddrinfo(host.c_str(), std::to_string(port).c_str(), &hints, &found);
+      failure != 0)
     return Unreachable(host, port, ::gai_strerror(failure));
   const std::unique_ptr<addrinfo, void (*)(addrinfo*)> addresses(found, ::freeaddrinfo);
   int why = ENOENT;

@@ -10,8 +10,8 @@
 
 #include "trocar/device/device_store.h"
 #include "trocar/device/driver.h"
-#include "trocar/device/pose_driver.h"
 #include "trocar/device/ports.h"
+#include "trocar/device/pose_driver.h"
 
 namespace trocar::device {
 
@@ -36,11 +36,13 @@ core::Result<DeviceSpec> ParseDeviceSpec(std::string_view text);
 /// Hands as one driver of kChannelCount channels; with "+jaw:..." the jaws from there. Nothing is opened yet.
 /// \param clock  outlives the driver
 /// \return kUsage, kDeviceSettings or kDeviceUnsupported
-core::Result<std::unique_ptr<Driver>> MakeDriver(std::string_view text, const DeviceStore& store, Clock& clock);
+core::Result<std::unique_ptr<Driver>> MakeDriver(std::string_view text, const DeviceStore& store,
+                                                 Clock& clock);
 
 /// A tracker alone, for calibration.
 /// \return kUsage also where the kind is no tracker
-core::Result<std::unique_ptr<PoseDriver>> MakeTracker(std::string_view text, const DeviceStore& store, Clock& clock);
+core::Result<std::unique_ptr<PoseDriver>> MakeTracker(std::string_view text, const DeviceStore& store,
+                                                      Clock& clock);
 /// A jaw sensor alone, for calibration; its stored calibration is left out.
 core::Result<std::unique_ptr<JawSensor>> MakeJawSensor(std::string_view text, Clock& clock);
 

@@ -19,11 +19,11 @@ using math::Vec3;
 
 /// One instrument with a sensor on it. The defaults fit no instrument in particular; they let an uncalibrated one move.
 struct HandCalibration {
-  Vec3 p_sensor_tip{0.25, 0, 0};   ///< tip in the sensor's frame [m]
-  Vec3 axis_sensor{1, 0, 0};       ///< unit vector along the shaft towards the tip, sensor frame
-  Vec3 up_sensor{0, 0, -1};        ///< unit vector along which the jaws open at spin 0; perpendicular to the axis
+  Vec3 p_sensor_tip{0.25, 0, 0};  ///< tip in the sensor's frame [m]
+  Vec3 axis_sensor{1, 0, 0};      ///< unit vector along the shaft towards the tip, sensor frame
+  Vec3 up_sensor{0, 0, -1};  ///< unit vector along which the jaws open at spin 0; perpendicular to the axis
   Vec3 p_source_trocar{0.3, 0, 0};  ///< trocar point in the frame of the tracker's source [m]
-  bool is_measured = false;        ///< by a fit, not the defaults
+  bool is_measured = false;         ///< by a fit, not the defaults
 
   friend bool operator==(const HandCalibration&, const HandCalibration&) = default;
 };
@@ -32,11 +32,12 @@ struct HandCalibration {
 ///
 /// \param R_world_source  turns the source's frame into the world's
 /// \note Real-time safe.
-void SetJoints(const HandCalibration& calibration, const Quaternion& R_world_source, const Pose& X_source_sensor,
-               HandSample& sample) noexcept;
+void SetJoints(const HandCalibration& calibration, const Quaternion& R_world_source,
+               const Pose& X_source_sensor, HandSample& sample) noexcept;
 
 /// Pose of the sensor that gives these joints: the other way round, for emulators and tests.
-Pose CalcSensorPose(const HandCalibration& calibration, const Quaternion& R_world_source, const HandSample& joints) noexcept;
+Pose CalcSensorPose(const HandCalibration& calibration, const Quaternion& R_world_source,
+                    const HandSample& joints) noexcept;
 
 /// Rotation from two directions that the person can see on the source.
 ///

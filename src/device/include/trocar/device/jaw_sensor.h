@@ -17,7 +17,7 @@
 
 namespace trocar::device {
 
-inline constexpr int kJawTools = 2;   ///< left, right
+inline constexpr int kJawTools = 2;      ///< left, right
 inline constexpr int kMaxJawRaw = 1023;  ///< of a 10-bit converter
 
 /// One value of one tool.
@@ -51,8 +51,8 @@ class JawFramer {
 std::string FormatReading(const JawReading& reading);
 
 struct JawCalibration {
-  int closed = 0;           ///< raw value with closed jaws
-  int open = kMaxJawRaw;    ///< and with fully open ones; may be less than `closed`
+  int closed = 0;                       ///< raw value with closed jaws
+  int open = kMaxJawRaw;                ///< and with fully open ones; may be less than `closed`
   double max_jaw = 1.0471975511965976;  ///< what fully open means, 60 degrees [rad]
 
   friend bool operator==(const JawCalibration&, const JawCalibration&) = default;

@@ -14,13 +14,13 @@ namespace trocar::device {
 
 struct TrackedHandsSettings {
   std::array<HandCalibration, kChannelCount> calibrations;
-  Quaternion R_world_source;      ///< see FindSourceRotation()
-  Vec3 hemisphere{1, 0, 0};       ///< unit vector from the source to where the hands are, source frame
+  Quaternion R_world_source;         ///< see FindSourceRotation()
+  Vec3 hemisphere{1, 0, 0};          ///< unit vector from the source to where the hands are, source frame
   bool has_hemisphere_doubt = true;  ///< the tracker may report -x for x; false for optical ones
-  double max_speed = 2.0;         ///< of a sensor; what is faster is a glitch [m/s], > 0
-  double max_turn_rate = 25.0;    ///< likewise [rad/s], > 0
-  double stale_after = 0.050;     ///< without a good pose a hand is not seen any more [s], > 0
-  double lost_after = 0.500;      ///< without any record the device is lost [s], > stale_after
+  double max_speed = 2.0;            ///< of a sensor; what is faster is a glitch [m/s], > 0
+  double max_turn_rate = 25.0;       ///< likewise [rad/s], > 0
+  double stale_after = 0.050;        ///< without a good pose a hand is not seen any more [s], > 0
+  double lost_after = 0.500;         ///< without any record the device is lost [s], > stale_after
 };
 
 /// What was held back, since the last Reset().

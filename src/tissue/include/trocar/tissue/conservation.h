@@ -53,7 +53,7 @@ struct ConservationState {
   std::vector<OrganVolume> organs;
   FreeRegions regions;
   std::array<Pose, kMaxFreeRegions> X_world_rest;  ///< of each region: identity where it was imaged
-  std::uint64_t intact_links = 0;  ///< strands and springs, for which `regions` hold
+  std::uint64_t intact_links = 0;                  ///< strands and springs, for which `regions` hold
   std::vector<Vec3> last_position;  ///< (n) after the last Enforce: where held nodes came from [m]
 };
 
@@ -68,6 +68,10 @@ class Conservation {
 
   /// State at rest: every organ at its rest volume and without pressure, frames where anatomy was imaged.
   ConservationState MakeState(const TissueState& rest_state) const;
+
+  /// As made: how volumes answer pressures is worked out over some ticks after something tore, and that of before
+  /// would shine through in a surgery that begins again.
+  void Reset() noexcept;
 
   /// Takes held free pieces along: the rigid motion that their held nodes made since the last Enforce moves
   /// the rest of the piece and its frame. A better start for the solver than a piece left behind, which would
@@ -136,8 +140,9 @@ class Conservation {
   TissueState rest_;
   std::vector<std::vector<Vec3>> responses_;  // per organ (n): displacement by 1 Pa, in the rest frame [m/Pa]
   std::vector<std::vector<Vec3>> shifts_;     // the same where nodes are now; zero where they are held
-  double stiffness_scale_ = 1, shape_scale_ = 1;  // for which the responses were found
-  std::uint64_t response_links_ = 0;
+  double stiffness_scale_ = 1, shape_scale_ = 1;    // for which the responses were found
+  std::vector<std::vector<Vec3>> first_responses_;  // of the whole tissue under the usual scales
+  std::uint64_t response_links_ = 0, first_links_ = 0;
   bool responses_settled_ = false;
   std::vector<Vec3> gradient_;    // (n) of each node's organ; zero elsewhere
   std::vector<Vec3> base_force_;  // (n) without pressure

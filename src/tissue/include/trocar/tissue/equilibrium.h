@@ -19,8 +19,9 @@ struct SolveReport {
   double residual = 0;  ///< largest |R_i| of a node that is not prescribed, over `force_scale` [-]
   double force_scale =
       0;  ///< largest force that acts on any such node through one spring, load or contact [N]
-  bool converged = false;  ///< residual <= tolerance, and springs that stiffen within SolverSettings::law_error
-  int rounds = 1;          ///< solves with stiffening springs taken as lines, each about where the last ended
+  bool converged =
+      false;       ///< residual <= tolerance, and springs that stiffen within SolverSettings::law_error
+  int rounds = 1;  ///< solves with stiffening springs taken as lines, each about where the last ended
   /// Largest difference between a spring's tension by its law and by the line that stood for it, over the
   /// largest tension [-]; 0 where no spring stiffens.
   double law_error = 0;
