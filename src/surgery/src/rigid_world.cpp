@@ -19,7 +19,8 @@ namespace {
 
 // Bullet's tolerances are made for things of a size of one: it counts in centimetres
 constexpr double kScale = 100.0;
-constexpr int kSubsteps = 4;           // of a tick: pegs are thin
+constexpr int kFewestSubsteps = 4;  // of a tick: pegs are thin
+constexpr int kMostSubsteps = 32;
 constexpr double kMargin = 0.01;       // of shapes [cm]
 constexpr int kRingParts = 16;         // capsules that make a ring
 constexpr int kSlipTicks = 3;          // the pull must exceed the hold that many ticks in a row
@@ -36,7 +37,8 @@ Vec3 FromBullet(const btVector3& v) {
   return {v.x() / kScale, v.y() / kScale, v.z() / kScale};
 }
 btTransform ToBullet(const Pose& X) {
-  return {btQuaternion(X.rotation.x, X.rotation.y, X.rotation.z, X.rotation.w), ToBullet(X.translation)};
+  return btTransform(btQuaternion(X.rotation.x, X.rotation.y, X.rotation.z, X.rotation.w),
+                     ToBullet(X.translation));
 }
 Pose FromBullet(const btTransform& X) {
   const btQuaternion q = X.getRotation();
@@ -69,6 +71,23 @@ bool HasSize(const RigidShape& shape) {
   return false;
 }
 
+/// Half of what a shape measures where it is thinnest [m].
+double HalfWidth(const RigidShape& shape) {
+  const Vec3& s = shape.size;
+  switch (shape.kind) {
+    case RigidShape::Kind::kBox:
+      return std::min({s.x, s.y, s.z});
+    case RigidShape::Kind::kCylinder:
+      return std::min(s.x, s.z);
+    case RigidShape::Kind::kCapsule:
+    case RigidShape::Kind::kSphere:
+      return s.x;
+    case RigidShape::Kind::kRing:
+      return s.y;
+  }
+  return 0;
+}
+
 core::Error Refuse(const std::string& why) {
   return {core::ErrorCode::kSceneInvalid, why};
 }
@@ -93,6 +112,7 @@ struct RigidWorld::Content {
     RigidBody definition;
     std::vector<std::unique_ptr<btCollisionShape>> shapes;  // the last is the whole
     std::unique_ptr<btRigidBody> body;
+    double thinnest = 0;  // half of its thinnest part's width [m]
   };
 
   Vec3 gravity;
@@ -159,7 +179,7 @@ struct RigidWorld::Content {
           add(shape.X_body_shape, std::make_unique<btBoxShape>(ToBullet(s)));
           break;
         case RigidShape::Kind::kCylinder:
-          add(shape.X_body_shape, std::make_unique<btCylinderShapeZ>(ToBullet({s.x, s.x, s.z})));
+          add(shape.X_body_shape, std::make_unique<btCylinderShapeZ>(ToBullet(Vec3{s.x, s.x, s.z})));
           break;
         case RigidShape::Kind::kCapsule: {
           auto capsule = along_z(s.x, s.z);
@@ -207,12 +227,6 @@ struct RigidWorld::Content {
     body.body = std::make_unique<btRigidBody>(info);
     body.body->setUserIndex(static_cast<int>(index));
     body.body->setUserIndex2(-1);
-    // a thing that falls fast does not pass a board between two steps
-    btVector3 centre;
-    btScalar radius = 0;
-    whole->getBoundingSphere(centre, radius);
-    body.body->setCcdMotionThreshold(0.5 * radius);
-    body.body->setCcdSweptSphereRadius(0.2 * radius);
     world->addRigidBody(body.body.get());
   }
 
@@ -240,6 +254,17 @@ struct RigidWorld::Content {
     tool.held = -1;
     tool.ticks_over = 0;
     tool.force = {};
+  }
+
+  /// So many that no body goes further in one than half of its thinnest part: nothing falls through a board.
+  int CountSubsteps() const {
+    double most = kFewestSubsteps;
+    for (const Body& body : bodies) {
+      if (!(body.definition.mass > 0)) continue;
+      const double way = math::Norm(FromBullet(body.body->getLinearVelocity())) * tick_seconds;
+      most = std::max(most, std::ceil(way / (0.5 * body.thinnest)));
+    }
+    return static_cast<int>(std::min(most, static_cast<double>(kMostSubsteps)));
   }
 
   /// Impulses of one substep on the tools, and who touched whom.
@@ -295,7 +320,9 @@ core::Result<std::uint32_t> RigidWorld::AddBody(const RigidBody& body) {
   if (!(body.mass >= 0) || !std::isfinite(body.mass) || !(body.friction >= 0) ||
       !std::isfinite(body.friction) || !IsFinite(body.X_world_body))
     return Refuse("mass, friction or pose of a rigid body is negative or not finite");
-  content_->bodies.push_back({body, {}, nullptr});
+  double thinnest = 1;
+  for (const RigidShape& shape : body.shapes) thinnest = std::min(thinnest, HalfWidth(shape));
+  content_->bodies.push_back({body, {}, nullptr, thinnest});
   content_->Add(content_->bodies.size() - 1);
   for (auto& tool : content_->tools) {
     for (auto& touched : tool.touched) touched.assign(content_->bodies.size(), 0);
@@ -333,15 +360,16 @@ void RigidWorld::Step() {
     tool.force = {};
     for (auto& touched : tool.touched) std::fill(touched.begin(), touched.end(), std::uint8_t{0});
   }
-  const double dt = content.tick_seconds / kSubsteps;
-  for (int step = 1; step <= kSubsteps; ++step) {
-    const double share = static_cast<double>(step) / kSubsteps;
+  const int substeps = content.CountSubsteps();
+  const double dt = content.tick_seconds / substeps;
+  for (int step = 1; step <= substeps; ++step) {
+    const double share = static_cast<double>(step) / substeps;
     for (auto& tool : content.tools) {
       for (std::size_t part = 0; part < kToolPartCount; ++part) {
         const btTransform& from = tool.from[part];
         const btTransform& to = tool.to[part];
-        tool.parts[part]->setWorldTransform({from.getRotation().slerp(to.getRotation(), share),
-                                             from.getOrigin().lerp(to.getOrigin(), share)});
+        tool.parts[part]->setWorldTransform(btTransform(from.getRotation().slerp(to.getRotation(), share),
+                                                        from.getOrigin().lerp(to.getOrigin(), share)));
         // Bullet works a kinematic body's velocity out from where it was interpolated last
         tool.parts[part]->saveKinematicState(dt);
         tool.parts[part]->setInterpolationWorldTransform(tool.parts[part]->getWorldTransform());
@@ -351,7 +379,7 @@ void RigidWorld::Step() {
     content.GatherContacts();
     for (std::size_t t = 0; t < content.tools.size(); ++t) {
       auto& tool = content.tools[t];
-      if (tool.hold) pulls[t] = pulls[t] + 1.0 / kSubsteps * FromBullet(tool.feedback.m_appliedForceBodyA);
+      if (tool.hold) pulls[t] = pulls[t] + 1.0 / substeps * FromBullet(tool.feedback.m_appliedForceBodyA);
     }
   }
   for (std::size_t t = 0; t < content.tools.size(); ++t) {
@@ -390,6 +418,9 @@ void RigidWorld::Hold(std::uint32_t tool_index, std::uint32_t body_index, double
   tool.hold->setJointFeedback(&tool.feedback);
   tool.feedback = {};
   content_->world->addConstraint(tool.hold.get());
+  // contacts that are there already would go on pushing
+  content_->world->getPairCache()->cleanProxyFromPairs(body.getBroadphaseHandle(),
+                                                       content_->dispatcher.get());
   body.activate(true);
   tool.held = static_cast<std::int32_t>(body_index);
   tool.hold_force = hold_force;

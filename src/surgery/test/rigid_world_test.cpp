@@ -32,14 +32,14 @@ void PoseTool(const Vec3& tip, double opening, Pose (&X)[kToolPartCount]) {
 }
 constexpr ToolCapsule kParts[kToolPartCount] = {{0.0025, 0.04}, {0.0015, 0.008}, {0.0015, 0.008}};
 
-void Run(RigidWorld& world, double seconds) {
+void Play(RigidWorld& world, double seconds) {
   for (int tick = 0; tick < static_cast<int>(std::lround(seconds / kTick)); ++tick) world.Step();
 }
 
 TEST(RigidWorld, FallsAsGalileiSaid) {
   RigidWorld world(kDown, kTick);
   const auto cube = world.AddBody(MakeCube({0, 0, 1})).value();
-  Run(world, 0.2);
+  Play(world, 0.2);
   // semi-implicit steps of tick / 4 run ahead of g t^2 / 2 by g t dt / 2; damping is a hundredth a second
   EXPECT_NEAR(1 - world.PoseOf(cube).translation.z, 0.5 * 9.81 * 0.04, 0.01 * 0.5 * 9.81 * 0.04 + 0.0025);
   EXPECT_NEAR(world.VelocityOf(cube).z, -9.81 * 0.2, 0.01);
@@ -52,7 +52,7 @@ TEST(RigidWorld, RestsWithoutJitter) {
   for (int level = 0; level < 3; ++level)
     things.push_back(*world.AddBody(MakeCube({0, 0, 0.0065 + 0.0125 * level})));
   things.push_back(*world.AddBody(MakeRing({0.05, 0, 0.01})));
-  Run(world, 1.0);
+  Play(world, 1.0);
   std::vector<Vec3> settled;
   for (const auto thing : things) settled.push_back(world.PoseOf(thing).translation);
   for (int tick = 0; tick < 60 * 120; ++tick) {
@@ -76,11 +76,11 @@ TEST(RigidWorld, SlidesBeyondTheAngleOfFrictionOnly) {
       RigidWorld world(tilted, kTick);
       ASSERT_TRUE(world.AddBody(MakeFloor()).ok());
       const auto cube = *world.AddBody(MakeCube({0, 0, 0.0061}, 0.006, friction));
-      Run(world, 0.1);
+      Play(world, 0.1);
       const double before = world.PoseOf(cube).translation.x;
-      Run(world, 0.25);
+      Play(world, 0.25);
       const double moved = world.PoseOf(cube).translation.x - before;
-      factor < 1 ? EXPECT_LT(moved, 5e-4) : EXPECT_GT(moved, 5e-3);
+      EXPECT_TRUE(factor < 1 ? moved < 5e-4 : moved > 5e-3) << friction << " " << factor << ": " << moved;
     }
   }
 }
@@ -89,7 +89,7 @@ TEST(RigidWorld, DoesNotFallThroughAThinBoard) {
   RigidWorld world(kDown, kTick);
   ASSERT_TRUE(world.AddBody({{{Kind::kBox, {0.2, 0.2, 0.0005}, {}}}, {}, 0, 1.0}).ok());
   const auto cube = *world.AddBody(MakeCube({0, 0, 0.8}, 0.003));
-  Run(world, 2.0);
+  Play(world, 2.0);
   EXPECT_GT(world.PoseOf(cube).translation.z, 0);
 }
 
@@ -99,7 +99,7 @@ TEST(RigidWorld, ARingStaysOnItsPeg) {
   ASSERT_TRUE(
       world.AddBody({{{Kind::kCylinder, {0.0025, 0.0025, 0.0125}, {}}}, {{}, {0, 0, 0.0125}}, 0, 0.8}).ok());
   const auto ring = *world.AddBody(MakeRing({0.002, 0, 0.04}));
-  Run(world, 1.5);
+  Play(world, 1.5);
   const Vec3 p = world.PoseOf(ring).translation;
   EXPECT_LT(std::hypot(p.x, p.y), 0.007) << "the ring is beside the peg";
   EXPECT_NEAR(p.z, 0.002, 5e-4);
@@ -147,16 +147,16 @@ TEST(RigidWorld, IsGraspedCarriedPassedAndPlaced) {
   // both hold it in the air, then the first lets go
   bench.Move(1, {0, 0.1, 0.012}, {0, 0.05, 0.060}, 0.03, 0.03, 1.0);
   world.Hold(1, bench.cube, 5.0);
-  Run(world, 0.2);
+  Play(world, 0.2);
   EXPECT_EQ(world.HeldBy(0), static_cast<std::int32_t>(bench.cube));
   world.Release(0);
-  Run(world, 0.2);
+  Play(world, 0.2);
   EXPECT_EQ(world.HeldBy(0), -1);
   EXPECT_NEAR(world.PoseOf(bench.cube).translation.z, 0.056, 1e-3) << "it fell when the first hand let go";
   bench.Move(1, {0, 0.05, 0.060}, {0, 0.08, 0.011}, 0.03, 0.03, 1.0);
   world.Release(1);
   bench.Move(1, {0, 0.08, 0.011}, {0, 0.08, 0.05}, 0.03, 0.03, 0.5);
-  Run(world, 0.5);
+  Play(world, 0.5);
   EXPECT_TRUE(world.IsAtRest(bench.cube));
   EXPECT_NEAR(world.PoseOf(bench.cube).translation.z, 0.006, 1e-3);
   EXPECT_NEAR(world.PoseOf(bench.cube).translation.y, 0.08, 3e-3);
@@ -184,16 +184,16 @@ TEST(RigidWorld, IsPushedByATool) {
 
 TEST(RigidWorld, GivesTheSameBitsAgain) {
   Bench first, second;
-  const auto play = [](Bench& bench) {
+  const auto operate = [](Bench& bench) {
     bench.Move(1, {0, 0.1, 0.010}, {0, -0.02, 0.010}, 0.002, 0.002, 0.7);
     bench.world.Hold(0, bench.cube, 3.0);
     bench.Move(0, {0, 0, 0.012}, {0.02, 0.03, 0.06}, 0.03, 0.0148, 0.6);
     bench.world.Release(0);
-    Run(bench.world, 0.5);
+    Play(bench.world, 0.5);
     return bench.world.Hash();
   };
-  const std::uint64_t hash = play(first);
-  EXPECT_EQ(play(second), hash);
+  const std::uint64_t hash = operate(first);
+  EXPECT_EQ(operate(second), hash);
   // from the start again, in the same world
   for (const std::uint32_t tool : {0u, 1u}) {
     Pose X[kToolPartCount];
@@ -201,7 +201,7 @@ TEST(RigidWorld, GivesTheSameBitsAgain) {
     first.world.MoveTool(tool, X);
   }
   first.world.Reset();
-  EXPECT_EQ(play(first), hash);
+  EXPECT_EQ(operate(first), hash);
 }
 
 TEST(RigidWorld, RefusesWhatIsNoBody) {
