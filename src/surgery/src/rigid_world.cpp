@@ -1,0 +1,485 @@
+// SPDX-License-Identifier: Apache-2.0
+// The only file that sees Bullet.
+#include "trocar/surgery/rigid_world.h"
+
+#include <BulletDynamics/ConstraintSolver/btFixedConstraint.h>
+#include <btBulletDynamicsCommon.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "trocar/core/assert.h"
+#include "trocar/core/state_hash.h"
+
+namespace trocar::surgery {
+namespace {
+
+// Bullet's tolerances are made for things of a size of one: it counts in centimetres
+constexpr double kScale = 100.0;
+constexpr int kFewestSubsteps = 4;  // of a tick: pegs are thin
+constexpr int kMostSubsteps = 32;
+constexpr double kMargin = 0.01;       // of shapes [cm]
+constexpr int kRingParts = 16;         // capsules that make a ring
+constexpr int kSlipTicks = 3;          // the pull must exceed the hold that many ticks in a row
+constexpr double kRestSpeed = 1e-3;    // [m/s]
+constexpr double kRestTurn = 0.05;     // [rad/s]
+constexpr double kSleepSpeed = 0.3;    // [cm/s]
+constexpr double kSleepTurn = 0.3;     // [rad/s]
+constexpr int kSolverIterations = 30;  // stacks stand
+
+btVector3 ToBullet(const Vec3& v) {
+  return {v.x * kScale, v.y * kScale, v.z * kScale};
+}
+Vec3 FromBullet(const btVector3& v) {
+  return {v.x() / kScale, v.y() / kScale, v.z() / kScale};
+}
+btTransform ToBullet(const Pose& X) {
+  return btTransform(btQuaternion(X.rotation.x, X.rotation.y, X.rotation.z, X.rotation.w),
+                     ToBullet(X.translation));
+}
+Pose FromBullet(const btTransform& X) {
+  const btQuaternion q = X.getRotation();
+  return {math::Quaternion{q.w(), q.x(), q.y(), q.z()}, FromBullet(X.getOrigin())};
+}
+
+bool IsFinite(const Pose& X) {
+  const double sum = X.rotation.w + X.rotation.x + X.rotation.y + X.rotation.z + X.translation.x +
+                     X.translation.y + X.translation.z;
+  return std::isfinite(sum);
+}
+
+bool IsPositive(double value) {
+  return value > 0 && std::isfinite(value);
+}
+
+bool HasSize(const RigidShape& shape) {
+  const Vec3& s = shape.size;
+  switch (shape.kind) {
+    case RigidShape::Kind::kBox:
+      return IsPositive(s.x) && IsPositive(s.y) && IsPositive(s.z);
+    case RigidShape::Kind::kCylinder:
+    case RigidShape::Kind::kCapsule:
+      return IsPositive(s.x) && IsPositive(s.z);
+    case RigidShape::Kind::kSphere:
+      return IsPositive(s.x);
+    case RigidShape::Kind::kRing:
+      return IsPositive(s.y) && s.x > s.y && std::isfinite(s.x);
+  }
+  return false;
+}
+
+/// Half of what a shape measures where it is thinnest [m].
+double HalfWidth(const RigidShape& shape) {
+  const Vec3& s = shape.size;
+  switch (shape.kind) {
+    case RigidShape::Kind::kBox:
+      return std::min({s.x, s.y, s.z});
+    case RigidShape::Kind::kCylinder:
+      return std::min(s.x, s.z);
+    case RigidShape::Kind::kCapsule:
+    case RigidShape::Kind::kSphere:
+      return s.x;
+    case RigidShape::Kind::kRing:
+      return s.y;
+  }
+  return 0;
+}
+
+core::Error Refuse(const std::string& why) {
+  return {core::ErrorCode::kSceneInvalid, why};
+}
+
+}  // namespace
+
+struct RigidWorld::Content {
+  struct Tool {
+    std::array<ToolCapsule, kToolPartCount> capsules;
+    std::array<std::unique_ptr<btCollisionShape>, kToolPartCount> shapes;
+    std::array<std::unique_ptr<btRigidBody>, kToolPartCount> parts;
+    std::array<btTransform, kToolPartCount> from, to;
+    std::unique_ptr<btFixedConstraint> hold;
+    btJointFeedback feedback;
+    std::int32_t held = -1;
+    double hold_force = 0;
+    int ticks_over = 0;
+    Vec3 force;                                                     // of the last Step
+    std::array<std::vector<std::uint8_t>, kToolPartCount> touched;  // by body
+  };
+  struct Body {
+    RigidBody definition;
+    std::vector<std::unique_ptr<btCollisionShape>> shapes;  // the last is the whole
+    std::unique_ptr<btRigidBody> body;
+    double thinnest = 0;  // half of its thinnest part's width [m]
+  };
+
+  Vec3 gravity;
+  double tick_seconds;
+  // order matters: the world goes before what it is made of
+  std::unique_ptr<btDefaultCollisionConfiguration> configuration;
+  std::unique_ptr<btCollisionDispatcher> dispatcher;
+  std::unique_ptr<btDbvtBroadphase> broadphase;
+  std::unique_ptr<btSequentialImpulseConstraintSolver> solver;
+  std::vector<Body> bodies;
+  std::vector<Tool> tools;
+  std::unique_ptr<btDiscreteDynamicsWorld> world;
+
+  ~Content() { Clear(); }
+
+  void Clear() {
+    for (Tool& tool : tools) {
+      if (tool.hold && world) world->removeConstraint(tool.hold.get());
+      tool.hold.reset();
+      for (auto& part : tool.parts) {
+        if (part && world) world->removeRigidBody(part.get());
+        part.reset();
+      }
+    }
+    for (Body& body : bodies) {
+      if (body.body && world) world->removeRigidBody(body.body.get());
+      body.body.reset();
+    }
+    world.reset();
+  }
+
+  /// A new world with everything as it was added: caches of contacts are part of Bullet's state.
+  void Build() {
+    Clear();
+    solver = std::make_unique<btSequentialImpulseConstraintSolver>();
+    broadphase = std::make_unique<btDbvtBroadphase>();
+    configuration = std::make_unique<btDefaultCollisionConfiguration>();
+    dispatcher = std::make_unique<btCollisionDispatcher>(configuration.get());
+    world = std::make_unique<btDiscreteDynamicsWorld>(dispatcher.get(), broadphase.get(), solver.get(),
+                                                      configuration.get());
+    world->setGravity(ToBullet(gravity));
+    world->getSolverInfo().m_numIterations = kSolverIterations;
+    world->getSolverInfo().m_solverMode &= ~SOLVER_RANDMIZE_ORDER;
+    for (std::size_t i = 0; i < bodies.size(); ++i) Add(i);
+    for (std::size_t i = 0; i < tools.size(); ++i) AddToolParts(i);
+  }
+
+  static void MakeShapes(const RigidBody& definition,
+                         std::vector<std::unique_ptr<btCollisionShape>>& shapes) {
+    auto whole = std::make_unique<btCompoundShape>();
+    const auto add = [&](const Pose& X_body_shape, std::unique_ptr<btCollisionShape> shape) {
+      shape->setMargin(kMargin);
+      whole->addChildShape(ToBullet(X_body_shape), shape.get());
+      shapes.push_back(std::move(shape));
+    };
+    const auto along_z = [](double radius, double half_length) {
+      auto capsule = std::make_unique<btCapsuleShapeZ>(radius * kScale, 2 * half_length * kScale);
+      return capsule;
+    };
+    for (const RigidShape& shape : definition.shapes) {
+      const Vec3& s = shape.size;
+      switch (shape.kind) {
+        case RigidShape::Kind::kBox:
+          add(shape.X_body_shape, std::make_unique<btBoxShape>(ToBullet(s)));
+          break;
+        case RigidShape::Kind::kCylinder:
+          add(shape.X_body_shape, std::make_unique<btCylinderShapeZ>(ToBullet(Vec3{s.x, s.x, s.z})));
+          break;
+        case RigidShape::Kind::kCapsule: {
+          auto capsule = along_z(s.x, s.z);
+          whole->addChildShape(ToBullet(shape.X_body_shape), capsule.get());
+          shapes.push_back(std::move(capsule));
+          break;
+        }
+        case RigidShape::Kind::kSphere: {
+          auto sphere = std::make_unique<btSphereShape>(s.x * kScale);
+          whole->addChildShape(ToBullet(shape.X_body_shape), sphere.get());
+          shapes.push_back(std::move(sphere));
+          break;
+        }
+        case RigidShape::Kind::kRing:
+          for (int part = 0; part < kRingParts; ++part) {
+            const double angle = 2 * std::numbers::pi * part / kRingParts;
+            const Vec3 out{std::cos(angle), std::sin(angle), 0},
+                tangent{-std::sin(angle), std::cos(angle), 0};
+            const Pose X_ring_part{math::RotationBetween({0, 0, 1}, tangent), s.x * out};
+            auto capsule = along_z(s.y, s.x * std::tan(std::numbers::pi / kRingParts));
+            whole->addChildShape(ToBullet(shape.X_body_shape * X_ring_part), capsule.get());
+            shapes.push_back(std::move(capsule));
+          }
+          break;
+      }
+    }
+    shapes.push_back(std::move(whole));
+  }
+
+  void Add(std::size_t index) {
+    Body& body = bodies[index];
+    if (body.shapes.empty()) MakeShapes(body.definition, body.shapes);
+    btCollisionShape* whole = body.shapes.back().get();
+    btVector3 inertia(0, 0, 0);
+    if (body.definition.mass > 0) whole->calculateLocalInertia(body.definition.mass, inertia);
+    btRigidBody::btRigidBodyConstructionInfo info(body.definition.mass, nullptr, whole, inertia);
+    info.m_startWorldTransform = ToBullet(body.definition.X_world_body);
+    info.m_friction = body.definition.friction;
+    info.m_rollingFriction = 0.002;  // rubber and wood: a ring does not roll for ever
+    info.m_spinningFriction = 0.002;
+    info.m_linearSleepingThreshold = kSleepSpeed;
+    info.m_angularSleepingThreshold = kSleepTurn;
+    info.m_linearDamping = 0.01;
+    info.m_angularDamping = 0.05;
+    body.body = std::make_unique<btRigidBody>(info);
+    body.body->setUserIndex(static_cast<int>(index));
+    body.body->setUserIndex2(-1);
+    world->addRigidBody(body.body.get());
+  }
+
+  void AddToolParts(std::size_t index) {
+    Tool& tool = tools[index];
+    for (int part = 0; part < kToolPartCount; ++part) {
+      const ToolCapsule& capsule = tool.capsules[part];
+      if (!tool.shapes[part]) {
+        tool.shapes[part] =
+            std::make_unique<btCapsuleShapeZ>(capsule.radius * kScale, 2 * capsule.half_length * kScale);
+      }
+      btRigidBody::btRigidBodyConstructionInfo info(0, nullptr, tool.shapes[part].get());
+      info.m_startWorldTransform = tool.to[part];
+      info.m_friction = 1;
+      tool.parts[part] = std::make_unique<btRigidBody>(info);
+      btRigidBody& body = *tool.parts[part];
+      body.setCollisionFlags(body.getCollisionFlags() | btCollisionObject::CF_KINEMATIC_OBJECT);
+      body.setActivationState(DISABLE_DEACTIVATION);
+      body.setUserIndex(static_cast<int>(index));
+      body.setUserIndex2(part);
+      world->addRigidBody(&body);
+      tool.touched[part].assign(bodies.size(), 0);
+    }
+    tool.from = tool.to;
+    tool.held = -1;
+    tool.ticks_over = 0;
+    tool.force = {};
+  }
+
+  /// So many that no body goes further in one than half of its thinnest part: nothing falls through a board.
+  int CountSubsteps() const {
+    double most = kFewestSubsteps;
+    for (const Body& body : bodies) {
+      if (!(body.definition.mass > 0)) continue;
+      const double way = math::Norm(FromBullet(body.body->getLinearVelocity())) * tick_seconds;
+      most = std::max(most, std::ceil(way / (0.5 * body.thinnest)));
+    }
+    return static_cast<int>(std::min(most, static_cast<double>(kMostSubsteps)));
+  }
+
+  /// Impulses of one substep on the tools, and who touched whom.
+  void GatherContacts() {
+    for (int m = 0; m < dispatcher->getNumManifolds(); ++m) {
+      const btPersistentManifold& manifold = *dispatcher->getManifoldByIndexInternal(m);
+      for (const bool is_first : {true, false}) {
+        const btCollisionObject* own = is_first ? manifold.getBody0() : manifold.getBody1();
+        const btCollisionObject* other = is_first ? manifold.getBody1() : manifold.getBody0();
+        if (own->getUserIndex2() < 0 || other->getUserIndex2() >= 0) continue;
+        Tool& tool = tools[static_cast<std::size_t>(own->getUserIndex())];
+        auto& touched = tool.touched[static_cast<std::size_t>(own->getUserIndex2())];
+        btVector3 impulse(0, 0, 0);
+        for (int p = 0; p < manifold.getNumContacts(); ++p) {
+          const btManifoldPoint& point = manifold.getContactPoint(p);
+          if (point.getDistance() <= kMargin) touched[static_cast<std::size_t>(other->getUserIndex())] = 1;
+          impulse += point.m_appliedImpulse * point.m_normalWorldOnB +
+                     point.m_appliedImpulseLateral1 * point.m_lateralFrictionDir1 +
+                     point.m_appliedImpulseLateral2 * point.m_lateralFrictionDir2;
+        }
+        tool.force = tool.force + (is_first ? 1.0 : -1.0) / tick_seconds * FromBullet(impulse);
+      }
+    }
+  }
+
+  void Release(Tool& tool) {
+    if (!tool.hold) return;
+    btRigidBody& body = *bodies[static_cast<std::size_t>(tool.held)].body;
+    world->removeConstraint(tool.hold.get());
+    tool.hold.reset();
+    for (auto& part : tool.parts) {
+      part->setIgnoreCollisionCheck(&body, false);
+      body.setIgnoreCollisionCheck(part.get(), false);
+    }
+    tool.held = -1;
+    body.activate(true);
+  }
+};
+
+RigidWorld::RigidWorld(const Vec3& gravity, double tick_seconds) : content_(std::make_unique<Content>()) {
+  TROCAR_ASSERT(tick_seconds > 0);
+  content_->gravity = gravity;
+  content_->tick_seconds = tick_seconds;
+  content_->Build();
+}
+RigidWorld::~RigidWorld() = default;
+RigidWorld::RigidWorld(RigidWorld&&) noexcept = default;
+RigidWorld& RigidWorld::operator=(RigidWorld&&) noexcept = default;
+
+core::Result<std::uint32_t> RigidWorld::AddBody(const RigidBody& body) {
+  if (body.shapes.empty() || !std::all_of(body.shapes.begin(), body.shapes.end(), HasSize))
+    return Refuse("a rigid body has no shape, or one without a size");
+  if (!(body.mass >= 0) || !std::isfinite(body.mass) || !(body.friction >= 0) ||
+      !std::isfinite(body.friction) || !IsFinite(body.X_world_body))
+    return Refuse("mass, friction or pose of a rigid body is negative or not finite");
+  double thinnest = 1;
+  for (const RigidShape& shape : body.shapes) thinnest = std::min(thinnest, HalfWidth(shape));
+  content_->bodies.push_back({body, {}, nullptr, thinnest});
+  content_->Add(content_->bodies.size() - 1);
+  for (auto& tool : content_->tools) {
+    for (auto& touched : tool.touched) touched.assign(content_->bodies.size(), 0);
+  }
+  return static_cast<std::uint32_t>(content_->bodies.size() - 1);
+}
+
+core::Result<std::uint32_t> RigidWorld::AddTool(const ToolCapsule (&parts)[kToolPartCount],
+                                                const Pose (&X_world_parts)[kToolPartCount]) {
+  Content::Tool tool;
+  for (int part = 0; part < kToolPartCount; ++part) {
+    if (!IsPositive(parts[part].radius) || !(parts[part].half_length >= 0) ||
+        !std::isfinite(parts[part].half_length) || !IsFinite(X_world_parts[part]))
+      return Refuse("a part of a tool has no size or place");
+    tool.capsules[static_cast<std::size_t>(part)] = parts[part];
+    tool.from[static_cast<std::size_t>(part)] = tool.to[static_cast<std::size_t>(part)] =
+        ToBullet(X_world_parts[part]);
+  }
+  content_->tools.push_back(std::move(tool));
+  content_->AddToolParts(content_->tools.size() - 1);
+  return static_cast<std::uint32_t>(content_->tools.size() - 1);
+}
+
+void RigidWorld::MoveTool(std::uint32_t tool, const Pose (&X_world_parts)[kToolPartCount]) {
+  for (int part = 0; part < kToolPartCount; ++part) {
+    TROCAR_ASSERT(IsFinite(X_world_parts[part]));
+    content_->tools[tool].to[static_cast<std::size_t>(part)] = ToBullet(X_world_parts[part]);
+  }
+}
+
+void RigidWorld::Step() {
+  Content& content = *content_;
+  std::vector<Vec3> pulls(content.tools.size());
+  for (auto& tool : content.tools) {
+    tool.force = {};
+    for (auto& touched : tool.touched) std::fill(touched.begin(), touched.end(), std::uint8_t{0});
+  }
+  const int substeps = content.CountSubsteps();
+  const double dt = content.tick_seconds / substeps;
+  for (int step = 1; step <= substeps; ++step) {
+    const double share = static_cast<double>(step) / substeps;
+    for (auto& tool : content.tools) {
+      for (std::size_t part = 0; part < kToolPartCount; ++part) {
+        const btTransform& from = tool.from[part];
+        const btTransform& to = tool.to[part];
+        tool.parts[part]->setWorldTransform(btTransform(from.getRotation().slerp(to.getRotation(), share),
+                                                        from.getOrigin().lerp(to.getOrigin(), share)));
+        // Bullet works a kinematic body's velocity out from where it was interpolated last
+        tool.parts[part]->saveKinematicState(dt);
+        tool.parts[part]->setInterpolationWorldTransform(tool.parts[part]->getWorldTransform());
+      }
+    }
+    content.world->stepSimulation(dt, 0);
+    content.GatherContacts();
+    for (std::size_t t = 0; t < content.tools.size(); ++t) {
+      auto& tool = content.tools[t];
+      if (tool.hold) pulls[t] = pulls[t] + 1.0 / substeps * FromBullet(tool.feedback.m_appliedForceBodyA);
+    }
+  }
+  for (std::size_t t = 0; t < content.tools.size(); ++t) {
+    auto& tool = content.tools[t];
+    tool.from = tool.to;
+    if (!tool.hold) continue;
+    tool.force = tool.force + pulls[t];
+    tool.ticks_over = math::Norm(pulls[t]) > tool.hold_force ? tool.ticks_over + 1 : 0;
+    if (tool.ticks_over >= kSlipTicks) content.Release(tool);
+  }
+}
+
+std::int32_t RigidWorld::FindBodyInJaws(std::uint32_t tool) const {
+  const auto& touched = content_->tools[tool].touched;
+  for (std::size_t body = 0; body < content_->bodies.size(); ++body) {
+    if (content_->bodies[body].definition.mass > 0 && touched[kUpperJawPart][body] != 0 &&
+        touched[kLowerJawPart][body] != 0)
+      return static_cast<std::int32_t>(body);
+  }
+  return -1;
+}
+
+void RigidWorld::Hold(std::uint32_t tool_index, std::uint32_t body_index, double hold_force) {
+  TROCAR_ASSERT(tool_index < content_->tools.size() && body_index < content_->bodies.size());
+  Content::Tool& tool = content_->tools[tool_index];
+  content_->Release(tool);
+  btRigidBody& body = *content_->bodies[body_index].body;
+  btRigidBody& carrier = *tool.parts[kShaftPart];
+  for (auto& part : tool.parts) {
+    part->setIgnoreCollisionCheck(&body, true);
+    body.setIgnoreCollisionCheck(part.get(), true);
+  }
+  tool.hold = std::make_unique<btFixedConstraint>(
+      carrier, body, carrier.getWorldTransform().inverse() * body.getWorldTransform(),
+      btTransform::getIdentity());
+  tool.hold->setJointFeedback(&tool.feedback);
+  tool.feedback = {};
+  content_->world->addConstraint(tool.hold.get());
+  // contacts that are there already would go on pushing
+  content_->world->getPairCache()->cleanProxyFromPairs(body.getBroadphaseHandle(),
+                                                       content_->dispatcher.get());
+  body.activate(true);
+  tool.held = static_cast<std::int32_t>(body_index);
+  tool.hold_force = hold_force;
+  tool.ticks_over = 0;
+}
+
+void RigidWorld::Release(std::uint32_t tool) {
+  content_->Release(content_->tools[tool]);
+}
+
+std::int32_t RigidWorld::HeldBy(std::uint32_t tool) const {
+  return content_->tools[tool].held;
+}
+
+Vec3 RigidWorld::ForceOn(std::uint32_t tool) const {
+  return content_->tools[tool].force;
+}
+
+bool RigidWorld::Touches(std::uint32_t tool, std::uint32_t body) const {
+  const auto& touched = content_->tools[tool].touched;
+  return std::any_of(touched.begin(), touched.end(), [&](const auto& part) { return part[body] != 0; });
+}
+
+Pose RigidWorld::PoseOf(std::uint32_t body) const {
+  return FromBullet(content_->bodies[body].body->getWorldTransform());
+}
+
+Vec3 RigidWorld::VelocityOf(std::uint32_t body) const {
+  return FromBullet(content_->bodies[body].body->getLinearVelocity());
+}
+
+bool RigidWorld::IsAtRest(std::uint32_t body) const {
+  const btRigidBody& rigid = *content_->bodies[body].body;
+  return !rigid.isActive() || rigid.isStaticObject() ||
+         (math::Norm(FromBullet(rigid.getLinearVelocity())) < kRestSpeed &&
+          rigid.getAngularVelocity().length() < kRestTurn);
+}
+
+std::size_t RigidWorld::BodyCount() const {
+  return content_->bodies.size();
+}
+
+void RigidWorld::Reset() {
+  content_->Build();
+}
+
+std::uint64_t RigidWorld::Hash() const {
+  core::StateHash hash;
+  const auto add = [&](const btVector3& v) {
+    for (const double value : {v.x(), v.y(), v.z()}) hash.Add(value);
+  };
+  for (const auto& body : content_->bodies) {
+    add(body.body->getWorldTransform().getOrigin());
+    const btQuaternion q = body.body->getWorldTransform().getRotation();
+    for (const double value : {q.w(), q.x(), q.y(), q.z()}) hash.Add(value);
+    add(body.body->getLinearVelocity());
+    add(body.body->getAngularVelocity());
+  }
+  return hash.Value();
+}
+
+}  // namespace trocar::surgery
