@@ -8,7 +8,7 @@
 #include "trocar/anatomy/patient_parameters.h"
 #include "trocar/core/result.h"
 
-namespace CLI {
+namespace CLI {  // NOLINT(readability-identifier-naming): CLI11 calls it so
 class App;
 }
 namespace trocar::device {
