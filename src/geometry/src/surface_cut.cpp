@@ -95,7 +95,8 @@ CutReport SurfaceCutter::Cut(const BladeEdge& before, const BladeEdge& now, cons
   ++content.tick;
   content.finder.StartTick(mesh);
   if (front.count == 0) content.MoveTips(before, front);
-  for (const FlatMove& move : MakeFlatMoves(before, now).Moves()) {
+  const BladeMoves moves = MakeFlatMoves(before, now);
+  for (const FlatMove& move : moves.Moves()) {
     for (const auto tip : front.Tips()) content.CutTip(tip, move.now);
     content.CutAnew(move.sweep);
     content.MoveTips(move.now, front);

@@ -41,7 +41,8 @@ struct BladeMoves {
   std::array<FlatMove, 2> moves;
   std::size_t count = 0;
 
-  std::span<const FlatMove> Moves() const { return std::span(moves).first(count); }
+  std::span<const FlatMove> Moves() const& { return std::span(moves).first(count); }
+  std::span<const FlatMove> Moves() && = delete;  // a view of what is gone
 };
 
 /// \note Real-time safe, as all functions here.
