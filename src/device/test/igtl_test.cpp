@@ -17,7 +17,7 @@
 #include <igtlTransformMessage.h>
 
 // the library allocates what it found in a POLYDATA message twice and frees it once (1.11)
-extern "C" const char* __lsan_default_suppressions() {
+extern "C" __attribute__((visibility("default"))) const char* __lsan_default_suppressions() {
   return "leak:libOpenIGTLink\n";
 }
 #endif
