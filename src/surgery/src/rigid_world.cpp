@@ -101,7 +101,7 @@ struct RigidWorld::Content {
     std::array<std::unique_ptr<btRigidBody>, kToolPartCount> parts;
     std::array<btTransform, kToolPartCount> from, to;
     std::unique_ptr<btFixedConstraint> hold;
-    btJointFeedback feedback;
+    btJointFeedback feedback{};
     std::int32_t held = -1;
     double hold_force = 0;
     int ticks_over = 0;
