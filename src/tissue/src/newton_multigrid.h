@@ -38,8 +38,9 @@ class NewtonMultigrid {
   };
   /// Solves K step_ = residual until the preconditioned remainder is below `loose`, or the error left in the
   /// step is estimated below `tolerance` [m], or until a node has moved by `radius` [m].
+  /// \param softest  smallest Ritz value of the steps before: this step is solved as deep as the estimate asks
   LinearReport SolveLinear(const Kernels& kernels, Workers& workers, int max_iterations, double loose,
-                           double tolerance, double radius) noexcept;
+                           double tolerance, double softest, double radius) noexcept;
   /// Takes the gradients of the active constraints.
   void SetConstraints(const SolveHook* hook) noexcept;
   /// What the preconditioner answers to each gradient; from the step before while the preconditioner stays.
