@@ -21,6 +21,8 @@ constexpr double kFirstResponseTolerance = 1e-4;
 constexpr int kFirstResponseIterations = 5000;
 /// Iterations a tick while the responses follow a change of topology or of the stiffness scales.
 constexpr int kResponseIterationsPerTick = 12;
+/// Number of links after a cut: regions and responses are to be found again.
+constexpr std::uint64_t kUnknownLinks = ~std::uint64_t{0};
 
 using SmallVector = std::array<double, kMaxClosedOrgans>;
 
@@ -85,6 +87,26 @@ void Conservation::Reset() noexcept {
   shape_scale_ = usual.shape_scale;
   response_links_ = first_links_;
   responses_settled_ = true;
+}
+
+void Conservation::SetModel(const TissueModel& model, ConservationState& state) {
+  TROCAR_ASSERT(model.Size() == model_->Size());
+  model_ = &model;
+  linear_.SetModel(model);
+  rest_.position = model.rest;
+  for (std::size_t i = 0; i < model.Size(); ++i)
+    rest_.condition[i] = model.is_fixed[i] ? NodeCondition::kPrescribed : NodeCondition::kFree;
+  rest_.strand_is_intact.assign(model.strand_count, 1);
+  rest_.spring_factor.assign(model.SpringCount(), 1.0);
+  rest_.spring_damage.assign(model.SpringCount(), 0.0);
+  // as many links as before need not be the same ones
+  state.intact_links = response_links_ = kUnknownLinks;
+  responses_settled_ = false;
+}
+
+void Conservation::SetTriangles(std::size_t organ, std::span<const geometry::Triangle> triangles) {
+  settings_.organs.at(organ).triangles.assign(triangles.begin(), triangles.end());
+  responses_settled_ = false;
 }
 
 ConservationState Conservation::MakeState(const TissueState& rest_state) const {

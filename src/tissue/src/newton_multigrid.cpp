@@ -87,6 +87,24 @@ NewtonMultigrid::NewtonMultigrid(const TissueModel& model)
   balance_.is_pressing.resize(kMaxContacts);
   for (auto* vector : {&step_, &r_, &z_, &p_, &q_}) vector->resize(padded);
   for (Constraint& c : constraints_room_) c.gradient.resize(padded), c.answer.resize(padded);
+  SetEdgeLength();
+}
+
+void NewtonMultigrid::SetModel(const TissueModel& model) {
+  SetOrderedModel(model, model_);
+  hierarchy_.SetGraph(model_.graph, model_.graph_stiffness);
+  linearisation_.SetModel();
+  has_answers_ = false;
+  SetEdgeLength();
+}
+
+void NewtonMultigrid::Reserve(double share) {
+  model_.Reserve(share);
+  hierarchy_.Reserve(share);
+  linearisation_.Reserve(share);
+}
+
+void NewtonMultigrid::SetEdgeLength() noexcept {
   double sum = 0;
   std::size_t count = 0;
   for (const double rest : model_.rest_length) sum += rest, count += rest > 0.0;
