@@ -56,6 +56,33 @@ void ReadInstrument(const core::JsonView& root, const char* hand, const anatomy:
                                       view.NumberOr("jaw_deg", 0.0, {0.0, 90.0}) * kDegree);
 }
 
+void ReadOperation(const core::JsonView& root, const anatomy::Patient& patient, Scene& scene) {
+  if (!root.Has("operation")) return;
+  const core::JsonView view = root.Object("operation");
+  view.AllowOnly({"fat_spacing_mm", "assistant"});
+  OperationSetup setup;
+  setup.fat_spacing = 0.001 * view.NumberOr("fat_spacing_mm", 1e3 * setup.fat_spacing, {0.0, 10.0});
+  if (setup.fat_spacing > 0.0 && setup.fat_spacing < 0.0015)
+    view.Complain("fat_spacing_mm must be 0, for none, or at least 1.5");
+  if (patient.tubes.empty())
+    view.Complain(
+        "the patient has no ducts; an operation needs them: place a template with trocar anatomy edit");
+  if (view.Has("assistant")) {
+    const core::JsonView hand = view.Object("assistant");
+    hand.AllowOnly({"port_mm", "at", "lift_mm"});
+    AssistantSetup assistant;
+    assistant.tool = *instrument::FindTool("grasper");
+    assistant.p_world_port = ReadPoint(hand, "port_mm");
+    assistant.landmark = hand.Text("at");
+    assistant.lift = ReadPoint(hand, "lift_mm");
+    if (patient.FindLandmark(assistant.landmark) == nullptr)
+      hand.Complain("there is no landmark \"" + assistant.landmark + "\" in the patient",
+                    core::ErrorCode::kUnknownName);
+    setup.assistant = std::move(assistant);
+  }
+  scene.operation = std::move(setup);
+}
+
 void ReadLaparoscope(const core::JsonView& root, const anatomy::Patient& patient, LaparoscopeSetup& setup) {
   const core::JsonView view = root.Object("laparoscope");
   view.AllowOnly({"port_mm", "target", "depth_mm", "view_angle_deg", "post_deg", "field_of_view_deg"});
@@ -102,7 +129,7 @@ core::Result<Scene> ReadScene(const std::filesystem::path& path,
   if (!document.ok()) return document.error();
   const core::JsonView root = document->Root();
   root.AllowOnly({"format", "version", "name", "about", "patient", "tick_hz", "seed", "settings", "materials",
-                  "instruments", "laparoscope", "script"});
+                  "instruments", "laparoscope", "script", "operation"});
   if (root.Text("format") != "trocar-scene") root.Complain("format must be \"trocar-scene\"");
   if (root.Integer("version") != 1) root.Complain("version must be 1");
   Scene scene;
@@ -127,6 +154,7 @@ core::Result<Scene> ReadScene(const std::filesystem::path& path,
   ReadInstrument(root, "left", scene.patient, scene.instruments[kLeft]);
   ReadInstrument(root, "right", scene.patient, scene.instruments[kRight]);
   ReadLaparoscope(root, scene.patient, scene.laparoscope);
+  ReadOperation(root, scene.patient, scene);
   const std::string script = root.TextOr("script", "");
   if (const auto status = document->Check(); !status.ok()) return status.error();
   if (!script.empty()) {

@@ -29,9 +29,11 @@ std::string_view EventName(EventKind kind) noexcept {
     case EventKind::kPinchDamage:
       return "pinch_damage";
     case EventKind::kToolsTouch:
+      return "tools_touch";
+    case EventKind::kExchangeRefused:
       break;
   }
-  return "tools_touch";
+  return "exchange_refused";
 }
 
 }  // namespace trocar::session
