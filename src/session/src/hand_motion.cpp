@@ -85,8 +85,8 @@ instrument::TrocarJoints HandMotion::Step(double dt) {
 }
 
 double FindSpin(const Vec3& p_world_port, const Vec3& p_world_tip, const Vec3& across) noexcept {
-  const math::Pose X = instrument::CalcToolPose(
-      p_world_port, instrument::FindJoints(p_world_port, p_world_tip, 0.0, 0.0));
+  const math::Pose X =
+      instrument::CalcToolPose(p_world_port, instrument::FindJoints(p_world_port, p_world_tip, 0.0, 0.0));
   const Vec3 in_tool = math::Rotate(math::Inverse(X.rotation), across);
   // spin turns the opening direction +y towards -x; both senses open alike, so the smaller turn
   const double spin = std::atan2(-in_tool.x, in_tool.y);

@@ -6,6 +6,8 @@
 #include <utility>
 
 #include "patient_tissue.h"
+#include "rigid_stage.h"
+#include "task_monitor.h"
 #include "tool_contacts.h"
 #include "trocar/core/clock.h"
 #include "trocar/core/state_hash.h"
@@ -73,6 +75,8 @@ struct Simulation::Content {
   ToolContacts touch;
   std::array<surgery::Grasp, kHandCount> grasps;
   std::unique_ptr<tissue::StateGuard> guard;
+  RigidStage rigid;
+  TaskMonitor monitor;
 
   // scratch
   std::unique_ptr<tissue::EquilibriumSolver> solver;
@@ -107,7 +111,7 @@ struct Simulation::Content {
   void UpdateHierarchy() noexcept;
   void DetectEvents() noexcept;
   void Publish(const Input& input) noexcept;
-  void Note(EventKind kind, int hand, std::int32_t organ, double force) noexcept;
+  void Note(EventKind kind, int hand, std::int32_t organ, double force, std::int32_t object = -1) noexcept;
   void TearTissue() noexcept;
   void SetWalls(const tissue::TissueDefinition& definition, std::vector<std::int32_t> organs_of_springs);
   core::Status Fill(const std::vector<double>& internal_pressure);
@@ -131,6 +135,7 @@ void Simulation::Content::MoveInstruments(const Input& input) noexcept {
     limits.max_jaw = setup.tool.max_jaw;
     joints[hand] = instrument::LimitSpeed(joints[hand], instrument::ClampJoints(input.hands[hand], limits),
                                           kMaxTipSpeed, kMaxTurnRate, scene->tick_seconds);
+    joints[hand].jaw = rigid.StopJaw(hand, joints[hand].jaw);
   }
 }
 
@@ -142,6 +147,7 @@ ToolsNow Simulation::Content::GetTools() const noexcept {
 
 void Simulation::Content::FindContacts() noexcept {
   load.contacts = touch.Find(*scene, GetTools(), tissue);
+  rigid.FindObstacles(*scene, joints, touch);
 }
 
 void Simulation::Content::ActOnTissue() noexcept {
@@ -215,10 +221,13 @@ void Simulation::Content::TearTissue() noexcept {
 
 void Simulation::Content::UpdateHierarchy() noexcept {
   touch.Update(*scene, GetTools(), tissue);
+  rigid.Step(*scene, joints, touch, CalcGravity(settings));
+  for (int hand = 0; hand < kHandCount; ++hand) forces[hand] = forces[hand] + rigid.ForceOn(hand);
 }
 
-void Simulation::Content::Note(EventKind kind, int hand, std::int32_t organ, double force) noexcept {
-  snapshot.events[snapshot.event_count % snapshot.events.size()] = {kind, tick, hand, organ, force};
+void Simulation::Content::Note(EventKind kind, int hand, std::int32_t organ, double force,
+                               std::int32_t object) noexcept {
+  snapshot.events[snapshot.event_count % snapshot.events.size()] = {kind, tick, hand, organ, force, object};
   ++snapshot.event_count;
 }
 
@@ -245,6 +254,9 @@ void Simulation::Content::DetectEvents() noexcept {
         break;
     }
   }
+  rigid.NoteChanges([&](EventKind kind, int hand, std::int32_t object) {
+    Note(kind, hand, -1, math::Norm(forces[hand]), object);
+  });
   if (touch.AreToolsTouching() && !were_tools_touching) Note(EventKind::kToolsTouch, -1, -1, 0.0);
   were_tools_touching = touch.AreToolsTouching();
   if (torn_count > 0) Note(EventKind::kTear, -1, strand_organs[torn[0]], 0.0);
@@ -263,11 +275,12 @@ void Simulation::Content::Publish(const Input& input) noexcept {
     tool.X_world_tool = touch.Proxy(hand);
     tool.joints = joints[hand];
     tool.force = forces[hand];
-    tool.is_grasping = grasps[hand].IsHolding();
+    tool.is_grasping = grasps[hand].IsHolding() || rigid.HeldBy(hand) >= 0;
+    tool.object = rigid.HeldBy(hand);
     tool.is_touching = touched_organs[hand] >= 0;
     tool.organ = touched_organs[hand];
     tool.X_world_device = touch.Device(hand);
-    tool.pinch = grasps[hand].pinch;
+    tool.pinch = std::max(grasps[hand].pinch, rigid.Pinch(hand));
     tool.overlap = touch.Overlap(hand);
     tool.is_touching_tool = touch.AreToolsTouching();
   }
@@ -284,6 +297,8 @@ void Simulation::Content::Publish(const Input& input) noexcept {
   snapshot.residual = report.residual;
   snapshot.iterations = report.iterations;
   snapshot.gravity = CalcGravity(settings);
+  rigid.Publish(snapshot.objects);
+  monitor.Update(*scene, snapshot);
 }
 
 // --- creation
@@ -302,6 +317,7 @@ void Simulation::Content::Reset() {
     touched_organs[hand] = -1;
   }
   touch.Reset(*scene, joints, tissue);
+  rigid.Reset(*scene, joints);
   load = {};
   report = {};
   was_frozen = were_tools_touching = false;
@@ -311,6 +327,8 @@ void Simulation::Content::Reset() {
   solved_condition = tissue.condition;
   good_conserved = conserved;
   snapshot.organs.resize(conserved.organs.size());
+  snapshot.objects.resize(scene->objects.size());
+  monitor.Reset(*scene, snapshot);
   ReadInputs(home);
   Publish(home);
 }
@@ -387,6 +405,9 @@ core::Result<Simulation> Simulation::Make(std::shared_ptr<const Scene> scene, in
       ToolContacts::Make(*content->scene, content->tissue_model, content->surfaces, content->tissue_at_start);
   if (!touch.ok()) return touch.error();
   content->touch = std::move(*touch);
+  auto rigid = RigidStage::Make(*content->scene);
+  if (!rigid.ok()) return rigid.error();
+  content->rigid = std::move(*rigid);
   content->Reset();
   return Simulation(std::move(content));
 }
@@ -509,6 +530,8 @@ std::uint64_t Simulation::Hash() const {
     hash.Add(force.x), hash.Add(force.y), hash.Add(force.z);
   }
   c.touch.AddTo(hash);
+  c.rigid.AddTo(hash);
+  c.monitor.AddTo(c.snapshot.task, hash);
   return hash.Value();
 }
 

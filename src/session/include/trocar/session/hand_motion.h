@@ -14,12 +14,12 @@ using math::Vec3;
 
 /// How able a hand is.
 struct HandSkill {
-  double speed = 0.12;          ///< greatest of a reach [m/s], > 0
-  double shortest = 0.25;       ///< of a reach [s], > 0
-  double tremor = 0.0001;       ///< amplitude, 8 to 12 Hz [m]
-  double aim_error = 0;         ///< of a reach's end, the most along each axis [m]
-  double jaw_rate = 2.5;        ///< [rad/s]
-  double spin_rate = 3.0;       ///< [rad/s]
+  double speed = 0.12;     ///< greatest of a reach [m/s], > 0
+  double shortest = 0.25;  ///< of a reach [s], > 0
+  double tremor = 0.0001;  ///< amplitude, 8 to 12 Hz [m]
+  double aim_error = 0;    ///< of a reach's end, the most along each axis [m]
+  double jaw_rate = 2.5;   ///< [rad/s]
+  double spin_rate = 3.0;  ///< [rad/s]
 };
 
 /// One tool in its trocar. Verbs begin something; Step goes on with it.

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,8 @@
 #include "trocar/core/result.h"
 #include "trocar/instrument/tool.h"
 #include "trocar/session/input.h"
+#include "trocar/session/scene_object.h"
+#include "trocar/session/task.h"
 #include "trocar/tissue/tissue_model.h"
 
 namespace trocar::session {
@@ -75,17 +78,21 @@ struct Scene {
   std::vector<OrganMaterial> materials;
   std::array<InstrumentSetup, kHandCount> instruments;
   LaparoscopeSetup laparoscope;
-  LiveSettings settings;            ///< at the start
-  double tick_seconds = 1.0 / 120;  ///< [s]
-  std::uint64_t seed = 0;           ///< of everything random: now the tremor of a script's hands
-  Script script;                    ///< empty when the scene names none
+  LiveSettings settings;             ///< at the start
+  double tick_seconds = 1.0 / 120;   ///< [s]
+  std::uint64_t seed = 0;            ///< of everything random: now the tremor of a script's hands
+  Script script;                     ///< empty when the scene names none
+  std::vector<SceneObject> objects;  ///< of a training task; without a patient there is at least one
+  std::optional<Task> task;          ///< what is to be done
+
+  bool HasPatient() const { return !patient.organs.empty(); }
 };
 
 /// Folder that holds assets/ and scenes/: TROCAR_DATA_DIR, else beside the program, else its source tree.
 /// \return kFileMissing with the places that were tried
 core::Result<std::filesystem::path> FindDataFolder();
 
-/// Reads a scene with its patient and script. Paths inside are relative to the scene file.
+/// Reads a scene with its patient and script, or a task at its normal level. Paths inside are relative to the file.
 /// \param patient_folder  takes the place of the scene's own patient unless it is empty
 /// \return the file's error, kSceneInvalid, kScriptInvalid or kUnknownName
 core::Result<Scene> ReadScene(const std::filesystem::path& path,

@@ -14,7 +14,17 @@
 namespace trocar::session {
 
 /// Looks only.
-enum class ObjectColour : std::uint8_t { kRed, kYellow, kGreen, kBlue, kWhite, kGrey, kBlack, kSteel, kCount };
+enum class ObjectColour : std::uint8_t {
+  kRed,
+  kYellow,
+  kGreen,
+  kBlue,
+  kWhite,
+  kGrey,
+  kBlack,
+  kSteel,
+  kCount
+};
 /// "red", "yellow", "green", "blue", "white", "grey", "black", "steel".
 std::string_view ColourName(ObjectColour colour) noexcept;
 std::optional<ObjectColour> FindColour(std::string_view name) noexcept;
@@ -23,6 +33,7 @@ std::optional<ObjectColour> FindColour(std::string_view name) noexcept;
 struct ObjectGrip {
   math::Vec3 point;            ///< body frame [m]
   math::Vec3 across{1, 0, 0};  ///< direction in which the jaws open, body frame, unit
+  double opening = 0.63;       ///< of the jaws that come to it, 36 deg [rad]
 };
 
 struct SceneObject {
@@ -40,9 +51,10 @@ inline constexpr std::size_t kMaxObjects = 64;
 /// One thing after a tick.
 struct ObjectSnapshot {
   math::Pose X_world_object;
-  math::Vec3 velocity;          ///< [m/s]
-  std::uint8_t held_by = 0;     ///< bit of each hand
-  std::uint8_t touched_by = 0;  ///< bit of each hand whose tool touches it, from outside or with the jaws that hold it
+  math::Vec3 velocity;       ///< [m/s]
+  std::uint8_t held_by = 0;  ///< bit of each hand
+  std::uint8_t touched_by =
+      0;  ///< bit of each hand whose tool touches it, from outside or with the jaws that hold it
   bool is_at_rest = true;
   std::uint64_t touches = 0;  ///< bit of each other object that it touches
 };

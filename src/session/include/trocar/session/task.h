@@ -26,10 +26,10 @@ enum class RegionMark : std::uint8_t { kNone, kRing, kCage, kBall };
 /// Part of space: a ball or a box.
 struct Region {
   std::string name;
-  math::Vec3 centre;                   ///< world frame [m]
-  double radius = 0;                   ///< [m]; 0 for a box
-  math::Vec3 half;                     ///< of a box, along the axes of the world [m]
-  std::optional<math::Vec3> facing;    ///< from where it is to be looked at: unit vector out of it
+  math::Vec3 centre;                 ///< world frame [m]
+  double radius = 0;                 ///< [m]; 0 for a box
+  math::Vec3 half;                   ///< of a box, along the axes of the world [m]
+  std::optional<math::Vec3> facing;  ///< from where it is to be looked at: unit vector out of it
   RegionMark mark = RegionMark::kNone;
 
   bool Contains(const math::Vec3& p_world) const noexcept;
@@ -37,22 +37,22 @@ struct Region {
 
 /// The vocabulary. Every word is true or false in a tick, for one object or one hand.
 enum class ConditionKind : std::uint8_t {
-  kHeld,           ///< "held": `object` is in the jaws of `hand`
-  kLifted,         ///< "lifted": `object` is held, `amount` [m] above where it was at the start
-  kHandedOver,     ///< "handed_over": `hand` let go of `object` that both held in the air, and `to` has it
-  kInRegion,       ///< "in_region": `object`'s origin is in one of `regions`
-  kPlaced,         ///< "placed": as in_region, let go and at rest
-  kTipInRegion,    ///< "tip_in_region": the tip of `hand`'s tool
-  kCameraSees,     ///< "camera_sees": region within `angle` of the picture's middle, `near` to `far` away,
-                   ///< and seen from its facing side within `facing_angle`
-  kTouches,        ///< "touches": `object` touches `other`
-  kToolTouches,    ///< "tool_touches": the tool of `hand` touches `object`
-  kDropped,        ///< "dropped": `object` was let go in the air and has fallen `amount` [m]
-  kOutside,        ///< "outside": `object` is in none of `regions`
-  kOutOfView,      ///< "out_of_view": `object` is out of the laparoscope's picture
-  kTipOutOfView,   ///< "tip_out_of_view": the tip of `hand`'s tool is
-  kForceAbove,     ///< "force_above": on the tool of `hand`, `amount` [N]
-  kEvent,          ///< "event": the simulation said `event`, of `hand` or of any
+  kHeld,          ///< "held": `object` is in the jaws of `hand`
+  kLifted,        ///< "lifted": `object` is held, `amount` [m] above where it was at the start
+  kHandedOver,    ///< "handed_over": `hand` let go of `object` that both held in the air, and `to` has it
+  kInRegion,      ///< "in_region": `object`'s origin is in one of `regions`
+  kPlaced,        ///< "placed": as in_region, let go and at rest
+  kTipInRegion,   ///< "tip_in_region": the tip of `hand`'s tool
+  kCameraSees,    ///< "camera_sees": region within `angle` of the picture's middle, `near` to `far` away,
+                  ///< and seen from its facing side within `facing_angle`
+  kTouches,       ///< "touches": `object` touches `other`
+  kToolTouches,   ///< "tool_touches": the tool of `hand` touches `object`
+  kDropped,       ///< "dropped": `object` was let go in the air and has fallen `amount` [m]
+  kOutside,       ///< "outside": `object` is in none of `regions`
+  kOutOfView,     ///< "out_of_view": `object` is out of the laparoscope's picture
+  kTipOutOfView,  ///< "tip_out_of_view": the tip of `hand`'s tool is
+  kForceAbove,    ///< "force_above": on the tool of `hand`, `amount` [N]
+  kEvent,         ///< "event": the simulation said `event`, of `hand` or of any
   kCount
 };
 /// "held", "lifted", ... as above.
@@ -79,6 +79,7 @@ struct Goal {
   std::string name;
   std::vector<Condition> steps;
   double points = 0;
+  int stage = 0;  ///< counts only when every goal of a lower stage is done
 };
 
 enum class Severity : std::uint8_t { kMinor, kMajor, kCritical };
@@ -101,7 +102,6 @@ struct Task {
   std::vector<Region> regions;
   std::vector<Goal> goals;  ///< at least one
   std::vector<ErrorRule> errors;
-  bool in_order = false;  ///< a goal counts only when those before it are done
   double time_limit = std::numeric_limits<double>::infinity();  ///< [s] from the first movement
   double points_per_second_left = 0;
   double reference_points = 0;  ///< of an able surgeon: score is 100 for these; 0: score is in points
@@ -143,9 +143,9 @@ struct TaskSnapshot {
 
 /// What a task file leaves open.
 struct TaskChoice {
-  std::string level = "normal";           ///< one of the file's
-  std::uint64_t seed = 1;                 ///< of its random parameters and of the scene
-  std::filesystem::path patient_folder;   ///< takes the place of the scene's patient unless it is empty
+  std::string level = "normal";          ///< one of the file's
+  std::uint64_t seed = 1;                ///< of its random parameters and of the scene
+  std::filesystem::path patient_folder;  ///< takes the place of the scene's patient unless it is empty
 };
 
 /// A task that is delivered.
