@@ -128,7 +128,7 @@ SceneObject ReadObject(const core::JsonView& view) {
     grip.point = ReadPointMm(one, "at_mm");
     if (one.Has("across")) {
       const auto across = one.Numbers("across", 3);
-      grip.across = math::Normalized({across[0], across[1], across[2]}, {1, 0, 0});
+      grip.across = math::Normalized(math::Vec3{across[0], across[1], across[2]}, {1, 0, 0});
     }
     if (one.Has("open_deg")) grip.opening = one.Number("open_deg", {1.0, 90.0}) * kDegree;
     object.grips.push_back(grip);

@@ -38,17 +38,6 @@ Vec3 CalcGravity(const LiveSettings& settings) noexcept {
          Vec3{std::sin(right) * std::cos(head), -std::sin(head), -std::cos(right) * std::cos(head)};
 }
 
-/// The telescope looks along -z of its shaft, bent by its angle in the direction of the light post; the
-/// horizon stays.
-Pose CalcLaparoscopePose(const LaparoscopeSetup& setup, const instrument::TrocarJoints& joints) noexcept {
-  instrument::TrocarJoints unspun = joints;
-  unspun.spin = 0;
-  const Pose X_world_shaft = instrument::CalcToolPose(setup.p_world_port, unspun);
-  const math::Quaternion post = math::RotationAbout({0, 0, 1}, joints.spin);
-  const math::Quaternion bend = math::RotationAbout({1, 0, 0}, setup.view_angle);
-  return {X_world_shaft.rotation * (post * bend * math::Inverse(post)), X_world_shaft.translation};
-}
-
 }  // namespace
 
 /// Model: constant while running. State: what a tick changes. Scratch: rebuilt every tick.

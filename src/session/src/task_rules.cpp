@@ -59,7 +59,7 @@ class RulesReader {
     }
     if (view.Has("facing")) {
       const auto n = view.Numbers("facing", 3);
-      region.facing = math::Normalized({n[0], n[1], n[2]});
+      region.facing = math::Normalized(math::Vec3{n[0], n[1], n[2]});
     }
     const std::string mark = view.TextOr("mark", "none");
     constexpr std::string_view kMarks[] = {"none", "ring", "cage", "ball"};

@@ -98,6 +98,20 @@ core::Result<std::filesystem::path> FindDataFolder();
 core::Result<Scene> ReadScene(const std::filesystem::path& path,
                               const std::filesystem::path& patient_folder = {});
 
+/// Pose of the lens: looks along -z, bent from the shaft by the view angle towards the light post; the horizon stays.
+math::Pose CalcLaparoscopePose(const LaparoscopeSetup& setup,
+                               const instrument::TrocarJoints& joints) noexcept;
+
+/// What a picture should show.
+struct ViewWish {
+  Vec3 p_world;                ///< in its middle [m]
+  double distance = 0.08;      ///< from the lens [m], > 0
+  std::optional<Vec3> facing;  ///< from this side as nearly as can be, unit
+  double most_depth = 0.28;    ///< of the lens [m]
+};
+/// Joints of a laparoscope that shows it, with the light post that does it best; nothing where none can.
+std::optional<instrument::TrocarJoints> FindView(const LaparoscopeSetup& setup, const ViewWish& wish);
+
 /// The script's input at `time` [s], clamped to its first and last key; the home pose without a script.
 Input CalcScriptInput(const Scene& scene, double time);
 
