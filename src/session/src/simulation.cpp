@@ -7,6 +7,8 @@
 
 #include "operation/operation.h"
 #include "patient_tissue.h"
+#include "rigid_stage.h"
+#include "task_monitor.h"
 #include "tool_contacts.h"
 #include "trocar/core/clock.h"
 #include "trocar/core/state_hash.h"
@@ -36,17 +38,6 @@ Vec3 CalcGravity(const LiveSettings& settings) noexcept {
   const double head = settings.head_up, right = settings.right_up;
   return settings.gravity *
          Vec3{std::sin(right) * std::cos(head), -std::sin(head), -std::cos(right) * std::cos(head)};
-}
-
-/// The telescope looks along -z of its shaft, bent by its angle in the direction of the light post; the
-/// horizon stays.
-Pose CalcLaparoscopePose(const LaparoscopeSetup& setup, const instrument::TrocarJoints& joints) noexcept {
-  instrument::TrocarJoints unspun = joints;
-  unspun.spin = 0;
-  const Pose X_world_shaft = instrument::CalcToolPose(setup.p_world_port, unspun);
-  const math::Quaternion post = math::RotationAbout({0, 0, 1}, joints.spin);
-  const math::Quaternion bend = math::RotationAbout({1, 0, 0}, setup.view_angle);
-  return {X_world_shaft.rotation * (post * bend * math::Inverse(post)), X_world_shaft.translation};
 }
 
 }  // namespace
@@ -81,6 +72,8 @@ struct Simulation::Content {
   ToolContacts touch;
   std::array<surgery::Grasp, kHandCount> grasps;
   std::unique_ptr<tissue::StateGuard> guard;
+  RigidStage rigid;
+  TaskMonitor monitor;
 
   // scratch
   std::unique_ptr<tissue::EquilibriumSolver> solver;
@@ -117,7 +110,7 @@ struct Simulation::Content {
   void UpdateHierarchy() noexcept;
   void DetectEvents() noexcept;
   void Publish(const Input& input) noexcept;
-  void Note(EventKind kind, int hand, std::int32_t organ, double force) noexcept;
+  void Note(EventKind kind, int hand, std::int32_t organ, double force, std::int32_t object = -1) noexcept;
   void TearTissue() noexcept;
   void SetWalls(const tissue::TissueDefinition& definition, std::vector<std::int32_t> organs_of_springs);
   core::Status Fill(const std::vector<double>& internal_pressure);
@@ -151,6 +144,7 @@ void Simulation::Content::MoveInstruments(const Input& input) noexcept {
       Note(EventKind::kExchangeRefused, hand, grasps[hand].surface, 0.0);
     joints[hand] =
         instrument::LimitSpeed(joints[hand], wanted, kMaxTipSpeed, kMaxTurnRate, scene->tick_seconds);
+    joints[hand].jaw = rigid.StopJaw(hand, joints[hand].jaw);
   }
 }
 
@@ -165,6 +159,7 @@ ToolsNow Simulation::Content::GetTools() const noexcept {
 
 void Simulation::Content::FindContacts() noexcept {
   load.contacts = touch.Find(*scene, GetTools(), tissue);
+  rigid.FindObstacles(*scene, joints, touch);
 }
 
 void Simulation::Content::ActOnTissue() noexcept {
@@ -307,10 +302,13 @@ void Simulation::Content::TearTissue() noexcept {
 
 void Simulation::Content::UpdateHierarchy() noexcept {
   touch.Update(*scene, GetTools(), tissue);
+  rigid.Step(*scene, joints, touch, CalcGravity(settings));
+  for (int hand = 0; hand < kHandCount; ++hand) forces[hand] = forces[hand] + rigid.ForceOn(hand);
 }
 
-void Simulation::Content::Note(EventKind kind, int hand, std::int32_t organ, double force) noexcept {
-  snapshot.events[snapshot.event_count % snapshot.events.size()] = {kind, tick, hand, organ, force};
+void Simulation::Content::Note(EventKind kind, int hand, std::int32_t organ, double force,
+                               std::int32_t object) noexcept {
+  snapshot.events[snapshot.event_count % snapshot.events.size()] = {kind, tick, hand, organ, force, object};
   ++snapshot.event_count;
 }
 
@@ -337,6 +335,9 @@ void Simulation::Content::DetectEvents() noexcept {
         break;
     }
   }
+  rigid.NoteChanges([&](EventKind kind, int hand, std::int32_t object) {
+    Note(kind, hand, -1, math::Norm(forces[hand]), object);
+  });
   if (touch.AreToolsTouching() && !were_tools_touching) Note(EventKind::kToolsTouch, -1, -1, 0.0);
   were_tools_touching = touch.AreToolsTouching();
   if (torn_count > 0) Note(EventKind::kTear, -1, strand_organs[torn[0]], 0.0);
@@ -355,11 +356,12 @@ void Simulation::Content::Publish(const Input& input) noexcept {
     tool.X_world_tool = touch.Proxy(hand);
     tool.joints = joints[hand];
     tool.force = forces[hand];
-    tool.is_grasping = grasps[hand].IsHolding();
+    tool.is_grasping = grasps[hand].IsHolding() || rigid.HeldBy(hand) >= 0;
+    tool.object = rigid.HeldBy(hand);
     tool.is_touching = touched_organs[hand] >= 0;
     tool.organ = touched_organs[hand];
     tool.X_world_device = touch.Device(hand);
-    tool.pinch = grasps[hand].pinch;
+    tool.pinch = std::max(grasps[hand].pinch, rigid.Pinch(hand));
     tool.overlap = touch.Overlap(hand);
     tool.is_touching_tool = touch.AreToolsTouching();
   }
@@ -377,6 +379,8 @@ void Simulation::Content::Publish(const Input& input) noexcept {
   snapshot.residual = report.residual;
   snapshot.iterations = report.iterations;
   snapshot.gravity = CalcGravity(settings);
+  rigid.Publish(snapshot.objects);
+  monitor.Update(*scene, snapshot);
 }
 
 // --- creation
@@ -407,6 +411,7 @@ void Simulation::Content::Reset() {
     touched_organs[hand] = -1;
   }
   touch.Reset(*scene, joints, tissue);
+  rigid.Reset(*scene, joints);
   load = {};
   report = {};
   was_frozen = were_tools_touching = false;
@@ -417,6 +422,8 @@ void Simulation::Content::Reset() {
   good_conserved = conserved;
   snapshot.organs.resize(conserved.organs.size());
   if (operation != nullptr) operation->Size(snapshot.operation);
+  snapshot.objects.resize(scene->objects.size());
+  monitor.Reset(*scene, snapshot);
   ReadInputs(home);
   Publish(home);
 }
@@ -504,6 +511,9 @@ core::Result<Simulation> Simulation::Make(std::shared_ptr<const Scene> scene, in
   content->touch = std::move(*touch);
   content->spring_organs_at_start = content->spring_organs;
   content->spring_areas_at_start = content->spring_areas;
+  auto rigid = RigidStage::Make(*content->scene);
+  if (!rigid.ok()) return rigid.error();
+  content->rigid = std::move(*rigid);
   content->Reset();
   return Simulation(std::move(content));
 }
@@ -640,6 +650,8 @@ std::uint64_t Simulation::Hash() const {
   }
   c.touch.AddTo(hash);
   if (c.operation != nullptr) c.operation->AddTo(hash);
+  c.rigid.AddTo(hash);
+  c.monitor.AddTo(c.snapshot.task, hash);
   return hash.Value();
 }
 

@@ -44,6 +44,8 @@ class ToolContacts {
   /// \return the springs; valid until the next call
   std::span<const tissue::ContactSpring> Find(const Scene& scene, const ToolsNow& now,
                                               const tissue::TissueState& tissue) noexcept;
+  /// One more limit on the tool that is seen, for this tick: something other than tissue keeps it out.
+  void AddLimit(int hand, const surgery::ProxyLimit& limit) noexcept { limits_[hand].Add(limit); }
   /// Forces of the contacts after the solve. \param is_good  false: forgets what sticks where
   std::array<ToolTouch, kHandCount> CalcTouch(const tissue::TissueState& tissue, bool is_good) noexcept;
   /// After a cut: the surfaces as they are now.
