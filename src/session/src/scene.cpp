@@ -73,9 +73,9 @@ void ReadOperation(const core::JsonView& root, const anatomy::Patient& patient, 
     hand.AllowOnly({"port_mm", "at", "lift_mm"});
     AssistantSetup assistant;
     assistant.tool = *instrument::FindTool("grasper");
-    assistant.p_world_port = ReadPoint(hand, "port_mm");
+    assistant.p_world_port = ReadPointMm(hand, "port_mm");
     assistant.landmark = hand.Text("at");
-    assistant.lift = ReadPoint(hand, "lift_mm");
+    assistant.lift = ReadPointMm(hand, "lift_mm");
     if (patient.FindLandmark(assistant.landmark) == nullptr)
       hand.Complain("there is no landmark \"" + assistant.landmark + "\" in the patient",
                     core::ErrorCode::kUnknownName);

@@ -12,6 +12,8 @@ namespace {
 constexpr double kLeftInBin = 0.1;
 /// What is seen may lie this near behind a surface [m]: sight ends at the skin of a duct, not at its axis.
 constexpr double kSkin = 0.004;
+/// What lies this near to the infundibulum turns with the neck [m].
+constexpr double kNeckRadius = 0.015;
 
 }  // namespace
 
@@ -71,6 +73,13 @@ DissectionWatch::DissectionWatch(const anatomy::Patient& patient, std::span<cons
     }
     entering_.push_back(std::move(entering));
   }
+  for (std::uint32_t k = 0; neck != nullptr && k < organ.node_count; ++k) {
+    const Vec3& p = rest[organ.first_node + k];
+    if (math::Distance(p, neck->position) > kNeckRadius) continue;
+    neck_nodes_.push_back(organ.first_node + k);
+    neck_rest_.push_back(p);
+  }
+  if (!duct_nodes_.empty()) duct_rest_ = {rest[duct_nodes_.front()], rest[duct_nodes_.back()]};
   if (!plate_nodes_.empty() && !duct_nodes_.empty() &&
       math::Distance(rest[plate_nodes_.back()], rest[duct_nodes_.front()]) <
           math::Distance(rest[plate_nodes_.front()], rest[duct_nodes_.front()]))
@@ -140,14 +149,24 @@ void DissectionWatch::Look(const tissue::TissueState& tissue, std::span<const su
       return nearest.Found();
     });
   });
-  // about the duct: 0 from where the triangle, spread between duct and plate, shows its front
-  const Vec3 along = math::Normalized(at(duct_nodes_, 1.0) - at(duct_nodes_, 0.0));
-  const Vec3 across = at(plate_nodes_, 1.0) - at(plate_nodes_, 0.0);
-  Vec3 front = math::Normalized(math::Cross(along, across));
-  if (front.z < 0.0) front = -1.0 * front;
-  const Vec3 side = math::Cross(along, front);
-  const Vec3 to_eye = eye - points[2];
-  facts_.view_azimuth = std::atan2(math::Dot(to_eye, side), math::Dot(to_eye, front));
+  facts_.view_azimuth = CalcAzimuth(tissue, eye);
+}
+
+/// The eye's direction about the cystic duct, in the frame of the gallbladder's neck, which surgeon and camera turn
+/// against each other. Zero as it was seen first.
+double DissectionWatch::CalcAzimuth(const tissue::TissueState& tissue, const Vec3& eye) noexcept {
+  tissue::MotionMoments moments;
+  for (std::size_t i = 0; i < neck_nodes_.size(); ++i)
+    moments.AddPoint(1.0, neck_rest_[i], tissue.position[neck_nodes_[i]]);
+  const Pose X_world_neck = tissue::FitRigidMotion(moments, neck_turn_);
+  neck_turn_ = X_world_neck.rotation;
+  const Vec3 along = math::Normalized(duct_rest_[1] - duct_rest_[0]);
+  const Vec3 front = math::Normalized(Vec3{0, 0, 1} - along * along.z, {1, 0, 0});
+  const Vec3 to_eye = math::Rotate(math::Inverse(neck_turn_), eye - X_world_neck * duct_rest_[1]);
+  const double azimuth = std::atan2(math::Dot(to_eye, math::Cross(along, front)), math::Dot(to_eye, front));
+  if (!has_looked_) first_azimuth_ = azimuth;
+  has_looked_ = true;
+  return std::remainder(azimuth - first_azimuth_, 2.0 * M_PI);
 }
 
 }  // namespace trocar::session

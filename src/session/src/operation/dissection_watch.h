@@ -2,12 +2,14 @@
 /// \file dissection_watch.h  How far the dissection has come: what the critical view of safety is computed from.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "trocar/session/simulation.h"
 #include "trocar/surgery/organ_surface.h"
+#include "trocar/tissue/rest_frame.h"
 #include "trocar/training/critical_view.h"
 #include "vessel_work.h"
 
@@ -49,6 +51,7 @@ class DissectionWatch {
 
   void Look(const tissue::TissueState& tissue, std::span<const surgery::OrganSurface> organs,
             const Camera& camera) noexcept;
+  double CalcAzimuth(const tissue::TissueState& tissue, const Vec3& eye) noexcept;
 
   std::vector<std::uint32_t> triangle_;  // strands of fat and peritoneum
   std::vector<std::uint32_t> bed_;       // strands
@@ -57,6 +60,12 @@ class DissectionWatch {
   std::vector<Entering> entering_;
   std::vector<std::uint32_t> fibre_starts_, fibres_;     // by node
   std::vector<std::uint32_t> duct_nodes_, plate_nodes_;  // of cystic and hepatic duct, from their meeting on
+  std::vector<std::uint32_t> neck_nodes_;                // of the gallbladder
+  std::vector<Vec3> neck_rest_;                          // (neck_nodes_) [m]
+  std::array<Vec3, 2> duct_rest_;  // ends of the cystic duct: at the hepatic duct, at the neck [m]
+  math::Quaternion neck_turn_;     // since the rest shape
+  double first_azimuth_ = 0;       // of the first look [rad]
+  bool has_looked_ = false;
   training::DissectionFacts facts_;
   bool is_free_ = false;
 };

@@ -10,7 +10,6 @@ namespace trocar::session {
 namespace {
 
 using training::OperationError;
-using training::Severity;
 
 /// A tool that is exchanged is out of the way at this depth [m], for this long [s].
 constexpr double kOutside = 0.031, kExchangeSeconds = 0.5;
@@ -360,7 +359,7 @@ void Operation::Publish(const tissue::TissueState& tissue, OperationSnapshot& sn
   snapshot.critical_view = judge_.View().Score();
   snapshot.phase = judge_.Phases().Current();
   snapshot.errors = judge_.Errors().Count();
-  snapshot.critical_errors = judge_.Errors().Count(Severity::kCritical);
+  snapshot.critical_errors = judge_.Errors().Count(training::Severity::kCritical);
   snapshot.is_gallbladder_free = watch_.IsGallbladderFree();
   snapshot.is_in_bag = is_in_bag_;
   snapshot.is_completed = is_completed_;
