@@ -121,7 +121,9 @@ void TaskSurgeon::PlanStep(const Snapshot& seen, const Goal& goal, std::uint32_t
       break;
     }
     case ConditionKind::kHandedOver:
-      PlanHandOver(seen, c.object, c.hand == kAnyHand ? ChooseHand(seen, c.object, kAnyHand) : c.hand, c.to);
+      // what is led along a path is passed on where it is
+      PlanHandOver(seen, c.object, c.hand == kAnyHand ? ChooseHand(seen, c.object, kAnyHand) : c.hand, c.to,
+                   step > 0 && goal.steps[step - 1].kind == ConditionKind::kInRegion);
       break;
     case ConditionKind::kPlaced:
       PlanPlace(seen, c.object, c.regions);
@@ -182,7 +184,7 @@ void TaskSurgeon::PlanPlace(const Snapshot& seen, int object, const std::vector<
   WithDraw(hand);
 }
 
-void TaskSurgeon::PlanHandOver(const Snapshot& seen, int object, int from, int to) {
+void TaskSurgeon::PlanHandOver(const Snapshot& seen, int object, int from, int to, bool in_place) {
   if (to == kAnyHand) to = 1 - from;
   const auto o = static_cast<std::size_t>(object);
   const ObjectSnapshot& thing = seen.objects[o];
@@ -203,8 +205,10 @@ void TaskSurgeon::PlanHandOver(const Snapshot& seen, int object, int from, int t
   const Vec3 start = scene_->objects[o].body.X_world_body.translation;
   const Vec3 meeting{0, start.y, start.z + kMeetingHeight};
   if (!has_to) {
-    Rise(from, 0.5 * kMeetingHeight);
-    Carry(from, object, meeting);
+    if (!in_place) {
+      Rise(from, 0.5 * kMeetingHeight);
+      Carry(from, object, meeting);
+    }
     const auto grips = scene_->objects[o].grips.size();
     PickUp(to, object, grips < 2 ? 0 : to);
   }

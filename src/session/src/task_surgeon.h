@@ -57,7 +57,7 @@ class TaskSurgeon final : public Surgeon {
   void Plan(const Snapshot& seen);
   void PlanStep(const Snapshot& seen, const Goal& goal, std::uint32_t step);
   void PlanPlace(const Snapshot& seen, int object, const std::vector<int>& regions);
-  void PlanHandOver(const Snapshot& seen, int object, int from, int to);
+  void PlanHandOver(const Snapshot& seen, int object, int from, int to, bool in_place);
   int ChooseHand(const Snapshot& seen, int object, int wanted) const;
   // verbs: task_verbs.cpp
   void Add(std::string doing, std::function<void(const Snapshot&)> begin,
