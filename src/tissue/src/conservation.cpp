@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "trocar/core/assert.h"
 
@@ -21,8 +22,6 @@ constexpr double kFirstResponseTolerance = 1e-4;
 constexpr int kFirstResponseIterations = 5000;
 /// Iterations a tick while the responses follow a change of topology or of the stiffness scales.
 constexpr int kResponseIterationsPerTick = 12;
-/// Number of links after a cut: regions and responses are to be found again.
-constexpr std::uint64_t kUnknownLinks = ~std::uint64_t{0};
 
 using SmallVector = std::array<double, kMaxClosedOrgans>;
 
@@ -89,24 +88,18 @@ void Conservation::Reset() noexcept {
   responses_settled_ = true;
 }
 
-void Conservation::SetModel(const TissueModel& model, ConservationState& state) {
-  TROCAR_ASSERT(model.Size() == model_->Size());
+void Conservation::Follow(const TissueModel& model, std::vector<ClosedOrgan> organs,
+                          ConservationState& state) {
+  TROCAR_ASSERT(model.Size() == model_->Size() && organs.size() == settings_.organs.size());
   model_ = &model;
+  settings_.organs = std::move(organs);
+  constraints_.clear();
+  for (const ClosedOrgan& organ : settings_.organs)
+    constraints_.push_back({organ.first_node, organ.node_count});
   linear_.SetModel(model);
-  rest_.position = model.rest;
-  for (std::size_t i = 0; i < model.Size(); ++i)
-    rest_.condition[i] = model.is_fixed[i] ? NodeCondition::kPrescribed : NodeCondition::kFree;
-  rest_.strand_is_intact.assign(model.strand_count, 1);
-  rest_.spring_factor.assign(model.SpringCount(), 1.0);
-  rest_.spring_damage.assign(model.SpringCount(), 0.0);
-  // as many links as before need not be the same ones
-  state.intact_links = response_links_ = kUnknownLinks;
+  rest_ = MakeRestState(model);
   responses_settled_ = false;
-}
-
-void Conservation::SetTriangles(std::size_t organ, std::span<const geometry::Triangle> triangles) {
-  settings_.organs.at(organ).triangles.assign(triangles.begin(), triangles.end());
-  responses_settled_ = false;
+  state.intact_links = std::numeric_limits<std::uint64_t>::max();
 }
 
 ConservationState Conservation::MakeState(const TissueState& rest_state) const {

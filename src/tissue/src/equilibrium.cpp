@@ -89,7 +89,7 @@ EquilibriumSolver::EquilibriumSolver(const TissueModel& model, const SolverOptio
   if (options.spare_share > 0.0) c.Reserve(options.spare_share);
 }
 
-void EquilibriumSolver::SetModel(const TissueModel& model) {
+void EquilibriumSolver::Follow(const TissueModel& model) {
   Content& c = *content_;
   TROCAR_ASSERT(model.Size() == c.model->Size());
   c.laws = &model;

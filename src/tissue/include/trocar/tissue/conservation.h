@@ -73,15 +73,14 @@ class Conservation {
   /// would shine through in a surgery that begins again.
   void Reset() noexcept;
 
-  /// Goes on with another model, after a cut. How volumes answer pressures is worked out over the next ticks, as after a
-  /// tear.
+  /// Goes on with a model that a cut has changed: as many nodes, and strands, as before. How volumes answer pressures is
+  /// taken from before the cut and worked out anew over the next ticks.
   ///
-  /// \param model  as many nodes as before (TROCAR_ASSERT); must outlive this; may be the same object with other content
-  /// \note Allocates where the model has more springs than any before.
-  void SetModel(const TissueModel& model, ConservationState& state);
-  /// Takes over an organ's surface after a cut: closed, lids over openings included; indices from 0 at its first node.
-  /// \note Allocates where there are more triangles than ever before.
-  void SetTriangles(std::size_t organ, std::span<const geometry::Triangle> triangles);
+  /// \param model  must outlive this
+  /// \param organs  as many as before, each a closed surface
+  /// \param[in,out] state  finds its free regions anew
+  /// \note Not real-time safe: allocates.
+  void Follow(const TissueModel& model, std::vector<ClosedOrgan> organs, ConservationState& state);
 
   /// Takes held free pieces along: the rigid motion that their held nodes made since the last Enforce moves
   /// the rest of the piece and its frame. A better start for the solver than a piece left behind, which would

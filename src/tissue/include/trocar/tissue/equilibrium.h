@@ -43,7 +43,7 @@ struct SolverOptions {
   SimdLevel simd =
       FindSimdLevel();  ///< the bits of AVX2 and AVX-512 agree; the baseline's differ in the last place
   bool recognises_grids = true;  ///< take structured meshes as stencils
-  /// Room for SetModel: so many times more springs and strands than the model has [-], >= 0. A half is enough for the cuts
+  /// Room for Follow: so many times more springs and strands than the model has [-], >= 0. A half is enough for the cuts
   /// of an operation.
   double spare_share = 0;
 };
@@ -90,7 +90,7 @@ class EquilibriumSolver {
   ///               must outlive the solver; may be the same object with other content
   /// \note Allocates nothing as long as the links stay within SolverOptions::spare_share; beyond it does and goes on.
   ///       Structured meshes allocate.
-  virtual void SetModel(const TissueModel& model);
+  virtual void Follow(const TissueModel& model);
 
   /// Moves every node that is not prescribed towards equilibrium, starting from the state's positions.
   /// \note Real-time safe: no allocation, lock or throw of ours; bounded by settings.max_iterations.
