@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "object_view.h"
 #include "trocar/core/assert.h"
 #include "trocar/geometry/mesh_measures.h"
 #include "trocar/geometry/mesh_topology.h"
@@ -127,6 +128,7 @@ struct LaparoscopeView::Content {
   std::vector<Shape> shapes;
   std::array<Hand, session::kHandCount> hands;
   std::vector<render::SurfaceDraw> background;
+  ObjectView objects;
   render::Frame frame;
   std::array<Vec3, session::kHandCount> forces, tips;
 
@@ -240,7 +242,13 @@ core::Result<LaparoscopeView> LaparoscopeView::Make(const session::Scene& scene,
   std::vector<Material> materials;
   if (auto status = content->AddShapes(surfaces, start, materials); !status) return status.error();
   content->AddInstruments(scene);
-  content->AddSurroundings(materials);
+  content->objects.Add(content->renderer, scene);
+  if (scene.HasPatient()) {
+    content->AddSurroundings(materials);
+  } else {
+    content->background.push_back(
+        {content->renderer.AddSurface(MakeTrainerBox(scene), Material::kSleeve), {}});
+  }
   content->frame.camera.field_of_view = scene.laparoscope.field_of_view;
   LaparoscopeView view(std::move(content));
   view.Update(start);
@@ -275,6 +283,7 @@ void LaparoscopeView::Update(const Snapshot& snapshot) {
     c.renderer.UpdateSurface(shape.surface, shape.DrawnPositions(), shape.DrawnNormals());
     c.frame.surfaces.push_back({shape.surface, {}});
   }
+  c.objects.Append(snapshot, c.frame.surfaces);
   c.UpdateArrows();
 }
 

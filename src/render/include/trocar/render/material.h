@@ -19,11 +19,17 @@ enum class Material {
   kSteel,        ///< polished steel
   kSleeve,       ///< grey plastic of a trocar
   kForce,        ///< signal colour of the force arrows
+  kRedRubber,    ///< things of training tasks
+  kYellowRubber,
+  kGreenRubber,
+  kBlueRubber,
+  kWhitePlastic,
+  kMark,  ///< bright: what is to be done next
   kCount
 };
 
 /// "liver", "gallbladder", "duct", "artery", "fat", "bowel", "peritoneum", "shaft", "steel", "sleeve",
-/// "force".
+/// "force", "red_rubber", "yellow_rubber", "green_rubber", "blue_rubber", "white_plastic", "mark".
 std::string_view MaterialName(Material material) noexcept;
 /// The material of that name, or nothing.
 std::optional<Material> FindMaterial(std::string_view name) noexcept;
