@@ -57,6 +57,33 @@ void ReadInstrument(const core::JsonView& root, const char* hand, const anatomy:
                                       view.NumberOr("jaw_deg", 0.0, {0.0, 90.0}) * kDegree);
 }
 
+void ReadOperation(const core::JsonView& root, const anatomy::Patient& patient, Scene& scene) {
+  if (!root.Has("operation")) return;
+  const core::JsonView view = root.Object("operation");
+  view.AllowOnly({"fat_spacing_mm", "assistant"});
+  OperationSetup setup;
+  setup.fat_spacing = 0.001 * view.NumberOr("fat_spacing_mm", 1e3 * setup.fat_spacing, {0.0, 10.0});
+  if (setup.fat_spacing > 0.0 && setup.fat_spacing < 0.0015)
+    view.Complain("fat_spacing_mm must be 0, for none, or at least 1.5");
+  if (patient.tubes.empty())
+    view.Complain(
+        "the patient has no ducts; an operation needs them: place a template with trocar anatomy edit");
+  if (view.Has("assistant")) {
+    const core::JsonView hand = view.Object("assistant");
+    hand.AllowOnly({"port_mm", "at", "lift_mm"});
+    AssistantSetup assistant;
+    assistant.tool = *instrument::FindTool("grasper");
+    assistant.p_world_port = ReadPointMm(hand, "port_mm");
+    assistant.landmark = hand.Text("at");
+    assistant.lift = ReadPointMm(hand, "lift_mm");
+    if (patient.FindLandmark(assistant.landmark) == nullptr)
+      hand.Complain("there is no landmark \"" + assistant.landmark + "\" in the patient",
+                    core::ErrorCode::kUnknownName);
+    setup.assistant = std::move(assistant);
+  }
+  scene.operation = std::move(setup);
+}
+
 void ReadLaparoscope(const core::JsonView& root, const anatomy::Patient& patient, LaparoscopeSetup& setup) {
   const core::JsonView view = root.Object("laparoscope");
   view.AllowOnly({"port_mm", "target", "depth_mm", "view_angle_deg", "post_deg", "field_of_view_deg"});
@@ -101,7 +128,7 @@ core::Result<Scene> ReadSceneFields(const core::JsonDocument& document, const co
                                     const std::filesystem::path& folder,
                                     const std::filesystem::path& patient_folder) {
   view.AllowOnly({"format", "version", "name", "about", "patient", "tick_hz", "seed", "settings", "materials",
-                  "instruments", "laparoscope", "script", "objects"});
+                  "instruments", "laparoscope", "script", "operation", "objects"});
   Scene scene;
   scene.name = view.TextOr("name", "");
   scene.tick_seconds = 1.0 / view.NumberOr("tick_hz", 120.0, {10.0, 2000.0});
@@ -130,6 +157,7 @@ core::Result<Scene> ReadSceneFields(const core::JsonDocument& document, const co
   ReadInstrument(view, "left", scene.patient, scene.instruments[kLeft]);
   ReadInstrument(view, "right", scene.patient, scene.instruments[kRight]);
   ReadLaparoscope(view, scene.patient, scene.laparoscope);
+  ReadOperation(view, scene.patient, scene);
   const std::string script = view.TextOr("script", "");
   if (const auto status = document.Check(); !status.ok()) return status.error();
   if (!script.empty()) {

@@ -31,9 +31,11 @@ std::string_view EventName(EventKind kind) noexcept {
     case EventKind::kPinchDamage:
       return "pinch_damage";
     case EventKind::kToolsTouch:
+      return "tools_touch";
+    case EventKind::kExchangeRefused:
       break;
   }
-  return "tools_touch";
+  return "exchange_refused";
 }
 
 bool IsInView(const Pose& X_world_laparoscope, double field_of_view, const Vec3& p_world) noexcept {

@@ -53,6 +53,17 @@ OrganPair MakeOrganPair(std::span<const OrganSurface> organs, std::span<const Ve
   return pair;
 }
 
+void FollowOrgan(std::span<const OrganSurface> organs, std::uint8_t changed, OrganPair& pair) {
+  if (changed == pair.vertices_of) {
+    const std::size_t count = organs[changed].node_count;
+    pair.allowed.resize(count, 0.0);
+    pair.is_bound.resize(count, 0);
+    pair.last_triangle.resize(count, collision::kNoTriangle);
+  }
+  if (changed == pair.surface_of)
+    std::fill(pair.last_triangle.begin(), pair.last_triangle.end(), collision::kNoTriangle);
+}
+
 void FindOrganContacts(std::span<const OrganSurface> organs, std::span<const Vec3> positions,
                        const OrganContactSettings& settings, OrganPair& pair, ContactSet& contacts) noexcept {
   const OrganSurface &from = organs[pair.vertices_of], &to = organs[pair.surface_of];

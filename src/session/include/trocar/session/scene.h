@@ -54,6 +54,20 @@ struct Script {
   double Duration() const { return keys.empty() ? 0.0 : keys.back().time; }
 };
 
+/// The third grasper and who holds it.
+struct AssistantSetup {
+  instrument::Tool tool;
+  Vec3 p_world_port;     ///< [m]
+  std::string landmark;  ///< of the patient: what it takes
+  Vec3 lift;             ///< from where it took it, when told to retract [m]
+};
+
+/// What makes a scene an operation: tissue to be dissected, and tools that do more than push and hold.
+struct OperationSetup {
+  double fat_spacing = 0.0022;  ///< of the lobules in the hepatocystic triangle [m]; 0: none
+  std::optional<AssistantSetup> assistant;
+};
+
 /// How stiff one organ is; see tissue/material.h for the formulas.
 struct OrganMaterial {
   std::string organ;
@@ -83,7 +97,8 @@ struct Scene {
   std::uint64_t seed = 0;            ///< of everything random: now the tremor of a script's hands
   Script script;                     ///< empty when the scene names none
   std::vector<SceneObject> objects;  ///< of a training task; without a patient there is at least one
-  std::optional<Task> task;          ///< what is to be done
+  std::optional<OperationSetup> operation;
+  std::optional<Task> task;  ///< what is to be done
 
   bool HasPatient() const { return !patient.organs.empty(); }
 };

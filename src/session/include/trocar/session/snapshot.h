@@ -68,12 +68,13 @@ enum class EventKind {
   kStateRestored,
   kOrganFrozen,
   kTear,
-  kPinchDamage,  ///< jaws pinched a bite harder than it bears; force is the pinch
-  kToolsTouch    ///< the instruments met
+  kPinchDamage,     ///< jaws pinched a bite harder than it bears; force is the pinch
+  kToolsTouch,      ///< the instruments met
+  kExchangeRefused  ///< another tool was asked for while this one holds tissue
 };
 inline constexpr EventKind kLastEventKind = EventKind::kToolsTouch;
 /// "grasp", "release", "slip", "grasp_missed", "state_restored", "organ_frozen", "tear",
-/// "pinch_damage", "tools_touch"
+/// "pinch_damage", "tools_touch", "exchange_refused"
 std::string_view EventName(EventKind kind) noexcept;
 
 struct Event {
