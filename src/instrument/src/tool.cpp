@@ -55,10 +55,34 @@ geometry::TriangleMesh MakeUpperJaw(const Tool& tool) {
   return MakeLoft(sections);
 }
 
+// Sizes: domain facts, section 1.3
+std::array<Tool, 7> MakeTools() {
+  Tool dissector;
+  dissector.name = "maryland", dissector.kind = ToolKind::kDissector;
+  dissector.jaw_length = 0.019, dissector.jaw_width = 0.003, dissector.jaw_thickness = 0.0015;
+  Tool hook;
+  hook.name = "hook", hook.kind = ToolKind::kHook;
+  hook.jaw_length = 0.005, hook.jaw_width = 0.0012, hook.jaw_thickness = 0.0012, hook.max_jaw = 0;
+  Tool scissors;
+  scissors.name = "scissors", scissors.kind = ToolKind::kScissors;
+  scissors.jaw_length = 0.015, scissors.jaw_width = 0.003, scissors.jaw_thickness = 0.0012;
+  Tool clip_applier;
+  clip_applier.name = "clip_applier", clip_applier.kind = ToolKind::kClipApplier;
+  clip_applier.shaft_radius = 0.005, clip_applier.jaw_length = 0.012, clip_applier.jaw_width = 0.003;
+  clip_applier.max_jaw = 0.5, clip_applier.clips = 15;  // jaws 6 mm apart at their tips
+  Tool suction;
+  suction.name = "suction_irrigator", suction.kind = ToolKind::kSuctionIrrigator;
+  suction.jaw_length = 0.010, suction.jaw_width = 0.005, suction.jaw_thickness = 0.0025, suction.max_jaw = 0;
+  Tool bag;
+  bag.name = "bag", bag.kind = ToolKind::kBag;
+  bag.shaft_radius = 0.005, bag.jaw_length = 0.020, bag.jaw_width = 0.008, bag.max_jaw = 0;
+  return {Tool{}, dissector, hook, scissors, clip_applier, suction, bag};
+}
+
 }  // namespace
 
 const Tool* FindTool(std::string_view name) noexcept {
-  static const std::array<Tool, 1> tools{Tool{}};
+  static const std::array<Tool, 7> tools = MakeTools();
   const auto found =
       std::find_if(tools.begin(), tools.end(), [&](const Tool& tool) { return tool.name == name; });
   return found == tools.end() ? nullptr : &*found;

@@ -10,9 +10,18 @@
 namespace trocar::instrument {
 namespace {
 
-TEST(FindTool, KnowsTheGrasperAndNothingElseYet) {
-  ASSERT_NE(FindTool("grasper"), nullptr);
+TEST(FindTool, KnowsEveryToolByItsName) {
+  for (const char* name :
+       {"grasper", "maryland", "hook", "scissors", "clip_applier", "suction_irrigator", "bag"}) {
+    const Tool* tool = FindTool(name);
+    ASSERT_NE(tool, nullptr) << name;
+    EXPECT_EQ(tool->name, name);
+    EXPECT_EQ(tool->shaft_length, 0.33) << name;
+  }
   EXPECT_EQ(FindTool("spoon"), nullptr);
+  EXPECT_EQ(FindTool("clip_applier")->shaft_radius, 0.005) << "10 mm";
+  EXPECT_GT(FindTool("clip_applier")->clips, 0);
+  EXPECT_EQ(FindTool("hook")->max_jaw, 0.0);
 }
 
 TEST(JawTip, OpensSymmetricallyAndClosesAtTheOrigin) {

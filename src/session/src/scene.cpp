@@ -34,13 +34,22 @@ Vec3 ReadTarget(const core::JsonView& view, std::string_view key, const anatomy:
 void ReadInstrument(const core::JsonView& root, const char* hand, const anatomy::Patient& patient,
                     InstrumentSetup& setup) {
   const core::JsonView view = root.Object("instruments").Object(hand);
-  view.AllowOnly({"tool", "port_mm", "tip", "spin_deg", "jaw_deg"});
-  const std::string name = view.Text("tool");
-  if (const instrument::Tool* tool = instrument::FindTool(name); tool != nullptr) {
-    setup.tool = *tool;
-  } else {
-    view.Complain("there is no tool \"" + name + "\"; known is grasper", core::ErrorCode::kUnknownName);
+  view.AllowOnly({"tool", "tray", "port_mm", "tip", "spin_deg", "jaw_deg"});
+  const auto add = [&](const std::string& name) {
+    if (const instrument::Tool* tool = instrument::FindTool(name); tool != nullptr) {
+      setup.tray.push_back(*tool);
+    } else {
+      view.Complain(
+          "there is no tool \"" + name +
+              "\"; known are grasper, maryland, hook, scissors, clip_applier, suction_irrigator and bag",
+          core::ErrorCode::kUnknownName);
+    }
+  };
+  add(view.Text("tool"));
+  if (view.Has("tray")) {
+    for (const core::JsonView& name : view.Array("tray")) add(name.AsText());
   }
+  if (!setup.tray.empty()) setup.tool = setup.tray.front();
   setup.p_world_port = ReadPoint(view, "port_mm");
   setup.home = instrument::FindJoints(setup.p_world_port, ReadTarget(view, "tip", patient),
                                       view.NumberOr("spin_deg", 0.0) * kDegree,

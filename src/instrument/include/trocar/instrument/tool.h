@@ -3,6 +3,7 @@
 /// the direction in which the upper jaw opens.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,19 +16,32 @@ namespace trocar::instrument {
 using math::Pose;
 using math::Vec3;
 
+/// What a tool can do besides pushing.
+enum class ToolKind : std::uint8_t {
+  kGrasper,    ///< atraumatic, with a ratchet
+  kDissector,  ///< Maryland: spreads and tears, and carries current
+  kHook,       ///< electrode; no jaws
+  kScissors,
+  kClipApplier,       ///< 10 mm; a clip closes with its jaws
+  kSuctionIrrigator,  ///< no jaws
+  kBag                ///< retrieval bag; no jaws, its mouth is open
+};
+
 /// Sizes of one tool. Source of the defaults: domain facts, section 1.3 (5 mm tools, 33 cm shafts).
 struct Tool {
   std::string name = "grasper";
+  ToolKind kind = ToolKind::kGrasper;
   double shaft_radius = 0.0025;         ///< [m]
   double shaft_length = 0.33;           ///< [m]
   double jaw_length = 0.022;            ///< from hinge to tip [m]
   double jaw_width = 0.0045;            ///< across the opening direction [m]
   double jaw_thickness = 0.0018;        ///< of each jaw [m]
-  double max_jaw = 1.0471975511965976;  ///< whole opening, 60 deg [rad]
+  double max_jaw = 1.0471975511965976;  ///< whole opening, 60 deg [rad]; 0: the tool has no jaws
+  int clips = 0;                        ///< that a clip applier holds
 };
 
-/// Atraumatic grasper.
-/// \return the tool of that name; an empty optional for an unknown one is a null pointer
+/// \param name  "grasper", "maryland", "hook", "scissors", "clip_applier", "suction_irrigator" or "bag"
+/// \return nullptr for an unknown one
 const Tool* FindTool(std::string_view name) noexcept;
 
 /// Hinge of the jaws in the tool frame [m].

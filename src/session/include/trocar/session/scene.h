@@ -29,9 +29,10 @@ struct LaparoscopeSetup {
 };
 
 struct InstrumentSetup {
-  instrument::Tool tool;
-  Vec3 p_world_port;              ///< [m]
-  instrument::TrocarJoints home;  ///< where it starts
+  instrument::Tool tool;               ///< at the start: the first of the tray
+  std::vector<instrument::Tool> tray;  ///< what can be exchanged through this trocar, at least one
+  Vec3 p_world_port;                   ///< [m]
+  instrument::TrocarJoints home;       ///< where it starts
 };
 
 /// Pose of both hands at one time; between keys the tips move smoothly along straight lines.

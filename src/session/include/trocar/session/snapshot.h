@@ -9,6 +9,7 @@
 
 #include "trocar/math/pose.h"
 #include "trocar/session/input.h"
+#include "trocar/session/operation_snapshot.h"
 
 namespace trocar::session {
 
@@ -87,12 +88,13 @@ struct Snapshot {
   std::vector<Vec3> positions;
   std::array<InstrumentSnapshot, kHandCount> instruments;
   std::vector<OrganSnapshot> organs;  ///< (organs) as in Patient::organs
-  Pose X_world_laparoscope;           ///< origin at the lens, looking along -z, +y up in the picture
-  double residual = 0;                ///< largest node residual, relative: see tissue/solver_settings.h [-]
-  int iterations = 0;                 ///< of the solver in this tick
-  std::size_t contacts = 0;           ///< contact springs of this tick
-  std::size_t dropped_contacts = 0;   ///< for which there was no room
-  Vec3 gravity;                       ///< world frame [m/s^2]
+  OperationSnapshot operation;
+  Pose X_world_laparoscope;          ///< origin at the lens, looking along -z, +y up in the picture
+  double residual = 0;               ///< largest node residual, relative: see tissue/solver_settings.h [-]
+  int iterations = 0;                ///< of the solver in this tick
+  std::size_t contacts = 0;          ///< contact springs of this tick
+  std::size_t dropped_contacts = 0;  ///< for which there was no room
+  Vec3 gravity;                      ///< world frame [m/s^2]
   std::array<double, kStageCount> stage_seconds{};  ///< wall time of each stage of the last tick
   double tick_seconds = 0;                          ///< sum of the stages [s]
   std::uint64_t event_count = 0;                    ///< since the start; the newest are in `events`
