@@ -111,6 +111,34 @@ void ToolContacts::MakeCavity(const Scene& scene, const tissue::TissueModel& mod
   }
 }
 
+core::Status ToolContacts::Follow(const tissue::TissueModel& model, const tissue::TissueState& tissue,
+                                  std::span<const geometry::TriangleMesh> meshes,
+                                  std::span<const collision::TubePiece> pieces,
+                                  std::vector<std::uint32_t> tube_of_piece) {
+  for (std::size_t i = 0; i < organs_.size(); ++i) {
+    if (meshes[i].triangles.size() == organs_[i].triangles.size() &&
+        meshes[i].positions.size() == organs_[i].node_count)
+      continue;
+    auto surface = surgery::MakeOrganSurface(model.rest, organs_[i].first_node, meshes[i]);
+    if (!surface.ok()) return surface.error();
+    surface->damage_pinch_small = organs_[i].damage_pinch_small;
+    surface->damage_pinch_full = organs_[i].damage_pinch_full;
+    surgery::UpdateOrganSurface(*surface, tissue.position);
+    organs_[i] = std::move(*surface);
+    for (surgery::OrganPair& pair : pairs_) surgery::FollowOrgan(organs_, static_cast<std::uint8_t>(i), pair);
+    surgery::FollowOrgan(cavity_, organs_, tissue.position, cavity_settings_, cavity_contacts_[i]);
+  }
+  if (!pieces.empty()) {
+    auto tree = collision::CapsuleTree::Make(tissue.position, pieces);
+    if (!tree.ok()) return tree.error();
+    tubes_.tree = std::move(*tree);
+    tubes_.tube_of_piece = std::move(tube_of_piece);
+  }
+  contacts_.Clear();
+  last_.Clear();
+  return {};
+}
+
 void ToolContacts::Reset(const Scene& scene, const std::array<instrument::TrocarJoints, kHandCount>& joints,
                          const tissue::TissueState& tissue) noexcept {
   for (int hand = 0; hand < kHandCount; ++hand) {
@@ -143,7 +171,7 @@ std::span<const tissue::ContactSpring> ToolContacts::Find(const Scene& scene, co
   for (int hand = 0; hand < kHandCount; ++hand) {
     const InstrumentSetup& setup = scene.instruments[hand];
     X_world_device_[hand] = instrument::CalcToolPose(setup.p_world_port, now.joints[hand]);
-    motions[hand] = {&setup.tool,          static_cast<std::uint8_t>(hand), X_world_proxy_before_[hand],
+    motions[hand] = {now.tools[hand],      static_cast<std::uint8_t>(hand), X_world_proxy_before_[hand],
                      X_world_proxy_[hand], X_world_device_[hand],           jaw_before_[hand],
                      now.joints[hand].jaw, now.grasped_surfaces[hand]};
     surgery::FindContacts(motions[hand], touchables, settings_, last_, contacts_);
@@ -209,7 +237,7 @@ void ToolContacts::PlaceProxy(const Scene& scene, int hand, const ToolsNow& now,
     proxy = surgery::FindProxy(drive, offset_[hand], limits.limits);
     X_world_proxy_[hand] = instrument::CalcToolPose(setup.p_world_port, proxy);
     overlap_[hand] =
-        surgery::AddOverlapLimits(setup.tool, X_world_proxy_[hand], X_world_device_[hand],
+        surgery::AddOverlapLimits(*now.tools[hand], X_world_proxy_[hand], X_world_device_[hand],
                                   now.joints[hand].jaw, touchables, now.grasped_surfaces[hand], limits);
     if (overlap_[hand] == 0.0 || round == kOverlapRounds) break;
   }

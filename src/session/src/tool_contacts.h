@@ -18,6 +18,7 @@ namespace trocar::session {
 struct ToolsNow {
   std::array<instrument::TrocarJoints, kHandCount> joints;
   std::array<std::int32_t, kHandCount> grasped_surfaces;  ///< or -1
+  std::array<const instrument::Tool*, kHandCount> tools;
 };
 
 /// Touch on one tool after the solve.
@@ -44,8 +45,17 @@ class ToolContacts {
   /// \return the springs; valid until the next call
   std::span<const tissue::ContactSpring> Find(const Scene& scene, const ToolsNow& now,
                                               const tissue::TissueState& tissue) noexcept;
+  /// One more limit on the tool that is seen, for this tick: something other than tissue keeps it out.
+  void AddLimit(int hand, const surgery::ProxyLimit& limit) noexcept { limits_[hand].Add(limit); }
   /// Forces of the contacts after the solve. \param is_good  false: forgets what sticks where
   std::array<ToolTouch, kHandCount> CalcTouch(const tissue::TissueState& tissue, bool is_good) noexcept;
+  /// After a cut: the surfaces as they are now.
+  /// \param meshes   (organs) over the nodes from each organ's first one on
+  /// \param pieces, tube_of_piece  of all ducts and vessels
+  /// \note Not real-time safe: allocates.
+  core::Status Follow(const tissue::TissueModel& model, const tissue::TissueState& tissue,
+                      std::span<const geometry::TriangleMesh> meshes,
+                      std::span<const collision::TubePiece> pieces, std::vector<std::uint32_t> tube_of_piece);
   /// Refits the trees, and places the tools that are seen.
   void Update(const Scene& scene, const ToolsNow& now, const tissue::TissueState& tissue) noexcept;
 

@@ -83,17 +83,24 @@ Cavity FitCavity(std::span<const Vec3> ports, std::span<const Vec3> diaphragm, s
 CavityContact MakeCavityContact(const Cavity& cavity, std::span<const OrganSurface> organs,
                                 std::span<const Vec3> positions, std::span<const std::uint8_t> is_fixed,
                                 std::uint8_t organ, const CavityContactSettings& settings) {
-  const OrganSurface& surface = organs[organ];
   CavityContact made;
   made.organ = organ;
-  for (std::uint32_t i = 0; i < surface.node_count; ++i) {
+  FollowOrgan(cavity, organs, positions, settings, made);
+  const auto own = is_fixed.subspan(organs[organ].first_node, organs[organ].node_count);
+  made.is_held.assign(own.begin(), own.end());
+  return made;
+}
+
+void FollowOrgan(const Cavity& cavity, std::span<const OrganSurface> organs, std::span<const Vec3> positions,
+                 const CavityContactSettings& settings, CavityContact& contact) {
+  const OrganSurface& surface = organs[contact.organ];
+  for (std::size_t i = contact.allowed.size(); i < surface.node_count; ++i) {
     const auto rooms = cavity.FindRooms(positions[surface.first_node + i]);
-    std::array<double, kCavityParts>& allowed = made.allowed.emplace_back();
+    std::array<double, kCavityParts>& allowed = contact.allowed.emplace_back();
     for (int part = 0; part < kCavityParts; ++part)
       allowed[part] = std::min(0.0, rooms[part].distance) - settings.play;
-    made.is_held.push_back(is_fixed[surface.first_node + i]);
   }
-  return made;
+  contact.is_held.resize(surface.node_count, 0);
 }
 
 void FindCavityContacts(const Cavity& cavity, std::span<const OrganSurface> organs,

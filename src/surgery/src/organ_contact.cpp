@@ -74,6 +74,18 @@ OrganPair MakeTubePair(std::span<const OrganSurface> organs, std::span<const Vec
   return MakePair(organs[surface_of], positions, std::move(pair), settings);
 }
 
+void FollowOrgan(std::span<const OrganSurface> organs, std::uint8_t changed, OrganPair& pair) {
+  if (changed == pair.nodes_of) {
+    const std::uint32_t count = organs[changed].node_count;
+    pair.node_count = count;
+    pair.allowed.resize(count, 0.0);
+    pair.is_bound.resize(count, 0);
+    pair.last_triangle.resize(count, collision::kNoTriangle);
+  }
+  if (changed == pair.surface_of)
+    std::fill(pair.last_triangle.begin(), pair.last_triangle.end(), collision::kNoTriangle);
+}
+
 void FindOrganContacts(std::span<const OrganSurface> organs, std::span<const Vec3> positions,
                        const OrganContactSettings& settings, OrganPair& pair, ContactSet& contacts) noexcept {
   const OrganSurface& to = organs[pair.surface_of];

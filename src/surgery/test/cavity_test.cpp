@@ -196,6 +196,19 @@ TEST_F(BallInCavity, VerticesThatAnatomyHoldsMakeNoContact) {
   EXPECT_TRUE(contacts_.springs.empty());
 }
 
+TEST_F(BallInCavity, VerticesThatACutMadeKeepTheirPlace) {
+  Make(-0.003);
+  const std::size_t before = contact_.allowed.size();
+  contact_.allowed.resize(before / 2), contact_.is_held.resize(before / 2);
+  FollowOrgan(cavity_, organs_, state_.position, settings_, contact_);
+  EXPECT_EQ(contact_.allowed.size(), before);
+  EXPECT_EQ(contact_.is_held.size(), before);
+  for (int tick = 0; tick < 5; ++tick) {
+    Tick({});
+    EXPECT_TRUE(contacts_.springs.empty());
+  }
+}
+
 TEST_F(BallInCavity, WhatFindsNoRoomIsCounted) {
   Make(-0.003);
   const std::size_t before = 950;

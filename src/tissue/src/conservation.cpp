@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "trocar/core/assert.h"
 
@@ -85,6 +86,20 @@ void Conservation::Reset() noexcept {
   shape_scale_ = usual.shape_scale;
   response_links_ = first_links_;
   responses_settled_ = true;
+}
+
+void Conservation::Follow(const TissueModel& model, std::vector<ClosedOrgan> organs,
+                          ConservationState& state) {
+  TROCAR_ASSERT(model.Size() == model_->Size() && organs.size() == settings_.organs.size());
+  model_ = &model;
+  settings_.organs = std::move(organs);
+  constraints_.clear();
+  for (const ClosedOrgan& organ : settings_.organs)
+    constraints_.push_back({organ.first_node, organ.node_count});
+  linear_ = LinearResponse(model);
+  rest_ = MakeRestState(model);
+  responses_settled_ = false;
+  state.intact_links = std::numeric_limits<std::uint64_t>::max();
 }
 
 ConservationState Conservation::MakeState(const TissueState& rest_state) const {

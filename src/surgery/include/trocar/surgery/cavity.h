@@ -75,6 +75,11 @@ CavityContact MakeCavityContact(const Cavity& cavity, std::span<const OrganSurfa
                                 std::span<const Vec3> positions, std::span<const std::uint8_t> is_fixed,
                                 std::uint8_t organ, const CavityContactSettings& settings);
 
+/// After a cut of the organ: new vertices may lie where they are.
+/// \note Not real-time safe: allocates.
+void FollowOrgan(const Cavity& cavity, std::span<const OrganSurface> organs, std::span<const Vec3> positions,
+                 const CavityContactSettings& settings, CavityContact& contact);
+
 /// Adds the springs of one organ's vertices against the parts that they are at; links carry kNoHand.
 ///
 /// \param motion  farthest that a vertex of the organ went in the last solve [m]: springs are made so far ahead

@@ -45,6 +45,10 @@ OrganPair MakeTubePair(std::span<const OrganSurface> organs, std::span<const Vec
                        const TubeSurface& tube, std::uint8_t surface, std::uint8_t surface_of,
                        const OrganContactSettings& settings);
 
+/// After a cut of an organ: new vertices keep off the other organ like any, and every search starts anew.
+/// \note Not real-time safe: allocates.
+void FollowOrgan(std::span<const OrganSurface> organs, std::uint8_t changed, OrganPair& pair);
+
 /// Adds the springs of one pair; links carry kNoHand.
 /// \note Real-time safe.
 void FindOrganContacts(std::span<const OrganSurface> organs, std::span<const Vec3> positions,

@@ -12,6 +12,7 @@
 #include "trocar/core/result.h"
 #include "trocar/session/scene.h"
 #include "trocar/session/snapshot.h"
+#include "trocar/session/surgeon.h"
 #include "trocar/view/laparoscope_view.h"
 
 namespace trocar::view {
@@ -25,6 +26,8 @@ struct DemoOptions {
   int threads = 1;                      ///< of the solver
   bool has_video = true;
   ViewOptions view;
+  /// nullptr, or who acts in the script's place, until they have finished; `duration` is then the longest
+  session::Surgeon* surgeon = nullptr;
   /// may change the script's input of a tick at that time [s]; may be empty
   std::function<void(double, session::Input&)> change_input;
   std::function<void(const session::Snapshot&)> on_tick;  ///< after every tick; may be empty
