@@ -99,7 +99,8 @@ ContourFit FitContourToEdges(const EdgeField& field, std::span<const Vec2> click
     return fit;
   }
   const double max_shift = settings.adaption.max_shift_px;
-  const EdgePath edge = FindEdgePath(field, FitContour(clicked, settings.spline), settings.adaption);
+  const EdgePath edge = FindEdgePath(
+      field, ResampleClosed(FitContour(clicked, settings.spline), kEdgeRowStep), settings.adaption);
   std::vector<Control> controls;
   for (const Vec2& p : clicked) {
     const std::size_t row = FindNearest(edge.curve.at, p);

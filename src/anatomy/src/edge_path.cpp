@@ -83,11 +83,9 @@ ClosedCurve Smooth(const std::vector<Vec2>& path) {
 
 }  // namespace
 
-EdgePath FindEdgePath(const EdgeField& field, std::span<const Vec2> polyline,
-                      const EdgeAdaptionSettings& settings) {
+EdgePath FindEdgePath(const EdgeField& field, ClosedCurve curve, const EdgeAdaptionSettings& settings) {
   const double most = settings.max_shift_px;
-  const EdgePath first =
-      FollowEdge(field, ResampleClosed(polyline, kEdgeRowStep), {most, settings.nearness}, settings);
+  const EdgePath first = FollowEdge(field, std::move(curve), {most, settings.nearness}, settings);
   EdgePath edge = FollowEdge(field, Smooth(first.at), {kSecondReach, kSecondNearness}, settings);
   // the rows are still those of the clicks' curve, which no place may leave too far
   edge.curve = first.curve;
