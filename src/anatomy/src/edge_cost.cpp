@@ -20,7 +20,7 @@ constexpr double kDoubtful = 0.3;
 
 }  // namespace
 
-EdgeEvidence CalcEdgeEvidence(const EdgeStrip& strip, double reach_px, double row_px) {
+EdgeEvidence CalcEdgeEvidence(const EdgeStrip& strip, double reach_px, double row_px, double depth_px) {
   EdgeEvidence evidence;
   evidence.reach = static_cast<int>(std::floor(reach_px / strip.step_px + 1e-9));
   const int columns = evidence.Columns(), all = strip.Columns(), pad = strip.reach - evidence.reach;
@@ -41,10 +41,11 @@ EdgeEvidence CalcEdgeEvidence(const EdgeStrip& strip, double reach_px, double ro
   }
   // colours of the inside, of each row and then of the rows about it
   std::vector<ColourMoments> inside(strip.rows);
-  const int deepest = strip.reach - static_cast<int>(kDoubtful * evidence.reach);
+  const int last = strip.reach - static_cast<int>(kDoubtful * evidence.reach);
+  const int first = std::clamp(strip.reach - static_cast<int>(depth_px / strip.step_px), 0, last);
   for (int row = 0; row < rows; ++row) {
     const Colour* colours = &smooth[static_cast<std::size_t>(row) * all];
-    for (int k = 0; k <= deepest; k += 2) inside[row].Add(colours[k]);
+    for (int k = first; k <= last; k += 2) inside[row].Add(colours[k]);
   }
   const int window = std::min(static_cast<int>(kWindowPx / row_px), (rows - 1) / 2);
   ColourMoments about;
