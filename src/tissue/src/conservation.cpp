@@ -197,7 +197,7 @@ void Conservation::CarryAlong(TissueState& tissue, ConservationState& state) noe
 
 std::span<const Vec3> Conservation::CalcForce(const TissueState& tissue, const TissueLoad& load,
                                               ConservationState& state) noexcept {
-  TROCAR_ASSERT(load.external_force.data() != force_.data());
+  TROCAR_ASSERT(load.external_force.empty() || load.external_force.data() != force_.data());
   if (load.external_force.empty()) {
     std::fill(base_force_.begin(), base_force_.end(), Vec3{});
   } else {
