@@ -11,8 +11,10 @@ namespace trocar::render {
 namespace {
 
 constexpr std::string_view kNames[] = {
-    "liver", "gallbladder", "duct", "artery", "fat",  "bowel", "peritoneum", "shaft",    "steel", "sleeve",
-    "force", "fibre",       "film", "blood",  "bile", "rinse", "lumen",      "titanium", "pouch", "spark"};
+    "liver",         "gallbladder",  "duct",        "artery",        "fat",   "bowel", "peritoneum",
+    "shaft",         "steel",        "sleeve",      "force",         "fibre", "film",  "blood",
+    "bile",          "rinse",        "lumen",       "titanium",      "pouch", "spark", "red_rubber",
+    "yellow_rubber", "green_rubber", "blue_rubber", "white_plastic", "mark"};
 static_assert(std::size(kNames) == static_cast<std::size_t>(Material::kCount));
 
 /// Linear reflectance of an sRGB byte triple, as a colour picker on a photograph shows it.
@@ -213,6 +215,16 @@ std::array<MaterialLook, static_cast<std::size_t>(Material::kCount)> MakeLooks()
                             .opacity = 0.28f};
   look(Material::kSpark) = {
       .low = FromSrgb(190, 214, 255), .high = FromSrgb(255, 252, 255), .emission = 6.0f};
+  const auto rubber = [&](Material material, const Colour& low, const Colour& high) {
+    look(material) = {
+        .is_tissue = false, .low = low, .high = high, .wet = 0.12f, .wet_exponent = 30, .sheen = 0.08f};
+  };
+  rubber(Material::kRedRubber, FromSrgb(112, 20, 18), FromSrgb(206, 52, 44));
+  rubber(Material::kYellowRubber, FromSrgb(140, 104, 16), FromSrgb(236, 190, 48));
+  rubber(Material::kGreenRubber, FromSrgb(20, 84, 40), FromSrgb(54, 160, 84));
+  rubber(Material::kBlueRubber, FromSrgb(18, 48, 112), FromSrgb(50, 104, 200));
+  rubber(Material::kWhitePlastic, FromSrgb(150, 148, 142), FromSrgb(226, 224, 216));
+  rubber(Material::kMark, FromSrgb(60, 200, 90), FromSrgb(130, 255, 150));
   return looks;
 }
 

@@ -21,13 +21,18 @@ namespace {
 constexpr double kScale = 100.0;
 constexpr int kFewestSubsteps = 4;  // of a tick: pegs are thin
 constexpr int kMostSubsteps = 32;
-constexpr double kMargin = 0.01;       // of shapes [cm]
-constexpr int kRingParts = 16;         // capsules that make a ring
-constexpr int kSlipTicks = 3;          // the pull must exceed the hold that many ticks in a row
-constexpr double kRestSpeed = 1e-3;    // [m/s]
-constexpr double kRestTurn = 0.05;     // [rad/s]
-constexpr double kSleepSpeed = 0.3;    // [cm/s]
-constexpr double kSleepTurn = 0.3;     // [rad/s]
+constexpr double kMargin = 0.01;        // of shapes [cm]
+constexpr int kRingParts = 16;          // capsules that make a ring
+constexpr int kSlipTicks = 3;           // the pull must exceed the hold that many ticks in a row
+constexpr double kRestSpeed = 1e-3;     // [m/s]
+constexpr double kRestTurn = 0.05;      // [rad/s]
+constexpr double kSleepSpeed = 0.3;     // [cm/s]
+constexpr double kSleepTurn = 0.3;      // [rad/s]
+constexpr double kJawStiffness = 1500;  // of what jaws press [N/m]
+constexpr double kJawDamping = 2;       // [N s/m]
+// what is held gives way as rubber does, 2.8 N for a millimetre in steps of a quarter tick: two hands that hold one thing,
+// or a hand and the board, do not tear at it when they tremble. Bullet's constraint force mixing and error reduction.
+constexpr double kHoldGive = 0.1, kHoldShare = 0.41;
 constexpr int kSolverIterations = 30;  // stacks stand
 
 btVector3 ToBullet(const Vec3& v) {
@@ -92,6 +97,25 @@ core::Error Refuse(const std::string& why) {
   return {core::ErrorCode::kSceneInvalid, why};
 }
 
+/// Keeps the deepest of a tool part's contacts with a body.
+struct Deepest : btCollisionWorld::ContactResultCallback {
+  explicit Deepest(const btCollisionObject& tool_part) : tool(&tool_part) {}
+  btScalar addSingleResult(btManifoldPoint& point, const btCollisionObjectWrapper* a, int, int,
+                           const btCollisionObjectWrapper*, int, int) override {
+    if (point.getDistance() >= distance) return 0;
+    distance = point.getDistance();
+    const bool is_first = a->getCollisionObject() == tool;
+    on_tool = is_first ? point.getPositionWorldOnA() : point.getPositionWorldOnB();
+    const btVector3 into_body = (is_first ? -1.0 : 1.0) * point.m_normalWorldOnB;
+    into = {into_body.x(), into_body.y(), into_body.z()};
+    return 0;
+  }
+  const btCollisionObject* tool;
+  double distance = 1e9;  // [cm]
+  btVector3 on_tool{0, 0, 0};
+  Vec3 into;
+};
+
 }  // namespace
 
 struct RigidWorld::Content {
@@ -112,7 +136,8 @@ struct RigidWorld::Content {
     RigidBody definition;
     std::vector<std::unique_ptr<btCollisionShape>> shapes;  // the last is the whole
     std::unique_ptr<btRigidBody> body;
-    double thinnest = 0;  // half of its thinnest part's width [m]
+    double thinnest = 0;        // half of its thinnest part's width [m]
+    std::uint64_t touches = 0;  // bits of other bodies, at the end of the last Step
   };
 
   Vec3 gravity;
@@ -245,6 +270,8 @@ struct RigidWorld::Content {
       btRigidBody& body = *tool.parts[part];
       body.setCollisionFlags(body.getCollisionFlags() | btCollisionObject::CF_KINEMATIC_OBJECT);
       body.setActivationState(DISABLE_DEACTIVATION);
+      // jaws are profiled and things are of rubber: what one hand holds is not torn out of it by the other's jaws
+      if (part != kShaftPart) body.setContactStiffnessAndDamping(kJawStiffness, kJawDamping);
       body.setUserIndex(static_cast<int>(index));
       body.setUserIndex2(part);
       world->addRigidBody(&body);
@@ -267,10 +294,29 @@ struct RigidWorld::Content {
     return static_cast<int>(std::min(most, static_cast<double>(kMostSubsteps)));
   }
 
+  static bool IsTouching(const btPersistentManifold& manifold) {
+    for (int p = 0; p < manifold.getNumContacts(); ++p) {
+      if (manifold.getContactPoint(p).getDistance() <= kMargin) return true;
+    }
+    return false;
+  }
+
+  void NoteTouch(const btPersistentManifold& manifold) {
+    const int a = manifold.getBody0()->getUserIndex(), b = manifold.getBody1()->getUserIndex();
+    if (a >= 64 || b >= 64 || !IsTouching(manifold)) return;
+    bodies[static_cast<std::size_t>(a)].touches |= std::uint64_t{1} << b;
+    bodies[static_cast<std::size_t>(b)].touches |= std::uint64_t{1} << a;
+  }
+
   /// Impulses of one substep on the tools, and who touched whom.
   void GatherContacts() {
+    for (Body& body : bodies) body.touches = 0;
     for (int m = 0; m < dispatcher->getNumManifolds(); ++m) {
       const btPersistentManifold& manifold = *dispatcher->getManifoldByIndexInternal(m);
+      if (manifold.getBody0()->getUserIndex2() < 0 && manifold.getBody1()->getUserIndex2() < 0) {
+        NoteTouch(manifold);
+        continue;
+      }
       for (const bool is_first : {true, false}) {
         const btCollisionObject* own = is_first ? manifold.getBody0() : manifold.getBody1();
         const btCollisionObject* other = is_first ? manifold.getBody1() : manifold.getBody0();
@@ -322,7 +368,7 @@ core::Result<std::uint32_t> RigidWorld::AddBody(const RigidBody& body) {
     return Refuse("mass, friction or pose of a rigid body is negative or not finite");
   double thinnest = 1;
   for (const RigidShape& shape : body.shapes) thinnest = std::min(thinnest, HalfWidth(shape));
-  content_->bodies.push_back({body, {}, nullptr, thinnest});
+  content_->bodies.push_back({body, {}, nullptr, thinnest, 0});
   content_->Add(content_->bodies.size() - 1);
   for (auto& tool : content_->tools) {
     for (auto& touched : tool.touched) touched.assign(content_->bodies.size(), 0);
@@ -351,6 +397,13 @@ void RigidWorld::MoveTool(std::uint32_t tool, const Pose (&X_world_parts)[kToolP
     TROCAR_ASSERT(IsFinite(X_world_parts[part]));
     content_->tools[tool].to[static_cast<std::size_t>(part)] = ToBullet(X_world_parts[part]);
   }
+}
+
+void RigidWorld::SetGravity(const Vec3& gravity) {
+  if (gravity == content_->gravity) return;
+  content_->gravity = gravity;
+  content_->world->setGravity(ToBullet(gravity));
+  for (auto& body : content_->bodies) body.body->activate(true);
 }
 
 void RigidWorld::Step() {
@@ -415,6 +468,10 @@ void RigidWorld::Hold(std::uint32_t tool_index, std::uint32_t body_index, double
   tool.hold = std::make_unique<btFixedConstraint>(
       carrier, body, carrier.getWorldTransform().inverse() * body.getWorldTransform(),
       btTransform::getIdentity());
+  for (int axis = 0; axis < 6; ++axis) {
+    tool.hold->setParam(BT_CONSTRAINT_STOP_CFM, kHoldGive, axis);
+    tool.hold->setParam(BT_CONSTRAINT_STOP_ERP, kHoldShare, axis);
+  }
   tool.hold->setJointFeedback(&tool.feedback);
   tool.feedback = {};
   content_->world->addConstraint(tool.hold.get());
@@ -425,6 +482,10 @@ void RigidWorld::Hold(std::uint32_t tool_index, std::uint32_t body_index, double
   tool.held = static_cast<std::int32_t>(body_index);
   tool.hold_force = hold_force;
   tool.ticks_over = 0;
+}
+
+void RigidWorld::SetHoldForce(std::uint32_t tool, double hold_force) {
+  content_->tools[tool].hold_force = hold_force;
 }
 
 void RigidWorld::Release(std::uint32_t tool) {
@@ -442,6 +503,34 @@ Vec3 RigidWorld::ForceOn(std::uint32_t tool) const {
 bool RigidWorld::Touches(std::uint32_t tool, std::uint32_t body) const {
   const auto& touched = content_->tools[tool].touched;
   return std::any_of(touched.begin(), touched.end(), [&](const auto& part) { return part[body] != 0; });
+}
+
+std::uint64_t RigidWorld::TouchedBodies(std::uint32_t body) const {
+  return content_->bodies[body].touches;
+}
+
+void RigidWorld::FindObstacles(std::uint32_t tool_index, const Pose (&X_world_parts)[kToolPartCount],
+                               double reach, std::vector<ToolObstacle>& obstacles) {
+  obstacles.clear();
+  Content& content = *content_;
+  Content::Tool& tool = content.tools[tool_index];
+  for (std::size_t part = 0; part < kToolPartCount; ++part) {
+    btRigidBody& capsule = *tool.parts[part];
+    const btTransform here = capsule.getWorldTransform();
+    capsule.setWorldTransform(ToBullet(X_world_parts[part]));
+    for (std::size_t i = 0; i < content.bodies.size(); ++i) {
+      if (content.bodies[i].definition.mass > 0) continue;
+      Deepest deepest(capsule);
+      deepest.m_closestDistanceThreshold = reach * kScale;
+      content.world->contactPairTest(&capsule, content.bodies[i].body.get(), deepest);
+      if (deepest.distance > reach * kScale) continue;
+      // the surface's point lies a radius out on the side of the body
+      obstacles.push_back({static_cast<std::uint32_t>(i),
+                           FromBullet(deepest.on_tool) - tool.capsules[part].radius * deepest.into,
+                           deepest.into, -deepest.distance / kScale});
+    }
+    capsule.setWorldTransform(here);
+  }
 }
 
 Pose RigidWorld::PoseOf(std::uint32_t body) const {

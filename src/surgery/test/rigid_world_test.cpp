@@ -182,6 +182,40 @@ TEST(RigidWorld, IsPushedByATool) {
   EXPECT_EQ(bench.world.HeldBy(1), -1);
 }
 
+TEST(RigidWorld, SaysWhichBodiesTouch) {
+  RigidWorld world(kDown, kTick);
+  const auto floor = *world.AddBody(MakeFloor());
+  const auto cube = *world.AddBody(MakeCube({0, 0, 0.0061}));
+  const auto ring = *world.AddBody(MakeRing({0.05, 0, 0.05}));
+  Play(world, 0.05);
+  EXPECT_EQ(world.TouchedBodies(cube), std::uint64_t{1} << floor);
+  EXPECT_EQ(world.TouchedBodies(ring), 0u) << "it still falls";
+  Play(world, 0.5);
+  EXPECT_EQ(world.TouchedBodies(floor), (std::uint64_t{1} << cube) | (std::uint64_t{1} << ring));
+}
+
+TEST(RigidWorld, FindsHowDeepAToolEntersWhatNeverMoves) {
+  Bench bench;
+  std::vector<ToolObstacle> found;
+  Pose X[kToolPartCount];
+  // jaws are capsules about z, radius 1.5 mm, half length 8 mm: with the tip's centre at 5 mm their ends are at -4.5
+  PoseTool({0.05, 0.05, 0.005}, 0.03, X);
+  bench.world.FindObstacles(0, X, 0, found);
+  ASSERT_EQ(found.size(), 2u) << "both jaws enter the floor, and the cube moves, so it is no obstacle";
+  for (const ToolObstacle& one : found) {
+    EXPECT_EQ(one.body, 0u);
+    EXPECT_NEAR(one.depth, 0.0045, 2e-4);
+    EXPECT_NEAR(one.normal.z, -1, 1e-6);
+    EXPECT_NEAR(one.point.z, -0.003, 2e-4) << "centre of the capsule's end";
+  }
+  PoseTool({0.05, 0.05, 0.0105}, 0.03, X);
+  bench.world.FindObstacles(0, X, 0, found);
+  EXPECT_TRUE(found.empty());
+  bench.world.FindObstacles(0, X, 0.002, found);
+  ASSERT_EQ(found.size(), 2u);
+  EXPECT_NEAR(found[0].depth, -0.001, 2e-4);
+}
+
 TEST(RigidWorld, GivesTheSameBitsAgain) {
   Bench first, second;
   const auto operate = [](Bench& bench) {

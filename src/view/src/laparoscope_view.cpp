@@ -13,6 +13,7 @@
 #include "clip_shapes.h"
 #include "hand_tools.h"
 #include "liquids.h"
+#include "object_view.h"
 #include "organ_shape.h"
 #include "strand_field.h"
 #include "trocar/core/assert.h"
@@ -70,6 +71,7 @@ struct LaparoscopeView::Content {
   std::optional<StrandField> strands;
   std::optional<Pool> pool;
   std::vector<render::SurfaceDraw> background;
+  ObjectView objects;
   render::Frame frame;
   std::array<Vec3, session::kHandCount> forces, tips;
 
@@ -209,7 +211,13 @@ core::Result<LaparoscopeView> LaparoscopeView::Make(const session::Scene& scene,
   auto content = std::make_unique<Content>(std::move(*renderer));
   if (auto status = content->AddShapes(surfaces, start); !status) return status.error();
   content->tools.Add(content->renderer, scene);
-  content->AddSurroundings();
+  content->objects.Add(content->renderer, scene);
+  if (scene.HasPatient()) {
+    content->AddSurroundings();
+  } else {
+    content->background.push_back(
+        {content->renderer.AddSurface(MakeTrainerBox(scene), Material::kSleeve), {}});
+  }
   content->strands.emplace(strands, start.positions);
   content->frame.camera.field_of_view = scene.laparoscope.field_of_view;
   LaparoscopeView view(std::move(content));
@@ -247,6 +255,7 @@ void LaparoscopeView::Update(const Snapshot& snapshot) {
     c.forces[i] = snapshot.instruments[i].force;
     c.tips[i] = snapshot.instruments[i].X_world_tool.translation;
   }
+  c.objects.Append(snapshot, c.frame.surfaces);
   c.UpdateArrows();
 }
 

@@ -28,11 +28,18 @@ enum class Material {
   kTitanium,     ///< clips
   kPouch,        ///< thin plastic of the retrieval bag; light passes through
   kSpark,        ///< current through the air
+  kRedRubber,    ///< things of training tasks
+  kYellowRubber,
+  kGreenRubber,
+  kBlueRubber,
+  kWhitePlastic,
+  kMark,  ///< bright: what is to be done next
   kCount
 };
 
 /// "liver", "gallbladder", "duct", "artery", "fat", "bowel", "peritoneum", "shaft", "steel", "sleeve",
-/// "force", "fibre", "film", "blood", "bile", "rinse", "lumen", "titanium", "pouch", "spark".
+/// "force", "fibre", "film", "blood", "bile", "rinse", "lumen", "titanium", "pouch", "spark", "red_rubber",
+/// "yellow_rubber", "green_rubber", "blue_rubber", "white_plastic", "mark".
 std::string_view MaterialName(Material material) noexcept;
 /// The material of that name, or nothing.
 std::optional<Material> FindMaterial(std::string_view name) noexcept;

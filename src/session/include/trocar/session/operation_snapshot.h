@@ -10,6 +10,8 @@
 #include "trocar/math/pose.h"
 #include "trocar/session/input.h"
 #include "trocar/surgery/flow_network.h"
+#include "trocar/training/critical_view.h"
+#include "trocar/training/triplet.h"
 
 namespace trocar::session {
 
@@ -70,6 +72,19 @@ struct OperationSnapshot {
   surgery::FluidLedger fluids;
   math::Vec3 p_world_pool;  ///< lowest place, where blood, bile and rinse gather [m]
   double smoke = 0;         ///< in the view, 0 none to 1 thick [-]
+  bool has_assistant = false;
+  math::Pose X_world_assistant;  ///< of the third grasper
+  double assistant_jaw = 0;      ///< [rad]
+  bool is_assistant_holding = false;
+  /// How the dissection stands.
+  struct Facts {
+    double cleared_share = 0, detached_share = 0;
+    int structures_entering = 0;
+  } facts;
+  training::CriticalViewScore critical_view;
+  training::Phase phase = training::Phase::kPreparation;
+  std::size_t errors = 0, critical_errors = 0;  ///< so far
+  bool is_gallbladder_free = false, is_in_bag = false, is_completed = false;
 };
 
 }  // namespace trocar::session
