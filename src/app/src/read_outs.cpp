@@ -142,6 +142,8 @@ std::string DescribeEvent(const session::Event& event, const session::Scene& sce
       return hand + "pinched the " + organ + " too hard" + force;
     case session::EventKind::kToolsTouch:
       return "The instruments met";
+    case session::EventKind::kExchangeRefused:
+      return hand + "open the jaws and let go before the tool is exchanged";
   }
   return "";
 }

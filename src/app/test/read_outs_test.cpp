@@ -111,6 +111,12 @@ TEST(FrameMeter, HoldsMoreFramesThanItKeeps) {
   EXPECT_NEAR(meter.Rate(4.999), 1000.0, 1.0);
 }
 
+TEST(DescribeEvent, ARefusedExchangeSaysWhatToDo) {
+  const session::Scene scene;
+  EXPECT_EQ(DescribeEvent({session::EventKind::kExchangeRefused, 1, session::kLeft, -1, 0.0}, scene),
+            "Left grasper: open the jaws and let go before the tool is exchanged");
+}
+
 TEST(ToolLabel, NamesTheToolInUseAndItsClips) {
   session::Scene scene;
   scene.instruments[session::kRight].tray = {*instrument::FindTool("hook"),
