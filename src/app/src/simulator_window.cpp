@@ -67,7 +67,7 @@ SimulatorWindow::SimulatorWindow(const Options& options, const core::Stopwatch& 
 SimulatorWindow::~SimulatorWindow() {
   if (loader_.joinable()) loader_.join();
   picture_.SetSnapshot(nullptr);
-  picture_.SetScene(nullptr, {});
+  picture_.SetScene(nullptr, {}, {});
   panel_.SetControl(nullptr);
   hands_->SetControl(nullptr);
 }
@@ -223,7 +223,7 @@ void SimulatorWindow::FinishLoading() {
   panel_.SetControl(control_.get());
   panel_.set_sensitive(true);
   hands_->SetControl(control_.get());
-  picture_.SetScene(&control_->GetScene(), control_->Surfaces());
+  picture_.SetScene(&control_->GetScene(), control_->Surfaces(), control_->Strands());
   set_title("Trocar: " + control_->GetScene().name);
   demonstration_.set_sensitive(control_->HasScript());
   SetText(event_, "Ready.");
@@ -299,6 +299,7 @@ bool SimulatorWindow::OnFrame(const Glib::RefPtr<Gdk::FrameClock>& clock) {
   if (now - last_forces_ > kForcePeriod) {
     last_forces_ = now;
     panel_.ShowForces(snapshot);
+    panel_.ShowOperation(snapshot);
     ShowHaptics();
     ShowSituation();
   }
@@ -394,6 +395,13 @@ void SimulatorWindow::OnAction(Action action) {
   switch (action) {
     case Action::kTogglePause:
       if (control_ != nullptr) SetPaused(!control_->IsPaused());
+      break;
+    case Action::kNextTool:
+    case Action::kPreviousTool:
+      if (control_ != nullptr) control_->StepTool(action == Action::kNextTool ? 1 : -1);
+      break;
+    case Action::kAssistant:
+      if (control_ != nullptr) control_->StepAssistant();
       break;
     case Action::kReset:
       Reset();
