@@ -14,29 +14,34 @@ constexpr double kApart = 0.030;       // of hands that pull at one thing [m]
 }  // namespace
 
 /// While something is carried. \return whether the plan now is to err
-bool TaskSurgeon::AddFlaw(const Snapshot& seen, int hand, int object) {
+/// \param on_path  the thing is led along something and cannot be lifted away
+bool TaskSurgeon::AddFlaw(const Snapshot& seen, int hand, int object, bool on_path) {
   const Vec3 here = seen.objects[static_cast<std::size_t>(object)].X_world_object.translation;
+  const auto rise = [&] {
+    if (seen.instruments[static_cast<std::size_t>(1 - hand)].object >= 0) WithDraw(hand);
+    if (!on_path) Rise(hand, kHighEnough);
+  };
   switch (flaw_) {
     case Flaw::kDrops:
-      Rise(hand, kHighEnough);
+      rise();
       LetGo(hand);
       WithDraw(hand);
       break;
     case Flaw::kLoses: {
       const double side = hand == kLeft ? -1 : 1;
-      Rise(hand, kHighEnough);
+      rise();
       Carry(hand, object, here + Vec3{side * kFarOut, 0, kHighEnough});
       LetGo(hand);
       WithDraw(hand);
       break;
     }
     case Flaw::kTouchesWire:
-      Carry(hand, object, here + Vec3{0, 0, -kAstray}, 0.5);
+      Carry(hand, object, here + Vec3{0, 0, kAstray}, 0.5);
       Carry(hand, object, here, 0.5);
       break;
     case Flaw::kPullsApart: {
       const int other = 1 - hand;
-      Rise(hand, kHighEnough);
+      rise();
       PickUp(other, object, other);
       Wait(0.3);
       Reach(other, [this, other](const Snapshot&) {
