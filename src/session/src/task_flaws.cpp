@@ -9,6 +9,7 @@ constexpr double kHighEnough = 0.035;  // above where a thing lay, that it falls
 constexpr double kFarOut = 0.16;       // sideways of the field [m]
 constexpr double kAstray = 0.015;      // of a thing on its path [m]
 constexpr double kTooDeep = 0.012;     // of a tip below the board [m]
+constexpr double kBehindJaws = 0.030;  // [m]
 constexpr double kApart = 0.030;       // of hands that pull at one thing [m]
 
 }  // namespace
@@ -78,16 +79,18 @@ bool TaskSurgeon::AddIdleFlaw(const Snapshot& seen) {
       break;
     }
     case Flaw::kClashes: {
+      // through the other's shaft, behind its jaws
       const Vec3 left = HandOf(kLeft).Tip(), right = HandOf(kRight).Tip();
-      ReachPoint(kRight, left + Vec3{0, 0, -0.010}, 0.7);
-      ReachPoint(kRight, left + Vec3{-0.010, 0, -0.010}, 0.7);
+      const Vec3 shaft = left + kBehindJaws * math::Normalized(HandOf(kLeft).Port() - left);
+      ReachPoint(kRight, shaft + Vec3{0.010, 0, 0}, 0.7);
+      ReachPoint(kRight, shaft + Vec3{-0.010, 0, 0}, 0.3);
       ReachPoint(kRight, right);
       break;
     }
     case Flaw::kSmearsLens: {
       for (const Region& region : scene_->task->regions) {
         if (region.mark == RegionMark::kNone) continue;
-        Look(region, 0.012);
+        Look(region, 0.010);
         break;
       }
       Wait(0.5);

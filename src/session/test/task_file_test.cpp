@@ -75,7 +75,8 @@ TEST_F(TaskFile, IsReadWithItsSceneAndRules) {
 }
 
 TEST_F(TaskFile, LevelAndSeedChooseTheParameters) {
-  const auto easy = Read(kTask, {"easy", 5, {}}), same = Read(kTask, {"easy", 5, {}}), other = Read(kTask, {"easy", 6, {}});
+  const auto easy = Read(kTask, {"easy", 5, {}}), same = Read(kTask, {"easy", 5, {}}),
+             other = Read(kTask, {"easy", 6, {}});
   ASSERT_TRUE(easy.ok() && same.ok() && other.ok());
   EXPECT_NEAR(easy->objects[0].body.shapes[0].size.x, 0.006, 1e-12);
   const math::Vec3 p = easy->objects[0].body.X_world_body.translation;
@@ -102,35 +103,60 @@ struct Bad {
 TEST_F(TaskFile, BadOnesAreRefusedWithPathAndRemedy) {
   using core::ErrorCode;
   const Bad kBad[] = {
-      {R"("tool": "maryland", "port_mm": [-70)", R"("tool": "tongs", "port_mm": [-70)", ErrorCode::kUnknownName,
+      {R"("tool": "maryland", "port_mm": [-70)",
+       R"("tool": "tongs", "port_mm": [-70)",
+       ErrorCode::kUnknownName,
        {"scene.instruments.left", "tongs", "known are grasper"}},
-      {R"("object": "cube"})", R"("object": "cub"})", ErrorCode::kUnknownName,
+      {R"("object": "cube"})",
+       R"("object": "cub"})",
+       ErrorCode::kUnknownName,
        {"rules.errors[0].when", "cub", "known are cube, board"}},
-      {R"("kind": "lifted")", R"("kind": "thrown")", ErrorCode::kUnknownName,
+      {R"("kind": "lifted")",
+       R"("kind": "thrown")",
+       ErrorCode::kUnknownName,
        {"rules.goals[0].steps[0]", "thrown", "known are held, lifted"}},
       {R"("goals": [{"name": "Lift the {each}", "for_each": ["cube"], "steps": [{"kind": "lifted", "object": "{each}", "hand": "left", "height_mm": 10}]}])",
-       R"("goals": [])", ErrorCode::kSceneInvalid, {"rules", "at least one goal"}},
-      {R"("steps": [{"kind": "lifted", "object": "{each}", "hand": "left", "height_mm": 10}])", R"("steps": [])",
-       ErrorCode::kSceneInvalid, {"rules.goals[0]", "at least one step"}},
+       R"("goals": [])",
+       ErrorCode::kSceneInvalid,
+       {"rules", "at least one goal"}},
+      {R"("steps": [{"kind": "lifted", "object": "{each}", "hand": "left", "height_mm": 10}])",
+       R"("steps": [])",
+       ErrorCode::kSceneInvalid,
+       {"rules.goals[0]", "at least one step"}},
       {R"("hand": "left")", R"("hand": "third")", ErrorCode::kUnknownName, {"left, right or any"}},
       {R"({"kind": "lifted", "object": "{each}", "hand": "left", "height_mm": 10})",
-       R"({"kind": "placed", "object": "{each}", "region": "down"})", ErrorCode::kUnknownName,
+       R"({"kind": "placed", "object": "{each}", "region": "down"})",
+       ErrorCode::kUnknownName,
        {"no region \"down\"", "known are up"}},
-      {R"("radius_mm": 20})", R"("radius_mm": 20, "half_mm": [1, 1, 1]})", ErrorCode::kSceneInvalid,
+      {R"("radius_mm": 20})",
+       R"("radius_mm": 20, "half_mm": [1, 1, 1]})",
+       ErrorCode::kSceneInvalid,
        {"regions[0]", "either radius_mm"}},
-      {R"("colour": "red")", R"("colour": "mauve")", ErrorCode::kUnknownName,
+      {R"("colour": "red")",
+       R"("colour": "mauve")",
+       ErrorCode::kUnknownName,
        {"scene.objects[0]", "mauve", "known are red"}},
-      {R"("kind": "box", "size_mm": ["{size}", 8, 8])", R"("kind": "cone", "size_mm": [8, 8, 8])",
-       ErrorCode::kUnknownName, {"scene.objects[0].shapes[0]", "cone", "known are box"}},
-      {R"("{size}", 8, 8])", R"("{length}", 8, 8])", ErrorCode::kJsonField,
+      {R"("kind": "box", "size_mm": ["{size}", 8, 8])",
+       R"("kind": "cone", "size_mm": [8, 8, 8])",
+       ErrorCode::kUnknownName,
+       {"scene.objects[0].shapes[0]", "cone", "known are box"}},
+      {R"("{size}", 8, 8])",
+       R"("{length}", 8, 8])",
+       ErrorCode::kJsonField,
        {"scene.objects[0].shapes[0].size_mm"}},
-      {R"("name": "board", "at_mm")", R"("name": "cube", "at_mm")", ErrorCode::kSceneInvalid,
+      {R"("name": "board", "at_mm")",
+       R"("name": "cube", "at_mm")",
+       ErrorCode::kSceneInvalid,
        {"scene.objects[1]", "names must differ"}},
       {R"("time_limit_s": 60, )", "", ErrorCode::kSceneInvalid, {"rules", "needs a time_limit_s"}},
       {R"("easy": 12, )", "", ErrorCode::kJsonField, {"parameters.size.by_level.easy"}},
-      {R"("points_per_second_left")", R"("points_per_second_lost")", ErrorCode::kJsonField,
+      {R"("points_per_second_left")",
+       R"("points_per_second_lost")",
+       ErrorCode::kJsonField,
        {"rules.points_per_second_lost", "known are"}},
-      {R"({"at_mm": [-30, 10, -95]})", R"({"at": "fundus"})", ErrorCode::kUnknownName,
+      {R"({"at_mm": [-30, 10, -95]})",
+       R"({"at": "fundus"})",
+       ErrorCode::kUnknownName,
        {"scene.instruments.left.tip", "at_mm"}},
       {R"("objects": [)", R"("patient": "nobody", "objects": [)", ErrorCode::kFileMissing, {"nobody"}},
   };
@@ -138,14 +164,16 @@ TEST_F(TaskFile, BadOnesAreRefusedWithPathAndRemedy) {
     const auto scene = ReadWith(bad.what, bad.by);
     ASSERT_FALSE(scene.ok()) << bad.by;
     EXPECT_EQ(scene.error().code, bad.code) << scene.error().Text();
-    for (const char* text : bad.says) EXPECT_NE(scene.error().Text().find(text), std::string::npos) << scene.error().Text();
+    for (const char* text : bad.says)
+      EXPECT_NE(scene.error().Text().find(text), std::string::npos) << scene.error().Text();
   }
 }
 
 TEST_F(TaskFile, TooManyObjectsAreRefused) {
   std::string many;
   for (int i = 0; i < 63; ++i)
-    many += R"({"name": "more_)" + std::to_string(i) + R"(", "shapes": [{"kind": "sphere", "radius_mm": 2}]}, )";
+    many +=
+        R"({"name": "more_)" + std::to_string(i) + R"(", "shapes": [{"kind": "sphere", "radius_mm": 2}]}, )";
   const auto scene = ReadWith(R"({"name": "board")", many + R"({"name": "board")");
   ASSERT_FALSE(scene.ok());
   EXPECT_EQ(scene.error().code, core::ErrorCode::kSceneInvalid);
@@ -193,7 +221,8 @@ TEST(FindView, ShowsThePointInTheMiddleAtItsDistance) {
     EXPECT_NEAR(seen.y, 0, 2e-4);
     EXPECT_NEAR(seen.z, -0.06, 2e-4);
   }
-  EXPECT_FALSE(FindView(setup, {{0, -0.11, -0.015}, 0.06, {}}).has_value()) << "too near to the wall for that distance";
+  EXPECT_FALSE(FindView(setup, {{0, -0.11, -0.015}, 0.06, {}}).has_value())
+      << "too near to the wall for that distance";
 }
 
 }  // namespace

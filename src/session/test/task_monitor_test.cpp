@@ -162,7 +162,8 @@ TEST_F(Vocabulary, SecondsMustHoldWithoutABreak) {
 
 TEST_F(Vocabulary, CameraSeesWithinAngleDistanceAndFromTheRightSide) {
   Condition sees = Of(ConditionKind::kCameraSees);
-  sees.regions = {0}, sees.angle = 5 * kDegree, sees.near = 0.05, sees.far = 0.12, sees.facing_angle = 40 * kDegree;
+  sees.regions = {0}, sees.angle = 5 * kDegree, sees.near = 0.05, sees.far = 0.12,
+  sees.facing_angle = 40 * kDegree;
   scene_.task->regions[0].facing = Vec3{0, 0, 1};
   const auto seen_from = [&](const math::Pose& X) {
     Start(sees);
@@ -287,7 +288,8 @@ TEST_F(Vocabulary, TimeRunsFromTheFirstMovementToTheLimit) {
   snapshot_.instruments[0].X_world_device.translation =
       instrument::CalcToolPose(scene_.instruments[0].p_world_port, scene_.instruments[0].home).translation;
   snapshot_.instruments[1].X_world_device = snapshot_.instruments[0].X_world_device;
-  snapshot_.X_world_laparoscope = instrument::CalcToolPose(scene_.laparoscope.p_world_port, scene_.laparoscope.home);
+  snapshot_.X_world_laparoscope =
+      instrument::CalcToolPose(scene_.laparoscope.p_world_port, scene_.laparoscope.home);
   Tick(50);
   EXPECT_EQ(snapshot_.task.phase, TaskPhase::kReady);
   EXPECT_EQ(snapshot_.task.time, 0);

@@ -41,6 +41,7 @@ constexpr double kSleeveOutside = 0.060;   // m
 constexpr double kSleeveMaxBore = 0.0034;  // m; a thicker shaft gets a wider sleeve
 constexpr double kShadeLength = 0.120;     // m of a shaft that shades tissue
 constexpr double kSmallestForce = 0.02;    // N; below, an arrow would only flicker
+constexpr double kTrainerLight = 1.8;      // of a box trainer, whose walls are darker than tissue and farther
 constexpr double kLongestArrow = 0.045;    // m
 
 /// Shape of one deforming surface, from snapshot nodes to the vertices that are drawn.
@@ -129,6 +130,7 @@ struct LaparoscopeView::Content {
   std::array<Hand, session::kHandCount> hands;
   std::vector<render::SurfaceDraw> background;
   ObjectView objects;
+  double light_scale = 1;
   render::Frame frame;
   std::array<Vec3, session::kHandCount> forces, tips;
 
@@ -246,6 +248,7 @@ core::Result<LaparoscopeView> LaparoscopeView::Make(const session::Scene& scene,
   if (scene.HasPatient()) {
     content->AddSurroundings(materials);
   } else {
+    content->light_scale = kTrainerLight;
     content->background.push_back(
         {content->renderer.AddSurface(MakeTrainerBox(scene), Material::kSleeve), {}});
   }
@@ -292,7 +295,7 @@ void LaparoscopeView::Draw(int width, int height) {
   c.frame.has_mask = c.options.has_mask;
   c.frame.is_wireframe = c.options.is_wireframe;
   c.frame.has_smooth_edges = c.options.has_smooth_edges;
-  c.frame.light_power = std::clamp(c.options.light_power, 0.0, 4.0);
+  c.frame.light_power = c.light_scale * std::clamp(c.options.light_power, 0.0, 4.0);
   c.UpdateArrows();
   const std::size_t foreground = c.frame.surfaces.size();
   if (c.options.has_background)
