@@ -46,26 +46,69 @@ core::Result<ToolContacts> ToolContacts::Make(const Scene& scene, const tissue::
   if (!set.ok()) return set.error();
   made.tubes_ = std::move(*set);
 
-  // the gallbladder lies on the liver; of other organs nothing is known to touch
-  const int liver = scene.patient.FindOrgan("liver"), gallbladder = scene.patient.FindOrgan("gallbladder");
-  if (liver >= 0 && gallbladder >= 0) {
-    made.pairs_.push_back(surgery::MakeOrganPair(made.organs_, at_start.position,
-                                                 static_cast<std::uint8_t>(gallbladder),
-                                                 static_cast<std::uint8_t>(liver), {}, made.organ_settings_));
-    const surgery::OrganSurface &from = made.organs_[gallbladder], &to = made.organs_[liver];
-    const auto is_of = [](const surgery::OrganSurface& organ, std::uint32_t node) {
-      return node >= organ.first_node && node < organ.first_node + organ.node_count;
-    };
-    for (std::uint32_t node = from.first_node; node < from.first_node + from.node_count; ++node) {
-      for (auto h = model.strand_starts[node]; h < model.strand_starts[node + 1]; ++h) {
-        const auto& half = model.half_strands[h];
-        if (is_of(to, half.other)) made.ties_.push_back({0, half.strand, node - from.first_node});
-      }
-    }
-  }
+  made.MakePairs(scene, model, at_start);
+  made.MakeCavity(scene, model, at_start);
   made.positions_before_ = at_start.position;
   made.surface_motion_.assign(organs.size() + 1, 0.0);
   return made;
+}
+
+/// The gallbladder lies on the liver, ducts and vessels on both; of other organs nothing is known to touch.
+void ToolContacts::MakePairs(const Scene& scene, const tissue::TissueModel& model,
+                             const tissue::TissueState& at_start) {
+  const int liver = scene.patient.FindOrgan("liver"), gallbladder = scene.patient.FindOrgan("gallbladder");
+  if (liver >= 0 && gallbladder >= 0) {
+    AddPair(surgery::MakeOrganPair(organs_, at_start.position, static_cast<std::uint8_t>(gallbladder),
+                                   static_cast<std::uint8_t>(liver), {}, organ_settings_),
+            model);
+  }
+  for (std::size_t tube = 0; tube < tubes_.tubes.size(); ++tube) {
+    for (const int organ : {liver, gallbladder}) {
+      if (organ < 0) continue;
+      AddPair(surgery::MakeTubePair(organs_, at_start.position, tubes_.tubes[tube],
+                                    static_cast<std::uint8_t>(organs_.size() + tube),
+                                    static_cast<std::uint8_t>(organ), organ_settings_),
+              model);
+    }
+  }
+}
+
+void ToolContacts::AddPair(surgery::OrganPair pair, const tissue::TissueModel& model) {
+  const surgery::OrganSurface& to = organs_[pair.surface_of];
+  for (std::uint32_t i = 0; i < pair.node_count; ++i) {
+    const std::uint32_t node = pair.first_node + i;
+    for (auto h = model.strand_starts[node]; h < model.strand_starts[node + 1]; ++h) {
+      const auto& half = model.half_strands[h];
+      if (half.other >= to.first_node && half.other < to.first_node + to.node_count)
+        ties_.push_back({pairs_.size(), half.strand, i});
+    }
+  }
+  pairs_.push_back(std::move(pair));
+}
+
+void ToolContacts::MakeCavity(const Scene& scene, const tissue::TissueModel& model,
+                              const tissue::TissueState& at_start) {
+  const std::array<Vec3, kHandCount + 1> ports = {scene.instruments[kLeft].p_world_port,
+                                                  scene.instruments[kRight].p_world_port,
+                                                  scene.laparoscope.p_world_port};
+  std::vector<Vec3> nodes, face;
+  for (const surgery::OrganSurface& organ : organs_) {
+    const auto own = organ.Nodes(at_start.position);
+    nodes.insert(nodes.end(), own.begin(), own.end());
+  }
+  if (const int liver = scene.patient.FindOrgan("liver"); liver >= 0) {
+    const auto own = organs_[liver].Nodes(at_start.position);
+    for (const anatomy::Region& region : scene.patient.organs[liver].regions) {
+      if (region.name != anatomy::kDiaphragmaticFace) continue;
+      for (const std::uint32_t vertex : region.vertices) face.push_back(own[vertex]);
+    }
+  }
+  cavity_ = surgery::FitCavity(ports, face, nodes);
+  for (std::size_t organ = 0; organ < organs_.size(); ++organ) {
+    cavity_contacts_.push_back(surgery::MakeCavityContact(cavity_, organs_, at_start.position, model.is_fixed,
+                                                          static_cast<std::uint8_t>(organ),
+                                                          cavity_settings_));
+  }
 }
 
 core::Status ToolContacts::Follow(const tissue::TissueModel& model, const tissue::TissueState& tissue,
@@ -83,6 +126,7 @@ core::Status ToolContacts::Follow(const tissue::TissueModel& model, const tissue
     surgery::UpdateOrganSurface(*surface, tissue.position);
     organs_[i] = std::move(*surface);
     for (surgery::OrganPair& pair : pairs_) surgery::FollowOrgan(organs_, static_cast<std::uint8_t>(i), pair);
+    surgery::FollowOrgan(cavity_, organs_, tissue.position, cavity_settings_, cavity_contacts_[i]);
   }
   if (!pieces.empty()) {
     auto tree = collision::CapsuleTree::Make(tissue.position, pieces);
@@ -141,6 +185,10 @@ std::span<const tissue::ContactSpring> ToolContacts::Find(const Scene& scene, co
   }
   for (surgery::OrganPair& pair : pairs_) {
     surgery::FindOrganContacts(organs_, tissue.position, organ_settings_, pair, contacts_);
+  }
+  for (const surgery::CavityContact& contact : cavity_contacts_) {
+    surgery::FindCavityContacts(cavity_, organs_, tissue.position, surface_motion_[contact.organ],
+                                cavity_settings_, contact, contacts_);
   }
   std::copy(tissue.position.begin(), tissue.position.end(), positions_before_.begin());
   return contacts_.springs;

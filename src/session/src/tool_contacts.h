@@ -8,6 +8,7 @@
 
 #include "trocar/core/state_hash.h"
 #include "trocar/session/simulation.h"
+#include "trocar/surgery/cavity.h"
 #include "trocar/surgery/organ_contact.h"
 #include "trocar/surgery/tools_contact.h"
 
@@ -58,6 +59,8 @@ class ToolContacts {
   /// Refits the trees, and places the tools that are seen.
   void Update(const Scene& scene, const ToolsNow& now, const tissue::TissueState& tissue) noexcept;
 
+  /// What the organs lie in.
+  const surgery::Cavity& GetCavity() const { return cavity_; }
   std::span<const surgery::OrganSurface> Organs() const { return organs_; }
   const surgery::TubeSet& Tubes() const { return tubes_; }
   const surgery::ContactSet& Contacts() const { return contacts_; }
@@ -72,7 +75,11 @@ class ToolContacts {
   void PlaceProxy(const Scene& scene, int hand, const ToolsNow& now,
                   const surgery::Touchables& touchables) noexcept;
 
-  /// Strand that ties a vertex of a pair to the pair's surface.
+  void MakePairs(const Scene& scene, const tissue::TissueModel& model, const tissue::TissueState& at_start);
+  void AddPair(surgery::OrganPair pair, const tissue::TissueModel& model);
+  void MakeCavity(const Scene& scene, const tissue::TissueModel& model, const tissue::TissueState& at_start);
+
+  /// Strand that ties a node of a pair to the pair's surface.
   struct Tie {
     std::size_t pair;
     std::uint32_t strand, vertex;
@@ -81,7 +88,10 @@ class ToolContacts {
   // constant
   surgery::ContactSettings settings_;
   surgery::OrganContactSettings organ_settings_;
+  surgery::CavityContactSettings cavity_settings_;
   std::vector<Tie> ties_;
+  surgery::Cavity cavity_;
+  std::vector<surgery::CavityContact> cavity_contacts_;  // (organs)
 
   // state
   std::array<Pose, kHandCount> X_world_proxy_, X_world_proxy_before_, X_world_device_;

@@ -96,7 +96,7 @@ void Conservation::Follow(const TissueModel& model, std::vector<ClosedOrgan> org
   constraints_.clear();
   for (const ClosedOrgan& organ : settings_.organs)
     constraints_.push_back({organ.first_node, organ.node_count});
-  linear_ = LinearResponse(model);
+  linear_.SetModel(model);
   rest_ = MakeRestState(model);
   responses_settled_ = false;
   state.intact_links = std::numeric_limits<std::uint64_t>::max();

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "../task_surgeon.h"
-#include "trocar/session/operation_snapshot.h"
+#include "trocar/session/simulation.h"
 #include "trocar/session/surgeon.h"
 
 namespace trocar::session {
