@@ -47,12 +47,45 @@ Panel::Panel() {
   cards_.set_spacing(7);
   cards_.set_margin(8);
   set_child(cards_);
+  AddTask();
   AddHands();
   AddOperation();
   AddSettings();
   AddMeasures();
   AddPatient();
   AddStages();
+}
+
+void Panel::AddTask() {
+  task_card_ = &AddCard("Task");
+  task_card_->set_visible(false);
+  SetLabel(task_name_, "name");
+  for (Gtk::Label* label : {&task_about_, &task_next_, &task_errors_}) SetLabel(*label, "fine");
+  for (Gtk::Label* label : {&task_name_, &task_about_, &task_next_, &task_errors_}) {
+    label->set_wrap(true);
+    label->set_max_width_chars(10);
+    label->set_hexpand(true);
+    label->set_xalign(0);
+    label->set_halign(Gtk::Align::FILL);
+  }
+  task_card_->append(task_name_);
+  task_card_->append(task_about_);
+  task_time_ =
+      &AddLine(*task_card_, "Time", "From the first movement; the task's limit after the stroke [min:s]");
+  task_progress_ = &AddLine(*task_card_, "Goals", "Done, of all");
+  task_score_ = &AddLine(*task_card_, "Score", "Training feedback, not certified assessment");
+  task_card_->append(task_next_);
+  task_card_->append(task_errors_);
+}
+
+void Panel::ShowTask(const session::Snapshot& snapshot) {
+  if (control_ == nullptr || !control_->GetScene().task) return;
+  const TaskReadOut text = DescribeTask(*control_->GetScene().task, snapshot.task);
+  SetText(*task_time_, text.time);
+  SetText(*task_progress_, text.progress);
+  SetText(*task_score_, text.score);
+  SetText(task_next_, text.next);
+  SetText(task_errors_, text.errors);
 }
 
 void Panel::AddPatient() {
@@ -306,6 +339,13 @@ void Panel::SetControl(SessionControl* control) {
   }
   is_showing_ = false;
   operation_card_->set_visible(has_choice);
+  const auto& task = control->GetScene().task;
+  task_card_->set_visible(task.has_value());
+  patient_card_->set_visible(control->GetScene().HasPatient());
+  if (task) {
+    task_name_.set_text(task->name);
+    task_about_.set_text(task->about);
+  }
   const anatomy::Patient& patient = control->GetScene().patient;
   patient_name_.set_text(patient.name);
   std::string organs;

@@ -52,6 +52,38 @@ std::string FormatTime(double seconds) {
   return Print("%lld:%02lld.%lld", tenths / 600, tenths / 10 % 60, tenths % 10);
 }
 
+TaskReadOut DescribeTask(const session::Task& task, const session::TaskSnapshot& now) {
+  using session::TaskPhase;
+  TaskReadOut text;
+  text.time = FormatTime(now.time);
+  if (std::isfinite(task.time_limit)) text.time += " / " + FormatTime(task.time_limit);
+  const auto done =
+      std::count_if(now.goals.begin(), now.goals.end(), [](const auto& goal) { return goal.is_done; });
+  text.progress = Print("%td of %zu", done, task.goals.size());
+  text.score = now.IsOver() ? Print("%.1f", now.score) : "—";
+  switch (now.phase) {
+    case TaskPhase::kCompleted:
+      text.next = "Completed. Reset to try again.";
+      break;
+    case TaskPhase::kTimeOver:
+      text.next = "The time is over. Reset to try again.";
+      break;
+    case TaskPhase::kEnded:
+      text.next = "Ended by an error. Reset to try again.";
+      break;
+    default:
+      for (std::size_t g = 0; g < task.goals.size() && text.next.empty(); ++g) {
+        if (now.phase == TaskPhase::kReady || now.goals[g].is_open) text.next = "Next: " + task.goals[g].name;
+      }
+  }
+  for (std::size_t e = 0; e < task.errors.size(); ++e) {
+    if (now.errors[e] == 0) continue;
+    text.errors +=
+        (text.errors.empty() ? "" : "\n") + std::to_string(now.errors[e]) + " × " + task.errors[e].about;
+  }
+  return text;
+}
+
 std::string FormatCount(std::uint64_t count) {
   std::string text = std::to_string(count);
   for (int at = static_cast<int>(text.size()) - 3; at > 0; at -= 3)

@@ -19,12 +19,17 @@ constexpr const char* kDefaultScene = "demonstration.json";
 
 core::Result<session::Simulation> Load(const Options& options) {
   std::filesystem::path path = options.scene;
-  if (path.empty()) {
+  if (!options.task.empty()) {
+    const core::Result<std::filesystem::path> task = session::FindTask(options.task);
+    if (!task) return task.error();
+    path = task.value();
+  } else if (path.empty()) {
     const core::Result<std::filesystem::path> folder = session::FindDataFolder();
     if (!folder) return folder.error();
     path = folder.value() / "scenes" / kDefaultScene;
   }
-  core::Result<session::Scene> scene = session::ReadScene(path);
+  core::Result<session::Scene> scene =
+      options.task.empty() ? session::ReadScene(path) : session::ReadTask(path, {options.level, 1, {}});
   if (!scene) return scene.error();
   const int threads =
       options.threads > 0 ? options.threads : ChooseThreads(std::thread::hardware_concurrency());
@@ -300,6 +305,7 @@ bool SimulatorWindow::OnFrame(const Glib::RefPtr<Gdk::FrameClock>& clock) {
     last_forces_ = now;
     panel_.ShowForces(snapshot);
     panel_.ShowOperation(snapshot);
+    panel_.ShowTask(snapshot);
     ShowHaptics();
     ShowSituation();
   }

@@ -138,5 +138,33 @@ TEST(DescribeFluid, SaysWhatWasLostAndWhatLiesThere) {
   EXPECT_EQ(DescribeFluid(fluids, surgery::Fluid::kBile), "0.0 mL, 0.0 mL in the abdomen");
 }
 
+TEST(DescribeTask, SaysClockProgressErrorsAndResult) {
+  session::Task task;
+  task.goals.resize(2);
+  task.goals[0].name = "First";
+  task.goals[1].name = "Second";
+  task.errors.resize(1);
+  task.errors[0].about = "It fell";
+  task.time_limit = 90;
+  session::TaskSnapshot now;
+  now.phase = session::TaskPhase::kRunning;
+  now.goals.resize(2);
+  now.goals[0].is_done = true;
+  now.goals[1].is_open = true;
+  now.errors = {2};
+  now.time = 12.34;
+  now.score = 55.5;
+  TaskReadOut text = DescribeTask(task, now);
+  EXPECT_EQ(text.time, "0:12.3 / 1:30.0");
+  EXPECT_EQ(text.progress, "1 of 2");
+  EXPECT_EQ(text.score, "—");
+  EXPECT_EQ(text.next, "Next: Second");
+  EXPECT_EQ(text.errors, "2 × It fell");
+  now.phase = session::TaskPhase::kCompleted;
+  text = DescribeTask(task, now);
+  EXPECT_EQ(text.score, "55.5");
+  EXPECT_NE(text.next.find("Completed"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace trocar::app

@@ -226,10 +226,9 @@ void Operation::WatchHands(const HandsNow& hands) noexcept {
     const Vec3& tip = hands.X_proxy[h].translation;
     const surgery::Grasp& grasp = (*hands.grasps)[h];
     if (grasp.IsHolding() && Tool(hand).kind != instrument::ToolKind::kBag) {
-      const bool pulls = math::Distance(hands.X_device[h].translation, tip) > 0.0 || grasp.IsHolding();
-      judge_.Note({training::InstrumentKind::kGrasper,
-                   pulls ? training::Verb::kRetract : training::Verb::kGrasp, TargetOfSurface(grasp.surface)},
-                  hand);
+      judge_.Note(
+          {training::InstrumentKind::kGrasper, training::Verb::kRetract, TargetOfSurface(grasp.surface)},
+          hand);
       if (grasp.surface == liver_) judge_.Report(OperationError::kLiverGrasped, tip, hand, hands.time);
     }
     if (hands.changes[h] == surgery::GraspChange::kSlipped ||

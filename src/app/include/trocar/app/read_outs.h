@@ -62,6 +62,16 @@ std::string DescribeEvent(const session::Event& event, const session::Scene& sce
 /// True for what should be seen at once: slips, missed grasps, restored states.
 bool IsWarning(session::EventKind kind) noexcept;
 
+/// How a task goes, for a person.
+struct TaskReadOut {
+  std::string time;      ///< "0:12.3 / 5:00.0"
+  std::string progress;  ///< "3 of 12"
+  std::string score;     ///< "87.4"; "—" before it is over
+  std::string next;      ///< "Next: Ring 2 to the right"; after the end, the result
+  std::string errors;    ///< "2 x The ring touched the wire", a line each
+};
+TaskReadOut DescribeTask(const session::Task& task, const session::TaskSnapshot& now);
+
 /// "Find contacts"
 std::string StageLabel(session::Stage stage);
 
