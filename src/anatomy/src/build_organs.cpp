@@ -4,9 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "trocar/anatomy/contour_fill.h"
-#include "trocar/anatomy/contour_fit.h"
-#include "trocar/anatomy/contour_morph.h"
+#include "contoured_structure.h"
 #include "trocar/anatomy/volume.h"
 #include "trocar/anatomy/volume_mesher.h"
 
@@ -16,101 +14,17 @@ namespace {
 using core::Error;
 
 constexpr double kCubicMmPerMl = 1000.0;
-constexpr double kSliceStepMm = 1.0;  // slices are added down to this distance
-constexpr double kThinnestMm = 7.0;   // tips thinner than this are cut off
-
-/// The first stage of the paper for one structure: control points become filled slices.
-struct ContouredStructure {
-  OrganReport report;
-  std::vector<FilledSlice> slices;
-  std::vector<std::vector<std::vector<Vec2>>> curves;  // of each slice; empty where the slice has holes
-};
+constexpr double kThinnestMm = 7.0;  // tips thinner than this are cut off
 
 Error GivenUp() {
   return {core::ErrorCode::kCancelled, "the organs were given up"};
 }
 
-/// Slices down to kSliceStepMm: between two single contours by matching them, elsewhere by InsertSlices.
-std::vector<FilledSlice> MakeDenseSlices(const ContouredStructure& structure) {
-  std::vector<FilledSlice> dense = {structure.slices.front()};
-  for (std::size_t s = 0; s + 1 < structure.slices.size(); ++s) {
-    const FilledSlice &a = structure.slices[s], &b = structure.slices[s + 1];
-    if (structure.curves[s].size() != 1 || structure.curves[s + 1].size() != 1) {
-      const auto between = InsertSlices(std::vector<FilledSlice>{a, b}, kSliceStepMm);
-      dense.insert(dense.end(), between.begin() + 1, between.end());
-      continue;
-    }
-    const ContourMatch match = MatchContours(structure.curves[s][0], structure.curves[s + 1][0]);
-    const int parts = static_cast<int>(std::ceil((b.position_mm - a.position_mm) / kSliceStepMm - 1e-9));
-    for (int part = 1; part < parts; ++part) {
-      const double t = static_cast<double>(part) / parts;
-      dense.push_back({a.position_mm + t * (b.position_mm - a.position_mm), FillArea({match.At(t)}, {})});
-    }
-    dense.push_back(b);
-  }
-  return dense;
-}
-
-core::Result<ContouredStructure> ExtractContours(const ControlPoints& points, const Structure& structure,
-                                                 const std::map<int, ColorImage>& images,
-                                                 const std::stop_token& stop,
-                                                 std::map<int, Overlay>& overlays) {
-  if (structure.slices.size() < 2) {
-    return Error{core::ErrorCode::kContourTooShort,
-                 structure.name + " has contours in fewer than two slices; a volume needs two"};
-  }
-  ContouredStructure result;
-  result.report.name = structure.name;
-  result.report.slices = structure.slices.size();
-  double shift_sum = 0;
-  for (const SliceContours& slice : structure.slices) {
-    if (stop.stop_requested()) return GivenUp();
-    const EdgeField field(images.at(slice.slice), structure.adaption.blur_px);
-    Overlay& overlay = overlays[slice.slice];
-    const auto follow = [&](const std::vector<std::vector<Vec2>>& polygons) {
-      std::vector<std::vector<Vec2>> curves;
-      for (const auto& polygon : polygons) {
-        ContourFit fit = FitContourToEdges(field, polygon, {.adaption = structure.adaption});
-        ContourStages stages;
-        stages.structure = structure.name;
-        stages.placed = polygon;
-        stages.adapted = std::move(fit.adapted);
-        stages.inserted = std::move(fit.inserted);
-        stages.curve = std::move(fit.spline);
-        stages.notes = fit.notes.size();
-        for (std::size_t i = 0; i < polygon.size(); ++i) {
-          const double shift = Norm(stages.adapted[i] - polygon[i]);
-          shift_sum += shift;
-          result.report.largest_shift_px = std::max(result.report.largest_shift_px, shift);
-        }
-        result.report.control_points += polygon.size();
-        curves.push_back(stages.curve);
-        overlay.contours.push_back(std::move(stages));
-      }
-      return curves;
-    };
-    const auto contours = follow(slice.contours), holes = follow(slice.holes);
-    FilledSlice filled{points.slice_mm * slice.slice, FillArea(contours, holes)};
-    if (filled.mask.Count() == 0) {
-      return Error{core::ErrorCode::kContourEmpty,
-                   structure.name + ", slice " + std::to_string(slice.slice) +
-                       ": the contour encloses nothing; place it around the organ"};
-    }
-    overlay.areas.push_back(filled.mask);
-    result.slices.push_back(std::move(filled));
-    result.curves.push_back(holes.empty() ? contours : std::vector<std::vector<Vec2>>{});
-  }
-  result.report.mean_shift_px = shift_sum / static_cast<double>(result.report.control_points);
-  return result;
-}
-
 }  // namespace
 
-core::Result<std::map<int, ColorImage>> ReadContouredSlices(const ControlPoints& points,
-                                                            const std::filesystem::path& folder,
-                                                            const std::vector<int>& numbers,
-                                                            std::optional<DisplayWindow> window,
-                                                            const Progress& progress) {
+core::Result<ImageSeries> OpenContouredSeries(const ControlPoints& points,
+                                              const std::filesystem::path& folder,
+                                              const std::vector<int>& numbers, const Progress& progress) {
   ImageSeriesOptions series_options;
   series_options.pixel_mm = points.pixel_mm;
   series_options.slice_mm = points.slice_mm;
@@ -126,7 +40,38 @@ core::Result<std::map<int, ColorImage>> ReadContouredSlices(const ControlPoints&
                      " pixels, but the control points were placed on " + std::to_string(points.width) +
                      " x " + std::to_string(points.height) + "; use the images that the points belong to"};
   }
-  return ReadSlices(*series, numbers, window.value_or(info.suggested_window), progress);
+  return series;
+}
+
+core::Result<std::map<int, ColorImage>> ReadContouredSlices(const ControlPoints& points,
+                                                            const std::filesystem::path& folder,
+                                                            const std::vector<int>& numbers,
+                                                            std::optional<DisplayWindow> window,
+                                                            const Progress& progress) {
+  const auto series = OpenContouredSeries(points, folder, numbers, progress);
+  if (!series.ok()) return series.error();
+  return ReadSlices(*series, numbers, window.value_or(series->Info().suggested_window), progress);
+}
+
+bool FollowsSkippedSlices(const ControlPoints& points) {
+  return std::any_of(points.structures.begin(), points.structures.end(), [](const Structure& structure) {
+    return structure.adaption.max_shift_px > 0 && structure.adaption.skipped_shift_px > 0;
+  });
+}
+
+core::Status ReadSkippedFrom(const ControlPoints& points, const std::filesystem::path& folder,
+                             std::optional<DisplayWindow> window, OrganOptions& options) {
+  const auto series = OpenContouredSeries(points, folder, {});
+  if (!series.ok()) {
+    return Error{series.error().code,
+                 series.error().message + "; without the slices that were skipped: skipped_shift_px 0"};
+  }
+  const std::vector<int>& numbers = series->Info().slice_numbers;
+  options.slice_step = numbers.size() > 1 ? numbers[1] - numbers[0] : 1;
+  options.read_skipped = [series = *series, window](const std::vector<int>& slices) {
+    return ReadSlices(series, slices, window.value_or(series.Info().suggested_window));
+  };
+  return {};
 }
 
 core::Result<BuiltOrgans> BuildOrgans(const ControlPoints& points, const std::map<int, ColorImage>& images,
@@ -144,16 +89,13 @@ core::Result<BuiltOrgans> BuildOrgans(const ControlPoints& points, const std::ma
   const auto count = static_cast<double>(points.structures.size());
   for (const Structure& structure : points.structures) {
     tell("following contours of " + structure.name, static_cast<double>(volumes.size()) / count);
-    auto contoured = ExtractContours(points, structure, images, options.stop, overlays);
+    auto contoured = FollowContours(points, structure, images, options.stop, overlays);
     if (!contoured.ok()) return contoured.error();
-    auto dense = MakeDenseSlices(*contoured);
+    if (auto status = AddSlicesByPictures(points, structure, images, options, *contoured); !status)
+      return status.error();
+    auto dense = AddSlicesByShape(*contoured);
     for (FilledSlice& slice : dense) OpenMask(slice.mask, kThinnestMm / 2 / points.pixel_mm);
-    const auto& clicked = contoured->slices;
-    const auto half_way = [&](std::size_t a, std::size_t b) {
-      return 0.5 * (clicked[b].position_mm - clicked[a].position_mm);
-    };
-    auto volume = MakeVolume(dense, points.pixel_mm, options.spacing_mm,
-                             std::array{half_way(0, 1), half_way(clicked.size() - 2, clicked.size() - 1)});
+    auto volume = MakeVolume(dense, points.pixel_mm, options.spacing_mm, contoured->ends_mm);
     if (!volume.ok()) return Error{volume.error().code, structure.name + ": " + volume.error().message};
     volumes.push_back(std::move(*volume));
     built.organs.push_back(std::move(contoured->report));

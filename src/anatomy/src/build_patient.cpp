@@ -54,9 +54,13 @@ core::Result<BuildReport> BuildPatient(const BuildOptions& options, const Progre
   if (!images.ok()) return images.error();
   if (options.stop.stop_requested()) return given_up;
 
-  auto built = BuildOrgans(
-      *points, *images, {options.spacing_mm, options.gap_mm, reference ? &*reference : nullptr, options.stop},
-      progress);
+  OrganOptions organs{
+      options.spacing_mm, options.gap_mm, reference ? &*reference : nullptr, options.stop, {}, 1};
+  if (FollowsSkippedSlices(*points)) {
+    if (auto status = ReadSkippedFrom(*points, options.images, options.window, organs); !status)
+      return status.error();
+  }
+  auto built = BuildOrgans(*points, *images, organs, progress);
   if (!built.ok()) return built.error();
   BuildReport report;
   report.organs = std::move(built->organs);

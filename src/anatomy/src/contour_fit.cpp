@@ -62,6 +62,22 @@ ContourCurve InsertPoints(const EdgePath& edge, const ContourFitSettings& settin
   }
 }
 
+/// The row of each control point of a closed curve that was resampled in equal steps: in the points' order, as
+/// the nearest row would not always be where clicks overtake each other.
+std::vector<std::size_t> FindRows(const ContourCurve& curve, std::size_t count, std::size_t rows) {
+  std::vector<double> passed = {0.0};
+  for (std::size_t i = 0; i < curve.points.size(); ++i)
+    passed.push_back(passed.back() + Norm(curve.points[(i + 1) % curve.points.size()] - curve.points[i]));
+  std::vector<std::size_t> found;
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto sample =
+        std::lower_bound(curve.segment.begin(), curve.segment.end(), i) - curve.segment.begin();
+    const double part = passed[static_cast<std::size_t>(sample)] / passed.back();
+    found.push_back(static_cast<std::size_t>(std::lround(part * static_cast<double>(rows))) % rows);
+  }
+  return found;
+}
+
 }  // namespace
 
 std::string_view FitProblemText(FitProblem problem) {
@@ -99,10 +115,14 @@ ContourFit FitContourToEdges(const EdgeField& field, std::span<const Vec2> click
     return fit;
   }
   const double max_shift = settings.adaption.max_shift_px;
-  const EdgePath edge = FindEdgePath(field, FitContour(clicked, settings.spline), settings.adaption);
+  const ContourCurve clicked_curve = FitContourCurve(clicked, settings.spline);
+  const EdgePath edge =
+      FindEdgePath(field, ResampleClosed(clicked_curve.points, kEdgeRowStep), settings.adaption);
+  const auto point_rows = FindRows(clicked_curve, clicked.size(), edge.at.size());
   std::vector<Control> controls;
-  for (const Vec2& p : clicked) {
-    const std::size_t row = FindNearest(edge.curve.at, p);
+  for (std::size_t i = 0; i < clicked.size(); ++i) {
+    const Vec2& p = clicked[i];
+    const std::size_t row = point_rows[i];
     // the row lies beside the point by up to half a row, which counts against its reach
     const Vec2 shift = edge.is_edge[row] ? edge.at[row] - p : Vec2{};
     const double length = Norm(shift);

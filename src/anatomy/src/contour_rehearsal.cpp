@@ -95,6 +95,7 @@ Structure SimulateUser(const LabelVolume& labels, const ControlPoints& series, c
   clicked.slices.clear();
   clicked.adaption = EdgeAdaptionSettings{};
   clicked.adaption.max_shift_px = settings.reach_mm / series.pixel_mm;
+  clicked.adaption.skipped_shift_px = settings.skipped_mm / series.pixel_mm;
   const auto step = FindLabelStep(labels, series);
   if (!step.ok()) return clicked;
   math::Random random(seed);
@@ -123,10 +124,11 @@ core::Result<std::vector<OrganRehearsal>> RehearseContours(const RehearsalOption
                                                            const Progress& progress) {
   const ClickSettings& clicks = options.clicks;
   if (clicks.every < 1 || clicks.points[0] < 3 || clicks.points[1] < clicks.points[0] || options.runs < 1 ||
-      !(clicks.noise_mm >= 0 && clicks.noise_mm <= 50) || !(clicks.reach_mm >= 0 && clicks.reach_mm <= 50)) {
+      !(clicks.noise_mm >= 0 && clicks.noise_mm <= 50) || !(clicks.reach_mm >= 0 && clicks.reach_mm <= 50) ||
+      !(clicks.skipped_mm >= 0 && clicks.skipped_mm <= 50)) {
     return Error{
         ErrorCode::kUsage,
-        "a rehearsal needs every >= 1, 3 or more points, runs >= 1, noise and reach from 0 to 50 mm"};
+        "a rehearsal needs every >= 1, 3 or more points, runs >= 1, noise and reaches from 0 to 50 mm"};
   }
   auto series = ReadControlPoints(options.control_points);
   if (!series.ok()) return series.error();
@@ -146,6 +148,12 @@ core::Result<std::vector<OrganRehearsal>> RehearseContours(const RehearsalOption
             : "there is no structure " + options.organ + " with a reference_label in the control points"};
   }
 
+  OrganOptions organ_options;
+  organ_options.reference = &*labels;
+  if (clicks.skipped_mm > 0) {
+    if (auto status = ReadSkippedFrom(*series, options.images, {}, organ_options); !status)
+      return status.error();
+  }
   std::vector<OrganRehearsal> organs;
   for (const Structure& structure : series->structures) organs.push_back({structure.name, {}});
   std::map<int, ColorImage> images;
@@ -176,7 +184,7 @@ core::Result<std::vector<OrganRehearsal>> RehearseContours(const RehearsalOption
       if (!is_adapted) {
         for (Structure& structure : used.structures) structure.adaption.max_shift_px = 0;
       }
-      auto built = BuildOrgans(used, images, {.reference = &*labels});
+      auto built = BuildOrgans(used, images, organ_options);
       if (!built.ok()) return built.error();
       for (std::size_t i = 0; i < organs.size(); ++i) {
         RehearsalRun& result = organs[i].runs.back();

@@ -2,84 +2,25 @@
 #include "edge_cost.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
+#include "tissue_colours.h"
 #include "trocar/core/assert.h"
 
 namespace trocar::anatomy {
 namespace {
 
-using Vec = std::array<double, 3>;
-
 constexpr double kWindowPx =
-    40.0;  // of the contour to either side from which a place learns its colours [pixels]
-constexpr double kNoise = 2.0;  // colours differ by this much within one tissue anyway [grey levels]
-constexpr int kAlongRows = 2;   // averaged to either side along the curve
-constexpr double kFar = 3.0;    // a colour this many standard deviations away belongs to something else [-]
+    40.0;                      // of the contour to either side from which a place learns its colours [pixels]
+constexpr int kAlongRows = 2;  // averaged to either side along the curve
+constexpr double kFar = 3.0;   // a colour this many standard deviations away belongs to something else [-]
 // the inside is learned up to this part of the reach from the curve, where it is not sure to be inside any
 // more [-]
 constexpr double kDoubtful = 0.3;
 
-/// Sums of colours and of their products.
-struct Moments {
-  double count = 0;
-  Vec sum = {};
-  std::array<double, 6> products = {};  // xx xy xz yy yz zz
-
-  void Add(const Colour& c) {
-    count += 1;
-    for (std::size_t i = 0; i < 3; ++i) sum[i] += c[i];
-    products[0] += static_cast<double>(c[0]) * c[0], products[1] += static_cast<double>(c[0]) * c[1];
-    products[2] += static_cast<double>(c[0]) * c[2], products[3] += static_cast<double>(c[1]) * c[1];
-    products[4] += static_cast<double>(c[1]) * c[2], products[5] += static_cast<double>(c[2]) * c[2];
-  }
-  void Add(const Moments& other, double sign) {
-    count += sign * other.count;
-    for (std::size_t i = 0; i < 3; ++i) sum[i] += sign * other.sum[i];
-    for (std::size_t i = 0; i < 6; ++i) products[i] += sign * other.products[i];
-  }
-  Vec Mean() const { return {sum[0] / count, sum[1] / count, sum[2] / count}; }
-  /// count times the covariance
-  std::array<double, 6> Scatter() const {
-    const Vec m = Mean();
-    return {products[0] - sum[0] * m[0], products[1] - sum[0] * m[1], products[2] - sum[0] * m[2],
-            products[3] - sum[1] * m[1], products[4] - sum[1] * m[2], products[5] - sum[2] * m[2]};
-  }
-};
-
-/// Solves the symmetric system a x = b by Cramer's rule; a is positive definite.
-Vec Solve(const std::array<double, 6>& a, const Vec& b) {
-  const double c0 = a[3] * a[5] - a[4] * a[4], c1 = a[2] * a[4] - a[1] * a[5], c2 = a[1] * a[4] - a[2] * a[3];
-  const double det = a[0] * c0 + a[1] * c1 + a[2] * c2;
-  const double c3 = a[0] * a[5] - a[2] * a[2], c4 = a[1] * a[2] - a[0] * a[4], c5 = a[0] * a[3] - a[1] * a[1];
-  return {(c0 * b[0] + c1 * b[1] + c2 * b[2]) / det, (c1 * b[0] + c3 * b[1] + c4 * b[2]) / det,
-          (c2 * b[0] + c4 * b[1] + c5 * b[2]) / det};
-}
-
-/// What the inside looks like: a normal distribution of colours.
-struct Tissue {
-  Vec mean = {};
-  std::array<double, 6> inverse = {};  // of the covariance
-
-  double Distance(const Colour& c) const {
-    const double x = c[0] - mean[0], y = c[1] - mean[1], z = c[2] - mean[2];
-    return std::sqrt(std::max(0.0, inverse[0] * x * x + inverse[3] * y * y + inverse[5] * z * z +
-                                       2 * (inverse[1] * x * y + inverse[2] * x * z + inverse[4] * y * z)));
-  }
-};
-
-Tissue DescribeTissue(const Moments& moments) {
-  auto spread = moments.Scatter();
-  for (double& value : spread) value /= moments.count;
-  for (const std::size_t i : {0, 3, 5}) spread[i] += kNoise * kNoise;
-  const Vec x = Solve(spread, {1, 0, 0}), y = Solve(spread, {0, 1, 0}), z = Solve(spread, {0, 0, 1});
-  return {moments.Mean(), {x[0], x[1], x[2], y[1], y[2], z[2]}};
-}
-
 }  // namespace
 
-EdgeEvidence CalcEdgeEvidence(const EdgeStrip& strip, double reach_px, double row_px) {
+EdgeEvidence CalcEdgeEvidence(const EdgeStrip& strip, double reach_px, double row_px, double depth_px) {
   EdgeEvidence evidence;
   evidence.reach = static_cast<int>(std::floor(reach_px / strip.step_px + 1e-9));
   const int columns = evidence.Columns(), all = strip.Columns(), pad = strip.reach - evidence.reach;
@@ -99,14 +40,15 @@ EdgeEvidence CalcEdgeEvidence(const EdgeStrip& strip, double reach_px, double ro
     }
   }
   // colours of the inside, of each row and then of the rows about it
-  std::vector<Moments> inside(strip.rows);
-  const int deepest = strip.reach - static_cast<int>(kDoubtful * evidence.reach);
+  std::vector<ColourMoments> inside(strip.rows);
+  const int last = strip.reach - static_cast<int>(kDoubtful * evidence.reach);
+  const int first = std::clamp(strip.reach - static_cast<int>(depth_px / strip.step_px), 0, last);
   for (int row = 0; row < rows; ++row) {
     const Colour* colours = &smooth[static_cast<std::size_t>(row) * all];
-    for (int k = 0; k <= deepest; k += 2) inside[row].Add(colours[k]);
+    for (int k = first; k <= last; k += 2) inside[row].Add(colours[k]);
   }
   const int window = std::min(static_cast<int>(kWindowPx / row_px), (rows - 1) / 2);
-  Moments about;
+  ColourMoments about;
   const auto slide = [&](int row, double sign) {
     about.Add(inside[static_cast<std::size_t>((row % rows + rows) % rows)], sign);
   };
@@ -116,7 +58,7 @@ EdgeEvidence CalcEdgeEvidence(const EdgeStrip& strip, double reach_px, double ro
   evidence.region.resize(strip.rows * columns);
   std::vector<float> unlike(all);
   for (int row = 0; row < rows; ++row) {
-    const Tissue tissue = DescribeTissue(about);
+    const TissueColours tissue(about);
     const Colour* colours = &smooth[static_cast<std::size_t>(row) * all];
     for (int k = 0; k < all; ++k)
       unlike[k] = static_cast<float>(std::min(tissue.Distance(colours[k]), kFar) / kFar);

@@ -29,6 +29,7 @@ struct EdgeEvidence {
 /// \param strip       band that is wider than the shifts on both sides
 /// \param reach_px    largest shift [pixels]
 /// \param row_px      distance of the strip's rows [pixels]
-EdgeEvidence CalcEdgeEvidence(const EdgeStrip& strip, double reach_px, double row_px);
+/// \param depth_px    what lies deeper below the curve may be its other side [pixels]
+EdgeEvidence CalcEdgeEvidence(const EdgeStrip& strip, double reach_px, double row_px, double depth_px);
 
 }  // namespace trocar::anatomy

@@ -25,10 +25,32 @@ void AddScaled(Colour& sum, float weight, const Colour& value) {
   for (std::size_t c = 0; c < 4; ++c) sum[c] += weight * value[c];
 }
 
+/// Bilinear.
+/// \param pixel  gives the colour at an index
+template <typename Pixel>
+Colour Interpolate(const Vec2& p, int width, int height, Pixel pixel) {
+  const double x = std::clamp(p.x, 0.0, width - 1.0), y = std::clamp(p.y, 0.0, height - 1.0);
+  const int ix = std::min(static_cast<int>(x), std::max(0, width - 2));
+  const int iy = std::min(static_cast<int>(y), std::max(0, height - 2));
+  const auto fx = static_cast<float>(x - ix), fy = static_cast<float>(y - iy);
+  const std::size_t right = width > 1 ? 1 : 0, below = height > 1 ? static_cast<std::size_t>(width) : 0;
+  const std::size_t at =
+      static_cast<std::size_t>(iy) * static_cast<std::size_t>(width) + static_cast<std::size_t>(ix);
+  const Colour corner = pixel(at), beside = pixel(at + right), under = pixel(at + below),
+               across = pixel(at + below + right);
+  Colour value;
+  for (std::size_t c = 0; c < 4; ++c) {
+    const float top = corner[c] + fx * (beside[c] - corner[c]);
+    const float low = under[c] + fx * (across[c] - under[c]);
+    value[c] = top + fy * (low - top);
+  }
+  return value;
+}
+
 }  // namespace
 
 EdgeField::EdgeField(const ColorImage& image, double blur_px)
-    : width_(image.width), height_(image.height), blur_px_(blur_px) {
+    : width_(image.width), height_(image.height), blur_px_(blur_px), samples_(image.samples) {
   TROCAR_ASSERT(width_ > 0 && height_ > 0 && blur_px > 0);
   const auto kernel = MakeGaussian(blur_px);
   const int radius = static_cast<int>(kernel.size() / 2);
@@ -60,19 +82,15 @@ EdgeField::EdgeField(const ColorImage& image, double blur_px)
 }
 
 Colour EdgeField::Sample(const Vec2& p) const {
-  const double x = std::clamp(p.x, 0.0, width_ - 1.0), y = std::clamp(p.y, 0.0, height_ - 1.0);
-  const int ix = std::min(static_cast<int>(x), std::max(0, width_ - 2));
-  const int iy = std::min(static_cast<int>(y), std::max(0, height_ - 2));
-  const auto fx = static_cast<float>(x - ix), fy = static_cast<float>(y - iy);
-  const std::size_t right = width_ > 1 ? 1 : 0, below = height_ > 1 ? static_cast<std::size_t>(width_) : 0;
-  const Colour* at = &pixels_[static_cast<std::size_t>(iy) * width_ + ix];
-  Colour value;
-  for (std::size_t c = 0; c < 4; ++c) {
-    const float top = at[0][c] + fx * (at[right][c] - at[0][c]);
-    const float low = at[below][c] + fx * (at[below + right][c] - at[below][c]);
-    value[c] = top + fy * (low - top);
-  }
-  return value;
+  return Interpolate(p, width_, height_, [&](std::size_t at) { return pixels_[at]; });
+}
+
+Colour EdgeField::SampleSharp(const Vec2& p) const {
+  return Interpolate(p, width_, height_, [&](std::size_t at) {
+    const std::uint8_t* sample = &samples_[3 * at];
+    return Colour{static_cast<float>(sample[0]), static_cast<float>(sample[1]), static_cast<float>(sample[2]),
+                  0.0f};
+  });
 }
 
 }  // namespace trocar::anatomy

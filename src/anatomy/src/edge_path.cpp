@@ -2,6 +2,7 @@
 #include "edge_path.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "edge_cost.h"
@@ -16,13 +17,14 @@ constexpr double kRegion =
 constexpr double kSlightest = 0.05;      // rises below this count in full nowhere [1 / pixel]
 constexpr int kClimb = 4;                // columns from where the inside ends to the steepest place
 constexpr int kMaxJump = 2;              // columns between neighbouring rows
-constexpr double kSecondReach = 2.5;     // of the second search [pixels]
+constexpr int kNarrowRounds = 2;         // of searching again along what was found
+constexpr double kSecondReach = 2.5;     // of these searches [pixels]
 constexpr double kSecondNearness = 0.3;  // part of an edge's strength that is lost at its ends [-]
 constexpr std::size_t kSmoothRows = 2;   // to either side over which a found path is averaged
 
 /// The steepest place next to a column, between columns.
-double Climb(const float* gradient, int columns, int k) {
-  for (int climbed = 0; climbed < kClimb; ++climbed) {
+double Climb(const float* gradient, int columns, int k, int most) {
+  for (int climbed = 0; climbed < most; ++climbed) {
     const int next = k + 1 < columns && gradient[k + 1] > gradient[k] ? k + 1
                      : k > 0 && gradient[k - 1] > gradient[k]         ? k - 1
                                                                       : k;
@@ -39,7 +41,7 @@ double Climb(const float* gradient, int columns, int k) {
 EdgePath FollowEdge(const EdgeField& field, ClosedCurve curve, const EdgeSearch& search,
                     const EdgeAdaptionSettings& settings) {
   const EdgeStrip strip = SampleStrip(field, curve, search.reach_px + kBand, kColumnStep);
-  const EdgeEvidence evidence = CalcEdgeEvidence(strip, search.reach_px, kEdgeRowStep);
+  const EdgeEvidence evidence = CalcEdgeEvidence(strip, search.reach_px, kEdgeRowStep, CalcHalfWidth(curve));
   const int reach = evidence.reach, columns = evidence.Columns();
   std::vector<float> cost(evidence.gradient.size());
   const auto least = static_cast<float>(settings.min_gradient);
@@ -60,7 +62,7 @@ EdgePath FollowEdge(const EdgeField& field, ClosedCurve curve, const EdgeSearch&
   for (std::size_t row = 0; row < strip.rows; ++row) {
     const float* gradient = &evidence.gradient[row * columns];
     // the inside ends where the blurred edge begins; the edge itself is the steepest place next to it
-    const double k = Climb(gradient, columns, path[row]);
+    const double k = Climb(gradient, columns, path[row], kClimb);
     edge.at.push_back(curve.at[row] + ((k - reach) * kColumnStep) * curve.normal[row]);
     edge.is_edge.push_back(gradient[std::lround(k)] >= least && evidence.rise[row * columns + path[row]] > 0);
   }
@@ -83,12 +85,45 @@ ClosedCurve Smooth(const std::vector<Vec2>& path) {
 
 }  // namespace
 
-EdgePath FindEdgePath(const EdgeField& field, std::span<const Vec2> polyline,
-                      const EdgeAdaptionSettings& settings) {
+/// Moves each place to the steepest one of the picture as it was, at most kSharpShift to either side.
+void LocateSharp(const EdgeField& field, EdgePath& edge) {
+  const ClosedCurve curve = Smooth(edge.at);
+  const auto rows = static_cast<int>(curve.at.size());
+  constexpr int kReach = 8, kColumns = 2 * kReach + 1;
+  std::vector<Colour> strip;
+  for (int row = 0; row < rows; ++row) {
+    for (int k = -kReach; k <= kReach; ++k)
+      strip.push_back(field.SampleSharp(curve.at[row] + (k * kColumnStep) * curve.normal[row]));
+  }
+  for (int row = 0; row < rows; ++row) {
+    std::array<Colour, kColumns> mean = {};
+    const int along = std::min(2, (rows - 1) / 2);
+    for (int d = -along; d <= along; ++d) {
+      const Colour* from = &strip[static_cast<std::size_t>((row + d + rows) % rows) * kColumns];
+      for (int k = 0; k < kColumns; ++k)
+        for (std::size_t c = 0; c < 4; ++c) mean[k][c] += from[k][c];
+    }
+    std::array<float, kColumns> gradient = {};
+    for (int k = 1; k + 1 < kColumns; ++k) {
+      float squared = 0;
+      for (std::size_t c = 0; c < 3; ++c)
+        squared += (mean[k + 1][c] - mean[k - 1][c]) * (mean[k + 1][c] - mean[k - 1][c]);
+      gradient[k] = std::sqrt(squared);
+    }
+    const double offset = Dot(edge.at[row] - curve.at[row], curve.normal[row]) / kColumnStep;
+    const int start = std::clamp(static_cast<int>(std::lround(offset)) + kReach, 3, kColumns - 4);
+    const double k = Climb(gradient.data(), kColumns, start, 2);
+    edge.at[row] = edge.at[row] + ((k - kReach - offset) * kColumnStep) * curve.normal[row];
+  }
+}
+
+EdgePath FindEdgePath(const EdgeField& field, ClosedCurve curve, const EdgeAdaptionSettings& settings) {
   const double most = settings.max_shift_px;
-  const EdgePath first =
-      FollowEdge(field, ResampleClosed(polyline, kEdgeRowStep), {most, settings.nearness}, settings);
-  EdgePath edge = FollowEdge(field, Smooth(first.at), {kSecondReach, kSecondNearness}, settings);
+  const EdgePath first = FollowEdge(field, std::move(curve), {most, settings.nearness}, settings);
+  EdgePath edge = first;
+  for (int round = 0; round < kNarrowRounds; ++round)
+    edge = FollowEdge(field, Smooth(edge.at), {kSecondReach, kSecondNearness}, settings);
+  LocateSharp(field, edge);
   // the rows are still those of the clicks' curve, which no place may leave too far
   edge.curve = first.curve;
   for (std::size_t row = 0; row < edge.at.size(); ++row) {

@@ -36,8 +36,7 @@ EdgePath FollowEdge(const EdgeField& field, ClosedCurve curve, const EdgeSearch&
 ///
 /// Found twice: along the clicks' curve, and again in a narrow band along what was found, where the inside
 /// is known better and the average along the curve blurs nothing.
-/// \param polyline  (m) m >= 3 closed [pixels]
-EdgePath FindEdgePath(const EdgeField& field, std::span<const Vec2> polyline,
-                      const EdgeAdaptionSettings& settings);
+/// \param curve  rows kEdgeRowStep apart; they are the path's rows
+EdgePath FindEdgePath(const EdgeField& field, ClosedCurve curve, const EdgeAdaptionSettings& settings);
 
 }  // namespace trocar::anatomy

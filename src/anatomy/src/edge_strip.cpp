@@ -102,15 +102,15 @@ ClosedCurve MakeClosedCurve(std::vector<Vec2> at) {
   return curve;
 }
 
-std::size_t FindNearest(std::span<const Vec2> points, const Vec2& p) {
-  std::size_t nearest = 0;
-  double least = std::numeric_limits<double>::max();
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const Vec2 away = points[i] - p;
-    const double squared = Dot(away, away);
-    if (squared < least) least = squared, nearest = i;
+double CalcHalfWidth(const ClosedCurve& curve) {
+  const std::size_t n = curve.at.size();
+  double twice_area = 0.0, length = 0.0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const Vec2 &p = curve.at[i], &q = curve.at[(i + 1) % n];
+    twice_area += p.x * q.y - q.x * p.y;
+    length += Norm(q - p);
   }
-  return nearest;
+  return length > 0 ? std::fabs(twice_area) / length : 0.0;
 }
 
 EdgeStrip SampleStrip(const EdgeField& field, const ClosedCurve& curve, double reach_px, double step_px) {

@@ -25,9 +25,8 @@ ClosedCurve ResampleClosed(std::span<const Vec2> polyline, double step_px, std::
 /// \param at  (n) n >= 3 points of a closed curve at about equal steps [pixels]
 ClosedCurve MakeClosedCurve(std::vector<Vec2> at);
 
-/// Index of the point nearest to p.
-/// \pre at least one point
-std::size_t FindNearest(std::span<const Vec2> points, const Vec2& p);
+/// Twice the enclosed area by the length: the radius of a circle, half the width of a band [pixels].
+double CalcHalfWidth(const ClosedCurve& curve);
 
 /// Colours on a grid of offsets (columns) along the normals of a curve's points (rows).
 struct EdgeStrip {

@@ -157,6 +157,13 @@ void AddAnatomyRehearseCommand(CLI::App& anatomy, Outcome& outcome) {
       ->type_name("MM")
       ->check(CLI::Range(0.0, 50.0))
       ->capture_default_str();
+  command
+      ->add_option("--skipped-mm", clicks.skipped_mm,
+                   "How far the edges of skipped slices may move the contours interpolated there; 0: their "
+                   "pictures are not looked at")
+      ->type_name("MM")
+      ->check(CLI::Range(0.0, 50.0))
+      ->capture_default_str();
   command->add_option("--seed", arguments->options.seed, "Seed of the first run")
       ->type_name("N")
       ->capture_default_str();

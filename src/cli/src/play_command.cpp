@@ -3,6 +3,7 @@
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -12,6 +13,7 @@
 
 #include "command.h"
 #include "console.h"
+#include "play_operation.h"
 #include "trocar/core/safe_file.h"
 #include "trocar/core/statistics.h"
 #include "trocar/session/simulation.h"
@@ -172,6 +174,13 @@ core::Status PrintList() {
     for (const std::string& level : task.levels) levels += (levels.empty() ? "" : " ") + level;
     rows.push_back({task.key, levels, surgeons, task.name});
   }
+  if (const auto operation = FindOperation("cholecystectomy", {}, 0); operation.ok() && *operation) {
+    std::string surgeons;
+    for (const session::SurgeonEntry& entry : session::ListSurgeons()) {
+      if (entry.suits(**operation)) surgeons += (surgeons.empty() ? "" : " ") + std::string(entry.name);
+    }
+    rows.push_back({"cholecystectomy", "-", surgeons, (*operation)->name});
+  }
   std::fputs(FormatTable(rows).c_str(), stdout);
   std::printf("\n");
   rows = {{"surgeon", "error", "about"}};
@@ -204,13 +213,21 @@ core::Result<PlayReport> PlayBlind(std::shared_ptr<const session::Scene> scene, 
   return watcher.Finish(simulation.GetSnapshot(), simulation.Hash());
 }
 
+core::Result<std::array<int, 2>> ReadSize(const std::string& text) {
+  std::array<int, 2> size{};
+  char end = 0;
+  if (std::sscanf(text.c_str(), "%5dx%5d%c", &size[0], &size[1], &end) != 2)
+    return core::Error{core::ErrorCode::kUsage, "--size: \"" + text + "\" is not like 1280x720"};
+  return size;
+}
+
 /// With pictures and a video.
 core::Result<PlayReport> PlayForTheEye(std::shared_ptr<const session::Scene> scene, session::Surgeon& surgeon,
                                        const PlayArguments& arguments) {
   view::DemoOptions options;
-  char end = 0;
-  if (std::sscanf(arguments.size.c_str(), "%5dx%5d%c", &options.width, &options.height, &end) != 2)
-    return core::Error{core::ErrorCode::kUsage, "--size: \"" + arguments.size + "\" is not like 1280x720"};
+  const auto size = ReadSize(arguments.size);
+  if (!size) return size.error();
+  options.width = (*size)[0], options.height = (*size)[1];
   options.threads = arguments.threads;
   options.output_folder = arguments.output;
   Watcher watcher(*scene);
@@ -233,10 +250,25 @@ core::Result<PlayReport> PlayForTheEye(std::shared_ptr<const session::Scene> sce
   return watcher.Finish(last, played->state_hash);
 }
 
+/// An operation on a patient.
+core::Status PlayOne(session::Scene scene, const PlayArguments& arguments) {
+  const auto shared = std::make_shared<const session::Scene>(std::move(scene));
+  auto surgeon = session::MakeSurgeon(arguments.surgeon, shared, arguments.seed);
+  if (!surgeon) return surgeon.error();
+  const auto size = ReadSize(arguments.size);
+  if (!size) return size.error();
+  return PlayOperation(shared, **surgeon,
+                       {arguments.output, (*size)[0], (*size)[1], arguments.threads, arguments.most_seconds,
+                        arguments.is_json});
+}
+
 core::Status Play(const PlayArguments& arguments, Outcome& outcome) {
   if (arguments.is_list) return PrintList();
   if (arguments.surgeon.empty() || arguments.task.empty())
     return core::Error{core::ErrorCode::kUsage, "a surgeon and --task are needed; see trocar play --list"};
+  auto operation = FindOperation(arguments.task, arguments.patient, arguments.seed);
+  if (!operation.ok()) return operation.error();
+  if (*operation) return PlayOne(std::move(**operation), arguments);
   const auto path = session::FindTask(arguments.task);
   if (!path) return path.error();
   auto read = session::ReadTask(*path, {arguments.level, arguments.seed, arguments.patient});

@@ -4,56 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-
-#include "trocar/geometry/tube.h"
-
 namespace trocar::instrument {
 namespace {
-
-/// Closed loft through rectangular sections along z: half width (x) and y from `low` to `high` at each
-/// section.
-struct Section {
-  double z, half_width, low, high;
-};
-
-geometry::TriangleMesh MakeLoft(const std::vector<Section>& sections) {
-  geometry::TriangleMesh mesh;
-  for (const Section& s : sections) {
-    mesh.positions.insert(mesh.positions.end(), {{-s.half_width, s.low, s.z},
-                                                 {s.half_width, s.low, s.z},
-                                                 {s.half_width, s.high, s.z},
-                                                 {-s.half_width, s.high, s.z}});
-  }
-  const auto count = static_cast<std::uint32_t>(sections.size());
-  for (std::uint32_t ring = 0; ring + 1 < count; ++ring) {
-    for (std::uint32_t side = 0; side < 4; ++side) {
-      const std::uint32_t next = (side + 1) % 4, low = 4 * ring, high = low + 4;
-      mesh.triangles.push_back({low + side, low + next, high + next});
-      mesh.triangles.push_back({low + side, high + next, high + side});
-    }
-  }
-  const std::uint32_t last = 4 * (count - 1);
-  mesh.triangles.insert(mesh.triangles.end(),
-                        {{0, 2, 1}, {0, 3, 2}, {last, last + 1, last + 2}, {last, last + 2, last + 3}});
-  return mesh;
-}
-
-/// Upper jaw: rounded nose, flat inner face with shallow teeth, thicker towards the hinge.
-geometry::TriangleMesh MakeUpperJaw(const Tool& tool) {
-  constexpr int kTeeth = 9;
-  std::vector<Section> sections;
-  const double half_width = 0.5 * tool.jaw_width;
-  sections.push_back({0.0, 0.35 * half_width, 0.15 * tool.jaw_thickness, 0.5 * tool.jaw_thickness});
-  const int steps = 2 * kTeeth;
-  for (int i = 1; i <= steps; ++i) {
-    const double along = static_cast<double>(i) / steps;
-    const double nose = std::sqrt(std::min(1.0, along / 0.15));
-    const double tooth = (i % 2 == 0 ? 0.0 : 0.18) * tool.jaw_thickness;
-    sections.push_back({along * tool.jaw_length, half_width * (0.35 + 0.65 * nose), tooth,
-                        tool.jaw_thickness * (0.5 + 0.5 * nose) * (0.8 + 0.3 * along)});
-  }
-  return MakeLoft(sections);
-}
 
 // Sizes: domain facts, section 1.3
 std::array<Tool, 7> MakeTools() {
@@ -93,6 +45,7 @@ Vec3 JawHinge(const Tool& tool) noexcept {
 }
 
 Vec3 JawTip(const Tool& tool, double jaw, int side) noexcept {
+  jaw = std::min(jaw, tool.max_jaw);
   return JawHinge(tool) + tool.jaw_length * Vec3{0, side * std::sin(0.5 * jaw), -std::cos(0.5 * jaw)};
 }
 
@@ -105,23 +58,12 @@ ToolCapsules CalcCapsules(const Tool& tool, double jaw, double shaft_reach) noex
           {hinge, hinge + Vec3{0, 0, reach}, tool.shaft_radius}};
 }
 
-std::vector<ToolPart> MakeParts(const Tool& tool) {
-  ToolPart upper{ToolPart::Kind::kUpperJaw, MakeUpperJaw(tool)};
-  ToolPart lower{ToolPart::Kind::kLowerJaw, upper.mesh};
-  for (Vec3& p : lower.mesh.positions) p = {-p.x, -p.y, p.z};  // half a turn about the shaft
-
-  const double hinge = tool.jaw_length, end = tool.shaft_length;
-  geometry::CentreLine axis;
-  for (const double z : {hinge - 0.001, hinge + 0.0015, hinge + 0.004, end}) axis.points.push_back({0, 0, z});
-  axis.radii = {0.55 * tool.shaft_radius, 0.9 * tool.shaft_radius, tool.shaft_radius, tool.shaft_radius};
-  return {{ToolPart::Kind::kShaft, geometry::MakeTube(axis, 24)}, std::move(upper), std::move(lower)};
-}
-
 Pose CalcPartPose(const Tool& tool, ToolPart::Kind kind, double jaw) noexcept {
-  if (kind == ToolPart::Kind::kShaft) return {};
-  const double side = kind == ToolPart::Kind::kUpperJaw ? 1.0 : -1.0;
+  const bool is_upper = kind == ToolPart::Kind::kUpperJaw || kind == ToolPart::Kind::kUpperClip;
+  if (!is_upper && kind != ToolPart::Kind::kLowerJaw && kind != ToolPart::Kind::kLowerClip) return {};
   // about +x, the direction -z turns to +y
-  const math::Quaternion turn = math::RotationAbout({1, 0, 0}, side * 0.5 * jaw);
+  const math::Quaternion turn =
+      math::RotationAbout({1, 0, 0}, (is_upper ? 0.5 : -0.5) * std::min(jaw, tool.max_jaw));
   const Vec3 hinge = JawHinge(tool);
   return {turn, hinge - math::Rotate(turn, hinge)};
 }

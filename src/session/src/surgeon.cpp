@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "operation/cholecystectomy_surgeon.h"
 #include "task_surgeon.h"
 
 namespace trocar::session {
@@ -67,10 +68,65 @@ const SurgeonEntry kTaskSurgeons[] = {
      MakeCareless<Flaw::kDawdles>},
 };
 
+template <OperationFlaw kFlaw>
+std::unique_ptr<Surgeon> MakeCarelessOperator(std::shared_ptr<const Scene> scene, std::uint64_t seed) {
+  return std::make_unique<CholecystectomySurgeon>(std::move(scene), SurgeonSkill{}, kFlaw, seed);
+}
+
+const SurgeonEntry kOperators[] = {
+    {"expert", "does the whole cholecystectomy", "", IsCholecystectomy,
+     MakeCarelessOperator<OperationFlaw::kNone>},
+    {"novice", "does it slowly and unsteadily", "", IsCholecystectomy,
+     [](std::shared_ptr<const Scene> scene, std::uint64_t seed) -> std::unique_ptr<Surgeon> {
+       return std::make_unique<CholecystectomySurgeon>(std::move(scene), NoviceSkill(), OperationFlaw::kNone,
+                                                       seed);
+     }},
+    {"clips_main_duct", "closes a clip on the common hepatic duct", "wrong_structure_clipped",
+     IsCholecystectomy, MakeCarelessOperator<OperationFlaw::kClipsMainDuct>},
+    {"cuts_main_duct", "cuts the common hepatic duct", "wrong_structure_cut", IsCholecystectomy,
+     MakeCarelessOperator<OperationFlaw::kCutsMainDuct>},
+    {"burns_main_duct", "holds the electrode to the common hepatic duct", "wrong_structure_burnt",
+     IsCholecystectomy, MakeCarelessOperator<OperationFlaw::kBurnsMainDuct>},
+    {"cuts_unclipped", "cuts the cystic duct without a clip", "unclipped_cut", IsCholecystectomy,
+     MakeCarelessOperator<OperationFlaw::kCutsUnclipped>},
+    {"clips_early", "clips before the critical view", "clip_before_critical_view", IsCholecystectomy,
+     MakeCarelessOperator<OperationFlaw::kClipsEarly>},
+    {"too_few_clips", "cuts with one clip on the patient's side", "too_few_clips", IsCholecystectomy,
+     MakeCarelessOperator<OperationFlaw::kTooFewClips>},
+    {"crosses_clips", "puts one clip over another", "clip_crossed", IsCholecystectomy,
+     MakeCarelessOperator<OperationFlaw::kCrossesClips>},
+    {"clips_partly", "closes a clip around half of the duct", "clip_partial", IsCholecystectomy,
+     MakeCarelessOperator<OperationFlaw::kClipsPartly>},
+    {"bleeds", "cuts the cystic artery and watches", "bleeding", IsCholecystectomy,
+     MakeCarelessOperator<OperationFlaw::kBleeds>},
+    {"perforates", "burns the gallbladder", "gallbladder_perforated", IsCholecystectomy,
+     MakeCarelessOperator<OperationFlaw::kPerforates>},
+    {"burns_liver", "burns the liver", "liver_burnt", IsCholecystectomy,
+     MakeCarelessOperator<OperationFlaw::kBurnsLiver>},
+    {"burns_near_duct", "uses current beside the common hepatic duct", "energy_near_duct", IsCholecystectomy,
+     MakeCarelessOperator<OperationFlaw::kBurnsNearDuct>},
+    {"burns_unseen", "presses the pedal out of the picture", "energy_out_of_view", IsCholecystectomy,
+     MakeCarelessOperator<OperationFlaw::kBurnsUnseen>},
+    {"burns_air", "presses the pedal in the air", "energy_without_contact", IsCholecystectomy,
+     MakeCarelessOperator<OperationFlaw::kBurnsAir>},
+    {"drops_clip", "closes a clip around nothing", "clip_dropped", IsCholecystectomy,
+     MakeCarelessOperator<OperationFlaw::kDropsClip>},
+    {"grasps_liver", "takes the liver into the jaws", "liver_grasped", IsCholecystectomy,
+     MakeCarelessOperator<OperationFlaw::kGraspsLiver>},
+    {"pulls_hard", "pulls until the tissue slips out of the jaws", "excess_force", IsCholecystectomy,
+     MakeCarelessOperator<OperationFlaw::kPullsHard>},
+    {"cuts_liver", "cuts into the liver", "structure_torn", IsCholecystectomy,
+     MakeCarelessOperator<OperationFlaw::kCutsLiver>},
+    {"inserts_blind", "pushes a tool in out of the picture", "blind_insertion", IsCholecystectomy,
+     MakeCarelessOperator<OperationFlaw::kInsertsBlind>},
+};
+
 }  // namespace
 
 std::vector<SurgeonEntry> ListSurgeons() {
-  return {std::begin(kTaskSurgeons), std::end(kTaskSurgeons)};
+  std::vector<SurgeonEntry> all(std::begin(kTaskSurgeons), std::end(kTaskSurgeons));
+  all.insert(all.end(), std::begin(kOperators), std::end(kOperators));
+  return all;
 }
 
 core::Result<std::unique_ptr<Surgeon>> MakeSurgeon(std::string_view name, std::shared_ptr<const Scene> scene,

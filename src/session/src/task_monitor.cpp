@@ -121,7 +121,11 @@ Finding TaskMonitor::FindOfObject(const Scene& scene, const Snapshot& snapshot,
       found.is_true = ((object.touches >> c.other) & 1) != 0;
       break;
     case ConditionKind::kToolTouches:
-      found.is_true = HasHand(object.touched_by, c.hand);
+      for (int hand = 0; hand < kHandCount; ++hand) {
+        if ((c.hand != kAnyHand && c.hand != hand) || !HasHand(object.touched_by, hand)) continue;
+        const InstrumentSnapshot& tool = snapshot.instruments[static_cast<std::size_t>(hand)];
+        if (math::Norm(tool.force) >= c.amount) found = {true, tool.X_world_tool.translation, hand};
+      }
       break;
     case ConditionKind::kDropped:
       found.is_true = track.is_falling && track.let_go_height - p.z >= c.amount;

@@ -130,6 +130,7 @@ class RulesReader {
         break;
       case ConditionKind::kToolTouches:
         object(), c.hand = hand("hand");
+        c.amount = view.NumberOr("newtons", 0.0, {0.0, 1000.0});
         break;
       case ConditionKind::kDropped:
         object(), c.amount = 0.001 * view.NumberOr("fall_mm", 10.0, {0.0, 1000.0});

@@ -117,7 +117,7 @@ void TaskSurgeon::PlanStep(const Snapshot& seen, const Goal& goal, std::uint32_t
     case ConditionKind::kLifted: {
       const int hand = ChooseHand(seen, c.object, c.hand);
       if (!is_held(hand)) PickUp(hand, c.object, hand);
-      if (c.kind == ConditionKind::kLifted) Rise(hand, c.amount + 0.006);
+      if (c.kind == ConditionKind::kLifted) Rise(hand, c.amount + 0.002);
       break;
     }
     case ConditionKind::kHandedOver:
@@ -177,6 +177,8 @@ void TaskSurgeon::PlanPlace(const Snapshot& seen, int object, const std::vector<
     if (!is_taken && (best == nullptr || way(region) < way(*best))) best = &region;
   }
   if (best == nullptr) return Wait(0.5);
+  // out from under what the other hand holds, the way that the tool came in
+  if (seen.instruments[static_cast<std::size_t>(1 - hand)].object >= 0) WithDraw(hand);
   Rise(hand, std::max(0.0, best->centre.z + kAbovePlace - thing.X_world_object.translation.z));
   Carry(hand, object, best->centre + Vec3{0, 0, kAbovePlace});
   Carry(hand, object, best->centre + Vec3{0, 0, kLetGoHeight}, 0.6);
@@ -206,7 +208,7 @@ void TaskSurgeon::PlanHandOver(const Snapshot& seen, int object, int from, int t
   const Vec3 meeting{0, start.y, start.z + kMeetingHeight};
   if (!has_to) {
     if (!in_place) {
-      Rise(from, 0.5 * kMeetingHeight);
+      Rise(from, start.z + 0.5 * kMeetingHeight - thing.X_world_object.translation.z);
       Carry(from, object, meeting);
     }
     const auto grips = scene_->objects[o].grips.size();

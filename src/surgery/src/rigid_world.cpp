@@ -21,13 +21,18 @@ namespace {
 constexpr double kScale = 100.0;
 constexpr int kFewestSubsteps = 4;  // of a tick: pegs are thin
 constexpr int kMostSubsteps = 32;
-constexpr double kMargin = 0.01;       // of shapes [cm]
-constexpr int kRingParts = 16;         // capsules that make a ring
-constexpr int kSlipTicks = 3;          // the pull must exceed the hold that many ticks in a row
-constexpr double kRestSpeed = 1e-3;    // [m/s]
-constexpr double kRestTurn = 0.05;     // [rad/s]
-constexpr double kSleepSpeed = 0.3;    // [cm/s]
-constexpr double kSleepTurn = 0.3;     // [rad/s]
+constexpr double kMargin = 0.01;        // of shapes [cm]
+constexpr int kRingParts = 16;          // capsules that make a ring
+constexpr int kSlipTicks = 3;           // the pull must exceed the hold that many ticks in a row
+constexpr double kRestSpeed = 1e-3;     // [m/s]
+constexpr double kRestTurn = 0.05;      // [rad/s]
+constexpr double kSleepSpeed = 0.3;     // [cm/s]
+constexpr double kSleepTurn = 0.3;      // [rad/s]
+constexpr double kJawStiffness = 1500;  // of what jaws press [N/m]
+constexpr double kJawDamping = 2;       // [N s/m]
+// what is held gives way as rubber does, 2.8 N for a millimetre in steps of a quarter tick: two hands that hold one thing,
+// or a hand and the board, do not tear at it when they tremble. Bullet's constraint force mixing and error reduction.
+constexpr double kHoldGive = 0.1, kHoldShare = 0.41;
 constexpr int kSolverIterations = 30;  // stacks stand
 
 btVector3 ToBullet(const Vec3& v) {
@@ -265,6 +270,8 @@ struct RigidWorld::Content {
       btRigidBody& body = *tool.parts[part];
       body.setCollisionFlags(body.getCollisionFlags() | btCollisionObject::CF_KINEMATIC_OBJECT);
       body.setActivationState(DISABLE_DEACTIVATION);
+      // jaws are profiled and things are of rubber: what one hand holds is not torn out of it by the other's jaws
+      if (part != kShaftPart) body.setContactStiffnessAndDamping(kJawStiffness, kJawDamping);
       body.setUserIndex(static_cast<int>(index));
       body.setUserIndex2(part);
       world->addRigidBody(&body);
@@ -461,6 +468,10 @@ void RigidWorld::Hold(std::uint32_t tool_index, std::uint32_t body_index, double
   tool.hold = std::make_unique<btFixedConstraint>(
       carrier, body, carrier.getWorldTransform().inverse() * body.getWorldTransform(),
       btTransform::getIdentity());
+  for (int axis = 0; axis < 6; ++axis) {
+    tool.hold->setParam(BT_CONSTRAINT_STOP_CFM, kHoldGive, axis);
+    tool.hold->setParam(BT_CONSTRAINT_STOP_ERP, kHoldShare, axis);
+  }
   tool.hold->setJointFeedback(&tool.feedback);
   tool.feedback = {};
   content_->world->addConstraint(tool.hold.get());

@@ -96,7 +96,7 @@ void Conservation::Follow(const TissueModel& model, std::vector<ClosedOrgan> org
   constraints_.clear();
   for (const ClosedOrgan& organ : settings_.organs)
     constraints_.push_back({organ.first_node, organ.node_count});
-  linear_ = LinearResponse(model);
+  linear_.SetModel(model);
   rest_ = MakeRestState(model);
   responses_settled_ = false;
   state.intact_links = std::numeric_limits<std::uint64_t>::max();
@@ -197,7 +197,7 @@ void Conservation::CarryAlong(TissueState& tissue, ConservationState& state) noe
 
 std::span<const Vec3> Conservation::CalcForce(const TissueState& tissue, const TissueLoad& load,
                                               ConservationState& state) noexcept {
-  TROCAR_ASSERT(load.external_force.data() != force_.data());
+  TROCAR_ASSERT(load.external_force.empty() || load.external_force.data() != force_.data());
   if (load.external_force.empty()) {
     std::fill(base_force_.begin(), base_force_.end(), Vec3{});
   } else {

@@ -148,6 +148,7 @@ core::Result<DemoReport> PlayDemonstration(std::shared_ptr<const session::Scene>
   report.draw_median = core::CalcPercentile(draw_seconds, 0.5);
   report.draw_p99 = core::CalcPercentile(draw_seconds, 0.99);
   report.state_hash = simulation->Hash();
+  report.operation = simulation->GetOperationResult();
   return report;
 }
 

@@ -12,11 +12,11 @@ namespace trocar::session {
 namespace {
 
 constexpr double kHurriedHook = 1.0;
-constexpr double kNear = 0.0025;        // the tip has come to where the hand wants it [m]
-constexpr double kPatience = 1.2;       // for one fibre [s]
+constexpr double kNear = 0.0025;   // the tip has come to where the hand wants it [m]
+constexpr double kPatience = 1.2;  // for one fibre [s]
 constexpr std::uint8_t kMostAttempts = 3;
 constexpr double kMainDistance = 0.0085;  // from ducts that must stay, where no fibre is burnt [m]
-constexpr double kCameraRate = 0.25;    // [rad/s]
+constexpr double kCameraRate = 0.25;      // [rad/s]
 
 Vec3 MeanPort(const Scene& scene) {
   return 0.5 * (scene.instruments[kLeft].p_world_port + scene.instruments[kRight].p_world_port);
@@ -92,8 +92,8 @@ std::uint32_t CholecystectomySurgeon::FindNode(std::int32_t organ, const Vec3& p
 
 std::size_t CholecystectomySurgeon::FindTube(std::string_view name) const {
   const auto& tubes = scene_->patient.tubes;
-  const auto found = std::find_if(tubes.begin(), tubes.end(),
-                                  [&](const anatomy::Tube& tube) { return tube.name == name; });
+  const auto found =
+      std::find_if(tubes.begin(), tubes.end(), [&](const anatomy::Tube& tube) { return tube.name == name; });
   return found == tubes.end() ? 0 : static_cast<std::size_t>(found - tubes.begin());
 }
 
@@ -111,8 +111,8 @@ Vec3 CholecystectomySurgeon::TubeDirection(const Snapshot& seen, std::size_t tub
 /// Where the tip stands when the middle of the hook's toe is at a point.
 Vec3 CholecystectomySurgeon::HookTip(const Vec3& at) const {
   const HandMotion& hand = hands_[kRight];
-  const Pose X = instrument::CalcToolPose(hand.Port(),
-                                          instrument::FindJoints(hand.Port(), at, hand.Spin(), 0.0));
+  const Pose X =
+      instrument::CalcToolPose(hand.Port(), instrument::FindJoints(hand.Port(), at, hand.Spin(), 0.0));
   return at - math::Rotate(X.rotation, {0, 0.00225, 0});
 }
 
@@ -147,8 +147,8 @@ void CholecystectomySurgeon::Wait(double seconds) {
 
 void CholecystectomySurgeon::Exchange(int hand, instrument::ToolKind kind) {
   const auto& tray = scene_->instruments[static_cast<std::size_t>(hand)].tray;
-  const auto found = std::find_if(tray.begin(), tray.end(),
-                                  [&](const instrument::Tool& tool) { return tool.kind == kind; });
+  const auto found =
+      std::find_if(tray.begin(), tray.end(), [&](const instrument::Tool& tool) { return tool.kind == kind; });
   const auto index = static_cast<std::uint8_t>(found - tray.begin());
   // a tool goes in over the field, in the picture
   Reach(hand, [this, hand](const Snapshot& seen) {
@@ -185,7 +185,8 @@ void CholecystectomySurgeon::Grasp(int hand, const Place& at) {
 }
 
 void CholecystectomySurgeon::Draw(int hand, const Vec3& by) {
-  Reach(hand, [this, hand, by](const Snapshot&) { return HandOf(hand).Tip() + by; }, 0.25);
+  Reach(
+      hand, [this, hand, by](const Snapshot&) { return HandOf(hand).Tip() + by; }, 0.25);
   Wait(0.3);
 }
 
@@ -325,7 +326,8 @@ bool CholecystectomySurgeon::GoOnDissecting(Dissection& work, const Snapshot& se
     best = cost;
     work.target = static_cast<std::int32_t>(i);
   }
-  const double parted = 1.0 - static_cast<double>(left) / static_cast<double>(std::max<std::size_t>(1, work.strands.size()));
+  const double parted =
+      1.0 - static_cast<double>(left) / static_cast<double>(std::max<std::size_t>(1, work.strands.size()));
   if (work.target < 0 || parted >= work.enough) {
     next();
     return true;
@@ -357,12 +359,13 @@ void CholecystectomySurgeon::PlanOperation() {
   using Kind = StrandInfo::Kind;
   const std::size_t duct = FindTube("cystic_duct"), artery = FindTube("cystic_artery");
   const Place neck = [this](const Snapshot& seen) { return seen.positions[neck_]; };
-  const Vec3 duct_way =
-      math::Normalized(rest_[tube_nodes_[duct].front()] - rest_[tube_nodes_[duct].back()]);
+  const Vec3 duct_way = math::Normalized(rest_[tube_nodes_[duct].front()] - rest_[tube_nodes_[duct].back()]);
 
   Add(
       "assistant: retract", [this](const Snapshot&) { assistant_ = AssistantCommand::kRetract; },
-      [](const Snapshot& seen) { return seen.operation.is_assistant_holding || !seen.operation.has_assistant; },
+      [](const Snapshot& seen) {
+        return seen.operation.is_assistant_holding || !seen.operation.has_assistant;
+      },
       8.0);
   Wait(1.5);
   Grasp(kLeft, neck);
@@ -440,15 +443,16 @@ void CholecystectomySurgeon::PlanOperation() {
   Draw(kLeft, 0.03 * bed_normal_);
   Exchange(kRight, instrument::ToolKind::kBag);
   Reach(kRight, [this](const Snapshot& seen) {
-    const SurfaceInfo& surface = surfaces_[static_cast<std::size_t>(scene_->patient.FindOrgan("gallbladder"))];
+    const SurfaceInfo& surface =
+        surfaces_[static_cast<std::size_t>(scene_->patient.FindOrgan("gallbladder"))];
     Vec3 centre;
     for (std::uint32_t i = 0; i < surface.node_count; ++i)
       centre += seen.positions[surface.first_node + i] / static_cast<double>(surface.node_count);
     return centre;
   });
   Add(
-      "close the bag", [](const Snapshot&) {},
-      [](const Snapshot& seen) { return seen.operation.is_in_bag; }, 4.0);
+      "close the bag", [](const Snapshot&) {}, [](const Snapshot& seen) { return seen.operation.is_in_bag; },
+      4.0);
   LetGo(kLeft);
   Exchange(kRight, instrument::ToolKind::kHook);
   // Exchange ends with the bag outside
@@ -510,10 +514,12 @@ void CholecystectomySurgeon::PlanFlaw(OperationFlaw flaw) {
       Wait(60.0);
       break;
     case OperationFlaw::kPerforates:
-      Burn(kRight, [this](const Snapshot& seen) { return HookTip(seen.positions[neck_]); }, 10.0);
+      Burn(
+          kRight, [this](const Snapshot& seen) { return HookTip(seen.positions[neck_]); }, 10.0);
       break;
     case OperationFlaw::kBurnsLiver:
-      Burn(kRight, [this](const Snapshot& seen) { return HookTip(seen.positions[liver_node_]); }, 15.0);
+      Burn(
+          kRight, [this](const Snapshot& seen) { return HookTip(seen.positions[liver_node_]); }, 15.0);
       break;
     case OperationFlaw::kBurnsNearDuct:
       Burn(kRight, tube_at(main, 0.6), 0.5);
@@ -521,7 +527,10 @@ void CholecystectomySurgeon::PlanFlaw(OperationFlaw flaw) {
     case OperationFlaw::kBurnsUnseen:
       Burn(
           kRight,
-          [this](const Snapshot&) { return HandOf(kRight).Port() + 0.035 * Vec3{0.2, 0.1, -1.0}; }, 0.5);
+          [this](const Snapshot&) {
+            return HandOf(kRight).Port() + 0.035 * Vec3{0.2, 0.1, -1.0};
+          },
+          0.5);
       break;
     case OperationFlaw::kBurnsAir:
       Burn(

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "../task_surgeon.h"
-#include "trocar/session/operation_snapshot.h"
+#include "trocar/session/simulation.h"
 #include "trocar/session/surgeon.h"
 
 namespace trocar::session {
@@ -105,7 +105,8 @@ class CholecystectomySurgeon final : public Surgeon {
   std::vector<StrandInfo> strands_;
   std::vector<SurfaceInfo> surfaces_;
   std::vector<Vec3> rest_;
-  std::vector<std::vector<std::uint32_t>> tube_nodes_;  // (tubes) from the gallbladder's end, where one enters it
+  std::vector<std::vector<std::uint32_t>>
+      tube_nodes_;  // (tubes) from the gallbladder's end, where one enters it
   std::uint32_t neck_ = 0, fundus_ = 0, liver_node_ = 0;
   Vec3 bed_normal_;  // from the liver towards the gallbladder, at rest
   std::deque<SurgicalAct> acts_;

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <optional>
 #include <stop_token>
@@ -25,6 +26,7 @@ namespace trocar::anatomy {
 struct OrganReport {
   std::string name;
   std::size_t slices = 0, control_points = 0;
+  std::size_t followed_slices = 0;                 ///< skipped by the person, contoured by their pictures
   double mean_shift_px = 0, largest_shift_px = 0;  ///< of the edge adaption
   std::size_t triangles = 0;
   bool closed = false, manifold = false, outward = false;
@@ -40,11 +42,18 @@ struct OrganReport {
   std::optional<Judgement> judgement;  ///< with a reference only
 };
 
+/// Gives the pictures of some slices, ascending.
+using PictureReader = std::function<core::Result<std::map<int, ColorImage>>(const std::vector<int>& slices)>;
+
 struct OrganOptions {
   double spacing_mm = 1.0;                 ///< of the volume's lattice, 0.4 to 4
   double gap_mm = 0.7;                     ///< left free around an organ where another one touches it, 0 to 5
   const LabelVolume* reference = nullptr;  ///< judges the result; may be null
   std::stop_token stop;                    ///< gives up at the next slice or mesh: kCancelled
+  /// Of skipped slices that are not among the images, a few at a time; only for structures whose edges are
+  /// followed there.
+  PictureReader read_skipped;
+  int slice_step = 1;  ///< numbers from one picture of the series to the next, >= 1
 };
 
 struct BuiltOrgans {
@@ -54,23 +63,39 @@ struct BuiltOrgans {
   std::map<int, Overlay> overlays;  ///< of each contoured slice
 };
 
-/// The pictures that the points were placed on. What the images say of size and place must agree with the
+/// The series that the points were placed on. What the images say of size and place must agree with the
 /// points.
 ///
 /// \param folder  any series that image_series.h opens
-/// \param numbers  slices, ascending
+/// \param numbers  slices that are needed, ascending; empty: all, which must have no gaps
+/// \return kImageSizeDiffers, and what ImageSeries::Open returns
+core::Result<ImageSeries> OpenContouredSeries(const ControlPoints& points,
+                                              const std::filesystem::path& folder,
+                                              const std::vector<int>& numbers, const Progress& progress = {});
+
+/// Some of its pictures at once.
+///
 /// \param window  of grey images; the suggested one if not given
-/// \return picture by slice number; kImageSizeDiffers, and what ImageSeries and ReadSlices return
+/// \return picture by slice number; what OpenContouredSeries and ReadSlices return
 core::Result<std::map<int, ColorImage>> ReadContouredSlices(const ControlPoints& points,
                                                             const std::filesystem::path& folder,
                                                             const std::vector<int>& numbers,
                                                             std::optional<DisplayWindow> window = {},
                                                             const Progress& progress = {});
 
+/// Any structure follows edges in skipped slices.
+bool FollowsSkippedSlices(const ControlPoints& points);
+
+/// Opens the whole series for following edges in skipped slices: sets read_skipped and slice_step.
+/// \return what OpenContouredSeries returns; a series with gaps names the way out
+core::Status ReadSkippedFrom(const ControlPoints& points, const std::filesystem::path& folder,
+                             std::optional<DisplayWindow> window, OrganOptions& options);
+
 /// Follows the contours, fills them, interpolates between the slices and meshes the volumes.
 ///
 /// Where two structures overlap, the one later in the list keeps the place.
-/// \param images  at least the slices that the control points name, of the size that they name
+/// \param images  at least the slices that the control points name, of the size that they name; what
+/// options.read_skipped gives must have that size too
 /// \return kUsage for options out of range; kContourEmpty with structure and slice; kCancelled; what decimation
 /// and judging return
 core::Result<BuiltOrgans> BuildOrgans(const ControlPoints& points, const std::map<int, ColorImage>& images,

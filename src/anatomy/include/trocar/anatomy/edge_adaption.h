@@ -26,6 +26,9 @@ struct EdgeAdaptionSettings {
   double nearness = 0.8;  ///< part of an edge's strength that is lost at max_shift_px [-], 0 to 1
   double smoothness =
       0.1;  ///< cost of neighbours that move differently by one pixel, against the strongest edge [-]
+  /// In skipped slices no point leaves the interpolated contour further [pixels], 0 to 30; 0: their pictures
+  /// are not looked at.
+  double skipped_shift_px = 0.0;
   bool inserts_points = true;  ///< the contour chain divides splines by points on the edge, see contour_fit.h
 
   friend bool operator==(const EdgeAdaptionSettings&, const EdgeAdaptionSettings&) = default;

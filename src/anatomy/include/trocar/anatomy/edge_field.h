@@ -30,11 +30,14 @@ class EdgeField {
   /// Colour between pixels, bilinear; beyond the picture its border repeats.
   /// \param p  finite [pixels]
   Colour Sample(const Vec2& p) const;
+  /// The same of the picture as it was, without the blur.
+  Colour SampleSharp(const Vec2& p) const;
 
  private:
   int width_, height_;
   double blur_px_;
-  std::vector<Colour> pixels_;  // (height * width)
+  std::vector<Colour> pixels_;         // (height * width)
+  std::vector<std::uint8_t> samples_;  // (height * width * 3) of the picture
 };
 
 }  // namespace trocar::anatomy

@@ -44,11 +44,16 @@ struct Tool {
 /// \return nullptr for an unknown one
 const Tool* FindTool(std::string_view name) noexcept;
 
+/// Mouth of the retrieval bag: a spring ring that begins at the tool's tip and lies ahead of it, in the plane y = 0;
+/// the pouch hangs towards -y.
+inline constexpr double kBagMouth = 0.060;  ///< its diameter [m]
+inline constexpr double kBagDepth = 0.085;  ///< of the pouch [m]
+
 /// Hinge of the jaws in the tool frame [m].
 Vec3 JawHinge(const Tool& tool) noexcept;
 
 /// Tip of a jaw in the tool frame; side is +1 for the upper jaw, -1 for the lower.
-/// \param jaw  whole opening [rad]
+/// \param jaw  whole opening [rad], at most the tool's own: a tool without jaws has one tip
 Vec3 JawTip(const Tool& tool, double jaw, int side) noexcept;
 
 /// Straight piece with round ends, in the tool frame.
@@ -57,7 +62,8 @@ struct Capsule {
   double radius = 0;  ///< [m]
 };
 
-/// What can touch tissue: the two jaws, then the shaft's last `shaft_reach` [m].
+/// What can touch tissue: the two jaws, then the shaft's last `shaft_reach` [m]. Where a tool has no jaws both are its
+/// tip piece, from the end of the shaft to the tip.
 struct ToolCapsules {
   Capsule upper_jaw, lower_jaw, shaft;
 };
@@ -65,12 +71,22 @@ ToolCapsules CalcCapsules(const Tool& tool, double jaw, double shaft_reach) noex
 
 /// One rigid part of a tool for drawing, at jaw opening 0.
 struct ToolPart {
-  enum class Kind { kShaft, kUpperJaw, kLowerJaw } kind;
-  geometry::TriangleMesh mesh;  ///< tool frame [m]
+  enum class Kind : std::uint8_t {
+    kShaft,      ///< the long tube
+    kTip,        ///< bare metal that stays with the shaft: hub of the hinge, electrode, spring ring
+    kBore,       ///< the dark inside of a tube
+    kPouch,      ///< of the retrieval bag
+    kUpperJaw,   ///< turns about the hinge
+    kLowerJaw,   ///< likewise
+    kUpperClip,  ///< leg of the clip that the upper jaw holds
+    kLowerClip
+  } kind;
+  geometry::TriangleMesh mesh;  ///< closed and outward, tool frame [m]
 };
+/// Shaft first. The legs of a clip are there when the tool is one that holds clips, whatever their number.
 std::vector<ToolPart> MakeParts(const Tool& tool);
 
-/// Pose of a part in the tool frame at an opening: jaws turn about the hinge, the shaft stays.
+/// Pose of a part in the tool frame at an opening: jaws, and what they hold, turn about the hinge; the rest stays.
 Pose CalcPartPose(const Tool& tool, ToolPart::Kind kind, double jaw) noexcept;
 
 }  // namespace trocar::instrument

@@ -46,7 +46,7 @@ enum class ConditionKind : std::uint8_t {
   kCameraSees,    ///< "camera_sees": region within `angle` of the picture's middle, `near` to `far` away,
                   ///< and seen from its facing side within `facing_angle`
   kTouches,       ///< "touches": `object` touches `other`
-  kToolTouches,   ///< "tool_touches": the tool of `hand` touches `object`
+  kToolTouches,   ///< "tool_touches": the tool of `hand` touches `object`, with `amount` [N] on it or more
   kDropped,       ///< "dropped": `object` was let go in the air and has fallen `amount` [m]
   kOutside,       ///< "outside": `object` is in none of `regions`
   kOutOfView,     ///< "out_of_view": `object` is out of the laparoscope's picture

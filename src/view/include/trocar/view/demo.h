@@ -6,10 +6,12 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "trocar/core/result.h"
+#include "trocar/session/operation_result.h"
 #include "trocar/session/scene.h"
 #include "trocar/session/simulation.h"
 #include "trocar/session/snapshot.h"
@@ -50,6 +52,7 @@ struct DemoReport {
   double draw_p99 = 0;                ///< [s]
   std::uint64_t state_hash = 0;       ///< of the simulation at the end
   std::string graphics;               ///< what drew it, for example "llvmpipe (LLVM 15.0.6, 256 bits)"
+  std::optional<session::OperationResult> operation;  ///< of a scene that is one
 };
 
 /// Steps the simulation with the script's hands, draws it off-screen, writes demo.webm and picture_NNN.png.
