@@ -75,6 +75,11 @@ void SessionControl::PlaceAtHome() {
 const session::Snapshot& SessionControl::Advance(double dt) {
   const session::Snapshot& snapshot = runner_.Latest();
   time_ = snapshot.time;
+  if (haptic_loop_ != nullptr) haptic_record_.Add(since_start_.Seconds(), haptic_loop_->Latest());
+  if (server_ != nullptr && snapshot.tick != served_tick_) {
+    served_tick_ = snapshot.tick;
+    server_->Publish(snapshot);
+  }
   if (is_demonstration_) {
     // the person's hands rest on the script's, so that taking over makes no jump
     for (const Channel hand : {device::kLeftHand, device::kRightHand})
@@ -127,6 +132,15 @@ core::Status SessionControl::UseHaptics(std::string_view name) {
   auto loop = session::HapticLoop::Start(std::move(*driver), settings, haptic_link_);
   if (!loop) return loop.error();
   haptic_loop_ = std::move(*loop);
+  return {};
+}
+
+core::Status SessionControl::Serve(int port) {
+  net::IgtlServerSettings settings;
+  settings.port = port;
+  auto server = net::IgtlServer::Make(settings, runner_.Surfaces());
+  if (!server) return server.error();
+  server_ = std::move(*server);
   return {};
 }
 

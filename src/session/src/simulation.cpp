@@ -583,7 +583,7 @@ void Simulation::CutPatch(Hand hand, haptics::LocalPatch& patch) noexcept {
   content_->patch_cutter->Cut(
       {c.tissue_model, c.tissue, c.load, contacts.springs, std::span(hands).first(contacts.links.size()),
        static_cast<std::uint8_t>(hand), c.grasps[hand].Nodes(), c.touch.Device(hand), c.forces[hand],
-       c.verdict == tissue::GuardVerdict::kGood, c.tick},
+       c.verdict == tissue::GuardVerdict::kGood, c.tick, true, c.scene->instruments[hand].p_world_port},
       patch);
 }
 

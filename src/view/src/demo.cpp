@@ -91,6 +91,9 @@ core::Result<DemoReport> PlayDemonstration(std::shared_ptr<const session::Scene>
     video.emplace(std::move(*made));
   }
 
+  if (options.on_start) {
+    if (auto status = options.on_start(*simulation); !status) return status.error();
+  }
   const std::vector<double> picture_times = FindPictureTimes(options, *duration);
   const auto frame_count =
       static_cast<std::uint64_t>(std::floor(*duration * options.frames_per_second + 1e-9)) + 1;

@@ -6,9 +6,12 @@
 #include <memory>
 #include <string>
 
+#include "trocar/core/clock.h"
 #include "trocar/device/mouse_keyboard.h"
+#include "trocar/net/igtl_server.h"
 #include "trocar/session/device_thread.h"
 #include "trocar/session/haptic_loop.h"
+#include "trocar/session/haptic_record.h"
 #include "trocar/session/runner.h"
 
 namespace trocar::app {
@@ -36,6 +39,16 @@ class SessionControl {
   core::Status UseHaptics(std::string_view name);
   /// The haptic loop, or nullptr without one.
   session::HapticLoop* Haptics() { return haptic_loop_.get(); }
+
+  /// What the haptic loop has done so far, as Advance() saw it.
+  const session::HapticRecord& GetHapticRecord() const { return haptic_record_; }
+
+  /// Shows tools and organs to viewers over OpenIGTLink from now on.
+  /// \param port  0 lets the system choose
+  /// \return kDeviceBusy where the port is taken
+  core::Status Serve(int port);
+  /// Port that viewers may connect to, or -1.
+  int ServedPort() const { return server_ != nullptr ? server_->Port() : -1; }
 
   /// Moves the hands on by `dt` [s] and hands the newest wish to the simulation; while paused the hands stand
   /// still.
@@ -105,6 +118,10 @@ class SessionControl {
   std::uint64_t device_losses_ = 0;
   device::MouseKeyboard device_;
   std::unique_ptr<session::HapticLoop> haptic_loop_;  // may be null
+  session::HapticRecord haptic_record_;
+  core::Stopwatch since_start_;
+  std::unique_ptr<net::IgtlServer> server_;  // may be null
+  std::uint64_t served_tick_ = 0;
   session::Input input_;
   device::Channel hand_ = device::kRightHand;
   bool is_demonstration_ = false;
