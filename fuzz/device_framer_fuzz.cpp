@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file device_framer_fuzz.cpp  Every parser of a device's bytes under libFuzzer: any chunking must give the same records,
-/// and every record must be fit for use.
-///
-/// The first byte chooses the parser, the second the chunk.
+/// \file device_framer_fuzz.cpp  One parser of a device's bytes under libFuzzer: any chunking must give the same records,
+/// and every record must be fit for use. TROCAR_FUZZ_PARSER names the parser; the first byte chooses the chunk.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -29,7 +27,7 @@ void Require(bool is_true) {
   if (!is_true) std::abort();
 }
 
-void RequirePose(const math::Vec3& p, const math::Quaternion& q) {
+[[maybe_unused]] void RequirePose(const math::Vec3& p, const math::Quaternion& q) {
   Require(math::IsFinite(p) && math::Norm(p) < 200.0);
   Require(std::fabs(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z - 1.0) < 1e-9);
 }
@@ -39,7 +37,7 @@ void InChunks(std::string_view bytes, std::size_t chunk, Feed&& feed) {
   for (; !bytes.empty(); bytes.remove_prefix(std::min(chunk, bytes.size()))) feed(bytes.substr(0, chunk));
 }
 
-void TryPolhemus(PolhemusFormat format, std::string_view bytes, std::size_t chunk) {
+[[maybe_unused]] void TryPolhemus(PolhemusFormat format, std::string_view bytes, std::size_t chunk) {
   std::vector<TrackerRecord> whole, parts;
   PolhemusFramer one(format), other(format);
   one.Feed(bytes, [&](const TrackerRecord& record) { whole.push_back(record); });
@@ -55,7 +53,7 @@ void TryPolhemus(PolhemusFormat format, std::string_view bytes, std::size_t chun
   }
 }
 
-void TryJaw(std::string_view bytes, std::size_t chunk) {
+[[maybe_unused]] void TryJaw(std::string_view bytes, std::size_t chunk) {
   std::size_t whole = 0, parts = 0;
   JawFramer one, other;
   one.Feed(bytes, [&](const JawReading& reading) {
@@ -68,7 +66,7 @@ void TryJaw(std::string_view bytes, std::size_t chunk) {
   Require(whole == parts);
 }
 
-void TryIgtl(std::string_view bytes, std::size_t chunk) {
+[[maybe_unused]] void TryIgtl(std::string_view bytes, std::size_t chunk) {
   std::size_t whole = 0, parts = 0;
   IgtlReader one, other;
   const bool is_followed = one.Feed(bytes, [&](const IgtlPose& tool) {
@@ -86,13 +84,17 @@ void TryIgtl(std::string_view bytes, std::size_t chunk) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  if (size < 2) return 0;
-  const std::size_t chunk = 1 + data[1] % 80;
-  const std::string_view bytes(reinterpret_cast<const char*>(data + 2), size - 2);
-  constexpr int kFormats = 4;
-  const int which = data[0] % (kFormats + 2);
-  if (which < kFormats) TryPolhemus(static_cast<PolhemusFormat>(which), bytes, chunk);
-  if (which == kFormats) TryJaw(bytes, chunk);
-  if (which == kFormats + 1) TryIgtl(bytes, chunk);
+  if (size < 1) return 0;
+  const std::size_t chunk = 1 + data[0] % 80;
+  const std::string_view bytes(reinterpret_cast<const char*>(data + 1), size - 1);
+  constexpr std::string_view kParser = TROCAR_FUZZ_PARSER;
+  if constexpr (kParser == "jaw") {
+    TryJaw(bytes, chunk);
+  } else if constexpr (kParser == "igtl") {
+    TryIgtl(bytes, chunk);
+  } else {
+    static const PolhemusFormat kFormat = trocar::device::FindFormat(kParser).value();
+    TryPolhemus(kFormat, bytes, chunk);
+  }
   return 0;
 }

@@ -20,12 +20,6 @@ training::RecorderSettings MakeSettings(const session::Scene& scene, double seco
 
 }  // namespace
 
-bool IsInView(const math::Pose& X_world_laparoscope, double field_of_view,
-              const math::Vec3& p_world) noexcept {
-  const math::Vec3 p = math::Inverse(X_world_laparoscope) * p_world;
-  return -p.z > 0 && -p.z >= std::cos(0.5 * field_of_view) * math::Norm(p);
-}
-
 MotionLog::MotionLog(const session::Scene& scene, double seconds)
     : field_of_view_(scene.laparoscope.field_of_view), recorder_(MakeSettings(scene, seconds)) {
   times_.reserve(static_cast<std::size_t>(seconds / scene.tick_seconds) + 1);
@@ -74,7 +68,7 @@ void MotionLog::Record(const session::Snapshot& snapshot) {
     sample.jaw = instrument.joints.jaw;
     sample.spin = instrument.joints.spin;
     sample.force = math::Norm(instrument.force);
-    sample.in_view = IsInView(snapshot.X_world_laparoscope, field_of_view_, sample.tip);
+    sample.in_view = session::IsInView(snapshot.X_world_laparoscope, field_of_view_, sample.tip);
     sample.grasping = instrument.is_grasping;
     sample.in_contact = instrument.is_touching;
   }

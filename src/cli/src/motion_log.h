@@ -13,12 +13,6 @@
 
 namespace trocar::cli {
 
-/// Whether a point lies in the round picture of a laparoscope. What hides it is not asked.
-///
-/// \param field_of_view  across the round picture [rad]
-bool IsInView(const math::Pose& X_world_laparoscope, double field_of_view,
-              const math::Vec3& p_world) noexcept;
-
 class MotionLog {
  public:
   /// \param seconds  room for so much [s], > 0

@@ -29,6 +29,7 @@ constexpr const char* kExamples =
     "  trocar window                                   operate, with mouse and keyboard\n"
     "  trocar demo -o out/demo                         pictures, a video and a report of the scripted "
     "demonstration\n"
+    "  trocar play expert --task peg_transfer          a scripted surgeon does a training task\n"
     "  trocar simulate scenes/demonstration.json --ticks 240 --threads 2\n"
     "                                                  run without pictures; print state hash and stage "
     "times\n"
@@ -73,6 +74,7 @@ int ParseAndRun(int argc, char** argv) {
   Outcome outcome;
   AddWindowCommand(app, outcome);
   AddDemoCommand(app, outcome);
+  AddPlayCommand(app, outcome);
   AddSimulateCommand(app, outcome);
   AddAnatomyCommand(app, outcome);
   AddDevicesCommand(app, outcome);

@@ -12,16 +12,9 @@
 
 #include "haply/haply_messages.h"
 #include "haply/web_socket.h"
+#include "stand_in_gate.h"
 #include "trocar/core/clock.h"
 #include "trocar/device/emulator.h"
-
-namespace trocar::haptics {
-/// As in open_haptics_test.cpp: a test sends what it likes to an emulator.
-class ForceGate {
- public:
-  static device::GatedForce Make(const math::Vec3& force) { return device::GatedForce(force); }
-};
-}  // namespace trocar::haptics
 
 namespace trocar::device {
 namespace {

@@ -8,16 +8,9 @@
 #include <cmath>
 #include <functional>
 
+#include "stand_in_gate.h"
 #include "trocar/device/force_device_spec.h"
 #include "trocar/device/ports.h"
-
-namespace trocar::haptics {
-/// The real gate lies further down the house; here a test sends what it likes to a stand-in.
-class ForceGate {
- public:
-  static device::GatedForce Make(const math::Vec3& force) { return device::GatedForce(force); }
-};
-}  // namespace trocar::haptics
 
 namespace trocar::device {
 namespace {
@@ -27,7 +20,7 @@ using core::ErrorCode;
 class OpenHapticsTest : public testing::Test {
  protected:
   void SetUp() override {
-    settings_.library = TROCAR_STAND_IN_HD;
+    settings_.library_file = TROCAR_STAND_IN_HD;
     settings_.names = {"Left", "Right"};
     // held open, so that its counters can be asked after the driver has let go
     library_ = ::dlopen(TROCAR_STAND_IN_HD, RTLD_NOW);
@@ -92,8 +85,11 @@ TEST_F(OpenHapticsTest, AForceLivesTenMilliseconds) {
     return Force(1).y == 1.5;
   }));
   EXPECT_EQ(Force(0), math::Vec3{}) << "only the device that is meant";
-  // nobody renews it: the library's own thread lets it end
-  EXPECT_TRUE(WaitFor([&] { return Force(1) == math::Vec3{}; }));
+  // nobody renews it: the library's own thread lets it end, though the other device's goes on
+  EXPECT_TRUE(WaitFor([&] {
+    driver.SendForce(0, haptics::ForceGate::Make({0, 0.5, 0}));
+    return Force(1) == math::Vec3{} && Force(0).y == 0.5;
+  }));
   driver.Finalize();
 }
 
@@ -163,17 +159,17 @@ TEST_F(OpenHapticsTest, LeavesZeroBehind) {
 }
 
 TEST_F(OpenHapticsTest, SaysWhatIsMissing) {
-  settings_.library = "libHD_that_nobody_has.so";
+  settings_.library_file = "libHD_that_nobody_has.so";
   OpenHaptics without(settings_);
   const core::Status status = without.Configure();
   ASSERT_FALSE(status.ok());
   EXPECT_EQ(status.error().code, ErrorCode::kDeviceUnsupported);
   EXPECT_NE(status.error().message.find("install"), std::string::npos);
 
-  settings_.library = "libm.so.6";
+  settings_.library_file = "libm.so.6";
   EXPECT_EQ(OpenHaptics(settings_).Configure().error().code, ErrorCode::kDeviceUnsupported);
 
-  settings_.library = TROCAR_STAND_IN_HD;
+  settings_.library_file = TROCAR_STAND_IN_HD;
   settings_.names = {"Left", "nobody"};
   EXPECT_EQ(OpenHaptics(settings_).Configure().error().code, ErrorCode::kDeviceLost);
   EXPECT_EQ(Find<int()>("StandInDevices")(), 0) << "the first is given back";

@@ -3,8 +3,13 @@
 
 #include <dirent.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
 
 #include "emulated_line.h"
 
@@ -182,18 +187,42 @@ int CountOpenFiles() {
   return count;
 }
 
-// faults D1: nothing leaks, however often the plug is pulled
+/// Memory that the process holds [bytes].
+std::size_t CountMemory() {
+  std::ifstream file("/proc/self/statm");
+  std::size_t all = 0, resident = 0;
+  file >> all >> resident;
+  return resident * static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
+}
+
+// faults D1: nothing leaks, however often the plug is pulled; TROCAR_REPEATS says how often
 TEST(PolhemusTracker, LeavesNoFileOpenAfterManyUnplugs) {
+  const char* wanted = std::getenv("TROCAR_REPEATS");
+  const int repeats = wanted != nullptr ? std::max(1, std::atoi(wanted)) : 50;
   const int before = CountOpenFiles();
+  std::size_t memory = 0;
   math::Random random(4);
-  for (int i = 0; i < 50; ++i) {
-    EmulatedTracker tracker(PolhemusFormat::kLiberty);
-    ASSERT_TRUE(tracker.Start());
-    tracker.clock.Sleep(random.Uniform(0.0, 0.05));
+  for (int i = 0; i < repeats; ++i) {
+    const auto format = static_cast<PolhemusFormat>(i % 4);
+    EmulatedTracker tracker(format);
+    ASSERT_TRUE(tracker.Start()) << i;
+    const double moment = tracker.clock.Now() + random.Uniform(0.0, 0.05);
+    while (tracker.clock.Now() < moment) {
+      ASSERT_NE(tracker.Read(), ReadStatus::kLost) << i;
+      tracker.clock.Sleep(0.002);
+    }
     tracker.host->Unplug();
-    EXPECT_EQ(tracker.Read(), ReadStatus::kLost);
+    ASSERT_EQ(tracker.Read(), ReadStatus::kLost) << i << ": not in the read that follows";
+    for (const HandSample& sample : tracker.samples) ASSERT_FALSE(sample.is_valid);
+    ASSERT_EQ(tracker.driver->GetState(), DriverState::kUnconfigured);
+    // the allocator has what it needs by then
+    if (i == repeats / 2) memory = CountMemory();
   }
   EXPECT_EQ(CountOpenFiles(), before);
+  const std::size_t after = CountMemory();
+  std::printf("%d unplugs: memory %+ld KiB over the second half\n", repeats,
+              (static_cast<long>(after) - static_cast<long>(memory)) / 1024);
+  EXPECT_LE(after, memory + 256 * 1024);
 }
 
 }  // namespace

@@ -10,8 +10,11 @@
 namespace trocar::render {
 namespace {
 
-constexpr std::string_view kNames[] = {"liver",      "gallbladder", "duct",  "artery", "fat",  "bowel",
-                                       "peritoneum", "shaft",       "steel", "sleeve", "force"};
+constexpr std::string_view kNames[] = {
+    "liver",         "gallbladder",  "duct",        "artery",        "fat",   "bowel", "peritoneum",
+    "shaft",         "steel",        "sleeve",      "force",         "fibre", "film",  "blood",
+    "bile",          "rinse",        "lumen",       "titanium",      "pouch", "spark", "red_rubber",
+    "yellow_rubber", "green_rubber", "blue_rubber", "white_plastic", "mark"};
 static_assert(std::size(kNames) == static_cast<std::size_t>(Material::kCount));
 
 /// Linear reflectance of an sRGB byte triple, as a colour picker on a photograph shows it.
@@ -166,6 +169,62 @@ std::array<MaterialLook, static_cast<std::size_t>(Material::kCount)> MakeLooks()
                             .wet = 0.1f,
                             .wet_exponent = 30,
                             .sheen = 0.05f};
+  look(Material::kFibre) = {
+      .low = FromSrgb(176, 150, 118), .high = FromSrgb(222, 206, 180), .wet = 0.20f, .opacity = 0.50f};
+  look(Material::kFilm) = {.low = FromSrgb(214, 188, 158),
+                           .high = FromSrgb(240, 222, 196),
+                           .wet = 0.9f,
+                           .wet_exponent = 160,
+                           .sheen = 0.12f,
+                           .opacity = 0.20f};
+  look(Material::kBlood) = {.low = FromSrgb(74, 4, 6),
+                            .high = FromSrgb(122, 10, 11),
+                            .wet = 0.9f,
+                            .wet_exponent = 240,
+                            .sheen = 0.002f,
+                            .opacity = 0.93f};
+  look(Material::kBile) = {.low = FromSrgb(126, 116, 22),
+                           .high = FromSrgb(168, 150, 34),
+                           .wet = 0.9f,
+                           .wet_exponent = 240,
+                           .sheen = 0.002f,
+                           .opacity = 0.80f};
+  look(Material::kRinse) = {.low = FromSrgb(196, 190, 178),
+                            .high = FromSrgb(214, 210, 200),
+                            .wet = 0.9f,
+                            .wet_exponent = 260,
+                            .sheen = 0.002f,
+                            .opacity = 0.16f};
+  look(Material::kLumen) = {.is_tissue = false,
+                            .low = FromSrgb(14, 3, 3),
+                            .high = FromSrgb(30, 7, 6),
+                            .wet = 0.05f,
+                            .wet_exponent = 60,
+                            .sheen = 0.0f};
+  look(Material::kTitanium) = {.is_tissue = false,
+                               .low = FromSrgb(96, 96, 102),
+                               .high = FromSrgb(196, 196, 204),
+                               .wet = 0.9f,
+                               .wet_exponent = 70,
+                               .sheen = 0.34f};
+  look(Material::kPouch) = {.low = FromSrgb(176, 196, 214),
+                            .high = FromSrgb(206, 220, 232),
+                            .wet = 0.7f,
+                            .wet_exponent = 180,
+                            .sheen = 0.04f,
+                            .opacity = 0.28f};
+  look(Material::kSpark) = {
+      .low = FromSrgb(190, 214, 255), .high = FromSrgb(255, 252, 255), .emission = 6.0f};
+  const auto rubber = [&](Material material, const Colour& low, const Colour& high) {
+    look(material) = {
+        .is_tissue = false, .low = low, .high = high, .wet = 0.12f, .wet_exponent = 30, .sheen = 0.08f};
+  };
+  rubber(Material::kRedRubber, FromSrgb(112, 20, 18), FromSrgb(206, 52, 44));
+  rubber(Material::kYellowRubber, FromSrgb(140, 104, 16), FromSrgb(236, 190, 48));
+  rubber(Material::kGreenRubber, FromSrgb(20, 84, 40), FromSrgb(54, 160, 84));
+  rubber(Material::kBlueRubber, FromSrgb(18, 48, 112), FromSrgb(50, 104, 200));
+  rubber(Material::kWhitePlastic, FromSrgb(150, 148, 142), FromSrgb(226, 224, 216));
+  rubber(Material::kMark, FromSrgb(60, 200, 90), FromSrgb(130, 255, 150));
   return looks;
 }
 

@@ -29,6 +29,8 @@ struct MaterialLook {
   Colour wrap{};              ///< light that goes round into the shade, per colour [-]
   float glow = 0;             ///< light that comes through a thin wall at its rim [-]
   float grooves = 0;          ///< depth of fine grooves across the shaft (tools) [-]
+  float opacity = 1;          ///< below 1: light passes through, seen square on [-]
+  float emission = 0;         ///< light of its own [-]
 };
 
 const MaterialLook& GetLook(Material material) noexcept;

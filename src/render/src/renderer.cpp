@@ -9,6 +9,8 @@
 #include <initializer_list>
 #include <limits>
 
+#include "fine_drawer.h"
+#include "fine_shaders.h"
 #include "material_look.h"
 #include "noise.h"
 #include "shader_program.h"
@@ -30,7 +32,10 @@ constexpr Vec3 kLightOffset{0, 0.0035, 0.001};  // m, camera frame: the fibres l
 constexpr double kOverlayDepth = 0.01;          // share of the depth buffer that is kept for arrows
 constexpr int kNoiseSide = 64;                  // texels
 constexpr int kMaskSegments = 128;
-constexpr int kFanFirst = 2 * (kMaskSegments + 1);                // vertex after the ring's strip
+constexpr int kFanFirst = 2 * (kMaskSegments + 1);  // vertex after the ring's strip
+constexpr double kThickSmoke = 22.0;  // 1/m: half of the light is lost on 45 mm where smoke is 1
+constexpr int kPuddleSides = 40, kPuddleRings = 6;
+constexpr double kPuddleDome = 0.035;                             // rise of a puddle's middle, in its radius
 constexpr double kArrowHeadLength = 4.5, kArrowHeadRadius = 2.4;  // in radii of the arrow's shaft
 
 struct Axes {
@@ -92,6 +97,7 @@ struct Surface {
   std::uint32_t generation = 0;  // odd while in use
   Material material = Material::kLiver;
   GLuint array = 0, moving = 0, rest = 0, indices = 0;
+  GLuint marks = 0;  // 0: it has none
   GLsizei index_count = 0;
   std::size_t vertex_count = 0;
 };
@@ -119,17 +125,73 @@ geometry::TriangleMesh MakeUnitCone() {
   return geometry::MakeTube({{{0, 0, 0}, {0, 0, 1}}, {1.0, 0.02}}, 16);
 }
 
+/// Level liquid of radius about 1 with an uneven shore, domed by surface tension, facing +z.
+geometry::TriangleMesh MakeUnitPuddle() {
+  geometry::TriangleMesh mesh;
+  mesh.positions.push_back({0, 0, kPuddleDome});
+  for (int ring = 1; ring <= kPuddleRings; ++ring) {
+    // rings crowd at the shore, where the surface bends
+    const double share = std::sqrt(static_cast<double>(ring) / kPuddleRings);
+    for (int side = 0; side < kPuddleSides; ++side) {
+      const double angle = 2.0 * M_PI * side / kPuddleSides;
+      const double shore = 1.0 + 0.10 * std::sin(2 * angle + 0.7) + 0.07 * std::sin(3 * angle + 2.1) +
+                           0.04 * std::sin(5 * angle);
+      mesh.positions.push_back({share * shore * std::cos(angle), share * shore * std::sin(angle),
+                                kPuddleDome * (1.0 - std::pow(share, 6))});
+    }
+  }
+  const auto at = [](int ring, int side) {
+    return static_cast<std::uint32_t>(1 + (ring - 1) * kPuddleSides + side % kPuddleSides);
+  };
+  for (int side = 0; side < kPuddleSides; ++side) {
+    mesh.triangles.push_back({0, at(1, side), at(1, side + 1)});
+    for (int ring = 1; ring < kPuddleRings; ++ring) {
+      mesh.triangles.push_back({at(ring, side), at(ring + 1, side), at(ring + 1, side + 1)});
+      mesh.triangles.push_back({at(ring, side), at(ring + 1, side + 1), at(ring, side + 1)});
+    }
+  }
+  return mesh;
+}
+
+/// What a puddle looks like: it is as clear as its liquids by their shares, and as coloured as their pigments.
+MaterialLook MixLook(const Puddle& puddle) {
+  const std::array<Material, 3> liquids = {Material::kBlood, Material::kBile, Material::kRinse};
+  const std::array<double, 3> amounts = {puddle.blood, puddle.bile, puddle.rinse};
+  constexpr std::array<double, 3> kPigment = {8.0, 1.5,
+                                              0.1};  // how strongly each colours what it is mixed with
+  double all = 0, pigment = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    all += amounts[i];
+    pigment += kPigment[i] * amounts[i];
+  }
+  MaterialLook mixed = GetLook(Material::kBlood);
+  if (!(all > 0.0)) return mixed;
+  mixed.low = mixed.high = {};
+  mixed.opacity = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const MaterialLook& look = GetLook(liquids[i]);
+    const float colour = F(kPigment[i] * amounts[i] / pigment);
+    for (std::size_t k = 0; k < 3; ++k) {
+      mixed.low[k] += colour * look.low[k];
+      mixed.high[k] += colour * look.high[k];
+    }
+    mixed.opacity += F(amounts[i] / all) * look.opacity;
+  }
+  return mixed;
+}
+
 }  // namespace
 
 struct Renderer::Content {
-  Program tissue, tool, mask, smooth;
+  Program tissue, tool, clear, mask, smooth;
+  FineDrawer fine;
   GLuint pattern = 0, bumps = 0;
   GLuint mask_array = 0, mask_vertices = 0;
   // the picture before its edges are smoothed
   GLuint framebuffer = 0, picture = 0, depth = 0;
   int picture_width = 0, picture_height = 0;
   std::vector<Surface> surfaces;
-  SurfaceId rod, cone;
+  SurfaceId rod, cone, puddle;
   std::vector<MovingVertex> staging;  // kept, so that a frame does not allocate
 
   Content() = default;
@@ -137,7 +199,7 @@ struct Renderer::Content {
   Content& operator=(const Content&) = delete;
   ~Content() {
     for (Surface& surface : surfaces) Free(surface);
-    for (const Program& program : {tissue, tool, mask, smooth}) glDeleteProgram(program.name);
+    for (const Program& program : {tissue, tool, clear, mask, smooth}) glDeleteProgram(program.name);
     glDeleteTextures(1, &pattern);
     glDeleteTextures(1, &bumps);
     glDeleteVertexArrays(1, &mask_array);
@@ -150,7 +212,9 @@ struct Renderer::Content {
   static void Free(Surface& surface) {
     if (surface.generation % 2 == 0) return;
     glDeleteVertexArrays(1, &surface.array);
-    for (const GLuint buffer : {surface.moving, surface.rest, surface.indices}) glDeleteBuffers(1, &buffer);
+    for (const GLuint buffer : {surface.moving, surface.rest, surface.indices, surface.marks})
+      glDeleteBuffers(1, &buffer);
+    surface.marks = 0;
     ++surface.generation;
   }
 
@@ -169,6 +233,20 @@ struct Renderer::Content {
     // a fresh store, so that the driver need not wait for the frame that still reads the old one
     glBufferData(GL_ARRAY_BUFFER, bytes, nullptr, GL_STREAM_DRAW);
     glBufferSubData(GL_ARRAY_BUFFER, 0, bytes, staging.data());
+    glBindBuffer(GL_ARRAY_BUFFER, 0);
+  }
+
+  static void UploadMarks(Surface& surface, std::span<const SurfaceMark> marks) {
+    if (surface.marks == 0) {
+      glGenBuffers(1, &surface.marks);
+      glBindVertexArray(surface.array);
+      glBindBuffer(GL_ARRAY_BUFFER, surface.marks);
+      glEnableVertexAttribArray(3);
+      glVertexAttribPointer(3, 4, GL_UNSIGNED_BYTE, GL_TRUE, sizeof(SurfaceMark), nullptr);
+      glBindVertexArray(0);
+    }
+    glBindBuffer(GL_ARRAY_BUFFER, surface.marks);
+    glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(marks.size_bytes()), marks.data(), GL_STREAM_DRAW);
     glBindBuffer(GL_ARRAY_BUFFER, 0);
   }
 
@@ -273,6 +351,8 @@ struct Renderer::Content {
     program.Set("u_clip_from_camera", projection);
     program.Set("u_light", ToFloat(kLightOffset));
     program.Set("u_power", F(std::max(0.0, frame.light_power)));
+    program.Set("u_smoke", std::array<float, 2>{F(kThickSmoke * std::clamp(frame.smoke, 0.0, 1.0)),
+                                                F(std::fmod(0.6 * frame.time, 200.0 * M_PI))});
     program.Set("u_mask", Colour{F(0.5 * width), F(0.5 * height),
                                  frame.has_mask ? F(0.5 * kMaskDiameter * height) : 0.0f});
     std::array<float, 4 * kMaxShades> first{};
@@ -298,6 +378,10 @@ struct Renderer::Content {
     program.Set("u_low", look.low);
     program.Set("u_high", look.high);
     program.Set("u_gloss", Colour{look.wet, look.wet_exponent, look.sheen});
+    if (look.opacity < 1.0f) {
+      program.Set("u_opacity", look.opacity);
+      return;
+    }
     if (!look.is_tissue) {
       program.Set("u_grooves", look.grooves);
       return;
@@ -315,15 +399,46 @@ struct Renderer::Content {
   }
 
   void DrawSurface(const Surface& surface, const Pose& X_camera_surface, const Vec3& scale) {
-    const MaterialLook& look = GetLook(surface.material);
-    const Program& program = look.is_tissue ? tissue : tool;
+    DrawSurface(surface, X_camera_surface, scale, GetLook(surface.material));
+  }
+
+  void DrawSurface(const Surface& surface, const Pose& X_camera_surface, const Vec3& scale,
+                   const MaterialLook& look) {
+    const Program& program = look.opacity < 1.0f ? clear : look.is_tissue ? tissue : tool;
     glUseProgram(program.name);
     program.Set("u_camera_from_surface", MakeMatrix(X_camera_surface, scale));
     program.Set("u_rotation", MakeRotation(X_camera_surface.rotation));
     SetLook(program, look);
-    if (!look.is_tissue) program.Set("u_axis", ToFloat(math::Rotate(X_camera_surface.rotation, {0, 0, 1})));
+    if (!look.is_tissue && look.opacity >= 1.0f)
+      program.Set("u_axis", ToFloat(math::Rotate(X_camera_surface.rotation, {0, 0, 1})));
     glBindVertexArray(surface.array);
     glDrawElements(GL_TRIANGLES, surface.index_count, GL_UNSIGNED_INT, nullptr);
+  }
+
+  /// Everything that light passes through, after what it is seen against.
+  void DrawClear(const Frame& frame, const Viewport& viewport) {
+    const Pose& X_camera_world = viewport.X_camera_world;
+    glEnable(GL_BLEND);
+    // alpha keeps the brightness of what is behind, for the smoothing of edges
+    glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE);
+    glDepthMask(GL_FALSE);
+    for (const Puddle& p : frame.puddles) {
+      if (!(p.radius > 0.0)) continue;
+      const Pose X_world_puddle{math::RotationBetween({0, 0, 1}, p.up), p.centre};
+      DrawSurface(*FindSurface(puddle), X_camera_world * X_world_puddle, {p.radius, p.radius, p.radius},
+                  MixLook(p));
+    }
+    for (const SurfaceDraw& draw : frame.surfaces) {
+      const Surface* surface = FindSurface(draw.surface);
+      if (surface != nullptr && GetLook(surface->material).opacity < 1.0f)
+        DrawSurface(*surface, X_camera_world * draw.X_world_surface, {1, 1, 1});
+    }
+    // ribbons face the eye
+    glDisable(GL_CULL_FACE);
+    fine.DrawFibres(frame.fibres, viewport);
+    glEnable(GL_CULL_FACE);
+    glDepthMask(GL_TRUE);
+    glDisable(GL_BLEND);
   }
 
   void DrawArrow(const Arrow& arrow, const Pose& X_camera_world) {
@@ -351,16 +466,21 @@ Renderer::~Renderer() = default;
 core::Result<Renderer> Renderer::Make() {
   if (const auto status = CheckGraphicsVersion(); !status) return status.error();
   auto content = std::make_unique<Content>();
-  auto tissue = MakeProgram(kSurfaceVertexShader, {kShadingFunctions, kTissueFragmentShader});
+  auto tissue =
+      MakeProgram({kSurfaceVertexShader}, {kFragmentHead, kShadingFunctions, kTissueFragmentShader});
   if (!tissue) return tissue.error();
   content->tissue = *tissue;
-  auto tool = MakeProgram(kSurfaceVertexShader, {kShadingFunctions, kToolFragmentShader});
+  auto tool = MakeProgram({kSurfaceVertexShader}, {kFragmentHead, kShadingFunctions, kToolFragmentShader});
   if (!tool) return tool.error();
   content->tool = *tool;
-  auto mask = MakeProgram(kMaskVertexShader, {kMaskFragmentShader});
+  auto clear = MakeProgram({kClearVertexShader}, {kFragmentHead, kShadingFunctions, kClearFragmentShader});
+  if (!clear) return clear.error();
+  content->clear = *clear;
+  if (const auto status = content->fine.Make(); !status) return status.error();
+  auto mask = MakeProgram({kMaskVertexShader}, {kMaskFragmentShader});
   if (!mask) return mask.error();
   content->mask = *mask;
-  auto smooth = MakeProgram(kScreenVertexShader, {kSmoothFragmentShader});
+  auto smooth = MakeProgram({kScreenVertexShader}, {kSmoothFragmentShader});
   if (!smooth) return smooth.error();
   content->smooth = *smooth;
   const NoiseTiles tiles = MakeNoiseTiles(kNoiseSide);
@@ -370,6 +490,7 @@ core::Result<Renderer> Renderer::Make() {
   Renderer renderer(std::move(content));
   renderer.content_->rod = renderer.AddSurface(MakeUnitRod(), Material::kForce);
   renderer.content_->cone = renderer.AddSurface(MakeUnitCone(), Material::kForce);
+  renderer.content_->puddle = renderer.AddSurface(MakeUnitPuddle(), Material::kBlood);
   return renderer;
 }
 
@@ -423,6 +544,12 @@ void Renderer::UpdateSurface(SurfaceId id, std::span<const Vec3> positions, std:
   if (surface != nullptr) content_->UploadMoving(*surface, positions, normals);
 }
 
+void Renderer::UpdateMarks(SurfaceId id, std::span<const SurfaceMark> marks) {
+  Surface* surface = content_->FindSurface(id);
+  TROCAR_ASSERT(surface != nullptr && marks.size() == surface->vertex_count);
+  if (surface != nullptr) content_->UploadMarks(*surface, marks);
+}
+
 void Renderer::UpdateTriangles(SurfaceId id, std::span<const Triangle> triangles) {
   Surface* surface = content_->FindSurface(id);
   TROCAR_ASSERT(surface != nullptr);
@@ -465,11 +592,15 @@ void Renderer::Draw(const Frame& frame, int width, int height) {
   const Pose X_camera_world = math::Inverse(frame.camera.X_world_camera);
   const Matrix4 projection = MakeProjection(frame.camera, width, height);
   c.SetFrame(c.tool, frame, X_camera_world, projection, width, height);
+  c.SetFrame(c.clear, frame, X_camera_world, projection, width, height);
+  c.SetFrame(c.fine.GetProgram(), frame, X_camera_world, projection, width, height);
   c.SetFrame(c.tissue, frame, X_camera_world, projection, width, height);
+  glVertexAttrib4f(3, 0, 0, 0, 0);  // of surfaces without marks
   glActiveTexture(GL_TEXTURE1);
   glBindTexture(GL_TEXTURE_3D, c.bumps);
   glActiveTexture(GL_TEXTURE0);
   glBindTexture(GL_TEXTURE_3D, c.pattern);
+  glUseProgram(c.tissue.name);
   c.tissue.Set("u_pattern", 0);
   c.tissue.Set("u_bumps", 1);
   // arrows in a slice of depth before everything else: they are a read-out, no organ may hide them
@@ -477,10 +608,15 @@ void Renderer::Draw(const Frame& frame, int width, int height) {
   for (const Arrow& arrow : frame.arrows) c.DrawArrow(arrow, X_camera_world);
   glDepthRange(kOverlayDepth, 1.0);
   for (const SurfaceDraw& draw : frame.surfaces) {
-    if (const Surface* surface = c.FindSurface(draw.surface)) {
+    const Surface* surface = c.FindSurface(draw.surface);
+    if (surface != nullptr && GetLook(surface->material).opacity >= 1.0f)
       c.DrawSurface(*surface, X_camera_world * draw.X_world_surface, {1, 1, 1});
-    }
   }
+  const Viewport viewport{X_camera_world, CalcFocalLength(frame.camera, height), 0.5 * width, 0.5 * height};
+  glDisable(GL_CULL_FACE);  // blobs face the eye
+  c.fine.DrawBlobs(frame.blobs, viewport);
+  glEnable(GL_CULL_FACE);
+  c.DrawClear(frame, viewport);
 
   glDepthRange(0.0, 1.0);
   if (frame.is_wireframe) glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);

@@ -7,6 +7,7 @@ const char* const kSurfaceVertexShader = R"(#version 330 core
 layout(location = 0) in vec3 a_position;
 layout(location = 1) in vec3 a_normal;
 layout(location = 2) in vec4 a_rest;  // rest position, openness
+layout(location = 3) in vec4 a_mark;  // blanching, charring, film of blood, film of bile
 uniform mat4 u_camera_from_surface;
 uniform mat3 u_rotation;              // of the above, without its scale
 uniform mat4 u_clip_from_camera;
@@ -16,6 +17,7 @@ uniform int u_shade_count;
 out vec3 v_position;
 out vec3 v_normal;
 out vec4 v_rest;                      // rest position, how open it lies here and now
+out vec4 v_mark;
 
 // Share of the light that the tools nearby leave. Per vertex: it is soft, and a pixel costs more than a vertex.
 float CalcToolShade(vec3 p, vec3 n) {
@@ -36,19 +38,24 @@ void main() {
   v_position = position.xyz;
   v_normal = u_rotation * a_normal;
   v_rest = vec4(a_rest.xyz, a_rest.w * CalcToolShade(v_position, v_normal));
+  v_mark = a_mark;
   gl_Position = u_clip_from_camera * position;
 }
 )";
 
-// Shared by both fragment shaders: light, film and mask.
-const char* const kShadingFunctions = R"(#version 330 core
+const char* const kFragmentHead = R"(#version 330 core
 in vec3 v_position;
 in vec3 v_normal;
 in vec4 v_rest;
 out vec4 o_colour;
+)";
+
+// Shared by all that is lit: light, smoke, film and mask.
+const char* const kShadingFunctions = R"(
 uniform vec3 u_light;        // head light beside the lens
 uniform float u_power;       // of the light, in units that a surface 0.1 m away shows unchanged
 uniform vec3 u_mask;         // centre x, y and radius [pixels]; radius 0: none
+uniform vec2 u_smoke;        // how thick [1/m], how far it has drifted [-]
 
 // Light at a distance whose inverse is given. The bundle of fibres is wide, so that it does not burn out at the lens.
 float CalcLight(float inverse_distance, float cosine_to_axis) {
@@ -56,11 +63,20 @@ float CalcLight(float inverse_distance, float cosine_to_axis) {
   return u_power * 0.0109 * squared / (1.0 + 0.0009 * squared) * (0.35 + 0.65 * cosine_to_axis * cosine_to_axis);
 }
 
+// The head light on smoke between lens and tissue.
+vec3 AddSmoke(vec3 light, vec3 position) {
+  vec2 at = 6.0 * position.xy / -position.z;
+  float swirl = sin(at.x + u_smoke.y + 1.3 * sin(at.y - 0.7 * u_smoke.y)) + sin(1.7 * at.y - u_smoke.y + sin(1.9 * at.x));
+  float clear = exp2(u_smoke.x * position.z * (1.0 + 0.22 * swirl));
+  return mix(vec3(0.66, 0.65, 0.64) * min(u_power, 1.5), light, clear);
+}
+
 // Exposure, film curve, the lens's darker rim, the mask's soft edge, sRGB.
-vec3 Finish(vec3 light) {
+vec3 Finish(vec3 light, vec3 position, vec2 pixel) {
+  if (u_smoke.x > 0.0) light = AddSmoke(light, position);
   light = light * (1.0 + 0.20 * light) / (1.0 + light);
   if (u_mask.z > 0.0) {
-    float r = distance(gl_FragCoord.xy, u_mask.xy) / u_mask.z;
+    float r = distance(pixel, u_mask.xy) / u_mask.z;
     light *= (1.0 - 0.45 * r * r * r * r) * clamp((1.0 - r) * 60.0, 0.0, 1.0);
   }
   vec3 s1 = sqrt(min(light, vec3(1.0)));
@@ -73,6 +89,7 @@ vec4 WithBrightness(vec3 colour) { return vec4(colour, dot(colour, vec3(0.299, 0
 )";
 
 const char* const kTissueFragmentShader = R"(
+in vec4 v_mark;
 uniform sampler3D u_pattern;
 uniform sampler3D u_bumps;
 uniform vec3 u_low, u_high, u_cell, u_vessel, u_wrap;
@@ -105,6 +122,22 @@ void main() {
   float rim = 1.0 - facing;
   albedo += u_glow * rim * rim * (vec3(0.5) * albedo + vec3(0.06));
 
+  float wet_share = u_gloss.x, sheen_share = u_gloss.z;
+  if (v_mark != vec4(0.0)) {
+    // the edges of a burn and of a film of liquid follow the tissue's grain
+    float grain = 0.5 * detail.r + 0.5 * broad.r - 0.5;
+    float cooked = clamp(v_mark.x + 0.5 * grain * v_mark.x, 0.0, 1.0);
+    albedo = mix(albedo, vec3(0.62, 0.53, 0.40) * (0.85 + 0.3 * detail.r), 0.9 * cooked);
+    vec2 film = smoothstep(0.12, 0.60, v_mark.zw + 0.6 * grain);
+    albedo = mix(albedo, vec3(0.30, 0.28, 0.030), 0.75 * film.y);
+    albedo = mix(albedo, vec3(0.17, 0.005, 0.006), 0.90 * film.x);
+    float brown = smoothstep(0.05, 0.40, v_mark.y + 0.35 * grain * sqrt(v_mark.y));
+    float black = smoothstep(0.35, 0.80, v_mark.y + 0.50 * grain);
+    albedo = mix(mix(albedo, vec3(0.115, 0.050, 0.022), brown), vec3(0.010, 0.008, 0.007), black);
+    wet_share = mix(mix(wet_share, max(wet_share, 0.8), max(film.x, film.y)), 0.12, max(brown, 0.6 * cooked));
+    sheen_share *= 1.0 - 0.85 * brown;
+  }
+
   float ambient = v_rest.w;
   float light = CalcLight(inverse_distance, to_eye.z);
   vec3 diffuse = clamp((vec3(to_lamp) + u_wrap) / (1.0 + u_wrap), 0.0, 1.0);
@@ -112,11 +145,11 @@ void main() {
   vec3 shade = mix(vec3(0.30, 0.20, 0.18), vec3(1.0), ambient);
   float half_cosine = max(0.5 * (to_lamp + dot(bumpy, to_eye)), 0.0);
   // the wet film is broken up by fine noise
-  float wet = u_gloss.x * exp2(u_gloss.y * (half_cosine - 1.0)) * (0.4 + 1.2 * detail.r) * ambient;
-  float sheen = u_gloss.z * exp2(18.0 * (half_cosine - 1.0));
+  float wet = wet_share * exp2(u_gloss.y * (half_cosine - 1.0)) * (0.4 + 1.2 * detail.r) * ambient;
+  float sheen = sheen_share * exp2(18.0 * (half_cosine - 1.0));
   vec3 bounce = vec3(0.060, 0.036, 0.028) * (0.4 + 0.6 * ambient);
   vec3 colour = albedo * (diffuse * shade * light + bounce * (0.4 + light)) + (wet + sheen) * min(light, 2.0) * vec3(1.0, 0.98, 0.95);
-  o_colour = WithBrightness(Finish(2.1 * colour));
+  o_colour = WithBrightness(Finish(2.1 * colour, v_position, gl_FragCoord.xy));
 }
 )";
 
@@ -150,7 +183,7 @@ void main() {
   vec3 colour = base * (0.55 * cosine + 0.04) * light * grooves;
   colour += (u_gloss.z + 0.12 * rim * rim * rim) * room * (0.25 + 0.75 * min(light, 1.5));
   colour += u_gloss.x * (0.30 * streak + 0.8 * point) * min(light, 2.0) * vec3(1.0, 0.98, 0.96);
-  o_colour = WithBrightness(Finish(1.6 * colour));
+  o_colour = WithBrightness(Finish(1.6 * colour, v_position, gl_FragCoord.xy));
 }
 )";
 

@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 
+#include "operation/connective_tissue.h"
 #include "pathology.h"
 #include "trocar/geometry/mesh_measures.h"
 #include "trocar/geometry/mesh_topology.h"
@@ -17,6 +18,15 @@ namespace {
 
 /// Bending springs of a tube, as a share of its axial stiffness [-]: keeps it a smooth curve.
 constexpr double kBendingShare = 0.1;
+/// Depth of an organ's skin that warms with its nodes [m].
+constexpr double kHeatDepth = 0.0015;
+/// Fat and fibres: no source, tunables. Stiffness of a fibre by its length [N/m^2]; the peritoneum is tougher.
+constexpr double kFatModulus = 2e3, kPeritoneumShare = 4.0;
+constexpr double kFatDensity = 930.0;  // [kg/m^3]
+/// Foundation of a lobule [N/m]: it lies on the fat behind it, and stays where nothing holds it any more.
+constexpr double kLobuleFoundation = 0.5;
+/// Fibres tear when longer by this share of their length [-].
+constexpr double kFatElongation = 1.5, kPeritoneumElongation = 0.8;
 /// The end of a tube is tied to this many of the nearest vertices of its organ.
 constexpr std::size_t kEndStrands = 4;
 
@@ -76,20 +86,31 @@ void AddOrgan(const anatomy::Organ& organ, const OrganMaterial& material, const 
   const auto areas = geometry::CalcVertexAreas(mesh.positions, mesh.triangles);
   const auto foundation = tissue::CalcFoundationStiffness(areas, material.foundation_modulus, material.depth);
   definition.shape_stiffness.insert(definition.shape_stiffness.end(), foundation.begin(), foundation.end());
-  for (const double area : areas) definition.mass.push_back(wall.mass_by_area * area);
+  for (const double area : areas) {
+    definition.mass.push_back(wall.mass_by_area * area);
+    made.heat_mass.push_back(material.density * kHeatDepth * area);
+  }
   for (tissue::Spring spring : surgery::CalcWallSprings(mesh, wall)) {
     spring.a += first, spring.b += first;
     definition.springs.push_back(spring);
   }
   made.spring_organs.resize(definition.springs.size(), static_cast<std::int32_t>(made.surfaces.size() - 1));
   // room for what cuts add: they follow the organ's nodes, so that these stay in one piece
+  made.first_spare.push_back(static_cast<std::uint32_t>(definition.rest.size()));
   if (spare.by_organ > 0) surgery::AddSpareNodes(spare.by_organ, definition);
+  made.heat_mass.resize(definition.rest.size(), 0.0);
   for (const anatomy::Region& region : organ.regions) {
     const bool is_fixed = region.name == anatomy::kDiaphragmaticFace || region.name == anatomy::kFalciform ||
                           region.name == anatomy::kCoronary;
     if (!is_fixed) continue;
     for (const auto vertex : region.vertices) definition.fixed.push_back(first + vertex);
   }
+}
+
+/// Says what the strand is that was added last.
+void NameStrand(StrandInfo::Kind kind, PatientTissue& made) {
+  const tissue::Strand& strand = made.definition.strands.back();
+  made.strands.push_back({strand.a, strand.b, kind});
 }
 
 void AddAttachments(const Scene& scene, const OrganMaterial& bed, PatientTissue& made) {
@@ -111,6 +132,7 @@ void AddAttachments(const Scene& scene, const OrganMaterial& bed, PatientTissue&
     made.conservation.strand_binds.push_back(1);
     made.max_elongation.push_back(bed.failure_strain * bed.wall_thickness);
     made.strand_organs.push_back(static_cast<std::int32_t>(attachment.organ_a));
+    NameStrand(StrandInfo::Kind::kBed, made);
   }
 }
 
@@ -128,6 +150,7 @@ void AddAdhesions(const Scene& scene, const OrganMaterial& bed, double share, Pa
     made.conservation.strand_binds.push_back(1);
     made.max_elongation.push_back(bed.failure_strain * bed.wall_thickness);
     made.strand_organs.push_back(gallbladder);
+    NameStrand(StrandInfo::Kind::kAdhesion, made);
   }
 }
 
@@ -148,6 +171,7 @@ void TieEnd(std::uint32_t end, const SurfaceInfo& surface, double stiffness, dou
     made.max_elongation.push_back(failure_force / stiffness);
     made.strand_organs.push_back(
         surface.radii.empty() ? static_cast<std::int32_t>(&surface - made.surfaces.data()) : -1);
+    NameStrand(StrandInfo::Kind::kEnd, made);
   }
 }
 
@@ -164,6 +188,9 @@ void AddTube(const anatomy::Tube& tube, const OrganMaterial& material, PatientTi
     definition.shape_stiffness.push_back(material.foundation_modulus / material.depth * 2.0 * radius *
                                          spacing);
     definition.mass.push_back(material.density * M_PI * radius * radius * spacing);
+    // what warms is the wall
+    const double inside = std::max(0.0, radius - material.wall_thickness);
+    made.heat_mass.push_back(material.density * M_PI * (radius * radius - inside * inside) * spacing);
   }
   const auto join = [&](std::uint32_t i, std::uint32_t step, double share) {
     const double length = math::Distance(tube.line.points[i], tube.line.points[i + step]);
@@ -194,6 +221,39 @@ void TieTubes(const Scene& scene, std::span<const OrganMaterial> materials, Pati
                                                          material.wall_thickness, 0.004);
       TieEnd(ends[end], *other, stiffness, material.failure_force, made);
     }
+  }
+}
+
+/// Lobules of fat as nodes, and every fibre as a strand.
+void AddConnectiveTissue(const Scene& scene, const ConnectiveTissue& fat, double spacing,
+                         PatientTissue& made) {
+  auto& definition = made.definition;
+  const auto first = static_cast<std::uint32_t>(definition.rest.size());
+  for (const Vec3& lobule : fat.lobules) {
+    definition.rest.push_back(lobule);
+    definition.mass.push_back(kFatDensity * spacing * spacing * spacing);
+    definition.shape_stiffness.push_back(kLobuleFoundation);
+    made.heat_mass.push_back(definition.mass.back());
+  }
+  const std::size_t organ_count = scene.patient.organs.size();
+  const auto node_of = [&](const FibreEnd& end) {
+    if (end.of == FibreEnd::Of::kLobule) return first + end.which;
+    const std::size_t surface = end.of == FibreEnd::Of::kOrgan ? end.which : organ_count + end.which;
+    return made.surfaces[surface].first_node + end.index;
+  };
+  const int liver = scene.patient.FindOrgan("liver");
+  for (const Fibre& fibre : fat.fibres) {
+    const double share = fibre.is_peritoneum ? kPeritoneumShare : 1.0;
+    definition.strands.push_back(
+        {node_of(fibre.a), node_of(fibre.b), share * kFatModulus * spacing * spacing / fibre.length});
+    // what lies on the liver shares its place; duct and gallbladder may leave
+    const bool binds = fibre.b.of == FibreEnd::Of::kLobule ||
+                       (fibre.b.of == FibreEnd::Of::kOrgan && static_cast<int>(fibre.b.which) == liver);
+    made.conservation.strand_binds.push_back(binds ? 1 : 0);
+    made.max_elongation.push_back(fibre.length *
+                                  (fibre.is_peritoneum ? kPeritoneumElongation : kFatElongation));
+    made.strand_organs.push_back(-1);
+    NameStrand(fibre.is_peritoneum ? StrandInfo::Kind::kPeritoneum : StrandInfo::Kind::kTriangle, made);
   }
 }
 
@@ -229,7 +289,13 @@ core::Result<PatientTissue> MakePatientTissue(const Scene& scene, const SpareNod
     AddTube(tube, *material, made);
   }
   TieTubes(scene, materials, made);
+  if (scene.operation && scene.operation->fat_spacing > 0.0) {
+    const double spacing = scene.operation->fat_spacing;
+    AddConnectiveTissue(scene, MakeConnectiveTissue(scene.patient, spacing, scene.seed), spacing, made);
+  }
+  made.first_spare.push_back(static_cast<std::uint32_t>(made.definition.rest.size()));
   if (spare.tubes > 0) surgery::AddSpareNodes(spare.tubes, made.definition);
+  made.heat_mass.resize(made.definition.rest.size(), 0.0);
   return made;
 }
 

@@ -22,6 +22,10 @@ struct PatientTissue {
   std::vector<double> internal_pressure;    ///< (organs) under which each is filled at the start [Pa]
   std::vector<SurfaceInfo> surfaces;        ///< organs, then tubes
   std::vector<surgery::WallMaterial> walls;  ///< (organs) what a cut makes new springs from
+  std::vector<StrandInfo> strands;           ///< (strands)
+  std::vector<double>
+      heat_mass;  ///< (nodes) of the layer that warms with each, an organ's skin or a tube's wall [kg]
+  std::vector<std::uint32_t> first_spare;  ///< (organs) nodes for cuts; the last entry: for tubes
 };
 
 /// Nodes that cuts may use, see surgery::AddSpareNodes: after each organ's own, and at the end.

@@ -5,6 +5,8 @@
 #include <string>
 
 #include "material_file.h"
+#include "scene_objects.h"
+#include "scene_reader.h"
 #include "script.h"
 #include "trocar/core/json.h"
 
@@ -13,44 +15,79 @@ namespace {
 
 constexpr double kDegree = M_PI / 180.0;
 
-Vec3 ReadPoint(const core::JsonView& view, std::string_view key) {
-  const auto mm = view.Numbers(key, 3);
-  return 0.001 * Vec3{mm[0], mm[1], mm[2]};
-}
-
-/// A point [mm], or a landmark with an offset: "target": {"at": "fundus", "offset_mm": [0, 0, 10]}.
+/// A landmark with an offset, or a point: {"at": "fundus", "offset_mm": [0, 0, 10]}, {"at_mm": [0, 40, -120]}.
 Vec3 ReadTarget(const core::JsonView& view, std::string_view key, const anatomy::Patient& patient) {
   const core::JsonView target = view.Object(key);
-  target.AllowOnly({"at", "offset_mm"});
+  target.AllowOnly({"at", "offset_mm", "at_mm"});
+  if (target.Has("at_mm")) return ReadPointMm(target, "at_mm");
   const std::string name = target.Text("at");
   const anatomy::Landmark* landmark = patient.FindLandmark(name);
   if (landmark == nullptr) {
-    target.Complain("there is no landmark \"" + name + "\" in the patient", core::ErrorCode::kUnknownName);
+    target.Complain(patient.landmarks.empty()
+                        ? "a scene without a patient has no landmarks; say where with at_mm: [x, y, z]"
+                        : "there is no landmark \"" + name + "\" in the patient",
+                    core::ErrorCode::kUnknownName);
     return {};
   }
-  return landmark->position + (target.Has("offset_mm") ? ReadPoint(target, "offset_mm") : Vec3{});
+  return landmark->position + (target.Has("offset_mm") ? ReadPointMm(target, "offset_mm") : Vec3{});
 }
 
 void ReadInstrument(const core::JsonView& root, const char* hand, const anatomy::Patient& patient,
                     InstrumentSetup& setup) {
   const core::JsonView view = root.Object("instruments").Object(hand);
-  view.AllowOnly({"tool", "port_mm", "tip", "spin_deg", "jaw_deg"});
-  const std::string name = view.Text("tool");
-  if (const instrument::Tool* tool = instrument::FindTool(name); tool != nullptr) {
-    setup.tool = *tool;
-  } else {
-    view.Complain("there is no tool \"" + name + "\"; known is grasper", core::ErrorCode::kUnknownName);
+  view.AllowOnly({"tool", "tray", "port_mm", "tip", "spin_deg", "jaw_deg"});
+  const auto add = [&](const std::string& name) {
+    if (const instrument::Tool* tool = instrument::FindTool(name); tool != nullptr) {
+      setup.tray.push_back(*tool);
+    } else {
+      view.Complain(
+          "there is no tool \"" + name +
+              "\"; known are grasper, maryland, hook, scissors, clip_applier, suction_irrigator and bag",
+          core::ErrorCode::kUnknownName);
+    }
+  };
+  add(view.Text("tool"));
+  if (view.Has("tray")) {
+    for (const core::JsonView& name : view.Array("tray")) add(name.AsText());
   }
-  setup.p_world_port = ReadPoint(view, "port_mm");
+  if (!setup.tray.empty()) setup.tool = setup.tray.front();
+  setup.p_world_port = ReadPointMm(view, "port_mm");
   setup.home = instrument::FindJoints(setup.p_world_port, ReadTarget(view, "tip", patient),
                                       view.NumberOr("spin_deg", 0.0) * kDegree,
                                       view.NumberOr("jaw_deg", 0.0, {0.0, 90.0}) * kDegree);
 }
 
+void ReadOperation(const core::JsonView& root, const anatomy::Patient& patient, Scene& scene) {
+  if (!root.Has("operation")) return;
+  const core::JsonView view = root.Object("operation");
+  view.AllowOnly({"fat_spacing_mm", "assistant"});
+  OperationSetup setup;
+  setup.fat_spacing = 0.001 * view.NumberOr("fat_spacing_mm", 1e3 * setup.fat_spacing, {0.0, 10.0});
+  if (setup.fat_spacing > 0.0 && setup.fat_spacing < 0.0015)
+    view.Complain("fat_spacing_mm must be 0, for none, or at least 1.5");
+  if (patient.tubes.empty())
+    view.Complain(
+        "the patient has no ducts; an operation needs them: place a template with trocar anatomy edit");
+  if (view.Has("assistant")) {
+    const core::JsonView hand = view.Object("assistant");
+    hand.AllowOnly({"port_mm", "at", "lift_mm"});
+    AssistantSetup assistant;
+    assistant.tool = *instrument::FindTool("grasper");
+    assistant.p_world_port = ReadPointMm(hand, "port_mm");
+    assistant.landmark = hand.Text("at");
+    assistant.lift = ReadPointMm(hand, "lift_mm");
+    if (patient.FindLandmark(assistant.landmark) == nullptr)
+      hand.Complain("there is no landmark \"" + assistant.landmark + "\" in the patient",
+                    core::ErrorCode::kUnknownName);
+    setup.assistant = std::move(assistant);
+  }
+  scene.operation = std::move(setup);
+}
+
 void ReadLaparoscope(const core::JsonView& root, const anatomy::Patient& patient, LaparoscopeSetup& setup) {
   const core::JsonView view = root.Object("laparoscope");
   view.AllowOnly({"port_mm", "target", "depth_mm", "view_angle_deg", "post_deg", "field_of_view_deg"});
-  setup.p_world_port = ReadPoint(view, "port_mm");
+  setup.p_world_port = ReadPointMm(view, "port_mm");
   setup.home = instrument::FindJoints(setup.p_world_port, ReadTarget(view, "target", patient),
                                       view.NumberOr("post_deg", 0.0) * kDegree, 0.0);
   setup.home.depth = 0.001 * view.Number("depth_mm", {10.0, 300.0});
@@ -87,45 +124,61 @@ void ReadSettings(const core::JsonView& root, LiveSettings& settings) {
 
 }  // namespace
 
+core::Result<Scene> ReadSceneFields(const core::JsonDocument& document, const core::JsonView& view,
+                                    const std::filesystem::path& folder,
+                                    const std::filesystem::path& patient_folder) {
+  view.AllowOnly({"format", "version", "name", "about", "patient", "tick_hz", "seed", "settings", "materials",
+                  "instruments", "laparoscope", "script", "operation", "objects"});
+  Scene scene;
+  scene.name = view.TextOr("name", "");
+  scene.tick_seconds = 1.0 / view.NumberOr("tick_hz", 120.0, {10.0, 2000.0});
+  scene.seed = static_cast<std::uint64_t>(view.IntegerOr("seed", 0, {0.0, 2147483647.0}));
+  if (view.Has("objects")) scene.objects = ReadObjects(view, "objects");
+  // what needs no patient may have no patient
+  const bool has_patient = scene.objects.empty() || view.Has("patient");
+  const std::string own_patient = has_patient ? view.Text("patient") : "";
+  if (!has_patient && !patient_folder.empty())
+    view.Complain("is without a patient, so none can take its place", core::ErrorCode::kSceneInvalid);
+  if (const auto status = document.Check(); !status.ok()) return status.error();
+
+  if (has_patient) {
+    scene.patient_folder = patient_folder.empty() ? folder / own_patient : patient_folder;
+    auto patient = anatomy::ReadPatient(scene.patient_folder);
+    if (!patient.ok()) return patient.error();
+    scene.patient = std::move(*patient);
+    for (const core::JsonView& one : view.Array("materials")) {
+      auto material = ReadMaterial(one, folder);
+      if (!material.ok()) return material.error();
+      scene.materials.push_back(std::move(*material));
+    }
+  }
+  ReadSettings(view, scene.settings);
+  view.Object("instruments").AllowOnly({"left", "right"});
+  ReadInstrument(view, "left", scene.patient, scene.instruments[kLeft]);
+  ReadInstrument(view, "right", scene.patient, scene.instruments[kRight]);
+  ReadLaparoscope(view, scene.patient, scene.laparoscope);
+  ReadOperation(view, scene.patient, scene);
+  const std::string script = view.TextOr("script", "");
+  if (const auto status = document.Check(); !status.ok()) return status.error();
+  if (!script.empty()) {
+    auto read = ReadScript(folder / script, scene.patient);
+    if (!read.ok()) return read.error();
+    scene.script = std::move(*read);
+  }
+  return scene;
+}
+
 core::Result<Scene> ReadScene(const std::filesystem::path& path,
                               const std::filesystem::path& patient_folder) {
   auto document = core::JsonDocument::Read(path);
   if (!document.ok()) return document.error();
   const core::JsonView root = document->Root();
-  root.AllowOnly({"format", "version", "name", "about", "patient", "tick_hz", "seed", "settings", "materials",
-                  "instruments", "laparoscope", "script"});
-  if (root.Text("format") != "trocar-scene") root.Complain("format must be \"trocar-scene\"");
+  const std::string format = root.Text("format");
+  if (format == "trocar-task") return ReadTask(path, {.patient_folder = patient_folder});
+  if (format != "trocar-scene") root.Complain("format must be \"trocar-scene\" (or \"trocar-task\")");
   if (root.Integer("version") != 1) root.Complain("version must be 1");
-  Scene scene;
-  scene.name = root.Text("name");
-  scene.tick_seconds = 1.0 / root.NumberOr("tick_hz", 120.0, {10.0, 2000.0});
-  scene.seed = static_cast<std::uint64_t>(root.IntegerOr("seed", 0, {0.0, 2147483647.0}));
-  const std::string own_patient = root.Text("patient");
-  if (const auto status = document->Check(); !status.ok()) return status.error();
-
-  scene.patient_folder = patient_folder.empty() ? path.parent_path() / own_patient : patient_folder;
-  auto patient = anatomy::ReadPatient(scene.patient_folder);
-  if (!patient.ok()) return patient.error();
-  scene.patient = std::move(*patient);
-
-  for (const core::JsonView& view : root.Array("materials")) {
-    auto material = ReadMaterial(view, path.parent_path());
-    if (!material.ok()) return material.error();
-    scene.materials.push_back(std::move(*material));
-  }
-  ReadSettings(root, scene.settings);
-  root.Object("instruments").AllowOnly({"left", "right"});
-  ReadInstrument(root, "left", scene.patient, scene.instruments[kLeft]);
-  ReadInstrument(root, "right", scene.patient, scene.instruments[kRight]);
-  ReadLaparoscope(root, scene.patient, scene.laparoscope);
-  const std::string script = root.TextOr("script", "");
-  if (const auto status = document->Check(); !status.ok()) return status.error();
-  if (!script.empty()) {
-    auto read = ReadScript(path.parent_path() / script, scene.patient);
-    if (!read.ok()) return read.error();
-    scene.script = std::move(*read);
-  }
-  return scene;
+  if (root.Text("name").empty()) root.Complain("the scene needs a name");
+  return ReadSceneFields(*document, root, path.parent_path(), patient_folder);
 }
 
 }  // namespace trocar::session

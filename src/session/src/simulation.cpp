@@ -5,11 +5,15 @@
 #include <cmath>
 #include <utility>
 
+#include "operation/operation.h"
 #include "patient_tissue.h"
+#include "rigid_stage.h"
+#include "task_monitor.h"
 #include "tool_contacts.h"
 #include "trocar/core/clock.h"
 #include "trocar/core/state_hash.h"
 #include "trocar/geometry/mesh_measures.h"
+#include "trocar/geometry/openings.h"
 #include "trocar/surgery/grasp.h"
 #include "trocar/tissue/conservation.h"
 #include "trocar/tissue/damage.h"
@@ -36,17 +40,6 @@ Vec3 CalcGravity(const LiveSettings& settings) noexcept {
          Vec3{std::sin(right) * std::cos(head), -std::sin(head), -std::cos(right) * std::cos(head)};
 }
 
-/// The telescope looks along -z of its shaft, bent by its angle in the direction of the light post; the
-/// horizon stays.
-Pose CalcLaparoscopePose(const LaparoscopeSetup& setup, const instrument::TrocarJoints& joints) noexcept {
-  instrument::TrocarJoints unspun = joints;
-  unspun.spin = 0;
-  const Pose X_world_shaft = instrument::CalcToolPose(setup.p_world_port, unspun);
-  const math::Quaternion post = math::RotationAbout({0, 0, 1}, joints.spin);
-  const math::Quaternion bend = math::RotationAbout({1, 0, 0}, setup.view_angle);
-  return {X_world_shaft.rotation * (post * bend * math::Inverse(post)), X_world_shaft.translation};
-}
-
 }  // namespace
 
 /// Model: constant while running. State: what a tick changes. Scratch: rebuilt every tick.
@@ -64,8 +57,14 @@ struct Simulation::Content {
   bool walls_tear = false;
   std::int32_t hollow_organ = -1;  // leaks when its wall tears
   surgery::GraspSettings grasp_settings;
+  tissue::TissueDefinition definition_at_start;  // where there is an operation, which changes it
+  std::vector<std::int32_t> spring_organs_at_start;
+  std::vector<double> spring_areas_at_start;
 
   // state
+  std::unique_ptr<Operation> operation;
+  tissue::TissueDefinition definition_now;
+  std::uint32_t topology_version = 0;
   std::uint64_t tick = 0;
   tissue::TissueState tissue;
   tissue::ConservationState conserved;
@@ -73,6 +72,8 @@ struct Simulation::Content {
   ToolContacts touch;
   std::array<surgery::Grasp, kHandCount> grasps;
   std::unique_ptr<tissue::StateGuard> guard;
+  RigidStage rigid;
+  TaskMonitor monitor;
 
   // scratch
   std::unique_ptr<tissue::EquilibriumSolver> solver;
@@ -94,6 +95,8 @@ struct Simulation::Content {
   std::size_t torn_count = 0;
   std::vector<std::uint32_t> torn_springs;  // (springs) those of the walls that tore in this tick, first
   std::size_t torn_spring_count = 0;
+  HandsNow hands;
+  int thread_count = 1;
   Snapshot snapshot;
   std::unique_ptr<haptics::PatchCutter> patch_cutter;
 
@@ -107,12 +110,19 @@ struct Simulation::Content {
   void UpdateHierarchy() noexcept;
   void DetectEvents() noexcept;
   void Publish(const Input& input) noexcept;
-  void Note(EventKind kind, int hand, std::int32_t organ, double force) noexcept;
+  void Note(EventKind kind, int hand, std::int32_t organ, double force, std::int32_t object = -1) noexcept;
   void TearTissue() noexcept;
   void SetWalls(const tissue::TissueDefinition& definition, std::vector<std::int32_t> organs_of_springs);
   core::Status Fill(const std::vector<double>& internal_pressure);
   void Reset();
   void MakeSolver(int threads, SolveOn solve_on);
+  const instrument::Tool& ToolOf(int hand) const noexcept {
+    return operation != nullptr ? operation->Tool(hand) : scene->instruments[hand].tool;
+  }
+  void Operate(const Input& input) noexcept;
+  TissueNow GetTissue() noexcept;
+  void ChangeTopology();
+  void FollowTopology();
 };
 
 // --- the stages of a tick
@@ -126,30 +136,44 @@ void Simulation::Content::ReadInputs(const Input& input) noexcept {
 
 void Simulation::Content::MoveInstruments(const Input& input) noexcept {
   for (int hand = 0; hand < kHandCount; ++hand) {
-    const InstrumentSetup& setup = scene->instruments[hand];
     instrument::JointLimits limits;
-    limits.max_jaw = setup.tool.max_jaw;
-    joints[hand] = instrument::LimitSpeed(joints[hand], instrument::ClampJoints(input.hands[hand], limits),
-                                          kMaxTipSpeed, kMaxTurnRate, scene->tick_seconds);
+    limits.max_jaw = ToolOf(hand).max_jaw;
+    instrument::TrocarJoints wanted = instrument::ClampJoints(input.hands[hand], limits);
+    if (operation != nullptr && !operation->MoveTool(hand, input.controls[hand], grasps[hand].IsHolding(),
+                                                     scene->tick_seconds, wanted))
+      Note(EventKind::kExchangeRefused, hand, grasps[hand].surface, 0.0);
+    joints[hand] =
+        instrument::LimitSpeed(joints[hand], wanted, kMaxTipSpeed, kMaxTurnRate, scene->tick_seconds);
+    joints[hand].jaw = rigid.StopJaw(hand, joints[hand].jaw);
   }
 }
 
 ToolsNow Simulation::Content::GetTools() const noexcept {
-  ToolsNow now{joints, {}};
-  for (int hand = 0; hand < kHandCount; ++hand) now.grasped_surfaces[hand] = grasps[hand].surface;
+  ToolsNow now{joints, {}, {}};
+  for (int hand = 0; hand < kHandCount; ++hand) {
+    now.grasped_surfaces[hand] = grasps[hand].surface;
+    now.tools[hand] = &ToolOf(hand);
+  }
   return now;
 }
 
 void Simulation::Content::FindContacts() noexcept {
   load.contacts = touch.Find(*scene, GetTools(), tissue);
+  rigid.FindObstacles(*scene, joints, touch);
 }
 
 void Simulation::Content::ActOnTissue() noexcept {
   for (int hand = 0; hand < kHandCount; ++hand) {
     const std::int32_t held = grasps[hand].surface;
-    changes[hand] = surgery::UpdateGrasp(scene->instruments[hand].tool, touch.Proxy(hand), touch.Device(hand),
-                                         joints[hand].jaw, touch.Organs(), &touch.Tubes(), tissue_model,
-                                         grasp_settings, grasps[hand], tissue);
+    changes[hand] = surgery::GraspChange::kNone;
+    changed_organs[hand] = held;
+    const instrument::Tool& tool = ToolOf(hand);
+    const bool can_grasp =
+        tool.kind == instrument::ToolKind::kGrasper || tool.kind == instrument::ToolKind::kDissector;
+    if (!can_grasp && !grasps[hand].IsHolding()) continue;
+    changes[hand] =
+        surgery::UpdateGrasp(tool, touch.Proxy(hand), touch.Device(hand), joints[hand].jaw, touch.Organs(),
+                             &touch.Tubes(), tissue_model, grasp_settings, grasps[hand], tissue);
     changed_organs[hand] = changes[hand] == surgery::GraspChange::kReleased ? held : grasps[hand].surface;
   }
   // nodes that a tool presses are the paper's second condition
@@ -164,6 +188,69 @@ void Simulation::Content::ActOnTissue() noexcept {
         tissue.condition[node] = tissue::NodeCondition::kExternalForce;
     }
   }
+}
+
+TissueNow Simulation::Content::GetTissue() noexcept {
+  return {&tissue_model, &definition_now, &tissue,       conservation.get(),
+          &conserved,    touch.Organs(),  &touch.Tubes()};
+}
+
+/// What the tools do beyond grasping and pushing.
+void Simulation::Content::Operate(const Input& input) noexcept {
+  instrument::JointLimits limits;
+  limits.min_depth = 0.01;
+  hands.input = &input;
+  hands.joints = joints;
+  for (int hand = 0; hand < kHandCount; ++hand)
+    hands.X_proxy[hand] = touch.Proxy(hand), hands.X_device[hand] = touch.Device(hand);
+  hands.changes = changes;
+  hands.grasps = &grasps;
+  hands.camera = {CalcLaparoscopePose(scene->laparoscope, instrument::ClampJoints(input.laparoscope, limits)),
+                  scene->laparoscope.field_of_view};
+  hands.time = static_cast<double>(tick) * scene->tick_seconds;
+  hands.seconds = scene->tick_seconds;
+  if (operation->Act(hands, GetTissue())) ChangeTopology();
+}
+
+/// Takes a cut into model, solver, volumes and contacts, in the tick that made it. Allocates.
+void Simulation::Content::ChangeTopology() {
+  const surgery::TopologyChange& change = operation->Change();
+  const auto origins = surgery::ApplyChange(change, definition_now);
+  tissue_model = tissue::MakeTissueModel(definition_now);
+  surgery::ApplyChange(change, origins, tissue_model, tissue);
+  // a spring that is new is part of the organ whose node it has
+  std::vector<std::int32_t> organs(origins.size(), -1);
+  std::vector<double> areas(origins.size(), 0.0);
+  for (std::size_t i = 0; i < origins.size(); ++i) {
+    if (origins[i] == geometry::kNone) continue;
+    organs[i] = spring_organs[origins[i]];
+    areas[i] = spring_areas[origins[i]];
+  }
+  spring_organs = std::move(organs);
+  spring_areas = std::move(areas);
+  torn_springs.resize(tissue_model.SpringCount());
+  FollowTopology();
+}
+
+/// Builds anew what was made for the model of before.
+void Simulation::Content::FollowTopology() {
+  MakeSolver(thread_count, SolveOn::kProcessor);
+  std::vector<geometry::TriangleMesh> meshes;
+  std::vector<tissue::ClosedOrgan> closed;
+  for (std::size_t i = 0; i < scene->patient.organs.size(); ++i) {
+    const geometry::EditableMesh& mesh = operation->Organ(i).Mesh();
+    meshes.push_back(mesh.RestMesh());
+    tissue::ClosedOrgan organ = conservation->Settings().organs[i];
+    organ.node_count = static_cast<std::uint32_t>(mesh.VertexCount());
+    organ.triangles = meshes.back().triangles;
+    for (const geometry::Triangle& lid : geometry::MakeLids(mesh)) organ.triangles.push_back(lid);
+    closed.push_back(std::move(organ));
+  }
+  conservation->Follow(tissue_model, std::move(closed), conserved);
+  guard->Follow(tissue_model, tissue);
+  patch_cutter = std::make_unique<haptics::PatchCutter>(tissue_model.Size());
+  if (!touch.Follow(tissue_model, tissue, meshes, operation->TubePieces(), operation->TubesOfPieces()).ok())
+    return;  // what cannot be touched is seen all the same
 }
 
 void Simulation::Content::Solve() noexcept {
@@ -215,10 +302,13 @@ void Simulation::Content::TearTissue() noexcept {
 
 void Simulation::Content::UpdateHierarchy() noexcept {
   touch.Update(*scene, GetTools(), tissue);
+  rigid.Step(*scene, joints, touch, CalcGravity(settings));
+  for (int hand = 0; hand < kHandCount; ++hand) forces[hand] = forces[hand] + rigid.ForceOn(hand);
 }
 
-void Simulation::Content::Note(EventKind kind, int hand, std::int32_t organ, double force) noexcept {
-  snapshot.events[snapshot.event_count % snapshot.events.size()] = {kind, tick, hand, organ, force};
+void Simulation::Content::Note(EventKind kind, int hand, std::int32_t organ, double force,
+                               std::int32_t object) noexcept {
+  snapshot.events[snapshot.event_count % snapshot.events.size()] = {kind, tick, hand, organ, force, object};
   ++snapshot.event_count;
 }
 
@@ -245,6 +335,9 @@ void Simulation::Content::DetectEvents() noexcept {
         break;
     }
   }
+  rigid.NoteChanges([&](EventKind kind, int hand, std::int32_t object) {
+    Note(kind, hand, -1, math::Norm(forces[hand]), object);
+  });
   if (touch.AreToolsTouching() && !were_tools_touching) Note(EventKind::kToolsTouch, -1, -1, 0.0);
   were_tools_touching = touch.AreToolsTouching();
   if (torn_count > 0) Note(EventKind::kTear, -1, strand_organs[torn[0]], 0.0);
@@ -263,11 +356,12 @@ void Simulation::Content::Publish(const Input& input) noexcept {
     tool.X_world_tool = touch.Proxy(hand);
     tool.joints = joints[hand];
     tool.force = forces[hand];
-    tool.is_grasping = grasps[hand].IsHolding();
+    tool.is_grasping = grasps[hand].IsHolding() || rigid.HeldBy(hand) >= 0;
+    tool.object = rigid.HeldBy(hand);
     tool.is_touching = touched_organs[hand] >= 0;
     tool.organ = touched_organs[hand];
     tool.X_world_device = touch.Device(hand);
-    tool.pinch = grasps[hand].pinch;
+    tool.pinch = std::max(grasps[hand].pinch, rigid.Pinch(hand));
     tool.overlap = touch.Overlap(hand);
     tool.is_touching_tool = touch.AreToolsTouching();
   }
@@ -281,17 +375,32 @@ void Simulation::Content::Publish(const Input& input) noexcept {
     const tissue::OrganVolume& organ = conserved.organs[i];
     snapshot.organs[i] = {organ.volume, organ.target, organ.pressure, organ.leaked};
   }
+  if (operation != nullptr) operation->Publish(tissue, snapshot.operation);
   snapshot.residual = report.residual;
   snapshot.iterations = report.iterations;
   snapshot.gravity = CalcGravity(settings);
+  rigid.Publish(snapshot.objects);
+  monitor.Update(*scene, snapshot);
 }
 
 // --- creation
 
 void Simulation::Content::Reset() {
   tick = 0;
+  const bool was_cut = operation != nullptr && !operation->IsUncut();
+  if (operation != nullptr) (void)operation->Reset();
   tissue = tissue_at_start;
   conserved = conserved_at_start;
+  if (was_cut) {
+    definition_now = definition_at_start;
+    tissue_model = tissue::MakeTissueModel(definition_now);
+    spring_organs = spring_organs_at_start;
+    spring_areas = spring_areas_at_start;
+    torn_springs.resize(tissue_model.SpringCount());
+    guard = std::make_unique<tissue::StateGuard>(tissue_model);
+    FollowTopology();
+    conserved = conserved_at_start;
+  }
   conservation->Reset();
   guard = std::make_unique<tissue::StateGuard>(tissue_model);
   const Input home = CalcScriptInput(*scene, 0.0);
@@ -302,6 +411,7 @@ void Simulation::Content::Reset() {
     touched_organs[hand] = -1;
   }
   touch.Reset(*scene, joints, tissue);
+  rigid.Reset(*scene, joints);
   load = {};
   report = {};
   was_frozen = were_tools_touching = false;
@@ -311,11 +421,15 @@ void Simulation::Content::Reset() {
   solved_condition = tissue.condition;
   good_conserved = conserved;
   snapshot.organs.resize(conserved.organs.size());
+  if (operation != nullptr) operation->Size(snapshot.operation);
+  snapshot.objects.resize(scene->objects.size());
+  monitor.Reset(*scene, snapshot);
   ReadInputs(home);
   Publish(home);
 }
 
 void Simulation::Content::MakeSolver(int threads, SolveOn solve_on) {
+  gpu_solver = nullptr;
   if (solve_on == SolveOn::kProcessor) {
     solver = std::make_unique<tissue::EquilibriumSolver>(tissue_model, threads);
     return;
@@ -368,14 +482,22 @@ core::Status Simulation::Content::Fill(const std::vector<double>& internal_press
 }
 
 core::Result<Simulation> Simulation::Make(std::shared_ptr<const Scene> scene, int threads, SolveOn solve_on) {
-  auto made = MakePatientTissue(*scene);
+  const bool is_operation = scene->operation.has_value();
+  auto made = MakePatientTissue(*scene, is_operation ? Operation::kSpare : SpareNodes{});
   if (!made.ok()) return made.error();
   auto content = std::make_unique<Content>();
   content->scene = std::move(scene);
   content->tissue_model = tissue::MakeTissueModel(made->definition);
   content->patch_cutter = std::make_unique<haptics::PatchCutter>(content->tissue_model.Size());
+  content->thread_count = std::max(1, threads);
+  content->MakeSolver(content->thread_count, solve_on);
+  if (is_operation) {
+    auto operation = Operation::Make(*content->scene, *made);
+    if (!operation.ok()) return operation.error();
+    content->operation = std::move(*operation);
+    content->definition_now = content->definition_at_start = made->definition;
+  }
   content->surfaces = std::move(made->surfaces);
-  content->MakeSolver(std::max(1, threads), solve_on);
   made->conservation.imaging_gravity = kImagingGravity;
   content->conservation =
       std::make_unique<tissue::Conservation>(content->tissue_model, std::move(made->conservation));
@@ -387,6 +509,11 @@ core::Result<Simulation> Simulation::Make(std::shared_ptr<const Scene> scene, in
       ToolContacts::Make(*content->scene, content->tissue_model, content->surfaces, content->tissue_at_start);
   if (!touch.ok()) return touch.error();
   content->touch = std::move(*touch);
+  content->spring_organs_at_start = content->spring_organs;
+  content->spring_areas_at_start = content->spring_areas;
+  auto rigid = RigidStage::Make(*content->scene);
+  if (!rigid.ok()) return rigid.error();
+  content->rigid = std::move(*rigid);
   content->Reset();
   return Simulation(std::move(content));
 }
@@ -412,11 +539,19 @@ void Simulation::Step(const Input& input) noexcept {
   timed(Stage::kReadInputs, [&] { c.ReadInputs(input); });
   timed(Stage::kMoveInstruments, [&] { c.MoveInstruments(input); });
   timed(Stage::kFindContacts, [&] { c.FindContacts(); });
-  timed(Stage::kActOnTissue, [&] { c.ActOnTissue(); });
+  timed(Stage::kActOnTissue, [&] {
+    c.ActOnTissue();
+    if (c.operation != nullptr) c.Operate(input);
+  });
   timed(Stage::kSolve, [&] { c.Solve(); });
   timed(Stage::kCheckState, [&] { c.CheckState(), c.TearTissue(); });
   timed(Stage::kUpdateHierarchy, [&] { c.UpdateHierarchy(); });
-  timed(Stage::kDetectEvents, [&] { c.DetectEvents(); });
+  timed(Stage::kDetectEvents, [&] {
+    c.DetectEvents();
+    if (c.operation == nullptr) return;
+    c.hands.changes = c.changes;  // a grasp may have slipped in the solve
+    c.operation->Judge(c.hands, c.GetTissue());
+  });
   timed(Stage::kPublish, [&] { c.Publish(input); });
   c.snapshot.stage_seconds = seconds;
   c.snapshot.tick_seconds = 0;
@@ -428,6 +563,13 @@ const Scene& Simulation::GetScene() const {
 }
 std::span<const SurfaceInfo> Simulation::Surfaces() const {
   return content_->surfaces;
+}
+std::span<const StrandInfo> Simulation::Strands() const {
+  return content_->operation != nullptr ? content_->operation->Strands() : std::span<const StrandInfo>();
+}
+std::optional<OperationResult> Simulation::GetOperationResult() const {
+  if (content_->operation == nullptr) return std::nullopt;
+  return content_->operation->Result();
 }
 const Snapshot& Simulation::GetSnapshot() const {
   return content_->snapshot;
@@ -441,7 +583,7 @@ void Simulation::CutPatch(Hand hand, haptics::LocalPatch& patch) noexcept {
   content_->patch_cutter->Cut(
       {c.tissue_model, c.tissue, c.load, contacts.springs, std::span(hands).first(contacts.links.size()),
        static_cast<std::uint8_t>(hand), c.grasps[hand].Nodes(), c.touch.Device(hand), c.forces[hand],
-       c.verdict == tissue::GuardVerdict::kGood, c.tick},
+       c.verdict == tissue::GuardVerdict::kGood, c.tick, true, c.scene->instruments[hand].p_world_port},
       patch);
 }
 
@@ -509,6 +651,9 @@ std::uint64_t Simulation::Hash() const {
     hash.Add(force.x), hash.Add(force.y), hash.Add(force.z);
   }
   c.touch.AddTo(hash);
+  if (c.operation != nullptr) c.operation->AddTo(hash);
+  c.rigid.AddTo(hash);
+  c.monitor.AddTo(c.snapshot.task, hash);
   return hash.Value();
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trocar/session/snapshot.h"
 
+#include <cmath>
+
 namespace trocar::session {
 
 std::string_view StageName(Stage stage) noexcept {
@@ -29,9 +31,16 @@ std::string_view EventName(EventKind kind) noexcept {
     case EventKind::kPinchDamage:
       return "pinch_damage";
     case EventKind::kToolsTouch:
+      return "tools_touch";
+    case EventKind::kExchangeRefused:
       break;
   }
-  return "tools_touch";
+  return "exchange_refused";
+}
+
+bool IsInView(const Pose& X_world_laparoscope, double field_of_view, const Vec3& p_world) noexcept {
+  const Vec3 p = math::Inverse(X_world_laparoscope) * p_world;
+  return -p.z > 0 && -p.z >= std::cos(0.5 * field_of_view) * math::Norm(p);
 }
 
 }  // namespace trocar::session

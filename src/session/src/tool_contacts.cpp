@@ -46,26 +46,97 @@ core::Result<ToolContacts> ToolContacts::Make(const Scene& scene, const tissue::
   if (!set.ok()) return set.error();
   made.tubes_ = std::move(*set);
 
-  // the gallbladder lies on the liver; of other organs nothing is known to touch
-  const int liver = scene.patient.FindOrgan("liver"), gallbladder = scene.patient.FindOrgan("gallbladder");
-  if (liver >= 0 && gallbladder >= 0) {
-    made.pairs_.push_back(surgery::MakeOrganPair(made.organs_, at_start.position,
-                                                 static_cast<std::uint8_t>(gallbladder),
-                                                 static_cast<std::uint8_t>(liver), {}, made.organ_settings_));
-    const surgery::OrganSurface &from = made.organs_[gallbladder], &to = made.organs_[liver];
-    const auto is_of = [](const surgery::OrganSurface& organ, std::uint32_t node) {
-      return node >= organ.first_node && node < organ.first_node + organ.node_count;
-    };
-    for (std::uint32_t node = from.first_node; node < from.first_node + from.node_count; ++node) {
-      for (auto h = model.strand_starts[node]; h < model.strand_starts[node + 1]; ++h) {
-        const auto& half = model.half_strands[h];
-        if (is_of(to, half.other)) made.ties_.push_back({0, half.strand, node - from.first_node});
-      }
-    }
-  }
+  made.MakePairs(scene, model, at_start);
+  made.MakeCavity(scene, model, at_start);
   made.positions_before_ = at_start.position;
   made.surface_motion_.assign(organs.size() + 1, 0.0);
   return made;
+}
+
+/// The gallbladder lies on the liver, ducts and vessels on both; of other organs nothing is known to touch.
+void ToolContacts::MakePairs(const Scene& scene, const tissue::TissueModel& model,
+                             const tissue::TissueState& at_start) {
+  const int liver = scene.patient.FindOrgan("liver"), gallbladder = scene.patient.FindOrgan("gallbladder");
+  if (liver >= 0 && gallbladder >= 0) {
+    AddPair(surgery::MakeOrganPair(organs_, at_start.position, static_cast<std::uint8_t>(gallbladder),
+                                   static_cast<std::uint8_t>(liver), {}, organ_settings_),
+            model);
+  }
+  for (std::size_t tube = 0; tube < tubes_.tubes.size(); ++tube) {
+    for (const int organ : {liver, gallbladder}) {
+      if (organ < 0) continue;
+      AddPair(surgery::MakeTubePair(organs_, at_start.position, tubes_.tubes[tube],
+                                    static_cast<std::uint8_t>(organs_.size() + tube),
+                                    static_cast<std::uint8_t>(organ), organ_settings_),
+              model);
+    }
+  }
+}
+
+void ToolContacts::AddPair(surgery::OrganPair pair, const tissue::TissueModel& model) {
+  const surgery::OrganSurface& to = organs_[pair.surface_of];
+  for (std::uint32_t i = 0; i < pair.node_count; ++i) {
+    const std::uint32_t node = pair.first_node + i;
+    for (auto h = model.strand_starts[node]; h < model.strand_starts[node + 1]; ++h) {
+      const auto& half = model.half_strands[h];
+      if (half.other >= to.first_node && half.other < to.first_node + to.node_count)
+        ties_.push_back({pairs_.size(), half.strand, i});
+    }
+  }
+  pairs_.push_back(std::move(pair));
+}
+
+void ToolContacts::MakeCavity(const Scene& scene, const tissue::TissueModel& model,
+                              const tissue::TissueState& at_start) {
+  const std::array<Vec3, kHandCount + 1> ports = {scene.instruments[kLeft].p_world_port,
+                                                  scene.instruments[kRight].p_world_port,
+                                                  scene.laparoscope.p_world_port};
+  std::vector<Vec3> nodes, face;
+  for (const surgery::OrganSurface& organ : organs_) {
+    const auto own = organ.Nodes(at_start.position);
+    nodes.insert(nodes.end(), own.begin(), own.end());
+  }
+  if (const int liver = scene.patient.FindOrgan("liver"); liver >= 0) {
+    const auto own = organs_[liver].Nodes(at_start.position);
+    for (const anatomy::Region& region : scene.patient.organs[liver].regions) {
+      if (region.name != anatomy::kDiaphragmaticFace) continue;
+      for (const std::uint32_t vertex : region.vertices) face.push_back(own[vertex]);
+    }
+  }
+  cavity_ = surgery::FitCavity(ports, face, nodes);
+  for (std::size_t organ = 0; organ < organs_.size(); ++organ) {
+    cavity_contacts_.push_back(surgery::MakeCavityContact(cavity_, organs_, at_start.position, model.is_fixed,
+                                                          static_cast<std::uint8_t>(organ),
+                                                          cavity_settings_));
+  }
+}
+
+core::Status ToolContacts::Follow(const tissue::TissueModel& model, const tissue::TissueState& tissue,
+                                  std::span<const geometry::TriangleMesh> meshes,
+                                  std::span<const collision::TubePiece> pieces,
+                                  std::vector<std::uint32_t> tube_of_piece) {
+  for (std::size_t i = 0; i < organs_.size(); ++i) {
+    if (meshes[i].triangles.size() == organs_[i].triangles.size() &&
+        meshes[i].positions.size() == organs_[i].node_count)
+      continue;
+    auto surface = surgery::MakeOrganSurface(model.rest, organs_[i].first_node, meshes[i]);
+    if (!surface.ok()) return surface.error();
+    surface->damage_pinch_small = organs_[i].damage_pinch_small;
+    surface->damage_pinch_full = organs_[i].damage_pinch_full;
+    surgery::UpdateOrganSurface(*surface, tissue.position);
+    organs_[i] = std::move(*surface);
+    for (surgery::OrganPair& pair : pairs_) surgery::FollowOrgan(organs_, static_cast<std::uint8_t>(i), pair);
+    surgery::FollowOrgan(cavity_, organs_, tissue.position, cavity_settings_, cavity_contacts_[i]);
+  }
+  if (!pieces.empty()) {
+    auto tree = collision::CapsuleTree::Make(tissue.position, pieces);
+    if (!tree.ok()) return tree.error();
+    tubes_.tree = std::move(*tree);
+    tubes_.tube_of_piece = std::move(tube_of_piece);
+  }
+  contacts_.Clear();
+  last_.Clear();
+  return {};
 }
 
 void ToolContacts::Reset(const Scene& scene, const std::array<instrument::TrocarJoints, kHandCount>& joints,
@@ -100,7 +171,7 @@ std::span<const tissue::ContactSpring> ToolContacts::Find(const Scene& scene, co
   for (int hand = 0; hand < kHandCount; ++hand) {
     const InstrumentSetup& setup = scene.instruments[hand];
     X_world_device_[hand] = instrument::CalcToolPose(setup.p_world_port, now.joints[hand]);
-    motions[hand] = {&setup.tool,          static_cast<std::uint8_t>(hand), X_world_proxy_before_[hand],
+    motions[hand] = {now.tools[hand],      static_cast<std::uint8_t>(hand), X_world_proxy_before_[hand],
                      X_world_proxy_[hand], X_world_device_[hand],           jaw_before_[hand],
                      now.joints[hand].jaw, now.grasped_surfaces[hand]};
     surgery::FindContacts(motions[hand], touchables, settings_, last_, contacts_);
@@ -114,6 +185,10 @@ std::span<const tissue::ContactSpring> ToolContacts::Find(const Scene& scene, co
   }
   for (surgery::OrganPair& pair : pairs_) {
     surgery::FindOrganContacts(organs_, tissue.position, organ_settings_, pair, contacts_);
+  }
+  for (const surgery::CavityContact& contact : cavity_contacts_) {
+    surgery::FindCavityContacts(cavity_, organs_, tissue.position, positions_before_, cavity_settings_,
+                                contact, contacts_);
   }
   std::copy(tissue.position.begin(), tissue.position.end(), positions_before_.begin());
   return contacts_.springs;
@@ -162,7 +237,7 @@ void ToolContacts::PlaceProxy(const Scene& scene, int hand, const ToolsNow& now,
     proxy = surgery::FindProxy(drive, offset_[hand], limits.limits);
     X_world_proxy_[hand] = instrument::CalcToolPose(setup.p_world_port, proxy);
     overlap_[hand] =
-        surgery::AddOverlapLimits(setup.tool, X_world_proxy_[hand], X_world_device_[hand],
+        surgery::AddOverlapLimits(*now.tools[hand], X_world_proxy_[hand], X_world_device_[hand],
                                   now.joints[hand].jaw, touchables, now.grasped_surfaces[hand], limits);
     if (overlap_[hand] == 0.0 || round == kOverlapRounds) break;
   }

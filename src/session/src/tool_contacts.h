@@ -8,6 +8,7 @@
 
 #include "trocar/core/state_hash.h"
 #include "trocar/session/simulation.h"
+#include "trocar/surgery/cavity.h"
 #include "trocar/surgery/organ_contact.h"
 #include "trocar/surgery/tools_contact.h"
 
@@ -17,6 +18,7 @@ namespace trocar::session {
 struct ToolsNow {
   std::array<instrument::TrocarJoints, kHandCount> joints;
   std::array<std::int32_t, kHandCount> grasped_surfaces;  ///< or -1
+  std::array<const instrument::Tool*, kHandCount> tools;
 };
 
 /// Touch on one tool after the solve.
@@ -43,11 +45,22 @@ class ToolContacts {
   /// \return the springs; valid until the next call
   std::span<const tissue::ContactSpring> Find(const Scene& scene, const ToolsNow& now,
                                               const tissue::TissueState& tissue) noexcept;
+  /// One more limit on the tool that is seen, for this tick: something other than tissue keeps it out.
+  void AddLimit(int hand, const surgery::ProxyLimit& limit) noexcept { limits_[hand].Add(limit); }
   /// Forces of the contacts after the solve. \param is_good  false: forgets what sticks where
   std::array<ToolTouch, kHandCount> CalcTouch(const tissue::TissueState& tissue, bool is_good) noexcept;
+  /// After a cut: the surfaces as they are now.
+  /// \param meshes   (organs) over the nodes from each organ's first one on
+  /// \param pieces, tube_of_piece  of all ducts and vessels
+  /// \note Not real-time safe: allocates.
+  core::Status Follow(const tissue::TissueModel& model, const tissue::TissueState& tissue,
+                      std::span<const geometry::TriangleMesh> meshes,
+                      std::span<const collision::TubePiece> pieces, std::vector<std::uint32_t> tube_of_piece);
   /// Refits the trees, and places the tools that are seen.
   void Update(const Scene& scene, const ToolsNow& now, const tissue::TissueState& tissue) noexcept;
 
+  /// What the organs lie in.
+  const surgery::Cavity& GetCavity() const { return cavity_; }
   std::span<const surgery::OrganSurface> Organs() const { return organs_; }
   const surgery::TubeSet& Tubes() const { return tubes_; }
   const surgery::ContactSet& Contacts() const { return contacts_; }
@@ -62,7 +75,11 @@ class ToolContacts {
   void PlaceProxy(const Scene& scene, int hand, const ToolsNow& now,
                   const surgery::Touchables& touchables) noexcept;
 
-  /// Strand that ties a vertex of a pair to the pair's surface.
+  void MakePairs(const Scene& scene, const tissue::TissueModel& model, const tissue::TissueState& at_start);
+  void AddPair(surgery::OrganPair pair, const tissue::TissueModel& model);
+  void MakeCavity(const Scene& scene, const tissue::TissueModel& model, const tissue::TissueState& at_start);
+
+  /// Strand that ties a node of a pair to the pair's surface.
   struct Tie {
     std::size_t pair;
     std::uint32_t strand, vertex;
@@ -71,7 +88,10 @@ class ToolContacts {
   // constant
   surgery::ContactSettings settings_;
   surgery::OrganContactSettings organ_settings_;
+  surgery::CavityContactSettings cavity_settings_;
   std::vector<Tie> ties_;
+  surgery::Cavity cavity_;
+  std::vector<surgery::CavityContact> cavity_contacts_;  // (organs)
 
   // state
   std::array<Pose, kHandCount> X_world_proxy_, X_world_proxy_before_, X_world_device_;

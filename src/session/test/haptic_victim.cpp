@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file haptic_victim.cpp  A haptic loop that presses tissue, to be killed or stopped: force goes out on the file that
-/// is named. Asks for force at every byte on its standard input; ends with it.
+/// \file haptic_victim.cpp  A haptic loop that presses tissue, to be killed or stopped: force goes out on the file
+/// whose descriptor is named. Asks for force at every byte on its standard input; ends with it.
 #include <fcntl.h>
 #include <poll.h>
 #include <unistd.h>
 
 #include <chrono>
 #include <cstdio>
+#include <cstdlib>
 #include <thread>
 
 #include "trocar/device/simulated_force_device.h"
@@ -15,10 +16,11 @@
 int main(int argument_count, char** arguments) {
   using namespace trocar;
   using namespace trocar::session;
-  if (argument_count != 3) return 2;  // WIRE SUPERVISOR
+  if (argument_count != 3) return 2;  // DESCRIPTOR SUPERVISOR
   device::SimulatedForceSettings simulated;
-  simulated.wire = ::open(arguments[1], O_RDWR | O_NOCTTY | O_NONBLOCK);
-  if (simulated.wire < 0) return 3;
+  simulated.wire = std::atoi(arguments[1]);
+  // nobody but this process and the supervisor holds the wire open
+  if (::fcntl(simulated.wire, F_SETFD, FD_CLOEXEC) != 0) return 3;
   simulated.path = [](int, double) { return Vec3{}; };
   auto device = std::make_unique<device::SimulatedForceDevice>(simulated);
   device::SimulatedForceDevice& buttons = *device;

@@ -2,6 +2,7 @@
 #include "trocar/surgery/organ_contact.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "trocar/collision/queries.h"
 
@@ -29,42 +30,75 @@ Place FindPlace(const OrganSurface& organ, std::span<const Vec3> nodes, const Ve
   return place;
 }
 
+/// Fills in what is allowed at rest.
+OrganPair MakePair(const OrganSurface& to, std::span<const Vec3> positions, OrganPair pair,
+                   const OrganContactSettings& settings) {
+  pair.allowed.assign(pair.node_count, 0.0);
+  pair.is_bound.assign(pair.node_count, 0);
+  pair.last_triangle.assign(pair.node_count, collision::kNoTriangle);
+  for (std::uint32_t i = 0; i < pair.node_count; ++i) {
+    const double radius = pair.radii.empty() ? 0.0 : pair.radii[i];
+    const Place place = FindPlace(to, to.Nodes(positions), positions[pair.first_node + i],
+                                  settings.reach + radius, collision::kNoTriangle);
+    if (!place.nearest.Found()) continue;
+    pair.last_triangle[i] = place.nearest.triangle;
+    pair.allowed[i] = std::min(0.0, place.side.distance - radius);
+  }
+  return pair;
+}
+
 }  // namespace
 
 OrganPair MakeOrganPair(std::span<const OrganSurface> organs, std::span<const Vec3> positions,
                         std::uint8_t vertices_of, std::uint8_t surface_of,
                         std::span<const std::uint32_t> bound, const OrganContactSettings& settings) {
-  const OrganSurface &from = organs[vertices_of], &to = organs[surface_of];
-  OrganPair pair{vertices_of, surface_of, {}, {}, {}};
-  pair.allowed.assign(from.node_count, 0.0);
-  pair.is_bound.assign(from.node_count, 0);
-  pair.last_triangle.assign(from.node_count, collision::kNoTriangle);
+  const OrganSurface& from = organs[vertices_of];
+  OrganPair pair;
+  pair.nodes_of = vertices_of, pair.surface_of = surface_of;
+  pair.first_node = from.first_node, pair.node_count = from.node_count;
+  pair = MakePair(organs[surface_of], positions, std::move(pair), settings);
   for (const std::uint32_t node : bound) {
     if (node >= from.first_node && node < from.first_node + from.node_count)
       pair.is_bound[node - from.first_node] = 1;
   }
-  for (std::uint32_t i = 0; i < from.node_count; ++i) {
-    const Place place = FindPlace(to, to.Nodes(positions), positions[from.first_node + i], settings.reach,
-                                  collision::kNoTriangle);
-    if (!place.nearest.Found()) continue;
-    pair.last_triangle[i] = place.nearest.triangle;
-    pair.allowed[i] = std::min(0.0, place.side.distance);
-  }
   return pair;
+}
+
+OrganPair MakeTubePair(std::span<const OrganSurface> organs, std::span<const Vec3> positions,
+                       const TubeSurface& tube, std::uint8_t surface, std::uint8_t surface_of,
+                       const OrganContactSettings& settings) {
+  OrganPair pair;
+  pair.nodes_of = surface, pair.surface_of = surface_of;
+  pair.first_node = tube.first_node, pair.node_count = tube.node_count;
+  pair.radii = tube.radii;
+  return MakePair(organs[surface_of], positions, std::move(pair), settings);
+}
+
+void FollowOrgan(std::span<const OrganSurface> organs, std::uint8_t changed, OrganPair& pair) {
+  if (changed == pair.nodes_of) {
+    const std::uint32_t count = organs[changed].node_count;
+    pair.node_count = count;
+    pair.allowed.resize(count, 0.0);
+    pair.is_bound.resize(count, 0);
+    pair.last_triangle.resize(count, collision::kNoTriangle);
+  }
+  if (changed == pair.surface_of)
+    std::fill(pair.last_triangle.begin(), pair.last_triangle.end(), collision::kNoTriangle);
 }
 
 void FindOrganContacts(std::span<const OrganSurface> organs, std::span<const Vec3> positions,
                        const OrganContactSettings& settings, OrganPair& pair, ContactSet& contacts) noexcept {
-  const OrganSurface &from = organs[pair.vertices_of], &to = organs[pair.surface_of];
+  const OrganSurface& to = organs[pair.surface_of];
   const auto nodes = to.Nodes(positions);
-  for (std::uint32_t i = 0; i < from.node_count; ++i) {
+  for (std::uint32_t i = 0; i < pair.node_count; ++i) {
     if (pair.is_bound[i] != 0) continue;
-    const std::uint32_t node = from.first_node + i;
+    const std::uint32_t node = pair.first_node + i;
     const Vec3& p = positions[node];
-    const Place place = FindPlace(to, nodes, p, settings.reach, pair.last_triangle[i]);
+    const double radius = pair.radii.empty() ? 0.0 : pair.radii[i];
+    const Place place = FindPlace(to, nodes, p, settings.reach + radius, pair.last_triangle[i]);
     if (!place.is_near) continue;
     pair.last_triangle[i] = place.nearest.triangle;
-    const double room = place.side.distance - pair.allowed[i];
+    const double room = place.side.distance - radius - pair.allowed[i];
     if (room > settings.ahead) continue;
     if (contacts.springs.size() + 2 > ContactSet::kCapacity) {
       ++contacts.dropped;
@@ -74,7 +108,7 @@ void FindOrganContacts(std::span<const OrganSurface> organs, std::span<const Vec
     ContactLink link;
     link.hand = kNoHand;
     link.key = ~std::uint64_t{0};
-    link.surface = pair.vertices_of;
+    link.surface = pair.nodes_of;
     // each gives way by half of what is missing
     const auto& t = to.triangles[place.nearest.triangle];
     contacts.springs.push_back({{node, to.first_node + t[0], to.first_node + t[1]},

@@ -21,13 +21,21 @@ namespace {
 constexpr double kScale = 100.0;
 constexpr int kFewestSubsteps = 4;  // of a tick: pegs are thin
 constexpr int kMostSubsteps = 32;
-constexpr double kMargin = 0.01;       // of shapes [cm]
-constexpr int kRingParts = 16;         // capsules that make a ring
-constexpr int kSlipTicks = 3;          // the pull must exceed the hold that many ticks in a row
-constexpr double kRestSpeed = 1e-3;    // [m/s]
-constexpr double kRestTurn = 0.05;     // [rad/s]
-constexpr double kSleepSpeed = 0.3;    // [cm/s]
-constexpr double kSleepTurn = 0.3;     // [rad/s]
+constexpr double kMargin = 0.01;        // of shapes [cm]
+constexpr int kRingParts = 16;          // capsules that make a ring
+constexpr int kSlipTicks = 3;           // the pull must exceed the hold that many ticks in a row
+constexpr double kRestSpeed = 1e-3;     // [m/s]
+constexpr double kRestTurn = 0.05;      // [rad/s]
+constexpr double kSleepSpeed = 0.3;     // [cm/s]
+constexpr double kSleepTurn = 0.3;      // [rad/s]
+constexpr double kJawStiffness = 1500;  // of what jaws press [N/m]
+constexpr double kJawDamping = 2;       // [N s/m]
+// what is held gives way as rubber does: two hands that hold one thing, or a hand and the board, do not tear at it when
+// they tremble
+constexpr double kHoldStiffness =
+    1970;                             // [N/m]; measured with Bullet's error reduction: 2.8 N for a millimetre
+constexpr double kHoldDamping = 5.9;  // [N s/m]
+constexpr double kWorldRadius = 1.0;  // what is farther away has left the scene and stops [m]
 constexpr int kSolverIterations = 30;  // stacks stand
 
 btVector3 ToBullet(const Vec3& v) {
@@ -92,6 +100,25 @@ core::Error Refuse(const std::string& why) {
   return {core::ErrorCode::kSceneInvalid, why};
 }
 
+/// Keeps the deepest of a tool part's contacts with a body.
+struct Deepest : btCollisionWorld::ContactResultCallback {
+  explicit Deepest(const btCollisionObject& tool_part) : tool(&tool_part) {}
+  btScalar addSingleResult(btManifoldPoint& point, const btCollisionObjectWrapper* a, int, int,
+                           const btCollisionObjectWrapper*, int, int) override {
+    if (point.getDistance() >= distance) return 0;
+    distance = point.getDistance();
+    const bool is_first = a->getCollisionObject() == tool;
+    on_tool = is_first ? point.getPositionWorldOnA() : point.getPositionWorldOnB();
+    const btVector3 into_body = (is_first ? -1.0 : 1.0) * point.m_normalWorldOnB;
+    into = {into_body.x(), into_body.y(), into_body.z()};
+    return 0;
+  }
+  const btCollisionObject* tool;
+  double distance = 1e9;  // [cm]
+  btVector3 on_tool{0, 0, 0};
+  Vec3 into;
+};
+
 }  // namespace
 
 struct RigidWorld::Content {
@@ -112,7 +139,8 @@ struct RigidWorld::Content {
     RigidBody definition;
     std::vector<std::unique_ptr<btCollisionShape>> shapes;  // the last is the whole
     std::unique_ptr<btRigidBody> body;
-    double thinnest = 0;  // half of its thinnest part's width [m]
+    double thinnest = 0;        // half of its thinnest part's width [m]
+    std::uint64_t touches = 0;  // bits of other bodies, at the end of the last Step
   };
 
   Vec3 gravity;
@@ -245,6 +273,8 @@ struct RigidWorld::Content {
       btRigidBody& body = *tool.parts[part];
       body.setCollisionFlags(body.getCollisionFlags() | btCollisionObject::CF_KINEMATIC_OBJECT);
       body.setActivationState(DISABLE_DEACTIVATION);
+      // jaws are profiled and things are of rubber: what one hand holds is not torn out of it by the other's jaws
+      if (part != kShaftPart) body.setContactStiffnessAndDamping(kJawStiffness, kJawDamping);
       body.setUserIndex(static_cast<int>(index));
       body.setUserIndex2(part);
       world->addRigidBody(&body);
@@ -267,10 +297,29 @@ struct RigidWorld::Content {
     return static_cast<int>(std::min(most, static_cast<double>(kMostSubsteps)));
   }
 
+  static bool IsTouching(const btPersistentManifold& manifold) {
+    for (int p = 0; p < manifold.getNumContacts(); ++p) {
+      if (manifold.getContactPoint(p).getDistance() <= kMargin) return true;
+    }
+    return false;
+  }
+
+  void NoteTouch(const btPersistentManifold& manifold) {
+    const int a = manifold.getBody0()->getUserIndex(), b = manifold.getBody1()->getUserIndex();
+    if (a >= 64 || b >= 64 || !IsTouching(manifold)) return;
+    bodies[static_cast<std::size_t>(a)].touches |= std::uint64_t{1} << b;
+    bodies[static_cast<std::size_t>(b)].touches |= std::uint64_t{1} << a;
+  }
+
   /// Impulses of one substep on the tools, and who touched whom.
   void GatherContacts() {
+    for (Body& body : bodies) body.touches = 0;
     for (int m = 0; m < dispatcher->getNumManifolds(); ++m) {
       const btPersistentManifold& manifold = *dispatcher->getManifoldByIndexInternal(m);
+      if (manifold.getBody0()->getUserIndex2() < 0 && manifold.getBody1()->getUserIndex2() < 0) {
+        NoteTouch(manifold);
+        continue;
+      }
       for (const bool is_first : {true, false}) {
         const btCollisionObject* own = is_first ? manifold.getBody0() : manifold.getBody1();
         const btCollisionObject* other = is_first ? manifold.getBody1() : manifold.getBody0();
@@ -287,6 +336,29 @@ struct RigidWorld::Content {
         }
         tool.force = tool.force + (is_first ? 1.0 : -1.0) / tick_seconds * FromBullet(impulse);
       }
+    }
+  }
+
+  /// Springs and dampers of the holds, for steps of dt. Source: Smith, Open Dynamics Engine manual, section 3.8.
+  void SoftenHolds(double dt) {
+    const double sum = dt * kHoldStiffness + kHoldDamping;
+    for (Tool& tool : tools) {
+      if (!tool.hold) continue;
+      for (int axis = 0; axis < 6; ++axis) {
+        tool.hold->setParam(BT_CONSTRAINT_STOP_CFM, 1 / sum, axis);
+        tool.hold->setParam(BT_CONSTRAINT_STOP_ERP, dt * kHoldStiffness / sum, axis);
+      }
+    }
+  }
+
+  /// What has fallen off the table does not fall for ever, faster and faster.
+  void StopWhatHasLeft() {
+    for (Body& body : bodies) {
+      btRigidBody& rigid = *body.body;
+      if (!(rigid.getWorldTransform().getOrigin().length() > kWorldRadius * kScale)) continue;
+      rigid.setLinearVelocity({0, 0, 0});
+      rigid.setAngularVelocity({0, 0, 0});
+      rigid.forceActivationState(DISABLE_SIMULATION);
     }
   }
 
@@ -322,7 +394,7 @@ core::Result<std::uint32_t> RigidWorld::AddBody(const RigidBody& body) {
     return Refuse("mass, friction or pose of a rigid body is negative or not finite");
   double thinnest = 1;
   for (const RigidShape& shape : body.shapes) thinnest = std::min(thinnest, HalfWidth(shape));
-  content_->bodies.push_back({body, {}, nullptr, thinnest});
+  content_->bodies.push_back({body, {}, nullptr, thinnest, 0});
   content_->Add(content_->bodies.size() - 1);
   for (auto& tool : content_->tools) {
     for (auto& touched : tool.touched) touched.assign(content_->bodies.size(), 0);
@@ -353,6 +425,13 @@ void RigidWorld::MoveTool(std::uint32_t tool, const Pose (&X_world_parts)[kToolP
   }
 }
 
+void RigidWorld::SetGravity(const Vec3& gravity) {
+  if (gravity == content_->gravity) return;
+  content_->gravity = gravity;
+  content_->world->setGravity(ToBullet(gravity));
+  for (auto& body : content_->bodies) body.body->activate(true);
+}
+
 void RigidWorld::Step() {
   Content& content = *content_;
   std::vector<Vec3> pulls(content.tools.size());
@@ -362,6 +441,7 @@ void RigidWorld::Step() {
   }
   const int substeps = content.CountSubsteps();
   const double dt = content.tick_seconds / substeps;
+  content.SoftenHolds(dt);
   for (int step = 1; step <= substeps; ++step) {
     const double share = static_cast<double>(step) / substeps;
     for (auto& tool : content.tools) {
@@ -382,6 +462,7 @@ void RigidWorld::Step() {
       if (tool.hold) pulls[t] = pulls[t] + 1.0 / substeps * FromBullet(tool.feedback.m_appliedForceBodyA);
     }
   }
+  content.StopWhatHasLeft();
   for (std::size_t t = 0; t < content.tools.size(); ++t) {
     auto& tool = content.tools[t];
     tool.from = tool.to;
@@ -427,6 +508,10 @@ void RigidWorld::Hold(std::uint32_t tool_index, std::uint32_t body_index, double
   tool.ticks_over = 0;
 }
 
+void RigidWorld::SetHoldForce(std::uint32_t tool, double hold_force) {
+  content_->tools[tool].hold_force = hold_force;
+}
+
 void RigidWorld::Release(std::uint32_t tool) {
   content_->Release(content_->tools[tool]);
 }
@@ -442,6 +527,34 @@ Vec3 RigidWorld::ForceOn(std::uint32_t tool) const {
 bool RigidWorld::Touches(std::uint32_t tool, std::uint32_t body) const {
   const auto& touched = content_->tools[tool].touched;
   return std::any_of(touched.begin(), touched.end(), [&](const auto& part) { return part[body] != 0; });
+}
+
+std::uint64_t RigidWorld::TouchedBodies(std::uint32_t body) const {
+  return content_->bodies[body].touches;
+}
+
+void RigidWorld::FindObstacles(std::uint32_t tool_index, const Pose (&X_world_parts)[kToolPartCount],
+                               double reach, std::vector<ToolObstacle>& obstacles) {
+  obstacles.clear();
+  Content& content = *content_;
+  Content::Tool& tool = content.tools[tool_index];
+  for (std::size_t part = 0; part < kToolPartCount; ++part) {
+    btRigidBody& capsule = *tool.parts[part];
+    const btTransform here = capsule.getWorldTransform();
+    capsule.setWorldTransform(ToBullet(X_world_parts[part]));
+    for (std::size_t i = 0; i < content.bodies.size(); ++i) {
+      if (content.bodies[i].definition.mass > 0) continue;
+      Deepest deepest(capsule);
+      deepest.m_closestDistanceThreshold = reach * kScale;
+      content.world->contactPairTest(&capsule, content.bodies[i].body.get(), deepest);
+      if (deepest.distance > reach * kScale) continue;
+      // the surface's point lies a radius out on the side of the body
+      obstacles.push_back({static_cast<std::uint32_t>(i),
+                           FromBullet(deepest.on_tool) - tool.capsules[part].radius * deepest.into,
+                           deepest.into, -deepest.distance / kScale});
+    }
+    capsule.setWorldTransform(here);
+  }
 }
 
 Pose RigidWorld::PoseOf(std::uint32_t body) const {

@@ -103,6 +103,80 @@ TEST_F(OrganContact, WhatOverlappedWhenImagedIsLeftAlone) {
   }
 }
 
+/// A duct above a ball that stands fast.
+class TubeOnOrgan : public testing::Test {
+ protected:
+  static constexpr double kRadius = 0.002;
+
+  /// \param gap  between the duct's skin and the ball [m]
+  void Make(double gap) {
+    const auto ball = geometry::MakeSphere({0, 0, 0}, 0.03, 4);
+    tissue::TissueDefinition definition;
+    for (const Vec3& p : ball.positions) {
+      definition.fixed.push_back(static_cast<std::uint32_t>(definition.rest.size()));
+      definition.rest.push_back(p);
+    }
+    tube_ = {static_cast<std::uint32_t>(definition.rest.size()), 5, std::vector<double>(5, kRadius)};
+    for (int i = 0; i < 5; ++i) definition.rest.push_back({0.004 * (i - 2), 0, 0.03 + kRadius + gap});
+    definition.mass.assign(definition.rest.size(), 1e-4);
+    definition.shape_stiffness.assign(definition.rest.size(), 0.1);
+    for (std::uint32_t i = 0; i < 4; ++i)
+      definition.springs.push_back({tube_.first_node + i, tube_.first_node + i + 1, 50.0, 0.004});
+    model_ = tissue::MakeTissueModel(definition);
+    state_ = tissue::MakeRestState(model_);
+    organs_.clear();
+    organs_.push_back(MakeOrganSurface(state_.position, 0, ball).value());
+    pair_ = MakeTubePair(organs_, state_.position, tube_, 1, 0, settings_);
+    solver_.emplace(model_, 1);
+  }
+  void Tick(const Vec3& gravity, bool has_contact = true) {
+    contacts_.Clear();
+    if (has_contact) FindOrganContacts(organs_, state_.position, settings_, pair_, contacts_);
+    (void)solver_->Solve({tissue::SolverKind::kChebyshevJacobi2015, 500, 1e-6, 0.0},
+                         {.gravity = gravity, .contacts = contacts_.springs}, state_);
+  }
+  /// Deepest that the duct's skin lies in the ball; the ball's facets count as the ball.
+  double Overlap() const {
+    double deepest = 0;
+    for (std::uint32_t i = 0; i < tube_.node_count; ++i)
+      deepest = std::max(deepest, 0.03 + kRadius - math::Norm(state_.position[tube_.first_node + i]));
+    return deepest;
+  }
+
+  OrganContactSettings settings_;
+  TubeSurface tube_;
+  tissue::TissueModel model_;
+  tissue::TissueState state_;
+  std::vector<OrganSurface> organs_;
+  OrganPair pair_;
+  ContactSet contacts_;
+  std::optional<tissue::EquilibriumSolver> solver_;
+};
+
+TEST_F(TubeOnOrgan, ADuctThatIsPressedOnAnOrganLiesOnIt) {
+  Make(0.001);
+  for (int tick = 0; tick < 100; ++tick) Tick({0, 0, -20});  // would sink 20 mm on its foundation
+  EXPECT_LT(Overlap(), 0.0005);
+  EXPECT_NEAR(state_.position[tube_.first_node + 2].z, 0.03 + kRadius, 0.0005);
+  for (const ContactLink& link : contacts_.links) EXPECT_LE(link.surface, 1);
+}
+
+// Negative control.
+TEST_F(TubeOnOrgan, WithoutContactItWouldGoThrough) {
+  Make(0.001);
+  for (int tick = 0; tick < 20; ++tick) Tick({0, 0, -20}, false);
+  EXPECT_GT(Overlap(), 0.005);
+}
+
+TEST_F(TubeOnOrgan, ADuctThatRunsInsideOfAnOrganStaysWhereItIs) {
+  Make(-0.006);
+  for (int tick = 0; tick < 10; ++tick) Tick({});
+  for (std::size_t i = 0; i < model_.Size(); ++i)
+    ASSERT_NEAR(math::Distance(state_.position[i], model_.rest[i]), 0.0, 1e-9) << i;
+  for (int tick = 0; tick < 100; ++tick) Tick({0, 0, -20});
+  EXPECT_LT(Overlap(), 0.0065) << "but it goes no deeper";
+}
+
 TEST_F(OrganContact, BoundVerticesAreLeftToTheirStrands) {
   Make(-0.002);
   FindOrganContacts(organs_, state_.position, settings_, pair_, contacts_);

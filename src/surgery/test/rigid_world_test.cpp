@@ -182,6 +182,70 @@ TEST(RigidWorld, IsPushedByATool) {
   EXPECT_EQ(bench.world.HeldBy(1), -1);
 }
 
+TEST(RigidWorld, TwoHandsThatTrembleDoNotTearAtWhatTheyHold) {
+  for (const bool does_something_fall : {false, true}) {
+    Bench bench;
+    // what falls fast makes the steps finer; the grip must not grow harder with them
+    if (does_something_fall) ASSERT_TRUE(bench.world.AddBody(MakeCube({0.5, 0, 0.5}, 0.001)).ok());
+    Play(bench.world, 0.3);
+    bench.world.Hold(0, bench.cube, 3.0);
+    bench.world.Hold(1, bench.cube, 3.0);
+    bench.Move(0, {0, 0, 0.012}, {0, 0.0003, 0.0123}, 0.03, 0.03, 0.1);
+    Play(bench.world, 0.2);
+    EXPECT_EQ(bench.world.HeldBy(0), static_cast<std::int32_t>(bench.cube));
+    EXPECT_EQ(bench.world.HeldBy(1), static_cast<std::int32_t>(bench.cube));
+    // each gives way by half: 0.2 mm of 2 to 3 N/mm
+    EXPECT_GT(math::Norm(bench.world.ForceOn(0)), 0.3);
+    EXPECT_LT(math::Norm(bench.world.ForceOn(0)), 0.9);
+  }
+}
+
+TEST(RigidWorld, WhatHasLeftTheSceneStops) {
+  RigidWorld world(kDown, kTick);
+  const auto cube = *world.AddBody(MakeCube({0, 0, 0}));
+  Play(world, 3.0);
+  EXPECT_EQ(world.VelocityOf(cube), Vec3{});
+  EXPECT_LT(world.PoseOf(cube).translation.z, -1.0);
+  EXPECT_GT(world.PoseOf(cube).translation.z, -1.2);
+  world.Reset();
+  Play(world, 0.1);
+  EXPECT_LT(world.VelocityOf(cube).z, -0.5) << "and falls again after a reset";
+}
+
+TEST(RigidWorld, SaysWhichBodiesTouch) {
+  RigidWorld world(kDown, kTick);
+  const auto floor = *world.AddBody(MakeFloor());
+  const auto cube = *world.AddBody(MakeCube({0, 0, 0.0061}));
+  const auto ring = *world.AddBody(MakeRing({0.05, 0, 0.05}));
+  Play(world, 0.05);
+  EXPECT_EQ(world.TouchedBodies(cube), std::uint64_t{1} << floor);
+  EXPECT_EQ(world.TouchedBodies(ring), 0u) << "it still falls";
+  Play(world, 0.5);
+  EXPECT_EQ(world.TouchedBodies(floor), (std::uint64_t{1} << cube) | (std::uint64_t{1} << ring));
+}
+
+TEST(RigidWorld, FindsHowDeepAToolEntersWhatNeverMoves) {
+  Bench bench;
+  std::vector<ToolObstacle> found;
+  Pose X[kToolPartCount];
+  // jaws are capsules about z, radius 1.5 mm, half length 8 mm: with the tip's centre at 5 mm their ends are at -4.5
+  PoseTool({0.05, 0.05, 0.005}, 0.03, X);
+  bench.world.FindObstacles(0, X, 0, found);
+  ASSERT_EQ(found.size(), 2u) << "both jaws enter the floor, and the cube moves, so it is no obstacle";
+  for (const ToolObstacle& one : found) {
+    EXPECT_EQ(one.body, 0u);
+    EXPECT_NEAR(one.depth, 0.0045, 2e-4);
+    EXPECT_NEAR(one.normal.z, -1, 1e-6);
+    EXPECT_NEAR(one.point.z, -0.003, 2e-4) << "centre of the capsule's end";
+  }
+  PoseTool({0.05, 0.05, 0.0105}, 0.03, X);
+  bench.world.FindObstacles(0, X, 0, found);
+  EXPECT_TRUE(found.empty());
+  bench.world.FindObstacles(0, X, 0.002, found);
+  ASSERT_EQ(found.size(), 2u);
+  EXPECT_NEAR(found[0].depth, -0.001, 2e-4);
+}
+
 TEST(RigidWorld, GivesTheSameBitsAgain) {
   Bench first, second;
   const auto operate = [](Bench& bench) {

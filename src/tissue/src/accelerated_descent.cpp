@@ -82,8 +82,14 @@ int RunCycles(System& system, const Kernels& kernels, Workers& workers, int max_
 
 }  // namespace
 
-AcceleratedDescent::AcceleratedDescent(const TissueModel& model, bool use_grid) : model_(&model) {
-  if (!model.half_springs.empty()) edge_length_ = model.half_springs.front().rest_length;
+AcceleratedDescent::AcceleratedDescent(const TissueModel& model, const OrderedModel& ordered, bool use_grid)
+    : ordered_(&ordered), use_grid_(use_grid) {
+  SetModel(model);
+}
+
+void AcceleratedDescent::SetModel(const TissueModel& model) {
+  model_ = &model;
+  edge_length_ = model.half_springs.empty() ? 0.0 : model.half_springs.front().rest_length;
   lowest_ratio_ = INFINITY;
   for (std::size_t i = 0; i < model.Size(); ++i) {
     double sum = 0;
@@ -92,13 +98,15 @@ AcceleratedDescent::AcceleratedDescent(const TissueModel& model, bool use_grid) 
     if (sum > 0.0 && !model.is_fixed[i])
       lowest_ratio_ = std::min(lowest_ratio_, model.shape_stiffness[i] / sum);
   }
-  const auto shape = use_grid ? FindGridShape(model) : std::nullopt;
+  grids_.clear();
+  loads_.clear();
+  const auto shape = use_grid_ ? FindGridShape(model) : std::nullopt;
   if (!shape) {
-    ordered_ = MakeOrderedModel(model);
     ordered_load_.constant.resize(model.Size());
     ordered_load_.is_free.resize(model.Size());
     ordered_load_.contacts.reserve(kMaxContacts);
-    slices_ = std::make_unique<SpringSlices>(ordered_);
+    if (slices_ == nullptr) slices_ = std::make_unique<SpringSlices>();
+    slices_->SetModel(*ordered_);
     return;
   }
   GridModel grid = MakeGridModel(model, *shape);
@@ -109,6 +117,10 @@ AcceleratedDescent::AcceleratedDescent(const TissueModel& model, bool use_grid) 
     if (std::min(grid.shape.rows, grid.shape.columns) < 2 * kSmallestGrid) break;
     grid = MakeCoarseGrid(grid);
   }
+}
+
+void AcceleratedDescent::Reserve(double share) {
+  if (slices_ != nullptr) slices_->Reserve(share);
 }
 
 bool AcceleratedDescent::IsCold(const TissueState& state) const noexcept {
@@ -225,30 +237,30 @@ SolveReport AcceleratedDescent::SolveSlices(const Kernels& kernels, Workers& wor
                                             const SolverSettings& settings, const TissueLoad& load,
                                             TissueState& state, const SolveHook* hook) noexcept {
   SolveReport report;
-  const std::uint32_t n = ordered_.Size();
+  const std::uint32_t n = ordered_->Size();
   const auto read_state = [&] {
-    SetOrderedLoad(ordered_, load, state, ordered_load_);
-    slices_->SetLoad(ordered_, ordered_load_, state.strand_is_intact);
+    SetOrderedLoad(*ordered_, load, state, ordered_load_);
+    slices_->SetLoad(*ordered_, ordered_load_, state.strand_is_intact);
     for (std::uint32_t i = 0; i < n; ++i) {
-      slices_->SetDisplacement(i, state.position[ordered_.old_of_new[i]] - ordered_.rest[i]);
+      slices_->SetDisplacement(i, state.position[ordered_->old_of_new[i]] - ordered_->rest[i]);
     }
   };
   const auto write_state = [&] {
     for (std::uint32_t i = 0; i < n; ++i) {
       if (ordered_load_.is_free[i])
-        state.position[ordered_.old_of_new[i]] = ordered_.rest[i] + slices_->GetDisplacement(i);
+        state.position[ordered_->old_of_new[i]] = ordered_->rest[i] + slices_->GetDisplacement(i);
     }
   };
   read_state();
   const auto refresh = [&] {
     if (ordered_load_.contacts.empty()) return;
-    slices_->SetLoad(ordered_, ordered_load_, state.strand_is_intact);
+    slices_->SetLoad(*ordered_, ordered_load_, state.strand_is_intact);
     for (const ContactSpring& contact : ordered_load_.contacts) {
       double along = 0;
       for (int corner = 0; corner < 3; ++corner) {
         const std::uint32_t node = contact.nodes[corner];
         along += contact.weights[corner] *
-                 math::Dot(contact.normal, ordered_.rest[node] + slices_->GetDisplacement(node));
+                 math::Dot(contact.normal, ordered_->rest[node] + slices_->GetDisplacement(node));
       }
       const double depth = contact.offset - along;
       if (!(depth > 0.0)) continue;

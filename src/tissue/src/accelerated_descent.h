@@ -22,11 +22,14 @@ namespace trocar::tissue {
 
 class AcceleratedDescent {
  public:
+  /// \param ordered   the same model in the solvers' order; must outlive this
   /// \param use_grid  take a structured mesh as a stencil where the model is one
-  AcceleratedDescent(const TissueModel& model, bool use_grid);
+  AcceleratedDescent(const TissueModel& model, const OrderedModel& ordered, bool use_grid);
+  /// Goes on with another model of as many nodes; `ordered` has followed.
+  /// \note Allocates nothing where Reserve() was enough and no structured mesh is or was there.
+  void SetModel(const TissueModel& model);
+  void Reserve(double share);
 
-  /// The springs it works with where the mesh is irregular, for SpringLines to keep up to date.
-  OrderedModel& Springs() noexcept { return ordered_; }
   bool IsStructured() const { return !grids_.empty(); }
   /// True where every free node is at rest, and a coarse-to-fine start will be made.
   bool IsCold(const TissueState& state) const noexcept;
@@ -45,13 +48,14 @@ class AcceleratedDescent {
   void SetGridLoads(const TissueLoad& load, const TissueState& state, std::size_t levels) noexcept;
 
   const TissueModel* model_;
+  const OrderedModel* ordered_;
+  bool use_grid_;
   double edge_length_ = 0;   // of the first spring [m]
   double lowest_ratio_ = 0;  // smallest k_virtual / sum k of a node [-]
   // structured
   std::vector<SpringGrid> grids_;  // finest first
   std::vector<GridLoad> loads_;
   // irregular
-  OrderedModel ordered_;
   OrderedLoad ordered_load_;
   std::unique_ptr<SpringSlices> slices_;
 };

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "trocar/core/assert.h"
 
@@ -85,6 +86,20 @@ void Conservation::Reset() noexcept {
   shape_scale_ = usual.shape_scale;
   response_links_ = first_links_;
   responses_settled_ = true;
+}
+
+void Conservation::Follow(const TissueModel& model, std::vector<ClosedOrgan> organs,
+                          ConservationState& state) {
+  TROCAR_ASSERT(model.Size() == model_->Size() && organs.size() == settings_.organs.size());
+  model_ = &model;
+  settings_.organs = std::move(organs);
+  constraints_.clear();
+  for (const ClosedOrgan& organ : settings_.organs)
+    constraints_.push_back({organ.first_node, organ.node_count});
+  linear_.SetModel(model);
+  rest_ = MakeRestState(model);
+  responses_settled_ = false;
+  state.intact_links = std::numeric_limits<std::uint64_t>::max();
 }
 
 ConservationState Conservation::MakeState(const TissueState& rest_state) const {
@@ -182,7 +197,7 @@ void Conservation::CarryAlong(TissueState& tissue, ConservationState& state) noe
 
 std::span<const Vec3> Conservation::CalcForce(const TissueState& tissue, const TissueLoad& load,
                                               ConservationState& state) noexcept {
-  TROCAR_ASSERT(load.external_force.data() != force_.data());
+  TROCAR_ASSERT(load.external_force.empty() || load.external_force.data() != force_.data());
   if (load.external_force.empty()) {
     std::fill(base_force_.begin(), base_force_.end(), Vec3{});
   } else {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "node_force.h"
+#include "room.h"
 #include "solver_content.h"
 #include "trocar/core/assert.h"
 
@@ -65,28 +66,53 @@ EquilibriumSolver::EquilibriumSolver(const TissueModel& model, int threads)
 EquilibriumSolver::EquilibriumSolver(const TissueModel& model, const SolverOptions& options)
     : content_(std::make_unique<Content>()) {
   const std::size_t n = model.Size();
-  content_->laws = &model;
-  content_->kernels = &GetKernels(options.simd);
-  content_->workers = std::make_unique<Workers>(options.threads);
-  content_->newton = std::make_unique<NewtonMultigrid>(model);
-  content_->accelerated = std::make_unique<AcceleratedDescent>(model, options.recognises_grids);
-  content_->wave.reserve(n);
-  content_->visited.resize(n);
-  content_->residual.resize(n);
-  content_->springs = MakeSlicedSprings(model);
-  content_->lines = std::make_unique<SpringLines>(
-      model, content_->springs, std::array{&content_->newton->Springs(), &content_->accelerated->Springs()});
-  content_->model = &content_->lines->Model();
-  content_->adrift_condition.resize(n);
-  content_->previous.resize(n);
-  content_->blocks.resize(n);
-  content_->slices.resize((n + kLanes - 1) / kLanes, SliceData{});
-  content_->constant_force.resize(n);
-  for (std::uint32_t i = 0; i < n; ++i) {
-    if (model.strand_starts[i] < model.strand_starts[i + 1]) content_->strand_nodes.push_back(i);
+  Content& c = *content_;
+  c.laws = &model;
+  c.kernels = &GetKernels(options.simd);
+  c.workers = std::make_unique<Workers>(options.threads);
+  c.newton = std::make_unique<NewtonMultigrid>(model);
+  c.accelerated = std::make_unique<AcceleratedDescent>(model, c.newton->Springs(), options.recognises_grids);
+  SetSlicedSprings(model, c.springs);
+  c.lines = std::make_unique<SpringLines>(model, c.springs, c.newton->Springs());
+  c.model = &c.lines->Model();
+  c.SetStrandNodes(model);
+  c.wave.reserve(n);
+  c.visited.resize(n);
+  c.residual.resize(n);
+  c.adrift_condition.resize(n);
+  c.previous.resize(n);
+  c.blocks.resize(n);
+  c.slices.resize((n + kLanes - 1) / kLanes, SliceData{});
+  c.constant_force.resize(n);
+  c.touched_nodes.reserve(3 * kMaxContacts);
+  c.chunk_reports.resize(n / CalcChunk(n) + 1);
+  if (options.spare_share > 0.0) c.Reserve(options.spare_share);
+}
+
+void EquilibriumSolver::Follow(const TissueModel& model) {
+  Content& c = *content_;
+  TROCAR_ASSERT(model.Size() == c.model->Size());
+  c.laws = &model;
+  c.newton->SetModel(model);
+  c.accelerated->SetModel(model);
+  SetSlicedSprings(model, c.springs);
+  c.lines->SetModel(model);
+  c.SetStrandNodes(model);
+}
+
+void EquilibriumSolver::Content::SetStrandNodes(const TissueModel& with) {
+  strand_nodes.clear();
+  for (std::uint32_t i = 0; i < with.Size(); ++i) {
+    if (with.strand_starts[i] < with.strand_starts[i + 1]) strand_nodes.push_back(i);
   }
-  content_->touched_nodes.reserve(3 * kMaxContacts);
-  content_->chunk_reports.resize(n / CalcChunk(n) + 1);
+}
+
+void EquilibriumSolver::Content::Reserve(double share) {
+  newton->Reserve(share);
+  accelerated->Reserve(share);
+  lines->Reserve(share);
+  ReserveMore(share, springs.starts, springs.others, springs.stiffness, springs.stiffness_times_rest,
+              strand_nodes);
 }
 
 EquilibriumSolver::~EquilibriumSolver() = default;

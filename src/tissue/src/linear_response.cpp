@@ -48,17 +48,14 @@ double SumOfProducts(std::span<const Vec3> a, std::span<const Vec3> b) noexcept 
 
 }  // namespace
 
-LinearResponse::LinearResponse(const TissueModel& model)
-    : model_(&model),
-      springs_(model.half_springs.size()),
-      strands_(model.half_strands.size()),
-      own_(model.Size()),
-      is_free_(model.Size()),
-      inverse_(model.Size()),
-      residual_(model.Size()),
-      preconditioned_(model.Size()),
-      direction_(model.Size()),
-      product_(model.Size()) {}
+void LinearResponse::SetModel(const TissueModel& model) {
+  const std::size_t n = model.Size();
+  model_ = &model;
+  springs_.resize(model.half_springs.size());
+  strands_.resize(model.half_strands.size());
+  own_.resize(n), is_free_.resize(n), inverse_.resize(n);
+  for (auto* vector : {&residual_, &preconditioned_, &direction_, &product_}) vector->resize(n);
+}
 
 void LinearResponse::SetStiffness(const TissueState& state, const TissueLoad& load) noexcept {
   const TissueModel& model = *model_;

@@ -5,17 +5,18 @@
 #include <cmath>
 
 #include "node_force.h"
+#include "room.h"
 
 namespace trocar::tissue {
 namespace {
 
 /// Slices a thread takes at a time; fixed, so that sums do not depend on the number of threads.
-constexpr std::uint32_t kChunkSlices = 32;
+constexpr std::uint32_t kChunkSlices = 28;
 
 /// Springs, then strands, of each node, in the model's order.
-NodeGraph MakeGraph(const TissueModel& model, std::vector<double>& stiffness) {
-  NodeGraph graph;
-  graph.starts.push_back(0);
+void SetGraph(const TissueModel& model, NodeGraph& graph, std::vector<double>& stiffness) {
+  graph.Clear();
+  stiffness.clear();
   for (std::size_t i = 0; i < model.Size(); ++i) {
     for (auto h = model.spring_starts[i]; h < model.spring_starts[i + 1]; ++h) {
       graph.others.push_back(model.half_springs[h].other);
@@ -27,7 +28,6 @@ NodeGraph MakeGraph(const TissueModel& model, std::vector<double>& stiffness) {
     }
     graph.starts.push_back(static_cast<std::uint32_t>(graph.others.size()));
   }
-  return graph;
 }
 
 /// Place of the first of a node's six ground values.
@@ -41,26 +41,27 @@ Vec3 ToVec3(const Double4& v) {
 
 }  // namespace
 
-OrderedModel MakeOrderedModel(const TissueModel& model) {
-  OrderedModel made;
+void SetOrderedModel(const TissueModel& model, OrderedModel& made) {
   const auto n = static_cast<std::uint32_t>(model.Size());
-  std::vector<double> old_stiffness;
-  const NodeGraph old_graph = MakeGraph(model, old_stiffness);
-  made.old_of_new = CalcNodeOrder(old_graph);
+  NodeGraph& old_graph = made.room.graph;
+  SetGraph(model, old_graph, made.room.stiffness);
+  FindNodeOrder(old_graph, made.room.order, made.old_of_new);
   made.new_of_old.resize(n);
   for (std::uint32_t i = 0; i < n; ++i) made.new_of_old[made.old_of_new[i]] = i;
-  made.graph.starts.push_back(0);
+  made.graph.Clear();
+  made.graph_stiffness.clear();
+  made.rest.clear(), made.mass.clear(), made.shape.clear(), made.strands.clear();
   for (const std::uint32_t old : made.old_of_new) {
     for (auto h = old_graph.starts[old]; h < old_graph.starts[old + 1]; ++h) {
       made.graph.others.push_back(made.new_of_old[old_graph.others[h]]);
-      made.graph_stiffness.push_back(old_stiffness[h]);
+      made.graph_stiffness.push_back(made.room.stiffness[h]);
     }
     made.graph.starts.push_back(static_cast<std::uint32_t>(made.graph.others.size()));
     made.rest.push_back(model.rest[old]);
     made.mass.push_back(model.mass[old]);
     made.shape.push_back(model.shape_stiffness[old]);
   }
-  made.layout = MakeSliceLayout(made.graph);
+  SetSliceLayout(made.graph, made.layout);
   made.stiffness.assign(made.layout.Steps() * kSliceNodes, 0.0);
   made.rest_length.assign(made.layout.Steps() * kSliceNodes, 0.0);
   made.spring_entries.resize(model.half_springs.size());
@@ -78,7 +79,17 @@ OrderedModel MakeOrderedModel(const TissueModel& model) {
           {i, made.new_of_old[half.other], half.strand, made.layout.Entry(i, place), half.stiffness});
     }
   }
+}
+
+OrderedModel MakeOrderedModel(const TissueModel& model) {
+  OrderedModel made;
+  SetOrderedModel(model, made);
   return made;
+}
+
+void OrderedModel::Reserve(double share) {
+  ReserveMore(share, graph.others, graph_stiffness, layout.starts, layout.others, stiffness, rest_length,
+              spring_entries, strands, room.graph.others, room.stiffness, room.order.places);
 }
 
 void SetOrderedLoad(const OrderedModel& model, const TissueLoad& load, const TissueState& state,
@@ -97,16 +108,22 @@ void SetOrderedLoad(const OrderedModel& model, const TissueLoad& load, const Tis
   }
 }
 
-Linearisation::Linearisation(const OrderedModel& model) : model_(&model) {
+void Linearisation::SetModel() {
+  const OrderedModel& model = *model_;
   nodes_.assign(model.layout.PaddedNodes() * kBalanceValues, 0.0);
   slack_.assign(model.layout.Steps() * kSliceNodes, 0.0f);
   for (std::uint32_t i = 0; i < model.Size(); ++i) {
     for (int axis = 0; axis < 3; ++axis)
       At(i, static_cast<BalanceValue>(kRestX + axis)) = model.rest[i][axis];
   }
+  strand_nodes_.clear();
   for (const auto& strand : model.strands) {
     if (strand_nodes_.empty() || strand_nodes_.back() != strand.node) strand_nodes_.push_back(strand.node);
   }
+}
+
+void Linearisation::Reserve(double share) {
+  ReserveMore(share, slack_, strand_nodes_);
 }
 
 void Linearisation::SetLoad(const OrderedLoad& load, std::span<const std::uint8_t> strand_is_intact,

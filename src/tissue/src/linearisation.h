@@ -32,8 +32,20 @@ struct OrderedModel {
   };
   std::vector<StrandEntry> strands;  // from both ends
 
+  /// For SetOrderedModel: the graph in the caller's order.
+  struct Room {
+    NodeGraph graph;
+    std::vector<double> stiffness;
+    NodeOrderRoom order;
+  } room;
+
   std::uint32_t Size() const { return layout.node_count; }
+  /// Room for `share` times more links than there are.
+  void Reserve(double share);
 };
+/// Takes a model over.
+/// \note Allocates nothing where the vectors of `made` have room.
+void SetOrderedModel(const TissueModel& model, OrderedModel& made);
 OrderedModel MakeOrderedModel(const TissueModel& model);
 
 /// What acts in one solve, in the solvers' order.
@@ -62,7 +74,12 @@ struct Balance {
 /// Evaluates the balance of a model and its stiffness -dR/dx.
 class Linearisation {
  public:
-  explicit Linearisation(const OrderedModel& model);
+  explicit Linearisation(const OrderedModel& model) : model_(&model) { SetModel(); }
+
+  /// Follows a change of the model.
+  /// \note Allocates nothing where Reserve() was enough.
+  void SetModel();
+  void Reserve(double share);
 
   /// Takes what acts in one solve; sets is_free and ground of `level`.
   /// \note Real-time safe.

@@ -19,28 +19,6 @@ constexpr std::uint32_t kWidest = 12;
 /// Pivots below this part of the diagonal are not positive for sure [-].
 constexpr double kLeastPivot = 1e-7;
 
-/// Breadth-first order of the candidates that `root` is connected with, from the one found last.
-/// \param[in,out] mark  (n) different from `round` and `round` + 1 before
-std::vector<std::uint32_t> OrderChain(const NodeGraph& graph, std::span<const std::uint8_t> is_candidate,
-                                      std::uint32_t root, std::uint32_t round,
-                                      std::span<std::uint32_t> mark) {
-  std::vector<std::uint32_t> order;
-  for (const std::uint32_t pass : {round, round + 1}) {
-    order = {root};
-    mark[root] = pass;
-    for (std::size_t at = 0; at < order.size(); ++at) {
-      for (auto h = graph.starts[order[at]]; h < graph.starts[order[at] + 1]; ++h) {
-        const std::uint32_t other = graph.others[h];
-        if (!is_candidate[other] || mark[other] == pass) continue;
-        mark[other] = pass;
-        order.push_back(other);
-      }
-    }
-    root = order.back();  // an end of the chain
-  }
-  return order;
-}
-
 std::size_t GroundAt(std::uint32_t i) {
   return std::size_t{i / kSliceNodes} * 6 * kSliceNodes + i % kSliceNodes;
 }
@@ -52,32 +30,52 @@ constexpr std::size_t kAt[3][3] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}};
 
 }  // namespace
 
-LinkChains::LinkChains(const NodeGraph& graph, const SliceLayout& layout) {
-  const std::uint32_t n = graph.Size();
-  constexpr std::uint32_t kNone = ~std::uint32_t{0};
-  std::vector<std::uint8_t> is_candidate(n);
-  for (std::uint32_t i = 0; i < n; ++i) {
-    const std::uint32_t neighbours = graph.starts[i + 1] - graph.starts[i];
-    is_candidate[i] = neighbours > 0 && neighbours <= kMostNeighbours;
-  }
-  std::vector<std::uint32_t> place(n, kNone), mark(n, 0);
-  for (std::uint32_t root = 0; root < n; ++root) {
-    if (!is_candidate[root]) continue;
-    const auto order = OrderChain(graph, is_candidate, root, 2 * root + 1, mark);
-    for (const std::uint32_t i : order) is_candidate[i] = 0;
-    const auto first = static_cast<std::uint32_t>(nodes_.size());
-    for (std::uint32_t k = 0; k < order.size(); ++k) place[order[k]] = first + k;
-    std::uint32_t widest = 0;
-    for (const std::uint32_t i : order) {
-      for (auto h = graph.starts[i]; h < graph.starts[i + 1]; ++h) {
-        const std::uint32_t other = place[graph.others[h]];
-        if (other != kNone && other < place[i]) widest = std::max(widest, place[i] - other);
+/// Breadth-first order of the candidates that `root` is connected with, from the one found last, in chain_.
+void LinkChains::OrderChain(const NodeGraph& graph, std::uint32_t root, std::uint32_t round) {
+  for (const std::uint32_t pass : {round, round + 1}) {
+    chain_.assign(1, root);
+    marks_[root] = pass;
+    for (std::size_t at = 0; at < chain_.size(); ++at) {
+      for (auto h = graph.starts[chain_[at]]; h < graph.starts[chain_[at] + 1]; ++h) {
+        const std::uint32_t other = graph.others[h];
+        if (!is_candidate_[other] || marks_[other] == pass) continue;
+        marks_[other] = pass;
+        chain_.push_back(other);
       }
     }
-    if (order.size() == 1 || widest > kWidest) {
-      for (const std::uint32_t i : order) place[i] = kNone;
+    root = chain_.back();  // an end of the chain
+  }
+}
+
+void LinkChains::SetGraph(const NodeGraph& graph, const SliceLayout& layout) {
+  const std::uint32_t n = graph.Size();
+  constexpr std::uint32_t kNone = ~std::uint32_t{0};
+  nodes_.clear(), links_.clear(), first_.clear(), row_starts_.clear();
+  is_factorised_ = false;
+  is_candidate_.resize(n);
+  for (std::uint32_t i = 0; i < n; ++i) {
+    const std::uint32_t neighbours = graph.starts[i + 1] - graph.starts[i];
+    is_candidate_[i] = neighbours > 0 && neighbours <= kMostNeighbours;
+  }
+  place_.assign(n, kNone), marks_.assign(n, 0);
+  chain_.reserve(n);
+  for (std::uint32_t root = 0; root < n; ++root) {
+    if (!is_candidate_[root]) continue;
+    OrderChain(graph, root, 2 * root + 1);
+    for (const std::uint32_t i : chain_) is_candidate_[i] = 0;
+    const auto first = static_cast<std::uint32_t>(nodes_.size());
+    for (std::uint32_t k = 0; k < chain_.size(); ++k) place_[chain_[k]] = first + k;
+    std::uint32_t widest = 0;
+    for (const std::uint32_t i : chain_) {
+      for (auto h = graph.starts[i]; h < graph.starts[i + 1]; ++h) {
+        const std::uint32_t other = place_[graph.others[h]];
+        if (other != kNone && other < place_[i]) widest = std::max(widest, place_[i] - other);
+      }
+    }
+    if (chain_.size() == 1 || widest > kWidest) {
+      for (const std::uint32_t i : chain_) place_[i] = kNone;
     } else {
-      nodes_.insert(nodes_.end(), order.begin(), order.end());
+      nodes_.insert(nodes_.end(), chain_.begin(), chain_.end());
     }
   }
   row_starts_.push_back(0);
@@ -85,7 +83,7 @@ LinkChains::LinkChains(const NodeGraph& graph, const SliceLayout& layout) {
     const std::uint32_t i = nodes_[row];
     std::uint32_t first = row;
     for (auto h = graph.starts[i]; h < graph.starts[i + 1]; ++h) {
-      const std::uint32_t column = place[graph.others[h]];
+      const std::uint32_t column = place_[graph.others[h]];
       if (column == kNone || column >= row) continue;
       first = std::min(first, column);
       links_.push_back({row, column, static_cast<std::uint32_t>(layout.Entry(i, h - graph.starts[i]))});
@@ -98,6 +96,17 @@ LinkChains::LinkChains(const NodeGraph& graph, const SliceLayout& layout) {
   factor_.resize(row_starts_.back());
   lower_.resize(row_starts_.back());
   values_.resize(3 * nodes_.size());
+}
+
+void LinkChains::Reserve(double share) {
+  // a cut leaves nodes with few neighbours: of so many nodes some join chains, as wide as chains may be
+  const std::size_t nodes =
+      nodes_.size() + static_cast<std::size_t>(share * static_cast<double>(marks_.size()));
+  constexpr std::size_t kMostRow = 3 * (kWidest + 1);
+  nodes_.reserve(nodes);
+  links_.reserve(kMostNeighbours * nodes);
+  first_.reserve(3 * nodes), row_starts_.reserve(3 * nodes + 1), values_.reserve(3 * nodes);
+  factor_.reserve(3 * kMostRow * nodes), lower_.reserve(3 * kMostRow * nodes);
 }
 
 /// False where the matrix is not positive definite.

@@ -21,9 +21,14 @@ struct LinkLevel;
 
 class LinkChains {
  public:
+  LinkChains() = default;
   /// Finds the chains: connected nodes with few neighbours whose matrix is narrow.
   /// \param graph  of the finest level
-  LinkChains(const NodeGraph& graph, const SliceLayout& layout);
+  LinkChains(const NodeGraph& graph, const SliceLayout& layout) { SetGraph(graph, layout); }
+  /// The same for another graph.
+  /// \note Allocates nothing where Reserve() was enough.
+  void SetGraph(const NodeGraph& graph, const SliceLayout& layout);
+  void Reserve(double share);
 
   std::span<const std::uint32_t> Nodes() const { return nodes_; }
 
@@ -44,6 +49,7 @@ class LinkChains {
     std::uint32_t row, column;  // places in nodes_, row > column
     std::uint32_t entry;
   };
+  void OrderChain(const NodeGraph& graph, std::uint32_t root, std::uint32_t round);
   bool FactoriseOnce(const LinkLevel& level, std::span<const float> slack) noexcept;
   double& At(std::size_t row, std::size_t column) { return factor_[row_starts_[row] + column - first_[row]]; }
 
@@ -56,6 +62,10 @@ class LinkChains {
   std::vector<float> lower_;    // the factor, with the inverses of its diagonal
   std::vector<float> values_;   // (3 nodes)
   bool is_factorised_ = false;
+  // room for SetGraph
+  std::vector<std::uint8_t> is_candidate_;    // (n)
+  std::vector<std::uint32_t> place_, marks_;  // (n)
+  std::vector<std::uint32_t> chain_;          // the one that was found last
 };
 
 }  // namespace trocar::tissue

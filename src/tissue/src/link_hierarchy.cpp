@@ -3,23 +3,27 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <utility>
 
 #include "node_vectors.h"
+#include "room.h"
 
 namespace trocar::tissue {
 namespace {
 
-/// Slices a thread takes at a time; fixed, so that results do not depend on the number of threads.
-constexpr std::uint32_t kChunkSlices = 64;
+/// Slices a thread takes at a time: eight parts of a patient, so that two or four threads have the same to do.
+constexpr std::uint32_t kChunkSlices = 28;
 /// A level this small is solved directly.
 constexpr std::uint32_t kDirectNodes = 24;
 /// Passes of pairwise joining for one level: up to 2^n nodes in an aggregate.
 constexpr int kPairings = 2;
-/// On coarse links [-]: an aggregate is about two nodes wide, over which a step is twice as steep as a slope.
-constexpr double kCoarseLinkScale = 0.5;
-/// Of block Jacobi [-]; eigenvalues of D^-1 K reach 2.
-constexpr float kDamping = 0.65f;
+/// A level has at most nine tenths of the nodes of the one before; patients have six.
+constexpr std::size_t kMaxLevels = 32;
+/// On coarse links [-]: an aggregate is about two nodes wide, over which a step is twice as steep as a slope. A half is
+/// right for slopes alone; between 0.6 and 0.8 conjugate gradients need the fewest iterations.
+constexpr double kCoarseLinkScale = 0.7;
+/// Of block Jacobi [-]; eigenvalues of D^-1 K reach 2, and a cycle is positive definite below 1.
+constexpr float kDamping = 0.85f;
 /// Sweeps on a coarsest level that is too large for a direct solution: links are gone, so one would do.
 constexpr int kCoarsestSweeps = 4;
 
@@ -29,68 +33,6 @@ void ForEachSliceChunk(Workers& workers, std::uint32_t slices, const Work& work)
   const std::uint32_t size = std::max(kChunkSlices, slices / Workers::kMaxChunks + 1);
   workers.Run((slices + size - 1) / size,
               [&](std::uint32_t chunk) { work(chunk * size, std::min(slices, (chunk + 1) * size)); });
-}
-
-/// Joins each node with the unjoined neighbour that it is most stiffly linked to.
-/// \return (n) number of each node's aggregate, in order of first appearance
-std::vector<std::uint32_t> JoinPairs(const NodeGraph& graph, std::span<const double> stiffness,
-                                     std::uint32_t& count) {
-  constexpr std::uint32_t kNone = ~std::uint32_t{0};
-  std::vector<std::uint32_t> aggregate(graph.Size(), kNone);
-  count = 0;
-  for (std::uint32_t i = 0; i < graph.Size(); ++i) {
-    if (aggregate[i] != kNone) continue;
-    aggregate[i] = count;
-    std::uint32_t best = kNone;
-    double most = 0;
-    for (auto h = graph.starts[i]; h < graph.starts[i + 1]; ++h) {
-      if (aggregate[graph.others[h]] == kNone && stiffness[h] > most)
-        most = stiffness[h], best = graph.others[h];
-    }
-    if (best != kNone) aggregate[best] = count;
-    ++count;
-  }
-  return aggregate;
-}
-
-/// Graph of the aggregates, with the sums of their links; rows in ascending order.
-void MakeQuotient(const NodeGraph& graph, std::span<const double> stiffness,
-                  std::span<const std::uint32_t> aggregate, std::uint32_t count, NodeGraph& quotient,
-                  std::vector<double>& sums) {
-  std::vector<std::vector<std::pair<std::uint32_t, double>>> rows(count);
-  for (std::uint32_t i = 0; i < graph.Size(); ++i) {
-    for (auto h = graph.starts[i]; h < graph.starts[i + 1]; ++h) {
-      const std::uint32_t other = aggregate[graph.others[h]];
-      if (other != aggregate[i]) rows[aggregate[i]].emplace_back(other, stiffness[h]);
-    }
-  }
-  quotient = {};
-  sums.clear();
-  quotient.starts.push_back(0);
-  for (auto& row : rows) {
-    std::stable_sort(row.begin(), row.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-    for (std::size_t i = 0; i < row.size(); ++i) {
-      if (i > 0 && row[i].first == row[i - 1].first) {
-        sums.back() += row[i].second;
-      } else {
-        quotient.others.push_back(row[i].first);
-        sums.push_back(row[i].second);
-      }
-    }
-    quotient.starts.push_back(static_cast<std::uint32_t>(quotient.others.size()));
-  }
-}
-
-LinkLevel MakeLevel(const NodeGraph& graph) {
-  LinkLevel level;
-  level.layout = MakeSliceLayout(graph);
-  const std::size_t padded = level.layout.PaddedNodes();
-  level.links.resize(6 * level.layout.Steps() * kSliceNodes);
-  level.ground.resize(6 * padded);
-  level.inverse.resize(6 * padded);
-  level.is_free.resize(padded);
-  level.x.resize(padded), level.b.resize(padded), level.r.resize(padded);
-  return level;
 }
 
 /// Place of the first of a node's six ground values.
@@ -109,6 +51,25 @@ Symmetric3 ReadSymmetric(const std::vector<float>& values, std::size_t at) {
 }
 }  // namespace
 
+void LinkLevel::SetGraph(const NodeGraph& graph) {
+  SetSliceLayout(graph, layout);
+  const std::size_t padded = layout.PaddedNodes(), entries = layout.Steps() * kSliceNodes;
+  links.assign(6 * entries, 0.0f);
+  ground.assign(6 * padded, 0.0f), inverse.assign(6 * padded, 0.0f), is_free.assign(padded, 0.0f);
+  x.assign(padded, {}), b.assign(padded, {}), r.assign(padded, {});
+  aggregate.clear(), member_starts.clear(), members.clear(), coarse_entry.clear();
+}
+
+void LinkLevel::Reserve(std::size_t nodes, std::size_t steps) {
+  layout.starts.reserve(nodes / kSliceNodes + 2);
+  for (auto* entries : {&layout.others, &coarse_entry}) entries->reserve(steps * kSliceNodes);
+  links.reserve(6 * steps * kSliceNodes);
+  for (auto* blocks : {&ground, &inverse}) blocks->reserve(6 * nodes);
+  is_free.reserve(nodes);
+  for (auto* list : {&aggregate, &member_starts, &members}) list->reserve(nodes + 2);
+  for (auto* vector : {&x, &b, &r}) vector->reserve(nodes);
+}
+
 LinkMatrix LinkLevel::Matrix() const {
   return {layout.Table(), links.data(), ground.data(), inverse.data(), is_free.data()};
 }
@@ -121,57 +82,74 @@ void RunPass(const Kernels& kernels, Workers& workers, const LinkLevel& level, L
   });
 }
 
-LinkHierarchy::LinkHierarchy(const NodeGraph& graph, std::span<const double> stiffness)
-    : levels_({MakeLevel(graph)}), chains_(graph, levels_.front().layout) {
-  NodeGraph fine = graph;
-  std::vector<double> weights(stiffness.begin(), stiffness.end());
-  while (fine.Size() > kDirectNodes) {
-    std::vector<std::uint32_t> aggregate(fine.Size());
-    std::iota(aggregate.begin(), aggregate.end(), 0u);
-    NodeGraph coarse = fine;
-    std::vector<double> sums = weights;
-    for (int pairing = 0; pairing < kPairings; ++pairing) {
-      std::uint32_t count = 0;
-      const auto pairs = JoinPairs(coarse, sums, count);
-      NodeGraph quotient;
-      std::vector<double> quotient_sums;
-      MakeQuotient(coarse, sums, pairs, count, quotient, quotient_sums);
-      for (std::uint32_t& a : aggregate) a = pairs[a];
-      coarse = std::move(quotient);
-      sums = std::move(quotient_sums);
-    }
-    if (10 * coarse.Size() > 9 * fine.Size()) break;  // hardly a link left
-    levels_.push_back(MakeLevel(coarse));
-    LinkLevel& level = levels_[levels_.size() - 2];
-    const SliceLayout& next = levels_.back().layout;
-    level.coarse_entry.assign(level.layout.Steps() * kSliceNodes, LinkLevel::kNoEntry);
-    for (std::uint32_t i = 0; i < fine.Size(); ++i) {
-      const std::uint32_t from = aggregate[i];
+LinkHierarchy::LinkHierarchy(const NodeGraph& graph, std::span<const double> stiffness) : levels_(1) {
+  levels_.reserve(kMaxLevels);
+  SetGraph(graph, stiffness);
+}
+
+void LinkHierarchy::SetGraph(const NodeGraph& graph, std::span<const double> stiffness) {
+  fine_.graph.starts = graph.starts;
+  fine_.graph.others = graph.others;
+  fine_.stiffness.assign(stiffness.begin(), stiffness.end());
+  levels_.front().SetGraph(graph);
+  chains_.SetGraph(graph, levels_.front().layout);
+  is_inverted_ = false;
+  for (level_count_ = 1; fine_.graph.Size() > kDirectNodes && level_count_ < kMaxLevels; ++level_count_) {
+    aggregation_.Join(fine_, kPairings);
+    const NodeGraph& coarse = aggregation_.Coarse().graph;
+    if (coarse.Size() == 0 || 10 * coarse.Size() > 9 * fine_.graph.Size()) break;  // hardly a link left
+    if (levels_.size() == level_count_) levels_.emplace_back();
+    levels_[level_count_].SetGraph(coarse);
+    FillTransfer(fine_.graph, coarse, level_count_ - 1);
+    std::swap(fine_, aggregation_.Coarse());
+  }
+  const std::size_t unknowns = Coarsest().Size() <= kDirectNodes ? 3 * std::size_t{Coarsest().Size()} : 0;
+  factor_.resize(unknowns * unknowns);
+  rows_.resize(unknowns * unknowns);
+  inverse_.resize(unknowns * unknowns);
+}
+
+/// The way from a level to the next: members of the aggregates, and the coarse link that each link is part of.
+void LinkHierarchy::FillTransfer(const NodeGraph& fine, const NodeGraph& coarse, std::size_t at) {
+  LinkLevel& level = levels_[at];
+  const SliceLayout& next = levels_[at + 1].layout;
+  level.aggregate = aggregation_.Aggregate();
+  Aggregation::ListMembers(level.aggregate, coarse.Size(), level.member_starts, level.members);
+  level.coarse_entry.assign(level.layout.Steps() * kSliceNodes, LinkLevel::kNoEntry);
+  places_.assign(coarse.Size(), 0);
+  for (std::uint32_t from = 0; from < coarse.Size(); ++from) {
+    for (auto h = coarse.starts[from]; h < coarse.starts[from + 1]; ++h)
+      places_[coarse.others[h]] = static_cast<std::uint32_t>(next.Entry(from, h - coarse.starts[from]));
+    for (auto m = level.member_starts[from]; m < level.member_starts[from + 1]; ++m) {
+      const std::uint32_t i = level.members[m];
       for (auto h = fine.starts[i]; h < fine.starts[i + 1]; ++h) {
-        const std::uint32_t to = aggregate[fine.others[h]];
-        if (to == from) continue;
-        const auto row = coarse.others.begin() + coarse.starts[from];
-        const auto place = std::lower_bound(row, coarse.others.begin() + coarse.starts[from + 1], to) - row;
-        level.coarse_entry[level.layout.Entry(i, h - fine.starts[i])] =
-            static_cast<std::uint32_t>(next.Entry(from, static_cast<std::uint32_t>(place)));
+        const std::uint32_t to = level.aggregate[fine.others[h]];
+        if (to != from) level.coarse_entry[level.layout.Entry(i, h - fine.starts[i])] = places_[to];
       }
     }
-    level.member_starts.assign(coarse.Size() + 1, 0);
-    for (const std::uint32_t a : aggregate) ++level.member_starts[a + 1];
-    std::partial_sum(level.member_starts.begin(), level.member_starts.end(), level.member_starts.begin());
-    level.members.resize(fine.Size());
-    auto next_member = level.member_starts;
-    for (std::uint32_t i = 0; i < fine.Size(); ++i) level.members[next_member[aggregate[i]]++] = i;
-    level.aggregate = std::move(aggregate);
-    fine = std::move(coarse);
-    weights = std::move(sums);
   }
-  if (levels_.back().Size() <= kDirectNodes) {
-    const std::size_t unknowns = 3 * levels_.back().Size();
-    factor_.resize(unknowns * unknowns);
-    rows_.resize(unknowns * unknowns);
-    inverse_.resize(unknowns * unknowns);
+}
+
+void LinkHierarchy::Reserve(double share) {
+  const auto more = [share](std::size_t count) {
+    return static_cast<std::size_t>((1.0 + share) * static_cast<double>(count)) + kLeastRoom;
+  };
+  const std::size_t nodes = more(levels_.front().Size()), links = more(levels_.front().layout.others.size());
+  fine_.Reserve(nodes, links);
+  aggregation_.Reserve(nodes, links);
+  places_.reserve(nodes);
+  chains_.Reserve(share);
+  // another graph may need other levels: each has room for half of the one before, and there are two more
+  std::size_t level_nodes = nodes, steps = links / kSliceNodes;
+  for (std::size_t at = 0; at < std::min(level_count_ + 2, kMaxLevels); ++at) {
+    if (at == levels_.size()) levels_.emplace_back();
+    LinkLevel& level = levels_[at];
+    level_nodes = std::max(more(level.x.size()), level_nodes / 2);
+    steps = std::max(more(level.layout.others.size() / kSliceNodes), steps / 2);
+    level.Reserve(level_nodes, steps);
   }
+  for (auto* room : {&factor_, &rows_}) room->reserve(9 * kDirectNodes * kDirectNodes);
+  inverse_.reserve(9 * kDirectNodes * kDirectNodes);
 }
 
 void LinkHierarchy::Coarsen(std::size_t at, std::span<const float> slack) noexcept {
@@ -184,7 +162,7 @@ void LinkHierarchy::Coarsen(std::size_t at, std::span<const float> slack) noexce
     for (std::size_t v = 0; v < 6; ++v) to[v * kSliceNodes] += scale * m[v];
   };
   for (std::uint32_t i = 0; i < level.Size(); ++i) {
-    if (level.is_free[i] == 0.0f) continue;
+    if (level.is_free[i] == 0.0f || level.aggregate[i] == Aggregation::kNone) continue;
     next.is_free[level.aggregate[i]] = 1.0f;
     float* const ground = next.ground.data() + GroundAt(level.aggregate[i]);
     for (std::size_t v = 0; v < 6; ++v)
@@ -209,7 +187,7 @@ void LinkHierarchy::Coarsen(std::size_t at, std::span<const float> slack) noexce
 
 void LinkHierarchy::UpdateCoarse(const Kernels& kernels, Workers& workers,
                                  std::span<const float> slack) noexcept {
-  for (std::size_t at = 0; at + 1 < levels_.size(); ++at) {
+  for (std::size_t at = 0; at + 1 < level_count_; ++at) {
     Coarsen(at, at == 0 ? slack : std::span<const float>());
     LinkLevel& next = levels_[at + 1];
     const LinkMatrix matrix = next.Matrix();
@@ -222,7 +200,7 @@ void LinkHierarchy::UpdateCoarse(const Kernels& kernels, Workers& workers,
 
 /// K = L L^T, then K^-1 = L^-T L^-1, row by row.
 void LinkHierarchy::InvertCoarsest() noexcept {
-  const LinkLevel& level = levels_.back();
+  const LinkLevel& level = Coarsest();
   const std::size_t n = 3 * level.Size();
   std::fill(factor_.begin(), factor_.end(), 0.0);
   const auto add = [&](std::uint32_t i, std::uint32_t j, const Symmetric3& m, double sign) {
@@ -290,7 +268,7 @@ void LinkHierarchy::InvertCoarsest() noexcept {
 }
 
 void LinkHierarchy::SolveCoarsest(const Float4* b, Float4* x) const noexcept {
-  const std::uint32_t nodes = levels_.back().Size();
+  const std::uint32_t nodes = Coarsest().Size();
   const std::size_t n = 3 * std::size_t{nodes};
   std::array<float, 3 * kDirectNodes> sum{};
   for (std::uint32_t i = 0; i < nodes; ++i) {
@@ -306,7 +284,7 @@ void LinkHierarchy::SolveCoarsest(const Float4* b, Float4* x) const noexcept {
 void LinkHierarchy::Cycle(const Kernels& kernels, Workers& workers, std::size_t at, const Float4* b,
                           Float4* x) noexcept {
   LinkLevel& level = levels_[at];
-  const bool is_last = at + 1 == levels_.size();
+  const bool is_last = at + 1 == level_count_;
   if (is_last && is_inverted_) return SolveCoarsest(b, x);
   RunPass(kernels, workers, level, LinkPass::kStart, nullptr, b, kDamping, level.x.data());
   if (at == 0) chains_.Solve(level, nullptr, b, kDamping, level.x.data());
@@ -332,6 +310,7 @@ void LinkHierarchy::Cycle(const Kernels& kernels, Workers& workers, std::size_t 
   Cycle(kernels, workers, at + 1, next.b.data(), next.r.data());
   ForEachNodeChunk(workers, level.Size(), [&](std::uint32_t first, std::uint32_t last, std::uint32_t) {
     for (std::uint32_t i = first; i < last; ++i) {
+      if (level.aggregate[i] == Aggregation::kNone) continue;
       const Float4& coarse = next.r[level.aggregate[i]];
       const float is_free = level.is_free[i];
       Float4& here = level.x[i];

@@ -16,6 +16,7 @@
 #include <span>
 #include <vector>
 
+#include "aggregation.h"
 #include "link_chains.h"
 #include "slice_layout.h"
 #include "symmetric3.h"
@@ -27,7 +28,7 @@ namespace trocar::tissue {
 struct LinkLevel {
   SliceLayout layout;
   std::vector<float> links, ground, inverse, is_free;  // as in LinkMatrix
-  std::vector<std::uint32_t> aggregate;                // (n) node of the next level; empty on the last
+  std::vector<std::uint32_t> aggregate;                // (n) node of the next level, or Aggregation::kNone
   std::vector<std::uint32_t> member_starts, members;   // nodes of each aggregate
   std::vector<std::uint32_t> coarse_entry;             // (entries) place of the link there, or kNoEntry
   std::vector<Float4> x, b, r;                         // (padded nodes)
@@ -36,6 +37,8 @@ struct LinkLevel {
 
   std::uint32_t Size() const { return layout.node_count; }
   LinkMatrix Matrix() const;
+  void SetGraph(const NodeGraph& graph);
+  void Reserve(std::size_t nodes, std::size_t steps);
 };
 
 /// The level's pass over all nodes, in chunks of fixed size.
@@ -47,11 +50,16 @@ class LinkHierarchy {
   /// \param graph      of the finest level, in its order
   /// \param stiffness  (graph.others) what joins nodes into aggregates, >= 0
   LinkHierarchy(const NodeGraph& graph, std::span<const double> stiffness);
+  /// The same for another graph.
+  /// \note Allocates nothing where Reserve() was enough.
+  void SetGraph(const NodeGraph& graph, std::span<const double> stiffness);
+  /// Room for `share` times more nodes and links than there are.
+  void Reserve(double share);
 
   /// Matrix of the finest level: links, ground and is_free are the caller's to fill.
   LinkLevel& Finest() { return levels_.front(); }
   const LinkLevel& Finest() const { return levels_.front(); }
-  std::span<const LinkLevel> Levels() const { return levels_; }
+  std::span<const LinkLevel> Levels() const { return std::span(levels_).first(level_count_); }
 
   /// Computes all coarser levels. Links may be indefinite where springs are compressed; here they count as
   /// slack. The finest level, its inverse blocks included, is the caller's.
@@ -75,8 +83,17 @@ class LinkHierarchy {
   void InvertCoarsest() noexcept;
   void SolveCoarsest(const Float4* b, Float4* x) const noexcept;
 
-  std::vector<LinkLevel> levels_;
+  LinkLevel& Coarsest() { return levels_[level_count_ - 1]; }
+  const LinkLevel& Coarsest() const { return levels_[level_count_ - 1]; }
+  void FillTransfer(const NodeGraph& fine, const NodeGraph& coarse, std::size_t at);
+
+  std::vector<LinkLevel> levels_;  // the first level_count_ are in use
+  std::size_t level_count_ = 0;
   LinkChains chains_;
+  // room for SetGraph
+  Aggregation aggregation_;
+  LinkGraph fine_;
+  std::vector<std::uint32_t> places_;
   std::vector<double> factor_, rows_;  // room for the inversion of the coarsest level, dense
   std::vector<float> inverse_;         // of the coarsest level; empty where that is too large
   bool is_inverted_ = false;

@@ -40,6 +40,9 @@ constexpr double kLinearRounding = 1e-12;
 /// Coarser levels are computed again when a node may have gone so far, in mean spring lengths [-]: they follow
 /// the springs' directions, which have hardly turned before.
 constexpr double kStaleMove = 0.2;
+/// A soft mode that an earlier step met is forgotten when a node goes so far in one step, in mean spring lengths [-]:
+/// a fold has snapped, and is stiff now.
+constexpr double kSnapMove = 0.02;
 
 double CalcSeenShare(double smallest_ritz) noexcept {
   return std::clamp(smallest_ritz, kLeastSeenShare, kSeenShare);
@@ -84,6 +87,24 @@ NewtonMultigrid::NewtonMultigrid(const TissueModel& model)
   balance_.is_pressing.resize(kMaxContacts);
   for (auto* vector : {&step_, &r_, &z_, &p_, &q_}) vector->resize(padded);
   for (Constraint& c : constraints_room_) c.gradient.resize(padded), c.answer.resize(padded);
+  SetEdgeLength();
+}
+
+void NewtonMultigrid::SetModel(const TissueModel& model) {
+  SetOrderedModel(model, model_);
+  hierarchy_.SetGraph(model_.graph, model_.graph_stiffness);
+  linearisation_.SetModel();
+  has_answers_ = false;
+  SetEdgeLength();
+}
+
+void NewtonMultigrid::Reserve(double share) {
+  model_.Reserve(share);
+  hierarchy_.Reserve(share);
+  linearisation_.Reserve(share);
+}
+
+void NewtonMultigrid::SetEdgeLength() noexcept {
   double sum = 0;
   std::size_t count = 0;
   for (const double rest : model_.rest_length) sum += rest, count += rest > 0.0;
@@ -173,7 +194,7 @@ void NewtonMultigrid::Precondition(const Kernels& kernels, Workers& workers) noe
 
 NewtonMultigrid::LinearReport NewtonMultigrid::SolveLinear(const Kernels& kernels, Workers& workers,
                                                            int max_iterations, double loose, double tolerance,
-                                                           double radius) noexcept {
+                                                           double softest, double radius) noexcept {
   LinearReport report;
   const std::size_t n = step_.size();
   std::fill(step_.begin(), step_.end(), Float4{});
@@ -208,7 +229,7 @@ NewtonMultigrid::LinearReport NewtonMultigrid::SolveLinear(const Kernels& kernel
     }
     Precondition(kernels, workers);
     const double left = FindLongest(kernels, workers, z_);
-    if (left <= loose || left <= tolerance * CalcSeenShare(ritz.Value())) break;
+    if (left <= loose || left <= tolerance * CalcSeenShare(std::fmin(softest, ritz.Value()))) break;
     const double next = CalcDot(kernels, workers, r_, z_);
     beta = next / rz;
     rz = next;
@@ -291,7 +312,7 @@ SolveReport NewtonMultigrid::Solve(const Kernels& kernels, Workers& workers, con
     const auto first_multipliers = multipliers_;
     const LinearReport linear =
         SolveLinear(kernels, workers, settings.max_linear_iterations, kForcing * preconditioned,
-                    kLinearShare * settings.max_error * scale, radius);
+                    kLinearShare * settings.max_error * scale, smallest_ritz, radius);
     smallest_ritz = std::fmin(smallest_ritz, linear.smallest_ritz);
     report.linear_iterations += linear.iterations;
     report.negative_curvatures += linear.met_negative_curvature;
@@ -343,6 +364,7 @@ SolveReport NewtonMultigrid::Solve(const Kernels& kernels, Workers& workers, con
     }
     moved += share * length;
     if (moved > kStaleMove * edge_length_) update_coarse();
+    if (share * length > kSnapMove * edge_length_) smallest_ritz = INFINITY;
     estimate();
   }
   write_back();

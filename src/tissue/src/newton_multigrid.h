@@ -19,6 +19,10 @@ class NewtonMultigrid {
   using SmallMatrix = std::array<SmallVector, kMaxHookConstraints>;
 
   explicit NewtonMultigrid(const TissueModel& model);
+  /// Goes on with another model of as many nodes.
+  /// \note Allocates nothing where Reserve() was enough.
+  void SetModel(const TissueModel& model);
+  void Reserve(double share);
   NewtonMultigrid(const NewtonMultigrid&) = delete;  // parts point at each other
   NewtonMultigrid& operator=(const NewtonMultigrid&) = delete;
 
@@ -26,7 +30,7 @@ class NewtonMultigrid {
   SolveReport Solve(const Kernels& kernels, Workers& workers, const SolverSettings& settings,
                     const TissueLoad& load, TissueState& state, const SolveHook* hook) noexcept;
 
-  /// The springs it works with, for SpringLines to keep up to date.
+  /// The springs it works with, for SpringLines to keep up to date, and for others to read.
   OrderedModel& Springs() noexcept { return model_; }
 
  private:
@@ -38,8 +42,9 @@ class NewtonMultigrid {
   };
   /// Solves K step_ = residual until the preconditioned remainder is below `loose`, or the error left in the
   /// step is estimated below `tolerance` [m], or until a node has moved by `radius` [m].
+  /// \param softest  smallest Ritz value of the steps before: this step is solved as deep as the estimate asks
   LinearReport SolveLinear(const Kernels& kernels, Workers& workers, int max_iterations, double loose,
-                           double tolerance, double radius) noexcept;
+                           double tolerance, double softest, double radius) noexcept;
   /// Takes the gradients of the active constraints.
   void SetConstraints(const SolveHook* hook) noexcept;
   /// What the preconditioner answers to each gradient; from the step before while the preconditioner stays.
@@ -52,6 +57,7 @@ class NewtonMultigrid {
   /// Comput. 23, 2001).
   void Precondition(const Kernels& kernels, Workers& workers) noexcept;
   void Multiply(const Kernels& kernels, Workers& workers, const Float4* x, Float4* out) noexcept;
+  void SetEdgeLength() noexcept;
 
   OrderedModel model_;
   OrderedLoad load_;

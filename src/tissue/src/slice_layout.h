@@ -16,13 +16,25 @@ struct NodeGraph {
   std::vector<std::uint32_t> others;
 
   std::uint32_t Size() const { return static_cast<std::uint32_t>(starts.size()) - 1; }
+  /// No nodes; the vectors keep their memory.
+  void Clear() noexcept {
+    starts.assign(1, 0);
+    others.clear();
+  }
+};
+
+/// Memory of FindNodeOrder.
+struct NodeOrderRoom {
+  std::vector<std::uint32_t> roots, places;
+  std::vector<std::uint8_t> is_placed;
 };
 
 /// Order that puts neighbours close together in memory: breadth first from a node of low degree (Cuthill and
 /// McKee, "Reducing the bandwidth of sparse symmetric matrices", ACM 1969), then by degree within short runs,
 /// so that the rows of a slice are alike in length.
-/// \return (n) old index of each new place
-std::vector<std::uint32_t> CalcNodeOrder(const NodeGraph& graph);
+/// \param[out] order  (n) old index of each new place
+/// \note Allocates nothing where the vectors have room.
+void FindNodeOrder(const NodeGraph& graph, NodeOrderRoom& room, std::vector<std::uint32_t>& order);
 
 /// A graph's neighbours in slices of kSliceNodes.
 struct SliceLayout {
@@ -43,6 +55,7 @@ struct SliceLayout {
   }
   SliceTable Table() const { return {starts.data(), others.data()}; }
 };
-SliceLayout MakeSliceLayout(const NodeGraph& graph);
+/// \note Allocates nothing where the vectors of `layout` have room.
+void SetSliceLayout(const NodeGraph& graph, SliceLayout& layout);
 
 }  // namespace trocar::tissue

@@ -15,10 +15,10 @@
 
 namespace trocar::tissue {
 
-SlicedSprings MakeSlicedSprings(const TissueModel& model) {
+void SetSlicedSprings(const TissueModel& model, SlicedSprings& sliced) {
   const auto n = static_cast<std::uint32_t>(model.Size());
-  SlicedSprings sliced;
-  sliced.starts.push_back(0);
+  sliced.starts.assign(1, 0);
+  sliced.others.clear(), sliced.stiffness.clear(), sliced.stiffness_times_rest.clear();
   for (std::uint32_t first = 0; first < n; first += kLanes) {
     std::uint32_t longest = 0;
     for (std::uint32_t i = first; i < std::min(n, first + kLanes); ++i) {
@@ -37,7 +37,6 @@ SlicedSprings MakeSlicedSprings(const TissueModel& model) {
     }
     sliced.starts.push_back(sliced.starts.back() + longest);
   }
-  return sliced;
 }
 
 TROCAR_VERSIONS

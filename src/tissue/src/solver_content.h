@@ -66,6 +66,9 @@ struct EquilibriumSolver::Content {
   std::vector<std::uint32_t> strand_nodes;   // those with strands
   std::vector<std::uint32_t> touched_nodes;  // those with contacts in this solve
   std::vector<SliceReport> chunk_reports;
+
+  void SetStrandNodes(const TissueModel& with);
+  void Reserve(double share);
 };
 
 SolveReport SolveRelaxationPaper(EquilibriumSolver::Content& content, const SolverSettings& settings,

@@ -3,20 +3,27 @@
 
 #include <algorithm>
 
+#include "room.h"
 #include "trocar/core/assert.h"
 #include "trocar/tissue/spring_law.h"
 
 namespace trocar::tissue {
 
-SpringLines::SpringLines(const TissueModel& model, SlicedSprings& sliced,
-                         std::array<OrderedModel*, 2> ordered)
-    : model_(&model),
-      sliced_(&sliced),
-      ordered_(ordered),
-      lines_(model),
-      ends_(model.SpringCount()),
-      factor_(model.SpringCount(), 1.0),
-      is_changed_(model.SpringCount(), 0) {
+SpringLines::SpringLines(const TissueModel& model, SlicedSprings& sliced, OrderedModel& ordered)
+    : sliced_(&sliced), ordered_(&ordered) {
+  SetModel(model);
+}
+
+void SpringLines::SetModel(const TissueModel& model) {
+  model_ = &model;
+  lines_ = model;
+  ends_.assign(model.SpringCount(), {});
+  factor_.assign(model.SpringCount(), 1.0);
+  is_changed_.assign(model.SpringCount(), 0);
+  changed_count_ = 0;
+  adrift_.clear();
+  elastic_.clear();
+  const SlicedSprings& sliced = *sliced_;
   for (std::uint32_t i = 0; i < model.Size(); ++i) {
     const std::size_t first = std::size_t{sliced.starts[i / kLanes]} * kLanes + i % kLanes;
     for (auto h = model.spring_starts[i]; h < model.spring_starts[i + 1]; ++h) {
@@ -34,6 +41,11 @@ SpringLines::SpringLines(const TissueModel& model, SlicedSprings& sliced,
   for (std::uint32_t spring = 0; spring < model.SpringCount(); ++spring) {
     if (model.laws[model.spring_law[spring]].stiffening > 0.0) elastic_.push_back(spring);
   }
+}
+
+void SpringLines::Reserve(double share) {
+  ReserveMore(share, lines_.half_springs, lines_.half_strands, lines_.spring_law, ends_, factor_, is_changed_,
+              elastic_);
 }
 
 bool SpringLines::TakeFactors(const TissueState& state) noexcept {
@@ -92,11 +104,8 @@ void SpringLines::SetLine(std::uint32_t spring, double stiffness, double rest_le
   for (const std::uint32_t h : {ends.half_a, ends.half_b}) {
     lines_.half_springs[h].stiffness = stiffness;
     lines_.half_springs[h].rest_length = rest_length;
-    for (OrderedModel* ordered : ordered_) {
-      if (ordered->spring_entries.empty()) continue;
-      ordered->stiffness[ordered->spring_entries[h]] = stiffness;
-      ordered->rest_length[ordered->spring_entries[h]] = rest_length;
-    }
+    ordered_->stiffness[ordered_->spring_entries[h]] = stiffness;
+    ordered_->rest_length[ordered_->spring_entries[h]] = rest_length;
   }
   for (const std::size_t place : {ends.sliced_a, ends.sliced_b}) {
     sliced_->stiffness[place] = stiffness;

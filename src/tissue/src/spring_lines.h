@@ -30,13 +30,18 @@ struct SlicedSprings {
   std::vector<double> stiffness;             // (steps * kLanes) k
   std::vector<double> stiffness_times_rest;  // (steps * kLanes) k l
 };
-SlicedSprings MakeSlicedSprings(const TissueModel& model);
+/// \note Allocates nothing where the vectors have room.
+void SetSlicedSprings(const TissueModel& model, SlicedSprings& sliced);
 
 class SpringLines {
  public:
   /// \param model    the springs with their laws; must outlive this
-  /// \param sliced, ordered  where the solvers keep the springs; an ordered model without nodes is left alone
-  SpringLines(const TissueModel& model, SlicedSprings& sliced, std::array<OrderedModel*, 2> ordered);
+  /// \param sliced, ordered  where the solvers keep the springs
+  SpringLines(const TissueModel& model, SlicedSprings& sliced, OrderedModel& ordered);
+  /// Goes on with another model, which the solvers' springs have followed.
+  /// \note Allocates nothing where Reserve() was enough.
+  void SetModel(const TissueModel& model);
+  void Reserve(double share);
 
   /// The model with the lines in place of the springs.
   const TissueModel& Model() const { return lines_; }
@@ -94,7 +99,7 @@ class SpringLines {
   };
   const TissueModel* model_;
   SlicedSprings* sliced_;
-  std::array<OrderedModel*, 2> ordered_;
+  OrderedModel* ordered_;
   TissueModel lines_;
   std::vector<Ends> ends_;                // (springs)
   std::vector<double> factor_;            // (springs) as the lines have it

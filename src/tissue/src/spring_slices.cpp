@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "room.h"
+
 namespace trocar::tissue {
 namespace {
 
@@ -13,10 +15,11 @@ constexpr std::size_t kSpringFloats = 5 * kSliceNodes;
 
 }  // namespace
 
-SpringSlices::SpringSlices(const OrderedModel& model) : layout_(model.layout) {
+void SpringSlices::SetModel(const OrderedModel& model) {
+  layout_ = model.layout;
   springs_.assign(layout_.Steps() * kSpringFloats, 0.0f);
   nodes_.assign(layout_.PaddedNodes() * 5, 0.0f);
-  u_.resize(layout_.PaddedNodes());
+  u_.assign(layout_.PaddedNodes(), {});
   previous_ = u_;
   for (std::uint32_t i = 0; i < model.Size(); ++i) {
     for (std::uint32_t step = 0; step < layout_.RowSteps(i); ++step) {
@@ -26,6 +29,10 @@ SpringSlices::SpringSlices(const OrderedModel& model) : layout_(model.layout) {
       for (int axis = 0; axis < 3; ++axis) spring[axis * kSliceNodes] = static_cast<float>(offset[axis]);
     }
   }
+}
+
+void SpringSlices::Reserve(double share) {
+  ReserveMore(share, layout_.starts, layout_.others, springs_);
 }
 
 void SpringSlices::SetLoad(const OrderedModel& model, const OrderedLoad& load,

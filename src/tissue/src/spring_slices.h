@@ -11,7 +11,10 @@ namespace trocar::tissue {
 /// The iteration on an irregular mesh. Displacements are stored, as in SpringGrid.
 class SpringSlices {
  public:
-  explicit SpringSlices(const OrderedModel& model);
+  /// Takes a model over, without displacements.
+  /// \note Allocates nothing where Reserve() was enough.
+  void SetModel(const OrderedModel& model);
+  void Reserve(double share);
 
   /// \param load  in the solvers' order, without contacts
   void SetLoad(const OrderedModel& model, const OrderedLoad& load,

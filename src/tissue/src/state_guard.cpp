@@ -25,6 +25,11 @@ GuardVerdict StateGuard::Check(TissueState& state, bool is_solve_finite) noexcep
   return IsFrozen() ? GuardVerdict::kFrozen : GuardVerdict::kRestored;
 }
 
+void StateGuard::Follow(const TissueModel& model, const TissueState& state) noexcept {
+  model_ = &model;
+  std::copy(state.position.begin(), state.position.end(), good_.begin());
+}
+
 void StateGuard::Release(const TissueState& state) noexcept {
   std::copy(state.position.begin(), state.position.end(), good_.begin());
   bad_in_a_row_ = 0;

@@ -40,7 +40,9 @@ core::Result<double> FindDuration(const session::Scene& scene, const DemoOptions
 /// Times at which pictures are kept, ascending and within the demonstration.
 std::vector<double> FindPictureTimes(const DemoOptions& options, double duration) {
   std::vector<double> times = options.picture_times;
-  if (times.empty()) {
+  if (times.empty() && options.surgeon != nullptr) {
+    for (double time = 1; time <= duration; time *= 2) times.push_back(time);
+  } else if (times.empty()) {
     for (int i = 0; i < kDefaultPictures; ++i) times.push_back(duration * (i + 0.5) / kDefaultPictures);
   }
   std::erase_if(times, [duration](double time) { return !(time >= 0.0 && time <= duration); });
@@ -73,7 +75,8 @@ core::Result<DemoReport> PlayDemonstration(std::shared_ptr<const session::Scene>
   if (!context) return context.error();
   auto target = render::OffscreenTarget::Make(options.width, options.height);
   if (!target) return target.error();
-  auto view = LaparoscopeView::Make(*scene, simulation->Surfaces(), simulation->GetSnapshot());
+  auto view =
+      LaparoscopeView::Make(*scene, simulation->Surfaces(), simulation->GetSnapshot(), simulation->Strands());
   if (!view) return view.error();
   view->SetOptions(options.view);
 
@@ -88,6 +91,9 @@ core::Result<DemoReport> PlayDemonstration(std::shared_ptr<const session::Scene>
     video.emplace(std::move(*made));
   }
 
+  if (options.on_start) {
+    if (auto status = options.on_start(*simulation); !status) return status.error();
+  }
   const std::vector<double> picture_times = FindPictureTimes(options, *duration);
   const auto frame_count =
       static_cast<std::uint64_t>(std::floor(*duration * options.frames_per_second + 1e-9)) + 1;
@@ -99,7 +105,8 @@ core::Result<DemoReport> PlayDemonstration(std::shared_ptr<const session::Scene>
     const auto tick_goal = static_cast<std::uint64_t>(std::floor(time / scene->tick_seconds + 1e-6));
     while (report.ticks < tick_goal) {
       const double now = simulation->GetSnapshot().time;
-      session::Input input = session::CalcScriptInput(*scene, now);
+      session::Input input = options.surgeon != nullptr ? options.surgeon->Act(simulation->GetSnapshot())
+                                                        : session::CalcScriptInput(*scene, now);
       if (options.change_input) options.change_input(now, input);
       simulation->Step(input);
       ++report.ticks;
@@ -122,23 +129,27 @@ core::Result<DemoReport> PlayDemonstration(std::shared_ptr<const session::Scene>
       if (auto status = video->AddFrame(image); !status) return status.error();
     }
     // the last picture may be asked for at the very end, between the last frame and it
-    const bool is_last = frame + 1 == frame_count;
+    const bool has_finished = options.surgeon != nullptr && options.surgeon->HasFinished();
+    const bool is_last = frame + 1 == frame_count || has_finished;
     while (next_picture < picture_times.size() &&
            (picture_times[next_picture] <= frame_time + 1e-9 || is_last)) {
       const auto path = options.output_folder / PictureName(++next_picture);
       if (auto status = render::WritePng(path, image); !status) return status.error();
       report.pictures.push_back({frame_time, path});
+      if (has_finished) break;  // what was to come later shows the end, once
     }
     if (options.on_progress)
       options.on_progress(static_cast<double>(frame + 1) / static_cast<double>(frame_count));
+    if (has_finished) break;
   }
-  play_until(*duration);  // what lies behind the last frame
+  if (options.surgeon == nullptr) play_until(*duration);  // what lies behind the last frame
   if (video) {
     if (auto status = video->Finish(); !status) return status.error();
   }
   report.draw_median = core::CalcPercentile(draw_seconds, 0.5);
   report.draw_p99 = core::CalcPercentile(draw_seconds, 0.99);
   report.state_hash = simulation->Hash();
+  report.operation = simulation->GetOperationResult();
   return report;
 }
 

@@ -7,10 +7,9 @@
 #include <thread>
 #include <utility>
 
-#include "hands/stylus_hand.h"
+#include "hands/force_mailbox.h"
 #include "haply_messages.h"
 #include "trocar/core/clock.h"
-#include "trocar/core/newest_slot.h"
 #include "trocar/device/mouse_keyboard.h"
 #include "web_socket.h"
 
@@ -30,11 +29,7 @@ constexpr const char* kKey = "dHJvY2FyIHNpbXVsYXRvcg==";
 constexpr std::uint32_t kMask =
     0x5a17c3e9;  // a rule of the protocol against proxies, of which there are none here
 
-struct Command {
-  std::array<Vec3, kMaxDevices> forces;  // [N]
-  std::int64_t time = 0;                 // [ns]
-};
-using Reports = std::array<ForceSample, kMaxDevices>;
+static_assert(kMaxDevices == ForceMailbox::kMaxDevices);
 
 }  // namespace
 
@@ -47,12 +42,10 @@ struct Haply::Content {
   std::string inbox, outbox;
   std::vector<std::string> ids;
 
-  core::NewestSlot<Reports> reports;
-  core::NewestSlot<Command> commands;
-  Command command;              // of the haptic loop
-  Reports newest;               // of the thread below
-  std::int64_t last_state = 0;  // [ns]
-  std::atomic<bool> is_stopping{false}, is_lost{false};
+  ForceMailbox mailbox;
+  ForceMailbox::Reports newest;  // of the thread below
+  std::int64_t last_state = 0;   // [ns]
+  std::atomic<bool> is_stopping{false};
   std::thread thread;
 
   core::Status OpenSocket();
@@ -155,17 +148,12 @@ void Haply::Content::Take(const haply::State& state) {
     sample.status = ForceDeviceStatus::kOk;
     ++sample.sequence;
   }
-  reports.Back() = newest;
-  reports.Publish();
+  mailbox.Report(newest);
 }
 
 /// The service sends its next state after an answer, so that there always is one.
 void Haply::Content::Answer(bool may_push) {
-  commands.Update();
-  const Command& wanted = commands.Front();
-  const bool is_fresh = 1e-9 * static_cast<double>(core::NowNanoseconds() - wanted.time) <= kForceLife;
-  const std::array<Vec3, kMaxDevices> forces =
-      may_push && is_fresh ? wanted.forces : std::array<Vec3, kMaxDevices>{};
+  const ForceMailbox::Forces forces = may_push ? mailbox.TakeForces() : ForceMailbox::Forces{};
   outbox += web_socket::FormatFrame(Opcode::kText, haply::FormatForces(ids, forces), kMask);
 }
 
@@ -186,7 +174,7 @@ void Haply::Content::Run() {
     }
     is_there = is_there && Flush();
     if (!is_there || 1e-9 * static_cast<double>(core::NowNanoseconds() - last_state) > settings.lost_after) {
-      is_lost.store(true, std::memory_order_release);
+      mailbox.SetLost();
       break;
     }
     SystemClock().Sleep(kPause);
@@ -256,10 +244,8 @@ core::Status Haply::DoConfigure() {
 
 core::Status Haply::DoActivate() {
   Content& c = *content_;
-  c.is_stopping = c.is_lost = false;
-  c.command = {};
-  c.commands.Back() = {};
-  c.commands.Publish();
+  c.is_stopping = false;
+  c.mailbox.Clear();
   c.newest = {};
   c.last_state = core::NowNanoseconds();
   c.Answer(false);
@@ -277,29 +263,15 @@ void Haply::DoCleanup() noexcept {
 }
 
 ReadStatus Haply::DoReadForceSamples(std::span<ForceSample> samples) noexcept {
-  Content& c = *content_;
-  if (c.is_lost.load(std::memory_order_acquire)) return ReadStatus::kLost;
-  const bool is_fresh = c.reports.Update();
-  std::copy_n(c.reports.Front().begin(), samples.size(), samples.begin());
-  return is_fresh ? ReadStatus::kFresh : ReadStatus::kUnchanged;
+  return content_->mailbox.Read(samples);
 }
 
 ReadStatus Haply::DoRead(std::span<HandSample> samples) noexcept {
-  Content& c = *content_;
-  if (c.is_lost.load(std::memory_order_acquire)) return ReadStatus::kLost;
-  const bool is_fresh = c.reports.Update();
-  for (std::size_t i = 0; i < samples.size(); ++i)
-    SetHand(c.reports.Front()[i], c.settings.p_device_trocar, samples[i]);
-  return is_fresh ? ReadStatus::kFresh : ReadStatus::kUnchanged;
+  return content_->mailbox.Read(samples, content_->settings.p_device_trocar);
 }
 
 void Haply::DoSendForce(int channel, const GatedForce& force) noexcept {
-  Content& c = *content_;
-  if (channel < 0 || static_cast<std::size_t>(channel) >= c.command.forces.size()) return;
-  c.command.forces[static_cast<std::size_t>(channel)] = force.Get();
-  c.command.time = core::NowNanoseconds();
-  c.commands.Back() = c.command;
-  c.commands.Publish();
+  content_->mailbox.Send(channel, force);
 }
 
 }  // namespace trocar::device

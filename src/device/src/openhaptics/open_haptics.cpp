@@ -6,10 +6,8 @@
 #include <atomic>
 #include <cmath>
 
-#include "hands/stylus_hand.h"
+#include "hands/force_mailbox.h"
 #include "hd_library.h"
-#include "trocar/core/clock.h"
-#include "trocar/core/newest_slot.h"
 #include "trocar/device/ports.h"
 
 namespace trocar::device {
@@ -18,7 +16,7 @@ namespace {
 using core::ErrorCode;
 using math::Vec3;
 
-constexpr std::size_t kMaxDevices = 2;
+constexpr std::size_t kMaxDevices = ForceMailbox::kMaxDevices;
 constexpr double kMillimetre = 0.001;
 constexpr double kLongestWait = 0.5;  // for the scheduler to end [s]
 /// Errors that one frame may leave in the library's queue.
@@ -26,12 +24,6 @@ constexpr int kMaxErrors = 16;
 
 /// The library has one scheduler and one current device.
 std::atomic<bool> is_library_taken{false};
-
-struct Command {
-  std::array<Vec3, kMaxDevices> forces;  // [N]
-  std::int64_t time = 0;                 // of the newest SendForce [ns]
-};
-using Reports = std::array<ForceSample, kMaxDevices>;
 
 Vec3 FromMillimetres(const double* v) noexcept {
   return Vec3{v[0], v[1], v[2]} * kMillimetre;
@@ -51,17 +43,15 @@ struct OpenHaptics::Content {
   explicit Content(const OpenHapticsSettings& wanted) : settings(wanted) {}
 
   OpenHapticsSettings settings;
-  std::unique_ptr<hd::Library> library;
+  std::unique_ptr<hd::Library> libhd;
   std::vector<hd::Handle> devices;
   std::vector<ForceLimits> limits;
   hd::SchedulerHandle callback = 0;
 
-  core::NewestSlot<Reports> reports;
-  core::NewestSlot<Command> commands;
-  Command command;  // of the haptic loop
-  Reports newest;   // of the library's thread
+  ForceMailbox mailbox;
+  ForceMailbox::Reports newest;  // of the library's thread
   std::array<bool, kMaxDevices> is_warm{};
-  std::atomic<bool> is_stopping{false}, has_stopped{false}, is_lost{false};
+  std::atomic<bool> is_stopping{false}, has_stopped{false};
 
   static hd::CallbackCode OnTick(void* self) { return static_cast<Content*>(self)->Tick(); }
   hd::CallbackCode Tick() noexcept;
@@ -72,26 +62,26 @@ struct OpenHaptics::Content {
 };
 
 core::Error OpenHaptics::Content::LibraryError(const std::string& what, unsigned int code) const {
-  const char* text = library->get_error_string(code);
+  const char* text = libhd->get_error_string(code);
   return {ErrorCode::kDeviceLost, what + ": " + (text != nullptr ? text : "unknown error") +
                                       "; run the maker's diagnostic program, and check plug and power"};
 }
 
 core::Status OpenHaptics::Content::OpenDevice(const std::string& name) {
-  const hd::Handle device = library->init_device(name.c_str());
-  const hd::ErrorInfo error = library->get_error();
+  const hd::Handle device = libhd->init_device(name.c_str());
+  const hd::ErrorInfo error = libhd->get_error();
   if (device == hd::kInvalidHandle || (error.code != hd::kSuccess && !hd::IsPassing(error.code)))
     return LibraryError("\"" + name + "\" does not open", error.code);
   devices.push_back(device);
-  library->make_current(device);
+  libhd->make_current(device);
   ForceLimits limit;
-  library->get_doubles(hd::kMaxForce, &limit.max_force);
-  library->get_doubles(hd::kMaxContinuousForce, &limit.max_continuous_force);
+  libhd->get_doubles(hd::kMaxForce, &limit.max_force);
+  libhd->get_doubles(hd::kMaxContinuousForce, &limit.max_continuous_force);
   double newtons_per_millimetre = 0;
-  library->get_doubles(hd::kMaxStiffness, &newtons_per_millimetre);
+  libhd->get_doubles(hd::kMaxStiffness, &newtons_per_millimetre);
   limit.max_stiffness = newtons_per_millimetre / kMillimetre;
   std::array<double, 6> box{};
-  library->get_doubles(hd::kUsableWorkspace, box.data());
+  libhd->get_doubles(hd::kUsableWorkspace, box.data());
   limit.workspace_min = FromMillimetres(box.data());
   limit.workspace_max = FromMillimetres(box.data() + 3);
   if (!(limit.max_force > 0.0) || !std::isfinite(limit.max_force)) {
@@ -100,7 +90,7 @@ core::Status OpenHaptics::Content::OpenDevice(const std::string& name) {
         "\"" + name + "\" does not say how much force it bears; no force can be sent to it safely"};
   }
   limits.push_back(limit);
-  library->enable(hd::kForceOutput);
+  libhd->enable(hd::kForceOutput);
   return {};
 }
 
@@ -108,20 +98,20 @@ void OpenHaptics::Content::ReadDevice(std::size_t i) noexcept {
   ForceSample& sample = newest[i];
   std::array<double, 3> v{};
   std::array<double, 16> m{};
-  library->get_doubles(hd::kPosition, v.data());
+  libhd->get_doubles(hd::kPosition, v.data());
   sample.position = FromMillimetres(v.data());
-  library->get_doubles(hd::kVelocity, v.data());
+  libhd->get_doubles(hd::kVelocity, v.data());
   sample.velocity = FromMillimetres(v.data());
-  library->get_doubles(hd::kTransform, m.data());
+  libhd->get_doubles(hd::kTransform, m.data());
   sample.orientation = RotationOf(m);
   int buttons = 0;
-  library->get_integers(hd::kButtons, &buttons);
+  libhd->get_integers(hd::kButtons, &buttons);
   sample.buttons = static_cast<std::uint32_t>(buttons);
   std::array<double, 8> heat{};
-  library->get_doubles(hd::kMotorTemperature, heat.data());
+  libhd->get_doubles(hd::kMotorTemperature, heat.data());
   sample.temperature = *std::max_element(heat.begin(), heat.end());
   sample.jaw = std::nan("");
-  sample.is_calibrated = library->check_calibration() == hd::kCalibrationGood;
+  sample.is_calibrated = libhd->check_calibration() == hd::kCalibrationGood;
   ++sample.sequence;
 }
 
@@ -129,7 +119,7 @@ void OpenHaptics::Content::ReadDevice(std::size_t i) noexcept {
 bool OpenHaptics::Content::TakeErrors(std::size_t i) noexcept {
   is_warm[i] = false;
   for (int n = 0; n < kMaxErrors; ++n) {
-    const hd::ErrorInfo error = library->get_error();
+    const hd::ErrorInfo error = libhd->get_error();
     if (error.code == hd::kSuccess) break;
     if (!hd::IsPassing(error.code)) return false;
     is_warm[i] = true;
@@ -138,25 +128,22 @@ bool OpenHaptics::Content::TakeErrors(std::size_t i) noexcept {
 }
 
 hd::CallbackCode OpenHaptics::Content::Tick() noexcept {
-  commands.Update();
-  const Command& wanted = commands.Front();
-  const double age = 1e-9 * static_cast<double>(core::NowNanoseconds() - wanted.time);
   const bool is_ending = is_stopping.load(std::memory_order_acquire);
-  const bool may_push = !is_ending && !is_lost.load(std::memory_order_relaxed) && age <= kForceLife;
+  const bool may_push = !is_ending && !mailbox.IsLost();
+  const ForceMailbox::Forces forces = may_push ? mailbox.TakeForces() : ForceMailbox::Forces{};
   for (std::size_t i = 0; i < devices.size(); ++i) {
-    library->begin_frame(devices[i]);
-    library->make_current(devices[i]);
+    libhd->begin_frame(devices[i]);
+    libhd->make_current(devices[i]);
     ReadDevice(i);
     // a warm device gets nothing until a frame has passed without complaint
-    const Vec3 force = may_push && !is_warm[i] ? wanted.forces[i] : Vec3{};
+    const Vec3 force = is_warm[i] ? Vec3{} : forces[i];
     const std::array<double, 3> newtons = {force.x, force.y, force.z};
-    library->set_doubles(hd::kForce, newtons.data());
-    library->end_frame(devices[i]);
-    if (!TakeErrors(i)) is_lost.store(true, std::memory_order_release);
+    libhd->set_doubles(hd::kForce, newtons.data());
+    libhd->end_frame(devices[i]);
+    if (!TakeErrors(i)) mailbox.SetLost();
     newest[i].status = is_warm[i] ? ForceDeviceStatus::kWarm : ForceDeviceStatus::kOk;
   }
-  reports.Back() = newest;
-  reports.Publish();
+  mailbox.Report(newest);
   if (!is_ending) return hd::kContinue;
   has_stopped.store(true, std::memory_order_release);
   return hd::kDone;
@@ -184,12 +171,12 @@ core::Status OpenHaptics::DoConfigure() {
     return core::Error{ErrorCode::kDeviceBusy,
                        "openhaptics is in use already; name both devices in one: openhaptics:Left,Right"};
   }
-  auto library = hd::Library::Load(c.settings.library);
+  auto library = hd::Library::Load(c.settings.library_file);
   if (!library) {
     is_library_taken.store(false);
     return library.error();
   }
-  c.library = std::move(*library);
+  c.libhd = std::move(*library);
   // all devices before the scheduler
   for (const std::string& name : c.settings.names) {
     if (core::Status opened = c.OpenDevice(name); !opened) {
@@ -202,15 +189,13 @@ core::Status OpenHaptics::DoConfigure() {
 
 core::Status OpenHaptics::DoActivate() {
   Content& c = *content_;
-  c.is_stopping = c.has_stopped = c.is_lost = false;
-  c.command = {};
-  c.commands.Back() = {};
-  c.commands.Publish();
+  c.is_stopping = c.has_stopped = false;
+  c.mailbox.Clear();
   c.newest = {};
   c.is_warm = {};
-  c.callback = c.library->schedule(&Content::OnTick, &c, hd::kMaxPriority);
-  c.library->start_scheduler();
-  if (const hd::ErrorInfo error = c.library->get_error();
+  c.callback = c.libhd->schedule(&Content::OnTick, &c, hd::kMaxPriority);
+  c.libhd->start_scheduler();
+  if (const hd::ErrorInfo error = c.libhd->get_error();
       error.code != hd::kSuccess && !hd::IsPassing(error.code)) {
     DoDeactivate();
     return c.LibraryError("the haptic scheduler does not start", error.code);
@@ -225,43 +210,29 @@ void OpenHaptics::DoDeactivate() noexcept {
   for (double waited = 0; !c.has_stopped.load(std::memory_order_acquire) && waited < kLongestWait;
        waited += 0.001)
     SystemClock().Sleep(0.001);
-  c.library->stop_scheduler();
-  c.library->unschedule(c.callback);
+  c.libhd->stop_scheduler();
+  c.libhd->unschedule(c.callback);
 }
 
 void OpenHaptics::DoCleanup() noexcept {
   Content& c = *content_;
-  for (const hd::Handle device : c.devices) c.library->disable_device(device);
+  for (const hd::Handle device : c.devices) c.libhd->disable_device(device);
   c.devices.clear();
   c.limits.clear();
-  c.library.reset();
+  c.libhd.reset();
   is_library_taken.store(false);
 }
 
 ReadStatus OpenHaptics::DoReadForceSamples(std::span<ForceSample> samples) noexcept {
-  Content& c = *content_;
-  if (c.is_lost.load(std::memory_order_acquire)) return ReadStatus::kLost;
-  const bool is_fresh = c.reports.Update();
-  std::copy_n(c.reports.Front().begin(), samples.size(), samples.begin());
-  return is_fresh ? ReadStatus::kFresh : ReadStatus::kUnchanged;
+  return content_->mailbox.Read(samples);
 }
 
 ReadStatus OpenHaptics::DoRead(std::span<HandSample> samples) noexcept {
-  Content& c = *content_;
-  if (c.is_lost.load(std::memory_order_acquire)) return ReadStatus::kLost;
-  const bool is_fresh = c.reports.Update();
-  for (std::size_t i = 0; i < samples.size(); ++i)
-    SetHand(c.reports.Front()[i], c.settings.p_device_trocar, samples[i]);
-  return is_fresh ? ReadStatus::kFresh : ReadStatus::kUnchanged;
+  return content_->mailbox.Read(samples, content_->settings.p_device_trocar);
 }
 
 void OpenHaptics::DoSendForce(int channel, const GatedForce& force) noexcept {
-  Content& c = *content_;
-  if (channel < 0 || static_cast<std::size_t>(channel) >= c.command.forces.size()) return;
-  c.command.forces[static_cast<std::size_t>(channel)] = force.Get();
-  c.command.time = core::NowNanoseconds();
-  c.commands.Back() = c.command;
-  c.commands.Publish();
+  content_->mailbox.Send(channel, force);
 }
 
 }  // namespace trocar::device

@@ -13,7 +13,7 @@ using math::Vec3;
 
 struct DeviceGuardSettings {
   double stale_age = 0.010;      ///< from which silence counts: the pose is held and the force fades [s] (D2)
-  double silent_age = 0.019;     ///< at which the force is zero [s]
+  double silent_age = 0.018;     ///< at which the force is zero: 20 ms less a tick and its lateness [s]
   double max_speed = 2.0;        ///< faster is a jump [m/s] (D5)
   double max_turn_rate = 30.0;   ///< [rad/s]
   double max_reach = 1.0;        ///< no device's workspace is larger, from its origin [m]

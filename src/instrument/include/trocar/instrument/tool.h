@@ -3,6 +3,7 @@
 /// the direction in which the upper jaw opens.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,26 +16,44 @@ namespace trocar::instrument {
 using math::Pose;
 using math::Vec3;
 
+/// What a tool can do besides pushing.
+enum class ToolKind : std::uint8_t {
+  kGrasper,    ///< atraumatic, with a ratchet
+  kDissector,  ///< Maryland: spreads and tears, and carries current
+  kHook,       ///< electrode; no jaws
+  kScissors,
+  kClipApplier,       ///< 10 mm; a clip closes with its jaws
+  kSuctionIrrigator,  ///< no jaws
+  kBag                ///< retrieval bag; no jaws, its mouth is open
+};
+
 /// Sizes of one tool. Source of the defaults: domain facts, section 1.3 (5 mm tools, 33 cm shafts).
 struct Tool {
   std::string name = "grasper";
+  ToolKind kind = ToolKind::kGrasper;
   double shaft_radius = 0.0025;         ///< [m]
   double shaft_length = 0.33;           ///< [m]
   double jaw_length = 0.022;            ///< from hinge to tip [m]
   double jaw_width = 0.0045;            ///< across the opening direction [m]
   double jaw_thickness = 0.0018;        ///< of each jaw [m]
-  double max_jaw = 1.0471975511965976;  ///< whole opening, 60 deg [rad]
+  double max_jaw = 1.0471975511965976;  ///< whole opening, 60 deg [rad]; 0: the tool has no jaws
+  int clips = 0;                        ///< that a clip applier holds
 };
 
-/// Atraumatic grasper.
-/// \return the tool of that name; an empty optional for an unknown one is a null pointer
+/// \param name  "grasper", "maryland", "hook", "scissors", "clip_applier", "suction_irrigator" or "bag"
+/// \return nullptr for an unknown one
 const Tool* FindTool(std::string_view name) noexcept;
+
+/// Mouth of the retrieval bag: a spring ring that begins at the tool's tip and lies ahead of it, in the plane y = 0;
+/// the pouch hangs towards -y.
+inline constexpr double kBagMouth = 0.060;  ///< its diameter [m]
+inline constexpr double kBagDepth = 0.085;  ///< of the pouch [m]
 
 /// Hinge of the jaws in the tool frame [m].
 Vec3 JawHinge(const Tool& tool) noexcept;
 
 /// Tip of a jaw in the tool frame; side is +1 for the upper jaw, -1 for the lower.
-/// \param jaw  whole opening [rad]
+/// \param jaw  whole opening [rad], at most the tool's own: a tool without jaws has one tip
 Vec3 JawTip(const Tool& tool, double jaw, int side) noexcept;
 
 /// Straight piece with round ends, in the tool frame.
@@ -43,7 +62,8 @@ struct Capsule {
   double radius = 0;  ///< [m]
 };
 
-/// What can touch tissue: the two jaws, then the shaft's last `shaft_reach` [m].
+/// What can touch tissue: the two jaws, then the shaft's last `shaft_reach` [m]. Where a tool has no jaws both are its
+/// tip piece, from the end of the shaft to the tip.
 struct ToolCapsules {
   Capsule upper_jaw, lower_jaw, shaft;
 };
@@ -51,12 +71,22 @@ ToolCapsules CalcCapsules(const Tool& tool, double jaw, double shaft_reach) noex
 
 /// One rigid part of a tool for drawing, at jaw opening 0.
 struct ToolPart {
-  enum class Kind { kShaft, kUpperJaw, kLowerJaw } kind;
-  geometry::TriangleMesh mesh;  ///< tool frame [m]
+  enum class Kind : std::uint8_t {
+    kShaft,      ///< the long tube
+    kTip,        ///< bare metal that stays with the shaft: hub of the hinge, electrode, spring ring
+    kBore,       ///< the dark inside of a tube
+    kPouch,      ///< of the retrieval bag
+    kUpperJaw,   ///< turns about the hinge
+    kLowerJaw,   ///< likewise
+    kUpperClip,  ///< leg of the clip that the upper jaw holds
+    kLowerClip
+  } kind;
+  geometry::TriangleMesh mesh;  ///< closed and outward, tool frame [m]
 };
+/// Shaft first. The legs of a clip are there when the tool is one that holds clips, whatever their number.
 std::vector<ToolPart> MakeParts(const Tool& tool);
 
-/// Pose of a part in the tool frame at an opening: jaws turn about the hinge, the shaft stays.
+/// Pose of a part in the tool frame at an opening: jaws, and what they hold, turn about the hinge; the rest stays.
 Pose CalcPartPose(const Tool& tool, ToolPart::Kind kind, double jaw) noexcept;
 
 }  // namespace trocar::instrument

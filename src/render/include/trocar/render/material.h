@@ -19,11 +19,27 @@ enum class Material {
   kSteel,        ///< polished steel
   kSleeve,       ///< grey plastic of a trocar
   kForce,        ///< signal colour of the force arrows
+  kFibre,        ///< white strands of areolar tissue
+  kFilm,         ///< peritoneum: thin, wet, light passes through
+  kBlood,        ///< as a liquid
+  kBile,         ///< as a liquid
+  kRinse,        ///< clear irrigation fluid
+  kLumen,        ///< the dark inside of a cut duct, vessel or tube
+  kTitanium,     ///< clips
+  kPouch,        ///< thin plastic of the retrieval bag; light passes through
+  kSpark,        ///< current through the air
+  kRedRubber,    ///< things of training tasks
+  kYellowRubber,
+  kGreenRubber,
+  kBlueRubber,
+  kWhitePlastic,
+  kMark,  ///< bright: what is to be done next
   kCount
 };
 
 /// "liver", "gallbladder", "duct", "artery", "fat", "bowel", "peritoneum", "shaft", "steel", "sleeve",
-/// "force".
+/// "force", "fibre", "film", "blood", "bile", "rinse", "lumen", "titanium", "pouch", "spark", "red_rubber",
+/// "yellow_rubber", "green_rubber", "blue_rubber", "white_plastic", "mark".
 std::string_view MaterialName(Material material) noexcept;
 /// The material of that name, or nothing.
 std::optional<Material> FindMaterial(std::string_view name) noexcept;

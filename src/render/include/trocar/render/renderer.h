@@ -2,70 +2,24 @@
 /// \file renderer.h  Draws the laparoscope's picture with OpenGL 3.3 core into whatever framebuffer is bound.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
-#include <vector>
 
 #include "trocar/core/result.h"
 #include "trocar/geometry/triangle_mesh.h"
-#include "trocar/math/pose.h"
-#include "trocar/render/material.h"
+#include "trocar/render/frame.h"
 
 namespace trocar::render {
 
-/// A surface on the graphics card. The default one names none.
-struct SurfaceId {
-  std::uint32_t index = 0;
-  std::uint32_t generation = 0;
+/// What surgery has left on one vertex of a tissue's surface, each 0 to 255.
+struct SurfaceMark {
+  std::uint8_t blanching = 0;  ///< white: cooked
+  std::uint8_t charring = 0;   ///< brown, then black
+  std::uint8_t blood = 0;      ///< film of blood
+  std::uint8_t bile = 0;       ///< film of bile
 
-  friend bool operator==(const SurfaceId&, const SurfaceId&) = default;
-};
-
-/// The picture's diameter as a share of its height: the circle is cut a little at top and bottom, as on a
-/// wide screen.
-inline constexpr double kMaskDiameter = 1.14;
-
-struct Camera {
-  /// Origin at the lens, looking along -z, +y up in the picture.
-  math::Pose X_world_camera;
-  /// Across the round picture, its diameter [rad], 0.1 to 2.8; a telescope's data sheet calls it diagonal.
-  double field_of_view = 1.308997;
-};
-
-/// One surface in one place. Deforming organs lie in the world frame and keep the identity.
-struct SurfaceDraw {
-  SurfaceId surface;
-  math::Pose X_world_surface;
-};
-
-/// An arrow of light blue, for example a force at a tool's tip. Nothing hides it.
-struct Arrow {
-  math::Vec3 p_world_tail;  ///< [m]
-  math::Vec3 span;          ///< from tail to head, world frame [m]
-  double radius = 0.0012;   ///< of its shaft [m]
-};
-
-/// A straight piece that takes light from the tissue near it, for example the end of a tool.
-struct Shade {
-  math::Vec3 a, b;    ///< ends, world frame [m]
-  double radius = 0;  ///< [m]
-};
-inline constexpr std::size_t kMaxShades = 4;
-
-/// Everything that one picture shows.
-struct Frame {
-  Camera camera;
-  double light_power = 1;  ///< head light beside the lens; 1 exposes tissue at 0.10 m well [-]
-  /// Drawn in this order; nearest first is fastest.
-  std::vector<SurfaceDraw> surfaces;
-  std::vector<Arrow> arrows;
-  std::vector<Shade> shades;  ///< the first kMaxShades count
-  bool has_mask = true;       ///< round picture, black outside
-  bool has_smooth_edges = true;
-  bool is_wireframe = false;                               ///< edges only
-  std::array<double, 3> clear_colour{0.01, 0.004, 0.003};  ///< where nothing is, sRGB [0, 1]
+  friend bool operator==(const SurfaceMark&, const SurfaceMark&) = default;
 };
 
 /// Surfaces, shaders and textures in one OpenGL context, which must be current whenever a member is called
@@ -95,6 +49,9 @@ class Renderer {
   /// \param positions, normals  (nv) as added [m], [-] unit
   void UpdateSurface(SurfaceId surface, std::span<const math::Vec3> positions,
                      std::span<const math::Vec3> normals);
+  /// What surgery has left on a surface; nothing until the first call.
+  /// \param marks  (nv) as added; tools show none
+  void UpdateMarks(SurfaceId surface, std::span<const SurfaceMark> marks);
   /// New connectivity, for example after a cut; vertices stay as they are.
   void UpdateTriangles(SurfaceId surface, std::span<const geometry::Triangle> triangles);
   /// Frees a surface; its id names nothing from now on.

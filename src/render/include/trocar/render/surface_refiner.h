@@ -23,6 +23,9 @@ class SurfaceRefiner {
   /// The coarse vertices, then one for each edge.
   std::size_t VertexCount() const { return coarse_count_ + edges_.size(); }
 
+  /// Fine vertex n lies in the middle of edge n - coarse vertices.
+  std::span<const geometry::Edge> Edges() const { return edges_; }
+
   /// \param positions, normals  of the coarse vertices [m], unit
   /// \param[out] fine_positions, fine_normals  (VertexCount())
   /// \note No allocation, lock or throw.

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 
 #include "trocar/instrument/trocar_kinematics.h"
 #include "trocar/tissue/solver_settings.h"
@@ -12,6 +13,25 @@ namespace trocar::session {
 /// Index of a hand in every per-hand array.
 enum Hand { kLeft = 0, kRight = 1 };
 inline constexpr int kHandCount = 2;
+
+/// What a hand and its foot do besides moving the tool.
+struct HandControls {
+  std::uint8_t tool = 0;  ///< wanted, by its place in InstrumentSetup::tray; exchanged when the shaft is free
+  bool cut = false;       ///< yellow pedal
+  bool coagulate = false;  ///< blue pedal
+  bool rinse = false;      ///< of a suction-irrigator
+  bool aspirate = false;
+
+  friend bool operator==(const HandControls&, const HandControls&) = default;
+};
+
+/// What the assistant has been told to do with the third grasper, at the fundus.
+enum class AssistantCommand : std::uint8_t {
+  kWait,     ///< out of the way
+  kRetract,  ///< take the fundus and lift it over the liver's edge towards the right shoulder
+  kRelax,    ///< hold it, without pulling
+  kRelease   ///< let go and withdraw
+};
 
 /// What the person or the instructor may change while the simulation runs; acts in the next tick.
 struct LiveSettings {
@@ -30,6 +50,8 @@ LiveSettings ClampSettings(const LiveSettings& settings) noexcept;
 
 struct Input {
   std::array<instrument::TrocarJoints, kHandCount> hands;
+  std::array<HandControls, kHandCount> controls;
+  AssistantCommand assistant = AssistantCommand::kWait;
   /// jaw is not used; spin turns the angled tip (the light post), the horizon of the picture stays
   instrument::TrocarJoints laparoscope;
   LiveSettings settings;

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,8 @@
 #include "trocar/core/result.h"
 #include "trocar/instrument/tool.h"
 #include "trocar/session/input.h"
+#include "trocar/session/scene_object.h"
+#include "trocar/session/task.h"
 #include "trocar/tissue/tissue_model.h"
 
 namespace trocar::session {
@@ -29,9 +32,10 @@ struct LaparoscopeSetup {
 };
 
 struct InstrumentSetup {
-  instrument::Tool tool;
-  Vec3 p_world_port;              ///< [m]
-  instrument::TrocarJoints home;  ///< where it starts
+  instrument::Tool tool;               ///< at the start: the first of the tray
+  std::vector<instrument::Tool> tray;  ///< what can be exchanged through this trocar, at least one
+  Vec3 p_world_port;                   ///< [m]
+  instrument::TrocarJoints home;       ///< where it starts
 };
 
 /// Pose of both hands at one time; between keys the tips move smoothly along straight lines.
@@ -48,6 +52,20 @@ struct Script {
   double tremor =
       0;  ///< amplitude of the hands' physiological tremor, 8 to 12 Hz, different for each seed [m]
   double Duration() const { return keys.empty() ? 0.0 : keys.back().time; }
+};
+
+/// The third grasper and who holds it.
+struct AssistantSetup {
+  instrument::Tool tool;
+  Vec3 p_world_port;     ///< [m]
+  std::string landmark;  ///< of the patient: what it takes
+  Vec3 lift;             ///< from where it took it, when told to retract [m]
+};
+
+/// What makes a scene an operation: tissue to be dissected, and tools that do more than push and hold.
+struct OperationSetup {
+  double fat_spacing = 0.0022;  ///< of the lobules in the hepatocystic triangle [m]; 0: none
+  std::optional<AssistantSetup> assistant;
 };
 
 /// How stiff one organ is; see tissue/material.h for the formulas.
@@ -74,21 +92,40 @@ struct Scene {
   std::vector<OrganMaterial> materials;
   std::array<InstrumentSetup, kHandCount> instruments;
   LaparoscopeSetup laparoscope;
-  LiveSettings settings;            ///< at the start
-  double tick_seconds = 1.0 / 120;  ///< [s]
-  std::uint64_t seed = 0;           ///< of everything random: now the tremor of a script's hands
-  Script script;                    ///< empty when the scene names none
+  LiveSettings settings;             ///< at the start
+  double tick_seconds = 1.0 / 120;   ///< [s]
+  std::uint64_t seed = 0;            ///< of everything random: now the tremor of a script's hands
+  Script script;                     ///< empty when the scene names none
+  std::vector<SceneObject> objects;  ///< of a training task; without a patient there is at least one
+  std::optional<OperationSetup> operation;
+  std::optional<Task> task;  ///< what is to be done
+
+  bool HasPatient() const { return !patient.organs.empty(); }
 };
 
 /// Folder that holds assets/ and scenes/: TROCAR_DATA_DIR, else beside the program, else its source tree.
 /// \return kFileMissing with the places that were tried
 core::Result<std::filesystem::path> FindDataFolder();
 
-/// Reads a scene with its patient and script. Paths inside are relative to the scene file.
+/// Reads a scene with its patient and script, or a task at its normal level. Paths inside are relative to the file.
 /// \param patient_folder  takes the place of the scene's own patient unless it is empty
 /// \return the file's error, kSceneInvalid, kScriptInvalid or kUnknownName
 core::Result<Scene> ReadScene(const std::filesystem::path& path,
                               const std::filesystem::path& patient_folder = {});
+
+/// Pose of the lens: looks along -z, bent from the shaft by the view angle towards the light post; the horizon stays.
+math::Pose CalcLaparoscopePose(const LaparoscopeSetup& setup,
+                               const instrument::TrocarJoints& joints) noexcept;
+
+/// What a picture should show.
+struct ViewWish {
+  Vec3 p_world;                ///< in its middle [m]
+  double distance = 0.08;      ///< from the lens [m], > 0
+  std::optional<Vec3> facing;  ///< from this side as nearly as can be, unit
+  double most_depth = 0.28;    ///< of the lens [m]
+};
+/// Joints of a laparoscope that shows it, with the light post that does it best; nothing where none can.
+std::optional<instrument::TrocarJoints> FindView(const LaparoscopeSetup& setup, const ViewWish& wish);
 
 /// The script's input at `time` [s], clamped to its first and last key; the home pose without a script.
 Input CalcScriptInput(const Scene& scene, double time);

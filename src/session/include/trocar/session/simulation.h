@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -11,6 +12,7 @@
 
 #include "trocar/core/result.h"
 #include "trocar/haptics/local_patch.h"
+#include "trocar/session/operation_result.h"
 #include "trocar/session/scene.h"
 #include "trocar/session/snapshot.h"
 
@@ -44,7 +46,7 @@ class Simulation {
   ~Simulation();
 
   /// One tick.
-  /// \note No allocation, lock, throw or file.
+  /// \note No lock or file. Allocates only in a tick in which a blade parts an organ, a duct or a vessel.
   void Step(const Input& input) noexcept;
   /// Back to the first tick.
   void Reset();
@@ -52,6 +54,11 @@ class Simulation {
   const Scene& GetScene() const;
   /// Organs, then tubes; constant.
   std::span<const SurfaceInfo> Surfaces() const;
+  /// What dissection divides, constant; empty where the scene is no operation.
+  std::span<const StrandInfo> Strands() const;
+  /// How the operation stands; nothing where the scene is none.
+  /// \note Allocates.
+  std::optional<OperationResult> GetOperationResult() const;
   /// State after the last Step(); valid until the next.
   const Snapshot& GetSnapshot() const;
   /// Cuts out the tissue around one tool for the haptic loop, after a Step.

@@ -9,6 +9,9 @@
 
 #include "trocar/math/pose.h"
 #include "trocar/session/input.h"
+#include "trocar/session/operation_snapshot.h"
+#include "trocar/session/scene_object.h"
+#include "trocar/session/task.h"
 
 namespace trocar::session {
 
@@ -29,6 +32,7 @@ struct InstrumentSnapshot {
   double pinch = 0;               ///< of the jaws on what they hold [N]
   double overlap = 0;             ///< of the tool that is seen with tissue, what is left of it [m]
   bool is_touching_tool = false;  ///< the other instrument
+  std::int32_t object = -1;       ///< Scene::objects that it holds, or -1
 };
 
 /// Volume of one organ after a tick.
@@ -64,19 +68,22 @@ enum class EventKind {
   kStateRestored,
   kOrganFrozen,
   kTear,
-  kPinchDamage,  ///< jaws pinched a bite harder than it bears; force is the pinch
-  kToolsTouch    ///< the instruments met
+  kPinchDamage,     ///< jaws pinched a bite harder than it bears; force is the pinch
+  kToolsTouch,      ///< the instruments met
+  kExchangeRefused  ///< another tool was asked for while this one holds tissue
 };
+inline constexpr EventKind kLastEventKind = EventKind::kToolsTouch;
 /// "grasp", "release", "slip", "grasp_missed", "state_restored", "organ_frozen", "tear",
-/// "pinch_damage", "tools_touch"
+/// "pinch_damage", "tools_touch", "exchange_refused"
 std::string_view EventName(EventKind kind) noexcept;
 
 struct Event {
   EventKind kind;
   std::uint64_t tick;
-  std::int32_t hand;   ///< Hand, or -1
-  std::int32_t organ;  ///< index into Simulation::Surfaces(), or -1
-  double force;        ///< [N], 0 where it means nothing
+  std::int32_t hand;         ///< Hand, or -1
+  std::int32_t organ;        ///< index into Simulation::Surfaces(), or -1
+  double force;              ///< [N], 0 where it means nothing
+  std::int32_t object = -1;  ///< Scene::objects that is meant, or -1
 };
 
 /// Copying into one that has been used before does not allocate (the sizes never change while a scene runs).
@@ -87,16 +94,23 @@ struct Snapshot {
   std::vector<Vec3> positions;
   std::array<InstrumentSnapshot, kHandCount> instruments;
   std::vector<OrganSnapshot> organs;  ///< (organs) as in Patient::organs
-  Pose X_world_laparoscope;           ///< origin at the lens, looking along -z, +y up in the picture
-  double residual = 0;                ///< largest node residual, relative: see tissue/solver_settings.h [-]
-  int iterations = 0;                 ///< of the solver in this tick
-  std::size_t contacts = 0;           ///< contact springs of this tick
-  std::size_t dropped_contacts = 0;   ///< for which there was no room
-  Vec3 gravity;                       ///< world frame [m/s^2]
+  OperationSnapshot operation;
+  std::vector<ObjectSnapshot> objects;  ///< (Scene::objects)
+  TaskSnapshot task;
+  Pose X_world_laparoscope;          ///< origin at the lens, looking along -z, +y up in the picture
+  double residual = 0;               ///< largest node residual, relative: see tissue/solver_settings.h [-]
+  int iterations = 0;                ///< of the solver in this tick
+  std::size_t contacts = 0;          ///< contact springs of this tick
+  std::size_t dropped_contacts = 0;  ///< for which there was no room
+  Vec3 gravity;                      ///< world frame [m/s^2]
   std::array<double, kStageCount> stage_seconds{};  ///< wall time of each stage of the last tick
   double tick_seconds = 0;                          ///< sum of the stages [s]
   std::uint64_t event_count = 0;                    ///< since the start; the newest are in `events`
   std::array<Event, 8> events{};                    ///< ring: event n at n % 8
 };
+
+/// Whether a point lies in the round picture of a laparoscope. What hides it is not asked.
+/// \param field_of_view  across the round picture [rad]
+bool IsInView(const Pose& X_world_laparoscope, double field_of_view, const Vec3& p_world) noexcept;
 
 }  // namespace trocar::session

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file organ_contact.h  Organ against organ: a gallbladder that has come off its bed rests on the liver.
+/// \file organ_contact.h  Organ against organ: a gallbladder that has come off its bed rests on the liver, and a duct that
+/// is pressed on either does not go through it.
 ///
-/// Each vertex of one organ is kept out of the other by two one-sided springs, one on either side of the plane
-/// half way between them. They are made well ahead of touch, so an organ that falls in one solve is stopped half
-/// way to the other in this tick and comes to rest on it in the next ones. The shapes as they were imaged may overlap by a little where they touch: that much
-/// stays allowed, so that nothing moves before anything acts.
+/// Each vertex of one organ, or node of a tube with its radius, is kept out of the other organ by two one-sided springs,
+/// one on either side of the plane half way between them. They are made well ahead of touch, so an organ that falls in
+/// one solve is stopped half way to the other in this tick and comes to rest on it in the next ones. The shapes as they
+/// were imaged may overlap where they touch, and ducts run inside of organs: that much stays allowed, so that nothing
+/// moves before anything acts.
 #pragma once
 
 #include <cstdint>
@@ -22,12 +24,15 @@ struct OrganContactSettings {
   double reach = 0.008;      ///< a vertex deeper than this has no near wall to be pushed back through [m]
 };
 
-/// One organ's vertices against another organ's surface.
+/// Vertices of one organ, or nodes of one tube, against an organ's surface.
 struct OrganPair {
-  std::uint8_t vertices_of = 0, surface_of = 0;  ///< organs
-  std::vector<double> allowed;                   ///< (vertices) signed distance that is allowed, <= 0 [m]
-  std::vector<std::uint8_t> is_bound;            ///< (vertices) tied to the other organ: left to its strands
-  std::vector<std::uint32_t> last_triangle;      ///< (vertices) where the search starts
+  std::uint8_t nodes_of = 0;    ///< surface: an organ, or organs + tube
+  std::uint8_t surface_of = 0;  ///< organ
+  std::uint32_t first_node = 0, node_count = 0;
+  std::vector<double> radii;                 ///< (node_count) of a tube [m], or empty
+  std::vector<double> allowed;               ///< (node_count) signed distance that is allowed, <= 0 [m]
+  std::vector<std::uint8_t> is_bound;        ///< (node_count) tied to the other organ: left to its strands
+  std::vector<std::uint32_t> last_triangle;  ///< (node_count) where the search starts
 };
 
 /// \param positions  (n) of the whole system, at rest [m]
@@ -35,6 +40,14 @@ struct OrganPair {
 OrganPair MakeOrganPair(std::span<const OrganSurface> organs, std::span<const Vec3> positions,
                         std::uint8_t vertices_of, std::uint8_t surface_of,
                         std::span<const std::uint32_t> bound, const OrganContactSettings& settings);
+/// \param surface  of the tube: organs + tube
+OrganPair MakeTubePair(std::span<const OrganSurface> organs, std::span<const Vec3> positions,
+                       const TubeSurface& tube, std::uint8_t surface, std::uint8_t surface_of,
+                       const OrganContactSettings& settings);
+
+/// After a cut of an organ: new vertices keep off the other organ like any, and every search starts anew.
+/// \note Not real-time safe: allocates.
+void FollowOrgan(std::span<const OrganSurface> organs, std::uint8_t changed, OrganPair& pair);
 
 /// Adds the springs of one pair; links carry kNoHand.
 /// \note Real-time safe.

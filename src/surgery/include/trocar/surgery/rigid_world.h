@@ -49,6 +49,14 @@ struct ToolCapsule {
 /// Parts of a tool, by their place in RigidWorld::AddTool's list.
 enum ToolPart : std::uint8_t { kShaftPart, kUpperJawPart, kLowerJawPart, kToolPartCount };
 
+/// Where a tool enters a body that never moves.
+struct ToolObstacle {
+  std::uint32_t body = 0;
+  Vec3 point;        ///< of the tool's axis, world frame [m]
+  Vec3 normal;       ///< unit, into the body
+  double depth = 0;  ///< of the tool's surface in the body [m]; negative: they are this far apart
+};
+
 class RigidWorld {
  public:
   /// \param gravity  [m/s^2]
@@ -69,6 +77,9 @@ class RigidWorld {
   /// \pre finite (TROCAR_ASSERT)
   void MoveTool(std::uint32_t tool, const Pose (&X_world_parts)[kToolPartCount]);
 
+  /// From the next Step on [m/s^2]; what lies still wakes when it changes.
+  void SetGravity(const Vec3& gravity);
+
   /// One tick.
   /// \note Bounded by the number of bodies; takes memory from pools that grow to the most contacts seen.
   void Step();
@@ -78,6 +89,8 @@ class RigidWorld {
   /// From the next Step on the tool carries the body with it, with `hold_force` at most: friction times the
   /// jaws' force [N]. A body may be held by two tools.
   void Hold(std::uint32_t tool, std::uint32_t body, double hold_force);
+  /// The grip of jaws that hold something grows and falls with their pinch. \param hold_force  as Hold's [N]
+  void SetHoldForce(std::uint32_t tool, double hold_force);
   void Release(std::uint32_t tool);
   /// The body that a tool holds, or -1. A body that was pulled away by more than the hold force has slipped.
   std::int32_t HeldBy(std::uint32_t tool) const;
@@ -86,6 +99,14 @@ class RigidWorld {
   Vec3 ForceOn(std::uint32_t tool) const;
   /// Whether any part of the tool touched a body in the last Step.
   bool Touches(std::uint32_t tool, std::uint32_t body) const;
+
+  /// Bit of each of the first 64 bodies that a body touched at the end of the last Step.
+  std::uint64_t TouchedBodies(std::uint32_t body) const;
+  /// Bodies of no mass that a tool with its parts in these poses enters, or nearly: `reach` [m] before they touch.
+  /// What moves is pushed by Step; what does not has to keep the tool out, and the caller does that.
+  /// \param[out] obstacles  cleared first; the deepest of each part and body
+  void FindObstacles(std::uint32_t tool, const Pose (&X_world_parts)[kToolPartCount], double reach,
+                     std::vector<ToolObstacle>& obstacles);
 
   Pose PoseOf(std::uint32_t body) const;
   Vec3 VelocityOf(std::uint32_t body) const;  ///< [m/s]

@@ -73,6 +73,15 @@ class Conservation {
   /// would shine through in a surgery that begins again.
   void Reset() noexcept;
 
+  /// Goes on with a model that a cut has changed: as many nodes, and strands, as before. How volumes answer pressures is
+  /// taken from before the cut and worked out anew over the next ticks.
+  ///
+  /// \param model  must outlive this
+  /// \param organs  as many as before, each a closed surface
+  /// \param[in,out] state  finds its free regions anew
+  /// \note Not real-time safe: allocates.
+  void Follow(const TissueModel& model, std::vector<ClosedOrgan> organs, ConservationState& state);
+
   /// Takes held free pieces along: the rigid motion that their held nodes made since the last Enforce moves
   /// the rest of the piece and its frame. A better start for the solver than a piece left behind, which would
   /// crumple.

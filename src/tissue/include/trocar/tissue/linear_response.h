@@ -22,7 +22,9 @@ struct LinearReport {
 class LinearResponse {
  public:
   /// \param model  must outlive this
-  explicit LinearResponse(const TissueModel& model);
+  explicit LinearResponse(const TissueModel& model) { SetModel(model); }
+  /// Goes on with another model. Allocates where it has more nodes or links than any before.
+  void SetModel(const TissueModel& model);
 
   /// Solves K u = f over the nodes that are not prescribed; u is zero on the others. Conjugate gradients,
   /// preconditioned by each node's own 3 x 3 stiffness; contacts are not counted.
@@ -42,7 +44,7 @@ class LinearResponse {
     Vec3 along;            // sqrt(k (1 - across)) times the direction
     double isotropic = 0;  // k times the share that acts across
   };
-  const TissueModel* model_;
+  const TissueModel* model_ = nullptr;
   std::vector<Link> springs_;    // (half-springs)
   std::vector<double> strands_;  // (half-strands)
   std::vector<double> own_;      // (n) isotropic stiffness of the node's own virtual spring

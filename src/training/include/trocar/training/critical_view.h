@@ -23,7 +23,8 @@ struct DissectionFacts {
   /// Freed of strands all around, next to the gallbladder, of each tube that enters [m].
   std::vector<double> skeletonised;
   bool is_triangle_in_view = false;  ///< unoccluded, in the picture, wholly
-  /// Direction of sight about the cystic duct: from -pi to pi, 0 looks from the front [rad].
+  /// Direction of sight about the cystic duct, in the frame of the gallbladder's neck: from -pi to pi; views to either
+  /// side of 0, the view at the start, show its front and its back [rad].
   double view_azimuth = 0;
 };
 

@@ -6,12 +6,16 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "trocar/core/result.h"
+#include "trocar/session/operation_result.h"
 #include "trocar/session/scene.h"
+#include "trocar/session/simulation.h"
 #include "trocar/session/snapshot.h"
+#include "trocar/session/surgeon.h"
 #include "trocar/view/laparoscope_view.h"
 
 namespace trocar::view {
@@ -25,6 +29,9 @@ struct DemoOptions {
   int threads = 1;                      ///< of the solver
   bool has_video = true;
   ViewOptions view;
+  /// nullptr, or who acts in the script's place, until they have finished; `duration` is then the longest
+  session::Surgeon* surgeon = nullptr;
+  std::function<core::Status(const session::Simulation&)> on_start;  ///< before the first tick; may be empty
   /// may change the script's input of a tick at that time [s]; may be empty
   std::function<void(double, session::Input&)> change_input;
   std::function<void(const session::Snapshot&)> on_tick;  ///< after every tick; may be empty
@@ -45,6 +52,7 @@ struct DemoReport {
   double draw_p99 = 0;                ///< [s]
   std::uint64_t state_hash = 0;       ///< of the simulation at the end
   std::string graphics;               ///< what drew it, for example "llvmpipe (LLVM 15.0.6, 256 bits)"
+  std::optional<session::OperationResult> operation;  ///< of a scene that is one
 };
 
 /// Steps the simulation with the script's hands, draws it off-screen, writes demo.webm and picture_NNN.png.

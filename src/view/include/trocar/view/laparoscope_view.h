@@ -26,16 +26,18 @@ struct ViewOptions {
   friend bool operator==(const ViewOptions&, const ViewOptions&) = default;
 };
 
-/// Organs, ducts, vessels, instruments and trocars of one scene in one OpenGL context, and the abdomen round
-/// them. The context must be current whenever a member is called and at destruction.
+/// Organs, ducts, vessels, instruments and trocars of one scene in one OpenGL context, what surgery has changed, and the
+/// abdomen round them. The context must be current whenever a member is called and at destruction.
 class LaparoscopeView {
  public:
   /// \param surfaces  of Simulation::Surfaces()
   /// \param start     first snapshot: its shapes are the rest shapes that the surfaces' patterns stick to
+  /// \param strands   that dissection divides, in the order of OperationSnapshot::strand_is_intact
   /// \return the renderer's error, or kUnknownName for a material that render/material.h does not know
   static core::Result<LaparoscopeView> Make(const session::Scene& scene,
                                             std::span<const session::SurfaceInfo> surfaces,
-                                            const session::Snapshot& start);
+                                            const session::Snapshot& start,
+                                            std::span<const session::StrandInfo> strands = {});
 
   LaparoscopeView(LaparoscopeView&&) noexcept;
   LaparoscopeView& operator=(LaparoscopeView&&) noexcept;

@@ -1,0 +1,326 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "command.h"
+#include "console.h"
+#include "play_operation.h"
+#include "trocar/core/safe_file.h"
+#include "trocar/core/statistics.h"
+#include "trocar/session/simulation.h"
+#include "trocar/session/surgeon.h"
+#include "trocar/session/task.h"
+#include "trocar/view/demo.h"
+
+namespace trocar::cli {
+namespace {
+
+using session::Snapshot;
+using session::TaskPhase;
+
+constexpr double kMillilitre = 1e6;  // per m^3
+
+struct PlayArguments {
+  std::string surgeon, task, patient, output;
+  std::string level = "normal", size = "1280x720";
+  std::uint64_t seed = 1;
+  int threads = 1;
+  double most_seconds = 3600;
+  bool is_json = false, is_list = false;
+};
+
+/// What a run came to.
+struct PlayReport {
+  session::TaskSnapshot task;
+  double blood_ml = 0, bile_ml = 0;
+  double tick_p99_ms = 0, cut_tick_max_ms = 0;
+  double seconds = 0;
+  std::uint64_t hash = 0;
+  bool gave_up = false;
+  std::vector<session::TaskError> errors;  // all of them, in order
+};
+
+/// Follows a run tick by tick.
+class Watcher {
+ public:
+  explicit Watcher(const session::Scene& scene) : scene_(scene) {}
+
+  void See(const Snapshot& snapshot) {
+    tick_ms_.push_back(1e3 * snapshot.tick_seconds);
+    if (snapshot.operation.topology_version != topology_) {
+      topology_ = snapshot.operation.topology_version;
+      cut_tick_max_ms_ = std::max(cut_tick_max_ms_, 1e3 * snapshot.tick_seconds);
+    }
+    const session::TaskSnapshot& task = snapshot.task;
+    const auto ring = static_cast<std::uint64_t>(task.last_errors.size());
+    const std::uint64_t oldest = task.error_count > ring ? task.error_count - ring : 0;
+    for (std::uint64_t n = std::max(known_errors_, oldest); n < task.error_count; ++n)
+      errors_.push_back(task.last_errors[n % ring]);
+    known_errors_ = task.error_count;
+  }
+
+  PlayReport Finish(const Snapshot& last, std::uint64_t hash) {
+    PlayReport report;
+    report.task = last.task;
+    report.blood_ml =
+        kMillilitre * last.operation.fluids.fluids[static_cast<int>(surgery::Fluid::kBlood)].left;
+    report.bile_ml = kMillilitre * last.operation.fluids.fluids[static_cast<int>(surgery::Fluid::kBile)].left;
+    report.tick_p99_ms = core::CalcPercentile(tick_ms_, 0.99);
+    report.cut_tick_max_ms = cut_tick_max_ms_;
+    report.seconds = last.time;
+    report.hash = hash;
+    report.gave_up = !last.task.IsOver();
+    report.errors = std::move(errors_);
+    return report;
+  }
+
+ private:
+  const session::Scene& scene_;
+  std::vector<double> tick_ms_;
+  std::uint32_t topology_ = 0;
+  double cut_tick_max_ms_ = 0;
+  std::uint64_t known_errors_ = 0;
+  std::vector<session::TaskError> errors_;
+};
+
+std::string HashText(std::uint64_t hash) {
+  char text[17];
+  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash));
+  return text;
+}
+
+nlohmann::ordered_json ErrorJson(const session::Scene& scene, const session::TaskError& error) {
+  const session::ErrorRule& rule = scene.task->errors[static_cast<std::size_t>(error.rule)];
+  const auto& p = error.position;
+  nlohmann::ordered_json json = {{"error", rule.name},
+                                 {"about", rule.about},
+                                 {"severity", session::SeverityName(rule.severity)},
+                                 {"time_s", error.time},
+                                 {"at_mm", {1e3 * p.x, 1e3 * p.y, 1e3 * p.z}}};
+  if (error.object >= 0) json["object"] = scene.objects[static_cast<std::size_t>(error.object)].name;
+  if (error.hand >= 0) json["hand"] = error.hand == session::kLeft ? "left" : "right";
+  return json;
+}
+
+void PrintJson(const session::Scene& scene, const PlayReport& report) {
+  nlohmann::ordered_json json = {{"completed", report.task.phase == TaskPhase::kCompleted},
+                                 {"critical_view", nullptr},
+                                 {"critical_errors", nlohmann::ordered_json::array()},
+                                 {"errors", nlohmann::ordered_json::array()}};
+  for (const session::TaskError& error : report.errors) {
+    const bool is_critical =
+        scene.task->errors[static_cast<std::size_t>(error.rule)].severity == session::Severity::kCritical;
+    json[is_critical ? "critical_errors" : "errors"].push_back(ErrorJson(scene, error));
+  }
+  json.update({{"blood_ml", report.blood_ml},
+               {"bile_ml", report.bile_ml},
+               {"tick_p99_ms", report.tick_p99_ms},
+               {"cut_tick_max_ms", report.cut_tick_max_ms},
+               {"hash", HashText(report.hash)},
+               {"score", report.task.score},
+               {"time_s", report.task.time},
+               {"phase", session::PhaseName(report.task.phase)}});
+  nlohmann::ordered_json goals = nlohmann::ordered_json::array();
+  for (std::size_t g = 0; g < report.task.goals.size(); ++g) {
+    goals.push_back({{"goal", scene.task->goals[g].name},
+                     {"done", report.task.goals[g].is_done},
+                     {"steps_done", report.task.goals[g].steps_done},
+                     {"steps", scene.task->goals[g].steps.size()}});
+  }
+  json["goals"] = std::move(goals);
+  std::printf("%s\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
+}
+
+void PrintForPerson(const session::Scene& scene, const PlayReport& report) {
+  const auto done = std::count_if(report.task.goals.begin(), report.task.goals.end(),
+                                  [](const auto& goal) { return goal.is_done; });
+  std::printf("%s, level %s: %s after %s s, %td of %zu goals, score %s\n", scene.task->name.c_str(),
+              scene.task->level.c_str(),
+              report.gave_up ? "given up" : std::string(session::PhaseName(report.task.phase)).c_str(),
+              FormatNumber(report.task.time, 4).c_str(), done, report.task.goals.size(),
+              FormatNumber(report.task.score, 4).c_str());
+  for (std::size_t e = 0; e < scene.task->errors.size(); ++e) {
+    if (report.task.errors[e] == 0) continue;
+    const session::ErrorRule& rule = scene.task->errors[e];
+    std::printf("  %u x %s: %s (%s, %s points each)\n", report.task.errors[e], rule.name.c_str(),
+                rule.about.c_str(), std::string(session::SeverityName(rule.severity)).c_str(),
+                FormatNumber(rule.penalty).c_str());
+  }
+  std::printf("Tick p99 %s ms, state hash %s\n", FormatNumber(report.tick_p99_ms, 3).c_str(),
+              HashText(report.hash).c_str());
+  std::printf("Training feedback, not certified assessment.\n");
+}
+
+core::Status PrintList() {
+  const auto tasks = session::ListTasks();
+  if (!tasks) return tasks.error();
+  std::vector<std::vector<std::string>> rows = {{"task", "levels", "surgeons", "about"}};
+  for (const session::TaskEntry& task : *tasks) {
+    const auto scene = session::ReadTask(task.path);
+    if (!scene) return scene.error();
+    std::string surgeons, levels;
+    for (const session::SurgeonEntry& entry : session::ListSurgeons()) {
+      if (entry.suits(*scene)) surgeons += (surgeons.empty() ? "" : " ") + std::string(entry.name);
+    }
+    for (const std::string& level : task.levels) levels += (levels.empty() ? "" : " ") + level;
+    rows.push_back({task.key, levels, surgeons, task.name});
+  }
+  if (const auto operation = FindOperation("cholecystectomy", {}, 0); operation.ok() && *operation) {
+    std::string surgeons;
+    for (const session::SurgeonEntry& entry : session::ListSurgeons()) {
+      if (entry.suits(**operation)) surgeons += (surgeons.empty() ? "" : " ") + std::string(entry.name);
+    }
+    rows.push_back({"cholecystectomy", "-", surgeons, (*operation)->name});
+  }
+  std::fputs(FormatTable(rows).c_str(), stdout);
+  std::printf("\n");
+  rows = {{"surgeon", "error", "about"}};
+  for (const session::SurgeonEntry& entry : session::ListSurgeons())
+    rows.push_back({entry.name, *entry.error == 0 ? "-" : entry.error, entry.about});
+  std::fputs(FormatTable(rows).c_str(), stdout);
+  return {};
+}
+
+/// Without pictures.
+core::Result<PlayReport> PlayBlind(std::shared_ptr<const session::Scene> scene, session::Surgeon& surgeon,
+                                   const PlayArguments& arguments) {
+  auto made = session::Simulation::Make(scene, arguments.threads);
+  if (!made) return made.error();
+  session::Simulation simulation = std::move(*made);
+  Watcher watcher(*scene);
+  const std::size_t goals = scene->task->goals.size();
+  ProgressBar progress("playing", static_cast<double>(goals));
+  while (!surgeon.HasFinished() && simulation.GetSnapshot().time < arguments.most_seconds) {
+    simulation.Step(surgeon.Act(simulation.GetSnapshot()));
+    const Snapshot& now = simulation.GetSnapshot();
+    watcher.See(now);
+    if (now.tick % 30 != 0) continue;
+    const auto done = std::count_if(now.task.goals.begin(), now.task.goals.end(),
+                                    [](const auto& goal) { return goal.is_done; });
+    progress.SetLabel(FormatNumber(now.time, 3) + " s, " + std::string(surgeon.Doing()));
+    progress.Show(static_cast<double>(done));
+  }
+  progress.Finish();
+  return watcher.Finish(simulation.GetSnapshot(), simulation.Hash());
+}
+
+core::Result<std::array<int, 2>> ReadSize(const std::string& text) {
+  std::array<int, 2> size{};
+  char end = 0;
+  if (std::sscanf(text.c_str(), "%5dx%5d%c", &size[0], &size[1], &end) != 2)
+    return core::Error{core::ErrorCode::kUsage, "--size: \"" + text + "\" is not like 1280x720"};
+  return size;
+}
+
+/// With pictures and a video.
+core::Result<PlayReport> PlayForTheEye(std::shared_ptr<const session::Scene> scene, session::Surgeon& surgeon,
+                                       const PlayArguments& arguments) {
+  view::DemoOptions options;
+  const auto size = ReadSize(arguments.size);
+  if (!size) return size.error();
+  options.width = (*size)[0], options.height = (*size)[1];
+  options.threads = arguments.threads;
+  options.output_folder = arguments.output;
+  Watcher watcher(*scene);
+  ProgressBar progress("playing", static_cast<double>(scene->task->goals.size()));
+  options.surgeon = &surgeon;
+  options.duration = arguments.most_seconds;
+  Snapshot last;
+  options.on_tick = [&](const Snapshot& now) {
+    watcher.See(now);
+    last = now;
+    if (now.tick % 30 != 0) return;
+    const auto done = std::count_if(now.task.goals.begin(), now.task.goals.end(),
+                                    [](const auto& goal) { return goal.is_done; });
+    progress.SetLabel(FormatNumber(now.time, 3) + " s, " + std::string(surgeon.Doing()));
+    progress.Show(static_cast<double>(done));
+  };
+  const auto played = view::PlayDemonstration(scene, options);
+  progress.Finish();
+  if (!played) return played.error();
+  return watcher.Finish(last, played->state_hash);
+}
+
+/// An operation on a patient.
+core::Status PlayOne(session::Scene scene, const PlayArguments& arguments) {
+  const auto shared = std::make_shared<const session::Scene>(std::move(scene));
+  auto surgeon = session::MakeSurgeon(arguments.surgeon, shared, arguments.seed);
+  if (!surgeon) return surgeon.error();
+  const auto size = ReadSize(arguments.size);
+  if (!size) return size.error();
+  return PlayOperation(shared, **surgeon,
+                       {arguments.output, (*size)[0], (*size)[1], arguments.threads, arguments.most_seconds,
+                        arguments.is_json});
+}
+
+core::Status Play(const PlayArguments& arguments, Outcome& outcome) {
+  if (arguments.is_list) return PrintList();
+  if (arguments.surgeon.empty() || arguments.task.empty())
+    return core::Error{core::ErrorCode::kUsage, "a surgeon and --task are needed; see trocar play --list"};
+  auto operation = FindOperation(arguments.task, arguments.patient, arguments.seed);
+  if (!operation.ok()) return operation.error();
+  if (*operation) return PlayOne(std::move(**operation), arguments);
+  const auto path = session::FindTask(arguments.task);
+  if (!path) return path.error();
+  auto read = session::ReadTask(*path, {arguments.level, arguments.seed, arguments.patient});
+  if (!read) return read.error();
+  const auto scene = std::make_shared<const session::Scene>(std::move(*read));
+  auto surgeon = session::MakeSurgeon(arguments.surgeon, scene, arguments.seed);
+  if (!surgeon) return surgeon.error();
+  const auto report = arguments.output.empty() ? PlayBlind(scene, **surgeon, arguments)
+                                               : PlayForTheEye(scene, **surgeon, arguments);
+  if (!report) return report.error();
+  arguments.is_json ? PrintJson(*scene, *report) : PrintForPerson(*scene, *report);
+  outcome.has_finding = false;
+  return {};
+}
+
+}  // namespace
+
+void AddPlayCommand(CLI::App& app, Outcome& outcome) {
+  CLI::App* command = app.add_subcommand("play", "Let a scripted surgeon do a task, and judge it");
+  auto arguments = std::make_shared<PlayArguments>();
+  command->add_option("surgeon", arguments->surgeon, "expert, novice, or one who errs (--list)")
+      ->type_name("SURGEON");
+  command->add_option("--task", arguments->task, "Name of a task (--list), or a task file (JSON)")
+      ->type_name("TASK");
+  command->add_option("--level", arguments->level, "Difficulty, one of the task's")
+      ->type_name("LEVEL")
+      ->capture_default_str();
+  command->add_option("--patient", arguments->patient, "Patient folder in place of the task's own")
+      ->type_name("PATIENT");
+  command->add_option("--seed", arguments->seed, "Of the task's random parameters and of the hands")
+      ->check(CLI::Range(0, 2147483647))
+      ->type_name("K")
+      ->capture_default_str();
+  command->add_option("--threads", arguments->threads, "Of the solver; the result is the same for any number")
+      ->check(CLI::Range(1, 256))
+      ->type_name("T")
+      ->capture_default_str();
+  command->add_option("--seconds", arguments->most_seconds, "Simulated time after which a surgeon is stopped")
+      ->check(CLI::Range(1.0, 3600.0))
+      ->type_name("S")
+      ->capture_default_str();
+  command->add_option("-o,--output", arguments->output, "Folder for pictures and a video; none if not given")
+      ->type_name("DIR");
+  command->add_option("--size", arguments->size, "Of pictures and video [pixels]")
+      ->type_name("WxH")
+      ->capture_default_str();
+  command->add_flag("--json", arguments->is_json, "Machine-readable");
+  command->add_flag("--list", arguments->is_list, "Show tasks and surgeons, and do nothing");
+  command->footer(
+      "The same task, level, surgeon and seed give the same hash.\n"
+      "Example: trocar play expert --task peg_transfer --seed 3 --json");
+  command->callback([arguments, &outcome] { outcome.status = Play(*arguments, outcome); });
+}
+
+}  // namespace trocar::cli

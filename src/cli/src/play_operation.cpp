@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "play_operation.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <utility>
+#include <vector>
+
+#include "console.h"
+#include "trocar/core/json.h"
+#include "trocar/core/statistics.h"
+#include "trocar/session/simulation.h"
+#include "trocar/training/injury.h"
+#include "trocar/view/demo.h"
+
+namespace trocar::cli {
+namespace {
+
+using nlohmann::ordered_json;
+using session::OperationResult;
+using session::Snapshot;
+
+constexpr double kMillilitre = 1e6;  // per m^3
+
+struct Run {
+  std::vector<double> tick_ms;
+  double cut_tick_max_ms = 0;
+  std::uint32_t topology = 0;
+  double seconds = 0;
+  std::uint64_t hash = 0;
+
+  void See(const Snapshot& now) {
+    tick_ms.push_back(1e3 * now.tick_seconds);
+    if (now.operation.topology_version != topology && now.tick > 1)
+      cut_tick_max_ms = std::max(cut_tick_max_ms, tick_ms.back());
+    topology = now.operation.topology_version;
+    seconds = now.time;
+  }
+};
+
+std::string HashText(std::uint64_t hash) {
+  char text[17];
+  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash));
+  return text;
+}
+
+double Left(const OperationResult& result, surgery::Fluid fluid) {
+  return kMillilitre * result.fluids.fluids[static_cast<std::size_t>(fluid)].left;
+}
+
+ordered_json ErrorJson(const training::ErrorEntry& entry) {
+  constexpr const char* kHands[] = {"left", "right"};
+  ordered_json json = {{"error", training::NameOf(entry.error)},
+                       {"severity", training::NameOf(training::SeverityOf(entry.error))},
+                       {"time_s", entry.time},
+                       {"at_mm", {1e3 * entry.place.x, 1e3 * entry.place.y, 1e3 * entry.place.z}}};
+  if (entry.hand >= 0 && entry.hand < session::kHandCount) json["hand"] = kHands[entry.hand];
+  return json;
+}
+
+ordered_json MakeJson(const OperationResult& result, const Run& run) {
+  ordered_json json = {{"completed", result.is_completed},
+                       {"critical_view", result.was_critical_view_achieved},
+                       {"critical_errors", ordered_json::array()},
+                       {"errors", ordered_json::array()}};
+  for (const training::ErrorEntry& entry : result.errors.Entries()) {
+    const bool is_critical = training::SeverityOf(entry.error) == training::Severity::kCritical;
+    json[is_critical ? "critical_errors" : "errors"].push_back(ErrorJson(entry));
+  }
+  json.update({{"blood_ml", Left(result, surgery::Fluid::kBlood)},
+               {"bile_ml", Left(result, surgery::Fluid::kBile)},
+               {"tick_p99_ms", core::CalcPercentile(run.tick_ms, 0.99)},
+               {"cut_tick_max_ms", run.cut_tick_max_ms},
+               {"hash", HashText(run.hash)},
+               {"time_s", run.seconds},
+               {"phase", training::NameOf(result.phase)},
+               {"strasberg", training::StrasbergName(result.injuries.strasberg)},
+               {"right_liver_without_blood", result.injuries.is_right_liver_without_blood},
+               {"cleared_share", result.facts.cleared_share},
+               {"detached_share", result.facts.detached_share},
+               {"structures_entering", result.facts.structures_entering}});
+  return json;
+}
+
+void PrintForPerson(const session::Scene& scene, const OperationResult& result, const Run& run) {
+  std::printf("%s: %s after %s s\n", scene.name.c_str(), result.is_completed ? "completed" : "not completed",
+              FormatNumber(run.seconds, 4).c_str());
+  std::printf("Critical view of safety: %s\n",
+              result.was_critical_view_achieved ? "achieved" : "not achieved");
+  if (!result.was_critical_view_achieved) {
+    for (const std::string& reason : training::ExplainCriticalView(result.facts, result.critical_view))
+      std::printf("  %s\n", reason.c_str());
+  }
+  for (std::size_t i = 0; i < training::kOperationErrorCount; ++i) {
+    const auto error = static_cast<training::OperationError>(i);
+    const std::size_t count = result.errors.Count(error);
+    if (count == 0) continue;
+    std::printf("  %zu x %s (%s): %s\n", count, std::string(training::NameOf(error)).c_str(),
+                std::string(training::NameOf(training::SeverityOf(error))).c_str(),
+                std::string(training::ExplanationOf(error)).c_str());
+  }
+  std::printf("Blood %s mL, bile %s mL; injury by Strasberg: %s\n",
+              FormatNumber(Left(result, surgery::Fluid::kBlood), 3).c_str(),
+              FormatNumber(Left(result, surgery::Fluid::kBile), 3).c_str(),
+              std::string(training::StrasbergName(result.injuries.strasberg)).c_str());
+  std::printf("Tick p99 %s ms, longest tick with a cut %s ms, state hash %s\n",
+              FormatNumber(core::CalcPercentile(run.tick_ms, 0.99), 3).c_str(),
+              FormatNumber(run.cut_tick_max_ms, 3).c_str(), HashText(run.hash).c_str());
+  std::printf("Training feedback, not certified assessment.\n");
+}
+
+std::string Progress(const Snapshot& now, std::string_view doing) {
+  return FormatNumber(now.time, 4) + " s, " + std::string(doing) + ": fat cleared " +
+         FormatNumber(100 * now.operation.facts.cleared_share, 3) + " %, bed free " +
+         FormatNumber(100 * now.operation.facts.detached_share, 3) + " %, " +
+         std::to_string(now.operation.errors) + " errors";
+}
+
+/// How far an operation is, roughly: by what it divides [-].
+double Share(const Snapshot& now) {
+  return now.operation.is_completed
+             ? 1.0
+             : 0.45 * now.operation.facts.cleared_share + 0.45 * now.operation.facts.detached_share;
+}
+
+}  // namespace
+
+core::Result<std::optional<session::Scene>> FindOperation(const std::string& name,
+                                                          const std::filesystem::path& patient_folder,
+                                                          std::uint64_t seed) {
+  std::filesystem::path path = name;
+  std::error_code ignored;
+  if (!std::filesystem::exists(path, ignored)) {
+    const auto data = session::FindDataFolder();
+    if (!data.ok()) return data.error();
+    path = *data / "scenes" / (name + ".json");
+    if (!std::filesystem::exists(path, ignored)) return std::optional<session::Scene>();
+  }
+  const auto document = core::JsonDocument::Read(path);
+  if (!document.ok()) return document.error();
+  if (!document->Root().Has("operation")) return std::optional<session::Scene>();
+  auto scene = session::ReadScene(path, patient_folder);
+  if (!scene.ok()) return scene.error();
+  scene->seed = seed;
+  return std::optional<session::Scene>(std::move(*scene));
+}
+
+core::Status PlayOperation(std::shared_ptr<const session::Scene> scene, session::Surgeon& surgeon,
+                           const OperationPlay& play) {
+  Run run;
+  OperationResult result;
+  ProgressBar progress("operating", 1.0);
+  const auto see = [&](const Snapshot& now) {
+    run.See(now);
+    if (now.tick % 60 != 0) return;
+    progress.SetLabel(Progress(now, surgeon.Doing()));
+    progress.Show(Share(now));
+  };
+  if (play.output.empty()) {
+    auto made = session::Simulation::Make(scene, play.threads);
+    if (!made.ok()) return made.error();
+    session::Simulation simulation = std::move(*made);
+    while (!surgeon.HasFinished() && simulation.GetSnapshot().time < play.most_seconds) {
+      simulation.Step(surgeon.Act(simulation.GetSnapshot()));
+      see(simulation.GetSnapshot());
+    }
+    run.hash = simulation.Hash();
+    result = *simulation.GetOperationResult();
+  } else {
+    view::DemoOptions options;
+    options.width = play.width, options.height = play.height;
+    options.threads = play.threads;
+    options.output_folder = play.output;
+    options.surgeon = &surgeon;
+    options.duration = play.most_seconds;
+    options.on_tick = see;
+    const auto played = view::PlayDemonstration(scene, options);
+    if (!played.ok()) return played.error();
+    run.hash = played->state_hash;
+    if (played->operation) result = *played->operation;
+  }
+  progress.Finish();
+  if (play.is_json) {
+    std::printf("%s\n", MakeJson(result, run).dump(2).c_str());
+  } else {
+    PrintForPerson(*scene, result, run);
+  }
+  return {};
+}
+
+}  // namespace trocar::cli

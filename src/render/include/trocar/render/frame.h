@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file frame.h  Everything that one picture of the laparoscope shows.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "trocar/math/pose.h"
+#include "trocar/render/material.h"
+
+namespace trocar::render {
+
+/// A surface on the graphics card. The default one names none.
+struct SurfaceId {
+  std::uint32_t index = 0;
+  std::uint32_t generation = 0;
+
+  friend bool operator==(const SurfaceId&, const SurfaceId&) = default;
+};
+
+/// The picture's diameter as a share of its height: the circle is cut a little at top and bottom, as on a
+/// wide screen.
+inline constexpr double kMaskDiameter = 1.14;
+
+struct Camera {
+  /// Origin at the lens, looking along -z, +y up in the picture.
+  math::Pose X_world_camera;
+  /// Across the round picture, its diameter [rad], 0.1 to 2.8; a telescope's data sheet calls it diagonal.
+  double field_of_view = 1.308997;
+};
+
+/// One surface in one place. Deforming organs lie in the world frame and keep the identity.
+struct SurfaceDraw {
+  SurfaceId surface;
+  math::Pose X_world_surface;
+};
+
+/// An arrow of light blue, for example a force at a tool's tip. Nothing hides it.
+struct Arrow {
+  math::Vec3 p_world_tail;  ///< [m]
+  math::Vec3 span;          ///< from tail to head, world frame [m]
+  double radius = 0.0012;   ///< of its shaft [m]
+};
+
+/// A straight piece that takes light from the tissue near it, for example the end of a tool.
+struct Shade {
+  math::Vec3 a, b;    ///< ends, world frame [m]
+  double radius = 0;  ///< [m]
+};
+inline constexpr std::size_t kMaxShades = 4;
+
+/// A fine thread between two places, for example of connective tissue: it faces the lens, is a little wavy, and keeps
+/// some width however far it is.
+struct Fibre {
+  math::Vec3 a, b;        ///< ends, world frame [m]
+  double width = 0.0003;  ///< [m]
+  double wave = 0;        ///< how far it leaves the straight line [m]
+  Material material = Material::kFibre;
+  std::uint32_t seed = 0;  ///< its own shape and shade
+};
+
+/// A small soft lump, for example a lobule of fat or a drop.
+struct Blob {
+  math::Vec3 centre;  ///< world frame [m]
+  double radius = 0;  ///< [m]
+  Material material = Material::kFat;
+  std::uint32_t seed = 0;
+};
+
+/// Liquid that lies in a hollow: its level surface, a little domed at the rim.
+struct Puddle {
+  math::Vec3 centre;                      ///< of the surface, world frame [m]
+  math::Vec3 up{0, 0, 1};                 ///< against gravity, unit
+  double radius = 0;                      ///< [m]
+  double blood = 1, bile = 0, rinse = 0;  ///< shares of what it holds, in any unit, >= 0
+};
+
+/// Everything that one picture shows.
+struct Frame {
+  Camera camera;
+  double light_power = 1;  ///< head light beside the lens; 1 exposes tissue at 0.10 m well [-]
+  /// Drawn in this order; nearest first is fastest.
+  std::vector<SurfaceDraw> surfaces;
+  std::vector<Fibre> fibres;  ///< drawn after everything else
+  std::vector<Blob> blobs;
+  std::vector<Puddle> puddles;
+  std::vector<Arrow> arrows;
+  std::vector<Shade> shades;  ///< the first kMaxShades count
+  double smoke = 0;           ///< haze between lens and tissue, 0 none to 1 thick [-]
+  double time = 0;            ///< of the scene [s]: smoke drifts with it
+  bool has_mask = true;       ///< round picture, black outside
+  bool has_smooth_edges = true;
+  bool is_wireframe = false;                               ///< edges only
+  std::array<double, 3> clear_colour{0.01, 0.004, 0.003};  ///< where nothing is, sRGB [0, 1]
+};
+
+}  // namespace trocar::render

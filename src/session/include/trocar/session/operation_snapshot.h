@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file operation_snapshot.h  What surgery has changed: cut surfaces and tubes, clips, burns, what runs and what lies there.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "trocar/geometry/triangle_mesh.h"
+#include "trocar/math/pose.h"
+#include "trocar/session/input.h"
+#include "trocar/surgery/flow_network.h"
+#include "trocar/training/critical_view.h"
+#include "trocar/training/triplet.h"
+
+namespace trocar::session {
+
+/// A clip, open or closed. Frame: origin in its middle, +x along its legs towards their tips, +z along what it closes.
+struct ClipSnapshot {
+  math::Pose X_world_clip;
+  double gap = 0;        ///< between its legs [m]
+  bool is_lost = false;  ///< lies in the abdomen
+};
+
+/// What runs out of a cut or a hole.
+struct LeakSnapshot {
+  math::Vec3 position;   ///< world frame [m]
+  math::Vec3 direction;  ///< unit, out of the opening
+  surgery::Fluid fluid = surgery::Fluid::kBlood;
+  double rate = 0;  ///< [m^3/s]
+};
+
+/// A piece of a duct or vessel between two of its nodes; pieces that end alone are stumps.
+struct TubePiece {
+  std::uint32_t a = 0, b = 0;         ///< rows of Snapshot::positions
+  double radius_a = 0, radius_b = 0;  ///< [m]
+  std::uint32_t surface = 0;          ///< index in Simulation::Surfaces()
+};
+
+/// One of the strands that dissection divides; constant.
+struct StrandInfo {
+  std::uint32_t a = 0, b = 0;  ///< rows of Snapshot::positions
+  enum class Kind : std::uint8_t {
+    kBed,  ///< gallbladder to liver
+    kAdhesion,
+    kTriangle,    ///< fat and fibres of the hepatocystic triangle
+    kPeritoneum,  ///< its cover, front and back
+    kEnd          ///< of a tube in its organ
+  } kind = Kind::kBed;
+};
+
+/// Fixed sizes while a scene runs, so that copying allocates nothing.
+struct OperationSnapshot {
+  std::array<std::uint8_t, kHandCount> tools{};  ///< in use, by place in InstrumentSetup::tray
+  std::array<bool, kHandCount> has_current{};    ///< flows through the electrode into tissue
+  std::array<int, kHandCount> clips_left{};      ///< in the tool in use
+  /// (Simulation::Strands()) 1 while it holds
+  std::vector<std::uint8_t> strand_is_intact;
+  /// (nodes) 0 to 1 [-]; empty where the scene has no electrode
+  std::vector<float> blanching, charring;
+  /// Triangles of each organ over the rows of Snapshot::positions: organ i has triangles[first[i]] to
+  /// triangles[first[i] + count[i]]. Empty where the scene has nothing that cuts: SurfaceInfo::triangles hold.
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  std::vector<std::uint32_t> first_triangle, triangle_count;  ///< (organs)
+  std::uint32_t topology_version = 0;                         ///< grows when triangles or tube pieces change
+  std::vector<TubePiece> tube_pieces;                         ///< the first tube_piece_count count
+  std::size_t tube_piece_count = 0;
+  std::vector<ClipSnapshot> clips;  ///< the first clip_count count
+  std::size_t clip_count = 0;
+  std::array<LeakSnapshot, 32> leaks{};
+  std::size_t leak_count = 0;
+  surgery::FluidLedger fluids;
+  math::Vec3 p_world_pool;  ///< lowest place, where blood, bile and rinse gather [m]
+  double smoke = 0;         ///< in the view, 0 none to 1 thick [-]
+  bool has_assistant = false;
+  math::Pose X_world_assistant;  ///< of the third grasper
+  double assistant_jaw = 0;      ///< [rad]
+  bool is_assistant_holding = false;
+  /// How the dissection stands.
+  struct Facts {
+    double cleared_share = 0, detached_share = 0;
+    int structures_entering = 0;
+  } facts;
+  training::CriticalViewScore critical_view;
+  training::Phase phase = training::Phase::kPreparation;
+  std::size_t errors = 0, critical_errors = 0;  ///< so far
+  bool is_gallbladder_free = false, is_in_bag = false, is_completed = false;
+};
+
+}  // namespace trocar::session

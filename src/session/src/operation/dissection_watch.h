@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file dissection_watch.h  How far the dissection has come: what the critical view of safety is computed from.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "trocar/session/simulation.h"
+#include "trocar/surgery/organ_surface.h"
+#include "trocar/tissue/rest_frame.h"
+#include "trocar/training/critical_view.h"
+#include "vessel_work.h"
+
+namespace trocar::session {
+
+/// The picture's camera.
+struct Camera {
+  Pose X_world_camera;       ///< looks along -z
+  double field_of_view = 0;  ///< whole, diagonal [rad]
+};
+
+/// Whether a point is in the picture. \note Real-time safe.
+bool IsInPicture(const Camera& camera, const Vec3& p) noexcept;
+
+class DissectionWatch {
+ public:
+  DissectionWatch() = default;
+  /// \param surfaces     organs, then tubes
+  /// \param strands      (strands)
+  DissectionWatch(const anatomy::Patient& patient, std::span<const SurfaceInfo> surfaces,
+                  std::span<const StrandInfo> strands, std::span<const Vec3> rest);
+
+  /// \note Real-time safe.
+  void Update(const tissue::TissueState& tissue, const VesselWork& vessels,
+              std::span<const surgery::OrganSurface> organs, const Camera& camera) noexcept;
+
+  const training::DissectionFacts& Facts() const { return facts_; }
+  /// Neither bed nor adhesion holds the gallbladder, and no tube that enters it is whole.
+  bool IsGallbladderFree() const { return is_free_; }
+  bool HasTriangle() const { return !triangle_.empty(); }
+
+ private:
+  struct Entering {
+    std::uint32_t tube = 0;
+    std::vector<std::uint32_t> nodes;        // from the gallbladder on
+    std::vector<std::uint32_t> end_strands;  // that tie it to the gallbladder
+  };
+  static constexpr std::size_t kBins = 30;
+
+  void Look(const tissue::TissueState& tissue, std::span<const surgery::OrganSurface> organs,
+            const Camera& camera) noexcept;
+  double CalcAzimuth(const tissue::TissueState& tissue, const Vec3& eye) noexcept;
+
+  std::vector<std::uint32_t> triangle_;  // strands of fat and peritoneum
+  std::vector<std::uint32_t> bed_;       // strands
+  std::vector<std::uint8_t> bed_bin_;    // (bed)
+  std::vector<std::uint32_t> adhesions_;
+  std::vector<Entering> entering_;
+  std::vector<std::uint32_t> fibre_starts_, fibres_;     // by node
+  std::vector<std::uint32_t> duct_nodes_, plate_nodes_;  // of cystic and hepatic duct, from their meeting on
+  std::vector<std::uint32_t> neck_nodes_;                // of the gallbladder
+  std::vector<Vec3> neck_rest_;                          // (neck_nodes_) [m]
+  std::array<Vec3, 2> duct_rest_;  // ends of the cystic duct: at the hepatic duct, at the neck [m]
+  math::Quaternion neck_turn_;     // since the rest shape
+  double first_azimuth_ = 0;       // of the first look [rad]
+  bool has_looked_ = false;
+  training::DissectionFacts facts_;
+  bool is_free_ = false;
+};
+
+}  // namespace trocar::session

@@ -1,0 +1,400 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "operation.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "trocar/geometry/openings.h"
+
+namespace trocar::session {
+namespace {
+
+using training::OperationError;
+
+/// A tool that is exchanged is out of the way at this depth [m], for this long [s].
+constexpr double kOutside = 0.031, kExchangeSeconds = 0.5;
+constexpr double kMainDistance = 0.0065;  // fibres nearer to what must stay are left alone [m]
+constexpr double kTipIn = 0.08;           // a tool this deep has been pushed in [m]
+constexpr double kBlindSeconds = 1.5;
+/// Where blood and bile gather, seen from the infundibulum: to the right and behind, in Morison's pouch [m].
+constexpr Vec3 kPouch{-0.015, 0.0, -0.025};
+constexpr double kSmokeFades = 0.08;  // share of the smoke a second that leaves with the gas [1/s]
+
+bool MustStay(training::VesselRole role) noexcept {
+  using Role = training::VesselRole;
+  return role != Role::kCysticDuct && role != Role::kCysticArtery && role != Role::kSubvesicalDuct;
+}
+
+}  // namespace
+
+core::Result<std::unique_ptr<Operation>> Operation::Make(const Scene& scene, const PatientTissue& tissue) {
+  std::unique_ptr<Operation> made(new Operation(scene, tissue.strands));
+  made->made_ = std::make_shared<PatientTissue>(tissue);
+  if (const auto status = made->MakeAll(); !status.ok()) return status.error();
+  return made;
+}
+
+core::Status Operation::MakeAll() {
+  const anatomy::Patient& patient = scene_->patient;
+  const PatientTissue& tissue = *made_;
+  liver_ = patient.FindOrgan("liver");
+  gallbladder_ = patient.FindOrgan("gallbladder");
+  const std::size_t organ_count = patient.organs.size();
+  organs_.clear();
+  for (std::size_t i = 0; i < organ_count; ++i) {
+    surgery::CuttableOrganSettings settings;
+    settings.wall = tissue.walls[i];
+    settings.cut.has_walls = static_cast<std::int32_t>(i) != gallbladder_;
+    settings.first_node = tissue.surfaces[i].first_node;
+    settings.first_spare = tissue.first_spare[i];
+    settings.spare_count = kSpare.by_organ;
+    auto organ = surgery::CuttableOrgan::Make(patient.organs[i].mesh, settings);
+    if (!organ.ok()) return organ.error();
+    organ->ReserveFor(change_);
+    organs_.push_back(std::move(*organ));
+  }
+  auto vessels = VesselWork::Make(patient, std::span(tissue.surfaces).subspan(organ_count),
+                                  tissue.first_spare.back(), kSpare.tubes);
+  if (!vessels.ok()) return vessels.error();
+  vessels_ = std::move(*vessels);
+  vessels_->ReserveFor(change_);
+  change_.Clear();
+
+  main_nodes_.clear();
+  for (std::size_t t = 0; t < patient.tubes.size(); ++t) {
+    const SurfaceInfo& surface = tissue.surfaces[organ_count + t];
+    for (std::uint32_t k = 0; k < surface.node_count; ++k) {
+      const VesselPlace place = vessels_->Map().Find(t, vessels_->Map().arcs[t][k]);
+      if (MustStay(vessels_->Map().anatomy.roles[place.vessel]))
+        main_nodes_.push_back(surface.first_node + k);
+    }
+  }
+  // what lies around ducts that must stay is none of the dissection's business
+  std::vector<StrandInfo> counted = strands_;
+  for (StrandInfo& strand : counted) {
+    if (strand.kind != StrandInfo::Kind::kTriangle && strand.kind != StrandInfo::Kind::kPeritoneum) continue;
+    const Vec3 middle = 0.5 * (tissue.definition.rest[strand.a] + tissue.definition.rest[strand.b]);
+    const bool is_near = std::any_of(main_nodes_.begin(), main_nodes_.end(), [&](std::uint32_t node) {
+      return math::Distance(tissue.definition.rest[node], middle) < kMainDistance;
+    });
+    if (is_near) strand.kind = StrandInfo::Kind::kEnd;
+  }
+  heat_ = Electrosurgery(tissue.definition, tissue.heat_mass, strands_);
+  watch_ = DissectionWatch(patient, tissue.surfaces, counted, tissue.definition.rest);
+  judge_.Clear();
+  assistant_.reset();
+  if (scene_->operation->assistant) {
+    const AssistantSetup& setup = *scene_->operation->assistant;
+    assistant_.emplace(setup, patient.FindLandmark(setup.landmark)->position);
+  }
+  const anatomy::Landmark* neck = patient.FindLandmark("infundibulum");
+  p_pool_ = (neck != nullptr ? neck->position : Vec3{}) + kPouch;
+  fluids_ = {};
+  active_ = {};
+  for (int hand = 0; hand < kHandCount; ++hand) {
+    HandState& state = hands_[static_cast<std::size_t>(hand)];
+    state = {};
+    state.fronts.resize(organ_count);
+    state.blade.jaw = state.spread_upper.jaw = scene_->instruments[hand].home.jaw;
+    state.clips = Tool(hand).clips;
+  }
+  leaked_seen_ = open_area_ = smoke_ = 0;
+  topology_version_ = 0;
+  is_in_bag_ = is_completed_ = false;
+  bag_hand_ = -1;
+  return {};
+}
+
+core::Status Operation::Reset() {
+  return MakeAll();
+}
+
+bool Operation::IsOf(std::uint32_t node, std::int32_t organ) const noexcept {
+  if (organ < 0) return false;
+  const auto i = static_cast<std::size_t>(organ);
+  const std::uint32_t first = made_->surfaces[i].first_node;
+  return node >= first && node < made_->first_spare[i] + kSpare.by_organ;
+}
+
+// --- tools
+
+bool Operation::MoveTool(int hand, const HandControls& controls, bool is_holding, double seconds,
+                         instrument::TrocarJoints& wanted) noexcept {
+  HandState& state = hands_[static_cast<std::size_t>(hand)];
+  std::size_t& active = active_[static_cast<std::size_t>(hand)];
+  const bool wants_other = controls.tool != active && controls.tool < scene_->instruments[hand].tray.size();
+  const bool may = !is_holding || bag_hand_ == hand;
+  if (!wants_other || !may) {
+    const bool is_refused = wants_other && !state.was_refused;
+    state.was_refused = wants_other;
+    state.exchange_seconds = 0;
+    return !is_refused;
+  }
+  state.was_refused = false;
+  const bool is_out = wanted.depth > 0.0 && state.exchange_seconds > 0.0;
+  wanted.depth = kOutside;
+  wanted.jaw = 0;
+  state.exchange_seconds += seconds;
+  if (!is_out || state.exchange_seconds < kExchangeSeconds) return true;
+  if (bag_hand_ == hand) {
+    is_completed_ = is_in_bag_;
+    return true;
+  }
+  active = controls.tool;
+  state.exchange_seconds = 0;
+  state.blade = {};
+  state.spread_upper = state.spread_lower = {};
+  state.clips = Tool(hand).clips;
+  state.has_clip_open = false;
+  state.is_inserting = true;
+  state.blind_seconds = 0;
+  return true;
+}
+
+bool Operation::Act(const HandsNow& hands, const TissueNow& tissue) noexcept {
+  change_.Clear();
+  for (int hand = 0; hand < kHandCount; ++hand) {
+    hands_[static_cast<std::size_t>(hand)].has_current = false;
+    switch (Tool(hand).kind) {
+      case instrument::ToolKind::kScissors:
+        UseBlade(hand, hands, tissue);
+        break;
+      case instrument::ToolKind::kHook:
+        UseElectrode(hand, hands, tissue);
+        UseBlade(hand, hands, tissue);
+        break;
+      case instrument::ToolKind::kDissector:
+        Spread(hand, hands, tissue);
+        UseElectrode(hand, hands, tissue);
+        break;
+      case instrument::ToolKind::kClipApplier:
+        UseClips(hand, hands, tissue);
+        break;
+      case instrument::ToolKind::kSuctionIrrigator:
+        UseFluids(hand, hands);
+        break;
+      case instrument::ToolKind::kBag:
+        UseBag(hand, hands, tissue);
+        break;
+      case instrument::ToolKind::kGrasper:
+        break;
+    }
+  }
+  Burn(hands, tissue);
+  if (assistant_) {
+    const anatomy::Landmark* target = scene_->patient.FindLandmark(assistant_->Setup().landmark);
+    Vec3 p = target->position;
+    // the landmark's place on the organ now: the nearest vertex at rest carries it
+    if (gallbladder_ >= 0) {
+      const SurfaceInfo& surface = made_->surfaces[static_cast<std::size_t>(gallbladder_)];
+      std::uint32_t nearest = surface.first_node;
+      const auto& rest = made_->definition.rest;
+      for (std::uint32_t i = 0; i < surface.node_count; ++i) {
+        const std::uint32_t node = surface.first_node + i;
+        if (math::SquaredDistance(rest[node], p) < math::SquaredDistance(rest[nearest], p)) nearest = node;
+      }
+      p = tissue.state->position[nearest];
+    }
+    const AssistantCommand command = is_in_bag_ ? AssistantCommand::kRelease : hands.input->assistant;
+    (void)assistant_->Step(command, p, hands.seconds, tissue.organs, *tissue.model, {}, *tissue.state);
+  }
+  if (change_.nodes.empty() && change_.springs.empty()) return false;
+  for (const surgery::NodeChange& node : change_.nodes) {
+    if (node.is_new && node.from[0] != geometry::kNone) heat_.CopyNode(node.from[0], node.node);
+  }
+  ++topology_version_;
+  return true;
+}
+
+void Operation::Judge(const HandsNow& hands, const TissueNow& tissue) noexcept {
+  WatchHands(hands);
+  tissue::ConservationState& conserved = *tissue.conserved;
+  if (gallbladder_ >= 0) {
+    const double leaked = conserved.organs[static_cast<std::size_t>(gallbladder_)].leaked - leaked_seen_;
+    if (leaked > 0.0) fluids_.Leak(surgery::Fluid::kBile, leaked);
+  }
+  vessels_->Flow(hands.seconds, gallbladder_, conserved, fluids_);
+  if (gallbladder_ >= 0) leaked_seen_ = conserved.organs[static_cast<std::size_t>(gallbladder_)].leaked;
+  smoke_ = std::clamp(smoke_ * (1.0 - kSmokeFades * hands.seconds), 0.0, 1.0);
+  watch_.Update(*tissue.state, *vessels_, tissue.organs, hands.camera);
+  judge_.Update(watch_, fluids_, is_in_bag_, is_completed_, p_pool_, hands.time, hands.seconds);
+}
+
+void Operation::WatchHands(const HandsNow& hands) noexcept {
+  for (int hand = 0; hand < kHandCount; ++hand) {
+    const auto h = static_cast<std::size_t>(hand);
+    const Vec3& tip = hands.X_proxy[h].translation;
+    const surgery::Grasp& grasp = (*hands.grasps)[h];
+    if (grasp.IsHolding() && Tool(hand).kind != instrument::ToolKind::kBag) {
+      judge_.Note(
+          {training::InstrumentKind::kGrasper, training::Verb::kRetract, TargetOfSurface(grasp.surface)},
+          hand);
+      if (grasp.surface == liver_) judge_.Report(OperationError::kLiverGrasped, tip, hand, hands.time);
+    }
+    if (hands.changes[h] == surgery::GraspChange::kSlipped ||
+        hands.changes[h] == surgery::GraspChange::kDamaged)
+      judge_.Report(OperationError::kExcessForce, tip, hand, hands.time);
+    HandState& state = hands_[h];
+    if (!state.is_inserting) continue;
+    if (IsInPicture(hands.camera, tip)) {
+      state.is_inserting = false;
+    } else if (hands.joints[h].depth > kTipIn) {
+      state.blind_seconds += hands.seconds;
+      if (state.blind_seconds > kBlindSeconds) {
+        judge_.Report(OperationError::kBlindInsertion, tip, hand, hands.time);
+        state.is_inserting = false;
+      }
+    }
+  }
+}
+
+training::Target Operation::TargetOfSurface(std::int32_t surface) const noexcept {
+  using training::Target;
+  if (surface < 0) return Target::kNullTarget;
+  if (surface == liver_) return Target::kLiver;
+  if (surface == gallbladder_) return Target::kGallbladder;
+  const std::string& name = made_->surfaces[static_cast<std::size_t>(surface)].name;
+  if (name.find("cystic_duct") == 0) return Target::kCysticDuct;
+  if (name.find("cystic_artery") == 0) return Target::kCysticArtery;
+  return Target::kBloodVessel;
+}
+
+training::Target Operation::TargetOf(const TissueNow& tissue, std::uint32_t part) const noexcept {
+  using training::Target;
+  const std::size_t nodes = tissue.definition->rest.size();
+  if (part >= nodes) {
+    switch (strands_[part - nodes].kind) {
+      case StrandInfo::Kind::kBed:
+        return Target::kCysticPlate;
+      case StrandInfo::Kind::kAdhesion:
+        return Target::kAdhesion;
+      case StrandInfo::Kind::kPeritoneum:
+        return Target::kPeritoneum;
+      case StrandInfo::Kind::kTriangle:
+      case StrandInfo::Kind::kEnd:
+        return Target::kCysticPedicle;
+    }
+  }
+  for (std::size_t i = 0; i < made_->surfaces.size(); ++i) {
+    const SurfaceInfo& surface = made_->surfaces[i];
+    if (part >= surface.first_node && part < surface.first_node + surface.node_count)
+      return TargetOfSurface(static_cast<std::int32_t>(i));
+  }
+  return Target::kNullTarget;
+}
+
+// --- what others see
+
+std::vector<collision::TubePiece> Operation::TubePieces() const {
+  std::vector<collision::TubePiece> pieces;
+  const auto& graph = vessels_->Tubes().Graph();
+  for (const geometry::Edge& edge : graph.edges)
+    pieces.push_back({vessels_->Tubes().Node(edge[0]), vessels_->Tubes().Node(edge[1]),
+                      std::max(graph.radii[edge[0]], graph.radii[edge[1]])});
+  return pieces;
+}
+
+std::vector<std::uint32_t> Operation::TubesOfPieces() const {
+  std::vector<std::uint32_t> tubes;
+  for (const geometry::Edge& edge : vessels_->Tubes().Graph().edges)
+    tubes.push_back(vessels_->TubeOf(edge[0]));
+  return tubes;
+}
+
+void Operation::Size(OperationSnapshot& snapshot) const {
+  const std::size_t nodes = made_->definition.rest.size();
+  snapshot.strand_is_intact.assign(strands_.size(), 1);
+  snapshot.blanching.assign(nodes, 0.0F);
+  snapshot.charring.assign(nodes, 0.0F);
+  snapshot.clips.assign(surgery::VesselActs::kMostClips, {});
+  snapshot.tube_pieces.assign(vessels_->Tubes().Graph().edges.size() + kSpare.tubes / 2, {});
+  std::size_t triangles = 0;
+  snapshot.first_triangle.clear();
+  for (const surgery::CuttableOrgan& organ : organs_) {
+    snapshot.first_triangle.push_back(static_cast<std::uint32_t>(triangles));
+    triangles += organ.Mesh().TriangleCapacity();
+  }
+  snapshot.triangles.assign(triangles, {});
+  snapshot.triangle_count.assign(organs_.size(), 0);
+  snapshot.topology_version = std::numeric_limits<std::uint32_t>::max();
+}
+
+void Operation::Publish(const tissue::TissueState& tissue, OperationSnapshot& snapshot) const noexcept {
+  for (int hand = 0; hand < kHandCount; ++hand) {
+    const auto h = static_cast<std::size_t>(hand);
+    snapshot.tools[h] = static_cast<std::uint8_t>(active_[h]);
+    snapshot.has_current[h] = hands_[h].has_current;
+    snapshot.clips_left[h] = hands_[h].clips;
+  }
+  std::copy(tissue.strand_is_intact.begin(), tissue.strand_is_intact.end(),
+            snapshot.strand_is_intact.begin());
+  heat_.Publish(snapshot);
+  if (snapshot.topology_version != topology_version_) {
+    for (std::size_t i = 0; i < organs_.size(); ++i) {
+      const surgery::CuttableOrgan& organ = organs_[i];
+      const auto triangles = organ.Mesh().Triangles();
+      snapshot.triangle_count[i] = static_cast<std::uint32_t>(triangles.size());
+      for (std::size_t t = 0; t < triangles.size(); ++t) {
+        for (std::size_t k = 0; k < 3; ++k)
+          snapshot.triangles[snapshot.first_triangle[i] + t][k] = organ.Node(triangles[t][k]);
+      }
+    }
+    snapshot.topology_version = topology_version_;
+  }
+  vessels_->Publish(tissue.position, organs_.size(), snapshot);
+  snapshot.fluids = fluids_;
+  snapshot.p_world_pool = p_pool_;
+  snapshot.smoke = smoke_;
+  snapshot.has_assistant = assistant_.has_value();
+  if (assistant_) {
+    snapshot.X_world_assistant = assistant_->X_world_tool();
+    snapshot.assistant_jaw = assistant_->Joints().jaw;
+    snapshot.is_assistant_holding = assistant_->Held().IsHolding();
+  }
+  snapshot.facts.cleared_share = watch_.Facts().cleared_share;
+  snapshot.facts.detached_share = watch_.Facts().detached_share;
+  snapshot.facts.structures_entering = watch_.Facts().structures_entering;
+  snapshot.critical_view = judge_.View().Score();
+  snapshot.phase = judge_.Phases().Current();
+  snapshot.errors = judge_.Errors().Count();
+  snapshot.critical_errors = judge_.Errors().Count(training::Severity::kCritical);
+  snapshot.is_gallbladder_free = watch_.IsGallbladderFree();
+  snapshot.is_in_bag = is_in_bag_;
+  snapshot.is_completed = is_completed_;
+}
+
+OperationResult Operation::Result() const {
+  OperationResult result;
+  result.errors = judge_.Errors();
+  result.facts = watch_.Facts();
+  result.critical_view = judge_.View().Score();
+  result.was_critical_view_achieved = judge_.WasViewAchieved();
+  surgery::FlowNetwork network = vessels_->Map().network;
+  result.injuries = training::JudgeInjuries(vessels_->Map().anatomy, vessels_->Acts(), network);
+  result.fluids = fluids_;
+  result.phase = judge_.Phases().Current();
+  result.is_gallbladder_free = watch_.IsGallbladderFree();
+  result.is_in_bag = is_in_bag_;
+  result.is_completed = is_completed_;
+  return result;
+}
+
+void Operation::AddTo(core::StateHash& hash) const {
+  vessels_->AddTo(hash);
+  if (assistant_) assistant_->AddTo(hash);
+  for (std::size_t h = 0; h < active_.size(); ++h) {
+    hash.Add(std::uint64_t{active_[h]});
+    hash.Add(static_cast<std::uint64_t>(hands_[h].clips));
+  }
+  for (std::size_t i = 0; i < heat_.State().temperature.size(); ++i) {
+    // what was never warmed says nothing
+    if (heat_.State().damage[i] == 0.0 && heat_.State().water[i] == 1.0) continue;
+    hash.Add(std::uint64_t{i}), hash.Add(heat_.State().temperature[i]), hash.Add(heat_.State().water[i]);
+  }
+  for (const auto& account : fluids_.fluids)
+    hash.Add(account.left), hash.Add(account.pooled), hash.Add(account.aspirated);
+  hash.Add(std::uint64_t{topology_version_});
+  hash.Add(std::uint64_t{is_in_bag_}), hash.Add(std::uint64_t{is_completed_});
+}
+
+}  // namespace trocar::session

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file operation.h  Surgery in the tick: tools that cut, burn, clip, rinse and carry away, and what comes of it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "../patient_tissue.h"
+#include "assistant.h"
+#include "dissection_watch.h"
+#include "electrosurgery.h"
+#include "operation_judge.h"
+#include "trocar/surgery/cuttable_organ.h"
+#include "vessel_work.h"
+
+namespace trocar::session {
+
+/// What a tick knows of the hands.
+struct HandsNow {
+  const Input* input = nullptr;
+  std::array<instrument::TrocarJoints, kHandCount> joints;
+  std::array<Pose, kHandCount> X_proxy, X_device;
+  std::array<surgery::GraspChange, kHandCount> changes{};
+  std::array<surgery::Grasp, kHandCount>* grasps = nullptr;
+  Camera camera;
+  double time = 0;     ///< [s]
+  double seconds = 0;  ///< of the tick
+};
+
+/// The tissue that is operated on.
+struct TissueNow {
+  const tissue::TissueModel* model = nullptr;
+  const tissue::TissueDefinition* definition = nullptr;
+  tissue::TissueState* state = nullptr;
+  const tissue::Conservation* conservation = nullptr;
+  tissue::ConservationState* conserved = nullptr;
+  std::span<const surgery::OrganSurface> organs;
+  const surgery::TubeSet* tubes = nullptr;
+};
+
+class Operation {
+ public:
+  /// Nodes that cuts may use.
+  static constexpr SpareNodes kSpare{500, 32};
+
+  /// \return kPatientInvalid or kMeshInvalid
+  static core::Result<std::unique_ptr<Operation>> Make(const Scene& scene, const PatientTissue& tissue);
+  /// As at the start. \pre the tissue is again the one of Make
+  core::Status Reset();
+
+  /// Neither an organ nor a duct or vessel has been cut.
+  bool IsUncut() const { return topology_version_ == 0; }
+
+  // --- tools
+
+  const instrument::Tool& Tool(int hand) const {
+    return scene_->instruments[hand].tray[active_[static_cast<std::size_t>(hand)]];
+  }
+  /// What the hand's joints become: a tool that is exchanged is drawn out.
+  /// \param is_holding  then there is no exchange, unless it is the bag that holds
+  /// \return false where an exchange was asked for and refused
+  /// \note Real-time safe.
+  bool MoveTool(int hand, const HandControls& controls, bool is_holding, double seconds,
+                instrument::TrocarJoints& wanted) noexcept;
+
+  // --- the stages of a tick
+
+  /// Cuts, burns, clips, rinses. \return whether nodes or springs changed: see Change()
+  /// \note Real-time safe.
+  bool Act(const HandsNow& hands, const TissueNow& tissue) noexcept;
+  const surgery::TopologyChange& Change() const { return change_; }
+  /// After the solve: flow, views, errors.
+  /// \note Real-time safe.
+  void Judge(const HandsNow& hands, const TissueNow& tissue) noexcept;
+
+  const surgery::CuttableOrgan& Organ(std::size_t i) const { return organs_[i]; }
+  /// Ducts and vessels as they are now, for contacts.
+  std::vector<collision::TubePiece> TubePieces() const;
+  std::vector<std::uint32_t> TubesOfPieces() const;
+  std::span<const StrandInfo> Strands() const { return strands_; }
+  bool HasAssistant() const { return assistant_.has_value(); }
+  const Assistant& ThirdHand() const { return *assistant_; }
+  OperationJudge& Judgement() { return judge_; }
+
+  void Size(OperationSnapshot& snapshot) const;
+  void Publish(const tissue::TissueState& tissue, OperationSnapshot& snapshot) const noexcept;
+  OperationResult Result() const;
+  void AddTo(core::StateHash& hash) const;
+
+ private:
+  struct HandState {
+    surgery::BladeState blade, spread_upper, spread_lower;
+    std::vector<geometry::CutFront> fronts;    // (organs)
+    bool has_clip_open = false;                // the applier has been opened since its last clip
+    double opened = 0;                         // the applier's jaws, at the most [rad]
+    std::optional<VesselWork::Caught> caught;  // between them then
+    int clips = 0;
+    bool has_current = false;
+    double idle_seconds = 0;  // pedal down, nothing touched
+    double blind_seconds = 0;
+    bool is_inserting = false;
+    bool was_refused = false;
+    double exchange_seconds = 0;
+  };
+
+  Operation(const Scene& scene, std::vector<StrandInfo> strands)
+      : scene_(&scene), strands_(std::move(strands)) {}
+  core::Status MakeAll();
+  void UseBlade(int hand, const HandsNow& hands, const TissueNow& tissue) noexcept;
+  void CutWith(const surgery::BladeMove& move, int hand, const HandsNow& hands, const TissueNow& tissue,
+               bool cuts_strands) noexcept;
+  void Spread(int hand, const HandsNow& hands, const TissueNow& tissue) noexcept;
+  void UseElectrode(int hand, const HandsNow& hands, const TissueNow& tissue) noexcept;
+  void UseClips(int hand, const HandsNow& hands, const TissueNow& tissue) noexcept;
+  void UseFluids(int hand, const HandsNow& hands) noexcept;
+  void UseBag(int hand, const HandsNow& hands, const TissueNow& tissue) noexcept;
+  void Burn(const HandsNow& hands, const TissueNow& tissue) noexcept;
+  void WatchHands(const HandsNow& hands) noexcept;
+  training::Target TargetOf(const TissueNow& tissue, std::uint32_t part) const noexcept;
+  training::Target TargetOfSurface(std::int32_t surface) const noexcept;
+  bool IsOf(std::uint32_t node, std::int32_t organ) const noexcept;
+
+  const Scene* scene_;  // outlives this
+  std::vector<StrandInfo> strands_;
+  std::shared_ptr<const PatientTissue> made_;
+  std::int32_t liver_ = -1, gallbladder_ = -1;
+  std::vector<std::uint32_t> main_nodes_;  // of ducts and arteries that must stay
+  Vec3 p_pool_;
+
+  std::vector<surgery::CuttableOrgan> organs_;
+  std::vector<std::size_t> opening_vertices_;
+  std::optional<VesselWork> vessels_;
+  Electrosurgery heat_;
+  DissectionWatch watch_;
+  OperationJudge judge_;
+  std::optional<Assistant> assistant_;
+  surgery::TopologyChange change_;
+  surgery::FluidLedger fluids_;
+
+  std::array<std::size_t, kHandCount> active_{};
+  std::array<HandState, kHandCount> hands_;
+  double leaked_seen_ = 0, open_area_ = 0, smoke_ = 0;
+  std::uint32_t topology_version_ = 0;
+  bool is_in_bag_ = false, is_completed_ = false;
+  std::int32_t bag_hand_ = -1;
+};
+
+}  // namespace trocar::session

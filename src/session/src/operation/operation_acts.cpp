@@ -1,0 +1,279 @@
+// SPDX-License-Identifier: Apache-2.0
+// What each tool does to tissue.
+#include <algorithm>
+#include <cmath>
+
+#include "operation.h"
+#include "trocar/geometry/openings.h"
+
+namespace trocar::session {
+namespace {
+
+using training::InstrumentKind;
+using training::OperationError;
+using training::Verb;
+
+// Electrosurgery; domain facts, section 1.3: 20 to 40 W
+constexpr double kCutPower = 35.0, kCoagulatePower = 25.0;      // [W]
+constexpr double kCutReach = 0.0008, kCoagulateReach = 0.0012;  // of the current beside the metal [m]
+constexpr double kIdleSeconds = 0.25;    // of current into nothing that no eye would note
+constexpr double kNearDuct = 0.005;      // domain facts, section 1.4 [m]
+constexpr double kSealReach = 0.003;     // [m]
+constexpr double kSealHeat = 15.0;       // that shuts the end of a small vessel [J]
+constexpr double kBurntHole = 1e-6;      // left by a node that was burnt through [m^2]
+constexpr double kSmokeByHeat = 0.0012;  // [1/J]
+
+// Clip applier: closed and open again, as shares of its opening
+constexpr double kClipClosed = 0.12, kClipOpen = 0.6;
+
+// Suction-irrigator: general knowledge, tunables
+constexpr double kRinseRate = 20e-6, kAspirateRate = 40e-6;  // [m^3/s]
+constexpr double kSuctionReach = 0.012;                      // of the tip beyond the pool's edge [m]
+constexpr double kSmokeSucked = 1.5;                         // share of the smoke a second [1/s]
+
+constexpr double kMouth = 0.030;  // of the bag: what lies within of its tip is in it [m]
+constexpr double kBagGrip = 1e4;  // nothing slips out of a closed bag [N]
+
+/// A jaw as an edge, hinge to tip.
+geometry::BladeEdge JawEdge(const instrument::Tool& tool, const Pose& X_world_tool, double jaw, int side) {
+  return {X_world_tool * instrument::JawHinge(tool), X_world_tool * instrument::JawTip(tool, jaw, side)};
+}
+
+}  // namespace
+
+void Operation::UseBlade(int hand, const HandsNow& hands, const TissueNow& tissue) noexcept {
+  const auto h = static_cast<std::size_t>(hand);
+  const bool is_hook = Tool(hand).kind == instrument::ToolKind::kHook;
+  surgery::BladeSettings settings;
+  settings.kind = is_hook ? surgery::BladeKind::kHook : surgery::BladeKind::kScissors;
+  // the hook that is seen never enters tissue: it cuts where the hand presses it
+  const Pose& X = is_hook ? hands.X_device[h] : hands.X_proxy[h];
+  const auto move = surgery::MoveBlade(Tool(hand), X, hands.joints[h].jaw, hands.input->controls[h].cut,
+                                       settings, hands_[h].blade);
+  if (!move) {
+    for (geometry::CutFront& front : hands_[h].fronts) front = {};
+    return;
+  }
+  CutWith(*move, hand, hands, tissue, !is_hook);
+}
+
+void Operation::CutWith(const surgery::BladeMove& move, int hand, const HandsNow& hands,
+                        const TissueNow& tissue, bool cuts_strands) noexcept {
+  const auto h = static_cast<std::size_t>(hand);
+  const InstrumentKind kind = cuts_strands ? InstrumentKind::kScissors : InstrumentKind::kHook;
+  const Vec3& tip = hands.X_proxy[h].translation;
+  if (cuts_strands) {
+    std::array<std::uint32_t, 64> cut;
+    const std::size_t count = surgery::FindCutStrands(move, tissue.definition->strands, *tissue.state, cut);
+    for (std::size_t i = 0; i < count; ++i) {
+      tissue.state->strand_is_intact[cut[i]] = 0;
+      judge_.Note({kind, Verb::kCut,
+                   TargetOf(tissue, static_cast<std::uint32_t>(tissue.definition->rest.size()) + cut[i])},
+                  hand);
+    }
+  }
+  std::array<TubePlace, surgery::CuttableTubes::kMostCuts> places;
+  const std::size_t tubes = vessels_->Cut(move, *tissue.definition, tissue.state->position, change_, places);
+  for (std::size_t i = 0; i < tubes; ++i) {
+    judge_.OnCut(places[i], *vessels_, tip, hand, hands.time);
+    judge_.Note(
+        {kind, Verb::kCut, TargetOfSurface(static_cast<std::int32_t>(organs_.size() + places[i].tube))},
+        hand);
+  }
+  for (std::size_t i = 0; i < organs_.size(); ++i) {
+    const geometry::CutReport report =
+        organs_[i].Cut(move.before, move.now, tissue.state->position, hands_[h].fronts[i], change_);
+    if (!report.HasChanged()) continue;
+    const auto organ = static_cast<std::int32_t>(i);
+    judge_.Note({kind, Verb::kCut, TargetOfSurface(organ)}, hand);
+    if (organ != gallbladder_) {
+      judge_.Report(OperationError::kStructureTorn, tip, hand, hands.time);
+      continue;
+    }
+    std::array<geometry::Opening, 8> openings;
+    const std::size_t found = std::min(openings.size(), geometry::FindOpenings(organs_[i].Mesh(), openings));
+    double area = 0;
+    for (std::size_t k = 0; k < found; ++k) area += openings[k].area;
+    if (found == 0) continue;
+    judge_.Report(OperationError::kGallbladderPerforated, tip, hand, hands.time);
+    tissue.conservation->Perforate(i, std::max(kBurntHole, area - open_area_), *tissue.conserved);
+    open_area_ = std::max(area, open_area_);
+  }
+}
+
+void Operation::Spread(int hand, const HandsNow& hands, const TissueNow& tissue) noexcept {
+  const auto h = static_cast<std::size_t>(hand);
+  HandState& state = hands_[h];
+  const double jaw = hands.joints[h].jaw;
+  const bool opens = jaw > state.spread_upper.jaw;
+  state.spread_upper.jaw = jaw;
+  const auto edges = std::array{JawEdge(Tool(hand), hands.X_proxy[h], jaw, +1),
+                                JawEdge(Tool(hand), hands.X_proxy[h], jaw, -1)};
+  auto& upper = state.spread_upper.edge;
+  auto& lower = state.spread_lower.edge;
+  if (opens && upper && lower) {
+    // what a jaw pushes before it as it opens gives way, fibre by fibre
+    for (const auto& move : {surgery::BladeMove{*upper, edges[0]}, surgery::BladeMove{*lower, edges[1]}}) {
+      std::array<std::uint32_t, 16> torn;
+      const std::size_t count =
+          surgery::FindCutStrands(move, tissue.definition->strands, *tissue.state, torn);
+      for (std::size_t i = 0; i < count; ++i) {
+        const StrandInfo::Kind kind = strands_[torn[i]].kind;
+        if (kind == StrandInfo::Kind::kEnd) continue;  // a duct's end does not give way to a jaw
+        tissue.state->strand_is_intact[torn[i]] = 0;
+        judge_.Note({InstrumentKind::kGrasper, Verb::kDissect,
+                     TargetOf(tissue, static_cast<std::uint32_t>(tissue.definition->rest.size()) + torn[i])},
+                    hand);
+      }
+    }
+  }
+  upper = edges[0];
+  lower = edges[1];
+}
+
+void Operation::UseElectrode(int hand, const HandsNow& hands, const TissueNow& tissue) noexcept {
+  const auto h = static_cast<std::size_t>(hand);
+  const HandControls& controls = hands.input->controls[h];
+  if (!controls.cut && !controls.coagulate) {
+    hands_[h].idle_seconds = 0;
+    return;
+  }
+  const instrument::Tool& tool = Tool(hand);
+  const Pose& X = hands.X_proxy[h];
+  Electrosurgery::Electrode electrode;
+  if (tool.kind == instrument::ToolKind::kHook) {
+    const surgery::BladeSettings blade;
+    electrode.bare = {X * blade.p_tool_hook.a, X * blade.p_tool_hook.b};
+  } else {
+    electrode.bare = {X.translation, X * Vec3{0, 0, 0.25 * tool.jaw_length}};
+  }
+  electrode.power = controls.cut ? kCutPower : kCoagulatePower;
+  electrode.reach = controls.cut ? kCutReach : kCoagulateReach;
+  if (!IsInPicture(hands.camera, X.translation))
+    judge_.Report(OperationError::kEnergyOutOfView, X.translation, hand, hands.time);
+  std::array<Electrosurgery::Target, 96> targets;
+  const std::size_t count =
+      heat_.FindTargets(electrode, tissue.organs, *tissue.tubes, *tissue.state, targets);
+  double& idle = hands_[h].idle_seconds;
+  if (count == 0) {
+    idle += hands.seconds;
+    if (idle > kIdleSeconds)
+      judge_.Report(OperationError::kEnergyWithoutContact, X.translation, hand, hands.time);
+    return;
+  }
+  idle = 0;
+  hands_[h].has_current = true;
+  heat_.AddPower(electrode, std::span(targets).first(count));
+  if (controls.coagulate)
+    vessels_->Seal(X.translation, kSealReach, electrode.power * hands.seconds / kSealHeat,
+                   tissue.state->position);
+  const InstrumentKind kind =
+      tool.kind == instrument::ToolKind::kHook ? InstrumentKind::kHook : InstrumentKind::kBipolar;
+  for (std::size_t i = 0; i < count; ++i) {
+    const bool is_strand = targets[i].part >= tissue.definition->rest.size();
+    judge_.Note({kind, is_strand ? Verb::kDissect : Verb::kCoagulate, TargetOf(tissue, targets[i].part)},
+                hand);
+  }
+  const bool is_near = std::any_of(main_nodes_.begin(), main_nodes_.end(), [&](std::uint32_t node) {
+    return math::Distance(tissue.state->position[node], X.translation) < kNearDuct;
+  });
+  if (is_near) judge_.Report(OperationError::kEnergyNearDuct, X.translation, hand, hands.time);
+}
+
+void Operation::Burn(const HandsNow& hands, const TissueNow& tissue) noexcept {
+  std::array<std::uint32_t, 16> parted;
+  const std::size_t count = heat_.Step(hands.seconds, *tissue.state, parted);
+  smoke_ += kSmokeByHeat * heat_.Power() * hands.seconds;
+  std::int32_t hand = -1;
+  for (int i = 0; i < kHandCount; ++i) {
+    if (hands_[static_cast<std::size_t>(i)].has_current) hand = i;
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    const Vec3& p = tissue.state->position[parted[i]];
+    TubePlace place;
+    if (IsOf(parted[i], gallbladder_)) {
+      tissue.conservation->Perforate(static_cast<std::size_t>(gallbladder_), kBurntHole, *tissue.conserved);
+      judge_.Report(OperationError::kGallbladderPerforated, p, hand, hands.time);
+    } else if (IsOf(parted[i], liver_)) {
+      judge_.Report(OperationError::kLiverBurnt, p, hand, hands.time);
+    } else if (vessels_->MakeHole(parted[i], kBurntHole, place)) {
+      judge_.OnHole(place, vessels_->Map(), p, hand, hands.time);
+    }
+  }
+}
+
+void Operation::UseClips(int hand, const HandsNow& hands, const TissueNow& tissue) noexcept {
+  const auto h = static_cast<std::size_t>(hand);
+  HandState& state = hands_[h];
+  const instrument::Tool& tool = Tool(hand);
+  const double jaw = hands.joints[h].jaw;
+  if (jaw > kClipOpen * tool.max_jaw) {
+    state.has_clip_open = state.clips > 0;
+    // as long as they open, or rest; what lies there when they close is caught
+    if (jaw >= state.opened || !state.caught) {
+      state.opened = jaw;
+      state.caught = vessels_->Catch(tool, hands.X_proxy[h], jaw, tissue.state->position);
+    }
+  }
+  if (!state.has_clip_open || jaw > kClipClosed * tool.max_jaw) return;
+  state.has_clip_open = false;
+  --state.clips;
+  const ClipResult clip = vessels_->Clip(tool, hands.X_proxy[h], state.caught, tissue.state->position);
+  state.caught.reset();
+  state.opened = 0;
+  judge_.OnClip(clip, vessels_->Map(), hands.X_proxy[h].translation, hand, hands.time);
+  if (clip.kind != ClipResult::Kind::kLost)
+    judge_.Note({InstrumentKind::kClipper, Verb::kClip,
+                 TargetOfSurface(static_cast<std::int32_t>(organs_.size() + clip.place.tube))},
+                hand);
+}
+
+void Operation::UseFluids(int hand, const HandsNow& hands) noexcept {
+  const auto h = static_cast<std::size_t>(hand);
+  const HandControls& controls = hands.input->controls[h];
+  if (controls.rinse) {
+    fluids_.Rinse(kRinseRate * hands.seconds);
+    judge_.Note({InstrumentKind::kIrrigator, Verb::kIrrigate, training::Target::kFluid}, hand);
+  }
+  if (!controls.aspirate) return;
+  smoke_ *= std::max(0.0, 1.0 - kSmokeSucked * hands.seconds);
+  // the pool as a half sphere
+  const double radius = std::cbrt(fluids_.Pooled() * 3.0 / (2.0 * M_PI));
+  if (math::Distance(hands.X_proxy[h].translation, p_pool_) > radius + kSuctionReach) return;
+  if (fluids_.Aspirate(kAspirateRate * hands.seconds) > 0.0)
+    judge_.Note({InstrumentKind::kIrrigator, Verb::kAspirate, training::Target::kFluid}, hand);
+}
+
+void Operation::UseBag(int hand, const HandsNow& hands, const TissueNow& tissue) noexcept {
+  const auto h = static_cast<std::size_t>(hand);
+  judge_.Note({InstrumentKind::kSpecimenBag, Verb::kPack, training::Target::kGallbladder}, hand);
+  if (is_in_bag_ || gallbladder_ < 0 || !watch_.IsGallbladderFree()) return;
+  const SurfaceInfo& surface = made_->surfaces[static_cast<std::size_t>(gallbladder_)];
+  Vec3 centre;
+  for (std::uint32_t i = 0; i < surface.node_count; ++i)
+    centre += tissue.state->position[surface.first_node + i] / static_cast<double>(surface.node_count);
+  const Pose& X = hands.X_device[h];
+  if (math::Distance(centre, X.translation) > kMouth) return;
+  // the other hands let go, and the bag closes around it
+  for (surgery::Grasp& grasp : *hands.grasps) {
+    if (grasp.surface == gallbladder_) surgery::ReleaseGrasp(*tissue.model, grasp, *tissue.state);
+  }
+  if (assistant_) surgery::ReleaseGrasp(*tissue.model, assistant_->Held(), *tissue.state);
+  surgery::Grasp& held = (*hands.grasps)[h];
+  held = {};
+  held.surface = gallbladder_;
+  held.pinch = held.damage_pinch = kBagGrip;
+  const auto capacity = static_cast<std::uint32_t>(surgery::Grasp::kCapacity);
+  const std::uint32_t step = std::max(1U, surface.node_count / capacity);
+  const Pose X_tool_world = math::Inverse(X);
+  for (std::uint32_t i = 0; i < surface.node_count && held.count < surgery::Grasp::kCapacity; i += step) {
+    const std::uint32_t node = surface.first_node + i;
+    held.nodes[held.count] = node;
+    held.p_tool_node[held.count++] = X_tool_world * tissue.state->position[node];
+    tissue.state->condition[node] = tissue::NodeCondition::kPrescribed;
+  }
+  is_in_bag_ = true;
+  bag_hand_ = hand;
+}
+
+}  // namespace trocar::session

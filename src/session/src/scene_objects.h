@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file scene_objects.h  Reading of a scene's "objects".
+#pragma once
+
+#include <vector>
+
+#include "trocar/core/json.h"
+#include "trocar/session/scene_object.h"
+
+namespace trocar::session {
+
+/// Reads the list `key` of objects; complains in the view's document where one is wrong, or too many.
+std::vector<SceneObject> ReadObjects(const core::JsonView& scene, std::string_view key);
+
+/// A point in mm.
+math::Vec3 ReadPointMm(const core::JsonView& view, std::string_view key);
+
+}  // namespace trocar::session

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/session/surgeon.h"
+
+#include <algorithm>
+
+#include "operation/cholecystectomy_surgeon.h"
+#include "task_surgeon.h"
+
+namespace trocar::session {
+namespace {
+
+SurgeonSkill NoviceSkill() {
+  SurgeonSkill skill;
+  skill.hand.speed = 0.05;
+  skill.hand.shortest = 0.5;
+  skill.hand.tremor = 0.0003;
+  skill.hand.aim_error = 0.0010;
+  skill.hand.jaw_rate = 1.0;
+  skill.hand.spin_rate = 1.2;
+  skill.pause = 0.8;
+  skill.miss_share = 0.35;
+  skill.camera_speed = 0.03;
+  return skill;
+}
+
+bool HasGoals(const Scene& scene) {
+  return scene.task && !scene.HasPatient();
+}
+/// Whether the task counts an error of that name.
+bool Counts(const Scene& scene, std::string_view name) {
+  return HasGoals(scene) && std::any_of(scene.task->errors.begin(), scene.task->errors.end(),
+                                        [&](const ErrorRule& rule) { return rule.name == name; });
+}
+
+template <Flaw kFlaw>
+std::unique_ptr<Surgeon> MakeCareless(std::shared_ptr<const Scene> scene, std::uint64_t seed) {
+  return std::make_unique<TaskSurgeon>(std::move(scene), SurgeonSkill{}, kFlaw, seed);
+}
+
+constexpr const char *kDropped = "dropped", *kLost = "lost", *kWire = "wire_touched",
+                     *kBoard = "board_pressed", *kView = "tip_out_of_view", *kClash = "tools_clash",
+                     *kSlipped = "slipped", *kSmeared = "lens_smeared";
+
+const SurgeonEntry kTaskSurgeons[] = {
+    {"expert", "does every goal of a task, without an error", "", HasGoals, MakeCareless<Flaw::kNone>},
+    {"novice", "slow, hesitant, unsteady; closes the jaws beside things and tries again", "", HasGoals,
+     [](std::shared_ptr<const Scene> scene, std::uint64_t seed) -> std::unique_ptr<Surgeon> {
+       return std::make_unique<TaskSurgeon>(std::move(scene), NoviceSkill(), Flaw::kNone, seed);
+     }},
+    {"drops", "lets a thing fall in mid-air, then goes on", kDropped,
+     [](const Scene& scene) { return Counts(scene, kDropped); }, MakeCareless<Flaw::kDrops>},
+    {"loses", "carries a thing out of the field and drops it there", kLost,
+     [](const Scene& scene) { return Counts(scene, kLost); }, MakeCareless<Flaw::kLoses>},
+    {"touches_wire", "strays from the path and touches the wire", kWire,
+     [](const Scene& scene) { return Counts(scene, kWire); }, MakeCareless<Flaw::kTouchesWire>},
+    {"presses_board", "pushes a tip hard into the board", kBoard,
+     [](const Scene& scene) { return Counts(scene, kBoard); }, MakeCareless<Flaw::kPressesBoard>},
+    {"leaves_view", "takes a tip out of the picture", kView,
+     [](const Scene& scene) { return Counts(scene, kView); }, MakeCareless<Flaw::kLeavesView>},
+    {"clashes", "runs one tool into the other", kClash,
+     [](const Scene& scene) { return Counts(scene, kClash); }, MakeCareless<Flaw::kClashes>},
+    {"pulls_apart", "pulls with both hands at one thing until it slips", kSlipped,
+     [](const Scene& scene) { return Counts(scene, kSlipped); }, MakeCareless<Flaw::kPullsApart>},
+    {"smears_lens", "takes the laparoscope too near", kSmeared,
+     [](const Scene& scene) { return Counts(scene, kSmeared); }, MakeCareless<Flaw::kSmearsLens>},
+    {"dawdles", "does not get on before the time is over", "time_over",
+     [](const Scene& scene) { return HasGoals(scene) && scene.task->time_limit < 36000; },
+     MakeCareless<Flaw::kDawdles>},
+};
+
+template <OperationFlaw kFlaw>
+std::unique_ptr<Surgeon> MakeCarelessOperator(std::shared_ptr<const Scene> scene, std::uint64_t seed) {
+  return std::make_unique<CholecystectomySurgeon>(std::move(scene), SurgeonSkill{}, kFlaw, seed);
+}
+
+const SurgeonEntry kOperators[] = {
+    {"expert", "does the whole cholecystectomy", "", IsCholecystectomy,
+     MakeCarelessOperator<OperationFlaw::kNone>},
+    {"novice", "does it slowly and unsteadily", "", IsCholecystectomy,
+     [](std::shared_ptr<const Scene> scene, std::uint64_t seed) -> std::unique_ptr<Surgeon> {
+       return std::make_unique<CholecystectomySurgeon>(std::move(scene), NoviceSkill(), OperationFlaw::kNone,
+                                                       seed);
+     }},
+    {"clips_main_duct", "closes a clip on the common hepatic duct", "wrong_structure_clipped",
+     IsCholecystectomy, MakeCarelessOperator<OperationFlaw::kClipsMainDuct>},
+    {"cuts_main_duct", "cuts the common hepatic duct", "wrong_structure_cut", IsCholecystectomy,
+     MakeCarelessOperator<OperationFlaw::kCutsMainDuct>},
+    {"burns_main_duct", "holds the electrode to the common hepatic duct", "wrong_structure_burnt",
+     IsCholecystectomy, MakeCarelessOperator<OperationFlaw::kBurnsMainDuct>},
+    {"cuts_unclipped", "cuts the cystic duct without a clip", "unclipped_cut", IsCholecystectomy,
+     MakeCarelessOperator<OperationFlaw::kCutsUnclipped>},
+    {"clips_early", "clips before the critical view", "clip_before_critical_view", IsCholecystectomy,
+     MakeCarelessOperator<OperationFlaw::kClipsEarly>},
+    {"too_few_clips", "cuts with one clip on the patient's side", "too_few_clips", IsCholecystectomy,
+     MakeCarelessOperator<OperationFlaw::kTooFewClips>},
+    {"crosses_clips", "puts one clip over another", "clip_crossed", IsCholecystectomy,
+     MakeCarelessOperator<OperationFlaw::kCrossesClips>},
+    {"clips_partly", "closes a clip around half of the duct", "clip_partial", IsCholecystectomy,
+     MakeCarelessOperator<OperationFlaw::kClipsPartly>},
+    {"bleeds", "cuts the cystic artery and watches", "bleeding", IsCholecystectomy,
+     MakeCarelessOperator<OperationFlaw::kBleeds>},
+    {"perforates", "burns the gallbladder", "gallbladder_perforated", IsCholecystectomy,
+     MakeCarelessOperator<OperationFlaw::kPerforates>},
+    {"burns_liver", "burns the liver", "liver_burnt", IsCholecystectomy,
+     MakeCarelessOperator<OperationFlaw::kBurnsLiver>},
+    {"burns_near_duct", "uses current beside the common hepatic duct", "energy_near_duct", IsCholecystectomy,
+     MakeCarelessOperator<OperationFlaw::kBurnsNearDuct>},
+    {"burns_unseen", "presses the pedal out of the picture", "energy_out_of_view", IsCholecystectomy,
+     MakeCarelessOperator<OperationFlaw::kBurnsUnseen>},
+    {"burns_air", "presses the pedal in the air", "energy_without_contact", IsCholecystectomy,
+     MakeCarelessOperator<OperationFlaw::kBurnsAir>},
+    {"drops_clip", "closes a clip around nothing", "clip_dropped", IsCholecystectomy,
+     MakeCarelessOperator<OperationFlaw::kDropsClip>},
+    {"grasps_liver", "takes the liver into the jaws", "liver_grasped", IsCholecystectomy,
+     MakeCarelessOperator<OperationFlaw::kGraspsLiver>},
+    {"pulls_hard", "pulls until the tissue slips out of the jaws", "excess_force", IsCholecystectomy,
+     MakeCarelessOperator<OperationFlaw::kPullsHard>},
+    {"cuts_liver", "cuts into the liver", "structure_torn", IsCholecystectomy,
+     MakeCarelessOperator<OperationFlaw::kCutsLiver>},
+    {"inserts_blind", "pushes a tool in out of the picture", "blind_insertion", IsCholecystectomy,
+     MakeCarelessOperator<OperationFlaw::kInsertsBlind>},
+};
+
+}  // namespace
+
+std::vector<SurgeonEntry> ListSurgeons() {
+  std::vector<SurgeonEntry> all(std::begin(kTaskSurgeons), std::end(kTaskSurgeons));
+  all.insert(all.end(), std::begin(kOperators), std::end(kOperators));
+  return all;
+}
+
+core::Result<std::unique_ptr<Surgeon>> MakeSurgeon(std::string_view name, std::shared_ptr<const Scene> scene,
+                                                   std::uint64_t seed) {
+  std::string known;
+  for (const SurgeonEntry& entry : ListSurgeons()) {
+    if (!entry.suits(*scene)) continue;
+    if (name == entry.name) return entry.make(std::move(scene), seed);
+    known += (known.empty() ? "" : ", ") + std::string(entry.name);
+  }
+  return core::Error{core::ErrorCode::kUnknownName,
+                     "no surgeon called \"" + std::string(name) + "\" suits this task; there are " +
+                         (known.empty() ? "none for it" : known) + "; see trocar play --list"};
+}
+
+}  // namespace trocar::session

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "film.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace trocar::view {
+namespace {
+
+using math::Vec3;
+
+constexpr double kLeastRate = 1e-10;   // m^3/s; slower than a drop in five minutes wets nothing
+constexpr double kFullRate = 1e-6;     // m^3/s, of a cystic artery: the film is at its widest
+constexpr double kWidth = 0.0035;      // m, of the slowest run
+constexpr double kWidthGain = 0.0045;  // m
+constexpr double kLength = 0.006, kLengthGain = 0.034;  // m
+
+}  // namespace
+
+Film::Film(const session::Snapshot& snapshot) : down_(math::Normalized(snapshot.gravity, {0, 0, -1})) {
+  const session::OperationSnapshot& operation = snapshot.operation;
+  for (std::size_t i = 0; i < std::min(operation.leak_count, operation.leaks.size()); ++i) {
+    const session::LeakSnapshot& leak = operation.leaks[i];
+    if (!(leak.rate > kLeastRate)) continue;
+    // a hundredfold rate is seen as about thrice the width
+    const double flow = std::clamp(std::pow(leak.rate / kFullRate, 0.3), 0.0, 1.5);
+    runs_.push_back({leak.position, kWidth + kWidthGain * flow, kLength + kLengthGain * flow,
+                     std::min(1.0, 0.45 + 0.6 * flow), leak.fluid == surgery::Fluid::kBlood});
+  }
+}
+
+void Film::Wet(const Vec3& p_world, render::SurfaceMark& mark) const {
+  for (const Run& run : runs_) {
+    const Vec3 from = p_world - run.start;
+    const double drop = math::Dot(from, down_), side = math::Norm(from - drop * down_);
+    // round above the leak, a tongue below it
+    const double past = drop < 0.0 ? -drop : std::max(0.0, drop - run.length);
+    const double far = std::hypot(side, past) / run.width;
+    if (far >= 1.0) continue;
+    const auto wet = static_cast<std::uint8_t>(255.0 * run.strength * (1.0 - far * far));
+    std::uint8_t& film = run.is_blood ? mark.blood : mark.bile;
+    film = std::max(film, wet);
+  }
+}
+
+}  // namespace trocar::view

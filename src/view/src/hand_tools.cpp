@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "hand_tools.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "trocar/geometry/tube.h"
+#include "trocar/math/random.h"
+
+namespace trocar::view {
+namespace {
+
+using instrument::ToolKind;
+using Kind = instrument::ToolPart::Kind;
+using math::Pose;
+using math::Vec3;
+using render::Material;
+
+constexpr double kSleeveRadius = 0.0042;   // m, of a 5 mm trocar
+constexpr double kSleeveInside = 0.012;    // m that it stands out of the wall, inwards
+constexpr double kSleeveOutside = 0.060;   // m
+constexpr double kSleeveMaxBore = 0.0034;  // m; a thicker shaft gets a wider sleeve
+constexpr double kShadeLength = 0.120;     // m of a shaft that shades tissue
+constexpr int kSparks = 7;
+constexpr double kSparkLength = 0.0028;  // m, of the longest
+
+geometry::TriangleMesh MakeSleeve(double shaft_radius) {
+  const double radius = kSleeveRadius + std::max(0.0, shaft_radius - kSleeveMaxBore);
+  // the inner end is bevelled
+  return geometry::MakeTube({{{0, 0, -kSleeveInside}, {0, 0, -kSleeveInside + 0.002}, {0, 0, kSleeveOutside}},
+                             {0.88 * radius, radius, radius}},
+                            24);
+}
+
+Material MaterialOf(ToolKind tool, Kind part) {
+  switch (part) {
+    case Kind::kShaft:
+      return tool == ToolKind::kSuctionIrrigator ? Material::kSteel : Material::kShaft;
+    case Kind::kBore:
+      return Material::kLumen;
+    case Kind::kPouch:
+      return Material::kPouch;
+    case Kind::kUpperClip:
+    case Kind::kLowerClip:
+      return Material::kTitanium;
+    default:
+      return Material::kSteel;
+  }
+}
+
+/// Current leaves the toe of the hook, else the tips.
+void AddSparks(render::Frame& frame, const instrument::Tool& tool, const Pose& X_world_tool,
+               std::uint64_t tick, std::uint32_t hand) {
+  const Vec3 p_tool_source = tool.kind == ToolKind::kHook ? Vec3{0, 0.0032, -0.0005} : Vec3{};
+  const Vec3 source = X_world_tool * p_tool_source;
+  math::Random random(2 * tick + hand);
+  frame.blobs.push_back({source, 0.0006, Material::kSpark, 0});
+  for (std::uint32_t i = 0; i < kSparks; ++i) {
+    const Vec3 way{random.Uniform(-1, 1), random.Uniform(-1, 1), random.Uniform(-1, 1)};
+    const double length = kSparkLength * (0.35 + 0.65 * random.Uniform());
+    frame.fibres.push_back({source, source + length * math::Normalized(way), 0.00022, 0.0003,
+                            Material::kSpark, static_cast<std::uint32_t>(random.NextWord())});
+  }
+}
+
+}  // namespace
+
+void HandTools::Add(render::Renderer& renderer, const session::Scene& scene) {
+  const auto upload = [&renderer](const instrument::Tool& tool) {
+    ShownTool shown{tool, {}};
+    for (const instrument::ToolPart& part : instrument::MakeParts(tool))
+      shown.parts.push_back({part.kind, renderer.AddSurface(part.mesh, MaterialOf(tool.kind, part.kind))});
+    return shown;
+  };
+  assistant_ = upload(*instrument::FindTool("grasper"));
+  for (std::size_t i = 0; i < hands_.size(); ++i) {
+    const session::InstrumentSetup& setup = scene.instruments[i];
+    Hand& hand = hands_[i];
+    hand.p_world_port = setup.p_world_port;
+    double widest = 0;
+    const auto add = [&](const instrument::Tool& tool) {
+      widest = std::max(widest, tool.shaft_radius);
+      hand.tray.push_back(upload(tool));
+    };
+    for (const instrument::Tool& tool : setup.tray) add(tool);
+    if (setup.tray.empty()) add(setup.tool);
+    hand.sleeve = renderer.AddSurface(MakeSleeve(widest), Material::kSleeve);
+  }
+}
+
+void HandTools::AddTo(render::Frame& frame, const session::Snapshot& snapshot) const {
+  for (std::size_t i = 0; i < hands_.size(); ++i) {
+    const Hand& hand = hands_[i];
+    const session::InstrumentSnapshot& now = snapshot.instruments[i];
+    const ShownTool& shown =
+        hand.tray[std::min<std::size_t>(snapshot.operation.tools[i], hand.tray.size() - 1)];
+    for (const Part& part : shown.parts) {
+      const bool is_clip = part.kind == Kind::kUpperClip || part.kind == Kind::kLowerClip;
+      if (is_clip && snapshot.operation.clips_left[i] <= 0) continue;
+      const Pose X_tool_part = instrument::CalcPartPose(shown.tool, part.kind, now.joints.jaw);
+      frame.surfaces.push_back({part.surface, now.X_world_tool * X_tool_part});
+    }
+    frame.surfaces.push_back({hand.sleeve, {now.X_world_tool.rotation, hand.p_world_port}});
+    frame.shades.push_back({now.X_world_tool * Vec3{0, 0, 0.5 * shown.tool.jaw_width},
+                            now.X_world_tool * Vec3{0, 0, kShadeLength}, shown.tool.shaft_radius});
+    if (snapshot.operation.has_current[i])
+      AddSparks(frame, shown.tool, now.X_world_tool, snapshot.tick, static_cast<std::uint32_t>(i));
+  }
+  AddAssistant(frame, snapshot);
+}
+
+void HandTools::AddAssistant(render::Frame& frame, const session::Snapshot& snapshot) const {
+  const session::OperationSnapshot& operation = snapshot.operation;
+  if (!operation.has_assistant) return;
+  for (const Part& part : assistant_.parts) {
+    const Pose X_tool_part = instrument::CalcPartPose(assistant_.tool, part.kind, operation.assistant_jaw);
+    frame.surfaces.push_back({part.surface, operation.X_world_assistant * X_tool_part});
+  }
+  frame.shades.push_back({operation.X_world_assistant * Vec3{0, 0, 0.5 * assistant_.tool.jaw_width},
+                          operation.X_world_assistant * Vec3{0, 0, kShadeLength},
+                          assistant_.tool.shaft_radius});
+}
+
+}  // namespace trocar::view

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file hand_tools.h  The tools of both hands as they are seen: the one in use, its trocar, its sparks.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "trocar/instrument/tool.h"
+#include "trocar/render/renderer.h"
+#include "trocar/session/scene.h"
+#include "trocar/session/snapshot.h"
+
+namespace trocar::view {
+
+class HandTools {
+ public:
+  /// Uploads every tool of both trays, so that an exchange shows at once.
+  void Add(render::Renderer& renderer, const session::Scene& scene);
+  /// Adds tools, the assistant's grasper, sleeves, the shade that they throw and sparks.
+  void AddTo(render::Frame& frame, const session::Snapshot& snapshot) const;
+
+ private:
+  struct Part {
+    instrument::ToolPart::Kind kind;
+    render::SurfaceId surface;
+  };
+  struct ShownTool {
+    instrument::Tool tool;
+    std::vector<Part> parts;
+  };
+  struct Hand {
+    std::vector<ShownTool> tray;
+    math::Vec3 p_world_port;
+    render::SurfaceId sleeve;
+  };
+  void AddAssistant(render::Frame& frame, const session::Snapshot& snapshot) const;
+
+  std::array<Hand, session::kHandCount> hands_;
+  ShownTool assistant_;  // the third grasper
+};
+
+}  // namespace trocar::view

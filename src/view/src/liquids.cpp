@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "liquids.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "trocar/geometry/mesh_measures.h"
+#include "trocar/surgery/flow_network.h"
+
+namespace trocar::view {
+namespace {
+
+using math::Vec3;
+using render::Material;
+
+constexpr double kLeastRate = 1e-10;    // m^3/s; slower is not seen
+constexpr double kJetRate = 4e-8;       // m^3/s; slower only drips
+constexpr double kJetSpeed = 0.10;      // m/s, of the slowest jet
+constexpr double kJetGain = 4.0e5;      // 1/m^2: a cystic artery's 1 mL/s leaves with 0.5 m/s
+constexpr double kFastest = 1.2;        // m/s
+constexpr double kFlight = 0.14;        // s that a jet is drawn
+constexpr double kPulse = 1.2;          // 1/s, heart beats
+constexpr double kDropRadius = 0.0011;  // m, of a drop of 6 uL
+constexpr double kFall = 0.030;         // m that a drop is seen to run
+constexpr int kJetPieces = 8;
+constexpr double kLeastPool = 1e-8;                       // m^3; less than a drop is no pool
+constexpr double kReach = 0.040;                          // m round the lowest place whose hollows fill
+constexpr double kLeastSlope = 0.2;                       // cosine; a steeper piece holds no liquid
+constexpr double kHighest = 0.060;                        // m that a pool may rise
+constexpr double kFlatness = 0.30;                        // depth of a pool in cube roots of its volume
+constexpr double kShallowest = 0.0010, kDeepest = 0.012;  // m
+
+void AddJet(render::Frame& frame, const session::LeakSnapshot& leak, const Vec3& gravity, double time,
+            Material liquid, std::uint32_t seed) {
+  double speed = std::min(kFastest, kJetSpeed + kJetGain * leak.rate);
+  if (leak.fluid == surgery::Fluid::kBlood) {
+    const double beat = 0.5 + 0.5 * std::sin(2.0 * M_PI * kPulse * time);
+    speed *= 0.55 + 0.45 * beat * beat;
+  }
+  const Vec3 velocity = speed * leak.direction;
+  const auto at = [&](double t) { return leak.position + t * velocity + (0.5 * t * t) * gravity; };
+  // the same rate through every section: where it falls faster it is thinner
+  const auto width = [&](double t) {
+    return 2.0 * std::sqrt(leak.rate / (M_PI * std::max(0.05, math::Norm(velocity + t * gravity))));
+  };
+  for (int i = 0; i < kJetPieces; ++i) {
+    const double t = kFlight * i / kJetPieces, next = kFlight * (i + 1) / kJetPieces;
+    frame.fibres.push_back({at(t), at(next), 1.4 * width(t), 0.0, liquid, seed});
+    // beads that run along it, the more the farther it has flown
+    const double phase = std::fmod(3.1 * time + 0.37 * i, 1.0), bead = t + phase * (next - t);
+    frame.blobs.push_back({at(bead), (0.45 + 0.05 * i) * width(bead) * (1.0 + 0.4 * std::sin(2.4 * i)),
+                           liquid, seed + static_cast<std::uint32_t>(i)});
+  }
+}
+
+void AddDrip(render::Frame& frame, const session::LeakSnapshot& leak, const Vec3& down, double time,
+             Material liquid, std::uint32_t seed) {
+  // a bead that swells at the opening, then runs down
+  const double volume = 4.0 / 3.0 * M_PI * kDropRadius * kDropRadius * kDropRadius;
+  const double beat = std::fmod(time * std::clamp(leak.rate / volume, 0.2, 6.0), 1.0);
+  frame.blobs.push_back({leak.position + (0.3 * kDropRadius) * leak.direction,
+                         kDropRadius * (0.45 + 0.55 * std::cbrt(beat)), liquid, seed});
+  const double fallen = kFall * beat * beat;
+  frame.blobs.push_back({leak.position + (0.5 * kDropRadius) * leak.direction + fallen * down,
+                         0.85 * kDropRadius, liquid, seed + 1});
+}
+
+}  // namespace
+
+void AddStreams(render::Frame& frame, const session::Snapshot& snapshot) {
+  const session::OperationSnapshot& operation = snapshot.operation;
+  const Vec3 down = math::Normalized(snapshot.gravity, {0, 0, -1});
+  for (std::size_t i = 0; i < std::min(operation.leak_count, operation.leaks.size()); ++i) {
+    const session::LeakSnapshot& leak = operation.leaks[i];
+    if (!(leak.rate > kLeastRate)) continue;
+    const Material liquid = leak.fluid == surgery::Fluid::kBlood ? Material::kBlood : Material::kBile;
+    const auto seed = static_cast<std::uint32_t>(64 * i);
+    if (leak.rate > kJetRate) AddJet(frame, leak, snapshot.gravity, snapshot.time, liquid, seed);
+    AddDrip(frame, leak, down, snapshot.time, liquid, seed + 32);
+  }
+}
+
+std::vector<GroundPiece> MakeGround(const geometry::TriangleMesh& mesh) {
+  std::vector<Vec3> normals(mesh.positions.size());
+  geometry::CalcVertexNormals(mesh.positions, mesh.triangles, normals);
+  const std::vector<double> areas = geometry::CalcVertexAreas(mesh.positions, mesh.triangles);
+  std::vector<GroundPiece> ground;
+  for (std::size_t v = 0; v < normals.size(); ++v)
+    ground.push_back({mesh.positions[v], areas[v] * normals[v]});
+  return ground;
+}
+
+void Pool::AddTo(render::Frame& frame, const session::Snapshot& snapshot) const {
+  const surgery::FluidLedger& fluids = snapshot.operation.fluids;
+  const double volume = fluids.Pooled();
+  if (!(volume > kLeastPool)) return;
+  const Vec3 up = -math::Normalized(snapshot.gravity, {0, 0, -1});
+  const Vec3 lowest = snapshot.operation.p_world_pool;
+  struct Column {
+    double height, area, side;
+  };
+  std::vector<Column> columns;
+  // a little does not spread: surface tension keeps it about a millimetre thick
+  const double reach = std::min(kReach, std::sqrt(volume / (M_PI * kShallowest)));
+  double bottom = kHighest, bed = 0;
+  for (const GroundPiece& piece : ground_) {
+    const Vec3 from = piece.p_world - lowest;
+    const double height = math::Dot(from, up), side = math::Norm(from - height * up);
+    const double area = math::Dot(piece.area, up);
+    // what lies below the lowest place is filled by what nobody sees
+    if (side > reach || height < 0.0 || area < kLeastSlope * math::Norm(piece.area)) continue;
+    columns.push_back({height, area, side});
+    bottom = std::min(bottom, height);
+    bed += area;
+  }
+  render::Puddle puddle{lowest, up, 0, 0, 0, fluids.rinse_pooled};
+  if (bed < 0.1 * M_PI * reach * reach) {
+    // no ground: a lens, half as much as a cylinder of its radius and depth
+    const double depth = std::clamp(kFlatness * std::cbrt(volume), kShallowest, kDeepest);
+    puddle.radius = std::sqrt(2.0 * volume / (M_PI * depth));
+    puddle.centre = lowest + depth * up;
+  } else {
+    double low = bottom, high = bottom + kHighest;
+    for (int i = 0; i < 40; ++i) {
+      const double level = 0.5 * (low + high);
+      double held = 0;
+      for (const Column& column : columns) held += column.area * std::max(0.0, level - column.height);
+      (held < volume ? low : high) = level;
+    }
+    for (const Column& column : columns)
+      if (column.height < low) puddle.radius = std::max(puddle.radius, column.side);
+    puddle.centre = lowest + low * up;
+  }
+  puddle.blood = fluids.fluids[static_cast<std::size_t>(surgery::Fluid::kBlood)].pooled;
+  puddle.bile = fluids.fluids[static_cast<std::size_t>(surgery::Fluid::kBile)].pooled;
+  frame.puddles.push_back(puddle);
+}
+
+}  // namespace trocar::view

@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "object_view.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "trocar/geometry/primitives.h"
+#include "trocar/geometry/tube.h"
+
+namespace trocar::view {
+namespace {
+
+using geometry::TriangleMesh;
+using math::Pose;
+using math::Vec3;
+using render::Material;
+using session::ObjectColour;
+using surgery::RigidShape;
+
+constexpr int kSides = 28;
+constexpr int kRingSteps = 48;
+constexpr double kMarkThickness = 0.0006;  // half of a mark's line [m]
+constexpr double kBoxRoom = 0.060;         // between the objects and the walls of the trainer [m]
+constexpr double kBoxHeight = 0.150;       // of the walls [m]
+
+Material MaterialOf(ObjectColour colour) {
+  switch (colour) {
+    case ObjectColour::kRed:
+      return Material::kRedRubber;
+    case ObjectColour::kYellow:
+      return Material::kYellowRubber;
+    case ObjectColour::kGreen:
+      return Material::kGreenRubber;
+    case ObjectColour::kBlue:
+      return Material::kBlueRubber;
+    case ObjectColour::kWhite:
+      return Material::kWhitePlastic;
+    case ObjectColour::kBlack:
+      return Material::kShaft;
+    case ObjectColour::kSteel:
+      return Material::kSteel;
+    case ObjectColour::kGrey:
+    case ObjectColour::kCount:
+      break;
+  }
+  return Material::kSleeve;
+}
+
+/// Torus about z: as a closed tube would be, without a seam.
+TriangleMesh MakeTorus(double radius, double section) {
+  TriangleMesh mesh;
+  constexpr int kAround = 16;
+  for (int i = 0; i < kRingSteps; ++i) {
+    const double u = 2 * M_PI * i / kRingSteps;
+    const Vec3 out{std::cos(u), std::sin(u), 0};
+    for (int j = 0; j < kAround; ++j) {
+      const double v = 2 * M_PI * j / kAround;
+      mesh.positions.push_back((radius + section * std::cos(v)) * out + Vec3{0, 0, section * std::sin(v)});
+    }
+  }
+  const auto at = [](int i, int j) {
+    return static_cast<std::uint32_t>((i % kRingSteps) * kAround + j % kAround);
+  };
+  for (int i = 0; i < kRingSteps; ++i) {
+    for (int j = 0; j < kAround; ++j) {
+      mesh.triangles.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
+      mesh.triangles.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
+    }
+  }
+  return mesh;
+}
+
+/// Straight tube along z between two heights; its ends are flat where the radii do not fall.
+TriangleMesh MakeRod(std::vector<double> heights, std::vector<double> radii) {
+  geometry::CentreLine axis;
+  for (const double z : heights) axis.points.push_back({0, 0, z});
+  axis.radii = std::move(radii);
+  return geometry::MakeTube(axis, kSides);
+}
+
+TriangleMesh MakeCapsule(double radius, double half_length) {
+  constexpr int kSteps = 5;
+  std::vector<double> heights, radii;
+  for (int end : {-1, 1}) {
+    for (int i = 0; i <= kSteps; ++i) {
+      const double angle = 0.5 * M_PI * (end < 0 ? kSteps - i : i) / kSteps;
+      heights.push_back(end * (half_length + radius * std::sin(angle)));
+      radii.push_back(std::max(0.02 * radius, radius * std::cos(angle)));
+    }
+  }
+  return MakeRod(std::move(heights), std::move(radii));
+}
+
+TriangleMesh MakeShape(const RigidShape& shape) {
+  const Vec3& s = shape.size;
+  switch (shape.kind) {
+    case RigidShape::Kind::kBox:
+      return geometry::MakeBox(-1.0 * s, s);
+    case RigidShape::Kind::kCylinder:
+      return MakeRod({-s.z, s.z}, {s.x, s.x});
+    case RigidShape::Kind::kCapsule:
+      return MakeCapsule(s.x, std::max(s.z, 1e-5));
+    case RigidShape::Kind::kSphere:
+      return geometry::MakeSphere({}, s.x, 3);
+    case RigidShape::Kind::kRing:
+      return MakeTorus(s.x, s.y);
+  }
+  return {};
+}
+
+/// Each face with vertices of its own, so that edges are sharp.
+TriangleMesh Facet(const TriangleMesh& mesh) {
+  TriangleMesh sharp;
+  for (const auto& t : mesh.triangles) {
+    const auto first = static_cast<std::uint32_t>(sharp.positions.size());
+    for (const auto corner : t) sharp.positions.push_back(mesh.positions[corner]);
+    sharp.triangles.push_back({first, first + 1, first + 2});
+  }
+  return sharp;
+}
+
+void Append(TriangleMesh& to, const TriangleMesh& mesh, const Pose& X) {
+  const auto first = static_cast<std::uint32_t>(to.positions.size());
+  for (const Vec3& p : mesh.positions) to.positions.push_back(X * p);
+  for (const auto& t : mesh.triangles) to.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+}
+
+/// Lines of a mark about the origin.
+TriangleMesh MakeMark(const session::Region& region) {
+  TriangleMesh mesh;
+  const double reach = region.radius > 0 ? region.radius : std::min(region.half.x, region.half.y);
+  switch (region.mark) {
+    case session::RegionMark::kBall:
+      return geometry::MakeSphere({}, reach, 3);
+    case session::RegionMark::kRing:
+      Append(mesh, MakeTorus(reach, kMarkThickness),
+             {{}, {0, 0, region.radius > 0 ? 0.0 : -0.5 * region.half.z}});
+      break;
+    case session::RegionMark::kCage:
+      Append(mesh, MakeTorus(reach, kMarkThickness), {});
+      Append(mesh, MakeTorus(reach, kMarkThickness), {math::RotationAbout({1, 0, 0}, M_PI / 2), {}});
+      Append(mesh, MakeTorus(reach, kMarkThickness), {math::RotationAbout({0, 1, 0}, M_PI / 2), {}});
+      break;
+    case session::RegionMark::kNone:
+      break;
+  }
+  return mesh;
+}
+
+}  // namespace
+
+void ObjectView::AddMark(render::Renderer& renderer, std::size_t index) {
+  const session::Region& region = task_->regions[index];
+  if (region.mark == session::RegionMark::kNone) return;
+  TriangleMesh mesh = MakeMark(region);
+  Pose X{{}, region.centre};
+  if (region.facing) {
+    // a cup round the back of what must be seen from one side
+    X.rotation = math::RotationBetween({0, 0, 1}, *region.facing);
+    const double r = region.radius;
+    view::Append(mesh, MakeRod({-1.2 * r, 2.2 * r, 2.2 * r, -1.0 * r}, {1.6 * r, 1.6 * r, 1.4 * r, 1.4 * r}),
+                 {});
+  }
+  marks_.push_back(
+      {renderer.AddSurface(mesh, Material::kSleeve), renderer.AddSurface(mesh, Material::kMark), index, X});
+}
+
+void ObjectView::Add(render::Renderer& renderer, const session::Scene& scene) {
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    const session::SceneObject& object = scene.objects[i];
+    for (const RigidShape& shape : object.body.shapes) {
+      const bool is_sharp = shape.kind == RigidShape::Kind::kBox;
+      const TriangleMesh mesh = MakeShape(shape);
+      parts_.push_back({renderer.AddSurface(is_sharp ? Facet(mesh) : mesh, MaterialOf(object.colour)), i,
+                        shape.X_body_shape});
+    }
+  }
+  task_ = scene.task;
+  if (!task_) return;
+  for (std::size_t region = 0; region < task_->regions.size(); ++region) AddMark(renderer, region);
+}
+
+void ObjectView::Append(const session::Snapshot& snapshot, std::vector<render::SurfaceDraw>& surfaces) const {
+  for (const Part& part : parts_)
+    surfaces.push_back({part.surface, snapshot.objects[part.object].X_world_object * part.X_object_part});
+  if (!task_) return;
+  const std::vector<int> next = FindNextRegions(snapshot.task);
+  for (const Mark& mark : marks_) {
+    const bool is_next = std::find(next.begin(), next.end(), static_cast<int>(mark.region)) != next.end();
+    surfaces.push_back({is_next ? mark.next : mark.idle, mark.X_world_mark});
+  }
+}
+
+/// Of the goal that is being worked on, else of the first that may be: where it leads to next.
+std::vector<int> ObjectView::FindNextRegions(const session::TaskSnapshot& now) const {
+  std::ptrdiff_t chosen = -1;
+  for (std::size_t g = 0; g < now.goals.size(); ++g) {
+    const bool may_be = now.phase == session::TaskPhase::kReady ? g == 0 : now.goals[g].is_open;
+    if (may_be && (chosen < 0 || (now.goals[g].steps_done > 0 &&
+                                  now.goals[static_cast<std::size_t>(chosen)].steps_done == 0)))
+      chosen = static_cast<std::ptrdiff_t>(g);
+  }
+  if (chosen < 0) return {};
+  const auto g = static_cast<std::size_t>(chosen);
+  const auto& steps = task_->goals[g].steps;
+  for (std::size_t step = now.goals[g].steps_done; step < steps.size(); ++step) {
+    if (!steps[step].regions.empty()) return steps[step].regions;
+  }
+  return {};
+}
+
+TriangleMesh MakeTrainerBox(const session::Scene& scene) {
+  Vec3 low = scene.laparoscope.p_world_port, high = low;
+  for (const session::SceneObject& object : scene.objects) {
+    low = math::Min(low, object.body.X_world_body.translation);
+    high = math::Max(high, object.body.X_world_body.translation);
+  }
+  TriangleMesh box = Facet(
+      geometry::MakeBox(low - Vec3{kBoxRoom + 0.05, kBoxRoom, 0.006},
+                        Vec3{high.x + kBoxRoom + 0.05, high.y + kBoxRoom + 0.03, low.z + kBoxHeight + 0.03}));
+  for (auto& t : box.triangles) std::swap(t[1], t[2]);  // seen from inside
+  return box;
+}
+
+}  // namespace trocar::view

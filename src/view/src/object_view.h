@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file object_view.h  The things of a training task, its marks, and the box that it stands in.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "trocar/render/renderer.h"
+#include "trocar/session/scene.h"
+#include "trocar/session/snapshot.h"
+
+namespace trocar::view {
+
+/// Nothing where a scene has no objects and no task.
+class ObjectView {
+ public:
+  /// Uploads everything.
+  void Add(render::Renderer& renderer, const session::Scene& scene);
+  /// Appends what a snapshot shows to a frame; what is to be done next is marked brightly.
+  void Append(const session::Snapshot& snapshot, std::vector<render::SurfaceDraw>& surfaces) const;
+
+ private:
+  struct Part {
+    render::SurfaceId surface;
+    std::size_t object = 0;
+    math::Pose X_object_part;
+  };
+  struct Mark {
+    render::SurfaceId idle, next;
+    std::size_t region = 0;
+    math::Pose X_world_mark;
+  };
+  std::vector<int> FindNextRegions(const session::TaskSnapshot& now) const;
+  void AddMark(render::Renderer& renderer, std::size_t region);
+
+  std::optional<session::Task> task_;
+  std::vector<Part> parts_;
+  std::vector<Mark> marks_;
+};
+
+/// The inside of a box trainer: floor and walls round the objects, seen from within.
+geometry::TriangleMesh MakeTrainerBox(const session::Scene& scene);
+
+}  // namespace trocar::view

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "organ_shape.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "trocar/core/assert.h"
+#include "trocar/geometry/mesh_measures.h"
+#include "trocar/geometry/mesh_topology.h"
+
+namespace trocar::view {
+namespace {
+
+std::uint8_t ToByte(float share) {
+  return static_cast<std::uint8_t>(255.0f * std::clamp(share, 0.0f, 1.0f) + 0.5f);
+}
+
+/// Rows that are new learn from the nearest neighbour that is known; those that no known one surrounds lie as they are.
+void LearnRows(std::span<const std::uint32_t> rows, std::span<const Triangle> triangles,
+               std::span<const Vec3> positions, RowMemory& memory) {
+  const geometry::Rows neighbours = geometry::FindVertexNeighbours(triangles, rows.size());
+  for (bool has_learnt = true; has_learnt;) {
+    has_learnt = false;
+    for (std::size_t v = 0; v < rows.size(); ++v) {
+      const std::uint32_t row = rows[v];
+      if (memory.is_known[row] != 0) continue;
+      double nearest = std::numeric_limits<double>::infinity();
+      std::uint32_t teacher = row;
+      for (const std::uint32_t u : neighbours.Row(v)) {
+        const double distance = math::Distance(positions[rows[u]], positions[row]);
+        if (memory.is_known[rows[u]] == 0 || distance >= nearest) continue;
+        nearest = distance;
+        teacher = rows[u];
+      }
+      if (teacher == row) continue;
+      memory.Learn(row, teacher, positions[row] - positions[teacher]);
+      has_learnt = true;
+    }
+  }
+  for (const std::uint32_t row : rows)
+    if (memory.is_known[row] == 0) memory.Set(row, positions[row], 1.0);
+}
+
+}  // namespace
+
+void RefineMarks(std::span<const geometry::Edge> edges, std::size_t coarse,
+                 std::vector<render::SurfaceMark>& marks) {
+  TROCAR_ASSERT(marks.size() == coarse + edges.size());
+  const auto mean = [](std::uint8_t a, std::uint8_t b) { return static_cast<std::uint8_t>((a + b) / 2); };
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    const render::SurfaceMark a = marks[edges[i][0]], b = marks[edges[i][1]];
+    marks[coarse + i] = {mean(a.blanching, b.blanching), mean(a.charring, b.charring), mean(a.blood, b.blood),
+                         mean(a.bile, b.bile)};
+  }
+}
+
+render::SurfaceMark HeatMark(const session::OperationSnapshot& operation, std::size_t row) {
+  render::SurfaceMark mark;
+  if (row < operation.blanching.size()) mark.blanching = ToByte(operation.blanching[row]);
+  if (row < operation.charring.size()) mark.charring = ToByte(operation.charring[row]);
+  return mark;
+}
+
+OrganShape::OrganShape(const session::SurfaceInfo& info, render::Material material)
+    : material_(material), triangles_(info.triangles) {
+  rows_.resize(info.node_count);
+  for (std::uint32_t i = 0; i < info.node_count; ++i) rows_[i] = info.first_node + i;
+  Resize();
+}
+
+void OrganShape::Resize() {
+  positions_.resize(rows_.size());
+  normals_.resize(rows_.size());
+  refiner_.emplace(triangles_, rows_.size());
+  fine_positions_.resize(refiner_->VertexCount());
+  fine_normals_.resize(refiner_->VertexCount());
+  marks_.clear();
+}
+
+void OrganShape::SetTriangles(std::span<const Triangle> triangles, std::span<const Vec3> positions,
+                              RowMemory& memory) {
+  if (std::equal(triangles.begin(), triangles.end(), row_triangles_.begin(), row_triangles_.end())) return;
+  row_triangles_.assign(triangles.begin(), triangles.end());
+  rows_.clear();
+  for (const Triangle& triangle : triangles) rows_.insert(rows_.end(), triangle.begin(), triangle.end());
+  std::sort(rows_.begin(), rows_.end());
+  rows_.erase(std::unique(rows_.begin(), rows_.end()), rows_.end());
+  TROCAR_ASSERT(rows_.empty() || rows_.back() < positions.size());
+  triangles_.assign(triangles.begin(), triangles.end());
+  for (Triangle& triangle : triangles_) {
+    for (std::uint32_t& v : triangle)
+      v = static_cast<std::uint32_t>(std::lower_bound(rows_.begin(), rows_.end(), v) - rows_.begin());
+  }
+  LearnRows(rows_, triangles_, positions, memory);
+  Resize();
+  is_changed_ = true;
+}
+
+void OrganShape::Update(const session::Snapshot& snapshot, const Film& film) {
+  for (std::size_t v = 0; v < rows_.size(); ++v) positions_[v] = snapshot.positions[rows_[v]];
+  geometry::CalcVertexNormals(positions_, triangles_, normals_);
+  refiner_->Refine(positions_, normals_, fine_positions_, fine_normals_);
+
+  const session::OperationSnapshot& operation = snapshot.operation;
+  if (operation.blanching.empty() && operation.charring.empty() && film.IsEmpty() && !has_marks_) return;
+  marks_.resize(refiner_->VertexCount());
+  bool has_any = false;
+  for (std::size_t v = 0; v < rows_.size(); ++v) {
+    marks_[v] = HeatMark(operation, rows_[v]);
+    film.Wet(positions_[v], marks_[v]);
+    has_any = has_any || marks_[v] != render::SurfaceMark{};
+  }
+  // what has never been marked needs no upload
+  if (has_any || has_marks_) {
+    RefineMarks(refiner_->Edges(), rows_.size(), marks_);
+  } else {
+    marks_.clear();
+  }
+}
+
+void OrganShape::AddSurface(render::Renderer& renderer, const RowMemory& memory) {
+  std::vector<Vec3> rest(rows_.size()), normals(rows_.size()), fine_rest(refiner_->VertexCount()),
+      fine_normals(refiner_->VertexCount());
+  std::vector<double> openness(refiner_->VertexCount());
+  for (std::size_t v = 0; v < rows_.size(); ++v) {
+    rest[v] = memory.rest[rows_[v]];
+    openness[v] = memory.openness[rows_[v]];
+  }
+  geometry::CalcVertexNormals(rest, triangles_, normals);
+  refiner_->Refine(rest, normals, fine_rest, fine_normals);
+  const auto edges = refiner_->Edges();
+  for (std::size_t i = 0; i < edges.size(); ++i)
+    openness[rows_.size() + i] = 0.5 * (openness[edges[i][0]] + openness[edges[i][1]]);
+  surface_ = renderer.AddSurface(refiner_->Triangles(), fine_rest, material_, openness);
+}
+
+void OrganShape::Add(render::Renderer& renderer, std::span<const double> openness, RowMemory& memory) {
+  for (std::size_t v = 0; v < rows_.size(); ++v) memory.Set(rows_[v], positions_[v], openness[v]);
+  AddSurface(renderer, memory);
+}
+
+void OrganShape::Upload(render::Renderer& renderer, const RowMemory& memory) {
+  if (is_changed_) {
+    renderer.RemoveSurface(surface_);
+    AddSurface(renderer, memory);
+    is_changed_ = false;
+  }
+  renderer.UpdateSurface(surface_, fine_positions_, fine_normals_);
+  if (marks_.empty()) return;
+  renderer.UpdateMarks(surface_, marks_);
+  has_marks_ = true;
+}
+
+}  // namespace trocar::view

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file organ_shape.h  An organ's surface from the nodes of a snapshot to the vertices that are drawn, through cuts.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "film.h"
+#include "row_memory.h"
+#include "trocar/render/renderer.h"
+#include "trocar/render/surface_refiner.h"
+#include "trocar/session/simulation.h"
+
+namespace trocar::view {
+
+using geometry::Triangle;
+using math::Vec3;
+
+class OrganShape {
+ public:
+  OrganShape(const session::SurfaceInfo& info, render::Material material);
+
+  /// Connectivity after a cut, over rows of the snapshot. Where it has changed the surface is uploaded anew at the next
+  /// Upload.
+  void SetTriangles(std::span<const Triangle> triangles, std::span<const Vec3> positions, RowMemory& memory);
+  /// Moves the vertices to a snapshot's nodes.
+  void Update(const session::Snapshot& snapshot, const Film& film);
+
+  /// First upload.
+  /// \param openness  (vertices before they are refined) [-]
+  void Add(render::Renderer& renderer, std::span<const double> openness, RowMemory& memory);
+  void Upload(render::Renderer& renderer, const RowMemory& memory);
+
+  render::SurfaceId Surface() const { return surface_; }
+  render::Material GetMaterial() const { return material_; }
+  /// Before it is refined.
+  std::span<const Triangle> Triangles() const { return triangles_; }
+  const std::vector<Vec3>& Positions() const { return positions_; }
+  const std::vector<Vec3>& Normals() const { return normals_; }
+
+ private:
+  void Resize();
+  void AddSurface(render::Renderer& renderer, const RowMemory& memory);
+
+  render::Material material_;
+  render::SurfaceId surface_;
+  bool is_changed_ = false;              // connectivity, since the last upload
+  bool has_marks_ = false;               // on the graphics card
+  std::vector<Triangle> row_triangles_;  // of the last SetTriangles
+  std::vector<std::uint32_t> rows_;      // vertex -> row of the snapshot
+  std::vector<Triangle> triangles_;      // over vertices
+  std::vector<Vec3> positions_, normals_;
+  std::optional<render::SurfaceRefiner> refiner_;
+  std::vector<Vec3> fine_positions_, fine_normals_;
+  std::vector<render::SurfaceMark> marks_;  // fine; empty: none to show
+};
+
+/// Marks of the drawn vertices from those of the coarse ones, each edge's middle between its ends.
+void RefineMarks(std::span<const geometry::Edge> edges, std::size_t coarse,
+                 std::vector<render::SurfaceMark>& marks);
+
+/// What heat has left on a node.
+render::SurfaceMark HeatMark(const session::OperationSnapshot& operation, std::size_t row);
+
+}  // namespace trocar::view

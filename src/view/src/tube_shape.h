@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file tube_shape.h  The skin of a duct or vessel from its centre-line nodes, through clips and cuts.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "film.h"
+#include "row_memory.h"
+#include "trocar/render/renderer.h"
+#include "trocar/session/simulation.h"
+
+namespace trocar::view {
+
+using geometry::Triangle;
+using math::Vec3;
+
+/// A run of centre-line nodes between two ends.
+struct TubeChain {
+  std::vector<std::uint32_t> rows;  ///< of the snapshot, at least 2
+  std::vector<double> radii;        ///< (rows) [m]
+  bool is_open_first = false;       ///< cut: the lumen shows
+  bool is_open_last = false;
+
+  friend bool operator==(const TubeChain&, const TubeChain&) = default;
+};
+
+/// Runs of one surface's pieces, in the order of their lowest rows. A branching ends a run.
+/// \param info  of the tube: its first and last node are the ends that it has had from the beginning
+std::vector<TubeChain> FindChains(std::span<const session::TubePiece> pieces, std::uint32_t surface,
+                                  const session::SurfaceInfo& info);
+
+class TubeShape {
+ public:
+  TubeShape(const session::SurfaceInfo& info, std::uint32_t index, render::Material material);
+
+  /// Pieces after a cut. Where they have changed the surface is uploaded anew at the next Upload.
+  void SetPieces(std::span<const session::TubePiece> pieces, RowMemory& memory,
+                 std::span<const Vec3> positions);
+  /// Moves the skin to a snapshot's nodes; clips press it flat.
+  void Update(const session::Snapshot& snapshot, const Film& film);
+
+  void Add(render::Renderer& renderer, std::span<const double> openness, RowMemory& memory);
+  void Upload(render::Renderer& renderer, const RowMemory& memory);
+
+  render::SurfaceId Surface() const { return surface_; }
+  /// The dark of the open ends; names nothing without one.
+  render::SurfaceId Lumens() const { return lumens_; }
+  render::Material GetMaterial() const { return material_; }
+  std::span<const Triangle> Triangles() const { return triangles_; }
+  const std::vector<Vec3>& Positions() const { return positions_; }
+  const std::vector<Vec3>& Normals() const { return normals_; }
+
+ private:
+  void Resize();
+  void AddSurface(render::Renderer& renderer, const RowMemory& memory);
+  void UpdateLumens();
+
+  session::SurfaceInfo info_;
+  std::uint32_t index_;
+  render::Material material_;
+  render::SurfaceId surface_, lumens_;
+  bool is_changed_ = false, has_marks_ = false;
+  std::vector<TubeChain> chains_;
+  std::vector<Triangle> triangles_, lumen_triangles_;
+  std::vector<Vec3> positions_, normals_, lumen_positions_, lumen_normals_;
+  std::vector<Vec3> nodes_;  // of one chain
+  std::vector<render::SurfaceMark> marks_;
+};
+
+}  // namespace trocar::view
