@@ -20,6 +20,11 @@ core::Result<Command> ParseCommandLine(int argc, const char* const* argv) {
   app.set_version_flag("--version", "trocar-window " + std::string(core::VersionText()));
   app.add_option("--scene", options.scene,
                  "Scene to open, a JSON file (default: the built-in demonstration)");
+  CLI::Option* task =
+      app.add_option("--task", options.task,
+                     "Training task to open: its name, as `trocar play --list` shows it, or a file")
+          ->excludes("--scene");
+  app.add_option("--level", options.level, "With --task: its difficulty")->needs(task)->capture_default_str();
   app.add_option("--threads", options.threads, "Threads of the solver; 0 chooses by the processors")
       ->check(CLI::Range(0, 256))
       ->capture_default_str();
@@ -59,6 +64,7 @@ core::Result<Command> ParseCommandLine(int argc, const char* const* argv) {
                      "Open the contour window on these pictures: a folder, a DICOM series or a "
                      "volume")
           ->excludes("--scene")
+          ->excludes("--task")
           ->excludes("--demonstration")
           ->excludes("--threads");
   app.add_option("--points", options.points,

@@ -167,12 +167,17 @@ std::string SessionControl::TakeDeviceMessage() {
 }
 
 void SessionControl::SetPaused(bool is_paused) {
-  if (is_paused) device_.ReleaseAll();
+  if (is_paused) {
+    device_.ReleaseAll();
+    ReleasePedals();
+  }
   runner_.SetPaused(is_paused);
 }
 
 void SessionControl::Reset() {
   PlaceAtHome();
+  input_.controls = {};
+  input_.assistant = {};
   time_ = 0.0;
   runner_.Reset();
 }
@@ -182,6 +187,7 @@ void SessionControl::SetDemonstration(bool is_on) {
   if (is_on == is_demonstration_) return;
   is_demonstration_ = is_on;
   device_.ReleaseAll();
+  ReleasePedals();
   if (is_on) Reset();
   runner_.SetScripted(is_on);
 }
@@ -190,8 +196,52 @@ bool SessionControl::IsDemonstrationOver() const {
   return is_demonstration_ && time_ >= runner_.GetScene().script.Duration();
 }
 
+void SessionControl::ChooseTool(session::Hand hand, std::size_t place) {
+  if (place < runner_.GetScene().instruments[hand].tray.size())
+    input_.controls[hand].tool = static_cast<std::uint8_t>(place);
+}
+
+void SessionControl::StepTool(int step) {
+  const auto hand = static_cast<session::Hand>(hand_);
+  const auto count = static_cast<int>(runner_.GetScene().instruments[hand].tray.size());
+  if (count > 0)
+    ChooseTool(hand, static_cast<std::size_t>((input_.controls[hand].tool + step + count) % count));
+}
+
+void SessionControl::SetPedal(Pedal pedal, bool is_down) {
+  session::HandControls& controls = input_.controls[hand_];
+  is_down = is_down && !IsPaused() && !is_demonstration_;
+  switch (pedal) {
+    case Pedal::kCut:
+      controls.cut = is_down;
+      break;
+    case Pedal::kCoagulate:
+      controls.coagulate = is_down;
+      break;
+    case Pedal::kRinse:
+      controls.rinse = is_down;
+      break;
+    case Pedal::kAspirate:
+      controls.aspirate = is_down;
+      break;
+  }
+}
+
+void SessionControl::ReleasePedals() {
+  for (session::HandControls& controls : input_.controls)
+    controls.cut = controls.coagulate = controls.rinse = controls.aspirate = false;
+}
+
+void SessionControl::StepAssistant() {
+  using session::AssistantCommand;
+  constexpr AssistantCommand kNext[] = {AssistantCommand::kRetract, AssistantCommand::kRelax,
+                                        AssistantCommand::kRelease, AssistantCommand::kWait};
+  input_.assistant = kNext[static_cast<std::size_t>(input_.assistant)];
+}
+
 void SessionControl::ChooseHand(Channel hand) {
   if (hand == device::kLaparoscope) return;
+  if (hand != hand_) ReleasePedals();
   hand_ = hand;
   if (!IsLaparoscopeHeld()) device_.Choose(hand);
 }

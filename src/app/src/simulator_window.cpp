@@ -20,12 +20,17 @@ constexpr const char* kDefaultScene = "demonstration.json";
 
 core::Result<session::Simulation> Load(const Options& options) {
   std::filesystem::path path = options.scene;
-  if (path.empty()) {
+  if (!options.task.empty()) {
+    const core::Result<std::filesystem::path> task = session::FindTask(options.task);
+    if (!task) return task.error();
+    path = task.value();
+  } else if (path.empty()) {
     const core::Result<std::filesystem::path> folder = session::FindDataFolder();
     if (!folder) return folder.error();
     path = folder.value() / "scenes" / kDefaultScene;
   }
-  core::Result<session::Scene> scene = session::ReadScene(path);
+  core::Result<session::Scene> scene =
+      options.task.empty() ? session::ReadScene(path) : session::ReadTask(path, {options.level, 1, {}});
   if (!scene) return scene.error();
   const int threads =
       options.threads > 0 ? options.threads : ChooseThreads(std::thread::hardware_concurrency());
@@ -68,7 +73,7 @@ SimulatorWindow::SimulatorWindow(const Options& options, const core::Stopwatch& 
 SimulatorWindow::~SimulatorWindow() {
   if (loader_.joinable()) loader_.join();
   picture_.SetSnapshot(nullptr);
-  picture_.SetScene(nullptr, {});
+  picture_.SetScene(nullptr, {}, {});
   panel_.SetControl(nullptr);
   hands_->SetControl(nullptr);
 }
@@ -231,7 +236,7 @@ void SimulatorWindow::FinishLoading() {
   panel_.SetControl(control_.get());
   panel_.set_sensitive(true);
   hands_->SetControl(control_.get());
-  picture_.SetScene(&control_->GetScene(), control_->Surfaces());
+  picture_.SetScene(&control_->GetScene(), control_->Surfaces(), control_->Strands());
   set_title("Trocar: " + control_->GetScene().name);
   demonstration_.set_sensitive(control_->HasScript());
   SetText(event_, "Ready.");
@@ -307,6 +312,8 @@ bool SimulatorWindow::OnFrame(const Glib::RefPtr<Gdk::FrameClock>& clock) {
   if (now - last_forces_ > kForcePeriod) {
     last_forces_ = now;
     panel_.ShowForces(snapshot);
+    panel_.ShowOperation(snapshot);
+    panel_.ShowTask(snapshot);
     ShowHaptics();
     ShowSituation();
   }
@@ -420,6 +427,13 @@ void SimulatorWindow::OnAction(Action action) {
   switch (action) {
     case Action::kTogglePause:
       if (control_ != nullptr) SetPaused(!control_->IsPaused());
+      break;
+    case Action::kNextTool:
+    case Action::kPreviousTool:
+      if (control_ != nullptr) control_->StepTool(action == Action::kNextTool ? 1 : -1);
+      break;
+    case Action::kAssistant:
+      if (control_ != nullptr) control_->StepAssistant();
       break;
     case Action::kReset:
       Reset();

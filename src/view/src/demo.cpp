@@ -75,7 +75,8 @@ core::Result<DemoReport> PlayDemonstration(std::shared_ptr<const session::Scene>
   if (!context) return context.error();
   auto target = render::OffscreenTarget::Make(options.width, options.height);
   if (!target) return target.error();
-  auto view = LaparoscopeView::Make(*scene, simulation->Surfaces(), simulation->GetSnapshot());
+  auto view =
+      LaparoscopeView::Make(*scene, simulation->Surfaces(), simulation->GetSnapshot(), simulation->Strands());
   if (!view) return view.error();
   view->SetOptions(options.view);
 

@@ -11,8 +11,10 @@
 namespace trocar::app {
 
 struct Options {
-  std::filesystem::path scene;  ///< empty: the built-in demonstration
-  int threads = 0;              ///< of the solver; 0: chosen by the number of processors
+  std::filesystem::path scene;   ///< empty: the built-in demonstration
+  std::string task;              ///< training task by its name or file, in place of `scene`; empty: none
+  std::string level = "normal";  ///< of that task
+  int threads = 0;               ///< of the solver; 0: chosen by the number of processors
   std::string device;   ///< hands of a device, as `trocar devices list` names it; empty: mouse and keyboard
   std::string haptics;  ///< haptic device; empty: none
   std::filesystem::path haptic_record;  ///< what force feedback did, written at the end; empty: none

@@ -16,6 +16,9 @@
 
 namespace trocar::app {
 
+/// What the foot, or a key in its place, presses.
+enum class Pedal { kCut, kCoagulate, kRinse, kAspirate };
+
 /// Owns the running simulation and the mouse and keyboard that hold its instruments. Called from one thread.
 class SessionControl {
  public:
@@ -70,6 +73,17 @@ class SessionControl {
   /// While held, the pointer and the keys move the laparoscope.
   void HoldLaparoscope(bool is_held);
   bool IsLaparoscopeHeld() const { return device_.GetChosen() == device::kLaparoscope; }
+  /// Asks for a tool of a hand's tray; a place that the tray does not have is ignored.
+  void ChooseTool(session::Hand hand, std::size_t place);
+  /// The next tool of the chosen hand, or with -1 the one before, round the tray.
+  void StepTool(int step);
+  /// Of the chosen hand. Only one hand has pedals at a time: choosing the other releases them.
+  void SetPedal(Pedal pedal, bool is_down);
+  void ReleasePedals();
+  void CommandAssistant(session::AssistantCommand command) { input_.assistant = command; }
+  /// Retract, relax, release, wait, and again.
+  void StepAssistant();
+
   void SetMirrorFulcrum(bool is_mirrored);
   bool IsFulcrumMirrored() const { return is_fulcrum_mirrored_; }
 
@@ -86,6 +100,7 @@ class SessionControl {
   device::MouseKeyboard& Device() { return device_; }
   const session::Scene& GetScene() const { return runner_.GetScene(); }
   std::span<const session::SurfaceInfo> Surfaces() const { return runner_.Surfaces(); }
+  std::span<const session::StrandInfo> Strands() const { return runner_.Strands(); }
   session::RunnerStatistics Statistics() const { return runner_.Statistics(); }
   /// The input of the last Advance().
   const session::Input& GetInput() const { return input_; }
