@@ -236,7 +236,7 @@ void Operation::WatchHands(const HandsNow& hands) noexcept {
       judge_.Report(OperationError::kExcessForce, tip, hand, hands.time);
     HandState& state = hands_[h];
     if (!state.is_inserting) continue;
-    if (IsInPicture(hands.camera, tip)) {
+    if (IsInView(hands.camera.X_world_camera, hands.camera.field_of_view, tip)) {
       state.is_inserting = false;
     } else if (hands.joints[h].depth > kTipIn) {
       state.blind_seconds += hands.seconds;

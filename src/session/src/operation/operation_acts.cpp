@@ -149,7 +149,7 @@ void Operation::UseElectrode(int hand, const HandsNow& hands, const TissueNow& t
   }
   electrode.power = controls.cut ? kCutPower : kCoagulatePower;
   electrode.reach = controls.cut ? kCutReach : kCoagulateReach;
-  if (!IsInPicture(hands.camera, X.translation))
+  if (!IsInView(hands.camera.X_world_camera, hands.camera.field_of_view, X.translation))
     judge_.Report(OperationError::kEnergyOutOfView, X.translation, hand, hands.time);
   std::array<Electrosurgery::Target, 96> targets;
   const std::size_t count =
