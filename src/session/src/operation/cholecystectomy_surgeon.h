@@ -111,7 +111,8 @@ class CholecystectomySurgeon final : public Surgeon {
   std::vector<std::vector<std::uint32_t>>
       tube_nodes_;  // (tubes) from the gallbladder's end, where one enters it
   std::uint32_t neck_ = 0, hold_ = 0, fundus_ = 0, liver_node_ = 0;
-  Vec3 bed_normal_;  // from the liver towards the gallbladder, at rest
+  double hook_spin_ = 0;  // that the right hand means to have [rad]
+  Vec3 bed_normal_;       // from the liver towards the gallbladder, at rest
   std::deque<SurgicalAct> acts_;
   bool has_begun_ = false, has_finished_ = false;
   double act_seconds_ = 0;
