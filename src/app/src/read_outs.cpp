@@ -52,6 +52,38 @@ std::string FormatTime(double seconds) {
   return Print("%lld:%02lld.%lld", tenths / 600, tenths / 10 % 60, tenths % 10);
 }
 
+TaskReadOut DescribeTask(const session::Task& task, const session::TaskSnapshot& now) {
+  using session::TaskPhase;
+  TaskReadOut text;
+  text.time = FormatTime(now.time);
+  if (std::isfinite(task.time_limit)) text.time += " / " + FormatTime(task.time_limit);
+  const auto done =
+      std::count_if(now.goals.begin(), now.goals.end(), [](const auto& goal) { return goal.is_done; });
+  text.progress = Print("%td of %zu", done, task.goals.size());
+  text.score = now.IsOver() ? Print("%.1f", now.score) : "—";
+  switch (now.phase) {
+    case TaskPhase::kCompleted:
+      text.next = "Completed. Reset to try again.";
+      break;
+    case TaskPhase::kTimeOver:
+      text.next = "The time is over. Reset to try again.";
+      break;
+    case TaskPhase::kEnded:
+      text.next = "Ended by an error. Reset to try again.";
+      break;
+    default:
+      for (std::size_t g = 0; g < task.goals.size() && text.next.empty(); ++g) {
+        if (now.phase == TaskPhase::kReady || now.goals[g].is_open) text.next = "Next: " + task.goals[g].name;
+      }
+  }
+  for (std::size_t e = 0; e < task.errors.size(); ++e) {
+    if (now.errors[e] == 0) continue;
+    text.errors +=
+        (text.errors.empty() ? "" : "\n") + std::to_string(now.errors[e]) + " × " + task.errors[e].about;
+  }
+  return text;
+}
+
 std::string FormatCount(std::uint64_t count) {
   std::string text = std::to_string(count);
   for (int at = static_cast<int>(text.size()) - 3; at > 0; at -= 3)
@@ -76,6 +108,40 @@ std::string HandLabel(const session::Scene& scene, std::int32_t hand) {
   if (hand < 0 || hand >= session::kHandCount) return "instrument";
   return (hand == session::kLeft ? "left " : "right ") +
          WithSpaces(scene.instruments[static_cast<std::size_t>(hand)].tool.name);
+}
+
+std::string ToolLabel(const session::Scene& scene, const session::Snapshot& snapshot, session::Hand hand) {
+  const session::InstrumentSetup& setup = scene.instruments[hand];
+  const std::size_t place = snapshot.operation.tools[hand];
+  const instrument::Tool& tool = place < setup.tray.size() ? setup.tray[place] : setup.tool;
+  std::string label = WithSpaces(tool.name);
+  if (tool.clips > 0) {
+    const int left = snapshot.operation.clips_left[hand];
+    label += ", " + std::to_string(left) + (left == 1 ? " clip" : " clips");
+  }
+  return label;
+}
+
+std::string FormatMillilitres(double volume) {
+  return std::isfinite(volume) ? Print("%.1f mL", 1e6 * volume) : "— mL";
+}
+
+std::string DescribeFluid(const surgery::FluidLedger& fluids, surgery::Fluid fluid) {
+  const surgery::FluidLedger::Account& account = fluids.fluids[static_cast<std::size_t>(fluid)];
+  return FormatMillilitres(account.left) + ", " + FormatMillilitres(account.pooled) + " in the abdomen";
+}
+
+std::string DescribeAssistant(session::AssistantCommand command, bool is_holding) {
+  switch (command) {
+    case session::AssistantCommand::kRetract:
+      return is_holding ? "retracts the fundus" : "reaches for the fundus";
+    case session::AssistantCommand::kRelax:
+      return is_holding ? "holds the fundus" : "reaches for the fundus";
+    case session::AssistantCommand::kRelease:
+      return "lets go and withdraws";
+    default:
+      return "waits";
+  }
 }
 
 std::string DescribeContact(const session::InstrumentSnapshot& instrument, const anatomy::Patient& patient) {
@@ -108,6 +174,8 @@ std::string DescribeEvent(const session::Event& event, const session::Scene& sce
       return hand + "pinched the " + organ + " too hard" + force;
     case session::EventKind::kToolsTouch:
       return "The instruments met";
+    case session::EventKind::kExchangeRefused:
+      return hand + "open the jaws and let go before the tool is exchanged";
   }
   return "";
 }

@@ -75,6 +75,7 @@ constexpr const char* kPatient = "assets/patients/visible-human-male/patient/pat
 constexpr const char* kPoints = "assets/patients/visible-human-male/control_points.json";
 constexpr const char* kScene = "scenes/demonstration.json";
 constexpr const char* kMaterial = "assets/materials/liver.json";
+constexpr const char* kTask = "scenes/tasks/object_transport.json";
 constexpr const char* kScript = "scenes/demonstration.script.json";
 
 const Broken kBroken[] = {
@@ -106,6 +107,11 @@ const Broken kBroken[] = {
     {"MaterialWithoutASource", kMaterial, [](Json& j) { j["sources"].erase("density_kg_m3"); }},
     {"MaterialStiffnessNegative", kMaterial, [](Json& j) { j["young_modulus_pa"] = -1; }},
     {"MaterialMisspelt", kMaterial, [](Json& j) { j["densty_kg_m3"] = 1; }},
+    {"TaskWithoutGoal", kTask, [](Json& j) { j["rules"]["goals"] = Json::array(); }},
+    {"TaskUnknownRule", kTask, [](Json& j) { j["rules"]["goals"][0]["steps"][0]["kind"] = "thrown"; }},
+    {"TaskUnknownTool", kTask, [](Json& j) { j["scene"]["instruments"]["left"]["tool"] = "tongs"; }},
+    {"TaskShapeOfNoSize", kTask, [](Json& j) { j["scene"]["objects"][0]["shapes"][0].erase("kind"); }},
+    {"TaskParameterMisspelt", kTask, [](Json& j) { j["rules"]["time_limit_s"] = "{Limit"; }},
     {"ScriptFirstKeyWithOneHand", kScript, [](Json& j) { j["keys"][0].erase("right"); }},
     {"ScriptWithoutKeys", kScript, [](Json& j) { j["keys"] = Json::array(); }},
     {"ScriptJawTooWide", kScript, [](Json& j) { j["keys"][1]["left"]["jaw_deg"] = 120; }},

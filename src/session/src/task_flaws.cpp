@@ -9,34 +9,40 @@ constexpr double kHighEnough = 0.035;  // above where a thing lay, that it falls
 constexpr double kFarOut = 0.16;       // sideways of the field [m]
 constexpr double kAstray = 0.015;      // of a thing on its path [m]
 constexpr double kTooDeep = 0.012;     // of a tip below the board [m]
+constexpr double kBehindJaws = 0.030;  // [m]
 constexpr double kApart = 0.030;       // of hands that pull at one thing [m]
 
 }  // namespace
 
 /// While something is carried. \return whether the plan now is to err
-bool TaskSurgeon::AddFlaw(const Snapshot& seen, int hand, int object) {
+/// \param on_path  the thing is led along something and cannot be lifted away
+bool TaskSurgeon::AddFlaw(const Snapshot& seen, int hand, int object, bool on_path) {
   const Vec3 here = seen.objects[static_cast<std::size_t>(object)].X_world_object.translation;
+  const auto rise = [&] {
+    if (seen.instruments[static_cast<std::size_t>(1 - hand)].object >= 0) WithDraw(hand);
+    if (!on_path) Rise(hand, kHighEnough);
+  };
   switch (flaw_) {
     case Flaw::kDrops:
-      Rise(hand, kHighEnough);
+      rise();
       LetGo(hand);
       WithDraw(hand);
       break;
     case Flaw::kLoses: {
       const double side = hand == kLeft ? -1 : 1;
-      Rise(hand, kHighEnough);
+      rise();
       Carry(hand, object, here + Vec3{side * kFarOut, 0, kHighEnough});
       LetGo(hand);
       WithDraw(hand);
       break;
     }
     case Flaw::kTouchesWire:
-      Carry(hand, object, here + Vec3{0, 0, -kAstray}, 0.5);
+      Carry(hand, object, here + Vec3{0, 0, kAstray}, 0.5);
       Carry(hand, object, here, 0.5);
       break;
     case Flaw::kPullsApart: {
       const int other = 1 - hand;
-      Rise(hand, kHighEnough);
+      rise();
       PickUp(other, object, other);
       Wait(0.3);
       Reach(other, [this, other](const Snapshot&) {
@@ -73,16 +79,18 @@ bool TaskSurgeon::AddIdleFlaw(const Snapshot& seen) {
       break;
     }
     case Flaw::kClashes: {
+      // through the other's shaft, behind its jaws
       const Vec3 left = HandOf(kLeft).Tip(), right = HandOf(kRight).Tip();
-      ReachPoint(kRight, left + Vec3{0, 0, -0.010}, 0.7);
-      ReachPoint(kRight, left + Vec3{-0.010, 0, -0.010}, 0.7);
+      const Vec3 shaft = left + kBehindJaws * math::Normalized(HandOf(kLeft).Port() - left);
+      ReachPoint(kRight, shaft + Vec3{0.010, 0, 0}, 0.7);
+      ReachPoint(kRight, shaft + Vec3{-0.010, 0, 0}, 0.3);
       ReachPoint(kRight, right);
       break;
     }
     case Flaw::kSmearsLens: {
       for (const Region& region : scene_->task->regions) {
         if (region.mark == RegionMark::kNone) continue;
-        Look(region, 0.012);
+        Look(region, 0.010);
         break;
       }
       Wait(0.5);

@@ -170,11 +170,10 @@ Finding TaskMonitor::Find(const Scene& scene, const Snapshot& snapshot, const Co
   for (std::uint64_t n = std::max(events_before_, oldest); n < snapshot.event_count; ++n) {
     const Event& event = snapshot.events[n % ring];
     if (static_cast<int>(event.kind) != c.event || (c.hand != kAnyHand && c.hand != event.hand)) continue;
-    const bool has_hand = event.hand >= 0;
-    return {true,
-            has_hand ? snapshot.instruments[static_cast<std::size_t>(event.hand)].X_world_tool.translation
-                     : Vec3{},
-            event.hand};
+    const auto tip = [&](std::size_t hand) { return snapshot.instruments[hand].X_world_tool.translation; };
+    const Vec3 position = event.hand >= 0 ? tip(static_cast<std::size_t>(event.hand))
+                                          : math::Lerp(tip(kLeft), tip(kRight), 0.5);
+    return {true, position, event.hand};
   }
   return {};
 }

@@ -75,9 +75,13 @@ void TaskSurgeon::Plan(const Snapshot& seen) {
     const GoalSnapshot& now = seen.task.goals[g];
     // a goal that was begun is finished first: its thing may be in a hand
     const bool is_begun = now.steps_done > 0;
-    const bool is_other_begun =
-        std::any_of(seen.task.goals.begin(), seen.task.goals.end(),
-                    [](const auto& one) { return one.is_open && one.steps_done > 0; });
+    bool is_other_begun = false;
+    for (std::size_t other = 0; other < task.goals.size(); ++other) {
+      const GoalSnapshot& one = seen.task.goals[other];
+      is_other_begun =
+          is_other_begun || (one.is_open && one.steps_done > 0 && !IsLost(seen, task.goals[other]));
+    }
+    if (IsLost(seen, task.goals[g])) continue;
     const bool is_open = now.is_open || (seen.task.phase == TaskPhase::kReady && task.goals[g].stage == 0);
     if (!is_open || now.is_done || (is_other_begun && !is_begun)) continue;
     if (fruitless_plans_ > kMostFruitlessPlans) break;
@@ -87,6 +91,16 @@ void TaskSurgeon::Plan(const Snapshot& seen) {
     return;
   }
   has_finished_ = true;
+}
+
+/// What has left the picture and lies there is not fetched.
+bool TaskSurgeon::IsLost(const Snapshot& seen, const Goal& goal) const {
+  return std::any_of(goal.steps.begin(), goal.steps.end(), [&](const Condition& step) {
+    if (step.object < 0) return false;
+    const ObjectSnapshot& thing = seen.objects[static_cast<std::size_t>(step.object)];
+    return thing.held_by == 0 && !IsInView(seen.X_world_laparoscope, scene_->laparoscope.field_of_view,
+                                           thing.X_world_object.translation);
+  });
 }
 
 int TaskSurgeon::ChooseHand(const Snapshot& seen, int object, int wanted) const {
@@ -134,7 +148,7 @@ void TaskSurgeon::PlanStep(const Snapshot& seen, const Goal& goal, std::uint32_t
         PickUp(hand, c.object, hand);
         return;
       }
-      if (AddFlaw(seen, hand, c.object)) return;
+      if (AddFlaw(seen, hand, c.object, true)) return;
       Carry(hand, c.object, region().centre, 0.4);
       break;
     }

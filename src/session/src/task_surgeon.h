@@ -58,6 +58,7 @@ class TaskSurgeon final : public Surgeon {
   void PlanStep(const Snapshot& seen, const Goal& goal, std::uint32_t step);
   void PlanPlace(const Snapshot& seen, int object, const std::vector<int>& regions);
   void PlanHandOver(const Snapshot& seen, int object, int from, int to, bool in_place);
+  bool IsLost(const Snapshot& seen, const Goal& goal) const;
   int ChooseHand(const Snapshot& seen, int object, int wanted) const;
   // verbs: task_verbs.cpp
   void Add(std::string doing, std::function<void(const Snapshot&)> begin,
@@ -74,7 +75,7 @@ class TaskSurgeon final : public Surgeon {
   Vec3 FindTip(const Snapshot& seen, int hand, int object, const Vec3& p_world_object) const;
   Vec3 GripTip(const Snapshot& seen, int hand, int object, int grip, double back) const;
   // errors: task_flaws.cpp
-  bool AddFlaw(const Snapshot& seen, int hand, int object);
+  bool AddFlaw(const Snapshot& seen, int hand, int object, bool on_path = false);
   bool AddIdleFlaw(const Snapshot& seen);
 
   void MoveCamera(const instrument::TrocarJoints& to);

@@ -30,9 +30,12 @@ constexpr double kSleepSpeed = 0.3;     // [cm/s]
 constexpr double kSleepTurn = 0.3;      // [rad/s]
 constexpr double kJawStiffness = 1500;  // of what jaws press [N/m]
 constexpr double kJawDamping = 2;       // [N s/m]
-// what is held gives way as rubber does, 2.8 N for a millimetre in steps of a quarter tick: two hands that hold one thing,
-// or a hand and the board, do not tear at it when they tremble. Bullet's constraint force mixing and error reduction.
-constexpr double kHoldGive = 0.1, kHoldShare = 0.41;
+// what is held gives way as rubber does: two hands that hold one thing, or a hand and the board, do not tear at it when
+// they tremble
+constexpr double kHoldStiffness =
+    1970;                             // [N/m]; measured with Bullet's error reduction: 2.8 N for a millimetre
+constexpr double kHoldDamping = 5.9;  // [N s/m]
+constexpr double kWorldRadius = 1.0;  // what is farther away has left the scene and stops [m]
 constexpr int kSolverIterations = 30;  // stacks stand
 
 btVector3 ToBullet(const Vec3& v) {
@@ -336,6 +339,29 @@ struct RigidWorld::Content {
     }
   }
 
+  /// Springs and dampers of the holds, for steps of dt. Source: Smith, Open Dynamics Engine manual, section 3.8.
+  void SoftenHolds(double dt) {
+    const double sum = dt * kHoldStiffness + kHoldDamping;
+    for (Tool& tool : tools) {
+      if (!tool.hold) continue;
+      for (int axis = 0; axis < 6; ++axis) {
+        tool.hold->setParam(BT_CONSTRAINT_STOP_CFM, 1 / sum, axis);
+        tool.hold->setParam(BT_CONSTRAINT_STOP_ERP, dt * kHoldStiffness / sum, axis);
+      }
+    }
+  }
+
+  /// What has fallen off the table does not fall for ever, faster and faster.
+  void StopWhatHasLeft() {
+    for (Body& body : bodies) {
+      btRigidBody& rigid = *body.body;
+      if (!(rigid.getWorldTransform().getOrigin().length() > kWorldRadius * kScale)) continue;
+      rigid.setLinearVelocity({0, 0, 0});
+      rigid.setAngularVelocity({0, 0, 0});
+      rigid.forceActivationState(DISABLE_SIMULATION);
+    }
+  }
+
   void Release(Tool& tool) {
     if (!tool.hold) return;
     btRigidBody& body = *bodies[static_cast<std::size_t>(tool.held)].body;
@@ -415,6 +441,7 @@ void RigidWorld::Step() {
   }
   const int substeps = content.CountSubsteps();
   const double dt = content.tick_seconds / substeps;
+  content.SoftenHolds(dt);
   for (int step = 1; step <= substeps; ++step) {
     const double share = static_cast<double>(step) / substeps;
     for (auto& tool : content.tools) {
@@ -435,6 +462,7 @@ void RigidWorld::Step() {
       if (tool.hold) pulls[t] = pulls[t] + 1.0 / substeps * FromBullet(tool.feedback.m_appliedForceBodyA);
     }
   }
+  content.StopWhatHasLeft();
   for (std::size_t t = 0; t < content.tools.size(); ++t) {
     auto& tool = content.tools[t];
     tool.from = tool.to;
@@ -468,10 +496,6 @@ void RigidWorld::Hold(std::uint32_t tool_index, std::uint32_t body_index, double
   tool.hold = std::make_unique<btFixedConstraint>(
       carrier, body, carrier.getWorldTransform().inverse() * body.getWorldTransform(),
       btTransform::getIdentity());
-  for (int axis = 0; axis < 6; ++axis) {
-    tool.hold->setParam(BT_CONSTRAINT_STOP_CFM, kHoldGive, axis);
-    tool.hold->setParam(BT_CONSTRAINT_STOP_ERP, kHoldShare, axis);
-  }
   tool.hold->setJointFeedback(&tool.feedback);
   tool.feedback = {};
   content_->world->addConstraint(tool.hold.get());

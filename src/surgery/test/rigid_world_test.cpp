@@ -182,6 +182,36 @@ TEST(RigidWorld, IsPushedByATool) {
   EXPECT_EQ(bench.world.HeldBy(1), -1);
 }
 
+TEST(RigidWorld, TwoHandsThatTrembleDoNotTearAtWhatTheyHold) {
+  for (const bool does_something_fall : {false, true}) {
+    Bench bench;
+    // what falls fast makes the steps finer; the grip must not grow harder with them
+    if (does_something_fall) ASSERT_TRUE(bench.world.AddBody(MakeCube({0.5, 0, 0.5}, 0.001)).ok());
+    Play(bench.world, 0.3);
+    bench.world.Hold(0, bench.cube, 3.0);
+    bench.world.Hold(1, bench.cube, 3.0);
+    bench.Move(0, {0, 0, 0.012}, {0, 0.0003, 0.0123}, 0.03, 0.03, 0.1);
+    Play(bench.world, 0.2);
+    EXPECT_EQ(bench.world.HeldBy(0), static_cast<std::int32_t>(bench.cube));
+    EXPECT_EQ(bench.world.HeldBy(1), static_cast<std::int32_t>(bench.cube));
+    // each gives way by half: 0.2 mm of 2 to 3 N/mm
+    EXPECT_GT(math::Norm(bench.world.ForceOn(0)), 0.3);
+    EXPECT_LT(math::Norm(bench.world.ForceOn(0)), 0.9);
+  }
+}
+
+TEST(RigidWorld, WhatHasLeftTheSceneStops) {
+  RigidWorld world(kDown, kTick);
+  const auto cube = *world.AddBody(MakeCube({0, 0, 0}));
+  Play(world, 3.0);
+  EXPECT_EQ(world.VelocityOf(cube), Vec3{});
+  EXPECT_LT(world.PoseOf(cube).translation.z, -1.0);
+  EXPECT_GT(world.PoseOf(cube).translation.z, -1.2);
+  world.Reset();
+  Play(world, 0.1);
+  EXPECT_LT(world.VelocityOf(cube).z, -0.5) << "and falls again after a reset";
+}
+
 TEST(RigidWorld, SaysWhichBodiesTouch) {
   RigidWorld world(kDown, kTick);
   const auto floor = *world.AddBody(MakeFloor());

@@ -35,6 +35,7 @@ using session::SurfaceInfo;
 
 constexpr double kOpennessReach = 0.030;  // m; farther folds cast no soft shade
 constexpr double kSmallestForce = 0.02;   // N; below, an arrow would only flicker
+constexpr double kTrainerLight = 1.8;     // of a box trainer, whose walls are darker than tissue and farther
 constexpr double kLongestArrow = 0.045;   // m
 
 /// Openness of a surface that will move: averaged over neighbours and never dark, because where it lies
@@ -72,6 +73,7 @@ struct LaparoscopeView::Content {
   std::optional<Pool> pool;
   std::vector<render::SurfaceDraw> background;
   ObjectView objects;
+  double light_scale = 1;
   render::Frame frame;
   std::array<Vec3, session::kHandCount> forces, tips;
 
@@ -215,6 +217,7 @@ core::Result<LaparoscopeView> LaparoscopeView::Make(const session::Scene& scene,
   if (scene.HasPatient()) {
     content->AddSurroundings();
   } else {
+    content->light_scale = kTrainerLight;
     content->background.push_back(
         {content->renderer.AddSurface(MakeTrainerBox(scene), Material::kSleeve), {}});
   }
@@ -264,7 +267,7 @@ void LaparoscopeView::Draw(int width, int height) {
   c.frame.has_mask = c.options.has_mask;
   c.frame.is_wireframe = c.options.is_wireframe;
   c.frame.has_smooth_edges = c.options.has_smooth_edges;
-  c.frame.light_power = std::clamp(c.options.light_power, 0.0, 4.0);
+  c.frame.light_power = c.light_scale * std::clamp(c.options.light_power, 0.0, 4.0);
   c.UpdateArrows();
   const std::size_t foreground = c.frame.surfaces.size();
   if (c.options.has_background)

@@ -158,7 +158,8 @@ void ObjectView::AddMark(render::Renderer& renderer, std::size_t index) {
     // a cup round the back of what must be seen from one side
     X.rotation = math::RotationBetween({0, 0, 1}, *region.facing);
     const double r = region.radius;
-    view::Append(mesh, MakeRod({-1.2 * r, 2.2 * r, 2.2 * r, -1.0 * r}, {1.6 * r, 1.6 * r, 1.4 * r, 1.4 * r}), {});
+    view::Append(mesh, MakeRod({-1.2 * r, 2.2 * r, 2.2 * r, -1.0 * r}, {1.6 * r, 1.6 * r, 1.4 * r, 1.4 * r}),
+                 {});
   }
   marks_.push_back(
       {renderer.AddSurface(mesh, Material::kSleeve), renderer.AddSurface(mesh, Material::kMark), index, X});
@@ -183,18 +184,29 @@ void ObjectView::Append(const session::Snapshot& snapshot, std::vector<render::S
   for (const Part& part : parts_)
     surfaces.push_back({part.surface, snapshot.objects[part.object].X_world_object * part.X_object_part});
   if (!task_) return;
+  const std::vector<int> next = FindNextRegions(snapshot.task);
   for (const Mark& mark : marks_) {
-    // bright while the present step of an open goal means it
-    bool is_next = false;
-    for (std::size_t g = 0; g < snapshot.task.goals.size(); ++g) {
-      const session::GoalSnapshot& goal = snapshot.task.goals[g];
-      if (!goal.is_open) continue;
-      const auto& regions = task_->goals[g].steps[goal.steps_done].regions;
-      is_next = is_next ||
-                std::find(regions.begin(), regions.end(), static_cast<int>(mark.region)) != regions.end();
-    }
+    const bool is_next = std::find(next.begin(), next.end(), static_cast<int>(mark.region)) != next.end();
     surfaces.push_back({is_next ? mark.next : mark.idle, mark.X_world_mark});
   }
+}
+
+/// Of the goal that is being worked on, else of the first that may be: where it leads to next.
+std::vector<int> ObjectView::FindNextRegions(const session::TaskSnapshot& now) const {
+  std::ptrdiff_t chosen = -1;
+  for (std::size_t g = 0; g < now.goals.size(); ++g) {
+    const bool may_be = now.phase == session::TaskPhase::kReady ? g == 0 : now.goals[g].is_open;
+    if (may_be && (chosen < 0 || (now.goals[g].steps_done > 0 &&
+                                  now.goals[static_cast<std::size_t>(chosen)].steps_done == 0)))
+      chosen = static_cast<std::ptrdiff_t>(g);
+  }
+  if (chosen < 0) return {};
+  const auto g = static_cast<std::size_t>(chosen);
+  const auto& steps = task_->goals[g].steps;
+  for (std::size_t step = now.goals[g].steps_done; step < steps.size(); ++step) {
+    if (!steps[step].regions.empty()) return steps[step].regions;
+  }
+  return {};
 }
 
 TriangleMesh MakeTrainerBox(const session::Scene& scene) {

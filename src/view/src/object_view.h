@@ -30,6 +30,7 @@ class ObjectView {
     std::size_t region = 0;
     math::Pose X_world_mark;
   };
+  std::vector<int> FindNextRegions(const session::TaskSnapshot& now) const;
   void AddMark(render::Renderer& renderer, std::size_t region);
 
   std::optional<session::Task> task_;

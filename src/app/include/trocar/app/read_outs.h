@@ -45,6 +45,15 @@ std::string OrganLabel(const anatomy::Patient& patient, std::int32_t organ);
 /// "left grasper"
 std::string HandLabel(const session::Scene& scene, std::int32_t hand);
 
+/// Name of the tool that a hand has in use, with spaces: "clip applier, 12 clips", "hook".
+std::string ToolLabel(const session::Scene& scene, const session::Snapshot& snapshot, session::Hand hand);
+/// "4.2 mL"
+std::string FormatMillilitres(double volume);
+/// What has left the vessels and organs, and what of it still lies there: "12.0 mL, 3.5 mL in the abdomen".
+std::string DescribeFluid(const surgery::FluidLedger& fluids, surgery::Fluid fluid);
+/// "waits", "retracts the fundus", ...
+std::string DescribeAssistant(session::AssistantCommand command, bool is_holding);
+
 /// "holds the gallbladder", "touches the liver", "free"
 std::string DescribeContact(const session::InstrumentSnapshot& instrument, const anatomy::Patient& patient);
 
@@ -52,6 +61,16 @@ std::string DescribeContact(const session::InstrumentSnapshot& instrument, const
 std::string DescribeEvent(const session::Event& event, const session::Scene& scene);
 /// True for what should be seen at once: slips, missed grasps, restored states.
 bool IsWarning(session::EventKind kind) noexcept;
+
+/// How a task goes, for a person.
+struct TaskReadOut {
+  std::string time;      ///< "0:12.3 / 5:00.0"
+  std::string progress;  ///< "3 of 12"
+  std::string score;     ///< "87.4"; "—" before it is over
+  std::string next;      ///< "Next: Ring 2 to the right"; after the end, the result
+  std::string errors;    ///< "2 x The ring touched the wire", a line each
+};
+TaskReadOut DescribeTask(const session::Task& task, const session::TaskSnapshot& now);
 
 /// "Find contacts"
 std::string StageLabel(session::Stage stage);
