@@ -86,7 +86,8 @@ void HapticRecord::Add(double time, const HapticStatus& status) {
     Note(time, HapticEventKind::kOverrun, -1, Fault::kOverrun, status.overruns - last_.overruns);
   last_ = status;
   has_last_ = true;
-  if (time < next_) return;
+  constexpr double kRounding = 1e-6;  // of times that are sums [s]
+  if (time < next_ - kRounding) return;
   next_ = time + period_;
   if (samples_.size() == kMaxSamples) {
     for (std::size_t i = 0; i < kMaxSamples / 2; ++i) samples_[i] = samples_[2 * i];
