@@ -155,11 +155,10 @@ void ObjectView::AddMark(render::Renderer& renderer, std::size_t index) {
   TriangleMesh mesh = MakeMark(region);
   Pose X{{}, region.centre};
   if (region.facing) {
-    // a cup round the back of what must be seen from one side
+    // it sits in a socket, so that its open side shows
     X.rotation = math::RotationBetween({0, 0, 1}, *region.facing);
     const double r = region.radius;
-    view::Append(mesh, MakeRod({-1.2 * r, 2.2 * r, 2.2 * r, -1.0 * r}, {1.6 * r, 1.6 * r, 1.4 * r, 1.4 * r}),
-                 {});
+    view::Append(mesh, MakeRod({-1.7 * r, -0.2 * r}, {1.5 * r, 1.5 * r}), {});
   }
   marks_.push_back(
       {renderer.AddSurface(mesh, Material::kSleeve), renderer.AddSurface(mesh, Material::kMark), index, X});
