@@ -53,6 +53,7 @@ void MotionLog::Record(const session::Snapshot& snapshot) {
       case EventKind::kTear:
       case EventKind::kPinchDamage:
       case EventKind::kToolsTouch:
+      case EventKind::kExchangeRefused:
         break;
     }
   }

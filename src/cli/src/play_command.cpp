@@ -103,7 +103,7 @@ nlohmann::ordered_json ErrorJson(const session::Scene& scene, const session::Tas
   const auto& p = error.position;
   nlohmann::ordered_json json = {{"error", rule.name},
                                  {"about", rule.about},
-                                 {"severity", session::SeverityName(rule.severity)},
+                                 {"severity", training::NameOf(rule.severity)},
                                  {"time_s", error.time},
                                  {"at_mm", {1e3 * p.x, 1e3 * p.y, 1e3 * p.z}}};
   if (error.object >= 0) json["object"] = scene.objects[static_cast<std::size_t>(error.object)].name;
@@ -152,7 +152,7 @@ void PrintForPerson(const session::Scene& scene, const PlayReport& report) {
     if (report.task.errors[e] == 0) continue;
     const session::ErrorRule& rule = scene.task->errors[e];
     std::printf("  %u x %s: %s (%s, %s points each)\n", report.task.errors[e], rule.name.c_str(),
-                rule.about.c_str(), std::string(session::SeverityName(rule.severity)).c_str(),
+                rule.about.c_str(), std::string(training::NameOf(rule.severity)).c_str(),
                 FormatNumber(rule.penalty).c_str());
   }
   std::printf("Tick p99 %s ms, state hash %s\n", FormatNumber(report.tick_p99_ms, 3).c_str(),

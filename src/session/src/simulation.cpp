@@ -234,7 +234,11 @@ void Simulation::Content::ChangeTopology() {
 
 /// Builds anew what was made for the model of before.
 void Simulation::Content::FollowTopology() {
-  MakeSolver(thread_count, SolveOn::kProcessor);
+  if (gpu_solver != nullptr) {
+    MakeSolver(thread_count, SolveOn::kProcessor);
+  } else {
+    solver->Follow(tissue_model);
+  }
   std::vector<geometry::TriangleMesh> meshes;
   std::vector<tissue::ClosedOrgan> closed;
   for (std::size_t i = 0; i < scene->patient.organs.size(); ++i) {
@@ -431,7 +435,10 @@ void Simulation::Content::Reset() {
 void Simulation::Content::MakeSolver(int threads, SolveOn solve_on) {
   gpu_solver = nullptr;
   if (solve_on == SolveOn::kProcessor) {
-    solver = std::make_unique<tissue::EquilibriumSolver>(tissue_model, threads);
+    tissue::SolverOptions options;
+    options.threads = threads;
+    if (scene->operation) options.spare_share = 0.5;  // cuts go on in the same memory
+    solver = std::make_unique<tissue::EquilibriumSolver>(tissue_model, options);
     return;
   }
   auto made = std::make_unique<tissue_cuda::GpuOrCpuSolver>(tissue_model, threads,

@@ -21,11 +21,6 @@ std::string_view ConditionName(ConditionKind kind) noexcept {
   return kNames[static_cast<std::size_t>(kind)];
 }
 
-std::string_view SeverityName(Severity severity) noexcept {
-  static constexpr std::string_view kNames[] = {"minor", "major", "critical"};
-  return kNames[static_cast<std::size_t>(severity)];
-}
-
 std::string_view PhaseName(TaskPhase phase) noexcept {
   static constexpr std::string_view kNames[] = {"none",      "ready",     "running",
                                                 "completed", "time_over", "ended"};

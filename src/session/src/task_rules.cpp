@@ -175,7 +175,7 @@ class RulesReader {
     rule.severity = severity == "critical" ? Severity::kCritical
                     : severity == "major"  ? Severity::kMajor
                                            : Severity::kMinor;
-    if (SeverityName(rule.severity) != severity)
+    if (training::NameOf(rule.severity) != severity)
       view.Complain("severity is minor, major or critical", ErrorCode::kUnknownName);
     rule.penalty = view.NumberOr("penalty", 0.0, {0.0, 1e6});
     rule.ends_task = view.BooleanOr("ends_task", false);

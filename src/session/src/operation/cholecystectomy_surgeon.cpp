@@ -15,11 +15,12 @@ constexpr double kHurriedHook = 1.0;
 constexpr double kNear = 0.0025;   // the tip has come to where the hand wants it [m]
 constexpr double kPatience = 1.2;  // for one fibre [s]
 constexpr std::uint8_t kMostAttempts = 3;
-constexpr double kMainDistance = 0.0085;  // from ducts that must stay, where no fibre is burnt [m]
+constexpr double kMainDistance = 0.009;  // from ducts that must stay, where no fibre is burnt [m]
 /// Where the left hand holds the gallbladder: from the neck towards the fundus, and off the bed [m].
 constexpr double kHoldBack = 0.020, kHoldBeside = 0.012;
+constexpr double kOpenShare = 6.0;    // how much sooner a fibre is taken that is stretched, by its stretch
 constexpr double kPeelRate = 0.0012;  // of the hand that draws the gallbladder off its bed [m/s]
-constexpr double kBlocked = 0.5;      // after which a hook that does not get there turns back [s]
+constexpr double kBlocked = 0.7;      // after which a hook that does not get there turns back [s]
 constexpr double kCameraRate = 0.25;  // [rad/s]
 
 Vec3 MeanPort(const Scene& scene) {
@@ -327,23 +328,32 @@ bool CholecystectomySurgeon::GoOnDissecting(Dissection& work, const Snapshot& se
   }
   if (work.target >= 0) return false;
   std::size_t left = 0;
-  double best = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < work.strands.size(); ++i) {
-    if (!is_intact(work.strands[i])) continue;
-    ++left;
-    if (work.attempts[i] >= kMostAttempts) continue;
-    const double cost = work.order[i] + math::Distance(middle(work.strands[i]), HandOf(kRight).Tip()) +
-                        0.02 * work.attempts[i];
-    if (cost >= best) continue;
-    best = cost;
-    work.target = static_cast<std::int32_t>(i);
-  }
-  const double parted =
-      1.0 - static_cast<double>(left) / static_cast<double>(std::max<std::size_t>(1, work.strands.size()));
+  const auto choose = [&] {
+    left = 0;
+    double best = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < work.strands.size(); ++i) {
+      if (!is_intact(work.strands[i])) continue;
+      ++left;
+      if (work.attempts[i] >= kMostAttempts) continue;
+      // what is stretched lies open
+      const StrandInfo& strand = strands_[work.strands[i]];
+      const double stretch = math::Distance(seen.positions[strand.a], seen.positions[strand.b]) -
+                             math::Distance(rest_[strand.a], rest_[strand.b]);
+      const double cost = work.order[i] + math::Distance(middle(work.strands[i]), HandOf(kRight).Tip()) +
+                          0.02 * work.attempts[i] - kOpenShare * stretch;
+      if (cost >= best) continue;
+      best = cost;
+      work.target = static_cast<std::int32_t>(i);
+    }
+    return 1.0 -
+           static_cast<double>(left) / static_cast<double>(std::max<std::size_t>(1, work.strands.size()));
+  };
+  double parted = choose();
   // what could not be reached may be, now that more has given way
-  if (parted > work.parted_at_reset + 0.03) {
+  if (parted > work.parted_at_reset + (work.target < 0 ? 0.004 : 0.03)) {
     std::fill(work.attempts.begin(), work.attempts.end(), std::uint8_t{0});
     work.parted_at_reset = parted;
+    parted = choose();
   }
   // the other hand takes up the slack
   if (work.traction > 0.0 && !HandOf(kLeft).IsMoving() && seen.instruments[kLeft].is_grasping) {
@@ -355,6 +365,10 @@ bool CholecystectomySurgeon::GoOnDissecting(Dissection& work, const Snapshot& se
     next();
     return true;
   }
+  // another try comes from another side
+  constexpr double kSpins[] = {0.0, 1.3, -1.3};
+  hook_spin_ = kSpins[work.attempts[static_cast<std::size_t>(work.target)] % std::size(kSpins)];
+  HandOf(kRight).Turn(hook_spin_);
   HandOf(kRight).MoveTo(HookTip(middle(work.strands[static_cast<std::size_t>(work.target)])), kHurriedHook);
   return false;
 }
@@ -420,7 +434,7 @@ void CholecystectomySurgeon::PlanOperation() {
     }
     if (strands_[i].kind == Kind::kBed || strands_[i].kind == Kind::kAdhesion) {
       bed.push_back(i);
-      bed_order.push_back(1.5 * math::Dot(middle - neck_rest, axis) / math::Norm(axis));
+      bed_order.push_back(0.5 * math::Dot(middle - neck_rest, axis) / math::Norm(axis));
     }
   }
   (void)organs;
@@ -430,7 +444,7 @@ void CholecystectomySurgeon::PlanOperation() {
   std::vector<std::uint32_t> lower;
   std::vector<double> lower_order;
   for (std::size_t i = 0; i < bed.size(); ++i) {
-    if (bed_order[i] / 1.5 > third) continue;
+    if (bed_order[i] / 0.5 > third) continue;
     lower.push_back(bed[i]);
     lower_order.push_back(bed_order[i]);
   }

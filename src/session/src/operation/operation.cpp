@@ -13,8 +13,8 @@ using training::OperationError;
 
 /// A tool that is exchanged is out of the way at this depth [m], for this long [s].
 constexpr double kOutside = 0.031, kExchangeSeconds = 0.5;
-constexpr double kMainDistance = 0.010;   // fibres nearer to what must stay are left alone [m]
-constexpr double kTipIn = 0.08;           // a tool this deep has been pushed in [m]
+constexpr double kMainDistance = 0.010;  // fibres nearer to what must stay are left alone [m]
+constexpr double kTipIn = 0.08;          // a tool this deep has been pushed in [m]
 constexpr double kBlindSeconds = 1.5;
 /// Where blood and bile gather, seen from the infundibulum: to the right and behind, in Morison's pouch [m].
 constexpr Vec3 kPouch{-0.015, 0.0, -0.025};

@@ -15,6 +15,7 @@
 
 #include "trocar/core/result.h"
 #include "trocar/math/vector.h"
+#include "trocar/training/operation_error.h"
 
 namespace trocar::session {
 
@@ -82,9 +83,7 @@ struct Goal {
   int stage = 0;  ///< counts only when every goal of a lower stage is done
 };
 
-enum class Severity : std::uint8_t { kMinor, kMajor, kCritical };
-/// "minor", "major", "critical"
-std::string_view SeverityName(Severity severity) noexcept;
+using training::Severity;
 
 /// What must not happen. Counts each time that it begins.
 struct ErrorRule {
