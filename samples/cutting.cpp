@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 #include <ctime>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -53,6 +54,7 @@ struct Theatre {
   tissue::TissueState state;
   std::vector<surgery::CuttableOrgan> organs;
   surgery::TopologyChange change;
+  std::unique_ptr<tissue::EquilibriumSolver> solver;
   std::array<double, 5> worst{}, sum{};  // [s]
   int cutting_ticks = 0;
 };
@@ -127,9 +129,9 @@ geometry::CutReport CutThrough(const Site& site, std::size_t index, Theatre& the
     theatre.model = tissue::MakeTissueModel(theatre.definition);
     surgery::ApplyChange(theatre.change, origins, theatre.model, theatre.state);
     at[3] = now();
-    tissue::EquilibriumSolver solver(theatre.model, 1);
+    theatre.solver->Follow(theatre.model);
     at[4] = now();
-    solver.Solve({}, {}, theatre.state);
+    theatre.solver->Solve({}, {}, theatre.state);
     at[5] = now();
     ++theatre.cutting_ticks;
     for (std::size_t i = 0; i < 5; ++i) {
@@ -157,8 +159,7 @@ void DrawApart(const Site& site, std::size_t index, double distance, Theatre& th
     theatre.state.condition[node] = tissue::NodeCondition::kPrescribed;
     theatre.state.position[node] += (side > 0 ? distance : -distance) * site.across;
   }
-  tissue::EquilibriumSolver solver(theatre.model, 1);
-  for (int tick = 0; tick < 100; ++tick) solver.Solve({}, {}, theatre.state);
+  for (int tick = 0; tick < 100; ++tick) theatre.solver->Solve({}, {}, theatre.state);
 }
 
 /// The organ as two surfaces, so that the rim of a trench is sharp.
@@ -230,6 +231,8 @@ int main(int count, char** arguments) {
   }
   theatre.model = tissue::MakeTissueModel(theatre.definition);
   theatre.state = tissue::MakeRestState(theatre.model);
+  theatre.solver =
+      std::make_unique<tissue::EquilibriumSolver>(theatre.model, tissue::SolverOptions{.spare_share = 0.5});
   for (std::size_t i = 0; i < 2; ++i) {
     const geometry::CutReport report = CutThrough(sites[i], i, theatre);
     DrawApart(sites[i], i, kWalls[i].drawn, theatre);

@@ -66,8 +66,7 @@ core::Status ReadSkippedFrom(const ControlPoints& points, const std::filesystem:
     return Error{series.error().code,
                  series.error().message + "; without the slices that were skipped: skipped_shift_px 0"};
   }
-  const std::vector<int>& numbers = series->Info().slice_numbers;
-  options.slice_step = numbers.size() > 1 ? numbers[1] - numbers[0] : 1;
+  options.series = series->Info().slice_numbers;
   options.read_skipped = [series = *series, window](const std::vector<int>& slices) {
     return ReadSlices(series, slices, window.value_or(series.Info().suggested_window));
   };
@@ -91,7 +90,10 @@ core::Result<BuiltOrgans> BuildOrgans(const ControlPoints& points, const std::ma
     tell("following contours of " + structure.name, static_cast<double>(volumes.size()) / count);
     auto contoured = FollowContours(points, structure, images, options.stop, overlays);
     if (!contoured.ok()) return contoured.error();
-    if (auto status = AddSlicesByPictures(points, structure, images, options, *contoured); !status)
+    const Progress tell_part = [&](std::string_view what, double part) {
+      tell(what, (static_cast<double>(volumes.size()) + part) / count);
+    };
+    if (auto status = AddSlicesByPictures(points, structure, images, options, tell_part, *contoured); !status)
       return status.error();
     auto dense = AddSlicesByShape(*contoured);
     for (FilledSlice& slice : dense) OpenMask(slice.mask, kThinnestMm / 2 / points.pixel_mm);

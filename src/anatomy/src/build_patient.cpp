@@ -35,8 +35,14 @@ core::Result<BuildReport> BuildPatient(const BuildOptions& options, const Progre
     if (progress) progress(what, part);
   };
   const Error given_up{core::ErrorCode::kCancelled, "the patient was given up; nothing was written"};
-  const auto points = ReadControlPoints(options.control_points);
+  auto points = ReadControlPoints(options.control_points);
   if (!points.ok()) return points.error();
+  if (options.skipped_shift_px) {
+    if (!(*options.skipped_shift_px >= 0 && *options.skipped_shift_px <= 30))
+      return Error{core::ErrorCode::kUsage, "skipped_shift_px must lie between 0 and 30"};
+    for (Structure& structure : points->structures)
+      structure.adaption.skipped_shift_px = *options.skipped_shift_px;
+  }
   std::optional<LabelVolume> reference;
   if (options.reference) {
     auto read = ReadLabelVolume(*options.reference);
@@ -55,7 +61,7 @@ core::Result<BuildReport> BuildPatient(const BuildOptions& options, const Progre
   if (options.stop.stop_requested()) return given_up;
 
   OrganOptions organs{
-      options.spacing_mm, options.gap_mm, reference ? &*reference : nullptr, options.stop, {}, 1};
+      options.spacing_mm, options.gap_mm, reference ? &*reference : nullptr, options.stop, {}, {}};
   if (FollowsSkippedSlices(*points)) {
     if (auto status = ReadSkippedFrom(*points, options.images, options.window, organs); !status)
       return status.error();
@@ -85,16 +91,17 @@ core::Result<BuildReport> BuildPatient(const BuildOptions& options, const Progre
 
 std::string FormatReport(const BuildReport& report) {
   std::string text =
-      "organ        slices points shift mean/max px  triangles closed manifold outward genus cuts min angle  "
+      "organ        slices followed points shift mean/max px  triangles closed manifold outward genus cuts "
+      "min angle  "
       "distance max/mean mm  volume  "
       "reference ratio  Dice\n";
   for (const OrganReport& organ : report.organs) {
     char line[256];
     std::snprintf(
         line, sizeof(line),
-        "%-12s %6zu %6zu %9.2f / %-8.2f %9zu %6s %8s %7s %5d %4zu %6.1f deg %11.2f / %-6.3f %5.0f mL",
-        organ.name.c_str(), organ.slices, organ.control_points, organ.mean_shift_px, organ.largest_shift_px,
-        organ.triangles, organ.closed ? "yes" : "NO", organ.manifold ? "yes" : "NO",
+        "%-12s %6zu %8zu %6zu %9.2f / %-8.2f %9zu %6s %8s %7s %5d %4zu %6.1f deg %11.2f / %-6.3f %5.0f mL",
+        organ.name.c_str(), organ.slices, organ.followed_slices, organ.control_points, organ.mean_shift_px,
+        organ.largest_shift_px, organ.triangles, organ.closed ? "yes" : "NO", organ.manifold ? "yes" : "NO",
         organ.outward ? "yes" : "NO", organ.genus, organ.self_intersections, organ.min_angle_deg,
         organ.hausdorff_mm, organ.mean_distance_mm, organ.volume_ml);
     text += line;

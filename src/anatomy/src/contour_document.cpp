@@ -285,7 +285,7 @@ core::Status ContourDocument::SetAdaption(int structure, const EdgeAdaptionSetti
   const auto is_in = [](double value, double low, double high) { return value >= low && value <= high; };
   if (!is_in(adaption.max_shift_px, 0, 30) || !is_in(adaption.blur_px, 0.3, 10) ||
       !is_in(adaption.min_gradient, 0, 1000) || !is_in(adaption.nearness, 0, 1) ||
-      !is_in(adaption.smoothness, 0, 100)) {
+      !is_in(adaption.smoothness, 0, 100) || !is_in(adaption.skipped_shift_px, 0, 30)) {
     return Refused("a setting of the edge search is out of range; see schemas/control-points.schema.json");
   }
   HeaderEdit edit{structure, WithoutSlices(points_.structures[structure]), {}};

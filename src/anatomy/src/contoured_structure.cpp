@@ -152,30 +152,37 @@ core::Result<ContouredStructure> FollowContours(const ControlPoints& points, con
 
 core::Status AddSlicesByPictures(const ControlPoints& points, const Structure& structure,
                                  const std::map<int, ColorImage>& images, const OrganOptions& options,
-                                 ContouredStructure& contoured) {
+                                 const Progress& progress, ContouredStructure& contoured) {
   const EdgeAdaptionSettings& adaption = structure.adaption;
   if (adaption.skipped_shift_px < kLeastShift || adaption.max_shift_px < kLeastShift) return {};
   const SkippedFields fields(images, options, adaption.blur_px);
-  const int step = options.slice_step;
   ContouredStructure dense{contoured.report, {}, {}, contoured.ends_mm};
   const auto add = [&](int slice, std::vector<std::vector<Vec2>> curves) {
-    dense.slices.push_back({points.slice_mm * slice, FillArea(curves, {})});
+    FilledSlice filled{points.slice_mm * slice, FillArea(curves, {})};
+    if (filled.mask.Count() == 0) return;  // thinner than a pixel: left to the shape
+    dense.slices.push_back(std::move(filled));
     dense.curves.push_back(std::move(curves));
     ++dense.report.followed_slices;
+  };
+  const auto pictured = [&](int from, int to) {
+    std::vector<int> slices;
+    for (int slice = std::max(from, points.first_slice); slice <= std::min(to, points.last_slice); ++slice) {
+      if (options.series.empty() || std::binary_search(options.series.begin(), options.series.end(), slice))
+        slices.push_back(slice);
+    }
+    return slices;
   };
   const auto number = [&](std::size_t s) { return structure.slices[s].slice; };
   const std::size_t last = structure.slices.size() - 1;
 
-  /// The slices beyond the first or last contoured one, outwards.
+  // the slices beyond the first or last contoured one, outwards
   const auto follow_end = [&](std::size_t end, std::size_t neighbour) -> core::Status {
     if (contoured.curves[end].size() != 1) return {};
-    const int away = number(end) < number(neighbour) ? -step : step;
-    std::vector<int> beyond = {number(end)};
-    for (int slice = number(end) + away;
-         std::abs(slice - number(end)) < std::abs(number(neighbour) - number(end)) &&
-         slice >= points.first_slice && slice <= points.last_slice;
-         slice += away)
-      beyond.push_back(slice);
+    const bool is_first = end == 0;
+    const int gap = std::abs(number(neighbour) - number(end));
+    std::vector<int> beyond = is_first ? pictured(number(end) - gap + 1, number(end))
+                                       : pictured(number(end), number(end) + gap - 1);
+    if (is_first) std::reverse(beyond.begin(), beyond.end());
     if (beyond.size() < 2) return {};
     const auto made = fields.Make(beyond);
     if (!made.ok()) return made.error();
@@ -184,22 +191,24 @@ core::Status AddSlicesByPictures(const ControlPoints& points, const Structure& s
                   kNarrowestMm / points.pixel_mm, adaption);
     const std::size_t count = followed.contours.size();
     for (std::size_t i = 0; i < count; ++i) {
-      const std::size_t k = away < 0 ? count - 1 - i : i;
+      const std::size_t k = is_first ? count - 1 - i : i;
       add(beyond[k + 1], {followed.contours[k]});
     }
     const double left = followed.is_ended ? 1.0 : static_cast<double>(beyond.size() - count);
-    dense.ends_mm[away < 0 ? 0 : 1] = 0.5 * left * step * points.slice_mm;
+    dense.ends_mm[is_first ? 0 : 1] = 0.5 * left * std::abs(beyond[1] - beyond[0]) * points.slice_mm;
     return {};
   };
 
   if (auto status = follow_end(0, 1); !status) return status;
   for (std::size_t s = 0; s <= last; ++s) {
     if (options.stop.stop_requested()) return GivenUp();
+    if (progress)
+      progress("following skipped slices of " + structure.name,
+               static_cast<double>(s) / static_cast<double>(last + 1));
     dense.slices.push_back(std::move(contoured.slices[s]));
     dense.curves.push_back(contoured.curves[s]);
     if (s == last) break;
-    std::vector<int> between;
-    for (int slice = number(s) + step; slice < number(s + 1); slice += step) between.push_back(slice);
+    const std::vector<int> between = pictured(number(s) + 1, number(s + 1) - 1);
     const auto matches = MatchAll(contoured.curves[s], contoured.curves[s + 1]);
     if (between.empty() || matches.empty()) continue;
     const auto made = fields.Make(between);

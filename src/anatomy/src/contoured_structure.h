@@ -40,7 +40,7 @@ core::Result<ContouredStructure> FollowContours(const ControlPoints& points, con
 /// \return kUsage when a picture is neither in `images` nor read by options.read_skipped; its errors; kCancelled
 core::Status AddSlicesByPictures(const ControlPoints& points, const Structure& structure,
                                  const std::map<int, ColorImage>& images, const OrganOptions& options,
-                                 ContouredStructure& contoured);
+                                 const Progress& progress, ContouredStructure& contoured);
 
 /// Slices down to a millimetre: between two single contours by matching them, elsewhere by InsertSlices.
 std::vector<FilledSlice> AddSlicesByShape(const ContouredStructure& contoured);

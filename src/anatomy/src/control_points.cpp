@@ -97,14 +97,15 @@ Structure ReadStructure(const ControlPoints& points, const JsonView& view, Compl
   }
   if (view.Has("adaption")) {
     const JsonView adaption = view.Object("adaption");
-    adaption.AllowOnly(
-        {"max_shift_px", "blur_px", "min_gradient", "nearness", "smoothness", "insert_points"});
+    adaption.AllowOnly({"max_shift_px", "blur_px", "min_gradient", "nearness", "smoothness",
+                        "skipped_shift_px", "insert_points"});
     EdgeAdaptionSettings& s = structure.adaption;
     s.max_shift_px = adaption.NumberOr("max_shift_px", s.max_shift_px, {0.0, 30.0});
     s.blur_px = adaption.NumberOr("blur_px", s.blur_px, {0.3, 10.0});
     s.min_gradient = adaption.NumberOr("min_gradient", s.min_gradient, {0.0, 1000.0});
     s.nearness = adaption.NumberOr("nearness", s.nearness, {0.0, 1.0});
     s.smoothness = adaption.NumberOr("smoothness", s.smoothness, {0.0, 100.0});
+    s.skipped_shift_px = adaption.NumberOr("skipped_shift_px", s.skipped_shift_px, {0.0, 30.0});
     s.inserts_points = adaption.BooleanOr("insert_points", s.inserts_points);
   }
   for (const JsonView& slice : view.Array("slices")) {
@@ -337,6 +338,7 @@ std::string FormatControlPoints(const ControlPoints& points) {
             ", \"min_gradient\": " + exact(s.adaption.min_gradient) +
             ", \"nearness\": " + exact(s.adaption.nearness) +
             ", \"smoothness\": " + exact(s.adaption.smoothness) +
+            ", \"skipped_shift_px\": " + exact(s.adaption.skipped_shift_px) +
             (s.adaption.inserts_points ? "" : ", \"insert_points\": false") + "},\n   \"slices\": [";
     for (std::size_t k = 0; k < s.slices.size(); ++k) {
       text += (k == 0 ? "\n    {\"slice\": " : ",\n    {\"slice\": ") + std::to_string(s.slices[k].slice) +

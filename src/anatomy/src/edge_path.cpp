@@ -16,6 +16,7 @@ constexpr double kRegion =
     0.1;  // weight of the colours on either side, a pixel, against the strongest edge [-]
 constexpr double kSlightest = 0.05;      // rises below this count in full nowhere [1 / pixel]
 constexpr int kClimb = 4;                // columns from where the inside ends to the steepest place
+constexpr int kSharpClimb = 2;           // columns from there in the picture without blur
 constexpr int kMaxJump = 2;              // columns between neighbouring rows
 constexpr int kNarrowRounds = 2;         // of searching again along what was found
 constexpr double kSecondReach = 2.5;     // of these searches [pixels]
@@ -85,34 +86,39 @@ ClosedCurve Smooth(const std::vector<Vec2>& path) {
 
 }  // namespace
 
-/// Moves each place to the steepest one of the picture as it was, at most kSharpShift to either side.
+/// Moves each place to the steepest one beside it in the picture as it was, averaged along the edge. The blurred
+/// picture's steepest place is pushed aside where another border lies within the blur.
 void LocateSharp(const EdgeField& field, EdgePath& edge) {
+  constexpr int kReach = 8, kColumns = 2 * kReach + 1;  // wider than what Climb can reach
   const ClosedCurve curve = Smooth(edge.at);
   const auto rows = static_cast<int>(curve.at.size());
-  constexpr int kReach = 8, kColumns = 2 * kReach + 1;
   std::vector<Colour> strip;
-  for (int row = 0; row < rows; ++row) {
+  strip.reserve(curve.at.size() * kColumns);
+  for (std::size_t row = 0; row < curve.at.size(); ++row) {
     for (int k = -kReach; k <= kReach; ++k)
       strip.push_back(field.SampleSharp(curve.at[row] + (k * kColumnStep) * curve.normal[row]));
   }
+  const int along = std::min(static_cast<int>(kSmoothRows), (rows - 1) / 2);
   for (int row = 0; row < rows; ++row) {
-    std::array<Colour, kColumns> mean = {};
-    const int along = std::min(2, (rows - 1) / 2);
+    std::array<Colour, kColumns> sum = {};
     for (int d = -along; d <= along; ++d) {
       const Colour* from = &strip[static_cast<std::size_t>((row + d + rows) % rows) * kColumns];
       for (int k = 0; k < kColumns; ++k)
-        for (std::size_t c = 0; c < 4; ++c) mean[k][c] += from[k][c];
+        for (std::size_t c = 0; c < 3; ++c) sum[k][c] += from[k][c];
     }
     std::array<float, kColumns> gradient = {};
     for (int k = 1; k + 1 < kColumns; ++k) {
       float squared = 0;
-      for (std::size_t c = 0; c < 3; ++c)
-        squared += (mean[k + 1][c] - mean[k - 1][c]) * (mean[k + 1][c] - mean[k - 1][c]);
+      for (std::size_t c = 0; c < 3; ++c) {
+        const float change = sum[k + 1][c] - sum[k - 1][c];
+        squared += change * change;
+      }
       gradient[k] = std::sqrt(squared);
     }
     const double offset = Dot(edge.at[row] - curve.at[row], curve.normal[row]) / kColumnStep;
-    const int start = std::clamp(static_cast<int>(std::lround(offset)) + kReach, 3, kColumns - 4);
-    const double k = Climb(gradient.data(), kColumns, start, 2);
+    const int start = std::clamp(static_cast<int>(std::lround(offset)) + kReach, kSharpClimb + 1,
+                                 kColumns - kSharpClimb - 2);
+    const double k = Climb(gradient.data(), kColumns, start, kSharpClimb);
     edge.at[row] = edge.at[row] + ((k - kReach - offset) * kColumnStep) * curve.normal[row];
   }
 }

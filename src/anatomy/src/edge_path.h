@@ -32,10 +32,10 @@ struct EdgeSearch {
 EdgePath FollowEdge(const EdgeField& field, ClosedCurve curve, const EdgeSearch& search,
                     const EdgeAdaptionSettings& settings);
 
-/// Finds the edge within max_shift_px of a closed curve through clicked points.
+/// Finds the edge within max_shift_px of a closed curve.
 ///
-/// Found twice: along the clicks' curve, and again in a narrow band along what was found, where the inside
-/// is known better and the average along the curve blurs nothing.
+/// Found along the curve, and again twice in a narrow band along what was found, where the inside is known
+/// better and the average along the curve blurs nothing; then located in the picture without blur.
 /// \param curve  rows kEdgeRowStep apart; they are the path's rows
 EdgePath FindEdgePath(const EdgeField& field, ClosedCurve curve, const EdgeAdaptionSettings& settings);
 

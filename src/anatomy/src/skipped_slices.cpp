@@ -23,6 +23,7 @@ constexpr int kSweeps = 30;          // of the equations for each
 constexpr double kSeen = 0.5;        // least part of an end's contour with an edge [-]
 constexpr double kAlike = 3.0;       // colours nearer to the organ's than this are its own [deviations]
 constexpr double kFilled = 0.6;      // least part of an end's area with such colours [-]
+constexpr double kGone = 0.2;  // less of the slice before with such colours says that the organ is over [-]
 
 /// Shifts along normals: of each row of the contour in each of some slices [pixels].
 struct ShiftGrid {
@@ -189,7 +190,10 @@ FollowedEnd FollowEnd(const EdgeField& last, std::span<const Vec2> contour, std:
     grid.Take(0, edge);
     double seen = 0;
     for (const double w : grid.weight) seen += w;
-    if (seen < kSeen * static_cast<double>(grid.rows)) return end;
+    if (seen < kSeen * static_cast<double>(grid.rows)) {
+      end.is_ended = CalcShareAlike(field, FillArea({before}, {}), TissueColours(inside)) < kGone;
+      return end;
+    }
     Solve(grid, Beside::kNothing);
     auto next = Shift(edge.curve, grid.shift, settings.max_shift_px, field);
     Mask area = FillArea({next}, {});

@@ -45,6 +45,66 @@ TEST(FitContourToEdges, BringsNoisyClicksToACircle) {
   }
 }
 
+// Clicks that overtake each other along a small outline once made the curve go round twice, and an area that is
+// enclosed twice is empty.
+TEST(FitContourToEdges, GoesRoundOnceWhereClicksOvertakeEachOther) {
+  const double a = 9, b = 18;  // pixels
+  const auto radius = [&](double angle) {
+    return a * b / std::hypot(b * std::cos(angle), a * std::sin(angle));
+  };
+  const ColorImage image = DrawPhantom({}, [&](double x, double y) {
+    const Vec2 away = Vec2{x, y} - kCentre;
+    return Norm(away) - radius(std::atan2(away.y, away.x));
+  });
+  const EdgeField field(image, 0.6);
+  for (std::uint64_t seed = 1; seed <= 150; ++seed) {
+    math::Random random(seed);
+    std::vector<Vec2> clicked;
+    do {
+      clicked = MakePolar(kCentre, 11, radius);
+      for (Vec2& p : clicked) {
+        const double angle = random.Uniform(0, 2 * M_PI);
+        p = p + 3.75 * Vec2{std::cos(angle), std::sin(angle)};
+      }
+    } while (CrossesItself(clicked));
+    const ContourFit fit = FitContourToEdges(field, clicked, {.adaption = {.max_shift_px = 6}});
+    double length = 0;
+    for (std::size_t i = 0; i < fit.spline.size(); ++i)
+      length += Norm(fit.spline[(i + 1) % fit.spline.size()] - fit.spline[i]);
+    EXPECT_LT(length, 1.5 * 2 * M_PI * std::sqrt(0.5 * (a * a + b * b))) << "seed " << seed;
+  }
+}
+
+// Blurred, the two borders of a line that is thinner than the blur push each other apart.
+TEST(FitContourToEdges, IsNotPushedInwardsByAThinLineAroundTheOrgan) {
+  const double softness = 0.7, line = 1.5;  // pixels
+  ColorImage image{160, 160, std::vector<std::uint8_t>(160 * 160 * 3)};
+  for (int y = 0; y < 160; ++y) {
+    for (int x = 0; x < 160; ++x) {
+      const double away = Norm(Vec2{static_cast<double>(x), static_cast<double>(y)} - kCentre) - kRadius;
+      const auto step = [&](double at) {
+        return 0.5 * (1 + std::erf((away - at) / (softness * std::sqrt(2.0))));
+      };
+      const double inside[3] = {100, 96, 45}, sheet[3] = {220, 190, 150}, outside[3] = {110, 56, 40};
+      for (int c = 0; c < 3; ++c) {
+        const double value =
+            inside[c] + (sheet[c] - inside[c]) * step(0) + (outside[c] - sheet[c]) * step(line);
+        image.At(x, y)[c] = static_cast<std::uint8_t>(std::lround(value));
+      }
+    }
+  }
+  const auto clicked = MakePolar(kCentre, 12, [](double) { return kRadius; });
+  const auto mean = [&](const ContourFit& fit) {
+    double sum = 0;
+    for (const Vec2& p : fit.spline) sum += DistanceToCircle(p) / static_cast<double>(fit.spline.size());
+    return sum;
+  };
+  // in the blurred picture the steepest place lies two thirds of a pixel inside; what is left is the lens's
+  const ContourFit fit = FitContourToEdges(image, clicked, {.adaption = {.max_shift_px = 4, .blur_px = 1.0}});
+  EXPECT_GT(mean(fit), -0.4);
+  EXPECT_LT(mean(fit), 0.1);
+}
+
 TEST(FitContourToEdges, InsertsPointsWhereTheSplineLeavesTheEdge) {
   // a star of three lobes clicked at too few places
   const auto radius = [](double angle) { return 45.0 + 5.0 * std::cos(6 * angle); };

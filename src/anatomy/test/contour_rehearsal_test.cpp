@@ -122,6 +122,7 @@ TEST(Rehearsal, AdaptionHalvesTheErrorAndRaisesTheOverlapWhereTruthIsKnown) {
   double dice[2], error[2] = {0, 0};
   for (const bool is_adapted : {false, true}) {
     ControlPoints used = series;
+    used.structures[0].adaption.skipped_shift_px = 0;  // the clicked slices alone
     if (!is_adapted) used.structures[0].adaption.max_shift_px = 0;
     const auto built = BuildOrgans(used, images, {.reference = &labels});
     ASSERT_TRUE(built.ok()) << built.error().Text();

@@ -25,6 +25,7 @@ ControlPoints MakePoints() {
   liver.name = "liver", liver.triangle_budget = 500, liver.reference_label = 1,
   liver.reference_left_out = {4, 6};
   liver.adaption.max_shift_px = 2.5;
+  liver.adaption.skipped_shift_px = 1.5;
   liver.slices = {{3, {{{10, 10}, {50.25, 12}, {30, 60}}}, {}},
                   {7, {{{10, 10}, {50, 12}, {30, 60}}}, {{{20, 20}, {25, 20}, {22, 30}}}}};
   points.structures = {liver};
@@ -55,6 +56,7 @@ TEST(ControlPoints, ComeBackUnchanged) {
   EXPECT_EQ(liver->slices[1].holes[0][2], (Vec2{22, 30}));
   EXPECT_EQ(liver->slices[0].contours[0][1], (Vec2{50.25, 12}));
   EXPECT_EQ(liver->adaption.max_shift_px, 2.5);
+  EXPECT_EQ(liver->adaption.skipped_shift_px, 1.5);
   EXPECT_EQ(liver->reference_left_out[1], 6);
   EXPECT_FALSE(parsed->tubes[0].is_seen);
   EXPECT_EQ(parsed->tubes[0].points[1].slice, 4.5);
@@ -95,6 +97,8 @@ TEST(ControlPoints, RejectAContourOfTwoPoints) {
 TEST(ControlPoints, RejectWhatIsMisspeltOrContradicts) {
   const std::string text = FormatControlPoints(MakePoints());
   EXPECT_EQ(CodeOf(Replaced(text, "\"max_shift_px\"", "\"max_shift\"")), ErrorCode::kJsonField);
+  EXPECT_EQ(CodeOf(Replaced(text, "\"skipped_shift_px\": 1.5", "\"skipped_shift_px\": 31")),
+            ErrorCode::kJsonField);
   EXPECT_EQ(CodeOf(Replaced(text, "\"slice\": 7", "\"slice\": 3")), ErrorCode::kJsonField);
   EXPECT_EQ(CodeOf(Replaced(text, "\"slice\": 7", "\"slice\": 77")), ErrorCode::kJsonField);
   EXPECT_EQ(CodeOf(Replaced(text, "\"row\": \"anterior\"", "\"row\": \"right\"")), ErrorCode::kJsonField);

@@ -172,6 +172,11 @@ void ContourPanel::AddEdges() {
   };
   add("Reach", "How far a clicked point may move to an edge; 0 leaves points where they were clicked", reach_,
       reach_value_, 0, kMostReach, 0.5);
+  add("Skipped",
+      "How far the edges of slices that you skip may move the contour between yours when the patient is "
+      "built; "
+      "0 keeps the shape in between",
+      skipped_, skipped_value_, 0, kMostReach, 0.5);
   add("Step", "Slices that Page Up, Page Down and Carry go at once", step_, step_value_, 1, 20, 1);
   reach_.signal_value_changed().connect([this] {
     if (is_showing_ || editor_ == nullptr) return;
@@ -179,6 +184,16 @@ void ContourPanel::AddEdges() {
     if (document.Points().structures.empty()) return;
     auto adaption = document.Points().structures[editor_->Structure()].adaption;
     adaption.max_shift_px = std::round(2 * reach_.get_value()) / 2;
+    const auto status = document.SetAdaption(editor_->Structure(), adaption);
+    if (!status.ok() && editor_->on_error) editor_->on_error(status.error());
+    signal_edited_.emit();
+  });
+  skipped_.signal_value_changed().connect([this] {
+    if (is_showing_ || editor_ == nullptr) return;
+    auto& document = editor_->Workspace().Document();
+    if (document.Points().structures.empty()) return;
+    auto adaption = document.Points().structures[editor_->Structure()].adaption;
+    adaption.skipped_shift_px = std::round(2 * skipped_.get_value()) / 2;
     const auto status = document.SetAdaption(editor_->Structure(), adaption);
     if (!status.ok() && editor_->on_error) editor_->on_error(status.error());
     signal_edited_.emit();
@@ -230,12 +245,17 @@ void ContourPanel::Refresh() {
   const bool has_organ = !structures.empty();
   for (Gtk::Button* button : {&rename_, &delete_}) button->set_sensitive(has_organ);
   reach_.set_sensitive(has_organ);
+  skipped_.set_sensitive(has_organ);
   char text[32];
   if (has_organ) {
     const double reach = structures[editor_->Structure()].adaption.max_shift_px;
     reach_.set_value(reach);
     std::snprintf(text, sizeof(text), "%g px", reach);
     SetText(reach_value_, text);
+    const double skipped = structures[editor_->Structure()].adaption.skipped_shift_px;
+    skipped_.set_value(skipped);
+    std::snprintf(text, sizeof(text), "%g px", skipped);
+    SetText(skipped_value_, text);
   }
   step_.set_value(editor_->SliceStep());
   SetText(step_value_,

@@ -59,8 +59,8 @@ class ContourPanel : public Gtk::Box {
   bool is_naming_new_ = false;
   Gtk::Button add_{"Add"}, rename_{"Rename"}, delete_{"Delete"};
   Gtk::Label slice_title_, slice_text_, notes_;
-  Gtk::Label reach_value_, step_value_;
-  Gtk::Scale reach_, step_;
+  Gtk::Label reach_value_, skipped_value_, step_value_;
+  Gtk::Scale reach_, skipped_, step_;
   MeshView view_;
   Gtk::Label mesh_text_;
   Gtk::ProgressBar progress_;

@@ -4,9 +4,26 @@
 #include <gtkmm/eventcontrollerlegacy.h>
 
 #include <algorithm>
+#include <optional>
 
 namespace trocar::app {
 namespace {
+
+/// The pedal whose key it is, or nothing.
+std::optional<Pedal> FindPedal(Action action) {
+  switch (action) {
+    case Action::kHoldCut:
+      return Pedal::kCut;
+    case Action::kHoldCoagulate:
+      return Pedal::kCoagulate;
+    case Action::kHoldRinse:
+      return Pedal::kRinse;
+    case Action::kHoldAspirate:
+      return Pedal::kAspirate;
+    default:
+      return std::nullopt;
+  }
+}
 
 constexpr guint kLeftButton = 1, kMiddleButton = 2, kRightButton = 3;
 
@@ -58,6 +75,7 @@ void HandEvents::ReleaseAll() {
   if (control_ == nullptr) return;
   control_->HoldLaparoscope(false);
   control_->Device().ReleaseAll();
+  control_->ReleasePedals();
 }
 
 bool HandEvents::IsFocusInPanel() const {
@@ -74,6 +92,10 @@ bool HandEvents::OnKeyPressed(guint keyval, guint, Gdk::ModifierType state) {
   const bool is_repeat = std::find(held_.begin(), held_.end(), keyval) != held_.end();
   if (is_repeat) return true;
   held_.push_back(keyval);
+  if (const std::optional<Pedal> pedal = FindPedal(meaning.action)) {
+    if (control_ != nullptr) control_->SetPedal(*pedal, true);
+    return true;
+  }
   switch (meaning.action) {
     case Action::kMove:
       if (control_ != nullptr && !control_->IsPaused()) control_->Device().SetKey(meaning.motion, true);
@@ -94,6 +116,7 @@ void HandEvents::OnKeyReleased(guint keyval, guint, Gdk::ModifierType) {
   std::erase(held_, keyval);
   const KeyMeaning meaning = FindKeyMeaning(keyval, false);
   if (control_ == nullptr) return;
+  if (const std::optional<Pedal> pedal = FindPedal(meaning.action)) control_->SetPedal(*pedal, false);
   if (meaning.action == Action::kMove) control_->Device().SetKey(meaning.motion, false);
   if (meaning.action == Action::kHoldLaparoscope) control_->HoldLaparoscope(false);
 }

@@ -42,6 +42,10 @@ constexpr KeyHelp kHelp[] = {
     {"Instruments", "Right button   B", "open the jaws (hold)"},
     {"Instruments", "Q   E", "spin the instrument (hold)"},
     {"Instruments", "T", "real trocar: the mouse is the handle, the tip goes the other way"},
+    {"Operation", "X   Z", "next tool, previous tool of this hand"},
+    {"Operation", "V   N", "yellow pedal: cut, blue pedal: coagulate (hold)"},
+    {"Operation", "J   K", "rinse, suck (hold)"},
+    {"Operation", "U", "assistant: take and lift the fundus, relax, let go, wait"},
     {"Laparoscope", "C or middle button", "hold, then move the mouse to look around, wheel to go in and out"},
     {"Simulation", "Space", "start or pause"},
     {"Simulation", "R", "reset"},
@@ -95,6 +99,20 @@ KeyMeaning FindKeyMeaning(std::uint32_t keyval, bool control) noexcept {
     case kTab:
     case kIsoLeftTab:
       return Do(Action::kSwitchHand);
+    case 'x':
+      return Do(Action::kNextTool);
+    case 'z':
+      return Do(Action::kPreviousTool);
+    case 'v':
+      return Do(Action::kHoldCut);
+    case 'n':
+      return Do(Action::kHoldCoagulate);
+    case 'j':
+      return Do(Action::kHoldRinse);
+    case 'k':
+      return Do(Action::kHoldAspirate);
+    case 'u':
+      return Do(Action::kAssistant);
     case 'c':
       return Do(Action::kHoldLaparoscope);
     case ' ':
@@ -134,6 +152,7 @@ std::span<const KeyHelp> KeyHelpRows() noexcept {
 
 const char* ShortHelp() noexcept {
   return "1 2 Tab hand  ·  mouse, wheel move  ·  left / right button close / open jaws  ·  Q E spin  ·  "
+         "X Z tool  ·  V N current  ·  J K rinse, suck  ·  U assistant  ·  "
          "C laparoscope  ·  Space pause  ·  H help";
 }
 

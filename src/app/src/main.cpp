@@ -7,6 +7,7 @@
 
 #include "composition.h"
 #include "contour_window.h"
+#include "device_page.h"
 #include "look.h"
 #include "patient_editor_window.h"
 #include "simulator_window.h"
@@ -36,6 +37,7 @@ int main(int argc, char** argv) {
   std::unique_ptr<trocar::app::SimulatorWindow> simulator;
   std::unique_ptr<trocar::app::ContourWindow> contours;
   std::unique_ptr<trocar::app::PatientEditorWindow> patient_editor;
+  std::unique_ptr<trocar::app::DevicePage> devices;
   const auto show = [&](Gtk::ApplicationWindow& window) {
     application->add_window(window);
     window.present();
@@ -45,6 +47,9 @@ int main(int argc, char** argv) {
     if (!command->options.images.empty()) {
       contours = std::make_unique<trocar::app::ContourWindow>(command->options, since_start);
       show(*contours);
+    } else if (command->options.is_device_page) {
+      devices = std::make_unique<trocar::app::DevicePage>(command->options, nullptr);
+      show(*devices);
     } else if (!command->options.patient.empty()) {
       patient_editor = std::make_unique<trocar::app::PatientEditorWindow>(command->options);
       show(*patient_editor);
@@ -54,11 +59,13 @@ int main(int argc, char** argv) {
     }
   });
   const int status = application->run();
+  if (simulator != nullptr) simulator->SaveHapticRecord();
   const auto has_failed = [](const auto& window) {
     return window != nullptr && window->GetFailure().has_value();
   };
   const bool is_good =
-      status == 0 && !has_failed(simulator) && !has_failed(contours) && !has_failed(patient_editor);
+      status == 0 && !has_failed(devices) && !has_failed(simulator) && !has_failed(contours) && !has_failed(patient_editor);
+  devices.reset();
   simulator.reset();
   contours.reset();
   patient_editor.reset();

@@ -33,6 +33,12 @@ core::Result<Command> ParseCommandLine(int argc, const char* const* argv) {
       "Hands of a tracker or other device in place of the mouse's, as `trocar devices list` names it");
   app.add_option("--haptics", options.haptics,
                  "Hands of a haptic device, with force: " + device::ListForceDrivers());
+  app.add_option("--haptic-record", options.haptic_record,
+                 "With --haptics: write rates, forces and every change of the force feedback to this file (JSON)")
+      ->needs("--haptics");
+  app.add_option("--igtl", options.igtl_port,
+                 "Show tools and organs to 3D Slicer on this port of this machine (OpenIGTLink; 0: any port)")
+      ->check(CLI::Range(0, 65535));
   app.add_flag("--fullscreen", options.is_fullscreen, "Start in full screen (F11 switches)");
   app.add_flag("--demonstration", options.is_demonstration,
                "Start with the demonstration: the script moves both hands");
@@ -44,6 +50,15 @@ core::Result<Command> ParseCommandLine(int argc, const char* const* argv) {
       ->check(CLI::Range(0.0, 3600.0))
       ->needs(screenshot)
       ->capture_default_str();
+  CLI::Option* devices =
+      app.add_flag("--devices", options.is_device_page,
+                   "Open the page that finds, tries and calibrates devices; --device is tried at once")
+          ->excludes("--scene")
+          ->excludes("--demonstration")
+          ->excludes("--haptics");
+  app.add_option("--calibrate", options.calibrate, "With --devices: measure this as soon as the device answers")
+      ->check(CLI::IsMember({"tip", "trocar", "jaw"}))
+      ->needs(devices);
   CLI::Option* contours =
       app.add_option("--contours", options.images,
                      "Open the contour window on these pictures: a folder, a DICOM series or a "

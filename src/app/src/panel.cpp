@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "panel.h"
 
+#include <algorithm>
 #include <string_view>
 
 namespace trocar::app {
@@ -48,6 +49,7 @@ Panel::Panel() {
   set_child(cards_);
   AddTask();
   AddHands();
+  AddOperation();
   AddSettings();
   AddMeasures();
   AddPatient();
@@ -152,6 +154,68 @@ void Panel::AddHands() {
   }
   hands_[session::kLeft].name.set_text("1  Left hand");
   hands_[session::kRight].name.set_text("2  Right hand");
+}
+
+void Panel::AddOperation() {
+  operation_card_ = &AddCard("Operation");
+  for (int hand = 0; hand < session::kHandCount; ++hand) {
+    auto* line = Gtk::make_managed<Gtk::Box>();
+    auto* name = Gtk::make_managed<Gtk::Label>(hand == session::kLeft ? "Left tool" : "Right tool");
+    SetLabel(*name, "name");
+    name->set_size_request(kNameWidth, -1);
+    Gtk::DropDown& tray = trays_[static_cast<std::size_t>(hand)];
+    tray.set_hexpand(true);
+    tray.set_tooltip_text("Exchanges the tool through this trocar (X next, Z previous, for the chosen hand)");
+    tray.property_selected().signal_changed().connect([this, hand] {
+      if (control_ == nullptr || is_showing_) return;
+      control_->ChooseTool(static_cast<session::Hand>(hand),
+                           trays_[static_cast<std::size_t>(hand)].get_selected());
+    });
+    line->append(*name);
+    line->append(tray);
+    operation_card_->append(*line);
+  }
+  clips_ = &AddLine(*operation_card_, "Clips left", "In the clip applier that is in use");
+  blood_ = &AddLine(*operation_card_, "Blood", "Lost so far, and what of it lies in the abdomen [mL]");
+  bile_ = &AddLine(*operation_card_, "Bile", "Lost so far, and what of it lies in the abdomen [mL]");
+  assistant_.set_model(Gtk::StringList::create({"wait", "retract the fundus", "relax", "release"}));
+  assistant_.set_tooltip_text("Command to the assistant with the third grasper (U: the next one)");
+  assistant_.property_selected().signal_changed().connect([this] {
+    if (control_ == nullptr || is_showing_ || assistant_.get_selected() > 3) return;
+    control_->CommandAssistant(static_cast<session::AssistantCommand>(assistant_.get_selected()));
+  });
+  assistant_does_ = &AddLine(*operation_card_, "Assistant", "What the third hand does");
+  operation_card_->append(assistant_);
+}
+
+void Panel::ShowOperation(const session::Snapshot& snapshot) {
+  if (control_ == nullptr) return;
+  const session::Scene& scene = control_->GetScene();
+  const session::Input& input = control_->GetInput();
+  is_showing_ = true;
+  std::string clips;
+  for (std::size_t hand = 0; hand < trays_.size(); ++hand) {
+    // what is wished: the exchange follows when the shaft is free
+    const guint wanted = input.controls[hand].tool;
+    if (trays_[hand].get_selected() != wanted) trays_[hand].set_selected(wanted);
+    const std::size_t place = snapshot.operation.tools[hand];
+    const auto& tray = scene.instruments[hand].tray;
+    if (place < tray.size() && tray[place].clips > 0) {
+      clips += (clips.empty() ? "" : " and ") + std::to_string(snapshot.operation.clips_left[hand]);
+    }
+    SetText(hands_[hand].name, (hand == session::kLeft ? "1  Left " : "2  Right ") +
+                                   ToolLabel(scene, snapshot, static_cast<session::Hand>(hand)));
+  }
+  SetText(*clips_, clips.empty() ? "—" : clips);
+  SetText(*blood_, DescribeFluid(snapshot.operation.fluids, surgery::Fluid::kBlood));
+  SetText(*bile_, DescribeFluid(snapshot.operation.fluids, surgery::Fluid::kBile));
+  const auto command = static_cast<guint>(input.assistant);
+  if (assistant_.get_selected() != command) assistant_.set_selected(command);
+  SetText(*assistant_does_, snapshot.operation.has_assistant
+                                ? DescribeAssistant(input.assistant, snapshot.operation.is_assistant_holding)
+                                : "none in this scene");
+  assistant_.set_visible(snapshot.operation.has_assistant);
+  is_showing_ = false;
 }
 
 void Panel::AddSettings() {
@@ -261,6 +325,20 @@ void Panel::AddStages() {
 void Panel::SetControl(SessionControl* control) {
   control_ = control;
   if (control == nullptr) return;
+  bool has_choice = false;
+  is_showing_ = true;
+  for (std::size_t hand = 0; hand < trays_.size(); ++hand) {
+    std::vector<Glib::ustring> names;
+    for (const instrument::Tool& tool : control->GetScene().instruments[hand].tray) {
+      std::string name = tool.name;
+      std::replace(name.begin(), name.end(), '_', ' ');
+      names.emplace_back(name);
+    }
+    has_choice = has_choice || names.size() > 1;
+    trays_[hand].set_model(Gtk::StringList::create(names));
+  }
+  is_showing_ = false;
+  operation_card_->set_visible(has_choice);
   const auto& task = control->GetScene().task;
   task_card_->set_visible(task.has_value());
   patient_card_->set_visible(control->GetScene().HasPatient());

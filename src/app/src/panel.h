@@ -23,6 +23,8 @@ class Panel : public Gtk::ScrolledWindow {
   void SetControl(SessionControl* control);
   /// Refreshes forces and contacts.
   void ShowForces(const session::Snapshot& snapshot);
+  /// Refreshes tools, liquids and the assistant.
+  void ShowOperation(const session::Snapshot& snapshot);
   /// Refreshes how the task goes; nothing in a scene without one.
   void ShowTask(const session::Snapshot& snapshot);
   /// Refreshes solver and time read-outs.
@@ -44,6 +46,7 @@ class Panel : public Gtk::ScrolledWindow {
   Gtk::Box& AddCard(const char* title);
   void AddTask();
   void AddHands();
+  void AddOperation();
   void AddPatient();
   void AddSettings();
   void AddDefaults(Gtk::Box& card);
@@ -58,6 +61,10 @@ class Panel : public Gtk::ScrolledWindow {
   Gtk::Label task_name_, task_about_, task_next_, task_errors_;
   Gtk::Label *task_time_ = nullptr, *task_progress_ = nullptr, *task_score_ = nullptr;
   std::array<HandRow, session::kHandCount> hands_;
+  Gtk::Box* operation_card_ = nullptr;  // hidden where there is one tool a hand, and nothing else to do
+  std::array<Gtk::DropDown, session::kHandCount> trays_;
+  Gtk::DropDown assistant_;
+  Gtk::Label *clips_ = nullptr, *blood_ = nullptr, *bile_ = nullptr, *assistant_does_ = nullptr;
   Gtk::Box* patient_card_ = nullptr;
   Gtk::Label patient_name_, patient_organs_, patient_source_;
   std::vector<std::unique_ptr<SliderRow>> sliders_;

@@ -14,9 +14,11 @@ Picture::Picture() {
   add_css_class("picture");
 }
 
-void Picture::SetScene(const session::Scene* scene, std::span<const session::SurfaceInfo> surfaces) {
+void Picture::SetScene(const session::Scene* scene, std::span<const session::SurfaceInfo> surfaces,
+                       std::span<const session::StrandInfo> strands) {
   scene_ = scene;
   surfaces_ = surfaces;
+  strands_ = strands;
 }
 
 double Picture::FieldOfView() const {
@@ -55,7 +57,8 @@ void Picture::on_unrealize() {
 bool Picture::on_render(const Glib::RefPtr<Gdk::GLContext>&) {
   if (has_failed_ || scene_ == nullptr || snapshot_ == nullptr) return false;
   if (!view_) {
-    core::Result<view::LaparoscopeView> made = view::LaparoscopeView::Make(*scene_, surfaces_, *snapshot_);
+    core::Result<view::LaparoscopeView> made =
+        view::LaparoscopeView::Make(*scene_, surfaces_, *snapshot_, strands_);
     if (!made) {
       Fail(made.error());
       return false;

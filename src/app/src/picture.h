@@ -19,7 +19,8 @@ class Picture : public Gtk::GLArea {
 
   /// What is drawn from now on; both must outlive the picture's last frame. The view itself is made in the
   /// next frame.
-  void SetScene(const session::Scene* scene, std::span<const session::SurfaceInfo> surfaces);
+  void SetScene(const session::Scene* scene, std::span<const session::SurfaceInfo> surfaces,
+                std::span<const session::StrandInfo> strands);
   /// State of the next frame; null draws an empty picture. Valid until the next call.
   void SetSnapshot(const session::Snapshot* snapshot) { snapshot_ = snapshot; }
   /// Angle that CirclePixels() span in the picture [rad].
@@ -44,6 +45,7 @@ class Picture : public Gtk::GLArea {
 
   const session::Scene* scene_ = nullptr;
   std::span<const session::SurfaceInfo> surfaces_;
+  std::span<const session::StrandInfo> strands_;
   const session::Snapshot* snapshot_ = nullptr;
   std::optional<view::LaparoscopeView> view_;
   view::ViewOptions options_;

@@ -110,6 +110,40 @@ std::string HandLabel(const session::Scene& scene, std::int32_t hand) {
          WithSpaces(scene.instruments[static_cast<std::size_t>(hand)].tool.name);
 }
 
+std::string ToolLabel(const session::Scene& scene, const session::Snapshot& snapshot, session::Hand hand) {
+  const session::InstrumentSetup& setup = scene.instruments[hand];
+  const std::size_t place = snapshot.operation.tools[hand];
+  const instrument::Tool& tool = place < setup.tray.size() ? setup.tray[place] : setup.tool;
+  std::string label = WithSpaces(tool.name);
+  if (tool.clips > 0) {
+    const int left = snapshot.operation.clips_left[hand];
+    label += ", " + std::to_string(left) + (left == 1 ? " clip" : " clips");
+  }
+  return label;
+}
+
+std::string FormatMillilitres(double volume) {
+  return std::isfinite(volume) ? Print("%.1f mL", 1e6 * volume) : "— mL";
+}
+
+std::string DescribeFluid(const surgery::FluidLedger& fluids, surgery::Fluid fluid) {
+  const surgery::FluidLedger::Account& account = fluids.fluids[static_cast<std::size_t>(fluid)];
+  return FormatMillilitres(account.left) + ", " + FormatMillilitres(account.pooled) + " in the abdomen";
+}
+
+std::string DescribeAssistant(session::AssistantCommand command, bool is_holding) {
+  switch (command) {
+    case session::AssistantCommand::kRetract:
+      return is_holding ? "retracts the fundus" : "reaches for the fundus";
+    case session::AssistantCommand::kRelax:
+      return is_holding ? "holds the fundus" : "reaches for the fundus";
+    case session::AssistantCommand::kRelease:
+      return "lets go and withdraws";
+    default:
+      return "waits";
+  }
+}
+
 std::string DescribeContact(const session::InstrumentSnapshot& instrument, const anatomy::Patient& patient) {
   if (instrument.is_grasping) return "holds the " + OrganLabel(patient, instrument.organ);
   if (instrument.is_touching) return "touches the " + OrganLabel(patient, instrument.organ);
@@ -140,6 +174,8 @@ std::string DescribeEvent(const session::Event& event, const session::Scene& sce
       return hand + "pinched the " + organ + " too hard" + force;
     case session::EventKind::kToolsTouch:
       return "The instruments met";
+    case session::EventKind::kExchangeRefused:
+      return hand + "open the jaws and let go before the tool is exchanged";
   }
   return "";
 }

@@ -75,6 +75,11 @@ void SessionControl::PlaceAtHome() {
 const session::Snapshot& SessionControl::Advance(double dt) {
   const session::Snapshot& snapshot = runner_.Latest();
   time_ = snapshot.time;
+  if (haptic_loop_ != nullptr) haptic_record_.Add(since_start_.Seconds(), haptic_loop_->Latest());
+  if (server_ != nullptr && snapshot.tick != served_tick_) {
+    served_tick_ = snapshot.tick;
+    server_->Publish(snapshot);
+  }
   if (is_demonstration_) {
     // the person's hands rest on the script's, so that taking over makes no jump
     for (const Channel hand : {device::kLeftHand, device::kRightHand})
@@ -130,6 +135,15 @@ core::Status SessionControl::UseHaptics(std::string_view name) {
   return {};
 }
 
+core::Status SessionControl::Serve(int port) {
+  net::IgtlServerSettings settings;
+  settings.port = port;
+  auto server = net::IgtlServer::Make(settings, runner_.Surfaces());
+  if (!server) return server.error();
+  server_ = std::move(*server);
+  return {};
+}
+
 void SessionControl::ApplyDevice() {
   const session::DeviceReport& report = device_thread_->Latest();
   if (report.message != device_message_) {
@@ -153,12 +167,17 @@ std::string SessionControl::TakeDeviceMessage() {
 }
 
 void SessionControl::SetPaused(bool is_paused) {
-  if (is_paused) device_.ReleaseAll();
+  if (is_paused) {
+    device_.ReleaseAll();
+    ReleasePedals();
+  }
   runner_.SetPaused(is_paused);
 }
 
 void SessionControl::Reset() {
   PlaceAtHome();
+  input_.controls = {};
+  input_.assistant = {};
   time_ = 0.0;
   runner_.Reset();
 }
@@ -168,6 +187,7 @@ void SessionControl::SetDemonstration(bool is_on) {
   if (is_on == is_demonstration_) return;
   is_demonstration_ = is_on;
   device_.ReleaseAll();
+  ReleasePedals();
   if (is_on) Reset();
   runner_.SetScripted(is_on);
 }
@@ -176,8 +196,52 @@ bool SessionControl::IsDemonstrationOver() const {
   return is_demonstration_ && time_ >= runner_.GetScene().script.Duration();
 }
 
+void SessionControl::ChooseTool(session::Hand hand, std::size_t place) {
+  if (place < runner_.GetScene().instruments[hand].tray.size())
+    input_.controls[hand].tool = static_cast<std::uint8_t>(place);
+}
+
+void SessionControl::StepTool(int step) {
+  const auto hand = static_cast<session::Hand>(hand_);
+  const auto count = static_cast<int>(runner_.GetScene().instruments[hand].tray.size());
+  if (count > 0)
+    ChooseTool(hand, static_cast<std::size_t>((input_.controls[hand].tool + step + count) % count));
+}
+
+void SessionControl::SetPedal(Pedal pedal, bool is_down) {
+  session::HandControls& controls = input_.controls[hand_];
+  is_down = is_down && !IsPaused() && !is_demonstration_;
+  switch (pedal) {
+    case Pedal::kCut:
+      controls.cut = is_down;
+      break;
+    case Pedal::kCoagulate:
+      controls.coagulate = is_down;
+      break;
+    case Pedal::kRinse:
+      controls.rinse = is_down;
+      break;
+    case Pedal::kAspirate:
+      controls.aspirate = is_down;
+      break;
+  }
+}
+
+void SessionControl::ReleasePedals() {
+  for (session::HandControls& controls : input_.controls)
+    controls.cut = controls.coagulate = controls.rinse = controls.aspirate = false;
+}
+
+void SessionControl::StepAssistant() {
+  using session::AssistantCommand;
+  constexpr AssistantCommand kNext[] = {AssistantCommand::kRetract, AssistantCommand::kRelax,
+                                        AssistantCommand::kRelease, AssistantCommand::kWait};
+  input_.assistant = kNext[static_cast<std::size_t>(input_.assistant)];
+}
+
 void SessionControl::ChooseHand(Channel hand) {
   if (hand == device::kLaparoscope) return;
+  if (hand != hand_) ReleasePedals();
   hand_ = hand;
   if (!IsLaparoscopeHeld()) device_.Choose(hand);
 }

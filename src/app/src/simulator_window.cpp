@@ -6,6 +6,7 @@
 #include <string>
 
 #include "trocar/core/log.h"
+#include "trocar/core/safe_file.h"
 #include "trocar/device/device_spec.h"
 #include "window_screenshot.h"
 
@@ -72,7 +73,7 @@ SimulatorWindow::SimulatorWindow(const Options& options, const core::Stopwatch& 
 SimulatorWindow::~SimulatorWindow() {
   if (loader_.joinable()) loader_.join();
   picture_.SetSnapshot(nullptr);
-  picture_.SetScene(nullptr, {});
+  picture_.SetScene(nullptr, {}, {});
   panel_.SetControl(nullptr);
   hands_->SetControl(nullptr);
 }
@@ -94,6 +95,7 @@ void SimulatorWindow::MakeHeader() {
   button(mask_, "Round mask of the laparoscope (M)");
   button(fullscreen_, "Full screen and back (F11)");
   button(help_, "All keys (H or F1)");
+  button(devices_, "Find, try and calibrate devices, and choose what holds the instruments");
   button(quit_, "Leave the program (Ctrl+Q)");
   button(force_,
          "Force feedback of the haptic device: asks for it, or takes it away (Esc takes it away, too)");
@@ -109,7 +111,7 @@ void SimulatorWindow::MakeHeader() {
     header_.pack_start(*widget);
   for (Gtk::Widget* widget : {static_cast<Gtk::Widget*>(&quit_), static_cast<Gtk::Widget*>(&help_),
                               static_cast<Gtk::Widget*>(&fullscreen_), static_cast<Gtk::Widget*>(&mask_),
-                              static_cast<Gtk::Widget*>(&forces_)})
+                              static_cast<Gtk::Widget*>(&forces_), static_cast<Gtk::Widget*>(&devices_)})
     header_.pack_end(*widget);
 
   const auto act = [this](Gtk::Button& widget, Action action) {
@@ -132,6 +134,7 @@ void SimulatorWindow::MakeHeader() {
   check_pose_.signal_clicked().connect([this] {
     if (control_ != nullptr && control_->Haptics() != nullptr) control_->Haptics()->BeginCheckPose();
   });
+  devices_.signal_clicked().connect(sigc::mem_fun(*this, &SimulatorWindow::OpenDevices));
   const auto look = [this] {
     view::ViewOptions view = picture_.GetOptions();
     view.has_force_arrows = forces_.get_active();
@@ -225,10 +228,15 @@ void SimulatorWindow::FinishLoading() {
     if (const core::Status started = control_->UseHaptics(options_.haptics); !started)
       return Fail(started.error());
   }
+  if (options_.igtl_port >= 0) {
+    if (const core::Status served = control_->Serve(options_.igtl_port); !served) return Fail(served.error());
+    core::Log(core::LogLevel::kInfo,
+              "OpenIGTLink: viewers may connect to localhost:" + std::to_string(control_->ServedPort()));
+  }
   panel_.SetControl(control_.get());
   panel_.set_sensitive(true);
   hands_->SetControl(control_.get());
-  picture_.SetScene(&control_->GetScene(), control_->Surfaces());
+  picture_.SetScene(&control_->GetScene(), control_->Surfaces(), control_->Strands());
   set_title("Trocar: " + control_->GetScene().name);
   demonstration_.set_sensitive(control_->HasScript());
   SetText(event_, "Ready.");
@@ -304,6 +312,7 @@ bool SimulatorWindow::OnFrame(const Glib::RefPtr<Gdk::FrameClock>& clock) {
   if (now - last_forces_ > kForcePeriod) {
     last_forces_ = now;
     panel_.ShowForces(snapshot);
+    panel_.ShowOperation(snapshot);
     panel_.ShowTask(snapshot);
     ShowHaptics();
     ShowSituation();
@@ -320,6 +329,8 @@ bool SimulatorWindow::OnFrame(const Glib::RefPtr<Gdk::FrameClock>& clock) {
 void SimulatorWindow::ShowHaptics() {
   session::HapticLoop* haptics = control_->Haptics();
   if (haptics == nullptr) return;
+  for (Gtk::Widget* widget : {static_cast<Gtk::Widget*>(&force_), static_cast<Gtk::Widget*>(&check_pose_)})
+    widget->set_visible(true);
   const session::HapticStatus& status = haptics->Latest();
   SetText(haptics_, session::DescribeHaptics(status));
   // the button shows what is, not what was wished
@@ -328,6 +339,22 @@ void SimulatorWindow::ShowHaptics() {
       status.hands.begin(), status.hands.end(),
       [](const session::HapticHandStatus& hand) { return hand.state != haptics::ArmState::kUnarmed; }));
   is_showing_ = false;
+}
+
+void SimulatorWindow::OpenDevices() {
+  if (control_ == nullptr || failure_) return;
+  device_page_ = std::make_unique<DevicePage>(options_, control_.get());
+  device_page_->set_transient_for(*this);
+  get_application()->add_window(*device_page_);
+  device_page_->present();
+}
+
+void SimulatorWindow::SaveHapticRecord() {
+  if (options_.haptic_record.empty() || control_ == nullptr) return;
+  const core::Status saved = core::WriteFile(options_.haptic_record, control_->GetHapticRecord().FormatJson());
+  if (saved) return;
+  core::Log(core::LogLevel::kError, saved.error().Text());
+  if (!failure_) failure_ = saved.error();
 }
 
 void SimulatorWindow::OnDrawn() {
@@ -400,6 +427,13 @@ void SimulatorWindow::OnAction(Action action) {
   switch (action) {
     case Action::kTogglePause:
       if (control_ != nullptr) SetPaused(!control_->IsPaused());
+      break;
+    case Action::kNextTool:
+    case Action::kPreviousTool:
+      if (control_ != nullptr) control_->StepTool(action == Action::kNextTool ? 1 : -1);
+      break;
+    case Action::kAssistant:
+      if (control_ != nullptr) control_->StepAssistant();
       break;
     case Action::kReset:
       Reset();

@@ -8,6 +8,7 @@
 #include <optional>
 #include <thread>
 
+#include "device_page.h"
 #include "hand_events.h"
 #include "help_card.h"
 #include "panel.h"
@@ -26,6 +27,8 @@ class SimulatorWindow : public Gtk::ApplicationWindow {
   SimulatorWindow(const Options& options, const core::Stopwatch& since_start);
   ~SimulatorWindow() override;
 
+  /// Writes what --haptic-record asks for; call it once the window has closed.
+  void SaveHapticRecord();
   /// What went wrong, if anything did: the program's exit status follows it.
   const std::optional<core::Error>& GetFailure() const { return failure_; }
 
@@ -42,6 +45,7 @@ class SimulatorWindow : public Gtk::ApplicationWindow {
   void Fail(const core::Error& error);
   void ShowSituation();
   void ShowEvents(const session::Snapshot& snapshot);
+  void OpenDevices();
   void SetPaused(bool is_paused);
   void SetDemonstration(bool is_on);
   void Reset();
@@ -57,7 +61,7 @@ class SimulatorWindow : public Gtk::ApplicationWindow {
   Gtk::ToggleButton demonstration_{"Demonstration"}, forces_{"Forces"}, mask_{"Mask"},
       fulcrum_{"Real trocar"}, help_{"Help"};
   Gtk::ToggleButton force_{"Force"};
-  Gtk::Button check_pose_{"Check pose"};
+  Gtk::Button check_pose_{"Check pose"}, devices_{"Devices"};
   Gtk::Overlay overlay_;
   Picture picture_;
   Panel panel_;
@@ -68,6 +72,7 @@ class SimulatorWindow : public Gtk::ApplicationWindow {
   bool is_showing_ = false;  // buttons are being set by us
 
   std::unique_ptr<SessionControl> control_;
+  std::unique_ptr<DevicePage> device_page_;  // of control_
   StageMeter stages_;
   FrameMeter frames_;
   std::uint64_t seen_events_ = 0;

@@ -42,6 +42,9 @@ TEST(KeyBindings, NamedKeysDoWhatTheHelpSays) {
   EXPECT_EQ(FindKeyMeaning(0xffc8, false).action, Action::kToggleFullscreen);
   EXPECT_EQ(FindKeyMeaning(0xff1b, false).action, Action::kReleasePointer);
   EXPECT_EQ(FindKeyMeaning('q', true).action, Action::kQuit);
+  EXPECT_EQ(FindKeyMeaning('x', false).action, Action::kNextTool);
+  EXPECT_EQ(FindKeyMeaning('v', false).action, Action::kHoldCut);
+  EXPECT_EQ(FindKeyMeaning('n', false).action, Action::kHoldCoagulate);
   EXPECT_EQ(FindKeyMeaning('q', false), (KeyMeaning{Action::kMove, Motion::kSpinLeft}));
   EXPECT_EQ(FindKeyMeaning('r', true).action, Action::kNone) << "Ctrl+R is no reset";
 }

@@ -111,6 +111,33 @@ TEST(FrameMeter, HoldsMoreFramesThanItKeeps) {
   EXPECT_NEAR(meter.Rate(4.999), 1000.0, 1.0);
 }
 
+TEST(DescribeEvent, ARefusedExchangeSaysWhatToDo) {
+  const session::Scene scene;
+  EXPECT_EQ(DescribeEvent({session::EventKind::kExchangeRefused, 1, session::kLeft, -1, 0.0}, scene),
+            "Left grasper: open the jaws and let go before the tool is exchanged");
+}
+
+TEST(ToolLabel, NamesTheToolInUseAndItsClips) {
+  session::Scene scene;
+  scene.instruments[session::kRight].tray = {*instrument::FindTool("hook"),
+                                             *instrument::FindTool("clip_applier")};
+  session::Snapshot snapshot;
+  EXPECT_EQ(ToolLabel(scene, snapshot, session::kRight), "hook");
+  snapshot.operation.tools[session::kRight] = 1;
+  snapshot.operation.clips_left[session::kRight] = 12;
+  EXPECT_EQ(ToolLabel(scene, snapshot, session::kRight), "clip applier, 12 clips");
+  snapshot.operation.clips_left[session::kRight] = 1;
+  EXPECT_EQ(ToolLabel(scene, snapshot, session::kRight), "clip applier, 1 clip");
+}
+
+TEST(DescribeFluid, SaysWhatWasLostAndWhatLiesThere) {
+  surgery::FluidLedger fluids;
+  fluids.Leak(surgery::Fluid::kBlood, 12e-6);
+  fluids.Aspirate(8.5e-6);
+  EXPECT_EQ(DescribeFluid(fluids, surgery::Fluid::kBlood), "12.0 mL, 3.5 mL in the abdomen");
+  EXPECT_EQ(DescribeFluid(fluids, surgery::Fluid::kBile), "0.0 mL, 0.0 mL in the abdomen");
+}
+
 TEST(DescribeTask, SaysClockProgressErrorsAndResult) {
   session::Task task;
   task.goals.resize(2);

@@ -47,6 +47,44 @@ TEST_F(SessionControlTest, StartsPausedAtHomeWithTheScenesSettings) {
   EXPECT_EQ(control->GetSettings(), control->GetScene().settings);
 }
 
+TEST_F(SessionControlTest, PedalsBelongToTheChosenHandAndAPauseReleasesThem) {
+  control->SetPaused(false);
+  control->ChooseHand(device::kLeftHand);
+  control->SetPedal(Pedal::kCut, true);
+  control->SetPedal(Pedal::kRinse, true);
+  const auto& controls = control->GetInput().controls;
+  EXPECT_TRUE(controls[session::kLeft].cut && controls[session::kLeft].rinse);
+  EXPECT_FALSE(controls[session::kRight].cut || controls[session::kLeft].coagulate);
+  control->SwitchHand();
+  EXPECT_FALSE(controls[session::kLeft].cut || controls[session::kRight].cut) << "no foot stays on a pedal";
+  control->SetPedal(Pedal::kCoagulate, true);
+  EXPECT_TRUE(controls[session::kRight].coagulate);
+  control->SetPaused(true);
+  EXPECT_FALSE(controls[session::kRight].coagulate);
+  control->SetPedal(Pedal::kCoagulate, true);
+  EXPECT_FALSE(controls[session::kRight].coagulate) << "a pedal does nothing while paused";
+}
+
+TEST_F(SessionControlTest, ToolsGoRoundTheTrayAndTheAssistantObeys) {
+  const auto& tray = control->GetScene().instruments[session::kRight].tray;
+  ASSERT_FALSE(tray.empty());
+  control->ChooseHand(device::kRightHand);
+  for (std::size_t i = 0; i < tray.size(); ++i) {
+    EXPECT_EQ(control->GetInput().controls[session::kRight].tool, i);
+    control->StepTool(1);
+  }
+  EXPECT_EQ(control->GetInput().controls[session::kRight].tool, 0);
+  control->StepTool(-1);
+  EXPECT_EQ(control->GetInput().controls[session::kRight].tool, tray.size() - 1);
+  control->ChooseTool(session::kRight, tray.size());
+  EXPECT_EQ(control->GetInput().controls[session::kRight].tool, tray.size() - 1) << "no such place";
+  control->StepAssistant();
+  EXPECT_EQ(control->GetInput().assistant, session::AssistantCommand::kRetract);
+  control->Reset();
+  EXPECT_EQ(control->GetInput().assistant, session::AssistantCommand::kWait);
+  EXPECT_EQ(control->GetInput().controls[session::kRight].tool, 0);
+}
+
 TEST_F(SessionControlTest, HeldKeyMovesTheToolOfTheSimulation) {
   control->SetPaused(false);
   control->ChooseHand(device::kLeftHand);

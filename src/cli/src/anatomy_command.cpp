@@ -19,6 +19,7 @@ namespace {
 struct BuildArguments {
   std::string control_points, images, window, output, reference, overlays;
   bool without_overlays = false;
+  double skipped_px = -1;
 };
 
 core::Status Build(const BuildArguments& arguments) {
@@ -31,6 +32,7 @@ core::Status Build(const BuildArguments& arguments) {
     options.window = *window;
   }
   options.output = arguments.output;
+  if (arguments.skipped_px >= 0) options.skipped_shift_px = arguments.skipped_px;
   if (!arguments.reference.empty()) options.reference = arguments.reference;
   if (!arguments.without_overlays) {
     options.overlays = arguments.overlays.empty() ? arguments.output + "-overlays" : arguments.overlays;
@@ -147,6 +149,12 @@ void AddAnatomyCommand(CLI::App& app, Outcome& outcome) {
       ->add_option("--reference", arguments->reference,
                    "Label map (NIfTI) that only judges the result: volume, Dice")
       ->type_name("FILE");
+  build
+      ->add_option("--skipped-px", arguments->skipped_px,
+                   "How far the edges of slices that nobody contoured may move the contours in between "
+                   "(default: what the control points say); 0: their pictures are not looked at")
+      ->check(CLI::Range(0.0, 30.0))
+      ->type_name("PX");
   build
       ->add_option("--overlays", arguments->overlays,
                    "Folder for one picture a slice with the contours drawn in (default: PATIENT-overlays)")

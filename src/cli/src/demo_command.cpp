@@ -17,6 +17,7 @@
 #include "command.h"
 #include "console.h"
 #include "device_input.h"
+#include "igtl_option.h"
 #include "motion_log.h"
 #include "report.h"
 #include "trocar/core/safe_file.h"
@@ -37,6 +38,7 @@ struct DemoArguments {
   std::string size = "1280x720";
   double seconds = 0;
   int threads = 1;
+  int igtl_port = -1;
 };
 
 /// A folder beside the wanted one; what is in it appears under its name only when all went well.
@@ -176,7 +178,19 @@ core::Status Play(const DemoArguments& arguments) {
   options.threads = arguments.threads;
   options.output_folder = part.Path();
   MotionLog log(**scene, arguments.seconds > 0 ? arguments.seconds + 1 : (*scene)->script.Duration() + 1);
-  options.on_tick = [&](const session::Snapshot& snapshot) { log.Record(snapshot); };
+  std::unique_ptr<net::IgtlServer> server;
+  if (arguments.igtl_port >= 0) {
+    options.on_start = [&](const session::Simulation& simulation) -> core::Status {
+      auto listening = ServeViewers(arguments.igtl_port, simulation);
+      if (!listening) return listening.error();
+      server = std::move(*listening);
+      return {};
+    };
+  }
+  options.on_tick = [&](const session::Snapshot& snapshot) {
+    log.Record(snapshot);
+    if (server != nullptr) server->Publish(snapshot);
+  };
   std::unique_ptr<DeviceInput> device;
   if (!arguments.device.empty()) {
     auto opened = DeviceInput::Open(arguments.device, **scene);
@@ -231,6 +245,7 @@ void AddDemoCommand(CLI::App& app, Outcome& outcome) {
       ->check(CLI::Range(1, 256))
       ->type_name("T")
       ->capture_default_str();
+  AddIgtlOption(*command, arguments->igtl_port);
   command->footer(
       "Needs OpenGL (in software will do) and no display. When anything fails, the folder stays as it was.\n"
       "Example: trocar demo -o out/demo --size 640x360 --seconds 5");

@@ -15,6 +15,7 @@
 #include "command.h"
 #include "console.h"
 #include "device_input.h"
+#include "igtl_option.h"
 #include "trocar/core/clock.h"
 #include "trocar/core/log.h"
 #include "trocar/core/statistics.h"
@@ -83,13 +84,9 @@ core::Result<SimulateReport> Simulate(const SimulateOptions& options) {
 
   std::unique_ptr<net::IgtlServer> server;
   if (options.igtl_port >= 0) {
-    net::IgtlServerSettings settings;
-    settings.port = options.igtl_port;
-    auto listening = net::IgtlServer::Make(settings, simulation.Surfaces());
+    auto listening = ServeViewers(options.igtl_port, simulation);
     if (!listening) return listening.error();
     server = std::move(*listening);
-    core::Log(core::LogLevel::kInfo,
-              "OpenIGTLink: viewers may connect to localhost:" + std::to_string(server->Port()));
   }
 
   const auto count = static_cast<std::size_t>(options.ticks);
@@ -185,12 +182,7 @@ void AddSimulateCommand(CLI::App& app, Outcome& outcome) {
       ->add_option("--device", options->device,
                    "Hands of a device in place of the script's; play:FILE repeats a recording bit for bit")
       ->type_name("DEVICE");
-  command
-      ->add_option(
-          "--igtl", options->igtl_port,
-          "Show tools and organs to 3D Slicer on this port of this machine (OpenIGTLink, RAS; 0: any port)")
-      ->check(CLI::Range(0, 65535))
-      ->type_name("PORT");
+  AddIgtlOption(*command, options->igtl_port);
   command->add_flag("--gpu", options->uses_gpu,
                     "Solve on the GPU (single precision, so another hash); without one the processor does");
   command->add_flag("--json", options->is_json, "Machine-readable");

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "command.h"
+#include "igtl_option.h"
 #include "start_window.h"
 #include "trocar/device/force_device_spec.h"
 
@@ -26,14 +29,24 @@ void AddWindowCommand(CLI::App& app, Outcome& outcome) {
       ->add_option("--haptics", *haptics,
                    "Hands of a haptic device, with force: " + device::ListForceDrivers())
       ->type_name("DEVICE");
+  auto record = std::make_shared<std::string>();
+  command
+      ->add_option("--haptic-record", *record,
+                   "With --haptics: write rates, forces and every change of the force feedback here (JSON)")
+      ->needs("--haptics")
+      ->type_name("FILE");
+  auto igtl_port = std::make_shared<int>(-1);
+  AddIgtlOption(*command, *igtl_port);
   command->footer(
       "Examples: trocar window scenes/demonstration.json\n"
       "          trocar window --device liberty:/dev/ttyUSB0+jaw:/dev/ttyACM0");
-  command->callback([scene, device, haptics, &outcome] {
+  command->callback([scene, device, haptics, record, igtl_port, &outcome] {
     std::vector<std::string> arguments;
     if (!scene->empty()) arguments = {"--scene", *scene};
     if (!device->empty()) arguments.insert(arguments.end(), {"--device", *device});
     if (!haptics->empty()) arguments.insert(arguments.end(), {"--haptics", *haptics});
+    if (!record->empty()) arguments.insert(arguments.end(), {"--haptic-record", *record});
+    if (*igtl_port >= 0) arguments.insert(arguments.end(), {"--igtl", std::to_string(*igtl_port)});
     outcome.status = StartWindow(arguments);
   });
 }

@@ -59,6 +59,23 @@ Vec3 CalcPressingPoint(const tissue::ContactSpring& contact, std::span<const Vec
   return point;
 }
 
+/// A rigid shaft that slides through its trocar and turns about it: where the tip moves across by d, the point that
+/// lies in the share s of the way to it moves across by s d, and along the shaft by all of it. A force there pushes the
+/// tip by the transpose of that.
+Vec3 CalcTipNormal(const PatchSource& source, const tissue::ContactSpring& contact) noexcept {
+  constexpr double kShortest = 0.005;  // nearer to the trocar the tip has no lever worth the name [m]
+  const Vec3 shaft = source.X_world_tool.translation - source.p_world_pivot;
+  const double depth_of_tip = math::Norm(shaft);
+  if (!source.has_pivot || !(depth_of_tip > kShortest)) return contact.normal;
+  const Vec3 axis = shaft / depth_of_tip;
+  const double depth = tissue::CalcContactDepth(contact, source.state.position);
+  const Vec3 pressing = CalcPressingPoint(contact, source.state.position, depth);
+  // jaws reach a little beyond the tip's origin; on the handle's side of the trocar nothing is pressed
+  const double share = std::clamp(math::Dot(pressing - source.p_world_pivot, axis) / depth_of_tip, 0.0, 1.2);
+  const Vec3 along = math::Dot(contact.normal, axis) * axis;
+  return along + share * (contact.normal - along);
+}
+
 }  // namespace
 
 PatchCutter::PatchCutter(std::size_t node_count) : place_(node_count, kNowhere) {}
@@ -161,7 +178,7 @@ void PatchCutter::SetLinear(const PatchSource& source, LocalPatch& patch) const 
       const Matrix3 block = CalcNodeBlock(source, contact.nodes[i]);
       compliance += contact.weights[i] * contact.weights[i] * normal.dot(block.inverse() * normal);
     }
-    AddAxial(stiffness, contact.normal, 1.0 / compliance);
+    AddAxial(stiffness, CalcTipNormal(source, contact), 1.0 / compliance);
   }
   for (const std::uint32_t node : source.held) stiffness += CalcNodeBlock(source, node);
   for (int row = 0; row < 3; ++row)
@@ -177,6 +194,7 @@ void PatchCutter::Cut(const PatchSource& source, LocalPatch& patch, int max_ring
   patch.tick = source.tick;
   patch.X_world_tool = source.X_world_tool;
   patch.force = source.force;
+  patch.has_pivot = source.has_pivot;
   patch.free_count = patch.held_count = patch.node_count = patch.contact_count = 0;
   if (!patch.is_healthy) return;
 
@@ -185,6 +203,13 @@ void PatchCutter::Cut(const PatchSource& source, LocalPatch& patch, int max_ring
   if (mine == 0 && source.held.empty()) {
     patch.force = {};
     return;
+  }
+  // what presses the shaft is felt at the tip by its lever
+  for (std::size_t c = 0; c < source.contacts.size() && source.has_pivot; ++c) {
+    const tissue::ContactSpring& contact = source.contacts[c];
+    const double depth = IsMine(source, c) ? tissue::CalcContactDepth(contact, source.state.position) : 0.0;
+    if (depth > 0.0)
+      patch.force += contact.stiffness * depth * (contact.normal - CalcTipNormal(source, contact));
   }
   bool is_cut = false;
   for (int rings = max_rings; rings >= 1 && !is_cut && mine <= LocalPatch::kMaxContacts; --rings) {
@@ -198,6 +223,7 @@ void PatchCutter::Cut(const PatchSource& source, LocalPatch& patch, int max_ring
         for (int i = 0; i < 3; ++i) copy.nodes[i] = place_[contact.nodes[i]];
         copy.weights = contact.weights;
         copy.normal = contact.normal;
+        copy.tip_normal = CalcTipNormal(source, contact);
         copy.lever =
             CalcPressingPoint(contact, source.state.position, depth) - source.X_world_tool.translation;
         copy.depth = depth;

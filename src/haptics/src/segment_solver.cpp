@@ -18,10 +18,9 @@ Vec3 Solve(const Matrix3& block, const Vec3& force) noexcept {
   return FromEigen(block.inverse() * ToEigen(force));
 }
 
-/// u u^T m
-Matrix3 Project(const Vec3& u, const Matrix3& m) noexcept {
-  const Eigen::Vector3d direction = ToEigen(u);
-  return direction * (direction.transpose() * m);
+/// u v^T m
+Matrix3 Project(const Vec3& u, const Vec3& v, const Matrix3& m) noexcept {
+  return ToEigen(u) * (ToEigen(v).transpose() * m);
 }
 
 }  // namespace
@@ -61,7 +60,9 @@ void SegmentSolver::SetDirection(const math::Quaternion& hand) noexcept {
   turn_ = hand * math::Inverse(patch_.X_world_tool.rotation);
   for (std::uint32_t c = 0; c < patch_.contact_count; ++c) {
     const LocalPatch::Contact& contact = patch_.contacts[c];
-    turned_[c] = math::Dot(contact.normal, math::Rotate(turn_, contact.lever) - contact.lever);
+    // in a trocar the shaft turns with the tip, which tip_normal takes in
+    turned_[c] =
+        patch_.has_pivot ? 0.0 : math::Dot(contact.normal, math::Rotate(turn_, contact.lever) - contact.lever);
   }
   MoveHeld();
 }
@@ -72,12 +73,14 @@ void SegmentSolver::MoveHeld() noexcept {
 }
 
 double SegmentSolver::CalcDepth(const LocalPatch::Contact& contact, double turned) const noexcept {
-  Vec3 moved = tool_ - patch_.X_world_tool.translation;
+  Vec3 given_way;
   for (int i = 0; i < 3; ++i) {
     const std::uint16_t node = contact.nodes[i];
-    moved -= contact.weights[i] * (position_[node] - patch_.position[node]);
+    given_way += contact.weights[i] * (position_[node] - patch_.position[node]);
   }
-  return contact.depth + turned + math::Dot(contact.normal, moved);
+  return contact.depth + turned +
+         math::Dot(contact.tip_normal, tool_ - patch_.X_world_tool.translation) -
+         math::Dot(contact.normal, given_way);
 }
 
 /// Springs and strands on a node, strands from their offset at the cut; `block` takes their stiffness.
@@ -161,8 +164,8 @@ void SegmentSolver::RelaxTool(const Vec3& p_world_hand, double coupling_stiffnes
     const LocalPatch::Contact& contact = patch_.contacts[c];
     const double depth = CalcDepth(contact, turned_[c]);
     const double change = std::max(depth, 0.0) - std::max(contact.depth, 0.0);
-    force -= (contact.stiffness * change) * contact.normal;
-    if (depth > -kNearlyTouching) AddAxial(block, contact.normal, contact.stiffness);
+    force -= (contact.stiffness * change) * contact.tip_normal;
+    if (depth > -kNearlyTouching) AddAxial(block, contact.tip_normal, contact.stiffness);
   }
   for (std::size_t i = patch_.free_count; i < patch_.free_count + patch_.held_count; ++i)
     force += AddLinkForce(i, block) - force_at_cut_[i];
@@ -199,7 +202,7 @@ Matrix3 SegmentSolver::PullByLinks(std::size_t node, Matrix3& block) const noexc
     const LinkStiffness stiffness =
         CalcLinkStiffness(along, math::Norm(along), link.stiffness, link.rest_length);
     AddLink(block, stiffness);
-    pull += stiffness.isotropic * other + stiffness.axial * Project(stiffness.direction, other);
+    pull += stiffness.isotropic * other + stiffness.axial * Project(stiffness.direction, stiffness.direction, other);
   }
   return pull;
 }
@@ -216,12 +219,14 @@ void SegmentSolver::DifferentiateNode(std::size_t node) noexcept {
     const LocalPatch::Contact& contact = patch_.contacts[node_contacts_[k].contact];
     if (!(CalcDepth(contact, turned_[node_contacts_[k].contact]) > 0.0)) continue;
     const int corner = node_contacts_[k].corner;
-    Matrix3 tool = tool_derivative_;
+    Matrix3 nodes = Matrix3::Zero();
     for (int i = 0; i < 3; ++i) {
-      if (i != corner) tool -= contact.weights[i] * derivative_[contact.nodes[i]];
+      if (i != corner) nodes += contact.weights[i] * derivative_[contact.nodes[i]];
     }
     AddAxial(block, contact.normal, contact.weights[corner] * contact.weights[corner] * contact.stiffness);
-    pull += contact.weights[corner] * contact.stiffness * Project(contact.normal, tool);
+    pull += contact.weights[corner] * contact.stiffness *
+            (Project(contact.normal, contact.tip_normal, tool_derivative_) -
+             Project(contact.normal, contact.normal, nodes));
   }
   derivative_[node] = block.inverse() * pull;
 }
@@ -234,8 +239,8 @@ void SegmentSolver::DifferentiateTool(double coupling_stiffness) noexcept {
     if (!(CalcDepth(contact, turned_[c]) > 0.0)) continue;
     Matrix3 nodes = Matrix3::Zero();
     for (int i = 0; i < 3; ++i) nodes += contact.weights[i] * derivative_[contact.nodes[i]];
-    AddAxial(block, contact.normal, contact.stiffness);
-    pull += contact.stiffness * Project(contact.normal, nodes);
+    AddAxial(block, contact.tip_normal, contact.stiffness);
+    pull += contact.stiffness * Project(contact.tip_normal, contact.normal, nodes);
   }
   for (std::size_t i = patch_.free_count; i < patch_.free_count + patch_.held_count; ++i)
     pull += PullByLinks(i, block);

@@ -175,6 +175,72 @@ TEST(LocalModel, TurningTheShaftMovesWhatItPresses) {
   EXPECT_LT(turned(-0.02), straight - 0.05);
 }
 
+/// A shaft that lies on the sheet between its trocar and its tip, both 100 mm away.
+struct ShaftOnSheet {
+  explicit ShaftOnSheet(double depth) { sheet.Solve({0, 0, -depth}); }
+  LocalPatch Cut() const {
+    PatchSource source = sheet.Source();
+    source.X_world_tool.translation = tip + Vec3{0, 0, sheet.p_world_tool.z};
+    source.has_pivot = true;
+    source.p_world_pivot = pivot + Vec3{0, 0, sheet.p_world_tool.z};
+    LocalPatch patch;
+    PatchCutter(sheet.model.Size()).Cut(source, patch);
+    return patch;
+  }
+  PressedSheet sheet;
+  Vec3 tip{0.1, 0, 0}, pivot{-0.1, 0, 0};
+};
+
+// Analytic: half way between trocar and tip a force across is felt by half, and the tip goes twice as far.
+TEST(LocalModel, WhatPressesTheShaftIsFeltByItsLever) {
+  const ShaftOnSheet shaft(0.003);
+  const LocalPatch patch = shaft.Cut();
+  ASSERT_EQ(patch.kind, LocalPatch::Kind::kSegment);
+  double felt = 0;
+  for (std::uint32_t c = 0; c < patch.contact_count; ++c) {
+    const LocalPatch::Contact& contact = patch.contacts[c];
+    const double share = (contact.lever.x + 0.2) / 0.2;
+    EXPECT_NEAR(share, 0.5, 0.05);
+    EXPECT_NEAR(contact.tip_normal.z, share * contact.normal.z, 1e-12);
+    felt += contact.stiffness * std::max(0.0, contact.depth) * share;
+  }
+  EXPECT_NEAR(patch.force.z, felt, 1e-9);
+  EXPECT_NEAR(patch.force.z / shaft.sheet.force.z, 0.5, 0.01);
+
+  LocalModel model(MakeStiff());
+  model.Take(patch);
+  const Vec3 start = patch.X_world_tool.translation;
+  const LocalAnswer at_cut = FindRest(model, start - patch.force / MakeStiff().coupling_stiffness);
+  EXPECT_LT(math::Distance(at_cut.force, patch.force), 1e-6) << "continuous with the tick";
+  const LocalAnswer deeper = FindRest(model, start - Vec3{0, 0, 0.002});
+  const double moved = deeper.p_world_tool.z - start.z;
+  // the whole system, pressed half as far as the tip went
+  ShaftOnSheet whole(0.003 - 0.5 * moved);
+  EXPECT_NEAR(deeper.force.z, 0.5 * whole.sheet.force.z, 0.04 * whole.sheet.force.z);
+  // stiffness at the tip: a quarter of that at the contact
+  PressedSheet further;
+  further.Solve({0, 0, -0.0031});
+  const double at_contact = (further.force.z - shaft.sheet.force.z) / 0.0001;
+  const double at_tip = (deeper.force.z - patch.force.z) / -moved;
+  EXPECT_NEAR(at_tip / at_contact, 0.25, 0.04);
+}
+
+TEST(PatchCutter, TheLeverLeavesForcesAtTheTipAndAlongTheShaftAlone) {
+  PressedSheet sheet;
+  sheet.Solve({0, 0, -0.003});
+  PatchSource source = sheet.Source();
+  source.has_pivot = true;
+  source.p_world_pivot = {0, 0, 0.15};  // above: the tip presses along the shaft
+  LocalPatch patch;
+  PatchCutter(sheet.model.Size()).Cut(source, patch);
+  EXPECT_LT(math::Distance(patch.force, sheet.force), 1e-9);
+  for (std::uint32_t c = 0; c < patch.contact_count; ++c)
+    EXPECT_LT(math::Distance(patch.contacts[c].tip_normal, patch.contacts[c].normal), 1e-9);
+  source.p_world_pivot = {-0.15, 0, -0.003};  // aside: it presses across, at the tip
+  PatchCutter(sheet.model.Size()).Cut(source, patch);
+  EXPECT_NEAR(patch.force.z, sheet.force.z, 0.02 * sheet.force.z);
+}
+
 TEST(LocalModel, NothingTouchedIsNoForce) {
   LocalModel model{LocalModelSettings{}};
   EXPECT_FALSE(model.Step({{}, {0.1, 0.2, 0.3}}).is_in_contact);

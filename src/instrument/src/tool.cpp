@@ -17,11 +17,11 @@ std::array<Tool, 7> MakeTools() {
   hook.jaw_length = 0.005, hook.jaw_width = 0.0012, hook.jaw_thickness = 0.0012, hook.max_jaw = 0;
   Tool scissors;
   scissors.name = "scissors", scissors.kind = ToolKind::kScissors;
-  scissors.jaw_length = 0.015, scissors.jaw_width = 0.003, scissors.jaw_thickness = 0.0012;
+  scissors.jaw_length = 0.015, scissors.jaw_width = 0.002, scissors.jaw_thickness = 0.0012;
   Tool clip_applier;
   clip_applier.name = "clip_applier", clip_applier.kind = ToolKind::kClipApplier;
-  clip_applier.shaft_radius = 0.005, clip_applier.jaw_length = 0.012, clip_applier.jaw_width = 0.003;
-  clip_applier.max_jaw = 0.5, clip_applier.clips = 15;  // jaws 6 mm apart at their tips
+  clip_applier.shaft_radius = 0.005, clip_applier.jaw_length = 0.012, clip_applier.jaw_width = 0.002;
+  clip_applier.max_jaw = 0.7, clip_applier.clips = 15;  // 6 mm between the tips
   Tool suction;
   suction.name = "suction_irrigator", suction.kind = ToolKind::kSuctionIrrigator;
   suction.jaw_length = 0.010, suction.jaw_width = 0.005, suction.jaw_thickness = 0.0025, suction.max_jaw = 0;

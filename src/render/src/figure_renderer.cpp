@@ -243,10 +243,10 @@ FigureRenderer::~FigureRenderer() = default;
 core::Result<FigureRenderer> FigureRenderer::Make() {
   if (const auto status = CheckGraphicsVersion(); !status) return status.error();
   auto content = std::make_unique<Content>();
-  auto surface = MakeProgram(kSurfaceVertexSource, {kSurfaceFragmentSource});
+  auto surface = MakeProgram({kSurfaceVertexSource}, {kSurfaceFragmentSource});
   if (!surface) return surface.error();
   content->surface = *surface;
-  auto stroke = MakeProgram(kStrokeVertexSource, {kStrokeFragmentSource});
+  auto stroke = MakeProgram({kStrokeVertexSource}, {kStrokeFragmentSource});
   if (!stroke) return stroke.error();
   content->stroke = *stroke;
   glGenVertexArrays(1, &content->stroke_array);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "fine_drawer.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 
@@ -11,137 +12,194 @@
 namespace trocar::render {
 namespace {
 
-constexpr int kFibreSteps = 6;  // pieces of a fibre
-constexpr int kBlobSides = 10;
-/// Least half width in pixels: thinner ones would come and go from frame to frame.
-constexpr float kLeastPixels = 0.6f;
+using math::Vec3;
 
-/// 0 to 1, the same for the same seed.
-float Shuffle(std::uint32_t seed) {
+constexpr double kNearest = 0.004;  // m, before the lens
+constexpr std::uint32_t kBlobSides = 7;
+/// Least half width in pixels: thinner ones would come and go from frame to frame.
+constexpr double kLeastPixels = 0.6;
+/// A fibre of fewer pixels is straight, one of fewer than the second has one bend.
+constexpr double kStraightPixels = 12, kBentPixels = 40;
+
+std::uint32_t Mix(std::uint32_t seed) {
   seed ^= seed >> 16;
   seed *= 0x7feb352dU;
   seed ^= seed >> 15;
   seed *= 0x846ca68bU;
-  seed ^= seed >> 16;
-  return static_cast<float>(seed >> 8) / 16777216.0f;
+  return seed ^ (seed >> 16);
 }
 
-std::array<float, 3> ToFloat(const math::Vec3& v) {
+/// 0 to 1, the same for the same seed.
+float Shuffle(std::uint32_t seed) {
+  return static_cast<float>(Mix(seed) >> 8) / 16777216.0f;
+}
+
+std::array<float, 3> ToFloat(const Vec3& v) {
   return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
 }
 
 /// Colour and wetness of one piece: each lies somewhere between the material's two colours, nearer to the light one,
 /// because a small piece lies open.
-std::array<float, 4> PickColour(const MaterialLook& look, float share) {
-  share = 0.4f + 0.6f * share;
+std::array<float, 4> PickColour(const MaterialLook& look, std::uint32_t seed) {
+  const float share = 0.4f + 0.6f * Shuffle(seed + 0x9e3779b9U);
   return {look.low[0] + share * (look.high[0] - look.low[0]),
           look.low[1] + share * (look.high[1] - look.low[1]),
           look.low[2] + share * (look.high[2] - look.low[2]), look.wet};
 }
 
+/// Columns of a rotation: products are cheaper than with a quaternion, thousands of times a frame.
+struct Frame3 {
+  Vec3 x, y, z, t;
+
+  explicit Frame3(const math::Pose& pose)
+      : x(math::Rotate(pose.rotation, {1, 0, 0})),
+        y(math::Rotate(pose.rotation, {0, 1, 0})),
+        z(math::Rotate(pose.rotation, {0, 0, 1})),
+        t(pose.translation) {}
+  Vec3 operator*(const Vec3& p) const { return p.x * x + p.y * y + p.z * z + t; }
+};
+
+/// Whether a ball about a point in front of the lens may be in the picture.
+bool IsSeen(const Vec3& p_camera, double radius, const Viewport& viewport) {
+  if (p_camera.z > -kNearest) return false;
+  const double scale = viewport.focal / -p_camera.z;
+  return std::abs(p_camera.x) * scale < viewport.half_width + radius * scale &&
+         std::abs(p_camera.y) * scale < viewport.half_height + radius * scale;
+}
+
 }  // namespace
 
 FineDrawer::~FineDrawer() {
-  if (instances_ == 0) return;
-  for (const Program& program : Programs()) glDeleteProgram(program.name);
-  for (const GLuint array : {fibre_array_, blob_array_}) glDeleteVertexArrays(1, &array);
-  for (const GLuint buffer : {instances_, fibre_places_, blob_places_}) glDeleteBuffers(1, &buffer);
+  if (array_ == 0) return;
+  glDeleteProgram(program_.name);
+  glDeleteVertexArrays(1, &array_);
+  for (const GLuint buffer : {corners_on_card_, indices_on_card_}) glDeleteBuffers(1, &buffer);
 }
 
 core::Status FineDrawer::Make() {
-  auto fibre = MakeProgram(kFibreVertexShader, {kShadingFunctions, kFineFragmentShader});
-  if (!fibre) return fibre.error();
-  fibre_ = *fibre;
-  auto blob = MakeProgram(kBlobVertexShader, {kShadingFunctions, kFineFragmentShader});
-  if (!blob) return blob.error();
-  blob_ = *blob;
-  glGenBuffers(1, &instances_);
+  auto program = MakeProgram({kFineVertexHead, kShadingFunctions, kFineVertexShader}, {kFineFragmentShader});
+  if (!program) return program.error();
+  program_ = *program;
+  const auto offset = [](std::size_t bytes) { return reinterpret_cast<const void*>(bytes); };
+  glGenVertexArrays(1, &array_);
+  glGenBuffers(1, &corners_on_card_);
+  glGenBuffers(1, &indices_on_card_);
+  glBindVertexArray(array_);
+  glBindBuffer(GL_ARRAY_BUFFER, corners_on_card_);
+  glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, indices_on_card_);
+  glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, sizeof(Corner), offset(offsetof(Corner, position)));
+  glVertexAttribPointer(1, 3, GL_FLOAT, GL_FALSE, sizeof(Corner), offset(offsetof(Corner, normal)));
+  glVertexAttribPointer(2, 4, GL_FLOAT, GL_FALSE, sizeof(Corner), offset(offsetof(Corner, albedo)));
+  glVertexAttribPointer(3, 3, GL_FLOAT, GL_FALSE, sizeof(Corner), offset(offsetof(Corner, passing)));
+  for (const GLuint location : {0u, 1u, 2u, 3u}) glEnableVertexAttribArray(location);
+  glBindVertexArray(0);
+  glBindBuffer(GL_ARRAY_BUFFER, 0);
 
-  std::vector<std::array<float, 3>> strip;
-  for (int i = 0; i <= kFibreSteps; ++i) {
-    const float along = static_cast<float>(i) / kFibreSteps;
-    strip.push_back({along, -1, 0});
-    strip.push_back({along, 1, 0});
+  for (std::uint32_t shape = 0; shape < kShapes; ++shape) {
+    const double p = 2 * M_PI * Shuffle(3 * shape), q = 2 * M_PI * Shuffle(3 * shape + 1);
+    const double turns = 5.0 + 4.0 * Shuffle(3 * shape + 2);
+    for (std::size_t i = 0; i <= kMostSteps; ++i) {
+      const double along = static_cast<double>(i) / kMostSteps, bell = 4.0 * along * (1.0 - along);
+      waves_[shape][i] = {static_cast<float>(bell * std::sin(p + turns * along)),
+                          static_cast<float>(0.7 * bell * std::sin(q + 8.0 * along))};
+    }
   }
-  fibre_vertices_ = static_cast<GLsizei>(strip.size());
-  MakeArray(fibre_array_, fibre_places_, strip);
-
-  std::vector<std::array<float, 3>> dome = {{0, 0, 1}};
-  for (int i = 0; i <= kBlobSides; ++i) {
-    const double angle = 2 * M_PI * i / kBlobSides;
-    dome.push_back({static_cast<float>(std::cos(angle)), static_cast<float>(std::sin(angle)), 0});
-  }
-  blob_vertices_ = static_cast<GLsizei>(dome.size());
-  MakeArray(blob_array_, blob_places_, dome);
   return {};
 }
 
-void FineDrawer::MakeArray(GLuint& array, GLuint& places, std::span<const std::array<float, 3>> vertices) {
-  const auto offset = [](std::size_t bytes) { return reinterpret_cast<const void*>(bytes); };
-  glGenVertexArrays(1, &array);
-  glGenBuffers(1, &places);
-  glBindVertexArray(array);
-  glBindBuffer(GL_ARRAY_BUFFER, places);
-  glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(vertices.size_bytes()), vertices.data(),
-               GL_STATIC_DRAW);
-  glEnableVertexAttribArray(0);
-  glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, 0, nullptr);
-  glBindBuffer(GL_ARRAY_BUFFER, instances_);
-  glVertexAttribPointer(1, 3, GL_FLOAT, GL_FALSE, sizeof(Instance), offset(offsetof(Instance, a)));
-  glVertexAttribPointer(2, 3, GL_FLOAT, GL_FALSE, sizeof(Instance), offset(offsetof(Instance, b)));
-  glVertexAttribPointer(3, 4, GL_FLOAT, GL_FALSE, sizeof(Instance), offset(offsetof(Instance, shape)));
-  glVertexAttribPointer(4, 4, GL_FLOAT, GL_FALSE, sizeof(Instance), offset(offsetof(Instance, colour)));
-  glVertexAttribPointer(5, 1, GL_FLOAT, GL_FALSE, sizeof(Instance), offset(offsetof(Instance, opacity)));
-  for (const GLuint location : {1u, 2u, 3u, 4u, 5u}) {
-    glEnableVertexAttribArray(location);
-    glVertexAttribDivisor(location, 1);
-  }
-  glBindVertexArray(0);
-  glBindBuffer(GL_ARRAY_BUFFER, 0);
-}
-
-void FineDrawer::DrawFibres(std::span<const Fibre> fibres, const Matrix4& X_camera_world, float pixel) {
-  staging_.clear();
+void FineDrawer::DrawFibres(std::span<const Fibre> fibres, const Viewport& viewport) {
+  corners_.clear();
+  indices_.clear();
+  const Frame3 X_camera_world(viewport.X_camera_world);
   for (const Fibre& fibre : fibres) {
+    const Vec3 a = X_camera_world * fibre.a, b = X_camera_world * fibre.b, chord = b - a;
+    const double length = math::Norm(chord);
+    if (a.z > -kNearest || b.z > -kNearest ||
+        !IsSeen(0.5 * (a + b), 0.5 * length + fibre.wave + fibre.width, viewport))
+      continue;
     const MaterialLook& look = GetLook(fibre.material);
-    const float seed = Shuffle(fibre.seed);
-    staging_.push_back(
-        {ToFloat(fibre.a),
-         ToFloat(fibre.b),
-         {0.5f * static_cast<float>(fibre.width), static_cast<float>(fibre.wave), seed, look.emission},
-         PickColour(look, Shuffle(fibre.seed + 0x9e3779b9U)),
-         look.opacity});
+    const double pixels = viewport.focal * length / -std::max(a.z, b.z);
+    const std::size_t steps = fibre.wave == 0.0 || pixels < kStraightPixels ? 1
+                              : pixels < kBentPixels                        ? 2
+                                                                            : kMostSteps;
+    const Wave& wave = waves_[Mix(fibre.seed) % kShapes];
+    const Vec3 along = math::Normalized(chord), u = math::AnyPerpendicular(along), w = math::Cross(along, u);
+    std::array<Vec3, kMostSteps + 1> centres;
+    for (std::size_t i = 0; i <= steps; ++i) {
+      const auto& lift = wave[i * kMostSteps / steps];
+      centres[i] = a + (static_cast<double>(i) / static_cast<double>(steps)) * chord +
+                   fibre.wave * (double{lift[0]} * u + double{lift[1]} * w);
+    }
+    const auto first = static_cast<std::uint32_t>(corners_.size());
+    const std::array<float, 4> albedo = PickColour(look, fibre.seed);
+    const std::array<float, 3> passing = {look.emission, look.opacity, 1.0f};
+    for (std::size_t i = 0; i <= steps; ++i) {
+      const Vec3 tangent = centres[std::min(i + 1, steps)] - centres[i > 0 ? i - 1 : 0];
+      const Vec3 to_eye = -math::Normalized(centres[i]),
+                 across = math::Normalized(math::Cross(tangent, to_eye), u);
+      // broader where it takes root
+      const double root = 2.0 * static_cast<double>(i) / static_cast<double>(steps) - 1.0;
+      const double half = std::max(0.5 * fibre.width * (0.62 + 0.38 * root * root),
+                                   kLeastPixels * -centres[i].z / viewport.focal);
+      for (const double side : {-1.0, 1.0}) {
+        corners_.push_back({ToFloat(centres[i] + (side * half) * across),
+                            ToFloat((0.85 * side) * across + 0.53 * to_eye), albedo, passing});
+      }
+    }
+    for (std::uint32_t i = 0; i < steps; ++i) {
+      const std::uint32_t at = first + 2 * i;
+      indices_.insert(indices_.end(), {at, at + 1, at + 2, at + 1, at + 3, at + 2});
+    }
   }
-  Draw(fibre_, fibre_array_, GL_TRIANGLE_STRIP, fibre_vertices_, X_camera_world, pixel);
+  Draw();
 }
 
-void FineDrawer::DrawBlobs(std::span<const Blob> blobs, const Matrix4& X_camera_world, float pixel) {
-  staging_.clear();
+void FineDrawer::DrawBlobs(std::span<const Blob> blobs, const Viewport& viewport) {
+  corners_.clear();
+  indices_.clear();
+  std::array<std::array<double, 2>, kBlobSides> circle;
+  for (std::uint32_t i = 0; i < kBlobSides; ++i)
+    circle[i] = {std::cos(2 * M_PI * i / kBlobSides), std::sin(2 * M_PI * i / kBlobSides)};
+  const Frame3 X_camera_world(viewport.X_camera_world);
   for (const Blob& blob : blobs) {
+    const Vec3 centre = X_camera_world * blob.centre;
+    if (!IsSeen(centre, 1.5 * blob.radius, viewport)) continue;
     const MaterialLook& look = GetLook(blob.material);
-    const float seed = Shuffle(blob.seed);
-    staging_.push_back({ToFloat(blob.centre),
-                        {},
-                        {static_cast<float>(blob.radius), 0, seed, look.emission},
-                        PickColour(look, Shuffle(blob.seed + 0x9e3779b9U))});
+    const Vec3 to_eye = -math::Normalized(centre);
+    // turned and lumpy: no two alike
+    const Vec3 turned =
+        math::Normalized(Vec3{Shuffle(blob.seed) - 0.5, Shuffle(blob.seed + 1) - 0.5, 0.02}, {1, 0, 0});
+    const Vec3 s = math::Normalized(math::Cross(to_eye, turned)), t = math::Cross(to_eye, s);
+    const double radius = std::max(blob.radius, kLeastPixels * -centre.z / viewport.focal);
+    const auto first = static_cast<std::uint32_t>(corners_.size());
+    const std::array<float, 4> albedo = PickColour(look, blob.seed);
+    corners_.push_back(
+        {ToFloat(centre + (0.6 * radius) * to_eye), ToFloat(to_eye), albedo, {look.emission, 1, 1}});
+    const std::uint32_t lumps = Mix(blob.seed + 2);
+    for (std::uint32_t i = 0; i < kBlobSides; ++i) {
+      const Vec3 out = circle[i][0] * s + circle[i][1] * t;
+      const double lump = 0.85 + 0.35 * ((lumps >> (4 * i)) & 15U) / 15.0;
+      // its rim sinks into what it lies on
+      corners_.push_back(
+          {ToFloat(centre + (lump * radius) * out), ToFloat(out), albedo, {look.emission, 1, 0.7f}});
+      indices_.insert(indices_.end(), {first, first + 1 + i, first + 1 + (i + 1) % kBlobSides});
+    }
   }
-  Draw(blob_, blob_array_, GL_TRIANGLE_FAN, blob_vertices_, X_camera_world, pixel);
+  Draw();
 }
 
-void FineDrawer::Draw(const Program& program, GLuint array, GLenum mode, GLsizei vertices,
-                      const Matrix4& X_camera_world, float pixel) {
-  if (staging_.empty()) return;
-  const auto bytes = static_cast<GLsizeiptr>(staging_.size() * sizeof(Instance));
-  glBindBuffer(GL_ARRAY_BUFFER, instances_);
-  // a fresh store, so that the driver need not wait for the draw that still reads the old one
-  glBufferData(GL_ARRAY_BUFFER, bytes, nullptr, GL_STREAM_DRAW);
-  glBufferSubData(GL_ARRAY_BUFFER, 0, bytes, staging_.data());
+void FineDrawer::Draw() {
+  if (indices_.empty()) return;
+  glUseProgram(program_.name);
+  glBindVertexArray(array_);
+  glBindBuffer(GL_ARRAY_BUFFER, corners_on_card_);
+  // a fresh store each time, so that the driver need not wait for the draw that still reads the old one
+  glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(corners_.size() * sizeof(Corner)), corners_.data(),
+               GL_STREAM_DRAW);
+  glBufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(indices_.size() * sizeof(std::uint32_t)),
+               indices_.data(), GL_STREAM_DRAW);
   glBindBuffer(GL_ARRAY_BUFFER, 0);
-  glUseProgram(program.name);
-  program.Set("u_camera_from_surface", X_camera_world);
-  program.Set("u_least", kLeastPixels * pixel);
-  glBindVertexArray(array);
-  glDrawArraysInstanced(mode, 0, vertices, static_cast<GLsizei>(staging_.size()));
+  glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(indices_.size()), GL_UNSIGNED_INT, nullptr);
 }
 
 }  // namespace trocar::render

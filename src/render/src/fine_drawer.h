@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file fine_drawer.h  Thousands of fibres and blobs in a few calls: one small mesh each, one row of a buffer a piece.
+/// \file fine_drawer.h  Thousands of fibres and blobs in two calls: ribbons and domes that face the eye, in one buffer.
+///
+/// Their corners are worked out here and not by instances of a small mesh: where the processor draws, an instance costs
+/// as much as many triangles.
 #pragma once
 
 #include <epoxy/gl.h>
 
 #include <array>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -13,6 +17,13 @@
 #include "trocar/render/frame.h"
 
 namespace trocar::render {
+
+/// How the picture lies to the camera.
+struct Viewport {
+  math::Pose X_camera_world;
+  double focal = 0;                        ///< pixels at a distance of 1
+  double half_width = 0, half_height = 0;  ///< of the picture [pixels]
+};
 
 /// Needs the OpenGL context of the renderer that owns it.
 class FineDrawer {
@@ -25,32 +36,36 @@ class FineDrawer {
   /// \return kShaderFailed with the compiler's words
   core::Status Make();
 
-  /// Both programs, for the uniforms that the renderer sets once a frame.
-  std::array<Program, 2> Programs() const { return {fibre_, blob_}; }
+  /// For the uniforms that the renderer sets once a frame.
+  const Program& GetProgram() const { return program_; }
 
-  /// \param X_camera_world  column-major
-  /// \param pixel           size of one at a distance of 1 [-]
   /// \pre blending is on
-  void DrawFibres(std::span<const Fibre> fibres, const Matrix4& X_camera_world, float pixel);
-  void DrawBlobs(std::span<const Blob> blobs, const Matrix4& X_camera_world, float pixel);
+  void DrawFibres(std::span<const Fibre> fibres, const Viewport& viewport);
+  void DrawBlobs(std::span<const Blob> blobs, const Viewport& viewport);
+
+  /// Triangles of the last call.
+  std::size_t TriangleCount() const { return indices_.size() / 3; }
 
  private:
-  /// One row of the buffer that both share.
-  struct Instance {
-    std::array<float, 3> a{}, b{};
-    std::array<float, 4> shape{};   // half width, wave, seed, emission
-    std::array<float, 4> colour{};  // albedo, wetness
-    float opacity = 1;
-  };
-  void MakeArray(GLuint& array, GLuint& places, std::span<const std::array<float, 3>> vertices);
-  void Draw(const Program& program, GLuint array, GLenum mode, GLsizei vertices,
-            const Matrix4& X_camera_world, float pixel);
+  static constexpr std::size_t kMostSteps = 4;  // pieces of a fibre
+  static constexpr std::size_t kShapes = 32;
 
-  Program fibre_, blob_;
-  GLuint instances_ = 0;
-  GLuint fibre_array_ = 0, fibre_places_ = 0, blob_array_ = 0, blob_places_ = 0;
-  GLsizei fibre_vertices_ = 0, blob_vertices_ = 0;
-  std::vector<Instance> staging_;  // kept, so that a frame does not allocate
+  /// In the camera's frame.
+  struct Corner {
+    std::array<float, 3> position, normal;
+    std::array<float, 4> albedo;   // and wetness
+    std::array<float, 3> passing;  // emission, opacity, how open it lies
+  };
+  /// How far a fibre leaves its line at each step, along two directions across it, for a wave of 1.
+  using Wave = std::array<std::array<float, 2>, kMostSteps + 1>;
+
+  void Draw();
+
+  Program program_;
+  GLuint array_ = 0, corners_on_card_ = 0, indices_on_card_ = 0;
+  std::array<Wave, kShapes> waves_{};
+  std::vector<Corner> corners_;  // kept, so that a frame does not allocate
+  std::vector<std::uint32_t> indices_;
 };
 
 }  // namespace trocar::render

@@ -4,12 +4,13 @@
 
 namespace trocar::render {
 
-extern const char* const kFibreVertexShader;
-extern const char* const kBlobVertexShader;
-extern const char* const kClearVertexShader;  ///< for surfaces of materials with opacity below 1
+// fibres and blobs: lit at their corners, of which there is one every few pixels
+extern const char* const kFineVertexHead;  ///< goes before kShadingFunctions
+extern const char* const kFineVertexShader;
+extern const char* const kFineFragmentShader;
 
-// these go after kShadingFunctions
-extern const char* const kFineFragmentShader;   ///< fibres and blobs
-extern const char* const kClearFragmentShader;  ///< films, puddles and the pouch; leaves opacity in alpha
+// surfaces of materials with opacity below 1; the fragment shader goes after kShadingFunctions and leaves opacity in alpha
+extern const char* const kClearVertexShader;
+extern const char* const kClearFragmentShader;
 
 }  // namespace trocar::render

@@ -416,7 +416,8 @@ struct Renderer::Content {
   }
 
   /// Everything that light passes through, after what it is seen against.
-  void DrawClear(const Frame& frame, const Pose& X_camera_world, float pixel) {
+  void DrawClear(const Frame& frame, const Viewport& viewport) {
+    const Pose& X_camera_world = viewport.X_camera_world;
     glEnable(GL_BLEND);
     // alpha keeps the brightness of what is behind, for the smoothing of edges
     glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE);
@@ -434,7 +435,7 @@ struct Renderer::Content {
     }
     // ribbons face the eye
     glDisable(GL_CULL_FACE);
-    fine.DrawFibres(frame.fibres, MakeMatrix(X_camera_world), pixel);
+    fine.DrawFibres(frame.fibres, viewport);
     glEnable(GL_CULL_FACE);
     glDepthMask(GL_TRUE);
     glDisable(GL_BLEND);
@@ -465,20 +466,21 @@ Renderer::~Renderer() = default;
 core::Result<Renderer> Renderer::Make() {
   if (const auto status = CheckGraphicsVersion(); !status) return status.error();
   auto content = std::make_unique<Content>();
-  auto tissue = MakeProgram(kSurfaceVertexShader, {kShadingFunctions, kTissueFragmentShader});
+  auto tissue =
+      MakeProgram({kSurfaceVertexShader}, {kFragmentHead, kShadingFunctions, kTissueFragmentShader});
   if (!tissue) return tissue.error();
   content->tissue = *tissue;
-  auto tool = MakeProgram(kSurfaceVertexShader, {kShadingFunctions, kToolFragmentShader});
+  auto tool = MakeProgram({kSurfaceVertexShader}, {kFragmentHead, kShadingFunctions, kToolFragmentShader});
   if (!tool) return tool.error();
   content->tool = *tool;
-  auto clear = MakeProgram(kClearVertexShader, {kShadingFunctions, kClearFragmentShader});
+  auto clear = MakeProgram({kClearVertexShader}, {kFragmentHead, kShadingFunctions, kClearFragmentShader});
   if (!clear) return clear.error();
   content->clear = *clear;
   if (const auto status = content->fine.Make(); !status) return status.error();
-  auto mask = MakeProgram(kMaskVertexShader, {kMaskFragmentShader});
+  auto mask = MakeProgram({kMaskVertexShader}, {kMaskFragmentShader});
   if (!mask) return mask.error();
   content->mask = *mask;
-  auto smooth = MakeProgram(kScreenVertexShader, {kSmoothFragmentShader});
+  auto smooth = MakeProgram({kScreenVertexShader}, {kSmoothFragmentShader});
   if (!smooth) return smooth.error();
   content->smooth = *smooth;
   const NoiseTiles tiles = MakeNoiseTiles(kNoiseSide);
@@ -591,8 +593,7 @@ void Renderer::Draw(const Frame& frame, int width, int height) {
   const Matrix4 projection = MakeProjection(frame.camera, width, height);
   c.SetFrame(c.tool, frame, X_camera_world, projection, width, height);
   c.SetFrame(c.clear, frame, X_camera_world, projection, width, height);
-  for (const Program& program : c.fine.Programs())
-    c.SetFrame(program, frame, X_camera_world, projection, width, height);
+  c.SetFrame(c.fine.GetProgram(), frame, X_camera_world, projection, width, height);
   c.SetFrame(c.tissue, frame, X_camera_world, projection, width, height);
   glVertexAttrib4f(3, 0, 0, 0, 0);  // of surfaces without marks
   glActiveTexture(GL_TEXTURE1);
@@ -611,11 +612,11 @@ void Renderer::Draw(const Frame& frame, int width, int height) {
     if (surface != nullptr && GetLook(surface->material).opacity >= 1.0f)
       c.DrawSurface(*surface, X_camera_world * draw.X_world_surface, {1, 1, 1});
   }
-  const float pixel = F(1.0 / CalcFocalLength(frame.camera, height));
+  const Viewport viewport{X_camera_world, CalcFocalLength(frame.camera, height), 0.5 * width, 0.5 * height};
   glDisable(GL_CULL_FACE);  // blobs face the eye
-  c.fine.DrawBlobs(frame.blobs, MakeMatrix(X_camera_world), pixel);
+  c.fine.DrawBlobs(frame.blobs, viewport);
   glEnable(GL_CULL_FACE);
-  c.DrawClear(frame, X_camera_world, pixel);
+  c.DrawClear(frame, viewport);
 
   glDepthRange(0.0, 1.0);
   if (frame.is_wireframe) glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);

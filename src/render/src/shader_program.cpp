@@ -41,9 +41,9 @@ core::Status CheckGraphicsVersion() {
   return {};
 }
 
-core::Result<Program> MakeProgram(const char* vertex_source,
+core::Result<Program> MakeProgram(std::initializer_list<const char*> vertex_sources,
                                   std::initializer_list<const char*> fragment_sources) {
-  const auto vertex = MakeShader(GL_VERTEX_SHADER, {vertex_source});
+  const auto vertex = MakeShader(GL_VERTEX_SHADER, vertex_sources);
   if (!vertex) return vertex.error();
   const auto fragment = MakeShader(GL_FRAGMENT_SHADER, fragment_sources);
   if (!fragment) {

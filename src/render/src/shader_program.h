@@ -40,7 +40,7 @@ struct Program {
 core::Status CheckGraphicsVersion();
 
 /// \return kShaderFailed with the compiler's words
-core::Result<Program> MakeProgram(const char* vertex_source,
+core::Result<Program> MakeProgram(std::initializer_list<const char*> vertex_sources,
                                   std::initializer_list<const char*> fragment_sources);
 
 }  // namespace trocar::render

@@ -43,12 +43,15 @@ void main() {
 }
 )";
 
-// Shared by both fragment shaders: light, film and mask.
-const char* const kShadingFunctions = R"(#version 330 core
+const char* const kFragmentHead = R"(#version 330 core
 in vec3 v_position;
 in vec3 v_normal;
 in vec4 v_rest;
 out vec4 o_colour;
+)";
+
+// Shared by all that is lit: light, smoke, film and mask.
+const char* const kShadingFunctions = R"(
 uniform vec3 u_light;        // head light beside the lens
 uniform float u_power;       // of the light, in units that a surface 0.1 m away shows unchanged
 uniform vec3 u_mask;         // centre x, y and radius [pixels]; radius 0: none
@@ -61,19 +64,19 @@ float CalcLight(float inverse_distance, float cosine_to_axis) {
 }
 
 // The head light on smoke between lens and tissue.
-vec3 AddSmoke(vec3 light) {
-  vec2 at = 6.0 * v_position.xy / -v_position.z;
+vec3 AddSmoke(vec3 light, vec3 position) {
+  vec2 at = 6.0 * position.xy / -position.z;
   float swirl = sin(at.x + u_smoke.y + 1.3 * sin(at.y - 0.7 * u_smoke.y)) + sin(1.7 * at.y - u_smoke.y + sin(1.9 * at.x));
-  float clear = exp2(u_smoke.x * v_position.z * (1.0 + 0.22 * swirl));
+  float clear = exp2(u_smoke.x * position.z * (1.0 + 0.22 * swirl));
   return mix(vec3(0.66, 0.65, 0.64) * min(u_power, 1.5), light, clear);
 }
 
 // Exposure, film curve, the lens's darker rim, the mask's soft edge, sRGB.
-vec3 Finish(vec3 light) {
-  if (u_smoke.x > 0.0) light = AddSmoke(light);
+vec3 Finish(vec3 light, vec3 position, vec2 pixel) {
+  if (u_smoke.x > 0.0) light = AddSmoke(light, position);
   light = light * (1.0 + 0.20 * light) / (1.0 + light);
   if (u_mask.z > 0.0) {
-    float r = distance(gl_FragCoord.xy, u_mask.xy) / u_mask.z;
+    float r = distance(pixel, u_mask.xy) / u_mask.z;
     light *= (1.0 - 0.45 * r * r * r * r) * clamp((1.0 - r) * 60.0, 0.0, 1.0);
   }
   vec3 s1 = sqrt(min(light, vec3(1.0)));
@@ -146,7 +149,7 @@ void main() {
   float sheen = sheen_share * exp2(18.0 * (half_cosine - 1.0));
   vec3 bounce = vec3(0.060, 0.036, 0.028) * (0.4 + 0.6 * ambient);
   vec3 colour = albedo * (diffuse * shade * light + bounce * (0.4 + light)) + (wet + sheen) * min(light, 2.0) * vec3(1.0, 0.98, 0.95);
-  o_colour = WithBrightness(Finish(2.1 * colour));
+  o_colour = WithBrightness(Finish(2.1 * colour, v_position, gl_FragCoord.xy));
 }
 )";
 
@@ -180,7 +183,7 @@ void main() {
   vec3 colour = base * (0.55 * cosine + 0.04) * light * grooves;
   colour += (u_gloss.z + 0.12 * rim * rim * rim) * room * (0.25 + 0.75 * min(light, 1.5));
   colour += u_gloss.x * (0.30 * streak + 0.8 * point) * min(light, 2.0) * vec3(1.0, 0.98, 0.96);
-  o_colour = WithBrightness(Finish(1.6 * colour));
+  o_colour = WithBrightness(Finish(1.6 * colour, v_position, gl_FragCoord.xy));
 }
 )";
 

@@ -5,7 +5,8 @@
 namespace trocar::render {
 
 extern const char* const kSurfaceVertexShader;  ///< for both fragment shaders below
-extern const char* const kShadingFunctions;     ///< goes before either of them
+extern const char* const kFragmentHead;         ///< goes before either of them
+extern const char* const kShadingFunctions;     ///< goes between
 extern const char* const kTissueFragmentShader;
 extern const char* const kToolFragmentShader;
 extern const char* const kScreenVertexShader;    ///< the picture's circle or rectangle

@@ -7,6 +7,8 @@
 #include <utility>
 
 #include "trocar/core/newest_slot.h"
+#include "trocar/device/hand_rig.h"
+#include "trocar/device/pose_driver.h"
 
 namespace trocar::session {
 namespace {
@@ -42,6 +44,8 @@ void PlaceAtHome(const Scene& scene, device::Driver& driver) noexcept {
 
 struct DeviceThread::Content {
   std::unique_ptr<device::Driver> driver;
+  const device::PoseDriver* tracker = nullptr;  // what of the driver can be calibrated
+  const device::JawSensor* jaws = nullptr;
   core::NewestSlot<DeviceReport> slot;
   DeviceReport report;
   std::atomic<bool> is_stopping{false};
@@ -59,6 +63,26 @@ struct DeviceThread::Content {
   void Nap(double seconds) {
     for (double slept = 0; slept < seconds && !is_stopping.load(std::memory_order_relaxed); slept += kNap)
       device::SystemClock().Sleep(std::min(kNap, seconds - slept));
+  }
+  /// Looks for what can be calibrated in the driver and its parts.
+  void FindParts(device::Driver& part) {
+    if (auto* rig = dynamic_cast<device::HandRig*>(&part)) {
+      FindParts(rig->Hands());
+      FindParts(rig->Jaws());
+    }
+    if (auto* found = dynamic_cast<const device::PoseDriver*>(&part)) tracker = found;
+    if (auto* found = dynamic_cast<const device::JawSensor*>(&part)) jaws = found;
+  }
+  void TakeParts() {
+    for (int channel = 0; channel < device::kChannelCount && tracker != nullptr; ++channel) {
+      const math::Pose* pose = tracker->GetSensorPose(channel);
+      auto& sensor = report.sensors[static_cast<std::size_t>(channel)];
+      sensor = pose != nullptr && report.samples[static_cast<std::size_t>(channel)].is_valid
+                   ? std::optional<math::Pose>(*pose)
+                   : std::nullopt;
+    }
+    for (int tool = 0; tool < device::kJawTools && jaws != nullptr; ++tool)
+      report.raw_jaws[static_cast<std::size_t>(tool)] = jaws->GetRaw(tool);
   }
   bool Connect();
   void Run();
@@ -90,6 +114,8 @@ void DeviceThread::Content::Run() {
     }
     switch (driver->Read(report.samples)) {
       case device::ReadStatus::kFresh:
+        ++report.reads;
+        TakeParts();
         Publish();
         break;
       case device::ReadStatus::kUnchanged:
@@ -97,6 +123,8 @@ void DeviceThread::Content::Run() {
       case device::ReadStatus::kNotActive:
       case device::ReadStatus::kLost:
         ++report.losses;
+        report.sensors = {};
+        report.raw_jaws = {};
         Say(DeviceReport::Phase::kLost,
             core::Error{core::ErrorCode::kDeviceLost, driver->GetName() + " was lost; check plug and power"}
                 .Text());
@@ -110,6 +138,7 @@ void DeviceThread::Content::Run() {
 
 DeviceThread::DeviceThread(std::unique_ptr<device::Driver> driver) : content_(std::make_unique<Content>()) {
   content_->driver = std::move(driver);
+  content_->FindParts(*content_->driver);
   content_->report.message = content_->driver->GetName() + " is being connected";
   content_->Publish();
   content_->slot.Update();

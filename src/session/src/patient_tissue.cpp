@@ -188,7 +188,9 @@ void AddTube(const anatomy::Tube& tube, const OrganMaterial& material, PatientTi
     definition.shape_stiffness.push_back(material.foundation_modulus / material.depth * 2.0 * radius *
                                          spacing);
     definition.mass.push_back(material.density * M_PI * radius * radius * spacing);
-    made.heat_mass.push_back(definition.mass.back());
+    // what warms is the wall
+    const double inside = std::max(0.0, radius - material.wall_thickness);
+    made.heat_mass.push_back(material.density * M_PI * (radius * radius - inside * inside) * spacing);
   }
   const auto join = [&](std::uint32_t i, std::uint32_t step, double share) {
     const double length = math::Distance(tube.line.points[i], tube.line.points[i + step]);

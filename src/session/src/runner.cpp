@@ -167,5 +167,8 @@ const Scene& Runner::GetScene() const {
 std::span<const SurfaceInfo> Runner::Surfaces() const {
   return content_->simulation.Surfaces();
 }
+std::span<const StrandInfo> Runner::Strands() const {
+  return content_->simulation.Strands();
+}
 
 }  // namespace trocar::session

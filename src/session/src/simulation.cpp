@@ -63,7 +63,7 @@ struct Simulation::Content {
 
   // state
   std::unique_ptr<Operation> operation;
-  tissue::TissueDefinition definition;
+  tissue::TissueDefinition definition_now;
   std::uint32_t topology_version = 0;
   std::uint64_t tick = 0;
   tissue::TissueState tissue;
@@ -96,7 +96,7 @@ struct Simulation::Content {
   std::vector<std::uint32_t> torn_springs;  // (springs) those of the walls that tore in this tick, first
   std::size_t torn_spring_count = 0;
   HandsNow hands;
-  int threads = 1;
+  int thread_count = 1;
   Snapshot snapshot;
   std::unique_ptr<haptics::PatchCutter> patch_cutter;
 
@@ -191,8 +191,8 @@ void Simulation::Content::ActOnTissue() noexcept {
 }
 
 TissueNow Simulation::Content::GetTissue() noexcept {
-  return {&tissue_model, &definition,    &tissue,       conservation.get(),
-          &conserved,    touch.Organs(), &touch.Tubes()};
+  return {&tissue_model, &definition_now, &tissue,       conservation.get(),
+          &conserved,    touch.Organs(),  &touch.Tubes()};
 }
 
 /// What the tools do beyond grasping and pushing.
@@ -215,8 +215,8 @@ void Simulation::Content::Operate(const Input& input) noexcept {
 /// Takes a cut into model, solver, volumes and contacts, in the tick that made it. Allocates.
 void Simulation::Content::ChangeTopology() {
   const surgery::TopologyChange& change = operation->Change();
-  const auto origins = surgery::ApplyChange(change, definition);
-  tissue_model = tissue::MakeTissueModel(definition);
+  const auto origins = surgery::ApplyChange(change, definition_now);
+  tissue_model = tissue::MakeTissueModel(definition_now);
   surgery::ApplyChange(change, origins, tissue_model, tissue);
   // a spring that is new is part of the organ whose node it has
   std::vector<std::int32_t> organs(origins.size(), -1);
@@ -234,7 +234,7 @@ void Simulation::Content::ChangeTopology() {
 
 /// Builds anew what was made for the model of before.
 void Simulation::Content::FollowTopology() {
-  MakeSolver(threads, SolveOn::kProcessor);
+  MakeSolver(thread_count, SolveOn::kProcessor);
   std::vector<geometry::TriangleMesh> meshes;
   std::vector<tissue::ClosedOrgan> closed;
   for (std::size_t i = 0; i < scene->patient.organs.size(); ++i) {
@@ -392,8 +392,8 @@ void Simulation::Content::Reset() {
   tissue = tissue_at_start;
   conserved = conserved_at_start;
   if (was_cut) {
-    definition = definition_at_start;
-    tissue_model = tissue::MakeTissueModel(definition);
+    definition_now = definition_at_start;
+    tissue_model = tissue::MakeTissueModel(definition_now);
     spring_organs = spring_organs_at_start;
     spring_areas = spring_areas_at_start;
     torn_springs.resize(tissue_model.SpringCount());
@@ -489,13 +489,13 @@ core::Result<Simulation> Simulation::Make(std::shared_ptr<const Scene> scene, in
   content->scene = std::move(scene);
   content->tissue_model = tissue::MakeTissueModel(made->definition);
   content->patch_cutter = std::make_unique<haptics::PatchCutter>(content->tissue_model.Size());
-  content->threads = std::max(1, threads);
-  content->MakeSolver(content->threads, solve_on);
+  content->thread_count = std::max(1, threads);
+  content->MakeSolver(content->thread_count, solve_on);
   if (is_operation) {
     auto operation = Operation::Make(*content->scene, *made);
     if (!operation.ok()) return operation.error();
     content->operation = std::move(*operation);
-    content->definition = content->definition_at_start = made->definition;
+    content->definition_now = content->definition_at_start = made->definition;
   }
   content->surfaces = std::move(made->surfaces);
   made->conservation.imaging_gravity = kImagingGravity;
@@ -548,7 +548,9 @@ void Simulation::Step(const Input& input) noexcept {
   timed(Stage::kUpdateHierarchy, [&] { c.UpdateHierarchy(); });
   timed(Stage::kDetectEvents, [&] {
     c.DetectEvents();
-    if (c.operation != nullptr) c.operation->Judge(c.hands, c.GetTissue());
+    if (c.operation == nullptr) return;
+    c.hands.changes = c.changes;  // a grasp may have slipped in the solve
+    c.operation->Judge(c.hands, c.GetTissue());
   });
   timed(Stage::kPublish, [&] { c.Publish(input); });
   c.snapshot.stage_seconds = seconds;
@@ -581,7 +583,7 @@ void Simulation::CutPatch(Hand hand, haptics::LocalPatch& patch) noexcept {
   content_->patch_cutter->Cut(
       {c.tissue_model, c.tissue, c.load, contacts.springs, std::span(hands).first(contacts.links.size()),
        static_cast<std::uint8_t>(hand), c.grasps[hand].Nodes(), c.touch.Device(hand), c.forces[hand],
-       c.verdict == tissue::GuardVerdict::kGood, c.tick},
+       c.verdict == tissue::GuardVerdict::kGood, c.tick, true, c.scene->instruments[hand].p_world_port},
       patch);
 }
 

@@ -187,8 +187,8 @@ std::span<const tissue::ContactSpring> ToolContacts::Find(const Scene& scene, co
     surgery::FindOrganContacts(organs_, tissue.position, organ_settings_, pair, contacts_);
   }
   for (const surgery::CavityContact& contact : cavity_contacts_) {
-    surgery::FindCavityContacts(cavity_, organs_, tissue.position, surface_motion_[contact.organ],
-                                cavity_settings_, contact, contacts_);
+    surgery::FindCavityContacts(cavity_, organs_, tissue.position, positions_before_, cavity_settings_,
+                                contact, contacts_);
   }
   std::copy(tissue.position.begin(), tissue.position.end(), positions_before_.begin());
   return contacts_.springs;

@@ -104,12 +104,12 @@ void FollowOrgan(const Cavity& cavity, std::span<const OrganSurface> organs, std
 }
 
 void FindCavityContacts(const Cavity& cavity, std::span<const OrganSurface> organs,
-                        std::span<const Vec3> positions, double motion, const CavityContactSettings& settings,
-                        const CavityContact& contact, ContactSet& contacts) noexcept {
+                        std::span<const Vec3> positions, std::span<const Vec3> positions_before,
+                        const CavityContactSettings& settings, const CavityContact& contact,
+                        ContactSet& contacts) noexcept {
   const OrganSurface& surface = organs[contact.organ];
   // what lies still at a wall has the whole play left
   constexpr double kShareOfPlay = 0.9;
-  const double ahead = kShareOfPlay * settings.play + std::min(motion, kMostMotion);
   // a spring has three nodes; two of them bear nothing
   const std::uint32_t first = surface.first_node;
   for (std::uint32_t i = 0; i < surface.node_count; ++i) {
@@ -118,7 +118,8 @@ void FindCavityContacts(const Cavity& cavity, std::span<const OrganSurface> orga
     const auto rooms = cavity.FindRooms(p);
     for (int part = 0; part < kCavityParts; ++part) {
       const double room = rooms[part].distance - contact.allowed[i][part];
-      if (!(room < ahead)) continue;
+      const double outwards = -math::Dot(rooms[part].inwards, p - positions_before[first + i]);
+      if (!(room < kShareOfPlay * settings.play + std::clamp(outwards, 0.0, kMostMotion))) continue;
       if (contacts.springs.size() == ContactSet::kCapacity) {
         ++contacts.dropped;
         continue;

@@ -99,6 +99,11 @@ void AddContact(const Search& search, const Meeting& meeting, std::size_t surfac
   link.hand = search.motion.hand;
   link.surface = static_cast<std::uint8_t>(surface);
   link.is_pinch = IsPinch(search.body, search.motion.X_world_device, meeting.normal);
+  // blades and the legs of a clip close around what lies between them; they do not squeeze it out
+  const instrument::ToolKind kind = search.motion.tool->kind;
+  if (link.is_pinch &&
+      (kind == instrument::ToolKind::kScissors || kind == instrument::ToolKind::kClipApplier))
+    return;
   link.p_device = p_device;
   link.p_tool_stuck = math::Inverse(search.motion.X_world_device) * stuck;
   AddSpring({meeting.nodes, meeting.weights, meeting.normal,
@@ -259,10 +264,10 @@ std::array<Capsule, kToolBodyCount> CalcToolBodies(const instrument::Tool& tool,
   for (int i = 0; i < kToolBodyCount; ++i) {
     bodies[i] = {{X_world_tool * parts[i]->a, X_world_tool * parts[i]->b}, parts[i]->radius};
   }
-  // the jaw's round end lies where the metal ends
-  for (int jaw_body = 0; jaw_body < 2; ++jaw_body) {
-    Segment& axis = bodies[jaw_body].axis;
-    axis.start = math::Lerp(axis.start, axis.end, bodies[jaw_body].radius / tool.jaw_length);
+  // round ends lie where the metal ends: the jaws' at their tips, the shaft's at the hinge
+  for (Capsule& body : bodies) {
+    const double length = math::Distance(body.axis.start, body.axis.end);
+    body.axis.start = math::Lerp(body.axis.start, body.axis.end, std::min(1.0, body.radius / length));
   }
   return bodies;
 }

@@ -107,7 +107,7 @@ template <bool kHasWest, bool kIsAligned, bool kIsHalo>
 void StepRow(const GridStep& s, std::uint32_t row, LargestResidual& largest) {
   const std::size_t stride = s.stride;
   const float* springs = row + 1 == s.rows ? s.last_springs : s.springs + std::size_t{row} * s.spring_row;
-  const float* node = s.nodes + std::size_t{row} * 5 * stride;
+  const float* node = s.nodes + std::size_t{s.node_rows[row]} * 5 * stride;
   const float* const u = s.u + 3 * row * stride;
   const float* const below = u + 3 * stride;
   float* const previous = s.previous + 3 * row * stride;

@@ -122,6 +122,8 @@ struct GridStep {
   bool is_aligned;  // rest offsets: x alone to the east, y alone to the south, no z
   const float*
       nodes;  // (rows, stride / kSliceNodes, 5, kSliceNodes): load x, y, z [N], k_virtual [N/m], step [m/N]
+  const std::uint32_t*
+      node_rows;         // (rows) which row of `nodes` each has: most are alike, and stay in the cache
   const float* u;        // (rows + 1, 3, stride) displacements [m], one block of margin on either side
   float* previous;       // the same, of the iteration before; receives the next
   float omega, damping;  // of Chebyshev's recurrence [-]

@@ -11,7 +11,7 @@ namespace trocar::tissue {
 namespace {
 
 /// Slices a thread takes at a time; fixed, so that sums do not depend on the number of threads.
-constexpr std::uint32_t kChunkSlices = 32;
+constexpr std::uint32_t kChunkSlices = 28;
 
 /// Springs, then strands, of each node, in the model's order.
 void SetGraph(const TissueModel& model, NodeGraph& graph, std::vector<double>& stiffness) {

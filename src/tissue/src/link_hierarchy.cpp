@@ -11,8 +11,8 @@
 namespace trocar::tissue {
 namespace {
 
-/// Slices a thread takes at a time; fixed, so that results do not depend on the number of threads.
-constexpr std::uint32_t kChunkSlices = 64;
+/// Slices a thread takes at a time: eight parts of a patient, so that two or four threads have the same to do.
+constexpr std::uint32_t kChunkSlices = 28;
 /// A level this small is solved directly.
 constexpr std::uint32_t kDirectNodes = 24;
 /// Passes of pairwise joining for one level: up to 2^n nodes in an aggregate.

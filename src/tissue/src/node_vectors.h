@@ -13,7 +13,7 @@
 namespace trocar::tissue {
 
 /// Nodes a thread takes at a time; fixed, so that sums do not depend on the number of threads.
-inline constexpr std::uint32_t kVectorChunk = 2048;
+inline constexpr std::uint32_t kVectorChunk = 896;
 
 /// Calls work(first, last, chunk) for every chunk of `count` nodes; chunks begin at whole slices.
 template <typename Work>

@@ -186,6 +186,7 @@ SpringGrid::SpringGrid(const GridModel& model)
   for (std::uint32_t column = 0; column < columns; ++column)
     set(last_springs_, column, (rows - 1) * columns + column);
   nodes_.assign(std::size_t{rows} * stride_ * 5, 0.0f);
+  node_rows_.assign(rows, 0);
   u_.assign(std::size_t{rows + 1} * stride_ * 3 + 2 * kMargin, 0.0f);
   previous_ = u_;
   const std::uint32_t chunks = (rows + kChunkRows - 1) / kChunkRows;
@@ -220,6 +221,13 @@ void SpringGrid::SetLoad(const GridLoad& load, double scale) noexcept {
     if (!is_free) continue;
     lowest_ = std::min(lowest_, load.shape[node] / bound);
     smallest_shape_ = std::min(smallest_shape_, load.shape[node]);
+  }
+  const std::size_t row_floats = std::size_t{stride_} * 5;
+  for (std::uint32_t row = 1; row < rows; ++row) {
+    const float* const here = nodes_.data() + row * row_floats;
+    const bool is_alike =
+        std::equal(here, here + row_floats, nodes_.data() + node_rows_[row - 1] * row_floats);
+    node_rows_[row] = is_alike ? node_rows_[row - 1] : row;
   }
 }
 
@@ -264,7 +272,7 @@ double SpringGrid::Step(const Kernels& kernels, Workers& workers, float omega, f
   step.springs = springs_.data(), step.last_springs = last_springs_.data();
   step.spring_row = is_alike_ ? 0 : stride_ * kGridDirections * 5;
   step.has_south_west = has_south_west_, step.is_aligned = is_aligned_;
-  step.nodes = nodes_.data();
+  step.nodes = nodes_.data(), step.node_rows = node_rows_.data();
   step.u = u_.data() + kMargin, step.previous = previous_.data() + kMargin;
   step.omega = omega, step.damping = damping, step.is_first = is_first, step.is_measured = is_measured;
   workers.Run(chunks, [&](std::uint32_t chunk) {

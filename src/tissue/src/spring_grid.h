@@ -107,6 +107,7 @@ class SpringGrid {
   std::vector<double> unscaled_;               // (nodes, directions, 2) k and k l
   std::vector<double> sum_stiffness_;          // (nodes) of all springs at the node
   std::vector<float> nodes_, u_, previous_, reaction_;
+  std::vector<std::uint32_t> node_rows_;  // as in GridStep
   double lowest_ = 0, smallest_shape_ = 0;
 };
 

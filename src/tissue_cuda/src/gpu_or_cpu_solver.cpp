@@ -31,6 +31,11 @@ GpuOrCpuSolver::GpuOrCpuSolver(const tissue::TissueModel& model, int threads, co
 
 GpuOrCpuSolver::~GpuOrCpuSolver() = default;
 
+void GpuOrCpuSolver::Follow(const tissue::TissueModel& model) {
+  gpu_.reset();
+  EquilibriumSolver::Follow(model);
+}
+
 tissue::SolveReport GpuOrCpuSolver::Solve(const tissue::SolverSettings& settings,
                                           const tissue::TissueLoad& load, tissue::TissueState& state,
                                           const tissue::SolveHook* hook) noexcept {

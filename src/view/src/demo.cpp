@@ -75,7 +75,8 @@ core::Result<DemoReport> PlayDemonstration(std::shared_ptr<const session::Scene>
   if (!context) return context.error();
   auto target = render::OffscreenTarget::Make(options.width, options.height);
   if (!target) return target.error();
-  auto view = LaparoscopeView::Make(*scene, simulation->Surfaces(), simulation->GetSnapshot());
+  auto view =
+      LaparoscopeView::Make(*scene, simulation->Surfaces(), simulation->GetSnapshot(), simulation->Strands());
   if (!view) return view.error();
   view->SetOptions(options.view);
 
@@ -90,6 +91,9 @@ core::Result<DemoReport> PlayDemonstration(std::shared_ptr<const session::Scene>
     video.emplace(std::move(*made));
   }
 
+  if (options.on_start) {
+    if (auto status = options.on_start(*simulation); !status) return status.error();
+  }
   const std::vector<double> picture_times = FindPictureTimes(options, *duration);
   const auto frame_count =
       static_cast<std::uint64_t>(std::floor(*duration * options.frames_per_second + 1e-9)) + 1;

@@ -66,17 +66,21 @@ void AddSparks(render::Frame& frame, const instrument::Tool& tool, const Pose& X
 }  // namespace
 
 void HandTools::Add(render::Renderer& renderer, const session::Scene& scene) {
+  const auto upload = [&renderer](const instrument::Tool& tool) {
+    ShownTool shown{tool, {}};
+    for (const instrument::ToolPart& part : instrument::MakeParts(tool))
+      shown.parts.push_back({part.kind, renderer.AddSurface(part.mesh, MaterialOf(tool.kind, part.kind))});
+    return shown;
+  };
+  assistant_ = upload(*instrument::FindTool("grasper"));
   for (std::size_t i = 0; i < hands_.size(); ++i) {
     const session::InstrumentSetup& setup = scene.instruments[i];
     Hand& hand = hands_[i];
     hand.p_world_port = setup.p_world_port;
     double widest = 0;
     const auto add = [&](const instrument::Tool& tool) {
-      ShownTool shown{tool, {}};
-      for (const instrument::ToolPart& part : instrument::MakeParts(tool))
-        shown.parts.push_back({part.kind, renderer.AddSurface(part.mesh, MaterialOf(tool.kind, part.kind))});
       widest = std::max(widest, tool.shaft_radius);
-      hand.tray.push_back(std::move(shown));
+      hand.tray.push_back(upload(tool));
     };
     for (const instrument::Tool& tool : setup.tray) add(tool);
     if (setup.tray.empty()) add(setup.tool);
@@ -102,6 +106,19 @@ void HandTools::AddTo(render::Frame& frame, const session::Snapshot& snapshot) c
     if (snapshot.operation.has_current[i])
       AddSparks(frame, shown.tool, now.X_world_tool, snapshot.tick, static_cast<std::uint32_t>(i));
   }
+  AddAssistant(frame, snapshot);
+}
+
+void HandTools::AddAssistant(render::Frame& frame, const session::Snapshot& snapshot) const {
+  const session::OperationSnapshot& operation = snapshot.operation;
+  if (!operation.has_assistant) return;
+  for (const Part& part : assistant_.parts) {
+    const Pose X_tool_part = instrument::CalcPartPose(assistant_.tool, part.kind, operation.assistant_jaw);
+    frame.surfaces.push_back({part.surface, operation.X_world_assistant * X_tool_part});
+  }
+  frame.shades.push_back({operation.X_world_assistant * Vec3{0, 0, 0.5 * assistant_.tool.jaw_width},
+                          operation.X_world_assistant * Vec3{0, 0, kShadeLength},
+                          assistant_.tool.shaft_radius});
 }
 
 }  // namespace trocar::view

@@ -16,7 +16,7 @@ class HandTools {
  public:
   /// Uploads every tool of both trays, so that an exchange shows at once.
   void Add(render::Renderer& renderer, const session::Scene& scene);
-  /// Adds tools, sleeves, the shade that they throw and sparks.
+  /// Adds tools, the assistant's grasper, sleeves, the shade that they throw and sparks.
   void AddTo(render::Frame& frame, const session::Snapshot& snapshot) const;
 
  private:
@@ -33,7 +33,10 @@ class HandTools {
     math::Vec3 p_world_port;
     render::SurfaceId sleeve;
   };
+  void AddAssistant(render::Frame& frame, const session::Snapshot& snapshot) const;
+
   std::array<Hand, session::kHandCount> hands_;
+  ShownTool assistant_;  // the third grasper
 };
 
 }  // namespace trocar::view

@@ -17,7 +17,7 @@ using render::Material;
 
 constexpr double kFibreWidth = 0.00022;                    // m, of areolar tissue
 constexpr double kAdhesionWidth = 0.0007;                  // m
-constexpr double kEndSpread = 0.0007;                      // m, between the roots of a strand's fibres
+constexpr double kEndSpread = 0.0007;                      // m, of a fibre's root about its node
 constexpr double kFatRadius = 0.0021;                      // m, of a lobule, 0.7 to 1.3 times
 constexpr double kFatSpread = 0.0016;                      // m, from the strand
 constexpr double kFilmOverlap = 1.6;                       // breadth of a film in distances to its neighbour
@@ -70,20 +70,19 @@ void StrandField::AddTo(render::Frame& frame, const session::Snapshot& snapshot)
     const double wave = CalcWave(strand.rest_length, math::Distance(a, b));
     const auto seed = static_cast<std::uint32_t>(i);
     math::Random random(i);
-    const auto add_fibre = [&](double width, std::uint32_t own) {
+    const auto add_fibre = [&](double width) {
       frame.fibres.push_back({a + PickOffset(random, kEndSpread), b + PickOffset(random, kEndSpread), width,
-                              wave, Material::kFibre, 3 * seed + own});
+                              wave, Material::kFibre, 3 * seed});
     };
     switch (strand.info.kind) {
       case Kind::kBed:
-        add_fibre(kFibreWidth, 0);
-        add_fibre(0.7 * kFibreWidth, 1);
+        add_fibre(kFibreWidth * random.Uniform(0.7, 1.5));
         break;
       case Kind::kAdhesion:
-        add_fibre(kAdhesionWidth, 0);
+        add_fibre(kAdhesionWidth);
         break;
       case Kind::kTriangle:
-        add_fibre(kFibreWidth, 0);
+        add_fibre(kFibreWidth);
         for (const double along : {0.3, 0.7}) {
           const Vec3 centre =
               math::Lerp(a, b, along + random.Uniform(-0.15, 0.15)) + PickOffset(random, kFatSpread);

@@ -345,6 +345,15 @@ TEST_F(OperationViewTest, SmokeVeilsThePictureAndClears) {
   EXPECT_EQ(Draw(), clear);
 }
 
+TEST_F(OperationViewTest, TheAssistantsGrasperIsSeenWhenThereIsOne) {
+  MakeView();
+  const Image alone = Draw();
+  now_.operation.X_world_assistant = {math::RotationAbout({1, 0, 0}, -0.5 * M_PI), {-0.025, 0.0, -0.09}};
+  EXPECT_EQ(Draw(), alone);
+  now_.operation.has_assistant = true;
+  EXPECT_GT(CountChanges(alone, Draw(), {-0.025, 0.015, -0.09}, 0.02).near, 100);
+}
+
 TEST_F(OperationViewTest, CurrentSparksAtTheElectrode) {
   now_.operation.tools[0] = 2;
   MakeView();

@@ -16,7 +16,11 @@ constexpr double kNear = 0.0025;   // the tip has come to where the hand wants i
 constexpr double kPatience = 1.2;  // for one fibre [s]
 constexpr std::uint8_t kMostAttempts = 3;
 constexpr double kMainDistance = 0.0085;  // from ducts that must stay, where no fibre is burnt [m]
-constexpr double kCameraRate = 0.25;      // [rad/s]
+/// Where the left hand holds the gallbladder: from the neck towards the fundus, and off the bed [m].
+constexpr double kHoldBack = 0.020, kHoldBeside = 0.012;
+constexpr double kPeelRate = 0.0012;  // of the hand that draws the gallbladder off its bed [m/s]
+constexpr double kBlocked = 0.5;      // after which a hook that does not get there turns back [s]
+constexpr double kCameraRate = 0.25;  // [rad/s]
 
 Vec3 MeanPort(const Scene& scene) {
   return 0.5 * (scene.instruments[kLeft].p_world_port + scene.instruments[kRight].p_world_port);
@@ -78,6 +82,9 @@ void CholecystectomySurgeon::Learn() {
     if (strand.kind == StrandInfo::Kind::kBed) bed_normal_ += rest_[strand.a] - rest_[strand.b];
   }
   bed_normal_ = math::Normalized(bed_normal_, {0, -1, 0});
+  // beside the neck, so that both tools have room
+  const Vec3 axis = math::Normalized(landmark("fundus") - landmark("infundibulum"));
+  hold_ = FindNode(gallbladder, landmark("infundibulum") + kHoldBack * axis + kHoldBeside * bed_normal_);
 }
 
 std::uint32_t CholecystectomySurgeon::FindNode(std::int32_t organ, const Vec3& p) const {
@@ -145,17 +152,18 @@ void CholecystectomySurgeon::Wait(double seconds) {
       seconds + 1.0);
 }
 
-void CholecystectomySurgeon::Exchange(int hand, instrument::ToolKind kind) {
+void CholecystectomySurgeon::Exchange(int hand, instrument::ToolKind kind, bool over_field) {
   const auto& tray = scene_->instruments[static_cast<std::size_t>(hand)].tray;
   const auto found =
       std::find_if(tray.begin(), tray.end(), [&](const instrument::Tool& tool) { return tool.kind == kind; });
   const auto index = static_cast<std::uint8_t>(found - tray.begin());
   // a tool goes in over the field, in the picture
-  Reach(hand, [this, hand](const Snapshot& seen) {
-    const Vec3 field = seen.positions[neck_];
-    return field + 0.045 * math::Normalized(HandOf(hand).Port() - field);
-  });
-  Jaw(hand, 0.0);
+  if (over_field) {
+    Reach(hand, [this, hand](const Snapshot& seen) {
+      const Vec3 field = seen.positions[neck_];
+      return field + 0.045 * math::Normalized(HandOf(hand).Port() - field);
+    });
+  }
   Add(
       "exchange " + (found != tray.end() ? found->name : std::string("nothing")),
       [this, hand, index](const Snapshot&) { controls_[static_cast<std::size_t>(hand)].tool = index; },
@@ -163,10 +171,11 @@ void CholecystectomySurgeon::Exchange(int hand, instrument::ToolKind kind) {
         return seen.operation.tools[static_cast<std::size_t>(hand)] == index;
       },
       6.0);
-  Wait(0.4);
+  // what comes in comes in closed; an open clip applier that closes would lose its clip
+  Jaw(hand, 0.0);
 }
 
-void CholecystectomySurgeon::Grasp(int hand, const Place& at) {
+void CholecystectomySurgeon::Grasp(int hand, const Place& at, double squeeze) {
   Jaw(hand, 0.8);
   Reach(hand, [this, hand, at](const Snapshot& seen) {
     const Vec3 p = at(seen);
@@ -180,7 +189,7 @@ void CholecystectomySurgeon::Grasp(int hand, const Place& at) {
         return p - 0.005 * math::Normalized(HandOf(hand).Port() - p);
       },
       0.5);
-  Jaw(hand, 0.0);
+  Jaw(hand, squeeze);
   Wait(0.2);
 }
 
@@ -223,7 +232,8 @@ void CholecystectomySurgeon::PlaceClip(std::size_t tube, double share, double be
   Add(
       "close the clip", [this](const Snapshot&) { HandOf(kRight).SetJaw(0.0); },
       [this](const Snapshot&) { return act_seconds_ > 0.7; }, 2.0);
-  Jaw(kRight, 1.0);
+  // open enough to leave the clip, not so far that the next one comes
+  Jaw(kRight, 0.4);
   Reach(
       kRight, [aim](const Snapshot& seen) { return aim(seen, -0.020); }, 0.6);
 }
@@ -241,12 +251,12 @@ void CholecystectomySurgeon::CutTube(std::size_t tube, double share) {
         const Vec3 shaft = math::Normalized(p - HandOf(kRight).Port());
         HandOf(kRight).Turn(
             FindSpin(HandOf(kRight).Port(), p, math::Cross(shaft, TubeDirection(seen, tube, share))));
-        HandOf(kRight).SetJaw(0.75 * instrument::FindTool("scissors")->max_jaw);
+        HandOf(kRight).SetJaw(instrument::FindTool("scissors")->max_jaw);
         HandOf(kRight).MoveTo(aim(seen, -0.012));
       },
       [this](const Snapshot&) { return !HandOf(kRight).IsMoving() && !HandOf(kRight).IsTurning(); }, 5.0);
   Reach(
-      kRight, [aim, blades](const Snapshot& seen) { return aim(seen, 0.45 * blades); }, 0.4);
+      kRight, [aim, blades](const Snapshot& seen) { return aim(seen, 0.4 * blades); }, 0.4);
   Add(
       "cut", [this](const Snapshot&) { HandOf(kRight).SetJaw(0.0); },
       [this](const Snapshot&) { return act_seconds_ > 0.7; }, 2.0);
@@ -267,14 +277,15 @@ void CholecystectomySurgeon::Burn(int hand, const Place& at, double seconds) {
 }
 
 void CholecystectomySurgeon::Dissect(const std::string& what, std::vector<std::uint32_t> strands,
-                                     std::vector<double> order, double enough) {
+                                     std::vector<double> order, double enough, double traction) {
   auto work = std::make_shared<Dissection>();
   work->attempts.assign(strands.size(), 0);
   work->strands = std::move(strands);
   work->order = std::move(order);
   work->enough = enough;
+  work->traction = traction;
   Add(
-      "dissect " + what, [](const Snapshot&) {},
+      "dissect " + what, [this, work](const Snapshot&) { work->p_hold = HandOf(kLeft).Tip(); },
       [this, work](const Snapshot& seen) { return GoOnDissecting(*work, seen); }, 1200.0);
 }
 
@@ -288,7 +299,7 @@ bool CholecystectomySurgeon::GoOnDissecting(Dissection& work, const Snapshot& se
     pedals.coagulate = false;
     work.is_burning = false;
     work.target = -1;
-    work.seconds = 0;
+    work.seconds = work.blocked = 0;
   };
   if (work.target >= 0) {
     const std::uint32_t strand = work.strands[static_cast<std::size_t>(work.target)];
@@ -306,7 +317,8 @@ bool CholecystectomySurgeon::GoOnDissecting(Dissection& work, const Snapshot& se
         // the fibre has moved on while the hand went there
         if (math::Distance(HandOf(kRight).Tip(), tip) > 0.0008) HandOf(kRight).MoveTo(tip, kHurriedHook);
         pedals.coagulate = is_there;
-        if (!is_there && work.seconds > kPatience) {
+        work.blocked = is_there ? 0.0 : work.blocked + scene_->tick_seconds;
+        if (work.blocked > kBlocked || (!is_there && work.seconds > kPatience)) {
           ++work.attempts[static_cast<std::size_t>(work.target)];
           next();
         }
@@ -328,6 +340,17 @@ bool CholecystectomySurgeon::GoOnDissecting(Dissection& work, const Snapshot& se
   }
   const double parted =
       1.0 - static_cast<double>(left) / static_cast<double>(std::max<std::size_t>(1, work.strands.size()));
+  // what could not be reached may be, now that more has given way
+  if (parted > work.parted_at_reset + 0.03) {
+    std::fill(work.attempts.begin(), work.attempts.end(), std::uint8_t{0});
+    work.parted_at_reset = parted;
+  }
+  // the other hand takes up the slack
+  if (work.traction > 0.0 && !HandOf(kLeft).IsMoving() && seen.instruments[kLeft].is_grasping) {
+    const double drawn = std::min(work.traction, std::max(work.traction * parted, kPeelRate * act_seconds_));
+    const Vec3 wanted = work.p_hold + drawn * bed_normal_;
+    if (math::Distance(wanted, HandOf(kLeft).Tip()) > 0.002) HandOf(kLeft).MoveTo(wanted, 0.2);
+  }
   if (work.target < 0 || parted >= work.enough) {
     next();
     return true;
@@ -368,7 +391,7 @@ void CholecystectomySurgeon::PlanOperation() {
       },
       8.0);
   Wait(1.5);
-  Grasp(kLeft, neck);
+  Grasp(kLeft, [this](const Snapshot& seen) { return seen.positions[hold_]; });
   Draw(kLeft, 0.006 * duct_way + 0.003 * bed_normal_);
   LookAt(neck, 0.0, 0.075);
 
@@ -401,7 +424,7 @@ void CholecystectomySurgeon::PlanOperation() {
     }
   }
   (void)organs;
-  Dissect("the hepatocystic triangle", triangle, triangle_order, 0.995);
+  Dissect("the hepatocystic triangle", triangle, triangle_order, 0.995, 0.0);
   // the lower third of the bed
   const double third = 0.42 * math::Norm(axis);
   std::vector<std::uint32_t> lower;
@@ -412,7 +435,7 @@ void CholecystectomySurgeon::PlanOperation() {
     lower_order.push_back(bed_order[i]);
   }
   Draw(kLeft, 0.006 * bed_normal_);
-  Dissect("the lower third of the bed", lower, lower_order, 1.0);
+  Dissect("the lower third of the bed", lower, lower_order, 0.97, 0.035);
 
   // both views
   const Place triangle_middle = [this, duct](const Snapshot& seen) { return TubePoint(seen, duct, 0.5); };
@@ -435,7 +458,7 @@ void CholecystectomySurgeon::PlanOperation() {
 
   Exchange(kRight, instrument::ToolKind::kHook);
   Draw(kLeft, 0.012 * bed_normal_);
-  Dissect("the gallbladder from its bed", bed, bed_order, 1.0);
+  Dissect("the gallbladder from its bed", bed, bed_order, 1.0, 0.070);
 
   Add(
       "assistant: release", [this](const Snapshot&) { assistant_ = AssistantCommand::kRelease; },
@@ -465,7 +488,6 @@ void CholecystectomySurgeon::PlanFlaw(OperationFlaw flaw) {
   const std::size_t duct = FindTube("cystic_duct"), artery = FindTube("cystic_artery"),
                     main = FindTube("common_hepatic_duct");
   const Place liver = [this](const Snapshot& seen) { return seen.positions[liver_node_]; };
-  const Place neck = [this](const Snapshot& seen) { return seen.positions[neck_]; };
   const auto clip = [this] { Exchange(kRight, ToolKind::kClipApplier); };
   const auto scissors = [this] { Exchange(kRight, ToolKind::kScissors); };
   const auto tube_at = [this](std::size_t tube, double share) -> Place {
@@ -480,10 +502,10 @@ void CholecystectomySurgeon::PlanFlaw(OperationFlaw flaw) {
       break;
     case OperationFlaw::kCutsMainDuct:
       scissors();
-      CutTube(main, 0.5);
+      CutTube(main, 0.75);
       break;
     case OperationFlaw::kBurnsMainDuct:
-      Burn(kRight, tube_at(main, 0.5), 12.0);
+      Burn(kRight, tube_at(main, 0.6), 20.0);
       break;
     case OperationFlaw::kCutsUnclipped:
       scissors();
@@ -506,11 +528,11 @@ void CholecystectomySurgeon::PlanFlaw(OperationFlaw flaw) {
       break;
     case OperationFlaw::kClipsPartly:
       clip();
-      PlaceClip(duct, 0.5, 0.02);
+      PlaceClip(duct, 0.5, 0.1);
       break;
     case OperationFlaw::kBleeds:
       scissors();
-      CutTube(artery, 0.4);
+      CutTube(artery, 0.65);
       Wait(60.0);
       break;
     case OperationFlaw::kPerforates:
@@ -550,26 +572,34 @@ void CholecystectomySurgeon::PlanFlaw(OperationFlaw flaw) {
       Grasp(kLeft, liver);
       break;
     case OperationFlaw::kPullsHard:
-      Grasp(kLeft, neck);
+      // a light grip, and a strong pull
+      Grasp(
+          kLeft, [this](const Snapshot& seen) { return seen.positions[hold_]; }, 0.17);
       Draw(kLeft, {0.0, -0.09, 0.06});
       Wait(1.0);
       break;
-    case OperationFlaw::kCutsLiver:
-      scissors();
-      Jaw(kRight, 0.8);
-      Reach(
-          kRight,
-          [this](const Snapshot& seen) {
-            const Vec3 p = seen.positions[liver_node_];
-            return p + 0.010 * math::Normalized(p - HandOf(kRight).Port());
-          },
-          0.5);
-      for (int bite = 0; bite < 3; ++bite) Jaw(kRight, 0.0), Jaw(kRight, 0.8);
+    case OperationFlaw::kCutsLiver: {
+      const auto in_liver = [this](double along) -> Place {
+        return [this, along](const Snapshot& seen) {
+          const Vec3 p = seen.positions[liver_node_];
+          const Vec3 in = math::Normalized(p - HandOf(kRight).Port());
+          return p + 0.006 * in + along * math::Normalized(math::Cross(in, {0, 1, 0}));
+        };
+      };
+      Reach(kRight, in_liver(-0.006), 0.5);
+      Add(
+          "press the pedal", [this](const Snapshot&) { controls_[kRight].cut = true; },
+          [](const Snapshot&) { return true; }, 1.0);
+      Reach(kRight, in_liver(0.010), 0.1);
+      Add(
+          "let go of the pedal", [this](const Snapshot&) { controls_[kRight].cut = false; },
+          [](const Snapshot&) { return true; }, 1.0);
       break;
+    }
     case OperationFlaw::kInsertsBlind:
       Exchange(kRight, ToolKind::kScissors);
       Reach(kRight, [this](const Snapshot&) { return HandOf(kRight).Port() + 0.10 * Vec3{0.6, -0.3, -0.7}; });
-      Exchange(kRight, ToolKind::kHook);
+      Exchange(kRight, ToolKind::kHook, false);
       Wait(3.0);
       break;
   }

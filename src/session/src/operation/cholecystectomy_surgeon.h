@@ -58,9 +58,12 @@ class CholecystectomySurgeon final : public Surgeon {
     std::vector<std::uint32_t> strands;
     std::vector<double> order;  ///< (strands) what comes first
     double enough = 1.0;        ///< share that is to be parted [-]
+    double traction = 0;        ///< by which the other hand has drawn back at the end [m]
+    double parted_at_reset = 0;
+    Vec3 p_hold;  ///< of the other hand, when it began [m]
     std::vector<std::uint8_t> attempts;
     std::int32_t target = -1;
-    double seconds = 0;
+    double seconds = 0, blocked = 0;
     bool is_burning = false;
   };
 
@@ -74,15 +77,15 @@ class CholecystectomySurgeon final : public Surgeon {
   void Reach(int hand, Place tip, double hurry = 1);
   void Jaw(int hand, double share);
   void Wait(double seconds);
-  void Exchange(int hand, instrument::ToolKind kind);
-  void Grasp(int hand, const Place& at);
+  void Exchange(int hand, instrument::ToolKind kind, bool over_field = true);
+  void Grasp(int hand, const Place& at, double squeeze = 0);
   void Draw(int hand, const Vec3& by);
   void LetGo(int hand);
-  void PlaceClip(std::size_t tube, double share, double beyond = 0.35);
+  void PlaceClip(std::size_t tube, double share, double beyond = 0.5);
   void CutTube(std::size_t tube, double share);
   void Burn(int hand, const Place& at, double seconds);
   void Dissect(const std::string& what, std::vector<std::uint32_t> strands, std::vector<double> order,
-               double enough);
+               double enough, double traction);
   bool GoOnDissecting(Dissection& work, const Snapshot& seen);
   void LookAt(Place target, double turn, double distance);
 
@@ -107,8 +110,9 @@ class CholecystectomySurgeon final : public Surgeon {
   std::vector<Vec3> rest_;
   std::vector<std::vector<std::uint32_t>>
       tube_nodes_;  // (tubes) from the gallbladder's end, where one enters it
-  std::uint32_t neck_ = 0, fundus_ = 0, liver_node_ = 0;
-  Vec3 bed_normal_;  // from the liver towards the gallbladder, at rest
+  std::uint32_t neck_ = 0, hold_ = 0, fundus_ = 0, liver_node_ = 0;
+  double hook_spin_ = 0;  // that the right hand means to have [rad]
+  Vec3 bed_normal_;       // from the liver towards the gallbladder, at rest
   std::deque<SurgicalAct> acts_;
   bool has_begun_ = false, has_finished_ = false;
   double act_seconds_ = 0;

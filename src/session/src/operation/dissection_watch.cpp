@@ -17,11 +17,6 @@ constexpr double kNeckRadius = 0.015;
 
 }  // namespace
 
-bool IsInPicture(const Camera& camera, const Vec3& p) noexcept {
-  const Vec3 from = math::Inverse(camera.X_world_camera) * p;
-  return from.z < 0.0 && std::hypot(from.x, from.y) < -from.z * std::tan(0.5 * camera.field_of_view);
-}
-
 DissectionWatch::DissectionWatch(const anatomy::Patient& patient, std::span<const SurfaceInfo> surfaces,
                                  std::span<const StrandInfo> strands, std::span<const Vec3> rest) {
   const int gallbladder = patient.FindOrgan("gallbladder");
@@ -141,7 +136,7 @@ void DissectionWatch::Look(const tissue::TissueState& tissue, std::span<const su
                                       0.5 * (at(duct_nodes_, 0.5) + at(plate_nodes_, 0.5))};
   const Vec3 eye = camera.X_world_camera.translation;
   facts_.is_triangle_in_view = std::all_of(points.begin(), points.end(), [&](const Vec3& p) {
-    if (!IsInPicture(camera, p)) return false;
+    if (!IsInView(camera.X_world_camera, camera.field_of_view, p)) return false;
     const Vec3 end = p + kSkin * math::Normalized(eye - p);
     return std::none_of(organs.begin(), organs.end(), [&](const surgery::OrganSurface& organ) {
       const auto nearest =

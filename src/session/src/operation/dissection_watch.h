@@ -21,9 +21,6 @@ struct Camera {
   double field_of_view = 0;  ///< whole, diagonal [rad]
 };
 
-/// Whether a point is in the picture. \note Real-time safe.
-bool IsInPicture(const Camera& camera, const Vec3& p) noexcept;
-
 class DissectionWatch {
  public:
   DissectionWatch() = default;

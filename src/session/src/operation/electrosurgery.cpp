@@ -15,13 +15,13 @@ using collision::Segment;
 /// Layer of a wall through which heat passes along it [m].
 constexpr double kLayerDepth = 0.0015;
 /// Section of a fibre [m].
-constexpr double kFibreWidth = 0.0012;
-/// A strand of the bed stands for its patch of areolar tissue, of which so much is fibre [kg].
-constexpr double kLeastStrandMass = 1.5e-6;
+constexpr double kFibreWidth = 0.0005;
+/// The shortest strands, those of the bed, stand for a patch of areolar tissue of which so much is fibre [kg].
+constexpr double kLeastStrandMass = 0.5e-6;
 constexpr double kLeastNodeMass = 2e-6;
 constexpr double kDensity = 1000;  // of fat and fibres [kg/m^3]
-/// What lies as near to the metal as this gets half of what touches it gets [m].
-constexpr double kHalfPower = 0.0004;
+/// What lies as far from the metal as this gets a quarter of what touches it gets [m].
+constexpr double kQuarterPower = 0.0004;
 
 }  // namespace
 
@@ -70,8 +70,8 @@ std::size_t Electrosurgery::FindTargets(const Electrode& electrode,
                                         const surgery::TubeSet& tubes, const tissue::TissueState& tissue,
                                         std::span<Target> found) const noexcept {
   std::size_t count = 0;
-  const auto add = [&](std::uint32_t part, double distance) {
-    if (count < found.size()) found[count++] = {part, std::max(0.0, distance)};
+  const auto add = [&](std::uint32_t part, double distance, double share) {
+    if (count < found.size()) found[count++] = {part, std::max(0.0, distance), share};
   };
   for (std::uint32_t i = 0; i < strands_.size(); ++i) {
     if (!tissue.strand_is_intact[i]) continue;
@@ -79,7 +79,7 @@ std::size_t Electrosurgery::FindTargets(const Electrode& electrode,
     const double distance =
         std::sqrt(collision::FindNearestSegmentSegment(electrode.bare, strand).squared_distance) -
         0.5 * kFibreWidth;
-    if (distance <= electrode.reach) add(static_cast<std::uint32_t>(node_count_ + i), distance);
+    if (distance <= electrode.reach) add(static_cast<std::uint32_t>(node_count_ + i), distance, 1.0);
   }
   for (const surgery::OrganSurface& organ : organs) {
     const auto nearest = organ.tree
@@ -88,19 +88,22 @@ std::size_t Electrosurgery::FindTargets(const Electrode& electrode,
                              .nearest;
     if (!nearest.Found()) continue;
     for (const std::uint32_t corner : organ.triangles[nearest.triangle])
-      add(organ.first_node + corner, std::sqrt(nearest.squared_distance));
+      add(organ.first_node + corner, std::sqrt(nearest.squared_distance), 1.0 / 3.0);
   }
   const auto tube = tubes.tree.FindNearest(tissue.position, electrode.bare, electrode.reach);
   if (tube.Found()) {
     const collision::TubePiece& piece = tubes.tree.Pieces()[tube.piece];
-    add(piece.a, tube.distance), add(piece.b, tube.distance);
+    add(piece.a, tube.distance, 0.5), add(piece.b, tube.distance, 0.5);
   }
   return count;
 }
 
 void Electrosurgery::AddPower(const Electrode& electrode, std::span<const Target> targets) noexcept {
   double sum = 0;
-  const auto weight = [](const Target& target) { return kHalfPower / (kHalfPower + target.distance); };
+  const auto weight = [](const Target& target) {
+    const double near = kQuarterPower / (kQuarterPower + target.distance);
+    return target.share * near * near;
+  };
   for (const Target& target : targets) sum += weight(target);
   for (const Target& target : targets) {
     if (sources_.size() == kMostSources) break;

@@ -36,6 +36,7 @@ class Electrosurgery {
   struct Target {
     std::uint32_t part = 0;  ///< node, or node count + strand
     double distance = 0;     ///< from the metal [m]
+    double share = 1;        ///< of one contact: a surface is touched once, by the corners of a triangle
   };
   /// What the metal touches, and so has current: strands that hold, and the nearest organ or tube.
   /// \return how many were put into `found`

@@ -13,7 +13,7 @@ using training::OperationError;
 
 /// A tool that is exchanged is out of the way at this depth [m], for this long [s].
 constexpr double kOutside = 0.031, kExchangeSeconds = 0.5;
-constexpr double kMainDistance = 0.0065;  // fibres nearer to what must stay are left alone [m]
+constexpr double kMainDistance = 0.010;   // fibres nearer to what must stay are left alone [m]
 constexpr double kTipIn = 0.08;           // a tool this deep has been pushed in [m]
 constexpr double kBlindSeconds = 1.5;
 /// Where blood and bile gather, seen from the infundibulum: to the right and behind, in Morison's pouch [m].
@@ -198,7 +198,6 @@ bool Operation::Act(const HandsNow& hands, const TissueNow& tissue) noexcept {
     const AssistantCommand command = is_in_bag_ ? AssistantCommand::kRelease : hands.input->assistant;
     (void)assistant_->Step(command, p, hands.seconds, tissue.organs, *tissue.model, {}, *tissue.state);
   }
-  WatchHands(hands, tissue);
   if (change_.nodes.empty() && change_.springs.empty()) return false;
   for (const surgery::NodeChange& node : change_.nodes) {
     if (node.is_new && node.from[0] != geometry::kNone) heat_.CopyNode(node.from[0], node.node);
@@ -208,6 +207,7 @@ bool Operation::Act(const HandsNow& hands, const TissueNow& tissue) noexcept {
 }
 
 void Operation::Judge(const HandsNow& hands, const TissueNow& tissue) noexcept {
+  WatchHands(hands);
   tissue::ConservationState& conserved = *tissue.conserved;
   if (gallbladder_ >= 0) {
     const double leaked = conserved.organs[static_cast<std::size_t>(gallbladder_)].leaked - leaked_seen_;
@@ -220,16 +220,15 @@ void Operation::Judge(const HandsNow& hands, const TissueNow& tissue) noexcept {
   judge_.Update(watch_, fluids_, is_in_bag_, is_completed_, p_pool_, hands.time, hands.seconds);
 }
 
-void Operation::WatchHands(const HandsNow& hands, const TissueNow& tissue) noexcept {
+void Operation::WatchHands(const HandsNow& hands) noexcept {
   for (int hand = 0; hand < kHandCount; ++hand) {
     const auto h = static_cast<std::size_t>(hand);
     const Vec3& tip = hands.X_proxy[h].translation;
     const surgery::Grasp& grasp = (*hands.grasps)[h];
     if (grasp.IsHolding() && Tool(hand).kind != instrument::ToolKind::kBag) {
-      const bool pulls = math::Distance(hands.X_device[h].translation, tip) > 0.0 || grasp.IsHolding();
-      judge_.Note({training::InstrumentKind::kGrasper,
-                   pulls ? training::Verb::kRetract : training::Verb::kGrasp, TargetOfSurface(grasp.surface)},
-                  hand);
+      judge_.Note(
+          {training::InstrumentKind::kGrasper, training::Verb::kRetract, TargetOfSurface(grasp.surface)},
+          hand);
       if (grasp.surface == liver_) judge_.Report(OperationError::kLiverGrasped, tip, hand, hands.time);
     }
     if (hands.changes[h] == surgery::GraspChange::kSlipped ||
@@ -237,7 +236,7 @@ void Operation::WatchHands(const HandsNow& hands, const TissueNow& tissue) noexc
       judge_.Report(OperationError::kExcessForce, tip, hand, hands.time);
     HandState& state = hands_[h];
     if (!state.is_inserting) continue;
-    if (IsInPicture(hands.camera, tip)) {
+    if (IsInView(hands.camera.X_world_camera, hands.camera.field_of_view, tip)) {
       state.is_inserting = false;
     } else if (hands.joints[h].depth > kTipIn) {
       state.blind_seconds += hands.seconds;
@@ -247,7 +246,6 @@ void Operation::WatchHands(const HandsNow& hands, const TissueNow& tissue) noexc
       }
     }
   }
-  (void)tissue;
 }
 
 training::Target Operation::TargetOfSurface(std::int32_t surface) const noexcept {

@@ -94,10 +94,13 @@ class Operation {
  private:
   struct HandState {
     surgery::BladeState blade, spread_upper, spread_lower;
-    std::vector<geometry::CutFront> fronts;  // (organs)
-    bool has_clip_open = false;              // the applier has been opened since its last clip
+    std::vector<geometry::CutFront> fronts;    // (organs)
+    bool has_clip_open = false;                // the applier has been opened since its last clip
+    double opened = 0;                         // the applier's jaws, at the most [rad]
+    std::optional<VesselWork::Caught> caught;  // between them then
     int clips = 0;
     bool has_current = false;
+    double idle_seconds = 0;  // pedal down, nothing touched
     double blind_seconds = 0;
     bool is_inserting = false;
     bool was_refused = false;
@@ -116,7 +119,7 @@ class Operation {
   void UseFluids(int hand, const HandsNow& hands) noexcept;
   void UseBag(int hand, const HandsNow& hands, const TissueNow& tissue) noexcept;
   void Burn(const HandsNow& hands, const TissueNow& tissue) noexcept;
-  void WatchHands(const HandsNow& hands, const TissueNow& tissue) noexcept;
+  void WatchHands(const HandsNow& hands) noexcept;
   training::Target TargetOf(const TissueNow& tissue, std::uint32_t part) const noexcept;
   training::Target TargetOfSurface(std::int32_t surface) const noexcept;
   bool IsOf(std::uint32_t node, std::int32_t organ) const noexcept;

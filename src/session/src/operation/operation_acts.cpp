@@ -15,12 +15,13 @@ using training::Verb;
 
 // Electrosurgery; domain facts, section 1.3: 20 to 40 W
 constexpr double kCutPower = 35.0, kCoagulatePower = 25.0;      // [W]
-constexpr double kCutReach = 0.0008, kCoagulateReach = 0.0018;  // of the current beside the metal [m]
-constexpr double kNearDuct = 0.005;                             // domain facts, section 1.4 [m]
-constexpr double kSealReach = 0.003;                            // [m]
-constexpr double kSealHeat = 15.0;                              // that shuts the end of a small vessel [J]
-constexpr double kBurntHole = 1e-6;                             // left by a node that was burnt through [m^2]
-constexpr double kSmokeByHeat = 0.004;                          // [1/J]
+constexpr double kCutReach = 0.0008, kCoagulateReach = 0.0012;  // of the current beside the metal [m]
+constexpr double kIdleSeconds = 0.25;    // of current into nothing that no eye would note
+constexpr double kNearDuct = 0.005;      // domain facts, section 1.4 [m]
+constexpr double kSealReach = 0.003;     // [m]
+constexpr double kSealHeat = 15.0;       // that shuts the end of a small vessel [J]
+constexpr double kBurntHole = 1e-6;      // left by a node that was burnt through [m^2]
+constexpr double kSmokeByHeat = 0.0012;  // [1/J]
 
 // Clip applier: closed and open again, as shares of its opening
 constexpr double kClipClosed = 0.12, kClipOpen = 0.6;
@@ -133,7 +134,10 @@ void Operation::Spread(int hand, const HandsNow& hands, const TissueNow& tissue)
 void Operation::UseElectrode(int hand, const HandsNow& hands, const TissueNow& tissue) noexcept {
   const auto h = static_cast<std::size_t>(hand);
   const HandControls& controls = hands.input->controls[h];
-  if (!controls.cut && !controls.coagulate) return;
+  if (!controls.cut && !controls.coagulate) {
+    hands_[h].idle_seconds = 0;
+    return;
+  }
   const instrument::Tool& tool = Tool(hand);
   const Pose& X = hands.X_proxy[h];
   Electrosurgery::Electrode electrode;
@@ -145,15 +149,19 @@ void Operation::UseElectrode(int hand, const HandsNow& hands, const TissueNow& t
   }
   electrode.power = controls.cut ? kCutPower : kCoagulatePower;
   electrode.reach = controls.cut ? kCutReach : kCoagulateReach;
-  if (!IsInPicture(hands.camera, X.translation))
+  if (!IsInView(hands.camera.X_world_camera, hands.camera.field_of_view, X.translation))
     judge_.Report(OperationError::kEnergyOutOfView, X.translation, hand, hands.time);
   std::array<Electrosurgery::Target, 96> targets;
   const std::size_t count =
       heat_.FindTargets(electrode, tissue.organs, *tissue.tubes, *tissue.state, targets);
+  double& idle = hands_[h].idle_seconds;
   if (count == 0) {
-    judge_.Report(OperationError::kEnergyWithoutContact, X.translation, hand, hands.time);
+    idle += hands.seconds;
+    if (idle > kIdleSeconds)
+      judge_.Report(OperationError::kEnergyWithoutContact, X.translation, hand, hands.time);
     return;
   }
+  idle = 0;
   hands_[h].has_current = true;
   heat_.AddPower(electrode, std::span(targets).first(count));
   if (controls.coagulate)
@@ -199,11 +207,20 @@ void Operation::UseClips(int hand, const HandsNow& hands, const TissueNow& tissu
   HandState& state = hands_[h];
   const instrument::Tool& tool = Tool(hand);
   const double jaw = hands.joints[h].jaw;
-  if (jaw > kClipOpen * tool.max_jaw) state.has_clip_open = state.clips > 0;
+  if (jaw > kClipOpen * tool.max_jaw) {
+    state.has_clip_open = state.clips > 0;
+    // as long as they open, or rest; what lies there when they close is caught
+    if (jaw >= state.opened || !state.caught) {
+      state.opened = jaw;
+      state.caught = vessels_->Catch(tool, hands.X_proxy[h], jaw, tissue.state->position);
+    }
+  }
   if (!state.has_clip_open || jaw > kClipClosed * tool.max_jaw) return;
   state.has_clip_open = false;
   --state.clips;
-  const ClipResult clip = vessels_->Clip(tool, hands.X_proxy[h], tissue.state->position);
+  const ClipResult clip = vessels_->Clip(tool, hands.X_proxy[h], state.caught, tissue.state->position);
+  state.caught.reset();
+  state.opened = 0;
   judge_.OnClip(clip, vessels_->Map(), hands.X_proxy[h].translation, hand, hands.time);
   if (clip.kind != ClipResult::Kind::kLost)
     judge_.Note({InstrumentKind::kClipper, Verb::kClip,

@@ -13,6 +13,7 @@ namespace {
 constexpr double kCatch = 0.0015;
 /// Width of a clip along the vessel: two that are nearer lie over each other [m].
 constexpr double kClipWidth = 0.0012;
+constexpr double kDrawnAway = 0.004;   // a vessel that is farther from the closed jaws is out of them [m]
 constexpr double kClosedGap = 0.0006;  // between the legs of a clip [m]
 /// Heat seals vessels up to this radius inside [m]: a millimetre across is held to be safe, more is not.
 constexpr double kMostSealed = 0.0009;
@@ -74,40 +75,59 @@ void VesselWork::MoveClips(const geometry::CentreLineCut& cut) noexcept {
   }
 }
 
-ClipResult VesselWork::Clip(const instrument::Tool& tool, const Pose& X_world_tool,
-                            std::span<const Vec3> position) noexcept {
+std::optional<VesselWork::Caught> VesselWork::Catch(const instrument::Tool& tool, const Pose& X_world_tool,
+                                                    double jaw,
+                                                    std::span<const Vec3> position) const noexcept {
   const Vec3 hinge = X_world_tool * instrument::JawHinge(tool);
   const Vec3 tip = X_world_tool * instrument::JawTip(tool, 0.0, +1);
   const auto& graph = tubes_.Graph();
-  double best = std::numeric_limits<double>::infinity(), jaw_at = 0, edge_at = 0, radius = 0;
-  const geometry::Edge* edge = nullptr;
-  for (const geometry::Edge& candidate : graph.edges) {
-    const collision::Segment axis{position[tubes_.Node(candidate[0])], position[tubes_.Node(candidate[1])]};
+  double best = std::numeric_limits<double>::infinity();
+  std::optional<Caught> caught;
+  for (const geometry::Edge& edge : graph.edges) {
+    const collision::Segment axis{position[tubes_.Node(edge[0])], position[tubes_.Node(edge[1])]};
     const auto near = collision::FindNearestSegmentSegment({hinge, tip}, axis);
-    const double here = std::lerp(graph.radii[candidate[0]], graph.radii[candidate[1]], near.parameter_b);
-    const double gap = std::sqrt(near.squared_distance) - here;
-    if (gap > kCatch || gap >= best) continue;
-    best = gap, jaw_at = near.parameter_a, edge_at = near.parameter_b, radius = here;
-    edge = &candidate;
+    const double distance = std::sqrt(near.squared_distance);
+    const double radius = std::lerp(graph.radii[edge[0]], graph.radii[edge[1]], near.parameter_b);
+    const double half = near.parameter_a * tool.jaw_length * std::sin(0.5 * jaw);
+    if (distance > std::max(half, radius + kCatch) || distance >= best) continue;
+    best = distance;
+    caught = Caught{edge[0], edge[1], near.parameter_b, near.parameter_a, radius};
   }
+  return caught;
+}
+
+ClipResult VesselWork::Clip(const instrument::Tool& tool, const Pose& X_world_tool,
+                            const std::optional<Caught>& caught, std::span<const Vec3> position) noexcept {
+  const Vec3 hinge = X_world_tool * instrument::JawHinge(tool);
+  const Vec3 tip = X_world_tool * instrument::JawTip(tool, 0.0, +1);
+  const auto& edges = tubes_.Graph().edges;
   ClipResult result;
   if (clips_.size() == surgery::VesselActs::kMostClips) return result;
   Clipped clip;
   clip.legs = math::Normalized(tip - hinge);
   clip.gap = kClosedGap;
-  if (edge == nullptr) {
+  // what was between the legs may have been cut, or drawn away
+  bool is_there = caught && std::any_of(edges.begin(), edges.end(), [&](const geometry::Edge& edge) {
+                    return edge[0] == caught->a && edge[1] == caught->b;
+                  });
+  if (is_there) {
+    const Vec3 p = math::Lerp(position[tubes_.Node(caught->a)], position[tubes_.Node(caught->b)], caught->t);
+    const double along = math::Dot(p - hinge, clip.legs);
+    is_there = math::Distance(p, hinge + std::clamp(along, 0.0, tool.jaw_length) * clip.legs) < kDrawnAway;
+  }
+  if (!is_there) {
     clip.is_lost = true;
     clip.p_lost = tip;
     clips_.push_back(clip);
     return result;
   }
   // how much of the flattened vessel lies between the jaws: it is pi r wide
-  const double length = math::Distance(hinge, tip), half = 0.5 * M_PI * radius;
-  const double from = jaw_at * length - half, to = jaw_at * length + half;
+  const double length = math::Distance(hinge, tip), half = 0.5 * M_PI * caught->radius;
+  const double from = caught->jaw_at * length - half, to = caught->jaw_at * length + half;
   const double inside = std::max(0.0, std::min(to, length) - std::max(from, 0.0));
   const double closure = std::clamp(inside / (2.0 * half), 0.0, 1.0);
-  clip.a = (*edge)[0], clip.b = (*edge)[1], clip.t = edge_at;
-  clip.place = {tube_of_[clip.a], std::lerp(arc_of_[clip.a], arc_of_[clip.b], edge_at)};
+  clip.a = caught->a, clip.b = caught->b, clip.t = caught->t;
+  clip.place = {tube_of_[clip.a], std::lerp(arc_of_[clip.a], arc_of_[clip.b], clip.t)};
   for (const Clipped& other : clips_) {
     if (!other.is_lost && other.place.tube == clip.place.tube &&
         std::fabs(other.place.arc - clip.place.arc) < kClipWidth)

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -57,9 +58,20 @@ class VesselWork {
                   std::span<const Vec3> position, surgery::TopologyChange& change,
                   std::span<TubePlace> places) noexcept;
 
-  /// Closes a clip around what lies between the jaws: from hinge to tip of the closed tool.
+  /// A place of a vessel between the legs of a clip.
+  struct Caught {
+    std::uint32_t a = 0, b = 0;  ///< points of the edge
+    double t = 0;                ///< from a to b
+    double jaw_at = 0;           ///< along the jaws, 0 at the hinge to 1 at the tips
+    double radius = 0;           ///< [m]
+  };
+  /// What lies between open jaws.
   /// \note Real-time safe.
-  ClipResult Clip(const instrument::Tool& tool, const Pose& X_world_tool,
+  std::optional<Caught> Catch(const instrument::Tool& tool, const Pose& X_world_tool, double jaw,
+                              std::span<const Vec3> position) const noexcept;
+  /// Closes a clip around what was caught when the jaws began to close.
+  /// \note Real-time safe.
+  ClipResult Clip(const instrument::Tool& tool, const Pose& X_world_tool, const std::optional<Caught>& caught,
                   std::span<const Vec3> position) noexcept;
 
   /// Makes a hole where a node of a tube was burnt through.

@@ -53,7 +53,8 @@ struct OrganOptions {
   /// Of skipped slices that are not among the images, a few at a time; only for structures whose edges are
   /// followed there.
   PictureReader read_skipped;
-  int slice_step = 1;  ///< numbers from one picture of the series to the next, >= 1
+  /// Slices that have a picture, ascending in equal steps; empty: all from first_slice to last_slice.
+  std::vector<int> series;
 };
 
 struct BuiltOrgans {
@@ -86,7 +87,7 @@ core::Result<std::map<int, ColorImage>> ReadContouredSlices(const ControlPoints&
 /// Any structure follows edges in skipped slices.
 bool FollowsSkippedSlices(const ControlPoints& points);
 
-/// Opens the whole series for following edges in skipped slices: sets read_skipped and slice_step.
+/// Opens the whole series for following edges in skipped slices: sets read_skipped and series.
 /// \return what OpenContouredSeries returns; a series with gaps names the way out
 core::Status ReadSkippedFrom(const ControlPoints& points, const std::filesystem::path& folder,
                              std::optional<DisplayWindow> window, OrganOptions& options);

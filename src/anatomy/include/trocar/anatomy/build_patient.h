@@ -26,7 +26,10 @@ struct BuildOptions {
   std::optional<std::filesystem::path> overlays;   ///< folder for one PNG a slice
   double spacing_mm = 1.0;                         ///< of the volume's lattice, 0.4 to 4
   double gap_mm = 0.7;                             ///< left free around an organ where another one touches it
-  std::stop_token stop;                            ///< gives up before anything is written: kCancelled
+  /// How far the edges of skipped slices may move the contours interpolated there [pixels], 0 to 30; what the
+  /// file says if not given.
+  std::optional<double> skipped_shift_px;
+  std::stop_token stop;  ///< gives up before anything is written: kCancelled
 };
 
 struct BuildReport {

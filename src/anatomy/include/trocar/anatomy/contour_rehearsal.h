@@ -24,7 +24,7 @@ struct ClickSettings {
   std::array<int, 2> points = {8, 12};  ///< fewest and most points on a slice's longest outline, >= 3
   double noise_mm = 3.0;                ///< each point is moved by this much in a random direction, >= 0
   double reach_mm = 5.0;                ///< how far the edge adaption may move a point, >= 0
-  double skipped_mm = 3.0;              ///< and the contour of a skipped slice, >= 0
+  double skipped_mm = 2.0;              ///< and the contour of a skipped slice, >= 0
 };
 
 /// Points on an outline as a person would click them.

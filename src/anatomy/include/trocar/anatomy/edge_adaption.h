@@ -28,7 +28,7 @@ struct EdgeAdaptionSettings {
       0.1;  ///< cost of neighbours that move differently by one pixel, against the strongest edge [-]
   /// In skipped slices no point leaves the interpolated contour further [pixels], 0 to 30; 0: their pictures
   /// are not looked at.
-  double skipped_shift_px = 0.0;
+  double skipped_shift_px = 3.0;
   bool inserts_points = true;  ///< the contour chain divides splines by points on the edge, see contour_fit.h
 
   friend bool operator==(const EdgeAdaptionSettings&, const EdgeAdaptionSettings&) = default;

@@ -16,6 +16,13 @@ enum class Action {
   kChooseRight,
   kSwitchHand,
   kHoldLaparoscope,  ///< while the key is held the pointer and the wheel move the laparoscope
+  kNextTool,         ///< of the tray of the chosen hand
+  kPreviousTool,
+  kHoldCut,  ///< pedals work while their key is held, for the chosen hand
+  kHoldCoagulate,
+  kHoldRinse,
+  kHoldAspirate,
+  kAssistant,  ///< the next command to the assistant
   kTogglePause,
   kReset,
   kToggleDemonstration,

@@ -45,6 +45,15 @@ std::string OrganLabel(const anatomy::Patient& patient, std::int32_t organ);
 /// "left grasper"
 std::string HandLabel(const session::Scene& scene, std::int32_t hand);
 
+/// Name of the tool that a hand has in use, with spaces: "clip applier, 12 clips", "hook".
+std::string ToolLabel(const session::Scene& scene, const session::Snapshot& snapshot, session::Hand hand);
+/// "4.2 mL"
+std::string FormatMillilitres(double volume);
+/// What has left the vessels and organs, and what of it still lies there: "12.0 mL, 3.5 mL in the abdomen".
+std::string DescribeFluid(const surgery::FluidLedger& fluids, surgery::Fluid fluid);
+/// "waits", "retracts the fundus", ...
+std::string DescribeAssistant(session::AssistantCommand command, bool is_holding);
+
 /// "holds the gallbladder", "touches the liver", "free"
 std::string DescribeContact(const session::InstrumentSnapshot& instrument, const anatomy::Patient& patient);
 

@@ -6,12 +6,18 @@
 #include <memory>
 #include <string>
 
+#include "trocar/core/clock.h"
 #include "trocar/device/mouse_keyboard.h"
+#include "trocar/net/igtl_server.h"
 #include "trocar/session/device_thread.h"
 #include "trocar/session/haptic_loop.h"
+#include "trocar/session/haptic_record.h"
 #include "trocar/session/runner.h"
 
 namespace trocar::app {
+
+/// What the foot, or a key in its place, presses.
+enum class Pedal { kCut, kCoagulate, kRinse, kAspirate };
 
 /// Owns the running simulation and the mouse and keyboard that hold its instruments. Called from one thread.
 class SessionControl {
@@ -33,6 +39,16 @@ class SessionControl {
   core::Status UseHaptics(std::string_view name);
   /// The haptic loop, or nullptr without one.
   session::HapticLoop* Haptics() { return haptic_loop_.get(); }
+
+  /// What the haptic loop has done so far, as Advance() saw it.
+  const session::HapticRecord& GetHapticRecord() const { return haptic_record_; }
+
+  /// Shows tools and organs to viewers over OpenIGTLink from now on.
+  /// \param port  0 lets the system choose
+  /// \return kDeviceBusy where the port is taken
+  core::Status Serve(int port);
+  /// Port that viewers may connect to, or -1.
+  int ServedPort() const { return server_ != nullptr ? server_->Port() : -1; }
 
   /// Moves the hands on by `dt` [s] and hands the newest wish to the simulation; while paused the hands stand
   /// still.
@@ -57,6 +73,17 @@ class SessionControl {
   /// While held, the pointer and the keys move the laparoscope.
   void HoldLaparoscope(bool is_held);
   bool IsLaparoscopeHeld() const { return device_.GetChosen() == device::kLaparoscope; }
+  /// Asks for a tool of a hand's tray; a place that the tray does not have is ignored.
+  void ChooseTool(session::Hand hand, std::size_t place);
+  /// The next tool of the chosen hand, or with -1 the one before, round the tray.
+  void StepTool(int step);
+  /// Of the chosen hand. Only one hand has pedals at a time: choosing the other releases them.
+  void SetPedal(Pedal pedal, bool is_down);
+  void ReleasePedals();
+  void CommandAssistant(session::AssistantCommand command) { input_.assistant = command; }
+  /// Retract, relax, release, wait, and again.
+  void StepAssistant();
+
   void SetMirrorFulcrum(bool is_mirrored);
   bool IsFulcrumMirrored() const { return is_fulcrum_mirrored_; }
 
@@ -73,6 +100,7 @@ class SessionControl {
   device::MouseKeyboard& Device() { return device_; }
   const session::Scene& GetScene() const { return runner_.GetScene(); }
   std::span<const session::SurfaceInfo> Surfaces() const { return runner_.Surfaces(); }
+  std::span<const session::StrandInfo> Strands() const { return runner_.Strands(); }
   session::RunnerStatistics Statistics() const { return runner_.Statistics(); }
   /// The input of the last Advance().
   const session::Input& GetInput() const { return input_; }
@@ -90,6 +118,10 @@ class SessionControl {
   std::uint64_t device_losses_ = 0;
   device::MouseKeyboard device_;
   std::unique_ptr<session::HapticLoop> haptic_loop_;  // may be null
+  session::HapticRecord haptic_record_;
+  core::Stopwatch since_start_;
+  std::unique_ptr<net::IgtlServer> server_;  // may be null
+  std::uint64_t served_tick_ = 0;
   session::Input input_;
   device::Channel hand_ = device::kRightHand;
   bool is_demonstration_ = false;

@@ -33,7 +33,8 @@ struct LocalPatch {
   bool is_healthy = false;  ///< the tick ended with a good state
   std::uint64_t tick = 0;
   Pose X_world_tool;          ///< of the tool in that tick
-  Vec3 force;                 ///< of the tissue on the tool in that tick [N], world frame
+  Vec3 force;                 ///< of the tissue on the tool in that tick, as it is at the tip [N], world frame
+  bool has_pivot = false;     ///< the shaft turns about its trocar as the tip moves
   Matrix3Rows jacobian{};     ///< dF/dp of kLinear [N/m]
   bool is_one_sided = false;  ///< kLinear: the tool only presses, and what it pressed does not pull it back
 
@@ -57,6 +58,9 @@ struct LocalPatch {
     std::array<std::uint16_t, 3> nodes;
     std::array<double, 3> weights;
     Vec3 normal;
+    /// How far the contact goes along the normal for a metre of the tool's tip: the normal itself at the tip, less across
+    /// the shaft the nearer it lies to the trocar. Its force pushes the tip along this.
+    Vec3 tip_normal;
     Vec3 lever;        ///< from the tool's origin to the pressing point [m], world frame
     double depth;      ///< at the cut [m]
     double stiffness;  ///< [N/m]
@@ -78,6 +82,8 @@ struct PatchSource {
   Vec3 force;  ///< of the tissue on the tool [N]
   bool is_healthy = false;
   std::uint64_t tick = 0;
+  bool has_pivot = false;  ///< the tool goes through a trocar
+  Vec3 p_world_pivot{};    ///< there [m]
 };
 
 /// Cuts segments; holds the memory for it.

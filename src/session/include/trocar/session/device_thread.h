@@ -5,8 +5,10 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 
+#include "trocar/device/jaw_sensor.h"
 #include "trocar/device/mouse_keyboard.h"
 #include "trocar/device/ports.h"
 #include "trocar/session/scene.h"
@@ -25,6 +27,11 @@ struct DeviceReport {
   enum class Phase { kConnecting, kRunning, kLost };
   Phase phase = Phase::kConnecting;
   std::array<device::HandSample, device::kChannelCount> samples;
+  /// What calibration needs: pose of each hand's sensor in the source's frame where the device is a tracker, and each
+  /// tool's unfiltered jaw value where it has a jaw sensor.
+  std::array<std::optional<math::Pose>, device::kChannelCount> sensors;
+  std::array<std::optional<int>, device::kJawTools> raw_jaws;
+  std::uint64_t reads = 0;   ///< that brought something new
   std::uint64_t losses = 0;  ///< since the start
   std::string message;       ///< for a person: "liberty is connected", "E-DEV-001 ..."
 };

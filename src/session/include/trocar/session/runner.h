@@ -47,6 +47,7 @@ class Runner {
   RunnerStatistics Statistics() const;
   const Scene& GetScene() const;
   std::span<const SurfaceInfo> Surfaces() const;
+  std::span<const StrandInfo> Strands() const;
 
  private:
   struct Content;

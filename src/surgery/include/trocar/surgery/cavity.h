@@ -82,10 +82,11 @@ void FollowOrgan(const Cavity& cavity, std::span<const OrganSurface> organs, std
 
 /// Adds the springs of one organ's vertices against the parts that they are at; links carry kNoHand.
 ///
-/// \param motion  farthest that a vertex of the organ went in the last solve [m]: springs are made so far ahead
+/// \param positions_before  (n) before the last solve [m]: springs are made as far ahead as a vertex went outwards in it
 /// \note Real-time safe.
 void FindCavityContacts(const Cavity& cavity, std::span<const OrganSurface> organs,
-                        std::span<const Vec3> positions, double motion, const CavityContactSettings& settings,
-                        const CavityContact& contact, ContactSet& contacts) noexcept;
+                        std::span<const Vec3> positions, std::span<const Vec3> positions_before,
+                        const CavityContactSettings& settings, const CavityContact& contact,
+                        ContactSet& contacts) noexcept;
 
 }  // namespace trocar::surgery

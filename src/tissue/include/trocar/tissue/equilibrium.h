@@ -84,7 +84,7 @@ class EquilibriumSolver {
   EquilibriumSolver& operator=(EquilibriumSolver&&) noexcept;
 
   /// Goes on with another model, after a cut: in the memory of this solver, what a solver made anew would be, bit by
-  /// bit. A fifth of the time of making one, because nothing is allocated.
+  /// bit. A quarter of the time of making one, because nothing is allocated.
   ///
   /// \param model  as many nodes as before (TROCAR_ASSERT), of which spare ones may have become part of the tissue;
   ///               must outlive the solver; may be the same object with other content

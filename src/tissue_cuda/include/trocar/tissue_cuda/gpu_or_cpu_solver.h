@@ -25,7 +25,10 @@ class GpuOrCpuSolver final : public tissue::EquilibriumSolver {
                             tissue::TissueState& state,
                             const tissue::SolveHook* hook = nullptr) noexcept override;
 
-  /// The GPU in use; none once it failed.
+  /// After a cut the processor goes on: the GPU's copy of the springs is of the whole tissue.
+  void Follow(const tissue::TissueModel& model) override;
+
+  /// The GPU in use; none once it failed, and after a cut.
   const GpuInformation* Gpu() const noexcept { return gpu_ ? &gpu_->Information() : nullptr; }
   /// Why the GPU is not used although it was asked for: one line for the person who runs the program.
   const std::optional<core::Error>& GpuError() const noexcept { return gpu_error_; }

@@ -13,6 +13,7 @@
 #include "trocar/core/result.h"
 #include "trocar/session/operation_result.h"
 #include "trocar/session/scene.h"
+#include "trocar/session/simulation.h"
 #include "trocar/session/snapshot.h"
 #include "trocar/session/surgeon.h"
 #include "trocar/view/laparoscope_view.h"
@@ -30,6 +31,7 @@ struct DemoOptions {
   ViewOptions view;
   /// nullptr, or who acts in the script's place, until they have finished; `duration` is then the longest
   session::Surgeon* surgeon = nullptr;
+  std::function<core::Status(const session::Simulation&)> on_start;  ///< before the first tick; may be empty
   /// may change the script's input of a tick at that time [s]; may be empty
   std::function<void(double, session::Input&)> change_input;
   std::function<void(const session::Snapshot&)> on_tick;  ///< after every tick; may be empty

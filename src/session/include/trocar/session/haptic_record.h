@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file haptic_record.h  What force feedback did over a session: rate, periods and forces over time, and every change as
+/// an event.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "trocar/session/haptic_loop.h"
+
+namespace trocar::session {
+
+enum class HapticEventKind : std::uint8_t {
+  kArmed,       ///< force began to come up
+  kUnarmed,     ///< force was taken away, with the reason
+  kLost,        ///< the device is gone
+  kBack,        ///< and is back
+  kWarm,        ///< motors warm: force held back
+  kCool,        ///< no longer
+  kConfirmed,   ///< the check pose
+  kUnwatched,   ///< the supervisor is gone
+  kWatched,     ///< the supervisor is there
+  kOverrun,     ///< the loop was so late that the force had to go
+  kBadSamples,  ///< reports that are no good, jumps included, since the last sample
+};
+/// "armed", "unarmed", "lost", "back", "warm", "cool", "confirmed", "unwatched", "watched", "overrun", "bad_samples"
+std::string_view HapticEventName(HapticEventKind kind) noexcept;
+
+struct HapticEvent {
+  double time = 0;  ///< [s]
+  HapticEventKind kind = HapticEventKind::kArmed;
+  int hand = -1;  ///< Hand, or -1: of the whole loop
+  haptics::Fault reason = haptics::Fault::kNone;
+  std::uint64_t count = 1;  ///< of overruns and bad reports
+};
+
+/// Collects status after status. Memory stays bounded: when it is full every second sample goes, and events beyond
+/// kMaxEvents are counted only.
+class HapticRecord {
+ public:
+  static constexpr std::size_t kMaxSamples = 7200;
+  static constexpr std::size_t kMaxEvents = 10'000;
+
+  /// \param time    of the session [s], not falling
+  /// \param status  the newest; the same one again changes nothing
+  void Add(double time, const HapticStatus& status);
+
+  std::size_t SampleCount() const { return samples_.size(); }
+  const std::vector<HapticEvent>& Events() const { return events_; }
+  std::uint64_t EventsLeftOut() const { return left_out_; }
+  /// One JSON object: "samples" (times in seconds, periods in microseconds, forces in newtons, states by name), "events"
+  /// and "last" (as FormatHapticsJson).
+  std::string FormatJson() const;
+
+ private:
+  struct HandSample {
+    haptics::ArmState state = haptics::ArmState::kUnarmed;
+    float force = 0, heat = 0;
+  };
+  struct Sample {
+    double time = 0;
+    float rate = 0, period_p50 = 0, period_p999 = 0, period_max = 0, cpu_p999 = 0;
+    std::array<HandSample, kHandCount> hands;
+  };
+  void Note(double time, HapticEventKind kind, int hand, haptics::Fault reason = haptics::Fault::kNone,
+            std::uint64_t count = 1);
+  void NoteHand(double time, int hand, const HapticHandStatus& before, const HapticHandStatus& now);
+
+  HapticStatus last_;
+  bool has_last_ = false;
+  double next_ = 0, period_ = 0.1;  // of the samples [s]
+  std::vector<Sample> samples_;
+  std::vector<HapticEvent> events_;
+  std::uint64_t left_out_ = 0;
+};
+
+}  // namespace trocar::session
