@@ -54,7 +54,7 @@ TEST_P(EveryTask, CatchesEachCarelessSurgeonAndOnlyByItsRule) {
   for (const SurgeonEntry& entry : ListSurgeons()) {
     if (!entry.suits(*scene) || *entry.error == 0 || std::string(entry.error) == "time_over") continue;
     ++careless;
-    const double enough = 12;
+    const double enough = GetParam() == "peg_transfer" ? 6 : 12;  // each errs early
     const auto played = PlayTask(scene, entry.name, 1, enough);
     ASSERT_TRUE(played.ok());
     EXPECT_GE(CountErrors(*scene, played->task, entry.error), 1u) << entry.name << " was not caught";
