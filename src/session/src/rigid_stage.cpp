@@ -15,7 +15,7 @@ constexpr double kShaftReach = 0.15;
 /// Jaws let go when they have opened so far beyond where they met what they hold [rad].
 constexpr double kLetGo = 0.07;
 /// Squeezed by so much more than needed to meet it, jaws pinch as hard as they can [rad].
-constexpr double kFullSqueeze = 0.35;
+constexpr double kFullSqueeze = 0.15;
 /// Rubber in profiled jaws; pinch of jaws that have just closed, and of jaws squeezed [N]. Source: as
 /// surgery::GraspSettings.
 constexpr double kGripFriction = 1.0, kLeastPinch = 3.0, kMostPinch = 20.0;
