@@ -86,13 +86,19 @@ void ReadOperation(const core::JsonView& root, const anatomy::Patient& patient, 
 
 void ReadLaparoscope(const core::JsonView& root, const anatomy::Patient& patient, LaparoscopeSetup& setup) {
   const core::JsonView view = root.Object("laparoscope");
-  view.AllowOnly({"port_mm", "target", "depth_mm", "view_angle_deg", "post_deg", "field_of_view_deg"});
+  view.AllowOnly(
+      {"port_mm", "target", "depth_mm", "view_angle_deg", "post_deg", "field_of_view_deg", "look_at_target"});
   setup.p_world_port = ReadPointMm(view, "port_mm");
   setup.home = instrument::FindJoints(setup.p_world_port, ReadTarget(view, "target", patient),
                                       view.NumberOr("post_deg", 0.0) * kDegree, 0.0);
   setup.home.depth = 0.001 * view.Number("depth_mm", {10.0, 300.0});
   setup.view_angle = view.NumberOr("view_angle_deg", 0.0, {0.0, 70.0}) * kDegree;
   setup.field_of_view = view.NumberOr("field_of_view_deg", 75.0, {20.0, 120.0}) * kDegree;
+  if (!view.BooleanOr("look_at_target", false)) return;
+  ViewWish wish;
+  wish.p_world = ReadTarget(view, "target", patient);
+  wish.distance = std::max(0.02, math::Distance(wish.p_world, setup.p_world_port) - setup.home.depth);
+  if (const auto found = FindView(setup, wish)) setup.home = *found;
 }
 
 void ReadSettings(const core::JsonView& root, LiveSettings& settings) {

@@ -174,7 +174,7 @@ INSTANTIATE_TEST_SUITE_P(All, CarelessSurgeon,
                                          "clips_partly", "bleeds", "perforates", "burns_liver",
                                          "burns_near_duct", "burns_unseen", "burns_air", "drops_clip",
                                          "grasps_liver", "pulls_hard", "cuts_liver", "inserts_blind"),
-                         [](const auto& info) { return info.param; });
+                         [](const auto& surgeon) { return surgeon.param; });
 
 }  // namespace
 }  // namespace trocar::session

@@ -214,7 +214,7 @@ core::Result<LaparoscopeView> LaparoscopeView::Make(const session::Scene& scene,
   if (auto status = content->AddShapes(surfaces, start); !status) return status.error();
   content->tools.Add(content->renderer, scene);
   content->objects.Add(content->renderer, scene);
-  if (scene.HasPatient()) {
+  if (scene.objects.empty() || scene.HasPatient()) {
     content->AddSurroundings();
   } else {
     content->light_scale = kTrainerLight;
@@ -251,7 +251,7 @@ void LaparoscopeView::Update(const Snapshot& snapshot) {
   c.UpdateShapes(snapshot);
   c.strands->AddTo(c.frame, snapshot);
   AddStreams(c.frame, snapshot);
-  c.pool->AddTo(c.frame, snapshot);
+  if (c.pool) c.pool->AddTo(c.frame, snapshot);
   c.frame.smoke = snapshot.operation.smoke;
   c.frame.time = snapshot.time;
   for (std::size_t i = 0; i < c.forces.size(); ++i) {

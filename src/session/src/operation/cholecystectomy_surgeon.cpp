@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <utility>
 
@@ -18,10 +19,14 @@ constexpr std::uint8_t kMostAttempts = 3;
 constexpr double kMainDistance = 0.009;  // from ducts that must stay, where no fibre is burnt [m]
 /// Where the left hand holds the gallbladder: from the neck towards the fundus, and off the bed [m].
 constexpr double kHoldBack = 0.020, kHoldBeside = 0.012;
-constexpr double kOpenShare = 6.0;    // how much sooner a fibre is taken that is stretched, by its stretch
-constexpr double kPeelRate = 0.0012;  // of the hand that draws the gallbladder off its bed [m/s]
-constexpr double kBlocked = 0.7;      // after which a hook that does not get there turns back [s]
-constexpr double kCameraRate = 0.25;  // [rad/s]
+constexpr double kStandOff = -0.012;    // of a tool's tip from the vessel while it is lined up [m]
+constexpr double kFromTips = 0.0018;    // of a vessel's axis, so that the clip reaches around it [m]
+constexpr double kAnother = 0.05;       // of a vessel's length, to another place for a clip
+constexpr double kBetweenLegs = 0.003;  // of a clip applier's middle line, where a vessel is to be [m]
+constexpr double kOpenShare = 6.0;      // how much sooner a fibre is taken that is stretched, by its stretch
+constexpr double kPeelRate = 0.0012;    // of the hand that draws the gallbladder off its bed [m/s]
+constexpr double kBlocked = 0.7;        // after which a hook that does not get there turns back [s]
+constexpr double kCameraRate = 0.25;    // [rad/s]
 
 Vec3 MeanPort(const Scene& scene) {
   return 0.5 * (scene.instruments[kLeft].p_world_port + scene.instruments[kRight].p_world_port);
@@ -208,61 +213,82 @@ void CholecystectomySurgeon::LetGo(int hand) {
   Jaw(hand, 0.0);
 }
 
-/// \param beyond  how far from the tips, as a share of the jaws, the vessel lies in them; above 1: beside
-void CholecystectomySurgeon::PlaceClip(std::size_t tube, double share, double beyond) {
-  const auto aim = [this, tube, share](const Snapshot& seen, double ahead) {
-    const Vec3 p = TubePoint(seen, tube, share);
-    const Vec3 in = math::Normalized(p - HandOf(kRight).Port());
-    return p + ahead * in;
-  };
-  const double jaws = instrument::FindTool("clip_applier")->jaw_length;
+Vec3 CholecystectomySurgeon::Aim(const Snapshot& seen, std::size_t tube, double share, double ahead) const {
+  const Vec3 p = TubePoint(seen, tube, share);
+  return p + ahead * math::Normalized(p - hands_[kRight].Port());
+}
+
+void CholecystectomySurgeon::LineUp(const std::string& what, std::size_t tube, double share, double jaw) {
   Add(
-      "line up the clip",
-      [this, tube, share, aim](const Snapshot& seen) {
+      "line up the " + what,
+      [this, tube, share, jaw](const Snapshot& seen) {
         const Vec3 p = TubePoint(seen, tube, share);
         const Vec3 shaft = math::Normalized(p - HandOf(kRight).Port());
         HandOf(kRight).Turn(
             FindSpin(HandOf(kRight).Port(), p, math::Cross(shaft, TubeDirection(seen, tube, share))));
-        HandOf(kRight).SetJaw(instrument::FindTool("clip_applier")->max_jaw);
-        HandOf(kRight).MoveTo(aim(seen, -0.012));
+        HandOf(kRight).SetJaw(jaw);
+        HandOf(kRight).MoveTo(Aim(seen, tube, share, kStandOff));
       },
       [this](const Snapshot&) { return !HandOf(kRight).IsMoving() && !HandOf(kRight).IsTurning(); }, 5.0);
+}
+
+/// \param beyond  how far from the tips, as a share of the jaws, the vessel lies in them
+/// \param tries   how often it is lined up anew when the vessel is not between the legs
+void CholecystectomySurgeon::PlaceClip(std::size_t tube, double share, double beyond, int tries) {
+  const instrument::Tool& applier = *instrument::FindTool("clip_applier");
+  LineUp("clip", tube, share, applier.max_jaw);
   Reach(
-      kRight, [aim, jaws, beyond](const Snapshot& seen) { return aim(seen, beyond * jaws); }, 0.4);
+      kRight,
+      [this, tube, share, ahead = beyond * applier.jaw_length](const Snapshot& seen) {
+        return Aim(seen, tube, share, ahead);
+      },
+      0.4);
   Wait(0.2);
+  Add(
+      "look at the clip's tips",
+      [this, tube, share, beyond, tries, &applier](const Snapshot& seen) {
+        const Pose& X = seen.instruments[kRight].X_world_tool;
+        const Vec3 in = math::Inverse(X) * TubePoint(seen, tube, share);
+        const bool is_between = std::hypot(in.x, in.y) < kBetweenLegs && in.z > kFromTips &&
+                                in.z < applier.jaw_length - kFromTips;
+        std::swap(acts_, inserted_);
+        if (is_between || tries == 0) {
+          CloseClip(tube, share);
+        } else {
+          Reach(kRight,
+                [this, tube, share](const Snapshot& now) { return Aim(now, tube, share, kStandOff); });
+          // a little farther along, then a little nearer
+          PlaceClip(tube, share + (tries % 2 == 0 ? kAnother : -2 * kAnother), beyond, tries - 1);
+        }
+        std::swap(acts_, inserted_);
+      },
+      [](const Snapshot&) { return true; }, 1.0);
+}
+
+void CholecystectomySurgeon::CloseClip(std::size_t tube, double share) {
   Add(
       "close the clip", [this](const Snapshot&) { HandOf(kRight).SetJaw(0.0); },
       [this](const Snapshot&) { return act_seconds_ > 0.7; }, 2.0);
   // open enough to leave the clip, not so far that the next one comes
   Jaw(kRight, 0.4);
   Reach(
-      kRight, [aim](const Snapshot& seen) { return aim(seen, -0.020); }, 0.6);
+      kRight, [this, tube, share](const Snapshot& seen) { return Aim(seen, tube, share, -0.020); }, 0.6);
 }
 
 void CholecystectomySurgeon::CutTube(std::size_t tube, double share) {
-  const auto aim = [this, tube, share](const Snapshot& seen, double ahead) {
-    const Vec3 p = TubePoint(seen, tube, share);
-    return p + ahead * math::Normalized(p - HandOf(kRight).Port());
-  };
-  const double blades = instrument::FindTool("scissors")->jaw_length;
-  Add(
-      "line up the scissors",
-      [this, tube, share, aim](const Snapshot& seen) {
-        const Vec3 p = TubePoint(seen, tube, share);
-        const Vec3 shaft = math::Normalized(p - HandOf(kRight).Port());
-        HandOf(kRight).Turn(
-            FindSpin(HandOf(kRight).Port(), p, math::Cross(shaft, TubeDirection(seen, tube, share))));
-        HandOf(kRight).SetJaw(instrument::FindTool("scissors")->max_jaw);
-        HandOf(kRight).MoveTo(aim(seen, -0.012));
-      },
-      [this](const Snapshot&) { return !HandOf(kRight).IsMoving() && !HandOf(kRight).IsTurning(); }, 5.0);
+  const instrument::Tool& scissors = *instrument::FindTool("scissors");
+  LineUp("scissors", tube, share, scissors.max_jaw);
   Reach(
-      kRight, [aim, blades](const Snapshot& seen) { return aim(seen, 0.4 * blades); }, 0.4);
+      kRight,
+      [this, tube, share, ahead = 0.4 * scissors.jaw_length](const Snapshot& seen) {
+        return Aim(seen, tube, share, ahead);
+      },
+      0.4);
   Add(
       "cut", [this](const Snapshot&) { HandOf(kRight).SetJaw(0.0); },
       [this](const Snapshot&) { return act_seconds_ > 0.7; }, 2.0);
   Reach(
-      kRight, [aim](const Snapshot& seen) { return aim(seen, -0.020); }, 0.6);
+      kRight, [this, tube, share](const Snapshot& seen) { return Aim(seen, tube, share, -0.020); }, 0.6);
 }
 
 void CholecystectomySurgeon::Burn(int hand, const Place& at, double seconds) {
@@ -449,7 +475,7 @@ void CholecystectomySurgeon::PlanOperation() {
     lower_order.push_back(bed_order[i]);
   }
   Draw(kLeft, 0.006 * bed_normal_);
-  Dissect("the lower third of the bed", lower, lower_order, 0.97, 0.035);
+  Dissect("the lower third of the bed", lower, lower_order, 0.97, 0.028);
 
   // both views
   const Place triangle_middle = [this, duct](const Snapshot& seen) { return TubePoint(seen, duct, 0.5); };
@@ -471,9 +497,16 @@ void CholecystectomySurgeon::PlanOperation() {
   CutTube(artery, 0.36);
 
   Exchange(kRight, instrument::ToolKind::kHook);
-  Draw(kLeft, 0.012 * bed_normal_);
-  Dissect("the gallbladder from its bed", bed, bed_order, 1.0, 0.070);
-
+  LookAt([this](const Snapshot& seen) { return 0.5 * (seen.positions[neck_] + seen.positions[fundus_]); },
+         0.0, 0.105);
+  // a new hold for each: the old one may have slipped, and what is free can be drawn elsewhere
+  const Vec3 aside = math::Normalized(math::Cross(bed_normal_, axis));
+  for (const Vec3& way : {Vec3{}, 0.02 * aside, -0.02 * aside}) {
+    LetGo(kLeft);
+    Grasp(kLeft, [this](const Snapshot& seen) { return seen.positions[hold_]; });
+    Draw(kLeft, 0.012 * bed_normal_ + way);
+    Dissect("the gallbladder from its bed", bed, bed_order, 1.0, 0.070);
+  }
   Add(
       "assistant: release", [this](const Snapshot&) { assistant_ = AssistantCommand::kRelease; },
       [](const Snapshot& seen) { return !seen.operation.is_assistant_holding; }, 4.0);
@@ -635,6 +668,9 @@ Input CholecystectomySurgeon::Act(const Snapshot& seen) {
     if (act.is_done(seen) || act_seconds_ > act.patience) {
       acts_.pop_front();
       has_begun_ = false;
+      acts_.insert(acts_.begin(), std::make_move_iterator(inserted_.begin()),
+                   std::make_move_iterator(inserted_.end()));
+      inserted_.clear();
     }
   }
   const auto follow = [&](double& now, double to) {

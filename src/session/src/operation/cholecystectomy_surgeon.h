@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "../task_surgeon.h"
+#include "task_surgeon.h"
 #include "trocar/session/simulation.h"
 #include "trocar/session/surgeon.h"
 
@@ -81,7 +81,9 @@ class CholecystectomySurgeon final : public Surgeon {
   void Grasp(int hand, const Place& at, double squeeze = 0);
   void Draw(int hand, const Vec3& by);
   void LetGo(int hand);
-  void PlaceClip(std::size_t tube, double share, double beyond = 0.5);
+  void LineUp(const std::string& what, std::size_t tube, double share, double jaw);
+  void PlaceClip(std::size_t tube, double share, double beyond = 0.5, int tries = 2);
+  void CloseClip(std::size_t tube, double share);
   void CutTube(std::size_t tube, double share);
   void Burn(int hand, const Place& at, double seconds);
   void Dissect(const std::string& what, std::vector<std::uint32_t> strands, std::vector<double> order,
@@ -96,6 +98,8 @@ class CholecystectomySurgeon final : public Surgeon {
   std::uint32_t FindNode(std::int32_t organ, const Vec3& p) const;
   std::size_t FindTube(std::string_view name) const;
   Vec3 HookTip(const Vec3& at) const;
+  /// That far beyond a point of a tube, as seen from the right hand's trocar; negative: before it.
+  Vec3 Aim(const Snapshot& seen, std::size_t tube, double share, double ahead) const;
   HandMotion& HandOf(int hand) { return hands_[static_cast<std::size_t>(hand)]; }
 
   std::shared_ptr<const Scene> scene_;
@@ -111,9 +115,9 @@ class CholecystectomySurgeon final : public Surgeon {
   std::vector<std::vector<std::uint32_t>>
       tube_nodes_;  // (tubes) from the gallbladder's end, where one enters it
   std::uint32_t neck_ = 0, hold_ = 0, fundus_ = 0, liver_node_ = 0;
-  double hook_spin_ = 0;  // that the right hand means to have [rad]
-  Vec3 bed_normal_;       // from the liver towards the gallbladder, at rest
-  std::deque<SurgicalAct> acts_;
+  double hook_spin_ = 0;                     // that the right hand means to have [rad]
+  Vec3 bed_normal_;                          // from the liver towards the gallbladder, at rest
+  std::deque<SurgicalAct> acts_, inserted_;  // the latter by the act that is under way, to be done next
   bool has_begun_ = false, has_finished_ = false;
   double act_seconds_ = 0;
   std::string doing_;

@@ -9,11 +9,11 @@
 #include <span>
 #include <vector>
 
-#include "../patient_tissue.h"
 #include "assistant.h"
 #include "dissection_watch.h"
 #include "electrosurgery.h"
 #include "operation_judge.h"
+#include "patient_tissue.h"
 #include "trocar/surgery/cuttable_organ.h"
 #include "vessel_work.h"
 
