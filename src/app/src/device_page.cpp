@@ -223,6 +223,7 @@ void DevicePage::ShowHaptics(double now) {
 }
 
 bool DevicePage::OnTime() {
+  if (has_ended_) return true;  // what is photographed holds still
   const double now = since_start_.Seconds();
   const bool was_measuring = bench_.IsMeasuring();
   bench_.Advance(now);
@@ -260,7 +261,17 @@ void DevicePage::RunUnattended(double now) {
   if (has_ended_ || (!is_late && !(now > options_.screenshot_after && is_seen && is_measured))) return;
   has_ended_ = true;
   if (is_late) failure_ = core::Error{core::ErrorCode::kDeviceStale, "the device said nothing: " + said_};
+  Glib::signal_timeout().connect_once([this] { EndUnattended(); }, 300);
+}
+
+void DevicePage::EndUnattended() {
+  constexpr int kMostTries = 50;
   const core::Status saved = SaveScreenshot(*this, options_.screenshot);
+  // a window that is being laid out anew has nothing to show for a moment
+  if (!saved && ++screenshot_tries_ < kMostTries) {
+    Glib::signal_timeout().connect_once([this] { EndUnattended(); }, 100);
+    return;
+  }
   if (!saved) failure_ = saved.error();
   if (failure_) core::Log(core::LogLevel::kError, failure_->Text());
   std::printf(

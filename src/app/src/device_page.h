@@ -39,6 +39,7 @@ class DevicePage : public Gtk::ApplicationWindow {
   bool OnTime();
   void ShowHaptics(double now);
   void RunUnattended(double now);
+  void EndUnattended();
   void Say(const std::string& text, bool is_warning = false);
   device::Channel GetHand() const { return static_cast<device::Channel>(hand_.get_selected()); }
 
@@ -51,6 +52,7 @@ class DevicePage : public Gtk::ApplicationWindow {
   std::optional<core::Error> failure_;
   std::string said_;  // of the device
   bool has_begun_ = false, has_ended_ = false, is_showing_ = false;
+  int screenshot_tries_ = 0;
 
   Gtk::ListBox found_;
   Gtk::Entry spec_;

@@ -63,8 +63,8 @@ int main(int argc, char** argv) {
   const auto has_failed = [](const auto& window) {
     return window != nullptr && window->GetFailure().has_value();
   };
-  const bool is_good =
-      status == 0 && !has_failed(devices) && !has_failed(simulator) && !has_failed(contours) && !has_failed(patient_editor);
+  const bool is_good = status == 0 && !has_failed(devices) && !has_failed(simulator) &&
+                       !has_failed(contours) && !has_failed(patient_editor);
   devices.reset();
   simulator.reset();
   contours.reset();

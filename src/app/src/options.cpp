@@ -33,8 +33,9 @@ core::Result<Command> ParseCommandLine(int argc, const char* const* argv) {
       "Hands of a tracker or other device in place of the mouse's, as `trocar devices list` names it");
   app.add_option("--haptics", options.haptics,
                  "Hands of a haptic device, with force: " + device::ListForceDrivers());
-  app.add_option("--haptic-record", options.haptic_record,
-                 "With --haptics: write rates, forces and every change of the force feedback to this file (JSON)")
+  app.add_option(
+         "--haptic-record", options.haptic_record,
+         "With --haptics: write rates, forces and every change of the force feedback to this file (JSON)")
       ->needs("--haptics");
   app.add_option("--igtl", options.igtl_port,
                  "Show tools and organs to 3D Slicer on this port of this machine (OpenIGTLink; 0: any port)")
@@ -56,7 +57,8 @@ core::Result<Command> ParseCommandLine(int argc, const char* const* argv) {
           ->excludes("--scene")
           ->excludes("--demonstration")
           ->excludes("--haptics");
-  app.add_option("--calibrate", options.calibrate, "With --devices: measure this as soon as the device answers")
+  app.add_option("--calibrate", options.calibrate,
+                 "With --devices: measure this as soon as the device answers")
       ->check(CLI::IsMember({"tip", "trocar", "jaw"}))
       ->needs(devices);
   CLI::Option* contours =

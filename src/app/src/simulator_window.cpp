@@ -351,7 +351,8 @@ void SimulatorWindow::OpenDevices() {
 
 void SimulatorWindow::SaveHapticRecord() {
   if (options_.haptic_record.empty() || control_ == nullptr) return;
-  const core::Status saved = core::WriteFile(options_.haptic_record, control_->GetHapticRecord().FormatJson());
+  const core::Status saved =
+      core::WriteFile(options_.haptic_record, control_->GetHapticRecord().FormatJson());
   if (saved) return;
   core::Log(core::LogLevel::kError, saved.error().Text());
   if (!failure_) failure_ = saved.error();

@@ -21,6 +21,8 @@ execute_process(
 if(NOT status EQUAL 0)
   message(FATAL_ERROR "trocar-window ended with ${status}: ${errors}")
 endif()
+# desktop services talk on the same line
+string(REGEX MATCH "{.*}" report "${report}")
 string(JSON calibrated GET "${report}" calibrated)
 string(JSON residual GET "${report}" residual_mm)
 if(NOT calibrated OR residual GREATER 1.0)
@@ -35,6 +37,6 @@ if(NOT status EQUAL 0)
 endif()
 # a device that cannot be is an error in words
 execute_process(COMMAND ${WINDOW} --devices --calibrate telepathy RESULT_VARIABLE status ERROR_VARIABLE errors TIMEOUT 60)
-if(status EQUAL 0 OR NOT errors MATCHES "E-USE-001")
+if(status EQUAL 0 OR NOT errors MATCHES "E-CLI-001")
   message(FATAL_ERROR "a step that does not exist gave ${status}: ${errors}")
 endif()

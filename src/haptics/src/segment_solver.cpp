@@ -61,8 +61,9 @@ void SegmentSolver::SetDirection(const math::Quaternion& hand) noexcept {
   for (std::uint32_t c = 0; c < patch_.contact_count; ++c) {
     const LocalPatch::Contact& contact = patch_.contacts[c];
     // in a trocar the shaft turns with the tip, which tip_normal takes in
-    turned_[c] =
-        patch_.has_pivot ? 0.0 : math::Dot(contact.normal, math::Rotate(turn_, contact.lever) - contact.lever);
+    turned_[c] = patch_.has_pivot
+                     ? 0.0
+                     : math::Dot(contact.normal, math::Rotate(turn_, contact.lever) - contact.lever);
   }
   MoveHeld();
 }
@@ -78,8 +79,7 @@ double SegmentSolver::CalcDepth(const LocalPatch::Contact& contact, double turne
     const std::uint16_t node = contact.nodes[i];
     given_way += contact.weights[i] * (position_[node] - patch_.position[node]);
   }
-  return contact.depth + turned +
-         math::Dot(contact.tip_normal, tool_ - patch_.X_world_tool.translation) -
+  return contact.depth + turned + math::Dot(contact.tip_normal, tool_ - patch_.X_world_tool.translation) -
          math::Dot(contact.normal, given_way);
 }
 
@@ -202,7 +202,8 @@ Matrix3 SegmentSolver::PullByLinks(std::size_t node, Matrix3& block) const noexc
     const LinkStiffness stiffness =
         CalcLinkStiffness(along, math::Norm(along), link.stiffness, link.rest_length);
     AddLink(block, stiffness);
-    pull += stiffness.isotropic * other + stiffness.axial * Project(stiffness.direction, stiffness.direction, other);
+    pull += stiffness.isotropic * other +
+            stiffness.axial * Project(stiffness.direction, stiffness.direction, other);
   }
   return pull;
 }

@@ -18,7 +18,7 @@ struct Options {
   std::string device;   ///< hands of a device, as `trocar devices list` names it; empty: mouse and keyboard
   std::string haptics;  ///< haptic device; empty: none
   std::filesystem::path haptic_record;  ///< what force feedback did, written at the end; empty: none
-  int igtl_port = -1;  ///< viewers over OpenIGTLink may connect here; 0: any port, -1: none
+  int igtl_port = -1;                   ///< viewers over OpenIGTLink may connect here; 0: any port, -1: none
   bool is_fullscreen = false;
   bool is_demonstration = false;     ///< start with the script moving both hands
   std::filesystem::path screenshot;  ///< empty: none. Otherwise play, save the window's picture and quit
@@ -26,7 +26,7 @@ struct Options {
 
   // the device page
   bool is_device_page = false;  ///< open it alone; `device` is tried at once
-  std::string calibrate;        ///< "tip", "trocar" or "jaw": measured as soon as the device answers; empty: none
+  std::string calibrate;  ///< "tip", "trocar" or "jaw": measured as soon as the device answers; empty: none
 
   // the contour window
   std::filesystem::path images;        ///< not empty: open the contour window on these pictures

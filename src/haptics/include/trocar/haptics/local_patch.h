@@ -32,10 +32,10 @@ struct LocalPatch {
   } kind = Kind::kNone;
   bool is_healthy = false;  ///< the tick ended with a good state
   std::uint64_t tick = 0;
-  Pose X_world_tool;          ///< of the tool in that tick
-  Vec3 force;                 ///< of the tissue on the tool in that tick, as it is at the tip [N], world frame
-  bool has_pivot = false;     ///< the shaft turns about its trocar as the tip moves
-  Matrix3Rows jacobian{};     ///< dF/dp of kLinear [N/m]
+  Pose X_world_tool;       ///< of the tool in that tick
+  Vec3 force;              ///< of the tissue on the tool in that tick, as it is at the tip [N], world frame
+  bool has_pivot = false;  ///< the shaft turns about its trocar as the tip moves
+  Matrix3Rows jacobian{};  ///< dF/dp of kLinear [N/m]
   bool is_one_sided = false;  ///< kLinear: the tool only presses, and what it pressed does not pull it back
 
   std::uint32_t free_count = 0, held_count = 0, node_count = 0;
