@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <memory>
 #include <string>
 
@@ -149,6 +150,18 @@ TEST(Operation, BeginsAgainAsItBeganAndRepeats) {
   EXPECT_EQ(simulation.Hash(), start);
   (void)Play("cuts_unclipped", simulation, 5.0);
   EXPECT_EQ(simulation.Hash(), end);
+}
+
+TEST(OperationSlow, AnExpertGoesFromTheFirstLookToTheBag) {
+  if (std::getenv("TROCAR_SLOW_TESTS") == nullptr) GTEST_SKIP() << "minutes; set TROCAR_SLOW_TESTS=1";
+  Simulation simulation = MakeOperation();
+  const OperationResult result = Play("expert", simulation, 600.0);
+  EXPECT_TRUE(result.is_completed);
+  EXPECT_TRUE(result.was_critical_view_achieved);
+  for (const training::ErrorEntry& error : result.errors.Entries())
+    EXPECT_NE(training::SeverityOf(error.error), training::Severity::kCritical)
+        << training::NameOf(error.error);
+  EXPECT_LT(result.injuries.strasberg, training::Strasberg::kD);
 }
 
 /// Each careless surgeon commits the error that it is listed with.

@@ -99,11 +99,8 @@ void AddContact(const Search& search, const Meeting& meeting, std::size_t surfac
   link.hand = search.motion.hand;
   link.surface = static_cast<std::uint8_t>(surface);
   link.is_pinch = IsPinch(search.body, search.motion.X_world_device, meeting.normal);
-  // blades and the legs of a clip close around what lies between them; they do not squeeze it out
-  const instrument::ToolKind kind = search.motion.tool->kind;
-  if (link.is_pinch &&
-      (kind == instrument::ToolKind::kScissors || kind == instrument::ToolKind::kClipApplier))
-    return;
+  // what lies between blades is not squeezed out
+  if (link.is_pinch && ClosesAroundTubes(*search.motion.tool)) return;
   link.p_device = p_device;
   link.p_tool_stuck = math::Inverse(search.motion.X_world_device) * stuck;
   AddSpring({meeting.nodes, meeting.weights, meeting.normal,
@@ -272,6 +269,10 @@ std::array<Capsule, kToolBodyCount> CalcToolBodies(const instrument::Tool& tool,
   return bodies;
 }
 
+bool ClosesAroundTubes(const instrument::Tool& tool) noexcept {
+  return tool.kind == instrument::ToolKind::kScissors || tool.kind == instrument::ToolKind::kClipApplier;
+}
+
 bool IsPinch(ToolBody body, const Pose& X_world_tool, const Vec3& normal) noexcept {
   constexpr double kInwards = 0.5;  // within 60 degrees of the direction in which the jaw closes
   if (body == ToolBody::kShaft) return false;
@@ -310,7 +311,8 @@ void FindContacts(const ToolMotion& motion, const Touchables& touchables, const 
           search.body != ToolBody::kShaft && static_cast<std::int32_t>(surface) == motion.grasped_surface;
       if (!is_in_jaws) FindOnOrgan(search, surface, contacts);
     }
-    if (touchables.tubes != nullptr) FindOnTubes(search, contacts);
+    const bool slips_around = search.body != ToolBody::kShaft && ClosesAroundTubes(*motion.tool);
+    if (touchables.tubes != nullptr && !slips_around) FindOnTubes(search, contacts);
   }
 }
 

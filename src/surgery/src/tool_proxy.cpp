@@ -119,7 +119,7 @@ double AddOverlapLimits(const instrument::Tool& tool, const Pose& X_world_proxy,
       add(body, near.parameter, is_outside ? away / distance : -outward,
           is_outside ? radius - distance : radius + distance);
     }
-    if (touchables.tubes == nullptr) continue;
+    if (touchables.tubes == nullptr || (is_jaw && ClosesAroundTubes(tool))) continue;
     const auto near = touchables.tubes->tree.FindNearest(touchables.positions, proxy[body].axis, radius);
     if (!near.Found()) continue;
     const std::size_t surface = touchables.organs.size() + touchables.tubes->tube_of_piece[near.piece];

@@ -490,11 +490,11 @@ void CholecystectomySurgeon::PlanOperation() {
   LookAt(triangle_middle, 0.0, 0.065);
 
   Exchange(kRight, instrument::ToolKind::kClipApplier);
-  for (const double share : {0.62, 0.50, 0.22}) PlaceClip(duct, share);
-  for (const double share : {0.70, 0.52, 0.20}) PlaceClip(artery, share);
+  for (const double share : {0.66, 0.54, 0.38}) PlaceClip(duct, share);
+  for (const double share : {0.80, 0.69, 0.55}) PlaceClip(artery, share);
   Exchange(kRight, instrument::ToolKind::kScissors);
-  CutTube(duct, 0.36);
-  CutTube(artery, 0.36);
+  CutTube(duct, 0.46);
+  CutTube(artery, 0.62);
 
   Exchange(kRight, instrument::ToolKind::kHook);
   LookAt([this](const Snapshot& seen) { return 0.5 * (seen.positions[neck_] + seen.positions[fundus_]); },

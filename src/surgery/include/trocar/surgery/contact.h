@@ -40,6 +40,10 @@ inline constexpr int kToolBodyCount = 3;
 std::array<collision::Capsule, kToolBodyCount> CalcToolBodies(const instrument::Tool& tool, double jaw,
                                                               const Pose& X_world_tool) noexcept;
 
+/// Blades, and the legs of a clip, slip around ducts and vessels and close on them: these jaws neither push a tube nor
+/// are stopped by one. Their shaft is.
+bool ClosesAroundTubes(const instrument::Tool& tool) noexcept;
+
 /// Whether a jaw that pushes tissue along `normal` pushes it towards the other jaw: tissue between the jaws, which
 /// does not push the tool away.
 /// \note Real-time safe.
