@@ -26,15 +26,15 @@ constexpr const char* kLibrary = TROCAR_EMBREE == 3 ? "libembree3.so.3" : "libem
 
 /// What is used of the library, by name.
 struct Embree {
-#define TROCAR_EMBREE_FUNCTIONS(DO)                                                          \
-  DO(rtcNewDevice)                                                                           \
-  DO(rtcReleaseDevice)                                                                       \
-  DO(rtcNewScene)                                                                            \
-  DO(rtcReleaseScene)                                                                        \
-  DO(rtcSetSceneFlags)                                                                       \
-  DO(rtcSetSceneBuildQuality) DO(rtcCommitScene) DO(rtcNewGeometry) DO(rtcReleaseGeometry)   \
-      DO(rtcSetGeometryBuildQuality) DO(rtcSetNewGeometryBuffer) DO(rtcUpdateGeometryBuffer) \
-          DO(rtcCommitGeometry) DO(rtcAttachGeometry) DO(rtcPointQuery)
+// the formatter finds no rest here
+// clang-format off
+#define TROCAR_EMBREE_FUNCTIONS(DO) \
+  DO(rtcNewDevice) DO(rtcReleaseDevice) DO(rtcNewScene) \
+  DO(rtcReleaseScene) DO(rtcSetSceneFlags) DO(rtcSetSceneBuildQuality) \
+  DO(rtcCommitScene) DO(rtcNewGeometry) DO(rtcReleaseGeometry) \
+  DO(rtcSetGeometryBuildQuality) DO(rtcSetNewGeometryBuffer) DO(rtcUpdateGeometryBuffer) \
+  DO(rtcCommitGeometry) DO(rtcAttachGeometry) DO(rtcPointQuery)
+// clang-format on
 #define TROCAR_DECLARE(NAME) decltype(&::NAME) NAME = nullptr;
   TROCAR_EMBREE_FUNCTIONS(TROCAR_DECLARE)
 #undef TROCAR_DECLARE
