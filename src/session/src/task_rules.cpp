@@ -18,7 +18,7 @@ constexpr std::size_t kMaxRegions = 256, kMaxGoals = 256, kMaxErrors = 64;
 
 /// Replaces {each} by the item that a repeated goal or error stands for.
 std::string Fill(std::string text, const std::string& item) {
-  static const std::string kEach = "{each}";
+  constexpr std::string_view kEach = "{each}";
   for (std::size_t at = text.find(kEach); at != std::string::npos; at = text.find(kEach, at + item.size()))
     text.replace(at, kEach.size(), item);
   return text;

@@ -31,22 +31,21 @@ surgery::GraspChange Assistant::Step(AssistantCommand command, const Vec3& fundu
   double jaw = 0;
   if (wants_hold && !grasp_.IsHolding()) {
     target = fundus;
-    const bool is_there = math::Distance(X_world_tool().translation, fundus) < kThere;
+    const bool is_there = math::Distance(CalcPose().translation, fundus) < kThere;
     jaw = is_there ? 0.0 : open;
-    if (is_there) target = X_world_tool().translation;
+    if (is_there) target = CalcPose().translation;
   } else if (grasp_.IsHolding()) {
     target = command == AssistantCommand::kRetract ? p_taken_ + setup_.lift
              : wants_hold                          ? p_taken_
-                                                   : X_world_tool().translation;
+                                                   : CalcPose().translation;
     jaw = wants_hold ? 0.0 : open;
   } else {
-    jaw =
-        joints_.jaw > 0.0 && math::Distance(X_world_tool().translation, target) > kThere ? joints_.jaw : 0.0;
+    jaw = joints_.jaw > 0.0 && math::Distance(CalcPose().translation, target) > kThere ? joints_.jaw : 0.0;
   }
   const instrument::TrocarJoints wanted =
       instrument::FindJoints(setup_.p_world_port, target, joints_.spin, jaw);
   joints_ = instrument::LimitSpeed(joints_, wanted, kSpeed, kTurnRate, seconds);
-  const math::Pose X = X_world_tool();
+  const math::Pose X = CalcPose();
   const auto change =
       surgery::UpdateGrasp(setup_.tool, X, X, joints_.jaw, organs, nullptr, model, settings, grasp_, tissue);
   if (change == surgery::GraspChange::kGrasped) p_taken_ = X.translation;

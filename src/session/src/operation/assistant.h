@@ -28,7 +28,7 @@ class Assistant {
                             const surgery::GraspSettings& settings, tissue::TissueState& tissue) noexcept;
 
   const instrument::TrocarJoints& Joints() const { return joints_; }
-  math::Pose X_world_tool() const { return instrument::CalcToolPose(setup_.p_world_port, joints_); }
+  math::Pose CalcPose() const { return instrument::CalcToolPose(setup_.p_world_port, joints_); }
   surgery::Grasp& Held() { return grasp_; }
   const surgery::Grasp& Held() const { return grasp_; }
   const AssistantSetup& Setup() const { return setup_; }

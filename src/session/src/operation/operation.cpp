@@ -347,7 +347,7 @@ void Operation::Publish(const tissue::TissueState& tissue, OperationSnapshot& sn
   snapshot.smoke = smoke_;
   snapshot.has_assistant = assistant_.has_value();
   if (assistant_) {
-    snapshot.X_world_assistant = assistant_->X_world_tool();
+    snapshot.X_world_assistant = assistant_->CalcPose();
     snapshot.assistant_jaw = assistant_->Joints().jaw;
     snapshot.is_assistant_holding = assistant_->Held().IsHolding();
   }
