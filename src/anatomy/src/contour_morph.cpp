@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <limits>
 
+#include "even_places.h"
 #include "trocar/core/assert.h"
 
 namespace trocar::anatomy {
@@ -21,27 +22,15 @@ struct Points {
 /// Equal steps along the polyline, counter-clockwise.
 Points Resample(std::span<const Vec2> contour) {
   const std::size_t n = contour.size();
-  double length = 0.0, area = 0.0;
+  double area = 0.0;
   for (std::size_t i = 0; i < n; ++i) {
     const Vec2 &p = contour[i], &q = contour[(i + 1) % n];
-    length += Norm(q - p);
     area += p.x * q.y - q.x * p.y;
   }
-  const auto count = static_cast<std::size_t>(std::clamp(std::ceil(length / kStep), 8.0, 2000.0));
   Points points;
-  double passed = 0.0;
-  std::size_t side = 0;
-  for (std::size_t k = 0; k < count; ++k) {
-    const double wanted = length * static_cast<double>(k) / static_cast<double>(count);
-    double step = Norm(contour[(side + 1) % n] - contour[side]);
-    while (passed + step < wanted && side + 1 < n) {
-      passed += step;
-      ++side;
-      step = Norm(contour[(side + 1) % n] - contour[side]);
-    }
-    const double part = step > 0 ? std::min(1.0, (wanted - passed) / step) : 0.0;
+  for (const auto& [side, part] : FindEvenPlaces(contour, kStep, 8, 2000))
     points.at.push_back(contour[side] + part * (contour[(side + 1) % n] - contour[side]));
-  }
+  const std::size_t count = points.at.size();
   if (area < 0) std::reverse(points.at.begin(), points.at.end());
   constexpr std::size_t kReach = 2;  // over which the normal is taken
   for (std::size_t k = 0; k < count; ++k) {

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <limits>
 
+#include "even_places.h"
 #include "trocar/core/assert.h"
 
 namespace trocar::anatomy {
@@ -60,25 +61,9 @@ int Trace(const std::vector<std::int8_t>& from, std::size_t rows, int columns, i
 ClosedCurve ResampleClosed(std::span<const Vec2> polyline, double step_px, std::size_t most) {
   const std::size_t m = polyline.size();
   TROCAR_ASSERT(m >= 3 && step_px > 0 && most >= kFewest);
-  double length = 0.0;
-  for (std::size_t i = 0; i < m; ++i) length += Norm(polyline[(i + 1) % m] - polyline[i]);
-  const auto count = static_cast<std::size_t>(
-      std::clamp(std::ceil(length / step_px), static_cast<double>(kFewest), static_cast<double>(most)));
   std::vector<Vec2> at;
-  at.reserve(count);
-  double passed = 0.0;
-  std::size_t side = 0;
-  double side_length = Norm(polyline[1] - polyline[0]);
-  for (std::size_t k = 0; k < count; ++k) {
-    const double wanted = length * static_cast<double>(k) / static_cast<double>(count);
-    while (passed + side_length < wanted && side + 1 < m) {
-      passed += side_length;
-      ++side;
-      side_length = Norm(polyline[(side + 1) % m] - polyline[side]);
-    }
-    const double part = side_length > 0 ? std::min(1.0, (wanted - passed) / side_length) : 0.0;
+  for (const auto& [side, part] : FindEvenPlaces(polyline, step_px, kFewest, most))
     at.push_back(polyline[side] + part * (polyline[(side + 1) % m] - polyline[side]));
-  }
   return MakeClosedCurve(std::move(at));
 }
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "edge_path.h"
+#include "even_places.h"
 #include "tissue_colours.h"
 #include "trocar/anatomy/contour_fill.h"
 #include "trocar/anatomy/contour_spline.h"
@@ -103,24 +104,9 @@ std::vector<Vec2> Shift(const ClosedCurve& curve, std::span<const double> shift,
 
 /// Points of the pairs that make equal steps half way between both contours.
 ContourMatch Resample(const ContourMatch& match) {
-  const auto middle = match.At(0.5);
-  const std::size_t n = middle.size();
-  double length = 0;
-  for (std::size_t i = 0; i < n; ++i) length += Norm(middle[(i + 1) % n] - middle[i]);
-  const auto count = static_cast<std::size_t>(std::clamp(std::ceil(length / kEdgeRowStep), 8.0, 4000.0));
   ContourMatch even;
-  double passed = 0;
-  std::size_t side = 0;
-  for (std::size_t row = 0; row < count; ++row) {
-    const double wanted = length * static_cast<double>(row) / static_cast<double>(count);
-    double step = Norm(middle[(side + 1) % n] - middle[side]);
-    while (passed + step < wanted && side + 1 < n) {
-      passed += step;
-      ++side;
-      step = Norm(middle[(side + 1) % n] - middle[side]);
-    }
-    const double part = step > 0 ? std::min(1.0, (wanted - passed) / step) : 0.0;
-    const auto &from = match.pairs[side], &to = match.pairs[(side + 1) % n];
+  for (const auto& [side, part] : FindEvenPlaces(match.At(0.5), kEdgeRowStep, 8, 4000)) {
+    const auto &from = match.pairs[side], &to = match.pairs[(side + 1) % match.pairs.size()];
     even.pairs.push_back({from[0] + part * (to[0] - from[0]), from[1] + part * (to[1] - from[1])});
   }
   return even;

@@ -160,6 +160,14 @@ void PrintForPerson(const session::Scene& scene, const PlayReport& report) {
   std::printf("Training feedback, not certified assessment.\n");
 }
 
+std::string NameSurgeons(const session::Scene& scene) {
+  std::string names;
+  for (const session::SurgeonEntry& entry : session::ListSurgeons()) {
+    if (entry.suits(scene)) names += (names.empty() ? "" : " ") + std::string(entry.name);
+  }
+  return names;
+}
+
 core::Status PrintList() {
   const auto tasks = session::ListTasks();
   if (!tasks) return tasks.error();
@@ -167,20 +175,13 @@ core::Status PrintList() {
   for (const session::TaskEntry& task : *tasks) {
     const auto scene = session::ReadTask(task.path);
     if (!scene) return scene.error();
-    std::string surgeons, levels;
-    for (const session::SurgeonEntry& entry : session::ListSurgeons()) {
-      if (entry.suits(*scene)) surgeons += (surgeons.empty() ? "" : " ") + std::string(entry.name);
-    }
+    std::string levels;
     for (const std::string& level : task.levels) levels += (levels.empty() ? "" : " ") + level;
-    rows.push_back({task.key, levels, surgeons, task.name});
+    rows.push_back({task.key, levels, NameSurgeons(*scene), task.name});
   }
-  if (const auto operation = FindOperation("cholecystectomy", {}, 0); operation.ok() && *operation) {
-    std::string surgeons;
-    for (const session::SurgeonEntry& entry : session::ListSurgeons()) {
-      if (entry.suits(**operation)) surgeons += (surgeons.empty() ? "" : " ") + std::string(entry.name);
-    }
-    rows.push_back({"cholecystectomy", "-", surgeons, (*operation)->name});
-  }
+  const auto operation = FindOperation("cholecystectomy", {}, 0);
+  if (!operation) return operation.error();
+  if (*operation) rows.push_back({"cholecystectomy", "-", NameSurgeons(**operation), (*operation)->name});
   std::fputs(FormatTable(rows).c_str(), stdout);
   std::printf("\n");
   rows = {{"surgeon", "error", "about"}};

@@ -20,7 +20,7 @@ using core::ErrorCode;
 class OpenHapticsTest : public testing::Test {
  protected:
   void SetUp() override {
-    settings_.library_file = TROCAR_STAND_IN_HD;
+    settings_.hd_file = TROCAR_STAND_IN_HD;
     settings_.names = {"Left", "Right"};
     // held open, so that its counters can be asked after the driver has let go
     library_ = ::dlopen(TROCAR_STAND_IN_HD, RTLD_NOW);
@@ -159,17 +159,17 @@ TEST_F(OpenHapticsTest, LeavesZeroBehind) {
 }
 
 TEST_F(OpenHapticsTest, SaysWhatIsMissing) {
-  settings_.library_file = "libHD_that_nobody_has.so";
+  settings_.hd_file = "libHD_that_nobody_has.so";
   OpenHaptics without(settings_);
   const core::Status status = without.Configure();
   ASSERT_FALSE(status.ok());
   EXPECT_EQ(status.error().code, ErrorCode::kDeviceUnsupported);
   EXPECT_NE(status.error().message.find("install"), std::string::npos);
 
-  settings_.library_file = "libm.so.6";
+  settings_.hd_file = "libm.so.6";
   EXPECT_EQ(OpenHaptics(settings_).Configure().error().code, ErrorCode::kDeviceUnsupported);
 
-  settings_.library_file = TROCAR_STAND_IN_HD;
+  settings_.hd_file = TROCAR_STAND_IN_HD;
   settings_.names = {"Left", "nobody"};
   EXPECT_EQ(OpenHaptics(settings_).Configure().error().code, ErrorCode::kDeviceLost);
   EXPECT_EQ(Find<int()>("StandInDevices")(), 0) << "the first is given back";

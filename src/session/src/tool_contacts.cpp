@@ -134,8 +134,7 @@ core::Status ToolContacts::Follow(const tissue::TissueModel& model, const tissue
     tubes_.tree = std::move(*tree);
     tubes_.tube_of_piece = std::move(tube_of_piece);
   }
-  contacts_.Clear();
-  last_.Clear();
+  has_followed_ = true;
   return {};
 }
 
@@ -151,6 +150,7 @@ void ToolContacts::Reset(const Scene& scene, const std::array<instrument::Trocar
   }
   contacts_.Clear();
   last_.Clear();
+  has_followed_ = false;
   tools_ = {};
   std::copy(tissue.position.begin(), tissue.position.end(), positions_before_.begin());
   std::fill(surface_motion_.begin(), surface_motion_.end(), 0.0);
@@ -202,7 +202,9 @@ std::array<ToolTouch, kHandCount> ToolContacts::CalcTouch(const tissue::TissueSt
         surgery::CalcContactReaction(static_cast<std::uint8_t>(hand), tissue.position, contacts_);
     if (is_good) touch[hand] = {reaction.force + tools_.force[hand], reaction.surface};
   }
-  if (!is_good) contacts_.Clear();
+  // triangles have other numbers after a cut: what stuck to them is forgotten once its force has been read
+  if (!is_good || has_followed_) contacts_.Clear();
+  has_followed_ = false;
   return touch;
 }
 

@@ -98,6 +98,7 @@ class ToolContacts {
   std::array<instrument::TrocarJoints, kHandCount> offset_;  // proxy less device
   std::array<double, kHandCount> jaw_before_{};
   surgery::ContactSet contacts_, last_;
+  bool has_followed_ = false;  // a cut, in this tick
   std::vector<surgery::OrganPair> pairs_;
   std::vector<Vec3> positions_before_;  // (n) before the last solve
 

@@ -8,6 +8,7 @@
 #include <cstdlib>
 
 #include "small_scene.h"
+#include "trocar/session/surgeon.h"
 
 namespace trocar::session {
 namespace {
@@ -73,6 +74,11 @@ TEST_F(SceneFile, NamesWhatIsWrongAndWhere) {
   Write("scene.json", SceneText("spoon"));
   EXPECT_EQ(Failure().code, ErrorCode::kUnknownName);
   EXPECT_THAT(Failure().message, HasSubstr("instruments.left"));
+  std::string tray = SceneText();
+  tray.insert(tray.find(R"("tool")"), R"("tray": ["hook", "spoon"], )");
+  Write("scene.json", tray);
+  EXPECT_EQ(Failure().code, ErrorCode::kUnknownName);
+  EXPECT_THAT(Failure().message, HasSubstr("there is no tool \"spoon\""));
   Write("scene.json", SceneText("grasper", R"(, "tick_hertz": 60)"));
   EXPECT_THAT(Failure().message, HasSubstr("tick_hertz"));
   Write("scene.json", "{");
@@ -80,6 +86,34 @@ TEST_F(SceneFile, NamesWhatIsWrongAndWhere) {
   std::filesystem::remove_all(folder_ / "patient");
   Write("scene.json", SceneText());
   EXPECT_EQ(Failure().code, ErrorCode::kFileMissing);
+}
+
+TEST_F(SceneFile, RefusesBadOperations) {
+  const auto with_operation = [&](const std::string& fields) {
+    Write("scene.json", SceneText("grasper", R"(, "operation": {)" + fields + "}"));
+    return Failure();
+  };
+  EXPECT_EQ(with_operation("").code, ErrorCode::kNone);
+  EXPECT_THAT(with_operation(R"("fat_spacing_mm": 1.0)").message, HasSubstr("at least 1.5"));
+  EXPECT_EQ(with_operation(R"("fat": 2.0)").code, ErrorCode::kJsonField);
+  const std::string hand = R"("assistant": {"port_mm": [-60, 0, 0], "lift_mm": [0, 9, 0], "at": ")";
+  EXPECT_EQ(with_operation(hand + "fundus\"}").code, ErrorCode::kNone);
+  EXPECT_EQ(with_operation(hand + "spleen\"}").code, ErrorCode::kUnknownName);
+  EXPECT_THAT(with_operation(hand + "spleen\"}").message, HasSubstr("operation.assistant"));
+
+  anatomy::Patient patient = MakePatient();
+  patient.tubes.clear();
+  ASSERT_TRUE(anatomy::WritePatient(folder_ / "patient", patient).ok());
+  EXPECT_THAT(with_operation("").message, HasSubstr("has no ducts"));
+}
+
+// the scripted surgeons need more of a patient, and of a tray, than the operation itself
+TEST_F(SceneFile, IsNoCholecystectomyWithoutItsDuctsAndTools) {
+  Write("scene.json", SceneText("grasper", R"(, "operation": {})"));
+  auto scene = Read();
+  ASSERT_TRUE(scene.ok()) << scene.error().Text();
+  for (const SurgeonEntry& entry : ListSurgeons()) EXPECT_FALSE(entry.suits(*scene)) << entry.name;
+  EXPECT_FALSE(MakeSurgeon("expert", std::make_shared<const Scene>(std::move(*scene)), 1).ok());
 }
 
 TEST_F(SceneFile, RefusesBadScripts) {

@@ -106,7 +106,7 @@ core::Result<FoundGpu> LookAtGpu(const DriverFunctions& driver, const DriverSour
 core::Result<DriverFunctions> LoadDriver(const DriverSource& source) {
   if (source.functions) return *source.functions;
   // never closed: NVIDIA's driver does not like to be unloaded
-  void* const handle = ::dlopen(source.library.c_str(), RTLD_NOW | RTLD_LOCAL);
+  void* const handle = ::dlopen(source.file.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (handle == nullptr) {
     return Error{ErrorCode::kGpuMissing,
                  "no NVIDIA driver (libcuda.so.1) is installed" + std::string(kCpuGoesOn)};

@@ -18,7 +18,7 @@ namespace trocar::tissue_cuda {
 
 /// Where driver and GPU code come from; tests give a stand-in.
 struct DriverSource {
-  std::string library = "libcuda.so.1";
+  std::string file = "libcuda.so.1";
   std::optional<DriverFunctions> functions;  ///< taken instead of the library where given
   std::span<const unsigned char> code;  ///< fat binary of kernels/kernels.cu; empty in a build without nvcc
   int code_version = 0;                 ///< CUDA version that compiled it, 1000 major + 10 minor

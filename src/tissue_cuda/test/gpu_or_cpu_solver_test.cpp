@@ -24,7 +24,7 @@ const SolverSettings kChebyshev{.kind = SolverKind::kChebyshevJacobi2015};
 TEST(GpuOrCpuSolver, WithoutAGpuGivesTheProcessorsBits) {
   const TissueModel model = MakeModel();
   DriverSource nowhere = StandIn::Source();
-  nowhere.library = "/nonexistent/libcuda.so.1";
+  nowhere.file = "/nonexistent/libcuda.so.1";
   GpuOrCpuSolver solver(model, 1, MakeGpuSolver(model, {}, nowhere));
   EXPECT_EQ(solver.Gpu(), nullptr);
   ASSERT_TRUE(solver.GpuError());

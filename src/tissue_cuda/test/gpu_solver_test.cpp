@@ -34,10 +34,10 @@ TEST(FindGpu, DescribesTheGpu) {
 
 TEST(FindGpu, SaysInOneLineWhatIsMissingOrTooOld) {
   DriverSource nowhere = StandIn::Source();
-  nowhere.library = "/nonexistent/libcuda.so.1";
+  nowhere.file = "/nonexistent/libcuda.so.1";
   EXPECT_EQ(FindGpu(nowhere).error().code, ErrorCode::kGpuMissing);
   DriverSource not_nvidia = StandIn::Source();
-  not_nvidia.library = "libm.so.6";
+  not_nvidia.file = "libm.so.6";
   EXPECT_EQ(FindGpu(not_nvidia).error().code, ErrorCode::kGpuTooOld);
   DriverSource no_code = StandIn::Source();
   no_code.code = {};

@@ -23,11 +23,6 @@ bool IsMainDuct(VesselRole role) noexcept {
          role == VesselRole::kRightHepaticDuct || role == VesselRole::kLeftHepaticDuct;
 }
 
-bool MayBeDivided(VesselRole role) noexcept {
-  return role == VesselRole::kCysticDuct || role == VesselRole::kCysticArtery ||
-         role == VesselRole::kSubvesicalDuct;
-}
-
 /// Class of a cut through, or a clip across, a main duct.
 Strasberg ClassOfDivision(const BiliaryAnatomy& anatomy, std::uint32_t vessel, double position,
                           double length) noexcept {
@@ -40,6 +35,11 @@ Strasberg ClassOfDivision(const BiliaryAnatomy& anatomy, std::uint32_t vessel, d
 }
 
 }  // namespace
+
+bool MayBeDivided(VesselRole role) noexcept {
+  return role == VesselRole::kCysticDuct || role == VesselRole::kCysticArtery ||
+         role == VesselRole::kSubvesicalDuct;
+}
 
 std::string_view RoleName(VesselRole role) noexcept {
   switch (role) {

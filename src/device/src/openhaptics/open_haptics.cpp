@@ -171,7 +171,7 @@ core::Status OpenHaptics::DoConfigure() {
     return core::Error{ErrorCode::kDeviceBusy,
                        "openhaptics is in use already; name both devices in one: openhaptics:Left,Right"};
   }
-  auto library = hd::Library::Load(c.settings.library_file);
+  auto library = hd::Library::Load(c.settings.hd_file);
   if (!library) {
     is_library_taken.store(false);
     return library.error();

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "patient_tissue.h"
 #include "task_surgeon.h"
 #include "trocar/session/simulation.h"
 #include "trocar/session/surgeon.h"
@@ -64,10 +65,9 @@ class CholecystectomySurgeon final : public Surgeon {
     std::vector<std::uint8_t> attempts;
     std::int32_t target = -1;
     double seconds = 0, blocked = 0;
-    bool is_burning = false;
   };
 
-  void Learn();
+  void Learn(PatientTissue tissue);
   void PlanOperation();
   void PlanFlaw(OperationFlaw flaw);
 
@@ -94,7 +94,6 @@ class CholecystectomySurgeon final : public Surgeon {
   // knowledge
   Vec3 TubePoint(const Snapshot& seen, std::size_t tube, double share) const;
   Vec3 TubeDirection(const Snapshot& seen, std::size_t tube, double share) const;
-  Vec3 Landmark(const Snapshot& seen, std::uint32_t node) const { return seen.positions[node]; }
   std::uint32_t FindNode(std::int32_t organ, const Vec3& p) const;
   std::size_t FindTube(std::string_view name) const;
   Vec3 HookTip(const Vec3& at) const;
@@ -103,7 +102,6 @@ class CholecystectomySurgeon final : public Surgeon {
   HandMotion& HandOf(int hand) { return hands_[static_cast<std::size_t>(hand)]; }
 
   std::shared_ptr<const Scene> scene_;
-  SurgeonSkill skill_;
   std::array<HandMotion, kHandCount> hands_;
   std::array<HandControls, kHandCount> controls_;
   AssistantCommand assistant_ = AssistantCommand::kWait;
@@ -115,7 +113,6 @@ class CholecystectomySurgeon final : public Surgeon {
   std::vector<std::vector<std::uint32_t>>
       tube_nodes_;  // (tubes) from the gallbladder's end, where one enters it
   std::uint32_t neck_ = 0, hold_ = 0, fundus_ = 0, liver_node_ = 0;
-  double hook_spin_ = 0;                     // that the right hand means to have [rad]
   Vec3 bed_normal_;                          // from the liver towards the gallbladder, at rest
   std::deque<SurgicalAct> acts_, inserted_;  // the latter by the act that is under way, to be done next
   bool has_begun_ = false, has_finished_ = false;

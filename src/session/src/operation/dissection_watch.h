@@ -36,7 +36,6 @@ class DissectionWatch {
   const training::DissectionFacts& Facts() const { return facts_; }
   /// Neither bed nor adhesion holds the gallbladder, and no tube that enters it is whole.
   bool IsGallbladderFree() const { return is_free_; }
-  bool HasTriangle() const { return !triangle_.empty(); }
 
  private:
   struct Entering {

@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "trocar/geometry/openings.h"
-
 namespace trocar::session {
 namespace {
 
@@ -19,11 +17,6 @@ constexpr double kBlindSeconds = 1.5;
 /// Where blood and bile gather, seen from the infundibulum: to the right and behind, in Morison's pouch [m].
 constexpr Vec3 kPouch{-0.015, 0.0, -0.025};
 constexpr double kSmokeFades = 0.08;  // share of the smoke a second that leaves with the gas [1/s]
-
-bool MustStay(training::VesselRole role) noexcept {
-  using Role = training::VesselRole;
-  return role != Role::kCysticDuct && role != Role::kCysticArtery && role != Role::kSubvesicalDuct;
-}
 
 }  // namespace
 
@@ -65,7 +58,7 @@ core::Status Operation::MakeAll() {
     const SurfaceInfo& surface = tissue.surfaces[organ_count + t];
     for (std::uint32_t k = 0; k < surface.node_count; ++k) {
       const VesselPlace place = vessels_->Map().Find(t, vessels_->Map().arcs[t][k]);
-      if (MustStay(vessels_->Map().anatomy.roles[place.vessel]))
+      if (!training::MayBeDivided(vessels_->Map().anatomy.roles[place.vessel]))
         main_nodes_.push_back(surface.first_node + k);
     }
   }
@@ -85,7 +78,16 @@ core::Status Operation::MakeAll() {
   assistant_.reset();
   if (scene_->operation->assistant) {
     const AssistantSetup& setup = *scene_->operation->assistant;
-    assistant_.emplace(setup, patient.FindLandmark(setup.landmark)->position);
+    const Vec3& target = patient.FindLandmark(setup.landmark)->position;
+    assistant_.emplace(setup, target);
+    // the landmark moves with the organ: the nearest vertex at rest carries it
+    const SurfaceInfo& surface = tissue.surfaces[static_cast<std::size_t>(std::max(0, gallbladder_))];
+    const auto& rest = tissue.definition.rest;
+    assistant_node_ = surface.first_node;
+    for (std::uint32_t node = surface.first_node; node < surface.first_node + surface.node_count; ++node) {
+      if (math::SquaredDistance(rest[node], target) < math::SquaredDistance(rest[assistant_node_], target))
+        assistant_node_ = node;
+    }
   }
   const anatomy::Landmark* neck = patient.FindLandmark("infundibulum");
   p_pool_ = (neck != nullptr ? neck->position : Vec3{}) + kPouch;
@@ -131,11 +133,10 @@ bool Operation::MoveTool(int hand, const HandControls& controls, bool is_holding
     return !is_refused;
   }
   state.was_refused = false;
-  const bool is_out = wanted.depth > 0.0 && state.exchange_seconds > 0.0;
   wanted.depth = kOutside;
   wanted.jaw = 0;
   state.exchange_seconds += seconds;
-  if (!is_out || state.exchange_seconds < kExchangeSeconds) return true;
+  if (state.exchange_seconds < kExchangeSeconds) return true;
   if (bag_hand_ == hand) {
     is_completed_ = is_in_bag_;
     return true;
@@ -182,21 +183,9 @@ bool Operation::Act(const HandsNow& hands, const TissueNow& tissue) noexcept {
   }
   Burn(hands, tissue);
   if (assistant_) {
-    const anatomy::Landmark* target = scene_->patient.FindLandmark(assistant_->Setup().landmark);
-    Vec3 p = target->position;
-    // the landmark's place on the organ now: the nearest vertex at rest carries it
-    if (gallbladder_ >= 0) {
-      const SurfaceInfo& surface = made_->surfaces[static_cast<std::size_t>(gallbladder_)];
-      std::uint32_t nearest = surface.first_node;
-      const auto& rest = made_->definition.rest;
-      for (std::uint32_t i = 0; i < surface.node_count; ++i) {
-        const std::uint32_t node = surface.first_node + i;
-        if (math::SquaredDistance(rest[node], p) < math::SquaredDistance(rest[nearest], p)) nearest = node;
-      }
-      p = tissue.state->position[nearest];
-    }
     const AssistantCommand command = is_in_bag_ ? AssistantCommand::kRelease : hands.input->assistant;
-    (void)assistant_->Step(command, p, hands.seconds, tissue.organs, *tissue.model, {}, *tissue.state);
+    (void)assistant_->Step(command, tissue.state->position[assistant_node_], hands.seconds, tissue.organs,
+                           *tissue.model, {}, *tissue.state);
   }
   if (change_.nodes.empty() && change_.springs.empty()) return false;
   for (const surgery::NodeChange& node : change_.nodes) {

@@ -82,9 +82,6 @@ class Operation {
   std::vector<collision::TubePiece> TubePieces() const;
   std::vector<std::uint32_t> TubesOfPieces() const;
   std::span<const StrandInfo> Strands() const { return strands_; }
-  bool HasAssistant() const { return assistant_.has_value(); }
-  const Assistant& ThirdHand() const { return *assistant_; }
-  OperationJudge& Judgement() { return judge_; }
 
   void Size(OperationSnapshot& snapshot) const;
   void Publish(const tissue::TissueState& tissue, OperationSnapshot& snapshot) const noexcept;
@@ -132,12 +129,12 @@ class Operation {
   Vec3 p_pool_;
 
   std::vector<surgery::CuttableOrgan> organs_;
-  std::vector<std::size_t> opening_vertices_;
   std::optional<VesselWork> vessels_;
   Electrosurgery heat_;
   DissectionWatch watch_;
   OperationJudge judge_;
   std::optional<Assistant> assistant_;
+  std::uint32_t assistant_node_ = 0;  // of what it takes
   surgery::TopologyChange change_;
   surgery::FluidLedger fluids_;
 

@@ -6,17 +6,13 @@
 namespace trocar::session {
 namespace {
 
+using training::MayBeDivided;
 using training::OperationError;
 using training::VesselRole;
 
 constexpr double kMuchBlood = 50e-6;  // [m^3], domain facts, section 1.4
 constexpr int kClipsThatStay = 2;
 constexpr double kTight = 0.999;  // closure of a clip
-
-bool MayBeDivided(VesselRole role) noexcept {
-  return role == VesselRole::kCysticDuct || role == VesselRole::kCysticArtery ||
-         role == VesselRole::kSubvesicalDuct;
-}
 
 }  // namespace
 

@@ -91,7 +91,6 @@ class VesselWork {
   const surgery::FlowReport& Report() const { return report_; }
   /// Cuts through one tube.
   std::size_t CountCuts(std::uint32_t tube) const noexcept;
-  std::size_t ClipCount() const { return clips_.size(); }
 
   void Publish(std::span<const Vec3> position, std::size_t organ_count,
                OperationSnapshot& snapshot) const noexcept;

@@ -13,7 +13,7 @@
 namespace trocar::device {
 
 struct OpenHapticsSettings {
-  std::string library_file = "libHD.so";  ///< proprietary; never linked
+  std::string hd_file = "libHD.so";  ///< proprietary; never linked
   /// Names that the maker's set-up program gave to the devices: left hand, right hand. One for a single device.
   std::vector<std::string> names{"Default Device"};
   /// Virtual trocar above the middle of the workspace, device frame [m].

@@ -20,7 +20,7 @@ namespace trocar::surgery {
 enum class Fluid : std::uint8_t { kBile, kBlood };
 inline constexpr int kFluidCount = 2;
 
-/// \return dynamic viscosity [Pa s] and density [kg/m^3]
+/// Dynamic viscosity [Pa s] and density [kg/m^3].
 struct FluidProperties {
   double viscosity, density;
 };

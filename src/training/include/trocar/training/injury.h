@@ -28,6 +28,8 @@ enum class VesselRole : std::uint8_t {
 };
 /// "cystic duct", ...
 std::string_view RoleName(VesselRole role) noexcept;
+/// Cystic duct, cystic artery and small ducts of the bed; every other duct and artery must stay.
+bool MayBeDivided(VesselRole role) noexcept;
 
 enum class Strasberg : std::uint8_t {
   kNone,
