@@ -16,6 +16,7 @@
 #include "trocar/device/force_driver.h"
 #include "trocar/haptics/check_pose.h"
 #include "trocar/haptics/haptic_channel.h"
+#include "trocar/session/device_hands.h"
 #include "trocar/session/scene.h"
 #include "trocar/session/snapshot.h"
 #include "trocar/session/supervisor_link.h"
@@ -45,6 +46,8 @@ HapticHand MakeHapticHand(const Scene& scene, const Pose& X_world_laparoscope, H
 struct HapticHands {
   std::array<bool, kHandCount> is_driven{};
   std::array<instrument::TrocarJoints, kHandCount> joints;
+  DeviceActs
+      acts;  ///< of the styluses' buttons behind safety switch and jaws; up where a device is lost or silent
 };
 
 /// One hand's force feedback, for the person and the record.
@@ -57,6 +60,7 @@ struct HapticHandStatus {
   double heat = 0;                                        ///< of the motors, 1 is what they bear for ever [-]
   bool is_warm = false;  ///< the device says so, or the force is held back for heat
   haptics::DeviceGuardCounts counts;
+  device::HandActs acts;  ///< of the stylus
 };
 
 /// Of the whole loop; times over the last second.
@@ -86,10 +90,25 @@ struct HapticLink {
   core::NewestSlot<HapticHands> hands;                                    ///< loop to simulation
 };
 
+/// The simulation's end of the link: hands and pedals of the haptic devices take the place of the input's.
+class HapticHandsReader {
+ public:
+  /// Ticks without news from the loop after which it holds no pedal any more: a loop that stands still burns nothing.
+  static constexpr int kLongestSilence = 12;
+
+  /// Call it once a tick. Does nothing while no loop runs.
+  /// \note Real-time safe.
+  void Take(HapticLink& link, Input& input) noexcept;
+
+ private:
+  int silent_ticks_ = 0;
+};
+
 struct HapticLoopSettings {
-  std::vector<HapticHand> hands;                 ///< one a channel of the driver
-  std::filesystem::path supervisor;              ///< program trocar-supervisor; empty: none, and no force
-  double period = 0.001;                         ///< [s]
+  std::vector<HapticHand> hands;     ///< one a channel of the driver
+  std::filesystem::path supervisor;  ///< program trocar-supervisor; empty: none, and no force
+  double period = 0.001;             ///< [s]
+  device::ButtonMap buttons = device::DefaultButtons();
   CountAllocations count_allocations = nullptr;  ///< counts what the ticks allocate, for benchmarks
   double spin = 0.00025;  ///< waited for actively before each tick, because sleep wakes late [s]
 };
