@@ -21,6 +21,7 @@ class SessionControlTest : public testing::Test {
   void SetUp() override {
     core::Result<session::Scene> scene = session::ReadScene(TROCAR_SOURCE_DIR "/scenes/demonstration.json");
     ASSERT_TRUE(scene.ok()) << scene.error().Text();
+    for (session::InstrumentSetup& setup : scene->instruments) setup.tray.resize(3, setup.tray.front());
     core::Result<session::Simulation> simulation =
         session::Simulation::Make(std::make_shared<const session::Scene>(std::move(scene).value()), 1);
     ASSERT_TRUE(simulation.ok()) << simulation.error().Text();
