@@ -125,20 +125,10 @@ void SessionControl::UseDevice(std::unique_ptr<device::Driver> driver, const dev
 core::Status SessionControl::UseHaptics(std::string_view name, const device::ButtonMap& buttons) {
   auto driver = device::MakeForceDriver(name);
   if (!driver) return driver.error();
-  const int channels = (*driver)->GetChannelCount();
-  if (channels > session::kHandCount) {
-    return core::Error{core::ErrorCode::kDeviceSettings,
-                       (*driver)->GetName() + " has more channels than a person has hands"};
-  }
-  session::HapticLoopSettings settings;
-  settings.supervisor = session::SupervisorLink::FindProgram();
-  settings.buttons = buttons;
-  for (int channel = 0; channel < channels; ++channel) {
-    const session::Hand hand = channels == 1 || channel == 1 ? session::kRight : session::kLeft;
-    settings.hands.push_back(
-        session::MakeHapticHand(runner_.GetScene(), runner_.Latest().X_world_laparoscope, hand));
-  }
-  auto loop = session::HapticLoop::Start(std::move(*driver), settings, haptic_link_);
+  const auto settings = session::MakeHapticSettings(**driver, runner_.GetScene(),
+                                                    runner_.Latest().X_world_laparoscope, buttons);
+  if (!settings) return settings.error();
+  auto loop = session::HapticLoop::Start(std::move(*driver), *settings, haptic_link_);
   if (!loop) return loop.error();
   haptic_loop_ = std::move(*loop);
   return {};

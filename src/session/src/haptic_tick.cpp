@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "haptic_tick.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "trocar/core/assert.h"
@@ -75,6 +76,9 @@ void HapticTick::Publish(std::size_t channel, const haptics::ChannelOutput& outp
   status.reason = output.gate.reason;
   status.limits = output.gate.limits;
   status.force = math::Norm(output.gate.force.Get());
+  status.max_force = std::max(status.max_force, status.force);
+  if (status.state != haptics::ArmState::kUnarmed) ++status.armed_ticks;
+  if ((status.limits & haptics::kClamped) != 0) ++status.clamped_ticks;
   status.heat = output.gate.heat;
   status.is_warm = device.is_warm || (output.gate.limits & haptics::kHeatLimited) != 0;
   status.counts = channels_[channel].GetCounts();

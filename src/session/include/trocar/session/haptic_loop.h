@@ -58,7 +58,11 @@ struct HapticHandStatus {
   std::uint8_t limits = 0;                                ///< haptics::GateLimit
   double force = 0;                                       ///< in the hand [N]
   double heat = 0;                                        ///< of the motors, 1 is what they bear for ever [-]
-  bool is_warm = false;  ///< the device says so, or the force is held back for heat
+  bool is_warm = false;           ///< the device says so, or the force is held back for heat
+  std::uint64_t armed_ticks = 0;  ///< with force, ramping included, since the start
+  std::uint64_t clamped_ticks =
+      0;                 ///< in which the force would have been larger than the device's, since the start
+  double max_force = 0;  ///< since the start [N]
   haptics::DeviceGuardCounts counts;
   device::HandActs acts;  ///< of the stylus
 };
@@ -70,7 +74,7 @@ struct HapticStatus {
   std::uint64_t overruns = 0;                              ///< so late that the force had to go
   double rate = 0;                                         ///< [1/s]
   double period_p50 = 0, period_p999 = 0, period_max = 0;  ///< [s]
-  double cpu_p999 = 0;                                     ///< processor time of a tick [s]
+  double cpu_p999 = 0, cpu_max = 0;                        ///< processor time of a tick [s]
   bool is_real_time = false;                               ///< SCHED_FIFO was granted
   bool is_supervised = false;
   haptics::CheckPoseState check_pose = haptics::CheckPoseState::kUnconfirmed;
@@ -112,6 +116,14 @@ struct HapticLoopSettings {
   CountAllocations count_allocations = nullptr;  ///< counts what the ticks allocate, for benchmarks
   double spin = 0.00025;  ///< waited for actively before each tick, because sleep wakes late [s]
 };
+
+/// Settings that let a device's channels be the right hand, or both.
+/// \param X_world_laparoscope  as in a snapshot
+/// \param buttons              of the styluses, behind safety switch and jaws
+/// \return kDeviceSettings where the device has more channels than a person has hands
+core::Result<HapticLoopSettings> MakeHapticSettings(const device::ForceDriver& driver, const Scene& scene,
+                                                    const Pose& X_world_laparoscope,
+                                                    const device::ButtonMap& buttons);
 
 /// Owns the driver and the thread.
 class HapticLoop {
