@@ -233,6 +233,9 @@ core::Status Play(const DemoArguments& arguments) {
   if (auto status = core::WriteFile(part.Path() / "metrics.json", metrics_text); !status) return status;
   if (auto status = core::WriteFile(part.Path() / "report.html", *page); !status) return status;
   if (auto status = part.Keep(); !status) return status;
+  if (haptics != nullptr) {
+    if (auto status = haptics->SaveRecord(); !status) return status;
+  }
   PrintSummary(*played, **scene, arguments.output);
   return {};
 }

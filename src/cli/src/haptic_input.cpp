@@ -8,6 +8,7 @@
 
 #include "command.h"
 #include "trocar/core/log.h"
+#include "trocar/core/safe_file.h"
 #include "trocar/device/device_store.h"
 #include "trocar/device/force_device_spec.h"
 #include "trocar/device/ports.h"
@@ -45,6 +46,11 @@ void AddHapticOptions(CLI::App& command, HapticOptions& options) {
       .add_flag("--force", options.has_force,
                 "Asks for force: it comes when the check pose is answered and the safety switch held")
       ->needs(haptics);
+  command
+      .add_option("--haptic-record", options.record,
+                  "Write rates, forces and every change of the force feedback to this file (JSON)")
+      ->needs(haptics)
+      ->type_name("FILE");
 }
 
 core::Result<std::unique_ptr<HapticInput>> HapticInput::Open(const HapticOptions& options,
@@ -60,6 +66,7 @@ core::Result<std::unique_ptr<HapticInput>> HapticInput::Open(const HapticOptions
   if (!loop) return loop.error();
   input->loop_ = std::move(*loop);
   input->wants_force_ = options.has_force;
+  input->record_file_ = options.record;
   if (options.has_force) input->loop_->BeginCheckPose();
   input->since_start_ = {};
   return input;
@@ -80,8 +87,11 @@ void HapticInput::AfterStep(session::Simulation& simulation) {
   AskForForce(status);
 }
 
-/// A request dies with every fault, an open safety switch included: it is made again until any hand has felt force. From then
-/// on nothing asks.
+core::Status HapticInput::SaveRecord() const {
+  return record_file_.empty() ? core::Status{} : core::WriteFile(record_file_, record_.FormatJson());
+}
+
+/// Asks while every safety switch is held, until any hand has felt force. From then on nothing asks.
 void HapticInput::AskForForce(const session::HapticStatus& status) {
   if (!wants_force_) return;
   const std::string step = NextStep(status);
@@ -90,7 +100,11 @@ void HapticInput::AskForForce(const session::HapticStatus& status) {
   wants_force_ = std::none_of(status.hands.begin(), status.hands.end(), [](const HapticHandStatus& hand) {
     return hand.state != haptics::ArmState::kUnarmed;
   });
-  if (wants_force_ && status.check_pose == haptics::CheckPoseState::kConfirmed) loop_->RequestArm();
+  const bool are_held =
+      std::all_of(status.hands.begin(), status.hands.end(),
+                  [](const HapticHandStatus& hand) { return !hand.is_present || hand.is_switch_held; });
+  if (wants_force_ && are_held && status.check_pose == haptics::CheckPoseState::kConfirmed)
+    loop_->RequestArm();
 }
 
 }  // namespace trocar::cli

@@ -18,12 +18,13 @@ namespace trocar::cli {
 struct HapticOptions {
   std::string name;        ///< as device::MakeForceDriver reads it; empty: none
   bool has_force = false;  ///< the person asks for force
+  std::string record;      ///< file for what the force feedback did; empty: none
 };
-/// Adds --haptics and --force.
+/// Adds --haptics, --force and --haptic-record.
 void AddHapticOptions(CLI::App& command, HapticOptions& options);
 
-/// Runs in real time. Force comes only where --force asked for it, once: when the check pose has been answered and the
-/// safety switch is held. What takes it away then, takes it away for the rest of the run.
+/// Runs in real time. Force comes only where --force asked for it, once: when the check pose has been answered and all
+/// safety switches are held. What takes it away then, takes it away for the rest of the run.
 class HapticInput {
  public:
   /// \param simulation  before its first tick
@@ -37,6 +38,9 @@ class HapticInput {
   void AfterStep(session::Simulation& simulation);
 
   const session::HapticRecord& Record() const { return record_; }
+  /// Writes the record where the options ask for it.
+  /// \return kFileUnwritable
+  core::Status SaveRecord() const;
 
  private:
   HapticInput() = default;
@@ -48,6 +52,7 @@ class HapticInput {
   session::HapticRecord record_;
   core::Stopwatch since_start_;
   bool wants_force_ = false;
+  std::string record_file_;
   std::string said_;
 };
 

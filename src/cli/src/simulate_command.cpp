@@ -139,7 +139,10 @@ core::Result<SimulateReport> Simulate(const SimulateOptions& options) {
                              core::CalcPercentile(times, 0.5), core::CalcPercentile(times, 0.99)});
   }
   report.tick_p99_ms = core::CalcPercentile(tick_ms, 0.99);
-  if (haptics != nullptr) report.haptics = haptics->Record().CalcSummary();
+  if (haptics != nullptr) {
+    report.haptics = haptics->Record().CalcSummary();
+    if (const core::Status saved = haptics->SaveRecord(); !saved) return saved.error();
+  }
   return report;
 }
 

@@ -51,6 +51,8 @@ std::string DescribeHand(const HapticHandSummary& hand) {
   if (hand.longest_reason != Fault::kNone)
     text += "; most of the time without force because " +
             std::string(haptics::FindFault(hand.longest_reason).what);
+  if (hand.last_reason != Fault::kNone && hand.last_reason != hand.longest_reason)
+    text += ", at the end because " + std::string(haptics::FindFault(hand.last_reason).what);
   text += Format("; motors warm %llu times, device lost %llu times, %llu reports dropped",
                  Wide(hand.times_warm), Wide(hand.times_lost), Wide(hand.bad_samples + hand.jumps));
   return text;

@@ -81,6 +81,7 @@ void HapticTick::Publish(std::size_t channel, const haptics::ChannelOutput& outp
   if ((status.limits & haptics::kClamped) != 0) ++status.clamped_ticks;
   status.heat = output.gate.heat;
   status.is_warm = device.is_warm || (output.gate.limits & haptics::kHeatLimited) != 0;
+  status.is_switch_held = (device.buttons & hand.dead_man_mask) != 0;
   status.counts = channels_[channel].GetCounts();
 }
 

@@ -59,6 +59,7 @@ struct HapticHandStatus {
   double force = 0;                                       ///< in the hand [N]
   double heat = 0;                                        ///< of the motors, 1 is what they bear for ever [-]
   bool is_warm = false;           ///< the device says so, or the force is held back for heat
+  bool is_switch_held = false;    ///< the safety switch
   std::uint64_t armed_ticks = 0;  ///< with force, ramping included, since the start
   std::uint64_t clamped_ticks =
       0;                 ///< in which the force would have been larger than the device's, since the start
