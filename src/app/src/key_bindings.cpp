@@ -47,6 +47,7 @@ constexpr KeyHelp kHelp[] = {
     {"Operation", "J   K", "rinse, suck (hold)"},
     {"Operation", "U", "assistant: take and lift the fundus, relax, let go, wait"},
     {"Laparoscope", "C or middle button", "hold, then move the mouse to look around, wheel to go in and out"},
+    {"Laparoscope", "L", "automatic holder: keeps both tips in the picture; C takes over"},
     {"Simulation", "Space", "start or pause"},
     {"Simulation", "R", "reset"},
     {"Simulation", "P", "play the demonstration, or take over from it"},
@@ -113,6 +114,8 @@ KeyMeaning FindKeyMeaning(std::uint32_t keyval, bool control) noexcept {
       return Do(Action::kHoldAspirate);
     case 'u':
       return Do(Action::kAssistant);
+    case 'l':
+      return Do(Action::kToggleCameraHolder);
     case 'c':
       return Do(Action::kHoldLaparoscope);
     case ' ':
