@@ -89,6 +89,9 @@ const session::Snapshot& SessionControl::Advance(double dt) {
       device_.Place(hand, SampleOf(snapshot.instruments[hand].joints));
   }
 
+  // as with the hands: whoever takes the laparoscope over takes it where it is
+  if (HasCameraHolder()) device_.Place(device::kLaparoscope, SampleOf(snapshot.laparoscope));
+
   std::array<HandSample, device::kChannelCount> samples;
   if (!runner_.IsPaused()) {
     device_.Read(samples);
@@ -274,6 +277,7 @@ void SessionControl::SwitchHand() {
 }
 
 void SessionControl::HoldLaparoscope(bool is_held) {
+  if (is_held) SetCameraHolder(false);
   device_.Choose(is_held ? device::kLaparoscope : hand_);
 }
 

@@ -377,6 +377,7 @@ void SimulatorWindow::ShowSituation() {
     situation.is_demonstration = control_->IsDemonstration();
     situation.is_demonstration_over = control_->IsDemonstrationOver();
     situation.is_laparoscope_held = control_->IsLaparoscopeHeld();
+    situation.has_camera_holder = control_->HasCameraHolder();
     situation.is_right_hand = control_->GetHand() == device::kRightHand;
     situation.is_fulcrum_mirrored = control_->IsFulcrumMirrored();
   }
@@ -444,6 +445,9 @@ void SimulatorWindow::OnAction(Action action) {
       break;
     case Action::kAssistant:
       if (control_ != nullptr) control_->StepAssistant();
+      break;
+    case Action::kToggleCameraHolder:
+      if (control_ != nullptr) control_->SetCameraHolder(!control_->HasCameraHolder());
       break;
     case Action::kReset:
       Reset();

@@ -240,5 +240,26 @@ TEST_F(SessionControlTest, LaparoscopeIsHeldAndGivenBackToTheSameHand) {
   EXPECT_EQ(control->GetHand(), device::kRightHand) << "no hand";
 }
 
+TEST_F(SessionControlTest, TheAutomaticCameraIsTakenOverWhereItIs) {
+  control->SetCameraHolder(true);
+  control->SetPaused(false);
+  control->ChooseHand(device::kRightHand);
+  // a tool goes aside until the holder has to follow
+  control->Device().SetKey(Motion::kRight, true);
+  const instrument::TrocarJoints home = control->GetScene().laparoscope.home;
+  ASSERT_TRUE(AdvanceUntil([&](const session::Snapshot& now) {
+    return std::abs(now.laparoscope.pan - home.pan) + std::abs(now.laparoscope.tilt - home.tilt) > 0.05;
+  }));
+  control->Device().SetKey(Motion::kRight, false);
+  control->SetPaused(true);
+  const instrument::TrocarJoints before = control->Advance(0).laparoscope;
+  control->HoldLaparoscope(true);
+  EXPECT_FALSE(control->HasCameraHolder());
+  control->Advance(0);
+  EXPECT_NEAR(control->GetInput().laparoscope.pan, before.pan, 1e-6);
+  EXPECT_NEAR(control->GetInput().laparoscope.tilt, before.tilt, 1e-6);
+  EXPECT_NEAR(control->GetInput().laparoscope.depth, before.depth, 1e-6);
+}
+
 }  // namespace
 }  // namespace trocar::app

@@ -16,6 +16,7 @@ enum class Action {
   kChooseLeft,
   kChooseRight,
   kSwitchHand,
+  kToggleCameraHolder,
   kHoldLaparoscope,  ///< while the key is held the pointer and the wheel move the laparoscope
   kNextTool,         ///< of the tray of the chosen hand
   kPreviousTool,

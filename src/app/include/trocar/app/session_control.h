@@ -75,6 +75,9 @@ class SessionControl {
   device::Channel GetHand() const { return hand_; }
   /// While held, the pointer and the keys move the laparoscope.
   void HoldLaparoscope(bool is_held);
+  /// The automatic holder keeps both tips in the picture; taking the laparoscope ends it, where it is.
+  void SetCameraHolder(bool is_on) { input_.settings.holds_camera = is_on; }
+  bool HasCameraHolder() const { return input_.settings.holds_camera; }
   bool IsLaparoscopeHeld() const { return device_.GetChosen() == device::kLaparoscope; }
   /// Asks for a tool of a hand's tray; a place that the tray does not have is ignored.
   void ChooseTool(session::Hand hand, std::size_t place);
