@@ -45,7 +45,7 @@ constexpr KeyHelp kHelp[] = {
     {"Operation", "X   Z", "next tool, previous tool of this hand"},
     {"Operation", "V   N", "yellow pedal: cut, blue pedal: coagulate (hold)"},
     {"Operation", "J   K", "rinse, suck (hold)"},
-    {"Operation", "L   Y", "clutch (hold), freeze: the tool stands still although its device moves"},
+    {"Operation", "Comma   Y", "clutch (hold), freeze: the tool stands still although its device moves"},
     {"Operation", "U", "assistant: take and lift the fundus, relax, let go, wait"},
     {"Laparoscope", "C or middle button", "hold, then move the mouse to look around, wheel to go in and out"},
     {"Laparoscope", "L", "automatic holder: keeps both tips in the picture; C takes over"},
@@ -113,7 +113,7 @@ KeyMeaning FindKeyMeaning(std::uint32_t keyval, bool control) noexcept {
       return Do(Action::kHoldRinse);
     case 'k':
       return Do(Action::kHoldAspirate);
-    case 'l':
+    case ',':
       return Do(Action::kHoldClutch);
     case 'y':
       return Do(Action::kFreeze);
