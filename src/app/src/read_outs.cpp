@@ -176,6 +176,12 @@ std::string DescribeEvent(const session::Event& event, const session::Scene& sce
       return "The instruments met";
     case session::EventKind::kExchangeRefused:
       return hand + "open the jaws and let go before the tool is exchanged";
+    case session::EventKind::kClipClosed:
+      return hand + "closed a clip on the " + organ;
+    case session::EventKind::kTubeCut:
+      return hand + "cut the " + organ;
+    case session::EventKind::kOperationError:
+      return std::string(training::ExplanationOf(static_cast<training::OperationError>(event.error)));
   }
   return "";
 }
@@ -183,7 +189,7 @@ std::string DescribeEvent(const session::Event& event, const session::Scene& sce
 bool IsWarning(session::EventKind kind) noexcept {
   return kind == session::EventKind::kSlip || kind == session::EventKind::kStateRestored ||
          kind == session::EventKind::kOrganFrozen || kind == session::EventKind::kTear ||
-         kind == session::EventKind::kPinchDamage;
+         kind == session::EventKind::kPinchDamage || kind == session::EventKind::kOperationError;
 }
 
 std::string StageLabel(session::Stage stage) {

@@ -25,6 +25,9 @@ constexpr double kFatModulus = 2e3, kPeritoneumShare = 4.0;
 constexpr double kFatDensity = 930.0;  // [kg/m^3]
 /// Foundation of a lobule [N/m]: it lies on the fat behind it, and stays where nothing holds it any more.
 constexpr double kLobuleFoundation = 0.5;
+/// Bands of a model: silicone cords, tunables. Length of a piece [m], stiffness of a piece [N/m], foundation [N/m] that
+/// keeps what is cut off from both ends where it is; they tear when a piece is longer by this [m].
+constexpr double kBandPiece = 0.003, kBandStiffness = 60.0, kBandFoundation = 0.05, kBandElongation = 0.006;
 /// Fibres tear when longer by this share of their length [-].
 constexpr double kFatElongation = 1.5, kPeritoneumElongation = 0.8;
 /// The end of a tube is tied to this many of the nearest vertices of its organ.
@@ -110,7 +113,7 @@ void AddOrgan(const anatomy::Organ& organ, const OrganMaterial& material, const 
 /// Says what the strand is that was added last.
 void NameStrand(StrandInfo::Kind kind, PatientTissue& made) {
   const tissue::Strand& strand = made.definition.strands.back();
-  made.strands.push_back({strand.a, strand.b, kind});
+  made.strands.push_back({strand.a, strand.b, kind, -1});
 }
 
 void AddAttachments(const Scene& scene, const OrganMaterial& bed, PatientTissue& made) {
@@ -257,6 +260,32 @@ void AddConnectiveTissue(const Scene& scene, const ConnectiveTissue& fat, double
   }
 }
 
+/// Cords of strands, one after the other; their ends are held.
+void AddBands(const ModelSetup& model, PatientTissue& made) {
+  auto& definition = made.definition;
+  for (std::size_t b = 0; b < model.bands.size(); ++b) {
+    const ModelBand& band = model.bands[b];
+    const auto first = static_cast<std::uint32_t>(definition.rest.size());
+    const double length = math::Distance(band.from, band.to);
+    const auto pieces = static_cast<std::uint32_t>(std::max(3L, std::lround(length / kBandPiece)));
+    for (std::uint32_t i = 0; i <= pieces; ++i) {
+      definition.rest.push_back(math::Lerp(band.from, band.to, static_cast<double>(i) / pieces));
+      definition.mass.push_back(kFatDensity * M_PI * band.radius * band.radius * length / pieces);
+      definition.shape_stiffness.push_back(kBandFoundation);
+      made.heat_mass.push_back(definition.mass.back());
+      if (i == 0) continue;
+      definition.strands.push_back({first + i - 1, first + i, kBandStiffness});
+      made.conservation.strand_binds.push_back(1);
+      made.max_elongation.push_back(kBandElongation);
+      made.strand_organs.push_back(-1);
+      NameStrand(StrandInfo::Kind::kBand, made);
+      made.strands.back().band = static_cast<std::int32_t>(b);
+    }
+    definition.fixed.push_back(first);
+    definition.fixed.push_back(first + pieces);
+  }
+}
+
 }  // namespace
 
 core::Result<PatientTissue> MakePatientTissue(const Scene& scene, const SpareNodes& spare) {
@@ -293,6 +322,7 @@ core::Result<PatientTissue> MakePatientTissue(const Scene& scene, const SpareNod
     const double spacing = scene.operation->fat_spacing;
     AddConnectiveTissue(scene, MakeConnectiveTissue(scene.patient, spacing, scene.seed), spacing, made);
   }
+  if (scene.model) AddBands(*scene.model, made);
   made.first_spare.push_back(static_cast<std::uint32_t>(made.definition.rest.size()));
   if (spare.tubes > 0) surgery::AddSpareNodes(spare.tubes, made.definition);
   made.heat_mass.resize(made.definition.rest.size(), 0.0);

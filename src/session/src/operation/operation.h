@@ -42,6 +42,15 @@ struct TissueNow {
   const surgery::TubeSet* tubes = nullptr;
 };
 
+/// Something that an operation tells: it becomes an event of the tick.
+struct OperationNote {
+  EventKind kind = EventKind::kOperationError;
+  std::int32_t hand = -1;
+  std::int32_t surface = -1;  ///< as in Event::organ
+  std::int32_t error = -1;    ///< training::OperationError
+  Vec3 p_rest;
+};
+
 class Operation {
  public:
   /// Nodes that cuts may use.
@@ -76,6 +85,9 @@ class Operation {
   /// After the solve: flow, views, errors.
   /// \note Real-time safe.
   void Judge(const HandsNow& hands, const TissueNow& tissue) noexcept;
+
+  /// What was done in this tick, and what was wrong with it.
+  std::span<const OperationNote> Notes() const { return std::span(notes_).first(note_count_); }
 
   const surgery::CuttableOrgan& Organ(std::size_t i) const { return organs_[i]; }
   /// Ducts and vessels as they are now, for contacts.
@@ -120,6 +132,7 @@ class Operation {
   training::Target TargetOf(const TissueNow& tissue, std::uint32_t part) const noexcept;
   training::Target TargetOfSurface(std::int32_t surface) const noexcept;
   bool IsOf(std::uint32_t node, std::int32_t organ) const noexcept;
+  void Tell(const OperationNote& note) noexcept;
 
   const Scene* scene_;  // outlives this
   std::vector<StrandInfo> strands_;
@@ -144,6 +157,9 @@ class Operation {
   std::uint32_t topology_version_ = 0;
   bool is_in_bag_ = false, is_completed_ = false;
   std::int32_t bag_hand_ = -1;
+  std::array<OperationNote, 8> notes_{};
+  std::size_t note_count_ = 0, told_errors_ = 0;
+  std::vector<std::uint32_t> band_strands_, band_starts_;  // (bands) the strands of each, by band_starts_
 };
 
 }  // namespace trocar::session

@@ -76,6 +76,8 @@ void Operation::CutWith(const surgery::BladeMove& move, int hand, const HandsNow
   const std::size_t tubes = vessels_->Cut(move, *tissue.definition, tissue.state->position, change_, places);
   for (std::size_t i = 0; i < tubes; ++i) {
     judge_.OnCut(places[i], *vessels_, tip, hand, hands.time);
+    Tell({EventKind::kTubeCut, hand, static_cast<std::int32_t>(organs_.size() + places[i].tube), -1,
+          vessels_->RestPoint(places[i])});
     judge_.Note(
         {kind, Verb::kCut, TargetOfSurface(static_cast<std::int32_t>(organs_.size() + places[i].tube))},
         hand);
@@ -222,10 +224,10 @@ void Operation::UseClips(int hand, const HandsNow& hands, const TissueNow& tissu
   state.caught.reset();
   state.opened = 0;
   judge_.OnClip(clip, vessels_->Map(), hands.X_proxy[h].translation, hand, hands.time);
-  if (clip.kind != ClipResult::Kind::kLost)
-    judge_.Note({InstrumentKind::kClipper, Verb::kClip,
-                 TargetOfSurface(static_cast<std::int32_t>(organs_.size() + clip.place.tube))},
-                hand);
+  if (clip.kind == ClipResult::Kind::kLost) return;
+  const auto surface = static_cast<std::int32_t>(organs_.size() + clip.place.tube);
+  judge_.Note({InstrumentKind::kClipper, Verb::kClip, TargetOfSurface(surface)}, hand);
+  Tell({EventKind::kClipClosed, hand, surface, -1, vessels_->RestPoint(clip.place)});
 }
 
 void Operation::UseFluids(int hand, const HandsNow& hands) noexcept {

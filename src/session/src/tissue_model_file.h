@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file tissue_model_file.h  Reading of a scene's "model": tissue that a training task makes for itself.
+#pragma once
+
+#include "trocar/core/json.h"
+#include "trocar/session/scene.h"
+
+namespace trocar::session {
+
+/// Reads `model` into Scene::model and Scene::patient, and makes the scene an operation; complains in the view's
+/// document.
+void ReadTissueModel(const core::JsonView& view, Scene& scene);
+
+}  // namespace trocar::session
