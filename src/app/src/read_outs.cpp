@@ -180,6 +180,10 @@ std::string DescribeEvent(const session::Event& event, const session::Scene& sce
       return hand + "closed a clip on the " + organ;
     case session::EventKind::kTubeCut:
       return hand + "cut the " + organ;
+    case session::EventKind::kNoClipsLeft:
+      return hand + "there is no clip left; exchange the tool for a full one";
+    case session::EventKind::kUsedOutside:
+      return hand + "the tool is out of its trocar; push it in before it is used";
     case session::EventKind::kOperationError:
       return std::string(training::ExplanationOf(static_cast<training::OperationError>(event.error)));
   }

@@ -38,6 +38,10 @@ std::string_view EventName(EventKind kind) noexcept {
       return "clip_closed";
     case EventKind::kTubeCut:
       return "tube_cut";
+    case EventKind::kNoClipsLeft:
+      return "no_clips_left";
+    case EventKind::kUsedOutside:
+      return "used_outside";
     case EventKind::kOperationError:
       break;
   }

@@ -32,9 +32,7 @@ std::string_view ConditionName(ConditionKind kind) noexcept {
                                                 "clipped",
                                                 "divided",
                                                 "unclipped_cut",
-                                                "parted",
-                                                "cut_free",
-                                                "cut_off_line"};
+                                                "parted"};
   static_assert(std::size(kNames) == static_cast<std::size_t>(ConditionKind::kCount));
   return kNames[static_cast<std::size_t>(kind)];
 }

@@ -353,6 +353,56 @@ TEST(ClipAndCut, LeavesThreeGoodClipsOnTheirMarksAndTwoStumps) {
   EXPECT_LT(now.tube_cuts[0].x, scene->task->regions[2].centre.x);
 }
 
+/// Steps for some seconds, and counts the events of one kind.
+int CountEvents(Simulation& simulation, const Input& input, double seconds, EventKind kind) {
+  int count = 0;
+  for (int tick = 0; tick < static_cast<int>(seconds * 120); ++tick) {
+    const std::uint64_t before = simulation.GetSnapshot().event_count;
+    simulation.Step(input);
+    const Snapshot& now = simulation.GetSnapshot();
+    for (std::uint64_t n = before; n < now.event_count; ++n)
+      count += now.events[n % now.events.size()].kind == kind;
+  }
+  return count;
+}
+
+TEST(ImpossibleActs, AnEmptyClipApplierSaysSoEachTimeItIsClosed) {
+  const auto scene = ReadDelivered("clip_and_cut");
+  auto simulation = Simulation::Make(scene, 1);
+  ASSERT_TRUE(simulation.ok());
+  Input input = CalcScriptInput(*scene, 0);
+  const int clips = scene->instruments[kRight].tool.clips;
+  const auto close = [&] {
+    int count = 0;
+    for (const double jaw : {0.7, 0.0}) {
+      input.hands[kRight].jaw = jaw;
+      count += CountEvents(*simulation, input, 0.15, EventKind::kNoClipsLeft);
+    }
+    return count;
+  };
+  for (int i = 0; i < clips; ++i) EXPECT_EQ(close(), 0) << i;
+  EXPECT_EQ(simulation->GetSnapshot().operation.clips_left[kRight], 0);
+  EXPECT_EQ(close(), 1);
+  EXPECT_EQ(close(), 1);
+  EXPECT_EQ(simulation->GetSnapshot().operation.clip_count, static_cast<std::size_t>(clips))
+      << "and makes no clip";
+}
+
+TEST(ImpossibleActs, ToolsThatAreOutOfTheirTrocarsSaySoOnceATry) {
+  const auto scene = ReadDelivered("hook_dissection");
+  auto simulation = Simulation::Make(scene, 1);
+  ASSERT_TRUE(simulation.ok());
+  Input input = CalcScriptInput(*scene, 0);
+  input.controls[kRight].coagulate = true;
+  EXPECT_EQ(CountEvents(*simulation, input, 0.5, EventKind::kUsedOutside), 0) << "it is in";
+  input.controls[kRight].coagulate = false;
+  input.hands[kRight].depth = 0;
+  EXPECT_EQ(CountEvents(*simulation, input, 0.5, EventKind::kUsedOutside), 0) << "and does nothing";
+  input.controls[kRight].coagulate = true;
+  EXPECT_EQ(CountEvents(*simulation, input, 0.5, EventKind::kUsedOutside), 1);
+  EXPECT_FALSE(simulation->GetSnapshot().operation.has_current[kRight]);
+}
+
 TEST(HookDissection, CurrentPartsWhatItTouchesAndNothingElse) {
   const auto scene = ReadDelivered("hook_dissection", {"hard", 1, {}});
   auto simulation = Simulation::Make(scene, 1);

@@ -159,7 +159,7 @@ bool Operation::MoveTool(int hand, const HandControls& controls, bool is_holding
   state.blade = {};
   state.spread_upper = state.spread_lower = {};
   state.clips = Tool(hand).clips;
-  state.has_clip_open = false;
+  state.has_clip_open = state.was_open = false;
   state.is_inserting = true;
   state.blind_seconds = 0;
   return true;
@@ -170,6 +170,7 @@ bool Operation::Act(const HandsNow& hands, const TissueNow& tissue) noexcept {
   note_count_ = 0;
   for (int hand = 0; hand < kHandCount; ++hand) {
     hands_[static_cast<std::size_t>(hand)].has_current = false;
+    WatchImpossible(hand, hands);
     switch (Tool(hand).kind) {
       case instrument::ToolKind::kScissors:
         UseBlade(hand, hands, tissue);

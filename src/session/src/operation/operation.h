@@ -113,6 +113,8 @@ class Operation {
     double blind_seconds = 0;
     bool is_inserting = false;
     bool was_refused = false;
+    bool was_open = false;  // jaws, since they closed last
+    bool was_told_outside = false;
     double exchange_seconds = 0;
   };
 
@@ -129,6 +131,7 @@ class Operation {
   void UseBag(int hand, const HandsNow& hands, const TissueNow& tissue) noexcept;
   void Burn(const HandsNow& hands, const TissueNow& tissue) noexcept;
   void WatchHands(const HandsNow& hands) noexcept;
+  void WatchImpossible(int hand, const HandsNow& hands) noexcept;
   training::Target TargetOf(const TissueNow& tissue, std::uint32_t part) const noexcept;
   training::Target TargetOfSurface(std::int32_t surface) const noexcept;
   bool IsOf(std::uint32_t node, std::int32_t organ) const noexcept;

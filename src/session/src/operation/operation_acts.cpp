@@ -31,6 +31,8 @@ constexpr double kRinseRate = 20e-6, kAspirateRate = 40e-6;  // [m^3/s]
 constexpr double kSuctionReach = 0.012;                      // of the tip beyond the pool's edge [m]
 constexpr double kSmokeSucked = 1.5;                         // share of the smoke a second [1/s]
 
+constexpr double kOutOfTrocar = 0.035;  // a tool that is less deep has its tip in the trocar [m]
+
 constexpr double kMouth = 0.030;  // of the bag: what lies within of its tip is in it [m]
 constexpr double kBagGrip = 1e4;  // nothing slips out of a closed bag [N]
 
@@ -228,6 +230,28 @@ void Operation::UseClips(int hand, const HandsNow& hands, const TissueNow& tissu
   const auto surface = static_cast<std::int32_t>(organs_.size() + clip.place.tube);
   judge_.Note({InstrumentKind::kClipper, Verb::kClip, TargetOfSurface(surface)}, hand);
   Tell({EventKind::kClipClosed, hand, surface, -1, vessels_->RestPoint(clip.place)});
+}
+
+/// Answers what cannot be done, once each time that it is tried.
+void Operation::WatchImpossible(int hand, const HandsNow& hands) noexcept {
+  const auto h = static_cast<std::size_t>(hand);
+  HandState& state = hands_[h];
+  const HandControls& controls = hands.input->controls[h];
+  const instrument::Tool& tool = Tool(hand);
+  const bool bites =
+      tool.kind == instrument::ToolKind::kScissors || tool.kind == instrument::ToolKind::kClipApplier;
+  const double jaw = hands.joints[h].jaw;
+  const bool has_bitten = bites && state.was_open && jaw <= kClipClosed * tool.max_jaw;
+  if (jaw > kClipOpen * tool.max_jaw) state.was_open = true;
+  if (has_bitten) state.was_open = false;
+  const bool is_used =
+      has_bitten || controls.cut || controls.coagulate || controls.rinse || controls.aspirate;
+  const bool is_outside = hands.joints[h].depth < kOutOfTrocar;
+  if (is_used && is_outside && !state.was_told_outside) Tell({EventKind::kUsedOutside, hand, -1, -1, {}});
+  state.was_told_outside = is_outside && (is_used || state.was_told_outside);
+  if (has_bitten && !is_outside && tool.kind == instrument::ToolKind::kClipApplier && state.clips == 0 &&
+      !state.has_clip_open)
+    Tell({EventKind::kNoClipsLeft, hand, -1, -1, {}});
 }
 
 void Operation::UseFluids(int hand, const HandsNow& hands) noexcept {

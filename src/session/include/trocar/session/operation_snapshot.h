@@ -57,15 +57,6 @@ struct StrandInfo {
   std::int32_t band = -1;  ///< index in ModelSetup::bands, or -1
 };
 
-/// How a sheet with a drawn line is cut. Places and lengths are those of the sheet at rest.
-struct SheetSnapshot {
-  double cut_length = 0;  ///< of the edges that cuts have made, each once [m]
-  double off_area = 0;    ///< between the cuts and the line [m^2]
-  double farthest = 0;    ///< of a cut from the line [m]
-  bool is_free = false;   ///< what the line encloses hangs on the border no more
-  math::Vec3 p_farthest;  ///< world frame, at rest [m]
-};
-
 /// Fixed sizes while a scene runs, so that copying allocates nothing.
 struct OperationSnapshot {
   std::array<std::uint8_t, kHandCount> tools{};  ///< in use, by place in InstrumentSetup::tray
@@ -87,7 +78,6 @@ struct OperationSnapshot {
   std::array<math::Vec3, 32> tube_cuts{};  ///< the first tube_cut_count count: where at rest, world frame [m]
   std::size_t tube_cut_count = 0;
   std::vector<std::uint8_t> band_is_whole;  ///< (ModelSetup::bands)
-  std::vector<SheetSnapshot> sheets;        ///< (ModelSetup::sheets)
   std::array<LeakSnapshot, 32> leaks{};
   std::size_t leak_count = 0;
   surgery::FluidLedger fluids;

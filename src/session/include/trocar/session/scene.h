@@ -76,19 +76,9 @@ struct ModelBand {
   double radius = 0.0006;  ///< [m]
 };
 
-/// A sheet that is held at its border, with a circle drawn on it; an organ of Scene::patient.
-struct ModelSheet {
-  std::string name;
-  Vec3 centre;             ///< of sheet and circle, world frame; it lies level [m]
-  Vec3 half;               ///< of its sides [m]; z is 0
-  double spacing = 0.003;  ///< of its nodes [m]
-  double circle = 0;       ///< radius of the circle [m]
-};
-
-/// Tissue that a training task makes for itself. Its ducts are the tubes of Scene::patient, its sheets the organs.
+/// Tissue that a training task makes for itself. Its ducts are the tubes of Scene::patient.
 struct ModelSetup {
   std::vector<ModelBand> bands;
-  std::vector<ModelSheet> sheets;
 };
 
 /// How stiff one organ is; see tissue/material.h for the formulas.

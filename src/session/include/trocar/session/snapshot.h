@@ -73,11 +73,14 @@ enum class EventKind {
   kExchangeRefused,  ///< another tool was asked for while this one holds tissue
   kClipClosed,       ///< a clip was closed around a duct or vessel, or a part of it
   kTubeCut,          ///< a duct or vessel was cut through
+  kNoClipsLeft,      ///< a clip applier was closed that is empty
+  kUsedOutside,      ///< a pedal was pressed, or blades or clips closed, while the tool is out of its trocar
   kOperationError    ///< `error` says which
 };
-inline constexpr EventKind kLastEventKind = EventKind::kTubeCut;  // the last that a rule may name
+inline constexpr EventKind kLastEventKind = EventKind::kUsedOutside;  // the last that a rule may name
 /// "grasp", "release", "slip", "grasp_missed", "state_restored", "organ_frozen", "tear",
-/// "pinch_damage", "tools_touch", "exchange_refused", "clip_closed", "tube_cut", "operation_error"
+/// "pinch_damage", "tools_touch", "exchange_refused", "clip_closed", "tube_cut",
+/// "no_clips_left", "used_outside", "operation_error"
 std::string_view EventName(EventKind kind) noexcept;
 
 struct Event {

@@ -65,8 +65,6 @@ enum class ConditionKind : std::uint8_t {
   kDivided,         ///< "divided": a duct has been cut through in one of `regions`
   kUnclippedCut,  ///< "unclipped_cut": a duct was cut through with fewer than `amount` such clips in the scene
   kParted,        ///< "parted": `band` has been divided
-  kCutFree,       ///< "cut_free": what the line on `sheet` encloses hangs on nothing any more
-  kCutOffLine,    ///< "cut_off_line": a cut in `sheet` is `amount` [m] from its line, or farther
   kCount
 };
 /// "held", "lifted", ... as above.
@@ -88,7 +86,7 @@ struct Condition {
   bool while_held = false;             ///< counts only while a hand holds `object`
   int event = -1;                      ///< EventKind
   int error = -1;                      ///< training::OperationError
-  int band = -1, sheet = -1;           ///< ModelSetup::bands, ModelSetup::sheets
+  int band = -1;                       ///< ModelSetup::bands
 };
 
 /// Steps that have to be done one after the other.
