@@ -106,8 +106,10 @@ std::string OrganLabel(const anatomy::Patient& patient, std::int32_t organ) {
 
 std::string HandLabel(const session::Scene& scene, std::int32_t hand) {
   if (hand < 0 || hand >= session::kHandCount) return "instrument";
+  const session::InstrumentSetup& setup = scene.instruments[static_cast<std::size_t>(hand)];
+  // where tools are exchanged, the one at the start may not be the one that is meant
   return (hand == session::kLeft ? "left " : "right ") +
-         WithSpaces(scene.instruments[static_cast<std::size_t>(hand)].tool.name);
+         (setup.tray.size() > 1 ? "hand" : WithSpaces(setup.tool.name));
 }
 
 std::string ToolLabel(const session::Scene& scene, const session::Snapshot& snapshot, session::Hand hand) {

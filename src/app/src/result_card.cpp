@@ -70,7 +70,8 @@ void ResultCard::AddLine(const std::string& left, const std::string& middle, con
 void ResultCard::Show(const TaskResult& result) {
   while (Gtk::Widget* old = lines_.get_first_child()) lines_.remove(*old);
   line_count_ = 0;
-  title_.set_text(result.task + ", " + result.level);
+  title_.set_text(result.task + ", " + result.level +
+                  (result.is_demonstration ? ", shown by the expert" : ""));
   verdict_.set_text(result.verdict + " after " + FormatTime(result.time));
   score_.set_text("Score " + FormatScore(result));
   for (const TaskResult::GoalRow& goal : result.goals)

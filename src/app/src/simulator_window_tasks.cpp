@@ -70,6 +70,7 @@ void SimulatorWindow::FollowTask(const session::TaskSnapshot& now) {
   if (is_result_known_) return;
   is_result_known_ = true;
   result_ = MakeTaskResult(control_->GetScene(), now, error_log_.Errors());
+  result_.is_demonstration = control_->IsDemonstration();
   hands_->ReleasePointer();
   result_card_.Show(result_);
   result_card_.set_visible(true);

@@ -120,6 +120,7 @@ std::string FormatTaskResultJson(const TaskResult& result) {
                                  {"task", result.task},
                                  {"level", result.level},
                                  {"seed", result.seed},
+                                 {"demonstration", result.is_demonstration},
                                  {"phase", session::PhaseName(result.phase)},
                                  {"time_s", result.time},
                                  {"score", result.score},
@@ -146,8 +147,9 @@ std::string FormatTaskResultHtml(const TaskResult& result) {
                      Escape(result.task) + " - Trocar</title>\n<style>" + kStyle +
                      "</style>\n</head>\n<body>\n<h1>" + Escape(result.task) + "</h1>\n<p>" + result.verdict +
                      " after " + FormatTime(result.time) + " (min:s). Score " + FormatScore(result) +
-                     ". Level " + Escape(result.level) + ", seed " + std::to_string(result.seed) +
-                     ".</p>\n<h2>Goals</h2>\n<table>\n";
+                     ". Level " + Escape(result.level) + ", seed " + std::to_string(result.seed) + "." +
+                     (result.is_demonstration ? " A demonstration by the scripted expert." : "") +
+                     "</p>\n<h2>Goals</h2>\n<table>\n";
   for (const TaskResult::GoalRow& goal : result.goals)
     html += "<tr><td>" + Escape(goal.name) + "</td><td class=\"" +
             (goal.is_done ? "done\">done" : "open\">open") + "</td></tr>\n";

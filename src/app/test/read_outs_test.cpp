@@ -127,9 +127,13 @@ TEST(DescribeEvent, ImpossibleActsAndSurgerysErrorsAreAnsweredInWords) {
   };
   EXPECT_EQ(text(session::EventKind::kNoClipsLeft),
             "Right clip applier: there is no clip left; exchange the tool for a full one");
+  scene.instruments[session::kRight].tray = {*instrument::FindTool("clip_applier"),
+                                             *instrument::FindTool("scissors")};
+  EXPECT_EQ(text(session::EventKind::kTubeCut), "Right hand: cut the tissue") << "whichever tool it has now";
   EXPECT_NE(text(session::EventKind::kUsedOutside).find("push it in"), std::string::npos);
   const auto error = training::OperationError::kClipCrossed;
-  EXPECT_EQ(text(session::EventKind::kOperationError, static_cast<int>(error)), training::ExplanationOf(error));
+  EXPECT_EQ(text(session::EventKind::kOperationError, static_cast<int>(error)),
+            training::ExplanationOf(error));
   EXPECT_TRUE(IsWarning(session::EventKind::kOperationError));
   EXPECT_FALSE(IsWarning(session::EventKind::kClipClosed));
 }

@@ -87,6 +87,7 @@ TEST(TaskResult, IsWrittenAsJson) {
   EXPECT_EQ(json.at("task"), "Rings <on> pegs");
   EXPECT_EQ(json.at("level"), "hard");
   EXPECT_EQ(json.at("seed"), 7);
+  EXPECT_EQ(json.at("demonstration"), false);
   EXPECT_EQ(json.at("phase"), "time_over");
   EXPECT_EQ(json.at("score_unit"), "percent");
   EXPECT_EQ(json.at("goals").at(1).at("done"), false);

@@ -8,6 +8,7 @@
 
 #include "operation/connective_tissue.h"
 #include "pathology.h"
+#include "tissue_model_file.h"
 #include "trocar/geometry/mesh_measures.h"
 #include "trocar/geometry/mesh_topology.h"
 #include "trocar/surgery/topology_change.h"
@@ -28,6 +29,8 @@ constexpr double kLobuleFoundation = 0.5;
 /// Bands of a model: silicone cords, tunables. Length of a piece [m], stiffness of a piece [N/m], foundation [N/m] that
 /// keeps what is cut off from both ends where it is; they tear when a piece is longer by this [m].
 constexpr double kBandPiece = 0.003, kBandStiffness = 60.0, kBandFoundation = 0.05, kBandElongation = 0.006;
+/// What a model's sheet looks like, see render/material.h.
+constexpr const char* kSheetLook = "white_plastic";
 /// Fibres tear when longer by this share of their length [-].
 constexpr double kFatElongation = 1.5, kPeritoneumElongation = 0.8;
 /// The end of a tube is tied to this many of the nearest vertices of its organ.
@@ -73,18 +76,25 @@ core::Status CheckClosed(const anatomy::Organ& organ) {
                          ", so its volume cannot be kept; look at it with trocar anatomy check"};
 }
 
-void AddOrgan(const anatomy::Organ& organ, const OrganMaterial& material, const SpareNodes& spare,
-              PatientTissue& made) {
+/// \param is_sheet  open, without a volume to keep
+void AddOrgan(const anatomy::Organ& organ, const OrganMaterial& material, bool is_sheet,
+              const SpareNodes& spare, PatientTissue& made) {
   auto& definition = made.definition;
   const auto first = static_cast<std::uint32_t>(definition.rest.size());
   const auto& mesh = organ.mesh;
-  made.surfaces.push_back(
-      {organ.name, organ.name, first, static_cast<std::uint32_t>(mesh.positions.size()), mesh.triangles, {}});
+  made.surfaces.push_back({organ.name,
+                           is_sheet ? kSheetLook : organ.name,
+                           first,
+                           static_cast<std::uint32_t>(mesh.positions.size()),
+                           mesh.triangles,
+                           {}});
   definition.rest.insert(definition.rest.end(), mesh.positions.begin(), mesh.positions.end());
-  made.conservation.organs.push_back(
-      {first, static_cast<std::uint32_t>(mesh.positions.size()), mesh.triangles, tissue::kBileDensity});
+  if (!is_sheet)
+    made.conservation.organs.push_back(
+        {first, static_cast<std::uint32_t>(mesh.positions.size()), mesh.triangles, tissue::kBileDensity});
 
-  const surgery::WallMaterial wall = CalcWallMaterial(mesh, material, definition);
+  surgery::WallMaterial wall = CalcWallMaterial(mesh, material, definition);
+  if (is_sheet) wall.mass_by_area = material.density * material.wall_thickness;
   made.walls.push_back(wall);
   const auto areas = geometry::CalcVertexAreas(mesh.positions, mesh.triangles);
   const auto foundation = tissue::CalcFoundationStiffness(areas, material.foundation_modulus, material.depth);
@@ -104,7 +114,7 @@ void AddOrgan(const anatomy::Organ& organ, const OrganMaterial& material, const 
   made.heat_mass.resize(definition.rest.size(), 0.0);
   for (const anatomy::Region& region : organ.regions) {
     const bool is_fixed = region.name == anatomy::kDiaphragmaticFace || region.name == anatomy::kFalciform ||
-                          region.name == anatomy::kCoronary;
+                          region.name == anatomy::kCoronary || region.name == kHeldRegion;
     if (!is_fixed) continue;
     for (const auto vertex : region.vertices) definition.fixed.push_back(first + vertex);
   }
@@ -301,8 +311,11 @@ core::Result<PatientTissue> MakePatientTissue(const Scene& scene, const SpareNod
   for (const anatomy::Organ& organ : scene.patient.organs) {
     const OrganMaterial* material = FindMaterial(materials, organ.name);
     if (material == nullptr) return MissingMaterial(organ.name);
-    if (const auto closed = CheckClosed(organ); !closed.ok()) return closed.error();
-    AddOrgan(organ, *material, spare, made);
+    const bool is_sheet = scene.model.has_value();
+    if (!is_sheet) {
+      if (const auto closed = CheckClosed(organ); !closed.ok()) return closed.error();
+    }
+    AddOrgan(organ, *material, is_sheet, spare, made);
     made.internal_pressure.push_back(material->internal_pressure);
   }
   if (!scene.patient.attachments.empty()) {

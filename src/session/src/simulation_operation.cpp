@@ -68,6 +68,7 @@ void Simulation::Content::FollowTopology() {
   for (std::size_t i = 0; i < scene->patient.organs.size(); ++i) {
     const geometry::EditableMesh& mesh = operation->Organ(i).Mesh();
     meshes.push_back(mesh.RestMesh());
+    if (conservation->Settings().organs.empty()) continue;  // sheets have no volume
     tissue::ClosedOrgan organ = conservation->Settings().organs[i];
     organ.node_count = static_cast<std::uint32_t>(mesh.VertexCount());
     organ.triangles = meshes.back().triangles;

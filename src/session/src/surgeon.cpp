@@ -78,6 +78,8 @@ const SurgeonEntry kTaskSurgeons[] = {
     {"burns_spared", "burns a strand that is to be spared", "wrong_strand_burnt",
      [](const Scene& scene) { return Counts(scene, "wrong_strand_burnt"); },
      MakeCareless<Flaw::kBurnsSpared>},
+    {"cuts_aside", "cuts a sheet beside its line", "cut_off_line",
+     [](const Scene& scene) { return Counts(scene, "cut_off_line"); }, MakeCareless<Flaw::kCutsAside>},
     {"burns_air", "presses the pedal in the air", "energy_without_contact",
      [](const Scene& scene) { return Counts(scene, "energy_without_contact"); },
      MakeCareless<Flaw::kBurnsAir>},

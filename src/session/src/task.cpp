@@ -32,7 +32,10 @@ std::string_view ConditionName(ConditionKind kind) noexcept {
                                                 "clipped",
                                                 "divided",
                                                 "unclipped_cut",
-                                                "parted"};
+                                                "parted",
+                                                "cut_free",
+                                                "cut_off_line",
+                                                "cut_area_off"};
   static_assert(std::size(kNames) == static_cast<std::size_t>(ConditionKind::kCount));
   return kNames[static_cast<std::size_t>(kind)];
 }

@@ -55,6 +55,13 @@ Finding FindOfTissue(const Scene& scene, const OperationSnapshot& now, const Con
     const ModelBand& band = scene.model->bands[i];
     return {now.band_is_whole[i] == 0, math::Lerp(band.from, band.to, 0.5), -1};
   }
+  if (c.sheet >= 0) {
+    const SheetSnapshot& sheet = now.sheets[static_cast<std::size_t>(c.sheet)];
+    const bool is_true = c.kind == ConditionKind::kCutFree      ? sheet.is_free
+                         : c.kind == ConditionKind::kCutOffLine ? sheet.farthest >= c.amount
+                                                                : sheet.off_area >= c.amount;
+    return {is_true, sheet.p_farthest, -1};
+  }
   if (c.kind == ConditionKind::kClipped) {
     for (const ClipSnapshot& clip : std::span(now.clips).first(now.clip_count)) {
       if (clip.IsGood() && IsOneOf(*scene.task, c.regions, clip.p_rest)) return {true, clip.p_rest, -1};
@@ -203,6 +210,9 @@ Finding TaskMonitor::Find(const Scene& scene, const Snapshot& snapshot, const Co
     case ConditionKind::kClipped:
     case ConditionKind::kDivided:
     case ConditionKind::kParted:
+    case ConditionKind::kCutFree:
+    case ConditionKind::kCutOffLine:
+    case ConditionKind::kCutAreaOff:
       return FindOfTissue(scene, snapshot.operation, c);
     default:
       return FindOfTool(scene, snapshot, c);

@@ -74,10 +74,10 @@ class RulesReader {
   }
 
   Condition ReadCondition(const JsonView& view, const std::string& item) const {
-    view.AllowOnly({"kind",    "about",      "object",     "other",   "hand",      "from",
-                    "to",      "region",     "regions",    "seconds", "height_mm", "fall_mm",
-                    "newtons", "within_deg", "facing_deg", "near_mm", "far_mm",    "while_held",
-                    "event",   "outside",    "error",      "clips",   "band"});
+    view.AllowOnly({"kind",       "about",   "object",  "other",       "hand",    "from",    "to",
+                    "region",     "regions", "seconds", "height_mm",   "fall_mm", "newtons", "within_deg",
+                    "facing_deg", "near_mm", "far_mm",  "while_held",  "event",   "outside", "error",
+                    "clips",      "band",    "sheet",   "distance_mm", "area_mm2"});
     Condition c;
     const std::string kind = view.Text("kind");
     const auto known = FindKind(kind);
@@ -165,6 +165,14 @@ class RulesReader {
         break;
       case ConditionKind::kUnclippedCut:
         c.amount = view.Integer("clips", {1.0, 100.0});
+        break;
+      case ConditionKind::kCutFree:
+      case ConditionKind::kCutOffLine:
+      case ConditionKind::kCutAreaOff:
+        c.sheet = FindName(view, scene_.model ? scene_.model->sheets : std::vector<ModelSheet>(),
+                           Fill(view.Text("sheet"), item), "sheet");
+        if (c.kind == ConditionKind::kCutOffLine) c.amount = 1e-3 * view.Number("distance_mm", {0.1, 100.0});
+        if (c.kind == ConditionKind::kCutAreaOff) c.amount = 1e-6 * view.Number("area_mm2", {0.1, 1e4});
         break;
       case ConditionKind::kParted:
         c.band = FindName(view, scene_.model ? scene_.model->bands : std::vector<ModelBand>(),

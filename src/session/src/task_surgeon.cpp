@@ -171,6 +171,7 @@ void TaskSurgeon::PlanStep(const Snapshot& seen, const Goal& goal, std::uint32_t
     case ConditionKind::kClipped:
     case ConditionKind::kDivided:
     case ConditionKind::kParted:
+    case ConditionKind::kCutFree:
       PlanTissue(seen, c);
       return;
     default:  // no goal that a hand could bring about

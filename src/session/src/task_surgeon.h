@@ -40,6 +40,7 @@ enum class Flaw {
   kCutsAstray,     ///< cuts the duct in the wrong place
   kCutsUnclipped,  ///< cuts the duct before the clips are on
   kBurnsSpared,    ///< burns a band that is to be spared
+  kCutsAside,      ///< cuts a sheet beside its line
   kBurnsAir,       ///< presses the pedal in the air
   kBurnsUnseen,    ///< presses it out of the picture
   kDawdles         ///< does not get on before the time is over
@@ -99,6 +100,8 @@ class TaskSurgeon final : public Surgeon {
   double FindClearPlace(const Snapshot& seen, int band) const;
   void BurnBand(const Snapshot& seen, int band);
   void PressPedal(int hand, double seconds);
+  void CutCircle(const Snapshot& seen, int sheet, double aside, double turns);
+  void FollowSheet(int hand, const Vec3& p_sheet, double hurry);
   Vec3 FindTip(const Snapshot& seen, int hand, int object, const Vec3& p_world_object) const;
   Vec3 GripTip(const Snapshot& seen, int hand, int object, int grip, double back) const;
   // errors: task_flaws.cpp

@@ -9,6 +9,8 @@ namespace {
 
 constexpr double kStep = 0.001, kFarthest = 0.05;  // along a duct, in search of a wrong place [m]
 constexpr double kInTheAir = 0.020;                // of an applier that closes on nothing, from the duct [m]
+constexpr double kBesideLine = 0.005;              // of a cut, inwards [m]
+constexpr double kShortCut = 0.12;                 // of a turn
 constexpr double kAside = 0.005;                   // of a hook that burns in the air [m]
 constexpr double kOutOfPicture = 0.16;             // sideways [m]
 constexpr double kAtTheTips = 0.05;                // share of the jaws beyond a duct that is caught in part
@@ -89,6 +91,9 @@ bool TaskSurgeon::AddTissueFlaw(const Snapshot& seen, const Condition& wanted) {
       }
       break;
     }
+    case Flaw::kCutsAside:
+      CutCircle(seen, wanted.sheet, -kBesideLine, kShortCut);
+      break;
     case Flaw::kBurnsAir: {
       const int hand = TakeTool(seen, instrument::ToolKind::kHook);
       ReachPoint(hand, HandOf(hand).Tip() + Vec3{0, 0, kAside});

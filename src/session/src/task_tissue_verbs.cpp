@@ -15,6 +15,9 @@ constexpr double kReady = 0.4;         // opening of jaws that have let go, as a
 constexpr double kTipBack = 0.002;     // of a tool that is in again, from where the hand means it to be [m]
 constexpr double kCloseSeconds = 0.7;  // for jaws to close over tissue [s]
 constexpr double kScissorDepth = 0.4;  // of a duct between blades, as a share of them from the tips
+constexpr double kRunIn = 0.003;       // of a cut that leads to a line, from outside [m]
+constexpr double kDrift = 0.0004;      // outwards in one turn, so that its end meets the run-in [m]
+constexpr int kWaypoints = 60;         // of a circle
 constexpr double kMostBurning = 6.0;   // [s]
 constexpr double kBetter = 0.0005;     // of one place on a band over another, for more room [m]
 
@@ -52,6 +55,9 @@ void TaskSurgeon::PlanTissue(const Snapshot& seen, const Condition& wanted) {
       break;
     case ConditionKind::kDivided:
       CutTube(seen, place());
+      break;
+    case ConditionKind::kCutFree:
+      CutCircle(seen, wanted.sheet, 0.0, 1.0);
       break;
     default:
       BurnBand(seen, wanted.band);
@@ -153,6 +159,52 @@ void TaskSurgeon::PressPedal(int hand, double seconds) {
         return true;
       },
       seconds + 1.0);
+}
+
+/// The tip goes where the middle of the hook's toe, which points down, lies in the sheet.
+void TaskSurgeon::FollowSheet(int hand, const Vec3& p_sheet, double hurry) {
+  Add(
+      "follow the line",
+      [this, hand, p_sheet, hurry](const Snapshot&) {
+        HandMotion& motion = HandOf(hand);
+        const double spin = FindUpperSpin(motion.Port(), p_sheet, {0, 0, -1});
+        const Pose X = instrument::CalcToolPose(motion.Port(),
+                                                instrument::FindJoints(motion.Port(), p_sheet, spin, 0.0));
+        const surgery::BladeSettings blade;
+        const Vec3 p_tool_middle = 0.5 * (blade.p_tool_hook.a + blade.p_tool_hook.b);
+        motion.Turn(spin);
+        motion.MoveTo(p_sheet - math::Rotate(X.rotation, p_tool_middle), hurry);
+      },
+      [this, hand](const Snapshot&) { return !HandOf(hand).IsMoving() && !HandOf(hand).IsTurning(); }, 8.0);
+}
+
+/// With hook and current: to the circle from outside, round it, and out over the cut with which it began.
+/// \param aside  of the line, outwards [m]
+void TaskSurgeon::CutCircle(const Snapshot& seen, int sheet, double aside, double turns) {
+  const int hand = TakeTool(seen, instrument::ToolKind::kHook);
+  const ModelSheet& cloth = scene_->model->sheets[static_cast<std::size_t>(sheet)];
+  const auto at = [&](double turn, double out) {
+    const double angle = 2 * M_PI * turn - 0.5 * M_PI;
+    return cloth.centre + (cloth.circle + aside + out) * Vec3{std::cos(angle), std::sin(angle), 0};
+  };
+  const auto pedal = [this, hand](bool is_down) {
+    Add(
+        is_down ? "press the pedal" : "lift the foot",
+        [this, hand, is_down](const Snapshot&) { controls_[static_cast<std::size_t>(hand)].cut = is_down; },
+        [](const Snapshot&) { return true; });
+  };
+  const Vec3 begin = at(0, kRunIn);
+  FollowSheet(hand, begin + Vec3{0, 0, kStandOff}, 1.0);
+  FollowSheet(hand, begin, 0.5);
+  pedal(true);
+  FollowSheet(hand, at(0, 0), 0.3);
+  for (int i = 1; i <= kWaypoints * turns; ++i) {
+    const double turn = static_cast<double>(i) / kWaypoints;
+    FollowSheet(hand, at(turn, kDrift * turn), 0.3);
+  }
+  FollowSheet(hand, at(turns + 1.0 / kWaypoints, 2 * kDrift), 0.3);
+  pedal(false);
+  FollowSheet(hand, begin + Vec3{0, 0, kStandOff}, 1.0);
 }
 
 /// Where along a band there is most room between it and the others that hold.

@@ -7,6 +7,9 @@
 
 namespace trocar::session {
 
+/// Of a sheet's vertices: those that stay where they are.
+inline constexpr const char* kHeldRegion = "held";
+
 /// Reads `model` into Scene::model and Scene::patient, and makes the scene an operation; complains in the view's
 /// document.
 void ReadTissueModel(const core::JsonView& view, Scene& scene);

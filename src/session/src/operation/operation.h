@@ -14,6 +14,7 @@
 #include "electrosurgery.h"
 #include "operation_judge.h"
 #include "patient_tissue.h"
+#include "sheet_watch.h"
 #include "trocar/surgery/cuttable_organ.h"
 #include "vessel_work.h"
 
@@ -145,6 +146,7 @@ class Operation {
   Vec3 p_pool_;
 
   std::vector<surgery::CuttableOrgan> organs_;
+  std::vector<SheetWatch> sheets_;  // (ModelSetup::sheets), which are the organs
   std::optional<VesselWork> vessels_;
   Electrosurgery heat_;
   DissectionWatch watch_;

@@ -90,6 +90,7 @@ void Operation::CutWith(const surgery::BladeMove& move, int hand, const HandsNow
     if (!report.HasChanged()) continue;
     const auto organ = static_cast<std::int32_t>(i);
     judge_.Note({kind, Verb::kCut, TargetOfSurface(organ)}, hand);
+    if (scene_->model) continue;  // a sheet is there to be cut
     if (organ != gallbladder_) {
       judge_.Report(OperationError::kStructureTorn, tip, hand, hands.time);
       continue;

@@ -37,6 +37,7 @@ struct TaskResult {
   };
   std::string task, level;
   std::uint64_t seed = 0;
+  bool is_demonstration = false;  ///< of the scripted expert, nobody's own
   session::TaskPhase phase = session::TaskPhase::kNone;
   std::string verdict;  ///< "Completed", "The time is over", "Ended by an error"
   double time = 0;      ///< [s]

@@ -57,6 +57,15 @@ struct StrandInfo {
   std::int32_t band = -1;  ///< index in ModelSetup::bands, or -1
 };
 
+/// How a sheet is cut along the circle that is drawn on it. Places and lengths are those of the sheet at rest.
+struct SheetSnapshot {
+  double cut_length = 0;  ///< [m]
+  double farthest = 0;    ///< of a cut from the line: inside of it, or round the piece that came free [m]
+  double off_area = 0;    ///< between the line and the rim of that piece [m^2]
+  bool is_free = false;   ///< what the line encloses hangs on the border no more
+  math::Vec3 p_farthest;  ///< world frame [m]
+};
+
 /// Fixed sizes while a scene runs, so that copying allocates nothing.
 struct OperationSnapshot {
   std::array<std::uint8_t, kHandCount> tools{};  ///< in use, by place in InstrumentSetup::tray
@@ -78,6 +87,7 @@ struct OperationSnapshot {
   std::array<math::Vec3, 32> tube_cuts{};  ///< the first tube_cut_count count: where at rest, world frame [m]
   std::size_t tube_cut_count = 0;
   std::vector<std::uint8_t> band_is_whole;  ///< (ModelSetup::bands)
+  std::vector<SheetSnapshot> sheets;        ///< (ModelSetup::sheets)
   std::array<LeakSnapshot, 32> leaks{};
   std::size_t leak_count = 0;
   surgery::FluidLedger fluids;

@@ -76,9 +76,19 @@ struct ModelBand {
   double radius = 0.0006;  ///< [m]
 };
 
-/// Tissue that a training task makes for itself. Its ducts are the tubes of Scene::patient.
+/// A level sheet that is held at its border, with a circle drawn round its middle.
+struct ModelSheet {
+  std::string name;
+  Vec3 centre;             ///< world frame [m]
+  Vec3 half;               ///< of its sides along x and y [m]; z is 0
+  double spacing = 0.003;  ///< of its nodes [m]
+  double circle = 0.020;   ///< radius [m]
+};
+
+/// Tissue that a training task makes for itself. Its ducts are the tubes of Scene::patient, its sheets the organs.
 struct ModelSetup {
   std::vector<ModelBand> bands;
+  std::vector<ModelSheet> sheets;
 };
 
 /// How stiff one organ is; see tissue/material.h for the formulas.

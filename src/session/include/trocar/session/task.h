@@ -65,6 +65,9 @@ enum class ConditionKind : std::uint8_t {
   kDivided,         ///< "divided": a duct has been cut through in one of `regions`
   kUnclippedCut,  ///< "unclipped_cut": a duct was cut through with fewer than `amount` such clips in the scene
   kParted,        ///< "parted": `band` has been divided
+  kCutFree,       ///< "cut_free": what the circle on `sheet` encloses hangs on the border no more
+  kCutOffLine,    ///< "cut_off_line": a cut in `sheet` is `amount` [m] from its circle, or farther
+  kCutAreaOff,  ///< "cut_area_off": between circle and rim of the piece that came free lies `amount` [m^2], or more
   kCount
 };
 /// "held", "lifted", ... as above.
@@ -87,6 +90,7 @@ struct Condition {
   int event = -1;                      ///< EventKind
   int error = -1;                      ///< training::OperationError
   int band = -1;                       ///< ModelSetup::bands
+  int sheet = -1;                      ///< ModelSetup::sheets
 };
 
 /// Steps that have to be done one after the other.
