@@ -26,23 +26,39 @@ std::unique_ptr<Emulator> MakeEmulator(const std::string& parser, const SensorMo
   return tracker;
 }
 
+bool Write(const std::string& folder, int number, const std::string& stream) {
+  const auto done = trocar::core::WriteFile(folder + "/seed" + std::to_string(number), stream);
+  if (!done) std::puts(done.error().Text().c_str());
+  return done.ok();
+}
+
+/// Reports of 4 bytes; the first byte of the stream is the length of one, less 1.
+int WriteHidSeeds(const std::string& folder) {
+  for (int raw = 0; raw <= kMaxJawRaw; raw += 93) {
+    std::string stream(1, '\3');
+    for (const int value : {raw, kMaxJawRaw - raw, kMaxJawRaw, raw / 2})
+      stream += {static_cast<char>(value & 0xff), static_cast<char>(value >> 8)};
+    if (!Write(folder, raw, stream)) return 1;
+  }
+  return 0;
+}
+
 }  // namespace
 
 int main(int argument_count, char** arguments) {
   if (argument_count != 3) return 2;
   const std::string parser = arguments[1], folder = arguments[2];
+  if (parser == "jaw-hid") return WriteHidSeeds(folder);
   const auto hands = MakeHandsSettings(DefaultTracker());
   if (!hands) return 1;
   const auto emulator = MakeEmulator(parser, MoveHands(*hands, CalcHandMotion));
   if (emulator == nullptr) return 2;
   constexpr int kSeeds = 20;
   for (int i = 0; i < kSeeds; ++i) {
-    // the first byte is the fuzzer's chunk
-    const std::string stream = static_cast<char>(7 * i) + emulator->Advance(0.05 * (i + 1));
-    if (const auto done = trocar::core::WriteFile(folder + "/seed" + std::to_string(i), stream); !done) {
-      std::puts(done.error().Text().c_str());
-      return 1;
-    }
+    // the first byte is the fuzzer's chunk; its highest bit mends checksums
+    const char first = static_cast<char>(7 * i % 128 + (i % 2 == 0 ? 0 : 128));
+    const std::string stream = first + emulator->Advance(0.05 * (i + 1));
+    if (!Write(folder, i, stream)) return 1;
   }
   return 0;
 }

@@ -32,9 +32,33 @@ TEST_F(Demo, WritesPicturesVideoMetricsAndReport) {
   const auto metrics = nlohmann::json::parse(Read(Path("demo/metrics.json")));
   EXPECT_EQ(metrics.at("ticks"), 60);
   EXPECT_EQ(metrics.at("tools").size(), 2u);
+  EXPECT_TRUE(metrics.at("haptics").is_null());
   const std::string page = Read(Path("demo/report.html"));
+  EXPECT_THAT(page, HasSubstr("No haptic device took part."));
   EXPECT_THAT(page, HasSubstr("data:image/png;base64,"));
   EXPECT_THAT(page, HasSubstr(metrics.at("state_hash").get<std::string>()));
+}
+
+// force stays off, because nobody asked for it, and the record says so
+TEST_F(Demo, SaysWhatForceFeedbackDid) {
+  const auto result =
+      Run({"demo", "-o", Path("demo"), "--size", "64x36", "--seconds", "1.5", "--haptics", "simulated"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const auto haptics = nlohmann::json::parse(Read(Path("demo/metrics.json"))).at("haptics");
+  EXPECT_GT(haptics.at("ticks"), 100);
+  EXPECT_GT(haptics.at("rate"), 0.0);
+  EXPECT_GT(haptics.at("period_max_us"), 0.0);
+  for (const char* hand : {"left", "right"}) {
+    EXPECT_EQ(haptics.at(hand).at("armed_s"), 0.0) << hand;
+    EXPECT_EQ(haptics.at(hand).at("max_force"), 0.0) << hand;
+    EXPECT_THAT(haptics.at(hand).at("not_armed_longest_code").get<std::string>(),
+                testing::StartsWith("E-HAP-"));
+    EXPECT_EQ(haptics.at(hand).at("times_lost"), 0) << hand;
+  }
+  const std::string page = Read(Path("demo/report.html"));
+  EXPECT_THAT(page, HasSubstr("Force feedback"));
+  EXPECT_THAT(page, HasSubstr("Worst tick"));
+  EXPECT_THAT(page, HasSubstr("without force because"));
 }
 
 TEST_F(Demo, PlaysTheStateThatSimulateReaches) {

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "trocar/core/log.h"
+#include "trocar/device/device_spec.h"
 #include "trocar/device/force_device_spec.h"
 #include "window_screenshot.h"
 
@@ -185,18 +186,19 @@ void DevicePage::Begin(CalibrationStep step) {
 void DevicePage::Use() {
   // a line has one reader
   bench_.Close();
-  auto driver =
-      device::MakeDriver(spec_.get_text().raw(), device::LoadDeviceStore(device::FindDeviceStore()).store,
-                         device::SystemClock());
+  const std::string spec = spec_.get_text().raw();
+  const device::DeviceStore store = device::LoadDeviceStore(device::FindDeviceStore()).store;
+  auto driver = device::MakeDriver(spec, store, device::SystemClock());
   if (!driver) return Say(driver.error().Text(), true);
-  control_->UseDevice(std::move(*driver));
+  control_->UseDevice(std::move(*driver), device::FindButtons(spec, store));
   Say("The device holds the instruments.");
 }
 
 void DevicePage::UseHaptics() {
   if (control_->Haptics() != nullptr)
     return Say("A haptic device is in use already; to change it, start the window with --haptics.", true);
-  const core::Status used = control_->UseHaptics(haptic_name_.get_text().raw());
+  const device::DeviceStore store = device::LoadDeviceStore(device::FindDeviceStore()).store;
+  const core::Status used = control_->UseHaptics(haptic_name_.get_text().raw(), store.Buttons("haptics"));
   Say(used ? "Now check the pose, hold the safety switch, and ask for force." : used.error().Text(), !used);
 }
 

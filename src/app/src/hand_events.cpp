@@ -20,6 +20,8 @@ std::optional<Pedal> FindPedal(Action action) {
       return Pedal::kRinse;
     case Action::kHoldAspirate:
       return Pedal::kAspirate;
+    case Action::kHoldClutch:
+      return Pedal::kClutch;
     default:
       return std::nullopt;
   }
@@ -83,10 +85,30 @@ bool HandEvents::IsFocusInPanel() const {
   return focus != nullptr && focus != &picture_ && !focus->is_ancestor(picture_);
 }
 
+std::vector<std::string> HandEvents::SetKeys(const std::map<std::string, device::HandAct>& keys) {
+  std::vector<std::string> refused;
+  own_keys_.clear();
+  for (const auto& [name, act] : keys) {
+    const guint keyval = gdk_keyval_to_lower(gdk_keyval_from_name(name.c_str()));
+    if (keyval == GDK_KEY_VoidSymbol || keyval == GDK_KEY_Escape) {
+      refused.push_back(name);
+    } else {
+      own_keys_[keyval] = FindAction(act);
+    }
+  }
+  return refused;
+}
+
+KeyMeaning HandEvents::FindMeaning(guint keyval, bool control) const {
+  const auto own = own_keys_.find(gdk_keyval_to_lower(keyval));
+  if (own != own_keys_.end() && !control) return {own->second, device::Motion::kCount};
+  return FindKeyMeaning(keyval, control);
+}
+
 bool HandEvents::OnKeyPressed(guint keyval, guint, Gdk::ModifierType state) {
   using Gdk::ModifierType;
   if ((state & (ModifierType::ALT_MASK | ModifierType::SUPER_MASK)) != ModifierType{}) return false;
-  const KeyMeaning meaning = FindKeyMeaning(keyval, (state & ModifierType::CONTROL_MASK) != ModifierType{});
+  const KeyMeaning meaning = FindMeaning(keyval, (state & ModifierType::CONTROL_MASK) != ModifierType{});
   if (meaning.action == Action::kNone) return false;
   if (IsFocusInPanel() && !WorksInPanel(meaning.action)) return false;
   const bool is_repeat = std::find(held_.begin(), held_.end(), keyval) != held_.end();
@@ -114,7 +136,7 @@ bool HandEvents::OnKeyPressed(guint keyval, guint, Gdk::ModifierType state) {
 
 void HandEvents::OnKeyReleased(guint keyval, guint, Gdk::ModifierType) {
   std::erase(held_, keyval);
-  const KeyMeaning meaning = FindKeyMeaning(keyval, false);
+  const KeyMeaning meaning = FindMeaning(keyval, false);
   if (control_ == nullptr) return;
   if (const std::optional<Pedal> pedal = FindPedal(meaning.action)) control_->SetPedal(*pedal, false);
   if (meaning.action == Action::kMove) control_->Device().SetKey(meaning.motion, false);

@@ -4,6 +4,8 @@
 
 #include <gtkmm.h>
 
+#include <map>
+#include <string>
 #include <vector>
 
 #include "trocar/app/key_bindings.h"
@@ -22,6 +24,10 @@ class HandEvents {
   HandEvents(Gtk::Window& window, Gtk::Widget& picture, Gtk::Widget& panel);
 
   void SetControl(SessionControl* control) { control_ = control; }
+  /// Gives keys an act in place of what they do otherwise: foot pedals that are keyboards.
+  /// \param keys  by name, as GDK has it: "F13", "b"
+  /// \return the names that are no key, or Escape, which always stops the force
+  std::vector<std::string> SetKeys(const std::map<std::string, device::HandAct>& keys);
   bool IsPointerTaken() const { return is_taken_; }
   void ReleasePointer();
   /// Everything but motion.
@@ -35,6 +41,7 @@ class HandEvents {
   void OnButton(guint button, bool is_down);
   void ReleaseAll();
   bool IsFocusInPanel() const;
+  KeyMeaning FindMeaning(guint keyval, bool control) const;
 
   Gtk::Window& window_;
   Gtk::Widget& picture_;
@@ -44,6 +51,7 @@ class HandEvents {
   bool has_last_ = false;
   double last_x_ = 0, last_y_ = 0;  // [pixels]
   std::vector<guint> held_;         // key symbols, so that repeats toggle nothing
+  std::map<guint, Action> own_keys_;
   sigc::signal<void(Action)> signal_action_;
 };
 

@@ -20,6 +20,7 @@ std::string BadgeText(const Situation& situation) {
   if (situation.is_demonstration) return "Demonstration";
   std::string text = situation.is_right_hand ? "Right hand" : "Left hand";
   if (situation.is_fulcrum_mirrored) text += "  ·  real trocar";
+  if (situation.has_camera_holder) text += "  ·  automatic camera";
   if (situation.is_pointer_taken) text += "  ·  Esc gives the mouse back";
   return text;
 }

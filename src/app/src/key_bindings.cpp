@@ -45,8 +45,10 @@ constexpr KeyHelp kHelp[] = {
     {"Operation", "X   Z", "next tool, previous tool of this hand"},
     {"Operation", "V   N", "yellow pedal: cut, blue pedal: coagulate (hold)"},
     {"Operation", "J   K", "rinse, suck (hold)"},
+    {"Operation", "L   Y", "clutch (hold), freeze: the tool stands still although its device moves"},
     {"Operation", "U", "assistant: take and lift the fundus, relax, let go, wait"},
     {"Laparoscope", "C or middle button", "hold, then move the mouse to look around, wheel to go in and out"},
+    {"Laparoscope", "3", "automatic holder: keeps both tips in the picture; C takes over"},
     {"Simulation", "Space", "start or pause"},
     {"Simulation", "R", "reset"},
     {"Simulation", "P", "play the demonstration, or take over from it"},
@@ -111,8 +113,14 @@ KeyMeaning FindKeyMeaning(std::uint32_t keyval, bool control) noexcept {
       return Do(Action::kHoldRinse);
     case 'k':
       return Do(Action::kHoldAspirate);
+    case 'l':
+      return Do(Action::kHoldClutch);
+    case 'y':
+      return Do(Action::kFreeze);
     case 'u':
       return Do(Action::kAssistant);
+    case '3':
+      return Do(Action::kToggleCameraHolder);
     case 'c':
       return Do(Action::kHoldLaparoscope);
     case ' ':
@@ -139,6 +147,33 @@ KeyMeaning FindKeyMeaning(std::uint32_t keyval, bool control) noexcept {
     default:
       return {};
   }
+}
+
+Action FindAction(device::HandAct act) noexcept {
+  switch (act) {
+    case device::HandAct::kCut:
+      return Action::kHoldCut;
+    case device::HandAct::kCoagulate:
+      return Action::kHoldCoagulate;
+    case device::HandAct::kRinse:
+      return Action::kHoldRinse;
+    case device::HandAct::kAspirate:
+      return Action::kHoldAspirate;
+    case device::HandAct::kNextTool:
+      return Action::kNextTool;
+    case device::HandAct::kPreviousTool:
+      return Action::kPreviousTool;
+    case device::HandAct::kAssistant:
+      return Action::kAssistant;
+    case device::HandAct::kClutch:
+      return Action::kHoldClutch;
+    case device::HandAct::kFreeze:
+      return Action::kFreeze;
+    case device::HandAct::kNone:
+    case device::HandAct::kCount:
+      break;
+  }
+  return Action::kNone;
 }
 
 bool WorksInPanel(Action action) noexcept {

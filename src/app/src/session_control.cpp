@@ -62,7 +62,10 @@ core::Result<std::unique_ptr<SessionControl>> SessionControl::Make(session::Simu
 }
 
 SessionControl::SessionControl(session::Simulation simulation, const device::MouseKeyboardSettings& settings)
-    : runner_(std::move(simulation), &haptic_link_), device_(settings) {}
+    : runner_(std::move(simulation), &haptic_link_),
+      device_hands_(runner_.GetScene()),
+      stylus_hands_(runner_.GetScene()),
+      device_(settings) {}
 
 void SessionControl::PlaceAtHome() {
   const session::Scene& scene = runner_.GetScene();
@@ -88,6 +91,9 @@ const session::Snapshot& SessionControl::Advance(double dt) {
       input_.controls[hand].tool = snapshot.operation.tools[hand];
   }
 
+  // as with the hands: whoever takes the laparoscope over takes it where it is
+  if (HasCameraHolder()) device_.Place(device::kLaparoscope, SampleOf(snapshot.laparoscope));
+
   std::array<HandSample, device::kChannelCount> samples;
   if (!runner_.IsPaused()) {
     device_.Read(samples);
@@ -106,32 +112,28 @@ const session::Snapshot& SessionControl::Advance(double dt) {
   for (const Channel hand : {device::kLeftHand, device::kRightHand})
     if (samples[hand].is_valid) input_.hands[hand] = JointsOf(samples[hand]);
   if (samples[device::kLaparoscope].is_valid) input_.laparoscope = JointsOf(samples[device::kLaparoscope]);
+  if (haptic_loop_ != nullptr) ApplyStylusButtons();
+  sent_ = input_;
   if (device_thread_ != nullptr) ApplyDevice();
-  runner_.SetInput(input_);
+  runner_.SetInput(sent_);
   return snapshot;
 }
 
-void SessionControl::UseDevice(std::unique_ptr<device::Driver> driver) {
+void SessionControl::UseDevice(std::unique_ptr<device::Driver> driver, const device::ButtonMap& buttons) {
   session::PlaceAtHome(runner_.GetScene(), *driver);
-  device_thread_ = std::make_unique<session::DeviceThread>(std::move(driver));
+  device_thread_.reset();  // one device's line, buttons and messages end before the other's begin
+  device_hands_ = session::DeviceHands(runner_.GetScene());
+  device_losses_ = 0;
+  device_thread_ = std::make_unique<session::DeviceThread>(std::move(driver), buttons);
 }
 
-core::Status SessionControl::UseHaptics(std::string_view name) {
+core::Status SessionControl::UseHaptics(std::string_view name, const device::ButtonMap& buttons) {
   auto driver = device::MakeForceDriver(name);
   if (!driver) return driver.error();
-  const int channels = (*driver)->GetChannelCount();
-  if (channels > session::kHandCount) {
-    return core::Error{core::ErrorCode::kDeviceSettings,
-                       (*driver)->GetName() + " has more channels than a person has hands"};
-  }
-  session::HapticLoopSettings settings;
-  settings.supervisor = session::SupervisorLink::FindProgram();
-  for (int channel = 0; channel < channels; ++channel) {
-    const session::Hand hand = channels == 1 || channel == 1 ? session::kRight : session::kLeft;
-    settings.hands.push_back(
-        session::MakeHapticHand(runner_.GetScene(), runner_.Latest().X_world_laparoscope, hand));
-  }
-  auto loop = session::HapticLoop::Start(std::move(*driver), settings, haptic_link_);
+  const auto settings = session::MakeHapticSettings(**driver, runner_.GetScene(),
+                                                    runner_.Latest().X_world_laparoscope, buttons);
+  if (!settings) return settings.error();
+  auto loop = session::HapticLoop::Start(std::move(*driver), *settings, haptic_link_);
   if (!loop) return loop.error();
   haptic_loop_ = std::move(*loop);
   return {};
@@ -156,11 +158,29 @@ void SessionControl::ApplyDevice() {
     device_losses_ = report.losses;
     SetPaused(true);
   }
-  if (is_demonstration_) return;
-  session::ApplyHands(report.samples, input_);
+  if (is_demonstration_) return device_hands_.Ignore(report.acts);
+  if (MayAct()) {
+    device_hands_.Step(report.acts, input_);
+  } else {
+    device_hands_.Ignore(report.acts);
+  }
+  device_hands_.Move(report.samples, report.acts, input_);
+  sent_ = input_;
+  if (MayAct()) session::PressPedals(report.acts, sent_);
   // the mouse's hands rest on the device's, so that losing sight of one makes no jump
   for (const Channel hand : {device::kLeftHand, device::kRightHand}) {
     if (report.samples[hand].is_valid) device_.Place(hand, SampleOf(input_.hands[hand]));
+  }
+}
+
+/// Pedals of a stylus reach the tick by the loop's own way; what a press changes for good comes in here.
+void SessionControl::ApplyStylusButtons() {
+  const session::HapticStatus& status = haptic_loop_->Latest();
+  const session::DeviceActs acts = {status.hands[session::kLeft].acts, status.hands[session::kRight].acts};
+  if (MayAct()) {
+    stylus_hands_.Step(acts, input_);
+  } else {
+    stylus_hands_.Ignore(acts);
   }
 }
 
@@ -180,6 +200,7 @@ void SessionControl::Reset() {
   PlaceAtHome();
   input_.controls = {};
   input_.assistant = {};
+  device_hands_.Restart();
   time_ = 0.0;
   runner_.Reset();
 }
@@ -226,19 +247,24 @@ void SessionControl::SetPedal(Pedal pedal, bool is_down) {
     case Pedal::kAspirate:
       controls.aspirate = is_down;
       break;
+    case Pedal::kClutch:
+      device_hands_.SetClutch(static_cast<session::Hand>(hand_), is_down);
+      break;
   }
+}
+
+void SessionControl::ToggleFreeze() {
+  if (MayAct()) device_hands_.ToggleFreeze(static_cast<session::Hand>(hand_));
 }
 
 void SessionControl::ReleasePedals() {
   for (session::HandControls& controls : input_.controls)
     controls.cut = controls.coagulate = controls.rinse = controls.aspirate = false;
+  for (const session::Hand hand : {session::kLeft, session::kRight}) device_hands_.SetClutch(hand, false);
 }
 
 void SessionControl::StepAssistant() {
-  using session::AssistantCommand;
-  constexpr AssistantCommand kNext[] = {AssistantCommand::kRetract, AssistantCommand::kRelax,
-                                        AssistantCommand::kRelease, AssistantCommand::kWait};
-  input_.assistant = kNext[static_cast<std::size_t>(input_.assistant)];
+  input_.assistant = session::NextCommand(input_.assistant);
 }
 
 void SessionControl::ChooseHand(Channel hand) {
@@ -253,6 +279,7 @@ void SessionControl::SwitchHand() {
 }
 
 void SessionControl::HoldLaparoscope(bool is_held) {
+  if (is_held) SetCameraHolder(false);
   device_.Choose(is_held ? device::kLaparoscope : hand_);
 }
 

@@ -229,11 +229,7 @@ void SimulatorWindow::FinishLoading() {
   if (!control) return Fail(control.error());
   control_ = std::move(control).value();
   control_->SetMirrorFulcrum(fulcrum_.get_active());
-  if (!UseDevice()) return;
-  if (!options_.haptics.empty()) {
-    if (const core::Status started = control_->UseHaptics(options_.haptics); !started)
-      return Fail(started.error());
-  }
+  if (!UseDevices()) return;
   if (options_.igtl_port >= 0) {
     if (const core::Status served = control_->Serve(options_.igtl_port); !served) return Fail(served.error());
     core::Log(core::LogLevel::kInfo,
@@ -250,18 +246,28 @@ void SimulatorWindow::FinishLoading() {
   SetPaused(false);
 }
 
-/// \return false, with the failure shown, where the options name a device that cannot be
-bool SimulatorWindow::UseDevice() {
-  if (options_.device.empty()) return true;
+/// What the options name, with the person's settings.
+/// \return false, with the failure shown, where they name a device that cannot be
+bool SimulatorWindow::UseDevices() {
   const device::LoadedStore loaded = device::LoadDeviceStore(device::FindDeviceStore());
   if (loaded.complaint) core::Log(core::LogLevel::kWarning, loaded.complaint->Text());
+  for (const std::string& key : hands_->SetKeys(loaded.store.keys))
+    core::Log(core::LogLevel::kWarning, "the key \"" + key + "\" of the device settings can have no act");
+  if (!options_.haptics.empty()) {
+    const device::ButtonMap buttons = loaded.store.Buttons("haptics");
+    if (const core::Status started = control_->UseHaptics(options_.haptics, buttons); !started) {
+      Fail(started.error());
+      return false;
+    }
+  }
+  if (options_.device.empty()) return true;
   core::Result<std::unique_ptr<device::Driver>> driver =
       device::MakeDriver(options_.device, loaded.store, device::SystemClock());
   if (!driver) {
     Fail(driver.error());
     return false;
   }
-  control_->UseDevice(std::move(driver).value());
+  control_->UseDevice(std::move(driver).value(), device::FindButtons(options_.device, loaded.store));
   return true;
 }
 
@@ -380,6 +386,7 @@ void SimulatorWindow::ShowSituation() {
     situation.is_demonstration = control_->IsDemonstration();
     situation.is_demonstration_over = control_->IsDemonstrationOver();
     situation.is_laparoscope_held = control_->IsLaparoscopeHeld();
+    situation.has_camera_holder = control_->HasCameraHolder();
     situation.is_right_hand = control_->GetHand() == device::kRightHand;
     situation.is_fulcrum_mirrored = control_->IsFulcrumMirrored();
   }
@@ -442,8 +449,14 @@ void SimulatorWindow::OnAction(Action action) {
     case Action::kPreviousTool:
       if (control_ != nullptr) control_->StepTool(action == Action::kNextTool ? 1 : -1);
       break;
+    case Action::kFreeze:
+      if (control_ != nullptr) control_->ToggleFreeze();
+      break;
     case Action::kAssistant:
       if (control_ != nullptr) control_->StepAssistant();
+      break;
+    case Action::kToggleCameraHolder:
+      if (control_ != nullptr) control_->SetCameraHolder(!control_->HasCameraHolder());
       break;
     case Action::kReset:
       Reset();

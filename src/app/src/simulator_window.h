@@ -40,7 +40,7 @@ class SimulatorWindow : public Gtk::ApplicationWindow {
   void MakeContent();
   void StartLoading();
   void FinishLoading();
-  bool UseDevice();
+  bool UseDevices();
   bool OnFrame(const Glib::RefPtr<Gdk::FrameClock>& clock);
   void OnDrawn();
   void ShowHaptics();

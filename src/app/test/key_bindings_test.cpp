@@ -49,6 +49,18 @@ TEST(KeyBindings, NamedKeysDoWhatTheHelpSays) {
   EXPECT_EQ(FindKeyMeaning('r', true).action, Action::kNone) << "Ctrl+R is no reset";
 }
 
+TEST(KeyBindings, EveryActOfAButtonIsAnActionOfItsOwn) {
+  std::set<Action> actions;
+  for (std::size_t i = 1; i < device::kActCount; ++i) {
+    const Action action = FindAction(static_cast<device::HandAct>(i));
+    EXPECT_NE(action, Action::kNone) << i;
+    EXPECT_TRUE(actions.insert(action).second) << i;
+  }
+  EXPECT_EQ(FindAction(device::HandAct::kNone), Action::kNone);
+  EXPECT_EQ(FindAction(device::HandAct::kCut), FindKeyMeaning('v', false).action);
+  EXPECT_EQ(FindAction(device::HandAct::kClutch), FindKeyMeaning('l', false).action);
+}
+
 TEST(KeyBindings, PanelKeepsTheKeysThatSlidersNeed) {
   EXPECT_FALSE(WorksInPanel(Action::kMove));
   EXPECT_FALSE(WorksInPanel(Action::kSwitchHand));

@@ -3,9 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <functional>
+#include <span>
 #include <thread>
 
 namespace trocar::app {
@@ -20,6 +22,7 @@ class SessionControlTest : public testing::Test {
   void Open(const char* path) {
     core::Result<session::Scene> scene = session::ReadScene(path);
     ASSERT_TRUE(scene.ok()) << scene.error().Text();
+    for (session::InstrumentSetup& setup : scene->instruments) setup.tray.resize(3, setup.tray.front());
     core::Result<session::Simulation> simulation =
         session::Simulation::Make(std::make_shared<const session::Scene>(std::move(scene).value()), 1);
     ASSERT_TRUE(simulation.ok()) << simulation.error().Text();
@@ -64,6 +67,91 @@ TEST_F(SessionControlTest, PedalsBelongToTheChosenHandAndAPauseReleasesThem) {
   EXPECT_FALSE(controls[session::kRight].coagulate);
   control->SetPedal(Pedal::kCoagulate, true);
   EXPECT_FALSE(controls[session::kRight].coagulate) << "a pedal does nothing while paused";
+}
+
+/// What a device says, set by the test; lost while `is_plugged` is false.
+struct FakeDevice : device::Driver {
+  struct Shared {
+    std::atomic<std::uint32_t> buttons{0};
+    std::atomic<double> pan{0};
+    std::atomic<bool> is_plugged{true};
+  };
+  explicit FakeDevice(Shared& state) : Driver("fake", device::kChannelCount), shared(state) {}
+  core::Status DoConfigure() override {
+    if (shared.is_plugged) return {};
+    return core::Error{core::ErrorCode::kDeviceLost, "not plugged in"};
+  }
+  core::Status DoActivate() override { return {}; }
+  void DoDeactivate() noexcept override {}
+  void DoCleanup() noexcept override {}
+  device::ReadStatus DoRead(std::span<device::HandSample> samples) noexcept override {
+    if (!shared.is_plugged) return device::ReadStatus::kLost;
+    samples[0] = {shared.pan, 0, 0, 0.12, 1.0, 0, true, shared.buttons};
+    return device::ReadStatus::kFresh;
+  }
+  Shared& shared;
+};
+
+// cut and coagulate, tools, clutch: from the button to the simulation's input; a lost device leaves nothing pressed
+TEST_F(SessionControlTest, ADevicesButtonsReachTheOperationAndALossLetsGo) {
+  FakeDevice::Shared shared;
+  control->UseDevice(std::make_unique<FakeDevice>(shared));
+  control->SetPaused(false);
+  const auto left = [&]() -> const session::HandControls& {
+    return control->GetSentInput().controls[session::kLeft];
+  };
+  const auto until = [&](const std::function<bool()>& claim) {
+    return AdvanceUntil([&](const session::Snapshot&) { return claim(); });
+  };
+  shared.pan = 0.2;
+  ASSERT_TRUE(until([&] { return control->GetSentInput().hands[session::kLeft].pan == 0.2; }));
+  shared.buttons = 1;
+  ASSERT_TRUE(until([&] { return left().cut; }));
+  EXPECT_FALSE(control->GetInput().controls[session::kLeft].cut) << "no key";
+  EXPECT_FALSE(control->GetSentInput().controls[session::kRight].cut);
+  shared.buttons = 8;
+  ASSERT_TRUE(until([&] { return left().tool == 1; }));
+  EXPECT_FALSE(left().cut);
+  shared.pan = 0.5;
+  shared.buttons = 2;
+  ASSERT_TRUE(until([&] { return left().coagulate; }));
+  shared.is_plugged = false;
+  ASSERT_TRUE(until([&] { return !left().coagulate; }));
+  EXPECT_TRUE(control->IsPaused());
+  EXPECT_EQ(left().tool, 1) << "the tool stays";
+  shared.is_plugged = true;
+  control->SetPaused(false);
+  ASSERT_TRUE(until([&] { return control->GetSentInput().hands[session::kLeft].pan == 0.5; }));
+  for (int frame = 0; frame < 20; ++frame) control->Advance(0.01);
+  EXPECT_FALSE(left().coagulate) << "the foot that stayed does not count";
+  control->ChooseHand(device::kLeftHand);
+  control->SetPedal(Pedal::kClutch, true);
+  control->Advance(0.01);
+  shared.pan = 0.9;
+  device::SystemClock().Sleep(0.02);
+  control->Advance(0.01);
+  EXPECT_EQ(control->GetSentInput().hands[session::kLeft].pan, 0.5);
+  control->SetPedal(Pedal::kClutch, false);
+  control->Advance(0.01);
+  EXPECT_NEAR(control->GetSentInput().hands[session::kLeft].pan, 0.5, 1e-12) << "it goes on from there";
+}
+
+TEST_F(SessionControlTest, ADevicesPedalsDoNothingWhilePaused) {
+  FakeDevice::Shared shared;
+  control->UseDevice(std::make_unique<FakeDevice>(shared));
+  shared.pan = 0.2;
+  ASSERT_TRUE(AdvanceUntil(
+      [&](const session::Snapshot&) { return control->GetSentInput().hands[session::kLeft].pan == 0.2; }));
+  shared.buttons = 1 | 8;
+  for (int frame = 0; frame < 20; ++frame) {
+    device::SystemClock().Sleep(0.005);
+    control->Advance(0.01);
+  }
+  EXPECT_FALSE(control->GetSentInput().controls[session::kLeft].cut);
+  control->SetPaused(false);
+  control->Advance(0.01);
+  EXPECT_TRUE(control->GetSentInput().controls[session::kLeft].cut) << "it is held";
+  EXPECT_EQ(control->GetSentInput().controls[session::kLeft].tool, 0) << "that press was for nothing";
 }
 
 TEST_F(SessionControlTest, ToolsGoRoundTheTrayAndTheAssistantObeys) {
@@ -169,6 +257,27 @@ TEST_F(SessionControlTest, LaparoscopeIsHeldAndGivenBackToTheSameHand) {
   EXPECT_EQ(control->Device().GetChosen(), device::kRightHand);
   control->ChooseHand(device::kLaparoscope);
   EXPECT_EQ(control->GetHand(), device::kRightHand) << "no hand";
+}
+
+TEST_F(SessionControlTest, TheAutomaticCameraIsTakenOverWhereItIs) {
+  control->SetCameraHolder(true);
+  control->SetPaused(false);
+  control->ChooseHand(device::kRightHand);
+  // a tool goes aside until the holder has to follow
+  control->Device().SetKey(Motion::kRight, true);
+  const instrument::TrocarJoints home = control->GetScene().laparoscope.home;
+  ASSERT_TRUE(AdvanceUntil([&](const session::Snapshot& now) {
+    return std::abs(now.laparoscope.pan - home.pan) + std::abs(now.laparoscope.tilt - home.tilt) > 0.05;
+  }));
+  control->Device().SetKey(Motion::kRight, false);
+  control->SetPaused(true);
+  const instrument::TrocarJoints before = control->Advance(0).laparoscope;
+  control->HoldLaparoscope(true);
+  EXPECT_FALSE(control->HasCameraHolder());
+  control->Advance(0);
+  EXPECT_NEAR(control->GetInput().laparoscope.pan, before.pan, 1e-6);
+  EXPECT_NEAR(control->GetInput().laparoscope.tilt, before.tilt, 1e-6);
+  EXPECT_NEAR(control->GetInput().laparoscope.depth, before.depth, 1e-6);
 }
 
 }  // namespace

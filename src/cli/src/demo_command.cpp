@@ -17,6 +17,7 @@
 #include "command.h"
 #include "console.h"
 #include "device_input.h"
+#include "haptic_input.h"
 #include "igtl_option.h"
 #include "motion_log.h"
 #include "report.h"
@@ -39,6 +40,7 @@ struct DemoArguments {
   double seconds = 0;
   int threads = 1;
   int igtl_port = -1;
+  HapticOptions haptics;
 };
 
 /// A folder beside the wanted one; what is in it appears under its name only when all went well.
@@ -109,9 +111,9 @@ core::Result<std::shared_ptr<const session::Scene>> ReadSceneOrBuiltIn(const std
   return std::make_shared<const session::Scene>(std::move(scene).value());
 }
 
-/// The metrics, and what they were measured on.
+/// The metrics, what they were measured on, and what force feedback did: null without it.
 std::string FormatMetricsFile(const training::SessionMetrics& metrics, const session::Scene& scene,
-                              const view::DemoReport& played) {
+                              const view::DemoReport& played, const HapticInput* haptics) {
   nlohmann::ordered_json json = {{"program", "trocar " + std::string(core::VersionText())},
                                  {"scene", scene.name},
                                  {"patient", scene.patient.name},
@@ -119,11 +121,17 @@ std::string FormatMetricsFile(const training::SessionMetrics& metrics, const ses
                                  {"ticks", played.ticks},
                                  {"state_hash", FormatHash(played.state_hash)}};
   json.update(nlohmann::ordered_json::parse(training::FormatMetricsJson(metrics), nullptr, false));
+  json["haptics"] = nullptr;
+  if (haptics != nullptr) {
+    const std::string summary = session::FormatSummaryJson(haptics->Record().CalcSummary());
+    json["haptics"] = nlohmann::ordered_json::parse(summary, nullptr, false);
+  }
   return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
 
 core::Result<std::string> MakePage(const session::Scene& scene, const view::DemoReport& played,
-                                   const MotionLog& log, std::string metrics_json) {
+                                   const MotionLog& log, const HapticInput* haptics,
+                                   std::string metrics_json) {
   ReportContent content;
   content.scene = scene.name;
   content.patient = scene.patient.name;
@@ -135,6 +143,7 @@ core::Result<std::string> MakePage(const session::Scene& scene, const view::Demo
   content.version = core::VersionText();
   content.video = played.video.filename().string();
   content.metrics_json = std::move(metrics_json);
+  if (haptics != nullptr) content.haptics = session::DescribeSummary(haptics->Record().CalcSummary());
   for (const view::DemoPicture& picture : played.pictures) {
     core::Result<std::string> png = core::ReadFile(picture.path);
     if (!png) return png.error();
@@ -179,14 +188,23 @@ core::Status Play(const DemoArguments& arguments) {
   options.output_folder = part.Path();
   MotionLog log(**scene, arguments.seconds > 0 ? arguments.seconds + 1 : (*scene)->script.Duration() + 1);
   std::unique_ptr<net::IgtlServer> server;
-  if (arguments.igtl_port >= 0) {
-    options.on_start = [&](const session::Simulation& simulation) -> core::Status {
+  std::unique_ptr<HapticInput> haptics;
+  options.on_start = [&](const session::Simulation& simulation) -> core::Status {
+    if (arguments.igtl_port >= 0) {
       auto listening = ServeViewers(arguments.igtl_port, simulation);
       if (!listening) return listening.error();
       server = std::move(*listening);
-      return {};
-    };
-  }
+    }
+    if (!arguments.haptics.name.empty()) {
+      auto opened = HapticInput::Open(arguments.haptics, simulation);
+      if (!opened) return opened.error();
+      haptics = std::move(*opened);
+    }
+    return {};
+  };
+  options.after_step = [&](session::Simulation& simulation) {
+    if (haptics != nullptr) haptics->AfterStep(simulation);
+  };
   options.on_tick = [&](const session::Snapshot& snapshot) {
     log.Record(snapshot);
     if (server != nullptr) server->Publish(snapshot);
@@ -196,8 +214,11 @@ core::Status Play(const DemoArguments& arguments) {
     auto opened = DeviceInput::Open(arguments.device, **scene);
     if (!opened) return opened.error();
     device = std::move(*opened);
-    options.change_input = [&](double time, session::Input& input) { device->Apply(time, input); };
   }
+  options.change_input = [&](double time, session::Input& input) {
+    if (device != nullptr) device->Apply(time, input);
+    if (haptics != nullptr) haptics->Apply(time, input);
+  };
   ProgressBar progress("playing", 1.0);
   options.on_progress = [&](double done) { progress.Show(done); };
   const core::Result<view::DemoReport> played = view::PlayDemonstration(*scene, options);
@@ -206,12 +227,15 @@ core::Status Play(const DemoArguments& arguments) {
 
   const core::Result<training::SessionMetrics> metrics = training::CalcSessionMetrics(log.Recording());
   if (!metrics) return metrics.error();
-  const std::string metrics_text = FormatMetricsFile(*metrics, **scene, *played);
-  const core::Result<std::string> page = MakePage(**scene, *played, log, metrics_text);
+  const std::string metrics_text = FormatMetricsFile(*metrics, **scene, *played, haptics.get());
+  const core::Result<std::string> page = MakePage(**scene, *played, log, haptics.get(), metrics_text);
   if (!page) return page.error();
   if (auto status = core::WriteFile(part.Path() / "metrics.json", metrics_text); !status) return status;
   if (auto status = core::WriteFile(part.Path() / "report.html", *page); !status) return status;
   if (auto status = part.Keep(); !status) return status;
+  if (haptics != nullptr) {
+    if (auto status = haptics->SaveRecord(); !status) return status;
+  }
   PrintSummary(*played, **scene, arguments.output);
   return {};
 }
@@ -246,6 +270,7 @@ void AddDemoCommand(CLI::App& app, Outcome& outcome) {
       ->type_name("T")
       ->capture_default_str();
   AddIgtlOption(*command, arguments->igtl_port);
+  AddHapticOptions(*command, arguments->haptics);
   command->footer(
       "Needs OpenGL (in software will do) and no display. When anything fails, the folder stays as it was.\n"
       "Example: trocar demo -o out/demo --size 640x360 --seconds 5");

@@ -87,6 +87,19 @@ core::Result<WatchReport> WatchDevice(device::Driver& driver, double seconds,
   return report;
 }
 
+namespace {
+
+/// Numbers of those that are down, "-" for none.
+std::string FormatButtons(std::uint32_t buttons) {
+  std::string text;
+  for (int i = 0; i < 32; ++i) {
+    if ((buttons >> i & 1u) != 0) text += (text.empty() ? "" : " ") + std::to_string(i + 1);
+  }
+  return text.empty() ? "-" : text;
+}
+
+}  // namespace
+
 std::string FormatHands(const HandSamples& samples) {
   static constexpr const char* kNames[] = {"left", "right", "laparoscope"};
   std::string text;
@@ -95,11 +108,12 @@ std::string FormatHands(const HandSamples& samples) {
     char line[240];
     if (hand.is_valid) {
       std::snprintf(line, sizeof line,
-                    "%-11s pan %6.1f %s  tilt %6.1f %s  spin %7.1f  depth %6.1f mm %s  jaw %5.1f %s\n",
+                    "%-11s pan %6.1f %s  tilt %6.1f %s  spin %7.1f  depth %6.1f mm %s  jaw %5.1f %s  "
+                    "buttons %s\n",
                     kNames[i], kDegrees * hand.pan, Bar(hand.pan, -1.4, 1.4).c_str(), kDegrees * hand.tilt,
                     Bar(hand.tilt, -1.4, 1.4).c_str(), kDegrees * hand.spin, 1e3 * hand.depth,
-                    Bar(hand.depth, 0.0, 0.28).c_str(), kDegrees * hand.jaw,
-                    Bar(hand.jaw, 0.0, 1.05).c_str());
+                    Bar(hand.depth, 0.0, 0.28).c_str(), kDegrees * hand.jaw, Bar(hand.jaw, 0.0, 1.05).c_str(),
+                    FormatButtons(hand.buttons).c_str());
     } else {
       std::snprintf(line, sizeof line, "%-11s not seen\n", kNames[i]);
     }

@@ -9,11 +9,13 @@ namespace trocar::cli {
 
 core::Result<std::unique_ptr<DeviceInput>> DeviceInput::Open(const std::string& spec,
                                                              const session::Scene& scene) {
-  std::unique_ptr<DeviceInput> input(new DeviceInput);
+  std::unique_ptr<DeviceInput> input(new DeviceInput(scene));
   input->clock_ = spec.starts_with("play:") ? &input->simulated_ : &device::SystemClock();
-  auto driver = device::MakeDriver(spec, LoadStoreOrWarn(), *input->clock_);
+  const device::DeviceStore store = LoadStoreOrWarn();
+  auto driver = device::MakeDriver(spec, store, *input->clock_);
   if (!driver) return driver.error();
   input->driver_ = std::move(*driver);
+  input->buttons_ = device::HandButtons(device::FindButtons(spec, store));
   session::PlaceAtHome(scene, *input->driver_);
   if (const core::Status done = input->driver_->Configure(); !done) return done.error();
   if (const core::Status done = input->driver_->Activate(); !done) return done.error();
@@ -29,15 +31,22 @@ void DeviceInput::Apply(double time, session::Input& input) {
   }
   if (!is_lost_ && driver_->Read(samples_) == device::ReadStatus::kLost) {
     is_lost_ = true;
+    buttons_.ReleaseAll();
     core::Log(core::LogLevel::kWarning, Check().error().Text());
   }
   if (has_held_) {
     input.hands = held_.hands;
     input.laparoscope = held_.laparoscope;
+    input.assistant = held_.assistant;
+    for (std::size_t hand = 0; hand < input.controls.size(); ++hand)
+      input.controls[hand].tool = held_.controls[hand].tool;
   }
-  session::ApplyHands(samples_, input);
+  if (!is_lost_) buttons_.See(samples_, time);
+  hands_.Step(buttons_.Acts(), input);
+  hands_.Move(samples_, buttons_.Acts(), input);
   held_ = input;
   has_held_ = true;
+  session::PressPedals(buttons_.Acts(), input);
 }
 
 core::Status DeviceInput::Check() const {

@@ -8,6 +8,7 @@
 #include "trocar/core/result.h"
 #include "trocar/device/driver.h"
 #include "trocar/device/ports.h"
+#include "trocar/session/device_hands.h"
 #include "trocar/session/device_thread.h"
 
 namespace trocar::cli {
@@ -19,7 +20,8 @@ class DeviceInput {
   static core::Result<std::unique_ptr<DeviceInput>> Open(const std::string& spec,
                                                          const session::Scene& scene);
 
-  /// Replaces the hands that the device sees. A hand that it does not see, and all once it is lost, stay where they were.
+  /// Replaces the hands that the device sees, presses its pedals and changes tools. A hand that it does not see, and all once
+  /// it is lost, stay where they were; no pedal does.
   ///
   /// \param time  of the tick [s]; with a real device, waits until so much time has passed since Open()
   void Apply(double time, session::Input& input);
@@ -27,13 +29,15 @@ class DeviceInput {
   core::Status Check() const;
 
  private:
-  DeviceInput() = default;
+  explicit DeviceInput(const session::Scene& scene) : hands_(scene) {}
 
   device::ManualClock simulated_;
   device::Clock* clock_ = nullptr;
   double start_ = 0;  // [s]
   std::unique_ptr<device::Driver> driver_;
-  std::array<device::HandSample, device::kChannelCount> samples_;
+  session::DeviceSamples samples_;
+  device::HandButtons buttons_;
+  session::DeviceHands hands_;
   session::Input held_;
   bool has_held_ = false;
   bool is_lost_ = false;

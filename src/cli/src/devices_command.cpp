@@ -24,7 +24,46 @@ namespace {
 constexpr const char* kSpecHelp =
     "Device, such as liberty:/dev/ttyUSB0 or fastrak:/dev/ttyS0,baud=19200+jaw:/dev/ttyACM0";
 
+constexpr const char* kButtonKinds[] = {"gamepad", "spacemouse", "haptics", "play"};
+constexpr const char* kHands[] = {"left", "right"};
+
+/// The acts of a hand's buttons up to the last that has one.
+std::vector<std::string> ActNames(const std::array<device::HandAct, device::kMostButtons>& acts) {
+  std::vector<std::string> names;
+  for (const device::HandAct act : acts) names.emplace_back(device::ActName(act));
+  while (!names.empty() && names.back() == device::ActName(device::HandAct::kNone)) names.pop_back();
+  return names;
+}
+
+/// What buttons and pedals do, as it could be written into the settings.
+nlohmann::ordered_json ButtonsJson(const device::DeviceStore& store) {
+  nlohmann::ordered_json json;
+  for (const char* kind : kButtonKinds) {
+    const device::ButtonMap map = store.Buttons(kind);
+    for (std::size_t hand = 0; hand < map.size(); ++hand) json[kind][kHands[hand]] = ActNames(map[hand]);
+  }
+  return json;
+}
+
+void PrintButtons(const device::DeviceStore& store) {
+  std::printf(
+      "\nButtons of each hand, from the first (change them in the settings file: docs/devices.md):\n");
+  std::vector<std::vector<std::string>> rows;
+  for (const char* kind : kButtonKinds) {
+    const device::ButtonMap map = store.Buttons(kind);
+    for (std::size_t hand = 0; hand < map.size(); ++hand) {
+      std::string acts;
+      for (const std::string& name : ActNames(map[hand])) acts += (acts.empty() ? "" : ", ") + name;
+      rows.push_back({std::string("  ") + kind, kHands[hand], acts.empty() ? "nothing" : acts});
+    }
+  }
+  for (const auto& [key, act] : store.keys)
+    rows.push_back({"  key " + key, "chosen", std::string(device::ActName(act))});
+  std::fputs(FormatTable(rows).c_str(), stdout);
+}
+
 void List(bool is_json) {
+  const device::DeviceStore store = LoadStoreOrWarn();
   const std::vector<device::FoundDevice> found = device::ListDevices();
   if (is_json) {
     nlohmann::ordered_json json = {{"devices", nlohmann::ordered_json::array()},
@@ -33,6 +72,8 @@ void List(bool is_json) {
       json["devices"].push_back({{"device", one.spec}, {"description", one.description}});
     for (const device::DeviceKind& kind : device::DeviceKinds())
       json["kinds"].push_back({{"name", kind.name}, {"address", kind.address}, {"description", kind.text}});
+    json["buttons"] = ButtonsJson(store);
+    json["settings"] = device::FindDeviceStore().string();
     std::printf("%s\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
     return;
   }
@@ -45,6 +86,7 @@ void List(bool is_json) {
   for (const device::DeviceKind& kind : device::DeviceKinds())
     rows.push_back({"  " + std::string(kind.name), std::string(kind.address), std::string(kind.text)});
   std::fputs(FormatTable(rows).c_str(), stdout);
+  PrintButtons(store);
   std::printf("\nHaptic devices (--haptics): %s\n", device::ListForceDrivers().c_str());
   std::printf("Settings and calibrations: %s\n", device::FindDeviceStore().c_str());
 }

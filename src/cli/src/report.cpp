@@ -138,6 +138,14 @@ std::string FormatFacts(const ReportContent& content) {
          fact("Where the patient comes from", content.provenance) + "</dl>\n";
 }
 
+std::string FormatHaptics(const ReportContent& content) {
+  if (content.haptics.empty()) return "<p>No haptic device took part.</p>\n";
+  std::string html = "<dl>\n";
+  for (const auto& [what, how] : content.haptics)
+    html += "<dt>" + EscapeMarkup(what) + "</dt><dd>" + EscapeMarkup(how) + "</dd>\n";
+  return html + "</dl>\n";
+}
+
 }  // namespace
 
 std::string EncodeBase64(std::string_view bytes) {
@@ -182,6 +190,7 @@ core::Result<std::string> FormatReportPage(const ReportContent& content) {
       "<p>All numbers: <a href=\"metrics.json\">metrics.json</a>. A dash stands where a measure has no "
       "meaning for "
       "this recording.</p>\n";
+  html += "<h2>Force feedback</h2>\n" + FormatHaptics(content);
   html += "<h2>What was played</h2>\n" + FormatFacts(content);
   return html + "</body>\n</html>\n";
 }

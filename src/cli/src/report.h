@@ -35,8 +35,9 @@ struct ReportContent {
   std::string version;      ///< of the program
   std::string video;        ///< file name beside the page; empty: none
   std::vector<ReportPicture> pictures;
-  std::string metrics_json;   ///< of training::FormatMetricsJson
-  std::vector<double> times;  ///< (samples) [s]
+  std::string metrics_json;                         ///< of training::FormatMetricsJson
+  std::vector<std::array<std::string, 2>> haptics;  ///< of session::DescribeSummary; empty: none took part
+  std::vector<double> times;                        ///< (samples) [s]
   std::vector<ReportHand> hands;
 };
 

@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -15,6 +16,7 @@
 #include "command.h"
 #include "console.h"
 #include "device_input.h"
+#include "haptic_input.h"
 #include "igtl_option.h"
 #include "trocar/core/clock.h"
 #include "trocar/core/log.h"
@@ -29,7 +31,8 @@ struct SimulateOptions {
   std::string scene;
   std::string patient;  // in place of the scene's
   std::string device;   // in place of the script's hands
-  int igtl_port = -1;   // -1: nobody looks on
+  HapticOptions haptics;
+  int igtl_port = -1;  // -1: nobody looks on
   int ticks = 0;
   std::uint64_t seed = 0;
   bool has_seed = false;
@@ -51,6 +54,7 @@ struct SimulateReport {
   double tick_p99_ms = 0;
   double max_force_n = 0;  // largest reaction on either instrument in any tick
   std::string gpu;         // name; or why it was not used to the end
+  std::optional<session::HapticSummary> haptics;
 };
 
 std::string FormatHash(std::uint64_t hash) {
@@ -89,6 +93,13 @@ core::Result<SimulateReport> Simulate(const SimulateOptions& options) {
     server = std::move(*listening);
   }
 
+  std::unique_ptr<HapticInput> haptics;
+  if (!options.haptics.name.empty()) {
+    auto opened = HapticInput::Open(options.haptics, simulation);
+    if (!opened) return opened.error();
+    haptics = std::move(*opened);
+  }
+
   const auto count = static_cast<std::size_t>(options.ticks);
   std::array<std::vector<double>, session::kStageCount> stage_ms;
   for (auto& times : stage_ms) times.reserve(count);
@@ -99,8 +110,10 @@ core::Result<SimulateReport> Simulate(const SimulateOptions& options) {
   for (int tick = 0; tick < options.ticks; ++tick) {
     session::Input input = session::CalcScriptInput(*scene, simulation.GetSnapshot().time);
     if (device != nullptr) device->Apply(simulation.GetSnapshot().time, input);
+    if (haptics != nullptr) haptics->Apply(simulation.GetSnapshot().time, input);
     const core::Stopwatch stopwatch;
     simulation.Step(input);
+    if (haptics != nullptr) haptics->AfterStep(simulation);
     tick_ms.push_back(1e3 * stopwatch.Seconds());
     const session::Snapshot& snapshot = simulation.GetSnapshot();
     for (std::size_t i = 0; i < stage_ms.size(); ++i) stage_ms[i].push_back(1e3 * snapshot.stage_seconds[i]);
@@ -126,6 +139,10 @@ core::Result<SimulateReport> Simulate(const SimulateOptions& options) {
                              core::CalcPercentile(times, 0.5), core::CalcPercentile(times, 0.99)});
   }
   report.tick_p99_ms = core::CalcPercentile(tick_ms, 0.99);
+  if (haptics != nullptr) {
+    report.haptics = haptics->Record().CalcSummary();
+    if (const core::Status saved = haptics->SaveRecord(); !saved) return saved.error();
+  }
   return report;
 }
 
@@ -140,6 +157,10 @@ void PrintJson(const SimulateReport& report) {
   json["tick_p99_ms"] = report.tick_p99_ms;
   json["max_force_n"] = report.max_force_n;
   if (!report.gpu.empty()) json["gpu"] = report.gpu;
+  if (report.haptics) {
+    const std::string summary = session::FormatSummaryJson(*report.haptics);
+    json["haptics"] = nlohmann::ordered_json::parse(summary, nullptr, false);
+  }
   std::printf("%s\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
 }
 
@@ -153,6 +174,10 @@ void PrintForPerson(const SimulateReport& report) {
   if (!report.gpu.empty()) std::printf("\nGPU: %s\n", report.gpu.c_str());
   std::printf("\n%llu ticks, state hash %s\n", static_cast<unsigned long long>(report.ticks),
               report.hash.c_str());
+  if (report.haptics) {
+    for (const auto& [what, how] : session::DescribeSummary(*report.haptics))
+      std::printf("%s: %s\n", what.c_str(), how.c_str());
+  }
   std::printf("residual after the last tick %s, largest force on an instrument %s N\n",
               FormatNumber(report.residual).c_str(), FormatNumber(report.max_force_n).c_str());
 }
@@ -183,6 +208,7 @@ void AddSimulateCommand(CLI::App& app, Outcome& outcome) {
                    "Hands of a device in place of the script's; play:FILE repeats a recording bit for bit")
       ->type_name("DEVICE");
   AddIgtlOption(*command, options->igtl_port);
+  AddHapticOptions(*command, options->haptics);
   command->add_flag("--gpu", options->uses_gpu,
                     "Solve on the GPU (single precision, so another hash); without one the processor does");
   command->add_flag("--json", options->is_json, "Machine-readable");

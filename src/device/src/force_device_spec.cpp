@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "trocar/device/companion.h"
 #include "trocar/device/haply.h"
 #include "trocar/device/open_haptics.h"
 #include "trocar/device/simulated_force_device.h"
@@ -22,9 +23,30 @@ std::string_view TakePart(std::string_view& text, char mark) {
   return part;
 }
 
+/// \param is_held  somebody answers the check pose, one hand after the other, and then holds the safety switches
+std::unique_ptr<ForceDriver> MakeSimulated(bool is_held) {
+  constexpr double kAnswered = 3.0;  // from then on the hands move [s]
+  SimulatedForceSettings settings;
+  settings.channel_count = 2;
+  settings.path = [is_held](int channel, double time) {
+    const double moved = is_held ? std::max(0.0, time - kAnswered) : time;
+    const double side = channel == 0 ? -1.0 : 1.0;
+    return math::Vec3{0.010 * side * std::sin(0.9 * moved), 0.006 * std::sin(0.7 * moved),
+                      -0.015 * (1.0 - std::cos(0.5 * moved))};
+  };
+  if (is_held) {
+    settings.buttons = [](int channel, double time) -> std::uint32_t {
+      const double begin = channel == 0 ? 0.8 : 1.8;
+      return time > kAnswered || (time > begin && time < begin + 0.8) ? 1u : 0u;
+    };
+  }
+  return std::make_unique<SimulatedForceDevice>(settings);
+}
+
 /// "Left,Right": the names that the maker's program gave to the devices.
 std::unique_ptr<ForceDriver> MakeOpenHaptics(std::string_view names) {
   OpenHapticsSettings settings;
+  settings.host = Companion::Find("trocar-supervisor");
   if (!names.empty()) settings.names.clear();
   while (!names.empty()) settings.names.emplace_back(TakePart(names, ','));
   return std::make_unique<OpenHaptics>(settings);
@@ -48,20 +70,11 @@ core::Result<std::unique_ptr<ForceDriver>> MakeHaply(std::string_view text) {
 }  // namespace
 
 std::string ListForceDrivers() {
-  return "simulated, openhaptics[:NAME[,NAME]], haply[:COUNT[:PORT]]";
+  return "simulated[:held], openhaptics[:NAME[,NAME]], haply[:COUNT[:PORT]]";
 }
 
 core::Result<std::unique_ptr<ForceDriver>> MakeForceDriver(std::string_view text) {
-  if (text == "simulated") {
-    SimulatedForceSettings settings;
-    settings.channel_count = 2;
-    settings.path = [](int channel, double time) {
-      const double side = channel == 0 ? -1.0 : 1.0;
-      return math::Vec3{0.010 * side * std::sin(0.9 * time), 0.006 * std::sin(0.7 * time),
-                        -0.015 * (1.0 - std::cos(0.5 * time))};
-    };
-    return std::unique_ptr<ForceDriver>(std::make_unique<SimulatedForceDevice>(settings));
-  }
+  if (text == "simulated" || text == "simulated:held") return MakeSimulated(text != "simulated");
   std::string_view rest = text;
   const std::string_view kind = TakePart(rest, ':');
   if (kind == "openhaptics") return MakeOpenHaptics(rest);

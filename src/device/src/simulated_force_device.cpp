@@ -93,6 +93,7 @@ ReadStatus SimulatedForceDevice::DoReadForceSamples(std::span<ForceSample> sampl
     sample.velocity = {};
     sample.orientation = {};
     sample.buttons = buttons_[channel].load(std::memory_order_relaxed);
+    if (settings_.buttons) sample.buttons |= settings_.buttons(static_cast<int>(channel), time);
     sample.jaw = std::numeric_limits<double>::quiet_NaN();
     sample.temperature = std::numeric_limits<double>::quiet_NaN();
     sample.sequence = sequence_;

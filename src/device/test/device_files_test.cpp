@@ -37,6 +37,10 @@ DeviceStore MakeStore() {
   entry.hands[1].is_measured = true;
   store.trackers["fastrak"] = entry;
   store.jaws[0] = {812, 204, 0.9};
+  store.buttons["gamepad"] = DefaultButtons();
+  store.buttons["gamepad"][0][7] = HandAct::kRinse;
+  store.buttons["gamepad"][1].fill(HandAct::kNone);
+  store.keys = {{"F13", HandAct::kCut}, {"b", HandAct::kClutch}};
   return store;
 }
 
@@ -77,7 +81,8 @@ TEST_F(DeviceFilesTest, BadFileMeansDefaultsAndAMessageAndIsSetAside) {
   };
   for (const std::string& text :
        {replaced("\"version\": 1", "\"version\": 2"), replaced("\"baud\"", "\"bud\""),
-        replaced("812", "4096"), replaced("0.31234567890123", "1e300"),
+        replaced("\"gamepad\"", "\"gamepadd\""), replaced("\"rinse\"", "\"rinze\""),
+        replaced("\"clutch\"\n", "7\n"), replaced("812", "4096"), replaced("0.31234567890123", "1e300"),
         replaced("0.31234567890123", "\"far\"")}) {
     ASSERT_TRUE(core::WriteFile(path, text).ok());
     EXPECT_TRUE(LoadDeviceStore(path).complaint.has_value()) << text;
@@ -102,6 +107,7 @@ std::vector<HandFrame> MakeFrames() {
     frame.time = i / 30.0;
     frame.hands = CalcHandMotion(frame.time);
     frame.hands[kLaparoscope].is_valid = i % 2 == 0;
+    frame.hands[kLeftHand].buttons = i % 3 == 0 ? 0xffffffff : static_cast<std::uint32_t>(i);
     frames.push_back(frame);
   }
   return frames;
@@ -112,6 +118,32 @@ TEST(HandRecording, GivesTheSameBitsBack) {
   const auto read = ParseHandFrames(FormatHandFrames(frames), "test");
   ASSERT_TRUE(read.ok()) << read.error().Text();
   EXPECT_EQ(*read, frames);
+}
+
+// recordings of earlier versions
+TEST(HandRecording, ReadsAFileWithoutButtons) {
+  const std::string old =
+      "time_s,left_seen,left_pan_rad,left_tilt_rad,left_spin_rad,left_depth_m,left_jaw_rad,right_seen,right_"
+      "pan_rad,"
+      "right_tilt_rad,right_spin_rad,right_depth_m,right_jaw_rad,laparoscope_seen,laparoscope_pan_rad,"
+      "laparoscope_tilt_rad,laparoscope_spin_rad,laparoscope_depth_m,laparoscope_jaw_rad\n"
+      "0.5,1,0.1,0.2,0.3,0.15,0.5,0,0,0,0,0.1,0,1,0.4,0,0,0.12,0\n";
+  const auto read = ParseHandFrames(old, "old");
+  ASSERT_TRUE(read.ok()) << read.error().Text();
+  EXPECT_EQ(read->front().hands[kLeftHand], (HandSample{0.1, 0.2, 0.3, 0.15, 0.5, 0.5, true}));
+  EXPECT_EQ(read->front().hands[kLaparoscope].pan, 0.4);
+}
+
+TEST(HandRecording, RefusesButtonsThatAreNone) {
+  std::vector<HandFrame> frames(1);
+  frames[0].hands[kLaparoscope].buttons = 77;
+  const std::string good = FormatHandFrames(frames);
+  ASSERT_TRUE(ParseHandFrames(good, "x").ok());
+  for (const char* buttons : {"-1", "0.5", "4294967296", "1e300"}) {
+    std::string bad = good;
+    bad.replace(bad.rfind("77"), 2, buttons);
+    EXPECT_FALSE(ParseHandFrames(bad, "x").ok()) << buttons;
+  }
 }
 
 TEST(HandRecording, RefusesDamageWithTheLine) {

@@ -75,6 +75,18 @@ TEST_F(GamepadTest, ShoulderTurnsTheStickIntoDepthAndSpin) {
   EXPECT_EQ(samples_[kLeftHand].depth, HandLimits{}.max_depth);
 }
 
+TEST_F(GamepadTest, ButtonsAreTheirHandsAndGoneWithTheGamepad) {
+  state_.sides[0].buttons = 2;
+  state_.sides[1].buttons = 33;
+  Hold(0.02);
+  EXPECT_EQ(samples_[kLeftHand].buttons, 2u);
+  EXPECT_EQ(samples_[kRightHand].buttons, 33u);
+  is_gone_ = true;
+  Hold(0.01);
+  EXPECT_EQ(status_, ReadStatus::kLost);
+  EXPECT_FALSE(samples_[kRightHand].is_valid) << "what HandButtons lets go of";
+}
+
 TEST_F(GamepadTest, TriggerClosesTheJaws) {
   EXPECT_EQ(samples_[kRightHand].jaw, HandLimits{}.max_jaw);
   state_.sides[1].trigger = 0.25;
@@ -127,12 +139,17 @@ TEST(SdlGamepad, ReadsAVirtualGamepad) {
   SDL_JoystickSetVirtualAxis(joystick, SDL_CONTROLLER_AXIS_RIGHTX, 32767);
   SDL_JoystickSetVirtualAxis(joystick, SDL_CONTROLLER_AXIS_LEFTY, -16384);
   SDL_JoystickSetVirtualButton(joystick, SDL_CONTROLLER_BUTTON_LEFTSHOULDER, 1);
+  SDL_JoystickSetVirtualButton(joystick, SDL_CONTROLLER_BUTTON_B, 1);
+  SDL_JoystickSetVirtualButton(joystick, SDL_CONTROLLER_BUTTON_START, 1);
+  SDL_JoystickSetVirtualButton(joystick, SDL_CONTROLLER_BUTTON_DPAD_DOWN, 1);
   GamepadState state;
   ASSERT_TRUE(source->Poll(state));
   EXPECT_NEAR(state.sides[1].x, 1.0, 1e-3);
   EXPECT_NEAR(state.sides[0].y, -0.5, 1e-3);
   EXPECT_TRUE(state.sides[0].is_shoulder_down);
   EXPECT_FALSE(state.sides[1].is_shoulder_down);
+  EXPECT_EQ(state.sides[0].buttons, 1u);
+  EXPECT_EQ(state.sides[1].buttons, 2u | 32u);
   EXPECT_FALSE(ListGamepads().empty());
   SDL_JoystickClose(joystick);
   SDL_JoystickDetachVirtual(index);
@@ -152,6 +169,23 @@ struct FakeCap : SpaceMouseSource {
   void Close() noexcept override {}
   SpaceMouseState& state;
 };
+
+TEST(SpaceMouse, FurtherButtonsAreThoseOfTheChosenHand) {
+  SpaceMouseState state;
+  ManualClock clock;
+  SpaceMouse mouse(std::make_unique<FakeCap>(state), clock);
+  ASSERT_TRUE(mouse.Configure().ok());
+  ASSERT_TRUE(mouse.Activate().ok());
+  HandSamples samples;
+  state.more_buttons = 5;
+  mouse.Read(samples);
+  EXPECT_EQ(samples[kRightHand].buttons, 5u);
+  EXPECT_EQ(samples[kLeftHand].buttons, 0u);
+  state.is_button_down[1] = true;
+  mouse.Read(samples);
+  EXPECT_EQ(samples[kRightHand].buttons, 0u) << "the pedal does not stay with the hand that was left";
+  EXPECT_EQ(samples[kLeftHand].buttons, 5u);
+}
 
 TEST(SpaceMouse, MovesTheChosenHandAndChangesHands) {
   SpaceMouseState state;

@@ -69,6 +69,9 @@ TEST(Spacenav, ReadsMotionAndButtonsAndNoticesTheEnd) {
   std::filesystem::remove(path);
   if (!opened) GTEST_SKIP() << "this libspnav asks no SPNAV_SOCKET: " << opened.error().Text();
   daemon.Send({0, 100, 20, 300, 4, 50, 6, 16});
+  daemon.Send({1, 4, 0, 0, 0, 0, 0, 0});
+  daemon.Send({1, 2, 0, 0, 0, 0, 0, 0});
+  daemon.Send({2, 2, 0, 0, 0, 0, 0, 0});
   daemon.Send({1, 1, 0, 0, 0, 0, 0, 0});
   SpaceMouseState state;
   for (int i = 0; i < 100 && !state.is_button_down[1]; ++i) {
@@ -80,6 +83,7 @@ TEST(Spacenav, ReadsMotionAndButtonsAndNoticesTheEnd) {
   EXPECT_EQ(state.push[2], -300) << "the daemon's z points away from the person";
   EXPECT_EQ(state.turn[1], 50);
   EXPECT_TRUE(state.is_button_down[1]);
+  EXPECT_EQ(state.more_buttons, 4u) << "the fifth is down, the third was let go";
   daemon.HangUp();
   bool is_there = true;
   for (int i = 0; i < 100 && is_there; ++i) {

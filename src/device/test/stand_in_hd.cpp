@@ -1,11 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file stand_in_hd.cpp  Takes the place of the maker's libHD in tests: two devices, one scheduler thread of about 1 kHz,
 /// errors on demand. Built as a library of its own and loaded by name.
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
 #include <array>
 #include <atomic>
 #include <chrono>
+#include <cstdlib>
 #include <cstring>
 #include <thread>
+
+#include "stand_in_hd.h"
 
 #define STAND_IN extern "C" __attribute__((visibility("default")))
 
@@ -17,9 +24,23 @@ struct ErrorInfo {
   unsigned int device;
 };
 
-std::atomic<unsigned int> pending_error{0};
-std::atomic<int> devices{0}, open_frames{0}, misuses{0}, callbacks{0}, drops{0};
-std::array<std::array<std::atomic<double>, 3>, 2> forces;
+/// In a file that the test reads, too, where the library lives in another process.
+StandInState& FindState() {
+  static StandInState own;
+  const char* path = std::getenv(kStandInPage);
+  if (path == nullptr) return own;
+  const int file = ::open(path, O_RDWR | O_CLOEXEC);
+  void* memory = ::mmap(nullptr, sizeof(StandInState), PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
+  ::close(file);
+  return memory == MAP_FAILED ? own : *static_cast<StandInState*>(memory);
+}
+StandInState& state = FindState();
+
+std::atomic<int> open_frames{0}, callbacks{0}, drops{0};
+auto& pending_error = state.pending_error;
+auto& devices = state.devices;
+auto& misuses = state.misuses;
+auto& forces = state.forces;
 std::array<std::atomic<bool>, 2> is_pushing;
 std::atomic<unsigned int> current{0};
 std::atomic<bool> is_running{false};
@@ -58,6 +79,7 @@ STAND_IN unsigned int hdInitDevice(const char* name) {
     return 0xffffffff;
   }
   const int number = devices++;
+  state.process = ::getpid();
   for (auto& part : forces[static_cast<std::size_t>(number)]) part = 0;
   return static_cast<unsigned int>(number);
 }

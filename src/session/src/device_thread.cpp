@@ -13,25 +13,11 @@
 namespace trocar::session {
 namespace {
 
-using device::HandSample;
-
 constexpr double kReadPeriod = 0.002;  // [s]
 constexpr double kRetryPeriod = 0.5;   // [s]
 constexpr double kNap = 0.02;          // longest wait that a stop has to bear [s]
 
-instrument::TrocarJoints JointsOf(const HandSample& sample) noexcept {
-  return {sample.pan, sample.tilt, sample.spin, sample.depth, sample.jaw};
-}
-
 }  // namespace
-
-void ApplyHands(const std::array<HandSample, device::kChannelCount>& samples, Input& input) noexcept {
-  for (const device::Channel hand : {device::kLeftHand, device::kRightHand}) {
-    if (samples[hand].is_valid && IsFinite(samples[hand])) input.hands[hand] = JointsOf(samples[hand]);
-  }
-  const HandSample& laparoscope = samples[device::kLaparoscope];
-  if (laparoscope.is_valid && IsFinite(laparoscope)) input.laparoscope = JointsOf(laparoscope);
-}
 
 void PlaceAtHome(const Scene& scene, device::Driver& driver) noexcept {
   const std::array<instrument::TrocarJoints, device::kChannelCount> homes = {
@@ -46,6 +32,7 @@ struct DeviceThread::Content {
   std::unique_ptr<device::Driver> driver;
   const device::PoseDriver* tracker = nullptr;  // what of the driver can be calibrated
   const device::JawSensor* jaws = nullptr;
+  device::HandButtons buttons;
   core::NewestSlot<DeviceReport> slot;
   DeviceReport report;
   std::atomic<bool> is_stopping{false};
@@ -112,17 +99,25 @@ void DeviceThread::Content::Run() {
       Nap(kRetryPeriod);
       continue;
     }
-    switch (driver->Read(report.samples)) {
+    const device::ReadStatus status = driver->Read(report.samples);
+    const bool is_read = status == device::ReadStatus::kFresh || status == device::ReadStatus::kUnchanged;
+    const bool is_fresh = status == device::ReadStatus::kFresh;
+    // a button's time passes also where the device says nothing new
+    const bool has_acted = is_read && buttons.See(report.samples, device::SystemClock().Now());
+    switch (status) {
       case device::ReadStatus::kFresh:
-        ++report.reads;
+      case device::ReadStatus::kUnchanged:
+        if (!is_fresh && !has_acted) break;
+        report.reads += is_fresh ? 1 : 0;
+        report.acts = buttons.Acts();
         TakeParts();
         Publish();
-        break;
-      case device::ReadStatus::kUnchanged:
         break;
       case device::ReadStatus::kNotActive:
       case device::ReadStatus::kLost:
         ++report.losses;
+        buttons.ReleaseAll();
+        report.acts = buttons.Acts();
         report.sensors = {};
         report.raw_jaws = {};
         Say(DeviceReport::Phase::kLost,
@@ -136,7 +131,9 @@ void DeviceThread::Content::Run() {
   driver->Finalize();
 }
 
-DeviceThread::DeviceThread(std::unique_ptr<device::Driver> driver) : content_(std::make_unique<Content>()) {
+DeviceThread::DeviceThread(std::unique_ptr<device::Driver> driver, const device::ButtonMap& buttons)
+    : content_(std::make_unique<Content>()) {
+  content_->buttons = device::HandButtons(buttons);
   content_->driver = std::move(driver);
   content_->FindParts(*content_->driver);
   content_->report.message = content_->driver->GetName() + " is being connected";

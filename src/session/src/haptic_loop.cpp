@@ -127,6 +127,7 @@ void HapticLoop::Content::Run() noexcept {
       told.period_p999 = periods.CalcPercentile(0.999);
       told.period_max = periods.Longest();
       told.cpu_p999 = cpu.CalcPercentile(0.999);
+      told.cpu_max = cpu.Longest();
       periods.Clear(), cpu.Clear();
       second_start = start;
     }
@@ -136,6 +137,7 @@ void HapticLoop::Content::Run() noexcept {
       next.rate = told.rate;
       next.period_p50 = told.period_p50, next.period_p999 = told.period_p999;
       next.period_max = told.period_max, next.cpu_p999 = told.cpu_p999;
+      next.cpu_max = told.cpu_max;
       next.is_real_time = is_real_time;
       status.Publish();
       last_told = start;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trocar/session/haptic_record.h"
 
+#include <algorithm>
 #include <cstdio>
 
 namespace trocar::session {
@@ -71,6 +72,58 @@ void HapticRecord::NoteHand(double time, int hand, const HapticHandStatus& befor
   if (bad > bad_before) Note(time, HapticEventKind::kBadSamples, hand, Fault::kNone, bad - bad_before);
 }
 
+/// Adds what cannot be told from the first and the last status alone.
+void HapticRecord::Sum(double time, const HapticStatus& status) {
+  if (!has_last_) {
+    first_ = status;
+    first_time_ = last_time_ = time;
+  }
+  const double passed = time - last_time_;
+  last_time_ = time;
+  summary_.period_max = std::max(summary_.period_max, status.period_max);
+  summary_.cpu_max = std::max(summary_.cpu_max, status.cpu_max);
+  const bool has_rate = status.rate > 0;  // from the end of the first second on
+  if (has_rate && (summary_.lowest_rate == 0 || status.rate < summary_.lowest_rate))
+    summary_.lowest_rate = status.rate;
+  for (int hand = 0; hand < kHandCount; ++hand) {
+    const HapticHandStatus& now = status.hands[hand];
+    HapticHandSummary& sum = summary_.hands[hand];
+    sum.max_heat = std::max(sum.max_heat, now.heat);
+    if (now.is_warm && !(has_last_ && last_.hands[hand].is_warm)) ++sum.times_warm;
+    const bool was_lost = has_last_ && last_.hands[hand].reason == Fault::kDeviceLost;
+    if (now.is_present && now.reason == Fault::kDeviceLost && !was_lost) ++sum.times_lost;
+    if (now.state == ArmState::kUnarmed) off_time_[hand][static_cast<std::size_t>(now.reason)] += passed;
+  }
+}
+
+HapticSummary HapticRecord::CalcSummary() const {
+  HapticSummary summary = summary_;
+  if (!has_last_) return summary;
+  summary.seconds = last_time_ - first_time_;
+  summary.ticks = last_.ticks;
+  summary.late_ticks = last_.late_ticks;
+  summary.overruns = last_.overruns;
+  const auto ticks = static_cast<double>(last_.ticks - first_.ticks);
+  if (summary.seconds > 0) summary.rate = ticks / summary.seconds;
+  summary.is_real_time = last_.is_real_time;
+  summary.is_supervised = last_.is_supervised;
+  for (int hand = 0; hand < kHandCount; ++hand) {
+    const HapticHandStatus& last = last_.hands[hand];
+    HapticHandSummary& sum = summary.hands[hand];
+    sum.is_present = last.is_present;
+    const auto armed = static_cast<double>(last.armed_ticks - first_.hands[hand].armed_ticks);
+    if (ticks > 0) sum.armed_time = armed / ticks * summary.seconds;
+    sum.clamped_ticks = last.clamped_ticks;
+    sum.max_force = last.max_force;
+    sum.bad_samples = last.counts.bad;
+    sum.jumps = last.counts.jumps;
+    sum.last_reason = last.state == ArmState::kUnarmed ? last.reason : Fault::kNone;
+    const auto longest = std::max_element(off_time_[hand].begin(), off_time_[hand].end());
+    if (*longest > 0) sum.longest_reason = static_cast<Fault>(longest - off_time_[hand].begin());
+  }
+  return summary;
+}
+
 void HapticRecord::Add(double time, const HapticStatus& status) {
   if (has_last_ && status.ticks == last_.ticks) return;
   if (!has_last_) last_.is_supervised = status.is_supervised;
@@ -84,6 +137,7 @@ void HapticRecord::Add(double time, const HapticStatus& status) {
     Note(time, status.is_supervised ? HapticEventKind::kWatched : HapticEventKind::kUnwatched, -1);
   if (status.overruns > last_.overruns)
     Note(time, HapticEventKind::kOverrun, -1, Fault::kOverrun, status.overruns - last_.overruns);
+  Sum(time, status);
   last_ = status;
   has_last_ = true;
   constexpr double kRounding = 1e-6;  // of times that are sums [s]
@@ -137,7 +191,10 @@ std::string HapticRecord::FormatJson() const {
     json += "}";
   }
   Append(json, "],\n \"events_left_out\": %llu", static_cast<unsigned long long>(left_out_));
-  if (has_last_) json += ",\n \"last\": " + FormatHapticsJson(last_);
+  if (has_last_) {
+    json += ",\n \"last\": " + FormatHapticsJson(last_);
+    json += ",\n \"summary\": " + FormatSummaryJson(CalcSummary());
+  }
   return json + "}\n";
 }
 

@@ -80,6 +80,24 @@ std::string FormatHapticsJson(const HapticStatus& status) {
   return json + "}";
 }
 
+core::Result<HapticLoopSettings> MakeHapticSettings(const device::ForceDriver& driver, const Scene& scene,
+                                                    const Pose& X_world_laparoscope,
+                                                    const device::ButtonMap& buttons) {
+  const int channels = driver.GetChannelCount();
+  if (channels > kHandCount) {
+    return core::Error{core::ErrorCode::kDeviceSettings,
+                       driver.GetName() + " has more channels than a person has hands"};
+  }
+  HapticLoopSettings settings;
+  settings.supervisor = SupervisorLink::FindProgram();
+  settings.buttons = buttons;
+  for (int channel = 0; channel < channels; ++channel) {
+    const Hand hand = channels == 1 || channel == 1 ? kRight : kLeft;
+    settings.hands.push_back(MakeHapticHand(scene, X_world_laparoscope, hand));
+  }
+  return settings;
+}
+
 HapticHand MakeHapticHand(const Scene& scene, const Pose& X_world_laparoscope, Hand hand, double scale) {
   const InstrumentSetup& setup = scene.instruments[hand];
   HapticHand made;

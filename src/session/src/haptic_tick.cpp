@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "haptic_tick.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "trocar/core/assert.h"
@@ -32,7 +33,8 @@ HapticTick::HapticTick(device::ForceDriver& driver, const HapticLoopSettings& se
       settings_(settings),
       link_(link),
       check_pose_(MakeCheckPose(settings.hands)),
-      loop_guard_(MakeLoopGuard(settings.period)) {
+      loop_guard_(MakeLoopGuard(settings.period)),
+      buttons_(settings.buttons) {
   TROCAR_ASSERT(static_cast<int>(settings.hands.size()) == driver.GetChannelCount());
   for (std::size_t c = 0; c < settings.hands.size(); ++c) {
     haptics::ChannelSettings channel;
@@ -67,13 +69,19 @@ void HapticTick::Publish(std::size_t channel, const haptics::ChannelOutput& outp
     hands_.joints[hand.hand] = instrument::FindJoints(hand.p_world_port, output.local.p_world_tool,
                                                       CalcSpin(device.orientation), jaw);
   }
+  hands_.acts[hand.hand] = buttons_.Acts()[hand.hand];
   HapticHandStatus& status = status_.hands[hand.hand];
+  status.acts = buttons_.Acts()[hand.hand];
   status.state = output.gate.state;
   status.reason = output.gate.reason;
   status.limits = output.gate.limits;
   status.force = math::Norm(output.gate.force.Get());
+  status.max_force = std::max(status.max_force, status.force);
+  if (status.state != haptics::ArmState::kUnarmed) ++status.armed_ticks;
+  if ((status.limits & haptics::kClamped) != 0) ++status.clamped_ticks;
   status.heat = output.gate.heat;
   status.is_warm = device.is_warm || (output.gate.limits & haptics::kHeatLimited) != 0;
+  status.is_switch_held = (device.buttons & hand.dead_man_mask) != 0;
   status.counts = channels_[channel].GetCounts();
 }
 
@@ -93,6 +101,8 @@ void HapticTick::Run(const HapticTickInput& input) noexcept {
     if (patches.Update()) channels_[c].TakePatch(patches.Front(), input.now);
     const haptics::ChannelOutput output = channels_[c].Act(FindHandPose(c), timing, conditions, input.now);
     driver_.SendForce(static_cast<int>(c), output.gate.force);
+    buttons_.See(settings_.hands[c].hand, devices_[c].fault == haptics::Fault::kNone,
+                 devices_[c].buttons >> device::kStylusOwnButtons, input.now);
     Publish(c, output);
   }
   link_.hands.Back() = hands_;

@@ -42,6 +42,7 @@ class HapticTick {
   std::vector<haptics::GuardedDevice> devices_;
   haptics::CheckPose check_pose_;
   haptics::LoopGuard loop_guard_;
+  device::HandButtons buttons_;
   HapticHands hands_;
   HapticStatus status_;
 };

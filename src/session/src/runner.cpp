@@ -47,6 +47,7 @@ struct Runner::Content {
 
   Simulation simulation;
   HapticLink* haptics;
+  HapticHandsReader haptic_hands;
   core::NewestSlot<Input> input_slot;
   core::NewestSlot<Snapshot> snapshot_slot;
   std::atomic<bool> is_stopping{false}, is_paused{true}, is_scripted{false};
@@ -84,14 +85,6 @@ struct Runner::Content {
     snapshot_slot.Back() = simulation.GetSnapshot();
     snapshot_slot.Publish();
   }
-  void TakeHapticHands(Input& input) {
-    if (haptics == nullptr || !haptics->is_used.load(std::memory_order_relaxed)) return;
-    haptics->hands.Update();
-    const HapticHands& hands = haptics->hands.Front();
-    for (int hand = 0; hand < kHandCount; ++hand) {
-      if (hands.is_driven[hand]) input.hands[hand] = hands.joints[hand];
-    }
-  }
   void PublishPatches() {
     if (haptics == nullptr || !haptics->is_used.load(std::memory_order_relaxed)) return;
     for (const Hand hand : {kLeft, kRight}) {
@@ -125,7 +118,7 @@ void Runner::Content::Run() {
       if (is_scripted.load(std::memory_order_relaxed)) now = CalcScripted(input);
       // while the script moves the tools, nothing of theirs may be felt
       const bool is_felt = !is_scripted.load(std::memory_order_relaxed);
-      if (is_felt) TakeHapticHands(now);
+      if (is_felt && haptics != nullptr) haptic_hands.Take(*haptics, now);
       simulation.Step(now);
       if (is_felt) PublishPatches();
       Publish();

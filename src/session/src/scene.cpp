@@ -85,10 +85,16 @@ void ReadOperation(const core::JsonView& root, const anatomy::Patient& patient, 
   scene.operation = std::move(setup);
 }
 
-void ReadLaparoscope(const core::JsonView& root, const anatomy::Patient& patient, LaparoscopeSetup& setup) {
+void ReadLaparoscope(const core::JsonView& root, const anatomy::Patient& patient, LaparoscopeSetup& setup,
+                     LiveSettings& settings) {
   const core::JsonView view = root.Object("laparoscope");
-  view.AllowOnly(
-      {"port_mm", "target", "depth_mm", "view_angle_deg", "post_deg", "field_of_view_deg", "look_at_target"});
+  view.AllowOnly({"port_mm", "target", "depth_mm", "view_angle_deg", "post_deg", "field_of_view_deg",
+                  "look_at_target", "holder"});
+  const std::string holder = view.TextOr("holder", "trainee");
+  if (holder != "trainee" && holder != "automatic")
+    view.Complain("holder must be trainee or automatic, not \"" + holder + "\"",
+                  core::ErrorCode::kUnknownName);
+  settings.holds_camera = holder == "automatic";
   setup.p_world_port = ReadPointMm(view, "port_mm");
   setup.home = instrument::FindJoints(setup.p_world_port, ReadTarget(view, "target", patient),
                                       view.NumberOr("post_deg", 0.0) * kDegree, 0.0);
@@ -173,7 +179,7 @@ core::Result<Scene> ReadSceneFields(const core::JsonDocument& document, const co
   view.Object("instruments").AllowOnly({"left", "right"});
   ReadInstrument(view, "left", scene.patient, scene.instruments[kLeft]);
   ReadInstrument(view, "right", scene.patient, scene.instruments[kRight]);
-  ReadLaparoscope(view, scene.patient, scene.laparoscope);
+  ReadLaparoscope(view, scene.patient, scene.laparoscope, scene.settings);
   ReadOperation(view, scene.patient, scene);
   const std::string script = view.TextOr("script", "");
   if (const auto status = document.Check(); !status.ok()) return status.error();

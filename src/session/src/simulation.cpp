@@ -44,6 +44,7 @@ void Simulation::Content::Reset() {
   conservation->Reset();
   guard = std::make_unique<tissue::StateGuard>(tissue_model);
   const Input home = CalcScriptInput(*scene, 0.0);
+  camera_holder.Reset(home.laparoscope);
   for (int hand = 0; hand < kHandCount; ++hand) {
     joints[hand] = home.hands[hand];
     grasps[hand] = {};
@@ -293,6 +294,9 @@ std::uint64_t Simulation::Hash() const {
     for (const auto node : c.grasps[hand].Nodes()) hash.Add(std::uint64_t{node});
     const Vec3& force = c.forces[hand];
     hash.Add(force.x), hash.Add(force.y), hash.Add(force.z);
+  }
+  if (c.settings.holds_camera) {
+    for (const double joint : {c.laparoscope.pan, c.laparoscope.tilt, c.laparoscope.depth}) hash.Add(joint);
   }
   c.touch.AddTo(hash);
   if (c.operation != nullptr) c.operation->AddTo(hash);

@@ -7,6 +7,7 @@
 #include <memory>
 #include <vector>
 
+#include "camera_holder.h"
 #include "operation/operation.h"
 #include "patient_tissue.h"
 #include "rigid_stage.h"
@@ -55,6 +56,8 @@ struct Simulation::Content {
   std::unique_ptr<tissue::StateGuard> guard;
   RigidStage rigid;
   TaskMonitor monitor;
+  CameraHolder camera_holder;
+  instrument::TrocarJoints laparoscope;
 
   // scratch
   std::unique_ptr<tissue::EquilibriumSolver> solver;
@@ -83,6 +86,7 @@ struct Simulation::Content {
 
   void ReadInputs(const Input& input) noexcept;
   void MoveInstruments(const Input& input) noexcept;
+  void MoveLaparoscope(const Input& input) noexcept;
   ToolsNow GetTools() const noexcept;
   void FindContacts() noexcept;
   void ActOnTissue() noexcept;

@@ -12,6 +12,8 @@ namespace {
 /// No hand is faster; a device that jumps is slowed to this (faults D5) [m/s], [rad/s].
 constexpr double kMaxTipSpeed = 2.0;
 constexpr double kMaxTurnRate = 20.0;
+/// A tool this deep has been pushed in, and is followed by the laparoscope [m].
+constexpr double kPushedIn = 0.04;
 
 /// Gravity in the patient's frame when the table is tilted [m/s^2].
 Vec3 CalcGravity(const LiveSettings& settings) noexcept {
@@ -41,6 +43,22 @@ void Simulation::Content::MoveInstruments(const Input& input) noexcept {
         instrument::LimitSpeed(joints[hand], wanted, kMaxTipSpeed, kMaxTurnRate, scene->tick_seconds);
     joints[hand].jaw = rigid.StopJaw(hand, joints[hand].jaw);
   }
+}
+
+void Simulation::Content::MoveLaparoscope(const Input& input) noexcept {
+  if (!settings.holds_camera) {
+    instrument::JointLimits limits;
+    limits.min_depth = 0.01;
+    laparoscope = instrument::ClampJoints(input.laparoscope, limits);
+    camera_holder.Reset(laparoscope);
+    return;
+  }
+  std::array<Vec3, kHandCount> tips;
+  std::size_t count = 0;
+  for (int hand = 0; hand < kHandCount; ++hand) {
+    if (joints[hand].depth > kPushedIn) tips[count++] = touch.Proxy(hand).translation;
+  }
+  laparoscope = camera_holder.Follow(scene->laparoscope, std::span(tips).first(count), scene->tick_seconds);
 }
 
 ToolsNow Simulation::Content::GetTools() const noexcept {
@@ -199,10 +217,9 @@ void Simulation::Content::Publish(const Input& input) noexcept {
   }
   snapshot.contacts = touch.Contacts().springs.size();
   snapshot.dropped_contacts = touch.Contacts().dropped;
-  instrument::JointLimits limits;
-  limits.min_depth = 0.01;
-  snapshot.X_world_laparoscope =
-      CalcLaparoscopePose(scene->laparoscope, instrument::ClampJoints(input.laparoscope, limits));
+  MoveLaparoscope(input);
+  snapshot.laparoscope = laparoscope;
+  snapshot.X_world_laparoscope = CalcLaparoscopePose(scene->laparoscope, laparoscope);
   for (std::size_t i = 0; i < conserved.organs.size(); ++i) {
     const tissue::OrganVolume& organ = conserved.organs[i];
     snapshot.organs[i] = {organ.volume, organ.target, organ.pressure, organ.leaked};

@@ -5,19 +5,23 @@
 #include <cstdio>
 #include <cstring>
 
-#include "supervisor_protocol.h"
+#include "trocar/device/companion.h"
+#include "trocar/device/open_haptics.h"
 #include "trocar/session/supervisor_link.h"
 
 int main(int argument_count, char** arguments) {
-  using namespace trocar::session;
-  const bool is_started_by_simulator = argument_count == 2 && std::strcmp(arguments[1], "--watch") == 0 &&
-                                       ::fcntl(kSupervisorSocket, F_GETFD) >= 0 &&
-                                       ::fcntl(kSupervisorPage, F_GETFD) >= 0;
-  if (!is_started_by_simulator) {
-    std::puts(
-        "trocar-supervisor sends zero force to haptic devices when the simulator dies or hangs.\n"
-        "The simulator starts it by itself; there is nothing to do by hand.");
-    return argument_count == 2 && std::strcmp(arguments[1], "--help") == 0 ? 0 : 2;
-  }
-  return RunSupervisor(kSupervisorSocket, kSupervisorPage);
+  using trocar::device::Companion;
+  const auto is_option = [&](const char* option) {
+    return argument_count == 2 && std::strcmp(arguments[1], option) == 0;
+  };
+  const bool is_started_by_simulator =
+      ::fcntl(Companion::kSocket, F_GETFD) >= 0 && ::fcntl(Companion::kPage, F_GETFD) >= 0;
+  if (is_started_by_simulator && is_option("--watch"))
+    return trocar::session::RunSupervisor(Companion::kSocket, Companion::kPage);
+  if (is_started_by_simulator && is_option("--openhaptics"))
+    return trocar::device::RunOpenHapticsHost(Companion::kSocket, Companion::kPage);
+  std::puts(
+      "trocar-supervisor sends zero force to haptic devices when the simulator dies or hangs.\n"
+      "The simulator starts it by itself; there is nothing to do by hand.");
+  return is_option("--help") ? 0 : 2;
 }

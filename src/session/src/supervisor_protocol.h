@@ -24,9 +24,6 @@ struct WireMessage {
   std::uint8_t zero_frame[device::SupervisedWire::kMaxBytes] = {};
 };
 
-/// Descriptors in the supervisor process.
-inline constexpr int kSupervisorSocket = 3;
-inline constexpr int kSupervisorPage = 4;
 inline constexpr int kMaxWires = 8;
 
 }  // namespace trocar::session

@@ -59,9 +59,11 @@ void ToolContacts::MakePairs(const Scene& scene, const tissue::TissueModel& mode
                              const tissue::TissueState& at_start) {
   const int liver = scene.patient.FindOrgan("liver"), gallbladder = scene.patient.FindOrgan("gallbladder");
   if (liver >= 0 && gallbladder >= 0) {
-    AddPair(surgery::MakeOrganPair(organs_, at_start.position, static_cast<std::uint8_t>(gallbladder),
-                                   static_cast<std::uint8_t>(liver), {}, organ_settings_),
-            model);
+    for (const auto& [from, to] : {std::pair{gallbladder, liver}, std::pair{liver, gallbladder}}) {
+      AddPair(surgery::MakeOrganPair(organs_, at_start.position, static_cast<std::uint8_t>(from),
+                                     static_cast<std::uint8_t>(to), {}, organ_settings_),
+              model);
+    }
   }
   for (std::size_t tube = 0; tube < tubes_.tubes.size(); ++tube) {
     for (const int organ : {liver, gallbladder}) {

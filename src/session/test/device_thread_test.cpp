@@ -109,6 +109,64 @@ TEST_F(DeviceThreadTest, ConnectsLosesAndFindsADeviceAgain) {
   EXPECT_TRUE(WaitFor(thread, [](const DeviceReport& report) { return report.samples[kLeftHand].is_valid; }));
 }
 
+/// A device whose buttons and whose plug are the test's.
+class FakePedals : public device::Driver {
+ public:
+  explicit FakePedals(std::atomic<std::uint32_t>& buttons, std::atomic<bool>& is_plugged)
+      : Driver("pedals", device::kChannelCount), buttons_(buttons), is_plugged_(is_plugged) {}
+
+ private:
+  core::Status DoConfigure() override {
+    if (is_plugged_) return {};
+    return core::Error{core::ErrorCode::kDeviceLost, "not plugged in"};
+  }
+  core::Status DoActivate() override { return {}; }
+  void DoDeactivate() noexcept override {}
+  void DoCleanup() noexcept override {}
+  device::ReadStatus DoRead(std::span<device::HandSample> samples) noexcept override {
+    if (!is_plugged_) return device::ReadStatus::kLost;
+    samples[kRight].is_valid = true;
+    samples[kRight].buttons = buttons_;
+    return device::ReadStatus::kUnchanged;  // nothing but the button's time passes
+  }
+  std::atomic<std::uint32_t>& buttons_;
+  std::atomic<bool>& is_plugged_;
+};
+
+// faults D1: and its control, a pedal of a device that is not lost stays down
+TEST_F(DeviceThreadTest, ALostDeviceLetsGoOfEveryPedalAtOnce) {
+  std::atomic<std::uint32_t> buttons{0};
+  std::atomic<bool> is_plugged{true};
+  device::ButtonMap map = device::DefaultButtons();
+  map[kRight][2] = device::HandAct::kRinse;
+  DeviceThread thread(std::make_unique<FakePedals>(buttons, is_plugged), map);
+  const auto is_held = [](const DeviceReport& report, device::HandAct act) {
+    return report.acts[kRight].IsHeld(act);
+  };
+  const auto are_down = [&](const DeviceReport& report) {
+    return is_held(report, device::HandAct::kCut) && is_held(report, device::HandAct::kCoagulate) &&
+           is_held(report, device::HandAct::kRinse);
+  };
+  ASSERT_TRUE(WaitFor(thread, [](const DeviceReport& report) { return report.phase == Phase::kRunning; }));
+  device::SystemClock().Sleep(0.02);  // it has to be seen up first
+  buttons = 7;
+  ASSERT_TRUE(WaitFor(thread, are_down));
+  device::SystemClock().Sleep(0.1);
+  ASSERT_TRUE(are_down(thread.Latest())) << "the control";
+  is_plugged = false;
+  ASSERT_TRUE(WaitFor(thread, [&](const DeviceReport& report) { return report.phase == Phase::kLost; }));
+  EXPECT_EQ(thread.Latest().acts[kRight].is_held, device::HandActs{}.is_held);
+  is_plugged = true;  // with the foot still on it
+  ASSERT_TRUE(WaitFor(thread, [](const DeviceReport& report) { return report.phase == Phase::kRunning; }));
+  device::SystemClock().Sleep(0.1);
+  EXPECT_EQ(thread.Latest().acts[kRight].is_held, device::HandActs{}.is_held);
+  EXPECT_EQ(thread.Latest().acts[kRight].CountPresses(device::HandAct::kCut), 1u);
+  buttons = 0;
+  device::SystemClock().Sleep(0.02);
+  buttons = 7;
+  EXPECT_TRUE(WaitFor(thread, are_down));
+}
+
 TEST_F(DeviceThreadTest, SaysWhyADeviceIsNotThere) {
   path_ = "/dev/no_such_line";
   DeviceThread thread(MakeTracker());

@@ -26,6 +26,68 @@ std::vector<HapticEventKind> Kinds(const HapticRecord& record) {
   return kinds;
 }
 
+TEST(HapticRecord, SumsUpWhatAPersonWantsToKnow) {
+  HapticRecord record;
+  HapticStatus status = MakeStatus(0);
+  HapticHandStatus& right = status.hands[kRight];
+  right.reason = Fault::kDeadMan;
+  double time = 100;
+  const auto run = [&](double seconds) {
+    for (int i = 0; i < 10; ++i) {
+      time += seconds / 10;
+      status.ticks += static_cast<std::uint64_t>(100 * seconds);
+      if (right.state != ArmState::kUnarmed) right.armed_ticks += static_cast<std::uint64_t>(100 * seconds);
+      record.Add(time, status);
+    }
+  };
+  status.rate = 0;
+  record.Add(time, status);
+  run(1);
+  status.rate = 1000;
+  run(2);
+  right.state = ArmState::kArmed, right.reason = Fault::kNone, right.max_force = 2.5, right.clamped_ticks = 7;
+  status.rate = 940, status.period_max = 0.0031, status.cpu_max = 0.0002;
+  run(4);
+  status.rate = 990, status.period_max = 0.0011, status.cpu_max = 0.0001;
+  right.is_warm = true, right.heat = 0.9, run(1);
+  right.is_warm = false, run(1);
+  right.is_warm = true, run(1);
+  right.state = ArmState::kUnarmed, right.reason = Fault::kDeviceLost;
+  status.overruns = 2;
+  run(1);
+
+  const HapticSummary summary = record.CalcSummary();
+  EXPECT_NEAR(summary.seconds, 11, 1e-9);
+  EXPECT_NEAR(summary.rate, 1000, 1e-6);
+  EXPECT_EQ(summary.lowest_rate, 940) << "what is not known yet is no rate";
+  EXPECT_EQ(summary.period_max, 0.0031);
+  EXPECT_EQ(summary.cpu_max, 0.0002);
+  EXPECT_EQ(summary.overruns, 2u);
+  const HapticHandSummary& hand = summary.hands[kRight];
+  EXPECT_FALSE(summary.hands[kLeft].is_present);
+  EXPECT_NEAR(hand.armed_time, 7, 0.01);
+  EXPECT_EQ(hand.longest_reason, Fault::kDeadMan) << "3 s against 1 s";
+  EXPECT_EQ(hand.last_reason, Fault::kDeviceLost);
+  EXPECT_EQ(hand.clamped_ticks, 7u);
+  EXPECT_EQ(hand.max_force, 2.5);
+  EXPECT_EQ(hand.max_heat, 0.9);
+  EXPECT_EQ(hand.times_warm, 2u);
+  EXPECT_EQ(hand.times_lost, 1u);
+
+  const auto document = core::JsonDocument::Parse(FormatSummaryJson(summary), "summary");
+  ASSERT_TRUE(document.ok()) << document.error().Text();
+  const core::JsonView json = document->Root().Object("right");
+  EXPECT_EQ(json.Text("not_armed_longest"), "dead_man");
+  EXPECT_EQ(json.Text("not_armed_at_the_end_code"), "E-DEV-001");
+  EXPECT_EQ(json.Integer("times_warm"), 2);
+  EXPECT_EQ(document->Root().Number("period_max_us"), 3100);
+  EXPECT_FALSE(document->Root().Has("left"));
+  ASSERT_TRUE(document->Check().ok());
+  const auto rows = DescribeSummary(summary);
+  ASSERT_EQ(rows.size(), 5u);
+  EXPECT_NE(rows[4][1].find("nobody holds the safety switch"), std::string::npos) << rows[4][1];
+}
+
 TEST(HapticRecord, KeepsEveryChangeAsAnEventWithItsReason) {
   HapticRecord record;
   HapticStatus status = MakeStatus(1);

@@ -55,6 +55,70 @@ TEST(HapticTick, ToolsFollowTheHandsAsFarAsTheTissueLetsThem) {
   EXPECT_GT(depth, 0.1520);
 }
 
+// buttons behind safety switch and jaws are pedals; whatever happens to the device lets go of them
+TEST(HapticTick, PedalsOfAStylusAreLetGoOfWithEveryFault) {
+  constexpr std::uint32_t kSwitch = 1, kPedal = 4;  // the hand's first button: cut
+  const auto is_cutting = [](HapticBench& bench) {
+    bench.link.hands.Update();
+    return bench.link.hands.Front().acts[kRight].IsHeld(device::HandAct::kCut);
+  };
+  for (const SimulatedFault fault :
+       {SimulatedFault::kUnplugged, SimulatedFault::kSilent, SimulatedFault::kNotFinite}) {
+    SCOPED_TRACE(static_cast<int>(fault));
+    HapticBench bench;
+    bench.Run(20);
+    bench.SetButtons(0, kSwitch | kPedal);
+    bench.Run(10);
+    EXPECT_FALSE(is_cutting(bench)) << "not before the debounce";
+    bench.Run(10);
+    ASSERT_TRUE(is_cutting(bench));
+    bench.Run(500);
+    ASSERT_TRUE(is_cutting(bench)) << "the control: without a fault it stays down";
+    EXPECT_EQ(bench.Right().acts.CountPresses(device::HandAct::kCut), 1u);
+    bench.device->SetFault(fault);
+    bench.Run(fault == SimulatedFault::kSilent ? 20 : 5);
+    EXPECT_FALSE(is_cutting(bench));
+    if (fault == SimulatedFault::kUnplugged) continue;  // has to be opened again
+    bench.device->SetFault(SimulatedFault::kNone);
+    bench.Run(100);
+    EXPECT_FALSE(is_cutting(bench)) << "the foot that stayed does not count";
+    bench.SetButtons(0, kSwitch), bench.Run(20);
+    bench.SetButtons(0, kSwitch | kPedal), bench.Run(20);
+    EXPECT_TRUE(is_cutting(bench));
+  }
+}
+
+TEST(HapticHandsReader, ALoopThatStandsStillHoldsNoPedal) {
+  HapticLink link;
+  HapticHandsReader reader;
+  Input input;
+  const auto publish = [&] {
+    HapticHands& hands = link.hands.Back();
+    hands.is_driven[kRight] = true;
+    hands.joints[kRight].depth = 0.14;
+    hands.acts[kRight].is_held[static_cast<std::size_t>(device::HandAct::kCoagulate)] = true;
+    link.hands.Publish();
+  };
+  publish();
+  reader.Take(link, input);
+  EXPECT_EQ(input, Input{}) << "no loop runs";
+  link.is_used = true;
+  for (int tick = 0; tick < 100; ++tick) {
+    publish();
+    input = {};
+    reader.Take(link, input);
+    ASSERT_TRUE(input.controls[kRight].coagulate);
+    ASSERT_FALSE(input.controls[kLeft].coagulate);
+  }
+  EXPECT_EQ(input.hands[kRight].depth, 0.14);
+  for (int tick = 0; tick < HapticHandsReader::kLongestSilence + 1; ++tick) {
+    input = {};
+    reader.Take(link, input);
+  }
+  EXPECT_FALSE(input.controls[kRight].coagulate);
+  EXPECT_EQ(input.hands[kRight].depth, 0.14) << "the hand holds its place";
+}
+
 TEST(HapticTick, EveryFaultOfTheDeviceTakesTheForceAway) {
   const struct {
     SimulatedFault fault;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "trocar/collision/queries.h"
 #include "trocar/core/assert.h"
 
 namespace trocar::surgery {
@@ -17,6 +18,9 @@ using collision::Segment;
 constexpr std::size_t kMostCandidates = 512;
 /// Tissue that snaps back farther than this in one solve is followed only so far [m].
 constexpr double kMostMotion = 0.03;
+/// Tissue that lies in the tool by more than it did, and by more than this, comes out over several ticks: pushed at once it
+/// would throw about what is around it [m].
+constexpr double kMostPush = 0.003;
 /// Nearer than this, two points name no direction [m].
 constexpr double kSamePoint = 1e-9;
 
@@ -30,7 +34,18 @@ struct Search {
   MovingSegment way;         // from the proxy to the device
   MovingSegment way_before;  // of the proxy during the last solve
   double radius;
+  double most_push;        // of one spring [m]
+  bool is_outside = true;  // of the organ that is looked at, as the proxy lies
 };
+
+/// How deep the deepest of a hand's springs was in the last tick [m].
+double FindLastDepth(const ContactSet& last, std::uint8_t hand, double stiffness) noexcept {
+  double largest = 0;
+  for (const ContactLink& link : last.links) {
+    if (link.hand == hand) largest = std::max(largest, link.normal_force);
+  }
+  return largest / stiffness;
+}
 
 /// Where a body meets a surface: point of the tissue by its nodes, and the direction away from the tool.
 struct Meeting {
@@ -98,14 +113,16 @@ void AddContact(const Search& search, const Meeting& meeting, std::size_t surfac
   link.key = key;
   link.hand = search.motion.hand;
   link.surface = static_cast<std::uint8_t>(surface);
-  link.is_pinch = IsPinch(search.body, search.motion.X_world_device, meeting.normal);
+  link.is_pinch = IsPinch(*search.motion.tool, search.body, search.motion.X_world_device, meeting.normal);
   // what lies between blades is not squeezed out
   if (link.is_pinch && ClosesAroundTubes(*search.motion.tool)) return;
   link.p_device = p_device;
   link.p_tool_stuck = math::Inverse(search.motion.X_world_device) * stuck;
-  AddSpring({meeting.nodes, meeting.weights, meeting.normal,
-             math::Dot(meeting.normal, p_device) + meeting.reach, search.settings.stiffness},
-            link, contacts);
+  const double device_offset = math::Dot(meeting.normal, p_device) + meeting.reach;
+  const double offset = std::min(device_offset, math::Dot(meeting.normal, tissue) + search.most_push);
+  link.held_back = device_offset - offset;
+  AddSpring({meeting.nodes, meeting.weights, meeting.normal, offset, search.settings.stiffness}, link,
+            contacts);
   const double length = math::Norm(stretch);
   if (!(length > kSamePoint)) return;
   const Vec3 along = stretch / length;
@@ -143,7 +160,8 @@ bool MeetTriangle(const Search& search, const std::array<std::uint32_t, 3>& node
     const double distance = math::Norm(away);
     if (!(distance > kSamePoint)) return false;
     const Vec3 outward = math::Cross(at[1] - at[0], at[2] - at[0]);
-    if (!(math::Dot(away, outward) < 0.0)) return false;
+    // a fold may turn its back on the tool, and is no less in the way; from inside of an organ it is its other wall
+    if (!search.is_outside && !(math::Dot(away, outward) < 0.0)) return false;
     meeting = {nodes, sweep.points.on_triangle.weights, sweep.points.parameter, away / distance,
                search.radius};
     return true;
@@ -189,6 +207,16 @@ bool MeetPiece(const Search& search, const collision::TubePiece& piece, std::uin
   return is_near && take(sweep);
 }
 
+/// Whether the proxy of a body lies outside of an organ: it may have been folded over it.
+bool IsOutside(const Search& search, const OrganSurface& organ, double reach) noexcept {
+  const auto nodes = organ.Nodes(search.touchables.positions);
+  const auto near = organ.tree.FindNearestToSegment(nodes, search.way.from, {.max_distance = reach});
+  if (!near.Found()) return true;
+  const auto side =
+      collision::FindSide(nodes, organ.triangles, organ.vertex_triangles, near.on_segment, near.nearest);
+  return side.distance > 0.0;
+}
+
 /// A body that lies inside of an organ all the same pushes the wall that is nearest to it back across itself.
 void PushOut(const Search& search, const OrganSurface& organ, std::size_t surface,
              ContactSet& contacts) noexcept {
@@ -208,7 +236,7 @@ void PushOut(const Search& search, const OrganSurface& organ, std::size_t surfac
   AddContact(search, meeting, surface, near.nearest.triangle, contacts);
 }
 
-void FindOnOrgan(const Search& search, std::size_t surface, ContactSet& contacts) noexcept {
+void FindOnOrgan(Search& search, std::size_t surface, ContactSet& contacts) noexcept {
   const OrganSurface& organ = search.touchables.organs[surface];
   const double motion = std::min(kMostMotion, search.touchables.surface_motion[surface]);
   const double slack = search.settings.margin + (motion > search.settings.margin ? motion : 0.0);
@@ -218,6 +246,7 @@ void FindOnOrgan(const Search& search, std::size_t surface, ContactSet& contacts
   const std::size_t count = organ.tree.FindWithin(organ.Nodes(search.touchables.positions), swept, found);
   contacts.dropped += count > found.size() ? count - found.size() : 0;
   const std::size_t before = contacts.springs.size();
+  search.is_outside = count == 0 || IsOutside(search, organ, search.radius + slack);
   for (std::size_t i = 0; i < std::min(count, found.size()); ++i) {
     std::array<std::uint32_t, 3> nodes = organ.triangles[found[i]];
     for (std::uint32_t& node : nodes) node += organ.first_node;
@@ -269,13 +298,22 @@ std::array<Capsule, kToolBodyCount> CalcToolBodies(const instrument::Tool& tool,
   return bodies;
 }
 
+bool HasJaws(const instrument::Tool& tool) noexcept {
+  return tool.max_jaw > 0.0;
+}
+
+bool IsThere(const instrument::Tool& tool, ToolBody body) noexcept {
+  return HasJaws(tool) || body != ToolBody::kLowerJaw;
+}
+
 bool ClosesAroundTubes(const instrument::Tool& tool) noexcept {
   return tool.kind == instrument::ToolKind::kScissors || tool.kind == instrument::ToolKind::kClipApplier;
 }
 
-bool IsPinch(ToolBody body, const Pose& X_world_tool, const Vec3& normal) noexcept {
+bool IsPinch(const instrument::Tool& tool, ToolBody body, const Pose& X_world_tool,
+             const Vec3& normal) noexcept {
   constexpr double kInwards = 0.5;  // within 60 degrees of the direction in which the jaw closes
-  if (body == ToolBody::kShaft) return false;
+  if (body == ToolBody::kShaft || !HasJaws(tool)) return false;
   const double opening = math::Dot(normal, math::Rotate(X_world_tool.rotation, {0, 1, 0}));
   return body == ToolBody::kUpperJaw ? opening < -kInwards : opening > kInwards;
 }
@@ -297,15 +335,18 @@ void FindContacts(const ToolMotion& motion, const Touchables& touchables, const 
   const auto before = CalcToolBodies(*motion.tool, motion.jaw_before, motion.X_world_proxy_before);
   const auto proxy = CalcToolBodies(*motion.tool, motion.jaw_before, motion.X_world_proxy);
   const auto device = CalcToolBodies(*motion.tool, motion.jaw, motion.X_world_device);
+  const double most_push = FindLastDepth(last, motion.hand, settings.stiffness) + kMostPush;
   for (int body = 0; body < kToolBodyCount; ++body) {
-    const Search search{motion,
-                        touchables,
-                        settings,
-                        last,
-                        static_cast<ToolBody>(body),
-                        {proxy[body].axis, device[body].axis},
-                        {before[body].axis, proxy[body].axis},
-                        device[body].radius};
+    if (!IsThere(*motion.tool, static_cast<ToolBody>(body))) continue;
+    Search search{motion,
+                  touchables,
+                  settings,
+                  last,
+                  static_cast<ToolBody>(body),
+                  {proxy[body].axis, device[body].axis},
+                  {before[body].axis, proxy[body].axis},
+                  device[body].radius,
+                  most_push};
     for (std::size_t surface = 0; surface < touchables.organs.size(); ++surface) {
       const bool is_in_jaws =
           search.body != ToolBody::kShaft && static_cast<std::int32_t>(surface) == motion.grasped_surface;

@@ -9,6 +9,9 @@
 namespace trocar::surgery {
 namespace {
 
+/// What overlaps by more comes apart over several ticks [m].
+constexpr double kMostPush = 0.002;
+
 /// Signed distance of a node to an organ's surface, with the nearest point.
 struct Place {
   bool is_near = false;
@@ -98,7 +101,7 @@ void FindOrganContacts(std::span<const OrganSurface> organs, std::span<const Vec
     const Place place = FindPlace(to, nodes, p, settings.reach + radius, pair.last_triangle[i]);
     if (!place.is_near) continue;
     pair.last_triangle[i] = place.nearest.triangle;
-    const double room = place.side.distance - radius - pair.allowed[i];
+    const double room = std::max(place.side.distance - radius - pair.allowed[i], -kMostPush);
     if (room > settings.ahead) continue;
     if (contacts.springs.size() + 2 > ContactSet::kCapacity) {
       ++contacts.dropped;
@@ -117,7 +120,6 @@ void FindOrganContacts(std::span<const OrganSurface> organs, std::span<const Vec
                                 math::Dot(n, p) - 0.5 * room,
                                 settings.stiffness});
     contacts.links.push_back(link);
-    if (room > settings.margin) continue;
     link.surface = pair.surface_of;
     contacts.springs.push_back({{to.first_node + t[0], to.first_node + t[1], to.first_node + t[2]},
                                 place.nearest.weights,

@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "trocar/collision/queries.h"
+
 namespace trocar::surgery {
 namespace {
 
@@ -15,6 +17,9 @@ constexpr double kFading = 0.7;
 /// Offsets below are none [rad], [m].
 constexpr double kNoOffset = 1e-7;
 constexpr int kSweeps = 40;
+/// What a limit gives way, of the way that it holds back [-]. In a narrow fold, limits from both sides leave no place but
+/// far away along it: better a little overlap than a jump there.
+constexpr double kCompliance = 0.005;
 /// Overlap that is not worth a correction [m].
 constexpr double kTouching = 1e-5;
 
@@ -49,7 +54,7 @@ void AddContactLimits(std::uint8_t hand, const ContactSet& contacts, std::span<c
     const ContactLink& link = contacts.links[i];
     if (link.hand != hand || link.is_friction || link.is_pinch) continue;
     const tissue::ContactSpring& spring = contacts.springs[i];
-    limits.Add({link.p_device, spring.normal, -tissue::CalcContactDepth(spring, positions)});
+    limits.Add({link.p_device, spring.normal, -tissue::CalcContactDepth(spring, positions) - link.held_back});
   }
 }
 
@@ -74,7 +79,8 @@ TrocarJoints FindProxy(const ToolDrive& drive, const TrocarJoints& last_offset,
         now += row[joint] * offset[joint];
       }
       if (!(give > 0.0)) continue;
-      const double push = std::max(0.0, pushes[i] + (now - limits[i].room) / give);
+      const double push =
+          std::max(0.0, pushes[i] + (now - limits[i].room - kCompliance * pushes[i]) / (give + kCompliance));
       const double change = push - pushes[i];
       pushes[i] = push;
       largest = std::max(largest, std::fabs(change) * give);
@@ -96,13 +102,14 @@ double AddOverlapLimits(const instrument::Tool& tool, const Pose& X_world_proxy,
              device = CalcToolBodies(tool, jaw, X_world_device);
   double greatest = 0;
   const auto add = [&](int body, double parameter, const Vec3& normal, double depth) {
-    if (!(depth > kTouching) || IsPinch(static_cast<ToolBody>(body), X_world_proxy, normal)) return;
+    if (!(depth > kTouching) || IsPinch(tool, static_cast<ToolBody>(body), X_world_proxy, normal)) return;
     greatest = std::max(greatest, depth);
     AddOverlap(math::Lerp(proxy[body].axis.start, proxy[body].axis.end, parameter),
                math::Lerp(device[body].axis.start, device[body].axis.end, parameter), normal, depth, limits);
   };
   for (int body = 0; body < kToolBodyCount; ++body) {
     const bool is_jaw = body != static_cast<int>(ToolBody::kShaft);
+    if (!IsThere(tool, static_cast<ToolBody>(body))) continue;
     const double radius = proxy[body].radius;
     for (std::size_t surface = 0; surface < touchables.organs.size(); ++surface) {
       if (is_jaw && static_cast<std::int32_t>(surface) == grasped_surface) continue;
@@ -110,13 +117,14 @@ double AddOverlapLimits(const instrument::Tool& tool, const Pose& X_world_proxy,
       const auto nodes = organ.Nodes(touchables.positions);
       const auto near = organ.tree.FindNearestToSegment(nodes, proxy[body].axis, {.max_distance = radius});
       if (!near.Found()) continue;
-      const auto& t = organ.triangles[near.nearest.triangle];
-      const Vec3 outward =
-          math::Normalized(math::Cross(nodes[t[1]] - nodes[t[0]], nodes[t[2]] - nodes[t[0]]), Vec3{});
+      const auto side =
+          collision::FindSide(nodes, organ.triangles, organ.vertex_triangles, near.on_segment, near.nearest);
       const Vec3 away = near.nearest.point - near.on_segment;
       const double distance = math::Norm(away);
-      const bool is_outside = math::Dot(away, outward) < 0.0;
-      add(body, near.parameter, is_outside ? away / distance : -outward,
+      // run through: which way is out, nobody can say
+      if (!(distance > 0.0)) continue;
+      const bool is_outside = side.distance > 0.0;
+      add(body, near.parameter, is_outside ? away / distance : -side.normal,
           is_outside ? radius - distance : radius + distance);
     }
     if (touchables.tubes == nullptr || (is_jaw && ClosesAroundTubes(tool))) continue;

@@ -87,6 +87,32 @@ TEST_F(OrganContact, AnOrganThatFallsOnAnotherRestsOnIt) {
   EXPECT_LT(math::Norm(sum), 0.05 * total) << "action and reaction";
 }
 
+// At rest nothing moves on: springs that come and go would make both organs tremble.
+TEST_F(OrganContact, WhatRestsOnAnotherLiesStill) {
+  Make(0.001);
+  const Vec3 down{0, 0, -20};
+  for (int tick = 0; tick < 300; ++tick) Tick(down);
+  const auto before = state_.position;
+  Tick(down);
+  double farthest = 0;
+  for (std::size_t i = 0; i < before.size(); ++i)
+    farthest = std::max(farthest, math::Distance(before[i], state_.position[i]));
+  EXPECT_LT(farthest, 2e-5);
+}
+
+// Organs that were pushed through each other come apart gently, not in one blow.
+TEST_F(OrganContact, ADeepOverlapComesApartOverSeveralTicks) {
+  Make(0.001);
+  for (std::uint32_t i = 0; i < organs_[1].node_count; ++i)
+    state_.position[organs_[1].first_node + i].z -= 0.008;
+  for (OrganSurface& organ : organs_) UpdateOrganSurface(organ, state_.position);
+  ASSERT_GT(DeepestOverlap(), 0.006);
+  FindOrganContacts(organs_, state_.position, settings_, pair_, contacts_);
+  ASSERT_FALSE(contacts_.springs.empty());
+  for (const auto& spring : contacts_.springs)
+    EXPECT_LT(tissue::CalcContactDepth(spring, state_.position), 0.0011);
+}
+
 // Negative control.
 TEST_F(OrganContact, WithoutContactItWouldFallIn) {
   Make(0.001);

@@ -75,16 +75,77 @@ TEST_F(ToolProxy, PassesThroughTheTrocar) {
 TEST(FindProxy, GivesWayInTheJointThatHelps) {
   const ToolDrive drive{{0, 0, 0.2}, instrument::FindJoints({0, 0, 0.2}, {0, 0, 0}, 0.3, 0.1)};
   const auto above = FindProxy(drive, {}, std::vector<ProxyLimit>{{{0, 0, 0}, {0, 0, -1}, -0.003}});
-  EXPECT_NEAR(above.depth, 0.197, 1e-6);
+  EXPECT_NEAR(above.depth, 0.197, 2e-5);
   EXPECT_NEAR(above.pan, drive.device.pan, 1e-9);
   EXPECT_EQ(above.spin, 0.3);
   EXPECT_EQ(above.jaw, 0.1);
   const auto beside = FindProxy(drive, {}, std::vector<ProxyLimit>{{{0, 0, 0}, {1, 0, 0}, -0.002}});
   const Vec3 tip = instrument::CalcToolPose(drive.p_world_port, beside).translation;
-  EXPECT_NEAR(tip.x, -0.002, 1e-5);
+  EXPECT_NEAR(tip.x, -0.002, 2e-5);
   EXPECT_NEAR(beside.depth, 0.2, 1e-9);
   const auto free = FindProxy(drive, {}, std::vector<ProxyLimit>{{{0, 0, 0}, {1, 0, 0}, 0.002}});
   EXPECT_EQ(free, drive.device) << "a plane that is not reached does nothing";
+}
+
+// Two walls of a narrow fold that leave no room: the nearest free place is 50 times farther away than they overlap.
+TEST(FindProxy, DoesNotLeapOutOfANarrowFold) {
+  const ToolDrive drive{{0, 0, 0.2}, instrument::FindJoints({0, 0, 0.2}, {0, 0, 0}, 0.0, 0.0)};
+  const double slope = 0.02, overlap = 1e-4;
+  std::vector<ProxyLimit> walls;
+  for (const double side : {-1.0, 1.0})
+    walls.push_back({{0, 0, 0}, math::Normalized(Vec3{side, slope, 0}), -overlap});
+  const auto proxy = FindProxy(drive, {}, walls);
+  const Vec3 tip = instrument::CalcToolPose(drive.p_world_port, proxy).translation;
+  EXPECT_LT(math::Norm(tip), 15 * overlap);
+  EXPECT_LT(tip.y, -overlap) << "but it goes the way that opens";
+}
+
+// The wire of a hook is one rod: what it presses, however it lies, holds it back.
+TEST_F(ToolProxy, AHookHasNoJawsThatPinch) {
+  const instrument::Tool hook = *instrument::FindTool("hook");
+  const Pose X;
+  EXPECT_FALSE(IsPinch(hook, ToolBody::kUpperJaw, X, {0, -1, 0}));
+  EXPECT_TRUE(IsPinch(tool_, ToolBody::kUpperJaw, X, {0, -1, 0})) << "a grasper does";
+  tool_ = hook;
+  // from beside, along its toe
+  Place(JointsAt({0, 0.03, 0.004}));
+  for (double y = 0.03; y > 0.012; y -= 0.0005) (void)Tick(JointsAt({0, y, 0.004}));
+  EXPECT_LT(overlap_, 2e-5);
+  for (const ContactLink& link : contacts_.links)
+    EXPECT_NE((link.key >> 48) & 0xff, static_cast<std::uint64_t>(ToolBody::kLowerJaw)) << "one rod, once";
+  EXPECT_FALSE(contacts_.links.empty());
+}
+
+// Beside a sharp rim the face that happens to be nearest may look away: that alone does not make the tool lie inside.
+TEST_F(ToolProxy, LiesOutsideBesideASharpRim) {
+  // a wedge that points at the shaft: two long faces that meet at x = 0 under 20 degrees, closed behind
+  const double far = 0.06, half = 0.0106;
+  const geometry::TriangleMesh wedge{
+      {{0, -far, 0},
+       {0, far, 0},
+       {-far, -far, half},
+       {-far, far, half},
+       {-far, -far, -half},
+       {-far, far, -half}},
+      {{0, 1, 3}, {0, 3, 2}, {1, 0, 4}, {1, 4, 5}, {2, 3, 5}, {2, 5, 4}, {0, 2, 4}, {1, 5, 3}}};
+  state_.position.assign(wedge.positions.begin(), wedge.positions.end());
+  before_ = state_.position;
+  auto surface = MakeOrganSurface(state_.position, 0, wedge);
+  ASSERT_TRUE(surface.ok());
+  organs_ = {std::move(*surface)};
+  UpdateOrganSurface(organs_[0], state_.position);
+  motion_ = {0.0};
+  const double gap = 0.0005;  // the shaft overlaps the rim by the rest of its radius
+  for (const double height : {-0.0004, -0.0001, 0.0001, 0.0004}) {
+    const auto joints = instrument::FindJoints({gap, 0, 0.15}, {gap, 0, -0.1}, 0.0, 0.0);
+    const Pose X = instrument::CalcToolPose({gap, height, 0.15}, joints);
+    ProxyLimits limits;
+    const Touchables touchables{organs_, nullptr, state_.position, before_, motion_};
+    const double overlap = AddOverlapLimits(tool_, X, X, 0.0, touchables, -1, limits);
+    EXPECT_NEAR(overlap, tool_.shaft_radius - gap, 1e-6);
+    for (const ProxyLimit& limit : limits.limits)
+      EXPECT_LT(limit.normal.x, -0.9) << "the rim is on the right";
+  }
 }
 
 class Tools : public testing::Test {

@@ -110,6 +110,7 @@ core::Result<DemoReport> PlayDemonstration(std::shared_ptr<const session::Scene>
       if (options.change_input) options.change_input(now, input);
       simulation->Step(input);
       ++report.ticks;
+      if (options.after_step) options.after_step(*simulation);
       if (options.on_tick) options.on_tick(simulation->GetSnapshot());
     }
   };

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trocar/device/device_store.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -65,9 +67,47 @@ TrackerEntry ReadTracker(const core::JsonView& view) {
   return entry;
 }
 
+/// The act of that name, or kNone with a complaint.
+HandAct ReadAct(const core::JsonView& view, const std::string& name) {
+  if (const auto act = FindAct(name)) return *act;
+  std::string known;
+  for (std::size_t i = 0; i < kActCount; ++i)
+    known.append(i > 0 ? ", " : "").append(ActName(static_cast<HandAct>(i)));
+  view.Complain("\"" + name + "\" is no act of a button; there are " + known);
+  return HandAct::kNone;
+}
+
+ButtonMap ReadButtons(const core::JsonView& view) {
+  view.AllowOnly({kHandNames[0], kHandNames[1]});
+  ButtonMap map = DefaultButtons();
+  for (std::size_t hand = 0; hand < map.size(); ++hand) {
+    if (!view.Has(kHandNames[hand])) continue;
+    const std::vector<core::JsonView> names = view.Array(kHandNames[hand]);
+    if (names.size() > kMostButtons)
+      view.Complain("more than " + std::to_string(kMostButtons) + " buttons of a hand");
+    map[hand].fill(HandAct::kNone);
+    for (std::size_t i = 0; i < std::min(names.size(), kMostButtons); ++i)
+      map[hand][i] = ReadAct(names[i], names[i].AsText());
+  }
+  return map;
+}
+
+void ReadAllButtons(const core::JsonView& root, DeviceStore& store) {
+  if (root.Has("buttons")) {
+    const core::JsonView buttons = root.Object("buttons");
+    buttons.AllowOnly({"gamepad", "spacemouse", "haptics", "play"});
+    for (const std::string& kind : buttons.Keys()) store.buttons[kind] = ReadButtons(buttons.Object(kind));
+  }
+  if (root.Has("keys")) {
+    const core::JsonView keys = root.Object("keys");
+    for (const std::string& key : keys.Keys()) store.keys[key] = ReadAct(keys, keys.Text(key));
+  }
+}
+
 DeviceStore ReadStore(const core::JsonView& root) {
   DeviceStore store;
-  root.AllowOnly({"version", "trackers", "jaw"});
+  root.AllowOnly({"version", "trackers", "jaw", "buttons", "keys"});
+  ReadAllButtons(root, store);
   if (const int version = root.Integer("version"); version != kVersion)
     root.Complain("version " + std::to_string(version) + " is not known to this program");
   if (root.Has("trackers")) {
@@ -109,8 +149,21 @@ nlohmann::ordered_json WriteTracker(const TrackerEntry& entry) {
   return json;
 }
 
+/// The acts up to the last that is none.
+nlohmann::ordered_json WriteActs(std::span<const HandAct> acts) {
+  while (!acts.empty() && acts.back() == HandAct::kNone) acts = acts.first(acts.size() - 1);
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  for (const HandAct act : acts) json.push_back(ActName(act));
+  return json;
+}
+
 std::string FormatStore(const DeviceStore& store) {
   nlohmann::ordered_json json = {{"version", kVersion}};
+  for (const auto& [kind, map] : store.buttons) {
+    for (std::size_t hand = 0; hand < map.size(); ++hand)
+      json["buttons"][kind][kHandNames[hand]] = WriteActs(map[hand]);
+  }
+  for (const auto& [key, act] : store.keys) json["keys"][key] = ActName(act);
   for (const auto& [kind, entry] : store.trackers) json["trackers"][kind] = WriteTracker(entry);
   for (std::size_t i = 0; i < store.jaws.size(); ++i) {
     const JawCalibration& jaw = store.jaws[i];
@@ -143,6 +196,11 @@ core::Result<TrackedHandsSettings> MakeHandsSettings(const TrackerEntry& entry) 
 TrackerEntry DeviceStore::Tracker(const std::string& kind) const {
   const auto found = trackers.find(kind);
   return found == trackers.end() ? DefaultTracker() : found->second;
+}
+
+ButtonMap DeviceStore::Buttons(const std::string& kind) const {
+  const auto found = buttons.find(kind);
+  return found == buttons.end() ? DefaultButtons() : found->second;
 }
 
 fs::path FindDeviceStore() {

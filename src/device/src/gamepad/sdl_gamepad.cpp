@@ -4,6 +4,7 @@
 #endif
 
 #include <algorithm>
+#include <initializer_list>
 
 #include "trocar/device/rate_hands.h"
 
@@ -53,10 +54,24 @@ class SdlGamepad : public GamepadSource {
     const auto is_down = [this](SDL_GameControllerButton which) {
       return SDL_GameControllerGetButton(pad_, which) != 0;
     };
+    const auto bits = [&](std::initializer_list<SDL_GameControllerButton> buttons) {
+      std::uint32_t bit = 1, down = 0;
+      for (const SDL_GameControllerButton button : buttons) {
+        if (is_down(button)) down |= bit;
+        bit <<= 1;
+      }
+      return down;
+    };
     state.sides[0] = {axis(SDL_CONTROLLER_AXIS_LEFTX), axis(SDL_CONTROLLER_AXIS_LEFTY),
-                      axis(SDL_CONTROLLER_AXIS_TRIGGERLEFT), is_down(SDL_CONTROLLER_BUTTON_LEFTSHOULDER)};
-    state.sides[1] = {axis(SDL_CONTROLLER_AXIS_RIGHTX), axis(SDL_CONTROLLER_AXIS_RIGHTY),
-                      axis(SDL_CONTROLLER_AXIS_TRIGGERRIGHT), is_down(SDL_CONTROLLER_BUTTON_RIGHTSHOULDER)};
+                      axis(SDL_CONTROLLER_AXIS_TRIGGERLEFT), is_down(SDL_CONTROLLER_BUTTON_LEFTSHOULDER),
+                      bits({SDL_CONTROLLER_BUTTON_DPAD_DOWN, SDL_CONTROLLER_BUTTON_DPAD_RIGHT,
+                            SDL_CONTROLLER_BUTTON_DPAD_LEFT, SDL_CONTROLLER_BUTTON_DPAD_UP,
+                            SDL_CONTROLLER_BUTTON_LEFTSTICK, SDL_CONTROLLER_BUTTON_BACK})};
+    state.sides[1] = {
+        axis(SDL_CONTROLLER_AXIS_RIGHTX), axis(SDL_CONTROLLER_AXIS_RIGHTY),
+        axis(SDL_CONTROLLER_AXIS_TRIGGERRIGHT), is_down(SDL_CONTROLLER_BUTTON_RIGHTSHOULDER),
+        bits({SDL_CONTROLLER_BUTTON_A, SDL_CONTROLLER_BUTTON_B, SDL_CONTROLLER_BUTTON_X,
+              SDL_CONTROLLER_BUTTON_Y, SDL_CONTROLLER_BUTTON_RIGHTSTICK, SDL_CONTROLLER_BUTTON_START})};
     return true;
   }
 

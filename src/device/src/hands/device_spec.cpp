@@ -164,6 +164,10 @@ DriverResult MakeDriver(std::string_view text, const DeviceStore& store, Clock& 
   return DriverResult(std::make_unique<HandRig>(std::move(*first), std::move(*second)));
 }
 
+ButtonMap FindButtons(std::string_view text, const DeviceStore& store) {
+  return store.Buttons(std::string(text.substr(0, text.find_first_of(":+"))));
+}
+
 core::Result<std::unique_ptr<PoseDriver>> MakeTracker(std::string_view text, const DeviceStore& store,
                                                       Clock& clock) {
   const core::Result<DeviceSpec> spec = ParseDeviceSpec(text);

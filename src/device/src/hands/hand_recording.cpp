@@ -3,6 +3,8 @@
 
 #include <charconv>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 
 #include "trocar/core/safe_file.h"
 
@@ -10,13 +12,15 @@ namespace trocar::device {
 namespace {
 
 constexpr std::string_view kHands[kChannelCount] = {"left", "right", "laparoscope"};
-constexpr std::string_view kJoints[] = {"seen", "pan_rad", "tilt_rad", "spin_rad", "depth_m", "jaw_rad"};
-constexpr std::size_t kColumnCount = 1 + kChannelCount * std::size(kJoints);
+constexpr std::string_view kColumns[] = {"seen",    "pan_rad", "tilt_rad", "spin_rad",
+                                         "depth_m", "jaw_rad", "buttons"};
+constexpr std::size_t kMostColumns = std::size(kColumns);
+constexpr std::size_t kColumnsBefore = kMostColumns - 1;  // recordings of earlier versions have no buttons
 
-std::string Heading() {
+std::string Heading(std::size_t columns) {
   std::string line = "time_s";
   for (const std::string_view hand : kHands) {
-    for (const std::string_view joint : kJoints) line.append(",").append(hand).append("_").append(joint);
+    for (std::size_t i = 0; i < columns; ++i) line.append(",").append(hand).append("_").append(kColumns[i]);
   }
   return line;
 }
@@ -41,20 +45,25 @@ bool ReadRow(std::string_view line, std::span<double> values) {
   return line.empty();
 }
 
-HandFrame MakeFrame(std::span<const double> row) {
-  HandFrame frame;
+/// \return false where a hand's buttons are no whole number of 32 bits
+bool MakeFrame(std::span<const double> row, std::size_t columns, HandFrame& frame) {
   frame.time = row[0];
   for (std::size_t i = 0; i < frame.hands.size(); ++i) {
-    const auto joints = row.subspan(1 + i * std::size(kJoints), std::size(kJoints));
-    frame.hands[i] = {joints[1], joints[2], joints[3], joints[4], joints[5], frame.time, joints[0] != 0.0};
+    const auto hand = row.subspan(1 + i * columns, columns);
+    frame.hands[i] = {hand[1], hand[2], hand[3], hand[4], hand[5], frame.time, hand[0] != 0.0};
+    if (columns == kColumnsBefore) continue;
+    const double buttons = hand[kColumnsBefore];
+    constexpr double kMost = std::numeric_limits<std::uint32_t>::max();
+    if (!(buttons >= 0.0 && buttons <= kMost) || buttons != std::floor(buttons)) return false;
+    frame.hands[i].buttons = static_cast<std::uint32_t>(buttons);
   }
-  return frame;
+  return true;
 }
 
 }  // namespace
 
 std::string FormatHandFrames(const std::vector<HandFrame>& frames) {
-  std::string text = Heading() + "\n";
+  std::string text = Heading(kMostColumns) + "\n";
   for (const HandFrame& frame : frames) {
     Append(text, frame.time);
     for (const HandSample& hand : frame.hands) {
@@ -63,6 +72,7 @@ std::string FormatHandFrames(const std::vector<HandFrame>& frames) {
         text += ',';
         Append(text, joint);
       }
+      text += ',' + std::to_string(hand.buttons);
     }
     text += '\n';
   }
@@ -75,7 +85,8 @@ core::Result<std::vector<HandFrame>> ParseHandFrames(std::string_view text, cons
                        name + ": line " + std::to_string(line) + ": " + why};
   };
   std::vector<HandFrame> frames;
-  std::array<double, kColumnCount> row;
+  std::array<double, 1 + kChannelCount * kMostColumns> room;
+  std::size_t columns = kMostColumns;
   for (std::size_t line = 1; !text.empty(); ++line) {
     const std::size_t end = text.find('\n');
     if (end == std::string_view::npos) return fail(line, "cut short; take this line away to play the rest");
@@ -83,12 +94,15 @@ core::Result<std::vector<HandFrame>> ParseHandFrames(std::string_view text, cons
     text.remove_prefix(end + 1);
     if (words.ends_with('\r')) words.remove_suffix(1);
     if (line == 1) {
-      if (words != Heading()) return fail(1, "no recording of hands; trocar devices record makes one");
+      if (words == Heading(kColumnsBefore)) columns = kColumnsBefore;
+      if (words != Heading(columns)) return fail(1, "no recording of hands; trocar devices record makes one");
       continue;
     }
-    if (!ReadRow(words, row)) return fail(line, "not " + std::to_string(kColumnCount) + " finite numbers");
+    const std::span<double> row = std::span(room).first(1 + kChannelCount * columns);
+    if (!ReadRow(words, row)) return fail(line, "not " + std::to_string(row.size()) + " finite numbers");
     if (!frames.empty() && row[0] < frames.back().time) return fail(line, "the time falls");
-    frames.push_back(MakeFrame(row));
+    if (!MakeFrame(row, columns, frames.emplace_back()))
+      return fail(line, "buttons are a whole number of 32 bits");
   }
   if (frames.empty()) return fail(1, "no frame in it; record again");
   return frames;

@@ -83,6 +83,7 @@ ReadStatus Gamepad::DoRead(std::span<HandSample> samples) noexcept {
     }
     MoveHand(rates, dt, limits, hands_[i]);
     hands_[i].jaw = limits.max_jaw * (1.0 - std::clamp(side.trigger, 0.0, 1.0));
+    hands_[i].buttons = side.buttons;
     hands_[i].time = time_;
     hands_[i].is_valid = true;
   }
@@ -124,6 +125,7 @@ ReadStatus SpaceMouse::DoRead(std::span<HandSample> samples) noexcept {
   rates.jaw = state.is_button_down[0] ? -kJaw : kJaw;
   MoveHand(rates, dt, {}, hands_[chosen_]);
   for (const Channel hand : {kLeftHand, kRightHand}) {
+    hands_[hand].buttons = hand == chosen_ ? state.more_buttons : 0;
     hands_[hand].time = time_;
     hands_[hand].is_valid = true;
   }

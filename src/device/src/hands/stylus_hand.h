@@ -21,6 +21,7 @@ inline void SetHand(const ForceSample& report, const math::Vec3& p_device_trocar
   hand.depth = math::Norm(way);
   hand.spin = 2.0 * std::atan2(report.orientation.z, report.orientation.w);
   hand.jaw = (report.buttons & 1u) != 0 ? 0.0 : HandLimits{}.max_jaw;
+  hand.buttons = report.buttons >> kStylusOwnButtons;
   hand.is_valid = report.sequence > 0 && report.is_calibrated;
 }
 

@@ -66,6 +66,17 @@ Parsed JawFramer::Parse(std::string_view bytes, JawReading& reading) noexcept {
   return line.Result();
 }
 
+std::array<std::optional<int>, kJawTools> ParseHidReport(std::string_view report) noexcept {
+  std::array<std::optional<int>, kJawTools> values;
+  if (report.size() != 2 * values.size()) return values;
+  for (std::size_t tool = 0; tool < values.size(); ++tool) {
+    const auto low = static_cast<unsigned char>(report[2 * tool]);
+    const auto high = static_cast<unsigned char>(report[2 * tool + 1]);
+    if (const int raw = low | high << 8; raw <= kMaxJawRaw) values[tool] = raw;
+  }
+  return values;
+}
+
 std::string FormatReading(const JawReading& reading) {
   char text[48];
   std::snprintf(text, sizeof text, "J,%d,%u,%d\r\n", reading.tool, reading.milliseconds, reading.raw);

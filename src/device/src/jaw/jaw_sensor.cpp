@@ -13,7 +13,6 @@ using core::ErrorCode;
 
 constexpr int kMaxReads = 64;
 constexpr std::size_t kReadSize = 1024;
-constexpr std::size_t kHidReportSize = 4;
 /// A longer silence and the filter starts anew [ms].
 constexpr std::uint32_t kLongestGap = 200;
 constexpr std::size_t kMinFitValues = 10;
@@ -133,13 +132,10 @@ IoResult JawSensor::Drain(double now) noexcept {
       framer_.Feed({bytes.data(), got.count}, [&](const JawReading& reading) { Take(reading, now); });
       continue;
     }
-    if (got.count != kHidReportSize) continue;
+    const auto values = ParseHidReport({bytes.data(), got.count});
+    const auto milliseconds = static_cast<std::uint32_t>(static_cast<std::uint64_t>(1e3 * now));
     for (int tool = 0; tool < kJawTools; ++tool) {
-      const auto low = static_cast<unsigned char>(bytes[static_cast<std::size_t>(2 * tool)]);
-      const auto high = static_cast<unsigned char>(bytes[static_cast<std::size_t>(2 * tool + 1)]);
-      const int raw = low | high << 8;
-      if (raw <= kMaxJawRaw)
-        Take({tool, static_cast<std::uint32_t>(static_cast<std::uint64_t>(1e3 * now)), raw}, now);
+      if (const auto raw = values[static_cast<std::size_t>(tool)]) Take({tool, milliseconds, *raw}, now);
     }
   }
   return got;

@@ -39,8 +39,8 @@ class SpacenavSource : public SpaceMouseSource {
         // the daemon's z points away from the person
         state_.push = {double(motion.x), double(motion.y), -double(motion.z)};
         state_.turn = {double(motion.rx), double(motion.ry), -double(motion.rz)};
-      } else if (event.type == SPNAV_EVENT_BUTTON && event.button.bnum >= 0 && event.button.bnum < 2) {
-        state_.is_button_down[static_cast<std::size_t>(event.button.bnum)] = event.button.press != 0;
+      } else if (event.type == SPNAV_EVENT_BUTTON) {
+        SetButton(event.button.bnum, event.button.press != 0);
       }
     }
     state = state_;
@@ -55,6 +55,17 @@ class SpacenavSource : public SpaceMouseSource {
   }
 
  private:
+  void SetButton(int number, bool is_down) noexcept {
+    constexpr int kOwn = 2, kMore = 32;
+    if (number < 0 || number >= kOwn + kMore) return;
+    if (number < kOwn) {
+      state_.is_button_down[static_cast<std::size_t>(number)] = is_down;
+      return;
+    }
+    const std::uint32_t bit = std::uint32_t{1} << (number - kOwn);
+    state_.more_buttons = is_down ? state_.more_buttons | bit : state_.more_buttons & ~bit;
+  }
+
   SpaceMouseState state_;
   bool is_open_ = false;
 };

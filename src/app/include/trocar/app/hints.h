@@ -14,6 +14,7 @@ struct Situation {
   bool is_demonstration_over = false;
   bool is_pointer_taken = false;
   bool is_laparoscope_held = false;
+  bool has_camera_holder = false;
   bool is_right_hand = true;
   bool is_fulcrum_mirrored = false;
 };

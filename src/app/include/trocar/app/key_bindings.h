@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <span>
 
+#include "trocar/device/hand_buttons.h"
 #include "trocar/device/mouse_keyboard.h"
 
 namespace trocar::app {
@@ -15,6 +16,7 @@ enum class Action {
   kChooseLeft,
   kChooseRight,
   kSwitchHand,
+  kToggleCameraHolder,
   kHoldLaparoscope,  ///< while the key is held the pointer and the wheel move the laparoscope
   kNextTool,         ///< of the tray of the chosen hand
   kPreviousTool,
@@ -22,7 +24,9 @@ enum class Action {
   kHoldCoagulate,
   kHoldRinse,
   kHoldAspirate,
-  kAssistant,  ///< the next command to the assistant
+  kHoldClutch,  ///< the tool stands still although its device moves
+  kFreeze,      ///< the same from one press to the next
+  kAssistant,   ///< the next command to the assistant
   kTogglePause,
   kReset,
   kToggleDemonstration,
@@ -48,6 +52,9 @@ struct KeyMeaning {
 /// \param keyval   X11 key symbol, as GDK gives it; letters in either case
 /// \param control  the Ctrl key is held
 KeyMeaning FindKeyMeaning(std::uint32_t keyval, bool control) noexcept;
+
+/// Meaning of a key that a person's settings give an act to: foot pedals that are keyboards.
+Action FindAction(device::HandAct act) noexcept;
 
 /// True if the key has its meaning even while a slider of the panel has the keyboard.
 bool WorksInPanel(Action action) noexcept;

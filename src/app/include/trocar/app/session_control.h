@@ -17,7 +17,7 @@
 namespace trocar::app {
 
 /// What the foot, or a key in its place, presses.
-enum class Pedal { kCut, kCoagulate, kRinse, kAspirate };
+enum class Pedal { kCut, kCoagulate, kRinse, kAspirate, kClutch };
 
 /// Owns the running simulation and the mouse and keyboard that hold its instruments. Called from one thread.
 class SessionControl {
@@ -28,15 +28,18 @@ class SessionControl {
 
   /// Lets a device hold the hands that it sees; the mouse keeps the others. Where the device is lost the simulation is
   /// paused, and stays so when it comes back until the person starts it.
-  /// \param driver  of device::kChannelCount channels, unconfigured
-  void UseDevice(std::unique_ptr<device::Driver> driver);
+  /// \param driver   of device::kChannelCount channels, unconfigured
+  /// \param buttons  what its buttons do
+  void UseDevice(std::unique_ptr<device::Driver> driver,
+                 const device::ButtonMap& buttons = device::DefaultButtons());
   /// What the device last said about itself, once each; empty where there is nothing new.
   std::string TakeDeviceMessage();
 
   /// Lets a haptic device hold the hands that it has channels for (the right one, or both), with force.
-  /// \param name  as device::MakeForceDriver reads it
+  /// \param name     as device::MakeForceDriver reads it
+  /// \param buttons  what the styluses' buttons behind safety switch and jaws do
   /// \return kDeviceSettings, the driver's error or kHapticSupervisor
-  core::Status UseHaptics(std::string_view name);
+  core::Status UseHaptics(std::string_view name, const device::ButtonMap& buttons = device::DefaultButtons());
   /// The haptic loop, or nullptr without one.
   session::HapticLoop* Haptics() { return haptic_loop_.get(); }
 
@@ -73,14 +76,19 @@ class SessionControl {
   device::Channel GetHand() const { return hand_; }
   /// While held, the pointer and the keys move the laparoscope.
   void HoldLaparoscope(bool is_held);
+  /// The automatic holder keeps both tips in the picture; taking the laparoscope ends it, where it is.
+  void SetCameraHolder(bool is_on) { input_.settings.holds_camera = is_on; }
+  bool HasCameraHolder() const { return input_.settings.holds_camera; }
   bool IsLaparoscopeHeld() const { return device_.GetChosen() == device::kLaparoscope; }
   /// Asks for a tool of a hand's tray; a place that the tray does not have is ignored.
   void ChooseTool(session::Hand hand, std::size_t place);
   /// The next tool of the chosen hand, or with -1 the one before, round the tray.
   void StepTool(int step);
-  /// Of the chosen hand. Only one hand has pedals at a time: choosing the other releases them.
+  /// Of the chosen hand. Only one hand has pedals at a time: choosing the other releases them. Pedals of devices are apart.
   void SetPedal(Pedal pedal, bool is_down);
   void ReleasePedals();
+  /// The chosen hand's tool stands still although its device moves, until it is called again.
+  void ToggleFreeze();
   void CommandAssistant(session::AssistantCommand command) { input_.assistant = command; }
   /// Retract, relax, release, wait, and again.
   void StepAssistant();
@@ -103,17 +111,23 @@ class SessionControl {
   std::span<const session::SurfaceInfo> Surfaces() const { return runner_.Surfaces(); }
   std::span<const session::StrandInfo> Strands() const { return runner_.Strands(); }
   session::RunnerStatistics Statistics() const { return runner_.Statistics(); }
-  /// The input of the last Advance().
+  /// What the person wants by mouse, keys and panel, and where devices hold the hands.
   const session::Input& GetInput() const { return input_; }
+  /// What the last Advance() gave to the simulation: the pedals of devices are in it, too.
+  const session::Input& GetSentInput() const { return sent_; }
 
  private:
   SessionControl(session::Simulation simulation, const device::MouseKeyboardSettings& settings);
   void PlaceAtHome();
   void ApplyDevice();
+  void ApplyStylusButtons();
+  bool MayAct() const { return !IsPaused() && !is_demonstration_; }
 
   session::HapticLink haptic_link_;  // outlives both ends
   session::Runner runner_;
   std::unique_ptr<session::DeviceThread> device_thread_;  // may be null
+  session::DeviceHands device_hands_;                     // of that
+  session::DeviceHands stylus_hands_;                     // buttons of the haptic devices
   std::string device_message_;                            // the newest
   bool is_device_message_new_ = false;
   std::uint64_t device_losses_ = 0;
@@ -123,7 +137,7 @@ class SessionControl {
   core::Stopwatch since_start_;
   std::unique_ptr<net::IgtlServer> server_;  // may be null
   std::uint64_t served_tick_ = 0;
-  session::Input input_;
+  session::Input input_, sent_;
   device::Channel hand_ = device::kRightHand;
   bool is_demonstration_ = false;
   bool is_fulcrum_mirrored_ = false;

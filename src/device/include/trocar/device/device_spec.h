@@ -39,6 +39,10 @@ core::Result<DeviceSpec> ParseDeviceSpec(std::string_view text);
 core::Result<std::unique_ptr<Driver>> MakeDriver(std::string_view text, const DeviceStore& store,
                                                  Clock& clock);
 
+/// What the buttons of a device do, by the settings of its kind.
+/// \param text  as MakeDriver() takes it
+ButtonMap FindButtons(std::string_view text, const DeviceStore& store);
+
 /// A tracker alone, for calibration.
 /// \return kUsage also where the kind is no tracker
 core::Result<std::unique_ptr<PoseDriver>> MakeTracker(std::string_view text, const DeviceStore& store,

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "trocar/core/result.h"
+#include "trocar/device/hand_buttons.h"
 #include "trocar/device/jaw_sensor.h"
 #include "trocar/device/tracked_hands.h"
 
@@ -33,9 +34,14 @@ core::Result<TrackedHandsSettings> MakeHandsSettings(const TrackerEntry& entry);
 struct DeviceStore {
   std::map<std::string, TrackerEntry> trackers;  ///< by kind: "liberty"
   std::array<JawCalibration, kJawTools> jaws;
+  std::map<std::string, ButtonMap> buttons;  ///< by kind: "gamepad", "spacemouse", "haptics", "play"
+  /// Keys of a keyboard, or of a foot pedal that is one, by the name that the window system gives them: "F13", "b".
+  std::map<std::string, HandAct> keys;
 
   /// The entry of that kind, or the defaults.
   TrackerEntry Tracker(const std::string& kind) const;
+  /// What the buttons of that kind do, or the defaults.
+  ButtonMap Buttons(const std::string& kind) const;
   friend bool operator==(const DeviceStore&, const DeviceStore&) = default;
 };
 

@@ -12,6 +12,8 @@
 namespace trocar::device {
 
 /// - "simulated": two devices that move slowly and whose buttons nobody presses
+/// - "simulated:held": the same in the hands of somebody who answers the check pose in the first 3 s, left and right, then
+///   holds the safety switches
 /// - "openhaptics", "openhaptics:Left,Right": by the names that the maker's program gave them
 /// - "haply", "haply:2", "haply:2:10001": how many, and the port of the maker's service on this machine
 ///

@@ -64,6 +64,9 @@ struct ForceSample {
   ForceDeviceStatus status = ForceDeviceStatus::kLost;
 };
 
+/// Buttons of a stylus that have a fixed use, safety switch and jaws; those behind them are the hand's (HandButtons).
+inline constexpr unsigned kStylusOwnButtons = 2;
+
 /// A wire that another process can take over when ours dies: the file that the forces go out by, and the bytes
 /// that mean zero force on it.
 struct SupervisedWire {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstdint>
 
 namespace trocar::device {
 
@@ -16,6 +17,8 @@ struct HandSample {
   double jaw = 0;         ///< whole opening of the jaws [rad]
   double time = 0;        ///< of the device's own clock [s]
   bool is_valid = false;  ///< false: the hand is not seen; hold its last pose
+  /// Buttons and pedals of this hand that are down: bit n is button n + 1, as HandButtons reads them.
+  std::uint32_t buttons = 0;
 
   friend bool operator==(const HandSample&, const HandSample&) = default;
 };

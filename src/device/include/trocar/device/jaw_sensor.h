@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "trocar/device/driver.h"
@@ -46,6 +47,10 @@ class JawFramer {
   static Parsed Parse(std::string_view bytes, JawReading& reading) noexcept;
   Framer<JawReading, 32> framer_;
 };
+
+/// Raw values of a HID report, left and right: 16 bits each, low byte first. None where the report has another size, or for a
+/// value beyond kMaxJawRaw.
+std::array<std::optional<int>, kJawTools> ParseHidReport(std::string_view report) noexcept;
 
 /// "J,1,1234,512\r\n"
 std::string FormatReading(const JawReading& reading);

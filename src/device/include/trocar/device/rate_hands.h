@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -33,6 +34,8 @@ struct GamepadState {
     double x = 0, y = 0;  ///< stick, -1 to 1
     double trigger = 0;   ///< 0 to 1, pulled
     bool is_shoulder_down = false;
+    /// left: direction pad down, right, left, up, stick pressed, Back; right: A, B, X, Y, stick pressed, Start
+    std::uint32_t buttons = 0;
   };
   std::array<Side, 2> sides;  ///< left, right
 };
@@ -53,7 +56,7 @@ std::unique_ptr<GamepadSource> MakeSdlGamepad();
 std::vector<std::string> ListGamepads();
 
 /// Each stick moves the tip of its hand across; with the shoulder button held, in and out, and it turns the shaft. The
-/// trigger closes the jaws: as far as it is pulled.
+/// trigger closes the jaws: as far as it is pulled. Direction pad and letters are the buttons of left and right hand.
 class Gamepad : public Driver {
  public:
   /// \param clock  outlives the driver
@@ -79,6 +82,7 @@ class Gamepad : public Driver {
 struct SpaceMouseState {
   std::array<double, 3> push{}, turn{};
   std::array<bool, 2> is_button_down{};
+  std::uint32_t more_buttons = 0;  ///< bit n is the device's button n + 3, where it has so many
 };
 
 class SpaceMouseSource {
@@ -92,7 +96,8 @@ class SpaceMouseSource {
 /// Through spacenavd, which must run.
 std::unique_ptr<SpaceMouseSource> MakeSpacenavSource();
 
-/// Moves one hand; the left button closes and opens its jaws while held, the right one changes hands.
+/// Moves one hand; the left button closes and opens its jaws while held, the right one changes hands, further ones are that
+/// hand's buttons.
 class SpaceMouse : public Driver {
  public:
   SpaceMouse(std::unique_ptr<SpaceMouseSource> source, Clock& clock);

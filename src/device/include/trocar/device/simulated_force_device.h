@@ -37,6 +37,8 @@ struct SimulatedForceSettings {
   ForceLimits limits;     ///< of every channel; a Touch by default (domain facts 3.4)
   /// Where the hand leads a channel at a time since activation [s]; device frame [m]. Called in every read.
   std::function<math::Vec3(int channel, double time)> path;
+  /// Buttons that are held at that time, beside those of SetButtons(); may be empty.
+  std::function<std::uint32_t(int channel, double time)> buttons;
   int wire = -1;  ///< file that every force is written to, or -1; stays the caller's
 };
 /// Limits of the Touch as in the domain facts, sections 0, 3.4 and 3.5.

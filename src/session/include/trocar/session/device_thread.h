@@ -11,13 +11,10 @@
 #include "trocar/device/jaw_sensor.h"
 #include "trocar/device/mouse_keyboard.h"
 #include "trocar/device/ports.h"
+#include "trocar/session/device_hands.h"
 #include "trocar/session/scene.h"
 
 namespace trocar::session {
-
-/// Takes every hand that the device sees; the others stay as they are. A hand's numbers go through the same limits of
-/// joints and speed as any other input.
-void ApplyHands(const std::array<device::HandSample, device::kChannelCount>& samples, Input& input) noexcept;
 
 /// Tells a device that knows motion only where the scene's instruments start. Call it before the device is used.
 void PlaceAtHome(const Scene& scene, device::Driver& driver) noexcept;
@@ -26,7 +23,10 @@ void PlaceAtHome(const Scene& scene, device::Driver& driver) noexcept;
 struct DeviceReport {
   enum class Phase { kConnecting, kRunning, kLost };
   Phase phase = Phase::kConnecting;
-  std::array<device::HandSample, device::kChannelCount> samples;
+  DeviceSamples samples;
+  /// Buttons and pedals, debounced; all of them up once the device is lost, and until they have been let go of after it
+  /// came back.
+  DeviceActs acts;
   /// What calibration needs: pose of each hand's sensor in the source's frame where the device is a tracker, and each
   /// tool's unfiltered jaw value where it has a jaw sensor.
   std::array<std::optional<math::Pose>, device::kChannelCount> sensors;
@@ -40,8 +40,10 @@ struct DeviceReport {
 /// second. It comes back as an input only: nothing that a person has to switch on is switched on again from here.
 class DeviceThread {
  public:
-  /// \param driver  unconfigured, of device::kChannelCount channels; uses device::SystemClock()
-  explicit DeviceThread(std::unique_ptr<device::Driver> driver);
+  /// \param driver   unconfigured, of device::kChannelCount channels; uses device::SystemClock()
+  /// \param buttons  what its buttons do
+  explicit DeviceThread(std::unique_ptr<device::Driver> driver,
+                        const device::ButtonMap& buttons = device::DefaultButtons());
   ~DeviceThread();
   DeviceThread(const DeviceThread&) = delete;
   DeviceThread& operator=(const DeviceThread&) = delete;

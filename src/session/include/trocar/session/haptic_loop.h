@@ -16,6 +16,7 @@
 #include "trocar/device/force_driver.h"
 #include "trocar/haptics/check_pose.h"
 #include "trocar/haptics/haptic_channel.h"
+#include "trocar/session/device_hands.h"
 #include "trocar/session/scene.h"
 #include "trocar/session/snapshot.h"
 #include "trocar/session/supervisor_link.h"
@@ -45,6 +46,8 @@ HapticHand MakeHapticHand(const Scene& scene, const Pose& X_world_laparoscope, H
 struct HapticHands {
   std::array<bool, kHandCount> is_driven{};
   std::array<instrument::TrocarJoints, kHandCount> joints;
+  DeviceActs
+      acts;  ///< of the styluses' buttons behind safety switch and jaws; up where a device is lost or silent
 };
 
 /// One hand's force feedback, for the person and the record.
@@ -55,8 +58,14 @@ struct HapticHandStatus {
   std::uint8_t limits = 0;                                ///< haptics::GateLimit
   double force = 0;                                       ///< in the hand [N]
   double heat = 0;                                        ///< of the motors, 1 is what they bear for ever [-]
-  bool is_warm = false;  ///< the device says so, or the force is held back for heat
+  bool is_warm = false;           ///< the device says so, or the force is held back for heat
+  bool is_switch_held = false;    ///< the safety switch
+  std::uint64_t armed_ticks = 0;  ///< with force, ramping included, since the start
+  std::uint64_t clamped_ticks =
+      0;                 ///< in which the force would have been larger than the device's, since the start
+  double max_force = 0;  ///< since the start [N]
   haptics::DeviceGuardCounts counts;
+  device::HandActs acts;  ///< of the stylus
 };
 
 /// Of the whole loop; times over the last second.
@@ -66,7 +75,7 @@ struct HapticStatus {
   std::uint64_t overruns = 0;                              ///< so late that the force had to go
   double rate = 0;                                         ///< [1/s]
   double period_p50 = 0, period_p999 = 0, period_max = 0;  ///< [s]
-  double cpu_p999 = 0;                                     ///< processor time of a tick [s]
+  double cpu_p999 = 0, cpu_max = 0;                        ///< processor time of a tick [s]
   bool is_real_time = false;                               ///< SCHED_FIFO was granted
   bool is_supervised = false;
   haptics::CheckPoseState check_pose = haptics::CheckPoseState::kUnconfirmed;
@@ -86,13 +95,36 @@ struct HapticLink {
   core::NewestSlot<HapticHands> hands;                                    ///< loop to simulation
 };
 
+/// The simulation's end of the link: hands and pedals of the haptic devices take the place of the input's.
+class HapticHandsReader {
+ public:
+  /// Ticks without news from the loop after which it holds no pedal any more: a loop that stands still burns nothing.
+  static constexpr int kLongestSilence = 12;
+
+  /// Call it once a tick. Does nothing while no loop runs.
+  /// \note Real-time safe.
+  void Take(HapticLink& link, Input& input) noexcept;
+
+ private:
+  int silent_ticks_ = 0;
+};
+
 struct HapticLoopSettings {
-  std::vector<HapticHand> hands;                 ///< one a channel of the driver
-  std::filesystem::path supervisor;              ///< program trocar-supervisor; empty: none, and no force
-  double period = 0.001;                         ///< [s]
+  std::vector<HapticHand> hands;     ///< one a channel of the driver
+  std::filesystem::path supervisor;  ///< program trocar-supervisor; empty: none, and no force
+  double period = 0.001;             ///< [s]
+  device::ButtonMap buttons = device::DefaultButtons();
   CountAllocations count_allocations = nullptr;  ///< counts what the ticks allocate, for benchmarks
   double spin = 0.00025;  ///< waited for actively before each tick, because sleep wakes late [s]
 };
+
+/// Settings that let a device's channels be the right hand, or both.
+/// \param X_world_laparoscope  as in a snapshot
+/// \param buttons              of the styluses, behind safety switch and jaws
+/// \return kDeviceSettings where the device has more channels than a person has hands
+core::Result<HapticLoopSettings> MakeHapticSettings(const device::ForceDriver& driver, const Scene& scene,
+                                                    const Pose& X_world_laparoscope,
+                                                    const device::ButtonMap& buttons);
 
 /// Owns the driver and the thread.
 class HapticLoop {

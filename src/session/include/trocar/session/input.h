@@ -40,6 +40,8 @@ struct LiveSettings {
   double gravity = 9.81;       ///< [m/s^2], 0 to 30
   double head_up = 0;          ///< reverse Trendelenburg [rad], -0.6 to 0.6
   double right_up = 0;         ///< patient's right side up [rad], -0.6 to 0.6
+  /// The automatic holder moves the laparoscope: it keeps both tips in the picture, and Input::laparoscope is not used.
+  bool holds_camera = false;
   tissue::SolverSettings solver;
 
   friend bool operator==(const LiveSettings&, const LiveSettings&) = default;

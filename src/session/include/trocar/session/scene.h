@@ -149,7 +149,13 @@ struct ViewWish {
   double most_depth = 0.28;    ///< of the lens [m]
 };
 /// Joints of a laparoscope that shows it, with the light post that does it best; nothing where none can.
-std::optional<instrument::TrocarJoints> FindView(const LaparoscopeSetup& setup, const ViewWish& wish);
+/// \note Real-time safe, as the one below.
+std::optional<instrument::TrocarJoints> FindView(const LaparoscopeSetup& setup,
+                                                 const ViewWish& wish) noexcept;
+/// The same with the light post as it is; `facing` is not looked at.
+/// \param spin  of the light post [rad]
+std::optional<instrument::TrocarJoints> FindView(const LaparoscopeSetup& setup, const ViewWish& wish,
+                                                 double spin) noexcept;
 
 /// The script's input at `time` [s], clamped to its first and last key; the home pose without a script.
 Input CalcScriptInput(const Scene& scene, double time);

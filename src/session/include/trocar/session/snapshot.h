@@ -105,7 +105,8 @@ struct Snapshot {
   OperationSnapshot operation;
   std::vector<ObjectSnapshot> objects;  ///< (Scene::objects)
   TaskSnapshot task;
-  Pose X_world_laparoscope;          ///< origin at the lens, looking along -z, +y up in the picture
+  instrument::TrocarJoints laparoscope;  ///< after limits
+  Pose X_world_laparoscope;              ///< origin at the lens, looking along -z, +y up in the picture
   double residual = 0;               ///< largest node residual, relative: see tissue/solver_settings.h [-]
   int iterations = 0;                ///< of the solver in this tick
   std::size_t contacts = 0;          ///< contact springs of this tick

@@ -40,6 +40,10 @@ inline constexpr int kToolBodyCount = 3;
 std::array<collision::Capsule, kToolBodyCount> CalcToolBodies(const instrument::Tool& tool, double jaw,
                                                               const Pose& X_world_tool) noexcept;
 
+/// Whether the tool opens and closes. A hook, a tube or a bag is one rod before its shaft: its kUpperJaw.
+bool HasJaws(const instrument::Tool& tool) noexcept;
+bool IsThere(const instrument::Tool& tool, ToolBody body) noexcept;
+
 /// Blades, and the legs of a clip, slip around ducts and vessels and close on them: these jaws neither push a tube nor
 /// are stopped by one. Their shaft is.
 bool ClosesAroundTubes(const instrument::Tool& tool) noexcept;
@@ -47,7 +51,8 @@ bool ClosesAroundTubes(const instrument::Tool& tool) noexcept;
 /// Whether a jaw that pushes tissue along `normal` pushes it towards the other jaw: tissue between the jaws, which
 /// does not push the tool away.
 /// \note Real-time safe.
-bool IsPinch(ToolBody body, const Pose& X_world_tool, const Vec3& normal) noexcept;
+bool IsPinch(const instrument::Tool& tool, ToolBody body, const Pose& X_world_tool,
+             const Vec3& normal) noexcept;
 
 /// What a tool touches. Surfaces are counted as organs first, then tubes.
 struct Touchables {
@@ -66,6 +71,7 @@ struct ContactLink {
   bool is_friction = false;  ///< the spring runs along the surface; its normal contact stands before it
   bool is_pinch = false;     ///< of a jaw's inner side
   Vec3 p_device;             ///< point of the device's axis that presses [m]
+  double held_back = 0;      ///< how much farther the device's surface is than the spring pushes [m]
   Vec3 p_tool_stuck;         ///< point of the tool that sticks to the tissue, tool frame [m]
   double normal_force = 0;   ///< after the solve [N]
 };

@@ -19,8 +19,7 @@ namespace trocar::surgery {
 
 struct OrganContactSettings {
   double stiffness = 100.0;  ///< of each spring [N/m]
-  double ahead = 0.003;      ///< a vertex is watched from this far ahead of touch [m]
-  double margin = 0.0003;    ///< the other organ's surface is, from this far [m]
+  double ahead = 0.003;      ///< springs are made from this far ahead of touch [m]
   double reach = 0.008;      ///< a vertex deeper than this has no near wall to be pushed back through [m]
 };
 

@@ -34,6 +34,7 @@ struct DemoOptions {
   std::function<core::Status(const session::Simulation&)> on_start;  ///< before the first tick; may be empty
   /// may change the script's input of a tick at that time [s]; may be empty
   std::function<void(double, session::Input&)> change_input;
+  std::function<void(session::Simulation&)> after_step;   ///< after every tick, before on_tick; may be empty
   std::function<void(const session::Snapshot&)> on_tick;  ///< after every tick; may be empty
   std::function<void(double)> on_progress;                ///< share done, 0 to 1, once a frame; may be empty
 };

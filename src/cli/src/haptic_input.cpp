@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "haptic_input.h"
+
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <algorithm>
+#include <utility>
+
+#include "command.h"
+#include "trocar/core/log.h"
+#include "trocar/core/safe_file.h"
+#include "trocar/device/device_store.h"
+#include "trocar/device/force_device_spec.h"
+#include "trocar/device/ports.h"
+
+namespace trocar::cli {
+
+using session::HapticHandStatus;
+
+namespace {
+
+/// What the person has to do before force can come.
+std::string NextStep(const session::HapticStatus& status) {
+  switch (status.check_pose) {
+    case haptics::CheckPoseState::kConfirmed:
+      return "hold the safety switches (the first buttons)";
+    case haptics::CheckPoseState::kWrongDevice:
+      return "another device answered the check pose: exchange left and right, and start again";
+    case haptics::CheckPoseState::kUnconfirmed:
+    case haptics::CheckPoseState::kAsking:
+      break;
+  }
+  return std::string("bring the ") + (status.asked == session::kLeft ? "left" : "right") +
+         " device to the middle of its reach and hold its first button";
+}
+
+}  // namespace
+
+void AddHapticOptions(CLI::App& command, HapticOptions& options) {
+  CLI::Option* haptics =
+      command
+          .add_option("--haptics", options.name,
+                      "Hands of a haptic device in place of the script's: " + device::ListForceDrivers())
+          ->type_name("DEVICE");
+  command
+      .add_flag("--force", options.has_force,
+                "Asks for force: it comes when the check pose is answered and the safety switch held")
+      ->needs(haptics);
+  command
+      .add_option("--haptic-record", options.record,
+                  "Write rates, forces and every change of the force feedback to this file (JSON)")
+      ->needs(haptics)
+      ->type_name("FILE");
+}
+
+core::Result<std::unique_ptr<HapticInput>> HapticInput::Open(const HapticOptions& options,
+                                                             const session::Simulation& simulation) {
+  auto driver = device::MakeForceDriver(options.name);
+  if (!driver) return driver.error();
+  const auto settings = session::MakeHapticSettings(**driver, simulation.GetScene(),
+                                                    simulation.GetSnapshot().X_world_laparoscope,
+                                                    LoadStoreOrWarn().Buttons("haptics"));
+  if (!settings) return settings.error();
+  std::unique_ptr<HapticInput> input(new HapticInput);
+  auto loop = session::HapticLoop::Start(std::move(*driver), *settings, input->link_);
+  if (!loop) return loop.error();
+  input->loop_ = std::move(*loop);
+  input->wants_force_ = options.has_force;
+  input->record_file_ = options.record;
+  if (options.has_force) input->loop_->BeginCheckPose();
+  input->since_start_ = {};
+  return input;
+}
+
+void HapticInput::Apply(double time, session::Input& input) {
+  device::SystemClock().Sleep(time - since_start_.Seconds());
+  hands_.Take(link_, input);
+}
+
+void HapticInput::AfterStep(session::Simulation& simulation) {
+  for (const session::Hand hand : {session::kLeft, session::kRight}) {
+    simulation.CutPatch(hand, link_.patches[hand].Back());
+    link_.patches[hand].Publish();
+  }
+  const session::HapticStatus& status = loop_->Latest();
+  record_.Add(since_start_.Seconds(), status);
+  AskForForce(status);
+}
+
+core::Status HapticInput::SaveRecord() const {
+  return record_file_.empty() ? core::Status{} : core::WriteFile(record_file_, record_.FormatJson());
+}
+
+/// Asks while every safety switch is held, until any hand has felt force. From then on nothing asks.
+void HapticInput::AskForForce(const session::HapticStatus& status) {
+  if (!wants_force_) return;
+  const std::string step = NextStep(status);
+  if (step != said_) core::Log(core::LogLevel::kInfo, "force feedback: " + step);
+  said_ = step;
+  wants_force_ = std::none_of(status.hands.begin(), status.hands.end(), [](const HapticHandStatus& hand) {
+    return hand.state != haptics::ArmState::kUnarmed;
+  });
+  const bool are_held =
+      std::all_of(status.hands.begin(), status.hands.end(),
+                  [](const HapticHandStatus& hand) { return !hand.is_present || hand.is_switch_held; });
+  if (wants_force_ && are_held && status.check_pose == haptics::CheckPoseState::kConfirmed)
+    loop_->RequestArm();
+}
+
+}  // namespace trocar::cli

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "hd_devices.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "trocar/device/ports.h"
+
+namespace trocar::device {
+namespace {
+
+using core::ErrorCode;
+using math::Vec3;
+
+constexpr double kMillimetre = 0.001;
+constexpr double kLongestWait = 0.5;  // for the scheduler to end [s]
+/// Errors that one frame may leave in the library's queue.
+constexpr int kMaxErrors = 16;
+
+Vec3 FromMillimetres(const double* v) noexcept {
+  return Vec3{v[0], v[1], v[2]} * kMillimetre;
+}
+
+/// Rotation of a column-major 4 x 4 matrix.
+math::Quaternion RotationOf(const std::array<double, 16>& m) noexcept {
+  const Vec3 x = math::Normalized(Vec3{m[0], m[1], m[2]}, {1, 0, 0});
+  const Vec3 y =
+      math::Normalized(Vec3{m[4], m[5], m[6]} - x * math::Dot(x, Vec3{m[4], m[5], m[6]}), {0, 1, 0});
+  return math::RotationFromAxes(x, y, math::Cross(x, y));
+}
+
+}  // namespace
+
+core::Error HdDevices::LibraryError(const std::string& what, unsigned int code) const {
+  const char* text = libhd_->get_error_string(code);
+  return {ErrorCode::kDeviceLost, what + ": " + (text != nullptr ? text : "unknown error") +
+                                      "; run the maker's diagnostic program, and check plug and power"};
+}
+
+core::Result<ForceLimits> HdDevices::OpenDevice(const std::string& name) {
+  const hd::Handle device = libhd_->init_device(name.c_str());
+  const hd::ErrorInfo error = libhd_->get_error();
+  if (device == hd::kInvalidHandle || (error.code != hd::kSuccess && !hd::IsPassing(error.code)))
+    return LibraryError("\"" + name + "\" does not open", error.code);
+  devices_.push_back(device);
+  libhd_->make_current(device);
+  ForceLimits limit;
+  libhd_->get_doubles(hd::kMaxForce, &limit.max_force);
+  libhd_->get_doubles(hd::kMaxContinuousForce, &limit.max_continuous_force);
+  double newtons_per_millimetre = 0;
+  libhd_->get_doubles(hd::kMaxStiffness, &newtons_per_millimetre);
+  limit.max_stiffness = newtons_per_millimetre / kMillimetre;
+  std::array<double, 6> box{};
+  libhd_->get_doubles(hd::kUsableWorkspace, box.data());
+  limit.workspace_min = FromMillimetres(box.data());
+  limit.workspace_max = FromMillimetres(box.data() + 3);
+  if (!(limit.max_force > 0.0) || !std::isfinite(limit.max_force)) {
+    return core::Error{
+        ErrorCode::kDeviceSettings,
+        "\"" + name + "\" does not say how much force it bears; no force can be sent to it safely"};
+  }
+  libhd_->enable(hd::kForceOutput);
+  return limit;
+}
+
+void HdDevices::ReadDevice(std::size_t i) noexcept {
+  ForceSample& sample = newest_[i];
+  std::array<double, 3> v{};
+  std::array<double, 16> m{};
+  libhd_->get_doubles(hd::kPosition, v.data());
+  sample.position = FromMillimetres(v.data());
+  libhd_->get_doubles(hd::kVelocity, v.data());
+  sample.velocity = FromMillimetres(v.data());
+  libhd_->get_doubles(hd::kTransform, m.data());
+  sample.orientation = RotationOf(m);
+  int buttons = 0;
+  libhd_->get_integers(hd::kButtons, &buttons);
+  sample.buttons = static_cast<std::uint32_t>(buttons);
+  std::array<double, 8> heat{};
+  libhd_->get_doubles(hd::kMotorTemperature, heat.data());
+  sample.temperature = *std::max_element(heat.begin(), heat.end());
+  sample.jaw = std::nan("");
+  sample.is_calibrated = libhd_->check_calibration() == hd::kCalibrationGood;
+  ++sample.sequence;
+}
+
+/// Empties the library's queue of errors. \return false for one that does not pass
+bool HdDevices::TakeErrors(std::size_t i) noexcept {
+  is_warm_[i] = false;
+  for (int n = 0; n < kMaxErrors; ++n) {
+    const hd::ErrorInfo error = libhd_->get_error();
+    if (error.code == hd::kSuccess) break;
+    if (!hd::IsPassing(error.code)) return false;
+    is_warm_[i] = true;
+  }
+  return true;
+}
+
+hd::CallbackCode HdDevices::Tick() noexcept {
+  const bool is_ending = is_stopping_.load(std::memory_order_acquire);
+  const bool may_push = !is_ending && !mailbox_.IsLost();
+  const ForceMailbox::Forces forces = may_push ? mailbox_.TakeForces() : ForceMailbox::Forces{};
+  for (std::size_t i = 0; i < devices_.size(); ++i) {
+    libhd_->begin_frame(devices_[i]);
+    libhd_->make_current(devices_[i]);
+    ReadDevice(i);
+    // a warm device gets nothing until a frame has passed without complaint
+    const Vec3 force = is_warm_[i] ? Vec3{} : forces[i];
+    const std::array<double, 3> newtons = {force.x, force.y, force.z};
+    libhd_->set_doubles(hd::kForce, newtons.data());
+    libhd_->end_frame(devices_[i]);
+    if (!TakeErrors(i)) mailbox_.SetLost();
+    newest_[i].status = is_warm_[i] ? ForceDeviceStatus::kWarm : ForceDeviceStatus::kOk;
+  }
+  mailbox_.Report(newest_);
+  if (!is_ending) return hd::kContinue;
+  has_stopped_.store(true, std::memory_order_release);
+  return hd::kDone;
+}
+
+core::Status HdDevices::Open(const OpenHapticsSettings& settings, std::vector<ForceLimits>& limits) {
+  auto library = hd::Library::Load(settings.hd_file);
+  if (!library) return library.error();
+  libhd_ = std::move(*library);
+  // all devices before the scheduler
+  for (const std::string& name : settings.names) {
+    core::Result<ForceLimits> opened = OpenDevice(name);
+    if (!opened) {
+      Close();
+      limits.clear();
+      return opened.error();
+    }
+    limits.push_back(*opened);
+  }
+  return {};
+}
+
+core::Status HdDevices::Start() {
+  is_stopping_ = has_stopped_ = false;
+  newest_ = {};
+  is_warm_ = {};
+  is_started_ = true;
+  callback_ = libhd_->schedule(&HdDevices::OnTick, this, hd::kMaxPriority);
+  libhd_->start_scheduler();
+  if (const hd::ErrorInfo error = libhd_->get_error();
+      error.code != hd::kSuccess && !hd::IsPassing(error.code)) {
+    Stop();
+    return LibraryError("the haptic scheduler does not start", error.code);
+  }
+  return {};
+}
+
+/// The scheduler's own thread sends the last zero; then it is stopped, and only then may devices go.
+void HdDevices::Stop() noexcept {
+  if (!is_started_) return;
+  is_started_ = false;
+  is_stopping_.store(true, std::memory_order_release);
+  for (double waited = 0; !has_stopped_.load(std::memory_order_acquire) && waited < kLongestWait;
+       waited += 0.001)
+    SystemClock().Sleep(0.001);
+  libhd_->stop_scheduler();
+  libhd_->unschedule(callback_);
+}
+
+void HdDevices::Close() noexcept {
+  if (libhd_ == nullptr) return;
+  Stop();
+  for (const hd::Handle device : devices_) libhd_->disable_device(device);
+  devices_.clear();
+  libhd_.reset();
+}
+
+}  // namespace trocar::device

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file hd_devices.h  libHD in this process: devices, the one scheduler, and what its thread does a thousand times a second.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "hd_end.h"
+#include "hd_library.h"
+
+namespace trocar::device {
+
+class HdDevices : public HdEnd {
+ public:
+  /// \param mailbox  outlives this; its other end may be in another process
+  explicit HdDevices(ForceMailbox& mailbox) noexcept : mailbox_(mailbox) {}
+  ~HdDevices() override { Close(); }
+  HdDevices(const HdDevices&) = delete;
+  HdDevices& operator=(const HdDevices&) = delete;
+
+  core::Status Open(const OpenHapticsSettings& settings, std::vector<ForceLimits>& limits) override;
+  core::Status Start() override;
+  void Stop() noexcept override;
+  void Close() noexcept override;
+  ForceMailbox& Mailbox() noexcept override { return mailbox_; }
+
+ private:
+  static hd::CallbackCode OnTick(void* self) { return static_cast<HdDevices*>(self)->Tick(); }
+  hd::CallbackCode Tick() noexcept;
+  void ReadDevice(std::size_t i) noexcept;
+  bool TakeErrors(std::size_t i) noexcept;
+  core::Result<ForceLimits> OpenDevice(const std::string& name);
+  core::Error LibraryError(const std::string& what, unsigned int code) const;
+
+  ForceMailbox& mailbox_;
+  std::unique_ptr<hd::Library> libhd_;
+  std::vector<hd::Handle> devices_;
+  hd::SchedulerHandle callback_ = 0;
+  bool is_started_ = false;
+  ForceMailbox::Reports newest_;  // of the library's thread
+  std::array<bool, ForceMailbox::kMaxDevices> is_warm_{};
+  std::atomic<bool> is_stopping_{false}, has_stopped_{false};
+};
+
+}  // namespace trocar::device

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/device/companion.h"
+
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/mman.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <string>
+#include <system_error>
+#include <utility>
+
+#include "trocar/device/ports.h"
+
+extern char** environ;
+
+namespace trocar::device {
+
+std::filesystem::path Companion::Find(const char* name) {
+  std::error_code failure;
+  const auto folder = std::filesystem::read_symlink("/proc/self/exe", failure).parent_path();
+  const auto installed = folder.parent_path() / "libexec/trocar" / name;
+  return std::filesystem::exists(installed, failure) ? installed : folder / name;
+}
+
+core::Result<Companion> Companion::Start(const std::filesystem::path& program, const char* option,
+                                         std::size_t bytes, core::ErrorCode code, const std::string& remedy) {
+  const auto fail = [&](const std::string& what) { return core::Error{code, what + "; " + remedy}; };
+  Companion companion;
+  // high numbers, so that moving them to 3 and 4 in the child closes neither
+  int ends[2];
+  if (::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends) != 0) return fail("no socket pair");
+  companion.socket_ = ends[0];
+  const int their_end = ::fcntl(ends[1], F_DUPFD_CLOEXEC, 10);
+  ::close(ends[1]);
+  const int memory = ::memfd_create(program.filename().c_str(), MFD_CLOEXEC);
+  const int their_page = ::fcntl(memory, F_DUPFD_CLOEXEC, 10);
+  ::close(memory);
+  const auto close_theirs = [&] { ::close(their_end), ::close(their_page); };
+  void* mapped = MAP_FAILED;
+  if (their_end >= 0 && their_page >= 0 && ::ftruncate(their_page, static_cast<off_t>(bytes)) == 0)
+    mapped = ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_SHARED, their_page, 0);
+  if (mapped == MAP_FAILED) {
+    close_theirs();
+    return fail("no shared memory");
+  }
+  companion.page_ = mapped;
+  companion.bytes_ = bytes;
+
+  posix_spawn_file_actions_t actions;
+  posix_spawnattr_t attributes;
+  ::posix_spawn_file_actions_init(&actions);
+  ::posix_spawnattr_init(&attributes);
+  ::posix_spawn_file_actions_adddup2(&actions, their_end, kSocket);
+  ::posix_spawn_file_actions_adddup2(&actions, their_page, kPage);
+  ::posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSID);
+  const std::string name = program.string();
+  char* const arguments[] = {const_cast<char*>(name.c_str()), const_cast<char*>(option), nullptr};
+  const int failed =
+      ::posix_spawn(&companion.process_, name.c_str(), &actions, &attributes, arguments, environ);
+  ::posix_spawn_file_actions_destroy(&actions);
+  ::posix_spawnattr_destroy(&attributes);
+  close_theirs();
+  if (failed != 0) {
+    companion.process_ = -1;
+    return fail("cannot start " + name + " (" + std::strerror(failed) + ")");
+  }
+  return companion;
+}
+
+Companion::Companion(Companion&& other) noexcept {
+  *this = std::move(other);
+}
+
+Companion& Companion::operator=(Companion&& other) noexcept {
+  std::swap(process_, other.process_);
+  std::swap(socket_, other.socket_);
+  std::swap(page_, other.page_);
+  std::swap(bytes_, other.bytes_);
+  return *this;
+}
+
+Companion::~Companion() {
+  End();
+}
+
+void Companion::End() noexcept {
+  if (socket_ >= 0) ::close(socket_);
+  if (page_ != nullptr) ::munmap(page_, bytes_);
+  if (process_ <= 0) return;
+  constexpr double kLook = 0.001;  // [s]
+  for (double waited = 0; waited < kPatience; waited += kLook) {
+    if (::waitpid(process_, nullptr, WNOHANG) != 0) return;
+    SystemClock().Sleep(kLook);
+  }
+  ::kill(process_, SIGKILL);
+  ::waitpid(process_, nullptr, 0);
+}
+
+}  // namespace trocar::device

@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: Apache-2.0
+// libHD in the supervisor's process: what the motors do when the simulator's process is killed, stopped or well.
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/mman.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <functional>
+#include <new>
+#include <string>
+#include <vector>
+
+#include "stand_in_gate.h"
+#include "stand_in_hd.h"
+#include "trocar/core/clock.h"
+#include "trocar/device/open_haptics.h"
+#include "trocar/device/ports.h"
+
+namespace trocar::session {
+namespace {
+
+namespace fs = std::filesystem;
+using device::ForceSample;
+using device::OpenHaptics;
+using device::ReadStatus;
+
+bool WaitFor(double seconds, const std::function<bool()>& is_reached) {
+  const core::Stopwatch watch;
+  while (watch.Seconds() < seconds) {
+    if (is_reached()) return true;
+    device::SystemClock().Sleep(0.0002);
+  }
+  return is_reached();
+}
+
+class OpenHapticsHost : public testing::Test {
+ protected:
+  void SetUp() override {
+    page_ = fs::path(testing::TempDir()) / ("trocar_stand_in_" + std::to_string(::getpid()));
+    const int file = ::open(page_.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
+    ASSERT_EQ(::ftruncate(file, sizeof(StandInState)), 0);
+    void* memory = ::mmap(nullptr, sizeof(StandInState), PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
+    ::close(file);
+    ASSERT_NE(memory, MAP_FAILED);
+    motors_ = new (memory) StandInState;
+    ::setenv(kStandInPage, page_.c_str(), 1);
+    settings_.hd_file = TROCAR_STAND_IN_HD;
+    settings_.names = {"Left", "Right"};
+    settings_.host = TROCAR_SUPERVISOR;
+  }
+  void TearDown() override {
+    ::unsetenv(kStandInPage);
+    ::munmap(motors_, sizeof(StandInState));
+    fs::remove(page_);
+  }
+  bool IsPushing() const { return motors_->forces[0][0] != 0 || motors_->forces[1][0] != 0; }
+
+  /// Another process that pushes with both devices until it is killed. Returns once the motors push.
+  pid_t StartVictim() {
+    const pid_t process = ::fork();
+    if (process == 0) {
+      OpenHaptics driver(settings_);
+      if (!driver.Configure() || !driver.Activate()) ::_exit(1);
+      for (;;) {
+        for (int channel = 0; channel < 2; ++channel)
+          driver.SendForce(channel, haptics::ForceGate::Make({1.5, 0, 0}));
+        device::SystemClock().Sleep(0.001);
+      }
+    }
+    EXPECT_TRUE(WaitFor(10, [&] { return IsPushing(); }));
+    device::SystemClock().Sleep(0.05);
+    EXPECT_TRUE(IsPushing()) << "it goes on pushing";
+    return process;
+  }
+  static void Kill(pid_t process) {
+    ::kill(process, SIGKILL);
+    ::waitpid(process, nullptr, 0);
+  }
+
+  device::OpenHapticsSettings settings_;
+  fs::path page_;
+  StandInState* motors_ = nullptr;
+};
+
+TEST_F(OpenHapticsHost, ReadsAndPushesThroughTheOtherProcess) {
+  OpenHaptics driver(settings_);
+  const core::Status configured = driver.Configure();
+  ASSERT_TRUE(configured.ok()) << configured.error().Text();
+  EXPECT_NE(motors_->process, ::getpid()) << "the library lives elsewhere";
+  EXPECT_EQ(motors_->devices, 2);
+  EXPECT_EQ(driver.GetLimits(0).max_force, 3.3);
+  EXPECT_NEAR(driver.GetLimits(1).max_stiffness, 1020, 1e-9);
+  ASSERT_TRUE(driver.Activate().ok());
+  std::array<ForceSample, 2> samples;
+  ASSERT_TRUE(WaitFor(3, [&] { return driver.ReadForceSamples(samples) == ReadStatus::kFresh; }));
+  EXPECT_NEAR(samples[0].position.x, -0.04, 1e-12);
+  EXPECT_NEAR(samples[1].position.x, 0.04, 1e-12);
+  EXPECT_EQ(samples[0].buttons, 1u);
+  EXPECT_FALSE(IsPushing());
+  ASSERT_TRUE(WaitFor(3, [&] {
+    driver.SendForce(1, haptics::ForceGate::Make({0.75, 0, 0}));
+    return motors_->forces[1][0] == 0.75;
+  }));
+  EXPECT_EQ(motors_->forces[0][0], 0.0) << "only the device that is meant";
+  ASSERT_TRUE(WaitFor(3, [&] { return !IsPushing(); })) << "nobody renewed it";
+  ASSERT_TRUE(driver.Deactivate().ok());
+  ASSERT_TRUE(driver.Activate().ok()) << "and again";
+  ASSERT_TRUE(WaitFor(3, [&] { return driver.ReadForceSamples(samples) == ReadStatus::kFresh; }));
+  driver.Finalize();
+  EXPECT_EQ(motors_->devices, 0);
+  EXPECT_EQ(motors_->misuses, 0);
+}
+
+// faults D10. The times are printed, for docs/haptics.md; with TROCAR_REPEATS more of them
+TEST_F(OpenHapticsHost, AKilledSimulatorsForceEnds) {
+  const char* repeats = std::getenv("TROCAR_REPEATS");
+  const int count = repeats != nullptr ? std::max(1, std::atoi(repeats)) : 3;
+  std::vector<double> times;
+  for (int i = 0; i < count; ++i) {
+    const pid_t victim = StartVictim();
+    const core::Stopwatch watch;
+    ::kill(victim, SIGKILL);
+    ASSERT_TRUE(WaitFor(5, [&] { return !IsPushing(); }));
+    times.push_back(1e3 * watch.Seconds());
+    ::waitpid(victim, nullptr, 0);
+    ASSERT_TRUE(WaitFor(5, [&] { return motors_->devices == 0; })) << "the library is given back, too";
+    ASSERT_FALSE(IsPushing());
+  }
+  std::sort(times.begin(), times.end());
+  std::printf(
+      "openhaptics, killed: zero at the motors after %.2f ms (median of %d), %.2f (p99), %.2f (longest)\n",
+      times[times.size() / 2], count, times[times.size() * 99 / 100], times.back());
+}
+
+TEST_F(OpenHapticsHost, AStoppedSimulatorsForceEnds) {
+  const pid_t victim = StartVictim();
+  ::kill(victim, SIGSTOP);
+  EXPECT_TRUE(WaitFor(5, [&] { return !IsPushing(); }));
+  device::SystemClock().Sleep(0.05);
+  EXPECT_FALSE(IsPushing());
+  Kill(victim);
+  EXPECT_TRUE(WaitFor(5, [&] { return motors_->devices == 0; }));
+}
+
+// the negative control: with the library in the simulator's own process nobody is left to send zero
+TEST_F(OpenHapticsHost, WithoutAHostAKilledSimulatorsForceStays) {
+  settings_.host.clear();
+  const pid_t victim = StartVictim();
+  Kill(victim);
+  device::SystemClock().Sleep(0.2);
+  EXPECT_TRUE(IsPushing());
+}
+
+TEST_F(OpenHapticsHost, AHostThatDiesIsALostDeviceThatComesBack) {
+  OpenHaptics driver(settings_);
+  ASSERT_TRUE(driver.Configure().ok());
+  ASSERT_TRUE(driver.Activate().ok());
+  std::array<ForceSample, 2> samples;
+  ASSERT_TRUE(WaitFor(3, [&] { return driver.ReadForceSamples(samples) == ReadStatus::kFresh; }));
+  ::kill(motors_->process, SIGKILL);
+  ASSERT_TRUE(WaitFor(5, [&] { return driver.ReadForceSamples(samples) == ReadStatus::kLost; }));
+  EXPECT_EQ(samples[0].status, device::ForceDeviceStatus::kLost);
+  EXPECT_EQ(driver.GetState(), device::DriverState::kUnconfigured);
+  motors_->devices = 0;  // the system takes them from a dead process
+  ASSERT_TRUE(driver.Configure().ok());
+  ASSERT_TRUE(driver.Activate().ok());
+  EXPECT_TRUE(WaitFor(3, [&] { return driver.ReadForceSamples(samples) == ReadStatus::kFresh; }));
+}
+
+TEST_F(OpenHapticsHost, ErrorsOfTheLibraryComeThrough) {
+  settings_.hd_file = "libHD_that_nobody_has.so";
+  const core::Status missing = OpenHaptics(settings_).Configure();
+  ASSERT_FALSE(missing.ok());
+  EXPECT_EQ(missing.error().code, core::ErrorCode::kDeviceUnsupported);
+  EXPECT_NE(missing.error().message.find("install"), std::string::npos);
+  settings_.hd_file = TROCAR_STAND_IN_HD;
+  settings_.names = {"Left", "nobody"};
+  EXPECT_EQ(OpenHaptics(settings_).Configure().error().code, core::ErrorCode::kDeviceLost);
+  EXPECT_EQ(motors_->devices, 0) << "the first is given back";
+  settings_.names = {"Left\nRight"};
+  EXPECT_EQ(OpenHaptics(settings_).Configure().error().code, core::ErrorCode::kDeviceSettings);
+  settings_.names = {"Left"};
+  settings_.host = "/no/such/trocar-supervisor";
+  EXPECT_EQ(OpenHaptics(settings_).Configure().error().code, core::ErrorCode::kDeviceUnsupported);
+}
+
+// an error that does not pass: zero, lost, and back
+TEST_F(OpenHapticsHost, AnErrorThatDoesNotPassLosesTheDeviceAtZeroForce) {
+  OpenHaptics driver(settings_);
+  ASSERT_TRUE(driver.Configure().ok());
+  ASSERT_TRUE(driver.Activate().ok());
+  ASSERT_TRUE(WaitFor(3, [&] {
+    driver.SendForce(0, haptics::ForceGate::Make({1, 0, 0}));
+    return IsPushing();
+  }));
+  motors_->pending_error = 0x0302;
+  std::array<ForceSample, 2> samples;
+  ASSERT_TRUE(WaitFor(3, [&] {
+    driver.SendForce(0, haptics::ForceGate::Make({1, 0, 0}));
+    return driver.ReadForceSamples(samples) == ReadStatus::kLost;
+  }));
+  EXPECT_FALSE(IsPushing());
+  EXPECT_EQ(motors_->misuses, 0);
+  EXPECT_TRUE(driver.Configure().ok());
+}
+
+}  // namespace
+}  // namespace trocar::session
