@@ -25,6 +25,12 @@ core::Result<Command> ParseCommandLine(int argc, const char* const* argv) {
                      "Training task to open: its name, as `trocar play --list` shows it, or a file")
           ->excludes("--scene");
   app.add_option("--level", options.level, "With --task: its difficulty")->needs(task)->capture_default_str();
+  app.add_flag("--tasks", options.is_task_list, "Start with the list of training tasks to choose from")
+      ->excludes(task);
+  app.add_option("--seed", options.seed, "With --task: of its random parameters")
+      ->needs(task)
+      ->check(CLI::Range(0, 2147483647))
+      ->capture_default_str();
   app.add_option("--threads", options.threads, "Threads of the solver; 0 chooses by the processors")
       ->check(CLI::Range(0, 256))
       ->capture_default_str();

@@ -19,6 +19,9 @@ void Picture::SetScene(const session::Scene* scene, std::span<const session::Sur
   scene_ = scene;
   surfaces_ = surfaces;
   strands_ = strands;
+  if (!view_ || !get_realized()) return;
+  make_current();
+  view_.reset();
 }
 
 double Picture::FieldOfView() const {

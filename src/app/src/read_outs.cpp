@@ -106,8 +106,10 @@ std::string OrganLabel(const anatomy::Patient& patient, std::int32_t organ) {
 
 std::string HandLabel(const session::Scene& scene, std::int32_t hand) {
   if (hand < 0 || hand >= session::kHandCount) return "instrument";
+  const session::InstrumentSetup& setup = scene.instruments[static_cast<std::size_t>(hand)];
+  // where tools are exchanged, the one at the start may not be the one that is meant
   return (hand == session::kLeft ? "left " : "right ") +
-         WithSpaces(scene.instruments[static_cast<std::size_t>(hand)].tool.name);
+         (setup.tray.size() > 1 ? "hand" : WithSpaces(setup.tool.name));
 }
 
 std::string ToolLabel(const session::Scene& scene, const session::Snapshot& snapshot, session::Hand hand) {
@@ -176,6 +178,16 @@ std::string DescribeEvent(const session::Event& event, const session::Scene& sce
       return "The instruments met";
     case session::EventKind::kExchangeRefused:
       return hand + "open the jaws and let go before the tool is exchanged";
+    case session::EventKind::kClipClosed:
+      return hand + "closed a clip on the " + organ;
+    case session::EventKind::kTubeCut:
+      return hand + "cut the " + organ;
+    case session::EventKind::kNoClipsLeft:
+      return hand + "there is no clip left; exchange the tool for a full one";
+    case session::EventKind::kUsedOutside:
+      return hand + "the tool is out of its trocar; push it in before it is used";
+    case session::EventKind::kOperationError:
+      return std::string(training::ExplanationOf(static_cast<training::OperationError>(event.error)));
   }
   return "";
 }
@@ -183,7 +195,7 @@ std::string DescribeEvent(const session::Event& event, const session::Scene& sce
 bool IsWarning(session::EventKind kind) noexcept {
   return kind == session::EventKind::kSlip || kind == session::EventKind::kStateRestored ||
          kind == session::EventKind::kOrganFrozen || kind == session::EventKind::kTear ||
-         kind == session::EventKind::kPinchDamage;
+         kind == session::EventKind::kPinchDamage || kind == session::EventKind::kOperationError;
 }
 
 std::string StageLabel(session::Stage stage) {

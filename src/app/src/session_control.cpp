@@ -87,6 +87,8 @@ const session::Snapshot& SessionControl::Advance(double dt) {
     // the person's hands rest on the script's, so that taking over makes no jump
     for (const Channel hand : {device::kLeftHand, device::kRightHand})
       device_.Place(hand, SampleOf(snapshot.instruments[hand].joints));
+    for (std::size_t hand = 0; hand < input_.controls.size(); ++hand)
+      input_.controls[hand].tool = snapshot.operation.tools[hand];
   }
 
   // as with the hands: whoever takes the laparoscope over takes it where it is
@@ -214,7 +216,7 @@ void SessionControl::SetDemonstration(bool is_on) {
 }
 
 bool SessionControl::IsDemonstrationOver() const {
-  return is_demonstration_ && time_ >= runner_.GetScene().script.Duration();
+  return is_demonstration_ && runner_.IsScriptOver();
 }
 
 void SessionControl::ChooseTool(session::Hand hand, std::size_t place) {

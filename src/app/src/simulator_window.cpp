@@ -29,8 +29,9 @@ core::Result<session::Simulation> Load(const Options& options) {
     if (!folder) return folder.error();
     path = folder.value() / "scenes" / kDefaultScene;
   }
-  core::Result<session::Scene> scene =
-      options.task.empty() ? session::ReadScene(path) : session::ReadTask(path, {options.level, 1, {}});
+  core::Result<session::Scene> scene = options.task.empty()
+                                           ? session::ReadScene(path)
+                                           : session::ReadTask(path, {options.level, options.seed, {}});
   if (!scene) return scene.error();
   const int threads =
       options.threads > 0 ? options.threads : ChooseThreads(std::thread::hardware_concurrency());
@@ -56,6 +57,7 @@ SimulatorWindow::SimulatorWindow(const Options& options, const core::Stopwatch& 
   set_default_size(kWidth, kHeight);
   MakeHeader();
   MakeContent();
+  MakeTaskCards();
 
   hands_ = std::make_unique<HandEvents>(*this, picture_, panel_);
   hands_->SignalAction().connect(sigc::mem_fun(*this, &SimulatorWindow::OnAction));
@@ -68,6 +70,7 @@ SimulatorWindow::SimulatorWindow(const Options& options, const core::Stopwatch& 
   ShowSituation();
   picture_.grab_focus();
   StartLoading();
+  if (options_.is_task_list) OpenTaskList();
 }
 
 SimulatorWindow::~SimulatorWindow() {
@@ -96,6 +99,7 @@ void SimulatorWindow::MakeHeader() {
   button(fullscreen_, "Full screen and back (F11)");
   button(help_, "All keys (H or F1)");
   button(devices_, "Find, try and calibrate devices, and choose what holds the instruments");
+  button(tasks_, "Choose a training task or an operation");
   button(quit_, "Leave the program (Ctrl+Q)");
   button(force_,
          "Force feedback of the haptic device: asks for it, or takes it away (Esc takes it away, too)");
@@ -104,10 +108,10 @@ void SimulatorWindow::MakeHeader() {
     widget->set_visible(!options_.haptics.empty());
   forces_.set_active(true);
   mask_.set_active(true);
-  for (Gtk::Widget* widget :
-       {static_cast<Gtk::Widget*>(&run_), static_cast<Gtk::Widget*>(&reset_),
-        static_cast<Gtk::Widget*>(&demonstration_), static_cast<Gtk::Widget*>(&fulcrum_),
-        static_cast<Gtk::Widget*>(&check_pose_), static_cast<Gtk::Widget*>(&force_)})
+  for (Gtk::Widget* widget : {static_cast<Gtk::Widget*>(&tasks_), static_cast<Gtk::Widget*>(&run_),
+                              static_cast<Gtk::Widget*>(&reset_), static_cast<Gtk::Widget*>(&demonstration_),
+                              static_cast<Gtk::Widget*>(&fulcrum_), static_cast<Gtk::Widget*>(&check_pose_),
+                              static_cast<Gtk::Widget*>(&force_)})
     header_.pack_start(*widget);
   for (Gtk::Widget* widget : {static_cast<Gtk::Widget*>(&quit_), static_cast<Gtk::Widget*>(&help_),
                               static_cast<Gtk::Widget*>(&fullscreen_), static_cast<Gtk::Widget*>(&mask_),
@@ -134,6 +138,8 @@ void SimulatorWindow::MakeHeader() {
   check_pose_.signal_clicked().connect([this] {
     if (control_ != nullptr && control_->Haptics() != nullptr) control_->Haptics()->BeginCheckPose();
   });
+  tasks_.signal_clicked().connect(
+      [this] { chooser_.get_visible() ? chooser_.set_visible(false) : OpenTaskList(); });
   devices_.signal_clicked().connect(sigc::mem_fun(*this, &SimulatorWindow::OpenDevices));
   const auto look = [this] {
     view::ViewOptions view = picture_.GetOptions();
@@ -294,8 +300,10 @@ void SimulatorWindow::Fail(const core::Error& error) {
   hint_.set_visible(false);
   badge_.set_visible(false);
   for (Gtk::Widget* widget : {static_cast<Gtk::Widget*>(&run_), static_cast<Gtk::Widget*>(&reset_),
-                              static_cast<Gtk::Widget*>(&demonstration_)})
+                              static_cast<Gtk::Widget*>(&demonstration_), static_cast<Gtk::Widget*>(&tasks_)})
     widget->set_sensitive(false);
+  chooser_.set_visible(false);
+  result_card_.set_visible(false);
   panel_.set_sensitive(false);
   SetText(event_, error.Text());
   ShowSituation();
@@ -313,6 +321,7 @@ bool SimulatorWindow::OnFrame(const Glib::RefPtr<Gdk::FrameClock>& clock) {
   picture_.queue_render();
   stages_.Add(snapshot);
   ShowEvents(snapshot);
+  if (control_->GetScene().task) FollowTask(snapshot.task);
   if (const std::string message = control_->TakeDeviceMessage(); !message.empty()) {
     SetText(event_, message);
     ShowSituation();
@@ -491,6 +500,8 @@ void SimulatorWindow::OnAction(Action action) {
       if (control_ != nullptr && control_->Haptics() != nullptr) control_->Haptics()->Stop();
       picture_.grab_focus();
       help_.set_active(false);
+      chooser_.set_visible(false);
+      result_card_.set_visible(false);
       ShowSituation();
       break;
     case Action::kSwitchPane:
@@ -535,12 +546,13 @@ void SimulatorWindow::SaveScreenshot() {
       "{\"screenshot\": \"%s\", \"width\": %d, \"height\": %d, \"first_picture_s\": %.3f, \"ticks\": %llu, "
       "\"late_ticks\": %llu, \"tick_median_ms\": %.3f, \"tick_p99_ms\": %.3f, \"real_time\": %s, "
       "\"pictures\": %llu, "
-      "\"pictures_per_second\": %.1f%s%s}\n",
+      "\"pictures_per_second\": %.1f, \"has_task_list\": %s, \"result\": \"%s\"%s%s}\n",
       options_.screenshot.filename().c_str(), get_width(), get_height(), first_picture_,
       static_cast<unsigned long long>(statistics.ticks),
       static_cast<unsigned long long>(statistics.late_ticks), 1e3 * statistics.tick_median,
       1e3 * statistics.tick_p99, statistics.is_real_time ? "true" : "false",
       static_cast<unsigned long long>(frames_.Count()), frames_.Rate(since_start_.Seconds()),
+      chooser_.get_visible() ? "true" : "false", result_card_.get_visible() ? result_.verdict.c_str() : "",
       haptics.empty() ? "" : ", \"haptics\": ", haptics.c_str());
   close();
 }

@@ -13,10 +13,13 @@
 #include "help_card.h"
 #include "panel.h"
 #include "picture.h"
+#include "result_card.h"
+#include "task_chooser.h"
 #include "trocar/app/hints.h"
 #include "trocar/app/options.h"
 #include "trocar/app/read_outs.h"
 #include "trocar/app/session_control.h"
+#include "trocar/app/task_result.h"
 #include "trocar/core/clock.h"
 
 namespace trocar::app {
@@ -51,6 +54,12 @@ class SimulatorWindow : public Gtk::ApplicationWindow {
   void Reset();
   void SaveScreenshotWhenDue(const session::Snapshot& snapshot);
   void SaveScreenshot();
+  // tasks: simulator_window_tasks.cpp
+  void MakeTaskCards();
+  void OpenTaskList();
+  void Open(const TaskWish& wish);
+  void FollowTask(const session::TaskSnapshot& now);
+  void SaveResult();
 
   Options options_;
   core::Stopwatch since_start_;
@@ -61,11 +70,13 @@ class SimulatorWindow : public Gtk::ApplicationWindow {
   Gtk::ToggleButton demonstration_{"Demonstration"}, forces_{"Forces"}, mask_{"Mask"},
       fulcrum_{"Real trocar"}, help_{"Help"};
   Gtk::ToggleButton force_{"Force"};
-  Gtk::Button check_pose_{"Check pose"}, devices_{"Devices"};
+  Gtk::Button check_pose_{"Check pose"}, devices_{"Devices"}, tasks_{"Tasks"};
   Gtk::Overlay overlay_;
   Picture picture_;
   Panel panel_;
   HelpCard help_card_{KeyHelpRows()};
+  TaskChooser chooser_;
+  ResultCard result_card_;
   Gtk::Label badge_, hint_, event_, state_, haptics_;
   Gtk::Box failure_card_{Gtk::Orientation::VERTICAL};
   std::unique_ptr<HandEvents> hands_;
@@ -75,6 +86,9 @@ class SimulatorWindow : public Gtk::ApplicationWindow {
   std::unique_ptr<DevicePage> device_page_;  // of control_
   StageMeter stages_;
   FrameMeter frames_;
+  TaskErrorLog error_log_;
+  TaskResult result_;             // of the task that is over
+  bool is_result_known_ = false;  // it has been shown
   std::uint64_t seen_events_ = 0;
   double last_frame_ = 0, last_forces_ = 0, last_times_ = 0;  // of the frame clock [s]
   bool is_screenshot_due_ = false;

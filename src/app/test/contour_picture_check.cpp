@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file contour_picture_check.cpp  Makes slices and a script for the contour window, and judges the picture
 /// and the report of its --screenshot.
-#include <png.h>
-
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -12,6 +10,7 @@
 
 #include "trocar/anatomy/overlay.h"
 #include "trocar/core/safe_file.h"
+#include "window_picture.h"
 
 namespace {
 
@@ -20,10 +19,7 @@ namespace fs = std::filesystem;
 
 constexpr int kWidth = 320, kHeight = 240, kSlices = 12;
 
-int Fail(const std::string& text) {
-  std::fprintf(stderr, "%s\n", text.c_str());
-  return 1;
-}
+using trocar::app::Fail;
 
 double Radius(int slice) {
   return 40 + 5 * slice - 0.3 * slice * slice;
@@ -66,20 +62,13 @@ int Check(const char* picture, const char* report_file) {
   if (report.at("triangles").get<int>() < 500) return Fail("the surface has fewer than 500 triangles");
   if (report.at("slice") != 2) return Fail("another slice is shown");
 
-  png_image image{};
-  image.version = PNG_IMAGE_VERSION;
-  if (!png_image_begin_read_from_file(&image, picture)) return Fail("the picture cannot be read");
-  image.format = PNG_FORMAT_RGB;
-  std::vector<unsigned char> pixels(PNG_IMAGE_SIZE(image));
-  if (!png_image_finish_read(&image, nullptr, pixels.data(), 0, nullptr))
-    return Fail("the picture cannot be decoded");
-  if (image.width < 1000 || image.height < 600) return Fail("the picture is smaller than the window");
+  const trocar::app::WindowPicture image = trocar::app::ReadWindowPicture(picture);
   // the three stages on the canvas, and the shaded surface beside it
   int clicked = 0, adapted = 0, spline = 0, surface = 0;
   const unsigned canvas_end = image.width - 360;
   for (unsigned y = 60; y < image.height - 100; ++y) {
     for (unsigned x = 0; x < image.width; ++x) {
-      const unsigned char* p = &pixels[3 * (std::size_t(y) * image.width + x)];
+      const unsigned char* p = image.At(x, y);
       if (x < canvas_end) {
         clicked += p[0] > 220 && p[1] < 110 && p[2] < 100;
         adapted += p[0] > 230 && p[1] > 190 && p[2] < 90;

@@ -36,6 +36,19 @@ TEST(Options, ReadsEveryOption) {
   EXPECT_EQ(command->options.screenshot_after, 1.5);
 }
 
+TEST(Options, ReadsTasks) {
+  const core::Result<Command> command = Parse({"--task", "clip_and_cut", "--level", "hard", "--seed", "9"});
+  ASSERT_TRUE(command.ok()) << command.error().Text();
+  EXPECT_EQ(command->options.task, "clip_and_cut");
+  EXPECT_EQ(command->options.level, "hard");
+  EXPECT_EQ(command->options.seed, 9u);
+  const core::Result<Command> list = Parse({"--tasks"});
+  ASSERT_TRUE(list.ok());
+  EXPECT_TRUE(list->options.is_task_list);
+  EXPECT_FALSE(Parse({"--tasks", "--task", "clip_and_cut"}).ok());
+  EXPECT_FALSE(Parse({"--seed", "9"}).ok()) << "of which task?";
+}
+
 TEST(Options, ReadsTheContourWindowsOptions) {
   const core::Result<Command> command =
       Parse({"--contours", "slices", "--points", "p.json", "--reference", "l.nii.gz", "--pixel-mm", "0.5",

@@ -117,6 +117,27 @@ TEST(DescribeEvent, ARefusedExchangeSaysWhatToDo) {
             "Left grasper: open the jaws and let go before the tool is exchanged");
 }
 
+TEST(DescribeEvent, ImpossibleActsAndSurgerysErrorsAreAnsweredInWords) {
+  session::Scene scene;
+  scene.instruments[session::kRight].tool = *instrument::FindTool("clip_applier");
+  const auto text = [&](session::EventKind kind, int error = -1) {
+    session::Event event{kind, 1, session::kRight, -1, 0.0};
+    event.error = error;
+    return DescribeEvent(event, scene);
+  };
+  EXPECT_EQ(text(session::EventKind::kNoClipsLeft),
+            "Right clip applier: there is no clip left; exchange the tool for a full one");
+  scene.instruments[session::kRight].tray = {*instrument::FindTool("clip_applier"),
+                                             *instrument::FindTool("scissors")};
+  EXPECT_EQ(text(session::EventKind::kTubeCut), "Right hand: cut the tissue") << "whichever tool it has now";
+  EXPECT_NE(text(session::EventKind::kUsedOutside).find("push it in"), std::string::npos);
+  const auto error = training::OperationError::kClipCrossed;
+  EXPECT_EQ(text(session::EventKind::kOperationError, static_cast<int>(error)),
+            training::ExplanationOf(error));
+  EXPECT_TRUE(IsWarning(session::EventKind::kOperationError));
+  EXPECT_FALSE(IsWarning(session::EventKind::kClipClosed));
+}
+
 TEST(ToolLabel, NamesTheToolInUseAndItsClips) {
   session::Scene scene;
   scene.instruments[session::kRight].tray = {*instrument::FindTool("hook"),

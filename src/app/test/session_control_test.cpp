@@ -18,8 +18,9 @@ using device::Motion;
 /// The built-in scene, running on its own thread; waits are for events, never for a time that must suffice.
 class SessionControlTest : public testing::Test {
  protected:
-  void SetUp() override {
-    core::Result<session::Scene> scene = session::ReadScene(TROCAR_SOURCE_DIR "/scenes/demonstration.json");
+  void SetUp() override { Open(TROCAR_SOURCE_DIR "/scenes/demonstration.json"); }
+  void Open(const char* path) {
+    core::Result<session::Scene> scene = session::ReadScene(path);
     ASSERT_TRUE(scene.ok()) << scene.error().Text();
     for (session::InstrumentSetup& setup : scene->instruments) setup.tray.resize(3, setup.tray.front());
     core::Result<session::Simulation> simulation =
@@ -215,6 +216,24 @@ TEST_F(SessionControlTest, DemonstrationMovesTheHandsAndIsTakenOverWithoutAJump)
   control->Advance(0);
   EXPECT_NEAR(control->GetInput().hands[session::kLeft].depth, before.joints.depth, 0.005);
   EXPECT_NEAR(control->GetInput().hands[session::kLeft].pan, before.joints.pan, 0.05);
+}
+
+TEST_F(SessionControlTest, ATaskWithoutAScriptIsShownByTheExpertAndTakenOverWithTheToolInUse) {
+  Open(TROCAR_SOURCE_DIR "/scenes/tasks/clip_and_cut.json");
+  ASSERT_TRUE(control->HasScript());
+  control->SetDemonstration(true);
+  control->SetPaused(false);
+  EXPECT_TRUE(AdvanceUntil([](const session::Snapshot& now) {
+    return now.operation.tools[session::kRight] == 1;
+  })) << "three clips, then the scissors";
+  EXPECT_EQ(control->Advance(0).operation.clip_count, 3u);
+  EXPECT_FALSE(control->IsDemonstrationOver());
+  control->SetDemonstration(false);
+  EXPECT_EQ(control->GetInput().controls[session::kRight].tool, 1) << "it is not exchanged back";
+  control->SetDemonstration(true);
+  EXPECT_TRUE(AdvanceUntil([&](const session::Snapshot& now) {
+    return now.task.IsOver() && control->IsDemonstrationOver();
+  })) << "from the beginning to the end";
 }
 
 TEST_F(SessionControlTest, ResetGoesHomeAndToTheFirstTick) {

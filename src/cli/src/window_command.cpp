@@ -18,6 +18,16 @@ void AddWindowCommand(CLI::App& app, Outcome& outcome) {
   auto scene = std::make_shared<std::string>();
   command->add_option("scene", *scene, "Scene file (JSON); the built-in patient if not given")
       ->type_name("FILE");
+  auto task = std::make_shared<std::string>();
+  CLI::Option* one =
+      command->add_option("--task", *task, "Training task to open: its name (trocar play --list), or a file")
+          ->excludes("scene")
+          ->type_name("TASK");
+  auto level = std::make_shared<std::string>();
+  command->add_option("--level", *level, "With --task: its difficulty")->needs(one)->type_name("LEVEL");
+  auto has_list = std::make_shared<bool>(false);
+  command->add_flag("--tasks", *has_list, "Start with the list of training tasks to choose from")
+      ->excludes(one);
   auto device = std::make_shared<std::string>();
   command
       ->add_option("--device", *device,
@@ -39,10 +49,14 @@ void AddWindowCommand(CLI::App& app, Outcome& outcome) {
   AddIgtlOption(*command, *igtl_port);
   command->footer(
       "Examples: trocar window scenes/demonstration.json\n"
+      "          trocar window --task peg_transfer --level easy\n"
       "          trocar window --device liberty:/dev/ttyUSB0+jaw:/dev/ttyACM0");
-  command->callback([scene, device, haptics, record, igtl_port, &outcome] {
+  command->callback([scene, task, level, has_list, device, haptics, record, igtl_port, &outcome] {
     std::vector<std::string> arguments;
     if (!scene->empty()) arguments = {"--scene", *scene};
+    if (!task->empty()) arguments.insert(arguments.end(), {"--task", *task});
+    if (!level->empty()) arguments.insert(arguments.end(), {"--level", *level});
+    if (*has_list) arguments.emplace_back("--tasks");
     if (!device->empty()) arguments.insert(arguments.end(), {"--device", *device});
     if (!haptics->empty()) arguments.insert(arguments.end(), {"--haptics", *haptics});
     if (!record->empty()) arguments.insert(arguments.end(), {"--haptic-record", *record});

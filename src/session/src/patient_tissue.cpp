@@ -8,6 +8,7 @@
 
 #include "operation/connective_tissue.h"
 #include "pathology.h"
+#include "tissue_model_file.h"
 #include "trocar/geometry/mesh_measures.h"
 #include "trocar/geometry/mesh_topology.h"
 #include "trocar/surgery/topology_change.h"
@@ -25,6 +26,11 @@ constexpr double kFatModulus = 2e3, kPeritoneumShare = 4.0;
 constexpr double kFatDensity = 930.0;  // [kg/m^3]
 /// Foundation of a lobule [N/m]: it lies on the fat behind it, and stays where nothing holds it any more.
 constexpr double kLobuleFoundation = 0.5;
+/// Bands of a model: silicone cords, tunables. Length of a piece [m], stiffness of a piece [N/m], foundation [N/m] that
+/// keeps what is cut off from both ends where it is; they tear when a piece is longer by this [m].
+constexpr double kBandPiece = 0.003, kBandStiffness = 60.0, kBandFoundation = 0.05, kBandElongation = 0.006;
+/// What a model's sheet looks like, see render/material.h.
+constexpr const char* kSheetLook = "white_plastic";
 /// Fibres tear when longer by this share of their length [-].
 constexpr double kFatElongation = 1.5, kPeritoneumElongation = 0.8;
 /// The end of a tube is tied to this many of the nearest vertices of its organ.
@@ -70,18 +76,25 @@ core::Status CheckClosed(const anatomy::Organ& organ) {
                          ", so its volume cannot be kept; look at it with trocar anatomy check"};
 }
 
-void AddOrgan(const anatomy::Organ& organ, const OrganMaterial& material, const SpareNodes& spare,
-              PatientTissue& made) {
+/// \param is_sheet  open, without a volume to keep
+void AddOrgan(const anatomy::Organ& organ, const OrganMaterial& material, bool is_sheet,
+              const SpareNodes& spare, PatientTissue& made) {
   auto& definition = made.definition;
   const auto first = static_cast<std::uint32_t>(definition.rest.size());
   const auto& mesh = organ.mesh;
-  made.surfaces.push_back(
-      {organ.name, organ.name, first, static_cast<std::uint32_t>(mesh.positions.size()), mesh.triangles, {}});
+  made.surfaces.push_back({organ.name,
+                           is_sheet ? kSheetLook : organ.name,
+                           first,
+                           static_cast<std::uint32_t>(mesh.positions.size()),
+                           mesh.triangles,
+                           {}});
   definition.rest.insert(definition.rest.end(), mesh.positions.begin(), mesh.positions.end());
-  made.conservation.organs.push_back(
-      {first, static_cast<std::uint32_t>(mesh.positions.size()), mesh.triangles, tissue::kBileDensity});
+  if (!is_sheet)
+    made.conservation.organs.push_back(
+        {first, static_cast<std::uint32_t>(mesh.positions.size()), mesh.triangles, tissue::kBileDensity});
 
-  const surgery::WallMaterial wall = CalcWallMaterial(mesh, material, definition);
+  surgery::WallMaterial wall = CalcWallMaterial(mesh, material, definition);
+  if (is_sheet) wall.mass_by_area = material.density * material.wall_thickness;
   made.walls.push_back(wall);
   const auto areas = geometry::CalcVertexAreas(mesh.positions, mesh.triangles);
   const auto foundation = tissue::CalcFoundationStiffness(areas, material.foundation_modulus, material.depth);
@@ -101,7 +114,7 @@ void AddOrgan(const anatomy::Organ& organ, const OrganMaterial& material, const 
   made.heat_mass.resize(definition.rest.size(), 0.0);
   for (const anatomy::Region& region : organ.regions) {
     const bool is_fixed = region.name == anatomy::kDiaphragmaticFace || region.name == anatomy::kFalciform ||
-                          region.name == anatomy::kCoronary;
+                          region.name == anatomy::kCoronary || region.name == kHeldRegion;
     if (!is_fixed) continue;
     for (const auto vertex : region.vertices) definition.fixed.push_back(first + vertex);
   }
@@ -110,7 +123,7 @@ void AddOrgan(const anatomy::Organ& organ, const OrganMaterial& material, const 
 /// Says what the strand is that was added last.
 void NameStrand(StrandInfo::Kind kind, PatientTissue& made) {
   const tissue::Strand& strand = made.definition.strands.back();
-  made.strands.push_back({strand.a, strand.b, kind});
+  made.strands.push_back({strand.a, strand.b, kind, -1});
 }
 
 void AddAttachments(const Scene& scene, const OrganMaterial& bed, PatientTissue& made) {
@@ -257,6 +270,32 @@ void AddConnectiveTissue(const Scene& scene, const ConnectiveTissue& fat, double
   }
 }
 
+/// Cords of strands, one after the other; their ends are held.
+void AddBands(const ModelSetup& model, PatientTissue& made) {
+  auto& definition = made.definition;
+  for (std::size_t b = 0; b < model.bands.size(); ++b) {
+    const ModelBand& band = model.bands[b];
+    const auto first = static_cast<std::uint32_t>(definition.rest.size());
+    const double length = math::Distance(band.from, band.to);
+    const auto pieces = static_cast<std::uint32_t>(std::max(3L, std::lround(length / kBandPiece)));
+    for (std::uint32_t i = 0; i <= pieces; ++i) {
+      definition.rest.push_back(math::Lerp(band.from, band.to, static_cast<double>(i) / pieces));
+      definition.mass.push_back(kFatDensity * M_PI * band.radius * band.radius * length / pieces);
+      definition.shape_stiffness.push_back(kBandFoundation);
+      made.heat_mass.push_back(definition.mass.back());
+      if (i == 0) continue;
+      definition.strands.push_back({first + i - 1, first + i, kBandStiffness});
+      made.conservation.strand_binds.push_back(1);
+      made.max_elongation.push_back(kBandElongation);
+      made.strand_organs.push_back(-1);
+      NameStrand(StrandInfo::Kind::kBand, made);
+      made.strands.back().band = static_cast<std::int32_t>(b);
+    }
+    definition.fixed.push_back(first);
+    definition.fixed.push_back(first + pieces);
+  }
+}
+
 }  // namespace
 
 core::Result<PatientTissue> MakePatientTissue(const Scene& scene, const SpareNodes& spare) {
@@ -272,8 +311,11 @@ core::Result<PatientTissue> MakePatientTissue(const Scene& scene, const SpareNod
   for (const anatomy::Organ& organ : scene.patient.organs) {
     const OrganMaterial* material = FindMaterial(materials, organ.name);
     if (material == nullptr) return MissingMaterial(organ.name);
-    if (const auto closed = CheckClosed(organ); !closed.ok()) return closed.error();
-    AddOrgan(organ, *material, spare, made);
+    const bool is_sheet = scene.model.has_value();
+    if (!is_sheet) {
+      if (const auto closed = CheckClosed(organ); !closed.ok()) return closed.error();
+    }
+    AddOrgan(organ, *material, is_sheet, spare, made);
     made.internal_pressure.push_back(material->internal_pressure);
   }
   if (!scene.patient.attachments.empty()) {
@@ -293,6 +335,7 @@ core::Result<PatientTissue> MakePatientTissue(const Scene& scene, const SpareNod
     const double spacing = scene.operation->fat_spacing;
     AddConnectiveTissue(scene, MakeConnectiveTissue(scene.patient, spacing, scene.seed), spacing, made);
   }
+  if (scene.model) AddBands(*scene.model, made);
   made.first_spare.push_back(static_cast<std::uint32_t>(made.definition.rest.size()));
   if (spare.tubes > 0) surgery::AddSpareNodes(spare.tubes, made.definition);
   made.heat_mass.resize(made.definition.rest.size(), 0.0);

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <string_view>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -16,9 +17,12 @@
 #include "trocar/core/clock.h"
 #include "trocar/core/newest_slot.h"
 #include "trocar/core/statistics.h"
+#include "trocar/session/surgeon.h"
 
 namespace trocar::session {
 namespace {
+
+constexpr std::string_view kExpert = "expert";
 
 void SleepUntil(std::int64_t time_ns) noexcept {
   timespec until{};
@@ -51,8 +55,32 @@ struct Runner::Content {
   std::atomic<std::uint64_t> ticks{0}, late_ticks{0};
   std::atomic<double> tick_median{0}, tick_p99{0};
   std::atomic<bool> is_real_time{false};
+  std::unique_ptr<Surgeon> expert;  // of the thread; none before it is needed
+  std::atomic<bool> is_script_over{false};
   std::thread thread;
 
+  /// What the script does in the next tick, or the expert where there is no script.
+  Input CalcScripted(const Input& input) {
+    const Scene& scene = simulation.GetScene();
+    const Snapshot& seen = simulation.GetSnapshot();
+    Input now = input;
+    if (!scene.script.keys.empty()) {
+      now.hands = CalcScriptInput(scene, seen.time).hands;
+      is_script_over.store(seen.time >= scene.script.Duration(), std::memory_order_relaxed);
+      return now;
+    }
+    if (expert == nullptr) {
+      // the scene lives as long as the simulation, and that as long as the expert
+      auto made = MakeSurgeon(kExpert, std::shared_ptr<const Scene>(std::shared_ptr<const Scene>(), &scene),
+                              scene.seed);
+      if (!made.ok()) return now;
+      expert = std::move(*made);
+    }
+    now = expert->Act(seen);
+    now.settings = input.settings;
+    is_script_over.store(expert->HasFinished(), std::memory_order_relaxed);
+    return now;
+  }
   void Publish() {
     snapshot_slot.Back() = simulation.GetSnapshot();
     snapshot_slot.Publish();
@@ -80,14 +108,14 @@ void Runner::Content::Run() {
     if (const int wanted = resets_wanted.load(std::memory_order_acquire); wanted != resets_done) {
       resets_done = wanted;
       simulation.Reset();
+      expert.reset();
+      is_script_over.store(false, std::memory_order_relaxed);
       Publish();
     }
     if (input_slot.Update()) input = input_slot.Front();
     if (!is_paused.load(std::memory_order_relaxed)) {
       Input now = input;
-      if (is_scripted.load(std::memory_order_relaxed)) {
-        now.hands = CalcScriptInput(simulation.GetScene(), simulation.GetSnapshot().time).hands;
-      }
+      if (is_scripted.load(std::memory_order_relaxed)) now = CalcScripted(input);
       // while the script moves the tools, nothing of theirs may be felt
       const bool is_felt = !is_scripted.load(std::memory_order_relaxed);
       if (is_felt && haptics != nullptr) haptic_hands.Take(*haptics, now);
@@ -133,6 +161,16 @@ void Runner::SetInput(const Input& input) {
 
 void Runner::SetScripted(bool is_scripted) {
   content_->is_scripted.store(is_scripted);
+}
+bool Runner::HasScript() const {
+  const auto surgeons = ListSurgeons();
+  return !GetScene().script.keys.empty() ||
+         std::any_of(surgeons.begin(), surgeons.end(), [&](const SurgeonEntry& entry) {
+           return std::string_view(entry.name) == kExpert && entry.suits(GetScene());
+         });
+}
+bool Runner::IsScriptOver() const {
+  return content_->is_script_over.load();
 }
 void Runner::SetPaused(bool is_paused) {
   content_->is_paused.store(is_paused);

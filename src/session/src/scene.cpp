@@ -8,6 +8,7 @@
 #include "scene_objects.h"
 #include "scene_reader.h"
 #include "script.h"
+#include "tissue_model_file.h"
 #include "trocar/core/json.h"
 
 namespace trocar::session {
@@ -140,17 +141,25 @@ core::Result<Scene> ReadSceneFields(const core::JsonDocument& document, const co
                                     const std::filesystem::path& folder,
                                     const std::filesystem::path& patient_folder) {
   view.AllowOnly({"format", "version", "name", "about", "patient", "tick_hz", "seed", "settings", "materials",
-                  "instruments", "laparoscope", "script", "operation", "objects"});
+                  "instruments", "laparoscope", "script", "operation", "objects", "model"});
   Scene scene;
   scene.name = view.TextOr("name", "");
   scene.tick_seconds = 1.0 / view.NumberOr("tick_hz", 120.0, {10.0, 2000.0});
   scene.seed = static_cast<std::uint64_t>(view.IntegerOr("seed", 0, {0.0, 2147483647.0}));
   if (view.Has("objects")) scene.objects = ReadObjects(view, "objects");
   // what needs no patient may have no patient
-  const bool has_patient = scene.objects.empty() || view.Has("patient");
+  const bool has_patient = (scene.objects.empty() && !view.Has("model")) || view.Has("patient");
   const std::string own_patient = has_patient ? view.Text("patient") : "";
   if (!has_patient && !patient_folder.empty())
     view.Complain("is without a patient, so none can take its place", core::ErrorCode::kSceneInvalid);
+  if (view.Has("model")) {
+    if (view.Has("patient") || view.Has("operation"))
+      view.Complain("a model takes the place of patient and operation; leave them out",
+                    core::ErrorCode::kSceneInvalid);
+    if (scene.objects.empty())
+      view.Complain("a model stands among objects, at least on a board", core::ErrorCode::kSceneInvalid);
+    ReadTissueModel(view.Object("model"), scene);
+  }
   if (const auto status = document.Check(); !status.ok()) return status.error();
 
   if (has_patient) {
@@ -158,6 +167,8 @@ core::Result<Scene> ReadSceneFields(const core::JsonDocument& document, const co
     auto patient = anatomy::ReadPatient(scene.patient_folder);
     if (!patient.ok()) return patient.error();
     scene.patient = std::move(*patient);
+  }
+  if (has_patient || view.Has("materials")) {
     for (const core::JsonView& one : view.Array("materials")) {
       auto material = ReadMaterial(one, folder);
       if (!material.ok()) return material.error();

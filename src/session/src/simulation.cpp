@@ -195,6 +195,7 @@ void Simulation::Step(const Input& input) noexcept {
     if (c.operation == nullptr) return;
     c.hands.changes = c.changes;  // a grasp may have slipped in the solve
     c.operation->Judge(c.hands, c.GetTissue());
+    c.NoteActs();
   });
   timed(Stage::kPublish, [&] { c.Publish(input); });
   c.snapshot.stage_seconds = seconds;

@@ -106,6 +106,7 @@ struct Simulation::Content {
   }
   void Operate(const Input& input) noexcept;
   TissueNow GetTissue() noexcept;
+  void NoteActs() noexcept;
   void ChangeTopology();
   void FollowTopology();
 };

@@ -30,6 +30,16 @@ void Simulation::Content::Operate(const Input& input) noexcept {
   if (operation->Act(hands, GetTissue())) ChangeTopology();
 }
 
+/// What the operation tells becomes events.
+void Simulation::Content::NoteActs() noexcept {
+  for (const OperationNote& note : operation->Notes()) {
+    Note(note.kind, note.hand, note.surface, 0.0);
+    Event& event = snapshot.events[(snapshot.event_count - 1) % snapshot.events.size()];
+    event.error = note.error;
+    event.p_rest = note.p_rest;
+  }
+}
+
 /// Takes a cut into model, solver, volumes and contacts, in the tick that made it. Allocates.
 void Simulation::Content::ChangeTopology() {
   const surgery::TopologyChange& change = operation->Change();
@@ -58,6 +68,7 @@ void Simulation::Content::FollowTopology() {
   for (std::size_t i = 0; i < scene->patient.organs.size(); ++i) {
     const geometry::EditableMesh& mesh = operation->Organ(i).Mesh();
     meshes.push_back(mesh.RestMesh());
+    if (conservation->Settings().organs.empty()) continue;  // sheets have no volume
     tissue::ClosedOrgan organ = conservation->Settings().organs[i];
     organ.node_count = static_cast<std::uint32_t>(mesh.VertexCount());
     organ.triangles = meshes.back().triangles;

@@ -33,9 +33,19 @@ std::string_view EventName(EventKind kind) noexcept {
     case EventKind::kToolsTouch:
       return "tools_touch";
     case EventKind::kExchangeRefused:
+      return "exchange_refused";
+    case EventKind::kClipClosed:
+      return "clip_closed";
+    case EventKind::kTubeCut:
+      return "tube_cut";
+    case EventKind::kNoClipsLeft:
+      return "no_clips_left";
+    case EventKind::kUsedOutside:
+      return "used_outside";
+    case EventKind::kOperationError:
       break;
   }
-  return "exchange_refused";
+  return "operation_error";
 }
 
 bool IsInView(const Pose& X_world_laparoscope, double field_of_view, const Vec3& p_world) noexcept {

@@ -13,10 +13,29 @@ bool Region::Contains(const math::Vec3& p_world) const noexcept {
 }
 
 std::string_view ConditionName(ConditionKind kind) noexcept {
-  static constexpr std::string_view kNames[] = {
-      "held",          "lifted",      "handed_over",     "in_region",    "placed",
-      "tip_in_region", "camera_sees", "touches",         "tool_touches", "dropped",
-      "outside",       "out_of_view", "tip_out_of_view", "force_above",  "event"};
+  static constexpr std::string_view kNames[] = {"held",
+                                                "lifted",
+                                                "handed_over",
+                                                "in_region",
+                                                "placed",
+                                                "tip_in_region",
+                                                "camera_sees",
+                                                "touches",
+                                                "tool_touches",
+                                                "dropped",
+                                                "outside",
+                                                "out_of_view",
+                                                "tip_out_of_view",
+                                                "force_above",
+                                                "event",
+                                                "operation_error",
+                                                "clipped",
+                                                "divided",
+                                                "unclipped_cut",
+                                                "parted",
+                                                "cut_free",
+                                                "cut_off_line",
+                                                "cut_area_off"};
   static_assert(std::size(kNames) == static_cast<std::size_t>(ConditionKind::kCount));
   return kNames[static_cast<std::size_t>(kind)];
 }

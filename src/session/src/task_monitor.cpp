@@ -36,6 +36,44 @@ bool IsSeen(const Region& region, const Condition& c, const Pose& X_world_laparo
   return math::Dot(to_lens, *region.facing) >= std::cos(c.facing_angle);
 }
 
+/// True in one tick only.
+bool IsMoment(ConditionKind kind) noexcept {
+  return kind == ConditionKind::kHandedOver || kind == ConditionKind::kEvent ||
+         kind == ConditionKind::kOperationError || kind == ConditionKind::kUnclippedCut;
+}
+
+std::size_t CountGoodClips(const OperationSnapshot& now) noexcept {
+  const auto clips = std::span(now.clips).first(now.clip_count);
+  return static_cast<std::size_t>(
+      std::count_if(clips.begin(), clips.end(), [](const ClipSnapshot& clip) { return clip.IsGood(); }));
+}
+
+/// What clips, cuts and heat have left.
+Finding FindOfTissue(const Scene& scene, const OperationSnapshot& now, const Condition& c) noexcept {
+  if (c.kind == ConditionKind::kParted) {
+    const auto i = static_cast<std::size_t>(c.band);
+    const ModelBand& band = scene.model->bands[i];
+    return {now.band_is_whole[i] == 0, math::Lerp(band.from, band.to, 0.5), -1};
+  }
+  if (c.sheet >= 0) {
+    const SheetSnapshot& sheet = now.sheets[static_cast<std::size_t>(c.sheet)];
+    const bool is_true = c.kind == ConditionKind::kCutFree      ? sheet.is_free
+                         : c.kind == ConditionKind::kCutOffLine ? sheet.farthest >= c.amount
+                                                                : sheet.off_area >= c.amount;
+    return {is_true, sheet.p_farthest, -1};
+  }
+  if (c.kind == ConditionKind::kClipped) {
+    for (const ClipSnapshot& clip : std::span(now.clips).first(now.clip_count)) {
+      if (clip.IsGood() && IsOneOf(*scene.task, c.regions, clip.p_rest)) return {true, clip.p_rest, -1};
+    }
+    return {};
+  }
+  for (const Vec3& p_rest : std::span(now.tube_cuts).first(now.tube_cut_count)) {
+    if (IsOneOf(*scene.task, c.regions, p_rest)) return {true, p_rest, -1};
+  }
+  return {};
+}
+
 }  // namespace
 
 void TaskMonitor::Reset(const Scene& scene, Snapshot& snapshot) {
@@ -164,12 +202,43 @@ Finding TaskMonitor::Find(const Scene& scene, const Snapshot& snapshot, const Co
     }
     return {};
   }
-  if (c.kind != ConditionKind::kEvent) return FindOfTool(scene, snapshot, c);
+  switch (c.kind) {
+    case ConditionKind::kEvent:
+    case ConditionKind::kOperationError:
+    case ConditionKind::kUnclippedCut:
+      return FindOfEvents(scene, snapshot, c);
+    case ConditionKind::kClipped:
+    case ConditionKind::kDivided:
+    case ConditionKind::kParted:
+    case ConditionKind::kCutFree:
+    case ConditionKind::kCutOffLine:
+    case ConditionKind::kCutAreaOff:
+      return FindOfTissue(scene, snapshot.operation, c);
+    default:
+      return FindOfTool(scene, snapshot, c);
+  }
+}
+
+Finding TaskMonitor::FindOfEvents(const Scene& scene, const Snapshot& snapshot,
+                                  const Condition& c) const noexcept {
+  const auto is_meant = [&](const Event& event) {
+    if (c.hand != kAnyHand && c.hand != event.hand) return false;
+    switch (c.kind) {
+      case ConditionKind::kOperationError:
+        return event.kind == EventKind::kOperationError && event.error == c.error;
+      case ConditionKind::kUnclippedCut:
+        return event.kind == EventKind::kTubeCut &&
+               static_cast<double>(CountGoodClips(snapshot.operation)) < c.amount;
+      default:
+        if (static_cast<int>(event.kind) != c.event) return false;
+        return c.regions.empty() || IsOneOf(*scene.task, c.regions, event.p_rest) != c.is_outside;
+    }
+  };
   const auto ring = static_cast<std::uint64_t>(snapshot.events.size());
   const std::uint64_t oldest = snapshot.event_count > ring ? snapshot.event_count - ring : 0;
   for (std::uint64_t n = std::max(events_before_, oldest); n < snapshot.event_count; ++n) {
     const Event& event = snapshot.events[n % ring];
-    if (static_cast<int>(event.kind) != c.event || (c.hand != kAnyHand && c.hand != event.hand)) continue;
+    if (!is_meant(event)) continue;
     const auto tip = [&](std::size_t hand) { return snapshot.instruments[hand].X_world_tool.translation; };
     const Vec3 position = event.hand >= 0 ? tip(static_cast<std::size_t>(event.hand))
                                           : math::Lerp(tip(kLeft), tip(kRight), 0.5);
@@ -191,7 +260,7 @@ void TaskMonitor::UpdateGoals(const Scene& scene, Snapshot& snapshot) noexcept {
     if (now.is_open) {
       const Condition& step = goal.steps[now.steps_done];
       // a hand-over is a moment; its seconds are those before it
-      const bool is_moment = step.kind == ConditionKind::kHandedOver || step.kind == ConditionKind::kEvent;
+      const bool is_moment = IsMoment(step.kind);
       const bool is_true = Find(scene, snapshot, step).is_true;
       now.held_seconds = is_true ? now.held_seconds + scene.tick_seconds : 0.0;
       if (is_true && (is_moment || now.held_seconds >= step.seconds)) {
@@ -215,7 +284,7 @@ void TaskMonitor::UpdateErrors(const Scene& scene, Snapshot& snapshot) noexcept 
       const Finding found = Find(scene, snapshot, condition);
       watch.seconds = found.is_true ? watch.seconds + scene.tick_seconds : 0.0;
       if (!found.is_true) watch.is_counted = false;
-      const bool is_moment = condition.kind == ConditionKind::kHandedOver;
+      const bool is_moment = IsMoment(condition.kind);
       if (!found.is_true || watch.is_counted || (!is_moment && watch.seconds < condition.seconds)) continue;
       watch.is_counted = true;
       ++now.errors[e];

@@ -50,6 +50,8 @@ class TaskMonitor {
   Finding FindOfObject(const Scene& scene, const Snapshot& snapshot,
                        const Condition& condition) const noexcept;
   Finding FindOfTool(const Scene& scene, const Snapshot& snapshot, const Condition& condition) const noexcept;
+  Finding FindOfEvents(const Scene& scene, const Snapshot& snapshot,
+                       const Condition& condition) const noexcept;
   void UpdateGoals(const Scene& scene, Snapshot& snapshot) noexcept;
   void UpdateErrors(const Scene& scene, Snapshot& snapshot) noexcept;
   void Judge(const Task& task, TaskSnapshot& now) const noexcept;

@@ -62,10 +62,10 @@ class RulesReader {
       region.facing = math::Normalized(math::Vec3{n[0], n[1], n[2]});
     }
     const std::string mark = view.TextOr("mark", "none");
-    constexpr std::string_view kMarks[] = {"none", "ring", "cage", "ball"};
+    constexpr std::string_view kMarks[] = {"none", "ring", "cage", "ball", "band"};
     const auto* found = std::find(std::begin(kMarks), std::end(kMarks), mark);
     if (found == std::end(kMarks)) {
-      view.Complain("there is no mark \"" + mark + "\"; known are none, ring, cage and ball",
+      view.Complain("there is no mark \"" + mark + "\"; known are none, ring, cage, ball and band",
                     ErrorCode::kUnknownName);
     } else {
       region.mark = static_cast<RegionMark>(found - std::begin(kMarks));
@@ -74,9 +74,10 @@ class RulesReader {
   }
 
   Condition ReadCondition(const JsonView& view, const std::string& item) const {
-    view.AllowOnly({"kind", "about", "object", "other", "hand", "from", "to", "region", "regions", "seconds",
-                    "height_mm", "fall_mm", "newtons", "within_deg", "facing_deg", "near_mm", "far_mm",
-                    "while_held", "event"});
+    view.AllowOnly({"kind",       "about",   "object",  "other",       "hand",    "from",    "to",
+                    "region",     "regions", "seconds", "height_mm",   "fall_mm", "newtons", "within_deg",
+                    "facing_deg", "near_mm", "far_mm",  "while_held",  "event",   "outside", "error",
+                    "clips",      "band",    "sheet",   "distance_mm", "area_mm2"});
     Condition c;
     const std::string kind = view.Text("kind");
     const auto known = FindKind(kind);
@@ -90,6 +91,9 @@ class RulesReader {
     c.kind = *known;
     c.seconds = view.NumberOr("seconds", 0.0, {0.0, 3600.0});
     c.while_held = view.BooleanOr("while_held", false);
+    if (IsOfTissue(c.kind) && !scene_.operation)
+      view.Complain("\"" + kind + "\" needs tissue: give the scene a model, or an operation",
+                    ErrorCode::kSceneInvalid);
     const auto object = [&] {
       c.object = FindName(view, scene_.objects, Fill(view.Text("object"), item), "object");
     };
@@ -146,6 +150,33 @@ class RulesReader {
         break;
       case ConditionKind::kEvent:
         c.hand = hand("hand"), c.event = ReadEvent(view);
+        if (view.Has("region") || view.Has("regions")) c.regions = ReadRegions(view, item);
+        c.is_outside = view.BooleanOr("outside", false);
+        if (!c.regions.empty() && c.event != static_cast<int>(EventKind::kClipClosed) &&
+            c.event != static_cast<int>(EventKind::kTubeCut))
+          view.Complain("only clip_closed and tube_cut have a place", ErrorCode::kSceneInvalid);
+        break;
+      case ConditionKind::kOperationError:
+        c.hand = hand("hand"), c.error = ReadOperationError(view);
+        break;
+      case ConditionKind::kClipped:
+      case ConditionKind::kDivided:
+        c.regions = ReadRegions(view, item);
+        break;
+      case ConditionKind::kUnclippedCut:
+        c.amount = view.Integer("clips", {1.0, 100.0});
+        break;
+      case ConditionKind::kCutFree:
+      case ConditionKind::kCutOffLine:
+      case ConditionKind::kCutAreaOff:
+        c.sheet = FindName(view, scene_.model ? scene_.model->sheets : std::vector<ModelSheet>(),
+                           Fill(view.Text("sheet"), item), "sheet");
+        if (c.kind == ConditionKind::kCutOffLine) c.amount = 1e-3 * view.Number("distance_mm", {0.1, 100.0});
+        if (c.kind == ConditionKind::kCutAreaOff) c.amount = 1e-6 * view.Number("area_mm2", {0.1, 1e4});
+        break;
+      case ConditionKind::kParted:
+        c.band = FindName(view, scene_.model ? scene_.model->bands : std::vector<ModelBand>(),
+                          Fill(view.Text("band"), item), "band");
         break;
       case ConditionKind::kCount:
         break;
@@ -192,6 +223,10 @@ class RulesReader {
     return std::nullopt;
   }
 
+  static bool IsOfTissue(ConditionKind kind) {
+    return kind >= ConditionKind::kOperationError && kind < ConditionKind::kCount;
+  }
+
   /// The items that an entry is repeated for; one nameless item without "for_each".
   static std::vector<std::string> ReadItems(const JsonView& view) {
     if (!view.Has("for_each")) return {""};
@@ -229,6 +264,18 @@ class RulesReader {
       known += (i == 0 ? "" : ", ") + std::string(one);
     }
     view.Complain("there is no event \"" + name + "\"; known are " + known, ErrorCode::kUnknownName);
+    return -1;
+  }
+
+  static int ReadOperationError(const JsonView& view) {
+    const std::string name = view.Text("error");
+    std::string known;
+    for (std::size_t i = 0; i < training::kOperationErrorCount; ++i) {
+      const auto one = training::NameOf(static_cast<training::OperationError>(i));
+      if (one == name) return static_cast<int>(i);
+      known += (i == 0 ? "" : ", ") + std::string(one);
+    }
+    view.Complain("surgery knows no error \"" + name + "\"; known are " + known, ErrorCode::kUnknownName);
     return -1;
   }
 

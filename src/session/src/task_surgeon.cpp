@@ -34,6 +34,11 @@ TaskSurgeon::TaskSurgeon(std::shared_ptr<const Scene> scene, const SurgeonSkill&
 Input TaskSurgeon::Act(const Snapshot& seen) {
   const double dt = scene_->tick_seconds;
   if (seen.task.IsOver()) has_finished_ = true;
+  if (start_.empty()) {
+    start_ = seen.positions;
+    const auto pieces = std::span(seen.operation.tube_pieces).first(seen.operation.tube_piece_count);
+    start_pieces_.assign(pieces.begin(), pieces.end());
+  }
   if (acts_.empty() && !has_finished_) Plan(seen);
   pause_ -= dt;
   while (!acts_.empty() && !has_finished_ && pause_ <= 0) {
@@ -53,6 +58,7 @@ Input TaskSurgeon::Act(const Snapshot& seen) {
     } else if (act_seconds_ > act.patience) {
       acts_.clear();
       has_begun_ = false;
+      for (HandControls& controls : controls_) controls.cut = controls.coagulate = false;
     } else {
       break;
     }
@@ -60,6 +66,7 @@ Input TaskSurgeon::Act(const Snapshot& seen) {
   Input input;
   input.settings = scene_->settings;
   for (std::size_t hand = 0; hand < kHandCount; ++hand) input.hands[hand] = hands_[hand].Step(dt);
+  input.controls = controls_;
   StepCamera(dt);
   input.laparoscope = camera_;
   return input;
@@ -161,6 +168,12 @@ void TaskSurgeon::PlanStep(const Snapshot& seen, const Goal& goal, std::uint32_t
     case ConditionKind::kCameraSees:
       Look(region(), 0.5 * (c.near + std::min(c.far, c.near + 0.2)));
       break;
+    case ConditionKind::kClipped:
+    case ConditionKind::kDivided:
+    case ConditionKind::kParted:
+    case ConditionKind::kCutFree:
+      PlanTissue(seen, c);
+      return;
     default:  // no goal that a hand could bring about
       Wait(0.5);
       break;

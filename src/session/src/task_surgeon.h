@@ -25,15 +25,25 @@ struct SurgeonSkill {
 /// The one thing that a careless surgeon does wrong, once.
 enum class Flaw {
   kNone,
-  kDrops,         ///< opens the jaws in the air
-  kLoses,         ///< carries a thing out of the picture and drops it there
-  kTouchesWire,   ///< strays from the path of a thing that must touch nothing
-  kPressesBoard,  ///< pushes a tip into what lies under it
-  kLeavesView,    ///< takes a tip out of the picture
-  kClashes,       ///< runs one tool into the other
-  kPullsApart,    ///< pulls with both hands at one thing
-  kSmearsLens,    ///< takes the lens too near
-  kDawdles        ///< does not get on before the time is over
+  kDrops,          ///< opens the jaws in the air
+  kLoses,          ///< carries a thing out of the picture and drops it there
+  kTouchesWire,    ///< strays from the path of a thing that must touch nothing
+  kPressesBoard,   ///< pushes a tip into what lies under it
+  kLeavesView,     ///< takes a tip out of the picture
+  kClashes,        ///< runs one tool into the other
+  kPullsApart,     ///< pulls with both hands at one thing
+  kSmearsLens,     ///< takes the lens too near
+  kClipsAstray,    ///< closes a clip off its mark
+  kCrossesClips,   ///< closes a clip over another
+  kClipsPartly,    ///< closes a clip around a part of the duct
+  kDropsClip,      ///< closes a clip around nothing
+  kCutsAstray,     ///< cuts the duct in the wrong place
+  kCutsUnclipped,  ///< cuts the duct before the clips are on
+  kBurnsSpared,    ///< burns a band that is to be spared
+  kCutsAside,      ///< cuts a sheet beside its line
+  kBurnsAir,       ///< presses the pedal in the air
+  kBurnsUnseen,    ///< presses it out of the picture
+  kDawdles         ///< does not get on before the time is over
 };
 
 /// One thing to do: begun once, then waited for.
@@ -72,11 +82,33 @@ class TaskSurgeon final : public Surgeon {
   void WithDraw(int hand);
   void Look(const Region& region, double distance);
   void Wait(double seconds);
+  // verbs and plans for tissue: task_tissue_verbs.cpp
+  /// A place on a duct or a band, by the rows of Snapshot::positions between which it was at rest.
+  struct TissueSpot {
+    std::uint32_t a = 0, b = 0;
+    double t = 0;
+    Vec3 At(const Snapshot& seen) const { return math::Lerp(seen.positions[a], seen.positions[b], t); }
+    Vec3 Along(const Snapshot& seen) const { return math::Normalized(seen.positions[b] - seen.positions[a]); }
+  };
+  TissueSpot FindOnTube(const Vec3& p_rest) const;
+  void PlanTissue(const Snapshot& seen, const Condition& wanted);
+  int TakeTool(const Snapshot& seen, instrument::ToolKind kind);
+  void LineUp(int hand, const TissueSpot& spot, double jaw);
+  void Advance(int hand, const TissueSpot& spot, double ahead);
+  void CloseClip(const Snapshot& seen, const Vec3& p_rest, double depth_share);
+  void CutTube(const Snapshot& seen, const Vec3& p_rest);
+  double FindClearPlace(const Snapshot& seen, int band) const;
+  void BurnBand(const Snapshot& seen, int band);
+  void PressPedal(int hand, double seconds);
+  void CutCircle(const Snapshot& seen, int sheet, double aside, double turns);
+  void FollowSheet(int hand, const Vec3& p_sheet, double hurry);
   Vec3 FindTip(const Snapshot& seen, int hand, int object, const Vec3& p_world_object) const;
   Vec3 GripTip(const Snapshot& seen, int hand, int object, int grip, double back) const;
   // errors: task_flaws.cpp
   bool AddFlaw(const Snapshot& seen, int hand, int object, bool on_path = false);
   bool AddIdleFlaw(const Snapshot& seen);
+  bool AddTissueFlaw(const Snapshot& seen, const Condition& wanted);  // task_tissue_flaws.cpp
+  Vec3 FindAstray(const Vec3& p_rest) const;
 
   void MoveCamera(const instrument::TrocarJoints& to);
   void StepCamera(double dt);
@@ -87,6 +119,9 @@ class TaskSurgeon final : public Surgeon {
   Flaw flaw_;
   math::Random random_;
   std::array<HandMotion, kHandCount> hands_;
+  std::array<HandControls, kHandCount> controls_;
+  std::vector<Vec3> start_;              // Snapshot::positions when it began
+  std::vector<TubePiece> start_pieces_;  // and its ducts
   instrument::TrocarJoints camera_, camera_from_, camera_to_;
   double camera_time_ = 0, camera_duration_ = 0;
   std::deque<SurgicalAct> acts_;

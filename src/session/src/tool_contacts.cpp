@@ -28,6 +28,7 @@ core::Result<ToolContacts> ToolContacts::Make(const Scene& scene, const tissue::
                                               std::span<const SurfaceInfo> surfaces,
                                               const tissue::TissueState& at_start) {
   ToolContacts made;
+  made.has_sheets_ = scene.model.has_value();
   const auto& organs = scene.patient.organs;
   for (std::size_t i = 0; i < organs.size(); ++i) {
     auto surface = surgery::MakeOrganSurface(model.rest, surfaces[i].first_node, organs[i].mesh);
@@ -161,7 +162,9 @@ void ToolContacts::Reset(const Scene& scene, const std::array<instrument::Trocar
 }
 
 surgery::Touchables ToolContacts::MakeTouchables(const tissue::TissueState& tissue) const noexcept {
-  return {organs_, &tubes_, tissue.position, positions_before_, surface_motion_};
+  const std::size_t organs = has_sheets_ ? 0 : organs_.size();
+  return {std::span(organs_).first(organs), &tubes_, tissue.position, positions_before_,
+          std::span(surface_motion_).last(organs + 1)};
 }
 
 std::span<const tissue::ContactSpring> ToolContacts::Find(const Scene& scene, const ToolsNow& now,
@@ -189,6 +192,7 @@ std::span<const tissue::ContactSpring> ToolContacts::Find(const Scene& scene, co
     surgery::FindOrganContacts(organs_, tissue.position, organ_settings_, pair, contacts_);
   }
   for (const surgery::CavityContact& contact : cavity_contacts_) {
+    if (has_sheets_) break;
     surgery::FindCavityContacts(cavity_, organs_, tissue.position, positions_before_, cavity_settings_,
                                 contact, contacts_);
   }

@@ -104,6 +104,7 @@ class ToolContacts {
 
   // scratch
   std::vector<surgery::OrganSurface> organs_;
+  bool has_sheets_ = false;  // organs are open sheets: grasped and cut, but not pushed
   surgery::TubeSet tubes_;
   std::vector<double> surface_motion_;  // (organs + 1)
   std::array<surgery::ProxyLimits, kHandCount> limits_;

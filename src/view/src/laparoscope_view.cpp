@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "band_view.h"
 #include "clip_shapes.h"
 #include "hand_tools.h"
 #include "liquids.h"
@@ -73,6 +74,7 @@ struct LaparoscopeView::Content {
   std::optional<Pool> pool;
   std::vector<render::SurfaceDraw> background;
   ObjectView objects;
+  BandView bands;
   double light_scale = 1;
   render::Frame frame;
   std::array<Vec3, session::kHandCount> forces, tips;
@@ -145,6 +147,16 @@ struct LaparoscopeView::Content {
     pool.emplace(std::move(ground));
   }
 
+  /// A model of tissue in a box trainer: nothing lies near it.
+  void AddModel() {
+    const auto add = [&](auto& shape) {
+      shape.Add(renderer, std::vector<double>(shape.Positions().size(), 1.0), memory);
+    };
+    for (OrganShape& organ : organs) add(organ);
+    for (TubeShape& tube : tubes) add(tube);
+    memory_at_start = memory;
+  }
+
   /// Cuts: takes over connectivity where the snapshot brings one that is new.
   void FollowTopology(const Snapshot& snapshot) {
     const session::OperationSnapshot& operation = snapshot.operation;
@@ -213,10 +225,12 @@ core::Result<LaparoscopeView> LaparoscopeView::Make(const session::Scene& scene,
   auto content = std::make_unique<Content>(std::move(*renderer));
   if (auto status = content->AddShapes(surfaces, start); !status) return status.error();
   content->tools.Add(content->renderer, scene);
-  content->objects.Add(content->renderer, scene);
+  content->objects.Add(content->renderer, scene, start);
+  content->bands.Add(content->renderer, scene, strands, start.positions);
   if (scene.objects.empty() || scene.HasPatient()) {
     content->AddSurroundings();
   } else {
+    content->AddModel();
     content->light_scale = kTrainerLight;
     content->background.push_back(
         {content->renderer.AddSurface(MakeTrainerBox(scene), Material::kSleeve), {}});
@@ -258,6 +272,7 @@ void LaparoscopeView::Update(const Snapshot& snapshot) {
     c.forces[i] = snapshot.instruments[i].force;
     c.tips[i] = snapshot.instruments[i].X_world_tool.translation;
   }
+  c.bands.Append(snapshot, c.frame.surfaces);
   c.objects.Append(snapshot, c.frame.surfaces);
   c.UpdateArrows();
 }

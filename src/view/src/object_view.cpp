@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <span>
 
 #include "trocar/geometry/primitives.h"
 #include "trocar/geometry/tube.h"
@@ -20,31 +22,9 @@ using surgery::RigidShape;
 constexpr int kSides = 28;
 constexpr int kRingSteps = 48;
 constexpr double kMarkThickness = 0.0006;  // half of a mark's line [m]
+constexpr double kBandMark = 0.00045;      // likewise, of a ring round a duct [m]
 constexpr double kBoxRoom = 0.060;         // between the objects and the walls of the trainer [m]
 constexpr double kBoxHeight = 0.150;       // of the walls [m]
-
-Material MaterialOf(ObjectColour colour) {
-  switch (colour) {
-    case ObjectColour::kRed:
-      return Material::kRedRubber;
-    case ObjectColour::kYellow:
-      return Material::kYellowRubber;
-    case ObjectColour::kGreen:
-      return Material::kGreenRubber;
-    case ObjectColour::kBlue:
-      return Material::kBlueRubber;
-    case ObjectColour::kWhite:
-      return Material::kWhitePlastic;
-    case ObjectColour::kBlack:
-      return Material::kShaft;
-    case ObjectColour::kSteel:
-      return Material::kSteel;
-    case ObjectColour::kGrey:
-    case ObjectColour::kCount:
-      break;
-  }
-  return Material::kSleeve;
-}
 
 /// Torus about z: as a closed tube would be, without a seam.
 TriangleMesh MakeTorus(double radius, double section) {
@@ -78,6 +58,31 @@ TriangleMesh MakeRod(std::vector<double> heights, std::vector<double> radii) {
   return geometry::MakeTube(axis, kSides);
 }
 
+}  // namespace
+
+Material MaterialOf(ObjectColour colour) {
+  switch (colour) {
+    case ObjectColour::kRed:
+      return Material::kRedRubber;
+    case ObjectColour::kYellow:
+      return Material::kYellowRubber;
+    case ObjectColour::kGreen:
+      return Material::kGreenRubber;
+    case ObjectColour::kBlue:
+      return Material::kBlueRubber;
+    case ObjectColour::kWhite:
+      return Material::kWhitePlastic;
+    case ObjectColour::kBlack:
+      return Material::kShaft;
+    case ObjectColour::kSteel:
+      return Material::kSteel;
+    case ObjectColour::kGrey:
+    case ObjectColour::kCount:
+      break;
+  }
+  return Material::kSleeve;
+}
+
 TriangleMesh MakeCapsule(double radius, double half_length) {
   constexpr int kSteps = 5;
   std::vector<double> heights, radii;
@@ -90,6 +95,8 @@ TriangleMesh MakeCapsule(double radius, double half_length) {
   }
   return MakeRod(std::move(heights), std::move(radii));
 }
+
+namespace {
 
 TriangleMesh MakeShape(const RigidShape& shape) {
   const Vec3& s = shape.size;
@@ -141,6 +148,7 @@ TriangleMesh MakeMark(const session::Region& region) {
       Append(mesh, MakeTorus(reach, kMarkThickness), {math::RotationAbout({1, 0, 0}, M_PI / 2), {}});
       Append(mesh, MakeTorus(reach, kMarkThickness), {math::RotationAbout({0, 1, 0}, M_PI / 2), {}});
       break;
+    case session::RegionMark::kBand:
     case session::RegionMark::kNone:
       break;
   }
@@ -149,22 +157,41 @@ TriangleMesh MakeMark(const session::Region& region) {
 
 }  // namespace
 
-void ObjectView::AddMark(render::Renderer& renderer, std::size_t index) {
+void ObjectView::AddMark(render::Renderer& renderer, std::size_t index, const session::Snapshot& start) {
   const session::Region& region = task_->regions[index];
   if (region.mark == session::RegionMark::kNone) return;
+  Mark mark;
+  mark.region = index;
   TriangleMesh mesh = MakeMark(region);
   Pose X{{}, region.centre};
+  if (region.mark == session::RegionMark::kBand) {
+    const auto pieces = std::span(start.operation.tube_pieces).first(start.operation.tube_piece_count);
+    double nearest = std::numeric_limits<double>::infinity(), radius = 0;
+    for (const session::TubePiece& piece : pieces) {
+      const Vec3 &a = start.positions[piece.a], &b = start.positions[piece.b];
+      const double t = std::clamp(math::Dot(region.centre - a, b - a) / math::SquaredNorm(b - a), 0.0, 1.0);
+      const double distance = math::Distance(region.centre, math::Lerp(a, b, t));
+      if (!(distance < nearest)) continue;
+      nearest = distance;
+      radius = std::lerp(piece.radius_a, piece.radius_b, t);
+      mark.is_on_tube = true, mark.a = piece.a, mark.b = piece.b, mark.t = t;
+    }
+    mesh = MakeTorus(radius + 0.5 * kBandMark, kBandMark);
+  }
   if (region.facing) {
     // it sits in a socket, so that its open side shows
     X.rotation = math::RotationBetween({0, 0, 1}, *region.facing);
     const double r = region.radius;
     view::Append(mesh, MakeRod({-1.7 * r, -0.2 * r}, {1.5 * r, 1.5 * r}), {});
   }
-  marks_.push_back(
-      {renderer.AddSurface(mesh, Material::kSleeve), renderer.AddSurface(mesh, Material::kMark), index, X});
+  mark.idle = renderer.AddSurface(mesh, Material::kSleeve);
+  mark.next = renderer.AddSurface(mesh, Material::kMark);
+  mark.X_world_mark = X;
+  marks_.push_back(mark);
 }
 
-void ObjectView::Add(render::Renderer& renderer, const session::Scene& scene) {
+void ObjectView::Add(render::Renderer& renderer, const session::Scene& scene,
+                     const session::Snapshot& start) {
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     const session::SceneObject& object = scene.objects[i];
     for (const RigidShape& shape : object.body.shapes) {
@@ -176,7 +203,7 @@ void ObjectView::Add(render::Renderer& renderer, const session::Scene& scene) {
   }
   task_ = scene.task;
   if (!task_) return;
-  for (std::size_t region = 0; region < task_->regions.size(); ++region) AddMark(renderer, region);
+  for (std::size_t region = 0; region < task_->regions.size(); ++region) AddMark(renderer, region, start);
 }
 
 void ObjectView::Append(const session::Snapshot& snapshot, std::vector<render::SurfaceDraw>& surfaces) const {
@@ -186,7 +213,12 @@ void ObjectView::Append(const session::Snapshot& snapshot, std::vector<render::S
   const std::vector<int> next = FindNextRegions(snapshot.task);
   for (const Mark& mark : marks_) {
     const bool is_next = std::find(next.begin(), next.end(), static_cast<int>(mark.region)) != next.end();
-    surfaces.push_back({is_next ? mark.next : mark.idle, mark.X_world_mark});
+    Pose X = mark.X_world_mark;
+    if (mark.is_on_tube) {
+      const Vec3 &a = snapshot.positions[mark.a], &b = snapshot.positions[mark.b];
+      X = {math::RotationBetween({0, 0, 1}, math::Normalized(b - a, {0, 0, 1})), math::Lerp(a, b, mark.t)};
+    }
+    surfaces.push_back({is_next ? mark.next : mark.idle, X});
   }
 }
 

@@ -15,7 +15,8 @@ namespace trocar::view {
 class ObjectView {
  public:
   /// Uploads everything.
-  void Add(render::Renderer& renderer, const session::Scene& scene);
+  /// \param start  the first snapshot: where ducts are that marks belong to
+  void Add(render::Renderer& renderer, const session::Scene& scene, const session::Snapshot& start);
   /// Appends what a snapshot shows to a frame; what is to be done next is marked brightly.
   void Append(const session::Snapshot& snapshot, std::vector<render::SurfaceDraw>& surfaces) const;
 
@@ -29,14 +30,22 @@ class ObjectView {
     render::SurfaceId idle, next;
     std::size_t region = 0;
     math::Pose X_world_mark;
+    // of a mark round a duct: rows of Snapshot::positions, and where between them
+    bool is_on_tube = false;
+    std::uint32_t a = 0, b = 0;
+    double t = 0;
   };
   std::vector<int> FindNextRegions(const session::TaskSnapshot& now) const;
-  void AddMark(render::Renderer& renderer, std::size_t region);
+  void AddMark(render::Renderer& renderer, std::size_t region, const session::Snapshot& start);
 
   std::optional<session::Task> task_;
   std::vector<Part> parts_;
   std::vector<Mark> marks_;
 };
+
+render::Material MaterialOf(session::ObjectColour colour);
+/// Along z, closed; half the length between the centres of its ends [m].
+geometry::TriangleMesh MakeCapsule(double radius, double half_length);
 
 /// The inside of a box trainer: floor and walls round the objects, seen from within.
 geometry::TriangleMesh MakeTrainerBox(const session::Scene& scene);

@@ -93,6 +93,8 @@ void StrandField::AddTo(render::Frame& frame, const session::Snapshot& snapshot)
       case Kind::kPeritoneum:
         frame.fibres.push_back({a, b, strand.breadth, 0.3 * wave, Material::kFilm, 3 * seed});
         break;
+      case Kind::kBand:
+        break;  // a BandView shows it
       case Kind::kEnd:
         break;  // the tube itself shows it
     }

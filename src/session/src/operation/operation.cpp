@@ -37,7 +37,7 @@ core::Status Operation::MakeAll() {
   for (std::size_t i = 0; i < organ_count; ++i) {
     surgery::CuttableOrganSettings settings;
     settings.wall = tissue.walls[i];
-    settings.cut.has_walls = static_cast<std::int32_t>(i) != gallbladder_;
+    settings.cut.has_walls = static_cast<std::int32_t>(i) != gallbladder_ && !scene_->model;
     settings.first_node = tissue.surfaces[i].first_node;
     settings.first_spare = tissue.first_spare[i];
     settings.spare_count = kSpare.by_organ;
@@ -46,6 +46,9 @@ core::Status Operation::MakeAll() {
     organ->ReserveFor(change_);
     organs_.push_back(std::move(*organ));
   }
+  sheets_.clear();
+  for (std::size_t i = 0; scene_->model && i < scene_->model->sheets.size(); ++i)
+    sheets_.emplace_back(scene_->model->sheets[i], organs_[i].Mesh());
   auto vessels = VesselWork::Make(patient, std::span(tissue.surfaces).subspan(organ_count),
                                   tissue.first_spare.back(), kSpare.tubes);
   if (!vessels.ok()) return vessels.error();
@@ -74,7 +77,7 @@ core::Status Operation::MakeAll() {
   }
   heat_ = Electrosurgery(tissue.definition, tissue.heat_mass, strands_);
   watch_ = DissectionWatch(patient, tissue.surfaces, counted, tissue.definition.rest);
-  judge_.Clear();
+  judge_.Clear(gallbladder_ >= 0);
   assistant_.reset();
   if (scene_->operation->assistant) {
     const AssistantSetup& setup = *scene_->operation->assistant;
@@ -104,7 +107,20 @@ core::Status Operation::MakeAll() {
   topology_version_ = 0;
   is_in_bag_ = is_completed_ = false;
   bag_hand_ = -1;
+  note_count_ = told_errors_ = 0;
+  band_strands_.clear();
+  band_starts_.assign(1, 0);
+  for (std::size_t band = 0; scene_->model && band < scene_->model->bands.size(); ++band) {
+    for (std::uint32_t i = 0; i < strands_.size(); ++i) {
+      if (strands_[i].band == static_cast<std::int32_t>(band)) band_strands_.push_back(i);
+    }
+    band_starts_.push_back(static_cast<std::uint32_t>(band_strands_.size()));
+  }
   return {};
+}
+
+void Operation::Tell(const OperationNote& note) noexcept {
+  if (note_count_ < notes_.size()) notes_[note_count_++] = note;
 }
 
 core::Status Operation::Reset() {
@@ -146,7 +162,7 @@ bool Operation::MoveTool(int hand, const HandControls& controls, bool is_holding
   state.blade = {};
   state.spread_upper = state.spread_lower = {};
   state.clips = Tool(hand).clips;
-  state.has_clip_open = false;
+  state.has_clip_open = state.was_open = false;
   state.is_inserting = true;
   state.blind_seconds = 0;
   return true;
@@ -154,8 +170,10 @@ bool Operation::MoveTool(int hand, const HandControls& controls, bool is_holding
 
 bool Operation::Act(const HandsNow& hands, const TissueNow& tissue) noexcept {
   change_.Clear();
+  note_count_ = 0;
   for (int hand = 0; hand < kHandCount; ++hand) {
     hands_[static_cast<std::size_t>(hand)].has_current = false;
+    WatchImpossible(hand, hands);
     switch (Tool(hand).kind) {
       case instrument::ToolKind::kScissors:
         UseBlade(hand, hands, tissue);
@@ -191,6 +209,7 @@ bool Operation::Act(const HandsNow& hands, const TissueNow& tissue) noexcept {
   for (const surgery::NodeChange& node : change_.nodes) {
     if (node.is_new && node.from[0] != geometry::kNone) heat_.CopyNode(node.from[0], node.node);
   }
+  for (std::size_t i = 0; i < sheets_.size(); ++i) sheets_[i].Update(organs_[i].Mesh());
   ++topology_version_;
   return true;
 }
@@ -207,6 +226,10 @@ void Operation::Judge(const HandsNow& hands, const TissueNow& tissue) noexcept {
   smoke_ = std::clamp(smoke_ * (1.0 - kSmokeFades * hands.seconds), 0.0, 1.0);
   watch_.Update(*tissue.state, *vessels_, tissue.organs, hands.camera);
   judge_.Update(watch_, fluids_, is_in_bag_, is_completed_, p_pool_, hands.time, hands.seconds);
+  for (; told_errors_ < judge_.Errors().Entries().size(); ++told_errors_) {
+    const training::ErrorEntry& entry = judge_.Errors().Entries()[told_errors_];
+    Tell({EventKind::kOperationError, entry.hand, -1, static_cast<std::int32_t>(entry.error), entry.place});
+  }
 }
 
 void Operation::WatchHands(const HandsNow& hands) noexcept {
@@ -261,6 +284,7 @@ training::Target Operation::TargetOf(const TissueNow& tissue, std::uint32_t part
         return Target::kPeritoneum;
       case StrandInfo::Kind::kTriangle:
       case StrandInfo::Kind::kEnd:
+      case StrandInfo::Kind::kBand:
         return Target::kCysticPedicle;
     }
   }
@@ -296,6 +320,8 @@ void Operation::Size(OperationSnapshot& snapshot) const {
   snapshot.blanching.assign(nodes, 0.0F);
   snapshot.charring.assign(nodes, 0.0F);
   snapshot.clips.assign(surgery::VesselActs::kMostClips, {});
+  snapshot.band_is_whole.assign(band_starts_.size() - 1, 1);
+  snapshot.sheets.assign(sheets_.size(), {});
   snapshot.tube_pieces.assign(vessels_->Tubes().Graph().edges.size() + kSpare.tubes / 2, {});
   std::size_t triangles = 0;
   snapshot.first_triangle.clear();
@@ -317,6 +343,13 @@ void Operation::Publish(const tissue::TissueState& tissue, OperationSnapshot& sn
   }
   std::copy(tissue.strand_is_intact.begin(), tissue.strand_is_intact.end(),
             snapshot.strand_is_intact.begin());
+  for (std::size_t i = 0; i < sheets_.size(); ++i) snapshot.sheets[i] = sheets_[i].Now();
+  for (std::size_t band = 0; band < snapshot.band_is_whole.size(); ++band) {
+    const auto own =
+        std::span(band_strands_).subspan(band_starts_[band], band_starts_[band + 1] - band_starts_[band]);
+    snapshot.band_is_whole[band] =
+        std::all_of(own.begin(), own.end(), [&](std::uint32_t i) { return tissue.strand_is_intact[i] != 0; });
+  }
   heat_.Publish(snapshot);
   if (snapshot.topology_version != topology_version_) {
     for (std::size_t i = 0; i < organs_.size(); ++i) {

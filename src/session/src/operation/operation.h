@@ -14,6 +14,7 @@
 #include "electrosurgery.h"
 #include "operation_judge.h"
 #include "patient_tissue.h"
+#include "sheet_watch.h"
 #include "trocar/surgery/cuttable_organ.h"
 #include "vessel_work.h"
 
@@ -40,6 +41,15 @@ struct TissueNow {
   tissue::ConservationState* conserved = nullptr;
   std::span<const surgery::OrganSurface> organs;
   const surgery::TubeSet* tubes = nullptr;
+};
+
+/// Something that an operation tells: it becomes an event of the tick.
+struct OperationNote {
+  EventKind kind = EventKind::kOperationError;
+  std::int32_t hand = -1;
+  std::int32_t surface = -1;  ///< as in Event::organ
+  std::int32_t error = -1;    ///< training::OperationError
+  Vec3 p_rest;
 };
 
 class Operation {
@@ -77,6 +87,9 @@ class Operation {
   /// \note Real-time safe.
   void Judge(const HandsNow& hands, const TissueNow& tissue) noexcept;
 
+  /// What was done in this tick, and what was wrong with it.
+  std::span<const OperationNote> Notes() const { return std::span(notes_).first(note_count_); }
+
   const surgery::CuttableOrgan& Organ(std::size_t i) const { return organs_[i]; }
   /// Ducts and vessels as they are now, for contacts.
   std::vector<collision::TubePiece> TubePieces() const;
@@ -101,6 +114,8 @@ class Operation {
     double blind_seconds = 0;
     bool is_inserting = false;
     bool was_refused = false;
+    bool was_open = false;  // jaws, since they closed last
+    bool was_told_outside = false;
     double exchange_seconds = 0;
   };
 
@@ -117,9 +132,11 @@ class Operation {
   void UseBag(int hand, const HandsNow& hands, const TissueNow& tissue) noexcept;
   void Burn(const HandsNow& hands, const TissueNow& tissue) noexcept;
   void WatchHands(const HandsNow& hands) noexcept;
+  void WatchImpossible(int hand, const HandsNow& hands) noexcept;
   training::Target TargetOf(const TissueNow& tissue, std::uint32_t part) const noexcept;
   training::Target TargetOfSurface(std::int32_t surface) const noexcept;
   bool IsOf(std::uint32_t node, std::int32_t organ) const noexcept;
+  void Tell(const OperationNote& note) noexcept;
 
   const Scene* scene_;  // outlives this
   std::vector<StrandInfo> strands_;
@@ -129,6 +146,7 @@ class Operation {
   Vec3 p_pool_;
 
   std::vector<surgery::CuttableOrgan> organs_;
+  std::vector<SheetWatch> sheets_;  // (ModelSetup::sheets), which are the organs
   std::optional<VesselWork> vessels_;
   Electrosurgery heat_;
   DissectionWatch watch_;
@@ -144,6 +162,9 @@ class Operation {
   std::uint32_t topology_version_ = 0;
   bool is_in_bag_ = false, is_completed_ = false;
   std::int32_t bag_hand_ = -1;
+  std::array<OperationNote, 8> notes_{};
+  std::size_t note_count_ = 0, told_errors_ = 0;
+  std::vector<std::uint32_t> band_strands_, band_starts_;  // (bands) the strands of each, by band_starts_
 };
 
 }  // namespace trocar::session

@@ -31,6 +31,8 @@ constexpr double kRinseRate = 20e-6, kAspirateRate = 40e-6;  // [m^3/s]
 constexpr double kSuctionReach = 0.012;                      // of the tip beyond the pool's edge [m]
 constexpr double kSmokeSucked = 1.5;                         // share of the smoke a second [1/s]
 
+constexpr double kOutOfTrocar = 0.035;  // a tool that is less deep has its tip in the trocar [m]
+
 constexpr double kMouth = 0.030;  // of the bag: what lies within of its tip is in it [m]
 constexpr double kBagGrip = 1e4;  // nothing slips out of a closed bag [N]
 
@@ -76,6 +78,8 @@ void Operation::CutWith(const surgery::BladeMove& move, int hand, const HandsNow
   const std::size_t tubes = vessels_->Cut(move, *tissue.definition, tissue.state->position, change_, places);
   for (std::size_t i = 0; i < tubes; ++i) {
     judge_.OnCut(places[i], *vessels_, tip, hand, hands.time);
+    Tell({EventKind::kTubeCut, hand, static_cast<std::int32_t>(organs_.size() + places[i].tube), -1,
+          vessels_->RestPoint(places[i])});
     judge_.Note(
         {kind, Verb::kCut, TargetOfSurface(static_cast<std::int32_t>(organs_.size() + places[i].tube))},
         hand);
@@ -86,6 +90,7 @@ void Operation::CutWith(const surgery::BladeMove& move, int hand, const HandsNow
     if (!report.HasChanged()) continue;
     const auto organ = static_cast<std::int32_t>(i);
     judge_.Note({kind, Verb::kCut, TargetOfSurface(organ)}, hand);
+    if (scene_->model) continue;  // a sheet is there to be cut
     if (organ != gallbladder_) {
       judge_.Report(OperationError::kStructureTorn, tip, hand, hands.time);
       continue;
@@ -222,10 +227,32 @@ void Operation::UseClips(int hand, const HandsNow& hands, const TissueNow& tissu
   state.caught.reset();
   state.opened = 0;
   judge_.OnClip(clip, vessels_->Map(), hands.X_proxy[h].translation, hand, hands.time);
-  if (clip.kind != ClipResult::Kind::kLost)
-    judge_.Note({InstrumentKind::kClipper, Verb::kClip,
-                 TargetOfSurface(static_cast<std::int32_t>(organs_.size() + clip.place.tube))},
-                hand);
+  if (clip.kind == ClipResult::Kind::kLost) return;
+  const auto surface = static_cast<std::int32_t>(organs_.size() + clip.place.tube);
+  judge_.Note({InstrumentKind::kClipper, Verb::kClip, TargetOfSurface(surface)}, hand);
+  Tell({EventKind::kClipClosed, hand, surface, -1, vessels_->RestPoint(clip.place)});
+}
+
+/// Answers what cannot be done, once each time that it is tried.
+void Operation::WatchImpossible(int hand, const HandsNow& hands) noexcept {
+  const auto h = static_cast<std::size_t>(hand);
+  HandState& state = hands_[h];
+  const HandControls& controls = hands.input->controls[h];
+  const instrument::Tool& tool = Tool(hand);
+  const bool bites =
+      tool.kind == instrument::ToolKind::kScissors || tool.kind == instrument::ToolKind::kClipApplier;
+  const double jaw = hands.joints[h].jaw;
+  const bool has_bitten = bites && state.was_open && jaw <= kClipClosed * tool.max_jaw;
+  if (jaw > kClipOpen * tool.max_jaw) state.was_open = true;
+  if (has_bitten) state.was_open = false;
+  const bool is_used =
+      has_bitten || controls.cut || controls.coagulate || controls.rinse || controls.aspirate;
+  const bool is_outside = hands.joints[h].depth < kOutOfTrocar;
+  if (is_used && is_outside && !state.was_told_outside) Tell({EventKind::kUsedOutside, hand, -1, -1, {}});
+  state.was_told_outside = is_outside && (is_used || state.was_told_outside);
+  if (has_bitten && !is_outside && tool.kind == instrument::ToolKind::kClipApplier && state.clips == 0 &&
+      !state.has_clip_open)
+    Tell({EventKind::kNoClipsLeft, hand, -1, -1, {}});
 }
 
 void Operation::UseFluids(int hand, const HandsNow& hands) noexcept {

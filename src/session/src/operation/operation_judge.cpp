@@ -18,7 +18,8 @@ constexpr double kTight = 0.999;  // closure of a clip
 
 OperationJudge::OperationJudge() = default;
 
-void OperationJudge::Clear() {
+void OperationJudge::Clear(bool has_view) {
+  has_view_ = has_view;
   errors_.Clear();
   view_ = training::CriticalView();
   phases_ = training::PhaseRecogniser();
@@ -45,7 +46,7 @@ void OperationJudge::OnClip(const ClipResult& clip, const VesselMap& map, const 
   }
   const VesselRole role = map.anatomy.roles[map.Find(clip.place.tube, clip.place.arc).vessel];
   if (!MayBeDivided(role)) Report(OperationError::kWrongStructureClipped, p, hand, time);
-  if (!was_achieved_) Report(OperationError::kClipBeforeCriticalView, p, hand, time);
+  if (has_view_ && !was_achieved_) Report(OperationError::kClipBeforeCriticalView, p, hand, time);
   if (clip.is_crossed) Report(OperationError::kClipCrossed, p, hand, time);
   if (clip.kind == ClipResult::Kind::kPartial) Report(OperationError::kClipPartial, p, hand, time);
 }

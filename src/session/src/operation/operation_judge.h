@@ -22,7 +22,8 @@ struct HandAct {
 class OperationJudge {
  public:
   OperationJudge();
-  void Clear();
+  /// \param has_view  whether there is a critical view to be had before anything is clipped
+  void Clear(bool has_view);
 
   // what happened; each real-time safe
   void OnClip(const ClipResult& clip, const VesselMap& map, const Vec3& p, int hand, double time) noexcept;
@@ -46,7 +47,7 @@ class OperationJudge {
   training::ErrorLog errors_;
   training::CriticalView view_;
   training::PhaseRecogniser phases_;
-  bool was_achieved_ = false;
+  bool was_achieved_ = false, has_view_ = true;
   std::array<HandAct, 16> acts_{};
   std::size_t act_count_ = 0;
 };

@@ -30,6 +30,7 @@ core::Result<VesselWork> VesselWork::Make(const anatomy::Patient& patient,
   VesselWork made(std::move(*map), first_spare, spare_count);
   for (std::uint32_t t = 0; t < patient.tubes.size(); ++t) {
     const geometry::CentreLine& line = patient.tubes[t].line;
+    made.rest_.push_back(line.points);
     made.tubes_.AddTube(surfaces[t].first_node, line.points, line.radii);
     made.tube_of_.insert(made.tube_of_.end(), line.points.size(), t);
     made.arc_of_.insert(made.arc_of_.end(), made.map_.arcs[t].begin(), made.map_.arcs[t].end());
@@ -73,6 +74,15 @@ void VesselWork::MoveClips(const geometry::CentreLineCut& cut) noexcept {
       clip.t = (clip.t - cut.t) / (1.0 - cut.t);
     }
   }
+}
+
+Vec3 VesselWork::RestPoint(const TubePlace& place) const noexcept {
+  const std::vector<double>& arcs = map_.arcs[place.tube];
+  const std::vector<Vec3>& points = rest_[place.tube];
+  std::size_t i = 1;
+  while (i + 1 < arcs.size() && arcs[i] < place.arc) ++i;
+  return math::Lerp(points[i - 1], points[i],
+                    std::clamp((place.arc - arcs[i - 1]) / (arcs[i] - arcs[i - 1]), 0.0, 1.0));
 }
 
 std::optional<VesselWork::Caught> VesselWork::Catch(const instrument::Tool& tool, const Pose& X_world_tool,
@@ -136,6 +146,8 @@ ClipResult VesselWork::Clip(const instrument::Tool& tool, const Pose& X_world_to
   const VesselPlace place = map_.Find(clip.place.tube, clip.place.arc);
   acts_.clips.push_back({place.vessel, place.position, closure});
   result.place = clip.place;
+  clip.closure = closure;
+  clip.is_crossed = result.is_crossed;
   result.kind = closure < 0.999 ? ClipResult::Kind::kPartial : ClipResult::Kind::kClosed;
   clips_.push_back(clip);
   return result;
@@ -209,14 +221,21 @@ void VesselWork::Publish(std::span<const Vec3> position, std::size_t organ_count
     ClipSnapshot& shown = snapshot.clips[i];
     shown.is_lost = clip.is_lost;
     shown.gap = clip.gap;
+    shown.is_crossed = clip.is_crossed;
+    shown.closure = clip.closure;
     if (clip.is_lost) {
       shown.X_world_clip = {math::Quaternion{}, clip.p_lost};
       continue;
     }
+    shown.p_rest = RestPoint(clip.place);
     const Vec3 &a = position[tubes_.Node(clip.a)], &b = position[tubes_.Node(clip.b)];
     const Vec3 z = math::Normalized(b - a);
     const Vec3 x = math::Normalized(clip.legs - z * math::Dot(clip.legs, z), {1, 0, 0});
     shown.X_world_clip = {math::RotationFromAxes(x, math::Cross(z, x), z), math::Lerp(a, b, clip.t)};
+  }
+  snapshot.tube_cut_count = 0;
+  for (std::size_t i = 0; i < ends_.size() && snapshot.tube_cut_count < snapshot.tube_cuts.size(); ++i) {
+    if (acts_.openings[i].is_cut) snapshot.tube_cuts[snapshot.tube_cut_count++] = RestPoint(ends_[i].place);
   }
   snapshot.leak_count = 0;
   for (const surgery::Leak& leak : report_.Leaks()) {

@@ -46,6 +46,8 @@ class VesselWork {
   const VesselMap& Map() const { return map_; }
   const surgery::VesselActs& Acts() const { return acts_; }
   const surgery::CuttableTubes& Tubes() const { return tubes_; }
+  /// Where a place was at rest, world frame [m].
+  Vec3 RestPoint(const TubePlace& place) const noexcept;
   std::uint32_t TubeOf(std::uint32_t point) const { return tube_of_[point]; }
   double ArcOf(std::uint32_t point) const { return arc_of_[point]; }
   void ReserveFor(surgery::TopologyChange& change) const { tubes_.ReserveFor(change); }
@@ -104,7 +106,8 @@ class VesselWork {
     double t = 0;                // from a to b
     Vec3 legs;                   // direction in which it was put on, world frame at that time
     double gap = 0;              // [m]
-    bool is_lost = false;
+    bool is_lost = false, is_crossed = false;
+    double closure = 0;
     Vec3 p_lost;  // where it lies
     TubePlace place;
   };
@@ -117,8 +120,9 @@ class VesselWork {
 
   VesselMap map_;
   surgery::CuttableTubes tubes_;
-  std::vector<std::uint32_t> tube_of_;  // (points)
-  std::vector<double> arc_of_;          // (points) [m]
+  std::vector<std::uint32_t> tube_of_;   // (points)
+  std::vector<double> arc_of_;           // (points) [m]
+  std::vector<std::vector<Vec3>> rest_;  // (tubes)(points) [m]
   surgery::VesselActs acts_;
   std::vector<Clipped> clips_;
   std::vector<OpeningEnds> ends_;  // of acts_.openings

@@ -2,6 +2,7 @@
 /// \file options.h  Command line of trocar-window: the simulator, or with --contours the contour window.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 
@@ -14,6 +15,8 @@ struct Options {
   std::filesystem::path scene;   ///< empty: the built-in demonstration
   std::string task;              ///< training task by its name or file, in place of `scene`; empty: none
   std::string level = "normal";  ///< of that task
+  std::uint64_t seed = 1;        ///< of that task
+  bool is_task_list = false;     ///< start with the list of tasks
   int threads = 0;               ///< of the solver; 0: chosen by the number of processors
   std::string device;   ///< hands of a device, as `trocar devices list` names it; empty: mouse and keyboard
   std::string haptics;  ///< haptic device; empty: none

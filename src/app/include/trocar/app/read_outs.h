@@ -42,7 +42,7 @@ std::string FormatResidual(double residual);
 
 /// "gallbladder", "cystic duct": an organ's name with spaces; "tissue" where the index names none.
 std::string OrganLabel(const anatomy::Patient& patient, std::int32_t organ);
-/// "left grasper"
+/// "left grasper"; "left hand" where it has several tools
 std::string HandLabel(const session::Scene& scene, std::int32_t hand);
 
 /// Name of the tool that a hand has in use, with spaces: "clip applier, 12 clips", "hook".

@@ -62,12 +62,13 @@ class SessionControl {
   bool IsPaused() const { return runner_.IsPaused(); }
   /// Back to the first tick, hands at home; keeps running or paused, and the settings.
   void Reset();
-  /// true: from the first tick on the script moves both hands. false: the person takes over where they are.
+  /// true: from the first tick on the script, or else a scripted expert, moves both hands. false: the person takes over
+  /// where they are.
   void SetDemonstration(bool is_on);
   bool IsDemonstration() const { return is_demonstration_; }
   /// True if the script has come to its end.
   bool IsDemonstrationOver() const;
-  bool HasScript() const { return !runner_.GetScene().script.keys.empty(); }
+  bool HasScript() const { return runner_.HasScript(); }
 
   /// Hand that the mouse and keys move while the laparoscope is not held.
   void ChooseHand(device::Channel hand);

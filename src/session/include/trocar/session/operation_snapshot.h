@@ -18,8 +18,14 @@ namespace trocar::session {
 /// A clip, open or closed. Frame: origin in its middle, +x along its legs towards their tips, +z along what it closes.
 struct ClipSnapshot {
   math::Pose X_world_clip;
-  double gap = 0;        ///< between its legs [m]
-  bool is_lost = false;  ///< lies in the abdomen
+  double gap = 0;           ///< between its legs [m]
+  bool is_lost = false;     ///< lies in the abdomen
+  bool is_crossed = false;  ///< lies over another clip
+  double closure = 0;       ///< share of the vessel that it holds, 0 to 1 [-]
+  math::Vec3 p_rest;  ///< where on its vessel, as that was at rest, world frame [m]; of a lost clip nothing
+
+  /// Closed around the whole of a vessel, and over no other.
+  bool IsGood() const { return !is_lost && !is_crossed && closure > 0.999; }
 };
 
 /// What runs out of a cut or a hole.
@@ -45,8 +51,19 @@ struct StrandInfo {
     kAdhesion,
     kTriangle,    ///< fat and fibres of the hepatocystic triangle
     kPeritoneum,  ///< its cover, front and back
-    kEnd          ///< of a tube in its organ
+    kEnd,         ///< of a tube in its organ
+    kBand         ///< of a training task: part of a band
   } kind = Kind::kBed;
+  std::int32_t band = -1;  ///< index in ModelSetup::bands, or -1
+};
+
+/// How a sheet is cut along the circle that is drawn on it. Places and lengths are those of the sheet at rest.
+struct SheetSnapshot {
+  double cut_length = 0;  ///< [m]
+  double farthest = 0;    ///< of a cut from the line: inside of it, or round the piece that came free [m]
+  double off_area = 0;    ///< between the line and the rim of that piece [m^2]
+  bool is_free = false;   ///< what the line encloses hangs on the border no more
+  math::Vec3 p_farthest;  ///< world frame [m]
 };
 
 /// Fixed sizes while a scene runs, so that copying allocates nothing.
@@ -67,6 +84,10 @@ struct OperationSnapshot {
   std::size_t tube_piece_count = 0;
   std::vector<ClipSnapshot> clips;  ///< the first clip_count count
   std::size_t clip_count = 0;
+  std::array<math::Vec3, 32> tube_cuts{};  ///< the first tube_cut_count count: where at rest, world frame [m]
+  std::size_t tube_cut_count = 0;
+  std::vector<std::uint8_t> band_is_whole;  ///< (ModelSetup::bands)
+  std::vector<SheetSnapshot> sheets;        ///< (ModelSetup::sheets)
   std::array<LeakSnapshot, 32> leaks{};
   std::size_t leak_count = 0;
   surgery::FluidLedger fluids;

@@ -35,8 +35,13 @@ class Runner {
 
   /// The newest wish of the person; used from the next tick on until another comes.
   void SetInput(const Input& input);
-  /// true: the scene's script moves the hands and the input's hands are ignored.
+  /// true: the scene's script moves the hands and the input's hands are ignored. Where the scene has none, a scripted
+  /// expert acts in the place of the input, from the next reset on; the settings stay the input's.
   void SetScripted(bool is_scripted);
+  /// Whether there is a script, or an expert for this scene.
+  bool HasScript() const;
+  /// The script has come to its end, or the expert has done all there is to do.
+  bool IsScriptOver() const;
   void SetPaused(bool is_paused);
   bool IsPaused() const;
   /// Back to tick 0; keeps paused or running.

@@ -68,6 +68,29 @@ struct OperationSetup {
   std::optional<AssistantSetup> assistant;
 };
 
+/// A cord between two fixed points, of pieces one after the other: divided when one of them is.
+struct ModelBand {
+  std::string name;
+  ObjectColour colour = ObjectColour::kRed;
+  Vec3 from, to;           ///< world frame [m]
+  double radius = 0.0006;  ///< [m]
+};
+
+/// A level sheet that is held at its border, with a circle drawn round its middle.
+struct ModelSheet {
+  std::string name;
+  Vec3 centre;             ///< world frame [m]
+  Vec3 half;               ///< of its sides along x and y [m]; z is 0
+  double spacing = 0.003;  ///< of its nodes [m]
+  double circle = 0.020;   ///< radius [m]
+};
+
+/// Tissue that a training task makes for itself. Its ducts are the tubes of Scene::patient, its sheets the organs.
+struct ModelSetup {
+  std::vector<ModelBand> bands;
+  std::vector<ModelSheet> sheets;
+};
+
 /// How stiff one organ is; see tissue/material.h for the formulas.
 struct OrganMaterial {
   std::string organ;
@@ -98,9 +121,10 @@ struct Scene {
   Script script;                     ///< empty when the scene names none
   std::vector<SceneObject> objects;  ///< of a training task; without a patient there is at least one
   std::optional<OperationSetup> operation;
-  std::optional<Task> task;  ///< what is to be done
+  std::optional<ModelSetup> model;  ///< then `patient` is made from it, and nobody's
+  std::optional<Task> task;         ///< what is to be done
 
-  bool HasPatient() const { return !patient.organs.empty(); }
+  bool HasPatient() const { return !patient.organs.empty() && !model; }
 };
 
 /// Folder that holds assets/ and scenes/: TROCAR_DATA_DIR, else beside the program, else its source tree.

@@ -68,13 +68,19 @@ enum class EventKind {
   kStateRestored,
   kOrganFrozen,
   kTear,
-  kPinchDamage,     ///< jaws pinched a bite harder than it bears; force is the pinch
-  kToolsTouch,      ///< the instruments met
-  kExchangeRefused  ///< another tool was asked for while this one holds tissue
+  kPinchDamage,      ///< jaws pinched a bite harder than it bears; force is the pinch
+  kToolsTouch,       ///< the instruments met
+  kExchangeRefused,  ///< another tool was asked for while this one holds tissue
+  kClipClosed,       ///< a clip was closed around a duct or vessel, or a part of it
+  kTubeCut,          ///< a duct or vessel was cut through
+  kNoClipsLeft,      ///< a clip applier was closed that is empty
+  kUsedOutside,      ///< a pedal was pressed, or blades or clips closed, while the tool is out of its trocar
+  kOperationError    ///< `error` says which
 };
-inline constexpr EventKind kLastEventKind = EventKind::kToolsTouch;
+inline constexpr EventKind kLastEventKind = EventKind::kUsedOutside;  // the last that a rule may name
 /// "grasp", "release", "slip", "grasp_missed", "state_restored", "organ_frozen", "tear",
-/// "pinch_damage", "tools_touch", "exchange_refused"
+/// "pinch_damage", "tools_touch", "exchange_refused", "clip_closed", "tube_cut",
+/// "no_clips_left", "used_outside", "operation_error"
 std::string_view EventName(EventKind kind) noexcept;
 
 struct Event {
@@ -84,6 +90,8 @@ struct Event {
   std::int32_t organ;        ///< index into Simulation::Surfaces(), or -1
   double force;              ///< [N], 0 where it means nothing
   std::int32_t object = -1;  ///< Scene::objects that is meant, or -1
+  std::int32_t error = -1;   ///< training::OperationError, or -1
+  Vec3 p_rest;               ///< of a clip or a cut: where on its vessel at rest, world frame [m]
 };
 
 /// Copying into one that has been used before does not allocate (the sizes never change while a scene runs).

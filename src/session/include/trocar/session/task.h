@@ -22,7 +22,13 @@ namespace trocar::session {
 struct Scene;
 
 /// How a region is shown to the trainee.
-enum class RegionMark : std::uint8_t { kNone, kRing, kCage, kBall };
+enum class RegionMark : std::uint8_t {
+  kNone,
+  kRing,
+  kCage,
+  kBall,
+  kBand  ///< a ring round the duct or vessel that passes through the region, moving with it
+};
 
 /// Part of space: a ball or a box.
 struct Region {
@@ -53,7 +59,15 @@ enum class ConditionKind : std::uint8_t {
   kOutOfView,     ///< "out_of_view": `object` is out of the laparoscope's picture
   kTipOutOfView,  ///< "tip_out_of_view": the tip of `hand`'s tool is
   kForceAbove,    ///< "force_above": on the tool of `hand`, `amount` [N]
-  kEvent,         ///< "event": the simulation said `event`, of `hand` or of any
+  kEvent,  ///< "event": the simulation said `event`, of `hand` or of any, in `regions` or outside of them
+  kOperationError,  ///< "operation_error": surgery's own judge found `error`, of `hand` or of any
+  kClipped,         ///< "clipped": a clip holds the whole of a duct in one of `regions`, and crosses no other
+  kDivided,         ///< "divided": a duct has been cut through in one of `regions`
+  kUnclippedCut,  ///< "unclipped_cut": a duct was cut through with fewer than `amount` such clips in the scene
+  kParted,        ///< "parted": `band` has been divided
+  kCutFree,       ///< "cut_free": what the circle on `sheet` encloses hangs on the border no more
+  kCutOffLine,    ///< "cut_off_line": a cut in `sheet` is `amount` [m] from its circle, or farther
+  kCutAreaOff,  ///< "cut_area_off": between circle and rim of the piece that came free lies `amount` [m^2], or more
   kCount
 };
 /// "held", "lifted", ... as above.
@@ -67,12 +81,16 @@ struct Condition {
   int object = -1, other = -1;  ///< Scene::objects
   int hand = kAnyHand, to = kAnyHand;
   std::vector<int> regions;  ///< Task::regions
+  bool is_outside = false;   ///< of kEvent: counts outside of them
   double seconds = 0;        ///< for which it must hold without a break [s]
   double amount = 0;
   double angle = 0, facing_angle = 0;  ///< [rad]
   double near = 0, far = 0;            ///< [m]
   bool while_held = false;             ///< counts only while a hand holds `object`
   int event = -1;                      ///< EventKind
+  int error = -1;                      ///< training::OperationError
+  int band = -1;                       ///< ModelSetup::bands
+  int sheet = -1;                      ///< ModelSetup::sheets
 };
 
 /// Steps that have to be done one after the other.

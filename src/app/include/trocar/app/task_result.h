@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file task_result.h  What a task came to, for a person and for files. No widget.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "trocar/session/scene.h"
+#include "trocar/session/snapshot.h"
+
+namespace trocar::app {
+
+/// Keeps every error of a run; a snapshot lists the newest alone.
+class TaskErrorLog {
+ public:
+  /// Takes over what is new. A run that began anew empties the log.
+  void Add(const session::TaskSnapshot& now);
+  const std::vector<session::TaskError>& Errors() const { return errors_; }
+
+ private:
+  std::vector<session::TaskError> errors_;
+  std::uint64_t seen_ = 0;
+};
+
+struct TaskResult {
+  struct GoalRow {
+    std::string name;
+    bool is_done = false;
+  };
+  struct ErrorRow {
+    double time = 0;  ///< since the first movement [s]
+    std::string name, about, severity;
+    std::string by;  ///< "left grasper", "ring"; empty where nothing is named
+    double penalty = 0;
+    math::Vec3 position;  ///< world frame [m]
+  };
+  std::string task, level;
+  std::uint64_t seed = 0;
+  bool is_demonstration = false;  ///< of the scripted expert, nobody's own
+  session::TaskPhase phase = session::TaskPhase::kNone;
+  std::string verdict;  ///< "Completed", "The time is over", "Ended by an error"
+  double time = 0;      ///< [s]
+  double score = 0;
+  bool is_score_percent = false;  ///< of an able surgeon's points
+  std::vector<GoalRow> goals;
+  std::vector<ErrorRow> errors;
+};
+
+/// \pre the scene has a task (TROCAR_ASSERT)
+TaskResult MakeTaskResult(const session::Scene& scene, const session::TaskSnapshot& now,
+                          const std::vector<session::TaskError>& errors);
+
+/// "87.4", "87.4 %"
+std::string FormatScore(const TaskResult& result);
+/// Everything, as an object with "format": "trocar-task-result".
+std::string FormatTaskResultJson(const TaskResult& result);
+/// A page of its own.
+std::string FormatTaskResultHtml(const TaskResult& result);
+
+}  // namespace trocar::app

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "result_card.h"
+
+#include <utility>
+
+#include "trocar/app/read_outs.h"
+
+namespace trocar::app {
+namespace {
+
+constexpr int kWidth = 560, kHeight = 380;  // of the list [pixels]
+
+}  // namespace
+
+ResultCard::ResultCard() : Gtk::Box(Gtk::Orientation::VERTICAL) {
+  add_css_class("help");
+  set_halign(Gtk::Align::CENTER);
+  set_valign(Gtk::Align::CENTER);
+  set_spacing(8);
+  title_.add_css_class("card-title");
+  verdict_.add_css_class("key");
+  score_.add_css_class("force");
+  for (Gtk::Label* label : {&title_, &verdict_, &score_}) {
+    label->set_xalign(0);
+    append(*label);
+  }
+  lines_.set_column_spacing(16);
+  lines_.set_row_spacing(2);
+  auto* scroller = Gtk::make_managed<Gtk::ScrolledWindow>();
+  scroller->set_policy(Gtk::PolicyType::NEVER, Gtk::PolicyType::AUTOMATIC);
+  scroller->set_propagate_natural_height(true);
+  scroller->set_max_content_height(kHeight);
+  scroller->set_size_request(kWidth, -1);
+  scroller->set_child(lines_);
+  append(*scroller);
+  auto* note = Gtk::make_managed<Gtk::Label>("Training feedback, not certified assessment.");
+  note->add_css_class("fine");
+  note->set_xalign(0);
+  append(*note);
+
+  auto* buttons = Gtk::make_managed<Gtk::Box>();
+  buttons->set_spacing(8);
+  const std::pair<const char*, sigc::signal<void()>*> kButtons[] = {{"Again", &signal_again_},
+                                                                    {"Other task", &signal_other_},
+                                                                    {"Save …", &signal_save_},
+                                                                    {"Close", &signal_closed_}};
+  for (const auto& one : kButtons) {
+    auto* button = Gtk::make_managed<Gtk::Button>(one.first);
+    if (one.second == &signal_again_) button->add_css_class("primary");
+    button->signal_clicked().connect([signal = one.second] { signal->emit(); });
+    buttons->append(*button);
+  }
+  append(*buttons);
+}
+
+void ResultCard::AddLine(const std::string& left, const std::string& middle, const std::string& right,
+                         const char* style) {
+  int column = 0;
+  for (const std::string* text : {&left, &middle, &right}) {
+    auto* label = Gtk::make_managed<Gtk::Label>(*text);
+    label->add_css_class(column == 1 ? style : "value");
+    label->set_xalign(column == 2 ? 1 : 0);
+    label->set_hexpand(column == 1);
+    label->set_wrap(column == 1);
+    lines_.attach(*label, column++, line_count_);
+  }
+  ++line_count_;
+}
+
+void ResultCard::Show(const TaskResult& result) {
+  while (Gtk::Widget* old = lines_.get_first_child()) lines_.remove(*old);
+  line_count_ = 0;
+  title_.set_text(result.task + ", " + result.level +
+                  (result.is_demonstration ? ", shown by the expert" : ""));
+  verdict_.set_text(result.verdict + " after " + FormatTime(result.time));
+  score_.set_text("Score " + FormatScore(result));
+  for (const TaskResult::GoalRow& goal : result.goals)
+    AddLine(goal.is_done ? "✓" : "—", goal.name, "", "meaning");
+  if (result.errors.empty()) AddLine("", "No errors.", "", "meaning");
+  for (const TaskResult::ErrorRow& error : result.errors)
+    AddLine(FormatTime(error.time), error.about + (error.by.empty() ? "" : " (" + error.by + ")"),
+            error.severity, "note");
+}
+
+}  // namespace trocar::app
