@@ -45,10 +45,10 @@ constexpr KeyHelp kHelp[] = {
     {"Operation", "X   Z", "next tool, previous tool of this hand"},
     {"Operation", "V   N", "yellow pedal: cut, blue pedal: coagulate (hold)"},
     {"Operation", "J   K", "rinse, suck (hold)"},
-    {"Operation", "L   Y", "clutch (hold), freeze: the tool stands still although its device moves"},
+    {"Operation", "Comma   Y", "clutch (hold), freeze: the tool stands still although its device moves"},
     {"Operation", "U", "assistant: take and lift the fundus, relax, let go, wait"},
     {"Laparoscope", "C or middle button", "hold, then move the mouse to look around, wheel to go in and out"},
-    {"Laparoscope", "3", "automatic holder: keeps both tips in the picture; C takes over"},
+    {"Laparoscope", "L", "automatic holder: keeps both tips in the picture; C takes over"},
     {"Simulation", "Space", "start or pause"},
     {"Simulation", "R", "reset"},
     {"Simulation", "P", "play the demonstration, or take over from it"},
@@ -113,13 +113,13 @@ KeyMeaning FindKeyMeaning(std::uint32_t keyval, bool control) noexcept {
       return Do(Action::kHoldRinse);
     case 'k':
       return Do(Action::kHoldAspirate);
-    case 'l':
+    case ',':
       return Do(Action::kHoldClutch);
     case 'y':
       return Do(Action::kFreeze);
     case 'u':
       return Do(Action::kAssistant);
-    case '3':
+    case 'l':
       return Do(Action::kToggleCameraHolder);
     case 'c':
       return Do(Action::kHoldLaparoscope);

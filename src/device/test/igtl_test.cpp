@@ -130,8 +130,32 @@ TEST(Igtl, RefusesSizesThatLie) {
     EXPECT_TRUE(got.poses.empty()) << size;
     EXPECT_GE(got.counts.bad, 1u);
   }
+  EXPECT_EQ(Read(FormatIgtlTransform("left", MakePose(), 0)).poses.size(), 1u)
+      << "the control: an honest size is read";
   EXPECT_FALSE(Read(std::string(58, 'x')).is_followed) << "no version, no message";
   EXPECT_FALSE(Read(Message("TRANS\x01", body, 48)).is_followed);
+}
+
+// faults D6: in this protocol nothing numbers a message, so what is sent twice is taken twice; it only says again where a hand
+// was, and the gate of poses drops what a hand cannot do
+TEST(Igtl, ARepeatedMessageMovesNothing) {
+  TrackedHandsSettings settings;
+  settings.has_hemisphere_doubt = false;
+  TrackedHands hands(settings);
+  hands.Reset();
+  HandSamples samples;
+  const math::Pose now = MakePose();
+  math::Pose old = now;
+  old.translation.x += 0.2;
+  hands.Accept(kLeftHand, now, 1.0);
+  ASSERT_TRUE(hands.Collect(1.0, samples));
+  const HandSample before = samples[kLeftHand];
+  hands.Accept(kLeftHand, now, 1.001);  // twice
+  hands.Accept(kLeftHand, old, 1.002);  // replayed, 200 mm away
+  hands.Collect(1.002, samples);
+  EXPECT_EQ(samples[kLeftHand].pan, before.pan);
+  EXPECT_EQ(samples[kLeftHand].depth, before.depth);
+  EXPECT_EQ(hands.Counts().jumps, 1u);
 }
 
 TEST(Igtl, RefusesWrongChecksumsAndWhatIsNoPose) {

@@ -168,6 +168,21 @@ TEST(PolhemusFramer, FindsTheNextRecordAfterGarbage) {
   }
 }
 
+// faults D3, the negative control: a reader that goes on by whole records after garbage, as if nothing had happened
+TEST(PolhemusFramer, WithoutTryingEveryByteWhatFollowsGarbageIsLost) {
+  math::Random random(5);
+  for (const PolhemusFormat format : kFormats) {
+    const std::string good = RandomStream(format, random, 20);
+    const std::string stream = "?" + good;
+    const std::size_t length = PolhemusFramer(format).RecordLength();
+    std::size_t found = 0;
+    for (std::size_t at = 0; at + length <= stream.size(); at += length)
+      found += Parse(format, std::string_view(stream).substr(at, length)).size();
+    EXPECT_EQ(found, 0u) << FormatName(format);
+    EXPECT_EQ(Parse(format, stream).size(), 20u) << FormatName(format);
+  }
+}
+
 TEST(PolhemusFramer, RefusesEveryTruncation) {
   for (const PolhemusFormat format : kFormats) {
     const std::string record = FormatRecord(format, RequestedItems(format), {1, ' ', {0.1, 0.2, 0.3}, {}});
