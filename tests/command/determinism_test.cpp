@@ -31,6 +31,28 @@ TEST_F(Determinism, AnotherTickIsAnotherHash) {
   EXPECT_NE(Simulate(30, 1, 1).at("hash"), Simulate(31, 1, 1).at("hash"));
 }
 
+// what is recorded with buttons is played with them: the next tool in the right hand, pressed for a tenth of a second
+TEST_F(Determinism, ADevicesButtonsReachTheOperation) {
+  const auto play = [this](std::uint32_t buttons) {
+    std::string text = "time_s";
+    for (const char* hand : {"left", "right", "laparoscope"}) {
+      for (const char* what : {"seen", "pan_rad", "tilt_rad", "spin_rad", "depth_m", "jaw_rad", "buttons"})
+        text.append(",").append(hand).append("_").append(what);
+    }
+    text += '\n';
+    for (int i = 0; i < 40; ++i) {
+      text += std::to_string(0.01 * i) + ",0,0,0,0,0.1,0,0,1,0.1,0.1,0,0.12,0.5," +
+              std::to_string(i >= 4 && i < 14 ? buttons : 0) + ",0,0,0,0,0.1,0,0\n";
+    }
+    Write("hands.csv", text);
+    const auto result = Run({"simulate", Source("scenes/cholecystectomy.json"), "--ticks", "30", "--device",
+                             "play:" + Path("hands.csv"), "--json"});
+    EXPECT_EQ(result.status, 0) << result.err;
+    return nlohmann::json::parse(result.out, nullptr, false).at("hash").get<std::string>();
+  };
+  EXPECT_NE(play(8), play(0));
+}
+
 TEST_F(Determinism, JsonHoldsWhatWasPromisedAndNothingElse) {
   const nlohmann::json json = Simulate(20, 1, 1);
   std::vector<std::string> keys;

@@ -252,7 +252,9 @@ bool SimulatorWindow::UseDevices() {
   const device::LoadedStore loaded = device::LoadDeviceStore(device::FindDeviceStore());
   if (loaded.complaint) core::Log(core::LogLevel::kWarning, loaded.complaint->Text());
   for (const std::string& key : hands_->SetKeys(loaded.store.keys))
-    core::Log(core::LogLevel::kWarning, "the key \"" + key + "\" of the device settings can have no act");
+    core::Log(
+        core::LogLevel::kWarning,
+        "the key \"" + key + "\" of the device settings can have no act; docs/devices.md says which can");
   if (!options_.haptics.empty()) {
     const device::ButtonMap buttons = loaded.store.Buttons("haptics");
     if (const core::Status started = control_->UseHaptics(options_.haptics, buttons); !started) {

@@ -93,6 +93,23 @@ TEST_F(DeviceFilesTest, BadFileMeansDefaultsAndAMessageAndIsSetAside) {
   EXPECT_FALSE(LoadDeviceStore(path).complaint.has_value());
 }
 
+TEST_F(DeviceFilesTest, AHandWithForceHasNoClutch) {
+  const DeviceStore none;
+  EXPECT_EQ(none.Buttons("gamepad"), DefaultButtons());
+  EXPECT_EQ(none.Buttons("haptics")[0][0], HandAct::kCut);
+  EXPECT_EQ(none.Buttons("haptics")[1][4], HandAct::kNone);
+  const fs::path path = folder_ / "devices.json";
+  const auto complains = [&](const std::string& acts) {
+    EXPECT_TRUE(
+        core::WriteFile(path, R"({"version": 1, "buttons": {"haptics": {"left": [)" + acts + "]}}}").ok());
+    return LoadDeviceStore(path).complaint.has_value();
+  };
+  EXPECT_FALSE(complains(R"("coagulate")"));
+  EXPECT_EQ(LoadDeviceStore(path).store.Buttons("haptics")[0][0], HandAct::kCoagulate);
+  EXPECT_TRUE(complains(R"("cut", "clutch")"));
+  EXPECT_TRUE(complains(R"("freeze")"));
+}
+
 TEST_F(DeviceFilesTest, StoreLiesInThePersonsFolder) {
   ::setenv("TROCAR_CONFIG_DIR", folder_.c_str(), 1);
   EXPECT_EQ(FindDeviceStore(), folder_ / "devices.json");

@@ -67,6 +67,18 @@ TrackerEntry ReadTracker(const core::JsonView& view) {
   return entry;
 }
 
+constexpr const char* kHaptics = "haptics";
+
+/// The loop leads the tool of a hand with force; nothing may hold it back from there.
+ButtonMap WithoutClutch(ButtonMap map) {
+  for (auto& hand : map) {
+    for (HandAct& act : hand) {
+      if (act == HandAct::kClutch || act == HandAct::kFreeze) act = HandAct::kNone;
+    }
+  }
+  return map;
+}
+
 /// The act of that name, or kNone with a complaint.
 HandAct ReadAct(const core::JsonView& view, const std::string& name) {
   if (const auto act = FindAct(name)) return *act;
@@ -77,9 +89,9 @@ HandAct ReadAct(const core::JsonView& view, const std::string& name) {
   return HandAct::kNone;
 }
 
-ButtonMap ReadButtons(const core::JsonView& view) {
+ButtonMap ReadButtons(const core::JsonView& view, const ButtonMap& defaults) {
   view.AllowOnly({kHandNames[0], kHandNames[1]});
-  ButtonMap map = DefaultButtons();
+  ButtonMap map = defaults;
   for (std::size_t hand = 0; hand < map.size(); ++hand) {
     if (!view.Has(kHandNames[hand])) continue;
     const std::vector<core::JsonView> names = view.Array(kHandNames[hand]);
@@ -95,8 +107,13 @@ ButtonMap ReadButtons(const core::JsonView& view) {
 void ReadAllButtons(const core::JsonView& root, DeviceStore& store) {
   if (root.Has("buttons")) {
     const core::JsonView buttons = root.Object("buttons");
-    buttons.AllowOnly({"gamepad", "spacemouse", "haptics", "play"});
-    for (const std::string& kind : buttons.Keys()) store.buttons[kind] = ReadButtons(buttons.Object(kind));
+    buttons.AllowOnly({"gamepad", "spacemouse", kHaptics, "play"});
+    for (const std::string& kind : buttons.Keys()) {
+      const ButtonMap map = ReadButtons(buttons.Object(kind), DeviceStore().Buttons(kind));
+      if (kind == kHaptics && WithoutClutch(map) != map)
+        buttons.Object(kind).Complain("a hand with force has no clutch and no freeze");
+      store.buttons[kind] = map;
+    }
   }
   if (root.Has("keys")) {
     const core::JsonView keys = root.Object("keys");
@@ -200,7 +217,8 @@ TrackerEntry DeviceStore::Tracker(const std::string& kind) const {
 
 ButtonMap DeviceStore::Buttons(const std::string& kind) const {
   const auto found = buttons.find(kind);
-  return found == buttons.end() ? DefaultButtons() : found->second;
+  if (found != buttons.end()) return found->second;
+  return kind == kHaptics ? WithoutClutch(DefaultButtons()) : DefaultButtons();
 }
 
 fs::path FindDeviceStore() {
