@@ -40,11 +40,11 @@ ResultCard::ResultCard() : Gtk::Box(Gtk::Orientation::VERTICAL) {
 
   auto* buttons = Gtk::make_managed<Gtk::Box>();
   buttons->set_spacing(8);
-  const std::pair<const char*, sigc::signal<void()>*> kButtons[] = {{"Again", &signal_again_},
-                                                                    {"Other task", &signal_other_},
-                                                                    {"Save …", &signal_save_},
-                                                                    {"Close", &signal_closed_}};
-  for (const auto& one : kButtons) {
+  const std::pair<const char*, sigc::signal<void()>*> all[] = {{"Again", &signal_again_},
+                                                               {"Other task", &signal_other_},
+                                                               {"Save …", &signal_save_},
+                                                               {"Close", &signal_closed_}};
+  for (const auto& one : all) {
     auto* button = Gtk::make_managed<Gtk::Button>(one.first);
     if (one.second == &signal_again_) button->add_css_class("primary");
     button->signal_clicked().connect([signal = one.second] { signal->emit(); });

@@ -92,7 +92,8 @@ const session::Snapshot& SessionControl::Advance(double dt) {
   }
 
   // as with the hands: whoever takes the laparoscope over takes it where it is
-  if (HasCameraHolder()) device_.Place(device::kLaparoscope, SampleOf(snapshot.laparoscope));
+  const bool is_experts = is_demonstration_ && runner_.GetScene().script.keys.empty();
+  if (HasCameraHolder() || is_experts) device_.Place(device::kLaparoscope, SampleOf(snapshot.laparoscope));
 
   std::array<HandSample, device::kChannelCount> samples;
   if (!runner_.IsPaused()) {

@@ -236,6 +236,19 @@ TEST_F(SessionControlTest, ATaskWithoutAScriptIsShownByTheExpertAndTakenOverWith
   })) << "from the beginning to the end";
 }
 
+TEST_F(SessionControlTest, TheExpertsLaparoscopeIsTakenOverWhereItIs) {
+  Open(TROCAR_SOURCE_DIR "/scenes/tasks/camera_navigation_0.json");
+  control->SetDemonstration(true);
+  control->SetPaused(false);
+  const double home = control->GetScene().laparoscope.home.pan;
+  ASSERT_TRUE(AdvanceUntil(
+      [&](const session::Snapshot& now) { return std::abs(now.laparoscope.pan - home) > 0.05; }));
+  const instrument::TrocarJoints before = control->Advance(0).laparoscope;
+  control->SetDemonstration(false);
+  control->Advance(0);
+  EXPECT_NEAR(control->GetInput().laparoscope.pan, before.pan, 0.02);
+}
+
 TEST_F(SessionControlTest, ResetGoesHomeAndToTheFirstTick) {
   control->SetPaused(false);
   control->Device().SetKey(Motion::kIn, true);

@@ -47,7 +47,7 @@ int main(int argc, char** argv) {
   if (card < all / 4) return Fail("no card lies over the picture");
   if (text < 300) return Fail("the card says nothing");
   if (is_list) return 0;
-  const int primary = picture.Count(x0, y0, x1, picture.height, [](const unsigned char* p) {
+  const int primary = picture.Count(0, y0, x1, picture.height, [](const unsigned char* p) {
     return p[0] < 60 && p[1] > 100 && p[1] < 150 && p[2] > 120 && p[2] < 170;
   });
   if (primary < 500) return Fail("there is no button to try again");

@@ -54,6 +54,11 @@ void MotionLog::Record(const session::Snapshot& snapshot) {
       case EventKind::kPinchDamage:
       case EventKind::kToolsTouch:
       case EventKind::kExchangeRefused:
+      case EventKind::kClipClosed:
+      case EventKind::kTubeCut:
+      case EventKind::kNoClipsLeft:
+      case EventKind::kUsedOutside:
+      case EventKind::kOperationError:
         break;
     }
   }

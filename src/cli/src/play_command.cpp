@@ -160,30 +160,40 @@ void PrintForPerson(const session::Scene& scene, const PlayReport& report) {
   std::printf("Training feedback, not certified assessment.\n");
 }
 
-std::string NameSurgeons(const session::Scene& scene) {
-  std::string names;
+constexpr std::size_t kListWidth = 100;  // columns
+
+/// A task in one line, and below it who can do it, in lines that a terminal holds.
+void PrintTask(const std::string& key, const std::string& levels, const session::Scene& scene) {
+  std::printf("%s%s: %s\n", key.c_str(), levels.empty() ? "" : (" (" + levels + ")").c_str(),
+              scene.name.c_str());
+  std::string line = "   ";
   for (const session::SurgeonEntry& entry : session::ListSurgeons()) {
-    if (entry.suits(scene)) names += (names.empty() ? "" : " ") + std::string(entry.name);
+    if (!entry.suits(scene)) continue;
+    const std::string name = entry.name;
+    if (line.size() + 1 + name.size() > kListWidth) {
+      std::printf("%s\n", line.c_str());
+      line = "   ";
+    }
+    line += " " + name;
   }
-  return names;
+  std::printf("%s\n", line.c_str());
 }
 
 core::Status PrintList() {
   const auto tasks = session::ListTasks();
   if (!tasks) return tasks.error();
-  std::vector<std::vector<std::string>> rows = {{"task", "levels", "surgeons", "about"}};
   for (const session::TaskEntry& task : *tasks) {
     const auto scene = session::ReadTask(task.path);
     if (!scene) return scene.error();
     std::string levels;
-    for (const std::string& level : task.levels) levels += (levels.empty() ? "" : " ") + level;
-    rows.push_back({task.key, levels, NameSurgeons(*scene), task.name});
+    for (const std::string& level : task.levels) levels += (levels.empty() ? "" : ", ") + level;
+    PrintTask(task.key, levels, *scene);
   }
   const auto operation = FindOperation("cholecystectomy", {}, 0);
   if (!operation) return operation.error();
-  if (*operation) rows.push_back({"cholecystectomy", "-", NameSurgeons(**operation), (*operation)->name});
-  std::fputs(FormatTable(rows).c_str(), stdout);
+  if (*operation) PrintTask("cholecystectomy", "", **operation);
   std::printf("\n");
+  std::vector<std::vector<std::string>> rows;
   rows = {{"surgeon", "error", "about"}};
   for (const session::SurgeonEntry& entry : session::ListSurgeons())
     rows.push_back({entry.name, *entry.error == 0 ? "-" : entry.error, entry.about});

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 
 #include "run_trocar.h"
@@ -16,6 +17,8 @@ TEST(PlayCommand, ListsTasksAndSurgeons) {
   EXPECT_EQ(run.status, 0) << run.err;
   for (const char* word : {"peg_transfer", "wire_run", "expert", "novice", "drops", "wire_touched"})
     EXPECT_NE(run.out.find(word), std::string::npos) << word << "\n" << run.out;
+  std::istringstream lines(run.out);
+  for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 120u) << line;
 }
 
 TEST(PlayCommand, PrintsTheVerdictAsJsonAndTheSameAgain) {

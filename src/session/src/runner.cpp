@@ -78,6 +78,7 @@ struct Runner::Content {
     }
     now = expert->Act(seen);
     now.settings = input.settings;
+    now.settings.holds_camera = scene.settings.holds_camera;  // an expert looks for himself
     is_script_over.store(expert->HasFinished(), std::memory_order_relaxed);
     return now;
   }
