@@ -303,6 +303,9 @@ std::vector<TubePoints> PlaceDucts(const TriangleMesh& liver, const TriangleMesh
   const bool is_double = is_yes("double_cystic_artery");
   const double length = number("cystic_artery_length");
   const double radius = 0.5 * number("cystic_artery_diameter") * (is_double ? 0.8 : 1.0);
+  // the second one enters another side of the gallbladder, also where neither is long enough to choose
+  constexpr double kApartMm = 8.0;
+  std::vector<Vec3> entries;
   const auto place_artery = [&](const char* name, const Vec3& side, const std::vector<Vec3>& from_line) {
     const Vec3 start = *std::min_element(
         from_line.begin(), from_line.end(),
@@ -311,8 +314,11 @@ std::vector<TubePoints> PlaceDucts(const TriangleMesh& liver, const TriangleMesh
       const double reach_miss = Distance(p, start) - 0.9 * length;
       Vec3 outward;
       const double depth = placer.Liver().Find(p, outward);
-      return std::fabs(reach_miss) - 0.6 * Dot(p - neck, side) + (depth < 2.0 ? 10.0 : 0.0);
+      double crowding = 0;
+      for (const Vec3& other : entries) crowding += std::max(0.0, kApartMm - Distance(p, other));
+      return std::fabs(reach_miss) - 0.6 * Dot(p - neck, side) + (depth < 2.0 ? 10.0 : 0.0) + 10.0 * crowding;
     });
+    entries.push_back(target);
     const Vec3 middle = placer.PushOut(0.5 * (start + target), radius + kClearMm);
     tubes.push_back(MakeTubePoints(name, "artery", "right_hepatic_artery", "gallbladder",
                                    placer.Route({start, middle, target}, radius, length, side), radius,

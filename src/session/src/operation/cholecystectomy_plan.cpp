@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// The operation, part by part; each part looks at what has come of it and goes on until it is enough.
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "cholecystectomy_surgeon.h"
@@ -6,115 +9,265 @@
 namespace trocar::session {
 namespace {
 
-constexpr double kMainDistance = 0.009;  // from ducts that must stay, where no fibre is burnt [m]
+using instrument::ToolKind;
+
+constexpr double kCleared = 0.93, kDetached = 0.36;  // of triangle and bed: a little more than the view asks
+constexpr double kLowerShare = 0.44;                 // of the bed that is freed before the view [-]
+constexpr int kRounds = 4;
+constexpr double kPedicleWeight = 3.0;  // of fibres on the cystic duct and artery, among others
+constexpr double kGrip = 0.07;          // of the jaws: 14 N of pinch
+constexpr double kTurnStep = 0.2;       // of the lens about the duct, to either side in turn [rad]
+constexpr int kTurnSteps = 26;
+constexpr double kAside = 0.4;                          // of a view from the front of the neck [rad]
+constexpr double kDistances[] = {0.060, 0.072, 0.050};  // of the lens from the duct [m]
+constexpr double kSkin = 0.004;  // sight ends at the skin of a duct, not at its axis [m]
 
 }  // namespace
 
 void CholecystectomySurgeon::PlanOperation() {
-  using Kind = StrandInfo::Kind;
-  const std::size_t duct = FindTube("cystic_duct"), artery = FindTube("cystic_artery");
   const Place neck = [this](const Snapshot& seen) { return seen.positions[neck_]; };
-  const Vec3 duct_way = math::Normalized(rest_[tube_nodes_[duct].front()] - rest_[tube_nodes_[duct].back()]);
-
+  camera_follows_ = true;
   Add(
       "assistant: retract", [this](const Snapshot&) { assistant_ = AssistantCommand::kRetract; },
       [](const Snapshot& seen) {
         return seen.operation.is_assistant_holding || !seen.operation.has_assistant;
       },
       8.0);
-  Wait(1.5);
-  Grasp(kLeft, [this](const Snapshot& seen) { return seen.positions[hold_]; });
-  Draw(kLeft, 0.006 * duct_way + 0.003 * bed_normal_);
-  LookAt(neck, 0.0, 0.075);
+  LookAt(neck, 0.0, 0.090);
+  HoldOn(neck);
+  const std::size_t duct = FindTube("cystic_duct");
+  const Vec3 duct_way = math::Normalized(rest_[tube_nodes_[duct].front()] - rest_[tube_nodes_[duct].back()]);
+  DrawGently(kLeft, 0.006 * duct_way + 0.003 * bed_normal_);
+  ClearTriangle(kRounds);
+  FreeLowerThird(kRounds);
+  ShowCriticalView(kRounds);
+  // without the view nothing is clipped; a gallbladder that is still tied is not taken off its bed
+  Decide("time-out", [this](const Snapshot&) { stops_ = !has_view_; });
+  Divide(entering_);
+  StopBleeding();
+  Decide("look at the stumps", [this](const Snapshot& seen) {
+    stops_ = !std::all_of(entering_.begin(), entering_.end(),
+                          [&](std::size_t tube) { return IsDivided(seen, tube); });
+  });
+  FreeFromBed(kRounds + 2);
+  Remove();
+}
 
-  // the triangle, from the gallbladder towards the ducts
-  std::vector<std::uint32_t> triangle, bed;
-  std::vector<double> triangle_order, bed_order;
-  const Vec3 neck_rest = rest_[neck_], axis = rest_[fundus_] - rest_[neck_];
-  const auto is_near_main = [&](const Vec3& p) {
-    for (std::size_t t = 0; t < tube_nodes_.size(); ++t) {
-      const anatomy::Tube& tube = scene_->patient.tubes[t];
-      if (tube.name.find("cystic") == 0) continue;
-      for (const std::uint32_t node : tube_nodes_[t]) {
-        if (math::Distance(rest_[node], p) < kMainDistance) return true;
+/// Takes the gallbladder with the left hand, clear of the liver, and again elsewhere when nothing was taken.
+void CholecystectomySurgeon::HoldOn(const Place& near, int tries) {
+  Decide("choose a hold", [this, near, tries](const Snapshot& seen) {
+    if (tries <= 0) return;
+    if (seen.instruments[kLeft].is_grasping) LetGo(kLeft);
+    Decide("choose a hold", [this, near, tries](const Snapshot& now) {
+      const std::uint32_t node = FindHold(now, near(now), missed_holds_);
+      Grasp(
+          kLeft, [node](const Snapshot& then) { return then.positions[node]; }, kGrip);
+      Decide("look at the hold", [this, near, tries, node](const Snapshot& then) {
+        const InstrumentSnapshot& hand = then.instruments[kLeft];
+        if (hand.is_grasping && hand.organ == scene_->patient.FindOrgan("gallbladder")) return;
+        missed_holds_.push_back(node);
+        LetGo(kLeft);
+        HoldOn(near, tries - 1);
+      });
+    });
+  });
+}
+
+/// The hepatocystic triangle: bluntly, beside ducts too; what is left elsewhere, with the hook.
+void CholecystectomySurgeon::ClearTriangle(int rounds) {
+  Decide("look at the triangle", [this, rounds](const Snapshot& seen) {
+    std::vector<std::uint32_t> fat = TriangleStrands();
+    std::vector<std::uint32_t> covering;
+    if (!AreTubesBare(seen)) covering = CoveringStrands();
+    const bool is_clear = seen.operation.facts.cleared_share >= kCleared && covering.empty();
+    if (is_clear || rounds <= 0) return;
+    auto spread = std::make_shared<Spreading>();
+    spread->what = "the hepatocystic triangle";
+    spread->strands = covering;
+    spread->weights.assign(covering.size(), kPedicleWeight);
+    for (const std::uint32_t i : fat) {
+      if (std::find(covering.begin(), covering.end(), i) != covering.end()) continue;
+      spread->strands.push_back(i);
+      spread->weights.push_back(1.0);
+    }
+    const auto is_enough = [this](const Snapshot& now) {
+      return now.operation.facts.cleared_share >= kCleared + 0.01 && AreTubesBare(now);
+    };
+    spread->is_enough = is_enough;
+    Take(ToolKind::kDissector);
+    Spread(std::move(spread));
+    Decide("look at the triangle", [this, rounds, fat = std::move(fat), is_enough](const Snapshot& now) {
+      if (!is_enough(now)) {
+        std::vector<std::uint32_t> left = fat;
+        if (!AreTubesBare(now)) {
+          const std::vector<std::uint32_t> over = CoveringStrands();
+          left.insert(left.end(), over.begin(), over.end());
+        }
+        std::vector<double> order;
+        // the front first
+        for (const std::uint32_t i : left)
+          order.push_back(-0.25 * (rest_[strands_[i].a] + rest_[strands_[i].b]).z);
+        Take(ToolKind::kHook);
+        Dissect("the hepatocystic triangle", left, order, 1.0, 0.0, is_enough);
+      }
+      ClearTriangle(rounds - 1);
+    });
+  });
+}
+
+void CholecystectomySurgeon::FreeLowerThird(int rounds) {
+  Decide("look at the bed", [this, rounds](const Snapshot& seen) {
+    if (seen.operation.facts.detached_share >= kDetached || rounds <= 0) return;
+    const std::vector<std::uint32_t> lower = BedStrands(kLowerShare);
+    const Vec3 axis = math::Normalized(rest_[fundus_] - rest_[neck_]);
+    std::vector<double> order;
+    for (const std::uint32_t i : lower)
+      order.push_back(0.5 * math::Dot(rest_[strands_[i].a] - rest_[neck_], axis));
+    Take(ToolKind::kHook);
+    if (rounds == kRounds) {
+      DrawGently(kLeft, 0.006 * bed_normal_);
+    } else {
+      HoldOn([this](const Snapshot& now) { return now.positions[neck_]; });
+      DrawGently(kLeft, 0.010 * bed_normal_);
+    }
+    Dissect("the lower third of the bed", lower, order, 0.97, 0.028,
+            [](const Snapshot& now) { return now.operation.facts.detached_share >= kDetached + 0.01; });
+    FreeLowerThird(rounds - 1);
+  });
+}
+
+/// Both views; where something is missing, back to it first. A second cystic artery is divided before: only two structures
+/// may be left.
+void CholecystectomySurgeon::ShowCriticalView(int rounds) {
+  Decide("look for what is missing", [this, rounds](const Snapshot& seen) {
+    if (seen.operation.critical_view.IsAchieved() || rounds <= 0) return;
+    ClearTriangle(2);
+    FreeLowerThird(2);
+    Decide("count what enters", [this](const Snapshot& now) {
+      if (const auto extra = FindExtraArtery(now)) Divide({*extra});
+    });
+    Reach(kRight, [this](const Snapshot& now) {
+      const Vec3 field = now.positions[neck_];
+      return field + 0.05 * math::Normalized(HandOf(kRight).Port() - field);
+    });
+    Add(
+        "look", [this](const Snapshot&) { camera_follows_ = false; }, [](const Snapshot&) { return true; },
+        1.0);
+    for (const int side : {+1, -1}) LookFromSide(side);
+    LookAt([this](const Snapshot& now) { return TubePoint(now, FindTube("cystic_duct"), 0.4); }, 0.0, 0.080);
+    Add(
+        "look", [this](const Snapshot&) { camera_follows_ = true; }, [](const Snapshot&) { return true; },
+        1.0);
+    ShowCriticalView(rounds - 1);
+  });
+}
+
+/// Where more than two structures enter, an artery that can be divided.
+std::optional<std::size_t> CholecystectomySurgeon::FindExtraArtery(const Snapshot& seen) {
+  std::vector<std::size_t> arteries;
+  for (const std::size_t tube : entering_) {
+    const bool is_artery = scene_->patient.tubes[tube].kind == anatomy::TubeKind::kArtery;
+    if (is_artery && !IsDivided(seen, tube)) arteries.push_back(tube);
+  }
+  if (arteries.size() < 2) return std::nullopt;
+  const std::vector<TubeLine> lines = LinesOf(seen);
+  for (const double care : {1.0, 0.7, 0.4}) {
+    for (const std::size_t tube : arteries) {
+      const auto step = FindNextStep(FieldOf(seen, tube, lines, care), ClipsOn(seen, tube), {});
+      if (step.kind != DivisionStep::Kind::kNone) return tube;
+    }
+  }
+  return arteries.back();
+}
+
+/// Looks at the triangle from one side of its front, from where nothing hides it.
+void CholecystectomySurgeon::LookFromSide(int side) {
+  Decide("look from aside", [this, side](const Snapshot& seen) {
+    const auto& score = seen.operation.critical_view;
+    if (score.IsAchieved() || score.Sum() < 6) return;
+    const std::size_t duct = FindTube("cystic_duct"), hepatic = FindTube("common_hepatic_duct");
+    const std::array<Vec3, 3> points = {TubePoint(seen, duct, 0.3), TubePoint(seen, duct, 0.7),
+                                        0.5 * (TubePoint(seen, duct, 0.5) + TubePoint(seen, hepatic, 0.5))};
+    const Vec3 middle = (points[0] + points[1] + points[2]) * (1.0 / 3.0);
+    const Vec3 to_eye = math::Normalized(scene_->laparoscope.p_world_port - middle);
+    for (int step = 0; step < kTurnSteps; ++step) {
+      const double turn = (step % 2 == 0 ? 1 : -1) * kTurnStep * (1 + step / 2);
+      for (const double distance : kDistances) {
+        ViewWish wish;
+        wish.p_world = middle;
+        wish.distance = distance;
+        wish.facing = math::Rotate(math::RotationAbout(TubeDirection(seen, duct, 0.5), turn), to_eye);
+        const auto found = FindView(scene_->laparoscope, wish);
+        if (!found) continue;
+        const Pose X = CalcLaparoscopePose(scene_->laparoscope, *found);
+        if (side * CalcAzimuth(seen, X.translation) < kAside) continue;
+        const bool shows_all = std::all_of(points.begin(), points.end(), [&](const Vec3& p) {
+          const Vec3 end = p + kSkin * math::Normalized(X.translation - p);
+          return IsInView(X, scene_->laparoscope.field_of_view, p) &&
+                 Clearance(seen, {X.translation, end}) > 0.0002;
+        });
+        if (!shows_all) continue;
+        Add(
+            "look from aside", [this, to = *found](const Snapshot&) { camera_to_ = to; },
+            [this](const Snapshot&) { return camera_ == camera_to_; }, 8.0);
+        Wait(1.3);
+        return;
       }
     }
-    return false;
-  };
-  for (std::uint32_t i = 0; i < strands_.size(); ++i) {
-    const Vec3 middle = 0.5 * (rest_[strands_[i].a] + rest_[strands_[i].b]);
-    if (strands_[i].kind == Kind::kTriangle || strands_[i].kind == Kind::kPeritoneum) {
-      if (is_near_main(middle)) continue;
-      triangle.push_back(i);
-      // the front first
-      triangle_order.push_back(-0.5 * middle.z);
-    }
-    if (strands_[i].kind == Kind::kBed || strands_[i].kind == Kind::kAdhesion) {
-      bed.push_back(i);
-      bed_order.push_back(0.5 * math::Dot(middle - neck_rest, axis) / math::Norm(axis));
-    }
-  }
-  Dissect("the hepatocystic triangle", triangle, triangle_order, 0.995, 0.0);
-  // the lower third of the bed
-  const double third = 0.42 * math::Norm(axis);
-  std::vector<std::uint32_t> lower;
-  std::vector<double> lower_order;
-  for (std::size_t i = 0; i < bed.size(); ++i) {
-    if (bed_order[i] / 0.5 > third) continue;
-    lower.push_back(bed[i]);
-    lower_order.push_back(bed_order[i]);
-  }
-  Draw(kLeft, 0.006 * bed_normal_);
-  Dissect("the lower third of the bed", lower, lower_order, 0.97, 0.028);
-
-  // both views
-  const Place triangle_middle = [this, duct](const Snapshot& seen) { return TubePoint(seen, duct, 0.5); };
-  Reach(kRight, [this](const Snapshot& seen) {
-    const Vec3 field = seen.positions[neck_];
-    return field + 0.05 * math::Normalized(HandOf(kRight).Port() - field);
   });
-  for (const double turn : {-0.8, 0.8}) {
-    LookAt(triangle_middle, turn, 0.060);
-    Wait(1.6);
-  }
-  LookAt(triangle_middle, 0.0, 0.065);
+}
 
-  Exchange(kRight, instrument::ToolKind::kClipApplier);
-  for (const double share : {0.66, 0.54, 0.38}) PlaceClip(duct, share);
-  for (const double share : {0.80, 0.69, 0.55}) PlaceClip(artery, share);
-  Exchange(kRight, instrument::ToolKind::kScissors);
-  CutTube(duct, 0.46);
-  CutTube(artery, 0.62);
+/// The gallbladder off its bed: holds change, because the old one may have slipped and what is free is drawn elsewhere.
+void CholecystectomySurgeon::FreeFromBed(int rounds) {
+  Decide("look at the bed", [this, rounds](const Snapshot& seen) {
+    const std::vector<std::uint32_t> bed = BedStrands(1.0);
+    if (ShareLeft(seen, bed) == 0.0 || rounds <= 0) return;
+    const Vec3 axis = math::Normalized(rest_[fundus_] - rest_[neck_]);
+    std::vector<double> order;
+    for (const std::uint32_t i : bed)
+      order.push_back(0.5 * math::Dot(rest_[strands_[i].a] - rest_[neck_], axis));
+    const Place left = [this, bed](const Snapshot& now) {
+      Vec3 sum;
+      double count = 0;
+      for (const std::uint32_t i : bed) {
+        if (!now.operation.strand_is_intact[i]) continue;
+        sum += now.positions[strands_[i].a];
+        count += 1.0;
+      }
+      return count > 0 ? sum / count : now.positions[neck_];
+    };
+    Take(ToolKind::kHook);
+    LookAt(left, 0.0, 0.100);
+    HoldOn(left);
+    const Vec3 aside = math::Normalized(math::Cross(bed_normal_, axis));
+    const Vec3 ways[] = {Vec3{}, 0.02 * aside, -0.02 * aside};
+    DrawGently(kLeft, 0.012 * bed_normal_ + ways[rounds % 3]);
+    Dissect("the gallbladder from its bed", bed, order, 1.0, 0.070);
+    FreeFromBed(rounds - 1);
+  });
+}
 
-  Exchange(kRight, instrument::ToolKind::kHook);
-  LookAt([this](const Snapshot& seen) { return 0.5 * (seen.positions[neck_] + seen.positions[fundus_]); },
-         0.0, 0.105);
-  // a new hold for each: the old one may have slipped, and what is free can be drawn elsewhere
-  const Vec3 aside = math::Normalized(math::Cross(bed_normal_, axis));
-  for (const Vec3& way : {Vec3{}, 0.02 * aside, -0.02 * aside}) {
-    LetGo(kLeft);
-    Grasp(kLeft, [this](const Snapshot& seen) { return seen.positions[hold_]; });
-    Draw(kLeft, 0.012 * bed_normal_ + way);
-    Dissect("the gallbladder from its bed", bed, bed_order, 1.0, 0.070);
-  }
+void CholecystectomySurgeon::Remove() {
   Add(
       "assistant: release", [this](const Snapshot&) { assistant_ = AssistantCommand::kRelease; },
       [](const Snapshot& seen) { return !seen.operation.is_assistant_holding; }, 4.0);
-  Draw(kLeft, 0.03 * bed_normal_);
-  Exchange(kRight, instrument::ToolKind::kBag);
-  Reach(kRight, [this](const Snapshot& seen) {
+  DrawGently(kLeft, 0.03 * bed_normal_);
+  const Place middle = [this](const Snapshot& seen) {
     const SurfaceInfo& surface =
         surfaces_[static_cast<std::size_t>(scene_->patient.FindOrgan("gallbladder"))];
     Vec3 centre;
     for (std::uint32_t i = 0; i < surface.node_count; ++i)
       centre += seen.positions[surface.first_node + i] / static_cast<double>(surface.node_count);
     return centre;
-  });
+  };
+  LookAt(middle, 0.0, 0.100);
+  Exchange(kRight, ToolKind::kBag);
+  Reach(kRight, middle);
   Add(
       "close the bag", [](const Snapshot&) {}, [](const Snapshot& seen) { return seen.operation.is_in_bag; },
       4.0);
   LetGo(kLeft);
-  Exchange(kRight, instrument::ToolKind::kHook);
+  Exchange(kRight, ToolKind::kHook);
   // Exchange ends with the bag outside
   acts_.pop_back();
   acts_.back().is_done = [](const Snapshot& seen) { return seen.operation.is_completed; };

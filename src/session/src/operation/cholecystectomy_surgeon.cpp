@@ -13,7 +13,12 @@ namespace {
 
 /// Where the left hand holds the gallbladder: from the neck towards the fundus, and off the bed [m].
 constexpr double kHoldBack = 0.020, kHoldBeside = 0.012;
-constexpr double kCameraRate = 0.25;  // [rad/s]
+constexpr double kCameraRate = 0.25;      // [rad/s]
+constexpr double kSeenWell = 0.8;         // of the picture's width: what lies within is followed by nobody
+constexpr double kFollowSeconds = 0.3;    // a tip is out of there before the picture follows [s]
+constexpr double kFollowDistance = 0.09;  // of the lens from what it follows [m]
+constexpr double kNeckRadius = 0.015;     // what lies so near to the infundibulum turns with the neck [m]
+constexpr double kWorks = 0.06;           // a tool this deep is at work [m]
 
 HandMotion MakeHand(const Scene& scene, int hand, const HandSkill& skill, std::uint64_t seed) {
   const InstrumentSetup& setup = scene.instruments[static_cast<std::size_t>(hand)];
@@ -70,6 +75,28 @@ void CholecystectomySurgeon::Learn(PatientTissue tissue) {
     tube_nodes_.push_back(std::move(nodes));
   }
   const int gallbladder = patient.FindOrgan("gallbladder"), liver = patient.FindOrgan("liver");
+  // what anatomy teaches of each tube
+  const auto map = MakeVesselMap(patient);
+  for (std::size_t t = 0; map.ok() && t < patient.tubes.size(); ++t) {
+    const anatomy::Tube& tube = patient.tubes[t];
+    if (tube.from == "gallbladder" || tube.to == "gallbladder") entering_.push_back(t);
+    const SurfaceInfo& surface = surfaces_[patient.organs.size() + t];
+    for (std::uint32_t k = 0; k < surface.node_count; ++k) {
+      const auto role = map->anatomy.roles[map->Find(t, map->arcs[t][k]).vessel];
+      if (!training::MayBeDivided(role)) main_nodes_.push_back(surface.first_node + k);
+      const bool is_duct = tube.kind == anatomy::TubeKind::kDuct;
+      if (!training::MayBeDivided(role) && is_duct) main_ducts_.push_back(surface.first_node + k);
+      const bool is_kept_artery = !training::MayBeDivided(role) && !is_duct;
+      if (is_kept_artery || role == training::VesselRole::kSubvesicalDuct)
+        careful_nodes_.push_back(surface.first_node + k);
+    }
+  }
+  for (std::size_t i = 0; i < patient.organs.size(); ++i) {
+    const SurfaceInfo& surface = surfaces_[i];
+    auto tree = collision::TriangleTree::Make(
+        std::span(rest_).subspan(surface.first_node, surface.node_count), patient.organs[i].mesh.triangles);
+    trees_.push_back(tree.ok() ? std::move(*tree) : collision::TriangleTree());
+  }
   const auto landmark = [&](const char* name) { return patient.FindLandmark(name)->position; };
   neck_ = FindNode(gallbladder, landmark("infundibulum"));
   fundus_ = FindNode(gallbladder, landmark("fundus"));
@@ -81,6 +108,27 @@ void CholecystectomySurgeon::Learn(PatientTissue tissue) {
   // beside the neck, so that both tools have room
   const Vec3 axis = math::Normalized(landmark("fundus") - landmark("infundibulum"));
   hold_ = FindNode(gallbladder, landmark("infundibulum") + kHoldBack * axis + kHoldBeside * bed_normal_);
+  const SurfaceInfo& surface = surfaces_[static_cast<std::size_t>(gallbladder)];
+  for (std::uint32_t node = surface.first_node; node < surface.first_node + surface.node_count; ++node) {
+    if (math::Distance(rest_[node], landmark("infundibulum")) <= kNeckRadius) neck_nodes_.push_back(node);
+  }
+  field_ = [this](const Snapshot& seen) { return seen.positions[neck_]; };
+}
+
+/// The picture goes where the right hand works.
+void CholecystectomySurgeon::FollowWithCamera(const Snapshot& seen) {
+  const InstrumentSnapshot& hand = seen.instruments[kRight];
+  const Vec3& tip = hand.X_world_tool.translation;
+  const bool is_seen = hand.joints.depth < kWorks ||
+                       IsInView(seen.X_world_laparoscope, kSeenWell * scene_->laparoscope.field_of_view, tip);
+  unseen_seconds_ = is_seen ? 0.0 : unseen_seconds_ + scene_->tick_seconds;
+  if (unseen_seconds_ < kFollowSeconds || !(camera_ == camera_to_)) return;
+  ViewWish wish;
+  wish.p_world = 0.5 * (tip + field_(seen));
+  wish.distance = kFollowDistance;
+  wish.facing = math::Normalized(scene_->laparoscope.p_world_port - wish.p_world);
+  if (const auto view = FindView(scene_->laparoscope, wish)) camera_to_ = *view;
+  unseen_seconds_ = 0;
 }
 
 std::uint32_t CholecystectomySurgeon::FindNode(std::int32_t organ, const Vec3& p) const {
@@ -113,6 +161,12 @@ Vec3 CholecystectomySurgeon::TubeDirection(const Snapshot& seen, std::size_t tub
 
 Input CholecystectomySurgeon::Act(const Snapshot& seen) {
   const double dt = scene_->tick_seconds;
+  if (!has_looked_ && !tube_nodes_.empty()) {
+    first_azimuth_ = CalcAzimuth(seen, CalcLaparoscopePose(scene_->laparoscope, camera_).translation);
+    has_looked_ = true;
+  }
+  has_view_ = has_view_ || seen.operation.critical_view.IsAchieved();
+  if (stops_) acts_.clear();
   if (acts_.empty()) has_finished_ = true;
   if (!acts_.empty()) {
     SurgicalAct& act = acts_.front();
@@ -131,6 +185,7 @@ Input CholecystectomySurgeon::Act(const Snapshot& seen) {
       inserted_.clear();
     }
   }
+  if (camera_follows_) FollowWithCamera(seen);
   const auto follow = [&](double& now, double to) {
     now += std::clamp(to - now, -kCameraRate * dt, kCameraRate * dt);
   };

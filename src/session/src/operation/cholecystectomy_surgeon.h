@@ -9,11 +9,15 @@
 #include <deque>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "division_plan.h"
 #include "patient_tissue.h"
+#include "spread_plan.h"
 #include "task_surgeon.h"
+#include "trocar/collision/triangle_tree.h"
 #include "trocar/session/simulation.h"
 #include "trocar/session/surgeon.h"
 
@@ -64,7 +68,31 @@ class CholecystectomySurgeon final : public Surgeon {
     Vec3 p_hold;  ///< of the other hand, when it began [m]
     std::vector<std::uint8_t> attempts;
     std::int32_t target = -1;
-    double seconds = 0, blocked = 0;
+    double seconds = 0, blocked = 0, heated = 0, backing_off = 0;
+    double drawn = 0;  ///< by the other hand, since it holds [m]
+    std::function<bool(const Snapshot&)> is_enough;
+    int holds_left = 4;  ///< new holds of a slipped left hand
+    std::string what;
+  };
+  /// Fibres that are parted bluntly, by opening jaws among them.
+  struct Spreading {
+    std::vector<std::uint32_t> strands;
+    std::vector<double> weights;  ///< (strands)
+    std::vector<std::uint8_t> tries;
+    std::function<bool(const Snapshot&)> is_enough;
+    enum class Stage { kChoose, kApproach, kEnter, kOpen } stage = Stage::kChoose;
+    SpreadPose pose;
+    std::size_t left_before = 0;
+    std::uint32_t aim = 0;  ///< among strands
+    int fruitless = 0;
+    std::string what;
+  };
+  /// Clips and cuts of tubes, until each is divided.
+  struct Division {
+    std::vector<std::size_t> tubes;
+    std::vector<std::vector<double>> avoid;  ///< (tubes) arcs at which it has failed [m]
+    int acts_left = 0;
+    double care = 1.0;  ///< see DivisionField
   };
 
   void Learn(PatientTissue tissue);
@@ -80,6 +108,7 @@ class CholecystectomySurgeon final : public Surgeon {
   void Exchange(int hand, instrument::ToolKind kind, bool over_field = true);
   void Grasp(int hand, const Place& at, double squeeze = 0);
   void Draw(int hand, const Vec3& by);
+  void DrawGently(int hand, const Vec3& by);
   void LetGo(int hand);
   void LineUp(const std::string& what, std::size_t tube, double share, double jaw);
   void PlaceClip(std::size_t tube, double share, double beyond = 0.5, int tries = 2);
@@ -87,16 +116,56 @@ class CholecystectomySurgeon final : public Surgeon {
   void CutTube(std::size_t tube, double share);
   void Burn(int hand, const Place& at, double seconds);
   void Dissect(const std::string& what, std::vector<std::uint32_t> strands, std::vector<double> order,
-               double enough, double traction);
+               double enough, double traction, std::function<bool(const Snapshot&)> is_enough = {});
   bool GoOnDissecting(Dissection& work, const Snapshot& seen);
   void LookAt(Place target, double turn, double distance);
+  /// Plans on when it is reached, from what is seen then.
+  void Decide(std::string doing, std::function<void(const Snapshot&)> plan);
+  void HoldOn(const Place& near, int tries = 3);
+  void Spread(std::shared_ptr<Spreading> work);
+  bool GoOnSpreading(Spreading& work, const Snapshot& seen);
+  void GoOn(std::shared_ptr<Dissection> work);
+
+  // the operation's parts
+  void ClearTriangle(int rounds);
+  void FreeLowerThird(int rounds);
+  void ShowCriticalView(int rounds);
+  void LookFromSide(int side);
+  std::optional<std::size_t> FindExtraArtery(const Snapshot& seen);
+  void Divide(std::vector<std::size_t> tubes, int rounds = 3);
+  void GoOnDividing(const std::shared_ptr<Division>& work, const Snapshot& seen);
+  void ClipAt(const std::shared_ptr<Division>& work, std::size_t which, double arc);
+  void CloseWhenBetween(const std::shared_ptr<Division>& work, std::size_t which, double arc, int tries);
+  void CutAt(const std::shared_ptr<Division>& work, std::size_t which, double arc);
+  void Withdraw();
+  void StopBleeding(int rounds = 4);
+  void Take(instrument::ToolKind kind);
+  void FreeFromBed(int rounds);
+  void Remove();
 
   // knowledge
+  std::vector<std::uint32_t> TriangleStrands() const;
+  std::vector<std::uint32_t> CoveringStrands() const;
+  std::vector<std::uint32_t> BedStrands(double share) const;
+  bool IsNearMain(const Vec3& p, double distance) const;
+  double CalcAzimuth(const Snapshot& seen, const Vec3& eye) const;
+  bool AreTubesBare(const Snapshot& seen) const;
+  double ShareLeft(const Snapshot& seen, const std::vector<std::uint32_t>& strands) const;
+  TubeLine LineOf(const Snapshot& seen, std::size_t tube) const;
+  std::vector<TubeLine> LinesOf(const Snapshot& seen) const;
+  std::vector<double> ClipsOn(const Snapshot& seen, std::size_t tube) const;
+  bool IsDivided(const Snapshot& seen, std::size_t tube) const;
+  DivisionField FieldOf(const Snapshot& seen, std::size_t tube, const std::vector<TubeLine>& lines,
+                        double care);
+  double Clearance(const Snapshot& seen, const collision::Segment& segment);
+  std::uint32_t FindHold(const Snapshot& seen, const Vec3& near, const std::vector<std::uint32_t>& avoid);
+  void FollowWithCamera(const Snapshot& seen);
   Vec3 TubePoint(const Snapshot& seen, std::size_t tube, double share) const;
   Vec3 TubeDirection(const Snapshot& seen, std::size_t tube, double share) const;
   std::uint32_t FindNode(std::int32_t organ, const Vec3& p) const;
   std::size_t FindTube(std::string_view name) const;
   Vec3 HookTip(const Vec3& at) const;
+  Vec3 HookPoint(const Snapshot& seen) const;
   /// That far beyond a point of a tube, as seen from the right hand's trocar; negative: before it.
   Vec3 Aim(const Snapshot& seen, std::size_t tube, double share, double ahead) const;
   HandMotion& HandOf(int hand) { return hands_[static_cast<std::size_t>(hand)]; }
@@ -111,12 +180,30 @@ class CholecystectomySurgeon final : public Surgeon {
   std::vector<SurfaceInfo> surfaces_;
   std::vector<Vec3> rest_;
   std::vector<std::vector<std::uint32_t>>
-      tube_nodes_;  // (tubes) from the gallbladder's end, where one enters it
+      tube_nodes_;                         // (tubes) from the gallbladder's end, where one enters it
+  std::vector<std::uint32_t> neck_nodes_;  // around the infundibulum
+  double first_azimuth_ = 0;               // of the lens, at the start [rad]
+  bool has_looked_ = false;
+  bool has_view_ = false;                       // the critical view was achieved
+  bool stops_ = false;                          // bails out: it is not safe to go on
+  std::vector<std::size_t> entering_;           // tubes that enter the gallbladder
+  std::vector<std::uint32_t> main_nodes_;       // of ducts and arteries that must stay
+  std::vector<std::uint32_t> main_ducts_;       // of the ducts among them
+  std::vector<std::uint32_t> careful_nodes_;    // of those arteries, and of small ducts of the bed
+  std::vector<collision::TriangleTree> trees_;  // (organs)
+  std::uint64_t trees_tick_ = 0;                // of the snapshot that they follow
   std::uint32_t neck_ = 0, hold_ = 0, fundus_ = 0, liver_node_ = 0;
   Vec3 bed_normal_;                          // from the liver towards the gallbladder, at rest
   std::deque<SurgicalAct> acts_, inserted_;  // the latter by the act that is under way, to be done next
   bool has_begun_ = false, has_finished_ = false;
   double act_seconds_ = 0;
+  Place field_;                  // what the picture is about
+  bool camera_follows_ = false;  // the right hand's tool
+  double unseen_seconds_ = 0;
+  double unheld_seconds_ = 0;
+  std::vector<std::uint32_t> missed_holds_;
+  double beyond_ = 0.5;  // share of the jaws that goes past the vessel [-]
+  Vec3 offset_;          // by which the right hand aims beside what it wants to meet [m]
   std::string doing_;
 };
 

@@ -12,6 +12,8 @@ namespace {
 constexpr double kStandOff = -0.012;    // of a tool's tip from the vessel while it is lined up [m]
 constexpr double kFromTips = 0.0018;    // of a vessel's axis, so that the clip reaches around it [m]
 constexpr double kAnother = 0.05;       // of a vessel's length, to another place for a clip
+constexpr double kPull = 12.0;          // at which a hand stops to draw [N]
+constexpr double kWellInside = 0.85;    // of the picture's width
 constexpr double kBetweenLegs = 0.003;  // of a clip applier's middle line, where a vessel is to be [m]
 
 }  // namespace
@@ -19,6 +21,17 @@ constexpr double kBetweenLegs = 0.003;  // of a clip applier's middle line, wher
 void CholecystectomySurgeon::Add(std::string doing, std::function<void(const Snapshot&)> begin,
                                  std::function<bool(const Snapshot&)> is_done, double patience) {
   acts_.push_back({std::move(doing), std::move(begin), std::move(is_done), patience});
+}
+
+void CholecystectomySurgeon::Decide(std::string doing, std::function<void(const Snapshot&)> plan) {
+  Add(
+      std::move(doing),
+      [this, plan = std::move(plan)](const Snapshot& seen) {
+        std::swap(acts_, inserted_);
+        plan(seen);
+        std::swap(acts_, inserted_);
+      },
+      [](const Snapshot&) { return true; }, 1.0);
 }
 
 void CholecystectomySurgeon::Reach(int hand, Place tip, double hurry) {
@@ -51,8 +64,15 @@ void CholecystectomySurgeon::Exchange(int hand, instrument::ToolKind kind, bool 
   // a tool goes in over the field, in the picture
   if (over_field) {
     Reach(hand, [this, hand](const Snapshot& seen) {
-      const Vec3 field = seen.positions[neck_];
-      return field + 0.045 * math::Normalized(HandOf(hand).Port() - field);
+      const Vec3 field = field_(seen);
+      const Vec3 back = math::Normalized(HandOf(hand).Port() - field);
+      constexpr double kWaiting[] = {0.045, 0.038, 0.031, 0.024};  // [m]
+      for (const double away : kWaiting) {
+        if (IsInView(seen.X_world_laparoscope, kWellInside * scene_->laparoscope.field_of_view,
+                     field + away * back))
+          return field + away * back;
+      }
+      return field + kWaiting[3] * back;
     });
   }
   Add(
@@ -90,12 +110,26 @@ void CholecystectomySurgeon::Draw(int hand, const Vec3& by) {
   Wait(0.3);
 }
 
+/// Draws until the pull is felt.
+void CholecystectomySurgeon::DrawGently(int hand, const Vec3& by) {
+  Add(
+      "draw", [this, hand, by](const Snapshot&) { HandOf(hand).MoveTo(HandOf(hand).Tip() + by, 0.25); },
+      [this, hand](const Snapshot& seen) {
+        const bool is_tight = math::Norm(seen.instruments[static_cast<std::size_t>(hand)].force) > kPull;
+        if (is_tight) HandOf(hand).MoveTo(HandOf(hand).Tip());
+        return is_tight || !HandOf(hand).IsMoving();
+      },
+      5.0);
+  Wait(0.2);
+}
+
 void CholecystectomySurgeon::LetGo(int hand) {
   Jaw(hand, 0.8);
   Reach(hand, [this, hand](const Snapshot&) {
     return HandOf(hand).Tip() + 0.025 * math::Normalized(HandOf(hand).Port() - HandOf(hand).Tip());
   });
-  Jaw(hand, 0.0);
+  // not closed: that would take what lies there
+  Jaw(hand, 0.3);
 }
 
 Vec3 CholecystectomySurgeon::Aim(const Snapshot& seen, std::size_t tube, double share, double ahead) const {
@@ -194,6 +228,7 @@ void CholecystectomySurgeon::LookAt(Place target, double turn, double distance) 
       "look",
       [this, target, turn, distance](const Snapshot& seen) {
         const std::size_t duct = FindTube("cystic_duct");
+        field_ = target;
         const Vec3 p = target(seen);
         const Vec3 to_eye = math::Normalized(scene_->laparoscope.p_world_port - p);
         ViewWish wish;

@@ -57,12 +57,14 @@ core::Status Operation::MakeAll() {
   change_.Clear();
 
   main_nodes_.clear();
+  main_ducts_.clear();
   for (std::size_t t = 0; t < patient.tubes.size(); ++t) {
     const SurfaceInfo& surface = tissue.surfaces[organ_count + t];
     for (std::uint32_t k = 0; k < surface.node_count; ++k) {
       const VesselPlace place = vessels_->Map().Find(t, vessels_->Map().arcs[t][k]);
-      if (!training::MayBeDivided(vessels_->Map().anatomy.roles[place.vessel]))
-        main_nodes_.push_back(surface.first_node + k);
+      if (training::MayBeDivided(vessels_->Map().anatomy.roles[place.vessel])) continue;
+      main_nodes_.push_back(surface.first_node + k);
+      if (patient.tubes[t].kind == anatomy::TubeKind::kDuct) main_ducts_.push_back(surface.first_node + k);
     }
   }
   // what lies around ducts that must stay is none of the dissection's business

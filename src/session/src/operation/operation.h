@@ -143,6 +143,7 @@ class Operation {
   std::shared_ptr<const PatientTissue> made_;
   std::int32_t liver_ = -1, gallbladder_ = -1;
   std::vector<std::uint32_t> main_nodes_;  // of ducts and arteries that must stay
+  std::vector<std::uint32_t> main_ducts_;  // of the ducts among them
   Vec3 p_pool_;
 
   std::vector<surgery::CuttableOrgan> organs_;

@@ -179,7 +179,7 @@ void Operation::UseElectrode(int hand, const HandsNow& hands, const TissueNow& t
     judge_.Note({kind, is_strand ? Verb::kDissect : Verb::kCoagulate, TargetOf(tissue, targets[i].part)},
                 hand);
   }
-  const bool is_near = std::any_of(main_nodes_.begin(), main_nodes_.end(), [&](std::uint32_t node) {
+  const bool is_near = std::any_of(main_ducts_.begin(), main_ducts_.end(), [&](std::uint32_t node) {
     return math::Distance(tissue.state->position[node], X.translation) < kNearDuct;
   });
   if (is_near) judge_.Report(OperationError::kEnergyNearDuct, X.translation, hand, hands.time);
