@@ -159,6 +159,7 @@ void ToolContacts::Reset(const Scene& scene, const std::array<instrument::Trocar
   std::fill(surface_motion_.begin(), surface_motion_.end(), 0.0);
   for (surgery::OrganSurface& organ : organs_) surgery::UpdateOrganSurface(organ, tissue.position);
   tubes_.tree.Update(tissue.position);
+  for (surgery::OrganPair& pair : pairs_) surgery::ResetPair(pair);
 }
 
 surgery::Touchables ToolContacts::MakeTouchables(const tissue::TissueState& tissue) const noexcept {
@@ -207,6 +208,13 @@ std::array<ToolTouch, kHandCount> ToolContacts::CalcTouch(const tissue::TissueSt
     const auto reaction =
         surgery::CalcContactReaction(static_cast<std::uint8_t>(hand), tissue.position, contacts_);
     if (is_good) touch[hand] = {reaction.force + tools_.force[hand], reaction.surface};
+  }
+  for (surgery::OrganPair& pair : pairs_) {
+    if (is_good) {
+      surgery::KeepOrganPushes(tissue.position, contacts_, pair);
+    } else {
+      surgery::ForgetOrganPushes(pair);
+    }
   }
   // triangles have other numbers after a cut: what stuck to them is forgotten once its force has been read
   if (!is_good || has_followed_) contacts_.Clear();

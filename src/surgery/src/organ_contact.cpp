@@ -2,6 +2,7 @@
 #include "trocar/surgery/organ_contact.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "trocar/collision/queries.h"
@@ -11,16 +12,22 @@ namespace {
 
 /// What overlaps by more comes apart over several ticks [m].
 constexpr double kMostPush = 0.002;
+/// Most that a spring keeps pressed from tick to tick [m]: 3 N at the stiffness of the settings.
+constexpr double kMostKept = 0.03;
+/// Nearer to a surface than this, the way to it names no direction [m].
+constexpr double kSamePoint = 1e-5;
 
 /// Signed distance of a node to an organ's surface, with the nearest point.
 struct Place {
   bool is_near = false;
   collision::NearestTriangle nearest;
-  collision::SurfaceSide side;
+  Vec3 outwards;  // unit, from or through the nearest point
+  double distance = 0;
 };
 
+/// \param[in,out] is_inside  what the node was before; looked at again where the surface beside it says otherwise
 Place FindPlace(const OrganSurface& organ, std::span<const Vec3> nodes, const Vec3& p, double reach,
-                std::uint32_t guess) noexcept {
+                std::uint32_t guess, std::uint8_t& is_inside) noexcept {
   for (int axis = 0; axis < 3; ++axis) {
     if (p[axis] < organ.box.min[axis] - reach || p[axis] > organ.box.max[axis] + reach) return {};
   }
@@ -28,25 +35,44 @@ Place FindPlace(const OrganSurface& organ, std::span<const Vec3> nodes, const Ve
   // a guess that is far by now would widen the search: it counts only within reach
   place.nearest = organ.tree.FindNearest(nodes, p, {.max_distance = reach, .first_guess = guess});
   if (!place.nearest.Found()) return place;
-  place.side = collision::FindSide(nodes, organ.triangles, organ.vertex_triangles, p, place.nearest);
-  place.is_near = math::SquaredNorm(place.side.normal) > 0.0;
+  const auto side = collision::FindSide(nodes, organ.triangles, organ.vertex_triangles, p, place.nearest);
+  if ((side.distance < 0.0) != (is_inside != 0))
+    is_inside = collision::IsInside(nodes, organ.triangles, p) ? 1 : 0;
+  const double distance = std::sqrt(place.nearest.squared_distance);
+  place.distance = is_inside != 0 ? -distance : distance;
+  const Vec3 away = (p - place.nearest.point) / distance;
+  place.outwards = !(distance > kSamePoint) ? side.normal : is_inside != 0 ? -away : away;
+  place.is_near = math::SquaredNorm(place.outwards) > 0.0;
   return place;
+}
+
+void Resize(OrganPair& pair) {
+  pair.allowed.resize(pair.node_count, 0.0);
+  pair.is_inside.resize(pair.node_count, 0);
+  pair.push.resize(pair.node_count, 0.0);
+  pair.is_bound.resize(pair.node_count, 0);
+  pair.last_triangle.resize(pair.node_count, collision::kNoTriangle);
+  pair.spring.resize(pair.node_count, kNoSpring);
 }
 
 /// Fills in what is allowed at rest.
 OrganPair MakePair(const OrganSurface& to, std::span<const Vec3> positions, OrganPair pair,
                    const OrganContactSettings& settings) {
-  pair.allowed.assign(pair.node_count, 0.0);
-  pair.is_bound.assign(pair.node_count, 0);
-  pair.last_triangle.assign(pair.node_count, collision::kNoTriangle);
+  const auto nodes = to.Nodes(positions);
+  Resize(pair);
   for (std::uint32_t i = 0; i < pair.node_count; ++i) {
+    const Vec3& p = positions[pair.first_node + i];
     const double radius = pair.radii.empty() ? 0.0 : pair.radii[i];
-    const Place place = FindPlace(to, to.Nodes(positions), positions[pair.first_node + i],
-                                  settings.reach + radius, collision::kNoTriangle);
-    if (!place.nearest.Found()) continue;
+    pair.is_inside[i] = collision::IsInside(nodes, to.triangles, p) ? 1 : 0;
+    const Place place =
+        FindPlace(to, nodes, p, settings.reach + radius, collision::kNoTriangle, pair.is_inside[i]);
+    // a tube has its radius
+    const double wanted = pair.radii.empty() ? settings.thickness : 0.0;
+    pair.allowed[i] = place.nearest.Found() ? std::min(wanted, place.distance - radius) : wanted;
     pair.last_triangle[i] = place.nearest.triangle;
-    pair.allowed[i] = std::min(0.0, place.side.distance - radius);
   }
+  pair.allowed_at_rest = pair.allowed;
+  pair.inside_at_rest = pair.is_inside;
   return pair;
 }
 
@@ -79,14 +105,35 @@ OrganPair MakeTubePair(std::span<const OrganSurface> organs, std::span<const Vec
 
 void FollowOrgan(std::span<const OrganSurface> organs, std::uint8_t changed, OrganPair& pair) {
   if (changed == pair.nodes_of) {
-    const std::uint32_t count = organs[changed].node_count;
-    pair.node_count = count;
-    pair.allowed.resize(count, 0.0);
-    pair.is_bound.resize(count, 0);
-    pair.last_triangle.resize(count, collision::kNoTriangle);
+    pair.node_count = organs[changed].node_count;
+    Resize(pair);
   }
   if (changed == pair.surface_of)
     std::fill(pair.last_triangle.begin(), pair.last_triangle.end(), collision::kNoTriangle);
+}
+
+void ResetPair(OrganPair& pair) noexcept {
+  const std::size_t count = std::min(pair.allowed.size(), pair.allowed_at_rest.size());
+  std::copy_n(pair.allowed_at_rest.begin(), count, pair.allowed.begin());
+  std::copy_n(pair.inside_at_rest.begin(), count, pair.is_inside.begin());
+  ForgetOrganPushes(pair);
+}
+
+void ForgetOrganPushes(OrganPair& pair) noexcept {
+  std::fill(pair.push.begin(), pair.push.end(), 0.0);
+  std::fill(pair.spring.begin(), pair.spring.end(), kNoSpring);
+}
+
+void KeepOrganPushes(std::span<const Vec3> positions, const ContactSet& contacts, OrganPair& pair) noexcept {
+  for (std::uint32_t i = 0; i < pair.node_count; ++i) {
+    const std::uint32_t at = pair.spring[i];
+    pair.push[i] = 0.0;
+    if (at == kNoSpring) continue;
+    double depth = 0;
+    for (const std::uint32_t k : {at, at + 1})
+      depth += 0.5 * std::max(0.0, tissue::CalcContactDepth(contacts.springs[k], positions));
+    pair.push[i] = std::min(depth, kMostKept);
+  }
 }
 
 void FindOrganContacts(std::span<const OrganSurface> organs, std::span<const Vec3> positions,
@@ -94,37 +141,44 @@ void FindOrganContacts(std::span<const OrganSurface> organs, std::span<const Vec
   const OrganSurface& to = organs[pair.surface_of];
   const auto nodes = to.Nodes(positions);
   for (std::uint32_t i = 0; i < pair.node_count; ++i) {
+    pair.spring[i] = kNoSpring;
     if (pair.is_bound[i] != 0) continue;
     const std::uint32_t node = pair.first_node + i;
     const Vec3& p = positions[node];
     const double radius = pair.radii.empty() ? 0.0 : pair.radii[i];
-    const Place place = FindPlace(to, nodes, p, settings.reach + radius, pair.last_triangle[i]);
+    const Place place =
+        FindPlace(to, nodes, p, settings.reach + radius, pair.last_triangle[i], pair.is_inside[i]);
     if (!place.is_near) continue;
     pair.last_triangle[i] = place.nearest.triangle;
-    const double room = std::max(place.side.distance - radius - pair.allowed[i], -kMostPush);
+    const double gap = place.distance - radius;
+    if (pair.radii.empty())
+      pair.allowed[i] = std::max(pair.allowed[i], std::min(gap, settings.thickness));
+    const double room = std::max(gap - pair.allowed[i], -kMostPush);
     if (room > settings.ahead) continue;
     if (contacts.springs.size() + 2 > ContactSet::kCapacity) {
       ++contacts.dropped;
       continue;
     }
-    const Vec3& n = place.side.normal;
+    const Vec3& n = place.outwards;
     ContactLink link;
     link.hand = kNoHand;
     link.key = ~std::uint64_t{0};
     link.surface = pair.nodes_of;
-    // each gives way by half of what is missing
+    // each gives way by half of what is missing, against what presses it already
+    const double ahead = pair.push[i] - 0.5 * room;
     const auto& t = to.triangles[place.nearest.triangle];
+    pair.spring[i] = static_cast<std::uint32_t>(contacts.springs.size());
     contacts.springs.push_back({{node, to.first_node + t[0], to.first_node + t[1]},
                                 {1.0, 0.0, 0.0},
                                 n,
-                                math::Dot(n, p) - 0.5 * room,
+                                math::Dot(n, p) + ahead,
                                 settings.stiffness});
     contacts.links.push_back(link);
     link.surface = pair.surface_of;
     contacts.springs.push_back({{to.first_node + t[0], to.first_node + t[1], to.first_node + t[2]},
                                 place.nearest.weights,
                                 -n,
-                                -math::Dot(n, place.nearest.point) - 0.5 * room,
+                                -math::Dot(n, place.nearest.point) + ahead,
                                 settings.stiffness});
     contacts.links.push_back(link);
   }

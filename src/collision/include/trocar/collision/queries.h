@@ -90,4 +90,11 @@ SurfaceSide FindSide(std::span<const Vec3> positions, std::span<const Triangle> 
                      const geometry::Rows& vertex_triangles, const Vec3& p,
                      const NearestTriangle& nearest) noexcept;
 
+/// Whether a point lies inside of a surface, however that is folded: three rays count how often they leave it more than they
+/// enter it (its winding number), and two of them decide where it has a hole.
+///
+/// Unlike FindSide it needs no sound surface near the point, and it costs a look at every triangle.
+/// \note Real-time safe.
+bool IsInside(std::span<const Vec3> positions, std::span<const Triangle> triangles, const Vec3& p) noexcept;
+
 }  // namespace trocar::collision

@@ -4,9 +4,11 @@
 ///
 /// Each vertex of one organ, or node of a tube with its radius, is kept out of the other organ by two one-sided springs,
 /// one on either side of the plane half way between them. They are made well ahead of touch, so an organ that falls in
-/// one solve is stopped half way to the other in this tick and comes to rest on it in the next ones. The shapes as they
-/// were imaged may overlap where they touch, and ducts run inside of organs: that much stays allowed, so that nothing
-/// moves before anything acts.
+/// one solve is stopped half way to the other in this tick and comes to rest on it in the next ones. What presses them is
+/// kept from tick to tick and added to what the gap still asks for, so that soft springs bear any load without giving way
+/// (an augmented Lagrangian: Hestenes, "Multiplier and gradient methods", JOTA 4, 1969). Each vertex knows on which side of
+/// the surface it is, and a fold of the surface cannot persuade it otherwise. The shapes as they were imaged may overlap where
+/// they touch, and ducts run inside of organs: that much stays allowed, so that nothing moves before anything acts.
 #pragma once
 
 #include <cstdint>
@@ -18,9 +20,10 @@
 namespace trocar::surgery {
 
 struct OrganContactSettings {
-  double stiffness = 100.0;  ///< of each spring [N/m]
-  double ahead = 0.003;      ///< springs are made from this far ahead of touch [m]
-  double reach = 0.008;      ///< a vertex deeper than this has no near wall to be pushed back through [m]
+  double stiffness = 100.0;   ///< of each spring [N/m]
+  double ahead = 0.003;       ///< springs are made from this far ahead of touch [m]
+  double reach = 0.008;       ///< a vertex deeper than this has no near wall to be pushed back through [m]
+  double thickness = 0.0004;  ///< at which a vertex is kept off a surface, so that there is always a side [m]
 };
 
 /// Vertices of one organ, or nodes of one tube, against an organ's surface.
@@ -29,10 +32,17 @@ struct OrganPair {
   std::uint8_t surface_of = 0;  ///< organ
   std::uint32_t first_node = 0, node_count = 0;
   std::vector<double> radii;                 ///< (node_count) of a tube [m], or empty
-  std::vector<double> allowed;               ///< (node_count) signed distance that is allowed, <= 0 [m]
+  std::vector<double> allowed_at_rest;       ///< (nodes at rest) signed distance that is allowed [m]
+  std::vector<std::uint8_t> inside_at_rest;  ///< (nodes at rest)
+  // state
+  std::vector<double> allowed;               ///< (node_count) the same now: what has come out stays out [m]
+  std::vector<std::uint8_t> is_inside;       ///< (node_count) of the surface
+  std::vector<double> push;                  ///< (node_count) how far its springs were pressed by the last solve [m]
   std::vector<std::uint8_t> is_bound;        ///< (node_count) tied to the other organ: left to its strands
   std::vector<std::uint32_t> last_triangle;  ///< (node_count) where the search starts
+  std::vector<std::uint32_t> spring;         ///< (node_count) the first of its two in the set, or kNoSpring
 };
+inline constexpr std::uint32_t kNoSpring = ~std::uint32_t{0};
 
 /// \param positions  (n) of the whole system, at rest [m]
 /// \param bound      nodes of the first organ that strands hold to the other
@@ -48,10 +58,22 @@ OrganPair MakeTubePair(std::span<const OrganSurface> organs, std::span<const Vec
 /// \note Not real-time safe: allocates.
 void FollowOrgan(std::span<const OrganSurface> organs, std::uint8_t changed, OrganPair& pair);
 
+/// As made. \note Real-time safe.
+void ResetPair(OrganPair& pair) noexcept;
+
 /// Adds the springs of one pair; links carry kNoHand.
 /// \note Real-time safe.
 void FindOrganContacts(std::span<const OrganSurface> organs, std::span<const Vec3> positions,
                        const OrganContactSettings& settings, OrganPair& pair, ContactSet& contacts) noexcept;
+
+/// After the solve: keeps what presses each spring, for the next tick. Without it every tick begins without load.
+/// \param positions  (n) after it [m]
+/// \note Real-time safe.
+void KeepOrganPushes(std::span<const Vec3> positions, const ContactSet& contacts, OrganPair& pair) noexcept;
+
+/// After a solve that was taken back.
+/// \note Real-time safe.
+void ForgetOrganPushes(OrganPair& pair) noexcept;
 
 /// Hand of a contact that no tool makes.
 inline constexpr std::uint8_t kNoHand = 0xff;
