@@ -1,14 +1,90 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+
 #include "cholecystectomy_surgeon.h"
 
 namespace trocar::session {
 namespace {
+
+constexpr double kStandOff = -0.012;    // of a tool's tip from the vessel while it is lined up [m]
+constexpr double kFromTips = 0.0018;    // of a vessel's axis, so that the clip reaches around it [m]
+constexpr double kAnother = 0.05;       // of a vessel's length, to another place for a clip
+constexpr double kBetweenLegs = 0.003;  // of a clip applier's middle line, where a vessel is to be [m]
 
 Vec3 MeanPort(const Scene& scene) {
   return 0.5 * (scene.instruments[kLeft].p_world_port + scene.instruments[kRight].p_world_port);
 }
 
 }  // namespace
+
+Vec3 CholecystectomySurgeon::Aim(const Snapshot& seen, std::size_t tube, double share, double ahead) const {
+  const Vec3 p = TubePoint(seen, tube, share);
+  return p + ahead * math::Normalized(p - hands_[kRight].Port());
+}
+
+void CholecystectomySurgeon::LineUp(const std::string& what, std::size_t tube, double share, double jaw) {
+  Add(
+      "line up the " + what,
+      [this, tube, share, jaw](const Snapshot& seen) {
+        const Vec3 p = TubePoint(seen, tube, share);
+        const Vec3 shaft = math::Normalized(p - HandOf(kRight).Port());
+        HandOf(kRight).Turn(
+            FindSpin(HandOf(kRight).Port(), p, math::Cross(shaft, TubeDirection(seen, tube, share))));
+        HandOf(kRight).SetJaw(jaw);
+        HandOf(kRight).MoveTo(Aim(seen, tube, share, kStandOff));
+      },
+      [this](const Snapshot&) { return !HandOf(kRight).IsMoving() && !HandOf(kRight).IsTurning(); }, 5.0);
+}
+
+/// \param beyond  how far from the tips, as a share of the jaws, the vessel lies in them
+/// \param tries   how often it is lined up anew when the vessel is not between the legs
+void CholecystectomySurgeon::PlaceClip(std::size_t tube, double share, double beyond, int tries) {
+  const instrument::Tool& applier = *instrument::FindTool("clip_applier");
+  LineUp("clip", tube, share, applier.max_jaw);
+  Reach(
+      kRight,
+      [this, tube, share, ahead = beyond * applier.jaw_length](const Snapshot& seen) {
+        return Aim(seen, tube, share, ahead);
+      },
+      0.4);
+  Wait(0.2);
+  Decide("look at the clip's tips", [this, tube, share, beyond, tries, &applier](const Snapshot& seen) {
+    const Pose& X = seen.instruments[kRight].X_world_tool;
+    const Vec3 in = math::Inverse(X) * TubePoint(seen, tube, share);
+    const bool is_between =
+        std::hypot(in.x, in.y) < kBetweenLegs && in.z > kFromTips && in.z < applier.jaw_length - kFromTips;
+    if (is_between || tries == 0) return CloseClip(tube, share);
+    Reach(kRight, [this, tube, share](const Snapshot& now) { return Aim(now, tube, share, kStandOff); });
+    // a little farther along, then a little nearer
+    PlaceClip(tube, share + (tries % 2 == 0 ? kAnother : -2 * kAnother), beyond, tries - 1);
+  });
+}
+
+void CholecystectomySurgeon::CloseClip(std::size_t tube, double share) {
+  Add(
+      "close the clip", [this](const Snapshot&) { HandOf(kRight).SetJaw(0.0); },
+      [this](const Snapshot&) { return act_seconds_ > 0.7; }, 2.0);
+  // open enough to leave the clip, not so far that the next one comes
+  Jaw(kRight, 0.4);
+  Reach(
+      kRight, [this, tube, share](const Snapshot& seen) { return Aim(seen, tube, share, -0.020); }, 0.6);
+}
+
+void CholecystectomySurgeon::CutTube(std::size_t tube, double share) {
+  const instrument::Tool& scissors = *instrument::FindTool("scissors");
+  LineUp("scissors", tube, share, scissors.max_jaw);
+  Reach(
+      kRight,
+      [this, tube, share, ahead = 0.4 * scissors.jaw_length](const Snapshot& seen) {
+        return Aim(seen, tube, share, ahead);
+      },
+      0.4);
+  Add(
+      "cut", [this](const Snapshot&) { HandOf(kRight).SetJaw(0.0); },
+      [this](const Snapshot&) { return act_seconds_ > 0.7; }, 2.0);
+  Reach(
+      kRight, [this, tube, share](const Snapshot& seen) { return Aim(seen, tube, share, -0.020); }, 0.6);
+}
 
 void CholecystectomySurgeon::PlanFlaw(OperationFlaw flaw) {
   using instrument::ToolKind;

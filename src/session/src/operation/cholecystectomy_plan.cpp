@@ -2,6 +2,8 @@
 // The operation, part by part; each part looks at what has come of it and goes on until it is enough.
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <utility>
 
 #include "cholecystectomy_surgeon.h"
@@ -13,14 +15,19 @@ using instrument::ToolKind;
 
 constexpr double kCleared = 0.93, kDetached = 0.36;  // of triangle and bed: a little more than the view asks
 constexpr double kLowerShare = 0.44;                 // of the bed that is freed before the view [-]
-constexpr int kRounds = 4;
+constexpr int kRounds = 4, kBedRounds = 12;
 constexpr double kPedicleWeight = 3.0;  // of fibres on the cystic duct and artery, among others
 constexpr double kGrip = 0.07;          // of the jaws: 14 N of pinch
 constexpr double kTurnStep = 0.2;       // of the lens about the duct, to either side in turn [rad]
 constexpr int kTurnSteps = 26;
+constexpr double kTilts[] = {0.0, 0.5, -0.5};           // of the lens along the duct [rad]
 constexpr double kAside = 0.4;                          // of a view from the front of the neck [rad]
 constexpr double kDistances[] = {0.060, 0.072, 0.050};  // of the lens from the duct [m]
-constexpr double kSkin = 0.004;  // sight ends at the skin of a duct, not at its axis [m]
+constexpr double kSkin = 0.004;      // sight ends at the skin of a duct, not at its axis [m]
+constexpr double kNeckStep = 0.008;  // of the hold about the duct, to show the other side of the neck [m]
+constexpr int kNeckTurns = 7;
+constexpr double kPeelShare = 0.2;  // of the bed's fibres that are left: where the gallbladder peels off [-]
+constexpr double kBedStep = 0.2;    // of the bed's fibres, after which the hold is chosen anew [-]
 
 }  // namespace
 
@@ -49,7 +56,7 @@ void CholecystectomySurgeon::PlanOperation() {
     stops_ = !std::all_of(entering_.begin(), entering_.end(),
                           [&](std::size_t tube) { return IsDivided(seen, tube); });
   });
-  FreeFromBed(kRounds + 2);
+  FreeFromBed(kBedRounds);
   Remove();
 }
 
@@ -150,14 +157,10 @@ void CholecystectomySurgeon::ShowCriticalView(int rounds) {
       const Vec3 field = now.positions[neck_];
       return field + 0.05 * math::Normalized(HandOf(kRight).Port() - field);
     });
-    Add(
-        "look", [this](const Snapshot&) { camera_follows_ = false; }, [](const Snapshot&) { return true; },
-        1.0);
-    for (const int side : {+1, -1}) LookFromSide(side);
+    Decide("look", [this](const Snapshot&) { camera_follows_ = false; });
+    for (const int side : {+1, -1}) LookFromSide(side, kNeckTurns);
     LookAt([this](const Snapshot& now) { return TubePoint(now, FindTube("cystic_duct"), 0.4); }, 0.0, 0.080);
-    Add(
-        "look", [this](const Snapshot&) { camera_follows_ = true; }, [](const Snapshot&) { return true; },
-        1.0);
+    Decide("look", [this](const Snapshot&) { camera_follows_ = true; });
     ShowCriticalView(rounds - 1);
   });
 }
@@ -180,40 +183,67 @@ std::optional<std::size_t> CholecystectomySurgeon::FindExtraArtery(const Snapsho
   return arteries.back();
 }
 
-/// Looks at the triangle from one side of its front, from where nothing hides it.
-void CholecystectomySurgeon::LookFromSide(int side) {
-  Decide("look from aside", [this, side](const Snapshot& seen) {
+/// A pose of the laparoscope that shows the triangle from one side of its front, with nothing before it.
+std::optional<instrument::TrocarJoints> CholecystectomySurgeon::FindSideView(const Snapshot& seen, int side) {
+  const std::size_t duct = FindTube("cystic_duct"), hepatic = FindTube("common_hepatic_duct");
+  const std::array<Vec3, 3> points = {TubePoint(seen, duct, 0.3), TubePoint(seen, duct, 0.7),
+                                      0.5 * (TubePoint(seen, duct, 0.5) + TubePoint(seen, hepatic, 0.5))};
+  const Vec3 middle = (points[0] + points[1] + points[2]) * (1.0 / 3.0);
+  const Vec3 to_eye = math::Normalized(scene_->laparoscope.p_world_port - middle);
+  const Vec3 along = TubeDirection(seen, duct, 0.5);
+  const Vec3 across = math::Normalized(math::Cross(along, to_eye), {1, 0, 0});
+  int azimuth_ok = 0, views = 0;
+  for (int step = 0; step < kTurnSteps * 3; ++step) {
+    const double turn = (step / 3 % 2 == 0 ? 1 : -1) * kTurnStep * (1 + step / 6);
+    const double tilt = kTilts[step % 3];
+    for (const double distance : kDistances) {
+      ViewWish wish;
+      wish.p_world = middle;
+      wish.distance = distance;
+      wish.facing =
+          math::Rotate(math::RotationAbout(along, turn) * math::RotationAbout(across, tilt), to_eye);
+      const auto found = FindView(scene_->laparoscope, wish);
+      if (!found) continue;
+      ++views;
+      const Pose X = CalcLaparoscopePose(scene_->laparoscope, *found);
+      if (side * CalcAzimuth(seen, X.translation) < kAside) continue;
+      ++azimuth_ok;
+      const bool shows_all = std::all_of(points.begin(), points.end(), [&](const Vec3& p) {
+        const Vec3 end = p + kSkin * math::Normalized(X.translation - p);
+        return IsInView(X, scene_->laparoscope.field_of_view, p) &&
+               Clearance(seen, {X.translation, end}) > 0.0002;
+      });
+      if (shows_all) return found;
+    }
+  }
+  if (std::getenv("DBGF")) std::fprintf(stderr, "side %d views %d azimuth ok %d\n", side, views, azimuth_ok);
+  return std::nullopt;
+}
+
+/// Looks at the triangle from one side of its front; where the picture does not get there, the left hand turns the
+/// neck towards it, farther with each try.
+void CholecystectomySurgeon::LookFromSide(int side, int tries) {
+  Decide("look from aside", [this, side, tries](const Snapshot& seen) {
     const auto& score = seen.operation.critical_view;
     if (score.IsAchieved() || score.Sum() < 6) return;
-    const std::size_t duct = FindTube("cystic_duct"), hepatic = FindTube("common_hepatic_duct");
-    const std::array<Vec3, 3> points = {TubePoint(seen, duct, 0.3), TubePoint(seen, duct, 0.7),
-                                        0.5 * (TubePoint(seen, duct, 0.5) + TubePoint(seen, hepatic, 0.5))};
-    const Vec3 middle = (points[0] + points[1] + points[2]) * (1.0 / 3.0);
-    const Vec3 to_eye = math::Normalized(scene_->laparoscope.p_world_port - middle);
-    for (int step = 0; step < kTurnSteps; ++step) {
-      const double turn = (step % 2 == 0 ? 1 : -1) * kTurnStep * (1 + step / 2);
-      for (const double distance : kDistances) {
-        ViewWish wish;
-        wish.p_world = middle;
-        wish.distance = distance;
-        wish.facing = math::Rotate(math::RotationAbout(TubeDirection(seen, duct, 0.5), turn), to_eye);
-        const auto found = FindView(scene_->laparoscope, wish);
-        if (!found) continue;
-        const Pose X = CalcLaparoscopePose(scene_->laparoscope, *found);
-        if (side * CalcAzimuth(seen, X.translation) < kAside) continue;
-        const bool shows_all = std::all_of(points.begin(), points.end(), [&](const Vec3& p) {
-          const Vec3 end = p + kSkin * math::Normalized(X.translation - p);
-          return IsInView(X, scene_->laparoscope.field_of_view, p) &&
-                 Clearance(seen, {X.translation, end}) > 0.0002;
-        });
-        if (!shows_all) continue;
-        Add(
-            "look from aside", [this, to = *found](const Snapshot&) { camera_to_ = to; },
-            [this](const Snapshot&) { return camera_ == camera_to_; }, 8.0);
-        Wait(1.3);
-        return;
-      }
+    const auto view = FindSideView(seen, side);
+    if (std::getenv("DBGF"))
+      std::fprintf(stderr, "side %d tries %d view %d azimuth now %.2f\n", side, tries, view.has_value(),
+                   CalcAzimuth(seen, CalcLaparoscopePose(scene_->laparoscope, camera_).translation));
+    if (view) {
+      Add(
+          "look from aside", [this, to = *view](const Snapshot&) { camera_to_ = to; },
+          [this](const Snapshot&) { return camera_ == camera_to_; }, 8.0);
+      Wait(1.3);
+      return;
     }
+    if (tries <= 0 || !seen.instruments[kLeft].is_grasping) return;
+    const std::size_t duct = FindTube("cystic_duct");
+    const Vec3 axis = math::Normalized(TubePoint(seen, duct, 0.0) - TubePoint(seen, duct, 1.0));
+    const Vec3 arm = HandOf(kLeft).Tip() - TubePoint(seen, duct, 0.0);
+    const Vec3 off_axis = math::Normalized(arm - math::Dot(arm, axis) * axis, bed_normal_);
+    DrawGently(kLeft, -side * kNeckStep * math::Cross(axis, off_axis));
+    LookFromSide(side, tries - 1);
   });
 }
 
@@ -226,23 +256,25 @@ void CholecystectomySurgeon::FreeFromBed(int rounds) {
     std::vector<double> order;
     for (const std::uint32_t i : bed)
       order.push_back(0.5 * math::Dot(rest_[strands_[i].a] - rest_[neck_], axis));
-    const Place left = [this, bed](const Snapshot& now) {
+    // the first of those that are left, from the neck on: there the gallbladder peels off
+    std::vector<std::pair<double, std::uint32_t>> along;
+    for (std::size_t k = 0; k < bed.size(); ++k) {
+      if (seen.operation.strand_is_intact[bed[k]]) along.emplace_back(order[k], bed[k]);
+    }
+    std::sort(along.begin(), along.end());
+    along.resize(std::max<std::size_t>(1, static_cast<std::size_t>(kPeelShare * along.size())));
+    const Place left = [this, along](const Snapshot& now) {
       Vec3 sum;
-      double count = 0;
-      for (const std::uint32_t i : bed) {
-        if (!now.operation.strand_is_intact[i]) continue;
-        sum += now.positions[strands_[i].a];
-        count += 1.0;
-      }
-      return count > 0 ? sum / count : now.positions[neck_];
+      for (const auto& [place, strand] : along) sum += now.positions[strands_[strand].a];
+      return sum / static_cast<double>(along.size());
     };
     Take(ToolKind::kHook);
     LookAt(left, 0.0, 0.100);
     HoldOn(left);
-    const Vec3 aside = math::Normalized(math::Cross(bed_normal_, axis));
-    const Vec3 ways[] = {Vec3{}, 0.02 * aside, -0.02 * aside};
-    DrawGently(kLeft, 0.012 * bed_normal_ + ways[rounds % 3]);
-    Dissect("the gallbladder from its bed", bed, order, 1.0, 0.070);
+    DrawGently(kLeft, 0.012 * bed_normal_);
+    const double before = ShareLeft(seen, bed);
+    Dissect("the gallbladder from its bed", bed, order, 1.0, 0.040,
+            [this, bed, before](const Snapshot& now) { return ShareLeft(now, bed) < before - kBedStep; });
     FreeFromBed(rounds - 1);
   });
 }

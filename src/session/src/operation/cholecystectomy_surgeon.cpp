@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <iterator>
 #include <utility>
 
@@ -123,12 +125,24 @@ void CholecystectomySurgeon::FollowWithCamera(const Snapshot& seen) {
                        IsInView(seen.X_world_laparoscope, kSeenWell * scene_->laparoscope.field_of_view, tip);
   unseen_seconds_ = is_seen ? 0.0 : unseen_seconds_ + scene_->tick_seconds;
   if (unseen_seconds_ < kFollowSeconds || !(camera_ == camera_to_)) return;
-  ViewWish wish;
-  wish.p_world = 0.5 * (tip + field_(seen));
-  wish.distance = kFollowDistance;
-  wish.facing = math::Normalized(scene_->laparoscope.p_world_port - wish.p_world);
-  if (const auto view = FindView(scene_->laparoscope, wish)) camera_to_ = *view;
+  const Vec3 middle = 0.5 * (tip + field_(seen));
+  AimCamera(middle, math::Normalized(scene_->laparoscope.p_world_port - middle), kFollowDistance);
   unseen_seconds_ = 0;
+}
+
+/// Turns the laparoscope to a place, at about a distance; nothing where it does not get there.
+void CholecystectomySurgeon::AimCamera(const Vec3& p, const Vec3& facing, double distance) {
+  for (const double share : {1.0, 0.85, 1.15, 0.7, 1.3, 0.55}) {
+    ViewWish wish;
+    wish.p_world = p;
+    wish.distance = share * distance;
+    wish.facing = facing;
+    if (const auto view = FindView(scene_->laparoscope, wish)) {
+      camera_to_ = *view;
+      return;
+    }
+  }
+  if (std::getenv("DBGF")) std::fprintf(stderr, "no view of %.3f %.3f %.3f\n", p.x, p.y, p.z);
 }
 
 std::uint32_t CholecystectomySurgeon::FindNode(std::int32_t organ, const Vec3& p) const {

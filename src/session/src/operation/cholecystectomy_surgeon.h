@@ -17,6 +17,7 @@
 #include "patient_tissue.h"
 #include "spread_plan.h"
 #include "task_surgeon.h"
+#include "trocar/collision/segment_distance.h"
 #include "trocar/collision/triangle_tree.h"
 #include "trocar/session/simulation.h"
 #include "trocar/session/surgeon.h"
@@ -68,7 +69,18 @@ class CholecystectomySurgeon final : public Surgeon {
     Vec3 p_hold;  ///< of the other hand, when it began [m]
     std::vector<std::uint8_t> attempts;
     std::int32_t target = -1;
-    double seconds = 0, blocked = 0, heated = 0, backing_off = 0;
+    double seconds = 0, apart = 0, heated = 0, backing_off = 0;  ///< [s]
+    Vec3 aside;          ///< by which the hook is led to the fibre [m]
+    bool waits = false;  ///< for a place to cool
+    double spin = 0;     ///< of the hook for the target [rad]
+    std::size_t left = 0;
+    /// Unit vectors along which the other hand draws, in turn when no fibre lies open; none: it rests.
+    std::vector<Vec3> ways;
+    std::size_t way = 0, left_at_swing = 0;
+    int swings_left = 0;
+    bool is_swinging = false;
+    bool is_bold = false;  ///< pushes on to fibres that do not lie open
+    double swung_seconds = 0, looked_at = 0;
     double drawn = 0;  ///< by the other hand, since it holds [m]
     std::function<bool(const Snapshot&)> is_enough;
     int holds_left = 4;  ///< new holds of a slipped left hand
@@ -86,6 +98,11 @@ class CholecystectomySurgeon final : public Surgeon {
     std::uint32_t aim = 0;  ///< among strands
     int fruitless = 0;
     std::string what;
+  };
+  /// Where current has flowed, and for how long, fading as the place cools.
+  struct Warmth {
+    Vec3 place;
+    double seconds = 0;
   };
   /// Clips and cuts of tubes, until each is divided.
   struct Division {
@@ -110,6 +127,7 @@ class CholecystectomySurgeon final : public Surgeon {
   void Draw(int hand, const Vec3& by);
   void DrawGently(int hand, const Vec3& by);
   void LetGo(int hand);
+  void Ease(int hand);
   void LineUp(const std::string& what, std::size_t tube, double share, double jaw);
   void PlaceClip(std::size_t tube, double share, double beyond = 0.5, int tries = 2);
   void CloseClip(std::size_t tube, double share);
@@ -118,6 +136,11 @@ class CholecystectomySurgeon final : public Surgeon {
   void Dissect(const std::string& what, std::vector<std::uint32_t> strands, std::vector<double> order,
                double enough, double traction, std::function<bool(const Snapshot&)> is_enough = {});
   bool GoOnDissecting(Dissection& work, const Snapshot& seen);
+  void WorkOnFibre(Dissection& work, const Snapshot& seen);
+  double ChooseFibre(Dissection& work, const Snapshot& seen);
+  void TakeUpSlack(Dissection& work, const Snapshot& seen, double parted);
+  void LeaveFibre(Dissection& work);
+  void Swing(Dissection& work);
   void LookAt(Place target, double turn, double distance);
   /// Plans on when it is reached, from what is seen then.
   void Decide(std::string doing, std::function<void(const Snapshot&)> plan);
@@ -130,7 +153,8 @@ class CholecystectomySurgeon final : public Surgeon {
   void ClearTriangle(int rounds);
   void FreeLowerThird(int rounds);
   void ShowCriticalView(int rounds);
-  void LookFromSide(int side);
+  void LookFromSide(int side, int tries);
+  std::optional<instrument::TrocarJoints> FindSideView(const Snapshot& seen, int side);
   std::optional<std::size_t> FindExtraArtery(const Snapshot& seen);
   void Divide(std::vector<std::size_t> tubes, int rounds = 3);
   void GoOnDividing(const std::shared_ptr<Division>& work, const Snapshot& seen);
@@ -160,12 +184,25 @@ class CholecystectomySurgeon final : public Surgeon {
   double Clearance(const Snapshot& seen, const collision::Segment& segment);
   std::uint32_t FindHold(const Snapshot& seen, const Vec3& near, const std::vector<std::uint32_t>& avoid);
   void FollowWithCamera(const Snapshot& seen);
+  void AimCamera(const Vec3& p, const Vec3& facing, double distance);
   Vec3 TubePoint(const Snapshot& seen, std::size_t tube, double share) const;
   Vec3 TubeDirection(const Snapshot& seen, std::size_t tube, double share) const;
   std::uint32_t FindNode(std::int32_t organ, const Vec3& p) const;
   std::size_t FindTube(std::string_view name) const;
   Vec3 HookTip(const Vec3& at) const;
+  Vec3 HookToe(const Vec3& at, double spin) const;
+  struct HookWay {
+    double spin = 0;   ///< of the hook [rad]
+    double clear = 0;  ///< that the shaft passes by organs [m]
+  };
+  HookWay FindHookWay(const Snapshot& seen, const Vec3& at);
   Vec3 HookPoint(const Snapshot& seen) const;
+  Vec3 MiddleOf(const Snapshot& seen, std::uint32_t strand) const;
+  /// Nearest points of the hook's wire and of a fibre.
+  collision::SegmentSegmentPoints HookGap(const Snapshot& seen, std::uint32_t strand) const;
+  double WarmthAt(const Vec3& p) const;
+  void Warm(const Vec3& p);
+  void Cool();
   /// That far beyond a point of a tube, as seen from the right hand's trocar; negative: before it.
   Vec3 Aim(const Snapshot& seen, std::size_t tube, double share, double ahead) const;
   HandMotion& HandOf(int hand) { return hands_[static_cast<std::size_t>(hand)]; }
@@ -202,6 +239,7 @@ class CholecystectomySurgeon final : public Surgeon {
   double unseen_seconds_ = 0;
   double unheld_seconds_ = 0;
   std::vector<std::uint32_t> missed_holds_;
+  std::vector<Warmth> warmths_;
   double beyond_ = 0.5;  // share of the jaws that goes past the vessel [-]
   Vec3 offset_;          // by which the right hand aims beside what it wants to meet [m]
   std::string doing_;
