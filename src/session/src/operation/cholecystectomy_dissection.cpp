@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <iterator>
 #include <limits>
 #include <utility>
@@ -23,6 +21,7 @@ constexpr double kBackSeconds = 0.4;
 /// A fibre that the shaft cannot come to freely is taken by so much later [m]; the way is looked at from the first to
 /// the second distance from the tip.
 constexpr double kHiddenCost = 0.06, kWayFrom = 0.009, kWayTo = 0.07, kShaftClear = 0.0045;
+constexpr double kFarCost = 1.5;        // of the way of the tip to a fibre [-]
 constexpr double kHidden = 0.0015;      // what the shaft cannot pass by so far is not tried [m]
 constexpr double kOnToe = 0.0030;       // of the hook's toe, from the tip to where a fibre lies on it [m]
 constexpr int kSpins = 8;               // ways to turn the hook about its shaft
@@ -30,6 +29,7 @@ constexpr double kTurnCost = 0.0004;    // of such a turn, against what the shaf
 constexpr std::size_t kShortList = 32;  // fibres whose way is looked at
 constexpr double kSwungSeconds = 12.0;  // with hardly a fibre parted: the other hand swings elsewhere [s]
 constexpr std::size_t kHardly = 4;      // fibres
+constexpr double kSwingShare = 0.7;     // of what was drawn [-]
 constexpr double kLeastSwing = 0.012;   // [m]
 constexpr double kSwing = 0.6;          // of the way to a side, beside the way off the bed [-]
 /// A fibre this near to the wire is on the hook [m]; after so long beside it the hook turns back [s].
@@ -38,14 +38,19 @@ constexpr double kOnHook = 0.0009, kApart = 0.6;
 constexpr double kFollow = 0.2, kMostAside = 0.004;
 /// No current flows this near to a main duct, and to an artery that must stay or a small duct of the bed [m].
 constexpr double kMainClear = 0.0060, kCarefulClear = 0.0035, kTipClear = 0.0055;
-/// Pull of the other hand: it draws on below the one, and gives way above the other [N], by so much at a time [m].
-constexpr double kEnoughPull = 5.0, kMostPull = 8.0, kEase = 0.003, kMostEase = 0.015;
+constexpr double kSeen = 0.95;  // of the picture's width: nobody presses a pedal for what is out of it
+/// Pull of the other hand, above which it gives way, while ducts are whole and after: it draws on below a share of that
+/// [N], by so much at a time [m].
+constexpr double kMostTiedPull = 7.0, kMostFreePull = 11.0, kEnoughShare = 0.6, kEase = 0.003,
+                 kMostEase = 0.015;
 /// Current is for the fibre on the hook: what it does not part soon goes into the wall behind. Of one fibre at a time,
 /// of one place until it is left alone, and what is left of it when it may be gone on with [s].
 constexpr double kMostHeat = 0.25, kHot = 0.40, kWarm = 0.20;
 constexpr double kCools = 6.0,
                  kWarmReach = 0.0025;  // a place forgets its heat [s], and how far it reaches [m]
-constexpr double kSlipped = 0.5;       // after which the other hand takes hold anew [s]
+constexpr double kNextTo = 0.010,
+                 kAbove = 0.022;  // a fibre that is gone to directly, else from so far above [m]
+constexpr double kSlipped = 0.5;  // after which the other hand takes hold anew [s]
 
 }  // namespace
 
@@ -81,7 +86,8 @@ CholecystectomySurgeon::HookWay CholecystectomySurgeon::FindHookWay(const Snapsh
 
 void CholecystectomySurgeon::Dissect(const std::string& what, std::vector<std::uint32_t> strands,
                                      std::vector<double> order, double enough, double traction,
-                                     std::function<bool(const Snapshot&)> is_enough) {
+                                     std::function<bool(const Snapshot&)> is_enough, const Vec3& way,
+                                     const Nodes& may_hold) {
   auto work = std::make_shared<Dissection>();
   work->attempts.assign(strands.size(), 0);
   work->strands = std::move(strands);
@@ -92,11 +98,15 @@ void CholecystectomySurgeon::Dissect(const std::string& what, std::vector<std::u
   if (traction > 0.0) {
     const Vec3 axis = math::Normalized(rest_[fundus_] - rest_[neck_]);
     const Vec3 aside = math::Normalized(math::Cross(bed_normal_, axis));
-    for (const Vec3& side : {Vec3{}, aside, -1.0 * aside, axis})
-      work->ways.push_back(math::Normalized(bed_normal_ + kSwing * side));
+    // what is free is drawn to the sides first: off the bed it would stay before the hook
+    std::vector<Vec3> sides = {Vec3{}, aside, -1.0 * aside, axis};
+    if (may_hold) sides = {2.0 * aside, -2.0 * aside, Vec3{}, aside, -1.0 * aside};
+    for (const Vec3& side : sides) work->ways.push_back(math::Normalized(way + kSwing * side));
     work->swings_left = static_cast<int>(work->ways.size());
   }
   work->what = what;
+  work->may_hold = may_hold;
+  work->most_pull = may_hold ? kMostFreePull : kMostTiedPull;
   work->is_enough = std::move(is_enough);
   GoOn(std::move(work));
 }
@@ -117,7 +127,7 @@ void CholecystectomySurgeon::GoOn(std::shared_ptr<Dissection> work) {
           controls_[kRight].coagulate = false;
           work->target = -1;
           std::swap(acts_, inserted_);
-          HoldOn([this](const Snapshot& now) { return HookPoint(now); });
+          HoldOn([this](const Snapshot& now) { return HookPoint(now); }, kHoldTries, work->may_hold);
           GoOn(work);
           std::swap(acts_, inserted_);
           return true;
@@ -176,6 +186,7 @@ void CholecystectomySurgeon::LeaveFibre(Dissection& work) {
   work.target = -1;
   work.seconds = work.apart = work.heated = 0;
   work.aside = {};
+  work.path.clear();
 }
 
 /// The fibre on the hook, or before it: lifts it onto the wire, and presses the pedal while it lies there.
@@ -184,16 +195,6 @@ void CholecystectomySurgeon::WorkOnFibre(Dissection& work, const Snapshot& seen)
   const std::uint32_t strand = work.strands[target];
   bool& coagulate = controls_[kRight].coagulate;
   const auto give_up = [&] {
-    if (std::getenv("DBGF"))
-      std::fprintf(
-          stderr,
-          "give up %u at %.2f: heated %.2f warm %.2f apart %.2f force %.2f secs %.2f dist %.4f "
-          "moving %d aside %.4f try %d\n",
-          strand, seen.time, work.heated, WarmthAt(MiddleOf(seen, strand)), work.apart,
-          math::Norm(seen.instruments[kRight].force), work.seconds,
-          std::sqrt(HookGap(seen, strand).squared_distance), (int)HandOf(kRight).IsMoving(),
-          math::Norm(work.aside), work.attempts[target],
-          (int)IsInView(seen.X_world_laparoscope, scene_->laparoscope.field_of_view, HookPoint(seen)));
     ++work.attempts[target];
     LeaveFibre(work);
   };
@@ -209,9 +210,16 @@ void CholecystectomySurgeon::WorkOnFibre(Dissection& work, const Snapshot& seen)
     return;
   }
   if (HandOf(kRight).IsMoving() && !coagulate) return;
+  if (!work.path.empty()) {
+    HandOf(kRight).MoveTo(work.path.front());
+    work.path.pop_front();
+    work.seconds = 0;
+    return;
+  }
   const collision::SegmentSegmentPoints gap = HookGap(seen, strand);
   const double distance = std::sqrt(gap.squared_distance);
-  const bool is_seen = IsInView(seen.X_world_laparoscope, scene_->laparoscope.field_of_view, HookPoint(seen));
+  const bool is_seen =
+      IsInView(seen.X_world_laparoscope, kSeen * scene_->laparoscope.field_of_view, HookPoint(seen));
   const bool is_clear = std::none_of(main_ducts_.begin(), main_ducts_.end(), [&](std::uint32_t node) {
     return math::Distance(seen.positions[node], HookPoint(seen)) < kTipClear;
   });
@@ -236,12 +244,13 @@ void CholecystectomySurgeon::WorkOnFibre(Dissection& work, const Snapshot& seen)
 /// \return share of the fibres that are parted [-]
 double CholecystectomySurgeon::ChooseFibre(Dissection& work, const Snapshot& seen) {
   std::vector<std::pair<double, std::size_t>> list;  // by what they cost, without their way
+  work.target = -1;
   work.left = 0;
   work.waits = false;
   for (std::size_t i = 0; i < work.strands.size(); ++i) {
     if (seen.operation.strand_is_intact[work.strands[i]] == 0) continue;
     ++work.left;
-    if (work.attempts[i] >= kMostAttempts) continue;
+    if (work.attempts[i] >= (work.is_bold ? 1 : kMostAttempts)) continue;
     const Vec3 at = MiddleOf(seen, work.strands[i]);
     const auto is_near = [&](const std::vector<std::uint32_t>& nodes, double clear) {
       return std::any_of(nodes.begin(), nodes.end(), [&](std::uint32_t node) {
@@ -253,6 +262,12 @@ double CholecystectomySurgeon::ChooseFibre(Dissection& work, const Snapshot& see
       work.waits = true;
       continue;
     }
+    // what lies on the hook already is next
+    if (HookGap(seen, work.strands[i]).squared_distance < kOnHook * kOnHook) {
+      work.target = static_cast<std::int32_t>(i);
+      work.spin = HandOf(kRight).Spin();
+      continue;
+    }
     // what is stretched lies open
     const StrandInfo& strand = strands_[work.strands[i]];
     const double stretch = math::Distance(seen.positions[strand.a], seen.positions[strand.b]) -
@@ -260,12 +275,11 @@ double CholecystectomySurgeon::ChooseFibre(Dissection& work, const Snapshot& see
     const Vec3 out = math::Normalized(HandOf(kRight).Port() - at);
     const double way = std::min(kShaftClear, Clearance(seen, {at + kWayFrom * out, at + kWayTo * out}));
     list.emplace_back(kHiddenCost * (1.0 - way / kShaftClear) + work.order[i] +
-                          math::Distance(at, HandOf(kRight).Tip()) + 0.02 * work.attempts[i] -
+                          kFarCost * math::Distance(at, HandOf(kRight).Tip()) + 0.02 * work.attempts[i] -
                           kOpenShare * stretch,
                       i);
   }
   std::sort(list.begin(), list.end());
-  work.target = -1;
   for (std::size_t k = 0; k < list.size() && k < kShortList && work.target < 0; ++k) {
     const std::size_t i = list[k].second;
     const HookWay way = FindHookWay(seen, MiddleOf(seen, work.strands[i]));
@@ -283,9 +297,9 @@ void CholecystectomySurgeon::TakeUpSlack(Dissection& work, const Snapshot& seen,
   if (work.ways.empty() || HandOf(kLeft).IsMoving() || !seen.instruments[kLeft].is_grasping) return;
   const double pull = math::Norm(seen.instruments[kLeft].force);
   const double wish = std::min(work.traction, std::max(work.traction * parted, kPeelRate * act_seconds_));
-  if (pull > kMostPull) {
+  if (pull > work.most_pull) {
     work.drawn = std::max(-kMostEase, work.drawn - kEase);
-  } else if (pull < kEnoughPull) {
+  } else if (pull < kEnoughShare * work.most_pull) {
     work.drawn = std::min(wish, work.drawn + kEase);
   }
   const Vec3 wanted = work.p_hold + work.drawn * work.ways[work.way % work.ways.size()];
@@ -299,7 +313,7 @@ bool CholecystectomySurgeon::GoOnDissecting(Dissection& work, const Snapshot& se
     return false;
   }
   if (work.is_swinging) {
-    const bool pulls = math::Norm(seen.instruments[kLeft].force) > kMostPull;
+    const bool pulls = math::Norm(seen.instruments[kLeft].force) > 1.3 * work.most_pull;
     if (pulls) HandOf(kLeft).MoveTo(HandOf(kLeft).Tip());
     work.is_swinging = HandOf(kLeft).IsMoving() && !pulls;
     return false;
@@ -340,19 +354,30 @@ bool CholecystectomySurgeon::GoOnDissecting(Dissection& work, const Snapshot& se
   }
   if (work.target < 0) return false;  // until a place has cooled
   const Vec3 at = MiddleOf(seen, work.strands[static_cast<std::size_t>(work.target)]);
-  HandOf(kRight).Turn(work.spin);
-  HandOf(kRight).MoveTo(at - kOnToe * HookToe(at, work.spin));
+  Approach(work, at - kOnToe * HookToe(at, work.spin));
   return false;
+}
+
+/// Takes the hook to a fibre: what is far is gone to from above, not through what lies between.
+void CholecystectomySurgeon::Approach(Dissection& work, const Vec3& tip) {
+  const HandMotion& hand = HandOf(kRight);
+  work.path.clear();
+  if (math::Distance(hand.Tip(), tip) > kNextTo) {
+    const auto above = [&](const Vec3& p) { return p + kAbove * math::Normalized(hand.Port() - p); };
+    work.path = {above(hand.Tip()), above(tip)};
+  }
+  work.path.push_back(tip);
+  HandOf(kRight).Turn(work.spin);
+  HandOf(kRight).MoveTo(work.path.front());
+  work.path.pop_front();
 }
 
 /// The other hand swings what it holds elsewhere, which opens other fibres.
 void CholecystectomySurgeon::Swing(Dissection& work) {
-  if (std::getenv("DBGF"))
-    std::fprintf(stderr, "swing to %zu at %.1f left %zu\n", work.way + 1, act_seconds_, work.left);
   LeaveFibre(work);
   --work.swings_left;
   ++work.way;
-  work.drawn = std::max(work.drawn, kLeastSwing);
+  work.drawn = std::max(kSwingShare * work.drawn, kLeastSwing);
   std::fill(work.attempts.begin(), work.attempts.end(), std::uint8_t{0});
   work.swung_seconds = 0;
   work.left_at_swing = work.left;

@@ -196,7 +196,7 @@ DivisionField CholecystectomySurgeon::FieldOf(const Snapshot& seen, std::size_t 
 
 /// A node of the gallbladder that a grasper can take without the liver, some way off what lies at `near`.
 std::uint32_t CholecystectomySurgeon::FindHold(const Snapshot& seen, const Vec3& near,
-                                               const std::vector<std::uint32_t>& avoid) {
+                                               const std::vector<std::uint32_t>& avoid, const Nodes& may) {
   const auto gallbladder = static_cast<std::size_t>(scene_->patient.FindOrgan("gallbladder"));
   const auto liver = static_cast<std::size_t>(scene_->patient.FindOrgan("liver"));
   const SurfaceInfo& surface = surfaces_[gallbladder];
@@ -215,6 +215,7 @@ std::uint32_t CholecystectomySurgeon::FindHold(const Snapshot& seen, const Vec3&
   double best_worth = -std::numeric_limits<double>::infinity();
   for (std::uint32_t i = 0; i < surface.node_count; ++i) {
     const std::uint32_t node = surface.first_node + i;
+    if (may && !may(node)) continue;
     const Vec3& p = seen.positions[node];
     const double away = math::Distance(p, near);
     if (away < kLeastAway || away > kMostAway) continue;

@@ -2,8 +2,6 @@
 // The operation, part by part; each part looks at what has come of it and goes on until it is enough.
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <utility>
 
 #include "cholecystectomy_surgeon.h"
@@ -27,7 +25,9 @@ constexpr double kSkin = 0.004;      // sight ends at the skin of a duct, not at
 constexpr double kNeckStep = 0.008;  // of the hold about the duct, to show the other side of the neck [m]
 constexpr int kNeckTurns = 7;
 constexpr double kPeelShare = 0.2;  // of the bed's fibres that are left: where the gallbladder peels off [-]
-constexpr double kBedStep = 0.2;    // of the bed's fibres, after which the hold is chosen anew [-]
+/// Of the hold from there, along what is free [m]; how far it is folded back at first [m], and how steeply [-].
+constexpr double kLeastFlap = 0.012, kMostFlap = 0.035, kFold = 0.030, kFoldUp = 0.6;
+constexpr double kBedStep = 0.2;  // of the bed's fibres, after which the hold is chosen anew [-]
 
 }  // namespace
 
@@ -61,20 +61,20 @@ void CholecystectomySurgeon::PlanOperation() {
 }
 
 /// Takes the gallbladder with the left hand, clear of the liver, and again elsewhere when nothing was taken.
-void CholecystectomySurgeon::HoldOn(const Place& near, int tries) {
-  Decide("choose a hold", [this, near, tries](const Snapshot& seen) {
+void CholecystectomySurgeon::HoldOn(const Place& near, int tries, const Nodes& may) {
+  Decide("choose a hold", [this, near, tries, may](const Snapshot& seen) {
     if (tries <= 0) return;
     if (seen.instruments[kLeft].is_grasping) LetGo(kLeft);
-    Decide("choose a hold", [this, near, tries](const Snapshot& now) {
-      const std::uint32_t node = FindHold(now, near(now), missed_holds_);
+    Decide("choose a hold", [this, near, tries, may](const Snapshot& now) {
+      const std::uint32_t node = FindHold(now, near(now), missed_holds_, may);
       Grasp(
           kLeft, [node](const Snapshot& then) { return then.positions[node]; }, kGrip);
-      Decide("look at the hold", [this, near, tries, node](const Snapshot& then) {
+      Decide("look at the hold", [this, near, tries, may, node](const Snapshot& then) {
         const InstrumentSnapshot& hand = then.instruments[kLeft];
         if (hand.is_grasping && hand.organ == scene_->patient.FindOrgan("gallbladder")) return;
         missed_holds_.push_back(node);
         LetGo(kLeft);
-        HoldOn(near, tries - 1);
+        HoldOn(near, tries - 1, may);
       });
     });
   });
@@ -137,8 +137,10 @@ void CholecystectomySurgeon::FreeLowerThird(int rounds) {
       HoldOn([this](const Snapshot& now) { return now.positions[neck_]; });
       DrawGently(kLeft, 0.010 * bed_normal_);
     }
-    Dissect("the lower third of the bed", lower, order, 0.97, 0.028,
-            [](const Snapshot& now) { return now.operation.facts.detached_share >= kDetached + 0.01; });
+    Dissect(
+        "the lower third of the bed", lower, order, 0.97, 0.028,
+        [](const Snapshot& now) { return now.operation.facts.detached_share >= kDetached + 0.01; },
+        bed_normal_);
     FreeLowerThird(rounds - 1);
   });
 }
@@ -192,7 +194,6 @@ std::optional<instrument::TrocarJoints> CholecystectomySurgeon::FindSideView(con
   const Vec3 to_eye = math::Normalized(scene_->laparoscope.p_world_port - middle);
   const Vec3 along = TubeDirection(seen, duct, 0.5);
   const Vec3 across = math::Normalized(math::Cross(along, to_eye), {1, 0, 0});
-  int azimuth_ok = 0, views = 0;
   for (int step = 0; step < kTurnSteps * 3; ++step) {
     const double turn = (step / 3 % 2 == 0 ? 1 : -1) * kTurnStep * (1 + step / 6);
     const double tilt = kTilts[step % 3];
@@ -204,10 +205,8 @@ std::optional<instrument::TrocarJoints> CholecystectomySurgeon::FindSideView(con
           math::Rotate(math::RotationAbout(along, turn) * math::RotationAbout(across, tilt), to_eye);
       const auto found = FindView(scene_->laparoscope, wish);
       if (!found) continue;
-      ++views;
       const Pose X = CalcLaparoscopePose(scene_->laparoscope, *found);
       if (side * CalcAzimuth(seen, X.translation) < kAside) continue;
-      ++azimuth_ok;
       const bool shows_all = std::all_of(points.begin(), points.end(), [&](const Vec3& p) {
         const Vec3 end = p + kSkin * math::Normalized(X.translation - p);
         return IsInView(X, scene_->laparoscope.field_of_view, p) &&
@@ -216,7 +215,6 @@ std::optional<instrument::TrocarJoints> CholecystectomySurgeon::FindSideView(con
       if (shows_all) return found;
     }
   }
-  if (std::getenv("DBGF")) std::fprintf(stderr, "side %d views %d azimuth ok %d\n", side, views, azimuth_ok);
   return std::nullopt;
 }
 
@@ -227,9 +225,6 @@ void CholecystectomySurgeon::LookFromSide(int side, int tries) {
     const auto& score = seen.operation.critical_view;
     if (score.IsAchieved() || score.Sum() < 6) return;
     const auto view = FindSideView(seen, side);
-    if (std::getenv("DBGF"))
-      std::fprintf(stderr, "side %d tries %d view %d azimuth now %.2f\n", side, tries, view.has_value(),
-                   CalcAzimuth(seen, CalcLaparoscopePose(scene_->laparoscope, camera_).translation));
     if (view) {
       Add(
           "look from aside", [this, to = *view](const Snapshot&) { camera_to_ = to; },
@@ -268,13 +263,23 @@ void CholecystectomySurgeon::FreeFromBed(int rounds) {
       for (const auto& [place, strand] : along) sum += now.positions[strands_[strand].a];
       return sum / static_cast<double>(along.size());
     };
+    // what is free is folded back over what is not: there the fibres lie open
+    const double peels = 2.0 * along[along.size() / 2].first;
+    const Nodes is_free = [this, axis, peels](std::uint32_t node) {
+      const double before = peels - math::Dot(rest_[node] - rest_[neck_], axis);
+      return before > kLeastFlap && before < kMostFlap;
+    };
+    const Vec3 back = math::Normalized(axis - math::Dot(axis, bed_normal_) * bed_normal_);
+    const Vec3 fold = math::Normalized(kFoldUp * bed_normal_ + back);
     Take(ToolKind::kHook);
     LookAt(left, 0.0, 0.100);
-    HoldOn(left);
-    DrawGently(kLeft, 0.012 * bed_normal_);
+    HoldOn(left, kHoldTries, is_free);
+    DrawGently(kLeft, kFold * fold);
     const double before = ShareLeft(seen, bed);
-    Dissect("the gallbladder from its bed", bed, order, 1.0, 0.040,
-            [this, bed, before](const Snapshot& now) { return ShareLeft(now, bed) < before - kBedStep; });
+    Dissect(
+        "the gallbladder from its bed", bed, order, 1.0, 0.070,
+        [this, bed, before](const Snapshot& now) { return ShareLeft(now, bed) < before - kBedStep; }, fold,
+        is_free);
     FreeFromBed(rounds - 1);
   });
 }

@@ -3,8 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <iterator>
 #include <utility>
 
@@ -142,7 +140,6 @@ void CholecystectomySurgeon::AimCamera(const Vec3& p, const Vec3& facing, double
       return;
     }
   }
-  if (std::getenv("DBGF")) std::fprintf(stderr, "no view of %.3f %.3f %.3f\n", p.x, p.y, p.z);
 }
 
 std::uint32_t CholecystectomySurgeon::FindNode(std::int32_t organ, const Vec3& p) const {

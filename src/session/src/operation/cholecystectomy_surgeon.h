@@ -59,6 +59,8 @@ class CholecystectomySurgeon final : public Surgeon {
 
  private:
   using Place = std::function<Vec3(const Snapshot&)>;
+  static constexpr int kHoldTries = 3;
+  using Nodes = std::function<bool(std::uint32_t)>;
   /// Fibres that are worked on until none is left that can be reached.
   struct Dissection {
     std::vector<std::uint32_t> strands;
@@ -70,9 +72,10 @@ class CholecystectomySurgeon final : public Surgeon {
     std::vector<std::uint8_t> attempts;
     std::int32_t target = -1;
     double seconds = 0, apart = 0, heated = 0, backing_off = 0;  ///< [s]
-    Vec3 aside;          ///< by which the hook is led to the fibre [m]
-    bool waits = false;  ///< for a place to cool
-    double spin = 0;     ///< of the hook for the target [rad]
+    Vec3 aside;             ///< by which the hook is led to the fibre [m]
+    bool waits = false;     ///< for a place to cool
+    double spin = 0;        ///< of the hook for the target [rad]
+    std::deque<Vec3> path;  ///< of the hook's tip to the target, after where it goes now [m]
     std::size_t left = 0;
     /// Unit vectors along which the other hand draws, in turn when no fibre lies open; none: it rests.
     std::vector<Vec3> ways;
@@ -83,7 +86,9 @@ class CholecystectomySurgeon final : public Surgeon {
     double swung_seconds = 0, looked_at = 0;
     double drawn = 0;  ///< by the other hand, since it holds [m]
     std::function<bool(const Snapshot&)> is_enough;
-    int holds_left = 4;  ///< new holds of a slipped left hand
+    Nodes may_hold;
+    double most_pull = 0;  ///< of the other hand, before it gives way [N]
+    int holds_left = 4;    ///< new holds of a slipped left hand
     std::string what;
   };
   /// Fibres that are parted bluntly, by opening jaws among them.
@@ -134,17 +139,20 @@ class CholecystectomySurgeon final : public Surgeon {
   void CutTube(std::size_t tube, double share);
   void Burn(int hand, const Place& at, double seconds);
   void Dissect(const std::string& what, std::vector<std::uint32_t> strands, std::vector<double> order,
-               double enough, double traction, std::function<bool(const Snapshot&)> is_enough = {});
+               double enough, double traction, std::function<bool(const Snapshot&)> is_enough = {},
+               const Vec3& way = {}, const Nodes& may_hold = {});
   bool GoOnDissecting(Dissection& work, const Snapshot& seen);
   void WorkOnFibre(Dissection& work, const Snapshot& seen);
   double ChooseFibre(Dissection& work, const Snapshot& seen);
   void TakeUpSlack(Dissection& work, const Snapshot& seen, double parted);
   void LeaveFibre(Dissection& work);
   void Swing(Dissection& work);
+  void Approach(Dissection& work, const Vec3& tip);
   void LookAt(Place target, double turn, double distance);
   /// Plans on when it is reached, from what is seen then.
   void Decide(std::string doing, std::function<void(const Snapshot&)> plan);
-  void HoldOn(const Place& near, int tries = 3);
+  /// \param may  nodes that may be held; none: any
+  void HoldOn(const Place& near, int tries = kHoldTries, const Nodes& may = {});
   void Spread(std::shared_ptr<Spreading> work);
   bool GoOnSpreading(Spreading& work, const Snapshot& seen);
   void GoOn(std::shared_ptr<Dissection> work);
@@ -182,7 +190,8 @@ class CholecystectomySurgeon final : public Surgeon {
   DivisionField FieldOf(const Snapshot& seen, std::size_t tube, const std::vector<TubeLine>& lines,
                         double care);
   double Clearance(const Snapshot& seen, const collision::Segment& segment);
-  std::uint32_t FindHold(const Snapshot& seen, const Vec3& near, const std::vector<std::uint32_t>& avoid);
+  std::uint32_t FindHold(const Snapshot& seen, const Vec3& near, const std::vector<std::uint32_t>& avoid,
+                         const Nodes& may);
   void FollowWithCamera(const Snapshot& seen);
   void AimCamera(const Vec3& p, const Vec3& facing, double distance);
   Vec3 TubePoint(const Snapshot& seen, std::size_t tube, double share) const;
