@@ -115,7 +115,7 @@ void CholecystectomySurgeon::ClearTriangle(int rounds) {
         for (const std::uint32_t i : left)
           order.push_back(-0.25 * (rest_[strands_[i].a] + rest_[strands_[i].b]).z);
         Take(ToolKind::kHook);
-        Dissect("the hepatocystic triangle", left, order, 1.0, 0.0, is_enough);
+        Dissect({"the hepatocystic triangle", left, order, 1.0, is_enough});
       }
       ClearTriangle(rounds - 1);
     });
@@ -137,10 +137,10 @@ void CholecystectomySurgeon::FreeLowerThird(int rounds) {
       HoldOn([this](const Snapshot& now) { return now.positions[neck_]; });
       DrawGently(kLeft, 0.010 * bed_normal_);
     }
-    Dissect(
-        "the lower third of the bed", lower, order, 0.97, 0.028,
-        [](const Snapshot& now) { return now.operation.facts.detached_share >= kDetached + 0.01; },
-        bed_normal_);
+    const auto is_enough = [](const Snapshot& now) {
+      return now.operation.facts.detached_share >= kDetached + 0.01;
+    };
+    Dissect({"the lower third of the bed", lower, order, 0.97, is_enough, 0.028, bed_normal_});
     FreeLowerThird(rounds - 1);
   });
 }
@@ -275,11 +275,10 @@ void CholecystectomySurgeon::FreeFromBed(int rounds) {
     LookAt(left, 0.0, 0.100);
     HoldOn(left, kHoldTries, is_free);
     DrawGently(kLeft, kFold * fold);
-    const double before = ShareLeft(seen, bed);
-    Dissect(
-        "the gallbladder from its bed", bed, order, 1.0, 0.070,
-        [this, bed, before](const Snapshot& now) { return ShareLeft(now, bed) < before - kBedStep; }, fold,
-        is_free);
+    const auto is_step = [this, bed, before = ShareLeft(seen, bed)](const Snapshot& now) {
+      return ShareLeft(now, bed) < before - kBedStep;
+    };
+    Dissect({"the gallbladder from its bed", bed, order, 1.0, is_step, 0.070, fold, is_free});
     FreeFromBed(rounds - 1);
   });
 }

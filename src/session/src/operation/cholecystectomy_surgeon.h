@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "division_plan.h"
+#include "heat_memory.h"
 #include "patient_tissue.h"
 #include "spread_plan.h"
 #include "task_surgeon.h"
@@ -61,35 +62,50 @@ class CholecystectomySurgeon final : public Surgeon {
   using Place = std::function<Vec3(const Snapshot&)>;
   static constexpr int kHoldTries = 3;
   using Nodes = std::function<bool(std::uint32_t)>;
-  /// Fibres that are worked on until none is left that can be reached.
-  struct Dissection {
-    std::vector<std::uint32_t> strands;
-    std::vector<double> order;  ///< (strands) what comes first
-    double enough = 1.0;        ///< share that is to be parted [-]
-    double traction = 0;        ///< by which the other hand has drawn back at the end [m]
-    double parted_at_reset = 0;
-    Vec3 p_hold;  ///< of the other hand, when it began [m]
-    std::vector<std::uint8_t> attempts;
-    std::int32_t target = -1;
-    double seconds = 0, apart = 0, heated = 0, backing_off = 0;  ///< [s]
-    Vec3 aside;             ///< by which the hook is led to the fibre [m]
-    bool waits = false;     ///< for a place to cool
-    double spin = 0;        ///< of the hook for the target [rad]
-    std::deque<Vec3> path;  ///< of the hook's tip to the target, after where it goes now [m]
-    std::size_t left = 0;
-    /// Unit vectors along which the other hand draws, in turn when no fibre lies open; none: it rests.
-    std::vector<Vec3> ways;
-    std::size_t way = 0, left_at_swing = 0;
-    int swings_left = 0;
+  /// The other hand's part: it draws on what it holds, so that the fibres are stretched and lie open.
+  struct Traction {
+    double most = 0;         ///< way in all; 0: it rests [m]
+    double most_pull = 0;    ///< above which it gives way [N]
+    std::vector<Vec3> ways;  ///< unit vectors, in turn when no fibre lies open any more
+    Nodes may_hold;          ///< of the gallbladder; none: any
+    std::size_t way = 0;
+    Vec3 p_hold;       ///< of the tip, when it began [m]
+    double drawn = 0;  ///< [m]
     bool is_swinging = false;
-    bool is_bold = false;  ///< pushes on to fibres that do not lie open
-    double swung_seconds = 0, looked_at = 0;
-    double drawn = 0;  ///< by the other hand, since it holds [m]
-    std::function<bool(const Snapshot&)> is_enough;
-    Nodes may_hold;
-    double most_pull = 0;  ///< of the other hand, before it gives way [N]
-    int holds_left = 4;    ///< new holds of a slipped left hand
+    int swings_left = 0;
+    double seconds = 0;             ///< since the last swing, or since it was worth its while [s]
+    std::size_t fibres_before = 0;  ///< that were left then
+  };
+  /// The fibre that the hook goes to, or has on its toe.
+  struct HookTarget {
+    std::int32_t fibre = -1;                    ///< among the dissection's
+    double spin = 0;                            ///< of the hook [rad]
+    std::deque<Vec3> path;                      ///< of the tip, after where it goes now [m]
+    Vec3 aside;                                 ///< by which the tip is led to the fibre [m]
+    double seconds = 0, apart = 0, heated = 0;  ///< in all, beside it, with current [s]
+  };
+  /// What is dissected with the hook, until none is left that can be reached.
+  struct DissectionGoal {
     std::string what;
+    std::vector<std::uint32_t> strands;
+    std::vector<double> order;  ///< (strands) what comes first [m]
+    double enough = 1.0;        ///< share that is to be parted [-]
+    std::function<bool(const Snapshot&)> is_enough = {};
+    double traction = 0;  ///< see Traction::most
+    Vec3 way = {};        ///< of it, unit vector
+    Nodes may_hold = {};  ///< what is free already: it bears a stronger pull
+  };
+  struct Dissection {
+    DissectionGoal goal;
+    std::vector<std::uint8_t> attempts;  ///< (strands)
+    std::size_t left = 0;                ///< fibres
+    double parted_at_reset = 0;
+    HookTarget target;
+    Traction traction;
+    bool waits = false;      ///< for a place to cool
+    bool is_bold = false;    ///< pushes on to fibres that do not lie open
+    double backing_off = 0;  ///< [s]
+    int holds_left = 4;      ///< new holds of a slipped left hand
   };
   /// Fibres that are parted bluntly, by opening jaws among them.
   struct Spreading {
@@ -103,11 +119,6 @@ class CholecystectomySurgeon final : public Surgeon {
     std::uint32_t aim = 0;  ///< among strands
     int fruitless = 0;
     std::string what;
-  };
-  /// Where current has flowed, and for how long, fading as the place cools.
-  struct Warmth {
-    Vec3 place;
-    double seconds = 0;
   };
   /// Clips and cuts of tubes, until each is divided.
   struct Division {
@@ -138,16 +149,18 @@ class CholecystectomySurgeon final : public Surgeon {
   void CloseClip(std::size_t tube, double share);
   void CutTube(std::size_t tube, double share);
   void Burn(int hand, const Place& at, double seconds);
-  void Dissect(const std::string& what, std::vector<std::uint32_t> strands, std::vector<double> order,
-               double enough, double traction, std::function<bool(const Snapshot&)> is_enough = {},
-               const Vec3& way = {}, const Nodes& may_hold = {});
+  void Dissect(DissectionGoal goal);
   bool GoOnDissecting(Dissection& work, const Snapshot& seen);
   void WorkOnFibre(Dissection& work, const Snapshot& seen);
   double ChooseFibre(Dissection& work, const Snapshot& seen);
-  void TakeUpSlack(Dissection& work, const Snapshot& seen, double parted);
+  Traction PlanTraction(const DissectionGoal& goal) const;
+  void TakeUpSlack(Traction& traction, const Snapshot& seen, double parted);
   void LeaveFibre(Dissection& work);
+  void BackOff();
   void Swing(Dissection& work);
-  void Approach(Dissection& work, const Vec3& tip);
+  void GoOnSwinging(Traction& traction, const Snapshot& seen);
+  Vec3 HookStand(const Snapshot& seen, std::uint32_t strand, double spin) const;
+  void Approach(HookTarget& target, const Vec3& tip);
   void LookAt(Place target, double turn, double distance);
   /// Plans on when it is reached, from what is seen then.
   void Decide(std::string doing, std::function<void(const Snapshot&)> plan);
@@ -209,9 +222,6 @@ class CholecystectomySurgeon final : public Surgeon {
   Vec3 MiddleOf(const Snapshot& seen, std::uint32_t strand) const;
   /// Nearest points of the hook's wire and of a fibre.
   collision::SegmentSegmentPoints HookGap(const Snapshot& seen, std::uint32_t strand) const;
-  double WarmthAt(const Vec3& p) const;
-  void Warm(const Vec3& p);
-  void Cool();
   /// That far beyond a point of a tube, as seen from the right hand's trocar; negative: before it.
   Vec3 Aim(const Snapshot& seen, std::size_t tube, double share, double ahead) const;
   HandMotion& HandOf(int hand) { return hands_[static_cast<std::size_t>(hand)]; }
@@ -248,7 +258,7 @@ class CholecystectomySurgeon final : public Surgeon {
   double unseen_seconds_ = 0;
   double unheld_seconds_ = 0;
   std::vector<std::uint32_t> missed_holds_;
-  std::vector<Warmth> warmths_;
+  HeatMemory heat_;
   double beyond_ = 0.5;  // share of the jaws that goes past the vessel [-]
   Vec3 offset_;          // by which the right hand aims beside what it wants to meet [m]
   std::string doing_;
