@@ -211,5 +211,58 @@ TEST(FindSide, GivesTheDiagonalAtACornerAndZeroOnTheSurface) {
   EXPECT_EQ(side({1, 0, 1}).distance, 0.0);
 }
 
+TEST(IsInside, SaysWhatTheNearestFeatureSaysOfASoundSurface) {
+  math::Random random(231);
+  const TriangleMesh mesh = MakeDentedBall();
+  const auto around = geometry::FindVertexTriangles(mesh.triangles, mesh.positions.size());
+  const CentroidHierarchy hierarchy = MakeHierarchy(mesh);
+  int inside = 0;
+  for (int trial = 0; trial < 3000; ++trial) {
+    // every third point lies straight behind a vertex or an edge as a ray sees it
+    Vec3 p = RandomPoint(random, 0.13);
+    const auto& t = mesh.triangles[static_cast<std::size_t>(trial) % mesh.triangles.size()];
+    if (trial % 3 == 0) p.x = mesh.positions[t[0]].x, p.y = mesh.positions[t[0]].y;
+    if (trial % 3 == 1) p.z = mesh.positions[t[1]].z;
+    const auto nearest = FindNearest(hierarchy, mesh.positions, p);
+    const auto side = FindSide(mesh.positions, mesh.triangles, around, p, nearest);
+    if (std::fabs(side.distance) < 1e-9) continue;
+    ASSERT_EQ(IsInside(mesh.positions, mesh.triangles, p), side.distance < 0.0) << "trial " << trial;
+    inside += side.distance < 0.0;
+  }
+  EXPECT_GT(inside, 300);
+}
+
+// A vertex drawn through its neighbours lays some triangles over others, face down: beside them the nearest feature lies.
+TEST(IsInside, IsNotFooledByAFold) {
+  TriangleMesh mesh = geometry::MakeSphere({0, 0, 0}, 0.1, 3);
+  const auto top =
+      static_cast<std::size_t>(std::max_element(mesh.positions.begin(), mesh.positions.end(),
+                                                [](const Vec3& a, const Vec3& b) { return a.z < b.z; }) -
+                               mesh.positions.begin());
+  mesh.positions[top] += {0.04, 0, 0.006};
+  const auto around = geometry::FindVertexTriangles(mesh.triangles, mesh.positions.size());
+  const CentroidHierarchy hierarchy = MakeHierarchy(mesh);
+  int fooled = 0;
+  for (double x = -0.02; x < 0.06; x += 0.0011) {
+    const Vec3 above{x, 0.0007, 0.111}, below{x, 0.0007, 0.07};
+    EXPECT_FALSE(IsInside(mesh.positions, mesh.triangles, above)) << x;
+    EXPECT_TRUE(IsInside(mesh.positions, mesh.triangles, below)) << x;
+    const auto nearest = FindNearest(hierarchy, mesh.positions, above);
+    fooled += FindSide(mesh.positions, mesh.triangles, around, above, nearest).distance < 0.0;
+  }
+  EXPECT_GT(fooled, 0) << "negative control: the nearest feature alone is wrong there";
+}
+
+TEST(IsInside, HoldsWhereASurfaceHasAHoleOrFacesInwards) {
+  TriangleMesh mesh = geometry::MakeSphere({0, 0, 0}, 0.1, 3);
+  TriangleMesh inwards = mesh;
+  for (auto& t : inwards.triangles) std::swap(t[1], t[2]);
+  EXPECT_FALSE(IsInside(inwards.positions, inwards.triangles, {0.001, 0.002, 0.003}));
+  std::erase_if(mesh.triangles, [&](const auto& t) { return mesh.positions[t[0]].x > 0.093; });
+  EXPECT_TRUE(IsInside(mesh.positions, mesh.triangles, {0.001, 0.002, 0.003}));
+  EXPECT_FALSE(IsInside(mesh.positions, mesh.triangles, {-0.12, 0.002, 0.003}));
+  EXPECT_FALSE(IsInside(mesh.positions, {}, {0, 0, 0}));
+}
+
 }  // namespace
 }  // namespace trocar::collision

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "trocar/collision/queries.h"
 #include "trocar/core/assert.h"
@@ -16,6 +17,9 @@ using collision::Segment;
 
 /// Triangles or pieces that one body of a tool can meet in a tick.
 constexpr std::size_t kMostCandidates = 512;
+/// Springs of one body of a tool against one organ. Where more triangles are in its way, as in a crumpled sac, those that it
+/// meets first stop it: the rest would only leave no room for what keeps organs apart.
+constexpr std::size_t kMostByBody = 64;
 /// Tissue that snaps back farther than this in one solve is followed only so far [m].
 constexpr double kMostMotion = 0.03;
 /// Tissue that lies in the tool by more than it did, and by more than this, comes out over several ticks: pushed at once it
@@ -54,6 +58,7 @@ struct Meeting {
   double parameter;  // on the body's axis
   Vec3 normal;       // unit
   double reach;      // sum of the radii [m]
+  double rank = 0;   // low for what is met early, beyond 1 what is only near at the end
 };
 
 Vec3 PointOf(const Meeting& meeting, std::span<const Vec3> positions) noexcept {
@@ -162,8 +167,12 @@ bool MeetTriangle(const Search& search, const std::array<std::uint32_t, 3>& node
     const Vec3 outward = math::Cross(at[1] - at[0], at[2] - at[0]);
     // a fold may turn its back on the tool, and is no less in the way; from inside of an organ it is its other wall
     if (!search.is_outside && !(math::Dot(away, outward) < 0.0)) return false;
-    meeting = {nodes, sweep.points.on_triangle.weights, sweep.points.parameter, away / distance,
-               search.radius};
+    meeting = {nodes,
+               sweep.points.on_triangle.weights,
+               sweep.points.parameter,
+               away / distance,
+               search.radius,
+               sweep.time + std::max(0.0, distance - search.radius)};
     return true;
   };
   const std::array<Vec3, 3> now = corners(search.touchables.positions);
@@ -236,6 +245,29 @@ void PushOut(const Search& search, const OrganSurface& organ, std::size_t surfac
   AddContact(search, meeting, surface, near.nearest.triangle, contacts);
 }
 
+std::array<std::uint32_t, 3> NodesOf(const OrganSurface& organ, std::uint32_t triangle) noexcept {
+  std::array<std::uint32_t, 3> nodes = organ.triangles[triangle];
+  for (std::uint32_t& node : nodes) node += organ.first_node;
+  return nodes;
+}
+
+/// Leaves the triangles that are met first, ascending. \return how many
+std::size_t KeepFirstMet(const Search& search, const OrganSurface& organ,
+                         std::span<std::uint32_t> found) noexcept {
+  std::array<std::pair<double, std::uint32_t>, kMostCandidates> met;
+  std::size_t count = 0;
+  for (const std::uint32_t triangle : found) {
+    Meeting meeting;
+    if (MeetTriangle(search, NodesOf(organ, triangle), meeting)) met[count++] = {meeting.rank, triangle};
+  }
+  const std::size_t kept = std::min(count, kMostByBody);
+  std::partial_sort(met.begin(), met.begin() + static_cast<std::ptrdiff_t>(kept),
+                    met.begin() + static_cast<std::ptrdiff_t>(count));
+  for (std::size_t i = 0; i < kept; ++i) found[i] = met[i].second;
+  std::sort(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(kept));
+  return kept;
+}
+
 void FindOnOrgan(Search& search, std::size_t surface, ContactSet& contacts) noexcept {
   const OrganSurface& organ = search.touchables.organs[surface];
   const double motion = std::min(kMostMotion, search.touchables.surface_motion[surface]);
@@ -247,11 +279,12 @@ void FindOnOrgan(Search& search, std::size_t surface, ContactSet& contacts) noex
   contacts.dropped += count > found.size() ? count - found.size() : 0;
   const std::size_t before = contacts.springs.size();
   search.is_outside = count == 0 || IsOutside(search, organ, search.radius + slack);
-  for (std::size_t i = 0; i < std::min(count, found.size()); ++i) {
-    std::array<std::uint32_t, 3> nodes = organ.triangles[found[i]];
-    for (std::uint32_t& node : nodes) node += organ.first_node;
+  std::size_t kept = std::min(count, found.size());
+  if (kept > kMostByBody) kept = KeepFirstMet(search, organ, std::span(found).first(kept));
+  for (std::size_t i = 0; i < kept; ++i) {
     Meeting meeting;
-    if (MeetTriangle(search, nodes, meeting)) AddContact(search, meeting, surface, found[i], contacts);
+    if (MeetTriangle(search, NodesOf(organ, found[i]), meeting))
+      AddContact(search, meeting, surface, found[i], contacts);
   }
   if (count > 0 && contacts.springs.size() == before) PushOut(search, organ, surface, contacts);
 }

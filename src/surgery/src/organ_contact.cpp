@@ -151,8 +151,7 @@ void FindOrganContacts(std::span<const OrganSurface> organs, std::span<const Vec
     if (!place.is_near) continue;
     pair.last_triangle[i] = place.nearest.triangle;
     const double gap = place.distance - radius;
-    if (pair.radii.empty())
-      pair.allowed[i] = std::max(pair.allowed[i], std::min(gap, settings.thickness));
+    if (pair.radii.empty()) pair.allowed[i] = std::max(pair.allowed[i], std::min(gap, settings.thickness));
     const double room = std::max(gap - pair.allowed[i], -kMostPush);
     if (room > settings.ahead) continue;
     if (contacts.springs.size() + 2 > ContactSet::kCapacity) {

@@ -50,6 +50,26 @@ TEST_F(Contact, ReactionBalancesTheFoundation) {
   EXPECT_NEAR(math::Distance(foundation, reaction.force), 0.0, 0.02 * math::Norm(reaction.force));
 }
 
+// A crumpled sac has hundreds of triangles in a tool's way; contact between organs needs room as well.
+TEST_F(Contact, ACrowdOfTrianglesIsStoppedByThoseMetFirst) {
+  const auto fine = geometry::MakeSphere({0, 0, 0}, 0.02, 6);
+  std::vector<OrganSurface> organs;
+  organs.push_back(MakeOrganSurface(fine.positions, 0, fine).value());
+  const std::vector<double> motion(2, 0.0);
+  const Touchables touchables{organs, nullptr, fine.positions, fine.positions, motion};
+  const Pose outside = PoseAt(JointsAt({0, 0, 0.0225})), deep = PoseAt(JointsAt({0, 0, 0.002}));
+  FindContacts({&tool_, 0, outside, outside, deep, 0.0, 0.0, -1}, touchables, settings_, last_, contacts_);
+  std::array<std::uint32_t, 4096> found;
+  const auto body = CalcToolBodies(tool_, 0.0, deep)[0];
+  EXPECT_GT(organs[0].tree.FindWithin(fine.positions, body, found), 0u);
+  EXPECT_GT(contacts_.springs.size(), 64u);
+  EXPECT_LE(contacts_.springs.size(), std::size_t{64} * kToolBodyCount);
+  for (std::size_t i = 1; i < contacts_.links.size(); ++i)
+    EXPECT_LT(contacts_.links[i - 1].key, contacts_.links[i].key) << "the next tick finds them by their keys";
+  // what lies under the tip is met first
+  for (const auto& spring : contacts_.springs) EXPECT_GT(fine.positions[spring.nodes[0]].z, 0.015);
+}
+
 // Pushed deep, past the middle of the organ, the tool still presses the wall it came through.
 TEST_F(Contact, StaysOnItsSideWhenPushedPastTheMiddle) {
   Place(JointsAt({0, 0, 0.03}));

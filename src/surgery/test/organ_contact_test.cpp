@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <optional>
 
 #include "trocar/geometry/primitives.h"
@@ -40,11 +41,12 @@ class OrganContact : public testing::Test {
     pair_ = MakeOrganPair(organs_, state_.position, 1, 0, {}, settings_);
     solver_.emplace(model_, 1);
   }
-  void Tick(const Vec3& gravity, bool has_contact = true) {
+  void Tick(const Vec3& gravity, bool has_contact = true, bool keeps_pushes = true) {
     contacts_.Clear();
     if (has_contact) FindOrganContacts(organs_, state_.position, settings_, pair_, contacts_);
     (void)solver_->Solve({tissue::SolverKind::kChebyshevJacobi2015, 500, 1e-6, 0.0},
                          {.gravity = gravity, .contacts = contacts_.springs}, state_);
+    if (has_contact && keeps_pushes) KeepOrganPushes(state_.position, contacts_, pair_);
     for (OrganSurface& organ : organs_) UpdateOrganSurface(organ, state_.position);
   }
   double DeepestOverlap() const {
@@ -98,6 +100,83 @@ TEST_F(OrganContact, WhatRestsOnAnotherLiesStill) {
   for (std::size_t i = 0; i < before.size(); ++i)
     farthest = std::max(farthest, math::Distance(before[i], state_.position[i]));
   EXPECT_LT(farthest, 2e-5);
+}
+
+// Thirty times the weight of the tests above: many times what the springs bear at their softest.
+TEST_F(OrganContact, BearsWhatIsPressedOnItWithoutGivingWay) {
+  Make(0.001);
+  const Vec3 down{0, 0, -600};
+  for (int tick = 0; tick < 300; ++tick) Tick(down);
+  EXPECT_LT(DeepestOverlap(), 0.0005);
+  Vec3 sum;
+  double total = 0;
+  for (const auto& spring : contacts_.springs) {
+    const double depth = tissue::CalcContactDepth(spring, state_.position);
+    if (!(depth > 0.0)) continue;
+    sum += (spring.stiffness * depth) * spring.normal;
+    total += spring.stiffness * depth;
+  }
+  EXPECT_LT(math::Norm(sum), 0.05 * total) << "action and reaction";
+  const auto before = state_.position;
+  Tick(down);
+  double farthest = 0;
+  for (std::size_t i = 0; i < before.size(); ++i)
+    farthest = std::max(farthest, math::Distance(before[i], state_.position[i]));
+  EXPECT_LT(farthest, 1e-4) << "and lies still";
+}
+
+// Negative control.
+TEST_F(OrganContact, WithoutWhatWasPressedBeforeItGivesWay) {
+  Make(0.001);
+  for (int tick = 0; tick < 300; ++tick) Tick({0, 0, -600}, true, false);
+  EXPECT_GT(DeepestOverlap(), 0.002);
+}
+
+TEST_F(OrganContact, LetsGoWhenTheLoadIsTakenOff) {
+  Make(0.001);
+  for (int tick = 0; tick < 200; ++tick) Tick({0, 0, -600});
+  EXPECT_GT(*std::max_element(pair_.push.begin(), pair_.push.end()), 0.001);
+  for (int tick = 0; tick < 200; ++tick) Tick({});
+  for (const double push : pair_.push) EXPECT_LT(push, 1e-5);
+  for (std::size_t i = 0; i < model_.Size(); ++i)
+    ASSERT_NEAR(math::Distance(state_.position[i], model_.rest[i]), 0.0, 1e-3) << "nothing sticks, " << i;
+}
+
+// The large ball's top vertex lies on its neighbours, face down, under the small ball.
+TEST_F(OrganContact, AFoldOfTheSurfaceTurnsNobodyInside) {
+  Make(0.002);
+  const auto large = organs_[0].Nodes(state_.position);
+  const auto top = static_cast<std::size_t>(
+      std::max_element(large.begin(), large.end(), [](const Vec3& a, const Vec3& b) { return a.z < b.z; }) -
+      large.begin());
+  state_.position[organs_[0].first_node + top] += {0.012, 0, 0.0018};
+  for (OrganSurface& organ : organs_) UpdateOrganSurface(organ, state_.position);
+  int fooled = 0;
+  for (std::uint32_t i = 0; i < organs_[1].node_count; ++i) {
+    const Vec3& p = state_.position[organs_[1].first_node + i];
+    const auto near = organs_[0].tree.FindNearest(large, p, {.max_distance = settings_.reach});
+    if (!near.Found()) continue;
+    fooled +=
+        collision::FindSide(large, organs_[0].triangles, organs_[0].vertex_triangles, p, near).distance < 0;
+  }
+  EXPECT_GT(fooled, 0) << "negative control: the nearest feature says inside";
+  FindOrganContacts(organs_, state_.position, settings_, pair_, contacts_);
+  ASSERT_FALSE(contacts_.springs.empty());
+  for (std::uint32_t i = 0; i < pair_.node_count; ++i) {
+    EXPECT_EQ(pair_.is_inside[i], 0) << i;
+    if (pair_.spring[i] != kNoSpring) EXPECT_GT(contacts_.springs[pair_.spring[i]].normal.z, 0.0) << i;
+  }
+}
+
+TEST_F(OrganContact, ResetForgetsWhatHappened) {
+  Make(-0.001);
+  const OrganPair made = pair_;
+  for (int tick = 0; tick < 40; ++tick) Tick({0, 0, -600});
+  EXPECT_NE(pair_.push, made.push);
+  ResetPair(pair_);
+  EXPECT_EQ(pair_.push, made.push);
+  EXPECT_EQ(pair_.allowed, made.allowed);
+  EXPECT_EQ(pair_.is_inside, made.is_inside);
 }
 
 // Organs that were pushed through each other come apart gently, not in one blow.
@@ -160,6 +239,7 @@ class TubeOnOrgan : public testing::Test {
     if (has_contact) FindOrganContacts(organs_, state_.position, settings_, pair_, contacts_);
     (void)solver_->Solve({tissue::SolverKind::kChebyshevJacobi2015, 500, 1e-6, 0.0},
                          {.gravity = gravity, .contacts = contacts_.springs}, state_);
+    if (has_contact) KeepOrganPushes(state_.position, contacts_, pair_);
   }
   /// Deepest that the duct's skin lies in the ball; the ball's facets count as the ball.
   double Overlap() const {

@@ -21,7 +21,7 @@ namespace trocar::surgery {
 
 struct OrganContactSettings {
   double stiffness = 100.0;   ///< of each spring [N/m]
-  double ahead = 0.003;       ///< springs are made from this far ahead of touch [m]
+  double ahead = 0.0026;      ///< springs are made from this far ahead of touch [m]
   double reach = 0.008;       ///< a vertex deeper than this has no near wall to be pushed back through [m]
   double thickness = 0.0004;  ///< at which a vertex is kept off a surface, so that there is always a side [m]
 };
@@ -35,9 +35,9 @@ struct OrganPair {
   std::vector<double> allowed_at_rest;       ///< (nodes at rest) signed distance that is allowed [m]
   std::vector<std::uint8_t> inside_at_rest;  ///< (nodes at rest)
   // state
-  std::vector<double> allowed;               ///< (node_count) the same now: what has come out stays out [m]
-  std::vector<std::uint8_t> is_inside;       ///< (node_count) of the surface
-  std::vector<double> push;                  ///< (node_count) how far its springs were pressed by the last solve [m]
+  std::vector<double> allowed;          ///< (node_count) the same now: what has come out stays out [m]
+  std::vector<std::uint8_t> is_inside;  ///< (node_count) of the surface
+  std::vector<double> push;  ///< (node_count) how far its springs were pressed by the last solve [m]
   std::vector<std::uint8_t> is_bound;        ///< (node_count) tied to the other organ: left to its strands
   std::vector<std::uint32_t> last_triangle;  ///< (node_count) where the search starts
   std::vector<std::uint32_t> spring;         ///< (node_count) the first of its two in the set, or kNoSpring
