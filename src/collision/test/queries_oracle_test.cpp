@@ -223,7 +223,7 @@ TEST(IsInside, SaysWhatTheNearestFeatureSaysOfASoundSurface) {
     const auto& t = mesh.triangles[static_cast<std::size_t>(trial) % mesh.triangles.size()];
     if (trial % 3 == 0) p.x = mesh.positions[t[0]].x, p.y = mesh.positions[t[0]].y;
     if (trial % 3 == 1) p.z = mesh.positions[t[1]].z;
-    const auto nearest = FindNearest(hierarchy, mesh.positions, p);
+    const auto nearest = hierarchy.FindNearest(mesh.positions, p);
     const auto side = FindSide(mesh.positions, mesh.triangles, around, p, nearest);
     if (std::fabs(side.distance) < 1e-9) continue;
     ASSERT_EQ(IsInside(mesh.positions, mesh.triangles, p), side.distance < 0.0) << "trial " << trial;
@@ -247,7 +247,7 @@ TEST(IsInside, IsNotFooledByAFold) {
     const Vec3 above{x, 0.0007, 0.111}, below{x, 0.0007, 0.07};
     EXPECT_FALSE(IsInside(mesh.positions, mesh.triangles, above)) << x;
     EXPECT_TRUE(IsInside(mesh.positions, mesh.triangles, below)) << x;
-    const auto nearest = FindNearest(hierarchy, mesh.positions, above);
+    const auto nearest = hierarchy.FindNearest(mesh.positions, above);
     fooled += FindSide(mesh.positions, mesh.triangles, around, above, nearest).distance < 0.0;
   }
   EXPECT_GT(fooled, 0) << "negative control: the nearest feature alone is wrong there";

@@ -129,10 +129,10 @@ TEST_F(EmptiedGallbladder, IsSqueezedAgainstTheLiverAndDoesNotGoThroughIt) {
   MoveTo(kRight, rest_[body_] + 0.06 * outwards_, 0.6);
   MoveTo(kLeft, rest_[body_] + 0.012 * outwards_, 0.7);
   // three centimetres deep, through the bag and into the liver, then aside
-  MoveTo(kLeft, rest_[body_] - 0.03 * outwards_, 2.0, 0.5);
+  MoveTo(kLeft, rest_[body_] - 0.03 * outwards_, 3.0, 0.5);
   MoveTo(kLeft, hands_[kLeft].Tip() + Vec3{0, 0, 0.012}, 0.5, 0.4);
   const OrganSnapshot& bag = Seen().organs[gallbladder_];
-  EXPECT_GT(bag.leaked, 2e-6) << "bile was pressed out [m^3]";
+  EXPECT_GT(bag.leaked, 1e-6) << "bile was pressed out [m^3]";
   EXPECT_LT(deepest_, 0.005) << "the liver stops it";
   EXPECT_EQ(Seen().dropped_contacts, 0u);
   EXPECT_LT(most_contacts_, 800u);
