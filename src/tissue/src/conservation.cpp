@@ -16,6 +16,9 @@ constexpr int kMaxProjections = 8;
 /// No projection changes a volume by more than this share [-]: what is farther off comes home over several
 /// ticks.
 constexpr double kMaxVolumeStep = 0.1;
+/// Nor does one move any node farther than this [m]: how an organ answers is known as it lay at rest, and one that hangs by
+/// a few strands, turned and folded, may answer otherwise.
+constexpr double kMaxShift = 0.002;
 /// The responses need no more accuracy than this: they steer the search, the constraint itself is exact [-].
 constexpr double kResponseTolerance = 0.02;
 constexpr double kFirstResponseTolerance = 1e-4;
@@ -330,14 +333,25 @@ bool Conservation::ProjectOnce(TissueState& tissue, std::span<Vec3> before,
   }
   if (is_done || !SolveSmall(slopes_, error, count, lambda)) return false;
   for (std::size_t i = 0; i < count; ++i) {
-    OrganVolume& organ = state.organs[i];
+    const OrganVolume& organ = state.organs[i];
     // through a hole gas enters before the sac is sucked in
     if (organ.opening_area > 0.0) lambda[i] = std::fmax(lambda[i], -organ.pressure);
-    organ.pressure += lambda[i];
   }
-  for (std::size_t k = 0; k < tissue.position.size(); ++k) {
+  const auto shift_of = [&](std::size_t k) {
     Vec3 shift;
     for (std::size_t j = 0; j < count; ++j) shift += lambda[j] * shifts_[j][k];
+    return shift;
+  };
+  double longest2 = 0;
+  for (std::size_t k = 0; k < tissue.position.size(); ++k)
+    longest2 = std::fmax(longest2, math::SquaredNorm(shift_of(k)));
+  const double share = longest2 > kMaxShift * kMaxShift ? kMaxShift / std::sqrt(longest2) : 1.0;
+  for (std::size_t i = 0; i < count; ++i) {
+    lambda[i] *= share;
+    state.organs[i].pressure += lambda[i];
+  }
+  for (std::size_t k = 0; k < tissue.position.size(); ++k) {
+    const Vec3 shift = shift_of(k);
     tissue.position[k] += shift;
     if (!before.empty()) before[k] += shift;
   }
