@@ -21,7 +21,6 @@ namespace trocar::geometry {
 struct Uncut {
   double rest_area = 0, area = 0;  ///< of the surface without walls [m^2]
   std::size_t small_angles = 0;    ///< triangles with an angle below one degree at rest
-  std::size_t small_angles_now = 0;
   bool is_closed = false;
 };
 
@@ -33,9 +32,10 @@ inline double CalcKindArea(const EditableMesh& mesh, std::span<const Vec3> x, Tr
   return area;
 }
 
-inline std::size_t CountSmallAngles(const EditableMesh& mesh, std::span<const Vec3> x) {
+inline std::size_t CountSmallAngles(const EditableMesh& mesh) {
   std::size_t count = 0;
   for (const Triangle& t : mesh.Triangles()) {
+    const auto x = mesh.Rest();
     count += CalcSmallestAngle(x[t[0]], x[t[1]], x[t[2]]) < M_PI / 180.0 ? 1 : 0;
   }
   return count;
@@ -43,8 +43,8 @@ inline std::size_t CountSmallAngles(const EditableMesh& mesh, std::span<const Ve
 
 inline Uncut Measure(const EditableMesh& mesh) {
   return {CalcKindArea(mesh, mesh.Rest(), TriangleKind::kSurface),
-          CalcKindArea(mesh, mesh.Positions(), TriangleKind::kSurface), CountSmallAngles(mesh, mesh.Rest()),
-          CountSmallAngles(mesh, mesh.Positions()), InspectMesh(mesh.RestMesh()).closed};
+          CalcKindArea(mesh, mesh.Positions(), TriangleKind::kSurface), CountSmallAngles(mesh),
+          InspectMesh(mesh.RestMesh()).closed};
 }
 
 /// Empty where the mesh is what a cut may leave, else what is wrong. Nothing here uses the half-edges but the
@@ -63,8 +63,7 @@ inline std::string FindFault(const EditableMesh& mesh, const Uncut& uncut, bool 
   const double area_now = CalcKindArea(mesh, mesh.Positions(), TriangleKind::kSurface);
   if (!(std::fabs(area_now / uncut.area - 1.0) < 1e-9))
     return "area now " + std::to_string(area_now / uncut.area);
-  if (CountSmallAngles(mesh, mesh.Rest()) > uncut.small_angles) return "a sliver";
-  if (CountSmallAngles(mesh, mesh.Positions()) > uncut.small_angles_now) return "a sliver now";
+  if (CountSmallAngles(mesh) > uncut.small_angles) return "a sliver";
   std::vector<int> uses(mesh.VertexCount(), 0);
   std::vector<Triangle> sorted;
   std::map<Edge, std::vector<std::uint32_t>> sides;  // directed edge -> half-edges
