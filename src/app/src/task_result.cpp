@@ -7,11 +7,13 @@
 
 #include "trocar/app/read_outs.h"
 #include "trocar/core/assert.h"
+#include "trocar/core/markup.h"
 #include "trocar/core/version.h"
 
 namespace trocar::app {
 namespace {
 
+using core::EscapeMarkup;
 using session::TaskPhase;
 
 constexpr const char* kStyle = R"(
@@ -23,29 +25,6 @@ th, td { text-align: left; padding: .3rem .6rem; border-bottom: 1px solid #dcdcd
 td.number { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
 .done { color: #00693e; } .open { color: #8a5a00; } .critical { color: #a4161a; font-weight: 600; }
 )";
-
-std::string Escape(const std::string& text) {
-  std::string safe;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        safe += "&amp;";
-        break;
-      case '<':
-        safe += "&lt;";
-        break;
-      case '>':
-        safe += "&gt;";
-        break;
-      case '"':
-        safe += "&quot;";
-        break;
-      default:
-        safe += c;
-    }
-  }
-  return safe;
-}
 
 std::string VerdictOf(TaskPhase phase) {
   switch (phase) {
@@ -144,14 +123,15 @@ std::string FormatTaskResultJson(const TaskResult& result) {
 
 std::string FormatTaskResultHtml(const TaskResult& result) {
   std::string html = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<title>" +
-                     Escape(result.task) + " - Trocar</title>\n<style>" + kStyle +
-                     "</style>\n</head>\n<body>\n<h1>" + Escape(result.task) + "</h1>\n<p>" + result.verdict +
-                     " after " + FormatTime(result.time) + " (min:s). Score " + FormatScore(result) +
-                     ". Level " + Escape(result.level) + ", seed " + std::to_string(result.seed) + "." +
+                     EscapeMarkup(result.task) + " - Trocar</title>\n<style>" + kStyle +
+                     "</style>\n</head>\n<body>\n<h1>" + EscapeMarkup(result.task) + "</h1>\n<p>" +
+                     result.verdict + " after " + FormatTime(result.time) + " (min:s). Score " +
+                     FormatScore(result) + ". Level " + EscapeMarkup(result.level) + ", seed " +
+                     std::to_string(result.seed) + "." +
                      (result.is_demonstration ? " A demonstration by the scripted expert." : "") +
                      "</p>\n<h2>Goals</h2>\n<table>\n";
   for (const TaskResult::GoalRow& goal : result.goals)
-    html += "<tr><td>" + Escape(goal.name) + "</td><td class=\"" +
+    html += "<tr><td>" + EscapeMarkup(goal.name) + "</td><td class=\"" +
             (goal.is_done ? "done\">done" : "open\">open") + "</td></tr>\n";
   html += "</table>\n<h2>Errors</h2>\n";
   if (result.errors.empty()) {
@@ -159,14 +139,15 @@ std::string FormatTaskResultHtml(const TaskResult& result) {
   } else {
     html += "<table>\n<tr><th>At</th><th>Error</th><th>Severity</th><th>By</th><th>Points</th></tr>\n";
     for (const TaskResult::ErrorRow& error : result.errors) {
-      html += "<tr><td class=\"number\">" + FormatTime(error.time) + "</td><td>" + Escape(error.about) +
-              "</td><td class=\"" + error.severity + "\">" + error.severity + "</td><td>" + Escape(error.by) +
-              "</td><td class=\"number\">-" + FormatPoints(error.penalty) + "</td></tr>\n";
+      html += "<tr><td class=\"number\">" + FormatTime(error.time) + "</td><td>" + EscapeMarkup(error.about) +
+              "</td><td class=\"" + error.severity + "\">" + error.severity + "</td><td>" +
+              EscapeMarkup(error.by) + "</td><td class=\"number\">-" + FormatPoints(error.penalty) +
+              "</td></tr>\n";
     }
     html += "</table>\n";
   }
   return html + "<p>Training feedback, not certified assessment. Trocar " +
-         Escape(std::string(core::VersionText())) + ".</p>\n</body>\n</html>\n";
+         EscapeMarkup(std::string(core::VersionText())) + ".</p>\n</body>\n</html>\n";
 }
 
 }  // namespace trocar::app

@@ -5,10 +5,13 @@
 #include "console.h"
 #include "experiment.h"
 #include "page_style.h"
+#include "trocar/core/markup.h"
 #include "trocar/core/version.h"
 
 namespace trocar::cli {
 namespace {
+
+using core::EscapeMarkup;
 
 std::string BeginPage(const std::string& title) {
   return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" "

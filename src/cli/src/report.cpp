@@ -5,10 +5,13 @@
 
 #include "console.h"
 #include "svg_plot.h"
+#include "trocar/core/markup.h"
 #include "trocar/training/motion_metrics.h"
 
 namespace trocar::cli {
 namespace {
+
+using core::EscapeMarkup;
 
 constexpr const char* kStyle = R"(
 :root { color-scheme: light; }

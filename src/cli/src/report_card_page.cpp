@@ -4,10 +4,13 @@
 #include "console.h"
 #include "page_style.h"
 #include "physics_checks.h"
+#include "trocar/core/markup.h"
 #include "trocar/core/version.h"
 
 namespace trocar::cli {
 namespace {
+
+using core::EscapeMarkup;
 
 std::string FormatBounds(const CheckFigure& figure) {
   const bool has_low = std::isfinite(figure.low) && figure.low != 0.0, has_high = std::isfinite(figure.high);

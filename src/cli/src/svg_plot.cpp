@@ -10,10 +10,12 @@
 
 #include "console.h"
 #include "trocar/core/assert.h"
+#include "trocar/core/markup.h"
 
 namespace trocar::cli {
 namespace {
 
+using core::EscapeMarkup;
 using math::Vec2;
 
 // told apart by dashes as well as by colour (Okabe and Ito 2008)
@@ -121,32 +123,6 @@ std::vector<Vec2> ThinOut(const std::vector<Vec2>& points, std::size_t limit) {
     if (low != high) kept.push_back(*std::max(low, high));
   }
   return kept;
-}
-
-std::string EscapeMarkup(std::string_view text) {
-  std::string escaped;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        escaped += "&amp;";
-        break;
-      case '<':
-        escaped += "&lt;";
-        break;
-      case '>':
-        escaped += "&gt;";
-        break;
-      case '"':
-        escaped += "&quot;";
-        break;
-      case '\'':
-        escaped += "&#39;";
-        break;
-      default:
-        escaped += c;
-    }
-  }
-  return escaped;
 }
 
 namespace {

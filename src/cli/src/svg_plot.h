@@ -3,7 +3,6 @@
 #pragma once
 
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "trocar/math/vector.h"
@@ -38,8 +37,5 @@ std::vector<double> FindLogMarks(double low, double high);
 /// At most `limit` points, keeping the lowest and highest of each stretch so that no peak is lost.
 /// \pre limit >= 2 (TROCAR_ASSERT)
 std::vector<math::Vec2> ThinOut(const std::vector<math::Vec2>& points, std::size_t limit);
-
-/// Text for HTML or SVG: & < > " ' replaced.
-std::string EscapeMarkup(std::string_view text);
 
 }  // namespace trocar::cli

@@ -35,11 +35,6 @@ TEST(ThinOut, KeepsEveryPeak) {
   EXPECT_TRUE(has(-3.0));
 }
 
-TEST(EscapeMarkup, ReplacesWhatMarkupUses) {
-  EXPECT_EQ(EscapeMarkup("<script>\"a\" & 'b'</script>"),
-            "&lt;script&gt;&quot;a&quot; &amp; &#39;b&#39;&lt;/script&gt;");
-}
-
 TEST(FormatSvgPlot, DrawsALineFromCornerToCornerOfItsRange) {
   const std::string svg = FormatSvgPlot({"Title <1>", "x", "y"}, {{"left", {{0, 0}, {1, 1}}}});
   EXPECT_THAT(svg, HasSubstr("Title &lt;1&gt;"));

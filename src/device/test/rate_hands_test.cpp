@@ -170,49 +170,51 @@ struct FakeCap : SpaceMouseSource {
   SpaceMouseState& state;
 };
 
-TEST(SpaceMouse, FurtherButtonsAreThoseOfTheChosenHand) {
-  SpaceMouseState state;
-  ManualClock clock;
-  SpaceMouse mouse(std::make_unique<FakeCap>(state), clock);
-  ASSERT_TRUE(mouse.Configure().ok());
-  ASSERT_TRUE(mouse.Activate().ok());
-  HandSamples samples;
-  state.more_buttons = 5;
-  mouse.Read(samples);
-  EXPECT_EQ(samples[kRightHand].buttons, 5u);
-  EXPECT_EQ(samples[kLeftHand].buttons, 0u);
-  state.is_button_down[1] = true;
-  mouse.Read(samples);
-  EXPECT_EQ(samples[kRightHand].buttons, 0u) << "the pedal does not stay with the hand that was left";
-  EXPECT_EQ(samples[kLeftHand].buttons, 5u);
+class SpaceMouseTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    ASSERT_TRUE(mouse_.Configure().ok());
+    ASSERT_TRUE(mouse_.Activate().ok());
+  }
+  /// Reads after so long.
+  void Read(double seconds = 0) {
+    clock_.Sleep(seconds);
+    mouse_.Read(samples_);
+  }
+  SpaceMouseState state_;
+  ManualClock clock_;
+  SpaceMouse mouse_{std::make_unique<FakeCap>(state_), clock_};
+  HandSamples samples_;
+};
+
+TEST_F(SpaceMouseTest, FurtherButtonsAreThoseOfTheChosenHand) {
+  state_.more_buttons = 5;
+  Read();
+  EXPECT_EQ(samples_[kRightHand].buttons, 5u);
+  EXPECT_EQ(samples_[kLeftHand].buttons, 0u);
+  state_.is_button_down[1] = true;
+  Read();
+  EXPECT_EQ(samples_[kRightHand].buttons, 0u) << "the pedal does not stay with the hand that was left";
+  EXPECT_EQ(samples_[kLeftHand].buttons, 5u);
 }
 
-TEST(SpaceMouse, MovesTheChosenHandAndChangesHands) {
-  SpaceMouseState state;
-  ManualClock clock;
-  SpaceMouse mouse(std::make_unique<FakeCap>(state), clock);
-  ASSERT_TRUE(mouse.Configure().ok());
-  ASSERT_TRUE(mouse.Activate().ok());
-  HandSamples samples;
-  mouse.Read(samples);
-  const HandSample right = samples[kRightHand];
-  state.push = {350, 0, -350};  // to the right and away
-  clock.Sleep(0.1);
-  mouse.Read(samples);
-  EXPECT_NEAR(samples[kRightHand].pan, right.pan - 0.07, 1e-9);
-  EXPECT_NEAR(samples[kRightHand].depth, right.depth + 0.006, 1e-9);
-  EXPECT_EQ(samples[kLeftHand].pan, 0);
-  state.is_button_down[1] = true;
-  clock.Sleep(0.1);
-  mouse.Read(samples);
-  EXPECT_LT(samples[kLeftHand].pan, 0) << "changed hands, once while held";
-  mouse.Read(samples);
-  state.push = {0, 0, 0};
-  state.is_button_down = {true, false};
-  const double jaw = samples[kLeftHand].jaw;
-  clock.Sleep(0.05);
-  mouse.Read(samples);
-  EXPECT_LT(samples[kLeftHand].jaw, jaw) << "the first button closes";
+TEST_F(SpaceMouseTest, MovesTheChosenHandAndChangesHands) {
+  Read();
+  const HandSample right = samples_[kRightHand];
+  state_.push = {350, 0, -350};  // to the right and away
+  Read(0.1);
+  EXPECT_NEAR(samples_[kRightHand].pan, right.pan - 0.07, 1e-9);
+  EXPECT_NEAR(samples_[kRightHand].depth, right.depth + 0.006, 1e-9);
+  EXPECT_EQ(samples_[kLeftHand].pan, 0);
+  state_.is_button_down[1] = true;
+  Read(0.1);
+  EXPECT_LT(samples_[kLeftHand].pan, 0) << "changed hands, once while held";
+  Read();
+  state_.push = {0, 0, 0};
+  state_.is_button_down = {true, false};
+  const double jaw = samples_[kLeftHand].jaw;
+  Read(0.05);
+  EXPECT_LT(samples_[kLeftHand].jaw, jaw) << "the first button closes";
 }
 
 }  // namespace

@@ -26,8 +26,10 @@ struct SurfaceCutter::Content {
         trench(cut_mesh.VertexCapacity(), cut_mesh.TriangleCapacity()),
         on_stamp(cut_mesh.VertexCapacity(), 0),
         tick_stamp(cut_mesh.VertexCapacity(), 0),
-        passed_stamp(cut_mesh.VertexCapacity(), 0) {
+        passed_stamp(cut_mesh.VertexCapacity(), 0),
+        parted_stamp(cut_mesh.VertexCapacity(), 0) {
     on.reserve(cut_mesh.VertexCapacity());
+    parted.reserve(cut_mesh.VertexCapacity());
     seeds.reserve(cut_mesh.TriangleCapacity());
     scored.reserve(3 * cut_mesh.TriangleCapacity());
   }
@@ -68,6 +70,8 @@ struct SurfaceCutter::Content {
   std::vector<std::uint32_t> on_stamp;      // (nv) path in which it lies
   std::vector<std::uint32_t> tick_stamp;    // (nv) tick in which it lay in a path
   std::vector<std::uint32_t> passed_stamp;  // (nv) tick in which a cut went through it: not its end
+  std::vector<std::uint32_t> parted;        // vertices that opening may part
+  std::vector<std::uint32_t> parted_stamp;  // (nv) path in which it lies there
   std::vector<std::uint32_t> seeds;         // triangles
   std::vector<std::uint32_t> scored;        // half-edges to open
   std::array<Pierced, CutFront::kCapacity> pierced;
@@ -216,17 +220,29 @@ void SurfaceCutter::Content::Open(const FlatSweep& sweep) noexcept {
 void SurfaceCutter::Content::OpenWithoutWalls() noexcept {
   std::size_t copies = 0;
   scored.clear();
-  for (const auto v : on) {
+  parted.clear();
+  const auto see = [&](std::uint32_t v) {
+    if (parted_stamp[v] == path) return;
+    parted_stamp[v] = path;
+    parted.push_back(v);
+  };
+  for (const auto v : on) see(v);
+  // whoever is parted takes all of its scored edges along, and who stands at their other ends: where the pools were full,
+  // edges wait that are not of this path
+  for (std::size_t next = 0; next < parted.size(); ++next) {
+    const std::uint32_t v = parted[next];
     copies += static_cast<std::size_t>(mesh->CountCopies(v));
     mesh->ForEachAround(v, [&](std::uint32_t h) {
-      if (mesh->IsScored(h) && (!IsOn(mesh->To(h)) || v < mesh->To(h))) scored.push_back(h);
+      if (!mesh->IsScored(h)) return;
+      see(mesh->To(h));
+      if (v < mesh->To(h)) scored.push_back(h);
     });
   }
   if (!mesh->HasRoom(copies, 0)) {
     report.is_full = true;
     return;
   }
-  for (const auto v : on) mesh->SeparateParts(v);
+  for (const auto v : parted) mesh->SeparateParts(v);
   for (const auto h : scored) report.opened += mesh->Open(h) ? 1 : 0;
 }
 

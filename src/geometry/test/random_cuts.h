@@ -8,17 +8,11 @@
 #include <vector>
 
 #include "cut_checks.h"
+#include "random_meshes.h"
 #include "trocar/geometry/mesh_file.h"
-#include "trocar/geometry/primitives.h"
-#include "trocar/geometry/tube.h"
 #include "trocar/math/pose.h"
 
 namespace trocar::geometry {
-
-struct NamedSurface {
-  std::string name;
-  TriangleMesh mesh;
-};
 
 /// Spheres, boxes, sheets, slender triangles, tubes, and the built-in patient's organs, 1 to 300 mm large.
 inline std::vector<NamedSurface> MakeSurfaces() {
@@ -51,14 +45,6 @@ inline std::vector<NamedSurface> MakeSurfaces() {
 
 /// A stroke: places of the blade from tick to tick.
 using Stroke = std::vector<BladeEdge>;
-
-inline Vec3 RandomDirection(math::Random& random) {
-  Vec3 v;
-  do {
-    v = {random.Uniform(-1, 1), random.Uniform(-1, 1), random.Uniform(-1, 1)};
-  } while (!(SquaredNorm(v) > 0.01 && SquaredNorm(v) < 1.0));
-  return math::Normalized(v);
-}
 
 /// A stroke over a surface: through a point of it, along an edge, through vertices, grazing, tiny or huge, straight,
 /// turning or turning back.
@@ -113,7 +99,7 @@ struct CutCounts {
   std::size_t strokes = 0, ticks = 0, opened = 0, inserted = 0, splits = 0, refused = 0, walls = 0, full = 0;
 };
 
-/// Cuts and checks; `after` sees every mesh after its last cut.
+/// Cuts and checks surfaces of every kind and random ones by turns; `after` sees every mesh after its last cut.
 template <typename After>
 CutCounts RunRandomCuts(std::uint64_t seed, std::size_t strokes, After after) {
   const auto surfaces = MakeSurfaces();
@@ -122,7 +108,8 @@ CutCounts RunRandomCuts(std::uint64_t seed, std::size_t strokes, After after) {
   constexpr std::size_t kStrokesAMesh = 12;
   std::size_t turn = 0;
   while (counts.strokes < strokes) {
-    const NamedSurface& surface = surfaces[turn % surfaces.size()];
+    const NamedSurface surface =
+        turn % 2 == 0 ? surfaces[turn / 2 % surfaces.size()] : MakeRandomSurface(random);
     const bool is_large = surface.mesh.triangles.size() > 2000;
     CutSettings settings;
     settings.has_walls = random.Uniform() < 0.5;

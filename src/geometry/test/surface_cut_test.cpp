@@ -242,6 +242,22 @@ TEST(SurfaceCut, FullPoolsLeaveTheRestUncut) {
   EXPECT_EQ(FindFault(mesh, uncut, false), "");
 }
 
+// An edge that full pools left waiting is opened together with what parts one of its ends, and its other end is parted
+// too: that one stood on two fans.
+TEST(SurfaceCut, AnEdgeThatWaitedForRoomOpensWithBothEnds) {
+  EditableMesh mesh = MakeEditable(MakeGrid(5, kSpacing));
+  const Uncut uncut = Measure(mesh);
+  const std::uint32_t rim = 2, inner = 2 + 5;
+  ASSERT_TRUE(mesh.IsBoundary(rim));
+  ASSERT_FALSE(mesh.IsBoundary(inner));
+  mesh.SetScored(mesh.FindHalfEdge(inner, rim), true);
+  const CutReport report =
+      CutLine(mesh, Upright(2.05 * kSpacing, 0.97 * kSpacing), Upright(2.05 * kSpacing, 3 * kSpacing), 1);
+  EXPECT_EQ(FindFault(mesh, uncut, false), "");
+  EXPECT_EQ(report.opened, 3u) << "two of the cut, and the one that waited";
+  EXPECT_EQ(report.copies, 3u);
+}
+
 TEST(SurfaceCut, VerticesKnowWhatTheyAreMadeOf) {
   EditableMesh mesh = MakeEditable(MakeGrid(9, kSpacing));
   // the sheet is stretched now to twice its width: rest places follow the same weights

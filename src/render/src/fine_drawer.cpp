@@ -8,6 +8,7 @@
 #include "fine_shaders.h"
 #include "material_look.h"
 #include "shaders.h"
+#include "single_precision.h"
 
 namespace trocar::render {
 namespace {
@@ -32,10 +33,6 @@ std::uint32_t Mix(std::uint32_t seed) {
 /// 0 to 1, the same for the same seed.
 float Shuffle(std::uint32_t seed) {
   return static_cast<float>(Mix(seed) >> 8) / 16777216.0f;
-}
-
-std::array<float, 3> ToFloat(const Vec3& v) {
-  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
 }
 
 /// Colour and wetness of one piece: each lies somewhere between the material's two colours, nearer to the light one,

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file task_play.h  Lets a scripted surgeon do a task.
+/// \file task_play.h  Reads a delivered task and lets a scripted surgeon do it.
 #pragma once
+
+#include <gtest/gtest.h>
 
 #include <memory>
 #include <string>
@@ -8,8 +10,18 @@
 
 #include "trocar/session/simulation.h"
 #include "trocar/session/surgeon.h"
+#include "trocar/session/task.h"
 
 namespace trocar::session {
+
+/// A task of the program's own, by its name.
+inline std::shared_ptr<Scene> ReadDelivered(const std::string& key, const TaskChoice& choice = {}) {
+  const auto path = FindTask(key);
+  EXPECT_TRUE(path.ok());
+  auto scene = ReadTask(*path, choice);
+  EXPECT_TRUE(scene.ok()) << scene.error().Text();
+  return std::make_shared<Scene>(std::move(*scene));
+}
 
 struct Played {
   TaskSnapshot task;

@@ -13,14 +13,6 @@
 namespace trocar::session {
 namespace {
 
-std::shared_ptr<Scene> ReadDelivered(const std::string& key, const TaskChoice& choice = {}) {
-  const auto path = FindTask(key);
-  EXPECT_TRUE(path.ok());
-  auto scene = ReadTask(*path, choice);
-  EXPECT_TRUE(scene.ok()) << scene.error().Text();
-  return std::make_shared<Scene>(std::move(*scene));
-}
-
 std::vector<std::string> TasksWithoutPatient() {
   std::vector<std::string> keys;
   const auto tasks = ListTasks();

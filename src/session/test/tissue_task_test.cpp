@@ -20,14 +20,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::shared_ptr<Scene> ReadDelivered(const std::string& key, const TaskChoice& choice = {}) {
-  const auto path = FindTask(key);
-  EXPECT_TRUE(path.ok());
-  auto scene = ReadTask(*path, choice);
-  EXPECT_TRUE(scene.ok()) << scene.error().Text();
-  return std::make_shared<Scene>(std::move(*scene));
-}
-
 // --- the file
 
 /// The delivered task with one piece of its text replaced.

@@ -335,7 +335,7 @@ bool HasJaws(const instrument::Tool& tool) noexcept {
   return tool.max_jaw > 0.0;
 }
 
-bool IsThere(const instrument::Tool& tool, ToolBody body) noexcept {
+bool HasBody(const instrument::Tool& tool, ToolBody body) noexcept {
   return HasJaws(tool) || body != ToolBody::kLowerJaw;
 }
 
@@ -370,7 +370,7 @@ void FindContacts(const ToolMotion& motion, const Touchables& touchables, const 
   const auto device = CalcToolBodies(*motion.tool, motion.jaw, motion.X_world_device);
   const double most_push = FindLastDepth(last, motion.hand, settings.stiffness) + kMostPush;
   for (int body = 0; body < kToolBodyCount; ++body) {
-    if (!IsThere(*motion.tool, static_cast<ToolBody>(body))) continue;
+    if (!HasBody(*motion.tool, static_cast<ToolBody>(body))) continue;
     Search search{motion,
                   touchables,
                   settings,

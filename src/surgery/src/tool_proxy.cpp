@@ -109,7 +109,7 @@ double AddOverlapLimits(const instrument::Tool& tool, const Pose& X_world_proxy,
   };
   for (int body = 0; body < kToolBodyCount; ++body) {
     const bool is_jaw = body != static_cast<int>(ToolBody::kShaft);
-    if (!IsThere(tool, static_cast<ToolBody>(body))) continue;
+    if (!HasBody(tool, static_cast<ToolBody>(body))) continue;
     const double radius = proxy[body].radius;
     for (std::size_t surface = 0; surface < touchables.organs.size(); ++surface) {
       if (is_jaw && static_cast<std::int32_t>(surface) == grasped_surface) continue;

@@ -278,6 +278,12 @@ void Conservation::FitFrames(const TissueLoad& load, const TissueState& tissue,
   }
 }
 
+double Conservation::MeasureVolume(std::size_t organ, const TissueState& tissue) const noexcept {
+  const ClosedOrgan& surface = settings_.organs[organ];
+  return CalcClosedVolume(std::span(tissue.position).subspan(surface.first_node, surface.node_count),
+                          surface.triangles);
+}
+
 /// Volumes and their gradients; false when the state is not finite.
 bool Conservation::MeasureVolumes(const TissueState& tissue, ConservationState& state) noexcept {
   bool is_good = true;
@@ -345,17 +351,27 @@ bool Conservation::ProjectOnce(TissueState& tissue, std::span<Vec3> before,
   double longest2 = 0;
   for (std::size_t k = 0; k < tissue.position.size(); ++k)
     longest2 = std::fmax(longest2, math::SquaredNorm(shift_of(k)));
-  const double share = longest2 > kMaxShift * kMaxShift ? kMaxShift / std::sqrt(longest2) : 1.0;
+  const double part = longest2 > kMaxShift * kMaxShift ? kMaxShift / std::sqrt(longest2) : 1.0;
+  const auto move_by = [&](double share) {
+    for (std::size_t k = 0; k < tissue.position.size(); ++k) {
+      const Vec3 shift = share * shift_of(k);
+      tissue.position[k] += shift;
+      if (!before.empty()) before[k] += shift;
+    }
+    for (std::size_t i = 0; i < count; ++i) state.organs[i].pressure += share * lambda[i];
+  };
+  move_by(part);
+  double worst_before = 0, worst_after = 0;  // of the volumes that are kept, as parts of their targets
   for (std::size_t i = 0; i < count; ++i) {
-    lambda[i] *= share;
-    state.organs[i].pressure += lambda[i];
+    if (error[i] == 0.0) continue;
+    const OrganVolume& organ = state.organs[i];
+    worst_before = std::fmax(worst_before, std::fabs(organ.volume / organ.target - 1.0));
+    worst_after = std::fmax(worst_after, std::fabs(MeasureVolume(i, tissue) / organ.target - 1.0));
   }
-  for (std::size_t k = 0; k < tissue.position.size(); ++k) {
-    const Vec3 shift = shift_of(k);
-    tissue.position[k] += shift;
-    if (!before.empty()) before[k] += shift;
-  }
-  return true;
+  if (worst_after <= worst_before) return true;
+  // the slopes are those of another shape, and lead astray, as where a cut left a loose flap: stand still
+  move_by(-part);
+  return false;
 }
 
 void Conservation::KeepVolumes(TissueState& tissue, std::span<Vec3> before,
@@ -363,6 +379,18 @@ void Conservation::KeepVolumes(TissueState& tissue, std::span<Vec3> before,
   if (!has_slopes_ || !MeasureVolumes(tissue, state)) return;
   (void)ProjectOnce(tissue, before, state);
   SetPressureForce(state);
+}
+
+bool Conservation::AreVolumesInReach(const TissueState& tissue,
+                                     const ConservationState& state) const noexcept {
+  for (std::size_t i = 0; i < settings_.organs.size(); ++i) {
+    const OrganVolume& organ = state.organs[i];
+    if (!IsSealed(organ)) continue;
+    const double volume = MeasureVolume(i, tissue);
+    const double reach = std::fmax(kMaxVolumeStep * organ.target, std::fabs(organ.volume - organ.target));
+    if (!(std::fabs(volume - organ.target) <= reach)) return false;
+  }
+  return true;
 }
 
 void Conservation::AddPressure(std::size_t organ, double change, ConservationState& state) noexcept {
@@ -375,8 +403,12 @@ void Conservation::AddPressure(std::size_t organ, double change, ConservationSta
 void Conservation::Leak(double dt, ConservationState& state) const noexcept {
   for (std::size_t i = 0; i < settings_.organs.size(); ++i) {
     OrganVolume& organ = state.organs[i];
-    const double outflow = CalcOutflow(organ.pressure, organ.compliance, organ.opening_area,
-                                       settings_.organs[i].fluid_density, dt);
+    // where a cut has just changed how the volume answers, that is not known: the pressure then holds all through the tick
+    const double compliance =
+        organ.compliance > 0.0 ? organ.compliance : std::numeric_limits<double>::infinity();
+    const double flow =
+        CalcOutflow(organ.pressure, compliance, organ.opening_area, settings_.organs[i].fluid_density, dt);
+    const double outflow = std::fmin(flow, std::fmax(organ.target, 0.0));  // no more than is inside
     organ.target -= outflow;
     organ.leaked += outflow;
   }
@@ -392,14 +424,12 @@ void Conservation::Enforce(const TissueLoad& load, double dt, TissueState& tissu
   if (!responses_settled_) {
     responses_settled_ = UpdateResponses(tissue, load, kResponseIterationsPerTick, kResponseTolerance);
   }
-  if (!has_slopes_ || !MeasureVolumes(tissue, state)) return;
+  if (!MeasureVolumes(tissue, state)) return;
   Leak(dt, state);
-  for (int projection = 0; projection < kMaxProjections && ProjectOnce(tissue, {}, state); ++projection) {
-    for (std::size_t i = 0; i < settings_.organs.size(); ++i) {
-      const ClosedOrgan& surface = settings_.organs[i];
-      state.organs[i].volume = CalcClosedVolume(
-          std::span(tissue.position).subspan(surface.first_node, surface.node_count), surface.triangles);
-    }
+  for (int projection = 0; has_slopes_ && projection < kMaxProjections && ProjectOnce(tissue, {}, state);
+       ++projection) {
+    for (std::size_t i = 0; i < settings_.organs.size(); ++i)
+      state.organs[i].volume = MeasureVolume(i, tissue);
   }
   // the forces that load.external_force views become those of the state that is left: reactions and judges
   // read them
@@ -431,6 +461,10 @@ SolveReport SolveConserving(EquilibriumSolver& solver, const SolverSettings& set
   hook.add_multiplier = [](void* self, std::size_t organ, double change) noexcept {
     const Context& kept = *static_cast<Context*>(self);
     kept.conservation->AddPressure(organ, change, *kept.state);
+  };
+  hook.is_in_reach = [](void* self, const TissueState& moved) noexcept {
+    const Context& kept = *static_cast<Context*>(self);
+    return kept.conservation->AreVolumesInReach(moved, *kept.state);
   };
   const SolveReport report = solver.Solve(settings, load, tissue, &hook);
   conservation.Enforce(load, dt, tissue, state);

@@ -338,6 +338,10 @@ SolveReport NewtonMultigrid::Solve(const Kernels& kernels, Workers& workers, con
       }
       is_lower = balance_.is_finite && balance_.energy <= before + kLeastDecrease * share * slope +
                                                               kEnergyRounding * std::fabs(before);
+      if (is_lower && !constraints_.empty() && hook->is_in_reach != nullptr) {
+        write_back();
+        is_lower = hook->is_in_reach(hook->self, state);
+      }
       report.restarts += !is_lower;
     }
     ++report.iterations;

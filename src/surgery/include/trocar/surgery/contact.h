@@ -42,7 +42,8 @@ std::array<collision::Capsule, kToolBodyCount> CalcToolBodies(const instrument::
 
 /// Whether the tool opens and closes. A hook, a tube or a bag is one rod before its shaft: its kUpperJaw.
 bool HasJaws(const instrument::Tool& tool) noexcept;
-bool IsThere(const instrument::Tool& tool, ToolBody body) noexcept;
+/// Whether one of the bodies of CalcToolBodies is part of the tool: its lower jaw only where it opens and closes.
+bool HasBody(const instrument::Tool& tool, ToolBody body) noexcept;
 
 /// Blades, and the legs of a clip, slip around ducts and vessels and close on them: these jaws neither push a tube nor
 /// are stopped by one. Their shaft is.

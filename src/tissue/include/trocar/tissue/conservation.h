@@ -112,6 +112,10 @@ class Conservation {
   static bool IsSealed(const OrganVolume& organ) noexcept {
     return !(organ.opening_area > 0.0 && organ.pressure == 0.0 && organ.volume > organ.target);
   }
+  /// Whether one projection could bring every volume to its target, or each is no farther off than when it was last
+  /// measured.
+  /// \note Real-time safe.
+  bool AreVolumesInReach(const TissueState& tissue, const ConservationState& state) const noexcept;
   /// Adds to an organ's pressure, not below zero where it has a hole; the force of CalcForce follows. [Pa]
   /// \note Real-time safe.
   void AddPressure(std::size_t organ, double change, ConservationState& state) noexcept;
@@ -134,6 +138,7 @@ class Conservation {
   void UpdateRegions(const TissueState& tissue, ConservationState& state) noexcept;
   void AddFrameForce(const TissueState& tissue, const TissueLoad& load,
                      const ConservationState& state) noexcept;
+  double MeasureVolume(std::size_t organ, const TissueState& tissue) const noexcept;
   bool MeasureVolumes(const TissueState& tissue, ConservationState& state) noexcept;
   bool CalcSlopes(const TissueState& tissue, ConservationState& state) noexcept;
   bool ProjectOnce(TissueState& tissue, std::span<Vec3> before, ConservationState& state) noexcept;

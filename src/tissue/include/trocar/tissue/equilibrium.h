@@ -68,6 +68,9 @@ struct SolveHook {
   bool (*is_active)(void* self, std::size_t constraint) noexcept = nullptr;
   /// Adds to a multiplier; the forces that load.external_force views follow.
   void (*add_multiplier)(void* self, std::size_t constraint, double change) noexcept = nullptr;
+  /// Whether act() could bring the constraints back from these positions: they are linear only near by. A step that
+  /// leads farther is taken back, as one that raises the energy.
+  bool (*is_in_reach)(void* self, const TissueState& state) noexcept = nullptr;
 };
 inline constexpr std::size_t kMaxHookConstraints = 8;
 

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/core/markup.h"
+
+#include <gtest/gtest.h>
+
+namespace trocar::core {
+namespace {
+
+TEST(EscapeMarkup, ReplacesWhatMarkupUses) {
+  EXPECT_EQ(EscapeMarkup("<script>\"a\" & 'b'</script>"),
+            "&lt;script&gt;&quot;a&quot; &amp; &#39;b&#39;&lt;/script&gt;");
+}
+
+TEST(EscapeMarkup, LeavesEverythingElse) {
+  EXPECT_EQ(EscapeMarkup(""), "");
+  EXPECT_EQ(EscapeMarkup("Gallenblase, 12 mm\n#;/"), "Gallenblase, 12 mm\n#;/");
+  EXPECT_EQ(EscapeMarkup("L\xC3\xBC"
+                         "beck \xE2\x89\xA4 3"),
+            "L\xC3\xBC"
+            "beck \xE2\x89\xA4 3");
+  EXPECT_EQ(EscapeMarkup("&amp;"), "&amp;amp;") << "what is escaped already is text like any other";
+}
+
+}  // namespace
+}  // namespace trocar::core

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file puddle_look.h  What a mixture of blood, bile and rinse looks like.
+#pragma once
+
+#include "material_look.h"
+#include "trocar/render/frame.h"
+
+namespace trocar::render {
+
+/// What a puddle looks like: it is as clear as its liquids by their shares, and as coloured as their pigments.
+MaterialLook MixLook(const Puddle& puddle);
+
+}  // namespace trocar::render

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "round_picture.h"
+
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "material_look.h"
+#include "shaders.h"
+#include "single_precision.h"
+#include "trocar/render/frame.h"
+
+namespace trocar::render {
+namespace {
+
+constexpr int kSegments = 128;
+constexpr int kFanFirst = 2 * (kSegments + 1);  // vertex after the ring's strip
+
+/// Half axes of the picture's circle in clip space.
+std::array<float, 2> CalcCircle(int width, int height) {
+  return {ToFloat(kMaskDiameter * height / width), ToFloat(kMaskDiameter)};
+}
+
+}  // namespace
+
+RoundPicture::~RoundPicture() {
+  for (const Program& program : {mask_, smooth_}) glDeleteProgram(program.name);
+  glDeleteVertexArrays(1, &ring_);
+  glDeleteBuffers(1, &ring_vertices_);
+  glDeleteFramebuffers(1, &framebuffer_);
+  glDeleteTextures(1, &picture_);
+  glDeleteRenderbuffers(1, &depth_);
+}
+
+core::Status RoundPicture::Make() {
+  const auto mask = MakeProgram({kMaskVertexShader}, {kMaskFragmentShader});
+  if (!mask) return mask.error();
+  mask_ = *mask;
+  const auto smooth = MakeProgram({kScreenVertexShader}, {kSmoothFragmentShader});
+  if (!smooth) return smooth.error();
+  smooth_ = *smooth;
+  MakeRing();
+  return {};
+}
+
+/// A strip from the circle outwards, then a fan that fills the circle.
+void RoundPicture::MakeRing() {
+  std::vector<std::array<float, 3>> ring;
+  for (int i = 0; i <= kSegments; ++i) {
+    const double angle = 2.0 * M_PI * i / kSegments;
+    ring.push_back({ToFloat(std::cos(angle)), ToFloat(std::sin(angle)), 0});
+    ring.push_back({ToFloat(std::cos(angle)), ToFloat(std::sin(angle)), 1});
+  }
+  for (int i = 0; i <= kSegments; ++i) ring.push_back(ring[static_cast<std::size_t>(2 * i)]);
+  glGenVertexArrays(1, &ring_);
+  glGenBuffers(1, &ring_vertices_);
+  glBindVertexArray(ring_);
+  glBindBuffer(GL_ARRAY_BUFFER, ring_vertices_);
+  glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(ring.size() * sizeof ring[0]), ring.data(),
+               GL_STATIC_DRAW);
+  glEnableVertexAttribArray(0);
+  glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, 0, nullptr);
+  glBindVertexArray(0);
+  glBindBuffer(GL_ARRAY_BUFFER, 0);
+}
+
+void RoundPicture::DrawMask(int width, int height) {
+  glUseProgram(mask_.name);
+  mask_.Set("u_inner", CalcCircle(width, height));
+  mask_.Set("u_colour", Colour{0, 0, 0});
+  glBindVertexArray(ring_);
+  glDrawArrays(GL_TRIANGLE_STRIP, 0, kFanFirst);
+}
+
+bool RoundPicture::Bind(int width, int height) {
+  if (framebuffer_ == 0) {
+    glGenFramebuffers(1, &framebuffer_);
+    glGenTextures(1, &picture_);
+    glGenRenderbuffers(1, &depth_);
+  }
+  glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
+  if (width == width_ && height == height_) return true;
+  glBindTexture(GL_TEXTURE_2D, picture_);
+  glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, width, height, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
+  for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
+    glTexParameteri(GL_TEXTURE_2D, filter, GL_LINEAR);
+  for (const GLenum wrap : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T})
+    glTexParameteri(GL_TEXTURE_2D, wrap, GL_CLAMP_TO_EDGE);
+  glBindTexture(GL_TEXTURE_2D, 0);
+  glBindRenderbuffer(GL_RENDERBUFFER, depth_);
+  glRenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH_COMPONENT24, width, height);
+  glBindRenderbuffer(GL_RENDERBUFFER, 0);
+  glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, picture_, 0);
+  glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, depth_);
+  const bool is_complete = glCheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
+  width_ = is_complete ? width : 0;
+  height_ = is_complete ? height : 0;
+  return is_complete;
+}
+
+void RoundPicture::DrawSmoothed(bool has_mask, int width, int height) {
+  glDisable(GL_DEPTH_TEST);
+  glDisable(GL_CULL_FACE);
+  glClearColor(0, 0, 0, 1);
+  glClear(GL_COLOR_BUFFER_BIT);
+  glUseProgram(smooth_.name);
+  glActiveTexture(GL_TEXTURE0);
+  glBindTexture(GL_TEXTURE_2D, picture_);
+  smooth_.Set("u_picture", 0);
+  smooth_.Set("u_texel", std::array<float, 2>{ToFloat(1.0 / width), ToFloat(1.0 / height)});
+  // without a mask a circle round the whole picture
+  const double wide = 1.5 * std::hypot(width, height);
+  smooth_.Set("u_inner", has_mask ? CalcCircle(width, height)
+                                  : std::array<float, 2>{ToFloat(wide / width), ToFloat(wide / height)});
+  glBindVertexArray(ring_);
+  glDrawArrays(GL_TRIANGLE_FAN, kFanFirst, kSegments + 1);
+  glBindTexture(GL_TEXTURE_2D, 0);
+}
+
+}  // namespace trocar::render

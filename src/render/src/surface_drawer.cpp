@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "surface_drawer.h"
+
+#include "camera_matrices.h"
+#include "fine_shaders.h"
+#include "shaders.h"
+#include "single_precision.h"
+
+namespace trocar::render {
+namespace {
+
+/// Uniforms of a material: those that all three shaders share, then the shader's own.
+void SetLook(const Program& program, const MaterialLook& look) {
+  const auto inverse = [](float tile) { return tile > 0.0f ? 1.0f / tile : 0.0f; };
+  program.Set("u_low", look.low);
+  program.Set("u_high", look.high);
+  program.Set("u_gloss", Colour{look.wet, look.wet_exponent, look.sheen});
+  if (look.opacity < 1.0f) {
+    program.Set("u_opacity", look.opacity);
+    return;
+  }
+  if (!look.is_tissue) {
+    program.Set("u_grooves", look.grooves);
+    return;
+  }
+  program.Set("u_cell", look.cell);
+  program.Set("u_vessel", look.vessel);
+  program.Set("u_wrap", look.wrap);
+  program.Set("u_detail_scale", Colour{inverse(look.detail_tile[0]), inverse(look.detail_tile[1]),
+                                       inverse(look.detail_tile[2])});
+  program.Set("u_broad_scale", inverse(look.broad_tile));
+  program.Set("u_bump_scale", inverse(look.bump_tile));
+  program.Set("u_amounts", Colour{look.cell_amount, look.vessel_amount, look.vessel_width});
+  program.Set("u_bump", look.bump);
+  program.Set("u_glow", look.glow);
+}
+
+}  // namespace
+
+SurfaceDrawer::~SurfaceDrawer() {
+  for (const Program& program : GetPrograms()) glDeleteProgram(program.name);
+}
+
+core::Status SurfaceDrawer::Make() {
+  const auto tissue =
+      MakeProgram({kSurfaceVertexShader}, {kFragmentHead, kShadingFunctions, kTissueFragmentShader});
+  if (!tissue) return tissue.error();
+  tissue_ = *tissue;
+  const auto tool =
+      MakeProgram({kSurfaceVertexShader}, {kFragmentHead, kShadingFunctions, kToolFragmentShader});
+  if (!tool) return tool.error();
+  tool_ = *tool;
+  const auto clear =
+      MakeProgram({kClearVertexShader}, {kFragmentHead, kShadingFunctions, kClearFragmentShader});
+  if (!clear) return clear.error();
+  clear_ = *clear;
+  noise_.Make();
+  return {};
+}
+
+void SurfaceDrawer::Begin() {
+  glVertexAttrib4f(3, 0, 0, 0, 0);  // of surfaces without marks
+  noise_.Bind();
+  glUseProgram(tissue_.name);
+  tissue_.Set("u_pattern", 0);
+  tissue_.Set("u_bumps", 1);
+}
+
+void SurfaceDrawer::End() {
+  NoiseTextures::Unbind();
+}
+
+void SurfaceDrawer::Draw(const Surface& surface, const math::Pose& X_camera_surface, const math::Vec3& scale,
+                         const MaterialLook& look) {
+  const Program& program = look.opacity < 1.0f ? clear_ : look.is_tissue ? tissue_ : tool_;
+  glUseProgram(program.name);
+  program.Set("u_camera_from_surface", MakeMatrix(X_camera_surface, scale));
+  program.Set("u_rotation", MakeRotation(X_camera_surface.rotation));
+  SetLook(program, look);
+  if (!look.is_tissue && look.opacity >= 1.0f)
+    program.Set("u_axis", ToFloat(math::Rotate(X_camera_surface.rotation, {0, 0, 1})));
+  glBindVertexArray(surface.array);
+  glDrawElements(GL_TRIANGLES, surface.index_count, GL_UNSIGNED_INT, nullptr);
+}
+
+}  // namespace trocar::render

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file surface_drawer.h  Draws surfaces with the shader of their material: tissue, tool, or what light passes through.
+#pragma once
+
+#include "material_look.h"
+#include "noise_textures.h"
+#include "shader_program.h"
+#include "surface_store.h"
+#include "trocar/core/result.h"
+#include "trocar/math/pose.h"
+
+namespace trocar::render {
+
+/// Needs the OpenGL context of the renderer that owns it.
+class SurfaceDrawer {
+ public:
+  SurfaceDrawer() = default;
+  SurfaceDrawer(const SurfaceDrawer&) = delete;
+  SurfaceDrawer& operator=(const SurfaceDrawer&) = delete;
+  ~SurfaceDrawer();
+
+  /// \return kShaderFailed with the compiler's words
+  core::Status Make();
+
+  /// For the uniforms that the renderer sets once a frame.
+  std::array<Program, 3> GetPrograms() const { return {tool_, clear_, tissue_}; }
+
+  /// Before the first surface of a frame, after those uniforms; and after the last.
+  void Begin();
+  static void End();
+
+  /// \param scale  along the surface's own axes, before its pose [-]
+  /// \pre blending is on where the look's opacity is below 1
+  void Draw(const Surface& surface, const math::Pose& X_camera_surface, const math::Vec3& scale,
+            const MaterialLook& look);
+  void Draw(const Surface& surface, const math::Pose& X_camera_surface, const math::Vec3& scale = {1, 1, 1}) {
+    Draw(surface, X_camera_surface, scale, GetLook(surface.material));
+  }
+
+ private:
+  Program tissue_, tool_, clear_;
+  NoiseTextures noise_;
+};
+
+}  // namespace trocar::render
