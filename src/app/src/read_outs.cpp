@@ -186,6 +186,14 @@ std::string DescribeEvent(const session::Event& event, const session::Scene& sce
       return hand + "there is no clip left; exchange the tool for a full one";
     case session::EventKind::kUsedOutside:
       return hand + "the tool is out of its trocar; push it in before it is used";
+    case session::EventKind::kClipSlipped:
+      return "A clip slipped off the " + organ;
+    case session::EventKind::kStoneSpilled:
+      return "A stone spilled out of the gallbladder";
+    case session::EventKind::kStoneTaken:
+      return hand + "took a stone";
+    case session::EventKind::kStoneRetrieved:
+      return hand + "retrieved a stone";
     case session::EventKind::kOperationError:
       return std::string(training::ExplanationOf(static_cast<training::OperationError>(event.error)));
   }
@@ -195,7 +203,8 @@ std::string DescribeEvent(const session::Event& event, const session::Scene& sce
 bool IsWarning(session::EventKind kind) noexcept {
   return kind == session::EventKind::kSlip || kind == session::EventKind::kStateRestored ||
          kind == session::EventKind::kOrganFrozen || kind == session::EventKind::kTear ||
-         kind == session::EventKind::kPinchDamage || kind == session::EventKind::kOperationError;
+         kind == session::EventKind::kPinchDamage || kind == session::EventKind::kClipSlipped ||
+         kind == session::EventKind::kStoneSpilled || kind == session::EventKind::kOperationError;
 }
 
 std::string StageLabel(session::Stage stage) {

@@ -198,6 +198,7 @@ void Operation::Burn(const HandsNow& hands, const TissueNow& tissue) noexcept {
     TubePlace place;
     if (IsOf(parted[i], gallbladder_)) {
       tissue.conservation->Perforate(static_cast<std::size_t>(gallbladder_), kBurntHole, *tissue.conserved);
+      holes_.Add(parted[i], 2.0 * std::sqrt(M_PI * kBurntHole));
       judge_.Report(OperationError::kGallbladderPerforated, p, hand, hands.time);
     } else if (IsOf(parted[i], liver_)) {
       judge_.Report(OperationError::kLiverBurnt, p, hand, hands.time);
@@ -264,6 +265,8 @@ void Operation::UseFluids(int hand, const HandsNow& hands) noexcept {
   }
   if (!controls.aspirate) return;
   smoke_ *= std::max(0.0, 1.0 - kSmokeSucked * hands.seconds);
+  TellRetrieved(hand, stones_.Aspirate(hands.X_proxy[h].translation,
+                                       2.0 * instrument::kSuctionBore * Tool(hand).shaft_radius));
   // the pool as a half sphere
   const double radius = std::cbrt(fluids_.Pooled() * 3.0 / (2.0 * M_PI));
   if (math::Distance(hands.X_proxy[h].translation, p_pool_) > radius + kSuctionReach) return;
@@ -274,6 +277,7 @@ void Operation::UseFluids(int hand, const HandsNow& hands) noexcept {
 void Operation::UseBag(int hand, const HandsNow& hands, const TissueNow& tissue) noexcept {
   const auto h = static_cast<std::size_t>(hand);
   judge_.Note({InstrumentKind::kSpecimenBag, Verb::kPack, training::Target::kGallbladder}, hand);
+  if (!is_in_bag_) TellRetrieved(hand, stones_.CatchInBag(hands.X_device[h]));
   if (is_in_bag_ || gallbladder_ < 0 || !watch_.IsGallbladderFree()) return;
   const SurfaceInfo& surface = made_->surfaces[static_cast<std::size_t>(gallbladder_)];
   Vec3 centre;
@@ -299,6 +303,7 @@ void Operation::UseBag(int hand, const HandsNow& hands, const TissueNow& tissue)
     held.p_tool_node[held.count++] = X_tool_world * tissue.state->position[node];
     tissue.state->condition[node] = tissue::NodeCondition::kPrescribed;
   }
+  TellRetrieved(hand, stones_.BagWith(gallbladder_));
   is_in_bag_ = true;
   bag_hand_ = hand;
 }
