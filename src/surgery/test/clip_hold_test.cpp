@@ -34,9 +34,9 @@ TEST(CalcClipHold, WhatIsPartialCrossedOrThickHoldsLess) {
     return CalcSlipSpeed(CalcClipLoad(hold, pressure, 0.0)) > 0.0;
   };
   EXPECT_FALSE(slips(CalcClipHold({0.9, false, 0.0015}), kArterial));
-  EXPECT_TRUE(slips(CalcClipHold({0.5, false, 0.0015}), kArterial)) << "half of an artery";
-  EXPECT_FALSE(slips(CalcClipHold({0.5, false, 0.0015}), kDuctal));
-  EXPECT_TRUE(slips(CalcClipHold({0.2, false, 0.0015}), kDuctal));
+  EXPECT_TRUE(slips(CalcClipHold({0.8, false, 0.0015}), kArterial)) << "four fifths of an artery";
+  EXPECT_FALSE(slips(CalcClipHold({0.8, false, 0.0015}), kDuctal));
+  EXPECT_TRUE(slips(CalcClipHold({0.6, false, 0.0015}), kDuctal));
   EXPECT_TRUE(slips(CalcClipHold({1.0, true, 0.0015}), kArterial));
   EXPECT_LT(CalcClipHold({1.0, false, 0.005}).pull, 0.3 * good.pull) << "on a vessel of 10 mm";
   EXPECT_EQ(CalcClipHold({1.0, false, 0.0025}).pull, good.pull) << "up to 5 mm it does not matter";

@@ -12,23 +12,27 @@ namespace {
 constexpr double kFallsOff = 0.0006;   // of a clip's middle from the end: half of its width [m]
 constexpr double kClipTouch = 0.0012;  // between the middles of two that lie side by side [m]
 constexpr double kTight = 0.999;       // closure that keeps the pressure from the next clip
-constexpr double kPulledAt = 0.0025;   // along the vessel, between a clip and what a grasper holds there [m]
+constexpr double kPulledAt = 0.0025;   // before a clip: what is held there holds the clip [m]
 
 }  // namespace
 
-/// Pull of the hands on a clip along its vessel [N].
-double VesselWork::CalcPull(const Clipped& clip, const Vec3& off,
+/// Pull of the hands that hold the stump at a clip, or between it and its free end, along the vessel [N].
+double VesselWork::CalcPull(const Clipped& clip, const Stump& stump, std::span<const Vec3> position,
                             std::span<const ClipPull> pulls) const noexcept {
+  const Vec3 off =
+      stump.sign * math::Normalized(position[tubes_.Node(clip.b)] - position[tubes_.Node(clip.a)]);
+  const double free = stump.sign * (stump.cut - acts_.clips[clip.act].position);
   double pull = 0;
   for (const ClipPull& hand : pulls) {
-    const bool is_near = std::any_of(hand.nodes.begin(), hand.nodes.end(), [&](std::uint32_t node) {
-      for (std::uint32_t p = 0; p < tube_of_.size(); ++p) {
-        if (tubes_.Node(p) == node && tube_of_[p] == clip.place.tube)
-          return std::fabs(arc_of_[p] - clip.place.arc) < kPulledAt;
-      }
-      return false;
-    });
-    if (is_near) pull += std::max(0.0, math::Dot(hand.force, off));
+    const auto is_held = [&](std::uint32_t p) {
+      const double beyond = stump.sign * (arc_of_[p] - clip.place.arc);
+      return tube_of_[p] == clip.place.tube && beyond > -kPulledAt && beyond <= free &&
+             std::find(hand.nodes.begin(), hand.nodes.end(), tubes_.Node(p)) != hand.nodes.end();
+    };
+    bool is_pulled = false;
+    for (std::uint32_t p = 0; p < tube_of_.size() && !hand.nodes.empty(); ++p)
+      is_pulled = is_pulled || is_held(p);
+    if (is_pulled) pull += std::max(0.0, math::Dot(hand.force, off));
   }
   return pull;
 }
@@ -64,9 +68,7 @@ std::size_t VesselWork::SlipStump(const Stump& stump, double seconds, std::span<
   double pressure = stump.pressure;
   for (std::size_t i = 0; i < count; ++i) {
     const Clipped& clip = *row[i];
-    const Vec3 off =
-        stump.sign * math::Normalized(position[tubes_.Node(clip.b)] - position[tubes_.Node(clip.a)]);
-    const double pull = CalcPull(clip, off, pulls);
+    const double pull = CalcPull(clip, stump, position, pulls);
     // a clip that moves takes along those that it runs into
     surgery::ClipHold hold;
     std::size_t end = i;

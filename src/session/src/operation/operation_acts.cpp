@@ -16,11 +16,14 @@ using training::Verb;
 // Electrosurgery; domain facts, section 1.3: 20 to 40 W
 constexpr double kCutPower = 35.0, kCoagulatePower = 25.0;      // [W]
 constexpr double kCutReach = 0.0008, kCoagulateReach = 0.0012;  // of the current beside the metal [m]
-constexpr double kIdleSeconds = 0.25;    // of current into nothing that no eye would note
-constexpr double kNearDuct = 0.005;      // domain facts, section 1.4 [m]
-constexpr double kSealReach = 0.003;     // [m]
-constexpr double kSealHeat = 15.0;       // that shuts the end of a small vessel [J]
-constexpr double kBurntHole = 1e-6;      // left by a node that was burnt through [m^2]
+constexpr double kIdleSeconds = 0.25;  // of current into nothing that no eye would note
+constexpr double kNearDuct = 0.005;    // domain facts, section 1.4 [m]
+constexpr double kSealReach = 0.003;   // [m]
+constexpr double kSealHeat = 15.0;     // that shuts the end of a small vessel [J]
+constexpr double kBurntHole = 1e-6;    // left by a node that was burnt through [m^2]
+/// Rim of that hole [m]: a slit as long as the hook's toe (domain facts, section 1.3). Its lips lie on each other, so that bile
+/// finds the smaller area and a stone the whole rim.
+constexpr double kBurntRim = 2 * 0.0045;
 constexpr double kSmokeByHeat = 0.0012;  // [1/J]
 
 // Clip applier: closed and open again, as shares of its opening
@@ -198,7 +201,7 @@ void Operation::Burn(const HandsNow& hands, const TissueNow& tissue) noexcept {
     TubePlace place;
     if (IsOf(parted[i], gallbladder_)) {
       tissue.conservation->Perforate(static_cast<std::size_t>(gallbladder_), kBurntHole, *tissue.conserved);
-      holes_.Add(parted[i], 2.0 * std::sqrt(M_PI * kBurntHole));
+      holes_.Add(parted[i], kBurntRim);
       judge_.Report(OperationError::kGallbladderPerforated, p, hand, hands.time);
     } else if (IsOf(parted[i], liver_)) {
       judge_.Report(OperationError::kLiverBurnt, p, hand, hands.time);

@@ -149,7 +149,8 @@ class VesselWork {
     TubePlace place;
   };
   void MoveClips(const geometry::CentreLineCut& cut) noexcept;
-  double CalcPull(const Clipped& clip, const Vec3& off, std::span<const ClipPull> pulls) const noexcept;
+  double CalcPull(const Clipped& clip, const Stump& stump, std::span<const Vec3> position,
+                  std::span<const ClipPull> pulls) const noexcept;
   void Reseat(Clipped& clip) noexcept;
   std::size_t SlipStump(const Stump& stump, double seconds, std::span<const ClipPull> pulls,
                         std::span<const Vec3> position, std::span<SlippedClip> slipped) noexcept;
