@@ -133,6 +133,20 @@ std::string DescribeFluid(const surgery::FluidLedger& fluids, surgery::Fluid flu
   return FormatMillilitres(account.left) + ", " + FormatMillilitres(account.pooled) + " in the abdomen";
 }
 
+std::string DescribeStones(std::span<const session::StoneSnapshot> stones) {
+  using session::StonePlace;
+  const auto is_out = [](const session::StoneSnapshot& stone) {
+    return stone.place == StonePlace::kSpilled || stone.place == StonePlace::kHeld;
+  };
+  const auto out = std::count_if(stones.begin(), stones.end(), is_out);
+  const auto inside = std::count_if(stones.begin(), stones.end(), [](const session::StoneSnapshot& stone) {
+    return stone.place == StonePlace::kInside;
+  });
+  const auto retrieved = static_cast<std::ptrdiff_t>(stones.size()) - out - inside;
+  if (out + retrieved == 0) return "none spilled";
+  return Print("%td in the abdomen, %td retrieved", out, retrieved);
+}
+
 std::string DescribeAssistant(session::AssistantCommand command, bool is_holding) {
   switch (command) {
     case session::AssistantCommand::kRetract:

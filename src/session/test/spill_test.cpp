@@ -349,5 +349,47 @@ TEST_F(SpillTest, AStoneGoesOutWithTheToolThatHoldsIt) {
   EXPECT_FALSE(operation_->HoldsStone(kRight));
 }
 
+// --- in the tick: the hook on the free wall, current until it gives way
+
+TEST(Spilling, TheHookPerforatesAndStonesComeOutWithTheBile) {
+  auto scene = std::make_shared<Scene>(WithStones(40, 0.002));
+  auto made = Simulation::Make(scene, 1);
+  ASSERT_TRUE(made.ok()) << made.error().Text();
+  Simulation& simulation = *made;
+  const Snapshot& seen = simulation.GetSnapshot();
+  const SurfaceInfo& wall =
+      simulation.Surfaces()[static_cast<std::size_t>(scene->patient.FindOrgan("gallbladder"))];
+  const Vec3 body = scene->patient.FindLandmark("gallbladder_body")->position;
+  std::uint32_t node = wall.first_node;
+  for (std::uint32_t i = 0; i < wall.node_count; ++i) {
+    if (math::Distance(seen.positions[wall.first_node + i], body) <
+        math::Distance(seen.positions[node], body))
+      node = wall.first_node + i;
+  }
+  const Vec3 outwards{0.82, -0.55, -0.18};
+  Input input = CalcScriptInput(*scene, 0.0);
+  std::uint64_t known = 0;
+  int told = 0;
+  for (int tick = 0; tick < 120 * 12; ++tick) {
+    const double away = tick < 180 ? 0.02 * (1.0 - tick / 180.0) : -0.002;
+    input.hands[kRight] = instrument::FindJoints(scene->instruments[kRight].p_world_port,
+                                                 seen.positions[node] + away * outwards, 0.0, 0.0);
+    input.controls[kRight].coagulate = tick >= 180;
+    simulation.Step(input);
+    for (; known < seen.event_count; ++known)
+      told += seen.events[known % seen.events.size()].kind == EventKind::kStoneSpilled ? 1 : 0;
+    if (told >= 2) break;
+  }
+  const OperationResult result = *simulation.GetOperationResult();
+  EXPECT_GE(result.stones.spilled, 2);
+  EXPECT_EQ(result.stones.spilled, told);
+  EXPECT_GT(result.errors.Count(training::OperationError::kGallbladderPerforated), 0u);
+  // no more than their share of the bile
+  const OrganSnapshot& bile = seen.organs[static_cast<std::size_t>(scene->patient.FindOrgan("gallbladder"))];
+  EXPECT_LE(result.stones.spilled, 1 + 40 * bile.leaked / (bile.leaked + bile.target) * 1.6);
+  simulation.Reset();
+  EXPECT_EQ(simulation.GetOperationResult()->stones.spilled, 0);
+}
+
 }  // namespace
 }  // namespace trocar::session
