@@ -322,6 +322,30 @@ constexpr ParameterRule kRules[] = {
      "",
      "0 none to 1: share of the free wall near the liver that has grown to it",
      kSlider},
+    {"gallstone_count",
+     kLognormal,
+     0.9,
+     1.2,
+     0.5,
+     40,
+     0,
+     40,
+     {},
+     "",
+     "whole; 0: no stones",
+     "one stone in 71 of 141 patients (Dev, BCSRJ 2025); how many otherwise: general knowledge"},
+    {"gallstone_diameter",
+     kLognormal,
+     8,
+     0.8,
+     2,
+     30,
+     1,
+     30,
+     {},
+     "mm",
+     "median of this patient's stones",
+     "85 % below 20 mm (gallbladdersurgery.co.uk); median and spread: general knowledge"},
 };
 
 /// Standard normal number (Box and Muller 1958).
@@ -532,6 +556,7 @@ core::Result<std::vector<Parameter>> DrawParameters(std::uint64_t seed,
       parameter.source = "not present unless it is set";
     } else {
       parameter.value = DrawNumber(random, rule.distribution, rule.centre, rule.spread, rule.low, rule.high);
+      if (rule.name == "gallstone_count") parameter.value = std::round(std::get<double>(parameter.value));
     }
     drawn.push_back(std::move(parameter));
   }

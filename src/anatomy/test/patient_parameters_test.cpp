@@ -104,6 +104,21 @@ TEST(DrawParameters, FrequenciesAndMomentsAreTheConfiguredOnes) {
   }
 }
 
+TEST(DrawParameters, HalfOfThePatientsHaveOneStone) {
+  int solitary = 0, small = 0;
+  for (int seed = 0; seed < kSeeds; ++seed) {
+    const auto drawn = Draw(static_cast<std::uint64_t>(seed));
+    const double count = NumberOf(drawn, "gallstone_count");
+    ASSERT_EQ(count, std::round(count)) << "seed " << seed;
+    ASSERT_GE(count, 1.0);
+    solitary += count == 1.0 ? 1 : 0;
+    small += NumberOf(drawn, "gallstone_diameter") < 20.0 ? 1 : 0;
+  }
+  EXPECT_NEAR(solitary / double{kSeeds}, 0.50, 0.04);
+  EXPECT_NEAR(small / double{kSeeds}, 0.90, 0.05);
+  EXPECT_EQ(NumberOf(Draw(3, {{"gallstone_count", "0"}}), "gallstone_count"), 0.0);
+}
+
 TEST(DrawParameters, FollowsTheOtherSeriesWhenAsked) {
   std::map<std::string, int> types;
   constexpr int kDraws = 4000;

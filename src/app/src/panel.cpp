@@ -178,6 +178,7 @@ void Panel::AddOperation() {
   clips_ = &AddLine(*operation_card_, "Clips left", "In the clip applier that is in use");
   blood_ = &AddLine(*operation_card_, "Blood", "Lost so far, and what of it lies in the abdomen [mL]");
   bile_ = &AddLine(*operation_card_, "Bile", "Lost so far, and what of it lies in the abdomen [mL]");
+  stones_ = &AddLine(*operation_card_, "Stones", "Out of the gallbladder through a hole in its wall");
   assistant_.set_model(Gtk::StringList::create({"wait", "retract the fundus", "relax", "release"}));
   assistant_.set_tooltip_text("Command to the assistant with the third grasper (U: the next one)");
   assistant_.property_selected().signal_changed().connect([this] {
@@ -209,6 +210,7 @@ void Panel::ShowOperation(const session::Snapshot& snapshot) {
   SetText(*clips_, clips.empty() ? "—" : clips);
   SetText(*blood_, DescribeFluid(snapshot.operation.fluids, surgery::Fluid::kBlood));
   SetText(*bile_, DescribeFluid(snapshot.operation.fluids, surgery::Fluid::kBile));
+  SetText(*stones_, DescribeStones(snapshot.operation.stones));
   const auto command = static_cast<guint>(input.assistant);
   if (assistant_.get_selected() != command) assistant_.set_selected(command);
   SetText(*assistant_does_, snapshot.operation.has_assistant

@@ -133,6 +133,20 @@ std::string DescribeFluid(const surgery::FluidLedger& fluids, surgery::Fluid flu
   return FormatMillilitres(account.left) + ", " + FormatMillilitres(account.pooled) + " in the abdomen";
 }
 
+std::string DescribeStones(std::span<const session::StoneSnapshot> stones) {
+  using session::StonePlace;
+  const auto is_out = [](const session::StoneSnapshot& stone) {
+    return stone.place == StonePlace::kSpilled || stone.place == StonePlace::kHeld;
+  };
+  const auto out = std::count_if(stones.begin(), stones.end(), is_out);
+  const auto inside = std::count_if(stones.begin(), stones.end(), [](const session::StoneSnapshot& stone) {
+    return stone.place == StonePlace::kInside;
+  });
+  const auto retrieved = static_cast<std::ptrdiff_t>(stones.size()) - out - inside;
+  if (out + retrieved == 0) return "none spilled";
+  return Print("%td in the abdomen, %td retrieved", out, retrieved);
+}
+
 std::string DescribeAssistant(session::AssistantCommand command, bool is_holding) {
   switch (command) {
     case session::AssistantCommand::kRetract:
@@ -186,6 +200,14 @@ std::string DescribeEvent(const session::Event& event, const session::Scene& sce
       return hand + "there is no clip left; exchange the tool for a full one";
     case session::EventKind::kUsedOutside:
       return hand + "the tool is out of its trocar; push it in before it is used";
+    case session::EventKind::kClipSlipped:
+      return "A clip slipped off the " + organ;
+    case session::EventKind::kStoneSpilled:
+      return "A stone spilled out of the gallbladder";
+    case session::EventKind::kStoneTaken:
+      return hand + "took a stone";
+    case session::EventKind::kStoneRetrieved:
+      return hand + "retrieved a stone";
     case session::EventKind::kOperationError:
       return std::string(training::ExplanationOf(static_cast<training::OperationError>(event.error)));
   }
@@ -195,7 +217,8 @@ std::string DescribeEvent(const session::Event& event, const session::Scene& sce
 bool IsWarning(session::EventKind kind) noexcept {
   return kind == session::EventKind::kSlip || kind == session::EventKind::kStateRestored ||
          kind == session::EventKind::kOrganFrozen || kind == session::EventKind::kTear ||
-         kind == session::EventKind::kPinchDamage || kind == session::EventKind::kOperationError;
+         kind == session::EventKind::kPinchDamage || kind == session::EventKind::kClipSlipped ||
+         kind == session::EventKind::kStoneSpilled || kind == session::EventKind::kOperationError;
 }
 
 std::string StageLabel(session::Stage stage) {

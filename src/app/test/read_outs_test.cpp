@@ -130,6 +130,11 @@ TEST(DescribeEvent, ImpossibleActsAndSurgerysErrorsAreAnsweredInWords) {
   scene.instruments[session::kRight].tray = {*instrument::FindTool("clip_applier"),
                                              *instrument::FindTool("scissors")};
   EXPECT_EQ(text(session::EventKind::kTubeCut), "Right hand: cut the tissue") << "whichever tool it has now";
+  EXPECT_EQ(text(session::EventKind::kStoneTaken), "Right hand: took a stone");
+  EXPECT_EQ(text(session::EventKind::kStoneRetrieved), "Right hand: retrieved a stone");
+  EXPECT_EQ(text(session::EventKind::kStoneSpilled), "A stone spilled out of the gallbladder");
+  EXPECT_TRUE(IsWarning(session::EventKind::kStoneSpilled));
+  EXPECT_EQ(text(session::EventKind::kClipSlipped), "A clip slipped off the tissue");
   EXPECT_NE(text(session::EventKind::kUsedOutside).find("push it in"), std::string::npos);
   const auto error = training::OperationError::kClipCrossed;
   EXPECT_EQ(text(session::EventKind::kOperationError, static_cast<int>(error)),
@@ -149,6 +154,18 @@ TEST(ToolLabel, NamesTheToolInUseAndItsClips) {
   EXPECT_EQ(ToolLabel(scene, snapshot, session::kRight), "clip applier, 12 clips");
   snapshot.operation.clips_left[session::kRight] = 1;
   EXPECT_EQ(ToolLabel(scene, snapshot, session::kRight), "clip applier, 1 clip");
+}
+
+TEST(DescribeStones, CountsWhatCameOutOfTheGallbladder) {
+  using session::StonePlace;
+  std::vector<session::StoneSnapshot> stones(5);
+  EXPECT_EQ(DescribeStones({}), "none spilled");
+  EXPECT_EQ(DescribeStones(stones), "none spilled");
+  stones[0].place = StonePlace::kSpilled, stones[1].place = StonePlace::kHeld;
+  EXPECT_EQ(DescribeStones(stones), "2 in the abdomen, 0 retrieved");
+  stones[0].place = StonePlace::kAspirated, stones[2].place = StonePlace::kInBag;
+  stones[3].place = StonePlace::kTakenOut;
+  EXPECT_EQ(DescribeStones(stones), "1 in the abdomen, 3 retrieved");
 }
 
 TEST(DescribeFluid, SaysWhatWasLostAndWhatLiesThere) {

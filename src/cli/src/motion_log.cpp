@@ -58,6 +58,10 @@ void MotionLog::Record(const session::Snapshot& snapshot) {
       case EventKind::kTubeCut:
       case EventKind::kNoClipsLeft:
       case EventKind::kUsedOutside:
+      case EventKind::kClipSlipped:
+      case EventKind::kStoneSpilled:
+      case EventKind::kStoneTaken:
+      case EventKind::kStoneRetrieved:
       case EventKind::kOperationError:
         break;
     }

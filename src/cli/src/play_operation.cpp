@@ -77,6 +77,14 @@ ordered_json MakeJson(const OperationResult& result, const Run& run) {
                {"phase", training::NameOf(result.phase)},
                {"strasberg", training::StrasbergName(result.injuries.strasberg)},
                {"right_liver_without_blood", result.injuries.is_right_liver_without_blood},
+               {"bed_blood_ml", kMillilitre * result.bed_blood},
+               {"stones",
+                {{"all", result.stones.all},
+                 {"inside", result.stones.inside},
+                 {"spilled_not_retrieved", result.stones.spilled},
+                 {"in_bag", result.stones.in_bag},
+                 {"aspirated", result.stones.aspirated},
+                 {"taken_out", result.stones.taken_out}}},
                {"cleared_share", result.facts.cleared_share},
                {"detached_share", result.facts.detached_share},
                {"structures_entering", result.facts.structures_entering}});
@@ -104,6 +112,11 @@ void PrintForPerson(const session::Scene& scene, const OperationResult& result, 
               FormatNumber(Left(result, surgery::Fluid::kBlood), 3).c_str(),
               FormatNumber(Left(result, surgery::Fluid::kBile), 3).c_str(),
               std::string(training::StrasbergName(result.injuries.strasberg)).c_str());
+  const session::StoneCount& stones = result.stones;
+  if (stones.inside < stones.all) {
+    std::printf("Of %d stones %d came out of the gallbladder; spilled and not retrieved: %d\n", stones.all,
+                stones.all - stones.inside, stones.spilled);
+  }
   std::printf("Tick p99 %s ms, longest tick with a cut %s ms, state hash %s\n",
               FormatNumber(core::CalcPercentile(run.tick_ms, 0.99), 3).c_str(),
               FormatNumber(run.cut_tick_max_ms, 3).c_str(), HashText(run.hash).c_str());

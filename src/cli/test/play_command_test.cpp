@@ -47,6 +47,18 @@ TEST(PlayCommand, SaysWhatACarelessSurgeonDidWhereAndWhen) {
   EXPECT_EQ(json["errors"][0]["at_mm"].size(), 3u);
 }
 
+TEST(PlayCommand, AnOperationSaysWhatHasBecomeOfTheStones) {
+  const Printed run =
+      RunTrocar({"play", "burns_air", "--task", "cholecystectomy", "--seconds", "2", "--json"});
+  ASSERT_EQ(run.status, 0) << run.err;
+  const Json json = Json::parse(run.out);
+  ASSERT_TRUE(json.contains("stones")) << run.out;
+  EXPECT_GT(json["stones"]["all"], 0);
+  EXPECT_EQ(json["stones"]["inside"], json["stones"]["all"]);
+  EXPECT_EQ(json["stones"]["spilled_not_retrieved"], 0);
+  EXPECT_EQ(json["bed_blood_ml"], 0.0);
+}
+
 TEST(PlayCommand, RefusesWhatItDoesNotKnow) {
   EXPECT_EQ(RunTrocar({"play"}).status, 2);
   const Printed task = RunTrocar({"play", "expert", "--task", "pig_transfer"});

@@ -19,7 +19,6 @@ constexpr int kSides = 24;
 constexpr double kHubLength = 0.008;        // m of bare metal between hinge and insulation
 constexpr double kToeLength = 0.0045;       // m, of the hook: domain facts, section 1.3
 constexpr double kToeBend = 0.0009;         // m, radius of the hook's bend
-constexpr double kBoreRadius = 0.72;        // of the suction tube's outer radius
 constexpr double kBoreDepth = 0.024;        // m
 constexpr double kBagWire = 0.0007;         // m, half of the spring ring's thickness
 constexpr double kPouchThickness = 0.0002;  // m
@@ -89,7 +88,7 @@ TriangleMesh MakeSuctionTube(const Tool& tool) {
   constexpr std::uint32_t kRings = 22;
   constexpr double kStep = 0.0006;  // m between rings near the tip
   constexpr std::uint32_t kHoleRings[] = {4, 9, 14};
-  const double outer = tool.shaft_radius, inner = kBoreRadius * outer;
+  const double outer = tool.shaft_radius, inner = kSuctionBore * outer;
   TriangleMesh mesh;
   // (ring, side) of the outer wall, then of the inner; the last outer ring lies at the far end of the tube
   const auto place = [](bool is_inner, std::uint32_t ring, std::uint32_t side) {
@@ -229,7 +228,7 @@ std::vector<ToolPart> MakeParts(const Tool& tool) {
     case ToolKind::kHook:
       return {{Kind::kShaft, MakeElectrodeShaft(tool)}, {Kind::kTip, MakeHook(tool)}};
     case ToolKind::kSuctionIrrigator: {
-      const double r = 0.97 * kBoreRadius * tool.shaft_radius;
+      const double r = 0.97 * kSuctionBore * tool.shaft_radius;
       return {
           {Kind::kShaft, MakeSuctionTube(tool)},
           {Kind::kBore, geometry::MakeTube({{{0, 0, 0.0008}, {0, 0, kBoreDepth - 0.001}}, {r, r}}, kSides)}};

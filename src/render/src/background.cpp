@@ -4,10 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "noise.h"
 #include "trocar/geometry/mesh_topology.h"
+#include "trocar/geometry/omentum.h"
 #include "trocar/geometry/primitives.h"
 #include "trocar/geometry/tube.h"
+#include "trocar/math/noise.h"
 
 namespace trocar::render {
 namespace {
@@ -53,36 +54,11 @@ TriangleMesh MakeWall(std::span<const Vec3> inside) {
   for (std::size_t i = 0; i < radii.size(); ++i) {
     const Vec3 d = wall.positions[i];
     // shallow folds, outwards only
-    const double fold = 0.003 * (1.0 + CalcGradientNoise(5.0 * d, 0));
+    const double fold = 0.003 * (1.0 + math::CalcGradientNoise(5.0 * d, 0));
     wall.positions[i] = kWallCentre + (radii[i] + fold) * d;
   }
   for (auto& triangle : wall.triangles) std::swap(triangle[1], triangle[2]);
   return wall;
-}
-
-/// Height field of fat lobules that passes under every obstacle.
-TriangleMesh MakeOmentum(std::span<const Obstacle> above) {
-  constexpr double kSpacing = 0.0042;
-  constexpr int kColumns = 90, kRows = 83;
-  constexpr Vec3 kCorner{-0.190, -0.150, 0};
-  TriangleMesh bed = geometry::MakeTriangularLattice(kColumns, kRows, kSpacing);
-  for (Vec3& p : bed.positions) {
-    p += kCorner;
-    const double slow = CalcGradientNoise(18.0 * p, 0);
-    const CellNoise lobule = CalcCellNoise(62.0 * p, 0), small = CalcCellNoise(140.0 * p, 0);
-    const double bulge =
-        0.0065 * (0.8 - lobule.nearest * lobule.nearest) + 0.0022 * (0.8 - small.nearest * small.nearest);
-    // the omentum hangs over the middle and falls away to the flanks
-    const double side = p.x / 0.19;
-    double floor = -0.112 - 0.035 * side * side + 0.012 * slow;
-    for (const Obstacle& o : above) {
-      const double aside = std::hypot(p.x - o.centre.x, p.y - o.centre.y);
-      const double limit = o.centre.z - o.radius - 0.004 + 1.1 * std::max(0.0, aside - o.radius);
-      floor = std::min(floor, limit);
-    }
-    p.z = floor + bulge;
-  }
-  return bed;
 }
 
 /// Bowel: a tube with bulges (haustra) `pitch` apart.
@@ -94,8 +70,8 @@ TriangleMesh MakeBowel(std::vector<Vec3> points, double radius, double pitch, do
   for (std::size_t i = 0; i < line.points.size(); ++i) {
     if (i > 0) along += math::Distance(line.points[i], line.points[i - 1]);
     const double wave = std::fabs(std::sin(M_PI * along / pitch));
-    line.radii[i] =
-        radius * (1.0 - depth + depth * std::sqrt(wave) + 0.08 * CalcGradientNoise(30.0 * line.points[i], 0));
+    line.radii[i] = radius * (1.0 - depth + depth * std::sqrt(wave) +
+                              0.08 * math::CalcGradientNoise(30.0 * line.points[i], 0));
   }
   return geometry::MakeTube(line, 28);
 }
@@ -103,7 +79,8 @@ TriangleMesh MakeBowel(std::vector<Vec3> points, double radius, double pitch, do
 TriangleMesh MakeStomach() {
   TriangleMesh stomach = geometry::MakeSphere({0, 0, 0}, 1.0, 4);
   for (Vec3& p : stomach.positions) {
-    const double swell = 1.0 + 0.10 * CalcGradientNoise(1.7 * p, 0) + 0.02 * CalcGradientNoise(6.0 * p, 0);
+    const double swell =
+        1.0 + 0.10 * math::CalcGradientNoise(1.7 * p, 0) + 0.02 * math::CalcGradientNoise(6.0 * p, 0);
     p = Vec3{0.085, 0.085, -0.150} + swell * Vec3{0.062 * p.x, 0.045 * p.y, 0.040 * p.z};
   }
   return stomach;
@@ -122,7 +99,7 @@ std::vector<BackgroundPart> MakeAbdomen(std::span<const Vec3> inside, std::span<
                               {0.120, 0.030, -0.130}},
                              0.021, 0.026, 0.22)});
   parts.push_back({"stomach", Material::kBowel, MakeStomach()});
-  parts.push_back({"omentum", Material::kFat, MakeOmentum(above)});
+  parts.push_back({"omentum", Material::kFat, geometry::MakeOmentum(above)});
   parts.push_back({"wall", Material::kPeritoneum, MakeWall(inside)});
   return parts;
 }

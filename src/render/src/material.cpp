@@ -11,10 +11,10 @@ namespace trocar::render {
 namespace {
 
 constexpr std::string_view kNames[] = {
-    "liver",         "gallbladder",  "duct",        "artery",        "fat",   "bowel", "peritoneum",
-    "shaft",         "steel",        "sleeve",      "force",         "fibre", "film",  "blood",
-    "bile",          "rinse",        "lumen",       "titanium",      "pouch", "spark", "red_rubber",
-    "yellow_rubber", "green_rubber", "blue_rubber", "white_plastic", "mark"};
+    "liver",      "gallbladder",   "duct",         "artery",      "fat",           "bowel", "peritoneum",
+    "shaft",      "steel",         "sleeve",       "force",       "fibre",         "film",  "blood",
+    "bile",       "rinse",         "lumen",        "titanium",    "pouch",         "stone", "spark",
+    "red_rubber", "yellow_rubber", "green_rubber", "blue_rubber", "white_plastic", "mark"};
 static_assert(std::size(kNames) == static_cast<std::size_t>(Material::kCount));
 
 /// Linear reflectance of an sRGB byte triple, as a colour picker on a photograph shows it.
@@ -213,6 +213,18 @@ std::array<MaterialLook, static_cast<std::size_t>(Material::kCount)> MakeLooks()
                             .wet_exponent = 180,
                             .sheen = 0.04f,
                             .opacity = 0.28f};
+  look(Material::kStone) = {.low = FromSrgb(104, 74, 30),
+                            .high = FromSrgb(206, 168, 92),
+                            .cell = FromSrgb(80, 54, 24),
+                            .cell_amount = 0.22f,
+                            .vessel_amount = 0.0f,
+                            .detail_tile = {0.006f, 0.006f, 0.006f},
+                            .broad_tile = 0.008f,
+                            .bump_tile = 0.006f,
+                            .bump = 0.16f,
+                            .wet = 0.35f,
+                            .wet_exponent = 110,
+                            .sheen = 0.08f};
   look(Material::kSpark) = {
       .low = FromSrgb(190, 214, 255), .high = FromSrgb(255, 252, 255), .emission = 6.0f};
   const auto rubber = [&](Material material, const Colour& low, const Colour& high) {

@@ -3,61 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
+
+#include "trocar/math/noise.h"
 
 namespace trocar::render {
 namespace {
 
-std::uint32_t HashCell(int x, int y, int z) noexcept {
-  auto h = static_cast<std::uint32_t>(x) * 0x8da6b343u ^ static_cast<std::uint32_t>(y) * 0xd8163841u ^
-           static_cast<std::uint32_t>(z) * 0xcb1ab31fu;
-  h = (h ^ (h >> 16)) * 0x7feb352du;
-  h = (h ^ (h >> 15)) * 0x846ca68bu;
-  return h ^ (h >> 16);
-}
-
-int Wrap(int i, int period) noexcept {
-  return period == 0 ? i : ((i % period) + period) % period;
-}
-
-double CalcCornerSlope(std::uint32_t hash, double x, double y, double z) noexcept {
-  // the twelve edges of a cube, four of them twice
-  switch (hash & 15u) {
-    case 0:
-    case 12:
-      return x + y;
-    case 1:
-    case 13:
-      return -x + y;
-    case 2:
-      return x - y;
-    case 3:
-      return -x - y;
-    case 4:
-      return x + z;
-    case 5:
-      return -x + z;
-    case 6:
-      return x - z;
-    case 7:
-      return -x - z;
-    case 8:
-      return y + z;
-    case 9:
-    case 14:
-      return -y + z;
-    case 10:
-      return y - z;
-    default:
-      return -y - z;
-  }
-}
-
-double Fade(double t) noexcept {
-  return t * t * t * (t * (t * 6.0 - 15.0) + 10.0);
-}
-double Mix(double a, double b, double t) noexcept {
-  return a + t * (b - a);
+int Wrap(int i, int side) noexcept {
+  return ((i % side) + side) % side;
 }
 
 std::uint8_t ToByte(double value) noexcept {
@@ -65,49 +18,6 @@ std::uint8_t ToByte(double value) noexcept {
 }
 
 }  // namespace
-
-double CalcGradientNoise(const math::Vec3& p, int period) noexcept {
-  const double fx = std::floor(p.x), fy = std::floor(p.y), fz = std::floor(p.z);
-  const int x0 = Wrap(static_cast<int>(fx), period), x1 = Wrap(static_cast<int>(fx) + 1, period);
-  const int y0 = Wrap(static_cast<int>(fy), period), y1 = Wrap(static_cast<int>(fy) + 1, period);
-  const int z0 = Wrap(static_cast<int>(fz), period), z1 = Wrap(static_cast<int>(fz) + 1, period);
-  const double x = p.x - fx, y = p.y - fy, z = p.z - fz;
-  const double u = Fade(x), v = Fade(y), w = Fade(z);
-  const double a = Mix(Mix(CalcCornerSlope(HashCell(x0, y0, z0), x, y, z),
-                           CalcCornerSlope(HashCell(x1, y0, z0), x - 1, y, z), u),
-                       Mix(CalcCornerSlope(HashCell(x0, y1, z0), x, y - 1, z),
-                           CalcCornerSlope(HashCell(x1, y1, z0), x - 1, y - 1, z), u),
-                       v);
-  const double b = Mix(Mix(CalcCornerSlope(HashCell(x0, y0, z1), x, y, z - 1),
-                           CalcCornerSlope(HashCell(x1, y0, z1), x - 1, y, z - 1), u),
-                       Mix(CalcCornerSlope(HashCell(x0, y1, z1), x, y - 1, z - 1),
-                           CalcCornerSlope(HashCell(x1, y1, z1), x - 1, y - 1, z - 1), u),
-                       v);
-  return Mix(a, b, w);
-}
-
-CellNoise CalcCellNoise(const math::Vec3& p, int period) noexcept {
-  const int cx = static_cast<int>(std::floor(p.x)), cy = static_cast<int>(std::floor(p.y)),
-            cz = static_cast<int>(std::floor(p.z));
-  CellNoise distance{1e9, 1e9};  // squared until the end
-  for (int dz = -1; dz <= 1; ++dz) {
-    for (int dy = -1; dy <= 1; ++dy) {
-      for (int dx = -1; dx <= 1; ++dx) {
-        const std::uint32_t hash =
-            HashCell(Wrap(cx + dx, period), Wrap(cy + dy, period), Wrap(cz + dz, period));
-        const math::Vec3 feature{cx + dx + (hash & 1023u) / 1023.0, cy + dy + ((hash >> 10) & 1023u) / 1023.0,
-                                 cz + dz + ((hash >> 20) & 1023u) / 1023.0};
-        const double d = math::SquaredDistance(feature, p);
-        if (d < distance.nearest) {
-          distance.second = std::exchange(distance.nearest, d);
-        } else if (d < distance.second) {
-          distance.second = d;
-        }
-      }
-    }
-  }
-  return {std::sqrt(distance.nearest), std::sqrt(distance.second)};
-}
 
 NoiseTiles MakeNoiseTiles(int side) {
   NoiseTiles tiles{side, {}, {}};
@@ -125,13 +35,14 @@ NoiseTiles MakeNoiseTiles(int side) {
     for (int y = 0; y < side; ++y) {
       for (int x = 0; x < side; ++x) {
         const math::Vec3 p = math::Vec3{double(x), double(y), double(z)} / side;
-        const double slow = CalcGradientNoise(4.0 * p, 4),
-                     middle = CalcGradientNoise(8.0 * p + math::Vec3{0.5, 0.5, 0.5}, 8);
-        const double fine = CalcGradientNoise(16.0 * p, 16);
-        const CellNoise cell = CalcCellNoise(8.0 * p, 8);
+        const double slow = math::CalcGradientNoise(4.0 * p, 4),
+                     middle = math::CalcGradientNoise(8.0 * p + math::Vec3{0.5, 0.5, 0.5}, 8);
+        const double fine = math::CalcGradientNoise(16.0 * p, 16);
+        const math::CellNoise cell = math::CalcCellNoise(8.0 * p, 8);
         // vessels run where a bent noise crosses zero
         const math::Vec3 bent = 3.0 * p + 0.25 * math::Vec3{slow, middle, -slow};
-        const double ridge = 1.0 - std::fabs(CalcGradientNoise(bent + math::Vec3{0.3, 0.7, 0.1}, 3)) * 3.0;
+        const double ridge =
+            1.0 - std::fabs(math::CalcGradientNoise(bent + math::Vec3{0.3, 0.7, 0.1}, 3)) * 3.0;
         const std::size_t i = index(x, y, z);
         tiles.pattern[4 * i] = ToByte(0.5 + 0.45 * slow + 0.30 * middle + 0.18 * fine);
         tiles.pattern[4 * i + 1] = ToByte(cell.nearest);

@@ -23,8 +23,10 @@ constexpr double kHydropsThickness = 0.6;   // "thin wall": a tunable
 constexpr double kHydropsFoundation = 5.0;  // tense, cannot be grasped: a tunable
 constexpr double kFibrosisStiffness = 5.0;  // of what holds ducts and arteries in the triangle: a tunable
 constexpr double kFibrosisBed = 2.0;        // likewise of the cystic plate: a tunable
-constexpr double kAdhesionReach = 0.015;    // longest strand [m]
-constexpr double kPatch = 0.012;            // size of a patch of adhesions [m]
+// "bed bleeds", "easy bleeding": general knowledge, no figures found, tunables
+constexpr double kCirrhosisBleeding = 4.0, kAcuteBleeding = 2.0;
+constexpr double kAdhesionReach = 0.015;  // longest strand [m]
+constexpr double kPatch = 0.012;          // size of a patch of adhesions [m]
 
 double NumberOf(const anatomy::Patient& patient, std::string_view name, double otherwise) {
   const anatomy::Parameter* parameter = patient.FindParameter(name);
@@ -56,6 +58,8 @@ Pathology CalcPathology(const anatomy::Patient& patient) {
   const double fibrosis = slider("triangle_fibrosis");
   pathology.tubes.foundation_modulus = Grow(kFibrosisStiffness, fibrosis);
   pathology.bed.young_modulus = Grow(kFibrosisBed, fibrosis);
+  pathology.bed_bleeding =
+      Grow(kCirrhosisBleeding, slider("cirrhosis")) * Grow(kAcuteBleeding, slider("acute_cholecystitis"));
   pathology.adhesions = std::clamp(slider("adhesions"), 0.0, 1.0);
   return pathology;
 }

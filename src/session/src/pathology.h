@@ -22,6 +22,8 @@ struct Pathology {
   MaterialFactors liver, gallbladder, bed, tubes;
   /// Share of the gallbladder's free wall near the liver that has grown to it [0, 1].
   double adhesions = 0;
+  /// How much more the liver's bed bleeds where the gallbladder is torn off it [-].
+  double bed_bleeding = 1;
 
   friend bool operator==(const Pathology&, const Pathology&) = default;
 };

@@ -61,11 +61,18 @@ void ReadInstrument(const core::JsonView& root, const char* hand, const anatomy:
 void ReadOperation(const core::JsonView& root, const anatomy::Patient& patient, Scene& scene) {
   if (!root.Has("operation")) return;
   const core::JsonView view = root.Object("operation");
-  view.AllowOnly({"fat_spacing_mm", "assistant"});
+  view.AllowOnly({"fat_spacing_mm", "assistant", "gallstones"});
   OperationSetup setup;
   setup.fat_spacing = 0.001 * view.NumberOr("fat_spacing_mm", 1e3 * setup.fat_spacing, {0.0, 10.0});
   if (setup.fat_spacing > 0.0 && setup.fat_spacing < 0.0015)
     view.Complain("fat_spacing_mm must be 0, for none, or at least 1.5");
+  if (view.Has("gallstones")) {
+    const core::JsonView stones = view.Object("gallstones");
+    stones.AllowOnly({"count", "median_diameter_mm"});
+    setup.gallstones.count = stones.Integer("count", {0, surgery::kMostGallstones});
+    setup.gallstones.median_diameter =
+        0.001 * stones.NumberOr("median_diameter_mm", 1e3 * setup.gallstones.median_diameter, {1.0, 30.0});
+  }
   if (patient.tubes.empty())
     view.Complain(
         "the patient has no ducts; an operation needs them: place a template with trocar anatomy edit");

@@ -9,8 +9,8 @@
 namespace trocar::session {
 
 TissueNow Simulation::Content::GetTissue() noexcept {
-  return {&tissue_model, &definition_now, &tissue,       conservation.get(),
-          &conserved,    touch.Organs(),  &touch.Tubes()};
+  return {&tissue_model, &definition_now, &tissue,        conservation.get(),
+          &conserved,    touch.Organs(),  &touch.Tubes(), std::span(torn_springs).first(torn_spring_count)};
 }
 
 /// What the tools do beyond grasping and pushing.
@@ -21,6 +21,8 @@ void Simulation::Content::Operate(const Input& input) noexcept {
   hands.joints = joints;
   for (int hand = 0; hand < kHandCount; ++hand)
     hands.X_proxy[hand] = touch.Proxy(hand), hands.X_device[hand] = touch.Device(hand);
+  hands.forces = forces;
+  hands.gravity = load.gravity + kImagingGravity;
   hands.changes = changes;
   hands.grasps = &grasps;
   hands.camera = {CalcLaparoscopePose(scene->laparoscope, instrument::ClampJoints(input.laparoscope, limits)),

@@ -32,6 +32,7 @@ void Simulation::Content::ReadInputs(const Input& input) noexcept {
 }
 
 void Simulation::Content::MoveInstruments(const Input& input) noexcept {
+  if (operation != nullptr) operation->BeginTick();
   for (int hand = 0; hand < kHandCount; ++hand) {
     instrument::JointLimits limits;
     limits.max_jaw = ToolOf(hand).max_jaw;
@@ -39,9 +40,12 @@ void Simulation::Content::MoveInstruments(const Input& input) noexcept {
     if (operation != nullptr && !operation->MoveTool(hand, input.controls[hand], grasps[hand].IsHolding(),
                                                      scene->tick_seconds, wanted))
       Note(EventKind::kExchangeRefused, hand, grasps[hand].surface, 0.0);
+    const double jaw_before = joints[hand].jaw;
     joints[hand] =
         instrument::LimitSpeed(joints[hand], wanted, kMaxTipSpeed, kMaxTurnRate, scene->tick_seconds);
     joints[hand].jaw = rigid.StopJaw(hand, joints[hand].jaw);
+    if (operation != nullptr)
+      joints[hand].jaw = operation->StopJaw(hand, jaw_before, joints[hand].jaw, grasps[hand].IsHolding());
   }
 }
 
@@ -83,7 +87,8 @@ void Simulation::Content::ActOnTissue() noexcept {
     const instrument::Tool& tool = ToolOf(hand);
     const bool can_grasp =
         tool.kind == instrument::ToolKind::kGrasper || tool.kind == instrument::ToolKind::kDissector;
-    if (!can_grasp && !grasps[hand].IsHolding()) continue;
+    const bool has_stone = operation != nullptr && operation->HoldsStone(hand);
+    if ((!can_grasp || has_stone) && !grasps[hand].IsHolding()) continue;
     changes[hand] =
         surgery::UpdateGrasp(tool, touch.Proxy(hand), touch.Device(hand), joints[hand].jaw, touch.Organs(),
                              &touch.Tubes(), tissue_model, grasp_settings, grasps[hand], tissue);

@@ -42,6 +42,14 @@ std::string_view EventName(EventKind kind) noexcept {
       return "no_clips_left";
     case EventKind::kUsedOutside:
       return "used_outside";
+    case EventKind::kClipSlipped:
+      return "clip_slipped";
+    case EventKind::kStoneSpilled:
+      return "stone_spilled";
+    case EventKind::kStoneTaken:
+      return "stone_taken";
+    case EventKind::kStoneRetrieved:
+      return "stone_retrieved";
     case EventKind::kOperationError:
       break;
   }

@@ -12,21 +12,13 @@
 
 #include "operation/connective_tissue.h"
 #include "operation/vessel_map.h"
+#include "operation_harness.h"
 #include "trocar/anatomy/generate_patient.h"
 #include "trocar/session/simulation.h"
 #include "trocar/session/surgeon.h"
 
 namespace trocar::session {
 namespace {
-
-std::shared_ptr<const Scene> OperationScene() {
-  static const std::shared_ptr<const Scene> scene = [] {
-    auto read = ReadScene(std::filesystem::path(TROCAR_SOURCE_DIR) / "scenes/cholecystectomy.json");
-    EXPECT_TRUE(read.ok()) << (read.ok() ? "" : read.error().Text());
-    return std::make_shared<const Scene>(std::move(*read));
-  }();
-  return scene;
-}
 
 Simulation MakeOperation() {
   auto made = Simulation::Make(OperationScene(), 1);

@@ -32,9 +32,17 @@ constexpr Row kRows[kOperationErrorCount] = {
      "Two clips lie across each other: neither holds safely."},
     {OperationError::kClipPartial, Severity::kMajor, "clip_partial",
      "A clip does not reach around the whole structure. Bring its heel to the vessel and see both tips."},
+    {OperationError::kClipSlipped, Severity::kMajor, "clip_slipped",
+     "A clip slipped off the end of a divided structure. It must reach around the whole of it, cross no "
+     "other clip and be left "
+     "alone."},
     {OperationError::kBleeding, Severity::kMajor, "bleeding", "More than 50 mL of blood were lost."},
     {OperationError::kGallbladderPerforated, Severity::kMajor, "gallbladder_perforated",
      "The gallbladder was opened: bile and stones spill."},
+    {OperationError::kStonesLeft, Severity::kMajor, "stones_left",
+     "Spilled stones were left in the abdomen, where they may cause abscesses. Suck up the small ones and "
+     "put the others into "
+     "the bag."},
     {OperationError::kLiverBurnt, Severity::kMajor, "liver_burnt",
      "The electrode burnt deep into the liver. Stay in the plane of the cystic plate."},
     {OperationError::kEnergyNearDuct, Severity::kMajor, "energy_near_duct",

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 namespace trocar::view {
 namespace {
@@ -13,7 +14,9 @@ constexpr double kLeastRate = 1e-10;   // m^3/s; slower than a drop in five minu
 constexpr double kFullRate = 1e-6;     // m^3/s, of a cystic artery: the film is at its widest
 constexpr double kWidth = 0.0035;      // m, of the slowest run
 constexpr double kWidthGain = 0.0045;  // m
-constexpr double kLength = 0.006, kLengthGain = 0.034;  // m
+constexpr double kFullOoze = 5e-10;    // m^3/s, of a fibre of the bed that has just been torn
+constexpr double kOozeWidth = 0.0030, kOozeLength = 0.004;  // m
+constexpr double kLength = 0.006, kLengthGain = 0.034;      // m
 
 }  // namespace
 
@@ -26,6 +29,11 @@ Film::Film(const session::Snapshot& snapshot) : down_(math::Normalized(snapshot.
     const double flow = std::clamp(std::pow(leak.rate / kFullRate, 0.3), 0.0, 1.5);
     runs_.push_back({leak.position, kWidth + kWidthGain * flow, kLength + kLengthGain * flow,
                      std::min(1.0, 0.45 + 0.6 * flow), leak.fluid == surgery::Fluid::kBlood});
+  }
+  for (const session::OozeSnapshot& ooze : std::span(operation.oozes).first(operation.ooze_count)) {
+    const double flow = std::clamp(std::sqrt(ooze.rate / kFullOoze), 0.0, 1.0);
+    runs_.push_back(
+        {ooze.position, kOozeWidth * (0.5 + 0.5 * flow), kOozeLength * flow, 0.25 + 0.5 * flow, true});
   }
 }
 

@@ -16,12 +16,14 @@
 #include "liquids.h"
 #include "object_view.h"
 #include "organ_shape.h"
+#include "stone_view.h"
 #include "strand_field.h"
 #include "trocar/core/assert.h"
 #include "trocar/geometry/mesh_measures.h"
 #include "trocar/geometry/mesh_topology.h"
 #include "trocar/render/background.h"
 #include "trocar/render/openness.h"
+#include "trocar/session/ground.h"
 #include "tube_shape.h"
 
 namespace trocar::view {
@@ -70,6 +72,7 @@ struct LaparoscopeView::Content {
   std::optional<std::uint32_t> topology_version;  // that the shapes have
   HandTools tools;
   ClipShapes clips;
+  StoneView stones;
   std::optional<StrandField> strands;
   std::optional<Pool> pool;
   std::vector<render::SurfaceDraw> background;
@@ -103,22 +106,18 @@ struct LaparoscopeView::Content {
   }
 
   /// The abdomen round the organs, and how open every surface lies in it.
-  void AddSurroundings() {
+  void AddSurroundings(std::span<const SurfaceInfo> surfaces, const Snapshot& start) {
     std::vector<Vec3> inside;
-    std::vector<render::Obstacle> above;
     std::vector<TriangleMesh> meshes;
     const auto surround = [&](const auto& shape) {
       const std::span<const Vec3> positions = shape.Positions();
       const std::span<const Triangle> triangles = shape.Triangles();
       inside.insert(inside.end(), positions.begin(), positions.end());
-      // the liver lies on bowel and omentum, everything smaller must stay in sight
-      if (shape.GetMaterial() != Material::kLiver)
-        for (std::size_t v = 0; v < positions.size(); v += 3) above.push_back({positions[v], 0.002});
       meshes.push_back({{positions.begin(), positions.end()}, {triangles.begin(), triangles.end()}});
     };
     for (const OrganShape& organ : organs) surround(organ);
     for (const TubeShape& tube : tubes) surround(tube);
-    auto parts = render::MakeAbdomen(inside, above);
+    auto parts = render::MakeAbdomen(inside, session::FindOmentumBalls(surfaces, start.positions));
     for (auto& part : parts) meshes.push_back(part.mesh);
     std::vector<const TriangleMesh*> occluders;
     for (const TriangleMesh& mesh : meshes) occluders.push_back(&mesh);
@@ -228,7 +227,7 @@ core::Result<LaparoscopeView> LaparoscopeView::Make(const session::Scene& scene,
   content->objects.Add(content->renderer, scene, start);
   content->bands.Add(content->renderer, scene, strands, start.positions);
   if (scene.objects.empty() || scene.HasPatient()) {
-    content->AddSurroundings();
+    content->AddSurroundings(surfaces, start);
   } else {
     content->AddModel();
     content->light_scale = kTrainerLight;
@@ -262,6 +261,7 @@ void LaparoscopeView::Update(const Snapshot& snapshot) {
   c.frame.puddles.clear();
   c.tools.AddTo(c.frame, snapshot);
   c.clips.AddTo(c.renderer, c.frame, snapshot.operation);
+  c.stones.AddTo(c.renderer, c.frame, snapshot.operation);
   c.UpdateShapes(snapshot);
   c.strands->AddTo(c.frame, snapshot);
   AddStreams(c.frame, snapshot);

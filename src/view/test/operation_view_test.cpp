@@ -321,6 +321,44 @@ TEST_F(OperationViewTest, ThePoolLiesInTheHollowsOfTheGround) {
   EXPECT_GT(view_->GetFrame().puddles[0].centre.z, few) << "more stands higher";
 }
 
+TEST_F(OperationViewTest, StonesAreSeenOnceTheyAreOut) {
+  MakeView();
+  const Image clean = Draw();
+  now_.operation.stones.assign(3, {});
+  session::StoneSnapshot& stone = now_.operation.stones[1];
+  stone = {{0.001, 0.004, -0.083}, 0.002, session::StonePlace::kInside, -1};
+  EXPECT_EQ(Draw(), clean);
+  for (const auto place : {session::StonePlace::kSpilled, session::StonePlace::kHeld}) {
+    stone.place = place;
+    const Change change = CountChanges(clean, Draw(), stone.position, 0.0024);
+    EXPECT_GT(change.near, 20);
+    EXPECT_EQ(change.far, 0);
+    EXPECT_GT(change.mean[0], 1.15 * change.mean[2]) << "yellow-brown";
+  }
+  // another of another size in its place, as in another operation
+  stone.radius = 0.004;
+  EXPECT_GT(CountChanges(clean, Draw(), stone.position, 0.0048).near, 100);
+  for (const auto place :
+       {session::StonePlace::kInBag, session::StonePlace::kAspirated, session::StonePlace::kTakenOut}) {
+    stone.place = place;
+    EXPECT_EQ(Draw(), clean);
+  }
+}
+
+TEST_F(OperationViewTest, WhereTheBedOozesTheTissueIsRed) {
+  MakeView();
+  const Image dry = Draw();
+  now_.operation.oozes[0] = {{0, 0.006, -0.0863}, 5e-10};
+  EXPECT_EQ(Draw(), dry) << "not counted yet";
+  now_.operation.ooze_count = 1;
+  const Image wet = Draw();
+  const Change change = CountChanges(dry, wet, {0, 0.004, -0.0863}, 0.010);
+  EXPECT_GT(change.near, 15);
+  EXPECT_EQ(change.far, 0) << "a spot, no stream";
+  const Change before = CountChanges(wet, dry, {0, 0.004, -0.0863}, 0.010);
+  EXPECT_GT(change.mean[0] / change.mean[1], 1.1 * before.mean[0] / before.mean[1]);
+}
+
 TEST_F(OperationViewTest, SmokeVeilsThePictureAndClears) {
   MakeView();
   const Image clear = Draw();

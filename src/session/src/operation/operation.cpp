@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pathology.h"
+
 namespace trocar::session {
 namespace {
 
@@ -16,6 +18,7 @@ constexpr double kTipIn = 0.08;          // a tool this deep has been pushed in 
 constexpr double kBlindSeconds = 1.5;
 /// Where blood and bile gather, seen from the infundibulum: to the right and behind, in Morison's pouch [m].
 constexpr Vec3 kPouch{-0.015, 0.0, -0.025};
+constexpr double kBelowAll = -0.03;   // under the lowest organ: what falls beside everything stops there [m]
 constexpr double kSmokeFades = 0.08;  // share of the smoke a second that leaves with the gas [1/s]
 
 }  // namespace
@@ -23,6 +26,10 @@ constexpr double kSmokeFades = 0.08;  // share of the smoke a second that leaves
 core::Result<std::unique_ptr<Operation>> Operation::Make(const Scene& scene, const PatientTissue& tissue) {
   std::unique_ptr<Operation> made(new Operation(scene, tissue.strands));
   made->made_ = std::make_shared<PatientTissue>(tissue);
+  auto stones = StoneWork::Make(scene, tissue.surfaces, tissue.definition.rest);
+  if (!stones.ok()) return stones.error();
+  made->stones_ = std::move(*stones);
+  made->loose_clips_.reserve(surgery::VesselActs::kMostClips);
   if (const auto status = made->MakeAll(); !status.ok()) return status.error();
   return made;
 }
@@ -97,6 +104,12 @@ core::Status Operation::MakeAll() {
   const anatomy::Landmark* neck = patient.FindLandmark("infundibulum");
   p_pool_ = (neck != nullptr ? neck->position : Vec3{}) + kPouch;
   fluids_ = {};
+  holes_ = {};
+  stones_.Reset();
+  MakeOoze();
+  deepest_ = kBelowAll;
+  for (const Vec3& p : tissue.definition.rest) deepest_ = std::min(deepest_, p.z + kBelowAll);
+  X_world_tools_ = {};
   active_ = {};
   for (int hand = 0; hand < kHandCount; ++hand) {
     HandState& state = hands_[static_cast<std::size_t>(hand)];
@@ -107,7 +120,7 @@ core::Status Operation::MakeAll() {
   }
   leaked_seen_ = open_area_ = smoke_ = 0;
   topology_version_ = 0;
-  is_in_bag_ = is_completed_ = false;
+  is_in_bag_ = is_completed_ = was_completed_ = false;
   bag_hand_ = -1;
   note_count_ = told_errors_ = 0;
   band_strands_.clear();
@@ -119,6 +132,17 @@ core::Status Operation::MakeAll() {
     band_starts_.push_back(static_cast<std::uint32_t>(band_strands_.size()));
   }
   return {};
+}
+
+/// What bleeds where the gallbladder comes off the liver.
+void Operation::MakeOoze() {
+  std::vector<std::uint32_t> on_liver(strands_.size(), BedOoze::kNoNode);
+  for (std::size_t i = 0; i < strands_.size(); ++i) {
+    for (const std::uint32_t node : {strands_[i].a, strands_[i].b}) {
+      if (IsOf(node, liver_)) on_liver[i] = node;
+    }
+  }
+  ooze_ = BedOoze(strands_, on_liver, CalcPathology(scene_->patient).bed_bleeding);
 }
 
 void Operation::Tell(const OperationNote& note) noexcept {
@@ -143,7 +167,9 @@ bool Operation::MoveTool(int hand, const HandControls& controls, bool is_holding
   HandState& state = hands_[static_cast<std::size_t>(hand)];
   std::size_t& active = active_[static_cast<std::size_t>(hand)];
   const bool wants_other = controls.tool != active && controls.tool < scene_->instruments[hand].tray.size();
-  const bool may = !is_holding || bag_hand_ == hand;
+  // a stone goes out with the tool that holds it, where the trocar is wide enough
+  const bool is_stuck = HoldsStone(hand) && stones_.HeldDiameter(hand) > WidestTool(hand);
+  const bool may = (!is_holding && !is_stuck) || bag_hand_ == hand;
   if (!wants_other || !may) {
     const bool is_refused = wants_other && !state.was_refused;
     state.was_refused = wants_other;
@@ -159,6 +185,7 @@ bool Operation::MoveTool(int hand, const HandControls& controls, bool is_holding
     is_completed_ = is_in_bag_;
     return true;
   }
+  TellRetrieved(hand, stones_.TakeOut(hand));
   active = controls.tool;
   state.exchange_seconds = 0;
   state.blade = {};
@@ -170,9 +197,20 @@ bool Operation::MoveTool(int hand, const HandControls& controls, bool is_holding
   return true;
 }
 
+/// Diameter of what passes a hand's trocar: of its widest tool [m].
+double Operation::WidestTool(int hand) const noexcept {
+  double widest = 0;
+  for (const instrument::Tool& tool : scene_->instruments[hand].tray)
+    widest = std::max(widest, 2.0 * tool.shaft_radius);
+  return widest;
+}
+
+void Operation::BeginTick() noexcept {
+  note_count_ = 0;
+}
+
 bool Operation::Act(const HandsNow& hands, const TissueNow& tissue) noexcept {
   change_.Clear();
-  note_count_ = 0;
   for (int hand = 0; hand < kHandCount; ++hand) {
     hands_[static_cast<std::size_t>(hand)].has_current = false;
     WatchImpossible(hand, hands);
@@ -213,6 +251,7 @@ bool Operation::Act(const HandsNow& hands, const TissueNow& tissue) noexcept {
   }
   for (std::size_t i = 0; i < sheets_.size(); ++i) sheets_[i].Update(organs_[i].Mesh());
   ++topology_version_;
+  stones_.ForgetSupports();
   return true;
 }
 
@@ -222,12 +261,20 @@ void Operation::Judge(const HandsNow& hands, const TissueNow& tissue) noexcept {
   if (gallbladder_ >= 0) {
     const double leaked = conserved.organs[static_cast<std::size_t>(gallbladder_)].leaked - leaked_seen_;
     if (leaked > 0.0) fluids_.Leak(surgery::Fluid::kBile, leaked);
+    SpillStones(leaked, tissue);
   }
   vessels_->Flow(hands.seconds, gallbladder_, conserved, fluids_);
+  SlipClips(hands, tissue);
+  fluids_.Leak(surgery::Fluid::kBlood,
+               ooze_.Update(*tissue.state, heat_, made_->definition.rest.size(), hands.seconds));
+  MoveLoose(hands, tissue);
   if (gallbladder_ >= 0) leaked_seen_ = conserved.organs[static_cast<std::size_t>(gallbladder_)].leaked;
   smoke_ = std::clamp(smoke_ * (1.0 - kSmokeFades * hands.seconds), 0.0, 1.0);
   watch_.Update(*tissue.state, *vessels_, tissue.organs, hands.camera);
   judge_.Update(watch_, fluids_, is_in_bag_, is_completed_, p_pool_, hands.time, hands.seconds);
+  if (is_completed_ && !was_completed_ && stones_.Count().spilled > 0)
+    judge_.Report(OperationError::kStonesLeft, p_pool_, -1, hands.time);
+  was_completed_ = is_completed_;
   for (; told_errors_ < judge_.Errors().Entries().size(); ++told_errors_) {
     const training::ErrorEntry& entry = judge_.Errors().Entries()[told_errors_];
     Tell({EventKind::kOperationError, entry.hand, -1, static_cast<std::int32_t>(entry.error), entry.place});
@@ -324,6 +371,7 @@ void Operation::Size(OperationSnapshot& snapshot) const {
   snapshot.clips.assign(surgery::VesselActs::kMostClips, {});
   snapshot.band_is_whole.assign(band_starts_.size() - 1, 1);
   snapshot.sheets.assign(sheets_.size(), {});
+  stones_.Size(snapshot);
   snapshot.tube_pieces.assign(vessels_->Tubes().Graph().edges.size() + kSpare.tubes / 2, {});
   std::size_t triangles = 0;
   snapshot.first_triangle.clear();
@@ -366,6 +414,8 @@ void Operation::Publish(const tissue::TissueState& tissue, OperationSnapshot& sn
     snapshot.topology_version = topology_version_;
   }
   vessels_->Publish(tissue.position, organs_.size(), snapshot);
+  ooze_.Publish(tissue.position, snapshot);
+  stones_.Publish(snapshot);
   snapshot.fluids = fluids_;
   snapshot.p_world_pool = p_pool_;
   snapshot.smoke = smoke_;
@@ -396,6 +446,9 @@ OperationResult Operation::Result() const {
   surgery::FlowNetwork network = vessels_->Map().network;
   result.injuries = training::JudgeInjuries(vessels_->Map().anatomy, vessels_->Acts(), network);
   result.fluids = fluids_;
+  result.bed_blood = ooze_.Lost();
+  result.stones = stones_.Count();
+  result.injuries.spilled_stones = result.stones.spilled;
   result.phase = judge_.Phases().Current();
   result.is_gallbladder_free = watch_.IsGallbladderFree();
   result.is_in_bag = is_in_bag_;
@@ -405,6 +458,8 @@ OperationResult Operation::Result() const {
 
 void Operation::AddTo(core::StateHash& hash) const {
   vessels_->AddTo(hash);
+  stones_.AddTo(hash);
+  ooze_.AddTo(hash);
   if (assistant_) assistant_->AddTo(hash);
   for (std::size_t h = 0; h < active_.size(); ++h) {
     hash.Add(std::uint64_t{active_[h]});

@@ -10,11 +10,13 @@
 #include <vector>
 
 #include "assistant.h"
+#include "bed_ooze.h"
 #include "dissection_watch.h"
 #include "electrosurgery.h"
 #include "operation_judge.h"
 #include "patient_tissue.h"
 #include "sheet_watch.h"
+#include "stone_work.h"
 #include "trocar/surgery/cuttable_organ.h"
 #include "vessel_work.h"
 
@@ -27,6 +29,8 @@ struct HandsNow {
   std::array<Pose, kHandCount> X_proxy, X_device;
   std::array<surgery::GraspChange, kHandCount> changes{};
   std::array<surgery::Grasp, kHandCount>* grasps = nullptr;
+  std::array<Vec3, kHandCount> forces;  ///< on the tools in the tick before, world frame [N]
+  Vec3 gravity;                         ///< [m/s^2]
   Camera camera;
   double time = 0;     ///< [s]
   double seconds = 0;  ///< of the tick
@@ -41,6 +45,7 @@ struct TissueNow {
   tissue::ConservationState* conserved = nullptr;
   std::span<const surgery::OrganSurface> organs;
   const surgery::TubeSet* tubes = nullptr;
+  std::span<const std::uint32_t> torn_springs;  ///< of walls, in this tick
 };
 
 /// Something that an operation tells: it becomes an event of the tick.
@@ -65,6 +70,9 @@ class Operation {
   /// Neither an organ nor a duct or vessel has been cut.
   bool IsUncut() const { return topology_version_ == 0; }
 
+  /// First of all in a tick: what the one before told is forgotten.
+  void BeginTick() noexcept;
+
   // --- tools
 
   const instrument::Tool& Tool(int hand) const {
@@ -76,6 +84,12 @@ class Operation {
   /// \note Real-time safe.
   bool MoveTool(int hand, const HandControls& controls, bool is_holding, double seconds,
                 instrument::TrocarJoints& wanted) noexcept;
+
+  /// What stones between the jaws leave of their movement; stones are taken and let go here.
+  /// \param is_holding  tissue
+  /// \note Real-time safe.
+  double StopJaw(int hand, double jaw_before, double jaw, bool is_holding) noexcept;
+  bool HoldsStone(int hand) const { return stones_.HeldBy(hand) >= 0; }
 
   // --- the stages of a tick
 
@@ -122,6 +136,8 @@ class Operation {
   Operation(const Scene& scene, std::vector<StrandInfo> strands)
       : scene_(&scene), strands_(std::move(strands)) {}
   core::Status MakeAll();
+  void MakeOoze();
+  double WidestTool(int hand) const noexcept;
   void UseBlade(int hand, const HandsNow& hands, const TissueNow& tissue) noexcept;
   void CutWith(const surgery::BladeMove& move, int hand, const HandsNow& hands, const TissueNow& tissue,
                bool cuts_strands) noexcept;
@@ -131,6 +147,10 @@ class Operation {
   void UseFluids(int hand, const HandsNow& hands) noexcept;
   void UseBag(int hand, const HandsNow& hands, const TissueNow& tissue) noexcept;
   void Burn(const HandsNow& hands, const TissueNow& tissue) noexcept;
+  void SpillStones(double leaked, const TissueNow& tissue) noexcept;
+  void MoveLoose(const HandsNow& hands, const TissueNow& tissue) noexcept;
+  void SlipClips(const HandsNow& hands, const TissueNow& tissue) noexcept;
+  void TellRetrieved(int hand, int count) noexcept;
   void WatchHands(const HandsNow& hands) noexcept;
   void WatchImpossible(int hand, const HandsNow& hands) noexcept;
   training::Target TargetOf(const TissueNow& tissue, std::uint32_t part) const noexcept;
@@ -156,12 +176,18 @@ class Operation {
   std::uint32_t assistant_node_ = 0;  // of what it takes
   surgery::TopologyChange change_;
   surgery::FluidLedger fluids_;
+  WallHoles holes_;  // of the gallbladder
+  StoneWork stones_;
+  BedOoze ooze_;
+  std::vector<surgery::LooseStone*> loose_clips_;  // scratch
+  double deepest_ = 0;                             // z below which nothing falls [m]
 
   std::array<std::size_t, kHandCount> active_{};
   std::array<HandState, kHandCount> hands_;
+  std::array<Pose, kHandCount> X_world_tools_;  // that are seen, in the tick before
   double leaked_seen_ = 0, open_area_ = 0, smoke_ = 0;
   std::uint32_t topology_version_ = 0;
-  bool is_in_bag_ = false, is_completed_ = false;
+  bool is_in_bag_ = false, is_completed_ = false, was_completed_ = false;
   std::int32_t bag_hand_ = -1;
   std::array<OperationNote, 8> notes_{};
   std::size_t note_count_ = 0, told_errors_ = 0;

@@ -16,11 +16,14 @@ using training::Verb;
 // Electrosurgery; domain facts, section 1.3: 20 to 40 W
 constexpr double kCutPower = 35.0, kCoagulatePower = 25.0;      // [W]
 constexpr double kCutReach = 0.0008, kCoagulateReach = 0.0012;  // of the current beside the metal [m]
-constexpr double kIdleSeconds = 0.25;    // of current into nothing that no eye would note
-constexpr double kNearDuct = 0.005;      // domain facts, section 1.4 [m]
-constexpr double kSealReach = 0.003;     // [m]
-constexpr double kSealHeat = 15.0;       // that shuts the end of a small vessel [J]
-constexpr double kBurntHole = 1e-6;      // left by a node that was burnt through [m^2]
+constexpr double kIdleSeconds = 0.25;  // of current into nothing that no eye would note
+constexpr double kNearDuct = 0.005;    // domain facts, section 1.4 [m]
+constexpr double kSealReach = 0.003;   // [m]
+constexpr double kSealHeat = 15.0;     // that shuts the end of a small vessel [J]
+constexpr double kBurntHole = 1e-6;    // left by a node that was burnt through [m^2]
+/// Rim of that hole [m]: a slit as long as the hook's toe (domain facts, section 1.3). Its lips lie on each other, so that bile
+/// finds the smaller area and a stone the whole rim.
+constexpr double kBurntRim = 2 * 0.0045;
 constexpr double kSmokeByHeat = 0.0012;  // [1/J]
 
 // Clip applier: closed and open again, as shares of its opening
@@ -198,6 +201,7 @@ void Operation::Burn(const HandsNow& hands, const TissueNow& tissue) noexcept {
     TubePlace place;
     if (IsOf(parted[i], gallbladder_)) {
       tissue.conservation->Perforate(static_cast<std::size_t>(gallbladder_), kBurntHole, *tissue.conserved);
+      holes_.Add(parted[i], kBurntRim);
       judge_.Report(OperationError::kGallbladderPerforated, p, hand, hands.time);
     } else if (IsOf(parted[i], liver_)) {
       judge_.Report(OperationError::kLiverBurnt, p, hand, hands.time);
@@ -264,6 +268,8 @@ void Operation::UseFluids(int hand, const HandsNow& hands) noexcept {
   }
   if (!controls.aspirate) return;
   smoke_ *= std::max(0.0, 1.0 - kSmokeSucked * hands.seconds);
+  TellRetrieved(hand, stones_.Aspirate(hands.X_proxy[h].translation,
+                                       2.0 * instrument::kSuctionBore * Tool(hand).shaft_radius));
   // the pool as a half sphere
   const double radius = std::cbrt(fluids_.Pooled() * 3.0 / (2.0 * M_PI));
   if (math::Distance(hands.X_proxy[h].translation, p_pool_) > radius + kSuctionReach) return;
@@ -274,6 +280,7 @@ void Operation::UseFluids(int hand, const HandsNow& hands) noexcept {
 void Operation::UseBag(int hand, const HandsNow& hands, const TissueNow& tissue) noexcept {
   const auto h = static_cast<std::size_t>(hand);
   judge_.Note({InstrumentKind::kSpecimenBag, Verb::kPack, training::Target::kGallbladder}, hand);
+  if (!is_in_bag_) TellRetrieved(hand, stones_.CatchInBag(hands.X_device[h]));
   if (is_in_bag_ || gallbladder_ < 0 || !watch_.IsGallbladderFree()) return;
   const SurfaceInfo& surface = made_->surfaces[static_cast<std::size_t>(gallbladder_)];
   Vec3 centre;
@@ -299,6 +306,7 @@ void Operation::UseBag(int hand, const HandsNow& hands, const TissueNow& tissue)
     held.p_tool_node[held.count++] = X_tool_world * tissue.state->position[node];
     tissue.state->condition[node] = tissue::NodeCondition::kPrescribed;
   }
+  TellRetrieved(hand, stones_.BagWith(gallbladder_));
   is_in_bag_ = true;
   bag_hand_ = hand;
 }

@@ -13,8 +13,9 @@ namespace {
 constexpr double kCatch = 0.0015;
 /// Width of a clip along the vessel: two that are nearer lie over each other [m].
 constexpr double kClipWidth = 0.0012;
-constexpr double kDrawnAway = 0.004;   // a vessel that is farther from the closed jaws is out of them [m]
-constexpr double kClosedGap = 0.0006;  // between the legs of a clip [m]
+constexpr double kDrawnAway = 0.004;    // a vessel that is farther from the closed jaws is out of them [m]
+constexpr double kClipHeight = 0.0012;  // of its middle over what it lies on, when it is lost [m]
+constexpr double kClosedGap = 0.0006;   // between the legs of a clip [m]
 /// Heat seals vessels up to this radius inside [m]: a millimetre across is held to be safe, more is not.
 constexpr double kMostSealed = 0.0009;
 /// Bile left in a gallbladder that cannot run out, as a share of what there was.
@@ -116,6 +117,7 @@ ClipResult VesselWork::Clip(const instrument::Tool& tool, const Pose& X_world_to
   Clipped clip;
   clip.legs = math::Normalized(tip - hinge);
   clip.gap = kClosedGap;
+  clip.loose.radius = kClipHeight;
   // what was between the legs may have been cut, or drawn away
   bool is_there = caught && std::any_of(edges.begin(), edges.end(), [&](const geometry::Edge& edge) {
                     return edge[0] == caught->a && edge[1] == caught->b;
@@ -127,7 +129,7 @@ ClipResult VesselWork::Clip(const instrument::Tool& tool, const Pose& X_world_to
   }
   if (!is_there) {
     clip.is_lost = true;
-    clip.p_lost = tip;
+    clip.loose.position = clip.loose.anchor = tip;
     clips_.push_back(clip);
     return result;
   }
@@ -138,16 +140,18 @@ ClipResult VesselWork::Clip(const instrument::Tool& tool, const Pose& X_world_to
   const double closure = std::clamp(inside / (2.0 * half), 0.0, 1.0);
   clip.a = caught->a, clip.b = caught->b, clip.t = caught->t;
   clip.place = {tube_of_[clip.a], std::lerp(arc_of_[clip.a], arc_of_[clip.b], clip.t)};
-  for (const Clipped& other : clips_) {
+  for (Clipped& other : clips_) {
     if (!other.is_lost && other.place.tube == clip.place.tube &&
         std::fabs(other.place.arc - clip.place.arc) < kClipWidth)
-      result.is_crossed = true;
+      result.is_crossed = other.is_weak = true;
   }
   const VesselPlace place = map_.Find(clip.place.tube, clip.place.arc);
+  clip.act = static_cast<std::uint32_t>(acts_.clips.size());
   acts_.clips.push_back({place.vessel, place.position, closure});
   result.place = clip.place;
   clip.closure = closure;
-  clip.is_crossed = result.is_crossed;
+  clip.is_crossed = clip.is_weak = result.is_crossed;
+  clip.vessel_radius = caught->radius;
   result.kind = closure < 0.999 ? ClipResult::Kind::kPartial : ClipResult::Kind::kClosed;
   clips_.push_back(clip);
   return result;
@@ -224,7 +228,7 @@ void VesselWork::Publish(std::span<const Vec3> position, std::size_t organ_count
     shown.is_crossed = clip.is_crossed;
     shown.closure = clip.closure;
     if (clip.is_lost) {
-      shown.X_world_clip = {math::Quaternion{}, clip.p_lost};
+      shown.X_world_clip = {math::Quaternion{}, clip.loose.position};
       continue;
     }
     shown.p_rest = RestPoint(clip.place);
@@ -257,6 +261,10 @@ void VesselWork::AddTo(core::StateHash& hash) const {
   hash.Add(std::uint64_t{acts_.clips.size()});
   for (const surgery::VesselClip& clip : acts_.clips)
     hash.Add(std::uint64_t{clip.vessel}), hash.Add(clip.position), hash.Add(clip.closure);
+  for (const Clipped& clip : clips_) {
+    const Vec3& p = clip.loose.position;
+    if (clip.is_lost) hash.Add(p.x), hash.Add(p.y), hash.Add(p.z);
+  }
   for (const surgery::VesselOpening& opening : acts_.openings) {
     hash.Add(std::uint64_t{opening.vessel});
     for (const double value : {opening.position, opening.area, opening.sealed[0], opening.sealed[1]})

@@ -12,6 +12,7 @@
 #include "trocar/instrument/tool.h"
 #include "trocar/session/simulation.h"
 #include "trocar/surgery/cuttable_tubes.h"
+#include "trocar/surgery/gallstones.h"
 #include "trocar/tissue/conservation.h"
 #include "vessel_map.h"
 
@@ -32,6 +33,17 @@ struct ClipResult {
   } kind = Kind::kLost;
   TubePlace place;
   bool is_crossed = false;  ///< lies over another clip
+};
+
+/// A hand that holds a duct or vessel.
+struct ClipPull {
+  std::span<const std::uint32_t> nodes;  ///< that it holds
+  Vec3 force;                            ///< with which it pulls, world frame [N]
+};
+
+struct SlippedClip {
+  TubePlace place;
+  Vec3 position;  ///< where it fell off, world frame [m]
 };
 
 /// The ducts and arteries of one operation. Points of the graph of CuttableTubes are points here.
@@ -76,6 +88,16 @@ class VesselWork {
   ClipResult Clip(const instrument::Tool& tool, const Pose& X_world_tool, const std::optional<Caught>& caught,
                   std::span<const Vec3> position) noexcept;
 
+  /// Clips slip towards the end of a stump where pressure or pull is more than they withstand: see surgery/clip_hold.h.
+  /// After Flow, whose pressures it takes.
+  /// \param[out] slipped  that fell off; others have to wait for the next tick
+  /// \return how many
+  /// \note Real-time safe.
+  std::size_t Slip(double seconds, std::span<const ClipPull> pulls, std::span<const Vec3> position,
+                   std::span<SlippedClip> slipped) noexcept;
+  /// Adds the lost clips, which fall as stones do, as far as `loose` has room.
+  void FindLooseClips(std::vector<surgery::LooseStone*>& loose) noexcept;
+
   /// Makes a hole where a node of a tube was burnt through.
   /// \return false where the node is of no tube, or there is no room
   bool MakeHole(std::uint32_t node, double area, TubePlace& place) noexcept;
@@ -108,8 +130,18 @@ class VesselWork {
     double gap = 0;              // [m]
     bool is_lost = false, is_crossed = false;
     double closure = 0;
-    Vec3 p_lost;  // where it lies
+    bool is_weak = false;       // it crosses another, or another it
+    double vessel_radius = 0;   // outside [m]
+    std::uint32_t act = 0;      // in acts_.clips, unless it closed around nothing
+    surgery::LooseStone loose;  // where it lies when it is lost
     TubePlace place;
+  };
+  /// What is left of a vessel on one side of a cut.
+  struct Stump {
+    std::uint32_t vessel = 0;
+    double sign = 1;           // +1: the cut lies towards the vessel's `to` end, as seen from the stump
+    double cut = 0, root = 0;  // places of its end and of where it is fed [m]
+    double pressure = 0;       // [Pa]
   };
   /// The end points of an opening.
   struct OpeningEnds {
@@ -117,6 +149,11 @@ class VesselWork {
     TubePlace place;
   };
   void MoveClips(const geometry::CentreLineCut& cut) noexcept;
+  double CalcPull(const Clipped& clip, const Stump& stump, std::span<const Vec3> position,
+                  std::span<const ClipPull> pulls) const noexcept;
+  void Reseat(Clipped& clip) noexcept;
+  std::size_t SlipStump(const Stump& stump, double seconds, std::span<const ClipPull> pulls,
+                        std::span<const Vec3> position, std::span<SlippedClip> slipped) noexcept;
 
   VesselMap map_;
   surgery::CuttableTubes tubes_;

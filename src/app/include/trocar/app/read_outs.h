@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -51,6 +52,8 @@ std::string ToolLabel(const session::Scene& scene, const session::Snapshot& snap
 std::string FormatMillilitres(double volume);
 /// What has left the vessels and organs, and what of it still lies there: "12.0 mL, 3.5 mL in the abdomen".
 std::string DescribeFluid(const surgery::FluidLedger& fluids, surgery::Fluid fluid);
+/// Gallstones outside of the gallbladder: "none spilled", "3 in the abdomen, 2 retrieved".
+std::string DescribeStones(std::span<const session::StoneSnapshot> stones);
 /// "waits", "retracts the fundus", ...
 std::string DescribeAssistant(session::AssistantCommand command, bool is_holding);
 

@@ -44,6 +44,8 @@ struct Tool {
 /// \return nullptr for an unknown one
 const Tool* FindTool(std::string_view name) noexcept;
 
+/// Bore of a suction-irrigator, as a share of its outer radius [-].
+inline constexpr double kSuctionBore = 0.72;
 /// Mouth of the retrieval bag: a spring ring that begins at the tool's tip and lies ahead of it, in the plane y = 0;
 /// the pouch hangs towards -y.
 inline constexpr double kBagMouth = 0.060;  ///< its diameter [m]

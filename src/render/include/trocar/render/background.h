@@ -1,23 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file background.h  The insufflated abdomen round the organs: wall, omentum, colon, stomach, duodenum.
 ///
-/// Decoration: it is generated, belongs to no patient, and nothing in the simulation touches it.
+/// Decoration: it is generated, belongs to no patient, and nothing in the simulation touches it but stones that fell,
+/// which lie on the omentum (geometry/omentum.h).
 #pragma once
 
 #include <span>
 #include <string>
 #include <vector>
 
+#include "trocar/geometry/omentum.h"
 #include "trocar/geometry/triangle_mesh.h"
 #include "trocar/render/material.h"
 
 namespace trocar::render {
 
-/// Where the background must keep away: a ball [m].
-struct Obstacle {
-  math::Vec3 centre;
-  double radius = 0;
-};
+/// Where the background must keep away.
+using Obstacle = geometry::Ball;
 
 struct BackgroundPart {
   std::string name;

@@ -27,6 +27,7 @@ enum class Material {
   kLumen,        ///< the dark inside of a cut duct, vessel or tube
   kTitanium,     ///< clips
   kPouch,        ///< thin plastic of the retrieval bag; light passes through
+  kStone,        ///< gallstone: yellow-brown cholesterol, dull
   kSpark,        ///< current through the air
   kRedRubber,    ///< things of training tasks
   kYellowRubber,
@@ -38,7 +39,7 @@ enum class Material {
 };
 
 /// "liver", "gallbladder", "duct", "artery", "fat", "bowel", "peritoneum", "shaft", "steel", "sleeve",
-/// "force", "fibre", "film", "blood", "bile", "rinse", "lumen", "titanium", "pouch", "spark", "red_rubber",
+/// "force", "fibre", "film", "blood", "bile", "rinse", "lumen", "titanium", "pouch", "stone", "spark", "red_rubber",
 /// "yellow_rubber", "green_rubber", "blue_rubber", "white_plastic", "mark".
 std::string_view MaterialName(Material material) noexcept;
 /// The material of that name, or nothing.

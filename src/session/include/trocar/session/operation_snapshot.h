@@ -57,6 +57,29 @@ struct StrandInfo {
   std::int32_t band = -1;  ///< index in ModelSetup::bands, or -1
 };
 
+/// Where a gallstone is.
+enum class StonePlace : std::uint8_t {
+  kInside,   ///< of the gallbladder
+  kSpilled,  ///< in the abdomen
+  kHeld,     ///< between the jaws of `hand`
+  kInBag,    ///< of its own; what is in the gallbladder goes with that
+  kAspirated,
+  kTakenOut  ///< through a trocar
+};
+
+struct StoneSnapshot {
+  math::Vec3 position;  ///< of its centre, world frame [m]; of a spilled or held one
+  double radius = 0;    ///< [m]
+  StonePlace place = StonePlace::kInside;
+  std::int32_t hand = -1;  ///< that holds it
+};
+
+/// Where liver bleeds from what was torn off it without heat.
+struct OozeSnapshot {
+  math::Vec3 position;  ///< world frame [m]
+  double rate = 0;      ///< [m^3/s]
+};
+
 /// How a sheet is cut along the circle that is drawn on it. Places and lengths are those of the sheet at rest.
 struct SheetSnapshot {
   double cut_length = 0;  ///< [m]
@@ -90,6 +113,9 @@ struct OperationSnapshot {
   std::vector<SheetSnapshot> sheets;        ///< (ModelSetup::sheets)
   std::array<LeakSnapshot, 32> leaks{};
   std::size_t leak_count = 0;
+  std::array<OozeSnapshot, 32> oozes{};  ///< the first ooze_count count: those that bleed most
+  std::size_t ooze_count = 0;
+  std::vector<StoneSnapshot> stones;  ///< the patient's gallstones
   surgery::FluidLedger fluids;
   math::Vec3 p_world_pool;  ///< lowest place, where blood, bile and rinse gather [m]
   double smoke = 0;         ///< in the view, 0 none to 1 thick [-]

@@ -17,6 +17,7 @@
 #include "trocar/session/input.h"
 #include "trocar/session/scene_object.h"
 #include "trocar/session/task.h"
+#include "trocar/surgery/gallstones.h"
 #include "trocar/tissue/tissue_model.h"
 
 namespace trocar::session {
@@ -66,6 +67,8 @@ struct AssistantSetup {
 struct OperationSetup {
   double fat_spacing = 0.0022;  ///< of the lobules in the hepatocystic triangle [m]; 0: none
   std::optional<AssistantSetup> assistant;
+  /// Of a patient whose parameters say nothing of stones.
+  surgery::GallstoneSettings gallstones;
 };
 
 /// A cord between two fixed points, of pieces one after the other: divided when one of them is.

@@ -75,12 +75,16 @@ enum class EventKind {
   kTubeCut,          ///< a duct or vessel was cut through
   kNoClipsLeft,      ///< a clip applier was closed that is empty
   kUsedOutside,      ///< a pedal was pressed, or blades or clips closed, while the tool is out of its trocar
+  kClipSlipped,      ///< a clip slipped off the end of a duct or vessel
+  kStoneSpilled,     ///< a stone left the gallbladder through a hole
+  kStoneTaken,       ///< a spilled stone was grasped
+  kStoneRetrieved,   ///< it was sucked up, put into the bag, or taken out
   kOperationError    ///< `error` says which
 };
-inline constexpr EventKind kLastEventKind = EventKind::kUsedOutside;  // the last that a rule may name
+inline constexpr EventKind kLastEventKind = EventKind::kStoneRetrieved;  // the last that a rule may name
 /// "grasp", "release", "slip", "grasp_missed", "state_restored", "organ_frozen", "tear",
 /// "pinch_damage", "tools_touch", "exchange_refused", "clip_closed", "tube_cut",
-/// "no_clips_left", "used_outside", "operation_error"
+/// "no_clips_left", "used_outside", "clip_slipped", "stone_spilled", "stone_taken", "stone_retrieved", "operation_error"
 std::string_view EventName(EventKind kind) noexcept;
 
 struct Event {

@@ -67,6 +67,7 @@ struct InjuryReport {
   double bile_rate = 0;                       ///< that still leaks [m^3/s]
   double blood_rate = 0;                      ///< [m^3/s]
   int structures_entering = 0;                ///< ducts and arteries still joined to the gallbladder
+  int spilled_stones = 0;                     ///< in the abdomen, not retrieved; the caller counts them
   /// Vessels that were clipped or cut though they must not be.
   std::vector<std::uint32_t> wrong_vessels;
 

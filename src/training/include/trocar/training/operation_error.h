@@ -27,8 +27,10 @@ enum class OperationError : std::uint8_t {
   kTooFewClips,  ///< fewer than two stay with the patient
   kClipCrossed,
   kClipPartial,
-  kBleeding,  ///< more than 50 mL
+  kClipSlipped,  ///< off the end of what it closed
+  kBleeding,     ///< more than 50 mL
   kGallbladderPerforated,
+  kStonesLeft,  ///< spilled and not retrieved, when the gallbladder has left
   kLiverBurnt,
   kEnergyNearDuct,  ///< current within 5 mm of a main duct
   kEnergyOutOfView,
