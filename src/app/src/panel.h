@@ -64,7 +64,8 @@ class Panel : public Gtk::ScrolledWindow {
   Gtk::Box* operation_card_ = nullptr;  // hidden where there is one tool a hand, and nothing else to do
   std::array<Gtk::DropDown, session::kHandCount> trays_;
   Gtk::DropDown assistant_;
-  Gtk::Label *clips_ = nullptr, *blood_ = nullptr, *bile_ = nullptr, *stones_ = nullptr, *assistant_does_ = nullptr;
+  Gtk::Label *clips_ = nullptr, *blood_ = nullptr, *bile_ = nullptr, *stones_ = nullptr,
+             *assistant_does_ = nullptr;
   Gtk::Box* patient_card_ = nullptr;
   Gtk::Label patient_name_, patient_organs_, patient_source_;
   std::vector<std::unique_ptr<SliderRow>> sliders_;
