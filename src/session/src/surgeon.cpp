@@ -122,6 +122,8 @@ const SurgeonEntry kOperators[] = {
      MakeCarelessOperator<OperationFlaw::kClipsPartly>},
     {"bleeds", "cuts the cystic artery and watches", "bleeding", IsCholecystectomy,
      MakeCarelessOperator<OperationFlaw::kBleeds>},
+    {"slips_clip", "closes a clip around the edge of the cystic artery and cuts it", "clip_slipped",
+     IsCholecystectomy, MakeCarelessOperator<OperationFlaw::kSlipsClip>},
     {"perforates", "burns the gallbladder", "gallbladder_perforated", IsCholecystectomy,
      MakeCarelessOperator<OperationFlaw::kPerforates>},
     {"burns_liver", "burns the liver", "liver_burnt", IsCholecystectomy,

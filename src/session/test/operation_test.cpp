@@ -213,7 +213,7 @@ TEST_P(CarelessSurgeon, IsCaught) {
 INSTANTIATE_TEST_SUITE_P(All, CarelessSurgeon,
                          testing::Values("clips_main_duct", "cuts_main_duct", "burns_main_duct",
                                          "cuts_unclipped", "clips_early", "too_few_clips", "crosses_clips",
-                                         "clips_partly", "bleeds", "perforates", "burns_liver",
+                                         "clips_partly", "bleeds", "slips_clip", "perforates", "burns_liver",
                                          "burns_near_duct", "burns_unseen", "burns_air", "drops_clip",
                                          "grasps_liver", "pulls_hard", "cuts_liver", "inserts_blind"),
                          [](const auto& surgeon) { return surgeon.param; });

@@ -138,6 +138,13 @@ void CholecystectomySurgeon::PlanFlaw(OperationFlaw flaw) {
       CutTube(artery, 0.65);
       Wait(60.0);
       break;
+    case OperationFlaw::kSlipsClip:
+      clip();
+      PlaceClip(artery, 0.75, 0.0);
+      scissors();
+      CutTube(artery, 0.5);
+      Wait(10.0);
+      break;
     case OperationFlaw::kPerforates:
       Burn(
           kRight, [this](const Snapshot& seen) { return HookTip(seen.positions[neck_]); }, 10.0);

@@ -37,6 +37,7 @@ enum class OperationFlaw {
   kCrossesClips,
   kClipsPartly,
   kBleeds,
+  kSlipsClip,
   kPerforates,
   kBurnsLiver,
   kBurnsNearDuct,
