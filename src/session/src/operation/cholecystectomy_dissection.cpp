@@ -2,7 +2,6 @@
 // Sharp dissection: the hook goes from fibre to fibre, with current only while one lies on it.
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <limits>
 #include <utility>
 
@@ -22,12 +21,11 @@ constexpr double kBackSeconds = 0.4;
 constexpr double kOpenShare = 6.0, kFarCost = 1.5, kAttemptCost = 0.02, kHiddenCost = 0.06;
 /// The shaft's way is looked at from the first to the second distance from the tip; so far from organs it is free [m].
 constexpr double kWayFrom = 0.009, kWayTo = 0.07, kShaftClear = 0.0045;
-constexpr double kHidden = 0.0015;        // what the shaft cannot pass by so far is not tried [m]
-constexpr double kOnToe = 0.0030;         // of the hook's toe, from the tip to where a fibre lies on it [m]
-constexpr double kMiddleOfToe = 0.00225;  // [m]
-constexpr int kSpins = 8;                 // ways to turn the hook about its shaft
-constexpr double kTurnCost = 0.0004;      // of such a turn, against what the shaft passes by [m/rad]
-constexpr std::size_t kShortList = 32;    // fibres whose way is looked at
+constexpr double kHidden = 0.0015;      // what the shaft cannot pass by so far is not tried [m]
+constexpr double kOnToe = 0.0030;       // of the hook's toe, from the tip to where a fibre lies on it [m]
+constexpr int kSpins = 8;               // ways to turn the hook about its shaft
+constexpr double kTurnCost = 0.0004;    // of such a turn, against what the shaft passes by [m/rad]
+constexpr std::size_t kShortList = 32;  // fibres whose way is looked at
 /// A fibre is gone to directly from so near, else from so far above [m].
 constexpr double kNextTo = 0.010, kAbove = 0.022;
 /// A fibre this near to the wire is on the hook [m]; after so long beside it the hook turns back [s].
@@ -51,7 +49,8 @@ constexpr double kMoreParted = 0.03, kLittleParted = 0.004;
 
 /// Where the tip stands when the middle of the hook's toe is at a point.
 Vec3 CholecystectomySurgeon::HookTip(const Vec3& at) const {
-  return at - kMiddleOfToe * HookToe(at, hands_[kRight].Spin());
+  const geometry::BladeEdge toe = surgery::BladeSettings().p_tool_hook;
+  return at - 0.5 * math::Distance(toe.a, toe.b) * HookToe(at, hands_[kRight].Spin());
 }
 
 /// Unit vector along the hook's toe.

@@ -194,25 +194,26 @@ std::optional<instrument::TrocarJoints> CholecystectomySurgeon::FindSideView(con
   const Vec3 to_eye = math::Normalized(scene_->laparoscope.p_world_port - middle);
   const Vec3 along = TubeDirection(seen, duct, 0.5);
   const Vec3 across = math::Normalized(math::Cross(along, to_eye), {1, 0, 0});
-  for (int step = 0; step < kTurnSteps * 3; ++step) {
-    const double turn = (step / 3 % 2 == 0 ? 1 : -1) * kTurnStep * (1 + step / 6);
-    const double tilt = kTilts[step % 3];
-    for (const double distance : kDistances) {
-      ViewWish wish;
-      wish.p_world = middle;
-      wish.distance = distance;
-      wish.facing =
-          math::Rotate(math::RotationAbout(along, turn) * math::RotationAbout(across, tilt), to_eye);
-      const auto found = FindView(scene_->laparoscope, wish);
-      if (!found) continue;
-      const Pose X = CalcLaparoscopePose(scene_->laparoscope, *found);
-      if (side * CalcAzimuth(seen, X.translation) < kAside) continue;
-      const bool shows_all = std::all_of(points.begin(), points.end(), [&](const Vec3& p) {
-        const Vec3 end = p + kSkin * math::Normalized(X.translation - p);
-        return IsInView(X, scene_->laparoscope.field_of_view, p) &&
-               Clearance(seen, {X.translation, end}) > 0.0002;
-      });
-      if (shows_all) return found;
+  for (int step = 0; step < kTurnSteps; ++step) {
+    const double turn = (step % 2 == 0 ? 1 : -1) * kTurnStep * (1 + step / 2);
+    for (const double tilt : kTilts) {
+      const math::Quaternion turned = math::RotationAbout(along, turn) * math::RotationAbout(across, tilt);
+      for (const double distance : kDistances) {
+        ViewWish wish;
+        wish.p_world = middle;
+        wish.distance = distance;
+        wish.facing = math::Rotate(turned, to_eye);
+        const auto found = FindView(scene_->laparoscope, wish);
+        if (!found) continue;
+        const Pose X = CalcLaparoscopePose(scene_->laparoscope, *found);
+        if (side * CalcAzimuth(seen, X.translation) < kAside) continue;
+        const bool shows_all = std::all_of(points.begin(), points.end(), [&](const Vec3& p) {
+          const Vec3 end = p + kSkin * math::Normalized(X.translation - p);
+          return IsInView(X, scene_->laparoscope.field_of_view, p) &&
+                 Clearance(seen, {X.translation, end}) > 0.0002;
+        });
+        if (shows_all) return found;
+      }
     }
   }
   return std::nullopt;

@@ -68,7 +68,6 @@ class CholecystectomySurgeon final : public Surgeon {
     double most = 0;         ///< way in all; 0: it rests [m]
     double most_pull = 0;    ///< above which it gives way [N]
     std::vector<Vec3> ways;  ///< unit vectors, in turn when no fibre lies open any more
-    Nodes may_hold;          ///< of the gallbladder; none: any
     std::size_t way = 0;
     Vec3 p_hold;       ///< of the tip, when it began [m]
     double drawn = 0;  ///< [m]

@@ -26,7 +26,6 @@ constexpr double kSettled = 0.001;  // what the hand is not moved for [m]
 CholecystectomySurgeon::Traction CholecystectomySurgeon::PlanTraction(const DissectionGoal& goal) const {
   Traction traction;
   traction.most = goal.traction;
-  traction.may_hold = goal.may_hold;
   traction.most_pull = goal.may_hold ? kMostFreePull : kMostTiedPull;
   traction.fibres_before = goal.strands.size();
   if (goal.traction <= 0.0) return traction;
