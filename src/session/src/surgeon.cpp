@@ -126,6 +126,8 @@ const SurgeonEntry kOperators[] = {
      IsCholecystectomy, MakeCarelessOperator<OperationFlaw::kSlipsClip>},
     {"perforates", "burns the gallbladder", "gallbladder_perforated", IsCholecystectomy,
      MakeCarelessOperator<OperationFlaw::kPerforates>},
+    {"leaves_stones", "opens the free gallbladder, and leaves the stones that spill", "stones_left",
+     IsCholecystectomy, MakeCarelessOperator<OperationFlaw::kLeavesStones>},
     {"burns_liver", "burns the liver", "liver_burnt", IsCholecystectomy,
      MakeCarelessOperator<OperationFlaw::kBurnsLiver>},
     {"burns_near_duct", "uses current beside the common hepatic duct", "energy_near_duct", IsCholecystectomy,

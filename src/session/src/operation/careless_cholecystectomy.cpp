@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "cholecystectomy_surgeon.h"
 
 namespace trocar::session {
 namespace {
 
-constexpr double kStandOff = -0.012;    // of a tool's tip from the vessel while it is lined up [m]
-constexpr double kFromTips = 0.0018;    // of a vessel's axis, so that the clip reaches around it [m]
-constexpr double kAnother = 0.05;       // of a vessel's length, to another place for a clip
+constexpr double kStandOff = -0.012;  // of a tool's tip from the vessel while it is lined up [m]
+constexpr double kFromTips = 0.0018;  // of a vessel's axis, so that the clip reaches around it [m]
+constexpr double kAnother = 0.05;     // of a vessel's length, to another place for a clip
+constexpr double kBesideHold = 0.015, kBesideWeight = 4.0;  // of a place in the wall from the hold [m], [-]
+constexpr double kSpillSeconds = 8.0;                       // in which stones leave through a hole
 constexpr double kBetweenLegs = 0.003;  // of a clip applier's middle line, where a vessel is to be [m]
 
 Vec3 MeanPort(const Scene& scene) {
@@ -86,6 +90,18 @@ void CholecystectomySurgeon::CutTube(std::size_t tube, double share) {
       kRight, [this, tube, share](const Snapshot& seen) { return Aim(seen, tube, share, -0.020); }, 0.6);
 }
 
+/// Of the gallbladder, near what the left hand holds, so that it does not give way; towards the right hand's trocar.
+Vec3 CholecystectomySurgeon::WallBesideHold(const Snapshot& seen) const {
+  const SurfaceInfo& wall = surfaces_[static_cast<std::size_t>(scene_->patient.FindOrgan("gallbladder"))];
+  const auto positions = std::span(seen.positions).subspan(wall.first_node, wall.node_count);
+  const auto cost = [&](const Vec3& p) {
+    const double away = math::Distance(p, hands_[kLeft].Tip());
+    return math::Distance(p, hands_[kRight].Port()) + kBesideWeight * std::fabs(away - kBesideHold);
+  };
+  return *std::min_element(positions.begin(), positions.end(),
+                           [&](const Vec3& a, const Vec3& b) { return cost(a) < cost(b); });
+}
+
 void CholecystectomySurgeon::PlanFlaw(OperationFlaw flaw) {
   using instrument::ToolKind;
   const std::size_t duct = FindTube("cystic_duct"), artery = FindTube("cystic_artery"),
@@ -148,6 +164,13 @@ void CholecystectomySurgeon::PlanFlaw(OperationFlaw flaw) {
     case OperationFlaw::kPerforates:
       Burn(
           kRight, [this](const Snapshot& seen) { return HookTip(seen.positions[neck_]); }, 10.0);
+      break;
+    case OperationFlaw::kLeavesStones:
+      FreeGallbladder();
+      Burn(
+          kRight, [this](const Snapshot& seen) { return HookTip(WallBesideHold(seen)); }, 6.0);
+      Wait(kSpillSeconds);
+      Remove();
       break;
     case OperationFlaw::kBurnsLiver:
       Burn(

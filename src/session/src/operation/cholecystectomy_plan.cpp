@@ -32,6 +32,12 @@ constexpr double kBedStep = 0.2;  // of the bed's fibres, after which the hold i
 }  // namespace
 
 void CholecystectomySurgeon::PlanOperation() {
+  FreeGallbladder();
+  Remove();
+}
+
+/// From the first look until the gallbladder hangs on nothing.
+void CholecystectomySurgeon::FreeGallbladder() {
   const Place neck = [this](const Snapshot& seen) { return seen.positions[neck_]; };
   camera_follows_ = true;
   Add(
@@ -57,7 +63,6 @@ void CholecystectomySurgeon::PlanOperation() {
                           [&](std::size_t tube) { return IsDivided(seen, tube); });
   });
   FreeFromBed(kBedRounds);
-  Remove();
 }
 
 /// Takes the gallbladder with the left hand, clear of the liver, and again elsewhere when nothing was taken.

@@ -39,6 +39,7 @@ enum class OperationFlaw {
   kBleeds,
   kSlipsClip,
   kPerforates,
+  kLeavesStones,
   kBurnsLiver,
   kBurnsNearDuct,
   kBurnsUnseen,
@@ -131,6 +132,7 @@ class CholecystectomySurgeon final : public Surgeon {
   void Learn(PatientTissue tissue);
   void PlanOperation();
   void PlanFlaw(OperationFlaw flaw);
+  void FreeGallbladder();
 
   // verbs
   void Add(std::string doing, std::function<void(const Snapshot&)> begin,
@@ -224,6 +226,7 @@ class CholecystectomySurgeon final : public Surgeon {
   collision::SegmentSegmentPoints HookGap(const Snapshot& seen, std::uint32_t strand) const;
   /// That far beyond a point of a tube, as seen from the right hand's trocar; negative: before it.
   Vec3 Aim(const Snapshot& seen, std::size_t tube, double share, double ahead) const;
+  Vec3 WallBesideHold(const Snapshot& seen) const;
   HandMotion& HandOf(int hand) { return hands_[static_cast<std::size_t>(hand)]; }
 
   std::shared_ptr<const Scene> scene_;
