@@ -295,7 +295,7 @@ bool CholecystectomySurgeon::GoOnDissecting(Dissection& work, const Snapshot& se
     return true;
   }
   if (has_tried || (is_over && !is_stuck)) {
-    work.is_bold = has_tried;
+    work.is_bold = work.is_bold || has_tried;
     traction.swings_left = static_cast<int>(traction.ways.size());
   }
   if (is_stuck) {
