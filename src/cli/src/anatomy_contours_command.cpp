@@ -13,6 +13,7 @@ namespace {
 struct ContoursArguments {
   std::string images, points, reference, axes, script;
   double pixel_mm = 0, slice_mm = 0;  // 0: the files say it
+  int series = 0;                     // 0: there is one
 };
 
 core::Status Start(const ContoursArguments& arguments) {
@@ -26,6 +27,7 @@ core::Status Start(const ContoursArguments& arguments) {
   add("--script", arguments.script);
   if (arguments.pixel_mm > 0) add("--pixel-mm", std::to_string(arguments.pixel_mm));
   if (arguments.slice_mm > 0) add("--slice-mm", std::to_string(arguments.slice_mm));
+  if (arguments.series > 0) add("--series", std::to_string(arguments.series));
   return StartWindow(words);
 }
 
@@ -57,6 +59,9 @@ void AddAnatomyContoursCommand(CLI::App& anatomy, Outcome& outcome) {
                    "Distance from one slice number to the next, where the files do not say it")
       ->check(CLI::Range(0.01, 50.0))
       ->type_name("MM");
+  command->add_option("--series", arguments->series, "Which DICOM series, where a folder holds several")
+      ->check(CLI::Range(1, 100000))
+      ->type_name("N");
   command
       ->add_option(
           "--axes", arguments->axes,
