@@ -99,7 +99,7 @@ TEST_F(BuildFromVolume, ContoursAloneMakeAPatientThatTheScenesCanUse) {
   EXPECT_GE(patient.tubes.size(), 5u);
   for (const Tube& tube : patient.tubes) EXPECT_FALSE(tube.is_seen) << tube.name;
   // an umbilicus that is placed is the origin, and not there twice
-  points->landmarks.push_back({"umbilicus", points->first_slice, {40.0, 30.0}});
+  points->landmarks.push_back({"umbilicus", static_cast<double>(points->first_slice), {40.0, 30.0}});
   ASSERT_TRUE(WriteControlPoints(stack_.control_points, *points).ok());
   const auto placed = BuildPatient(stack_);
   ASSERT_TRUE(placed.ok()) << placed.error().Text();

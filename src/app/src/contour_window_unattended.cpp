@@ -37,9 +37,15 @@ bool ContourWindow::ReadScript() {
   if (is_script_read_ || options_.script.empty()) return true;
   is_script_read_ = true;
   const auto text = core::ReadFile(options_.script);
-  if (!text.ok()) return Abandon(text.error()), false;
+  if (!text.ok()) {
+    Abandon(text.error());
+    return false;
+  }
   auto steps = ParseContourScript(*text, options_.script.filename().string());
-  if (!steps.ok()) return Abandon(steps.error()), false;
+  if (!steps.ok()) {
+    Abandon(steps.error());
+    return false;
+  }
   script_.assign(steps->begin(), steps->end());
   return true;
 }

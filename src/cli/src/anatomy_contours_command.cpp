@@ -11,7 +11,7 @@ namespace trocar::cli {
 namespace {
 
 struct ContoursArguments {
-  std::string images, points, reference, axes, script;
+  std::string images, points, reference, axes, pattern, script;
   double pixel_mm = 0, slice_mm = 0;  // 0: the files say it
   int series = 0;                     // 0: there is one
 };
@@ -24,6 +24,7 @@ core::Status Start(const ContoursArguments& arguments) {
   add("--points", arguments.points);
   add("--reference", arguments.reference);
   add("--axes", arguments.axes);
+  add("--pattern", arguments.pattern);
   add("--script", arguments.script);
   if (arguments.pixel_mm > 0) add("--pixel-mm", std::to_string(arguments.pixel_mm));
   if (arguments.slice_mm > 0) add("--slice-mm", std::to_string(arguments.slice_mm));
@@ -59,6 +60,11 @@ void AddAnatomyContoursCommand(CLI::App& anatomy, Outcome& outcome) {
                    "Distance from one slice number to the next, where the files do not say it")
       ->check(CLI::Range(0.01, 50.0))
       ->type_name("MM");
+  command
+      ->add_option(
+          "--pattern", arguments->pattern,
+          "Only pictures with such names, where a folder holds several stacks: image-{slice:04}.jpeg")
+      ->type_name("NAME");
   command->add_option("--series", arguments->series, "Which DICOM series, where a folder holds several")
       ->check(CLI::Range(1, 100000))
       ->type_name("N");
