@@ -251,6 +251,7 @@ void ContourWindow::FinishLoading() {
   loading_.reset();
   Tell("");
   if (!opened.ok()) {
+    SetText(state_, "");
     if (opened.error().code == core::ErrorCode::kImageSpacingUnknown && AskForSizes()) return;
     if (!options_.screenshot.empty() || options_.is_measuring) return Abandon(opened.error());
     // what was typed may be what is wrong

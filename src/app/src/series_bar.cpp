@@ -16,16 +16,17 @@ SeriesBar::SeriesBar() : Gtk::Box(Gtk::Orientation::VERTICAL) {
   add_css_class("question");
   set_spacing(6);
   set_visible(false);
-  const auto add_text = [](Gtk::Box& box, const char* text) {
+  const auto add_text = [](Gtk::Box& box, const char* text, bool is_wrapped = false) {
     auto* label = Gtk::make_managed<Gtk::Label>(text);
     label->set_xalign(0);
-    label->set_wrap(true);
+    label->set_wrap(is_wrapped);
     box.append(*label);
   };
   add_text(
       *this,
       "The files do not say how large the patient is or how it lies. Say what you know of them; what they do "
-      "say can stay empty.");
+      "say can stay empty.",
+      true);
   auto* row = Gtk::make_managed<Gtk::Box>();
   row->set_spacing(8);
   const auto add_entry = [&](const char* name, Gtk::Entry& entry, const char* tooltip) {
