@@ -2,11 +2,14 @@
 // Source: NIfTI-1 and NIfTI-2 data format, nifti1.h and nifti2.h (method 1 to 3 of orientation).
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <optional>
+#include <string_view>
 
 #include "byte_source.h"
+#include "header_text.h"
 #include "reader.h"
 
 namespace trocar::anatomy::import {
@@ -110,11 +113,68 @@ void ReadFrame(const Fields& fields, const Layout& layout, double unit_mm, Image
   }
 }
 
-std::string ReadHeaderBytes(const InputFile& file, bool is_deflated) {
-  if (!is_deflated) return ReadBegin(file, kSecond.header_bytes);
-  std::string bytes(kSecond.header_bytes, '\0');
+std::string ReadHeaderBytes(const InputFile& file, bool is_deflated,
+                            std::size_t most = kSecond.header_bytes) {
+  if (!is_deflated) return ReadBegin(file, most);
+  std::string bytes(most, '\0');
   bytes.resize(OpenDeflated(file, 0)->Read(bytes.data(), bytes.size()));
   return bytes;
+}
+
+/// Text of an XML element after its start tag, without CDATA's brackets.
+std::string_view ElementText(std::string_view xml) {
+  constexpr std::string_view kOpen = "<![CDATA[";
+  xml = Trimmed(xml);
+  if (!xml.starts_with(kOpen)) return Trimmed(xml.substr(0, xml.find('<')));
+  xml.remove_prefix(kOpen.size());
+  return Trimmed(xml.substr(0, xml.find("]]>")));
+}
+
+/// Names of labels from a label table, <Label Key="5" ...><![CDATA[liver]]></Label>, which TotalSegmentator and
+/// Connectome Workbench (Caret) put into an extension of the header. What is no such element is passed over:
+/// extensions are anybody's.
+void ReadLabelTable(std::string_view xml, ImportReply& reply) {
+  constexpr std::string_view kElement = "<Label ", kKey = " Key=\"";
+  while (reply.header.segments < kMostSegments) {
+    const auto begin = xml.find(kElement);
+    if (begin == std::string_view::npos) return;
+    xml.remove_prefix(begin + kElement.size() - 1);
+    const auto end = xml.find('>');
+    if (end == std::string_view::npos) return;
+    const std::string_view attributes = xml.substr(0, end);
+    xml.remove_prefix(end + 1);
+    const auto key = attributes.find(kKey);
+    if (key == std::string_view::npos) continue;
+    const std::string_view digits = attributes.substr(key + kKey.size());
+    int label = 0;
+    const auto parsed = std::from_chars(digits.data(), digits.data() + digits.size(), label);
+    const std::string_view name = ElementText(xml);
+    if (parsed.ec != std::errc() || label < 1 || label > 255 || name.empty()) continue;
+    SegmentName& entry = reply.names[reply.header.segments++];
+    name.copy(entry.name, sizeof(entry.name) - 1);
+    entry.label = label;
+  }
+}
+
+/// Label tables among the extensions between the header and the voxels.
+///
+/// \param bytes  the file up to its voxels
+void ReadExtensions(std::string_view bytes, const Layout& layout, bool is_swapped, ImportReply& reply) {
+  std::size_t at = layout.header_bytes;
+  if (bytes.size() < at + 4 || bytes[at] == 0) return;
+  at += 4;
+  constexpr std::size_t kOwnBytes = 8;  // size and code of an extension
+  while (at + kOwnBytes <= bytes.size()) {
+    char raw[4];
+    bytes.copy(raw, sizeof(raw), at);
+    if (is_swapped) std::reverse(raw, raw + sizeof(raw));
+    std::int32_t size = 0;
+    std::memcpy(&size, raw, sizeof(raw));
+    if (size <= static_cast<std::int32_t>(kOwnBytes) || static_cast<std::size_t>(size) > bytes.size() - at)
+      return;
+    ReadLabelTable(bytes.substr(at + kOwnBytes, static_cast<std::size_t>(size) - kOwnBytes), reply);
+    at += static_cast<std::size_t>(size);
+  }
 }
 
 }  // namespace
@@ -188,6 +248,8 @@ void ReadNifti(const Job& job, ImportReply& reply) {
   CheckGeometry(header);
   CheckSize(header, job.request);
   CheckBytesPresent(header, stored, job.file, job.request);
+  if (const auto most = std::min<std::uint64_t>(stored.begin, kLongestHeader); most > layout.header_bytes + 4)
+    ReadExtensions(ReadHeaderBytes(job.file, is_deflated, most), layout, is_swapped, reply);
   if (job.samples != nullptr) ReadSamples(header, stored, job.file, job.samples);
 }
 

@@ -24,13 +24,15 @@ Error GivenUp() {
 
 core::Result<ImageSeries> OpenContouredSeries(const ControlPoints& points,
                                               const std::filesystem::path& folder,
-                                              const std::vector<int>& numbers, const Progress& progress) {
+                                              const std::vector<int>& numbers, const Progress& progress,
+                                              int dicom_series) {
   ImageSeriesOptions series_options;
   series_options.pixel_mm = points.pixel_mm;
   series_options.slice_mm = points.slice_mm;
   series_options.axes = points.axes;
   series_options.pattern = points.image_pattern;
   series_options.slices = numbers;
+  series_options.series = dicom_series;
   const auto series = ImageSeries::Open(folder, series_options, progress);
   if (!series.ok()) return series.error();
   const ImageSeriesInfo& info = series->Info();
@@ -47,8 +49,8 @@ core::Result<std::map<int, ColorImage>> ReadContouredSlices(const ControlPoints&
                                                             const std::filesystem::path& folder,
                                                             const std::vector<int>& numbers,
                                                             std::optional<DisplayWindow> window,
-                                                            const Progress& progress) {
-  const auto series = OpenContouredSeries(points, folder, numbers, progress);
+                                                            const Progress& progress, int dicom_series) {
+  const auto series = OpenContouredSeries(points, folder, numbers, progress, dicom_series);
   if (!series.ok()) return series.error();
   return ReadSlices(*series, numbers, window.value_or(series->Info().suggested_window), progress);
 }
@@ -60,8 +62,8 @@ bool FollowsSkippedSlices(const ControlPoints& points) {
 }
 
 core::Status ReadSkippedFrom(const ControlPoints& points, const std::filesystem::path& folder,
-                             std::optional<DisplayWindow> window, OrganOptions& options) {
-  const auto series = OpenContouredSeries(points, folder, {});
+                             std::optional<DisplayWindow> window, OrganOptions& options, int dicom_series) {
+  const auto series = OpenContouredSeries(points, folder, {}, {}, dicom_series);
   if (!series.ok()) {
     return Error{series.error().code,
                  series.error().message + "; without the slices that were skipped: skipped_shift_px 0"};

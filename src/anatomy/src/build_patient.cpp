@@ -56,14 +56,16 @@ core::Result<BuildReport> BuildPatient(const BuildOptions& options, const Progre
     for (const SliceContours& slice : structure.slices) used.insert(slice.slice);
   }
   const std::vector<int> numbers(used.begin(), used.end());
-  const auto images = ReadContouredSlices(*points, options.images, numbers, options.window, progress);
+  const auto images =
+      ReadContouredSlices(*points, options.images, numbers, options.window, progress, options.dicom_series);
   if (!images.ok()) return images.error();
   if (options.stop.stop_requested()) return given_up;
 
   OrganOptions organs{
       options.spacing_mm, options.gap_mm, reference ? &*reference : nullptr, options.stop, {}, {}};
   if (FollowsSkippedSlices(*points)) {
-    if (auto status = ReadSkippedFrom(*points, options.images, options.window, organs); !status)
+    if (auto status = ReadSkippedFrom(*points, options.images, options.window, organs, options.dicom_series);
+        !status)
       return status.error();
   }
   auto built = BuildOrgans(*points, *images, organs, progress);

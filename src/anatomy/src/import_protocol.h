@@ -74,7 +74,7 @@ struct ImageHeader {
   }
 };
 
-/// Name of a label in 3D Slicer's NRRD files.
+/// Name of a label, as 3D Slicer's NRRD and TotalSegmentator's NIfTI files have them.
 struct SegmentName {
   char name[60] = {};
   std::int32_t label = 0;

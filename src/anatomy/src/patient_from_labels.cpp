@@ -23,6 +23,8 @@ using math::Vec3;
 
 constexpr double kLargestVoxelMm = 20.0;
 constexpr double kMaxPixels = 4e6;  // of one slice after it was given square pixels
+// the same in the class maps total (version 2), total_v1 and total_mr
+constexpr int kTotalGallbladder = 4, kTotalLiver = 5;
 
 Error Mismatch(const std::string& why) {
   return {ErrorCode::kLabelsMismatch, why};
@@ -68,13 +70,21 @@ core::Result<OrganLabels> FindLabels(const LabelVolume& volume, const LabelOptio
       if (plain == "gallbladder") usual.gallbladder = label;
     }
     usual.convention = "segment names";
-    if (usual.liver == 0 || usual.gallbladder == 0) {
-      const bool is_total = counts[5] > counts[1] && counts[5] > counts[2];
-      usual = is_total ? OrganLabels{5, 2, "TotalSegmentator's numbers"} : OrganLabels{1, 2, "1 and 2"};
+    if (usual.liver == 0 && usual.gallbladder == 0) {
+      // spleen and right kidney are TotalSegmentator's 1 and 2: the liver is larger than both
+      const bool is_total = counts[kTotalLiver] > counts[1] && counts[kTotalLiver] > counts[2];
+      usual = is_total ? OrganLabels{kTotalLiver, kTotalGallbladder, "TotalSegmentator's numbers"}
+                       : OrganLabels{1, 2, "1 and 2"};
     }
     if (found.liver == 0) found.liver = usual.liver;
     if (found.gallbladder == 0) found.gallbladder = usual.gallbladder;
     found.convention = usual.convention;
+  }
+  // a number in place of a name that the file does not have would take some other organ
+  for (const auto& [name, label] : {std::pair{"liver", found.liver}, {"gallbladder", found.gallbladder}}) {
+    if (label != 0) continue;
+    return Mismatch("the label map names its labels, and none of them is the " + std::string(name) +
+                    "; say which one it is with --" + name);
   }
   std::string present;
   for (int label = 1; label < 256; ++label) {

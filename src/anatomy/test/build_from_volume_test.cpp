@@ -8,6 +8,7 @@
 #include "trocar/anatomy/build_patient.h"
 #include "trocar/anatomy/control_points.h"
 #include "trocar/anatomy/generate_patient.h"
+#include "trocar/anatomy/patient_lint.h"
 #include "trocar/anatomy/phantom.h"
 #include "trocar/core/safe_file.h"
 
@@ -81,6 +82,31 @@ TEST_F(BuildFromVolume, GivesTheSamePatientAsTheStack) {
   ASSERT_EQ(a->patient.organs.size(), b->patient.organs.size());
   for (std::size_t i = 0; i < a->patient.organs.size(); ++i)
     EXPECT_EQ(a->patient.organs[i].mesh.positions, b->patient.organs[i].mesh.positions);
+}
+
+// What the contour window writes for somebody's own pictures: contours, and nothing else.
+TEST_F(BuildFromVolume, ContoursAloneMakeAPatientThatTheScenesCanUse) {
+  auto points = ReadControlPoints(stack_.control_points);
+  ASSERT_TRUE(points.ok());
+  points->tubes.clear(), points->landmarks.clear(), points->origin_landmark.clear();
+  ASSERT_TRUE(WriteControlPoints(stack_.control_points, *points).ok());
+  const auto report = BuildPatient(stack_);
+  ASSERT_TRUE(report.ok()) << report.error().Text();
+  const Patient& patient = report->patient;
+  for (const LintFinding& finding : LintPatient(patient).findings)
+    ADD_FAILURE() << finding.code << " " << finding.where << ": " << finding.text;
+  EXPECT_LT(Distance(patient.FindLandmark("fundus")->position, {-0.075, 0.095, -0.070}), 1e-9);
+  EXPECT_GE(patient.tubes.size(), 5u);
+  for (const Tube& tube : patient.tubes) EXPECT_FALSE(tube.is_seen) << tube.name;
+  // an umbilicus that is placed is the origin, and not there twice
+  points->landmarks.push_back({"umbilicus", static_cast<double>(points->first_slice), {40.0, 30.0}});
+  ASSERT_TRUE(WriteControlPoints(stack_.control_points, *points).ok());
+  const auto placed = BuildPatient(stack_);
+  ASSERT_TRUE(placed.ok()) << placed.error().Text();
+  EXPECT_EQ(placed->patient.FindLandmark("umbilicus")->position, math::Vec3());
+  EXPECT_GT(
+      Distance(placed->patient.FindLandmark("fundus")->position, patient.FindLandmark("fundus")->position),
+      0.01);
 }
 
 TEST_F(BuildFromVolume, RefusesAVolumeThatLiesOtherwiseThanThePoints) {

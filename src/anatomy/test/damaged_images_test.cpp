@@ -15,6 +15,7 @@
 #include "made_images.h"
 #include "trocar/anatomy/image_series.h"
 #include "trocar/anatomy/overlay.h"
+#include "trocar/core/clock.h"
 #include "trocar/core/safe_file.h"
 #include "volume_file.h"
 
@@ -26,6 +27,7 @@ using core::ErrorCode;
 using namespace test;
 
 constexpr std::size_t kBudget = 64u << 20;
+constexpr double kMostSeconds = 2.0;
 
 struct Case {
   const char* name;
@@ -419,8 +421,16 @@ TEST_P(DamagedImage, EndsInItsCode) {
   if (path.extension() == ".dcm") options.slice_mm = 2.0;
   rusage before{}, after{};
   ::getrusage(RUSAGE_SELF, &before);
-  const auto series = ImageSeries::Open(path, options);
+  core::Stopwatch stopwatch;
+  auto series = ImageSeries::Open(path, options);
+  double seconds = stopwatch.Seconds();
   ::getrusage(RUSAGE_SELF, &after);
+  if (seconds > kMostSeconds) {  // once more: another program may have had the processor
+    stopwatch.Restart();
+    series = ImageSeries::Open(path, options);
+    seconds = std::min(seconds, stopwatch.Seconds());
+  }
+  EXPECT_LT(seconds, kMostSeconds);
   ASSERT_FALSE(series.ok()) << "it was opened";
   EXPECT_EQ(core::CodeText(series.error().code), core::CodeText(c.code)) << series.error().Text();
   EXPECT_LE(after.ru_maxrss - before.ru_maxrss, static_cast<long>(kBudget >> 10));

@@ -71,6 +71,26 @@ std::string FormatNifti(const std::vector<std::uint8_t>& labels, bool mirrored =
   return text;
 }
 
+/// The same with a label table in an extension of the header, as TotalSegmentator writes it with --ml.
+std::string WithLabelTable(std::string nifti, const std::vector<std::pair<int, std::string>>& names) {
+  std::string xml =
+      "<?xml version=\"1.0\" encoding=\"UTF-8\"?> <CaretExtension>  <VolumeInformation Index=\"0\">   "
+      "<LabelTable>\n";
+  for (const auto& [label, name] : names) {
+    xml += "<Label Key=\"" + std::to_string(label) +
+           "\" Red=\"1.0\" Green=\"0.0\" Blue=\"0.0\" Alpha=\"1\"><![CDATA[" + name + "]]></Label>\n";
+  }
+  xml +=
+      "  </LabelTable>  <VolumeType><![CDATA[Label]]></VolumeType>   </VolumeInformation></CaretExtension>";
+  xml.resize((xml.size() + 8 + 15) / 16 * 16 - 8, ' ');
+  std::string extension(8, '\0');
+  Put<std::int32_t>(extension, 0, static_cast<std::int32_t>(xml.size() + 8));
+  extension += xml;
+  Put<char>(nifti, 348, 1);
+  Put<float>(nifti, 108, static_cast<float>(352 + extension.size()));
+  return nifti.insert(352, extension);
+}
+
 /// NRRD as 3D Slicer writes it, LPS, the same body.
 std::string FormatNrrd(const std::vector<std::uint8_t>& labels, int liver, int gallbladder) {
   std::string text =
@@ -137,8 +157,24 @@ void ExpectThatBody(const BuildReport& report) {
   for (const Tube& tube : patient.tubes) EXPECT_FALSE(tube.is_seen) << tube.name;
 }
 
+/// What TotalSegmentator's task "total" makes of that body, with a spleen and a right kidney: 1 spleen,
+/// 2 kidney_right, 4 gallbladder, 5 liver.
+std::vector<std::uint8_t> MakeTotalLabels() {
+  auto labels = MakeLabels(5, 4);
+  for (int k = 4; k < 12; ++k) {
+    for (int j = 4; j < 12; ++j) {
+      for (const auto& [i, label] : {std::pair{10, 1}, {60, 2}}) {
+        for (int width = 0; width < 6; ++width)
+          labels[(static_cast<std::size_t>(k) * kY + j) * kX + i + width] = static_cast<std::uint8_t>(label);
+      }
+    }
+  }
+  return labels;
+}
+
 TEST_F(FromLabels, BuildsAPatientFromNifti) {
-  const auto report = Build(Write("total.nii", FormatNifti(MakeLabels(5, 2))));
+  // the right kidney is there, too: taken for the gallbladder it would lie far to the right
+  const auto report = Build(Write("total.nii", FormatNifti(MakeTotalLabels())));
   ASSERT_TRUE(report.ok()) << report.error().Text();
   ExpectThatBody(*report);
   EXPECT_THAT(report->patient.provenance, HasSubstr("TotalSegmentator"));
@@ -162,6 +198,69 @@ TEST_F(FromLabels, KnowsSlicersSegmentNames) {
   EXPECT_THAT(report->patient.provenance, HasSubstr("segment names"));
 }
 
+TEST_F(FromLabels, KnowsTheNamesInANiftiHeader) {
+  const std::string plain = FormatNifti(MakeLabels(17, 3));
+  const auto report = Build(Write(
+      "ml.nii", WithLabelTable(plain, {{1, "spleen"}, {3, "gallbladder"}, {17, "liver"}, {300, "far"}})));
+  ASSERT_TRUE(report.ok()) << report.error().Text();
+  ExpectThatBody(*report);
+  EXPECT_THAT(report->patient.provenance, HasSubstr("segment names"));
+}
+
+TEST_F(FromLabels, AsksForTheOrganThatAFileWithNamesDoesNotName) {
+  const std::string plain = FormatNifti(MakeTotalLabels());
+  const fs::path file =
+      Write("ml.nii", WithLabelTable(plain, {{1, "spleen"}, {2, "kidney_right"}, {5, "liver"}}));
+  const core::Error error = Failure(file);
+  EXPECT_EQ(error.code, ErrorCode::kLabelsMismatch);
+  EXPECT_THAT(error.message, HasSubstr("--gallbladder"));
+  EXPECT_TRUE(Build(file, 0, 4).ok());
+}
+
+TEST_F(FromLabels, PassesOverExtensionsThatAreNoLabelTables) {
+  const std::string whole = WithLabelTable(FormatNifti(MakeLabels(1, 2)), {{1, "liver"}, {2, "gallbladder"}});
+  const auto convention = [&](const std::string& content) {
+    const auto volume = ReadLabelVolume(Write("odd.nii", content));
+    EXPECT_TRUE(volume.ok());
+    return volume.ok() ? FindLabels(*volume, {})->convention : "";
+  };
+  EXPECT_EQ(convention(whole), "segment names");
+  for (const std::int32_t size : {0, -16, 7, 1 << 30, INT32_MAX, INT32_MIN}) {
+    std::string lying = whole;
+    Put<std::int32_t>(lying, 352, size);
+    EXPECT_EQ(convention(lying), "1 and 2") << size;
+  }
+  for (const char* text :
+       {"<Label Key=\"1", "<Label >liver</Label>", "<Label Key=\"x\">liver</Label>",
+        "<Label Key=\"0\">liver</Label>", "<Label Key=\"1\"></Label>", "<Label Key=\"1\"><![CDATA["}) {
+    std::string odd = whole;
+    const auto end = static_cast<std::size_t>(odd.find("</CaretExtension>"));
+    std::fill(odd.begin() + 360, odd.begin() + static_cast<std::ptrdiff_t>(end) + 17, ' ');
+    odd.replace(end - std::strlen(text), std::strlen(text), text);
+    EXPECT_EQ(convention(odd), "1 and 2") << text;
+  }
+}
+
+TEST_F(FromLabels, JoinsAFolderOfMasks) {
+  const fs::path masks = folder_ / "segmentations";
+  fs::create_directories(masks);
+  auto liver = MakeLabels(1, 0), gallbladder = MakeLabels(0, 1);
+  Write("segmentations/liver.nii", FormatNifti(liver));
+  const core::Error missing = Failure(masks);
+  EXPECT_EQ(missing.code, ErrorCode::kFileMissing);
+  EXPECT_THAT(missing.message, HasSubstr("gallbladder.nii.gz"));
+  Write("segmentations/gallbladder.nii", FormatNifti(gallbladder, true));
+  EXPECT_EQ(Failure(masks).code, ErrorCode::kLabelsMismatch) << "one mask is mirrored";
+  fs::remove(masks / "gallbladder.nii");
+  fs::create_symlink(Write("elsewhere.nii", FormatNifti(gallbladder)), masks / "gallbladder.nii");
+  EXPECT_EQ(Failure(masks).code, ErrorCode::kImagePathUnsafe);
+  fs::remove(masks / "gallbladder.nii");
+  Write("segmentations/gallbladder.nii", FormatNifti(gallbladder));
+  const auto report = Build(masks);
+  ASSERT_TRUE(report.ok()) << report.error().Text();
+  ExpectThatBody(*report);
+}
+
 TEST_F(FromLabels, NamesTheLabelThatIsMissing) {
   const fs::path file = Write("odd.nii", FormatNifti(MakeLabels(3, 4)));
   const core::Error error = Failure(file);
@@ -176,7 +275,7 @@ TEST_F(FromLabels, NamesTheLabelThatIsMissing) {
 TEST_F(FromLabels, RefusesDamagedFiles) {
   EXPECT_EQ(Failure(folder_ / "nowhere.nii").code, ErrorCode::kFileMissing);
   EXPECT_EQ(Failure(Write("text.nii", "not an image")).code, ErrorCode::kImageUndecodable);
-  const std::string whole = FormatNifti(MakeLabels(5, 2));
+  const std::string whole = FormatNifti(MakeLabels(5, 4));
   for (const std::size_t length : {100u, 348u, 352u, 5000u, 100'000u}) {
     const bool has_magic = length >= 348;
     EXPECT_EQ(Failure(Write("cut.nii", whole.substr(0, length))).code,

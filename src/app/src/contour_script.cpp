@@ -19,6 +19,7 @@ struct Verb {
 };
 
 constexpr Verb kVerbs[] = {
+    {"sizes", 5, 5, "PX SL COL ROW NUM", "window: first, where the pictures do not say them; mm, directions"},
     {"organ", 1, 1, "NAME", "choose an organ"},
     {"add-organ", 1, 2, "NAME [TRIANGLES]", "add an organ and choose it"},
     {"rename-organ", 1, 1, "NAME", "rename the chosen organ"},

@@ -151,6 +151,7 @@ void ContourWindow::MakeContent() {
     status->append(*widget);
   auto* all = Gtk::make_managed<Gtk::Box>(Gtk::Orientation::VERTICAL);
   all->append(bars_);
+  all->append(series_bar_);
   all->append(*middle);
   all->append(*status);
   set_child(*all);
@@ -202,6 +203,11 @@ void ContourWindow::MakeRoutes() {
     if (meshes_ != nullptr) meshes_->Cancel();
   });
   panel_.View().SignalFailed().connect(sigc::mem_fun(*this, &ContourWindow::Report));
+  series_bar_.SignalAnswered().connect([this](const anatomy::ImageSeriesOptions& series) {
+    auto options = loading_options_;
+    options.series = series;
+    StartLoading(std::move(options));
+  });
   mesh_changed_.connect(sigc::mem_fun(*this, &ContourWindow::TakeMeshes));
   loaded_.connect(sigc::mem_fun(*this, &ContourWindow::FinishLoading));
   built_.connect(sigc::mem_fun(*this, &ContourWindow::FinishBuild));
@@ -245,7 +251,11 @@ void ContourWindow::FinishLoading() {
   loading_.reset();
   Tell("");
   if (!opened.ok()) {
+    SetText(state_, "");
+    if (opened.error().code == core::ErrorCode::kImageSpacingUnknown && AskForSizes()) return;
     if (!options_.screenshot.empty() || options_.is_measuring) return Abandon(opened.error());
+    // what was typed may be what is wrong
+    if (has_asked_sizes_) series_bar_.Ask(loading_options_.series);
     return Report(opened.error());
   }
   canvas_.SetEditor(nullptr);
@@ -279,6 +289,22 @@ void ContourWindow::FinishLoading() {
   canvas_.grab_focus();
   ShowAll();
   PrefetchNeighbours();
+}
+
+/// \return whether somebody, or the script, will answer
+bool ContourWindow::AskForSizes() {
+  series_bar_.Ask(loading_options_.series);
+  has_asked_sizes_ = true;
+  if (options_.screenshot.empty() && !options_.is_measuring) return true;
+  if (!ReadScript()) return true;  // the run has ended
+  if (script_.empty() || script_.front().verb != "sizes") return false;
+  const std::vector<std::string> words = script_.front().words;
+  script_.pop_front();
+  series_bar_.Fill({words[0], words[1], {words[2], words[3], words[4]}});
+  series_bar_.Answer();
+  if (const std::string complaint = series_bar_.Complaint(); !complaint.empty())
+    Abandon({core::ErrorCode::kScriptInvalid, complaint});
+  return true;
 }
 
 std::filesystem::path ContourWindow::AutosaveFile() const {

@@ -17,6 +17,7 @@
 #include "contour_slice_bar.h"
 #include "help_card.h"
 #include "message_bars.h"
+#include "series_bar.h"
 #include "trocar/anatomy/build_patient.h"
 #include "trocar/anatomy/contour_autosave.h"
 #include "trocar/app/contour_script.h"
@@ -43,6 +44,7 @@ class ContourWindow : public Gtk::ApplicationWindow {
   // opening
   void StartLoading(anatomy::WorkspaceOptions options);
   void FinishLoading();
+  bool AskForSizes();
   bool TakeLock();
   void OfferRecovered();
   void StartAutosave();
@@ -71,6 +73,7 @@ class ContourWindow : public Gtk::ApplicationWindow {
   std::filesystem::path AutosaveFile() const;
 
   // runs that nobody watches
+  bool ReadScript();
   void RunScript();
   core::Status RunWindowStep(const ScriptStep& step);
   bool OnFrame(const Glib::RefPtr<Gdk::FrameClock>& clock);
@@ -93,6 +96,8 @@ class ContourWindow : public Gtk::ApplicationWindow {
   ContourSliceBar slices_;
   ContourPanel panel_;
   MessageBars bars_;
+  SeriesBar series_bar_;
+  bool has_asked_sizes_ = false;
   HelpCard help_card_;
   Gtk::Label hint_, place_, series_text_, state_;
   Gtk::ProgressBar busy_;

@@ -88,6 +88,7 @@ void ContourWindow::StartBuild(const std::filesystem::path& folder) {
   anatomy::BuildOptions options;
   options.control_points = workspace_->Options().points;
   options.images = workspace_->Options().images;
+  options.dicom_series = workspace_->Options().series.series;
   options.output = folder;
   if (!workspace_->Options().reference.empty()) options.reference = workspace_->Options().reference;
   build_stop_ = {};

@@ -32,17 +32,26 @@ void ContourWindow::Abandon(const core::Error& error) {
   Glib::signal_timeout().connect_once([this] { close(); }, 0);
 }
 
-void ContourWindow::RunScript() {
-  if (!is_script_read_) {
-    is_script_read_ = true;
-    if (!options_.script.empty()) {
-      const auto text = core::ReadFile(options_.script);
-      if (!text.ok()) return Abandon(text.error());
-      auto steps = ParseContourScript(*text, options_.script.filename().string());
-      if (!steps.ok()) return Abandon(steps.error());
-      script_.assign(steps->begin(), steps->end());
-    }
+/// \return whether there is a script, or none was asked for; otherwise the run has ended
+bool ContourWindow::ReadScript() {
+  if (is_script_read_ || options_.script.empty()) return true;
+  is_script_read_ = true;
+  const auto text = core::ReadFile(options_.script);
+  if (!text.ok()) {
+    Abandon(text.error());
+    return false;
   }
+  auto steps = ParseContourScript(*text, options_.script.filename().string());
+  if (!steps.ok()) {
+    Abandon(steps.error());
+    return false;
+  }
+  script_.assign(steps->begin(), steps->end());
+  return true;
+}
+
+void ContourWindow::RunScript() {
+  if (!ReadScript()) return;
   while (!script_.empty()) {
     const ScriptStep step = script_.front();
     if (step.verb == "await") {
@@ -99,6 +108,8 @@ core::Status ContourWindow::RunWindowStep(const ScriptStep& step) {
     StartBuild(step.words[0]);
   } else if (step.verb == "stop-build") {
     StopBuild();
+  } else if (step.verb == "sizes") {
+    return core::Error{core::ErrorCode::kScriptInvalid, "the pictures say their sizes, or the options do"};
   }
   return {};
 }

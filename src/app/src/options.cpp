@@ -88,6 +88,14 @@ core::Result<Command> ParseCommandLine(int argc, const char* const* argv) {
                  "With --contours: between two slices, where the files do not say it [mm]")
       ->check(CLI::Range(0.01, 50.0))
       ->needs(contours);
+  app.add_option("--series", options.series.series,
+                 "With --contours: which DICOM series, where a folder holds several")
+      ->check(CLI::Range(1, 100000))
+      ->needs(contours);
+  app.add_option("--pattern", options.series.pattern,
+                 "With --contours: only pictures with such names, where a folder holds several stacks: "
+                 "image-{slice:04}.jpeg")
+      ->needs(contours);
   std::string axes;
   app.add_option("--axes", axes,
                  "With --contours: where columns, rows and slices go to, where the files do not say it, for "

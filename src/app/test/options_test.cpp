@@ -52,7 +52,8 @@ TEST(Options, ReadsTasks) {
 TEST(Options, ReadsTheContourWindowsOptions) {
   const core::Result<Command> command =
       Parse({"--contours", "slices", "--points", "p.json", "--reference", "l.nii.gz", "--pixel-mm", "0.5",
-             "--slice-mm", "2", "--axes", "left,posterior,superior", "--script", "s", "--measure"});
+             "--slice-mm", "2", "--axes", "left,posterior,superior", "--script", "s", "--measure", "--series",
+             "2", "--pattern", "s{slice}.png"});
   ASSERT_TRUE(command.ok()) << command.error().Text();
   const Options& options = command->options;
   EXPECT_EQ(options.images, "slices");
@@ -61,6 +62,8 @@ TEST(Options, ReadsTheContourWindowsOptions) {
   EXPECT_EQ(options.series.pixel_mm, 0.5);
   EXPECT_EQ(options.series.slice_mm, 2.0);
   EXPECT_EQ((*options.series.axes)[1], "posterior");
+  EXPECT_EQ(options.series.series, 2);
+  EXPECT_EQ(options.series.pattern, "s{slice}.png");
   EXPECT_EQ(options.script, "s");
   EXPECT_TRUE(options.is_measuring);
   for (const auto& wrong : std::initializer_list<std::initializer_list<const char*>>{
@@ -68,7 +71,8 @@ TEST(Options, ReadsTheContourWindowsOptions) {
            {"--contours", "a", "--scene", "b"},
            {"--contours", "a", "--axes", "left,posterior"},
            {"--contours", "a", "--axes", "left,posterior,superior,left"},
-           {"--contours", "a", "--pixel-mm", "0"}}) {
+           {"--contours", "a", "--pixel-mm", "0"},
+           {"--contours", "a", "--series", "0"}}) {
     EXPECT_FALSE(Parse(wrong).ok());
   }
 }

@@ -20,6 +20,7 @@ struct BuildArguments {
   std::string control_points, images, window, output, reference, overlays;
   bool without_overlays = false;
   double skipped_px = -1;
+  int series = 0;  // 0: there is one
 };
 
 core::Status Build(const BuildArguments& arguments) {
@@ -31,6 +32,7 @@ core::Status Build(const BuildArguments& arguments) {
     if (!window) return window.error();
     options.window = *window;
   }
+  options.dicom_series = arguments.series;
   options.output = arguments.output;
   if (arguments.skipped_px >= 0) options.skipped_shift_px = arguments.skipped_px;
   if (!arguments.reference.empty()) options.reference = arguments.reference;
@@ -84,8 +86,10 @@ void AddFromLabelsCommand(CLI::App& anatomy, Outcome& outcome) {
       anatomy.add_subcommand("from-labels", "Build a patient from a label map of liver and gallbladder");
   auto options = std::make_shared<anatomy::LabelOptions>();
   command
-      ->add_option("labels", options->labels,
-                   "Label map: NIfTI (.nii, .nii.gz), NRRD (.nrrd) or MetaImage (.mha)")
+      ->add_option(
+          "labels", options->labels,
+          "Label map: NIfTI (.nii, .nii.gz), NRRD (.nrrd) or MetaImage (.mha); or a folder with masks named "
+          "liver and gallbladder")
       ->required()
       ->type_name("FILE");
   command->add_option("-o,--output", options->output, "Patient folder to write")
@@ -98,10 +102,11 @@ void AddFromLabelsCommand(CLI::App& anatomy, Outcome& outcome) {
       ->check(CLI::Range(1, 255))
       ->type_name("LABEL");
   command->footer(
-      "Labels are found by the segment names of 3D Slicer, by TotalSegmentator's numbers (liver 5, "
-      "gallbladder "
-      "2),\nor are 1 and 2. Ducts and arteries are placed by landmarks.\n"
+      "Labels are found by the names that 3D Slicer and TotalSegmentator write into the file, by\n"
+      "TotalSegmentator's numbers (liver 5, gallbladder 4), or are 1 and 2. Ducts and arteries are placed by "
+      "landmarks.\n"
       "Examples: trocar anatomy from-labels total.nii.gz -o out/patient\n"
+      "          trocar anatomy from-labels segmentations -o out/patient\n"
       "          trocar anatomy from-labels mine.nrrd --liver 3 --gallbladder 4 -o out/patient");
   command->callback([options, &outcome] { outcome.status = BuildFromLabels(*options); });
 }
@@ -142,6 +147,9 @@ void AddAnatomyCommand(CLI::App& app, Outcome& outcome) {
           "Grey values to find edges in, as they were shown when the points were placed (default: the "
           "window that trocar anatomy images suggests)")
       ->type_name("CENTRE,WIDTH");
+  build->add_option("--series", arguments->series, "Which DICOM series, where a folder holds several")
+      ->check(CLI::Range(1, 100000))
+      ->type_name("N");
   build->add_option("-o,--output", arguments->output, "Patient folder to write")
       ->required()
       ->type_name("PATIENT");

@@ -11,8 +11,9 @@ namespace trocar::cli {
 namespace {
 
 struct ContoursArguments {
-  std::string images, points, reference, axes, script;
+  std::string images, points, reference, axes, pattern, script;
   double pixel_mm = 0, slice_mm = 0;  // 0: the files say it
+  int series = 0;                     // 0: there is one
 };
 
 core::Status Start(const ContoursArguments& arguments) {
@@ -23,9 +24,11 @@ core::Status Start(const ContoursArguments& arguments) {
   add("--points", arguments.points);
   add("--reference", arguments.reference);
   add("--axes", arguments.axes);
+  add("--pattern", arguments.pattern);
   add("--script", arguments.script);
   if (arguments.pixel_mm > 0) add("--pixel-mm", std::to_string(arguments.pixel_mm));
   if (arguments.slice_mm > 0) add("--slice-mm", std::to_string(arguments.slice_mm));
+  if (arguments.series > 0) add("--series", std::to_string(arguments.series));
   return StartWindow(words);
 }
 
@@ -57,6 +60,14 @@ void AddAnatomyContoursCommand(CLI::App& anatomy, Outcome& outcome) {
                    "Distance from one slice number to the next, where the files do not say it")
       ->check(CLI::Range(0.01, 50.0))
       ->type_name("MM");
+  command
+      ->add_option(
+          "--pattern", arguments->pattern,
+          "Only pictures with such names, where a folder holds several stacks: image-{slice:04}.jpeg")
+      ->type_name("NAME");
+  command->add_option("--series", arguments->series, "Which DICOM series, where a folder holds several")
+      ->check(CLI::Range(1, 100000))
+      ->type_name("N");
   command
       ->add_option(
           "--axes", arguments->axes,

@@ -9,6 +9,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "run_trocar.h"
+#include "trocar/anatomy/control_points.h"
 #include "trocar/core/safe_file.h"
 #include "trocar_test/temporary_folder.h"
 
@@ -36,6 +38,27 @@ class Schemas : public testing::Test {
 
 TEST_F(Schemas, AcceptEveryFileInAssetsAndScenes) {
   EXPECT_EQ(CheckSchemas(""), 0);
+}
+
+TEST_F(Schemas, AcceptWhatTheProgramWrites) {
+  test::TemporaryFolder folder;
+  const fs::path phantom = folder.Path() / "phantom";
+  const Printed printed =
+      RunTrocar({"anatomy", "phantom", "--seed", "7", "--set", "hydrops=0.5", "--pixel-mm", "4", "--slice-mm",
+                 "6", "--every", "2", "-o", phantom.string()});
+  ASSERT_EQ(printed.status, 0) << printed.err;
+  const auto check = [](const fs::path& file) { return CheckSchemas("'" + file.string() + "'"); };
+  EXPECT_EQ(check(phantom / "patient" / "patient.json"), 0);
+  EXPECT_EQ(check(phantom / "control_points.json"), 0);
+  // as the contour window saves what is unfinished
+  auto points = anatomy::ReadControlPoints(phantom / "control_points.json");
+  ASSERT_TRUE(points.ok()) << points.error().Text();
+  points->structures[0].slices[0].open = {{3.5, 4.5}, {6.0, 7.0}};
+  points->structures.push_back({});
+  points->structures.back().name = "spleen";
+  points->structures.back().triangle_budget = 1500;
+  ASSERT_TRUE(anatomy::WriteControlPoints(folder.Path() / "draft.json", *points).ok());
+  EXPECT_EQ(check(folder.Path() / "draft.json"), 0);
 }
 
 TEST_F(Schemas, RefuseWhatIsNoJsonOrOfNoKnownFormat) {

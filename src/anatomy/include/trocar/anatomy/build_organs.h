@@ -69,20 +69,20 @@ struct BuiltOrgans {
 ///
 /// \param folder  any series that image_series.h opens
 /// \param numbers  slices that are needed, ascending; empty: all, which must have no gaps
+/// \param dicom_series  as ImageSeriesOptions::series
 /// \return kImageSizeDiffers, and what ImageSeries::Open returns
 core::Result<ImageSeries> OpenContouredSeries(const ControlPoints& points,
                                               const std::filesystem::path& folder,
-                                              const std::vector<int>& numbers, const Progress& progress = {});
+                                              const std::vector<int>& numbers, const Progress& progress = {},
+                                              int dicom_series = 0);
 
 /// Some of its pictures at once.
 ///
 /// \param window  of grey images; the suggested one if not given
 /// \return picture by slice number; what OpenContouredSeries and ReadSlices return
-core::Result<std::map<int, ColorImage>> ReadContouredSlices(const ControlPoints& points,
-                                                            const std::filesystem::path& folder,
-                                                            const std::vector<int>& numbers,
-                                                            std::optional<DisplayWindow> window = {},
-                                                            const Progress& progress = {});
+core::Result<std::map<int, ColorImage>> ReadContouredSlices(
+    const ControlPoints& points, const std::filesystem::path& folder, const std::vector<int>& numbers,
+    std::optional<DisplayWindow> window = {}, const Progress& progress = {}, int dicom_series = 0);
 
 /// Any structure follows edges in skipped slices.
 bool FollowsSkippedSlices(const ControlPoints& points);
@@ -90,7 +90,8 @@ bool FollowsSkippedSlices(const ControlPoints& points);
 /// Opens the whole series for following edges in skipped slices: sets read_skipped and series.
 /// \return what OpenContouredSeries returns; a series with gaps names the way out
 core::Status ReadSkippedFrom(const ControlPoints& points, const std::filesystem::path& folder,
-                             std::optional<DisplayWindow> window, OrganOptions& options);
+                             std::optional<DisplayWindow> window, OrganOptions& options,
+                             int dicom_series = 0);
 
 /// Follows the contours, fills them, interpolates between the slices and meshes the volumes.
 ///

@@ -20,6 +20,7 @@ namespace trocar::anatomy {
 struct BuildOptions {
   std::filesystem::path control_points;            ///< file, see control_points.h
   std::filesystem::path images;                    ///< any series that image_series.h opens
+  int dicom_series = 0;                            ///< which one, where a folder holds several: 1, 2, ...
   std::optional<DisplayWindow> window;             ///< of grey images; the suggested one if not given
   std::filesystem::path output;                    ///< patient folder to write; empty: nothing is written
   std::optional<std::filesystem::path> reference;  ///< NIfTI label map that judges the result

@@ -42,16 +42,18 @@ struct LabelVolume {
   std::array<std::array<double, 3>, 3> direction = {};  ///< [axis] step of one voxel, LPS [mm]
   std::array<double, 3> origin = {0, 0, 0};             ///< centre of the first voxel, LPS [mm]
   std::vector<std::uint8_t> labels;                     ///< (size product)
-  std::vector<std::pair<std::string, int>> names;       ///< of labels, where the file has them (3D Slicer)
+  std::vector<std::pair<std::string, int>> names;       ///< of labels, where the file has them
 };
 
 /// Reads a label map (NIfTI, NRRD or MetaImage) of whole numbers from 0 to 255 in a process of its own, with
-/// the segment names that 3D Slicer puts into NRRD headers.
+/// the names of labels that 3D Slicer puts into NRRD headers, and TotalSegmentator into NIfTI headers.
 ///
+/// \param path  label map, or a folder with masks named liver and gallbladder (.nii.gz, .nii, .nrrd or .mha), which
+///              become the labels 1 and 2
 /// \return kFileMissing; kImageUndecodable for what is no label map; kImageSpacingUnknown where the file does
 /// not
 ///         say how it lies in the body; kImageTooLarge for more than 2^28 voxels; and what docs/images.md
-///         lists
+///         lists; kLabelsMismatch for masks that do not lie alike
 core::Result<LabelVolume> ReadLabelVolume(const std::filesystem::path& path);
 
 }  // namespace trocar::anatomy

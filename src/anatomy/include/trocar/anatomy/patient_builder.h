@@ -30,7 +30,8 @@ struct RegionSettings {
 };
 
 /// Builds regions, attachments, tubes and landmarks, and puts the origin landmark where the control points
-/// want it.
+/// want it. Where they want nothing, a landmark "umbilicus" becomes the origin; where there is none, the
+/// fundus goes to its usual place in the built-in scenes, (-75, 95, -70) mm.
 ///
 /// Regions of the liver, by geometry:
 /// - diaphragmatic_face: vertices whose normal, blurred over 10 mm, points superior, anterior or right (not

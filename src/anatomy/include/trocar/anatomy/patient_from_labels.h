@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file patient_from_labels.h  A label map that somebody else drew or computed becomes a patient.
-/// Source of the names: TotalSegmentator (Wasserthal et al., Radiology: Artificial Intelligence 2023), task
-/// "total", version 2: gallbladder 2, liver 5.
+/// Source of the numbers: TotalSegmentator (Wasserthal et al., Radiology: Artificial Intelligence 2023), its
+/// totalsegmentator/map_to_binary.py: gallbladder 4, liver 5 in the tasks total (both versions) and total_mr.
 #pragma once
 
 #include <filesystem>
@@ -14,7 +14,7 @@
 namespace trocar::anatomy {
 
 struct LabelOptions {
-  std::filesystem::path labels;  ///< NIfTI or NRRD label map
+  std::filesystem::path labels;  ///< label map or folder of masks, as ReadLabelVolume reads
   std::filesystem::path output;  ///< patient folder to write; empty: nothing is written
   int liver = 0;                 ///< label, 1 to 255; 0: found by FindLabels
   int gallbladder = 0;           ///< likewise
@@ -28,8 +28,9 @@ struct OrganLabels {
 };
 
 /// Which labels are the organs: those that are named in `options`, else segments called liver and
-/// gallbladder, else TotalSegmentator's 5 and 2 where 5 occurs and is the larger, else 1 and 2.
-/// \return kLabelsMismatch when a label does not occur; it names the label and those that do
+/// gallbladder, else TotalSegmentator's 5 and 4 where 5 occurs more often than 1 and 2, else 1 and 2.
+/// \return kLabelsMismatch when a label does not occur (it names the label and those that do), or when the
+///         file names one of the organs and not the other
 core::Result<OrganLabels> FindLabels(const LabelVolume& volume, const LabelOptions& options);
 
 /// Fills, meshes and assembles liver and gallbladder as BuildPatient does. The header's directions (LPS or
