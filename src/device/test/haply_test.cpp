@@ -10,6 +10,7 @@
 #include <string>
 #include <thread>
 
+#include "hands/force_mailbox.h"
 #include "haply/haply_messages.h"
 #include "haply/web_socket.h"
 #include "stand_in_gate.h"
@@ -201,6 +202,26 @@ TEST_F(HaplyTest, HoldsInstrumentsWithoutForce) {
   store.buttons["haptics"][0][0] = HandAct::kRinse;
   EXPECT_EQ(FindButtons("haply:2", store)[0][0], HandAct::kRinse);
   EXPECT_EQ(FindButtons("openhaptics:Left,Right", store)[0][0], HandAct::kRinse);
+}
+
+// between activation and the first report a device is silent; called lost, it would take the check pose back that has begun
+TEST(ForceMailbox, ADeviceThatHasNotReportedYetIsNotLost) {
+  ForceMailbox mailbox;
+  ForceMailbox::Reports reports;
+  reports[0].position = {1, 2, 3};
+  reports[0].sequence = 7;
+  mailbox.Report(reports);
+  mailbox.Clear();
+  std::array<ForceSample, 2> samples;
+  EXPECT_EQ(mailbox.Read(samples), ReadStatus::kUnchanged);
+  for (const ForceSample& sample : samples) {
+    EXPECT_EQ(sample.status, ForceDeviceStatus::kOk);
+    EXPECT_EQ(sample.sequence, 0u) << "what an earlier life reported is forgotten";
+    EXPECT_FALSE(sample.is_calibrated);
+  }
+  mailbox.Report(reports);
+  EXPECT_EQ(mailbox.Read(samples), ReadStatus::kFresh);
+  EXPECT_EQ(samples[0].sequence, 7u);
 }
 
 TEST_F(HaplyTest, SupervisorsFrameIsZeroForBoth) {

@@ -170,10 +170,10 @@ TEST(Passivity, NoClosedPathGainsEnergyFromTheLinearModel) {
   EXPECT_LT(FindLeastWorkOn(linear, 100, 4000.0, bare), -1e-4) << "the control";
 }
 
-// The same against the widest segment.
+// The same against the widest segment, which is what runs where it fits; 1,000 with TROCAR_SLOW_TESTS=1.
 TEST(Passivity, NoClosedPathGainsEnergyFromAWideSegment) {
-  if (std::getenv("TROCAR_SLOW_TESTS") == nullptr) GTEST_SKIP() << "set TROCAR_SLOW_TESTS=1 to run it";
-  EXPECT_GE(FindLeastWork(1000, CalcStiffnessCap(Touch(), kTick), Touch(), 3), 0.0);
+  const int paths = std::getenv("TROCAR_SLOW_TESTS") != nullptr ? 1000 : kPathCount / 10;
+  EXPECT_GE(FindLeastWork(paths, CalcStiffnessCap(Touch(), kTick), Touch(), 3), 0.0);
 }
 
 // Negative control: a spring beyond the bound on a device without its own losses feeds the hand.
