@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file device_framer_fuzz.cpp  One parser of a device's bytes under libFuzzer: any chunking must give the same records,
-/// and every record must be fit for use. TROCAR_FUZZ_PARSER names the parser; the first byte chooses the chunk. Nothing here
-/// allocates, so that ten million inputs take minutes.
+/// and every record must be fit for use. TROCAR_FUZZ_PARSER names the parser; the first byte chooses the chunk. Nothing here but
+/// Haply's JSON allocates, so that ten million inputs take minutes.
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
 #include <span>
+#include <string>
 #include <string_view>
 
+#include "haply/haply_messages.h"
+#include "haply/web_socket.h"
 #include "trocar/device/igtl.h"
 #include "trocar/device/jaw_sensor.h"
 #include "trocar/device/polhemus.h"
@@ -161,6 +164,52 @@ struct SeenPose {
   Require(one.Counts().bad == other.Counts().bad && one.Counts().messages == other.Counts().messages);
 }
 
+struct HaplySeen {
+  std::size_t frames = 0, states = 0, length = 0;
+  double sum = 0;  // of all positions, so that two readings can be compared
+  bool is_garbage = false;
+
+  friend bool operator==(const HaplySeen&, const HaplySeen&) = default;
+};
+
+/// Takes whole frames from the front, as the driver does.
+[[maybe_unused]] void TakeHaplyFrames(std::string& inbox, HaplySeen& seen) {
+  while (!seen.is_garbage) {
+    device::web_socket::Frame frame;
+    const device::Parsed parsed = device::web_socket::ParseFrame(inbox, false, frame);
+    seen.is_garbage = parsed.verdict == device::Parsed::Verdict::kGarbage;
+    if (parsed.verdict != device::Parsed::Verdict::kRecord) return;
+    Require(parsed.length <= inbox.size() && parsed.length >= frame.payload.size() + 2);
+    inbox.erase(0, parsed.length);
+    ++seen.frames;
+    seen.length += parsed.length;
+    device::haply::State state;
+    if (frame.opcode != device::web_socket::Opcode::kText || !device::haply::ParseState(frame.payload, state))
+      continue;
+    ++seen.states;
+    Require(state.devices.size() <= device::haply::kMaxDevices && state.buttons < 8);
+    RequirePose({}, state.grip);
+    for (const device::haply::DeviceState& one : state.devices) {
+      RequirePose(one.position, {});
+      Require(!one.id.empty());
+      seen.sum += one.position.x + one.position.y + one.position.z;
+    }
+  }
+}
+
+/// Frames of Haply's service and the JSON in them. This one allocates, as the driver's own thread does.
+[[maybe_unused]] void TryHaply(std::string_view bytes, std::size_t chunk) {
+  HaplySeen whole, parts;
+  std::string inbox(bytes);
+  TakeHaplyFrames(inbox, whole);
+  std::string other;
+  InChunks(bytes, chunk, [&](std::string_view part) {
+    other += part;
+    TakeHaplyFrames(other, parts);
+  });
+  Require(whole == parts);
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -173,6 +222,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     TryJaw(bytes, chunk);
   } else if constexpr (kParser == "jaw-hid") {
     TryJawHid(bytes, chunk);
+  } else if constexpr (kParser == "haply") {
+    TryHaply(bytes, chunk);
   } else if constexpr (kParser == "igtl") {
     TryIgtl(bytes, chunk, is_mended);
   } else {

@@ -4,6 +4,8 @@
 #include <cstdio>
 #include <string>
 
+#include "haply/haply_messages.h"
+#include "haply/web_socket.h"
 #include "trocar/core/safe_file.h"
 #include "trocar/device/device_store.h"
 #include "trocar/device/emulator.h"
@@ -32,6 +34,21 @@ bool Write(const std::string& folder, int number, const std::string& stream) {
   return done.ok();
 }
 
+/// States as the service sends them, one and two devices, and the pings between.
+int WriteHaplySeeds(const std::string& folder) {
+  for (int i = 0; i < 20; ++i) {
+    haply::State state;
+    for (int device = 0; device < i % 3; ++device)
+      state.devices.push_back({"device" + std::to_string(device), {0.01 * i, -0.02 * device, 0.1}});
+    state.buttons = static_cast<std::uint32_t>(i % 8);
+    std::string stream(1, static_cast<char>(7 * i));
+    if (i % 4 == 1) stream += web_socket::FormatFrame(web_socket::Opcode::kPing, "?", 0);
+    stream += web_socket::FormatFrame(web_socket::Opcode::kText, haply::FormatState(state), 0);
+    if (!Write(folder, i, stream)) return 1;
+  }
+  return 0;
+}
+
 /// Reports of 4 bytes; the first byte of the stream is the length of one, less 1.
 int WriteHidSeeds(const std::string& folder) {
   for (int raw = 0; raw <= kMaxJawRaw; raw += 93) {
@@ -49,6 +66,7 @@ int main(int argument_count, char** arguments) {
   if (argument_count != 3) return 2;
   const std::string parser = arguments[1], folder = arguments[2];
   if (parser == "jaw-hid") return WriteHidSeeds(folder);
+  if (parser == "haply") return WriteHaplySeeds(folder);
   const auto hands = MakeHandsSettings(DefaultTracker());
   if (!hands) return 1;
   const auto emulator = MakeEmulator(parser, MoveHands(*hands, CalcHandMotion));

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <unistd.h>
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
+
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <utility>
@@ -17,6 +20,8 @@ namespace trocar::cli {
 namespace {
 
 using device::Emulator;
+
+constexpr const char *kJawHid = "jaw-hid", *kSpaceMouse = "spacemouse";
 
 struct EmulateOptions {
   std::string kind;
@@ -33,11 +38,18 @@ core::Result<std::unique_ptr<Emulator>> MakeEmulator(const EmulateOptions& optio
   if (options.kind == "haply") {
     const auto position = [motion](int device, double time) {
       const device::HandSample hand = motion(time)[static_cast<std::size_t>(device)];
-      return math::Vec3{-0.1 * hand.pan, 0.15 + hand.depth, 0.1 * hand.tilt};
+      return math::Vec3{-0.1 * hand.pan, 0.12 - hand.depth, 0.1 * hand.tilt};
     };
-    return device::MakeHaplyEmulator({2, position}, std::make_shared<device::HaplyForces>());
+    return device::MakeHaplyEmulator({2, device::SpoilCursor(faults, position)},
+                                     std::make_shared<device::HaplyForces>());
   }
   if (options.kind == "jaw") return device::MakeJawEmulator({{}, motion});
+  if (options.kind == kJawHid) return device::MakeJawEmulator({{}, motion, device::JawFormat::kHid});
+  if (options.kind == kSpaceMouse) {
+    if (options.motion == "rest")
+      return device::MakeSpaceMouseEmulator([](double) { return device::SpaceMouseState{}; });
+    return device::MakeSpaceMouseEmulator(device::CalcCapMotion);
+  }
   const auto hands = device::MakeHandsSettings(device::DefaultTracker());
   if (!hands) return hands.error();
   const device::SensorMotion sensors = device::SpoilMotion(
@@ -52,6 +64,27 @@ core::Result<std::unique_ptr<Emulator>> MakeEmulator(const EmulateOptions& optio
   return device::MakePolhemusEmulator(std::move(emulation));
 }
 
+/// Where the device's driver looks for it: a port, a socket or a serial line.
+core::Result<std::unique_ptr<device::EmulatorHost>> Serve(const EmulateOptions& options,
+                                                          std::unique_ptr<Emulator> emulator,
+                                                          const std::vector<device::Fault>& faults) {
+  using device::EmulatorHost;
+  if (options.kind == "igtl" || options.kind == "haply")
+    return EmulatorHost::MakeTcp(std::move(emulator), options.port, faults);
+  if (options.kind != kJawHid && options.kind != kSpaceMouse)
+    return EmulatorHost::MakeSerial(std::move(emulator), faults);
+  const auto path =
+      std::filesystem::temp_directory_path() / ("trocar-" + options.kind + "-" + std::to_string(::getpid()));
+  return EmulatorHost::MakeLocal(std::move(emulator), path.string(),
+                                 options.kind == kJawHid ? device::kHidReportSize : 0, faults);
+}
+
+/// What a driver calls the device, on its own or, for the service of Haply, by the port alone.
+std::string FormatName(const std::string& kind, const std::string& address) {
+  if (kind != "haply") return kind + ":" + address;
+  return kind + ":2:" + address.substr(address.rfind(':') + 1);
+}
+
 core::Status Emulate(const EmulateOptions& options) {
   std::vector<device::Fault> faults;
   for (const std::string& text : options.faults) {
@@ -61,14 +94,12 @@ core::Status Emulate(const EmulateOptions& options) {
   }
   auto emulator = MakeEmulator(options, faults);
   if (!emulator) return emulator.error();
-  const auto host = options.kind == "igtl" || options.kind == "haply"
-                        ? device::EmulatorHost::MakeTcp(std::move(*emulator), options.port, faults)
-                        : device::EmulatorHost::MakeSerial(std::move(*emulator), faults);
+  const auto host = Serve(options, std::move(*emulator), faults);
   if (!host) return host.error();
-  std::printf("%s:%s\n", options.kind.c_str(), (*host)->Address().c_str());
+  const std::string name = FormatName(options.kind, (*host)->Address());
+  std::printf("%s\n", name.c_str());
   std::fflush(stdout);
-  std::fprintf(stderr, "Emulating; try: trocar devices test %s:%s   (Ctrl+C ends)\n", options.kind.c_str(),
-               (*host)->Address().c_str());
+  std::fprintf(stderr, "Emulating; try: trocar devices test %s   (Ctrl+C ends)\n", name.c_str());
   const InterruptWatch interrupt;
   device::Clock& clock = device::SystemClock();
   const double start = clock.Now();
@@ -88,7 +119,8 @@ void AddDevicesEmulateCommand(CLI::App& devices, Outcome& outcome) {
   auto options = std::make_shared<EmulateOptions>();
   command->add_option("kind", options->kind, "Which device")
       ->required()
-      ->check(CLI::IsMember({"fastrak", "fastrak-binary", "liberty", "patriot", "jaw", "igtl", "haply"}))
+      ->check(CLI::IsMember(
+          {"fastrak", "fastrak-binary", "liberty", "patriot", "jaw", kJawHid, kSpaceMouse, "igtl", "haply"}))
       ->type_name("KIND");
   command
       ->add_option("--fault", options->faults,

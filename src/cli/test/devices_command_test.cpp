@@ -65,8 +65,8 @@ class DevicesCommand : public testing::Test {
 TEST_F(DevicesCommand, ListsKinds) {
   const Printed printed = RunTrocar({"devices", "list"});
   EXPECT_EQ(printed.status, 0);
-  for (const char* kind :
-       {"fastrak", "liberty", "patriot", "jaw-hid", "igtl", "gamepad", "spacemouse", "play"})
+  for (const char* kind : {"fastrak", "liberty", "patriot", "jaw-hid", "igtl", "gamepad", "spacemouse",
+                           "openhaptics", "haply", "play"})
     EXPECT_NE(printed.out.find(kind), std::string::npos) << kind;
   EXPECT_EQ(RunTrocar({"devices", "list", "--json"}).out.front(), '{');
 }

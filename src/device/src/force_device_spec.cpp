@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
+#include <filesystem>
 
 #include "trocar/device/companion.h"
 #include "trocar/device/haply.h"
@@ -13,8 +15,6 @@
 
 namespace trocar::device {
 namespace {
-
-constexpr int kHaplyPort = 10001;
 
 /// The part before the first `mark`; takes it and the mark away from the front of `text`.
 std::string_view TakePart(std::string_view& text, char mark) {
@@ -68,6 +68,19 @@ core::Result<std::unique_ptr<ForceDriver>> MakeHaply(std::string_view text) {
 }
 
 }  // namespace
+
+std::string FindOpenHaptics() {
+  const std::string name = OpenHapticsSettings{}.hd_file;
+  const char* const named = std::getenv("LD_LIBRARY_PATH");
+  std::string folders = named != nullptr ? std::string(named) + ":" : std::string();
+  folders += "/usr/local/lib:/usr/lib/x86_64-linux-gnu:/lib/x86_64-linux-gnu:/usr/lib64:/usr/lib:/lib";
+  for (std::string_view rest = folders; !rest.empty();) {
+    const std::filesystem::path file = std::filesystem::path(TakePart(rest, ':')) / name;
+    std::error_code ignored;
+    if (file.has_parent_path() && std::filesystem::exists(file, ignored)) return file.string();
+  }
+  return {};
+}
 
 std::string ListForceDrivers() {
   return "simulated[:held], openhaptics[:NAME[,NAME]], haply[:COUNT[:PORT]]";

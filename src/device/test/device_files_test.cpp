@@ -237,6 +237,20 @@ TEST(Faults, AreParsed) {
     EXPECT_EQ(ParseFault(bad).error().code, ErrorCode::kUsage) << bad;
 }
 
+TEST(Faults, JumpsSpoilSensorsAndCursorsAlike) {
+  const std::vector<Fault> jumps = {*ParseFault("jump@1")};
+  const auto cursor = SpoilCursor(jumps, [](int, double) { return Vec3{}; });
+  const auto sensor = SpoilMotion(jumps, [](int, double) { return Pose{}; });
+  int off = 0;
+  for (int i = 0; i < 1000; ++i) {
+    const double time = 1.0005 + 0.001 * i;
+    EXPECT_EQ(cursor(0, time), sensor(0, time).translation);
+    off += cursor(1, time).x > 0.04;
+  }
+  EXPECT_EQ(off, 100) << "one in ten";
+  EXPECT_EQ(cursor(0, 0.995), Vec3{});
+}
+
 TEST(SerialPort, RefusesSpeedsAndFilesThatCannotBe) {
   const auto code = [](const std::string& path, int baud) {
     const auto opened = OpenSerialPort(path, baud);

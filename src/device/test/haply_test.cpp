@@ -10,10 +10,12 @@
 #include <string>
 #include <thread>
 
+#include "hands/force_mailbox.h"
 #include "haply/haply_messages.h"
 #include "haply/web_socket.h"
 #include "stand_in_gate.h"
 #include "trocar/core/clock.h"
+#include "trocar/device/device_spec.h"
 #include "trocar/device/emulator.h"
 
 namespace trocar::device {
@@ -160,6 +162,66 @@ TEST_F(HaplyTest, ReadsBothDevicesAndPushesTheOneThatIsMeant) {
   EXPECT_TRUE(Push());
   ASSERT_TRUE(driver_->Deactivate().ok());
   EXPECT_TRUE(WaitFor([this] { return Force(1) == math::Vec3{}; })) << "leaves zero behind";
+}
+
+// by `trocar devices test` and in the window: as any other device, and nothing but zero is ever sent
+TEST_F(HaplyTest, HoldsInstrumentsWithoutForce) {
+  Start();
+  const std::string port = std::to_string(port_);
+  auto hands = MakeDriver("haply:2:" + port, {}, SystemClock());
+  ASSERT_TRUE(hands.ok()) << hands.error().Text();
+  ASSERT_EQ((*hands)->GetChannelCount(), kChannelCount);
+  ASSERT_TRUE((*hands)->Configure().ok());
+  ASSERT_TRUE((*hands)->Activate().ok());
+  std::array<HandSample, kChannelCount> samples;
+  ASSERT_TRUE(WaitFor([&] { return (*hands)->Read(samples) == ReadStatus::kFresh; }));
+  EXPECT_GT(samples[kLeftHand].pan, 0.1) << "to the left";
+  EXPECT_LT(samples[kRightHand].pan, -0.1);
+  EXPECT_FALSE(samples[kLaparoscope].is_valid);
+  {
+    const std::lock_guard lock(mutex_);
+    forces_->messages = 0;
+  }
+  ASSERT_TRUE(WaitFor([&] {
+    const std::lock_guard lock(mutex_);
+    EXPECT_EQ(forces_->newtons[0], math::Vec3{});
+    EXPECT_EQ(forces_->newtons[1], math::Vec3{});
+    return forces_->messages > 20;
+  }));
+  (*hands)->Finalize();
+  // a single device is the right hand's
+  auto one = MakeDriver("haply:1:" + port, {}, SystemClock());
+  ASSERT_TRUE((*one)->Configure().ok());
+  ASSERT_TRUE((*one)->Activate().ok());
+  ASSERT_TRUE(WaitFor([&] { return (*one)->Read(samples) == ReadStatus::kFresh; }));
+  EXPECT_TRUE(samples[kRightHand].is_valid);
+  EXPECT_FALSE(samples[kLeftHand].is_valid);
+  // its buttons are those of a hand with a force to come
+  DeviceStore store;
+  store.buttons["haptics"] = DefaultButtons();
+  store.buttons["haptics"][0][0] = HandAct::kRinse;
+  EXPECT_EQ(FindButtons("haply:2", store)[0][0], HandAct::kRinse);
+  EXPECT_EQ(FindButtons("openhaptics:Left,Right", store)[0][0], HandAct::kRinse);
+}
+
+// between activation and the first report a device is silent; called lost, it would take the check pose back that has begun
+TEST(ForceMailbox, ADeviceThatHasNotReportedYetIsNotLost) {
+  ForceMailbox mailbox;
+  ForceMailbox::Reports reports;
+  reports[0].position = {1, 2, 3};
+  reports[0].sequence = 7;
+  mailbox.Report(reports);
+  mailbox.Clear();
+  std::array<ForceSample, 2> samples;
+  EXPECT_EQ(mailbox.Read(samples), ReadStatus::kUnchanged);
+  for (const ForceSample& sample : samples) {
+    EXPECT_EQ(sample.status, ForceDeviceStatus::kOk);
+    EXPECT_EQ(sample.sequence, 0u) << "what an earlier life reported is forgotten";
+    EXPECT_FALSE(sample.is_calibrated);
+  }
+  mailbox.Report(reports);
+  EXPECT_EQ(mailbox.Read(samples), ReadStatus::kFresh);
+  EXPECT_EQ(samples[0].sequence, 7u);
 }
 
 TEST_F(HaplyTest, SupervisorsFrameIsZeroForBoth) {

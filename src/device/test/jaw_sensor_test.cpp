@@ -2,7 +2,9 @@
 #include "trocar/device/jaw_sensor.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -197,6 +199,42 @@ TEST(JawSensorHid, ReadsReports) {
   EXPECT_EQ(driver.GetRaw(1), 16);
   hid->is_gone = true;
   EXPECT_EQ(driver.Read(samples), ReadStatus::kLost);
+}
+
+// the emulated sensor gives what the text sensor would: packets, one report each
+TEST(JawSensorHid, ReadsAnEmulatedSensorByItsSocket) {
+  const std::string path = testing::TempDir() + "/trocar_jaw_hid_" + std::to_string(::getpid());
+  auto host = *EmulatorHost::MakeLocal(MakeJawEmulator({{}, CalcHandMotion, JawFormat::kHid}), path,
+                                       kHidReportSize, {{FaultKind::kUnplug, 2.0, 1e9, 0}});
+  EXPECT_EQ(EmulatorHost::MakeLocal(MakeJawEmulator({{}, CalcRest}), path, kHidReportSize).error().code,
+            ErrorCode::kDeviceBusy);
+  JawSettings settings;
+  settings.format = JawFormat::kHid;
+  EmulatorClock clock;
+  clock.Add(*host);
+  JawSensor driver(
+      settings, [&] { return OpenHidSensor(path); }, clock);
+  ASSERT_TRUE(driver.Configure().ok());
+  ASSERT_TRUE(driver.Activate().ok());
+  HandSamples samples;
+  double worst = 0;
+  while (clock.Now() < 1.9) {
+    clock.Sleep(0.002);
+    driver.Read(samples);
+    ASSERT_TRUE(samples[kLeftHand].is_valid && samples[kRightHand].is_valid);
+    if (clock.Now() < 0.5) continue;  // the low pass settles
+    const HandSamples truth = CalcHandMotion(clock.Now());
+    for (const int hand : {kLeftHand, kRightHand}) {
+      const auto i = static_cast<std::size_t>(hand);
+      worst = std::max(worst, std::fabs(samples[i].jaw - truth[i].jaw));
+    }
+  }
+  EXPECT_LT(worst, 0.05) << "rad, by the filter's lag";
+  clock.Sleep(0.2);
+  EXPECT_EQ(driver.Read(samples), ReadStatus::kLost);
+  host.reset();
+  EXPECT_FALSE(IsLocalSocket(path)) << "the path is gone with the device";
+  EXPECT_FALSE(OpenHidSensor(path).ok());
 }
 
 TEST(HandRig, PutsHandsAndJawsTogetherAndIsLostWithEither) {

@@ -136,6 +136,31 @@ TEST(PolhemusTracker, TakesTheNewestOfAFlood) {
   }
 }
 
+// faults D14, the negative control: a reader that takes what one record needs, and leaves the rest for later
+TEST(PolhemusTracker, WithoutTakingAllThatIsThereAFloodIsOldNews) {
+  constexpr PolhemusFormat kFormat = PolhemusFormat::kLiberty;
+  const EmulatedTracker tracker(kFormat, {{FaultKind::kFlood, 0.2, 1e9, 0}});
+  const auto port = *OpenSerialPort(tracker.host->Address(), 115200);
+  const int stations[] = {1, 2};
+  (void)port->Write(SetUpCommands(kFormat, stations, {1, 0, 0}) + StartCommand(kFormat));
+  const SensorMotion truth = MoveHands(tracker.hands, CalcHandMotion);
+  PolhemusFramer framer(kFormat);
+  double farthest = 0;
+  for (double time = 0.004; time < 1.0; time += 0.004) {
+    tracker.host->Step(time);
+    std::array<char, 64> bytes;
+    const IoResult got = port->Read(bytes);
+    framer.Feed({bytes.data(), got.count}, [&](const TrackerRecord& record) {
+      if (record.station != 1) return;
+      const Vec3 p = truth(kLeftHand, time).translation;
+      const double off = std::min(math::Distance(record.position, p), math::Distance(-record.position, p));
+      farthest = std::max(farthest, off);
+    });
+  }
+  EXPECT_GT(framer.Counts().records, 100u);
+  EXPECT_GT(farthest, 0.02) << "m";
+}
+
 TEST(PolhemusTracker, SaysWhichStationDoesNotAnswer) {
   EmulatedTracker tracker(PolhemusFormat::kLiberty, {}, 1);
   const core::Status status = tracker.driver->Configure();

@@ -5,8 +5,10 @@
 #include <sys/un.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
+#include <cmath>
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
@@ -14,6 +16,8 @@
 #include <string>
 #include <thread>
 
+#include "trocar/device/device_spec.h"
+#include "trocar/device/emulator.h"
 #include "trocar/device/rate_hands.h"
 
 namespace trocar::device {
@@ -92,6 +96,49 @@ TEST(Spacenav, ReadsMotionAndButtonsAndNoticesTheEnd) {
   }
   EXPECT_FALSE(is_there);
   source->Close();
+}
+
+// the daemon of `trocar devices emulate spacemouse`, found, read and lost through the real library
+TEST(Spacenav, ReadsAnEmulatedDaemon) {
+  const std::string path = "/tmp/trocar_spnav_emulated_" + std::to_string(::getpid());
+  auto host = *EmulatorHost::MakeLocal(MakeSpaceMouseEmulator(CalcCapMotion), path, 0);
+  std::atomic<bool> is_running{true};
+  std::atomic<double> served{0};
+  std::thread thread([&] {
+    for (double time = 0; is_running; time += 0.005, SystemClock().Sleep(0.005)) {
+      host->Step(time);
+      served = time;
+    }
+  });
+  auto driver = MakeDriver("spacemouse:" + path, {}, SystemClock());
+  ASSERT_TRUE(driver.ok());
+  EXPECT_TRUE(IsSpacenavThere());
+  std::array<HandSample, kChannelCount> home, samples;
+  for (int channel = 0; channel < kChannelCount; ++channel) {
+    home[static_cast<std::size_t>(channel)].depth = 0.15;
+    (*driver)->PlaceHand(channel, home[static_cast<std::size_t>(channel)]);
+  }
+  const core::Status opened = (*driver)->Configure();
+  double farthest = 0;
+  bool has_closed = false, has_opened = false;
+  if (opened && (*driver)->Activate()) {
+    const double end = served + 3.5;  // the button goes down and up within 3 s
+    for (int i = 0; i < 4000 && served < end; ++i) {
+      (*driver)->Read(samples);
+      farthest = std::max(farthest, std::fabs(samples[kRightHand].pan));
+      has_closed = has_closed || samples[kRightHand].jaw == 0.0;
+      has_opened = has_opened || samples[kRightHand].jaw > 0.5;
+      SystemClock().Sleep(0.005);
+    }
+  }
+  is_running = false;
+  thread.join();
+  host.reset();
+  if (!opened) GTEST_SKIP() << "this libspnav asks no SPNAV_SOCKET: " << opened.error().Text();
+  EXPECT_GT(farthest, 0.02);
+  EXPECT_TRUE(has_closed && has_opened);
+  EXPECT_EQ((*driver)->Read(samples), ReadStatus::kLost);
+  EXPECT_FALSE(IsSpacenavThere());
 }
 #endif
 

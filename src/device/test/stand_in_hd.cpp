@@ -102,8 +102,9 @@ STAND_IN void hdEnable(unsigned int what) {
 }
 STAND_IN void hdGetDoublev(unsigned int what, double* values) {
   const double side = current == 0 ? -1 : 1;
-  if (what == 0x2050) values[0] = 40 * side, values[1] = -10, values[2] = 5;
-  if (what == 0x2051) values[0] = 100, values[1] = values[2] = 0;
+  const bool is_led = state.is_led == 1;
+  if (what == 0x2050) values[0] = is_led ? 0 : 40 * side, values[1] = is_led ? 0 : -10, values[2] = 5;
+  if (what == 0x2051) values[0] = is_led ? 0 : 100, values[1] = values[2] = 0;
   if (what == 0x2052) {
     for (int i = 0; i < 16; ++i) values[i] = i % 5 == 0 ? 1 : 0;
   }
@@ -117,7 +118,7 @@ STAND_IN void hdGetDoublev(unsigned int what, double* values) {
   if (what == 0x2605) values[0] = 0.2, values[1] = 0.4, values[2] = 0.1;
 }
 STAND_IN void hdGetIntegerv(unsigned int, int* value) {
-  *value = current == 0 ? 1 : 0;
+  *value = state.is_led == 1 ? state.buttons[current].load() : current == 0 ? 1 : 0;
 }
 STAND_IN void hdSetDoublev(unsigned int what, const double* values) {
   if (what != 0x2700 || open_frames != 1 || !is_pushing[current]) ++misuses;

@@ -12,6 +12,8 @@ struct StandInState {
   std::atomic<unsigned int> pending_error{0};
   std::atomic<int> devices{0};  ///< open
   std::atomic<int> misuses{0};
-  std::atomic<int> process{0};                                 ///< that has the library
+  std::atomic<int> process{0};  ///< that has the library
+  std::atomic<int> is_led{0};   ///< 1: styluses in the middle of their reach, buttons as below
+  std::array<std::atomic<int>, 2> buttons{};
   std::array<std::array<std::atomic<double>, 3>, 2> forces{};  ///< on the hands, as the motors give them [N]
 };

@@ -85,7 +85,8 @@ GuardedDevice DeviceGuard::Step(const device::ForceSample& sample, double now) n
     was_lost_ = false;
     held_ = {};
     held_.fault = Fault::kNone;
-    sequence_ = sample.sequence - 1;
+    // what was reported before is taken; 0 is no report yet
+    sequence_ = sample.sequence > 0 ? sample.sequence - 1 : 0;
     last_good_ = now;
   }
   if (sample.sequence != sequence_) {

@@ -2,12 +2,18 @@
 #include "trocar/haptics/local_model.h"
 
 #include <algorithm>
+#include <array>
 
 #include "segment_solver.h"
 #include "trocar/core/assert.h"
 
 namespace trocar::haptics {
 namespace {
+
+/// Of the linear model: most steps, shortest of them as a share, and the imbalance at which they end [N].
+constexpr int kMaxLinearSteps = 30;
+constexpr double kShortestStep = 1.0 / 64;
+constexpr double kLinearBalance = 1e-9;
 
 Matrix3 ToMatrix(const Matrix3Rows& rows) noexcept {
   Matrix3 m;
@@ -34,9 +40,10 @@ struct LocalModel::Content {
   bool is_new = false;
   SegmentSolver segment;
   // linear
-  Vec3 force, p_world_cut;
+  Vec3 force, p_world_cut;  // force: without that of the presses
   Matrix3 jacobian = Matrix3::Zero();
-  bool is_one_sided = false;
+  std::uint32_t press_count = 0;
+  std::array<LocalPatch::Press, LocalPatch::kMaxPresses> presses;
 
   bool has_tool = false;
   Vec3 tool;        // [m]
@@ -46,19 +53,62 @@ struct LocalModel::Content {
 
   LocalAnswer Solve(const Pose& X_world_hand) noexcept;
   LocalAnswer SolveLinear(const Vec3& hand) const noexcept;
+  double CalcLinearEnergy(const Vec3& hand, const Vec3& moved) const noexcept;
+  /// Gradient [N] and stiffness [N/m] of that energy.
+  void CalcLinearSlope(const Vec3& hand, const Vec3& moved, Vec3& gradient,
+                       Matrix3& stiffness) const noexcept;
 };
+
+/// Of coupling, tissue and what is pressed, where the tool has gone by `moved` since the cut [J].
+double LocalModel::Content::CalcLinearEnergy(const Vec3& hand, const Vec3& moved) const noexcept {
+  const Eigen::Vector3d u = ToEigen(moved);
+  double energy = 0.5 * settings.coupling_stiffness * math::SquaredDistance(p_world_cut + moved, hand) -
+                  math::Dot(force, moved) - 0.5 * u.dot(jacobian * u);
+  for (std::uint32_t i = 0; i < press_count; ++i) {
+    const LocalPatch::Press& press = presses[i];
+    const double push = std::max(0.0, press.force + press.stiffness * math::Dot(press.normal, moved));
+    energy += 0.5 * push * push / press.stiffness;
+  }
+  return energy;
+}
+
+void LocalModel::Content::CalcLinearSlope(const Vec3& hand, const Vec3& moved, Vec3& gradient,
+                                          Matrix3& stiffness) const noexcept {
+  const double k = settings.coupling_stiffness;
+  stiffness = k * Matrix3::Identity() - jacobian;
+  gradient = k * (p_world_cut + moved - hand) - force - FromEigen(jacobian * ToEigen(moved));
+  for (std::uint32_t i = 0; i < press_count; ++i) {
+    const LocalPatch::Press& press = presses[i];
+    const double push = press.force + press.stiffness * math::Dot(press.normal, moved);
+    if (!(push > 0.0)) continue;
+    gradient += push * press.normal;
+    AddAxial(stiffness, press.normal, press.stiffness);
+  }
+}
 
 LocalAnswer LocalModel::Content::SolveLinear(const Vec3& hand) const noexcept {
   const double k = settings.coupling_stiffness;
+  Vec3 moved = (has_tool ? tool : hand) - p_world_cut, gradient;
+  Matrix3 stiffness;
+  CalcLinearSlope(hand, moved, gradient, stiffness);
+  // Newton's method; within one set of pressing springs a step is exact
+  for (int i = 0; i < kMaxLinearSteps; ++i) {
+    const Vec3 whole = -FromEigen(stiffness.inverse() * ToEigen(gradient));
+    const double before = CalcLinearEnergy(hand, moved), slope = math::Dot(gradient, whole);
+    double share = 1.0;
+    while (press_count > 0 && share > kShortestStep &&
+           CalcLinearEnergy(hand, moved + share * whole) > before + 1e-4 * share * slope)
+      share *= 0.5;
+    moved += share * whole;
+    CalcLinearSlope(hand, moved, gradient, stiffness);
+    if (press_count == 0 || math::Norm(gradient) < kLinearBalance) break;
+  }
   LocalAnswer answer;
-  answer.p_world_tool = hand;
-  const Matrix3 inverse = (k * Matrix3::Identity() - jacobian).inverse();
-  const Eigen::Vector3d moved = inverse * (k * ToEigen(hand - p_world_cut) + ToEigen(force));
-  const Vec3 answered = k * (p_world_cut + FromEigen(moved) - hand);
-  if (is_one_sided && math::Dot(answered, force) <= 0.0) return answer;
-  answer.force = answered;
-  answer.p_world_tool = p_world_cut + FromEigen(moved);
-  answer.jacobian = CalcJacobian(k, k * inverse);
+  answer.p_world_tool = p_world_cut + moved;
+  answer.force = k * (answer.p_world_tool - hand);
+  // nothing presses any more: none at all, not what rounding leaves
+  if (math::Norm(answer.force) < kLinearBalance) answer.force = {}, answer.p_world_tool = hand;
+  answer.jacobian = CalcJacobian(k, k * stiffness.inverse());
   return answer;
 }
 
@@ -95,7 +145,10 @@ void LocalModel::Take(const LocalPatch& patch) noexcept {
   c.p_world_cut = patch.X_world_tool.translation;
   if (patch.kind == LocalPatch::Kind::kLinear) {
     c.jacobian = ToMatrix(patch.jacobian);
-    c.is_one_sided = patch.is_one_sided;
+    c.press_count = patch.press_count;
+    std::copy_n(patch.presses.begin(), patch.press_count, c.presses.begin());
+    for (std::uint32_t i = 0; i < c.press_count; ++i) c.force += c.presses[i].force * c.presses[i].normal;
+    if (c.press_count > 0 && math::Norm(c.force) < kLinearBalance) c.force = {};
   }
   if (patch.kind == LocalPatch::Kind::kSegment)
     c.segment.Load(patch, c.has_tool ? c.tool : patch.X_world_tool.translation);

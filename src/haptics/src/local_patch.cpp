@@ -76,6 +76,31 @@ Vec3 CalcTipNormal(const PatchSource& source, const tissue::ContactSpring& conta
   return along + share * (contact.normal - along);
 }
 
+/// A force below this is rounding [N].
+constexpr double kNoForce = 1e-9;
+/// Of what pushes the tool beside tissue: another tool's shaft [N/m].
+constexpr double kRestStiffness = 1000;
+
+/// Where there is no room, the spring is joined with the one that points most nearly its way: both stiffnesses, and the force
+/// along their mean.
+void AddPress(const LocalPatch::Press& press, LocalPatch& patch) noexcept {
+  if (patch.press_count < LocalPatch::kMaxPresses) {
+    patch.presses[patch.press_count++] = press;
+    return;
+  }
+  const auto likeness = [&](const LocalPatch::Press& other) { return math::Dot(press.normal, other.normal); };
+  LocalPatch::Press& joined =
+      *std::max_element(patch.presses.begin(), patch.presses.end(),
+                        [&](const auto& a, const auto& b) { return likeness(a) < likeness(b); });
+  const double stiffness = joined.stiffness + press.stiffness;
+  const Vec3 push = joined.force * joined.normal + press.force * press.normal;
+  joined.normal =
+      (joined.stiffness / stiffness) * joined.normal + (press.stiffness / stiffness) * press.normal;
+  const double size2 = math::SquaredNorm(joined.normal);
+  joined.force = size2 > 0.0 ? std::max(0.0, math::Dot(push, joined.normal) / size2) : 0.0;
+  joined.stiffness = stiffness;
+}
+
 }  // namespace
 
 PatchCutter::PatchCutter(std::size_t node_count) : place_(node_count, kNowhere) {}
@@ -165,8 +190,7 @@ bool PatchCutter::AddLinks(const PatchSource& source, LocalPatch& patch) noexcep
 
 void PatchCutter::SetLinear(const PatchSource& source, LocalPatch& patch) const noexcept {
   patch.kind = LocalPatch::Kind::kLinear;
-  patch.is_one_sided = source.held.empty();
-  Matrix3 stiffness = Matrix3::Zero();
+  Vec3 rest = patch.force;  // that no spring gives yet [N]
   for (std::size_t c = 0; c < source.contacts.size(); ++c) {
     const tissue::ContactSpring& contact = source.contacts[c];
     if (!IsMine(source, c) || !(tissue::CalcContactDepth(contact, source.state.position) > 0.0)) continue;
@@ -178,8 +202,17 @@ void PatchCutter::SetLinear(const PatchSource& source, LocalPatch& patch) const 
       const Matrix3 block = CalcNodeBlock(source, contact.nodes[i]);
       compliance += contact.weights[i] * contact.weights[i] * normal.dot(block.inverse() * normal);
     }
-    AddAxial(stiffness, CalcTipNormal(source, contact), 1.0 / compliance);
+    const double force = contact.stiffness * tissue::CalcContactDepth(contact, source.state.position);
+    const Vec3 tip_normal = CalcTipNormal(source, contact);
+    AddPress({tip_normal, force, 1.0 / compliance}, patch);
+    rest += force * tip_normal;
   }
+  if (source.held.empty()) {
+    // another tool, or what merging left over: it pushes no farther than it has to, either
+    if (const double size = math::Norm(rest); size > kNoForce)
+      AddPress({-rest / size, size, kRestStiffness}, patch);
+  }
+  Matrix3 stiffness = Matrix3::Zero();
   for (const std::uint32_t node : source.held) stiffness += CalcNodeBlock(source, node);
   for (int row = 0; row < 3; ++row)
     patch.jacobian[row] = {-stiffness(row, 0), -stiffness(row, 1), -stiffness(row, 2)};
@@ -195,7 +228,7 @@ void PatchCutter::Cut(const PatchSource& source, LocalPatch& patch, int max_ring
   patch.X_world_tool = source.X_world_tool;
   patch.force = source.force;
   patch.has_pivot = source.has_pivot;
-  patch.free_count = patch.held_count = patch.node_count = patch.contact_count = 0;
+  patch.free_count = patch.held_count = patch.node_count = patch.contact_count = patch.press_count = 0;
   if (!patch.is_healthy) return;
 
   std::size_t mine = 0;

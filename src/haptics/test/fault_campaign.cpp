@@ -106,6 +106,27 @@ std::string D1Lost() {
   return wrong.empty() ? CheckNeverArmsItself(rig) : wrong;
 }
 
+/// A device that is open and has not reported yet, at first and after a loss: silent, so the check pose that has begun stays.
+std::string D2NotReportedYet() {
+  DeviceGuard guard;
+  CheckPose check{CheckPoseSettings{}};
+  device::ForceSample sample;
+  sample.status = device::ForceDeviceStatus::kOk;
+  check.Begin();
+  for (int tick = 0; tick < 5; ++tick) {
+    const std::array devices = {guard.Step(sample, 0.001 * tick)};
+    if (devices[0].has_pose) return "a pose that nobody reported";
+    if (devices[0].fault != Fault::kSilent) return "no report yet is not called silence";
+    check.Step(devices);
+    if (check.GetState() != CheckPoseState::kAsking) return "the check pose was taken back";
+  }
+  sample.status = device::ForceDeviceStatus::kLost;
+  static_cast<void>(guard.Step(sample, 0.010));
+  sample.status = device::ForceDeviceStatus::kOk;
+  if (guard.Step(sample, 0.011).has_pose) return "a pose that nobody reported, after a loss";
+  return {};
+}
+
 std::string D2Silent() {
   HapticRig rig;
   rig.ArmAndPress(2.0);
@@ -465,6 +486,7 @@ constexpr CampaignRow kRows[] = {
     {"rise", Rise},
     {"D1 lost", D1Lost},
     {"D2 silent", D2Silent},
+    {"D2 not reported yet", D2NotReportedYet},
     {"D4 nonsense", D4Nonsense},
     {"D5 jump", D5Jump},
     {"D8 not finite", D8NotFinite},

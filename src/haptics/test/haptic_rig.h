@@ -25,7 +25,6 @@ class HapticRig {
     conditions.is_supervised = conditions.is_pose_confirmed = true;
     patch.kind = LocalPatch::Kind::kLinear;
     patch.is_healthy = true;
-    patch.is_one_sided = true;
     Press(0.0);
   }
 

@@ -269,6 +269,45 @@ TEST(PatchCutter, TakesTheLinearModelWhereTooMuchIsTouched) {
   EXPECT_EQ(FindRest(model, wide.p_world_tool + Vec3{0, 0, 0.02}).force, Vec3());
 }
 
+// more than there is room for: joined by direction, and still the tick's force at the tick's pose
+TEST(PatchCutter, JoinsTheSpringsOfTheLinearModelThatFindNoRoom) {
+  PressedSheet wide(20.0, 7);  // 225 contacts
+  wide.Solve({0, 0, -0.003});
+  const LocalPatch patch = wide.Cut();
+  ASSERT_EQ(patch.kind, LocalPatch::Kind::kLinear);
+  EXPECT_EQ(patch.press_count, LocalPatch::kMaxPresses);
+  LocalModel model(MakeStiff());
+  model.Take(patch);
+  EXPECT_LT(math::Distance(FindRest(model, wide.p_world_tool - wide.force / 1e5).force, wide.force), 1e-6);
+}
+
+// Finite differences, where some springs press and others have let go.
+TEST(LocalModel, TheLinearModelsJacobianIsItsForcesDerivative) {
+  LocalPatch patch;
+  patch.kind = LocalPatch::Kind::kLinear;
+  patch.is_healthy = true;
+  for (int i = 0; i < 12; ++i) {
+    const double side = -1.2 + 0.2 * i;
+    patch.presses[patch.press_count++] = {{0, std::sin(side), -std::cos(side)}, 0.02 * i, 20.0 + i};
+    patch.force -= patch.presses[patch.press_count - 1].force * patch.presses[patch.press_count - 1].normal;
+  }
+  LocalModelSettings settings;
+  settings.coupling_stiffness = 400;
+  for (const Vec3& hand : {Vec3{}, Vec3{0.001, 0.004, 0.001}, Vec3{0, -0.01, 0.004}}) {
+    LocalModel model(settings);
+    model.Take(patch);
+    const LocalAnswer answer = FindRest(model, hand, 20);
+    for (int axis = 0; axis < 3; ++axis) {
+      constexpr double kStep = 1e-7;
+      Vec3 nudge;
+      nudge[axis] = kStep;
+      const Vec3 change = FindRest(model, hand + nudge, 20).force - FindRest(model, hand - nudge, 20).force;
+      for (int row = 0; row < 3; ++row)
+        EXPECT_NEAR(answer.jacobian[row][axis], change[row] / (2 * kStep), 0.1) << row << axis;
+    }
+  }
+}
+
 TEST(PatchCutter, NarrowsTheSegmentUntilItFits) {
   PressedSheet sheet(20.0, 3);  // 49 contacts: three rings of nodes do not fit
   sheet.Solve({0, 0, -0.002});

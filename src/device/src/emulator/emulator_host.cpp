@@ -34,11 +34,26 @@ core::Result<std::unique_ptr<EmulatorHost>> EmulatorHost::MakeTcp(std::unique_pt
   return host;
 }
 
+core::Result<std::unique_ptr<EmulatorHost>> EmulatorHost::MakeLocal(std::unique_ptr<Emulator> emulator,
+                                                                    const std::string& path,
+                                                                    std::size_t packet_size,
+                                                                    std::vector<Fault> faults,
+                                                                    std::uint64_t seed) {
+  const LocalLine line = packet_size > 0 ? LocalLine::kPackets : LocalLine::kStream;
+  core::Result<std::unique_ptr<LocalListener>> listener = LocalListener::Make(path, line);
+  if (!listener) return listener.error();
+  std::unique_ptr<EmulatorHost> host(new EmulatorHost(std::move(emulator), std::move(faults), seed));
+  host->local_listener_ = std::move(*listener);
+  host->packet_size_ = packet_size;
+  host->address_ = path;
+  return host;
+}
+
 /// The line that is open just now, or null.
 Transport* EmulatorHost::FindLine() {
   if (terminal_ != nullptr) return terminal_.get();
   if (caller_ == nullptr) {
-    caller_ = listener_->Accept();
+    caller_ = listener_ != nullptr ? listener_->Accept() : local_listener_->Accept();
     if (caller_ != nullptr) {
       unsent_.clear();
       emulator_->Connect();
@@ -63,9 +78,20 @@ void EmulatorHost::Step(double time) {
   const std::string due = SpoilBytes(faults_, time, emulator_->Advance(time), random_);
   if (line == nullptr) return;
   unsent_ += due;
-  const IoResult sent = line->Write(unsent_);
-  unsent_.erase(0, sent.count);
+  Send(*line);
   if (unsent_.size() > kMostUnsent) unsent_.clear();
+}
+
+void EmulatorHost::Send(Transport& line) {
+  const std::size_t part = packet_size_ > 0 ? packet_size_ : unsent_.size();
+  std::size_t done = 0;
+  // nothing is not sent: an empty packet reads like a hang-up
+  while (done < unsent_.size()) {
+    const std::size_t sent = line.Write(std::string_view(unsent_).substr(done, part)).count;
+    if (sent == 0) break;
+    done += sent;
+  }
+  unsent_.erase(0, done);
 }
 
 void EmulatorHost::Unplug() noexcept {

@@ -34,6 +34,17 @@ void TurnBits(std::string& bytes, double rate, math::Random& random) {
   }
 }
 
+/// How far off a measurement is just now [m].
+double CalcJump(const std::vector<Fault>& faults, double time) noexcept {
+  double jump = 0;
+  for (const Fault& fault : faults) {
+    if (fault.kind != FaultKind::kJump || !fault.IsOn(time)) continue;
+    if (static_cast<long long>((time - fault.start) / kJumpSlot) % kJumpEvery == kJumpEvery - 1)
+      jump += kJumpSize;
+  }
+  return jump;
+}
+
 }  // namespace
 
 std::string_view FaultName(FaultKind kind) noexcept {
@@ -97,12 +108,14 @@ std::string SpoilBytes(const std::vector<Fault>& faults, double time, std::strin
 SensorMotion SpoilMotion(std::vector<Fault> faults, SensorMotion motion) {
   return [faults = std::move(faults), motion = std::move(motion)](int channel, double time) {
     Pose pose = motion(channel, time);
-    for (const Fault& fault : faults) {
-      if (fault.kind != FaultKind::kJump || !fault.IsOn(time)) continue;
-      if (static_cast<long long>((time - fault.start) / kJumpSlot) % kJumpEvery == kJumpEvery - 1)
-        pose.translation.x += kJumpSize;
-    }
+    pose.translation.x += CalcJump(faults, time);
     return pose;
+  };
+}
+
+CursorMotion SpoilCursor(std::vector<Fault> faults, CursorMotion motion) {
+  return [faults = std::move(faults), motion = std::move(motion)](int device, double time) {
+    return motion(device, time) + Vec3{CalcJump(faults, time), 0, 0};
   };
 }
 

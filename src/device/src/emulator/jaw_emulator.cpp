@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -20,13 +21,19 @@ class JawEmulator : public Emulator {
     if (next_ < time - kLongestStep) next_ = time;
     for (; next_ <= time; next_ += kPeriod) {
       const HandSamples hands = emulation_.motion(next_);
-      for (int tool = 0; tool < kJawTools; ++tool) {
-        const JawCalibration& sensor = emulation_.calibrations[static_cast<std::size_t>(tool)];
-        const double opening = hands[static_cast<std::size_t>(tool)].jaw / sensor.max_jaw;
-        bytes += FormatReading(
-            {tool, static_cast<std::uint32_t>(1e3 * next_),
-             static_cast<int>(std::lround(sensor.closed + opening * (sensor.open - sensor.closed)))});
+      std::array<int, kJawTools> raw{};
+      for (std::size_t tool = 0; tool < raw.size(); ++tool) {
+        const JawCalibration& sensor = emulation_.calibrations[tool];
+        const double opening = hands[tool].jaw / sensor.max_jaw;
+        raw[tool] = static_cast<int>(std::lround(sensor.closed + opening * (sensor.open - sensor.closed)));
       }
+      if (emulation_.format == JawFormat::kHid) {
+        bytes += FormatHidReport(raw);
+        continue;
+      }
+      for (int tool = 0; tool < kJawTools; ++tool)
+        bytes += FormatReading(
+            {tool, static_cast<std::uint32_t>(1e3 * next_), raw[static_cast<std::size_t>(tool)]});
     }
     return bytes;
   }

@@ -5,6 +5,8 @@
 #include <charconv>
 #include <utility>
 
+#include "stylus_hands.h"
+#include "trocar/device/force_device_spec.h"
 #include "trocar/device/hand_recording.h"
 #include "trocar/device/hand_rig.h"
 #include "trocar/device/igtl_tracker.h"
@@ -22,6 +24,8 @@ using DriverResult = core::Result<std::unique_ptr<Driver>>;
 
 constexpr std::string_view kSerial = "serial line";
 
+constexpr std::string_view kOpenHaptics = "openhaptics", kHaply = "haply";
+
 constexpr DeviceKind kKinds[] = {
     {"fastrak", kSerial, "Polhemus FASTRAK, ASCII records"},
     {"fastrak-binary", kSerial, "Polhemus FASTRAK, binary records"},
@@ -32,6 +36,8 @@ constexpr DeviceKind kKinds[] = {
     {"igtl", "host:port", "any tracker over OpenIGTLink: PLUS, 3D Slicer"},
     {"gamepad", "", "gamepad: sticks move the hands, triggers close the jaws"},
     {"spacemouse", "", "3Dconnexion SpaceMouse, through spacenavd"},
+    {kOpenHaptics, "names", "one or two haptic devices through OpenHaptics; with force: --haptics"},
+    {kHaply, "count:port", "one or two Haply Inverse3 through their service; with force: --haptics"},
     {"play", "file", "a recording of trocar devices record"},
 };
 
@@ -91,6 +97,17 @@ std::unique_ptr<JawSensor> MakeJaw(const DeviceSpec& spec,
       settings, [path = spec.address, baud] { return OpenSerialPort(path, baud); }, clock);
 }
 
+bool IsHaptic(std::string_view kind) {
+  return kind == kOpenHaptics || kind == kHaply;
+}
+
+/// Hands of a haptic device, without force.
+DriverResult MakeStylus(const DeviceSpec& spec) {
+  auto device = MakeForceDriver(spec.address.empty() ? spec.kind : spec.kind + ":" + spec.address);
+  if (!device) return device.error();
+  return MakeStylusHands(std::move(*device));
+}
+
 /// A result of a kind of driver, as one of any driver.
 template <typename Kind>
 DriverResult AsDriver(core::Result<std::unique_ptr<Kind>> made) {
@@ -103,7 +120,8 @@ DriverResult MakeOne(const DeviceSpec& spec, const DeviceStore& store, Clock& cl
   if (spec.kind == "igtl") return AsDriver(MakeIgtl(spec, store, clock));
   if (spec.kind == "gamepad") return DriverResult(std::make_unique<Gamepad>(MakeSdlGamepad(), clock));
   if (spec.kind == "spacemouse")
-    return DriverResult(std::make_unique<SpaceMouse>(MakeSpacenavSource(), clock));
+    return DriverResult(std::make_unique<SpaceMouse>(MakeSpacenavSource(spec.address), clock));
+  if (IsHaptic(spec.kind)) return MakeStylus(spec);
   if (spec.kind == "play") return DriverResult(std::make_unique<HandPlayer>(spec.address, clock));
   return DriverResult(MakeJaw(spec, store.jaws, clock));
 }
@@ -157,7 +175,7 @@ DriverResult MakeDriver(std::string_view text, const DeviceStore& store, Clock& 
   const core::Result<DeviceSpec> jaws = ParseDeviceSpec(text.substr(plus + 1));
   if (!jaws) return jaws.error();
   if (IsJaw(*hands) || !IsJaw(*jaws))
-    return Usage("\"" + std::string(text) +
+    return Usage(std::string("\"").append(text) +
                  "\": a jaw sensor goes behind the +, something with hands before it");
   DriverResult second = MakeOne(*jaws, store, clock);
   if (!second) return second;
@@ -165,7 +183,8 @@ DriverResult MakeDriver(std::string_view text, const DeviceStore& store, Clock& 
 }
 
 ButtonMap FindButtons(std::string_view text, const DeviceStore& store) {
-  return store.Buttons(std::string(text.substr(0, text.find_first_of(":+"))));
+  const std::string kind(text.substr(0, text.find_first_of(":+")));
+  return store.Buttons(IsHaptic(kind) ? "haptics" : kind);
 }
 
 core::Result<std::unique_ptr<PoseDriver>> MakeTracker(std::string_view text, const DeviceStore& store,
@@ -196,6 +215,11 @@ std::vector<FoundDevice> ListDevices() {
   for (const std::string& name : ListGamepads()) found.push_back({"gamepad", name});
   for (const HidInfo& sensor : ListHidSensors())
     found.push_back({"jaw-hid:" + sensor.path, sensor.description});
+  if (IsSpacenavThere()) found.push_back({"spacemouse", "spacenavd answers"});
+  if (const std::string library = FindOpenHaptics(); !library.empty())
+    found.push_back({std::string(kOpenHaptics), "OpenHaptics is installed: " + library});
+  if (ConnectTcp("localhost", kHaplyPort, 0.1).ok())
+    found.push_back({std::string(kHaply), "a service answers on Haply's port"});
   return found;
 }
 

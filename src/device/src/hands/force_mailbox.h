@@ -69,8 +69,13 @@ class ForceMailbox {
   // --- either
 
   bool IsLost() const noexcept { return is_lost_.load(std::memory_order_acquire); }
-  /// No force, nothing lost. Before the driver's thread starts.
+  /// No force, nothing lost, nothing reported yet: silence, which is no loss. Before the driver's thread starts.
   void Clear() noexcept {
+    ForceSample silent;
+    silent.status = ForceDeviceStatus::kOk;
+    reports_.Back().fill(silent);
+    reports_.Publish();
+    static_cast<void>(reports_.Update());
     command_ = {};
     commands_.Back() = {};
     commands_.Publish();

@@ -3,6 +3,7 @@
 #include <cwchar>
 
 #include "trocar/device/jaw_sensor.h"
+#include "trocar/device/local_port.h"
 #if TROCAR_HAS_HIDAPI
 #include <hidapi.h>
 #endif
@@ -54,6 +55,7 @@ std::vector<HidInfo> ListHidSensors() {
 }
 
 core::Result<std::unique_ptr<Transport>> OpenHidSensor(const std::string& path) {
+  if (IsLocalSocket(path)) return ConnectLocal(path, LocalLine::kPackets);
   hid_device* device = path.empty() ? hid_open(kVendor, kProduct, nullptr) : hid_open_path(path.c_str());
   if (device == nullptr) {
     return core::Error{
@@ -69,7 +71,8 @@ std::vector<HidInfo> ListHidSensors() {
   return {};
 }
 
-core::Result<std::unique_ptr<Transport>> OpenHidSensor(const std::string&) {
+core::Result<std::unique_ptr<Transport>> OpenHidSensor(const std::string& path) {
+  if (IsLocalSocket(path)) return ConnectLocal(path, LocalLine::kPackets);
   return core::Error{
       core::ErrorCode::kDeviceUnsupported,
       "this build has no HID support: install libhidapi-dev and build again, or use the sensor's text lines"};

@@ -68,13 +68,19 @@ Parsed JawFramer::Parse(std::string_view bytes, JawReading& reading) noexcept {
 
 std::array<std::optional<int>, kJawTools> ParseHidReport(std::string_view report) noexcept {
   std::array<std::optional<int>, kJawTools> values;
-  if (report.size() != 2 * values.size()) return values;
+  if (report.size() != kHidReportSize) return values;
   for (std::size_t tool = 0; tool < values.size(); ++tool) {
     const auto low = static_cast<unsigned char>(report[2 * tool]);
     const auto high = static_cast<unsigned char>(report[2 * tool + 1]);
     if (const int raw = low | high << 8; raw <= kMaxJawRaw) values[tool] = raw;
   }
   return values;
+}
+
+std::string FormatHidReport(const std::array<int, kJawTools>& raw) {
+  std::string report;
+  for (const int value : raw) report += {static_cast<char>(value & 0xff), static_cast<char>(value >> 8)};
+  return report;
 }
 
 std::string FormatReading(const JawReading& reading) {

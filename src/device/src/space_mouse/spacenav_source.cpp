@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trocar/device/rate_hands.h"
 
+#include <cstdlib>
+
+#include "trocar/device/local_port.h"
+
 #if TROCAR_HAS_SPNAV
 #include <sys/socket.h>
 
@@ -11,6 +15,8 @@
 
 namespace trocar::device {
 namespace {
+
+constexpr const char* kSocketVariable = "SPNAV_SOCKET";
 
 #if TROCAR_HAS_SPNAV
 /// libspnav keeps one connection for the whole program.
@@ -83,8 +89,17 @@ class SpacenavSource : public SpaceMouseSource {
 
 }  // namespace
 
-std::unique_ptr<SpaceMouseSource> MakeSpacenavSource() {
+std::unique_ptr<SpaceMouseSource> MakeSpacenavSource(const std::string& socket) {
+  if (!socket.empty()) ::setenv(kSocketVariable, socket.c_str(), 1);
   return std::make_unique<SpacenavSource>();
+}
+
+bool IsSpacenavThere() {
+#if !TROCAR_HAS_SPNAV
+  return false;
+#endif
+  const char* const named = std::getenv(kSocketVariable);
+  return ConnectLocal(named != nullptr ? named : "/var/run/spnav.sock", LocalLine::kStream).ok();
 }
 
 }  // namespace trocar::device

@@ -13,7 +13,9 @@
 
 #include "trocar/device/hand_calibration.h"
 #include "trocar/device/jaw_sensor.h"
+#include "trocar/device/local_port.h"
 #include "trocar/device/polhemus.h"
+#include "trocar/device/rate_hands.h"
 #include "trocar/device/serial_port.h"
 #include "trocar/device/tcp_port.h"
 #include "trocar/device/tracked_hands.h"
@@ -64,17 +66,26 @@ std::unique_ptr<Emulator> MakePolhemusEmulator(PolhemusEmulation emulation);
 struct JawEmulation {
   std::array<JawCalibration, kJawTools> calibrations;  ///< of the emulated potentiometers
   HandMotion motion;
+  JawFormat format = JawFormat::kText;
 };
-/// 100 lines a second for each tool.
+/// 100 lines a second for each tool, or 100 reports of both.
 std::unique_ptr<Emulator> MakeJawEmulator(JawEmulation emulation);
 
 /// An OpenIGTLink server: 60 times a second the left hand as TRANSFORM, the right one as TDATA.
 std::unique_ptr<Emulator> MakeIgtlEmulator(SensorMotion motion);
 
+/// What a person does with a SpaceMouse's cap at a time [s].
+using CapMotion = std::function<SpaceMouseState(double time)>;
+/// Pushed and turned to and fro in all axes; the left button goes down and up.
+SpaceMouseState CalcCapMotion(double time) noexcept;
+/// spacenavd with a SpaceMouse: 60 events a second, in the daemon's first protocol.
+std::unique_ptr<Emulator> MakeSpaceMouseEmulator(CapMotion motion);
+
+/// Where the cursors of a haptic device are at a time; device frame of force_driver.h [m].
+using CursorMotion = std::function<Vec3(int device, double time)>;
 struct HaplyEmulation {
   int devices = 1;  ///< 1 or 2
-  std::function<Vec3(int device, double time)>
-      position;  ///< of the cursors, device frame of force_driver.h [m]
+  CursorMotion position;
 };
 /// What a driver last sent to the emulated service.
 struct HaplyForces {
@@ -114,12 +125,13 @@ core::Result<Fault> ParseFault(std::string_view text);
 /// Spoils what a device sends. `jump` is left to SpoilMotion().
 std::string SpoilBytes(const std::vector<Fault>& faults, double time, std::string bytes,
                        math::Random& random);
-/// Adds the jumps to what a tracker measures.
+/// Adds the jumps to what a tracker, or a haptic device, measures.
 SensorMotion SpoilMotion(std::vector<Fault> faults, SensorMotion motion);
+CursorMotion SpoilCursor(std::vector<Fault> faults, CursorMotion motion);
 
 // --- a line for it
 
-/// Serves one emulator on a pseudo-terminal, or on a loopback port to one caller at a time.
+/// Serves one emulator on a pseudo-terminal, or on a loopback port or a socket's path to one caller at a time.
 class EmulatorHost {
  public:
   /// \param seed  of the faults
@@ -131,24 +143,35 @@ class EmulatorHost {
                                                              std::vector<Fault> faults = {},
                                                              std::uint64_t seed = 1);
 
+  /// \param path         of the socket; gone with the host
+  /// \param packet_size  bytes of a report, each of which is read alone; 0 for a stream
+  static core::Result<std::unique_ptr<EmulatorHost>> MakeLocal(std::unique_ptr<Emulator> emulator,
+                                                               const std::string& path,
+                                                               std::size_t packet_size,
+                                                               std::vector<Fault> faults = {},
+                                                               std::uint64_t seed = 1);
+
   /// Takes in what came and sends what is due. Call it every few milliseconds.
   /// \param time  since the start [s], not falling
   void Step(double time);
   /// Pulls the plug of a serial line, closes the connection of a TCP one.
   void Unplug() noexcept;
-  /// "/dev/pts/7" or "localhost:40123": what a driver opens.
+  /// "/dev/pts/7", "localhost:40123" or a socket's path: what a driver opens.
   const std::string& Address() const noexcept { return address_; }
 
  private:
   EmulatorHost(std::unique_ptr<Emulator> emulator, std::vector<Fault> faults, std::uint64_t seed)
       : emulator_(std::move(emulator)), faults_(std::move(faults)), random_(seed) {}
   Transport* FindLine();
+  void Send(Transport& line);
 
   std::unique_ptr<Emulator> emulator_;
   std::vector<Fault> faults_;
   math::Random random_;
   std::unique_ptr<PseudoTerminal> terminal_;
   std::unique_ptr<TcpListener> listener_;
+  std::unique_ptr<LocalListener> local_listener_;
+  std::size_t packet_size_ = 0;  // [bytes]; 0: a stream
   std::unique_ptr<Transport> caller_;
   std::string address_;
   std::string unsent_;  // what the line had no room for

@@ -20,6 +20,11 @@ namespace trocar::device {
 /// \return unconfigured; kDeviceSettings with the kinds that there are
 core::Result<std::unique_ptr<ForceDriver>> MakeForceDriver(std::string_view text);
 
+/// Port of Haply's service, where none is given.
+inline constexpr int kHaplyPort = 10001;
+/// Where the maker's library lies among the folders that libraries are loaded from; empty where it is not. Loads nothing.
+std::string FindOpenHaptics();
+
 /// The kinds, for help and messages.
 std::string ListForceDrivers();
 

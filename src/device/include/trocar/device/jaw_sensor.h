@@ -52,6 +52,10 @@ class JawFramer {
 /// value beyond kMaxJawRaw.
 std::array<std::optional<int>, kJawTools> ParseHidReport(std::string_view report) noexcept;
 
+inline constexpr std::size_t kHidReportSize = 2 * kJawTools;  ///< [bytes]
+/// What ParseHidReport() reads.
+std::string FormatHidReport(const std::array<int, kJawTools>& raw);
+
 /// "J,1,1234,512\r\n"
 std::string FormatReading(const JawReading& reading);
 
@@ -135,7 +139,7 @@ struct HidInfo {
 };
 /// Boards with the USB numbers of docs/hardware/jaw-sensor.md; empty in a build without hidapi.
 std::vector<HidInfo> ListHidSensors();
-/// \param path  empty: the first that is found
+/// \param path  empty: the first that is found; the path of a socket: an emulated sensor's, a report a packet
 /// \return kDeviceLost, or kDeviceUnsupported in a build without hidapi
 core::Result<std::unique_ptr<Transport>> OpenHidSensor(const std::string& path);
 

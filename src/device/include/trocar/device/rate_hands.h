@@ -94,7 +94,11 @@ class SpaceMouseSource {
   virtual void Close() noexcept = 0;
 };
 /// Through spacenavd, which must run.
-std::unique_ptr<SpaceMouseSource> MakeSpacenavSource();
+/// \param socket  the daemon's; empty: where it lies by default. Kept in the environment variable SPNAV_SOCKET, by which
+///                the library finds it
+std::unique_ptr<SpaceMouseSource> MakeSpacenavSource(const std::string& socket = {});
+/// True if a spacenavd answers.
+bool IsSpacenavThere();
 
 /// Moves one hand; the left button closes and opens its jaws while held, the right one changes hands, further ones are that
 /// hand's buttons.

@@ -23,20 +23,30 @@ using Matrix3Rows = std::array<Vec3, 3>;
 /// Fixed size, so that publishing one allocates nothing. Nodes stand in the order free, held, rim; within the free
 /// ones from the contact outwards.
 struct LocalPatch {
-  static constexpr std::size_t kMaxNodes = 192, kMaxLinks = 1536, kMaxContacts = 64;
+  static constexpr std::size_t kMaxNodes = 192, kMaxLinks = 1536, kMaxContacts = 64, kMaxPresses = 128;
 
   enum class Kind : std::uint8_t {
     kNone,     ///< the tool touches and holds nothing
     kSegment,  ///< nodes, links and contacts
-    kLinear    ///< force and Jacobian only
+    kLinear    ///< force and Jacobian only, what is pressed as springs that let go one by one
   } kind = Kind::kNone;
   bool is_healthy = false;  ///< the tick ended with a good state
   std::uint64_t tick = 0;
   Pose X_world_tool;       ///< of the tool in that tick
   Vec3 force;              ///< of the tissue on the tool in that tick, as it is at the tip [N], world frame
   bool has_pivot = false;  ///< the shaft turns about its trocar as the tip moves
-  Matrix3Rows jacobian{};  ///< dF/dp of kLinear [N/m]
-  bool is_one_sided = false;  ///< kLinear: the tool only presses, and what it pressed does not pull it back
+  Matrix3Rows jacobian{};  ///< kLinear: dF/dp of what holds the tool both ways, symmetric [N/m]
+
+  /// One-sided spring of kLinear. Where the tool's tip has gone by u since the cut it pushes the tip by -(force + stiffness
+  /// normal . u) normal as long as the bracket is above zero. A sum of such springs has an energy, so that no way round gains
+  /// any; a Jacobian that is cut off as a whole has none.
+  struct Press {
+    Vec3 normal;           ///< tip_normal of the contact, see below
+    double force = 0;      ///< at the cut [N], >= 0
+    double stiffness = 0;  ///< of contact and tissue in row [N/m], > 0
+  };
+  std::uint32_t press_count = 0;
+  std::array<Press, kMaxPresses> presses;
 
   std::uint32_t free_count = 0, held_count = 0, node_count = 0;
   std::array<std::uint32_t, kMaxNodes> node;    ///< index in the whole system
@@ -98,7 +108,7 @@ class PatchCutter {
   /// Cuts the largest segment of up to kMaxRings that fits. Its rim is held where it is; all that is not in it, such as
   /// weight, pressure and the other tool, keeps acting as in the tick: at the tool's pose of the tick the segment rests
   /// and answers with exactly `source.force`. A tool with more contacts or nodes than one ring holds gets the linear
-  /// model, whose Jacobian takes each pressed node's neighbours as held: too stiff, never too soft.
+  /// model, whose springs take each pressed node's neighbours as held: too stiff, never too soft.
   ///
   /// \param max_rings  1 to kMaxRings
   /// \note Real-time safe: no allocation, lock or throw.
