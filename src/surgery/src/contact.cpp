@@ -59,6 +59,7 @@ struct Meeting {
   Vec3 normal;       // unit
   double reach;      // sum of the radii [m]
   double rank = 0;   // low for what is met early, beyond 1 what is only near at the end
+  double time = -1;  // on the body's way, 0 to 1; negative: it was met in the last solve
 };
 
 Vec3 PointOf(const Meeting& meeting, std::span<const Vec3> positions) noexcept {
@@ -136,6 +137,26 @@ void AddContact(const Search& search, const Meeting& meeting, std::size_t surfac
             contacts);
 }
 
+/// What bore in the last tick goes half way to where the surfaces are nearest now: along an edge that lies nearly along the
+/// tool that place is ill-conditioned, and would leap to and fro with every solve.
+void KeepSteady(const Search& search, std::size_t surface, std::uint32_t item, Meeting& meeting) noexcept {
+  const std::ptrdiff_t at = FindLast(search.last, MakeKey(search, surface, item));
+  if (at < 0 || meeting.time < 0.0) return;
+  const tissue::ContactSpring& before = search.last.springs[static_cast<std::size_t>(at)];
+  if (!(search.last.links[static_cast<std::size_t>(at)].normal_force > 0.0) || before.nodes != meeting.nodes)
+    return;
+  Meeting steady = meeting;
+  for (int i = 0; i < 3; ++i) steady.weights[i] = 0.5 * (before.weights[i] + meeting.weights[i]);
+  const Segment axis = search.way.At(meeting.time);
+  const Vec3 tissue = PointOf(steady, search.touchables.positions);
+  steady.parameter = geometry::FindNearestOnSegment(tissue, axis.start, axis.end);
+  const Vec3 away = tissue - math::Lerp(axis.start, axis.end, steady.parameter);
+  const double distance = math::Norm(away);
+  if (!(distance > kSamePoint)) return;
+  steady.normal = away / distance;
+  meeting = steady;
+}
+
 bool Overlaps(const geometry::Box& box, const Capsule& capsule) noexcept {
   for (int axis = 0; axis < 3; ++axis) {
     const double low = std::min(capsule.axis.start[axis], capsule.axis.end[axis]) - capsule.radius;
@@ -179,7 +200,10 @@ bool MeetTriangle(const Search& search, const std::array<std::uint32_t, 3>& node
   const auto sweep = collision::SweepToTriangle(search.way, {now, now}, search.radius);
   const bool is_near =
       sweep.is_hit || std::sqrt(sweep.points.squared_distance) < search.radius + search.settings.margin;
-  if (is_near && take(sweep, now)) return true;
+  if (is_near && take(sweep, now)) {
+    meeting.time = sweep.time;
+    return true;
+  }
   // tissue that shot past the tool in the last solve is met where it passed
   if (!HasSnapped(search, nodes)) return false;
   const std::array<Vec3, 3> before = corners(search.touchables.positions_before);
@@ -283,8 +307,9 @@ void FindOnOrgan(Search& search, std::size_t surface, ContactSet& contacts) noex
   if (kept > kMostByBody) kept = KeepFirstMet(search, organ, std::span(found).first(kept));
   for (std::size_t i = 0; i < kept; ++i) {
     Meeting meeting;
-    if (MeetTriangle(search, NodesOf(organ, found[i]), meeting))
-      AddContact(search, meeting, surface, found[i], contacts);
+    if (!MeetTriangle(search, NodesOf(organ, found[i]), meeting)) continue;
+    KeepSteady(search, surface, found[i], meeting);
+    AddContact(search, meeting, surface, found[i], contacts);
   }
   if (count > 0 && contacts.springs.size() == before) PushOut(search, organ, surface, contacts);
 }

@@ -197,6 +197,38 @@ TEST_F(Contact, TissueThatSnappedPastTheToolIsCaught) {
   EXPECT_GT(tissue::CalcContactDepth(contacts_.springs[0], state_.position), 0.0);
 }
 
+// Where an edge lies nearly along the tool, the nearest place on it leaps from end to end with every solve.
+TEST_F(Contact, WhatBearsGoesHalfWayToWhereItIsNearestNow) {
+  Place(JointsAt({0, 0, 0.03}));
+  (void)PressTo({0, 0, 0.0175});
+  const auto joints = JointsAt({0.0006, 0.0003, 0.0175});
+  const ToolMotion motion{&tool_, 0, X_proxy_before_, X_proxy_, PoseAt(joints), 0.0, 0.0, -1};
+  ContactSet kept, fresh;
+  FindContacts(motion, GetTouchables(), settings_, contacts_, kept);
+  FindContacts(motion, GetTouchables(), settings_, ContactSet{}, fresh);
+  const auto find = [](const ContactSet& set, std::uint64_t key) {
+    const auto at = std::find_if(set.links.begin(), set.links.end(), [key](const ContactLink& link) {
+      return link.key == key && !link.is_friction;
+    });
+    return at == set.links.end() ? nullptr : &set.springs[static_cast<std::size_t>(at - set.links.begin())];
+  };
+  int bearing = 0, idle = 0;
+  for (std::size_t i = 0; i < contacts_.links.size(); ++i) {
+    const ContactLink& link = contacts_.links[i];
+    const auto* before = &contacts_.springs[i];
+    const auto *now = find(kept, link.key), *nearest = find(fresh, link.key);
+    if (link.is_friction || now == nullptr || nearest == nullptr || before->weights == nearest->weights)
+      continue;
+    const double share = link.normal_force > 0.0 ? 0.5 : 0.0;
+    (share > 0.0 ? bearing : idle) += 1;
+    for (std::size_t k = 0; k < 3; ++k)
+      EXPECT_NEAR(now->weights[k], share * before->weights[k] + (1.0 - share) * nearest->weights[k], 1e-12);
+    EXPECT_NEAR(math::Norm(now->normal), 1.0, 1e-12);
+  }
+  EXPECT_GT(bearing, 0);
+  EXPECT_GT(idle, 0);
+}
+
 TEST_F(Contact, ASetThatIsFullCountsWhatItDrops) {
   Place(JointsAt({0, 0, 0.0215}));
   const ToolMotion motion{&tool_, 0, X_proxy_, X_proxy_, PoseAt(JointsAt({0, 0, 0.016})), 0, 0, -1};
