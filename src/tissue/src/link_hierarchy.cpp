@@ -13,6 +13,8 @@ namespace {
 
 /// Slices a thread takes at a time: eight parts of a patient, so that two or four threads have the same to do.
 constexpr std::uint32_t kChunkSlices = 28;
+/// Aggregates a thread takes at a time.
+constexpr std::uint32_t kChunkAggregates = 128;
 /// A level this small is solved directly.
 constexpr std::uint32_t kDirectNodes = 24;
 /// Passes of pairwise joining for one level: up to 2^n nodes in an aggregate.
@@ -44,7 +46,7 @@ std::size_t LinkAt(std::size_t entry) {
   return entry / kSliceNodes * 6 * kSliceNodes + entry % kSliceNodes;
 }
 
-Symmetric3 ReadSymmetric(const std::vector<float>& values, std::size_t at) {
+Symmetric3 ReadSymmetric(const AlignedVector<float>& values, std::size_t at) {
   Symmetric3 m;
   for (std::size_t i = 0; i < 6; ++i) m[i] = static_cast<double>(values[at + i * kSliceNodes]);
   return m;
@@ -152,19 +154,34 @@ void LinkHierarchy::Reserve(double share) {
   inverse_.reserve(9 * kDirectNodes * kDirectNodes);
 }
 
-void LinkHierarchy::Coarsen(std::size_t at, std::span<const float> slack) noexcept {
+/// Each aggregate gathers from its members, one after the other: no two threads write the same number, and sums do
+/// not depend on who forms them.
+void LinkHierarchy::Coarsen(Workers& workers, std::size_t at, std::span<const float> slack) noexcept {
+  const std::uint32_t coarse_nodes = levels_[at + 1].Size();
+  const std::uint32_t size = std::max(kChunkAggregates, coarse_nodes / Workers::kMaxChunks + 1);
+  workers.Run((coarse_nodes + size - 1) / size, [&](std::uint32_t chunk) {
+    const std::uint32_t last = std::min(coarse_nodes, (chunk + 1) * size);
+    for (std::uint32_t a = chunk * size; a < last; ++a) GatherAggregate(at, a, slack);
+  });
+}
+
+void LinkHierarchy::GatherAggregate(std::size_t at, std::uint32_t aggregate,
+                                    std::span<const float> slack) noexcept {
   const LinkLevel& level = levels_[at];
   LinkLevel& next = levels_[at + 1];
-  std::fill(next.links.begin(), next.links.end(), 0.0f);
-  std::fill(next.ground.begin(), next.ground.end(), 0.0f);
-  std::fill(next.is_free.begin(), next.is_free.end(), 0.0f);
   const auto add = [](const float(&m)[6], float scale, float* to) {
     for (std::size_t v = 0; v < 6; ++v) to[v * kSliceNodes] += scale * m[v];
   };
-  for (std::uint32_t i = 0; i < level.Size(); ++i) {
-    if (level.is_free[i] == 0.0f || level.aggregate[i] == Aggregation::kNone) continue;
-    next.is_free[level.aggregate[i]] = 1.0f;
-    float* const ground = next.ground.data() + GroundAt(level.aggregate[i]);
+  float* const ground = next.ground.data() + GroundAt(aggregate);
+  for (std::size_t v = 0; v < 6; ++v) ground[v * kSliceNodes] = 0.0f;
+  const std::size_t row = LinkAt(next.layout.Entry(aggregate, 0));
+  for (std::size_t v = 0; v < std::size_t{6} * next.layout.RowSteps(aggregate); ++v)
+    next.links[row + v * kSliceNodes] = 0.0f;
+  next.is_free[aggregate] = 0.0f;
+  for (auto m = level.member_starts[aggregate]; m < level.member_starts[aggregate + 1]; ++m) {
+    const std::uint32_t i = level.members[m];
+    if (level.is_free[i] == 0.0f) continue;
+    next.is_free[aggregate] = 1.0f;
     for (std::size_t v = 0; v < 6; ++v)
       ground[v * kSliceNodes] += level.ground[GroundAt(i) + v * kSliceNodes];
     const std::size_t first = level.layout.Entry(i, 0),
@@ -188,7 +205,7 @@ void LinkHierarchy::Coarsen(std::size_t at, std::span<const float> slack) noexce
 void LinkHierarchy::UpdateCoarse(const Kernels& kernels, Workers& workers,
                                  std::span<const float> slack) noexcept {
   for (std::size_t at = 0; at + 1 < level_count_; ++at) {
-    Coarsen(at, at == 0 ? slack : std::span<const float>());
+    Coarsen(workers, at, at == 0 ? slack : std::span<const float>());
     LinkLevel& next = levels_[at + 1];
     const LinkMatrix matrix = next.Matrix();
     ForEachSliceChunk(workers, next.layout.Slices(), [&](std::uint32_t first, std::uint32_t last) {
