@@ -84,6 +84,15 @@ struct Vector {
   Lanes x, y, z;
 };
 
+/// Makes the compiler load once what it would take from memory at each use: the kernels wait for loads.
+inline void KeepInRegister([[maybe_unused]] Lanes& v) {
+#if TROCAR_LANES == 16
+  __asm__("" : "+v"(v));
+#elif defined(TROCAR_HAS_X86)
+  __asm__("" : "+x"(v));
+#endif
+}
+
 /// TROCAR_LANES nodes: one load of 16 bytes each, then a transpose in registers.
 #if defined(TROCAR_HAS_X86)
 template <typename At>
@@ -176,8 +185,9 @@ inline Lanes AddSquaredNorm(const Vector& v, Lanes to) {
 
 /// to + m v for symmetric 3 x 3 matrices that lie kSliceNodes apart: xx, xy, xz, yy, yz, zz.
 inline Vector MulAddSymmetric(const float* m, const Vector& v, const Vector& to) {
-  const Lanes xx = Load(m), xy = Load(m + kSliceNodes), xz = Load(m + 2 * kSliceNodes),
-              yy = Load(m + 3 * kSliceNodes), yz = Load(m + 4 * kSliceNodes), zz = Load(m + 5 * kSliceNodes);
+  const Lanes xx = Load(m), yy = Load(m + 3 * kSliceNodes), zz = Load(m + 5 * kSliceNodes);
+  Lanes xy = Load(m + kSliceNodes), xz = Load(m + 2 * kSliceNodes), yz = Load(m + 4 * kSliceNodes);
+  KeepInRegister(xy), KeepInRegister(xz), KeepInRegister(yz);
   return {MulAdd(xz, v.z, MulAdd(xy, v.y, MulAdd(xx, v.x, to.x))),
           MulAdd(yz, v.z, MulAdd(yy, v.y, MulAdd(xy, v.x, to.y))),
           MulAdd(zz, v.z, MulAdd(yz, v.y, MulAdd(xz, v.x, to.z)))};

@@ -158,25 +158,32 @@ void Linearisation::AddOuter(std::uint32_t node, const Vec3& force, double size)
 double Linearisation::AddStrandsAndContacts(std::span<const Double4> position, Balance& balance) noexcept {
   const OrderedModel& model = *model_;
   const OrderedLoad& load = *load_;
-  const auto reset = [&](std::uint32_t node) {
-    for (int axis = 0; axis < 3; ++axis)
-      At(node, static_cast<BalanceValue>(kOuterX + axis)) = load.constant[node][axis];
-    At(node, kOuterSize) = math::Norm(load.constant[node]);
+  const auto set_outer = [&](std::uint32_t node, const Vec3& force, double size) {
+    for (int axis = 0; axis < 3; ++axis) At(node, static_cast<BalanceValue>(kOuterX + axis)) = force[axis];
+    At(node, kOuterSize) = size;
   };
-  for (const std::uint32_t node : strand_nodes_) reset(node);
   for (const ContactSpring& contact : load.contacts) {
-    for (const std::uint32_t node : contact.nodes) reset(node);
+    for (const std::uint32_t node : contact.nodes)
+      set_outer(node, load.constant[node], math::Norm(load.constant[node]));
   }
   double energy = 0;
-  for (const auto& strand : model.strands) {
-    if (!strand_is_intact_[strand.strand]) continue;
-    const double k = load.stiffness_scale * strand.stiffness;
-    const Vec3 here = ToVec3(position[strand.node]);
-    const Vec3 offset =
-        (ToVec3(position[strand.other]) - here) - (model.rest[strand.other] - model.rest[strand.node]);
-    const double length2 = math::SquaredNorm(offset);
-    AddOuter(strand.node, k * offset, k * std::sqrt(length2));
-    energy += 0.25 * k * length2 - k * math::Dot(offset, model.rest[strand.node] - here);
+  for (std::size_t first = 0, last = 0; first < model.strands.size(); first = last) {
+    // a node's strands lie side by side
+    const std::uint32_t node = model.strands[first].node;
+    const Vec3 here = ToVec3(position[node]), rest = model.rest[node];
+    Vec3 force = load.constant[node];
+    double size = math::Norm(force);
+    for (last = first; last < model.strands.size() && model.strands[last].node == node; ++last) {
+      const auto& strand = model.strands[last];
+      if (!strand_is_intact_[strand.strand]) continue;
+      const double k = load.stiffness_scale * strand.stiffness;
+      const Vec3 offset = (ToVec3(position[strand.other]) - here) - (model.rest[strand.other] - rest);
+      const double length2 = math::SquaredNorm(offset), pull = k * std::sqrt(length2);
+      force += k * offset;
+      if (pull > size) size = pull;
+      energy += 0.25 * k * length2 - k * math::Dot(offset, rest - here);
+    }
+    set_outer(node, force, size);
   }
   for (std::size_t c = 0; c < load.contacts.size(); ++c) {
     const ContactSpring& contact = load.contacts[c];

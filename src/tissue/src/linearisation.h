@@ -18,8 +18,8 @@ struct OrderedModel {
   NodeGraph graph;                        // springs, then strands, of each node
   std::vector<double> graph_stiffness;    // (graph.others) k [N/m]
   SliceLayout layout;
-  std::vector<double> stiffness;            // (entries) k of springs [N/m]; 0 for strands and padding
-  std::vector<double> rest_length;          // (entries) [m]
+  AlignedVector<double> stiffness;          // (entries) k of springs [N/m]; 0 for strands and padding
+  AlignedVector<double> rest_length;        // (entries) [m]
   std::vector<std::size_t> spring_entries;  // (half-springs of the model) place of each
   std::vector<Vec3> rest;                   // (n) [m]
   std::vector<double> mass;                 // (n) [kg]
@@ -62,7 +62,7 @@ void SetOrderedLoad(const OrderedModel& model, const TissueLoad& load, const Tis
 
 /// Balance of forces at one set of positions.
 struct Balance {
-  std::vector<Float4> residual;           // (padded) R_i [N]; zero where the node is held
+  AlignedVector<Float4> residual;         // (padded) R_i [N]; zero where the node is held
   std::vector<std::uint8_t> is_pressing;  // (contacts)
   double energy = 0;                      // [J]
   double largest_residual = 0;            // [N]
@@ -114,8 +114,8 @@ class Linearisation {
   const OrderedModel* model_;
   const OrderedLoad* load_ = nullptr;
   std::span<const std::uint8_t> strand_is_intact_;
-  std::vector<double> nodes_;                // (slices, kBalanceValues, kSliceNodes)
-  std::vector<float> slack_;                 // (entries) [N/m]
+  AlignedVector<double> nodes_;              // (slices, kBalanceValues, kSliceNodes)
+  AlignedVector<float> slack_;               // (entries) [N/m]
   std::vector<std::uint32_t> strand_nodes_;  // those with strands, each once
 };
 

@@ -13,6 +13,8 @@ namespace {
 
 /// Slices a thread takes at a time: eight parts of a patient, so that two or four threads have the same to do.
 constexpr std::uint32_t kChunkSlices = 28;
+/// Slices of a coarser level that a thread gathers at a time.
+constexpr std::uint32_t kChunkCoarseSlices = 8;
 /// A level this small is solved directly.
 constexpr std::uint32_t kDirectNodes = 24;
 /// Passes of pairwise joining for one level: up to 2^n nodes in an aggregate.
@@ -44,7 +46,7 @@ std::size_t LinkAt(std::size_t entry) {
   return entry / kSliceNodes * 6 * kSliceNodes + entry % kSliceNodes;
 }
 
-Symmetric3 ReadSymmetric(const std::vector<float>& values, std::size_t at) {
+Symmetric3 ReadSymmetric(const AlignedVector<float>& values, std::size_t at) {
   Symmetric3 m;
   for (std::size_t i = 0; i < 6; ++i) m[i] = static_cast<double>(values[at + i * kSliceNodes]);
   return m;
@@ -152,21 +154,33 @@ void LinkHierarchy::Reserve(double share) {
   inverse_.reserve(9 * kDirectNodes * kDirectNodes);
 }
 
-void LinkHierarchy::Coarsen(std::size_t at, std::span<const float> slack) noexcept {
+/// Each aggregate gathers from its members, one after the other: no two threads write the same number, and sums do
+/// not depend on who forms them.
+void LinkHierarchy::Coarsen(Workers& workers, std::size_t at, std::span<const float> slack) noexcept {
+  LinkLevel& next = levels_[at + 1];
+  const std::uint32_t slices = next.layout.Slices();
+  const std::uint32_t size = std::max(kChunkCoarseSlices, slices / Workers::kMaxChunks + 1);
+  workers.Run((slices + size - 1) / size, [&](std::uint32_t chunk) {
+    const std::uint32_t first = chunk * size, last = std::min(slices, first + size);
+    constexpr std::size_t kBlock = 6 * kSliceNodes;
+    std::fill(next.links.begin() + static_cast<std::ptrdiff_t>(kBlock * next.layout.starts[first]),
+              next.links.begin() + static_cast<std::ptrdiff_t>(kBlock * next.layout.starts[last]), 0.0f);
+    const std::uint32_t end = std::min(next.Size(), last * kSliceNodes);
+    for (std::uint32_t a = first * kSliceNodes; a < end; ++a) GatherAggregate(at, a, slack);
+  });
+}
+
+/// \pre The aggregate's links are zero.
+void LinkHierarchy::GatherAggregate(std::size_t at, std::uint32_t aggregate,
+                                    std::span<const float> slack) noexcept {
   const LinkLevel& level = levels_[at];
   LinkLevel& next = levels_[at + 1];
-  std::fill(next.links.begin(), next.links.end(), 0.0f);
-  std::fill(next.ground.begin(), next.ground.end(), 0.0f);
-  std::fill(next.is_free.begin(), next.is_free.end(), 0.0f);
-  const auto add = [](const float(&m)[6], float scale, float* to) {
-    for (std::size_t v = 0; v < 6; ++v) to[v * kSliceNodes] += scale * m[v];
-  };
-  for (std::uint32_t i = 0; i < level.Size(); ++i) {
-    if (level.is_free[i] == 0.0f || level.aggregate[i] == Aggregation::kNone) continue;
-    next.is_free[level.aggregate[i]] = 1.0f;
-    float* const ground = next.ground.data() + GroundAt(level.aggregate[i]);
-    for (std::size_t v = 0; v < 6; ++v)
-      ground[v * kSliceNodes] += level.ground[GroundAt(i) + v * kSliceNodes];
+  float ground[6] = {}, is_free = 0.0f;
+  for (auto m = level.member_starts[aggregate]; m < level.member_starts[aggregate + 1]; ++m) {
+    const std::uint32_t i = level.members[m];
+    if (level.is_free[i] == 0.0f) continue;
+    is_free = 1.0f;
+    for (std::size_t v = 0; v < 6; ++v) ground[v] += level.ground[GroundAt(i) + v * kSliceNodes];
     const std::size_t first = level.layout.Entry(i, 0),
                       last = first + std::size_t{level.layout.RowSteps(i)} * kSliceNodes;
     const float* from = level.links.data() + LinkAt(first);
@@ -180,15 +194,23 @@ void LinkHierarchy::Coarsen(std::size_t at, std::span<const float> slack) noexce
       const float link[6] = {from[0] + firmer,      from[kSliceNodes],
                              from[2 * kSliceNodes], from[3 * kSliceNodes] + firmer,
                              from[4 * kSliceNodes], from[5 * kSliceNodes] + firmer};
-      is_grounded ? add(link, 1.0f, ground) : add(link, kCoarseLinkScale, next.links.data() + LinkAt(coarse));
+      if (is_grounded) {
+        for (std::size_t v = 0; v < 6; ++v) ground[v] += link[v];
+      } else {
+        float* const to = next.links.data() + LinkAt(coarse);
+        for (std::size_t v = 0; v < 6; ++v)
+          to[v * kSliceNodes] += static_cast<float>(kCoarseLinkScale) * link[v];
+      }
     }
   }
+  next.is_free[aggregate] = is_free;
+  for (std::size_t v = 0; v < 6; ++v) next.ground[GroundAt(aggregate) + v * kSliceNodes] = ground[v];
 }
 
 void LinkHierarchy::UpdateCoarse(const Kernels& kernels, Workers& workers,
                                  std::span<const float> slack) noexcept {
   for (std::size_t at = 0; at + 1 < level_count_; ++at) {
-    Coarsen(at, at == 0 ? slack : std::span<const float>());
+    Coarsen(workers, at, at == 0 ? slack : std::span<const float>());
     LinkLevel& next = levels_[at + 1];
     const LinkMatrix matrix = next.Matrix();
     ForEachSliceChunk(workers, next.layout.Slices(), [&](std::uint32_t first, std::uint32_t last) {

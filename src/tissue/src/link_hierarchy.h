@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "aggregation.h"
+#include "aligned_vector.h"
 #include "link_chains.h"
 #include "slice_layout.h"
 #include "symmetric3.h"
@@ -27,11 +28,11 @@ namespace trocar::tissue {
 /// One level's matrix, its way to the next, and room for a cycle.
 struct LinkLevel {
   SliceLayout layout;
-  std::vector<float> links, ground, inverse, is_free;  // as in LinkMatrix
-  std::vector<std::uint32_t> aggregate;                // (n) node of the next level, or Aggregation::kNone
-  std::vector<std::uint32_t> member_starts, members;   // nodes of each aggregate
-  std::vector<std::uint32_t> coarse_entry;             // (entries) place of the link there, or kNoEntry
-  std::vector<Float4> x, b, r;                         // (padded nodes)
+  AlignedVector<float> links, ground, inverse, is_free;  // as in LinkMatrix
+  std::vector<std::uint32_t> aggregate;                  // (n) node of the next level, or Aggregation::kNone
+  std::vector<std::uint32_t> member_starts, members;     // nodes of each aggregate
+  std::vector<std::uint32_t> coarse_entry;               // (entries) place of the link there, or kNoEntry
+  AlignedVector<Float4> x, b, r;                         // (padded nodes)
 
   static constexpr std::uint32_t kNoEntry = ~std::uint32_t{0};
 
@@ -79,7 +80,8 @@ class LinkHierarchy {
  private:
   /// x = about K^-1 b on the level.
   void Cycle(const Kernels& kernels, Workers& workers, std::size_t at, const Float4* b, Float4* x) noexcept;
-  void Coarsen(std::size_t at, std::span<const float> slack) noexcept;
+  void Coarsen(Workers& workers, std::size_t at, std::span<const float> slack) noexcept;
+  void GatherAggregate(std::size_t at, std::uint32_t aggregate, std::span<const float> slack) noexcept;
   void InvertCoarsest() noexcept;
   void SolveCoarsest(const Float4* b, Float4* x) const noexcept;
 

@@ -63,13 +63,13 @@ class NewtonMultigrid {
   OrderedLoad load_;
   LinkHierarchy hierarchy_;
   Linearisation linearisation_;
-  std::vector<Double4> position_, start_;  // (padded)
+  AlignedVector<Double4> position_, start_;  // (padded)
   Balance balance_;
-  std::vector<Float4> step_, r_, z_, p_, q_;  // (padded)
+  AlignedVector<Float4> step_, r_, z_, p_, q_;  // (padded)
   struct Constraint {
-    std::size_t index = 0;         // in the hook
-    std::vector<Float4> gradient;  // (padded) G
-    std::vector<Float4> answer;    // (padded) Y
+    std::size_t index = 0;           // in the hook
+    AlignedVector<Float4> gradient;  // (padded) G
+    AlignedVector<Float4> answer;    // (padded) Y
   };
   std::array<Constraint, kMaxHookConstraints> constraints_room_;
   std::span<Constraint> constraints_;  // of the present step

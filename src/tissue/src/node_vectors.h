@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <vector>
 
+#include "aligned_vector.h"
 #include "kernels.h"
 #include "workers.h"
 
@@ -28,8 +28,8 @@ std::uint32_t ForEachNodeChunk(Workers& workers, std::size_t count, const Work& 
 }
 
 /// a . b of all nodes, in double precision and in an order that the threads do not change.
-inline double CalcDot(const Kernels& kernels, Workers& workers, const std::vector<Float4>& a,
-                      const std::vector<Float4>& b) noexcept {
+inline double CalcDot(const Kernels& kernels, Workers& workers, const AlignedVector<Float4>& a,
+                      const AlignedVector<Float4>& b) noexcept {
   std::array<double, Workers::kMaxChunks> parts;
   const std::uint32_t chunks =
       ForEachNodeChunk(workers, a.size(), [&](std::uint32_t first, std::uint32_t last, std::uint32_t chunk) {
@@ -41,7 +41,7 @@ inline double CalcDot(const Kernels& kernels, Workers& workers, const std::vecto
 }
 
 /// Length of the longest of all nodes' vectors; NaN where one is.
-inline double FindLongest(const Kernels& kernels, Workers& workers, const std::vector<Float4>& v) noexcept {
+inline double FindLongest(const Kernels& kernels, Workers& workers, const AlignedVector<Float4>& v) noexcept {
   std::array<float, Workers::kMaxChunks> parts;
   const std::uint32_t chunks =
       ForEachNodeChunk(workers, v.size(), [&](std::uint32_t first, std::uint32_t last, std::uint32_t chunk) {
@@ -55,8 +55,8 @@ inline double FindLongest(const Kernels& kernels, Workers& workers, const std::v
 }
 
 /// to += factor v
-inline void AddScaled(const Kernels& kernels, Workers& workers, float factor, const std::vector<Float4>& v,
-                      std::vector<Float4>& to) noexcept {
+inline void AddScaled(const Kernels& kernels, Workers& workers, float factor, const AlignedVector<Float4>& v,
+                      AlignedVector<Float4>& to) noexcept {
   ForEachNodeChunk(workers, v.size(), [&](std::uint32_t first, std::uint32_t last, std::uint32_t) {
     kernels.vectors.add_scaled(factor, v.data(), to.data(), first, last);
   });

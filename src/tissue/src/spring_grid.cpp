@@ -174,7 +174,7 @@ SpringGrid::SpringGrid(const GridModel& model)
       if (i / kSliceNodes % 5 < 2) (*values)[i] = 1.0f;
     }
   }
-  const auto set = [&](std::vector<float>& to, std::uint32_t place, std::uint32_t node) {
+  const auto set = [&](AlignedVector<float>& to, std::uint32_t place, std::uint32_t node) {
     for (int direction = 0; direction < kGridDirections; ++direction) {
       float* const values = to.data() + At(place, kGridDirections * 5) + direction * 5 * kSliceNodes;
       for (int axis = 0; axis < 3; ++axis) {
@@ -195,7 +195,7 @@ SpringGrid::SpringGrid(const GridModel& model)
 
 void SpringGrid::SetLoad(const GridLoad& load, double scale) noexcept {
   const auto [rows, columns] = shape_;
-  const auto set = [&](std::vector<float>& to, std::uint32_t place, std::uint32_t node) {
+  const auto set = [&](AlignedVector<float>& to, std::uint32_t place, std::uint32_t node) {
     for (int direction = 0; direction < kGridDirections; ++direction) {
       float* const values = to.data() + At(place, kGridDirections * 5) + direction * 5 * kSliceNodes;
       for (int value = 0; value < 2; ++value) {

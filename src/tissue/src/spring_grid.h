@@ -12,6 +12,7 @@
 #include <span>
 #include <vector>
 
+#include "aligned_vector.h"
 #include "kernels.h"
 #include "trocar/tissue/tissue_model.h"
 #include "workers.h"
@@ -103,10 +104,10 @@ class SpringGrid {
   bool is_alike_ = false;  // one row of springs stands for all but the last
   bool has_south_west_ = false;
   bool is_aligned_ = true;  // rest offsets: x alone to the east, y alone to the south, no z
-  std::vector<float> springs_, last_springs_;  // as in GridStep, scaled
-  std::vector<double> unscaled_;               // (nodes, directions, 2) k and k l
-  std::vector<double> sum_stiffness_;          // (nodes) of all springs at the node
-  std::vector<float> nodes_, u_, previous_, reaction_;
+  AlignedVector<float> springs_, last_springs_;  // as in GridStep, scaled
+  std::vector<double> unscaled_;                 // (nodes, directions, 2) k and k l
+  std::vector<double> sum_stiffness_;            // (nodes) of all springs at the node
+  AlignedVector<float> nodes_, u_, previous_, reaction_;
   std::vector<std::uint32_t> node_rows_;  // as in GridStep
   double lowest_ = 0, smallest_shape_ = 0;
 };

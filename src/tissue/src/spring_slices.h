@@ -36,8 +36,8 @@ class SpringSlices {
 
  private:
   SliceLayout layout_;
-  std::vector<float> springs_, nodes_;
-  std::vector<Float4> u_, previous_;
+  AlignedVector<float> springs_, nodes_;
+  AlignedVector<Float4> u_, previous_;
   double lowest_ = 0, smallest_shape_ = 0;
 };
 

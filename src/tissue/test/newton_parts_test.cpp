@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <random>
 #include <vector>
 
@@ -100,6 +101,56 @@ std::vector<SimdLevel> Levels() {
 
 double Norm(const Float4& v) {
   return std::sqrt(static_cast<double>(v.x * v.x + v.y * v.y + v.z * v.z));
+}
+
+/// Links, ground, inverse blocks and what is free, of all levels.
+std::vector<float> Values(const LinkHierarchy& hierarchy) {
+  std::vector<float> all;
+  for (const LinkLevel& level : hierarchy.Levels()) {
+    for (const auto* values : {&level.links, &level.ground, &level.inverse, &level.is_free})
+      all.insert(all.end(), values->begin(), values->end());
+  }
+  return all;
+}
+
+// Nothing of what the levels held before is left, and sums do not depend on who forms them.
+TEST(LinkHierarchy, CoarseLevelsAreAsMadeAnewForAnyThreads) {
+  const Patient patient;
+  const TissueModel model = MakeTissueModel(patient.definition);
+  const SimdLevel level = Levels().back();
+  TissueState other = Shake(model, 1e-3, 3);
+  other.condition[5] = NodeCondition::kFree, other.condition[70] = NodeCondition::kPrescribed;
+  Evaluated anew(model, {}, Shake(model, 5e-4, 7), level);
+  anew.hierarchy.UpdateCoarse(*anew.kernels, anew.workers, anew.linearisation.Slack());
+  ASSERT_GE(anew.hierarchy.Levels().size(), 3u);
+  const std::vector<float> expected = Values(anew.hierarchy);
+  for (const int threads : {1, 2, 3, 4, 8}) {
+    Evaluated again(model, {}, other, level);
+    Workers workers(threads);
+    const Workers::Session session(workers);
+    again.hierarchy.UpdateCoarse(*again.kernels, workers, again.linearisation.Slack());
+    ASSERT_NE(Values(again.hierarchy), expected);
+    LinkLevel& finest = again.hierarchy.Finest();
+    const LinkLevel& wanted = anew.hierarchy.Finest();
+    finest.links = wanted.links, finest.ground = wanted.ground, finest.inverse = wanted.inverse;
+    finest.is_free = wanted.is_free;
+    again.hierarchy.UpdateCoarse(*again.kernels, workers, anew.linearisation.Slack());
+    EXPECT_EQ(Values(again.hierarchy), expected) << threads << " threads";
+  }
+}
+
+// A load of 64 bytes that crosses a cache line counts twice.
+TEST(LinkHierarchy, ArraysBeginAtCacheLines) {
+  const Patient patient;
+  const TissueModel model = MakeTissueModel(patient.definition);
+  const Evaluated here(model, {}, MakeRestState(model), Levels().back());
+  const auto is_aligned = [](const void* p) { return reinterpret_cast<std::uintptr_t>(p) % kCacheLine == 0; };
+  for (const LinkLevel& level : here.hierarchy.Levels()) {
+    for (const auto* values : {&level.links, &level.ground, &level.inverse, &level.is_free})
+      EXPECT_TRUE(is_aligned(values->data()));
+    for (const auto* nodes : {&level.x, &level.b, &level.r}) EXPECT_TRUE(is_aligned(nodes->data()));
+  }
+  EXPECT_TRUE(is_aligned(here.model.stiffness.data()) && is_aligned(here.model.rest_length.data()));
 }
 
 // Oracle: forces and differences of energy against the plain evaluation, with every kind of spring.
