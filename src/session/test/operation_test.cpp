@@ -159,6 +159,16 @@ TEST(OperationSlow, AnExpertGoesFromTheFirstLookToTheBag) {
   EXPECT_LT(result.injuries.strasberg, training::Strasberg::kD);
 }
 
+/// Goes through the whole operation before it errs.
+TEST(OperationSlow, WhoLeavesStonesIsCaught) {
+  if (std::getenv("TROCAR_SLOW_TESTS") == nullptr) GTEST_SKIP() << "minutes; set TROCAR_SLOW_TESTS=1";
+  Simulation simulation = MakeOperation();
+  const OperationResult result = Play("leaves_stones", simulation, 900.0);
+  EXPECT_TRUE(result.is_completed);
+  EXPECT_EQ(result.errors.Count(training::OperationError::kStonesLeft), 1u);
+  EXPECT_GT(result.stones.spilled, 0);
+}
+
 /// Patients from nowhere, with the variants that they are drawn with; figure of the issue: 18 of 20.
 TEST(OperationSlow, AnExpertOperatesOnGeneratedPatients) {
   if (std::getenv("TROCAR_SLOW_TESTS") == nullptr) GTEST_SKIP() << "hours; set TROCAR_SLOW_TESTS=1";
