@@ -188,7 +188,7 @@ TEST_F(EmulatedDevices, HaplyLeadsTheToolsAndGetsNoForceThatNobodyAskedFor) {
 }
 
 TEST_F(EmulatedDevices, AHaplyServiceThatEndsIsALostDevice) {
-  const Emulator service({"haply", "--motion", "rest", "--fault", "unplug@3"});
+  const Emulator service({"haply", "--motion", "rest", "--fault", "unplug@1"});
   const auto result = Simulate(480, {"--haptics", service.Name(), "--haptic-record", Path("record.json")});
   ASSERT_EQ(result.status, 0) << result.err;
   const auto summary = nlohmann::json::parse(Read(Path("record.json"))).at("summary");
