@@ -20,10 +20,11 @@ struct CacheLineAllocator {
   template <typename U>
   CacheLineAllocator(const CacheLineAllocator<U>&) noexcept {}
 
-  T* allocate(std::size_t count) {
+  // the standard names these
+  T* allocate(std::size_t count) {  // NOLINT(readability-identifier-naming)
     return static_cast<T*>(::operator new (count * sizeof(T), std::align_val_t{kCacheLine}));
   }
-  void deallocate(T* memory, std::size_t) noexcept {
+  void deallocate(T* memory, std::size_t) noexcept {  // NOLINT(readability-identifier-naming)
     ::operator delete (memory, std::align_val_t{kCacheLine});
   }
   friend bool operator==(const CacheLineAllocator&, const CacheLineAllocator&) noexcept { return true; }
