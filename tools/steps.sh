@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # Shared by ./run, ./test and .ci/run, which source it. Expects $root, the repository.
 
-# ccache finds the same file in another clone too
-export CCACHE_BASEDIR="$root"
+# ccache finds the same file in another clone too; a debugger may then show that clone's sources
+export CCACHE_BASEDIR="$root" CCACHE_NOHASHDIR=true
 
 say() { printf '\n== %s\n' "$*"; }
 

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
+#include <functional>
 #include <optional>
 #include <thread>
 #include <utility>
@@ -44,6 +45,45 @@ void WaitUntil(std::int64_t due, std::int64_t spin) noexcept {
   }
 }
 
+/// Opens a lost device again on a thread of its own: the ticks go on while a service takes its time to answer.
+class Reopener {
+ public:
+  explicit Reopener(std::function<void()> open) : open_(std::move(open)), thread_([this] { Run(); }) {}
+  ~Reopener() {
+    Tell(State::kEnding);
+    thread_.join();
+  }
+  Reopener(const Reopener&) = delete;
+  Reopener& operator=(const Reopener&) = delete;
+
+  /// \pre !IsOpening()
+  /// \note Real-time safe.
+  void Begin() noexcept { Tell(State::kOpening); }
+  /// The device is this thread's until then.
+  bool IsOpening() const noexcept { return state_.load(std::memory_order_acquire) == State::kOpening; }
+
+ private:
+  enum class State { kIdle, kOpening, kEnding };
+
+  void Tell(State state) noexcept {
+    state_.store(state, std::memory_order_release);
+    state_.notify_one();
+  }
+  void Run() {
+    while (true) {
+      state_.wait(State::kIdle, std::memory_order_acquire);
+      State expected = State::kOpening;
+      if (state_.load(std::memory_order_acquire) != expected) return;
+      open_();
+      state_.compare_exchange_strong(expected, State::kIdle, std::memory_order_acq_rel);
+    }
+  }
+
+  std::function<void()> open_;
+  std::atomic<State> state_{State::kIdle};
+  std::thread thread_;
+};
+
 }  // namespace
 
 struct HapticLoop::Content {
@@ -52,6 +92,7 @@ struct HapticLoop::Content {
   std::unique_ptr<device::ForceDriver> driver;
   std::optional<SupervisorLink> supervisor;
   std::optional<HapticTick> tick;
+  std::optional<Reopener> reopener;
 
   std::atomic<bool> is_stopping{false}, is_pedal_held{false};
   std::atomic<bool> wants_clear{false};
@@ -90,7 +131,11 @@ core::Status HapticLoop::Content::Connect() {
   if (!supervisor) return {};
   supervisor->ForgetWires();
   for (int c = 0; c < driver->GetChannelCount(); ++c) {
-    if (core::Status done = supervisor->AddWire(driver->GetSupervisedWire(c)); !done) return done;
+    if (core::Status done = supervisor->AddWire(driver->GetSupervisedWire(c)); !done) {
+      static_cast<void>(driver->Deactivate());
+      static_cast<void>(driver->Cleanup());
+      return done;
+    }
   }
   return {};
 }
@@ -102,7 +147,7 @@ void HapticLoop::Content::Run() noexcept {
   const CountAllocations count = settings.count_allocations;
   HapticStatus told;
   std::int64_t due = core::NowNanoseconds() + period, last_start = 0, second_start = due, last_told = 0,
-               last_try = 0;
+               opened = 0;
   while (!is_stopping.load(std::memory_order_relaxed)) {
     WaitUntil(due, spin);
     const std::int64_t start = core::NowNanoseconds();
@@ -110,7 +155,10 @@ void HapticLoop::Content::Run() noexcept {
     const std::uint64_t allocated_before = count != nullptr ? count() : 0;
     // a tick that stood still inside shows in the next one's distance to it
     const std::int64_t late = std::max(start - due, last_start != 0 ? start - last_start - period : 0);
-    tick->Run(TakeInput(start, late));
+    const bool is_opening = reopener->IsOpening();
+    HapticTickInput input = TakeInput(start, late);
+    input.is_device_away = is_opening;
+    tick->Run(input);
     if (count != nullptr) allocated.fetch_add(count() - allocated_before, std::memory_order_relaxed);
     if (supervisor) supervisor->Beat();
     const std::int64_t used = core::ThreadCpuNanoseconds() - cpu_before;
@@ -142,10 +190,10 @@ void HapticLoop::Content::Run() noexcept {
       status.Publish();
       last_told = start;
     }
-    if (driver->GetState() == device::DriverState::kUnconfigured && start - last_try >= kTryAgain) {
-      // lost: there is no force to keep up, so this may take its time; what comes back is unarmed and unconfirmed
-      static_cast<void>(Connect());
-      last_try = core::NowNanoseconds();
+    if (is_opening) {
+      opened = start;
+    } else if (driver->GetState() == device::DriverState::kUnconfigured && start - opened >= kTryAgain) {
+      reopener->Begin();  // what comes back is unarmed and unconfirmed
     }
     due += period;
     // late: never a burst of ticks to catch up (faults D9)
@@ -173,6 +221,7 @@ core::Result<std::unique_ptr<HapticLoop>> HapticLoop::Start(std::unique_ptr<devi
   }
   if (auto done = content->Connect(); !done) return done.error();
   content->tick.emplace(*content->driver, settings, link);
+  content->reopener.emplace([opening = content.get()] { static_cast<void>(opening->Connect()); });
   std::unique_ptr<HapticLoop> loop(new HapticLoop(std::move(content)));
   return loop;
 }
@@ -185,6 +234,7 @@ HapticLoop::HapticLoop(std::unique_ptr<Content> content) : content_(std::move(co
 HapticLoop::~HapticLoop() {
   content_->is_stopping.store(true);
   content_->thread.join();
+  content_->reopener.reset();  // waits for an opening that goes on
   content_->link->is_used.store(false);
   content_->driver->Finalize();
 }

@@ -86,7 +86,11 @@ void HapticTick::Publish(std::size_t channel, const haptics::ChannelOutput& outp
 }
 
 void HapticTick::Run(const HapticTickInput& input) noexcept {
-  static_cast<void>(driver_.ReadForceSamples(samples_));
+  if (input.is_device_away) {
+    for (device::ForceSample& sample : samples_) sample.status = device::ForceDeviceStatus::kLost;
+  } else {
+    static_cast<void>(driver_.ReadForceSamples(samples_));
+  }
   for (std::size_t c = 0; c < channels_.size(); ++c) devices_[c] = channels_[c].Read(samples_[c], input.now);
   if (input.wants_check_pose) check_pose_.Begin();
   check_pose_.Step(devices_);
@@ -100,7 +104,7 @@ void HapticTick::Run(const HapticTickInput& input) noexcept {
     auto& patches = link_.patches[settings_.hands[c].hand];
     if (patches.Update()) channels_[c].TakePatch(patches.Front(), input.now);
     const haptics::ChannelOutput output = channels_[c].Act(FindHandPose(c), timing, conditions, input.now);
-    driver_.SendForce(static_cast<int>(c), output.gate.force);
+    if (!input.is_device_away) driver_.SendForce(static_cast<int>(c), output.gate.force);
     buttons_.See(settings_.hands[c].hand, devices_[c].fault == haptics::Fault::kNone,
                  devices_[c].buttons >> device::kStylusOwnButtons, input.now);
     Publish(c, output);

@@ -16,6 +16,7 @@ struct HapticTickInput {
   bool wants_arm = false, wants_stop = false, wants_check_pose = false;
   bool is_pedal_held = false;
   bool is_supervised = false, is_supervisor_tripped = false;
+  bool is_device_away = false;  ///< the driver is opened again elsewhere and must not be touched
 };
 
 class HapticTick {

@@ -7,6 +7,8 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
+#include <cmath>
 #include <cstdlib>
 #include <string>
 
@@ -179,6 +181,21 @@ TEST(HapticLoop, RefusesHandsThatAreNotChannels) {
   EXPECT_EQ(loop.error().code, core::ErrorCode::kDeviceSettings);
 }
 
+/// Whether the right hand comes to be so.
+template <typename Condition>
+bool WaitFor(HapticLoop& loop, const Condition& condition) {
+  const core::Stopwatch watch;
+  while (watch.Seconds() < 30.0) {
+    if (condition(loop.Latest().hands[kRight])) return true;
+    ::usleep(1000);
+  }
+  return false;
+}
+
+bool IsLost(const HapticHandStatus& hand) {
+  return hand.reason == haptics::Fault::kDeviceLost;
+}
+
 // D1: unplugged and back.
 TEST(HapticLoop, OpensALostDeviceAgainAndLeavesItUnarmed) {
   device::SimulatedForceSettings simulated;
@@ -191,22 +208,70 @@ TEST(HapticLoop, OpensALostDeviceAgainAndLeavesItUnarmed) {
   HapticLink link;
   auto loop = HapticLoop::Start(std::move(made), settings, link);
   ASSERT_TRUE(loop.ok()) << loop.error().Text();
-  const auto wait_for = [&](auto&& condition) {
-    const core::Stopwatch watch;
-    while (watch.Seconds() < 30.0) {
-      if (condition((*loop)->Latest().hands[kRight])) return true;
-      ::usleep(1000);
-    }
-    return false;
-  };
-  EXPECT_TRUE(wait_for([](const HapticHandStatus& hand) { return hand.counts.good > 0; }));
+  EXPECT_TRUE(WaitFor(**loop, [](const HapticHandStatus& hand) { return hand.counts.good > 0; }));
   device.SetFault(device::SimulatedFault::kUnplugged);
-  EXPECT_TRUE(
-      wait_for([](const HapticHandStatus& hand) { return hand.reason == haptics::Fault::kDeviceLost; }));
+  EXPECT_TRUE(WaitFor(**loop, IsLost));
   const auto good = (*loop)->Latest().hands[kRight].counts.good;
   device.SetFault(device::SimulatedFault::kNone);
-  EXPECT_TRUE(wait_for([&](const HapticHandStatus& hand) { return hand.counts.good > good; }));
+  EXPECT_TRUE(WaitFor(**loop, [&](const HapticHandStatus& hand) { return hand.counts.good > good; }));
   EXPECT_EQ((*loop)->Latest().hands[kRight].state, haptics::ArmState::kUnarmed);
+}
+
+/// A device that goes away when told to, and opens again no sooner than it may.
+class SlowToOpen : public device::ForceDriver {
+ public:
+  SlowToOpen() : ForceDriver("slow to open", 1) {}
+  device::ForceLimits GetLimits(int) const noexcept override { return device::MakeTouchLimits(); }
+
+  std::atomic<bool> is_gone{false}, may_open{true};
+  std::atomic<int> openings{0};
+
+ private:
+  core::Status DoConfigure() override {
+    ++openings;
+    const core::Stopwatch watch;
+    while (!may_open && watch.Seconds() < 60.0) ::usleep(1000);
+    is_gone = false;
+    return {};
+  }
+  core::Status DoActivate() override { return {}; }
+  void DoDeactivate() noexcept override {}
+  void DoCleanup() noexcept override {}
+  device::ReadStatus DoRead(std::span<device::HandSample>) noexcept override {
+    return device::ReadStatus::kUnchanged;
+  }
+  device::ReadStatus DoReadForceSamples(std::span<device::ForceSample> samples) noexcept override {
+    if (is_gone) return device::ReadStatus::kLost;
+    samples[0].status = device::ForceDeviceStatus::kOk;
+    samples[0].jaw = std::nan("");
+    ++samples[0].sequence;
+    return device::ReadStatus::kFresh;
+  }
+  void DoSendForce(int, const device::GatedForce&) noexcept override {}
+};
+
+// D1 and D9: the loss is told and the loop keeps its beat while the device is opened again
+TEST(HapticLoop, KeepsItsBeatWhileADeviceTakesItsTimeToOpen) {
+  auto made = std::make_unique<SlowToOpen>();
+  SlowToOpen& device = *made;
+  HapticLoopSettings settings;
+  settings.supervisor = TROCAR_SUPERVISOR;
+  settings.hands.emplace_back();
+  HapticLink link;
+  auto loop = HapticLoop::Start(std::move(made), settings, link);
+  ASSERT_TRUE(loop.ok()) << loop.error().Text();
+  EXPECT_TRUE(WaitFor(**loop, [](const HapticHandStatus& hand) { return hand.counts.good > 0; }));
+  device.may_open = false;
+  device.is_gone = true;
+  EXPECT_TRUE(WaitFor(**loop, [&](const HapticHandStatus&) { return device.openings == 2; }));
+  const auto ticks = (*loop)->Latest().ticks;
+  EXPECT_TRUE(WaitFor(**loop, [&](const HapticHandStatus& hand) {
+    return IsLost(hand) && (*loop)->Latest().ticks > ticks + 200;
+  }));
+  const auto good = (*loop)->Latest().hands[kRight].counts.good;
+  device.may_open = true;
+  EXPECT_TRUE(WaitFor(**loop, [&](const HapticHandStatus& hand) { return hand.counts.good > good; }));
+  EXPECT_EQ(device.openings, 2);
 }
 
 }  // namespace

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file process.h  Runs a program and keeps what it printed.
+/// \file process.h  Runs programs and keeps what they print.
 #pragma once
 
 #include <fcntl.h>
+#include <signal.h>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -11,6 +12,7 @@
 #include <fstream>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "trocar_test/temporary_folder.h"
@@ -18,56 +20,90 @@
 namespace trocar::test {
 
 struct ProcessResult {
-  int status = -1;  ///< exit status; 128 + signal when a signal ended it; -1 when it did not start
+  int status = -1;  ///< as Process::Status()
   std::string out, err;
 };
 
-/// Runs `words` (the program first) to its end.
-///
-/// \param environment  "NAME=value" lines added to this process's environment, or put in their place
-inline ProcessResult RunProcess(std::vector<std::string> words,
-                                const std::vector<std::string>& environment = {}) {
-  const TemporaryFolder folder;
-  const std::string out_path = folder.Path() / "out", err_path = folder.Path() / "err";
-  std::vector<std::string> variables;
-  for (char** entry = ::environ; *entry != nullptr; ++entry) {
-    const std::string variable = *entry;
-    bool is_replaced = false;
-    for (const std::string& other : environment) {
-      is_replaced = is_replaced || variable.starts_with(other.substr(0, other.find('=') + 1));
+/// A program that runs beside the test, and ends with this at the latest.
+class Process {
+ public:
+  /// \param words        the program first
+  /// \param environment  "NAME=value" lines added to this process's environment, or put in their place
+  explicit Process(std::vector<std::string> words, const std::vector<std::string>& environment = {}) {
+    std::vector<std::string> variables;
+    for (char** entry = ::environ; *entry != nullptr; ++entry) {
+      const std::string variable = *entry;
+      bool is_replaced = false;
+      for (const std::string& other : environment) {
+        is_replaced = is_replaced || variable.starts_with(other.substr(0, other.find('=') + 1));
+      }
+      if (!is_replaced) variables.push_back(variable);
     }
-    if (!is_replaced) variables.push_back(variable);
-  }
-  variables.insert(variables.end(), environment.begin(), environment.end());
-  std::vector<char*> argv, envp;
-  for (std::string& word : words) argv.push_back(word.data());
-  for (std::string& variable : variables) envp.push_back(variable.data());
-  argv.push_back(nullptr);
-  envp.push_back(nullptr);
+    variables.insert(variables.end(), environment.begin(), environment.end());
+    std::vector<char*> argv, envp;
+    for (std::string& word : words) argv.push_back(word.data());
+    for (std::string& variable : variables) envp.push_back(variable.data());
+    argv.push_back(nullptr);
+    envp.push_back(nullptr);
 
-  posix_spawn_file_actions_t actions;
-  ::posix_spawn_file_actions_init(&actions);
-  ::posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  ::posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, out_path.c_str(), O_WRONLY | O_CREAT, 0600);
-  ::posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, err_path.c_str(), O_WRONLY | O_CREAT, 0600);
-  pid_t child = 0;
-  const int failure = ::posix_spawn(&child, argv[0], &actions, nullptr, argv.data(), envp.data());
-  ::posix_spawn_file_actions_destroy(&actions);
-  ProcessResult result;
-  if (failure != 0) return result;
-  int status = 0;
-  if (::waitpid(child, &status, 0) == child) {
-    result.status = WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
+    posix_spawn_file_actions_t actions;
+    ::posix_spawn_file_actions_init(&actions);
+    ::posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+    for (const auto& [file, name] : {std::pair{STDOUT_FILENO, "out"}, std::pair{STDERR_FILENO, "err"}}) {
+      const std::string path = folder_.Path() / name;
+      ::posix_spawn_file_actions_addopen(&actions, file, path.c_str(), O_WRONLY | O_CREAT, 0600);
+    }
+    is_running_ = ::posix_spawn(&process_, argv[0], &actions, nullptr, argv.data(), envp.data()) == 0;
+    ::posix_spawn_file_actions_destroy(&actions);
   }
-  const auto read = [](const std::string& path) {
-    std::ifstream file(path, std::ios::binary);
+  ~Process() {
+    if (HasEnded()) return;
+    ::kill(process_, SIGTERM);
+    Wait();
+  }
+  Process(const Process&) = delete;
+  Process& operator=(const Process&) = delete;
+
+  bool HasEnded() {
+    if (is_running_) Collect(WNOHANG);
+    return !is_running_;
+  }
+  void Wait() {
+    if (is_running_) Collect(0);
+  }
+  /// Exit status once it has ended; 128 + signal when a signal ended it; -1 when it did not start.
+  int Status() const { return status_; }
+  /// What it has printed so far.
+  std::string Out() const { return Read("out"); }
+  std::string Err() const { return Read("err"); }
+
+ private:
+  void Collect(int options) {
+    int status = 0;
+    const pid_t found = ::waitpid(process_, &status, options);
+    if (found == 0) return;
+    is_running_ = false;
+    if (found == process_) status_ = WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
+  }
+  std::string Read(const char* name) const {
+    std::ifstream file(folder_.Path() / name, std::ios::binary);
     std::ostringstream text;
     text << file.rdbuf();
     return text.str();
-  };
-  result.out = read(out_path);
-  result.err = read(err_path);
-  return result;
+  }
+
+  TemporaryFolder folder_;
+  pid_t process_ = -1;
+  bool is_running_ = false;
+  int status_ = -1;
+};
+
+/// Runs a program to its end; parameters as of Process.
+inline ProcessResult RunProcess(std::vector<std::string> words,
+                                const std::vector<std::string>& environment = {}) {
+  Process process(std::move(words), environment);
+  process.Wait();
+  return {process.Status(), process.Out(), process.Err()};
 }
 
 }  // namespace trocar::test

@@ -79,7 +79,7 @@ struct SupervisedWire {
 };
 
 /// A device with force output. One thread, the haptic loop, calls everything but the life cycle; the life cycle is
-/// called before that thread starts and after it ends.
+/// called while that thread leaves the driver alone.
 ///
 /// Duties of a device family beside the private functions:
 /// - nothing is sent before DoActivate; DoActivate, DoDeactivate and a lost device send zero, as far as they can;
