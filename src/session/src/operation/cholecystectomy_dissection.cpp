@@ -34,6 +34,8 @@ constexpr double kOnHook = 0.0009, kApart = 0.6;
 constexpr double kFollow = 0.2, kMostAside = 0.004;
 /// No current flows this near to a main duct, and to an artery that must stay or a small duct of the bed [m].
 constexpr double kMainClear = 0.0060, kCarefulClear = 0.0035, kTipClear = 0.0055;
+/// Nor to where duct and artery enter the gallbladder while they are whole: beyond the current's reach [m].
+constexpr double kEndClear = 0.0016;
 constexpr double kSeen = 0.95;  // of the picture's width: nobody presses a pedal for what is out of it
 /// Current is for the fibre on the hook: what it does not part soon goes into the wall behind. Of one fibre at a time,
 /// of one place until it is left alone, and what is left of it when it may be gone on with [s].
@@ -121,13 +123,16 @@ Vec3 CholecystectomySurgeon::HookPoint(const Snapshot& seen) const {
   return seen.instruments[kRight].X_world_tool.translation;
 }
 
-collision::SegmentSegmentPoints CholecystectomySurgeon::HookGap(const Snapshot& seen,
-                                                                std::uint32_t strand) const {
+collision::Segment CholecystectomySurgeon::HookWire(const Snapshot& seen) const {
   const Pose& X = seen.instruments[kRight].X_world_tool;
   const surgery::BladeSettings blade;
+  return {X * blade.p_tool_hook.a, X * blade.p_tool_hook.b};
+}
+
+collision::SegmentSegmentPoints CholecystectomySurgeon::HookGap(const Snapshot& seen,
+                                                                std::uint32_t strand) const {
   return collision::FindNearestSegmentSegment(
-      {X * blade.p_tool_hook.a, X * blade.p_tool_hook.b},
-      {seen.positions[strands_[strand].a], seen.positions[strands_[strand].b]});
+      HookWire(seen), {seen.positions[strands_[strand].a], seen.positions[strands_[strand].b]});
 }
 
 Vec3 CholecystectomySurgeon::MiddleOf(const Snapshot& seen, std::uint32_t strand) const {
@@ -190,9 +195,10 @@ void CholecystectomySurgeon::WorkOnFibre(Dissection& work, const Snapshot& seen)
   const double distance = std::sqrt(gap.squared_distance);
   const double field_of_view = kSeen * scene_->laparoscope.field_of_view;
   const bool is_seen = IsInView(seen.X_world_laparoscope, field_of_view, HookPoint(seen));
-  const bool is_clear = std::none_of(main_ducts_.begin(), main_ducts_.end(), [&](std::uint32_t node) {
-    return math::Distance(seen.positions[node], HookPoint(seen)) < kTipClear;
-  });
+  const bool is_clear = !IsNearEnd(seen, HookWire(seen), kEndClear) &&
+                        std::none_of(main_ducts_.begin(), main_ducts_.end(), [&](std::uint32_t node) {
+                          return math::Distance(seen.positions[node], HookPoint(seen)) < kTipClear;
+                        });
   coagulate = distance < kOnHook && is_seen && is_clear;
   if (coagulate) {
     heat_.Add(gap.on_a, scene_->tick_seconds);
@@ -230,6 +236,7 @@ double CholecystectomySurgeon::ChooseFibre(Dissection& work, const Snapshot& see
       });
     };
     if (is_near(main_ducts_, kMainClear) || is_near(careful_nodes_, kCarefulClear)) continue;
+    if (IsNearEnd(seen, {at, at}, kEndClear)) continue;
     if (heat_.At(at) > kWarm) {
       work.waits = true;
       continue;

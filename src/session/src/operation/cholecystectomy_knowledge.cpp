@@ -45,6 +45,19 @@ bool CholecystectomySurgeon::IsNearMain(const Vec3& p, double distance) const {
   });
 }
 
+/// Whether a segment comes near to where a duct or artery that is whole enters the gallbladder.
+bool CholecystectomySurgeon::IsNearEnd(const Snapshot& seen, const collision::Segment& segment,
+                                       double distance) const {
+  return std::any_of(end_strands_.begin(), end_strands_.end(), [&](std::uint32_t i) {
+    const collision::Segment end{seen.positions[strands_[i].a], seen.positions[strands_[i].b]};
+    if (collision::FindNearestSegmentSegment(end, segment).squared_distance > distance * distance)
+      return false;
+    return std::none_of(entering_.begin(), entering_.end(), [&](std::size_t tube) {
+      return tube_nodes_[tube].front() == strands_[i].a && IsDivided(seen, tube);
+    });
+  });
+}
+
 /// Fat and peritoneum of the triangle but for what lies around what must stay.
 std::vector<std::uint32_t> CholecystectomySurgeon::TriangleStrands() const {
   std::vector<std::uint32_t> found;

@@ -11,8 +11,8 @@ namespace {
 
 using instrument::ToolKind;
 
-constexpr double kCleared = 0.93, kDetached = 0.36;  // of triangle and bed: a little more than the view asks
-constexpr double kLowerShare = 0.44;                 // of the bed that is freed before the view [-]
+constexpr double kCleared = 0.91;     // of the triangle: a little more than the view asks
+constexpr double kLowerShare = 0.44;  // of the bed that is freed before the view [-]
 constexpr int kRounds = 4, kBedRounds = 12;
 constexpr double kPedicleWeight = 3.0;  // of fibres on the cystic duct and artery, among others
 constexpr double kGrip = 0.07;          // of the jaws: 14 N of pinch
@@ -103,7 +103,7 @@ void CholecystectomySurgeon::ClearTriangle(int rounds) {
       spread->weights.push_back(1.0);
     }
     const auto is_enough = [this](const Snapshot& now) {
-      return now.operation.facts.cleared_share >= kCleared + 0.01 && AreTubesBare(now);
+      return now.operation.facts.cleared_share >= kCleared && AreTubesBare(now);
     };
     spread->is_enough = is_enough;
     Take(ToolKind::kDissector);
@@ -129,7 +129,8 @@ void CholecystectomySurgeon::ClearTriangle(int rounds) {
 
 void CholecystectomySurgeon::FreeLowerThird(int rounds) {
   Decide("look at the bed", [this, rounds](const Snapshot& seen) {
-    if (seen.operation.facts.detached_share >= kDetached || rounds <= 0) return;
+    const auto is_enough = [](const Snapshot& now) { return now.operation.critical_view.criteria[1] == 2; };
+    if (is_enough(seen) || rounds <= 0) return;
     const std::vector<std::uint32_t> lower = BedStrands(kLowerShare);
     const Vec3 axis = math::Normalized(rest_[fundus_] - rest_[neck_]);
     std::vector<double> order;
@@ -142,9 +143,6 @@ void CholecystectomySurgeon::FreeLowerThird(int rounds) {
       HoldOn([this](const Snapshot& now) { return now.positions[neck_]; });
       DrawGently(kLeft, 0.010 * bed_normal_);
     }
-    const auto is_enough = [](const Snapshot& now) {
-      return now.operation.facts.detached_share >= kDetached + 0.01;
-    };
     Dissect({"the lower third of the bed", lower, order, 0.97, is_enough, 0.028, bed_normal_});
     FreeLowerThird(rounds - 1);
   });

@@ -195,6 +195,7 @@ class CholecystectomySurgeon final : public Surgeon {
   std::vector<std::uint32_t> CoveringStrands() const;
   std::vector<std::uint32_t> BedStrands(double share) const;
   bool IsNearMain(const Vec3& p, double distance) const;
+  bool IsNearEnd(const Snapshot& seen, const collision::Segment& segment, double distance) const;
   double CalcAzimuth(const Snapshot& seen, const Vec3& eye) const;
   bool AreTubesBare(const Snapshot& seen) const;
   double ShareLeft(const Snapshot& seen, const std::vector<std::uint32_t>& strands) const;
@@ -221,6 +222,7 @@ class CholecystectomySurgeon final : public Surgeon {
   };
   HookWay FindHookWay(const Snapshot& seen, const Vec3& at);
   Vec3 HookPoint(const Snapshot& seen) const;
+  collision::Segment HookWire(const Snapshot& seen) const;
   Vec3 MiddleOf(const Snapshot& seen, std::uint32_t strand) const;
   /// Nearest points of the hook's wire and of a fibre.
   collision::SegmentSegmentPoints HookGap(const Snapshot& seen, std::uint32_t strand) const;
@@ -246,6 +248,7 @@ class CholecystectomySurgeon final : public Surgeon {
   bool has_view_ = false;                       // the critical view was achieved
   bool stops_ = false;                          // bails out: it is not safe to go on
   std::vector<std::size_t> entering_;           // tubes that enter the gallbladder
+  std::vector<std::uint32_t> end_strands_;      // where they do
   std::vector<std::uint32_t> main_nodes_;       // of ducts and arteries that must stay
   std::vector<std::uint32_t> main_ducts_;       // of the ducts among them
   std::vector<std::uint32_t> careful_nodes_;    // of those arteries, and of small ducts of the bed
