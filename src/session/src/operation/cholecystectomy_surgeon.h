@@ -195,9 +195,11 @@ class CholecystectomySurgeon final : public Surgeon {
   std::vector<std::uint32_t> CoveringStrands() const;
   std::vector<std::uint32_t> BedStrands(double share) const;
   bool IsNearMain(const Vec3& p, double distance) const;
-  bool IsNearEnd(const Snapshot& seen, const collision::Segment& segment, double distance) const;
+  double EndDistance(const Snapshot& seen, const collision::Segment& segment) const;
   double CalcAzimuth(const Snapshot& seen, const Vec3& eye) const;
   bool AreTubesBare(const Snapshot& seen) const;
+  std::vector<std::uint32_t> PeelStrands(const Snapshot& seen, const std::vector<std::uint32_t>& bed) const;
+  Place MiddleOf(std::vector<std::uint32_t> strands) const;
   double ShareLeft(const Snapshot& seen, const std::vector<std::uint32_t>& strands) const;
   TubeLine LineOf(const Snapshot& seen, std::size_t tube) const;
   std::vector<TubeLine> LinesOf(const Snapshot& seen) const;
@@ -223,7 +225,7 @@ class CholecystectomySurgeon final : public Surgeon {
   HookWay FindHookWay(const Snapshot& seen, const Vec3& at);
   Vec3 HookPoint(const Snapshot& seen) const;
   collision::Segment HookWire(const Snapshot& seen) const;
-  Vec3 MiddleOf(const Snapshot& seen, std::uint32_t strand) const;
+  Vec3 HookedPoint(const Snapshot& seen, std::uint32_t strand) const;
   /// Nearest points of the hook's wire and of a fibre.
   collision::SegmentSegmentPoints HookGap(const Snapshot& seen, std::uint32_t strand) const;
   /// That far beyond a point of a tube, as seen from the right hand's trocar; negative: before it.

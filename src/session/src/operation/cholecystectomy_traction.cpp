@@ -12,7 +12,7 @@ namespace {
 constexpr double kPeelRate = 0.0012;  // of the hand that draws the gallbladder off its bed [m/s]
 /// Pull above which it gives way, while ducts are whole and after: it draws on below a share of that [N], by so much at a
 /// time [m].
-constexpr double kMostTiedPull = 7.0, kMostFreePull = 11.0, kEnoughShare = 0.6, kEase = 0.003,
+constexpr double kMostTiedPull = 10.0, kMostFreePull = 11.0, kEnoughShare = 0.6, kEase = 0.003,
                  kMostEase = 0.015;
 constexpr double kMostSwingPull = 1.3;  // at which a swing ends, of the most pull [-]
 constexpr double kSwingShare = 0.7;     // of what was drawn [-]
