@@ -36,7 +36,7 @@ constexpr double kFollow = 0.2, kMostAside = 0.004;
 /// No current flows this near to a main duct, and to an artery that must stay or a small duct of the bed [m].
 constexpr double kMainClear = 0.0060, kCarefulClear = 0.0035, kTipClear = 0.0055;
 /// Nor to where duct and artery enter the gallbladder while they are whole: there the current is weak already [m].
-constexpr double kEndClear = 0.0005, kEndFar = 0.0020;
+constexpr double kEndClear = 0.0008, kEndFar = 0.0020;
 /// Shares of a fibre at which it is taken, the best first.
 constexpr double kFibreShares[] = {0.5, 0.7, 0.3, 0.85, 0.15};
 constexpr double kSeen = 0.95;  // of the picture's width: nobody presses a pedal for what is out of it
