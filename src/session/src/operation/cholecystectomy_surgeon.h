@@ -68,6 +68,7 @@ class CholecystectomySurgeon final : public Surgeon {
   struct Traction {
     double most = 0;         ///< way in all; 0: it rests [m]
     double most_pull = 0;    ///< above which it gives way [N]
+    double enough_pull = 0;  ///< below which it draws on [N]
     std::vector<Vec3> ways;  ///< unit vectors, in turn when no fibre lies open any more
     std::size_t way = 0;
     Vec3 p_hold;       ///< of the tip, when it began [m]
