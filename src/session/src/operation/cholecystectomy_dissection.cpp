@@ -24,6 +24,7 @@ constexpr double kWayFrom = 0.009, kWayTo = 0.07, kShaftClear = 0.0045;
 constexpr double kHidden = 0.0015;      // what the shaft cannot pass by so far is not tried [m]
 constexpr double kOnToe = 0.0030;       // of the hook's toe, from the tip to where a fibre lies on it [m]
 constexpr int kSpins = 8;               // ways to turn the hook about its shaft
+constexpr double kEndWorth = 3.0;       // of what the wire is off duct and artery, likewise [-]
 constexpr double kTurnCost = 0.0004;    // of such a turn, against what the shaft passes by [m/rad]
 constexpr std::size_t kShortList = 32;  // fibres whose way is looked at
 /// A fibre is gone to directly from so near, else from so far above [m].
@@ -34,6 +35,10 @@ constexpr double kOnHook = 0.0009, kApart = 0.6;
 constexpr double kFollow = 0.2, kMostAside = 0.004;
 /// No current flows this near to a main duct, and to an artery that must stay or a small duct of the bed [m].
 constexpr double kMainClear = 0.0060, kCarefulClear = 0.0035, kTipClear = 0.0055;
+/// Nor to where duct and artery enter the gallbladder while they are whole: there the current is weak already [m].
+constexpr double kEndClear = 0.0008, kEndFar = 0.0020;
+/// Shares of a fibre at which it is taken, the best first.
+constexpr double kFibreShares[] = {0.5, 0.7, 0.3, 0.85, 0.15};
 constexpr double kSeen = 0.95;  // of the picture's width: nobody presses a pedal for what is out of it
 /// Current is for the fibre on the hook: what it does not part soon goes into the wall behind. Of one fibre at a time,
 /// of one place until it is left alone, and what is left of it when it may be gone on with [s].
@@ -64,13 +69,18 @@ Vec3 CholecystectomySurgeon::HookToe(const Vec3& at, double spin) const {
 CholecystectomySurgeon::HookWay CholecystectomySurgeon::FindHookWay(const Snapshot& seen, const Vec3& at) {
   const HandMotion& hand = hands_[kRight];
   const Vec3 out = math::Normalized(hand.Port() - at);
+  const geometry::BladeEdge toe = surgery::BladeSettings().p_tool_hook;
+  const double toe_length = math::Distance(toe.a, toe.b);
   HookWay best;
   double best_worth = -std::numeric_limits<double>::infinity();
   for (int k = 0; k < kSpins; ++k) {
     const double spin = k * 2.0 * M_PI / kSpins;
     const Vec3 tip = at - kOnToe * HookToe(at, spin);
     const double clear = std::min(kShaftClear, Clearance(seen, {tip + kWayFrom * out, tip + kWayTo * out}));
-    const double worth = clear - kTurnCost * std::fabs(std::remainder(spin - hand.Spin(), 2.0 * M_PI));
+    // the wire lies away from where duct and artery enter the gallbladder
+    const double off = std::min(kEndFar, EndDistance(seen, {tip, tip + toe_length * HookToe(at, spin)}));
+    const double worth =
+        clear + kEndWorth * off - kTurnCost * std::fabs(std::remainder(spin - hand.Spin(), 2.0 * M_PI));
     if (worth <= best_worth) continue;
     best_worth = worth;
     best = {spin, clear};
@@ -80,7 +90,7 @@ CholecystectomySurgeon::HookWay CholecystectomySurgeon::FindHookWay(const Snapsh
 
 /// Where the tip stands when a fibre lies on the toe.
 Vec3 CholecystectomySurgeon::HookStand(const Snapshot& seen, std::uint32_t strand, double spin) const {
-  const Vec3 at = MiddleOf(seen, strand);
+  const Vec3 at = HookedPoint(seen, strand);
   return at - kOnToe * HookToe(at, spin);
 }
 
@@ -121,17 +131,26 @@ Vec3 CholecystectomySurgeon::HookPoint(const Snapshot& seen) const {
   return seen.instruments[kRight].X_world_tool.translation;
 }
 
-collision::SegmentSegmentPoints CholecystectomySurgeon::HookGap(const Snapshot& seen,
-                                                                std::uint32_t strand) const {
+collision::Segment CholecystectomySurgeon::HookWire(const Snapshot& seen) const {
   const Pose& X = seen.instruments[kRight].X_world_tool;
   const surgery::BladeSettings blade;
-  return collision::FindNearestSegmentSegment(
-      {X * blade.p_tool_hook.a, X * blade.p_tool_hook.b},
-      {seen.positions[strands_[strand].a], seen.positions[strands_[strand].b]});
+  return {X * blade.p_tool_hook.a, X * blade.p_tool_hook.b};
 }
 
-Vec3 CholecystectomySurgeon::MiddleOf(const Snapshot& seen, std::uint32_t strand) const {
-  return 0.5 * (seen.positions[strands_[strand].a] + seen.positions[strands_[strand].b]);
+collision::SegmentSegmentPoints CholecystectomySurgeon::HookGap(const Snapshot& seen,
+                                                                std::uint32_t strand) const {
+  return collision::FindNearestSegmentSegment(
+      HookWire(seen), {seen.positions[strands_[strand].a], seen.positions[strands_[strand].b]});
+}
+
+/// Where the hook takes a fibre: in its middle, or farther from where duct and artery enter the gallbladder.
+Vec3 CholecystectomySurgeon::HookedPoint(const Snapshot& seen, std::uint32_t strand) const {
+  const Vec3 &a = seen.positions[strands_[strand].a], &b = seen.positions[strands_[strand].b];
+  for (const double share : kFibreShares) {
+    const Vec3 p = math::Lerp(a, b, share);
+    if (EndDistance(seen, {p, p}) > kEndFar) return p;
+  }
+  return math::Lerp(a, b, kFibreShares[0]);
 }
 
 void CholecystectomySurgeon::LeaveFibre(Dissection& work) {
@@ -190,9 +209,10 @@ void CholecystectomySurgeon::WorkOnFibre(Dissection& work, const Snapshot& seen)
   const double distance = std::sqrt(gap.squared_distance);
   const double field_of_view = kSeen * scene_->laparoscope.field_of_view;
   const bool is_seen = IsInView(seen.X_world_laparoscope, field_of_view, HookPoint(seen));
-  const bool is_clear = std::none_of(main_ducts_.begin(), main_ducts_.end(), [&](std::uint32_t node) {
-    return math::Distance(seen.positions[node], HookPoint(seen)) < kTipClear;
-  });
+  const bool is_clear = EndDistance(seen, HookWire(seen)) > kEndClear &&
+                        std::none_of(main_ducts_.begin(), main_ducts_.end(), [&](std::uint32_t node) {
+                          return math::Distance(seen.positions[node], HookPoint(seen)) < kTipClear;
+                        });
   coagulate = distance < kOnHook && is_seen && is_clear;
   if (coagulate) {
     heat_.Add(gap.on_a, scene_->tick_seconds);
@@ -223,13 +243,14 @@ double CholecystectomySurgeon::ChooseFibre(Dissection& work, const Snapshot& see
     if (seen.operation.strand_is_intact[strands[i]] == 0) continue;
     ++work.left;
     if (work.attempts[i] >= (work.is_bold ? kBoldAttempts : kMostAttempts)) continue;
-    const Vec3 at = MiddleOf(seen, strands[i]);
+    const Vec3 at = HookedPoint(seen, strands[i]);
     const auto is_near = [&](const std::vector<std::uint32_t>& nodes, double clear) {
       return std::any_of(nodes.begin(), nodes.end(), [&](std::uint32_t node) {
         return math::SquaredDistance(seen.positions[node], at) < clear * clear;
       });
     };
     if (is_near(main_ducts_, kMainClear) || is_near(careful_nodes_, kCarefulClear)) continue;
+    if (EndDistance(seen, {at, at}) < kEndClear) continue;
     if (heat_.At(at) > kWarm) {
       work.waits = true;
       continue;
@@ -254,7 +275,7 @@ double CholecystectomySurgeon::ChooseFibre(Dissection& work, const Snapshot& see
   std::sort(list.begin(), list.end());
   for (std::size_t k = 0; k < std::min(list.size(), kShortList) && work.target.fibre < 0; ++k) {
     const std::size_t i = list[k].second;
-    const HookWay way = FindHookWay(seen, MiddleOf(seen, strands[i]));
+    const HookWay way = FindHookWay(seen, HookedPoint(seen, strands[i]));
     // a swing of the other hand may open it
     if (way.clear < kHidden && !work.traction.ways.empty() && !work.is_bold) continue;
     work.target.fibre = static_cast<std::int32_t>(i);

@@ -45,6 +45,21 @@ bool CholecystectomySurgeon::IsNearMain(const Vec3& p, double distance) const {
   });
 }
 
+/// How far a segment is from where a duct or artery that is whole enters the gallbladder [m].
+double CholecystectomySurgeon::EndDistance(const Snapshot& seen, const collision::Segment& segment) const {
+  double least = std::numeric_limits<double>::infinity();
+  for (const std::uint32_t i : end_strands_) {
+    const collision::Segment end{seen.positions[strands_[i].a], seen.positions[strands_[i].b]};
+    const double distance = collision::FindNearestSegmentSegment(end, segment).squared_distance;
+    if (distance >= least) continue;
+    const bool is_whole = std::any_of(entering_.begin(), entering_.end(), [&](std::size_t tube) {
+      return tube_nodes_[tube].front() == strands_[i].a && !IsDivided(seen, tube);
+    });
+    if (is_whole) least = distance;
+  }
+  return std::sqrt(least);
+}
+
 /// Fat and peritoneum of the triangle but for what lies around what must stay.
 std::vector<std::uint32_t> CholecystectomySurgeon::TriangleStrands() const {
   std::vector<std::uint32_t> found;

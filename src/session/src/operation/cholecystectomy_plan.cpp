@@ -11,8 +11,8 @@ namespace {
 
 using instrument::ToolKind;
 
-constexpr double kCleared = 0.93, kDetached = 0.36;  // of triangle and bed: a little more than the view asks
-constexpr double kLowerShare = 0.44;                 // of the bed that is freed before the view [-]
+constexpr double kCleared = 0.91;     // of the triangle: a little more than the view asks
+constexpr double kLowerShare = 0.44;  // of the bed that is freed before the view [-]
 constexpr int kRounds = 4, kBedRounds = 12;
 constexpr double kPedicleWeight = 3.0;  // of fibres on the cystic duct and artery, among others
 constexpr double kGrip = 0.07;          // of the jaws: 14 N of pinch
@@ -27,7 +27,8 @@ constexpr int kNeckTurns = 7;
 constexpr double kPeelShare = 0.2;  // of the bed's fibres that are left: where the gallbladder peels off [-]
 /// Of the hold from there, along what is free [m]; how far it is folded back at first [m], and how steeply [-].
 constexpr double kLeastFlap = 0.012, kMostFlap = 0.035, kFold = 0.030, kFoldUp = 0.6;
-constexpr double kBedStep = 0.2;  // of the bed's fibres, after which the hold is chosen anew [-]
+constexpr double kInfundibulum = 0.012;  // of the gallbladder, from the neck on [m]
+constexpr double kBedStep = 0.2;         // of the bed's fibres, after which the hold is chosen anew [-]
 
 }  // namespace
 
@@ -103,7 +104,7 @@ void CholecystectomySurgeon::ClearTriangle(int rounds) {
       spread->weights.push_back(1.0);
     }
     const auto is_enough = [this](const Snapshot& now) {
-      return now.operation.facts.cleared_share >= kCleared + 0.01 && AreTubesBare(now);
+      return now.operation.facts.cleared_share >= kCleared && AreTubesBare(now);
     };
     spread->is_enough = is_enough;
     Take(ToolKind::kDissector);
@@ -129,23 +130,24 @@ void CholecystectomySurgeon::ClearTriangle(int rounds) {
 
 void CholecystectomySurgeon::FreeLowerThird(int rounds) {
   Decide("look at the bed", [this, rounds](const Snapshot& seen) {
-    if (seen.operation.facts.detached_share >= kDetached || rounds <= 0) return;
+    const auto is_enough = [](const Snapshot& now) { return now.operation.critical_view.criteria[1] == 2; };
+    if (is_enough(seen) || rounds <= 0) return;
     const std::vector<std::uint32_t> lower = BedStrands(kLowerShare);
     const Vec3 axis = math::Normalized(rest_[fundus_] - rest_[neck_]);
     std::vector<double> order;
     for (const std::uint32_t i : lower)
       order.push_back(0.5 * math::Dot(rest_[strands_[i].a] - rest_[neck_], axis));
-    Take(ToolKind::kHook);
-    if (rounds == kRounds) {
-      DrawGently(kLeft, 0.006 * bed_normal_);
-    } else {
-      HoldOn([this](const Snapshot& now) { return now.positions[neck_]; });
-      DrawGently(kLeft, 0.010 * bed_normal_);
-    }
-    const auto is_enough = [](const Snapshot& now) {
-      return now.operation.facts.detached_share >= kDetached + 0.01;
+    const Place peel = MiddleOf(PeelStrands(seen, lower));
+    // by the infundibulum, which is drawn off the liver, to the sides and back over what is not free
+    const Nodes is_infundibulum = [this, axis](std::uint32_t node) {
+      return math::Dot(rest_[node] - rest_[neck_], axis) < kInfundibulum;
     };
-    Dissect({"the lower third of the bed", lower, order, 0.97, is_enough, 0.028, bed_normal_});
+    const Vec3 back = math::Normalized(axis - math::Dot(axis, bed_normal_) * bed_normal_);
+    const Vec3 way = math::Normalized(bed_normal_ + back);
+    Take(ToolKind::kHook);
+    HoldOn(peel, kHoldTries, is_infundibulum);
+    DrawGently(kLeft, 0.010 * way);
+    Dissect({"the lower third of the bed", lower, order, 0.97, is_enough, 0.028, way});
     FreeLowerThird(rounds - 1);
   });
 }
@@ -248,6 +250,31 @@ void CholecystectomySurgeon::LookFromSide(int side, int tries) {
   });
 }
 
+/// The first fibres of those that are left, from the neck on: there the gallbladder peels off. At least one.
+std::vector<std::uint32_t> CholecystectomySurgeon::PeelStrands(const Snapshot& seen,
+                                                               const std::vector<std::uint32_t>& bed) const {
+  const Vec3 axis = math::Normalized(rest_[fundus_] - rest_[neck_]);
+  std::vector<std::pair<double, std::uint32_t>> along;
+  for (const std::uint32_t i : bed) {
+    if (seen.operation.strand_is_intact[i])
+      along.emplace_back(math::Dot(rest_[strands_[i].a] - rest_[neck_], axis), i);
+  }
+  std::sort(along.begin(), along.end());
+  along.resize(std::max<std::size_t>(1, static_cast<std::size_t>(kPeelShare * along.size())));
+  std::vector<std::uint32_t> peel;
+  for (const auto& [place, strand] : along) peel.push_back(strand);
+  return peel;
+}
+
+/// The middle of the gallbladder's ends of fibres.
+CholecystectomySurgeon::Place CholecystectomySurgeon::MiddleOf(std::vector<std::uint32_t> strands) const {
+  return [this, strands = std::move(strands)](const Snapshot& now) {
+    Vec3 sum;
+    for (const std::uint32_t i : strands) sum += now.positions[strands_[i].a];
+    return sum / static_cast<double>(strands.size());
+  };
+}
+
 /// The gallbladder off its bed: holds change, because the old one may have slipped and what is free is drawn elsewhere.
 void CholecystectomySurgeon::FreeFromBed(int rounds) {
   Decide("look at the bed", [this, rounds](const Snapshot& seen) {
@@ -257,20 +284,10 @@ void CholecystectomySurgeon::FreeFromBed(int rounds) {
     std::vector<double> order;
     for (const std::uint32_t i : bed)
       order.push_back(0.5 * math::Dot(rest_[strands_[i].a] - rest_[neck_], axis));
-    // the first of those that are left, from the neck on: there the gallbladder peels off
-    std::vector<std::pair<double, std::uint32_t>> along;
-    for (std::size_t k = 0; k < bed.size(); ++k) {
-      if (seen.operation.strand_is_intact[bed[k]]) along.emplace_back(order[k], bed[k]);
-    }
-    std::sort(along.begin(), along.end());
-    along.resize(std::max<std::size_t>(1, static_cast<std::size_t>(kPeelShare * along.size())));
-    const Place left = [this, along](const Snapshot& now) {
-      Vec3 sum;
-      for (const auto& [place, strand] : along) sum += now.positions[strands_[strand].a];
-      return sum / static_cast<double>(along.size());
-    };
+    const std::vector<std::uint32_t> peel = PeelStrands(seen, bed);
+    const Place left = MiddleOf(peel);
     // what is free is folded back over what is not: there the fibres lie open
-    const double peels = 2.0 * along[along.size() / 2].first;
+    const double peels = math::Dot(rest_[strands_[peel[peel.size() / 2]].a] - rest_[neck_], axis);
     const Nodes is_free = [this, axis, peels](std::uint32_t node) {
       const double before = peels - math::Dot(rest_[node] - rest_[neck_], axis);
       return before > kLeastFlap && before < kMostFlap;

@@ -97,6 +97,12 @@ void CholecystectomySurgeon::Learn(PatientTissue tissue) {
         std::span(rest_).subspan(surface.first_node, surface.node_count), patient.organs[i].mesh.triangles);
     trees_.push_back(tree.ok() ? std::move(*tree) : collision::TriangleTree());
   }
+  for (std::uint32_t i = 0; i < strands_.size(); ++i) {
+    const bool enters = std::any_of(entering_.begin(), entering_.end(), [&](std::size_t tube) {
+      return strands_[i].a == tube_nodes_[tube].front();
+    });
+    if (strands_[i].kind == StrandInfo::Kind::kEnd && enters) end_strands_.push_back(i);
+  }
   const auto landmark = [&](const char* name) { return patient.FindLandmark(name)->position; };
   neck_ = FindNode(gallbladder, landmark("infundibulum"));
   fundus_ = FindNode(gallbladder, landmark("fundus"));

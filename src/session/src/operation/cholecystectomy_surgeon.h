@@ -68,6 +68,7 @@ class CholecystectomySurgeon final : public Surgeon {
   struct Traction {
     double most = 0;         ///< way in all; 0: it rests [m]
     double most_pull = 0;    ///< above which it gives way [N]
+    double enough_pull = 0;  ///< below which it draws on [N]
     std::vector<Vec3> ways;  ///< unit vectors, in turn when no fibre lies open any more
     std::size_t way = 0;
     Vec3 p_hold;       ///< of the tip, when it began [m]
@@ -195,8 +196,11 @@ class CholecystectomySurgeon final : public Surgeon {
   std::vector<std::uint32_t> CoveringStrands() const;
   std::vector<std::uint32_t> BedStrands(double share) const;
   bool IsNearMain(const Vec3& p, double distance) const;
+  double EndDistance(const Snapshot& seen, const collision::Segment& segment) const;
   double CalcAzimuth(const Snapshot& seen, const Vec3& eye) const;
   bool AreTubesBare(const Snapshot& seen) const;
+  std::vector<std::uint32_t> PeelStrands(const Snapshot& seen, const std::vector<std::uint32_t>& bed) const;
+  Place MiddleOf(std::vector<std::uint32_t> strands) const;
   double ShareLeft(const Snapshot& seen, const std::vector<std::uint32_t>& strands) const;
   TubeLine LineOf(const Snapshot& seen, std::size_t tube) const;
   std::vector<TubeLine> LinesOf(const Snapshot& seen) const;
@@ -221,7 +225,8 @@ class CholecystectomySurgeon final : public Surgeon {
   };
   HookWay FindHookWay(const Snapshot& seen, const Vec3& at);
   Vec3 HookPoint(const Snapshot& seen) const;
-  Vec3 MiddleOf(const Snapshot& seen, std::uint32_t strand) const;
+  collision::Segment HookWire(const Snapshot& seen) const;
+  Vec3 HookedPoint(const Snapshot& seen, std::uint32_t strand) const;
   /// Nearest points of the hook's wire and of a fibre.
   collision::SegmentSegmentPoints HookGap(const Snapshot& seen, std::uint32_t strand) const;
   /// That far beyond a point of a tube, as seen from the right hand's trocar; negative: before it.
@@ -246,6 +251,7 @@ class CholecystectomySurgeon final : public Surgeon {
   bool has_view_ = false;                       // the critical view was achieved
   bool stops_ = false;                          // bails out: it is not safe to go on
   std::vector<std::size_t> entering_;           // tubes that enter the gallbladder
+  std::vector<std::uint32_t> end_strands_;      // where they do
   std::vector<std::uint32_t> main_nodes_;       // of ducts and arteries that must stay
   std::vector<std::uint32_t> main_ducts_;       // of the ducts among them
   std::vector<std::uint32_t> careful_nodes_;    // of those arteries, and of small ducts of the bed

@@ -10,10 +10,11 @@ namespace trocar::session {
 namespace {
 
 constexpr double kPeelRate = 0.0012;  // of the hand that draws the gallbladder off its bed [m/s]
-/// Pull above which it gives way, while ducts are whole and after: it draws on below a share of that [N], by so much at a
-/// time [m].
-constexpr double kMostTiedPull = 7.0, kMostFreePull = 11.0, kEnoughShare = 0.6, kEase = 0.003,
-                 kMostEase = 0.015;
+/// Pull above which it gives way, while ducts are whole and after [N]; it draws on below a share of that, so that the
+/// last fibres of a free gallbladder peel off by the pull alone [-].
+constexpr double kMostTiedPull = 10.0, kMostFreePull = 11.0, kEnoughTied = 0.6, kEnoughFree = 0.95;
+constexpr double kEase = 0.003,
+                 kMostEase = 0.015;     // by which it draws or gives way at a time, and in all [m]
 constexpr double kMostSwingPull = 1.3;  // at which a swing ends, of the most pull [-]
 constexpr double kSwingShare = 0.7;     // of what was drawn [-]
 constexpr double kLeastSwing = 0.012;   // [m]
@@ -27,6 +28,7 @@ CholecystectomySurgeon::Traction CholecystectomySurgeon::PlanTraction(const Diss
   Traction traction;
   traction.most = goal.traction;
   traction.most_pull = goal.may_hold ? kMostFreePull : kMostTiedPull;
+  traction.enough_pull = traction.most_pull * (goal.may_hold ? kEnoughFree : kEnoughTied);
   traction.fibres_before = goal.strands.size();
   if (goal.traction <= 0.0) return traction;
   const Vec3 axis = math::Normalized(rest_[fundus_] - rest_[neck_]);
@@ -48,7 +50,7 @@ void CholecystectomySurgeon::TakeUpSlack(Traction& traction, const Snapshot& see
   const double wish = std::min(traction.most, std::max(traction.most * parted, kPeelRate * act_seconds_));
   if (pull > traction.most_pull) {
     traction.drawn = std::max(-kMostEase, traction.drawn - kEase);
-  } else if (pull < kEnoughShare * traction.most_pull) {
+  } else if (pull < traction.enough_pull) {
     traction.drawn = std::min(wish, traction.drawn + kEase);
   }
   const Vec3 wanted = traction.p_hold + traction.drawn * traction.ways[traction.way % traction.ways.size()];

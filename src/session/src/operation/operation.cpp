@@ -74,6 +74,19 @@ core::Status Operation::MakeAll() {
       if (patient.tubes[t].kind == anatomy::TubeKind::kDuct) main_ducts_.push_back(surface.first_node + k);
     }
   }
+  tube_ends_.clear();
+  for (std::size_t t = 0; t < patient.tubes.size(); ++t) {
+    const anatomy::Tube& tube = patient.tubes[t];
+    if (tube.from != "gallbladder" && tube.to != "gallbladder") continue;
+    const SurfaceInfo& surface = tissue.surfaces[organ_count + t];
+    const std::uint32_t last = tube.to == "gallbladder" ? surface.node_count - 1 : 0;
+    const double radius = surface.radii[last];
+    TubeEnd end{surface.first_node + last, {}, M_PI * radius * radius};
+    for (std::uint32_t i = 0; i < strands_.size(); ++i) {
+      if (strands_[i].kind == StrandInfo::Kind::kEnd && strands_[i].a == end.node) end.strands.push_back(i);
+    }
+    if (!end.strands.empty()) tube_ends_.push_back(std::move(end));
+  }
   // what lies around ducts that must stay is none of the dissection's business
   std::vector<StrandInfo> counted = strands_;
   for (StrandInfo& strand : counted) {
@@ -240,6 +253,7 @@ bool Operation::Act(const HandsNow& hands, const TissueNow& tissue) noexcept {
     }
   }
   Burn(hands, tissue);
+  WatchTubeEnds(hands, tissue);
   if (assistant_) {
     const AssistantCommand command = is_in_bag_ ? AssistantCommand::kRelease : hands.input->assistant;
     (void)assistant_->Step(command, tissue.state->position[assistant_node_], hands.seconds, tissue.organs,

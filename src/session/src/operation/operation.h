@@ -147,6 +147,7 @@ class Operation {
   void UseFluids(int hand, const HandsNow& hands) noexcept;
   void UseBag(int hand, const HandsNow& hands, const TissueNow& tissue) noexcept;
   void Burn(const HandsNow& hands, const TissueNow& tissue) noexcept;
+  void WatchTubeEnds(const HandsNow& hands, const TissueNow& tissue) noexcept;
   void SpillStones(double leaked, const TissueNow& tissue) noexcept;
   void MoveLoose(const HandsNow& hands, const TissueNow& tissue) noexcept;
   void SlipClips(const HandsNow& hands, const TissueNow& tissue) noexcept;
@@ -164,6 +165,14 @@ class Operation {
   std::int32_t liver_ = -1, gallbladder_ = -1;
   std::vector<std::uint32_t> main_nodes_;  // of ducts and arteries that must stay
   std::vector<std::uint32_t> main_ducts_;  // of the ducts among them
+  /// Where a duct or artery enters the gallbladder.
+  struct TubeEnd {
+    std::uint32_t node = 0;              // of the tube
+    std::vector<std::uint32_t> strands;  // that tie it
+    double section = 0;                  // [m^2]
+    bool is_off = false;
+  };
+  std::vector<TubeEnd> tube_ends_;
   Vec3 p_pool_;
 
   std::vector<surgery::CuttableOrgan> organs_;

@@ -211,6 +211,22 @@ void Operation::Burn(const HandsNow& hands, const TissueNow& tissue) noexcept {
   }
 }
 
+/// A duct or artery that was burnt or torn off the gallbladder is open there, as one that was cut.
+void Operation::WatchTubeEnds(const HandsNow& hands, const TissueNow& tissue) noexcept {
+  if (is_in_bag_) return;
+  for (TubeEnd& end : tube_ends_) {
+    if (end.is_off || std::any_of(end.strands.begin(), end.strands.end(),
+                                  [&](std::uint32_t i) { return tissue.state->strand_is_intact[i] != 0; }))
+      continue;
+    end.is_off = true;
+    TubePlace place;
+    if (!vessels_->MakeHole(end.node, end.section, place)) continue;
+    // of what is divided already only the gallbladder's side is left
+    if (vessels_->CountCuts(place.tube) == 0)
+      judge_.OnHole(place, vessels_->Map(), tissue.state->position[end.node], -1, hands.time);
+  }
+}
+
 void Operation::UseClips(int hand, const HandsNow& hands, const TissueNow& tissue) noexcept {
   const auto h = static_cast<std::size_t>(hand);
   HandState& state = hands_[h];
