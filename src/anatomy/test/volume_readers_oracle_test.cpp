@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "trocar_test/temporary_folder.h"
 #include "volume_file.h"
 
 namespace trocar::anatomy {
@@ -44,7 +45,8 @@ struct Format {
 
 template <typename Sample>
 void ExpectSameAsWritten(itk::ImageIOBase& writer, itk::IOComponentEnum type, const Format& format) {
-  const fs::path path = fs::path(testing::TempDir()) / ("oracle" + std::string(format.extension));
+  const test::TemporaryFolder folder;
+  const fs::path path = folder.Path() / ("oracle" + std::string(format.extension));
   SCOPED_TRACE(path.string() + " type " + itk::ImageIOBase::GetComponentTypeAsString(type));
   const auto directions = MakeDirections();
   writer.SetFileName(path.string());
@@ -86,7 +88,6 @@ void ExpectSameAsWritten(itk::ImageIOBase& writer, itk::IOComponentEnum type, co
               static_cast<double>(samples[i]))
         << i;
   }
-  fs::remove(path);
 }
 
 template <typename Io>

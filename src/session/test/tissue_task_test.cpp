@@ -14,6 +14,7 @@
 #include "trocar/core/safe_file.h"
 #include "trocar/geometry/surface_cut.h"
 #include "trocar/session/hand_motion.h"
+#include "trocar_test/temporary_folder.h"
 
 namespace trocar::session {
 namespace {
@@ -29,15 +30,13 @@ core::Result<Scene> ReadWith(const std::string& key, const std::string& what, co
   const std::size_t at = text->find(what);
   EXPECT_NE(at, std::string::npos) << what;
   text->replace(at, what.size(), by);
-  const fs::path folder = fs::path(testing::TempDir()) / "trocar_tissue_task/scenes/tasks";
+  const test::TemporaryFolder base;
+  const fs::path folder = base.Path() / "scenes/tasks";
   fs::create_directories(folder);
-  fs::remove_all(folder / "../../assets");
   fs::create_directories(folder / "../../assets");
   fs::copy(path->parent_path() / "../../assets/materials", folder / "../../assets/materials");
   EXPECT_TRUE(core::WriteFile(folder / "task.json", *text).ok());
-  auto scene = ReadTask(folder / "task.json");
-  fs::remove_all(fs::path(testing::TempDir()) / "trocar_tissue_task");
-  return scene;
+  return ReadTask(folder / "task.json");
 }
 
 TEST(TissueModelFile, MakesDuctsAndBandsAndAnOperation) {
