@@ -147,7 +147,7 @@ void HapticLoop::Content::Run() noexcept {
   const CountAllocations count = settings.count_allocations;
   HapticStatus told;
   std::int64_t due = core::NowNanoseconds() + period, last_start = 0, second_start = due, last_told = 0,
-               opened = 0;
+               last_try = 0;
   while (!is_stopping.load(std::memory_order_relaxed)) {
     WaitUntil(due, spin);
     const std::int64_t start = core::NowNanoseconds();
@@ -191,8 +191,8 @@ void HapticLoop::Content::Run() noexcept {
       last_told = start;
     }
     if (is_opening) {
-      opened = start;
-    } else if (driver->GetState() == device::DriverState::kUnconfigured && start - opened >= kTryAgain) {
+      last_try = start;
+    } else if (driver->GetState() == device::DriverState::kUnconfigured && start - last_try >= kTryAgain) {
       reopener->Begin();  // what comes back is unarmed and unconfirmed
     }
     due += period;

@@ -196,25 +196,35 @@ bool IsLost(const HapticHandStatus& hand) {
   return hand.reason == haptics::Fault::kDeviceLost;
 }
 
+/// A loop with a supervisor and the right hand, which the device has reported; null, and a failure, where that fails.
+std::unique_ptr<HapticLoop> StartRightHand(std::unique_ptr<device::ForceDriver> driver, HapticLink& link) {
+  HapticLoopSettings settings;
+  settings.supervisor = TROCAR_SUPERVISOR;
+  settings.hands.emplace_back();
+  auto loop = HapticLoop::Start(std::move(driver), settings, link);
+  if (!loop.ok()) {
+    ADD_FAILURE() << loop.error().Text();
+    return nullptr;
+  }
+  EXPECT_TRUE(WaitFor(**loop, [](const HapticHandStatus& hand) { return hand.counts.good > 0; }));
+  return std::move(*loop);
+}
+
 // D1: unplugged and back.
 TEST(HapticLoop, OpensALostDeviceAgainAndLeavesItUnarmed) {
   device::SimulatedForceSettings simulated;
   simulated.path = [](int, double) { return Vec3{}; };
   auto made = std::make_unique<device::SimulatedForceDevice>(simulated);
   device::SimulatedForceDevice& device = *made;
-  HapticLoopSettings settings;
-  settings.supervisor = TROCAR_SUPERVISOR;
-  settings.hands.emplace_back();
   HapticLink link;
-  auto loop = HapticLoop::Start(std::move(made), settings, link);
-  ASSERT_TRUE(loop.ok()) << loop.error().Text();
-  EXPECT_TRUE(WaitFor(**loop, [](const HapticHandStatus& hand) { return hand.counts.good > 0; }));
+  const auto loop = StartRightHand(std::move(made), link);
+  ASSERT_NE(loop, nullptr);
   device.SetFault(device::SimulatedFault::kUnplugged);
-  EXPECT_TRUE(WaitFor(**loop, IsLost));
-  const auto good = (*loop)->Latest().hands[kRight].counts.good;
+  EXPECT_TRUE(WaitFor(*loop, IsLost));
+  const auto good = loop->Latest().hands[kRight].counts.good;
   device.SetFault(device::SimulatedFault::kNone);
-  EXPECT_TRUE(WaitFor(**loop, [&](const HapticHandStatus& hand) { return hand.counts.good > good; }));
-  EXPECT_EQ((*loop)->Latest().hands[kRight].state, haptics::ArmState::kUnarmed);
+  EXPECT_TRUE(WaitFor(*loop, [&](const HapticHandStatus& hand) { return hand.counts.good > good; }));
+  EXPECT_EQ(loop->Latest().hands[kRight].state, haptics::ArmState::kUnarmed);
 }
 
 /// A device that goes away when told to, and opens again no sooner than it may.
@@ -254,23 +264,19 @@ class SlowToOpen : public device::ForceDriver {
 TEST(HapticLoop, KeepsItsBeatWhileADeviceTakesItsTimeToOpen) {
   auto made = std::make_unique<SlowToOpen>();
   SlowToOpen& device = *made;
-  HapticLoopSettings settings;
-  settings.supervisor = TROCAR_SUPERVISOR;
-  settings.hands.emplace_back();
   HapticLink link;
-  auto loop = HapticLoop::Start(std::move(made), settings, link);
-  ASSERT_TRUE(loop.ok()) << loop.error().Text();
-  EXPECT_TRUE(WaitFor(**loop, [](const HapticHandStatus& hand) { return hand.counts.good > 0; }));
+  const auto loop = StartRightHand(std::move(made), link);
+  ASSERT_NE(loop, nullptr);
   device.may_open = false;
   device.is_gone = true;
-  EXPECT_TRUE(WaitFor(**loop, [&](const HapticHandStatus&) { return device.openings == 2; }));
-  const auto ticks = (*loop)->Latest().ticks;
-  EXPECT_TRUE(WaitFor(**loop, [&](const HapticHandStatus& hand) {
-    return IsLost(hand) && (*loop)->Latest().ticks > ticks + 200;
+  EXPECT_TRUE(WaitFor(*loop, [&](const HapticHandStatus&) { return device.openings == 2; }));
+  const auto ticks = loop->Latest().ticks;
+  EXPECT_TRUE(WaitFor(*loop, [&](const HapticHandStatus& hand) {
+    return IsLost(hand) && loop->Latest().ticks > ticks + 200;
   }));
-  const auto good = (*loop)->Latest().hands[kRight].counts.good;
+  const auto good = loop->Latest().hands[kRight].counts.good;
   device.may_open = true;
-  EXPECT_TRUE(WaitFor(**loop, [&](const HapticHandStatus& hand) { return hand.counts.good > good; }));
+  EXPECT_TRUE(WaitFor(*loop, [&](const HapticHandStatus& hand) { return hand.counts.good > good; }));
   EXPECT_EQ(device.openings, 2);
 }
 

@@ -131,8 +131,8 @@ void CholecystectomySurgeon::ClearTriangle(int rounds) {
 void CholecystectomySurgeon::FreeLowerThird(int rounds) {
   Decide("look at the bed", [this, rounds](const Snapshot& seen) {
     const auto is_enough = [](const Snapshot& now) { return now.operation.critical_view.criteria[1] == 2; };
-    if (is_enough(seen) || rounds <= 0) return;
     const std::vector<std::uint32_t> lower = BedStrands(kLowerShare);
+    if (is_enough(seen) || ShareLeft(seen, lower) == 0.0 || rounds <= 0) return;
     const Vec3 axis = math::Normalized(rest_[fundus_] - rest_[neck_]);
     std::vector<double> order;
     for (const std::uint32_t i : lower)
@@ -251,6 +251,7 @@ void CholecystectomySurgeon::LookFromSide(int side, int tries) {
 }
 
 /// The first fibres of those that are left, from the neck on: there the gallbladder peels off. At least one.
+/// \pre one is left
 std::vector<std::uint32_t> CholecystectomySurgeon::PeelStrands(const Snapshot& seen,
                                                                const std::vector<std::uint32_t>& bed) const {
   const Vec3 axis = math::Normalized(rest_[fundus_] - rest_[neck_]);
