@@ -53,6 +53,13 @@ void Resize(OrganPair& pair) {
   pair.is_bound.resize(pair.node_count, 0);
   pair.last_triangle.resize(pair.node_count, collision::kNoTriangle);
   pair.spring.resize(pair.node_count, kNoSpring);
+  pair.clear.assign(pair.node_count, {});
+}
+
+/// Whether a vertex that was clear when it was last looked at must still be: nothing has gone so far since.
+bool IsStillClear(const ClearVertex& clear, const Vec3& p, double travel) noexcept {
+  const double left = clear.until - travel;
+  return left > 0.0 && math::SquaredDistance(p, clear.position) < left * left;
 }
 
 /// Fills in what is allowed at rest.
@@ -108,14 +115,17 @@ void FollowOrgan(std::span<const OrganSurface> organs, std::uint8_t changed, Org
     pair.node_count = organs[changed].node_count;
     Resize(pair);
   }
-  if (changed == pair.surface_of)
+  if (changed == pair.surface_of) {
     std::fill(pair.last_triangle.begin(), pair.last_triangle.end(), collision::kNoTriangle);
+    std::fill(pair.clear.begin(), pair.clear.end(), ClearVertex{});
+  }
 }
 
 void ResetPair(OrganPair& pair) noexcept {
   const std::size_t count = std::min(pair.allowed.size(), pair.allowed_at_rest.size());
   std::copy_n(pair.allowed_at_rest.begin(), count, pair.allowed.begin());
   std::copy_n(pair.inside_at_rest.begin(), count, pair.is_inside.begin());
+  std::fill(pair.clear.begin(), pair.clear.end(), ClearVertex{});
   ForgetOrganPushes(pair);
 }
 
@@ -145,13 +155,17 @@ void FindOrganContacts(std::span<const OrganSurface> organs, std::span<const Vec
     if (pair.is_bound[i] != 0) continue;
     const std::uint32_t node = pair.first_node + i;
     const Vec3& p = positions[node];
+    if (IsStillClear(pair.clear[i], p, to.travel)) continue;
     const double radius = pair.radii.empty() ? 0.0 : pair.radii[i];
     const Place place =
         FindPlace(to, nodes, p, settings.reach + radius, pair.last_triangle[i], pair.is_inside[i]);
+    const double gap = place.is_near ? place.distance - radius : place.nearest.Found() ? 0.0 : settings.reach;
+    if (place.is_near && pair.radii.empty())
+      pair.allowed[i] = std::max(pair.allowed[i], std::min(gap, settings.thickness));
+    const double spare = pair.is_inside[i] != 0 ? 0.0 : gap - pair.allowed[i] - settings.ahead;
+    pair.clear[i] = {p, spare > 0.0 ? to.travel + spare : 0.0};
     if (!place.is_near) continue;
     pair.last_triangle[i] = place.nearest.triangle;
-    const double gap = place.distance - radius;
-    if (pair.radii.empty()) pair.allowed[i] = std::max(pair.allowed[i], std::min(gap, settings.thickness));
     const double room = std::max(gap - pair.allowed[i], -kMostPush);
     if (room > settings.ahead) continue;
     if (contacts.springs.size() + 2 > ContactSet::kCapacity) {

@@ -2,6 +2,7 @@
 #include "trocar/surgery/organ_surface.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "trocar/core/assert.h"
@@ -21,13 +22,22 @@ core::Result<OrganSurface> MakeOrganSurface(std::span<const Vec3> positions, std
   auto tree = collision::TriangleTree::Make(surface.Nodes(positions), surface.triangles);
   if (!tree.ok()) return tree.error();
   surface.tree = std::move(*tree);
+  const auto nodes = surface.Nodes(positions);
+  surface.last_positions.assign(nodes.begin(), nodes.end());
   UpdateOrganSurface(surface, positions);
   return surface;
 }
 
 void UpdateOrganSurface(OrganSurface& surface, std::span<const Vec3> positions) noexcept {
-  surface.tree.Update(surface.Nodes(positions));
-  surface.box = geometry::CalcBox(surface.Nodes(positions));
+  const auto nodes = surface.Nodes(positions);
+  surface.tree.Update(nodes);
+  surface.box = geometry::CalcBox(nodes);
+  double longest2 = 0;
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    longest2 = std::max(longest2, math::SquaredDistance(nodes[i], surface.last_positions[i]));
+    surface.last_positions[i] = nodes[i];
+  }
+  surface.travel += std::sqrt(longest2);
 }
 
 core::Result<TubeSet> MakeTubeSet(std::span<const Vec3> positions, std::vector<TubeSurface> tubes) {

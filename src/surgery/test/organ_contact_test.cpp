@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "trocar/geometry/primitives.h"
@@ -173,6 +174,45 @@ TEST_F(OrganContact, AFoldOfTheSurfaceTurnsNobodyInside) {
     if (pair_.spring[i] == kNoSpring) continue;
     EXPECT_GT(contacts_.springs[pair_.spring[i]].normal.z, 0.0) << i;
   }
+}
+
+// Vertices that are clear are not searched for, and every contact is found in the tick in which it begins.
+TEST_F(OrganContact, SparedSearchesChangeNothing) {
+  Make(0.006);
+  OrganPair searched = pair_;
+  int spared = 0, found = 0;
+  for (int tick = 0; tick < 400; ++tick) {
+    const double t = 0.03 * tick;
+    const Vec3 way{0.0008 * std::sin(2.1 * t), 0.0006 * std::cos(1.7 * t), -0.0005 * std::sin(t)};
+    for (std::uint32_t i = 0; i < organs_[1].node_count; ++i)
+      state_.position[organs_[1].first_node + i] += way;
+    // the large one swells and shrinks below it
+    for (std::uint32_t i = 0; i < organs_[0].node_count; ++i)
+      state_.position[organs_[0].first_node + i] =
+          (1.0 + 0.03 * std::sin(1.3 * t)) * model_.rest[organs_[0].first_node + i];
+    for (OrganSurface& organ : organs_) UpdateOrganSurface(organ, state_.position);
+    contacts_.Clear();
+    FindOrganContacts(organs_, state_.position, settings_, pair_, contacts_);
+    ContactSet all;
+    std::fill(searched.clear.begin(), searched.clear.end(), ClearVertex{});
+    FindOrganContacts(organs_, state_.position, settings_, searched, all);
+    ASSERT_EQ(contacts_.springs.size(), all.springs.size()) << tick;
+    for (std::size_t i = 0; i < all.springs.size(); ++i) {
+      ASSERT_EQ(contacts_.springs[i].nodes[0], all.springs[i].nodes[0]) << tick;
+      ASSERT_NEAR(contacts_.springs[i].offset, all.springs[i].offset, 1e-12) << tick;
+      ASSERT_NEAR(math::Distance(contacts_.springs[i].normal, all.springs[i].normal), 0.0, 1e-9) << tick;
+    }
+    ASSERT_EQ(pair_.allowed, searched.allowed) << tick;
+    ASSERT_EQ(pair_.is_inside, searched.is_inside) << tick;
+    found += !all.springs.empty();
+    spared +=
+        static_cast<int>(std::count_if(pair_.clear.begin(), pair_.clear.end(), [&](const ClearVertex& clear) {
+          return clear.until > organs_[0].travel;
+        }));
+  }
+  EXPECT_GT(found, 100);
+  EXPECT_LT(found, 300) << "some of the time they are apart";
+  EXPECT_GT(spared, 400 * static_cast<int>(organs_[1].node_count) / 4);
 }
 
 TEST_F(OrganContact, ResetForgetsWhatHappened) {

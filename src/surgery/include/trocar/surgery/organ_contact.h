@@ -26,6 +26,13 @@ struct OrganContactSettings {
   double thickness = 0.0004;  ///< at which a vertex is kept off a surface, so that there is always a side [m]
 };
 
+/// Where a vertex lay when it was last looked at, outside and clear of the surface.
+struct ClearVertex {
+  Vec3 position;  ///< [m]
+  /// It cannot have come near the surface while its own way and the surface's travel are together less than this [m].
+  double until = 0;
+};
+
 /// Vertices of one organ, or nodes of one tube, against an organ's surface.
 struct OrganPair {
   std::uint8_t nodes_of = 0;    ///< surface: an organ, or organs + tube
@@ -41,6 +48,7 @@ struct OrganPair {
   std::vector<std::uint8_t> is_bound;        ///< (node_count) tied to the other organ: left to its strands
   std::vector<std::uint32_t> last_triangle;  ///< (node_count) where the search starts
   std::vector<std::uint32_t> spring;         ///< (node_count) the first of its two in the set, or kNoSpring
+  std::vector<ClearVertex> clear;  ///< (node_count) spares most searches; changes nothing that is found
 };
 inline constexpr std::uint32_t kNoSpring = ~std::uint32_t{0};
 

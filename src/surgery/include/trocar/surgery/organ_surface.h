@@ -25,7 +25,9 @@ struct OrganSurface {
   geometry::Rows vertex_triangles;
   std::vector<double> vertex_areas;  ///< (node_count) at rest [m^2]
   collision::TriangleTree tree;
-  geometry::Box box;  ///< of the nodes at the last update [m]
+  geometry::Box box;                 ///< of the nodes at the last update [m]
+  std::vector<Vec3> last_positions;  ///< (node_count) at the last update [m]
+  double travel = 0;  ///< sum over all updates of how far the node that moved most has gone [m]
   /// Pinch that damages: of the smallest bite, and of one that fills the jaws [N].
   /// Source: domain facts, section 3.3 (Heijnsdijk 2004: 15 to 37 N as the contact area grows).
   double damage_pinch_small = 15.0, damage_pinch_full = 37.0;
@@ -41,7 +43,7 @@ struct OrganSurface {
 core::Result<OrganSurface> MakeOrganSurface(std::span<const Vec3> positions, std::uint32_t first_node,
                                             const geometry::TriangleMesh& mesh);
 
-/// Refits tree and box to the nodes.
+/// Refits tree and box to the nodes, and adds to the travel.
 /// \note Real-time safe.
 void UpdateOrganSurface(OrganSurface& surface, std::span<const Vec3> positions) noexcept;
 
