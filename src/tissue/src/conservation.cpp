@@ -133,13 +133,14 @@ bool Conservation::UpdateResponses(const TissueState& tissue, const TissueLoad& 
                                    double tolerance) noexcept {
   std::copy(tissue.strand_is_intact.begin(), tissue.strand_is_intact.end(), rest_.strand_is_intact.begin());
   std::copy(tissue.spring_factor.begin(), tissue.spring_factor.end(), rest_.spring_factor.begin());
+  linear_.SetStiffness(rest_, load);
   bool is_settled = true;
   for (std::size_t organ = 0; organ < settings_.organs.size(); ++organ) {
     std::fill(gradient_.begin(), gradient_.end(), Vec3{});
     const ClosedOrgan& surface = settings_.organs[organ];
     (void)CalcVolumeGradient(std::span(model_->rest).subspan(surface.first_node, surface.node_count),
                              surface.triangles, OrganPart(organ, gradient_));
-    const auto report = linear_.Solve(rest_, load, gradient_, max_iterations, tolerance, responses_[organ]);
+    const auto report = linear_.Solve(gradient_, max_iterations, tolerance, responses_[organ]);
     is_settled = is_settled && report.residual <= tolerance;
   }
   stiffness_scale_ = load.stiffness_scale;

@@ -59,6 +59,7 @@ void LinearResponse::SetModel(const TissueModel& model) {
 
 void LinearResponse::SetStiffness(const TissueState& state, const TissueLoad& load) noexcept {
   const TissueModel& model = *model_;
+  TROCAR_ASSERT(state.position.size() == model.Size());
   for (std::uint32_t i = 0; i < model.Size(); ++i) {
     Symmetric3 block{};
     for (auto h = model.spring_starts[i]; h < model.spring_starts[i + 1]; ++h) {
@@ -103,12 +104,10 @@ void LinearResponse::Apply(std::span<const Vec3> u, std::span<Vec3> product) con
   }
 }
 
-LinearReport LinearResponse::Solve(const TissueState& state, const TissueLoad& load,
-                                   std::span<const Vec3> force, int max_iterations, double tolerance,
+LinearReport LinearResponse::Solve(std::span<const Vec3> force, int max_iterations, double tolerance,
                                    std::span<Vec3> response) noexcept {
   const std::size_t n = model_->Size();
-  TROCAR_ASSERT(force.size() == n && response.size() == n && state.position.size() == n);
-  SetStiffness(state, load);
+  TROCAR_ASSERT(force.size() == n && response.size() == n);
   double force2 = 0;
   for (std::size_t i = 0; i < n; ++i) {
     if (!is_free_[i]) response[i] = {};

@@ -96,15 +96,19 @@ void SetOrderedLoad(const OrderedModel& model, const TissueLoad& load, const Tis
                     OrderedLoad& ordered) noexcept {
   ordered.stiffness_scale = load.stiffness_scale;
   ordered.shape_scale = load.shape_scale;
-  for (std::uint32_t i = 0; i < model.Size(); ++i) {
-    const std::uint32_t old = model.old_of_new[i];
-    ordered.constant[i] = model.mass[i] * load.gravity;
-    if (!load.external_force.empty()) ordered.constant[i] += load.external_force[old];
-    ordered.is_free[i] = state.condition[old] != NodeCondition::kPrescribed;
-  }
+  SetOrderedForce(model, load, ordered);
+  for (std::uint32_t i = 0; i < model.Size(); ++i)
+    ordered.is_free[i] = state.condition[model.old_of_new[i]] != NodeCondition::kPrescribed;
   ordered.contacts.assign(load.contacts.begin(), load.contacts.end());
   for (ContactSpring& contact : ordered.contacts) {
     for (std::uint32_t& node : contact.nodes) node = model.new_of_old[node];
+  }
+}
+
+void SetOrderedForce(const OrderedModel& model, const TissueLoad& load, OrderedLoad& ordered) noexcept {
+  for (std::uint32_t i = 0; i < model.Size(); ++i) {
+    ordered.constant[i] = model.mass[i] * load.gravity;
+    if (!load.external_force.empty()) ordered.constant[i] += load.external_force[model.old_of_new[i]];
   }
 }
 
@@ -130,11 +134,9 @@ void Linearisation::SetLoad(const OrderedLoad& load, std::span<const std::uint8_
                             LinkLevel& level) noexcept {
   load_ = &load;
   strand_is_intact_ = strand_is_intact;
+  SetForce();
   for (std::uint32_t i = 0; i < model_->Size(); ++i) {
     const double shape = load.shape_scale * model_->shape[i];
-    for (int axis = 0; axis < 3; ++axis)
-      At(i, static_cast<BalanceValue>(kOuterX + axis)) = load.constant[i][axis];
-    At(i, kOuterSize) = math::Norm(load.constant[i]);
     At(i, kShape) = shape;
     At(i, kFree) = load.is_free[i] != 0 ? 1.0 : 0.0;
     level.is_free[i] = load.is_free[i] != 0 ? 1.0f : 0.0f;
@@ -145,6 +147,14 @@ void Linearisation::SetLoad(const OrderedLoad& load, std::span<const std::uint8_
   for (const std::uint32_t node : strand_nodes_) At(node, kStrands) = 0.0;
   for (const auto& strand : model_->strands) {
     if (strand_is_intact[strand.strand]) At(strand.node, kStrands) += load.stiffness_scale * strand.stiffness;
+  }
+}
+
+void Linearisation::SetForce() noexcept {
+  for (std::uint32_t i = 0; i < model_->Size(); ++i) {
+    for (int axis = 0; axis < 3; ++axis)
+      At(i, static_cast<BalanceValue>(kOuterX + axis)) = load_->constant[i][axis];
+    At(i, kOuterSize) = math::Norm(load_->constant[i]);
   }
 }
 

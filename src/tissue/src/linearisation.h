@@ -59,6 +59,9 @@ struct OrderedLoad {
 /// \note Real-time safe.
 void SetOrderedLoad(const OrderedModel& model, const TissueLoad& load, const TissueState& state,
                     OrderedLoad& ordered) noexcept;
+/// Fills in `constant` alone, where only the external force has changed since.
+/// \note Real-time safe.
+void SetOrderedForce(const OrderedModel& model, const TissueLoad& load, OrderedLoad& ordered) noexcept;
 
 /// Balance of forces at one set of positions.
 struct Balance {
@@ -85,6 +88,9 @@ class Linearisation {
   /// \note Real-time safe.
   void SetLoad(const OrderedLoad& load, std::span<const std::uint8_t> strand_is_intact,
                LinkLevel& level) noexcept;
+  /// Takes the constant forces of that load anew, and nothing else.
+  /// \note Real-time safe.
+  void SetForce() noexcept;
 
   /// Forces and energy.
   ///

@@ -26,18 +26,22 @@ class LinearResponse {
   /// Goes on with another model. Allocates where it has more nodes or links than any before.
   void SetModel(const TissueModel& model);
 
+  /// Takes the stiffness K of the tissue as it lies; contacts are not counted.
+  /// \note Real-time safe.
+  void SetStiffness(const TissueState& state, const TissueLoad& load) noexcept;
+
   /// Solves K u = f over the nodes that are not prescribed; u is zero on the others. Conjugate gradients,
-  /// preconditioned by each node's own 3 x 3 stiffness; contacts are not counted.
+  /// preconditioned by each node's own 3 x 3 stiffness.
   ///
+  /// \pre SetStiffness() since the model was set
   /// \param force      (n) [N]
   /// \param tolerance  on |f - K u| / |f| [-]
   /// \param[in,out] response  (n) in: a first guess; out: u [m]
   /// \note Real-time safe: no allocation; serial, so that results do not depend on threads.
-  LinearReport Solve(const TissueState& state, const TissueLoad& load, std::span<const Vec3> force,
-                     int max_iterations, double tolerance, std::span<Vec3> response) noexcept;
+  LinearReport Solve(std::span<const Vec3> force, int max_iterations, double tolerance,
+                     std::span<Vec3> response) noexcept;
 
  private:
-  void SetStiffness(const TissueState& state, const TissueLoad& load) noexcept;
   void Apply(std::span<const Vec3> u, std::span<Vec3> product) const noexcept;
 
   struct Link {
