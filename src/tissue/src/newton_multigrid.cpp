@@ -244,10 +244,6 @@ SolveReport NewtonMultigrid::Solve(const Kernels& kernels, Workers& workers, con
                                    const TissueLoad& load, TissueState& state,
                                    const SolveHook* hook) noexcept {
   const std::uint32_t n = model_.Size();
-  const auto set_load = [&] {
-    SetOrderedLoad(model_, load, state, load_);
-    linearisation_.SetLoad(load_, state.strand_is_intact, hierarchy_.Finest());
-  };
   const auto read_positions = [&] {
     for (std::uint32_t i = 0; i < n; ++i) {
       const Vec3& p = state.position[model_.old_of_new[i]];
@@ -260,7 +256,8 @@ SolveReport NewtonMultigrid::Solve(const Kernels& kernels, Workers& workers, con
         state.position[model_.old_of_new[i]] = {position_[i].x, position_[i].y, position_[i].z};
     }
   };
-  set_load();
+  SetOrderedLoad(model_, load, state, load_);
+  linearisation_.SetLoad(load_, state.strand_is_intact, hierarchy_.Finest());
   read_positions();
 
   SolveReport report;
@@ -274,7 +271,8 @@ SolveReport NewtonMultigrid::Solve(const Kernels& kernels, Workers& workers, con
       hook->add_multiplier(hook->self, constraints_[c].index, -multipliers_[c]);
     hook->act(hook->self, state, {});
     read_positions();
-    set_load();
+    SetOrderedForce(model_, load, load_);
+    linearisation_.SetForce();
   };
   double scale = 0;                 // largest distance from rest [m]
   double preconditioned = 0;        // longest of z_ [m]
@@ -307,12 +305,14 @@ SolveReport NewtonMultigrid::Solve(const Kernels& kernels, Workers& workers, con
   linearise();
   update_coarse();
   estimate();
-  while (!report.converged && report.iterations < settings.max_newton_steps && balance_.is_finite) {
+  while (!report.converged && report.iterations < settings.max_newton_steps &&
+         report.linear_iterations < settings.max_linear_total && balance_.is_finite) {
     const double before = balance_.energy;
     const auto first_multipliers = multipliers_;
-    const LinearReport linear =
-        SolveLinear(kernels, workers, settings.max_linear_iterations, kForcing * preconditioned,
-                    kLinearShare * settings.max_error * scale, smallest_ritz, radius);
+    const LinearReport linear = SolveLinear(
+        kernels, workers,
+        std::min(settings.max_linear_iterations, settings.max_linear_total - report.linear_iterations),
+        kForcing * preconditioned, kLinearShare * settings.max_error * scale, smallest_ritz, radius);
     smallest_ritz = std::fmin(smallest_ritz, linear.smallest_ritz);
     report.linear_iterations += linear.iterations;
     report.negative_curvatures += linear.met_negative_curvature;

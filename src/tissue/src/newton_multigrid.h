@@ -26,7 +26,7 @@ class NewtonMultigrid {
   NewtonMultigrid(const NewtonMultigrid&) = delete;  // parts point at each other
   NewtonMultigrid& operator=(const NewtonMultigrid&) = delete;
 
-  /// \note Real-time safe; bounded by settings.max_newton_steps and max_linear_iterations.
+  /// \note Real-time safe; bounded by settings.max_newton_steps, max_linear_iterations and max_linear_total.
   SolveReport Solve(const Kernels& kernels, Workers& workers, const SolverSettings& settings,
                     const TissueLoad& load, TissueState& state, const SolveHook* hook) noexcept;
 

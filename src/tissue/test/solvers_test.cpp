@@ -144,6 +144,27 @@ TEST(EverySolverControl, AFewIterationsAreNotEnough) {
   EXPECT_GT(CalcError(sheet.model, state, truth), 1e-2);
 }
 
+// A tick that may do little work does no more, and the ticks after it go on.
+TEST(NewtonMultigrid, SpendsNoMoreThanATickMayAndArrivesInMoreTicks) {
+  const Sheet sheet = MakeSheet(20, 0.05, true);
+  const TissueState truth = Relax(sheet);
+  TissueState state = sheet.start;
+  EquilibriumSolver solver(sheet.model, 1);
+  SolverSettings settings = Exact(SolverKind::kNewtonMultigrid);
+  SolveReport report = solver.Solve(settings, sheet.Load(), state);
+  EXPECT_GT(report.linear_iterations, 7) << "negative control";
+  state = sheet.start;
+  settings.max_linear_total = 7;
+  int ticks = 0;
+  do {
+    report = solver.Solve(settings, sheet.Load(), state);
+    EXPECT_LE(report.linear_iterations, 7);
+  } while (!report.converged && ++ticks < 100);
+  EXPECT_GT(ticks, 0);
+  EXPECT_TRUE(report.converged) << report.error;
+  EXPECT_LT(CalcError(sheet.model, state, truth), 5e-5);
+}
+
 TEST_P(EverySolver, GivesTheSameBitsForAnyNumberOfThreads) {
   for (const bool is_shuffled : {false, true}) {
     const Sheet sheet = MakeSheet(70, 0.01, is_shuffled);

@@ -262,6 +262,22 @@ TEST(SpringLawTicks, SettleOnTheLaw) {
   EXPECT_LT(CalcError(sheet.model, state, exact), 1e-3);
 }
 
+// The rounds of a tick share what it may do.
+TEST(SpringLawTicks, RoundsSpendTogetherNoMoreThanATickMay) {
+  const Pulled sheet = MakePulled(true);
+  const TissueLoad load{.gravity = {0, 0, -1}};
+  SolverSettings settings = Exact(SolverKind::kNewtonMultigrid);
+  const auto solve = [&] {
+    TissueState state = sheet.state;
+    EquilibriumSolver solver(sheet.model, 1);
+    return solver.Solve(settings, load, state);
+  };
+  const SolveReport whole = solve();
+  ASSERT_GT(whole.rounds, 2);
+  settings.max_linear_total = whole.linear_iterations / 2;
+  EXPECT_LE(solve().linear_iterations, settings.max_linear_total);
+}
+
 TEST_P(SpringLawSolvers, ANodeThatLosesItsLastSpringStaysFinite) {
   TissueDefinition definition = MakeHangingSpring(50.0, 0.01, 0.002);
   const TissueModel model = MakeTissueModel(definition);

@@ -38,6 +38,7 @@ struct SolverSettings {
   double max_error = 5e-4;
   int max_newton_steps = 40;       ///< per tick; two as a rule, many where a fold snaps through
   int max_linear_iterations = 60;  ///< of conjugate gradients, per Newton step
+  int max_linear_total = 100000;   ///< the same of all Newton steps of a tick, >= 1: bounds its time
 
   /// Springs that stiffen are taken as lines that touch their law, solve after solve, until the lines are off
   /// by less than this part of the largest tension [-].
