@@ -55,6 +55,7 @@ void Simulation::Content::Reset() {
   rigid.Reset(*scene, joints);
   load = {};
   report = {};
+  has_cut = false;
   was_frozen = were_tools_touching = false;
   torn_count = torn_spring_count = 0;
   snapshot = {};

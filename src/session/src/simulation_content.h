@@ -68,6 +68,7 @@ struct Simulation::Content {
   tissue::SolveReport report;
   tissue::ConservationState good_conserved;             // after the last good tick
   std::vector<tissue::NodeCondition> solved_condition;  // a grasp may slip once the forces are known
+  bool has_cut = false;                                 // since the last solve
   std::array<surgery::GraspChange, kHandCount> changes{};
   std::array<std::int32_t, kHandCount> changed_organs{};
   std::array<Vec3, kHandCount> forces;

@@ -60,6 +60,7 @@ void Simulation::Content::ChangeTopology() {
   spring_areas = std::move(areas);
   torn_springs.resize(tissue_model.SpringCount());
   FollowTopology();
+  has_cut = true;
 }
 
 /// Goes on with the changed model in all that was made for the one of before.

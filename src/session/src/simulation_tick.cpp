@@ -2,6 +2,7 @@
 // The stages of a tick, in order.
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "simulation_content.h"
 #include "trocar/tissue/damage.h"
@@ -112,8 +113,14 @@ void Simulation::Content::Solve() noexcept {
   if (guard->IsFrozen()) return;
   std::copy(tissue.condition.begin(), tissue.condition.end(), solved_condition.begin());
   load.external_force = {};
-  report = tissue::SolveConserving(*solver, settings.solver, scene->tick_seconds, *conservation, load, tissue,
-                                   conserved);
+  tissue::SolverSettings bounds = settings.solver;
+  if (std::exchange(has_cut, false)) {
+    // making the solver anew has taken its part of the tick
+    bounds.max_newton_steps = (bounds.max_newton_steps + 1) / 2;
+    bounds.max_linear_total = (bounds.max_linear_total + 1) / 2;
+  }
+  report =
+      tissue::SolveConserving(*solver, bounds, scene->tick_seconds, *conservation, load, tissue, conserved);
 }
 
 void Simulation::Content::CheckState() noexcept {

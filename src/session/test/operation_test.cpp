@@ -147,6 +147,31 @@ TEST(Operation, BeginsAgainAsItBeganAndRepeats) {
   EXPECT_EQ(simulation.Hash(), end);
 }
 
+// Making the solver anew takes its part of the tick.
+TEST(Operation, ATickThatCutsSolvesHalfAsMuch) {
+  Simulation simulation = MakeOperation();
+  const int most = OperationScene()->settings.solver.max_newton_steps;
+  ASSERT_EQ(most, 3);
+  auto surgeon = MakeSurgeon("cuts_unclipped", OperationScene(), 1);
+  ASSERT_TRUE(surgeon.ok());
+  std::uint32_t topology = 0;
+  int cuts = 0, most_without = 0;
+  while (!(*surgeon)->HasFinished() && simulation.GetSnapshot().time < 5.0) {
+    simulation.Step((*surgeon)->Act(simulation.GetSnapshot()));
+    const Snapshot& seen = simulation.GetSnapshot();
+    if (seen.operation.topology_version == topology) {
+      most_without = std::max(most_without, seen.iterations);
+      continue;
+    }
+    topology = seen.operation.topology_version;
+    ++cuts;
+    EXPECT_LE(seen.iterations, (most + 1) / 2);
+    EXPECT_GT(seen.iterations, 0);
+  }
+  EXPECT_GT(cuts, 0);
+  EXPECT_EQ(most_without, most);
+}
+
 TEST(OperationSlow, AnExpertGoesFromTheFirstLookToTheBag) {
   if (std::getenv("TROCAR_SLOW_TESTS") == nullptr) GTEST_SKIP() << "minutes; set TROCAR_SLOW_TESTS=1";
   Simulation simulation = MakeOperation();

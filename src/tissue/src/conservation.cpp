@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "trocar/core/assert.h"
 
@@ -89,6 +90,7 @@ void Conservation::Reset() noexcept {
   shape_scale_ = usual.shape_scale;
   response_links_ = first_links_;
   responses_settled_ = true;
+  has_followed_ = false;
 }
 
 void Conservation::Follow(const TissueModel& model, std::vector<ClosedOrgan> organs,
@@ -102,6 +104,7 @@ void Conservation::Follow(const TissueModel& model, std::vector<ClosedOrgan> org
   linear_.SetModel(model);
   rest_ = MakeRestState(model);
   responses_settled_ = false;
+  has_followed_ = true;
   state.intact_links = std::numeric_limits<std::uint64_t>::max();
 }
 
@@ -422,7 +425,9 @@ void Conservation::Enforce(const TissueLoad& load, double dt, TissueState& tissu
     responses_settled_ = false;
     response_links_ = state.intact_links;
   }
-  if (!responses_settled_) {
+  // a tick that cuts has enough to do: until the next one, the responses of before steer well enough
+  const bool is_late = std::exchange(has_followed_, false);
+  if (!responses_settled_ && !is_late) {
     responses_settled_ = UpdateResponses(tissue, load, kResponseIterationsPerTick, kResponseTolerance);
   }
   if (!MeasureVolumes(tissue, state)) return;
