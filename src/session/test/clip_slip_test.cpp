@@ -118,6 +118,23 @@ TEST_F(ClipSlipTest, GoodClipsStayForTheWholeOperation) {
   EXPECT_EQ(vessels_->Acts().clips.size(), 6u);
 }
 
+// A hole beyond the clips that stay opens nothing that still flows, as where a stump is coagulated.
+TEST_F(ClipSlipTest, AHoleCountsAsUnclippedOnlyWhereNoClipHoldsTheSideThatStays) {
+  const auto counts = [this](std::uint32_t tube, double share) {
+    OperationJudge judge;
+    judge.Clear(false);
+    judge.OnHole({tube, share * LengthOf(tube)}, *vessels_, {}, kRight, 0.0);
+    return judge.Errors().Count(training::OperationError::kUnclippedCut) == 1;
+  };
+  for (const char* name : {"cystic_artery", "cystic_duct"}) {
+    const std::uint32_t tube = FindTube(name);
+    EXPECT_TRUE(counts(tube, 0.2) && counts(tube, 0.7)) << name << " without clips";
+    EXPECT_EQ(Clip(tube, 0.4).kind, ClipResult::Kind::kClosed);
+    EXPECT_NE(counts(tube, 0.2), counts(tube, 0.7)) << name << ": on one side of the clip it still flows";
+  }
+  EXPECT_FALSE(counts(FindTube("cystic_artery"), 0.7)) << "the gallbladder's side";
+}
+
 TEST_F(ClipSlipTest, APartialClipSlipsOffAnArteryThatThenBleeds) {
   const std::uint32_t artery = FindTube("cystic_artery");
   EXPECT_EQ(Clip(artery, 0.4, 0.7).kind, ClipResult::Kind::kPartial);

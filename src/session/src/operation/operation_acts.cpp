@@ -206,7 +206,7 @@ void Operation::Burn(const HandsNow& hands, const TissueNow& tissue) noexcept {
     } else if (IsOf(parted[i], liver_)) {
       judge_.Report(OperationError::kLiverBurnt, p, hand, hands.time);
     } else if (vessels_->MakeHole(parted[i], kBurntHole, place)) {
-      judge_.OnHole(place, vessels_->Map(), p, hand, hands.time);
+      judge_.OnHole(place, *vessels_, p, hand, hands.time);
     }
   }
 }
@@ -223,7 +223,7 @@ void Operation::WatchTubeEnds(const HandsNow& hands, const TissueNow& tissue) no
     if (!vessels_->MakeHole(end.node, end.section, place)) continue;
     // of what is divided already only the gallbladder's side is left
     if (vessels_->CountCuts(place.tube) == 0)
-      judge_.OnHole(place, vessels_->Map(), tissue.state->position[end.node], -1, hands.time);
+      judge_.OnHole(place, *vessels_, tissue.state->position[end.node], -1, hands.time);
   }
 }
 

@@ -51,6 +51,23 @@ void OperationJudge::OnClip(const ClipResult& clip, const VesselMap& map, const 
   if (clip.kind == ClipResult::Kind::kPartial) Report(OperationError::kClipPartial, p, hand, time);
 }
 
+namespace {
+
+/// Tight clips between a place of a vessel and the side that stays: the one that joins another tube, or comes from the liver.
+int CountStayingClips(const VesselPlace& at, const VesselWork& vessels) noexcept {
+  const VesselMap& map = vessels.Map();
+  const auto& junctions = map.anatomy.gallbladder;
+  const bool is_gallbladder_at_from =
+      std::find(junctions.begin(), junctions.end(), map.network.Vessels()[at.vessel].from) != junctions.end();
+  const auto& clips = vessels.Acts().clips;
+  return static_cast<int>(std::count_if(clips.begin(), clips.end(), [&](const surgery::VesselClip& clip) {
+    return clip.vessel == at.vessel && clip.closure >= kTight &&
+           (clip.position > at.position) == is_gallbladder_at_from;
+  }));
+}
+
+}  // namespace
+
 void OperationJudge::OnCut(const TubePlace& place, const VesselWork& vessels, const Vec3& p, int hand,
                            double time) noexcept {
   const VesselMap& map = vessels.Map();
@@ -60,27 +77,21 @@ void OperationJudge::OnCut(const TubePlace& place, const VesselWork& vessels, co
     Report(OperationError::kWrongStructureCut, p, hand, time);
     return;
   }
-  // the side that stays is the one that joins another tube, or comes from the liver
-  const auto& junctions = map.anatomy.gallbladder;
-  const auto& vessel = map.network.Vessels()[at.vessel];
-  const bool is_gallbladder_at_from =
-      std::find(junctions.begin(), junctions.end(), vessel.from) != junctions.end();
-  int stay = 0;
-  for (const surgery::VesselClip& clip : vessels.Acts().clips) {
-    if (clip.vessel != at.vessel || clip.closure < kTight) continue;
-    stay += (clip.position > at.position) == is_gallbladder_at_from ? 1 : 0;
-  }
+  const int stay = CountStayingClips(at, vessels);
   // a second cut of what is divided already closes nothing and opens nothing
   if (vessels.CountCuts(place.tube) > 1) return;
   if (stay == 0) Report(OperationError::kUnclippedCut, p, hand, time);
   if (stay > 0 && stay < kClipsThatStay) Report(OperationError::kTooFewClips, p, hand, time);
 }
 
-void OperationJudge::OnHole(const TubePlace& place, const VesselMap& map, const Vec3& p, int hand,
+void OperationJudge::OnHole(const TubePlace& place, const VesselWork& vessels, const Vec3& p, int hand,
                             double time) noexcept {
-  const VesselRole role = map.anatomy.roles[map.Find(place.tube, place.arc).vessel];
-  Report(MayBeDivided(role) ? OperationError::kUnclippedCut : OperationError::kWrongStructureBurnt, p, hand,
-         time);
+  const VesselPlace at = vessels.Map().Find(place.tube, place.arc);
+  if (!MayBeDivided(vessels.Map().anatomy.roles[at.vessel])) {
+    Report(OperationError::kWrongStructureBurnt, p, hand, time);
+  } else if (CountStayingClips(at, vessels) == 0) {
+    Report(OperationError::kUnclippedCut, p, hand, time);
+  }
 }
 
 void OperationJudge::Update(const DissectionWatch& watch, const surgery::FluidLedger& fluids, bool is_in_bag,

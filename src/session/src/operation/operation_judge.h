@@ -29,7 +29,8 @@ class OperationJudge {
   void OnClip(const ClipResult& clip, const VesselMap& map, const Vec3& p, int hand, double time) noexcept;
   void OnCut(const TubePlace& place, const VesselWork& vessels, const Vec3& p, int hand,
              double time) noexcept;
-  void OnHole(const TubePlace& place, const VesselMap& map, const Vec3& p, int hand, double time) noexcept;
+  void OnHole(const TubePlace& place, const VesselWork& vessels, const Vec3& p, int hand,
+              double time) noexcept;
   void Report(training::OperationError error, const Vec3& p, int hand, double time) noexcept;
   void Note(const training::Triplet& triplet, int hand) noexcept;
 
