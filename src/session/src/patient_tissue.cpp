@@ -76,25 +76,28 @@ core::Status CheckClosed(const anatomy::Organ& organ) {
                          ", so its volume cannot be kept; look at it with trocar anatomy check"};
 }
 
-/// \param is_sheet  open, without a volume to keep
-void AddOrgan(const anatomy::Organ& organ, const OrganMaterial& material, bool is_sheet,
+/// \param sheet  that the organ is: open, without a volume to keep; null for others
+void AddOrgan(const anatomy::Organ& organ, const OrganMaterial& material, const ModelSheet* sheet,
               const SpareNodes& spare, PatientTissue& made) {
   auto& definition = made.definition;
   const auto first = static_cast<std::uint32_t>(definition.rest.size());
   const auto& mesh = organ.mesh;
   made.surfaces.push_back({organ.name,
-                           is_sheet ? kSheetLook : organ.name,
+                           sheet != nullptr ? kSheetLook : organ.name,
                            first,
                            static_cast<std::uint32_t>(mesh.positions.size()),
                            mesh.triangles,
                            {}});
   definition.rest.insert(definition.rest.end(), mesh.positions.begin(), mesh.positions.end());
-  if (!is_sheet)
+  if (sheet == nullptr)
     made.conservation.organs.push_back(
         {first, static_cast<std::uint32_t>(mesh.positions.size()), mesh.triangles, tissue::kBileDensity});
 
   surgery::WallMaterial wall = CalcWallMaterial(mesh, material, definition);
-  if (is_sheet) wall.mass_by_area = material.density * material.wall_thickness;
+  if (sheet != nullptr) {
+    wall.mass_by_area = material.density * material.wall_thickness;
+    wall.prestrain = sheet->prestrain;
+  }
   made.walls.push_back(wall);
   const auto areas = geometry::CalcVertexAreas(mesh.positions, mesh.triangles);
   const auto foundation = tissue::CalcFoundationStiffness(areas, material.foundation_modulus, material.depth);
@@ -311,11 +314,11 @@ core::Result<PatientTissue> MakePatientTissue(const Scene& scene, const SpareNod
   for (const anatomy::Organ& organ : scene.patient.organs) {
     const OrganMaterial* material = FindMaterial(materials, organ.name);
     if (material == nullptr) return MissingMaterial(organ.name);
-    const bool is_sheet = scene.model.has_value();
-    if (!is_sheet) {
+    const ModelSheet* sheet = scene.model ? &scene.model->sheets[made.surfaces.size()] : nullptr;
+    if (sheet == nullptr) {
       if (const auto closed = CheckClosed(organ); !closed.ok()) return closed.error();
     }
-    AddOrgan(organ, *material, is_sheet, spare, made);
+    AddOrgan(organ, *material, sheet, spare, made);
     made.internal_pressure.push_back(material->internal_pressure);
   }
   if (!scene.patient.attachments.empty()) {

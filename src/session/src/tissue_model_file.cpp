@@ -69,7 +69,7 @@ ModelBand ReadBand(const JsonView& view, const Vec3& origin) {
 }
 
 ModelSheet ReadSheet(const JsonView& view, const Vec3& origin) {
-  view.AllowOnly({"name", "about", "centre_mm", "half_mm", "spacing_mm", "circle_mm"});
+  view.AllowOnly({"name", "about", "centre_mm", "half_mm", "spacing_mm", "circle_mm", "prestrain"});
   ModelSheet sheet;
   sheet.name = view.Text("name");
   sheet.centre = origin + ReadPointMm(view, "centre_mm");
@@ -77,6 +77,7 @@ ModelSheet ReadSheet(const JsonView& view, const Vec3& origin) {
   sheet.half = {1e-3 * half[0], 1e-3 * half[1], 0};
   sheet.spacing = 1e-3 * view.NumberOr("spacing_mm", 1e3 * sheet.spacing, {2.0, 20.0});
   sheet.circle = 1e-3 * view.Number("circle_mm", {2.0, 200.0});
+  sheet.prestrain = view.NumberOr("prestrain", 0.0, {0.0, 0.2});
   const double least = std::min(sheet.half.x, sheet.half.y);
   if (!(least >= kLeastSheet && std::max(sheet.half.x, sheet.half.y) <= kLargestSheet)) {
     view.Complain("half_mm: half of a side must be 10 to 60 mm", ErrorCode::kSceneInvalid);

@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "operation/sheet_watch.h"
 #include "task_monitor.h"
@@ -125,6 +127,11 @@ TEST(TissueModelFile, BadOnesAreRefusedWithPathAndRemedy) {
        R"("half_mm": [33, 3])",
        ErrorCode::kSceneInvalid,
        {"scene.model.sheets[0]", "10 to 60 mm"}},
+      {"pattern_cut",
+       R"("prestrain": 0.04)",
+       R"("prestrain": 0.5)",
+       ErrorCode::kJsonField,
+       {"scene.model.sheets[0].prestrain", "0.2"}},
       {"pattern_cut",
        R"("circle_mm": "{radius}")",
        R"("circle_mm": 30)",
@@ -482,6 +489,52 @@ TEST(PatternCut, TheExpertsPieceIsFreeRoundAndLeftWhereItWas) {
     ASSERT_TRUE(std::isfinite(p.z));
     ASSERT_NEAR(p.z, scene->model->sheets[0].centre.z, 0.02) << "nothing flies away";
   }
+}
+
+struct SheetAround {
+  double before = 0;   ///< farthest that a node moved across the sheet before it was cut [m]
+  double outside = 0;  ///< how far the sheet outside the circle has drawn back from it, mean [m]
+};
+
+/// The expert's cut of a sheet under this strain.
+SheetAround CutSheetUnder(double prestrain) {
+  auto scene = std::make_shared<Scene>(*ReadDelivered("pattern_cut"));
+  ModelSheet& sheet = scene->model->sheets[0];
+  sheet.prestrain = prestrain;
+  auto simulation = Simulation::Make(scene, 1);
+  EXPECT_TRUE(simulation.ok());
+  std::vector<Vec3> rest = simulation->GetSnapshot().positions;
+  rest.resize(simulation->Surfaces()[0].node_count);
+  const Snapshot& now = simulation->GetSnapshot();
+  SheetAround found;
+  auto surgeon = MakeSurgeon("expert", scene, 1);
+  while (!(*surgeon)->HasFinished() && now.time < 200) {
+    simulation->Step((*surgeon)->Act(now));
+    if (now.operation.sheets[0].cut_length > 0.0) continue;
+    for (std::size_t i = 0; i < rest.size(); ++i)
+      found.before =
+          std::max(found.before, std::hypot(now.positions[i].x - rest[i].x, now.positions[i].y - rest[i].y));
+  }
+  EXPECT_TRUE(now.operation.sheets[0].is_free);
+  int count = 0;
+  for (std::size_t i = 0; i < rest.size(); ++i) {
+    const auto radius = [&](const Vec3& p) { return std::hypot(p.x - sheet.centre.x, p.y - sheet.centre.y); };
+    const double away = radius(rest[i]) - sheet.circle;
+    if (away < 0.001 || away > 0.004) continue;
+    found.outside += radius(now.positions[i]) - radius(rest[i]);
+    ++count;
+  }
+  found.outside /= count;
+  return found;
+}
+
+TEST(PatternCut, ASheetUnderTensionLiesStillAndDrawsBackFromTheCut) {
+  const SheetAround tense = CutSheetUnder(ReadDelivered("pattern_cut")->model->sheets[0].prestrain);
+  EXPECT_LT(tense.before, 1e-4);
+  EXPECT_GT(tense.outside, 3e-4);
+  EXPECT_LT(tense.outside, 2e-3);
+  const SheetAround slack = CutSheetUnder(0.0);
+  EXPECT_LT(std::abs(slack.outside), 5e-5) << "negative control";
 }
 
 /// Steps for some seconds, and counts the events of one kind.

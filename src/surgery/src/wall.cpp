@@ -21,7 +21,8 @@ std::vector<tissue::Spring> CalcWallSprings(const geometry::TriangleMesh& mesh,
                                              (1.0 - material.bending_share) * material.membrane_modulus);
   std::vector<tissue::Spring> springs;
   const auto add = [&](std::uint32_t a, std::uint32_t b, double k) {
-    springs.push_back({a, b, k, math::Distance(mesh.positions[a], mesh.positions[b]), material.law});
+    const double length = math::Distance(mesh.positions[a], mesh.positions[b]);
+    springs.push_back({a, b, k, length / (1.0 + material.prestrain), material.law});
   };
   std::vector<tissue::BendingSpring> across;
   if (material.bending_share > 0.0) {
@@ -65,7 +66,7 @@ tissue::Spring CalcWallSpring(const EditableMesh& mesh, std::uint32_t a, std::ui
   const double squared = math::SquaredDistance(mesh.Rest()[a], mesh.Rest()[b]);
   const double area = (1.0 - material.bending_share) * edge_area + material.bending_share * bending_area;
   return {a, b, area > 0.0 && squared > 0.0 ? material.membrane_modulus * area / squared : 0.0,
-          std::sqrt(squared), material.law};
+          std::sqrt(squared) / (1.0 + material.prestrain), material.law};
 }
 
 WallNode CalcWallNode(const EditableMesh& mesh, std::uint32_t v, const WallMaterial& material) noexcept {

@@ -86,6 +86,7 @@ struct ModelSheet {
   Vec3 half;               ///< of its sides along x and y [m]; z is 0
   double spacing = 0.003;  ///< of its nodes [m]
   double circle = 0.020;   ///< radius [m]
+  double prestrain = 0;    ///< how far the frame stretches it in every direction [-]
 };
 
 /// Tissue that a training task makes for itself. Its ducts are the tubes of Scene::patient, its sheets the organs.
