@@ -157,7 +157,10 @@ void ToolContacts::Reset(const Scene& scene, const std::array<instrument::Trocar
   tools_ = {};
   std::copy(tissue.position.begin(), tissue.position.end(), positions_before_.begin());
   std::fill(surface_motion_.begin(), surface_motion_.end(), 0.0);
-  for (surgery::OrganSurface& organ : organs_) surgery::UpdateOrganSurface(organ, tissue.position);
+  for (surgery::OrganSurface& organ : organs_) {
+    surgery::UpdateOrganSurface(organ, tissue.position);
+    organ.travel = 0;
+  }
   tubes_.tree.Update(tissue.position);
   for (surgery::OrganPair& pair : pairs_) surgery::ResetPair(pair);
 }

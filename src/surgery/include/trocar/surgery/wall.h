@@ -20,8 +20,7 @@ struct WallMaterial {
   double foundation = 0;    ///< stiffness of the virtual springs by area, E / h of what lies behind [N/m^3]
   double mass_by_area = 0;  ///< [kg/m^2]
   std::uint32_t law = 0;    ///< of the wall's springs, index in TissueDefinition::laws
-  double prestrain =
-      0;  ///< by which the mesh as given is stretched beyond the wall without tension, >= 0 [-]
+  double prestrain = 0;     ///< of the mesh as given, beyond the wall without tension, >= 0 [-]
 };
 
 /// Modulus of a trench's walls, as a share of the surface's: cut parenchyma has no capsule [-], a tunable.
