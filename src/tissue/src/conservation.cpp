@@ -23,9 +23,9 @@ constexpr double kMaxShift = 0.002;
 /// The responses need no more accuracy than this: they steer the search, the constraint itself is exact [-].
 constexpr double kResponseTolerance = 0.02;
 constexpr double kFirstResponseTolerance = 1e-4;
-constexpr int kFirstResponseIterations = 5000;
-/// Iterations a tick while the responses follow a change of topology or of the stiffness scales.
-constexpr int kResponseIterationsPerTick = 12;
+constexpr int kFirstResponseIterations = 10000;
+/// Iterations a tick, of all organs together, while the responses follow a change of topology or of the stiffness scales.
+constexpr int kResponseIterationsPerTick = 6;
 
 using SmallVector = std::array<double, kMaxClosedOrgans>;
 
@@ -90,6 +90,7 @@ void Conservation::Reset() noexcept {
   shape_scale_ = usual.shape_scale;
   response_links_ = first_links_;
   responses_settled_ = true;
+  has_stiffness_ = false;  // what is known is that of before
   has_followed_ = false;
 }
 
@@ -104,6 +105,7 @@ void Conservation::Follow(const TissueModel& model, std::vector<ClosedOrgan> org
   linear_.SetModel(model);
   rest_ = MakeRestState(model);
   responses_settled_ = false;
+  has_stiffness_ = false;
   has_followed_ = true;
   state.intact_links = std::numeric_limits<std::uint64_t>::max();
 }
@@ -132,11 +134,21 @@ std::span<Vec3> Conservation::OrganPart(std::size_t organ, std::span<Vec3> nodes
 
 /// The displacement by which the tissue at rest, with the strands, springs and scales of now, answers one pascal in
 /// each organ.
+///
+/// \param max_iterations  of all organs together
 bool Conservation::UpdateResponses(const TissueState& tissue, const TissueLoad& load, int max_iterations,
                                    double tolerance) noexcept {
   std::copy(tissue.strand_is_intact.begin(), tissue.strand_is_intact.end(), rest_.strand_is_intact.begin());
-  std::copy(tissue.spring_factor.begin(), tissue.spring_factor.end(), rest_.spring_factor.begin());
-  linear_.SetStiffness(rest_, load);
+  const bool have_springs_held =
+      has_stiffness_ && load.stiffness_scale == stiffness_scale_ && load.shape_scale == shape_scale_ &&
+      std::equal(tissue.spring_factor.begin(), tissue.spring_factor.end(), rest_.spring_factor.begin());
+  if (have_springs_held) {
+    linear_.FollowStrands(rest_, load);
+  } else {
+    std::copy(tissue.spring_factor.begin(), tissue.spring_factor.end(), rest_.spring_factor.begin());
+    linear_.SetStiffness(rest_, load);
+    has_stiffness_ = true;
+  }
   bool is_settled = true;
   for (std::size_t organ = 0; organ < settings_.organs.size(); ++organ) {
     std::fill(gradient_.begin(), gradient_.end(), Vec3{});
@@ -144,6 +156,7 @@ bool Conservation::UpdateResponses(const TissueState& tissue, const TissueLoad& 
     (void)CalcVolumeGradient(std::span(model_->rest).subspan(surface.first_node, surface.node_count),
                              surface.triangles, OrganPart(organ, gradient_));
     const auto report = linear_.Solve(gradient_, max_iterations, tolerance, responses_[organ]);
+    max_iterations -= report.iterations;
     is_settled = is_settled && report.residual <= tolerance;
   }
   stiffness_scale_ = load.stiffness_scale;

@@ -158,6 +158,7 @@ class Conservation {
   std::vector<std::vector<Vec3>> first_responses_;  // of the whole tissue under the usual scales
   std::uint64_t response_links_ = 0, first_links_ = 0;
   bool responses_settled_ = false;
+  bool has_stiffness_ = false;    // linear_ has the stiffness of rest_, this model's, under the scales above
   bool has_followed_ = false;     // since the last Enforce()
   std::vector<Vec3> gradient_;    // (n) of each node's organ; zero elsewhere
   std::vector<Vec3> base_force_;  // (n) without pressure
