@@ -290,9 +290,11 @@ SolveReport NewtonMultigrid::Solve(const Kernels& kernels, Workers& workers, con
     report.error = scale > 0.0     ? largest / (CalcSeenShare(smallest_ritz) * scale)
                    : largest > 0.0 ? INFINITY
                                    : 0.0;
+    report.converged = report.error <= settings.max_error;
+  };
+  const auto report_residual = [&] {
     report.residual = balance_.force_scale > 0.0 ? balance_.largest_residual / balance_.force_scale : 0.0;
     report.force_scale = balance_.force_scale;
-    report.converged = report.error <= settings.max_error;
   };
 
   double moved = 0;  // bound of how far any node went since the coarser levels were computed [m]
@@ -305,8 +307,11 @@ SolveReport NewtonMultigrid::Solve(const Kernels& kernels, Workers& workers, con
   linearise();
   update_coarse();
   estimate();
-  while (!report.converged && report.iterations < settings.max_newton_steps &&
-         report.linear_iterations < settings.max_linear_total && balance_.is_finite) {
+  const auto is_at_bound = [&] {
+    return report.iterations >= settings.max_newton_steps ||
+           report.linear_iterations >= settings.max_linear_total;
+  };
+  while (!report.converged && !is_at_bound() && balance_.is_finite) {
     const double before = balance_.energy;
     const auto first_multipliers = multipliers_;
     const LinearReport linear = SolveLinear(
@@ -362,15 +367,20 @@ SolveReport NewtonMultigrid::Solve(const Kernels& kernels, Workers& workers, con
       multipliers_[c] = share * multipliers_[c] + (1.0 - share) * first_multipliers[c];
     // a constraint is kept after every step, whatever the hook's interval: a step here is worth many
     // iterations
-    if (hook != nullptr) {
-      call_hook();
-      linearise();
+    if (hook != nullptr) call_hook();
+    if (is_at_bound()) {
+      // nobody goes on from here: the stiffness and the estimate are as dear as two iterations
+      if (hook != nullptr) linearisation_.CalcBalance(kernels, workers, position_, balance_);
+      report.error = NAN;
+      break;
     }
+    if (hook != nullptr) linearise();
     moved += share * length;
     if (moved > kStaleMove * edge_length_) update_coarse();
     if (share * length > kSnapMove * edge_length_) smallest_ritz = INFINITY;
     estimate();
   }
+  report_residual();
   write_back();
   return report;
 }
