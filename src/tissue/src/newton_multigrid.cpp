@@ -307,17 +307,19 @@ SolveReport NewtonMultigrid::Solve(const Kernels& kernels, Workers& workers, con
   linearise();
   update_coarse();
   estimate();
+  // to halve a step costs as much as an iteration
+  const auto count_left = [&] {
+    return settings.max_linear_total - report.linear_iterations - report.restarts;
+  };
   const auto is_at_bound = [&] {
-    return report.iterations >= settings.max_newton_steps ||
-           report.linear_iterations >= settings.max_linear_total;
+    return report.iterations >= settings.max_newton_steps || count_left() <= 0;
   };
   while (!report.converged && !is_at_bound() && balance_.is_finite) {
     const double before = balance_.energy;
     const auto first_multipliers = multipliers_;
     const LinearReport linear = SolveLinear(
-        kernels, workers,
-        std::min(settings.max_linear_iterations, settings.max_linear_total - report.linear_iterations),
-        kForcing * preconditioned, kLinearShare * settings.max_error * scale, smallest_ritz, radius);
+        kernels, workers, std::min(settings.max_linear_iterations, count_left()), kForcing * preconditioned,
+        kLinearShare * settings.max_error * scale, smallest_ritz, radius);
     smallest_ritz = std::fmin(smallest_ritz, linear.smallest_ritz);
     report.linear_iterations += linear.iterations;
     report.negative_curvatures += linear.met_negative_curvature;
