@@ -84,13 +84,29 @@ struct Vector {
   Lanes x, y, z;
 };
 
-/// Makes the compiler load once what it would take from memory at each use: the kernels wait for loads.
-inline void KeepInRegister([[maybe_unused]] Lanes& v) {
+/// Makes the compiler load once what it would take from memory at each use, the kernels wait for loads; and
+/// begin nothing that uses one of several values before it has begun them all.
 #if TROCAR_LANES == 16
-  __asm__("" : "+v"(v));
+#define TROCAR_REGISTER "+v"
 #elif defined(TROCAR_HAS_X86)
-  __asm__("" : "+x"(v));
+#define TROCAR_REGISTER "+x"
 #endif
+#if defined(TROCAR_REGISTER)
+inline void KeepInRegister(Lanes& a) {
+  __asm__("" : TROCAR_REGISTER(a));
+}
+inline void KeepInRegister(Lanes& a, Lanes& b) {
+  __asm__("" : TROCAR_REGISTER(a), TROCAR_REGISTER(b));
+}
+inline void KeepInRegister(Lanes& a, Lanes& b, Lanes& c) {
+  __asm__("" : TROCAR_REGISTER(a), TROCAR_REGISTER(b), TROCAR_REGISTER(c));
+}
+#else
+template <typename... Values>
+inline void KeepInRegister(Values&...) {}
+#endif
+inline void KeepInRegister(Vector& v) {
+  KeepInRegister(v.x), KeepInRegister(v.y), KeepInRegister(v.z);
 }
 
 /// TROCAR_LANES nodes: one load of 16 bytes each, then a transpose in registers.
@@ -193,13 +209,18 @@ inline Vector MulAddSymmetric(const float* m, const Vector& v, const Vector& to)
           MulAdd(zz, v.z, MulAdd(yz, v.y, MulAdd(xz, v.x, to.z)))};
 }
 
-/// Secant stiffness of a spring with this extent, k - k l / length: its force on the near node is that times
-/// the extent.
-inline Lanes CalcSecant(Lanes k, Lanes k_times_rest, const Vector& along) {
+/// Length of a spring's extent.
+inline Lanes CalcLength(const Vector& along) {
   // A spring shorter than the root of this has no direction [m^2]; its force is then nought because its
   // extent is. Longer ones do not feel it.
   constexpr float kNoLength2 = 1e-30f;
-  return k - k_times_rest / Sqrt(AddSquaredNorm(along, All(kNoLength2)));
+  return Sqrt(AddSquaredNorm(along, All(kNoLength2)));
+}
+
+/// Secant stiffness of a spring of this length, k - k l / length: its force on the near node is that times
+/// the extent.
+inline Lanes CalcSecant(Lanes k, Lanes k_times_rest, Lanes length) {
+  return k - k_times_rest / length;
 }
 
 /// Largest squared residual of the free nodes; NaN where one is not finite.
