@@ -21,7 +21,7 @@ void Multiply(const LinkMatrix& m, const Float4* x, const Float4* b, float facto
       const Vector here = LoadNodes(x + i);
       Vector force = MulAddSymmetric(m.ground + std::size_t{slice} * 6 * kSliceNodes + lane, -here, Vector{});
       for (std::uint32_t step = m.table.starts[slice]; step < m.table.starts[slice + 1]; ++step) {
-        const Vector there = GatherNodes(x, m.table.others + std::size_t{step} * kSliceNodes + lane);
+        const Vector there = LoadNeighbours(x, m.table, step, lane);
         force = MulAddSymmetric(m.links + std::size_t{step} * 6 * kSliceNodes + lane, there - here, force);
       }
       const Lanes is_free = Load(m.is_free + i);
@@ -59,7 +59,7 @@ float StepSlices(const SliceStep& s, std::uint32_t first_slice, std::uint32_t la
       const Vector here = LoadNodes(s.u + i);
       Vector force = {};
       for (std::uint32_t step = s.table.starts[slice]; step < s.table.starts[slice + 1]; ++step) {
-        const Vector there = GatherNodes(s.u, s.table.others + std::size_t{step} * kSliceNodes + lane);
+        const Vector there = LoadNeighbours(s.u, s.table, step, lane);
         const float* const spring = s.springs + std::size_t{step} * 5 * kSliceNodes + lane;
         const Vector rest = {Load(spring), Load(spring + kSliceNodes), Load(spring + 2 * kSliceNodes)};
         const Lanes k = Load(spring + 3 * kSliceNodes), k_times_rest = Load(spring + 4 * kSliceNodes);

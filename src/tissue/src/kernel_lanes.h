@@ -153,16 +153,42 @@ inline Vector LoadNodes(const Float4* nodes, const At& at) {
 }
 #endif
 
-inline Vector GatherNodes(const Float4* nodes, const std::uint32_t* indices) {
-  return LoadNodes(nodes, [indices](int lane) { return indices[lane]; });
-}
+/// TROCAR_LANES nodes side by side.
 inline Vector LoadNodes(const Float4* nodes) {
+#if TROCAR_LANES == 16
+  // four loads of four nodes each, then x and y of eight nodes, then of sixteen
+  const auto four = [&](int first) { return _mm512_loadu_ps(&nodes[first].x); };
+  const __m512i of_xy = _mm512_setr_epi32(0, 4, 8, 12, 16, 20, 24, 28, 1, 5, 9, 13, 17, 21, 25, 29);
+  const __m512i of_z = _mm512_setr_epi32(2, 6, 10, 14, 18, 22, 26, 30, 2, 6, 10, 14, 18, 22, 26, 30);
+  const __m512 a = four(0), b = four(4), c = four(8), d = four(12);
+  const __m512 ab = _mm512_permutex2var_ps(a, of_xy, b), cd = _mm512_permutex2var_ps(c, of_xy, d);
+  const __m512 abz = _mm512_permutex2var_ps(a, of_z, b), cdz = _mm512_permutex2var_ps(c, of_z, d);
+  return {(Lanes)_mm512_shuffle_f32x4(ab, cd, 0x44), (Lanes)_mm512_shuffle_f32x4(ab, cd, 0xee),
+          (Lanes)_mm512_shuffle_f32x4(abz, cdz, 0x44)};
+#else
   return LoadNodes(nodes, [](int lane) { return lane; });
+#endif
+}
+
+/// The neighbours of TROCAR_LANES nodes, the first of which has this lane of its slice, at one step.
+inline Vector LoadNeighbours(const Float4* nodes, const SliceTable& table, std::uint32_t step,
+                             std::uint32_t lane) {
+  const std::uint32_t run = table.runs[step];
+  if (run != kNoRun) return LoadNodes(nodes + run + lane);
+  const std::uint32_t* const others = table.others + std::size_t{step} * kSliceNodes + lane;
+  return LoadNodes(nodes, [others](int at) { return others[at]; });
 }
 
 /// TROCAR_LANES nodes side by side: a transpose, then one store of 16 bytes each.
 inline void StoreNodes(Float4* nodes, const Vector& v) {
-#if defined(TROCAR_HAS_X86)
+#if TROCAR_LANES == 16
+  const __m512i lane = _mm512_setr_epi32(0, 16, 0, 0, 1, 17, 1, 1, 2, 18, 2, 2, 3, 19, 3, 3);
+  for (int part = 0; part < 4; ++part) {
+    const __m512i from = _mm512_add_epi32(lane, _mm512_set1_epi32(4 * part));
+    const __m512 xy = _mm512_maskz_permutex2var_ps(0x3333, (__m512)v.x, from, (__m512)v.y);
+    _mm512_storeu_ps(&nodes[4 * part].x, _mm512_mask_permutexvar_ps(xy, 0x4444, from, (__m512)v.z));
+  }
+#elif defined(TROCAR_HAS_X86)
   for (int part = 0; part < TROCAR_LANES; part += 4) {
     __m128 x, y, z, w = _mm_setzero_ps();
     __builtin_memcpy(&x, reinterpret_cast<const char*>(&v.x) + 4 * part, sizeof x);

@@ -88,7 +88,7 @@ OrderedModel MakeOrderedModel(const TissueModel& model) {
 }
 
 void OrderedModel::Reserve(double share) {
-  ReserveMore(share, graph.others, graph_stiffness, layout.starts, layout.others, stiffness, rest_length,
+  ReserveMore(share, graph.others, graph_stiffness, layout.starts, layout.others, layout.runs, stiffness, rest_length,
               spring_entries, strands, room.graph.others, room.stiffness, room.order.places);
 }
 

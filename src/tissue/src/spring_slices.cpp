@@ -32,7 +32,7 @@ void SpringSlices::SetModel(const OrderedModel& model) {
 }
 
 void SpringSlices::Reserve(double share) {
-  ReserveMore(share, layout_.starts, layout_.others, springs_);
+  ReserveMore(share, layout_.starts, layout_.others, layout_.runs, springs_);
 }
 
 void SpringSlices::SetLoad(const OrderedModel& model, const OrderedLoad& load,
