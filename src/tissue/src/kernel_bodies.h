@@ -51,40 +51,79 @@ void MultiplyLinks(const LinkMatrix& matrix, LinkPass pass, const Float4* x, con
   }
 }
 
-float StepSlices(const SliceStep& s, std::uint32_t first_slice, std::uint32_t last_slice) {
-  LargestResidual largest;
-  for (std::uint32_t slice = first_slice; slice < last_slice; ++slice) {
-    for (std::uint32_t lane = 0; lane < kSliceNodes; lane += TROCAR_LANES) {
-      const std::uint32_t i = slice * kSliceNodes + lane;
-      const Vector here = LoadNodes(s.u + i);
-      Vector force = {};
-      for (std::uint32_t step = s.table.starts[slice]; step < s.table.starts[slice + 1]; ++step) {
-        const Vector there = LoadNeighbours(s.u, s.table, step, lane);
-        const float* const spring = s.springs + std::size_t{step} * 5 * kSliceNodes + lane;
-        const Vector rest = {Load(spring), Load(spring + kSliceNodes), Load(spring + 2 * kSliceNodes)};
-        const Lanes k = Load(spring + 3 * kSliceNodes), k_times_rest = Load(spring + 4 * kSliceNodes);
-        const Vector along = rest + (there - here);
-        force = MulAdd(CalcSecant(k, k_times_rest, CalcLength(along)), along, force);
-      }
-      const float* const node = s.nodes + std::size_t{slice} * 5 * kSliceNodes + lane;
-      const Vector load = {Load(node), Load(node + kSliceNodes), Load(node + 2 * kSliceNodes)};
-      const Lanes shape = Load(node + 3 * kSliceNodes), step_length = Load(node + 4 * kSliceNodes);
-      force = MulAdd(-shape, here, force) + load;
-      const Vector before = s.is_first ? here : LoadNodes(s.previous + i);
-      StoreNodes(s.previous + i,
-                 MulAdd(All(s.omega), MulAdd(All(s.damping) * step_length, force, here) - before, before));
-      if (s.is_measured) largest.Add(step_length, force);
-    }
-  }
-  return largest.Find();
-}
-
 inline Vector LoadRow(const float* from, std::size_t stride) {
   return {Load(from), Load(from + stride), Load(from + 2 * stride)};
 }
 inline void StoreRow(float* to, std::size_t stride, const Vector& v) {
   Store(to, v.x), Store(to + stride, v.y), Store(to + 2 * stride, v.z);
 }
+/// Displacements of a step by node, and all that is done to them.
+struct ByNode {
+  static Vector Load(const SliceStep& s, std::uint32_t node) { return LoadNodes(s.u + node); }
+  static Vector LoadPrevious(const SliceStep& s, std::uint32_t node) { return LoadNodes(s.previous + node); }
+  static Vector LoadOthers(const SliceStep& s, std::uint32_t step, std::uint32_t lane) {
+    return LoadNeighbours(s.u, s.table, step, lane);
+  }
+  static void Store(const SliceStep& s, std::uint32_t node, const Vector& next) {
+    StoreNodes(s.previous + node, next);
+  }
+};
+
+#if TROCAR_LANES == 16
+/// The same by slice.
+struct BySlice {
+  static Vector Load(const SliceStep& s, std::uint32_t node) {
+    return LoadRow(s.u_by_slice + std::size_t{node} * 3, kSliceNodes);
+  }
+  static Vector LoadPrevious(const SliceStep& s, std::uint32_t node) {
+    return LoadRow(s.previous_by_slice + std::size_t{node} * 3, kSliceNodes);
+  }
+  static Vector LoadOthers(const SliceStep& s, std::uint32_t step, std::uint32_t lane) {
+    const SliceLookup& lookup = s.lookups[step];
+    return lookup.pairs > 0 ? LookUp(s.u_by_slice, lookup) : LoadNeighbours(s.u, s.table, step, lane);
+  }
+  static void Store(const SliceStep& s, std::uint32_t node, const Vector& next) {
+    StoreRow(s.previous_by_slice + std::size_t{node} * 3, kSliceNodes, next);
+    if (s.is_scattered[node / kSliceNodes]) StoreNodes(s.previous + node, next);
+  }
+};
+#endif
+
+template <typename Storage>
+float StepSlicesOf(const SliceStep& s, std::uint32_t first_slice, std::uint32_t last_slice) {
+  LargestResidual largest;
+  for (std::uint32_t slice = first_slice; slice < last_slice; ++slice) {
+    for (std::uint32_t lane = 0; lane < kSliceNodes; lane += TROCAR_LANES) {
+      const std::uint32_t i = slice * kSliceNodes + lane;
+      const Vector here = Storage::Load(s, i);
+      Vector force = {};
+      for (std::uint32_t step = s.table.starts[slice]; step < s.table.starts[slice + 1]; ++step) {
+        const Vector there = Storage::LoadOthers(s, step, lane);
+        const float* const spring = s.springs + std::size_t{step} * 5 * kSliceNodes + lane;
+        const Vector rest = LoadRow(spring, kSliceNodes);
+        const Lanes k = Load(spring + 3 * kSliceNodes), k_times_rest = Load(spring + 4 * kSliceNodes);
+        const Vector along = rest + (there - here);
+        force = MulAdd(CalcSecant(k, k_times_rest, CalcLength(along)), along, force);
+      }
+      const float* const node = s.nodes + std::size_t{slice} * 5 * kSliceNodes + lane;
+      const Lanes shape = Load(node + 3 * kSliceNodes), step_length = Load(node + 4 * kSliceNodes);
+      force = MulAdd(-shape, here, force) + LoadRow(node, kSliceNodes);
+      const Vector before = s.is_first ? here : Storage::LoadPrevious(s, i);
+      Storage::Store(
+          s, i, MulAdd(All(s.omega), MulAdd(All(s.damping) * step_length, force, here) - before, before));
+      if (s.is_measured) largest.Add(step_length, force);
+    }
+  }
+  return largest.Find();
+}
+
+float StepSlices(const SliceStep& s, std::uint32_t first_slice, std::uint32_t last_slice) {
+#if TROCAR_LANES == 16
+  if (s.lookups != nullptr) return StepSlicesOf<BySlice>(s, first_slice, last_slice);
+#endif
+  return StepSlicesOf<ByNode>(s, first_slice, last_slice);
+}
+
 inline Vector ShiftUp(const Vector& before, const Vector& v) {
   return {ShiftUp(before.x, v.x), ShiftUp(before.y, v.y), ShiftUp(before.z, v.z)};
 }

@@ -179,6 +179,30 @@ inline Vector LoadNeighbours(const Float4* nodes, const SliceTable& table, std::
   return LoadNodes(nodes, [others](int at) { return others[at]; });
 }
 
+#if TROCAR_LANES == 16
+/// A step's neighbours from the slices that they lie in.
+inline Vector LookUp(const float* u, const SliceLookup& lookup) {
+  const __m512i places =
+      _mm512_cvtepu8_epi32(_mm_loadu_si128(reinterpret_cast<const __m128i*>(lookup.places)));
+  const auto pick = [&](std::uint32_t pair, std::uint32_t axis) {
+    const auto load = [&](std::uint32_t slice) {
+      return _mm512_loadu_ps(u + (std::size_t{lookup.slices[slice]} * 3 + axis) * kSliceNodes);
+    };
+    // the lowest five bits of a place choose among two slices
+    return _mm512_permutex2var_ps(load(2 * pair), places, load(2 * pair + 1));
+  };
+  __m512 x = pick(0, 0), y = pick(0, 1), z = pick(0, 2);
+  for (std::uint32_t pair = 1; pair < lookup.pairs; ++pair) {
+    const __mmask16 is_there =
+        _mm512_cmpge_epu32_mask(places, _mm512_set1_epi32(static_cast<int>(2 * pair * kSliceNodes)));
+    x = _mm512_mask_mov_ps(x, is_there, pick(pair, 0));
+    y = _mm512_mask_mov_ps(y, is_there, pick(pair, 1));
+    z = _mm512_mask_mov_ps(z, is_there, pick(pair, 2));
+  }
+  return {(Lanes)x, (Lanes)y, (Lanes)z};
+}
+#endif
+
 /// TROCAR_LANES nodes side by side: a transpose, then one store of 16 bytes each.
 inline void StoreNodes(Float4* nodes, const Vector& v) {
 #if TROCAR_LANES == 16
