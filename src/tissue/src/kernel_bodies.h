@@ -157,7 +157,7 @@ enum class GridRow { kHalo, kPlain, kMeasured };
 
 /// One row: updates its nodes unless it is only the halo of the rows below, and leaves in `reaction` the
 /// forces of its springs to the next row, which feels the opposite. Lengths are taken a block ahead, so that
-/// the divider works while the forces of the block before are added up.
+/// the divider works while the forces of the block before are added up, where the compiler keeps that order.
 template <bool kHasWest, bool kIsAligned, GridRow kRow>
 void StepRow(const GridStep& s, std::uint32_t row, LargestResidual& largest) {
   const std::size_t stride = s.stride;
@@ -188,10 +188,10 @@ void StepRow(const GridStep& s, std::uint32_t row, LargestResidual& largest) {
     if constexpr (kHasWest) south_west.value = calc_length(kSouthWest, below - 1, south_west);
     // all roots before the first quotient: the divider loses time when it goes from one to the other
     if constexpr (kIsHalo) {
-      KeepInRegister(south_length, south_east_length);
+      BeginTogether(south_length, south_east_length);
     } else {
       Lanes east_length = calc_length(kEast, u + 1, east);
-      KeepInRegister(south_length, south_east_length, east_length);
+      BeginTogether(south_length, south_east_length, east_length);
       east.value = east_length;
     }
     south.value = south_length, south_east.value = south_east_length;
@@ -237,10 +237,22 @@ void StepRow(const GridStep& s, std::uint32_t row, LargestResidual& largest) {
 
   // the links are variables, not a struct or an array, which compilers would keep in memory
   GridLinks south, south_east, south_west, east;
+  const auto go_on = [&](std::size_t column) {
+    springs += TROCAR_LANES + (column % kSliceNodes == 0 ? (5 * kGridDirections - 1) * kSliceNodes : 0);
+  };
+  if constexpr (!kKeepsOrder) {
+    for (std::size_t column = 0; column < stride; column += TROCAR_LANES) {
+      if (column > 0) go_on(column);
+      measure(column, south, south_east, south_west, east);
+      divide(south, south_east, south_west, east);
+      finish(column, south, south_east, south_west, east);
+    }
+    return;
+  }
   measure(0, south, south_east, south_west, east);
   divide(south, south_east, south_west, east);
   for (std::size_t column = TROCAR_LANES; column < stride; column += TROCAR_LANES) {
-    springs += TROCAR_LANES + (column % kSliceNodes == 0 ? (5 * kGridDirections - 1) * kSliceNodes : 0);
+    go_on(column);
     GridLinks next_south, next_south_east, next_south_west, next_east;
     measure(column, next_south, next_south_east, next_south_west, next_east);
     finish(column - TROCAR_LANES, south, south_east, south_west, east);

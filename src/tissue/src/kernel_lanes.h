@@ -84,29 +84,40 @@ struct Vector {
   Lanes x, y, z;
 };
 
-/// Makes the compiler load once what it would take from memory at each use, the kernels wait for loads; and
-/// begin nothing that uses one of several values before it has begun them all.
+/// Makes the compiler load once what it would take from memory at each use: the kernels wait for loads.
+inline void KeepInRegister([[maybe_unused]] Lanes& v) {
 #if TROCAR_LANES == 16
-#define TROCAR_REGISTER "+v"
+  __asm__("" : "+v"(v));
 #elif defined(TROCAR_HAS_X86)
-#define TROCAR_REGISTER "+x"
+  __asm__("" : "+x"(v));
 #endif
-#if defined(TROCAR_REGISTER)
-inline void KeepInRegister(Lanes& a) {
-  __asm__("" : TROCAR_REGISTER(a));
 }
-inline void KeepInRegister(Lanes& a, Lanes& b) {
-  __asm__("" : TROCAR_REGISTER(a), TROCAR_REGISTER(b));
-}
-inline void KeepInRegister(Lanes& a, Lanes& b, Lanes& c) {
-  __asm__("" : TROCAR_REGISTER(a), TROCAR_REGISTER(b), TROCAR_REGISTER(c));
-}
+
+/// Whether the compiler leaves instructions about as they are written, and registers with what it is told to keep
+/// there. clang 14 does not: it spills more than it saves.
+#if defined(__clang__) || !defined(TROCAR_HAS_X86)
+inline constexpr bool kKeepsOrder = false;
 #else
-template <typename... Values>
-inline void KeepInRegister(Values&...) {}
+inline constexpr bool kKeepsOrder = true;
 #endif
+
 inline void KeepInRegister(Vector& v) {
-  KeepInRegister(v.x), KeepInRegister(v.y), KeepInRegister(v.z);
+  if constexpr (kKeepsOrder) KeepInRegister(v.x), KeepInRegister(v.y), KeepInRegister(v.z);
+}
+/// Begins nothing that uses one of these before it has begun them all.
+inline void BeginTogether([[maybe_unused]] Lanes& a, [[maybe_unused]] Lanes& b) {
+#if !defined(__clang__) && TROCAR_LANES == 16
+  __asm__("" : "+v"(a), "+v"(b));
+#elif !defined(__clang__) && defined(TROCAR_HAS_X86)
+  __asm__("" : "+x"(a), "+x"(b));
+#endif
+}
+inline void BeginTogether([[maybe_unused]] Lanes& a, [[maybe_unused]] Lanes& b, [[maybe_unused]] Lanes& c) {
+#if !defined(__clang__) && TROCAR_LANES == 16
+  __asm__("" : "+v"(a), "+v"(b), "+v"(c));
+#elif !defined(__clang__) && defined(TROCAR_HAS_X86)
+  __asm__("" : "+x"(a), "+x"(b), "+x"(c));
+#endif
 }
 
 /// TROCAR_LANES nodes: one load of 16 bytes each, then a transpose in registers.
