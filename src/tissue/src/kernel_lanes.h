@@ -93,7 +93,7 @@ inline void KeepInRegister([[maybe_unused]] Lanes& v) {
 #endif
 }
 
-/// Whether the compiler leaves instructions about as they are written, and registers with what it is told to keep
+/// Whether the compiler leaves instructions about as they are written, and in registers what it is told to keep
 /// there. clang 14 does not: it spills more than it saves.
 #if defined(__clang__) || !defined(TROCAR_HAS_X86)
 inline constexpr bool kKeepsOrder = false;

@@ -13,8 +13,8 @@ namespace {
 constexpr std::uint32_t kChunkSlices = 64;
 constexpr std::size_t kSpringFloats = 5 * kSliceNodes;
 
-/// Steps whose neighbours can be looked up, of all, from which on lookups pay for storing twice what the others read
-/// [-].
+/// Steps whose neighbours can be looked up, of all, from which on lookups pay for storing twice what the other
+/// steps read [-].
 constexpr double kLookupShare = 0.75;
 
 /// The lookup of one step of the slice that begins at node `first`.
