@@ -21,7 +21,7 @@ void Multiply(const LinkMatrix& m, const Float4* x, const Float4* b, float facto
       const Vector here = LoadNodes(x + i);
       Vector force = MulAddSymmetric(m.ground + std::size_t{slice} * 6 * kSliceNodes + lane, -here, Vector{});
       for (std::uint32_t step = m.table.starts[slice]; step < m.table.starts[slice + 1]; ++step) {
-        const Vector there = LoadNeighbours(x, m.table, step, lane);
+        const Vector there = GatherNodes(x, m.table.others + std::size_t{step} * kSliceNodes + lane);
         force = MulAddSymmetric(m.links + std::size_t{step} * 6 * kSliceNodes + lane, there - here, force);
       }
       const Lanes is_free = Load(m.is_free + i);
@@ -62,7 +62,7 @@ struct ByNode {
   static Vector Load(const SliceStep& s, std::uint32_t node) { return LoadNodes(s.u + node); }
   static Vector LoadPrevious(const SliceStep& s, std::uint32_t node) { return LoadNodes(s.previous + node); }
   static Vector LoadOthers(const SliceStep& s, std::uint32_t step, std::uint32_t lane) {
-    return LoadNeighbours(s.u, s.table, step, lane);
+    return GatherNodes(s.u, s.table.others + std::size_t{step} * kSliceNodes + lane);
   }
   static void Store(const SliceStep& s, std::uint32_t node, const Vector& next) {
     StoreNodes(s.previous + node, next);
@@ -80,7 +80,9 @@ struct BySlice {
   }
   static Vector LoadOthers(const SliceStep& s, std::uint32_t step, std::uint32_t lane) {
     const SliceLookup& lookup = s.lookups[step];
-    return lookup.pairs > 0 ? LookUp(s.u_by_slice, lookup) : LoadNeighbours(s.u, s.table, step, lane);
+    if (lookup.pairs > 0) [[likely]]
+      return LookUp(s.u_by_slice, lookup);
+    return GatherNodes(s.u, s.table.others + std::size_t{step} * kSliceNodes + lane);
   }
   static void Store(const SliceStep& s, std::uint32_t node, const Vector& next) {
     StoreRow(s.previous_by_slice + std::size_t{node} * 3, kSliceNodes, next);

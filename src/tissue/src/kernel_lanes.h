@@ -181,13 +181,8 @@ inline Vector LoadNodes(const Float4* nodes) {
 #endif
 }
 
-/// The neighbours of TROCAR_LANES nodes, the first of which has this lane of its slice, at one step.
-inline Vector LoadNeighbours(const Float4* nodes, const SliceTable& table, std::uint32_t step,
-                             std::uint32_t lane) {
-  const std::uint32_t run = table.runs[step];
-  if (run != kNoRun) return LoadNodes(nodes + run + lane);
-  const std::uint32_t* const others = table.others + std::size_t{step} * kSliceNodes + lane;
-  return LoadNodes(nodes, [others](int at) { return others[at]; });
+inline Vector GatherNodes(const Float4* nodes, const std::uint32_t* indices) {
+  return LoadNodes(nodes, [indices](int lane) { return indices[lane]; });
 }
 
 #if TROCAR_LANES == 16

@@ -26,17 +26,11 @@ struct alignas(32) Double4 {
   double x = 0, y = 0, z = 0, w = 0;
 };
 
-/// What SliceTable::runs says of a step whose neighbours are scattered.
-inline constexpr std::uint32_t kNoRun = 0xffffffffu;
-
 /// Neighbours by slice and step; entry (step, lane) of a slice is at (starts[slice] + step) * kSliceNodes +
 /// lane. A padded entry points at its own node.
 struct SliceTable {
   const std::uint32_t* starts;  // (slices + 1) in steps
   const std::uint32_t* others;  // (steps * kSliceNodes)
-  /// (steps) the first of kSliceNodes nodes side by side that are a step's neighbours, in the order of the
-  /// lanes, or kNoRun. What a run has in the lane of a padded entry is any node.
-  const std::uint32_t* runs;
 };
 
 /// y = K x of a system of springs with symmetric 3 x 3 stiffness: (K x)_i = G_i x_i + sum_j S_ij (x_i - x_j).

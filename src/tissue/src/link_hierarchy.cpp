@@ -64,7 +64,6 @@ void LinkLevel::SetGraph(const NodeGraph& graph) {
 
 void LinkLevel::Reserve(std::size_t nodes, std::size_t steps) {
   layout.starts.reserve(nodes / kSliceNodes + 2);
-  layout.runs.reserve(steps);
   for (auto* entries : {&layout.others, &coarse_entry}) entries->reserve(steps * kSliceNodes);
   links.reserve(6 * steps * kSliceNodes);
   for (auto* blocks : {&ground, &inverse}) blocks->reserve(6 * nodes);

@@ -33,19 +33,6 @@ void SortByDegree(const NodeGraph& graph, std::vector<std::uint32_t>& places,
   for (std::uint32_t i = 0; i < n; ++i) sorted[places[graph.starts[i + 1] - graph.starts[i]]++] = i;
 }
 
-/// Run of the neighbours of one step of the slice that begins at node `first`; see SliceTable.
-std::uint32_t FindRun(const std::uint32_t* others, std::uint32_t first, std::size_t padded_nodes) {
-  std::int64_t run = -1;
-  for (std::uint32_t lane = 0; lane < kSliceNodes; ++lane) {
-    if (others[lane] == first + lane) continue;
-    const std::int64_t begin = std::int64_t{others[lane]} - lane;
-    if (begin < 0 || (run >= 0 && begin != run)) return kNoRun;
-    run = begin;
-  }
-  const bool is_run = run >= 0 && static_cast<std::size_t>(run) + kSliceNodes <= padded_nodes;
-  return is_run ? static_cast<std::uint32_t>(run) : kNoRun;
-}
-
 }  // namespace
 
 void FindNodeOrder(const NodeGraph& graph, NodeOrderRoom& room, std::vector<std::uint32_t>& order) {
@@ -95,13 +82,6 @@ void SetSliceLayout(const NodeGraph& graph, SliceLayout& layout) {
         to[std::size_t{step} * kSliceNodes] = step < count ? graph.others[from + step] : i;
     }
     layout.starts.push_back(layout.starts.back() + longest);
-  }
-  layout.runs.resize(layout.Steps());
-  for (std::uint32_t slice = 0; slice < layout.Slices(); ++slice) {
-    for (std::size_t step = layout.starts[slice]; step < layout.starts[slice + 1]; ++step) {
-      layout.runs[step] =
-          FindRun(layout.others.data() + step * kSliceNodes, slice * kSliceNodes, layout.PaddedNodes());
-    }
   }
 }
 

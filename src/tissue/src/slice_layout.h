@@ -41,7 +41,6 @@ struct SliceLayout {
   std::uint32_t node_count = 0;
   std::vector<std::uint32_t> starts;  // (slices + 1) in steps
   std::vector<std::uint32_t> others;  // (steps * kSliceNodes); padding points at its own node
-  std::vector<std::uint32_t> runs;    // (steps) as in SliceTable
 
   std::uint32_t Slices() const { return static_cast<std::uint32_t>(starts.size()) - 1; }
   std::size_t PaddedNodes() const { return std::size_t{Slices()} * kSliceNodes; }
@@ -54,7 +53,7 @@ struct SliceLayout {
   std::uint32_t RowSteps(std::uint32_t i) const {
     return starts[i / kSliceNodes + 1] - starts[i / kSliceNodes];
   }
-  SliceTable Table() const { return {starts.data(), others.data(), runs.data()}; }
+  SliceTable Table() const { return {starts.data(), others.data()}; }
 };
 /// \note Allocates nothing where the vectors of `layout` have room.
 void SetSliceLayout(const NodeGraph& graph, SliceLayout& layout);

@@ -75,7 +75,7 @@ void SpringSlices::SetLookups() {
 }
 
 void SpringSlices::Reserve(double share) {
-  ReserveMore(share, layout_.starts, layout_.others, layout_.runs, lookups_, springs_);
+  ReserveMore(share, layout_.starts, layout_.others, lookups_, springs_);
 }
 
 void SpringSlices::SetLoad(const OrderedModel& model, const OrderedLoad& load,

@@ -60,39 +60,6 @@ TissueModel MakeMesh(const MeshSettings& settings) {
   return MakeTissueModel(definition);
 }
 
-/// What one step of a slice has as its run, found by trying every node.
-std::uint32_t FindRunPlainly(const SliceLayout& layout, std::uint32_t slice, std::size_t step) {
-  const std::uint32_t* const others = layout.others.data() + step * kSliceNodes;
-  for (std::uint32_t run = 0; run + kSliceNodes <= layout.PaddedNodes(); ++run) {
-    bool is_run = true, is_padding = true;
-    for (std::uint32_t lane = 0; lane < kSliceNodes; ++lane) {
-      if (others[lane] == slice * kSliceNodes + lane) continue;
-      is_padding = false;
-      is_run = is_run && others[lane] == run + lane;
-    }
-    if (is_run && !is_padding) return run;
-  }
-  return kNoRun;
-}
-
-TEST(SliceLayout, RunsAreNeighboursSideBySide) {
-  for (const double flipped_share : {0.0, 0.5}) {
-    const OrderedModel ordered = MakeOrderedModel(MakeMesh({.side = 30, .flipped_share = flipped_share}));
-    const SliceLayout& layout = ordered.layout;
-    ASSERT_EQ(layout.runs.size(), layout.Steps());
-    std::size_t found = 0;
-    for (std::uint32_t slice = 0; slice < layout.Slices(); ++slice) {
-      for (std::size_t step = layout.starts[slice]; step < layout.starts[slice + 1]; ++step) {
-        ASSERT_EQ(layout.runs[step], FindRunPlainly(layout, slice, step)) << "step " << step;
-        found += layout.runs[step] != kNoRun ? 1 : 0;
-      }
-    }
-    if (flipped_share == 0.0) {
-      EXPECT_GT(found, layout.Steps() / 10);
-    }
-  }
-}
-
 /// The iteration in double precision, by the model's own springs.
 struct PlainIteration {
   const TissueModel& model;
