@@ -51,59 +51,116 @@ void MultiplyLinks(const LinkMatrix& matrix, LinkPass pass, const Float4* x, con
   }
 }
 
-float StepSlices(const SliceStep& s, std::uint32_t first_slice, std::uint32_t last_slice) {
-  LargestResidual largest;
-  for (std::uint32_t slice = first_slice; slice < last_slice; ++slice) {
-    for (std::uint32_t lane = 0; lane < kSliceNodes; lane += TROCAR_LANES) {
-      const std::uint32_t i = slice * kSliceNodes + lane;
-      const Vector here = LoadNodes(s.u + i);
-      Vector force = {};
-      for (std::uint32_t step = s.table.starts[slice]; step < s.table.starts[slice + 1]; ++step) {
-        const Vector there = GatherNodes(s.u, s.table.others + std::size_t{step} * kSliceNodes + lane);
-        const float* const spring = s.springs + std::size_t{step} * 5 * kSliceNodes + lane;
-        const Vector rest = {Load(spring), Load(spring + kSliceNodes), Load(spring + 2 * kSliceNodes)};
-        const Lanes k = Load(spring + 3 * kSliceNodes), k_times_rest = Load(spring + 4 * kSliceNodes);
-        const Vector along = rest + (there - here);
-        force = MulAdd(CalcSecant(k, k_times_rest, along), along, force);
-      }
-      const float* const node = s.nodes + std::size_t{slice} * 5 * kSliceNodes + lane;
-      const Vector load = {Load(node), Load(node + kSliceNodes), Load(node + 2 * kSliceNodes)};
-      const Lanes shape = Load(node + 3 * kSliceNodes), step_length = Load(node + 4 * kSliceNodes);
-      force = MulAdd(-shape, here, force) + load;
-      const Vector before = s.is_first ? here : LoadNodes(s.previous + i);
-      StoreNodes(s.previous + i,
-                 MulAdd(All(s.omega), MulAdd(All(s.damping) * step_length, force, here) - before, before));
-      if (s.is_measured) largest.Add(step_length, force);
-    }
-  }
-  return largest.Find();
-}
-
 inline Vector LoadRow(const float* from, std::size_t stride) {
   return {Load(from), Load(from + stride), Load(from + 2 * stride)};
 }
 inline void StoreRow(float* to, std::size_t stride, const Vector& v) {
   Store(to, v.x), Store(to + stride, v.y), Store(to + 2 * stride, v.z);
 }
+/// Displacements of a step by node, and all that is done to them.
+struct ByNode {
+  static Vector Load(const SliceStep& s, std::uint32_t node) { return LoadNodes(s.u + node); }
+  static Vector LoadPrevious(const SliceStep& s, std::uint32_t node) { return LoadNodes(s.previous + node); }
+  static Vector LoadOthers(const SliceStep& s, std::uint32_t step, std::uint32_t lane) {
+    return GatherNodes(s.u, s.table.others + std::size_t{step} * kSliceNodes + lane);
+  }
+  static void Store(const SliceStep& s, std::uint32_t node, const Vector& next) {
+    StoreNodes(s.previous + node, next);
+  }
+};
+
+#if TROCAR_LANES == 16
+/// The same by slice.
+struct BySlice {
+  static Vector Load(const SliceStep& s, std::uint32_t node) {
+    return LoadRow(s.u_by_slice + std::size_t{node} * 3, kSliceNodes);
+  }
+  static Vector LoadPrevious(const SliceStep& s, std::uint32_t node) {
+    return LoadRow(s.previous_by_slice + std::size_t{node} * 3, kSliceNodes);
+  }
+  static Vector LoadOthers(const SliceStep& s, std::uint32_t step, std::uint32_t lane) {
+    const SliceLookup& lookup = s.lookups[step];
+    if (lookup.pairs > 0) [[likely]]
+      return LookUp(s.u_by_slice, lookup);
+    return GatherNodes(s.u, s.table.others + std::size_t{step} * kSliceNodes + lane);
+  }
+  static void Store(const SliceStep& s, std::uint32_t node, const Vector& next) {
+    StoreRow(s.previous_by_slice + std::size_t{node} * 3, kSliceNodes, next);
+    if (s.is_scattered[node / kSliceNodes]) StoreNodes(s.previous + node, next);
+  }
+};
+#endif
+
+template <typename Storage>
+float StepSlicesOf(const SliceStep& s, std::uint32_t first_slice, std::uint32_t last_slice) {
+  LargestResidual largest;
+  for (std::uint32_t slice = first_slice; slice < last_slice; ++slice) {
+    for (std::uint32_t lane = 0; lane < kSliceNodes; lane += TROCAR_LANES) {
+      const std::uint32_t i = slice * kSliceNodes + lane;
+      const Vector here = Storage::Load(s, i);
+      Vector force = {};
+      for (std::uint32_t step = s.table.starts[slice]; step < s.table.starts[slice + 1]; ++step) {
+        const Vector there = Storage::LoadOthers(s, step, lane);
+        const float* const spring = s.springs + std::size_t{step} * 5 * kSliceNodes + lane;
+        const Vector rest = LoadRow(spring, kSliceNodes);
+        const Lanes k = Load(spring + 3 * kSliceNodes), k_times_rest = Load(spring + 4 * kSliceNodes);
+        const Vector along = rest + (there - here);
+        force = MulAdd(CalcSecant(k, k_times_rest, CalcLength(along)), along, force);
+      }
+      const float* const node = s.nodes + std::size_t{slice} * 5 * kSliceNodes + lane;
+      const Lanes shape = Load(node + 3 * kSliceNodes), step_length = Load(node + 4 * kSliceNodes);
+      force = MulAdd(-shape, here, force) + LoadRow(node, kSliceNodes);
+      const Vector before = s.is_first ? here : Storage::LoadPrevious(s, i);
+      Storage::Store(
+          s, i, MulAdd(All(s.omega), MulAdd(All(s.damping) * step_length, force, here) - before, before));
+      if (s.is_measured) largest.Add(step_length, force);
+    }
+  }
+  return largest.Find();
+}
+
+float StepSlices(const SliceStep& s, std::uint32_t first_slice, std::uint32_t last_slice) {
+#if TROCAR_LANES == 16
+  if (s.lookups != nullptr) return StepSlicesOf<BySlice>(s, first_slice, last_slice);
+#endif
+  return StepSlicesOf<ByNode>(s, first_slice, last_slice);
+}
+
 inline Vector ShiftUp(const Vector& before, const Vector& v) {
   return {ShiftUp(before.x, v.x), ShiftUp(before.y, v.y), ShiftUp(before.z, v.z)};
 }
 
-/// Force of a row's springs whose ends are `extent` farther apart than at rest. On an aligned mesh the rest
+/// Springs of one direction: extent, and length or secant stiffness.
+struct GridLinks {
+  Vector along;
+  Lanes value;
+
+  Vector Force() const { return value * along; }
+};
+
+/// Extent of a row's springs whose ends are `apart` farther apart than at rest. On an aligned mesh the rest
 /// offsets lie along the columns, along the rows, or in their plane, and the rest of their components is
 /// zero.
 template <bool kIsAligned>
-inline Vector CalcLinkForce(const float* springs, GridDirection direction, Vector along) {
+inline Vector CalcExtent(const float* springs, GridDirection direction, Vector apart) {
   const float* const spring = springs + direction * 5 * kSliceNodes;
-  if (!kIsAligned || direction != kSouth) along.x = along.x + Load(spring);
-  if (!kIsAligned || direction != kEast) along.y = along.y + Load(spring + kSliceNodes);
-  if (!kIsAligned) along.z = along.z + Load(spring + 2 * kSliceNodes);
-  return CalcSecant(Load(spring + 3 * kSliceNodes), Load(spring + 4 * kSliceNodes), along) * along;
+  if (!kIsAligned || direction != kSouth) apart.x = apart.x + Load(spring);
+  if (!kIsAligned || direction != kEast) apart.y = apart.y + Load(spring + kSliceNodes);
+  if (!kIsAligned) apart.z = apart.z + Load(spring + 2 * kSliceNodes);
+  return apart;
 }
 
+inline Lanes CalcSecant(const float* springs, GridDirection direction, Lanes length) {
+  const float* const spring = springs + direction * 5 * kSliceNodes;
+  return CalcSecant(Load(spring + 3 * kSliceNodes), Load(spring + 4 * kSliceNodes), length);
+}
+
+enum class GridRow { kHalo, kPlain, kMeasured };
+
 /// One row: updates its nodes unless it is only the halo of the rows below, and leaves in `reaction` the
-/// forces of its springs to the next row, which feels the opposite.
-template <bool kHasWest, bool kIsAligned, bool kIsHalo>
+/// forces of its springs to the next row, which feels the opposite. Lengths are taken a block ahead, so that
+/// the divider works while the forces of the block before are added up, where the compiler keeps that order.
+template <bool kHasWest, bool kIsAligned, GridRow kRow>
 void StepRow(const GridStep& s, std::uint32_t row, LargestResidual& largest) {
   const std::size_t stride = s.stride;
   const float* springs = row + 1 == s.rows ? s.last_springs : s.springs + std::size_t{row} * s.spring_row;
@@ -114,44 +171,99 @@ void StepRow(const GridStep& s, std::uint32_t row, LargestResidual& largest) {
   const std::size_t direction = 3 * stride + 2 * kSliceNodes;
   const float* const above = s.reaction + (row + 1) % 2 * 3 * direction + kSliceNodes;
   float* const reaction = s.reaction + row % 2 * 3 * direction + kSliceNodes;
-  const Lanes omega = All(s.omega);
+  const Lanes omega = All(s.omega), damping = All(s.damping);
+  const float* const before_from = s.is_first ? u : previous;
+  constexpr bool kIsHalo = kRow == GridRow::kHalo;
   Vector east_before = {};
-  for (std::size_t column = 0; column < stride; column += TROCAR_LANES) {
-    const Vector here = LoadRow(u + column, stride);
-    const Vector on_south =
-        CalcLinkForce<kIsAligned>(springs, kSouth, LoadRow(below + column, stride) - here);
-    const Vector on_south_east =
-        CalcLinkForce<kIsAligned>(springs, kSouthEast, LoadRow(below + column + 1, stride) - here);
+
+  const auto measure = [&](std::size_t column, GridLinks & south, GridLinks & south_east,
+                           GridLinks & south_west, GridLinks & east) __attribute__((always_inline)) {
+    Vector here = LoadRow(u + column, stride);
+    KeepInRegister(here);
+    const auto calc_length = [&](GridDirection where, const float* there, GridLinks& links)
+        __attribute__((always_inline)) {
+      links.along = CalcExtent<kIsAligned>(springs, where, LoadRow(there + column, stride) - here);
+      return CalcLength(links.along);
+    };
+    Lanes south_length = calc_length(kSouth, below, south);
+    Lanes south_east_length = calc_length(kSouthEast, below + 1, south_east);
+    if constexpr (kHasWest) south_west.value = calc_length(kSouthWest, below - 1, south_west);
+    // all roots before the first quotient: the divider loses time when it goes from one to the other
+    if constexpr (kIsHalo) {
+      BeginTogether(south_length, south_east_length);
+    } else {
+      Lanes east_length = calc_length(kEast, u + 1, east);
+      BeginTogether(south_length, south_east_length, east_length);
+      east.value = east_length;
+    }
+    south.value = south_length, south_east.value = south_east_length;
+  };
+  const auto divide = [&](GridLinks & south, GridLinks & south_east, GridLinks & south_west, GridLinks & east)
+      __attribute__((always_inline)) {
+    south.value = CalcSecant(springs, kSouth, south.value);
+    south_east.value = CalcSecant(springs, kSouthEast, south_east.value);
+    if constexpr (kHasWest) south_west.value = CalcSecant(springs, kSouthWest, south_west.value);
+    if constexpr (!kIsHalo) east.value = CalcSecant(springs, kEast, east.value);
+  };
+  const auto finish = [&](std::size_t column, const GridLinks& south, const GridLinks& south_east,
+                          const GridLinks& south_west, const GridLinks& east) __attribute__((always_inline)) {
+    const Vector on_south = south.Force(), on_south_east = south_east.Force();
     Vector force = on_south + on_south_east;
     Vector on_south_west;
     if constexpr (kHasWest) {
-      on_south_west =
-          CalcLinkForce<kIsAligned>(springs, kSouthWest, LoadRow(below + column - 1, stride) - here);
+      on_south_west = south_west.Force();
       force = force + on_south_west;
     }
     if constexpr (!kIsHalo) {
+      const Vector here = LoadRow(u + column, stride);
       // the springs of the row above, from straight above and from either side
       force = force - LoadRow(above + column, stride);
       force = force - LoadRow(above + direction + column - 1, stride);
       if constexpr (kHasWest) force = force - LoadRow(above + 2 * direction + column + 1, stride);
-      const Vector on_east =
-          CalcLinkForce<kIsAligned>(springs, kEast, LoadRow(u + column + 1, stride) - here);
+      const Vector on_east = east.Force();
       force = (force + on_east) - ShiftUp(east_before, on_east);
       east_before = on_east;
       force = MulAdd(-Load(node + 3 * kSliceNodes), here, force) + LoadRow(node, kSliceNodes);
       const Lanes step_length = Load(node + 4 * kSliceNodes);
-      const Vector before = s.is_first ? here : LoadRow(previous + column, stride);
-      StoreRow(previous + column, stride,
-               MulAdd(omega, MulAdd(All(s.damping) * step_length, force, here) - before, before));
-      if (s.is_measured) largest.Add(step_length, force);
+      Lanes step = damping * step_length;
+      Vector before = LoadRow(before_from + column, stride);
+      KeepInRegister(step), KeepInRegister(before);
+      StoreRow(previous + column, stride, MulAdd(omega, MulAdd(step, force, here) - before, before));
+      if constexpr (kRow == GridRow::kMeasured) largest.Add(step_length, force);
     }
     StoreRow(reaction + column, stride, on_south);
     StoreRow(reaction + direction + column, stride, on_south_east);
     if constexpr (kHasWest) StoreRow(reaction + 2 * direction + column, stride, on_south_west);
-    const bool is_block_end = (column + TROCAR_LANES) % kSliceNodes == 0;
-    springs += TROCAR_LANES + (is_block_end ? (5 * kGridDirections - 1) * kSliceNodes : 0);
-    node += TROCAR_LANES + (is_block_end ? 4 * kSliceNodes : 0);
+    node += TROCAR_LANES + ((column + TROCAR_LANES) % kSliceNodes == 0 ? 4 * kSliceNodes : 0);
+  };
+
+  // the links are variables, not a struct or an array, which compilers would keep in memory
+  GridLinks south, south_east, south_west, east;
+  const auto go_on = [&](std::size_t column) {
+    springs += TROCAR_LANES + (column % kSliceNodes == 0 ? (5 * kGridDirections - 1) * kSliceNodes : 0);
+  };
+  if constexpr (!kKeepsOrder) {
+    for (std::size_t column = 0; column < stride; column += TROCAR_LANES) {
+      if (column > 0) go_on(column);
+      measure(column, south, south_east, south_west, east);
+      divide(south, south_east, south_west, east);
+      finish(column, south, south_east, south_west, east);
+    }
+    return;
   }
+  measure(0, south, south_east, south_west, east);
+  divide(south, south_east, south_west, east);
+  for (std::size_t column = TROCAR_LANES; column < stride; column += TROCAR_LANES) {
+    go_on(column);
+    GridLinks next_south, next_south_east, next_south_west, next_east;
+    measure(column, next_south, next_south_east, next_south_west, next_east);
+    finish(column - TROCAR_LANES, south, south_east, south_west, east);
+    south = next_south, south_east = next_south_east;
+    if constexpr (kHasWest) south_west = next_south_west;
+    if constexpr (!kIsHalo) east = next_east;
+    divide(south, south_east, south_west, east);
+  }
+  finish(stride - TROCAR_LANES, south, south_east, south_west, east);
 }
 
 template <bool kHasWest, bool kIsAligned>
@@ -161,10 +273,12 @@ float StepRowsOf(const GridStep& s, std::uint32_t first_row, std::uint32_t last_
     for (std::size_t at = 0; at < 2 * ReactionFloats(s.stride); at += TROCAR_LANES)
       Store(s.reaction + at, Lanes{});
   } else {
-    StepRow<kHasWest, kIsAligned, true>(s, first_row - 1, largest);
+    StepRow<kHasWest, kIsAligned, GridRow::kHalo>(s, first_row - 1, largest);
   }
-  for (std::uint32_t row = first_row; row < last_row; ++row)
-    StepRow<kHasWest, kIsAligned, false>(s, row, largest);
+  for (std::uint32_t row = first_row; row < last_row; ++row) {
+    s.is_measured ? StepRow<kHasWest, kIsAligned, GridRow::kMeasured>(s, row, largest)
+                  : StepRow<kHasWest, kIsAligned, GridRow::kPlain>(s, row, largest);
+  }
   return largest.Find();
 }
 

@@ -93,6 +93,33 @@ inline void KeepInRegister([[maybe_unused]] Lanes& v) {
 #endif
 }
 
+/// Whether the compiler leaves instructions about as they are written, and in registers what it is told to keep
+/// there. clang 14 does not: it spills more than it saves.
+#if defined(__clang__) || !defined(TROCAR_HAS_X86)
+inline constexpr bool kKeepsOrder = false;
+#else
+inline constexpr bool kKeepsOrder = true;
+#endif
+
+inline void KeepInRegister(Vector& v) {
+  if constexpr (kKeepsOrder) KeepInRegister(v.x), KeepInRegister(v.y), KeepInRegister(v.z);
+}
+/// Begins nothing that uses one of these before it has begun them all.
+inline void BeginTogether([[maybe_unused]] Lanes& a, [[maybe_unused]] Lanes& b) {
+#if !defined(__clang__) && TROCAR_LANES == 16
+  __asm__("" : "+v"(a), "+v"(b));
+#elif !defined(__clang__) && defined(TROCAR_HAS_X86)
+  __asm__("" : "+x"(a), "+x"(b));
+#endif
+}
+inline void BeginTogether([[maybe_unused]] Lanes& a, [[maybe_unused]] Lanes& b, [[maybe_unused]] Lanes& c) {
+#if !defined(__clang__) && TROCAR_LANES == 16
+  __asm__("" : "+v"(a), "+v"(b), "+v"(c));
+#elif !defined(__clang__) && defined(TROCAR_HAS_X86)
+  __asm__("" : "+x"(a), "+x"(b), "+x"(c));
+#endif
+}
+
 /// TROCAR_LANES nodes: one load of 16 bytes each, then a transpose in registers.
 #if defined(TROCAR_HAS_X86)
 template <typename At>
@@ -137,16 +164,61 @@ inline Vector LoadNodes(const Float4* nodes, const At& at) {
 }
 #endif
 
+/// TROCAR_LANES nodes side by side.
+inline Vector LoadNodes(const Float4* nodes) {
+#if TROCAR_LANES == 16
+  // four loads of four nodes each, then x and y of eight nodes, then of sixteen
+  const auto four = [&](int first) { return _mm512_loadu_ps(&nodes[first].x); };
+  const __m512i of_xy = _mm512_setr_epi32(0, 4, 8, 12, 16, 20, 24, 28, 1, 5, 9, 13, 17, 21, 25, 29);
+  const __m512i of_z = _mm512_setr_epi32(2, 6, 10, 14, 18, 22, 26, 30, 2, 6, 10, 14, 18, 22, 26, 30);
+  const __m512 a = four(0), b = four(4), c = four(8), d = four(12);
+  const __m512 ab = _mm512_permutex2var_ps(a, of_xy, b), cd = _mm512_permutex2var_ps(c, of_xy, d);
+  const __m512 abz = _mm512_permutex2var_ps(a, of_z, b), cdz = _mm512_permutex2var_ps(c, of_z, d);
+  return {(Lanes)_mm512_shuffle_f32x4(ab, cd, 0x44), (Lanes)_mm512_shuffle_f32x4(ab, cd, 0xee),
+          (Lanes)_mm512_shuffle_f32x4(abz, cdz, 0x44)};
+#else
+  return LoadNodes(nodes, [](int lane) { return lane; });
+#endif
+}
+
 inline Vector GatherNodes(const Float4* nodes, const std::uint32_t* indices) {
   return LoadNodes(nodes, [indices](int lane) { return indices[lane]; });
 }
-inline Vector LoadNodes(const Float4* nodes) {
-  return LoadNodes(nodes, [](int lane) { return lane; });
+
+#if TROCAR_LANES == 16
+/// A step's neighbours from the slices that they lie in.
+inline Vector LookUp(const float* u, const SliceLookup& lookup) {
+  const __m512i places =
+      _mm512_cvtepu8_epi32(_mm_loadu_si128(reinterpret_cast<const __m128i*>(lookup.places)));
+  const auto pick = [&](std::uint32_t pair, std::uint32_t axis) {
+    const auto load = [&](std::uint32_t slice) {
+      return _mm512_loadu_ps(u + (std::size_t{lookup.slices[slice]} * 3 + axis) * kSliceNodes);
+    };
+    // the lowest five bits of a place choose among two slices
+    return _mm512_permutex2var_ps(load(2 * pair), places, load(2 * pair + 1));
+  };
+  __m512 x = pick(0, 0), y = pick(0, 1), z = pick(0, 2);
+  for (std::uint32_t pair = 1; pair < lookup.pairs; ++pair) {
+    const __mmask16 is_there =
+        _mm512_cmpge_epu32_mask(places, _mm512_set1_epi32(static_cast<int>(2 * pair * kSliceNodes)));
+    x = _mm512_mask_mov_ps(x, is_there, pick(pair, 0));
+    y = _mm512_mask_mov_ps(y, is_there, pick(pair, 1));
+    z = _mm512_mask_mov_ps(z, is_there, pick(pair, 2));
+  }
+  return {(Lanes)x, (Lanes)y, (Lanes)z};
 }
+#endif
 
 /// TROCAR_LANES nodes side by side: a transpose, then one store of 16 bytes each.
 inline void StoreNodes(Float4* nodes, const Vector& v) {
-#if defined(TROCAR_HAS_X86)
+#if TROCAR_LANES == 16
+  const __m512i lane = _mm512_setr_epi32(0, 16, 0, 0, 1, 17, 1, 1, 2, 18, 2, 2, 3, 19, 3, 3);
+  for (int part = 0; part < 4; ++part) {
+    const __m512i from = _mm512_add_epi32(lane, _mm512_set1_epi32(4 * part));
+    const __m512 xy = _mm512_maskz_permutex2var_ps(0x3333, (__m512)v.x, from, (__m512)v.y);
+    _mm512_storeu_ps(&nodes[4 * part].x, _mm512_mask_permutexvar_ps(xy, 0x4444, from, (__m512)v.z));
+  }
+#elif defined(TROCAR_HAS_X86)
   for (int part = 0; part < TROCAR_LANES; part += 4) {
     __m128 x, y, z, w = _mm_setzero_ps();
     __builtin_memcpy(&x, reinterpret_cast<const char*>(&v.x) + 4 * part, sizeof x);
@@ -193,13 +265,18 @@ inline Vector MulAddSymmetric(const float* m, const Vector& v, const Vector& to)
           MulAdd(zz, v.z, MulAdd(yz, v.y, MulAdd(xz, v.x, to.z)))};
 }
 
-/// Secant stiffness of a spring with this extent, k - k l / length: its force on the near node is that times
-/// the extent.
-inline Lanes CalcSecant(Lanes k, Lanes k_times_rest, const Vector& along) {
+/// Length of a spring's extent.
+inline Lanes CalcLength(const Vector& along) {
   // A spring shorter than the root of this has no direction [m^2]; its force is then nought because its
   // extent is. Longer ones do not feel it.
   constexpr float kNoLength2 = 1e-30f;
-  return k - k_times_rest / Sqrt(AddSquaredNorm(along, All(kNoLength2)));
+  return Sqrt(AddSquaredNorm(along, All(kNoLength2)));
+}
+
+/// Secant stiffness of a spring of this length, k - k l / length: its force on the near node is that times
+/// the extent.
+inline Lanes CalcSecant(Lanes k, Lanes k_times_rest, Lanes length) {
+  return k - k_times_rest / length;
 }
 
 /// Largest squared residual of the free nodes; NaN where one is not finite.

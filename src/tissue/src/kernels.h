@@ -89,16 +89,32 @@ struct BalanceSums {
   bool is_finite = true;
 };
 
-/// One step of the nonlinear iteration on a sliced system.
+/// Most slices among which the neighbours of one step are looked up in registers.
+inline constexpr std::uint32_t kLookupSlices = 6;
+
+/// Where a step's neighbours lie when they lie in few slices: whole slices are loaded, two at a time, and the
+/// neighbours picked from them.
+struct SliceLookup {
+  std::uint32_t pairs;                  // of slices, or 0 where there are more than kLookupSlices
+  std::uint32_t slices[kLookupSlices];  // those beyond what is needed are any
+  std::uint8_t places[kSliceNodes];     // kSliceNodes times the place in `slices`, and the lane there
+};
+
+/// One step of the nonlinear iteration on a sliced system. Displacements are stored by node, or, where most
+/// neighbours are looked up, by slice.
 struct SliceStep {
   SliceTable table;
   const float* springs;  // (steps, 5, kSliceNodes): rest offset x, y, z [m], k [N/m], k l [N]
   const float* nodes;    // (slices, 5, kSliceNodes): load x, y, z [N], k_virtual [N/m], step length [m/N]
   const Float4* u;       // (n) displacements [m]
   Float4* previous;      // (n) those of the iteration before; receives the next
-  float omega, damping;  // of Chebyshev's recurrence [-]
-  bool is_first;         // of its cycle: the displacement before is the present one
-  bool is_measured;      // whether to report the residual
+  const SliceLookup* lookups;        // (steps), or null: then what follows is not there
+  const std::uint8_t* is_scattered;  // (slices) whether a step without lookup reads it: only those are in u
+  const float* u_by_slice;           // (slices, 3, kSliceNodes) displacements [m]
+  float* previous_by_slice;          // the same, of the iteration before; receives the next
+  float omega, damping;              // of Chebyshev's recurrence [-]
+  bool is_first;                     // of its cycle: the displacement before is the present one
+  bool is_measured;                  // whether to report the residual
 };
 
 /// The neighbours that a node's own springs go to; the other four are theirs.
@@ -154,6 +170,7 @@ struct Kernels {
   void (*multiply)(const LinkMatrix& matrix, LinkPass pass, const Float4* x, const Float4* b, float factor,
                    Float4* out, std::uint32_t first_slice, std::uint32_t last_slice);
   float (*step_slices)(const SliceStep& step, std::uint32_t first_slice, std::uint32_t last_slice);
+  bool looks_up;  ///< whether step_slices takes lookups
   float (*step_rows)(const GridStep& step, std::uint32_t first_row, std::uint32_t last_row);
   BalanceSums (*balance)(const BalancePass& pass, std::uint32_t first_slice, std::uint32_t last_slice);
   /// Inverses of the nodes' own blocks, ground + sum of links; 0 where a node is held or nothing holds it.

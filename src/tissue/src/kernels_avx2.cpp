@@ -10,9 +10,13 @@
 namespace trocar::tissue {
 
 const Kernels& GetKernelsAvx2() noexcept {
-  static constexpr Kernels kKernels = {
-      MultiplyLinks, StepSlices,   StepRows,
-      CalcBalance,   InvertBlocks, {CalcDot, FindLargest2, Advance, AddScaled, ScaleAndAdd}};
+  static constexpr Kernels kKernels = {MultiplyLinks,
+                                       StepSlices,
+                                       false,
+                                       StepRows,
+                                       CalcBalance,
+                                       InvertBlocks,
+                                       {CalcDot, FindLargest2, Advance, AddScaled, ScaleAndAdd}};
   return kKernels;
 }
 

@@ -9,9 +9,13 @@
 namespace trocar::tissue {
 
 const Kernels& GetKernelsBaseline() noexcept {
-  static constexpr Kernels kKernels = {
-      MultiplyLinks, StepSlices,   StepRows,
-      CalcBalance,   InvertBlocks, {CalcDot, FindLargest2, Advance, AddScaled, ScaleAndAdd}};
+  static constexpr Kernels kKernels = {MultiplyLinks,
+                                       StepSlices,
+                                       false,
+                                       StepRows,
+                                       CalcBalance,
+                                       InvertBlocks,
+                                       {CalcDot, FindLargest2, Advance, AddScaled, ScaleAndAdd}};
   return kKernels;
 }
 

@@ -13,6 +13,27 @@ namespace {
 constexpr std::uint32_t kChunkSlices = 64;
 constexpr std::size_t kSpringFloats = 5 * kSliceNodes;
 
+/// Steps whose neighbours can be looked up, of all, from which on lookups pay for storing twice what the other
+/// steps read [-].
+constexpr double kLookupShare = 0.75;
+
+/// The lookup of one step of the slice that begins at node `first`.
+SliceLookup FindLookup(const std::uint32_t* others, std::uint32_t first) {
+  SliceLookup lookup = {};
+  std::uint32_t count = 0;
+  for (std::uint32_t lane = 0; lane < kSliceNodes; ++lane) {
+    if (others[lane] == first + lane) continue;  // padding reads anything
+    const std::uint32_t slice = others[lane] / kSliceNodes;
+    std::uint32_t at = 0;
+    while (at < count && lookup.slices[at] != slice) ++at;
+    if (at == kLookupSlices) return {};
+    if (at == count) lookup.slices[count++] = slice;
+    lookup.places[lane] = static_cast<std::uint8_t>(at * kSliceNodes + others[lane] % kSliceNodes);
+  }
+  lookup.pairs = std::max(1u, (count + 1) / 2);
+  return lookup;
+}
+
 }  // namespace
 
 void SpringSlices::SetModel(const OrderedModel& model) {
@@ -21,6 +42,9 @@ void SpringSlices::SetModel(const OrderedModel& model) {
   nodes_.assign(layout_.PaddedNodes() * 5, 0.0f);
   u_.assign(layout_.PaddedNodes(), {});
   previous_ = u_;
+  u_by_slice_.assign(layout_.PaddedNodes() * 3, 0.0f);
+  previous_by_slice_ = u_by_slice_;
+  SetLookups();
   for (std::uint32_t i = 0; i < model.Size(); ++i) {
     for (std::uint32_t step = 0; step < layout_.RowSteps(i); ++step) {
       const std::size_t entry = layout_.Entry(i, step);
@@ -31,8 +55,27 @@ void SpringSlices::SetModel(const OrderedModel& model) {
   }
 }
 
+void SpringSlices::SetLookups() {
+  lookups_.clear();
+  is_scattered_.assign(layout_.Slices(), 0);
+  std::size_t found = 0;
+  for (std::uint32_t slice = 0; slice < layout_.Slices(); ++slice) {
+    for (std::size_t step = layout_.starts[slice]; step < layout_.starts[slice + 1]; ++step) {
+      const std::uint32_t* const others = layout_.others.data() + step * kSliceNodes;
+      lookups_.push_back(FindLookup(others, slice * kSliceNodes));
+      if (lookups_.back().pairs > 0) {
+        ++found;
+        continue;
+      }
+      for (std::uint32_t lane = 0; lane < kSliceNodes; ++lane) is_scattered_[others[lane] / kSliceNodes] = 1;
+    }
+  }
+  has_lookups_ = static_cast<double>(found) >= kLookupShare * static_cast<double>(lookups_.size());
+  is_by_slice_ = false;
+}
+
 void SpringSlices::Reserve(double share) {
-  ReserveMore(share, layout_.starts, layout_.others, springs_);
+  ReserveMore(share, layout_.starts, layout_.others, lookups_, springs_);
 }
 
 void SpringSlices::SetLoad(const OrderedModel& model, const OrderedLoad& load,
@@ -89,6 +132,10 @@ void SpringSlices::AddForce(std::uint32_t node, const Vec3& force) noexcept {
 }
 
 void SpringSlices::SetDisplacement(std::uint32_t node, const Vec3& u) noexcept {
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::size_t at = BySlice(node) + axis * kSliceNodes;
+    u_by_slice_[at] = previous_by_slice_[at] = static_cast<float>(u[axis]);
+  }
   u_[node] =
       previous_[node] = {static_cast<float>(u.x), static_cast<float>(u.y), static_cast<float>(u.z), 0.0f};
 }
@@ -99,13 +146,26 @@ double SpringSlices::Step(const Kernels& kernels, Workers& workers, float omega,
   const std::uint32_t chunk_slices = std::max(kChunkSlices, slices / Workers::kMaxChunks + 1);
   const std::uint32_t chunks = (slices + chunk_slices - 1) / chunk_slices;
   std::array<float, Workers::kMaxChunks> largest2;
-  const SliceStep step{layout_.Table(), springs_.data(), nodes_.data(), u_.data(),  previous_.data(),
-                       omega,           damping,         is_first,      is_measured};
+  is_by_slice_ = has_lookups_ && kernels.looks_up;
+  const SliceStep step{.table = layout_.Table(),
+                       .springs = springs_.data(),
+                       .nodes = nodes_.data(),
+                       .u = u_.data(),
+                       .previous = previous_.data(),
+                       .lookups = is_by_slice_ ? lookups_.data() : nullptr,
+                       .is_scattered = is_scattered_.data(),
+                       .u_by_slice = u_by_slice_.data(),
+                       .previous_by_slice = previous_by_slice_.data(),
+                       .omega = omega,
+                       .damping = damping,
+                       .is_first = is_first,
+                       .is_measured = is_measured};
   workers.Run(chunks, [&](std::uint32_t chunk) {
     largest2[chunk] =
         kernels.step_slices(step, chunk * chunk_slices, std::min(slices, (chunk + 1) * chunk_slices));
   });
   std::swap(u_, previous_);
+  std::swap(u_by_slice_, previous_by_slice_);
   double largest = 0;
   for (std::uint32_t chunk = 0; chunk < chunks; ++chunk) {
     if (!(static_cast<double>(largest2[chunk]) <= largest)) largest = static_cast<double>(largest2[chunk]);

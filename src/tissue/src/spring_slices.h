@@ -21,8 +21,9 @@ class SpringSlices {
                std::span<const std::uint8_t> strand_is_intact) noexcept;
   void SetDisplacement(std::uint32_t node, const Vec3& u) noexcept;
   Vec3 GetDisplacement(std::uint32_t node) const noexcept {
-    return {static_cast<double>(u_[node].x), static_cast<double>(u_[node].y),
-            static_cast<double>(u_[node].z)};
+    const float* const u = is_by_slice_ ? u_by_slice_.data() + BySlice(node) : &u_[node].x;
+    const std::size_t apart = is_by_slice_ ? kSliceNodes : 1;
+    return {static_cast<double>(u[0]), static_cast<double>(u[apart]), static_cast<double>(u[2 * apart])};
   }
   /// Adds to the load on a node, until the next SetLoad [N].
   void AddForce(std::uint32_t node, const Vec3& force) noexcept;
@@ -30,13 +31,25 @@ class SpringSlices {
   /// \return largest residual before it [N], NaN where one is; 0 unless measured
   double Step(const Kernels& kernels, Workers& workers, float omega, float damping, bool is_first,
               bool is_measured) noexcept;
+  /// Whether kernels that can look most neighbours up, several at a time.
+  bool HasLookups() const { return has_lookups_; }
   double LowestEigenvalue() const { return lowest_; }
   double SmallestShape() const { return smallest_shape_; }
   double LargestDisplacement() const noexcept;
 
  private:
+  /// Place of a node's displacement along x by slice; y and z lie kSliceNodes apart.
+  static std::size_t BySlice(std::uint32_t node) {
+    return std::size_t{node / kSliceNodes} * 3 * kSliceNodes + node % kSliceNodes;
+  }
+  void SetLookups();
+
   SliceLayout layout_;
-  AlignedVector<float> springs_, nodes_;
+  std::vector<SliceLookup> lookups_;        // as in SliceStep
+  std::vector<std::uint8_t> is_scattered_;  // as in SliceStep
+  bool has_lookups_ = false;                // for most steps
+  bool is_by_slice_ = false;                // where the last step left the displacements
+  AlignedVector<float> springs_, nodes_, u_by_slice_, previous_by_slice_;
   AlignedVector<Float4> u_, previous_;
   double lowest_ = 0, smallest_shape_ = 0;
 };
