@@ -10,6 +10,7 @@
 #include "trocar/core/clock.h"
 #include "trocar/core/state_hash.h"
 #include "trocar/geometry/mesh_measures.h"
+#include "trocar/tissue/conserved_equilibrium.h"
 #include "trocar/tissue/damage.h"
 
 namespace trocar::session {
@@ -245,7 +246,8 @@ double Simulation::CalcEquilibriumError() const {
   exact.law_error = 1e-7;
   exact.max_rounds = 50;
   tissue::EquilibriumSolver judge(c.tissue_model, 1);
-  const tissue::SolveReport solved = judge.Solve(exact, c.load, state);
+  const tissue::SolveReport solved =
+      tissue::FindConservedEquilibrium(judge, exact, *c.conservation, c.load, state, c.conserved);
   if (!solved.converged) return std::nan("");
   double error = 0, scale = 0;
   for (std::size_t i = 0; i < state.position.size(); ++i) {

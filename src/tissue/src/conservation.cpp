@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "trocar/core/assert.h"
+#include "volume_hook.h"
 
 namespace trocar::tissue {
 namespace {
@@ -474,28 +475,8 @@ SolveReport SolveConserving(EquilibriumSolver& solver, const SolverSettings& set
                             ConservationState& state) noexcept {
   conservation.CarryAlong(tissue, state);
   load.external_force = conservation.CalcForce(tissue, load, state);
-  struct Context {
-    Conservation* conservation;
-    ConservationState* state;
-  } context{&conservation, &state};
-  SolveHook hook{[](void* self, TissueState& moved, std::span<Vec3> before) noexcept {
-                   const Context& kept = *static_cast<Context*>(self);
-                   kept.conservation->KeepVolumes(moved, before, *kept.state);
-                 },
-                 &context, kProjectionInterval};
-  hook.constraints = conservation.Constraints();
-  hook.gradient = conservation.VolumeGradient();
-  hook.is_active = [](void* self, std::size_t organ) noexcept {
-    return Conservation::IsSealed(static_cast<Context*>(self)->state->organs[organ]);
-  };
-  hook.add_multiplier = [](void* self, std::size_t organ, double change) noexcept {
-    const Context& kept = *static_cast<Context*>(self);
-    kept.conservation->AddPressure(organ, change, *kept.state);
-  };
-  hook.is_in_reach = [](void* self, const TissueState& moved) noexcept {
-    const Context& kept = *static_cast<Context*>(self);
-    return kept.conservation->AreVolumesInReach(moved, *kept.state);
-  };
+  VolumeHookContext context{&conservation, &state};
+  const SolveHook hook = MakeVolumeHook(context);
   const SolveReport report = solver.Solve(settings, load, tissue, &hook);
   // a solve that went to its bounds has taken the tick's time
   conservation.Enforce(load, dt, tissue, state, report.converged);

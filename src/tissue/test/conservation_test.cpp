@@ -9,6 +9,7 @@
 
 #include "test_systems.h"
 #include "trocar/core/state_hash.h"
+#include "trocar/tissue/conserved_equilibrium.h"
 
 namespace trocar::tissue {
 namespace {
@@ -358,6 +359,51 @@ TEST(Conservation, NewtonSettlesOnTheSamePressureAsTheChebyshevIteration) {
   newton.max_error = 1e-6;
   EXPECT_GT(chebyshev, 100.0);
   EXPECT_NEAR(hang(newton) / chebyshev, 1.0, 1e-2);
+}
+
+// The judge of a tick that was cut short: it finds what exact ticks come to, at the tick's volume, and leaves the tick alone.
+TEST(Conservation, TheJudgeOfATickKeepsTheVolumeAndFindsWhatExactTicksComeTo) {
+  SolverSettings newton = kExact;
+  newton.kind = SolverKind::kNewtonMultigrid;
+  Sac sac(3e4);
+  Conservation conservation(sac.model, sac.settings);
+  EquilibriumSolver solver(sac.model, 1), judge(sac.model, 1);
+  ConservationState state = conservation.MakeState(sac.tissue);
+  const double volume = sac.Volume();
+  TissueLoad load;
+  const auto tick = [&](const SolverSettings& settings) {
+    sac.Hold(sac.Pole({-1, 0, 0}), {{}, {-0.002, -0.001, 0}});
+    sac.Hold(sac.Pole({1, 0, 0}), {math::RotationAbout({1, 0, 0}, 0.1), 0.1 * Vec3{0.002, -0.01, 0.005}});
+    load = {.gravity = {0.5, -1.0, 0.2}};
+    (void)SolveConserving(solver, settings, kTick, conservation, load, sac.tissue, state);
+  };
+  const auto distance = [&](const std::vector<Vec3>& a) {
+    double most = 0;
+    for (std::size_t i = 0; i < a.size(); ++i)
+      most = std::fmax(most, math::Distance(a[i], sac.tissue.position[i]));
+    return most;
+  };
+  SolverSettings short_tick = newton;
+  short_tick.max_newton_steps = 2;
+  for (int i = 0; i < 3; ++i) tick(short_tick);
+
+  const Sac before = sac;
+  const std::vector<Vec3> force(load.external_force.begin(), load.external_force.end());
+  Sac judged = sac, at_pressure = sac;
+  const SolveReport report =
+      FindConservedEquilibrium(judge, newton, conservation, load, judged.tissue, state);
+  EXPECT_LT(report.error, 1e-8);
+  (void)judge.Solve(newton, load, at_pressure.tissue);
+  EXPECT_EQ(distance(before.tissue.position), 0.0);
+  for (std::size_t i = 0; i < force.size(); ++i)
+    ASSERT_EQ(math::Distance(force[i], load.external_force[i]), 0.0);
+  EXPECT_NEAR(judged.Volume() / volume, 1.0, 1e-7);
+  EXPECT_GT(std::fabs(at_pressure.Volume() / volume - 1.0), 1e-4)
+      << "negative control: at the tick's pressure";
+  const double left = distance(judged.tissue.position);
+  EXPECT_GT(left, 1e-5) << "the tick was not cut short";
+  for (int i = 0; i < 40; ++i) tick(newton);
+  EXPECT_LT(distance(judged.tissue.position), 1e-3 * left);
 }
 
 // Imaged organs lie on others; what hangs on the jaws alone weighs on them whole.

@@ -65,8 +65,8 @@ class Simulation {
   /// \note Real-time safe: no allocation, lock or throw.
   void CutPatch(Hand hand, haptics::LocalPatch& patch) noexcept;
   /// How far the tissue was from equilibrium when the last tick's solve ended: the largest distance of a node
-  /// to the equilibrium that an exact solver reaches from there under the same load, over the largest
-  /// distance of any node from rest [-]. NaN where that solver does not come to rest.
+  /// to the equilibrium that an exact solver reaches from there under the same load and with the same volumes,
+  /// over the largest distance of any node from rest [-]. NaN where that solver does not come to rest.
   /// \note For tests and benchmarks: takes many times as long as a tick, and allocates.
   double CalcEquilibriumError() const;
   /// Name of the GPU that solves; empty when the processor does.
