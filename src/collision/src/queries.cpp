@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "branch_and_bound.h"
+#include "ray_crossing.h"
 #include "trocar/core/assert.h"
 #include "trocar/geometry/mesh_measures.h"
 
@@ -64,33 +65,6 @@ double CalcAngleAt(std::span<const Vec3> positions, const Triangle& triangle, st
   const Vec3 &a = positions[triangle[i]], &b = positions[triangle[(i + 1) % 3]],
              &c = positions[triangle[(i + 2) % 3]];
   return std::atan2(math::Norm(math::Cross(b - a, c - a)), Dot(b - a, c - a));
-}
-
-/// Which way an edge, seen along a ray from the origin of the plane (u, v), passes the half axis u > 0: +1 upwards, -1
-/// downwards, 0 not. Of two triangles that share the edge, one is told the exact opposite of the other.
-int CountPass(double au, double av, double bu, double bv) noexcept {
-  if ((av < 0.0) == (bv < 0.0)) return 0;
-  const double turn = au * bv - bu * av;
-  if (av < 0.0) return turn > 0.0 ? 1 : 0;
-  return turn < 0.0 ? -1 : 0;
-}
-
-/// How often the ray from p along an axis leaves the surface, less how often it enters.
-int CountLeaving(std::span<const Vec3> positions, std::span<const Triangle> triangles, const Vec3& p,
-                 int axis) noexcept {
-  const int iu = (axis + 1) % 3, iv = (axis + 2) % 3;
-  int count = 0;
-  for (const Triangle& t : triangles) {
-    const Vec3 a = positions[t[0]] - p, b = positions[t[1]] - p, c = positions[t[2]] - p;
-    if ((a[iv] < 0.0) == (b[iv] < 0.0) && (b[iv] < 0.0) == (c[iv] < 0.0)) continue;
-    const int around = CountPass(a[iu], a[iv], b[iu], b[iv]) + CountPass(b[iu], b[iv], c[iu], c[iv]) +
-                       CountPass(c[iu], c[iv], a[iu], a[iv]);
-    if (around == 0) continue;
-    // where the axis meets the triangle's plane: before or behind p
-    const Vec3 normal = math::Cross(b - a, c - a);
-    if (Dot(a, normal) * normal[axis] > 0.0) count += around;
-  }
-  return count;
 }
 
 }  // namespace
@@ -171,9 +145,11 @@ SurfaceSide FindSide(std::span<const Vec3> positions, std::span<const Triangle> 
 }
 
 bool IsInside(std::span<const Vec3> positions, std::span<const Triangle> triangles, const Vec3& p) noexcept {
-  int inside = 0;
-  for (int axis = 0; axis < 3; ++axis) inside += CountLeaving(positions, triangles, p, axis) > 0;
-  return inside >= 2;
+  return DoMostRaysLeave([&](int axis) {
+    int count = 0;
+    for (const Triangle& t : triangles) count += CountLeaving(positions, t, p, axis);
+    return count;
+  });
 }
 
 }  // namespace trocar::collision

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "branch_and_bound.h"
+#include "ray_crossing.h"
 #include "trocar/core/assert.h"
 #include "wide_search.h"
 
@@ -34,6 +35,9 @@ core::Status CheckMesh(std::span<const Vec3> positions, std::span<const Triangle
   }
   return {};
 }
+
+/// How far beside a ray a triangle is looked at all the same [m^2]: rounding does not reach so far.
+constexpr double kBesideRay2 = 1e-12;
 
 }  // namespace
 
@@ -110,6 +114,23 @@ std::size_t TriangleTree::FindWithin(std::span<const Vec3> positions, const Caps
   });
   std::sort(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(std::min(count, found.size())));
   return count;
+}
+
+bool TriangleTree::IsInside(std::span<const Vec3> positions, const Vec3& p) const noexcept {
+  if (tree_.nodes.empty() || !math::IsFinite(p)) return false;
+  return DoMostRaysLeave([&](int axis) {
+    const auto& ends = tree_.nodes.front().high[axis];
+    const double end = static_cast<double>(*std::max_element(std::begin(ends), std::end(ends)));
+    if (p[axis] > end) return 0;
+    Vec3 last = p;
+    last[axis] = end;
+    int count = 0;
+    SearchWideTree(tree_, {p, last}, kBesideRay2, [&](std::uint32_t triangle) {
+      count += CountLeaving(positions, triangles_[triangle], p, axis);
+      return kBesideRay2;
+    });
+    return count;
+  });
 }
 
 }  // namespace trocar::collision

@@ -98,10 +98,11 @@ TEST(RealTime, TreesAllocateNothing) {
                         tubes.FindNearest(mesh.positions, jaw.axis).Found();
   const std::size_t count = tree.FindWithin(mesh.positions, jaw, found);
   (void)tubes.FindWithin(mesh.positions, jaw, found);
+  const bool is_inside = tree.IsInside(mesh.positions, {0.01, 0.02, 0.03});
   (void)SweepToSegment({jaw.axis, jaw.axis}, {jaw.axis, jaw.axis}, 0.001);
   const bool is_rebuilt = tree.Rebuild(mesh.positions, mesh.triangles).ok();
   EXPECT_EQ(allocations, before);
-  EXPECT_TRUE(is_found && is_rebuilt);
+  EXPECT_TRUE(is_found && is_inside && is_rebuilt);
   EXPECT_GT(count, 0u);
 }
 

@@ -219,6 +219,32 @@ TEST(TriangleTree, FindsEveryTriangleWithinACapsule) {
   }
 }
 
+TEST(TriangleTree, SaysWhatIsInsideAsALookAtEveryTriangleDoes) {
+  math::Random random(9);
+  int inside = 0, outside = 0;
+  for (const auto& [name, mesh] : AdversarialMeshes()) {
+    std::vector<Vec3> points = MakePoints(mesh, random, 200);
+    // straight before or behind a vertex, as a ray sees it
+    for (std::size_t i = 0; i < points.size(); i += 3) {
+      const Vec3& vertex = mesh.positions[i % mesh.positions.size()];
+      points[i].x = vertex.x, points[i].y = vertex.y;
+    }
+    for (const SimdLevel level : Levels()) {
+      const auto tree = TriangleTree::Make(mesh.positions, mesh.triangles, level);
+      ASSERT_TRUE(tree.ok()) << name;
+      for (std::size_t i = 0; i < points.size(); ++i) {
+        const bool expected = IsInside(mesh.positions, mesh.triangles, points[i]);
+        EXPECT_EQ(tree->IsInside(mesh.positions, points[i]), expected)
+            << name << ", " << SimdLevelName(level) << ", " << i;
+        ++(expected ? inside : outside);
+      }
+    }
+  }
+  EXPECT_GT(inside, 300);
+  EXPECT_GT(outside, 300);
+  EXPECT_FALSE(TriangleTree().IsInside({}, {0, 0, 0}));
+}
+
 // The tree is built once; its boxes follow wherever the vertices go.
 TEST(TriangleTree, StaysExactWhileTheMeshDeforms) {
   math::Random random(8);
@@ -236,6 +262,7 @@ TEST(TriangleTree, StaysExactWhileTheMeshDeforms) {
       for (int i = 0; i < 20; ++i) {
         const Vec3 p = RandomPoint(random, 0.2), q = RandomPoint(random, 0.2);
         const std::string where = std::to_string(tick) + ", " + std::to_string(i);
+        EXPECT_EQ(tree->IsInside(mesh.positions, p), IsInside(mesh.positions, mesh.triangles, p)) << where;
         ExpectSame(tree->FindNearest(mesh.positions, p),
                    FindNearestBruteForce(mesh.positions, mesh.triangles, p), where);
         ExpectSame(tree->FindNearestToSegment(mesh.positions, {p, q}).nearest,

@@ -36,8 +36,7 @@ Place FindPlace(const OrganSurface& organ, std::span<const Vec3> nodes, const Ve
   place.nearest = organ.tree.FindNearest(nodes, p, {.max_distance = reach, .first_guess = guess});
   if (!place.nearest.Found()) return place;
   const auto side = collision::FindSide(nodes, organ.triangles, organ.vertex_triangles, p, place.nearest);
-  if ((side.distance < 0.0) != (is_inside != 0))
-    is_inside = collision::IsInside(nodes, organ.triangles, p) ? 1 : 0;
+  if ((side.distance < 0.0) != (is_inside != 0)) is_inside = organ.tree.IsInside(nodes, p) ? 1 : 0;
   const double distance = std::sqrt(place.nearest.squared_distance);
   place.distance = is_inside != 0 ? -distance : distance;
   const Vec3 away = (p - place.nearest.point) / distance;
@@ -70,7 +69,7 @@ OrganPair MakePair(const OrganSurface& to, std::span<const Vec3> positions, Orga
   for (std::uint32_t i = 0; i < pair.node_count; ++i) {
     const Vec3& p = positions[pair.first_node + i];
     const double radius = pair.radii.empty() ? 0.0 : pair.radii[i];
-    pair.is_inside[i] = collision::IsInside(nodes, to.triangles, p) ? 1 : 0;
+    pair.is_inside[i] = to.tree.IsInside(nodes, p) ? 1 : 0;
     const Place place =
         FindPlace(to, nodes, p, settings.reach + radius, collision::kNoTriangle, pair.is_inside[i]);
     // a tube has its radius

@@ -23,9 +23,9 @@ constexpr double kMaxShift = 0.002;
 /// The responses need no more accuracy than this: they steer the search, the constraint itself is exact [-].
 constexpr double kResponseTolerance = 0.02;
 constexpr double kFirstResponseTolerance = 1e-4;
-constexpr int kFirstResponseIterations = 5000;
-/// Iterations a tick while the responses follow a change of topology or of the stiffness scales.
-constexpr int kResponseIterationsPerTick = 12;
+constexpr int kFirstResponseIterations = 10000;
+/// Iterations a tick, of all organs together, while the responses follow a change of topology or of the stiffness scales.
+constexpr int kResponseIterationsPerTick = 6;
 
 using SmallVector = std::array<double, kMaxClosedOrgans>;
 
@@ -90,7 +90,9 @@ void Conservation::Reset() noexcept {
   shape_scale_ = usual.shape_scale;
   response_links_ = first_links_;
   responses_settled_ = true;
+  has_stiffness_ = false;  // what is known is that of before
   has_followed_ = false;
+  waited_ = 0;
 }
 
 void Conservation::Follow(const TissueModel& model, std::vector<ClosedOrgan> organs,
@@ -104,6 +106,7 @@ void Conservation::Follow(const TissueModel& model, std::vector<ClosedOrgan> org
   linear_.SetModel(model);
   rest_ = MakeRestState(model);
   responses_settled_ = false;
+  has_stiffness_ = false;
   has_followed_ = true;
   state.intact_links = std::numeric_limits<std::uint64_t>::max();
 }
@@ -132,11 +135,21 @@ std::span<Vec3> Conservation::OrganPart(std::size_t organ, std::span<Vec3> nodes
 
 /// The displacement by which the tissue at rest, with the strands, springs and scales of now, answers one pascal in
 /// each organ.
+///
+/// \param max_iterations  of all organs together
 bool Conservation::UpdateResponses(const TissueState& tissue, const TissueLoad& load, int max_iterations,
                                    double tolerance) noexcept {
   std::copy(tissue.strand_is_intact.begin(), tissue.strand_is_intact.end(), rest_.strand_is_intact.begin());
-  std::copy(tissue.spring_factor.begin(), tissue.spring_factor.end(), rest_.spring_factor.begin());
-  linear_.SetStiffness(rest_, load);
+  const bool have_springs_held =
+      has_stiffness_ && load.stiffness_scale == stiffness_scale_ && load.shape_scale == shape_scale_ &&
+      std::equal(tissue.spring_factor.begin(), tissue.spring_factor.end(), rest_.spring_factor.begin());
+  if (have_springs_held) {
+    linear_.FollowStrands(rest_, load);
+  } else {
+    std::copy(tissue.spring_factor.begin(), tissue.spring_factor.end(), rest_.spring_factor.begin());
+    linear_.SetStiffness(rest_, load);
+    has_stiffness_ = true;
+  }
   bool is_settled = true;
   for (std::size_t organ = 0; organ < settings_.organs.size(); ++organ) {
     std::fill(gradient_.begin(), gradient_.end(), Vec3{});
@@ -144,6 +157,7 @@ bool Conservation::UpdateResponses(const TissueState& tissue, const TissueLoad& 
     (void)CalcVolumeGradient(std::span(model_->rest).subspan(surface.first_node, surface.node_count),
                              surface.triangles, OrganPart(organ, gradient_));
     const auto report = linear_.Solve(gradient_, max_iterations, tolerance, responses_[organ]);
+    max_iterations -= report.iterations;
     is_settled = is_settled && report.residual <= tolerance;
   }
   stiffness_scale_ = load.stiffness_scale;
@@ -328,7 +342,7 @@ bool Conservation::CalcSlopes(const TissueState& tissue, ConservationState& stat
   return is_good;
 }
 
-/// One Newton step on all volumes with the slopes at hand; false when every volume is at its target.
+/// One Newton step on all volumes, as last measured, with the slopes at hand; false when every volume is at its target.
 bool Conservation::ProjectOnce(TissueState& tissue, std::span<Vec3> before,
                                ConservationState& state) noexcept {
   const std::size_t count = settings_.organs.size();
@@ -366,13 +380,18 @@ bool Conservation::ProjectOnce(TissueState& tissue, std::span<Vec3> before,
   };
   move_by(part);
   double worst_before = 0, worst_after = 0;  // of the volumes that are kept, as parts of their targets
+  SmallVector volume{};
   for (std::size_t i = 0; i < count; ++i) {
-    if (error[i] == 0.0) continue;
     const OrganVolume& organ = state.organs[i];
+    volume[i] = MeasureVolume(i, tissue);
+    if (error[i] == 0.0) continue;
     worst_before = std::fmax(worst_before, std::fabs(organ.volume / organ.target - 1.0));
-    worst_after = std::fmax(worst_after, std::fabs(MeasureVolume(i, tissue) / organ.target - 1.0));
+    worst_after = std::fmax(worst_after, std::fabs(volume[i] / organ.target - 1.0));
   }
-  if (worst_after <= worst_before) return true;
+  if (worst_after <= worst_before) {
+    for (std::size_t i = 0; i < count; ++i) state.organs[i].volume = volume[i];
+    return true;
+  }
   // the slopes are those of another shape, and lead astray, as where a cut left a loose flap: stand still
   move_by(-part);
   return false;
@@ -418,25 +437,30 @@ void Conservation::Leak(double dt, ConservationState& state) const noexcept {
   }
 }
 
-void Conservation::Enforce(const TissueLoad& load, double dt, TissueState& tissue,
-                           ConservationState& state) noexcept {
+void Conservation::Enforce(const TissueLoad& load, double dt, TissueState& tissue, ConservationState& state,
+                           bool has_time) noexcept {
   if (load.stiffness_scale != stiffness_scale_ || load.shape_scale != shape_scale_ ||
       state.intact_links != response_links_) {
     responses_settled_ = false;
     response_links_ = state.intact_links;
   }
-  // a tick that cuts has enough to do: until the next one, the responses of before steer well enough
+  // the responses of before steer well enough for a while, and a tick that cuts has enough to do already
   const bool is_late = std::exchange(has_followed_, false);
-  if (!responses_settled_ && !is_late) {
+  if (!responses_settled_ && (is_late || (!has_time && waited_ < kMostWait))) {
+    ++waited_;
+  } else if (!responses_settled_) {
+    waited_ = 0;
     responses_settled_ = UpdateResponses(tissue, load, kResponseIterationsPerTick, kResponseTolerance);
   }
-  if (!MeasureVolumes(tissue, state)) return;
-  Leak(dt, state);
-  for (int projection = 0; has_slopes_ && projection < kMaxProjections && ProjectOnce(tissue, {}, state);
-       ++projection) {
-    for (std::size_t i = 0; i < settings_.organs.size(); ++i)
-      state.organs[i].volume = MeasureVolume(i, tissue);
+  bool is_good = true;
+  for (std::size_t i = 0; i < settings_.organs.size(); ++i) {
+    state.organs[i].volume = MeasureVolume(i, tissue);
+    is_good = is_good && std::isfinite(state.organs[i].volume);
   }
+  if (!is_good) return;
+  Leak(dt, state);
+  int projections = 0;
+  while (has_slopes_ && projections < kMaxProjections && ProjectOnce(tissue, {}, state)) ++projections;
   // the forces that load.external_force views become those of the state that is left: reactions and judges
   // read them
   (void)MeasureVolumes(tissue, state);
@@ -473,7 +497,8 @@ SolveReport SolveConserving(EquilibriumSolver& solver, const SolverSettings& set
     return kept.conservation->AreVolumesInReach(moved, *kept.state);
   };
   const SolveReport report = solver.Solve(settings, load, tissue, &hook);
-  conservation.Enforce(load, dt, tissue, state);
+  // a solve that went to its bounds has taken the tick's time
+  conservation.Enforce(load, dt, tissue, state, report.converged);
   return report;
 }
 

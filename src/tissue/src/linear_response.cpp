@@ -53,7 +53,7 @@ void LinearResponse::SetModel(const TissueModel& model) {
   model_ = &model;
   springs_.resize(model.half_springs.size());
   strands_.resize(model.half_strands.size());
-  own_.resize(n), is_free_.resize(n), inverse_.resize(n);
+  own_.resize(n), is_free_.resize(n), spring_block_.resize(n), inverse_.resize(n);
   for (auto* vector : {&residual_, &preconditioned_, &direction_, &product_}) vector->resize(n);
 }
 
@@ -77,15 +77,32 @@ void LinearResponse::SetStiffness(const TissueState& state, const TissueLoad& lo
       AddSquare(block, link.along);
       AddIsotropic(block, link.isotropic);
     }
-    for (auto h = model.strand_starts[i]; h < model.strand_starts[i + 1]; ++h) {
-      const auto& half = model.half_strands[h];
-      strands_[h] = state.strand_is_intact[half.strand] ? load.stiffness_scale * half.stiffness : 0.0;
-      AddIsotropic(block, strands_[h]);
-    }
+    spring_block_[i] = block;
     own_[i] = load.shape_scale * model.shape_stiffness[i];
-    AddIsotropic(block, own_[i]);
     is_free_[i] = state.condition[i] != NodeCondition::kPrescribed;
-    inverse_[i] = is_free_[i] ? Invert(block) : Symmetric3{};
+    SetOwnBlock(i, state, load);
+  }
+}
+
+/// Takes the node's strands, and with them all that holds it.
+void LinearResponse::SetOwnBlock(std::uint32_t node, const TissueState& state,
+                                 const TissueLoad& load) noexcept {
+  const TissueModel& model = *model_;
+  Symmetric3 block = spring_block_[node];
+  for (auto h = model.strand_starts[node]; h < model.strand_starts[node + 1]; ++h) {
+    const auto& half = model.half_strands[h];
+    strands_[h] = state.strand_is_intact[half.strand] ? load.stiffness_scale * half.stiffness : 0.0;
+    AddIsotropic(block, strands_[h]);
+  }
+  AddIsotropic(block, own_[node]);
+  inverse_[node] = is_free_[node] ? Invert(block) : Symmetric3{};
+}
+
+void LinearResponse::FollowStrands(const TissueState& state, const TissueLoad& load) noexcept {
+  const TissueModel& model = *model_;
+  TROCAR_ASSERT(state.position.size() == model.Size());
+  for (std::uint32_t i = 0; i < model.Size(); ++i) {
+    if (model.strand_starts[i] < model.strand_starts[i + 1]) SetOwnBlock(i, state, load);
   }
 }
 

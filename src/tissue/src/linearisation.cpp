@@ -182,18 +182,18 @@ double Linearisation::AddStrandsAndContacts(std::span<const Double4> position, B
     const std::uint32_t node = model.strands[first].node;
     const Vec3 here = ToVec3(position[node]), rest = model.rest[node];
     Vec3 force = load.constant[node];
-    double size = math::Norm(force);
+    double size2 = math::SquaredNorm(force);
     for (last = first; last < model.strands.size() && model.strands[last].node == node; ++last) {
       const auto& strand = model.strands[last];
       if (!strand_is_intact_[strand.strand]) continue;
       const double k = load.stiffness_scale * strand.stiffness;
       const Vec3 offset = (ToVec3(position[strand.other]) - here) - (model.rest[strand.other] - rest);
-      const double length2 = math::SquaredNorm(offset), pull = k * std::sqrt(length2);
+      const double length2 = math::SquaredNorm(offset);
       force += k * offset;
-      if (pull > size) size = pull;
+      size2 = std::max(size2, k * k * length2);
       energy += 0.25 * k * length2 - k * math::Dot(offset, rest - here);
     }
-    set_outer(node, force, size);
+    set_outer(node, force, std::sqrt(size2));
   }
   for (std::size_t c = 0; c < load.contacts.size(); ++c) {
     const ContactSpring& contact = load.contacts[c];

@@ -51,6 +51,55 @@ Symmetric3 ReadSymmetric(const AlignedVector<float>& values, std::size_t at) {
   for (std::size_t i = 0; i < 6; ++i) m[i] = static_cast<double>(values[at + i * kSliceNodes]);
   return m;
 }
+
+constexpr std::uint32_t kNoEntry = ~std::uint32_t{0};
+
+/// Slices of a level of so many that one thread gathers at a time.
+std::uint32_t CoarseChunkSize(std::uint32_t slices) {
+  return std::max(kChunkCoarseSlices, slices / Workers::kMaxChunks + 1);
+}
+
+/// to += scale (link + slack), six values kStride apart.
+///
+/// \param links, slack  of the level; slack null where there is none
+template <std::size_t kStride>
+inline void AddLink(const float* links, const float* slack, std::size_t entry, float scale,
+                    float* to) noexcept {
+  const float* const from = links + LinkAt(entry);
+  const float firmer = slack == nullptr ? 0.0f : slack[entry];
+  to[0] += scale * (from[0] + firmer);
+  to[kStride] += scale * from[kSliceNodes];
+  to[2 * kStride] += scale * from[2 * kSliceNodes];
+  to[3 * kStride] += scale * (from[3 * kSliceNodes] + firmer);
+  to[4 * kStride] += scale * from[4 * kSliceNodes];
+  to[5 * kStride] += scale * (from[5 * kSliceNodes] + firmer);
+}
+
+/// Which nodes are held or have a held neighbour: few are.
+void MarkNearHeld(LinkLevel& level) noexcept {
+  std::fill(level.near_held.begin(), level.near_held.end(), std::uint8_t{0});
+  const std::uint32_t n = level.Size();
+  for (std::uint32_t i = 0; i < n; ++i) {
+    if (level.is_free[i] != 0.0f) continue;
+    level.near_held[i] = 1;
+    for (std::uint32_t h = 0; h < level.layout.RowSteps(i); ++h)
+      level.near_held[level.layout.others[level.layout.Entry(i, h)]] = 1;
+  }
+}
+
+/// Copies the links, known in the rows of their lower nodes, into those of the upper ones.
+void MirrorLinks(LinkLevel& level, std::uint32_t first_slice, std::uint32_t last_slice) noexcept {
+  const std::size_t last = std::size_t{level.layout.starts[last_slice]} * kSliceNodes;
+  const std::uint32_t* const mirror = level.mirror_entry.data();
+  float* const links = level.links.data();
+  for (std::size_t entry = std::size_t{level.layout.starts[first_slice]} * kSliceNodes; entry < last;
+       ++entry) {
+    if (mirror[entry] == kNoEntry) continue;
+    const float* const from = links + LinkAt(mirror[entry]);
+    float* const to = links + LinkAt(entry);
+    for (std::size_t v = 0; v < 6; ++v) to[v * kSliceNodes] = from[v * kSliceNodes];
+  }
+}
 }  // namespace
 
 void LinkLevel::SetGraph(const NodeGraph& graph) {
@@ -59,16 +108,19 @@ void LinkLevel::SetGraph(const NodeGraph& graph) {
   links.assign(6 * entries, 0.0f);
   ground.assign(6 * padded, 0.0f), inverse.assign(6 * padded, 0.0f), is_free.assign(padded, 0.0f);
   x.assign(padded, {}), b.assign(padded, {}), r.assign(padded, {});
-  aggregate.clear(), member_starts.clear(), members.clear(), coarse_entry.clear();
+  aggregate.clear(), member_starts.clear(), members.clear();
+  coarsened.clear(), coarsened_starts.clear(), mirror_entry.clear(), near_held.clear();
 }
 
 void LinkLevel::Reserve(std::size_t nodes, std::size_t steps) {
   layout.starts.reserve(nodes / kSliceNodes + 2);
-  for (auto* entries : {&layout.others, &coarse_entry}) entries->reserve(steps * kSliceNodes);
+  for (auto* entries : {&layout.others, &mirror_entry}) entries->reserve(steps * kSliceNodes);
+  coarsened.reserve(steps * kSliceNodes / 2);
+  near_held.reserve(nodes);
   links.reserve(6 * steps * kSliceNodes);
   for (auto* blocks : {&ground, &inverse}) blocks->reserve(6 * nodes);
   is_free.reserve(nodes);
-  for (auto* list : {&aggregate, &member_starts, &members}) list->reserve(nodes + 2);
+  for (auto* list : {&aggregate, &member_starts, &members, &coarsened_starts}) list->reserve(nodes + 2);
   for (auto* vector : {&x, &b, &r}) vector->reserve(nodes);
 }
 
@@ -114,20 +166,43 @@ void LinkHierarchy::SetGraph(const NodeGraph& graph, std::span<const double> sti
 /// The way from a level to the next: members of the aggregates, and the coarse link that each link is part of.
 void LinkHierarchy::FillTransfer(const NodeGraph& fine, const NodeGraph& coarse, std::size_t at) {
   LinkLevel& level = levels_[at];
-  const SliceLayout& next = levels_[at + 1].layout;
+  LinkLevel& next = levels_[at + 1];
   level.aggregate = aggregation_.Aggregate();
   Aggregation::ListMembers(level.aggregate, coarse.Size(), level.member_starts, level.members);
-  level.coarse_entry.assign(level.layout.Steps() * kSliceNodes, LinkLevel::kNoEntry);
-  places_.assign(coarse.Size(), 0);
+  level.near_held.assign(level.Size(), 0);
+  const std::uint32_t chunk_nodes = CoarseChunkSize(next.layout.Slices()) * kSliceNodes;
+  coarse_entry_.assign(level.layout.Steps() * kSliceNodes, kNoEntry);
+  next.mirror_entry.assign(next.layout.Steps() * kSliceNodes, kNoEntry);
+  places_.assign(coarse.Size(), 0), counts_.assign(coarse.Size(), 0);
+  level.coarsened_starts.clear();
+  std::uint32_t coarsened = 0;
   for (std::uint32_t from = 0; from < coarse.Size(); ++from) {
-    for (auto h = coarse.starts[from]; h < coarse.starts[from + 1]; ++h)
-      places_[coarse.others[h]] = static_cast<std::uint32_t>(next.Entry(from, h - coarse.starts[from]));
+    if (from % chunk_nodes == 0) level.coarsened_starts.push_back(coarsened);
+    for (auto h = coarse.starts[from]; h < coarse.starts[from + 1]; ++h) {
+      const std::uint32_t to = coarse.others[h];
+      places_[to] = static_cast<std::uint32_t>(next.layout.Entry(from, h - coarse.starts[from]));
+      // rows are in ascending order: this is the next of the other's row
+      if (to > from) next.mirror_entry[next.layout.Entry(to, counts_[to]++)] = places_[to];
+    }
     for (auto m = level.member_starts[from]; m < level.member_starts[from + 1]; ++m) {
       const std::uint32_t i = level.members[m];
       for (auto h = fine.starts[i]; h < fine.starts[i + 1]; ++h) {
         const std::uint32_t to = level.aggregate[fine.others[h]];
-        if (to != from) level.coarse_entry[level.layout.Entry(i, h - fine.starts[i])] = places_[to];
+        if (to <= from) continue;
+        coarse_entry_[level.layout.Entry(i, h - fine.starts[i])] = places_[to];
+        ++coarsened;
       }
+    }
+  }
+  level.coarsened_starts.push_back(coarsened);
+  level.coarsened.resize(coarsened);
+  counts_.assign(level.coarsened_starts.begin(), level.coarsened_starts.end());
+  std::uint32_t entry = 0;
+  for (std::uint32_t slice = 0; slice < level.layout.Slices(); ++slice) {
+    for (const std::uint32_t end = level.layout.starts[slice + 1] * kSliceNodes; entry < end; ++entry) {
+      if (coarse_entry_[entry] == kNoEntry) continue;
+      const std::uint32_t node = slice * kSliceNodes + entry % kSliceNodes;
+      level.coarsened[counts_[level.aggregate[node] / chunk_nodes]++] = {entry, coarse_entry_[entry], node};
     }
   }
 }
@@ -139,7 +214,8 @@ void LinkHierarchy::Reserve(double share) {
   const std::size_t nodes = more(levels_.front().Size()), links = more(levels_.front().layout.others.size());
   fine_.Reserve(nodes, links);
   aggregation_.Reserve(nodes, links);
-  places_.reserve(nodes);
+  for (auto* list : {&places_, &counts_}) list->reserve(nodes);
+  coarse_entry_.reserve(links);
   chains_.Reserve(share);
   // another graph may need other levels: each has room for half of the one before, and there are two more
   std::size_t level_nodes = nodes, steps = links / kSliceNodes;
@@ -154,25 +230,44 @@ void LinkHierarchy::Reserve(double share) {
   inverse_.reserve(9 * kDirectNodes * kDirectNodes);
 }
 
-/// Each aggregate gathers from its members, one after the other: no two threads write the same number, and sums do
-/// not depend on who forms them.
+/// Each chunk of aggregates gathers from its members, one after the other: no two threads write the same number, and
+/// sums do not depend on who forms them. A link is gathered by the lower of its two aggregates, and copied to the other.
 void LinkHierarchy::Coarsen(Workers& workers, std::size_t at, std::span<const float> slack) noexcept {
+  LinkLevel& level = levels_[at];
   LinkLevel& next = levels_[at + 1];
-  const std::uint32_t slices = next.layout.Slices();
-  const std::uint32_t size = std::max(kChunkCoarseSlices, slices / Workers::kMaxChunks + 1);
+  MarkNearHeld(level);
+  const std::uint32_t slices = next.layout.Slices(), size = CoarseChunkSize(slices);
   workers.Run((slices + size - 1) / size, [&](std::uint32_t chunk) {
     const std::uint32_t first = chunk * size, last = std::min(slices, first + size);
     constexpr std::size_t kBlock = 6 * kSliceNodes;
     std::fill(next.links.begin() + static_cast<std::ptrdiff_t>(kBlock * next.layout.starts[first]),
               next.links.begin() + static_cast<std::ptrdiff_t>(kBlock * next.layout.starts[last]), 0.0f);
     const std::uint32_t end = std::min(next.Size(), last * kSliceNodes);
-    for (std::uint32_t a = first * kSliceNodes; a < end; ++a) GatherAggregate(at, a, slack);
+    for (std::uint32_t a = first * kSliceNodes; a < end; ++a) GatherGround(at, a, slack);
+    const float* const is_free = level.is_free.data();
+    const std::uint8_t* const near_held = level.near_held.data();
+    const float* const links = level.links.data();
+    const float* const slack_of = slack.empty() ? nullptr : slack.data();
+    float* const coarse_links = next.links.data();
+    const std::uint32_t* const others = level.layout.others.data();
+    for (const CoarsenedLink& link :
+         std::span(level.coarsened)
+             .subspan(level.coarsened_starts[chunk],
+                      level.coarsened_starts[chunk + 1] - level.coarsened_starts[chunk])) {
+      if (near_held[link.node] != 0 && (is_free[link.node] == 0.0f || is_free[others[link.entry]] == 0.0f))
+        continue;
+      AddLink<kSliceNodes>(links, slack_of, link.entry, static_cast<float>(kCoarseLinkScale),
+                           coarse_links + LinkAt(link.coarse_entry));
+    }
+  });
+  workers.Run((slices + size - 1) / size, [&](std::uint32_t chunk) {
+    MirrorLinks(next, chunk * size, std::min(slices, (chunk + 1) * size));
   });
 }
 
-/// \pre The aggregate's links are zero.
-void LinkHierarchy::GatherAggregate(std::size_t at, std::uint32_t aggregate,
-                                    std::span<const float> slack) noexcept {
+/// What holds an aggregate: its members' ground, and their links to held nodes.
+void LinkHierarchy::GatherGround(std::size_t at, std::uint32_t aggregate,
+                                 std::span<const float> slack) noexcept {
   const LinkLevel& level = levels_[at];
   LinkLevel& next = levels_[at + 1];
   float ground[6] = {}, is_free = 0.0f;
@@ -181,26 +276,12 @@ void LinkHierarchy::GatherAggregate(std::size_t at, std::uint32_t aggregate,
     if (level.is_free[i] == 0.0f) continue;
     is_free = 1.0f;
     for (std::size_t v = 0; v < 6; ++v) ground[v] += level.ground[GroundAt(i) + v * kSliceNodes];
-    const std::size_t first = level.layout.Entry(i, 0),
-                      last = first + std::size_t{level.layout.RowSteps(i)} * kSliceNodes;
-    const float* from = level.links.data() + LinkAt(first);
-    for (std::size_t entry = first; entry < last; entry += kSliceNodes, from += 6 * kSliceNodes) {
-      const std::uint32_t other = level.layout.others[entry];
-      if (other == i) break;
-      const bool is_grounded = level.is_free[other] == 0.0f;
-      const std::uint32_t coarse = level.coarse_entry[entry];
-      if (!is_grounded && coarse == LinkLevel::kNoEntry) continue;
-      const float firmer = slack.empty() ? 0.0f : slack[entry];
-      const float link[6] = {from[0] + firmer,      from[kSliceNodes],
-                             from[2 * kSliceNodes], from[3 * kSliceNodes] + firmer,
-                             from[4 * kSliceNodes], from[5 * kSliceNodes] + firmer};
-      if (is_grounded) {
-        for (std::size_t v = 0; v < 6; ++v) ground[v] += link[v];
-      } else {
-        float* const to = next.links.data() + LinkAt(coarse);
-        for (std::size_t v = 0; v < 6; ++v)
-          to[v * kSliceNodes] += static_cast<float>(kCoarseLinkScale) * link[v];
-      }
+    if (level.near_held[i] == 0) continue;
+    for (std::uint32_t h = 0; h < level.layout.RowSteps(i); ++h) {
+      const std::size_t entry = level.layout.Entry(i, h);
+      if (level.layout.others[entry] == i) break;
+      if (level.is_free[level.layout.others[entry]] == 0.0f)
+        AddLink<1>(level.links.data(), slack.empty() ? nullptr : slack.data(), entry, 1.0f, ground);
     }
   }
   next.is_free[aggregate] = is_free;

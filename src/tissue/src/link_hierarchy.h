@@ -25,16 +25,27 @@
 
 namespace trocar::tissue {
 
+/// A link between two aggregates and the coarse link that it is part of, in the row of the lower one.
+struct CoarsenedLink {
+  std::uint32_t entry, coarse_entry;
+  std::uint32_t node;  // whose row `entry` is in
+};
+
 /// One level's matrix, its way to the next, and room for a cycle.
 struct LinkLevel {
   SliceLayout layout;
   AlignedVector<float> links, ground, inverse, is_free;  // as in LinkMatrix
   std::vector<std::uint32_t> aggregate;                  // (n) node of the next level, or Aggregation::kNone
   std::vector<std::uint32_t> member_starts, members;     // nodes of each aggregate
-  std::vector<std::uint32_t> coarse_entry;               // (entries) place of the link there, or kNoEntry
-  AlignedVector<Float4> x, b, r;                         // (padded nodes)
-
-  static constexpr std::uint32_t kNoEntry = ~std::uint32_t{0};
+  // those that a chunk of the next level's slices gathers, in the order in which they lie in memory: chunk c's begin
+  // at coarsened_starts[c]
+  std::vector<CoarsenedLink> coarsened;
+  std::vector<std::uint32_t> coarsened_starts;  // (chunks of the next level + 1)
+  std::vector<std::uint32_t>
+      mirror_entry;                     // (entries) the link in its other node's row where that is lower, or
+                                        // kNoEntry; for levels that gather
+  std::vector<std::uint8_t> near_held;  // (n) held, or next to one that is
+  AlignedVector<Float4> x, b, r;        // (padded nodes)
 
   std::uint32_t Size() const { return layout.node_count; }
   LinkMatrix Matrix() const;
@@ -81,7 +92,7 @@ class LinkHierarchy {
   /// x = about K^-1 b on the level.
   void Cycle(const Kernels& kernels, Workers& workers, std::size_t at, const Float4* b, Float4* x) noexcept;
   void Coarsen(Workers& workers, std::size_t at, std::span<const float> slack) noexcept;
-  void GatherAggregate(std::size_t at, std::uint32_t aggregate, std::span<const float> slack) noexcept;
+  void GatherGround(std::size_t at, std::uint32_t aggregate, std::span<const float> slack) noexcept;
   void InvertCoarsest() noexcept;
   void SolveCoarsest(const Float4* b, Float4* x) const noexcept;
 
@@ -95,7 +106,7 @@ class LinkHierarchy {
   // room for SetGraph
   Aggregation aggregation_;
   LinkGraph fine_;
-  std::vector<std::uint32_t> places_;
+  std::vector<std::uint32_t> places_, counts_, coarse_entry_;
   std::vector<double> factor_, rows_;  // room for the inversion of the coarsest level, dense
   std::vector<float> inverse_;         // of the coarsest level; empty where that is too large
   bool is_inverted_ = false;

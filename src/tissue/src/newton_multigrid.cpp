@@ -295,9 +295,11 @@ SolveReport NewtonMultigrid::Solve(const Kernels& kernels, Workers& workers, con
     report.error = scale > 0.0     ? largest / (CalcSeenShare(smallest_ritz) * scale)
                    : largest > 0.0 ? INFINITY
                                    : 0.0;
+    report.converged = report.error <= settings.max_error;
+  };
+  const auto report_residual = [&] {
     report.residual = balance_.force_scale > 0.0 ? balance_.largest_residual / balance_.force_scale : 0.0;
     report.force_scale = balance_.force_scale;
-    report.converged = report.error <= settings.max_error;
   };
 
   double moved = 0;  // bound of how far any node went since the coarser levels were computed [m]
@@ -311,15 +313,20 @@ SolveReport NewtonMultigrid::Solve(const Kernels& kernels, Workers& workers, con
   update_coarse();
   estimate();
   double radius = std::fmax(first_radius, kFarShare * preconditioned);
-  while (!report.converged && report.iterations < settings.max_newton_steps &&
-         report.linear_iterations < settings.max_linear_total && balance_.is_finite) {
+  // to halve a step costs as much as an iteration
+  const auto count_left = [&] {
+    return settings.max_linear_total - report.linear_iterations - report.restarts;
+  };
+  const auto is_at_bound = [&] {
+    return report.iterations >= settings.max_newton_steps || count_left() <= 0;
+  };
+  while (!report.converged && !is_at_bound() && balance_.is_finite) {
     const double before = balance_.energy;
     const auto first_multipliers = multipliers_;
-    const LinearReport linear = SolveLinear(
-        kernels, workers,
-        std::min(settings.max_linear_iterations, settings.max_linear_total - report.linear_iterations),
-        (preconditioned > first_radius ? kFarForcing : kForcing) * preconditioned,
-        kLinearShare * settings.max_error * scale, smallest_ritz, radius);
+    const LinearReport linear =
+        SolveLinear(kernels, workers, std::min(settings.max_linear_iterations, count_left()),
+                    (preconditioned > first_radius ? kFarForcing : kForcing) * preconditioned,
+                    kLinearShare * settings.max_error * scale, smallest_ritz, radius);
     smallest_ritz = std::fmin(smallest_ritz, linear.smallest_ritz);
     report.linear_iterations += linear.iterations;
     report.negative_curvatures += linear.met_negative_curvature;
@@ -369,15 +376,20 @@ SolveReport NewtonMultigrid::Solve(const Kernels& kernels, Workers& workers, con
       multipliers_[c] = share * multipliers_[c] + (1.0 - share) * first_multipliers[c];
     // a constraint is kept after every step, whatever the hook's interval: a step here is worth many
     // iterations
-    if (hook != nullptr) {
-      call_hook();
-      linearise();
+    if (hook != nullptr) call_hook();
+    if (is_at_bound()) {
+      // nobody goes on from here: the stiffness and the estimate are as dear as two iterations
+      if (hook != nullptr) linearisation_.CalcBalance(kernels, workers, position_, balance_);
+      report.error = NAN;
+      break;
     }
+    if (hook != nullptr) linearise();
     moved += share * length;
     if (moved > kStaleMove * edge_length_) update_coarse();
     if (share * length > kSnapMove * edge_length_) smallest_ritz = INFINITY;
     estimate();
   }
+  report_residual();
   write_back();
   return report;
 }

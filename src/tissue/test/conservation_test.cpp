@@ -226,6 +226,31 @@ TEST(Conservation, NoMoreLeaksThanIsInside) {
   }
 }
 
+// Half of its strands gone, a sac answers pressure otherwise; ticks without time go on with what was known, but not for ever.
+TEST(Conservation, FollowsAChangeWhenThereIsTimeOrAtLastWithout) {
+  for (const bool has_time : {true, false}) {
+    Sac sac(3e4);
+    Conservation conservation(sac.model, sac.settings);
+    ConservationState state = conservation.MakeState(sac.tissue);
+    const auto tick = [&](bool has_time_now) {
+      conservation.CarryAlong(sac.tissue, state);
+      (void)conservation.CalcForce(sac.tissue, {}, state);
+      conservation.Enforce({}, kTick, sac.tissue, state, has_time_now);
+      (void)conservation.CalcForce(sac.tissue, {}, state);
+      return state.organs[0].compliance;
+    };
+    const double whole = tick(true);
+    auto& strands = sac.tissue.strand_is_intact;
+    std::fill(strands.begin(), strands.begin() + static_cast<std::ptrdiff_t>(strands.size() / 2), 0);
+    if (has_time) {
+      EXPECT_GT(tick(true), 1.001 * whole);
+      continue;
+    }
+    for (int i = 0; i < Conservation::kMostWait; ++i) EXPECT_NEAR(tick(false) / whole, 1.0, 1e-6) << i;
+    EXPECT_GT(tick(false), 1.001 * whole);
+  }
+}
+
 // Mirrored, a sac shrinks under pressure: how its volume answers is of no use then, as after some cuts. A hand
 // that holds it takes it along all the same, tick for tick.
 TEST(Conservation, AHeldPieceFollowsTheHandWhereItsVolumeDoesNotAnswer) {

@@ -39,6 +39,31 @@ TEST(LinearResponse, IsTheAnswerOfTheModelToASmallForce) {
   }
 }
 
+// Where only strands have parted, the short way is the long one, bit for bit.
+TEST(LinearResponse, FollowsStrandsAsIfTheWholeStiffnessWereTaken) {
+  TissueDefinition definition = MakeMembrane(geometry::MakeSphere({0, 0, 0}, 0.03, 2), 100.0, 3e4);
+  definition.fixed = {3, 4};
+  definition.strands = {{5, 90, 40.0}, {5, 60, 30.0}, {3, 70, 20.0}};
+  const TissueModel model = MakeTissueModel(definition);
+  TissueState state = MakeRestState(model);
+  const TissueLoad load{.stiffness_scale = 1.5, .shape_scale = 0.7};
+  const std::vector<Vec3> force(model.Size(), Vec3{0, 0.5, 1});
+  const auto answer = [&](LinearResponse& linear) {
+    std::vector<Vec3> response(model.Size());
+    (void)linear.Solve(force, 20, 0.0, response);
+    return response;
+  };
+  LinearResponse followed(model), anew(model);
+  followed.SetStiffness(state, load);
+  const auto whole = answer(followed);
+  state.strand_is_intact[0] = 0, state.strand_is_intact[2] = 0;
+  followed.FollowStrands(state, load);
+  anew.SetStiffness(state, load);
+  const auto parted = answer(followed);
+  EXPECT_EQ(parted, answer(anew));
+  EXPECT_NE(parted, whole) << "negative control";
+}
+
 TEST(LinearResponse, AGoodFirstGuessNeedsNoIteration) {
   const TissueModel model =
       MakeTissueModel(MakeMembrane(geometry::MakeSphere({0, 0, 0}, 0.03, 1), 100.0, 3e4));

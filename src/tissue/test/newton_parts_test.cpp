@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <map>
 #include <random>
 #include <vector>
 
@@ -111,6 +112,65 @@ std::vector<float> Values(const LinkHierarchy& hierarchy) {
       all.insert(all.end(), values->begin(), values->end());
   }
   return all;
+}
+
+// Oracle: two aggregates' members, pair by pair. What joins a member to a held node holds its aggregate.
+TEST(LinkHierarchy, CoarseLevelsAreTheSumsOfTheirMembers) {
+  constexpr std::size_t kDiagonal[] = {0, 3, 5};
+  const Patient patient;
+  const TissueModel model = MakeTissueModel(patient.definition);
+  Evaluated evaluated(model, {}, Shake(model, 1e-3, 3), Levels().back());
+  evaluated.hierarchy.UpdateCoarse(*evaluated.kernels, evaluated.workers, evaluated.linearisation.Slack());
+  const auto levels = evaluated.hierarchy.Levels();
+  ASSERT_GE(levels.size(), 3u);
+  for (std::size_t at = 0; at + 1 < levels.size(); ++at) {
+    const LinkLevel &fine = levels[at], &coarse = levels[at + 1];
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::array<double, 6>> links;
+    std::vector<std::array<double, 6>> grounds(coarse.Size());
+    std::size_t held = 0;
+    for (std::uint32_t i = 0; i < fine.Size(); ++i) {
+      if (fine.is_free[i] == 0.0f || fine.aggregate[i] == Aggregation::kNone) continue;
+      auto& ground = grounds[fine.aggregate[i]];
+      for (std::size_t v = 0; v < 6; ++v)
+        ground[v] += static_cast<double>(
+            fine.ground[i / kSliceNodes * 6 * kSliceNodes + v * kSliceNodes + i % kSliceNodes]);
+      for (std::uint32_t h = 0; h < fine.layout.RowSteps(i); ++h) {
+        const std::size_t entry = fine.layout.Entry(i, h);
+        const std::uint32_t other = fine.layout.others[entry];
+        if (other == i) break;
+        std::array<double, 6> link;
+        for (std::size_t v = 0; v < 6; ++v)
+          link[v] = static_cast<double>(
+              fine.links[entry / kSliceNodes * 6 * kSliceNodes + v * kSliceNodes + entry % kSliceNodes]);
+        for (const std::size_t v : kDiagonal)
+          link[v] += at == 0 ? static_cast<double>(evaluated.linearisation.Slack()[entry]) : 0.0;
+        const bool is_held = fine.is_free[other] == 0.0f;
+        held += is_held;
+        if (!is_held && fine.aggregate[other] == fine.aggregate[i]) continue;
+        auto& sum = is_held ? ground : links[{fine.aggregate[i], fine.aggregate[other]}];
+        for (std::size_t v = 0; v < 6; ++v) sum[v] += (is_held ? 1.0 : 0.7) * link[v];
+      }
+    }
+    EXPECT_TRUE(at > 0 || held > 0) << "the patient has held nodes";
+    for (std::uint32_t a = 0; a < coarse.Size(); ++a) {
+      for (std::size_t v = 0; v < 6; ++v) {
+        const auto value = static_cast<double>(
+            coarse.ground[a / kSliceNodes * 6 * kSliceNodes + v * kSliceNodes + a % kSliceNodes]);
+        EXPECT_NEAR(value, grounds[a][v], 1e-6 * (std::fabs(grounds[a][0]) + 1000.0)) << at << " " << a;
+      }
+      for (std::uint32_t h = 0; h < coarse.layout.RowSteps(a); ++h) {
+        const std::size_t entry = coarse.layout.Entry(a, h);
+        const std::uint32_t b = coarse.layout.others[entry];
+        if (b == a) break;
+        const std::array<double, 6> sum = links[{a, b}];
+        for (std::size_t v = 0; v < 6; ++v) {
+          const auto value = static_cast<double>(
+              coarse.links[entry / kSliceNodes * 6 * kSliceNodes + v * kSliceNodes + entry % kSliceNodes]);
+          EXPECT_NEAR(value, sum[v], 1e-6 * (std::fabs(sum[0]) + 1000.0)) << at << ": " << a << " " << b;
+        }
+      }
+    }
+  }
 }
 
 // Nothing of what the levels held before is left, and sums do not depend on who forms them.

@@ -159,6 +159,7 @@ TEST(NewtonMultigrid, SpendsNoMoreThanATickMayAndArrivesInMoreTicks) {
   do {
     report = solver.Solve(settings, sheet.Load(), state);
     EXPECT_LE(report.linear_iterations, 7);
+    EXPECT_EQ(std::isnan(report.error), !report.converged) << "nobody judges a solve that ended at its bound";
   } while (!report.converged && ++ticks < 100);
   EXPECT_GT(ticks, 0);
   EXPECT_TRUE(report.converged) << report.error;

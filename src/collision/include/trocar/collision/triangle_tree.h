@@ -74,6 +74,11 @@ class TriangleTree {
   std::size_t FindWithin(std::span<const Vec3> positions, const Capsule& capsule,
                          std::span<std::uint32_t> found) const noexcept;
 
+  /// Whether p lies inside of the surface: IsInside of queries.h with a look at the triangles along three rays.
+  /// \return false where p is not finite
+  /// \note Real-time safe: no allocation, lock or throw.
+  bool IsInside(std::span<const Vec3> positions, const Vec3& p) const noexcept;
+
   std::span<const Triangle> Triangles() const noexcept { return triangles_; }
 
  private:

@@ -122,8 +122,13 @@ class Conservation {
 
   /// After a solve: lets fluid leak for `dt` [s], brings each volume to its target exactly, and moves the
   /// frames of held free regions to their best fit.
+  ///
+  /// \param has_time  whether this tick can follow a change of topology or stiffness with how the volumes answer; what was
+  ///                  known before steers well enough, but for no more than kMostWait ticks
   /// \note Real-time safe; a state that is not finite is left for the state guard.
-  void Enforce(const TissueLoad& load, double dt, TissueState& tissue, ConservationState& state) noexcept;
+  void Enforce(const TissueLoad& load, double dt, TissueState& tissue, ConservationState& state,
+               bool has_time = true) noexcept;
+  static constexpr int kMostWait = 30;
 
   /// Makes a hole, or a larger one, in an organ.
   ///
@@ -158,7 +163,9 @@ class Conservation {
   std::vector<std::vector<Vec3>> first_responses_;  // of the whole tissue under the usual scales
   std::uint64_t response_links_ = 0, first_links_ = 0;
   bool responses_settled_ = false;
+  bool has_stiffness_ = false;    // linear_ has the stiffness of rest_, this model's, under the scales above
   bool has_followed_ = false;     // since the last Enforce()
+  int waited_ = 0;                // ticks that left the responses to a later one
   std::vector<Vec3> gradient_;    // (n) of each node's organ; zero elsewhere
   std::vector<Vec3> base_force_;  // (n) without pressure
   std::vector<Vec3> force_;       // (n)

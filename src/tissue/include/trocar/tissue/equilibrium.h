@@ -26,7 +26,7 @@ struct SolveReport {
   /// largest tension [-]; 0 where no spring stiffens.
   double law_error = 0;
   /// Newton: estimated largest distance of a node to the equilibrium, over the largest distance of any node
-  /// from rest [-]; NaN where the solver has no estimate.
+  /// from rest [-]; NaN where the solver has no estimate, as where it ended at a bound of SolverSettings.
   double error = NAN;
   int coarse_levels = 0;        ///< grids that a coarse-to-fine start went through
   int linear_iterations = 0;    ///< of conjugate gradients, all Newton steps together

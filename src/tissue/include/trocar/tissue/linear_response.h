@@ -29,6 +29,10 @@ class LinearResponse {
   /// Takes the stiffness K of the tissue as it lies; contacts are not counted.
   /// \note Real-time safe.
   void SetStiffness(const TissueState& state, const TissueLoad& load) noexcept;
+  /// The same where only strands have parted since: a small part of the work.
+  /// \pre SetStiffness() with these positions, conditions, spring factors and scales
+  /// \note Real-time safe.
+  void FollowStrands(const TissueState& state, const TissueLoad& load) noexcept;
 
   /// Solves K u = f over the nodes that are not prescribed; u is zero on the others. Conjugate gradients,
   /// preconditioned by each node's own 3 x 3 stiffness.
@@ -43,6 +47,7 @@ class LinearResponse {
 
  private:
   void Apply(std::span<const Vec3> u, std::span<Vec3> product) const noexcept;
+  void SetOwnBlock(std::uint32_t node, const TissueState& state, const TissueLoad& load) noexcept;
 
   struct Link {
     Vec3 along;            // sqrt(k (1 - across)) times the direction
@@ -53,7 +58,8 @@ class LinearResponse {
   std::vector<double> strands_;  // (half-strands)
   std::vector<double> own_;      // (n) isotropic stiffness of the node's own virtual spring
   std::vector<std::uint8_t> is_free_;
-  std::vector<std::array<double, 6>> inverse_;
+  // (n) what springs alone hold a node with, and the inverse of all that holds it: xx, xy, xz, yy, yz, zz
+  std::vector<std::array<double, 6>> spring_block_, inverse_;
   std::vector<Vec3> residual_, preconditioned_, direction_, product_;
 };
 

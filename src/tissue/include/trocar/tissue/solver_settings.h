@@ -38,7 +38,8 @@ struct SolverSettings {
   double max_error = 5e-4;
   int max_newton_steps = 40;       ///< per tick; two as a rule, many where a fold snaps through
   int max_linear_iterations = 60;  ///< of conjugate gradients, per Newton step
-  int max_linear_total = 100000;   ///< the same of all Newton steps of a tick, >= 1: bounds its time
+  /// The same of all Newton steps of a tick together, with the halvings of steps that led uphill, >= 1: bounds its time.
+  int max_linear_total = 100000;
 
   /// Springs that stiffen are taken as lines that touch their law, solve after solve, until the lines are off
   /// by less than this part of the largest tension [-].
