@@ -21,15 +21,10 @@ constexpr double kLeastSeenShare = 1e-3;
 /// [-]: what is of second order is left over anyway.
 constexpr double kForcing = 0.03;
 /// Longest move of a node in the first Newton step, in mean spring lengths [-]: the stiffness is that of
-/// springs that have not turned far. A node that a tool has carried farther asks its neighbours for more than that: the
-/// preconditioned residual shows how far, and the step may go kFarShare of it. Conjugate gradients stop where they leave this range (Steihaug, "The
+/// springs that have not turned far. Conjugate gradients stop where they leave this range (Steihaug, "The
 /// conjugate gradient method and trust regions in large scale optimization", SIAM J. Numer. Anal. 20, 1983):
 /// by then the stiff part of the step is solved, and the soft one goes on in the next step.
 constexpr double kFirstRadius = 0.1;
-constexpr double kFarShare = 0.7;
-/// Where the preconditioned residual is longer than that first range, a step is solved only to this part of it [-]: what
-/// is of second order is most of what is left over.
-constexpr double kFarForcing = 0.2;
 /// The range grows by this where a step used all of it and lowered the energy as predicted, and shrinks to as
 /// many times what was left of a step that did not [-].
 constexpr double kRadiusGrowth = 2.0;
@@ -43,8 +38,8 @@ constexpr double kEnergyRounding = 1e-12;
 /// at rest the tolerance is zero, and what follows is rounding.
 constexpr double kLinearRounding = 1e-12;
 /// Coarser levels are computed again when a node may have gone so far, in mean spring lengths [-]: they follow
-/// the springs' directions. Earlier costs time and spares no iteration.
-constexpr double kStaleMove = 1.0;
+/// the springs' directions, which have hardly turned before.
+constexpr double kStaleMove = 0.2;
 /// A soft mode that an earlier step met is forgotten when a node goes so far in one step, in mean spring lengths [-]:
 /// a fold has snapped, and is stiff now.
 constexpr double kSnapMove = 0.02;
@@ -308,11 +303,10 @@ SolveReport NewtonMultigrid::Solve(const Kernels& kernels, Workers& workers, con
     has_answers_ = false;
     moved = 0;
   };
-  const double first_radius = edge_length_ > 0.0 ? kFirstRadius * edge_length_ : INFINITY;
+  double radius = edge_length_ > 0.0 ? kFirstRadius * edge_length_ : INFINITY;
   linearise();
   update_coarse();
   estimate();
-  double radius = std::fmax(first_radius, kFarShare * preconditioned);
   // to halve a step costs as much as an iteration
   const auto count_left = [&] {
     return settings.max_linear_total - report.linear_iterations - report.restarts;
@@ -323,10 +317,9 @@ SolveReport NewtonMultigrid::Solve(const Kernels& kernels, Workers& workers, con
   while (!report.converged && !is_at_bound() && balance_.is_finite) {
     const double before = balance_.energy;
     const auto first_multipliers = multipliers_;
-    const LinearReport linear =
-        SolveLinear(kernels, workers, std::min(settings.max_linear_iterations, count_left()),
-                    (preconditioned > first_radius ? kFarForcing : kForcing) * preconditioned,
-                    kLinearShare * settings.max_error * scale, smallest_ritz, radius);
+    const LinearReport linear = SolveLinear(
+        kernels, workers, std::min(settings.max_linear_iterations, count_left()), kForcing * preconditioned,
+        kLinearShare * settings.max_error * scale, smallest_ritz, radius);
     smallest_ritz = std::fmin(smallest_ritz, linear.smallest_ritz);
     report.linear_iterations += linear.iterations;
     report.negative_curvatures += linear.met_negative_curvature;

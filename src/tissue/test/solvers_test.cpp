@@ -334,34 +334,6 @@ TEST(Newton, ItsEstimateBoundsTheTrueErrorWhereTheResidualDoesNot) {
   EXPECT_GT(report.error, 0.5 * error);
 }
 
-// Tools carry a node by one or two edges in one tick: what is asked of the neighbours is no less than that, and a step may go as
-// far. Held to a tenth of an edge at first, these took 25 steps together.
-TEST(Newton, FollowsANodeThatWasCarriedFarInFewSteps) {
-  const Sheet sheet = MakeSheet(60, 0.0);
-  TissueState rest = sheet.start;
-  EquilibriumSolver solver(sheet.model, 1);
-  SolverSettings settings = Exact(SolverKind::kNewtonMultigrid);
-  (void)solver.Solve(Exact(SolverKind::kAdaptive), sheet.Load(), rest);
-  settings.max_error = 1e-7;
-  ASSERT_TRUE(solver.Solve(settings, sheet.Load(), rest).converged);
-  int steps = 0;
-  for (const double distance : {0.5, 1.0, -1.0, 2.0}) {
-    TissueState state = rest;
-    const std::size_t node = 15 * 60 + 15;
-    state.condition[node] = NodeCondition::kPrescribed;
-    state.position[node].z += distance;
-    settings.max_error = 1e-3;
-    const SolveReport report = solver.Solve(settings, sheet.Load(), state);
-    EXPECT_TRUE(report.converged);
-    steps += report.iterations;
-    TissueState truth = state;
-    settings.max_error = 1e-7;
-    ASSERT_TRUE(solver.Solve(settings, sheet.Load(), truth).converged);
-    EXPECT_LT(CalcError(sheet.model, state, truth), 1e-3);
-  }
-  EXPECT_LE(steps, 22);
-}
-
 // Two states of a compressed column are stable; the way back from a crumpled start must end in one that is.
 TEST(Newton, ComesHomeFromACrumpledStart) {
   const auto mesh = geometry::MakeSphere({0, 0, 0}, 0.03, 3);
