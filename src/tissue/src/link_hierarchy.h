@@ -37,13 +37,12 @@ struct LinkLevel {
   AlignedVector<float> links, ground, inverse, is_free;  // as in LinkMatrix
   std::vector<std::uint32_t> aggregate;                  // (n) node of the next level, or Aggregation::kNone
   std::vector<std::uint32_t> member_starts, members;     // nodes of each aggregate
-  // those that a chunk of the next level's slices gathers, in the order in which they lie in memory: chunk c's begin
-  // at coarsened_starts[c]
+  /// Links that the next level gathers, in the order in which they lie in memory; chunk c of its slices gathers those from
+  /// coarsened_starts[c] on.
   std::vector<CoarsenedLink> coarsened;
   std::vector<std::uint32_t> coarsened_starts;  // (chunks of the next level + 1)
-  std::vector<std::uint32_t>
-      mirror_entry;                     // (entries) the link in its other node's row where that is lower, or
-                                        // kNoEntry; for levels that gather
+  /// (entries) of a level that gathers: the link in its other node's row where that is the lower one, or kNoEntry.
+  std::vector<std::uint32_t> mirror_entry;
   std::vector<std::uint8_t> near_held;  // (n) held, or next to one that is
   AlignedVector<Float4> x, b, r;        // (padded nodes)
 

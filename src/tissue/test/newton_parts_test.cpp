@@ -114,6 +114,11 @@ std::vector<float> Values(const LinkHierarchy& hierarchy) {
   return all;
 }
 
+/// Value v of the symmetric matrix of a node or an entry.
+double ValueAt(const AlignedVector<float>& values, std::size_t at, std::size_t v) {
+  return static_cast<double>(values[at / kSliceNodes * 6 * kSliceNodes + v * kSliceNodes + at % kSliceNodes]);
+}
+
 // Oracle: two aggregates' members, pair by pair. What joins a member to a held node holds its aggregate.
 TEST(LinkHierarchy, CoarseLevelsAreTheSumsOfTheirMembers) {
   constexpr std::size_t kDiagonal[] = {0, 3, 5};
@@ -131,17 +136,13 @@ TEST(LinkHierarchy, CoarseLevelsAreTheSumsOfTheirMembers) {
     for (std::uint32_t i = 0; i < fine.Size(); ++i) {
       if (fine.is_free[i] == 0.0f || fine.aggregate[i] == Aggregation::kNone) continue;
       auto& ground = grounds[fine.aggregate[i]];
-      for (std::size_t v = 0; v < 6; ++v)
-        ground[v] += static_cast<double>(
-            fine.ground[i / kSliceNodes * 6 * kSliceNodes + v * kSliceNodes + i % kSliceNodes]);
+      for (std::size_t v = 0; v < 6; ++v) ground[v] += ValueAt(fine.ground, i, v);
       for (std::uint32_t h = 0; h < fine.layout.RowSteps(i); ++h) {
         const std::size_t entry = fine.layout.Entry(i, h);
         const std::uint32_t other = fine.layout.others[entry];
         if (other == i) break;
         std::array<double, 6> link;
-        for (std::size_t v = 0; v < 6; ++v)
-          link[v] = static_cast<double>(
-              fine.links[entry / kSliceNodes * 6 * kSliceNodes + v * kSliceNodes + entry % kSliceNodes]);
+        for (std::size_t v = 0; v < 6; ++v) link[v] = ValueAt(fine.links, entry, v);
         for (const std::size_t v : kDiagonal)
           link[v] += at == 0 ? static_cast<double>(evaluated.linearisation.Slack()[entry]) : 0.0;
         const bool is_held = fine.is_free[other] == 0.0f;
@@ -154,9 +155,8 @@ TEST(LinkHierarchy, CoarseLevelsAreTheSumsOfTheirMembers) {
     EXPECT_TRUE(at > 0 || held > 0) << "the patient has held nodes";
     for (std::uint32_t a = 0; a < coarse.Size(); ++a) {
       for (std::size_t v = 0; v < 6; ++v) {
-        const auto value = static_cast<double>(
-            coarse.ground[a / kSliceNodes * 6 * kSliceNodes + v * kSliceNodes + a % kSliceNodes]);
-        EXPECT_NEAR(value, grounds[a][v], 1e-6 * (std::fabs(grounds[a][0]) + 1000.0)) << at << " " << a;
+        EXPECT_NEAR(ValueAt(coarse.ground, a, v), grounds[a][v], 1e-6 * (std::fabs(grounds[a][0]) + 1000.0))
+            << at << " " << a;
       }
       for (std::uint32_t h = 0; h < coarse.layout.RowSteps(a); ++h) {
         const std::size_t entry = coarse.layout.Entry(a, h);
@@ -164,9 +164,8 @@ TEST(LinkHierarchy, CoarseLevelsAreTheSumsOfTheirMembers) {
         if (b == a) break;
         const std::array<double, 6> sum = links[{a, b}];
         for (std::size_t v = 0; v < 6; ++v) {
-          const auto value = static_cast<double>(
-              coarse.links[entry / kSliceNodes * 6 * kSliceNodes + v * kSliceNodes + entry % kSliceNodes]);
-          EXPECT_NEAR(value, sum[v], 1e-6 * (std::fabs(sum[0]) + 1000.0)) << at << ": " << a << " " << b;
+          EXPECT_NEAR(ValueAt(coarse.links, entry, v), sum[v], 1e-6 * (std::fabs(sum[0]) + 1000.0))
+              << at << ": " << a << " " << b;
         }
       }
     }

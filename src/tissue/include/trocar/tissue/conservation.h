@@ -124,11 +124,11 @@ class Conservation {
   /// frames of held free regions to their best fit.
   ///
   /// \param has_time  whether this tick can follow a change of topology or stiffness with how the volumes answer; what was
-  ///                  known before steers well enough, but for no more than kMostWait ticks
+  ///                  known before steers well enough, but after kMostWait ticks one goes on with it all the same
   /// \note Real-time safe; a state that is not finite is left for the state guard.
   void Enforce(const TissueLoad& load, double dt, TissueState& tissue, ConservationState& state,
                bool has_time = true) noexcept;
-  static constexpr int kMostWait = 30;
+  static constexpr int kMostWait = 30;  ///< ticks
 
   /// Makes a hole, or a larger one, in an organ.
   ///

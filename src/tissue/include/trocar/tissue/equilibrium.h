@@ -20,7 +20,7 @@ struct SolveReport {
   double force_scale =
       0;  ///< largest force that acts on any such node through one spring, load or contact [N]
   bool converged =
-      false;       ///< residual <= tolerance, and springs that stiffen within SolverSettings::law_error
+      false;       ///< residual <= tolerance (Newton: error <= max_error), and springs within law_error
   int rounds = 1;  ///< solves with stiffening springs taken as lines, each about where the last ended
   /// Largest difference between a spring's tension by its law and by the line that stood for it, over the
   /// largest tension [-]; 0 where no spring stiffens.
