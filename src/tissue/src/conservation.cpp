@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <utility>
 
@@ -110,6 +111,7 @@ void Conservation::Follow(const TissueModel& model, std::vector<ClosedOrgan> org
   has_stiffness_ = false;
   has_followed_ = true;
   state.intact_links = std::numeric_limits<std::uint64_t>::max();
+  std::fill(state.last_motion.begin(), state.last_motion.end(), Vec3{});
 }
 
 ConservationState Conservation::MakeState(const TissueState& rest_state) const {
@@ -127,6 +129,7 @@ ConservationState Conservation::MakeState(const TissueState& rest_state) const {
                   state.regions);
   state.intact_links = CountIntact(rest_state);
   state.last_position = rest_state.position;
+  state.last_motion.resize(model_->Size());
   return state;
 }
 
@@ -215,6 +218,7 @@ void Conservation::CarryAlong(TissueState& tissue, ConservationState& state) noe
     }
     state.X_world_rest[region] = motion * state.X_world_rest[region];
   }
+  std::copy(tissue.position.begin(), tissue.position.end(), state.last_position.begin());
 }
 
 std::span<const Vec3> Conservation::CalcForce(const TissueState& tissue, const TissueLoad& load,
@@ -467,6 +471,8 @@ void Conservation::Enforce(const TissueLoad& load, double dt, TissueState& tissu
   (void)MeasureVolumes(tissue, state);
   SetPressureForce(state);
   FitFrames(load, tissue, state);
+  std::transform(tissue.position.begin(), tissue.position.end(), state.last_position.begin(),
+                 state.last_motion.begin(), std::minus{});
   std::copy(tissue.position.begin(), tissue.position.end(), state.last_position.begin());
 }
 
@@ -476,7 +482,8 @@ SolveReport SolveConserving(EquilibriumSolver& solver, const SolverSettings& set
   conservation.CarryAlong(tissue, state);
   load.external_force = conservation.CalcForce(tissue, load, state);
   VolumeHookContext context{&conservation, &state};
-  const SolveHook hook = MakeVolumeHook(context);
+  SolveHook hook = MakeVolumeHook(context);
+  hook.lead = state.last_motion;
   const SolveReport report = solver.Solve(settings, load, tissue, &hook);
   // a solve that went to its bounds has taken the tick's time
   conservation.Enforce(load, dt, tissue, state, report.converged);

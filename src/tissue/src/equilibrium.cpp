@@ -136,8 +136,11 @@ SolveReport EquilibriumSolver::Solve(const SolverSettings& settings, const Tissu
     c.adrift_condition[i] = state.condition[adrift[i]];
     if (!HangsOnStrand(*c.laws, state, adrift[i])) state.condition[adrift[i]] = NodeCondition::kPrescribed;
   }
+  SolveHook kept = hook != nullptr ? *hook : SolveHook{};
   const SolveReport report = c.lines->Follow(settings, state, [&](const SolverSettings& rest) noexcept {
-    return SolveLines(c, rest, load, state, hook);
+    const SolveReport round = SolveLines(c, rest, load, state, hook != nullptr ? &kept : nullptr);
+    kept.lead = {};  // gone by now
+    return round;
   });
   for (std::size_t i = 0; i < adrift.size(); ++i) state.condition[adrift[i]] = c.adrift_condition[i];
   return report;

@@ -43,6 +43,8 @@ constexpr double kStaleMove = 0.2;
 /// A soft mode that an earlier step met is forgotten when a node goes so far in one step, in mean spring lengths [-]:
 /// a fold has snapped, and is stiff now.
 constexpr double kSnapMove = 0.02;
+/// A lead in which no node goes farther than this is not tried, in mean spring lengths [-]: it saves nothing.
+constexpr double kLeastLead = 3e-4;
 
 double CalcSeenShare(double smallest_ritz) noexcept {
   return std::clamp(smallest_ritz, kLeastSeenShare, kSeenShare);
@@ -240,25 +242,51 @@ NewtonMultigrid::LinearReport NewtonMultigrid::SolveLinear(const Kernels& kernel
   return report;
 }
 
+void NewtonMultigrid::ReadPositions(const TissueState& state) noexcept {
+  for (std::uint32_t i = 0; i < model_.Size(); ++i) {
+    const Vec3& p = state.position[model_.old_of_new[i]];
+    position_[i] = {p.x, p.y, p.z, 0.0};
+  }
+}
+
+void NewtonMultigrid::WriteBack(TissueState& state) const noexcept {
+  for (std::uint32_t i = 0; i < model_.Size(); ++i) {
+    if (load_.is_free[i])
+      state.position[model_.old_of_new[i]] = {position_[i].x, position_[i].y, position_[i].z};
+  }
+}
+
+bool NewtonMultigrid::TakeLead(const Kernels& kernels, Workers& workers, const SolveHook& hook,
+                               TissueState& state) noexcept {
+  const double least = kLeastLead * edge_length_;
+  double longest2 = 0;
+  for (const Vec3& move : hook.lead) longest2 = std::fmax(longest2, math::SquaredNorm(move));
+  if (!(longest2 > least * least)) return false;
+  linearisation_.CalcBalance(kernels, workers, position_, balance_);
+  const double before = balance_.energy;
+  std::copy(position_.begin(), position_.end(), start_.begin());
+  for (std::uint32_t i = 0; i < model_.Size(); ++i) {
+    if (!load_.is_free[i]) continue;
+    const Vec3& move = hook.lead[model_.old_of_new[i]];
+    position_[i] = {start_[i].x + move.x, start_[i].y + move.y, start_[i].z + move.z, 0.0};
+  }
+  linearisation_.CalcBalance(kernels, workers, position_, balance_);
+  bool is_better = balance_.is_finite && balance_.energy < before;
+  if (is_better && hook.is_in_reach != nullptr) {
+    WriteBack(state);
+    is_better = hook.is_in_reach(hook.self, state);
+  }
+  if (!is_better) std::copy(start_.begin(), start_.end(), position_.begin());
+  return is_better;
+}
+
 SolveReport NewtonMultigrid::Solve(const Kernels& kernels, Workers& workers, const SolverSettings& settings,
                                    const TissueLoad& load, TissueState& state,
                                    const SolveHook* hook) noexcept {
   const std::uint32_t n = model_.Size();
-  const auto read_positions = [&] {
-    for (std::uint32_t i = 0; i < n; ++i) {
-      const Vec3& p = state.position[model_.old_of_new[i]];
-      position_[i] = {p.x, p.y, p.z, 0.0};
-    }
-  };
-  const auto write_back = [&] {
-    for (std::uint32_t i = 0; i < n; ++i) {
-      if (load_.is_free[i])
-        state.position[model_.old_of_new[i]] = {position_[i].x, position_[i].y, position_[i].z};
-    }
-  };
   SetOrderedLoad(model_, load, state, load_);
   linearisation_.SetLoad(load_, state.strand_is_intact, hierarchy_.Finest());
-  read_positions();
+  ReadPositions(state);
 
   SolveReport report;
   const auto linearise = [&] {
@@ -266,11 +294,11 @@ SolveReport NewtonMultigrid::Solve(const Kernels& kernels, Workers& workers, con
   };
   const auto call_hook = [&] {
     if (hook == nullptr) return;
-    write_back();
+    WriteBack(state);
     for (std::size_t c = 0; c < constraints_.size(); ++c)
       hook->add_multiplier(hook->self, constraints_[c].index, -multipliers_[c]);
     hook->act(hook->self, state, {});
-    read_positions();
+    ReadPositions(state);
     SetOrderedForce(model_, load, load_);
     linearisation_.SetForce();
   };
@@ -303,6 +331,8 @@ SolveReport NewtonMultigrid::Solve(const Kernels& kernels, Workers& workers, con
     has_answers_ = false;
     moved = 0;
   };
+  constraints_ = {};  // those of the last solve
+  if (hook != nullptr && TakeLead(kernels, workers, *hook, state)) call_hook();
   double radius = edge_length_ > 0.0 ? kFirstRadius * edge_length_ : INFINITY;
   linearise();
   update_coarse();
@@ -346,7 +376,7 @@ SolveReport NewtonMultigrid::Solve(const Kernels& kernels, Workers& workers, con
       is_lower = balance_.is_finite && balance_.energy <= before + kLeastDecrease * share * slope +
                                                               kEnergyRounding * std::fabs(before);
       if (is_lower && !constraints_.empty() && hook->is_in_reach != nullptr) {
-        write_back();
+        WriteBack(state);
         is_lower = hook->is_in_reach(hook->self, state);
       }
       report.restarts += !is_lower;
@@ -383,7 +413,7 @@ SolveReport NewtonMultigrid::Solve(const Kernels& kernels, Workers& workers, con
     estimate();
   }
   report_residual();
-  write_back();
+  WriteBack(state);
   return report;
 }
 

@@ -56,6 +56,10 @@ class NewtonMultigrid {
   /// solution of equality constrained quadratic programming problems arising in optimization", SIAM J. Sci.
   /// Comput. 23, 2001).
   void Precondition(const Kernels& kernels, Workers& workers) noexcept;
+  void ReadPositions(const TissueState& state) noexcept;
+  void WriteBack(TissueState& state) const noexcept;
+  /// Begins where the hook's lead goes to if the energy is lower there and the constraints are in reach.
+  bool TakeLead(const Kernels& kernels, Workers& workers, const SolveHook& hook, TissueState& state) noexcept;
   void Multiply(const Kernels& kernels, Workers& workers, const Float4* x, Float4* out) noexcept;
   void SetEdgeLength() noexcept;
 

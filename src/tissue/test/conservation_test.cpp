@@ -406,6 +406,57 @@ TEST(Conservation, TheJudgeOfATickKeepsTheVolumeAndFindsWhatExactTicksComeTo) {
   EXPECT_LT(distance(judged.tissue.position), 1e-3 * left);
 }
 
+// A hand that goes on draws the tissue on: a tick that may do little is nearer the equilibrium if it begins where the
+// last one leads.
+TEST(Conservation, ATickThatMayDoLittleFollowsAHandThatGoesOn) {
+  const auto pull = [](bool leads) {
+    Sac sac(3e4);
+    Conservation conservation(sac.model, sac.settings);
+    EquilibriumSolver solver(sac.model, 1), judge(sac.model, 1);
+    ConservationState state = conservation.MakeState(sac.tissue);
+    SolverSettings newton = kExact, little = kExact;
+    newton.kind = little.kind = SolverKind::kNewtonMultigrid;
+    little.max_linear_total = 4;
+    TissueLoad load;
+    for (int tick = 1; tick <= 30; ++tick) {
+      sac.Hold(sac.Pole({-1, 0, 0}), {{}, tick * Vec3{-2e-4, 1e-4, 0}});
+      load = {.gravity = {0.5, -1.0, 0.2}};
+      if (!leads) std::fill(state.last_motion.begin(), state.last_motion.end(), Vec3{});
+      (void)SolveConserving(solver, little, kTick, conservation, load, sac.tissue, state);
+    }
+    Sac judged = sac;
+    (void)FindConservedEquilibrium(judge, newton, conservation, load, judged.tissue, state);
+    double most = 0;
+    for (std::size_t i = 0; i < sac.organ_nodes; ++i)
+      most = std::fmax(most, math::Distance(judged.tissue.position[i], sac.tissue.position[i]));
+    return most;
+  };
+  const double with = pull(true), without = pull(false);
+  EXPECT_GT(without, 1e-5) << "the ticks were not cut short";
+  EXPECT_LT(with, 0.2 * without);
+}
+
+// Where the hand turns back, the way that the last tick leads is uphill.
+TEST(Conservation, ALeadUphillIsNotTaken) {
+  const auto tick = [](const Vec3& lead) {
+    Sac sac(3e4);
+    Conservation conservation(sac.model, sac.settings);
+    EquilibriumSolver solver(sac.model, 1);
+    ConservationState state = conservation.MakeState(sac.tissue);
+    SolverSettings little = kExact;
+    little.kind = SolverKind::kNewtonMultigrid;
+    little.max_linear_total = 4;
+    sac.Hold(sac.Pole({-1, 0, 0}), {{}, {-0.002, 0.001, 0}});
+    TissueLoad load;
+    std::fill(state.last_motion.begin(), state.last_motion.end(), lead);
+    (void)SolveConserving(solver, little, kTick, conservation, load, sac.tissue, state);
+    return sac.tissue.position[sac.Pole({0, 0, 1})[0]];
+  };
+  const Vec3 alone = tick({});
+  EXPECT_EQ(math::Distance(tick({0.003, 0, 0}), alone), 0.0);
+  EXPECT_GT(math::Distance(tick({-1e-4, 0, 0}), alone), 1e-6) << "negative control: downhill";
+}
+
 // Imaged organs lie on others; what hangs on the jaws alone weighs on them whole.
 TEST(Conservation, AFreedOrganHangsOnTheJawsByItsWholeWeight) {
   Sac sac(3e4);

@@ -71,6 +71,9 @@ struct SolveHook {
   /// Whether act() could bring the constraints back from these positions: they are linear only near by. A step that
   /// leads farther is taken back, as one that raises the energy.
   bool (*is_in_reach)(void* self, const TissueState& state) noexcept = nullptr;
+
+  /// How far each node may go, (n) or empty [m]: a solver that can tell the energy begins there if it is lower.
+  std::span<const Vec3> lead;
 };
 inline constexpr std::size_t kMaxHookConstraints = 8;
 
