@@ -47,6 +47,8 @@ constexpr double kSlipped = 0.5;  // after which the other hand takes hold anew 
 /// With fewer fibres parted in so long, the other hand swings elsewhere [s].
 constexpr std::size_t kHardly = 4;
 constexpr double kSlowSeconds = 12.0;
+/// So few fibres, where the hook does not come to them, are parted by the other hand's pull.
+constexpr std::size_t kLastFibres = 10;
 /// Share parted after which all is tried again, while there is something to do and when there is not [-].
 constexpr double kMoreParted = 0.03, kLittleParted = 0.004;
 
@@ -305,12 +307,16 @@ bool CholecystectomySurgeon::GoOnDissecting(Dissection& work, const Snapshot& se
     work.parted_at_reset = parted;
     parted = ChooseFibre(work, seen);
   }
-  TakeUpSlack(traction, seen, parted);
+  const bool is_drawing = TakeUpSlack(traction, seen, parted);
   const bool is_over = traction.seconds > kSlowSeconds;
   const bool is_slow = is_over && traction.fibres_before - work.left < kHardly;
   const bool is_stuck = (work.target.fibre < 0 && !work.waits) || is_slow;
   const bool has_tried = is_stuck && traction.swings_left == 0;
   const bool is_enough = parted >= work.goal.enough || (work.goal.is_enough && work.goal.is_enough(seen));
+  if (!is_enough && is_stuck && is_drawing && work.goal.may_hold && work.left <= kLastFibres) {
+    LeaveFibre(work);
+    return false;
+  }
   if (is_enough || (has_tried && (work.is_bold || traction.ways.empty()))) {
     LeaveFibre(work);
     return true;

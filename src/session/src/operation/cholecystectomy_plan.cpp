@@ -27,6 +27,7 @@ constexpr int kNeckTurns = 7;
 constexpr double kPeelShare = 0.2;  // of the bed's fibres that are left: where the gallbladder peels off [-]
 /// Of the hold from there, along what is free [m]; how far it is folded back at first [m], and how steeply [-].
 constexpr double kLeastFlap = 0.012, kMostFlap = 0.035, kFold = 0.030, kFoldUp = 0.6;
+constexpr double kOutOfTheWay = 0.080;   // of a tool that waits while the bag leaves [m]
 constexpr double kInfundibulum = 0.012;  // of the gallbladder, from the neck on [m]
 constexpr double kBedStep = 0.2;         // of the bed's fibres, after which the hold is chosen anew [-]
 
@@ -327,6 +328,11 @@ void CholecystectomySurgeon::Remove() {
       "close the bag", [](const Snapshot&) {}, [](const Snapshot& seen) { return seen.operation.is_in_bag; },
       4.0);
   LetGo(kLeft);
+  // the bag goes by where the left hand's tool lies
+  Reach(kLeft, [this](const Snapshot&) {
+    const HandMotion& hand = HandOf(kLeft);
+    return hand.Tip() + kOutOfTheWay * math::Normalized(hand.Port() - hand.Tip());
+  });
   Exchange(kRight, ToolKind::kHook);
   // Exchange ends with the bag outside
   acts_.pop_back();

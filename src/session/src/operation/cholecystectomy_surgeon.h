@@ -157,7 +157,7 @@ class CholecystectomySurgeon final : public Surgeon {
   void WorkOnFibre(Dissection& work, const Snapshot& seen);
   double ChooseFibre(Dissection& work, const Snapshot& seen);
   Traction PlanTraction(const DissectionGoal& goal) const;
-  void TakeUpSlack(Traction& traction, const Snapshot& seen, double parted);
+  bool TakeUpSlack(Traction& traction, const Snapshot& seen, double parted);
   void LeaveFibre(Dissection& work);
   void BackOff();
   void Swing(Dissection& work);

@@ -43,10 +43,13 @@ CholecystectomySurgeon::Traction CholecystectomySurgeon::PlanTraction(const Diss
 
 /// Draws on as the fibres part, as far as no strong pull is felt.
 /// \param parted  share of the fibres [-]
-void CholecystectomySurgeon::TakeUpSlack(Traction& traction, const Snapshot& seen, double parted) {
+/// \return whether the hand is on its way farther out
+bool CholecystectomySurgeon::TakeUpSlack(Traction& traction, const Snapshot& seen, double parted) {
   HandMotion& hand = HandOf(kLeft);
-  if (traction.ways.empty() || hand.IsMoving() || !seen.instruments[kLeft].is_grasping) return;
+  if (traction.ways.empty() || !seen.instruments[kLeft].is_grasping) return false;
+  if (hand.IsMoving()) return true;
   const double pull = math::Norm(seen.instruments[kLeft].force);
+  const double drawn_before = traction.drawn;
   const double wish = std::min(traction.most, std::max(traction.most * parted, kPeelRate * act_seconds_));
   if (pull > traction.most_pull) {
     traction.drawn = std::max(-kMostEase, traction.drawn - kEase);
@@ -55,6 +58,7 @@ void CholecystectomySurgeon::TakeUpSlack(Traction& traction, const Snapshot& see
   }
   const Vec3 wanted = traction.p_hold + traction.drawn * traction.ways[traction.way % traction.ways.size()];
   if (math::Distance(wanted, hand.Tip()) > kSettled) hand.MoveTo(wanted, kDrawHurry);
+  return traction.drawn > drawn_before;
 }
 
 /// Takes what is held elsewhere, which opens other fibres; the hook is out of the way meanwhile.
