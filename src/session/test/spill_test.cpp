@@ -371,7 +371,8 @@ TEST(Spilling, TheHookPerforatesAndStonesComeOutWithTheBile) {
   std::uint64_t known = 0;
   int told = 0;
   for (int tick = 0; tick < 120 * 12; ++tick) {
-    const double away = tick < 180 ? 0.02 * (1.0 - tick / 180.0) : -0.002;
+    // pressed on until it gives: it moves off, and the wire may come to lie beside it
+    const double away = tick < 180 ? 0.02 * (1.0 - tick / 180.0) : -0.002 - 0.001 * (tick - 180) / 120.0;
     input.hands[kRight] = instrument::FindJoints(scene->instruments[kRight].p_world_port,
                                                  seen.positions[node] + away * outwards, 0.0, 0.0);
     input.controls[kRight].coagulate = tick >= 180;
