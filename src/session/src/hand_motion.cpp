@@ -55,6 +55,10 @@ void HandMotion::SetJaw(double jaw) {
   jaw_goal_ = jaw;
 }
 
+Vec3 HandMotion::BehindTip(double way) const {
+  return tip_ + way * math::Normalized(p_world_port_ - tip_);
+}
+
 bool HandMotion::IsMoving() const {
   return reach_time_ < reach_duration_;
 }

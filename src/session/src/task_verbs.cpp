@@ -121,10 +121,7 @@ void TaskSurgeon::LetGo(int hand) {
 }
 
 void TaskSurgeon::WithDraw(int hand) {
-  Reach(hand, [this, hand](const Snapshot&) {
-    const HandMotion& motion = HandOf(hand);
-    return motion.Tip() + kWithdrawal * math::Normalized(motion.Port() - motion.Tip());
-  });
+  Reach(hand, [this, hand](const Snapshot&) { return HandOf(hand).BehindTip(kWithdrawal); });
 }
 
 void TaskSurgeon::Look(const Region& region, double distance) {

@@ -162,8 +162,7 @@ void CholecystectomySurgeon::LeaveFibre(Dissection& work) {
 
 /// Draws the hook back along its shaft.
 void CholecystectomySurgeon::BackOff() {
-  const Vec3 tip = HandOf(kRight).Tip();
-  HandOf(kRight).MoveTo(tip + kBackWay * math::Normalized(HandOf(kRight).Port() - tip));
+  HandOf(kRight).MoveTo(HandOf(kRight).BehindTip(kBackWay));
 }
 
 /// Takes the hook to a fibre: what is far is gone to from above, not through what lies between.

@@ -218,12 +218,7 @@ void CholecystectomySurgeon::StopBleeding(int rounds) {
 
 void CholecystectomySurgeon::Withdraw() {
   Reach(
-      kRight,
-      [this](const Snapshot&) {
-        const Vec3 tip = HandOf(kRight).Tip();
-        return tip + kWithdrawn * math::Normalized(HandOf(kRight).Port() - tip);
-      },
-      0.6);
+      kRight, [this](const Snapshot&) { return HandOf(kRight).BehindTip(kWithdrawn); }, 0.6);
 }
 
 void CholecystectomySurgeon::Take(instrument::ToolKind kind) {

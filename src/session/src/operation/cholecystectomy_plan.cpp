@@ -329,10 +329,7 @@ void CholecystectomySurgeon::Remove() {
       4.0);
   LetGo(kLeft);
   // the bag goes by where the left hand's tool lies
-  Reach(kLeft, [this](const Snapshot&) {
-    const HandMotion& hand = HandOf(kLeft);
-    return hand.Tip() + kOutOfTheWay * math::Normalized(hand.Port() - hand.Tip());
-  });
+  Reach(kLeft, [this](const Snapshot&) { return HandOf(kLeft).BehindTip(kOutOfTheWay); });
   Exchange(kRight, ToolKind::kHook);
   // Exchange ends with the bag outside
   acts_.pop_back();

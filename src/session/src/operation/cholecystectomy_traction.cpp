@@ -43,7 +43,7 @@ CholecystectomySurgeon::Traction CholecystectomySurgeon::PlanTraction(const Diss
 
 /// Draws on as the fibres part, as far as no strong pull is felt.
 /// \param parted  share of the fibres [-]
-/// \return whether the hand is on its way farther out
+/// \return whether the hand is on its way, or sets out to draw farther
 bool CholecystectomySurgeon::TakeUpSlack(Traction& traction, const Snapshot& seen, double parted) {
   HandMotion& hand = HandOf(kLeft);
   if (traction.ways.empty() || !seen.instruments[kLeft].is_grasping) return false;

@@ -138,9 +138,7 @@ void CholecystectomySurgeon::Ease(int hand) {
 void CholecystectomySurgeon::LetGo(int hand) {
   Ease(hand);
   Jaw(hand, 0.8);
-  Reach(hand, [this, hand](const Snapshot&) {
-    return HandOf(hand).Tip() + 0.025 * math::Normalized(HandOf(hand).Port() - HandOf(hand).Tip());
-  });
+  Reach(hand, [this, hand](const Snapshot&) { return HandOf(hand).BehindTip(0.025); });
   // not closed: that would take what lies there
   Jaw(hand, 0.3);
 }

@@ -37,6 +37,7 @@ class HandMotion {
   bool IsMoving() const;
   bool IsTurning() const;
   Vec3 Tip() const { return tip_; }  ///< where the hand means to be, without tremor
+  Vec3 BehindTip(double way) const;  ///< on the shaft, `way` towards the port [m]
   double Spin() const { return spin_; }
   double Jaw() const { return jaw_; }
   const Vec3& Port() const { return p_world_port_; }

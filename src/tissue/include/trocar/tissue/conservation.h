@@ -55,7 +55,7 @@ struct ConservationState {
   std::array<Pose, kMaxFreeRegions> X_world_rest;  ///< of each region: identity where it was imaged
   std::uint64_t intact_links = 0;                  ///< strands and springs, for which `regions` hold
   std::vector<Vec3> last_position;                 ///< (n) after the last CarryAlong or Enforce [m]
-  std::vector<Vec3> last_motion;                   ///< (n) of the last tick's solve: it may go on so [m]
+  std::vector<Vec3> last_motion;                   ///< (n) how far the last tick's solve moved each node [m]
 };
 
 using SmallMatrix = std::array<std::array<double, kMaxClosedOrgans>, kMaxClosedOrgans>;
