@@ -55,37 +55,33 @@ Workers::Session::~Session() {
 }
 
 void Workers::Help(int seat) noexcept {
-  std::uint32_t seen = 0;
+  std::uint64_t seen = 0;
   int looks = 0;
   while (is_open_.load(std::memory_order_acquire)) {
-    const std::uint32_t loop = loop_.load(std::memory_order_acquire);
-    if (loop == seen) {
+    const std::uint64_t word = loop_.load(std::memory_order_acquire);
+    if (word == seen) {
       Pause(looks);
       continue;
     }
-    seen = loop;
-    TakeChunks(loop, seat);
+    seen = word;
+    TakeChunks(Loop(word), seat);
   }
 }
 
-void Workers::TakeChunks(std::uint32_t loop, int seat) noexcept {
-  const std::uint32_t count = count_.load(std::memory_order_acquire);
+void Workers::TakeChunks(Loop loop, int seat) noexcept {
   // each begins where its share begins, so that a chunk mostly stays in the same processor's cache
-  const auto begin = static_cast<std::uint32_t>(std::uint64_t{count} * static_cast<std::uint64_t>(seat) /
+  const auto begin = static_cast<std::uint32_t>(std::uint64_t{loop.count} * static_cast<std::uint64_t>(seat) /
                                                 static_cast<std::uint64_t>(threads_));
-  for (std::uint32_t i = 0; i < count; ++i) {
-    const std::uint32_t chunk = begin + i < count ? begin + i : begin + i - count;
-    std::uint32_t last = taken_[chunk].load(std::memory_order_relaxed);
-    // taken in this loop or, if we are late, in a later one
-    if (static_cast<std::int32_t>(loop - last) <= 0 ||
-        !taken_[chunk].compare_exchange_strong(last, loop, std::memory_order_acq_rel)) {
+  for (std::uint32_t i = 0; i < loop.count; ++i) {
+    const std::uint32_t chunk = begin + i < loop.count ? begin + i : begin + i - loop.count;
+    std::uint64_t last = taken_[chunk].load(std::memory_order_relaxed);
+    // Taken in this loop or, if we are late, in a later one. Otherwise this loop has not ended, and does not before
+    // the chunk is done: call and context are its own.
+    if (last >= loop.number ||
+        !taken_[chunk].compare_exchange_strong(last, loop.number, std::memory_order_acq_rel)) {
       continue;
     }
-    // A helper that was late may hold a chunk of a loop that has ended. A loop ends only after its last
-    // chunk, so a chunk of the present loop keeps it present.
-    if (loop_.load(std::memory_order_acquire) != loop || chunk >= count_.load(std::memory_order_acquire))
-      return;
-    call_.load(std::memory_order_acquire)(context_.load(std::memory_order_acquire), chunk);
+    call_.load(std::memory_order_relaxed)(context_.load(std::memory_order_relaxed), chunk);
     done_.fetch_add(1, std::memory_order_acq_rel);
   }
 }
@@ -94,10 +90,9 @@ void Workers::RunShared(std::uint32_t count, Call call, const void* context) noe
   TROCAR_ASSERT(count <= kMaxChunks);
   call_.store(call, std::memory_order_relaxed);
   context_.store(context, std::memory_order_relaxed);
-  count_.store(count, std::memory_order_relaxed);
   done_.store(0, std::memory_order_relaxed);
-  const std::uint32_t loop = loop_.load(std::memory_order_relaxed) + 1;
-  loop_.store(loop, std::memory_order_release);
+  const Loop loop(Loop(loop_.load(std::memory_order_relaxed)).number + 1, count);
+  loop_.store(loop.Word(), std::memory_order_release);
   TakeChunks(loop, 0);
   int looks = 0;
   while (done_.load(std::memory_order_acquire) != count) Pause(looks);

@@ -56,8 +56,18 @@ class Workers {
  private:
   using Call = void (*)(const void*, std::uint32_t);
 
+  /// A loop's number and its chunks in one word: a helper that is late must not read the count of the next.
+  struct Loop {
+    static constexpr std::uint64_t kPlaces = 2 * kMaxChunks;
+    std::uint64_t number;
+    std::uint32_t count;
+    explicit Loop(std::uint64_t word) : number(word / kPlaces), count(word % kPlaces) {}
+    Loop(std::uint64_t number_in, std::uint32_t count_in) : number(number_in), count(count_in) {}
+    std::uint64_t Word() const { return number * kPlaces + count; }
+  };
+
   void RunShared(std::uint32_t count, Call call, const void* context) noexcept;
-  void TakeChunks(std::uint32_t loop, int seat) noexcept;
+  void TakeChunks(Loop loop, int seat) noexcept;
   void Help(int seat) noexcept;
 
   int threads_;
@@ -66,11 +76,11 @@ class Workers {
   tbb::task_group helpers_;
 
   std::atomic<bool> is_open_ = false;
-  std::atomic<std::uint32_t> loop_ = 0;  // number of the present loop
-  std::atomic<std::uint32_t> count_ = 0, done_ = 0;
+  std::atomic<std::uint64_t> loop_ = 0;  // the present one, see Loop
+  std::atomic<std::uint32_t> done_ = 0;
   std::atomic<Call> call_ = nullptr;
   std::atomic<const void*> context_ = nullptr;
-  std::array<std::atomic<std::uint32_t>, kMaxChunks> taken_{};  // the last loop in which the chunk was taken
+  std::array<std::atomic<std::uint64_t>, kMaxChunks> taken_{};  // number of the last loop that took the chunk
 };
 
 }  // namespace trocar::tissue
