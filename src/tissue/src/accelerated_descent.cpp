@@ -2,7 +2,9 @@
 #include "accelerated_descent.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <span>
 
 namespace trocar::tissue {
 namespace {
@@ -65,11 +67,15 @@ int RunCycles(System& system, const Kernels& kernels, Workers& workers, int max_
     const int length = std::min(max_iterations - done, is_bounded ? CalcCycle(bound) : cycle);
     Recurrence recurrence(is_bounded ? bound : CalcLowest(length));
     refresh();
-    for (int i = 0; i < length; ++i) {
-      const bool is_measured = i % kMeasureEvery == kMeasureEvery - 1;
+    for (int i = 0; i < length; i += kMeasureEvery) {
+      const int some = std::min(kMeasureEvery, length - i);
+      const bool is_measured = some == kMeasureEvery;
+      std::array<float, kMeasureEvery> omegas;
+      for (int k = 0; k < some; ++k) omegas[k] = recurrence.Next();
       const double here =
-          system.Step(kernels, workers, recurrence.Next(), recurrence.Damping(), i == 0, is_measured);
-      ++done;
+          system.Iterate(kernels, workers, std::span(omegas).first(static_cast<std::size_t>(some)),
+                         recurrence.Damping(), i == 0, is_measured);
+      done += some;
       if (!is_measured) continue;
       residual = here;
       // not finite: ends here, and the guard finds it

@@ -27,6 +27,11 @@ std::uint32_t ForEachNodeChunk(Workers& workers, std::size_t count, const Work& 
   return chunks;
 }
 
+/// The larger; NaN where one is.
+inline float LargerOrNan(float a, float b) noexcept {
+  return a >= b || std::isnan(a) ? a : b;
+}
+
 /// a . b of all nodes, in double precision and in an order that the threads do not change.
 inline double CalcDot(const Kernels& kernels, Workers& workers, const AlignedVector<Float4>& a,
                       const AlignedVector<Float4>& b) noexcept {
@@ -48,9 +53,7 @@ inline double FindLongest(const Kernels& kernels, Workers& workers, const Aligne
         parts[chunk] = kernels.vectors.find_largest2(v.data(), first, last);
       });
   float largest2 = 0;
-  for (std::uint32_t chunk = 0; chunk < chunks; ++chunk) {
-    if (!(parts[chunk] <= largest2)) largest2 = parts[chunk];
-  }
+  for (std::uint32_t chunk = 0; chunk < chunks; ++chunk) largest2 = LargerOrNan(largest2, parts[chunk]);
   return std::sqrt(static_cast<double>(largest2));
 }
 

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "node_vectors.h"
+
 namespace trocar::tissue {
 namespace {
 
@@ -282,11 +284,19 @@ double SpringGrid::Step(const Kernels& kernels, Workers& workers, float omega, f
         kernels.step_rows(own, chunk * chunk_rows, std::min(shape_.rows, (chunk + 1) * chunk_rows));
   });
   std::swap(u_, previous_);
-  double largest = 0;
-  for (std::uint32_t chunk = 0; chunk < chunks; ++chunk) {
-    if (!(static_cast<double>(largest2[chunk]) <= largest)) largest = static_cast<double>(largest2[chunk]);
+  float largest = 0;
+  for (std::uint32_t chunk = 0; chunk < chunks; ++chunk) largest = LargerOrNan(largest, largest2[chunk]);
+  return std::sqrt(static_cast<double>(largest));
+}
+
+double SpringGrid::Iterate(const Kernels& kernels, Workers& workers, std::span<const float> omegas,
+                           float damping, bool is_first, bool is_measured) noexcept {
+  double residual = 0;
+  for (std::size_t k = 0; k < omegas.size(); ++k) {
+    residual =
+        Step(kernels, workers, omegas[k], damping, is_first && k == 0, is_measured && k + 1 == omegas.size());
   }
-  return std::sqrt(largest);
+  return residual;
 }
 
 double SpringGrid::LargestDisplacement() const noexcept {

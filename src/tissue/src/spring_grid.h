@@ -79,6 +79,9 @@ class SpringGrid {
   /// \return largest residual before it [N], NaN where one is; 0 unless measured
   double Step(const Kernels& kernels, Workers& workers, float omega, float damping, bool is_first,
               bool is_measured) noexcept;
+  /// Iterations one after the other; `is_first` of the first of them, `is_measured` of the last.
+  double Iterate(const Kernels& kernels, Workers& workers, std::span<const float> omegas, float damping,
+                 bool is_first, bool is_measured) noexcept;
   /// Smallest k_virtual / (2 sum k + k_virtual) of a free node: no eigenvalue is lower where no spring is
   /// compressed [-].
   double LowestEigenvalue() const { return lowest_; }

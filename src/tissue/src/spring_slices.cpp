@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "node_vectors.h"
 #include "room.h"
 
 namespace trocar::tissue {
@@ -11,6 +12,10 @@ namespace {
 
 /// Slices a thread takes at a time; fixed.
 constexpr std::uint32_t kChunkSlices = 64;
+/// Iterations that follow each other through the mesh: their springs must stay in a processor's second cache.
+constexpr std::size_t kFollowing = 4;
+/// Slices by which each goes on before the next one follows.
+constexpr std::uint32_t kStride = 32;
 constexpr std::size_t kSpringFloats = 5 * kSliceNodes;
 
 /// Steps whose neighbours can be looked up, of all, from which on lookups pay for storing twice what the other
@@ -45,6 +50,14 @@ void SpringSlices::SetModel(const OrderedModel& model) {
   u_by_slice_.assign(layout_.PaddedNodes() * 3, 0.0f);
   previous_by_slice_ = u_by_slice_;
   SetLookups();
+  reach_ = 0;
+  for (std::uint32_t slice = 0; slice < layout_.Slices(); ++slice) {
+    for (std::size_t entry = std::size_t{layout_.starts[slice]} * kSliceNodes;
+         entry < std::size_t{layout_.starts[slice + 1]} * kSliceNodes; ++entry) {
+      const std::uint32_t other = layout_.others[entry] / kSliceNodes;
+      reach_ = std::max(reach_, other > slice ? other - slice : slice - other);
+    }
+  }
   for (std::uint32_t i = 0; i < model.Size(); ++i) {
     for (std::uint32_t step = 0; step < layout_.RowSteps(i); ++step) {
       const std::size_t entry = layout_.Entry(i, step);
@@ -140,37 +153,110 @@ void SpringSlices::SetDisplacement(std::uint32_t node, const Vec3& u) noexcept {
       previous_[node] = {static_cast<float>(u.x), static_cast<float>(u.y), static_cast<float>(u.z), 0.0f};
 }
 
+SliceStep SpringSlices::MakeStep(const Kernels& kernels, float omega, float damping, bool is_first,
+                                 bool is_measured) noexcept {
+  is_by_slice_ = has_lookups_ && kernels.looks_up;
+  return {.table = layout_.Table(),
+          .springs = springs_.data(),
+          .nodes = nodes_.data(),
+          .u = u_.data(),
+          .previous = previous_.data(),
+          .lookups = is_by_slice_ ? lookups_.data() : nullptr,
+          .is_scattered = is_scattered_.data(),
+          .u_by_slice = u_by_slice_.data(),
+          .previous_by_slice = previous_by_slice_.data(),
+          .omega = omega,
+          .damping = damping,
+          .is_first = is_first,
+          .is_measured = is_measured};
+}
+
+void SpringSlices::SwapDisplacements() noexcept {
+  std::swap(u_, previous_);
+  std::swap(u_by_slice_, previous_by_slice_);
+}
+
 double SpringSlices::Step(const Kernels& kernels, Workers& workers, float omega, float damping, bool is_first,
                           bool is_measured) noexcept {
   const std::uint32_t slices = layout_.Slices();
   const std::uint32_t chunk_slices = std::max(kChunkSlices, slices / Workers::kMaxChunks + 1);
   const std::uint32_t chunks = (slices + chunk_slices - 1) / chunk_slices;
   std::array<float, Workers::kMaxChunks> largest2;
-  is_by_slice_ = has_lookups_ && kernels.looks_up;
-  const SliceStep step{.table = layout_.Table(),
-                       .springs = springs_.data(),
-                       .nodes = nodes_.data(),
-                       .u = u_.data(),
-                       .previous = previous_.data(),
-                       .lookups = is_by_slice_ ? lookups_.data() : nullptr,
-                       .is_scattered = is_scattered_.data(),
-                       .u_by_slice = u_by_slice_.data(),
-                       .previous_by_slice = previous_by_slice_.data(),
-                       .omega = omega,
-                       .damping = damping,
-                       .is_first = is_first,
-                       .is_measured = is_measured};
+  const SliceStep step = MakeStep(kernels, omega, damping, is_first, is_measured);
   workers.Run(chunks, [&](std::uint32_t chunk) {
     largest2[chunk] =
         kernels.step_slices(step, chunk * chunk_slices, std::min(slices, (chunk + 1) * chunk_slices));
   });
-  std::swap(u_, previous_);
-  std::swap(u_by_slice_, previous_by_slice_);
-  double largest = 0;
-  for (std::uint32_t chunk = 0; chunk < chunks; ++chunk) {
-    if (!(static_cast<double>(largest2[chunk]) <= largest)) largest = static_cast<double>(largest2[chunk]);
+  SwapDisplacements();
+  float largest = 0;
+  for (std::uint32_t chunk = 0; chunk < chunks; ++chunk) largest = LargerOrNan(largest, largest2[chunk]);
+  return std::sqrt(static_cast<double>(largest));
+}
+
+double SpringSlices::Iterate(const Kernels& kernels, Workers& workers, std::span<const float> omegas,
+                             float damping, bool is_first, bool is_measured) noexcept {
+  // ranges of the mesh that are worked on at the same time need to be wide enough to have something between their edges
+  const auto most_ranges = static_cast<std::uint32_t>(layout_.Slices() / (4 * kFollowing * (reach_ + 1)));
+  const std::uint32_t ranges = std::min(static_cast<std::uint32_t>(workers.Threads()), most_ranges);
+  double residual = 0;
+  for (std::size_t done = 0; done < omegas.size();) {
+    const std::size_t some = ranges == 0 ? 1 : std::min(kFollowing, omegas.size() - done);
+    std::array<SliceStep, kFollowing> steps;
+    const bool is_last = done + some == omegas.size();
+    if (some == 1) {
+      residual = Step(kernels, workers, omegas[done], damping, is_first && done == 0, is_measured && is_last);
+    } else {
+      for (std::size_t k = 0; k < some; ++k) {
+        steps[k] = MakeStep(kernels, omegas[done + k], damping, is_first && done + k == 0,
+                            is_measured && is_last && k + 1 == some);
+        SwapDisplacements();
+      }
+      residual = FollowEachOther(kernels, workers, std::span(steps).first(some), ranges);
+    }
+    done += some;
   }
-  return std::sqrt(largest);
+  return residual;
+}
+
+/// Every iteration but the first stays so far behind the one before that all neighbours of its nodes are done, and at a
+/// range's edges leaves out what needs the next range; that is caught up on when all ranges are done. An iteration
+/// writes over the displacements of two before, which nobody needs by then.
+double SpringSlices::FollowEachOther(const Kernels& kernels, Workers& workers,
+                                     std::span<const SliceStep> steps, std::uint32_t ranges) noexcept {
+  const std::uint32_t slices = layout_.Slices();
+  const auto edge_of = [&](std::uint32_t range) { return slices / ranges * range; };
+  std::array<float, 2 * Workers::kMaxChunks> largest2{};
+  workers.Run(ranges, [&](std::uint32_t range) {
+    const std::uint32_t begin = edge_of(range), end = range + 1 == ranges ? slices : edge_of(range + 1);
+    std::array<std::uint32_t, kFollowing> done;  // slices before this are
+    for (std::uint32_t k = 0; k < steps.size(); ++k) done[k] = begin == 0 ? 0 : begin + k * reach_;
+    float largest = 0;
+    for (bool goes_on = true; goes_on;) {
+      goes_on = false;
+      for (std::uint32_t k = 0; k < steps.size(); ++k) {
+        const bool is_at_end = k == 0 || done[k - 1] == slices;
+        const std::uint32_t before = k == 0 ? std::min(end, done[0] + kStride) : done[k - 1];
+        const std::uint32_t until = is_at_end ? before : before - std::min(before, reach_);
+        if (until <= done[k]) continue;
+        largest = LargerOrNan(largest, kernels.step_slices(steps[k], done[k], until));
+        done[k] = until;
+        goes_on = true;
+      }
+    }
+    largest2[range] = largest;
+  });
+  if (ranges > 1) {
+    workers.Run(ranges - 1, [&](std::uint32_t range) {
+      const std::uint32_t edge = edge_of(range + 1);
+      float largest = 0;
+      for (std::uint32_t k = 1; k < steps.size(); ++k)
+        largest = LargerOrNan(largest, kernels.step_slices(steps[k], edge - k * reach_, edge + k * reach_));
+      largest2[ranges + range] = largest;
+    });
+  }
+  float largest = 0;
+  for (const float part : largest2) largest = LargerOrNan(largest, part);
+  return std::sqrt(static_cast<double>(largest));
 }
 
 double SpringSlices::LargestDisplacement() const noexcept {

@@ -2,6 +2,7 @@
 /// \file spring_slices.h  Any model in single-precision displacements, its nodes in slices.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "linearisation.h"
@@ -31,8 +32,19 @@ class SpringSlices {
   /// \return largest residual before it [N], NaN where one is; 0 unless measured
   double Step(const Kernels& kernels, Workers& workers, float omega, float damping, bool is_first,
               bool is_measured) noexcept;
+  /// Iterations one after the other, to the same bits as by Step(); several follow each other closely through the mesh,
+  /// so that a spring that has come from memory serves them all (Wellein, Hager, Zeiser, Wittmann, Fehske, "Efficient
+  /// temporal blocking for stencil computations by multicore-aware wavefront parallelization", COMPSAC 2009).
+  ///
+  /// \param omegas       of each iteration
+  /// \param is_first     the first of them, of its cycle
+  /// \param is_measured  the last of them
+  double Iterate(const Kernels& kernels, Workers& workers, std::span<const float> omegas, float damping,
+                 bool is_first, bool is_measured) noexcept;
   /// Whether kernels that can look most neighbours up, several at a time.
   bool HasLookups() const { return has_lookups_; }
+  /// Slices to the farthest neighbour: where they are few among many, iterations follow each other.
+  std::uint32_t Reach() const { return reach_; }
   double LowestEigenvalue() const { return lowest_; }
   double SmallestShape() const { return smallest_shape_; }
   double LargestDisplacement() const noexcept;
@@ -43,8 +55,14 @@ class SpringSlices {
     return std::size_t{node / kSliceNodes} * 3 * kSliceNodes + node % kSliceNodes;
   }
   void SetLookups();
+  SliceStep MakeStep(const Kernels& kernels, float omega, float damping, bool is_first,
+                     bool is_measured) noexcept;
+  void SwapDisplacements() noexcept;
+  double FollowEachOther(const Kernels& kernels, Workers& workers, std::span<const SliceStep> steps,
+                         std::uint32_t ranges) noexcept;
 
   SliceLayout layout_;
+  std::uint32_t reach_ = 0;
   std::vector<SliceLookup> lookups_;        // as in SliceStep
   std::vector<std::uint8_t> is_scattered_;  // as in SliceStep
   bool has_lookups_ = false;                // for most steps

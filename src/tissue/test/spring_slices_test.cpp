@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <optional>
@@ -160,6 +161,44 @@ TEST(SpringSlices, HaveTheSameBitsLookedUpOrNot) {
   }
   for (std::uint32_t i = 0; i < a.ordered.Size(); ++i)
     ASSERT_EQ(a.slices.GetDisplacement(i), b.slices.GetDisplacement(i)) << "node " << i;
+}
+
+// Six iterations: four that follow each other, and two; with ranges for two and three threads, whose edges are caught up
+// on; and a mesh whose long springs allow none of it.
+TEST(SpringSlices, IterateSeveralAtATimeToTheSameBits) {
+  constexpr std::array<float, 6> kOmegas = {1.0f, 1.6f, 1.5f, 1.45f, 1.4f, 1.38f};
+  for (const int long_springs : {0, 2}) {
+    const TissueModel model = MakeMesh({.side = 120, .long_springs = long_springs});
+    for (const int threads : {1, 2, 3}) {
+      Sliced a(model), b(model);
+      const bool follow = 16 * (a.slices.Reach() + 1) * 3 <= a.ordered.layout.Slices();
+      ASSERT_EQ(follow, long_springs == 0);
+      Workers workers(threads);
+      const Workers::Session session(workers);
+      const Kernels& kernels = GetKernels(FindSimdLevel());
+      for (const bool is_first : {true, false}) {
+        const double together = a.slices.Iterate(kernels, workers, kOmegas, 0.9f, is_first, true);
+        double one_by_one = 0;
+        for (const float omega : kOmegas)
+          one_by_one = b.slices.Step(kernels, workers, omega, 0.9f, is_first && omega == 1.0f,
+                                     omega == kOmegas.back());
+        ASSERT_GT(together, 0.0);
+        ASSERT_EQ(together, one_by_one) << threads << " threads";
+      }
+      for (std::uint32_t i = 0; i < a.ordered.Size(); ++i)
+        ASSERT_EQ(a.slices.GetDisplacement(i), b.slices.GetDisplacement(i))
+            << threads << " threads, node " << i;
+    }
+  }
+}
+
+// The largest residual of an iteration must not hide one that is not a number, wherever in the mesh.
+TEST(SpringSlices, ReportAResidualThatIsNotANumber) {
+  const TissueModel model = MakeMesh({.side = 120});
+  Sliced sliced(model);
+  sliced.slices.SetDisplacement(sliced.ordered.Size() / 2, {NAN, 0, 0});
+  Workers workers(1);
+  EXPECT_TRUE(std::isnan(sliced.slices.Step(GetKernels(FindSimdLevel()), workers, 1.0f, 0.9f, true, true)));
 }
 
 }  // namespace
