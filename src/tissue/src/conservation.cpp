@@ -404,8 +404,7 @@ bool Conservation::ProjectOnce(TissueState& tissue, std::span<Vec3> before,
 
 void Conservation::KeepVolumes(TissueState& tissue, std::span<Vec3> before,
                                ConservationState& state) noexcept {
-  if (!has_slopes_ || !MeasureVolumes(tissue, state)) return;
-  (void)ProjectOnce(tissue, before, state);
+  if (has_slopes_ && MeasureVolumes(tissue, state)) (void)ProjectOnce(tissue, before, state);
   SetPressureForce(state);
 }
 
@@ -421,11 +420,10 @@ bool Conservation::AreVolumesInReach(const TissueState& tissue,
   return true;
 }
 
-void Conservation::AddPressure(std::size_t organ, double change, ConservationState& state) noexcept {
+void Conservation::AddPressure(std::size_t organ, double change, ConservationState& state) const noexcept {
   double& pressure = state.organs[organ].pressure;
   pressure += change;
   if (state.organs[organ].opening_area > 0.0) pressure = std::fmax(pressure, 0.0);
-  SetPressureForce(state);
 }
 
 void Conservation::Leak(double dt, ConservationState& state) const noexcept {

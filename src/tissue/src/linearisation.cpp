@@ -96,7 +96,7 @@ void SetOrderedLoad(const OrderedModel& model, const TissueLoad& load, const Tis
                     OrderedLoad& ordered) noexcept {
   ordered.stiffness_scale = load.stiffness_scale;
   ordered.shape_scale = load.shape_scale;
-  SetOrderedForce(model, load, ordered);
+  SetOrderedForce(model, load, 0, model.Size(), ordered);
   for (std::uint32_t i = 0; i < model.Size(); ++i)
     ordered.is_free[i] = state.condition[model.old_of_new[i]] != NodeCondition::kPrescribed;
   ordered.contacts.assign(load.contacts.begin(), load.contacts.end());
@@ -105,8 +105,9 @@ void SetOrderedLoad(const OrderedModel& model, const TissueLoad& load, const Tis
   }
 }
 
-void SetOrderedForce(const OrderedModel& model, const TissueLoad& load, OrderedLoad& ordered) noexcept {
-  for (std::uint32_t i = 0; i < model.Size(); ++i) {
+void SetOrderedForce(const OrderedModel& model, const TissueLoad& load, std::uint32_t first,
+                     std::uint32_t last, OrderedLoad& ordered) noexcept {
+  for (std::uint32_t i = first; i < last; ++i) {
     ordered.constant[i] = model.mass[i] * load.gravity;
     if (!load.external_force.empty()) ordered.constant[i] += load.external_force[model.old_of_new[i]];
   }
@@ -134,7 +135,7 @@ void Linearisation::SetLoad(const OrderedLoad& load, std::span<const std::uint8_
                             LinkLevel& level) noexcept {
   load_ = &load;
   strand_is_intact_ = strand_is_intact;
-  SetForce();
+  SetForce(0, model_->Size());
   for (std::uint32_t i = 0; i < model_->Size(); ++i) {
     const double shape = load.shape_scale * model_->shape[i];
     At(i, kShape) = shape;
@@ -150,8 +151,8 @@ void Linearisation::SetLoad(const OrderedLoad& load, std::span<const std::uint8_
   }
 }
 
-void Linearisation::SetForce() noexcept {
-  for (std::uint32_t i = 0; i < model_->Size(); ++i) {
+void Linearisation::SetForce(std::uint32_t first, std::uint32_t last) noexcept {
+  for (std::uint32_t i = first; i < last; ++i) {
     for (int axis = 0; axis < 3; ++axis)
       At(i, static_cast<BalanceValue>(kOuterX + axis)) = load_->constant[i][axis];
     At(i, kOuterSize) = math::Norm(load_->constant[i]);

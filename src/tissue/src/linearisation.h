@@ -59,9 +59,10 @@ struct OrderedLoad {
 /// \note Real-time safe.
 void SetOrderedLoad(const OrderedModel& model, const TissueLoad& load, const TissueState& state,
                     OrderedLoad& ordered) noexcept;
-/// Fills in `constant` alone, where only the external force has changed since.
+/// Fills in `constant` alone, where only the external force has changed since, of nodes `first` to before `last`.
 /// \note Real-time safe.
-void SetOrderedForce(const OrderedModel& model, const TissueLoad& load, OrderedLoad& ordered) noexcept;
+void SetOrderedForce(const OrderedModel& model, const TissueLoad& load, std::uint32_t first,
+                     std::uint32_t last, OrderedLoad& ordered) noexcept;
 
 /// Balance of forces at one set of positions.
 struct Balance {
@@ -88,9 +89,9 @@ class Linearisation {
   /// \note Real-time safe.
   void SetLoad(const OrderedLoad& load, std::span<const std::uint8_t> strand_is_intact,
                LinkLevel& level) noexcept;
-  /// Takes the constant forces of that load anew, and nothing else.
+  /// Takes the constant forces of that load anew, and nothing else, of nodes `first` to before `last`.
   /// \note Real-time safe.
-  void SetForce() noexcept;
+  void SetForce(std::uint32_t first, std::uint32_t last) noexcept;
 
   /// Forces and energy.
   ///

@@ -16,6 +16,9 @@ constexpr std::uint32_t kMostNeighbours = 5;
 /// A chain's matrix is at most so many nodes wide: more is a surface.
 constexpr std::uint32_t kWidest = 12;
 
+/// Numbers of a row of its factor.
+constexpr std::size_t kMostRow = 3 * (kWidest + 1);
+
 /// Pivots below this part of the diagonal are not positive for sure [-].
 constexpr double kLeastPivot = 1e-7;
 
@@ -95,6 +98,7 @@ void LinkChains::SetGraph(const NodeGraph& graph, const SliceLayout& layout) {
   }
   factor_.resize(row_starts_.back());
   lower_.resize(row_starts_.back());
+  whole_.resize(first_.size());
   values_.resize(3 * nodes_.size());
 }
 
@@ -102,10 +106,10 @@ void LinkChains::Reserve(double share) {
   // a cut leaves nodes with few neighbours: of so many nodes some join chains, as wide as chains may be
   const std::size_t nodes =
       nodes_.size() + static_cast<std::size_t>(share * static_cast<double>(marks_.size()));
-  constexpr std::size_t kMostRow = 3 * (kWidest + 1);
   nodes_.reserve(nodes);
   links_.reserve(kMostNeighbours * nodes);
-  first_.reserve(3 * nodes), row_starts_.reserve(3 * nodes + 1), values_.reserve(3 * nodes);
+  first_.reserve(3 * nodes), row_starts_.reserve(3 * nodes + 1), values_.reserve(3 * nodes),
+      whole_.reserve(3 * nodes);
   factor_.reserve(3 * kMostRow * nodes), lower_.reserve(3 * kMostRow * nodes);
 }
 
@@ -142,21 +146,22 @@ bool LinkChains::FactoriseOnce(const LinkLevel& level, std::span<const float> sl
       }
     }
   }
-  for (std::size_t row = 0; row < first_.size(); ++row) {
-    double* const here = factor_.data() + row_starts_[row];
-    double pivot = here[row - first_[row]];
-    const double whole = pivot;
-    for (std::size_t column = first_[row]; column < row; ++column) {
-      const double* const above = factor_.data() + row_starts_[column];
-      double sum = here[column - first_[row]];
-      for (std::size_t k = std::max(first_[row], first_[column]); k < column; ++k)
-        sum -= here[k - first_[row]] * above[k - first_[column]];
-      sum /= above[column - first_[column]];
-      here[column - first_[row]] = sum;
-      pivot -= sum * sum;
+  for (std::size_t row = 0; row < first_.size(); ++row) whole_[row] = factor_[row_starts_[row + 1] - 1];
+  // each column is taken from all that is right of it and below: sums do not wait for each other
+  std::array<double, kMostRow> column;
+  for (std::size_t j = 0; j < first_.size(); ++j) {
+    double& pivot = factor_[row_starts_[j + 1] - 1];
+    if (!(pivot > kLeastPivot * whole_[j]) || !std::isfinite(pivot)) return false;
+    pivot = std::sqrt(pivot);
+    const std::size_t last = std::min(j + kMostRow, first_.size());
+    for (std::size_t i = j + 1; i < last; ++i) {
+      column[i - j] = 0.0;
+      if (first_[i] > j) continue;
+      double* const row = factor_.data() + row_starts_[i];
+      const double share = column[i - j] = row[j - first_[i]] /= pivot;
+      double* const to = row + (j + 1 - first_[i]);
+      for (std::size_t k = 0; k < i - j; ++k) to[k] -= share * column[k + 1];
     }
-    if (!(pivot > kLeastPivot * whole) || !std::isfinite(pivot)) return false;
-    here[row - first_[row]] = std::sqrt(pivot);
   }
   return true;
 }
@@ -171,8 +176,7 @@ void LinkChains::Factorise(const LinkLevel& level, std::span<const float> slack)
   }
 }
 
-void LinkChains::Solve(const LinkLevel& level, const Float4* from, const Float4* b, float factor,
-                       Float4* x) noexcept {
+void LinkChains::Solve(const LinkLevel& level, const Float4* from, const Float4* b) noexcept {
   if (!is_factorised_) return;
   for (std::size_t row = 0; row < nodes_.size(); ++row) {
     const std::uint32_t i = nodes_[row];
@@ -208,6 +212,10 @@ void LinkChains::Solve(const LinkLevel& level, const Float4* from, const Float4*
     const float value = values_[row] *= here[row - first];
     for (std::size_t column = first; column < row; ++column) values_[column] -= here[column - first] * value;
   }
+}
+
+void LinkChains::Add(const Float4* from, float factor, Float4* x) const noexcept {
+  if (!is_factorised_) return;
   for (std::size_t row = 0; row < nodes_.size(); ++row) {
     const std::uint32_t i = nodes_[row];
     const Float4 start = from == nullptr ? Float4{} : from[i];

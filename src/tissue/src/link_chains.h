@@ -38,11 +38,14 @@ class LinkChains {
   /// \note Real-time safe.
   void Factorise(const LinkLevel& level, std::span<const float> slack) noexcept;
 
-  /// x = (from +) factor K_chains^-1 (b - K from) on the chains' nodes; other nodes keep theirs.
+  /// K_chains^-1 (b - K from) on the chains' nodes, for Add(): beside a pass over all nodes that leaves `from` alone.
   ///
   /// \param from  (n) nullptr for zero
   /// \note Real-time safe.
-  void Solve(const LinkLevel& level, const Float4* from, const Float4* b, float factor, Float4* x) noexcept;
+  void Solve(const LinkLevel& level, const Float4* from, const Float4* b) noexcept;
+  /// x = (from +) factor times what Solve() found on the chains' nodes; other nodes keep theirs.
+  /// \note Real-time safe.
+  void Add(const Float4* from, float factor, Float4* x) const noexcept;
 
  private:
   struct Link {
@@ -58,9 +61,9 @@ class LinkChains {
   // three unknowns a node; rows of the factor from their first column to the diagonal
   std::vector<std::uint32_t> first_;
   std::vector<std::size_t> row_starts_;
-  std::vector<double> factor_;  // room for Factorise
-  std::vector<float> lower_;    // the factor, with the inverses of its diagonal
-  std::vector<float> values_;   // (3 nodes)
+  std::vector<double> factor_, whole_;  // room for Factorise; the latter for its diagonal as it was
+  std::vector<float> lower_;            // the factor, with the inverses of its diagonal
+  std::vector<float> values_;           // (3 nodes)
   bool is_factorised_ = false;
   // room for SetGraph
   std::vector<std::uint8_t> is_candidate_;    // (n)

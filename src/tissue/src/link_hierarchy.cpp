@@ -29,10 +29,14 @@ constexpr float kDamping = 0.85f;
 /// Sweeps on a coarsest level that is too large for a direct solution: links are gone, so one would do.
 constexpr int kCoarsestSweeps = 4;
 
+std::uint32_t SliceChunkSize(std::uint32_t slices) {
+  return std::max(kChunkSlices, slices / (Workers::kMaxChunks - 1) + 1);
+}
+
 /// Calls work(first, last) for every chunk of the slices.
 template <typename Work>
 void ForEachSliceChunk(Workers& workers, std::uint32_t slices, const Work& work) noexcept {
-  const std::uint32_t size = std::max(kChunkSlices, slices / Workers::kMaxChunks + 1);
+  const std::uint32_t size = SliceChunkSize(slices);
   workers.Run((slices + size - 1) / size,
               [&](std::uint32_t chunk) { work(chunk * size, std::min(slices, (chunk + 1) * size)); });
 }
@@ -384,13 +388,30 @@ void LinkHierarchy::SolveCoarsest(const Float4* b, Float4* x) const noexcept {
   for (std::uint32_t i = 0; i < nodes; ++i) x[i] = {sum[3 * i], sum[3 * i + 1], sum[3 * i + 2], 0.0f};
 }
 
+/// x = (from +) damped block Jacobi of b - K from, and on the finest level what the chains answer together instead.
+///
+/// \param from  nullptr for zero
+void LinkHierarchy::Smooth(const Kernels& kernels, Workers& workers, std::size_t at, const Float4* from,
+                           const Float4* b, Float4* x) noexcept {
+  const LinkLevel& level = levels_[at];
+  const LinkMatrix matrix = level.Matrix();
+  const LinkPass pass = from == nullptr ? LinkPass::kStart : LinkPass::kSmooth;
+  const bool has_chains = at == 0 && !chains_.Nodes().empty();
+  const std::uint32_t slices = level.layout.Slices(), size = SliceChunkSize(slices), first = has_chains;
+  workers.Run(first + (slices + size - 1) / size, [&](std::uint32_t chunk) {
+    if (chunk < first) return chains_.Solve(level, from, b);
+    kernels.multiply(matrix, pass, from, b, kDamping, x, (chunk - first) * size,
+                     std::min(slices, (chunk - first + 1) * size));
+  });
+  if (has_chains) chains_.Add(from, kDamping, x);
+}
+
 void LinkHierarchy::Cycle(const Kernels& kernels, Workers& workers, std::size_t at, const Float4* b,
                           Float4* x) noexcept {
   LinkLevel& level = levels_[at];
   const bool is_last = at + 1 == level_count_;
   if (is_last && is_inverted_) return SolveCoarsest(b, x);
-  RunPass(kernels, workers, level, LinkPass::kStart, nullptr, b, kDamping, level.x.data());
-  if (at == 0) chains_.Solve(level, nullptr, b, kDamping, level.x.data());
+  Smooth(kernels, workers, at, nullptr, b, level.x.data());
   if (is_last) {
     for (int sweep = 1; sweep < kCoarsestSweeps; ++sweep) {
       RunPass(kernels, workers, level, LinkPass::kSmooth, level.x.data(), b, kDamping, x);
@@ -421,8 +442,7 @@ void LinkHierarchy::Cycle(const Kernels& kernels, Workers& workers, std::size_t 
           here.w += is_free * coarse.w;
     }
   });
-  RunPass(kernels, workers, level, LinkPass::kSmooth, level.x.data(), b, kDamping, x);
-  if (at == 0) chains_.Solve(level, level.x.data(), b, kDamping, x);
+  Smooth(kernels, workers, at, level.x.data(), b, x);
 }
 
 void LinkHierarchy::Apply(const Kernels& kernels, Workers& workers, const Float4* b, Float4* x) noexcept {

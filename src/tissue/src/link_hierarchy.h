@@ -90,6 +90,8 @@ class LinkHierarchy {
  private:
   /// x = about K^-1 b on the level.
   void Cycle(const Kernels& kernels, Workers& workers, std::size_t at, const Float4* b, Float4* x) noexcept;
+  void Smooth(const Kernels& kernels, Workers& workers, std::size_t at, const Float4* from, const Float4* b,
+              Float4* x) noexcept;
   void Coarsen(Workers& workers, std::size_t at, std::span<const float> slack) noexcept;
   void GatherGround(std::size_t at, std::uint32_t aggregate, std::span<const float> slack) noexcept;
   void InvertCoarsest() noexcept;

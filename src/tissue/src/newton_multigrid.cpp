@@ -134,7 +134,7 @@ void NewtonMultigrid::Multiply(const Kernels& kernels, Workers& workers, const F
   }
 }
 
-void NewtonMultigrid::SetConstraints(const SolveHook* hook) noexcept {
+void NewtonMultigrid::BeginStep(Workers& workers, const SolveHook* hook) noexcept {
   const std::size_t count_before = constraints_.size();
   std::size_t count = 0;
   if (hook != nullptr) {
@@ -143,17 +143,25 @@ void NewtonMultigrid::SetConstraints(const SolveHook* hook) noexcept {
       Constraint& c = constraints_room_[count++];
       has_answers_ = has_answers_ && c.index == index;
       c.index = index;
-      std::fill(c.gradient.begin(), c.gradient.end(), Float4{});
-      const SolveHook::Constraint& nodes = hook->constraints[index];
-      for (std::uint32_t k = 0; k < nodes.node_count; ++k) {
-        const std::uint32_t i = model_.new_of_old[nodes.first_node + k];
-        if (load_.is_free[i]) c.gradient[i] = ToFloat(hook->gradient[nodes.first_node + k]);
-      }
     }
   }
   constraints_ = std::span(constraints_room_).first(count);
   has_answers_ = has_answers_ && count == count_before;
   multipliers_.fill(0.0);
+  workers.Run(2 + static_cast<std::uint32_t>(count), [&](std::uint32_t part) {
+    if (part == 0) return hierarchy_.UpdateChains(linearisation_.Slack());
+    if (part == 1) {
+      std::copy(balance_.residual.begin(), balance_.residual.end(), r_.begin());
+      return;
+    }
+    Constraint& c = constraints_[part - 2];
+    std::fill(c.gradient.begin(), c.gradient.end(), Float4{});
+    const SolveHook::Constraint& nodes = hook->constraints[c.index];
+    for (std::uint32_t k = 0; k < nodes.node_count; ++k) {
+      const std::uint32_t i = model_.new_of_old[nodes.first_node + k];
+      if (load_.is_free[i]) c.gradient[i] = ToFloat(hook->gradient[nodes.first_node + k]);
+    }
+  });
 }
 
 void NewtonMultigrid::SetAnswers(const Kernels& kernels, Workers& workers) noexcept {
@@ -167,31 +175,53 @@ void NewtonMultigrid::SetAnswers(const Kernels& kernels, Workers& workers) noexc
   }
 }
 
+NewtonMultigrid::SmallVector NewtonMultigrid::CalcDots(const Kernels& kernels, Workers& workers,
+                                                       AlignedVector<Float4> Constraint::*part,
+                                                       const AlignedVector<Float4>& v) const noexcept {
+  std::array<SmallVector, Workers::kMaxChunks> parts;
+  const std::uint32_t chunks =
+      ForEachNodeChunk(workers, v.size(), [&](std::uint32_t first, std::uint32_t last, std::uint32_t chunk) {
+        for (std::size_t c = 0; c < constraints_.size(); ++c)
+          parts[chunk][c] = kernels.vectors.dot((constraints_[c].*part).data(), v.data(), first, last);
+      });
+  SmallVector sums{};
+  for (std::uint32_t chunk = 0; chunk < chunks; ++chunk) {
+    for (std::size_t c = 0; c < constraints_.size(); ++c) sums[c] += parts[chunk][c];
+  }
+  return sums;
+}
+
+void NewtonMultigrid::Subtract(const Kernels& kernels, Workers& workers, const SmallVector& shares,
+                               AlignedVector<Float4> Constraint::*part,
+                               AlignedVector<Float4>& from) const noexcept {
+  ForEachNodeChunk(workers, from.size(), [&](std::uint32_t first, std::uint32_t last, std::uint32_t) {
+    for (std::size_t c = 0; c < constraints_.size(); ++c) {
+      kernels.vectors.add_scaled(static_cast<float>(-shares[c]), (constraints_[c].*part).data(), from.data(),
+                                 first, last);
+    }
+  });
+}
+
 void NewtonMultigrid::ProjectResidual(const Kernels& kernels, Workers& workers) noexcept {
-  SmallVector along{}, share{};
-  for (std::size_t c = 0; c < constraints_.size(); ++c)
-    along[c] = CalcDot(kernels, workers, constraints_[c].answer, r_);
+  if (constraints_.empty()) return;
   SmallMatrix transposed = gram_;
   for (std::size_t row = 0; row < constraints_.size(); ++row) {
     for (std::size_t column = 0; column < constraints_.size(); ++column)
       transposed[row][column] = gram_[column][row];
   }
-  SolveSmall(transposed, along, constraints_.size(), share);
-  for (std::size_t c = 0; c < constraints_.size(); ++c) {
-    AddScaled(kernels, workers, static_cast<float>(-share[c]), constraints_[c].gradient, r_);
-    multipliers_[c] += share[c];
-  }
+  SmallVector share{};
+  SolveSmall(transposed, CalcDots(kernels, workers, &Constraint::answer, r_), constraints_.size(), share);
+  Subtract(kernels, workers, share, &Constraint::gradient, r_);
+  for (std::size_t c = 0; c < constraints_.size(); ++c) multipliers_[c] += share[c];
 }
 
 void NewtonMultigrid::Precondition(const Kernels& kernels, Workers& workers) noexcept {
   ProjectResidual(kernels, workers);
   hierarchy_.Apply(kernels, workers, r_.data(), z_.data());
-  SmallVector along{}, share{};
-  for (std::size_t c = 0; c < constraints_.size(); ++c)
-    along[c] = CalcDot(kernels, workers, constraints_[c].gradient, z_);
-  SolveSmall(gram_, along, constraints_.size(), share);
-  for (std::size_t c = 0; c < constraints_.size(); ++c)
-    AddScaled(kernels, workers, static_cast<float>(-share[c]), constraints_[c].answer, z_);
+  if (constraints_.empty()) return;
+  SmallVector share{};
+  SolveSmall(gram_, CalcDots(kernels, workers, &Constraint::gradient, z_), constraints_.size(), share);
+  Subtract(kernels, workers, share, &Constraint::answer, z_);
 }
 
 NewtonMultigrid::LinearReport NewtonMultigrid::SolveLinear(const Kernels& kernels, Workers& workers,
@@ -209,9 +239,8 @@ NewtonMultigrid::LinearReport NewtonMultigrid::SolveLinear(const Kernels& kernel
   const double rounding = kLinearRounding * rz;
   while (report.iterations < max_iterations && rz > rounding) {
     Multiply(kernels, workers, p_.data(), q_.data());
-    const double pq = CalcDot(kernels, workers, p_, q_);
+    const auto [pq, longest] = CalcDotAndLongest(kernels, workers, q_, p_);
     report.met_negative_curvature = !(pq > 0.0);
-    const double longest = FindLongest(kernels, workers, p_);
     if (pq > 0.0) ritz.Add(rz / pq, beta);
     report.smallest_ritz = ritz.Value();
     // along a direction of negative curvature the energy only falls: as far as the range reaches
@@ -230,9 +259,8 @@ NewtonMultigrid::LinearReport NewtonMultigrid::SolveLinear(const Kernels& kernel
       break;
     }
     Precondition(kernels, workers);
-    const double left = FindLongest(kernels, workers, z_);
+    const auto [next, left] = CalcDotAndLongest(kernels, workers, r_, z_);
     if (left <= loose || left <= tolerance * CalcSeenShare(std::fmin(softest, ritz.Value()))) break;
-    const double next = CalcDot(kernels, workers, r_, z_);
     beta = next / rz;
     rz = next;
     ForEachNodeChunk(workers, n, [&](std::uint32_t first, std::uint32_t last, std::uint32_t) {
@@ -242,18 +270,21 @@ NewtonMultigrid::LinearReport NewtonMultigrid::SolveLinear(const Kernels& kernel
   return report;
 }
 
-void NewtonMultigrid::ReadPositions(const TissueState& state) noexcept {
-  for (std::uint32_t i = 0; i < model_.Size(); ++i) {
+void NewtonMultigrid::ReadPositions(const TissueState& state, std::uint32_t first,
+                                    std::uint32_t last) noexcept {
+  for (std::uint32_t i = first; i < last; ++i) {
     const Vec3& p = state.position[model_.old_of_new[i]];
     position_[i] = {p.x, p.y, p.z, 0.0};
   }
 }
 
-void NewtonMultigrid::WriteBack(TissueState& state) const noexcept {
-  for (std::uint32_t i = 0; i < model_.Size(); ++i) {
-    if (load_.is_free[i])
-      state.position[model_.old_of_new[i]] = {position_[i].x, position_[i].y, position_[i].z};
-  }
+void NewtonMultigrid::WriteBack(Workers& workers, TissueState& state) const noexcept {
+  ForEachNodeChunk(workers, model_.Size(), [&](std::uint32_t first, std::uint32_t last, std::uint32_t) {
+    for (std::uint32_t i = first; i < last; ++i) {
+      if (load_.is_free[i])
+        state.position[model_.old_of_new[i]] = {position_[i].x, position_[i].y, position_[i].z};
+    }
+  });
 }
 
 bool NewtonMultigrid::TakeLead(const Kernels& kernels, Workers& workers, const SolveHook& hook,
@@ -273,7 +304,7 @@ bool NewtonMultigrid::TakeLead(const Kernels& kernels, Workers& workers, const S
   linearisation_.CalcBalance(kernels, workers, position_, balance_);
   bool is_better = balance_.is_finite && balance_.energy < before;
   if (is_better && hook.is_in_reach != nullptr) {
-    WriteBack(state);
+    WriteBack(workers, state);
     is_better = hook.is_in_reach(hook.self, state);
   }
   if (!is_better) std::copy(start_.begin(), start_.end(), position_.begin());
@@ -286,7 +317,7 @@ SolveReport NewtonMultigrid::Solve(const Kernels& kernels, Workers& workers, con
   const std::uint32_t n = model_.Size();
   SetOrderedLoad(model_, load, state, load_);
   linearisation_.SetLoad(load_, state.strand_is_intact, hierarchy_.Finest());
-  ReadPositions(state);
+  ReadPositions(state, 0, n);
 
   SolveReport report;
   const auto linearise = [&] {
@@ -294,22 +325,22 @@ SolveReport NewtonMultigrid::Solve(const Kernels& kernels, Workers& workers, con
   };
   const auto call_hook = [&] {
     if (hook == nullptr) return;
-    WriteBack(state);
+    WriteBack(workers, state);
     for (std::size_t c = 0; c < constraints_.size(); ++c)
       hook->add_multiplier(hook->self, constraints_[c].index, -multipliers_[c]);
     hook->act(hook->self, state, {});
-    ReadPositions(state);
-    SetOrderedForce(model_, load, load_);
-    linearisation_.SetForce();
+    ForEachNodeChunk(workers, n, [&](std::uint32_t first, std::uint32_t last, std::uint32_t) {
+      ReadPositions(state, first, last);
+      SetOrderedForce(model_, load, first, last, load_);
+      linearisation_.SetForce(first, last);
+    });
   };
   double scale = 0;                 // largest distance from rest [m]
   double preconditioned = 0;        // longest of z_ [m]
   double smallest_ritz = INFINITY;  // of all steps
   // estimate of the distance to the equilibrium; leaves the preconditioned residual in z_
   const auto estimate = [&] {
-    hierarchy_.UpdateChains(linearisation_.Slack());
-    std::copy(balance_.residual.begin(), balance_.residual.end(), r_.begin());
-    SetConstraints(hook);
+    BeginStep(workers, hook);
     SetAnswers(kernels, workers);
     Precondition(kernels, workers);
     scale = balance_.largest_distance;
@@ -376,7 +407,7 @@ SolveReport NewtonMultigrid::Solve(const Kernels& kernels, Workers& workers, con
       is_lower = balance_.is_finite && balance_.energy <= before + kLeastDecrease * share * slope +
                                                               kEnergyRounding * std::fabs(before);
       if (is_lower && !constraints_.empty() && hook->is_in_reach != nullptr) {
-        WriteBack(state);
+        WriteBack(workers, state);
         is_lower = hook->is_in_reach(hook->self, state);
       }
       report.restarts += !is_lower;
@@ -413,7 +444,7 @@ SolveReport NewtonMultigrid::Solve(const Kernels& kernels, Workers& workers, con
     estimate();
   }
   report_residual();
-  WriteBack(state);
+  WriteBack(workers, state);
   return report;
 }
 

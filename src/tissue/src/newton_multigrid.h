@@ -45,10 +45,21 @@ class NewtonMultigrid {
   /// \param softest  smallest Ritz value of the steps before: this step is solved as deep as the estimate asks
   LinearReport SolveLinear(const Kernels& kernels, Workers& workers, int max_iterations, double loose,
                            double tolerance, double softest, double radius) noexcept;
-  /// Takes the gradients of the active constraints.
-  void SetConstraints(const SolveHook* hook) noexcept;
+  /// Takes the residual, the chains' factors and the gradients of the active constraints.
+  void BeginStep(Workers& workers, const SolveHook* hook) noexcept;
   /// What the preconditioner answers to each gradient; from the step before while the preconditioner stays.
   void SetAnswers(const Kernels& kernels, Workers& workers) noexcept;
+  struct Constraint {
+    std::size_t index = 0;           // in the hook
+    AlignedVector<Float4> gradient;  // (padded) G
+    AlignedVector<Float4> answer;    // (padded) Y
+  };
+  /// Of each constraint's part with v.
+  SmallVector CalcDots(const Kernels& kernels, Workers& workers, AlignedVector<Float4> Constraint::*part,
+                       const AlignedVector<Float4>& v) const noexcept;
+  /// from -= sum of shares of each constraint's part
+  void Subtract(const Kernels& kernels, Workers& workers, const SmallVector& shares,
+                AlignedVector<Float4> Constraint::*part, AlignedVector<Float4>& from) const noexcept;
   /// Lets the constraints carry of r_ what they can; multipliers_ is all that they carry.
   void ProjectResidual(const Kernels& kernels, Workers& workers) noexcept;
   /// z_ = about K^-1 r_ on the constraints: P M^-1 P^T r_ with P = I - Y (G^T Y)^-1 G^T, which is symmetric and
@@ -56,8 +67,8 @@ class NewtonMultigrid {
   /// solution of equality constrained quadratic programming problems arising in optimization", SIAM J. Sci.
   /// Comput. 23, 2001).
   void Precondition(const Kernels& kernels, Workers& workers) noexcept;
-  void ReadPositions(const TissueState& state) noexcept;
-  void WriteBack(TissueState& state) const noexcept;
+  void ReadPositions(const TissueState& state, std::uint32_t first, std::uint32_t last) noexcept;
+  void WriteBack(Workers& workers, TissueState& state) const noexcept;
   /// Begins where the hook's lead goes to if the energy is lower there and the constraints are in reach.
   bool TakeLead(const Kernels& kernels, Workers& workers, const SolveHook& hook, TissueState& state) noexcept;
   void Multiply(const Kernels& kernels, Workers& workers, const Float4* x, Float4* out) noexcept;
@@ -70,11 +81,6 @@ class NewtonMultigrid {
   AlignedVector<Double4> position_, start_;  // (padded)
   Balance balance_;
   AlignedVector<Float4> step_, r_, z_, p_, q_;  // (padded)
-  struct Constraint {
-    std::size_t index = 0;           // in the hook
-    AlignedVector<Float4> gradient;  // (padded) G
-    AlignedVector<Float4> answer;    // (padded) Y
-  };
   std::array<Constraint, kMaxHookConstraints> constraints_room_;
   std::span<Constraint> constraints_;  // of the present step
   bool has_answers_ = false;

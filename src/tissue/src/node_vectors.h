@@ -45,6 +45,30 @@ inline double CalcDot(const Kernels& kernels, Workers& workers, const AlignedVec
   return sum;
 }
 
+struct DotAndLongest {
+  double dot;
+  double longest;  ///< of the second vector
+};
+/// a . b and the length of the longest of b's vectors, as by CalcDot() and FindLongest(), in one pass.
+inline DotAndLongest CalcDotAndLongest(const Kernels& kernels, Workers& workers,
+                                       const AlignedVector<Float4>& a,
+                                       const AlignedVector<Float4>& b) noexcept {
+  std::array<double, Workers::kMaxChunks> dots;
+  std::array<float, Workers::kMaxChunks> largest2;
+  const std::uint32_t chunks =
+      ForEachNodeChunk(workers, a.size(), [&](std::uint32_t first, std::uint32_t last, std::uint32_t chunk) {
+        dots[chunk] = kernels.vectors.dot(a.data(), b.data(), first, last);
+        largest2[chunk] = kernels.vectors.find_largest2(b.data(), first, last);
+      });
+  double sum = 0;
+  float most = 0;
+  for (std::uint32_t chunk = 0; chunk < chunks; ++chunk) {
+    sum += dots[chunk];
+    most = LargerOrNan(most, largest2[chunk]);
+  }
+  return {sum, std::sqrt(static_cast<double>(most))};
+}
+
 /// Length of the longest of all nodes' vectors; NaN where one is.
 inline double FindLongest(const Kernels& kernels, Workers& workers, const AlignedVector<Float4>& v) noexcept {
   std::array<float, Workers::kMaxChunks> parts;

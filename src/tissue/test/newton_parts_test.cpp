@@ -309,14 +309,16 @@ TEST(LinkChains, SolveTheDuctExactly) {
   std::vector<Float4> b(here.balance.residual.size()), x = b, product = b;
   for (const std::uint32_t i : chains.Nodes()) b[i] = {1.0f, -0.5f, 0.25f, 0.0f};
   chains.Factorise(here.hierarchy.Finest(), here.linearisation.Slack());
-  chains.Solve(here.hierarchy.Finest(), nullptr, b.data(), 1.0f, x.data());
+  chains.Solve(here.hierarchy.Finest(), nullptr, b.data());
+  chains.Add(nullptr, 1.0f, x.data());
   RunPass(*here.kernels, here.workers, here.hierarchy.Finest(), LinkPass::kProduct, x.data(), nullptr, 0.0f,
           product.data());
   for (const std::uint32_t i : chains.Nodes())
     EXPECT_LT(Norm({product[i].x - b[i].x, product[i].y - b[i].y, product[i].z - b[i].z, 0}), 2e-3);
   // from there nothing is left to correct
   std::vector<Float4> again = x;
-  chains.Solve(here.hierarchy.Finest(), x.data(), b.data(), 1.0f, again.data());
+  chains.Solve(here.hierarchy.Finest(), x.data(), b.data());
+  chains.Add(x.data(), 1.0f, again.data());
   for (const std::uint32_t i : chains.Nodes())
     EXPECT_LT(Norm({again[i].x - x[i].x, again[i].y - x[i].y, again[i].z - x[i].z, 0}), 2e-3 * Norm(x[i]));
 }

@@ -117,9 +117,10 @@ class Conservation {
   /// measured.
   /// \note Real-time safe.
   bool AreVolumesInReach(const TissueState& tissue, const ConservationState& state) const noexcept;
-  /// Adds to an organ's pressure, not below zero where it has a hole; the force of CalcForce follows. [Pa]
+  /// Adds to an organ's pressure, not below zero where it has a hole; the force of CalcForce follows in
+  /// the next KeepVolumes(). [Pa]
   /// \note Real-time safe.
-  void AddPressure(std::size_t organ, double change, ConservationState& state) noexcept;
+  void AddPressure(std::size_t organ, double change, ConservationState& state) const noexcept;
 
   /// After a solve: lets fluid leak for `dt` [s], brings each volume to its target exactly, and moves the
   /// frames of held free regions to their best fit.

@@ -66,7 +66,7 @@ struct SolveHook {
   std::span<const Constraint> constraints;  ///< at most kMaxHookConstraints
   std::span<const Vec3> gradient;           ///< (n), of each node's constraint; act() keeps it up to date
   bool (*is_active)(void* self, std::size_t constraint) noexcept = nullptr;
-  /// Adds to a multiplier; the forces that load.external_force views follow.
+  /// Adds to a multiplier; the forces that load.external_force views follow in the next act().
   void (*add_multiplier)(void* self, std::size_t constraint, double change) noexcept = nullptr;
   /// Whether act() could bring the constraints back from these positions: they are linear only near by. A step that
   /// leads farther is taken back, as one that raises the energy.
