@@ -73,7 +73,7 @@ Conservation::Conservation(const TissueModel& model, ConservationSettings settin
   static_assert(kMaxClosedOrgans <= kMaxHookConstraints);
   for (const ClosedOrgan& organ : settings_.organs)
     constraints_.push_back({organ.first_node, organ.node_count});
-  gradient_.resize(n);
+  gradient_.resize(n), ahead_gradient_.resize(n);
   base_force_.resize(n);
   force_.resize(n);
   next_regions_.of_node.resize(n);
@@ -307,15 +307,31 @@ double Conservation::MeasureVolume(std::size_t organ, const TissueState& tissue)
                           surface.triangles);
 }
 
+double Conservation::MeasureGradient(std::size_t organ, const TissueState& tissue,
+                                     std::span<Vec3> gradient) const noexcept {
+  const ClosedOrgan& surface = settings_.organs[organ];
+  return CalcVolumeGradient(std::span(tissue.position).subspan(surface.first_node, surface.node_count),
+                            surface.triangles, OrganPart(organ, gradient));
+}
+
 /// Volumes and their gradients; false when the state is not finite.
 bool Conservation::MeasureVolumes(const TissueState& tissue, ConservationState& state) noexcept {
   bool is_good = true;
   for (std::size_t i = 0; i < settings_.organs.size(); ++i) {
-    const ClosedOrgan& surface = settings_.organs[i];
-    state.organs[i].volume =
-        CalcVolumeGradient(std::span(tissue.position).subspan(surface.first_node, surface.node_count),
-                           surface.triangles, OrganPart(i, gradient_));
+    state.organs[i].volume = MeasureGradient(i, tissue, gradient_);
     is_good = is_good && std::isfinite(state.organs[i].volume);
+  }
+  return is_good;
+}
+
+/// The same where AreVolumesInReach() has just measured these positions.
+bool Conservation::TakeAhead(ConservationState& state) noexcept {
+  bool is_good = true;
+  for (std::size_t i = 0; i < settings_.organs.size(); ++i) {
+    const auto ahead = OrganPart(i, ahead_gradient_);
+    std::copy(ahead.begin(), ahead.end(), OrganPart(i, gradient_).begin());
+    state.organs[i].volume = ahead_volume_[i];
+    is_good = is_good && std::isfinite(ahead_volume_[i]);
   }
   return is_good;
 }
@@ -347,9 +363,9 @@ bool Conservation::CalcSlopes(const TissueState& tissue, ConservationState& stat
   return is_good;
 }
 
-/// One Newton step on all volumes, as last measured, with the slopes at hand; false when every volume is at its target.
-bool Conservation::ProjectOnce(TissueState& tissue, std::span<Vec3> before,
-                               ConservationState& state) noexcept {
+/// One Newton step on all volumes, as last measured, with the slopes at hand.
+Conservation::Projection Conservation::ProjectOnce(TissueState& tissue, std::span<Vec3> before,
+                                                   ConservationState& state) noexcept {
   const std::size_t count = settings_.organs.size();
   SmallVector error{}, lambda{};
   bool is_done = true;
@@ -360,7 +376,7 @@ bool Conservation::ProjectOnce(TissueState& tissue, std::span<Vec3> before,
     error[i] = is_open ? 0.0 : std::clamp(organ.target - organ.volume, -limit, limit);
     is_done = is_done && std::fabs(error[i]) <= kVolumeTolerance * organ.target;
   }
-  if (is_done || !SolveSmall(slopes_, error, count, lambda)) return false;
+  if (is_done || !SolveSmall(slopes_, error, count, lambda)) return Projection::kNone;
   for (std::size_t i = 0; i < count; ++i) {
     const OrganVolume& organ = state.organs[i];
     // through a hole gas enters before the sac is sucked in
@@ -395,28 +411,30 @@ bool Conservation::ProjectOnce(TissueState& tissue, std::span<Vec3> before,
   }
   if (worst_after <= worst_before) {
     for (std::size_t i = 0; i < count; ++i) state.organs[i].volume = volume[i];
-    return true;
+    return Projection::kDone;
   }
   // the slopes are those of another shape, and lead astray, as where a cut left a loose flap: stand still
   move_by(-part);
-  return false;
+  return Projection::kTakenBack;
 }
 
 void Conservation::KeepVolumes(TissueState& tissue, std::span<Vec3> before,
                                ConservationState& state) noexcept {
-  if (has_slopes_ && MeasureVolumes(tissue, state)) (void)ProjectOnce(tissue, before, state);
+  const bool is_known = std::exchange(has_ahead_, false);
+  if (has_slopes_ && (is_known ? TakeAhead(state) : MeasureVolumes(tissue, state)))
+    (void)ProjectOnce(tissue, before, state);
   SetPressureForce(state);
 }
 
-bool Conservation::AreVolumesInReach(const TissueState& tissue,
-                                     const ConservationState& state) const noexcept {
+bool Conservation::AreVolumesInReach(const TissueState& tissue, const ConservationState& state) noexcept {
+  has_ahead_ = false;
   for (std::size_t i = 0; i < settings_.organs.size(); ++i) {
     const OrganVolume& organ = state.organs[i];
-    if (!IsSealed(organ)) continue;
-    const double volume = MeasureVolume(i, tissue);
+    ahead_volume_[i] = MeasureGradient(i, tissue, ahead_gradient_);
     const double reach = std::fmax(kMaxVolumeStep * organ.target, std::fabs(organ.volume - organ.target));
-    if (!(std::fabs(volume - organ.target) <= reach)) return false;
+    if (IsSealed(organ) && !(std::fabs(ahead_volume_[i] - organ.target) <= reach)) return false;
   }
+  has_ahead_ = true;
   return true;
 }
 
@@ -455,18 +473,17 @@ void Conservation::Enforce(const TissueLoad& load, double dt, TissueState& tissu
     waited_ = 0;
     responses_settled_ = UpdateResponses(tissue, load, kResponseIterationsPerTick, kResponseTolerance);
   }
-  bool is_good = true;
-  for (std::size_t i = 0; i < settings_.organs.size(); ++i) {
-    state.organs[i].volume = MeasureVolume(i, tissue);
-    is_good = is_good && std::isfinite(state.organs[i].volume);
-  }
-  if (!is_good) return;
+  if (!MeasureVolumes(tissue, state)) return;
   Leak(dt, state);
-  int projections = 0;
-  while (has_slopes_ && projections < kMaxProjections && ProjectOnce(tissue, {}, state)) ++projections;
+  auto last = has_slopes_ ? Projection::kDone : Projection::kNone;
+  bool has_moved = false;
+  for (int i = 0; i < kMaxProjections && last == Projection::kDone; ++i) {
+    last = ProjectOnce(tissue, {}, state);
+    has_moved = has_moved || last != Projection::kNone;
+  }
   // the forces that load.external_force views become those of the state that is left: reactions and judges
   // read them
-  (void)MeasureVolumes(tissue, state);
+  if (has_moved) (void)MeasureVolumes(tissue, state);
   SetPressureForce(state);
   FitFrames(load, tissue, state);
   std::transform(tissue.position.begin(), tissue.position.end(), state.last_position.begin(),

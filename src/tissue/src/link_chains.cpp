@@ -96,6 +96,13 @@ void LinkChains::SetGraph(const NodeGraph& graph, const SliceLayout& layout) {
       row_starts_.push_back(row_starts_.back() + 3 * (row - first) + axis + 1);
     }
   }
+  column_starts_.assign(1, 0);
+  for (std::size_t column = 0; column < first_.size(); ++column) {
+    std::size_t last = std::min(column + kMostRow, first_.size());
+    while (first_[last - 1] > column) --last;
+    column_starts_.push_back(column_starts_.back() + last - column - 1);
+  }
+  columns_.assign(column_starts_.back(), 0.0f);
   factor_.resize(row_starts_.back());
   lower_.resize(row_starts_.back());
   whole_.resize(first_.size());
@@ -111,6 +118,7 @@ void LinkChains::Reserve(double share) {
   first_.reserve(3 * nodes), row_starts_.reserve(3 * nodes + 1), values_.reserve(3 * nodes),
       whole_.reserve(3 * nodes);
   factor_.reserve(3 * kMostRow * nodes), lower_.reserve(3 * kMostRow * nodes);
+  columns_.reserve(3 * kMostRow * nodes), column_starts_.reserve(3 * nodes + 1);
 }
 
 /// False where the matrix is not positive definite.
@@ -173,6 +181,8 @@ void LinkChains::Factorise(const LinkLevel& level, std::span<const float> slack)
     const std::size_t diagonal = row_starts_[row + 1] - 1;
     for (std::size_t at = row_starts_[row]; at < diagonal; ++at) lower_[at] = static_cast<float>(factor_[at]);
     lower_[diagonal] = static_cast<float>(1.0 / factor_[diagonal]);
+    for (std::size_t column = first_[row]; column < row; ++column)
+      columns_[column_starts_[column] + row - column - 1] = lower_[row_starts_[row] + column - first_[row]];
   }
 }
 
@@ -199,12 +209,12 @@ void LinkChains::Solve(const LinkLevel& level, const Float4* from, const Float4*
     }
     for (std::size_t axis = 0; axis < 3; ++axis) values_[3 * row + axis] = level.is_free[i] * r[axis];
   }
-  for (std::size_t row = 0; row < first_.size(); ++row) {
-    const float* const here = lower_.data() + row_starts_[row];
-    const std::size_t first = first_[row];
-    float sum = values_[row];
-    for (std::size_t column = first; column < row; ++column) sum -= here[column - first] * values_[column];
-    values_[row] = sum * here[row - first];
+  for (std::size_t column = 0; column < first_.size(); ++column) {
+    const float* const below = columns_.data() + column_starts_[column];
+    const std::size_t count = column_starts_[column + 1] - column_starts_[column];
+    float* const to = values_.data() + column + 1;
+    const float value = values_[column] *= lower_[row_starts_[column + 1] - 1];
+    for (std::size_t k = 0; k < count; ++k) to[k] -= below[k] * value;
   }
   for (std::size_t row = first_.size(); row-- > 0;) {
     const float* const here = lower_.data() + row_starts_[row];

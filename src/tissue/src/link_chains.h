@@ -63,7 +63,9 @@ class LinkChains {
   std::vector<std::size_t> row_starts_;
   std::vector<double> factor_, whole_;  // room for Factorise; the latter for its diagonal as it was
   std::vector<float> lower_;            // the factor, with the inverses of its diagonal
-  std::vector<float> values_;           // (3 nodes)
+  std::vector<float> columns_;          // the same below its diagonal, column by column
+  std::vector<std::size_t> column_starts_;
+  std::vector<float> values_;  // (3 nodes)
   bool is_factorised_ = false;
   // room for SetGraph
   std::vector<std::uint8_t> is_candidate_;    // (n)

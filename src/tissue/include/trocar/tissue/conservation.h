@@ -114,9 +114,9 @@ class Conservation {
     return !(organ.opening_area > 0.0 && organ.pressure == 0.0 && organ.volume > organ.target);
   }
   /// Whether one projection could bring every volume to its target, or each is no farther off than when it was last
-  /// measured.
+  /// measured. Where it says so, the next KeepVolumes() takes what it measured: of the same positions.
   /// \note Real-time safe.
-  bool AreVolumesInReach(const TissueState& tissue, const ConservationState& state) const noexcept;
+  bool AreVolumesInReach(const TissueState& tissue, const ConservationState& state) noexcept;
   /// Adds to an organ's pressure, not below zero where it has a hole; the force of CalcForce follows in
   /// the next KeepVolumes(). [Pa]
   /// \note Real-time safe.
@@ -146,9 +146,14 @@ class Conservation {
   void AddFrameForce(const TissueState& tissue, const TissueLoad& load,
                      const ConservationState& state) noexcept;
   double MeasureVolume(std::size_t organ, const TissueState& tissue) const noexcept;
+  double MeasureGradient(std::size_t organ, const TissueState& tissue,
+                         std::span<Vec3> gradient) const noexcept;
+  bool TakeAhead(ConservationState& state) noexcept;
   bool MeasureVolumes(const TissueState& tissue, ConservationState& state) noexcept;
   bool CalcSlopes(const TissueState& tissue, ConservationState& state) noexcept;
-  bool ProjectOnce(TissueState& tissue, std::span<Vec3> before, ConservationState& state) noexcept;
+  /// Whether every volume was at its target, or the state moved, or moved and came back but for rounding.
+  enum class Projection { kNone, kDone, kTakenBack };
+  Projection ProjectOnce(TissueState& tissue, std::span<Vec3> before, ConservationState& state) noexcept;
   void SetPressureForce(const ConservationState& state) noexcept;
   void Leak(double dt, ConservationState& state) const noexcept;
   void FitFrames(const TissueLoad& load, const TissueState& tissue, ConservationState& state) const noexcept;
@@ -165,10 +170,13 @@ class Conservation {
   std::vector<std::vector<Vec3>> first_responses_;  // of the whole tissue under the usual scales
   std::uint64_t response_links_ = 0, first_links_ = 0;
   bool responses_settled_ = false;
-  bool has_stiffness_ = false;    // linear_ has the stiffness of rest_, this model's, under the scales above
-  bool has_followed_ = false;     // since the last Enforce()
-  int waited_ = 0;                // ticks that left the responses to a later one
-  std::vector<Vec3> gradient_;    // (n) of each node's organ; zero elsewhere
+  bool has_stiffness_ = false;  // linear_ has the stiffness of rest_, this model's, under the scales above
+  bool has_followed_ = false;   // since the last Enforce()
+  int waited_ = 0;              // ticks that left the responses to a later one
+  std::vector<Vec3> gradient_;  // (n) of each node's organ; zero elsewhere
+  std::vector<Vec3> ahead_gradient_;  // (n) the same as AreVolumesInReach() found it, and the volumes
+  std::array<double, kMaxClosedOrgans> ahead_volume_{};
+  bool has_ahead_ = false;        // for the next KeepVolumes()
   std::vector<Vec3> base_force_;  // (n) without pressure
   std::vector<Vec3> force_;       // (n)
   std::vector<SolveHook::Constraint> constraints_;

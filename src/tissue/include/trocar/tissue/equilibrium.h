@@ -69,7 +69,8 @@ struct SolveHook {
   /// Adds to a multiplier; the forces that load.external_force views follow in the next act().
   void (*add_multiplier)(void* self, std::size_t constraint, double change) noexcept = nullptr;
   /// Whether act() could bring the constraints back from these positions: they are linear only near by. A step that
-  /// leads farther is taken back, as one that raises the energy.
+  /// leads farther is taken back, as one that raises the energy; after one that does not, act() is called with the same
+  /// positions.
   bool (*is_in_reach)(void* self, const TissueState& state) noexcept = nullptr;
 
   /// How far each node may go, (n) or empty [m]: a solver that can tell the energy begins there if it is lower.
