@@ -72,18 +72,21 @@ void Workers::TakeChunks(Loop loop, int seat) noexcept {
   // each begins where its share begins, so that a chunk mostly stays in the same processor's cache
   const auto begin = static_cast<std::uint32_t>(std::uint64_t{loop.count} * static_cast<std::uint64_t>(seat) /
                                                 static_cast<std::uint64_t>(threads_));
+  std::uint32_t done = 0;
   for (std::uint32_t i = 0; i < loop.count; ++i) {
     const std::uint32_t chunk = begin + i < loop.count ? begin + i : begin + i - loop.count;
-    std::uint64_t last = taken_[chunk].load(std::memory_order_relaxed);
+    std::atomic<std::uint64_t>& taken_by = chunks_[chunk].taken_by;
+    std::uint64_t last = taken_by.load(std::memory_order_relaxed);
     // Taken in this loop or, if we are late, in a later one. Otherwise this loop has not ended, and does not before
     // the chunk is done: call and context are its own.
     if (last >= loop.number ||
-        !taken_[chunk].compare_exchange_strong(last, loop.number, std::memory_order_acq_rel)) {
+        !taken_by.compare_exchange_strong(last, loop.number, std::memory_order_acq_rel)) {
       continue;
     }
     call_.load(std::memory_order_relaxed)(context_.load(std::memory_order_relaxed), chunk);
-    done_.fetch_add(1, std::memory_order_acq_rel);
+    ++done;
   }
+  if (done > 0) done_.fetch_add(done, std::memory_order_acq_rel);
 }
 
 void Workers::RunShared(std::uint32_t count, Call call, const void* context) noexcept {

@@ -75,12 +75,17 @@ class Workers {
   tbb::task_arena arena_;
   tbb::task_group helpers_;
 
-  std::atomic<bool> is_open_ = false;
+  // each of what different threads write at the same time has a cache line of its own
+  static constexpr std::size_t kLine = 64;
+  struct alignas(kLine) Chunk {
+    std::atomic<std::uint64_t> taken_by = 0;  // number of the last loop that took it
+  };
+  alignas(kLine) std::atomic<bool> is_open_ = false;
   std::atomic<std::uint64_t> loop_ = 0;  // the present one, see Loop
-  std::atomic<std::uint32_t> done_ = 0;
   std::atomic<Call> call_ = nullptr;
   std::atomic<const void*> context_ = nullptr;
-  std::array<std::atomic<std::uint64_t>, kMaxChunks> taken_{};  // number of the last loop that took the chunk
+  alignas(kLine) std::atomic<std::uint32_t> done_ = 0;
+  std::array<Chunk, kMaxChunks> chunks_;
 };
 
 }  // namespace trocar::tissue
