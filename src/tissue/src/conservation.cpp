@@ -316,6 +316,7 @@ double Conservation::MeasureGradient(std::size_t organ, const TissueState& tissu
 
 /// Volumes and their gradients; false when the state is not finite.
 bool Conservation::MeasureVolumes(const TissueState& tissue, ConservationState& state) noexcept {
+  has_ahead_ = false;
   bool is_good = true;
   for (std::size_t i = 0; i < settings_.organs.size(); ++i) {
     state.organs[i].volume = MeasureGradient(i, tissue, gradient_);
@@ -326,6 +327,7 @@ bool Conservation::MeasureVolumes(const TissueState& tissue, ConservationState& 
 
 /// The same where AreVolumesInReach() has just measured these positions.
 bool Conservation::TakeAhead(ConservationState& state) noexcept {
+  has_ahead_ = false;
   bool is_good = true;
   for (std::size_t i = 0; i < settings_.organs.size(); ++i) {
     const auto ahead = OrganPart(i, ahead_gradient_);
@@ -420,8 +422,7 @@ Conservation::Projection Conservation::ProjectOnce(TissueState& tissue, std::spa
 
 void Conservation::KeepVolumes(TissueState& tissue, std::span<Vec3> before,
                                ConservationState& state) noexcept {
-  const bool is_known = std::exchange(has_ahead_, false);
-  if (has_slopes_ && (is_known ? TakeAhead(state) : MeasureVolumes(tissue, state)))
+  if (has_slopes_ && (has_ahead_ ? TakeAhead(state) : MeasureVolumes(tissue, state)))
     (void)ProjectOnce(tissue, before, state);
   SetPressureForce(state);
 }

@@ -81,12 +81,4 @@ inline double FindLongest(const Kernels& kernels, Workers& workers, const Aligne
   return std::sqrt(static_cast<double>(largest2));
 }
 
-/// to += factor v
-inline void AddScaled(const Kernels& kernels, Workers& workers, float factor, const AlignedVector<Float4>& v,
-                      AlignedVector<Float4>& to) noexcept {
-  ForEachNodeChunk(workers, v.size(), [&](std::uint32_t first, std::uint32_t last, std::uint32_t) {
-    kernels.vectors.add_scaled(factor, v.data(), to.data(), first, last);
-  });
-}
-
 }  // namespace trocar::tissue

@@ -193,11 +193,15 @@ double SpringSlices::Step(const Kernels& kernels, Workers& workers, float omega,
   return std::sqrt(static_cast<double>(largest));
 }
 
+std::uint32_t SpringSlices::CountRanges(int threads) const {
+  // at each edge a range leaves out kFollowing - 1 reaches at the most: at least half is left to be done together
+  const auto most = static_cast<std::uint32_t>(layout_.Slices() / (4 * kFollowing * (reach_ + 1)));
+  return std::min(static_cast<std::uint32_t>(threads), most);
+}
+
 double SpringSlices::Iterate(const Kernels& kernels, Workers& workers, std::span<const float> omegas,
                              float damping, bool is_first, bool is_measured) noexcept {
-  // ranges of the mesh that are worked on at the same time need to be wide enough to have something between their edges
-  const auto most_ranges = static_cast<std::uint32_t>(layout_.Slices() / (4 * kFollowing * (reach_ + 1)));
-  const std::uint32_t ranges = std::min(static_cast<std::uint32_t>(workers.Threads()), most_ranges);
+  const std::uint32_t ranges = CountRanges(workers.Threads());
   double residual = 0;
   for (std::size_t done = 0; done < omegas.size();) {
     const std::size_t some = ranges == 0 ? 1 : std::min(kFollowing, omegas.size() - done);

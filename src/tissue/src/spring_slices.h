@@ -43,8 +43,9 @@ class SpringSlices {
                  bool is_first, bool is_measured) noexcept;
   /// Whether kernels that can look most neighbours up, several at a time.
   bool HasLookups() const { return has_lookups_; }
-  /// Slices to the farthest neighbour: where they are few among many, iterations follow each other.
-  std::uint32_t Reach() const { return reach_; }
+  /// Ranges of the mesh that threads work on side by side where iterations follow each other; 0 where none do, because
+  /// neighbours lie too far apart for so small a mesh.
+  std::uint32_t CountRanges(int threads) const;
   double LowestEigenvalue() const { return lowest_; }
   double SmallestShape() const { return smallest_shape_; }
   double LargestDisplacement() const noexcept;
@@ -62,7 +63,7 @@ class SpringSlices {
                          std::uint32_t ranges) noexcept;
 
   SliceLayout layout_;
-  std::uint32_t reach_ = 0;
+  std::uint32_t reach_ = 0;                 // slices to the farthest neighbour
   std::vector<SliceLookup> lookups_;        // as in SliceStep
   std::vector<std::uint8_t> is_scattered_;  // as in SliceStep
   bool has_lookups_ = false;                // for most steps

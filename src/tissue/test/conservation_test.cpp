@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -63,6 +64,40 @@ struct Sac {
     }
   }
 };
+
+// What AreVolumesInReach() has measured is taken once, for the positions that it was asked of, and is what would be
+// measured there.
+TEST(Conservation, WhatWasMeasuredAheadIsTakenOnceAndForItsPositionsAlone) {
+  const Sac sac(3e4);
+  Conservation asked(sac.model, sac.settings), plain(sac.model, sac.settings);
+  ConservationState asked_state = asked.MakeState(sac.tissue), plain_state = plain.MakeState(sac.tissue);
+  const TissueLoad load;
+  const auto stretched = [&](double by) {
+    TissueState tissue = sac.tissue;
+    for (std::uint32_t i = 0; i < sac.organ_nodes; ++i) tissue.position[i].x *= 1.0 + by;
+    return tissue;
+  };
+  const auto keep_and_compare = [&](double by, const char* when) {
+    TissueState here = stretched(by), there = here;
+    asked.KeepVolumes(here, {}, asked_state);
+    plain.KeepVolumes(there, {}, plain_state);
+    EXPECT_EQ(here.position, there.position) << when;
+    EXPECT_NE(here.position, stretched(by).position) << "something to keep, " << when;
+    EXPECT_EQ(asked_state.organs[0].volume, plain_state.organs[0].volume) << when;
+    EXPECT_TRUE(std::equal(asked.VolumeGradient().begin(), asked.VolumeGradient().end(),
+                           plain.VolumeGradient().begin()))
+        << when;
+  };
+  (void)asked.CalcForce(sac.tissue, load, asked_state);
+  (void)plain.CalcForce(sac.tissue, load, plain_state);
+  ASSERT_TRUE(asked.AreVolumesInReach(stretched(0.01), asked_state));
+  keep_and_compare(0.01, "at the positions asked of");
+  keep_and_compare(0.03, "at others, not asked again");
+  ASSERT_TRUE(asked.AreVolumesInReach(stretched(0.01), asked_state));
+  (void)asked.CalcForce(sac.tissue, load, asked_state);
+  (void)plain.CalcForce(sac.tissue, load, plain_state);
+  keep_and_compare(0.02, "in the next tick, asked in the last");
+}
 
 // Analytic: a thin sphere under pressure, P = 2 E t / (1 - nu) / r * strain, V = V_0 (1 + 3 strain), nu =
 // 1/3.
