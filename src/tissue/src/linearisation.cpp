@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "node_force.h"
+#include "node_vectors.h"
 #include "room.h"
 
 namespace trocar::tissue {
@@ -113,6 +114,24 @@ void SetOrderedForce(const OrderedModel& model, const TissueLoad& load, std::uin
   }
 }
 
+void AddContactLinks(const OrderedLoad& load, const Balance& balance, const Float4* x, Float4* out) noexcept {
+  for (std::size_t c = 0; c < load.contacts.size(); ++c) {
+    if (!balance.is_pressing[c]) continue;
+    const ContactSpring& contact = load.contacts[c];
+    double along[3], together = 0;
+    for (int corner = 0; corner < 3; ++corner) {
+      along[corner] = math::Dot(contact.normal, ToDouble(x[contact.nodes[corner]]));
+      together += contact.weights[corner] * along[corner];
+    }
+    for (int corner = 0; corner < 3; ++corner) {
+      const std::uint32_t node = contact.nodes[corner];
+      if (!load.is_free[node]) continue;
+      const double force = contact.weights[corner] * contact.stiffness * (together - along[corner]);
+      out[node] = ToFloat(ToDouble(out[node]) + force * contact.normal);
+    }
+  }
+}
+
 void Linearisation::SetModel() {
   const OrderedModel& model = *model_;
   nodes_.assign(model.layout.PaddedNodes() * kBalanceValues, 0.0);
@@ -129,6 +148,12 @@ void Linearisation::SetModel() {
 
 void Linearisation::Reserve(double share) {
   ReserveMore(share, slack_, strand_nodes_);
+}
+
+void Linearisation::ReserveFor(std::size_t nodes, std::size_t entries) {
+  nodes_.reserve(nodes * kBalanceValues);
+  slack_.reserve(entries);
+  strand_nodes_.reserve(nodes);
 }
 
 void Linearisation::SetLoad(const OrderedLoad& load, std::span<const std::uint8_t> strand_is_intact,

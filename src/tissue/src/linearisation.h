@@ -75,6 +75,11 @@ struct Balance {
   bool is_finite = true;
 };
 
+/// Adds to out = K x what the pressing contacts of a balance do to their corners together; what each does to its corners
+/// alone is in the ground.
+/// \note Real-time safe.
+void AddContactLinks(const OrderedLoad& load, const Balance& balance, const Float4* x, Float4* out) noexcept;
+
 /// Evaluates the balance of a model and its stiffness -dR/dx.
 class Linearisation {
  public:
@@ -84,6 +89,8 @@ class Linearisation {
   /// \note Allocates nothing where Reserve() was enough.
   void SetModel();
   void Reserve(double share);
+  /// Room for another model, of so many nodes and entries.
+  void ReserveFor(std::size_t nodes, std::size_t entries);
 
   /// Takes what acts in one solve; sets is_free and ground of `level`.
   /// \note Real-time safe.

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "newton_range.h"
 #include "node_vectors.h"
-#include "smallest_ritz.h"
 
 namespace trocar::tissue {
 namespace {
@@ -20,41 +20,22 @@ constexpr double kLeastSeenShare = 1e-3;
 /// A step is solved until the preconditioned residual is this part of what it was, or the error small enough
 /// [-]: what is of second order is left over anyway.
 constexpr double kForcing = 0.03;
-/// Longest move of a node in the first Newton step, in mean spring lengths [-]: the stiffness is that of
-/// springs that have not turned far. Conjugate gradients stop where they leave this range (Steihaug, "The
-/// conjugate gradient method and trust regions in large scale optimization", SIAM J. Numer. Anal. 20, 1983):
-/// by then the stiff part of the step is solved, and the soft one goes on in the next step.
-constexpr double kFirstRadius = 0.1;
-/// The range grows by this where a step used all of it and lowered the energy as predicted, and shrinks to as
-/// many times what was left of a step that did not [-].
-constexpr double kRadiusGrowth = 2.0;
-/// Halvings of a step that does not lower the energy.
-constexpr int kMaxHalvings = 6;
-/// Part of the predicted loss of energy that a step must bring (Armijo) [-].
-constexpr double kLeastDecrease = 1e-4;
-/// Rounding of the energy, as a part of it [-].
-constexpr double kEnergyRounding = 1e-12;
-/// Conjugate gradients end where r . z, of single precision, has fallen to this part of its start [-]: from a state
-/// at rest the tolerance is zero, and what follows is rounding.
-constexpr double kLinearRounding = 1e-12;
 /// Coarser levels are computed again when a node may have gone so far, in mean spring lengths [-]: they follow
 /// the springs' directions, which have hardly turned before.
 constexpr double kStaleMove = 0.2;
 /// A soft mode that an earlier step met is forgotten when a node goes so far in one step, in mean spring lengths [-]:
 /// a fold has snapped, and is stiff now.
 constexpr double kSnapMove = 0.02;
+/// A step that led uphill at all its lengths is tried no more where the range has come down to this, in mean spring
+/// lengths [-]: what is left is rounding.
+constexpr double kLeastRadius = 1e-5;
+/// What the smallest Ritz value of a patch, whose nodes are few and held all around, says of the whole's [-].
+constexpr double kPatchRitz = 2.0;
 /// A lead in which no node goes farther than this is not tried, in mean spring lengths [-]: it saves nothing.
 constexpr double kLeastLead = 3e-4;
 
 double CalcSeenShare(double smallest_ritz) noexcept {
   return std::clamp(smallest_ritz, kLeastSeenShare, kSeenShare);
-}
-
-Float4 ToFloat(const Vec3& v) {
-  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z), 0.0f};
-}
-Vec3 ToDouble(const Float4& v) {
-  return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
 }
 
 /// Solves a x = b for the first `count` rows by elimination without pivots: constraints are few and well apart.
@@ -79,7 +60,8 @@ void SolveSmall(NewtonMultigrid::SmallMatrix a, NewtonMultigrid::SmallVector b, 
 NewtonMultigrid::NewtonMultigrid(const TissueModel& model)
     : model_(MakeOrderedModel(model)),
       hierarchy_(model_.graph, model_.graph_stiffness),
-      linearisation_(model_) {
+      linearisation_(model_),
+      patch_(model_) {
   const std::size_t n = model_.Size(), padded = model_.layout.PaddedNodes();
   load_.constant.resize(n);
   load_.is_free.resize(n);
@@ -116,22 +98,7 @@ void NewtonMultigrid::SetEdgeLength() noexcept {
 void NewtonMultigrid::Multiply(const Kernels& kernels, Workers& workers, const Float4* x,
                                Float4* out) noexcept {
   RunPass(kernels, workers, hierarchy_.Finest(), LinkPass::kProduct, x, nullptr, 0.0f, out);
-  // a contact's ground stands for each corner alone; what it does to the corners together makes up the rest
-  for (std::size_t c = 0; c < load_.contacts.size(); ++c) {
-    if (!balance_.is_pressing[c]) continue;
-    const ContactSpring& contact = load_.contacts[c];
-    double along[3], together = 0;
-    for (int corner = 0; corner < 3; ++corner) {
-      along[corner] = math::Dot(contact.normal, ToDouble(x[contact.nodes[corner]]));
-      together += contact.weights[corner] * along[corner];
-    }
-    for (int corner = 0; corner < 3; ++corner) {
-      const std::uint32_t node = contact.nodes[corner];
-      if (!load_.is_free[node]) continue;
-      const double force = contact.weights[corner] * contact.stiffness * (together - along[corner]);
-      out[node] = ToFloat(ToDouble(out[node]) + force * contact.normal);
-    }
-  }
+  AddContactLinks(load_, balance_, x, out);
 }
 
 void NewtonMultigrid::BeginStep(Workers& workers, const SolveHook* hook) noexcept {
@@ -224,50 +191,27 @@ void NewtonMultigrid::Precondition(const Kernels& kernels, Workers& workers) noe
   Subtract(kernels, workers, share, &Constraint::answer, z_);
 }
 
-NewtonMultigrid::LinearReport NewtonMultigrid::SolveLinear(const Kernels& kernels, Workers& workers,
-                                                           int max_iterations, double loose, double tolerance,
-                                                           double softest, double radius) noexcept {
-  LinearReport report;
-  const std::size_t n = step_.size();
-  std::fill(step_.begin(), step_.end(), Float4{});
-  // z_ is the preconditioned residual already
-  std::copy(z_.begin(), z_.end(), p_.begin());
-  double reached = 0;  // bound of the longest move so far
-  double beta = 0;
-  SmallestRitz ritz;
-  double rz = CalcDot(kernels, workers, r_, z_);
-  const double rounding = kLinearRounding * rz;
-  while (report.iterations < max_iterations && rz > rounding) {
-    Multiply(kernels, workers, p_.data(), q_.data());
-    const auto [pq, longest] = CalcDotAndLongest(kernels, workers, q_, p_);
-    report.met_negative_curvature = !(pq > 0.0);
-    if (pq > 0.0) ritz.Add(rz / pq, beta);
-    report.smallest_ritz = ritz.Value();
-    // along a direction of negative curvature the energy only falls: as far as the range reaches
-    double length = report.met_negative_curvature ? INFINITY : rz / pq;
-    const bool is_leaving = reached + length * longest > radius;
-    report.reached_radius = is_leaving;
-    if (is_leaving) length = std::fmax(0.0, radius - reached) / longest;
-    reached += length * longest;
-    const auto alpha = static_cast<float>(length);
-    ForEachNodeChunk(workers, n, [&](std::uint32_t first, std::uint32_t last, std::uint32_t) {
-      kernels.vectors.advance(alpha, p_.data(), q_.data(), step_.data(), r_.data(), first, last);
-    });
-    ++report.iterations;
-    if (is_leaving) {
-      ProjectResidual(kernels, workers);  // what the constraints carry is asked for
-      break;
-    }
-    Precondition(kernels, workers);
-    const auto [next, left] = CalcDotAndLongest(kernels, workers, r_, z_);
-    if (left <= loose || left <= tolerance * CalcSeenShare(std::fmin(softest, ritz.Value()))) break;
-    beta = next / rz;
-    rz = next;
-    ForEachNodeChunk(workers, n, [&](std::uint32_t first, std::uint32_t last, std::uint32_t) {
-      kernels.vectors.scale_and_add(static_cast<float>(beta), z_.data(), p_.data(), first, last);
-    });
-  }
+LinearReport NewtonMultigrid::SolveLinear(const Kernels& kernels, Workers& workers, int max_iterations,
+                                          double loose, double tolerance, double softest,
+                                          double radius) noexcept {
+  const LinearReport report = SolveTruncated(
+      kernels, workers, max_iterations, radius, {step_, r_, z_, p_, q_},
+      [&] { Multiply(kernels, workers, p_.data(), q_.data()); }, [&] { Precondition(kernels, workers); },
+      [&](double left, double ritz) {
+        return left <= loose || left <= tolerance * CalcSeenShare(std::fmin(softest, ritz));
+      });
+  if (report.reached_radius) ProjectResidual(kernels, workers);  // what the constraints carry is asked for
   return report;
+}
+
+NewtonPatch::Report NewtonMultigrid::SolvePatch(const Kernels& kernels, Workers& workers,
+                                                std::span<const std::uint8_t> strand_is_intact,
+                                                double longest, double tolerance,
+                                                const SmallVector& multipliers) noexcept {
+  if (!patch_.Gather(load_, strand_is_intact, step_, longest)) return {};
+  for (std::size_t c = 0; c < constraints_.size(); ++c)
+    patch_.AddForce(constraints_[c].gradient, -multipliers[c]);
+  return patch_.Solve(kernels, workers, tolerance, edge_length_, position_);
 }
 
 void NewtonMultigrid::ReadPositions(const TissueState& state, std::uint32_t first,
@@ -364,7 +308,7 @@ SolveReport NewtonMultigrid::Solve(const Kernels& kernels, Workers& workers, con
   };
   constraints_ = {};  // those of the last solve
   if (hook != nullptr && TakeLead(kernels, workers, *hook, state)) call_hook();
-  double radius = edge_length_ > 0.0 ? kFirstRadius * edge_length_ : INFINITY;
+  NewtonRange range(edge_length_);
   linearise();
   update_coarse();
   estimate();
@@ -380,7 +324,7 @@ SolveReport NewtonMultigrid::Solve(const Kernels& kernels, Workers& workers, con
     const auto first_multipliers = multipliers_;
     const LinearReport linear = SolveLinear(
         kernels, workers, std::min(settings.max_linear_iterations, count_left()), kForcing * preconditioned,
-        kLinearShare * settings.max_error * scale, smallest_ritz, radius);
+        kLinearShare * settings.max_error * scale, smallest_ritz, range.Radius());
     smallest_ritz = std::fmin(smallest_ritz, linear.smallest_ritz);
     report.linear_iterations += linear.iterations;
     report.negative_curvatures += linear.met_negative_curvature;
@@ -390,13 +334,16 @@ SolveReport NewtonMultigrid::Solve(const Kernels& kernels, Workers& workers, con
     double share = 1.0;
     std::copy(position_.begin(), position_.end(), start_.begin());
     bool is_lower = false;
-    for (int halving = 0; halving <= kMaxHalvings && !is_lower; ++halving, share *= 0.5) {
+    SmallVector carried{};  // of the residual, by the constraints, after the part of the step that is taken
+    NewtonPatch::Report patch;
+    const auto keeps_reach = [&] {
+      if (constraints_.empty() || hook->is_in_reach == nullptr) return true;
+      WriteBack(workers, state);
+      return hook->is_in_reach(hook->self, state);
+    };
+    for (int halving = 0; halving <= NewtonRange::kMaxHalvings && !is_lower; ++halving, share *= 0.5) {
       ForEachNodeChunk(workers, n, [&](std::uint32_t first, std::uint32_t last, std::uint32_t) {
-        for (std::uint32_t i = first; i < last; ++i) {
-          position_[i] = {start_[i].x + share * static_cast<double>(step_[i].x),
-                          start_[i].y + share * static_cast<double>(step_[i].y),
-                          start_[i].z + share * static_cast<double>(step_[i].z), 0.0};
-        }
+        for (std::uint32_t i = first; i < last; ++i) position_[i] = Advance(start_[i], share, step_[i]);
       });
       // a hook will change the balance again
       if (hook == nullptr) {
@@ -404,30 +351,39 @@ SolveReport NewtonMultigrid::Solve(const Kernels& kernels, Workers& workers, con
       } else {
         linearisation_.CalcBalance(kernels, workers, position_, balance_);
       }
-      is_lower = balance_.is_finite && balance_.energy <= before + kLeastDecrease * share * slope +
-                                                              kEnergyRounding * std::fabs(before);
-      if (is_lower && !constraints_.empty() && hook->is_in_reach != nullptr) {
-        WriteBack(workers, state);
-        is_lower = hook->is_in_reach(hook->self, state);
+      is_lower = balance_.is_finite && NewtonRange::IsLower(before, balance_.energy, slope, share);
+      if (is_lower) {
+        for (std::size_t c = 0; c < constraints_.size(); ++c)
+          carried[c] = share * multipliers_[c] + (1.0 - share) * first_multipliers[c];
+        // without a hook the stiffness has been computed where the step ends
+        const bool may_patch = hook != nullptr && report.patches < settings.max_patches;
+        patch = may_patch ? SolvePatch(kernels, workers, state.strand_is_intact, length,
+                                       settings.max_error * scale, carried)
+                          : NewtonPatch::Report{};
+        report.patches += patch.steps > 0;
+        is_lower = keeps_reach();
+        if (!is_lower && patch.steps > 0) {
+          patch_.TakeBack(position_);
+          patch = {};
+          is_lower = keeps_reach();
+        }
       }
       report.restarts += !is_lower;
     }
     ++report.iterations;
     share *= 2.0;  // the one that was tried last
-    if (share < 1.0) {
-      radius = kRadiusGrowth * share * length;
-    } else if (linear.reached_radius) {
-      radius *= kRadiusGrowth;
-    }
+    range.Follow(share, length, linear.reached_radius);
     if (!is_lower) {
       std::copy(start_.begin(), start_.end(), position_.begin());
       linearise();
       estimate();
+      // next to contacts that do not press yet the energy has edges that the stiffness does not show: shorter steps find
+      // them, where there is time for such
+      const bool has_time = count_left() >= settings.max_linear_iterations;
+      if (has_time && range.Radius() > kLeastRadius * edge_length_) continue;
       break;
     }
-    // what the constraints carry of the residual after this part of the step
-    for (std::size_t c = 0; c < constraints_.size(); ++c)
-      multipliers_[c] = share * multipliers_[c] + (1.0 - share) * first_multipliers[c];
+    multipliers_ = carried;
     // a constraint is kept after every step, whatever the hook's interval: a step here is worth many
     // iterations
     if (hook != nullptr) call_hook();
@@ -438,9 +394,10 @@ SolveReport NewtonMultigrid::Solve(const Kernels& kernels, Workers& workers, con
       break;
     }
     if (hook != nullptr) linearise();
-    moved += share * length;
+    moved += share * length + patch.longest;
     if (moved > kStaleMove * edge_length_) update_coarse();
     if (share * length > kSnapMove * edge_length_) smallest_ritz = INFINITY;
+    smallest_ritz = std::fmin(smallest_ritz, kPatchRitz * patch.smallest_ritz);
     estimate();
   }
   report_residual();

@@ -8,7 +8,9 @@
 #include <vector>
 
 #include "linearisation.h"
+#include "newton_patch.h"
 #include "trocar/tissue/equilibrium.h"
+#include "truncated_gradients.h"
 
 namespace trocar::tissue {
 
@@ -34,12 +36,6 @@ class NewtonMultigrid {
   OrderedModel& Springs() noexcept { return model_; }
 
  private:
-  struct LinearReport {
-    int iterations = 0;
-    bool met_negative_curvature = false;
-    bool reached_radius = false;
-    double smallest_ritz = INFINITY;  // see SmallestRitz
-  };
   /// Solves K step_ = residual until the preconditioned remainder is below `loose`, or the error left in the
   /// step is estimated below `tolerance` [m], or until a node has moved by `radius` [m].
   /// \param softest  smallest Ritz value of the steps before: this step is solved as deep as the estimate asks
@@ -69,6 +65,12 @@ class NewtonMultigrid {
   void Precondition(const Kernels& kernels, Workers& workers) noexcept;
   void ReadPositions(const TissueState& state, std::uint32_t first, std::uint32_t last) noexcept;
   void WriteBack(Workers& workers, TissueState& state) const noexcept;
+  /// Brings the nodes that the step moved farthest to rest on their own, the constraints carrying what they do.
+  /// \param tolerance  error that may be left [m]
+  /// \return what was done; no steps where nothing was gathered
+  NewtonPatch::Report SolvePatch(const Kernels& kernels, Workers& workers,
+                                 std::span<const std::uint8_t> strand_is_intact, double longest,
+                                 double tolerance, const SmallVector& multipliers) noexcept;
   /// Begins where the hook's lead goes to if the energy is lower there and the constraints are in reach.
   bool TakeLead(const Kernels& kernels, Workers& workers, const SolveHook& hook, TissueState& state) noexcept;
   void Multiply(const Kernels& kernels, Workers& workers, const Float4* x, Float4* out) noexcept;
@@ -78,6 +80,7 @@ class NewtonMultigrid {
   OrderedLoad load_;
   LinkHierarchy hierarchy_;
   Linearisation linearisation_;
+  NewtonPatch patch_;
   AlignedVector<Double4> position_, start_;  // (padded)
   Balance balance_;
   AlignedVector<Float4> step_, r_, z_, p_, q_;  // (padded)

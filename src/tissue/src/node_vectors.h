@@ -8,12 +8,25 @@
 
 #include "aligned_vector.h"
 #include "kernels.h"
+#include "trocar/math/vector.h"
 #include "workers.h"
 
 namespace trocar::tissue {
 
 /// Nodes a thread takes at a time; fixed, so that sums do not depend on the number of threads.
 inline constexpr std::uint32_t kVectorChunk = 896;
+
+inline Float4 ToFloat(const math::Vec3& v) noexcept {
+  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z), 0.0f};
+}
+inline math::Vec3 ToDouble(const Float4& v) noexcept {
+  return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
+}
+/// from + share step
+inline Double4 Advance(const Double4& from, double share, const Float4& step) noexcept {
+  return {from.x + share * static_cast<double>(step.x), from.y + share * static_cast<double>(step.y),
+          from.z + share * static_cast<double>(step.z), 0.0};
+}
 
 /// Calls work(first, last, chunk) for every chunk of `count` nodes; chunks begin at whole slices.
 template <typename Work>

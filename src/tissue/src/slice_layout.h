@@ -12,7 +12,7 @@ namespace trocar::tissue {
 
 /// Neighbours of each node: those of node i are others[starts[i]] to others[starts[i + 1]].
 struct NodeGraph {
-  std::vector<std::uint32_t> starts;  // (n + 1)
+  std::vector<std::uint32_t> starts{0};  // (n + 1)
   std::vector<std::uint32_t> others;
 
   std::uint32_t Size() const { return static_cast<std::uint32_t>(starts.size()) - 1; }
@@ -39,8 +39,8 @@ void FindNodeOrder(const NodeGraph& graph, NodeOrderRoom& room, std::vector<std:
 /// A graph's neighbours in slices of kSliceNodes.
 struct SliceLayout {
   std::uint32_t node_count = 0;
-  std::vector<std::uint32_t> starts;  // (slices + 1) in steps
-  std::vector<std::uint32_t> others;  // (steps * kSliceNodes); padding points at its own node
+  std::vector<std::uint32_t> starts{0};  // (slices + 1) in steps
+  std::vector<std::uint32_t> others;     // (steps * kSliceNodes); padding points at its own node
 
   std::uint32_t Slices() const { return static_cast<std::uint32_t>(starts.size()) - 1; }
   std::size_t PaddedNodes() const { return std::size_t{Slices()} * kSliceNodes; }

@@ -120,6 +120,7 @@ void SpringLines::Add(const SolveReport& round, SolveReport& sum) noexcept {
   next.coarse_levels = std::max(next.coarse_levels, sum.coarse_levels);
   next.linear_iterations += sum.linear_iterations;
   next.negative_curvatures += sum.negative_curvatures;
+  next.patches += sum.patches;
   next.restarts += sum.restarts;
   sum = next;
 }

@@ -492,6 +492,49 @@ TEST(Conservation, ALeadUphillIsNotTaken) {
   EXPECT_GT(math::Distance(tick({-1e-4, 0, 0}), alone), 1e-6) << "negative control: downhill";
 }
 
+// A sac that is dented folds, and a fold snaps at few nodes at a time.
+TEST(Conservation, PatchesSaveStepsWhereFoldsSnap) {
+  struct Dented {
+    int steps = 0, patches = 0;
+    double error = 0;  // largest of all ticks, of the largest displacement
+  };
+  const auto dent = [](int max_patches) {
+    Sac sac(1e3);
+    Conservation conservation(sac.model, sac.settings);
+    EquilibriumSolver solver(sac.model, 1), judge(sac.model, 1);
+    ConservationState state = conservation.MakeState(sac.tissue);
+    SolverSettings settings, exact = kExact;
+    settings.kind = exact.kind = SolverKind::kNewtonMultigrid;
+    settings.max_patches = max_patches;
+    exact.max_patches = 0;
+    Dented dented;
+    TissueLoad load;
+    for (int tick = 1; tick <= 40; ++tick) {
+      sac.Hold(sac.Pole({0, 0, 1}, 0.985), {{}, tick * Vec3{0, 0, -2e-4}});
+      load = {};
+      const SolveReport report =
+          SolveConserving(solver, settings, kTick, conservation, load, sac.tissue, state);
+      EXPECT_TRUE(report.converged);
+      dented.steps += report.iterations;
+      dented.patches += report.patches;
+      Sac judged = sac;
+      (void)FindConservedEquilibrium(judge, exact, conservation, load, judged.tissue, state);
+      double error = 0, scale = 0;
+      for (std::size_t i = 0; i < sac.organ_nodes; ++i) {
+        error = std::fmax(error, math::Distance(judged.tissue.position[i], sac.tissue.position[i]));
+        scale = std::fmax(scale, math::Distance(judged.tissue.position[i], sac.model.rest[i]));
+      }
+      dented.error = std::fmax(dented.error, error / scale);
+    }
+    return dented;
+  };
+  const Dented with = dent(1000), without = dent(0);
+  EXPECT_EQ(without.patches, 0);
+  EXPECT_GT(with.patches, 10);
+  EXPECT_LT(with.steps, 0.85 * without.steps) << without.steps << " steps without";
+  EXPECT_LT(with.error, 1e-3);
+}
+
 // Imaged organs lie on others; what hangs on the jaws alone weighs on them whole.
 TEST(Conservation, AFreedOrganHangsOnTheJawsByItsWholeWeight) {
   Sac sac(3e4);

@@ -11,6 +11,7 @@
 
 #include "linearisation.h"
 #include "link_chains.h"
+#include "newton_patch.h"
 #include "smallest_ritz.h"
 #include "test_systems.h"
 #include "trocar/tissue/equilibrium.h"
@@ -354,6 +355,101 @@ TEST(NewtonMultigrid, KeepsItsPromiseOnADuct) {
     }
     EXPECT_LT(error, 1e-3 * scale) << "tick " << tick;
   }
+}
+
+/// A step in which the listed nodes of the model go far and all others a hundredth of that.
+std::vector<Float4> MakeStep(const OrderedModel& model, const std::vector<std::uint32_t>& far) {
+  std::vector<Float4> step(model.layout.PaddedNodes(), Float4{1e-5f, 0, 0, 0});
+  for (const std::uint32_t node : far) step[model.new_of_old[node]] = {0, 1e-3f, 0, 0};
+  return step;
+}
+
+// Oracle: another solver, for which every other node is prescribed. There are a contact, strands, a duct and a load.
+TEST(NewtonPatch, ComesToRestWhereAllOthersAreHeld) {
+  const Patient patient;
+  const std::uint32_t alone = patient.duct.back();
+  const TissueModel model = MakeTissueModel(patient.definition);
+  TissueState state = Shake(model, 3e-5, 7);
+  std::vector<Vec3> external(model.Size());
+  for (const std::uint32_t node : {9u, 30u, alone}) external[node] = {1e-4, -2e-4, 3e-4};
+  ContactSpring contact{
+      .weights = {0.5, 0.3, 0.2}, .normal = (-1.0 / 0.03) * model.rest[9], .stiffness = 500.0};
+  const std::uint32_t* const next = &model.spring_starts[9];
+  contact.nodes = {9, model.half_springs[*next].other, model.half_springs[*next + 1].other};
+  for (int corner = 0; corner < 3; ++corner)
+    contact.offset +=
+        contact.weights[corner] * math::Dot(contact.normal, state.position[contact.nodes[corner]]);
+  contact.offset += 1e-4;
+  const TissueLoad load{
+      .gravity = {0, 0.1, -0.9}, .contacts = std::span(&contact, 1), .external_force = external};
+  Evaluated whole(model, load, state, FindSimdLevel());
+  const std::vector<Double4> before = whole.position;
+
+  NewtonPatch patch(whole.model);
+  const auto step = MakeStep(whole.model, {9, patient.duct[2], 30});
+  ASSERT_TRUE(patch.Gather(whole.load, state.strand_is_intact, step, 1e-3));
+  std::vector<Float4> more(whole.model.layout.PaddedNodes());
+  for (const std::uint32_t i : patch.Free()) more[i] = {1e-4f, 0, -2e-4f, 0};
+  patch.AddForce(more, -0.5);
+  const auto solve = [&] { return patch.Solve(*whole.kernels, whole.workers, 1e-10, 0.003, whole.position); };
+  const auto report = solve();
+  EXPECT_GT(report.steps, 1);
+  EXPECT_GT(report.longest, 1e-5);
+  EXPECT_LT(report.smallest_ritz, 1.0);
+  patch.TakeBack(whole.position);
+  for (std::uint32_t i = 0; i < model.Size(); ++i)
+    ASSERT_EQ(whole.position[i].y, before[i].y) << "node " << i;
+  for (int again = 0; again < 5 && solve().steps > 0; ++again) {
+  }
+
+  TissueState truth = state;
+  std::fill(truth.condition.begin(), truth.condition.end(), NodeCondition::kPrescribed);
+  for (const std::uint32_t i : patch.Free()) {
+    truth.condition[whole.model.old_of_new[i]] = NodeCondition::kFree;
+    external[whole.model.old_of_new[i]] += Vec3{-0.5 * double{1e-4f}, 0, 0.5 * double{2e-4f}};
+  }
+  EquilibriumSolver solver(model, 1);
+  const SolverSettings exact{
+      .kind = SolverKind::kChebyshevJacobi2015, .max_iterations = 20000, .tolerance = 1e-11};
+  ASSERT_TRUE(solver.Solve(exact, load, truth).converged);
+  for (std::uint32_t i = 0; i < model.Size(); ++i) {
+    const Double4& here = whole.position[i];
+    EXPECT_LT(math::Distance(truth.position[whole.model.old_of_new[i]], {here.x, here.y, here.z}), 1e-8)
+        << "node " << i;
+  }
+}
+
+TEST(NewtonPatch, IsASmallPartOfTheModelOrNone) {
+  const Patient patient;
+  const TissueModel model = MakeTissueModel(patient.definition);
+  const TissueState state = Shake(model, 3e-5, 7);
+  const Evaluated whole(model, {}, state, SimdLevel::kBaseline);
+  NewtonPatch patch(whole.model);
+  // slow: two rings around node 9, less what is held
+  std::vector<bool> is_near(model.Size());
+  is_near[9] = true;
+  for (int ring = 0; ring < 2; ++ring) {
+    const std::vector<bool> inner = is_near;
+    for (std::uint32_t i = 0; i < model.Size(); ++i) {
+      for (auto h = model.spring_starts[i]; h < model.spring_starts[i + 1]; ++h)
+        is_near[i] = is_near[i] || inner[model.half_springs[h].other];
+    }
+  }
+  is_near[5] = false;
+  std::vector<std::uint32_t> expected;
+  for (std::uint32_t i = 0; i < model.Size(); ++i) {
+    if (is_near[whole.model.old_of_new[i]]) expected.push_back(i);
+  }
+  for (int repeat = 0; repeat < 2; ++repeat) {  // nothing stays from the one before
+    ASSERT_TRUE(patch.Gather(whole.load, state.strand_is_intact, MakeStep(whole.model, {9}), 1e-3));
+    EXPECT_TRUE(std::ranges::equal(patch.Free(), expected));
+    std::vector<std::uint32_t> all;
+    for (std::uint32_t i = 0; i < model.Size(); ++i) all.push_back(i);
+    EXPECT_FALSE(patch.Gather(whole.load, state.strand_is_intact, MakeStep(whole.model, all), 1e-3));
+    EXPECT_TRUE(patch.Free().empty());
+  }
+  EXPECT_FALSE(patch.Gather(whole.load, state.strand_is_intact, MakeStep(whole.model, {5}), 1e-3))
+      << "held nodes do not move";
 }
 
 // Conjugate gradients on a diagonal matrix whose eigenvalues are known.

@@ -353,6 +353,40 @@ TEST(Newton, ComesHomeFromACrumpledStart) {
   EXPECT_TRUE(report.converged) << report.error;
 }
 
+// A contact shows in the stiffness only while it presses. Where one lies a hundredth of a step ahead, and is a hundred
+// thousand times as stiff as the tissue, the whole step and all its halves lead uphill.
+TEST(Newton, FindsAContactThatDoesNotPressYet) {
+  TissueDefinition definition;
+  definition.rest = {{0, 0, 0}, {0.003, 0, 0}, {0, 0.003, 0}};
+  definition.mass.assign(3, 0.0);
+  definition.shape_stiffness.assign(3, 0.1);
+  for (const auto& [a, b] : {std::pair{0u, 1u}, {1u, 2u}, {2u, 0u}})
+    definition.springs.push_back({a, b, 100.0, math::Distance(definition.rest[a], definition.rest[b])});
+  const TissueModel model = MakeTissueModel(definition);
+  constexpr double kAhead = 1e-6, kStiffness = 3e4, kForce = 1e-3;
+  const ContactSpring contact{.nodes = {0, 1, 2},
+                              .weights = {1. / 3, 1. / 3, 1. / 3},
+                              .normal = {0, 0, -1},
+                              .offset = -kAhead,
+                              .stiffness = kStiffness};
+  const std::vector<Vec3> push(3, {0, 0, kForce / 3});
+  const TissueLoad load{.contacts = std::span(&contact, 1), .external_force = push};
+  EquilibriumSolver solver(model, 1);
+  SolverSettings settings{.kind = SolverKind::kNewtonMultigrid, .max_error = 1e-6};
+  TissueState state = MakeRestState(model);
+  const SolveReport report = solver.Solve(settings, load, state);
+  EXPECT_TRUE(report.converged);
+  EXPECT_GE(report.restarts, 7) << "the first step was not uphill at all its lengths";
+  // forces along z: the push, three virtual springs and the contact
+  const double z = (kForce + kStiffness * kAhead) / (3 * 0.1 + kStiffness);
+  for (const Vec3& p : state.position) EXPECT_NEAR(p.z, z, 1e-10);
+
+  settings.max_linear_total = 12;  // no time for another step after such a one
+  state = MakeRestState(model);
+  EXPECT_FALSE(solver.Solve(settings, load, state).converged);
+  EXPECT_EQ(state.position[0].z, 0.0);
+}
+
 TEST(Newton, BalancesContactsAndStrands) {
   const auto mesh = geometry::MakeSphere({0, 0, 0}, 0.03, 3);
   TissueDefinition definition = MakeMembrane(mesh, 100.0, 2e5);

@@ -31,6 +31,7 @@ struct SolveReport {
   int coarse_levels = 0;        ///< grids that a coarse-to-fine start went through
   int linear_iterations = 0;    ///< of conjugate gradients, all Newton steps together
   int negative_curvatures = 0;  ///< Newton steps that met a direction in which the energy is not convex
+  int patches = 0;              ///< times that nodes which snapped were brought to rest on their own
   /// False where positions, loads, scales or contacts were not finite; then nothing was solved, or not to the
   /// end. Give it to StateGuard::Check.
   bool is_finite = true;

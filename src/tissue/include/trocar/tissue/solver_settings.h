@@ -35,11 +35,14 @@ struct SolverSettings {
 
   /// Newton: stop when the estimated distance of any node to the equilibrium is below this fraction of the
   /// largest distance of any node from rest [-].
-  double max_error = 5e-4;
+  double max_error = 4e-4;
   int max_newton_steps = 40;       ///< per tick; two as a rule, many where a fold snaps through
   int max_linear_iterations = 60;  ///< of conjugate gradients, per Newton step
   /// The same of all Newton steps of a tick together, with the halvings of steps that led uphill, >= 1: bounds its time.
   int max_linear_total = 100000;
+  /// Times in a tick that the few nodes which a Newton step moved farthest, where a fold snaps, are brought to rest on
+  /// their own; 0 takes none.
+  int max_patches = 100000;
 
   /// Springs that stiffen are taken as lines that touch their law, solve after solve, until the lines are off
   /// by less than this part of the largest tension [-].
