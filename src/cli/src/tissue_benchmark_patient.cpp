@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "console.h"
 #include "tissue_benchmark.h"
 #include "trocar/core/statistics.h"
 #include "trocar/session/simulation.h"
@@ -32,9 +33,12 @@ core::Status RunPatientCases(const BenchmarkOptions& options, BenchmarkResult& r
   std::vector<double> volumes;
   int unsettled = 0;
   std::uint64_t first_hash = 0;
-  for (int repeat = 0; repeat < std::max(2, options.repeats); ++repeat) {
+  const int repeats = std::max(2, options.repeats);
+  ProgressBar bar("the patient's script, the first time judged", repeats);
+  for (int repeat = 0; repeat < repeats; ++repeat) {
     made->Reset();
     for (int tick = 0; tick < ticks; ++tick) {
+      bar.Show(repeat + static_cast<double>(tick) / ticks);
       const session::Input input = session::CalcScriptInput(*scene, tick * scene->tick_seconds);
       const core::Stopwatch stopwatch;
       made->Step(input);
@@ -54,6 +58,7 @@ core::Status RunPatientCases(const BenchmarkOptions& options, BenchmarkResult& r
     if (!std::isfinite(made->GetSnapshot().residual))
       return WrongAnswer("patient/tick_p99", "the residual is not finite");
   }
+  bar.Finish();
   result.cases.push_back({"patient/nodes", static_cast<double>(made->GetSnapshot().positions.size()), "1"});
   result.cases.push_back({"patient/ticks", static_cast<double>(ticks), "1"});
   result.cases.push_back({"patient/tick_median", core::CalcPercentile(tick_ms, 0.5), "ms"});

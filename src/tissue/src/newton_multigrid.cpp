@@ -377,8 +377,8 @@ SolveReport NewtonMultigrid::Solve(const Kernels& kernels, Workers& workers, con
       std::copy(start_.begin(), start_.end(), position_.begin());
       linearise();
       estimate();
-      // next to contacts that do not press yet the energy has edges that the stiffness does not show: shorter steps find
-      // them, where there is time for such
+      // a contact that does not press yet, or springs that stiffen as they turn, do not show in the stiffness: shorter
+      // steps find them, where there is time for such
       const bool has_time = count_left() >= settings.max_linear_iterations;
       if (has_time && range.Radius() > kLeastRadius * edge_length_) continue;
       break;

@@ -353,8 +353,8 @@ TEST(Newton, ComesHomeFromACrumpledStart) {
   EXPECT_TRUE(report.converged) << report.error;
 }
 
-// A contact shows in the stiffness only while it presses. Where one lies a hundredth of a step ahead, and is a hundred
-// thousand times as stiff as the tissue, the whole step and all its halves lead uphill.
+// A contact shows in the stiffness only while it presses. Where one lies a three-hundredth of a step ahead, and is a
+// hundred thousand times as stiff as the tissue, the whole step and all its halves lead uphill.
 TEST(Newton, FindsAContactThatDoesNotPressYet) {
   TissueDefinition definition;
   definition.rest = {{0, 0, 0}, {0.003, 0, 0}, {0, 0.003, 0}};
