@@ -191,10 +191,10 @@ void NewtonMultigrid::Precondition(const Kernels& kernels, Workers& workers) noe
   Subtract(kernels, workers, share, &Constraint::answer, z_);
 }
 
-LinearReport NewtonMultigrid::SolveLinear(const Kernels& kernels, Workers& workers, int max_iterations,
+TruncatedReport NewtonMultigrid::SolveLinear(const Kernels& kernels, Workers& workers, int max_iterations,
                                           double loose, double tolerance, double softest,
                                           double radius) noexcept {
-  const LinearReport report = SolveTruncated(
+  const TruncatedReport report = SolveTruncated(
       kernels, workers, max_iterations, radius, {step_, r_, z_, p_, q_},
       [&] { Multiply(kernels, workers, p_.data(), q_.data()); }, [&] { Precondition(kernels, workers); },
       [&](double left, double ritz) {
@@ -322,7 +322,7 @@ SolveReport NewtonMultigrid::Solve(const Kernels& kernels, Workers& workers, con
   while (!report.converged && !is_at_bound() && balance_.is_finite) {
     const double before = balance_.energy;
     const auto first_multipliers = multipliers_;
-    const LinearReport linear = SolveLinear(
+    const TruncatedReport linear = SolveLinear(
         kernels, workers, std::min(settings.max_linear_iterations, count_left()), kForcing * preconditioned,
         kLinearShare * settings.max_error * scale, smallest_ritz, range.Radius());
     smallest_ritz = std::fmin(smallest_ritz, linear.smallest_ritz);

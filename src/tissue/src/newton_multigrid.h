@@ -39,7 +39,7 @@ class NewtonMultigrid {
   /// Solves K step_ = residual until the preconditioned remainder is below `loose`, or the error left in the
   /// step is estimated below `tolerance` [m], or until a node has moved by `radius` [m].
   /// \param softest  smallest Ritz value of the steps before: this step is solved as deep as the estimate asks
-  LinearReport SolveLinear(const Kernels& kernels, Workers& workers, int max_iterations, double loose,
+  TruncatedReport SolveLinear(const Kernels& kernels, Workers& workers, int max_iterations, double loose,
                            double tolerance, double softest, double radius) noexcept;
   /// Takes the residual, the chains' factors and the gradients of the active constraints.
   void BeginStep(Workers& workers, const SolveHook* hook) noexcept;

@@ -202,7 +202,7 @@ NewtonPatch::Report NewtonPatch::Solve(const Kernels& kernels, Workers& workers,
     precondition();
     const double seen = FindLongest(kernels, workers, z_);
     if (!(seen > kSeenShare * tolerance)) break;
-    const LinearReport linear = SolveTruncated(
+    const TruncatedReport linear = SolveTruncated(
         kernels, workers, kMaxLinearIterations, range.Radius(), {step_, r_, z_, p_, q_}, multiply,
         precondition,
         [&](double left, double) { return left <= std::fmax(kForcing * seen, kSeenShare * tolerance); });

@@ -21,7 +21,7 @@ inline constexpr double kLinearRounding = 1e-12;
 struct LinearVectors {
   AlignedVector<Float4>&step, &r, &z, &p, &q;
 };
-struct LinearReport {
+struct TruncatedReport {
   int iterations = 0;
   bool met_negative_curvature = false;
   bool reached_radius = false;
@@ -37,10 +37,10 @@ struct LinearReport {
 /// \param is_done       bool(longest of z [m], smallest Ritz value so far [-])
 /// \note Real-time safe if what it calls is.
 template <typename Multiply, typename Precondition, typename IsDone>
-LinearReport SolveTruncated(const Kernels& kernels, Workers& workers, int max_iterations, double radius,
+TruncatedReport SolveTruncated(const Kernels& kernels, Workers& workers, int max_iterations, double radius,
                             const LinearVectors& v, const Multiply& multiply,
                             const Precondition& precondition, const IsDone& is_done) noexcept {
-  LinearReport report;
+  TruncatedReport report;
   const std::size_t n = v.step.size();
   std::fill(v.step.begin(), v.step.end(), Float4{});
   std::copy(v.z.begin(), v.z.end(), v.p.begin());
