@@ -26,7 +26,6 @@ LiveSettings ClampSettings(const LiveSettings& settings) noexcept {
   clamped.solver.max_error = ClampOr(settings.solver.max_error, 1e-9, 1.0, normal.solver.max_error);
   clamped.solver.max_newton_steps = std::clamp(settings.solver.max_newton_steps, 1, 1000);
   clamped.solver.max_linear_total = std::clamp(settings.solver.max_linear_total, 1, 100'000);
-  clamped.solver.max_patches = std::clamp(settings.solver.max_patches, 0, 100'000);
   clamped.solver.max_linear_iterations = std::clamp(settings.solver.max_linear_iterations, 1, 10'000);
   clamped.solver.alpha = ClampOr(settings.solver.alpha, 0.0, 1e6, normal.solver.alpha);
   return clamped;

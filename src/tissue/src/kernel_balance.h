@@ -218,6 +218,23 @@ void CalcGroupBalance(const BalancePass& pass, std::uint32_t slice, std::uint32_
   for (std::uint32_t at = 0; at < kDoubles; ++at) pass.residual[i + at] = {x[at], y[at], z[at], 0.0f};
 }
 
+void CalcTurns(const TurnPass& pass, std::uint32_t first_slice, std::uint32_t last_slice) {
+  for (std::uint32_t slice = first_slice; slice < last_slice; ++slice) {
+    for (std::uint32_t lane = 0; lane < kSliceNodes; lane += kDoubles) {
+      const Doubles factor = LoadDoubles(pass.factor + std::size_t{slice} * kSliceNodes + lane);
+      for (std::uint32_t step = pass.table.starts[slice]; step < pass.table.starts[slice + 1]; ++step) {
+        const std::uint32_t* const left = pass.left + std::size_t{step} * kSliceNodes + lane;
+        const std::uint32_t* const right = pass.right + std::size_t{step} * kSliceNodes + lane;
+        const DoubleVector across = LoadNodes(pass.position, [left](std::uint32_t at) { return left[at]; }) -
+                                    LoadNodes(pass.position, [right](std::uint32_t at) { return right[at]; });
+        float* const to = pass.turns + std::size_t{step} * 3 * kSliceNodes + lane;
+        StoreFloats(to, factor * across.x), StoreFloats(to + kSliceNodes, factor * across.y);
+        StoreFloats(to + 2 * kSliceNodes, factor * across.z);
+      }
+    }
+  }
+}
+
 BalanceSums CalcBalance(const BalancePass& pass, std::uint32_t first_slice, std::uint32_t last_slice) {
   LaneSums lanes;
   for (std::uint32_t slice = first_slice; slice < last_slice; ++slice) {

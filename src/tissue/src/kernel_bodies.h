@@ -7,7 +7,14 @@
 namespace trocar::tissue {
 namespace {
 
-template <LinkPass kPass>
+/// to + d x t
+inline Vector AddTurn(const float* t, const Vector& d, const Vector& to) {
+  const Lanes x = Load(t), y = Load(t + kSliceNodes), z = Load(t + 2 * kSliceNodes);
+  return {MulAdd(d.y, z, MulAdd(-d.z, y, to.x)), MulAdd(d.z, x, MulAdd(-d.x, z, to.y)),
+          MulAdd(d.x, y, MulAdd(-d.y, x, to.z))};
+}
+
+template <LinkPass kPass, bool kHasTurns = false>
 void Multiply(const LinkMatrix& m, const Float4* x, const Float4* b, float factor, Float4* out,
               std::uint32_t first_slice, std::uint32_t last_slice) {
   for (std::uint32_t slice = first_slice; slice < last_slice; ++slice) {
@@ -19,13 +26,18 @@ void Multiply(const LinkMatrix& m, const Float4* x, const Float4* b, float facto
         continue;
       }
       const Vector here = LoadNodes(x + i);
-      Vector force = MulAddSymmetric(m.ground + std::size_t{slice} * 6 * kSliceNodes + lane, -here, Vector{});
+      Vector force{};
+      if constexpr (kPass != LinkPass::kTurn)
+        force = MulAddSymmetric(m.ground + std::size_t{slice} * 6 * kSliceNodes + lane, -here, Vector{});
       for (std::uint32_t step = m.table.starts[slice]; step < m.table.starts[slice + 1]; ++step) {
-        const Vector there = GatherNodes(x, m.table.others + std::size_t{step} * kSliceNodes + lane);
-        force = MulAddSymmetric(m.links + std::size_t{step} * 6 * kSliceNodes + lane, there - here, force);
+        const Vector along = GatherNodes(x, m.table.others + std::size_t{step} * kSliceNodes + lane) - here;
+        if constexpr (kPass != LinkPass::kTurn)
+          force = MulAddSymmetric(m.links + std::size_t{step} * 6 * kSliceNodes + lane, along, force);
+        if constexpr (kHasTurns)
+          force = AddTurn(m.turns + std::size_t{step} * 3 * kSliceNodes + lane, along, force);
       }
       const Lanes is_free = Load(m.is_free + i);
-      if constexpr (kPass == LinkPass::kProduct) {
+      if constexpr (kPass == LinkPass::kProduct || kPass == LinkPass::kTurn) {
         StoreNodes(out + i, (All(0.0f) - is_free) * force);
       } else if constexpr (kPass == LinkPass::kResidual) {
         StoreNodes(out + i, is_free * (LoadNodes(b + i) + force));
@@ -43,7 +55,11 @@ void MultiplyLinks(const LinkMatrix& matrix, LinkPass pass, const Float4* x, con
     case LinkPass::kStart:
       return Multiply<LinkPass::kStart>(matrix, x, b, factor, out, first_slice, last_slice);
     case LinkPass::kProduct:
-      return Multiply<LinkPass::kProduct>(matrix, x, b, factor, out, first_slice, last_slice);
+      return matrix.turns == nullptr
+                 ? Multiply<LinkPass::kProduct>(matrix, x, b, factor, out, first_slice, last_slice)
+                 : Multiply<LinkPass::kProduct, true>(matrix, x, b, factor, out, first_slice, last_slice);
+    case LinkPass::kTurn:
+      return Multiply<LinkPass::kTurn, true>(matrix, x, b, factor, out, first_slice, last_slice);
     case LinkPass::kResidual:
       return Multiply<LinkPass::kResidual>(matrix, x, b, factor, out, first_slice, last_slice);
     case LinkPass::kSmooth:

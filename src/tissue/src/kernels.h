@@ -33,19 +33,22 @@ struct SliceTable {
   const std::uint32_t* others;  // (steps * kSliceNodes)
 };
 
-/// y = K x of a system of springs with symmetric 3 x 3 stiffness: (K x)_i = G_i x_i + sum_j S_ij (x_i - x_j).
+/// y = K x of a system of springs with symmetric 3 x 3 stiffness: (K x)_i = G_i x_i + sum_j S_ij (x_i - x_j), and of
+/// closed surfaces under pressure, + sum_j t_ij x (x_j - x_i).
 struct LinkMatrix {
   SliceTable table;
   const float* links;    // (steps, 6, kSliceNodes): S as xx, xy, xz, yy, yz, zz
   const float* ground;   // (slices, 6, kSliceNodes): G
   const float* inverse;  // (slices, 6, kSliceNodes): inverse of the node's own block; zero where it is held
   const float* is_free;  // (slices * kSliceNodes): 1, or 0 where the node is held
+  const float* turns;    // (steps, 3, kSliceNodes): t, of kProduct and kTurn alone; or null
 };
 
 /// What a pass over a LinkMatrix writes.
 enum class LinkPass {
   kStart,     ///< out = factor D^-1 b; x is not read
   kProduct,   ///< out = K x
+  kTurn,      ///< out = what the turns alone give of K x
   kResidual,  ///< out = b - K x
   kSmooth     ///< out = x + factor D^-1 (b - K x)
 };
@@ -80,6 +83,17 @@ struct BalancePass {
   const float* ground;        // (slices, 6, kSliceNodes)
   float* inverse;             // (slices, 6, kSliceNodes) out: of the node's own block, compression left out
 };
+/// The turns of a LinkMatrix: what a pressure P adds to the stiffness is P / 6 times the vector from the one to the other
+/// of the two corners that lie across an edge.
+struct TurnPass {
+  SliceTable table;
+  const std::uint32_t *left,
+      *right;            // (entries) nodes across the link; the same where it is no edge of a closed surface
+  const double* factor;  // (padded nodes) P / 6 [Pa]
+  const Double4* position;  // (padded nodes) [m]
+  float* turns;             // (steps, 3, kSliceNodes) out [N/m]
+};
+
 /// What a pass found over its slices; the same for every width of a vector.
 struct BalanceSums {
   double energy = 0;     ///< springs half, being met from both ends, virtual springs and outer forces [J]
@@ -172,6 +186,7 @@ struct Kernels {
   float (*step_slices)(const SliceStep& step, std::uint32_t first_slice, std::uint32_t last_slice);
   bool looks_up;  ///< whether step_slices takes lookups
   float (*step_rows)(const GridStep& step, std::uint32_t first_row, std::uint32_t last_row);
+  void (*turn)(const TurnPass& pass, std::uint32_t first_slice, std::uint32_t last_slice);
   BalanceSums (*balance)(const BalancePass& pass, std::uint32_t first_slice, std::uint32_t last_slice);
   /// Inverses of the nodes' own blocks, ground + sum of links; 0 where a node is held or nothing holds it.
   void (*invert_blocks)(const LinkMatrix& matrix, float* inverse, std::uint32_t first_slice,

@@ -129,12 +129,13 @@ void LinkLevel::Reserve(std::size_t nodes, std::size_t steps) {
 }
 
 LinkMatrix LinkLevel::Matrix() const {
-  return {layout.Table(), links.data(), ground.data(), inverse.data(), is_free.data()};
+  return {layout.Table(), links.data(), ground.data(), inverse.data(), is_free.data(), nullptr};
 }
 
 void RunPass(const Kernels& kernels, Workers& workers, const LinkLevel& level, LinkPass pass, const Float4* x,
-             const Float4* b, float factor, Float4* out) noexcept {
-  const LinkMatrix matrix = level.Matrix();
+             const Float4* b, float factor, Float4* out, const float* turns) noexcept {
+  LinkMatrix matrix = level.Matrix();
+  matrix.turns = turns;
   ForEachSliceChunk(workers, level.layout.Slices(), [&](std::uint32_t first, std::uint32_t last) {
     kernels.multiply(matrix, pass, x, b, factor, out, first, last);
   });

@@ -53,8 +53,10 @@ struct LinkLevel {
 };
 
 /// The level's pass over all nodes, in chunks of fixed size.
+///
+/// \param turns  as in LinkMatrix, or null
 void RunPass(const Kernels& kernels, Workers& workers, const LinkLevel& level, LinkPass pass, const Float4* x,
-             const Float4* b, float factor, Float4* out) noexcept;
+             const Float4* b, float factor, Float4* out, const float* turns = nullptr) noexcept;
 
 class LinkHierarchy {
  public:

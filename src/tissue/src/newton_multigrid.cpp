@@ -10,8 +10,10 @@
 namespace trocar::tissue {
 namespace {
 
-/// The part of the tolerated error that the linear solution may leave [-].
-constexpr double kLinearShare = 0.3;
+/// The part of the tolerated error that the linear solution may leave [-]: conjugate gradients that go so far have met a
+/// mode that turns soft. The loose one is for ticks that do not follow folds.
+constexpr double kLinearShare = 0.1;
+constexpr double kLooseLinearShare = 0.3;
 /// The part of the error that the preconditioned residual shows [-]: in the built-in patient a thirtieth to a
 /// fifth, and less next to a fold, where conjugate gradients meet the mode that turns soft: their smallest Ritz
 /// value then bounds it. Below the least one the springs let go: what they would do is not near.
@@ -26,6 +28,11 @@ constexpr double kStaleMove = 0.2;
 /// A soft mode that an earlier step met is forgotten when a node goes so far in one step, in mean spring lengths [-]:
 /// a fold has snapped, and is stiff now.
 constexpr double kSnapMove = 0.02;
+/// A tick that follows folds does not end after a step that left more than this part of the error that it saw [-]: Newton's
+/// method falls short like that where rest has just ceased to exist, and takes large steps again once it is past. Errors
+/// below kSmallError of the tolerated one are rounding.
+constexpr double kContraction = 0.3;
+constexpr double kSmallError = 0.1;
 /// A step that led uphill at all its lengths is tried no more where the range has come down to this, in mean spring
 /// lengths [-]: what is left is rounding.
 constexpr double kLeastRadius = 1e-5;
@@ -61,6 +68,7 @@ NewtonMultigrid::NewtonMultigrid(const TissueModel& model)
     : model_(MakeOrderedModel(model)),
       hierarchy_(model_.graph, model_.graph_stiffness),
       linearisation_(model_),
+      pressure_(model_),
       patch_(model_) {
   const std::size_t n = model_.Size(), padded = model_.layout.PaddedNodes();
   load_.constant.resize(n);
@@ -78,6 +86,7 @@ void NewtonMultigrid::SetModel(const TissueModel& model) {
   SetOrderedModel(model, model_);
   hierarchy_.SetGraph(model_.graph, model_.graph_stiffness);
   linearisation_.SetModel();
+  pressure_.SetModel();
   has_answers_ = false;
   SetEdgeLength();
 }
@@ -86,6 +95,7 @@ void NewtonMultigrid::Reserve(double share) {
   model_.Reserve(share);
   hierarchy_.Reserve(share);
   linearisation_.Reserve(share);
+  pressure_.Reserve(share);
 }
 
 void NewtonMultigrid::SetEdgeLength() noexcept {
@@ -97,8 +107,23 @@ void NewtonMultigrid::SetEdgeLength() noexcept {
 
 void NewtonMultigrid::Multiply(const Kernels& kernels, Workers& workers, const Float4* x,
                                Float4* out) noexcept {
-  RunPass(kernels, workers, hierarchy_.Finest(), LinkPass::kProduct, x, nullptr, 0.0f, out);
+  RunPass(kernels, workers, hierarchy_.Finest(), LinkPass::kProduct, x, nullptr, 0.0f, out,
+          has_turns_ ? pressure_.Turns() : nullptr);
   AddContactLinks(load_, balance_, x, out);
+}
+
+void NewtonMultigrid::UpdatePressure(const Kernels& kernels, Workers& workers,
+                                     const SolveHook& hook) noexcept {
+  std::array<double, kMaxHookConstraints> pressure{};
+  for (std::size_t c = 0; c < hook.constraints.size(); ++c) pressure[c] = hook.multiplier(hook.self, c);
+  pressure_.Update(kernels, workers, std::span(pressure).first(hook.constraints.size()), position_);
+}
+
+double NewtonMultigrid::CalcTurning(const Kernels& kernels, Workers& workers) noexcept {
+  if (!has_turns_ || pressure_.Turns() == nullptr) return 0.0;
+  RunPass(kernels, workers, hierarchy_.Finest(), LinkPass::kTurn, step_.data(), nullptr, 0.0f, q_.data(),
+          pressure_.Turns());
+  return 0.5 * CalcDot(kernels, workers, step_, q_);
 }
 
 void NewtonMultigrid::BeginStep(Workers& workers, const SolveHook* hook) noexcept {
@@ -192,8 +217,8 @@ void NewtonMultigrid::Precondition(const Kernels& kernels, Workers& workers) noe
 }
 
 TruncatedReport NewtonMultigrid::SolveLinear(const Kernels& kernels, Workers& workers, int max_iterations,
-                                          double loose, double tolerance, double softest,
-                                          double radius) noexcept {
+                                             double loose, double tolerance, double softest,
+                                             double radius) noexcept {
   const TruncatedReport report = SolveTruncated(
       kernels, workers, max_iterations, radius, {step_, r_, z_, p_, q_},
       [&] { Multiply(kernels, workers, p_.data(), q_.data()); }, [&] { Precondition(kernels, workers); },
@@ -264,8 +289,11 @@ SolveReport NewtonMultigrid::Solve(const Kernels& kernels, Workers& workers, con
   ReadPositions(state, 0, n);
 
   SolveReport report;
+  has_turns_ = settings.follows_folds && hook != nullptr && hook->multiplier != nullptr;
+  if (has_turns_) pressure_.SetSurfaces(hook->constraints);
   const auto linearise = [&] {
     linearisation_.Linearise(kernels, workers, position_, hierarchy_.Finest(), balance_);
+    if (has_turns_) UpdatePressure(kernels, workers, *hook);
   };
   const auto call_hook = [&] {
     if (hook == nullptr) return;
@@ -279,6 +307,7 @@ SolveReport NewtonMultigrid::Solve(const Kernels& kernels, Workers& workers, con
       linearisation_.SetForce(first, last);
     });
   };
+  const double linear_share = settings.follows_folds ? kLinearShare : kLooseLinearShare;
   double scale = 0;                 // largest distance from rest [m]
   double preconditioned = 0;        // longest of z_ [m]
   double smallest_ritz = INFINITY;  // of all steps
@@ -324,13 +353,14 @@ SolveReport NewtonMultigrid::Solve(const Kernels& kernels, Workers& workers, con
     const auto first_multipliers = multipliers_;
     const TruncatedReport linear = SolveLinear(
         kernels, workers, std::min(settings.max_linear_iterations, count_left()), kForcing * preconditioned,
-        kLinearShare * settings.max_error * scale, smallest_ritz, range.Radius());
+        linear_share * settings.max_error * scale, smallest_ritz, range.Radius());
     smallest_ritz = std::fmin(smallest_ritz, linear.smallest_ritz);
     report.linear_iterations += linear.iterations;
     report.negative_curvatures += linear.met_negative_curvature;
     const double length = FindLongest(kernels, workers, step_);
     if (!(length > 0.0 && length < INFINITY)) break;
     const double slope = -CalcDot(kernels, workers, balance_.residual, step_);
+    const double turning = CalcTurning(kernels, workers);
     double share = 1.0;
     std::copy(position_.begin(), position_.end(), start_.begin());
     bool is_lower = false;
@@ -351,12 +381,13 @@ SolveReport NewtonMultigrid::Solve(const Kernels& kernels, Workers& workers, con
       } else {
         linearisation_.CalcBalance(kernels, workers, position_, balance_);
       }
-      is_lower = balance_.is_finite && NewtonRange::IsLower(before, balance_.energy, slope, share);
+      is_lower = balance_.is_finite &&
+                 NewtonRange::IsLower(before, balance_.energy + share * share * turning, slope, share);
       if (is_lower) {
         for (std::size_t c = 0; c < constraints_.size(); ++c)
           carried[c] = share * multipliers_[c] + (1.0 - share) * first_multipliers[c];
         // without a hook the stiffness has been computed where the step ends
-        const bool may_patch = hook != nullptr && report.patches < settings.max_patches;
+        const bool may_patch = hook != nullptr && settings.follows_folds;
         patch = may_patch ? SolvePatch(kernels, workers, state.strand_is_intact, length,
                                        settings.max_error * scale, carried)
                           : NewtonPatch::Report{};
@@ -398,7 +429,14 @@ SolveReport NewtonMultigrid::Solve(const Kernels& kernels, Workers& workers, con
     if (moved > kStaleMove * edge_length_) update_coarse();
     if (share * length > kSnapMove * edge_length_) smallest_ritz = INFINITY;
     smallest_ritz = std::fmin(smallest_ritz, kPatchRitz * patch.smallest_ritz);
+    const double seen_before = preconditioned;
+    // rest that negative curvature was met next to is a saddle, and not the end
+    if (settings.follows_folds && linear.met_negative_curvature) smallest_ritz = 0.0;
     estimate();
+    if (settings.follows_folds &&
+        (linear.met_negative_curvature ||
+         (preconditioned > kContraction * seen_before && report.error > kSmallError * settings.max_error)))
+      report.converged = false;
   }
   report_residual();
   WriteBack(workers, state);

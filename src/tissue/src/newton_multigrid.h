@@ -9,6 +9,7 @@
 
 #include "linearisation.h"
 #include "newton_patch.h"
+#include "pressure_stiffness.h"
 #include "trocar/tissue/equilibrium.h"
 #include "truncated_gradients.h"
 
@@ -36,11 +37,15 @@ class NewtonMultigrid {
   OrderedModel& Springs() noexcept { return model_; }
 
  private:
+  /// Takes the hook's pressures into the stiffness.
+  void UpdatePressure(const Kernels& kernels, Workers& workers, const SolveHook& hook) noexcept;
+  /// What the pressures add to the energy along the whole step, of second order: 1/2 step_ . K step_ of theirs [J].
+  double CalcTurning(const Kernels& kernels, Workers& workers) noexcept;
   /// Solves K step_ = residual until the preconditioned remainder is below `loose`, or the error left in the
   /// step is estimated below `tolerance` [m], or until a node has moved by `radius` [m].
   /// \param softest  smallest Ritz value of the steps before: this step is solved as deep as the estimate asks
   TruncatedReport SolveLinear(const Kernels& kernels, Workers& workers, int max_iterations, double loose,
-                           double tolerance, double softest, double radius) noexcept;
+                              double tolerance, double softest, double radius) noexcept;
   /// Takes the residual, the chains' factors and the gradients of the active constraints.
   void BeginStep(Workers& workers, const SolveHook* hook) noexcept;
   /// What the preconditioner answers to each gradient; from the step before while the preconditioner stays.
@@ -80,6 +85,7 @@ class NewtonMultigrid {
   OrderedLoad load_;
   LinkHierarchy hierarchy_;
   Linearisation linearisation_;
+  PressureStiffness pressure_;
   NewtonPatch patch_;
   AlignedVector<Double4> position_, start_;  // (padded)
   Balance balance_;
@@ -87,7 +93,8 @@ class NewtonMultigrid {
   std::array<Constraint, kMaxHookConstraints> constraints_room_;
   std::span<Constraint> constraints_;  // of the present step
   bool has_answers_ = false;
-  SmallMatrix gram_{};  // G^T Y
+  bool has_turns_ = false;  // whether the pressures are in the stiffness
+  SmallMatrix gram_{};      // G^T Y
   SmallVector multipliers_{};
   double edge_length_ = 0;  // mean rest length of the springs [m]
 };

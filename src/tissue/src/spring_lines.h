@@ -76,7 +76,6 @@ class SpringLines {
       report.converged = report.converged && holds;
       next.max_newton_steps -= counts_steps ? round.iterations : 0;
       next.max_linear_total -= counts_steps ? round.linear_iterations : 0;
-      next.max_patches -= round.patches;
       next.max_iterations -= counts_iterations && !ends_by_count ? round.iterations : 0;
       if (report.rounds >= settings.max_rounds || next.max_newton_steps <= 0 || next.max_linear_total <= 0 ||
           next.max_iterations <= 0)

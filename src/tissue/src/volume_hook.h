@@ -25,6 +25,9 @@ inline SolveHook MakeVolumeHook(VolumeHookContext& context) noexcept {
   hook.is_active = [](void* self, std::size_t organ) noexcept {
     return Conservation::IsSealed(static_cast<Context*>(self)->state->organs[organ]);
   };
+  hook.multiplier = [](void* self, std::size_t organ) noexcept {
+    return static_cast<Context*>(self)->state->organs[organ].pressure;
+  };
   hook.add_multiplier = [](void* self, std::size_t organ, double change) noexcept {
     const Context& kept = *static_cast<Context*>(self);
     kept.conservation->AddPressure(organ, change, *kept.state);

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pressure_stiffness.h"
+
+#include <algorithm>
+
+#include "node_vectors.h"
+#include "room.h"
+#include "trocar/core/assert.h"
+
+namespace trocar::tissue {
+namespace {
+
+constexpr std::size_t kNoEntry = static_cast<std::size_t>(-1);
+
+}  // namespace
+
+void PressureStiffness::SetModel() {
+  const std::size_t entries = model_->layout.Steps() * kSliceNodes, padded = model_->layout.PaddedNodes();
+  surfaces_.clear(), triangles_.clear();
+  left_.resize(entries), right_.resize(entries);
+  turns_.resize(3 * entries);
+  surface_of_.resize(padded), factor_.resize(padded);
+  surfaces_.reserve(kMaxHookConstraints);
+  triangles_.reserve(2 * padded);  // a closed surface has twice as many as nodes, less four
+  has_pressure_ = false;
+}
+
+void PressureStiffness::Reserve(double share) {
+  ReserveMore(share, left_, right_, turns_, surface_of_, factor_);
+  triangles_.reserve(2 * factor_.capacity());
+}
+
+void PressureStiffness::SetSurfaces(std::span<const SolveHook::Constraint> constraints) {
+  TROCAR_ASSERT(constraints.size() <= kMaxHookConstraints);
+  bool are_known = constraints.size() == surfaces_.size();
+  auto known = triangles_.cbegin();
+  for (std::size_t c = 0; are_known && c < constraints.size(); ++c) {
+    const auto& surface = constraints[c].surface;
+    are_known = constraints[c].first_node == surfaces_[c].first_node &&
+                surface.size() == surfaces_[c].triangle_count &&
+                std::equal(surface.begin(), surface.end(), known);
+    known += static_cast<std::ptrdiff_t>(surfaces_[c].triangle_count);
+  }
+  if (are_known) return;
+  surfaces_.clear(), triangles_.clear();
+  for (const auto& constraint : constraints) {
+    surfaces_.push_back({constraint.first_node, constraint.surface.size()});
+    triangles_.insert(triangles_.end(), constraint.surface.begin(), constraint.surface.end());
+  }
+  FindCorners();
+}
+
+std::size_t PressureStiffness::FindEntry(std::uint32_t a, std::uint32_t b) const noexcept {
+  const NodeGraph& graph = model_->graph;
+  for (auto h = graph.starts[a]; h < graph.starts[a + 1]; ++h) {
+    if (graph.others[h] == b) return model_->layout.Entry(a, h - graph.starts[a]);
+  }
+  return kNoEntry;
+}
+
+/// A link that is no edge, or whose edge has one triangle, has its own node on either side: nothing lies across it.
+void PressureStiffness::FindCorners() noexcept {
+  const SliceLayout& layout = model_->layout;
+  std::fill(surface_of_.begin(), surface_of_.end(), kNoSurface);
+  const auto for_each_entry = [&](const auto& work) {
+    for (std::uint32_t slice = 0; slice < layout.Slices(); ++slice) {
+      for (std::uint32_t step = layout.starts[slice]; step < layout.starts[slice + 1]; ++step) {
+        for (std::uint32_t lane = 0; lane < kSliceNodes; ++lane)
+          work(std::size_t{step} * kSliceNodes + lane, slice * kSliceNodes + lane);
+      }
+    }
+  };
+  for_each_entry([&](std::size_t entry, std::uint32_t node) { left_[entry] = right_[entry] = node; });
+  auto triangle = triangles_.begin();
+  for (std::size_t c = 0; c < surfaces_.size(); ++c) {
+    for (std::size_t t = 0; t < surfaces_[c].triangle_count; ++t, ++triangle) {
+      for (std::size_t corner = 0; corner < 3; ++corner) {
+        const auto node = [&](std::size_t k) {
+          return model_->new_of_old[surfaces_[c].first_node + (*triangle)[(corner + k) % 3]];
+        };
+        surface_of_[node(0)] = static_cast<std::uint8_t>(c);
+        const std::size_t there = FindEntry(node(0), node(1)), back = FindEntry(node(1), node(0));
+        if (there == kNoEntry || back == kNoEntry) continue;
+        left_[there] = node(2), right_[back] = node(2);
+      }
+    }
+  }
+  for_each_entry([&](std::size_t entry, std::uint32_t node) {
+    if (left_[entry] == node || right_[entry] == node) left_[entry] = right_[entry] = node;
+  });
+}
+
+void PressureStiffness::Update(const Kernels& kernels, Workers& workers, std::span<const double> pressure,
+                               std::span<const Double4> position) noexcept {
+  has_pressure_ = std::any_of(pressure.begin(), pressure.end(), [](double p) { return p != 0.0; });
+  if (!has_pressure_) return;
+  const TurnPass pass{model_->layout.Table(), left_.data(),    right_.data(),
+                      factor_.data(),         position.data(), turns_.data()};
+  ForEachNodeChunk(workers, factor_.size(),
+                   [&](std::uint32_t first, std::uint32_t last, std::uint32_t /*chunk*/) {
+                     for (std::uint32_t i = first; i < last; ++i)
+                       factor_[i] = surface_of_[i] == kNoSurface ? 0.0 : pressure[surface_of_[i]] / 6.0;
+                     kernels.turn(pass, first / kSliceNodes, last / kSliceNodes);
+                   });
+}
+
+}  // namespace trocar::tissue
