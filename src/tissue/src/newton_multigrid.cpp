@@ -289,7 +289,8 @@ SolveReport NewtonMultigrid::Solve(const Kernels& kernels, Workers& workers, con
   ReadPositions(state, 0, n);
 
   SolveReport report;
-  has_turns_ = settings.follows_folds && hook != nullptr && hook->multiplier != nullptr;
+  const bool follows_folds = settings.follows_folds && hook != nullptr;
+  has_turns_ = follows_folds && hook->multiplier != nullptr;
   if (has_turns_) pressure_.SetSurfaces(hook->constraints);
   const auto linearise = [&] {
     linearisation_.Linearise(kernels, workers, position_, hierarchy_.Finest(), balance_);
@@ -307,7 +308,7 @@ SolveReport NewtonMultigrid::Solve(const Kernels& kernels, Workers& workers, con
       linearisation_.SetForce(first, last);
     });
   };
-  const double linear_share = settings.follows_folds ? kLinearShare : kLooseLinearShare;
+  const double linear_share = follows_folds ? kLinearShare : kLooseLinearShare;
   double scale = 0;                 // largest distance from rest [m]
   double preconditioned = 0;        // longest of z_ [m]
   double smallest_ritz = INFINITY;  // of all steps
@@ -387,10 +388,9 @@ SolveReport NewtonMultigrid::Solve(const Kernels& kernels, Workers& workers, con
         for (std::size_t c = 0; c < constraints_.size(); ++c)
           carried[c] = share * multipliers_[c] + (1.0 - share) * first_multipliers[c];
         // without a hook the stiffness has been computed where the step ends
-        const bool may_patch = hook != nullptr && settings.follows_folds;
-        patch = may_patch ? SolvePatch(kernels, workers, state.strand_is_intact, length,
-                                       settings.max_error * scale, carried)
-                          : NewtonPatch::Report{};
+        patch = follows_folds ? SolvePatch(kernels, workers, state.strand_is_intact, length,
+                                           settings.max_error * scale, carried)
+                              : NewtonPatch::Report{};
         report.patches += patch.steps > 0;
         is_lower = keeps_reach();
         if (!is_lower && patch.steps > 0) {
@@ -431,11 +431,10 @@ SolveReport NewtonMultigrid::Solve(const Kernels& kernels, Workers& workers, con
     smallest_ritz = std::fmin(smallest_ritz, kPatchRitz * patch.smallest_ritz);
     const double seen_before = preconditioned;
     // rest that negative curvature was met next to is a saddle, and not the end
-    if (settings.follows_folds && linear.met_negative_curvature) smallest_ritz = 0.0;
+    if (follows_folds && linear.met_negative_curvature) smallest_ritz = 0.0;
     estimate();
-    if (settings.follows_folds &&
-        (linear.met_negative_curvature ||
-         (preconditioned > kContraction * seen_before && report.error > kSmallError * settings.max_error)))
+    if (follows_folds && (linear.met_negative_curvature || (preconditioned > kContraction * seen_before &&
+                                                            report.error > kSmallError * settings.max_error)))
       report.converged = false;
   }
   report_residual();

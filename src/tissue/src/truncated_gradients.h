@@ -38,8 +38,8 @@ struct TruncatedReport {
 /// \note Real-time safe if what it calls is.
 template <typename Multiply, typename Precondition, typename IsDone>
 TruncatedReport SolveTruncated(const Kernels& kernels, Workers& workers, int max_iterations, double radius,
-                            const LinearVectors& v, const Multiply& multiply,
-                            const Precondition& precondition, const IsDone& is_done) noexcept {
+                               const LinearVectors& v, const Multiply& multiply,
+                               const Precondition& precondition, const IsDone& is_done) noexcept {
   TruncatedReport report;
   const std::size_t n = v.step.size();
   std::fill(v.step.begin(), v.step.end(), Float4{});

@@ -40,9 +40,9 @@ struct SolverSettings {
   int max_linear_iterations = 60;  ///< of conjugate gradients, per Newton step
   /// The same of all Newton steps of a tick together, with the halvings of steps that led uphill, >= 1: bounds its time.
   int max_linear_total = 100000;
-  /// Newton: whether a tick follows folds to where they snap: the few nodes that go far are brought to rest on their own,
-  /// the stiffness has what pressures add to it, and steps are solved until a mode that turns soft shows. A tick that
-  /// ends at its bounds anyway has no time for it.
+  /// Newton, where a hook keeps volumes: whether to follow folds to where they snap. The few nodes that go far are then
+  /// brought to rest on their own, the stiffness has what pressures add to it, and steps are solved until a mode that
+  /// turns soft shows. A tick that ends at its bounds anyway has no time for it.
   bool follows_folds = true;
 
   /// Springs that stiffen are taken as lines that touch their law, solve after solve, until the lines are off
