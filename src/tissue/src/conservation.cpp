@@ -72,7 +72,7 @@ Conservation::Conservation(const TissueModel& model, ConservationSettings settin
   TROCAR_ASSERT(settings_.organs.size() <= kMaxClosedOrgans);
   static_assert(kMaxClosedOrgans <= kMaxHookConstraints);
   for (const ClosedOrgan& organ : settings_.organs)
-    constraints_.push_back({organ.first_node, organ.node_count, organ.triangles});
+    constraints_.push_back({organ.first_node, organ.node_count});
   gradient_.resize(n), ahead_gradient_.resize(n);
   base_force_.resize(n);
   force_.resize(n);
@@ -104,7 +104,7 @@ void Conservation::Follow(const TissueModel& model, std::vector<ClosedOrgan> org
   settings_.organs = std::move(organs);
   constraints_.clear();
   for (const ClosedOrgan& organ : settings_.organs)
-    constraints_.push_back({organ.first_node, organ.node_count, organ.triangles});
+    constraints_.push_back({organ.first_node, organ.node_count});
   linear_.SetModel(model);
   rest_ = MakeRestState(model);
   responses_settled_ = false;

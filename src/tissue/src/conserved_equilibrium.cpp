@@ -16,8 +16,8 @@ SolveReport FindConservedEquilibrium(EquilibriumSolver& solver, const SolverSett
   moved.regions.count = 0;
   std::vector<Vec3> without_pressure(load.external_force.begin(), load.external_force.end());
   for (std::size_t organ = 0; organ < state.organs.size() && !without_pressure.empty(); ++organ) {
-    const SolveHook::Constraint& nodes = conservation.Constraints()[organ];
-    for (std::uint32_t i = nodes.first_node; i < nodes.first_node + nodes.node_count; ++i)
+    const auto [first, count] = conservation.Constraints()[organ];
+    for (std::uint32_t i = first; i < first + count; ++i)
       without_pressure[i] -= state.organs[organ].pressure * conservation.VolumeGradient()[i];
   }
   TissueLoad loaded = load;

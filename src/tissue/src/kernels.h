@@ -87,9 +87,10 @@ struct BalancePass {
 /// of the two corners that lie across an edge.
 struct TurnPass {
   SliceTable table;
-  const std::uint32_t *left,
-      *right;            // (entries) nodes across the link; the same where it is no edge of a closed surface
-  const double* factor;  // (padded nodes) P / 6 [Pa]
+  const std::uint32_t* left;  // (entries) node across the link, of the triangle that goes along it
+  const std::uint32_t*
+      right;  // (entries) of the one that goes back; as left where no closed surface has such an edge
+  const double* factor;     // (padded nodes) P / 6 [Pa]
   const Double4* position;  // (padded nodes) [m]
   float* turns;             // (steps, 3, kSliceNodes) out [N/m]
 };

@@ -2,6 +2,7 @@
 #include "newton_multigrid.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "newton_range.h"
@@ -110,6 +111,13 @@ void NewtonMultigrid::Multiply(const Kernels& kernels, Workers& workers, const F
   RunPass(kernels, workers, hierarchy_.Finest(), LinkPass::kProduct, x, nullptr, 0.0f, out,
           has_turns_ ? pressure_.Turns() : nullptr);
   AddContactLinks(load_, balance_, x, out);
+}
+
+void NewtonMultigrid::TakeSurfaces(const SolveHook& hook) noexcept {
+  std::array<PressedSurface, kMaxHookConstraints> surfaces;
+  for (std::size_t c = 0; c < hook.constraints.size(); ++c)
+    surfaces[c] = {hook.constraints[c].first_node, hook.surface(hook.self, c)};
+  pressure_.SetSurfaces(std::span(surfaces).first(hook.constraints.size()));
 }
 
 void NewtonMultigrid::UpdatePressure(const Kernels& kernels, Workers& workers,
@@ -290,8 +298,8 @@ SolveReport NewtonMultigrid::Solve(const Kernels& kernels, Workers& workers, con
 
   SolveReport report;
   const bool follows_folds = settings.follows_folds && hook != nullptr;
-  has_turns_ = follows_folds && hook->multiplier != nullptr;
-  if (has_turns_) pressure_.SetSurfaces(hook->constraints);
+  has_turns_ = follows_folds && hook->surface != nullptr;
+  if (has_turns_) TakeSurfaces(*hook);
   const auto linearise = [&] {
     linearisation_.Linearise(kernels, workers, position_, hierarchy_.Finest(), balance_);
     if (has_turns_) UpdatePressure(kernels, workers, *hook);

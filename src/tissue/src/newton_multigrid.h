@@ -37,7 +37,8 @@ class NewtonMultigrid {
   OrderedModel& Springs() noexcept { return model_; }
 
  private:
-  /// Takes the hook's pressures into the stiffness.
+  /// Takes the hook's surfaces, and their pressures into the stiffness.
+  void TakeSurfaces(const SolveHook& hook) noexcept;
   void UpdatePressure(const Kernels& kernels, Workers& workers, const SolveHook& hook) noexcept;
   /// What the pressures add to the energy along the whole step, of second order: 1/2 step_ . K step_ of theirs [J].
   double CalcTurning(const Kernels& kernels, Workers& workers) noexcept;

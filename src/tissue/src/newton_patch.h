@@ -4,8 +4,8 @@
 /// Where a fold snaps, a dozen nodes of the built-in patient have far to go, in many short steps, and all others hardly
 /// move: what is strongly nonlinear is local. After each Newton step of the whole the nodes that went farthest, and
 /// those around them, are solved with all others held, which costs little because they are few; the next step of the
-/// whole begins where they have come to rest. Source: Cai and Li, "Inexact Newton methods with restricted additive Schwarz based
-/// nonlinear elimination for problems with high local nonlinearity", SIAM J. Sci. Comput. 33, 2011.
+/// whole begins where they have come to rest. Source: Cai and Li, "Inexact Newton methods with restricted additive
+/// Schwarz based nonlinear elimination for problems with high local nonlinearity", SIAM J. Sci. Comput. 33, 2011.
 #pragma once
 
 #include <span>

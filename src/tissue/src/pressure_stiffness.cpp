@@ -30,22 +30,21 @@ void PressureStiffness::Reserve(double share) {
   triangles_.reserve(2 * factor_.capacity());
 }
 
-void PressureStiffness::SetSurfaces(std::span<const SolveHook::Constraint> constraints) {
-  TROCAR_ASSERT(constraints.size() <= kMaxHookConstraints);
-  bool are_known = constraints.size() == surfaces_.size();
+void PressureStiffness::SetSurfaces(std::span<const PressedSurface> surfaces) {
+  TROCAR_ASSERT(surfaces.size() <= kMaxHookConstraints);
+  bool are_known = surfaces.size() == surfaces_.size();
   auto known = triangles_.cbegin();
-  for (std::size_t c = 0; are_known && c < constraints.size(); ++c) {
-    const auto& surface = constraints[c].surface;
-    are_known = constraints[c].first_node == surfaces_[c].first_node &&
-                surface.size() == surfaces_[c].triangle_count &&
-                std::equal(surface.begin(), surface.end(), known);
+  for (std::size_t c = 0; are_known && c < surfaces.size(); ++c) {
+    const auto& [first_node, triangles] = surfaces[c];
+    are_known = first_node == surfaces_[c].first_node && triangles.size() == surfaces_[c].triangle_count &&
+                std::equal(triangles.begin(), triangles.end(), known);
     known += static_cast<std::ptrdiff_t>(surfaces_[c].triangle_count);
   }
   if (are_known) return;
   surfaces_.clear(), triangles_.clear();
-  for (const auto& constraint : constraints) {
-    surfaces_.push_back({constraint.first_node, constraint.surface.size()});
-    triangles_.insert(triangles_.end(), constraint.surface.begin(), constraint.surface.end());
+  for (const auto& [first_node, triangles] : surfaces) {
+    surfaces_.push_back({first_node, triangles.size()});
+    triangles_.insert(triangles_.end(), triangles.begin(), triangles.end());
   }
   FindCorners();
 }

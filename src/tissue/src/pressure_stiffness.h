@@ -18,6 +18,12 @@
 
 namespace trocar::tissue {
 
+/// A closed surface under pressure.
+struct PressedSurface {
+  std::uint32_t first_node = 0;                   ///< from which its nodes are counted, in the caller's order
+  std::span<const geometry::Triangle> triangles;  ///< facing outwards
+};
+
 /// The turns of a LinkMatrix over a model's links.
 class PressureStiffness {
  public:
@@ -27,11 +33,11 @@ class PressureStiffness {
   void SetModel();
   void Reserve(double share);
 
-  /// Takes the surfaces of the constraints.
+  /// Takes the surfaces, at most kMaxHookConstraints.
   /// \note Allocates nothing where the model has room for their triangles.
-  void SetSurfaces(std::span<const SolveHook::Constraint> constraints);
+  void SetSurfaces(std::span<const PressedSurface> surfaces);
   /// Computes the turns.
-  /// \param pressure  (constraints) [Pa]
+  /// \param pressure  (surfaces) [Pa]
   /// \param position  (padded nodes) [m], in the solvers' order
   /// \note Real-time safe.
   void Update(const Kernels& kernels, Workers& workers, std::span<const double> pressure,
@@ -47,13 +53,13 @@ class PressureStiffness {
   std::size_t FindEntry(std::uint32_t a, std::uint32_t b) const noexcept;
 
   const OrderedModel* model_;
-  struct Surface {
+  struct KnownSurface {
     std::uint32_t first_node;
     std::size_t triangle_count;
   };
-  std::vector<Surface> surfaces_;              // of the constraints
+  std::vector<KnownSurface> surfaces_;
   std::vector<geometry::Triangle> triangles_;  // of all surfaces, one after the other
-  std::vector<std::uint8_t> surface_of_;       // (padded nodes) constraint, or kNoSurface
+  std::vector<std::uint8_t> surface_of_;       // (padded nodes) which, or kNoSurface
   std::vector<std::uint32_t> left_, right_;    // (entries) as in TurnPass
   AlignedVector<double> factor_;               // (padded nodes) P / 6 [Pa]
   AlignedVector<float> turns_;                 // (steps, 3, kSliceNodes) [N/m]

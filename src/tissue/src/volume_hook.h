@@ -25,6 +25,9 @@ inline SolveHook MakeVolumeHook(VolumeHookContext& context) noexcept {
   hook.is_active = [](void* self, std::size_t organ) noexcept {
     return Conservation::IsSealed(static_cast<Context*>(self)->state->organs[organ]);
   };
+  hook.surface = [](void* self, std::size_t organ) noexcept {
+    return std::span(static_cast<Context*>(self)->conservation->Settings().organs[organ].triangles);
+  };
   hook.multiplier = [](void* self, std::size_t organ) noexcept {
     return static_cast<Context*>(self)->state->organs[organ].pressure;
   };

@@ -93,14 +93,6 @@ struct Evaluated {
   }
 };
 
-std::vector<SimdLevel> Levels() {
-  std::vector<SimdLevel> levels;
-  for (const SimdLevel level : {SimdLevel::kBaseline, SimdLevel::kAvx2, SimdLevel::kAvx512}) {
-    if (HasSimdLevel(level)) levels.push_back(level);
-  }
-  return levels;
-}
-
 double Norm(const Float4& v) {
   return std::sqrt(static_cast<double>(v.x * v.x + v.y * v.y + v.z * v.z));
 }

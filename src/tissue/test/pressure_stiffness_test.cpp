@@ -22,7 +22,7 @@ struct Spheres {
   std::uint32_t size = static_cast<std::uint32_t>(mesh.positions.size());
   TissueModel model;
   TissueState state;
-  std::vector<SolveHook::Constraint> constraints;
+  std::vector<PressedSurface> surfaces;
   static constexpr double kPressure[] = {700.0, -150.0};
 
   Spheres() {
@@ -42,7 +42,7 @@ struct Spheres {
     std::uniform_real_distribution<double> offset(-1e-3, 1e-3);
     for (Vec3& p : state.position) p += {offset(random), offset(random), offset(random)};
     state.condition[3] = state.condition[size + 7] = NodeCondition::kPrescribed;
-    constraints = {{0, size, mesh.triangles}, {size, size, mesh.triangles}};
+    surfaces = {{0, mesh.triangles}, {size, mesh.triangles}};
   }
 };
 
@@ -71,7 +71,7 @@ struct Turned {
       const Vec3& p = from.state.position[model.old_of_new[i]];
       position[i] = {p.x, p.y, p.z, 0.0};
     }
-    pressure.SetSurfaces(from.constraints);
+    pressure.SetSurfaces(from.surfaces);
     pressure.Update(kernels, workers, Spheres::kPressure, position);
   }
   /// K x, in the caller's order.
@@ -99,14 +99,6 @@ std::vector<Vec3> MakeDirection(const Spheres& spheres) {
     direction.push_back(is_held ? Vec3{} : Vec3{part(random), part(random), part(random)});
   }
   return direction;
-}
-
-std::vector<SimdLevel> Levels() {
-  std::vector<SimdLevel> levels;
-  for (const SimdLevel level : {SimdLevel::kBaseline, SimdLevel::kAvx2, SimdLevel::kAvx512}) {
-    if (HasSimdLevel(level)) levels.push_back(level);
-  }
-  return levels;
 }
 
 // Oracle: what pressures do to the nodes, P dV/dx, before and after. It is of second degree in the positions, so that
@@ -159,7 +151,7 @@ TEST(PressureStiffness, FollowsItsSurfaces) {
   Turned turned(spheres, FindSimdLevel());
   const std::vector<Vec3> product = turned.Multiply(direction);
   const auto update = [&] {
-    turned.pressure.SetSurfaces(spheres.constraints);
+    turned.pressure.SetSurfaces(spheres.surfaces);
     turned.pressure.Update(turned.kernels, turned.workers, Spheres::kPressure, turned.position);
     return turned.Multiply(direction);
   };
@@ -167,14 +159,14 @@ TEST(PressureStiffness, FollowsItsSurfaces) {
 
   std::vector<geometry::Triangle> inside_out = spheres.mesh.triangles;
   for (auto& triangle : inside_out) std::swap(triangle[0], triangle[1]);
-  spheres.constraints[0].surface = inside_out;
+  spheres.surfaces[0].triangles = inside_out;
   const std::vector<Vec3> turned_over = update();
   for (std::size_t i = 0; i < product.size(); ++i)
     ASSERT_EQ(turned_over[i], i < spheres.size ? -product[i] : product[i]) << i;
 
   // around a hole three edges have one triangle each: they are left out, with their neighbours' answer to them
   const auto lost = spheres.mesh.triangles.back();
-  spheres.constraints[0].surface = std::span(spheres.mesh.triangles).first(spheres.mesh.triangles.size() - 1);
+  spheres.surfaces[0].triangles = std::span(spheres.mesh.triangles).first(spheres.mesh.triangles.size() - 1);
   const std::vector<Vec3> open = update();
   for (std::size_t i = 0; i < product.size(); ++i) {
     const bool is_corner = std::ranges::find(lost, i) != lost.end();

@@ -6,6 +6,7 @@
 #include "trocar/geometry/mesh_topology.h"
 #include "trocar/geometry/primitives.h"
 #include "trocar/tissue/material.h"
+#include "trocar/tissue/simd_level.h"
 #include "trocar/tissue/tissue_model.h"
 
 namespace trocar::tissue {
@@ -36,6 +37,15 @@ inline TissueDefinition MakeHangingSpring(double stiffness, double length, doubl
   definition.fixed = {0};
   definition.springs = {{0, 1, stiffness, length}};
   return definition;
+}
+
+/// All that this processor has.
+inline std::vector<SimdLevel> Levels() {
+  std::vector<SimdLevel> levels;
+  for (const SimdLevel level : {SimdLevel::kBaseline, SimdLevel::kAvx2, SimdLevel::kAvx512}) {
+    if (HasSimdLevel(level)) levels.push_back(level);
+  }
+  return levels;
 }
 
 }  // namespace trocar::tissue

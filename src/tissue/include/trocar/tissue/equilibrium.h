@@ -64,12 +64,13 @@ struct SolveHook {
   /// Steps then stay on the constraints, and act() corrects what is of second order.
   struct Constraint {
     std::uint32_t first_node = 0, node_count = 0;
-    /// The closed surface whose volume the constraint keeps, its nodes counted from first_node; or empty.
-    std::span<const geometry::Triangle> surface;
   };
   std::span<const Constraint> constraints;  ///< at most kMaxHookConstraints
   std::span<const Vec3> gradient;           ///< (n), of each node's constraint; act() keeps it up to date
   bool (*is_active)(void* self, std::size_t constraint) noexcept = nullptr;
+  /// The closed surface whose volume a constraint keeps, its nodes counted from first_node. Null where constraints keep
+  /// something else; otherwise a solver may ask for the multiplier too.
+  std::span<const geometry::Triangle> (*surface)(void* self, std::size_t constraint) noexcept = nullptr;
   /// The multiplier now: of a surface its pressure [Pa].
   double (*multiplier)(void* self, std::size_t constraint) noexcept = nullptr;
   /// Adds to a multiplier; the forces that load.external_force views follow in the next act().
