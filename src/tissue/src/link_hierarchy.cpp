@@ -422,8 +422,8 @@ void LinkHierarchy::Cycle(const Kernels& kernels, Workers& workers, std::size_t 
   }
   RunPass(kernels, workers, level, LinkPass::kResidual, level.x.data(), b, 0.0f, level.r.data());
   LinkLevel& next = levels_[at + 1];
-  ForEachNodeChunk(workers, next.Size(), [&](std::uint32_t first, std::uint32_t last, std::uint32_t) {
-    for (std::uint32_t a = first; a < last; ++a) {
+  ForEachSliceChunk(workers, next.layout.Slices(), [&](std::uint32_t first, std::uint32_t last) {
+    for (std::uint32_t a = first * kSliceNodes; a < std::min(next.Size(), last * kSliceNodes); ++a) {
       Float4 sum;
       for (auto m = level.member_starts[a]; m < level.member_starts[a + 1]; ++m) {
         const Float4& r = level.r[level.members[m]];

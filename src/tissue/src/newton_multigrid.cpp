@@ -169,10 +169,8 @@ void NewtonMultigrid::SetAnswers(const Kernels& kernels, Workers& workers) noexc
     for (Constraint& c : constraints_) hierarchy_.Apply(kernels, workers, c.gradient.data(), c.answer.data());
     has_answers_ = true;
   }
-  for (std::size_t row = 0; row < constraints_.size(); ++row) {
-    for (std::size_t column = 0; column < constraints_.size(); ++column)
-      gram_[row][column] = CalcDot(kernels, workers, constraints_[row].gradient, constraints_[column].answer);
-  }
+  for (std::size_t row = 0; row < constraints_.size(); ++row)
+    gram_[row] = CalcDots(kernels, workers, &Constraint::answer, constraints_[row].gradient);
 }
 
 NewtonMultigrid::SmallVector NewtonMultigrid::CalcDots(const Kernels& kernels, Workers& workers,
@@ -191,15 +189,13 @@ NewtonMultigrid::SmallVector NewtonMultigrid::CalcDots(const Kernels& kernels, W
   return sums;
 }
 
-void NewtonMultigrid::Subtract(const Kernels& kernels, Workers& workers, const SmallVector& shares,
-                               AlignedVector<Float4> Constraint::*part,
-                               AlignedVector<Float4>& from) const noexcept {
-  ForEachNodeChunk(workers, from.size(), [&](std::uint32_t first, std::uint32_t last, std::uint32_t) {
-    for (std::size_t c = 0; c < constraints_.size(); ++c) {
-      kernels.vectors.add_scaled(static_cast<float>(-shares[c]), (constraints_[c].*part).data(), from.data(),
-                                 first, last);
-    }
-  });
+void NewtonMultigrid::Subtract(const Kernels& kernels, const SmallVector& shares,
+                               AlignedVector<Float4> Constraint::*part, AlignedVector<Float4>& from,
+                               std::uint32_t first, std::uint32_t last) const noexcept {
+  for (std::size_t c = 0; c < constraints_.size(); ++c) {
+    kernels.vectors.add_scaled(static_cast<float>(-shares[c]), (constraints_[c].*part).data(), from.data(),
+                               first, last);
+  }
 }
 
 void NewtonMultigrid::ProjectResidual(const Kernels& kernels, Workers& workers) noexcept {
@@ -211,17 +207,21 @@ void NewtonMultigrid::ProjectResidual(const Kernels& kernels, Workers& workers) 
   }
   SmallVector share{};
   SolveSmall(transposed, CalcDots(kernels, workers, &Constraint::answer, r_), constraints_.size(), share);
-  Subtract(kernels, workers, share, &Constraint::gradient, r_);
+  ForEachNodeChunk(workers, r_.size(), [&](std::uint32_t first, std::uint32_t last, std::uint32_t) {
+    Subtract(kernels, share, &Constraint::gradient, r_, first, last);
+  });
   for (std::size_t c = 0; c < constraints_.size(); ++c) multipliers_[c] += share[c];
 }
 
-void NewtonMultigrid::Precondition(const Kernels& kernels, Workers& workers) noexcept {
+DotAndLongest NewtonMultigrid::Precondition(const Kernels& kernels, Workers& workers) noexcept {
   ProjectResidual(kernels, workers);
   hierarchy_.Apply(kernels, workers, r_.data(), z_.data());
-  if (constraints_.empty()) return;
+  if (constraints_.empty()) return CalcDotAndLongest(kernels, workers, r_, z_);
   SmallVector share{};
   SolveSmall(gram_, CalcDots(kernels, workers, &Constraint::gradient, z_), constraints_.size(), share);
-  Subtract(kernels, workers, share, &Constraint::answer, z_);
+  return CalcDotAndLongest(kernels, workers, r_, z_, [&](std::uint32_t first, std::uint32_t last) {
+    Subtract(kernels, share, &Constraint::answer, z_, first, last);
+  });
 }
 
 TruncatedReport NewtonMultigrid::SolveLinear(const Kernels& kernels, Workers& workers, int max_iterations,
@@ -229,7 +229,8 @@ TruncatedReport NewtonMultigrid::SolveLinear(const Kernels& kernels, Workers& wo
                                              double radius) noexcept {
   const TruncatedReport report = SolveTruncated(
       kernels, workers, max_iterations, radius, {step_, r_, z_, p_, q_},
-      [&] { Multiply(kernels, workers, p_.data(), q_.data()); }, [&] { Precondition(kernels, workers); },
+      [&] { Multiply(kernels, workers, p_.data(), q_.data()); },
+      [&] { return Precondition(kernels, workers); },
       [&](double left, double ritz) {
         return left <= loose || left <= tolerance * CalcSeenShare(std::fmin(softest, ritz));
       });
@@ -324,13 +325,11 @@ SolveReport NewtonMultigrid::Solve(const Kernels& kernels, Workers& workers, con
   const auto estimate = [&] {
     BeginStep(workers, hook);
     SetAnswers(kernels, workers);
-    Precondition(kernels, workers);
+    preconditioned = Precondition(kernels, workers).longest;
     scale = balance_.largest_distance;
-    const double largest = FindLongest(kernels, workers, z_);
-    preconditioned = largest;
-    report.error = scale > 0.0     ? largest / (CalcSeenShare(smallest_ritz) * scale)
-                   : largest > 0.0 ? INFINITY
-                                   : 0.0;
+    report.error = scale > 0.0            ? preconditioned / (CalcSeenShare(smallest_ritz) * scale)
+                   : preconditioned > 0.0 ? INFINITY
+                                          : 0.0;
     report.converged = report.error <= settings.max_error;
   };
   const auto report_residual = [&] {

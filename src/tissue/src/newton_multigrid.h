@@ -59,16 +59,16 @@ class NewtonMultigrid {
   /// Of each constraint's part with v.
   SmallVector CalcDots(const Kernels& kernels, Workers& workers, AlignedVector<Float4> Constraint::*part,
                        const AlignedVector<Float4>& v) const noexcept;
-  /// from -= sum of shares of each constraint's part
-  void Subtract(const Kernels& kernels, Workers& workers, const SmallVector& shares,
-                AlignedVector<Float4> Constraint::*part, AlignedVector<Float4>& from) const noexcept;
+  /// from -= sum of shares of each constraint's part, of some of the nodes
+  void Subtract(const Kernels& kernels, const SmallVector& shares, AlignedVector<Float4> Constraint::*part,
+                AlignedVector<Float4>& from, std::uint32_t first, std::uint32_t last) const noexcept;
   /// Lets the constraints carry of r_ what they can; multipliers_ is all that they carry.
   void ProjectResidual(const Kernels& kernels, Workers& workers) noexcept;
   /// z_ = about K^-1 r_ on the constraints: P M^-1 P^T r_ with P = I - Y (G^T Y)^-1 G^T, which is symmetric and
   /// stays on the constraints whatever Y is, and is best with Y = M^-1 G (Gould, Hribar, Nocedal, "On the
   /// solution of equality constrained quadratic programming problems arising in optimization", SIAM J. Sci.
   /// Comput. 23, 2001).
-  void Precondition(const Kernels& kernels, Workers& workers) noexcept;
+  DotAndLongest Precondition(const Kernels& kernels, Workers& workers) noexcept;
   void ReadPositions(const TissueState& state, std::uint32_t first, std::uint32_t last) noexcept;
   void WriteBack(Workers& workers, TissueState& state) const noexcept;
   /// Brings the nodes that the step moved farthest to rest on their own, the constraints carrying what they do.

@@ -190,6 +190,7 @@ NewtonPatch::Report NewtonPatch::Solve(const Kernels& kernels, Workers& workers,
   const auto linearise = [&] { linearisation_.Linearise(kernels, workers, position_, level_, balance_); };
   const auto precondition = [&] {
     RunPass(kernels, workers, level_, LinkPass::kStart, nullptr, r_.data(), 1.0f, z_.data());
+    return CalcDotAndLongest(kernels, workers, r_, z_);
   };
   const auto multiply = [&] {
     RunPass(kernels, workers, level_, LinkPass::kProduct, p_.data(), nullptr, 0.0f, q_.data());
@@ -199,8 +200,7 @@ NewtonPatch::Report NewtonPatch::Solve(const Kernels& kernels, Workers& workers,
   linearise();
   while (report.steps < kMaxSteps && balance_.is_finite) {
     std::copy(balance_.residual.begin(), balance_.residual.end(), r_.begin());
-    precondition();
-    const double seen = FindLongest(kernels, workers, z_);
+    const double seen = precondition().longest;
     if (!(seen > kSeenShare * tolerance)) break;
     const TruncatedReport linear = SolveTruncated(
         kernels, workers, kMaxLinearIterations, range.Radius(), {step_, r_, z_, p_, q_}, multiply,

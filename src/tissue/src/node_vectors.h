@@ -63,13 +63,16 @@ struct DotAndLongest {
   double longest;  ///< of the second vector
 };
 /// a . b and the length of the longest of b's vectors, as by CalcDot() and FindLongest(), in one pass.
-inline DotAndLongest CalcDotAndLongest(const Kernels& kernels, Workers& workers,
-                                       const AlignedVector<Float4>& a,
-                                       const AlignedVector<Float4>& b) noexcept {
+///
+/// \param finish(first, last)  is called for each chunk of the nodes before it is read
+template <typename Finish>
+DotAndLongest CalcDotAndLongest(const Kernels& kernels, Workers& workers, const AlignedVector<Float4>& a,
+                                const AlignedVector<Float4>& b, const Finish& finish) noexcept {
   std::array<double, Workers::kMaxChunks> dots;
   std::array<float, Workers::kMaxChunks> largest2;
   const std::uint32_t chunks =
       ForEachNodeChunk(workers, a.size(), [&](std::uint32_t first, std::uint32_t last, std::uint32_t chunk) {
+        finish(first, last);
         dots[chunk] = kernels.vectors.dot(a.data(), b.data(), first, last);
         largest2[chunk] = kernels.vectors.find_largest2(b.data(), first, last);
       });
@@ -80,6 +83,11 @@ inline DotAndLongest CalcDotAndLongest(const Kernels& kernels, Workers& workers,
     most = LargerOrNan(most, largest2[chunk]);
   }
   return {sum, std::sqrt(static_cast<double>(most))};
+}
+inline DotAndLongest CalcDotAndLongest(const Kernels& kernels, Workers& workers,
+                                       const AlignedVector<Float4>& a,
+                                       const AlignedVector<Float4>& b) noexcept {
+  return CalcDotAndLongest(kernels, workers, a, b, [](std::uint32_t, std::uint32_t) {});
 }
 
 /// Length of the longest of all nodes' vectors; NaN where one is.

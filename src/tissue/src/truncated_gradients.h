@@ -33,7 +33,7 @@ struct TruncatedReport {
 /// \param v  r, and z = P r; the iterations leave in r what remains
 /// \param radius        longest move of a node [m]
 /// \param multiply      q = K p
-/// \param precondition  z = P r; may change r by what P leaves out
+/// \param precondition  z = P r; may change r by what P leaves out; returns r . z and the length of the longest of z
 /// \param is_done       bool(longest of z [m], smallest Ritz value so far [-])
 /// \note Real-time safe if what it calls is.
 template <typename Multiply, typename Precondition, typename IsDone>
@@ -66,8 +66,7 @@ TruncatedReport SolveTruncated(const Kernels& kernels, Workers& workers, int max
     });
     ++report.iterations;
     if (report.reached_radius) break;
-    precondition();
-    const auto [next, left] = CalcDotAndLongest(kernels, workers, v.r, v.z);
+    const auto [next, left] = precondition();
     if (is_done(left, ritz.Value())) break;
     beta = next / rz;
     rz = next;

@@ -3,6 +3,7 @@
 
 #include <oneapi/tbb/info.h>
 
+#include <algorithm>
 #include <thread>
 
 #include "trocar/core/assert.h"
@@ -30,7 +31,7 @@ void Pause(int& looks) noexcept {
 
 }  // namespace
 
-Workers::Workers(int threads) : threads_(threads) {
+Workers::Workers(int threads) : threads_(threads), seats_(static_cast<std::size_t>(std::max(threads, 1))) {
   TROCAR_ASSERT(threads >= 1);
   if (threads > tbb::info::default_concurrency()) {
     more_workers_.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
@@ -64,41 +65,65 @@ void Workers::Help(int seat) noexcept {
       continue;
     }
     seen = word;
-    TakeChunks(Loop(word), seat);
+    (void)TakeChunks(Loop(word), seat);
   }
 }
 
-void Workers::TakeChunks(Loop loop, int seat) noexcept {
-  // each begins where its share begins, so that a chunk mostly stays in the same processor's cache
-  const auto begin = static_cast<std::uint32_t>(std::uint64_t{loop.count} * static_cast<std::uint64_t>(seat) /
-                                                static_cast<std::uint64_t>(threads_));
-  std::uint32_t done = 0;
-  for (std::uint32_t i = 0; i < loop.count; ++i) {
-    const std::uint32_t chunk = begin + i < loop.count ? begin + i : begin + i - loop.count;
-    std::atomic<std::uint64_t>& taken_by = chunks_[chunk].taken_by;
-    std::uint64_t last = taken_by.load(std::memory_order_relaxed);
-    // Taken in this loop or, if we are late, in a later one. Otherwise this loop has not ended, and does not before
-    // the chunk is done: call and context are its own.
-    if (last >= loop.number ||
-        !taken_by.compare_exchange_strong(last, loop.number, std::memory_order_acq_rel)) {
-      continue;
-    }
+std::uint32_t Workers::Begin(Loop loop, int seat) const noexcept {
+  return static_cast<std::uint32_t>(std::uint64_t{loop.count} * static_cast<std::uint64_t>(seat) /
+                                    static_cast<std::uint64_t>(threads_));
+}
+
+std::uint32_t Workers::TakeShare(Loop loop, int seat) noexcept {
+  std::atomic<std::uint64_t>& taken = seats_[static_cast<std::size_t>(seat)].taken;
+  const std::uint32_t end = Begin(loop, seat + 1);
+  std::uint64_t word = taken.load(std::memory_order_relaxed);
+  for (std::uint32_t done = 0;;) {
+    // Where a later loop has taken from here, we are late. Otherwise, if a chunk is left, this loop has not ended, and
+    // does not before the chunk is done: call and context are its own.
+    const Loop last(word);
+    const std::uint32_t chunk = last.number == loop.number ? last.count : Begin(loop, seat);
+    if (last.number > loop.number || chunk >= end) return done;
+    const std::uint64_t next = Loop(loop.number, chunk + 1).Word();
+    if (!taken.compare_exchange_weak(word, next, std::memory_order_acq_rel)) continue;
+    word = next;
     call_.load(std::memory_order_relaxed)(context_.load(std::memory_order_relaxed), chunk);
     ++done;
   }
-  if (done > 0) done_.fetch_add(done, std::memory_order_acq_rel);
+}
+
+std::uint32_t Workers::TakeChunks(Loop loop, int seat) noexcept {
+  // its own share first, so that a chunk mostly stays in the same processor's cache
+  std::uint32_t done = 0;
+  for (int i = 0; i < threads_; ++i) {
+    const std::uint32_t more = TakeShare(loop, (seat + i) % threads_);
+    done += more;
+    if (more > 0 && seat > 0) {
+      seats_[static_cast<std::size_t>(seat)].done.store(Loop(loop.number, done).Word(),
+                                                        std::memory_order_release);
+    }
+  }
+  return done;
+}
+
+bool Workers::AreDone(Loop loop, std::uint32_t by_caller) const noexcept {
+  std::uint32_t done = by_caller;
+  for (std::size_t seat = 1; seat < seats_.size(); ++seat) {
+    const Loop last(seats_[seat].done.load(std::memory_order_acquire));
+    if (last.number == loop.number) done += last.count;
+  }
+  return done == loop.count;
 }
 
 void Workers::RunShared(std::uint32_t count, Call call, const void* context) noexcept {
   TROCAR_ASSERT(count <= kMaxChunks);
   call_.store(call, std::memory_order_relaxed);
   context_.store(context, std::memory_order_relaxed);
-  done_.store(0, std::memory_order_relaxed);
   const Loop loop(Loop(loop_.load(std::memory_order_relaxed)).number + 1, count);
   loop_.store(loop.Word(), std::memory_order_release);
-  TakeChunks(loop, 0);
+  const std::uint32_t done = TakeChunks(loop, 0);
   int looks = 0;
-  while (done_.load(std::memory_order_acquire) != count) Pause(looks);
+  while (!AreDone(loop, done)) Pause(looks);
 }
 
 }  // namespace trocar::tissue

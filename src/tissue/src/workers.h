@@ -10,6 +10,7 @@
 #include <atomic>
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 namespace trocar::tissue {
 
@@ -66,8 +67,23 @@ class Workers {
     std::uint64_t Word() const { return number * kPlaces + count; }
   };
 
+  // each of what different threads write at the same time has a cache line of its own: to fetch one from another processor
+  // takes a tenth of a microsecond, and an iteration has some twenty loops
+  static constexpr std::size_t kLine = 64;
+  /// A thread's share of the chunks, which others take from when their own is done; see Loop.
+  struct Seat {
+    alignas(kLine) std::atomic<std::uint64_t> taken = 0;  // last loop that took from it; the next chunk
+    alignas(kLine) std::atomic<std::uint64_t> done = 0;   // last loop that the thread worked in; chunks done
+  };
+
   void RunShared(std::uint32_t count, Call call, const void* context) noexcept;
-  void TakeChunks(Loop loop, int seat) noexcept;
+  /// Does what is left of the thread's share, then of the others'.
+  /// \return chunks that it did
+  std::uint32_t TakeChunks(Loop loop, int seat) noexcept;
+  std::uint32_t TakeShare(Loop loop, int seat) noexcept;
+  /// First chunk of a share.
+  std::uint32_t Begin(Loop loop, int seat) const noexcept;
+  bool AreDone(Loop loop, std::uint32_t by_caller) const noexcept;
   void Help(int seat) noexcept;
 
   int threads_;
@@ -75,17 +91,11 @@ class Workers {
   tbb::task_arena arena_;
   tbb::task_group helpers_;
 
-  // each of what different threads write at the same time has a cache line of its own
-  static constexpr std::size_t kLine = 64;
-  struct alignas(kLine) Chunk {
-    std::atomic<std::uint64_t> taken_by = 0;  // number of the last loop that took it
-  };
   alignas(kLine) std::atomic<bool> is_open_ = false;
   std::atomic<std::uint64_t> loop_ = 0;  // the present one, see Loop
   std::atomic<Call> call_ = nullptr;
   std::atomic<const void*> context_ = nullptr;
-  alignas(kLine) std::atomic<std::uint32_t> done_ = 0;
-  std::array<Chunk, kMaxChunks> chunks_;
+  alignas(kLine) std::vector<Seat> seats_;  // (threads_), the caller's first
 };
 
 }  // namespace trocar::tissue

@@ -6,6 +6,7 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
+#include <vector>
 
 namespace trocar::tissue {
 namespace {
@@ -30,6 +31,18 @@ TEST(Workers, DoEachChunkOnceHoweverLateAHelperIs) {
         const int due = chunk < kFew ? loop + 1 : (loop + 1) / 2;
         ASSERT_EQ(times[chunk], due) << threads << " threads, loop " << loop << ", chunk " << chunk;
       }
+    }
+  }
+}
+
+// Without a session no helper is awake: the caller takes everybody's share.
+TEST(Workers, TheCallerDoesWhatNobodyHasBegun) {
+  for (const int threads : {2, 3, 8}) {
+    Workers workers(threads);
+    for (const std::uint32_t count : {2u, 5u, Workers::kMaxChunks}) {
+      std::vector<int> times(count);
+      workers.Run(count, [&](std::uint32_t chunk) { ++times[chunk]; });
+      EXPECT_EQ(times, std::vector<int>(count, 1)) << threads << " threads";
     }
   }
 }
