@@ -9,8 +9,11 @@
 #include <string>
 
 #include "trocar/core/state_hash.h"
-#include "trocar/geometry/triangle_mesh.h"
+#include "trocar/geometry/mesh_topology.h"
+#include "trocar/geometry/primitives.h"
+#include "trocar/tissue/conservation.h"
 #include "trocar/tissue/equilibrium.h"
+#include "trocar/tissue/material.h"
 
 namespace {
 
@@ -85,6 +88,51 @@ std::uint64_t CalcFingerprint(Sheet sheet, SolverKind kind, SimdLevel level) {
   return hash.Value();
 }
 
+/// A tense sac, held at one side and pulled at the other, in ticks that keep its volume and follow folds.
+std::uint64_t CalcSacFingerprint(SimdLevel level) {
+  constexpr double kRadius = 0.015;
+  const auto mesh = trocar::geometry::MakeSphere({}, kRadius, 3);
+  const auto n = static_cast<std::uint32_t>(mesh.positions.size());
+  TissueDefinition definition;
+  definition.rest = mesh.positions;
+  definition.mass.assign(n, 1e-4);
+  definition.shape_stiffness.assign(n, 0.01);
+  const auto edges = trocar::geometry::FindEdges(mesh.triangles);
+  const auto stiffness = CalcEdgeStiffness(mesh.positions, mesh.triangles, edges, 510.0);
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    const auto [a, b] = edges[i];
+    definition.springs.push_back(
+        {a, b, stiffness[i], trocar::math::Distance(mesh.positions[a], mesh.positions[b])});
+  }
+  const TissueModel model = MakeTissueModel(definition);
+  TissueState tissue = MakeRestState(model);
+  ConservationSettings closed;
+  closed.organs = {{0, n, mesh.triangles}};
+  Conservation conservation(model, closed);
+  ConservationState state = conservation.MakeState(tissue);
+  state.organs[0].target *= 1.2;
+  EquilibriumSolver solver(model, {.threads = 2, .simd = level});
+  SolverSettings settings;
+  settings.kind = SolverKind::kNewtonMultigrid;
+  trocar::core::StateHash hash;
+  for (int tick = 0; tick < 8; ++tick) {
+    for (std::uint32_t i = 0; i < n; ++i) {
+      const double height = mesh.positions[i].y / kRadius;
+      if (std::fabs(height) < 0.9) continue;
+      tissue.condition[i] = NodeCondition::kPrescribed;
+      tissue.position[i] = mesh.positions[i];
+      if (height < 0.0) tissue.position[i] += (tick + 1) * Vec3{0.0015, 0.0, 0.0005};
+    }
+    TissueLoad load;
+    const SolveReport report =
+        SolveConserving(solver, settings, 1.0 / 120, conservation, load, tissue, state);
+    hash.Add(static_cast<std::uint64_t>(report.linear_iterations));
+    hash.Add(state.organs[0].pressure);
+    for (const Vec3& p : tissue.position) hash.Add(p.x), hash.Add(p.y), hash.Add(p.z);
+  }
+  return hash.Value();
+}
+
 }  // namespace
 
 int main() {
@@ -98,5 +146,7 @@ int main() {
             static_cast<unsigned long long>(CalcFingerprint(MakeSheet(20, is_irregular), kind, level)));
       }
     }
+    std::printf("%s sac %016llx\n", std::string(SimdLevelName(level)).c_str(),
+                static_cast<unsigned long long>(CalcSacFingerprint(level)));
   }
 }
