@@ -189,7 +189,7 @@ void RigidStage::Publish(std::vector<ObjectSnapshot>& objects) const {
 
 void RigidStage::AddTo(core::StateHash& hash) const {
   if (!world_) return;
-  hash.Add(world_->Hash());
+  core::AddStateTo(hash, *world_);
   for (std::size_t h = 0; h < hands_.size(); ++h) {
     hash.Add(static_cast<std::uint64_t>(held_[h]));
     for (const double value :

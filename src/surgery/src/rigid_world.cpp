@@ -10,9 +10,57 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <tuple>
+#include <utility>
 
 #include "trocar/core/assert.h"
-#include "trocar/core/state_hash.h"
+#include "trocar/core/state_archive.h"
+#include "trocar/math/state_fields.h"
+
+namespace trocar::surgery {
+namespace {
+
+// What Bullet's objects have to hold again for the next step to have the same bits.
+
+using TransformState = std::array<double, 12>;  // rows of the rotation, then the origin [cm]
+
+struct BodyState {
+  TransformState X_world_body{};
+  std::array<double, 3> velocity{}, turn{};  // [cm/s], [rad/s]
+  double deactivation_seconds = 0;
+  std::int64_t activation = 0;  // Bullet's
+  std::uint64_t touches = 0;
+};
+
+struct ToolState {
+  std::array<TransformState, kToolPartCount> parts{}, from{};
+  TransformState X_carrier_body{};  // of what it holds
+  double hold_force = 0;
+  std::int32_t held = -1, ticks_over = 0;
+  Vec3 force;
+};
+
+/// One point of a contact manifold, with what warm-starts the next step.
+struct ContactPointState {
+  std::array<std::int32_t, 4> pair{};      // user index and tool part of both bodies
+  std::array<std::int32_t, 4> children{};  // part and child shape of both
+  std::array<std::array<double, 3>, 7> vectors{};
+  std::array<double, 14> numbers{};
+  std::int32_t flags = 0, life_time = 0;
+};
+
+}  // namespace
+}  // namespace trocar::surgery
+
+namespace trocar::core {
+template <>
+inline constexpr bool kIsPlainState<surgery::BodyState> = sizeof(surgery::BodyState) == 21 * 8;
+template <>
+inline constexpr bool kIsPlainState<surgery::ToolState> = sizeof(surgery::ToolState) == 89 * 8;
+template <>
+inline constexpr bool kIsPlainState<surgery::ContactPointState> =
+    sizeof(surgery::ContactPointState) == 40 * 8;
+}  // namespace trocar::core
 
 namespace trocar::surgery {
 namespace {
@@ -37,6 +85,7 @@ constexpr double kHoldStiffness =
 constexpr double kHoldDamping = 5.9;  // [N s/m]
 constexpr double kWorldRadius = 1.0;  // what is farther away has left the scene and stops [m]
 constexpr int kSolverIterations = 30;  // stacks stand
+constexpr int kPooledManifolds = 512;  // more are taken from the heap
 
 btVector3 ToBullet(const Vec3& v) {
   return {v.x * kScale, v.y * kScale, v.z * kScale};
@@ -51,6 +100,96 @@ btTransform ToBullet(const Pose& X) {
 Pose FromBullet(const btTransform& X) {
   const btQuaternion q = X.getRotation();
   return {math::Quaternion{q.w(), q.x(), q.y(), q.z()}, FromBullet(X.getOrigin())};
+}
+
+std::array<double, 3> Numbers(const btVector3& v) {
+  return {v.x(), v.y(), v.z()};
+}
+btVector3 Vector(const std::array<double, 3>& v) {
+  return {v[0], v[1], v[2]};
+}
+
+TransformState SaveTransform(const btTransform& X) {
+  TransformState state{};
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column)
+      state[static_cast<std::size_t>(3 * row + column)] = X.getBasis()[row][column];
+    state[static_cast<std::size_t>(9 + row)] = X.getOrigin()[row];
+  }
+  return state;
+}
+btTransform LoadTransform(const TransformState& s) {
+  return btTransform(btMatrix3x3(s[0], s[1], s[2], s[3], s[4], s[5], s[6], s[7], s[8]),
+                     btVector3(s[9], s[10], s[11]));
+}
+
+/// Bodies of a manifold by what does not change when they are made anew.
+std::array<std::int32_t, 4> PairOf(const btPersistentManifold& manifold) {
+  return {manifold.getBody0()->getUserIndex(), manifold.getBody0()->getUserIndex2(),
+          manifold.getBody1()->getUserIndex(), manifold.getBody1()->getUserIndex2()};
+}
+std::array<std::int32_t, 4> ChildrenOf(const btManifoldPoint& p) {
+  return {p.m_partId0, p.m_index0, p.m_partId1, p.m_index1};
+}
+
+ContactPointState SavePoint(const btPersistentManifold& manifold, const btManifoldPoint& p) {
+  ContactPointState state;
+  state.pair = PairOf(manifold);
+  state.children = ChildrenOf(p);
+  state.vectors = {Numbers(p.m_localPointA),       Numbers(p.m_localPointB),
+                   Numbers(p.m_positionWorldOnA),  Numbers(p.m_positionWorldOnB),
+                   Numbers(p.m_normalWorldOnB),    Numbers(p.m_lateralFrictionDir1),
+                   Numbers(p.m_lateralFrictionDir2)};
+  state.numbers = {p.m_distance1,
+                   p.m_combinedFriction,
+                   p.m_combinedRollingFriction,
+                   p.m_combinedSpinningFriction,
+                   p.m_combinedRestitution,
+                   p.m_appliedImpulse,
+                   p.m_prevRHS,
+                   p.m_appliedImpulseLateral1,
+                   p.m_appliedImpulseLateral2,
+                   p.m_contactMotion1,
+                   p.m_contactMotion2,
+                   p.m_contactCFM,
+                   p.m_contactERP,
+                   p.m_frictionCFM};
+  state.flags = p.m_contactPointFlags;
+  state.life_time = p.m_lifeTime;
+  return state;
+}
+
+btManifoldPoint LoadPoint(const ContactPointState& state) {
+  btManifoldPoint p;
+  p.m_localPointA = Vector(state.vectors[0]);
+  p.m_localPointB = Vector(state.vectors[1]);
+  p.m_positionWorldOnA = Vector(state.vectors[2]);
+  p.m_positionWorldOnB = Vector(state.vectors[3]);
+  p.m_normalWorldOnB = Vector(state.vectors[4]);
+  p.m_lateralFrictionDir1 = Vector(state.vectors[5]);
+  p.m_lateralFrictionDir2 = Vector(state.vectors[6]);
+  p.m_partId0 = state.children[0];
+  p.m_index0 = state.children[1];
+  p.m_partId1 = state.children[2];
+  p.m_index1 = state.children[3];
+  double* const into[] = {&p.m_distance1,
+                          &p.m_combinedFriction,
+                          &p.m_combinedRollingFriction,
+                          &p.m_combinedSpinningFriction,
+                          &p.m_combinedRestitution,
+                          &p.m_appliedImpulse,
+                          &p.m_prevRHS,
+                          &p.m_appliedImpulseLateral1,
+                          &p.m_appliedImpulseLateral2,
+                          &p.m_contactMotion1,
+                          &p.m_contactMotion2,
+                          &p.m_contactCFM,
+                          &p.m_contactERP,
+                          &p.m_frictionCFM};
+  for (std::size_t i = 0; i < std::size(into); ++i) *into[i] = state.numbers[i];
+  p.m_contactPointFlags = state.flags;
+  p.m_lifeTime = state.life_time;
+  return p;
 }
 
 bool IsFinite(const Pose& X) {
@@ -172,12 +311,17 @@ struct RigidWorld::Content {
     world.reset();
   }
 
-  /// A new world with everything as it was added: caches of contacts are part of Bullet's state.
+  /// A new world with everything as it was added.
   void Build() {
     Clear();
+    if (!configuration) {
+      btDefaultCollisionConstructionInfo sizes;
+      sizes.m_defaultMaxPersistentManifoldPoolSize = kPooledManifolds;
+      sizes.m_defaultMaxCollisionAlgorithmPoolSize = kPooledManifolds;
+      configuration = std::make_unique<btDefaultCollisionConfiguration>(sizes);
+    }
     solver = std::make_unique<btSequentialImpulseConstraintSolver>();
     broadphase = std::make_unique<btDbvtBroadphase>();
-    configuration = std::make_unique<btDefaultCollisionConfiguration>();
     dispatcher = std::make_unique<btCollisionDispatcher>(configuration.get());
     world = std::make_unique<btDiscreteDynamicsWorld>(dispatcher.get(), broadphase.get(), solver.get(),
                                                       configuration.get());
@@ -362,6 +506,141 @@ struct RigidWorld::Content {
     }
   }
 
+  /// All that the next step depends on, in an order that depends on nothing else.
+  struct State {
+    std::vector<BodyState> bodies;
+    std::vector<ToolState> tools;
+    std::vector<std::vector<std::uint8_t>> touched;  // (tools x parts) by body
+    std::vector<ContactPointState> contacts;
+    Vec3 gravity;
+
+    void VisitState(core::StateArchive& archive) {
+      archive.Field("bodies", bodies);
+      archive.Field("tools", tools);
+      archive.Field("touched", touched);
+      archive.Field("contacts", contacts);
+      archive.Field("gravity", gravity);
+    }
+  };
+
+  State Save() const {
+    State state;
+    state.gravity = gravity;
+    for (const Body& body : bodies) {
+      const btRigidBody& rigid = *body.body;
+      state.bodies.push_back({SaveTransform(rigid.getWorldTransform()), Numbers(rigid.getLinearVelocity()),
+                              Numbers(rigid.getAngularVelocity()), rigid.getDeactivationTime(),
+                              rigid.getActivationState(), body.touches});
+    }
+    for (const Tool& tool : tools) {
+      ToolState& saved = state.tools.emplace_back();
+      for (std::size_t part = 0; part < kToolPartCount; ++part) {
+        saved.parts[part] = SaveTransform(tool.parts[part]->getWorldTransform());
+        saved.from[part] = SaveTransform(tool.from[part]);
+        state.touched.push_back(tool.touched[part]);
+      }
+      if (tool.hold) saved.X_carrier_body = SaveTransform(tool.hold->getFrameOffsetA());
+      saved.hold_force = tool.hold_force;
+      saved.held = tool.held;
+      saved.ticks_over = tool.ticks_over;
+      saved.force = tool.force;
+    }
+    for (int m = 0; m < dispatcher->getNumManifolds(); ++m) {
+      const btPersistentManifold& manifold = *dispatcher->getManifoldByIndexInternal(m);
+      for (int p = 0; p < manifold.getNumContacts(); ++p)
+        state.contacts.push_back(SavePoint(manifold, manifold.getContactPoint(p)));
+    }
+    // stable: the points of one manifold stay in their order
+    std::stable_sort(state.contacts.begin(), state.contacts.end(),
+                     [](const ContactPointState& a, const ContactPointState& b) {
+                       return std::tie(a.pair, a.children) < std::tie(b.pair, b.children);
+                     });
+    return state;
+  }
+
+  bool Fits(const State& state) const {
+    const auto is_body = [&](std::int32_t held) {
+      return held >= -1 && held < static_cast<std::int32_t>(bodies.size());
+    };
+    return state.bodies.size() == bodies.size() && state.tools.size() == tools.size() &&
+           state.touched.size() == tools.size() * kToolPartCount &&
+           std::all_of(state.touched.begin(), state.touched.end(),
+                       [&](const auto& of_part) { return of_part.size() == bodies.size(); }) &&
+           std::all_of(state.tools.begin(), state.tools.end(),
+                       [&](const ToolState& tool) { return is_body(tool.held); });
+  }
+
+  /// A new world in which everything is as in `state`. Of its contacts those stay that Bullet finds again.
+  /// \pre Fits(state)
+  void Load(const State& state) {
+    gravity = state.gravity;
+    // Bullet's trees depend on where their leaves begin
+    for (std::size_t t = 0; t < tools.size(); ++t) {
+      for (std::size_t part = 0; part < kToolPartCount; ++part)
+        tools[t].to[part] = LoadTransform(state.tools[t].parts[part]);
+    }
+    Build();
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+      const BodyState& saved = state.bodies[i];
+      btRigidBody& rigid = *bodies[i].body;
+      rigid.setCenterOfMassTransform(LoadTransform(saved.X_world_body));
+      rigid.setLinearVelocity(Vector(saved.velocity));
+      rigid.setAngularVelocity(Vector(saved.turn));
+      rigid.forceActivationState(static_cast<int>(saved.activation));
+      rigid.setDeactivationTime(saved.deactivation_seconds);
+      bodies[i].touches = saved.touches;
+    }
+    for (std::size_t t = 0; t < tools.size(); ++t) {
+      Tool& tool = tools[t];
+      const ToolState& saved = state.tools[t];
+      for (std::size_t part = 0; part < kToolPartCount; ++part) {
+        tool.from[part] = tool.to[part] = LoadTransform(saved.from[part]);
+        tool.parts[part]->setWorldTransform(LoadTransform(saved.parts[part]));
+        tool.parts[part]->setInterpolationWorldTransform(tool.parts[part]->getWorldTransform());
+        tool.touched[part] = state.touched[t * kToolPartCount + part];
+      }
+      tool.force = saved.force;
+      tool.hold_force = saved.hold_force;
+      if (saved.held >= 0) AddHold(tool, saved.held, LoadTransform(saved.X_carrier_body));
+      tool.ticks_over = saved.ticks_over;
+    }
+    LoadContacts(state.contacts);
+  }
+
+  void LoadContacts(const std::vector<ContactPointState>& contacts) {
+    world->performDiscreteCollisionDetection();
+    for (int m = 0; m < dispatcher->getNumManifolds(); ++m) {
+      btPersistentManifold& manifold = *dispatcher->getManifoldByIndexInternal(m);
+      if (manifold.getNumContacts() == 0) continue;
+      const auto key = std::pair(PairOf(manifold), ChildrenOf(manifold.getContactPoint(0)));
+      manifold.clearManifold();
+      auto saved = std::lower_bound(contacts.begin(), contacts.end(), key,
+                                    [](const ContactPointState& point, const auto& wanted) {
+                                      return std::pair(point.pair, point.children) < wanted;
+                                    });
+      for (; saved != contacts.end() && std::pair(saved->pair, saved->children) == key &&
+             manifold.getNumContacts() < MANIFOLD_CACHE_SIZE;
+           ++saved) {
+        manifold.setNumContacts(manifold.getNumContacts() + 1);
+        manifold.getContactPoint(manifold.getNumContacts() - 1) = LoadPoint(*saved);
+      }
+    }
+  }
+
+  void AddHold(Tool& tool, std::int32_t body_index, const btTransform& X_carrier_body) {
+    btRigidBody& body = *bodies[static_cast<std::size_t>(body_index)].body;
+    for (auto& part : tool.parts) {
+      part->setIgnoreCollisionCheck(&body, true);
+      body.setIgnoreCollisionCheck(part.get(), true);
+    }
+    tool.hold = std::make_unique<btFixedConstraint>(*tool.parts[kShaftPart], body, X_carrier_body,
+                                                    btTransform::getIdentity());
+    tool.hold->setJointFeedback(&tool.feedback);
+    tool.feedback = {};
+    world->addConstraint(tool.hold.get());
+    tool.held = body_index;
+  }
+
   void Release(Tool& tool) {
     if (!tool.hold) return;
     btRigidBody& body = *bodies[static_cast<std::size_t>(tool.held)].body;
@@ -471,6 +750,9 @@ void RigidWorld::Step() {
     tool.ticks_over = math::Norm(pulls[t]) > tool.hold_force ? tool.ticks_over + 1 : 0;
     if (tool.ticks_over >= kSlipTicks) content.Release(tool);
   }
+  // Drops what Bullet remembers beyond the state: the order of its lists and trees, which comes of all that ever touched.
+  // So the next tick has the same bits where a state has been restored.
+  content.Load(content.Save());
 }
 
 std::int32_t RigidWorld::FindBodyInJaws(std::uint32_t tool) const {
@@ -488,22 +770,12 @@ void RigidWorld::Hold(std::uint32_t tool_index, std::uint32_t body_index, double
   Content::Tool& tool = content_->tools[tool_index];
   content_->Release(tool);
   btRigidBody& body = *content_->bodies[body_index].body;
-  btRigidBody& carrier = *tool.parts[kShaftPart];
-  for (auto& part : tool.parts) {
-    part->setIgnoreCollisionCheck(&body, true);
-    body.setIgnoreCollisionCheck(part.get(), true);
-  }
-  tool.hold = std::make_unique<btFixedConstraint>(
-      carrier, body, carrier.getWorldTransform().inverse() * body.getWorldTransform(),
-      btTransform::getIdentity());
-  tool.hold->setJointFeedback(&tool.feedback);
-  tool.feedback = {};
-  content_->world->addConstraint(tool.hold.get());
+  content_->AddHold(tool, static_cast<std::int32_t>(body_index),
+                    tool.parts[kShaftPart]->getWorldTransform().inverse() * body.getWorldTransform());
   // contacts that are there already would go on pushing
   content_->world->getPairCache()->cleanProxyFromPairs(body.getBroadphaseHandle(),
                                                        content_->dispatcher.get());
   body.activate(true);
-  tool.held = static_cast<std::int32_t>(body_index);
   tool.hold_force = hold_force;
   tool.ticks_over = 0;
 }
@@ -580,19 +852,15 @@ void RigidWorld::Reset() {
   content_->Build();
 }
 
-std::uint64_t RigidWorld::Hash() const {
-  core::StateHash hash;
-  const auto add = [&](const btVector3& v) {
-    for (const double value : {v.x(), v.y(), v.z()}) hash.Add(value);
-  };
-  for (const auto& body : content_->bodies) {
-    add(body.body->getWorldTransform().getOrigin());
-    const btQuaternion q = body.body->getWorldTransform().getRotation();
-    for (const double value : {q.w(), q.x(), q.y(), q.z()}) hash.Add(value);
-    add(body.body->getLinearVelocity());
-    add(body.body->getAngularVelocity());
+void RigidWorld::VisitState(core::StateArchive& archive) {
+  Content::State state = content_->Save();
+  state.VisitState(archive);
+  if (!archive.IsRestoring() || !archive.ok()) return;
+  if (!content_->Fits(state)) {
+    archive.Fail("is of other bodies or tools");
+    return;
   }
-  return hash.Value();
+  content_->Load(state);
 }
 
 }  // namespace trocar::surgery

@@ -4,6 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "trocar/core/state_hash.h"
 
 namespace trocar::surgery {
 namespace {
@@ -31,6 +37,12 @@ void PoseTool(const Vec3& tip, double opening, Pose (&X)[kToolPartCount]) {
   X[kLowerJawPart] = {{}, tip - Vec3{0.5 * opening, 0, 0}};
 }
 constexpr ToolCapsule kParts[kToolPartCount] = {{0.0025, 0.04}, {0.0015, 0.008}, {0.0015, 0.008}};
+
+std::uint64_t HashOf(const RigidWorld& world) {
+  core::StateHash hash;
+  core::AddStateTo(hash, world);
+  return hash.Value();
+}
 
 void Play(RigidWorld& world, double seconds) {
   for (int tick = 0; tick < static_cast<int>(std::lround(seconds / kTick)); ++tick) world.Step();
@@ -257,7 +269,7 @@ TEST(RigidWorld, GivesTheSameBitsAgain) {
     bench.Move(0, {0, 0, 0.012}, {0.02, 0.03, 0.06}, 0.03, 0.0148, 0.6);
     bench.world.Release(0);
     Play(bench.world, 0.5);
-    return bench.world.Hash();
+    return HashOf(bench.world);
   };
   const std::uint64_t hash = operate(first);
   EXPECT_EQ(operate(second), hash);
@@ -269,6 +281,73 @@ TEST(RigidWorld, GivesTheSameBitsAgain) {
   }
   first.world.Reset();
   EXPECT_EQ(operate(first), hash);
+}
+
+/// A cube and a ring that are pushed, held, and let fall on each other, tick by tick.
+void Disturb(Bench& bench, int tick) {
+  Pose X[kToolPartCount];
+  const double t = tick * kTick;
+  PoseTool({0.004 * std::sin(3 * t), 0.004 * std::cos(2 * t), 0.012 + 0.01 * std::sin(t)},
+           tick % 240 < 120 ? 0.0148 : 0.03, X);
+  bench.world.MoveTool(0, X);
+  PoseTool({0.02 * std::cos(t), 0.02 * std::sin(t), 0.010}, 0.002, X);
+  bench.world.MoveTool(1, X);
+  if (tick % 240 == 60) bench.world.Hold(0, bench.cube, 3.0);
+  if (tick % 240 == 180) bench.world.Release(0);
+  if (tick == 300) bench.world.SetGravity({1, 0, -9.7});
+  bench.world.Step();
+}
+
+TEST(RigidWorld, GoesOnFromASavedStateToTheSameBits) {
+  Bench bench;
+  std::vector<std::vector<std::byte>> saved;
+  std::vector<std::uint64_t> hashes;
+  for (int tick = 0; tick < 600; ++tick) {
+    core::SaveState(bench.world, saved.emplace_back());
+    hashes.push_back(HashOf(bench.world));
+    Disturb(bench, tick);
+  }
+  const std::uint64_t end = HashOf(bench.world);
+  for (const std::size_t from : {0u, 7u, 59u, 61u, 100u, 179u, 181u, 250u, 299u, 301u, 444u, 599u}) {
+    for (const bool is_fresh : {true, false}) {
+      Bench other;
+      Bench& into = is_fresh ? other : bench;
+      core::StateArchive archive = core::StateArchive::ForRestore(saved[from]);
+      archive.Field("state", into.world);
+      ASSERT_TRUE(archive.ok() && archive.IsAtEnd()) << archive.Failure();
+      EXPECT_EQ(HashOf(into.world), hashes[from]) << "tick " << from;
+      for (int tick = static_cast<int>(from); tick < 600; ++tick) Disturb(into, tick);
+      EXPECT_EQ(HashOf(into.world), end) << "from tick " << from << (is_fresh ? " in a fresh world" : "");
+    }
+  }
+}
+
+// Control: each field that is left out is missed.
+TEST(RigidWorld, NeedsEachFieldOfItsState) {
+  Bench bench;
+  for (int tick = 0; tick < 50; ++tick) Disturb(bench, tick);
+  std::vector<std::byte> saved;
+  core::SaveState(bench.world, saved);
+  const std::uint64_t hash = HashOf(bench.world);
+  for (const char* field : {"bodies", "tools", "touched", "contacts"}) {
+    Bench other;
+    core::StateArchive archive = core::StateArchive::ForRestore(saved);
+    archive.Omit(std::string("state/") + field);
+    archive.Field("state", other.world);
+    ASSERT_TRUE(archive.ok()) << archive.Failure();
+    EXPECT_NE(HashOf(other.world), hash) << field;
+  }
+}
+
+TEST(RigidWorld, RefusesAStateOfOtherBodies) {
+  Bench bench;
+  std::vector<std::byte> saved;
+  core::SaveState(bench.world, saved);
+  RigidWorld other(kDown, kTick);
+  ASSERT_TRUE(other.AddBody(MakeFloor()).ok());
+  core::StateArchive archive = core::StateArchive::ForRestore(saved);
+  archive.Field("state", other);
+  EXPECT_FALSE(archive.ok());
 }
 
 TEST(RigidWorld, RefusesWhatIsNoBody) {

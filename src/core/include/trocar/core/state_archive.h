@@ -47,12 +47,16 @@ class StateArchive {
   template <typename T>
   void Field(std::string_view name, T& value) {
     Enter(name);
-    if (IsOmitted()) {
-      T other = value;
-      Visit(other);
-    } else {
-      Visit(value);
+    // what cannot be copied leaves out the fields of which it consists
+    if constexpr (std::is_copy_constructible_v<T>) {
+      if (IsOmitted()) {
+        T other = value;
+        Visit(other);
+        Leave();
+        return;
+      }
     }
+    Visit(value);
     Leave();
   }
 
@@ -141,7 +145,10 @@ class StateArchive {
 
   void Enter(std::string_view name);
   void Leave();
-  bool IsOmitted() const noexcept { return !omitted_.empty() && IsRestoring() && path_ == omitted_; }
+  bool IsOmitted() const noexcept {
+    return !omitted_.empty() && IsRestoring() && path_.compare(0, omitted_.size(), omitted_) == 0 &&
+           (path_.size() == omitted_.size() || path_[omitted_.size()] == '/');
+  }
   void Bytes(void* data, std::size_t size);
   /// The count of elements that follow: written, or read and checked against what is left of the bytes.
   std::size_t Count(std::size_t now, std::size_t least_bytes_each);

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "trocar/core/result.h"
+#include "trocar/core/state_archive.h"
 #include "trocar/math/pose.h"
 
 namespace trocar::surgery {
@@ -114,8 +115,9 @@ class RigidWorld {
   std::size_t BodyCount() const;
   /// Everything as it was added; tools stay where they are and hold nothing.
   void Reset();
-  /// Fingerprint of all poses and velocities.
-  std::uint64_t Hash() const;
+  /// Bodies, holds, and contacts with the impulses that warm-start the next step. Restoring fails for other bodies or tools.
+  /// \note Allocates.
+  void VisitState(core::StateArchive& archive);
 
  private:
   struct Content;
