@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "spring_lines.h"
+#include "spring_linearisation.h"
 
 #include <algorithm>
 
