@@ -142,5 +142,40 @@ TEST(StateArchive, ACountThatCannotBeIsRefusedBeforeAnythingIsAllocated) {
   EXPECT_TRUE(tree.rings.empty());
 }
 
+struct Grid {
+  std::vector<double> heights;
+  std::vector<std::vector<double>> rows;
+  bool is_open = false;
+};
+
+void VisitState(StateArchive& archive, Grid& grid) {
+  archive.FixedField("heights", grid.heights);
+  archive.FixedField("rows", grid.rows);
+  archive.Field("is_open", grid.is_open);
+}
+
+std::string RestoreGrid(const Grid& from, Grid& to) {
+  std::vector<std::byte> bytes;
+  SaveState(from, bytes);
+  StateArchive archive = StateArchive::ForRestore(bytes);
+  archive.Field("state", to);
+  return archive.Failure();
+}
+
+TEST(StateArchive, AFieldOfFixedLengthIsRefusedWhereTheLengthIsAnother) {
+  const Grid grid{{1, 2}, {{3}, {4, 5}}, true};
+  Grid same{{0, 0}, {{0}, {0, 0}}, false};
+  EXPECT_EQ(RestoreGrid(grid, same), "");
+  EXPECT_EQ(same.heights, grid.heights);
+  EXPECT_EQ(same.rows, grid.rows);
+  EXPECT_TRUE(same.is_open);
+  Grid longer{{0, 0, 0}, {{0}, {0, 0}}, false};
+  EXPECT_EQ(RestoreGrid(grid, longer), "state/heights has 2 elements where the model has 3");
+  EXPECT_EQ(longer.heights.size(), 3u);
+  Grid ragged{{0, 0}, {{0}, {0}}, false};
+  EXPECT_EQ(RestoreGrid(grid, ragged), "state/rows has 2 elements where the model has 1");
+  EXPECT_FALSE(ragged.is_open) << "what follows is left as it is";
+}
+
 }  // namespace
 }  // namespace trocar::core

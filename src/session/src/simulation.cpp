@@ -42,7 +42,6 @@ void Simulation::Content::Reset() {
     if (gpu_solver != nullptr) MakeSolver(thread_count, SolveOn::kGpu);  // the cut had given it up
     conserved = conserved_at_start;
   }
-  conservation->Reset();
   guard = std::make_unique<tissue::StateGuard>(tissue_model);
   const Input home = CalcScriptInput(*scene, 0.0);
   camera_holder.Reset(home.laparoscope);

@@ -66,7 +66,7 @@ struct Simulation::Content {
   LiveSettings settings;
   tissue::TissueLoad load;
   tissue::SolveReport report;
-  tissue::ConservationState good_conserved;             // after the last good tick
+  tissue::ConservationTick good_conserved;              // after the last good tick
   std::vector<tissue::NodeCondition> solved_condition;  // a grasp may slip once the forces are known
   bool has_cut = false;                                 // since the last solve
   std::array<surgery::GraspChange, kHandCount> changes{};

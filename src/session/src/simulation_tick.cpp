@@ -129,7 +129,7 @@ void Simulation::Content::CheckState() noexcept {
   if (verdict == tissue::GuardVerdict::kGood) {
     good_conserved = conserved;
   } else {
-    conserved = good_conserved;
+    static_cast<tissue::ConservationTick&>(conserved) = good_conserved;
   }
   const bool is_good = verdict == tissue::GuardVerdict::kGood;
   const auto touched = touch.CalcTouch(tissue, is_good);

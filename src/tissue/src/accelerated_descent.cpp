@@ -211,9 +211,8 @@ SolveReport AcceleratedDescent::SolveGrid(const Kernels& kernels, Workers& worke
   double residual = 0;
   for (std::size_t level = levels; level-- > 1;) {
     SpringGrid& grid = grids_[level];
-    for (std::uint32_t i = 0; level + 1 == levels && i < grid.Shape().rows * grid.Shape().columns; ++i) {
-      grid.SetDisplacement(i, {});
-    }
+    // nodes that are held here stay at rest, whatever an earlier solve left them at
+    for (std::uint32_t i = 0; i < grid.Shape().rows * grid.Shape().columns; ++i) grid.SetDisplacement(i, {});
     if (level + 1 < levels) grid.Interpolate(grids_[level + 1]);
     (void)RunCycles(grid, kernels, workers, kCoarseIterations, 0.0, residual, [] {});
     ++report.coarse_levels;

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "trocar/core/assert.h"
+#include "trocar/math/state_fields.h"
 #include "volume_hook.h"
 
 namespace trocar::tissue {
@@ -64,52 +65,84 @@ std::uint64_t CountIntact(const TissueState& tissue) noexcept {
 
 }  // namespace
 
+// --- state
+
+void VisitState(core::StateArchive& archive, FreeRegions& regions) {
+  archive.FixedField("of_node", regions.of_node);
+  if (!archive.IsRestoring()) return;
+  regions.count = 0;
+  for (const std::uint32_t region : regions.of_node) {
+    if (region == kPinnedRegion) continue;
+    if (region >= kMaxFreeRegions) return archive.Fail("has a node of a region beyond the last");
+    regions.count = std::max(regions.count, region + 1);
+  }
+}
+
+void VisitState(core::StateArchive& archive, OrganVolume& organ) {
+  archive.Field("target", organ.target);
+  archive.Field("pressure", organ.pressure);
+  archive.Field("opening_area", organ.opening_area);
+  archive.Field("leaked", organ.leaked);
+}
+
+void VisitState(core::StateArchive& archive, VolumeResponses& responses) {
+  archive.FixedField("displacement", responses.displacement);
+  archive.Field("stiffness_scale", responses.stiffness_scale);
+  archive.Field("shape_scale", responses.shape_scale);
+  archive.Field("is_settled", responses.is_settled);
+  archive.Field("has_new_topology", responses.has_new_topology);
+  archive.Field("ticks_waited", responses.ticks_waited);
+}
+
+void VisitState(core::StateArchive& archive, ConservationTick& state) {
+  archive.FixedField("organs", state.organs);
+  archive.Field("regions", state.regions);
+  archive.Field("X_world_rest", state.X_world_rest);
+  archive.Field("intact_links", state.intact_links);
+  archive.FixedField("last_position", state.last_position);
+  archive.FixedField("last_motion", state.last_motion);
+}
+
+void VisitState(core::StateArchive& archive, ConservationState& state) {
+  VisitState(archive, static_cast<ConservationTick&>(state));
+  archive.Field("responses", state.responses);
+}
+
 // --- creation
 
 Conservation::Conservation(const TissueModel& model, ConservationSettings settings)
     : model_(&model), settings_(std::move(settings)), linear_(model), rest_(MakeRestState(model)) {
   const std::size_t n = model.Size();
-  TROCAR_ASSERT(settings_.organs.size() <= kMaxClosedOrgans);
-  static_assert(kMaxClosedOrgans <= kMaxHookConstraints);
-  for (const ClosedOrgan& organ : settings_.organs)
-    constraints_.push_back({organ.first_node, organ.node_count});
+  SetOrgans(std::move(settings_.organs));
   gradient_.resize(n), ahead_gradient_.resize(n);
   base_force_.resize(n);
   force_.resize(n);
   next_regions_.of_node.resize(n);
-  responses_.assign(settings_.organs.size(), std::vector<Vec3>(n));
-  shifts_ = responses_;
-  (void)UpdateResponses(rest_, {}, kFirstResponseIterations, kFirstResponseTolerance);
-  first_responses_ = responses_;
-  first_links_ = CountIntact(rest_);
-  Reset();
+  shifts_.assign(settings_.organs.size(), std::vector<Vec3>(n));
+  first_responses_.displacement = shifts_;
+  (void)UpdateResponses(rest_, {}, kFirstResponseIterations, kFirstResponseTolerance, first_responses_);
+  first_responses_.is_settled = true;
 }
 
-void Conservation::Reset() noexcept {
-  std::copy(first_responses_.begin(), first_responses_.end(), responses_.begin());
-  const TissueLoad usual;
-  stiffness_scale_ = usual.stiffness_scale;
-  shape_scale_ = usual.shape_scale;
-  response_links_ = first_links_;
-  responses_settled_ = true;
-  has_stiffness_ = false;  // what is known is that of before
-  has_followed_ = false;
-  waited_ = 0;
+void Conservation::SetOrgans(std::vector<ClosedOrgan> organs) {
+  TROCAR_ASSERT(organs.size() <= kMaxClosedOrgans);
+  static_assert(kMaxClosedOrgans <= kMaxHookConstraints);
+  settings_.organs = std::move(organs);
+  constraints_.clear();
+  for (const ClosedOrgan& organ : settings_.organs)
+    constraints_.push_back({organ.first_node, organ.node_count});
 }
 
 void Conservation::Follow(const TissueModel& model, std::vector<ClosedOrgan> organs,
                           ConservationState& state) {
   TROCAR_ASSERT(model.Size() == model_->Size() && organs.size() == settings_.organs.size());
   model_ = &model;
-  settings_.organs = std::move(organs);
-  constraints_.clear();
-  for (const ClosedOrgan& organ : settings_.organs)
-    constraints_.push_back({organ.first_node, organ.node_count});
+  SetOrgans(std::move(organs));
   linear_.SetModel(model);
   rest_ = MakeRestState(model);
-  responses_settled_ = false;
   has_stiffness_ = false;
-  has_followed_ = true;
+  state.responses.is_settled = false;
+  state.responses.has_new_topology = true;
   state.intact_links = std::numeric_limits<std::uint64_t>::max();
   std::fill(state.last_motion.begin(), state.last_motion.end(), Vec3{});
 }
@@ -130,6 +163,8 @@ ConservationState Conservation::MakeState(const TissueState& rest_state) const {
   state.intact_links = CountIntact(rest_state);
   state.last_position = rest_state.position;
   state.last_motion.resize(model_->Size());
+  state.responses = first_responses_;
+  state.responses.is_settled = state.intact_links == model_->strand_count + model_->SpringCount();
   return state;
 }
 
@@ -137,35 +172,39 @@ std::span<Vec3> Conservation::OrganPart(std::size_t organ, std::span<Vec3> nodes
   return nodes.subspan(settings_.organs[organ].first_node, settings_.organs[organ].node_count);
 }
 
-/// The displacement by which the tissue at rest, with the strands, springs and scales of now, answers one pascal in
-/// each organ.
+/// Gives linear_ the stiffness of the tissue at rest with the strands, springs and scales of now.
+void Conservation::SetRestStiffness(const TissueState& tissue, const TissueLoad& load) noexcept {
+  rest_.strand_is_intact = tissue.strand_is_intact;
+  const bool have_springs_held = has_stiffness_ && load.stiffness_scale == linear_stiffness_scale_ &&
+                                 load.shape_scale == linear_shape_scale_ &&
+                                 tissue.spring_factor == rest_.spring_factor;
+  if (have_springs_held) return linear_.FollowStrands(rest_, load);
+  rest_.spring_factor = tissue.spring_factor;
+  linear_.SetStiffness(rest_, load);
+  linear_stiffness_scale_ = load.stiffness_scale;
+  linear_shape_scale_ = load.shape_scale;
+  has_stiffness_ = true;
+}
+
+/// Goes on with the responses for the strands, springs and scales of now.
 ///
 /// \param max_iterations  of all organs together
+/// \return whether all have come to the tolerance
 bool Conservation::UpdateResponses(const TissueState& tissue, const TissueLoad& load, int max_iterations,
-                                   double tolerance) noexcept {
-  std::copy(tissue.strand_is_intact.begin(), tissue.strand_is_intact.end(), rest_.strand_is_intact.begin());
-  const bool have_springs_held =
-      has_stiffness_ && load.stiffness_scale == stiffness_scale_ && load.shape_scale == shape_scale_ &&
-      std::equal(tissue.spring_factor.begin(), tissue.spring_factor.end(), rest_.spring_factor.begin());
-  if (have_springs_held) {
-    linear_.FollowStrands(rest_, load);
-  } else {
-    std::copy(tissue.spring_factor.begin(), tissue.spring_factor.end(), rest_.spring_factor.begin());
-    linear_.SetStiffness(rest_, load);
-    has_stiffness_ = true;
-  }
+                                   double tolerance, VolumeResponses& responses) noexcept {
+  SetRestStiffness(tissue, load);
   bool is_settled = true;
   for (std::size_t organ = 0; organ < settings_.organs.size(); ++organ) {
     std::fill(gradient_.begin(), gradient_.end(), Vec3{});
     const ClosedOrgan& surface = settings_.organs[organ];
     (void)CalcVolumeGradient(std::span(model_->rest).subspan(surface.first_node, surface.node_count),
                              surface.triangles, OrganPart(organ, gradient_));
-    const auto report = linear_.Solve(gradient_, max_iterations, tolerance, responses_[organ]);
+    const auto report = linear_.Solve(gradient_, max_iterations, tolerance, responses.displacement[organ]);
     max_iterations -= report.iterations;
     is_settled = is_settled && report.residual <= tolerance;
   }
-  stiffness_scale_ = load.stiffness_scale;
-  shape_scale_ = load.shape_scale;
+  responses.stiffness_scale = load.stiffness_scale;
+  responses.shape_scale = load.shape_scale;
   return is_settled;
 }
 
@@ -192,6 +231,7 @@ void Conservation::UpdateRegions(const TissueState& tissue, ConservationState& s
   state.X_world_rest = poses;
   std::swap(state.regions, next_regions_);
   state.intact_links = intact;
+  state.responses.is_settled = false;  // the same pressure moves other links
 }
 
 bool Conservation::IsHeld(std::uint32_t region, const TissueState& tissue,
@@ -345,7 +385,7 @@ bool Conservation::CalcSlopes(const TissueState& tissue, ConservationState& stat
   for (std::size_t organ = 0; organ < count; ++organ) {
     for (std::size_t i = 0; i < model_->Size(); ++i) {
       const std::uint32_t region = state.regions.of_node[i];
-      const Vec3& u = responses_[organ][i];
+      const Vec3& u = state.responses.displacement[organ][i];
       shifts_[organ][i] = tissue.condition[i] == NodeCondition::kPrescribed ? Vec3{}
                           : region == kPinnedRegion                         ? u
                                                     : math::Rotate(state.X_world_rest[region].rotation, u);
@@ -461,18 +501,17 @@ void Conservation::Leak(double dt, ConservationState& state) const noexcept {
 
 void Conservation::Enforce(const TissueLoad& load, double dt, TissueState& tissue, ConservationState& state,
                            bool has_time) noexcept {
-  if (load.stiffness_scale != stiffness_scale_ || load.shape_scale != shape_scale_ ||
-      state.intact_links != response_links_) {
-    responses_settled_ = false;
-    response_links_ = state.intact_links;
-  }
+  VolumeResponses& responses = state.responses;
+  if (load.stiffness_scale != responses.stiffness_scale || load.shape_scale != responses.shape_scale)
+    responses.is_settled = false;
   // the responses of before steer well enough for a while, and a tick that cuts has enough to do already
-  const bool is_late = std::exchange(has_followed_, false);
-  if (!responses_settled_ && (is_late || (!has_time && waited_ < kMostWait))) {
-    ++waited_;
-  } else if (!responses_settled_) {
-    waited_ = 0;
-    responses_settled_ = UpdateResponses(tissue, load, kResponseIterationsPerTick, kResponseTolerance);
+  const bool is_late = std::exchange(responses.has_new_topology, false);
+  if (!responses.is_settled && (is_late || (!has_time && responses.ticks_waited < kMostWait))) {
+    ++responses.ticks_waited;
+  } else if (!responses.is_settled) {
+    responses.ticks_waited = 0;
+    responses.is_settled =
+        UpdateResponses(tissue, load, kResponseIterationsPerTick, kResponseTolerance, responses);
   }
   if (!MeasureVolumes(tissue, state)) return;
   Leak(dt, state);

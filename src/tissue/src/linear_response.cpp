@@ -137,6 +137,8 @@ LinearReport LinearResponse::Solve(std::span<const Vec3> force, int max_iteratio
   }
   Apply(response, product_);
   for (std::size_t i = 0; i < n; ++i) residual_[i] = is_free_[i] ? force[i] - product_[i] : Vec3{};
+  // what is left of an earlier solve, were it a NaN, would survive the factor zero
+  std::fill(direction_.begin(), direction_.end(), Vec3{});
   double before = 0;
   for (report.iterations = 0;; ++report.iterations) {
     report.residual = std::sqrt(SumOfProducts(residual_, residual_) / force2);

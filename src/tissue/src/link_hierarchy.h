@@ -7,7 +7,7 @@
 /// link with a symmetric 3 x 3 stiffness: every level is a LinkMatrix. A step of a coarse function is steeper
 /// than the slope it stands for, which makes coarse links too stiff; they are scaled down instead of
 /// smoothing the prolongation, which would fill the coarse matrices. On the finest level chains of nodes are
-/// solved directly (link_chains.h). Sources: Notay, "An aggregation-based
+/// solved directly (line_smoother.h). Sources: Notay, "An aggregation-based
 /// algebraic multigrid method", ETNA 37, 2010 (pairwise aggregation); Braess, "Towards algebraic multigrid
 /// for elliptic problems of second order", Computing 55, 1995 (scaling).
 #pragma once
@@ -18,7 +18,7 @@
 
 #include "aggregation.h"
 #include "aligned_vector.h"
-#include "link_chains.h"
+#include "line_smoother.h"
 #include "slice_layout.h"
 #include "symmetric3.h"
 #include "workers.h"

@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "newton_range.h"
+#include "trust_region.h"
 #include "node_vectors.h"
 
 namespace trocar::tissue {

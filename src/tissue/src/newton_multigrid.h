@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "linearisation.h"
-#include "newton_patch.h"
+#include "local_solve.h"
 #include "pressure_stiffness.h"
 #include "trocar/tissue/equilibrium.h"
-#include "truncated_gradients.h"
+#include "truncated_conjugate_gradients.h"
 
 namespace trocar::tissue {
 

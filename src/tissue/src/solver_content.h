@@ -9,7 +9,7 @@
 
 #include "accelerated_descent.h"
 #include "newton_multigrid.h"
-#include "spring_lines.h"
+#include "spring_linearisation.h"
 #include "trocar/tissue/equilibrium.h"
 
 namespace trocar::tissue {

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "trocar/math/state_fields.h"
+
 namespace trocar::tissue {
 
 StateGuard::StateGuard(const TissueModel& model, double max_displacement)
@@ -33,6 +35,13 @@ void StateGuard::Follow(const TissueModel& model, const TissueState& state) noex
 void StateGuard::Release(const TissueState& state) noexcept {
   std::copy(state.position.begin(), state.position.end(), good_.begin());
   bad_in_a_row_ = 0;
+}
+
+void StateGuard::VisitState(core::StateArchive& archive) {
+  archive.FixedField("good", good_);
+  archive.Field("bad_in_a_row", bad_in_a_row_);
+  if (archive.IsRestoring() && !(bad_in_a_row_ >= 0 && bad_in_a_row_ <= kMaxRetries))
+    archive.Fail("has a count of bad states that no guard reaches");
 }
 
 }  // namespace trocar::tissue

@@ -6,9 +6,38 @@
 
 #include "node_force.h"
 #include "trocar/core/assert.h"
+#include "trocar/math/state_fields.h"
+
+namespace trocar::core {
+
+template <>
+inline constexpr bool kIsPlainState<tissue::Spring> = sizeof(tissue::Spring) ==
+                                                      4 * sizeof(std::uint32_t) + 2 * sizeof(double);
+
+}  // namespace trocar::core
 
 namespace trocar::tissue {
 namespace {
+
+bool IsMagnitude(double value) {
+  return std::isfinite(value) && value >= 0.0;
+}
+
+/// Whether a model can be made of it.
+bool IsUsable(const TissueDefinition& definition) {
+  const std::size_t n = definition.rest.size();
+  const auto is_spring = [&](const Spring& spring) {
+    return spring.a < n && spring.b < n && spring.a != spring.b && IsMagnitude(spring.stiffness) &&
+           IsMagnitude(spring.rest_length) && spring.law < definition.laws.size();
+  };
+  return std::all_of(definition.rest.begin(), definition.rest.end(),
+                     [](const Vec3& p) { return math::IsFinite(p); }) &&
+         std::all_of(definition.mass.begin(), definition.mass.end(), IsMagnitude) &&
+         std::all_of(definition.shape_stiffness.begin(), definition.shape_stiffness.end(), IsMagnitude) &&
+         std::all_of(definition.fixed.begin(), definition.fixed.end(),
+                     [n](std::uint32_t node) { return node < n; }) &&
+         std::all_of(definition.springs.begin(), definition.springs.end(), is_spring);
+}
 
 /// Starts of rows from how often each node occurs as an end.
 template <typename Link>
@@ -67,6 +96,27 @@ TissueModel MakeTissueModel(const TissueDefinition& definition) {
   }
   model.strand_count = definition.strands.size();
   return model;
+}
+
+void VisitState(core::StateArchive& archive, TissueDefinition& definition) {
+  archive.FixedField("rest", definition.rest);
+  archive.FixedField("mass", definition.mass);
+  archive.FixedField("shape_stiffness", definition.shape_stiffness);
+  archive.Field("fixed", definition.fixed);
+  archive.Field("springs", definition.springs);
+  if (archive.IsRestoring() && archive.ok() && !IsUsable(definition))
+    archive.Fail("has nodes or springs of which no model can be made");
+}
+
+void VisitState(core::StateArchive& archive, TissueState& state) {
+  archive.FixedField("position", state.position);
+  archive.FixedField("condition", state.condition);
+  archive.FixedField("strand_is_intact", state.strand_is_intact);
+  archive.FixedField("spring_factor", state.spring_factor);
+  archive.FixedField("spring_damage", state.spring_damage);
+  const auto is_condition = [](NodeCondition condition) { return condition <= NodeCondition::kPrescribed; };
+  if (archive.IsRestoring() && !std::all_of(state.condition.begin(), state.condition.end(), is_condition))
+    archive.Fail("has nodes with an unknown condition");
 }
 
 TissueState MakeRestState(const TissueModel& model) {

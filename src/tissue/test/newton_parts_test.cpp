@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "linearisation.h"
-#include "link_chains.h"
-#include "newton_patch.h"
+#include "line_smoother.h"
+#include "local_solve.h"
 #include "smallest_ritz.h"
 #include "test_systems.h"
 #include "trocar/tissue/equilibrium.h"

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <cstdlib>
 #include <new>
 #include <random>
@@ -190,6 +191,43 @@ TEST(AfterACut, AStructuredMeshIsOneNoMore) {
   EXPECT_EQ(state.position, expected.position);
   solver.Follow(whole);
   EXPECT_TRUE(solver.IsStructured());
+}
+
+// What a solver keeps from solve to solve is the model's: one that has solved other problems before finds the same bits.
+TEST(SolverMemory, AColdStartOnAGridForgetsWhereOtherNodesWereHeld) {
+  const TissueModel model = MakeTissueModel(MakeMembrane(geometry::MakeGrid(80, 0.001), 100.0, 10.0));
+  const auto press = [&](EquilibriumSolver& solver, std::uint32_t held) {
+    TissueState state = MakeRestState(model);
+    for (std::uint32_t i = 0; i < 80; ++i) state.condition[held * 80 + i] = NodeCondition::kPrescribed;
+    SolverSettings settings;
+    settings.kind = SolverKind::kAcceleratedDescent;
+    const SolveReport report = solver.Solve(settings, {.gravity = {0, 0, -9.81}}, state);
+    EXPECT_GT(report.coarse_levels, 2);
+    return state.position;
+  };
+  EquilibriumSolver used(model, 1), anew(model, 1);
+  const auto first = press(used, 40);
+  const auto second = press(used, 0);
+  EXPECT_EQ(second, press(anew, 0));
+  EXPECT_NE(second, first);
+}
+
+TEST(SolverMemory, AFactorThatIsNoNumberHidesNoCutSpring) {
+  TissueDefinition definition = MakeHangingSpring(20, 0.1, 0.05);
+  definition.rest.push_back({0, 0, -0.2}), definition.mass.push_back(0.05);
+  definition.shape_stiffness.push_back(0);
+  definition.springs.insert(definition.springs.begin(), {1, 2, 20, 0.1});
+  const TissueModel model = MakeTissueModel(definition);
+  EquilibriumSolver used(model, 1), anew(model, 1);
+  TissueState state = MakeRestState(model);
+  state.spring_factor = {0.0, std::nan("")};
+  EXPECT_FALSE(used.Solve({}, {.gravity = {0, 0, -9.81}}, state).is_finite);
+  state.spring_factor[1] = 1.0;
+  TissueState expected = state;
+  (void)used.Solve({}, {.gravity = {0, 0, -9.81}}, state);
+  (void)anew.Solve({}, {.gravity = {0, 0, -9.81}}, expected);
+  EXPECT_EQ(state.position, expected.position);
+  EXPECT_EQ(state.position[2], model.rest[2]) << "nothing holds it: it stays";
 }
 
 // The volume is kept through a cut, and what the tissue comes to is what a conservation made anew finds.

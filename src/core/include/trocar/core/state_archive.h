@@ -28,6 +28,9 @@ namespace trocar::core {
 /// numbers (math/state_fields.h does it for vectors and poses).
 template <typename T>
 inline constexpr bool kIsPlainState = std::is_arithmetic_v<T> || std::is_enum_v<T>;
+/// A byte that is neither 0 nor 1 is no bool: it is read as a number and compared.
+template <>
+inline constexpr bool kIsPlainState<bool> = false;
 
 class StateArchive {
  public:
@@ -57,6 +60,20 @@ class StateArchive {
       }
     }
     Visit(value);
+    Leave();
+  }
+
+  /// A vector whose length the model gives: bytes that claim another are refused, and `value` keeps its length. Of a
+  /// vector of vectors every length is the model's.
+  template <typename T>
+  void FixedField(std::string_view name, std::vector<T>& value) {
+    Enter(name);
+    if (IsOmitted()) {
+      std::vector<T> other = value;
+      VisitFixed(other);
+    } else {
+      VisitFixed(value);
+    }
     Leave();
   }
 
@@ -97,6 +114,10 @@ class StateArchive {
   void Visit(T& value) {
     if constexpr (kIsPlainState<T>) {
       Bytes(&value, sizeof(T));
+    } else if constexpr (std::is_same_v<T, bool>) {
+      std::uint8_t byte = value ? 1 : 0;
+      Bytes(&byte, 1);
+      if (IsRestoring() && ok()) value = byte != 0;
     } else if constexpr (std::is_same_v<T, std::string>) {
       value.resize(Count(value.size(), 1));
       Bytes(value.data(), value.size());
@@ -140,6 +161,26 @@ class StateArchive {
       value.VisitState(*this);
     } else {
       VisitState(*this, value);
+    }
+  }
+
+  template <typename T>
+  void VisitFixed(std::vector<T>& value) {
+    const std::size_t count = Count(value.size(), 1);
+    if (count != value.size()) {
+      Fail("has " + std::to_string(count) + " elements where the model has " + std::to_string(value.size()));
+      return;
+    }
+    if constexpr (kIsPlainState<T>) {
+      Bytes(value.data(), value.size() * sizeof(T));
+    } else {
+      for (T& element : value) {
+        if constexpr (IsVector<T>::value) {
+          VisitFixed(element);
+        } else {
+          Visit(element);
+        }
+      }
     }
   }
 

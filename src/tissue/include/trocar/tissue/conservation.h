@@ -40,16 +40,26 @@ struct ConservationSettings {
 /// Volume of one organ. Sealed: volume = target at any pressure. Perforated: pressure >= 0, and target +
 /// leaked is what was inside before.
 struct OrganVolume {
-  double target = 0;        ///< of the fluid inside [m^3]
-  double volume = 0;        ///< enclosed by the surface after the last Enforce [m^3]
-  double pressure = 0;      ///< above the surroundings: the constraint's multiplier [Pa]
-  double compliance = 0;    ///< dV/dP of the last Enforce [m^3/Pa]
+  double target = 0;    ///< of the fluid inside [m^3]
+  double volume = 0;    ///< enclosed by the surface after the last Enforce [m^3]; measured anew in every tick
+  double pressure = 0;  ///< above the surroundings: the constraint's multiplier [Pa]
+  double compliance = 0;    ///< dV/dP of the last Enforce [m^3/Pa]; computed anew in every tick
   double opening_area = 0;  ///< of perforations [m^2]; 0: sealed
   double leaked = 0;        ///< since the start [m^3]
 };
 
-/// What a tick changes; saved and restored by copying, beside TissueState.
-struct ConservationState {
+/// How the tissue at rest, with the links and scales of now, answers one pascal in each organ. Computed over several
+/// ticks after they changed; what was known before steers well enough meanwhile.
+struct VolumeResponses {
+  std::vector<std::vector<Vec3>> displacement;  ///< (organs)(n) in the rest frame [m/Pa]
+  double stiffness_scale = 1, shape_scale = 1;  ///< of the load for which they were computed
+  bool is_settled = false;                      ///< computed to the end
+  bool has_new_topology = false;                ///< a cut was made since the last Enforce
+  int ticks_waited = 0;                         ///< ticks without time that left them to a later one
+};
+
+/// What every tick changes: a tick that went wrong is taken back by copying it.
+struct ConservationTick {
   std::vector<OrganVolume> organs;
   FreeRegions regions;
   std::array<Pose, kMaxFreeRegions> X_world_rest;  ///< of each region: identity where it was imaged
@@ -58,9 +68,22 @@ struct ConservationState {
   std::vector<Vec3> last_motion;                   ///< (n) how far the last tick's solve moved each node [m]
 };
 
+/// All that the conservation remembers from tick to tick, beside TissueState: saved and restored by copying.
+struct ConservationState : ConservationTick {
+  VolumeResponses responses;
+};
+
+/// Volumes and compliances are left out, being measured anew in every tick.
+/// \pre when restoring: the state is one of the model, as Conservation::MakeState makes it
+void VisitState(core::StateArchive& archive, OrganVolume& organ);
+void VisitState(core::StateArchive& archive, VolumeResponses& responses);
+void VisitState(core::StateArchive& archive, ConservationTick& state);
+void VisitState(core::StateArchive& archive, ConservationState& state);
+
 using SmallMatrix = std::array<std::array<double, kMaxClosedOrgans>, kMaxClosedOrgans>;
 
-/// Constant data and scratch of the conservation of one model.
+/// Constant data and scratch of the conservation of one model: what it remembers from tick to tick is in
+/// ConservationState, so that one made anew for the same model goes on to the same bits.
 class Conservation {
  public:
   /// \param model  must outlive this
@@ -69,10 +92,6 @@ class Conservation {
 
   /// State at rest: every organ at its rest volume and without pressure, frames where anatomy was imaged.
   ConservationState MakeState(const TissueState& rest_state) const;
-
-  /// As made: how volumes answer pressures is worked out over some ticks after something tore, and that of before
-  /// would shine through in a surgery that begins again.
-  void Reset() noexcept;
 
   /// Goes on with a model that a cut has changed: as many nodes, and strands, as before. How volumes answer pressures is
   /// taken from before the cut and worked out anew over the next ticks.
@@ -140,8 +159,10 @@ class Conservation {
   const ConservationSettings& Settings() const { return settings_; }
 
  private:
+  void SetOrgans(std::vector<ClosedOrgan> organs);
+  void SetRestStiffness(const TissueState& tissue, const TissueLoad& load) noexcept;
   bool UpdateResponses(const TissueState& tissue, const TissueLoad& load, int max_iterations,
-                       double tolerance) noexcept;
+                       double tolerance, VolumeResponses& responses) noexcept;
   void UpdateRegions(const TissueState& tissue, ConservationState& state) noexcept;
   void AddFrameForce(const TissueState& tissue, const TissueLoad& load,
                      const ConservationState& state) noexcept;
@@ -162,17 +183,13 @@ class Conservation {
 
   const TissueModel* model_;
   ConservationSettings settings_;
+  VolumeResponses first_responses_;  // of the whole tissue that this was made for, under the usual scales
   LinearResponse linear_;
-  TissueState rest_;
-  std::vector<std::vector<Vec3>> responses_;  // per organ (n): displacement by 1 Pa, in the rest frame [m/Pa]
-  std::vector<std::vector<Vec3>> shifts_;     // the same where nodes are now; zero where they are held
-  double stiffness_scale_ = 1, shape_scale_ = 1;    // for which the responses were found
-  std::vector<std::vector<Vec3>> first_responses_;  // of the whole tissue under the usual scales
-  std::uint64_t response_links_ = 0, first_links_ = 0;
-  bool responses_settled_ = false;
-  bool has_stiffness_ = false;  // linear_ has the stiffness of rest_, this model's, under the scales above
-  bool has_followed_ = false;   // since the last Enforce()
-  int waited_ = 0;              // ticks that left the responses to a later one
+  TissueState rest_;  // with the strands and spring factors of linear_
+  double linear_stiffness_scale_ = 1, linear_shape_scale_ = 1;  // of linear_
+  bool has_stiffness_ = false;  // linear_ has the stiffness of rest_ under these scales
+  std::vector<std::vector<Vec3>>
+      shifts_;                  // (organs)(n) the responses where nodes are now; zero where they are held
   std::vector<Vec3> gradient_;  // (n) of each node's organ; zero elsewhere
   std::vector<Vec3> ahead_gradient_;  // (n) the same as AreVolumesInReach() found it, and the volumes
   std::array<double, kMaxClosedOrgans> ahead_volume_{};

@@ -64,6 +64,8 @@ struct FreeRegions {
   std::uint32_t count = 0;         ///< <= kMaxFreeRegions; pieces beyond stay pinned and are counted below
   std::uint32_t beyond_count = 0;  ///< pieces that found no place
 };
+/// The region of each node; the count follows, and how many found no place is not kept.
+void VisitState(core::StateArchive& archive, FreeRegions& regions);
 
 /// Finds the free regions. Regions are numbered by their lowest node.
 ///

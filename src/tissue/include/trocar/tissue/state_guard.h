@@ -37,6 +37,9 @@ class StateGuard {
   /// Takes the state as good and lets the nodes move again.
   void Release(const TissueState& state) noexcept;
 
+  /// The last good positions and how often the state was bad since.
+  void VisitState(core::StateArchive& archive);
+
   static constexpr int kMaxRetries = 3;
 
  private:

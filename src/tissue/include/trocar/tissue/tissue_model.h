@@ -13,6 +13,10 @@
 
 #include "trocar/geometry/triangle_mesh.h"
 
+namespace trocar::core {
+class StateArchive;
+}
+
 namespace trocar::tissue {
 
 using math::Vec3;
@@ -33,9 +37,10 @@ struct SpringLaw {
 /// Spring between two nodes, f_a = k (|x_b - x_a| - l) u_ab, or as its law says.
 struct Spring {
   std::uint32_t a = 0, b = 0;
-  double stiffness = 0;    ///< k [N/m], >= 0
-  double rest_length = 0;  ///< l [m], >= 0
-  std::uint32_t law = 0;   ///< index in TissueDefinition::laws
+  double stiffness = 0;      ///< k [N/m], >= 0
+  double rest_length = 0;    ///< l [m], >= 0
+  std::uint32_t law = 0;     ///< index in TissueDefinition::laws
+  std::uint32_t unused = 0;  ///< fills the struct, so that its bytes are its value
 };
 
 /// Strand that keeps the rest offset between two nodes, f_a = k ((x_b - x_a) - (rest_b - rest_a)). Strands
@@ -63,6 +68,14 @@ struct TissueDefinition {
   std::vector<SpringLaw> laws{1};       ///< the first: Hooke's, and nothing tears
   std::vector<Strand> strands;          ///< attachments: can be dissected
 };
+
+/// What cutting changes of a description, for saving and restoring a system that was cut: nodes' constants, which nodes
+/// are fixed, and springs. Laws and strands stay those of the uncut description. MakeTissueModel makes the model again;
+/// the model holds nothing else.
+///
+/// Restoring refuses numbers of which no model can be made.
+/// \pre when restoring: `definition` is the uncut description, with its spare nodes
+void VisitState(core::StateArchive& archive, TissueDefinition& definition);
 
 /// Constant while running. Half-springs are stored with each of their two nodes, so that a node gathers its
 /// force without writing to another: the result does not depend on the number of threads.
@@ -99,7 +112,7 @@ struct TissueModel {
 /// \pre sizes agree, indices are in range, stiffness and masses are finite and >= 0 (TROCAR_ASSERT)
 TissueModel MakeTissueModel(const TissueDefinition& definition);
 
-/// What a tick changes; can be saved and restored by copying.
+/// What a tick changes.
 struct TissueState {
   std::vector<Vec3> position;                  ///< (n) [m]
   std::vector<NodeCondition> condition;        ///< (n)
@@ -109,6 +122,9 @@ struct TissueState {
   std::vector<double> spring_factor;
   std::vector<double> spring_damage;  ///< (springs) gathered under load [-]: 1 tears
 };
+
+/// \pre when restoring: `state` is one of the model, as MakeRestState makes it
+void VisitState(core::StateArchive& archive, TissueState& state);
 
 /// At rest, nothing grasped, every strand and spring intact; fixed nodes prescribed.
 TissueState MakeRestState(const TissueModel& model);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "link_chains.h"
+#include "line_smoother.h"
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file truncated_gradients.h  Conjugate gradients for one Newton step, within a range.
+/// \file truncated_conjugate_gradients.h  Conjugate gradients for one Newton step, within a range.
 ///
 /// Source: Steihaug, "The conjugate gradient method and trust regions in large scale optimization", SIAM J. Numer.
 /// Anal. 20, 1983.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file newton_range.h  How far a Newton step may go, and when it has gone well.
+/// \file trust_region.h  How far a Newton step may go, and when it has gone well.
 #pragma once
 
 #include <cmath>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "newton_patch.h"
+#include "local_solve.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "newton_range.h"
+#include "trust_region.h"
 
 namespace trocar::tissue {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "spring_lines.h"
+#include "spring_linearisation.h"
 
 #include <algorithm>
 
@@ -50,18 +50,21 @@ void SpringLines::Reserve(double share) {
 
 bool SpringLines::TakeFactors(const TissueState& state) noexcept {
   TROCAR_ASSERT(state.spring_factor.size() == factor_.size());
-  bool has_changed = false;
+  bool has_changed = false, is_valid = true;
   for (std::uint32_t spring = 0; spring < factor_.size(); ++spring) {
     const double factor = state.spring_factor[spring];
     if (factor == factor_[spring]) continue;
-    if (!(factor >= 0.0 && std::isfinite(factor))) return false;
+    if (!(factor >= 0.0 && std::isfinite(factor))) {
+      is_valid = false;
+      continue;
+    }
     factor_[spring] = factor;
     has_changed = true;
     const auto& half = model_->half_springs[ends_[spring].half_a];
     SetLine(spring, factor * half.stiffness, half.rest_length);
   }
   if (has_changed) FindAdrift();
-  return true;
+  return is_valid;
 }
 
 void SpringLines::FindAdrift() noexcept {
@@ -69,8 +72,9 @@ void SpringLines::FindAdrift() noexcept {
   for (std::uint32_t i = 0; i < model_->Size(); ++i) {
     bool had_spring = false, has_spring = false;
     for (auto h = model_->spring_starts[i]; h < model_->spring_starts[i + 1]; ++h) {
-      had_spring = had_spring || model_->half_springs[h].stiffness > 0.0;
-      has_spring = has_spring || lines_.half_springs[h].stiffness > 0.0;
+      const auto& half = model_->half_springs[h];
+      had_spring = had_spring || half.stiffness > 0.0;
+      has_spring = has_spring || factor_[half.spring] * half.stiffness > 0.0;
     }
     if (had_spring && !has_spring && model_->shape_stiffness[i] == 0.0) adrift_.push_back(i);
   }

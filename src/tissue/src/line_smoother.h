@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file link_chains.h  Ducts and vessels within a system of springs, solved directly.
+/// \file line_smoother.h  Ducts and vessels within a system of springs, solved directly.
 ///
 /// A chain of nodes is stiff along and hardly held across: a thousand to one in the built-in patient. Damped
 /// Jacobi and coarse levels made of translations leave its bending for the conjugate gradients, and a

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file spring_lines.h  Springs that are cut, weakened or stiffen with strain, for solvers that know Hooke's law
+/// \file spring_linearisation.h  Springs that are cut, weakened or stiffen with strain, for solvers that know Hooke's law
 /// only: before a solve each spring becomes the line that touches its law at its present length.
 ///
 /// The inner loops stay as they are, with no branch and no state of a spring; a solve is repeated with new lines

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file room.h  Vectors that have room for a larger model, so that a change of topology allocates nothing.
+/// \file capacity.h  Vectors that have room for a larger model, so that a change of topology allocates nothing.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file newton_patch.h  The few nodes that snap, brought to rest on their own.
+/// \file local_solve.h  The few nodes that snap, brought to rest on their own.
 ///
 /// Where a fold snaps, a dozen nodes of the built-in patient have far to go, in many short steps, and all others hardly
 /// move: what is strongly nonlinear is local. After each Newton step of the whole the nodes that went farthest, and
@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "linearisation.h"
-#include "truncated_gradients.h"
+#include "truncated_conjugate_gradients.h"
 
 namespace trocar::tissue {
 
