@@ -23,6 +23,7 @@
 #include "trocar/core/statistics.h"
 #include "trocar/net/igtl_server.h"
 #include "trocar/session/simulation.h"
+#include "trocar/session/state_file.h"
 
 namespace trocar::cli {
 namespace {
@@ -31,6 +32,7 @@ struct SimulateOptions {
   std::string scene;
   std::string patient;  // in place of the scene's
   std::string device;   // in place of the script's hands
+  std::string save, restore;  // files of states, or empty
   HapticOptions haptics;
   int igtl_port = -1;  // -1: nobody looks on
   int ticks = 0;
@@ -79,6 +81,10 @@ core::Result<SimulateReport> Simulate(const SimulateOptions& options) {
       scene, options.threads, options.uses_gpu ? session::SolveOn::kGpu : session::SolveOn::kProcessor);
   if (!made) return made.error();
   session::Simulation simulation = std::move(made).value();
+  if (!options.restore.empty()) {
+    const auto restored = session::ReadStateFile(options.restore, simulation);
+    if (!restored) return restored.error();
+  }
   std::unique_ptr<DeviceInput> device;
   if (!options.device.empty()) {
     auto opened = DeviceInput::Open(options.device, *scene);
@@ -125,6 +131,10 @@ core::Result<SimulateReport> Simulate(const SimulateOptions& options) {
     progress.Show(tick + 1);
   }
   progress.Finish();
+  if (!options.save.empty()) {
+    if (const core::Status saved = session::WriteStateFile(options.save, simulation); !saved)
+      return saved.error();
+  }
   if (device != nullptr) {
     if (const core::Status whole = device->Check(); !whole) return whole.error();
   }
@@ -207,6 +217,11 @@ void AddSimulateCommand(CLI::App& app, Outcome& outcome) {
       ->add_option("--device", options->device,
                    "Hands of a device in place of the script's; play:FILE repeats a recording bit for bit")
       ->type_name("DEVICE");
+  command->add_option("--save", options->save, "Write the state after the last tick")->type_name("FILE");
+  command
+      ->add_option("--restore", options->restore,
+                   "Go on from a state that was saved of the same scene, patient and seed")
+      ->type_name("FILE");
   AddIgtlOption(*command, options->igtl_port);
   AddHapticOptions(*command, options->haptics);
   command->add_flag("--gpu", options->uses_gpu,

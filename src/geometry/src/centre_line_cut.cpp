@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "trocar/core/assert.h"
+#include "trocar/math/state_fields.h"
 
 namespace trocar::geometry {
 namespace {
@@ -75,6 +76,22 @@ std::size_t CutCentreLines(const FlatSweep& sweep, CentreLineGraph& graph,
     cuts[count++] = cut;
   }
   return count;
+}
+
+void VisitState(core::StateArchive& archive, CentreLineGraph& graph) {
+  archive.Field("rest", graph.rest);
+  archive.Field("radii", graph.radii);
+  archive.Field("edges", graph.edges);
+  archive.Field("is_cut_end", graph.is_cut_end);
+  if (!archive.IsRestoring() || !archive.ok()) return;
+  const std::size_t points = graph.rest.size();
+  const auto is_edge = [&](const Edge& edge) { return edge[0] < points && edge[1] < points; };
+  if (graph.radii.size() != points || graph.is_cut_end.size() != points ||
+      !std::all_of(graph.edges.begin(), graph.edges.end(), is_edge)) {
+    archive.Fail("is no graph");
+    return;
+  }
+  graph.positions = graph.rest;
 }
 
 }  // namespace trocar::geometry

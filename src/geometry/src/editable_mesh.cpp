@@ -6,6 +6,7 @@
 
 #include "trocar/core/assert.h"
 #include "trocar/geometry/mesh_measures.h"
+#include "trocar/math/state_fields.h"
 
 namespace trocar::geometry {
 
@@ -273,6 +274,52 @@ bool EditableMesh::Open(std::uint32_t h) noexcept {
   scored_[h] = scored_[g] = 0;
   twins_[h] = twins_[g] = kNone;
   return true;
+}
+
+namespace {
+
+/// Numbers below `count`, or kNone.
+bool AreIndices(std::span<const std::uint32_t> indices, std::size_t count) {
+  return std::all_of(indices.begin(), indices.end(),
+                     [&](std::uint32_t i) { return i == kNone || i < count; });
+}
+
+}  // namespace
+
+void EditableMesh::VisitState(core::StateArchive& archive) {
+  archive.Field("rest", rest_);
+  archive.Field("sources", sources_);
+  archive.Field("outgoing", outgoing_);
+  archive.Field("triangles", triangles_);
+  archive.Field("kinds", kinds_);
+  archive.Field("twins", twins_);
+  archive.Field("scored", scored_);
+  if (!archive.IsRestoring() || !archive.ok()) return;
+  const std::size_t vertices = rest_.size(), triangles = triangles_.size();
+  const bool fits = vertices <= vertex_capacity_ && triangles <= triangle_capacity_ &&
+                    sources_.size() == vertices && outgoing_.size() == vertices &&
+                    kinds_.size() == triangles && twins_.size() == 3 * triangles &&
+                    scored_.size() == 3 * triangles;
+  const auto is_corner = [&](const Triangle& t) {
+    return std::all_of(t.begin(), t.end(), [&](std::uint32_t v) { return v < vertices; });
+  };
+  const auto is_source = [&](const VertexSource& source) { return AreIndices(source.from, vertices); };
+  if (!fits || !std::all_of(triangles_.begin(), triangles_.end(), is_corner) ||
+      !std::all_of(sources_.begin(), sources_.end(), is_source) || !AreIndices(twins_, 3 * triangles) ||
+      !AreIndices(outgoing_, 3 * triangles)) {
+    archive.Fail("is no mesh within its capacity");
+    return;
+  }
+  positions_ = rest_;
+  journal_.clear();
+  is_touched_.assign(triangles, 0);
+  ClearJournal();
+}
+
+void VisitState(core::StateArchive& archive, VertexSource& source) {
+  archive.Field("origin", source.origin);
+  archive.Field("from", source.from);
+  archive.Field("weights", source.weights);
 }
 
 }  // namespace trocar::geometry

@@ -10,6 +10,7 @@
 #include "split_quality.h"
 #include "trench.h"
 #include "trocar/core/assert.h"
+#include "trocar/core/state_archive.h"
 #include "trocar/geometry/mesh_measures.h"
 
 namespace trocar::geometry {
@@ -316,6 +317,15 @@ void SurfaceCutter::Content::MoveTips(const BladeEdge& now, CutFront& front) noe
     next.tips[next.count++] = end;
   }
   front = next;
+}
+
+void VisitState(core::StateArchive& archive, CutFront& front) {
+  archive.Field("tips", front.tips);
+  archive.Field("count", front.count);
+  if (archive.IsRestoring() && front.count > CutFront::kCapacity) {
+    front.count = 0;
+    archive.Fail("has more tips than there is room for");
+  }
 }
 
 }  // namespace trocar::geometry

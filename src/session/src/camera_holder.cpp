@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "trocar/instrument/state_fields.h"
+
 namespace trocar::session {
 namespace {
 
@@ -69,6 +71,13 @@ const instrument::TrocarJoints& CameraHolder::Follow(const LaparoscopeSetup& set
   follow(now_.tilt, to_.tilt, kTurnRate);
   follow(now_.depth, to_.depth, kSlideRate);
   return now_;
+}
+
+void CameraHolder::VisitState(core::StateArchive& archive) {
+  archive.Field("now", now_);
+  archive.Field("to", to_);
+  archive.Field("since_look", since_look_);
+  archive.Field("is_moving", is_moving_);
 }
 
 }  // namespace trocar::session

@@ -7,6 +7,7 @@
 
 #include <span>
 
+#include "trocar/core/state_archive.h"
 #include "trocar/session/scene.h"
 
 namespace trocar::session {
@@ -21,6 +22,7 @@ class CameraHolder {
   const instrument::TrocarJoints& Follow(const LaparoscopeSetup& setup, std::span<const Vec3> tips,
                                          double dt) noexcept;
   const instrument::TrocarJoints& Now() const noexcept { return now_; }
+  void VisitState(core::StateArchive& archive);
 
  private:
   instrument::TrocarJoints now_, to_;

@@ -34,6 +34,9 @@ struct SpareNodes {
   std::uint32_t tubes = 0;
 };
 
+/// Room that a solver keeps for cuts, as a share of springs and strands [-]: they go on in the same memory.
+inline constexpr double kSpareShareForCuts = 0.5;
+
 /// Nodes: every organ's vertices, then every tube's centre line. Springs: mesh edges by van Gelder, tubes
 /// along their line with bending springs between next neighbours; virtual springs by Winkler; strands for the
 /// bed and for the ends of tubes. Fixed: the paper's three regions of the liver and the tubes' ends that

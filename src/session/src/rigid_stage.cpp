@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "trocar/math/state_fields.h"
+
 namespace trocar::session {
 namespace {
 
@@ -187,15 +189,19 @@ void RigidStage::Publish(std::vector<ObjectSnapshot>& objects) const {
   }
 }
 
-void RigidStage::AddTo(core::StateHash& hash) const {
+void RigidStage::VisitState(core::StateArchive& archive) {
   if (!world_) return;
-  core::AddStateTo(hash, *world_);
-  for (std::size_t h = 0; h < hands_.size(); ++h) {
-    hash.Add(static_cast<std::uint64_t>(held_[h]));
-    for (const double value :
-         {hands_[h].jaw_at_grasp, hands_[h].pinch, forces_[h].x, forces_[h].y, forces_[h].z})
-      hash.Add(value);
+  archive.Field("bodies", *world_);
+  for (Hand& hand : hands_) {
+    archive.Field("wanted_jaw", hand.wanted_jaw);
+    archive.Field("jaw_before", hand.jaw_before);
+    archive.Field("jaw_at_grasp", hand.jaw_at_grasp);
+    archive.Field("pinch", hand.pinch);
+    archive.Field("obstacles", hand.obstacles);
+    archive.Field("obstacle_force", hand.obstacle_force);
   }
+  archive.Field("forces", forces_);
+  archive.Field("held", held_);
 }
 
 }  // namespace trocar::session

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "tool_contacts.h"
-#include "trocar/core/state_hash.h"
+#include "trocar/core/state_archive.h"
 #include "trocar/session/scene.h"
 #include "trocar/session/snapshot.h"
 #include "trocar/surgery/grasp.h"
@@ -40,21 +40,21 @@ class RigidStage {
             const ToolContacts& contacts, const Vec3& gravity);
 
   Vec3 ForceOn(int hand) const { return forces_[static_cast<std::size_t>(hand)]; }
-  /// \param note  (EventKind, hand, object): called for each thing that jaws took, let go or lost in this tick
+  /// \param emit  (EventKind, hand, object): called for each thing that jaws took, let go or lost in this tick
   template <typename F>
-  void NoteChanges(F&& note) const {
+  void ForEachChange(F&& emit) const {
     for (int hand = 0; hand < kHandCount; ++hand) {
       const RigidChange& change = changes_[static_cast<std::size_t>(hand)];
-      if (change.kind == surgery::GraspChange::kGrasped) note(EventKind::kGrasp, hand, change.object);
-      if (change.kind == surgery::GraspChange::kReleased) note(EventKind::kRelease, hand, change.object);
-      if (change.kind == surgery::GraspChange::kSlipped) note(EventKind::kSlip, hand, change.object);
+      if (change.kind == surgery::GraspChange::kGrasped) emit(EventKind::kGrasp, hand, change.object);
+      if (change.kind == surgery::GraspChange::kReleased) emit(EventKind::kRelease, hand, change.object);
+      if (change.kind == surgery::GraspChange::kSlipped) emit(EventKind::kSlip, hand, change.object);
     }
   }
   std::int32_t HeldBy(int hand) const;
   double Pinch(int hand) const { return hands_[static_cast<std::size_t>(hand)].pinch; }
   /// \param[out] objects  (Scene::objects)
   void Publish(std::vector<ObjectSnapshot>& objects) const;
-  void AddTo(core::StateHash& hash) const;
+  void VisitState(core::StateArchive& archive);
 
  private:
   struct Hand {

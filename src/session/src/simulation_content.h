@@ -3,16 +3,20 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "camera_holder.h"
 #include "operation/operation.h"
-#include "patient_tissue.h"
+#include "operation/operation_judge.h"
 #include "rigid_stage.h"
+#include "simulation_model.h"
 #include "task_monitor.h"
 #include "tool_contacts.h"
+#include "topology.h"
 #include "trocar/session/simulation.h"
 #include "trocar/surgery/grasp.h"
 #include "trocar/tissue/conservation.h"
@@ -22,94 +26,118 @@
 
 namespace trocar::session {
 
-/// Gravity in which the organs were imaged: the body lay on its back [m/s^2].
-inline constexpr Vec3 kImagingGravity{0, 0, -9.81};
-
-/// Model: constant while running. State: what a tick changes. Scratch: rebuilt every tick.
-struct Simulation::Content {
-  // model
-  std::shared_ptr<const Scene> scene;
-  tissue::TissueModel tissue_model;
-  std::vector<SurfaceInfo> surfaces;
-  std::vector<double> max_elongation;
-  std::vector<std::int32_t> strand_organs;
-  tissue::TissueState tissue_at_start;
-  tissue::ConservationState conserved_at_start;
-  std::vector<std::int32_t> spring_organs;  // (springs) organ whose wall it is part of, or -1
-  std::vector<double> spring_areas;         // (springs) part of that organ's surface [m^2]
-  bool walls_tear = false;
-  std::int32_t hollow_organ = -1;  // leaks when its wall tears
-  surgery::GraspSettings grasp_settings;
-  tissue::TissueDefinition definition_at_start;  // where there is an operation, which changes it
-  std::vector<std::int32_t> spring_organs_at_start;
-  std::vector<double> spring_areas_at_start;
-
-  // state
-  std::unique_ptr<Operation> operation;
-  tissue::TissueDefinition definition_now;
+/// All that decides how the world goes on. The classes hold constants and scratch of their own beside it; what each
+/// lists in VisitState is the state.
+struct WorldState {
   std::uint64_t tick = 0;
+  Topology topology;
   tissue::TissueState tissue;
-  tissue::ConservationState conserved;
+  tissue::ConservationState conserved, good_conserved;  ///< now, and after the last good tick
+  std::optional<tissue::StateGuard> guard;
   std::array<instrument::TrocarJoints, kHandCount> joints;
-  ToolContacts touch;
   std::array<surgery::Grasp, kHandCount> grasps;
-  std::unique_ptr<tissue::StateGuard> guard;
+  std::array<Vec3, kHandCount> forces;  ///< on the tools, world frame [N]
+  ToolContacts touch;
   RigidStage rigid;
-  TaskMonitor monitor;
+  std::unique_ptr<Operation> operation;  ///< where the scene is one
   CameraHolder camera_holder;
-  instrument::TrocarJoints laparoscope;
+  instrument::TrocarJoints laparoscope;  ///< where it is held
+};
+
+/// What those who only look have seen.
+struct JudgementState {
+  std::optional<OperationJudge> operation;  ///< where the scene is one
+  TaskMonitor monitor;
+  TaskSnapshot task;
+  std::array<Event, kEventRing> events{};
+  std::uint64_t event_count = 0;
+  bool was_frozen = false, were_tools_touching = false;
+};
+
+/// What the stages of one tick hand on; nothing of it decides the next tick.
+struct TickScratch {
+  LiveSettings settings;
+  Vec3 gravity;  ///< in the patient's frame [m/s^2]
+  tissue::TissueLoad load;
+  tissue::SolveReport report;
+  std::vector<tissue::NodeCondition> solved_condition;  ///< a grasp may slip once the forces are known
+  bool has_cut = false;                                 ///< before the solve
+  std::array<bool, kHandCount> was_exchange_refused{};
+  std::array<surgery::GraspChange, kHandCount> changes{};
+  std::array<std::int32_t, kHandCount> changed_organs{};
+  std::array<std::int32_t, kHandCount> touched_organs{-1, -1};
+  tissue::GuardVerdict verdict = tissue::GuardVerdict::kGood;
+  std::array<std::uint32_t, 8> torn{};  ///< lowest of the strands that tore in this tick
+  std::size_t torn_count = 0;
+  std::vector<std::uint32_t> torn_springs;  ///< (springs) those of the walls that tore in this tick, first
+  std::size_t torn_spring_count = 0;
+  HandsNow hands;
+  std::array<double, kStageCount> stage_seconds{};
+};
+
+struct Simulation::Content {
+  std::shared_ptr<const SimulationModel> model;
+  WorldState world;
+  JudgementState judgement;
 
   // scratch
+  TickScratch tick;
   std::unique_ptr<tissue::EquilibriumSolver> solver;
   const tissue_cuda::GpuOrCpuSolver* gpu_solver = nullptr;  // the same, where the GPU was asked for
   std::unique_ptr<tissue::Conservation> conservation;
-  LiveSettings settings;
-  tissue::TissueLoad load;
-  tissue::SolveReport report;
-  tissue::ConservationTick good_conserved;              // after the last good tick
-  std::vector<tissue::NodeCondition> solved_condition;  // a grasp may slip once the forces are known
-  bool has_cut = false;                                 // since the last solve
-  std::array<surgery::GraspChange, kHandCount> changes{};
-  std::array<std::int32_t, kHandCount> changed_organs{};
-  std::array<Vec3, kHandCount> forces;
-  std::array<std::int32_t, kHandCount> touched_organs{};
-  tissue::GuardVerdict verdict = tissue::GuardVerdict::kGood;
-  bool was_frozen = false;
-  bool were_tools_touching = false;
-  std::array<std::uint32_t, 8> torn{};  // lowest of the strands that tore in this tick
-  std::size_t torn_count = 0;
-  std::vector<std::uint32_t> torn_springs;  // (springs) those of the walls that tore in this tick, first
-  std::size_t torn_spring_count = 0;
-  HandsNow hands;
+  surgery::GraspSettings grasp_settings;
   int thread_count = 1;
   Snapshot snapshot;
   std::unique_ptr<haptics::PatchCutter> patch_cutter;
+  std::vector<std::byte> start;  // the state of the first tick
 
-  void ReadInputs(const Input& input) noexcept;
-  void MoveInstruments(const Input& input) noexcept;
-  void MoveLaparoscope(const Input& input) noexcept;
-  ToolsNow GetTools() const noexcept;
-  void FindContacts() noexcept;
-  void ActOnTissue() noexcept;
-  void Solve() noexcept;
-  void CheckState() noexcept;
-  void UpdateHierarchy() noexcept;
-  void DetectEvents() noexcept;
-  void Publish(const Input& input) noexcept;
-  void Note(EventKind kind, int hand, std::int32_t organ, double force, std::int32_t object = -1) noexcept;
-  void TearTissue() noexcept;
-  void SetWalls(const tissue::TissueDefinition& definition, std::vector<std::int32_t> organs_of_springs);
-  core::Status Fill(const std::vector<double>& internal_pressure);
-  void Reset();
-  void MakeSolver(int threads, SolveOn solve_on);
+  const Scene& GetScene() const noexcept { return *model->scene; }
   const instrument::Tool& ToolOf(int hand) const noexcept {
-    return operation != nullptr ? operation->Tool(hand) : scene->instruments[hand].tool;
+    return world.operation != nullptr ? world.operation->Tool(hand) : GetScene().instruments[hand].tool;
   }
-  void Operate(const Input& input) noexcept;
-  TissueNow GetTissue() noexcept;
-  void NoteActs() noexcept;
-  void ChangeTopology();
-  void FollowTopology();
+  ToolsNow GetTools() const noexcept;
+  TissueNow GetTissue() const noexcept;
+  OperatedTissue GetOperated() noexcept { return {world.tissue, world.conserved, world.grasps}; }
+  Camera GetCamera() const noexcept;
+
+  // --- the stages of a tick, in their order (docs/step.md)
+  void ReadInputs(const Input& input) noexcept;
+  void MoveTools(const Input& input) noexcept;
+  void FindContacts() noexcept;
+  void UseTools(const Input& input) noexcept;
+  void Heat() noexcept;
+  void Assist() noexcept;
+  void CutTopology() noexcept;
+  void SolveTissue() noexcept;
+  void GuardTissue() noexcept;
+  void PlaceTools() noexcept;
+  void StepRigidBodies() noexcept;
+  void Flow() noexcept;
+  void MoveLoose() noexcept;
+  void HoldCamera() noexcept;
+  void Judge() noexcept;
+  void Publish() noexcept;
+  void JudgeTask() noexcept;
+
+  // --- parts of them
+  void MoveCamera(const Input& input) noexcept;
+  void Grasp() noexcept;
+  void MarkPressedNodes() noexcept;
+  void TearTissue() noexcept;
+  void Emit(EventKind kind, int hand, std::int32_t organ, double force, std::int32_t object = -1) noexcept;
+  void EmitGrasps() noexcept;
+
+  // --- as a whole
+  core::Status MakeParts(int threads, SolveOn solve_on);
+  void RegisterTopology();
+  void UpdateSurfaces(bool is_restored);
+  void MakeSolver(SolveOn solve_on);
+  void Begin();
+  void VisitWorld(core::StateArchive& archive);
+  void VisitJudgement(core::StateArchive& archive);
+  void VisitState(core::StateArchive& archive);
+  void Save(std::vector<std::byte>& bytes);  // only reads, though the list of fields is the one that restores
+  core::Status Restore(core::StateArchive& archive);
 };
 
 }  // namespace trocar::session

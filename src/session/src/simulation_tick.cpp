@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "simulation_content.h"
+#include "trocar/tissue/conserved_equilibrium.h"
 #include "trocar/tissue/damage.h"
 
 namespace trocar::session {
@@ -26,222 +27,353 @@ Vec3 CalcGravity(const LiveSettings& settings) noexcept {
 }  // namespace
 
 void Simulation::Content::ReadInputs(const Input& input) noexcept {
-  settings = ClampSettings(input.settings);
-  load.gravity = CalcGravity(settings) - kImagingGravity;
-  load.stiffness_scale = settings.stiffness_scale;
-  load.shape_scale = settings.shape_scale;
+  tick.settings = ClampSettings(input.settings);
+  tick.gravity = CalcGravity(tick.settings);
+  tick.load.gravity = tick.gravity - kImagingGravity;
+  tick.load.stiffness_scale = tick.settings.stiffness_scale;
+  tick.load.shape_scale = tick.settings.shape_scale;
 }
 
-void Simulation::Content::MoveInstruments(const Input& input) noexcept {
-  if (operation != nullptr) operation->BeginTick();
+void Simulation::Content::MoveTools(const Input& input) noexcept {
+  WorldState& w = world;
+  if (w.operation != nullptr) w.operation->BeginTick();
   for (int hand = 0; hand < kHandCount; ++hand) {
     instrument::JointLimits limits;
     limits.max_jaw = ToolOf(hand).max_jaw;
     instrument::TrocarJoints wanted = instrument::ClampJoints(input.hands[hand], limits);
-    if (operation != nullptr && !operation->MoveTool(hand, input.controls[hand], grasps[hand].IsHolding(),
-                                                     scene->tick_seconds, wanted))
-      Note(EventKind::kExchangeRefused, hand, grasps[hand].surface, 0.0);
-    const double jaw_before = joints[hand].jaw;
-    joints[hand] =
-        instrument::LimitSpeed(joints[hand], wanted, kMaxTipSpeed, kMaxTurnRate, scene->tick_seconds);
-    joints[hand].jaw = rigid.StopJaw(hand, joints[hand].jaw);
-    if (operation != nullptr)
-      joints[hand].jaw = operation->StopJaw(hand, jaw_before, joints[hand].jaw, grasps[hand].IsHolding());
+    const double seconds = GetScene().tick_seconds;
+    const bool is_holding = w.grasps[hand].IsHolding();
+    tick.was_exchange_refused[hand] =
+        w.operation != nullptr &&
+        !w.operation->MoveTool(hand, input.controls[hand], is_holding, seconds, wanted);
+    const double jaw_before = w.joints[hand].jaw;
+    w.joints[hand] = instrument::LimitSpeed(w.joints[hand], wanted, kMaxTipSpeed, kMaxTurnRate, seconds);
+    w.joints[hand].jaw = w.rigid.StopJaw(hand, w.joints[hand].jaw);
+    if (w.operation != nullptr)
+      w.joints[hand].jaw = w.operation->StopJaw(hand, jaw_before, w.joints[hand].jaw, is_holding);
   }
+  MoveCamera(input);
 }
 
-void Simulation::Content::MoveLaparoscope(const Input& input) noexcept {
-  if (!settings.holds_camera) {
-    instrument::JointLimits limits;
-    limits.min_depth = 0.01;
-    laparoscope = instrument::ClampJoints(input.laparoscope, limits);
-    camera_holder.Reset(laparoscope);
-    return;
-  }
+/// A camera that a hand holds is where the hand is.
+void Simulation::Content::MoveCamera(const Input& input) noexcept {
+  if (tick.settings.holds_camera) return;
+  instrument::JointLimits limits;
+  limits.min_depth = 0.01;
+  world.laparoscope = instrument::ClampJoints(input.laparoscope, limits);
+  world.camera_holder.Reset(world.laparoscope);
+}
+
+/// One that the automatic holder holds follows the tools that are seen.
+void Simulation::Content::HoldCamera() noexcept {
+  if (!tick.settings.holds_camera) return;
   std::array<Vec3, kHandCount> tips;
   std::size_t count = 0;
   for (int hand = 0; hand < kHandCount; ++hand) {
-    if (joints[hand].depth > kPushedIn) tips[count++] = touch.Proxy(hand).translation;
+    if (world.joints[hand].depth > kPushedIn) tips[count++] = world.touch.Proxy(hand).translation;
   }
-  laparoscope = camera_holder.Follow(scene->laparoscope, std::span(tips).first(count), scene->tick_seconds);
+  const Scene& scene = GetScene();
+  world.laparoscope =
+      world.camera_holder.Follow(scene.laparoscope, std::span(tips).first(count), scene.tick_seconds);
+}
+
+Camera Simulation::Content::GetCamera() const noexcept {
+  const LaparoscopeSetup& setup = GetScene().laparoscope;
+  return {CalcLaparoscopePose(setup, world.laparoscope), setup.field_of_view};
 }
 
 ToolsNow Simulation::Content::GetTools() const noexcept {
-  ToolsNow now{joints, {}, {}};
+  ToolsNow now{world.joints, {}, {}};
   for (int hand = 0; hand < kHandCount; ++hand) {
-    now.grasped_surfaces[hand] = grasps[hand].surface;
+    now.grasped_surfaces[hand] = world.grasps[hand].surface;
     now.tools[hand] = &ToolOf(hand);
   }
   return now;
 }
 
-void Simulation::Content::FindContacts() noexcept {
-  load.contacts = touch.Find(*scene, GetTools(), tissue);
-  rigid.FindObstacles(*scene, joints, touch);
+TissueNow Simulation::Content::GetTissue() const noexcept {
+  const WorldState& w = world;
+  return {&w.topology.Model(),
+          &w.topology.Definition(),
+          &w.tissue,
+          conservation.get(),
+          &w.conserved,
+          w.touch.Organs(),
+          &w.touch.Tubes(),
+          std::span(tick.torn_springs).first(tick.torn_spring_count)};
 }
 
-void Simulation::Content::ActOnTissue() noexcept {
+void Simulation::Content::FindContacts() noexcept {
+  tick.load.contacts = world.touch.Find(GetScene(), GetTools(), world.tissue);
+  world.rigid.FindObstacles(GetScene(), world.joints, world.touch);
+}
+
+void Simulation::Content::UseTools(const Input& input) noexcept {
+  Grasp();
+  MarkPressedNodes();
+  WorldState& w = world;
+  if (w.operation == nullptr) return;
+  HandsNow& hands = tick.hands;
+  hands.input = &input;
+  hands.joints = w.joints;
   for (int hand = 0; hand < kHandCount; ++hand) {
-    const std::int32_t held = grasps[hand].surface;
-    changes[hand] = surgery::GraspChange::kNone;
-    changed_organs[hand] = held;
+    hands.X_proxy[hand] = w.touch.Proxy(hand);
+    hands.X_device[hand] = w.touch.Device(hand);
+  }
+  hands.forces = w.forces;
+  hands.gravity = tick.load.gravity + kImagingGravity;
+  hands.changes = tick.changes;
+  hands.grasps = &w.grasps;
+  hands.camera = GetCamera();
+  hands.time = static_cast<double>(w.tick) * GetScene().tick_seconds;
+  hands.seconds = GetScene().tick_seconds;
+  OperatedTissue operated = GetOperated();
+  w.operation->Act(hands, GetTissue(), operated);
+}
+
+void Simulation::Content::Grasp() noexcept {
+  WorldState& w = world;
+  for (int hand = 0; hand < kHandCount; ++hand) {
+    surgery::Grasp& grasp = w.grasps[hand];
+    const std::int32_t held = grasp.surface;
+    tick.changes[hand] = surgery::GraspChange::kNone;
+    tick.changed_organs[hand] = held;
     const instrument::Tool& tool = ToolOf(hand);
     const bool can_grasp =
         tool.kind == instrument::ToolKind::kGrasper || tool.kind == instrument::ToolKind::kDissector;
-    const bool has_stone = operation != nullptr && operation->HoldsStone(hand);
-    if ((!can_grasp || has_stone) && !grasps[hand].IsHolding()) continue;
-    changes[hand] =
-        surgery::UpdateGrasp(tool, touch.Proxy(hand), touch.Device(hand), joints[hand].jaw, touch.Organs(),
-                             &touch.Tubes(), tissue_model, grasp_settings, grasps[hand], tissue);
-    changed_organs[hand] = changes[hand] == surgery::GraspChange::kReleased ? held : grasps[hand].surface;
+    const bool has_stone = w.operation != nullptr && w.operation->HoldsStone(hand);
+    if ((!can_grasp || has_stone) && !grasp.IsHolding()) continue;
+    tick.changes[hand] = surgery::UpdateGrasp(tool, w.touch.Proxy(hand), w.touch.Device(hand),
+                                              w.joints[hand].jaw, w.touch.Organs(), &w.touch.Tubes(),
+                                              w.topology.Model(), grasp_settings, grasp, w.tissue);
+    tick.changed_organs[hand] =
+        tick.changes[hand] == surgery::GraspChange::kReleased ? held : grasp.surface;
   }
-  // nodes that a tool presses are the paper's second condition
-  for (std::size_t i = 0; i < tissue.condition.size(); ++i) {
-    if (tissue.condition[i] == tissue::NodeCondition::kExternalForce)
-      tissue.condition[i] = tissue::NodeCondition::kFree;
+}
+
+/// Nodes that a tool presses are the paper's second condition.
+void Simulation::Content::MarkPressedNodes() noexcept {
+  auto& conditions = world.tissue.condition;
+  for (tissue::NodeCondition& condition : conditions) {
+    if (condition == tissue::NodeCondition::kExternalForce) condition = tissue::NodeCondition::kFree;
   }
-  for (const auto& spring : load.contacts) {
-    if (!(tissue::CalcContactDepth(spring, tissue.position) > 0.0)) continue;
+  for (const auto& spring : tick.load.contacts) {
+    if (!(tissue::CalcContactDepth(spring, world.tissue.position) > 0.0)) continue;
     for (const auto node : spring.nodes) {
-      if (tissue.condition[node] == tissue::NodeCondition::kFree)
-        tissue.condition[node] = tissue::NodeCondition::kExternalForce;
+      if (conditions[node] == tissue::NodeCondition::kFree)
+        conditions[node] = tissue::NodeCondition::kExternalForce;
     }
   }
 }
 
-void Simulation::Content::Solve() noexcept {
-  if (guard->IsFrozen()) return;
-  std::copy(tissue.condition.begin(), tissue.condition.end(), solved_condition.begin());
-  load.external_force = {};
-  tissue::SolverSettings bounds = settings.solver;
-  if (std::exchange(has_cut, false)) {
+void Simulation::Content::Heat() noexcept {
+  if (world.operation == nullptr) return;
+  OperatedTissue operated = GetOperated();
+  world.operation->Heat(tick.hands, GetTissue(), operated);
+}
+
+void Simulation::Content::Assist() noexcept {
+  if (world.operation == nullptr) return;
+  OperatedTissue operated = GetOperated();
+  world.operation->Assist(tick.hands, GetTissue(), operated);
+}
+
+/// Takes a cut into the system in the tick that made it. Allocates.
+void Simulation::Content::CutTopology() noexcept {
+  tick.has_cut = world.operation != nullptr && world.operation->EndCuts();
+  if (tick.has_cut) world.topology.Cut(world.operation->Change(), world.tissue);
+}
+
+void Simulation::Content::SolveTissue() noexcept {
+  WorldState& w = world;
+  if (w.guard->IsFrozen()) return;
+  std::copy(w.tissue.condition.begin(), w.tissue.condition.end(), tick.solved_condition.begin());
+  tick.load.external_force = {};
+  tissue::SolverSettings bounds = tick.settings.solver;
+  if (tick.has_cut) {
     // making the solver anew has taken its part of the tick
     bounds.max_newton_steps = (bounds.max_newton_steps + 1) / 2;
     bounds.max_linear_total = (bounds.max_linear_total + 1) / 2;
   }
-  report =
-      tissue::SolveConserving(*solver, bounds, scene->tick_seconds, *conservation, load, tissue, conserved);
+  tick.report = tissue::SolveConserving(*solver, bounds, GetScene().tick_seconds, *conservation, tick.load,
+                                        w.tissue, w.conserved);
 }
 
-void Simulation::Content::CheckState() noexcept {
-  verdict = guard->Check(tissue, report.is_finite);
+void Simulation::Content::GuardTissue() noexcept {
+  WorldState& w = world;
+  tick.verdict = w.guard->Check(w.tissue, tick.report.is_finite);
+  const bool is_good = tick.verdict == tissue::GuardVerdict::kGood;
   // what a bad tick left in the pressures and frames goes with it
-  if (verdict == tissue::GuardVerdict::kGood) {
-    good_conserved = conserved;
+  if (is_good) {
+    w.good_conserved = w.conserved;
   } else {
-    static_cast<tissue::ConservationTick&>(conserved) = good_conserved;
+    w.conserved = w.good_conserved;
   }
-  const bool is_good = verdict == tissue::GuardVerdict::kGood;
-  const auto touched = touch.CalcTouch(tissue, is_good);
+  const auto touched = w.touch.CalcTouch(w.tissue, is_good);
   for (int hand = 0; hand < kHandCount; ++hand) {
-    const Vec3 held = solver->CalcReaction(load, tissue, grasps[hand].Nodes());
-    touched_organs[hand] = grasps[hand].IsHolding() ? grasps[hand].surface : touched[hand].surface;
-    forces[hand] = is_good ? touched[hand].force + held : Vec3{};
+    surgery::Grasp& grasp = w.grasps[hand];
+    const Vec3 held = solver->CalcReaction(tick.load, w.tissue, grasp.Nodes());
+    tick.touched_organs[hand] = grasp.IsHolding() ? grasp.surface : touched[hand].surface;
+    w.forces[hand] = is_good ? touched[hand].force + held : Vec3{};
     if (!is_good) continue;
-    const std::int32_t surface = grasps[hand].surface;
-    if (surgery::UpdateSlip(math::Norm(held), grasp_settings, tissue_model, grasps[hand], tissue) ==
+    const std::int32_t surface = grasp.surface;
+    if (surgery::UpdateSlip(math::Norm(held), grasp_settings, w.topology.Model(), grasp, w.tissue) ==
         surgery::GraspChange::kSlipped) {
-      changes[hand] = surgery::GraspChange::kSlipped;
-      changed_organs[hand] = surface;
+      tick.changes[hand] = surgery::GraspChange::kSlipped;
+      tick.changed_organs[hand] = surface;
     }
   }
+  TearTissue();
 }
 
 void Simulation::Content::TearTissue() noexcept {
-  torn_count = verdict == tissue::GuardVerdict::kGood
-                   ? tissue::TearStrands(tissue_model, max_elongation, tissue, torn)
-                   : 0;
-  torn_spring_count = 0;
-  if (!walls_tear || verdict != tissue::GuardVerdict::kGood) return;
-  torn_spring_count = tissue::TearSprings(tissue_model, scene->tick_seconds, tissue, torn_springs);
+  WorldState& w = world;
+  const tissue::TissueModel& tissue_model = w.topology.Model();
+  tick.torn_count = tick.torn_spring_count = 0;
+  if (tick.verdict != tissue::GuardVerdict::kGood) return;
+  tick.torn_count = tissue::TearStrands(tissue_model, model->tissue->max_elongation, w.tissue, tick.torn);
+  if (!model->walls_tear) return;
+  tick.torn_spring_count =
+      tissue::TearSprings(tissue_model, GetScene().tick_seconds, w.tissue, tick.torn_springs);
   // a hollow organ leaks through what the spring no longer closes
-  for (std::size_t i = 0; i < torn_spring_count; ++i) {
-    const std::int32_t organ = spring_organs[torn_springs[i]];
-    if (organ == hollow_organ)
-      conservation->Perforate(static_cast<std::size_t>(organ), spring_areas[torn_springs[i]], conserved);
+  const WallSprings& walls = w.topology.Walls();
+  for (const std::uint32_t spring : std::span(tick.torn_springs).first(tick.torn_spring_count)) {
+    const std::int32_t organ = walls.organs[spring];
+    if (organ == model->hollow_organ)
+      conservation->Perforate(static_cast<std::size_t>(organ), walls.areas[spring], w.conserved);
   }
 }
 
-void Simulation::Content::UpdateHierarchy() noexcept {
-  touch.Update(*scene, GetTools(), tissue);
-  rigid.Step(*scene, joints, touch, CalcGravity(settings));
-  for (int hand = 0; hand < kHandCount; ++hand) forces[hand] = forces[hand] + rigid.ForceOn(hand);
+void Simulation::Content::PlaceTools() noexcept {
+  world.touch.Update(GetScene(), GetTools(), world.tissue);
 }
 
-void Simulation::Content::Note(EventKind kind, int hand, std::int32_t organ, double force,
+void Simulation::Content::StepRigidBodies() noexcept {
+  WorldState& w = world;
+  w.rigid.Step(GetScene(), w.joints, w.touch, tick.gravity);
+  for (int hand = 0; hand < kHandCount; ++hand) w.forces[hand] = w.forces[hand] + w.rigid.ForceOn(hand);
+}
+
+void Simulation::Content::Flow() noexcept {
+  if (world.operation == nullptr) return;
+  tick.hands.changes = tick.changes;  // a grasp may have slipped in the solve
+  OperatedTissue operated = GetOperated();
+  world.operation->Flow(tick.hands, GetTissue(), operated);
+}
+
+void Simulation::Content::MoveLoose() noexcept {
+  if (world.operation != nullptr) world.operation->MoveLoose(tick.hands, GetTissue());
+}
+
+void Simulation::Content::Emit(EventKind kind, int hand, std::int32_t organ, double force,
                                std::int32_t object) noexcept {
-  snapshot.events[snapshot.event_count % snapshot.events.size()] = {kind, tick, hand, organ, force, object};
-  ++snapshot.event_count;
+  JudgementState& j = judgement;
+  j.events[j.event_count % j.events.size()] = {kind, world.tick, hand, organ, force, object};
+  ++j.event_count;
 }
 
-void Simulation::Content::DetectEvents() noexcept {
+void Simulation::Content::EmitGrasps() noexcept {
   for (int hand = 0; hand < kHandCount; ++hand) {
-    const double force = math::Norm(forces[hand]);
-    switch (changes[hand]) {
+    const double force = math::Norm(world.forces[hand]);
+    switch (tick.changes[hand]) {
       case surgery::GraspChange::kNone:
         break;
       case surgery::GraspChange::kGrasped:
-        Note(EventKind::kGrasp, hand, changed_organs[hand], force);
+        Emit(EventKind::kGrasp, hand, tick.changed_organs[hand], force);
         break;
       case surgery::GraspChange::kMissed:
-        Note(EventKind::kGraspMissed, hand, -1, 0.0);
+        Emit(EventKind::kGraspMissed, hand, -1, 0.0);
         break;
       case surgery::GraspChange::kReleased:
-        Note(EventKind::kRelease, hand, changed_organs[hand], force);
+        Emit(EventKind::kRelease, hand, tick.changed_organs[hand], force);
         break;
       case surgery::GraspChange::kSlipped:
-        Note(EventKind::kSlip, hand, changed_organs[hand], force);
+        Emit(EventKind::kSlip, hand, tick.changed_organs[hand], force);
         break;
       case surgery::GraspChange::kDamaged:
-        Note(EventKind::kPinchDamage, hand, changed_organs[hand], grasps[hand].pinch);
+        Emit(EventKind::kPinchDamage, hand, tick.changed_organs[hand], world.grasps[hand].pinch);
         break;
     }
   }
-  rigid.NoteChanges([&](EventKind kind, int hand, std::int32_t object) {
-    Note(kind, hand, -1, math::Norm(forces[hand]), object);
+  world.rigid.ForEachChange([&](EventKind kind, int hand, std::int32_t object) {
+    Emit(kind, hand, -1, math::Norm(world.forces[hand]), object);
   });
-  if (touch.AreToolsTouching() && !were_tools_touching) Note(EventKind::kToolsTouch, -1, -1, 0.0);
-  were_tools_touching = touch.AreToolsTouching();
-  if (torn_count > 0) Note(EventKind::kTear, -1, strand_organs[torn[0]], 0.0);
-  if (torn_spring_count > 0) Note(EventKind::kTear, -1, spring_organs[torn_springs[0]], 0.0);
-  if (verdict == tissue::GuardVerdict::kRestored) Note(EventKind::kStateRestored, -1, -1, 0.0);
-  if (verdict == tissue::GuardVerdict::kFrozen && !was_frozen) Note(EventKind::kOrganFrozen, -1, -1, 0.0);
-  was_frozen = verdict == tissue::GuardVerdict::kFrozen;
 }
 
-void Simulation::Content::Publish(const Input& input) noexcept {
-  snapshot.tick = tick;
-  snapshot.time = static_cast<double>(tick) * scene->tick_seconds;
-  std::copy(tissue.position.begin(), tissue.position.end(), snapshot.positions.begin());
+void Simulation::Content::Judge() noexcept {
+  JudgementState& j = judgement;
+  const auto last = [&j]() -> Event& { return j.events[(j.event_count - 1) % j.events.size()]; };
+  for (int hand = 0; hand < kHandCount; ++hand) {
+    if (tick.was_exchange_refused[hand])
+      Emit(EventKind::kExchangeRefused, hand, world.grasps[hand].surface, 0.0);
+  }
+  EmitGrasps();
+  const bool are_touching = world.touch.AreToolsTouching();
+  if (are_touching && !j.were_tools_touching) Emit(EventKind::kToolsTouch, -1, -1, 0.0);
+  j.were_tools_touching = are_touching;
+  if (tick.torn_count > 0)
+    Emit(EventKind::kTear, -1, model->tissue->strand_organs[tick.torn[0]], 0.0);
+  if (tick.torn_spring_count > 0)
+    Emit(EventKind::kTear, -1, world.topology.Walls().organs[tick.torn_springs[0]], 0.0);
+  if (tick.verdict == tissue::GuardVerdict::kRestored) Emit(EventKind::kStateRestored, -1, -1, 0.0);
+  const bool is_frozen = tick.verdict == tissue::GuardVerdict::kFrozen;
+  if (is_frozen && !j.was_frozen) Emit(EventKind::kOrganFrozen, -1, -1, 0.0);
+  j.was_frozen = is_frozen;
+  if (world.operation == nullptr) return;
+  for (const OperationEvent& event : world.operation->Events()) {
+    Emit(event.kind, event.hand, event.surface, 0.0);
+    last().p_rest = event.p_rest;
+  }
+  j.operation->Update(*world.operation, tick.hands, GetTissue(), GetCamera());
+  for (const training::ErrorEntry& entry : j.operation->NewErrors()) {
+    Emit(EventKind::kOperationError, entry.hand, -1, 0.0);
+    last().error = static_cast<std::int32_t>(entry.error);
+    last().p_rest = entry.place;
+  }
+}
+
+void Simulation::Content::Publish() noexcept {
+  const WorldState& w = world;
+  snapshot.tick = w.tick;
+  snapshot.time = static_cast<double>(w.tick) * GetScene().tick_seconds;
+  std::copy(w.tissue.position.begin(), w.tissue.position.end(), snapshot.positions.begin());
   for (int hand = 0; hand < kHandCount; ++hand) {
     InstrumentSnapshot& tool = snapshot.instruments[hand];
-    tool.X_world_tool = touch.Proxy(hand);
-    tool.joints = joints[hand];
-    tool.force = forces[hand];
-    tool.is_grasping = grasps[hand].IsHolding() || rigid.HeldBy(hand) >= 0;
-    tool.object = rigid.HeldBy(hand);
-    tool.is_touching = touched_organs[hand] >= 0;
-    tool.organ = touched_organs[hand];
-    tool.X_world_device = touch.Device(hand);
-    tool.pinch = std::max(grasps[hand].pinch, rigid.Pinch(hand));
-    tool.overlap = touch.Overlap(hand);
-    tool.is_touching_tool = touch.AreToolsTouching();
+    tool.X_world_tool = w.touch.Proxy(hand);
+    tool.joints = w.joints[hand];
+    tool.force = w.forces[hand];
+    tool.is_grasping = w.grasps[hand].IsHolding() || w.rigid.HeldBy(hand) >= 0;
+    tool.object = w.rigid.HeldBy(hand);
+    tool.is_touching = tick.touched_organs[hand] >= 0;
+    tool.organ = tick.touched_organs[hand];
+    tool.X_world_device = w.touch.Device(hand);
+    tool.pinch = std::max(w.grasps[hand].pinch, w.rigid.Pinch(hand));
+    tool.overlap = w.touch.Overlap(hand);
+    tool.is_touching_tool = w.touch.AreToolsTouching();
   }
-  snapshot.contacts = touch.Contacts().springs.size();
-  snapshot.dropped_contacts = touch.Contacts().dropped;
-  MoveLaparoscope(input);
-  snapshot.laparoscope = laparoscope;
-  snapshot.X_world_laparoscope = CalcLaparoscopePose(scene->laparoscope, laparoscope);
-  for (std::size_t i = 0; i < conserved.organs.size(); ++i) {
-    const tissue::OrganVolume& organ = conserved.organs[i];
+  snapshot.contacts = w.touch.Contacts().springs.size();
+  snapshot.dropped_contacts = w.touch.Contacts().dropped;
+  snapshot.laparoscope = w.laparoscope;
+  snapshot.X_world_laparoscope = GetCamera().X_world_camera;
+  for (std::size_t i = 0; i < w.conserved.organs.size(); ++i) {
+    const tissue::OrganVolume& organ = w.conserved.organs[i];
     snapshot.organs[i] = {organ.volume, organ.target, organ.pressure, organ.leaked};
   }
-  if (operation != nullptr) operation->Publish(tissue, snapshot.operation);
-  snapshot.residual = report.residual;
-  snapshot.iterations = report.iterations;
-  snapshot.gravity = CalcGravity(settings);
-  rigid.Publish(snapshot.objects);
-  monitor.Update(*scene, snapshot);
+  if (w.operation != nullptr) {
+    w.operation->Publish(w.tissue, snapshot.operation);
+    judgement.operation->Publish(snapshot.operation);
+  }
+  snapshot.residual = tick.report.residual;
+  snapshot.iterations = tick.report.iterations;
+  snapshot.gravity = tick.gravity;
+  w.rigid.Publish(snapshot.objects);
+  snapshot.events = judgement.events;
+  snapshot.event_count = judgement.event_count;
+}
+
+void Simulation::Content::JudgeTask() noexcept {
+  judgement.monitor.Update(GetScene(), snapshot, judgement.task);
+  snapshot.task = judgement.task;
 }
 
 }  // namespace trocar::session

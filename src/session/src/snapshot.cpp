@@ -3,12 +3,15 @@
 
 #include <cmath>
 
+#include "trocar/math/state_fields.h"
+
 namespace trocar::session {
 
 std::string_view StageName(Stage stage) noexcept {
   static constexpr std::string_view kNames[kStageCount] = {
-      "read_inputs", "move_instruments", "find_contacts", "act_on_tissue", "solve",
-      "check_state", "update_hierarchy", "detect_events", "publish"};
+      "read_inputs",  "move_tools",   "find_contacts", "use_tools", "heat",      "assistant", "topology",
+      "tissue",       "guard",        "place_tools",   "rigid_bodies", "flow",   "loose_bodies", "camera",
+      "judgement",    "publish",      "task_rules"};
   return kNames[static_cast<int>(stage)];
 }
 
@@ -54,6 +57,17 @@ std::string_view EventName(EventKind kind) noexcept {
       break;
   }
   return "operation_error";
+}
+
+void VisitState(core::StateArchive& archive, Event& event) {
+  archive.Field("kind", event.kind);
+  archive.Field("tick", event.tick);
+  archive.Field("hand", event.hand);
+  archive.Field("organ", event.organ);
+  archive.Field("force", event.force);
+  archive.Field("object", event.object);
+  archive.Field("error", event.error);
+  archive.Field("p_rest", event.p_rest);
 }
 
 bool IsInView(const Pose& X_world_laparoscope, double field_of_view, const Vec3& p_world) noexcept {

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "trocar/math/state_fields.h"
+
 namespace trocar::session {
 namespace {
 
@@ -76,12 +78,12 @@ Finding FindOfTissue(const Scene& scene, const OperationSnapshot& now, const Con
 
 }  // namespace
 
-void TaskMonitor::Reset(const Scene& scene, Snapshot& snapshot) {
+void TaskMonitor::Reset(const Scene& scene, TaskSnapshot& task) {
   tracks_.assign(scene.objects.size(), {});
   for (std::size_t i = 0; i < tracks_.size(); ++i)
     tracks_[i].start_height = scene.objects[i].body.X_world_body.translation.z;
   watches_.clear();
-  snapshot.task = {};
+  task = {};
   events_before_ = 0;
   for (int hand = 0; hand < kHandCount; ++hand) {
     const auto h = static_cast<std::size_t>(hand);
@@ -91,9 +93,9 @@ void TaskMonitor::Reset(const Scene& scene, Snapshot& snapshot) {
   X_world_start_view_ = instrument::CalcToolPose(scene.laparoscope.p_world_port, scene.laparoscope.home);
   if (!scene.task) return;
   for (const ErrorRule& rule : scene.task->errors) watches_.emplace_back(rule.when.size());
-  snapshot.task.phase = TaskPhase::kReady;
-  snapshot.task.goals.resize(scene.task->goals.size());
-  snapshot.task.errors.resize(scene.task->errors.size());
+  task.phase = TaskPhase::kReady;
+  task.goals.resize(scene.task->goals.size());
+  task.errors.resize(scene.task->errors.size());
 }
 
 bool TaskMonitor::HasMoved(const Snapshot& snapshot) const noexcept {
@@ -247,15 +249,16 @@ Finding TaskMonitor::FindOfEvents(const Scene& scene, const Snapshot& snapshot,
   return {};
 }
 
-void TaskMonitor::UpdateGoals(const Scene& scene, Snapshot& snapshot) noexcept {
+void TaskMonitor::UpdateGoals(const Scene& scene, const Snapshot& snapshot,
+                              TaskSnapshot& progress) noexcept {
   const Task& task = *scene.task;
   int stage = std::numeric_limits<int>::max();
   for (std::size_t g = 0; g < task.goals.size(); ++g) {
-    if (!snapshot.task.goals[g].is_done) stage = std::min(stage, task.goals[g].stage);
+    if (!progress.goals[g].is_done) stage = std::min(stage, task.goals[g].stage);
   }
   for (std::size_t g = 0; g < task.goals.size(); ++g) {
     const Goal& goal = task.goals[g];
-    GoalSnapshot& now = snapshot.task.goals[g];
+    GoalSnapshot& now = progress.goals[g];
     now.is_open = !now.is_done && goal.stage == stage;
     if (now.is_open) {
       const Condition& step = goal.steps[now.steps_done];
@@ -273,9 +276,8 @@ void TaskMonitor::UpdateGoals(const Scene& scene, Snapshot& snapshot) noexcept {
   }
 }
 
-void TaskMonitor::UpdateErrors(const Scene& scene, Snapshot& snapshot) noexcept {
+void TaskMonitor::UpdateErrors(const Scene& scene, const Snapshot& snapshot, TaskSnapshot& now) noexcept {
   const Task& task = *scene.task;
-  TaskSnapshot& now = snapshot.task;
   for (std::size_t e = 0; e < task.errors.size(); ++e) {
     const ErrorRule& rule = task.errors[e];
     for (std::size_t i = 0; i < rule.when.size(); ++i) {
@@ -309,15 +311,14 @@ void TaskMonitor::Judge(const Task& task, TaskSnapshot& now) const noexcept {
   now.score = std::max(0.0, points);
 }
 
-void TaskMonitor::Update(const Scene& scene, Snapshot& snapshot) noexcept {
-  TaskSnapshot& now = snapshot.task;
+void TaskMonitor::Update(const Scene& scene, const Snapshot& snapshot, TaskSnapshot& now) noexcept {
   if (!scene.task || snapshot.tick == 0) return;
   Follow(snapshot, scene.tick_seconds);
   if (now.phase == TaskPhase::kReady && HasMoved(snapshot)) now.phase = TaskPhase::kRunning;
   if (now.phase == TaskPhase::kRunning) {
     now.time += scene.tick_seconds;
-    UpdateErrors(scene, snapshot);
-    UpdateGoals(scene, snapshot);
+    UpdateErrors(scene, snapshot, now);
+    UpdateGoals(scene, snapshot, now);
     const bool is_done =
         std::all_of(now.goals.begin(), now.goals.end(), [](const auto& goal) { return goal.is_done; });
     if (now.phase == TaskPhase::kRunning && is_done) now.phase = TaskPhase::kCompleted;
@@ -328,13 +329,49 @@ void TaskMonitor::Update(const Scene& scene, Snapshot& snapshot) noexcept {
   events_before_ = snapshot.event_count;
 }
 
-void TaskMonitor::AddTo(const TaskSnapshot& task, core::StateHash& hash) const {
-  if (task.phase == TaskPhase::kNone) return;
-  hash.Add(static_cast<std::uint64_t>(task.phase));
-  hash.Add(task.time);
-  hash.Add(task.score);
-  for (const GoalSnapshot& goal : task.goals) hash.Add(std::uint64_t{goal.steps_done});
-  for (const auto count : task.errors) hash.Add(std::uint64_t{count});
+void TaskMonitor::VisitState(core::StateArchive& archive) {
+  for (Track& track : tracks_) {
+    archive.Field("held_by", track.held_by);
+    archive.Field("both_seconds", track.both_seconds);
+    archive.Field("from", track.from);
+    archive.Field("to", track.to);
+    archive.Field("handed_seconds", track.handed_seconds);
+    archive.Field("is_falling", track.is_falling);
+    archive.Field("let_go_height", track.let_go_height);
+  }
+  for (auto& rule : watches_) {
+    for (Watch& watch : rule) {
+      archive.Field("seconds", watch.seconds);
+      archive.Field("is_counted", watch.is_counted);
+    }
+  }
+  archive.Field("events_before", events_before_);
+}
+
+void VisitState(core::StateArchive& archive, GoalSnapshot& goal) {
+  archive.Field("steps_done", goal.steps_done);
+  archive.Field("is_done", goal.is_done);
+  archive.Field("is_open", goal.is_open);
+  archive.Field("held_seconds", goal.held_seconds);
+}
+
+void VisitState(core::StateArchive& archive, TaskError& error) {
+  archive.Field("rule", error.rule);
+  archive.Field("time", error.time);
+  archive.Field("position", error.position);
+  archive.Field("object", error.object);
+  archive.Field("hand", error.hand);
+}
+
+void VisitState(core::StateArchive& archive, TaskSnapshot& task) {
+  archive.Field("phase", task.phase);
+  archive.Field("time", task.time);
+  archive.FixedField("goals", task.goals);
+  archive.FixedField("errors", task.errors);
+  archive.Field("penalty", task.penalty);
+  archive.Field("score", task.score);
+  archive.Field("error_count", task.error_count);
+  archive.Field("last_errors", task.last_errors);
 }
 
 }  // namespace trocar::session

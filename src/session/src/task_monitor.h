@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "trocar/core/state_hash.h"
+#include "trocar/core/state_archive.h"
 #include "trocar/session/scene.h"
 #include "trocar/session/snapshot.h"
 
@@ -21,11 +21,11 @@ struct Finding {
 /// Nothing is done in a scene without a task.
 class TaskMonitor {
  public:
-  void Reset(const Scene& scene, Snapshot& snapshot);
-  /// After everything else of a tick has been published; writes Snapshot::task.
+  void Reset(const Scene& scene, TaskSnapshot& task);
+  /// After everything else of a tick has been published.
   /// \note Real-time safe.
-  void Update(const Scene& scene, Snapshot& snapshot) noexcept;
-  void AddTo(const TaskSnapshot& task, core::StateHash& hash) const;
+  void Update(const Scene& scene, const Snapshot& snapshot, TaskSnapshot& task) noexcept;
+  void VisitState(core::StateArchive& archive);
 
  private:
   /// How an object went from hand to hand, and whether it falls.
@@ -52,8 +52,8 @@ class TaskMonitor {
   Finding FindOfTool(const Scene& scene, const Snapshot& snapshot, const Condition& condition) const noexcept;
   Finding FindOfEvents(const Scene& scene, const Snapshot& snapshot,
                        const Condition& condition) const noexcept;
-  void UpdateGoals(const Scene& scene, Snapshot& snapshot) noexcept;
-  void UpdateErrors(const Scene& scene, Snapshot& snapshot) noexcept;
+  void UpdateGoals(const Scene& scene, const Snapshot& snapshot, TaskSnapshot& task) noexcept;
+  void UpdateErrors(const Scene& scene, const Snapshot& snapshot, TaskSnapshot& task) noexcept;
   void Judge(const Task& task, TaskSnapshot& now) const noexcept;
 
   std::vector<Track> tracks_;                // (objects)

@@ -5,6 +5,9 @@
 #include <cmath>
 #include <utility>
 
+#include "trocar/instrument/state_fields.h"
+#include "trocar/math/state_fields.h"
+
 namespace trocar::session {
 namespace {
 
@@ -114,12 +117,12 @@ void ToolContacts::MakeCavity(const Scene& scene, const tissue::TissueModel& mod
   }
 }
 
-core::Status ToolContacts::Follow(const tissue::TissueModel& model, const tissue::TissueState& tissue,
-                                  std::span<const geometry::TriangleMesh> meshes,
-                                  std::span<const collision::TubePiece> pieces,
-                                  std::vector<std::uint32_t> tube_of_piece) {
+core::Status ToolContacts::UpdateTopology(const tissue::TissueModel& model, const tissue::TissueState& tissue,
+                                          bool is_restored, std::span<const geometry::TriangleMesh> meshes,
+                                          std::span<const collision::TubePiece> pieces,
+                                          std::vector<std::uint32_t> tube_of_piece) {
   for (std::size_t i = 0; i < organs_.size(); ++i) {
-    if (meshes[i].triangles.size() == organs_[i].triangles.size() &&
+    if (!is_restored && meshes[i].triangles.size() == organs_[i].triangles.size() &&
         meshes[i].positions.size() == organs_[i].node_count)
       continue;
     auto surface = surgery::MakeOrganSurface(model.rest, organs_[i].first_node, meshes[i]);
@@ -265,16 +268,26 @@ void ToolContacts::PlaceProxy(const Scene& scene, int hand, const ToolsNow& now,
   jaw_before_[hand] = now.joints[hand].jaw;
 }
 
-void ToolContacts::AddTo(core::StateHash& hash) const {
-  for (int hand = 0; hand < kHandCount; ++hand) {
-    for (const double value : {offset_[hand].pan, offset_[hand].tilt, offset_[hand].depth}) hash.Add(value);
-  }
-  for (const surgery::ContactLink& link : contacts_.links) {
-    hash.Add(link.key);
-    for (const double value :
-         {link.p_tool_stuck.x, link.p_tool_stuck.y, link.p_tool_stuck.z, link.normal_force})
-      hash.Add(value);
-  }
+void ToolContacts::Refit(const tissue::TissueState& tissue) noexcept {
+  for (surgery::OrganSurface& organ : organs_) surgery::UpdateOrganSurface(organ, tissue.position);
+  tubes_.tree.Update(tissue.position);
+}
+
+void ToolContacts::VisitState(core::StateArchive& archive) {
+  archive.Field("X_world_proxy", X_world_proxy_);
+  archive.Field("X_world_proxy_before", X_world_proxy_before_);
+  archive.Field("X_world_device", X_world_device_);
+  archive.Field("offset", offset_);
+  archive.Field("jaw_before", jaw_before_);
+  archive.Field("contacts", contacts_);
+  archive.FixedField("pairs", pairs_);
+  archive.FixedField("cavity_contacts", cavity_contacts_);
+  archive.FixedField("positions_before", positions_before_);
+  archive.FixedField("surface_motion", surface_motion_);
+  for (surgery::OrganSurface& organ : organs_) archive.Field("travel", organ.travel);
+  archive.Field("overlap", overlap_);
+  archive.Field("are_tools_touching", tools_.is_touching);
+  if (archive.IsRestoring()) has_followed_ = false;
 }
 
 }  // namespace trocar::session

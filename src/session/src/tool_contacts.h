@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "trocar/core/state_hash.h"
+#include "trocar/core/state_archive.h"
 #include "trocar/session/simulation.h"
 #include "trocar/surgery/cavity.h"
 #include "trocar/surgery/organ_contact.h"
@@ -49,13 +49,15 @@ class ToolContacts {
   void AddLimit(int hand, const surgery::ProxyLimit& limit) noexcept { limits_[hand].Add(limit); }
   /// Forces of the contacts after the solve. \param is_good  false: forgets what sticks where
   std::array<ToolTouch, kHandCount> CalcTouch(const tissue::TissueState& tissue, bool is_good) noexcept;
-  /// After a cut: the surfaces as they are now.
+  /// After a cut, or a state with other cuts: the surfaces as they are now.
+  /// \param is_restored  even a surface of as many triangles may be another
   /// \param meshes   (organs) over the nodes from each organ's first one on
   /// \param pieces, tube_of_piece  of all ducts and vessels
   /// \note Not real-time safe: allocates.
-  core::Status Follow(const tissue::TissueModel& model, const tissue::TissueState& tissue,
-                      std::span<const geometry::TriangleMesh> meshes,
-                      std::span<const collision::TubePiece> pieces, std::vector<std::uint32_t> tube_of_piece);
+  core::Status UpdateTopology(const tissue::TissueModel& model, const tissue::TissueState& tissue,
+                              bool is_restored, std::span<const geometry::TriangleMesh> meshes,
+                              std::span<const collision::TubePiece> pieces,
+                              std::vector<std::uint32_t> tube_of_piece);
   /// Refits the trees, and places the tools that are seen.
   void Update(const Scene& scene, const ToolsNow& now, const tissue::TissueState& tissue) noexcept;
 
@@ -68,7 +70,10 @@ class ToolContacts {
   const Pose& Device(int hand) const { return X_world_device_[hand]; }
   double Overlap(int hand) const { return overlap_[hand]; }  ///< of the proxy with tissue, what is left [m]
   bool AreToolsTouching() const { return tools_.is_touching; }
-  void AddTo(core::StateHash& hash) const;
+
+  /// Trees and boxes over nodes that were moved by restoring a state. Before VisitState.
+  void Refit(const tissue::TissueState& tissue) noexcept;
+  void VisitState(core::StateArchive& archive);
 
  private:
   surgery::Touchables MakeTouchables(const tissue::TissueState& tissue) const noexcept;

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "trocar/math/state_fields.h"
+
 namespace trocar::surgery {
 namespace {
 
@@ -53,6 +55,17 @@ std::size_t FindCutStrands(const BladeMove& move, std::span<const tissue::Strand
       cut[count++] = i;
   }
   return count;
+}
+
+void VisitState(core::StateArchive& archive, BladeState& blade) {
+  std::uint8_t has_edge = blade.edge ? 1 : 0;
+  archive.Field("has_edge", has_edge);
+  if (archive.IsRestoring()) blade.edge = has_edge != 0 ? std::optional<geometry::BladeEdge>({}) : std::nullopt;
+  if (blade.edge) {
+    archive.Field("a", blade.edge->a);
+    archive.Field("b", blade.edge->b);
+  }
+  archive.Field("jaw", blade.jaw);
 }
 
 }  // namespace trocar::surgery

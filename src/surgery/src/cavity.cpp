@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "trocar/core/state_archive.h"
 #include "trocar/surgery/organ_contact.h"
 
 namespace trocar::surgery {
@@ -137,6 +138,11 @@ void FindCavityContacts(const Cavity& cavity, std::span<const OrganSurface> orga
       contacts.links.push_back(link);
     }
   }
+}
+
+void VisitState(core::StateArchive& archive, CavityContact& contact) {
+  archive.FixedField("allowed", contact.allowed);
+  archive.FixedField("is_held", contact.is_held);
 }
 
 }  // namespace trocar::surgery

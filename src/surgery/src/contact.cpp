@@ -7,6 +7,7 @@
 
 #include "trocar/collision/queries.h"
 #include "trocar/core/assert.h"
+#include "trocar/math/state_fields.h"
 
 namespace trocar::surgery {
 namespace {
@@ -432,6 +433,48 @@ ContactReaction CalcContactReaction(std::uint8_t hand, std::span<const Vec3> pos
     }
   }
   return reaction;
+}
+
+namespace {
+
+void VisitSpring(core::StateArchive& archive, tissue::ContactSpring& spring) {
+  archive.Field("nodes", spring.nodes);
+  archive.Field("weights", spring.weights);
+  archive.Field("normal", spring.normal);
+  archive.Field("offset", spring.offset);
+  archive.Field("stiffness", spring.stiffness);
+}
+
+void VisitLink(core::StateArchive& archive, ContactLink& link) {
+  archive.Field("key", link.key);
+  archive.Field("hand", link.hand);
+  archive.Field("surface", link.surface);
+  archive.Field("is_friction", link.is_friction);
+  archive.Field("is_pinch", link.is_pinch);
+  archive.Field("p_device", link.p_device);
+  archive.Field("held_back", link.held_back);
+  archive.Field("p_tool_stuck", link.p_tool_stuck);
+  archive.Field("normal_force", link.normal_force);
+}
+
+}  // namespace
+
+void VisitState(core::StateArchive& archive, ContactSet& contacts) {
+  std::uint64_t count = contacts.links.size();
+  archive.Field("count", count);
+  archive.Field("dropped", contacts.dropped);
+  if (archive.IsRestoring()) {
+    if (count > ContactSet::kCapacity) {
+      archive.Fail("has more contacts than there is room for");
+      return;
+    }
+    contacts.springs.resize(count);
+    contacts.links.resize(count);
+  }
+  for (std::uint64_t i = 0; i < count; ++i) {
+    VisitSpring(archive, contacts.springs[i]);
+    VisitLink(archive, contacts.links[i]);
+  }
 }
 
 }  // namespace trocar::surgery

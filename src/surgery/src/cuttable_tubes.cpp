@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "trocar/core/assert.h"
+#include "trocar/core/state_archive.h"
 
 namespace trocar::surgery {
 
@@ -142,6 +143,15 @@ void CuttableTubes::ListCut(const geometry::CentreLineCut& cut, const tissue::Ti
       if (edge[i] == cut.b) shorten(edge[1 - i], a, 1);
     }
   }
+}
+
+void CuttableTubes::VisitState(core::StateArchive& archive) {
+  archive.Field("graph", graph_);
+  archive.Field("nodes", nodes_);
+  archive.Field("next_spare", next_spare_);
+  if (archive.IsRestoring() && archive.ok() &&
+      (nodes_.size() != graph_.rest.size() || next_spare_ > end_spare_))
+    archive.Fail("has points without a node");
 }
 
 }  // namespace trocar::surgery

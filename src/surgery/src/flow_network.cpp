@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "trocar/core/assert.h"
+#include "trocar/core/state_archive.h"
 
 namespace trocar::surgery {
 namespace {
@@ -293,6 +294,62 @@ double FluidLedger::Aspirate(double volume) noexcept {
   double taken = take(rinse_pooled, rinse_aspirated);
   for (Account& account : fluids) taken += take(account.pooled, account.aspirated);
   return taken;
+}
+
+void VisitState(core::StateArchive& archive, VesselClip& clip) {
+  archive.Field("vessel", clip.vessel);
+  archive.Field("position", clip.position);
+  archive.Field("closure", clip.closure);
+}
+
+void VisitState(core::StateArchive& archive, VesselOpening& opening) {
+  archive.Field("vessel", opening.vessel);
+  archive.Field("position", opening.position);
+  archive.Field("is_cut", opening.is_cut);
+  archive.Field("area", opening.area);
+  archive.Field("sealed", opening.sealed);
+}
+
+void VisitState(core::StateArchive& archive, VesselActs& acts) {
+  archive.Field("clips", acts.clips);
+  archive.Field("openings", acts.openings);
+  if (archive.IsRestoring() &&
+      (acts.clips.size() > VesselActs::kMostClips || acts.openings.size() > VesselActs::kMostOpenings)) {
+    acts.clips.clear();
+    acts.openings.clear();
+    archive.Fail("has more clips or openings than there is room for");
+  }
+}
+
+void FlowNetwork::VisitState(core::StateArchive& archive) {
+  for (FlowJunction& junction : junctions_) archive.Field("supply", junction.pressure);
+  archive.Field("pressure", pressure_);
+}
+
+void VisitState(core::StateArchive& archive, FlowReport& report) {
+  archive.Field("leak_count", report.leak_count);
+  if (archive.IsRestoring() && report.leak_count > report.leaks.size()) {
+    report.leak_count = 0;
+    archive.Fail("has more leaks than there is room for");
+  }
+  for (std::size_t i = 0; i < report.leak_count; ++i) {
+    Leak& leak = report.leaks[i];
+    archive.Field("opening", leak.opening);
+    archive.Field("end", leak.end);
+    archive.Field("fluid", leak.fluid);
+    archive.Field("leak_rate", leak.rate);
+  }
+  archive.Field("rate", report.rate);
+}
+
+void VisitState(core::StateArchive& archive, FluidLedger& ledger) {
+  for (FluidLedger::Account& account : ledger.fluids) {
+    archive.Field("left", account.left);
+    archive.Field("pooled", account.pooled);
+    archive.Field("aspirated", account.aspirated);
+  }
+  archive.Field("rinse_pooled", ledger.rinse_pooled);
+  archive.Field("rinse_aspirated", ledger.rinse_aspirated);
 }
 
 }  // namespace trocar::surgery

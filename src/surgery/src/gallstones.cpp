@@ -10,6 +10,7 @@
 #include "trocar/core/assert.h"
 #include "trocar/geometry/distance.h"
 #include "trocar/math/random.h"
+#include "trocar/math/state_fields.h"
 
 namespace trocar::surgery {
 namespace {
@@ -271,6 +272,18 @@ void ForgetSupports(std::span<LooseStone* const> stones) noexcept {
   for (LooseStone* stone : stones) {
     if (stone->support >= 0) Loosen(*stone);
   }
+}
+
+void VisitState(core::StateArchive& archive, LooseStone& stone) {
+  archive.Field("position", stone.position);
+  archive.Field("velocity", stone.velocity);
+  archive.Field("support", stone.support);
+  archive.Field("triangle", stone.triangle);
+  archive.Field("weights", stone.weights);
+  archive.Field("offset", stone.offset);
+  archive.Field("upright", stone.upright);
+  archive.Field("anchor", stone.anchor);
+  archive.Field("still_seconds", stone.still_seconds);
 }
 
 }  // namespace trocar::surgery

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "trocar/geometry/distance.h"
+#include "trocar/math/state_fields.h"
 
 namespace trocar::surgery {
 namespace {
@@ -180,6 +181,23 @@ GraspChange UpdateSlip(double pull, const GraspSettings& settings, const tissue:
   if (grasp.ticks_over_limit < settings.slip_ticks) return GraspChange::kNone;
   ReleaseGrasp(model, grasp, state);
   return GraspChange::kSlipped;
+}
+
+void VisitState(core::StateArchive& archive, Grasp& grasp) {
+  archive.Field("are_jaws_closed", grasp.are_jaws_closed);
+  archive.Field("surface", grasp.surface);
+  archive.Field("count", grasp.count);
+  archive.Field("nodes", grasp.nodes);
+  archive.Field("p_tool_node", grasp.p_tool_node);
+  archive.Field("jaw_at_closing", grasp.jaw_at_closing);
+  archive.Field("pinch", grasp.pinch);
+  archive.Field("damage_pinch", grasp.damage_pinch);
+  archive.Field("is_damaged", grasp.is_damaged);
+  archive.Field("ticks_over_limit", grasp.ticks_over_limit);
+  if (archive.IsRestoring() && grasp.count > Grasp::kCapacity) {
+    grasp.count = 0;
+    archive.Fail("holds more nodes than there is room for");
+  }
 }
 
 }  // namespace trocar::surgery

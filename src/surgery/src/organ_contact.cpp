@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "trocar/collision/queries.h"
+#include "trocar/math/state_fields.h"
 
 namespace trocar::surgery {
 namespace {
@@ -194,6 +195,14 @@ void FindOrganContacts(std::span<const OrganSurface> organs, std::span<const Vec
                                 settings.stiffness});
     contacts.links.push_back(link);
   }
+}
+
+void VisitState(core::StateArchive& archive, OrganPair& pair) {
+  archive.FixedField("allowed", pair.allowed);
+  archive.FixedField("is_inside", pair.is_inside);
+  archive.FixedField("push", pair.push);
+  archive.FixedField("last_triangle", pair.last_triangle);
+  archive.FixedField("clear", pair.clear);
 }
 
 }  // namespace trocar::surgery

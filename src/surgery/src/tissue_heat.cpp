@@ -145,4 +145,11 @@ HeatInjury TissueHeat::InjuryOf(const HeatState& state, std::size_t node) noexce
   return HeatInjury::kNone;
 }
 
+void VisitState(core::StateArchive& archive, HeatState& state) {
+  archive.FixedField("temperature", state.temperature);
+  archive.FixedField("water", state.water);
+  archive.FixedField("damage", state.damage);
+  archive.FixedField("charring", state.charring);
+}
+
 }  // namespace trocar::surgery

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "trocar/core/state_archive.h"
+
 namespace trocar::training {
 namespace {
 
@@ -82,6 +84,23 @@ std::vector<std::string> ExplainCriticalView(const DissectionFacts& facts, const
       reasons.emplace_back("Flip the infundibulum and look at it from behind for a second.");
   }
   return reasons;
+}
+
+void VisitState(core::StateArchive& archive, DissectionFacts& facts) {
+  archive.Field("cleared_share", facts.cleared_share);
+  archive.Field("detached_share", facts.detached_share);
+  archive.Field("structures_entering", facts.structures_entering);
+  archive.Field("skeletonised", facts.skeletonised);
+  archive.Field("is_triangle_in_view", facts.is_triangle_in_view);
+  archive.Field("view_azimuth", facts.view_azimuth);
+}
+
+void CriticalView::VisitState(core::StateArchive& archive) {
+  archive.Field("criteria", score_.criteria);
+  archive.Field("is_seen_from_front", score_.is_seen_from_front);
+  archive.Field("is_seen_from_behind", score_.is_seen_from_behind);
+  archive.Field("front_seconds", front_seconds_);
+  archive.Field("behind_seconds", behind_seconds_);
 }
 
 }  // namespace trocar::training

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "trocar/math/state_fields.h"
+
 namespace trocar::training {
 namespace {
 
@@ -122,6 +124,25 @@ std::size_t ErrorLog::Count(Severity severity) const noexcept {
 
 std::size_t ErrorLog::Count() const noexcept {
   return std::accumulate(std::begin(counts_), std::end(counts_), std::size_t{0});
+}
+
+void VisitState(core::StateArchive& archive, ErrorEntry& entry) {
+  archive.Field("error", entry.error);
+  archive.Field("time", entry.time);
+  archive.Field("place", entry.place);
+  archive.Field("hand", entry.hand);
+}
+
+void ErrorLog::VisitState(core::StateArchive& archive) {
+  archive.Field("entries", entries_);
+  archive.Field("counts", counts_);
+  archive.Field("last", last_);
+  const auto is_known = [](const ErrorEntry& entry) { return entry.error < OperationError::kCount; };
+  if (archive.IsRestoring() &&
+      (entries_.size() > kCapacity || !std::all_of(entries_.begin(), entries_.end(), is_known))) {
+    Clear();
+    archive.Fail("lists errors that there are not");
+  }
 }
 
 }  // namespace trocar::training

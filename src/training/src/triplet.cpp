@@ -94,4 +94,10 @@ void PhaseRecogniser::Update(std::span<const Triplet> acts, const OperationFacts
   seconds_[static_cast<std::size_t>(current_)] += seconds;
 }
 
+void PhaseRecogniser::VisitState(core::StateArchive& archive) {
+  archive.Field("current", current_);
+  archive.Field("evidence", evidence_);
+  archive.Field("seconds", seconds_);
+}
+
 }  // namespace trocar::training

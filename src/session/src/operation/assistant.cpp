@@ -3,6 +3,9 @@
 
 #include <cmath>
 
+#include "trocar/instrument/state_fields.h"
+#include "trocar/math/state_fields.h"
+
 namespace trocar::session {
 namespace {
 
@@ -52,9 +55,10 @@ surgery::GraspChange Assistant::Step(AssistantCommand command, const Vec3& fundu
   return change;
 }
 
-void Assistant::AddTo(core::StateHash& hash) const {
-  for (const double value : {joints_.pan, joints_.tilt, joints_.depth, joints_.jaw}) hash.Add(value);
-  for (const std::uint32_t node : grasp_.Nodes()) hash.Add(std::uint64_t{node});
+void Assistant::VisitState(core::StateArchive& archive) {
+  archive.Field("p_taken", p_taken_);
+  archive.Field("joints", joints_);
+  archive.Field("grasp", grasp_);
 }
 
 }  // namespace trocar::session

@@ -4,7 +4,7 @@
 
 #include <span>
 
-#include "trocar/core/state_hash.h"
+#include "trocar/core/state_archive.h"
 #include "trocar/session/scene.h"
 #include "trocar/surgery/grasp.h"
 
@@ -32,7 +32,7 @@ class Assistant {
   surgery::Grasp& Held() { return grasp_; }
   const surgery::Grasp& Held() const { return grasp_; }
   const AssistantSetup& Setup() const { return setup_; }
-  void AddTo(core::StateHash& hash) const;
+  void VisitState(core::StateArchive& archive);
 
  private:
   AssistantSetup setup_;

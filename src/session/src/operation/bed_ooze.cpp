@@ -62,10 +62,13 @@ void BedOoze::Publish(std::span<const math::Vec3> position, OperationSnapshot& s
   snapshot.ooze_count = count;
 }
 
-void BedOoze::AddTo(core::StateHash& hash) const {
-  for (const Place& place : places_) {
-    if (place.left > 0.0) hash.Add(std::uint64_t{place.strand}), hash.Add(place.left);
+void BedOoze::VisitState(core::StateArchive& archive) {
+  for (Place& place : places_) {
+    archive.Field("was_intact", place.was_intact);
+    archive.Field("left", place.left);
   }
+  archive.Field("rate", rate_);
+  archive.Field("lost", lost_);
 }
 
 }  // namespace trocar::session

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "electrosurgery.h"
-#include "trocar/core/state_hash.h"
+#include "trocar/core/state_archive.h"
 #include "trocar/session/operation_snapshot.h"
 #include "trocar/tissue/tissue_model.h"
 
@@ -35,7 +35,7 @@ class BedOoze {
   double Rate() const noexcept { return rate_; }  ///< of the last tick [m^3/s]
   double Lost() const noexcept { return lost_; }  ///< since the start [m^3]
   void Publish(std::span<const math::Vec3> position, OperationSnapshot& snapshot) const noexcept;
-  void AddTo(core::StateHash& hash) const;
+  void VisitState(core::StateArchive& archive);
 
  private:
   struct Place {

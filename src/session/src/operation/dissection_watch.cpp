@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "trocar/math/state_fields.h"
+
 namespace trocar::session {
 namespace {
 
@@ -27,7 +29,6 @@ DissectionWatch::DissectionWatch(const anatomy::Patient& patient, std::span<cons
   for (std::uint32_t i = 0; i < strands.size(); ++i) {
     const Kind kind = strands[i].kind;
     if (kind == Kind::kTriangle || kind == Kind::kPeritoneum) triangle_.push_back(i);
-    if (kind == Kind::kAdhesion) adhesions_.push_back(i);
     if (kind == Kind::kBed && fundus != nullptr && neck != nullptr) {
       const Vec3 axis = fundus->position - neck->position;
       const double along =
@@ -102,12 +103,9 @@ void DissectionWatch::Update(const tissue::TissueState& tissue, const VesselWork
 
   facts_.structures_entering = 0;
   facts_.skeletonised.clear();
-  bool is_held = std::any_of(bed_.begin(), bed_.end(), is_intact) ||
-                 std::any_of(adhesions_.begin(), adhesions_.end(), is_intact);
   for (const Entering& tube : entering_) {
     const bool holds = std::any_of(tube.end_strands.begin(), tube.end_strands.end(), is_intact);
     if (!holds || vessels.CountCuts(tube.tube) > 0) continue;
-    is_held = true;
     ++facts_.structures_entering;
     // fat that lies on the gallbladder's own wall at the very end is none of the duct's
     double length = 0;
@@ -120,7 +118,6 @@ void DissectionWatch::Update(const tissue::TissueState& tissue, const VesselWork
     }
     facts_.skeletonised.push_back(length);
   }
-  is_free_ = !is_held;
   Look(tissue, organs, camera);
 }
 
@@ -162,6 +159,13 @@ double DissectionWatch::CalcAzimuth(const tissue::TissueState& tissue, const Vec
   if (!has_looked_) first_azimuth_ = azimuth;
   has_looked_ = true;
   return std::remainder(azimuth - first_azimuth_, 2.0 * M_PI);
+}
+
+void DissectionWatch::VisitState(core::StateArchive& archive) {
+  archive.Field("neck_turn", neck_turn_);
+  archive.Field("first_azimuth", first_azimuth_);
+  archive.Field("has_looked", has_looked_);
+  archive.Field("facts", facts_);
 }
 
 }  // namespace trocar::session

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "camera.h"
 #include "trocar/session/simulation.h"
 #include "trocar/surgery/organ_surface.h"
 #include "trocar/tissue/rest_frame.h"
@@ -14,12 +15,6 @@
 #include "vessel_work.h"
 
 namespace trocar::session {
-
-/// The picture's camera.
-struct Camera {
-  Pose X_world_camera;       ///< looks along -z
-  double field_of_view = 0;  ///< whole, diagonal [rad]
-};
 
 class DissectionWatch {
  public:
@@ -34,8 +29,7 @@ class DissectionWatch {
               std::span<const surgery::OrganSurface> organs, const Camera& camera) noexcept;
 
   const training::DissectionFacts& Facts() const { return facts_; }
-  /// Neither bed nor adhesion holds the gallbladder, and no tube that enters it is whole.
-  bool IsGallbladderFree() const { return is_free_; }
+  void VisitState(core::StateArchive& archive);
 
  private:
   struct Entering {
@@ -52,7 +46,6 @@ class DissectionWatch {
   std::vector<std::uint32_t> triangle_;  // strands of fat and peritoneum
   std::vector<std::uint32_t> bed_;       // strands
   std::vector<std::uint8_t> bed_bin_;    // (bed)
-  std::vector<std::uint32_t> adhesions_;
   std::vector<Entering> entering_;
   std::vector<std::uint32_t> fibre_starts_, fibres_;     // by node
   std::vector<std::uint32_t> duct_nodes_, plate_nodes_;  // of cystic and hepatic duct, from their meeting on
@@ -63,7 +56,6 @@ class DissectionWatch {
   double first_azimuth_ = 0;       // of the first look [rad]
   bool has_looked_ = false;
   training::DissectionFacts facts_;
-  bool is_free_ = false;
 };
 
 }  // namespace trocar::session

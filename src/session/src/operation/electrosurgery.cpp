@@ -151,4 +151,15 @@ void Electrosurgery::Publish(OperationSnapshot& snapshot) const noexcept {
   }
 }
 
+void Electrosurgery::VisitState(core::StateArchive& archive) {
+  archive.Field("is_cold", is_cold_);
+  // what was never warmed is as it was made
+  if (is_cold_) {
+    if (archive.IsRestoring()) Reset();
+    return;
+  }
+  archive.Field("heat", state_);
+  archive.FixedField("was_parted", was_parted_);
+}
+
 }  // namespace trocar::session

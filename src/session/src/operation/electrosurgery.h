@@ -66,6 +66,7 @@ class Electrosurgery {
   double Power() const { return power_; }  ///< of the last Step [W]
   void Publish(OperationSnapshot& snapshot) const noexcept;
   const surgery::HeatState& State() const { return state_; }
+  void VisitState(core::StateArchive& archive);
 
  private:
   static constexpr std::size_t kMostSources = 256;

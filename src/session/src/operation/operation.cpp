@@ -5,28 +5,26 @@
 #include <cmath>
 
 #include "pathology.h"
+#include "trocar/instrument/state_fields.h"
+#include "trocar/math/state_fields.h"
 
 namespace trocar::session {
 namespace {
 
-using training::OperationError;
-
 /// A tool that is exchanged is out of the way at this depth [m], for this long [s].
 constexpr double kOutside = 0.031, kExchangeSeconds = 0.5;
 constexpr double kMainDistance = 0.010;  // fibres nearer to what must stay are left alone [m]
-constexpr double kTipIn = 0.08;          // a tool this deep has been pushed in [m]
-constexpr double kBlindSeconds = 1.5;
 /// Where blood and bile gather, seen from the infundibulum: to the right and behind, in Morison's pouch [m].
 constexpr Vec3 kPouch{-0.015, 0.0, -0.025};
 constexpr double kBelowAll = -0.03;   // under the lowest organ: what falls beside everything stops there [m]
-constexpr double kSmokeFades = 0.08;  // share of the smoke a second that leaves with the gas [1/s]
 
 }  // namespace
 
-core::Result<std::unique_ptr<Operation>> Operation::Make(const Scene& scene, const PatientTissue& tissue) {
-  std::unique_ptr<Operation> made(new Operation(scene, tissue.strands));
-  made->made_ = std::make_shared<PatientTissue>(tissue);
-  auto stones = StoneWork::Make(scene, tissue.surfaces, tissue.definition.rest);
+core::Result<std::unique_ptr<Operation>> Operation::Make(const Scene& scene,
+                                                         std::shared_ptr<const PatientTissue> tissue) {
+  std::unique_ptr<Operation> made(new Operation(scene, tissue->strands));
+  auto stones = StoneWork::Make(scene, tissue->surfaces, tissue->definition.rest);
+  made->made_ = std::move(tissue);
   if (!stones.ok()) return stones.error();
   made->stones_ = std::move(*stones);
   made->loose_clips_.reserve(surgery::VesselActs::kMostClips);
@@ -88,8 +86,8 @@ core::Status Operation::MakeAll() {
     if (!end.strands.empty()) tube_ends_.push_back(std::move(end));
   }
   // what lies around ducts that must stay is none of the dissection's business
-  std::vector<StrandInfo> counted = strands_;
-  for (StrandInfo& strand : counted) {
+  dissected_ = strands_;
+  for (StrandInfo& strand : dissected_) {
     if (strand.kind != StrandInfo::Kind::kTriangle && strand.kind != StrandInfo::Kind::kPeritoneum) continue;
     const Vec3 middle = 0.5 * (tissue.definition.rest[strand.a] + tissue.definition.rest[strand.b]);
     const bool is_near = std::any_of(main_nodes_.begin(), main_nodes_.end(), [&](std::uint32_t node) {
@@ -98,8 +96,7 @@ core::Status Operation::MakeAll() {
     if (is_near) strand.kind = StrandInfo::Kind::kEnd;
   }
   heat_ = Electrosurgery(tissue.definition, tissue.heat_mass, strands_);
-  watch_ = DissectionWatch(patient, tissue.surfaces, counted, tissue.definition.rest);
-  judge_.Clear(gallbladder_ >= 0);
+  hold_ = GallbladderHold(patient, tissue.surfaces, dissected_);
   assistant_.reset();
   if (scene_->operation->assistant) {
     const AssistantSetup& setup = *scene_->operation->assistant;
@@ -133,9 +130,9 @@ core::Status Operation::MakeAll() {
   }
   leaked_seen_ = open_area_ = smoke_ = 0;
   topology_version_ = 0;
-  is_in_bag_ = is_completed_ = was_completed_ = false;
+  is_in_bag_ = is_completed_ = is_gallbladder_free_ = false;
   bag_hand_ = -1;
-  note_count_ = told_errors_ = 0;
+  BeginTick();
   band_strands_.clear();
   band_starts_.assign(1, 0);
   for (std::size_t band = 0; scene_->model && band < scene_->model->bands.size(); ++band) {
@@ -158,12 +155,8 @@ void Operation::MakeOoze() {
   ooze_ = BedOoze(strands_, on_liver, CalcPathology(scene_->patient).bed_bleeding);
 }
 
-void Operation::Tell(const OperationNote& note) noexcept {
-  if (note_count_ < notes_.size()) notes_[note_count_++] = note;
-}
-
-core::Status Operation::Reset() {
-  return MakeAll();
+void Operation::Emit(const OperationEvent& event) noexcept {
+  if (event_count_ < events_.size()) events_[event_count_++] = event;
 }
 
 bool Operation::IsOf(std::uint32_t node, std::int32_t organ) const noexcept {
@@ -198,15 +191,14 @@ bool Operation::MoveTool(int hand, const HandControls& controls, bool is_holding
     is_completed_ = is_in_bag_;
     return true;
   }
-  TellRetrieved(hand, stones_.TakeOut(hand));
+  EmitRetrieved(hand, stones_.TakeOut(hand));
   active = controls.tool;
   state.exchange_seconds = 0;
   state.blade = {};
   state.spread_upper = state.spread_lower = {};
   state.clips = Tool(hand).clips;
   state.has_clip_open = state.was_open = false;
-  state.is_inserting = true;
-  state.blind_seconds = 0;
+  acts_.SetExchanged(hand);
   return true;
 }
 
@@ -219,24 +211,25 @@ double Operation::WidestTool(int hand) const noexcept {
 }
 
 void Operation::BeginTick() noexcept {
-  note_count_ = 0;
+  event_count_ = 0;
+  acts_.Clear();
 }
 
-bool Operation::Act(const HandsNow& hands, const TissueNow& tissue) noexcept {
+void Operation::Act(const HandsNow& hands, const TissueNow& tissue, OperatedTissue& operated) noexcept {
   change_.Clear();
   for (int hand = 0; hand < kHandCount; ++hand) {
     hands_[static_cast<std::size_t>(hand)].has_current = false;
-    WatchImpossible(hand, hands);
+    RefuseImpossible(hand, hands);
     switch (Tool(hand).kind) {
       case instrument::ToolKind::kScissors:
-        UseBlade(hand, hands, tissue);
+        UseBlade(hand, hands, tissue, operated);
         break;
       case instrument::ToolKind::kHook:
         UseElectrode(hand, hands, tissue);
-        UseBlade(hand, hands, tissue);
+        UseBlade(hand, hands, tissue, operated);
         break;
       case instrument::ToolKind::kDissector:
-        Spread(hand, hands, tissue);
+        Spread(hand, hands, tissue, operated);
         UseElectrode(hand, hands, tissue);
         break;
       case instrument::ToolKind::kClipApplier:
@@ -246,19 +239,22 @@ bool Operation::Act(const HandsNow& hands, const TissueNow& tissue) noexcept {
         UseFluids(hand, hands);
         break;
       case instrument::ToolKind::kBag:
-        UseBag(hand, hands, tissue);
+        UseBag(hand, hands, tissue, operated);
         break;
       case instrument::ToolKind::kGrasper:
         break;
     }
   }
-  Burn(hands, tissue);
-  WatchTubeEnds(hands, tissue);
-  if (assistant_) {
-    const AssistantCommand command = is_in_bag_ ? AssistantCommand::kRelease : hands.input->assistant;
-    (void)assistant_->Step(command, tissue.state->position[assistant_node_], hands.seconds, tissue.organs,
-                           *tissue.model, {}, *tissue.state);
-  }
+}
+
+void Operation::Assist(const HandsNow& hands, const TissueNow& tissue, OperatedTissue& operated) noexcept {
+  if (!assistant_) return;
+  const AssistantCommand command = is_in_bag_ ? AssistantCommand::kRelease : hands.input->assistant;
+  (void)assistant_->Step(command, tissue.state->position[assistant_node_], hands.seconds, tissue.organs,
+                         *tissue.model, {}, operated.state);
+}
+
+bool Operation::EndCuts() noexcept {
   if (change_.nodes.empty() && change_.springs.empty()) return false;
   for (const surgery::NodeChange& node : change_.nodes) {
     if (node.is_new && node.from[0] != geometry::kNone) heat_.CopyNode(node.from[0], node.node);
@@ -267,60 +263,6 @@ bool Operation::Act(const HandsNow& hands, const TissueNow& tissue) noexcept {
   ++topology_version_;
   stones_.ForgetSupports();
   return true;
-}
-
-void Operation::Judge(const HandsNow& hands, const TissueNow& tissue) noexcept {
-  WatchHands(hands);
-  tissue::ConservationState& conserved = *tissue.conserved;
-  if (gallbladder_ >= 0) {
-    const double leaked = conserved.organs[static_cast<std::size_t>(gallbladder_)].leaked - leaked_seen_;
-    if (leaked > 0.0) fluids_.Leak(surgery::Fluid::kBile, leaked);
-    SpillStones(leaked, tissue);
-  }
-  vessels_->Flow(hands.seconds, gallbladder_, conserved, fluids_);
-  SlipClips(hands, tissue);
-  fluids_.Leak(surgery::Fluid::kBlood,
-               ooze_.Update(*tissue.state, heat_, made_->definition.rest.size(), hands.seconds));
-  MoveLoose(hands, tissue);
-  if (gallbladder_ >= 0) leaked_seen_ = conserved.organs[static_cast<std::size_t>(gallbladder_)].leaked;
-  smoke_ = std::clamp(smoke_ * (1.0 - kSmokeFades * hands.seconds), 0.0, 1.0);
-  watch_.Update(*tissue.state, *vessels_, tissue.organs, hands.camera);
-  judge_.Update(watch_, fluids_, is_in_bag_, is_completed_, p_pool_, hands.time, hands.seconds);
-  if (is_completed_ && !was_completed_ && stones_.Count().spilled > 0)
-    judge_.Report(OperationError::kStonesLeft, p_pool_, -1, hands.time);
-  was_completed_ = is_completed_;
-  for (; told_errors_ < judge_.Errors().Entries().size(); ++told_errors_) {
-    const training::ErrorEntry& entry = judge_.Errors().Entries()[told_errors_];
-    Tell({EventKind::kOperationError, entry.hand, -1, static_cast<std::int32_t>(entry.error), entry.place});
-  }
-}
-
-void Operation::WatchHands(const HandsNow& hands) noexcept {
-  for (int hand = 0; hand < kHandCount; ++hand) {
-    const auto h = static_cast<std::size_t>(hand);
-    const Vec3& tip = hands.X_proxy[h].translation;
-    const surgery::Grasp& grasp = (*hands.grasps)[h];
-    if (grasp.IsHolding() && Tool(hand).kind != instrument::ToolKind::kBag) {
-      judge_.Note(
-          {training::InstrumentKind::kGrasper, training::Verb::kRetract, TargetOfSurface(grasp.surface)},
-          hand);
-      if (grasp.surface == liver_) judge_.Report(OperationError::kLiverGrasped, tip, hand, hands.time);
-    }
-    if (hands.changes[h] == surgery::GraspChange::kSlipped ||
-        hands.changes[h] == surgery::GraspChange::kDamaged)
-      judge_.Report(OperationError::kExcessForce, tip, hand, hands.time);
-    HandState& state = hands_[h];
-    if (!state.is_inserting) continue;
-    if (IsInView(hands.camera.X_world_camera, hands.camera.field_of_view, tip)) {
-      state.is_inserting = false;
-    } else if (hands.joints[h].depth > kTipIn) {
-      state.blind_seconds += hands.seconds;
-      if (state.blind_seconds > kBlindSeconds) {
-        judge_.Report(OperationError::kBlindInsertion, tip, hand, hands.time);
-        state.is_inserting = false;
-      }
-    }
-  }
 }
 
 training::Target Operation::TargetOfSurface(std::int32_t surface) const noexcept {
@@ -439,55 +381,76 @@ void Operation::Publish(const tissue::TissueState& tissue, OperationSnapshot& sn
     snapshot.assistant_jaw = assistant_->Joints().jaw;
     snapshot.is_assistant_holding = assistant_->Held().IsHolding();
   }
-  snapshot.facts.cleared_share = watch_.Facts().cleared_share;
-  snapshot.facts.detached_share = watch_.Facts().detached_share;
-  snapshot.facts.structures_entering = watch_.Facts().structures_entering;
-  snapshot.critical_view = judge_.View().Score();
-  snapshot.phase = judge_.Phases().Current();
-  snapshot.errors = judge_.Errors().Count();
-  snapshot.critical_errors = judge_.Errors().Count(training::Severity::kCritical);
-  snapshot.is_gallbladder_free = watch_.IsGallbladderFree();
+  snapshot.is_gallbladder_free = is_gallbladder_free_;
   snapshot.is_in_bag = is_in_bag_;
   snapshot.is_completed = is_completed_;
 }
 
-OperationResult Operation::Result() const {
-  OperationResult result;
-  result.errors = judge_.Errors();
-  result.facts = watch_.Facts();
-  result.critical_view = judge_.View().Score();
-  result.was_critical_view_achieved = judge_.WasViewAchieved();
+void Operation::AddTo(OperationResult& result) const {
   surgery::FlowNetwork network = vessels_->Map().network;
   result.injuries = training::JudgeInjuries(vessels_->Map().anatomy, vessels_->Acts(), network);
   result.fluids = fluids_;
   result.bed_blood = ooze_.Lost();
   result.stones = stones_.Count();
   result.injuries.spilled_stones = result.stones.spilled;
-  result.phase = judge_.Phases().Current();
-  result.is_gallbladder_free = watch_.IsGallbladderFree();
+  result.is_gallbladder_free = is_gallbladder_free_;
   result.is_in_bag = is_in_bag_;
   result.is_completed = is_completed_;
-  return result;
 }
 
-void Operation::AddTo(core::StateHash& hash) const {
-  vessels_->AddTo(hash);
-  stones_.AddTo(hash);
-  ooze_.AddTo(hash);
-  if (assistant_) assistant_->AddTo(hash);
-  for (std::size_t h = 0; h < active_.size(); ++h) {
-    hash.Add(std::uint64_t{active_[h]});
-    hash.Add(static_cast<std::uint64_t>(hands_[h].clips));
+// --- state
+
+void Operation::HandState::VisitState(core::StateArchive& archive) {
+  archive.Field("blade", blade);
+  archive.Field("spread_upper", spread_upper);
+  archive.Field("spread_lower", spread_lower);
+  archive.FixedField("fronts", fronts);
+  archive.Field("has_clip_open", has_clip_open);
+  archive.Field("opened", opened);
+  archive.Field("caught", caught);
+  archive.Field("clips", clips);
+  archive.Field("has_current", has_current);
+  archive.Field("idle_seconds", idle_seconds);
+  archive.Field("was_refused", was_refused);
+  archive.Field("was_open", was_open);
+  archive.Field("was_told_outside", was_told_outside);
+  archive.Field("exchange_seconds", exchange_seconds);
+}
+
+void Operation::VisitTopology(core::StateArchive& archive) {
+  archive.FixedField("organs", organs_);
+  vessels_->VisitTopology(archive);
+}
+
+void Operation::VisitState(core::StateArchive& archive) {
+  archive.FixedField("sheets", sheets_);
+  archive.Field("vessels", *vessels_);
+  archive.Field("heat", heat_);
+  if (assistant_) archive.Field("assistant", *assistant_);
+  archive.Field("fluids", fluids_);
+  archive.Field("holes", holes_);
+  archive.Field("stones", stones_);
+  archive.Field("ooze", ooze_);
+  archive.Field("active_tools", active_);
+  archive.Field("left_hand", hands_[kLeft]);
+  archive.Field("right_hand", hands_[kRight]);
+  archive.Field("X_world_tools", X_world_tools_);
+  for (TubeEnd& end : tube_ends_) archive.Field("is_tube_end_off", end.is_off);
+  archive.Field("leaked_seen", leaked_seen_);
+  archive.Field("open_area", open_area_);
+  archive.Field("smoke", smoke_);
+  archive.Field("topology_version", topology_version_);
+  archive.Field("is_in_bag", is_in_bag_);
+  archive.Field("is_completed", is_completed_);
+  archive.Field("is_gallbladder_free", is_gallbladder_free_);
+  archive.Field("bag_hand", bag_hand_);
+  if (!archive.IsRestoring() || !archive.ok()) return;
+  BeginTick();
+  for (std::size_t hand = 0; hand < active_.size(); ++hand) {
+    if (active_[hand] < scene_->instruments[hand].tray.size()) continue;
+    active_[hand] = 0;
+    archive.Fail("names a tool that is not in the tray");
   }
-  for (std::size_t i = 0; i < heat_.State().temperature.size(); ++i) {
-    // what was never warmed says nothing
-    if (heat_.State().damage[i] == 0.0 && heat_.State().water[i] == 1.0) continue;
-    hash.Add(std::uint64_t{i}), hash.Add(heat_.State().temperature[i]), hash.Add(heat_.State().water[i]);
-  }
-  for (const auto& account : fluids_.fluids)
-    hash.Add(account.left), hash.Add(account.pooled), hash.Add(account.aspirated);
-  hash.Add(std::uint64_t{topology_version_});
-  hash.Add(std::uint64_t{is_in_bag_}), hash.Add(std::uint64_t{is_completed_});
 }
 
 }  // namespace trocar::session

@@ -11,9 +11,10 @@
 
 #include "assistant.h"
 #include "bed_ooze.h"
-#include "dissection_watch.h"
+#include "camera.h"
 #include "electrosurgery.h"
-#include "operation_judge.h"
+#include "gallbladder_hold.h"
+#include "emitted_acts.h"
 #include "patient_tissue.h"
 #include "sheet_watch.h"
 #include "stone_work.h"
@@ -28,33 +29,39 @@ struct HandsNow {
   std::array<instrument::TrocarJoints, kHandCount> joints;
   std::array<Pose, kHandCount> X_proxy, X_device;
   std::array<surgery::GraspChange, kHandCount> changes{};
-  std::array<surgery::Grasp, kHandCount>* grasps = nullptr;
+  const std::array<surgery::Grasp, kHandCount>* grasps = nullptr;
   std::array<Vec3, kHandCount> forces;  ///< on the tools in the tick before, world frame [N]
   Vec3 gravity;                         ///< [m/s^2]
-  Camera camera;
+  Camera camera;                        ///< as the trainee saw when the hands moved
   double time = 0;     ///< [s]
   double seconds = 0;  ///< of the tick
 };
 
-/// The tissue that is operated on.
+/// The tissue that is operated on, as it is.
 struct TissueNow {
   const tissue::TissueModel* model = nullptr;
   const tissue::TissueDefinition* definition = nullptr;
-  tissue::TissueState* state = nullptr;
+  const tissue::TissueState* state = nullptr;
   const tissue::Conservation* conservation = nullptr;
-  tissue::ConservationState* conserved = nullptr;
+  const tissue::ConservationState* conserved = nullptr;
   std::span<const surgery::OrganSurface> organs;
   const surgery::TubeSet* tubes = nullptr;
   std::span<const std::uint32_t> torn_springs;  ///< of walls, in this tick
 };
 
-/// Something that an operation tells: it becomes an event of the tick.
-struct OperationNote {
-  EventKind kind = EventKind::kOperationError;
+/// What the stages of an operation change beside the operation itself: the same tissue, and what hands hold of it.
+struct OperatedTissue {
+  tissue::TissueState& state;
+  tissue::ConservationState& conserved;
+  std::array<surgery::Grasp, kHandCount>& grasps;
+};
+
+/// Something that an operation emits: it becomes an event of the tick.
+struct OperationEvent {
+  EventKind kind = EventKind::kClipClosed;
   std::int32_t hand = -1;
   std::int32_t surface = -1;  ///< as in Event::organ
-  std::int32_t error = -1;    ///< training::OperationError
-  Vec3 p_rest;
+  Vec3 p_rest;                ///< of a clip or a cut: where on its vessel at rest, world frame [m]
 };
 
 class Operation {
@@ -63,14 +70,10 @@ class Operation {
   static constexpr SpareNodes kSpare{500, 32};
 
   /// \return kPatientInvalid or kMeshInvalid
-  static core::Result<std::unique_ptr<Operation>> Make(const Scene& scene, const PatientTissue& tissue);
-  /// As at the start. \pre the tissue is again the one of Make
-  core::Status Reset();
+  static core::Result<std::unique_ptr<Operation>> Make(const Scene& scene,
+                                                       std::shared_ptr<const PatientTissue> tissue);
 
-  /// Neither an organ nor a duct or vessel has been cut.
-  bool IsUncut() const { return topology_version_ == 0; }
-
-  /// First of all in a tick: what the one before told is forgotten.
+  /// First of all in a tick: what the one before emitted is forgotten.
   void BeginTick() noexcept;
 
   // --- tools
@@ -93,16 +96,38 @@ class Operation {
 
   // --- the stages of a tick
 
-  /// Cuts, burns, clips, rinses. \return whether nodes or springs changed: see Change()
-  /// \note Real-time safe.
-  bool Act(const HandsNow& hands, const TissueNow& tissue) noexcept;
+  /// Tools cut, clip, rinse, and let current flow.
+  /// \note Real-time safe, as are all stages.
+  void Act(const HandsNow& hands, const TissueNow& tissue, OperatedTissue& operated) noexcept;
+  /// What current has heated gives way.
+  void Heat(const HandsNow& hands, const TissueNow& tissue, OperatedTissue& operated) noexcept;
+  /// The third hand.
+  void Assist(const HandsNow& hands, const TissueNow& tissue, OperatedTissue& operated) noexcept;
+  /// What Act has cut. \return whether nodes or springs changed: then Change() says which
+  bool EndCuts() noexcept;
   const surgery::TopologyChange& Change() const { return change_; }
-  /// After the solve: flow, views, errors.
-  /// \note Real-time safe.
-  void Judge(const HandsNow& hands, const TissueNow& tissue) noexcept;
+  /// After the solve: blood and bile run, stones leave with the bile, clips slip.
+  void Flow(const HandsNow& hands, const TissueNow& tissue, OperatedTissue& operated) noexcept;
+  /// What lies loose falls, is pushed and carried.
+  void MoveLoose(const HandsNow& hands, const TissueNow& tissue) noexcept;
 
-  /// What was done in this tick, and what was wrong with it.
-  std::span<const OperationNote> Notes() const { return std::span(notes_).first(note_count_); }
+  /// What was done in this tick, for the judge.
+  const OperationActs& Acts() const { return acts_; }
+  /// What happened in this tick.
+  std::span<const OperationEvent> Events() const { return std::span(events_).first(event_count_); }
+
+  std::int32_t Liver() const { return liver_; }
+  std::int32_t Gallbladder() const { return gallbladder_; }
+  const VesselWork& Vessels() const { return *vessels_; }
+  const StoneWork& Stones() const { return stones_; }
+  const surgery::FluidLedger& Fluids() const { return fluids_; }
+  const Vec3& Pool() const { return p_pool_; }
+  bool IsGallbladderFree() const { return is_gallbladder_free_; }
+  bool IsInBag() const { return is_in_bag_; }
+  bool IsCompleted() const { return is_completed_; }
+  training::Target TargetOfSurface(std::int32_t surface) const noexcept;
+  /// (strands) as dissection counts them: what lies around ducts that must stay is none of its business.
+  std::span<const StrandInfo> DissectedStrands() const { return dissected_; }
 
   const surgery::CuttableOrgan& Organ(std::size_t i) const { return organs_[i]; }
   /// Ducts and vessels as they are now, for contacts.
@@ -112,8 +137,12 @@ class Operation {
 
   void Size(OperationSnapshot& snapshot) const;
   void Publish(const tissue::TissueState& tissue, OperationSnapshot& snapshot) const noexcept;
-  OperationResult Result() const;
-  void AddTo(core::StateHash& hash) const;
+  /// Adds what this one knows.
+  void AddTo(OperationResult& result) const;
+
+  /// Meshes and lines with their cuts. Before VisitState.
+  void VisitTopology(core::StateArchive& archive);
+  void VisitState(core::StateArchive& archive);
 
  private:
   struct HandState {
@@ -125,12 +154,11 @@ class Operation {
     int clips = 0;
     bool has_current = false;
     double idle_seconds = 0;  // pedal down, nothing touched
-    double blind_seconds = 0;
-    bool is_inserting = false;
     bool was_refused = false;
     bool was_open = false;  // jaws, since they closed last
     bool was_told_outside = false;
     double exchange_seconds = 0;
+    void VisitState(core::StateArchive& archive);
   };
 
   Operation(const Scene& scene, std::vector<StrandInfo> strands)
@@ -138,30 +166,31 @@ class Operation {
   core::Status MakeAll();
   void MakeOoze();
   double WidestTool(int hand) const noexcept;
-  void UseBlade(int hand, const HandsNow& hands, const TissueNow& tissue) noexcept;
+  void UseBlade(int hand, const HandsNow& hands, const TissueNow& tissue, OperatedTissue& operated) noexcept;
   void CutWith(const surgery::BladeMove& move, int hand, const HandsNow& hands, const TissueNow& tissue,
-               bool cuts_strands) noexcept;
-  void Spread(int hand, const HandsNow& hands, const TissueNow& tissue) noexcept;
+               OperatedTissue& operated, bool cuts_strands) noexcept;
+  void CutStrands(const surgery::BladeMove& move, int hand, training::InstrumentKind kind,
+                  const TissueNow& tissue, OperatedTissue& operated) noexcept;
+  void CutOrgans(const surgery::BladeMove& move, int hand, training::InstrumentKind kind,
+                 const HandsNow& hands, const TissueNow& tissue, OperatedTissue& operated) noexcept;
+  void Spread(int hand, const HandsNow& hands, const TissueNow& tissue, OperatedTissue& operated) noexcept;
   void UseElectrode(int hand, const HandsNow& hands, const TissueNow& tissue) noexcept;
   void UseClips(int hand, const HandsNow& hands, const TissueNow& tissue) noexcept;
   void UseFluids(int hand, const HandsNow& hands) noexcept;
-  void UseBag(int hand, const HandsNow& hands, const TissueNow& tissue) noexcept;
-  void Burn(const HandsNow& hands, const TissueNow& tissue) noexcept;
-  void WatchTubeEnds(const HandsNow& hands, const TissueNow& tissue) noexcept;
+  void UseBag(int hand, const HandsNow& hands, const TissueNow& tissue, OperatedTissue& operated) noexcept;
+  void OpenTubeEnds(const TissueNow& tissue) noexcept;
   void SpillStones(double leaked, const TissueNow& tissue) noexcept;
-  void MoveLoose(const HandsNow& hands, const TissueNow& tissue) noexcept;
   void SlipClips(const HandsNow& hands, const TissueNow& tissue) noexcept;
-  void TellRetrieved(int hand, int count) noexcept;
-  void WatchHands(const HandsNow& hands) noexcept;
-  void WatchImpossible(int hand, const HandsNow& hands) noexcept;
+  void EmitRetrieved(int hand, int count) noexcept;
+  void RefuseImpossible(int hand, const HandsNow& hands) noexcept;
   training::Target TargetOf(const TissueNow& tissue, std::uint32_t part) const noexcept;
-  training::Target TargetOfSurface(std::int32_t surface) const noexcept;
   bool IsOf(std::uint32_t node, std::int32_t organ) const noexcept;
-  void Tell(const OperationNote& note) noexcept;
+  void Emit(const OperationEvent& event) noexcept;
 
   const Scene* scene_;  // outlives this
   std::vector<StrandInfo> strands_;
   std::shared_ptr<const PatientTissue> made_;
+  std::vector<StrandInfo> dissected_;
   std::int32_t liver_ = -1, gallbladder_ = -1;
   std::vector<std::uint32_t> main_nodes_;  // of ducts and arteries that must stay
   std::vector<std::uint32_t> main_ducts_;  // of the ducts among them
@@ -179,8 +208,8 @@ class Operation {
   std::vector<SheetWatch> sheets_;  // (ModelSetup::sheets), which are the organs
   std::optional<VesselWork> vessels_;
   Electrosurgery heat_;
-  DissectionWatch watch_;
-  OperationJudge judge_;
+  GallbladderHold hold_;
+  OperationActs acts_;
   std::optional<Assistant> assistant_;
   std::uint32_t assistant_node_ = 0;  // of what it takes
   surgery::TopologyChange change_;
@@ -196,10 +225,10 @@ class Operation {
   std::array<Pose, kHandCount> X_world_tools_;  // that are seen, in the tick before
   double leaked_seen_ = 0, open_area_ = 0, smoke_ = 0;
   std::uint32_t topology_version_ = 0;
-  bool is_in_bag_ = false, is_completed_ = false, was_completed_ = false;
+  bool is_in_bag_ = false, is_completed_ = false, is_gallbladder_free_ = false;
   std::int32_t bag_hand_ = -1;
-  std::array<OperationNote, 8> notes_{};
-  std::size_t note_count_ = 0, told_errors_ = 0;
+  std::array<OperationEvent, 8> events_{};
+  std::size_t event_count_ = 0;
   std::vector<std::uint32_t> band_strands_, band_starts_;  // (bands) the strands of each, by band_starts_
 };
 

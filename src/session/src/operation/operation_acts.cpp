@@ -46,7 +46,8 @@ geometry::BladeEdge JawEdge(const instrument::Tool& tool, const Pose& X_world_to
 
 }  // namespace
 
-void Operation::UseBlade(int hand, const HandsNow& hands, const TissueNow& tissue) noexcept {
+void Operation::UseBlade(int hand, const HandsNow& hands, const TissueNow& tissue,
+                         OperatedTissue& operated) noexcept {
   const auto h = static_cast<std::size_t>(hand);
   const bool is_hook = Tool(hand).kind == instrument::ToolKind::kHook;
   surgery::BladeSettings settings;
@@ -59,43 +60,53 @@ void Operation::UseBlade(int hand, const HandsNow& hands, const TissueNow& tissu
     for (geometry::CutFront& front : hands_[h].fronts) front = {};
     return;
   }
-  CutWith(*move, hand, hands, tissue, !is_hook);
+  CutWith(*move, hand, hands, tissue, operated, !is_hook);
 }
 
 void Operation::CutWith(const surgery::BladeMove& move, int hand, const HandsNow& hands,
-                        const TissueNow& tissue, bool cuts_strands) noexcept {
-  const auto h = static_cast<std::size_t>(hand);
+                        const TissueNow& tissue, OperatedTissue& operated, bool cuts_strands) noexcept {
   const InstrumentKind kind = cuts_strands ? InstrumentKind::kScissors : InstrumentKind::kHook;
-  const Vec3& tip = hands.X_proxy[h].translation;
-  if (cuts_strands) {
-    std::array<std::uint32_t, 64> cut;
-    const std::size_t count = surgery::FindCutStrands(move, tissue.definition->strands, *tissue.state, cut);
-    for (std::size_t i = 0; i < count; ++i) {
-      tissue.state->strand_is_intact[cut[i]] = 0;
-      judge_.Note({kind, Verb::kCut,
-                   TargetOf(tissue, static_cast<std::uint32_t>(tissue.definition->rest.size()) + cut[i])},
-                  hand);
-    }
-  }
+  if (cuts_strands) CutStrands(move, hand, kind, tissue, operated);
   std::array<TubePlace, surgery::CuttableTubes::kMostCuts> places;
   const std::size_t tubes = vessels_->Cut(move, *tissue.definition, tissue.state->position, change_, places);
-  for (std::size_t i = 0; i < tubes; ++i) {
-    judge_.OnCut(places[i], *vessels_, tip, hand, hands.time);
-    Tell({EventKind::kTubeCut, hand, static_cast<std::int32_t>(organs_.size() + places[i].tube), -1,
-          vessels_->RestPoint(places[i])});
-    judge_.Note(
-        {kind, Verb::kCut, TargetOfSurface(static_cast<std::int32_t>(organs_.size() + places[i].tube))},
-        hand);
+  for (const TubePlace& place : std::span(places).first(tubes)) {
+    const auto surface = static_cast<std::int32_t>(organs_.size() + place.tube);
+    OperationAct act;
+    act.kind = OperationAct::Kind::kCut;
+    act.position = hands.X_proxy[static_cast<std::size_t>(hand)].translation;
+    act.hand = hand;
+    act.vessel = vessels_->JudgePlace(place);
+    acts_.Add(act);
+    Emit({EventKind::kTubeCut, hand, surface, vessels_->RestPoint(place)});
+    acts_.Add({kind, Verb::kCut, TargetOfSurface(surface)}, hand);
   }
+  CutOrgans(move, hand, kind, hands, tissue, operated);
+}
+
+void Operation::CutStrands(const surgery::BladeMove& move, int hand, InstrumentKind kind,
+                           const TissueNow& tissue, OperatedTissue& operated) noexcept {
+  std::array<std::uint32_t, 64> cut;
+  const std::size_t count = surgery::FindCutStrands(move, tissue.definition->strands, *tissue.state, cut);
+  for (const std::uint32_t strand : std::span(cut).first(count)) {
+    operated.state.strand_is_intact[strand] = 0;
+    const auto part = static_cast<std::uint32_t>(tissue.definition->rest.size()) + strand;
+    acts_.Add({kind, Verb::kCut, TargetOf(tissue, part)}, hand);
+  }
+}
+
+void Operation::CutOrgans(const surgery::BladeMove& move, int hand, InstrumentKind kind,
+                          const HandsNow& hands, const TissueNow& tissue, OperatedTissue& operated) noexcept {
+  const auto h = static_cast<std::size_t>(hand);
+  const Vec3& tip = hands.X_proxy[h].translation;
   for (std::size_t i = 0; i < organs_.size(); ++i) {
     const geometry::CutReport report =
         organs_[i].Cut(move.before, move.now, tissue.state->position, hands_[h].fronts[i], change_);
     if (!report.HasChanged()) continue;
     const auto organ = static_cast<std::int32_t>(i);
-    judge_.Note({kind, Verb::kCut, TargetOfSurface(organ)}, hand);
+    acts_.Add({kind, Verb::kCut, TargetOfSurface(organ)}, hand);
     if (scene_->model) continue;  // a sheet is there to be cut
     if (organ != gallbladder_) {
-      judge_.Report(OperationError::kStructureTorn, tip, hand, hands.time);
+      acts_.Report(OperationError::kStructureTorn, tip, hand);
       continue;
     }
     std::array<geometry::Opening, 8> openings;
@@ -103,13 +114,14 @@ void Operation::CutWith(const surgery::BladeMove& move, int hand, const HandsNow
     double area = 0;
     for (std::size_t k = 0; k < found; ++k) area += openings[k].area;
     if (found == 0) continue;
-    judge_.Report(OperationError::kGallbladderPerforated, tip, hand, hands.time);
-    tissue.conservation->Perforate(i, std::max(kBurntHole, area - open_area_), *tissue.conserved);
+    acts_.Report(OperationError::kGallbladderPerforated, tip, hand);
+    tissue.conservation->Perforate(i, std::max(kBurntHole, area - open_area_), operated.conserved);
     open_area_ = std::max(area, open_area_);
   }
 }
 
-void Operation::Spread(int hand, const HandsNow& hands, const TissueNow& tissue) noexcept {
+void Operation::Spread(int hand, const HandsNow& hands, const TissueNow& tissue,
+                       OperatedTissue& operated) noexcept {
   const auto h = static_cast<std::size_t>(hand);
   HandState& state = hands_[h];
   const double jaw = hands.joints[h].jaw;
@@ -128,8 +140,8 @@ void Operation::Spread(int hand, const HandsNow& hands, const TissueNow& tissue)
       for (std::size_t i = 0; i < count; ++i) {
         const StrandInfo::Kind kind = strands_[torn[i]].kind;
         if (kind == StrandInfo::Kind::kEnd) continue;  // a duct's end does not give way to a jaw
-        tissue.state->strand_is_intact[torn[i]] = 0;
-        judge_.Note({InstrumentKind::kGrasper, Verb::kDissect,
+        operated.state.strand_is_intact[torn[i]] = 0;
+        acts_.Add({InstrumentKind::kGrasper, Verb::kDissect,
                      TargetOf(tissue, static_cast<std::uint32_t>(tissue.definition->rest.size()) + torn[i])},
                     hand);
       }
@@ -158,7 +170,7 @@ void Operation::UseElectrode(int hand, const HandsNow& hands, const TissueNow& t
   electrode.power = controls.cut ? kCutPower : kCoagulatePower;
   electrode.reach = controls.cut ? kCutReach : kCoagulateReach;
   if (!IsInView(hands.camera.X_world_camera, hands.camera.field_of_view, X.translation))
-    judge_.Report(OperationError::kEnergyOutOfView, X.translation, hand, hands.time);
+    acts_.Report(OperationError::kEnergyOutOfView, X.translation, hand);
   std::array<Electrosurgery::Target, 96> targets;
   const std::size_t count =
       heat_.FindTargets(electrode, tissue.organs, *tissue.tubes, *tissue.state, targets);
@@ -166,7 +178,7 @@ void Operation::UseElectrode(int hand, const HandsNow& hands, const TissueNow& t
   if (count == 0) {
     idle += hands.seconds;
     if (idle > kIdleSeconds)
-      judge_.Report(OperationError::kEnergyWithoutContact, X.translation, hand, hands.time);
+      acts_.Report(OperationError::kEnergyWithoutContact, X.translation, hand);
     return;
   }
   idle = 0;
@@ -179,40 +191,46 @@ void Operation::UseElectrode(int hand, const HandsNow& hands, const TissueNow& t
       tool.kind == instrument::ToolKind::kHook ? InstrumentKind::kHook : InstrumentKind::kBipolar;
   for (std::size_t i = 0; i < count; ++i) {
     const bool is_strand = targets[i].part >= tissue.definition->rest.size();
-    judge_.Note({kind, is_strand ? Verb::kDissect : Verb::kCoagulate, TargetOf(tissue, targets[i].part)},
+    acts_.Add({kind, is_strand ? Verb::kDissect : Verb::kCoagulate, TargetOf(tissue, targets[i].part)},
                 hand);
   }
   const bool is_near = std::any_of(main_ducts_.begin(), main_ducts_.end(), [&](std::uint32_t node) {
     return math::Distance(tissue.state->position[node], X.translation) < kNearDuct;
   });
-  if (is_near) judge_.Report(OperationError::kEnergyNearDuct, X.translation, hand, hands.time);
+  if (is_near) acts_.Report(OperationError::kEnergyNearDuct, X.translation, hand);
 }
 
-void Operation::Burn(const HandsNow& hands, const TissueNow& tissue) noexcept {
+void Operation::Heat(const HandsNow& hands, const TissueNow& tissue, OperatedTissue& operated) noexcept {
   std::array<std::uint32_t, 16> parted;
-  const std::size_t count = heat_.Step(hands.seconds, *tissue.state, parted);
+  const std::size_t count = heat_.Step(hands.seconds, operated.state, parted);
   smoke_ += kSmokeByHeat * heat_.Power() * hands.seconds;
   std::int32_t hand = -1;
   for (int i = 0; i < kHandCount; ++i) {
     if (hands_[static_cast<std::size_t>(i)].has_current) hand = i;
   }
-  for (std::size_t i = 0; i < count; ++i) {
-    const Vec3& p = tissue.state->position[parted[i]];
+  for (const std::uint32_t node : std::span(parted).first(count)) {
+    const Vec3& p = tissue.state->position[node];
     TubePlace place;
-    if (IsOf(parted[i], gallbladder_)) {
-      tissue.conservation->Perforate(static_cast<std::size_t>(gallbladder_), kBurntHole, *tissue.conserved);
-      holes_.Add(parted[i], kBurntRim);
-      judge_.Report(OperationError::kGallbladderPerforated, p, hand, hands.time);
-    } else if (IsOf(parted[i], liver_)) {
-      judge_.Report(OperationError::kLiverBurnt, p, hand, hands.time);
-    } else if (vessels_->MakeHole(parted[i], kBurntHole, place)) {
-      judge_.OnHole(place, *vessels_, p, hand, hands.time);
+    if (IsOf(node, gallbladder_)) {
+      tissue.conservation->Perforate(static_cast<std::size_t>(gallbladder_), kBurntHole, operated.conserved);
+      holes_.Add(node, kBurntRim);
+      acts_.Report(OperationError::kGallbladderPerforated, p, hand);
+    } else if (IsOf(node, liver_)) {
+      acts_.Report(OperationError::kLiverBurnt, p, hand);
+    } else if (vessels_->MakeHole(node, kBurntHole, place)) {
+      OperationAct act;
+      act.kind = OperationAct::Kind::kHole;
+      act.position = p;
+      act.hand = hand;
+      act.vessel = vessels_->JudgePlace(place);
+      acts_.Add(act);
     }
   }
+  OpenTubeEnds(tissue);
 }
 
 /// A duct or artery that was burnt or torn off the gallbladder is open there, as one that was cut.
-void Operation::WatchTubeEnds(const HandsNow& hands, const TissueNow& tissue) noexcept {
+void Operation::OpenTubeEnds(const TissueNow& tissue) noexcept {
   if (is_in_bag_) return;
   for (TubeEnd& end : tube_ends_) {
     if (end.is_off || std::any_of(end.strands.begin(), end.strands.end(),
@@ -221,9 +239,12 @@ void Operation::WatchTubeEnds(const HandsNow& hands, const TissueNow& tissue) no
     end.is_off = true;
     TubePlace place;
     if (!vessels_->MakeHole(end.node, end.section, place)) continue;
+    OperationAct act;
+    act.kind = OperationAct::Kind::kHole;
+    act.position = tissue.state->position[end.node];
+    act.vessel = vessels_->JudgePlace(place);
     // of what is divided already only the gallbladder's side is left
-    if (vessels_->CountCuts(place.tube) == 0)
-      judge_.OnHole(place, *vessels_, tissue.state->position[end.node], -1, hands.time);
+    if (act.vessel.cuts == 0) acts_.Add(act);
   }
 }
 
@@ -246,15 +267,21 @@ void Operation::UseClips(int hand, const HandsNow& hands, const TissueNow& tissu
   const ClipResult clip = vessels_->Clip(tool, hands.X_proxy[h], state.caught, tissue.state->position);
   state.caught.reset();
   state.opened = 0;
-  judge_.OnClip(clip, vessels_->Map(), hands.X_proxy[h].translation, hand, hands.time);
+  OperationAct act;
+  act.kind = OperationAct::Kind::kClip;
+  act.position = hands.X_proxy[h].translation;
+  act.hand = hand;
+  act.clip = clip;
+  if (clip.kind != ClipResult::Kind::kLost) act.vessel = vessels_->JudgePlace(clip.place);
+  acts_.Add(act);
   if (clip.kind == ClipResult::Kind::kLost) return;
   const auto surface = static_cast<std::int32_t>(organs_.size() + clip.place.tube);
-  judge_.Note({InstrumentKind::kClipper, Verb::kClip, TargetOfSurface(surface)}, hand);
-  Tell({EventKind::kClipClosed, hand, surface, -1, vessels_->RestPoint(clip.place)});
+  acts_.Add({InstrumentKind::kClipper, Verb::kClip, TargetOfSurface(surface)}, hand);
+  Emit({EventKind::kClipClosed, hand, surface, vessels_->RestPoint(clip.place)});
 }
 
 /// Answers what cannot be done, once each time that it is tried.
-void Operation::WatchImpossible(int hand, const HandsNow& hands) noexcept {
+void Operation::RefuseImpossible(int hand, const HandsNow& hands) noexcept {
   const auto h = static_cast<std::size_t>(hand);
   HandState& state = hands_[h];
   const HandControls& controls = hands.input->controls[h];
@@ -268,11 +295,11 @@ void Operation::WatchImpossible(int hand, const HandsNow& hands) noexcept {
   const bool is_used =
       has_bitten || controls.cut || controls.coagulate || controls.rinse || controls.aspirate;
   const bool is_outside = hands.joints[h].depth < kOutOfTrocar;
-  if (is_used && is_outside && !state.was_told_outside) Tell({EventKind::kUsedOutside, hand, -1, -1, {}});
+  if (is_used && is_outside && !state.was_told_outside) Emit({EventKind::kUsedOutside, hand, -1, {}});
   state.was_told_outside = is_outside && (is_used || state.was_told_outside);
   if (has_bitten && !is_outside && tool.kind == instrument::ToolKind::kClipApplier && state.clips == 0 &&
       !state.has_clip_open)
-    Tell({EventKind::kNoClipsLeft, hand, -1, -1, {}});
+    Emit({EventKind::kNoClipsLeft, hand, -1, {}});
 }
 
 void Operation::UseFluids(int hand, const HandsNow& hands) noexcept {
@@ -280,24 +307,25 @@ void Operation::UseFluids(int hand, const HandsNow& hands) noexcept {
   const HandControls& controls = hands.input->controls[h];
   if (controls.rinse) {
     fluids_.Rinse(kRinseRate * hands.seconds);
-    judge_.Note({InstrumentKind::kIrrigator, Verb::kIrrigate, training::Target::kFluid}, hand);
+    acts_.Add({InstrumentKind::kIrrigator, Verb::kIrrigate, training::Target::kFluid}, hand);
   }
   if (!controls.aspirate) return;
   smoke_ *= std::max(0.0, 1.0 - kSmokeSucked * hands.seconds);
-  TellRetrieved(hand, stones_.Aspirate(hands.X_proxy[h].translation,
+  EmitRetrieved(hand, stones_.Aspirate(hands.X_proxy[h].translation,
                                        2.0 * instrument::kSuctionBore * Tool(hand).shaft_radius));
   // the pool as a half sphere
   const double radius = std::cbrt(fluids_.Pooled() * 3.0 / (2.0 * M_PI));
   if (math::Distance(hands.X_proxy[h].translation, p_pool_) > radius + kSuctionReach) return;
   if (fluids_.Aspirate(kAspirateRate * hands.seconds) > 0.0)
-    judge_.Note({InstrumentKind::kIrrigator, Verb::kAspirate, training::Target::kFluid}, hand);
+    acts_.Add({InstrumentKind::kIrrigator, Verb::kAspirate, training::Target::kFluid}, hand);
 }
 
-void Operation::UseBag(int hand, const HandsNow& hands, const TissueNow& tissue) noexcept {
+void Operation::UseBag(int hand, const HandsNow& hands, const TissueNow& tissue,
+                       OperatedTissue& operated) noexcept {
   const auto h = static_cast<std::size_t>(hand);
-  judge_.Note({InstrumentKind::kSpecimenBag, Verb::kPack, training::Target::kGallbladder}, hand);
-  if (!is_in_bag_) TellRetrieved(hand, stones_.CatchInBag(hands.X_device[h]));
-  if (is_in_bag_ || gallbladder_ < 0 || !watch_.IsGallbladderFree()) return;
+  acts_.Add({InstrumentKind::kSpecimenBag, Verb::kPack, training::Target::kGallbladder}, hand);
+  if (!is_in_bag_) EmitRetrieved(hand, stones_.CatchInBag(hands.X_device[h]));
+  if (is_in_bag_ || gallbladder_ < 0 || !is_gallbladder_free_) return;
   const SurfaceInfo& surface = made_->surfaces[static_cast<std::size_t>(gallbladder_)];
   Vec3 centre;
   for (std::uint32_t i = 0; i < surface.node_count; ++i)
@@ -305,11 +333,11 @@ void Operation::UseBag(int hand, const HandsNow& hands, const TissueNow& tissue)
   const Pose& X = hands.X_device[h];
   if (math::Distance(centre, X.translation) > kMouth) return;
   // the other hands let go, and the bag closes around it
-  for (surgery::Grasp& grasp : *hands.grasps) {
-    if (grasp.surface == gallbladder_) surgery::ReleaseGrasp(*tissue.model, grasp, *tissue.state);
+  for (surgery::Grasp& grasp : operated.grasps) {
+    if (grasp.surface == gallbladder_) surgery::ReleaseGrasp(*tissue.model, grasp, operated.state);
   }
-  if (assistant_) surgery::ReleaseGrasp(*tissue.model, assistant_->Held(), *tissue.state);
-  surgery::Grasp& held = (*hands.grasps)[h];
+  if (assistant_) surgery::ReleaseGrasp(*tissue.model, assistant_->Held(), operated.state);
+  surgery::Grasp& held = operated.grasps[h];
   held = {};
   held.surface = gallbladder_;
   held.pinch = held.damage_pinch = kBagGrip;
@@ -320,9 +348,9 @@ void Operation::UseBag(int hand, const HandsNow& hands, const TissueNow& tissue)
     const std::uint32_t node = surface.first_node + i;
     held.nodes[held.count] = node;
     held.p_tool_node[held.count++] = X_tool_world * tissue.state->position[node];
-    tissue.state->condition[node] = tissue::NodeCondition::kPrescribed;
+    operated.state.condition[node] = tissue::NodeCondition::kPrescribed;
   }
-  TellRetrieved(hand, stones_.BagWith(gallbladder_));
+  EmitRetrieved(hand, stones_.BagWith(gallbladder_));
   is_in_bag_ = true;
   bag_hand_ = hand;
 }

@@ -3,109 +3,147 @@
 
 #include <algorithm>
 
+#include "trocar/math/state_fields.h"
+
 namespace trocar::session {
 namespace {
 
-using training::MayBeDivided;
 using training::OperationError;
-using training::VesselRole;
 
 constexpr double kMuchBlood = 50e-6;  // [m^3], domain facts, section 1.4
 constexpr int kClipsThatStay = 2;
-constexpr double kTight = 0.999;  // closure of a clip
+constexpr double kTipIn = 0.08;  // a tool this deep has been pushed in [m]
+constexpr double kBlindSeconds = 1.5;
 
 }  // namespace
 
-OperationJudge::OperationJudge() = default;
-
-void OperationJudge::Clear(bool has_view) {
-  has_view_ = has_view;
-  errors_.Clear();
-  view_ = training::CriticalView();
-  phases_ = training::PhaseRecogniser();
-  was_achieved_ = false;
-  act_count_ = 0;
-}
+OperationJudge::OperationJudge(const Scene& scene, const PatientTissue& tissue, const Operation& operation)
+    : has_view_(operation.Gallbladder() >= 0),
+      watch_(scene.patient, tissue.surfaces, operation.DissectedStrands(), tissue.definition.rest) {}
 
 void OperationJudge::Report(OperationError error, const Vec3& p, int hand, double time) noexcept {
   errors_.Add({error, time, p, hand});
 }
 
-void OperationJudge::Note(const training::Triplet& triplet, int hand) noexcept {
-  for (const HandAct& act : Acts()) {
-    if (act.triplet == triplet && act.hand == hand) return;
-  }
-  if (act_count_ < acts_.size()) acts_[act_count_++] = {triplet, hand};
-}
-
-void OperationJudge::OnClip(const ClipResult& clip, const VesselMap& map, const Vec3& p, int hand,
-                            double time) noexcept {
-  if (clip.kind == ClipResult::Kind::kLost) {
-    Report(OperationError::kClipDropped, p, hand, time);
-    return;
-  }
-  const VesselRole role = map.anatomy.roles[map.Find(clip.place.tube, clip.place.arc).vessel];
-  if (!MayBeDivided(role)) Report(OperationError::kWrongStructureClipped, p, hand, time);
-  if (has_view_ && !was_achieved_) Report(OperationError::kClipBeforeCriticalView, p, hand, time);
-  if (clip.is_crossed) Report(OperationError::kClipCrossed, p, hand, time);
-  if (clip.kind == ClipResult::Kind::kPartial) Report(OperationError::kClipPartial, p, hand, time);
-}
-
-namespace {
-
-/// Tight clips between a place of a vessel and the side that stays: the one that joins another tube, or comes from the liver.
-int CountStayingClips(const VesselPlace& at, const VesselWork& vessels) noexcept {
-  const VesselMap& map = vessels.Map();
-  const auto& junctions = map.anatomy.gallbladder;
-  const bool is_gallbladder_at_from =
-      std::find(junctions.begin(), junctions.end(), map.network.Vessels()[at.vessel].from) != junctions.end();
-  const auto& clips = vessels.Acts().clips;
-  return static_cast<int>(std::count_if(clips.begin(), clips.end(), [&](const surgery::VesselClip& clip) {
-    return clip.vessel == at.vessel && clip.closure >= kTight &&
-           (clip.position > at.position) == is_gallbladder_at_from;
-  }));
-}
-
-}  // namespace
-
-void OperationJudge::OnCut(const TubePlace& place, const VesselWork& vessels, const Vec3& p, int hand,
-                           double time) noexcept {
-  const VesselMap& map = vessels.Map();
-  const VesselPlace at = map.Find(place.tube, place.arc);
-  const VesselRole role = map.anatomy.roles[at.vessel];
-  if (!MayBeDivided(role)) {
-    Report(OperationError::kWrongStructureCut, p, hand, time);
-    return;
-  }
-  const int stay = CountStayingClips(at, vessels);
-  // a second cut of what is divided already closes nothing and opens nothing
-  if (vessels.CountCuts(place.tube) > 1) return;
-  if (stay == 0) Report(OperationError::kUnclippedCut, p, hand, time);
-  if (stay > 0 && stay < kClipsThatStay) Report(OperationError::kTooFewClips, p, hand, time);
-}
-
-void OperationJudge::OnHole(const TubePlace& place, const VesselWork& vessels, const Vec3& p, int hand,
-                            double time) noexcept {
-  const VesselPlace at = vessels.Map().Find(place.tube, place.arc);
-  if (!MayBeDivided(vessels.Map().anatomy.roles[at.vessel])) {
-    Report(OperationError::kWrongStructureBurnt, p, hand, time);
-  } else if (CountStayingClips(at, vessels) == 0) {
-    Report(OperationError::kUnclippedCut, p, hand, time);
+void OperationJudge::JudgeAct(const OperationAct& act, double time) noexcept {
+  const auto report = [&](OperationError error) { Report(error, act.position, act.hand, time); };
+  switch (act.kind) {
+    case OperationAct::Kind::kError:
+      report(act.error);
+      break;
+    case OperationAct::Kind::kClip:
+      if (act.clip.kind == ClipResult::Kind::kLost) {
+        report(OperationError::kClipDropped);
+        break;
+      }
+      if (!act.vessel.may_be_divided) report(OperationError::kWrongStructureClipped);
+      if (has_view_ && !was_achieved_) report(OperationError::kClipBeforeCriticalView);
+      if (act.clip.is_crossed) report(OperationError::kClipCrossed);
+      if (act.clip.kind == ClipResult::Kind::kPartial) report(OperationError::kClipPartial);
+      break;
+    case OperationAct::Kind::kCut:
+      if (!act.vessel.may_be_divided) {
+        report(OperationError::kWrongStructureCut);
+        break;
+      }
+      // a second cut of what is divided already closes nothing and opens nothing
+      if (act.vessel.cuts > 1) break;
+      if (act.vessel.staying_clips == 0) report(OperationError::kUnclippedCut);
+      if (act.vessel.staying_clips > 0 && act.vessel.staying_clips < kClipsThatStay)
+        report(OperationError::kTooFewClips);
+      break;
+    case OperationAct::Kind::kHole:
+      if (!act.vessel.may_be_divided) {
+        report(OperationError::kWrongStructureBurnt);
+      } else if (act.vessel.staying_clips == 0) {
+        report(OperationError::kUnclippedCut);
+      }
+      break;
   }
 }
 
-void OperationJudge::Update(const DissectionWatch& watch, const surgery::FluidLedger& fluids, bool is_in_bag,
-                            bool is_leaving, const Vec3& p_pool, double time, double seconds) noexcept {
-  view_.Update(watch.Facts(), seconds);
+void OperationJudge::JudgeHand(int hand, const Operation& operation, const HandsNow& hands,
+                               const Camera& camera, OperationActs& acts) noexcept {
+  const auto h = static_cast<std::size_t>(hand);
+  const Vec3& tip = hands.X_proxy[h].translation;
+  const surgery::Grasp& grasp = (*hands.grasps)[h];
+  if (grasp.IsHolding() && operation.Tool(hand).kind != instrument::ToolKind::kBag) {
+    acts.Add({training::InstrumentKind::kGrasper, training::Verb::kRetract,
+              operation.TargetOfSurface(grasp.surface)},
+             hand);
+    if (grasp.surface == operation.Liver()) Report(OperationError::kLiverGrasped, tip, hand, hands.time);
+  }
+  if (hands.changes[h] == surgery::GraspChange::kSlipped ||
+      hands.changes[h] == surgery::GraspChange::kDamaged)
+    Report(OperationError::kExcessForce, tip, hand, hands.time);
+  HandState& state = hands_[h];
+  if (acts.WasExchanged(hand)) state = {true, 0.0};
+  if (!state.is_inserting) return;
+  if (IsInView(camera.X_world_camera, camera.field_of_view, tip)) {
+    state.is_inserting = false;
+  } else if (hands.joints[h].depth > kTipIn) {
+    state.blind_seconds += hands.seconds;
+    if (state.blind_seconds > kBlindSeconds) {
+      Report(OperationError::kBlindInsertion, tip, hand, hands.time);
+      state.is_inserting = false;
+    }
+  }
+}
+
+void OperationJudge::Update(const Operation& operation, const HandsNow& hands, const TissueNow& tissue,
+                            const Camera& camera) noexcept {
+  told_errors_ = errors_.Entries().size();
+  OperationActs acts = operation.Acts();
+  for (const OperationAct& act : acts.Acts()) JudgeAct(act, hands.time);
+  for (int hand = 0; hand < kHandCount; ++hand) JudgeHand(hand, operation, hands, camera, acts);
+
+  watch_.Update(*tissue.state, operation.Vessels(), tissue.organs, camera);
+  view_.Update(watch_.Facts(), hands.seconds);
   was_achieved_ = was_achieved_ || view_.Score().IsAchieved();
   std::array<training::Triplet, 16> triplets;
-  for (std::size_t i = 0; i < act_count_; ++i) triplets[i] = acts_[i].triplet;
-  phases_.Update(std::span(triplets).first(act_count_), {watch.IsGallbladderFree(), is_in_bag, is_leaving},
-                 seconds);
-  act_count_ = 0;
-  if (fluids.fluids[static_cast<std::size_t>(surgery::Fluid::kBlood)].left > kMuchBlood &&
-      errors_.Count(OperationError::kBleeding) == 0)
-    Report(OperationError::kBleeding, p_pool, -1, time);
+  std::size_t count = 0;
+  for (const HandAct& act : acts.HandActs()) triplets[count++] = act.triplet;
+  phases_.Update(std::span(triplets).first(count),
+                 {operation.IsGallbladderFree(), operation.IsInBag(), operation.IsCompleted()},
+                 hands.seconds);
+  const auto& blood = operation.Fluids().fluids[static_cast<std::size_t>(surgery::Fluid::kBlood)];
+  if (blood.left > kMuchBlood && errors_.Count(OperationError::kBleeding) == 0)
+    Report(OperationError::kBleeding, operation.Pool(), -1, hands.time);
+  if (operation.IsCompleted() && !was_completed_ && operation.Stones().Count().spilled > 0)
+    Report(OperationError::kStonesLeft, operation.Pool(), -1, hands.time);
+  was_completed_ = operation.IsCompleted();
+}
+
+void OperationJudge::Publish(OperationSnapshot& snapshot) const noexcept {
+  snapshot.facts.cleared_share = watch_.Facts().cleared_share;
+  snapshot.facts.detached_share = watch_.Facts().detached_share;
+  snapshot.facts.structures_entering = watch_.Facts().structures_entering;
+  snapshot.critical_view = view_.Score();
+  snapshot.phase = phases_.Current();
+  snapshot.errors = errors_.Count();
+  snapshot.critical_errors = errors_.Count(training::Severity::kCritical);
+}
+
+void OperationJudge::AddTo(OperationResult& result) const {
+  result.errors = errors_;
+  result.facts = watch_.Facts();
+  result.critical_view = view_.Score();
+  result.was_critical_view_achieved = was_achieved_;
+  result.phase = phases_.Current();
+}
+
+void OperationJudge::VisitState(core::StateArchive& archive) {
+  archive.Field("watch", watch_);
+  archive.Field("errors", errors_);
+  archive.Field("view", view_);
+  archive.Field("phases", phases_);
+  for (HandState& hand : hands_) {
+    archive.Field("is_inserting", hand.is_inserting);
+    archive.Field("blind_seconds", hand.blind_seconds);
+  }
+  archive.Field("was_achieved", was_achieved_);
+  archive.Field("was_completed", was_completed_);
+  if (archive.IsRestoring()) told_errors_ = errors_.Entries().size();
 }
 
 }  // namespace trocar::session

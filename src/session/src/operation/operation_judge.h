@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file operation_judge.h  What the acts of an operation amount to: errors, phases, the critical view, and how it ended.
+/// It only looks: a tick without it leaves the same world.
 #pragma once
 
 #include <array>
@@ -7,50 +8,50 @@
 #include <span>
 
 #include "dissection_watch.h"
+#include "operation.h"
+#include "trocar/core/state_archive.h"
 #include "trocar/session/operation_result.h"
-#include "trocar/training/triplet.h"
-#include "vessel_work.h"
 
 namespace trocar::session {
 
-/// One thing that a hand did in a tick.
-struct HandAct {
-  training::Triplet triplet;
-  std::int32_t hand = -1;
-};
-
 class OperationJudge {
  public:
-  OperationJudge();
-  /// \param has_view  whether there is a critical view to be had before anything is clipped
-  void Clear(bool has_view);
-
-  // what happened; each real-time safe
-  void OnClip(const ClipResult& clip, const VesselMap& map, const Vec3& p, int hand, double time) noexcept;
-  void OnCut(const TubePlace& place, const VesselWork& vessels, const Vec3& p, int hand,
-             double time) noexcept;
-  void OnHole(const TubePlace& place, const VesselWork& vessels, const Vec3& p, int hand,
-              double time) noexcept;
-  void Report(training::OperationError error, const Vec3& p, int hand, double time) noexcept;
-  void Note(const training::Triplet& triplet, int hand) noexcept;
+  /// \param operation  as it was made
+  OperationJudge(const Scene& scene, const PatientTissue& tissue, const Operation& operation);
 
   /// Once a tick, at its end.
-  void Update(const DissectionWatch& watch, const surgery::FluidLedger& fluids, bool is_in_bag,
-              bool is_leaving, const Vec3& p_pool, double time, double seconds) noexcept;
+  /// \param camera  through which the trainee looks
+  /// \note Real-time safe.
+  void Update(const Operation& operation, const HandsNow& hands, const TissueNow& tissue,
+              const Camera& camera) noexcept;
+
+  /// Errors of the last Update.
+  std::span<const training::ErrorEntry> NewErrors() const { return errors_.Entries().subspan(told_errors_); }
 
   const training::ErrorLog& Errors() const { return errors_; }
-  const training::CriticalView& View() const { return view_; }
-  const training::PhaseRecogniser& Phases() const { return phases_; }
-  bool WasViewAchieved() const { return was_achieved_; }
-  std::span<const HandAct> Acts() const { return std::span(acts_).first(act_count_); }
+  void Publish(OperationSnapshot& snapshot) const noexcept;
+  /// Adds what this one knows.
+  void AddTo(OperationResult& result) const;
+  void VisitState(core::StateArchive& archive);
 
  private:
+  struct HandState {
+    bool is_inserting = false;
+    double blind_seconds = 0;
+  };
+  void Report(training::OperationError error, const Vec3& p, int hand, double time) noexcept;
+  void JudgeAct(const OperationAct& act, double time) noexcept;
+  void JudgeHand(int hand, const Operation& operation, const HandsNow& hands, const Camera& camera,
+                 OperationActs& acts) noexcept;
+
+  bool has_view_ = true;  // there is a critical view to be had before anything is clipped; constant
+  DissectionWatch watch_;
   training::ErrorLog errors_;
   training::CriticalView view_;
   training::PhaseRecogniser phases_;
-  bool was_achieved_ = false, has_view_ = true;
-  std::array<HandAct, 16> acts_{};
-  std::size_t act_count_ = 0;
+  std::array<HandState, kHandCount> hands_;
+  bool was_achieved_ = false, was_completed_ = false;
+  std::size_t told_errors_ = 0;
 };
 
 }  // namespace trocar::session

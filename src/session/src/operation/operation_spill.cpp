@@ -11,9 +11,27 @@ namespace {
 using training::OperationError;
 
 constexpr double kTornHole = 1e-6;     // of the wall that a torn spring leaves open at each end [m^2]
+constexpr double kSmokeFades = 0.08;   // share of the smoke a second that leaves with the gas [1/s]
 constexpr double kPushLength = 0.060;  // of a shaft that pushes stones aside [m]
 
 }  // namespace
+
+void Operation::Flow(const HandsNow& hands, const TissueNow& tissue, OperatedTissue& operated) noexcept {
+  const bool has_gallbladder = gallbladder_ >= 0;
+  const auto leaked = [&] { return operated.conserved.organs[static_cast<std::size_t>(gallbladder_)].leaked; };
+  if (has_gallbladder) {
+    const double now = leaked() - leaked_seen_;
+    if (now > 0.0) fluids_.Leak(surgery::Fluid::kBile, now);
+    SpillStones(now, tissue);
+  }
+  vessels_->Flow(hands.seconds, gallbladder_, operated.conserved, fluids_);
+  SlipClips(hands, tissue);
+  fluids_.Leak(surgery::Fluid::kBlood,
+               ooze_.Update(*tissue.state, heat_, made_->definition.rest.size(), hands.seconds));
+  if (has_gallbladder) leaked_seen_ = leaked();
+  smoke_ = std::clamp(smoke_ * (1.0 - kSmokeFades * hands.seconds), 0.0, 1.0);
+  is_gallbladder_free_ = hold_.IsFree(*tissue.state, *vessels_);
+}
 
 void Operation::SpillStones(double leaked, const TissueNow& tissue) noexcept {
   if (gallbladder_ < 0) return;
@@ -29,7 +47,7 @@ void Operation::SpillStones(double leaked, const TissueNow& tissue) noexcept {
       holes_.FindLargest(tissue.organs[organ], tissue.state->position, organs_[organ].Mesh());
   if (!(hole.rim > 0.0)) return;
   const int spilled = stones_.Spill(leaked, leaked + tissue.conserved->organs[organ].target, hole);
-  for (int i = 0; i < spilled; ++i) Tell({EventKind::kStoneSpilled, -1, gallbladder_, -1, {}});
+  for (int i = 0; i < spilled; ++i) Emit({EventKind::kStoneSpilled, -1, gallbladder_, {}});
 }
 
 void Operation::MoveLoose(const HandsNow& hands, const TissueNow& tissue) noexcept {
@@ -54,7 +72,7 @@ void Operation::MoveLoose(const HandsNow& hands, const TissueNow& tissue) noexce
   vessels_->FindLooseClips(loose_clips_);
   stones_.Move(ground, hands.X_proxy, loose_clips_, hands.seconds);
   for (int hand = 0; hand < kHandCount; ++hand) {
-    if (stones_.HasTaken(hand)) Tell({EventKind::kStoneTaken, hand, -1, -1, {}});
+    if (stones_.HasTaken(hand)) Emit({EventKind::kStoneTaken, hand, -1, {}});
   }
 }
 
@@ -65,8 +83,8 @@ void Operation::SlipClips(const HandsNow& hands, const TissueNow& tissue) noexce
   std::array<SlippedClip, 4> slipped;
   const std::size_t count = vessels_->Slip(hands.seconds, pulls, tissue.state->position, slipped);
   for (const SlippedClip& clip : std::span(slipped).first(count)) {
-    judge_.Report(OperationError::kClipSlipped, clip.position, -1, hands.time);
-    Tell({EventKind::kClipSlipped, -1, static_cast<std::int32_t>(organs_.size() + clip.place.tube), -1,
+    acts_.Report(OperationError::kClipSlipped, clip.position, -1);
+    Emit({EventKind::kClipSlipped, -1, static_cast<std::int32_t>(organs_.size() + clip.place.tube),
           vessels_->RestPoint(clip.place)});
   }
 }
@@ -79,8 +97,8 @@ double Operation::StopJaw(int hand, double jaw_before, double jaw, bool is_holdi
                          can_take);
 }
 
-void Operation::TellRetrieved(int hand, int count) noexcept {
-  for (int i = 0; i < count; ++i) Tell({EventKind::kStoneRetrieved, hand, -1, -1, {}});
+void Operation::EmitRetrieved(int hand, int count) noexcept {
+  for (int i = 0; i < count; ++i) Emit({EventKind::kStoneRetrieved, hand, -1, {}});
 }
 
 }  // namespace trocar::session

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "trocar/math/state_fields.h"
+
 namespace trocar::session {
 namespace {
 
@@ -76,6 +78,14 @@ void SheetWatch::Update(const EditableMesh& mesh) noexcept {
     now_.farthest = std::fabs(outside);
     now_.p_farthest = middle;
   }
+}
+
+void SheetWatch::VisitState(core::StateArchive& archive) {
+  archive.Field("cut_length", now_.cut_length);
+  archive.Field("farthest", now_.farthest);
+  archive.Field("off_area", now_.off_area);
+  archive.Field("is_free", now_.is_free);
+  archive.Field("p_farthest", now_.p_farthest);
 }
 
 }  // namespace trocar::session

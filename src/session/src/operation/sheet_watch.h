@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "trocar/core/state_archive.h"
 #include "trocar/geometry/editable_mesh.h"
 #include "trocar/session/operation_snapshot.h"
 #include "trocar/session/scene.h"
@@ -21,6 +22,7 @@ class SheetWatch {
   /// \note Real-time safe.
   void Update(const geometry::EditableMesh& mesh) noexcept;
   const SheetSnapshot& Now() const { return now_; }
+  void VisitState(core::StateArchive& archive);
 
  private:
   bool IsBorder(const Vec3& p_rest) const noexcept;

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "trocar/geometry/mesh_measures.h"
+#include "trocar/math/state_fields.h"
 #include "trocar/session/ground.h"
 
 namespace trocar::session {
@@ -268,16 +269,23 @@ void StoneWork::Publish(OperationSnapshot& snapshot) const noexcept {
   }
 }
 
-void StoneWork::AddTo(core::StateHash& hash) const {
-  // what is inside says nothing: hashes stay until the first one spills
-  for (std::size_t i = 0; i < stones_.size(); ++i) {
-    const Stone& stone = stones_[i];
-    if (stone.place == StonePlace::kInside) continue;
-    const Vec3 &p = stone.body.position, &v = stone.body.velocity;
-    hash.Add(std::uint64_t{i}), hash.Add(static_cast<std::uint64_t>(stone.place));
-    for (const double value : {p.x, p.y, p.z, v.x, v.y, v.z}) hash.Add(value);
+void StoneWork::Stone::VisitState(core::StateArchive& archive) {
+  archive.Field("body", body);
+  archive.Field("place", place);
+  archive.Field("opening", opening);
+  archive.Field("p_tool", p_tool);
+}
+
+void StoneWork::VisitState(core::StateArchive& archive) {
+  archive.FixedField("stones", stones_);
+  archive.Field("held", held_);
+  archive.Field("has_taken", has_taken_);
+  archive.Field("carried", carried_);
+  const auto is_stone = [&](std::int32_t i) { return i >= -1 && i < static_cast<std::int32_t>(stones_.size()); };
+  if (archive.IsRestoring() && !std::all_of(held_.begin(), held_.end(), is_stone)) {
+    held_ = {-1, -1};
+    archive.Fail("are held that there are not");
   }
-  if (carried_ > 0.0) hash.Add(carried_);
 }
 
 }  // namespace trocar::session

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "trocar/core/state_hash.h"
+#include "trocar/core/state_archive.h"
 #include "trocar/instrument/tool.h"
 #include "trocar/session/operation_result.h"
 #include "trocar/session/simulation.h"
@@ -72,7 +72,7 @@ class StoneWork {
   StoneCount Count() const noexcept;
   void Size(OperationSnapshot& snapshot) const { snapshot.stones.assign(stones_.size(), {}); }
   void Publish(OperationSnapshot& snapshot) const noexcept;
-  void AddTo(core::StateHash& hash) const;
+  void VisitState(core::StateArchive& archive);
 
  private:
   struct Stone {
@@ -80,6 +80,7 @@ class StoneWork {
     StonePlace place = StonePlace::kInside;
     double opening = 0;  // of the jaws that hold it [rad]
     Vec3 p_tool;         // while held [m]
+    void VisitState(core::StateArchive& archive);
   };
   /// The omentum, constant.
   struct Bed {

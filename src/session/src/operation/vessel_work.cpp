@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "trocar/collision/segment_distance.h"
+#include "trocar/math/state_fields.h"
 
 namespace trocar::session {
 namespace {
@@ -18,6 +19,7 @@ constexpr double kClipHeight = 0.0012;  // of its middle over what it lies on, w
 constexpr double kClosedGap = 0.0006;   // between the legs of a clip [m]
 /// Heat seals vessels up to this radius inside [m]: a millimetre across is held to be safe, more is not.
 constexpr double kMostSealed = 0.0009;
+constexpr double kTight = 0.999;  // closure of a clip
 /// Bile left in a gallbladder that cannot run out, as a share of what there was.
 constexpr double kLeastFilling = 0.1;
 
@@ -257,19 +259,84 @@ void VesselWork::Publish(std::span<const Vec3> position, std::size_t organ_count
   }
 }
 
-void VesselWork::AddTo(core::StateHash& hash) const {
-  hash.Add(std::uint64_t{acts_.clips.size()});
-  for (const surgery::VesselClip& clip : acts_.clips)
-    hash.Add(std::uint64_t{clip.vessel}), hash.Add(clip.position), hash.Add(clip.closure);
-  for (const Clipped& clip : clips_) {
-    const Vec3& p = clip.loose.position;
-    if (clip.is_lost) hash.Add(p.x), hash.Add(p.y), hash.Add(p.z);
-  }
-  for (const surgery::VesselOpening& opening : acts_.openings) {
-    hash.Add(std::uint64_t{opening.vessel});
-    for (const double value : {opening.position, opening.area, opening.sealed[0], opening.sealed[1]})
-      hash.Add(value);
-  }
+/// The side that stays is the one that joins another tube, or comes from the liver.
+VesselJudgement VesselWork::JudgePlace(const TubePlace& place) const noexcept {
+  const VesselPlace at = map_.Find(place.tube, place.arc);
+  const auto& junctions = map_.anatomy.gallbladder;
+  const bool is_gallbladder_at_from = std::find(junctions.begin(), junctions.end(),
+                                                map_.network.Vessels()[at.vessel].from) != junctions.end();
+  const auto stays = [&](const surgery::VesselClip& clip) {
+    return clip.vessel == at.vessel && clip.closure >= kTight &&
+           (clip.position > at.position) == is_gallbladder_at_from;
+  };
+  return {training::MayBeDivided(map_.anatomy.roles[at.vessel]),
+          static_cast<int>(std::count_if(acts_.clips.begin(), acts_.clips.end(), stays)),
+          CountCuts(place.tube)};
+}
+
+void VesselWork::VisitTopology(core::StateArchive& archive) {
+  archive.Field("tubes", tubes_);
+  archive.Field("tube_of", tube_of_);
+  archive.Field("arc_of", arc_of_);
+  if (archive.IsRestoring() && archive.ok() &&
+      (tube_of_.size() != tubes_.Graph().rest.size() || arc_of_.size() != tube_of_.size() ||
+       std::any_of(tube_of_.begin(), tube_of_.end(), [&](std::uint32_t t) { return t >= rest_.size(); })))
+    archive.Fail("has points of no tube");
+}
+
+void VesselWork::VisitState(core::StateArchive& archive) {
+  archive.Field("network", map_.network);
+  archive.Field("acts", acts_);
+  archive.Field("clips", clips_);
+  archive.Field("ends", ends_);
+  archive.Field("report", report_);
+  if (!archive.IsRestoring() || !archive.ok()) return;
+  const std::size_t points = tube_of_.size();
+  const auto fits = [&](const Clipped& clip) {
+    return clip.a < points && clip.b < points && clip.place.tube < rest_.size() &&
+           (clip.is_lost || clip.act < acts_.clips.size());
+  };
+  const auto is_end = [&](const OpeningEnds& end) {
+    return end.points[0] < points && end.points[1] < points && end.place.tube < rest_.size();
+  };
+  const auto is_leak = [&](const surgery::Leak& leak) { return leak.opening < ends_.size() && leak.end < 2; };
+  const auto leaks = report_.Leaks();
+  if (clips_.size() > surgery::VesselActs::kMostClips || ends_.size() != acts_.openings.size() ||
+      !std::all_of(clips_.begin(), clips_.end(), fits) || !std::all_of(ends_.begin(), ends_.end(), is_end) ||
+      !std::all_of(leaks.begin(), leaks.end(), is_leak))
+    archive.Fail("has clips or openings of no duct or vessel");
+}
+
+void VesselWork::Clipped::VisitState(core::StateArchive& archive) {
+  archive.Field("a", a);
+  archive.Field("b", b);
+  archive.Field("t", t);
+  archive.Field("legs", legs);
+  archive.Field("gap", gap);
+  archive.Field("is_lost", is_lost);
+  archive.Field("is_crossed", is_crossed);
+  archive.Field("closure", closure);
+  archive.Field("is_weak", is_weak);
+  archive.Field("vessel_radius", vessel_radius);
+  archive.Field("act", act);
+  archive.Field("loose_radius", loose.radius);
+  archive.Field("loose", loose);
+  archive.Field("tube", place.tube);
+  archive.Field("arc", place.arc);
+}
+
+void VesselWork::OpeningEnds::VisitState(core::StateArchive& archive) {
+  archive.Field("points", points);
+  archive.Field("tube", place.tube);
+  archive.Field("arc", place.arc);
+}
+
+void VesselWork::Caught::VisitState(core::StateArchive& archive) {
+  archive.Field("a", a);
+  archive.Field("b", b);
+  archive.Field("t", t);
+  archive.Field("jaw_at", jaw_at);
+  archive.Field("radius", radius);
 }
 
 }  // namespace trocar::session

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "trocar/core/state_hash.h"
+#include "trocar/core/state_archive.h"
 #include "trocar/instrument/tool.h"
 #include "trocar/session/simulation.h"
 #include "trocar/surgery/cuttable_tubes.h"
@@ -33,6 +33,13 @@ struct ClipResult {
   } kind = Kind::kLost;
   TubePlace place;
   bool is_crossed = false;  ///< lies over another clip
+};
+
+/// What a place of a duct or vessel is to the surgeon when something is done there.
+struct VesselJudgement {
+  bool may_be_divided = false;
+  int staying_clips = 0;  ///< tight ones between the place and the side that stays
+  std::size_t cuts = 0;   ///< through the whole tube, so far
 };
 
 /// A hand that holds a duct or vessel.
@@ -78,6 +85,7 @@ class VesselWork {
     double t = 0;                ///< from a to b
     double jaw_at = 0;           ///< along the jaws, 0 at the hinge to 1 at the tips
     double radius = 0;           ///< [m]
+    void VisitState(core::StateArchive& archive);
   };
   /// What lies between open jaws.
   /// \note Real-time safe.
@@ -118,7 +126,12 @@ class VesselWork {
 
   void Publish(std::span<const Vec3> position, std::size_t organ_count,
                OperationSnapshot& snapshot) const noexcept;
-  void AddTo(core::StateHash& hash) const;
+  VesselJudgement JudgePlace(const TubePlace& place) const noexcept;
+
+  /// The lines with their cuts, and what else is joined to what. Before VisitState.
+  void VisitTopology(core::StateArchive& archive);
+  /// Clips, openings, and what runs out of them.
+  void VisitState(core::StateArchive& archive);
 
  private:
   explicit VesselWork(VesselMap map, std::uint32_t first_spare, std::uint32_t spare_count)
@@ -135,6 +148,7 @@ class VesselWork {
     std::uint32_t act = 0;      // in acts_.clips, unless it closed around nothing
     surgery::LooseStone loose;  // where it lies when it is lost
     TubePlace place;
+    void VisitState(core::StateArchive& archive);
   };
   /// What is left of a vessel on one side of a cut.
   struct Stump {
@@ -145,8 +159,9 @@ class VesselWork {
   };
   /// The end points of an opening.
   struct OpeningEnds {
-    std::array<std::uint32_t, 2> points;
+    std::array<std::uint32_t, 2> points{};
     TubePlace place;
+    void VisitState(core::StateArchive& archive);
   };
   void MoveClips(const geometry::CentreLineCut& cut) noexcept;
   double CalcPull(const Clipped& clip, const Stump& stump, std::span<const Vec3> position,

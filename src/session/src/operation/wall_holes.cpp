@@ -96,4 +96,16 @@ WallHole WallHoles::FindLargest(const surgery::OrganSurface& organ, std::span<co
   return largest;
 }
 
+void WallHoles::VisitState(core::StateArchive& archive) {
+  archive.Field("count", count_);
+  if (archive.IsRestoring() && count_ > kMost) {
+    count_ = 0;
+    archive.Fail("are more than there is room for");
+  }
+  for (Place& place : std::span(places_).first(count_)) {
+    archive.Field("node", place.node);
+    archive.Field("rim", place.rim);
+  }
+}
+
 }  // namespace trocar::session

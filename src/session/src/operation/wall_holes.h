@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <span>
 
+#include "trocar/core/state_archive.h"
 #include "trocar/geometry/editable_mesh.h"
 #include "trocar/surgery/organ_surface.h"
 
@@ -30,6 +31,7 @@ class WallHoles {
   /// \param rim  of the hole that it leaves alone [m]
   void Add(std::uint32_t node, double rim) noexcept;
   bool IsEmpty() const { return count_ == 0; }
+  void VisitState(core::StateArchive& archive);
 
   /// The hole with the longest rim.
   /// \param organ, positions  of the whole system

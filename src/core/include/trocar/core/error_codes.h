@@ -57,6 +57,7 @@ enum class ErrorCode {
   kTissueInvalid,
   kUnstableStep,
   kOutOfMemory,
+  kStateInvalid,
   // drawing and video
   kNoGraphics,
   kGraphicsTooOld,

@@ -68,12 +68,15 @@ class StateArchive {
   template <typename T>
   void FixedField(std::string_view name, std::vector<T>& value) {
     Enter(name);
-    if (IsOmitted()) {
-      std::vector<T> other = value;
-      VisitFixed(other);
-    } else {
-      VisitFixed(value);
+    if constexpr (std::is_copy_constructible_v<T>) {
+      if (IsOmitted()) {
+        std::vector<T> other = value;
+        VisitFixed(other);
+        Leave();
+        return;
+      }
     }
+    VisitFixed(value);
     Leave();
   }
 

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "trocar/core/state_archive.h"
 #include "trocar/geometry/blade_sweep.h"
 #include "trocar/geometry/mesh_topology.h"
 
@@ -25,6 +26,9 @@ struct CentreLineGraph {
   /// How many more cuts there is room for.
   std::size_t RoomForCuts() const;
 };
+
+/// All but positions, which follow the tissue.
+void VisitState(core::StateArchive& archive, CentreLineGraph& graph);
 
 /// Joins the points of one line, first to last.
 /// \return index of the line's first point

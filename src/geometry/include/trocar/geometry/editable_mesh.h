@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "trocar/core/result.h"
+#include "trocar/core/state_archive.h"
 #include "trocar/geometry/mesh_topology.h"
 #include "trocar/geometry/triangle_mesh.h"
 
@@ -36,6 +37,8 @@ struct VertexSource {
   std::array<std::uint32_t, 3> from = {kNone, kNone, kNone};  ///< vertices, kNone where fewer
   std::array<double, 3> weights = {0, 0, 0};                  ///< barycentric, >= 0, sum 1; 0 for kNone [-]
 };
+
+void VisitState(core::StateArchive& archive, VertexSource& source);
 
 /// What a triangle is part of.
 enum class TriangleKind : std::uint8_t {
@@ -162,6 +165,10 @@ class EditableMesh {
   std::size_t JournalVertices() const { return journal_vertices_; }    ///< VertexCount at ClearJournal
   std::size_t JournalTriangles() const { return journal_triangles_; }  ///< TriangleCount at ClearJournal
   void ClearJournal() noexcept;
+
+  /// All but positions, which follow the tissue, and the journal, which is cleared. Restoring refuses what is no mesh
+  /// within this one's capacity; then the mesh has to be restored again before it is used.
+  void VisitState(core::StateArchive& archive);
 
  private:
   EditableMesh() = default;

@@ -37,6 +37,8 @@ struct CutFront {
   std::span<const std::uint32_t> Tips() const { return std::span(tips).first(count); }
 };
 
+void VisitState(core::StateArchive& archive, CutFront& front);
+
 /// What a tick's cut did.
 struct CutReport {
   std::size_t crossings = 0;  ///< edges that the sweep crossed

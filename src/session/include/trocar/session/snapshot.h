@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "trocar/core/state_archive.h"
 #include "trocar/math/pose.h"
 #include "trocar/session/input.h"
 #include "trocar/session/operation_snapshot.h"
@@ -43,20 +44,28 @@ struct OrganSnapshot {
   double leaked = 0;    ///< since the start [m^3]
 };
 
-/// Stages of the tick, in order.
+/// Stages of the tick, in order; docs/step.md says what each reads and changes.
 enum class Stage {
   kReadInputs,
-  kMoveInstruments,
+  kMoveTools,
   kFindContacts,
-  kActOnTissue,
-  kSolve,
-  kCheckState,
-  kUpdateHierarchy,
-  kDetectEvents,
+  kUseTools,
+  kHeat,
+  kAssistant,
+  kTopology,
+  kTissue,
+  kGuard,
+  kPlaceTools,
+  kRigidBodies,
+  kFlow,
+  kLooseBodies,
+  kCamera,
+  kJudgement,
   kPublish,
+  kTaskRules,
   kCount
 };
-/// "read_inputs", "move_instruments", ...
+/// "read_inputs", "move_tools", ...
 std::string_view StageName(Stage stage) noexcept;
 inline constexpr int kStageCount = static_cast<int>(Stage::kCount);
 
@@ -98,6 +107,11 @@ struct Event {
   Vec3 p_rest;               ///< of a clip or a cut: where on its vessel at rest, world frame [m]
 };
 
+void VisitState(core::StateArchive& archive, Event& event);
+
+/// Of how many of the newest events a snapshot tells.
+inline constexpr std::size_t kEventRing = 8;
+
 /// Copying into one that has been used before does not allocate (the sizes never change while a scene runs).
 struct Snapshot {
   std::uint64_t tick = 0;
@@ -119,7 +133,7 @@ struct Snapshot {
   std::array<double, kStageCount> stage_seconds{};  ///< wall time of each stage of the last tick
   double tick_seconds = 0;                          ///< sum of the stages [s]
   std::uint64_t event_count = 0;                    ///< since the start; the newest are in `events`
-  std::array<Event, 8> events{};                    ///< ring: event n at n % 8
+  std::array<Event, kEventRing> events{};           ///< ring: event n at n % kEventRing
 };
 
 /// Whether a point lies in the round picture of a laparoscope. What hides it is not asked.

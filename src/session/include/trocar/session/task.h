@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "trocar/core/result.h"
+#include "trocar/core/state_archive.h"
 #include "trocar/math/vector.h"
 #include "trocar/training/operation_error.h"
 
@@ -157,6 +158,10 @@ struct TaskSnapshot {
 
   bool IsOver() const { return phase >= TaskPhase::kCompleted; }
 };
+
+void VisitState(core::StateArchive& archive, GoalSnapshot& goal);
+void VisitState(core::StateArchive& archive, TaskError& error);
+void VisitState(core::StateArchive& archive, TaskSnapshot& task);
 
 /// What a task file leaves open.
 struct TaskChoice {

@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 
+#include "trocar/core/state_archive.h"
 #include "trocar/geometry/blade_sweep.h"
 #include "trocar/instrument/tool.h"
 #include "trocar/tissue/tissue_model.h"
@@ -31,6 +32,8 @@ struct BladeState {
   std::optional<geometry::BladeEdge> edge;  ///< where it was in the tick before, while it cuts [m]
   double jaw = 0;                           ///< opening in the tick before [rad]
 };
+
+void VisitState(core::StateArchive& archive, BladeState& blade);
 
 /// One tick of a blade that cuts.
 struct BladeMove {

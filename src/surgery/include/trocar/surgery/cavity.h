@@ -69,6 +69,8 @@ struct CavityContact {
   std::vector<std::uint8_t> is_held;  ///< (vertices) by anatomy, at that wall or elsewhere: needs no contact
 };
 
+void VisitState(core::StateArchive& archive, CavityContact& contact);
+
 /// \param positions  (n) of the whole system, at rest [m]
 /// \param is_fixed   (n) held at rest by anatomy
 CavityContact MakeCavityContact(const Cavity& cavity, std::span<const OrganSurface> organs,

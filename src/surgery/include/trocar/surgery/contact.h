@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "trocar/collision/sweep.h"
+#include "trocar/core/state_archive.h"
 #include "trocar/instrument/tool.h"
 #include "trocar/surgery/organ_surface.h"
 #include "trocar/tissue/tissue_model.h"
@@ -88,6 +89,8 @@ struct ContactSet {
   ContactSet();
   void Clear() noexcept;
 };
+
+void VisitState(core::StateArchive& archive, ContactSet& contacts);
 
 /// One tool's way in a tick.
 struct ToolMotion {

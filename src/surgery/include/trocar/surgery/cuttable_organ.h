@@ -49,6 +49,9 @@ class CuttableOrgan {
   /// Reserves what any cut of this organ can change.
   void ReserveFor(TopologyChange& change) const;
 
+  /// The mesh with its cuts.
+  void VisitState(core::StateArchive& archive) { archive.Field("mesh", mesh_); }
+
   /// The organ's triangles over the nodes of the system.
   std::vector<geometry::Triangle> NodeTriangles() const;
 

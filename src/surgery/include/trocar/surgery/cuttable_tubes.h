@@ -44,6 +44,9 @@ class CuttableTubes {
   static constexpr std::size_t kMostCuts = 8;
   void ReserveFor(TopologyChange& change) const;
 
+  /// The lines with their cuts.
+  void VisitState(core::StateArchive& archive);
+
  private:
   void ListCut(const geometry::CentreLineCut& cut, const tissue::TissueDefinition& definition,
                TopologyChange& change) noexcept;

@@ -14,11 +14,16 @@
 #include <vector>
 
 #include "trocar/core/result.h"
+#include "trocar/core/state_archive.h"
 
 namespace trocar::surgery {
 
 enum class Fluid : std::uint8_t { kBile, kBlood };
 inline constexpr int kFluidCount = 2;
+struct VesselClip;
+struct VesselOpening;
+void VisitState(core::StateArchive& archive, VesselClip& clip);
+void VisitState(core::StateArchive& archive, VesselOpening& opening);
 
 /// Dynamic viscosity [Pa s] and density [kg/m^3].
 struct FluidProperties {
@@ -70,6 +75,9 @@ struct VesselActs {
   VesselActs();
 };
 
+/// \pre when restoring: of the same network
+void VisitState(core::StateArchive& archive, VesselActs& acts);
+
 /// What runs out of one end of an opening [m^3/s], >= 0.
 struct Leak {
   std::uint32_t opening = 0;
@@ -115,6 +123,9 @@ class FlowNetwork {
   /// Whether fluid can pass between two junctions: no tight clip and no cut between them.
   bool AreConnected(const VesselActs& acts, std::size_t a, std::size_t b) const noexcept;
 
+  /// Pressures: of supplies, and those that Solve found.
+  void VisitState(core::StateArchive& archive);
+
  private:
   struct Piece;
   struct Outlet;
@@ -130,6 +141,8 @@ class FlowNetwork {
   std::vector<FlowJunction> junctions_;
   std::array<double, kMostNodes> pressure_{};
 };
+
+void VisitState(core::StateArchive& archive, FlowReport& report);
 
 /// Where every drop is that has left the vessels. The balance always closes: left = pooled + aspirated.
 struct FluidLedger {
@@ -150,5 +163,6 @@ struct FluidLedger {
   double Aspirate(double volume) noexcept;
   double Pooled() const noexcept;
 };
+void VisitState(core::StateArchive& archive, FluidLedger& ledger);
 
 }  // namespace trocar::surgery

@@ -12,6 +12,7 @@
 #include <span>
 #include <vector>
 
+#include "trocar/core/state_archive.h"
 #include "trocar/surgery/organ_surface.h"
 
 namespace trocar::surgery {
@@ -78,6 +79,8 @@ struct LooseStone {
 
   bool IsLying() const { return support != kOnNothing; }
 };
+/// All but the radius.
+void VisitState(core::StateArchive& archive, LooseStone& stone);
 
 /// One tick of all loose stones, in their order: those that fall, slide and come to rest, and those that lie and are
 /// carried along.

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "trocar/core/state_archive.h"
 #include "trocar/instrument/tool.h"
 #include "trocar/surgery/organ_surface.h"
 #include "trocar/tissue/tissue_model.h"
@@ -48,6 +49,8 @@ struct Grasp {
   bool IsHolding() const { return count > 0; }
   std::span<const std::uint32_t> Nodes() const { return std::span(nodes).first(count); }
 };
+
+void VisitState(core::StateArchive& archive, Grasp& grasp);
 
 enum class GraspChange { kNone, kGrasped, kMissed, kReleased, kSlipped, kDamaged };
 

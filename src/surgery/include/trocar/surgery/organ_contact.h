@@ -18,6 +18,12 @@
 #include "trocar/surgery/contact.h"
 
 namespace trocar::surgery {
+struct ClearVertex;
+}
+template <>
+inline constexpr bool trocar::core::kIsPlainState<trocar::surgery::ClearVertex> = true;  // four doubles
+
+namespace trocar::surgery {
 
 struct OrganContactSettings {
   double stiffness = 100.0;   ///< of each spring [N/m]
@@ -32,6 +38,8 @@ struct ClearVertex {
   /// It cannot have come near the surface while its own way and the surface's travel are together less than this [m].
   double until = 0;
 };
+
+static_assert(sizeof(ClearVertex) == 4 * sizeof(double));
 
 /// Vertices of one organ, or nodes of one tube, against an organ's surface.
 struct OrganPair {
@@ -51,6 +59,9 @@ struct OrganPair {
   std::vector<ClearVertex> clear;  ///< (node_count) spares most searches; changes nothing that is found
 };
 inline constexpr std::uint32_t kNoSpring = ~std::uint32_t{0};
+
+/// What is found anew in every tick is left out.
+void VisitState(core::StateArchive& archive, OrganPair& pair);
 
 /// \param positions  (n) of the whole system, at rest [m]
 /// \param bound      nodes of the first organ that strands hold to the other

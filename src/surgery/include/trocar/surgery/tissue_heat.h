@@ -11,6 +11,8 @@
 #include <span>
 #include <vector>
 
+#include "trocar/core/state_archive.h"
+
 namespace trocar::surgery {
 
 inline constexpr double kBodyTemperature = 37.0;      ///< [deg C]
@@ -55,6 +57,8 @@ struct HeatState {
   std::vector<double> damage;       ///< (n) Arrhenius integral; at 1 63 % of the proteins are changed [-]
   std::vector<double> charring;     ///< (n) 0 pink to 1 black [-]
 };
+
+void VisitState(core::StateArchive& archive, HeatState& state);
 
 /// What a node's past amounts to, from worst to none.
 enum class HeatInjury : std::uint8_t {

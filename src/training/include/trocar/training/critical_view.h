@@ -12,6 +12,8 @@
 #include <string>
 #include <vector>
 
+#include "trocar/core/state_archive.h"
+
 namespace trocar::training {
 
 /// What a tick knows of the dissection; all of it from geometry and from the graph of tubes.
@@ -27,6 +29,8 @@ struct DissectionFacts {
   /// side of 0, the view at the start, show its front and its back [rad].
   double view_azimuth = 0;
 };
+
+void VisitState(core::StateArchive& archive, DissectionFacts& facts);
 
 struct CriticalViewSettings {
   double cleared_share = 0.9;
@@ -57,6 +61,7 @@ class CriticalView {
   /// \note Real-time safe.
   void Update(const DissectionFacts& facts, double seconds) noexcept;
   const CriticalViewScore& Score() const noexcept { return score_; }
+  void VisitState(core::StateArchive& archive);
 
  private:
   CriticalViewSettings settings_;

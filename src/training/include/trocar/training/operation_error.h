@@ -3,11 +3,13 @@
 /// Source: domain facts, section 1.4.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <string_view>
 #include <vector>
 
+#include "trocar/core/state_archive.h"
 #include "trocar/math/vector.h"
 
 namespace trocar::training {
@@ -58,6 +60,8 @@ struct ErrorEntry {
   std::int32_t hand = -1;  ///< or -1
 };
 
+void VisitState(core::StateArchive& archive, ErrorEntry& entry);
+
 /// Errors in the order in which they happened. One that goes on is one: the same error by the same hand counts again after
 /// a pause.
 class ErrorLog {
@@ -74,11 +78,13 @@ class ErrorLog {
   std::size_t Count(Severity severity) const noexcept;
   std::size_t Count() const noexcept;
 
+  void VisitState(core::StateArchive& archive);
+
  private:
   static constexpr std::size_t kHands = 4;  // none, and up to three
   std::vector<ErrorEntry> entries_;
-  std::size_t counts_[kOperationErrorCount] = {};
-  double last_[kOperationErrorCount][kHands] = {};
+  std::array<std::size_t, kOperationErrorCount> counts_{};
+  std::array<std::array<double, kHands>, kOperationErrorCount> last_{};
 };
 
 }  // namespace trocar::training

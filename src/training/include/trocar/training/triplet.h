@@ -10,6 +10,8 @@
 #include <string>
 #include <string_view>
 
+#include "trocar/core/state_archive.h"
+
 namespace trocar::training {
 
 enum class InstrumentKind : std::uint8_t {
@@ -110,6 +112,8 @@ class PhaseRecogniser {
   Phase Current() const noexcept { return current_; }
   /// Time spent in a phase so far [s].
   double SecondsIn(Phase phase) const noexcept { return seconds_[static_cast<std::size_t>(phase)]; }
+
+  void VisitState(core::StateArchive& archive);
 
  private:
   Phase current_ = Phase::kPreparation;
