@@ -113,9 +113,9 @@ core::Status Simulation::Content::Fill(const std::vector<double>& internal_press
   conserved_at_start = conservation->MakeState(tissue_at_start);
   for (std::size_t organ = 0; organ < internal_pressure.size(); ++organ) {
     if (internal_pressure[organ] == 0.0) continue;
-    const double unrest = tissue::FillToPressure(*solver, organ, internal_pressure[organ], {}, *conservation,
-                                                 tissue_at_start, conserved_at_start);
-    if (!(unrest < kFilledTolerance)) {
+    const double volume_change = tissue::FillToPressure(*solver, organ, internal_pressure[organ], {},
+                                                        *conservation, tissue_at_start, conserved_at_start);
+    if (!(volume_change < kFilledTolerance)) {
       return core::Error{
           core::ErrorCode::kSceneInvalid,
           "the wall of \"" + surfaces[organ].name +
@@ -243,7 +243,7 @@ double Simulation::CalcEquilibriumError() const {
   exact.max_newton_steps = 200;
   exact.max_linear_iterations = 300;
   exact.law_error = 1e-7;
-  exact.max_rounds = 50;
+  exact.max_outer_iterations = 50;
   tissue::EquilibriumSolver judge(c.tissue_model, 1);
   const tissue::SolveReport solved =
       tissue::FindConservedEquilibrium(judge, exact, *c.conservation, c.load, state, c.conserved);

@@ -65,7 +65,7 @@ void Simulation::Content::ChangeTopology() {
 
 /// Goes on with the changed model in all that was made for the one of before.
 void Simulation::Content::FollowTopology() {
-  solver->Follow(tissue_model);
+  solver->UpdateTopology(tissue_model);
   std::vector<geometry::TriangleMesh> meshes;
   std::vector<tissue::ClosedOrgan> closed;
   for (std::size_t i = 0; i < scene->patient.organs.size(); ++i) {
@@ -78,8 +78,8 @@ void Simulation::Content::FollowTopology() {
     for (const geometry::Triangle& lid : geometry::MakeLids(mesh)) organ.triangles.push_back(lid);
     closed.push_back(std::move(organ));
   }
-  conservation->Follow(tissue_model, std::move(closed), conserved);
-  guard->Follow(tissue_model, tissue);
+  conservation->UpdateTopology(tissue_model, std::move(closed), conserved);
+  guard->UpdateTopology(tissue_model, tissue);
   // indices in range and finite coordinates, which is all that it asks for, a cut keeps
   const core::Status followed =
       touch.Follow(tissue_model, tissue, meshes, operation->TubePieces(), operation->TubesOfPieces());
