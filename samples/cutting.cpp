@@ -129,7 +129,7 @@ geometry::CutReport CutThrough(const Site& site, std::size_t index, Theatre& the
     theatre.model = tissue::MakeTissueModel(theatre.definition);
     surgery::ApplyChange(theatre.change, origins, theatre.model, theatre.state);
     at[3] = now();
-    theatre.solver->Follow(theatre.model);
+    theatre.solver->UpdateTopology(theatre.model);
     at[4] = now();
     theatre.solver->Solve({}, {}, theatre.state);
     at[5] = now();

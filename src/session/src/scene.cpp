@@ -120,7 +120,7 @@ void ReadSettings(const core::JsonView& root, LiveSettings& settings) {
   const core::JsonView view = root.Object("settings");
   view.AllowOnly({"stiffness_scale", "shape_scale", "gravity_m_s2", "head_up_deg", "right_up_deg", "solver",
                   "max_iterations", "tolerance", "max_error", "max_newton_steps", "max_linear_total",
-                  "follow_folds"});
+                  "follow_snap_through"});
   settings.stiffness_scale = view.NumberOr("stiffness_scale", settings.stiffness_scale, {0.05, 20.0});
   settings.shape_scale = view.NumberOr("shape_scale", settings.shape_scale, {0.0, 20.0});
   settings.gravity = view.NumberOr("gravity_m_s2", settings.gravity, {0.0, 30.0});
@@ -134,7 +134,8 @@ void ReadSettings(const core::JsonView& root, LiveSettings& settings) {
       view.IntegerOr("max_newton_steps", settings.solver.max_newton_steps, {1, 1000});
   settings.solver.max_linear_total =
       view.IntegerOr("max_linear_total", settings.solver.max_linear_total, {1, 100'000});
-  settings.solver.follows_folds = view.BooleanOr("follow_folds", settings.solver.follows_folds);
+  settings.solver.follows_snap_through =
+      view.BooleanOr("follow_snap_through", settings.solver.follows_snap_through);
   const std::string solver = view.TextOr("solver", "adaptive");
   if (const auto kind = tissue::FindSolverKind(solver); kind) {
     settings.solver.kind = *kind;

@@ -67,7 +67,7 @@ void Simulation::Content::RegisterTopology() {
     if (is_restored && gpu_solver != nullptr && now.Version() == 0) {
       MakeSolver(SolveOn::kGpu);  // a cut had given it up
     } else {
-      solver->Follow(now.Model());
+      solver->UpdateTopology(now.Model());
     }
   });
   topology.Register([this](const Topology& now, bool is_restored) {
@@ -77,7 +77,7 @@ void Simulation::Content::RegisterTopology() {
   });
   topology.Register([this](const Topology&, bool is_restored) { UpdateSurfaces(is_restored); });
   topology.Register(
-      [this](const Topology& now, bool) { world.guard->Follow(now.Model(), world.tissue); });
+      [this](const Topology& now, bool) { world.guard->UpdateTopology(now.Model(), world.tissue); });
 }
 
 /// Volumes and contacts go on with the organs' surfaces and the tubes as they are cut now.
@@ -95,7 +95,7 @@ void Simulation::Content::UpdateSurfaces(bool is_restored) {
     for (const geometry::Triangle& lid : geometry::MakeLids(mesh)) organ.triangles.push_back(lid);
     closed.push_back(std::move(organ));
   }
-  conservation->Follow(tissue_model, std::move(closed), world.conserved);
+  conservation->UpdateTopology(tissue_model, std::move(closed), world.conserved);
   // indices in range and finite coordinates, which is all that it asks for, a cut keeps
   const core::Status updated =
       world.touch.UpdateTopology(tissue_model, world.tissue, is_restored, meshes,
@@ -236,7 +236,7 @@ double Simulation::CalcEquilibriumError() const {
   exact.max_newton_steps = 200;
   exact.max_linear_iterations = 300;
   exact.law_error = 1e-7;
-  exact.max_rounds = 50;
+  exact.max_outer_iterations = 50;
   tissue::EquilibriumSolver judge(c.world.topology.Model(), 1);
   const tissue::SolveReport solved =
       tissue::FindConservedEquilibrium(judge, exact, *c.conservation, c.tick.load, state, c.world.conserved);

@@ -143,11 +143,11 @@ TEST_F(SceneFile, ReadsTheBoundsOfTheSolver) {
     Write("scene.json", text);
     return Read();
   };
-  const auto scene = with(R"("max_newton_steps": 3, "max_linear_total": 20, "follow_folds": false)");
+  const auto scene = with(R"("max_newton_steps": 3, "max_linear_total": 20, "follow_snap_through": false)");
   ASSERT_TRUE(scene.ok()) << scene.error().Text();
   EXPECT_EQ(scene->settings.solver.max_newton_steps, 3);
   EXPECT_EQ(scene->settings.solver.max_linear_total, 20);
-  EXPECT_FALSE(scene->settings.solver.follows_folds);
+  EXPECT_FALSE(scene->settings.solver.follows_snap_through);
   const auto wrong = with(R"("max_linear_total": 0)");
   ASSERT_FALSE(wrong.ok());
   EXPECT_THAT(wrong.error().Text(), HasSubstr("max_linear_total"));

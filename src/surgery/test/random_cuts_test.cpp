@@ -94,10 +94,10 @@ class CutTissue {
   geometry::CutReport Cut(const geometry::BladeEdge& before, const geometry::BladeEdge& now) {
     const auto report = system_.Cut(before, now);
     if (report.HasChanged()) {
-      solver_.Follow(system_.model);
-      conservation_.Follow(system_.model, ClosedOrgans(), conserved_);
+      solver_.UpdateTopology(system_.model);
+      conservation_.UpdateTopology(system_.model, ClosedOrgans(), conserved_);
       if (is_closed_ && !system_.organ->Settings().cut.has_walls) Perforate();
-      guard_.Follow(system_.model, system_.state);
+      guard_.UpdateTopology(system_.model, system_.state);
     }
     return report;
   }

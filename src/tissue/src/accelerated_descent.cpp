@@ -191,7 +191,7 @@ void AcceleratedDescent::SetGridLoads(const TissueLoad& load, const TissueState&
 
 SolveReport AcceleratedDescent::SolveGrid(const Kernels& kernels, Workers& workers,
                                           const SolverSettings& settings, const TissueLoad& load,
-                                          TissueState& state, const SolveHook* hook) noexcept {
+                                          TissueState& state, ConstraintSet* constraints) noexcept {
   // well conditioned, the finest grid alone is as fast
   const std::size_t levels = IsCold(state) && !IsWellConditioned(load) ? grids_.size() : 1;
   SetGridLoads(load, state, levels);
@@ -227,9 +227,9 @@ SolveReport AcceleratedDescent::SolveGrid(const Kernels& kernels, Workers& worke
     const double bound = finest.SmallestShape() * finest.LargestDisplacement();
     report.error = bound > 0.0 ? residual / bound : NAN;
     if (report.error <= settings.max_error || !std::isfinite(residual)) break;
-    if (hook == nullptr) continue;
+    if (constraints == nullptr) continue;
     write_state();
-    hook->act(hook->self, state, {});
+    constraints->Project(state, {});
     read_state();
     SetGridLoads(load, state, 1);
   }
@@ -240,7 +240,7 @@ SolveReport AcceleratedDescent::SolveGrid(const Kernels& kernels, Workers& worke
 
 SolveReport AcceleratedDescent::SolveSlices(const Kernels& kernels, Workers& workers,
                                             const SolverSettings& settings, const TissueLoad& load,
-                                            TissueState& state, const SolveHook* hook) noexcept {
+                                            TissueState& state, ConstraintSet* constraints) noexcept {
   SolveReport report;
   const std::uint32_t n = ordered_->Size();
   const auto read_state = [&] {
@@ -285,9 +285,9 @@ SolveReport AcceleratedDescent::SolveSlices(const Kernels& kernels, Workers& wor
     const double reached = slices_->SmallestShape() * slices_->LargestDisplacement();
     report.error = reached > 0.0 ? residual / reached : NAN;
     if (report.error <= settings.max_error || !std::isfinite(residual)) break;
-    if (hook == nullptr) continue;
+    if (constraints == nullptr) continue;
     write_state();
-    hook->act(hook->self, state, {});
+    constraints->Project(state, {});
     read_state();
   }
   report.converged = report.error <= settings.max_error && load.contacts.empty();
@@ -297,9 +297,9 @@ SolveReport AcceleratedDescent::SolveSlices(const Kernels& kernels, Workers& wor
 
 SolveReport AcceleratedDescent::Solve(const Kernels& kernels, Workers& workers,
                                       const SolverSettings& settings, const TissueLoad& load,
-                                      TissueState& state, const SolveHook* hook) noexcept {
-  return IsStructured() ? SolveGrid(kernels, workers, settings, load, state, hook)
-                        : SolveSlices(kernels, workers, settings, load, state, hook);
+                                      TissueState& state, ConstraintSet* constraints) noexcept {
+  return IsStructured() ? SolveGrid(kernels, workers, settings, load, state, constraints)
+                        : SolveSlices(kernels, workers, settings, load, state, constraints);
 }
 
 }  // namespace trocar::tissue

@@ -38,13 +38,13 @@ class AcceleratedDescent {
   /// Moves the free nodes from where they are. Contacts count by their force at the start of every cycle.
   /// \note Real-time safe; bounded by settings.max_iterations.
   SolveReport Solve(const Kernels& kernels, Workers& workers, const SolverSettings& settings,
-                    const TissueLoad& load, TissueState& state, const SolveHook* hook) noexcept;
+                    const TissueLoad& load, TissueState& state, ConstraintSet* constraints) noexcept;
 
  private:
   SolveReport SolveGrid(const Kernels& kernels, Workers& workers, const SolverSettings& settings,
-                        const TissueLoad& load, TissueState& state, const SolveHook* hook) noexcept;
+                        const TissueLoad& load, TissueState& state, ConstraintSet* constraints) noexcept;
   SolveReport SolveSlices(const Kernels& kernels, Workers& workers, const SolverSettings& settings,
-                          const TissueLoad& load, TissueState& state, const SolveHook* hook) noexcept;
+                          const TissueLoad& load, TissueState& state, ConstraintSet* constraints) noexcept;
   void SetGridLoads(const TissueLoad& load, const TissueState& state, std::size_t levels) noexcept;
 
   const TissueModel* model_;

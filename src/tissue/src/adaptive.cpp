@@ -4,8 +4,8 @@
 /// Newton's method with multigrid is exact and, from the last tick's positions, short; from a flat start it
 /// would walk in steps of a fraction of a spring's length. There, on a structured mesh, accelerated descent
 /// from coarse to fine comes within a thousandth for the price of one or two Newton steps; and where virtual
-/// springs bound the lowest eigenvalue it ends by itself, with a bound on its error. With a hook that does
-/// not name its constraints the double-precision recurrence runs. See docs/decisions/0014.
+/// springs bound the lowest eigenvalue it ends by itself, with a bound on its error. With constraints whose
+/// gradients are not known the double-precision recurrence runs. See docs/decisions/0014.
 #include "solver_content.h"
 
 namespace trocar::tissue {
@@ -18,13 +18,14 @@ constexpr int kDescentIterations = 400;
 }  // namespace
 
 SolveReport SolveAdaptive(EquilibriumSolver::Content& c, const SolverSettings& settings,
-                          const TissueLoad& load, TissueState& state, const SolveHook* hook) noexcept {
-  // A hook that does not say what it keeps: a whole Newton step between two projections undoes it, and
-  // pressure and shape then swing about each other. The recurrence takes it along every few iterations.
-  if (hook != nullptr && hook->constraints.empty())
-    return SolveChebyshevJacobiWang2015(c, settings, load, state, hook);
+                          const TissueLoad& load, TissueState& state, ConstraintSet* constraints,
+                          std::span<const Vec3> extrapolation) noexcept {
+  // A whole Newton step between two projections undoes constraints whose gradients it does not know, and pressure
+  // and shape then swing about each other. The recurrence projects every few iterations.
+  if (constraints != nullptr && constraints->Nodes().empty())
+    return SolveChebyshevJacobiWang2015(c, settings, load, state, constraints);
   SolveReport descent;
-  if (hook == nullptr && c.accelerated->IsStructured() && c.lines->ArePlain()) {
+  if (constraints == nullptr && c.accelerated->IsStructured() && c.spring_linearisation->IsPlain()) {
     if (c.accelerated->IsCold(state) || c.accelerated->IsWellConditioned(load)) {
       SolverSettings long_enough = settings;
       long_enough.max_iterations = kDescentIterations;
@@ -32,7 +33,8 @@ SolveReport SolveAdaptive(EquilibriumSolver::Content& c, const SolverSettings& s
       if (descent.converged) return descent;
     }
   }
-  SolveReport report = c.newton->Solve(*c.kernels, *c.workers, settings, load, state, hook);
+  SolveReport report =
+      c.newton->Solve(*c.kernels, *c.workers, settings, load, state, constraints, extrapolation);
   report.coarse_levels = descent.coarse_levels;
   report.iterations += descent.iterations;
   return report;

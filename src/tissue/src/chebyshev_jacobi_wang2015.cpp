@@ -167,7 +167,7 @@ void SetBlocks(EquilibriumSolver::Content& content, const TissueLoad& load, cons
 
 SolveReport SolveChebyshevJacobiWang2015(EquilibriumSolver::Content& content, const SolverSettings& settings,
                                          const TissueLoad& load, TissueState& state,
-                                         const SolveHook* hook) noexcept {
+                                         ConstraintSet* constraints) noexcept {
   const auto n = static_cast<std::uint32_t>(content.model->Size());
   SetSlices(content, load, state);
   double transverse_share = kTransverseShare;
@@ -214,8 +214,8 @@ SolveReport SolveChebyshevJacobiWang2015(EquilibriumSolver::Content& content, co
     ++report.iterations;
     std::swap(state.position, content.previous);
     ++in_cycle;
-    if (hook != nullptr && report.iterations % hook->interval == 0) {
-      hook->act(hook->self, state, content.previous);
+    if (constraints != nullptr && report.iterations % constraints->Interval() == 0) {
+      constraints->Project(state, content.previous);
       SetConstantForces(content, load);
     }
     smallest = std::fmin(smallest, residual);

@@ -9,7 +9,7 @@
 
 #include "trocar/core/assert.h"
 #include "trocar/math/state_fields.h"
-#include "volume_hook.h"
+#include "volume_constraint_set.h"
 
 namespace trocar::tissue {
 namespace {
@@ -126,15 +126,15 @@ Conservation::Conservation(const TissueModel& model, ConservationSettings settin
 
 void Conservation::SetOrgans(std::vector<ClosedOrgan> organs) {
   TROCAR_ASSERT(organs.size() <= kMaxClosedOrgans);
-  static_assert(kMaxClosedOrgans <= kMaxHookConstraints);
+  static_assert(kMaxClosedOrgans <= kMaxConstraints);
   settings_.organs = std::move(organs);
-  constraints_.clear();
+  organ_nodes_.clear();
   for (const ClosedOrgan& organ : settings_.organs)
-    constraints_.push_back({organ.first_node, organ.node_count});
+    organ_nodes_.push_back({organ.first_node, organ.node_count});
 }
 
-void Conservation::Follow(const TissueModel& model, std::vector<ClosedOrgan> organs,
-                          ConservationState& state) {
+void Conservation::UpdateTopology(const TissueModel& model, std::vector<ClosedOrgan> organs,
+                                  ConservationState& state) {
   TROCAR_ASSERT(model.Size() == model_->Size() && organs.size() == settings_.organs.size());
   model_ = &model;
   SetOrgans(std::move(organs));
@@ -242,7 +242,7 @@ bool Conservation::IsHeld(std::uint32_t region, const TissueState& tissue,
   return false;
 }
 
-void Conservation::CarryAlong(TissueState& tissue, ConservationState& state) noexcept {
+void Conservation::PredictRigidMotion(TissueState& tissue, ConservationState& state) noexcept {
   UpdateRegions(tissue, state);
   for (std::uint32_t region = 0; region < state.regions.count; ++region) {
     MotionMoments moments;
@@ -506,7 +506,7 @@ void Conservation::Enforce(const TissueLoad& load, double dt, TissueState& tissu
     responses.is_settled = false;
   // the responses of before steer well enough for a while, and a tick that cuts has enough to do already
   const bool is_late = std::exchange(responses.has_new_topology, false);
-  if (!responses.is_settled && (is_late || (!has_time && responses.ticks_waited < kMostWait))) {
+  if (!responses.is_settled && (is_late || (!has_time && responses.ticks_waited < kMaxTicksWaited))) {
     ++responses.ticks_waited;
   } else if (!responses.is_settled) {
     responses.ticks_waited = 0;
@@ -534,12 +534,10 @@ void Conservation::Enforce(const TissueLoad& load, double dt, TissueState& tissu
 SolveReport SolveConserving(EquilibriumSolver& solver, const SolverSettings& settings, double dt,
                             Conservation& conservation, TissueLoad& load, TissueState& tissue,
                             ConservationState& state) noexcept {
-  conservation.CarryAlong(tissue, state);
+  conservation.PredictRigidMotion(tissue, state);
   load.external_force = conservation.CalcForce(tissue, load, state);
-  VolumeHookContext context{&conservation, &state};
-  SolveHook hook = MakeVolumeHook(context);
-  hook.lead = state.last_motion;
-  const SolveReport report = solver.Solve(settings, load, tissue, &hook);
+  VolumeConstraintSet constraints(conservation, state);
+  const SolveReport report = solver.Solve(settings, load, tissue, &constraints, state.last_motion);
   // a solve that went to its bounds has taken the tick's time
   conservation.Enforce(load, dt, tissue, state, report.converged);
   return report;
@@ -559,7 +557,7 @@ double FillToPressure(EquilibriumSolver& solver, std::size_t organ, double press
   for (int filling = 0; filling < kMaxFillings && still < 3; ++filling) {
     // a pressure acts along normals that turn as the sac swells: step by step it stays near its equilibrium
     filled.pressure = pressure * std::fmin(1.0, (filling + 1) / 8.0);
-    conservation.CarryAlong(tissue, state);
+    conservation.PredictRigidMotion(tissue, state);
     TissueLoad loaded = load;
     loaded.external_force = conservation.CalcForce(tissue, load, state);
     (void)solver.Solve(exact, loaded, tissue);

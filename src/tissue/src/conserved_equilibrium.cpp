@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "volume_hook.h"
+#include "volume_constraint_set.h"
 
 namespace trocar::tissue {
 
@@ -16,16 +16,15 @@ SolveReport FindConservedEquilibrium(EquilibriumSolver& solver, const SolverSett
   moved.regions.count = 0;
   std::vector<Vec3> without_pressure(load.external_force.begin(), load.external_force.end());
   for (std::size_t organ = 0; organ < state.organs.size() && !without_pressure.empty(); ++organ) {
-    const auto [first, count] = conservation.Constraints()[organ];
+    const auto [first, count] = conservation.OrganNodes()[organ];
     for (std::uint32_t i = first; i < first + count; ++i)
       without_pressure[i] -= state.organs[organ].pressure * conservation.VolumeGradient()[i];
   }
   TissueLoad loaded = load;
   loaded.external_force = without_pressure;
   loaded.external_force = kept.CalcForce(tissue, loaded, moved);
-  VolumeHookContext context{&kept, &moved};
-  const SolveHook hook = MakeVolumeHook(context);
-  return solver.Solve(exact, loaded, tissue, &hook);
+  VolumeConstraintSet constraints(kept, moved);
+  return solver.Solve(exact, loaded, tissue, &constraints);
 }
 
 }  // namespace trocar::tissue

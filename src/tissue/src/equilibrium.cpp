@@ -3,9 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "capacity.h"
 #include "node_force.h"
-#include "room.h"
 #include "solver_content.h"
 #include "trocar/core/assert.h"
 
@@ -35,26 +36,27 @@ bool HangsOnStrand(const TissueModel& model, const TissueState& state, std::uint
   return false;
 }
 
-/// One solve with the springs as they stand.
-SolveReport SolveLines(EquilibriumSolver::Content& c, const SolverSettings& settings, const TissueLoad& load,
-                       TissueState& state, const SolveHook* hook) noexcept {
+/// One solve with the springs as they are linearised now.
+SolveReport SolveLinearised(EquilibriumSolver::Content& c, const SolverSettings& settings,
+                            const TissueLoad& load, TissueState& state, ConstraintSet* constraints,
+                            std::span<const Vec3> extrapolation) noexcept {
   if (settings.kind == SolverKind::kRelaxationPaper)
-    return SolveRelaxationPaper(c, settings, load, state, hook);
+    return SolveRelaxationPaper(c, settings, load, state, constraints);
   if (settings.kind == SolverKind::kGaussSeidelBrown2001)
-    return SolveGaussSeidelBrown2001(c, settings, load, state, hook);
+    return SolveGaussSeidelBrown2001(c, settings, load, state, constraints);
   const Workers::Session session(*c.workers);
   switch (settings.kind) {
     case SolverKind::kChebyshevJacobi2015:
-      return SolveChebyshevJacobiWang2015(c, settings, load, state, hook);
+      return SolveChebyshevJacobiWang2015(c, settings, load, state, constraints);
     case SolverKind::kAcceleratedDescent:
       // a stencil has no place for springs of their own; the recurrence in double precision has
-      if (c.accelerated->IsStructured() && !c.lines->ArePlain())
-        return SolveChebyshevJacobiWang2015(c, settings, load, state, hook);
-      return c.accelerated->Solve(*c.kernels, *c.workers, settings, load, state, hook);
+      if (c.accelerated->IsStructured() && !c.spring_linearisation->IsPlain())
+        return SolveChebyshevJacobiWang2015(c, settings, load, state, constraints);
+      return c.accelerated->Solve(*c.kernels, *c.workers, settings, load, state, constraints);
     case SolverKind::kNewtonMultigrid:
-      return c.newton->Solve(*c.kernels, *c.workers, settings, load, state, hook);
+      return c.newton->Solve(*c.kernels, *c.workers, settings, load, state, constraints, extrapolation);
     default:
-      return SolveAdaptive(c, settings, load, state, hook);
+      return SolveAdaptive(c, settings, load, state, constraints, extrapolation);
   }
 }
 
@@ -73,13 +75,13 @@ EquilibriumSolver::EquilibriumSolver(const TissueModel& model, const SolverOptio
   c.newton = std::make_unique<NewtonMultigrid>(model);
   c.accelerated = std::make_unique<AcceleratedDescent>(model, c.newton->Springs(), options.recognises_grids);
   SetSlicedSprings(model, c.springs);
-  c.lines = std::make_unique<SpringLines>(model, c.springs, c.newton->Springs());
-  c.model = &c.lines->Model();
+  c.spring_linearisation = std::make_unique<SpringLinearisation>(model, c.springs, c.newton->Springs());
+  c.model = &c.spring_linearisation->Model();
   c.SetStrandNodes(model);
   c.wave.reserve(n);
   c.visited.resize(n);
   c.residual.resize(n);
-  c.adrift_condition.resize(n);
+  c.unconstrained_condition.resize(n);
   c.previous.resize(n);
   c.blocks.resize(n);
   c.slices.resize((n + kLanes - 1) / kLanes, SliceData{});
@@ -89,14 +91,14 @@ EquilibriumSolver::EquilibriumSolver(const TissueModel& model, const SolverOptio
   if (options.spare_share > 0.0) c.Reserve(options.spare_share);
 }
 
-void EquilibriumSolver::Follow(const TissueModel& model) {
+void EquilibriumSolver::UpdateTopology(const TissueModel& model) {
   Content& c = *content_;
   TROCAR_ASSERT(model.Size() == c.model->Size());
   c.laws = &model;
   c.newton->SetModel(model);
   c.accelerated->SetModel(model);
   SetSlicedSprings(model, c.springs);
-  c.lines->SetModel(model);
+  c.spring_linearisation->SetModel(model);
   c.SetStrandNodes(model);
 }
 
@@ -110,7 +112,7 @@ void EquilibriumSolver::Content::SetStrandNodes(const TissueModel& with) {
 void EquilibriumSolver::Content::Reserve(double share) {
   newton->Reserve(share);
   accelerated->Reserve(share);
-  lines->Reserve(share);
+  spring_linearisation->Reserve(share);
   ReserveMore(share, springs.starts, springs.others, springs.stiffness, springs.stiffness_times_rest,
               strand_nodes);
 }
@@ -124,25 +126,28 @@ bool EquilibriumSolver::IsStructured() const noexcept {
 }
 
 SolveReport EquilibriumSolver::Solve(const SolverSettings& settings, const TissueLoad& load,
-                                     TissueState& state, const SolveHook* hook) noexcept {
+                                     TissueState& state, ConstraintSet* constraints,
+                                     std::span<const Vec3> extrapolation) noexcept {
   TROCAR_ASSERT(state.position.size() == content_->model->Size());
   TROCAR_ASSERT(load.contacts.size() <= kMaxContacts);
   Content& c = *content_;
   if (!IsFinite(load, state)) return {.is_finite = false};
-  if (!c.lines->TakeFactors(state)) return {.is_finite = false};
+  if (!c.spring_linearisation->UpdateFactors(state)) return {.is_finite = false};
   // a node without any spring has no equilibrium: it stays where it is
-  const std::span<const std::uint32_t> adrift = c.lines->Adrift();
-  for (std::size_t i = 0; i < adrift.size(); ++i) {
-    c.adrift_condition[i] = state.condition[adrift[i]];
-    if (!HangsOnStrand(*c.laws, state, adrift[i])) state.condition[adrift[i]] = NodeCondition::kPrescribed;
+  const std::span<const std::uint32_t> unconstrained = c.spring_linearisation->Unconstrained();
+  for (std::size_t i = 0; i < unconstrained.size(); ++i) {
+    c.unconstrained_condition[i] = state.condition[unconstrained[i]];
+    if (!HangsOnStrand(*c.laws, state, unconstrained[i]))
+      state.condition[unconstrained[i]] = NodeCondition::kPrescribed;
   }
-  SolveHook kept = hook != nullptr ? *hook : SolveHook{};
-  const SolveReport report = c.lines->Follow(settings, state, [&](const SolverSettings& rest) noexcept {
-    const SolveReport round = SolveLines(c, rest, load, state, hook != nullptr ? &kept : nullptr);
-    kept.lead = {};  // gone by now
-    return round;
-  });
-  for (std::size_t i = 0; i < adrift.size(); ++i) state.condition[adrift[i]] = c.adrift_condition[i];
+  const SolveReport report =
+      c.spring_linearisation->Iterate(settings, state, [&](const SolverSettings& rest) noexcept {
+        // the first solve goes there, the others begin where it ended
+        const auto guess = std::exchange(extrapolation, {});
+        return SolveLinearised(c, rest, load, state, constraints, guess);
+      });
+  for (std::size_t i = 0; i < unconstrained.size(); ++i)
+    state.condition[unconstrained[i]] = c.unconstrained_condition[i];
   return report;
 }
 

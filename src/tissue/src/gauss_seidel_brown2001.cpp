@@ -40,7 +40,7 @@ double CalcNodeStiffness(const TissueModel& model, const TissueLoad& load, const
 
 SolveReport SolveGaussSeidelBrown2001(EquilibriumSolver::Content& content, const SolverSettings& settings,
                                       const TissueLoad& load, TissueState& state,
-                                      const SolveHook* hook) noexcept {
+                                      ConstraintSet* constraints) noexcept {
   const TissueModel& model = *content.model;
   const auto n = static_cast<std::uint32_t>(model.Size());
   std::vector<std::uint32_t>& wave = content.wave;
@@ -88,7 +88,8 @@ SolveReport SolveGaussSeidelBrown2001(EquilibriumSolver::Content& content, const
       for (auto h = model.strand_starts[i]; h < model.strand_starts[i + 1]; ++h)
         reach(model.half_strands[h].other);
     }
-    if (hook != nullptr && report.iterations % hook->interval == 0) hook->act(hook->self, state, {});
+    if (constraints != nullptr && report.iterations % constraints->Interval() == 0)
+      constraints->Project(state, {});
   }
 }
 

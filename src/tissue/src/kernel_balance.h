@@ -170,7 +170,7 @@ void CalcGroupBalance(const BalancePass& pass, std::uint32_t slice, std::uint32_
   force = MulAdd(shape, offset, force);
   DoubleSymmetric block;
   if constexpr (kHasStiffness) {
-    block = LoadSymmetric(pass.ground + std::size_t{slice} * 6 * kSliceNodes + lane);
+    block = LoadSymmetric(pass.diagonal_excess + std::size_t{slice} * 6 * kSliceNodes + lane);
     const Doubles strands = value(kStrands);
     block.xx += strands, block.yy += strands, block.zz += strands;
   }
@@ -195,9 +195,9 @@ void CalcGroupBalance(const BalancePass& pass, std::uint32_t slice, std::uint32_
       const DoubleSymmetric square = {x * along.x, x * along.y, x * along.z,
                                       y * along.y, y * along.z, z * along.z};
       StoreSymmetric(
-          pass.links + std::size_t{step} * 6 * kSliceNodes + lane,
+          pass.off_diagonal + std::size_t{step} * 6 * kSliceNodes + lane,
           {across + square.xx, square.xy, square.xz, across + square.yy, square.yz, across + square.zz});
-      StoreFloats(pass.slack + entry, Larger(-across, none));
+      StoreFloats(pass.shift + entry, Larger(-across, none));
       const Doubles firm = Larger(across, none);
       block.xx += firm + square.xx, block.xy += square.xy, block.xz += square.xz;
       block.yy += firm + square.yy, block.yz += square.yz, block.zz += firm + square.zz;
@@ -218,7 +218,7 @@ void CalcGroupBalance(const BalancePass& pass, std::uint32_t slice, std::uint32_
   for (std::uint32_t at = 0; at < kDoubles; ++at) pass.residual[i + at] = {x[at], y[at], z[at], 0.0f};
 }
 
-void CalcTurns(const TurnPass& pass, std::uint32_t first_slice, std::uint32_t last_slice) {
+void CalcFollowerStiffness(const FollowerPass& pass, std::uint32_t first_slice, std::uint32_t last_slice) {
   for (std::uint32_t slice = first_slice; slice < last_slice; ++slice) {
     for (std::uint32_t lane = 0; lane < kSliceNodes; lane += kDoubles) {
       const Doubles factor = LoadDoubles(pass.factor + std::size_t{slice} * kSliceNodes + lane);
@@ -227,7 +227,7 @@ void CalcTurns(const TurnPass& pass, std::uint32_t first_slice, std::uint32_t la
         const std::uint32_t* const right = pass.right + std::size_t{step} * kSliceNodes + lane;
         const DoubleVector across = LoadNodes(pass.position, [left](std::uint32_t at) { return left[at]; }) -
                                     LoadNodes(pass.position, [right](std::uint32_t at) { return right[at]; });
-        float* const to = pass.turns + std::size_t{step} * 3 * kSliceNodes + lane;
+        float* const to = pass.follower + std::size_t{step} * 3 * kSliceNodes + lane;
         StoreFloats(to, factor * across.x), StoreFloats(to + kSliceNodes, factor * across.y);
         StoreFloats(to + 2 * kSliceNodes, factor * across.z);
       }
@@ -260,9 +260,10 @@ void InvertBlocks(const LinkMatrix& m, float* inverse, std::uint32_t first_slice
   for (std::uint32_t slice = first_slice; slice < last_slice; ++slice) {
     for (std::uint32_t lane = 0; lane < kSliceNodes; lane += kDoubles) {
       const std::size_t at = std::size_t{slice} * 6 * kSliceNodes + lane;
-      DoubleSymmetric block = LoadSymmetric(m.ground + at);
+      DoubleSymmetric block = LoadSymmetric(m.diagonal_excess + at);
       for (std::uint32_t step = m.table.starts[slice]; step < m.table.starts[slice + 1]; ++step) {
-        const DoubleSymmetric link = LoadSymmetric(m.links + std::size_t{step} * 6 * kSliceNodes + lane);
+        const DoubleSymmetric link =
+            LoadSymmetric(m.off_diagonal + std::size_t{step} * 6 * kSliceNodes + lane);
         block.xx += link.xx, block.xy += link.xy, block.xz += link.xz;
         block.yy += link.yy, block.yz += link.yz, block.zz += link.zz;
       }

@@ -27,17 +27,18 @@ void Multiply(const LinkMatrix& m, const Float4* x, const Float4* b, float facto
       }
       const Vector here = LoadNodes(x + i);
       Vector force{};
-      if constexpr (kPass != LinkPass::kTurn)
-        force = MulAddSymmetric(m.ground + std::size_t{slice} * 6 * kSliceNodes + lane, -here, Vector{});
+      if constexpr (kPass != LinkPass::kFollower)
+        force =
+            MulAddSymmetric(m.diagonal_excess + std::size_t{slice} * 6 * kSliceNodes + lane, -here, Vector{});
       for (std::uint32_t step = m.table.starts[slice]; step < m.table.starts[slice + 1]; ++step) {
         const Vector along = GatherNodes(x, m.table.others + std::size_t{step} * kSliceNodes + lane) - here;
-        if constexpr (kPass != LinkPass::kTurn)
-          force = MulAddSymmetric(m.links + std::size_t{step} * 6 * kSliceNodes + lane, along, force);
+        if constexpr (kPass != LinkPass::kFollower)
+          force = MulAddSymmetric(m.off_diagonal + std::size_t{step} * 6 * kSliceNodes + lane, along, force);
         if constexpr (kHasTurns)
-          force = AddTurn(m.turns + std::size_t{step} * 3 * kSliceNodes + lane, along, force);
+          force = AddTurn(m.follower + std::size_t{step} * 3 * kSliceNodes + lane, along, force);
       }
       const Lanes is_free = Load(m.is_free + i);
-      if constexpr (kPass == LinkPass::kProduct || kPass == LinkPass::kTurn) {
+      if constexpr (kPass == LinkPass::kProduct || kPass == LinkPass::kFollower) {
         StoreNodes(out + i, (All(0.0f) - is_free) * force);
       } else if constexpr (kPass == LinkPass::kResidual) {
         StoreNodes(out + i, is_free * (LoadNodes(b + i) + force));
@@ -55,11 +56,11 @@ void MultiplyLinks(const LinkMatrix& matrix, LinkPass pass, const Float4* x, con
     case LinkPass::kStart:
       return Multiply<LinkPass::kStart>(matrix, x, b, factor, out, first_slice, last_slice);
     case LinkPass::kProduct:
-      return matrix.turns == nullptr
+      return matrix.follower == nullptr
                  ? Multiply<LinkPass::kProduct>(matrix, x, b, factor, out, first_slice, last_slice)
                  : Multiply<LinkPass::kProduct, true>(matrix, x, b, factor, out, first_slice, last_slice);
-    case LinkPass::kTurn:
-      return Multiply<LinkPass::kTurn, true>(matrix, x, b, factor, out, first_slice, last_slice);
+    case LinkPass::kFollower:
+      return Multiply<LinkPass::kFollower, true>(matrix, x, b, factor, out, first_slice, last_slice);
     case LinkPass::kResidual:
       return Multiply<LinkPass::kResidual>(matrix, x, b, factor, out, first_slice, last_slice);
     case LinkPass::kSmooth:

@@ -15,7 +15,7 @@ constexpr Kernels kKernels = {
     .step_slices = StepSlices,
     .looks_up = TROCAR_LANES == 16,
     .step_rows = StepRows,
-    .turn = CalcTurns,
+    .calc_follower_stiffness = CalcFollowerStiffness,
     .balance = CalcBalance,
     .invert_blocks = InvertBlocks,
     .vectors = {CalcDot, FindLargest2, Advance, AddScaled, ScaleAndAdd},

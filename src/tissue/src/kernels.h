@@ -33,22 +33,23 @@ struct SliceTable {
   const std::uint32_t* others;  // (steps * kSliceNodes)
 };
 
-/// y = K x of a system of springs with symmetric 3 x 3 stiffness: (K x)_i = G_i x_i + sum_j S_ij (x_i - x_j), and of
-/// closed surfaces under pressure, + sum_j t_ij x (x_j - x_i).
+/// The stiffness K of a system of springs, in symmetric blocks of 3 x 3. Its off-diagonal blocks are K_ij = -S_ij, its
+/// diagonal blocks K_ii = G_i + sum_j S_ij, so that (K x)_i = G_i x_i + sum_j S_ij (x_i - x_j). Closed surfaces under
+/// pressure add their follower stiffness, sum_j t_ij x (x_j - x_i).
 struct LinkMatrix {
   SliceTable table;
-  const float* links;    // (steps, 6, kSliceNodes): S as xx, xy, xz, yy, yz, zz
-  const float* ground;   // (slices, 6, kSliceNodes): G
-  const float* inverse;  // (slices, 6, kSliceNodes): inverse of the node's own block; zero where it is held
-  const float* is_free;  // (slices * kSliceNodes): 1, or 0 where the node is held
-  const float* turns;    // (steps, 3, kSliceNodes): t, of kProduct and kTurn alone; or null
+  const float* off_diagonal;     // (steps, 6, kSliceNodes): S as xx, xy, xz, yy, yz, zz
+  const float* diagonal_excess;  // (slices, 6, kSliceNodes): G, what the diagonal block has beyond sum S
+  const float* inverse;   // (slices, 6, kSliceNodes): inverse of the node's own block; zero where it is held
+  const float* is_free;   // (slices * kSliceNodes): 1, or 0 where the node is held
+  const float* follower;  // (steps, 3, kSliceNodes): t, of kProduct and kFollower alone; or null
 };
 
 /// What a pass over a LinkMatrix writes.
 enum class LinkPass {
   kStart,     ///< out = factor D^-1 b; x is not read
   kProduct,   ///< out = K x
-  kTurn,      ///< out = what the turns alone give of K x
+  kFollower,  ///< out = the follower stiffness alone times x
   kResidual,  ///< out = b - K x
   kSmooth     ///< out = x + factor D^-1 (b - K x)
 };
@@ -71,28 +72,28 @@ enum BalanceValue {
 /// Forces, energy and stiffness of a sliced system in double precision.
 struct BalancePass {
   SliceTable table;
-  const double* stiffness;    // (entries) k [N/m]; 0 where there is no spring
-  const double* rest_length;  // (entries) l [m]
-  double stiffness_scale;     // on k [-]
-  const double* nodes;        // (slices, kBalanceValues, kSliceNodes)
-  const Double4* position;    // (padded nodes) [m]
-  Float4* residual;           // (padded nodes) out: force on the node [N], 0 where it is held
-  bool has_stiffness;         // whether what follows is written
-  float* links;               // (steps, 6, kSliceNodes) out: as in LinkMatrix
-  float* slack;               // (entries) out: what compression takes from the stiffness across, >= 0 [N/m]
-  const float* ground;        // (slices, 6, kSliceNodes)
-  float* inverse;             // (slices, 6, kSliceNodes) out: of the node's own block, compression left out
+  const double* stiffness;       // (entries) k [N/m]; 0 where there is no spring
+  const double* rest_length;     // (entries) l [m]
+  double stiffness_scale;        // on k [-]
+  const double* nodes;           // (slices, kBalanceValues, kSliceNodes)
+  const Double4* position;       // (padded nodes) [m]
+  Float4* residual;              // (padded nodes) out: force on the node [N], 0 where it is held
+  bool has_stiffness;            // whether what follows is written
+  float* off_diagonal;           // (steps, 6, kSliceNodes) out: as in LinkMatrix
+  float* shift;                  // (entries) out: stabilising shift, see Linearisation, >= 0 [N/m]
+  const float* diagonal_excess;  // (slices, 6, kSliceNodes)
+  float* inverse;  // (slices, 6, kSliceNodes) out: of the node's own block, compression left out
 };
-/// The turns of a LinkMatrix: what a pressure P adds to the stiffness is P / 6 times the vector from the one to the other
+/// The follower of a LinkMatrix: what a pressure P adds to the stiffness is P / 6 times the vector from the one to the other
 /// of the two corners that lie across an edge.
-struct TurnPass {
+struct FollowerPass {
   SliceTable table;
   const std::uint32_t* left;  // (entries) node across the link, of the triangle that goes along it
   const std::uint32_t*
       right;  // (entries) of the one that goes back; as left where no closed surface has such an edge
   const double* factor;     // (padded nodes) P / 6 [Pa]
   const Double4* position;  // (padded nodes) [m]
-  float* turns;             // (steps, 3, kSliceNodes) out [N/m]
+  float* follower;          // (steps, 3, kSliceNodes) out: t [N/m]
 };
 
 /// What a pass found over its slices; the same for every width of a vector.
@@ -161,7 +162,7 @@ struct GridStep {
   bool is_first;
   bool is_measured;  // whether to report the residual
   float* reaction;   // (2 ReactionFloats): forces of a row's springs to the south, south-east and south-west
-                     // on its own nodes, by turns for even and odd rows; zero at first
+                     // on its own nodes, by follower for even and odd rows; zero at first
 };
 
 /// Sums and combinations of node vectors, from node `first` to before `last`, both multiples of kSliceNodes.
@@ -187,9 +188,10 @@ struct Kernels {
   float (*step_slices)(const SliceStep& step, std::uint32_t first_slice, std::uint32_t last_slice);
   bool looks_up;  ///< whether step_slices takes lookups
   float (*step_rows)(const GridStep& step, std::uint32_t first_row, std::uint32_t last_row);
-  void (*turn)(const TurnPass& pass, std::uint32_t first_slice, std::uint32_t last_slice);
+  void (*calc_follower_stiffness)(const FollowerPass& pass, std::uint32_t first_slice,
+                                  std::uint32_t last_slice);
   BalanceSums (*balance)(const BalancePass& pass, std::uint32_t first_slice, std::uint32_t last_slice);
-  /// Inverses of the nodes' own blocks, ground + sum of links; 0 where a node is held or nothing holds it.
+  /// Inverses of the nodes' own blocks, diagonal excess + sum of off-diagonal blocks; 0 where a node is held or nothing holds it.
   void (*invert_blocks)(const LinkMatrix& matrix, float* inverse, std::uint32_t first_slice,
                         std::uint32_t last_slice);
   VectorKernels vectors;

@@ -22,10 +22,10 @@ constexpr std::size_t kMostRow = 3 * (kWidest + 1);
 /// Pivots below this part of the diagonal are not positive for sure [-].
 constexpr double kLeastPivot = 1e-7;
 
-std::size_t GroundAt(std::uint32_t i) {
+std::size_t DiagonalAt(std::uint32_t i) {
   return std::size_t{i / kSliceNodes} * 6 * kSliceNodes + i % kSliceNodes;
 }
-std::size_t LinkAt(std::size_t entry) {
+std::size_t OffDiagonalAt(std::size_t entry) {
   return entry / kSliceNodes * 6 * kSliceNodes + entry % kSliceNodes;
 }
 /// Place of (row, column) among xx, xy, xz, yy, yz, zz.
@@ -34,7 +34,7 @@ constexpr std::size_t kAt[3][3] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}};
 }  // namespace
 
 /// Breadth-first order of the candidates that `root` is connected with, from the one found last, in chain_.
-void LinkChains::OrderChain(const NodeGraph& graph, std::uint32_t root, std::uint32_t round) {
+void LineSmoother::OrderChain(const NodeGraph& graph, std::uint32_t root, std::uint32_t round) {
   for (const std::uint32_t pass : {round, round + 1}) {
     chain_.assign(1, root);
     marks_[root] = pass;
@@ -50,7 +50,7 @@ void LinkChains::OrderChain(const NodeGraph& graph, std::uint32_t root, std::uin
   }
 }
 
-void LinkChains::SetGraph(const NodeGraph& graph, const SliceLayout& layout) {
+void LineSmoother::SetGraph(const NodeGraph& graph, const SliceLayout& layout) {
   const std::uint32_t n = graph.Size();
   constexpr std::uint32_t kNone = ~std::uint32_t{0};
   nodes_.clear(), links_.clear(), first_.clear(), row_starts_.clear();
@@ -109,7 +109,7 @@ void LinkChains::SetGraph(const NodeGraph& graph, const SliceLayout& layout) {
   values_.resize(3 * nodes_.size());
 }
 
-void LinkChains::Reserve(double share) {
+void LineSmoother::Reserve(double share) {
   // a cut leaves nodes with few neighbours: of so many nodes some join chains, as wide as chains may be
   const std::size_t nodes =
       nodes_.size() + static_cast<std::size_t>(share * static_cast<double>(marks_.size()));
@@ -122,21 +122,21 @@ void LinkChains::Reserve(double share) {
 }
 
 /// False where the matrix is not positive definite.
-bool LinkChains::FactoriseOnce(const LinkLevel& level, std::span<const float> slack) noexcept {
+bool LineSmoother::FactoriseOnce(const LinkLevel& level, std::span<const float> shift) noexcept {
   std::fill(factor_.begin(), factor_.end(), 0.0);
   for (std::size_t row = 0; row < nodes_.size(); ++row) {
     const std::uint32_t i = nodes_[row];
     std::array<double, 6> block = {1, 0, 0, 1, 0, 1};
     if (level.is_free[i] != 0.0f) {
       for (std::size_t v = 0; v < 6; ++v)
-        block[v] = static_cast<double>(level.ground[GroundAt(i) + v * kSliceNodes]);
+        block[v] = static_cast<double>(level.diagonal_excess[DiagonalAt(i) + v * kSliceNodes]);
       for (std::uint32_t step = 0; step < level.layout.RowSteps(i); ++step) {
         const std::size_t entry = level.layout.Entry(i, step);
         if (level.layout.others[entry] == i) break;
         for (std::size_t v = 0; v < 6; ++v)
-          block[v] += static_cast<double>(level.links[LinkAt(entry) + v * kSliceNodes]);
+          block[v] += static_cast<double>(level.off_diagonal[OffDiagonalAt(entry) + v * kSliceNodes]);
         for (const std::size_t v : {0u, 3u, 5u})
-          block[v] += slack.empty() ? 0.0 : static_cast<double>(slack[entry]);
+          block[v] += shift.empty() ? 0.0 : static_cast<double>(shift[entry]);
       }
     }
     for (std::size_t a = 0; a < 3; ++a) {
@@ -145,12 +145,12 @@ bool LinkChains::FactoriseOnce(const LinkLevel& level, std::span<const float> sl
   }
   for (const Link& link : links_) {
     if (level.is_free[nodes_[link.row]] == 0.0f || level.is_free[nodes_[link.column]] == 0.0f) continue;
-    const double firmer = slack.empty() ? 0.0 : static_cast<double>(slack[link.entry]);
+    const double added = shift.empty() ? 0.0 : static_cast<double>(shift[link.entry]);
     for (std::size_t a = 0; a < 3; ++a) {
       for (std::size_t b = 0; b < 3; ++b) {
         At(3 * link.row + a, 3 * link.column + b) -=
-            static_cast<double>(level.links[LinkAt(link.entry) + kAt[a][b] * kSliceNodes]) +
-            (a == b ? firmer : 0.0);
+            static_cast<double>(level.off_diagonal[OffDiagonalAt(link.entry) + kAt[a][b] * kSliceNodes]) +
+            (a == b ? added : 0.0);
       }
     }
   }
@@ -174,8 +174,8 @@ bool LinkChains::FactoriseOnce(const LinkLevel& level, std::span<const float> sl
   return true;
 }
 
-void LinkChains::Factorise(const LinkLevel& level, std::span<const float> slack) noexcept {
-  is_factorised_ = FactoriseOnce(level, {}) || FactoriseOnce(level, slack);
+void LineSmoother::Factorise(const LinkLevel& level, std::span<const float> shift) noexcept {
+  is_factorised_ = FactoriseOnce(level, {}) || FactoriseOnce(level, shift);
   if (!is_factorised_) return;
   for (std::size_t row = 0; row < first_.size(); ++row) {
     const std::size_t diagonal = row_starts_[row + 1] - 1;
@@ -186,7 +186,7 @@ void LinkChains::Factorise(const LinkLevel& level, std::span<const float> slack)
   }
 }
 
-void LinkChains::Solve(const LinkLevel& level, const Float4* from, const Float4* b) noexcept {
+void LineSmoother::Solve(const LinkLevel& level, const Float4* from, const Float4* b) noexcept {
   if (!is_factorised_) return;
   for (std::size_t row = 0; row < nodes_.size(); ++row) {
     const std::uint32_t i = nodes_[row];
@@ -198,13 +198,14 @@ void LinkChains::Solve(const LinkLevel& level, const Float4* from, const Float4*
         r[2] -= m[2 * kSliceNodes] * dx + m[4 * kSliceNodes] * dy + m[5 * kSliceNodes] * dz;
       };
       const Float4& here = from[i];
-      subtract(level.ground.data() + GroundAt(i), here.x, here.y, here.z);
+      subtract(level.diagonal_excess.data() + DiagonalAt(i), here.x, here.y, here.z);
       for (std::uint32_t step = 0; step < level.layout.RowSteps(i); ++step) {
         const std::size_t entry = level.layout.Entry(i, step);
         const std::uint32_t other = level.layout.others[entry];
         if (other == i) break;
         const Float4& there = from[other];
-        subtract(level.links.data() + LinkAt(entry), here.x - there.x, here.y - there.y, here.z - there.z);
+        subtract(level.off_diagonal.data() + OffDiagonalAt(entry), here.x - there.x, here.y - there.y,
+                 here.z - there.z);
       }
     }
     for (std::size_t axis = 0; axis < 3; ++axis) values_[3 * row + axis] = level.is_free[i] * r[axis];
@@ -224,7 +225,7 @@ void LinkChains::Solve(const LinkLevel& level, const Float4* from, const Float4*
   }
 }
 
-void LinkChains::Add(const Float4* from, float factor, Float4* x) const noexcept {
+void LineSmoother::Add(const Float4* from, float factor, Float4* x) const noexcept {
   if (!is_factorised_) return;
   for (std::size_t row = 0; row < nodes_.size(); ++row) {
     const std::uint32_t i = nodes_[row];

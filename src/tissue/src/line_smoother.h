@@ -19,12 +19,12 @@ namespace trocar::tissue {
 
 struct LinkLevel;
 
-class LinkChains {
+class LineSmoother {
  public:
-  LinkChains() = default;
+  LineSmoother() = default;
   /// Finds the chains: connected nodes with few neighbours whose matrix is narrow.
   /// \param graph  of the finest level
-  LinkChains(const NodeGraph& graph, const SliceLayout& layout) { SetGraph(graph, layout); }
+  LineSmoother(const NodeGraph& graph, const SliceLayout& layout) { SetGraph(graph, layout); }
   /// The same for another graph.
   /// \note Allocates nothing where Reserve() was enough.
   void SetGraph(const NodeGraph& graph, const SliceLayout& layout);
@@ -34,9 +34,9 @@ class LinkChains {
 
   /// Factorises the chains' own part of the matrix.
   ///
-  /// \param slack  (entries) added to each link where the matrix is not positive definite without it [N/m]
+  /// \param shift  (entries) added to each link where the matrix is not positive definite without it [N/m]
   /// \note Real-time safe.
-  void Factorise(const LinkLevel& level, std::span<const float> slack) noexcept;
+  void Factorise(const LinkLevel& level, std::span<const float> shift) noexcept;
 
   /// K_chains^-1 (b - K from) on the chains' nodes, for Add(): beside a pass over all nodes that leaves `from` alone.
   ///
@@ -53,7 +53,7 @@ class LinkChains {
     std::uint32_t entry;
   };
   void OrderChain(const NodeGraph& graph, std::uint32_t root, std::uint32_t round);
-  bool FactoriseOnce(const LinkLevel& level, std::span<const float> slack) noexcept;
+  bool FactoriseOnce(const LinkLevel& level, std::span<const float> shift) noexcept;
   double& At(std::size_t row, std::size_t column) { return factor_[row_starts_[row] + column - first_[row]]; }
 
   std::vector<std::uint32_t> nodes_;  // in the order of elimination

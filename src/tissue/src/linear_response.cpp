@@ -66,9 +66,9 @@ void LinearResponse::SetStiffness(const TissueState& state, const TissueLoad& lo
       const auto& half = model.half_springs[h];
       const Vec3 along = state.position[half.other] - state.position[i];
       const double length = math::Norm(along);
-      const SpringLine line =
-          CalcSpringLine(model.laws[model.spring_law[half.spring]], state.spring_factor[half.spring],
-                         half.stiffness, half.rest_length, length);
+      const TangentSpring line =
+          CalcTangentSpring(model.laws[model.spring_law[half.spring]], state.spring_factor[half.spring],
+                            half.stiffness, half.rest_length, length);
       const double stiffness = load.stiffness_scale * line.stiffness;
       const double across = length > 0.0 ? std::fmax(0.0, 1.0 - line.rest_length / length) : 1.0;
       Link& link = springs_[h];

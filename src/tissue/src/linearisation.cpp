@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "capacity.h"
 #include "node_force.h"
 #include "node_vectors.h"
-#include "room.h"
 
 namespace trocar::tissue {
 namespace {
@@ -31,8 +31,8 @@ void SetGraph(const TissueModel& model, NodeGraph& graph, std::vector<double>& s
   }
 }
 
-/// Place of the first of a node's six ground values.
-std::size_t GroundAt(std::uint32_t i) {
+/// Place of the first of a node's six values.
+std::size_t DiagonalAt(std::uint32_t i) {
   return std::size_t{i / kSliceNodes} * 6 * kSliceNodes + i % kSliceNodes;
 }
 
@@ -44,9 +44,9 @@ Vec3 ToVec3(const Double4& v) {
 
 void SetOrderedModel(const TissueModel& model, OrderedModel& made) {
   const auto n = static_cast<std::uint32_t>(model.Size());
-  NodeGraph& old_graph = made.room.graph;
-  SetGraph(model, old_graph, made.room.stiffness);
-  FindNodeOrder(old_graph, made.room.order, made.old_of_new);
+  NodeGraph& old_graph = made.workspace.graph;
+  SetGraph(model, old_graph, made.workspace.stiffness);
+  FindNodeOrder(old_graph, made.workspace.order, made.old_of_new);
   made.new_of_old.resize(n);
   for (std::uint32_t i = 0; i < n; ++i) made.new_of_old[made.old_of_new[i]] = i;
   made.graph.Clear();
@@ -55,7 +55,7 @@ void SetOrderedModel(const TissueModel& model, OrderedModel& made) {
   for (const std::uint32_t old : made.old_of_new) {
     for (auto h = old_graph.starts[old]; h < old_graph.starts[old + 1]; ++h) {
       made.graph.others.push_back(made.new_of_old[old_graph.others[h]]);
-      made.graph_stiffness.push_back(made.room.stiffness[h]);
+      made.graph_stiffness.push_back(made.workspace.stiffness[h]);
     }
     made.graph.starts.push_back(static_cast<std::uint32_t>(made.graph.others.size()));
     made.rest.push_back(model.rest[old]);
@@ -90,7 +90,7 @@ OrderedModel MakeOrderedModel(const TissueModel& model) {
 
 void OrderedModel::Reserve(double share) {
   ReserveMore(share, graph.others, graph_stiffness, layout.starts, layout.others, stiffness, rest_length,
-              spring_entries, strands, room.graph.others, room.stiffness, room.order.places);
+              spring_entries, strands, workspace.graph.others, workspace.stiffness, workspace.order.places);
 }
 
 void SetOrderedLoad(const OrderedModel& model, const TissueLoad& load, const TissueState& state,
@@ -135,7 +135,7 @@ void AddContactLinks(const OrderedLoad& load, const Balance& balance, const Floa
 void Linearisation::SetModel() {
   const OrderedModel& model = *model_;
   nodes_.assign(model.layout.PaddedNodes() * kBalanceValues, 0.0);
-  slack_.assign(model.layout.Steps() * kSliceNodes, 0.0f);
+  shift_.assign(model.layout.Steps() * kSliceNodes, 0.0f);
   for (std::uint32_t i = 0; i < model.Size(); ++i) {
     for (int axis = 0; axis < 3; ++axis)
       At(i, static_cast<BalanceValue>(kRestX + axis)) = model.rest[i][axis];
@@ -147,12 +147,12 @@ void Linearisation::SetModel() {
 }
 
 void Linearisation::Reserve(double share) {
-  ReserveMore(share, slack_, strand_nodes_);
+  ReserveMore(share, shift_, strand_nodes_);
 }
 
 void Linearisation::ReserveFor(std::size_t nodes, std::size_t entries) {
   nodes_.reserve(nodes * kBalanceValues);
-  slack_.reserve(entries);
+  shift_.reserve(entries);
   strand_nodes_.reserve(nodes);
 }
 
@@ -166,9 +166,9 @@ void Linearisation::SetLoad(const OrderedLoad& load, std::span<const std::uint8_
     At(i, kShape) = shape;
     At(i, kFree) = load.is_free[i] != 0 ? 1.0 : 0.0;
     level.is_free[i] = load.is_free[i] != 0 ? 1.0f : 0.0f;
-    float* const ground = level.ground.data() + GroundAt(i);
+    float* const diagonal = level.diagonal_excess.data() + DiagonalAt(i);
     for (std::size_t v = 0; v < 6; ++v)
-      ground[v * kSliceNodes] = v == 0 || v == 3 || v == 5 ? static_cast<float>(shape) : 0.0f;
+      diagonal[v * kSliceNodes] = v == 0 || v == 3 || v == 5 ? static_cast<float>(shape) : 0.0f;
   }
   for (const std::uint32_t node : strand_nodes_) At(node, kStrands) = 0.0;
   for (const auto& strand : model_->strands) {
@@ -239,12 +239,12 @@ double Linearisation::AddStrandsAndContacts(std::span<const Double4> position, B
   return energy;
 }
 
-void Linearisation::AddContactGround(LinkLevel& level, const Balance& balance) noexcept {
+void Linearisation::AddContactDiagonal(LinkLevel& level, const Balance& balance) noexcept {
   for (const ContactSpring& contact : load_->contacts) {
     for (const std::uint32_t node : contact.nodes) {
       const auto shape = static_cast<float>(At(node, kShape));
       for (std::size_t v = 0; v < 6; ++v)
-        level.ground[GroundAt(node) + v * kSliceNodes] = v == 0 || v == 3 || v == 5 ? shape : 0.0f;
+        level.diagonal_excess[DiagonalAt(node) + v * kSliceNodes] = v == 0 || v == 3 || v == 5 ? shape : 0.0f;
     }
   }
   for (std::size_t c = 0; c < load_->contacts.size(); ++c) {
@@ -254,7 +254,8 @@ void Linearisation::AddContactGround(LinkLevel& level, const Balance& balance) n
       Symmetric3 m{};
       AddDirection(m, contact.normal, contact.weights[corner] * contact.stiffness);
       for (std::size_t v = 0; v < 6; ++v)
-        level.ground[GroundAt(contact.nodes[corner]) + v * kSliceNodes] += static_cast<float>(m[v]);
+        level.diagonal_excess[DiagonalAt(contact.nodes[corner]) + v * kSliceNodes] +=
+            static_cast<float>(m[v]);
     }
   }
 }
@@ -298,21 +299,21 @@ void Linearisation::CalcBalance(const Kernels& kernels, Workers& workers, std::s
 void Linearisation::Linearise(const Kernels& kernels, Workers& workers, std::span<const Double4> position,
                               LinkLevel& level, Balance& balance) noexcept {
   const double energy = AddStrandsAndContacts(position, balance);
-  AddContactGround(level, balance);
+  AddContactDiagonal(level, balance);
   Run(kernels, workers,
       {.position = position.data(),
        .has_stiffness = true,
-       .links = level.links.data(),
-       .slack = slack_.data(),
-       .ground = level.ground.data(),
+       .off_diagonal = level.off_diagonal.data(),
+       .shift = shift_.data(),
+       .diagonal_excess = level.diagonal_excess.data(),
        .inverse = level.inverse.data()},
       energy, balance);
   for (const auto& strand : model_->strands) {
     const double k = strand_is_intact_[strand.strand] ? load_->stiffness_scale * strand.stiffness : 0.0;
-    float* const link =
-        level.links.data() + strand.entry / kSliceNodes * 6 * kSliceNodes + strand.entry % kSliceNodes;
+    float* const block =
+        level.off_diagonal.data() + strand.entry / kSliceNodes * 6 * kSliceNodes + strand.entry % kSliceNodes;
     for (std::size_t v = 0; v < 6; ++v)
-      link[v * kSliceNodes] = v == 0 || v == 3 || v == 5 ? static_cast<float>(k) : 0.0f;
+      block[v * kSliceNodes] = v == 0 || v == 3 || v == 5 ? static_cast<float>(k) : 0.0f;
   }
 }
 

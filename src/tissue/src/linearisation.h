@@ -32,15 +32,15 @@ struct OrderedModel {
   };
   std::vector<StrandEntry> strands;  // from both ends
 
-  /// For SetOrderedModel: the graph in the caller's order.
-  struct Room {
+  /// Of SetOrderedModel: the graph in the caller's order.
+  struct Workspace {
     NodeGraph graph;
     std::vector<double> stiffness;
-    NodeOrderRoom order;
-  } room;
+    NodeOrderWorkspace order;
+  } workspace;
 
   std::uint32_t Size() const { return layout.node_count; }
-  /// Room for `share` times more links than there are.
+  /// Capacity for `share` times more links than there are.
   void Reserve(double share);
 };
 /// Takes a model over.
@@ -76,7 +76,7 @@ struct Balance {
 };
 
 /// Adds to out = K x what the pressing contacts of a balance do to their corners together; what each does to its corners
-/// alone is in the ground.
+/// alone is in the diagonal excess.
 /// \note Real-time safe.
 void AddContactLinks(const OrderedLoad& load, const Balance& balance, const Float4* x, Float4* out) noexcept;
 
@@ -89,10 +89,10 @@ class Linearisation {
   /// \note Allocates nothing where Reserve() was enough.
   void SetModel();
   void Reserve(double share);
-  /// Room for another model, of so many nodes and entries.
+  /// Capacity for another model, of so many nodes and entries.
   void ReserveFor(std::size_t nodes, std::size_t entries);
 
-  /// Takes what acts in one solve; sets is_free and ground of `level`.
+  /// Takes what acts in one solve; sets is_free and diagonal_excess of `level`.
   /// \note Real-time safe.
   void SetLoad(const OrderedLoad& load, std::span<const std::uint8_t> strand_is_intact,
                LinkLevel& level) noexcept;
@@ -106,13 +106,14 @@ class Linearisation {
   /// \note Real-time safe.
   void CalcBalance(const Kernels& kernels, Workers& workers, std::span<const Double4> position,
                    Balance& balance) noexcept;
-  /// The same, and the stiffness: links, ground and inverse of `level`. Of the contacts' stiffness only what
-  /// each does to its corners alone is in the ground.
+  /// The same, and the stiffness: off_diagonal, diagonal_excess and inverse of `level`. Of the contacts' stiffness only what
+  /// each does to its corners alone is in the diagonal excess.
   /// \note Real-time safe.
   void Linearise(const Kernels& kernels, Workers& workers, std::span<const Double4> position,
                  LinkLevel& level, Balance& balance) noexcept;
-  /// What compression takes from the stiffness of each link across, (entries), of the last Linearise() [N/m].
-  std::span<const float> Slack() const { return slack_; }
+  /// The stabilising shift of each link, (entries), of the last Linearise(): a compressed spring softens its ends across, and
+  /// the matrix with this added in every direction is positive definite [N/m].
+  std::span<const float> StabilisingShift() const { return shift_; }
 
  private:
   double& At(std::uint32_t node, BalanceValue value) {
@@ -121,7 +122,7 @@ class Linearisation {
   }
   void AddOuter(std::uint32_t node, const Vec3& force, double size) noexcept;
   double AddStrandsAndContacts(std::span<const Double4> position, Balance& balance) noexcept;
-  void AddContactGround(LinkLevel& level, const Balance& balance) noexcept;
+  void AddContactDiagonal(LinkLevel& level, const Balance& balance) noexcept;
   void Run(const Kernels& kernels, Workers& workers, BalancePass pass, double energy,
            Balance& balance) noexcept;
 
@@ -129,7 +130,7 @@ class Linearisation {
   const OrderedLoad* load_ = nullptr;
   std::span<const std::uint8_t> strand_is_intact_;
   AlignedVector<double> nodes_;              // (slices, kBalanceValues, kSliceNodes)
-  AlignedVector<float> slack_;               // (entries) [N/m]
+  AlignedVector<float> shift_;               // (entries) [N/m]
   std::vector<std::uint32_t> strand_nodes_;  // those with strands, each once
 };
 

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "capacity.h"
 #include "node_vectors.h"
-#include "room.h"
 
 namespace trocar::tissue {
 namespace {
@@ -41,12 +41,12 @@ void ForEachSliceChunk(Workers& workers, std::uint32_t slices, const Work& work)
               [&](std::uint32_t chunk) { work(chunk * size, std::min(slices, (chunk + 1) * size)); });
 }
 
-/// Place of the first of a node's six ground values.
-std::size_t GroundAt(std::uint32_t i) {
+/// Place of the first of a node's six values.
+std::size_t DiagonalAt(std::uint32_t i) {
   return std::size_t{i / kSliceNodes} * 6 * kSliceNodes + i % kSliceNodes;
 }
-/// Place of the first of an entry's six link values.
-std::size_t LinkAt(std::size_t entry) {
+/// Place of the first of an entry's six values.
+std::size_t OffDiagonalAt(std::size_t entry) {
   return entry / kSliceNodes * 6 * kSliceNodes + entry % kSliceNodes;
 }
 
@@ -63,20 +63,20 @@ std::uint32_t CoarseChunkSize(std::uint32_t slices) {
   return std::max(kChunkCoarseSlices, slices / Workers::kMaxChunks + 1);
 }
 
-/// to += scale (link + slack), six values kStride apart.
+/// to += scale (link + shift), six values kStride apart.
 ///
-/// \param links, slack  of the level; slack null where there is none
+/// \param links, shift  of the level; shift null where there is none
 template <std::size_t kStride>
-inline void AddLink(const float* links, const float* slack, std::size_t entry, float scale,
+inline void AddLink(const float* links, const float* shift, std::size_t entry, float scale,
                     float* to) noexcept {
-  const float* const from = links + LinkAt(entry);
-  const float firmer = slack == nullptr ? 0.0f : slack[entry];
-  to[0] += scale * (from[0] + firmer);
+  const float* const from = links + OffDiagonalAt(entry);
+  const float added = shift == nullptr ? 0.0f : shift[entry];
+  to[0] += scale * (from[0] + added);
   to[kStride] += scale * from[kSliceNodes];
   to[2 * kStride] += scale * from[2 * kSliceNodes];
-  to[3 * kStride] += scale * (from[3 * kSliceNodes] + firmer);
+  to[3 * kStride] += scale * (from[3 * kSliceNodes] + added);
   to[4 * kStride] += scale * from[4 * kSliceNodes];
-  to[5 * kStride] += scale * (from[5 * kSliceNodes] + firmer);
+  to[5 * kStride] += scale * (from[5 * kSliceNodes] + added);
 }
 
 /// Which nodes are held or have a held neighbour: few are.
@@ -95,12 +95,12 @@ void MarkNearHeld(LinkLevel& level) noexcept {
 void MirrorLinks(LinkLevel& level, std::uint32_t first_slice, std::uint32_t last_slice) noexcept {
   const std::size_t last = std::size_t{level.layout.starts[last_slice]} * kSliceNodes;
   const std::uint32_t* const mirror = level.mirror_entry.data();
-  float* const links = level.links.data();
+  float* const links = level.off_diagonal.data();
   for (std::size_t entry = std::size_t{level.layout.starts[first_slice]} * kSliceNodes; entry < last;
        ++entry) {
     if (mirror[entry] == kNoEntry) continue;
-    const float* const from = links + LinkAt(mirror[entry]);
-    float* const to = links + LinkAt(entry);
+    const float* const from = links + OffDiagonalAt(mirror[entry]);
+    float* const to = links + OffDiagonalAt(entry);
     for (std::size_t v = 0; v < 6; ++v) to[v * kSliceNodes] = from[v * kSliceNodes];
   }
 }
@@ -109,8 +109,8 @@ void MirrorLinks(LinkLevel& level, std::uint32_t first_slice, std::uint32_t last
 void LinkLevel::SetGraph(const NodeGraph& graph) {
   SetSliceLayout(graph, layout);
   const std::size_t padded = layout.PaddedNodes(), entries = layout.Steps() * kSliceNodes;
-  links.assign(6 * entries, 0.0f);
-  ground.assign(6 * padded, 0.0f), inverse.assign(6 * padded, 0.0f), is_free.assign(padded, 0.0f);
+  off_diagonal.assign(6 * entries, 0.0f);
+  diagonal_excess.assign(6 * padded, 0.0f), inverse.assign(6 * padded, 0.0f), is_free.assign(padded, 0.0f);
   x.assign(padded, {}), b.assign(padded, {}), r.assign(padded, {});
   aggregate.clear(), member_starts.clear(), members.clear();
   coarsened.clear(), coarsened_starts.clear(), mirror_entry.clear(), near_held.clear();
@@ -121,21 +121,22 @@ void LinkLevel::Reserve(std::size_t nodes, std::size_t steps) {
   for (auto* entries : {&layout.others, &mirror_entry}) entries->reserve(steps * kSliceNodes);
   coarsened.reserve(steps * kSliceNodes / 2);
   near_held.reserve(nodes);
-  links.reserve(6 * steps * kSliceNodes);
-  for (auto* blocks : {&ground, &inverse}) blocks->reserve(6 * nodes);
+  off_diagonal.reserve(6 * steps * kSliceNodes);
+  for (auto* blocks : {&diagonal_excess, &inverse}) blocks->reserve(6 * nodes);
   is_free.reserve(nodes);
   for (auto* list : {&aggregate, &member_starts, &members, &coarsened_starts}) list->reserve(nodes + 2);
   for (auto* vector : {&x, &b, &r}) vector->reserve(nodes);
 }
 
 LinkMatrix LinkLevel::Matrix() const {
-  return {layout.Table(), links.data(), ground.data(), inverse.data(), is_free.data(), nullptr};
+  return {layout.Table(), off_diagonal.data(), diagonal_excess.data(),
+          inverse.data(), is_free.data(),      nullptr};
 }
 
 void RunPass(const Kernels& kernels, Workers& workers, const LinkLevel& level, LinkPass pass, const Float4* x,
-             const Float4* b, float factor, Float4* out, const float* turns) noexcept {
+             const Float4* b, float factor, Float4* out, const float* follower) noexcept {
   LinkMatrix matrix = level.Matrix();
-  matrix.turns = turns;
+  matrix.follower = follower;
   ForEachSliceChunk(workers, level.layout.Slices(), [&](std::uint32_t first, std::uint32_t last) {
     kernels.multiply(matrix, pass, x, b, factor, out, first, last);
   });
@@ -151,7 +152,7 @@ void LinkHierarchy::SetGraph(const NodeGraph& graph, std::span<const double> sti
   fine_.graph.others = graph.others;
   fine_.stiffness.assign(stiffness.begin(), stiffness.end());
   levels_.front().SetGraph(graph);
-  chains_.SetGraph(graph, levels_.front().layout);
+  line_smoother_.SetGraph(graph, levels_.front().layout);
   is_inverted_ = false;
   for (level_count_ = 1; fine_.graph.Size() > kDirectNodes && level_count_ < kMaxLevels; ++level_count_) {
     aggregation_.Join(fine_, kPairings);
@@ -214,14 +215,14 @@ void LinkHierarchy::FillTransfer(const NodeGraph& fine, const NodeGraph& coarse,
 
 void LinkHierarchy::Reserve(double share) {
   const auto more = [share](std::size_t count) {
-    return static_cast<std::size_t>((1.0 + share) * static_cast<double>(count)) + kLeastRoom;
+    return static_cast<std::size_t>((1.0 + share) * static_cast<double>(count)) + kLeastCapacity;
   };
   const std::size_t nodes = more(levels_.front().Size()), links = more(levels_.front().layout.others.size());
   fine_.Reserve(nodes, links);
   aggregation_.Reserve(nodes, links);
   for (auto* list : {&places_, &counts_}) list->reserve(nodes);
   coarse_entry_.reserve(links);
-  chains_.Reserve(share);
+  line_smoother_.Reserve(share);
   // another graph may need other levels: each has room for half of the one before, and there are two more
   std::size_t level_nodes = nodes, steps = links / kSliceNodes;
   for (std::size_t at = 0; at < std::min(level_count_ + 2, kMaxLevels); ++at) {
@@ -237,7 +238,7 @@ void LinkHierarchy::Reserve(double share) {
 
 /// Each chunk of aggregates gathers from its members, one after the other: no two threads write the same number, and
 /// sums do not depend on who forms them. A link is gathered by the lower of its two aggregates, and copied to the other.
-void LinkHierarchy::Coarsen(Workers& workers, std::size_t at, std::span<const float> slack) noexcept {
+void LinkHierarchy::Coarsen(Workers& workers, std::size_t at, std::span<const float> shift) noexcept {
   LinkLevel& level = levels_[at];
   LinkLevel& next = levels_[at + 1];
   MarkNearHeld(level);
@@ -245,15 +246,16 @@ void LinkHierarchy::Coarsen(Workers& workers, std::size_t at, std::span<const fl
   workers.Run((slices + size - 1) / size, [&](std::uint32_t chunk) {
     const std::uint32_t first = chunk * size, last = std::min(slices, first + size);
     constexpr std::size_t kBlock = 6 * kSliceNodes;
-    std::fill(next.links.begin() + static_cast<std::ptrdiff_t>(kBlock * next.layout.starts[first]),
-              next.links.begin() + static_cast<std::ptrdiff_t>(kBlock * next.layout.starts[last]), 0.0f);
+    std::fill(next.off_diagonal.begin() + static_cast<std::ptrdiff_t>(kBlock * next.layout.starts[first]),
+              next.off_diagonal.begin() + static_cast<std::ptrdiff_t>(kBlock * next.layout.starts[last]),
+              0.0f);
     const std::uint32_t end = std::min(next.Size(), last * kSliceNodes);
-    for (std::uint32_t a = first * kSliceNodes; a < end; ++a) GatherGround(at, a, slack);
+    for (std::uint32_t a = first * kSliceNodes; a < end; ++a) GatherDiagonal(at, a, shift);
     const float* const is_free = level.is_free.data();
     const std::uint8_t* const near_held = level.near_held.data();
-    const float* const links = level.links.data();
-    const float* const slack_of = slack.empty() ? nullptr : slack.data();
-    float* const coarse_links = next.links.data();
+    const float* const links = level.off_diagonal.data();
+    const float* const shift_of = shift.empty() ? nullptr : shift.data();
+    float* const coarse_links = next.off_diagonal.data();
     const std::uint32_t* const others = level.layout.others.data();
     for (const CoarsenedLink& link :
          std::span(level.coarsened)
@@ -261,8 +263,8 @@ void LinkHierarchy::Coarsen(Workers& workers, std::size_t at, std::span<const fl
                       level.coarsened_starts[chunk + 1] - level.coarsened_starts[chunk])) {
       if (near_held[link.node] != 0 && (is_free[link.node] == 0.0f || is_free[others[link.entry]] == 0.0f))
         continue;
-      AddLink<kSliceNodes>(links, slack_of, link.entry, static_cast<float>(kCoarseLinkScale),
-                           coarse_links + LinkAt(link.coarse_entry));
+      AddLink<kSliceNodes>(links, shift_of, link.entry, static_cast<float>(kCoarseLinkScale),
+                           coarse_links + OffDiagonalAt(link.coarse_entry));
     }
   });
   workers.Run((slices + size - 1) / size, [&](std::uint32_t chunk) {
@@ -270,33 +272,34 @@ void LinkHierarchy::Coarsen(Workers& workers, std::size_t at, std::span<const fl
   });
 }
 
-/// What holds an aggregate: its members' ground, and their links to held nodes.
-void LinkHierarchy::GatherGround(std::size_t at, std::uint32_t aggregate,
-                                 std::span<const float> slack) noexcept {
+/// The diagonal excess of an aggregate: that of its members, and their links to held nodes.
+void LinkHierarchy::GatherDiagonal(std::size_t at, std::uint32_t aggregate,
+                                   std::span<const float> shift) noexcept {
   const LinkLevel& level = levels_[at];
   LinkLevel& next = levels_[at + 1];
-  float ground[6] = {}, is_free = 0.0f;
+  float excess[6] = {}, is_free = 0.0f;
   for (auto m = level.member_starts[aggregate]; m < level.member_starts[aggregate + 1]; ++m) {
     const std::uint32_t i = level.members[m];
     if (level.is_free[i] == 0.0f) continue;
     is_free = 1.0f;
-    for (std::size_t v = 0; v < 6; ++v) ground[v] += level.ground[GroundAt(i) + v * kSliceNodes];
+    for (std::size_t v = 0; v < 6; ++v) excess[v] += level.diagonal_excess[DiagonalAt(i) + v * kSliceNodes];
     if (level.near_held[i] == 0) continue;
     for (std::uint32_t h = 0; h < level.layout.RowSteps(i); ++h) {
       const std::size_t entry = level.layout.Entry(i, h);
       if (level.layout.others[entry] == i) break;
       if (level.is_free[level.layout.others[entry]] == 0.0f)
-        AddLink<1>(level.links.data(), slack.empty() ? nullptr : slack.data(), entry, 1.0f, ground);
+        AddLink<1>(level.off_diagonal.data(), shift.empty() ? nullptr : shift.data(), entry, 1.0f, excess);
     }
   }
   next.is_free[aggregate] = is_free;
-  for (std::size_t v = 0; v < 6; ++v) next.ground[GroundAt(aggregate) + v * kSliceNodes] = ground[v];
+  for (std::size_t v = 0; v < 6; ++v)
+    next.diagonal_excess[DiagonalAt(aggregate) + v * kSliceNodes] = excess[v];
 }
 
 void LinkHierarchy::UpdateCoarse(const Kernels& kernels, Workers& workers,
-                                 std::span<const float> slack) noexcept {
+                                 std::span<const float> shift) noexcept {
   for (std::size_t at = 0; at + 1 < level_count_; ++at) {
-    Coarsen(workers, at, at == 0 ? slack : std::span<const float>());
+    Coarsen(workers, at, at == 0 ? shift : std::span<const float>());
     LinkLevel& next = levels_[at + 1];
     const LinkMatrix matrix = next.Matrix();
     ForEachSliceChunk(workers, next.layout.Slices(), [&](std::uint32_t first, std::uint32_t last) {
@@ -322,12 +325,12 @@ void LinkHierarchy::InvertCoarsest() noexcept {
       add(i, i, {1, 0, 0, 1, 0, 1}, 1.0);
       continue;
     }
-    add(i, i, ReadSymmetric(level.ground, GroundAt(i)), 1.0);
+    add(i, i, ReadSymmetric(level.diagonal_excess, DiagonalAt(i)), 1.0);
     for (std::uint32_t step = 0; step < level.layout.RowSteps(i); ++step) {
       const std::size_t entry = level.layout.Entry(i, step);
       const std::uint32_t other = level.layout.others[entry];
       if (other == i) continue;
-      const Symmetric3 link = ReadSymmetric(level.links, LinkAt(entry));
+      const Symmetric3 link = ReadSymmetric(level.off_diagonal, OffDiagonalAt(entry));
       add(i, i, link, 1.0);
       if (level.is_free[other] != 0.0f) add(i, other, link, -1.0);
     }
@@ -397,14 +400,14 @@ void LinkHierarchy::Smooth(const Kernels& kernels, Workers& workers, std::size_t
   const LinkLevel& level = levels_[at];
   const LinkMatrix matrix = level.Matrix();
   const LinkPass pass = from == nullptr ? LinkPass::kStart : LinkPass::kSmooth;
-  const bool has_chains = at == 0 && !chains_.Nodes().empty();
+  const bool has_chains = at == 0 && !line_smoother_.Nodes().empty();
   const std::uint32_t slices = level.layout.Slices(), size = SliceChunkSize(slices), first = has_chains;
   workers.Run(first + (slices + size - 1) / size, [&](std::uint32_t chunk) {
-    if (chunk < first) return chains_.Solve(level, from, b);
+    if (chunk < first) return line_smoother_.Solve(level, from, b);
     kernels.multiply(matrix, pass, from, b, kDamping, x, (chunk - first) * size,
                      std::min(slices, (chunk - first + 1) * size));
   });
-  if (has_chains) chains_.Add(from, kDamping, x);
+  if (has_chains) line_smoother_.Add(from, kDamping, x);
 }
 
 void LinkHierarchy::Cycle(const Kernels& kernels, Workers& workers, std::size_t at, const Float4* b,

@@ -31,12 +31,12 @@ struct CoarsenedLink {
   std::uint32_t node;  // whose row `entry` is in
 };
 
-/// One level's matrix, its way to the next, and room for a cycle.
+/// One level's matrix, its transfer to the next, and the vectors of a cycle.
 struct LinkLevel {
   SliceLayout layout;
-  AlignedVector<float> links, ground, inverse, is_free;  // as in LinkMatrix
-  std::vector<std::uint32_t> aggregate;                  // (n) node of the next level, or Aggregation::kNone
-  std::vector<std::uint32_t> member_starts, members;     // nodes of each aggregate
+  AlignedVector<float> off_diagonal, diagonal_excess, inverse, is_free;  // as in LinkMatrix
+  std::vector<std::uint32_t> aggregate;               // (n) node of the next level, or Aggregation::kNone
+  std::vector<std::uint32_t> member_starts, members;  // nodes of each aggregate
   /// Links that the next level gathers, in the order in which they lie in memory; chunk c of its slices gathers those from
   /// coarsened_starts[c] on.
   std::vector<CoarsenedLink> coarsened;
@@ -54,9 +54,9 @@ struct LinkLevel {
 
 /// The level's pass over all nodes, in chunks of fixed size.
 ///
-/// \param turns  as in LinkMatrix, or null
+/// \param follower  as in LinkMatrix, or null
 void RunPass(const Kernels& kernels, Workers& workers, const LinkLevel& level, LinkPass pass, const Float4* x,
-             const Float4* b, float factor, Float4* out, const float* turns = nullptr) noexcept;
+             const Float4* b, float factor, Float4* out, const float* follower = nullptr) noexcept;
 
 class LinkHierarchy {
  public:
@@ -66,23 +66,25 @@ class LinkHierarchy {
   /// The same for another graph.
   /// \note Allocates nothing where Reserve() was enough.
   void SetGraph(const NodeGraph& graph, std::span<const double> stiffness);
-  /// Room for `share` times more nodes and links than there are.
+  /// Capacity for `share` times more nodes and links than there are.
   void Reserve(double share);
 
-  /// Matrix of the finest level: links, ground and is_free are the caller's to fill.
+  /// Matrix of the finest level: off_diagonal, diagonal_excess and is_free are the caller's to fill.
   LinkLevel& Finest() { return levels_.front(); }
   const LinkLevel& Finest() const { return levels_.front(); }
   std::span<const LinkLevel> Levels() const { return std::span(levels_).first(level_count_); }
 
   /// Computes all coarser levels. Links may be indefinite where springs are compressed; here they count as
-  /// slack. The finest level, its inverse blocks included, is the caller's.
+  /// shift. The finest level, its inverse blocks included, is the caller's.
   ///
-  /// \param slack  (entries) what is to be added to each finest link's stiffness, in every direction [N/m]
+  /// \param shift  (entries) what is to be added to each finest link's stiffness, in every direction [N/m]
   /// \note Real-time safe.
-  void UpdateCoarse(const Kernels& kernels, Workers& workers, std::span<const float> slack) noexcept;
+  void UpdateCoarse(const Kernels& kernels, Workers& workers, std::span<const float> shift) noexcept;
   /// Follows a change of the finest level without the coarser ones.
   /// \note Real-time safe.
-  void UpdateChains(std::span<const float> slack) noexcept { chains_.Factorise(levels_.front(), slack); }
+  void UpdateLineSmoother(std::span<const float> shift) noexcept {
+    line_smoother_.Factorise(levels_.front(), shift);
+  }
 
   /// x = about K^-1 b, a V-cycle with one damped block-Jacobi step on either side: symmetric and, where the
   /// matrix is, positive definite. Held nodes get 0.
@@ -94,8 +96,8 @@ class LinkHierarchy {
   void Cycle(const Kernels& kernels, Workers& workers, std::size_t at, const Float4* b, Float4* x) noexcept;
   void Smooth(const Kernels& kernels, Workers& workers, std::size_t at, const Float4* from, const Float4* b,
               Float4* x) noexcept;
-  void Coarsen(Workers& workers, std::size_t at, std::span<const float> slack) noexcept;
-  void GatherGround(std::size_t at, std::uint32_t aggregate, std::span<const float> slack) noexcept;
+  void Coarsen(Workers& workers, std::size_t at, std::span<const float> shift) noexcept;
+  void GatherDiagonal(std::size_t at, std::uint32_t aggregate, std::span<const float> shift) noexcept;
   void InvertCoarsest() noexcept;
   void SolveCoarsest(const Float4* b, Float4* x) const noexcept;
 
@@ -105,7 +107,7 @@ class LinkHierarchy {
 
   std::vector<LinkLevel> levels_;  // the first level_count_ are in use
   std::size_t level_count_ = 0;
-  LinkChains chains_;
+  LineSmoother line_smoother_;
   // room for SetGraph
   Aggregation aggregation_;
   LinkGraph fine_;

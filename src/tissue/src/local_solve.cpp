@@ -22,7 +22,7 @@ constexpr double kSeenShare = 0.1;
 
 }  // namespace
 
-NewtonPatch::NewtonPatch(const OrderedModel& whole) : whole_(&whole), linearisation_(model_) {
+LocalSolve::LocalSolve(const OrderedModel& whole) : whole_(&whole), linearisation_(model_) {
   const std::size_t n = std::min<std::size_t>(whole.layout.PaddedNodes(), kMaxNodes), links = n * kMaxRow;
   local_of_.assign(whole.Size(), kNone);
   nodes_.reserve(n);
@@ -39,7 +39,7 @@ NewtonPatch::NewtonPatch(const OrderedModel& whole) : whole_(&whole), linearisat
   for (auto* vector : {&step_, &r_, &z_, &p_, &q_}) vector->reserve(n);
 }
 
-bool NewtonPatch::AddNode(std::uint32_t node) noexcept {
+bool LocalSolve::AddNode(std::uint32_t node) noexcept {
   if (local_of_[node] != kNone) return true;
   if (nodes_.size() == nodes_.capacity()) return false;
   local_of_[node] = static_cast<std::uint32_t>(nodes_.size());
@@ -48,7 +48,7 @@ bool NewtonPatch::AddNode(std::uint32_t node) noexcept {
 }
 
 /// The nodes that move, in the whole's order, and those that hold them.
-bool NewtonPatch::FindNodes(const OrderedLoad& load, std::span<const Float4> step, double longest) noexcept {
+bool LocalSolve::FindNodes(const OrderedLoad& load, std::span<const Float4> step, double longest) noexcept {
   const OrderedModel& whole = *whole_;
   for (const std::uint32_t node : nodes_) local_of_[node] = kNone;
   nodes_.clear();
@@ -89,7 +89,7 @@ bool NewtonPatch::FindNodes(const OrderedLoad& load, std::span<const Float4> ste
 }
 
 /// Links with an end that moves, from both ends, as the energy counts them.
-bool NewtonPatch::SetLinks() noexcept {
+bool LocalSolve::SetLinks() noexcept {
   const OrderedModel& whole = *whole_;
   NodeGraph& graph = model_.graph;
   graph.Clear();
@@ -125,7 +125,7 @@ bool NewtonPatch::SetLinks() noexcept {
   return true;
 }
 
-void NewtonPatch::SetStrands(std::span<const std::uint8_t> strand_is_intact) noexcept {
+void LocalSolve::SetStrands(std::span<const std::uint8_t> strand_is_intact) noexcept {
   strand_is_intact_ = strand_is_intact;
   model_.strands.clear();
   for (const auto& strand : whole_->strands) {
@@ -138,7 +138,7 @@ void NewtonPatch::SetStrands(std::span<const std::uint8_t> strand_is_intact) noe
   }
 }
 
-void NewtonPatch::SetLoad(const OrderedLoad& load) noexcept {
+void LocalSolve::SetLoad(const OrderedLoad& load) noexcept {
   load_.constant.clear(), load_.is_free.clear(), load_.contacts.clear();
   for (std::uint32_t a = 0; a < nodes_.size(); ++a) {
     load_.constant.push_back(load.constant[nodes_[a]]);
@@ -157,8 +157,8 @@ void NewtonPatch::SetLoad(const OrderedLoad& load) noexcept {
   load_.stiffness_scale = load.stiffness_scale, load_.shape_scale = load.shape_scale;
 }
 
-bool NewtonPatch::Gather(const OrderedLoad& load, std::span<const std::uint8_t> strand_is_intact,
-                         std::span<const Float4> step, double longest) noexcept {
+bool LocalSolve::Gather(const OrderedLoad& load, std::span<const std::uint8_t> strand_is_intact,
+                        std::span<const Float4> step, double longest) noexcept {
   if (!FindNodes(load, step, longest) || !SetLinks()) {
     free_count_ = 0;
     return false;
@@ -177,12 +177,12 @@ bool NewtonPatch::Gather(const OrderedLoad& load, std::span<const std::uint8_t> 
   return true;
 }
 
-void NewtonPatch::AddForce(std::span<const Float4> force, double factor) noexcept {
+void LocalSolve::AddForce(std::span<const Float4> force, double factor) noexcept {
   for (std::uint32_t a = 0; a < free_count_; ++a) load_.constant[a] += factor * ToDouble(force[nodes_[a]]);
 }
 
-NewtonPatch::Report NewtonPatch::Solve(const Kernels& kernels, Workers& workers, double tolerance,
-                                       double edge_length, std::span<Double4> position) noexcept {
+LocalSolve::Report LocalSolve::Solve(const Kernels& kernels, Workers& workers, double tolerance,
+                                     double edge_length, std::span<Double4> position) noexcept {
   Report report;
   linearisation_.SetLoad(load_, strand_is_intact_, level_);
   for (std::uint32_t a = 0; a < nodes_.size(); ++a) position_[a] = position[nodes_[a]];
@@ -196,14 +196,14 @@ NewtonPatch::Report NewtonPatch::Solve(const Kernels& kernels, Workers& workers,
     RunPass(kernels, workers, level_, LinkPass::kProduct, p_.data(), nullptr, 0.0f, q_.data());
     AddContactLinks(load_, balance_, p_.data(), q_.data());
   };
-  NewtonRange range(edge_length);
+  TrustRegion region(edge_length);
   linearise();
   while (report.steps < kMaxSteps && balance_.is_finite) {
     std::copy(balance_.residual.begin(), balance_.residual.end(), r_.begin());
     const double seen = precondition().longest;
     if (!(seen > kSeenShare * tolerance)) break;
     const TruncatedReport linear = SolveTruncated(
-        kernels, workers, kMaxLinearIterations, range.Radius(), {step_, r_, z_, p_, q_}, multiply,
+        kernels, workers, kMaxLinearIterations, region.Radius(), {step_, r_, z_, p_, q_}, multiply,
         precondition,
         [&](double left, double) { return left <= std::fmax(kForcing * seen, kSeenShare * tolerance); });
     report.smallest_ritz = std::fmin(report.smallest_ritz, linear.smallest_ritz);
@@ -213,14 +213,14 @@ NewtonPatch::Report NewtonPatch::Solve(const Kernels& kernels, Workers& workers,
     std::copy(position_.begin(), position_.end(), start_.begin());
     double share = 1.0;
     bool is_lower = false;
-    for (int halving = 0; halving <= NewtonRange::kMaxHalvings && !is_lower; ++halving, share *= 0.5) {
+    for (int halving = 0; halving <= TrustRegion::kMaxHalvings && !is_lower; ++halving, share *= 0.5) {
       for (std::uint32_t a = 0; a < free_count_; ++a) position_[a] = Advance(start_[a], share, step_[a]);
       linearise();
-      is_lower = balance_.is_finite && NewtonRange::IsLower(before, balance_.energy, slope, share);
+      is_lower = balance_.is_finite && TrustRegion::IsLower(before, balance_.energy, slope, share);
     }
     ++report.steps;
     share *= 2.0;  // the one that was tried last
-    range.Follow(share, length, linear.reached_radius);
+    region.Update(share, length, linear.reached_radius);
     if (!is_lower) {
       std::copy(start_.begin(), start_.end(), position_.begin());
       break;
@@ -236,7 +236,7 @@ NewtonPatch::Report NewtonPatch::Solve(const Kernels& kernels, Workers& workers,
   return report;
 }
 
-void NewtonPatch::TakeBack(std::span<Double4> position) const noexcept {
+void LocalSolve::TakeBack(std::span<Double4> position) const noexcept {
   for (std::uint32_t a = 0; a < free_count_; ++a) position[nodes_[a]] = first_[a];
 }
 

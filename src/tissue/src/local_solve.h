@@ -17,7 +17,7 @@
 namespace trocar::tissue {
 
 /// A small model of its own: nodes that move, and the neighbours that hold them.
-class NewtonPatch {
+class LocalSolve {
  public:
   /// Most nodes that move.
   static constexpr std::uint32_t kMaxFree = 256;
@@ -29,9 +29,9 @@ class NewtonPatch {
   };
 
   /// \param whole  must outlive this
-  explicit NewtonPatch(const OrderedModel& whole);
-  NewtonPatch(const NewtonPatch&) = delete;  // parts point at each other
-  NewtonPatch& operator=(const NewtonPatch&) = delete;
+  explicit LocalSolve(const OrderedModel& whole);
+  LocalSolve(const LocalSolve&) = delete;  // parts point at each other
+  LocalSolve& operator=(const LocalSolve&) = delete;
 
   /// Gathers the nodes that a step moved farthest, and those around them.
   ///

@@ -1,26 +1,27 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file newton_multigrid.h  Newton's method; each step by conjugate gradients that LinkHierarchy
-/// preconditions.
+/// \file newton_multigrid.h  Newton's method with a trust region; each step by multigrid-preconditioned conjugate
+/// gradients.
+///
+/// One solve: predict where the equilibrium has gone, linearise there, estimate the error; while it is too large, solve
+/// for a step, search along it, bring the nodes that snap to rest by a local solve, project the constraints, linearise
+/// and estimate again. docs/tissue.md derives the estimate.
 #pragma once
 
-#include <array>
 #include <span>
-#include <vector>
 
 #include "linearisation.h"
 #include "local_solve.h"
 #include "pressure_stiffness.h"
+#include "projected_preconditioner.h"
 #include "trocar/tissue/equilibrium.h"
 #include "truncated_conjugate_gradients.h"
+#include "trust_region.h"
 
 namespace trocar::tissue {
 
-/// Memory and methods of the Newton solver.
+/// Memory and methods of the Newton solver. Nothing in it outlasts a solve but what is made from the model.
 class NewtonMultigrid {
  public:
-  using SmallVector = std::array<double, kMaxHookConstraints>;
-  using SmallMatrix = std::array<SmallVector, kMaxHookConstraints>;
-
   explicit NewtonMultigrid(const TissueModel& model);
   /// Goes on with another model of as many nodes.
   /// \note Allocates nothing where Reserve() was enough.
@@ -29,57 +30,76 @@ class NewtonMultigrid {
   NewtonMultigrid(const NewtonMultigrid&) = delete;  // parts point at each other
   NewtonMultigrid& operator=(const NewtonMultigrid&) = delete;
 
+  /// \param constraints    null for none
+  /// \param extrapolation  as EquilibriumSolver::Solve takes it; used with constraints only
   /// \note Real-time safe; bounded by settings.max_newton_steps, max_linear_iterations and max_linear_total.
   SolveReport Solve(const Kernels& kernels, Workers& workers, const SolverSettings& settings,
-                    const TissueLoad& load, TissueState& state, const SolveHook* hook) noexcept;
+                    const TissueLoad& load, TissueState& state, ConstraintSet* constraints,
+                    std::span<const Vec3> extrapolation) noexcept;
 
-  /// The springs it works with, for SpringLines to keep up to date, and for others to read.
+  /// The springs it works with, for SpringLinearisation to keep up to date, and for others to read.
   OrderedModel& Springs() noexcept { return model_; }
 
  private:
-  /// Takes the hook's surfaces, and their pressures into the stiffness.
-  void TakeSurfaces(const SolveHook& hook) noexcept;
-  void UpdatePressure(const Kernels& kernels, Workers& workers, const SolveHook& hook) noexcept;
-  /// What the pressures add to the energy along the whole step, of second order: 1/2 step_ . K step_ of theirs [J].
-  double CalcTurning(const Kernels& kernels, Workers& workers) noexcept;
-  /// Solves K step_ = residual until the preconditioned remainder is below `loose`, or the error left in the
-  /// step is estimated below `tolerance` [m], or until a node has moved by `radius` [m].
-  /// \param softest  smallest Ritz value of the steps before: this step is solved as deep as the estimate asks
-  TruncatedReport SolveLinear(const Kernels& kernels, Workers& workers, int max_iterations, double loose,
-                              double tolerance, double softest, double radius) noexcept;
-  /// Takes the residual, the chains' factors and the gradients of the active constraints.
-  void BeginStep(Workers& workers, const SolveHook* hook) noexcept;
-  /// What the preconditioner answers to each gradient; from the step before while the preconditioner stays.
-  void SetAnswers(const Kernels& kernels, Workers& workers) noexcept;
-  struct Constraint {
-    std::size_t index = 0;           // in the hook
-    AlignedVector<Float4> gradient;  // (padded) G
-    AlignedVector<Float4> answer;    // (padded) Y
+  using SmallVector = ProjectedPreconditioner::SmallVector;
+
+  /// What the phases of one solve share.
+  struct Context {
+    const Kernels& kernels;
+    Workers& workers;
+    const SolverSettings& settings;
+    const TissueLoad& load;
+    TissueState& state;
+    ConstraintSet* constraints;
+    bool follows_snap_through;
+    TrustRegion region;
+    SolveReport report;
+    double displacement_scale = 0;    // largest distance of a node from rest [m]
+    double visible_error = 0;         // longest of the preconditioned residual z_ [m]
+    double smallest_ritz = INFINITY;  // of all steps since a fold snapped [-]
+    double moved = 0;  // bound of how far any node went since the coarse levels were computed [m]
   };
-  /// Of each constraint's part with v.
-  SmallVector CalcDots(const Kernels& kernels, Workers& workers, AlignedVector<Float4> Constraint::*part,
-                       const AlignedVector<Float4>& v) const noexcept;
-  /// from -= sum of shares of each constraint's part, of some of the nodes
-  void Subtract(const Kernels& kernels, const SmallVector& shares, AlignedVector<Float4> Constraint::*part,
-                AlignedVector<Float4>& from, std::uint32_t first, std::uint32_t last) const noexcept;
-  /// Lets the constraints carry of r_ what they can; multipliers_ is all that they carry.
-  void ProjectResidual(const Kernels& kernels, Workers& workers) noexcept;
-  /// z_ = about K^-1 r_ on the constraints: P M^-1 P^T r_ with P = I - Y (G^T Y)^-1 G^T, which is symmetric and
-  /// stays on the constraints whatever Y is, and is best with Y = M^-1 G (Gould, Hribar, Nocedal, "On the
-  /// solution of equality constrained quadratic programming problems arising in optimization", SIAM J. Sci.
-  /// Comput. 23, 2001).
-  DotAndLongest Precondition(const Kernels& kernels, Workers& workers) noexcept;
+  /// A Newton step, in step_.
+  struct Step {
+    TruncatedReport linear;
+    double length = 0;           // longest move of a node [m]
+    double energy_before = 0;    // [J]
+    double slope = 0;            // of the energy along the whole step [J]
+    double follower_energy = 0;  // what pressures add along the whole step, of second order [J]
+    SmallVector multipliers_before{};
+    bool IsUsable() const noexcept { return length > 0.0 && length < INFINITY; }
+  };
+  /// What was taken of a step, in position_.
+  struct Advancement {
+    double share = 0;           // of the step [-]
+    bool is_lower = false;      // the energy fell as it should and the constraints are in reach
+    SmallVector multipliers{};  // what the constraints carry of the residual there
+    LocalSolve::Report local;
+  };
+
+  void Begin(Context& c) noexcept;
+  void Predict(Context& c, std::span<const Vec3> extrapolation) noexcept;
+  void Linearise(Context& c) noexcept;
+  void UpdateCoarseLevels(Context& c) noexcept;
+  void Estimate(Context& c) noexcept;
+  Step SolveStep(Context& c) noexcept;
+  Advancement SearchLine(Context& c, const Step& step) noexcept;
+  void TryShare(Context& c, const Step& step, Advancement& advancement) noexcept;
+  LocalSolve::Report SolveLocally(Context& c, const Step& step, const Advancement& advancement) noexcept;
+  void ProjectConstraints(Context& c) noexcept;
+  void FollowMove(Context& c, const Step& step, const Advancement& advancement) noexcept;
+  void EstimateAfter(Context& c, const Step& step) noexcept;
+
+  /// Iterations of conjugate gradients that the settings leave; a halved step costs as much as one.
+  static int CountLeft(const Context& c) noexcept;
+  static bool IsAtBound(const Context& c) noexcept;
+  bool AreConstraintsInReach(Context& c) noexcept;
+  void TakeSurfaces(const ConstraintSet& constraints) noexcept;
+  void UpdatePressure(Context& c) noexcept;
+  double CalcFollowerEnergy(Context& c) noexcept;
+  void Multiply(Context& c, const Float4* x, Float4* out) noexcept;
   void ReadPositions(const TissueState& state, std::uint32_t first, std::uint32_t last) noexcept;
   void WriteBack(Workers& workers, TissueState& state) const noexcept;
-  /// Brings the nodes that the step moved farthest to rest on their own, the constraints carrying what they do.
-  /// \param tolerance  error that may be left [m]
-  /// \return what was done; no steps where nothing was gathered
-  NewtonPatch::Report SolvePatch(const Kernels& kernels, Workers& workers,
-                                 std::span<const std::uint8_t> strand_is_intact, double longest,
-                                 double tolerance, const SmallVector& multipliers) noexcept;
-  /// Begins where the hook's lead goes to if the energy is lower there and the constraints are in reach.
-  bool TakeLead(const Kernels& kernels, Workers& workers, const SolveHook& hook, TissueState& state) noexcept;
-  void Multiply(const Kernels& kernels, Workers& workers, const Float4* x, Float4* out) noexcept;
   void SetEdgeLength() noexcept;
 
   OrderedModel model_;
@@ -87,17 +107,13 @@ class NewtonMultigrid {
   LinkHierarchy hierarchy_;
   Linearisation linearisation_;
   PressureStiffness pressure_;
-  NewtonPatch patch_;
+  LocalSolve local_solve_;
+  ProjectedPreconditioner preconditioner_;
   AlignedVector<Double4> position_, start_;  // (padded)
   Balance balance_;
   AlignedVector<Float4> step_, r_, z_, p_, q_;  // (padded)
-  std::array<Constraint, kMaxHookConstraints> constraints_room_;
-  std::span<Constraint> constraints_;  // of the present step
-  bool has_answers_ = false;
-  bool has_turns_ = false;  // whether the pressures are in the stiffness
-  SmallMatrix gram_{};      // G^T Y
-  SmallVector multipliers_{};
-  double edge_length_ = 0;  // mean rest length of the springs [m]
+  bool has_follower_stiffness_ = false;         // whether pressures are in the stiffness of this solve
+  double edge_length_ = 0;                      // mean rest length of the springs [m]
 };
 
 }  // namespace trocar::tissue

@@ -39,7 +39,7 @@ Vec3 GatherForce(const TissueModel& model, std::span<const std::uint8_t> strand_
   return force;
 }
 
-/// By Hooke's law, every spring whole: what the solvers see, whose springs are lines (spring_linearisation.h).
+/// By Hooke's law, every spring whole: what the solvers see, whose springs are linearised (spring_linearisation.h).
 inline Vec3 GatherNodeForce(const TissueModel& model, std::span<const std::uint8_t> strand_is_intact,
                             const TissueLoad& load, std::span<const Vec3> position,
                             std::uint32_t i) noexcept {

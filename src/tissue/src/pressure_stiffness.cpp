@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
+#include "capacity.h"
 #include "node_vectors.h"
-#include "room.h"
 #include "trocar/core/assert.h"
 
 namespace trocar::tissue {
@@ -18,20 +18,20 @@ void PressureStiffness::SetModel() {
   const std::size_t entries = model_->layout.Steps() * kSliceNodes, padded = model_->layout.PaddedNodes();
   surfaces_.clear(), triangles_.clear();
   left_.resize(entries), right_.resize(entries);
-  turns_.resize(3 * entries);
+  follower_stiffness_.resize(3 * entries);
   surface_of_.resize(padded), factor_.resize(padded);
-  surfaces_.reserve(kMaxHookConstraints);
+  surfaces_.reserve(kMaxConstraints);
   triangles_.reserve(2 * padded);  // a closed surface has twice as many as nodes, less four
   has_pressure_ = false;
 }
 
 void PressureStiffness::Reserve(double share) {
-  ReserveMore(share, left_, right_, turns_, surface_of_, factor_);
+  ReserveMore(share, left_, right_, follower_stiffness_, surface_of_, factor_);
   triangles_.reserve(2 * factor_.capacity());
 }
 
 void PressureStiffness::SetSurfaces(std::span<const PressedSurface> surfaces) {
-  TROCAR_ASSERT(surfaces.size() <= kMaxHookConstraints);
+  TROCAR_ASSERT(surfaces.size() <= kMaxConstraints);
   bool are_known = surfaces.size() == surfaces_.size();
   auto known = triangles_.cbegin();
   for (std::size_t c = 0; are_known && c < surfaces.size(); ++c) {
@@ -93,13 +93,13 @@ void PressureStiffness::Update(const Kernels& kernels, Workers& workers, std::sp
                                std::span<const Double4> position) noexcept {
   has_pressure_ = std::any_of(pressure.begin(), pressure.end(), [](double p) { return p != 0.0; });
   if (!has_pressure_) return;
-  const TurnPass pass{model_->layout.Table(), left_.data(),    right_.data(),
-                      factor_.data(),         position.data(), turns_.data()};
+  const FollowerPass pass{model_->layout.Table(), left_.data(),    right_.data(),
+                          factor_.data(),         position.data(), follower_stiffness_.data()};
   ForEachNodeChunk(workers, factor_.size(),
                    [&](std::uint32_t first, std::uint32_t last, std::uint32_t /*chunk*/) {
                      for (std::uint32_t i = first; i < last; ++i)
                        factor_[i] = surface_of_[i] == kNoSurface ? 0.0 : pressure[surface_of_[i]] / 6.0;
-                     kernels.turn(pass, first / kSliceNodes, last / kSliceNodes);
+                     kernels.calc_follower_stiffness(pass, first / kSliceNodes, last / kSliceNodes);
                    });
 }
 

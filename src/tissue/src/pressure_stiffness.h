@@ -24,7 +24,7 @@ struct PressedSurface {
   std::span<const geometry::Triangle> triangles;  ///< facing outwards
 };
 
-/// The turns of a LinkMatrix over a model's links.
+/// The follower stiffness of a LinkMatrix over a model's links.
 class PressureStiffness {
  public:
   explicit PressureStiffness(const OrderedModel& model) : model_(&model) { SetModel(); }
@@ -33,17 +33,19 @@ class PressureStiffness {
   void SetModel();
   void Reserve(double share);
 
-  /// Takes the surfaces, at most kMaxHookConstraints.
+  /// Takes the surfaces, at most kMaxConstraints.
   /// \note Allocates nothing where the model has room for their triangles.
   void SetSurfaces(std::span<const PressedSurface> surfaces);
-  /// Computes the turns.
+  /// Computes the follower stiffness.
   /// \param pressure  (surfaces) [Pa]
   /// \param position  (padded nodes) [m], in the solvers' order
   /// \note Real-time safe.
   void Update(const Kernels& kernels, Workers& workers, std::span<const double> pressure,
               std::span<const Double4> position) noexcept;
   /// (steps, 3, kSliceNodes) as of the last Update(), or null where there is no pressure.
-  const float* Turns() const noexcept { return has_pressure_ ? turns_.data() : nullptr; }
+  const float* FollowerStiffness() const noexcept {
+    return has_pressure_ ? follower_stiffness_.data() : nullptr;
+  }
 
  private:
   static constexpr std::uint8_t kNoSurface = 255;
@@ -60,9 +62,9 @@ class PressureStiffness {
   std::vector<KnownSurface> surfaces_;
   std::vector<geometry::Triangle> triangles_;  // of all surfaces, one after the other
   std::vector<std::uint8_t> surface_of_;       // (padded nodes) which, or kNoSurface
-  std::vector<std::uint32_t> left_, right_;    // (entries) as in TurnPass
+  std::vector<std::uint32_t> left_, right_;    // (entries) as in FollowerPass
   AlignedVector<double> factor_;               // (padded nodes) P / 6 [Pa]
-  AlignedVector<float> turns_;                 // (steps, 3, kSliceNodes) [N/m]
+  AlignedVector<float> follower_stiffness_;    // (steps, 3, kSliceNodes) [N/m]
   bool has_pressure_ = false;
 };
 

@@ -10,7 +10,8 @@
 
 namespace trocar::tissue {
 SolveReport SolveRelaxationPaper(EquilibriumSolver::Content& content, const SolverSettings& settings,
-                                 const TissueLoad& load, TissueState& state, const SolveHook* hook) noexcept {
+                                 const TissueLoad& load, TissueState& state,
+                                 ConstraintSet* constraints) noexcept {
   const TissueModel& model = *content.model;
   const auto n = static_cast<std::uint32_t>(model.Size());
   // half of the bound damps every mode of the linear system without oscillation
@@ -30,7 +31,8 @@ SolveReport SolveRelaxationPaper(EquilibriumSolver::Content& content, const Solv
     report.force_scale = scale;
     report.residual = scale > 0.0 ? largest / scale : 0.0;
     report.converged = report.residual <= settings.tolerance;
-    if (hook != nullptr && report.iterations % hook->interval == 0) hook->act(hook->self, state, {});
+    if (constraints != nullptr && report.iterations % constraints->Interval() == 0)
+      constraints->Project(state, {});
     if (report.converged) break;
   }
   return report;

@@ -30,7 +30,7 @@ void AddOuter(Matrix3& m, double w, const Vec3& x, const Vec3& r) noexcept {
   }
 }
 
-/// Turns a and its eigenvectors v by the rotation that clears a[p][q].
+/// FollowerStiffness a and its eigenvectors v by the rotation that clears a[p][q].
 void RotatePair(Matrix4& a, Matrix4& v, int p, int q) noexcept {
   if (a[p][q] == 0.0) return;
   const double theta = (a[q][q] - a[p][p]) / (2.0 * a[p][q]);

@@ -35,23 +35,23 @@ void SortByDegree(const NodeGraph& graph, std::vector<std::uint32_t>& places,
 
 }  // namespace
 
-void FindNodeOrder(const NodeGraph& graph, NodeOrderRoom& room, std::vector<std::uint32_t>& order) {
+void FindNodeOrder(const NodeGraph& graph, NodeOrderWorkspace& workspace, std::vector<std::uint32_t>& order) {
   const std::uint32_t n = graph.Size();
   const auto degree = [&](std::uint32_t i) { return graph.starts[i + 1] - graph.starts[i]; };
-  SortByDegree(graph, room.places, room.roots);
-  room.is_placed.assign(n, 0);
+  SortByDegree(graph, workspace.places, workspace.roots);
+  workspace.is_placed.assign(n, 0);
   order.clear();
   order.reserve(n);
-  for (const std::uint32_t root : room.roots) {
-    if (room.is_placed[root]) continue;
-    room.is_placed[root] = 1;
+  for (const std::uint32_t root : workspace.roots) {
+    if (workspace.is_placed[root]) continue;
+    workspace.is_placed[root] = 1;
     order.push_back(root);
     for (std::size_t at = order.size() - 1; at < order.size(); ++at) {
       const std::size_t first = order.size();
       for (auto h = graph.starts[order[at]]; h < graph.starts[order[at] + 1]; ++h) {
         const std::uint32_t other = graph.others[h];
-        if (room.is_placed[other]) continue;
-        room.is_placed[other] = 1;
+        if (workspace.is_placed[other]) continue;
+        workspace.is_placed[other] = 1;
         order.push_back(other);
       }
       SortRun(std::span(order).subspan(first), [&](auto a, auto b) { return degree(a) < degree(b); });

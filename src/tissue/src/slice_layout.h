@@ -24,7 +24,7 @@ struct NodeGraph {
 };
 
 /// Memory of FindNodeOrder.
-struct NodeOrderRoom {
+struct NodeOrderWorkspace {
   std::vector<std::uint32_t> roots, places;
   std::vector<std::uint8_t> is_placed;
 };
@@ -34,7 +34,7 @@ struct NodeOrderRoom {
 /// so that the rows of a slice are alike in length.
 /// \param[out] order  (n) old index of each new place
 /// \note Allocates nothing where the vectors have room.
-void FindNodeOrder(const NodeGraph& graph, NodeOrderRoom& room, std::vector<std::uint32_t>& order);
+void FindNodeOrder(const NodeGraph& graph, NodeOrderWorkspace& room, std::vector<std::uint32_t>& order);
 
 /// A graph's neighbours in slices of kSliceNodes.
 struct SliceLayout {

@@ -44,9 +44,10 @@ void UpdateSlice(const SlicedSprings& springs, const SliceData& data, const Step
 
 struct EquilibriumSolver::Content {
   const TissueModel* laws = nullptr;   // the caller's: springs with their laws
-  const TissueModel* model = nullptr;  // the same with the springs as lines; what the solvers take
-  std::unique_ptr<SpringLines> lines;
-  std::vector<NodeCondition> adrift_condition;  // of the nodes that a solve holds because nothing else does
+  const TissueModel* model = nullptr;  // the same with the springs linearised: what the solvers take
+  std::unique_ptr<SpringLinearisation> spring_linearisation;
+  std::vector<NodeCondition>
+      unconstrained_condition;  // of the nodes that a solve holds because nothing constrains them
   std::unique_ptr<Workers> workers;
   const Kernels* kernels = nullptr;
   std::unique_ptr<NewtonMultigrid> newton;
@@ -72,17 +73,19 @@ struct EquilibriumSolver::Content {
 };
 
 SolveReport SolveRelaxationPaper(EquilibriumSolver::Content& content, const SolverSettings& settings,
-                                 const TissueLoad& load, TissueState& state, const SolveHook* hook) noexcept;
+                                 const TissueLoad& load, TissueState& state,
+                                 ConstraintSet* constraints) noexcept;
 SolveReport SolveGaussSeidelBrown2001(EquilibriumSolver::Content& content, const SolverSettings& settings,
                                       const TissueLoad& load, TissueState& state,
-                                      const SolveHook* hook) noexcept;
+                                      ConstraintSet* constraints) noexcept;
 SolveReport SolveChebyshevJacobiWang2015(EquilibriumSolver::Content& content, const SolverSettings& settings,
                                          const TissueLoad& load, TissueState& state,
-                                         const SolveHook* hook) noexcept;
+                                         ConstraintSet* constraints) noexcept;
 
 /// Accelerated descent where a structured mesh starts cold, then Newton until the error is small enough.
 SolveReport SolveAdaptive(EquilibriumSolver::Content& content, const SolverSettings& settings,
-                          const TissueLoad& load, TissueState& state, const SolveHook* hook) noexcept;
+                          const TissueLoad& load, TissueState& state, ConstraintSet* constraints,
+                          std::span<const Vec3> extrapolation) noexcept;
 
 /// Nodes a thread takes at a time; depends on the model alone, so that results do not depend on the threads.
 inline std::uint32_t CalcChunk(std::size_t node_count) noexcept {

@@ -3,25 +3,26 @@
 
 #include <algorithm>
 
-#include "room.h"
+#include "capacity.h"
 #include "trocar/core/assert.h"
 #include "trocar/tissue/spring_law.h"
 
 namespace trocar::tissue {
 
-SpringLines::SpringLines(const TissueModel& model, SlicedSprings& sliced, OrderedModel& ordered)
+SpringLinearisation::SpringLinearisation(const TissueModel& model, SlicedSprings& sliced,
+                                         OrderedModel& ordered)
     : sliced_(&sliced), ordered_(&ordered) {
   SetModel(model);
 }
 
-void SpringLines::SetModel(const TissueModel& model) {
+void SpringLinearisation::SetModel(const TissueModel& model) {
   model_ = &model;
-  lines_ = model;
+  linearised_ = model;
   ends_.assign(model.SpringCount(), {});
   factor_.assign(model.SpringCount(), 1.0);
   is_changed_.assign(model.SpringCount(), 0);
   changed_count_ = 0;
-  adrift_.clear();
+  unconstrained_.clear();
   elastic_.clear();
   const SlicedSprings& sliced = *sliced_;
   for (std::uint32_t i = 0; i < model.Size(); ++i) {
@@ -37,18 +38,18 @@ void SpringLines::SetModel(const TissueModel& model) {
       }
     }
   }
-  adrift_.reserve(model.Size());
+  unconstrained_.reserve(model.Size());
   for (std::uint32_t spring = 0; spring < model.SpringCount(); ++spring) {
     if (model.laws[model.spring_law[spring]].stiffening > 0.0) elastic_.push_back(spring);
   }
 }
 
-void SpringLines::Reserve(double share) {
-  ReserveMore(share, lines_.half_springs, lines_.half_strands, lines_.spring_law, ends_, factor_, is_changed_,
-              elastic_);
+void SpringLinearisation::Reserve(double share) {
+  ReserveMore(share, linearised_.half_springs, linearised_.half_strands, linearised_.spring_law, ends_,
+              factor_, is_changed_, elastic_);
 }
 
-bool SpringLines::TakeFactors(const TissueState& state) noexcept {
+bool SpringLinearisation::UpdateFactors(const TissueState& state) noexcept {
   TROCAR_ASSERT(state.spring_factor.size() == factor_.size());
   bool has_changed = false, is_valid = true;
   for (std::uint32_t spring = 0; spring < factor_.size(); ++spring) {
@@ -61,14 +62,14 @@ bool SpringLines::TakeFactors(const TissueState& state) noexcept {
     factor_[spring] = factor;
     has_changed = true;
     const auto& half = model_->half_springs[ends_[spring].half_a];
-    SetLine(spring, factor * half.stiffness, half.rest_length);
+    SetTangent(spring, factor * half.stiffness, half.rest_length);
   }
-  if (has_changed) FindAdrift();
+  if (has_changed) FindUnconstrained();
   return is_valid;
 }
 
-void SpringLines::FindAdrift() noexcept {
-  adrift_.clear();
+void SpringLinearisation::FindUnconstrained() noexcept {
+  unconstrained_.clear();
   for (std::uint32_t i = 0; i < model_->Size(); ++i) {
     bool had_spring = false, has_spring = false;
     for (auto h = model_->spring_starts[i]; h < model_->spring_starts[i + 1]; ++h) {
@@ -76,29 +77,29 @@ void SpringLines::FindAdrift() noexcept {
       had_spring = had_spring || half.stiffness > 0.0;
       has_spring = has_spring || factor_[half.spring] * half.stiffness > 0.0;
     }
-    if (had_spring && !has_spring && model_->shape_stiffness[i] == 0.0) adrift_.push_back(i);
+    if (had_spring && !has_spring && model_->shape_stiffness[i] == 0.0) unconstrained_.push_back(i);
   }
 }
 
-double SpringLines::TakeLengths(const TissueState& state) noexcept {
+double SpringLinearisation::UpdateTangents(const TissueState& state) noexcept {
   double error = 0, largest = 0;
   for (const std::uint32_t spring : elastic_) {
     const Ends& ends = ends_[spring];
     const auto& half = model_->half_springs[ends.half_a];
-    const auto& line = lines_.half_springs[ends.half_a];
+    const auto& before = linearised_.half_springs[ends.half_a];
     const double length = math::Distance(state.position[ends.a], state.position[ends.b]);
-    const SpringLine next = CalcSpringLine(model_->laws[model_->spring_law[spring]], factor_[spring],
-                                           half.stiffness, half.rest_length, length);
+    const TangentSpring next = CalcTangentSpring(model_->laws[model_->spring_law[spring]], factor_[spring],
+                                                 half.stiffness, half.rest_length, length);
     const double tension = next.stiffness * (length - next.rest_length);
-    error = std::fmax(error, std::fabs(tension - line.stiffness * (length - line.rest_length)));
+    error = std::fmax(error, std::fabs(tension - before.stiffness * (length - before.rest_length)));
     largest = std::fmax(largest, std::fabs(tension));
-    if (next.stiffness != line.stiffness || next.rest_length != line.rest_length)
-      SetLine(spring, next.stiffness, next.rest_length);
+    if (next.stiffness != before.stiffness || next.rest_length != before.rest_length)
+      SetTangent(spring, next.stiffness, next.rest_length);
   }
   return error > 0.0 ? error / largest : 0.0;
 }
 
-void SpringLines::SetLine(std::uint32_t spring, double stiffness, double rest_length) noexcept {
+void SpringLinearisation::SetTangent(std::uint32_t spring, double stiffness, double rest_length) noexcept {
   const Ends& ends = ends_[spring];
   const auto& own = model_->half_springs[ends.half_a];
   const bool is_changed = stiffness != own.stiffness || rest_length != own.rest_length;
@@ -106,8 +107,8 @@ void SpringLines::SetLine(std::uint32_t spring, double stiffness, double rest_le
   changed_count_ -= is_changed_[spring];
   is_changed_[spring] = is_changed;
   for (const std::uint32_t h : {ends.half_a, ends.half_b}) {
-    lines_.half_springs[h].stiffness = stiffness;
-    lines_.half_springs[h].rest_length = rest_length;
+    linearised_.half_springs[h].stiffness = stiffness;
+    linearised_.half_springs[h].rest_length = rest_length;
     ordered_->stiffness[ordered_->spring_entries[h]] = stiffness;
     ordered_->rest_length[ordered_->spring_entries[h]] = rest_length;
   }
@@ -117,14 +118,14 @@ void SpringLines::SetLine(std::uint32_t spring, double stiffness, double rest_le
   }
 }
 
-void SpringLines::Add(const SolveReport& round, SolveReport& sum) noexcept {
-  SolveReport next = round;
-  next.rounds = sum.rounds + 1;
+void SpringLinearisation::Add(const SolveReport& outer_iteration, SolveReport& sum) noexcept {
+  SolveReport next = outer_iteration;
+  next.outer_iterations = sum.outer_iterations + 1;
   next.iterations += sum.iterations;
   next.coarse_levels = std::max(next.coarse_levels, sum.coarse_levels);
   next.linear_iterations += sum.linear_iterations;
   next.negative_curvatures += sum.negative_curvatures;
-  next.patches += sum.patches;
+  next.local_solves += sum.local_solves;
   next.restarts += sum.restarts;
   sum = next;
 }

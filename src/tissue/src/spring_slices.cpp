@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "capacity.h"
 #include "node_vectors.h"
-#include "room.h"
 
 namespace trocar::tissue {
 namespace {

@@ -27,7 +27,7 @@ GuardVerdict StateGuard::Check(TissueState& state, bool is_solve_finite) noexcep
   return IsFrozen() ? GuardVerdict::kFrozen : GuardVerdict::kRestored;
 }
 
-void StateGuard::Follow(const TissueModel& model, const TissueState& state) noexcept {
+void StateGuard::UpdateTopology(const TissueModel& model, const TissueState& state) noexcept {
   model_ = &model;
   std::copy(state.position.begin(), state.position.end(), good_.begin());
 }

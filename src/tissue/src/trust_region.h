@@ -7,13 +7,13 @@
 namespace trocar::tissue {
 
 /// The range of Newton's steps.
-class NewtonRange {
+class TrustRegion {
  public:
   /// Halvings of a step that does not lower the energy.
   static constexpr int kMaxHalvings = 6;
 
   /// \param edge_length  mean length of a spring [m]; without any there is no limit
-  explicit NewtonRange(double edge_length) noexcept
+  explicit TrustRegion(double edge_length) noexcept
       : radius_(edge_length > 0.0 ? kFirstRadius * edge_length : INFINITY) {}
 
   /// Longest move of a node in the next step [m].
@@ -33,7 +33,7 @@ class NewtonRange {
   /// \param share           of the step that was taken [-]
   /// \param length          of the whole step [m]
   /// \param reached_radius  whether the range ended the step
-  void Follow(double share, double length, bool reached_radius) noexcept {
+  void Update(double share, double length, bool reached_radius) noexcept {
     if (share < 1.0) {
       radius_ = kGrowth * share * length;
     } else if (reached_radius) {

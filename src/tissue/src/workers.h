@@ -71,7 +71,7 @@ class Workers {
   // takes a tenth of a microsecond, and an iteration has some twenty loops
   static constexpr std::size_t kLine = 64;
   /// A thread's share of the chunks, which others take from when their own is done; see Loop.
-  struct Seat {
+  struct Slot {
     alignas(kLine) std::atomic<std::uint64_t> taken = 0;  // last loop that took from it; the next chunk
     alignas(kLine) std::atomic<std::uint64_t> done = 0;   // last loop that the thread worked in; chunks done
   };
@@ -79,23 +79,23 @@ class Workers {
   void RunShared(std::uint32_t count, Call call, const void* context) noexcept;
   /// Does what is left of the thread's share, then of the others'.
   /// \return chunks that it did
-  std::uint32_t TakeChunks(Loop loop, int seat) noexcept;
-  std::uint32_t TakeShare(Loop loop, int seat) noexcept;
+  std::uint32_t TakeChunks(Loop loop, int slot) noexcept;
+  std::uint32_t TakeShare(Loop loop, int slot) noexcept;
   /// First chunk of a share.
-  std::uint32_t Begin(Loop loop, int seat) const noexcept;
+  std::uint32_t Begin(Loop loop, int slot) const noexcept;
   bool AreDone(Loop loop, std::uint32_t by_caller) const noexcept;
-  void Help(int seat) noexcept;
+  void Serve(int slot) noexcept;
 
   int threads_;
   std::optional<tbb::global_control> more_workers_;  // when more threads are asked for than there are cores
   tbb::task_arena arena_;
-  tbb::task_group helpers_;
+  tbb::task_group workers_;
 
   alignas(kLine) std::atomic<bool> is_open_ = false;
   std::atomic<std::uint64_t> loop_ = 0;  // the present one, see Loop
   std::atomic<Call> call_ = nullptr;
   std::atomic<const void*> context_ = nullptr;
-  alignas(kLine) std::vector<Seat> seats_;  // (threads_), the caller's first
+  alignas(kLine) std::vector<Slot> slots_;  // (threads_), the caller's first
 };
 
 }  // namespace trocar::tissue

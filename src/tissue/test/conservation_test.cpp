@@ -218,7 +218,7 @@ TEST(Conservation, FollowsAChangeWhenThereIsTimeOrAtLastWithout) {
     Conservation conservation(sac.model, sac.settings);
     ConservationState state = conservation.MakeState(sac.tissue);
     const auto tick = [&](bool has_time_now) {
-      conservation.CarryAlong(sac.tissue, state);
+      conservation.PredictRigidMotion(sac.tissue, state);
       (void)conservation.CalcForce(sac.tissue, {}, state);
       conservation.Enforce({}, kTick, sac.tissue, state, has_time_now);
       (void)conservation.CalcForce(sac.tissue, {}, state);
@@ -231,7 +231,7 @@ TEST(Conservation, FollowsAChangeWhenThereIsTimeOrAtLastWithout) {
       EXPECT_GT(tick(true), 1.001 * whole);
       continue;
     }
-    for (int i = 0; i < Conservation::kMostWait; ++i) EXPECT_NEAR(tick(false) / whole, 1.0, 1e-6) << i;
+    for (int i = 0; i < Conservation::kMaxTicksWaited; ++i) EXPECT_NEAR(tick(false) / whole, 1.0, 1e-6) << i;
     EXPECT_GT(tick(false), 1.001 * whole);
   }
 }
@@ -252,7 +252,7 @@ TEST(Conservation, AHeldPieceFollowsTheHandWhereItsVolumeDoesNotAnswer) {
   const Vec3 start = sac.tissue.position[other], step{1e-4, 2e-4, 0};
   for (int tick = 1; tick <= 5; ++tick) {
     for (const auto node : held) sac.tissue.position[node] += step;
-    conservation.CarryAlong(sac.tissue, state);
+    conservation.PredictRigidMotion(sac.tissue, state);
     (void)conservation.CalcForce(sac.tissue, {}, state);
     ASSERT_LT(state.organs[0].compliance, 0.0);
     conservation.Enforce({}, kTick, sac.tissue, state);

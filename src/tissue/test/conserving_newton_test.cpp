@@ -48,7 +48,7 @@ TEST(Conservation, NewtonKnowsHowPressureTurns) {
     double pressure = 0;
     Vec3 position;  // of a node that nothing holds
   };
-  const auto pull = [](bool follows_folds) {
+  const auto pull = [](bool follows_snap_through) {
     Sac sac(1e3);
     Conservation conservation(sac.model, sac.settings);
     EquilibriumSolver solver(sac.model, 1);
@@ -56,7 +56,7 @@ TEST(Conservation, NewtonKnowsHowPressureTurns) {
     state.organs[0].target *= 1.2;
     SolverSettings settings = kExact;
     settings.kind = SolverKind::kNewtonMultigrid;
-    settings.follows_folds = follows_folds;
+    settings.follows_snap_through = follows_snap_through;
     Pulled pulled;
     for (int tick = 1; tick <= 20; ++tick) {
       sac.Hold(sac.Pole({0, 0, 1}), {{}, std::max(0, tick - 10) * Vec3{3e-4, 0, 1e-4}});
@@ -151,8 +151,8 @@ TEST(Conservation, ATickThatMayDoLittleFollowsAHandThatGoesOn) {
 }
 
 // Where the hand turns back, the way that the last tick leads is uphill.
-TEST(Conservation, ALeadUphillIsNotTaken) {
-  const auto tick = [](const Vec3& lead) {
+TEST(Conservation, AnExtrapolationUphillIsNotTaken) {
+  const auto tick = [](const Vec3& extrapolation) {
     Sac sac(3e4);
     Conservation conservation(sac.model, sac.settings);
     EquilibriumSolver solver(sac.model, 1);
@@ -162,7 +162,7 @@ TEST(Conservation, ALeadUphillIsNotTaken) {
     little.max_linear_total = 4;
     sac.Hold(sac.Pole({-1, 0, 0}), {{}, {-0.002, 0.001, 0}});
     TissueLoad load;
-    std::fill(state.last_motion.begin(), state.last_motion.end(), lead);
+    std::fill(state.last_motion.begin(), state.last_motion.end(), extrapolation);
     (void)SolveConserving(solver, little, kTick, conservation, load, sac.tissue, state);
     return sac.tissue.position[sac.Pole({0, 0, 1})[0]];
   };
@@ -172,21 +172,21 @@ TEST(Conservation, ALeadUphillIsNotTaken) {
 }
 
 // A sac that is dented folds, and a fold snaps at few nodes at a time.
-TEST(Conservation, PatchesSaveStepsWhereFoldsSnap) {
+TEST(Conservation, LocalSolvesSaveStepsInASnapThrough) {
   struct Dented {
-    int steps = 0, patches = 0;
+    int steps = 0, local_solves = 0;
     double error = 0;             // largest of all ticks, of the largest displacement
     std::vector<Vec3> positions;  // at the end
   };
-  const auto dent = [](bool follows_folds, int threads = 1) {
+  const auto dent = [](bool follows_snap_through, int threads = 1) {
     Sac sac(1e3);
     Conservation conservation(sac.model, sac.settings);
     EquilibriumSolver solver(sac.model, threads), judge(sac.model, 1);
     ConservationState state = conservation.MakeState(sac.tissue);
     SolverSettings settings, exact = kExact;
     settings.kind = exact.kind = SolverKind::kNewtonMultigrid;
-    settings.follows_folds = follows_folds;
-    exact.follows_folds = false;
+    settings.follows_snap_through = follows_snap_through;
+    exact.follows_snap_through = false;
     Dented dented;
     TissueLoad load;
     for (int tick = 1; tick <= 40; ++tick) {
@@ -196,7 +196,7 @@ TEST(Conservation, PatchesSaveStepsWhereFoldsSnap) {
           SolveConserving(solver, settings, kTick, conservation, load, sac.tissue, state);
       EXPECT_TRUE(report.converged);
       dented.steps += report.iterations;
-      dented.patches += report.patches;
+      dented.local_solves += report.local_solves;
       Sac judged = sac;
       (void)FindConservedEquilibrium(judge, exact, conservation, load, judged.tissue, state);
       double error = 0, scale = 0;
@@ -210,8 +210,8 @@ TEST(Conservation, PatchesSaveStepsWhereFoldsSnap) {
     return dented;
   };
   const Dented with = dent(true), without = dent(false);
-  EXPECT_EQ(without.patches, 0);
-  EXPECT_GT(with.patches, 10);
+  EXPECT_EQ(without.local_solves, 0);
+  EXPECT_GT(with.local_solves, 10);
   EXPECT_LT(with.steps, 0.85 * without.steps) << without.steps << " steps without";
   EXPECT_LT(with.error, 1e-3);
   EXPECT_TRUE(std::ranges::equal(dent(true, 3).positions, with.positions)) << "the threads show";

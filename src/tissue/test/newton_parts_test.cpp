@@ -9,8 +9,8 @@
 #include <random>
 #include <vector>
 
-#include "linearisation.h"
 #include "line_smoother.h"
+#include "linearisation.h"
 #include "local_solve.h"
 #include "smallest_ritz.h"
 #include "test_systems.h"
@@ -97,11 +97,11 @@ double Norm(const Float4& v) {
   return std::sqrt(static_cast<double>(v.x * v.x + v.y * v.y + v.z * v.z));
 }
 
-/// Links, ground, inverse blocks and what is free, of all levels.
+/// Off-diagonal and diagonal blocks, inverse blocks and what is free, of all levels.
 std::vector<float> Values(const LinkHierarchy& hierarchy) {
   std::vector<float> all;
   for (const LinkLevel& level : hierarchy.Levels()) {
-    for (const auto* values : {&level.links, &level.ground, &level.inverse, &level.is_free})
+    for (const auto* values : {&level.off_diagonal, &level.diagonal_excess, &level.inverse, &level.is_free})
       all.insert(all.end(), values->begin(), values->end());
   }
   return all;
@@ -118,7 +118,8 @@ TEST(LinkHierarchy, CoarseLevelsAreTheSumsOfTheirMembers) {
   const Patient patient;
   const TissueModel model = MakeTissueModel(patient.definition);
   Evaluated evaluated(model, {}, Shake(model, 1e-3, 3), Levels().back());
-  evaluated.hierarchy.UpdateCoarse(*evaluated.kernels, evaluated.workers, evaluated.linearisation.Slack());
+  evaluated.hierarchy.UpdateCoarse(*evaluated.kernels, evaluated.workers,
+                                   evaluated.linearisation.StabilisingShift());
   const auto levels = evaluated.hierarchy.Levels();
   ASSERT_GE(levels.size(), 3u);
   for (std::size_t at = 0; at + 1 < levels.size(); ++at) {
@@ -129,15 +130,15 @@ TEST(LinkHierarchy, CoarseLevelsAreTheSumsOfTheirMembers) {
     for (std::uint32_t i = 0; i < fine.Size(); ++i) {
       if (fine.is_free[i] == 0.0f || fine.aggregate[i] == Aggregation::kNone) continue;
       auto& ground = grounds[fine.aggregate[i]];
-      for (std::size_t v = 0; v < 6; ++v) ground[v] += ValueAt(fine.ground, i, v);
+      for (std::size_t v = 0; v < 6; ++v) ground[v] += ValueAt(fine.diagonal_excess, i, v);
       for (std::uint32_t h = 0; h < fine.layout.RowSteps(i); ++h) {
         const std::size_t entry = fine.layout.Entry(i, h);
         const std::uint32_t other = fine.layout.others[entry];
         if (other == i) break;
         std::array<double, 6> link;
-        for (std::size_t v = 0; v < 6; ++v) link[v] = ValueAt(fine.links, entry, v);
+        for (std::size_t v = 0; v < 6; ++v) link[v] = ValueAt(fine.off_diagonal, entry, v);
         for (const std::size_t v : kDiagonal)
-          link[v] += at == 0 ? static_cast<double>(evaluated.linearisation.Slack()[entry]) : 0.0;
+          link[v] += at == 0 ? static_cast<double>(evaluated.linearisation.StabilisingShift()[entry]) : 0.0;
         const bool is_held = fine.is_free[other] == 0.0f;
         held += is_held;
         if (!is_held && fine.aggregate[other] == fine.aggregate[i]) continue;
@@ -148,7 +149,8 @@ TEST(LinkHierarchy, CoarseLevelsAreTheSumsOfTheirMembers) {
     EXPECT_TRUE(at > 0 || held > 0) << "the patient has held nodes";
     for (std::uint32_t a = 0; a < coarse.Size(); ++a) {
       for (std::size_t v = 0; v < 6; ++v) {
-        EXPECT_NEAR(ValueAt(coarse.ground, a, v), grounds[a][v], 1e-6 * (std::fabs(grounds[a][0]) + 1000.0))
+        EXPECT_NEAR(ValueAt(coarse.diagonal_excess, a, v), grounds[a][v],
+                    1e-6 * (std::fabs(grounds[a][0]) + 1000.0))
             << at << " " << a;
       }
       for (std::uint32_t h = 0; h < coarse.layout.RowSteps(a); ++h) {
@@ -157,7 +159,7 @@ TEST(LinkHierarchy, CoarseLevelsAreTheSumsOfTheirMembers) {
         if (b == a) break;
         const std::array<double, 6> sum = links[{a, b}];
         for (std::size_t v = 0; v < 6; ++v) {
-          EXPECT_NEAR(ValueAt(coarse.links, entry, v), sum[v], 1e-6 * (std::fabs(sum[0]) + 1000.0))
+          EXPECT_NEAR(ValueAt(coarse.off_diagonal, entry, v), sum[v], 1e-6 * (std::fabs(sum[0]) + 1000.0))
               << at << ": " << a << " " << b;
         }
       }
@@ -173,20 +175,21 @@ TEST(LinkHierarchy, CoarseLevelsAreAsMadeAnewForAnyThreads) {
   TissueState other = Shake(model, 1e-3, 3);
   other.condition[5] = NodeCondition::kFree, other.condition[70] = NodeCondition::kPrescribed;
   Evaluated anew(model, {}, Shake(model, 5e-4, 7), level);
-  anew.hierarchy.UpdateCoarse(*anew.kernels, anew.workers, anew.linearisation.Slack());
+  anew.hierarchy.UpdateCoarse(*anew.kernels, anew.workers, anew.linearisation.StabilisingShift());
   ASSERT_GE(anew.hierarchy.Levels().size(), 3u);
   const std::vector<float> expected = Values(anew.hierarchy);
   for (const int threads : {1, 2, 3, 4, 8}) {
     Evaluated again(model, {}, other, level);
     Workers workers(threads);
     const Workers::Session session(workers);
-    again.hierarchy.UpdateCoarse(*again.kernels, workers, again.linearisation.Slack());
+    again.hierarchy.UpdateCoarse(*again.kernels, workers, again.linearisation.StabilisingShift());
     ASSERT_NE(Values(again.hierarchy), expected);
     LinkLevel& finest = again.hierarchy.Finest();
     const LinkLevel& wanted = anew.hierarchy.Finest();
-    finest.links = wanted.links, finest.ground = wanted.ground, finest.inverse = wanted.inverse;
+    finest.off_diagonal = wanted.off_diagonal, finest.diagonal_excess = wanted.diagonal_excess,
+    finest.inverse = wanted.inverse;
     finest.is_free = wanted.is_free;
-    again.hierarchy.UpdateCoarse(*again.kernels, workers, anew.linearisation.Slack());
+    again.hierarchy.UpdateCoarse(*again.kernels, workers, anew.linearisation.StabilisingShift());
     EXPECT_EQ(Values(again.hierarchy), expected) << threads << " threads";
   }
 }
@@ -198,7 +201,7 @@ TEST(LinkHierarchy, ArraysBeginAtCacheLines) {
   const Evaluated here(model, {}, MakeRestState(model), Levels().back());
   const auto is_aligned = [](const void* p) { return reinterpret_cast<std::uintptr_t>(p) % kCacheLine == 0; };
   for (const LinkLevel& level : here.hierarchy.Levels()) {
-    for (const auto* values : {&level.links, &level.ground, &level.inverse, &level.is_free})
+    for (const auto* values : {&level.off_diagonal, &level.diagonal_excess, &level.inverse, &level.is_free})
       EXPECT_TRUE(is_aligned(values->data()));
     for (const auto* nodes : {&level.x, &level.b, &level.r}) EXPECT_TRUE(is_aligned(nodes->data()));
   }
@@ -280,7 +283,7 @@ TEST(Linearisation, WideVectorsGiveTheSameBits) {
   const TissueState state = Shake(model, 1e-3, 9);
   const Evaluated a(model, load, state, SimdLevel::kAvx2), b(model, load, state, SimdLevel::kAvx512);
   EXPECT_EQ(a.balance.energy, b.balance.energy);
-  EXPECT_EQ(a.hierarchy.Finest().links, b.hierarchy.Finest().links);
+  EXPECT_EQ(a.hierarchy.Finest().off_diagonal, b.hierarchy.Finest().off_diagonal);
   EXPECT_EQ(a.hierarchy.Finest().inverse, b.hierarchy.Finest().inverse);
   for (std::size_t i = 0; i < a.balance.residual.size(); ++i) {
     ASSERT_EQ(a.balance.residual[i].x, b.balance.residual[i].x);
@@ -289,38 +292,38 @@ TEST(Linearisation, WideVectorsGiveTheSameBits) {
 }
 
 // A duct is found, a surface is not, and the solution balances: K x = b where all but the chain stand still.
-TEST(LinkChains, SolveTheDuctExactly) {
+TEST(LineSmoother, SolveTheDuctExactly) {
   const Patient patient;
   const TissueModel model = MakeTissueModel(patient.definition);
   const TissueState state = MakeRestState(model);
   Evaluated here(model, {}, state, SimdLevel::kBaseline);
-  LinkChains chains(here.model.graph, here.model.layout);
+  LineSmoother smoother(here.model.graph, here.model.layout);
   std::vector<std::uint32_t> found;
-  for (const std::uint32_t i : chains.Nodes()) found.push_back(here.model.old_of_new[i]);
+  for (const std::uint32_t i : smoother.Nodes()) found.push_back(here.model.old_of_new[i]);
   std::sort(found.begin(), found.end());
   ASSERT_EQ(found, patient.duct);
   std::vector<Float4> b(here.balance.residual.size()), x = b, product = b;
-  for (const std::uint32_t i : chains.Nodes()) b[i] = {1.0f, -0.5f, 0.25f, 0.0f};
-  chains.Factorise(here.hierarchy.Finest(), here.linearisation.Slack());
-  chains.Solve(here.hierarchy.Finest(), nullptr, b.data());
-  chains.Add(nullptr, 1.0f, x.data());
+  for (const std::uint32_t i : smoother.Nodes()) b[i] = {1.0f, -0.5f, 0.25f, 0.0f};
+  smoother.Factorise(here.hierarchy.Finest(), here.linearisation.StabilisingShift());
+  smoother.Solve(here.hierarchy.Finest(), nullptr, b.data());
+  smoother.Add(nullptr, 1.0f, x.data());
   RunPass(*here.kernels, here.workers, here.hierarchy.Finest(), LinkPass::kProduct, x.data(), nullptr, 0.0f,
           product.data());
-  for (const std::uint32_t i : chains.Nodes())
+  for (const std::uint32_t i : smoother.Nodes())
     EXPECT_LT(Norm({product[i].x - b[i].x, product[i].y - b[i].y, product[i].z - b[i].z, 0}), 2e-3);
   // from there nothing is left to correct
   std::vector<Float4> again = x;
-  chains.Solve(here.hierarchy.Finest(), x.data(), b.data());
-  chains.Add(x.data(), 1.0f, again.data());
-  for (const std::uint32_t i : chains.Nodes())
+  smoother.Solve(here.hierarchy.Finest(), x.data(), b.data());
+  smoother.Add(x.data(), 1.0f, again.data());
+  for (const std::uint32_t i : smoother.Nodes())
     EXPECT_LT(Norm({again[i].x - x[i].x, again[i].y - x[i].y, again[i].z - x[i].z, 0}), 2e-3 * Norm(x[i]));
 }
 
-TEST(LinkChains, ASurfaceIsNone) {
+TEST(LineSmoother, ASurfaceIsNone) {
   const TissueModel model =
       MakeTissueModel(MakeMembrane(geometry::MakeSphere({0, 0, 0}, 0.03, 3), 100.0, 1e5));
   const OrderedModel ordered = MakeOrderedModel(model);
-  EXPECT_TRUE(LinkChains(ordered.graph, ordered.layout).Nodes().empty());
+  EXPECT_TRUE(LineSmoother(ordered.graph, ordered.layout).Nodes().empty());
 }
 
 // What the solver promises, where it is hardest: a soft duct on a stiff surface.
@@ -357,7 +360,7 @@ std::vector<Float4> MakeStep(const OrderedModel& model, const std::vector<std::u
 }
 
 // Oracle: another solver, for which every other node is prescribed. There are a contact, strands, a duct and a load.
-TEST(NewtonPatch, ComesToRestWhereAllOthersAreHeld) {
+TEST(LocalSolve, ComesToRestWhereAllOthersAreHeld) {
   const Patient patient;
   const std::uint32_t alone = patient.duct.back();
   const TissueModel model = MakeTissueModel(patient.definition);
@@ -377,18 +380,18 @@ TEST(NewtonPatch, ComesToRestWhereAllOthersAreHeld) {
   Evaluated whole(model, load, state, FindSimdLevel());
   const std::vector<Double4> before = whole.position;
 
-  NewtonPatch patch(whole.model);
+  LocalSolve local(whole.model);
   const auto step = MakeStep(whole.model, {9, patient.duct[2], 30});
-  ASSERT_TRUE(patch.Gather(whole.load, state.strand_is_intact, step, 1e-3));
+  ASSERT_TRUE(local.Gather(whole.load, state.strand_is_intact, step, 1e-3));
   std::vector<Float4> more(whole.model.layout.PaddedNodes());
-  for (const std::uint32_t i : patch.Free()) more[i] = {1e-4f, 0, -2e-4f, 0};
-  patch.AddForce(more, -0.5);
-  const auto solve = [&] { return patch.Solve(*whole.kernels, whole.workers, 1e-10, 0.003, whole.position); };
+  for (const std::uint32_t i : local.Free()) more[i] = {1e-4f, 0, -2e-4f, 0};
+  local.AddForce(more, -0.5);
+  const auto solve = [&] { return local.Solve(*whole.kernels, whole.workers, 1e-10, 0.003, whole.position); };
   const auto report = solve();
   EXPECT_GT(report.steps, 1);
   EXPECT_GT(report.longest, 1e-5);
   EXPECT_LT(report.smallest_ritz, 1.0);
-  patch.TakeBack(whole.position);
+  local.TakeBack(whole.position);
   for (std::uint32_t i = 0; i < model.Size(); ++i)
     ASSERT_EQ(whole.position[i].y, before[i].y) << "node " << i;
   for (int again = 0; again < 5 && solve().steps > 0; ++again) {
@@ -396,7 +399,7 @@ TEST(NewtonPatch, ComesToRestWhereAllOthersAreHeld) {
 
   TissueState truth = state;
   std::fill(truth.condition.begin(), truth.condition.end(), NodeCondition::kPrescribed);
-  for (const std::uint32_t i : patch.Free()) {
+  for (const std::uint32_t i : local.Free()) {
     truth.condition[whole.model.old_of_new[i]] = NodeCondition::kFree;
     external[whole.model.old_of_new[i]] += Vec3{-0.5 * double{1e-4f}, 0, 0.5 * double{2e-4f}};
   }
@@ -411,12 +414,12 @@ TEST(NewtonPatch, ComesToRestWhereAllOthersAreHeld) {
   }
 }
 
-TEST(NewtonPatch, IsASmallPartOfTheModelOrNone) {
+TEST(LocalSolve, IsASmallPartOfTheModelOrNone) {
   const Patient patient;
   const TissueModel model = MakeTissueModel(patient.definition);
   const TissueState state = Shake(model, 3e-5, 7);
   const Evaluated whole(model, {}, state, SimdLevel::kBaseline);
-  NewtonPatch patch(whole.model);
+  LocalSolve local(whole.model);
   // slow: two rings around node 9, less what is held
   std::vector<bool> is_near(model.Size());
   is_near[9] = true;
@@ -433,14 +436,14 @@ TEST(NewtonPatch, IsASmallPartOfTheModelOrNone) {
     if (is_near[whole.model.old_of_new[i]]) expected.push_back(i);
   }
   for (int repeat = 0; repeat < 2; ++repeat) {  // nothing stays from the one before
-    ASSERT_TRUE(patch.Gather(whole.load, state.strand_is_intact, MakeStep(whole.model, {9}), 1e-3));
-    EXPECT_TRUE(std::ranges::equal(patch.Free(), expected));
+    ASSERT_TRUE(local.Gather(whole.load, state.strand_is_intact, MakeStep(whole.model, {9}), 1e-3));
+    EXPECT_TRUE(std::ranges::equal(local.Free(), expected));
     std::vector<std::uint32_t> all;
     for (std::uint32_t i = 0; i < model.Size(); ++i) all.push_back(i);
-    EXPECT_FALSE(patch.Gather(whole.load, state.strand_is_intact, MakeStep(whole.model, all), 1e-3));
-    EXPECT_TRUE(patch.Free().empty());
+    EXPECT_FALSE(local.Gather(whole.load, state.strand_is_intact, MakeStep(whole.model, all), 1e-3));
+    EXPECT_TRUE(local.Free().empty());
   }
-  EXPECT_FALSE(patch.Gather(whole.load, state.strand_is_intact, MakeStep(whole.model, {5}), 1e-3))
+  EXPECT_FALSE(local.Gather(whole.load, state.strand_is_intact, MakeStep(whole.model, {5}), 1e-3))
       << "held nodes do not move";
 }
 

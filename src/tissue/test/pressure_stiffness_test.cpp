@@ -46,7 +46,7 @@ struct Spheres {
   }
 };
 
-/// The turns of one state, in the solvers' order.
+/// The follower stiffness of one state, in the solvers' order.
 struct Turned {
   OrderedModel model;
   OrderedLoad load;
@@ -81,8 +81,8 @@ struct Turned {
       const Vec3& v = x[model.old_of_new[i]];
       direction[i] = {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z), 0.0f};
     }
-    RunPass(kernels, workers, hierarchy.Finest(), LinkPass::kTurn, direction.data(), nullptr, 0.0f,
-            product.data(), pressure.Turns());
+    RunPass(kernels, workers, hierarchy.Finest(), LinkPass::kFollower, direction.data(), nullptr, 0.0f,
+            product.data(), pressure.FollowerStiffness());
     std::vector<Vec3> out(x.size());
     for (std::uint32_t i = 0; i < model.Size(); ++i)
       out[model.old_of_new[i]] = {product[i].x, product[i].y, product[i].z};
@@ -175,7 +175,7 @@ TEST(PressureStiffness, FollowsItsSurfaces) {
 
   constexpr double kNone[] = {0.0, 0.0};
   turned.pressure.Update(turned.kernels, turned.workers, kNone, turned.position);
-  EXPECT_EQ(turned.pressure.Turns(), nullptr);
+  EXPECT_EQ(turned.pressure.FollowerStiffness(), nullptr);
 }
 
 }  // namespace

@@ -211,23 +211,23 @@ TEST_P(EverySolver, EndsAtWhatIsNotFinite) {
   }
 }
 
-TEST_P(EverySolver, CallsTheHookAndTakesItsForces) {
+TEST_P(EverySolver, CallsTheConstraintsAndTakesTheirForces) {
   Sheet sheet = MakeSheet(20, 0.05, true);
-  struct Counter {
+  struct Counter final : ConstraintSet {
+    explicit Counter(std::vector<Vec3>& force_in) : force(&force_in) {}
+    void Project(TissueState&, std::span<Vec3>) noexcept override {
+      ++calls;
+      for (Vec3& f : *force) f = {0, 0, 0.01};
+    }
+    int Interval() const noexcept override { return 5; }
     int calls = 0;
     std::vector<Vec3>* force;
-  } counter{0, &sheet.external};
-  const SolveHook hook{[](void* self, TissueState&, std::span<Vec3>) noexcept {
-                         Counter& c = *static_cast<Counter*>(self);
-                         ++c.calls;
-                         for (Vec3& f : *c.force) f = {0, 0, 0.01};
-                       },
-                       &counter, 5};
+  } counter(sheet.external);
   TissueState state = sheet.start;
   EquilibriumSolver solver(sheet.model, 1);
   SolverSettings settings = Exact(GetParam());
   settings.tolerance = 1e-10, settings.max_error = 1e-7, settings.max_iterations = 40'000;
-  (void)solver.Solve(settings, sheet.Load(), state, &hook);
+  (void)solver.Solve(settings, sheet.Load(), state, &counter);
   EXPECT_GT(counter.calls, 0);
   const TissueState truth = Relax(sheet);
   EXPECT_LT(CalcError(sheet.model, state, truth), 1e-4);

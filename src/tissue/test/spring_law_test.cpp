@@ -26,7 +26,7 @@ SolverSettings Exact(SolverKind kind) {
   settings.max_newton_steps = 1000;
   settings.max_linear_iterations = 300;
   settings.law_error = 1e-9;
-  settings.max_rounds = 60;
+  settings.max_outer_iterations = 60;
   if (kind == SolverKind::kAcceleratedDescent) {
     // what single precision bears
     settings.max_iterations = 200'000;
@@ -54,7 +54,7 @@ TEST(SpringLaw, TensionIsTheSlopeOfTheEnergyAndStiffnessThatOfTheTension) {
     };
     EXPECT_NEAR(slope(CalcSpringEnergy), CalcSpringTension(kWall, k, l, length), 1e-6) << strain;
     EXPECT_NEAR(slope(CalcSpringTension), CalcSpringStiffness(kWall, k, l, length), 1e-4) << strain;
-    const SpringLine line = CalcSpringLine(kWall, 0.5, k, l, length);
+    const TangentSpring line = CalcTangentSpring(kWall, 0.5, k, l, length);
     EXPECT_NEAR(line.stiffness * (length - line.rest_length), 0.5 * CalcSpringTension(kWall, k, l, length),
                 1e-12);
   }
@@ -194,7 +194,7 @@ TEST_P(SpringLawSolvers, BalancesTheLawOnAStructuredAndOnAnIrregularMesh) {
     EXPECT_EQ(solver.IsStructured(), !is_shuffled);
     const SolveReport report = solver.Solve(Exact(GetParam()), load, state);
     EXPECT_TRUE(report.converged) << report.residual << " law " << report.law_error;
-    EXPECT_GT(report.rounds, 1) << "some springs stiffened on the way";
+    EXPECT_GT(report.outer_iterations, 1) << "some springs stiffened on the way";
     EXPECT_LT(LargestResidual(sheet.model, state, load),
               GetParam() == SolverKind::kAcceleratedDescent ? 1e-3 : 1e-6);
   }
@@ -273,7 +273,7 @@ TEST(SpringLawTicks, RoundsSpendTogetherNoMoreThanATickMay) {
     return solver.Solve(settings, load, state);
   };
   const SolveReport whole = solve();
-  ASSERT_GT(whole.rounds, 2);
+  ASSERT_GT(whole.outer_iterations, 2);
   settings.max_linear_total = whole.linear_iterations / 2;
   EXPECT_LE(solve().linear_iterations, settings.max_linear_total);
 }

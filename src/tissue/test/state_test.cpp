@@ -204,9 +204,9 @@ class Tissue {
     archive.Field("guard", *guard_);
   }
   void FollowTopology() {
-    solver_->Follow(model_);
-    conservation_->Follow(model_, {system_.sac}, conserved_);
-    guard_->Follow(model_, state_);
+    solver_->UpdateTopology(model_);
+    conservation_->UpdateTopology(model_, {system_.sac}, conserved_);
+    guard_->UpdateTopology(model_, state_);
   }
   /// The jaw takes the pole below and the tail's end, and goes on with them.
   void Move() {

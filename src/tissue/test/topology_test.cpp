@@ -120,7 +120,7 @@ TEST_P(AfterACut, GoesOnAsIfMadeAnew) {
     for (int cut = 0; cut < 6; ++cut) {
       theatre.Cut();
       model = MakeTissueModel(theatre.definition);
-      solver.Follow(model);
+      solver.UpdateTopology(model);
       EquilibriumSolver anew(model, 1);
       TissueState state = Pull(model), expected = state;
       state.spring_factor[11] = expected.spring_factor[11] = 0.3;
@@ -151,7 +151,7 @@ TEST(AfterACut, NothingIsAllocatedWithinTheReserve) {
     theatre.Cut();
     model = MakeTissueModel(theatre.definition);
     const int before = allocations;
-    solver.Follow(model);
+    solver.UpdateTopology(model);
     EXPECT_EQ(allocations, before) << "cut " << cut;
   }
   // negative control: the counter counts, and without a reserve there is something to count
@@ -163,7 +163,7 @@ TEST(AfterACut, NothingIsAllocatedWithinTheReserve) {
   for (std::uint32_t i = 0; i < 100; ++i) theatre.definition.springs.push_back({i, i + 200, 1.0, 0.01});
   model = MakeTissueModel(theatre.definition);
   const int remade = allocations;
-  small.Follow(model);
+  small.UpdateTopology(model);
   EXPECT_GT(allocations, remade);
   EXPECT_GT(remade, made);
   // and goes on all the same
@@ -182,14 +182,14 @@ TEST(AfterACut, AStructuredMeshIsOneNoMore) {
   ASSERT_TRUE(solver.IsStructured());
   std::swap(definition.springs[40].b, definition.springs[300].b);
   const TissueModel cut = MakeTissueModel(definition);
-  solver.Follow(cut);
+  solver.UpdateTopology(cut);
   EXPECT_FALSE(solver.IsStructured());
   EquilibriumSolver anew(cut, 1);
   TissueState state = Pull(cut), expected = state;
   (void)solver.Solve({}, {}, state);
   (void)anew.Solve({}, {}, expected);
   EXPECT_EQ(state.position, expected.position);
-  solver.Follow(whole);
+  solver.UpdateTopology(whole);
   EXPECT_TRUE(solver.IsStructured());
 }
 
@@ -251,8 +251,8 @@ TEST(AfterACut, VolumesAreKept) {
   const double pressure_before = kept.organs[0].pressure;
   for (int cut = 0; cut < 4; ++cut) theatre.Cut();
   model = MakeTissueModel(theatre.definition);
-  solver.Follow(model);
-  conservation.Follow(model, settings.organs, kept);
+  solver.UpdateTopology(model);
+  conservation.UpdateTopology(model, settings.organs, kept);
   state.spring_factor.assign(model.SpringCount(), 1.0);
   state.spring_damage.assign(model.SpringCount(), 0.0);
   for (std::uint32_t i = 0; i < model.Size(); ++i) {

@@ -31,21 +31,22 @@ GpuOrCpuSolver::GpuOrCpuSolver(const tissue::TissueModel& model, int threads, co
 
 GpuOrCpuSolver::~GpuOrCpuSolver() = default;
 
-void GpuOrCpuSolver::Follow(const tissue::TissueModel& model) {
+void GpuOrCpuSolver::UpdateTopology(const tissue::TissueModel& model) {
   gpu_.reset();
-  EquilibriumSolver::Follow(model);
+  EquilibriumSolver::UpdateTopology(model);
 }
 
 tissue::SolveReport GpuOrCpuSolver::Solve(const tissue::SolverSettings& settings,
                                           const tissue::TissueLoad& load, tissue::TissueState& state,
-                                          const tissue::SolveHook* hook) noexcept {
+                                          tissue::ConstraintSet* constraints,
+                                          std::span<const math::Vec3> extrapolation) noexcept {
   if (gpu_ && RunsOnGpu(settings.kind) && HasPlainSprings(state)) {
-    const core::Result<tissue::SolveReport> report = gpu_->Solve(settings, load, state, hook);
+    const core::Result<tissue::SolveReport> report = gpu_->Solve(settings, load, state, constraints);
     if (report) return *report;
     gpu_error_ = report.error();
     gpu_.reset();
   }
-  return EquilibriumSolver::Solve(settings, load, state, hook);
+  return EquilibriumSolver::Solve(settings, load, state, constraints, extrapolation);
 }
 
 }  // namespace trocar::tissue_cuda

@@ -16,7 +16,7 @@ class GpuSolve {
   /// \return an error, and the state's positions as they were
   virtual core::Result<tissue::SolveReport> Run(const tissue::SolverSettings& settings,
                                                 const tissue::TissueLoad& load, tissue::TissueState& state,
-                                                const tissue::SolveHook* hook) = 0;
+                                                tissue::ConstraintSet* constraints) = 0;
   virtual bool IsResident() const noexcept { return false; }
 };
 

@@ -56,7 +56,7 @@ core::Result<GpuSolver> GpuSolver::Make(const tissue::TissueModel& model, const 
 
 core::Result<tissue::SolveReport> GpuSolver::Solve(const tissue::SolverSettings& settings,
                                                    const tissue::TissueLoad& load, tissue::TissueState& state,
-                                                   const tissue::SolveHook* hook) noexcept {
+                                                   tissue::ConstraintSet* constraints) noexcept {
   TROCAR_ASSERT(state.position.size() == content_->nodes && state.condition.size() == content_->nodes);
   TROCAR_ASSERT(load.contacts.size() <= tissue::kMaxContacts && settings.max_iterations >= 1);
   if (content_->failed) return *content_->failed;
@@ -67,7 +67,7 @@ core::Result<tissue::SolveReport> GpuSolver::Solve(const tissue::SolverSettings&
     content_->failed = status.error();
     return status.error();
   }
-  core::Result<tissue::SolveReport> report = content_->solve->Run(settings, load, state, hook);
+  core::Result<tissue::SolveReport> report = content_->solve->Run(settings, load, state, constraints);
   if (!report && report.error().code != core::ErrorCode::kGpuLayout) content_->failed = report.error();
   return report;
 }

@@ -44,8 +44,8 @@ class PaperSolve final : public GpuSolve {
 
   core::Result<tissue::SolveReport> Run(const tissue::SolverSettings& settings,
                                         const tissue::TissueLoad& load, tissue::TissueState& state,
-                                        const tissue::SolveHook* hook) override {
-    if (!load.contacts.empty() || hook != nullptr) {
+                                        tissue::ConstraintSet* constraints) override {
+    if (!load.contacts.empty() || constraints != nullptr) {
       return core::Error{core::ErrorCode::kGpuLayout,
                          "the layout \"" + std::string(LayoutName(arrays_.layout)) +
                              "\" has no place for contacts and constraints, which the paper does not have; "

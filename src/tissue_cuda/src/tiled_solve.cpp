@@ -35,21 +35,22 @@ class TiledSolve final : public GpuSolve {
 
   core::Result<tissue::SolveReport> Run(const tissue::SolverSettings& settings,
                                         const tissue::TissueLoad& load, tissue::TissueState& state,
-                                        const tissue::SolveHook* hook) override {
+                                        tissue::ConstraintSet* constraints) override {
     SetTiledLoad(settings, load, args_);
-    if (hook == nullptr) {
+    if (constraints == nullptr) {
       args_.before_positions = nullptr;
       args_.is_resumed = false;
       if (const Status status = Launch(load, state); !status) return status.error();
       TakePositions(host_positions_, state.position);
       return MakeReport();
     }
-    // to the hook and back: the state may already be changed when the GPU fails
+    // to the constraints and back: the state may already be changed when the GPU fails
     start_ = state.position;
     args_.before_positions = before_positions_;
     args_.is_resumed = false;
     for (int done = 0;; args_.is_resumed = true) {
-      args_.settings.pause_at = static_cast<std::uint32_t>((done / hook->interval + 1) * hook->interval);
+      args_.settings.pause_at =
+          static_cast<std::uint32_t>((done / constraints->Interval() + 1) * constraints->Interval());
       if (const Status status = Launch(load, state); !status) {
         state.position = start_;
         return status.error();
@@ -58,8 +59,8 @@ class TiledSolve final : public GpuSolve {
       TakePositions(host_before_, before_);
       const tissue::SolveReport report = MakeReport();
       done = report.iterations;
-      if (!report.converged && done % hook->interval == 0) {
-        hook->act(hook->self, state, before_);
+      if (!report.converged && done % constraints->Interval() == 0) {
+        constraints->Project(state, before_);
         PutPositions(before_, host_before_);
       }
       if (report.converged || done >= settings.max_iterations || std::isnan(report.residual)) return report;
@@ -215,7 +216,7 @@ class TiledSolve final : public GpuSolve {
   std::uint8_t* host_prescribed_ = nullptr;
   TiledReport* host_report_ = nullptr;
   TiledContacts contacts_;
-  std::vector<math::Vec3> start_, before_;  // of a solve with a hook
+  std::vector<math::Vec3> start_, before_;  // of a solve with constraints
   CudaFunction kernel_ = nullptr;
   LaunchShape shape_;
   bool is_resident_ = false;

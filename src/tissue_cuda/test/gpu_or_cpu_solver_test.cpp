@@ -103,27 +103,28 @@ TEST(GpuOrCpuSolver, TheChebyshevIterationAndAnOpenChoiceGoToTheGpu) {
   EXPECT_EQ(solver.Gpu(), nullptr);
 }
 
-/// A hook as the conservation of volumes is one: moves every free node, its past alike, and changes a force.
-struct Shift {
-  const TissueModel* model;
-  std::vector<Vec3> force;
-  int calls = 0;
+/// Constraints as the conservation of volumes has them: moves every free node, its past alike, and changes a force.
+struct Shift final : tissue::ConstraintSet {
+  explicit Shift(std::size_t nodes, int interval_in) : force(nodes), interval(interval_in) {}
 
-  static void Act(void* self, TissueState& state, std::span<Vec3> before) noexcept {
-    auto& shift = *static_cast<Shift*>(self);
-    ++shift.calls;
+  void Project(TissueState& state, std::span<Vec3> before) noexcept override {
+    ++calls;
     for (std::size_t i = 0; i < state.position.size(); ++i) {
       if (state.condition[i] == NodeCondition::kPrescribed) continue;
       const Vec3 move{1e-5 * static_cast<double>(i % 3), 0, -2e-5};
       state.position[i] += move;
       if (!before.empty()) before[i] += move;
     }
-    shift.force[shift.calls % shift.force.size()] += Vec3{0, 1e-3, 0};
+    force[static_cast<std::size_t>(calls) % force.size()] += Vec3{0, 1e-3, 0};
   }
+  int Interval() const noexcept override { return interval; }
+
+  std::vector<Vec3> force;
+  int interval, calls = 0;
 };
 
 // The solve is interrupted at every interval, on the GPU as on the processor, and goes on where it was.
-TEST(GpuOrCpuSolver, CallsTheHookBetweenTheSameIterationsAsTheProcessor) {
+TEST(GpuOrCpuSolver, CallsTheConstraintsBetweenTheSameIterationsAsTheProcessor) {
   const TissueModel model = MakeModel();
   for (const int interval : {1, 5, 7}) {
     for (const int iterations : {1, 14, 50}) {
@@ -136,13 +137,12 @@ TEST(GpuOrCpuSolver, CallsTheHookBetweenTheSameIterationsAsTheProcessor) {
         tissue::EquilibriumSolver cpu(model, 1);
         const SolverSettings settings{SolverKind::kChebyshevJacobi2015, iterations, 1e-30, 0.0};
         const auto run = [&](tissue::EquilibriumSolver& which, TissueState& state, Shift& shift) {
-          const tissue::SolveHook hook{Shift::Act, &shift, interval};
           tissue::TissueLoad load = kLoad;
           load.external_force = shift.force;
-          return which.Solve(settings, load, state, &hook);
+          return which.Solve(settings, load, state, &shift);
         };
         TissueState expected = MakeMovedState(model, 3e-4), found = expected;
-        Shift on_cpu{&model, std::vector<Vec3>(model.Size())}, on_gpu = on_cpu;
+        Shift on_cpu(model.Size(), interval), on_gpu = on_cpu;
         const auto wanted = run(cpu, expected, on_cpu);
         const auto report = run(solver, found, on_gpu);
         EXPECT_EQ(on_gpu.calls, on_cpu.calls);
@@ -158,19 +158,18 @@ TEST(GpuOrCpuSolver, CallsTheHookBetweenTheSameIterationsAsTheProcessor) {
   }
 }
 
-TEST(GpuOrCpuSolver, AFailureBetweenTwoCallsOfTheHookStartsTheTickAgain) {
+TEST(GpuOrCpuSolver, AFailureBetweenTwoCallsOfTheConstraintsStartsTheTickAgain) {
   const TissueModel model = MakeModel();
   const StandIn stand_in("fail=cuLaunchCooperativeKernel:3:700");
   GpuOrCpuSolver solver(model, 1, MakeGpuSolver(model, {}, StandIn::Source()));
   TissueState expected = MakeMovedState(model, 3e-4), found = expected;
-  Shift on_cpu{&model, std::vector<Vec3>(model.Size())}, on_gpu = on_cpu;
-  const tissue::SolveHook hook_cpu{Shift::Act, &on_cpu, 5}, hook_gpu{Shift::Act, &on_gpu, 5};
+  Shift on_cpu(model.Size(), 5), on_gpu = on_cpu;
   tissue::EquilibriumSolver cpu(model, 1);
-  (void)cpu.Solve(kChebyshev, kLoad, expected, &hook_cpu);
-  (void)solver.Solve(kChebyshev, kLoad, found, &hook_gpu);
+  (void)cpu.Solve(kChebyshev, kLoad, expected, &on_cpu);
+  (void)solver.Solve(kChebyshev, kLoad, found, &on_gpu);
   EXPECT_EQ(solver.Gpu(), nullptr);
   EXPECT_EQ(on_gpu.calls, on_cpu.calls + 2);
-  // this hook's force is not in the load: from the same start the processor finds the same end
+  // these constraints' force is not in the load: from the same start the processor finds the same end
   EXPECT_EQ(found.position, expected.position);
 }
 

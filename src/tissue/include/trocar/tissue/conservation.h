@@ -64,7 +64,7 @@ struct ConservationTick {
   FreeRegions regions;
   std::array<Pose, kMaxFreeRegions> X_world_rest;  ///< of each region: identity where it was imaged
   std::uint64_t intact_links = 0;                  ///< strands and springs, for which `regions` hold
-  std::vector<Vec3> last_position;                 ///< (n) after the last CarryAlong or Enforce [m]
+  std::vector<Vec3> last_position;                 ///< (n) after the last PredictRigidMotion or Enforce [m]
   std::vector<Vec3> last_motion;                   ///< (n) how far the last tick's solve moved each node [m]
 };
 
@@ -100,14 +100,14 @@ class Conservation {
   /// \param organs  as many as before, each a closed surface
   /// \param[in,out] state  finds its free regions anew
   /// \note Not real-time safe: allocates.
-  void Follow(const TissueModel& model, std::vector<ClosedOrgan> organs, ConservationState& state);
+  void UpdateTopology(const TissueModel& model, std::vector<ClosedOrgan> organs, ConservationState& state);
 
   /// Takes held free pieces along: the rigid motion that their held nodes made since the last Enforce moves
   /// the rest of the piece and its frame. A better start for the solver than a piece left behind, which would
   /// crumple.
   ///
   /// \note Real-time safe.
-  void CarryAlong(TissueState& tissue, ConservationState& state) noexcept;
+  void PredictRigidMotion(TissueState& tissue, ConservationState& state) noexcept;
 
   /// Force of pressure, frames and weight of free pieces, for one solve.
   ///
@@ -119,15 +119,14 @@ class Conservation {
 
   /// Between iterations: one projection of the volumes, with the pressures that go with it; the force of
   /// CalcForce follows.
-  /// \param before  see SolveHook
+  /// \param before  see ConstraintSet::Project
   ///
   /// \note Real-time safe.
   void KeepVolumes(TissueState& tissue, std::span<Vec3> before, ConservationState& state) noexcept;
 
   /// Gradient of each node's organ's volume where it was last evaluated, (n) [m^2].
   std::span<const Vec3> VolumeGradient() const { return gradient_; }
-  /// The nodes of each organ, for SolveHook::constraints.
-  std::span<const SolveHook::Constraint> Constraints() const { return constraints_; }
+  std::span<const ConstraintSet::NodeRange> OrganNodes() const { return organ_nodes_; }
   /// False for an organ out of which fluid runs freely.
   static bool IsSealed(const OrganVolume& organ) noexcept {
     return !(organ.opening_area > 0.0 && organ.pressure == 0.0 && organ.volume > organ.target);
@@ -145,11 +144,11 @@ class Conservation {
   /// frames of held free regions to their best fit.
   ///
   /// \param has_time  whether this tick can follow a change of topology or stiffness with how the volumes answer; what was
-  ///                  known before steers well enough, but after kMostWait ticks one goes on with it all the same
+  ///                  known before steers well enough, but after kMaxTicksWaited ticks one goes on with it all the same
   /// \note Real-time safe; a state that is not finite is left for the state guard.
   void Enforce(const TissueLoad& load, double dt, TissueState& tissue, ConservationState& state,
                bool has_time = true) noexcept;
-  static constexpr int kMostWait = 30;  ///< ticks
+  static constexpr int kMaxTicksWaited = 30;  ///< ticks
 
   /// Makes a hole, or a larger one, in an organ.
   ///
@@ -196,7 +195,7 @@ class Conservation {
   bool has_ahead_ = false;        // for the next KeepVolumes()
   std::vector<Vec3> base_force_;  // (n) without pressure
   std::vector<Vec3> force_;       // (n)
-  std::vector<SolveHook::Constraint> constraints_;
+  std::vector<ConstraintSet::NodeRange> organ_nodes_;
   SmallMatrix slopes_{};  // dV_i by one pascal in organ j, of this tick [m^3/Pa]
   bool has_slopes_ = false;
   FreeRegions next_regions_;

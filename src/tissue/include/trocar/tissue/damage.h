@@ -25,7 +25,7 @@ std::size_t TearStrands(const TissueModel& model, std::span<const double> max_el
 
 /// Tears every spring that is stretched beyond its law's failure strain, and gathers the damage of the others:
 /// D grows by damage_rate (T / T_f)^m dt, with T_f the tension at the failure strain, and the spring tears when D
-/// reaches one. Slack springs gather none. A torn spring has the factor zero, and nothing makes it whole again.
+/// reaches one. StabilisingShift springs gather none. A torn spring has the factor zero, and nothing makes it whole again.
 ///
 /// \param dt           length of the tick [s], >= 0
 /// \param[out] torn    indices of the springs torn now, lowest first; more tear than it has room for

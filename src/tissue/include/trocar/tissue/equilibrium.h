@@ -21,10 +21,10 @@ struct SolveReport {
   double force_scale =
       0;  ///< largest force that acts on any such node through one spring, load or contact [N]
   bool converged =
-      false;       ///< residual <= tolerance (Newton: error <= max_error), and springs within law_error
-  int rounds = 1;  ///< solves with stiffening springs taken as lines, each about where the last ended
-  /// Largest difference between a spring's tension by its law and by the line that stood for it, over the
-  /// largest tension [-]; 0 where no spring stiffens.
+      false;  ///< residual <= tolerance (Newton: error <= max_error), and springs within law_error
+  int outer_iterations = 1;  ///< solves with stiffening springs linearised, each where the last ended
+  /// Largest difference between a spring's tension by its law and by its linearisation, over the largest tension [-]; 0
+  /// where no spring stiffens.
   double law_error = 0;
   /// Newton: estimated largest distance of a node to the equilibrium, over the largest distance of any node
   /// from rest [-]; NaN where the solver has no estimate, as where it ended at a bound of SolverSettings.
@@ -32,7 +32,7 @@ struct SolveReport {
   int coarse_levels = 0;        ///< grids that a coarse-to-fine start went through
   int linear_iterations = 0;    ///< of conjugate gradients, all Newton steps together
   int negative_curvatures = 0;  ///< Newton steps that met a direction in which the energy is not convex
-  int patches = 0;              ///< times that nodes which snapped were brought to rest on their own
+  int local_solves = 0;         ///< of the few nodes that snap through, on their own
   /// False where positions, loads, scales or contacts were not finite; then nothing was solved, or not to the
   /// end. Give it to StateGuard::Check.
   bool is_finite = true;
@@ -45,45 +45,50 @@ struct SolverOptions {
   SimdLevel simd =
       FindSimdLevel();  ///< the bits of AVX2 and AVX-512 agree; the baseline's differ in the last place
   bool recognises_grids = true;  ///< take structured meshes as stencils
-  /// Room for Follow: so many times more springs and strands than the model has [-], >= 0. A half is enough for the cuts
-  /// of an operation.
+  /// Spare capacity for UpdateTopology: so many times more springs and strands than the model has [-], >= 0. A half is
+  /// enough for the cuts of an operation.
   double spare_share = 0;
 };
 
-/// Called between iterations: keeps a constraint, and may change the forces that load.external_force views.
-struct SolveHook {
-  /// \param before  positions of the iteration before, (n), where the solver extrapolates from them, else
-  /// empty: what
-  ///                shifts the present must shift the past alike, or the extrapolation repeats the shift
-  void (*act)(void* self, TissueState& state, std::span<Vec3> before) noexcept = nullptr;
-  void* self = nullptr;
-  int interval = 1;  ///< iterations from one call to the next, >= 1
-
-  /// The constraints themselves, for a solver whose steps are too long to leave them to act(): constraint c
-  /// keeps sum_i gradient_i . x_i over its nodes, and its multiplier pushes each node along its gradient.
-  /// Steps then stay on the constraints, and act() corrects what is of second order.
-  struct Constraint {
+/// Scalar constraints that hold in the equilibrium, such as the volumes of closed organs. Constraint c keeps the sum of
+/// gradient_i . x_i over its nodes, linearised; its multiplier pushes each of them along its gradient.
+class ConstraintSet {
+ public:
+  struct NodeRange {
     std::uint32_t first_node = 0, node_count = 0;
   };
-  std::span<const Constraint> constraints;  ///< at most kMaxHookConstraints
-  std::span<const Vec3> gradient;           ///< (n), of each node's constraint; act() keeps it up to date
-  bool (*is_active)(void* self, std::size_t constraint) noexcept = nullptr;
-  /// The closed surface whose volume a constraint keeps, its nodes counted from first_node. Null where constraints keep
-  /// something else; otherwise a solver may ask for the multiplier too.
-  std::span<const geometry::Triangle> (*surface)(void* self, std::size_t constraint) noexcept = nullptr;
-  /// The multiplier now: of a surface its pressure [Pa].
-  double (*multiplier)(void* self, std::size_t constraint) noexcept = nullptr;
-  /// Adds to a multiplier; the forces that load.external_force views follow in the next act().
-  void (*add_multiplier)(void* self, std::size_t constraint, double change) noexcept = nullptr;
-  /// Whether act() could bring the constraints back from these positions: they are linear only near by. A step that
-  /// leads farther is taken back, as one that raises the energy; after one that does not, act() is called with the same
-  /// positions.
-  bool (*is_in_reach)(void* self, const TissueState& state) noexcept = nullptr;
+  virtual ~ConstraintSet() = default;
 
-  /// How far each node may go, (n) or empty [m]: a solver that can tell the energy begins there if it is lower.
-  std::span<const Vec3> lead;
+  /// Called by a solver between its iterations, every Interval() of them; Newton's method calls it after every step.
+  /// Brings positions back to the constraints, and makes the forces that load.external_force views and the gradients
+  /// those of the new positions.
+  ///
+  /// \param previous  (n) positions of the iteration before, where the solver extrapolates from them, else empty. What
+  ///                  shifts the present has to shift the past alike, or the extrapolation repeats the shift.
+  virtual void Project(TissueState& state, std::span<Vec3> previous) noexcept = 0;
+  virtual int Interval() const noexcept { return 1; }
+
+  // For solvers whose steps are too long to leave the constraints to Project(): their steps stay on the linearised
+  // constraints, and Project() corrects what is of second order.
+
+  /// The nodes of each constraint, at most kMaxConstraints; empty where only Project() knows them.
+  virtual std::span<const NodeRange> Nodes() const noexcept { return {}; }
+  /// (n) of each node's constraint.
+  virtual std::span<const Vec3> Gradient() const noexcept { return {}; }
+  virtual bool IsActive(std::size_t /*constraint*/) const noexcept { return true; }
+  /// The closed surface whose volume a constraint keeps, its nodes counted from first_node; empty where it keeps something
+  /// else. The multiplier is then the pressure [Pa].
+  virtual std::span<const geometry::Triangle> Surface(std::size_t /*constraint*/) const noexcept {
+    return {};
+  }
+  virtual double Multiplier(std::size_t /*constraint*/) const noexcept { return 0.0; }
+  /// The forces follow in the next Project().
+  virtual void AddMultiplier(std::size_t /*constraint*/, double /*change*/) noexcept {}
+  /// Whether Project() could bring these positions back: constraints are linear only near by. A step that leads farther is
+  /// shortened; after one that does not, Project() is called with the same positions.
+  virtual bool AreInReach(const TissueState& /*state*/) noexcept { return true; }
 };
-inline constexpr std::size_t kMaxHookConstraints = 8;
+inline constexpr std::size_t kMaxConstraints = 8;
 
 /// Memory of the solvers, made once for a model so that a solve allocates nothing.
 class EquilibriumSolver {
@@ -104,14 +109,16 @@ class EquilibriumSolver {
   ///               must outlive the solver; may be the same object with other content
   /// \note Allocates nothing as long as the links stay within SolverOptions::spare_share; beyond it does and goes on.
   ///       Structured meshes allocate.
-  virtual void Follow(const TissueModel& model);
+  virtual void UpdateTopology(const TissueModel& model);
 
   /// Moves every node that is not prescribed towards equilibrium, starting from the state's positions.
+  /// \param constraints    null for none; a solve that they disturb has not converged
+  /// \param extrapolation  (n) from the state's positions to the extrapolated initial guess, or empty [m]. Newton's method
+  ///                       begins there if the energy is lower and the constraints are in reach; others do not.
   /// \note Real-time safe: no allocation, lock or throw of ours; bounded by settings.max_iterations.
-  /// \param hook  nullptr, or what is to be called between iterations; a solve that it disturbs has not
-  /// converged
   virtual SolveReport Solve(const SolverSettings& settings, const TissueLoad& load, TissueState& state,
-                            const SolveHook* hook = nullptr) noexcept;
+                            ConstraintSet* constraints = nullptr,
+                            std::span<const Vec3> extrapolation = {}) noexcept;
 
   /// True where the model is a structured mesh and runs as a stencil.
   bool IsStructured() const noexcept;

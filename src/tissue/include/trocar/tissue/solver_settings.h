@@ -36,19 +36,19 @@ struct SolverSettings {
   /// Newton: stop when the estimated distance of any node to the equilibrium is below this fraction of the
   /// largest distance of any node from rest [-].
   double max_error = 4e-4;
-  int max_newton_steps = 40;       ///< per tick; two as a rule, many where a fold snaps through
+  int max_newton_steps = 40;       ///< per tick; two as a rule, many in a snap-through
   int max_linear_iterations = 60;  ///< of conjugate gradients, per Newton step
   /// The same of all Newton steps of a tick together, with the halvings of steps that led uphill, >= 1: bounds its time.
   int max_linear_total = 100000;
-  /// Newton, where a hook keeps volumes: whether to follow folds to where they snap. The few nodes that go far are then
-  /// brought to rest on their own, the stiffness has what pressures add to it, and steps are solved until a mode that
-  /// turns soft shows. A tick that ends at its bounds anyway has no time for it.
-  bool follows_folds = true;
+  /// Newton with constraints: whether to follow a fold through its snap-through. The few nodes that move far are then brought
+  /// to rest by a local solve, the stiffness has the follower stiffness of pressures, and steps are solved until a mode
+  /// that turns soft shows. A tick that ends at its bounds anyway has no time for it.
+  bool follows_snap_through = true;
 
-  /// Springs that stiffen are taken as lines that touch their law, solve after solve, until the lines are off
-  /// by less than this part of the largest tension [-].
+  /// Springs that stiffen are linearised, outer iteration after outer iteration, until their tensions are off by less than
+  /// this part of the largest tension [-].
   double law_error = 1e-3;
-  int max_rounds = 4;  ///< solves per tick, >= 1; they share the bounds above
+  int max_outer_iterations = 4;  ///< solves per tick, >= 1; they share the bounds above
 
   friend bool operator==(const SolverSettings&, const SolverSettings&) = default;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file spring_law.h  Tension of a spring that stiffens with strain, and the straight line that touches it.
+/// \file spring_law.h  Tension of a spring that stiffens with strain, and its linearisation.
 ///
 /// With eps = (L - l) / l, the stiffness dT/dL is k up to eps_0 and k (1 + beta (eps^2 - eps_0^2)) beyond. Domain
 /// facts 3.1 print k (1 + beta eps^2) for eps > 0.2; taken as it stands the stiffness jumps at eps_0, and taken as
@@ -49,20 +49,20 @@ inline double CalcSpringEnergy(const SpringLaw& law, double stiffness, double re
                       (beyond / 12.0 + from / 3.0);
 }
 
-/// A spring of Hooke's law that has the tension and the stiffness of another at one length.
-struct SpringLine {
+/// The spring of Hooke's law that has the tension and the tangent stiffness of another at one length.
+struct TangentSpring {
   double stiffness = 0;    ///< [N/m]
   double rest_length = 0;  ///< [m]
 };
 
 /// \param factor  what is left of the spring, TissueState::spring_factor [-]
 /// \note Real-time safe.
-inline SpringLine CalcSpringLine(const SpringLaw& law, double factor, double stiffness, double rest_length,
-                                 double length) noexcept {
+inline TangentSpring CalcTangentSpring(const SpringLaw& law, double factor, double stiffness,
+                                       double rest_length, double length) noexcept {
   if (!IsStiffened(law, rest_length, length)) return {factor * stiffness, rest_length};
-  const double touching = CalcSpringStiffness(law, stiffness, rest_length, length);
-  if (!(touching > 0.0)) return {0.0, rest_length};
-  return {factor * touching, length - CalcSpringTension(law, stiffness, rest_length, length) / touching};
+  const double tangent = CalcSpringStiffness(law, stiffness, rest_length, length);
+  if (!(tangent > 0.0)) return {0.0, rest_length};
+  return {factor * tangent, length - CalcSpringTension(law, stiffness, rest_length, length) / tangent};
 }
 
 }  // namespace trocar::tissue

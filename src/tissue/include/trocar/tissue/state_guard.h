@@ -32,7 +32,7 @@ class StateGuard {
   GuardVerdict Check(TissueState& state, bool is_solve_finite = true) noexcept;
   /// Goes on with a model that a cut has changed, in a state that is good.
   /// \pre as many nodes as before; the model outlives this
-  void Follow(const TissueModel& model, const TissueState& state) noexcept;
+  void UpdateTopology(const TissueModel& model, const TissueState& state) noexcept;
   bool IsFrozen() const noexcept { return bad_in_a_row_ >= kMaxRetries; }
   /// Takes the state as good and lets the nodes move again.
   void Release(const TissueState& state) noexcept;

@@ -22,11 +22,11 @@ class GpuOrCpuSolver final : public tissue::EquilibriumSolver {
   /// with.
   /// \note Allocates nothing, but once for the text of a failure.
   tissue::SolveReport Solve(const tissue::SolverSettings& settings, const tissue::TissueLoad& load,
-                            tissue::TissueState& state,
-                            const tissue::SolveHook* hook = nullptr) noexcept override;
+                            tissue::TissueState& state, tissue::ConstraintSet* constraints = nullptr,
+                            std::span<const math::Vec3> extrapolation = {}) noexcept override;
 
   /// After a cut the processor goes on: the GPU's copy of the springs is of the whole tissue.
-  void Follow(const tissue::TissueModel& model) override;
+  void UpdateTopology(const tissue::TissueModel& model) override;
 
   /// The GPU in use; none once it failed, and after a cut.
   const GpuInformation* Gpu() const noexcept { return gpu_ ? &gpu_->Information() : nullptr; }

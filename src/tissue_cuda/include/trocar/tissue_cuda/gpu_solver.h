@@ -74,15 +74,15 @@ class GpuSolver {
   GpuSolver& operator=(GpuSolver&&) noexcept;
 
   /// As tissue::EquilibriumSolver::Solve. kTiled takes the steps of the Chebyshev iteration, the paper's
-  /// layouts those of the relaxation with all nodes moving at once. With a hook, positions travel to the host
+  /// layouts those of the relaxation with all nodes moving at once. With a constraints, positions travel to the host
   /// and back at each call of it.
   ///
-  /// \return kGpuFailed after an error of the GPU or its driver, kGpuLayout for a load or a hook that the
+  /// \return kGpuFailed after an error of the GPU or its driver, kGpuLayout for a load or a constraints that the
   /// layout cannot serve, and for springs that are cut or weakened; the state is then as it was before the call
   /// \note Allocates and throws nothing of ours unless it fails.
   core::Result<tissue::SolveReport> Solve(const tissue::SolverSettings& settings,
                                           const tissue::TissueLoad& load, tissue::TissueState& state,
-                                          const tissue::SolveHook* hook = nullptr) noexcept;
+                                          tissue::ConstraintSet* constraints = nullptr) noexcept;
 
   const GpuInformation& Information() const noexcept;
   GpuTimes LastTimes() const noexcept;
