@@ -5,14 +5,14 @@
 /// would walk in steps of a fraction of a spring's length. There, on a structured mesh, accelerated descent
 /// from coarse to fine comes within a thousandth for the price of one or two Newton steps; and where virtual
 /// springs bound the lowest eigenvalue it ends by itself, with a bound on its error. With a hook that does
-/// not name its constraints the double-precision recurrence runs. See docs/decisions/0014.
+/// not name its constraints the double-precision recurrence runs. See docs/solver.md.
 #include "solver_content.h"
 
 namespace trocar::tissue {
 namespace {
 
 /// Iterations of a descent: on the largest grid of the paper they cost what one Newton step does, and come
-/// within a thousandth (docs/tissue.md).
+/// within a thousandth (docs/measurements.md).
 constexpr int kDescentIterations = 400;
 
 }  // namespace
