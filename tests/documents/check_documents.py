@@ -136,6 +136,27 @@ def check_decisions(root):
             yield f"{name}: the list of decisions has another date or status"
 
 
+def check_names(root):
+    """Source files, and names such as SolveReport::error or Suite.Test, that the documents mention are there."""
+    files, words = set(), set()
+    for folder in ("src", "tests", "samples", "fuzz", "bench"):
+        for path in (root / folder).rglob("*") if (root / folder).is_dir() else ():
+            if path.suffix in (".h", ".cpp", ".cu", ".cuh"):
+                files.add("/" + str(path.relative_to(root)))
+                words.update(re.findall(r"\w+", path.read_text()))
+    for page in pages(root):
+        name = page.relative_to(root)
+        text = re.sub(r"^```.*?^```", "", page.read_text(), flags=re.S | re.M)
+        for span in sorted(set(re.findall(r"`([^`\n]+)`", text))):
+            if re.fullmatch(r"[\w/]+\.(h|cpp|cu|cuh)", span):
+                if not any(path.endswith("/" + span) for path in files):
+                    yield f"{name}: there is no file {span}"
+            elif re.fullmatch(r"[A-Z]\w+::\w+(\(\))?|[A-Z]\w+\.[A-Z]\w+", span):
+                for word in re.findall(r"\w+", span):
+                    if word not in words:
+                        yield f"{name}: nothing is called {word} ({span})"
+
+
 # --- commands
 
 
@@ -207,7 +228,8 @@ def check_commands(root, tree):
 
 def check(root, tree):
     found = []
-    for complaints in (check_links(root), check_door(root), check_readme(root), check_changelog(root), check_decisions(root)):
+    for complaints in (check_links(root), check_door(root), check_readme(root), check_changelog(root), check_decisions(root),
+                       check_names(root)):
         found += complaints
     if tree:
         found += check_commands(root, tree)
@@ -242,6 +264,8 @@ CONTROLS = (
     ("a decision without a date", lambda r: edit(r / "docs/decisions/0001-modules-and-arrows.md", "Date: ", "Day: "), "no line Date"),
     ("a decision with a wrong status", lambda r: edit(r / "docs/decisions/0001-modules-and-arrows.md", "Status: ", "Status: un"), "no line Status"),
     ("a decision that is not listed", lambda r: edit(r / "docs/decisions/README.md", "| [0001]", "| [9001]"), "not in the list of decisions"),
+    ("a source file that is not there", lambda r: append(r / "docs/tissue.md", "`no_such_file.h`\n"), "there is no file"),
+    ("a name that is not there", lambda r: append(r / "docs/tissue.md", "`SolveReport::no_such_member`\n"), "nothing is called"),
     ("a date that differs", lambda r: edit(r / "docs/decisions/0001-modules-and-arrows.md", "Date: 20", "Date: 19"), "another date or status"),
 )
 COMMAND_CONTROLS = (
