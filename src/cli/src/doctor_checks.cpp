@@ -255,7 +255,8 @@ Finding CheckImageReader(const fs::path& program_folder) {
       return {"images", Health::kGood, "trocar-import can be started", "images can be read", ""};
   }
   return {"images", Health::kMissing, "trocar-import is not beside this program",
-          "no image can be read: trocar anatomy images, build and contours do not work",
+          "no image and no label map can be read: trocar anatomy images, build, contours, from-labels do not "
+          "work",
           "build it: run ./run, or ninja trocar-import"};
 }
 
