@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Whether the documents are true where a program can tell.
 
-  check_documents.py ROOT [--program TROCAR]              prints what is wrong; exit status 1 where something is
-  check_documents.py ROOT [--program TROCAR] --control    seeds one mistake after the other; each must be found
+  check_documents.py ROOT [--program TROCAR] [--window TROCAR-WINDOW]    prints what is wrong; exit status 1 where something is
+  check_documents.py ROOT ... --control                                  seeds one mistake after the other; each must be found
 """
 import argparse
 import os
@@ -16,6 +16,7 @@ from pathlib import Path
 
 MOST_WORDS = 900
 MOST_COMMANDS = 6
+WINDOW = ("trocar-window",)
 STATUSES = ("Accepted", "Superseded by ", "Measured and rejected")
 
 
@@ -174,9 +175,11 @@ def ask_help(program, command):
     return subcommands, options
 
 
-def ask_commands(program):
-    """{command words: (subcommands, options)} of the whole program."""
+def ask_commands(program, window):
+    """{command words: (subcommands, options)} of the whole program; the window's stand under WINDOW."""
     tree, waiting = {}, [()]
+    if window:
+        tree[WINDOW] = ask_help(window, ())
     while waiting:
         command = waiting.pop()
         tree[command] = ask_help(program, command)
@@ -185,27 +188,29 @@ def ask_commands(program):
 
 
 def written_commands(text):
-    """What follows `trocar ` in code spans and at the beginning of lines in blocks, one command each."""
+    """(whether it is the window's, what follows) of `trocar` and `trocar-window` in code spans and at the beginning of lines in blocks."""
     blocks = "".join(re.findall(r"^```\w*\n(.*?)^```", text, flags=re.S | re.M)).replace("\\\n", " ")
     for line in blocks.splitlines():
         line = re.split(r"  +#|\s{4,}", line.strip())[0]
         for part in line.split("&&"):
-            found = re.match(r"(?:[A-Z_]+=\S+ )*(?:build/release/)?trocar (.*)", part.strip())
+            found = re.match(r"(?:[A-Z_]+=\S+ )*(?:build/release/)?trocar(-window)? (.*)", part.strip())
             if found:
-                yield found[1]
+                yield bool(found[1]), found[2]
     spans = re.sub(r"^```.*?^```", "", text, flags=re.S | re.M)
     for span in re.findall(r"`([^`]+)`", spans):
-        found = re.match(r"(?:build/release/)?trocar\s+(.*)", " ".join(span.split()))
+        found = re.match(r"(?:build/release/)?trocar(-window)? (.*)", " ".join(span.split()))
         if found:
-            yield found[1]
+            yield bool(found[1]), found[2]
 
 
 def check_commands(root, tree):
     named = set()
     for page in pages(root):
         name = page.relative_to(root)
-        for line in written_commands(page.read_text()):
-            words, command = line.split(), ()
+        for is_window, line in written_commands(page.read_text()):
+            words, command = line.split(), WINDOW if is_window else ()
+            if command not in tree:
+                continue
             while words and words[0] in tree[command][0]:
                 command = (*command, words.pop(0))
             if page.name == "commands.md":
@@ -218,11 +223,11 @@ def check_commands(root, tree):
             for word in words:
                 option = re.match(r"--?[a-z][a-z-]*", word)
                 if option and option[0] not in options:
-                    yield f"{name}: trocar {line}: there is no option {option[0]}"
+                    yield f"{name}: trocar{'-window' if is_window else ''} {line}: there is no option {option[0]}"
     for command in sorted(tree):
         is_leaf = not tree[command][0]
         # what the experiments share stands in one row
-        if is_leaf and command not in named and command[0] != "reproduce":
+        if is_leaf and command not in named and command[0] not in ("reproduce", *WINDOW):
             yield f"docs/commands.md: trocar {' '.join(command)} is missing"
 
 
@@ -272,6 +277,7 @@ COMMAND_CONTROLS = (
     ("a command that is not there", lambda r: append(r / "docs/tissue.md", "`trocar operate`\n"), "there is no operate"),
     ("a subcommand in a block that is not there", lambda r: append(r / "docs/tissue.md", "```\ntrocar anatomy grow -o x\n```\n"), "there is no grow"),
     ("an option that is not there", lambda r: append(r / "docs/tissue.md", "`trocar demo --fast`\n"), "there is no option --fast"),
+    ("a window's option that is not there", lambda r: append(r / "docs/tissue.md", "`trocar-window --fast`\n"), "trocar-window --fast: there is no option"),
     ("a command without a row", lambda r: edit(r / "docs/commands.md", "`trocar doctor`", "`trocar errors`"), "trocar doctor is missing"),
 )
 
@@ -279,6 +285,8 @@ COMMAND_CONTROLS = (
 def run_controls(root, tree):
     failed = 0
     controls = CONTROLS + (COMMAND_CONTROLS if tree else ())
+    if not tree or WINDOW not in tree:
+        controls = tuple(control for control in controls if "window" not in control[0])
     for what, seed, complaint in controls:
         with tempfile.TemporaryDirectory() as folder:
             copy = Path(folder)
@@ -302,10 +310,11 @@ def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("root", type=Path)
     parser.add_argument("--program")
+    parser.add_argument("--window")
     parser.add_argument("--control", action="store_true")
     options = parser.parse_args()
     root = options.root.resolve()
-    tree = ask_commands(options.program) if options.program else None
+    tree = ask_commands(options.program, options.window) if options.program else None
     if options.control:
         return 1 if run_controls(root, tree) else 0
     found = check(root, tree)
