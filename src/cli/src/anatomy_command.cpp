@@ -129,7 +129,7 @@ void AddAnatomyCommand(CLI::App& app, Outcome& outcome) {
   CLI::App* anatomy = app.add_subcommand("anatomy", "A patient from cross-sections, or from none");
   anatomy->require_subcommand(1);
   CLI::App* build =
-      anatomy->add_subcommand("build", "Build a patient from control points placed on photographs");
+      anatomy->add_subcommand("build", "Build a patient from control points placed on cross-sections");
   auto arguments = std::make_shared<BuildArguments>();
   build->add_option("control_points", arguments->control_points, "Control points (JSON)")
       ->required()
@@ -155,7 +155,7 @@ void AddAnatomyCommand(CLI::App& app, Outcome& outcome) {
       ->type_name("PATIENT");
   build
       ->add_option("--reference", arguments->reference,
-                   "Label map (NIfTI) that only judges the result: volume, Dice")
+                   "Label map (NIfTI, NRRD) that only judges the result: volume, Dice")
       ->type_name("FILE");
   build
       ->add_option("--skipped-px", arguments->skipped_px,

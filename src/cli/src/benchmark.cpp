@@ -6,7 +6,7 @@ namespace {
 
 constexpr BenchmarkSuite kSuites[] = {
     {"anatomy", "label maps to smooth closed meshes with their quality reports", RunAnatomyBenchmark},
-    {"collision", "nearest triangle to a point and to a shaft: hierarchy against brute force",
+    {"collision", "nearest triangle to a point and to a shaft: both hierarchies against brute force",
      RunCollisionBenchmark},
     {"contours", "the contour window: refit while a point is dragged, preview of an organ",
      RunContoursBenchmark},

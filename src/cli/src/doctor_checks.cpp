@@ -33,7 +33,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kDriverTimeout = 30;  // the first shader cache of a cold driver takes seconds [s]
-constexpr int kWantedPriority = 50;    // of the haptic loop; below the kernel's own threads
+constexpr int kWantedPriority = 21;    // of the haptic supervisor, the highest that Trocar asks for
 
 std::string ReadEnvironment(const char* name) {
   const char* value = std::getenv(name);
@@ -206,7 +206,7 @@ Finding CheckGpu() {
 Finding CheckDisplay() {
   Finding finding{
       "display", Health::kMissing, "",
-      "the window cannot open here; trocar demo and simulate need no display",
+      "the window cannot open here; trocar demo, play and simulate need no display",
       "log in to a desktop, or set DISPLAY or WAYLAND_DISPLAY; without one, use ./run --headless"};
   const std::string wayland = ReadEnvironment("WAYLAND_DISPLAY");
   if (!wayland.empty()) {
@@ -255,7 +255,8 @@ Finding CheckImageReader(const fs::path& program_folder) {
       return {"images", Health::kGood, "trocar-import can be started", "images can be read", ""};
   }
   return {"images", Health::kMissing, "trocar-import is not beside this program",
-          "no image can be read: trocar anatomy images, build and contours do not work",
+          "no image and no label map can be read: trocar anatomy images, build, contours, from-labels do not "
+          "work",
           "build it: run ./run, or ninja trocar-import"};
 }
 
@@ -281,10 +282,10 @@ Finding CheckRealTime() {
   if (answer.end == ChildEnd::kAnswered) {
     return {"real-time", Health::kGood,
             "priority " + std::to_string(kWantedPriority) + " granted (limit " + allowed + ")",
-            "the window's simulation runs before drawing, so that its ticks are even", ""};
+            "simulation and force feedback run before drawing, so that their ticks are even", ""};
   }
   return {"real-time", Health::kLimited, answer.text + " (limit " + allowed + ")",
-          "ticks may come late while the same processor cores draw",
+          "ticks and forces may come late while the same processor cores draw",
           "put \"@audio - rtprio 70\" into /etc/security/limits.d/trocar.conf, add yourself to the group "
           "audio, log in "
           "again"};
@@ -298,8 +299,9 @@ Finding CheckInputDevices(const fs::path& root) {
   }
   std::erase(devices, "");
   if (devices.empty()) {
-    return {"input", Health::kLimited, "no input device", "hands can be moved only by a script here",
-            "connect a mouse and a keyboard, or use the script of a scene"};
+    return {"input", Health::kLimited, "no input device",
+            "neither mouse nor keyboard can hold the instruments",
+            "connect a mouse and a keyboard, use a device of trocar devices list, or the script of a scene"};
   }
   return {"input", Health::kGood, Join(devices), "mouse and keyboard drive the hands, through the desktop",
           ""};
@@ -315,28 +317,30 @@ Finding CheckSerialDevices(const fs::path& root) {
   }
   if (!locked.empty()) {
     return {"serial", Health::kLimited, Join(locked) + " may not be opened by you",
-            "a device of your own making on that line could not be read",
+            "a tracker or jaw sensor on that line cannot be read",
             "add yourself to the group dialout (sudo usermod -aG dialout $USER) and log in again"};
   }
   if (devices.empty()) {
-    return {"serial", Health::kGood, "no serial device", "not needed: this version reads no serial device",
-            ""};
+    return {"serial", Health::kGood, "no serial device",
+            "not needed: only trackers and jaw sensors use one (docs/devices.md)", ""};
   }
-  return {"serial", Health::kGood, Join(devices), "can be opened; this version reads no serial device yet",
-          ""};
+  return {"serial", Health::kGood, Join(devices),
+          "can be opened; trocar devices test shows what a tracker or jaw sensor there says", ""};
 }
 
 Finding CheckThreeDMouse(const fs::path& root) {
   for (const std::string& name : ListNames(root / "sys/class/input", "event")) {
     const fs::path device = root / "sys/class/input" / name / "device";
     if (!IsThreeDMouse(ReadFirstLine(device / "id/vendor"), ReadFirstLine(device / "id/product"))) continue;
-    const bool is_open = ::access((root / "dev/input" / name).c_str(), R_OK) == 0;
-    return {"3d-mouse", is_open ? Health::kGood : Health::kLimited,
-            ReadFirstLine(device / "name") + (is_open ? "" : ", which you may not read"),
-            "it is there; this version does not read it yet",
-            is_open ? "" : "add yourself to the group input (sudo usermod -aG input $USER) and log in again"};
+    // the service reads it, so that it does not matter whether you may
+    return {"3d-mouse", Health::kGood, ReadFirstLine(device / "name"),
+            "holds an instrument with --device spacemouse while the service spacenavd runs; trocar devices "
+            "list says "
+            "whether it does",
+            ""};
   }
-  return {"3d-mouse", Health::kGood, "no 3-D mouse", "not needed: this version does not read one", ""};
+  return {"3d-mouse", Health::kGood, "no 3-D mouse",
+          "not needed: mouse and keyboard hold the instruments too", ""};
 }
 
 Finding CheckDataFolder() {

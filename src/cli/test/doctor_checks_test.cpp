@@ -48,7 +48,10 @@ TEST_F(Devices, ThreeDMouseIsKnownByItsUsbNumbers) {
   AddInput("event1", "Plain Mouse", "046d", "c077");
   EXPECT_THAT(CheckThreeDMouse(folder_.Path()).found, HasSubstr("no 3-D mouse"));
   AddInput("event2", "SpaceMouse Compact", "256F", "C635");
-  EXPECT_THAT(CheckThreeDMouse(folder_.Path()).found, HasSubstr("SpaceMouse Compact"));
+  const Finding finding = CheckThreeDMouse(folder_.Path());
+  EXPECT_THAT(finding.found, HasSubstr("SpaceMouse Compact"));
+  // the name that --device takes, and the service that has to run
+  EXPECT_THAT(finding.meaning, testing::AllOf(HasSubstr("--device spacemouse"), HasSubstr("spacenavd")));
 }
 
 TEST_F(Devices, OlderThreeDMouseHasLogitechsNumber) {
@@ -59,7 +62,9 @@ TEST_F(Devices, OlderThreeDMouseHasLogitechsNumber) {
 TEST_F(Devices, SerialLinesAreListed) {
   ASSERT_TRUE(core::WriteFile(folder_.Path() / "dev/ttyACM0", "").ok());
   ASSERT_TRUE(core::WriteFile(folder_.Path() / "dev/ttyS0", "").ok());
-  EXPECT_EQ(CheckSerialDevices(folder_.Path()).found, "/dev/ttyACM0");
+  const Finding finding = CheckSerialDevices(folder_.Path());
+  EXPECT_EQ(finding.found, "/dev/ttyACM0");
+  EXPECT_THAT(finding.meaning, HasSubstr("trocar devices test"));
 }
 
 /// Sets environment variables for one test.

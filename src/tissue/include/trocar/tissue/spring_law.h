@@ -4,7 +4,7 @@
 /// With eps = (L - l) / l, the stiffness dT/dL is k up to eps_0 and k (1 + beta (eps^2 - eps_0^2)) beyond. Domain
 /// facts 3.1 print k (1 + beta eps^2) for eps > 0.2; taken as it stands the stiffness jumps at eps_0, and taken as
 /// a secant the force does too, so that some loads would have no equilibrium. Here force and stiffness are
-/// continuous and grow as printed (docs/decisions/0020).
+/// continuous and grow as printed (docs/solver.md).
 #pragma once
 
 #include "trocar/tissue/tissue_model.h"
