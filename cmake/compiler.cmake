@@ -10,9 +10,10 @@ set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR})
 if(NOT CMAKE_BUILD_TYPE)
   set(CMAKE_BUILD_TYPE Release CACHE STRING "Build type" FORCE)
 endif()
+# ccache finds the same file in another clone too; a debugger may then show that clone's sources
 find_program(TROCAR_CCACHE ccache)
-if(TROCAR_CCACHE)
-  set(CMAKE_CXX_COMPILER_LAUNCHER ${TROCAR_CCACHE})
+if(TROCAR_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  set(CMAKE_CXX_COMPILER_LAUNCHER env CCACHE_BASEDIR=${PROJECT_SOURCE_DIR} CCACHE_NOHASHDIR=true ${TROCAR_CCACHE})
 endif()
 
 add_library(trocar_compile_options INTERFACE)

@@ -1,9 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # Shared by ./run, ./test and .ci/run, which source it. Expects $root, the repository.
 
-# ccache finds the same file in another clone too; a debugger may then show that clone's sources
-export CCACHE_BASEDIR="$root" CCACHE_NOHASHDIR=true
-
 say() { printf '\n== %s\n' "$*"; }
 
 # configure PRESET [cmake arguments]: only when there is nothing to build from; ninja repeats it where CMake files change

@@ -126,7 +126,7 @@ std::vector<std::string> FindStructure(const std::string& document) {
 TEST(Reproduce, TheCommittedDocumentHasTheStructureThatTheProgramWrites) {
   const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "reproduce";
   std::filesystem::create_directories(folder);
-  const auto committed = core::ReadFile(TROCAR_SOURCE_DIR "/docs/replicability.md");
+  const auto committed = core::ReadFile(std::string(TROCAR_SOURCE_DIR) + "/docs/replicability.md");
   ASSERT_TRUE(committed);
   const std::string copy = (folder / "copy.md").string();
   ASSERT_TRUE(core::WriteFile(copy, *committed));
