@@ -2,8 +2,9 @@
 # Compiles several source files of a target as one, so that what they include is read once.
 #
 # Two files may share a unit only where no private name of the one (in an anonymous namespace, static, or a macro) occurs
-# anywhere in the other: then neither can clash with the other, nor change what a name in it means. CMake looks at the
-# files when it runs; where a name written since then clashes, the compiler says so and `cmake BUILD_FOLDER` sorts anew.
+# anywhere in the other: then neither can clash with the other, nor change what a name in it means. A file whose private
+# name is also one of the module's headers is compiled alone. CMake looks at the files when it runs; where a name written
+# since then clashes, the compiler says so and `cmake BUILD_FOLDER` sorts anew.
 option(TROCAR_UNITY "Compile several source files at a time; OFF is better for editing single files" ON)
 set(TROCAR_UNITY_SIZE 8 CACHE STRING "Most source files in one unit")
 
@@ -73,11 +74,30 @@ function(trocar_names_occur names text result_variable)
   endforeach()
 endfunction()
 
+# the names that the headers of this folder declare
+function(trocar_header_names result_variable)
+  file(GLOB_RECURSE headers ${CMAKE_CURRENT_SOURCE_DIR}/*.h)
+  set(names)
+  foreach(header IN LISTS headers)
+    file(READ ${header} text)
+    string(REGEX REPLACE "[][;\\\\]" " " text "${text}")
+    string(REGEX MATCHALL "\n[A-Za-z_][^\n={(]*[={(]" starts "${text}")
+    foreach(start IN LISTS starts)
+      if(start MATCHES "([A-Za-z_][A-Za-z_0-9]*)[^A-Za-z_0-9]*$")
+        list(APPEND names ${CMAKE_MATCH_1})
+      endif()
+    endforeach()
+  endforeach()
+  list(REMOVE_DUPLICATES names)
+  set(${result_variable} "${names}" PARENT_SCOPE)
+endfunction()
+
 # for every target of a folder, called at the end of its CMakeLists.txt, when the properties of the sources are known
 function(trocar_unity_builds)
   if(NOT TROCAR_UNITY)
     return()
   endif()
+  trocar_header_names(header_names)
   get_property(targets DIRECTORY PROPERTY BUILDSYSTEM_TARGETS)
   foreach(target IN LISTS targets)
     get_target_property(type ${target} TYPE)
@@ -109,6 +129,14 @@ function(trocar_unity_build target)
     endif()
     get_filename_component(path ${source} ABSOLUTE)
     trocar_private_names(${path} names text)
+    foreach(name IN LISTS names)
+      if(name IN_LIST header_names)
+        set(alone YES)
+      endif()
+    endforeach()
+    if(alone)
+      continue()
+    endif()
     # the first unit that has room and no clash
     set(place ${count})
     foreach(unit RANGE ${count})

@@ -11,11 +11,11 @@
 #include <utility>
 #include <vector>
 
-#include "benchmark.h"
 #include "trocar/anatomy/label_volume.h"
 #include "trocar/anatomy/volume_mesher.h"
+#include "trocar/bench/benchmark.h"
 
-namespace trocar::cli {
+namespace trocar::bench {
 namespace {
 
 using anatomy::LabelVolume;
@@ -147,4 +147,4 @@ core::Result<BenchmarkResult> RunAnatomyBenchmark(const BenchmarkOptions& option
   return result;
 }
 
-}  // namespace trocar::cli
+}  // namespace trocar::bench

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "benchmark.h"
+#include "trocar/bench/benchmark.h"
 
-namespace trocar::cli {
+namespace trocar::bench {
 namespace {
 
 constexpr BenchmarkSuite kSuites[] = {
@@ -47,4 +47,4 @@ std::string DescribeMachine(std::string_view cpu_info, unsigned cores) {
   return model + ", " + std::to_string(cores) + (cores == 1 ? " core" : " cores");
 }
 
-}  // namespace trocar::cli
+}  // namespace trocar::bench

@@ -4,15 +4,15 @@
 #include <utility>
 #include <vector>
 
-#include "benchmark.h"
 #include "collision_tree_benchmark.h"
+#include "trocar/bench/benchmark.h"
 #include "trocar/collision/brute_force.h"
 #include "trocar/geometry/mesh_measures.h"
 #include "trocar/geometry/primitives.h"
 #include "trocar/math/random.h"
 #include "trocar/session/scene.h"
 
-namespace trocar::cli {
+namespace trocar::bench {
 namespace {
 
 using collision::CentroidHierarchy;
@@ -174,4 +174,4 @@ core::Result<BenchmarkResult> RunCollisionBenchmark(const BenchmarkOptions& opti
   return result;
 }
 
-}  // namespace trocar::cli
+}  // namespace trocar::bench

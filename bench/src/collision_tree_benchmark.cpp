@@ -10,7 +10,7 @@
 #include "trocar/collision/triangle_tree.h"
 #include "trocar/math/random.h"
 
-namespace trocar::cli {
+namespace trocar::bench {
 namespace {
 
 using collision::NearestTriangle;
@@ -198,4 +198,4 @@ core::Status AddTreeBenchmark(const BenchmarkOptions& options, BenchmarkResult& 
   return {};
 }
 
-}  // namespace trocar::cli
+}  // namespace trocar::bench

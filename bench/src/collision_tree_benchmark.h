@@ -3,9 +3,9 @@
 /// names other programs read.
 #pragma once
 
-#include "benchmark.h"
+#include "trocar/bench/benchmark.h"
 
-namespace trocar::cli {
+namespace trocar::bench {
 
 /// Adds the cases update_and_query_4000, update_and_query_43200 [ms], shaft_query_5130 [us], build_4000 [ms],
 /// exact_fraction and paper_greedy_recall [-], and, where Embree is at hand, the ratios
@@ -14,4 +14,4 @@ namespace trocar::cli {
 /// \return kBenchmarkWrong when an answer differs from brute force
 core::Status AddTreeBenchmark(const BenchmarkOptions& options, BenchmarkResult& result);
 
-}  // namespace trocar::cli
+}  // namespace trocar::bench

@@ -9,12 +9,12 @@
 #include <string>
 #include <vector>
 
-#include "benchmark.h"
 #include "processor_time.h"
 #include "trocar/anatomy/contour_fit.h"
 #include "trocar/anatomy/mesh_job.h"
+#include "trocar/bench/benchmark.h"
 
-namespace trocar::cli {
+namespace trocar::bench {
 namespace {
 
 using anatomy::ColorImage;
@@ -151,4 +151,4 @@ core::Result<BenchmarkResult> RunContoursBenchmark(const BenchmarkOptions& optio
   return result;
 }
 
-}  // namespace trocar::cli
+}  // namespace trocar::bench

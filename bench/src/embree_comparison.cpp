@@ -16,7 +16,7 @@
 
 #include "trocar/geometry/distance.h"
 
-namespace trocar::cli {
+namespace trocar::bench {
 
 #if TROCAR_EMBREE
 
@@ -180,4 +180,4 @@ std::string EmbreeMesh::Version() {
 
 EmbreeMesh::EmbreeMesh(std::unique_ptr<Content> content) : content_(std::move(content)) {}
 
-}  // namespace trocar::cli
+}  // namespace trocar::bench

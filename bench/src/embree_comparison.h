@@ -8,7 +8,7 @@
 
 #include "trocar/geometry/triangle_mesh.h"
 
-namespace trocar::cli {
+namespace trocar::bench {
 
 /// A mesh in Embree, refitted on one thread. The library is loaded when this is made; nothing links to it.
 class EmbreeMesh {
@@ -35,4 +35,4 @@ class EmbreeMesh {
   std::unique_ptr<Content> content_;
 };
 
-}  // namespace trocar::cli
+}  // namespace trocar::bench

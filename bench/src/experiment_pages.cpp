@@ -2,13 +2,13 @@
 /// \file experiment_pages.cpp  An experiment as text, JSON, HTML, Markdown and SVG.
 #include <nlohmann/json.hpp>
 
-#include "console.h"
-#include "experiment.h"
 #include "page_style.h"
+#include "trocar/bench/experiment.h"
 #include "trocar/core/markup.h"
+#include "trocar/core/text_table.h"
 #include "trocar/core/version.h"
 
-namespace trocar::cli {
+namespace trocar::bench {
 namespace {
 
 using core::EscapeMarkup;
@@ -57,7 +57,7 @@ std::string FormatTableMarkdown(const ExperimentTable& table) {
 }  // namespace
 
 ExperimentCell::ExperimentCell(double value, int digits)
-    : text(std::isfinite(value) ? FormatNumber(value, digits) : "-"), number(value) {}
+    : text(std::isfinite(value) ? core::FormatNumber(value, digits) : "-"), number(value) {}
 
 std::string FormatExperimentText(const Experiment& experiment) {
   std::string text = experiment.title + "\n" + experiment.method + "\n";
@@ -67,7 +67,7 @@ std::string FormatExperimentText(const Experiment& experiment) {
       rows.emplace_back();
       for (const ExperimentCell& cell : row) rows.back().push_back(cell.text);
     }
-    text += "\n" + table.title + "\n" + FormatTable(rows);
+    text += "\n" + table.title + "\n" + core::FormatTable(rows);
   }
   if (!experiment.notes.empty()) text += "\n";
   for (const std::string& note : experiment.notes) text += "- " + note + "\n";
@@ -172,4 +172,4 @@ core::Result<std::string> ReplaceGeneratedPart(std::string_view document, std::s
          std::string(document.substr(end));
 }
 
-}  // namespace trocar::cli
+}  // namespace trocar::bench

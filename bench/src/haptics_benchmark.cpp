@@ -8,8 +8,8 @@
 #include <thread>
 #include <utility>
 
-#include "benchmark.h"
 #include "thread_allocations.h"
+#include "trocar/bench/benchmark.h"
 #include "trocar/device/simulated_force_device.h"
 #include "trocar/render/offscreen_context.h"
 #include "trocar/render/offscreen_target.h"
@@ -17,7 +17,7 @@
 #include "trocar/session/runner.h"
 #include "trocar/view/laparoscope_view.h"
 
-namespace trocar::cli {
+namespace trocar::bench {
 namespace {
 
 using math::Vec3;
@@ -294,4 +294,4 @@ core::Result<BenchmarkResult> RunHapticsBenchmark(const BenchmarkOptions& option
   return result;
 }
 
-}  // namespace trocar::cli
+}  // namespace trocar::bench

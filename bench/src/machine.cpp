@@ -3,9 +3,9 @@
 #include <sstream>
 #include <thread>
 
-#include "benchmark.h"
+#include "trocar/bench/benchmark.h"
 
-namespace trocar::cli {
+namespace trocar::bench {
 
 std::string DescribeMachine() {
   // a file of /proc has no size beforehand, so core::ReadFile would take it for empty
@@ -26,4 +26,4 @@ std::string DescribeMachine() {
   return DescribeMachine(text.str(), std::thread::hardware_concurrency()) + ", " + compiler + ", " + build;
 }
 
-}  // namespace trocar::cli
+}  // namespace trocar::bench

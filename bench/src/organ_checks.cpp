@@ -3,13 +3,13 @@
 #include <cmath>
 #include <memory>
 
-#include "console.h"
-#include "physics_checks.h"
+#include "trocar/bench/physics_checks.h"
 #include "trocar/core/statistics.h"
+#include "trocar/core/text_table.h"
 #include "trocar/session/scene.h"
 #include "trocar/session/simulation.h"
 
-namespace trocar::cli {
+namespace trocar::bench {
 namespace {
 
 /// The target of a tick [s].
@@ -27,7 +27,7 @@ core::Result<PhysicsCheck> CheckVolume(const std::filesystem::path& path) {
   const auto ticks = static_cast<int>(std::lround(duration / scene->tick_seconds));
   PhysicsCheck check{
       "Volume of each organ while both hands work",
-      "\"" + scene->name + "\" with its script of " + FormatNumber(duration) +
+      "\"" + scene->name + "\" with its script of " + core::FormatNumber(duration) +
           " s: at every tick the volume enclosed by each organ's surface against what is inside, and the "
           "pressure that keeps it. The time is one thread's on this machine, in this build.",
       {},
@@ -90,7 +90,7 @@ core::Result<PhysicsCheck> CheckTickRate(const std::filesystem::path& path, doub
     largest = std::max(largest, math::Distance(ends[1][i], start[i]));
   PhysicsCheck check{
       "Tick-rate independence",
-      "The script is played for " + FormatNumber(time) +
+      "The script is played for " + core::FormatNumber(time) +
           " s at 60, 120 and 240 ticks a second, then the hands hold still for 120 ticks; the largest "
           "distance of a node from where 120 a second put it, over the largest displacement. What the "
           "hands take between the jaws depends a little on when the jaws are seen to close.",
@@ -101,10 +101,10 @@ core::Result<PhysicsCheck> CheckTickRate(const std::filesystem::path& path, doub
     double apart = 0;
     for (std::size_t i = 0; i < start.size(); ++i)
       apart = std::max(apart, math::Distance(ends[other][i], ends[1][i]));
-    check.figures.push_back(
-        {"difference at " + FormatNumber(rates[other]) + " a second", 100 * apart / largest, 0.0, 5.0, "%"});
+    check.figures.push_back({"difference at " + core::FormatNumber(rates[other]) + " a second",
+                             100 * apart / largest, 0.0, 5.0, "%"});
   }
   return check;
 }
 
-}  // namespace trocar::cli
+}  // namespace trocar::bench

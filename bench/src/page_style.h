@@ -2,7 +2,7 @@
 /// \file page_style.h  How the pages of `trocar reproduce` look.
 #pragma once
 
-namespace trocar::cli {
+namespace trocar::bench {
 
 inline constexpr const char* kPageStyle = R"(
 body { font: 16px/1.5 system-ui, "DejaVu Sans", sans-serif; color: #1d2327; background: #fff; margin: 0 auto;
@@ -22,4 +22,4 @@ svg .title { font-size: 14px; font-weight: 600; } svg .mark { font-size: 11px; f
 svg .grid { stroke: #dcdcde; } svg .line { fill: none; stroke-width: 1.8; }
 )";
 
-}  // namespace trocar::cli
+}  // namespace trocar::bench

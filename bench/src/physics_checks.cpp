@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "physics_checks.h"
+#include "trocar/bench/physics_checks.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,7 @@
 #include "trocar/tissue/equilibrium.h"
 #include "trocar/tissue/material.h"
 
-namespace trocar::cli {
+namespace trocar::bench {
 namespace {
 
 using math::Vec3;
@@ -334,4 +334,4 @@ PhysicsCheck CheckFreedOrgan() {
   return check;
 }
 
-}  // namespace trocar::cli
+}  // namespace trocar::bench

@@ -8,7 +8,7 @@
 
 #include "trocar/core/clock.h"
 
-namespace trocar::cli {
+namespace trocar::bench {
 
 /// Processor time of this process where one thread works; the clock's where several do, whose processor times add up.
 class WorkStopwatch {
@@ -41,4 +41,4 @@ double TimeShortestWork(int threads, int repeats, const Restore& restore, const 
   return shortest;
 }
 
-}  // namespace trocar::cli
+}  // namespace trocar::bench

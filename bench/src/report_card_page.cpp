@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
 
-#include "console.h"
 #include "page_style.h"
-#include "physics_checks.h"
+#include "trocar/bench/physics_checks.h"
 #include "trocar/core/markup.h"
+#include "trocar/core/text_table.h"
 #include "trocar/core/version.h"
 
-namespace trocar::cli {
+namespace trocar::bench {
 namespace {
 
 using core::EscapeMarkup;
 
 std::string FormatBounds(const CheckFigure& figure) {
   const bool has_low = std::isfinite(figure.low) && figure.low != 0.0, has_high = std::isfinite(figure.high);
-  const std::string high = FormatNumber(figure.high);
-  if (has_low && has_high) return FormatNumber(figure.low) + " to " + high;
-  return has_high ? "at most " + high : has_low ? "at least " + FormatNumber(figure.low) : "";
+  const std::string high = core::FormatNumber(figure.high);
+  if (has_low && has_high) return core::FormatNumber(figure.low) + " to " + high;
+  return has_high ? "at most " + high : has_low ? "at least " + core::FormatNumber(figure.low) : "";
 }
 
 std::string FormatVerdict(const CheckFigure& figure) {
@@ -53,7 +53,7 @@ std::string FormatReportCard(const std::vector<PhysicsCheck>& checks, const std:
         "</p>\n<table>\n<tr><th>Figure</th><th>Measured</th><th>Unit</th><th>Must be</th><th></th></tr>\n";
     for (const CheckFigure& figure : check.figures) {
       html += "<tr><td>" + EscapeMarkup(figure.name) + "</td><td class=\"number\">" +
-              FormatNumber(figure.value) + "</td><td>" + EscapeMarkup(figure.unit) + "</td><td>" +
+              core::FormatNumber(figure.value) + "</td><td>" + EscapeMarkup(figure.unit) + "</td><td>" +
               FormatBounds(figure) + "</td>" + FormatVerdict(figure) + "</tr>\n";
     }
     html += "</table>\n";
@@ -62,4 +62,4 @@ std::string FormatReportCard(const std::vector<PhysicsCheck>& checks, const std:
   return html + "</body>\n</html>\n";
 }
 
-}  // namespace trocar::cli
+}  // namespace trocar::bench

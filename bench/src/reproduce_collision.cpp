@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "benchmark.h"
-#include "experiment.h"
+#include "trocar/bench/benchmark.h"
+#include "trocar/bench/experiment.h"
 #include "trocar/collision/brute_force.h"
 #include "trocar/collision/centroid_hierarchy.h"
 #include "trocar/geometry/mesh_measures.h"
@@ -12,7 +12,7 @@
 #include "trocar/math/random.h"
 #include "trocar/session/scene.h"
 
-namespace trocar::cli {
+namespace trocar::bench {
 namespace {
 
 using collision::CentroidHierarchy;
@@ -231,4 +231,4 @@ ExperimentResult ReproduceFigure7(const ExperimentOptions& options, ExperimentSt
   return experiment;
 }
 
-}  // namespace trocar::cli
+}  // namespace trocar::bench

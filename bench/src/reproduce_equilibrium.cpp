@@ -6,15 +6,15 @@
 #include <cmath>
 #include <memory>
 
-#include "benchmark.h"
-#include "console.h"
-#include "experiment.h"
 #include "processor_time.h"
 #include "tissue_benchmark.h"
+#include "trocar/bench/benchmark.h"
+#include "trocar/bench/experiment.h"
 #include "trocar/core/statistics.h"
+#include "trocar/core/text_table.h"
 #include "trocar/session/simulation.h"
 
-namespace trocar::cli {
+namespace trocar::bench {
 namespace {
 
 using tissue::SolverKind;
@@ -226,4 +226,4 @@ ExperimentResult ReproduceEquilibrium(const ExperimentOptions& options, Experime
   return experiment;
 }
 
-}  // namespace trocar::cli
+}  // namespace trocar::bench

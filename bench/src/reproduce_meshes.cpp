@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file reproduce_meshes.cpp  Table 1: the meshes of the paper's GPU experiment.
-#include "experiment.h"
+#include "trocar/bench/experiment.h"
 #include "trocar/geometry/mesh_topology.h"
 #include "trocar/geometry/primitives.h"
 
-namespace trocar::cli {
+namespace trocar::bench {
 
 ExperimentResult ReproduceTable1(const ExperimentOptions& options, ExperimentStore&) {
   struct Printed {
@@ -52,4 +52,4 @@ ExperimentResult ReproduceTable1(const ExperimentOptions& options, ExperimentSto
   return experiment;
 }
 
-}  // namespace trocar::cli
+}  // namespace trocar::bench

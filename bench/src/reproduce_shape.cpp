@@ -4,15 +4,15 @@
 #include <array>
 #include <cmath>
 
-#include "benchmark.h"
-#include "console.h"
-#include "experiment.h"
+#include "trocar/bench/benchmark.h"
+#include "trocar/bench/experiment.h"
+#include "trocar/core/text_table.h"
 #include "trocar/geometry/mesh_topology.h"
 #include "trocar/geometry/primitives.h"
 #include "trocar/session/scene.h"
 #include "trocar/tissue/equilibrium.h"
 
-namespace trocar::cli {
+namespace trocar::bench {
 namespace {
 
 using math::Vec3;
@@ -74,8 +74,8 @@ core::Result<ShapeError> Sag(const Shape& shape, double virtual_stiffness,
   const tissue::SolveReport report = solver.Solve(settings, {.gravity = shape.gravity}, state);
   if (settings.kind == tissue::SolverKind::kNewtonMultigrid && !report.converged) {
     return WrongAnswer("table2", "no equilibrium of the " + shape.name + " for k_virtual " +
-                                     FormatNumber(virtual_stiffness) + " (estimated error " +
-                                     FormatNumber(report.error) + ")");
+                                     core::FormatNumber(virtual_stiffness) + " (estimated error " +
+                                     core::FormatNumber(report.error) + ")");
   }
   ShapeError error;
   for (std::size_t i = 0; i < model.Size(); ++i) {
@@ -203,13 +203,13 @@ ExperimentResult ReproduceTable2(const ExperimentOptions& options, ExperimentSto
     settings.is_log_x = settings.is_log_y = true;
     experiment.plots.push_back({settings, lines});
     experiment.notes.push_back("The column \"stopped: root of mean\" of the " + shape.name + " is within " +
-                               FormatNumber(100 * largest_gap, 2) + " % of the printed one.");
+                               core::FormatNumber(100 * largest_gap, 2) + " % of the printed one.");
     experiment.notes.push_back("At rest, without virtual springs the " + shape.name + " sags by " +
-                               FormatNumber(1e3 * first->mean) + " mm in the mean and " +
-                               FormatNumber(1e3 * first->max) + " mm at most.");
+                               core::FormatNumber(1e3 * first->mean) + " mm in the mean and " +
+                               core::FormatNumber(1e3 * first->max) + " mm at most.");
     experiment.tables.push_back(std::move(table));
   }
   return experiment;
 }
 
-}  // namespace trocar::cli
+}  // namespace trocar::bench

@@ -6,16 +6,16 @@
 #include <cmath>
 #include <limits>
 
-#include "benchmark.h"
-#include "console.h"
-#include "experiment.h"
 #include "processor_time.h"
 #include "solver_times.h"
 #include "tissue_benchmark.h"
+#include "trocar/bench/benchmark.h"
+#include "trocar/bench/experiment.h"
+#include "trocar/core/text_table.h"
 #include "trocar/tissue_cuda/gpu_benchmark.h"
 #include "trocar/tissue_cuda/gpu_solver.h"
 
-namespace trocar::cli {
+namespace trocar::bench {
 namespace {
 
 using tissue::SolverKind;
@@ -230,4 +230,4 @@ ExperimentResult ReproduceFigure9(const ExperimentOptions& options, ExperimentSt
   return experiment;
 }
 
-}  // namespace trocar::cli
+}  // namespace trocar::bench

@@ -4,14 +4,14 @@
 
 #include <string>
 
-#include "experiment.h"
+#include "trocar/bench/experiment.h"
 #include "trocar/tissue_cuda/gpu_benchmark.h"
 
-namespace trocar::cli {
+namespace trocar::bench {
 
 /// One row for each memory layout, in single precision; without times where no GPU ran.
 /// \param measured  nullptr where there is no GPU
 /// \param note      name of the GPU, or why there is none
 void AddGpuRows(const tissue_cuda::GpuBenchmarkResult* measured, const std::string& note, SolverTimes& times);
 
-}  // namespace trocar::cli
+}  // namespace trocar::bench

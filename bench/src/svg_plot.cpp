@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "svg_plot.h"
+#include "trocar/bench/svg_plot.h"
 
 #include <algorithm>
 #include <array>
@@ -8,11 +8,11 @@
 #include <limits>
 #include <utility>
 
-#include "console.h"
 #include "trocar/core/assert.h"
 #include "trocar/core/markup.h"
+#include "trocar/core/text_table.h"
 
-namespace trocar::cli {
+namespace trocar::bench {
 namespace {
 
 using core::EscapeMarkup;
@@ -144,10 +144,10 @@ std::vector<std::pair<double, std::string>> FindMarks(double low, double high, i
   std::vector<std::pair<double, std::string>> marks;
   if (is_log) {
     for (const double mark : FindLogMarks(std::pow(10.0, low), std::pow(10.0, high)))
-      marks.emplace_back(std::log10(mark), FormatNumber(mark, 6));
+      marks.emplace_back(std::log10(mark), core::FormatNumber(mark, 6));
   } else {
     for (const double mark : FindAxisMarks(low, high, wanted))
-      marks.emplace_back(mark, FormatNumber(mark, 6));
+      marks.emplace_back(mark, core::FormatNumber(mark, 6));
   }
   return marks;
 }
@@ -232,4 +232,4 @@ std::string FormatSvgPlot(const PlotSettings& settings, const std::vector<PlotLi
   return svg + "</svg>\n";
 }
 
-}  // namespace trocar::cli
+}  // namespace trocar::bench

@@ -6,14 +6,14 @@
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 
-namespace trocar::cli {
+namespace trocar::bench {
 std::uint64_t CountThreadAllocations() noexcept {
   return 0;
 }
 bool CanCountAllocations() noexcept {
   return false;
 }
-}  // namespace trocar::cli
+}  // namespace trocar::bench
 
 #else
 
@@ -21,14 +21,14 @@ namespace {
 thread_local std::uint64_t t_allocations = 0;
 }  // namespace
 
-namespace trocar::cli {
+namespace trocar::bench {
 std::uint64_t CountThreadAllocations() noexcept {
   return t_allocations;
 }
 bool CanCountAllocations() noexcept {
   return true;
 }
-}  // namespace trocar::cli
+}  // namespace trocar::bench
 
 void* operator new(std::size_t size) {
   ++t_allocations;

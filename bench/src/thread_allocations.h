@@ -4,11 +4,11 @@
 
 #include <cstdint>
 
-namespace trocar::cli {
+namespace trocar::bench {
 
 /// Calls of operator new on this thread so far. Whoever links this counts: it stands in place of the standard one.
 std::uint64_t CountThreadAllocations() noexcept;
 /// False under a sanitizer, which has an operator new of its own; then nothing is counted.
 bool CanCountAllocations() noexcept;
 
-}  // namespace trocar::cli
+}  // namespace trocar::bench

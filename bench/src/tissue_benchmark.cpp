@@ -11,7 +11,7 @@
 #include "trocar/geometry/mesh_topology.h"
 #include "trocar/geometry/primitives.h"
 
-namespace trocar::cli {
+namespace trocar::bench {
 namespace {
 
 using math::Vec3;
@@ -100,4 +100,4 @@ core::Result<BenchmarkResult> RunTissueBenchmark(const BenchmarkOptions& options
   return result;
 }
 
-}  // namespace trocar::cli
+}  // namespace trocar::bench

@@ -2,10 +2,10 @@
 /// \file tissue_benchmark.h  The parts of the suite "tissue".
 #pragma once
 
-#include "benchmark.h"
+#include "trocar/bench/benchmark.h"
 #include "trocar/tissue/equilibrium.h"
 
-namespace trocar::cli {
+namespace trocar::bench {
 
 /// A grid of the paper's size whose border is held, and what loads it.
 struct GridCase {
@@ -36,4 +36,4 @@ core::Status RunIterationCases(const BenchmarkOptions& options, BenchmarkResult&
 core::Status RunEquilibriumCases(const BenchmarkOptions& options, BenchmarkResult& result);
 core::Status RunPatientCases(const BenchmarkOptions& options, BenchmarkResult& result);
 
-}  // namespace trocar::cli
+}  // namespace trocar::bench

@@ -9,7 +9,7 @@
 
 #include "tissue_benchmark.h"
 
-namespace trocar::cli {
+namespace trocar::bench {
 namespace {
 
 using tissue::SolverKind;
@@ -176,4 +176,4 @@ core::Status RunEquilibriumCases(const BenchmarkOptions& options, BenchmarkResul
   return RunWarm(loose + "/warm", without, *equilibrium, options, result);
 }
 
-}  // namespace trocar::cli
+}  // namespace trocar::bench

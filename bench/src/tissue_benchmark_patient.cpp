@@ -6,12 +6,12 @@
 #include <memory>
 #include <vector>
 
-#include "console.h"
 #include "tissue_benchmark.h"
 #include "trocar/core/statistics.h"
+#include "trocar/core/text_table.h"
 #include "trocar/session/simulation.h"
 
-namespace trocar::cli {
+namespace trocar::bench {
 namespace {
 
 // What is asked of the true error in every tick [-].
@@ -76,4 +76,4 @@ core::Status RunPatientCases(const BenchmarkOptions& options, BenchmarkResult& r
   return {};
 }
 
-}  // namespace trocar::cli
+}  // namespace trocar::bench

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <utility>
 
-#include "benchmark.h"
+#include "trocar/bench/benchmark.h"
 #include "trocar/tissue_cuda/gpu_benchmark.h"
 
-namespace trocar::cli {
+namespace trocar::bench {
 
 core::Result<BenchmarkResult> RunTissueCudaBenchmark(const BenchmarkOptions& options) {
   core::Result<tissue_cuda::GpuBenchmarkResult> measured =
@@ -18,4 +18,4 @@ core::Result<BenchmarkResult> RunTissueCudaBenchmark(const BenchmarkOptions& opt
   return result;
 }
 
-}  // namespace trocar::cli
+}  // namespace trocar::bench

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "benchmark.h"
+#include "trocar/bench/benchmark.h"
 
 #include <gtest/gtest.h>
 
-namespace trocar::cli {
+namespace trocar::bench {
 namespace {
 
 TEST(DescribeMachine, NamesProcessorAndCoresAndNothingElse) {
@@ -34,4 +34,4 @@ TEST(WrongAnswer, HasTheCodeOfABenchmarkThatMeansNothing) {
 }
 
 }  // namespace
-}  // namespace trocar::cli
+}  // namespace trocar::bench

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "physics_checks.h"
+#include "trocar/bench/physics_checks.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-namespace trocar::cli {
+namespace trocar::bench {
 namespace {
 
 void ExpectAllPass(const PhysicsCheck& check) {
@@ -49,4 +49,4 @@ TEST(ReportCard, ShowsEachFigureItsVerdictAndEscapesText) {
 }
 
 }  // namespace
-}  // namespace trocar::cli
+}  // namespace trocar::bench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "svg_plot.h"
+#include "trocar/bench/svg_plot.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <limits>
 
-namespace trocar::cli {
+namespace trocar::bench {
 namespace {
 
 using testing::ElementsAre;
@@ -78,4 +78,4 @@ TEST(FormatSvgPlot, SurvivesNothingAndOnePoint) {
 }
 
 }  // namespace
-}  // namespace trocar::cli
+}  // namespace trocar::bench

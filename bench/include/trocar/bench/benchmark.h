@@ -12,7 +12,7 @@
 #include "trocar/core/clock.h"
 #include "trocar/core/result.h"
 
-namespace trocar::cli {
+namespace trocar::bench {
 
 struct BenchmarkOptions {
   int threads = 1;  ///< of what can use more than one
@@ -79,4 +79,4 @@ double TimeShortest(int repeats, const Restore& restore, const Run& run) {
   return shortest;
 }
 
-}  // namespace trocar::cli
+}  // namespace trocar::bench

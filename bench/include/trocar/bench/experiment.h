@@ -11,10 +11,10 @@
 #include <string_view>
 #include <vector>
 
-#include "svg_plot.h"
+#include "trocar/bench/svg_plot.h"
 #include "trocar/core/result.h"
 
-namespace trocar::cli {
+namespace trocar::bench {
 
 /// A number, or words where there is none.
 struct ExperimentCell {
@@ -110,4 +110,4 @@ inline constexpr std::string_view kGeneratedEnd = "<!-- end of the generated par
 /// \return kUsage when the lines are missing, twice, or the wrong way round
 core::Result<std::string> ReplaceGeneratedPart(std::string_view document, std::string_view generated);
 
-}  // namespace trocar::cli
+}  // namespace trocar::bench

@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "svg_plot.h"
+#include "trocar/bench/svg_plot.h"
 #include "trocar/core/result.h"
 
-namespace trocar::cli {
+namespace trocar::bench {
 
 /// One figure and the bounds that it must keep.
 struct CheckFigure {
@@ -57,4 +57,4 @@ std::string FormatReportCard(const std::vector<PhysicsCheck>& checks, const std:
 /// How many figures fail that are no known limits.
 int CountFailures(const std::vector<PhysicsCheck>& checks);
 
-}  // namespace trocar::cli
+}  // namespace trocar::bench

@@ -7,7 +7,7 @@
 
 #include "trocar/math/vector.h"
 
-namespace trocar::cli {
+namespace trocar::bench {
 
 /// One line of a plot. Points that are not finite are left out and break the line.
 struct PlotLine {
@@ -38,4 +38,4 @@ std::vector<double> FindLogMarks(double low, double high);
 /// \pre limit >= 2 (TROCAR_ASSERT)
 std::vector<math::Vec2> ThinOut(const std::vector<math::Vec2>& points, std::size_t limit);
 
-}  // namespace trocar::cli
+}  // namespace trocar::bench
