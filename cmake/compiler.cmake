@@ -10,15 +10,20 @@ set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR})
 if(NOT CMAKE_BUILD_TYPE)
   set(CMAKE_BUILD_TYPE Release CACHE STRING "Build type" FORCE)
 endif()
+# ccache finds the same file in another clone too; a debugger may then show that clone's sources
 find_program(TROCAR_CCACHE ccache)
-if(TROCAR_CCACHE)
-  set(CMAKE_CXX_COMPILER_LAUNCHER ${TROCAR_CCACHE})
+if(TROCAR_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  set(CMAKE_CXX_COMPILER_LAUNCHER env CCACHE_BASEDIR=${PROJECT_SOURCE_DIR} CCACHE_NOHASHDIR=true ${TROCAR_CCACHE})
 endif()
 
 add_library(trocar_compile_options INTERFACE)
 # sqrt without errno and comparisons without traps change no result and let loops run in lanes
 target_compile_options(trocar_compile_options INTERFACE
   -ffp-contract=off -fno-math-errno -fno-trapping-math -Wall -Wextra -Wshadow -Wnon-virtual-dtor -Wno-missing-field-initializers)
+# Once the optimiser has inlined it, GCC 12 takes std::string's own copying for an overlap (its bug 105651), by the page.
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 14)
+  target_compile_options(trocar_compile_options INTERFACE -Wno-restrict)
+endif()
 if(TROCAR_ENABLE_ASSERTS OR CMAKE_BUILD_TYPE STREQUAL "Debug")
   target_compile_definitions(trocar_compile_options INTERFACE TROCAR_ENABLE_ASSERTS=1)
 endif()

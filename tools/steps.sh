@@ -1,9 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # Shared by ./run, ./test and .ci/run, which source it. Expects $root, the repository.
 
-# ccache finds the same file in another clone too; a debugger may then show that clone's sources
-export CCACHE_BASEDIR="$root" CCACHE_NOHASHDIR=true
-
 say() { printf '\n== %s\n' "$*"; }
 
 # configure PRESET [cmake arguments]: only when there is nothing to build from; ninja repeats it where CMake files change
@@ -16,6 +13,8 @@ configure() {
   if [ ! -f "$folder/build.ninja" ] || [ ${#fresh[@]} -gt 0 ]; then
     say "configuring build/$1"
     (cd "$root" && cmake "${fresh[@]}" --preset "$1" "${@:2}")
+  elif [ -n "$(find "$root/src" "$root/bench" "$root/tests" -name '*.cpp' -newer "$folder/build.ninja" -print -quit)" ]; then
+    cmake "$folder" >/dev/null # sorts changed files into units anew (cmake/unity_build.cmake)
   fi
 }
 

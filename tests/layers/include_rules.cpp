@@ -68,6 +68,16 @@ void CheckFile(const Layers& layers, const fs::path& source, const fs::path& pat
   }
 }
 
+std::vector<fs::path> FindSources(const fs::path& folder) {
+  std::vector<fs::path> files;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder)) {
+    const fs::path extension = entry.path().extension();
+    if (entry.is_regular_file() && (extension == ".h" || extension == ".cpp")) files.push_back(entry.path());
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
 }  // namespace
 
 core::Result<Layers> ParseLayers(std::string_view text) {
@@ -95,14 +105,17 @@ core::Result<Layers> ParseLayers(std::string_view text) {
 }
 
 std::vector<Breach> FindBreaches(const Layers& layers, const fs::path& source) {
-  std::vector<fs::path> files;
-  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(source)) {
-    const fs::path extension = entry.path().extension();
-    if (entry.is_regular_file() && (extension == ".h" || extension == ".cpp")) files.push_back(entry.path());
-  }
-  std::sort(files.begin(), files.end());
   std::vector<Breach> breaches;
-  for (const fs::path& file : files) CheckFile(layers, source, file, breaches);
+  for (const fs::path& file : FindSources(source)) CheckFile(layers, source, file, breaches);
+  return breaches;
+}
+
+std::vector<Breach> FindBreachesOfModule(const Layers& layers, const fs::path& root,
+                                         const std::string& module, int* looked_at) {
+  const std::vector<fs::path> files = FindSources(root / module);
+  if (looked_at != nullptr) *looked_at = static_cast<int>(files.size());
+  std::vector<Breach> breaches;
+  for (const fs::path& file : files) CheckFile(layers, root, file, breaches);
   return breaches;
 }
 

@@ -33,5 +33,9 @@ struct Breach {
 /// Rules: a file includes headers of modules it sees only; a folder of `source` is a module of the layers; a
 /// public header includes no header of a graphics or window library, device SDK or file format.
 std::vector<Breach> FindBreaches(const Layers& layers, const std::filesystem::path& source);
+/// The same for one module, the folder `module` of `root`.
+/// \param[out] looked_at  how many files there were
+std::vector<Breach> FindBreachesOfModule(const Layers& layers, const std::filesystem::path& root,
+                                         const std::string& module, int* looked_at = nullptr);
 
 }  // namespace trocar::layers

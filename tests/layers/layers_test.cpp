@@ -33,6 +33,15 @@ TEST(Layers, EveryIncludeOfTheSourceFollowsAnArrow) {
   }
 }
 
+// bench/ stands beside src/: what measures is no part of what is measured.
+TEST(Layers, EveryIncludeOfTheBenchmarksFollowsAnArrow) {
+  int looked_at = 0;
+  for (const Breach& breach : FindBreachesOfModule(ReadLayers(), kRoot, "bench", &looked_at)) {
+    ADD_FAILURE() << breach.file << ":" << breach.line << ": " << breach.what;
+  }
+  EXPECT_GT(looked_at, 20);
+}
+
 TEST(Layers, ReachEverythingUpTheList) {
   const Layers layers = ReadLayers();
   EXPECT_TRUE(layers.at("cli").contains("core"));
@@ -49,7 +58,6 @@ class Planted : public testing::Test {
     return FindBreaches(ReadLayers(), folder_.Path());
   }
 
- private:
   test::TemporaryFolder folder_;
 };
 
@@ -59,6 +67,12 @@ TEST_F(Planted, DownwardIncludeIsFound) {
   EXPECT_EQ(breaches[0].file, "tissue/src/spring.cpp");
   EXPECT_EQ(breaches[0].line, 2);
   EXPECT_THAT(breaches[0].what, HasSubstr("tissue must not see surgery"));
+}
+
+TEST_F(Planted, BenchmarksAreLookedAtToo) {
+  ASSERT_TRUE(
+      core::WriteFile(folder_.Path() / "bench/src/a.cpp", "#include \"trocar/cli/run_command.h\"\n").ok());
+  EXPECT_THAT(FindBreachesOfModule(ReadLayers(), folder_.Path(), "bench"), SizeIs(1));
 }
 
 TEST_F(Planted, SidewaysIncludeIsFoundHoweverItIsWritten) {

@@ -5,7 +5,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <filesystem>
 
 namespace trocar::anatomy {
@@ -17,17 +16,16 @@ const fs::path kData = fs::path(TROCAR_SHARED_DIR) / "data/visible-human-male";
 const fs::path kPoints =
     fs::path(TROCAR_SOURCE_DIR) / "assets/patients/visible-human-male/control_points.json";
 
-class VisibleHumanRehearsal : public testing::Test {
+class VisibleHumanRehearsalSlow : public testing::Test {
  protected:
   void SetUp() override {
-    if (std::getenv("TROCAR_SLOW_TESTS") == nullptr) GTEST_SKIP() << "set TROCAR_SLOW_TESTS=1 to run it";
     for (const fs::path& path : {kData / "slices", kData / "reference/labels.nii.gz"}) {
       if (!fs::exists(path)) GTEST_SKIP() << path.string() << " is not there; the photographs are needed";
     }
   }
 };
 
-TEST_F(VisibleHumanRehearsal, ReachesItsOverlap) {
+TEST_F(VisibleHumanRehearsalSlow, ReachesItsOverlap) {
   RehearsalOptions options;
   options.control_points = kPoints;
   options.images = kData / "slices";
@@ -46,7 +44,7 @@ TEST_F(VisibleHumanRehearsal, ReachesItsOverlap) {
 
 // Two estimates that know nothing of each other, the visible edges and the contours drawn by eye, say that the
 // reference lies beside the pictures as a whole, and that it is too uneven to show a halved error even then.
-TEST_F(VisibleHumanRehearsal, ReferenceLiesBesideThePictures) {
+TEST_F(VisibleHumanRehearsalSlow, ReferenceLiesBesideThePictures) {
   LabelEdgeOptions options;
   options.control_points = kPoints;
   options.images = kData / "slices";

@@ -5,7 +5,6 @@
 #include <oneapi/tbb/global_control.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <set>
 
 namespace trocar::anatomy {
@@ -116,7 +115,6 @@ TEST(GeneratePopulation, EndsWithTheSinksErrorAndRefusesWrongSettings) {
 
 // The figure of the documentation, docs/patients.md: about ten minutes of one processor.
 TEST(GeneratePopulationSlow, AThousandPatientsAreSoundAndVaryAsConfigured) {
-  if (std::getenv("TROCAR_SLOW_TESTS") == nullptr) GTEST_SKIP() << "set TROCAR_SLOW_TESTS=1 to run it";
   PopulationSettings settings;
   settings.first_seed = 1, settings.count = 1000;
   const auto report = GeneratePopulation(settings);

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <string>
 
@@ -215,7 +214,6 @@ TEST(MeshVolumeSlow, MeshesRaggedLabelsOfTheVisibleHuman) {
   namespace fs = std::filesystem;
   const fs::path file = fs::path(TROCAR_SHARED_DIR) / "data/visible-human-male/reference/labels.nii.gz";
   if (!fs::exists(file)) GTEST_SKIP() << file.parent_path() << " is not there";
-  if (std::getenv("TROCAR_SLOW_TESTS") == nullptr) GTEST_SKIP() << "set TROCAR_SLOW_TESTS=1 to run it";
   const auto labels = ReadLabelVolume(file);
   ASSERT_TRUE(labels.ok());
   for (const int label : {1, 2}) {

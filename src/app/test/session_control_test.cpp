@@ -18,7 +18,7 @@ using device::Motion;
 /// The built-in scene, running on its own thread; waits are for events, never for a time that must suffice.
 class SessionControlTest : public testing::Test {
  protected:
-  void SetUp() override { Open(TROCAR_SOURCE_DIR "/scenes/demonstration.json"); }
+  void SetUp() override { Open(std::string(TROCAR_SOURCE_DIR) + "/scenes/demonstration.json"); }
   void Open(const char* path) {
     core::Result<session::Scene> scene = session::ReadScene(path);
     ASSERT_TRUE(scene.ok()) << scene.error().Text();
@@ -219,7 +219,7 @@ TEST_F(SessionControlTest, DemonstrationMovesTheHandsAndIsTakenOverWithoutAJump)
 }
 
 TEST_F(SessionControlTest, ATaskWithoutAScriptIsShownByTheExpertAndTakenOverWithTheToolInUse) {
-  Open(TROCAR_SOURCE_DIR "/scenes/tasks/clip_and_cut.json");
+  Open(std::string(TROCAR_SOURCE_DIR) + "/scenes/tasks/clip_and_cut.json");
   ASSERT_TRUE(control->HasScript());
   control->SetDemonstration(true);
   control->SetPaused(false);
@@ -237,7 +237,7 @@ TEST_F(SessionControlTest, ATaskWithoutAScriptIsShownByTheExpertAndTakenOverWith
 }
 
 TEST_F(SessionControlTest, TheExpertsLaparoscopeIsTakenOverWhereItIs) {
-  Open(TROCAR_SOURCE_DIR "/scenes/tasks/camera_navigation_0.json");
+  Open(std::string(TROCAR_SOURCE_DIR) + "/scenes/tasks/camera_navigation_0.json");
   control->SetDemonstration(true);
   control->SetPaused(false);
   const double home = control->GetScene().laparoscope.home.pan;

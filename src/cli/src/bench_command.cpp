@@ -8,51 +8,51 @@
 #include <string>
 #include <vector>
 
-#include "benchmark.h"
 #include "command.h"
 #include "console.h"
+#include "trocar/bench/benchmark.h"
 
 namespace trocar::cli {
 namespace {
 
 struct BenchArguments {
   std::string suite;
-  BenchmarkOptions options;
+  bench::BenchmarkOptions options;
   bool is_list = false, is_json = false;
 };
 
 std::string ListSuites() {
   std::vector<std::vector<std::string>> rows;
-  for (const BenchmarkSuite& suite : BenchmarkSuites()) {
+  for (const bench::BenchmarkSuite& suite : bench::BenchmarkSuites()) {
     rows.push_back({std::string(suite.name), std::string(suite.description)});
   }
   return FormatTable(rows);
 }
 
-void PrintJson(const std::string& suite, const BenchmarkResult& result) {
-  nlohmann::ordered_json json = {{"suite", suite},
-                                 {"machine", result.machine.empty() ? DescribeMachine() : result.machine}};
+void PrintJson(const std::string& suite, const bench::BenchmarkResult& result) {
+  nlohmann::ordered_json json = {
+      {"suite", suite}, {"machine", result.machine.empty() ? bench::DescribeMachine() : result.machine}};
   if (!result.notes.empty()) json["notes"] = result.notes;
   json["cases"] = nlohmann::ordered_json::array();
-  for (const BenchmarkCase& entry : result.cases) {
+  for (const bench::BenchmarkCase& entry : result.cases) {
     json["cases"].push_back({{"name", entry.name}, {"value", entry.value}, {"unit", entry.unit}});
   }
   json["ratios"] = nlohmann::ordered_json::array();
-  for (const BenchmarkRatio& ratio : result.ratios) {
+  for (const bench::BenchmarkRatio& ratio : result.ratios) {
     json["ratios"].push_back({{"name", ratio.name}, {"value", ratio.value}});
   }
   std::printf("%s\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
 }
 
-void PrintForPerson(const std::string& suite, const BenchmarkResult& result) {
+void PrintForPerson(const std::string& suite, const bench::BenchmarkResult& result) {
   std::printf("%s on %s\n\n", suite.c_str(),
-              (result.machine.empty() ? DescribeMachine() : result.machine).c_str());
+              (result.machine.empty() ? bench::DescribeMachine() : result.machine).c_str());
   for (const std::string& note : result.notes) std::printf("%s\n", note.c_str());
   std::vector<std::vector<std::string>> rows = {{"case", "value", "unit"}};
-  for (const BenchmarkCase& entry : result.cases) {
+  for (const bench::BenchmarkCase& entry : result.cases) {
     rows.push_back({entry.name, FormatNumber(entry.value), entry.unit == "1" ? "" : entry.unit});
   }
-  for (const BenchmarkRatio& ratio : result.ratios)
+  for (const bench::BenchmarkRatio& ratio : result.ratios)
     rows.push_back({ratio.name, FormatNumber(ratio.value), "times"});
   std::fputs(FormatTable(rows).c_str(), stdout);
 }
@@ -62,9 +62,9 @@ core::Status Run(const BenchArguments& arguments) {
     std::fputs(ListSuites().c_str(), stdout);
     return {};
   }
-  for (const BenchmarkSuite& suite : BenchmarkSuites()) {
+  for (const bench::BenchmarkSuite& suite : bench::BenchmarkSuites()) {
     if (suite.name != arguments.suite) continue;
-    const core::Result<BenchmarkResult> result = suite.run(arguments.options);
+    const core::Result<bench::BenchmarkResult> result = suite.run(arguments.options);
     if (!result) return result.error();
     arguments.is_json ? PrintJson(arguments.suite, *result) : PrintForPerson(arguments.suite, *result);
     return {};

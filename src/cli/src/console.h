@@ -1,21 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file console.h  Tables and progress for a person at a terminal.
+/// \file console.h  Progress for a person at a terminal.
 #pragma once
 
 #include <string>
 #include <string_view>
-#include <vector>
+
+#include "trocar/core/text_table.h"
 
 namespace trocar::cli {
 
-/// Number with `digits` significant digits, as short as it can be: "12.3", "0.00451", "not a number".
-std::string FormatNumber(double value, int digits = 4);
-
-/// Lines of columns, each as wide as its widest cell; cells that are numbers stand at the right.
-///
-/// \param rows  the first is the heading; shorter rows end early
-/// \return every line ends with a newline
-std::string FormatTable(const std::vector<std::vector<std::string>>& rows);
+using core::FormatNumber;
+using core::FormatTable;
 
 /// One line that is redrawn, on standard error; silent where that is not a terminal, and in the first half
 /// second.

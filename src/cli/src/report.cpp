@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "console.h"
-#include "svg_plot.h"
+#include "trocar/bench/svg_plot.h"
 #include "trocar/core/markup.h"
 #include "trocar/training/motion_metrics.h"
 
@@ -102,9 +102,9 @@ std::string FormatPictures(const ReportContent& content) {
 }
 
 std::string FormatPlots(const ReportContent& content) {
-  std::vector<PlotLine> force, frontal, sagittal;
+  std::vector<bench::PlotLine> force, frontal, sagittal;
   for (const ReportHand& hand : content.hands) {
-    PlotLine over_time{hand.name, {}}, from_front{hand.name, {}}, from_left{hand.name, {}};
+    bench::PlotLine over_time{hand.name, {}}, from_front{hand.name, {}}, from_left{hand.name, {}};
     for (std::size_t i = 0; i < hand.force.size(); ++i)
       over_time.points.push_back({content.times[i], hand.force[i]});
     for (const math::Vec3& tip : hand.p_world_tip) {
@@ -116,15 +116,15 @@ std::string FormatPlots(const ReportContent& content) {
     frontal.push_back(std::move(from_front));
     sagittal.push_back(std::move(from_left));
   }
-  std::string html = FormatSvgPlot(
+  std::string html = bench::FormatSvgPlot(
       {"Force of the tissue on each instrument", "time [s]", "force [N]", false, 1060, 280}, force);
   html += "<div class=\"plots\">\n";
-  html += FormatSvgPlot({"Path of the tips, from the front", "towards the patient's left [mm]",
-                         "towards the head [mm]", true, 520, 420},
-                        frontal);
-  html += FormatSvgPlot({"Path of the tips, from the side", "towards the front of the body [mm]",
-                         "towards the head [mm]", true, 520, 420},
-                        sagittal);
+  html += bench::FormatSvgPlot({"Path of the tips, from the front", "towards the patient's left [mm]",
+                                "towards the head [mm]", true, 520, 420},
+                               frontal);
+  html += bench::FormatSvgPlot({"Path of the tips, from the side", "towards the front of the body [mm]",
+                                "towards the head [mm]", true, 520, 420},
+                               sagittal);
   return html + "</div>\n";
 }
 

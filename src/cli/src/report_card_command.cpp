@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "benchmark.h"
 #include "command.h"
 #include "console.h"
-#include "physics_checks.h"
+#include "trocar/bench/benchmark.h"
+#include "trocar/bench/physics_checks.h"
 #include "trocar/core/safe_file.h"
 #include "trocar/session/scene.h"
 
@@ -23,11 +23,11 @@ struct ReportCardOptions {
   bool is_quick = false;
 };
 
-core::Result<std::vector<PhysicsCheck>> RunChecks(const ReportCardOptions& options) {
-  const std::vector<std::function<PhysicsCheck()>> analytic{
-      CheckPatch,  CheckHangingChain,   CheckIndentation, CheckSelfWeight,
-      CheckEnergy, CheckMeshRefinement, CheckFreedOrgan};
-  std::vector<PhysicsCheck> checks;
+core::Result<std::vector<bench::PhysicsCheck>> RunChecks(const ReportCardOptions& options) {
+  const std::vector<std::function<bench::PhysicsCheck()>> analytic{
+      bench::CheckPatch,  bench::CheckHangingChain,   bench::CheckIndentation, bench::CheckSelfWeight,
+      bench::CheckEnergy, bench::CheckMeshRefinement, bench::CheckFreedOrgan};
+  std::vector<bench::PhysicsCheck> checks;
   ProgressBar progress("analytic cases", static_cast<double>(analytic.size()));
   for (const auto& run : analytic) {
     checks.push_back(run());
@@ -40,10 +40,10 @@ core::Result<std::vector<PhysicsCheck>> RunChecks(const ReportCardOptions& optio
   if (!data.ok()) return data.error();
   demonstration = *data / "scenes" / "demonstration.json";
   if (scene.empty()) scene = *data / "scenes" / "retraction.json";
-  auto volume = CheckVolume(scene);
+  auto volume = bench::CheckVolume(scene);
   if (!volume.ok()) return volume.error();
   checks.push_back(std::move(*volume));
-  auto rate = CheckTickRate(demonstration, 3.6);
+  auto rate = bench::CheckTickRate(demonstration, 3.6);
   if (!rate.ok()) return rate.error();
   checks.push_back(std::move(*rate));
   return checks;
@@ -55,11 +55,12 @@ core::Result<int> WriteReportCard(const ReportCardOptions& options) {
   std::error_code failure;
   std::filesystem::create_directories(options.folder, failure);
   const auto page = std::filesystem::path(options.folder) / "report-card.html";
-  if (const auto status = core::WriteFile(page, FormatReportCard(*checks, DescribeMachine())); !status.ok())
+  if (const auto status = core::WriteFile(page, bench::FormatReportCard(*checks, bench::DescribeMachine()));
+      !status.ok())
     return status.error();
   std::vector<std::vector<std::string>> rows = {{"figure", "measured", "unit", ""}};
-  for (const PhysicsCheck& check : *checks) {
-    for (const CheckFigure& figure : check.figures) {
+  for (const bench::PhysicsCheck& check : *checks) {
+    for (const bench::CheckFigure& figure : check.figures) {
       rows.push_back({figure.name, FormatNumber(figure.value), figure.unit,
                       figure.Passes()         ? "passes"
                       : figure.is_known_limit ? "known limit"
@@ -68,7 +69,7 @@ core::Result<int> WriteReportCard(const ReportCardOptions& options) {
   }
   std::fputs(FormatTable(rows).c_str(), stdout);
   std::printf("\nPage: %s\n", page.string().c_str());
-  return CountFailures(*checks);
+  return bench::CountFailures(*checks);
 }
 
 }  // namespace

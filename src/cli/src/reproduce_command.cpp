@@ -3,47 +3,37 @@
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
-#include <array>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
-#include "benchmark.h"
 #include "command.h"
 #include "console.h"
-#include "experiment.h"
+#include "trocar/bench/benchmark.h"
+#include "trocar/bench/experiment.h"
 #include "trocar/core/safe_file.h"
 
 namespace trocar::cli {
 namespace {
 
-constexpr std::array<ExperimentEntry, 7> kExperiments = {{
-    {"table1", "Table 1: points, edges and triangles of the four meshes", ReproduceTable1},
-    {"table2", "Table 2: shape conservation by virtual springs, on the liver and on a grid", ReproduceTable2},
-    {"fig6", "Figure 6: collision search over mesh size, greedy and exact", ReproduceFigure6},
-    {"fig7", "Figure 7: update of the collision hierarchy over mesh size", ReproduceFigure7},
-    {"fig8", "Figure 8: time of an iteration of every solver and GPU layout", ReproduceFigure8},
-    {"fig9", "Figure 9: speed-up over the paper's relaxation", ReproduceFigure9},
-    {"equilibrium", "Section V: an error below 0.0005 in a frame", ReproduceEquilibrium},
-}};
-
 struct Arguments {
   std::string folder, markdown;
-  ExperimentOptions options;
+  bench::ExperimentOptions options;
   bool is_json = false;
 };
 
-core::Result<std::vector<Experiment>> Run(std::span<const ExperimentEntry> entries,
-                                          const Arguments& arguments) {
-  std::vector<Experiment> done;
-  ExperimentStore store;
-  for (const ExperimentEntry& entry : entries) {
+core::Result<std::vector<bench::Experiment>> Run(std::span<const bench::ExperimentEntry> entries,
+                                                 const Arguments& arguments) {
+  std::vector<bench::Experiment> done;
+  bench::ExperimentStore store;
+  for (const bench::ExperimentEntry& entry : entries) {
     ProgressBar bar("reproduce " + std::string(entry.name), 1.0);
-    ExperimentOptions options = arguments.options;
+    bench::ExperimentOptions options = arguments.options;
     options.progress = [&bar](double part) { bar.Show(part); };
-    ExperimentResult result = entry.run(options, store);
+    bench::ExperimentResult result = entry.run(options, store);
     bar.Finish();
     if (!result) return result.error();
     if (options.is_quick)
@@ -51,7 +41,7 @@ core::Result<std::vector<Experiment>> Run(std::span<const ExperimentEntry> entri
           "A quick run: smaller meshes, fewer repeats; its times are no figures to quote.");
     // a person reads on while the next one runs
     if (!arguments.is_json) {
-      std::printf("%s\n", FormatExperimentText(*result).c_str());
+      std::printf("%s\n", bench::FormatExperimentText(*result).c_str());
       std::fflush(stdout);
     }
     done.push_back(std::move(result).value());
@@ -59,7 +49,7 @@ core::Result<std::vector<Experiment>> Run(std::span<const ExperimentEntry> entri
   return done;
 }
 
-core::Status WritePages(const std::vector<Experiment>& experiments, const Arguments& arguments,
+core::Status WritePages(const std::vector<bench::Experiment>& experiments, const Arguments& arguments,
                         bool has_index, const std::string& machine) {
   const std::filesystem::path folder = arguments.folder;
   std::error_code failure;
@@ -68,33 +58,35 @@ core::Status WritePages(const std::vector<Experiment>& experiments, const Argume
   const auto write = [&](const std::string& name, const std::string& text) {
     if (status) status = core::WriteFile(folder / name, text);
   };
-  for (const Experiment& experiment : experiments) {
-    write(experiment.name + ".html", FormatExperimentPage(experiment, machine));
-    write(experiment.name + ".json", FormatExperimentsJson(std::span(&experiment, 1), machine));
+  for (const bench::Experiment& experiment : experiments) {
+    write(experiment.name + ".html", bench::FormatExperimentPage(experiment, machine));
+    write(experiment.name + ".json", bench::FormatExperimentsJson(std::span(&experiment, 1), machine));
     for (std::size_t i = 0; i < experiment.plots.size(); ++i) {
       const std::string number = i == 0 ? "" : "-" + std::to_string(i + 1);
-      write(experiment.name + number + ".svg", FormatSvgFile(experiment.plots[i]));
+      write(experiment.name + number + ".svg", bench::FormatSvgFile(experiment.plots[i]));
     }
   }
-  if (has_index) write("index.html", FormatExperimentIndex(experiments, machine));
+  if (has_index) write("index.html", bench::FormatExperimentIndex(experiments, machine));
   return status;
 }
 
-core::Status UpdateDocument(const std::vector<Experiment>& experiments, const std::string& path,
+core::Status UpdateDocument(const std::vector<bench::Experiment>& experiments, const std::string& path,
                             const std::string& machine) {
   const auto document = core::ReadFile(path);
   if (!document) return document.error();
-  const auto updated = ReplaceGeneratedPart(*document, FormatExperimentsMarkdown(experiments, machine));
+  const auto updated =
+      bench::ReplaceGeneratedPart(*document, bench::FormatExperimentsMarkdown(experiments, machine));
   if (!updated) return core::Error{updated.error().code, path + ": " + updated.error().message};
   return core::WriteFile(path, *updated);
 }
 
-core::Status Reproduce(std::span<const ExperimentEntry> entries, const Arguments& arguments, bool is_all) {
-  const std::string machine = DescribeMachine() + ", " + std::to_string(arguments.options.threads) +
+core::Status Reproduce(std::span<const bench::ExperimentEntry> entries, const Arguments& arguments,
+                       bool is_all) {
+  const std::string machine = bench::DescribeMachine() + ", " + std::to_string(arguments.options.threads) +
                               (arguments.options.threads == 1 ? " thread" : " threads");
   const auto experiments = Run(entries, arguments);
   if (!experiments) return experiments.error();
-  if (arguments.is_json) std::fputs(FormatExperimentsJson(*experiments, machine).c_str(), stdout);
+  if (arguments.is_json) std::fputs(bench::FormatExperimentsJson(*experiments, machine).c_str(), stdout);
   if (!arguments.folder.empty()) {
     if (core::Status status = WritePages(*experiments, arguments, is_all, machine); !status) return status;
     const std::string page = is_all ? "index.html" : experiments->front().name + ".html";
@@ -124,15 +116,11 @@ void AddOptions(CLI::App& command, const std::shared_ptr<Arguments>& arguments) 
 
 }  // namespace
 
-std::span<const ExperimentEntry> Experiments() noexcept {
-  return kExperiments;
-}
-
 void AddReproduceCommand(CLI::App& app, Outcome& outcome) {
   CLI::App* reproduce =
       app.add_subcommand("reproduce", "Repeat the paper's experiments, its figures beside ours");
   reproduce->require_subcommand(1);
-  for (const ExperimentEntry& entry : kExperiments) {
+  for (const bench::ExperimentEntry& entry : bench::Experiments()) {
     CLI::App* command = reproduce->add_subcommand(std::string(entry.name), std::string(entry.description));
     const auto arguments = std::make_shared<Arguments>();
     AddOptions(*command, arguments);
@@ -146,7 +134,8 @@ void AddReproduceCommand(CLI::App& app, Outcome& outcome) {
   all->add_option("--markdown", arguments->markdown,
                   "Document whose generated part is written anew (docs/replicability.md)")
       ->type_name("FILE");
-  all->callback([arguments, &outcome] { outcome.status = Reproduce(kExperiments, *arguments, true); });
+  all->callback(
+      [arguments, &outcome] { outcome.status = Reproduce(bench::Experiments(), *arguments, true); });
   AddReportCardCommand(*reproduce, outcome);
   reproduce->footer(
       "Figures of the paper that stand only in its pictures are printed as \"not readable\".\n"

@@ -12,7 +12,7 @@ namespace {
 
 using testing::HasSubstr;
 
-const std::string kPatient = TROCAR_SOURCE_DIR "/assets/patients/visible-human-male/patient";
+const std::string kPatient = std::string(TROCAR_SOURCE_DIR) + "/assets/patients/visible-human-male/patient";
 
 TEST(AnatomyExportCommand, WritesWhatItSays) {
   test::TemporaryFolder folder;

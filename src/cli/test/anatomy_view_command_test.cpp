@@ -15,7 +15,7 @@ namespace {
 
 using testing::HasSubstr;
 
-const std::string kPatient = TROCAR_SOURCE_DIR "/assets/patients/visible-human-male/patient";
+const std::string kPatient = std::string(TROCAR_SOURCE_DIR) + "/assets/patients/visible-human-male/patient";
 
 std::size_t CountColour(const render::Image& image, bool (*is_wanted)(int, int, int)) {
   std::size_t count = 0;

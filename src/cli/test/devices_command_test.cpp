@@ -155,8 +155,8 @@ TEST_F(DevicesCommand, RecordingRepeatsASimulationBitForBit) {
   for (int i = 0; i < 60; ++i) frames.push_back({i / 60.0, device::CalcHandMotion(i / 60.0)});
   ASSERT_TRUE(core::WriteFile(Path("hands.csv"), device::FormatHandFrames(frames)).ok());
   const auto run = [&](std::vector<std::string> more) {
-    std::vector<std::string> words = {"simulate", TROCAR_SOURCE_DIR "/scenes/demonstration.json", "--ticks",
-                                      "20", "--json"};
+    std::vector<std::string> words = {
+        "simulate", std::string(TROCAR_SOURCE_DIR) + "/scenes/demonstration.json", "--ticks", "20", "--json"};
     words.insert(words.end(), more.begin(), more.end());
     const Printed printed = RunTrocar(words);
     EXPECT_EQ(printed.status, 0) << printed.err;

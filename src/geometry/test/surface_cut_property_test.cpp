@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 
 #include "random_cuts.h"
 
@@ -26,8 +25,7 @@ TEST(SurfaceCutProperty, RandomCutsLeaveGoodSurfaces) {
   EXPECT_GT(counts.full, 5u);
 }
 
-TEST(SurfaceCutProperty, TenThousandRandomCutsLeaveGoodSurfaces) {
-  if (std::getenv("TROCAR_SLOW_TESTS") == nullptr) GTEST_SKIP() << "set TROCAR_SLOW_TESTS=1 to run it";
+TEST(SurfaceCutPropertySlow, TenThousandRandomCutsLeaveGoodSurfaces) {
   const CutCounts counts = RunRandomCuts(2, 10000, [](const std::string&, const EditableMesh&) {});
   Report(counts);
   EXPECT_EQ(counts.strokes, 10000u);

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -172,8 +171,7 @@ TEST(Operation, ATickThatCutsSolvesHalfAsMuch) {
   EXPECT_EQ(most_without, most);
 }
 
-TEST(OperationSlow, AnExpertGoesFromTheFirstLookToTheBag) {
-  if (std::getenv("TROCAR_SLOW_TESTS") == nullptr) GTEST_SKIP() << "minutes; set TROCAR_SLOW_TESTS=1";
+TEST(OperationWhole, AnExpertGoesFromTheFirstLookToTheBag) {
   Simulation simulation = MakeOperation();
   const OperationResult result = Play("expert", simulation, 900.0);
   EXPECT_TRUE(result.is_completed);
@@ -185,8 +183,7 @@ TEST(OperationSlow, AnExpertGoesFromTheFirstLookToTheBag) {
 }
 
 /// Goes through the whole operation before it errs.
-TEST(OperationSlow, WhoLeavesStonesIsCaught) {
-  if (std::getenv("TROCAR_SLOW_TESTS") == nullptr) GTEST_SKIP() << "minutes; set TROCAR_SLOW_TESTS=1";
+TEST(OperationWhole, WhoLeavesStonesIsCaught) {
   Simulation simulation = MakeOperation();
   const OperationResult result = Play("leaves_stones", simulation, 900.0);
   EXPECT_TRUE(result.is_completed);
@@ -195,8 +192,7 @@ TEST(OperationSlow, WhoLeavesStonesIsCaught) {
 }
 
 /// Patients from nowhere, with the variants that they are drawn with; figure of the issue: 18 of 20.
-TEST(OperationSlow, AnExpertOperatesOnGeneratedPatients) {
-  if (std::getenv("TROCAR_SLOW_TESTS") == nullptr) GTEST_SKIP() << "hours; set TROCAR_SLOW_TESTS=1";
+TEST(OperationWhole, AnExpertOperatesOnGeneratedPatients) {
   constexpr int kPatients = 20, kWanted = 18;
   int good = 0;
   std::size_t critical = 0;

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/bench/benchmark.h"
+
+#include <gtest/gtest.h>
+
+namespace trocar::bench {
+namespace {
+
+TEST(DescribeMachine, NamesProcessorAndCoresAndNothingElse) {
+  const char* text = "processor\t: 0\nvendor_id\t: X\nmodel name\t: Example CPU @ 2.00GHz\nprocessor\t: 1\n";
+  EXPECT_EQ(DescribeMachine(text, 2), "Example CPU @ 2.00GHz, 2 cores");
+  EXPECT_EQ(DescribeMachine("", 1), "unknown processor, 1 core");
+}
+
+TEST(TimeShortest, WarmsUpAndRestoresBeforeEveryRun) {
+  int restored = 0, run = 0;
+  const double seconds = TimeShortest(
+      3, [&] { ++restored; }, [&] { ++run; });
+  EXPECT_EQ(restored, 4);
+  EXPECT_EQ(run, 4);
+  EXPECT_GE(seconds, 0.0);
+}
+
+TEST(TimeShortest, CountsTheOnlyRunOfNoRepeats) {
+  int run = 0;
+  const double seconds = TimeShortest(
+      0, [] {}, [&] { ++run; });
+  EXPECT_EQ(run, 1);
+  EXPECT_LT(seconds, 1e6);
+}
+
+TEST(WrongAnswer, HasTheCodeOfABenchmarkThatMeansNothing) {
+  EXPECT_EQ(WrongAnswer("liver_exact", "not the nearest triangle").code, core::ErrorCode::kBenchmarkWrong);
+}
+
+}  // namespace
+}  // namespace trocar::bench

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/core/text_table.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+
+namespace trocar::core {
+namespace {
+
+bool IsNumber(const std::string& cell) {
+  if (cell.empty()) return false;
+  char* end = nullptr;
+  std::strtod(cell.c_str(), &end);
+  return end == cell.c_str() + cell.size();
+}
+
+/// Characters, not bytes: continuation bytes of UTF-8 take no room.
+std::size_t CountColumns(const std::string& cell) {
+  return static_cast<std::size_t>(std::count_if(
+      cell.begin(), cell.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; }));
+}
+
+}  // namespace
+
+std::string FormatNumber(double value, int digits) {
+  if (!std::isfinite(value)) return "not a number";
+  char text[64];
+  std::snprintf(text, sizeof text, "%.*g", digits, value);
+  if (std::string(text).find('e') != std::string::npos && std::fabs(value) >= 1 && std::fabs(value) < 1e15) {
+    std::snprintf(text, sizeof text, "%.0f", value);
+  }
+  return text;
+}
+
+std::string FormatTable(const std::vector<std::vector<std::string>>& rows) {
+  std::vector<std::size_t> widths;
+  for (const auto& row : rows) {
+    widths.resize(std::max(widths.size(), row.size()), 0);
+    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], CountColumns(row[i]));
+  }
+  std::string text;
+  for (const auto& row : rows) {
+    std::string line;
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      const std::string padding(widths[i] - CountColumns(row[i]), ' ');
+      if (i > 0) line += "  ";
+      line += IsNumber(row[i]) ? padding + row[i] : row[i] + padding;
+    }
+    line.erase(line.find_last_not_of(' ') + 1);
+    text += line + "\n";
+  }
+  return text;
+}
+
+}  // namespace trocar::core
