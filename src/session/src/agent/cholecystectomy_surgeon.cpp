@@ -6,7 +6,7 @@
 #include <iterator>
 #include <utility>
 
-#include "operation.h"
+#include "operation/operation.h"
 
 namespace trocar::session {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "operation/cholecystectomy_surgeon.h"
+#include "cholecystectomy_surgeon.h"
 #include "task_surgeon.h"
 
 namespace trocar::session {
