@@ -7,7 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "trocar/session/simulation.h"
+#include "trocar/session/scene.h"
+#include "trocar/session/snapshot.h"
 #include "trocar/surgery/organ_surface.h"
 #include "trocar/tissue/rest_frame.h"
 #include "trocar/training/critical_view.h"
