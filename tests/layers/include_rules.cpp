@@ -17,6 +17,17 @@ constexpr std::array<std::string_view, 18> kPrivateLibraries = {
     "GL/",  "epoxy/", "EGL/",   "gtk",  "glib",   "gst/", "nlohmann/",     "CLI/",     "itk",
     "gdcm", "png.h",  "spdlog", "tbb/", "oneapi", "cuda", "meshoptimizer", "iostream", "Eigen/"};
 
+constexpr std::string_view kOnly = "only";
+
+/// Where an include in quotes leads: beside the file, or below a folder above it, as with a module's private headers.
+fs::path FindOwnHeader(const fs::path& source, const fs::path& file, std::string_view include) {
+  for (fs::path folder = file.parent_path(); folder != source && folder.has_relative_path();
+       folder = folder.parent_path()) {
+    if (fs::exists(folder / include)) return fs::relative(folder / include, source);
+  }
+  return {};
+}
+
 /// The word between the quotes or brackets of an include line, or nothing.
 std::string_view FindInclude(std::string_view line) {
   const auto skip_blanks = [&] { line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size())); };
@@ -87,7 +98,7 @@ core::Result<Layers> ParseLayers(std::string_view text) {
   for (int number = 1; std::getline(lines, line); ++number) {
     std::istringstream words(line.substr(0, line.find('#')));
     std::string module, arrow, other;
-    if (!(words >> module)) continue;
+    if (!(words >> module) || module == kOnly) continue;
     const auto complain = [&](const std::string& what) {
       return core::Error{core::ErrorCode::kJsonField, "layers, line " + std::to_string(number) + ": " + what};
     };
@@ -104,6 +115,25 @@ core::Result<Layers> ParseLayers(std::string_view text) {
   return layers;
 }
 
+core::Result<std::vector<Restriction>> ParseRestrictions(std::string_view text) {
+  std::vector<Restriction> restrictions;
+  std::istringstream lines{std::string(text)};
+  std::string line;
+  for (int number = 1; std::getline(lines, line); ++number) {
+    std::istringstream words(line.substr(0, line.find('#')));
+    std::string only, colon, name;
+    Restriction restriction;
+    if (!(words >> only) || only != kOnly) continue;
+    if (!(words >> restriction.folder >> colon) || colon != ":") {
+      return core::Error{core::ErrorCode::kJsonField,
+                         "layers, line " + std::to_string(number) + ": expected only FOLDER : NAMES"};
+    }
+    while (words >> name) restriction.seen.insert(name);
+    restrictions.push_back(std::move(restriction));
+  }
+  return restrictions;
+}
+
 std::vector<Breach> FindBreaches(const Layers& layers, const fs::path& source) {
   std::vector<Breach> breaches;
   for (const fs::path& file : FindSources(source)) CheckFile(layers, source, file, breaches);
@@ -116,6 +146,37 @@ std::vector<Breach> FindBreachesOfModule(const Layers& layers, const fs::path& r
   if (looked_at != nullptr) *looked_at = static_cast<int>(files.size());
   std::vector<Breach> breaches;
   for (const fs::path& file : files) CheckFile(layers, root, file, breaches);
+  return breaches;
+}
+
+std::vector<Breach> FindBreaches(const Restriction& restriction, const fs::path& source) {
+  const fs::path folder = source / restriction.folder;
+  const auto files = fs::exists(folder) ? FindSources(folder) : std::vector<fs::path>{};
+  std::vector<Breach> breaches;
+  if (files.empty()) breaches.push_back({restriction.folder, 0, "no source is there"});
+  for (const fs::path& file : files) {
+    const std::string name = fs::relative(file, source).generic_string();
+    if (name.find("/test/") != std::string::npos) continue;
+    const core::Result<std::string> text = core::ReadFile(file);
+    if (!text) {
+      breaches.push_back({name, 0, text.error().Text()});
+      continue;
+    }
+    std::istringstream lines(*text);
+    std::string line;
+    for (int number = 1; std::getline(lines, line); ++number) {
+      const std::string_view include = FindInclude(line);
+      const bool is_quoted = line.find('"') != std::string::npos;
+      if (include.empty() || (!include.starts_with("trocar/") && !is_quoted)) continue;
+      const std::string header(include.starts_with("trocar/") ? include.substr(7) : include);
+      const bool is_named =
+          restriction.seen.contains(header) || restriction.seen.contains(header.substr(0, header.find('/')));
+      const std::string own = FindOwnHeader(source, file, include).generic_string();
+      const bool is_own = own.starts_with(restriction.folder + "/");
+      if (include.starts_with("trocar/") ? !is_named : !is_own)
+        breaches.push_back({name, number, restriction.folder + " must not see " + std::string(include)});
+    }
+  }
   return breaches;
 }
 

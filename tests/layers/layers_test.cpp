@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "include_rules.h"
 #include "trocar/core/safe_file.h"
@@ -14,6 +15,7 @@ namespace {
 
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 using testing::SizeIs;
 
 const std::filesystem::path kRoot = TROCAR_SOURCE_DIR;
@@ -42,6 +44,28 @@ TEST(Layers, EveryIncludeOfTheBenchmarksFollowsAnArrow) {
   EXPECT_GT(looked_at, 20);
 }
 
+std::vector<Restriction> ReadRestrictions() {
+  const auto text = core::ReadFile(kRoot / "tools/layers.txt");
+  EXPECT_TRUE(text.ok()) << text.error().Text();
+  auto restrictions = ParseRestrictions(*text);
+  EXPECT_TRUE(restrictions.ok()) << restrictions.error().Text();
+  return *restrictions;
+}
+
+// The scripted surgeons see the published snapshot and the constant scene, never the simulation.
+TEST(Layers, RestrictedFoldersIncludeOnlyWhatIsNamed) {
+  const auto restrictions = ReadRestrictions();
+  ASSERT_THAT(restrictions, Not(IsEmpty()));
+  for (const Restriction& restriction : restrictions) {
+    for (const Breach& breach : FindBreaches(restriction, kRoot / "src")) {
+      ADD_FAILURE() << "src/" << breach.file << ":" << breach.line << ": " << breach.what
+                    << "; tools/layers.txt says what the folder may include";
+    }
+    for (const std::string& name : restriction.seen)
+      EXPECT_FALSE(name.ends_with("/simulation.h")) << "a surgeon must not hold a simulation";
+  }
+}
+
 TEST(Layers, ReachEverythingUpTheList) {
   const Layers layers = ReadLayers();
   EXPECT_TRUE(layers.at("cli").contains("core"));
@@ -58,6 +82,9 @@ class Planted : public testing::Test {
     return FindBreaches(ReadLayers(), folder_.Path());
   }
 
+  const std::filesystem::path& Folder() const { return folder_.Path(); }
+
+ private:
   test::TemporaryFolder folder_;
 };
 
@@ -77,6 +104,34 @@ TEST_F(Planted, BenchmarksAreLookedAtToo) {
 
 TEST_F(Planted, SidewaysIncludeIsFoundHoweverItIsWritten) {
   EXPECT_THAT(Find("tissue/test/a_test.cpp", "  #  include <trocar/collision/queries.h>\n"), SizeIs(1));
+}
+
+class PlantedInRestricted : public Planted {
+ protected:
+  std::vector<Breach> FindIn(const std::string& text) {
+    Find("session/src/simulation_content.h", "int x;\n");
+    Find("session/src/agent/plan.h", "int x;\n");
+    EXPECT_TRUE(core::WriteFile(Folder() / "session/src/agent/a.cpp", text).ok());
+    const auto restrictions =
+        ParseRestrictions("only session/src/agent : math session/snapshot.h tissue/rest_frame.h\n");
+    return FindBreaches(restrictions->front(), Folder());
+  }
+};
+
+TEST_F(PlantedInRestricted, OnlyNamedHeadersAndOwnOnesPass) {
+  EXPECT_THAT(FindIn("#include <vector>\n#include \"agent/plan.h\"\n#include \"trocar/math/pose.h\"\n"
+                     "#include \"trocar/session/snapshot.h\"\n"),
+              IsEmpty());
+  EXPECT_THAT(FindIn("#include \"trocar/session/simulation.h\"\n"), SizeIs(1));
+  EXPECT_THAT(FindIn("#include \"trocar/tissue/tissue_model.h\"\n"), SizeIs(1));
+  EXPECT_THAT(FindIn("#include \"simulation_content.h\"\n"), SizeIs(1));
+  EXPECT_THAT(FindIn("#include \"gone.h\"\n"), SizeIs(1));
+}
+
+TEST(ParseRestrictions, RefusesAMalformedLineAndAnEmptyFolder) {
+  EXPECT_FALSE(ParseRestrictions("only agent snapshot.h\n").ok());
+  const auto missing = ParseRestrictions("only no_such_folder : math\n");
+  EXPECT_THAT(FindBreaches(missing->front(), kRoot / "src"), SizeIs(1));
 }
 
 TEST_F(Planted, UnknownModuleIsFound) {

@@ -52,12 +52,12 @@ const instrument::TrocarJoints& CameraHolder::Follow(const LaparoscopeSetup& set
   if (is_moving_ && since_look_ >= kLookSeconds) {
     since_look_ = 0;
     // the light post stays: what turns about it turns the trainee's head
-    ViewWish wish;
-    wish.p_world = middle;
-    wish.most_depth = kMostDepth;
+    ViewRequest request;
+    request.p_world = middle;
+    request.most_depth = kMostDepth;
     // as far away as the trocar allows
-    for (wish.distance = wanted; wish.distance >= kNearest; wish.distance *= 0.93) {
-      const auto view = FindView(setup, wish, now_.spin);
+    for (request.distance = wanted; request.distance >= kNearest; request.distance *= 0.93) {
+      const auto view = FindView(setup, request, now_.spin);
       if (!view) continue;
       to_ = *view;
       break;

@@ -24,31 +24,31 @@ math::Pose CalcLaparoscopePose(const LaparoscopeSetup& setup,
   return {X_world_shaft.rotation * (post * bend * math::Inverse(post)), X_world_shaft.translation};
 }
 
-std::optional<instrument::TrocarJoints> FindView(const LaparoscopeSetup& setup, const ViewWish& wish,
+std::optional<instrument::TrocarJoints> FindView(const LaparoscopeSetup& setup, const ViewRequest& request,
                                                  double spin) noexcept {
-  instrument::TrocarJoints joints = instrument::FindJoints(setup.p_world_port, wish.p_world, spin, 0.0);
+  instrument::TrocarJoints joints = instrument::FindJoints(setup.p_world_port, request.p_world, spin, 0.0);
   double miss = 1;
   for (int round = 0; round < kRounds && miss > kFound; ++round) {
     const math::Pose X = CalcLaparoscopePose(setup, joints);
-    miss = math::Norm(math::Inverse(X) * wish.p_world - Vec3{0, 0, -wish.distance});
-    const Vec3 lens = wish.p_world - wish.distance * math::Rotate(X.rotation, {0, 0, -1});
+    miss = math::Norm(math::Inverse(X) * request.p_world - Vec3{0, 0, -request.distance});
+    const Vec3 lens = request.p_world - request.distance * math::Rotate(X.rotation, {0, 0, -1});
     joints = instrument::FindJoints(setup.p_world_port, lens, spin, 0.0);
   }
-  if (miss > kFound || joints.depth < kLeastDepth || joints.depth > wish.most_depth) return std::nullopt;
+  if (miss > kFound || joints.depth < kLeastDepth || joints.depth > request.most_depth) return std::nullopt;
   return joints;
 }
 
 std::optional<instrument::TrocarJoints> FindView(const LaparoscopeSetup& setup,
-                                                 const ViewWish& wish) noexcept {
+                                                 const ViewRequest& request) noexcept {
   std::optional<instrument::TrocarJoints> best;
   double best_cost = 0;
   const int spins = setup.view_angle > 0 ? kSpins : 1;
   for (int i = 0; i < spins; ++i) {
     const double spin = spins == 1 ? 0.0 : 2 * M_PI * i / spins - M_PI;
-    const auto joints = FindView(setup, wish, spin);
+    const auto joints = FindView(setup, request, spin);
     if (!joints) continue;
-    const Vec3 to_lens = math::Normalized(CalcLaparoscopePose(setup, *joints).translation - wish.p_world);
-    const double cost = wish.facing ? 1 - math::Dot(to_lens, *wish.facing) : 0.01 * std::fabs(spin);
+    const Vec3 to_lens = math::Normalized(CalcLaparoscopePose(setup, *joints).translation - request.p_world);
+    const double cost = request.facing ? 1 - math::Dot(to_lens, *request.facing) : 0.01 * std::fabs(spin);
     if (best && !(cost < best_cost)) continue;
     best = joints;
     best_cost = cost;

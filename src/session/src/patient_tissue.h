@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "trocar/session/scene.h"
-#include "trocar/session/simulation.h"
+#include "trocar/session/tissue_layout.h"
 #include "trocar/surgery/wall.h"
 #include "trocar/tissue/conservation.h"
 #include "trocar/tissue/tissue_model.h"

@@ -109,10 +109,10 @@ void ReadLaparoscope(const core::JsonView& root, const anatomy::Patient& patient
   setup.view_angle = view.NumberOr("view_angle_deg", 0.0, {0.0, 70.0}) * kDegree;
   setup.field_of_view = view.NumberOr("field_of_view_deg", 75.0, {20.0, 120.0}) * kDegree;
   if (!view.BooleanOr("look_at_target", false)) return;
-  ViewWish wish;
-  wish.p_world = ReadTarget(view, "target", patient);
-  wish.distance = std::max(0.02, math::Distance(wish.p_world, setup.p_world_port) - setup.home.depth);
-  if (const auto found = FindView(setup, wish)) setup.home = *found;
+  ViewRequest request;
+  request.p_world = ReadTarget(view, "target", patient);
+  request.distance = std::max(0.02, math::Distance(request.p_world, setup.p_world_port) - setup.home.depth);
+  if (const auto found = FindView(setup, request)) setup.home = *found;
 }
 
 void ReadSettings(const core::JsonView& root, LiveSettings& settings) {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "scene_objects.h"
-#include "trocar/session/snapshot.h"
+#include "trocar/session/event.h"
 
 namespace trocar::session {
 namespace {

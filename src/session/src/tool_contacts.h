@@ -7,7 +7,8 @@
 #include <vector>
 
 #include "trocar/core/state_archive.h"
-#include "trocar/session/simulation.h"
+#include "trocar/session/scene.h"
+#include "trocar/session/snapshot.h"
 #include "trocar/surgery/cavity.h"
 #include "trocar/surgery/organ_contact.h"
 #include "trocar/surgery/tools_contact.h"

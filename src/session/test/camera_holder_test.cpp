@@ -19,10 +19,10 @@ class CameraHolderTest : public testing::TestWithParam<double> {
   CameraHolderTest() {
     setup_.p_world_port = {0, -0.1, 0};
     setup_.view_angle = GetParam();
-    ViewWish wish;
-    wish.p_world = kField;
-    wish.distance = 0.08;
-    setup_.home = FindView(setup_, wish).value();
+    ViewRequest request;
+    request.p_world = kField;
+    request.distance = 0.08;
+    setup_.home = FindView(setup_, request).value();
     holder_.Reset(setup_.home);
   }
   bool AreInView(std::span<const Vec3> tips, const instrument::TrocarJoints& joints) const {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where clips and cuts are planned: on straight tubes, beside others, and on generated patients.
-#include "operation/division_plan.h"
+#include "agent/division_plan.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "operation/heat_memory.h"
+#include "agent/heat_memory.h"
 
 #include <gtest/gtest.h>
 

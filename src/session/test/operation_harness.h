@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "operation/operation.h"
+#include "trocar/session/simulation.h"
 
 namespace trocar::session {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where a dissector opens: among many fibres rather than at one, and not into a duct.
-#include "operation/spread_plan.h"
+#include "agent/spread_plan.h"
 
 #include <gtest/gtest.h>
 

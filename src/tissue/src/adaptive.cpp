@@ -5,7 +5,7 @@
 /// would walk in steps of a fraction of a spring's length. There, on a structured mesh, accelerated descent
 /// from coarse to fine comes within a thousandth for the price of one or two Newton steps; and where virtual
 /// springs bound the lowest eigenvalue it ends by itself, with a bound on its error. With constraints whose
-/// gradients are not known the double-precision recurrence runs. See docs/decisions/0014.
+/// gradients are not known the double-precision recurrence runs. See docs/solver.md.
 #include "solver_content.h"
 
 namespace trocar::tissue {

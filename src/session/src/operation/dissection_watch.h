@@ -8,7 +8,9 @@
 #include <vector>
 
 #include "camera.h"
-#include "trocar/session/simulation.h"
+#include "trocar/core/state_archive.h"
+#include "trocar/session/scene.h"
+#include "trocar/session/snapshot.h"
 #include "trocar/surgery/organ_surface.h"
 #include "trocar/tissue/rest_frame.h"
 #include "trocar/training/critical_view.h"

@@ -10,7 +10,8 @@
 #include "trocar/core/state_archive.h"
 #include "trocar/instrument/tool.h"
 #include "trocar/session/operation_result.h"
-#include "trocar/session/simulation.h"
+#include "trocar/session/scene.h"
+#include "trocar/session/snapshot.h"
 #include "trocar/surgery/gallstones.h"
 #include "wall_holes.h"
 

@@ -10,7 +10,8 @@
 
 #include "trocar/core/state_archive.h"
 #include "trocar/instrument/tool.h"
-#include "trocar/session/simulation.h"
+#include "trocar/session/scene.h"
+#include "trocar/session/snapshot.h"
 #include "trocar/surgery/cuttable_tubes.h"
 #include "trocar/surgery/gallstones.h"
 #include "trocar/tissue/conservation.h"

@@ -8,7 +8,7 @@
 namespace trocar::core {
 
 template <>
-inline constexpr bool kIsPlainState<instrument::TrocarJoints> =
-    sizeof(instrument::TrocarJoints) == 5 * sizeof(double);
+inline constexpr bool kIsPlainState<instrument::TrocarJoints> = sizeof(instrument::TrocarJoints) ==
+                                                                5 * sizeof(double);
 
 }  // namespace trocar::core

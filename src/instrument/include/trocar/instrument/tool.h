@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "trocar/geometry/blade_sweep.h"
 #include "trocar/geometry/triangle_mesh.h"
 #include "trocar/math/pose.h"
 
@@ -44,6 +45,8 @@ struct Tool {
 /// \return nullptr for an unknown one
 const Tool* FindTool(std::string_view name) noexcept;
 
+/// Toe of the hook: across the shaft at the tip, as long as in the domain facts, section 1.3 [m].
+inline constexpr geometry::BladeEdge kHookToe = {{0, 0, 0}, {0, 0.0045, 0}};
 /// Bore of a suction-irrigator, as a share of its outer radius [-].
 inline constexpr double kSuctionBore = 0.72;
 /// Mouth of the retrieval bag: a spring ring that begins at the tool's tip and lies ahead of it, in the plane y = 0;

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file state_fields.h  Vectors and poses as fields of a state.
+/// \file state_fields.h  Vectors, poses and random streams as fields of a state.
 #pragma once
 
 #include "trocar/core/state_archive.h"
 #include "trocar/math/pose.h"
+#include "trocar/math/random.h"
 
 namespace trocar::core {
 
@@ -13,5 +14,8 @@ template <>
 inline constexpr bool kIsPlainState<math::Quaternion> = sizeof(math::Quaternion) == 4 * sizeof(double);
 template <>
 inline constexpr bool kIsPlainState<math::Pose> = sizeof(math::Pose) == 7 * sizeof(double);
+/// A random stream is the word that it has come to.
+template <>
+inline constexpr bool kIsPlainState<math::Random> = sizeof(math::Random) == sizeof(std::uint64_t);
 
 }  // namespace trocar::core

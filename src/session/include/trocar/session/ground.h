@@ -10,6 +10,8 @@
 
 namespace trocar::session {
 
+using math::Vec3;
+
 /// What the omentum passes under, for geometry::MakeOmentum: everything but the liver, which lies on it.
 /// \param surfaces   of Simulation::Surfaces()
 /// \param positions  (nodes) of the first snapshot [m]

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 
+#include "trocar/core/state_archive.h"
 #include "trocar/instrument/trocar_kinematics.h"
 
 namespace trocar::session {
@@ -42,6 +43,7 @@ class HandMotion {
   double Jaw() const { return jaw_; }
   const Vec3& Port() const { return p_world_port_; }
 
+  void VisitState(core::StateArchive& archive);
   /// \param dt  [s], > 0 \return joints after it
   instrument::TrocarJoints Step(double dt);
 

@@ -9,6 +9,7 @@
 #include "trocar/geometry/triangle_mesh.h"
 #include "trocar/math/pose.h"
 #include "trocar/session/input.h"
+#include "trocar/session/tissue_layout.h"
 #include "trocar/surgery/flow_network.h"
 #include "trocar/training/critical_view.h"
 #include "trocar/training/triplet.h"
@@ -41,20 +42,6 @@ struct TubePiece {
   std::uint32_t a = 0, b = 0;         ///< rows of Snapshot::positions
   double radius_a = 0, radius_b = 0;  ///< [m]
   std::uint32_t surface = 0;          ///< index in Simulation::Surfaces()
-};
-
-/// One of the strands that dissection divides; constant.
-struct StrandInfo {
-  std::uint32_t a = 0, b = 0;  ///< rows of Snapshot::positions
-  enum class Kind : std::uint8_t {
-    kBed,  ///< gallbladder to liver
-    kAdhesion,
-    kTriangle,    ///< fat and fibres of the hepatocystic triangle
-    kPeritoneum,  ///< its cover, front and back
-    kEnd,         ///< of a tube in its organ
-    kBand         ///< of a training task: part of a band
-  } kind = Kind::kBed;
-  std::int32_t band = -1;  ///< index in ModelSetup::bands, or -1
 };
 
 /// Where a gallstone is.

@@ -146,7 +146,7 @@ math::Pose CalcLaparoscopePose(const LaparoscopeSetup& setup,
                                const instrument::TrocarJoints& joints) noexcept;
 
 /// What a picture should show.
-struct ViewWish {
+struct ViewRequest {
   Vec3 p_world;                ///< in its middle [m]
   double distance = 0.08;      ///< from the lens [m], > 0
   std::optional<Vec3> facing;  ///< from this side as nearly as can be, unit
@@ -155,10 +155,10 @@ struct ViewWish {
 /// Joints of a laparoscope that shows it, with the light post that does it best; nothing where none can.
 /// \note Real-time safe, as the one below.
 std::optional<instrument::TrocarJoints> FindView(const LaparoscopeSetup& setup,
-                                                 const ViewWish& wish) noexcept;
+                                                 const ViewRequest& request) noexcept;
 /// The same with the light post as it is; `facing` is not looked at.
 /// \param spin  of the light post [rad]
-std::optional<instrument::TrocarJoints> FindView(const LaparoscopeSetup& setup, const ViewWish& wish,
+std::optional<instrument::TrocarJoints> FindView(const LaparoscopeSetup& setup, const ViewRequest& request,
                                                  double spin) noexcept;
 
 /// The script's input at `time` [s], clamped to its first and last key; the home pose without a script.

@@ -14,20 +14,12 @@
 
 #include "trocar/core/result.h"
 #include "trocar/haptics/local_patch.h"
+#include "trocar/session/model_description.h"
 #include "trocar/session/operation_result.h"
 #include "trocar/session/scene.h"
 #include "trocar/session/snapshot.h"
 
 namespace trocar::session {
-
-/// A surface that can be drawn: an organ, or the skin of a duct or vessel around its centre-line nodes.
-struct SurfaceInfo {
-  std::string name;                              ///< "liver", "cystic_duct"
-  std::string material;                          ///< "liver", "gallbladder", "duct", "artery"
-  std::uint32_t first_node = 0, node_count = 0;  ///< rows of Snapshot::positions
-  std::vector<geometry::Triangle> triangles;     ///< organs: indices from 0 at first_node; tubes: empty
-  std::vector<double> radii;                     ///< (node_count) tubes only [m]
-};
 
 /// Where equilibrium is found.
 enum class SolveOn {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "trocar/core/result.h"
+#include "trocar/core/state_archive.h"
 #include "trocar/session/scene.h"
 #include "trocar/session/snapshot.h"
 
@@ -24,6 +25,9 @@ class Surgeon {
   virtual Input Act(const Snapshot& seen) = 0;
   /// Nothing is left to do, or the surgeon has given up.
   virtual bool HasFinished() const = 0;
+  /// Its memory: the plan, timers, random streams. Restored into a surgeon made from the same entry, scene and seed, it
+  /// goes on as the one that was saved, from the snapshot that one would have seen next.
+  virtual void VisitState(core::StateArchive& archive) = 0;
   /// What is being done, for a person: "ring_3: hand over".
   virtual std::string_view Doing() const = 0;
 };

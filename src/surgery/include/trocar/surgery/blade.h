@@ -23,8 +23,7 @@ enum class BladeKind : std::uint8_t {
 
 struct BladeSettings {
   BladeKind kind = BladeKind::kScissors;
-  /// Toe of the hook in the tool frame: across the shaft at the tip, as long as in the domain facts, section 1.3 [m].
-  geometry::BladeEdge p_tool_hook = {{0, 0, 0}, {0, 0.0045, 0}};
+  geometry::BladeEdge p_tool_hook = instrument::kHookToe;  ///< toe of the hook, tool frame [m]
 };
 
 /// A blade from tick to tick.

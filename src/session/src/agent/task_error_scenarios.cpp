@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What careless surgeons do, each one thing and once.
-#include "task_surgeon.h"
+#include "agent/task_surgeon.h"
 
 namespace trocar::session {
 namespace {
@@ -16,19 +16,19 @@ constexpr double kApart = 0.030;       // of hands that pull at one thing [m]
 
 /// While something is carried. \return whether the plan now is to err
 /// \param on_path  the thing is led along something and cannot be lifted away
-bool TaskSurgeon::AddFlaw(const Snapshot& seen, int hand, int object, bool on_path) {
+bool TaskSurgeon::AddErrorScenario(const Snapshot& seen, int hand, int object, bool on_path) {
   const Vec3 here = seen.objects[static_cast<std::size_t>(object)].X_world_object.translation;
   const auto rise = [&] {
     if (seen.instruments[static_cast<std::size_t>(1 - hand)].object >= 0) WithDraw(hand);
     if (!on_path) Rise(hand, kHighEnough);
   };
-  switch (flaw_) {
-    case Flaw::kDrops:
+  switch (error_scenario_) {
+    case ErrorScenario::kDrops:
       rise();
       LetGo(hand);
       WithDraw(hand);
       break;
-    case Flaw::kLoses: {
+    case ErrorScenario::kLoses: {
       const double side = hand == kLeft ? -1 : 1;
       rise();
       Carry(hand, object, here + Vec3{side * kFarOut, 0, kHighEnough});
@@ -36,31 +36,29 @@ bool TaskSurgeon::AddFlaw(const Snapshot& seen, int hand, int object, bool on_pa
       WithDraw(hand);
       break;
     }
-    case Flaw::kTouchesWire:
+    case ErrorScenario::kTouchesWire:
       Carry(hand, object, here + Vec3{0, 0, kAstray}, 0.5);
       Carry(hand, object, here, 0.5);
       break;
-    case Flaw::kPullsApart: {
+    case ErrorScenario::kPullsApart: {
       const int other = 1 - hand;
       rise();
       PickUp(other, object, other);
       Wait(0.3);
-      Reach(other, [this, other](const Snapshot&) {
-        return HandOf(other).Tip() + Vec3{other == kLeft ? -kApart : kApart, 0, 0};
-      });
+      MoveBy(other, {other == kLeft ? -kApart : kApart, 0, 0});
       break;
     }
     default:
       return false;
   }
-  flaw_ = Flaw::kNone;
+  error_scenario_ = ErrorScenario::kNone;
   return true;
 }
 
 /// Before a step. \return whether the plan now is to err
-bool TaskSurgeon::AddIdleFlaw(const Snapshot& seen) {
-  switch (flaw_) {
-    case Flaw::kPressesBoard: {
+bool TaskSurgeon::AddIdleErrorScenario(const Snapshot& seen) {
+  switch (error_scenario_) {
+    case ErrorScenario::kPressesBoard: {
       double top = seen.instruments[kLeft].X_world_tool.translation.z;
       for (std::size_t i = 0; i < scene_->objects.size(); ++i) {
         if (!scene_->objects[i].Moves())
@@ -71,14 +69,14 @@ bool TaskSurgeon::AddIdleFlaw(const Snapshot& seen) {
       ReachPoint(kLeft, tip);
       break;
     }
-    case Flaw::kLeavesView: {
+    case ErrorScenario::kLeavesView: {
       const Vec3 tip = HandOf(kRight).Tip();
       ReachPoint(kRight, tip + Vec3{kFarOut, 0, 0.03});
       Wait(4.0);
       ReachPoint(kRight, tip);
       break;
     }
-    case Flaw::kClashes: {
+    case ErrorScenario::kClashes: {
       // through the other's shaft, behind its jaws
       const Vec3 left = HandOf(kLeft).Tip(), right = HandOf(kRight).Tip();
       const Vec3 shaft = left + kBehindJaws * math::Normalized(HandOf(kLeft).Port() - left);
@@ -87,7 +85,7 @@ bool TaskSurgeon::AddIdleFlaw(const Snapshot& seen) {
       ReachPoint(kRight, right);
       break;
     }
-    case Flaw::kSmearsLens: {
+    case ErrorScenario::kSmearsLens: {
       for (const Region& region : scene_->task->regions) {
         if (region.mark == RegionMark::kNone) continue;
         Look(region, 0.010);
@@ -96,7 +94,7 @@ bool TaskSurgeon::AddIdleFlaw(const Snapshot& seen) {
       Wait(0.5);
       break;
     }
-    case Flaw::kDawdles:  // for ever
+    case ErrorScenario::kDawdles:  // for ever
       ReachPoint(kLeft, HandOf(kLeft).Tip() + Vec3{0.004, 0, 0});
       ReachPoint(kLeft, HandOf(kLeft).Tip());
       Wait(2.0);
@@ -105,7 +103,7 @@ bool TaskSurgeon::AddIdleFlaw(const Snapshot& seen) {
     default:
       return false;
   }
-  flaw_ = Flaw::kNone;
+  error_scenario_ = ErrorScenario::kNone;
   return true;
 }
 

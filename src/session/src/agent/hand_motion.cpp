@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "trocar/math/random.h"
+#include "trocar/math/state_fields.h"
 
 namespace trocar::session {
 namespace {
@@ -33,6 +34,20 @@ HandMotion::HandMotion(const Vec3& p_world_port, const instrument::TrocarJoints&
   }
   random_ = random.NextWord();
   from_ = to_ = tip_ = instrument::CalcToolPose(p_world_port, start).translation;
+}
+
+void HandMotion::VisitState(core::StateArchive& archive) {
+  archive.Field("random", random_);
+  archive.Field("time", time_);
+  archive.Field("from", from_);
+  archive.Field("to", to_);
+  archive.Field("tip", tip_);
+  archive.Field("reach_time", reach_time_);
+  archive.Field("reach_duration", reach_duration_);
+  archive.Field("spin", spin_);
+  archive.Field("spin_goal", spin_goal_);
+  archive.Field("jaw", jaw_);
+  archive.Field("jaw_goal", jaw_goal_);
 }
 
 void HandMotion::MoveTo(const Vec3& p_world_tip, double hurry) {

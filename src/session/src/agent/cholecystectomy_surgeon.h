@@ -6,27 +6,29 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <deque>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
-#include "division_plan.h"
-#include "heat_memory.h"
-#include "patient_tissue.h"
-#include "spread_plan.h"
-#include "task_surgeon.h"
+#include "agent/division_plan.h"
+#include "agent/heat_memory.h"
+#include "agent/operation_plan.h"
+#include "agent/spread_plan.h"
+#include "agent/task_surgeon.h"
 #include "trocar/collision/segment_distance.h"
 #include "trocar/collision/triangle_tree.h"
-#include "trocar/session/simulation.h"
+#include "trocar/session/model_description.h"
 #include "trocar/session/surgeon.h"
 
 namespace trocar::session {
 
 /// The one thing that a careless surgeon does wrong; kNone: the whole operation, well done.
-enum class OperationFlaw {
+enum class OperationErrorScenario : std::uint8_t {
   kNone,
   kClipsMainDuct,
   kCutsMainDuct,
@@ -53,92 +55,39 @@ enum class OperationFlaw {
 
 class CholecystectomySurgeon final : public Surgeon {
  public:
-  CholecystectomySurgeon(std::shared_ptr<const Scene> scene, const SurgeonSkill& skill, OperationFlaw flaw,
-                         std::uint64_t seed);
+  CholecystectomySurgeon(std::shared_ptr<const Scene> scene, const SurgeonSkill& skill,
+                         OperationErrorScenario error_scenario, std::uint64_t seed);
 
   Input Act(const Snapshot& seen) override;
   bool HasFinished() const override { return has_finished_; }
   std::string_view Doing() const override { return doing_; }
+  void VisitState(core::StateArchive& archive) override;
 
  private:
-  using Place = std::function<Vec3(const Snapshot&)>;
   static constexpr int kHoldTries = 3;
-  using Nodes = std::function<bool(std::uint32_t)>;
-  /// The other hand's part: it draws on what it holds, so that the fibres are stretched and lie open.
-  struct Traction {
-    double most = 0;         ///< way in all; 0: it rests [m]
-    double most_pull = 0;    ///< above which it gives way [N]
-    double enough_pull = 0;  ///< below which it draws on [N]
-    std::vector<Vec3> ways;  ///< unit vectors, in turn when no fibre lies open any more
-    std::size_t way = 0;
-    Vec3 p_hold;       ///< of the tip, when it began [m]
-    double drawn = 0;  ///< [m]
-    bool is_swinging = false;
-    int swings_left = 0;
-    double seconds = 0;             ///< since the last swing, or since it was worth its while [s]
-    std::size_t fibres_before = 0;  ///< that were left then
-  };
-  /// The fibre that the hook goes to, or has on its toe.
-  struct HookTarget {
-    std::int32_t fibre = -1;                    ///< among the dissection's
-    double spin = 0;                            ///< of the hook [rad]
-    std::deque<Vec3> path;                      ///< of the tip, after where it goes now [m]
-    Vec3 aside;                                 ///< by which the tip is led to the fibre [m]
-    double seconds = 0, apart = 0, heated = 0;  ///< in all, beside it, with current [s]
-  };
-  /// What is dissected with the hook, until none is left that can be reached.
-  struct DissectionGoal {
-    std::string what;
-    std::vector<std::uint32_t> strands;
-    std::vector<double> order;  ///< (strands) what comes first [m]
-    double enough = 1.0;        ///< share that is to be parted [-]
-    std::function<bool(const Snapshot&)> is_enough = {};
-    double traction = 0;  ///< see Traction::most
-    Vec3 way = {};        ///< of it, unit vector
-    Nodes may_hold = {};  ///< what is free already: it bears a stronger pull
-  };
-  struct Dissection {
-    DissectionGoal goal;
-    std::vector<std::uint8_t> attempts;  ///< (strands)
-    std::size_t left = 0;                ///< fibres
-    double parted_at_reset = 0;
-    HookTarget target;
-    Traction traction;
-    bool waits = false;      ///< for a place to cool
-    bool is_bold = false;    ///< pushes on to fibres that do not lie open
-    double backing_off = 0;  ///< [s]
-    int holds_left = 4;      ///< new holds of a slipped left hand
-  };
-  /// Fibres that are parted bluntly, by opening jaws among them.
-  struct Spreading {
-    std::vector<std::uint32_t> strands;
-    std::vector<double> weights;  ///< (strands)
-    std::vector<std::uint8_t> tries;
-    std::function<bool(const Snapshot&)> is_enough;
-    enum class Stage { kChoose, kApproach, kEnter, kOpen } stage = Stage::kChoose;
-    SpreadPose pose;
-    std::size_t left_before = 0;
-    std::uint32_t aim = 0;  ///< among strands
-    int fruitless = 0;
-    std::string what;
-  };
-  /// Clips and cuts of tubes, until each is divided.
-  struct Division {
-    std::vector<std::size_t> tubes;
-    std::vector<std::vector<double>> avoid;  ///< (tubes) arcs at which it has failed [m]
-    int acts_left = 0;
-    double care = 1.0;  ///< see DivisionField
-  };
+  static constexpr double kCleared = 0.91;  // of the triangle: a little more than the view asks [-]
+  static constexpr std::uint64_t kNever = ~std::uint64_t{0};
 
-  void Learn(PatientTissue tissue);
+  void Learn(ModelDescription model);
   void PlanOperation();
-  void PlanFlaw(OperationFlaw flaw);
+  void PlanErrorScenario(OperationErrorScenario error_scenario);
   void FreeGallbladder();
 
+  // what is under way
+  void Begin(const OperationAct& act, const Snapshot& seen);
+  bool IsDone(const OperationAct& act, const Snapshot& seen);
+  /// Plans on; what it adds is done next.
+  void PlanOn(const OperationAct& act, const Snapshot& seen);
+  OperationAct& Add(OperationAct::Kind kind, std::string doing, double patience);
+  /// Adds an act that plans on when it is reached, from what is seen then.
+  OperationAct& Decide(OperationAct::Kind kind, std::string doing) {
+    return Add(kind, std::move(doing), 1.0);
+  }
+  Vec3 Find(const Place& place, const Snapshot& seen) const;
+  Vec3 FindUnhooked(const Place& place, const Snapshot& seen) const;
+
   // verbs
-  void Add(std::string doing, std::function<void(const Snapshot&)> begin,
-           std::function<bool(const Snapshot&)> is_done, double patience);
-  void Reach(int hand, Place tip, double hurry = 1);
+  void Reach(int hand, const Place& tip, double hurry = 1);
   void Jaw(int hand, double share);
   void Wait(double seconds);
   void Exchange(int hand, instrument::ToolKind kind, bool over_field = true);
@@ -148,10 +97,12 @@ class CholecystectomySurgeon final : public Surgeon {
   void LetGo(int hand);
   void Ease(int hand);
   void LineUp(const std::string& what, std::size_t tube, double share, double jaw);
+  void LineUpTool(const OperationAct& act, const Snapshot& seen);
   void PlaceClip(std::size_t tube, double share, double beyond = 0.5, int tries = 2);
   void CloseClip(std::size_t tube, double share);
   void CutTube(std::size_t tube, double share);
   void Burn(int hand, const Place& at, double seconds);
+  void SetJaw(std::string doing, double jaw);
   void Dissect(DissectionGoal goal);
   bool GoOnDissecting(Dissection& work, const Snapshot& seen);
   void WorkOnFibre(Dissection& work, const Snapshot& seen);
@@ -164,27 +115,43 @@ class CholecystectomySurgeon final : public Surgeon {
   void GoOnSwinging(Traction& traction, const Snapshot& seen);
   Vec3 HookStand(const Snapshot& seen, std::uint32_t strand, double spin) const;
   void Approach(HookTarget& target, const Vec3& tip);
-  void LookAt(Place target, double turn, double distance);
-  /// Plans on when it is reached, from what is seen then.
-  void Decide(std::string doing, std::function<void(const Snapshot&)> plan);
-  /// \param may  nodes that may be held; none: any
-  void HoldOn(const Place& near, int tries = kHoldTries, const Nodes& may = {});
-  void Spread(std::shared_ptr<Spreading> work);
+  void LookAt(const Place& target, double turn, double distance);
+  void HoldOn(const Place& near, int tries = kHoldTries, const HoldFilter& may = {});
+  void Spread();
   bool GoOnSpreading(Spreading& work, const Snapshot& seen);
-  void GoOn(std::shared_ptr<Dissection> work);
+  void GoOn();
+  bool GoOnOrHoldAnew(const Snapshot& seen);
+  bool IsEnough(const DissectionGoal& goal, const Snapshot& seen) const;
 
   // the operation's parts
+  void ChooseHold(const OperationAct& act, const Snapshot& seen);
+  void TakeHold(const OperationAct& act, const Snapshot& seen);
+  void CheckHold(const OperationAct& act, const Snapshot& seen);
   void ClearTriangle(int rounds);
+  void PlanTriangle(const OperationAct& act, const Snapshot& seen);
+  void CheckTriangle(const OperationAct& act, const Snapshot& seen);
+  void PlanLowerThird(const OperationAct& act, const Snapshot& seen);
+  void PlanCriticalView(const OperationAct& act, const Snapshot& seen);
+  void PlanLookFromSide(const OperationAct& act, const Snapshot& seen);
+  void PlanBed(const OperationAct& act, const Snapshot& seen);
+  void CheckPlacedClip(const OperationAct& act, const Snapshot& seen);
   void FreeLowerThird(int rounds);
   void ShowCriticalView(int rounds);
   void LookFromSide(int side, int tries);
   std::optional<instrument::TrocarJoints> FindSideView(const Snapshot& seen, int side);
   std::optional<std::size_t> FindExtraArtery(const Snapshot& seen);
   void Divide(std::vector<std::size_t> tubes, int rounds = 3);
-  void GoOnDividing(const std::shared_ptr<Division>& work, const Snapshot& seen);
-  void ClipAt(const std::shared_ptr<Division>& work, std::size_t which, double arc);
-  void CloseWhenBetween(const std::shared_ptr<Division>& work, std::size_t which, double arc, int tries);
-  void CutAt(const std::shared_ptr<Division>& work, std::size_t which, double arc);
+  void PlanDivision(const OperationAct& act, const Snapshot& seen);
+  void GoOnDividing(const Snapshot& seen);
+  void ClipAt(std::size_t which, double arc);
+  void LineUpClip(const OperationAct& act, const Snapshot& seen);
+  void LineUpScissors(const OperationAct& act, const Snapshot& seen);
+  void CloseWhenBetween(std::size_t which, double arc, int tries);
+  void CheckClip(const OperationAct& act, const Snapshot& seen);
+  void CutAt(std::size_t which, double arc);
+  void CheckBlades(const OperationAct& act, const Snapshot& seen);
+  void CheckBeforeCut(const OperationAct& act, const Snapshot& seen);
+  void PlanCoagulation(const OperationAct& act, const Snapshot& seen);
   void Withdraw();
   void StopBleeding(int rounds = 4);
   void Take(instrument::ToolKind kind);
@@ -199,6 +166,9 @@ class CholecystectomySurgeon final : public Surgeon {
   double EndDistance(const Snapshot& seen, const collision::Segment& segment) const;
   double CalcAzimuth(const Snapshot& seen, const Vec3& eye) const;
   bool AreTubesBare(const Snapshot& seen) const;
+  bool IsTriangleClear(const Snapshot& seen) const;
+  bool MayHold(const HoldFilter& may, std::uint32_t node) const;
+  Vec3 BedAxis() const;  // from the infundibulum to the fundus, at rest
   std::vector<std::uint32_t> PeelStrands(const Snapshot& seen, const std::vector<std::uint32_t>& bed) const;
   Place MiddleOf(std::vector<std::uint32_t> strands) const;
   double ShareLeft(const Snapshot& seen, const std::vector<std::uint32_t>& strands) const;
@@ -210,7 +180,7 @@ class CholecystectomySurgeon final : public Surgeon {
                         double care);
   double Clearance(const Snapshot& seen, const collision::Segment& segment);
   std::uint32_t FindHold(const Snapshot& seen, const Vec3& near, const std::vector<std::uint32_t>& avoid,
-                         const Nodes& may);
+                         const HoldFilter& may);
   void FollowWithCamera(const Snapshot& seen);
   void AimCamera(const Vec3& p, const Vec3& facing, double distance);
   Vec3 TubePoint(const Snapshot& seen, std::size_t tube, double share) const;
@@ -256,10 +226,14 @@ class CholecystectomySurgeon final : public Surgeon {
   std::vector<std::uint32_t> main_ducts_;       // of the ducts among them
   std::vector<std::uint32_t> careful_nodes_;    // of those arteries, and of small ducts of the bed
   std::vector<collision::TriangleTree> trees_;  // (organs)
-  std::uint64_t trees_tick_ = 0;                // of the snapshot that they follow
+  std::uint64_t trees_tick_ = kNever;           // of the snapshot that they follow
   std::uint32_t neck_ = 0, hold_ = 0, fundus_ = 0, liver_node_ = 0;
-  Vec3 bed_normal_;                          // from the liver towards the gallbladder, at rest
-  std::deque<SurgicalAct> acts_, inserted_;  // the latter by the act that is under way, to be done next
+  Vec3 bed_normal_;  // from the liver towards the gallbladder, at rest
+  std::deque<OperationAct> acts_,
+      inserted_;           // the latter by the act that is under way, to be done next; empty between ticks
+  Dissection dissection_;  // that is under way, or planned next
+  Spreading spreading_;
+  Division division_;
   bool has_begun_ = false, has_finished_ = false;
   double act_seconds_ = 0;
   Place field_;                  // what the picture is about

@@ -2,7 +2,7 @@
 // What careless surgeons do to tissue, each one thing and once.
 #include <algorithm>
 
-#include "task_surgeon.h"
+#include "agent/task_surgeon.h"
 
 namespace trocar::session {
 namespace {
@@ -36,7 +36,7 @@ Vec3 TaskSurgeon::FindAstray(const Vec3& p_rest) const {
 }
 
 /// Before a step. \return whether the plan now is to err
-bool TaskSurgeon::AddTissueFlaw(const Snapshot& seen, const Condition& wanted) {
+bool TaskSurgeon::AddTissueErrorScenario(const Snapshot& seen, const Condition& wanted) {
   const Task& task = *scene_->task;
   const auto centre_of = [&](const Condition& c) {
     return task.regions[static_cast<std::size_t>(c.regions.front())].centre;
@@ -49,34 +49,32 @@ bool TaskSurgeon::AddTissueFlaw(const Snapshot& seen, const Condition& wanted) {
       }
     }
   };
-  switch (flaw_) {
-    case Flaw::kClipsAstray:
+  switch (error_scenario_) {
+    case ErrorScenario::kClipsAstray:
       CloseClip(seen, FindAstray(centre_of(wanted)), 0.5);
       break;
-    case Flaw::kCrossesClips:
+    case ErrorScenario::kCrossesClips:
       CloseClip(seen, centre_of(wanted), 0.5);
       CloseClip(seen, centre_of(wanted), 0.5);
       break;
-    case Flaw::kClipsPartly:
+    case ErrorScenario::kClipsPartly:
       CloseClip(seen, centre_of(wanted), kAtTheTips);
       break;
-    case Flaw::kDropsClip: {
+    case ErrorScenario::kDropsClip: {
       const int hand = TakeTool(seen, instrument::ToolKind::kClipApplier);
       const TissueSpot spot = FindOnTube(centre_of(wanted));
       LineUp(hand, spot, instrument::FindTool("clip_applier")->max_jaw);
       Advance(hand, spot, -kInTheAir);
-      Add(
-          "close the clip", [this, hand](const Snapshot&) { HandOf(hand).SetJaw(0.0); },
-          [this](const Snapshot&) { return act_seconds_ > 0.7; });
+      SetJaw("close the clip", hand, 0.0, 0.7);
       break;
     }
-    case Flaw::kCutsAstray:
+    case ErrorScenario::kCutsAstray:
       cut(true);
       break;
-    case Flaw::kCutsUnclipped:
+    case ErrorScenario::kCutsUnclipped:
       cut(false);
       break;
-    case Flaw::kBurnsSpared: {
+    case ErrorScenario::kBurnsSpared: {
       const auto& bands = scene_->model->bands;
       const auto is_wanted = [&](std::size_t band) {
         return std::any_of(task.goals.begin(), task.goals.end(), [&](const Goal& goal) {
@@ -91,16 +89,16 @@ bool TaskSurgeon::AddTissueFlaw(const Snapshot& seen, const Condition& wanted) {
       }
       break;
     }
-    case Flaw::kCutsAside:
+    case ErrorScenario::kCutsAside:
       CutCircle(seen, wanted.sheet, -kBesideLine, kShortCut);
       break;
-    case Flaw::kBurnsAir: {
+    case ErrorScenario::kBurnsAir: {
       const int hand = TakeTool(seen, instrument::ToolKind::kHook);
       ReachPoint(hand, HandOf(hand).Tip() + Vec3{0, 0, kAside});
       PressPedal(hand, 1.0);
       break;
     }
-    case Flaw::kBurnsUnseen: {
+    case ErrorScenario::kBurnsUnseen: {
       const int hand = TakeTool(seen, instrument::ToolKind::kHook);
       const Vec3 tip = HandOf(hand).Tip();
       ReachPoint(hand, tip + Vec3{hand == kLeft ? -kOutOfPicture : kOutOfPicture, 0, 0});
@@ -111,7 +109,7 @@ bool TaskSurgeon::AddTissueFlaw(const Snapshot& seen, const Condition& wanted) {
     default:
       return false;
   }
-  flaw_ = Flaw::kNone;
+  error_scenario_ = ErrorScenario::kNone;
   return true;
 }
 

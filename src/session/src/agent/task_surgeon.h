@@ -3,11 +3,14 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <deque>
-#include <functional>
 #include <memory>
 #include <string>
+#include <utility>
+#include <vector>
 
+#include "trocar/core/state_archive.h"
 #include "trocar/math/random.h"
 #include "trocar/session/hand_motion.h"
 #include "trocar/session/surgeon.h"
@@ -23,7 +26,7 @@ struct SurgeonSkill {
 };
 
 /// The one thing that a careless surgeon does wrong, once.
-enum class Flaw {
+enum class ErrorScenario : std::uint8_t {
   kNone,
   kDrops,          ///< opens the jaws in the air
   kLoses,          ///< carries a thing out of the picture and drops it there
@@ -46,21 +49,66 @@ enum class Flaw {
   kDawdles         ///< does not get on before the time is over
 };
 
-/// One thing to do: begun once, then waited for.
-struct SurgicalAct {
+/// A place on a duct or a band, by the rows of Snapshot::positions between which it was at rest.
+struct TissueSpot {
+  std::uint32_t a = 0, b = 0;
+  double t = 0;
+
+  Vec3 At(const Snapshot& seen) const { return math::Lerp(seen.positions[a], seen.positions[b], t); }
+  Vec3 Along(const Snapshot& seen) const { return math::Normalized(seen.positions[b] - seen.positions[a]); }
+  void VisitState(core::StateArchive& archive);
+};
+
+/// One thing to do: begun once, then waited for. A value, so that a plan can be saved.
+struct TaskAct {
+  enum class Kind : std::uint8_t {
+    kReachPoint,     ///< the tip goes to `p`
+    kReachGrip,      ///< to the grip of `object`, `p` beside it
+    kReachSpot,      ///< `amount` beyond `spot`, along the shaft
+    kMoveBy,         ///< by `p`
+    kGoBack,         ///< by `amount`, along the shaft
+    kCarry,          ///< `object`, which is held, goes to `p`
+    kReachFor,       ///< open jaws wait before the grip of `object`
+    kCloseOn,        ///< until `object` is held
+    kLetGo,          ///< opens the jaws
+    kSetJaw,         ///< to `amount`, for `seconds`
+    kLook,           ///< the camera goes to `camera`
+    kWait,           ///< for `seconds`
+    kPass,           ///< nothing, in one tick
+    kExchangeTool,   ///< for `tool`
+    kLineUp,         ///< before `spot`, the jaws across it and open by `amount`
+    kPressPedal,     ///< to coagulate, for `seconds`
+    kPressCutPedal,  ///< and leave the foot on it
+    kLiftFoot,       ///< off that pedal
+    kFollowSheet,    ///< the hook's toe, which points down, goes to `p`
+    kReachBand,      ///< the hook's toe along `q`, which will be at `p`, waits before it
+    kBurnBand        ///< until `object`, a band, parts
+  } kind = Kind::kPass;
   std::string doing;
-  std::function<void(const Snapshot&)> begin;
-  std::function<bool(const Snapshot&)> is_done;
   double patience = 6.0;  ///< then the whole plan is made anew [s]
+  std::int32_t hand = kLeft;
+  std::int32_t object = -1;  ///< Scene::objects, or a band
+  std::int32_t grip = 0;     ///< of SceneObject::grips
+  std::uint8_t tool = 0;     ///< of the hand's tray
+  Vec3 p, q;                 ///< [m]
+  TissueSpot spot;
+  double hurry = 1;    ///< times the skill's speed
+  double amount = 0;   ///< [m] or [rad]
+  double seconds = 0;  ///< [s]
+  instrument::TrocarJoints camera;
+
+  void VisitState(core::StateArchive& archive);
 };
 
 class TaskSurgeon final : public Surgeon {
  public:
-  TaskSurgeon(std::shared_ptr<const Scene> scene, const SurgeonSkill& skill, Flaw flaw, std::uint64_t seed);
+  TaskSurgeon(std::shared_ptr<const Scene> scene, const SurgeonSkill& skill, ErrorScenario error_scenario,
+              std::uint64_t seed);
 
   Input Act(const Snapshot& seen) override;
   bool HasFinished() const override { return has_finished_; }
   std::string_view Doing() const override { return doing_; }
+  void VisitState(core::StateArchive& archive) override;
 
  private:
   // plans: task_surgeon.cpp
@@ -71,9 +119,17 @@ class TaskSurgeon final : public Surgeon {
   bool IsLost(const Snapshot& seen, const Goal& goal) const;
   int ChooseHand(const Snapshot& seen, int object, int wanted) const;
   // verbs: task_verbs.cpp
-  void Add(std::string doing, std::function<void(const Snapshot&)> begin,
-           std::function<bool(const Snapshot&)> is_done, double patience = 6.0);
-  void Reach(int hand, const std::function<Vec3(const Snapshot&)>& p_world_tip, double hurry = 1);
+  void Begin(const TaskAct& act, const Snapshot& seen);
+  bool IsDone(const TaskAct& act, const Snapshot& seen);
+  void BeginReachFor(const TaskAct& act, const Snapshot& seen);
+  void BeginLineUp(const TaskAct& act, const Snapshot& seen);
+  void BeginFollowSheet(const TaskAct& act);
+  void BeginReachBand(const TaskAct& act);
+  void Add(TaskAct act) { acts_.push_back(std::move(act)); }
+  /// Adds one of the kinds that move a tip. \return it, for what else it needs
+  TaskAct& Reach(TaskAct::Kind kind, int hand, double hurry = 1);
+  void MoveBy(int hand, const Vec3& by);
+  void SetJaw(std::string doing, int hand, double jaw, double seconds);
   void ReachPoint(int hand, const Vec3& p_world_tip, double hurry = 1);
   void PickUp(int hand, int object, int grip);
   void Carry(int hand, int object, const Vec3& p_world_object, double hurry = 1);
@@ -83,13 +139,6 @@ class TaskSurgeon final : public Surgeon {
   void Look(const Region& region, double distance);
   void Wait(double seconds);
   // verbs and plans for tissue: task_tissue_verbs.cpp
-  /// A place on a duct or a band, by the rows of Snapshot::positions between which it was at rest.
-  struct TissueSpot {
-    std::uint32_t a = 0, b = 0;
-    double t = 0;
-    Vec3 At(const Snapshot& seen) const { return math::Lerp(seen.positions[a], seen.positions[b], t); }
-    Vec3 Along(const Snapshot& seen) const { return math::Normalized(seen.positions[b] - seen.positions[a]); }
-  };
   TissueSpot FindOnTube(const Vec3& p_rest) const;
   void PlanTissue(const Snapshot& seen, const Condition& wanted);
   int TakeTool(const Snapshot& seen, instrument::ToolKind kind);
@@ -104,10 +153,11 @@ class TaskSurgeon final : public Surgeon {
   void FollowSheet(int hand, const Vec3& p_sheet, double hurry);
   Vec3 FindTip(const Snapshot& seen, int hand, int object, const Vec3& p_world_object) const;
   Vec3 GripTip(const Snapshot& seen, int hand, int object, int grip, double back) const;
-  // errors: task_flaws.cpp
-  bool AddFlaw(const Snapshot& seen, int hand, int object, bool on_path = false);
-  bool AddIdleFlaw(const Snapshot& seen);
-  bool AddTissueFlaw(const Snapshot& seen, const Condition& wanted);  // task_tissue_flaws.cpp
+  // errors: task_error_scenarios.cpp
+  bool AddErrorScenario(const Snapshot& seen, int hand, int object, bool on_path = false);
+  bool AddIdleErrorScenario(const Snapshot& seen);
+  bool AddTissueErrorScenario(const Snapshot& seen,
+                              const Condition& wanted);  // task_tissue_error_scenarios.cpp
   Vec3 FindAstray(const Vec3& p_rest) const;
 
   void MoveCamera(const instrument::TrocarJoints& to);
@@ -116,15 +166,15 @@ class TaskSurgeon final : public Surgeon {
 
   std::shared_ptr<const Scene> scene_;
   SurgeonSkill skill_;
-  Flaw flaw_;
+  ErrorScenario error_scenario_;
   math::Random random_;
   std::array<HandMotion, kHandCount> hands_;
   std::array<HandControls, kHandCount> controls_;
-  std::vector<Vec3> start_;              // Snapshot::positions when it began
-  std::vector<TubePiece> start_pieces_;  // and its ducts
+  std::vector<Vec3> start_;                                 // Snapshot::positions when it began
+  std::vector<std::array<std::uint32_t, 2>> start_pieces_;  // and the rows of each piece of its ducts
   instrument::TrocarJoints camera_, camera_from_, camera_to_;
   double camera_time_ = 0, camera_duration_ = 0;
-  std::deque<SurgicalAct> acts_;
+  std::deque<TaskAct> acts_;
   bool has_begun_ = false;
   double act_seconds_ = 0, pause_ = 0;
   int fruitless_plans_ = 0;

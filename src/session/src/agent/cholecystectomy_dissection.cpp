@@ -5,8 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include "cholecystectomy_surgeon.h"
-#include "trocar/surgery/blade.h"
+#include "agent/cholecystectomy_surgeon.h"
 
 namespace trocar::session {
 namespace {
@@ -47,6 +46,7 @@ constexpr double kSlipped = 0.5;  // after which the other hand takes hold anew 
 /// With fewer fibres parted in so long, the other hand swings elsewhere [s].
 constexpr std::size_t kHardly = 4;
 constexpr double kSlowSeconds = 12.0;
+constexpr double kBedStep = 0.2;  // of the bed's fibres, after which the hold is chosen anew [-]
 /// So few fibres, where the hook does not come to them, are parted by the other hand's pull.
 constexpr std::size_t kLastFibres = 10;
 /// Share parted after which all is tried again, while there is something to do and when there is not [-].
@@ -56,7 +56,7 @@ constexpr double kMoreParted = 0.03, kLittleParted = 0.004;
 
 /// Where the tip stands when the middle of the hook's toe is at a point.
 Vec3 CholecystectomySurgeon::HookTip(const Vec3& at) const {
-  const geometry::BladeEdge toe = surgery::BladeSettings().p_tool_hook;
+  const geometry::BladeEdge& toe = instrument::kHookToe;
   return at - 0.5 * math::Distance(toe.a, toe.b) * HookToe(at, hands_[kRight].Spin());
 }
 
@@ -71,7 +71,7 @@ Vec3 CholecystectomySurgeon::HookToe(const Vec3& at, double spin) const {
 CholecystectomySurgeon::HookWay CholecystectomySurgeon::FindHookWay(const Snapshot& seen, const Vec3& at) {
   const HandMotion& hand = hands_[kRight];
   const Vec3 out = math::Normalized(hand.Port() - at);
-  const geometry::BladeEdge toe = surgery::BladeSettings().p_tool_hook;
+  const geometry::BladeEdge& toe = instrument::kHookToe;
   const double toe_length = math::Distance(toe.a, toe.b);
   HookWay best;
   double best_worth = -std::numeric_limits<double>::infinity();
@@ -97,35 +97,42 @@ Vec3 CholecystectomySurgeon::HookStand(const Snapshot& seen, std::uint32_t stran
 }
 
 void CholecystectomySurgeon::Dissect(DissectionGoal goal) {
-  auto work = std::make_shared<Dissection>();
-  work->attempts.assign(goal.strands.size(), 0);
-  work->traction = PlanTraction(goal);
-  work->goal = std::move(goal);
-  GoOn(std::move(work));
+  dissection_ = {};
+  dissection_.attempts.assign(goal.strands.size(), 0);
+  dissection_.traction = PlanTraction(goal);
+  dissection_.goal = std::move(goal);
+  GoOn();
 }
 
-void CholecystectomySurgeon::GoOn(std::shared_ptr<Dissection> work) {
-  Add(
-      "dissect " + work->goal.what,
-      [this, work](const Snapshot&) {
-        work->traction.p_hold = HandOf(kLeft).Tip();
-        work->traction.drawn = 0;
-        unheld_seconds_ = 0;
-      },
-      [this, work](const Snapshot& seen) {
-        unheld_seconds_ = seen.instruments[kLeft].is_grasping ? 0.0 : unheld_seconds_ + scene_->tick_seconds;
-        if (unheld_seconds_ > kSlipped && work->holds_left > 0) {
-          --work->holds_left;
-          LeaveFibre(*work);
-          std::swap(acts_, inserted_);
-          HoldOn([this](const Snapshot& now) { return HookPoint(now); }, kHoldTries, work->goal.may_hold);
-          GoOn(work);
-          std::swap(acts_, inserted_);
-          return true;
-        }
-        return GoOnDissecting(*work, seen);
-      },
-      1200.0);
+void CholecystectomySurgeon::GoOn() {
+  Add(OperationAct::Kind::kDissect, "dissect " + dissection_.goal.what, 1200.0);
+}
+
+/// Goes on; when the left hand has slipped, it takes hold anew first.
+bool CholecystectomySurgeon::GoOnOrHoldAnew(const Snapshot& seen) {
+  unheld_seconds_ = seen.instruments[kLeft].is_grasping ? 0.0 : unheld_seconds_ + scene_->tick_seconds;
+  if (unheld_seconds_ <= kSlipped || dissection_.holds_left <= 0) return GoOnDissecting(dissection_, seen);
+  --dissection_.holds_left;
+  LeaveFibre(dissection_);
+  std::swap(acts_, inserted_);
+  HoldOn(Place::Of(Place::Kind::kRightTip), kHoldTries, dissection_.goal.may);
+  GoOn();
+  std::swap(acts_, inserted_);
+  return true;
+}
+
+bool CholecystectomySurgeon::IsEnough(const DissectionGoal& goal, const Snapshot& seen) const {
+  switch (goal.until) {
+    case DissectionGoal::Until::kParted:
+      return false;
+    case DissectionGoal::Until::kTriangleClear:
+      return IsTriangleClear(seen);
+    case DissectionGoal::Until::kLowerThirdFree:
+      return seen.operation.critical_view.criteria[1] == 2;
+    case DissectionGoal::Until::kBedStep:
+      return ShareLeft(seen, goal.strands) < goal.left_before - kBedStep;
+  }
+  return false;
 }
 
 /// Where the right hand's tip is.
@@ -135,8 +142,7 @@ Vec3 CholecystectomySurgeon::HookPoint(const Snapshot& seen) const {
 
 collision::Segment CholecystectomySurgeon::HookWire(const Snapshot& seen) const {
   const Pose& X = seen.instruments[kRight].X_world_tool;
-  const surgery::BladeSettings blade;
-  return {X * blade.p_tool_hook.a, X * blade.p_tool_hook.b};
+  return {X * instrument::kHookToe.a, X * instrument::kHookToe.b};
 }
 
 collision::SegmentSegmentPoints CholecystectomySurgeon::HookGap(const Snapshot& seen,
@@ -311,8 +317,8 @@ bool CholecystectomySurgeon::GoOnDissecting(Dissection& work, const Snapshot& se
   const bool is_slow = is_over && traction.fibres_before - work.left < kHardly;
   const bool is_stuck = (work.target.fibre < 0 && !work.waits) || is_slow;
   const bool has_tried = is_stuck && traction.swings_left == 0;
-  const bool is_enough = parted >= work.goal.enough || (work.goal.is_enough && work.goal.is_enough(seen));
-  if (!is_enough && is_stuck && is_drawing && work.goal.may_hold && work.left <= kLastFibres) {
+  const bool is_enough = parted >= work.goal.enough || IsEnough(work.goal, seen);
+  if (!is_enough && is_stuck && is_drawing && work.goal.IsFlapHeld() && work.left <= kLastFibres) {
     LeaveFibre(work);
     return false;
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "heat_memory.h"
+#include "agent/heat_memory.h"
 
 #include <algorithm>
 #include <cmath>

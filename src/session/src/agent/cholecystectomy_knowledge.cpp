@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "cholecystectomy_surgeon.h"
+#include "agent/cholecystectomy_surgeon.h"
 #include "trocar/tissue/rest_frame.h"
 
 namespace trocar::session {
@@ -21,6 +21,9 @@ constexpr double kJawsBeyond = 0.005;                    // of a grasper's tip b
 constexpr double kFacing = 0.006;                        // worth of wall that faces the port [m]
 constexpr double kShaftClear = 0.006, kShaftWay = 0.10;  // of the shaft, and the length that is looked at [m]
 constexpr double kSameHold = 0.004;                      // [m]
+constexpr double kInfundibulum = 0.012;                  // of the gallbladder, from the neck on [m]
+constexpr double kLeastFlap = 0.012,
+                 kMostFlap = 0.035;  // of a hold from where it peels off, along what is free [m]
 
 }  // namespace
 
@@ -107,6 +110,22 @@ bool CholecystectomySurgeon::AreTubesBare(const Snapshot& seen) const {
       length += math::Distance(seen.positions[nodes[k - 1]], seen.positions[nodes[k]]);
     return length >= kBare;
   });
+}
+
+bool CholecystectomySurgeon::IsTriangleClear(const Snapshot& seen) const {
+  return seen.operation.facts.cleared_share >= kCleared && AreTubesBare(seen);
+}
+
+Vec3 CholecystectomySurgeon::BedAxis() const {
+  return math::Normalized(rest_[fundus_] - rest_[neck_]);
+}
+
+bool CholecystectomySurgeon::MayHold(const HoldFilter& may, std::uint32_t node) const {
+  if (may.kind == HoldFilter::Kind::kAny) return true;
+  const double along = math::Dot(rest_[node] - rest_[neck_], BedAxis());
+  if (may.kind == HoldFilter::Kind::kInfundibulum) return along < kInfundibulum;
+  const double before = may.peels - along;
+  return before > kLeastFlap && before < kMostFlap;
 }
 
 /// Bed and adhesions over a share of the bed's length, from the infundibulum on.
@@ -211,7 +230,8 @@ DivisionField CholecystectomySurgeon::FieldOf(const Snapshot& seen, std::size_t 
 
 /// A node of the gallbladder that a grasper can take without the liver, some way off what lies at `near`.
 std::uint32_t CholecystectomySurgeon::FindHold(const Snapshot& seen, const Vec3& near,
-                                               const std::vector<std::uint32_t>& avoid, const Nodes& may) {
+                                               const std::vector<std::uint32_t>& avoid,
+                                               const HoldFilter& may) {
   const auto gallbladder = static_cast<std::size_t>(scene_->patient.FindOrgan("gallbladder"));
   const auto liver = static_cast<std::size_t>(scene_->patient.FindOrgan("liver"));
   const SurfaceInfo& surface = surfaces_[gallbladder];
@@ -230,7 +250,7 @@ std::uint32_t CholecystectomySurgeon::FindHold(const Snapshot& seen, const Vec3&
   double best_worth = -std::numeric_limits<double>::infinity();
   for (std::uint32_t i = 0; i < surface.node_count; ++i) {
     const std::uint32_t node = surface.first_node + i;
-    if (may && !may(node)) continue;
+    if (!MayHold(may, node)) continue;
     const Vec3& p = seen.positions[node];
     const double away = math::Distance(p, near);
     if (away < kLeastAway || away > kMostAway) continue;

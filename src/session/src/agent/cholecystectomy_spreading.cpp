@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "cholecystectomy_surgeon.h"
+#include "agent/cholecystectomy_surgeon.h"
 
 namespace trocar::session {
 namespace {
@@ -17,11 +17,10 @@ constexpr double kPoor = 0.3;         // of what was hoped for
 
 }  // namespace
 
-void CholecystectomySurgeon::Spread(std::shared_ptr<Spreading> work) {
-  work->tries.assign(work->strands.size(), 0);
-  Add(
-      "spread " + work->what, [](const Snapshot&) {},
-      [this, work](const Snapshot& seen) { return GoOnSpreading(*work, seen); }, 600.0);
+/// Works on `spreading_`.
+void CholecystectomySurgeon::Spread() {
+  spreading_.tries.assign(spreading_.strands.size(), 0);
+  Add(OperationAct::Kind::kSpread, "spread the hepatocystic triangle", 600.0);
 }
 
 bool CholecystectomySurgeon::GoOnSpreading(Spreading& work, const Snapshot& seen) {
@@ -32,7 +31,7 @@ bool CholecystectomySurgeon::GoOnSpreading(Spreading& work, const Snapshot& seen
       static_cast<std::size_t>(std::count_if(work.strands.begin(), work.strands.end(), is_intact));
   switch (work.stage) {
     case Spreading::Stage::kChoose: {
-      if (left == 0 || work.is_enough(seen) || work.fruitless >= kMostFruitless) break;
+      if (left == 0 || IsTriangleClear(seen) || work.fruitless >= kMostFruitless) break;
       SpreadField field;
       std::vector<std::uint8_t> tries;
       std::vector<std::uint32_t> index;

@@ -4,15 +4,13 @@
 #include <cmath>
 #include <limits>
 
-#include "task_surgeon.h"
-#include "trocar/surgery/blade.h"
+#include "agent/task_surgeon.h"
 
 namespace trocar::session {
 namespace {
 
 constexpr double kStandOff = 0.014;    // of a tip from what is lined up [m]
 constexpr double kReady = 0.4;         // opening of jaws that have let go, as a share: no new clip comes
-constexpr double kTipBack = 0.002;     // of a tool that is in again, from where the hand means it to be [m]
 constexpr double kCloseSeconds = 0.7;  // for jaws to close over tissue [s]
 constexpr double kScissorDepth = 0.4;  // of a duct between blades, as a share of them from the tips
 constexpr double kRunIn = 0.003;       // of a cut that leads to a line, from outside [m]
@@ -30,22 +28,22 @@ double FindUpperSpin(const Vec3& port, const Vec3& tip, const Vec3& across) {
 
 }  // namespace
 
-TaskSurgeon::TissueSpot TaskSurgeon::FindOnTube(const Vec3& p_rest) const {
+TissueSpot TaskSurgeon::FindOnTube(const Vec3& p_rest) const {
   TissueSpot best;
   double nearest = std::numeric_limits<double>::infinity();
-  for (const TubePiece& piece : start_pieces_) {
-    const Vec3 &a = start_[piece.a], &b = start_[piece.b];
+  for (const auto& [row_a, row_b] : start_pieces_) {
+    const Vec3 &a = start_[row_a], &b = start_[row_b];
     const double t = std::clamp(math::Dot(p_rest - a, b - a) / math::SquaredNorm(b - a), 0.0, 1.0);
     const double distance = math::Distance(p_rest, math::Lerp(a, b, t));
     if (!(distance < nearest)) continue;
     nearest = distance;
-    best = {piece.a, piece.b, t};
+    best = {row_a, row_b, t};
   }
   return best;
 }
 
 void TaskSurgeon::PlanTissue(const Snapshot& seen, const Condition& wanted) {
-  if (AddTissueFlaw(seen, wanted)) return;
+  if (AddTissueErrorScenario(seen, wanted)) return;
   const auto place = [&] {
     return scene_->task->regions[static_cast<std::size_t>(wanted.regions.front())].centre;
   };
@@ -80,12 +78,10 @@ int TaskSurgeon::TakeTool(const Snapshot& seen, instrument::ToolKind kind) {
     ReachPoint(hand,
                instrument::CalcToolPose(scene_->instruments[h].p_world_port, scene_->instruments[h].home)
                    .translation);
-    Add(
-        "exchange for the " + found->name, [this, h, index](const Snapshot&) { controls_[h].tool = index; },
-        [this, h, index](const Snapshot& now) {
-          return now.operation.tools[h] == index &&
-                 math::Distance(now.instruments[h].X_world_device.translation, hands_[h].Tip()) < kTipBack;
-        });
+    TaskAct act{TaskAct::Kind::kExchangeTool, "exchange for the " + found->name};
+    act.hand = hand;
+    act.tool = index;
+    Add(std::move(act));
     return hand;
   }
   return kRight;
@@ -93,32 +89,27 @@ int TaskSurgeon::TakeTool(const Snapshot& seen, instrument::ToolKind kind) {
 
 /// Before a place on a duct, jaws across it.
 void TaskSurgeon::LineUp(int hand, const TissueSpot& spot, double jaw) {
-  Add(
-      "line up",
-      [this, hand, spot, jaw](const Snapshot& seen) {
-        HandMotion& motion = HandOf(hand);
-        const Vec3 p = spot.At(seen);
-        const Vec3 shaft = math::Normalized(p - motion.Port());
-        motion.Turn(FindSpin(motion.Port(), p, math::Cross(shaft, spot.Along(seen))));
-        motion.SetJaw(jaw);
-        motion.MoveTo(p - kStandOff * shaft);
-      },
-      [this, hand, jaw](const Snapshot& seen) {
-        return !HandOf(hand).IsMoving() && !HandOf(hand).IsTurning() &&
-               seen.instruments[static_cast<std::size_t>(hand)].joints.jaw > 0.95 * jaw;
-      },
-      8.0);
+  TaskAct& act = Reach(TaskAct::Kind::kLineUp, hand);
+  act.doing = "line up";
+  act.patience = 8.0;
+  act.spot = spot;
+  act.amount = jaw;
+}
+
+void TaskSurgeon::BeginLineUp(const TaskAct& act, const Snapshot& seen) {
+  HandMotion& motion = HandOf(act.hand);
+  const Vec3 p = act.spot.At(seen);
+  const Vec3 shaft = math::Normalized(p - motion.Port());
+  motion.Turn(FindSpin(motion.Port(), p, math::Cross(shaft, act.spot.Along(seen))));
+  motion.SetJaw(act.amount);
+  motion.MoveTo(p - kStandOff * shaft);
 }
 
 /// The tip goes to a place on tissue, or beyond it along the shaft.
 void TaskSurgeon::Advance(int hand, const TissueSpot& spot, double ahead) {
-  Reach(
-      hand,
-      [this, hand, spot, ahead](const Snapshot& seen) {
-        const Vec3 p = spot.At(seen);
-        return p + ahead * math::Normalized(p - HandOf(hand).Port());
-      },
-      0.4);
+  TaskAct& act = Reach(TaskAct::Kind::kReachSpot, hand, 0.4);
+  act.spot = spot;
+  act.amount = ahead;
 }
 
 /// \param depth_share  of the jaws beyond the duct
@@ -128,12 +119,8 @@ void TaskSurgeon::CloseClip(const Snapshot& seen, const Vec3& p_rest, double dep
   const TissueSpot spot = FindOnTube(p_rest);
   LineUp(hand, spot, applier.max_jaw);
   Advance(hand, spot, depth_share * applier.jaw_length);
-  Add(
-      "close the clip", [this, hand](const Snapshot&) { HandOf(hand).SetJaw(0.0); },
-      [this](const Snapshot&) { return act_seconds_ > kCloseSeconds; });
-  Add(
-      "leave it", [this, hand, jaw = kReady * applier.max_jaw](const Snapshot&) { HandOf(hand).SetJaw(jaw); },
-      [this](const Snapshot&) { return act_seconds_ > 0.3; });
+  SetJaw("close the clip", hand, 0.0, kCloseSeconds);
+  SetJaw("leave it", hand, kReady * applier.max_jaw, 0.3);
   Advance(hand, spot, -kStandOff);
 }
 
@@ -143,39 +130,39 @@ void TaskSurgeon::CutTube(const Snapshot& seen, const Vec3& p_rest) {
   const TissueSpot spot = FindOnTube(p_rest);
   LineUp(hand, spot, scissors.max_jaw);
   Advance(hand, spot, kScissorDepth * scissors.jaw_length);
-  Add(
-      "cut", [this, hand](const Snapshot&) { HandOf(hand).SetJaw(0.0); },
-      [this](const Snapshot&) { return act_seconds_ > kCloseSeconds; });
+  SetJaw("cut", hand, 0.0, kCloseSeconds);
   Advance(hand, spot, -kStandOff);
 }
 
 void TaskSurgeon::PressPedal(int hand, double seconds) {
-  Add(
-      "press the pedal",
-      [this, hand](const Snapshot&) { controls_[static_cast<std::size_t>(hand)].coagulate = true; },
-      [this, hand, seconds](const Snapshot&) {
-        if (act_seconds_ < seconds) return false;
-        controls_[static_cast<std::size_t>(hand)].coagulate = false;
-        return true;
-      },
-      seconds + 1.0);
+  TaskAct act{TaskAct::Kind::kPressPedal, "press the pedal", seconds + 1.0};
+  act.hand = hand;
+  act.seconds = seconds;
+  Add(std::move(act));
 }
 
 /// The tip goes where the middle of the hook's toe, which points down, lies in the sheet.
 void TaskSurgeon::FollowSheet(int hand, const Vec3& p_sheet, double hurry) {
-  Add(
-      "follow the line",
-      [this, hand, p_sheet, hurry](const Snapshot&) {
-        HandMotion& motion = HandOf(hand);
-        const double spin = FindUpperSpin(motion.Port(), p_sheet, {0, 0, -1});
-        const Pose X = instrument::CalcToolPose(motion.Port(),
-                                                instrument::FindJoints(motion.Port(), p_sheet, spin, 0.0));
-        const surgery::BladeSettings blade;
-        const Vec3 p_tool_middle = 0.5 * (blade.p_tool_hook.a + blade.p_tool_hook.b);
-        motion.Turn(spin);
-        motion.MoveTo(p_sheet - math::Rotate(X.rotation, p_tool_middle), hurry);
-      },
-      [this, hand](const Snapshot&) { return !HandOf(hand).IsMoving() && !HandOf(hand).IsTurning(); }, 8.0);
+  TaskAct& act = Reach(TaskAct::Kind::kFollowSheet, hand, hurry);
+  act.doing = "follow the line";
+  act.patience = 8.0;
+  act.p = p_sheet;
+}
+
+void TaskSurgeon::BeginFollowSheet(const TaskAct& act) {
+  HandMotion& motion = HandOf(act.hand);
+  const double spin = FindUpperSpin(motion.Port(), act.p, {0, 0, -1});
+  const Pose X =
+      instrument::CalcToolPose(motion.Port(), instrument::FindJoints(motion.Port(), act.p, spin, 0.0));
+  const Vec3 p_tool_middle = 0.5 * (instrument::kHookToe.a + instrument::kHookToe.b);
+  motion.Turn(spin);
+  motion.MoveTo(act.p - math::Rotate(X.rotation, p_tool_middle), act.hurry);
+}
+
+void TaskSurgeon::BeginReachBand(const TaskAct& act) {
+  HandMotion& motion = HandOf(act.hand);
+  motion.Turn(FindUpperSpin(motion.Port(), act.p, act.q));
+  motion.MoveTo(act.p - kStandOff * math::Normalized(act.p - motion.Port()));
 }
 
 /// With hook and current: to the circle from outside, round it, and out over the cut with which it began.
@@ -188,10 +175,11 @@ void TaskSurgeon::CutCircle(const Snapshot& seen, int sheet, double aside, doubl
     return cloth.centre + (cloth.circle + aside + out) * Vec3{std::cos(angle), std::sin(angle), 0};
   };
   const auto pedal = [this, hand](bool is_down) {
-    Add(
-        is_down ? "press the pedal" : "lift the foot",
-        [this, hand, is_down](const Snapshot&) { controls_[static_cast<std::size_t>(hand)].cut = is_down; },
-        [](const Snapshot&) { return true; });
+    TaskAct act;
+    act.kind = is_down ? TaskAct::Kind::kPressCutPedal : TaskAct::Kind::kLiftFoot;
+    act.doing = is_down ? "press the pedal" : "lift the foot";
+    act.hand = hand;
+    Add(std::move(act));
   };
   const Vec3 begin = at(0, kRunIn);
   FollowSheet(hand, begin + Vec3{0, 0, kStandOff}, 1.0);
@@ -231,28 +219,19 @@ void TaskSurgeon::BurnBand(const Snapshot& seen, int band) {
   const int hand = TakeTool(seen, instrument::ToolKind::kHook);
   const ModelBand& cord = scene_->model->bands[static_cast<std::size_t>(band)];
   const Vec3 along = math::Normalized(cord.to - cord.from);
-  const surgery::BladeSettings blade;
-  const double toe = math::Distance(blade.p_tool_hook.a, blade.p_tool_hook.b);
+  const double toe = math::Distance(instrument::kHookToe.a, instrument::kHookToe.b);
   const Vec3 tip = math::Lerp(cord.from, cord.to, FindClearPlace(seen, band)) - 0.5 * toe * along;
   const Vec3 before = tip - kStandOff * math::Normalized(tip - HandOf(hand).Port());
-  Add(
-      "reach for " + cord.name,
-      [this, hand, before, tip, along](const Snapshot&) {
-        HandMotion& motion = HandOf(hand);
-        motion.Turn(FindUpperSpin(motion.Port(), tip, along));
-        motion.MoveTo(before);
-      },
-      [this, hand](const Snapshot&) { return !HandOf(hand).IsMoving() && !HandOf(hand).IsTurning(); }, 8.0);
+  TaskAct& reach = Reach(TaskAct::Kind::kReachBand, hand);
+  reach.doing = "reach for " + cord.name;
+  reach.patience = 8.0;
+  reach.p = tip;
+  reach.q = along;
   ReachPoint(hand, tip, 0.3);
-  Add(
-      "burn " + cord.name,
-      [this, hand](const Snapshot&) { controls_[static_cast<std::size_t>(hand)].coagulate = true; },
-      [this, hand, band](const Snapshot& now) {
-        if (now.operation.band_is_whole[static_cast<std::size_t>(band)] != 0) return false;
-        controls_[static_cast<std::size_t>(hand)].coagulate = false;
-        return true;
-      },
-      kMostBurning);
+  TaskAct burn{TaskAct::Kind::kBurnBand, "burn " + cord.name, kMostBurning};
+  burn.hand = hand;
+  burn.object = band;
+  Add(std::move(burn));
   ReachPoint(hand, before, 0.5);
 }
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cholecystectomy_surgeon.h"
+#include "agent/cholecystectomy_surgeon.h"
 
 namespace trocar::session {
 namespace {
@@ -24,18 +24,18 @@ constexpr double kSettled = 0.001;  // what the hand is not moved for [m]
 
 }  // namespace
 
-CholecystectomySurgeon::Traction CholecystectomySurgeon::PlanTraction(const DissectionGoal& goal) const {
+Traction CholecystectomySurgeon::PlanTraction(const DissectionGoal& goal) const {
   Traction traction;
   traction.most = goal.traction;
-  traction.most_pull = goal.may_hold ? kMostFreePull : kMostTiedPull;
-  traction.enough_pull = traction.most_pull * (goal.may_hold ? kEnoughFree : kEnoughTied);
+  traction.most_pull = goal.IsFlapHeld() ? kMostFreePull : kMostTiedPull;
+  traction.enough_pull = traction.most_pull * (goal.IsFlapHeld() ? kEnoughFree : kEnoughTied);
   traction.fibres_before = goal.strands.size();
   if (goal.traction <= 0.0) return traction;
   const Vec3 axis = math::Normalized(rest_[fundus_] - rest_[neck_]);
   const Vec3 aside = math::Normalized(math::Cross(bed_normal_, axis));
   std::vector<Vec3> sides = {Vec3{}, aside, -1.0 * aside, axis};
   // what is free goes to the sides first: off the bed it would stay before the hook
-  if (goal.may_hold) sides = {2.0 * aside, -2.0 * aside, Vec3{}, aside, -1.0 * aside};
+  if (goal.IsFlapHeld()) sides = {2.0 * aside, -2.0 * aside, Vec3{}, aside, -1.0 * aside};
   for (const Vec3& side : sides) traction.ways.push_back(math::Normalized(goal.way + kSwing * side));
   traction.swings_left = static_cast<int>(traction.ways.size());
   return traction;
@@ -50,11 +50,12 @@ bool CholecystectomySurgeon::TakeUpSlack(Traction& traction, const Snapshot& see
   if (hand.IsMoving()) return true;
   const double pull = math::Norm(seen.instruments[kLeft].force);
   const double drawn_before = traction.drawn;
-  const double wish = std::min(traction.most, std::max(traction.most * parted, kPeelRate * act_seconds_));
+  const double wanted_way =
+      std::min(traction.most, std::max(traction.most * parted, kPeelRate * act_seconds_));
   if (pull > traction.most_pull) {
     traction.drawn = std::max(-kMostEase, traction.drawn - kEase);
   } else if (pull < traction.enough_pull) {
-    traction.drawn = std::min(wish, traction.drawn + kEase);
+    traction.drawn = std::min(wanted_way, traction.drawn + kEase);
   }
   const Vec3 wanted = traction.p_hold + traction.drawn * traction.ways[traction.way % traction.ways.size()];
   if (math::Distance(wanted, hand.Tip()) > kSettled) hand.MoveTo(wanted, kDrawHurry);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "spread_plan.h"
+#include "agent/spread_plan.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cholecystectomy_surgeon.h"
+#include "agent/cholecystectomy_surgeon.h"
 
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <span>
 #include <utility>
-
-#include "operation.h"
 
 namespace trocar::session {
 namespace {
@@ -47,26 +46,26 @@ bool IsCholecystectomy(const Scene& scene) {
 }
 
 CholecystectomySurgeon::CholecystectomySurgeon(std::shared_ptr<const Scene> scene, const SurgeonSkill& skill,
-                                               OperationFlaw flaw, std::uint64_t seed)
+                                               OperationErrorScenario error_scenario, std::uint64_t seed)
     : scene_(std::move(scene)),
       hands_{MakeHand(*scene_, kLeft, skill.hand, seed), MakeHand(*scene_, kRight, skill.hand, seed)},
       camera_(scene_->laparoscope.home),
       camera_to_(scene_->laparoscope.home) {
-  auto tissue = MakePatientTissue(*scene_, Operation::kSpare);
-  if (!tissue.ok()) {
+  auto model = DescribeModel(*scene_);
+  if (!model.ok()) {
     // the simulation of such a scene says why
     has_finished_ = true;
   } else {
-    Learn(std::move(*tissue));
-    flaw == OperationFlaw::kNone ? PlanOperation() : PlanFlaw(flaw);
+    Learn(std::move(*model));
+    error_scenario == OperationErrorScenario::kNone ? PlanOperation() : PlanErrorScenario(error_scenario);
   }
 }
 
-void CholecystectomySurgeon::Learn(PatientTissue tissue) {
+void CholecystectomySurgeon::Learn(ModelDescription model) {
   const anatomy::Patient& patient = scene_->patient;
-  strands_ = std::move(tissue.strands);
-  surfaces_ = std::move(tissue.surfaces);
-  rest_ = std::move(tissue.definition.rest);
+  strands_ = std::move(model.strands);
+  surfaces_ = std::move(model.surfaces);
+  rest_ = std::move(model.rest);
   for (std::size_t t = 0; t < patient.tubes.size(); ++t) {
     const SurfaceInfo& surface = surfaces_[patient.organs.size() + t];
     std::vector<std::uint32_t> nodes;
@@ -76,13 +75,12 @@ void CholecystectomySurgeon::Learn(PatientTissue tissue) {
   }
   const int gallbladder = patient.FindOrgan("gallbladder"), liver = patient.FindOrgan("liver");
   // what anatomy teaches of each tube
-  const auto map = MakeVesselMap(patient);
-  for (std::size_t t = 0; map.ok() && t < patient.tubes.size(); ++t) {
+  for (std::size_t t = 0; t < model.tube_roles.size(); ++t) {
     const anatomy::Tube& tube = patient.tubes[t];
     if (tube.from == "gallbladder" || tube.to == "gallbladder") entering_.push_back(t);
     const SurfaceInfo& surface = surfaces_[patient.organs.size() + t];
     for (std::uint32_t k = 0; k < surface.node_count; ++k) {
-      const auto role = map->anatomy.roles[map->Find(t, map->arcs[t][k]).vessel];
+      const training::VesselRole role = model.tube_roles[t][k];
       if (!training::MayBeDivided(role)) main_nodes_.push_back(surface.first_node + k);
       const bool is_duct = tube.kind == anatomy::TubeKind::kDuct;
       if (!training::MayBeDivided(role) && is_duct) main_ducts_.push_back(surface.first_node + k);
@@ -118,7 +116,7 @@ void CholecystectomySurgeon::Learn(PatientTissue tissue) {
   for (std::uint32_t node = surface.first_node; node < surface.first_node + surface.node_count; ++node) {
     if (math::Distance(rest_[node], landmark("infundibulum")) <= kNeckRadius) neck_nodes_.push_back(node);
   }
-  field_ = [this](const Snapshot& seen) { return seen.positions[neck_]; };
+  field_ = Place::AtNode(neck_);
 }
 
 /// The picture goes where the right hand works.
@@ -129,7 +127,7 @@ void CholecystectomySurgeon::FollowWithCamera(const Snapshot& seen) {
                        IsInView(seen.X_world_laparoscope, kSeenWell * scene_->laparoscope.field_of_view, tip);
   unseen_seconds_ = is_seen ? 0.0 : unseen_seconds_ + scene_->tick_seconds;
   if (unseen_seconds_ < kFollowSeconds || !(camera_ == camera_to_)) return;
-  const Vec3 middle = 0.5 * (tip + field_(seen));
+  const Vec3 middle = 0.5 * (tip + Find(field_, seen));
   AimCamera(middle, math::Normalized(scene_->laparoscope.p_world_port - middle), kFollowDistance);
   unseen_seconds_ = 0;
 }
@@ -137,11 +135,11 @@ void CholecystectomySurgeon::FollowWithCamera(const Snapshot& seen) {
 /// Turns the laparoscope to a place, at about a distance; nothing where it does not get there.
 void CholecystectomySurgeon::AimCamera(const Vec3& p, const Vec3& facing, double distance) {
   for (const double share : {1.0, 0.85, 1.15, 0.7, 1.3, 0.55}) {
-    ViewWish wish;
-    wish.p_world = p;
-    wish.distance = share * distance;
-    wish.facing = facing;
-    if (const auto view = FindView(scene_->laparoscope, wish)) {
+    ViewRequest request;
+    request.p_world = p;
+    request.distance = share * distance;
+    request.facing = facing;
+    if (const auto view = FindView(scene_->laparoscope, request)) {
       camera_to_ = *view;
       return;
     }
@@ -186,15 +184,15 @@ Input CholecystectomySurgeon::Act(const Snapshot& seen) {
   if (stops_) acts_.clear();
   if (acts_.empty()) has_finished_ = true;
   if (!acts_.empty()) {
-    SurgicalAct& act = acts_.front();
+    OperationAct& act = acts_.front();
     if (!has_begun_) {
-      act.begin(seen);
+      Begin(act, seen);
       has_begun_ = true;
       act_seconds_ = 0;
       doing_ = act.doing;
     }
     act_seconds_ += dt;
-    if (act.is_done(seen) || act_seconds_ > act.patience) {
+    if (IsDone(act, seen) || act_seconds_ > act.patience) {
       acts_.pop_front();
       has_begun_ = false;
       acts_.insert(acts_.begin(), std::make_move_iterator(inserted_.begin()),

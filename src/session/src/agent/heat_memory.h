@@ -4,12 +4,15 @@
 
 #include <vector>
 
+#include "trocar/core/state_archive.h"
+#include "trocar/math/state_fields.h"
 #include "trocar/math/vector.h"
 
 namespace trocar::session {
 
 class HeatMemory {
  public:
+  void VisitState(core::StateArchive& archive) { archive.Field("warmths", warmths_); }
   /// Current has flowed at a place. \param seconds  >= 0
   void Add(const math::Vec3& place, double seconds);
   /// Time has passed: a place forgets all but 1 / e of its heat in kCools.
@@ -24,6 +27,11 @@ class HeatMemory {
   struct Warmth {
     math::Vec3 place;
     double seconds = 0;
+
+    void VisitState(core::StateArchive& archive) {
+      archive.Field("place", place);
+      archive.Field("seconds", seconds);
+    }
   };
   std::vector<Warmth> warmths_;
 };

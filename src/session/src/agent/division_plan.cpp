@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "division_plan.h"
+#include "agent/division_plan.h"
 
 #include <algorithm>
 #include <array>

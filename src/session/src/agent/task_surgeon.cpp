@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "task_surgeon.h"
+#include "agent/task_surgeon.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
+
+#include "agent/state_fields.h"
 
 namespace trocar::session {
 namespace {
@@ -17,11 +20,11 @@ constexpr double kAbovePlace = 0.028, kLetGoHeight = 0.0025;
 
 }  // namespace
 
-TaskSurgeon::TaskSurgeon(std::shared_ptr<const Scene> scene, const SurgeonSkill& skill, Flaw flaw,
-                         std::uint64_t seed)
+TaskSurgeon::TaskSurgeon(std::shared_ptr<const Scene> scene, const SurgeonSkill& skill,
+                         ErrorScenario error_scenario, std::uint64_t seed)
     : scene_(std::move(scene)),
       skill_(skill),
-      flaw_(flaw),
+      error_scenario_(error_scenario),
       random_(seed),
       hands_{HandMotion(scene_->instruments[kLeft].p_world_port, scene_->instruments[kLeft].home, skill.hand,
                         2 * seed + 11),
@@ -37,21 +40,21 @@ Input TaskSurgeon::Act(const Snapshot& seen) {
   if (start_.empty()) {
     start_ = seen.positions;
     const auto pieces = std::span(seen.operation.tube_pieces).first(seen.operation.tube_piece_count);
-    start_pieces_.assign(pieces.begin(), pieces.end());
+    for (const TubePiece& piece : pieces) start_pieces_.push_back({piece.a, piece.b});
   }
   if (acts_.empty() && !has_finished_) Plan(seen);
   pause_ -= dt;
   while (!acts_.empty() && !has_finished_ && pause_ <= 0) {
-    SurgicalAct& act = acts_.front();
+    TaskAct& act = acts_.front();
     if (!has_begun_) {
       doing_ = goal_name_ + ": " + act.doing;
-      if (act.begin) act.begin(seen);
+      Begin(act, seen);
       has_begun_ = true;
       act_seconds_ = 0;
       break;  // what begins shows in the next tick
     }
     act_seconds_ += dt;
-    if (act.is_done(seen)) {
+    if (IsDone(act, seen)) {
       acts_.pop_front();
       has_begun_ = false;
       pause_ = random_.Uniform(0.0, skill_.pause);
@@ -70,6 +73,29 @@ Input TaskSurgeon::Act(const Snapshot& seen) {
   StepCamera(dt);
   input.laparoscope = camera_;
   return input;
+}
+
+void TaskSurgeon::VisitState(core::StateArchive& archive) {
+  archive.Field("error_scenario", error_scenario_);
+  archive.Field("random", random_);
+  archive.Field("hands", hands_);
+  archive.Field("controls", controls_);
+  archive.Field("start", start_);
+  archive.Field("start_pieces", start_pieces_);
+  archive.Field("camera", camera_);
+  archive.Field("camera_from", camera_from_);
+  archive.Field("camera_to", camera_to_);
+  archive.Field("camera_time", camera_time_);
+  archive.Field("camera_duration", camera_duration_);
+  VisitQueue(archive, "acts", acts_);
+  archive.Field("has_begun", has_begun_);
+  archive.Field("act_seconds", act_seconds_);
+  archive.Field("pause", pause_);
+  archive.Field("fruitless_plans", fruitless_plans_);
+  archive.Field("steps_seen", steps_seen_);
+  archive.Field("has_finished", has_finished_);
+  archive.Field("doing", doing_);
+  archive.Field("goal_name", goal_name_);
 }
 
 void TaskSurgeon::Plan(const Snapshot& seen) {
@@ -93,7 +119,7 @@ void TaskSurgeon::Plan(const Snapshot& seen) {
     if (!is_open || now.is_done || (is_other_begun && !is_begun)) continue;
     if (fruitless_plans_ > kMostFruitlessPlans) break;
     goal_name_ = task.goals[g].name;
-    if (AddIdleFlaw(seen)) return;
+    if (AddIdleErrorScenario(seen)) return;
     PlanStep(seen, task.goals[g], now.steps_done);
     return;
   }
@@ -155,7 +181,7 @@ void TaskSurgeon::PlanStep(const Snapshot& seen, const Goal& goal, std::uint32_t
         PickUp(hand, c.object, hand);
         return;
       }
-      if (AddFlaw(seen, hand, c.object, true)) return;
+      if (AddErrorScenario(seen, hand, c.object, true)) return;
       Carry(hand, c.object, region().centre, 0.4);
       break;
     }
@@ -188,7 +214,7 @@ void TaskSurgeon::PlanPlace(const Snapshot& seen, int object, const std::vector<
     PickUp(hand, object, hand);
     return;
   }
-  if (AddFlaw(seen, hand, object)) return;
+  if (AddErrorScenario(seen, hand, object)) return;
   // the nearest place where nothing lies
   const Region* best = nullptr;
   for (const int index : regions) {
@@ -230,7 +256,7 @@ void TaskSurgeon::PlanHandOver(const Snapshot& seen, int object, int from, int t
     PickUp(from, object, from);
     return;
   }
-  if (AddFlaw(seen, from, object)) return;
+  if (AddErrorScenario(seen, from, object)) return;
   const Vec3 start = scene_->objects[o].body.X_world_body.translation;
   const Vec3 meeting{0, start.y, start.z + kMeetingHeight};
   if (!has_to) {
@@ -241,7 +267,7 @@ void TaskSurgeon::PlanHandOver(const Snapshot& seen, int object, int from, int t
     const auto grips = scene_->objects[o].grips.size();
     PickUp(to, object, grips < 2 ? 0 : to);
   }
-  Add("hold with both hands", {}, [](const Snapshot&) { return true; });
+  Add({TaskAct::Kind::kPass, "hold with both hands"});
   Wait(0.25);
   LetGo(from);
   WithDraw(from);
