@@ -179,9 +179,9 @@ std::string JsonView::TextOr(std::string_view key, std::string_view fallback) co
   return Has(key) ? Text(key) : std::string(fallback);
 }
 
-std::vector<double> JsonView::AsNumbers(std::size_t count) const {
+std::vector<double> JsonView::AsNumbers(std::size_t count, NumberRange range) const {
   std::vector<double> numbers;
-  for (const JsonView& element : Elements()) numbers.push_back(element.AsNumber());
+  for (const JsonView& element : Elements()) numbers.push_back(element.AsNumber(range));
   if (numbers.size() != count) {
     Complain("must be a list of " + std::to_string(count) + " numbers");
     numbers.resize(count, 0.0);
@@ -189,8 +189,8 @@ std::vector<double> JsonView::AsNumbers(std::size_t count) const {
   return numbers;
 }
 
-std::vector<double> JsonView::Numbers(std::string_view key, std::size_t count) const {
-  return Child(key).AsNumbers(count);
+std::vector<double> JsonView::Numbers(std::string_view key, std::size_t count, NumberRange range) const {
+  return Child(key).AsNumbers(count, range);
 }
 
 // --- documents

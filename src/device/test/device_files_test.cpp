@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <functional>
 
 #include "emulated_line.h"
 #include "trocar/core/safe_file.h"
@@ -91,6 +92,34 @@ TEST_F(DeviceFilesTest, BadFileMeansDefaultsAndAMessageAndIsSetAside) {
   ASSERT_TRUE(SaveDeviceStore(path, MakeStore()).ok());
   EXPECT_EQ(*core::ReadFile(path.string() + ".bad"), "{ my own notes");
   EXPECT_FALSE(LoadDeviceStore(path).complaint.has_value());
+}
+
+// what the fits refuse, the file may not bring in: the same limits, either side of each
+TEST_F(DeviceFilesTest, BoundsTipAndTrocarAsTheFitsDo) {
+  const fs::path path = folder_ / "devices.json";
+  const auto complains = [&](const std::function<void(TrackerEntry&)>& change) {
+    DeviceStore store = MakeStore();
+    change(store.trackers["fastrak"]);
+    EXPECT_TRUE(SaveDeviceStore(path, store).ok());
+    const LoadedStore loaded = LoadDeviceStore(path);
+    EXPECT_TRUE(loaded.complaint || loaded.store.trackers == store.trackers);
+    return loaded.complaint.has_value();
+  };
+  const auto tip = [](const Vec3& p) {
+    return [p](TrackerEntry& entry) { entry.hands[0].p_sensor_tip = p; };
+  };
+  const auto trocar = [](const Vec3& p) {
+    return [p](TrackerEntry& entry) { entry.hands[0].p_source_trocar = p; };
+  };
+  EXPECT_FALSE(complains(tip({0, -kMostTipDistance, 0})));
+  EXPECT_TRUE(complains(tip({0, -1.001 * kMostTipDistance, 0})));
+  EXPECT_TRUE(complains(tip({0.4, 0.4, 0.4}))) << "each number is within, the distance is not";
+  EXPECT_TRUE(complains(tip({2.488e7, 0, 0}))) << "a tip 24,880 km away";
+  EXPECT_FALSE(complains(trocar({0, 0, kMostTrocarDistance})));
+  EXPECT_TRUE(complains(trocar({0, 0, 1.001 * kMostTrocarDistance})));
+  EXPECT_FALSE(complains([](TrackerEntry& entry) { entry.stations[0] = 16; }));
+  EXPECT_TRUE(complains([](TrackerEntry& entry) { entry.stations[0] = 17; }));
+  EXPECT_TRUE(complains([](TrackerEntry& entry) { entry.stations[0] = -1; }));
 }
 
 TEST_F(DeviceFilesTest, AHandWithForceHasNoClutch) {
