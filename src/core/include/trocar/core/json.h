@@ -76,7 +76,7 @@ class JsonView {
 class JsonDocument {
  public:
   /// \param source  name used in messages
-  /// \return kJsonSyntax with line and column
+  /// \return kJsonSyntax with line and column, or with the field that an object gives twice
   static Result<JsonDocument> Parse(std::string_view text, std::string source);
   static Result<JsonDocument> Read(const std::filesystem::path& path);
 
