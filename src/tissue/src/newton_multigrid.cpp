@@ -46,23 +46,6 @@ double CalcSeenShare(double smallest_ritz) noexcept {
   return std::clamp(smallest_ritz, kLeastSeenShare, kSeenShare);
 }
 
-/// Solves a x = b for the first `count` rows by elimination without pivots: constraints are few and well apart.
-void SolveSmall(NewtonMultigrid::SmallMatrix a, NewtonMultigrid::SmallVector b, std::size_t count,
-                NewtonMultigrid::SmallVector& x) noexcept {
-  for (std::size_t c = 0; c < count; ++c) {
-    for (std::size_t row = c + 1; row < count; ++row) {
-      const double factor = a[c][c] > 0.0 ? a[row][c] / a[c][c] : 0.0;
-      for (std::size_t k = c; k < count; ++k) a[row][k] -= factor * a[c][k];
-      b[row] -= factor * b[c];
-    }
-  }
-  for (std::size_t c = count; c-- > 0;) {
-    double sum = b[c];
-    for (std::size_t k = c + 1; k < count; ++k) sum -= a[c][k] * x[k];
-    x[c] = a[c][c] > 0.0 ? sum / a[c][c] : 0.0;
-  }
-}
-
 }  // namespace
 
 NewtonMultigrid::NewtonMultigrid(const TissueModel& model)
@@ -206,7 +189,8 @@ void NewtonMultigrid::ProjectResidual(const Kernels& kernels, Workers& workers) 
       transposed[row][column] = gram_[column][row];
   }
   SmallVector share{};
-  SolveSmall(transposed, CalcDots(kernels, workers, &Constraint::answer, r_), constraints_.size(), share);
+  math::SolveSmall<math::Pivots::kNone>(transposed, CalcDots(kernels, workers, &Constraint::answer, r_),
+                                        constraints_.size(), share);
   ForEachNodeChunk(workers, r_.size(), [&](std::uint32_t first, std::uint32_t last, std::uint32_t) {
     Subtract(kernels, share, &Constraint::gradient, r_, first, last);
   });
@@ -218,7 +202,8 @@ DotAndLongest NewtonMultigrid::Precondition(const Kernels& kernels, Workers& wor
   hierarchy_.Apply(kernels, workers, r_.data(), z_.data());
   if (constraints_.empty()) return CalcDotAndLongest(kernels, workers, r_, z_);
   SmallVector share{};
-  SolveSmall(gram_, CalcDots(kernels, workers, &Constraint::gradient, z_), constraints_.size(), share);
+  math::SolveSmall<math::Pivots::kNone>(gram_, CalcDots(kernels, workers, &Constraint::gradient, z_),
+                                        constraints_.size(), share);
   return CalcDotAndLongest(kernels, workers, r_, z_, [&](std::uint32_t first, std::uint32_t last) {
     Subtract(kernels, share, &Constraint::answer, z_, first, last);
   });

@@ -10,6 +10,7 @@
 #include "linearisation.h"
 #include "newton_patch.h"
 #include "pressure_stiffness.h"
+#include "trocar/math/small_solver.h"
 #include "trocar/tissue/equilibrium.h"
 #include "truncated_gradients.h"
 
@@ -18,8 +19,8 @@ namespace trocar::tissue {
 /// Memory and methods of the Newton solver.
 class NewtonMultigrid {
  public:
-  using SmallVector = std::array<double, kMaxHookConstraints>;
-  using SmallMatrix = std::array<SmallVector, kMaxHookConstraints>;
+  using SmallVector = math::SmallVector<kMaxHookConstraints>;
+  using SmallMatrix = math::SmallMatrix<kMaxHookConstraints>;
 
   explicit NewtonMultigrid(const TissueModel& model);
   /// Goes on with another model of as many nodes.
