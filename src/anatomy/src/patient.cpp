@@ -5,12 +5,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <system_error>
 
 #include "patient_frame.h"
 #include "trocar/core/json.h"
+#include "trocar/core/partial_path.h"
 #include "trocar/core/safe_file.h"
 #include "trocar/geometry/mesh_file.h"
 #include "trocar/geometry/mesh_measures.h"
@@ -26,6 +28,16 @@ using core::JsonView;
 constexpr const char* kFormat = "trocar-patient";
 constexpr int kVersion = 1;
 
+// In which ranges a patient's quantities mean something; schemas/patient.schema.json says the same.
+/// Of a coordinate [mm]: the frame's origin lies in the body, or where a scanner's table is.
+constexpr core::NumberRange kCoordinateMm{-3000, 3000};
+constexpr core::NumberRange kRadiusMm{0.01, 50};  // of a duct or vessel
+constexpr core::NumberRange kIndex{0, 4294967294.0};
+constexpr core::NumberRange kOrganIndex{0, 1e6};
+constexpr core::NumberRange kParameter{-1e6, 1e6};
+/// Diagonal of an organ's box [m]: a person's largest and smallest.
+constexpr double kLargestOrgan = 1.0, kSmallestOrgan = 0.002;
+
 Error Invalid(const std::string& what) {
   return {ErrorCode::kPatientInvalid, "the patient is inconsistent: " + what + "; build it again"};
 }
@@ -36,12 +48,12 @@ nlohmann::ordered_json PointJson(const Vec3& world) {
 }
 
 Vec3 PointFrom(const JsonView& view, std::string_view key) {
-  const auto p = view.Numbers(key, 3);
+  const auto p = view.Numbers(key, 3, kCoordinateMm);
   return FromLps({p[0], p[1], p[2]});
 }
 
 std::uint32_t IndexFrom(const JsonView& view) {
-  const double value = view.AsNumber({0, 4294967294.0});
+  const double value = view.AsNumber(kIndex);
   if (value != std::floor(value)) view.Complain("must be a whole number");
   return static_cast<std::uint32_t>(value);
 }
@@ -172,8 +184,8 @@ core::Result<UncheckedPatient> ReadPatientUnchecked(const fs::path& folder) {
     view.AllowOnly({"name", "organ_a", "organ_b", "pairs"});
     Attachment attachment;
     attachment.name = view.Text("name");
-    attachment.organ_a = static_cast<std::uint32_t>(view.Integer("organ_a", {0, 1e6}));
-    attachment.organ_b = static_cast<std::uint32_t>(view.Integer("organ_b", {0, 1e6}));
+    attachment.organ_a = static_cast<std::uint32_t>(view.Integer("organ_a", kOrganIndex));
+    attachment.organ_b = static_cast<std::uint32_t>(view.Integer("organ_b", kOrganIndex));
     for (const JsonView& pair : view.Array("pairs")) {
       const auto elements = pair.Elements();
       if (elements.size() != 2) {
@@ -196,11 +208,11 @@ core::Result<UncheckedPatient> ReadPatientUnchecked(const fs::path& folder) {
     tube.to = view.TextOr("to", "");
     tube.is_seen = view.BooleanOr("seen", true);
     for (const JsonView& point : view.Array("points")) {
-      const auto p = point.AsNumbers(3);
+      const auto p = point.AsNumbers(3, kCoordinateMm);
       tube.line.points.push_back(FromLps({p[0], p[1], p[2]}));
     }
     for (const JsonView& radius : view.Array("radii"))
-      tube.line.radii.push_back(radius.AsNumber() / kMmPerMetre);
+      tube.line.radii.push_back(radius.AsNumber(kRadiusMm) / kMmPerMetre);
     patient.tubes.push_back(std::move(tube));
   }
   for (const JsonView& view : root.Array("landmarks")) {
@@ -214,7 +226,7 @@ core::Result<UncheckedPatient> ReadPatientUnchecked(const fs::path& folder) {
       if (view.Has("text")) {
         parameter.value = view.Text("text");
       } else {
-        parameter.value = view.Number("value");
+        parameter.value = view.Number("value", kParameter);
       }
       patient.parameters.push_back(std::move(parameter));
     }
@@ -245,11 +257,10 @@ core::Status WritePatient(const fs::path& folder, const Patient& patient) {
   if (const auto status = CheckPatient(patient); !status.ok()) return status.error();
   fs::path target = folder;
   if (!target.has_filename()) target = target.parent_path();
-  const fs::path partial = target.string() + ".part" + std::to_string(::getpid());
+  const core::PartialPath part(target);
+  const fs::path& partial = part.Path();
   const fs::path former = target.string() + ".former" + std::to_string(::getpid());
   const auto fail = [&](const std::string& why) {
-    std::error_code ignored;
-    fs::remove_all(partial, ignored);
     return Error{ErrorCode::kFileUnwritable,
                  target.string() + ": " + why + "; check the folder, its rights and the space left"};
   };
@@ -260,7 +271,6 @@ core::Status WritePatient(const fs::path& folder, const Patient& patient) {
                             (fs::exists(target / "patient.json", failure) || fs::is_empty(target, failure));
     if (!is_patient) return fail("it exists and is no patient folder");
   }
-  fs::remove_all(partial, failure);
   fs::create_directories(partial, failure);
   if (failure) return fail(failure.message());
   for (const Organ& organ : patient.organs) {
@@ -286,6 +296,32 @@ core::Status WritePatient(const fs::path& folder, const Patient& patient) {
   return {};
 }
 
+namespace {
+
+/// Refuses an organ of a size or at a place that none has: mostly a file in metres or micrometres instead of millimetres.
+core::Status CheckSize(const Organ& organ) {
+  if (organ.mesh.positions.empty()) return {};  // has no surface, which is said elsewhere
+  Vec3 low = organ.mesh.positions.front(), high = low;
+  for (const Vec3& p : organ.mesh.positions) {
+    for (int axis = 0; axis < 3; ++axis) {
+      low[axis] = std::min(low[axis], p[axis]);
+      high[axis] = std::max(high[axis], p[axis]);
+    }
+  }
+  const double size = math::Norm(high - low), reach = std::max(math::Norm(low), math::Norm(high));
+  if (size >= kSmallestOrgan && size <= kLargestOrgan && reach * kMmPerMetre <= 2 * kCoordinateMm.max)
+    return {};
+  char text[200];
+  std::snprintf(
+      text, sizeof text,
+      "%.60s is %.3g mm large and lies up to %.3g mm from the origin; an organ is 2 to 1000 mm; check the "
+      "unit of its mesh, which is millimetres",
+      organ.name.c_str(), kMmPerMetre * size, kMmPerMetre * reach);
+  return Error{ErrorCode::kPatientInvalid, text};
+}
+
+}  // namespace
+
 core::Status CheckPatient(const Patient& patient) {
   if (patient.organs.empty()) return Invalid("it has no organ");
   std::set<std::string> names;
@@ -295,6 +331,7 @@ core::Status CheckPatient(const Patient& patient) {
     if (!names.insert(organ.name).second) return Invalid("the name '" + organ.name + "' is used twice");
     if (const auto status = geometry::CheckMesh(organ.mesh); !status.ok())
       return Invalid(organ.name + ": " + status.error().message);
+    if (core::Status good = CheckSize(organ); !good) return good;
     const auto report = geometry::InspectMesh(organ.mesh);
     if (!report.closed || !report.manifold) {
       return Error{ErrorCode::kMeshNotClosed, "the mesh of " + organ.name + " is not closed and manifold (" +

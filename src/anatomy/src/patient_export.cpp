@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trocar/anatomy/patient_export.h"
 
-#include <unistd.h>
-
 #include <array>
 #include <system_error>
 #include <utility>
 
 #include "patient_frame.h"
 #include "trocar/core/assert.h"
+#include "trocar/core/partial_path.h"
 #include "trocar/core/safe_file.h"
 #include "trocar/geometry/mesh_export.h"
 #include "trocar/geometry/mesh_file.h"
@@ -101,10 +100,9 @@ core::Result<std::vector<fs::path>> ExportPatient(const Patient& patient, const 
   }
   fs::path target = folder;
   if (!target.has_filename()) target = target.parent_path();
-  const fs::path partial = target.string() + ".part" + std::to_string(::getpid());
+  const core::PartialPath part(target);
+  const fs::path& partial = part.Path();
   const auto fail = [&](const std::string& why) {
-    std::error_code ignored;
-    fs::remove_all(partial, ignored);
     return Error{ErrorCode::kFileUnwritable, target.string() + ": " + why};
   };
   std::error_code failure;

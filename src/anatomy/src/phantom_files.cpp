@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <tbb/parallel_for.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
@@ -10,6 +8,7 @@
 
 #include "trocar/anatomy/overlay.h"
 #include "trocar/anatomy/phantom.h"
+#include "trocar/core/partial_path.h"
 #include "trocar/core/safe_file.h"
 
 namespace trocar::anatomy {
@@ -84,8 +83,8 @@ core::Status WritePhantom(const fs::path& folder, const Patient& patient, const 
     return core::Error{core::ErrorCode::kFileUnwritable,
                        target.string() + ": it exists and is no empty folder; name another one"};
   }
-  const fs::path partial = target.string() + ".part" + std::to_string(::getpid());
-  fs::remove_all(partial, failure);
+  const core::PartialPath part(target);
+  const fs::path& partial = part.Path();
   auto status = WriteContent(partial, *phantom, patient, progress);
   if (status) {
     // an empty folder may stand in the way
@@ -95,7 +94,6 @@ core::Status WritePhantom(const fs::path& folder, const Patient& patient, const 
       status = core::Error{core::ErrorCode::kFileUnwritable,
                            target.string() + ": " + failure.message() + "; check the folder and its rights"};
   }
-  if (!status) fs::remove_all(partial, failure);
   return status;
 }
 

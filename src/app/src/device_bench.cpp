@@ -26,16 +26,6 @@ std::vector<Pose> Thin(const std::vector<Pose>& poses) {
   return thinned;
 }
 
-std::string FormatQuality(const char* what, const device::FitQuality& quality, std::size_t poses) {
-  char text[200];
-  std::snprintf(
-      text, sizeof text,
-      "%s kept: residual %.2f mm RMS (3 allowed), worst %.2f mm, turned by %.0f degrees (30 needed), %zu "
-      "poses.",
-      what, 1e3 * quality.residual, 1e3 * quality.worst, kDegree * quality.spread, poses);
-  return text;
-}
-
 }  // namespace
 
 std::string_view StepName(CalibrationStep step) noexcept {
@@ -158,7 +148,8 @@ core::Status DeviceBench::KeepTracker(bool is_tip) {
   }
   store.trackers[spec->kind] = entry;
   if (core::Status saved = device::SaveDeviceStore(store_path_, store); !saved) return saved;
-  result_ = {true, quality.residual, FormatQuality(is_tip ? "Tip" : "Trocar", quality, poses.size())};
+  result_ = {true, quality.residual,
+             std::string(is_tip ? "Tip" : "Trocar") + " kept, " + FormatQuality(quality, poses.size()) + "."};
   return {};
 }
 

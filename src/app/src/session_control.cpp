@@ -7,6 +7,7 @@
 
 #include "trocar/app/pointer_map.h"
 #include "trocar/device/force_device_spec.h"
+#include "trocar/session/hand_joints.h"
 
 namespace trocar::app {
 namespace {
@@ -14,25 +15,13 @@ namespace {
 using device::Channel;
 using device::HandSample;
 using instrument::TrocarJoints;
+using session::JointsOf;
+using session::SampleOf;
 
 /// Where the laparoscope looks at, ahead of its lens: sets how fast it follows the pointer [m].
 constexpr double kLookDistance = 0.08;
 /// Part of a shaft that stays outside for the hand [m].
 constexpr double kHandlePart = 0.03;
-
-HandSample SampleOf(const TrocarJoints& joints) {
-  HandSample sample;
-  sample.pan = joints.pan;
-  sample.tilt = joints.tilt;
-  sample.spin = joints.spin;
-  sample.depth = joints.depth;
-  sample.jaw = joints.jaw;
-  return sample;
-}
-
-TrocarJoints JointsOf(const HandSample& sample) {
-  return {sample.pan, sample.tilt, sample.spin, sample.depth, sample.jaw};
-}
 
 device::MouseKeyboardSettings DeviceSettings(const session::Scene& scene) {
   device::MouseKeyboardSettings settings;

@@ -20,6 +20,7 @@
 #include "haptic_input.h"
 #include "igtl_option.h"
 #include "motion_log.h"
+#include "part_folder.h"
 #include "report.h"
 #include "trocar/core/safe_file.h"
 #include "trocar/core/version.h"
@@ -41,49 +42,6 @@ struct DemoArguments {
   int threads = 1;
   int igtl_port = -1;
   HapticOptions haptics;
-};
-
-/// A folder beside the wanted one; what is in it appears under its name only when all went well.
-class PartFolder {
- public:
-  explicit PartFolder(const fs::path& target) : target_(target) {
-    part_ = fs::path(target.string() + ".part" + std::to_string(::getpid()));
-  }
-  ~PartFolder() {
-    std::error_code ignored;
-    fs::remove_all(part_, ignored);
-  }
-  PartFolder(const PartFolder&) = delete;
-  PartFolder& operator=(const PartFolder&) = delete;
-
-  const fs::path& Path() const { return part_; }
-
-  /// Puts every file in place, and takes away the pictures and the video of an earlier run.
-  core::Status Keep() {
-    std::error_code failure;
-    fs::create_directories(target_, failure);
-    if (failure) return Unwritable(failure);
-    std::vector<fs::path> old;
-    for (const fs::directory_entry& entry : fs::directory_iterator(target_, failure)) {
-      const std::string name = entry.path().filename().string();
-      if ((name.starts_with("picture_") && name.ends_with(".png")) || name == "demo.webm")
-        old.push_back(entry.path());
-    }
-    for (const fs::path& path : old) fs::remove(path, failure);
-    for (const fs::directory_entry& entry : fs::directory_iterator(part_, failure)) {
-      fs::rename(entry.path(), target_ / entry.path().filename(), failure);
-      if (failure) return Unwritable(failure);
-    }
-    return {};
-  }
-
- private:
-  core::Error Unwritable(const std::error_code& failure) const {
-    return {core::ErrorCode::kFileUnwritable, target_.string() + ": " + failure.message() +
-                                                  "; check the folder, its rights and the space left"};
-  }
-
-  fs::path target_, part_;
 };
 
 std::string FormatHash(std::uint64_t hash) {

@@ -38,13 +38,12 @@ std::string Bar(double value, double low, double high) {
 
 InterruptWatch::InterruptWatch() {
   is_interrupted = 0;
-  std::signal(SIGINT, OnInterrupt);
-  std::signal(SIGTERM, OnInterrupt);
+  former_ = {std::signal(SIGINT, OnInterrupt), std::signal(SIGTERM, OnInterrupt)};
 }
 
 InterruptWatch::~InterruptWatch() {
-  std::signal(SIGINT, SIG_DFL);
-  std::signal(SIGTERM, SIG_DFL);
+  std::signal(SIGINT, former_[0]);
+  std::signal(SIGTERM, former_[1]);
 }
 
 bool InterruptWatch::IsInterrupted() const noexcept {
@@ -83,6 +82,7 @@ core::Result<WatchReport> WatchDevice(device::Driver& driver, double seconds,
     }
     clock.Sleep(kReadPeriod);
   }
+  report.held_back = driver.DescribeHeldBack();
   driver.Finalize();
   return report;
 }

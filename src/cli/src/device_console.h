@@ -21,6 +21,9 @@ class InterruptWatch {
   InterruptWatch(const InterruptWatch&) = delete;
   InterruptWatch& operator=(const InterruptWatch&) = delete;
   bool IsInterrupted() const noexcept;
+
+ private:
+  std::array<void (*)(int), 2> former_{};  // what SIGINT and SIGTERM did before
 };
 
 using HandSamples = std::array<device::HandSample, device::kChannelCount>;
@@ -31,6 +34,7 @@ struct WatchReport {
   std::array<int, device::kChannelCount> fresh{};   ///< samples of each hand
   std::array<int, device::kChannelCount> unseen{};  ///< times that a hand went out of sight
   bool is_lost = false;
+  std::string held_back;  ///< Driver::DescribeHeldBack()
 };
 
 /// Configures and activates a driver and reads it 500 times a second.

@@ -23,6 +23,12 @@ core::Result<std::unique_ptr<DeviceInput>> DeviceInput::Open(const std::string& 
   return input;
 }
 
+DeviceInput::~DeviceInput() {
+  if (driver_ == nullptr) return;
+  if (const std::string held_back = driver_->DescribeHeldBack(); !held_back.empty())
+    core::Log(core::LogLevel::kWarning, driver_->GetName() + ": " + held_back);
+}
+
 void DeviceInput::Apply(double time, session::Input& input) {
   if (clock_ == &simulated_) {
     simulated_.Set(time);

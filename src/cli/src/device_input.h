@@ -20,6 +20,9 @@ class DeviceInput {
   static core::Result<std::unique_ptr<DeviceInput>> Open(const std::string& spec,
                                                          const session::Scene& scene);
 
+  /// Says in the log what came in and was not used.
+  ~DeviceInput();
+
   /// Replaces the hands that the device sees, presses its pedals and changes tools. A hand that it does not see, and all once
   /// it is lost, stay where they were; no pedal does.
   ///

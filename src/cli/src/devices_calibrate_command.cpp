@@ -61,11 +61,8 @@ core::Result<std::vector<Pose>> CollectPoses(device::PoseDriver& driver, int han
   return thinned;
 }
 
-void PrintQuality(const device::FitQuality& quality, std::size_t poses) {
-  std::printf(
-      "  from %zu poses: residual %.2f mm RMS (3 allowed), worst %.2f mm, turned by %.0f degrees (30 "
-      "needed)\n",
-      poses, 1e3 * quality.residual, 1e3 * quality.worst, 57.29577951308232 * quality.spread);
+void PrintQuality(const char* what, const device::FitQuality& quality, std::size_t poses) {
+  std::printf("  %s %s\n", what, device::FormatQuality(quality, poses).c_str());
 }
 
 core::Status Keep(const device::DeviceStore& store) {
@@ -99,7 +96,7 @@ core::Status CalibrateTracker(const CalibrateOptions& options, bool is_tip) {
     const auto fit = device::FitPivot(*poses);
     if (!fit) return fit.error();
     calibration.p_sensor_tip = fit->p_sensor_pivot;
-    PrintQuality(fit->quality, poses->size());
+    PrintQuality("tip", fit->quality, poses->size());
     std::printf("Next: trocar devices calibrate trocar %s --hand %s\n", options.spec.c_str(),
                 options.hand.c_str());
   } else {
@@ -108,7 +105,7 @@ core::Status CalibrateTracker(const CalibrateOptions& options, bool is_tip) {
     calibration.p_source_trocar = fit->p_source_trocar;
     calibration.axis_sensor = fit->axis_sensor;
     calibration.is_measured = true;
-    PrintQuality(fit->quality, poses->size());
+    PrintQuality("trocar", fit->quality, poses->size());
   }
   store.trackers[spec->kind] = entry;
   return Keep(store);

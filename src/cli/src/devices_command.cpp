@@ -104,6 +104,7 @@ void PrintReport(const WatchReport& report) {
                     std::to_string(report.unseen[i])});
   }
   std::fputs(("\n" + FormatTable(rows)).c_str(), stdout);
+  if (!report.held_back.empty()) std::printf("Not used: %s\n", report.held_back.c_str());
 }
 
 core::Status LostError(const device::Driver& driver) {

@@ -13,6 +13,7 @@
 
 #include "command.h"
 #include "console.h"
+#include "part_folder.h"
 #include "play_operation.h"
 #include "trocar/core/safe_file.h"
 #include "trocar/core/statistics.h"
@@ -240,7 +241,8 @@ core::Result<PlayReport> PlayForTheEye(std::shared_ptr<const session::Scene> sce
   if (!size) return size.error();
   options.width = (*size)[0], options.height = (*size)[1];
   options.threads = arguments.threads;
-  options.output_folder = arguments.output;
+  PartFolder part(arguments.output);
+  options.output_folder = part.Path();
   Watcher watcher(*scene);
   ProgressBar progress("playing", static_cast<double>(scene->task->goals.size()));
   options.surgeon = &surgeon;
@@ -258,6 +260,7 @@ core::Result<PlayReport> PlayForTheEye(std::shared_ptr<const session::Scene> sce
   const auto played = view::PlayDemonstration(scene, options);
   progress.Finish();
   if (!played) return played.error();
+  if (auto status = part.Keep(); !status) return status.error();
   return watcher.Finish(last, played->state_hash);
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "console.h"
+#include "part_folder.h"
 #include "trocar/core/json.h"
 #include "trocar/core/statistics.h"
 #include "trocar/session/simulation.h"
@@ -184,12 +185,14 @@ core::Status PlayOperation(std::shared_ptr<const session::Scene> scene, session:
     view::DemoOptions options;
     options.width = play.width, options.height = play.height;
     options.threads = play.threads;
-    options.output_folder = play.output;
+    PartFolder part(play.output);
+    options.output_folder = part.Path();
     options.surgeon = &surgeon;
     options.duration = play.most_seconds;
     options.on_tick = see;
     const auto played = view::PlayDemonstration(scene, options);
     if (!played.ok()) return played.error();
+    if (auto status = part.Keep(); !status) return status;
     run.hash = played->state_hash;
     if (played->operation) result = *played->operation;
   }

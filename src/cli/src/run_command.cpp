@@ -5,11 +5,14 @@
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
+#include <new>
 #include <string>
 #include <vector>
 
 #include "command.h"
+#include "trocar/core/partial_path.h"
 #include "trocar/core/version.h"
 
 namespace trocar::cli {
@@ -97,12 +100,39 @@ int ParseAndRun(int argc, char** argv) {
   return outcome.has_finding ? kExitError : kExitGood;
 }
 
+/// Without a conversion that would need memory.
+constexpr const char* kNoMemory =
+    "trocar: E-SIM-005 the system refused memory; close other programs, raise the limit (ulimit -v), or ask "
+    "for less: "
+    "fewer pixels, triangles or threads\n";
+
+/// Where an exception leaves a thread, or a function that promised none: no stack is unwound any more.
+[[noreturn]] void OnTerminate() {
+  core::RemovePartialPaths();
+  if (const std::exception_ptr failure = std::current_exception()) {
+    try {
+      std::rethrow_exception(failure);
+    } catch (const std::bad_alloc&) {
+      std::fputs(kNoMemory, stderr);
+      std::_Exit(kExitError);
+    } catch (...) {
+      std::fputs("trocar: stopped by an unexpected exception in a thread; please report this\n", stderr);
+    }
+  }
+  std::abort();
+}
+
 }  // namespace
 
 int RunCommand(int argc, char** argv) {
+  core::RemovePartialPathsOnSignals();
+  std::set_terminate(OnTerminate);
   // the last fence: nothing below should throw, and if memory ends the person still gets a line
   try {
     return ParseAndRun(argc, argv);
+  } catch (const std::bad_alloc&) {
+    std::fputs(kNoMemory, stderr);
+    return kExitError;
   } catch (const std::exception& failure) {
     std::fprintf(stderr, "trocar: stopped by an unexpected exception: %s; please report this\n",
                  failure.what());

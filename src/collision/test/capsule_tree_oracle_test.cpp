@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "random_triangles.h"
 #include "trocar/collision/capsule_tree.h"
 
 #include <gtest/gtest.h>
@@ -11,10 +12,6 @@
 
 namespace trocar::collision {
 namespace {
-
-Vec3 RandomPoint(math::Random& random, double reach) {
-  return {random.Uniform(-reach, reach), random.Uniform(-reach, reach), random.Uniform(-reach, reach)};
-}
 
 struct Tubes {
   std::vector<Vec3> points;

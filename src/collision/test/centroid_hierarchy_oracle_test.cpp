@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "random_triangles.h"
 #include "trocar/collision/brute_force.h"
 #include "trocar/collision/centroid_hierarchy.h"
 #include "trocar/geometry/primitives.h"
@@ -15,21 +16,6 @@ namespace trocar::collision {
 namespace {
 
 using geometry::TriangleMesh;
-
-Vec3 RandomPoint(math::Random& random, double reach) {
-  return {random.Uniform(-reach, reach), random.Uniform(-reach, reach), random.Uniform(-reach, reach)};
-}
-
-TriangleMesh TriangleSoup(math::Random& random, int count, double size) {
-  TriangleMesh mesh;
-  for (int i = 0; i < count; ++i) {
-    const Vec3 centre = RandomPoint(random, 0.1);
-    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
-    for (int corner = 0; corner < 3; ++corner) mesh.positions.push_back(centre + RandomPoint(random, size));
-    mesh.triangles.push_back({first, first + 1, first + 2});
-  }
-  return mesh;
-}
 
 /// A body like a liver: a sphere, flattened, bent and dented.
 TriangleMesh MakeLiverLike(int subdivisions) {
@@ -83,13 +69,10 @@ std::vector<Vec3> MakeQueries(const TriangleMesh& mesh, math::Random& random, in
 
 TEST(CentroidHierarchyOracle, FindsWhatBruteForceFinds) {
   math::Random random(101);
-  std::vector<TriangleMesh> meshes{MakeLiverLike(3),
-                                   geometry::MakeGrid(20, 0.005),
-                                   geometry::MakeBox({0, 0, 0}, {.1, .1, .1}),
-                                   TriangleSoup(random, 1, 0.01),
-                                   TriangleSoup(random, 2, 0.01),
-                                   TriangleSoup(random, 700, 0.01),
-                                   TriangleSoup(random, 300, 0.2)};
+  std::vector<TriangleMesh> meshes{
+      MakeLiverLike(3),          geometry::MakeGrid(20, 0.005), geometry::MakeBox({0, 0, 0}, {.1, .1, .1}),
+      MakeSoup(random, 1, 0.01), MakeSoup(random, 2, 0.01),     MakeSoup(random, 700, 0.01),
+      MakeSoup(random, 300, 0.2)};
   for (std::size_t m = 0; m < meshes.size(); ++m) {
     SCOPED_TRACE("mesh " + std::to_string(m));
     const CentroidHierarchy hierarchy =
@@ -112,7 +95,7 @@ TEST(CentroidHierarchyOracle, FindsWhatBruteForceFindsOnBadMeshes) {
       slivers.positions.push_back(p);
     slivers.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
   }
-  copies = TriangleSoup(random, 8, 0.05);
+  copies = MakeSoup(random, 8, 0.05);
   for (int i = 0; i < 300; ++i) copies.triangles.push_back(copies.triangles[random.NextWord() % 8]);
   fan.positions.push_back({0, 0, 0});
   for (std::uint32_t i = 0; i < 300; ++i) {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "random_triangles.h"
 #include "trocar/collision/queries.h"
 
 #include <gtest/gtest.h>
@@ -18,10 +19,6 @@ namespace trocar::collision {
 namespace {
 
 using geometry::TriangleMesh;
-
-Vec3 RandomPoint(math::Random& random, double reach) {
-  return {random.Uniform(-reach, reach), random.Uniform(-reach, reach), random.Uniform(-reach, reach)};
-}
 
 TriangleMesh MakeDentedBall() {
   TriangleMesh mesh = geometry::MakeSphere({0, 0, 0}, 0.1, 3);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trocar/collision/sweep.h"
+#include "random_triangles.h"
 
 #include <gtest/gtest.h>
 
@@ -10,9 +11,6 @@
 namespace trocar::collision {
 namespace {
 
-Vec3 RandomPoint(math::Random& random, double reach) {
-  return {random.Uniform(-reach, reach), random.Uniform(-reach, reach), random.Uniform(-reach, reach)};
-}
 Segment RandomSegment(math::Random& random, double reach) {
   return {RandomPoint(random, reach), RandomPoint(random, reach)};
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trocar/collision/triangle_distance.h"
+#include "random_triangles.h"
 
 #include <gtest/gtest.h>
 
@@ -10,10 +11,6 @@
 
 namespace trocar::collision {
 namespace {
-
-Vec3 RandomPoint(math::Random& random, double reach = 1.0) {
-  return {random.Uniform(-reach, reach), random.Uniform(-reach, reach), random.Uniform(-reach, reach)};
-}
 
 TEST(FindNearestSegmentTriangle, KnowsPiercingPassingAndStoppingShort) {
   const Vec3 a{0, 0, 0}, b{4, 0, 0}, c{0, 4, 0};

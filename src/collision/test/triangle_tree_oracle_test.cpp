@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "random_triangles.h"
 #include "trocar/collision/brute_force.h"
 #include "trocar/collision/triangle_distance.h"
 #include "trocar/collision/triangle_tree.h"
@@ -27,21 +28,6 @@ std::vector<SimdLevel> Levels() {
     if (core::HasSimdLevel(level)) levels.push_back(level);
   }
   return levels;
-}
-
-Vec3 RandomPoint(math::Random& random, double reach) {
-  return {random.Uniform(-reach, reach), random.Uniform(-reach, reach), random.Uniform(-reach, reach)};
-}
-
-TriangleMesh MakeSoup(math::Random& random, int count, double size) {
-  TriangleMesh mesh;
-  for (int i = 0; i < count; ++i) {
-    const Vec3 centre = RandomPoint(random, 0.1);
-    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
-    for (int corner = 0; corner < 3; ++corner) mesh.positions.push_back(centre + RandomPoint(random, size));
-    mesh.triangles.push_back({first, first + 1, first + 2});
-  }
-  return mesh;
 }
 
 /// Needles, triangles without area, points and copies of all of them.

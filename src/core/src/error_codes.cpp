@@ -54,7 +54,7 @@ constexpr ErrorEntry kTable[] = {
     {ErrorCode::kOrganFrozen, "E-SIM-002", "an organ is held still after repeated failures"},
     {ErrorCode::kTissueInvalid, "E-SIM-003", "a mass-spring system cannot be solved"},
     {ErrorCode::kUnstableStep, "E-SIM-004", "the relaxation's step is larger than any stable one"},
-    {ErrorCode::kOutOfMemory, "E-SIM-005", "a model needs more memory than there is"},
+    {ErrorCode::kOutOfMemory, "E-SIM-005", "more memory is needed than there is"},
     {ErrorCode::kStateInvalid, "E-SIM-006", "a saved state is damaged, of another version or of another scene"},
     {ErrorCode::kNoGraphics, "E-GL-001", "no OpenGL context can be made"},
     {ErrorCode::kGraphicsTooOld, "E-GL-002", "OpenGL is older than 3.3"},

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "trocar/core/safe_file.h"
 
@@ -42,6 +43,36 @@ bool IsTooDeep(std::string_view text) {
   }
   return false;
 }
+
+/// Notices the first field that an object gives twice, while the parser runs: the parser itself keeps the last.
+class TwiceWatch {
+ public:
+  bool See(nlohmann::json::parse_event_t event, const nlohmann::json& parsed) {
+    using Event = nlohmann::json::parse_event_t;
+    if (event == Event::object_start) {
+      open_.emplace_back();
+    } else if (event == Event::object_end) {
+      open_.pop_back();
+    } else if (event == Event::key) {
+      open_.back().key = parsed.get<std::string>();
+      if (!open_.back().seen.insert(open_.back().key).second && !twice_) {
+        twice_.emplace();
+        for (const Object& object : open_) *twice_ += (twice_->empty() ? "" : ".") + object.key;
+      }
+    }
+    return true;
+  }
+  /// "settings.tolerance"
+  const std::optional<std::string>& Twice() const { return twice_; }
+
+ private:
+  struct Object {
+    std::set<std::string> seen;
+    std::string key;
+  };
+  std::vector<Object> open_;
+  std::optional<std::string> twice_;
+};
 
 std::string NumberText(double value) {
   return nlohmann::json(value).dump();
@@ -179,9 +210,9 @@ std::string JsonView::TextOr(std::string_view key, std::string_view fallback) co
   return Has(key) ? Text(key) : std::string(fallback);
 }
 
-std::vector<double> JsonView::AsNumbers(std::size_t count) const {
+std::vector<double> JsonView::AsNumbers(std::size_t count, NumberRange range) const {
   std::vector<double> numbers;
-  for (const JsonView& element : Elements()) numbers.push_back(element.AsNumber());
+  for (const JsonView& element : Elements()) numbers.push_back(element.AsNumber(range));
   if (numbers.size() != count) {
     Complain("must be a list of " + std::to_string(count) + " numbers");
     numbers.resize(count, 0.0);
@@ -189,8 +220,8 @@ std::vector<double> JsonView::AsNumbers(std::size_t count) const {
   return numbers;
 }
 
-std::vector<double> JsonView::Numbers(std::string_view key, std::size_t count) const {
-  return Child(key).AsNumbers(count);
+std::vector<double> JsonView::Numbers(std::string_view key, std::size_t count, NumberRange range) const {
+  return Child(key).AsNumbers(count, range);
 }
 
 // --- documents
@@ -216,10 +247,16 @@ Result<JsonDocument> JsonDocument::Parse(std::string_view text, std::string sour
   }
   auto content = std::make_unique<Content>();
   content->source = std::move(source);
+  TwiceWatch watch;
   try {
-    content->root = nlohmann::json::parse(text);
+    content->root = nlohmann::json::parse(
+        text, [&](int, auto event, const nlohmann::json& parsed) { return watch.See(event, parsed); });
   } catch (const nlohmann::json::exception& failure) {
     return Error{ErrorCode::kJsonSyntax, content->source + ": not valid JSON: " + failure.what()};
+  }
+  if (watch.Twice()) {
+    return Error{ErrorCode::kJsonSyntax, content->source + ": the field " + *watch.Twice() +
+                                             " is given twice in one object; keep one of them"};
   }
   return JsonDocument(std::move(content));
 }

@@ -9,6 +9,8 @@
 #include <cstring>
 #include <system_error>
 
+#include "trocar/core/partial_path.h"
+
 namespace trocar::core {
 namespace {
 
@@ -87,7 +89,8 @@ Status WriteFile(const fs::path& path, std::string_view content) {
   std::error_code failure;
   if (path.has_parent_path()) fs::create_directories(path.parent_path(), failure);
   if (failure) return Unwritable(path.parent_path(), failure.message());
-  const fs::path partial = path.string() + ".part" + std::to_string(::getpid());
+  const PartialPath part(path);
+  const fs::path& partial = part.Path();
   bool written = false;
   int why = 0;
   {
@@ -100,8 +103,6 @@ Status WriteFile(const fs::path& path, std::string_view content) {
     fs::rename(partial, path, failure);
     if (!failure) return {};
   }
-  std::error_code ignored;
-  fs::remove(partial, ignored);
   return Unwritable(path, failure ? failure.message() : std::strerror(why));
 }
 

@@ -56,6 +56,21 @@ TEST(JsonDocument, RefusesBrokenText) {
   }
 }
 
+// the parser alone would keep the last of them without a word
+TEST(JsonDocument, RefusesAFieldThatAnObjectGivesTwice) {
+  const auto text_of = [](const char* text) {
+    const auto document = JsonDocument::Parse(text, "f");
+    return document.ok() ? std::string() : document.error().Text();
+  };
+  EXPECT_THAT(text_of(R"({"a": 1, "b": 2, "a": 1})"), HasSubstr("E-IO-004 f: the field a is given twice"));
+  EXPECT_THAT(text_of(R"({"settings": {"tolerance": 1, "tolerance": 0}})"), HasSubstr("settings.tolerance"));
+  EXPECT_THAT(text_of(R"({"list": [{"x": 1}, {"x": 1, "y": {"x": 1}, "x": 2}]})"), HasSubstr("list.x"));
+  EXPECT_THAT(text_of(R"({"a": 1, "\u0061": 2})"), HasSubstr("the field a is given twice"))
+      << "written otherwise";
+  EXPECT_EQ(text_of(R"({"a": {"a": {"a": 1}}, "b": [{"a": 1}, {"a": 2}]})"), "")
+      << "the control: other objects";
+}
+
 TEST(JsonDocument, RefusesEveryTruncationOfAGoodText) {
   const std::string text = R"({"a": [1, {"b": "c\"d"}], "e": 2})";
   for (std::size_t length = 0; length < text.size(); ++length) {

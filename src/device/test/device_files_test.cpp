@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <functional>
 
 #include "emulated_line.h"
 #include "trocar/core/safe_file.h"
@@ -93,6 +94,34 @@ TEST_F(DeviceFilesTest, BadFileMeansDefaultsAndAMessageAndIsSetAside) {
   EXPECT_FALSE(LoadDeviceStore(path).complaint.has_value());
 }
 
+// what the fits refuse, the file may not bring in: the same limits, either side of each
+TEST_F(DeviceFilesTest, BoundsTipAndTrocarAsTheFitsDo) {
+  const fs::path path = folder_ / "devices.json";
+  const auto complains = [&](const std::function<void(TrackerEntry&)>& change) {
+    DeviceStore store = MakeStore();
+    change(store.trackers["fastrak"]);
+    EXPECT_TRUE(SaveDeviceStore(path, store).ok());
+    const LoadedStore loaded = LoadDeviceStore(path);
+    EXPECT_TRUE(loaded.complaint || loaded.store.trackers == store.trackers);
+    return loaded.complaint.has_value();
+  };
+  const auto tip = [](const Vec3& p) {
+    return [p](TrackerEntry& entry) { entry.hands[0].p_sensor_tip = p; };
+  };
+  const auto trocar = [](const Vec3& p) {
+    return [p](TrackerEntry& entry) { entry.hands[0].p_source_trocar = p; };
+  };
+  EXPECT_FALSE(complains(tip({0, -kMostTipDistance, 0})));
+  EXPECT_TRUE(complains(tip({0, -1.001 * kMostTipDistance, 0})));
+  EXPECT_TRUE(complains(tip({0.4, 0.4, 0.4}))) << "each number is within, the distance is not";
+  EXPECT_TRUE(complains(tip({2.488e7, 0, 0}))) << "a tip 24,880 km away";
+  EXPECT_FALSE(complains(trocar({0, 0, kMostTrocarDistance})));
+  EXPECT_TRUE(complains(trocar({0, 0, 1.001 * kMostTrocarDistance})));
+  EXPECT_FALSE(complains([](TrackerEntry& entry) { entry.stations[0] = 16; }));
+  EXPECT_TRUE(complains([](TrackerEntry& entry) { entry.stations[0] = 17; }));
+  EXPECT_TRUE(complains([](TrackerEntry& entry) { entry.stations[0] = -1; }));
+}
+
 TEST_F(DeviceFilesTest, AHandWithForceHasNoClutch) {
   const DeviceStore none;
   EXPECT_EQ(none.Buttons("gamepad"), DefaultButtons());
@@ -135,6 +164,87 @@ TEST(HandRecording, GivesTheSameBitsBack) {
   const auto read = ParseHandFrames(FormatHandFrames(frames), "test");
   ASSERT_TRUE(read.ok()) << read.error().Text();
   EXPECT_EQ(*read, frames);
+}
+
+class HandPlayerTest : public DeviceFilesTest {
+ protected:
+  /// Starts a player of these frames.
+  void Play(const std::vector<HandFrame>& frames) {
+    const fs::path path = folder_ / "hands.csv";
+    ASSERT_TRUE(core::WriteFile(path, FormatHandFrames(frames)).ok());
+    player_ = std::make_unique<HandPlayer>(path, clock_);
+  }
+  static HandFrame At(double time, double pan, double depth) {
+    HandFrame frame;
+    frame.time = time;
+    for (HandSample& hand : frame.hands) hand = {pan, 0, 0, depth, 0.5, time, true};
+    return frame;
+  }
+  ManualClock clock_;
+  std::unique_ptr<HandPlayer> player_;
+  HandSamples samples_;
+};
+
+// a recording that teleports would press a tool through the liver: 600 N in one tick
+TEST_F(HandPlayerTest, MovesAHandNoFasterThanAHandMoves) {
+  Play({At(0, 0, 0.1), At(0.5, 1.2, 0.25), At(1.0, -1.2, 0.02)});
+  HandSample home;
+  home.pan = -0.5, home.depth = 0.05;
+  for (int hand = 0; hand < kChannelCount; ++hand) player_->PlaceHand(hand, home);
+  ASSERT_TRUE(player_->Configure().ok());
+  ASSERT_TRUE(player_->Activate().ok());
+  constexpr double kTick = 1.0 / 120;
+  HandSample before = home;
+  double fastest = 0, arrived = 0;
+  for (int tick = 1; tick <= 240; ++tick) {
+    clock_.Set(tick * kTick);
+    ASSERT_NE(player_->Read(samples_), ReadStatus::kLost);
+    const HandSample& now = samples_[kLeftHand];
+    const auto tip = [](const HandSample& hand) {
+      return Vec3{hand.depth * std::sin(hand.pan), 0, hand.depth * std::cos(hand.pan)};
+    };
+    fastest = std::max(fastest, math::Distance(tip(before), tip(now)) / kTick);
+    if (arrived == 0 && now.pan == 1.2 && now.depth == 0.25) arrived = tick * kTick;
+    before = now;
+  }
+  EXPECT_LT(fastest, 1.45 * kMaxPlaySpeed) << "depth and swing together";
+  EXPECT_GT(fastest, 0.5) << "and it does move";
+  EXPECT_GT(arrived, 0.55);
+  EXPECT_LT(arrived, 0.75) << "0.3 m at 2 m/s";
+  EXPECT_EQ(samples_[kLeftHand].pan, -1.2) << "in the end it is where the recording has it, to the bit";
+  EXPECT_EQ(samples_[kLeftHand].depth, 0.02);
+}
+
+// what a hand can do passes untouched
+TEST_F(HandPlayerTest, PlaysARealHandBitForBit) {
+  const std::vector<HandFrame> frames = MakeFrames();
+  Play(frames);
+  ASSERT_TRUE(player_->Configure().ok());
+  ASSERT_TRUE(player_->Activate().ok());
+  for (const HandFrame& frame : frames) {
+    clock_.Set(frame.time);
+    player_->Read(samples_);
+    for (const Channel hand : {kLeftHand, kRightHand})
+      EXPECT_EQ(samples_[hand], frame.hands[hand]) << frame.time;
+  }
+}
+
+TEST(HandRecording, RefusesWhatNoHandDoes) {
+  std::vector<HandFrame> frames(1);
+  const auto is_good = [&](const std::function<void(HandFrame&)>& change) {
+    frames[0] = {};
+    change(frames[0]);
+    return ParseHandFrames(FormatHandFrames(frames), "x").ok();
+  };
+  EXPECT_TRUE(is_good([](HandFrame&) {}));
+  EXPECT_TRUE(is_good([](HandFrame& frame) { frame.hands[0].depth = -0.3; })) << "outside of the body";
+  for (const double far : {1.01, 1e9, 1e300}) {
+    EXPECT_FALSE(is_good([&](HandFrame& frame) { frame.hands[0].depth = far; })) << far;
+    EXPECT_FALSE(is_good([&](HandFrame& frame) { frame.hands[1].pan = -4 * far; })) << far;
+    EXPECT_FALSE(is_good([&](HandFrame& frame) { frame.hands[1].spin = 1000 * far; })) << far;
+    EXPECT_FALSE(is_good([&](HandFrame& frame) { frame.time = 1e5 * far; })) << far;
+  }
+  EXPECT_FALSE(is_good([](HandFrame& frame) { frame.hands[1].jaw = -0.1; }));
 }
 
 // recordings of earlier versions

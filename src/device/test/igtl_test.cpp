@@ -136,6 +136,32 @@ TEST(Igtl, RefusesSizesThatLie) {
   EXPECT_FALSE(Read(Message("TRANS\x01", body, 48)).is_followed);
 }
 
+TEST(Igtl, ReadsManyToolsAndNamesAMessageOfTooMany) {
+  const auto tools = [](std::size_t count) {
+    std::vector<IgtlTool> all(count, IgtlTool{"marker", MakePose()});
+    all.back().name = "left";
+    return FormatIgtlTrackingData("Theatre", all, 0);
+  };
+  const Got many = Read(tools(100));
+  ASSERT_EQ(many.poses.size(), 100u) << "as a tracker with passive markers sends them";
+  EXPECT_EQ(Read(tools(kMostIgtlTools)).poses.size(), kMostIgtlTools);
+  IgtlReader reader;
+  std::size_t poses = 0;
+  const auto count = [&](const IgtlPose&) { ++poses; };
+  EXPECT_EQ(reader.DescribeLarge(), "");
+  ASSERT_TRUE(reader.Feed(tools(600) + tools(2), count));
+  EXPECT_EQ(poses, 2u) << "the stream goes on";
+  EXPECT_EQ(reader.Counts().large, 1u);
+  EXPECT_EQ(reader.Counts().bad, 1u);
+  EXPECT_NE(reader.DescribeLarge().find("TDATA \"Theatre\" of 42000 bytes"), std::string::npos)
+      << reader.DescribeLarge();
+  // a name may be anything
+  std::string nasty = tools(600);
+  nasty.replace(14, 7, "\x1b[2Jxyz");
+  ASSERT_TRUE(reader.Feed(nasty, count));
+  EXPECT_EQ(reader.DescribeLarge().find('\x1b'), std::string::npos);
+}
+
 // faults D6: in this protocol nothing numbers a message, so what is sent twice is taken twice; it only says again where a hand
 // was, and the gate of poses drops what a hand cannot do
 TEST(Igtl, ARepeatedMessageMovesNothing) {

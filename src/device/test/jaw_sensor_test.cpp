@@ -116,6 +116,54 @@ class JawSensorTest : public testing::Test {
   HandSamples samples_;
 };
 
+/// A line whose far end the test writes.
+class ScriptedLine : public Transport {
+ public:
+  explicit ScriptedLine(std::string& bytes) : bytes_(bytes) {}
+  IoResult Read(std::span<char> buffer) noexcept override {
+    const std::size_t count = std::min(buffer.size(), bytes_.size());
+    std::copy_n(bytes_.begin(), count, buffer.begin());
+    bytes_.erase(0, count);
+    return {count, false};
+  }
+  IoResult Write(std::string_view bytes) noexcept override { return {bytes.size(), false}; }
+
+ private:
+  std::string& bytes_;
+};
+
+// a board that hangs may repeat its last line for ever: alive to the eye, and the jaw stands still
+TEST(JawSensor, DoesNotSeeAJawWhoseClockStandsStill) {
+  std::string bytes;
+  ManualClock clock;
+  JawSensor sensor(
+      {},
+      [&]() -> core::Result<std::unique_ptr<Transport>> {
+        return std::unique_ptr<Transport>(std::make_unique<ScriptedLine>(bytes));
+      },
+      clock);
+  bytes = FormatReading({0, 0, 100}) + FormatReading({1, 0, 100});
+  ASSERT_TRUE(sensor.Configure().ok());
+  ASSERT_TRUE(sensor.Activate().ok());
+  HandSamples samples;
+  double left_hidden = 0, lost = 0;
+  bool was_right_seen = true;
+  for (int i = 1; i < 200 && lost == 0; ++i) {
+    const double now = 0.010 * i;
+    clock.Set(now);
+    const auto milliseconds = static_cast<std::uint32_t>(10 * i);
+    // the left value freezes at 0.2 s, the right one, which is the control, at 0.6 s
+    bytes += FormatReading({0, std::min(milliseconds, 200u), 100});
+    bytes += FormatReading({1, std::min(milliseconds, 600u), 100});
+    if (sensor.Read(samples) == ReadStatus::kLost) lost = now;
+    if (left_hidden == 0 && !samples[kLeftHand].is_valid) left_hidden = now;
+    if (now < 0.6) was_right_seen = was_right_seen && samples[kRightHand].is_valid;
+  }
+  EXPECT_NEAR(left_hidden, 0.2 + 0.1, 0.015);
+  EXPECT_TRUE(was_right_seen);
+  EXPECT_NEAR(lost, 0.6 + 0.5, 0.015) << "nothing new of either for half a second";
+}
+
 TEST_F(JawSensorTest, FollowsBothJaws) {
   Make();
   ASSERT_TRUE(driver_->Configure().ok());

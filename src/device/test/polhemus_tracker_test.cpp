@@ -121,6 +121,46 @@ TEST(PolhemusTracker, StandsTurnedBitsAndGarbage) {
   }
 }
 
+/// A line that swallows so many questions, or all that is written.
+class DeafLine : public Transport {
+ public:
+  DeafLine(std::unique_ptr<Transport> line, int deaf) : line_(std::move(line)), deaf_(deaf) {}
+  static constexpr int kAlways = -1;
+  IoResult Read(std::span<char> buffer) noexcept override { return line_->Read(buffer); }
+  IoResult Write(std::string_view bytes) noexcept override {
+    if (deaf_ != kAlways && (bytes != PollCommand() || deaf_ == 0)) return line_->Write(bytes);
+    if (deaf_ != kAlways) --deaf_;
+    return {bytes.size(), false};
+  }
+
+ private:
+  std::unique_ptr<Transport> line_;
+  int deaf_;
+};
+
+// one lost question, or its answer, is no missing tracker
+TEST_P(PolhemusTrackerTest, AsksAgainAfterALostAnswer) {
+  const auto opens = [&](int lost) {
+    EmulatedTracker tracker(GetParam());
+    PolhemusTracker driver(
+        tracker.settings,
+        [&]() -> core::Result<std::unique_ptr<Transport>> {
+          auto line = OpenSerialPort(tracker.host->Address(), 115200);
+          if (!line) return line.error();
+          return std::unique_ptr<Transport>(std::make_unique<DeafLine>(std::move(*line), lost));
+        },
+        tracker.clock);
+    const core::Status done = driver.Configure();
+    EXPECT_LT(tracker.clock.Now(), tracker.settings.answer_time + 0.5);
+    return done.ok() ? ErrorCode::kNone : done.error().code;
+  };
+  EXPECT_EQ(opens(0), ErrorCode::kNone);
+  EXPECT_EQ(opens(1), ErrorCode::kNone);
+  EXPECT_EQ(opens(3), ErrorCode::kNone);
+  EXPECT_EQ(opens(DeafLine::kAlways), ErrorCode::kDeviceStale)
+      << "the control: one that never answers is refused";
+}
+
 // faults D14
 TEST(PolhemusTracker, TakesTheNewestOfAFlood) {
   EmulatedTracker tracker(PolhemusFormat::kLiberty, {{FaultKind::kFlood, 0.2, 1e9, 0}});

@@ -10,6 +10,8 @@ namespace {
 
 constexpr std::size_t kMostViewers = 8;
 constexpr double kPatience = 10.0;  // with a viewer that takes nothing [s]
+/// A viewer that is behind for longer loses its place to a new one, when all are taken [s].
+constexpr double kBehind = 1.0;
 
 /// Columns are the world's axes in RAS.
 math::Quaternion RotationRasWorld() {
@@ -80,8 +82,15 @@ core::Result<std::unique_ptr<IgtlServer>> IgtlServer::Make(const IgtlServerSetti
 
 void IgtlServer::Accept(double time) {
   while (std::unique_ptr<device::Transport> line = listener_->Accept()) {
-    // more than that and the newest caller is sent away
-    if (viewers_.size() < kMostViewers) viewers_.push_back({std::move(line), {}, time, false});
+    if (viewers_.size() >= kMostViewers) {
+      // the slowest makes room; where all keep up, the newest caller is sent away
+      const auto slowest =
+          std::min_element(viewers_.begin(), viewers_.end(),
+                           [](const Viewer& a, const Viewer& b) { return a.last_level < b.last_level; });
+      if (time - slowest->last_level <= kBehind) continue;
+      viewers_.erase(slowest);
+    }
+    viewers_.push_back({std::move(line), {}, time, time, false});
   }
 }
 
@@ -95,6 +104,7 @@ void IgtlServer::Serve(Viewer& viewer, double time) {
   const device::IoResult sent = viewer.line->Write(viewer.unsent);
   viewer.unsent.erase(0, sent.count);
   if (sent.count > 0 || viewer.unsent.empty()) viewer.last_sent = time;
+  if (viewer.unsent.empty()) viewer.last_level = time;
   if (heard.is_lost || sent.is_lost || time - viewer.last_sent > kPatience) viewer.line.reset();
 }
 
@@ -103,7 +113,7 @@ void IgtlServer::Publish(const session::Snapshot& snapshot) {
   // back at the first tick
   if (next_tools_ > time + settings_.organ_period + settings_.tool_period) {
     next_tools_ = next_organs_ = time;
-    for (Viewer& viewer : viewers_) viewer.last_sent = time;
+    for (Viewer& viewer : viewers_) viewer.last_sent = viewer.last_level = time;
   }
   Accept(time);
   const bool has_tools = IsDue(time, settings_.tool_period, next_tools_);

@@ -5,7 +5,9 @@
 
 #include <array>
 #include <map>
+#include <memory>
 #include <string>
+#include <vector>
 
 #include "trocar/device/ports.h"
 
@@ -119,6 +121,33 @@ TEST_F(IgtlServerTest, LetsGoOfAViewerThatTakesNothing) {
   }
   EXPECT_EQ(server_->ViewerCount(), 1u);
   EXPECT_GT(most, 10'000u) << "the other still gets everything";
+}
+
+// eight that fall behind do not lock the ninth out; eight that keep up do
+TEST_F(IgtlServerTest, TheSlowestMakesRoom) {
+  std::vector<std::unique_ptr<device::Transport>> viewers;
+  for (int i = 0; i < 8; ++i) viewers.push_back(Connect());
+  Tick(4);
+  ASSERT_EQ(server_->ViewerCount(), 8u);
+  auto ninth = Connect();
+  for (int round = 0; round < 20; ++round) {
+    Tick(12);
+    for (const auto& viewer : viewers) ReadAll(*viewer);
+  }
+  EXPECT_EQ(ReadAll(*ninth).size(), 0u) << "the control: all keep up, so it was sent away";
+
+  // from now on all of them take a trickle, so that none is silent for ten seconds, and the first takes nothing for longest
+  std::size_t got = 0;
+  std::array<char, 16> trickle;
+  for (int round = 0; round < 400 && got == 0; ++round) {
+    Tick(600);
+    for (const auto& viewer : viewers) (void)viewer->Read(trickle);
+    ninth = Connect();
+    Tick(8);
+    got = ReadAll(*ninth).size();
+  }
+  EXPECT_GT(got, 1000u) << "the ninth is served";
+  EXPECT_LE(server_->ViewerCount(), 8u);
 }
 
 // faults N9: nothing that a viewer says matters

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trocar/session/device_hands.h"
 
+#include "trocar/session/hand_joints.h"
+
 namespace trocar::session {
 namespace {
 
@@ -9,10 +11,6 @@ using device::HandSample;
 using instrument::TrocarJoints;
 
 constexpr Hand kHands[] = {kLeft, kRight};
-
-TrocarJoints JointsOf(const HandSample& sample) noexcept {
-  return {sample.pan, sample.tilt, sample.spin, sample.depth, sample.jaw};
-}
 
 bool IsUsable(const HandSample& sample) noexcept {
   return sample.is_valid && IsFinite(sample);

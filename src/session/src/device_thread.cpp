@@ -9,6 +9,7 @@
 #include "trocar/core/newest_slot.h"
 #include "trocar/device/hand_rig.h"
 #include "trocar/device/pose_driver.h"
+#include "trocar/session/hand_joints.h"
 
 namespace trocar::session {
 namespace {
@@ -23,8 +24,9 @@ void PlaceAtHome(const Scene& scene, device::Driver& driver) noexcept {
   const std::array<instrument::TrocarJoints, device::kChannelCount> homes = {
       scene.instruments[kLeft].home, scene.instruments[kRight].home, scene.laparoscope.home};
   for (std::size_t i = 0; i < homes.size(); ++i) {
-    const instrument::TrocarJoints& home = homes[i];
-    driver.PlaceHand(static_cast<int>(i), {home.pan, home.tilt, home.spin, home.depth, home.jaw, 0.0, true});
+    device::HandSample home = SampleOf(homes[i]);
+    home.is_valid = true;
+    driver.PlaceHand(static_cast<int>(i), home);
   }
 }
 

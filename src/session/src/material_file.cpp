@@ -1,28 +1,34 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "material_file.h"
 
+#include <map>
+#include <set>
 #include <string>
+#include <utility>
+
+#include "field_ranges.h"
 
 namespace trocar::session {
 namespace {
 
 void ReadFigures(const core::JsonView& view, OrganMaterial& material) {
-  material.young_modulus = view.Number("young_modulus_pa", {0.0, 1e9});
-  material.wall_thickness = 0.001 * view.Number("wall_thickness_mm", {0.001, 100.0});
-  material.foundation_modulus = view.NumberOr("foundation_modulus_pa", 0.0, {0.0, 1e9});
-  material.depth = 0.001 * view.NumberOr("foundation_depth_mm", 10.0, {0.1, 1000.0});
-  material.density = view.NumberOr("density_kg_m3", 1060.0, {0.0, 20'000.0});
-  material.failure_strain = view.NumberOr("failure_strain", material.failure_strain, {1e-9, 100.0});
-  material.failure_force = view.NumberOr("failure_force_n", material.failure_force, {1e-9, 1000.0});
+  material.young_modulus = view.Number("young_modulus_pa", range::kModulusPa);
+  material.wall_thickness = 0.001 * view.Number("wall_thickness_mm", range::kWallThicknessMm);
+  material.foundation_modulus = view.NumberOr("foundation_modulus_pa", 0.0, range::kModulusPa);
+  material.depth = 0.001 * view.NumberOr("foundation_depth_mm", 10.0, range::kFoundationDepthMm);
+  material.density = view.NumberOr("density_kg_m3", 1060.0, range::kDensity);
+  material.failure_strain = view.NumberOr("failure_strain", material.failure_strain, range::kFailureStrain);
+  material.failure_force = view.NumberOr("failure_force_n", material.failure_force, range::kFailureForceN);
   tissue::SpringLaw& law = material.wall_law;
-  law.stiffening = view.NumberOr("stiffening", law.stiffening, {0.0, 1e4});
-  law.stiffening_strain = view.NumberOr("stiffening_strain", law.stiffening_strain, {0.0, 10.0});
-  law.failure_strain = view.NumberOr("wall_failure_strain", law.failure_strain, {1e-3, 100.0});
-  law.damage_rate = view.NumberOr("wall_damage_per_s", law.damage_rate, {0.0, 1e6});
-  law.damage_exponent = view.NumberOr("wall_damage_exponent", law.damage_exponent, {1.0, 100.0});
+  law.stiffening = view.NumberOr("stiffening", law.stiffening, range::kStiffening);
+  law.stiffening_strain = view.NumberOr("stiffening_strain", law.stiffening_strain, range::kStiffeningStrain);
+  law.failure_strain = view.NumberOr("wall_failure_strain", law.failure_strain, range::kWallFailureStrain);
+  law.damage_rate = view.NumberOr("wall_damage_per_s", law.damage_rate, range::kWallDamagePerS);
+  law.damage_exponent =
+      view.NumberOr("wall_damage_exponent", law.damage_exponent, range::kWallDamageExponent);
   if (law.damage_rate > 0.0 && !view.Has("wall_failure_strain"))
     view.Complain("wall_damage_per_s needs wall_failure_strain, under whose tension it counts");
-  material.internal_pressure = view.NumberOr("internal_pressure_pa", 0.0, {-20e3, 20e3});
+  material.internal_pressure = view.NumberOr("internal_pressure_pa", 0.0, range::kInternalPressurePa);
 }
 
 core::Result<OrganMaterial> ReadMaterialFile(const std::filesystem::path& path) {
@@ -53,15 +59,22 @@ core::Result<OrganMaterial> ReadMaterialFile(const std::filesystem::path& path) 
   return material;
 }
 
-}  // namespace
+/// Materials of files that were read already, by path.
+using MaterialFiles = std::map<std::filesystem::path, OrganMaterial>;
 
-core::Result<OrganMaterial> ReadMaterial(const core::JsonView& view, const std::filesystem::path& folder) {
+core::Result<OrganMaterial> ReadMaterial(const core::JsonView& view, const std::filesystem::path& folder,
+                                         MaterialFiles& files) {
   OrganMaterial material;
   if (view.Has("file")) {
     view.AllowOnly({"organ", "file"});
-    auto read = ReadMaterialFile(folder / view.Text("file"));
-    if (!read.ok()) return read.error();
-    material = std::move(*read);
+    const std::filesystem::path path = folder / view.Text("file");
+    auto known = files.find(path);
+    if (known == files.end()) {
+      auto read = ReadMaterialFile(path);
+      if (!read.ok()) return read.error();
+      known = files.emplace(path, std::move(*read)).first;
+    }
+    material = known->second;
   } else {
     view.AllowOnly({"organ", "young_modulus_pa", "wall_thickness_mm", "foundation_modulus_pa",
                     "foundation_depth_mm", "density_kg_m3", "failure_strain", "failure_force_n",
@@ -70,8 +83,29 @@ core::Result<OrganMaterial> ReadMaterial(const core::JsonView& view, const std::
     ReadFigures(view, material);
     material.source = view.Text("source");
   }
-  material.organ = view.Text("organ");
   return material;
+}
+
+}  // namespace
+
+core::Result<std::vector<OrganMaterial>> ReadMaterials(const core::JsonView& scene,
+                                                       const std::filesystem::path& folder) {
+  std::vector<OrganMaterial> materials;
+  std::set<std::string> organs;
+  MaterialFiles files;
+  for (const core::JsonView& view : scene.Array("materials")) {
+    std::string organ = view.Text("organ");
+    if (!organs.insert(organ).second) {
+      view.Complain("a material for \"" + organ + "\" was given before; keep one of them",
+                    core::ErrorCode::kSceneInvalid);
+      break;
+    }
+    auto material = ReadMaterial(view, folder, files);
+    if (!material.ok()) return material.error();
+    material->organ = std::move(organ);
+    materials.push_back(std::move(*material));
+  }
+  return materials;
 }
 
 }  // namespace trocar::session

@@ -4,16 +4,18 @@
 #pragma once
 
 #include <filesystem>
+#include <vector>
 
 #include "trocar/core/json.h"
 #include "trocar/session/scene.h"
 
 namespace trocar::session {
 
-/// One entry of a scene's "materials": its figures, or {"organ": ..., "file": ...}.
+/// A scene's "materials", each with its figures, or {"organ": ..., "file": ...}; a file is read once.
 ///
 /// \param folder  of the scene
-/// \return the file's error; kJsonField when a figure has no source
-core::Result<OrganMaterial> ReadMaterial(const core::JsonView& view, const std::filesystem::path& folder);
+/// \return the file's error; kJsonField when a figure has no source. Complains in the document about an organ named twice
+core::Result<std::vector<OrganMaterial>> ReadMaterials(const core::JsonView& scene,
+                                                       const std::filesystem::path& folder);
 
 }  // namespace trocar::session

@@ -1,12 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trocar/session/runner.h"
 
-#include <pthread.h>
-#include <sched.h>
-#include <time.h>
-
-#include <cerrno>
-
 #include <algorithm>
 #include <atomic>
 #include <string_view>
@@ -16,6 +10,7 @@
 
 #include "trocar/core/clock.h"
 #include "trocar/core/newest_slot.h"
+#include "trocar/core/real_time.h"
 #include "trocar/core/statistics.h"
 #include "trocar/session/surgeon.h"
 
@@ -23,22 +18,8 @@ namespace trocar::session {
 namespace {
 
 constexpr std::string_view kExpert = "expert";
-
-void SleepUntil(std::int64_t time_ns) noexcept {
-  timespec until{};
-  until.tv_sec = time_ns / 1'000'000'000;
-  until.tv_nsec = time_ns % 1'000'000'000;
-  while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr) == EINTR) {
-  }
-}
-
-/// Asks for the lowest real-time priority: above drawing, below a haptic loop. Most desktops allow it to
-/// nobody or to a group; the simulation also runs without.
-bool AskForRealTime() noexcept {
-  sched_param parameters{};
-  parameters.sched_priority = sched_get_priority_min(SCHED_RR);
-  return pthread_setschedparam(pthread_self(), SCHED_RR, &parameters) == 0;
-}
+/// The lowest real-time priority: above drawing, below a haptic loop. The simulation also runs without.
+constexpr int kPriorityAboveLowest = 0;
 
 }  // namespace
 
@@ -97,7 +78,7 @@ struct Runner::Content {
 };
 
 void Runner::Content::Run() {
-  is_real_time.store(AskForRealTime());
+  is_real_time.store(core::AskForRealTime(core::RealTimePolicy::kRoundRobin, kPriorityAboveLowest));
   const auto period = static_cast<std::int64_t>(1e9 * simulation.GetScene().tick_seconds);
   const auto window = static_cast<std::size_t>(1.0 / simulation.GetScene().tick_seconds);
   std::vector<double> durations;
@@ -139,7 +120,7 @@ void Runner::Content::Run() {
       next = now;
       continue;
     }
-    SleepUntil(next);
+    core::SleepUntil(next);
   }
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "field_ranges.h"
 #include "material_file.h"
 #include "scene_objects.h"
 #include "scene_reader.h"
@@ -30,7 +31,8 @@ Vec3 ReadTarget(const core::JsonView& view, std::string_view key, const anatomy:
                     core::ErrorCode::kUnknownName);
     return {};
   }
-  return landmark->position + (target.Has("offset_mm") ? ReadPointMm(target, "offset_mm") : Vec3{});
+  return landmark->position +
+         (target.Has("offset_mm") ? ReadPointMm(target, "offset_mm", range::kOffsetMm) : Vec3{});
 }
 
 void ReadInstrument(const core::JsonView& root, const char* hand, const anatomy::Patient& patient,
@@ -54,8 +56,8 @@ void ReadInstrument(const core::JsonView& root, const char* hand, const anatomy:
   if (!setup.tray.empty()) setup.tool = setup.tray.front();
   setup.p_world_port = ReadPointMm(view, "port_mm");
   setup.home = instrument::FindJoints(setup.p_world_port, ReadTarget(view, "tip", patient),
-                                      view.NumberOr("spin_deg", 0.0) * kDegree,
-                                      view.NumberOr("jaw_deg", 0.0, {0.0, 90.0}) * kDegree);
+                                      view.NumberOr("spin_deg", 0.0, range::kTurnDeg) * kDegree,
+                                      view.NumberOr("jaw_deg", 0.0, range::kJawDeg) * kDegree);
 }
 
 void ReadOperation(const core::JsonView& root, const anatomy::Patient& patient, Scene& scene) {
@@ -63,7 +65,7 @@ void ReadOperation(const core::JsonView& root, const anatomy::Patient& patient, 
   const core::JsonView view = root.Object("operation");
   view.AllowOnly({"fat_spacing_mm", "assistant", "gallstones"});
   OperationSetup setup;
-  setup.fat_spacing = 0.001 * view.NumberOr("fat_spacing_mm", 1e3 * setup.fat_spacing, {0.0, 10.0});
+  setup.fat_spacing = 0.001 * view.NumberOr("fat_spacing_mm", 1e3 * setup.fat_spacing, range::kFatSpacingMm);
   if (setup.fat_spacing > 0.0 && setup.fat_spacing < 0.0015)
     view.Complain("fat_spacing_mm must be 0, for none, or at least 1.5");
   if (view.Has("gallstones")) {
@@ -71,7 +73,8 @@ void ReadOperation(const core::JsonView& root, const anatomy::Patient& patient, 
     stones.AllowOnly({"count", "median_diameter_mm"});
     setup.gallstones.count = stones.Integer("count", {0, surgery::kMostGallstones});
     setup.gallstones.median_diameter =
-        0.001 * stones.NumberOr("median_diameter_mm", 1e3 * setup.gallstones.median_diameter, {1.0, 30.0});
+        0.001 * stones.NumberOr("median_diameter_mm", 1e3 * setup.gallstones.median_diameter,
+                                range::kGallstoneDiameterMm);
   }
   if (patient.tubes.empty())
     view.Complain(
@@ -83,7 +86,7 @@ void ReadOperation(const core::JsonView& root, const anatomy::Patient& patient, 
     assistant.tool = *instrument::FindTool("grasper");
     assistant.p_world_port = ReadPointMm(hand, "port_mm");
     assistant.landmark = hand.Text("at");
-    assistant.lift = ReadPointMm(hand, "lift_mm");
+    assistant.lift = ReadPointMm(hand, "lift_mm", range::kOffsetMm);
     if (patient.FindLandmark(assistant.landmark) == nullptr)
       hand.Complain("there is no landmark \"" + assistant.landmark + "\" in the patient",
                     core::ErrorCode::kUnknownName);
@@ -104,15 +107,37 @@ void ReadLaparoscope(const core::JsonView& root, const anatomy::Patient& patient
   settings.holds_camera = holder == "automatic";
   setup.p_world_port = ReadPointMm(view, "port_mm");
   setup.home = instrument::FindJoints(setup.p_world_port, ReadTarget(view, "target", patient),
-                                      view.NumberOr("post_deg", 0.0) * kDegree, 0.0);
-  setup.home.depth = 0.001 * view.Number("depth_mm", {10.0, 300.0});
-  setup.view_angle = view.NumberOr("view_angle_deg", 0.0, {0.0, 70.0}) * kDegree;
-  setup.field_of_view = view.NumberOr("field_of_view_deg", 75.0, {20.0, 120.0}) * kDegree;
+                                      view.NumberOr("post_deg", 0.0, range::kTurnDeg) * kDegree, 0.0);
+  setup.home.depth = 0.001 * view.Number("depth_mm", range::kLaparoscopeDepthMm);
+  setup.view_angle = view.NumberOr("view_angle_deg", 0.0, range::kViewAngleDeg) * kDegree;
+  setup.field_of_view = view.NumberOr("field_of_view_deg", 75.0, range::kFieldOfViewDeg) * kDegree;
   if (!view.BooleanOr("look_at_target", false)) return;
   ViewRequest request;
   request.p_world = ReadTarget(view, "target", patient);
   request.distance = std::max(0.02, math::Distance(request.p_world, setup.p_world_port) - setup.home.depth);
   if (const auto found = FindView(setup, request)) setup.home = *found;
+}
+
+/// Complains where two of the ports are one hole: no two shafts pass it, and no surgeon would place them so.
+void CheckPorts(const core::JsonView& root, const Scene& scene) {
+  struct Port {
+    const char* name;
+    Vec3 p_world;
+  };
+  std::vector<Port> ports = {{"the left instrument", scene.instruments[kLeft].p_world_port},
+                             {"the right instrument", scene.instruments[kRight].p_world_port},
+                             {"the laparoscope", scene.laparoscope.p_world_port}};
+  if (scene.operation && scene.operation->assistant)
+    ports.push_back({"the assistant", scene.operation->assistant->p_world_port});
+  for (std::size_t i = 0; i < ports.size(); ++i) {
+    for (std::size_t j = i + 1; j < ports.size(); ++j) {
+      if (math::Distance(ports[i].p_world, ports[j].p_world) >= 0.001 * range::kLeastPortDistanceMm) continue;
+      root.Complain(std::string(ports[i].name) + " and " + ports[j].name +
+                        " have their ports in one place; keep port_mm at least 5 mm apart",
+                    core::ErrorCode::kSceneInvalid);
+      return;
+    }
+  }
 }
 
 void ReadSettings(const core::JsonView& root, LiveSettings& settings) {
@@ -121,19 +146,20 @@ void ReadSettings(const core::JsonView& root, LiveSettings& settings) {
   view.AllowOnly({"stiffness_scale", "shape_scale", "gravity_m_s2", "head_up_deg", "right_up_deg", "solver",
                   "max_iterations", "tolerance", "max_error", "max_newton_steps", "max_linear_total",
                   "follow_snap_through"});
-  settings.stiffness_scale = view.NumberOr("stiffness_scale", settings.stiffness_scale, {0.05, 20.0});
-  settings.shape_scale = view.NumberOr("shape_scale", settings.shape_scale, {0.0, 20.0});
-  settings.gravity = view.NumberOr("gravity_m_s2", settings.gravity, {0.0, 30.0});
-  settings.head_up = view.NumberOr("head_up_deg", 0.0, {-30.0, 30.0}) * kDegree;
-  settings.right_up = view.NumberOr("right_up_deg", 0.0, {-30.0, 30.0}) * kDegree;
+  settings.stiffness_scale =
+      view.NumberOr("stiffness_scale", settings.stiffness_scale, range::kStiffnessScale);
+  settings.shape_scale = view.NumberOr("shape_scale", settings.shape_scale, range::kShapeScale);
+  settings.gravity = view.NumberOr("gravity_m_s2", settings.gravity, range::kGravity);
+  settings.head_up = view.NumberOr("head_up_deg", 0.0, range::kTiltDeg) * kDegree;
+  settings.right_up = view.NumberOr("right_up_deg", 0.0, range::kTiltDeg) * kDegree;
   settings.solver.max_iterations =
-      view.IntegerOr("max_iterations", settings.solver.max_iterations, {1, 100'000});
-  settings.solver.tolerance = view.NumberOr("tolerance", settings.solver.tolerance, {0.0, 1.0});
-  settings.solver.max_error = view.NumberOr("max_error", settings.solver.max_error, {1e-9, 1.0});
+      view.IntegerOr("max_iterations", settings.solver.max_iterations, range::kMaxIterations);
+  settings.solver.tolerance = view.NumberOr("tolerance", settings.solver.tolerance, range::kTolerance);
+  settings.solver.max_error = view.NumberOr("max_error", settings.solver.max_error, range::kMaxError);
   settings.solver.max_newton_steps =
-      view.IntegerOr("max_newton_steps", settings.solver.max_newton_steps, {1, 1000});
+      view.IntegerOr("max_newton_steps", settings.solver.max_newton_steps, range::kMaxNewtonSteps);
   settings.solver.max_linear_total =
-      view.IntegerOr("max_linear_total", settings.solver.max_linear_total, {1, 100'000});
+      view.IntegerOr("max_linear_total", settings.solver.max_linear_total, range::kMaxLinearTotal);
   settings.solver.follows_snap_through =
       view.BooleanOr("follow_snap_through", settings.solver.follows_snap_through);
   const std::string solver = view.TextOr("solver", "adaptive");
@@ -156,8 +182,8 @@ core::Result<Scene> ReadSceneFields(const core::JsonDocument& document, const co
                   "instruments", "laparoscope", "script", "operation", "objects", "model"});
   Scene scene;
   scene.name = view.TextOr("name", "");
-  scene.tick_seconds = 1.0 / view.NumberOr("tick_hz", 120.0, {10.0, 2000.0});
-  scene.seed = static_cast<std::uint64_t>(view.IntegerOr("seed", 0, {0.0, 2147483647.0}));
+  scene.tick_seconds = 1.0 / view.NumberOr("tick_hz", 120.0, range::kTickHz);
+  scene.seed = static_cast<std::uint64_t>(view.IntegerOr("seed", 0, range::kSeed));
   if (view.Has("objects")) scene.objects = ReadObjects(view, "objects");
   // what needs no patient may have no patient
   const bool has_patient = (scene.objects.empty() && !view.Has("model")) || view.Has("patient");
@@ -181,11 +207,9 @@ core::Result<Scene> ReadSceneFields(const core::JsonDocument& document, const co
     scene.patient = std::move(*patient);
   }
   if (has_patient || view.Has("materials")) {
-    for (const core::JsonView& one : view.Array("materials")) {
-      auto material = ReadMaterial(one, folder);
-      if (!material.ok()) return material.error();
-      scene.materials.push_back(std::move(*material));
-    }
+    auto materials = ReadMaterials(view, folder);
+    if (!materials.ok()) return materials.error();
+    scene.materials = std::move(*materials);
   }
   ReadSettings(view, scene.settings);
   view.Object("instruments").AllowOnly({"left", "right"});
@@ -193,6 +217,7 @@ core::Result<Scene> ReadSceneFields(const core::JsonDocument& document, const co
   ReadInstrument(view, "right", scene.patient, scene.instruments[kRight]);
   ReadLaparoscope(view, scene.patient, scene.laparoscope, scene.settings);
   ReadOperation(view, scene.patient, scene);
+  CheckPorts(view, scene);
   const std::string script = view.TextOr("script", "");
   if (const auto status = document.Check(); !status.ok()) return status.error();
   if (!script.empty()) {

@@ -27,7 +27,7 @@ math::Pose ReadPlace(const core::JsonView& view) {
   math::Pose pose;
   if (view.Has("at_mm")) pose.translation = ReadPointMm(view, "at_mm");
   if (view.Has("turn_deg")) {
-    const auto turn = view.Numbers("turn_deg", 3);
+    const auto turn = view.Numbers("turn_deg", 3, range::kTurnDeg);
     pose.rotation = math::RotationAbout({0, 0, 1}, turn[2] * kDegree) *
                     math::RotationAbout({0, 1, 0}, turn[1] * kDegree) *
                     math::RotationAbout({1, 0, 0}, turn[0] * kDegree);
@@ -38,10 +38,10 @@ math::Pose ReadPlace(const core::JsonView& view) {
 /// A bent wire: a capsule from each point to the next.
 void AddPath(const core::JsonView& view, std::vector<RigidShape>& shapes) {
   view.AllowOnly({"kind", "radius_mm", "points_mm"});
-  const double radius = 0.001 * view.Number("radius_mm", {0.1, 100.0});
+  const double radius = 0.001 * view.Number("radius_mm", range::kPathRadiusMm);
   std::vector<Vec3> points;
   for (const core::JsonView& one : view.Array("points_mm")) {
-    const auto mm = one.AsNumbers(3);
+    const auto mm = one.AsNumbers(3, range::kPlaceMm);
     points.push_back(0.001 * Vec3{mm[0], mm[1], mm[2]});
   }
   if (points.size() < 2 || points.size() > kMaxPathPoints) {
@@ -62,21 +62,15 @@ void AddPath(const core::JsonView& view, std::vector<RigidShape>& shapes) {
 }
 
 void ReadShape(const core::JsonView& view, std::vector<RigidShape>& shapes) {
-  constexpr core::NumberRange kSize{0.1, 1000.0};
   const std::string kind = view.Text("kind");
   if (kind == "path") return AddPath(view, shapes);
   RigidShape shape;
   shape.X_body_shape = ReadPlace(view);
-  const auto mm = [&](const char* key) { return 0.001 * view.Number(key, kSize); };
+  const auto mm = [&](const char* key) { return 0.001 * view.Number(key, range::kShapeMm); };
   if (kind == "box") {
     view.AllowOnly({"kind", "at_mm", "turn_deg", "size_mm"});
-    const auto size = view.Numbers("size_mm", 3);
-    for (int axis = 0; axis < 3; ++axis) {
-      if (!(size[static_cast<std::size_t>(axis)] >= kSize.min &&
-            size[static_cast<std::size_t>(axis)] <= kSize.max))
-        view.Complain("size_mm: each side must be 0.1 to 1000 mm", core::ErrorCode::kSceneInvalid);
-      shape.size[axis] = 0.0005 * size[static_cast<std::size_t>(axis)];
-    }
+    const auto size = view.Numbers("size_mm", 3, range::kShapeMm);
+    for (int axis = 0; axis < 3; ++axis) shape.size[axis] = 0.0005 * size[static_cast<std::size_t>(axis)];
   } else if (kind == "cylinder") {
     view.AllowOnly({"kind", "at_mm", "turn_deg", "radius_mm", "height_mm"});
     shape.kind = RigidShape::Kind::kCylinder;
@@ -112,8 +106,8 @@ SceneObject ReadObject(const core::JsonView& view) {
   if (object.body.shapes.empty())
     view.Complain("an object needs at least one shape", core::ErrorCode::kSceneInvalid);
   object.body.X_world_body = ReadPlace(view);
-  object.body.mass = 0.001 * view.NumberOr("mass_g", 0.0, {0.0, 1000.0});
-  object.body.friction = view.NumberOr("friction", 0.8, {0.0, 5.0});
+  object.body.mass = 0.001 * view.NumberOr("mass_g", 0.0, range::kMassG);
+  object.body.friction = view.NumberOr("friction", 0.8, range::kFriction);
   const std::string colour = view.TextOr("colour", "grey");
   if (const auto found = FindColour(colour); found) {
     object.colour = *found;
@@ -126,11 +120,8 @@ SceneObject ReadObject(const core::JsonView& view) {
     one.AllowOnly({"at_mm", "across", "open_deg"});
     ObjectGrip grip;
     grip.point = ReadPointMm(one, "at_mm");
-    if (one.Has("across")) {
-      const auto across = one.Numbers("across", 3);
-      grip.across = math::Normalized(math::Vec3{across[0], across[1], across[2]}, {1, 0, 0});
-    }
-    if (one.Has("open_deg")) grip.opening = one.Number("open_deg", {1.0, 90.0}) * kDegree;
+    if (one.Has("across")) grip.across = ReadDirection(one, "across");
+    if (one.Has("open_deg")) grip.opening = one.Number("open_deg", range::kGripOpenDeg) * kDegree;
     object.grips.push_back(grip);
   }
   return object;
@@ -149,9 +140,18 @@ std::optional<ObjectColour> FindColour(std::string_view name) noexcept {
   return std::nullopt;
 }
 
-math::Vec3 ReadPointMm(const core::JsonView& view, std::string_view key) {
-  const auto mm = view.Numbers(key, 3);
+math::Vec3 ReadPointMm(const core::JsonView& view, std::string_view key, core::NumberRange each) {
+  const auto mm = view.Numbers(key, 3, each);
   return 0.001 * math::Vec3{mm[0], mm[1], mm[2]};
+}
+
+math::Vec3 ReadDirection(const core::JsonView& view, std::string_view key) {
+  const auto n = view.Numbers(key, 3, range::kDirection);
+  const math::Vec3 direction{n[0], n[1], n[2]};
+  if (!(math::Norm(direction) > 1e-6))
+    view.Complain(std::string(key) + " is a direction: one of its parts must differ from 0",
+                  core::ErrorCode::kSceneInvalid);
+  return math::Normalized(direction, {1, 0, 0});
 }
 
 std::vector<SceneObject> ReadObjects(const core::JsonView& scene, std::string_view key) {

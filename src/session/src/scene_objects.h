@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "field_ranges.h"
 #include "trocar/core/json.h"
 #include "trocar/session/scene_object.h"
 
@@ -12,7 +13,11 @@ namespace trocar::session {
 /// Reads the list `key` of objects; complains in the view's document where one is wrong, or too many.
 std::vector<SceneObject> ReadObjects(const core::JsonView& scene, std::string_view key);
 
-/// A point in mm.
-math::Vec3 ReadPointMm(const core::JsonView& view, std::string_view key);
+/// A point given in mm [m].
+/// \param each  range of each of its parts [mm]
+math::Vec3 ReadPointMm(const core::JsonView& view, std::string_view key,
+                       core::NumberRange each = range::kPlaceMm);
+/// A direction, each part of -1 to 1, as a unit vector; complains about one without length.
+math::Vec3 ReadDirection(const core::JsonView& view, std::string_view key);
 
 }  // namespace trocar::session

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <string>
 
+#include "field_ranges.h"
+#include "scene_objects.h"
 #include "trocar/core/json.h"
 #include "trocar/math/random.h"
 
@@ -43,12 +45,12 @@ core::Result<Script> ReadScript(const std::filesystem::path& path, const anatomy
   if (root.Integer("version") != 1) root.Complain("version must be 1");
 
   Script script;
-  script.tremor = 0.001 * root.NumberOr("tremor_mm", 0.0, {0.0, 5.0});
+  script.tremor = 0.001 * root.NumberOr("tremor_mm", 0.0, range::kTremorMm);
   for (const core::JsonView& view : root.Array("keys")) {
     view.AllowOnly({"time_s", "about", "left", "right"});
     const bool is_first = script.keys.empty();
     ScriptKey key = is_first ? ScriptKey{} : script.keys.back();
-    key.time = view.Number("time_s", {0.0, 36000.0});
+    key.time = view.Number("time_s", range::kTimeS);
     if (!is_first && key.time <= script.keys.back().time) {
       view.Complain("time_s must rise from key to key", core::ErrorCode::kScriptInvalid);
     }
@@ -68,10 +70,10 @@ core::Result<Script> ReadScript(const std::filesystem::path& path, const anatomy
                       core::ErrorCode::kUnknownName);
         continue;
       }
-      const auto offset = pose.Has("offset_mm") ? pose.Numbers("offset_mm", 3) : std::vector<double>(3, 0.0);
-      key.p_world_tip[hand] = landmark->position + 0.001 * Vec3{offset[0], offset[1], offset[2]};
-      key.spin[hand] = pose.NumberOr("spin_deg", key.spin[hand] / kDegree, {-3600.0, 3600.0}) * kDegree;
-      key.jaw[hand] = pose.NumberOr("jaw_deg", key.jaw[hand] / kDegree, {0.0, 90.0}) * kDegree;
+      const Vec3 offset = pose.Has("offset_mm") ? ReadPointMm(pose, "offset_mm", range::kOffsetMm) : Vec3{};
+      key.p_world_tip[hand] = landmark->position + offset;
+      key.spin[hand] = pose.NumberOr("spin_deg", key.spin[hand] / kDegree, range::kTurnDeg) * kDegree;
+      key.jaw[hand] = pose.NumberOr("jaw_deg", key.jaw[hand] / kDegree, range::kJawDeg) * kDegree;
     }
     script.keys.push_back(key);
   }

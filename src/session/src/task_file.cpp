@@ -4,6 +4,7 @@
 #include <map>
 #include <system_error>
 
+#include "field_ranges.h"
 #include "scene_reader.h"
 #include "task_rules.h"
 #include "trocar/core/json.h"
@@ -43,13 +44,14 @@ std::map<std::string, double> CalcParameters(const JsonView& root, const std::ve
     if (view.Has("value") == view.Has("by_level")) {
       view.Complain("a parameter has either value or by_level", ErrorCode::kSceneInvalid);
     } else if (view.Has("value")) {
-      value = view.Number("value");
+      value = view.Number("value", range::kParameter);
     } else {
       const JsonView by_level = view.Object("by_level");
-      for (const std::string& level : levels) (void)by_level.Number(level);  // each level needs its number
-      value = by_level.Number(choice.level);
+      for (const std::string& level : levels)
+        (void)by_level.Number(level, range::kParameter);  // each level needs its number
+      value = by_level.Number(choice.level, range::kParameter);
     }
-    const double spread = view.NumberOr("spread", 0.0, {0.0, 1e6});
+    const double spread = view.NumberOr("spread", 0.0, range::kSpread);
     values[name] = value + random.Uniform(-spread, spread);
   }
   return values;

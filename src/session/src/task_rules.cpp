@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "field_ranges.h"
 #include "scene_objects.h"
 #include "trocar/session/event.h"
 
@@ -53,14 +54,11 @@ class RulesReader {
     if (view.Has("radius_mm") == view.Has("half_mm")) {
       view.Complain("a region has either radius_mm (a ball) or half_mm (a box)", ErrorCode::kSceneInvalid);
     } else if (view.Has("radius_mm")) {
-      region.radius = 0.001 * view.Number("radius_mm", {0.1, 1000.0});
+      region.radius = 0.001 * view.Number("radius_mm", range::kRegionMm);
     } else {
-      region.half = ReadPointMm(view, "half_mm");
+      region.half = ReadPointMm(view, "half_mm", range::kRegionMm);
     }
-    if (view.Has("facing")) {
-      const auto n = view.Numbers("facing", 3);
-      region.facing = math::Normalized(math::Vec3{n[0], n[1], n[2]});
-    }
+    if (view.Has("facing")) region.facing = ReadDirection(view, "facing");
     const std::string mark = view.TextOr("mark", "none");
     constexpr std::string_view kMarks[] = {"none", "ring", "cage", "ball", "band"};
     const auto* found = std::find(std::begin(kMarks), std::end(kMarks), mark);
@@ -89,7 +87,7 @@ class RulesReader {
       return c;
     }
     c.kind = *known;
-    c.seconds = view.NumberOr("seconds", 0.0, {0.0, 3600.0});
+    c.seconds = view.NumberOr("seconds", 0.0, range::kSeconds);
     c.while_held = view.BooleanOr("while_held", false);
     if (IsOfTissue(c.kind) && !scene_.operation)
       view.Complain("\"" + kind + "\" needs tissue: give the scene a model, or an operation",
@@ -104,11 +102,11 @@ class RulesReader {
         break;
       case ConditionKind::kLifted:
         object(), c.hand = hand("hand");
-        c.amount = 0.001 * view.Number("height_mm", {0.0, 1000.0});
+        c.amount = 0.001 * view.Number("height_mm", range::kHeightMm);
         break;
       case ConditionKind::kHandedOver:
         object(), c.hand = hand("from"), c.to = hand("to");
-        c.seconds = view.NumberOr("seconds", 0.1, {0.0, 60.0});
+        c.seconds = view.NumberOr("seconds", 0.1, range::kSeconds);
         if (c.hand == c.to && c.hand != kAnyHand)
           view.Complain("a thing is handed from one hand to the other: from and to must differ",
                         ErrorCode::kSceneInvalid);
@@ -123,10 +121,10 @@ class RulesReader {
         break;
       case ConditionKind::kCameraSees:
         c.regions = ReadRegions(view, item);
-        c.angle = view.NumberOr("within_deg", 5.0, {0.1, 90.0}) * kDegree;
-        c.facing_angle = view.NumberOr("facing_deg", 180.0, {0.1, 180.0}) * kDegree;
-        c.near = 0.001 * view.NumberOr("near_mm", 0.0, {0.0, 1000.0});
-        c.far = 0.001 * view.NumberOr("far_mm", 1000.0, {0.0, 1000.0});
+        c.angle = view.NumberOr("within_deg", 5.0, range::kWithinDeg) * kDegree;
+        c.facing_angle = view.NumberOr("facing_deg", 180.0, range::kFacingDeg) * kDegree;
+        c.near = 0.001 * view.NumberOr("near_mm", 0.0, range::kHeightMm);
+        c.far = 0.001 * view.NumberOr("far_mm", 1000.0, range::kHeightMm);
         if (c.near >= c.far) view.Complain("near_mm must be below far_mm", ErrorCode::kSceneInvalid);
         break;
       case ConditionKind::kTouches:
@@ -134,10 +132,10 @@ class RulesReader {
         break;
       case ConditionKind::kToolTouches:
         object(), c.hand = hand("hand");
-        c.amount = view.NumberOr("newtons", 0.0, {0.0, 1000.0});
+        c.amount = view.NumberOr("newtons", 0.0, range::kNewtons);
         break;
       case ConditionKind::kDropped:
-        object(), c.amount = 0.001 * view.NumberOr("fall_mm", 10.0, {0.0, 1000.0});
+        object(), c.amount = 0.001 * view.NumberOr("fall_mm", 10.0, range::kHeightMm);
         break;
       case ConditionKind::kOutOfView:
         object();
@@ -146,7 +144,7 @@ class RulesReader {
         c.hand = hand("hand");
         break;
       case ConditionKind::kForceAbove:
-        c.hand = hand("hand"), c.amount = view.Number("newtons", {0.0, 1000.0});
+        c.hand = hand("hand"), c.amount = view.Number("newtons", range::kNewtons);
         break;
       case ConditionKind::kEvent:
         c.hand = hand("hand"), c.event = ReadEvent(view);
@@ -164,15 +162,17 @@ class RulesReader {
         c.regions = ReadRegions(view, item);
         break;
       case ConditionKind::kUnclippedCut:
-        c.amount = view.Integer("clips", {1.0, 100.0});
+        c.amount = view.Integer("clips", range::kClips);
         break;
       case ConditionKind::kCutFree:
       case ConditionKind::kCutOffLine:
       case ConditionKind::kCutAreaOff:
         c.sheet = FindName(view, scene_.model ? scene_.model->sheets : std::vector<ModelSheet>(),
                            Fill(view.Text("sheet"), item), "sheet");
-        if (c.kind == ConditionKind::kCutOffLine) c.amount = 1e-3 * view.Number("distance_mm", {0.1, 100.0});
-        if (c.kind == ConditionKind::kCutAreaOff) c.amount = 1e-6 * view.Number("area_mm2", {0.1, 1e4});
+        if (c.kind == ConditionKind::kCutOffLine)
+          c.amount = 1e-3 * view.Number("distance_mm", range::kCutDistanceMm);
+        if (c.kind == ConditionKind::kCutAreaOff)
+          c.amount = 1e-6 * view.Number("area_mm2", range::kCutAreaMm2);
         break;
       case ConditionKind::kParted:
         c.band = FindName(view, scene_.model ? scene_.model->bands : std::vector<ModelBand>(),
@@ -189,8 +189,8 @@ class RulesReader {
     for (const std::string& item : ReadItems(view)) {
       Goal goal;
       goal.name = Fill(view.Text("name"), item);
-      goal.points = view.NumberOr("points", 0.0, {0.0, 1e6});
-      goal.stage = view.IntegerOr("stage", 0, {0.0, 1000.0});
+      goal.points = view.NumberOr("points", 0.0, range::kPoints);
+      goal.stage = view.IntegerOr("stage", 0, range::kStage);
       for (const JsonView& step : view.Array("steps")) goal.steps.push_back(ReadCondition(step, item));
       if (goal.steps.empty()) view.Complain("a goal needs at least one step", ErrorCode::kSceneInvalid);
       task_.goals.push_back(std::move(goal));
@@ -208,7 +208,7 @@ class RulesReader {
                                            : Severity::kMinor;
     if (training::NameOf(rule.severity) != severity)
       view.Complain("severity is minor, major or critical", ErrorCode::kUnknownName);
-    rule.penalty = view.NumberOr("penalty", 0.0, {0.0, 1e6});
+    rule.penalty = view.NumberOr("penalty", 0.0, range::kPoints);
     rule.ends_task = view.BooleanOr("ends_task", false);
     for (const std::string& item : ReadItems(view))
       rule.when.push_back(ReadCondition(view.Object("when"), item));
@@ -300,9 +300,9 @@ Task ReadTaskRules(const JsonView& root, const Scene& scene) {
   rules.AllowOnly({"order", "time_limit_s", "points_per_second_left", "reference_points", "goals", "errors"});
   const std::string order = rules.TextOr("order", "any");
   if (order != "any" && order != "listed") rules.Complain("order is any or listed", ErrorCode::kUnknownName);
-  task.time_limit = rules.NumberOr("time_limit_s", task.time_limit, {1.0, 36000.0});
-  task.points_per_second_left = rules.NumberOr("points_per_second_left", 0.0, {0.0, 1e6});
-  task.reference_points = rules.NumberOr("reference_points", 0.0, {0.0, 1e9});
+  task.time_limit = rules.NumberOr("time_limit_s", task.time_limit, range::kTimeLimitS);
+  task.points_per_second_left = rules.NumberOr("points_per_second_left", 0.0, range::kPoints);
+  task.reference_points = rules.NumberOr("reference_points", 0.0, range::kReferencePoints);
   if (task.points_per_second_left > 0 && !std::isfinite(task.time_limit))
     rules.Complain("points_per_second_left needs a time_limit_s", ErrorCode::kSceneInvalid);
   for (const JsonView& view : rules.Array("goals")) reader.ReadGoal(view);

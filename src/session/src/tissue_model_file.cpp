@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 
+#include "field_ranges.h"
 #include "scene_objects.h"
 
 namespace trocar::session {
@@ -13,10 +14,8 @@ namespace {
 using core::ErrorCode;
 using core::JsonView;
 
-constexpr core::NumberRange kSpacing{0.5, 20.0};  // of nodes [mm]
-constexpr double kShortest = 0.005;               // of a duct or band [m]
+constexpr double kShortest = 0.005;  // of a duct or band [m]
 constexpr std::size_t kMostTubes = 8, kMostBands = 64, kMostSheets = 4;
-constexpr double kLeastSheet = 0.010, kLargestSheet = 0.060;  // half of a side [m]
 
 template <typename Things>
 void CheckName(const JsonView& view, const Things& things, const char* what) {
@@ -36,9 +35,9 @@ anatomy::Tube ReadTube(const JsonView& view, const Vec3& origin) {
   if (kind != "duct" && kind != "artery") view.Complain("kind is duct or artery", ErrorCode::kUnknownName);
   tube.kind = kind == "artery" ? anatomy::TubeKind::kArtery : anatomy::TubeKind::kDuct;
   const Vec3 from = origin + ReadPointMm(view, "from_mm"), to = origin + ReadPointMm(view, "to_mm");
-  const double radius = 0.001 * view.Number("radius_mm", {0.3, 10.0});
-  const double sag = 0.001 * view.NumberOr("sag_mm", 0.0, {0.0, 50.0});
-  const double spacing = 0.001 * view.NumberOr("spacing_mm", 2.5, kSpacing);
+  const double radius = 0.001 * view.Number("radius_mm", range::kTubeRadiusMm);
+  const double sag = 0.001 * view.NumberOr("sag_mm", 0.0, range::kSagMm);
+  const double spacing = 0.001 * view.NumberOr("spacing_mm", 2.5, range::kTubeSpacingMm);
   const double length = math::Distance(from, to);
   if (!(length >= kShortest))
     view.Complain("from_mm and to_mm must be at least 5 mm apart", ErrorCode::kSceneInvalid);
@@ -62,7 +61,7 @@ ModelBand ReadBand(const JsonView& view, const Vec3& origin) {
   band.colour = found.value_or(ObjectColour::kRed);
   band.from = origin + ReadPointMm(view, "from_mm");
   band.to = origin + ReadPointMm(view, "to_mm");
-  band.radius = 0.001 * view.NumberOr("radius_mm", 1e3 * band.radius, {0.1, 5.0});
+  band.radius = 0.001 * view.NumberOr("radius_mm", 1e3 * band.radius, range::kBandRadiusMm);
   if (!(math::Distance(band.from, band.to) >= kShortest))
     view.Complain("from_mm and to_mm must be at least 5 mm apart", ErrorCode::kSceneInvalid);
   return band;
@@ -73,17 +72,12 @@ ModelSheet ReadSheet(const JsonView& view, const Vec3& origin) {
   ModelSheet sheet;
   sheet.name = view.Text("name");
   sheet.centre = origin + ReadPointMm(view, "centre_mm");
-  const auto half = view.Numbers("half_mm", 2);
+  const auto half = view.Numbers("half_mm", 2, range::kSheetHalfMm);
   sheet.half = {1e-3 * half[0], 1e-3 * half[1], 0};
-  sheet.spacing = 1e-3 * view.NumberOr("spacing_mm", 1e3 * sheet.spacing, {2.0, 20.0});
-  sheet.circle = 1e-3 * view.Number("circle_mm", {2.0, 200.0});
-  sheet.prestrain = view.NumberOr("prestrain", 0.0, {0.0, 0.2});
+  sheet.spacing = 1e-3 * view.NumberOr("spacing_mm", 1e3 * sheet.spacing, range::kSheetSpacingMm);
+  sheet.circle = 1e-3 * view.Number("circle_mm", range::kCircleMm);
+  sheet.prestrain = view.NumberOr("prestrain", 0.0, range::kPrestrain);
   const double least = std::min(sheet.half.x, sheet.half.y);
-  if (!(least >= kLeastSheet && std::max(sheet.half.x, sheet.half.y) <= kLargestSheet)) {
-    view.Complain("half_mm: half of a side must be 10 to 60 mm", ErrorCode::kSceneInvalid);
-    sheet.half = {};
-    return sheet;
-  }
   if (!(sheet.circle <= least - 2 * sheet.spacing))
     view.Complain("circle_mm must stay two spacings clear of the border", ErrorCode::kSceneInvalid);
   return sheet;

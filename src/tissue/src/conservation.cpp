@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "trocar/core/assert.h"
+#include "trocar/math/small_solver.h"
 #include "trocar/math/state_fields.h"
 #include "volume_constraint_set.h"
 
@@ -30,31 +31,7 @@ constexpr int kFirstResponseIterations = 10000;
 /// Iterations a tick, of all organs together, while the responses follow a change of topology or of the stiffness scales.
 constexpr int kResponseIterationsPerTick = 6;
 
-using SmallVector = std::array<double, kMaxClosedOrgans>;
-
-/// Solves a x = b for the first `count` rows by elimination with row pivots; false when singular.
-bool SolveSmall(SmallMatrix a, SmallVector b, std::size_t count, SmallVector& x) noexcept {
-  for (std::size_t column = 0; column < count; ++column) {
-    std::size_t pivot = column;
-    for (std::size_t row = column + 1; row < count; ++row) {
-      if (std::fabs(a[row][column]) > std::fabs(a[pivot][column])) pivot = row;
-    }
-    if (!(std::fabs(a[pivot][column]) > 0.0)) return false;
-    std::swap(a[pivot], a[column]);
-    std::swap(b[pivot], b[column]);
-    for (std::size_t row = column + 1; row < count; ++row) {
-      const double factor = a[row][column] / a[column][column];
-      for (std::size_t k = column; k < count; ++k) a[row][k] -= factor * a[column][k];
-      b[row] -= factor * b[column];
-    }
-  }
-  for (std::size_t row = count; row-- > 0;) {
-    double sum = b[row];
-    for (std::size_t k = row + 1; k < count; ++k) sum -= a[row][k] * x[k];
-    x[row] = sum / a[row][row];
-  }
-  return true;
-}
+using SmallVector = math::SmallVector<kMaxClosedOrgans>;
 
 std::uint64_t CountIntact(const TissueState& tissue) noexcept {
   std::uint64_t count = 0;
@@ -418,7 +395,8 @@ Conservation::Projection Conservation::ProjectOnce(TissueState& tissue, std::spa
     error[i] = is_open ? 0.0 : std::clamp(organ.target - organ.volume, -limit, limit);
     is_done = is_done && std::fabs(error[i]) <= kVolumeTolerance * organ.target;
   }
-  if (is_done || !SolveSmall(slopes_, error, count, lambda)) return Projection::kNone;
+  if (is_done || !math::SolveSmall<math::Pivots::kRows>(slopes_, error, count, lambda))
+    return Projection::kNone;
   for (std::size_t i = 0; i < count; ++i) {
     const OrganVolume& organ = state.organs[i];
     // through a hole gas enters before the sac is sucked in

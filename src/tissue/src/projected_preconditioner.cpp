@@ -3,31 +3,9 @@
 
 #include <algorithm>
 
+#include "trocar/math/small_solver.h"
+
 namespace trocar::tissue {
-namespace {
-
-using SmallVector = ProjectedPreconditioner::SmallVector;
-using SmallMatrix = ProjectedPreconditioner::SmallMatrix;
-
-/// Solves a x = b for the first `count` rows by elimination without pivots: constraints are few, and G^T Y is positive
-/// definite. A row without a pivot gets zero.
-void SolveSmall(SmallMatrix a, SmallVector b, std::size_t count, SmallVector& x) noexcept {
-  for (std::size_t c = 0; c < count; ++c) {
-    for (std::size_t row = c + 1; row < count; ++row) {
-      const double factor = a[c][c] > 0.0 ? a[row][c] / a[c][c] : 0.0;
-      for (std::size_t k = c; k < count; ++k) a[row][k] -= factor * a[c][k];
-      b[row] -= factor * b[c];
-    }
-  }
-  for (std::size_t c = count; c-- > 0;) {
-    double sum = b[c];
-    for (std::size_t k = c + 1; k < count; ++k) sum -= a[c][k] * x[k];
-    x[c] = a[c][c] > 0.0 ? sum / a[c][c] : 0.0;
-  }
-}
-
-}  // namespace
-
 ProjectedPreconditioner::ProjectedPreconditioner(const OrderedModel& model, LinkHierarchy& hierarchy)
     : model_(&model), hierarchy_(&hierarchy) {
   const std::size_t padded = model.layout.PaddedNodes();
@@ -70,7 +48,7 @@ void ProjectedPreconditioner::PreconditionGradients(const Kernels& kernels, Work
     gram_[row] = CalcDots(kernels, workers, &Constraint::preconditioned_gradient, active_[row].gradient);
 }
 
-SmallVector ProjectedPreconditioner::CalcDots(const Kernels& kernels, Workers& workers,
+ProjectedPreconditioner::SmallVector ProjectedPreconditioner::CalcDots(const Kernels& kernels, Workers& workers,
                                               AlignedVector<Float4> Constraint::*part,
                                               const AlignedVector<Float4>& v) const noexcept {
   std::array<SmallVector, Workers::kMaxChunks> parts;
@@ -104,7 +82,7 @@ void ProjectedPreconditioner::ProjectResidual(const Kernels& kernels, Workers& w
       transposed[row][column] = gram_[column][row];
   }
   SmallVector share{};
-  SolveSmall(transposed, CalcDots(kernels, workers, &Constraint::preconditioned_gradient, r), active_.size(),
+  math::SolveSmall<math::Pivots::kNone>(transposed, CalcDots(kernels, workers, &Constraint::preconditioned_gradient, r), active_.size(),
              share);
   ForEachNodeChunk(workers, r.size(), [&](std::uint32_t first, std::uint32_t last, std::uint32_t) {
     Subtract(kernels, share, &Constraint::gradient, r, first, last);
@@ -118,7 +96,7 @@ DotAndLongest ProjectedPreconditioner::Apply(const Kernels& kernels, Workers& wo
   hierarchy_->Apply(kernels, workers, r.data(), z.data());
   if (active_.empty()) return CalcDotAndLongest(kernels, workers, r, z);
   SmallVector share{};
-  SolveSmall(gram_, CalcDots(kernels, workers, &Constraint::gradient, z), active_.size(), share);
+  math::SolveSmall<math::Pivots::kNone>(gram_, CalcDots(kernels, workers, &Constraint::gradient, z), active_.size(), share);
   return CalcDotAndLongest(kernels, workers, r, z, [&](std::uint32_t first, std::uint32_t last) {
     Subtract(kernels, share, &Constraint::preconditioned_gradient, z, first, last);
   });

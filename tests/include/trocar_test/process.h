@@ -71,6 +71,9 @@ class Process {
   void Wait() {
     if (is_running_) Collect(0);
   }
+  void Signal(int signal) {
+    if (is_running_) ::kill(process_, signal);
+  }
   /// Exit status once it has ended; 128 + signal when a signal ended it; -1 when it did not start.
   int Status() const { return status_; }
   /// What it has printed so far.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <span>
@@ -21,20 +22,24 @@ namespace fs = std::filesystem;
 constexpr int kVersion = 1;
 constexpr const char* kHandNames[kChannelCount] = {"left", "right", "laparoscope"};
 constexpr double kDegree = 0.017453292519943295;
-constexpr double kMostMetres = 5.0;
+constexpr int kMostStations = 16;  // of a LIBERTY, the largest
 /// Raw values of the converter.
 constexpr core::NumberRange kRaw{0, kMaxJawRaw};
 
-Vec3 ReadVector(const core::JsonView& view, const char* key) {
-  const std::vector<double> v = view.Numbers(key, 3);
-  if (v.size() != 3) return {};
+/// \param most  length [m]
+Vec3 ReadVector(const core::JsonView& view, const char* key, double most) {
+  const std::vector<double> v = view.Numbers(key, 3, {-most, most});
   const Vec3 vector{v[0], v[1], v[2]};
-  if (!(math::Norm(vector) <= kMostMetres)) view.Complain(std::string(key) + " is larger than 5 m");
+  if (!(math::Norm(vector) <= most)) {
+    char text[120];
+    std::snprintf(text, sizeof text, "%s is longer than the %g that can be; calibrate again", key, most);
+    view.Complain(text);
+  }
   return vector;
 }
 
 Vec3 ReadDirection(const core::JsonView& view, const char* key) {
-  const Vec3 v = ReadVector(view, key);
+  const Vec3 v = ReadVector(view, key, 2.0);
   if (!(math::Norm(v) > 0.5)) view.Complain(std::string(key) + " must be a direction of length 1");
   return math::Normalized(v);
 }
@@ -42,10 +47,10 @@ Vec3 ReadDirection(const core::JsonView& view, const char* key) {
 HandCalibration ReadHand(const core::JsonView& view) {
   view.AllowOnly({"tip_m", "axis", "up", "trocar_m", "measured"});
   HandCalibration hand;
-  hand.p_sensor_tip = ReadVector(view, "tip_m");
+  hand.p_sensor_tip = ReadVector(view, "tip_m", kMostTipDistance);
   hand.axis_sensor = ReadDirection(view, "axis");
   hand.up_sensor = ReadDirection(view, "up");
-  hand.p_source_trocar = ReadVector(view, "trocar_m");
+  hand.p_source_trocar = ReadVector(view, "trocar_m", kMostTrocarDistance);
   hand.is_measured = view.BooleanOr("measured", false);
   return hand;
 }
@@ -54,8 +59,11 @@ TrackerEntry ReadTracker(const core::JsonView& view) {
   view.AllowOnly({"baud", "stations", "right", "up", "hemisphere", "hands"});
   TrackerEntry entry = DefaultTracker();
   entry.baud = view.IntegerOr("baud", entry.baud, {1, 1e7});
-  const std::vector<double> stations = view.Numbers("stations", kChannelCount);
-  for (std::size_t i = 0; i < stations.size(); ++i) entry.stations[i] = static_cast<int>(stations[i]);
+  const std::vector<double> stations = view.Numbers("stations", kChannelCount, {0, kMostStations});
+  for (std::size_t i = 0; i < stations.size(); ++i) {
+    if (stations[i] != std::floor(stations[i])) view.Complain("stations are whole numbers; 0 for none");
+    entry.stations[i] = static_cast<int>(stations[i]);
+  }
   entry.source_right = ReadDirection(view, "right");
   entry.source_up = ReadDirection(view, "up");
   entry.hemisphere = ReadDirection(view, "hemisphere");

@@ -17,12 +17,24 @@ using Vector3 = Eigen::Vector3d;
 /// The shaft's direction settles in a few rounds; far more are never needed.
 constexpr int kMaxRounds = 200;
 constexpr double kSettled = 1e-12;  // change of a unit vector [-]
+constexpr double kDegrees = 57.29577951308232;
+/// Poses that count for the uncertainty: those in succession share the error of a tip that creeps in its hole and of a
+/// field bent by metal, so that a thousand poses of one swing say hardly more than one a second.
+constexpr double kIndependentPoses = static_cast<double>(kMinFitPoses);
+/// At which a wrong direction of the shaft counts like a wrong place of the trocar [m]: a usual insertion depth.
+constexpr double kShaftLever = 0.1;
 
 Vector3 ToEigen(const Vec3& v) {
   return {v.x, v.y, v.z};
 }
 Vec3 FromEigen(const Vector3& v) {
   return {v.x(), v.y(), v.z()};
+}
+Matrix3 ToMatrix(const Quaternion& q) {
+  Matrix3 rotation;
+  rotation << ToEigen(math::Rotate(q, {1, 0, 0})), ToEigen(math::Rotate(q, {0, 1, 0})),
+      ToEigen(math::Rotate(q, {0, 0, 1}));
+  return rotation;
 }
 
 core::Error Poor(const std::string& text) {
@@ -75,14 +87,19 @@ FitQuality MakeQuality(const std::vector<double>& distances, double spread) {
   return quality;
 }
 
-core::Status CheckQuality(const FitQuality& quality, const char* still) {
-  char text[200];
+/// Motion first: a motion that leaves a direction open makes any residual small.
+///
+/// \param still    what should have stood still: "the tip"
+/// \param missing  which motion was missing where quality.motion is too small, and its remedy
+core::Status CheckQuality(const FitQuality& quality, const char* still, const char* missing) {
+  char text[300];
   if (!(quality.spread >= kMinFitSpread)) {
     std::snprintf(text, sizeof text,
                   "it was turned by %.0f degrees only, 30 are needed; swing it further and repeat",
-                  quality.spread * 57.29577951308232);
+                  quality.spread * kDegrees);
     return Poor(text);
   }
+  if (!(quality.motion >= kMinFitMotion)) return Poor(missing);
   if (!(quality.residual <= kMaxFitResidual)) {
     std::snprintf(text, sizeof text,
                   "%s did not stand still: %.1f mm RMS, 3 are allowed; fix it, keep metal away from the "
@@ -90,7 +107,31 @@ core::Status CheckQuality(const FitQuality& quality, const char* still) {
                   still, 1e3 * quality.residual);
     return Poor(text);
   }
+  if (!(quality.uncertainty <= kMaxFitUncertainty)) {
+    std::snprintf(text, sizeof text, "%s is known to %.1f mm only, 5 are allowed; %s", still,
+                  1e3 * quality.uncertainty, missing);
+    return Poor(text);
+  }
   return {};
+}
+
+/// Refuses a point farther away than anything of the kind can be.
+core::Status CheckDistance(const char* what, double distance, double most) {
+  if (distance <= most) return {};
+  char text[200];
+  std::snprintf(text, sizeof text,
+                "%s came out %.0f mm away, %.0f at most can be; check that the sensor sits firmly on this "
+                "instrument, and repeat",
+                what, 1e3 * distance, 1e3 * most);
+  return Poor(text);
+}
+
+/// Two standard errors of a point along its worst direction [m].
+///
+/// \param square     mean square of one component of the residual [m^2]
+/// \param weakest    smallest eigenvalue of the normal matrix of one pose, for the point [-], > 0
+double CalcUncertainty(double square, double weakest) {
+  return 2.0 * std::sqrt(square / (kIndependentPoses * weakest));
 }
 
 /// Point nearest to all lines through tips[i] along shafts[i].
@@ -106,22 +147,78 @@ Vec3 MeetingPoint(const std::vector<Vec3>& tips, const std::vector<Vec3>& shafts
   return FromEigen(sum.completeOrthogonalDecomposition().solve(right));
 }
 
+/// Fills in motion and uncertainty of a fit from its linearised normal matrix, for the trocar and two angles of the shaft.
+///
+/// \param tips  (poses) in the source's frame [m]
+/// \return which motion was weakest, and its remedy
+const char* JudgeTrocarMotion(std::span<const Pose> poses, const std::vector<Vec3>& tips, TrocarFit& fit) {
+  using Normal = Eigen::Matrix<double, 5, 5>;
+  const Vector3 axis = ToEigen(fit.axis_sensor);
+  Eigen::Matrix<double, 3, 2> across;
+  across.col(0) = axis.unitOrthogonal();
+  across.col(1) = axis.cross(across.col(0));
+  Normal normal = Normal::Zero();
+  Vector3 mean_shaft = Vector3::Zero();
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    const Matrix3 rotation = ToMatrix(poses[i].rotation);
+    const Vector3 shaft = rotation * axis;
+    const double depth = shaft.dot(ToEigen(tips[i] - fit.p_source_trocar));
+    Eigen::Matrix<double, 3, 5> row;
+    row.leftCols<3>() = Matrix3::Identity() - shaft * shaft.transpose();
+    row.rightCols<2>() = depth / kShaftLever * rotation * across;
+    normal += row.transpose() * row;
+    mean_shaft += shaft;
+  }
+  const double count = static_cast<double>(poses.size());
+  const Eigen::SelfAdjointEigenSolver<Normal> solver(normal / count);
+  const double weakest = solver.eigenvalues()[0];
+  fit.quality.motion = std::sqrt(std::max(0.0, weakest));
+  // of the trocar alone, whichever way the shaft is turned
+  double loosest = 0;
+  if (weakest > 0.0) {
+    const Matrix3 covariance = (normal / count).inverse().topLeftCorner<3, 3>();
+    loosest = Eigen::SelfAdjointEigenSolver<Matrix3>(covariance).eigenvalues()[2];
+  }
+  const double square = fit.quality.residual * fit.quality.residual * count / (2.0 * count - 5.0);
+  fit.quality.uncertainty = CalcUncertainty(square, loosest > 0.0 ? 1.0 / loosest : 0.0);
+  const double along = std::fabs(solver.eigenvectors().col(0).head<3>().dot(mean_shaft.normalized()));
+  return along > 0.7
+             ? "its shafts are nearly parallel, and along them the trocar cannot be found; swing it wider, "
+               "in "
+               "all directions, and repeat"
+             : "it was hardly moved in and out, and so the trocar's place and the shaft's direction cannot "
+               "be "
+               "told apart; move it in and out by more than 50 mm, turn it about its shaft, and repeat";
+}
+
 }  // namespace
+
+std::string FormatQuality(const FitQuality& quality, std::size_t poses) {
+  char text[240];
+  std::snprintf(
+      text, sizeof text,
+      "known to %.1f mm (5 allowed); residual %.2f mm RMS (3 allowed), worst %.2f mm, turned by %.0f degrees "
+      "(30 needed), %zu poses",
+      1e3 * quality.uncertainty, 1e3 * quality.residual, 1e3 * quality.worst, kDegrees * quality.spread,
+      poses);
+  return text;
+}
 
 core::Result<PivotFit> FitPivot(std::span<const Pose> poses) {
   if (const core::Status good = CheckPoses(poses); !good) return good.error();
   const auto count = static_cast<Eigen::Index>(poses.size());
   Eigen::MatrixXd rows(3 * count, 6);
   Eigen::VectorXd right(3 * count);
+  Matrix3 mean = Matrix3::Zero();
   for (Eigen::Index i = 0; i < count; ++i) {
     const Pose& pose = poses[static_cast<std::size_t>(i)];
-    Matrix3 rotation;
-    rotation << ToEigen(math::Rotate(pose.rotation, {1, 0, 0})),
-        ToEigen(math::Rotate(pose.rotation, {0, 1, 0})), ToEigen(math::Rotate(pose.rotation, {0, 0, 1}));
+    const Matrix3 rotation = ToMatrix(pose.rotation);
+    mean += rotation;
     rows.block<3, 3>(3 * i, 0) = rotation;
     rows.block<3, 3>(3 * i, 3) = -Matrix3::Identity();
     right.segment<3>(3 * i) = -ToEigen(pose.translation);
   }
+  mean /= static_cast<double>(count);
   const Eigen::VectorXd solved = rows.completeOrthogonalDecomposition().solve(right);
   PivotFit fit;
   fit.p_sensor_pivot = FromEigen(solved.head<3>());
@@ -130,7 +227,33 @@ core::Result<PivotFit> FitPivot(std::span<const Pose> poses) {
   for (const Pose& pose : poses)
     distances.push_back(math::Distance(pose * fit.p_sensor_pivot, fit.p_source_pivot));
   fit.quality = MakeQuality(distances, FindTurn(poses));
-  if (const core::Status good = CheckQuality(fit.quality, "the tip"); !good) return good.error();
+
+  // with the fixed point eliminated: how far each direction of the sensor was turned about the mean
+  Matrix3 normal = Matrix3::Zero();
+  for (const Pose& pose : poses) {
+    const Matrix3 turned = ToMatrix(pose.rotation) - mean;
+    normal += turned.transpose() * turned;
+  }
+  const double weakest =
+      Eigen::SelfAdjointEigenSolver<Matrix3>(normal / static_cast<double>(count)).eigenvalues()[0];
+  fit.quality.motion = std::sqrt(std::max(0.0, weakest));
+  const double square = fit.quality.residual * fit.quality.residual * static_cast<double>(count) /
+                        static_cast<double>(3 * count - 6);
+  fit.quality.uncertainty = CalcUncertainty(square, weakest);
+  if (const core::Status good = CheckQuality(
+          fit.quality, "the tip",
+          "it was turned about one axis only, and along that axis the tip cannot be found; swing the "
+          "handle forwards and backwards as well as sideways, and repeat");
+      !good)
+    return good.error();
+  if (const core::Status good =
+          CheckDistance("the tip, seen from its sensor,", math::Norm(fit.p_sensor_pivot), kMostTipDistance);
+      !good)
+    return good.error();
+  if (const core::Status good = CheckDistance("the hole, seen from the tracker's source,",
+                                              math::Norm(fit.p_source_pivot), kMostTrocarDistance);
+      !good)
+    return good.error();
   return fit;
 }
 
@@ -167,7 +290,18 @@ core::Result<TrocarFit> FitTrocar(std::span<const Pose> poses, const Vec3& p_sen
     distances.push_back(math::Norm(math::Cross(fit.p_source_trocar - tips[i], shafts[i])));
   }
   fit.quality = MakeQuality(distances, FindSpread(shafts));
-  if (const core::Status good = CheckQuality(fit.quality, "the trocar"); !good) return good.error();
+  const char* const missing = JudgeTrocarMotion(poses, tips, fit);
+  if (const core::Status good = CheckQuality(fit.quality, "the trocar", missing); !good) return good.error();
+  if (const core::Status good = CheckDistance("the trocar, seen from the tracker's source,",
+                                              math::Norm(fit.p_source_trocar), kMostTrocarDistance);
+      !good)
+    return good.error();
+  for (const Vec3& tip : tips) {
+    const double depth = math::Distance(tip, fit.p_source_trocar);
+    if (const core::Status good = CheckDistance("the trocar, seen from the tip,", depth, kMostTipDistance);
+        !good)
+      return good.error();
+  }
   return fit;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trocar/device/hand_recording.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
@@ -43,6 +44,38 @@ bool ReadRow(std::string_view line, std::span<double> values) {
     line.remove_prefix(static_cast<std::size_t>(end - line.data()));
   }
   return line.empty();
+}
+
+// what a hand can be at
+constexpr double kMostTime = 36'000;                // [s]
+constexpr double kMostTilt = 3.141592653589793;     // pan and tilt [rad]
+constexpr double kMostSpin = 1000;                  // many turns [rad]
+constexpr double kMostDepth = 1, kLeastDepth = -1;  // [m]
+constexpr double kMostJaw = 3.141592653589793;      // [rad]
+
+bool IsOfAHand(const HandSample& hand) noexcept {
+  return std::fabs(hand.pan) <= kMostTilt && std::fabs(hand.tilt) <= kMostTilt &&
+         std::fabs(hand.spin) <= kMostSpin && hand.depth >= kLeastDepth && hand.depth <= kMostDepth &&
+         hand.jaw >= 0 && hand.jaw <= kMostJaw;
+}
+
+/// `from`, moved towards `to` as far as a hand gets in `dt` [s]; all joints arrive together.
+HandSample Approach(const HandSample& from, const HandSample& to, double dt) noexcept {
+  const double reach = std::max({0.05, std::fabs(from.depth), std::fabs(to.depth)});
+  const double way =
+      std::max(std::fabs(to.depth - from.depth), reach * std::hypot(to.pan - from.pan, to.tilt - from.tilt));
+  const double turn = std::max(std::fabs(to.spin - from.spin), std::fabs(to.jaw - from.jaw));
+  const double needed = std::max(way / kMaxPlaySpeed, turn / kMaxPlayTurnRate);  // [s]
+  HandSample hand = to;
+  if (needed <= dt) return hand;
+  const double share = dt / needed;
+  const auto between = [share](double a, double b) { return a + share * (b - a); };
+  hand.pan = between(from.pan, to.pan);
+  hand.tilt = between(from.tilt, to.tilt);
+  hand.spin = between(from.spin, to.spin);
+  hand.depth = between(from.depth, to.depth);
+  hand.jaw = between(from.jaw, to.jaw);
+  return hand;
 }
 
 /// \return false where a hand's buttons are no whole number of 32 bits
@@ -103,6 +136,12 @@ core::Result<std::vector<HandFrame>> ParseHandFrames(std::string_view text, cons
     if (!frames.empty() && row[0] < frames.back().time) return fail(line, "the time falls");
     if (!MakeFrame(row, columns, frames.emplace_back()))
       return fail(line, "buttons are a whole number of 32 bits");
+    const HandFrame& frame = frames.back();
+    if (!(frame.time >= 0 && frame.time <= kMostTime) ||
+        !std::all_of(frame.hands.begin(), frame.hands.end(), IsOfAHand))
+      return fail(line,
+                  "no hand gets there: times are 0 to 36000 s, pan, tilt and jaws within half a turn, depths "
+                  "within 1 m");
   }
   if (frames.empty()) return fail(1, "no frame in it; record again");
   return frames;
@@ -122,17 +161,36 @@ core::Status HandPlayer::DoConfigure() {
 
 core::Status HandPlayer::DoActivate() {
   start_ = clock_.Now();
+  last_ = 0;
   next_ = 0;
+  hands_ = homes_;
+  is_known_ = is_placed_;
   return {};
+}
+
+void HandPlayer::PlaceHand(int channel, const HandSample& home) noexcept {
+  if (channel < 0 || channel >= kChannelCount || !IsFinite(home)) return;
+  homes_[static_cast<std::size_t>(channel)] = home;
+  is_placed_[static_cast<std::size_t>(channel)] = true;
 }
 
 ReadStatus HandPlayer::DoRead(std::span<HandSample> samples) noexcept {
   const double time = clock_.Now() - start_;
   const std::size_t before = next_;
   while (next_ < frames_.size() && frames_[next_].time <= time) ++next_;
-  for (std::size_t i = 0; i < samples.size(); ++i)
+  const double dt = std::max(0.0, time - last_);
+  last_ = time;
+  bool is_under_way = false;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
     samples[i] = next_ > 0 ? frames_[next_ - 1].hands[i] : HandSample{};
-  return next_ != before ? ReadStatus::kFresh : ReadStatus::kUnchanged;
+    if (!samples[i].is_valid) continue;  // stays where it is
+    const HandSample wanted = samples[i];
+    if (is_known_[i]) samples[i] = Approach(hands_[i], wanted, dt);
+    is_under_way = is_under_way || samples[i] != wanted;
+    hands_[i] = samples[i];
+    is_known_[i] = true;
+  }
+  return next_ != before || is_under_way ? ReadStatus::kFresh : ReadStatus::kUnchanged;
 }
 
 }  // namespace trocar::device

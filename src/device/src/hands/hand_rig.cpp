@@ -12,6 +12,11 @@ HandRig::HandRig(std::unique_ptr<Driver> hands, std::unique_ptr<Driver> jaws)
   TROCAR_ASSERT(hands_->GetChannelCount() == kChannelCount && jaws_->GetChannelCount() == kChannelCount);
 }
 
+std::string HandRig::DescribeHeldBack() const {
+  const std::string hands = hands_->DescribeHeldBack(), jaws = jaws_->DescribeHeldBack();
+  return hands + (hands.empty() || jaws.empty() ? "" : "; ") + jaws;
+}
+
 core::Status HandRig::DoConfigure() {
   jaw_ = {};
   if (core::Status done = hands_->Configure(); !done) return done;

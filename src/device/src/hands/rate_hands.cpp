@@ -17,22 +17,6 @@ constexpr double kStickDeadZone = 0.12;
 constexpr double kCapDeadZone = 0.05;
 constexpr double kCapCounts = 350.0;  // of a full push
 
-double StepSince(double& last, double now) noexcept {
-  return std::clamp(now - std::exchange(last, now), 0.0, kLongestStep);
-}
-
-void PlaceIn(std::array<HandSample, kChannelCount>& hands, int channel, const HandSample& home) noexcept {
-  if (channel < 0 || channel >= kChannelCount || !IsFinite(home)) return;
-  hands[static_cast<std::size_t>(channel)] = home;
-}
-
-/// Hands at rest before anybody places them.
-std::array<HandSample, kChannelCount> MakeHands() noexcept {
-  std::array<HandSample, kChannelCount> hands;
-  for (HandSample& hand : hands) hand.depth = 0.1;
-  return hands;
-}
-
 }  // namespace
 
 void MoveHand(const HandRates& rates, double dt, const HandLimits& limits, HandSample& hand) noexcept {
@@ -49,26 +33,42 @@ double WithoutDeadZone(double deflection, double dead_zone) noexcept {
   return std::copysign(std::min(1.0, (size - dead_zone) / (1.0 - dead_zone)), deflection);
 }
 
-Gamepad::Gamepad(std::unique_ptr<GamepadSource> source, Clock& clock)
-    : Driver("gamepad", kChannelCount), source_(std::move(source)), clock_(clock), hands_(MakeHands()) {}
-
-void Gamepad::PlaceHand(int channel, const HandSample& home) noexcept {
-  PlaceIn(hands_, channel, home);
+RateHands::RateHands(std::string name, Clock& clock) : Driver(std::move(name), kChannelCount), clock_(clock) {
+  for (HandSample& hand : hands_) hand.depth = 0.1;
 }
 
-core::Status Gamepad::DoConfigure() {
-  return source_->Open();
+void RateHands::PlaceHand(int channel, const HandSample& home) noexcept {
+  if (channel < 0 || channel >= kChannelCount || !IsFinite(home)) return;
+  hands_[static_cast<std::size_t>(channel)] = home;
 }
 
-core::Status Gamepad::DoActivate() {
+core::Status RateHands::DoActivate() {
   time_ = clock_.Now();
   return {};
 }
 
+double RateHands::Step() noexcept {
+  const double now = clock_.Now();
+  return std::clamp(now - std::exchange(time_, now), 0.0, kLongestStep);
+}
+
+ReadStatus RateHands::Publish(std::span<HandSample> samples) noexcept {
+  for (const Channel hand : {kLeftHand, kRightHand}) {
+    hands_[hand].time = time_;
+    hands_[hand].is_valid = true;
+  }
+  hands_[kLaparoscope].is_valid = false;
+  std::copy(hands_.begin(), hands_.end(), samples.begin());
+  return ReadStatus::kFresh;
+}
+
+Gamepad::Gamepad(std::unique_ptr<GamepadSource> source, Clock& clock)
+    : RateHands("gamepad", clock), source_(std::move(source)) {}
+
 ReadStatus Gamepad::DoRead(std::span<HandSample> samples) noexcept {
   GamepadState state;
   if (!source_->Poll(state)) return ReadStatus::kLost;
-  const double dt = StepSince(time_, clock_.Now());
+  const double dt = Step();
   const HandLimits limits;
   for (std::size_t i = 0; i < state.sides.size(); ++i) {
     const GamepadState::Side& side = state.sides[i];
@@ -81,39 +81,27 @@ ReadStatus Gamepad::DoRead(std::span<HandSample> samples) noexcept {
       rates.pan = -kAcross * x;
       rates.tilt = -kAcross * y;
     }
-    MoveHand(rates, dt, limits, hands_[i]);
-    hands_[i].jaw = limits.max_jaw * (1.0 - std::clamp(side.trigger, 0.0, 1.0));
-    hands_[i].buttons = side.buttons;
-    hands_[i].time = time_;
-    hands_[i].is_valid = true;
+    HandSample& hand = Hand(static_cast<Channel>(i));
+    MoveHand(rates, dt, limits, hand);
+    hand.jaw = limits.max_jaw * (1.0 - std::clamp(side.trigger, 0.0, 1.0));
+    hand.buttons = side.buttons;
   }
-  hands_[kLaparoscope].is_valid = false;
-  std::copy(hands_.begin(), hands_.end(), samples.begin());
-  return ReadStatus::kFresh;
+  return Publish(samples);
 }
 
 SpaceMouse::SpaceMouse(std::unique_ptr<SpaceMouseSource> source, Clock& clock)
-    : Driver("spacemouse", kChannelCount), source_(std::move(source)), clock_(clock), hands_(MakeHands()) {}
-
-void SpaceMouse::PlaceHand(int channel, const HandSample& home) noexcept {
-  PlaceIn(hands_, channel, home);
-}
-
-core::Status SpaceMouse::DoConfigure() {
-  return source_->Open();
-}
+    : RateHands("spacemouse", clock), source_(std::move(source)) {}
 
 core::Status SpaceMouse::DoActivate() {
-  time_ = clock_.Now();
   chosen_ = kRightHand;
   was_switch_down_ = false;
-  return {};
+  return RateHands::DoActivate();
 }
 
 ReadStatus SpaceMouse::DoRead(std::span<HandSample> samples) noexcept {
   SpaceMouseState state;
   if (!source_->Poll(state)) return ReadStatus::kLost;
-  const double dt = StepSince(time_, clock_.Now());
+  const double dt = Step();
   if (state.is_button_down[1] && !was_switch_down_) chosen_ = chosen_ == kRightHand ? kLeftHand : kRightHand;
   was_switch_down_ = state.is_button_down[1];
   const auto rate = [](double counts) { return WithoutDeadZone(counts / kCapCounts, kCapDeadZone); };
@@ -123,15 +111,10 @@ ReadStatus SpaceMouse::DoRead(std::span<HandSample> samples) noexcept {
   rates.depth = -kIn * rate(state.push[2]);
   rates.spin = -kTurn * rate(state.turn[1]);
   rates.jaw = state.is_button_down[0] ? -kJaw : kJaw;
-  MoveHand(rates, dt, {}, hands_[chosen_]);
-  for (const Channel hand : {kLeftHand, kRightHand}) {
-    hands_[hand].buttons = hand == chosen_ ? state.more_buttons : 0;
-    hands_[hand].time = time_;
-    hands_[hand].is_valid = true;
-  }
-  hands_[kLaparoscope].is_valid = false;
-  std::copy(hands_.begin(), hands_.end(), samples.begin());
-  return ReadStatus::kFresh;
+  MoveHand(rates, dt, {}, Hand(chosen_));
+  for (const Channel hand : {kLeftHand, kRightHand})
+    Hand(hand).buttons = hand == chosen_ ? state.more_buttons : 0;
+  return Publish(samples);
 }
 
 }  // namespace trocar::device

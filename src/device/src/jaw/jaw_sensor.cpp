@@ -111,6 +111,9 @@ core::Status JawSensor::DoActivate() {
 
 void JawSensor::Take(const JawReading& reading, double now) noexcept {
   Tool& tool = tools_[static_cast<std::size_t>(reading.tool)];
+  // a board whose clock stands still repeats an old value: the line is alive, the jaw is not seen
+  if (tool.raw && reading.milliseconds == tool.milliseconds) return;
+  tool.milliseconds = reading.milliseconds;
   const JawCalibration& calibration = settings_.calibrations[static_cast<std::size_t>(reading.tool)];
   tool.raw = reading.raw;
   tool.time = now;

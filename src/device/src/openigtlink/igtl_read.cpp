@@ -3,6 +3,7 @@
 #include <bit>
 #include <cmath>
 
+#include "trocar/core/printable.h"
 #include "trocar/device/igtl.h"
 
 namespace trocar::device {
@@ -104,10 +105,24 @@ bool IgtlReader::ReadHeader() noexcept {
     return true;
   }
   ++(is_read ? counts_.bad : counts_.skipped);
+  if (is_read) {
+    ++counts_.large;
+    std::copy_n(buffer_.data() + kTypeAt, large_name_.size(), large_name_.begin());
+    large_size_ = body;
+  }
   to_skip_ = body;
   size_ = 0;
   wanted_ = kIgtlHeaderSize;
   return true;
+}
+
+std::string IgtlReader::DescribeLarge() const {
+  if (counts_.large == 0) return {};
+  const std::string_view name(large_name_.data(), large_name_.size());
+  return std::to_string(counts_.large) + " messages had more than " + std::to_string(kMostIgtlTools) +
+         " tools and were passed over, the last " + std::string(ReadName(name, 0, kTypeSize)) + " \"" +
+         core::Printable(ReadName(name, kTypeSize, kNameSize)) + "\" of " + std::to_string(large_size_) +
+         " bytes; let the server send fewer tools in one message";
 }
 
 void IgtlReader::ReadBody(const Sink& sink) {

@@ -62,6 +62,8 @@ core::Status IgtlTracker::DoConfigure() {
   }
   if (has_hand) return {};
   transport_.reset();
+  if (const std::string large = reader_.DescribeLarge(); !large.empty())
+    return core::Error{core::ErrorCode::kDeviceStale, "igtl: " + large};
   return core::Error{core::ErrorCode::kDeviceStale,
                      "igtl: no TRANSFORM or TDATA came whose name begins with " + settings_.names[0] + ", " +
                          settings_.names[1] + " or " + settings_.names[2] +

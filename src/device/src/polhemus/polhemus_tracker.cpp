@@ -18,6 +18,8 @@ constexpr std::size_t kReadSize = 4096;
 constexpr std::uint64_t kMaxBadFrames = 20;
 constexpr double kCommandTime = 0.2;  // within which commands leave [s]
 constexpr double kSettleTime = 0.05;  // after which old records have come in [s]
+/// How often the stations are asked within the answer time: a command or an answer may be lost on the line.
+constexpr int kQuestions = 4;
 
 }  // namespace
 
@@ -70,30 +72,44 @@ core::Status PolhemusTracker::DoConfigure() {
   return done;
 }
 
-/// Sets the tracker up and waits until each station has answered once.
+/// Sets the tracker up and asks each station for one record.
+///
+/// \param is_first  what comes before is thrown away; a late answer to an earlier question is as good as one to this
+core::Status PolhemusTracker::AskStations(const std::vector<int>& stations, bool is_first) {
+  const std::string commands = SetUpCommands(settings_.format, stations, settings_.hands.hemisphere);
+  if (core::Status sent = WriteAll(*transport_, clock_, commands, kCommandTime); !sent) return sent;
+  if (is_first) {
+    // records of an earlier life are still on their way
+    clock_.Sleep(kSettleTime);
+    std::array<char, kReadSize> bytes;
+    for (int i = 0; i < kMaxReads && transport_->Read(bytes).count > 0; ++i) {
+    }
+    framer_.Restart();
+  }
+  return WriteAll(*transport_, clock_, PollCommand(), kCommandTime);
+}
+
+/// Sets the tracker up and waits until each station has answered once; asks again where an answer stays out.
 core::Status PolhemusTracker::AwaitStations() {
   std::vector<int> waiting;
   for (const int station : settings_.stations) {
     if (station != 0) waiting.push_back(station);
   }
-  const std::string commands = SetUpCommands(settings_.format, waiting, settings_.hands.hemisphere);
-  if (core::Status sent = WriteAll(*transport_, clock_, commands, kCommandTime); !sent) return sent;
-  // records of an earlier life are still on their way
-  clock_.Sleep(kSettleTime);
-  std::array<char, kReadSize> bytes;
-  for (int i = 0; i < kMaxReads && transport_->Read(bytes).count > 0; ++i) {
-  }
-  framer_.Restart();
-  if (core::Status sent = WriteAll(*transport_, clock_, PollCommand(), kCommandTime); !sent) return sent;
-
-  const FramerCounts before = framer_.Counts();
-  const double end = clock_.Now() + settings_.answer_time;
-  while (!waiting.empty() && clock_.Now() < end) {
-    const IoResult got = transport_->Read(bytes);
-    if (got.is_lost) return core::Error{ErrorCode::kDeviceLost, GetName() + " hung up; check plug and power"};
-    framer_.Feed({bytes.data(), got.count},
-                 [&](const TrackerRecord& record) { std::erase(waiting, record.station); });
-    if (got.count == 0) clock_.Sleep(0.002);
+  const std::vector<int> stations = waiting;
+  FramerCounts before = framer_.Counts();
+  for (int question = 0; question < kQuestions && !waiting.empty(); ++question) {
+    if (core::Status asked = AskStations(stations, question == 0); !asked) return asked;
+    if (question == 0) before = framer_.Counts();
+    std::array<char, kReadSize> bytes;
+    const double end = clock_.Now() + settings_.answer_time / kQuestions;
+    while (!waiting.empty() && clock_.Now() < end) {
+      const IoResult got = transport_->Read(bytes);
+      if (got.is_lost)
+        return core::Error{ErrorCode::kDeviceLost, GetName() + " hung up; check plug and power"};
+      framer_.Feed({bytes.data(), got.count},
+                   [&](const TrackerRecord& record) { std::erase(waiting, record.station); });
+      if (got.count == 0) clock_.Sleep(0.002);
+    }
   }
   if (waiting.empty()) return {};
   if (framer_.Counts().records != before.records) {

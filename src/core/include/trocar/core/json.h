@@ -48,13 +48,13 @@ class JsonView {
   bool BooleanOr(std::string_view key, bool fallback) const;
   std::string Text(std::string_view key) const;
   std::string TextOr(std::string_view key, std::string_view fallback) const;
-  /// A field that is an array of exactly `count` finite numbers.
-  std::vector<double> Numbers(std::string_view key, std::size_t count) const;
+  /// A field that is an array of exactly `count` finite numbers, each in `range`.
+  std::vector<double> Numbers(std::string_view key, std::size_t count, NumberRange range = {}) const;
 
   /// This value as a number, a text, or an array of exactly `count` numbers.
   double AsNumber(NumberRange range = {}) const;
   std::string AsText() const;
-  std::vector<double> AsNumbers(std::size_t count) const;
+  std::vector<double> AsNumbers(std::size_t count, NumberRange range = {}) const;
 
   /// Notes a complaint about this value: "FILE: at slices[3].contours: TEXT".
   void Complain(std::string_view text, ErrorCode code = ErrorCode::kJsonField) const;
@@ -76,7 +76,7 @@ class JsonView {
 class JsonDocument {
  public:
   /// \param source  name used in messages
-  /// \return kJsonSyntax with line and column
+  /// \return kJsonSyntax with line and column, or with the field that an object gives twice
   static Result<JsonDocument> Parse(std::string_view text, std::string source);
   static Result<JsonDocument> Read(const std::filesystem::path& path);
 

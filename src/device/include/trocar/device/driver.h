@@ -61,6 +61,10 @@ class Driver {
   /// A sample that is not finite is ignored.
   virtual void PlaceHand(int /*channel*/, const HandSample& /*home*/) noexcept {}
 
+  /// What came in and was not used, where a person should know of it; empty where there is nothing to say.
+  /// \note Not real-time safe: allocates.
+  virtual std::string DescribeHeldBack() const { return {}; }
+
   DriverState GetState() const noexcept { return state_; }
   /// Name for messages, for example "mouse and keyboard".
   const std::string& GetName() const noexcept { return name_; }

@@ -5,7 +5,9 @@
 /// instrument/trocar_kinematics.h.
 #pragma once
 
+#include <cstddef>
 #include <span>
+#include <string>
 
 #include "trocar/core/result.h"
 #include "trocar/device/hand_sample.h"
@@ -16,6 +18,11 @@ namespace trocar::device {
 using math::Pose;
 using math::Quaternion;
 using math::Vec3;
+
+/// Farther than this from its sensor no instrument has its tip [m]: the longest are 450 mm, and a handle.
+inline constexpr double kMostTipDistance = 0.6;
+/// Reach of any tracker here, and so of a trocar from its source [m].
+inline constexpr double kMostTrocarDistance = 5.0;
 
 /// One instrument with a sensor on it. The defaults fit no instrument in particular; they let an uncalibrated one move.
 struct HandCalibration {
@@ -53,13 +60,24 @@ struct FitQuality {
   double residual = 0;  ///< RMS distance [m]
   double worst = 0;     ///< largest distance [m]
   double spread = 0;    ///< largest angle between two shafts, or between two orientations [rad]
+  /// Smallest singular value of a pose's linearised equations, RMS over the poses [-]: how far the motion moves what is
+  /// sought in the direction that it shows worst; 0 where the motion leaves a direction open.
+  double motion = 0;
+  /// Two standard errors of the point in its worst direction [m], poses in succession not taken for independent.
+  double uncertainty = 0;
 };
+/// "known to 0.4 mm (5 allowed); residual 0.21 mm RMS ..."
+std::string FormatQuality(const FitQuality& quality, std::size_t poses);
 
 /// Above this RMS distance a calibration is refused [m], and below this spread, 30 degrees [rad].
 /// Source: domain facts, section 6.5.
 inline constexpr double kMaxFitResidual = 0.003;
 inline constexpr double kMinFitSpread = 0.5235987755982988;
 inline constexpr std::size_t kMinFitPoses = 12;
+/// Below this motion a calibration is refused [-]: 3 degrees RMS across the main swing.
+inline constexpr double kMinFitMotion = 0.05;
+/// Above this uncertainty, too [m].
+inline constexpr double kMaxFitUncertainty = 0.005;
 
 struct PivotFit {
   Vec3 p_sensor_pivot;  ///< the point that stood still, sensor frame [m]
@@ -70,7 +88,8 @@ struct PivotFit {
 /// The point of the instrument that stood still while the rest turned about it: R_i t - c = -x_i in least squares.
 ///
 /// \param poses  (n) X_source_sensor, n >= kMinFitPoses, about one fixed point
-/// \return kCalibrationPoor with the remedy: too few, too little turning, or the point did not stand still
+/// \return kCalibrationPoor with the remedy: too few, too little turning, turned about one axis only, the point did not
+///         stand still or came out too far away
 core::Result<PivotFit> FitPivot(std::span<const Pose> poses);
 
 struct TrocarFit {
@@ -83,7 +102,7 @@ struct TrocarFit {
 /// sum (I - a a^T) p = sum (I - a a^T) x, with a found along the way.
 ///
 /// \param p_sensor_tip  from FitPivot [m]
-/// \return kCalibrationPoor as above
+/// \return kCalibrationPoor as above; also where it was not moved in and out nor turned about its shaft
 core::Result<TrocarFit> FitTrocar(std::span<const Pose> poses, const Vec3& p_sensor_tip);
 
 }  // namespace trocar::device

@@ -24,16 +24,22 @@ struct HandFrame {
 /// Numbers are written so that reading gives the same bits.
 std::string FormatHandFrames(const std::vector<HandFrame>& frames);
 /// \param name  in messages
-/// \return kDeviceSettings with the number of the line: times must not fall, numbers must be finite
+/// \return kDeviceSettings with the number of the line: times must not fall, numbers must be finite and of a hand
 core::Result<std::vector<HandFrame>> ParseHandFrames(std::string_view text, const std::string& name);
 
 /// Plays a recording: the newest frame up to now, from the moment it is activated; holds the last one at the end.
+///
+/// A recording may have been made of anything, by hand too. A hand goes from where it was placed to where the recording wants
+/// it no faster than a tracker's may (kMaxPlaySpeed, kMaxPlayTurnRate); what is slower passes bit for bit.
+inline constexpr double kMaxPlaySpeed = 2.0;      ///< of a tip [m/s]
+inline constexpr double kMaxPlayTurnRate = 25.0;  ///< of shaft and jaws [rad/s]
 class HandPlayer : public Driver {
  public:
   /// The file is read when the player is configured.
   /// \param clock  outlives the driver
   HandPlayer(std::filesystem::path path, Clock& clock);
 
+  void PlaceHand(int channel, const HandSample& home) noexcept override;
   /// [s]
   double Duration() const noexcept { return frames_.empty() ? 0.0 : frames_.back().time; }
 
@@ -49,6 +55,9 @@ class HandPlayer : public Driver {
   std::vector<HandFrame> frames_;
   double start_ = 0;      // [s]
   std::size_t next_ = 0;  // frame that has not been played
+  double last_ = 0;       // Read [s]
+  std::array<HandSample, kChannelCount> homes_, hands_;
+  std::array<bool, kChannelCount> is_placed_{}, is_known_{};  // homes_, hands_
 };
 
 }  // namespace trocar::device

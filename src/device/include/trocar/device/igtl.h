@@ -33,7 +33,11 @@ struct IgtlCounts {
   std::uint64_t messages = 0;  ///< whole and right
   std::uint64_t skipped = 0;   ///< of kinds that are not read here
   std::uint64_t bad = 0;       ///< wrong checksum, size or content
+  std::uint64_t large = 0;     ///< of kinds that are read, with more tools than are read; among `bad`
 };
+
+/// Tools of one TDATA message that are read; a message of more is passed over whole, counted and named.
+inline constexpr std::size_t kMostIgtlTools = 256;
 
 /// Takes a stream of messages apart; keeps at most one small message and never room for what a header promises.
 class IgtlReader {
@@ -45,15 +49,21 @@ class IgtlReader {
   bool Feed(std::string_view bytes, const Sink& sink);
   void Restart() noexcept;
   const IgtlCounts& Counts() const noexcept { return counts_; }
+  /// What was too large: "2 messages had more than 256 tools and were passed over, the last TDATA \"Tools\" of 7000 bytes".
+  /// Empty where nothing was.
+  /// \note Not real-time safe: allocates.
+  std::string DescribeLarge() const;
 
  private:
   bool ReadHeader() noexcept;
   void ReadBody(const Sink& sink);
 
-  /// Largest message that is read: a header and a TDATA body of 58 tools [bytes].
-  static constexpr std::size_t kCapacity = 4160;
+  /// Largest message that is read: a header, a TDATA body of 70 bytes a tool, and what version 2 puts around it [bytes].
+  static constexpr std::size_t kCapacity = kIgtlHeaderSize + 70 * kMostIgtlTools + 1024;
   std::array<char, kCapacity> buffer_{};
-  std::size_t size_ = 0;  // bytes there
+  std::array<char, 12 + 20> large_name_{};  // kind and device of the last one that was too large
+  std::uint64_t large_size_ = 0;            // of its body [bytes]
+  std::size_t size_ = 0;                    // bytes there
   std::size_t wanted_ = kIgtlHeaderSize;
   std::uint64_t to_skip_ = 0;  // bytes of a body that is not read
   IgtlCounts counts_;

@@ -27,6 +27,7 @@ class IgtlTracker : public PoseDriver {
 
   const Pose* GetSensorPose(int channel) const noexcept override { return hands_.GetPose(channel); }
   PoseCounts GetPoseCounts() const noexcept override { return hands_.Counts(); }
+  std::string DescribeHeldBack() const override { return reader_.DescribeLarge(); }
   const IgtlCounts& GetMessageCounts() const noexcept { return reader_.Counts(); }
 
  private:

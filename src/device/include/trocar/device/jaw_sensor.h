@@ -92,8 +92,8 @@ struct JawSettings {
   JawFormat format = JawFormat::kText;
   std::array<JawCalibration, kJawTools> calibrations;
   double answer_time = 1.5;    ///< within which the first value comes, the board's start included [s], > 0
-  double stale_after = 0.100;  ///< without a value a tool is not seen [s], > 0
-  double lost_after = 0.500;   ///< without any value the sensor is lost [s], > stale_after
+  double stale_after = 0.100;  ///< without a value of a new time a tool is not seen [s], > 0
+  double lost_after = 0.500;   ///< without any such value the sensor is lost [s], > stale_after
 };
 
 /// Fills the jaw of the left and the right hand, nothing else. See HandRig for the rest of the hand.
@@ -119,7 +119,8 @@ class JawSensor : public Driver {
   struct Tool {
     JawFilter filter;
     std::optional<int> raw;
-    double time = 0;  // of the last value [s]
+    std::uint32_t milliseconds = 0;  // of the last value, by the sensor's clock [ms]
+    double time = 0;                 // of the last value [s]
     HandSample sample;
   };
   JawSettings settings_;

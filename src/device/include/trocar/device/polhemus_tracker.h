@@ -4,6 +4,7 @@
 
 #include <array>
 #include <memory>
+#include <vector>
 
 #include "trocar/device/polhemus.h"
 #include "trocar/device/ports.h"
@@ -42,6 +43,7 @@ class PolhemusTracker : public PoseDriver {
   ReadStatus DoRead(std::span<HandSample> samples) noexcept override;
 
   core::Status CheckSettings() const;
+  core::Status AskStations(const std::vector<int>& stations, bool is_first);
   core::Status AwaitStations();
   int FindChannel(int station) const noexcept;
 

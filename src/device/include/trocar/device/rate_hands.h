@@ -26,6 +26,29 @@ void MoveHand(const HandRates& rates, double dt, const HandLimits& limits, HandS
 /// A stick or cap's deflection without the middle, where it never rests at exactly 0; -1 to 1. NaN gives 0.
 double WithoutDeadZone(double deflection, double dead_zone) noexcept;
 
+/// Hands that move from where they were placed, by as much as each Read() says.
+class RateHands : public Driver {
+ public:
+  void PlaceHand(int channel, const HandSample& home) noexcept override;
+
+ protected:
+  /// \param clock  outlives the driver
+  RateHands(std::string name, Clock& clock);
+  core::Status DoActivate() override;
+  void DoDeactivate() noexcept override {}
+
+  /// Time since the last Read() [s]; no more than a moment, so that a program that stood still makes no jump.
+  double Step() noexcept;
+  HandSample& Hand(Channel channel) noexcept { return hands_[channel]; }
+  /// Writes both instruments as seen now, and the laparoscope as not seen.
+  ReadStatus Publish(std::span<HandSample> samples) noexcept;
+
+ private:
+  Clock& clock_;
+  std::array<HandSample, kChannelCount> hands_;
+  double time_ = 0;  // of the last Read [s]
+};
+
 // --- gamepad
 
 /// Sticks to the right and down are positive, as SDL has it.
@@ -57,23 +80,17 @@ std::vector<std::string> ListGamepads();
 
 /// Each stick moves the tip of its hand across; with the shoulder button held, in and out, and it turns the shaft. The
 /// trigger closes the jaws: as far as it is pulled. Direction pad and letters are the buttons of left and right hand.
-class Gamepad : public Driver {
+class Gamepad : public RateHands {
  public:
   /// \param clock  outlives the driver
   Gamepad(std::unique_ptr<GamepadSource> source, Clock& clock);
-  void PlaceHand(int channel, const HandSample& home) noexcept override;
 
  private:
-  core::Status DoConfigure() override;
-  core::Status DoActivate() override;
-  void DoDeactivate() noexcept override {}
+  core::Status DoConfigure() override { return source_->Open(); }
   void DoCleanup() noexcept override { source_->Close(); }
   ReadStatus DoRead(std::span<HandSample> samples) noexcept override;
 
   std::unique_ptr<GamepadSource> source_;
-  Clock& clock_;
-  std::array<HandSample, kChannelCount> hands_;
-  double time_ = 0;  // of the last Read [s]
 };
 
 // --- SpaceMouse
@@ -102,24 +119,20 @@ bool IsSpacenavThere();
 
 /// Moves one hand; the left button closes and opens its jaws while held, the right one changes hands, further ones are that
 /// hand's buttons.
-class SpaceMouse : public Driver {
+class SpaceMouse : public RateHands {
  public:
+  /// \param clock  outlives the driver
   SpaceMouse(std::unique_ptr<SpaceMouseSource> source, Clock& clock);
-  void PlaceHand(int channel, const HandSample& home) noexcept override;
 
  private:
-  core::Status DoConfigure() override;
+  core::Status DoConfigure() override { return source_->Open(); }
   core::Status DoActivate() override;
-  void DoDeactivate() noexcept override {}
   void DoCleanup() noexcept override { source_->Close(); }
   ReadStatus DoRead(std::span<HandSample> samples) noexcept override;
 
   std::unique_ptr<SpaceMouseSource> source_;
-  Clock& clock_;
-  std::array<HandSample, kChannelCount> hands_;
   Channel chosen_ = kRightHand;
   bool was_switch_down_ = false;
-  double time_ = 0;  // of the last Read [s]
 };
 
 }  // namespace trocar::device

@@ -30,7 +30,7 @@ struct IgtlServerSettings {
 ///
 /// Every set is a TRANSFORM each for LeftTool, RightTool and Laparoscope, and a TDATA "Tools" of the three; organs are
 /// POLYDATA by their names, the first of them as soon as somebody connects. A viewer that does not keep up misses sets; one
-/// that takes nothing for 10 s is let go. Ducts and arteries, which have no surface of their own, are not sent.
+/// that takes nothing for 10 s is let go. Of eight viewers, the slowest makes room for a ninth if it is behind for a second. Ducts and arteries, which have no surface of their own, are not sent.
 class IgtlServer {
  public:
   /// \param surfaces  of the simulation
@@ -49,7 +49,8 @@ class IgtlServer {
   struct Viewer {
     std::unique_ptr<device::Transport> line;
     std::string unsent;
-    double last_sent = 0;  // simulated time at which it last took anything [s]
+    double last_sent = 0;   // simulated time at which it last took anything [s]
+    double last_level = 0;  // and at which it had taken everything [s]
     bool has_organs = false;
   };
   IgtlServer(const IgtlServerSettings& settings, std::unique_ptr<device::TcpListener> listener);
