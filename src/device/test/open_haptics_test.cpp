@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <limits>
 
 #include "stand_in_gate.h"
 #include "trocar/device/force_device_spec.h"
@@ -75,6 +76,54 @@ TEST_F(OpenHapticsTest, ReadsTwoDevicesInSiUnits) {
   EXPECT_EQ(Find<int()>("StandInDevices")(), 0);
 }
 
+// what a library says of its device is refused when it is opened, in every build
+TEST_F(OpenHapticsTest, RefusesImplausibleLimits) {
+  const auto limits = Find<void(const double*)>("StandInLimits");
+  const double nan = std::nan(""), inf = std::numeric_limits<double>::infinity();
+  const double figures[][3] = {{251, 0.88, 1.02}, {1e308, 0.88, 1.02}, {nan, 0.88, 1.02}, {inf, 1, 1},
+                               {-3.3, 0.88, 1},   {0, 0, 0},           {0.09, 0.01, 1},   {3.3, nan, 1},
+                               {3.3, -1, 1},      {3.3, 0.88, inf},    {3.3, 0.88, nan},  {3.3, 0.88, -1}};
+  for (const auto& figure : figures) {
+    limits(figure);
+    OpenHaptics driver(settings_);
+    const core::Status refused = driver.Configure();
+    ASSERT_FALSE(refused.ok()) << figure[0] << ' ' << figure[1] << ' ' << figure[2];
+    EXPECT_EQ(refused.error().code, ErrorCode::kDeviceSettings);
+    EXPECT_NE(refused.error().message.find("maker's program"), std::string::npos);
+    EXPECT_EQ(driver.GetState(), DriverState::kUnconfigured);
+    EXPECT_EQ(Find<int()>("StandInDevices")(), 0) << "what was open is closed";
+  }
+  for (const double good : {0.1, 3.3, 50.0}) {
+    const double figure[3] = {good, 0.0, 1.02};
+    limits(figure);
+    OpenHaptics driver(settings_);
+    EXPECT_TRUE(driver.Configure().ok()) << good;
+  }
+  const double touch[3] = {3.3, 0.88, 1.02};
+  limits(touch);
+}
+
+// the process that calls the library looks once more: zero, and the device is closed
+TEST_F(OpenHapticsTest, AForceThatNoGateLetsOutIsZeroAndALostDevice) {
+  const double nan = std::nan("");
+  for (const math::Vec3& bad : {math::Vec3{nan, 0, 0}, math::Vec3{0, 3.4, 0}, math::Vec3{0, 0, 1e300}}) {
+    OpenHaptics driver(settings_);
+    ASSERT_TRUE(driver.Configure().ok());
+    ASSERT_TRUE(driver.Activate().ok());
+    ASSERT_TRUE(WaitFor([&] {
+      driver.SendForce(0, haptics::ForceGate::Make({1, 0, 0}));
+      return Force(0).x == 1;
+    }));
+    std::array<ForceSample, 2> samples;
+    ASSERT_TRUE(WaitFor([&] {
+      driver.SendForce(0, haptics::ForceGate::Make(bad));
+      return driver.ReadForceSamples(samples) == ReadStatus::kLost;
+    }));
+    EXPECT_TRUE(WaitFor([&] { return Force(0) == math::Vec3{}; }));
+    EXPECT_EQ(Find<int()>("StandInBadForces")(), 0) << "none of it reached the motors";
+  }
+}
+
 TEST_F(OpenHapticsTest, AForceLivesTenMilliseconds) {
   OpenHaptics driver(settings_);
   ASSERT_TRUE(driver.Configure().ok());
@@ -135,7 +184,10 @@ TEST_F(OpenHapticsTest, OtherErrorsLoseTheDeviceAtZeroForce) {
     })) << std::hex
         << error;
     EXPECT_EQ(driver.GetState(), DriverState::kUnconfigured);
-    EXPECT_EQ(Force(0), math::Vec3{});
+    EXPECT_TRUE(driver.NeedsRelease()) << "the reader closes nothing";
+    EXPECT_TRUE(WaitFor([&] { return Force(0) == math::Vec3{}; }));
+    driver.Release();
+    EXPECT_EQ(Find<int()>("StandInDevices")(), 0);
     EXPECT_EQ(Find<int()>("StandInMisuses")(), 0);
     // it can be had again
     EXPECT_TRUE(driver.Configure().ok());

@@ -8,6 +8,8 @@
 #include <array>
 #include <atomic>
 #include <chrono>
+#include <cmath>
+#include <csignal>
 #include <cstdlib>
 #include <cstring>
 #include <thread>
@@ -41,6 +43,18 @@ auto& pending_error = state.pending_error;
 auto& devices = state.devices;
 auto& misuses = state.misuses;
 auto& forces = state.forces;
+double SquaredSize(const std::array<std::atomic<double>, 3>& force) {
+  return force[0] * force[0] + force[1] * force[1] + force[2] * force[2];
+}
+bool HasFault(StandInFault fault) {
+  return state.fault == fault && state.fault_process == ::getpid();
+}
+/// Every call begins with it.
+void Suffer() {
+  using namespace std::chrono_literals;
+  while (HasFault(StandInFault::kHangingCall)) std::this_thread::sleep_for(1ms);
+  if (HasFault(StandInFault::kSlowCalls)) std::this_thread::sleep_for(30ms);
+}
 std::array<std::atomic<bool>, 2> is_pushing;
 std::atomic<unsigned int> current{0};
 std::atomic<bool> is_running{false};
@@ -63,6 +77,14 @@ STAND_IN int StandInMisuses() {
 STAND_IN int StandInCallbacks() {
   return callbacks;
 }
+/// Largest force [N], continuous force [N] and stiffness [N/mm], as the devices say them.
+STAND_IN void StandInLimits(const double* three) {
+  for (std::size_t i = 0; i < 3; ++i) state.limits[i] = three[i];
+}
+/// Forces that no gate lets out: not finite, above the clamp, or with too fast a rise.
+STAND_IN int StandInBadForces() {
+  return state.bad_forces;
+}
 /// Times that a force gave way to zero.
 STAND_IN int StandInDrops() {
   return drops;
@@ -78,29 +100,35 @@ STAND_IN unsigned int hdInitDevice(const char* name) {
     pending_error = 0x0300;
     return 0xffffffff;
   }
+  // the system has taken them from a process that is gone
+  if (state.process.exchange(::getpid()) != ::getpid()) devices = 0;
   const int number = devices++;
-  state.process = ::getpid();
   for (auto& part : forces[static_cast<std::size_t>(number)]) part = 0;
   return static_cast<unsigned int>(number);
 }
 STAND_IN void hdDisableDevice(unsigned int) {
+  Suffer();
   if (is_running) ++misuses;
   --devices;
 }
 STAND_IN void hdMakeCurrentDevice(unsigned int device) {
+  Suffer();
   current = device;
 }
 STAND_IN void hdBeginFrame(unsigned int device) {
+  Suffer();
   if (open_frames++ != 0) ++misuses;
   current = device;
 }
 STAND_IN void hdEndFrame(unsigned int) {
+  Suffer();
   if (--open_frames != 0) ++misuses;
 }
 STAND_IN void hdEnable(unsigned int what) {
   if (what == 0x4000) is_pushing[current] = true;
 }
 STAND_IN void hdGetDoublev(unsigned int what, double* values) {
+  Suffer();
   const double side = current == 0 ? -1 : 1;
   const bool is_led = state.is_led == 1;
   if (what == 0x2050) values[0] = is_led ? 0 : 40 * side, values[1] = is_led ? 0 : -10, values[2] = 5;
@@ -112,18 +140,27 @@ STAND_IN void hdGetDoublev(unsigned int what, double* values) {
     const double box[] = {-80, -60, -35, 80, 60, 35};
     std::memcpy(values, box, sizeof box);
   }
-  if (what == 0x2602) *values = 1.02;
-  if (what == 0x2603) *values = 3.3;
-  if (what == 0x2604) *values = 0.88;
+  if (what == 0x2602) *values = state.limits[2];
+  if (what == 0x2603) *values = state.limits[0];
+  if (what == 0x2604) *values = state.limits[1];
   if (what == 0x2605) values[0] = 0.2, values[1] = 0.4, values[2] = 0.1;
 }
 STAND_IN void hdGetIntegerv(unsigned int, int* value) {
   *value = state.is_led == 1 ? state.buttons[current].load() : current == 0 ? 1 : 0;
 }
 STAND_IN void hdSetDoublev(unsigned int what, const double* values) {
+  Suffer();
   if (what != 0x2700 || open_frames != 1 || !is_pushing[current]) ++misuses;
   auto& force = forces[current];
   if (force[0] != 0 && values[0] == 0) ++drops;
+  double size = 0, rise = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    size += values[i] * values[i];
+    rise += (values[i] - force[i]) * (values[i] - force[i]);
+  }
+  // the way from zero to the last force is free; the tests' forces keep their direction
+  const bool is_rising = std::sqrt(size) > std::sqrt(SquaredSize(force)) && rise > 0.5001 * 0.5001;
+  if (!(std::sqrt(size) <= state.limits[0] * 1.0001) || is_rising) ++state.bad_forces;
   for (std::size_t i = 0; i < 3; ++i) force[i] = values[i];
 }
 STAND_IN unsigned int hdCheckCalibration() {
@@ -147,7 +184,9 @@ STAND_IN void hdStartScheduler() {
   is_running = true;
   scheduler = std::thread([] {
     while (is_running) {
-      if (callback != nullptr && callback(callback_data) == 0) break;
+      if (HasFault(StandInFault::kCrash)) std::raise(SIGSEGV);
+      const bool is_silent = HasFault(StandInFault::kSilentScheduler);
+      if (!is_silent && callback != nullptr && callback(callback_data) == 0) break;
       ++callbacks;
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }

@@ -2,7 +2,9 @@
 #include "fault_campaign.h"
 
 #include <array>
+#include <iterator>
 #include <limits>
+#include <vector>
 
 #include "haptic_rig.h"
 #include "trocar/haptics/check_pose.h"
@@ -222,6 +224,45 @@ std::string D8Implausible() {
   rig.Run(20);
   const std::string wrong = CheckStaysOff(rig, Fault::kForceImplausible);
   return wrong.empty() ? CheckNeverArmsItself(rig) : wrong;
+}
+
+/// Whatever a device says that it bears: with usable limits the promises hold, with others no force comes.
+std::string AnyLimits() {
+  math::Random random(26);
+  const double inf = std::numeric_limits<double>::infinity();
+  std::vector<double> forces = {kNan, inf, -inf, -3.3, 0.0,  -0.0,  1e-300,
+                                0.1,  0.5, 3.3,  40.0, 50.0, 251.0, 1e308};
+  for (int i = 0; i < 300; ++i)
+    forces.push_back(std::pow(10.0, random.Uniform(-1.0, i % 2 == 0 ? 2.7 : 308.0)));
+  for (const double force : forces) {
+    device::ForceLimits limits = HapticRig::MakeLimits();
+    limits.max_force = force;
+    const double others[] = {0.0, 0.25 * force, force, 2.0 * force, kNan, inf, -1.0};
+    limits.max_continuous_force = others[random.NextWord() % std::size(others)];
+    limits.max_stiffness = std::pow(10.0, random.Uniform(1.0, 300.0));
+    HapticRig rig(limits);
+    rig.is_usable = force > 0.0 && force <= device::kLargestForceLimit;
+    rig.Run(20);
+    if (rig.is_usable)
+      rig.Request();
+    else
+      rig.channel.RequestArm();
+    // a person who asks again and again, and tissue that pushes with all that is plausible
+    for (int i = 0; i < 40; ++i) {
+      rig.Press(random.Uniform(-1.0, 1.0) * std::fmin(15.0 * force, 1e300));
+      rig.patch.force.y = random.Uniform(-1.0, 1.0) * std::fmin(force, 1e300);
+      if (i < 20) rig.Press(0.0), rig.patch.force.y = 0;
+      rig.is_patch_new = true;
+      if (!rig.is_usable) rig.channel.RequestArm();
+      rig.Run(i < 20 ? 110 : 10);
+    }
+    if (rig.complaint.empty() && rig.is_usable && !(rig.Size() > 0.0)) rig.Complain("no force");
+    if (!rig.is_usable && rig.output.gate.reason != Fault::kGate) rig.Complain("wrong limits are not named");
+    if (!rig.complaint.empty())
+      return rig.complaint + ", limits " + std::to_string(force) + " N, " +
+             std::to_string(limits.max_continuous_force) + " N";
+  }
+  return {};
 }
 
 std::string D9Overrun() {
@@ -491,6 +532,7 @@ constexpr CampaignRow kRows[] = {
     {"D5 jump", D5Jump},
     {"D8 not finite", D8NotFinite},
     {"D8 implausible", D8Implausible},
+    {"any limits", AnyLimits},
     {"D9 overrun", D9Overrun},
     {"D10 supervisor", D10Supervisor},
     {"D11 heat", D11Heat},

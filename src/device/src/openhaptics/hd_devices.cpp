@@ -54,11 +54,9 @@ core::Result<ForceLimits> HdDevices::OpenDevice(const std::string& name) {
   libhd_->get_doubles(hd::kUsableWorkspace, box.data());
   limit.workspace_min = FromMillimetres(box.data());
   limit.workspace_max = FromMillimetres(box.data() + 3);
-  if (!(limit.max_force > 0.0) || !std::isfinite(limit.max_force)) {
-    return core::Error{
-        ErrorCode::kDeviceSettings,
-        "\"" + name + "\" does not say how much force it bears; no force can be sent to it safely"};
-  }
+  // here as well as in the simulator: this process calls the library
+  if (core::Status good = CheckLimits(limit, "\"" + name + "\""); !good) return good.error();
+  checks_.emplace_back(limit.max_force);
   libhd_->enable(hd::kForceOutput);
   return limit;
 }
@@ -96,7 +94,20 @@ bool HdDevices::TakeErrors(std::size_t i) noexcept {
   return true;
 }
 
+void HdDevices::PushZero() noexcept {
+  if (CountCalls() % 2 != 0) return;
+  constexpr std::array<double, 3> kZero{};
+  for (const hd::Handle device : devices_) {
+    libhd_->begin_frame(device);
+    libhd_->make_current(device);
+    libhd_->set_doubles(hd::kForce, kZero.data());
+    libhd_->end_frame(device);
+  }
+}
+
 hd::CallbackCode HdDevices::Tick() noexcept {
+  calls_.fetch_add(1, std::memory_order_acq_rel);
+  is_called_.store(true, std::memory_order_release);
   const bool is_ending = is_stopping_.load(std::memory_order_acquire);
   const bool may_push = !is_ending && !mailbox_.IsLost();
   const ForceMailbox::Forces forces = may_push ? mailbox_.TakeForces() : ForceMailbox::Forces{};
@@ -105,15 +116,17 @@ hd::CallbackCode HdDevices::Tick() noexcept {
     libhd_->make_current(devices_[i]);
     ReadDevice(i);
     // a warm device gets nothing until a frame has passed without complaint
-    const Vec3 force = is_warm_[i] ? Vec3{} : forces[i];
+    const Vec3 force = checks_[i].Pass(is_warm_[i] ? Vec3{} : forces[i]);
     const std::array<double, 3> newtons = {force.x, force.y, force.z};
     libhd_->set_doubles(hd::kForce, newtons.data());
     libhd_->end_frame(devices_[i]);
-    if (!TakeErrors(i)) mailbox_.SetLost();
+    if (!TakeErrors(i) || checks_[i].HasRefused()) mailbox_.SetLost();
     newest_[i].status = is_warm_[i] ? ForceDeviceStatus::kWarm : ForceDeviceStatus::kOk;
   }
   mailbox_.Report(newest_);
+  calls_.fetch_add(1, std::memory_order_acq_rel);
   if (!is_ending) return hd::kContinue;
+  is_called_.store(false, std::memory_order_release);
   has_stopped_.store(true, std::memory_order_release);
   return hd::kDone;
 }
@@ -167,6 +180,7 @@ void HdDevices::Close() noexcept {
   Stop();
   for (const hd::Handle device : devices_) libhd_->disable_device(device);
   devices_.clear();
+  checks_.clear();
   libhd_.reset();
 }
 

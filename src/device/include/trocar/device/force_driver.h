@@ -45,6 +45,16 @@ struct ForceLimits {
   math::Vec3 workspace_min, workspace_max;  ///< box in the device frame; equal where it is not known [m]
 };
 
+/// Largest nominal force of a hand-held haptic device that is believed [N]: the strongest that are sold bear about 40.
+inline constexpr double kLargestForceLimit = 50;
+/// Smallest [N]: less is lost in a device's own friction.
+inline constexpr double kSmallestForceLimit = 0.1;
+
+/// Whether limits are those of a device that a hand can hold. Gate, coupling and guards are only as good as these numbers.
+/// \param name  of the device, for the message
+/// \return kDeviceSettings with the number that is wrong, and the remedy
+core::Status CheckLimits(const ForceLimits& limits, const std::string& name);
+
 enum class ForceDeviceStatus : std::uint8_t {
   kOk,
   kWarm,  ///< motors warm or another error that passes by itself: this force was not applied in full
@@ -97,7 +107,8 @@ class ForceDriver : public Driver {
   /// The newest report of every channel.
   ///
   /// \param[out] samples  (GetChannelCount())
-  /// \return as Read(); after kLost every sample says kLost and the driver is unconfigured
+  /// \return as Read(); after kLost every sample says kLost, zero has been sent as far as that is possible, and the driver
+  ///         is unconfigured; Release() closes it, and is not called here, because a library may take its time
   /// \pre samples has exactly that size (TROCAR_ASSERT)
   /// \note Real-time safe: no allocation, lock, wait or throw.
   ReadStatus ReadForceSamples(std::span<ForceSample> samples) noexcept;
@@ -113,6 +124,8 @@ class ForceDriver : public Driver {
   using Driver::Driver;
 
  private:
+  /// Refuses implausible limits of any channel, whatever the family.
+  core::Status CheckConfigured() const final;
   virtual ReadStatus DoReadForceSamples(std::span<ForceSample> samples) noexcept = 0;
   virtual void DoSendForce(int channel, const GatedForce& force) noexcept = 0;
 };
