@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // D10: the main process is killed or stopped while force is out; what then arrives at the device.
-// TROCAR_REPEATS sets how often each is done (2 by default); the times are printed, and judged with TROCAR_SLOW_TESTS=1.
+// TROCAR_REPEATS sets how often each is done (2 by default); the times are printed and judged, by a generous limit in every run and by what
+// is promised with TROCAR_SLOW_TESTS=1.
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/wait.h>
@@ -22,7 +23,7 @@ namespace {
 
 using Got = ForceWire::Got;
 /// Force must be gone so soon after the process [s].
-constexpr double kLongest = 0.030;
+constexpr double kLongest = 0.015;
 
 /// A process that puts force on a wire, and the device's end of it.
 class Victim {
@@ -92,10 +93,6 @@ class Supervisor : public testing::TestWithParam<WireKind> {
     const sched_param ordinary{};
     ::sched_setscheduler(0, SCHED_OTHER, &ordinary);
   }
-  static int Repeats() {
-    const char* wanted = std::getenv("TROCAR_REPEATS");
-    return wanted != nullptr ? std::max(1, std::atoi(wanted)) : 2;
-  }
   /// A signal to the process, and the first zero after it.
   void Strike(Victim& victim, int signal) {
     const std::int64_t struck = victim.Kill(signal);
@@ -105,16 +102,13 @@ class Supervisor : public testing::TestWithParam<WireKind> {
     times_.Add(1e-9 * static_cast<double>(victim.wire.Arrived() - struck), victim.wire.LongestAbsence());
   }
   void Report(const char* what) {
-    const double longest = times_.Report(std::string(what) + ", " + WireName(GetParam()));
-    if (std::getenv("TROCAR_SLOW_TESTS") != nullptr) {
-      EXPECT_LE(longest, kLongest);
-    }
+    times_.ReportAndJudge(std::string(what) + ", " + WireName(GetParam()), kLongest);
   }
   ZeroTimes times_;
 };
 
 TEST_P(Supervisor, SendsZeroWhenTheSimulatorIsKilled) {
-  for (int i = 0; i < Repeats(); ++i) {
+  for (int i = 0; i < ForceWire::Repeats(); ++i) {
     Victim victim(GetParam());
     ASSERT_TRUE(victim.WaitForForce());
     ASSERT_NO_FATAL_FAILURE(Strike(victim, SIGKILL));
@@ -126,7 +120,7 @@ TEST_P(Supervisor, SendsZeroWhenTheSimulatorIsKilled) {
 }
 
 TEST_P(Supervisor, SendsZeroWhenTheSimulatorHangsAndNothingComesBackByItself) {
-  for (int i = 0; i < Repeats(); ++i) {
+  for (int i = 0; i < ForceWire::Repeats(); ++i) {
     Victim victim(GetParam());
     ASSERT_TRUE(victim.WaitForForce());
     ASSERT_NO_FATAL_FAILURE(Strike(victim, SIGSTOP));
