@@ -54,6 +54,9 @@ TEST_F(OpenHapticsTest, ReadsTwoDevicesInSiUnits) {
   EXPECT_EQ(driver.GetChannelCount(), 2);
   EXPECT_EQ(driver.GetLimits(0).max_force, 3.3);
   EXPECT_NEAR(driver.GetLimits(1).max_stiffness, 1020, 1e-9) << "N/m";
+  EXPECT_EQ(driver.GetLimits(1).damping, 0.2) << "what the library does not say is assumed";
+  EXPECT_EQ(driver.GetLimits(1).friction, 0.06);
+  EXPECT_EQ(driver.GetLimits(1).position_step, 0.055e-3);
   EXPECT_NEAR(driver.GetLimits(1).workspace_max.x, 0.08, 1e-12);
   ASSERT_TRUE(driver.Activate().ok());
   std::array<ForceSample, 2> samples;
@@ -208,6 +211,52 @@ TEST_F(OpenHapticsTest, LeavesZeroBehind) {
   const int callbacks = Find<int()>("StandInCallbacks")();
   SystemClock().Sleep(0.01);
   EXPECT_EQ(Find<int()>("StandInCallbacks")(), callbacks) << "the scheduler has ended";
+}
+
+// what is no rotation stays none, for the guard to see
+TEST_F(OpenHapticsTest, ABadTransformIsNoGoodPose) {
+  const auto set = Find<void(int)>("StandInTransform");
+  OpenHaptics driver(settings_);
+  ASSERT_TRUE(driver.Configure().ok());
+  ASSERT_TRUE(driver.Activate().ok());
+  std::array<ForceSample, 2> samples;
+  std::array<HandSample, 2> hands;
+  const auto turn = [&] {
+    const math::Quaternion& q = samples[0].orientation;
+    return q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z;
+  };
+  for (const int kind : {1, 2, 3, 4, 5}) {
+    set(0);
+    ASSERT_TRUE(
+        WaitFor([&] { return driver.ReadForceSamples(samples) == ReadStatus::kFresh && turn() == 1.0; }));
+    driver.Read(hands);
+    EXPECT_TRUE(hands[0].is_valid) << "the control";
+    set(kind);
+    EXPECT_TRUE(WaitFor([&] {
+      return driver.ReadForceSamples(samples) == ReadStatus::kFresh && turn() == 0.0;
+    })) << kind;
+    driver.Read(hands);
+    EXPECT_FALSE(hands[0].is_valid) << kind;
+  }
+  set(0);
+}
+
+TEST_F(OpenHapticsTest, AMotorThatSaysNothingHidesNoHotOne) {
+  const auto set = Find<void(const double*)>("StandInTemperatures");
+  const double nan = std::nan("");
+  OpenHaptics driver(settings_);
+  ASSERT_TRUE(driver.Configure().ok());
+  ASSERT_TRUE(driver.Activate().ok());
+  std::array<ForceSample, 2> samples;
+  const double motors[][3] = {{nan, 1.2, 0.1}, {1.2, nan, nan}, {0.1, nan, 1.2}};
+  for (const auto& three : motors) {
+    set(three);
+    EXPECT_TRUE(WaitFor([&] {
+      return driver.ReadForceSamples(samples) == ReadStatus::kFresh && samples[0].temperature == 1.2;
+    }));
+  }
+  const double well[] = {0.2, 0.4, 0.1};
+  set(well);
 }
 
 TEST_F(OpenHapticsTest, SaysWhatIsMissing) {

@@ -5,6 +5,7 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <chrono>
@@ -46,6 +47,34 @@ auto& forces = state.forces;
 double SquaredSize(const std::array<std::atomic<double>, 3>& force) {
   return force[0] * force[0] + force[1] * force[1] + force[2] * force[2];
 }
+/// A light grip that presses a device of little friction down, along y; the motors hold a force for a millisecond.
+struct HandOnDevice {
+  static constexpr double kMass = 0.045 + 0.05;  // device and fingers [kg]
+  static constexpr double kDamping = 0.2 + 0.2;  // device and fingers [N s/m]
+  static constexpr double kFriction = 0.1;       // [N]
+  static constexpr double kGrip = 30;            // [N/m]
+  static constexpr double kTarget = -0.03;       // where the person wants to be [m]
+  static constexpr double kStep = 0.055;         // of the encoders [mm]
+  static constexpr int kSubsteps = 50;
+
+  double position = 0.004, velocity = -0.05;  // [m], [m/s]
+
+  double Measure() const { return kStep * std::floor(1e3 * position / kStep); }  // [mm]
+  void Move(double force) {
+    const double h = 0.001 / kSubsteps;
+    for (int i = 0; i < kSubsteps; ++i) {
+      const double pull = force - kGrip * (position - kTarget) - kDamping * velocity;
+      if (std::fabs(velocity) < 1e-4 && std::fabs(pull) < kFriction) {
+        velocity = 0;
+        continue;
+      }
+      velocity += h * (pull - std::copysign(kFriction, velocity != 0 ? velocity : pull)) / kMass;
+      position += h * velocity;
+    }
+  }
+};
+HandOnDevice hand;
+
 bool HasFault(StandInFault fault) {
   return state.fault == fault && state.fault_process == ::getpid();
 }
@@ -81,6 +110,16 @@ STAND_IN int StandInCallbacks() {
 STAND_IN void StandInLimits(const double* three) {
   for (std::size_t i = 0; i < 3; ++i) state.limits[i] = three[i];
 }
+STAND_IN void StandInTransform(int kind) {
+  state.transform = kind;
+}
+STAND_IN void StandInTemperatures(const double* three) {
+  for (std::size_t i = 0; i < 3; ++i) state.temperatures[i] = three[i];
+}
+STAND_IN void StandInStepped(int is_stepped) {
+  state.is_stepped = is_stepped;
+  hand = {};
+}
 /// Forces that no gate lets out: not finite, above the clamp, or with too fast a rise.
 STAND_IN int StandInBadForces() {
   return state.bad_forces;
@@ -91,6 +130,16 @@ STAND_IN int StandInDrops() {
 }
 STAND_IN int StandInDevices() {
   return devices;
+}
+
+/// A millisecond of the scheduler, and of the hand that holds the first device.
+STAND_IN void StandInStep() {
+  if (callback != nullptr) callback(callback_data);
+  hand.Move(forces[0][1]);
+}
+/// \return where the hand has the device [m]
+STAND_IN double StandInHand() {
+  return hand.position;
 }
 
 // --- the interface
@@ -135,6 +184,12 @@ STAND_IN void hdGetDoublev(unsigned int what, double* values) {
   if (what == 0x2051) values[0] = is_led ? 0 : 100, values[1] = values[2] = 0;
   if (what == 0x2052) {
     for (int i = 0; i < 16; ++i) values[i] = i % 5 == 0 ? 1 : 0;
+    const int kind = state.transform;
+    if (kind == 1) std::fill(values, values + 16, std::nan(""));
+    if (kind == 2) std::fill(values, values + 16, 0.0);
+    if (kind == 3) values[10] = -1;
+    if (kind == 4) values[0] = values[5] = values[10] = 2;
+    if (kind == 5) values[4] = 0.6, values[5] = 0.8;
   }
   if (what == 0x2551) {
     const double box[] = {-80, -60, -35, 80, 60, 35};
@@ -143,7 +198,11 @@ STAND_IN void hdGetDoublev(unsigned int what, double* values) {
   if (what == 0x2602) *values = state.limits[2];
   if (what == 0x2603) *values = state.limits[0];
   if (what == 0x2604) *values = state.limits[1];
-  if (what == 0x2605) values[0] = 0.2, values[1] = 0.4, values[2] = 0.1;
+  if (what == 0x2605) {
+    for (std::size_t i = 0; i < 3; ++i) values[i] = state.temperatures[i];
+  }
+  if (what == 0x2050 && state.is_stepped == 1)
+    values[0] = values[2] = 0, values[1] = current == 0 ? hand.Measure() : 0;
 }
 STAND_IN void hdGetIntegerv(unsigned int, int* value) {
   *value = state.is_led == 1 ? state.buttons[current].load() : current == 0 ? 1 : 0;
@@ -182,6 +241,7 @@ STAND_IN void hdUnschedule(unsigned long) {
 }
 STAND_IN void hdStartScheduler() {
   is_running = true;
+  if (state.is_stepped == 1) return;
   scheduler = std::thread([] {
     while (is_running) {
       if (HasFault(StandInFault::kCrash)) std::raise(SIGSEGV);

@@ -61,13 +61,15 @@ enum class ForceDeviceStatus : std::uint8_t {
   kLost   ///< gone, or an error that does not pass; the driver must be configured again
 };
 
-/// What one device reports. Device frame: x to the person's right, y up, z towards the person; metres.
+/// What one device reports, as it reports it: a driver makes no good pose of a bad one, and leaves it to the guard of the
+/// haptic loop to judge. Device frame: x to the person's right, y up, z towards the person; metres.
 struct ForceSample {
-  math::Vec3 position;           ///< of the point where the force acts [m]
-  math::Vec3 velocity;           ///< of that point, measured or derived by the driver [m/s]
-  math::Quaternion orientation;  ///< of the stylus, X_device_stylus
-  std::uint32_t buttons = 0;     ///< bit 0 is the first button; bit n is set while it is held
-  double jaw = 0;                ///< opening by a gripper [rad]; NaN where the device has none
+  math::Vec3 position;  ///< of the point where the force acts [m]
+  math::Vec3 velocity;  ///< of that point, measured or derived by the driver [m/s]
+  math::Quaternion
+      orientation;  ///< of the stylus, X_device_stylus; all zero where what it reports is no rotation
+  std::uint32_t buttons = 0;   ///< bit 0 is the first button; bit n is set while it is held
+  double jaw = 0;              ///< opening by a gripper [rad]; NaN where the device has none
   double temperature = 0;      ///< of the motors as a share of what they bear, 0 to 1 [-]; NaN where unknown
   std::uint64_t sequence = 0;  ///< grows with every new report of the device; equal = nothing new
   bool is_calibrated = false;  ///< the device says that its encoders are referenced
