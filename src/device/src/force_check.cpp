@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "trocar/device/force_driver.h"
+
 namespace trocar::device {
 
 using math::Vec3;
@@ -24,6 +26,9 @@ Vec3 LimitRise(const Vec3& wanted, const Vec3& before, double rise) noexcept {
   const double size = math::Norm(added);
   return size <= rise ? wanted : foot + (rise / size) * added;
 }
+
+ForceCheck::ForceCheck(double max_force) noexcept
+    : max_force_(max_force >= kSmallestForceLimit && max_force <= kLargestForceLimit ? max_force : 0.0) {}
 
 Vec3 ForceCheck::Pass(const Vec3& force) noexcept {
   // false for what is no number

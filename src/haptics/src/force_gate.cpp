@@ -28,7 +28,7 @@ int CountTicks(double time, double tick) noexcept {
 
 /// Whether a gate can keep its promises with these settings; false for what is no number.
 bool AreUsable(const GateSettings& settings) noexcept {
-  return settings.tick > 0.0 && settings.tick <= 0.1 && settings.max_force > 0.0 &&
+  return settings.tick > 0.0 && settings.tick <= 0.1 && settings.max_force >= device::kSmallestForceLimit &&
          settings.max_force <= device::kLargestForceLimit && settings.max_continuous_force > 0.0 &&
          settings.max_continuous_force <= settings.max_force && settings.guard_speed > 0.0 &&
          settings.max_speed > settings.guard_speed && settings.max_speed < kFastest &&

@@ -103,12 +103,17 @@ class LibraryFaults : public testing::Test {
     const core::Stopwatch watch;
     is_pressing_ = false;
     double asked = -1;
+    int answered = -1;
     while (watch.Seconds() < 40.0) {
       const HapticStatus& status = loop_->Latest();
       const bool is_new = watch.Seconds() - asked > 0.2;
       if (status.check_pose == haptics::CheckPoseState::kAsking) {
-        motors_->buttons[0] = status.asked == kLeft ? 1 : 0;
-        motors_->buttons[1] = status.asked == kRight ? 1 : 0;
+        // all buttons up between one answer and the next
+        const bool is_up = status.asked == answered;
+        motors_->buttons[0] = is_up && status.asked == kLeft ? 1 : 0;
+        motors_->buttons[1] = is_up && status.asked == kRight ? 1 : 0;
+        answered = status.asked;
+        if (!is_up) ::usleep(50'000);
       } else if (status.check_pose != haptics::CheckPoseState::kConfirmed) {
         motors_->buttons[0] = motors_->buttons[1] = 0;
         if (is_new) loop_->BeginCheckPose(), asked = watch.Seconds();
@@ -150,6 +155,8 @@ class LibraryFaults : public testing::Test {
       ASSERT_TRUE(Arm());
       ::usleep(static_cast<useconds_t>(random.Uniform(20e3, 40e3)));
       motors_->fault_process = motors_->process.load();
+      loop_->ClearTimes();
+      ::usleep(20'000);
       double absence = 0;
       const std::int64_t struck = core::NowNanoseconds();
       strike();

@@ -25,8 +25,8 @@ math::Vec3 LimitRise(const math::Vec3& wanted, const math::Vec3& before, double 
 class ForceCheck {
  public:
   ForceCheck() noexcept = default;
-  /// \param max_force  the device's nominal maximum [N]
-  explicit ForceCheck(double max_force) noexcept : max_force_(max_force) {}
+  /// \param max_force  the device's nominal maximum [N]; with one that is implausible nothing passes
+  explicit ForceCheck(double max_force) noexcept;
 
   /// What may go out, about once a millisecond [N].
   /// \note Real-time safe: no allocation, lock or throw.
