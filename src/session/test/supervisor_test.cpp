@@ -25,10 +25,16 @@ using Got = ForceWire::Got;
 /// Force must be gone so soon after the process [s].
 constexpr double kLongest = 0.015;
 
+/// Another one where tools/mutate-safety changes it.
+const char* FindSupervisor() {
+  const char* other = std::getenv("TROCAR_TEST_SUPERVISOR");
+  return other != nullptr ? other : TROCAR_SUPERVISOR;
+}
+
 /// A process that puts force on a wire, and the device's end of it.
 class Victim {
  public:
-  explicit Victim(WireKind kind, const char* supervisor = TROCAR_SUPERVISOR) : wire(kind) {
+  explicit Victim(WireKind kind, const char* supervisor = FindSupervisor()) : wire(kind) {
     int ends[2];
     EXPECT_EQ(::pipe2(ends, O_CLOEXEC), 0);
     const std::string file = std::to_string(wire.Host());
@@ -193,7 +199,7 @@ bool IsLost(const HapticHandStatus& hand) {
 /// A loop with a supervisor and the right hand, which the device has reported; null, and a failure, where that fails.
 std::unique_ptr<HapticLoop> StartRightHand(std::unique_ptr<device::ForceDriver> driver, HapticLink& link) {
   HapticLoopSettings settings;
-  settings.supervisor = TROCAR_SUPERVISOR;
+  settings.supervisor = FindSupervisor();
   settings.hands.emplace_back();
   auto loop = HapticLoop::Start(std::move(driver), settings, link);
   if (!loop.ok()) {
