@@ -26,7 +26,12 @@ core::Status Driver::CheckTurn(DriverState needed, std::string_view wish) const 
 
 core::Status Driver::Configure() {
   if (const core::Status turn = CheckTurn(DriverState::kUnconfigured, "be configured"); !turn) return turn;
+  Release();
   if (core::Status done = DoConfigure(); !done) return done;
+  if (core::Status good = CheckConfigured(); !good) {
+    DoCleanup();
+    return good;
+  }
   state_ = DriverState::kInactive;
   return {};
 }
@@ -52,7 +57,20 @@ core::Status Driver::Cleanup() {
   return {};
 }
 
+void Driver::Lose() noexcept {
+  state_ = DriverState::kUnconfigured;
+  is_unreleased_ = true;
+}
+
+void Driver::Release() noexcept {
+  if (!is_unreleased_) return;
+  is_unreleased_ = false;
+  DoDeactivate();
+  DoCleanup();
+}
+
 void Driver::Finalize() noexcept {
+  Release();
   if (state_ == DriverState::kActive) DoDeactivate();
   if (state_ == DriverState::kActive || state_ == DriverState::kInactive) DoCleanup();
   state_ = DriverState::kFinalized;
@@ -62,10 +80,8 @@ ReadStatus Driver::Read(std::span<HandSample> samples) noexcept {
   TROCAR_ASSERT(static_cast<int>(samples.size()) == channel_count_);
   const ReadStatus status = state_ == DriverState::kActive ? DoRead(samples) : ReadStatus::kNotActive;
   if (status == ReadStatus::kLost) {
-    // a lost device never comes back by itself: it must be configured again
-    DoDeactivate();
-    DoCleanup();
-    state_ = DriverState::kUnconfigured;
+    Lose();
+    Release();
   }
   if (status == ReadStatus::kLost || status == ReadStatus::kNotActive) {
     for (HandSample& sample : samples) sample.is_valid = false;

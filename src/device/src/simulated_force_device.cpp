@@ -36,7 +36,7 @@ SimulatedForceDevice::SimulatedForceDevice(SimulatedForceSettings settings)
     : ForceDriver("simulated haptic device", settings.channel_count), settings_(std::move(settings)) {
   TROCAR_ASSERT(settings_.path && settings_.channel_count >= 1 &&
                 settings_.channel_count <= SimulatedForceSettings::kMaxChannels);
-  if (!(settings_.limits.max_force > 0.0)) settings_.limits = MakeTouchLimits();
+  if (settings_.limits.max_force == 0.0) settings_.limits = MakeTouchLimits();
 }
 
 ForceLimits SimulatedForceDevice::GetLimits(int /*channel*/) const noexcept {

@@ -4,7 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
+#include <limits>
 #include <vector>
+
+#include "trocar/device/simulated_force_device.h"
 
 namespace trocar::device {
 namespace {
@@ -49,6 +53,39 @@ TEST(Driver, WalksThroughItsLifeInOrder) {
   ASSERT_TRUE(driver.Cleanup().ok());
   EXPECT_EQ(driver.GetState(), DriverState::kUnconfigured);
   EXPECT_EQ(driver.calls, (std::vector<std::string>{"configure", "activate", "deactivate", "cleanup"}));
+}
+
+// every family, in every build: the base class asks
+TEST(ForceDriver, IsNotOpenedWithLimitsThatNoHandHolds) {
+  const double nan = std::nan("");
+  const auto configure = [](const auto& change) {
+    SimulatedForceSettings settings;
+    settings.path = [](int, double) { return math::Vec3{}; };
+    settings.limits = MakeTouchLimits();
+    change(settings.limits);
+    SimulatedForceDevice device(settings);
+    const core::Status done = device.Configure();
+    EXPECT_EQ(device.GetState(), done.ok() ? DriverState::kInactive : DriverState::kUnconfigured);
+    return done.ok() ? ErrorCode::kNone : done.error().code;
+  };
+  EXPECT_EQ(configure([](ForceLimits&) {}), ErrorCode::kNone);
+  EXPECT_EQ(configure([](ForceLimits& limits) { limits.max_force = kLargestForceLimit; }), ErrorCode::kNone);
+  EXPECT_EQ(configure([](ForceLimits& limits) { limits.max_force = kSmallestForceLimit; }), ErrorCode::kNone);
+  double ForceLimits::*const numbers[] = {&ForceLimits::max_force,     &ForceLimits::max_continuous_force,
+                                          &ForceLimits::max_stiffness, &ForceLimits::damping,
+                                          &ForceLimits::friction,      &ForceLimits::mass,
+                                          &ForceLimits::position_step};
+  for (const auto number : numbers) {
+    for (const double bad : {nan, -1.0, 1e6, 1e308, std::numeric_limits<double>::infinity()})
+      EXPECT_EQ(configure([&](ForceLimits& limits) { limits.*number = bad; }), ErrorCode::kDeviceSettings)
+          << bad;
+  }
+  EXPECT_EQ(configure([](ForceLimits& limits) { limits.max_force = 50.001; }), ErrorCode::kDeviceSettings);
+  EXPECT_EQ(configure([](ForceLimits& limits) { limits.max_force = 0.099; }), ErrorCode::kDeviceSettings);
+  EXPECT_EQ(configure([](ForceLimits& limits) { limits.workspace_min.y = 0.1; }), ErrorCode::kDeviceSettings)
+      << "inside out";
+  EXPECT_EQ(configure([&](ForceLimits& limits) { limits.workspace_max.z = nan; }),
+            ErrorCode::kDeviceSettings);
 }
 
 TEST(Driver, RefusesEveryTransitionOutOfTurn) {

@@ -76,9 +76,30 @@ TEST(HaplyMessages, ReadsWhatTheServiceSends) {
   for (const char* bad :
        {"", "{", "[]", "{}", R"({"inverse3":{}})", R"({"inverse3":[{"device_id":"a"}]})",
         R"({"inverse3":[{"device_id":"a","state":{"cursor_position":{"x":1e999,"y":0,"z":0}}}]})",
-        R"({"inverse3":[{"device_id":"a","state":{"cursor_position":{"x":9,"y":0,"z":0}}}]})",
         R"({"inverse3":[{"device_id":7,"state":{"cursor_position":{"x":0,"y":0,"z":0}}}]})"})
     EXPECT_FALSE(haply::ParseState(bad, state)) << bad;
+}
+
+// where a device cannot be, and what is no rotation, is the guard's to refuse: nothing is made good on the way
+TEST(HaplyMessages, HandsOnWhatTheServiceSays) {
+  const auto parse = [](const std::string& x, const std::string& grip) {
+    haply::State state;
+    EXPECT_TRUE(haply::ParseState(R"({"inverse3":[{"device_id":"a","state":{"cursor_position":{"x":)" + x +
+                                      R"(,"y":0,"z":0}}}],"wireless_verse_grip":[{"state":{"orientation":)" +
+                                      grip + "}}]}",
+                                  state));
+    return state;
+  };
+  EXPECT_EQ(parse("9", R"({"w":1,"x":0,"y":0,"z":0})").devices[0].position.x, 9.0);
+  const auto length = [&](const std::string& grip) {
+    const math::Quaternion q = parse("0", grip).grip;
+    return q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z;
+  };
+  EXPECT_EQ(length(R"({"w":1,"x":0,"y":0,"z":0})"), 1.0);
+  EXPECT_EQ(length(R"({"w":0,"x":0,"y":0,"z":0})"), 0.0);
+  EXPECT_EQ(length(R"({"w":3,"x":0,"y":0,"z":0})"), 9.0);
+  EXPECT_EQ(length(R"({"w":null,"x":0,"y":0,"z":0})"), 0.0) << "as a service writes what is no number";
+  EXPECT_EQ(length("null"), 0.0);
 }
 
 TEST(HaplyMessages, ForcesComeBackAsTheyWere) {

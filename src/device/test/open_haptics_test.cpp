@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <limits>
 
 #include "stand_in_gate.h"
 #include "trocar/device/force_device_spec.h"
@@ -53,6 +54,9 @@ TEST_F(OpenHapticsTest, ReadsTwoDevicesInSiUnits) {
   EXPECT_EQ(driver.GetChannelCount(), 2);
   EXPECT_EQ(driver.GetLimits(0).max_force, 3.3);
   EXPECT_NEAR(driver.GetLimits(1).max_stiffness, 1020, 1e-9) << "N/m";
+  EXPECT_EQ(driver.GetLimits(1).damping, 0.2) << "what the library does not say is assumed";
+  EXPECT_EQ(driver.GetLimits(1).friction, 0.06);
+  EXPECT_EQ(driver.GetLimits(1).position_step, 0.055e-3);
   EXPECT_NEAR(driver.GetLimits(1).workspace_max.x, 0.08, 1e-12);
   ASSERT_TRUE(driver.Activate().ok());
   std::array<ForceSample, 2> samples;
@@ -73,6 +77,54 @@ TEST_F(OpenHapticsTest, ReadsTwoDevicesInSiUnits) {
   driver.Finalize();
   EXPECT_EQ(Find<int()>("StandInMisuses")(), 0) << "frames, order of devices and scheduler";
   EXPECT_EQ(Find<int()>("StandInDevices")(), 0);
+}
+
+// what a library says of its device is refused when it is opened, in every build
+TEST_F(OpenHapticsTest, RefusesImplausibleLimits) {
+  const auto limits = Find<void(const double*)>("StandInLimits");
+  const double nan = std::nan(""), inf = std::numeric_limits<double>::infinity();
+  const double figures[][3] = {{251, 0.88, 1.02}, {1e308, 0.88, 1.02}, {nan, 0.88, 1.02}, {inf, 1, 1},
+                               {-3.3, 0.88, 1},   {0, 0, 0},           {0.09, 0.01, 1},   {3.3, nan, 1},
+                               {3.3, -1, 1},      {3.3, 0.88, inf},    {3.3, 0.88, nan},  {3.3, 0.88, -1}};
+  for (const auto& figure : figures) {
+    limits(figure);
+    OpenHaptics driver(settings_);
+    const core::Status refused = driver.Configure();
+    ASSERT_FALSE(refused.ok()) << figure[0] << ' ' << figure[1] << ' ' << figure[2];
+    EXPECT_EQ(refused.error().code, ErrorCode::kDeviceSettings);
+    EXPECT_NE(refused.error().message.find("maker's program"), std::string::npos);
+    EXPECT_EQ(driver.GetState(), DriverState::kUnconfigured);
+    EXPECT_EQ(Find<int()>("StandInDevices")(), 0) << "what was open is closed";
+  }
+  for (const double good : {0.1, 3.3, 50.0}) {
+    const double figure[3] = {good, 0.0, 1.02};
+    limits(figure);
+    OpenHaptics driver(settings_);
+    EXPECT_TRUE(driver.Configure().ok()) << good;
+  }
+  const double touch[3] = {3.3, 0.88, 1.02};
+  limits(touch);
+}
+
+// the process that calls the library looks once more: zero, and the device is closed
+TEST_F(OpenHapticsTest, AForceThatNoGateLetsOutIsZeroAndALostDevice) {
+  const double nan = std::nan("");
+  for (const math::Vec3& bad : {math::Vec3{nan, 0, 0}, math::Vec3{0, 3.4, 0}, math::Vec3{0, 0, 1e300}}) {
+    OpenHaptics driver(settings_);
+    ASSERT_TRUE(driver.Configure().ok());
+    ASSERT_TRUE(driver.Activate().ok());
+    ASSERT_TRUE(WaitFor([&] {
+      driver.SendForce(0, haptics::ForceGate::Make({1, 0, 0}));
+      return Force(0).x == 1;
+    }));
+    std::array<ForceSample, 2> samples;
+    ASSERT_TRUE(WaitFor([&] {
+      driver.SendForce(0, haptics::ForceGate::Make(bad));
+      return driver.ReadForceSamples(samples) == ReadStatus::kLost;
+    }));
+    EXPECT_TRUE(WaitFor([&] { return Force(0) == math::Vec3{}; }));
+    EXPECT_EQ(Find<int()>("StandInBadForces")(), 0) << "none of it reached the motors";
+  }
 }
 
 TEST_F(OpenHapticsTest, AForceLivesTenMilliseconds) {
@@ -135,7 +187,10 @@ TEST_F(OpenHapticsTest, OtherErrorsLoseTheDeviceAtZeroForce) {
     })) << std::hex
         << error;
     EXPECT_EQ(driver.GetState(), DriverState::kUnconfigured);
-    EXPECT_EQ(Force(0), math::Vec3{});
+    EXPECT_TRUE(driver.NeedsRelease()) << "the reader closes nothing";
+    EXPECT_TRUE(WaitFor([&] { return Force(0) == math::Vec3{}; }));
+    driver.Release();
+    EXPECT_EQ(Find<int()>("StandInDevices")(), 0);
     EXPECT_EQ(Find<int()>("StandInMisuses")(), 0);
     // it can be had again
     EXPECT_TRUE(driver.Configure().ok());
@@ -156,6 +211,52 @@ TEST_F(OpenHapticsTest, LeavesZeroBehind) {
   const int callbacks = Find<int()>("StandInCallbacks")();
   SystemClock().Sleep(0.01);
   EXPECT_EQ(Find<int()>("StandInCallbacks")(), callbacks) << "the scheduler has ended";
+}
+
+// what is no rotation stays none, for the guard to see
+TEST_F(OpenHapticsTest, ABadTransformIsNoGoodPose) {
+  const auto set = Find<void(int)>("StandInTransform");
+  OpenHaptics driver(settings_);
+  ASSERT_TRUE(driver.Configure().ok());
+  ASSERT_TRUE(driver.Activate().ok());
+  std::array<ForceSample, 2> samples;
+  std::array<HandSample, 2> hands;
+  const auto turn = [&] {
+    const math::Quaternion& q = samples[0].orientation;
+    return q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z;
+  };
+  for (const int kind : {1, 2, 3, 4, 5}) {
+    set(0);
+    ASSERT_TRUE(
+        WaitFor([&] { return driver.ReadForceSamples(samples) == ReadStatus::kFresh && turn() == 1.0; }));
+    driver.Read(hands);
+    EXPECT_TRUE(hands[0].is_valid) << "the control";
+    set(kind);
+    EXPECT_TRUE(WaitFor([&] {
+      return driver.ReadForceSamples(samples) == ReadStatus::kFresh && turn() == 0.0;
+    })) << kind;
+    driver.Read(hands);
+    EXPECT_FALSE(hands[0].is_valid) << kind;
+  }
+  set(0);
+}
+
+TEST_F(OpenHapticsTest, AMotorThatSaysNothingHidesNoHotOne) {
+  const auto set = Find<void(const double*)>("StandInTemperatures");
+  const double nan = std::nan("");
+  OpenHaptics driver(settings_);
+  ASSERT_TRUE(driver.Configure().ok());
+  ASSERT_TRUE(driver.Activate().ok());
+  std::array<ForceSample, 2> samples;
+  const double motors[][3] = {{nan, 1.2, 0.1}, {1.2, nan, nan}, {0.1, nan, 1.2}};
+  for (const auto& three : motors) {
+    set(three);
+    EXPECT_TRUE(WaitFor([&] {
+      return driver.ReadForceSamples(samples) == ReadStatus::kFresh && samples[0].temperature == 1.2;
+    }));
+  }
+  const double well[] = {0.2, 0.4, 0.1};
+  set(well);
 }
 
 TEST_F(OpenHapticsTest, SaysWhatIsMissing) {

@@ -2,6 +2,7 @@
 #include "trocar/haptics/device_guard.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "guards.h"
@@ -51,8 +52,10 @@ void DeviceGuard::Accept(const device::ForceSample& sample, double elapsed) noex
 
 /// A report that has not been seen before.
 void DeviceGuard::Take(const device::ForceSample& sample, double now) noexcept {
+  window_ <<= 1;
   if (IsOn(Guard::kBadSamples) && !IsPlausible(sample, settings_.max_reach)) {
     ++counts_.bad;
+    window_ |= 1;
     if (++bad_in_row_ >= settings_.max_bad_in_row) held_.fault = Fault::kBadSamples;
     return;
   }
@@ -63,6 +66,7 @@ void DeviceGuard::Take(const device::ForceSample& sample, double now) noexcept {
     if (moved > settings_.max_speed * elapsed + kSmallStep ||
         turned > settings_.max_turn_rate * elapsed + kSmallTurn) {
       ++counts_.jumps;
+      window_ |= 1;
       if (++jumps_in_row_ < settings_.max_jumps_in_row) return;
       // it stays there: that is where it is, and what it came through is not known
       held_.fault = Fault::kJump;
@@ -85,6 +89,8 @@ GuardedDevice DeviceGuard::Step(const device::ForceSample& sample, double now) n
     was_lost_ = false;
     held_ = {};
     held_.fault = Fault::kNone;
+    bad_in_row_ = jumps_in_row_ = 0;
+    window_ = 0;
     // what was reported before is taken; 0 is no report yet
     sequence_ = sample.sequence > 0 ? sample.sequence - 1 : 0;
     last_good_ = now;
@@ -93,6 +99,9 @@ GuardedDevice DeviceGuard::Step(const device::ForceSample& sample, double now) n
     sequence_ = sample.sequence;
     Take(sample, now);
   }
+  if (IsOn(Guard::kBadSamples) && held_.fault == Fault::kNone &&
+      std::popcount(window_) >= settings_.max_bad_in_window)
+    held_.fault = Fault::kBadSamples;
   // bad reports and jumps do not count as signs of life, so a device that only sends those goes silent
   const double age = IsOn(Guard::kSilence) ? now - last_good_ : 0.0;
   held_.scale =

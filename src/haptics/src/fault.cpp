@@ -45,6 +45,9 @@ constexpr std::array<FaultEntry, static_cast<std::size_t>(Fault::kCount)> kTable
      "hold it firmly and switch force on again; lower the force scale if this repeats"},
     {Fault::kSimulation, ErrorCode::kHapticSimulation, "simulation",
      "the simulation has no good tissue state", "start or reset the simulation, then switch force on again"},
+    {Fault::kGate, ErrorCode::kForceRefused, "gate",
+     "the device's limits or the gate's own output were out of range",
+     "check the device's model and driver, start the simulator again, and report this if it repeats"},
     {Fault::kForceAtArming, ErrorCode::kHapticNotArmed, "force_at_arming", "the tools press tissue",
      "take the tools out of the tissue and switch force on again"},
 }};

@@ -5,28 +5,34 @@
 #include <cmath>
 
 #include "guards.h"
-#include "trocar/core/assert.h"
 
 namespace trocar::haptics {
 namespace {
 
+/// No hand is as fast [m/s].
+constexpr double kFastest = 100;
 /// Share of the continuous force that is left to a device that calls itself warm [-].
 constexpr double kWarmShare = 0.5;
 /// Heat at which the derating begins, so that a steady force ends at the continuous one [-].
 constexpr double kDeratingHeat = 0.8;
 
+/// The scales of speed, heat and ramp rise by at most tick / short_ramp_time, which adds to the force, too: what
+/// is left of max_rise for the wanted force itself [N].
+double CalcRiseLimit(const GateSettings& settings) noexcept {
+  return settings.max_rise - settings.tick / settings.short_ramp_time * settings.max_force;
+}
+
 int CountTicks(double time, double tick) noexcept {
   return std::max(1, static_cast<int>(std::lround(time / tick)));
 }
 
-/// The point nearest to `wanted` that lies within `rise` of the way between zero and `before`.
-Vec3 LimitRise(const Vec3& wanted, const Vec3& before, double rise) noexcept {
-  const double length = math::SquaredNorm(before);
-  const double along = length > 0.0 ? std::clamp(math::Dot(wanted, before) / length, 0.0, 1.0) : 0.0;
-  const Vec3 foot = along * before;
-  const Vec3 added = wanted - foot;
-  const double size = math::Norm(added);
-  return size <= rise ? wanted : foot + (rise / size) * added;
+/// Whether a gate can keep its promises with these settings; false for what is no number.
+bool AreUsable(const GateSettings& settings) noexcept {
+  return settings.tick > 0.0 && settings.tick <= 0.1 && settings.max_force >= device::kSmallestForceLimit &&
+         settings.max_force <= device::kLargestForceLimit && settings.max_continuous_force > 0.0 &&
+         settings.max_continuous_force <= settings.max_force && settings.guard_speed > 0.0 &&
+         settings.max_speed > settings.guard_speed && settings.max_speed < kFastest &&
+         CalcRiseLimit(settings) > 0.0;
 }
 
 /// Share that is left of a force that drives a fast device on.
@@ -70,17 +76,9 @@ std::string_view ArmStateName(ArmState state) noexcept {
   return "unknown";
 }
 
-ForceGate::ForceGate(const GateSettings& settings) : settings_(settings) {
-  TROCAR_ASSERT(settings.tick > 0.0 && settings.max_force > 0.0 && std::isfinite(settings.max_force));
-  TROCAR_ASSERT(settings.max_continuous_force > 0.0 && settings.max_continuous_force <= settings.max_force);
-  TROCAR_ASSERT(settings.max_speed > settings.guard_speed && settings.guard_speed > 0.0);
-  TROCAR_ASSERT(CalcRiseLimit() > 0.0);
-}
-
-/// The scales of speed, heat and ramp rise by at most tick / short_ramp_time, which adds to the force, too: what
-/// is left of max_rise for the wanted force itself [N].
-double ForceGate::CalcRiseLimit() const noexcept {
-  return settings_.max_rise - settings_.tick / settings_.short_ramp_time * settings_.max_force;
+ForceGate::ForceGate(const GateSettings& settings)
+    : settings_(settings), is_broken_(IsOn(Guard::kSettings) && !AreUsable(settings)) {
+  if (is_broken_) reason_ = Fault::kGate;
 }
 
 void ForceGate::RequestArm() noexcept {
@@ -93,6 +91,7 @@ void ForceGate::Stop() noexcept {
 
 /// The first thing that forbids force in this tick.
 Fault ForceGate::FindFaultOfTick(const GateInput& input) const noexcept {
+  if (is_broken_) return Fault::kGate;
   if (is_stopping_) return Fault::kStopped;
   if (input.fault != Fault::kNone) return input.fault;
   // finite, unit
@@ -156,6 +155,14 @@ void ForceGate::UpdateArming(Fault fault, double wanted) noexcept {
   }
 }
 
+/// The promises once more, by arithmetic of its own and on the force itself; false for what is no number.
+bool ForceGate::MaySend(const Vec3& force) const noexcept {
+  if (force == Vec3{}) return true;
+  return state_ != ArmState::kUnarmed &&
+         math::Norm(force) <= settings_.max_force * (1.0 + device::kForceRounding) &&
+         device::CalcRise(force, sent_) <= settings_.max_rise + device::kForceRounding;
+}
+
 GateOutput ForceGate::Step(const GateInput& input) noexcept {
   GateOutput output;
   const Fault fault = FindFaultOfTick(input);
@@ -168,7 +175,8 @@ GateOutput ForceGate::Step(const GateInput& input) noexcept {
   }
   const double wanted = math::Norm(force);
   // rise
-  const Vec3 limited = IsOn(Guard::kRise) ? LimitRise(force, limited_, CalcRiseLimit()) : force;
+  const Vec3 limited =
+      IsOn(Guard::kRise) ? device::LimitRise(force, limited_, CalcRiseLimit(settings_)) : force;
   if (!(limited == force)) output.limits |= kRiseLimited;
   limited_ = limited;
   // speed, heat
@@ -192,6 +200,16 @@ GateOutput ForceGate::Step(const GateInput& input) noexcept {
     scale_ = 0;
     output.limits = 0;
   }
+  if (IsOn(Guard::kOutput) && !MaySend(output.force.Get())) {
+    // what should be impossible: zero for good, and nothing of it is kept
+    is_broken_ = true;
+    output.force = {};
+    state_ = ArmState::kUnarmed;
+    reason_ = Fault::kGate;
+    limited_ = {};
+    scale_ = heat_ = 0;
+  }
+  sent_ = output.force.Get();
   const double load = math::Norm(output.force.Get()) / settings_.max_continuous_force;
   heat_ += settings_.tick / settings_.heat_time * (load * load - heat_);
   output.state = state_;

@@ -7,6 +7,8 @@ namespace trocar::haptics {
 /// A build for a negative control defines TROCAR_LEFT_OUT_GUARD as one of these; the product defines nothing.
 enum class Guard {
   kNone,
+  kSettings,
+  kOutput,
   kFinite,
   kPlausible,
   kClamp,
@@ -34,6 +36,8 @@ inline constexpr Guard kLeftOut = Guard::kNone;
 #endif
 
 constexpr bool IsOn(Guard guard) {
+  // without wrong settings the gate's last check has nothing to find
+  if (kLeftOut == Guard::kOutput && guard == Guard::kSettings) return false;
   return guard != kLeftOut;
 }
 

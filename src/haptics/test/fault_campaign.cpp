@@ -2,8 +2,11 @@
 #include "fault_campaign.h"
 
 #include <array>
+#include <iterator>
 #include <limits>
+#include <vector>
 
+#include "fault_storm.h"
 #include "haptic_rig.h"
 #include "trocar/haptics/check_pose.h"
 #include "trocar/math/random.h"
@@ -224,6 +227,48 @@ std::string D8Implausible() {
   return wrong.empty() ? CheckNeverArmsItself(rig) : wrong;
 }
 
+/// Whatever a device says that it bears: with usable limits the promises hold, with others no force comes.
+std::string AnyLimits() {
+  math::Random random(26);
+  const double inf = std::numeric_limits<double>::infinity();
+  std::vector<double> forces = {kNan, inf, -inf, -3.3, 0.0,  -0.0,  1e-300,
+                                0.1,  0.5, 3.3,  40.0, 50.0, 251.0, 1e308};
+  for (int i = 0; i < 300; ++i)
+    forces.push_back(std::pow(10.0, random.Uniform(-1.0, i % 2 == 0 ? 2.7 : 308.0)));
+  for (const double force : forces) {
+    device::ForceLimits limits = HapticRig::MakeLimits();
+    limits.max_force = force;
+    const double others[] = {0.0, 0.25 * force, force, 2.0 * force, kNan, inf, -1.0};
+    limits.max_continuous_force = others[random.NextWord() % std::size(others)];
+    const bool is_usable = force >= device::kSmallestForceLimit && force <= device::kLargestForceLimit;
+    limits.max_stiffness = std::pow(10.0, random.Uniform(1.0, is_usable ? 5.0 : 300.0));
+    HapticRig rig(limits);
+    rig.is_usable = is_usable;
+    rig.Run(20);
+    if (rig.is_usable)
+      rig.Request();
+    else
+      rig.channel.RequestArm();
+    // a person who asks again and again, and tissue that pushes with all that is plausible
+    for (int i = 0; i < 40; ++i) {
+      rig.Press(random.Uniform(-1.0, 1.0) * std::fmin(7.0 * force, 1e300));
+      rig.patch.force.y = random.Uniform(-1.0, 1.0) * std::fmin(force, 1e300);
+      if (i < 20) rig.Press(0.0), rig.patch.force.y = 0;
+      rig.is_patch_new = true;
+      if (!rig.is_usable) rig.channel.RequestArm();
+      rig.Run(i < 20 ? 110 : 10);
+    }
+    if (rig.complaint.empty() && rig.is_usable && !(rig.Size() > 0.0))
+      rig.Complain("no force: " + std::string(FindFault(rig.output.gate.reason).name) + ", " +
+                   std::to_string(math::Norm(rig.output.local.force)) + " N wanted");
+    if (!rig.is_usable && rig.output.gate.reason != Fault::kGate) rig.Complain("wrong limits are not named");
+    if (!rig.complaint.empty())
+      return rig.complaint + ", limits " + std::to_string(force) + " N, " +
+             std::to_string(limits.max_continuous_force) + " N";
+  }
+  return {};
+}
+
 std::string D9Overrun() {
   HapticRig rig;
   rig.ArmAndPress(2.0);
@@ -373,109 +418,13 @@ std::string SimulationStands() {
   return CheckNeverArmsItself(rig);
 }
 
-/// 100,000 faults of every kind, one after another, into a channel that is armed again and again.
+/// Faults of every kind in both hands, on one pair of devices after another, into channels that are armed again and again.
 std::string AnyFault() {
-  math::Random random(20'261'121);
-  HapticRig rig;
-  rig.patch.jacobian[0] = {-300, 0, 0};
-  long armed_ticks = 0, force_ticks = 0;
-  const auto chance = [&](double p) { return random.Uniform() < p; };
-  const auto any = [&] { return random.Uniform(-1, 1); };
-  for (int fault = 0; fault < 100'000; ++fault) {
-    // a good stretch
-    rig.sample.position = {0.003 * any(), 0.003 * any(), 0.003 * any()};
-    rig.sample.status = device::ForceDeviceStatus::kOk;
-    rig.sample.buttons = 1;
-    rig.sample.is_calibrated = true;
-    rig.sample.temperature = kNan;
-    rig.sample.orientation = {};
-    rig.patch.is_healthy = true;
-    rig.is_reporting = true;
-    rig.conditions = {true, true, false, false};
-    rig.is_tripped = false;
-    rig.Press(0.0);
-    rig.patch.X_world_tool.translation = rig.sample.position;
-    rig.is_patch_new = true;
-    rig.Run(12);
-    const bool was_asked = chance(0.8);
-    if (was_asked) rig.Request();
-    rig.Run(5);
-    if (was_asked && rig.output.gate.state == ArmState::kUnarmed &&
-        rig.output.gate.reason == Fault::kNotRequested)
-      rig.Complain("a request is not answered");
-    const int stretch = chance(0.02) ? 2200 : 10 + static_cast<int>(40 * random.Uniform());
-    for (int i = 0; i < stretch; ++i) {
-      if (chance(0.05)) rig.Press(4.0 * any());
-      rig.Tick();
-      armed_ticks += rig.output.gate.state == ArmState::kArmed;
-      force_ticks += rig.Size() > 0.0;
-    }
-    // the fault; those that forbid force do so from their own tick on
-    const double huge = std::pow(10.0, random.Uniform(1.9, 300.0));
-    switch (random.NextWord() % 14) {
-      case 0:
-        rig.sample.status = device::ForceDeviceStatus::kLost;
-        rig.Forbid();
-        break;
-      case 1:
-        rig.is_reporting = false;
-        break;
-      case 2:
-        rig.sample.position.x = chance(0.5) ? kNan : huge;
-        break;
-      case 3:
-        rig.sample.position += Vec3{any(), any(), any()};
-        break;
-      case 4:
-        rig.Press(kNan);
-        rig.is_patch_new = true;
-        rig.Forbid();
-        break;
-      case 5:
-        rig.Press(huge);
-        rig.is_patch_new = true;
-        break;
-      case 6:
-        rig.lateness = random.Uniform(0.0, 0.018);
-        break;
-      case 7:
-        rig.lateness = random.Uniform(0.021, 3.0);
-        rig.Forbid();
-        break;
-      case 8:
-        rig.is_tripped = true;
-        rig.Forbid();
-        break;
-      case 9:
-        rig.sample.temperature = random.Uniform(0.8, 1.2);
-        if (rig.sample.temperature >= 1.0) rig.Forbid();
-        break;
-      case 10:
-        rig.sample.buttons = 0;
-        rig.Forbid();
-        break;
-      case 11:
-        rig.sample.is_calibrated = false;
-        rig.Forbid();
-        break;
-      case 12:
-        rig.patch.is_healthy = false;
-        rig.is_patch_new = true;
-        rig.Forbid();
-        break;
-      case 13:
-        rig.patch.jacobian[0] = {huge * any(), huge * any(), huge * any()};
-        rig.is_patch_new = true;
-        break;
-    }
-    rig.Run(1 + static_cast<int>(4 * random.Uniform()));
-    rig.patch.jacobian = {};
-    rig.patch.jacobian[0] = {-300, 0, 0};
-    if (!rig.complaint.empty()) return rig.complaint + ", fault " + std::to_string(fault);
-  }
-  if (armed_ticks < 100'000 || force_ticks < 500'000)
-    return "the campaign was hardly ever armed: " + std::to_string(armed_ticks) + ", " +
-           std::to_string(force_ticks);
+  const FaultStormResult storm = RunFaultStorm(40'000, 20'261'121);
+  if (!storm.complaint.empty()) return storm.complaint;
+  if (storm.armed_ticks < 20'000 || storm.force_ticks < 200'000)
+    return "the storm was hardly ever armed: " + std::to_string(storm.armed_ticks) + ", " +
+           std::to_string(storm.force_ticks);
   return {};
 }
 
@@ -491,6 +440,7 @@ constexpr CampaignRow kRows[] = {
     {"D5 jump", D5Jump},
     {"D8 not finite", D8NotFinite},
     {"D8 implausible", D8Implausible},
+    {"any limits", AnyLimits},
     {"D9 overrun", D9Overrun},
     {"D10 supervisor", D10Supervisor},
     {"D11 heat", D11Heat},

@@ -6,6 +6,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <ostream>
 #include <type_traits>
 
@@ -42,6 +44,38 @@ static_assert(!std::is_convertible_v<math::Vec3, DeviceForce>);
 
 TEST(GatedForce, IsZeroUnlessTheGateMadeIt) {
   EXPECT_EQ(device::GatedForce().Get(), math::Vec3());
+}
+
+// The gate in production passes every one of these; a force that another path left in a driver's mailbox does not.
+TEST(ForceCheck, LetsOutWhatAGateLetsOutAndNothingElse) {
+  using device::ForceCheck;
+  ForceCheck check(3.3);
+  EXPECT_EQ(check.Pass({0.5, 0, 0}), (Vec3{0.5, 0, 0}));
+  EXPECT_EQ(check.Pass({0, 0.5, 0}), (Vec3{0, 0.5, 0})) << "round by zero";
+  EXPECT_NEAR(math::Norm(check.Pass({0, 3.3, 0})), 1.0, 1e-12) << "a rise of 0.5 N at once";
+  for (int i = 0; i < 10; ++i) check.Pass({0, 3.3, 0});
+  EXPECT_EQ(check.Pass({0, 3.3, 0}), (Vec3{0, 3.3, 0}));
+  EXPECT_FALSE(check.HasRefused());
+  EXPECT_EQ(check.Pass({}), Vec3{}) << "a fall is free";
+  const double nan = std::nan(""), inf = std::numeric_limits<double>::infinity();
+  for (const Vec3& bad : {Vec3{nan, 0, 0}, Vec3{0, 0, -inf}, Vec3{0, 3.31, 0}, Vec3{1e200, 1e200, 0}}) {
+    ForceCheck strict(3.3);
+    strict.Pass({0.2, 0, 0});
+    EXPECT_EQ(strict.Pass(bad), Vec3{});
+    EXPECT_TRUE(strict.HasRefused());
+    EXPECT_EQ(strict.Pass({0.2, 0, 0}), Vec3{}) << "latched";
+  }
+  EXPECT_EQ(ForceCheck(inf).Pass({1, 0, 0}), Vec3{}) << "and nothing to one that no hand holds";
+  EXPECT_EQ(ForceCheck().Pass({1e-6, 0, 0}), Vec3{}) << "a check that knows no device passes nothing";
+}
+
+TEST(CalcRise, IsTheDistanceToTheWayFromZero) {
+  EXPECT_DOUBLE_EQ(device::CalcRise({3, 0, 0}, {}), 3.0);
+  EXPECT_DOUBLE_EQ(device::CalcRise({3, 0, 0}, {2, 0, 0}), 1.0);
+  EXPECT_DOUBLE_EQ(device::CalcRise({1, 0, 0}, {2, 0, 0}), 0.0) << "a fall";
+  EXPECT_DOUBLE_EQ(device::CalcRise({1, 1, 0}, {2, 0, 0}), 1.0);
+  EXPECT_DOUBLE_EQ(device::CalcRise({-1, 0, 0}, {2, 0, 0}), 1.0);
+  EXPECT_FALSE(device::CalcRise({std::nan(""), 0, 0}, {2, 0, 0}) <= 1e9);
 }
 
 TEST(FaultTable, NamesEveryFaultInOrderWithARemedy) {

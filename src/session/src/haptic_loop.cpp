@@ -45,7 +45,8 @@ void WaitUntil(std::int64_t due, std::int64_t spin) noexcept {
   }
 }
 
-/// Opens a lost device again on a thread of its own: the ticks go on while a service takes its time to answer.
+/// Closes a lost device and opens it again on a thread of its own: the ticks go on while a library or a service takes its
+/// time to answer.
 class Reopener {
  public:
   explicit Reopener(std::function<void()> open) : open_(std::move(open)), thread_([this] { Run(); }) {}
@@ -192,8 +193,10 @@ void HapticLoop::Content::Run() noexcept {
     }
     if (is_opening) {
       last_try = start;
-    } else if (driver->GetState() == device::DriverState::kUnconfigured && start - last_try >= kTryAgain) {
-      reopener->Begin();  // what comes back is unarmed and unconfirmed
+    } else if (driver->NeedsRelease() ||
+               (driver->GetState() == device::DriverState::kUnconfigured && start - last_try >= kTryAgain)) {
+      reopener
+          ->Begin();  // closes what is lost, too, which may take its time; what comes back is unarmed and unconfirmed
     }
     due += period;
     // late: never a burst of ticks to catch up (faults D9)

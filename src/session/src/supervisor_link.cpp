@@ -3,6 +3,7 @@
 
 #include <sys/socket.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <utility>
@@ -13,7 +14,9 @@
 namespace trocar::session {
 namespace {
 
-constexpr double kLongestOwnSilence = 0.050;  // of the supervisor [s]
+constexpr double kLongestOwnSilence = 0.020;  // of the supervisor [s]
+/// Most of it that counts between two looks: when we did not run ourselves, the supervisor may not have run either [s].
+constexpr double kLongestLook = 0.002;
 constexpr const char* kRemedy =
     "without the supervisor there is no force: reinstall Trocar, or build the target trocar-supervisor";
 
@@ -30,7 +33,7 @@ struct SupervisorLink::Content {
   device::Companion companion;
   SupervisorPage* page;
   std::uint64_t seen_beats = 0, seen_trips = 0;
-  double last_seen = 0;  // [s]
+  double silence = 0, last_look = 0;  // [s]
 };
 
 std::filesystem::path SupervisorLink::FindProgram() {
@@ -85,11 +88,13 @@ void SupervisorLink::Beat() noexcept {
 bool SupervisorLink::IsAlive(double now) noexcept {
   Content& c = *content_;
   const std::uint64_t beats = c.page->supervisor_beats.load(std::memory_order_relaxed);
-  if (beats != c.seen_beats) {
-    c.seen_beats = beats;
-    c.last_seen = now;
-  }
-  return c.seen_beats > 0 && now - c.last_seen <= kLongestOwnSilence;
+  c.silence = beats != c.seen_beats ? 0.0 : c.silence + std::clamp(now - c.last_look, 0.0, kLongestLook);
+  c.seen_beats = beats;
+  c.last_look = now;
+  // its end of the socket closes with it, and it never says anything
+  char nothing;
+  const bool has_ended = ::recv(c.companion.Socket(), &nothing, 1, MSG_PEEK | MSG_DONTWAIT) == 0;
+  return !has_ended && beats > 0 && c.silence <= kLongestOwnSilence;
 }
 
 bool SupervisorLink::TakeTrip() noexcept {

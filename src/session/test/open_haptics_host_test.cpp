@@ -53,7 +53,9 @@ class OpenHapticsHost : public testing::Test {
     ::setenv(kStandInPage, page_.c_str(), 1);
     settings_.hd_file = TROCAR_STAND_IN_HD;
     settings_.names = {"Left", "Right"};
-    settings_.host = TROCAR_SUPERVISOR;
+    // another one where tools/mutate-safety changes it
+    const char* other = std::getenv("TROCAR_TEST_SUPERVISOR");
+    settings_.host = other != nullptr ? other : TROCAR_SUPERVISOR;
   }
   void TearDown() override {
     ::unsetenv(kStandInPage);
@@ -172,7 +174,6 @@ TEST_F(OpenHapticsHost, AHostThatDiesIsALostDeviceThatComesBack) {
   ASSERT_TRUE(WaitFor(5, [&] { return driver.ReadForceSamples(samples) == ReadStatus::kLost; }));
   EXPECT_EQ(samples[0].status, device::ForceDeviceStatus::kLost);
   EXPECT_EQ(driver.GetState(), device::DriverState::kUnconfigured);
-  motors_->devices = 0;  // the system takes them from a dead process
   ASSERT_TRUE(driver.Configure().ok());
   ASSERT_TRUE(driver.Activate().ok());
   EXPECT_TRUE(WaitFor(3, [&] { return driver.ReadForceSamples(samples) == ReadStatus::kFresh; }));
@@ -210,7 +211,7 @@ TEST_F(OpenHapticsHost, AnErrorThatDoesNotPassLosesTheDeviceAtZeroForce) {
     driver.SendForce(0, haptics::ForceGate::Make({1, 0, 0}));
     return driver.ReadForceSamples(samples) == ReadStatus::kLost;
   }));
-  EXPECT_FALSE(IsPushing());
+  EXPECT_TRUE(WaitFor(3, [&] { return !IsPushing(); }));
   EXPECT_EQ(motors_->misuses, 0);
   EXPECT_TRUE(driver.Configure().ok());
 }

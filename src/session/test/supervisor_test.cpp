@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // D10: the main process is killed or stopped while force is out; what then arrives at the device.
-// TROCAR_REPEATS sets how often each is done (2 by default); the times are printed, and judged with TROCAR_SLOW_TESTS=1.
+// TROCAR_REPEATS sets how often each is done (2 by default); the times are printed and judged, by a generous limit in every run and by what
+// is promised with TROCAR_SLOW_TESTS=1.
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/wait.h>
@@ -22,12 +23,18 @@ namespace {
 
 using Got = ForceWire::Got;
 /// Force must be gone so soon after the process [s].
-constexpr double kLongest = 0.030;
+constexpr double kLongest = 0.015;
+
+/// Another one where tools/mutate-safety changes it.
+const char* FindSupervisor() {
+  const char* other = std::getenv("TROCAR_TEST_SUPERVISOR");
+  return other != nullptr ? other : TROCAR_SUPERVISOR;
+}
 
 /// A process that puts force on a wire, and the device's end of it.
 class Victim {
  public:
-  explicit Victim(WireKind kind, const char* supervisor = TROCAR_SUPERVISOR) : wire(kind) {
+  explicit Victim(WireKind kind, const char* supervisor = FindSupervisor()) : wire(kind) {
     int ends[2];
     EXPECT_EQ(::pipe2(ends, O_CLOEXEC), 0);
     const std::string file = std::to_string(wire.Host());
@@ -92,10 +99,6 @@ class Supervisor : public testing::TestWithParam<WireKind> {
     const sched_param ordinary{};
     ::sched_setscheduler(0, SCHED_OTHER, &ordinary);
   }
-  static int Repeats() {
-    const char* wanted = std::getenv("TROCAR_REPEATS");
-    return wanted != nullptr ? std::max(1, std::atoi(wanted)) : 2;
-  }
   /// A signal to the process, and the first zero after it.
   void Strike(Victim& victim, int signal) {
     const std::int64_t struck = victim.Kill(signal);
@@ -105,16 +108,13 @@ class Supervisor : public testing::TestWithParam<WireKind> {
     times_.Add(1e-9 * static_cast<double>(victim.wire.Arrived() - struck), victim.wire.LongestAbsence());
   }
   void Report(const char* what) {
-    const double longest = times_.Report(std::string(what) + ", " + WireName(GetParam()));
-    if (std::getenv("TROCAR_SLOW_TESTS") != nullptr) {
-      EXPECT_LE(longest, kLongest);
-    }
+    times_.ReportAndJudge(std::string(what) + ", " + WireName(GetParam()), kLongest);
   }
   ZeroTimes times_;
 };
 
 TEST_P(Supervisor, SendsZeroWhenTheSimulatorIsKilled) {
-  for (int i = 0; i < Repeats(); ++i) {
+  for (int i = 0; i < ForceWire::Repeats(); ++i) {
     Victim victim(GetParam());
     ASSERT_TRUE(victim.WaitForForce());
     ASSERT_NO_FATAL_FAILURE(Strike(victim, SIGKILL));
@@ -126,7 +126,7 @@ TEST_P(Supervisor, SendsZeroWhenTheSimulatorIsKilled) {
 }
 
 TEST_P(Supervisor, SendsZeroWhenTheSimulatorHangsAndNothingComesBackByItself) {
-  for (int i = 0; i < Repeats(); ++i) {
+  for (int i = 0; i < ForceWire::Repeats(); ++i) {
     Victim victim(GetParam());
     ASSERT_TRUE(victim.WaitForForce());
     ASSERT_NO_FATAL_FAILURE(Strike(victim, SIGSTOP));
@@ -199,7 +199,7 @@ bool IsLost(const HapticHandStatus& hand) {
 /// A loop with a supervisor and the right hand, which the device has reported; null, and a failure, where that fails.
 std::unique_ptr<HapticLoop> StartRightHand(std::unique_ptr<device::ForceDriver> driver, HapticLink& link) {
   HapticLoopSettings settings;
-  settings.supervisor = TROCAR_SUPERVISOR;
+  settings.supervisor = FindSupervisor();
   settings.hands.emplace_back();
   auto loop = HapticLoop::Start(std::move(driver), settings, link);
   if (!loop.ok()) {

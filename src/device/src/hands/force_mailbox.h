@@ -56,7 +56,8 @@ class ForceMailbox {
     for (std::size_t i = 0; i < kMaxDevices; ++i) {
       const Command& command = commands_.Front()[i];
       const double age = 1e-9 * static_cast<double>(now - command.time);
-      if (age <= ForceDriver::kForceLife) forces[i] = command.force;
+      // one from the future would never end
+      if (age >= 0.0 && age <= ForceDriver::kForceLife) forces[i] = command.force;
     }
     return forces;
   }

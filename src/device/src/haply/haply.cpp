@@ -10,6 +10,7 @@
 #include "hands/force_mailbox.h"
 #include "haply_messages.h"
 #include "trocar/core/clock.h"
+#include "trocar/device/force_check.h"
 #include "trocar/device/mouse_keyboard.h"
 #include "web_socket.h"
 
@@ -44,7 +45,8 @@ struct Haply::Content {
 
   ForceMailbox mailbox;
   ForceMailbox::Reports newest;  // of the thread below
-  std::int64_t last_state = 0;   // [ns]
+  std::array<ForceCheck, kMaxDevices> checks;
+  std::int64_t last_state = 0;  // [ns]
   std::atomic<bool> is_stopping{false};
   std::thread thread;
 
@@ -153,7 +155,8 @@ void Haply::Content::Take(const haply::State& state) {
 
 /// The service sends its next state after an answer, so that there always is one.
 void Haply::Content::Answer(bool may_push) {
-  const ForceMailbox::Forces forces = may_push ? mailbox.TakeForces() : ForceMailbox::Forces{};
+  ForceMailbox::Forces forces = may_push ? mailbox.TakeForces() : ForceMailbox::Forces{};
+  for (std::size_t i = 0; i < forces.size(); ++i) forces[i] = checks[i].Pass(forces[i]);
   outbox += web_socket::FormatFrame(Opcode::kText, haply::FormatForces(ids, forces), kMask);
 }
 
@@ -172,6 +175,7 @@ void Haply::Content::Run() {
       Answer(false);
       was_pushing = false;
     }
+    for (const ForceCheck& check : checks) is_there = is_there && !check.HasRefused();
     is_there = is_there && Flush();
     if (!is_there || 1e-9 * static_cast<double>(core::NowNanoseconds() - last_state) > settings.lost_after) {
       mailbox.SetLost();
@@ -214,8 +218,8 @@ SupervisedWire Haply::GetSupervisedWire(int channel) const noexcept {
 core::Status Haply::DoConfigure() {
   Content& c = *content_;
   if (c.settings.devices < 1 || c.settings.devices > static_cast<int>(kMaxDevices) ||
-      !(c.settings.max_force > 0.0))
-    return Error{ErrorCode::kDeviceSettings, "haply: one device or two, and a largest force above 0"};
+      !(c.settings.answer_time > 0.0))
+    return Error{ErrorCode::kDeviceSettings, "haply: one device or two, and a time to answer above 0"};
   core::Status done = c.OpenSocket();
   c.ids.clear();
   const double end = SystemClock().Now() + c.settings.answer_time;
@@ -247,6 +251,7 @@ core::Status Haply::DoActivate() {
   c.is_stopping = false;
   c.mailbox.Clear();
   c.newest = {};
+  c.checks.fill(ForceCheck(c.settings.max_force));
   c.last_state = core::NowNanoseconds();
   c.Answer(false);
   c.thread = std::thread([&c] { c.Run(); });

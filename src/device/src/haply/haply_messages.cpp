@@ -10,8 +10,6 @@ namespace {
 using math::Vec3;
 using nlohmann::json;
 
-constexpr double kReach = 2.0;  // of any such device [m]
-
 /// The service: x right, y away from the person, z up. Ours: x right, y up, z towards the person.
 Vec3 FromService(const Vec3& v) {
   return {v.x, v.z, -v.y};
@@ -27,11 +25,12 @@ const json* Find(const json* object, const char* key) {
   return found == object->end() ? nullptr : &*found;
 }
 
+/// Any number, finite or not: what is believed is for the guard to say.
 bool ReadNumber(const json* object, const char* key, double& value) {
   const json* const number = Find(object, key);
   if (number == nullptr || !number->is_number()) return false;
   value = number->get<double>();
-  return std::isfinite(value);
+  return true;
 }
 
 bool ReadVector(const json* object, Vec3& v) {
@@ -50,10 +49,12 @@ std::string ReadId(const json& device) {
 void ReadGrip(const json& grip, State& state) {
   const json* const orientation = Find(Find(&grip, "state"), "orientation");
   math::Quaternion q;
+  // a grip without a readable orientation has none, which is not the identity
+  state.grip = {0, 0, 0, 0};
   if (ReadNumber(orientation, "w", q.w) && ReadNumber(orientation, "x", q.x) &&
       ReadNumber(orientation, "y", q.y) && ReadNumber(orientation, "z", q.z)) {
     const Vec3 axis = FromService({q.x, q.y, q.z});
-    state.grip = math::Normalized(math::Quaternion{q.w, axis.x, axis.y, axis.z});
+    state.grip = {q.w, axis.x, axis.y, axis.z};
   }
   const json* const buttons = Find(Find(&grip, "state"), "buttons");
   const char* const names[] = {"a", "b", "c"};
@@ -74,8 +75,7 @@ bool ParseState(std::string_view text, State& state) {
     if (state.devices.size() == kMaxDevices) break;
     DeviceState one;
     one.id = ReadId(device);
-    if (one.id.empty() || !ReadVector(Find(Find(&device, "state"), "cursor_position"), one.position) ||
-        !(math::Norm(one.position) <= kReach))
+    if (one.id.empty() || !ReadVector(Find(Find(&device, "state"), "cursor_position"), one.position))
       return false;
     one.position = FromService(one.position);
     state.devices.push_back(one);

@@ -20,11 +20,12 @@ struct DeviceState {
 };
 struct State {
   std::vector<DeviceState> devices;  ///< at most kMaxDevices, in the service's order
-  math::Quaternion grip;             ///< of the first grip; the identity without one
-  std::uint32_t buttons = 0;         ///< of that grip: a, b, c from bit 0 on
+  math::Quaternion grip;  ///< of the first grip as it is reported, of any length; the identity without one
+  std::uint32_t buttons = 0;  ///< of that grip: a, b, c from bit 0 on
 };
 
-/// \return false where the text is no state: not JSON, or numbers that are none
+/// Positions and orientation are what the service says, whether or not a device can be there.
+/// \return false where the text is no state: not JSON, or no numbers
 bool ParseState(std::string_view text, State& state);
 std::string FormatState(const State& state);
 

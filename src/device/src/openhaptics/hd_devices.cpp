@@ -13,7 +13,12 @@ using core::ErrorCode;
 using math::Vec3;
 
 constexpr double kMillimetre = 0.001;
-constexpr double kLongestWait = 0.5;  // for the scheduler to end [s]
+/// Of a device of any model: the Touch's damping and encoders, and the friction of the least braked ones (domain facts,
+/// sections 3.4 and 3.5). They bound the stiffness to 400 N/m at 1 kHz.
+constexpr double kAssumedDamping = 0.2;    // [N s/m]
+constexpr double kAssumedFriction = 0.06;  // [N]
+constexpr double kAssumedStep = 0.055e-3;  // [m]
+constexpr double kLongestWait = 0.5;       // for the scheduler to end [s]
 /// Errors that one frame may leave in the library's queue.
 constexpr int kMaxErrors = 16;
 
@@ -21,12 +26,25 @@ Vec3 FromMillimetres(const double* v) noexcept {
   return Vec3{v[0], v[1], v[2]} * kMillimetre;
 }
 
-/// Rotation of a column-major 4 x 4 matrix.
+/// Rotation of a column-major 4 x 4 matrix; all zero for one that is no rotation: not finite, columns that are not unit or not
+/// at right angles, a mirror.
 math::Quaternion RotationOf(const std::array<double, 16>& m) noexcept {
-  const Vec3 x = math::Normalized(Vec3{m[0], m[1], m[2]}, {1, 0, 0});
-  const Vec3 y =
-      math::Normalized(Vec3{m[4], m[5], m[6]} - x * math::Dot(x, Vec3{m[4], m[5], m[6]}), {0, 1, 0});
-  return math::RotationFromAxes(x, y, math::Cross(x, y));
+  constexpr double kSlack = 0.05;  // [-]
+  const Vec3 x{m[0], m[1], m[2]}, y{m[4], m[5], m[6]}, z{m[8], m[9], m[10]};
+  // each is false for what is no number
+  const auto is_unit = [](const Vec3& v) { return std::fabs(math::Norm(v) - 1.0) <= kSlack; };
+  const bool is_rotation = is_unit(x) && is_unit(y) && is_unit(z) && std::fabs(math::Dot(x, y)) <= kSlack &&
+                           math::Distance(math::Cross(x, y), z) <= 4.0 * kSlack;
+  if (!is_rotation) return {0, 0, 0, 0};
+  const Vec3 a = math::Normalized(x), b = math::Normalized(y - a * math::Dot(a, y));
+  return math::RotationFromAxes(a, b, math::Cross(a, b));
+}
+
+/// The hottest of those that say something, so that one that says nothing hides none; NaN where none does.
+double HottestOf(const std::array<double, 8>& motors) noexcept {
+  double hottest = std::nan("");
+  for (const double motor : motors) hottest = std::fmax(hottest, motor);
+  return hottest;
 }
 
 }  // namespace
@@ -54,11 +72,13 @@ core::Result<ForceLimits> HdDevices::OpenDevice(const std::string& name) {
   libhd_->get_doubles(hd::kUsableWorkspace, box.data());
   limit.workspace_min = FromMillimetres(box.data());
   limit.workspace_max = FromMillimetres(box.data() + 3);
-  if (!(limit.max_force > 0.0) || !std::isfinite(limit.max_force)) {
-    return core::Error{
-        ErrorCode::kDeviceSettings,
-        "\"" + name + "\" does not say how much force it bears; no force can be sent to it safely"};
-  }
+  // what the library does not say is assumed as for a Touch, the softest: a wall as stiff as its maker's figure shakes
+  limit.damping = kAssumedDamping;
+  limit.friction = kAssumedFriction;
+  limit.position_step = kAssumedStep;
+  // here as well as in the simulator: this process calls the library
+  if (core::Status good = CheckLimits(limit, "\"" + name + "\""); !good) return good.error();
+  checks_.emplace_back(limit.max_force);
   libhd_->enable(hd::kForceOutput);
   return limit;
 }
@@ -78,7 +98,7 @@ void HdDevices::ReadDevice(std::size_t i) noexcept {
   sample.buttons = static_cast<std::uint32_t>(buttons);
   std::array<double, 8> heat{};
   libhd_->get_doubles(hd::kMotorTemperature, heat.data());
-  sample.temperature = *std::max_element(heat.begin(), heat.end());
+  sample.temperature = HottestOf(heat);
   sample.jaw = std::nan("");
   sample.is_calibrated = libhd_->check_calibration() == hd::kCalibrationGood;
   ++sample.sequence;
@@ -96,7 +116,20 @@ bool HdDevices::TakeErrors(std::size_t i) noexcept {
   return true;
 }
 
+void HdDevices::PushZero() noexcept {
+  if (CountCalls() % 2 != 0) return;
+  constexpr std::array<double, 3> kZero{};
+  for (const hd::Handle device : devices_) {
+    libhd_->begin_frame(device);
+    libhd_->make_current(device);
+    libhd_->set_doubles(hd::kForce, kZero.data());
+    libhd_->end_frame(device);
+  }
+}
+
 hd::CallbackCode HdDevices::Tick() noexcept {
+  calls_.fetch_add(1, std::memory_order_acq_rel);
+  is_called_.store(true, std::memory_order_release);
   const bool is_ending = is_stopping_.load(std::memory_order_acquire);
   const bool may_push = !is_ending && !mailbox_.IsLost();
   const ForceMailbox::Forces forces = may_push ? mailbox_.TakeForces() : ForceMailbox::Forces{};
@@ -105,15 +138,17 @@ hd::CallbackCode HdDevices::Tick() noexcept {
     libhd_->make_current(devices_[i]);
     ReadDevice(i);
     // a warm device gets nothing until a frame has passed without complaint
-    const Vec3 force = is_warm_[i] ? Vec3{} : forces[i];
+    const Vec3 force = checks_[i].Pass(is_warm_[i] ? Vec3{} : forces[i]);
     const std::array<double, 3> newtons = {force.x, force.y, force.z};
     libhd_->set_doubles(hd::kForce, newtons.data());
     libhd_->end_frame(devices_[i]);
-    if (!TakeErrors(i)) mailbox_.SetLost();
+    if (!TakeErrors(i) || checks_[i].HasRefused()) mailbox_.SetLost();
     newest_[i].status = is_warm_[i] ? ForceDeviceStatus::kWarm : ForceDeviceStatus::kOk;
   }
   mailbox_.Report(newest_);
+  calls_.fetch_add(1, std::memory_order_acq_rel);
   if (!is_ending) return hd::kContinue;
+  is_called_.store(false, std::memory_order_release);
   has_stopped_.store(true, std::memory_order_release);
   return hd::kDone;
 }
@@ -167,6 +202,7 @@ void HdDevices::Close() noexcept {
   Stop();
   for (const hd::Handle device : devices_) libhd_->disable_device(device);
   devices_.clear();
+  checks_.clear();
   libhd_.reset();
 }
 

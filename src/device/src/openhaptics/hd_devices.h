@@ -10,6 +10,7 @@
 
 #include "hd_end.h"
 #include "hd_library.h"
+#include "trocar/device/force_check.h"
 
 namespace trocar::device {
 
@@ -27,6 +28,15 @@ class HdDevices : public HdEnd {
   void Close() noexcept override;
   ForceMailbox& Mailbox() noexcept override { return mailbox_; }
 
+  // --- for the watchdog of the process; any thread
+
+  /// The library has to call: it did so once, and nobody has stopped it.
+  bool IsCalled() const noexcept { return is_called_.load(std::memory_order_acquire); }
+  /// Of its calls so far; begun and ended ones both count.
+  std::uint64_t CountCalls() const noexcept { return calls_.load(std::memory_order_acquire); }
+  /// Zero to every device from a thread that is not the library's, where none of the library's calls is under way.
+  void PushZero() noexcept;
+
  private:
   static hd::CallbackCode OnTick(void* self) { return static_cast<HdDevices*>(self)->Tick(); }
   hd::CallbackCode Tick() noexcept;
@@ -38,11 +48,13 @@ class HdDevices : public HdEnd {
   ForceMailbox& mailbox_;
   std::unique_ptr<hd::Library> libhd_;
   std::vector<hd::Handle> devices_;
+  std::vector<ForceCheck> checks_;  // one a device
   hd::SchedulerHandle callback_ = 0;
   bool is_started_ = false;
   ForceMailbox::Reports newest_;  // of the library's thread
   std::array<bool, ForceMailbox::kMaxDevices> is_warm_{};
-  std::atomic<bool> is_stopping_{false}, has_stopped_{false};
+  std::atomic<bool> is_stopping_{false}, has_stopped_{false}, is_called_{false};
+  std::atomic<std::uint64_t> calls_{0};  // odd while one is under way
 };
 
 }  // namespace trocar::device

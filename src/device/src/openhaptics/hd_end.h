@@ -19,6 +19,8 @@ class HdEnd {
   /// Zero force, then the scheduler ends.
   virtual void Stop() noexcept = 0;
   virtual void Close() noexcept = 0;
+  /// The library's process died or stands still. Real-time safe.
+  virtual bool HasFailed() const noexcept { return false; }
   virtual ForceMailbox& Mailbox() noexcept = 0;
 };
 

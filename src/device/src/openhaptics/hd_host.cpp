@@ -2,25 +2,33 @@
 #include "hd_host.h"
 
 #include <poll.h>
+#include <pthread.h>
+#include <sched.h>
 #include <sys/mman.h>
+#include <sys/prctl.h>
 #include <sys/socket.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <csignal>
 #include <cstring>
 #include <new>
+#include <thread>
 #include <type_traits>
 #include <utility>
 
 #include "hd_devices.h"
+#include "trocar/core/clock.h"
 
 namespace trocar::device {
 namespace {
 
 using core::ErrorCode;
 
-// requests: "open", the library's file and the names of the devices on lines of their own; "start"; "stop"
-constexpr std::string_view kOpen = "open\n", kStart = "start", kStop = "stop";
+// requests: "open", the library's file and the names of the devices on lines of their own; "rescue", the same after another
+// process failed; "start"; "stop"
+constexpr std::string_view kOpen = "open\n", kRescue = "rescue\n", kStart = "start", kStop = "stop";
 constexpr std::size_t kLongestRequest = 4096;
 constexpr int kOpenTime = 15'000;   // for the library to open its devices [ms]
 constexpr int kAnswerTime = 2'000;  // for the rest [ms]
@@ -33,16 +41,14 @@ struct Reply {
 };
 static_assert(std::is_trivially_copyable_v<Reply>);
 // both ends are this program's, from one build; neither destroys what the other may still read
-static_assert(std::is_trivially_destructible_v<ForceMailbox>);
+static_assert(std::is_trivially_destructible_v<HdHostPage>);
 
 core::Error HostError(const std::string& what) {
   return {ErrorCode::kDeviceLost,
           "openhaptics: " + what + "; switch the device off and on, and check it with the maker's program"};
 }
 
-core::Result<Reply> Ask(int socket, std::string_view request, int milliseconds) {
-  if (::send(socket, request.data(), request.size(), MSG_NOSIGNAL) != static_cast<ssize_t>(request.size()))
-    return HostError("the process of the maker's library is gone");
+core::Result<Reply> TakeReply(int socket, int milliseconds) {
   pollfd waited{socket, POLLIN, 0};
   if (::poll(&waited, 1, milliseconds) != 1) return HostError("the maker's library does not answer");
   Reply reply;
@@ -52,6 +58,12 @@ core::Result<Reply> Ask(int socket, std::string_view request, int milliseconds) 
   if (reply.code != 0) return core::Error{static_cast<ErrorCode>(reply.code), reply.text};
   if (reply.count > ForceMailbox::kMaxDevices) return HostError("the maker's library answers nonsense");
   return reply;
+}
+
+core::Result<Reply> Ask(int socket, std::string_view request, int milliseconds) {
+  if (::send(socket, request.data(), request.size(), MSG_NOSIGNAL) != static_cast<ssize_t>(request.size()))
+    return HostError("the process of the maker's library is gone");
+  return TakeReply(socket, milliseconds);
 }
 
 Reply MakeReply(const core::Status& status, const std::vector<ForceLimits>& limits) {
@@ -77,53 +89,168 @@ OpenHapticsSettings ReadSettings(std::string_view lines) {
   return settings;
 }
 
-}  // namespace
+/// As urgent as the supervisor, where the system permits it: its threads inherit it.
+void GoFirst() noexcept {
+  sched_param parameters{};
+  parameters.sched_priority = sched_get_priority_min(SCHED_FIFO) + 15;
+  static_cast<void>(::pthread_setschedparam(::pthread_self(), SCHED_FIFO, &parameters));
+}
 
-core::Status HdHost::Open(const OpenHapticsSettings& settings, std::vector<ForceLimits>& limits) {
-  std::string request(kOpen);
-  request += settings.hd_file + "\n";
+core::Result<std::string> FormatOpen(const OpenHapticsSettings& settings) {
+  std::string request = settings.hd_file + "\n";
   for (const std::string& name : settings.names) {
     if (name.find('\n') != std::string::npos || name.empty())
       return core::Error{ErrorCode::kDeviceSettings, "openhaptics: a device's name is one line"};
     request += name + "\n";
   }
-  if (request.size() > kLongestRequest)
+  if (request.size() + kRescue.size() > kLongestRequest)
     return core::Error{ErrorCode::kDeviceSettings, "openhaptics: the devices' names are too long"};
+  return request;
+}
+
+}  // namespace
+
+HdHost::~HdHost() {
+  Close();
+}
+
+core::Result<Companion> HdHost::StartProcess(const OpenHapticsSettings& settings) {
   auto started =
-      Companion::Start(settings.host, "--openhaptics", sizeof(ForceMailbox), ErrorCode::kDeviceUnsupported,
+      Companion::Start(settings.host, "--openhaptics", sizeof(HdHostPage), ErrorCode::kDeviceUnsupported,
                        "OpenHaptics runs in the supervisor's program: reinstall Trocar, or build "
                        "the target trocar-supervisor");
-  if (!started) return started.error();
-  companion_.emplace(std::move(*started));
-  new (companion_->Page()) ForceMailbox;
-  const core::Result<Reply> reply = Ask(companion_->Socket(), request, kOpenTime);
+  if (started) new (started->Page()) HdHostPage;
+  return started;
+}
+
+/// The spare has opened the devices after a failure: it is the one from now on.
+bool HdHost::TakeRescued(std::vector<ForceLimits>& limits) {
+  if (!is_rescued_) return false;
+  is_rescued_ = false;
+  const core::Result<Reply> reply = TakeReply(spare_->Socket(), kOpenTime);
   if (!reply) {
-    Close();
-    return reply.error();
+    spare_->Kill();
+    spare_.reset();
+    return false;
   }
   limits.assign(reply->limits, reply->limits + reply->count);
+  active_ = std::move(spare_);
+  spare_.reset();
+  return true;
+}
+
+core::Status HdHost::Open(const OpenHapticsSettings& settings, std::vector<ForceLimits>& limits) {
+  core::Result<std::string> request = FormatOpen(settings);
+  if (!request) return request.error();
+  request_ = std::move(*request);
+  if (!TakeRescued(limits)) {
+    auto started = StartProcess(settings);
+    if (!started) return started.error();
+    active_.emplace(std::move(*started));
+    const core::Result<Reply> reply = Ask(active_->Socket(), std::string(kOpen) + request_, kOpenTime);
+    if (!reply) {
+      Close();
+      return reply.error();
+    }
+    limits.assign(reply->limits, reply->limits + reply->count);
+  }
+  // without a spare the devices are opened again as any lost one
+  if (auto spare = StartProcess(settings)) spare_.emplace(std::move(*spare));
+  is_ending_ = has_failed_ = false;
+  if (kIsHostWatched) watch_ = std::thread([this] { Watch(); });
   return {};
 }
 
+/// Of a thread of its own, from the open devices to their end or the process's failure.
+void HdHost::Watch() noexcept {
+  GoFirst();
+  const HdHostPage& page = Page(*active_);
+  BeatWatch watch;
+  watch.Forget(core::NowNanoseconds());
+  while (!is_ending_.load(std::memory_order_acquire)) {
+    // the socket closes with the process, however it ends
+    pollfd watched{active_->Socket(), POLLRDHUP, 0};
+    const timespec look{0, kBeatLook};
+    const bool has_died = ::ppoll(&watched, 1, &look, nullptr) > 0;
+    const std::uint64_t beats = page.beats.load(std::memory_order_acquire);
+    const std::int64_t silence = watch.Look(beats, core::NowNanoseconds());
+    // a process that has just been started has no beat yet
+    if (!has_died && (beats == 0 || silence < kLongestBeatSilence)) continue;
+    active_->Kill();
+    has_failed_.store(true, std::memory_order_release);
+    if (spare_) {
+      const std::string request = std::string(kRescue) + request_;
+      is_rescued_ = ::send(spare_->Socket(), request.data(), request.size(), MSG_NOSIGNAL | MSG_DONTWAIT) ==
+                    static_cast<ssize_t>(request.size());
+    }
+    return;
+  }
+}
+
+void HdHost::EndWatch() noexcept {
+  is_ending_.store(true, std::memory_order_release);
+  if (watch_.joinable()) watch_.join();
+}
+
 core::Status HdHost::Start() {
-  const core::Result<Reply> reply = Ask(companion_->Socket(), kStart, kAnswerTime);
+  const core::Result<Reply> reply = Ask(active_->Socket(), kStart, kAnswerTime);
   return reply ? core::Status{} : core::Status(reply.error());
 }
 
 void HdHost::Stop() noexcept {
-  if (companion_) static_cast<void>(Ask(companion_->Socket(), kStop, kAnswerTime));
+  if (active_ && !HasFailed()) static_cast<void>(Ask(active_->Socket(), kStop, kAnswerTime));
 }
 
 void HdHost::Close() noexcept {
-  companion_.reset();
+  EndWatch();
+  if (HasFailed() && active_) active_->Kill();
+  active_.reset();
+  // what has taken over keeps the devices until they are wanted again
+  if (!is_rescued_) spare_.reset();
 }
+
+namespace {
+
+/// Looks every millisecond whether the library still calls; when it does not, its process ends, and with it every hold on
+/// the device. The simulator sees that at once, even where it is the simulator that has died.
+void GuardLibrary(HdDevices& devices, HdHostPage& page, const std::atomic<bool>& is_ending) noexcept {
+  GoFirst();
+  BeatWatch watch;
+  while (!is_ending.load(std::memory_order_acquire)) {
+    const timespec look{0, kBeatLook};
+    ::nanosleep(&look, nullptr);
+    const std::int64_t now = core::NowNanoseconds();
+    if (!devices.IsCalled()) watch.Forget(now);
+    if (kIsHostWatched && watch.Look(devices.CountCalls(), now) >= kLongestCallSilence) {
+      // a library that is well but for its scheduler takes a zero; should it hang, the simulator's watch ends us
+      devices.PushZero();
+      ::_exit(3);
+    }
+    page.beats.fetch_add(1, std::memory_order_release);
+  }
+}
+
+/// In place of a process that failed: zero to the devices, which then wait for somebody to ask for them.
+core::Status TakeOver(HdDevices& devices) {
+  if (core::Status started = devices.Start(); !started) return started;
+  devices.Stop();
+  return {};
+}
+
+}  // namespace
 
 int RunOpenHapticsHost(int socket, int page) {
   // a terminal's signals to the group must not take the library away; the simulator's end is our end
   for (const int ignored : {SIGINT, SIGTERM, SIGHUP, SIGPIPE, SIGQUIT}) ::signal(ignored, SIG_IGN);
-  void* memory = ::mmap(nullptr, sizeof(ForceMailbox), PROT_READ | PROT_WRITE, MAP_SHARED, page, 0);
+  // a crash has to end the process at once, not after a large file has been written about it
+  static_cast<void>(::prctl(PR_SET_DUMPABLE, 0UL));
+  void* memory = ::mmap(nullptr, sizeof(HdHostPage), PROT_READ | PROT_WRITE, MAP_SHARED, page, 0);
   if (memory == MAP_FAILED) return 1;
-  HdDevices devices(*static_cast<ForceMailbox*>(memory));
+  auto& shared = *static_cast<HdHostPage*>(memory);
+  GoFirst();
+  HdDevices devices(shared.mailbox);
+  std::atomic<bool> is_ending{false};
+  std::thread guard([&] { GuardLibrary(devices, shared, is_ending); });
   std::vector<ForceLimits> limits;
   char bytes[kLongestRequest];
   for (;;) {
@@ -138,6 +265,9 @@ int RunOpenHapticsHost(int socket, int page) {
       devices.Stop();
     } else if (request.starts_with(kOpen) && limits.empty()) {
       done = devices.Open(ReadSettings(request.substr(kOpen.size())), limits);
+    } else if (request.starts_with(kRescue) && limits.empty()) {
+      done = devices.Open(ReadSettings(request.substr(kRescue.size())), limits);
+      if (done) done = TakeOver(devices);
     } else {
       done = HostError("a request that is none");
     }
@@ -145,6 +275,8 @@ int RunOpenHapticsHost(int socket, int page) {
     if (::send(socket, &reply, sizeof reply, MSG_NOSIGNAL) != static_cast<ssize_t>(sizeof reply)) break;
   }
   devices.Close();
+  is_ending.store(true, std::memory_order_release);
+  guard.join();
   return 0;
 }
 

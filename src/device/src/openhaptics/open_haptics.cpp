@@ -39,6 +39,7 @@ struct OpenHaptics::Content {
 
   /// A device that has fallen silent is lost.
   ReadStatus Judge(ReadStatus read) noexcept {
+    if (end->HasFailed()) return ReadStatus::kLost;
     const std::int64_t now = core::NowNanoseconds();
     if (read == ReadStatus::kFresh) last_report = now;
     return read == ReadStatus::kUnchanged && now - last_report > kLostAfter ? ReadStatus::kLost : read;

@@ -89,6 +89,11 @@ Companion::~Companion() {
   End();
 }
 
+void Companion::Kill() noexcept {
+  // not waited for yet, so the number is still its own
+  if (process_ > 0) ::kill(process_, SIGKILL);
+}
+
 void Companion::End() noexcept {
   if (socket_ >= 0) ::close(socket_);
   if (page_ != nullptr) ::munmap(page_, bytes_);
@@ -98,8 +103,12 @@ void Companion::End() noexcept {
     if (::waitpid(process_, nullptr, WNOHANG) != 0) return;
     SystemClock().Sleep(kLook);
   }
-  ::kill(process_, SIGKILL);
-  ::waitpid(process_, nullptr, 0);
+  Kill();
+  // one that hangs in a driver of the system cannot be waited for
+  for (double waited = 0; waited < kPatience; waited += kLook) {
+    if (::waitpid(process_, nullptr, WNOHANG) != 0) return;
+    SystemClock().Sleep(kLook);
+  }
 }
 
 }  // namespace trocar::device

@@ -33,6 +33,9 @@ class Companion {
   /// Closes the socket and waits for the program's end.
   ~Companion();
 
+  /// Ends the program at once, whatever it does; the system closes what it has open.
+  /// \note Real-time safe.
+  void Kill() noexcept;
   /// Messages keep their bounds (SOCK_SEQPACKET).
   int Socket() const noexcept { return socket_; }
   void* Page() const noexcept { return page_; }

@@ -47,6 +47,11 @@ class Driver {
   /// Inactive -> Unconfigured.
   /// \return kDeviceState out of turn
   core::Status Cleanup();
+  /// Lets go of what a lost device still holds, which may take as long as its library does; nothing where there is none.
+  /// Read() does it at once, ForceDriver leaves it to whoever has time; Configure() and Finalize() do it, too.
+  void Release() noexcept;
+  /// A lost device has not been let go of yet.
+  bool NeedsRelease() const noexcept { return is_unreleased_; }
   /// Any state -> Finalized; a second call changes nothing.
   void Finalize() noexcept;
 
@@ -72,9 +77,14 @@ class Driver {
 
  protected:
   Driver(std::string name, int channel_count) : name_(std::move(name)), channel_count_(channel_count) {}
+  /// Active -> Unconfigured, because the device is gone; it never comes back by itself.
+  /// \note Real-time safe.
+  void Lose() noexcept;
 
  private:
   virtual core::Status DoConfigure() = 0;
+  /// Judges what DoConfigure opened; an error closes it again.
+  virtual core::Status CheckConfigured() const { return {}; }
   virtual core::Status DoActivate() = 0;
   virtual void DoDeactivate() noexcept = 0;
   virtual void DoCleanup() noexcept = 0;
@@ -85,6 +95,7 @@ class Driver {
   std::string name_;
   int channel_count_;
   DriverState state_ = DriverState::kUnconfigured;
+  bool is_unreleased_ = false;
 };
 
 }  // namespace trocar::device

@@ -45,19 +45,31 @@ struct ForceLimits {
   math::Vec3 workspace_min, workspace_max;  ///< box in the device frame; equal where it is not known [m]
 };
 
+/// Largest nominal force of a hand-held haptic device that is believed [N]: the strongest that are sold bear about 40.
+inline constexpr double kLargestForceLimit = 50;
+/// Smallest [N]: less is lost in a device's own friction.
+inline constexpr double kSmallestForceLimit = 0.1;
+
+/// Whether limits are those of a device that a hand can hold. Gate, coupling and guards are only as good as these numbers.
+/// \param name  of the device, for the message
+/// \return kDeviceSettings with the number that is wrong, and the remedy
+core::Status CheckLimits(const ForceLimits& limits, const std::string& name);
+
 enum class ForceDeviceStatus : std::uint8_t {
   kOk,
   kWarm,  ///< motors warm or another error that passes by itself: this force was not applied in full
   kLost   ///< gone, or an error that does not pass; the driver must be configured again
 };
 
-/// What one device reports. Device frame: x to the person's right, y up, z towards the person; metres.
+/// What one device reports, as it reports it: a driver makes no good pose of a bad one, and leaves it to the guard of the
+/// haptic loop to judge. Device frame: x to the person's right, y up, z towards the person; metres.
 struct ForceSample {
-  math::Vec3 position;           ///< of the point where the force acts [m]
-  math::Vec3 velocity;           ///< of that point, measured or derived by the driver [m/s]
-  math::Quaternion orientation;  ///< of the stylus, X_device_stylus
-  std::uint32_t buttons = 0;     ///< bit 0 is the first button; bit n is set while it is held
-  double jaw = 0;                ///< opening by a gripper [rad]; NaN where the device has none
+  math::Vec3 position;  ///< of the point where the force acts [m]
+  math::Vec3 velocity;  ///< of that point, measured or derived by the driver [m/s]
+  math::Quaternion
+      orientation;  ///< of the stylus, X_device_stylus; all zero where what it reports is no rotation
+  std::uint32_t buttons = 0;   ///< bit 0 is the first button; bit n is set while it is held
+  double jaw = 0;              ///< opening by a gripper [rad]; NaN where the device has none
   double temperature = 0;      ///< of the motors as a share of what they bear, 0 to 1 [-]; NaN where unknown
   std::uint64_t sequence = 0;  ///< grows with every new report of the device; equal = nothing new
   bool is_calibrated = false;  ///< the device says that its encoders are referenced
@@ -97,7 +109,8 @@ class ForceDriver : public Driver {
   /// The newest report of every channel.
   ///
   /// \param[out] samples  (GetChannelCount())
-  /// \return as Read(); after kLost every sample says kLost and the driver is unconfigured
+  /// \return as Read(); after kLost every sample says kLost, zero has been sent as far as that is possible, and the driver
+  ///         is unconfigured; Release() closes it, and is not called here, because a library may take its time
   /// \pre samples has exactly that size (TROCAR_ASSERT)
   /// \note Real-time safe: no allocation, lock, wait or throw.
   ReadStatus ReadForceSamples(std::span<ForceSample> samples) noexcept;
@@ -113,6 +126,8 @@ class ForceDriver : public Driver {
   using Driver::Driver;
 
  private:
+  /// Refuses implausible limits of any channel, whatever the family.
+  core::Status CheckConfigured() const final;
   virtual ReadStatus DoReadForceSamples(std::span<ForceSample> samples) noexcept = 0;
   virtual void DoSendForce(int channel, const GatedForce& force) noexcept = 0;
 };

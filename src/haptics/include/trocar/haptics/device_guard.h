@@ -12,12 +12,14 @@ namespace trocar::haptics {
 using math::Vec3;
 
 struct DeviceGuardSettings {
-  double stale_age = 0.010;      ///< from which silence counts: the pose is held and the force fades [s] (D2)
-  double silent_age = 0.018;     ///< at which the force is zero: 20 ms less a tick and its lateness [s]
-  double max_speed = 2.0;        ///< faster is a jump [m/s] (D5)
-  double max_turn_rate = 30.0;   ///< [rad/s]
-  double max_reach = 1.0;        ///< no device's workspace is larger, from its origin [m]
-  int max_bad_in_row = 3;        ///< at which bad reports are a fault (D4)
+  double stale_age = 0.010;     ///< from which silence counts: the pose is held and the force fades [s] (D2)
+  double silent_age = 0.018;    ///< at which the force is zero: 20 ms less a tick and its lateness [s]
+  double max_speed = 2.0;       ///< faster is a jump [m/s] (D5)
+  double max_turn_rate = 30.0;  ///< [rad/s]
+  double max_reach = 1.0;       ///< no device's workspace is larger, from its origin [m]
+  int max_bad_in_row = 3;       ///< at which bad reports are a fault (D4)
+  /// Bad reports and jumps among the last kWindow at which a device is not to be believed, whatever lies between them.
+  int max_bad_in_window = 8;
   int max_jumps_in_row = 3;      ///< at which a jump is where the device now is, and a fault
   double velocity_time = 0.003;  ///< time constant of the velocity that is derived from positions [s]
 };
@@ -43,6 +45,9 @@ struct DeviceGuardCounts {
 
 class DeviceGuard {
  public:
+  /// Reports that are remembered as good or bad.
+  static constexpr int kWindow = 32;
+
   explicit DeviceGuard(const DeviceGuardSettings& settings = {}) noexcept : settings_(settings) {}
 
   /// Judges the newest report.
@@ -64,7 +69,8 @@ class DeviceGuard {
   bool was_lost_ = true;
   bool was_stale_ = false;
   int bad_in_row_ = 0, jumps_in_row_ = 0;
-  Vec3 jumped_to_;  // [m]
+  std::uint32_t window_ = 0;  // a bit for each of the last kWindow reports, set where it was bad or a jump
+  Vec3 jumped_to_;            // [m]
   DeviceGuardCounts counts_;
 };
 

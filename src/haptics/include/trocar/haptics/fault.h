@@ -29,6 +29,7 @@ enum class Fault : std::uint8_t {
   kNotCalibrated,     ///< D13
   kOverspeed,         ///< the device runs away with the force
   kSimulation,        ///< S1: bad or no model of the tissue
+  kGate,              ///< limits that no gate can keep, or an output of the gate that its own check refused
   kForceAtArming,     ///< the tools press tissue: the force would begin with a jolt
   kCount
 };

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file force_gate.h  The one way out for a force.
 ///
-/// finite -> unit and frame -> clamp -> rise -> speed -> heat -> ramp -> armed. A pure function of its input and a
+/// finite -> unit and frame -> clamp -> rise -> speed -> heat -> ramp -> armed -> checked once more. A pure function of its input and a
 /// small state; no clock, no device. Only its output is a device::GatedForce, and a driver sends nothing else.
 #pragma once
 
 #include <cstdint>
 
+#include "trocar/device/force_check.h"
 #include "trocar/device/force_driver.h"
 #include "trocar/haptics/fault.h"
 
@@ -20,10 +21,10 @@ struct DeviceForce {
 };
 
 struct GateSettings {
-  double tick = 0.001;              ///< period of Step [s], > 0
-  double max_force = 0;             ///< clamp [N], > 0
-  double max_continuous_force = 0;  ///< [N], > 0 and <= max_force
-  double max_rise = 0.5;            ///< what one tick may add; a fall is free [N]
+  double tick = 0.001;                      ///< period of Step [s], > 0
+  double max_force = 0;                     ///< clamp [N], > 0
+  double max_continuous_force = 0;          ///< [N], > 0 and <= max_force
+  double max_rise = device::kMaxForceRise;  ///< what one tick may add; a fall is free [N]
   double implausible_factor =
       20;                         ///< a wanted force beyond this times max_force is an error, not a force [-]
   double guard_speed = 1.0;       ///< above which a force that drives the device on fades out [m/s]
@@ -78,7 +79,7 @@ struct GateOutput {
 
 class ForceGate {
  public:
-  /// \pre settings in their ranges (TROCAR_ASSERT)
+  /// A gate whose settings are out of range never arms, whatever the build: they come from a device.
   explicit ForceGate(const GateSettings& settings);
 
   /// A person asks for force. Arms once every condition has held for arming_ticks, or lapses.
@@ -89,7 +90,8 @@ class ForceGate {
   /// One tick.
   ///
   /// The output never exceeds max_force, is zero unless ramping or armed, and lies at most max_rise from the way
-  /// between zero and the output before it.
+  /// between zero and the output before it. Each is checked once more on the output itself; should one not hold, it is
+  /// zero, and the gate never arms again.
   /// \note Real-time safe: no allocation, lock or throw.
   GateOutput Step(const GateInput& input) noexcept;
 
@@ -98,11 +100,12 @@ class ForceGate {
  private:
   Fault FindFaultOfTick(const GateInput& input) const noexcept;
   void UpdateArming(Fault fault, double wanted) noexcept;
-  double CalcRiseLimit() const noexcept;
+  bool MaySend(const Vec3& force) const noexcept;
 
   GateSettings settings_;
   ArmState state_ = ArmState::kUnarmed;
   Fault reason_ = Fault::kNotRequested;
+  Vec3 sent_;             // output of the tick before [N]
   Vec3 limited_;          // after the rise stage of the tick before [N]
   double scale_ = 0;      // of speed, heat and ramp in the tick before [-]
   double ramp_ = 0;       // [-]
@@ -113,6 +116,7 @@ class ForceGate {
   int fault_ticks_ = 0;    // since it was last fully armed
   bool was_armed_ = false;
   bool is_stopping_ = false;
+  bool is_broken_ = false;  // settings or an output out of range: never again
 };
 
 }  // namespace trocar::haptics

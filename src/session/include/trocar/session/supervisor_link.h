@@ -15,8 +15,8 @@ namespace trocar::session {
 /// it writes the zero frame of every wire, again and again, until the beat comes back.
 class SupervisorLink {
  public:
-  /// Silence after which the supervisor acts [s]; with its round of 2 ms, zero is out well within 30 ms.
-  static constexpr double kLongestSilence = 0.012;
+  /// Silence after which the supervisor acts [s], as long as a force lives that nobody renews.
+  static constexpr double kLongestSilence = 0.010;
 
   /// trocar-supervisor beside this program, or in ../libexec/trocar.
   static std::filesystem::path FindProgram();
@@ -37,7 +37,7 @@ class SupervisorLink {
   /// We live. Watching begins with the first.
   /// \note Real-time safe.
   void Beat() noexcept;
-  /// The supervisor's own beat is no older than 50 ms; call it about as often as Beat().
+  /// The supervisor has not ended, and its own beat is no older than 20 ms; call it about as often as Beat().
   /// \param now  [s]
   /// \note Real-time safe.
   bool IsAlive(double now) noexcept;

@@ -1,0 +1,264 @@
+// SPDX-License-Identifier: Apache-2.0
+// A maker's library that fails, and the processes round it, under a running loop with force out: how soon the motors of the
+// stand-in are at zero. The motors keep their last force until somebody sends another or opens the device again: a device
+// without a watchdog of its own. Built a second time with nobody watching the library's process: then the force must stay.
+// TROCAR_REPEATS sets how often each is done (2 by default).
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <filesystem>
+#include <fstream>
+#include <new>
+#include <string>
+#include <thread>
+
+#include "force_wire.h"
+#include "stand_in_hd.h"
+#include "trocar/device/open_haptics.h"
+#include "trocar/math/random.h"
+#include "trocar/session/haptic_loop.h"
+
+namespace trocar::session {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Child process of this one that was started with so an option; 0: none.
+pid_t FindChild(const std::string& option) {
+  for (const auto& task : fs::directory_iterator("/proc/self/task")) {
+    std::ifstream children(task.path() / "children");
+    for (pid_t child = 0; children >> child;) {
+      std::ifstream line("/proc/" + std::to_string(child) + "/cmdline");
+      const std::string words((std::istreambuf_iterator<char>(line)), {});
+      if (words.find(option) != std::string::npos) return child;
+    }
+  }
+  return 0;
+}
+
+/// A loop that presses tissue with both devices of a stand-in library in another process.
+class LibraryFaults : public testing::Test {
+ protected:
+  void SetUp() override {
+    page_ = fs::path(testing::TempDir()) / ("trocar_library_faults_" + std::to_string(::getpid()));
+    const int file = ::open(page_.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
+    ASSERT_EQ(::ftruncate(file, sizeof(StandInState)), 0);
+    void* memory = ::mmap(nullptr, sizeof(StandInState), PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
+    ::close(file);
+    ASSERT_NE(memory, MAP_FAILED);
+    motors_ = new (memory) StandInState;
+    motors_->is_led = 1;
+    ::setenv(kStandInPage, page_.c_str(), 1);
+    tissue_ = std::thread([this] { FeedTissue(); });
+    Start();
+    ForceWire::ReadInRealTime();
+  }
+  void TearDown() override {
+    const sched_param ordinary{};
+    ::sched_setscheduler(0, SCHED_OTHER, &ordinary);
+    loop_.reset();
+    is_ending_ = true;
+    tissue_.join();
+    ::unsetenv(kStandInPage);
+    ::munmap(motors_, sizeof(StandInState));
+    fs::remove(page_);
+  }
+  void Start() {
+    device::OpenHapticsSettings library;
+    library.hd_file = TROCAR_STAND_IN_HD;
+    library.names = {"Left", "Right"};
+    library.host = TROCAR_LIBRARY_HOST;
+    HapticLoopSettings settings;
+    settings.supervisor = TROCAR_SUPERVISOR;
+    settings.hands.resize(2);
+    settings.hands[0].hand = kLeft;
+    for (HapticHand& hand : settings.hands) hand.p_world_port = {0, 0, 0.15};
+    loop_.reset();
+    auto started = HapticLoop::Start(std::make_unique<device::OpenHaptics>(library), settings, link_);
+    ASSERT_TRUE(started.ok()) << started.error().Text();
+    loop_ = std::move(*started);
+  }
+  void FeedTissue() {
+    while (!is_ending_) {
+      for (const Hand hand : {kLeft, kRight}) {
+        haptics::LocalPatch& patch = link_.patches[hand].Back();
+        patch.kind = haptics::LocalPatch::Kind::kLinear;
+        patch.is_healthy = true;
+        patch.force = {is_pressing_ ? 2.0 : 0.0, 0, 0};
+        link_.patches[hand].Publish();
+      }
+      ::usleep(5000);
+    }
+  }
+
+  bool IsPushing(std::size_t device) const { return motors_->forces[device][0] != 0; }
+  bool IsPushing() const { return IsPushing(0) || IsPushing(1); }
+
+  /// Does as the status line asks, until both devices push.
+  bool Arm() {
+    const core::Stopwatch watch;
+    is_pressing_ = false;
+    double asked = -1;
+    int answered = -1;
+    while (watch.Seconds() < 40.0) {
+      const HapticStatus& status = loop_->Latest();
+      const bool is_new = watch.Seconds() - asked > 0.2;
+      if (status.check_pose == haptics::CheckPoseState::kAsking) {
+        // all buttons up between one answer and the next
+        const bool is_up = status.asked == answered;
+        motors_->buttons[0] = is_up && status.asked == kLeft ? 1 : 0;
+        motors_->buttons[1] = is_up && status.asked == kRight ? 1 : 0;
+        answered = status.asked;
+        if (!is_up) ::usleep(50'000);
+      } else if (status.check_pose != haptics::CheckPoseState::kConfirmed) {
+        motors_->buttons[0] = motors_->buttons[1] = 0;
+        if (is_new) loop_->BeginCheckPose(), asked = watch.Seconds();
+      } else {
+        motors_->buttons[0] = motors_->buttons[1] = 1;
+        const bool is_on = status.hands[kLeft].state != haptics::ArmState::kUnarmed &&
+                           status.hands[kRight].state != haptics::ArmState::kUnarmed;
+        is_pressing_ = is_on;
+        if (!is_on && is_new) loop_->RequestArm(), asked = watch.Seconds();
+        if (is_on && IsPushing(0) && IsPushing(1)) return true;
+      }
+      ::usleep(2000);
+    }
+    ADD_FAILURE() << DescribeHaptics(loop_->Latest());
+    return false;
+  }
+
+  /// Until the motors are at zero, or the longest that is waited for [s].
+  double WaitForZero(std::int64_t struck, double longest, double& absence) {
+    std::int64_t now = core::NowNanoseconds(), last = now;
+    while (IsPushing() && 1e-9 * static_cast<double>(now - struck) < longest) {
+      const timespec moment{0, 100'000};
+      ::nanosleep(&moment, nullptr);
+      now = core::NowNanoseconds();
+      absence = std::max(absence, 1e-9 * static_cast<double>(now - last) - 1e-4);
+      last = now;
+    }
+    return 1e-9 * static_cast<double>(now - struck);
+  }
+
+  template <typename Strike>
+  void Measure(const char* what, Strike&& strike) {
+    ASSERT_NE(loop_, nullptr);
+    ZeroTimes times;
+    math::Random random(7);
+    double longest_period = 0;
+    for (int i = 0; i < ForceWire::Repeats(); ++i) {
+      if (loop_ == nullptr) Start();
+      ASSERT_TRUE(Arm());
+      ::usleep(static_cast<useconds_t>(random.Uniform(20e3, 40e3)));
+      motors_->fault_process = motors_->process.load();
+      loop_->ClearTimes();
+      ::usleep(20'000);
+      double absence = 0;
+      const std::int64_t struck = core::NowNanoseconds();
+      strike();
+      times.Add(WaitForZero(struck, 5.0, absence), absence);
+      ASSERT_FALSE(IsPushing());
+      for (int k = 0; k < 100; ++k) {
+        ASSERT_FALSE(IsPushing()) << "it came back";
+        ::usleep(1000);
+      }
+      longest_period = std::max(longest_period, loop_->CalcPeriodPercentile(1.0));
+      Recover();
+    }
+    times.ReportAndJudge(std::string(what) + ", library");
+    std::printf("%s: longest period of the loop %.2f ms\n", what, 1e3 * longest_period);
+    EXPECT_EQ(motors_->bad_forces, 0) << "not finite, above the clamp or with too fast a rise";
+  }
+  /// The next one begins with a loop that is well.
+  void Recover() {
+    motors_->fault = StandInFault::kNone;
+    if (FindChild("--watch") == 0) loop_.reset();
+  }
+  void Strike(StandInFault fault) { motors_->fault = fault; }
+
+  std::unique_ptr<HapticLoop> loop_;
+  HapticLink link_;
+  StandInState* motors_ = nullptr;
+
+ private:
+  fs::path page_;
+  std::thread tissue_;
+  std::atomic<bool> is_pressing_{false}, is_ending_{false};
+};
+
+#ifndef TROCAR_WITHOUT_HOST_WATCH
+
+TEST_F(LibraryFaults, ProcessKilled) {
+  Measure("library's process killed", [&] { ::kill(motors_->process, SIGKILL); });
+}
+TEST_F(LibraryFaults, ProcessStopped) {
+  Measure("library's process stopped", [&] { ::kill(motors_->process, SIGSTOP); });
+}
+TEST_F(LibraryFaults, LibraryCrashes) {
+  Measure("library crashed", [&] { Strike(StandInFault::kCrash); });
+}
+TEST_F(LibraryFaults, SchedulerSilent) {
+  Measure("library's scheduler silent", [&] { Strike(StandInFault::kSilentScheduler); });
+}
+TEST_F(LibraryFaults, CallHangs) {
+  Measure("library's call hangs", [&] { Strike(StandInFault::kHangingCall); });
+}
+TEST_F(LibraryFaults, SlowCalls) {
+  Measure("library's calls take 30 ms each", [&] { Strike(StandInFault::kSlowCalls); });
+}
+TEST_F(LibraryFaults, SupervisorKilled) {
+  Measure("supervisor killed", [&] { ::kill(FindChild("--watch"), SIGKILL); });
+}
+TEST_F(LibraryFaults, SupervisorStopped) {
+  pid_t stopped = 0;
+  Measure("supervisor stopped", [&] {
+    stopped = FindChild("--watch");
+    ::kill(stopped, SIGSTOP);
+    std::thread([stopped] { ::usleep(150'000), ::kill(stopped, SIGCONT); }).detach();
+  });
+}
+
+// the person goes on: the device is there again, unarmed, with its check pose to confirm
+TEST_F(LibraryFaults, TheDeviceComesBackUnarmed) {
+  ASSERT_TRUE(Arm());
+  const pid_t before = motors_->process;
+  ::kill(before, SIGKILL);
+  const core::Stopwatch watch;
+  while (loop_->Latest().hands[kRight].reason != haptics::Fault::kPoseUnconfirmed && watch.Seconds() < 20.0)
+    ::usleep(1000);
+  EXPECT_EQ(loop_->Latest().hands[kRight].state, haptics::ArmState::kUnarmed);
+  EXPECT_EQ(loop_->Latest().hands[kRight].reason, haptics::Fault::kPoseUnconfirmed);
+  EXPECT_NE(motors_->process, before);
+  EXPECT_EQ(motors_->devices, 2);
+  EXPECT_TRUE(Arm()) << "and a person can arm again";
+}
+
+#else
+
+// The control: with nobody who watches, the motors keep their last force.
+TEST_F(LibraryFaults, WithoutAWatchTheForceStays) {
+  for (const StandInFault fault :
+       {StandInFault::kNone, StandInFault::kSilentScheduler, StandInFault::kHangingCall,
+        StandInFault::kSlowCalls, StandInFault::kCrash}) {
+    ASSERT_TRUE(Arm());
+    motors_->fault_process = motors_->process.load();
+    double absence = 0;
+    const std::int64_t struck = core::NowNanoseconds();
+    if (fault == StandInFault::kNone)
+      ::kill(motors_->process, SIGSTOP);
+    else
+      Strike(fault);
+    EXPECT_GT(WaitForZero(struck, 0.060, absence), 0.055) << static_cast<int>(fault);
+    if (fault == StandInFault::kNone) ::kill(motors_->process, SIGKILL);
+    Recover();
+  }
+}
+
+#endif
+
+}  // namespace
+}  // namespace trocar::session
