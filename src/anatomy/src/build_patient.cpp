@@ -8,6 +8,7 @@
 #include "trocar/anatomy/control_points.h"
 #include "trocar/anatomy/overlay.h"
 #include "trocar/anatomy/patient_builder.h"
+#include "trocar/anatomy/png_file.h"
 
 namespace trocar::anatomy {
 namespace {

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 #include "trocar/core/assert.h"
 
@@ -28,10 +27,6 @@ void VisitCrossings(double ua, double va, double ub, double vb, Toggle toggle) {
 }
 
 }  // namespace
-
-std::size_t Mask::Count() const {
-  return std::accumulate(inside.begin(), inside.end(), std::size_t{0});
-}
 
 void FillContour(std::span<const Vec2> contour, Mask& mask) {
   TROCAR_ASSERT(contour.size() >= 3);

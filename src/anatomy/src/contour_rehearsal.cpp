@@ -10,6 +10,7 @@
 #include "edge_strip.h"
 #include "trocar/anatomy/build_organs.h"
 #include "trocar/anatomy/contour_spline.h"
+#include "trocar/anatomy/png_file.h"
 #include "trocar/core/assert.h"
 
 namespace trocar::anatomy {

@@ -207,21 +207,6 @@ const LandmarkPoint* ControlPoints::FindLandmark(std::string_view landmark_name)
   return nullptr;
 }
 
-std::string FormatImageName(std::string_view pattern, int slice) {
-  const auto open = pattern.find("{slice");
-  const auto close = pattern.find('}', open == std::string_view::npos ? 0 : open);
-  if (open == std::string_view::npos || close == std::string_view::npos) return std::string(pattern);
-  const std::string_view inside = pattern.substr(open + 6, close - open - 6);  // "" or ":04"
-  std::size_t digits = 0;
-  for (const char c : inside) {
-    if (std::isdigit(static_cast<unsigned char>(c)))
-      digits = std::min<std::size_t>(digits * 10 + (c - '0'), 12);
-  }
-  std::string number = std::to_string(slice);
-  if (number.size() < digits) number.insert(0, digits - number.size(), '0');
-  return std::string(pattern.substr(0, open)) + number + std::string(pattern.substr(close + 1));
-}
-
 std::array<std::array<double, 3>, 3> AxisDirections(const ControlPoints& points) {
   std::array<std::array<double, 3>, 3> directions = {};
   for (std::size_t i = 0; i < 3; ++i) {

@@ -5,7 +5,7 @@
 
 #include "series_content.h"
 #include "series_geometry.h"
-#include "slice_names.h"
+#include "trocar/anatomy/slice_names.h"
 #include "trocar/core/assert.h"
 #include "trocar/core/printable.h"
 #include "volume_file.h"

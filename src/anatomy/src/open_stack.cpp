@@ -3,8 +3,7 @@
 
 #include "series_content.h"
 #include "series_geometry.h"
-#include "slice_names.h"
-#include "trocar/anatomy/control_points.h"
+#include "trocar/anatomy/slice_names.h"
 #include "trocar/core/printable.h"
 
 namespace trocar::anatomy {

@@ -8,8 +8,9 @@
 #include <optional>
 #include <string>
 
-#include "trocar/anatomy/overlay.h"
 #include "trocar/anatomy/phantom.h"
+#include "trocar/anatomy/png_file.h"
+#include "trocar/anatomy/slice_names.h"
 #include "trocar/core/safe_file.h"
 
 namespace trocar::anatomy {

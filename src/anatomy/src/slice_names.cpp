@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "slice_names.h"
+#include "trocar/anatomy/slice_names.h"
 
 #include <algorithm>
 #include <cctype>
@@ -7,7 +7,6 @@
 #include <optional>
 #include <string_view>
 
-#include "trocar/anatomy/control_points.h"
 #include "trocar/core/printable.h"
 
 namespace trocar::anatomy {
@@ -68,6 +67,21 @@ bool IsPictureName(std::string_view name) {
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return extension == ".jpg" || extension == ".jpeg" || extension == ".png" || extension == ".tif" ||
          extension == ".tiff";
+}
+
+std::string FormatImageName(std::string_view pattern, int slice) {
+  const auto open = pattern.find("{slice");
+  const auto close = pattern.find('}', open == std::string_view::npos ? 0 : open);
+  if (open == std::string_view::npos || close == std::string_view::npos) return std::string(pattern);
+  const std::string_view inside = pattern.substr(open + 6, close - open - 6);  // "" or ":04"
+  std::size_t digits = 0;
+  for (const char c : inside) {
+    if (std::isdigit(static_cast<unsigned char>(c)))
+      digits = std::min<std::size_t>(digits * 10 + (c - '0'), 12);
+  }
+  std::string number = std::to_string(slice);
+  if (number.size() < digits) number.insert(0, digits - number.size(), '0');
+  return std::string(pattern.substr(0, open)) + number + std::string(pattern.substr(close + 1));
 }
 
 core::Result<NamedSlices> FindNamedSlices(std::span<const std::string> names, const std::string& pattern) {

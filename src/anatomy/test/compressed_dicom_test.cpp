@@ -12,10 +12,9 @@
 #include <sstream>
 #include <string>
 
-#include "made_images.h"
-#include "trocar/anatomy/build_organs.h"
 #include "trocar/anatomy/image_series.h"
 #include "trocar/core/safe_file.h"
+#include "trocar_test/made_images.h"
 
 namespace trocar::anatomy {
 namespace {
@@ -204,15 +203,6 @@ TEST_F(DicomFolder, ChoosesOneOfTwoSeries) {
   ASSERT_TRUE(series.ok()) << series.error().Text();
   EXPECT_EQ(series->Info().slice_numbers.size(), 3u);
   EXPECT_EQ(series->Info().ignored_files, 5u);
-  // building from contours chooses as opening does
-  const ImageSeriesInfo& info = series->Info();
-  ControlPoints points;
-  points.width = info.width, points.height = info.height;
-  points.pixel_mm = info.pixel_mm, points.slice_mm = info.slice_mm, points.axes = info.axes;
-  EXPECT_EQ(OpenContouredSeries(points, folder_, {}).error().code, ErrorCode::kImageSeriesMixed);
-  const auto chosen = OpenContouredSeries(points, folder_, {}, {}, 2);
-  ASSERT_TRUE(chosen.ok()) << chosen.error().Text();
-  EXPECT_EQ(chosen->Info().slice_numbers, info.slice_numbers);
   options.series = 3;
   EXPECT_EQ(Failure(options).code, ErrorCode::kImageSliceMissing);
 }

@@ -16,7 +16,7 @@
 
 #include "phantom_picture.h"
 #include "trocar/anatomy/contour_autosave.h"
-#include "trocar/anatomy/overlay.h"
+#include "trocar/anatomy/png_file.h"
 #include "trocar/core/safe_file.h"
 #include "trocar_test/temporary_folder.h"
 

@@ -115,12 +115,6 @@ TEST(ControlPoints, RejectEveryTruncation) {
   }
 }
 
-TEST(FormatImageName, FillsInTheNumber) {
-  EXPECT_EQ(FormatImageName("image-{slice:04}.jpeg", 546), "image-0546.jpeg");
-  EXPECT_EQ(FormatImageName("{slice}.png", 7), "7.png");
-  EXPECT_EQ(FormatImageName("a{slice:2}b", 1234), "a1234b");
-}
-
 TEST(AxisDirections, PointIntoTheWorld) {
   const auto d = AxisDirections(MakePoints());
   EXPECT_EQ(d[0], (std::array<double, 3>{1, 0, 0}));

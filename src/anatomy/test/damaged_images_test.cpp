@@ -12,11 +12,10 @@
 #include <string>
 
 #include "import_worker.h"
-#include "made_images.h"
 #include "trocar/anatomy/image_series.h"
-#include "trocar/anatomy/overlay.h"
 #include "trocar/core/clock.h"
 #include "trocar/core/safe_file.h"
+#include "trocar_test/made_images.h"
 #include "volume_file.h"
 
 namespace trocar::anatomy {

@@ -11,10 +11,10 @@
 #include <thread>
 #include <vector>
 
-#include "made_images.h"
 #include "trocar/anatomy/contact_sheet.h"
-#include "trocar/anatomy/overlay.h"
+#include "trocar/anatomy/png_file.h"
 #include "trocar/core/safe_file.h"
+#include "trocar_test/made_images.h"
 
 namespace trocar::anatomy {
 namespace {

@@ -16,8 +16,8 @@
 #include <thread>
 #include <vector>
 
-#include "made_images.h"
 #include "trocar/core/safe_file.h"
+#include "trocar_test/made_images.h"
 #include "volume_file.h"
 
 namespace trocar::anatomy {

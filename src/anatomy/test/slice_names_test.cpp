@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "slice_names.h"
+#include "trocar/anatomy/slice_names.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -66,6 +66,12 @@ TEST(CheckSliceNumbers, NamesTheGaps) {
   EXPECT_EQ(CheckSliceNumbers(std::vector{1, 3}).error().code, ErrorCode::kImageSeriesGap);
   EXPECT_EQ(CheckSliceNumbers(std::vector{10, 18, 34}).error().code, ErrorCode::kImageSeriesGap);
   EXPECT_EQ(CheckSliceNumbers(std::vector{10, 14, 18, 25}).error().code, ErrorCode::kImageSeriesUneven);
+}
+
+TEST(FormatImageName, FillsInTheNumber) {
+  EXPECT_EQ(FormatImageName("image-{slice:04}.jpeg", 546), "image-0546.jpeg");
+  EXPECT_EQ(FormatImageName("{slice}.png", 7), "7.png");
+  EXPECT_EQ(FormatImageName("a{slice:2}b", 1234), "a1234b");
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 #include <set>
 #include <string>
 
-#include "trocar/anatomy/overlay.h"
+#include "trocar/anatomy/png_file.h"
 #include "trocar/app/contour_read_outs.h"
 #include "trocar/app/contour_script.h"
 #include "trocar_test/temporary_folder.h"

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "trocar/anatomy/overlay.h"
+#include "trocar/anatomy/png_file.h"
 #include "trocar/core/safe_file.h"
 #include "window_picture.h"
 

@@ -14,7 +14,7 @@
 #include "image_options.h"
 #include "trocar/anatomy/contact_sheet.h"
 #include "trocar/anatomy/image_series.h"
-#include "trocar/anatomy/overlay.h"
+#include "trocar/anatomy/png_file.h"
 #include "trocar/core/printable.h"
 
 namespace trocar::cli {

@@ -10,7 +10,7 @@
 
 #include "run_trocar.h"
 #include "trocar/anatomy/image_stack.h"
-#include "trocar/anatomy/overlay.h"
+#include "trocar/anatomy/png_file.h"
 #include "trocar/core/safe_file.h"
 
 namespace trocar::cli {

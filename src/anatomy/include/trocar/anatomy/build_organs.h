@@ -16,8 +16,8 @@
 #include "trocar/anatomy/image_series.h"
 #include "trocar/anatomy/mesh_quality.h"
 #include "trocar/anatomy/overlay.h"
-#include "trocar/anatomy/patient_builder.h"
 #include "trocar/anatomy/reference_judge.h"
+#include "trocar/anatomy/structure_mesh.h"
 #include "trocar/core/result.h"
 
 namespace trocar::anatomy {

@@ -3,25 +3,15 @@
 /// Source: "General algorithms for laparoscopic surgical simulators", section 3.1.1, last step.
 #pragma once
 
-#include <cstdint>
 #include <span>
 #include <vector>
 
+#include "trocar/anatomy/mask.h"
 #include "trocar/math/vector.h"
 
 namespace trocar::anatomy {
 
 using math::Vec2;
-
-/// Rectangle of pixels with a flag each. Pixel (x, y) has its centre at (x0 + x, y0 + y) of the picture.
-struct Mask {
-  int x0 = 0, y0 = 0;
-  int width = 0, height = 0;
-  std::vector<std::uint8_t> inside;  ///< (height * width) 0 or 1
-
-  std::uint8_t At(int x, int y) const { return inside[static_cast<std::size_t>(y) * width + x]; }
-  std::size_t Count() const;
-};
 
 /// Marks the pixels whose centres lie inside a closed polyline.
 ///

@@ -76,10 +76,6 @@ struct ControlPoints {
   const LandmarkPoint* FindLandmark(std::string_view landmark_name) const;
 };
 
-/// File name of a slice: "{slice:04}" in the pattern becomes the number with leading zeros, "{slice}" the
-/// bare number.
-std::string FormatImageName(std::string_view pattern, int slice);
-
 /// Maps (column, row, slice) to directions of the world (left, cranial, anterior): +1, -1 or 0.
 /// \return [image axis][world axis]
 /// \pre axes were checked by ParseControlPoints

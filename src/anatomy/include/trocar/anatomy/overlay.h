@@ -4,13 +4,11 @@
 #pragma once
 
 #include <cstddef>
-#include <filesystem>
 #include <string>
 #include <vector>
 
-#include "trocar/anatomy/contour_fill.h"
 #include "trocar/anatomy/image_stack.h"
-#include "trocar/core/result.h"
+#include "trocar/anatomy/mask.h"
 #include "trocar/math/vector.h"
 
 namespace trocar::anatomy {
@@ -37,9 +35,5 @@ struct Overlay {
 ///
 /// \param scale  pictures' pixels a photograph's pixel, 1 to 8
 ColorImage DrawOverlay(const ColorImage& photograph, const Overlay& overlay, int scale = 2);
-
-/// PNG file of 8-bit red, green, blue; written beside and renamed.
-/// \return kFileUnwritable
-core::Status WritePng(const std::filesystem::path& path, const ColorImage& image);
 
 }  // namespace trocar::anatomy

@@ -9,15 +9,10 @@
 
 #include "trocar/anatomy/control_points.h"
 #include "trocar/anatomy/patient.h"
+#include "trocar/anatomy/structure_mesh.h"
 #include "trocar/core/result.h"
 
 namespace trocar::anatomy {
-
-/// Closed mesh of one structure in the frame of the pictures: column, row, slice times their distances [mm].
-struct StructureMesh {
-  std::string name;
-  geometry::TriangleMesh mesh;
-};
 
 /// Sizes that the rules by geometry use.
 struct RegionSettings {

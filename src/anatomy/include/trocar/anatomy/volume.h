@@ -13,7 +13,7 @@
 #include <span>
 #include <vector>
 
-#include "trocar/anatomy/contour_fill.h"
+#include "trocar/anatomy/mask.h"
 #include "trocar/core/result.h"
 #include "trocar/math/vector.h"
 

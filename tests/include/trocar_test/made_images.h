@@ -13,7 +13,7 @@
 #include <string_view>
 #include <vector>
 
-namespace trocar::anatomy::test {
+namespace trocar::test {
 
 template <typename Number>
 std::string Bytes(Number number) {
@@ -263,4 +263,4 @@ inline std::string Fragments(const std::vector<std::string>& fragments, bool is_
   return is_closed ? bytes + item(0xE0DD, "") : bytes;
 }
 
-}  // namespace trocar::anatomy::test
+}  // namespace trocar::test

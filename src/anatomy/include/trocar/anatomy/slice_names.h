@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file slice_names.h  Which files of a folder are the numbered pictures of one stack.
+/// \file slice_names.h  Numbered pictures of a folder: which files are one stack, and how a slice's file is
+/// named.
 #pragma once
 
 #include <cstddef>
 #include <map>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "trocar/core/result.h"
@@ -21,6 +23,10 @@ struct NamedSlices {
 
 /// Whether the name ends like a JPEG, PNG or TIFF file (in any case of letters).
 bool IsPictureName(std::string_view name);
+
+/// File name of a slice: "{slice:04}" in the pattern becomes the number with leading zeros, "{slice}" the
+/// bare number.
+std::string FormatImageName(std::string_view pattern, int slice);
 
 /// Finds the pictures whose names differ in their last number only, or those of a given pattern.
 ///
