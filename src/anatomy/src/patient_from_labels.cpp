@@ -8,11 +8,11 @@
 #include <vector>
 
 #include "duct_template.h"
-#include "trocar/anatomy/label_volume.h"
 #include "trocar/anatomy/patient_builder.h"
-#include "trocar/anatomy/volume.h"
-#include "trocar/anatomy/volume_mesher.h"
 #include "trocar/geometry/mesh_measures.h"
+#include "trocar/meshing/label_volume.h"
+#include "trocar/meshing/volume.h"
+#include "trocar/meshing/volume_mesher.h"
 
 namespace trocar::anatomy {
 namespace {
@@ -30,7 +30,7 @@ Error Mismatch(const std::string& why) {
   return {ErrorCode::kLabelsMismatch, why};
 }
 
-std::array<std::size_t, 256> CountLabels(const LabelVolume& volume) {
+std::array<std::size_t, 256> CountLabels(const images::LabelVolume& volume) {
   std::array<std::size_t, 256> counts{};
   for (const auto label : volume.labels) ++counts[label];
   return counts;
@@ -59,7 +59,7 @@ Vec3 FindNeck(const geometry::TriangleMesh& gallbladder) {
 
 }  // namespace
 
-core::Result<OrganLabels> FindLabels(const LabelVolume& volume, const LabelOptions& options) {
+core::Result<OrganLabels> FindLabels(const images::LabelVolume& volume, const LabelOptions& options) {
   const auto counts = CountLabels(volume);
   OrganLabels found{options.liver, options.gallbladder, "named on request"};
   if (found.liver == 0 || found.gallbladder == 0) {
@@ -104,7 +104,8 @@ core::Result<OrganLabels> FindLabels(const LabelVolume& volume, const LabelOptio
   return found;
 }
 
-core::Result<BuildReport> BuildPatientFromLabels(const LabelOptions& options, const Progress& progress) {
+core::Result<BuildReport> BuildPatientFromLabels(const LabelOptions& options,
+                                                 const images::Progress& progress) {
   const auto tell = [&](std::string_view what, double part) {
     if (progress) progress(what, part);
   };
@@ -113,7 +114,7 @@ core::Result<BuildReport> BuildPatientFromLabels(const LabelOptions& options, co
     return Error{ErrorCode::kUsage, "spacing_mm must lie between 0.4 and 4, gap_mm between 0 and 5"};
   }
   tell("reading labels", 0.0);
-  const auto volume = ReadLabelVolume(options.labels);
+  const auto volume = images::ReadLabelVolume(options.labels);
   if (!volume.ok()) return volume.error();
   std::array<double, 3> step{};
   std::array<Vec3, 3> axes;  // of one millimetre along each axis, (left, cranial, anterior)
@@ -141,21 +142,21 @@ core::Result<BuildReport> BuildPatientFromLabels(const LabelOptions& options, co
     const char* name;
     int label, triangles;
   };
-  const Part parts[] = {{"liver", labels->liver, kLiverTriangles},
-                        {"gallbladder", labels->gallbladder, kGallbladderTriangles}};
+  const Part parts[] = {{"liver", labels->liver, meshing::kLiverTriangles},
+                        {"gallbladder", labels->gallbladder, meshing::kGallbladderTriangles}};
   const auto counts = CountLabels(*volume);
   BuildReport report;
-  std::vector<ScalarVolume> volumes;
+  std::vector<meshing::ScalarVolume> volumes;
   for (const Part& part : parts) {
     tell(std::string("filling ") + part.name, 0.1);
-    auto slices = FillLabelSlices(*volume, part.label, step, pixel);
-    OrganReport organ;
+    auto slices = meshing::FillLabelSlices(*volume, part.label, step, pixel);
+    contours::OrganReport organ;
     organ.name = part.name;
     organ.slices = slices.size();
-    LabelVolumeSettings settings;
+    meshing::LabelVolumeSettings settings;
     settings.spacing_mm = options.spacing_mm;
     const double enclosed = static_cast<double>(counts[part.label]) * step[0] * step[1] * step[2];
-    auto distances = MakeLabelVolume(std::move(slices), pixel, enclosed, settings);
+    auto distances = meshing::MakeLabelVolume(std::move(slices), pixel, enclosed, settings);
     if (!distances.ok()) {
       return Error{distances.error().code, std::string(part.name) + ", label " + std::to_string(part.label) +
                                                ": " + distances.error().message};
@@ -163,17 +164,17 @@ core::Result<BuildReport> BuildPatientFromLabels(const LabelOptions& options, co
     volumes.push_back(std::move(*distances));
     report.organs.push_back(organ);
   }
-  Subtract(volumes[0], volumes[1], options.gap_mm);
+  meshing::Subtract(volumes[0], volumes[1], options.gap_mm);
 
-  std::vector<StructureMesh> meshes;
+  std::vector<meshing::StructureMesh> meshes;
   for (std::size_t i = 0; i < volumes.size(); ++i) {
     tell(std::string("meshing ") + parts[i].name, 0.3 + 0.3 * static_cast<double>(i));
-    MeshingSettings settings;
+    meshing::MeshingSettings settings;
     settings.triangle_budget = parts[i].triangles;
-    auto meshed = MeshVolume(std::move(volumes[i]), settings);
+    auto meshed = meshing::MeshVolume(std::move(volumes[i]), settings);
     if (!meshed.ok())
       return Error{meshed.error().code, std::string(parts[i].name) + ": " + meshed.error().message};
-    AddMeshQuality(report.organs[i], meshed->quality);
+    contours::AddMeshQuality(report.organs[i], meshed->quality);
     geometry::TriangleMesh& mesh = meshed->mesh;
     for (Vec3& p : mesh.positions) p = p.x * axes[0] + p.y * axes[1] + p.z * axes[2];
     // a mirrored frame turns the triangles inside out
@@ -186,7 +187,7 @@ core::Result<BuildReport> BuildPatientFromLabels(const LabelOptions& options, co
   tell("assembling the patient", 0.9);
   auto usual = DrawParameters(0, MakeUsualSettings());
   if (!usual.ok()) return usual.error();
-  ControlPoints frame = MakeWorldFrame();
+  contours::ControlPoints frame = MakeWorldFrame();
   // a file name may name a person: it is not kept
   frame.name = "Patient from a label map";
   frame.provenance = "Liver and gallbladder from a label map (" + labels->convention +

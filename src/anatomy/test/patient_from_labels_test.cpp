@@ -136,7 +136,7 @@ class FromLabels : public testing::Test {
 
 void ExpectThatBody(const BuildReport& report) {
   ASSERT_EQ(report.organs.size(), 2u);
-  for (const OrganReport& organ : report.organs) {
+  for (const contours::OrganReport& organ : report.organs) {
     EXPECT_TRUE(organ.closed && organ.manifold && organ.outward) << organ.name;
     EXPECT_EQ(organ.genus, 0) << organ.name;
     EXPECT_EQ(organ.self_intersections, 0u) << organ.name;
@@ -220,7 +220,7 @@ TEST_F(FromLabels, AsksForTheOrganThatAFileWithNamesDoesNotName) {
 TEST_F(FromLabels, PassesOverExtensionsThatAreNoLabelTables) {
   const std::string whole = WithLabelTable(FormatNifti(MakeLabels(1, 2)), {{1, "liver"}, {2, "gallbladder"}});
   const auto convention = [&](const std::string& content) {
-    const auto volume = ReadLabelVolume(Write("odd.nii", content));
+    const auto volume = images::ReadLabelVolume(Write("odd.nii", content));
     EXPECT_TRUE(volume.ok());
     return volume.ok() ? FindLabels(*volume, {})->convention : "";
   };
@@ -299,7 +299,7 @@ TEST(FromLabelsSlow, RebuildsTheReferenceOfTheVisibleHuman) {
   ASSERT_TRUE(report.ok()) << report.error().Text();
   EXPECT_NEAR(report->organs[0].volume_ml, 1766, 0.03 * 1766);
   EXPECT_NEAR(report->organs[1].volume_ml, 28.6, 0.08 * 28.6);
-  for (const OrganReport& organ : report->organs) {
+  for (const contours::OrganReport& organ : report->organs) {
     EXPECT_TRUE(organ.closed && organ.manifold && organ.outward) << organ.name;
     EXPECT_EQ(organ.self_intersections, 0u) << organ.name;
     EXPECT_GT(organ.min_angle_deg, 5.0) << organ.name;

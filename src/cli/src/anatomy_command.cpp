@@ -67,7 +67,7 @@ core::Status BuildFromLabels(const anatomy::LabelOptions& options) {
   std::vector<std::vector<std::string>> rows = {{"organ", "slices", "triangles", "closed", "manifold",
                                                  "genus", "cuts", "min angle [deg]", "volume [mL]",
                                                  "volume change [%]", "distance [mm]", "mean [mm]"}};
-  for (const anatomy::OrganReport& organ : report->organs) {
+  for (const contours::OrganReport& organ : report->organs) {
     rows.push_back({organ.name, std::to_string(organ.slices), std::to_string(organ.triangles),
                     organ.closed ? "yes" : "NO", organ.manifold ? "yes" : "NO", std::to_string(organ.genus),
                     std::to_string(organ.self_intersections), FormatNumber(organ.min_angle_deg, 3),
