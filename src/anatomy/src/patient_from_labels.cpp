@@ -5,6 +5,7 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <map>
 #include <vector>
 
 #include "duct_template.h"
@@ -30,10 +31,37 @@ Error Mismatch(const std::string& why) {
   return {ErrorCode::kLabelsMismatch, why};
 }
 
-std::array<std::size_t, 256> CountLabels(const images::LabelVolume& volume) {
-  std::array<std::size_t, 256> counts{};
-  for (const auto label : volume.labels) ++counts[label];
+/// How many voxels each label has that occurs.
+using LabelCounts = std::map<std::int32_t, std::size_t>;
+
+LabelCounts CountLabels(const images::LabelVolume& volume) {
+  LabelCounts counts;
+  for (std::size_t i = 0; i < volume.labels.size();) {
+    // labels come in runs along a row
+    std::size_t end = i + 1;
+    while (end < volume.labels.size() && volume.labels[end] == volume.labels[i]) ++end;
+    counts[volume.labels[i]] += end - i;
+    i = end;
+  }
   return counts;
+}
+
+std::size_t CountOf(const LabelCounts& counts, int label) {
+  const auto found = counts.find(label);
+  return found == counts.end() ? 0 : found->second;
+}
+
+/// "1, 2, 5", the first of them where there are many.
+std::string ListLabels(const LabelCounts& counts) {
+  constexpr std::size_t kMostNamed = 20;
+  std::string text;
+  std::size_t named = 0;
+  for (const auto& [label, count] : counts) {
+    if (label == 0) continue;
+    if (named++ == kMostNamed) return text + ", ...";
+    text += (text.empty() ? "" : ", ") + std::to_string(label);
+  }
+  return text.empty() ? "none" : text;
 }
 
 std::string LowerCase(std::string text) {
@@ -72,7 +100,8 @@ core::Result<OrganLabels> FindLabels(const images::LabelVolume& volume, const La
     usual.convention = "segment names";
     if (usual.liver == 0 && usual.gallbladder == 0) {
       // spleen and right kidney are TotalSegmentator's 1 and 2: the liver is larger than both
-      const bool is_total = counts[kTotalLiver] > counts[1] && counts[kTotalLiver] > counts[2];
+      const bool is_total = CountOf(counts, kTotalLiver) > CountOf(counts, 1) &&
+                            CountOf(counts, kTotalLiver) > CountOf(counts, 2);
       usual = is_total ? OrganLabels{kTotalLiver, kTotalGallbladder, "TotalSegmentator's numbers"}
                        : OrganLabels{1, 2, "1 and 2"};
     }
@@ -86,15 +115,10 @@ core::Result<OrganLabels> FindLabels(const images::LabelVolume& volume, const La
     return Mismatch("the label map names its labels, and none of them is the " + std::string(name) +
                     "; say which one it is with --" + name);
   }
-  std::string present;
-  for (int label = 1; label < 256; ++label) {
-    if (counts[label] > 0) present += (present.empty() ? "" : ", ") + std::to_string(label);
-  }
-  const auto is_missing = [&](int label) { return label < 1 || label > 255 || counts[label] == 0; };
   for (const auto& [name, label] : {std::pair{"liver", found.liver}, {"gallbladder", found.gallbladder}}) {
-    if (!is_missing(label)) continue;
+    if (label > 0 && CountOf(counts, label) > 0) continue;
     return Mismatch("the label map has no label " + std::to_string(label) + ", which should be the " + name +
-                    " (found by: " + found.convention + "); it has " + (present.empty() ? "none" : present) +
+                    " (found by: " + found.convention + "); it has " + ListLabels(counts) +
                     "; name the right one with --" + name);
   }
   if (found.liver == found.gallbladder) {
@@ -155,7 +179,7 @@ core::Result<BuildReport> BuildPatientFromLabels(const LabelOptions& options,
     organ.slices = slices.size();
     meshing::LabelVolumeSettings settings;
     settings.spacing_mm = options.spacing_mm;
-    const double enclosed = static_cast<double>(counts[part.label]) * step[0] * step[1] * step[2];
+    const double enclosed = static_cast<double>(CountOf(counts, part.label)) * step[0] * step[1] * step[2];
     auto distances = meshing::MakeLabelVolume(std::move(slices), pixel, enclosed, settings);
     if (!distances.ok()) {
       return Error{distances.error().code, std::string(part.name) + ", label " + std::to_string(part.label) +

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "trocar/anatomy/phantom.h"
+#include "trocar/core/assert.h"
 #include "trocar/core/safe_file.h"
 #include "trocar/images/png_file.h"
 #include "trocar/images/slice_names.h"
@@ -72,7 +73,10 @@ core::Status WriteLabelVolume(const fs::path& path, const images::LabelVolume& v
     text += segment + "_Name:=" + volume.names[i].first + "\n";
   }
   text += "\n";
-  text.append(volume.labels.begin(), volume.labels.end());
+  for (const std::int32_t label : volume.labels) {
+    TROCAR_ASSERT(label <= 255);
+    text += static_cast<char>(label);
+  }
   return core::WriteFile(path, text);
 }
 

@@ -96,10 +96,10 @@ void AddFromLabelsCommand(CLI::App& anatomy, Outcome& outcome) {
       ->required()
       ->type_name("PATIENT");
   command->add_option("--liver", options->liver, "Label of the liver, if it cannot be found by itself")
-      ->check(CLI::Range(1, 255))
+      ->check(CLI::Range(1, images::kLargestLabel))
       ->type_name("LABEL");
   command->add_option("--gallbladder", options->gallbladder, "Label of the gallbladder, likewise")
-      ->check(CLI::Range(1, 255))
+      ->check(CLI::Range(1, images::kLargestLabel))
       ->type_name("LABEL");
   command->footer(
       "Labels are found by the names that 3D Slicer and TotalSegmentator write into the file, by\n"

@@ -46,7 +46,7 @@ ControlPoints BeginPoints(const images::ImageSeriesInfo& info, const std::filesy
 
 core::Status CheckReference(const images::LabelVolume& reference, const ControlPoints& points) {
   // the judge knows whether labels cover a series; it wants a label that occurs, and no mesh
-  for (const std::uint8_t label : reference.labels) {
+  for (const std::int32_t label : reference.labels) {
     if (label == 0) continue;
     const auto judged = Judge(reference, points, label, {}, {0, -1});
     if (!judged.ok()) return judged.error();

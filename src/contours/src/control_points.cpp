@@ -90,7 +90,7 @@ Structure ReadStructure(const ControlPoints& points, const JsonView& view, Compl
   structure.name = view.Text("name");
   if (structure.name.empty()) view.Complain("needs a name");
   structure.triangle_budget = view.Integer("triangle_budget", {100, 1000000});
-  structure.reference_label = view.IntegerOr("reference_label", 0, {0, 255});
+  structure.reference_label = view.IntegerOr("reference_label", 0, {0, images::kLargestLabel});
   if (view.Has("reference_left_out")) {
     const auto slices = view.Numbers("reference_left_out", 2);
     structure.reference_left_out = {static_cast<int>(slices[0]), static_cast<int>(slices[1])};

@@ -175,6 +175,10 @@ SampleKind HandedOverAs(StoredType type) {
       return SampleKind::kInt16;
     case StoredType::kUint16:
       return SampleKind::kUint16;
+    case StoredType::kInt32:
+      return SampleKind::kInt32;
+    case StoredType::kUint32:
+      return SampleKind::kUint32;
     default:
       return SampleKind::kFloat32;
   }
@@ -219,9 +223,9 @@ void ReadSamples(const ImageHeader& header, const StoredSamples& stored, const I
     case StoredType::kUint16:
       return Convert<std::uint16_t, std::uint16_t>(*source, count, is_swapped, to);
     case StoredType::kInt32:
-      return Convert<std::int32_t, float>(*source, count, is_swapped, to);
+      return Convert<std::int32_t, std::int32_t>(*source, count, is_swapped, to);
     case StoredType::kUint32:
-      return Convert<std::uint32_t, float>(*source, count, is_swapped, to);
+      return Convert<std::uint32_t, std::uint32_t>(*source, count, is_swapped, to);
     case StoredType::kInt64:
       return Convert<std::int64_t, float>(*source, count, is_swapped, to);
     case StoredType::kUint64:

@@ -149,7 +149,7 @@ void ReadLabelTable(std::string_view xml, ImportReply& reply) {
     int label = 0;
     const auto parsed = std::from_chars(digits.data(), digits.data() + digits.size(), label);
     const std::string_view name = ElementText(xml);
-    if (parsed.ec != std::errc() || label < 1 || label > 255 || name.empty()) continue;
+    if (parsed.ec != std::errc() || label < 1 || name.empty()) continue;
     SegmentName& entry = reply.names[reply.header.segments++];
     name.copy(entry.name, sizeof(entry.name) - 1);
     entry.label = label;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <optional>
 #include <utility>
@@ -177,7 +178,7 @@ void ReadSegmentNames(const Fields& fields, ImportReply& reply) {
     const auto label = fields.pairs.find(segment + "_LabelValue");
     if (name == fields.pairs.end() || label == fields.pairs.end()) continue;
     const std::int64_t value = ParseWhole(label->second, "LabelValue");
-    if (value < 1 || value > 255) continue;
+    if (value < 1 || value > std::numeric_limits<std::int32_t>::max()) continue;
     SegmentName& entry = reply.names[reply.header.segments++];
     name->second.copy(entry.name, sizeof(entry.name) - 1);
     entry.label = static_cast<std::int32_t>(value);

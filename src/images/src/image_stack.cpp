@@ -54,8 +54,12 @@ core::Result<LabelVolume> ReadLabelFile(const fs::path& path, Links links) {
     for (int k = 0; k < 3; ++k) volume.direction[axis][k] = header.direction[axis][k] * header.spacing[axis];
   }
   volume.labels.resize(count);
-  if (!CopyLabels(header, decoded->samples.Data(), volume.labels))
-    return Undecodable(path, "its voxels are not whole numbers from 0 to 255; name a label map");
+  if (const std::string fault = CopyLabels(header, decoded->samples.Data(), volume.labels); !fault.empty()) {
+    return Undecodable(
+        path, "its voxels are no labels: " + fault +
+                  "; name a label map of whole numbers from 0 on (32-bit integers where they are large), "
+                  "resampled by nearest neighbour if at all");
+  }
   volume.names = std::move(decoded->names);
   return volume;
 }
@@ -106,7 +110,7 @@ core::Result<LabelVolume> ReadMasks(const fs::path& folder) {
                                                    "the same image"};
     }
     for (std::size_t i = 0; i < all.labels.size(); ++i) {
-      if (mask->labels[i] != 0) all.labels[i] = static_cast<std::uint8_t>(label);
+      if (mask->labels[i] != 0) all.labels[i] = label;
     }
     all.names.emplace_back(organ, label);
   }

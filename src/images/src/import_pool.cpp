@@ -30,7 +30,7 @@ bool IsFinite(std::span<const double> numbers) {
 /// Whether a header says nothing that could hurt us: the reader may have been taken over by the file.
 bool IsSane(const ImageHeader& header, const ImportLimits& limits) {
   const bool is_enumerated = header.kind >= FileKind::kJpeg && header.kind <= FileKind::kMetaImage &&
-                             header.samples <= SampleKind::kFloat32 && header.frame <= FileFrame::kRas;
+                             header.samples <= kLastSampleKind && header.frame <= FileFrame::kRas;
   const bool is_sized = header.width >= 1 && header.width <= limits.most_side && header.height >= 1 &&
                         header.height <= limits.most_side && header.depth >= 1 &&
                         header.depth <= limits.most_side && (header.channels == 1 || header.channels == 3) &&
@@ -57,7 +57,7 @@ bool IsSane(const ImageHeader& header, const ImportLimits& limits) {
 bool IsSane(const ImportReply& reply, const ImportLimits& limits) {
   if (reply.version != kImportVersion || !IsTerminated(reply.why, sizeof(reply.why))) return false;
   for (const SegmentName& name : reply.names) {
-    if (!IsTerminated(name.name, sizeof(name.name)) || name.label < 0 || name.label > 255) return false;
+    if (!IsTerminated(name.name, sizeof(name.name)) || name.label < 0) return false;
   }
   if (reply.code == 0) return IsSane(reply.header, limits);
   return reply.code >= static_cast<int>(ErrorCode::kImageFolderMissing) &&

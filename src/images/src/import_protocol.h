@@ -14,11 +14,11 @@
 
 namespace trocar::images {
 
-inline constexpr std::uint32_t kImportVersion = 1;
+inline constexpr std::uint32_t kImportVersion = 2;
 inline constexpr int kImportSocket = 3;             // descriptor in the reader
 inline constexpr int kExitOutOfMemory = 40;         // exit status of the reader
 inline constexpr std::size_t kMostDescriptors = 3;  // of one request
-inline constexpr std::size_t kMostSegments = 255;
+inline constexpr std::size_t kMostSegments = 1024;  // an atlas of the whole body names a few hundred
 
 /// Why a DICOM report or plan is not read; among slices it is passed over.
 inline constexpr const char* kWithoutPicture = "it is a DICOM file without a picture";
@@ -26,10 +26,19 @@ inline constexpr const char* kWithoutPicture = "it is a DICOM file without a pic
 enum class FileKind : std::uint32_t { kUnknown, kJpeg, kPng, kTiff, kDicom, kNifti, kNrrd, kMetaImage };
 enum class ImportOperation : std::uint32_t { kProbe = 1, kDecode = 2 };
 
-/// How samples are handed over, in this computer's byte order. Wider types are turned into kFloat32.
-enum class SampleKind : std::uint32_t { kUint8, kInt16, kUint16, kFloat32 };
+/// How samples are handed over, in this computer's byte order. Those of 64 bits are turned into kFloat32.
+enum class SampleKind : std::uint32_t { kUint8, kInt16, kUint16, kFloat32, kInt32, kUint32 };
+inline constexpr SampleKind kLastSampleKind = SampleKind::kUint32;
 inline constexpr std::size_t SampleBytes(SampleKind kind) {
-  return kind == SampleKind::kUint8 ? 1 : kind == SampleKind::kFloat32 ? 4 : 2;
+  switch (kind) {
+    case SampleKind::kUint8:
+      return 1;
+    case SampleKind::kInt16:
+    case SampleKind::kUint16:
+      return 2;
+    default:
+      return 4;
+  }
 }
 
 /// Which way the file's own coordinates run.

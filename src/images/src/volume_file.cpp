@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <cstring>
 #include <optional>
 
@@ -29,10 +30,22 @@ auto WithReader(const ImageHeader& header, const std::byte* samples, const Use& 
       return use([samples](std::size_t i) { return Load<std::int16_t>(samples, i); });
     case SampleKind::kUint16:
       return use([samples](std::size_t i) { return Load<std::uint16_t>(samples, i); });
+    case SampleKind::kInt32:
+      return use([samples](std::size_t i) { return Load<std::int32_t>(samples, i); });
+    case SampleKind::kUint32:
+      return use([samples](std::size_t i) { return Load<std::uint32_t>(samples, i); });
     case SampleKind::kFloat32:
       break;
   }
   return use([samples](std::size_t i) { return Load<float>(samples, i); });
+}
+
+constexpr double kLargestFloatLabel = 16777216.0;  // 2^24
+
+std::string FormatValue(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.10g", value);
+  return text.data();
 }
 
 std::uint8_t Shade(double value, const DisplayWindow& window, bool is_inverted) {
@@ -92,14 +105,19 @@ double SampleAt(const ImageHeader& header, const std::byte* samples, std::size_t
   return WithReader(header, samples, [i](const auto& at) { return at(i); });
 }
 
-bool CopyLabels(const ImageHeader& header, const std::byte* samples, std::span<std::uint8_t> labels) {
-  return WithReader(header, samples, [&](const auto& at) {
+std::string CopyLabels(const ImageHeader& header, const std::byte* samples, std::span<std::int32_t> labels) {
+  // between larger ones not every whole number is a float, so that two labels may have become one
+  const double largest = header.samples == SampleKind::kFloat32 ? kLargestFloatLabel : kLargestLabel;
+  return WithReader(header, samples, [&](const auto& at) -> std::string {
     for (std::size_t i = 0; i < labels.size(); ++i) {
       const double label = header.slope * at(i) + header.intercept;
-      if (!(label >= 0.0 && label <= 255.0) || label != std::floor(label)) return false;
-      labels[i] = static_cast<std::uint8_t>(label);
+      if (!std::isfinite(label)) return "one is no number";
+      if (label != std::floor(label)) return FormatValue(label) + " is no whole number";
+      if (label < 0) return FormatValue(label) + " is negative";
+      if (label > largest) return FormatValue(label) + " is larger than " + FormatValue(largest);
+      labels[i] = static_cast<std::int32_t>(label);
     }
-    return true;
+    return {};
   });
 }
 

@@ -27,9 +27,10 @@ core::Result<DecodedFile> DecodeFile(const std::filesystem::path& path, Links li
 /// Sample number `i` of all, in the file's units (slope and intercept not applied).
 double SampleAt(const ImageHeader& header, const std::byte* samples, std::size_t i);
 
-/// Grey samples as labels.
-/// \return whether all are whole numbers from 0 to 255
-bool CopyLabels(const ImageHeader& header, const std::byte* samples, std::span<std::uint8_t> labels);
+/// Grey samples as labels (slope and intercept applied).
+/// \return what keeps a sample from being a label, with its value; empty when all are whole numbers from 0 to
+///         kLargestLabel that the file holds exactly
+std::string CopyLabels(const ImageHeader& header, const std::byte* samples, std::span<std::int32_t> labels);
 
 /// Least and greatest grey value (slope and intercept applied), and a window that shows the most of it.
 struct GreyStatistics {

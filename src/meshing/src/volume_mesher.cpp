@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "sliver_removal.h"
 #include "trocar/meshing/marching_cubes.h"
 #include "trocar/meshing/mesh_decimation.h"
 
@@ -155,6 +156,7 @@ core::Result<MeshedVolume> MeshVolume(ScalarVolume volume, const MeshingSettings
   const TriangleMesh& surface = coarser ? coarser->mesh : fine;
 
   std::optional<MeshedVolume> best;
+  std::size_t best_slivers = 0;
   for (const double share : kSmoothingShares) {
     TriangleMesh smooth = surface;
     SmoothingSettings smoothing = settings.smoothing;
@@ -169,8 +171,14 @@ core::Result<MeshedVolume> MeshVolume(ScalarVolume volume, const MeshingSettings
     repair.min_angle_deg = settings.min_angle_deg;
     repair.fewest_triangles = static_cast<std::size_t>(std::ceil(kFewest * settings.triangle_budget));
     made.repair = RepairMesh(made.mesh, repair);
-    if (!best || made.repair.self_intersections < best->repair.self_intersections) best = std::move(made);
-    if (best->repair.self_intersections == 0) break;
+    const std::size_t slivers = RemoveSlivers(made.mesh, {.least_angle_deg = settings.sliver_angle_deg,
+                                                          .fewest_triangles = repair.fewest_triangles});
+    const std::size_t cuts = made.repair.self_intersections;
+    if (!best || std::pair(cuts, slivers) < std::pair(best->repair.self_intersections, best_slivers)) {
+      best = std::move(made);
+      best_slivers = slivers;
+    }
+    if (best->repair.self_intersections == 0 && best_slivers == 0) break;
   }
   best->quality = InspectQuality(best->mesh, fine, settings.distance_samples);
   return std::move(*best);

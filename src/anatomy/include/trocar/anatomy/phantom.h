@@ -64,6 +64,7 @@ class Phantom {
 };
 
 /// NRRD file, uncompressed, with the labels' names as 3D Slicer keeps them; ReadLabelVolume reads it back.
+/// \pre no label is larger than 255 (TROCAR_ASSERT)
 core::Status WriteLabelVolume(const std::filesystem::path& path, const images::LabelVolume& volume);
 
 /// Writes slices/phantom-NNNN.png, labels.nrrd, control_points.json and patient/ (the truth) into a folder.

@@ -36,17 +36,20 @@ struct ColorImage {
 ///         kImageUnsupported or kImageUndecodable
 core::Result<ColorImage> ReadImage(const std::filesystem::path& path);
 
+/// Largest value of a voxel in a label map.
+inline constexpr std::int32_t kLargestLabel = 2147483647;
+
 /// Integer labels on a grid.
 struct LabelVolume {
   std::array<int, 3> size = {0, 0, 0};                  ///< voxels, first axis fastest
   std::array<std::array<double, 3>, 3> direction = {};  ///< [axis] step of one voxel, LPS [mm]
   std::array<double, 3> origin = {0, 0, 0};             ///< centre of the first voxel, LPS [mm]
-  std::vector<std::uint8_t> labels;                     ///< (size product)
+  std::vector<std::int32_t> labels;                     ///< (size product), 0 to kLargestLabel
   std::vector<std::pair<std::string, int>> names;       ///< of labels, where the file has them
 };
 
-/// Reads a label map (NIfTI, NRRD or MetaImage) of whole numbers from 0 to 255 in a process of its own, with
-/// the names of labels that 3D Slicer puts into NRRD headers, and TotalSegmentator into NIfTI headers.
+/// Reads a label map (NIfTI, NRRD, MetaImage) of whole numbers from 0 to kLargestLabel, those of 64 bits or floating point
+/// up to 2^24, in a process of its own, with the names of labels that 3D Slicer and TotalSegmentator put into headers.
 ///
 /// \param path  label map, or a folder with masks named liver and gallbladder (.nii.gz, .nii, .nrrd or .mha), which
 ///              become the labels 1 and 2
