@@ -11,16 +11,16 @@
 #include <utility>
 #include <vector>
 
-#include "trocar/anatomy/label_volume.h"
-#include "trocar/anatomy/volume_mesher.h"
 #include "trocar/bench/benchmark.h"
+#include "trocar/meshing/label_volume.h"
+#include "trocar/meshing/volume_mesher.h"
 
 namespace trocar::bench {
 namespace {
 
-using anatomy::LabelVolume;
-using anatomy::MeshedVolume;
+using images::LabelVolume;
 using math::Vec3;
+using meshing::MeshedVolume;
 
 constexpr int kTriangles = 5000;
 constexpr double kMaxVolumeChange = 0.005;
@@ -76,16 +76,16 @@ core::Result<MeshedLabels> MeshLabels(const LabelVolume& labels, const std::arra
   const auto count = std::count(labels.labels.begin(), labels.labels.end(), 1);
   made.enclosed_mm3 = static_cast<double>(count) * voxel_mm[0] * voxel_mm[1] * voxel_mm[2];
   const double pixel = std::min(voxel_mm[0], voxel_mm[1]);
-  auto slices = anatomy::FillLabelSlices(labels, 1, voxel_mm, pixel);
-  anatomy::LabelVolumeSettings settings;
-  settings.spacing_mm = std::max(pixel, anatomy::SuggestSpacing(slices, pixel, kTriangles));
-  auto volume = anatomy::MakeLabelVolume(std::move(slices), pixel, made.enclosed_mm3, settings);
+  auto slices = meshing::FillLabelSlices(labels, 1, voxel_mm, pixel);
+  meshing::LabelVolumeSettings settings;
+  settings.spacing_mm = std::max(pixel, meshing::SuggestSpacing(slices, pixel, kTriangles));
+  auto volume = meshing::MakeLabelVolume(std::move(slices), pixel, made.enclosed_mm3, settings);
   if (!volume) return volume.error();
   made.volume_s = stopwatch.Seconds();
-  anatomy::MeshingSettings meshing;
+  meshing::MeshingSettings meshing;
   meshing.triangle_budget = kTriangles;
   meshing.distance_samples = distance_samples;
-  auto meshed = anatomy::MeshVolume(std::move(*volume), meshing);
+  auto meshed = meshing::MeshVolume(std::move(*volume), meshing);
   if (!meshed) return meshed.error();
   made.mesh_s = stopwatch.Seconds() - made.volume_s;
   made.cpu_s = static_cast<double>(std::clock() - cpu_start) / CLOCKS_PER_SEC;
@@ -100,12 +100,12 @@ core::Status RunLabels(const char* name, std::array<int, 3> size, const std::arr
   std::optional<MeshedLabels> best;
   double cpu_s = 1e9;
   for (int repeat = 0; repeat <= options.repeats; ++repeat) {
-    auto made = MeshLabels(labels, voxel_mm, anatomy::MeshingSettings{}.distance_samples);
+    auto made = MeshLabels(labels, voxel_mm, meshing::MeshingSettings{}.distance_samples);
     if (!made) return made.error();
     cpu_s = std::min(cpu_s, made->cpu_s);
     if (!best || made->volume_s + made->mesh_s < best->volume_s + best->mesh_s) best = std::move(*made);
   }
-  const anatomy::MeshQuality& quality = best->meshed.quality;
+  const meshing::MeshQuality& quality = best->meshed.quality;
   if (!quality.IsSound() || quality.surface.genus != 0)
     return WrongAnswer(name, "the mesh is not one closed surface");
   if (quality.surface.triangles > kTriangles || quality.surface.triangles < 0.98 * kTriangles)

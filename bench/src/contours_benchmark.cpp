@@ -10,16 +10,16 @@
 #include <vector>
 
 #include "processor_time.h"
-#include "trocar/anatomy/contour_fit.h"
-#include "trocar/anatomy/mesh_job.h"
 #include "trocar/bench/benchmark.h"
+#include "trocar/contours/contour_fit.h"
+#include "trocar/contours/mesh_job.h"
 
 namespace trocar::bench {
 namespace {
 
-using anatomy::ColorImage;
-using anatomy::MeshLevel;
-using anatomy::OrganMesh;
+using contours::MeshLevel;
+using contours::OrganMesh;
+using images::ColorImage;
 using math::Vec2;
 
 constexpr int kPoints = 12;
@@ -74,16 +74,16 @@ std::vector<Vec2> PlacePoints(const Vec2& centre, double radius) {
 core::Status AddFitCase(const BenchmarkOptions& options, BenchmarkResult& result) {
   const Vec2 centre{560, 350};
   const double radius = 200;
-  const anatomy::EdgeField field(DrawDisc(1280, 720, centre, radius));
+  const contours::EdgeField field(DrawDisc(1280, 720, centre, radius));
   std::vector<Vec2> points = PlacePoints(centre, radius + 2);
-  anatomy::ContourFit fit;
+  contours::ContourFit fit;
   double turn = 0;
   const Times times = TimeBoth(
       options.repeats,
       [&] {
         points[0] = centre + Vec2{radius + std::cos(turn), std::sin(turn)}, turn += 0.5;
       },
-      [&] { fit = anatomy::FitContourToEdges(field, points); });
+      [&] { fit = contours::FitContourToEdges(field, points); });
   for (const Vec2& p : fit.spline) {
     if (std::fabs(Norm(p - centre) - radius) > 1.5)
       return WrongAnswer("refit", "the curve left the disc's edge");
@@ -100,9 +100,9 @@ core::Status AddPreviewCases(const BenchmarkOptions& options, BenchmarkResult& r
     const double height = (slice - 125) * kSliceMm;
     return std::sqrt(std::max(0.0, kRadiusMm * kRadiusMm - height * height)) / kPixelMm;
   };
-  const auto store = std::make_shared<anatomy::SliceStore>(
+  const auto store = std::make_shared<contours::SliceStore>(
       [&](int slice) -> core::Result<ColorImage> { return DrawDisc(512, 512, centre, radius_px(slice)); });
-  anatomy::MeshRequest request;
+  contours::MeshRequest request;
   request.pixel_mm = kPixelMm, request.slice_mm = kSliceMm;
   request.content.name = "ball";
   request.content.triangle_budget = 5000;
@@ -114,7 +114,7 @@ core::Status AddPreviewCases(const BenchmarkOptions& options, BenchmarkResult& r
       return field.error();
   }
   const double ball_ml = 4.0 / 3.0 * M_PI * std::pow(kRadiusMm, 3) / 1000;
-  auto fits = std::make_unique<anatomy::SliceFits>(store);
+  auto fits = std::make_unique<contours::SliceFits>(store);
   core::Result<OrganMesh> mesh = core::Error{};
   double turn = 0;
   for (const MeshLevel level : {MeshLevel::kCoarse, MeshLevel::kFine}) {
@@ -124,7 +124,7 @@ core::Status AddPreviewCases(const BenchmarkOptions& options, BenchmarkResult& r
           request.content.slices[15].contours[0][0] =
               centre + Vec2{radius_px(129) + std::cos(turn += 0.5), 0};
         },
-        [&] { mesh = anatomy::MakePreviewMesh(request, *fits, level); });
+        [&] { mesh = contours::MakePreviewMesh(request, *fits, level); });
     if (!mesh) return mesh.error();
     if (!mesh->is_closed || !mesh->is_manifold) return WrongAnswer("preview", "the surface is not closed");
     if (std::fabs(mesh->volume_ml / ball_ml - 1) > 0.02)
@@ -134,8 +134,8 @@ core::Status AddPreviewCases(const BenchmarkOptions& options, BenchmarkResult& r
              times, result);
   }
   const Times all = TimeBoth(
-      options.repeats, [&] { fits = std::make_unique<anatomy::SliceFits>(store); },
-      [&] { mesh = anatomy::MakePreviewMesh(request, *fits, MeshLevel::kFine); });
+      options.repeats, [&] { fits = std::make_unique<contours::SliceFits>(store); },
+      [&] { mesh = contours::MakePreviewMesh(request, *fits, MeshLevel::kFine); });
   AddTimes("fine preview of one organ with all 30 contours fitted anew", all, result);
   return {};
 }

@@ -5,24 +5,28 @@
 #include <map>
 #include <set>
 
-#include "trocar/anatomy/control_points.h"
-#include "trocar/anatomy/overlay.h"
 #include "trocar/anatomy/patient_builder.h"
+#include "trocar/contours/control_points.h"
+#include "trocar/contours/overlay.h"
+#include "trocar/images/png_file.h"
 
 namespace trocar::anatomy {
 namespace {
 
 using core::Error;
 
-core::Status WriteOverlays(const std::filesystem::path& folder, const std::map<int, ColorImage>& images,
-                           const std::map<int, Overlay>& overlays, const Progress& progress) {
+core::Status WriteOverlays(const std::filesystem::path& folder,
+                           const std::map<int, images::ColorImage>& images,
+                           const std::map<int, contours::Overlay>& overlays,
+                           const images::Progress& progress) {
   std::size_t done = 0;
   for (const auto& [slice, overlay] : overlays) {
     if (progress)
       progress("writing overlays", static_cast<double>(done++) / static_cast<double>(overlays.size()));
     char name[32];
     std::snprintf(name, sizeof(name), "overlay-%04d.png", slice);
-    if (auto status = WritePng(folder / name, DrawOverlay(images.at(slice), overlay)); !status.ok())
+    if (auto status = images::WritePng(folder / name, contours::DrawOverlay(images.at(slice), overlay));
+        !status.ok())
       return status;
   }
   return {};
@@ -30,45 +34,46 @@ core::Status WriteOverlays(const std::filesystem::path& folder, const std::map<i
 
 }  // namespace
 
-core::Result<BuildReport> BuildPatient(const BuildOptions& options, const Progress& progress) {
+core::Result<BuildReport> BuildPatient(const BuildOptions& options, const images::Progress& progress) {
   const auto tell = [&](std::string_view what, double part) {
     if (progress) progress(what, part);
   };
   const Error given_up{core::ErrorCode::kCancelled, "the patient was given up; nothing was written"};
-  auto points = ReadControlPoints(options.control_points);
+  auto points = contours::ReadControlPoints(options.control_points);
   if (!points.ok()) return points.error();
   if (options.skipped_shift_px) {
     if (!(*options.skipped_shift_px >= 0 && *options.skipped_shift_px <= 30))
       return Error{core::ErrorCode::kUsage, "skipped_shift_px must lie between 0 and 30"};
-    for (Structure& structure : points->structures)
+    for (contours::Structure& structure : points->structures)
       structure.adaption.skipped_shift_px = *options.skipped_shift_px;
   }
-  std::optional<LabelVolume> reference;
+  std::optional<images::LabelVolume> reference;
   if (options.reference) {
-    auto read = ReadLabelVolume(*options.reference);
+    auto read = images::ReadLabelVolume(*options.reference);
     if (!read.ok()) return read.error();
     reference = std::move(*read);
   }
 
   // only slices with contours are opened
   std::set<int> used;
-  for (const Structure& structure : points->structures) {
-    for (const SliceContours& slice : structure.slices) used.insert(slice.slice);
+  for (const contours::Structure& structure : points->structures) {
+    for (const contours::SliceContours& slice : structure.slices) used.insert(slice.slice);
   }
   const std::vector<int> numbers(used.begin(), used.end());
-  const auto images =
-      ReadContouredSlices(*points, options.images, numbers, options.window, progress, options.dicom_series);
+  const auto images = contours::ReadContouredSlices(*points, options.images, numbers, options.window,
+                                                    progress, options.dicom_series);
   if (!images.ok()) return images.error();
   if (options.stop.stop_requested()) return given_up;
 
-  OrganOptions organs{
+  contours::OrganOptions organs{
       options.spacing_mm, options.gap_mm, reference ? &*reference : nullptr, options.stop, {}, {}};
-  if (FollowsSkippedSlices(*points)) {
-    if (auto status = ReadSkippedFrom(*points, options.images, options.window, organs, options.dicom_series);
+  if (contours::FollowsSkippedSlices(*points)) {
+    if (auto status =
+            contours::ReadSkippedFrom(*points, options.images, options.window, organs, options.dicom_series);
         !status)
       return status.error();
   }
-  auto built = BuildOrgans(*points, *images, organs, progress);
+  auto built = contours::BuildOrgans(*points, *images, organs, progress);
   if (!built.ok()) return built.error();
   BuildReport report;
   report.organs = std::move(built->organs);
@@ -97,7 +102,7 @@ std::string FormatReport(const BuildReport& report) {
       "min angle  "
       "distance max/mean mm  volume  "
       "reference ratio  Dice\n";
-  for (const OrganReport& organ : report.organs) {
+  for (const contours::OrganReport& organ : report.organs) {
     char line[256];
     std::snprintf(
         line, sizeof(line),

@@ -5,11 +5,11 @@
 #include <cmath>
 #include <limits>
 
-#include "nearest_surface.h"
 #include "patient_frame.h"
 #include "trocar/core/assert.h"
 #include "trocar/geometry/mesh_measures.h"
 #include "trocar/math/cubic_spline.h"
+#include "trocar/meshing/nearest_surface.h"
 
 namespace trocar::anatomy {
 namespace {
@@ -42,7 +42,7 @@ class Obstacle {
 
   /// Distance to the surface, negative inside, and the way out.
   double Find(const Vec3& p, Vec3& outward) const {
-    const SurfacePoint near = surface_.Find(p);
+    const meshing::SurfacePoint near = surface_.Find(p);
     const auto& triangle = mesh_.triangles[near.triangle];
     Vec3 normal;
     for (int i = 0; i < 3; ++i) normal += near.at.weights[i] * normals_[triangle[i]];
@@ -52,7 +52,7 @@ class Obstacle {
 
  private:
   const TriangleMesh& mesh_;
-  NearestSurface surface_;
+  meshing::NearestSurface surface_;
   std::vector<Vec3> normals_;
 };
 
@@ -128,9 +128,9 @@ class Placer {
   Obstacle liver_, gallbladder_;
 };
 
-TubePoints MakeTubePoints(const char* name, const char* kind, const char* from, const char* to,
-                          const std::vector<Vec3>& line, double first_radius, double last_radius) {
-  TubePoints tube{name, kind, from, to, false, {}};
+contours::TubePoints MakeTubePoints(const char* name, const char* kind, const char* from, const char* to,
+                                    const std::vector<Vec3>& line, double first_radius, double last_radius) {
+  contours::TubePoints tube{name, kind, from, to, false, {}};
   for (std::size_t i = 0; i < line.size(); ++i) {
     const double t = static_cast<double>(i) / static_cast<double>(line.size() - 1);
     tube.points.push_back(
@@ -200,8 +200,8 @@ Vec3 PointAt(const std::vector<Vec3>& line, double t) {
 
 }  // namespace
 
-std::vector<TubePoints> PlaceDucts(const TriangleMesh& liver, const TriangleMesh& gallbladder,
-                                   const Vec3& neck, std::span<const Parameter> parameters) {
+std::vector<contours::TubePoints> PlaceDucts(const TriangleMesh& liver, const TriangleMesh& gallbladder,
+                                             const Vec3& neck, std::span<const Parameter> parameters) {
   const Placer placer(liver, gallbladder);
   const auto number = [&](std::string_view name) { return NumberOf(parameters, name); };
   const auto is_yes = [&](std::string_view name) { return TextOf(parameters, name) == "yes"; };
@@ -274,12 +274,13 @@ std::vector<TubePoints> PlaceDucts(const TriangleMesh& liver, const TriangleMesh
   const auto bile = placer.Route({junction, math::Lerp(junction, bile_end, 0.5), bile_end}, bile_radius,
                                  bile_length, kBehind);
 
-  std::vector<TubePoints> tubes = {MakeTubePoints("cystic_duct", "duct", "gallbladder", "common_bile_duct",
-                                                  cystic, cystic_mouth, cystic_radius),
-                                   MakeTubePoints("common_hepatic_duct", "duct", "liver", "common_bile_duct",
-                                                  hepatic, 0.85 * hepatic_radius, hepatic_radius),
-                                   MakeTubePoints("common_bile_duct", "duct", "common_hepatic_duct",
-                                                  "outside", bile, bile_radius, 0.85 * bile_radius)};
+  std::vector<contours::TubePoints> tubes = {
+      MakeTubePoints("cystic_duct", "duct", "gallbladder", "common_bile_duct", cystic, cystic_mouth,
+                     cystic_radius),
+      MakeTubePoints("common_hepatic_duct", "duct", "liver", "common_bile_duct", hepatic,
+                     0.85 * hepatic_radius, hepatic_radius),
+      MakeTubePoints("common_bile_duct", "duct", "common_hepatic_duct", "outside", bile, bile_radius,
+                     0.85 * bile_radius)};
 
   // right hepatic artery: from the left, behind the common hepatic duct, through the triangle into the liver
   const double artery_radius = 0.5 * number("hepatic_artery_diameter");
@@ -362,7 +363,7 @@ std::vector<Tube> MakeTemplateTubes(const TriangleMesh& liver, const TriangleMes
   const auto placed = PlaceDucts(in_mm(liver), in_mm(gallbladder), kMmPerMetre * neck,
                                  is_whole ? parameters : std::span<const Parameter>(*usual));
   std::vector<Tube> tubes;
-  for (const TubePoints& points : placed) {
+  for (const contours::TubePoints& points : placed) {
     const auto name_of = [](const std::string& end) { return end == "outside" ? std::string() : end; };
     Tube tube{points.name,
               points.kind == "artery" ? TubeKind::kArtery : TubeKind::kDuct,
@@ -370,7 +371,7 @@ std::vector<Tube> MakeTemplateTubes(const TriangleMesh& liver, const TriangleMes
               name_of(points.to),
               {},
               false};
-    for (const TubePoint& point : points.points) {
+    for (const contours::TubePoint& point : points.points) {
       tube.line.points.push_back(Vec3{point.pixel.x, point.pixel.y, point.slice} / kMmPerMetre);
       tube.line.radii.push_back(point.radius_mm / kMmPerMetre);
     }
@@ -380,17 +381,17 @@ std::vector<Tube> MakeTemplateTubes(const TriangleMesh& liver, const TriangleMes
   return tubes;
 }
 
-double CalcLengthMm(const TubePoints& tube) {
+double CalcLengthMm(const contours::TubePoints& tube) {
   double sum = 0;
   for (std::size_t i = 1; i < tube.points.size(); ++i) {
-    const TubePoint &a = tube.points[i - 1], &b = tube.points[i];
+    const contours::TubePoint &a = tube.points[i - 1], &b = tube.points[i];
     sum += Norm(Vec3{b.pixel.x - a.pixel.x, b.pixel.y - a.pixel.y, b.slice - a.slice});
   }
   return sum;
 }
 
-ControlPoints MakeWorldFrame() {
-  ControlPoints points;
+contours::ControlPoints MakeWorldFrame() {
+  contours::ControlPoints points;
   points.axes = {"left", "superior", "anterior"};
   points.origin_landmark = "fundus";
   points.origin_mm = {-75, 95, -70};

@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "trocar/anatomy/control_points.h"
 #include "trocar/anatomy/patient_parameters.h"
+#include "trocar/contours/control_points.h"
 #include "trocar/geometry/triangle_mesh.h"
 
 namespace trocar::anatomy {
@@ -20,9 +20,9 @@ namespace trocar::anatomy {
 /// \param parameters  as DrawParameters returns them
 /// \return tubes for ControlPoints with pixel_mm = slice_mm = 1 and axes left, superior, anterior; is_seen =
 /// false
-std::vector<TubePoints> PlaceDucts(const geometry::TriangleMesh& liver,
-                                   const geometry::TriangleMesh& gallbladder, const math::Vec3& neck,
-                                   std::span<const Parameter> parameters);
+std::vector<contours::TubePoints> PlaceDucts(const geometry::TriangleMesh& liver,
+                                             const geometry::TriangleMesh& gallbladder,
+                                             const math::Vec3& neck, std::span<const Parameter> parameters);
 
 /// The usual tubes for a patient whose pictures show none, in the world frame [m]; is_seen = false.
 /// \param neck  where the cystic duct leaves the gallbladder, world frame [m]
@@ -32,10 +32,10 @@ std::vector<Tube> MakeTemplateTubes(const geometry::TriangleMesh& liver,
                                     std::span<const Parameter> parameters);
 
 /// Length of the polygon through a tube's points, in the frame of PlaceDucts [mm].
-double CalcLengthMm(const TubePoints& tube);
+double CalcLengthMm(const contours::TubePoints& tube);
 
 /// Control points without contours, whose frame is (left, cranial, anterior) [mm] and whose fundus lies where
 /// the built-in scenes expect it.
-ControlPoints MakeWorldFrame();
+contours::ControlPoints MakeWorldFrame();
 
 }  // namespace trocar::anatomy

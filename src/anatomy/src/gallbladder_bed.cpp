@@ -15,7 +15,8 @@ constexpr double kCarries = 0.2;  // barycentric weight from which a liver verte
 
 }  // namespace
 
-std::vector<std::uint32_t> FindCarriers(const geometry::TriangleMesh& liver, const SurfacePoint& near) {
+std::vector<std::uint32_t> FindCarriers(const geometry::TriangleMesh& liver,
+                                        const meshing::SurfacePoint& near) {
   std::vector<std::uint32_t> carriers;
   for (int corner = 0; corner < 3; ++corner) {
     if (near.at.weights[corner] >= kCarries) carriers.push_back(liver.triangles[near.triangle][corner]);
@@ -27,11 +28,11 @@ Bed FindBed(const geometry::TriangleMesh& gallbladder, const geometry::TriangleM
             double bed_distance) {
   std::vector<Vec3> normals(gallbladder.positions.size());
   geometry::CalcVertexNormals(gallbladder.positions, gallbladder.triangles, normals);
-  const NearestSurface surface(liver);
+  const meshing::NearestSurface surface(liver);
   std::set<std::uint32_t> of_liver;
   Bed bed;
   for (std::uint32_t v = 0; v < gallbladder.positions.size(); ++v) {
-    const SurfacePoint near = surface.Find(gallbladder.positions[v]);
+    const meshing::SurfacePoint near = surface.Find(gallbladder.positions[v]);
     if (near.distance > bed_distance) continue;
     // the surfaces face each other
     if (Dot(normals[v], geometry::CalcAreaNormal(liver.positions, liver.triangles[near.triangle])) >= 0)

@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "nearest_surface.h"
 #include "trocar/geometry/triangle_mesh.h"
+#include "trocar/meshing/nearest_surface.h"
 
 namespace trocar::anatomy {
 
@@ -17,7 +17,8 @@ struct Bed {
 };
 
 /// Liver vertices that carry the strand of a place on the gallbladder: corners of the nearest triangle.
-std::vector<std::uint32_t> FindCarriers(const geometry::TriangleMesh& liver, const SurfacePoint& near);
+std::vector<std::uint32_t> FindCarriers(const geometry::TriangleMesh& liver,
+                                        const meshing::SurfacePoint& near);
 
 /// \param bed_distance  gap over which the surfaces are joined where they face each other [m]
 Bed FindBed(const geometry::TriangleMesh& gallbladder, const geometry::TriangleMesh& liver,

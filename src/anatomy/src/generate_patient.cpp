@@ -11,10 +11,10 @@
 
 #include "duct_template.h"
 #include "trocar/anatomy/patient_builder.h"
-#include "trocar/anatomy/volume_mesher.h"
 #include "trocar/geometry/distance.h"
 #include "trocar/geometry/mesh_measures.h"
 #include "trocar/math/random.h"
+#include "trocar/meshing/volume_mesher.h"
 
 namespace trocar::anatomy {
 namespace {
@@ -287,11 +287,11 @@ class Body {
 /// Samples of minus the distance. Only the surface's place counts: a block of samples whose middle lies so
 /// far from the surface that all of it must be on the same side takes the middle's value.
 template <typename Function>
-ScalarVolume Sample(const geometry::Box& box, double spacing, Function distance) {
+meshing::ScalarVolume Sample(const geometry::Box& box, double spacing, Function distance) {
   constexpr int kBlock = 4;           // samples along each side
   constexpr double kSteepness = 2.5;  // no distance grows faster than this; they are first-order estimates
   const double clear = kSteepness * 0.5 * std::sqrt(3.0) * (kBlock + 1) * spacing;
-  ScalarVolume volume;
+  meshing::ScalarVolume volume;
   volume.spacing = spacing;
   for (int axis = 0; axis < 3; ++axis) {
     volume.first[axis] = static_cast<int>(std::floor(box.min[axis] / spacing)) - 1;
@@ -320,12 +320,13 @@ ScalarVolume Sample(const geometry::Box& box, double spacing, Function distance)
   return volume;
 }
 
-core::Result<StructureMesh> MakeStructure(const char* name, ScalarVolume volume, int triangles) {
-  MeshingSettings settings;
+core::Result<meshing::StructureMesh> MakeStructure(const char* name, meshing::ScalarVolume volume,
+                                                   int triangles) {
+  meshing::MeshingSettings settings;
   settings.triangle_budget = triangles;
   settings.smoothing.iterations = kSmoothingRounds;
   settings.distance_samples = 0;
-  auto meshed = MeshVolume(std::move(volume), settings);
+  auto meshed = meshing::MeshVolume(std::move(volume), settings);
   if (!meshed.ok()) return Error{meshed.error().code, std::string(name) + ": " + meshed.error().message};
   if (!meshed->quality.IsSound()) {
     return Error{ErrorCode::kMeshInvalid,
@@ -333,7 +334,7 @@ core::Result<StructureMesh> MakeStructure(const char* name, ScalarVolume volume,
                      ": its mesh cuts itself with these parameters; take another seed "
                      "or milder settings"};
   }
-  return StructureMesh{name, std::move(meshed->mesh)};
+  return meshing::StructureMesh{name, std::move(meshed->mesh)};
 }
 
 }  // namespace
@@ -345,7 +346,7 @@ core::Result<Patient> GeneratePatient(std::uint64_t seed, std::span<const Parame
 
   auto liver = MakeStructure(
       "liver", Sample(body.LiverBox(), kLiverSpacingMm, [&](const Vec3& p) { return body.LiverDistance(p); }),
-      kLiverTriangles);
+      meshing::kLiverTriangles);
   if (!liver.ok()) return liver.error();
   geometry::Box box = geometry::CalcBox(body.Gallbladder().points);
   const double reach =
@@ -354,10 +355,10 @@ core::Result<Patient> GeneratePatient(std::uint64_t seed, std::span<const Parame
   auto gallbladder = MakeStructure(
       "gallbladder",
       Sample(box, kGallbladderSpacingMm, [&](const Vec3& p) { return body.GallbladderDistance(p); }),
-      kGallbladderTriangles);
+      meshing::kGallbladderTriangles);
   if (!gallbladder.ok()) return gallbladder.error();
 
-  ControlPoints frame = MakeWorldFrame();
+  contours::ControlPoints frame = MakeWorldFrame();
   frame.name = "Generated patient, seed " + std::to_string(seed);
   frame.provenance = "Made by a computer from the seed and the parameters listed here; no person's images";
   frame.tubes = PlaceDucts(liver->mesh, gallbladder->mesh, body.Neck(), *parameters);
@@ -376,7 +377,7 @@ core::Result<Patient> GeneratePatient(std::uint64_t seed, std::span<const Parame
   measure("measured_gallbladder_volume",
           kMlPerCubicMm * geometry::CalcVolume(gallbladder->mesh.positions, gallbladder->mesh.triangles),
           "mL");
-  for (const TubePoints& tube : frame.tubes) {
+  for (const contours::TubePoints& tube : frame.tubes) {
     const std::string name = "measured_" + tube.name + "_length";
     measure(name.c_str(), CalcLengthMm(tube), "mm");
   }

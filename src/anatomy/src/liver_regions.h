@@ -7,9 +7,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "nearest_surface.h"
 #include "trocar/anatomy/patient_builder.h"
 #include "trocar/geometry/mesh_topology.h"
+#include "trocar/meshing/nearest_surface.h"
 
 namespace trocar::anatomy {
 
@@ -28,7 +28,7 @@ struct LiverRegions {
 
 /// \param liver  closed, outward; world frame [m]
 /// \param falciform_x  sagittal plane of the falciform ligament [m]
-LiverRegions FindLiverRegions(const geometry::TriangleMesh& liver, const NearestSurface& gallbladder,
+LiverRegions FindLiverRegions(const geometry::TriangleMesh& liver, const meshing::NearestSurface& gallbladder,
                               double falciform_x, const RegionSettings& settings);
 
 }  // namespace trocar::anatomy

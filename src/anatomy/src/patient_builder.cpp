@@ -8,10 +8,10 @@
 #include "duct_template.h"
 #include "gallbladder_bed.h"
 #include "liver_regions.h"
-#include "nearest_surface.h"
 #include "trocar/anatomy/tube_graph.h"
 #include "trocar/core/assert.h"
 #include "trocar/geometry/mesh_measures.h"
+#include "trocar/meshing/nearest_surface.h"
 
 namespace trocar::anatomy {
 namespace {
@@ -27,7 +27,8 @@ constexpr double kFundusRadius =
 /// Maps (column, row, slice) to the world without the final shift [m].
 class ImageFrame {
  public:
-  explicit ImageFrame(const ControlPoints& points) : points_(points), directions_(AxisDirections(points)) {}
+  explicit ImageFrame(const contours::ControlPoints& points)
+      : points_(points), directions_(contours::AxisDirections(points)) {}
 
   Vec3 FromMm(const Vec3& p) const {
     Vec3 world;
@@ -37,7 +38,7 @@ class ImageFrame {
     }
     return world;
   }
-  Vec3 FromPixel(double slice, const Vec2& pixel) const {
+  Vec3 FromPixel(double slice, const math::Vec2& pixel) const {
     return FromMm({points_.pixel_mm * pixel.x, points_.pixel_mm * pixel.y, points_.slice_mm * slice});
   }
   TriangleMesh FromMm(TriangleMesh mesh) const {
@@ -50,7 +51,7 @@ class ImageFrame {
   }
 
  private:
-  const ControlPoints& points_;
+  const contours::ControlPoints& points_;
   std::array<std::array<double, 3>, 3> directions_;
 };
 
@@ -75,7 +76,7 @@ Vec3 FindLongAxis(const TriangleMesh& mesh, Vec3& centre) {
 }
 
 /// Mean of the surface around the vertex that lies furthest along `direction`, put back onto the surface.
-Vec3 FindEnd(const TriangleMesh& mesh, const NearestSurface& surface, const Vec3& direction) {
+Vec3 FindEnd(const TriangleMesh& mesh, const meshing::NearestSurface& surface, const Vec3& direction) {
   const auto furthest =
       std::max_element(mesh.positions.begin(), mesh.positions.end(),
                        [&](const Vec3& a, const Vec3& b) { return Dot(a, direction) < Dot(b, direction); });
@@ -87,7 +88,7 @@ Vec3 FindEnd(const TriangleMesh& mesh, const NearestSurface& surface, const Vec3
   return surface.Find(mean / count).at.point;
 }
 
-Tube MakeTube(const TubePoints& points, const ImageFrame& frame, const std::set<std::string>& known,
+Tube MakeTube(const contours::TubePoints& points, const ImageFrame& frame, const std::set<std::string>& known,
               double spacing) {
   Tube tube;
   tube.name = points.name;
@@ -96,7 +97,7 @@ Tube MakeTube(const TubePoints& points, const ImageFrame& frame, const std::set<
   tube.from = known.contains(points.from) ? points.from : "";
   tube.to = known.contains(points.to) ? points.to : "";
   tube.is_seen = points.is_seen;
-  for (const TubePoint& point : points.points) {
+  for (const contours::TubePoint& point : points.points) {
     tube.line.points.push_back(frame.FromPixel(point.slice, point.pixel));
     tube.line.radii.push_back(kMetresPerMm * point.radius_mm);
   }
@@ -106,14 +107,14 @@ Tube MakeTube(const TubePoints& points, const ImageFrame& frame, const std::set<
 
 }  // namespace
 
-core::Result<Patient> AssemblePatient(const ControlPoints& points,
-                                      const std::vector<StructureMesh>& structures,
+core::Result<Patient> AssemblePatient(const contours::ControlPoints& points,
+                                      const std::vector<meshing::StructureMesh>& structures,
                                       const RegionSettings& settings) {
   const ImageFrame frame(points);
   Patient patient;
   patient.name = points.name;
   patient.provenance = points.provenance;
-  for (const StructureMesh& structure : structures) {
+  for (const meshing::StructureMesh& structure : structures) {
     patient.organs.push_back({structure.name, frame.FromMm(structure.mesh), {}});
   }
   const int liver_index = patient.FindOrgan("liver"), gallbladder_index = patient.FindOrgan("gallbladder");
@@ -124,13 +125,13 @@ core::Result<Patient> AssemblePatient(const ControlPoints& points,
   }
   Organ& liver = patient.organs[liver_index];
   Organ& gallbladder = patient.organs[gallbladder_index];
-  const NearestSurface gallbladder_surface(gallbladder.mesh);
+  const meshing::NearestSurface gallbladder_surface(gallbladder.mesh);
 
   // tubes, their ends on the gallbladder's surface where they enter it
   std::set<std::string> known;
   for (const Organ& organ : patient.organs) known.insert(organ.name);
-  for (const TubePoints& tube : points.tubes) known.insert(tube.name);
-  for (const TubePoints& tube_points : points.tubes) {
+  for (const contours::TubePoints& tube : points.tubes) known.insert(tube.name);
+  for (const contours::TubePoints& tube_points : points.tubes) {
     Tube tube = MakeTube(tube_points, frame, known, settings.tube_spacing);
     const auto snap = [&](Vec3& end) { end = gallbladder_surface.Find(end).at.point; };
     if (tube.from == "gallbladder") snap(tube.line.points.front());
@@ -157,7 +158,7 @@ core::Result<Patient> AssemblePatient(const ControlPoints& points,
     JoinTubes(patient);
   }
 
-  const LandmarkPoint* fissure = points.FindLandmark("umbilical_fissure");
+  const contours::LandmarkPoint* fissure = points.FindLandmark("umbilical_fissure");
   const double falciform_x =
       fissure ? frame.FromPixel(fissure->slice, fissure->pixel).x : infundibulum.x + 0.02;
   const LiverRegions regions = FindLiverRegions(liver.mesh, gallbladder_surface, falciform_x, settings);
@@ -197,7 +198,7 @@ core::Result<Patient> AssemblePatient(const ControlPoints& points,
   };
   const Vec3 *cystic = middle_of("cystic_duct"), *hepatic = middle_of("common_hepatic_duct");
   if (cystic && hepatic) patient.landmarks.push_back({"hepatocystic_triangle", 0.5 * (*cystic + *hepatic)});
-  for (const LandmarkPoint& placed : points.landmarks) {
+  for (const contours::LandmarkPoint& placed : points.landmarks) {
     patient.landmarks.push_back({placed.name, frame.FromPixel(placed.slice, placed.pixel)});
   }
 
@@ -205,7 +206,7 @@ core::Result<Patient> AssemblePatient(const ControlPoints& points,
   // not insufflated, so that without either the fundus goes where the scenes expect it
   constexpr std::string_view kUmbilicus = "umbilicus";
   const bool is_placed = patient.FindLandmark(kUmbilicus) != nullptr;
-  const ControlPoints usual = MakeWorldFrame();
+  const contours::ControlPoints usual = MakeWorldFrame();
   const bool is_given = !points.origin_landmark.empty();
   const std::string anchor_name = is_given    ? points.origin_landmark
                                   : is_placed ? std::string(kUmbilicus)

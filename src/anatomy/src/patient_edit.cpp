@@ -6,8 +6,8 @@
 
 #include "duct_template.h"
 #include "gallbladder_bed.h"
-#include "nearest_surface.h"
 #include "patient_frame.h"
+#include "trocar/meshing/nearest_surface.h"
 
 namespace trocar::anatomy {
 namespace {
@@ -73,10 +73,10 @@ void FollowBed(Patient& patient, std::uint32_t gallbladder, const Region& bed) {
     if (is_strand(a)) tied.push_back(a.vertex_a);
   }
   std::sort(tied.begin(), tied.end());
-  const NearestSurface surface(patient.organs[liver].mesh);
+  const meshing::NearestSurface surface(patient.organs[liver].mesh);
   for (const auto v : bed.vertices) {
     if (std::binary_search(tied.begin(), tied.end(), v)) continue;
-    const SurfacePoint near = surface.Find(patient.organs[gallbladder].mesh.positions[v]);
+    const meshing::SurfacePoint near = surface.Find(patient.organs[gallbladder].mesh.positions[v]);
     if (near.distance > kStrandReach) continue;
     const TriangleMesh& liver_mesh = patient.organs[liver].mesh;
     for (const auto carrier : FindCarriers(liver_mesh, near)) {
@@ -305,7 +305,7 @@ core::Status PlaceLandmark(Patient& patient, std::string_view name, const Vec3& 
   const int gallbladder = patient.FindOrgan("gallbladder");
   if ((name == "fundus" || name == "infundibulum") && gallbladder >= 0 &&
       !patient.organs[gallbladder].mesh.triangles.empty()) {
-    place = NearestSurface(patient.organs[gallbladder].mesh).Find(position).at.point;
+    place = meshing::NearestSurface(patient.organs[gallbladder].mesh).Find(position).at.point;
   }
   for (Landmark& landmark : patient.landmarks) {
     if (landmark.name != name) continue;

@@ -5,14 +5,15 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <map>
 #include <vector>
 
 #include "duct_template.h"
-#include "trocar/anatomy/label_volume.h"
 #include "trocar/anatomy/patient_builder.h"
-#include "trocar/anatomy/volume.h"
-#include "trocar/anatomy/volume_mesher.h"
 #include "trocar/geometry/mesh_measures.h"
+#include "trocar/meshing/label_volume.h"
+#include "trocar/meshing/volume.h"
+#include "trocar/meshing/volume_mesher.h"
 
 namespace trocar::anatomy {
 namespace {
@@ -30,10 +31,37 @@ Error Mismatch(const std::string& why) {
   return {ErrorCode::kLabelsMismatch, why};
 }
 
-std::array<std::size_t, 256> CountLabels(const LabelVolume& volume) {
-  std::array<std::size_t, 256> counts{};
-  for (const auto label : volume.labels) ++counts[label];
+/// How many voxels each label has that occurs.
+using LabelCounts = std::map<std::int32_t, std::size_t>;
+
+LabelCounts CountLabels(const images::LabelVolume& volume) {
+  LabelCounts counts;
+  for (std::size_t i = 0; i < volume.labels.size();) {
+    // labels come in runs along a row
+    std::size_t end = i + 1;
+    while (end < volume.labels.size() && volume.labels[end] == volume.labels[i]) ++end;
+    counts[volume.labels[i]] += end - i;
+    i = end;
+  }
   return counts;
+}
+
+std::size_t CountOf(const LabelCounts& counts, int label) {
+  const auto found = counts.find(label);
+  return found == counts.end() ? 0 : found->second;
+}
+
+/// "1, 2, 5", the first of them where there are many.
+std::string ListLabels(const LabelCounts& counts) {
+  constexpr std::size_t kMostNamed = 20;
+  std::string text;
+  std::size_t named = 0;
+  for (const auto& [label, count] : counts) {
+    if (label == 0) continue;
+    if (named++ == kMostNamed) return text + ", ...";
+    text += (text.empty() ? "" : ", ") + std::to_string(label);
+  }
+  return text.empty() ? "none" : text;
 }
 
 std::string LowerCase(std::string text) {
@@ -59,7 +87,7 @@ Vec3 FindNeck(const geometry::TriangleMesh& gallbladder) {
 
 }  // namespace
 
-core::Result<OrganLabels> FindLabels(const LabelVolume& volume, const LabelOptions& options) {
+core::Result<OrganLabels> FindLabels(const images::LabelVolume& volume, const LabelOptions& options) {
   const auto counts = CountLabels(volume);
   OrganLabels found{options.liver, options.gallbladder, "named on request"};
   if (found.liver == 0 || found.gallbladder == 0) {
@@ -72,7 +100,8 @@ core::Result<OrganLabels> FindLabels(const LabelVolume& volume, const LabelOptio
     usual.convention = "segment names";
     if (usual.liver == 0 && usual.gallbladder == 0) {
       // spleen and right kidney are TotalSegmentator's 1 and 2: the liver is larger than both
-      const bool is_total = counts[kTotalLiver] > counts[1] && counts[kTotalLiver] > counts[2];
+      const bool is_total = CountOf(counts, kTotalLiver) > CountOf(counts, 1) &&
+                            CountOf(counts, kTotalLiver) > CountOf(counts, 2);
       usual = is_total ? OrganLabels{kTotalLiver, kTotalGallbladder, "TotalSegmentator's numbers"}
                        : OrganLabels{1, 2, "1 and 2"};
     }
@@ -86,15 +115,10 @@ core::Result<OrganLabels> FindLabels(const LabelVolume& volume, const LabelOptio
     return Mismatch("the label map names its labels, and none of them is the " + std::string(name) +
                     "; say which one it is with --" + name);
   }
-  std::string present;
-  for (int label = 1; label < 256; ++label) {
-    if (counts[label] > 0) present += (present.empty() ? "" : ", ") + std::to_string(label);
-  }
-  const auto is_missing = [&](int label) { return label < 1 || label > 255 || counts[label] == 0; };
   for (const auto& [name, label] : {std::pair{"liver", found.liver}, {"gallbladder", found.gallbladder}}) {
-    if (!is_missing(label)) continue;
+    if (label > 0 && CountOf(counts, label) > 0) continue;
     return Mismatch("the label map has no label " + std::to_string(label) + ", which should be the " + name +
-                    " (found by: " + found.convention + "); it has " + (present.empty() ? "none" : present) +
+                    " (found by: " + found.convention + "); it has " + ListLabels(counts) +
                     "; name the right one with --" + name);
   }
   if (found.liver == found.gallbladder) {
@@ -104,7 +128,8 @@ core::Result<OrganLabels> FindLabels(const LabelVolume& volume, const LabelOptio
   return found;
 }
 
-core::Result<BuildReport> BuildPatientFromLabels(const LabelOptions& options, const Progress& progress) {
+core::Result<BuildReport> BuildPatientFromLabels(const LabelOptions& options,
+                                                 const images::Progress& progress) {
   const auto tell = [&](std::string_view what, double part) {
     if (progress) progress(what, part);
   };
@@ -113,7 +138,7 @@ core::Result<BuildReport> BuildPatientFromLabels(const LabelOptions& options, co
     return Error{ErrorCode::kUsage, "spacing_mm must lie between 0.4 and 4, gap_mm between 0 and 5"};
   }
   tell("reading labels", 0.0);
-  const auto volume = ReadLabelVolume(options.labels);
+  const auto volume = images::ReadLabelVolume(options.labels);
   if (!volume.ok()) return volume.error();
   std::array<double, 3> step{};
   std::array<Vec3, 3> axes;  // of one millimetre along each axis, (left, cranial, anterior)
@@ -141,21 +166,21 @@ core::Result<BuildReport> BuildPatientFromLabels(const LabelOptions& options, co
     const char* name;
     int label, triangles;
   };
-  const Part parts[] = {{"liver", labels->liver, kLiverTriangles},
-                        {"gallbladder", labels->gallbladder, kGallbladderTriangles}};
+  const Part parts[] = {{"liver", labels->liver, meshing::kLiverTriangles},
+                        {"gallbladder", labels->gallbladder, meshing::kGallbladderTriangles}};
   const auto counts = CountLabels(*volume);
   BuildReport report;
-  std::vector<ScalarVolume> volumes;
+  std::vector<meshing::ScalarVolume> volumes;
   for (const Part& part : parts) {
     tell(std::string("filling ") + part.name, 0.1);
-    auto slices = FillLabelSlices(*volume, part.label, step, pixel);
-    OrganReport organ;
+    auto slices = meshing::FillLabelSlices(*volume, part.label, step, pixel);
+    contours::OrganReport organ;
     organ.name = part.name;
     organ.slices = slices.size();
-    LabelVolumeSettings settings;
+    meshing::LabelVolumeSettings settings;
     settings.spacing_mm = options.spacing_mm;
-    const double enclosed = static_cast<double>(counts[part.label]) * step[0] * step[1] * step[2];
-    auto distances = MakeLabelVolume(std::move(slices), pixel, enclosed, settings);
+    const double enclosed = static_cast<double>(CountOf(counts, part.label)) * step[0] * step[1] * step[2];
+    auto distances = meshing::MakeLabelVolume(std::move(slices), pixel, enclosed, settings);
     if (!distances.ok()) {
       return Error{distances.error().code, std::string(part.name) + ", label " + std::to_string(part.label) +
                                                ": " + distances.error().message};
@@ -163,17 +188,17 @@ core::Result<BuildReport> BuildPatientFromLabels(const LabelOptions& options, co
     volumes.push_back(std::move(*distances));
     report.organs.push_back(organ);
   }
-  Subtract(volumes[0], volumes[1], options.gap_mm);
+  meshing::Subtract(volumes[0], volumes[1], options.gap_mm);
 
-  std::vector<StructureMesh> meshes;
+  std::vector<meshing::StructureMesh> meshes;
   for (std::size_t i = 0; i < volumes.size(); ++i) {
     tell(std::string("meshing ") + parts[i].name, 0.3 + 0.3 * static_cast<double>(i));
-    MeshingSettings settings;
+    meshing::MeshingSettings settings;
     settings.triangle_budget = parts[i].triangles;
-    auto meshed = MeshVolume(std::move(volumes[i]), settings);
+    auto meshed = meshing::MeshVolume(std::move(volumes[i]), settings);
     if (!meshed.ok())
       return Error{meshed.error().code, std::string(parts[i].name) + ": " + meshed.error().message};
-    AddMeshQuality(report.organs[i], meshed->quality);
+    contours::AddMeshQuality(report.organs[i], meshed->quality);
     geometry::TriangleMesh& mesh = meshed->mesh;
     for (Vec3& p : mesh.positions) p = p.x * axes[0] + p.y * axes[1] + p.z * axes[2];
     // a mirrored frame turns the triangles inside out
@@ -186,7 +211,7 @@ core::Result<BuildReport> BuildPatientFromLabels(const LabelOptions& options, co
   tell("assembling the patient", 0.9);
   auto usual = DrawParameters(0, MakeUsualSettings());
   if (!usual.ok()) return usual.error();
-  ControlPoints frame = MakeWorldFrame();
+  contours::ControlPoints frame = MakeWorldFrame();
   // a file name may name a person: it is not kept
   frame.name = "Patient from a label map";
   frame.provenance = "Liver and gallbladder from a label map (" + labels->convention +

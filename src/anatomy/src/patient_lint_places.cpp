@@ -2,9 +2,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "nearest_surface.h"
 #include "patient_linter.h"
 #include "trocar/geometry/mesh_measures.h"
+#include "trocar/meshing/nearest_surface.h"
 
 namespace trocar::anatomy {
 namespace {
@@ -39,7 +39,7 @@ void Linter::LintLandmarks() {
   }
   const Organ* gallbladder = FindUsable("gallbladder");
   if (gallbladder == nullptr || !is_unit_right_) return;
-  const NearestSurface surface(gallbladder->mesh);
+  const meshing::NearestSurface surface(gallbladder->mesh);
   for (const char* name : {"fundus", "infundibulum"}) {
     const Landmark* landmark = patient_.FindLandmark(name);
     if (landmark == nullptr || !math::IsFinite(landmark->position)) continue;
@@ -86,7 +86,7 @@ void Linter::LintDepth() {
   const Organ *liver = FindUsable("liver"), *gallbladder = FindUsable("gallbladder");
   if (liver == nullptr || gallbladder == nullptr || !is_unit_right_) return;
   const TriangleMesh mesh = Outward(liver->mesh);
-  const NearestSurface surface(mesh);
+  const meshing::NearestSurface surface(mesh);
   std::size_t inside = 0;
   double deepest = 0;
   Vec3 place;

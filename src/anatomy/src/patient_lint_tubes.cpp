@@ -5,10 +5,10 @@
 #include <limits>
 #include <string_view>
 
-#include "nearest_surface.h"
 #include "patient_frame.h"
 #include "patient_linter.h"
 #include "trocar/anatomy/tube_graph.h"
+#include "trocar/meshing/nearest_surface.h"
 
 namespace trocar::anatomy {
 namespace {
@@ -76,7 +76,7 @@ void Linter::LintTubeEnd(const Tube& tube, const std::string& target, const Vec3
   double distance = 0;
   if (const Organ* organ = FindUsable(target); organ != nullptr) {
     const TriangleMesh mesh = Outward(organ->mesh);
-    const NearestSurface surface(mesh);
+    const meshing::NearestSurface surface(mesh);
     distance = surface.Find(end).distance;
     // ducts and arteries of the liver run on inside it
     if (target == "liver" && distance > kJoinReach && surface.IsInside(end)) distance = 0;

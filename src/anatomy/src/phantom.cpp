@@ -5,13 +5,13 @@
 #include <cmath>
 #include <string>
 
-#include "mesh_slice.h"
 #include "patient_frame.h"
 #include "phantom_tissue.h"
-#include "trocar/anatomy/volume.h"
 #include "trocar/core/assert.h"
 #include "trocar/geometry/tube.h"
 #include "trocar/math/random.h"
+#include "trocar/meshing/mesh_slice.h"
+#include "trocar/meshing/volume.h"
 
 namespace trocar::anatomy {
 namespace {
@@ -125,7 +125,7 @@ struct Phantom::Content {
   Patient patient;
   PhantomOptions options;
   PhantomBody body;
-  SliceGrid grid;
+  meshing::SliceGrid grid;
   int slices = 0;
   Vec3 first;  // world place of pixel (0, 0) in slice 0 [mm]
   double wall_mm = kWallMm;
@@ -185,19 +185,20 @@ int Phantom::SliceCount() const {
   return content_->slices;
 }
 
-ColorImage Phantom::DrawSlice(int slice) const {
+images::ColorImage Phantom::DrawSlice(int slice) const {
   const Content& c = *content_;
   TROCAR_ASSERT(slice >= 1 && slice <= c.slices);
   const int width = c.grid.width, height = c.grid.height;
   const double z = c.Height(slice);
-  const auto liver = CalcCoverage(CutMesh(c.liver, z), c.grid, kSamples);
-  const auto gallbladder = CalcCoverage(CutMesh(c.gallbladder, z), c.grid, kSamples);
+  const auto liver = meshing::CalcCoverage(meshing::CutMesh(c.liver, z), c.grid, kSamples);
+  const auto gallbladder = meshing::CalcCoverage(meshing::CutMesh(c.gallbladder, z), c.grid, kSamples);
   std::vector<std::vector<float>> duct_cover, artery_cover;
   for (const auto& [kind, mesh] : c.tubes) {
-    const auto cut = CutMesh(mesh, z);
+    const auto cut = meshing::CutMesh(mesh, z);
     // each for itself: where two skins overlap, the even-odd rule would leave a hole
     if (!cut.empty())
-      (kind == TubeKind::kDuct ? duct_cover : artery_cover).push_back(CalcCoverage(cut, c.grid, kSamples));
+      (kind == TubeKind::kDuct ? duct_cover : artery_cover)
+          .push_back(meshing::CalcCoverage(cut, c.grid, kSamples));
   }
   const std::size_t count = liver.size();
   std::vector<std::uint8_t> is_organ(count), is_gallbladder(count);
@@ -205,8 +206,8 @@ ColorImage Phantom::DrawSlice(int slice) const {
     is_organ[i] = liver[i] + gallbladder[i] > 0.5f;
     is_gallbladder[i] = gallbladder[i] > 0.5f;
   }
-  const auto organ_depth = CalcSignedDistances(is_organ, width, height);
-  const auto gallbladder_depth = CalcSignedDistances(is_gallbladder, width, height);
+  const auto organ_depth = meshing::CalcSignedDistances(is_organ, width, height);
+  const auto gallbladder_depth = meshing::CalcSignedDistances(is_gallbladder, width, height);
 
   const double y = c.ToWorldMm(0, 0, z).y;
   const auto pipes = c.body.FindPipes(y), veins = c.body.FindVeins(y);
@@ -239,7 +240,7 @@ ColorImage Phantom::DrawSlice(int slice) const {
 
   math::Random random(c.options.seed * 0x9e3779b97f4a7c15ULL + static_cast<std::uint64_t>(slice));
   const double flicker = 1 + kFlicker * c.options.noise * Deviate(random);
-  ColorImage image{width, height, std::vector<std::uint8_t>(3 * count)};
+  images::ColorImage image{width, height, std::vector<std::uint8_t>(3 * count)};
   for (int row = 0; row < height; ++row) {
     for (int column = 0; column < width; ++column) {
       const std::size_t i = static_cast<std::size_t>(row) * width + column;
@@ -261,9 +262,9 @@ std::vector<std::uint8_t> Phantom::LabelSlice(int slice) const {
   TROCAR_ASSERT(slice >= 1 && slice <= c.slices);
   std::vector<std::uint8_t> labels(static_cast<std::size_t>(c.grid.width) * c.grid.height, 0);
   const auto mark = [&](const geometry::TriangleMesh& mesh, std::uint8_t label) {
-    const auto cut = CutMesh(mesh, c.Height(slice));
+    const auto cut = meshing::CutMesh(mesh, c.Height(slice));
     if (cut.empty()) return;
-    const auto inside = CalcCoverage(cut, c.grid, 1);
+    const auto inside = meshing::CalcCoverage(cut, c.grid, 1);
     for (std::size_t i = 0; i < labels.size(); ++i) {
       if (inside[i] > 0.5f) labels[i] = label;
     }
@@ -279,9 +280,9 @@ std::vector<std::uint8_t> Phantom::LabelSlice(int slice) const {
   return labels;
 }
 
-ControlPoints Phantom::MakeControlPoints() const {
+contours::ControlPoints Phantom::MakeControlPoints() const {
   const Content& c = *content_;
-  ControlPoints points;
+  contours::ControlPoints points;
   points.name = "Phantom of: " + c.patient.name;
   points.provenance =
       "Pictures drawn by a computer; control points beside the true contours. " + c.patient.provenance;
@@ -303,25 +304,26 @@ ControlPoints Phantom::MakeControlPoints() const {
   };
   for (const Target& target : kTargets) {
     const auto& mesh = target.label == kLiverLabel ? c.liver : c.gallbladder;
-    Structure structure;
+    contours::Structure structure;
     structure.name = target.organ;
     structure.triangle_budget = target.triangles;
     structure.reference_label = target.label;
     structure.adaption.max_shift_px =
         std::max(structure.adaption.max_shift_px, std::ceil(1.5 * c.options.slip_mm / c.grid.pixel));
     math::Random random(c.options.seed * 0xd1342543de82ef95ULL + target.label);
-    std::vector<SliceContours> all;
+    std::vector<contours::SliceContours> all;
     for (int slice = 1; slice <= c.slices; ++slice) {
-      auto loops = JoinLoops(CutMesh(mesh, c.Height(slice)));
-      std::erase_if(loops,
-                    [&](const auto& loop) { return std::fabs(CalcPolygonArea(loop)) < target.smallest; });
+      auto loops = meshing::JoinLoops(meshing::CutMesh(mesh, c.Height(slice)));
+      std::erase_if(loops, [&](const auto& loop) {
+        return std::fabs(meshing::CalcPolygonArea(loop)) < target.smallest;
+      });
       if (loops.empty()) continue;
-      SliceContours contours;
+      contours::SliceContours contours;
       contours.slice = slice;
       double longest = 0;
-      for (const auto& loop : loops) longest = std::max(longest, std::fabs(CalcPolygonArea(loop)));
+      for (const auto& loop : loops) longest = std::max(longest, std::fabs(meshing::CalcPolygonArea(loop)));
       for (std::size_t i = 0; i < loops.size(); ++i) {
-        const double share = std::sqrt(std::fabs(CalcPolygonArea(loops[i])) / longest);
+        const double share = std::sqrt(std::fabs(meshing::CalcPolygonArea(loops[i])) / longest);
         const int count = std::max(6, static_cast<int>(std::lround(share * c.options.points)));
         auto placed = Spread(loops[i], count, random.Uniform());
         for (Vec2& p : placed) {
@@ -344,12 +346,12 @@ ControlPoints Phantom::MakeControlPoints() const {
   }
   constexpr double kTubeSpacing = 0.004;  // m
   for (const Tube& tube : c.patient.tubes) {
-    TubePoints placed{tube.name,
-                      tube.kind == TubeKind::kDuct ? "duct" : "artery",
-                      tube.from.empty() ? "outside" : tube.from,
-                      tube.to.empty() ? "outside" : tube.to,
-                      true,
-                      {}};
+    contours::TubePoints placed{tube.name,
+                                tube.kind == TubeKind::kDuct ? "duct" : "artery",
+                                tube.from.empty() ? "outside" : tube.from,
+                                tube.to.empty() ? "outside" : tube.to,
+                                true,
+                                {}};
     const auto line = geometry::Resample(tube.line, kTubeSpacing);
     for (std::size_t i = 0; i < line.points.size(); ++i) {
       const Vec3 p = c.ToPicture(line.points[i]);
@@ -371,9 +373,9 @@ ControlPoints Phantom::MakeControlPoints() const {
   return points;
 }
 
-LabelVolume Phantom::MakeLabels(const Progress& progress) const {
+images::LabelVolume Phantom::MakeLabels(const images::Progress& progress) const {
   const Content& c = *content_;
-  LabelVolume volume;
+  images::LabelVolume volume;
   volume.size = {c.grid.width, c.grid.height, c.slices};
   // LPS: left, posterior, superior
   volume.direction = {{{c.options.pixel_mm, 0, 0}, {0, c.options.pixel_mm, 0}, {0, 0, -c.options.slice_mm}}};

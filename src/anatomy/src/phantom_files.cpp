@@ -6,10 +6,12 @@
 #include <optional>
 #include <string>
 
-#include "trocar/anatomy/overlay.h"
 #include "trocar/anatomy/phantom.h"
 #include "trocar/core/partial_path.h"
+#include "trocar/core/assert.h"
 #include "trocar/core/safe_file.h"
+#include "trocar/images/png_file.h"
+#include "trocar/images/slice_names.h"
 
 namespace trocar::anatomy {
 namespace {
@@ -23,7 +25,7 @@ std::string FormatVector(const std::array<double, 3>& v) {
 }
 
 core::Status WriteContent(const fs::path& folder, const Phantom& phantom, const Patient& patient,
-                          const Progress& progress) {
+                          const images::Progress& progress) {
   std::error_code failure;
   fs::create_directories(folder / "slices", failure);
   if (failure) {
@@ -31,15 +33,16 @@ core::Status WriteContent(const fs::path& folder, const Phantom& phantom, const 
         core::ErrorCode::kFileUnwritable,
         folder.string() + ": " + failure.message() + "; check the folder, its rights and the space left"};
   }
-  const ControlPoints points = phantom.MakeControlPoints();
+  const contours::ControlPoints points = phantom.MakeControlPoints();
   // some slices at a time, so that progress is told from one thread
   constexpr int kBatch = 8;
   std::array<core::Status, kBatch> written;
   for (int first = 1; first <= phantom.SliceCount(); first += kBatch) {
     const int count = std::min(kBatch, phantom.SliceCount() - first + 1);
     tbb::parallel_for(0, count, [&](int i) {
-      written[i] = WritePng(folder / "slices" / FormatImageName(points.image_pattern, first + i),
-                            phantom.DrawSlice(first + i));
+      written[i] =
+          images::WritePng(folder / "slices" / images::FormatImageName(points.image_pattern, first + i),
+                           phantom.DrawSlice(first + i));
     });
     for (int i = 0; i < count; ++i) {
       if (!written[i]) return written[i];
@@ -48,13 +51,14 @@ core::Status WriteContent(const fs::path& folder, const Phantom& phantom, const 
   }
   if (auto status = WriteLabelVolume(folder / "labels.nrrd", phantom.MakeLabels()); !status) return status;
   if (progress) progress("labels", 0.98);
-  if (auto status = WriteControlPoints(folder / "control_points.json", points); !status) return status;
+  if (auto status = contours::WriteControlPoints(folder / "control_points.json", points); !status)
+    return status;
   return WritePatient(folder / "patient", patient);
 }
 
 }  // namespace
 
-core::Status WriteLabelVolume(const fs::path& path, const LabelVolume& volume) {
+core::Status WriteLabelVolume(const fs::path& path, const images::LabelVolume& volume) {
   std::string text = "NRRD0004\ntype: uint8\ndimension: 3\nspace: left-posterior-superior\nsizes: " +
                      std::to_string(volume.size[0]) + " " + std::to_string(volume.size[1]) + " " +
                      std::to_string(volume.size[2]) + "\nspace directions:";
@@ -68,12 +72,15 @@ core::Status WriteLabelVolume(const fs::path& path, const LabelVolume& volume) {
     text += segment + "_Name:=" + volume.names[i].first + "\n";
   }
   text += "\n";
-  text.append(volume.labels.begin(), volume.labels.end());
+  for (const std::int32_t label : volume.labels) {
+    TROCAR_ASSERT(label <= 255);
+    text += static_cast<char>(label);
+  }
   return core::WriteFile(path, text);
 }
 
 core::Status WritePhantom(const fs::path& folder, const Patient& patient, const PhantomOptions& options,
-                          const Progress& progress) {
+                          const images::Progress& progress) {
   const auto phantom = Phantom::Make(patient, options);
   if (!phantom) return phantom.error();
   fs::path target = folder;

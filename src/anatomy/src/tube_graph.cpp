@@ -6,7 +6,7 @@
 #include <limits>
 #include <numeric>
 
-#include "nearest_surface.h"
+#include "trocar/meshing/nearest_surface.h"
 
 namespace trocar::anatomy {
 namespace {
@@ -208,8 +208,8 @@ std::vector<OpenJoint> JoinTubes(Patient& patient, double reach) {
       double gap = 0;
       const int other = FindTube(patient, name), organ = patient.FindOrgan(name);
       if (organ >= 0 && !patient.organs[organ].mesh.triangles.empty()) {
-        const NearestSurface surface(patient.organs[organ].mesh);
-        const SurfacePoint near = surface.Find(here);
+        const meshing::NearestSurface surface(patient.organs[organ].mesh);
+        const meshing::SurfacePoint near = surface.Find(here);
         // ducts and arteries of the liver run on inside it
         if (name != "liver" || !surface.IsInside(here)) wanted = near.at.point, gap = near.distance;
       } else if (other >= 0 && other != static_cast<int>(t) && IsUsable(patient.tubes[other])) {

@@ -6,10 +6,10 @@
 #include <string>
 
 #include "trocar/anatomy/build_patient.h"
-#include "trocar/anatomy/control_points.h"
 #include "trocar/anatomy/generate_patient.h"
 #include "trocar/anatomy/patient_lint.h"
 #include "trocar/anatomy/phantom.h"
+#include "trocar/contours/control_points.h"
 #include "trocar/core/safe_file.h"
 
 namespace trocar::anatomy {
@@ -41,13 +41,13 @@ class BuildFromVolume : public testing::Test {
 
   /// The slices in one colour NRRD, whose numbers begin with 0; and control points without a pattern.
   void WriteVolume() const {
-    auto points = ReadControlPoints(folder_ / "control_points.json");
+    auto points = contours::ReadControlPoints(folder_ / "control_points.json");
     ASSERT_TRUE(points.ok());
-    ImageSeriesOptions options;
+    images::ImageSeriesOptions options;
     options.pixel_mm = points->pixel_mm, options.slice_mm = points->slice_mm, options.axes = points->axes;
-    const auto series = ImageSeries::Open(folder_ / "slices", options);
+    const auto series = images::ImageSeries::Open(folder_ / "slices", options);
     ASSERT_TRUE(series.ok()) << series.error().Text();
-    const ImageSeriesInfo& info = series->Info();
+    const images::ImageSeriesInfo& info = series->Info();
     ASSERT_EQ(info.slice_numbers.front(), 1);
     std::string samples(static_cast<std::size_t>(info.width) * info.height * 3, '\0');  // slice 0
     for (const int number : info.slice_numbers) {
@@ -68,7 +68,7 @@ class BuildFromVolume : public testing::Test {
     }
     ASSERT_TRUE(core::WriteFile(folder_ / "volume.nrrd", header + "\n\n" + samples).ok());
     points->image_pattern.clear();
-    ASSERT_TRUE(WriteControlPoints(folder_ / "volume_points.json", *points).ok());
+    ASSERT_TRUE(contours::WriteControlPoints(folder_ / "volume_points.json", *points).ok());
   }
 
   fs::path folder_;
@@ -86,10 +86,10 @@ TEST_F(BuildFromVolume, GivesTheSamePatientAsTheStack) {
 
 // What the contour window writes for somebody's own pictures: contours, and nothing else.
 TEST_F(BuildFromVolume, ContoursAloneMakeAPatientThatTheScenesCanUse) {
-  auto points = ReadControlPoints(stack_.control_points);
+  auto points = contours::ReadControlPoints(stack_.control_points);
   ASSERT_TRUE(points.ok());
   points->tubes.clear(), points->landmarks.clear(), points->origin_landmark.clear();
-  ASSERT_TRUE(WriteControlPoints(stack_.control_points, *points).ok());
+  ASSERT_TRUE(contours::WriteControlPoints(stack_.control_points, *points).ok());
   const auto report = BuildPatient(stack_);
   ASSERT_TRUE(report.ok()) << report.error().Text();
   const Patient& patient = report->patient;
@@ -100,7 +100,7 @@ TEST_F(BuildFromVolume, ContoursAloneMakeAPatientThatTheScenesCanUse) {
   for (const Tube& tube : patient.tubes) EXPECT_FALSE(tube.is_seen) << tube.name;
   // an umbilicus that is placed is the origin, and not there twice
   points->landmarks.push_back({"umbilicus", static_cast<double>(points->first_slice), {40.0, 30.0}});
-  ASSERT_TRUE(WriteControlPoints(stack_.control_points, *points).ok());
+  ASSERT_TRUE(contours::WriteControlPoints(stack_.control_points, *points).ok());
   const auto placed = BuildPatient(stack_);
   ASSERT_TRUE(placed.ok()) << placed.error().Text();
   EXPECT_EQ(placed->patient.FindLandmark("umbilicus")->position, math::Vec3());
@@ -110,10 +110,10 @@ TEST_F(BuildFromVolume, ContoursAloneMakeAPatientThatTheScenesCanUse) {
 }
 
 TEST_F(BuildFromVolume, RefusesAVolumeThatLiesOtherwiseThanThePoints) {
-  auto points = ReadControlPoints(volume_.control_points);
+  auto points = contours::ReadControlPoints(volume_.control_points);
   ASSERT_TRUE(points.ok());
   points->axes[0] = points->axes[0] == "left" ? "right" : "left";
-  ASSERT_TRUE(WriteControlPoints(volume_.control_points, *points).ok());
+  ASSERT_TRUE(contours::WriteControlPoints(volume_.control_points, *points).ok());
   EXPECT_EQ(BuildPatient(volume_).error().code, ErrorCode::kImageGeometryInvalid);
 }
 

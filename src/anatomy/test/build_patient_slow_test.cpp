@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Rebuilds the built-in patient from the photographs and holds it against the reference labels.
 #include "trocar/anatomy/build_patient.h"
-#include "trocar/anatomy/control_points.h"
+#include "trocar/contours/control_points.h"
 
 #include <gtest/gtest.h>
 
@@ -10,9 +10,9 @@
 #include <filesystem>
 #include <string>
 
-#include "nearest_surface.h"
 #include "trocar/core/safe_file.h"
 #include "trocar/geometry/mesh_measures.h"
+#include "trocar/meshing/nearest_surface.h"
 
 namespace trocar::anatomy {
 namespace {
@@ -52,7 +52,7 @@ void ExpectUsablePatient(const Patient& patient) {
   }
   std::vector<math::Vec3> normals(liver.mesh.positions.size());
   geometry::CalcVertexNormals(liver.mesh.positions, liver.mesh.triangles, normals);
-  const NearestSurface gallbladder_surface(gallbladder.mesh);
+  const meshing::NearestSurface gallbladder_surface(gallbladder.mesh);
   std::vector<std::uint32_t> fixed;
   for (const char* name : {kDiaphragmaticFace, kFalciform, kCoronary}) {
     const auto& vertices = FindRegion(liver, name)->vertices;
@@ -68,7 +68,7 @@ void ExpectUsablePatient(const Patient& patient) {
   for (const auto v : bed) EXPECT_EQ(std::count(fixed.begin(), fixed.end(), v), 0);
 
   // a contact surface, no deep overlap
-  const NearestSurface liver_surface(liver.mesh);
+  const meshing::NearestSurface liver_surface(liver.mesh);
   for (const auto& p : gallbladder.mesh.positions) {
     if (liver_surface.IsInside(p)) {
       EXPECT_LT(liver_surface.Find(p).distance, 0.0015);
@@ -134,7 +134,7 @@ TEST_F(VisibleHuman, BuildsFromPhotographsWithinTheReferenceBounds) {
   ASSERT_TRUE(report.ok()) << report.error().Text();
   SCOPED_TRACE(FormatReport(*report));
   ASSERT_EQ(report->organs.size(), 2u);
-  const OrganReport &liver = report->organs[0], &gallbladder = report->organs[1];
+  const contours::OrganReport &liver = report->organs[0], &gallbladder = report->organs[1];
   ASSERT_TRUE(liver.judgement && gallbladder.judgement);
   EXPECT_NEAR(liver.judgement->ratio, 1.0, 0.12);
   EXPECT_GE(liver.judgement->dice, 0.90);
@@ -159,9 +159,9 @@ TEST_F(VisibleHuman, BuildsFromPhotographsWithinTheReferenceBounds) {
 }
 
 TEST_F(VisibleHuman, SlicesOfTheStructuresAreCloseEnough) {
-  const auto points = ReadControlPoints(kAssets / "control_points.json");
+  const auto points = contours::ReadControlPoints(kAssets / "control_points.json");
   ASSERT_TRUE(points.ok()) << points.error().Text();
-  for (const Structure& structure : points->structures) {
+  for (const contours::Structure& structure : points->structures) {
     const int step = structure.name == "liver" ? 8 : 3;
     for (std::size_t i = 1; i < structure.slices.size(); ++i) {
       EXPECT_LE(structure.slices[i].slice - structure.slices[i - 1].slice, step) << structure.name;

@@ -9,10 +9,10 @@
 #include <set>
 #include <string>
 
-#include "nearest_surface.h"
 #include "trocar/anatomy/patient_lint.h"
 #include "trocar/geometry/mesh_measures.h"
 #include "trocar/geometry/tube.h"
+#include "trocar/meshing/nearest_surface.h"
 
 namespace trocar::anatomy {
 namespace {
@@ -62,7 +62,7 @@ void ExpectSound(const Patient& patient, const std::string& what) {
 }
 
 void ExpectApart(const Patient& patient) {
-  const NearestSurface liver(OrganOf(patient, "liver").mesh);
+  const meshing::NearestSurface liver(OrganOf(patient, "liver").mesh);
   int inside = 0;
   for (const Vec3& p : OrganOf(patient, "gallbladder").mesh.positions) inside += liver.IsInside(p);
   EXPECT_EQ(inside, 0) << "vertices of the gallbladder in the liver";

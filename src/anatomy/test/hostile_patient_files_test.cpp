@@ -6,9 +6,9 @@
 #include <filesystem>
 #include <string>
 
-#include "trocar/anatomy/control_points.h"
 #include "trocar/anatomy/generate_patient.h"
 #include "trocar/anatomy/patient.h"
+#include "trocar/contours/control_points.h"
 #include "trocar/core/safe_file.h"
 
 namespace trocar::anatomy {
@@ -28,7 +28,7 @@ class HostileFiles : public testing::Test {
   void TearDown() override { fs::remove_all(folder_); }
   ErrorCode PointsCode(const std::string& text) const {
     EXPECT_TRUE(core::WriteFile(folder_ / "points.json", text).ok());
-    const auto points = ReadControlPoints(folder_ / "points.json");
+    const auto points = contours::ReadControlPoints(folder_ / "points.json");
     return points.ok() ? ErrorCode::kNone : points.error().code;
   }
   fs::path folder_;
@@ -45,10 +45,10 @@ TEST_F(HostileFiles, ControlPoints) {
   EXPECT_EQ(PointsCode(""), ErrorCode::kJsonSyntax);
   EXPECT_EQ(PointsCode("{\"format\": \"trocar-control-points\", \"version\": 1e308}"), ErrorCode::kJsonField);
   ASSERT_EQ(::mkfifo((folder_ / "pipe.json").c_str(), 0600), 0);
-  EXPECT_EQ(ReadControlPoints(folder_ / "pipe.json").error().code, ErrorCode::kFileUnreadable);
-  EXPECT_EQ(ReadControlPoints(folder_).error().code, ErrorCode::kFileUnreadable);
-  EXPECT_EQ(ReadControlPoints("/dev/zero").error().code, ErrorCode::kFileUnreadable);
-  EXPECT_EQ(ReadControlPoints(folder_ / "none.json").error().code, ErrorCode::kFileMissing);
+  EXPECT_EQ(contours::ReadControlPoints(folder_ / "pipe.json").error().code, ErrorCode::kFileUnreadable);
+  EXPECT_EQ(contours::ReadControlPoints(folder_).error().code, ErrorCode::kFileUnreadable);
+  EXPECT_EQ(contours::ReadControlPoints("/dev/zero").error().code, ErrorCode::kFileUnreadable);
+  EXPECT_EQ(contours::ReadControlPoints(folder_ / "none.json").error().code, ErrorCode::kFileMissing);
 }
 
 TEST_F(HostileFiles, PatientFolders) {

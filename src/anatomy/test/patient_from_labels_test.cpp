@@ -136,7 +136,7 @@ class FromLabels : public testing::Test {
 
 void ExpectThatBody(const BuildReport& report) {
   ASSERT_EQ(report.organs.size(), 2u);
-  for (const OrganReport& organ : report.organs) {
+  for (const contours::OrganReport& organ : report.organs) {
     EXPECT_TRUE(organ.closed && organ.manifold && organ.outward) << organ.name;
     EXPECT_EQ(organ.genus, 0) << organ.name;
     EXPECT_EQ(organ.self_intersections, 0u) << organ.name;
@@ -181,6 +181,45 @@ TEST_F(FromLabels, BuildsAPatientFromNifti) {
   EXPECT_TRUE(ReadPatient(folder_ / "patient").ok());
 }
 
+/// The same file with wider samples, whose labels are these.
+template <typename Sample>
+std::string Widened(const std::string& nifti, std::int16_t type, double liver, double gallbladder) {
+  std::string wide = nifti.substr(0, 352);
+  Put<std::int16_t>(wide, 70, type);
+  Put<std::int16_t>(wide, 72, 8 * sizeof(Sample));
+  for (std::size_t at = 352; at < nifti.size(); ++at) {
+    const Sample sample = static_cast<Sample>(nifti[at] == 1 ? liver : nifti[at] == 2 ? gallbladder : 0);
+    wide.append(reinterpret_cast<const char*>(&sample), sizeof sample);
+  }
+  return wide;
+}
+
+TEST_F(FromLabels, TakesLabelsOfEveryWidth) {
+  const std::string plain = FormatNifti(MakeLabels(1, 2));
+  const auto narrow = Build(Write("narrow.nii", plain));
+  ASSERT_TRUE(narrow.ok());
+  const auto expect_same = [&](const std::string& content, int liver, int gallbladder) {
+    fs::remove_all(folder_ / "patient");
+    const auto wide = Build(Write("wide.nii", content), liver, gallbladder);
+    ASSERT_TRUE(wide.ok()) << wide.error().Text();
+    for (std::size_t i = 0; i < 2; ++i)
+      EXPECT_EQ(wide->patient.organs[i].mesh, narrow->patient.organs[i].mesh) << liver;
+  };
+  expect_same(Widened<std::uint16_t>(plain, 512, 65535, 40000), 65535, 40000);
+  expect_same(Widened<std::int32_t>(plain, 8, 614'454'277, 614'454'276), 614'454'277, 614'454'276);
+  expect_same(Widened<float>(plain, 16, 70'000, 300), 70'000, 300);
+  // found by the names in the header
+  expect_same(WithLabelTable(Widened<std::uint16_t>(plain, 512, 65535, 300),
+                             {{65535, "liver"}, {300, "gallbladder"}, {7, "spleen"}}),
+              0, 0);
+  fs::remove_all(folder_ / "patient");
+  const core::Error error = Failure(Write("odd.nii", Widened<std::uint16_t>(plain, 512, 65535, 40000)));
+  EXPECT_EQ(error.code, ErrorCode::kLabelsMismatch);
+  EXPECT_THAT(error.message, HasSubstr("it has 40000, 65535"));
+  EXPECT_THAT(Failure(Write("half.nii", Widened<float>(plain, 16, 1, 2.5))).message,
+              HasSubstr("2.5 is no whole number"));
+}
+
 TEST_F(FromLabels, FollowsTheHeadersDirections) {
   // a header whose first axis runs to the left mirrors the body: the gallbladder lies on the left
   const auto report = Build(Write("mirrored.nii", FormatNifti(MakeLabels(1, 2), true)));
@@ -220,7 +259,7 @@ TEST_F(FromLabels, AsksForTheOrganThatAFileWithNamesDoesNotName) {
 TEST_F(FromLabels, PassesOverExtensionsThatAreNoLabelTables) {
   const std::string whole = WithLabelTable(FormatNifti(MakeLabels(1, 2)), {{1, "liver"}, {2, "gallbladder"}});
   const auto convention = [&](const std::string& content) {
-    const auto volume = ReadLabelVolume(Write("odd.nii", content));
+    const auto volume = images::ReadLabelVolume(Write("odd.nii", content));
     EXPECT_TRUE(volume.ok());
     return volume.ok() ? FindLabels(*volume, {})->convention : "";
   };
@@ -299,7 +338,7 @@ TEST(FromLabelsSlow, RebuildsTheReferenceOfTheVisibleHuman) {
   ASSERT_TRUE(report.ok()) << report.error().Text();
   EXPECT_NEAR(report->organs[0].volume_ml, 1766, 0.03 * 1766);
   EXPECT_NEAR(report->organs[1].volume_ml, 28.6, 0.08 * 28.6);
-  for (const OrganReport& organ : report->organs) {
+  for (const contours::OrganReport& organ : report->organs) {
     EXPECT_TRUE(organ.closed && organ.manifold && organ.outward) << organ.name;
     EXPECT_EQ(organ.self_intersections, 0u) << organ.name;
     EXPECT_GT(organ.min_angle_deg, 5.0) << organ.name;

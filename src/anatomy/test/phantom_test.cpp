@@ -45,7 +45,7 @@ Phantom MakePhantom(const PhantomOptions& options) {
 
 TEST(Phantom, LabelsHoldTheMeshesVolumeAtTheirPlaceInTheWorld) {
   const Phantom phantom = MakePhantom(Coarse());
-  const LabelVolume labels = phantom.MakeLabels();
+  const images::LabelVolume labels = phantom.MakeLabels();
   const double voxel = 2 * 2 * 4 * 1e-9;
   std::array<double, 5> volume{};
   math::Vec3 centre;
@@ -78,7 +78,7 @@ TEST(Phantom, LabelsHoldTheMeshesVolumeAtTheirPlaceInTheWorld) {
 
 // mean colour of the pixels that carry a label
 std::array<double, 3> MeanColour(const Phantom& phantom, int slice, std::uint8_t label) {
-  const ColorImage image = phantom.DrawSlice(slice);
+  const images::ColorImage image = phantom.DrawSlice(slice);
   const auto labels = phantom.LabelSlice(slice);
   std::array<double, 3> sum{};
   double count = 0;
@@ -109,7 +109,7 @@ TEST(Phantom, TissuesHaveTheirColours) {
   EXPECT_GT(liver[0], 1.5 * liver[1]);
   EXPECT_GT(gallbladder[1], 0.8 * gallbladder[0]);
   // the block around the body is blue, fat is bright and yellow
-  const ColorImage image = phantom.DrawSlice(slice);
+  const images::ColorImage image = phantom.DrawSlice(slice);
   const auto* corner = image.At(2, 2);
   EXPECT_GT(corner[2], corner[0] + 30);
   std::size_t fat = 0, gas = 0;
@@ -135,7 +135,7 @@ TEST(Phantom, NoiseAddsGrainAndNothingElseChanges) {
   const int slice = MiddleSliceOf(clean, kLiverLabel);
   EXPECT_EQ(clean.LabelSlice(slice), noisy.LabelSlice(slice));
   const auto deviation = [&](const Phantom& phantom) {
-    const ColorImage image = phantom.DrawSlice(slice);
+    const images::ColorImage image = phantom.DrawSlice(slice);
     double sum = 0;
     int count = 0;
     // in the even gel at the border
@@ -158,16 +158,16 @@ TEST(Phantom, SameSeedGivesTheSamePixels) {
 TEST(Phantom, ControlPointsSlipAsFarAsAsked) {
   PhantomOptions options = Coarse();
   options.slip_mm = 0;
-  const ControlPoints exact = MakePhantom(options).MakeControlPoints();
+  const contours::ControlPoints exact = MakePhantom(options).MakeControlPoints();
   options.slip_mm = 5;
-  const ControlPoints slipped = MakePhantom(options).MakeControlPoints();
+  const contours::ControlPoints slipped = MakePhantom(options).MakeControlPoints();
   for (std::size_t s = 0; s < exact.structures.size(); ++s) {
     const auto &a = exact.structures[s], &b = slipped.structures[s];
     ASSERT_EQ(a.slices.size(), b.slices.size());
     ASSERT_GE(a.slices.size(), 3u);
     EXPECT_EQ(a.slices[1].slice - a.slices[0].slice, options.every);
   }
-  EXPECT_TRUE(ParseControlPoints(FormatControlPoints(slipped), "phantom").ok());
+  EXPECT_TRUE(contours::ParseControlPoints(contours::FormatControlPoints(slipped), "phantom").ok());
 }
 
 TEST(Phantom, RefusesWhatItCannotDraw) {
@@ -201,9 +201,9 @@ class PhantomFolder : public testing::Test {
 
 TEST_F(PhantomFolder, GoesThroughTheWholeChain) {
   ASSERT_TRUE(WritePhantom(folder_, SomePatient(), Coarse()).ok());
-  const auto labels = ReadLabelVolume(folder_ / "labels.nrrd");
+  const auto labels = images::ReadLabelVolume(folder_ / "labels.nrrd");
   ASSERT_TRUE(labels.ok()) << labels.error().Text();
-  const LabelVolume truth = MakePhantom(Coarse()).MakeLabels();
+  const images::LabelVolume truth = MakePhantom(Coarse()).MakeLabels();
   EXPECT_EQ(labels->labels, truth.labels);
   for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(labels->origin[axis], truth.origin[axis], 1e-9);
   EXPECT_EQ(labels->names, truth.names);

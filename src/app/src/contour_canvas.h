@@ -44,7 +44,7 @@ class ContourCanvas : public Gtk::DrawingArea {
   bool is_space_held_ = false, is_panning_ = false, is_fitted_ = false, is_windowing_ = false;
   double pan_x_ = 0, pan_y_ = 0;
   double wheel_ = 0;  // fractions of a step, of smooth wheels
-  anatomy::DisplayWindow window_before_;
+  images::DisplayWindow window_before_;
   double last_paint_ = 0;
   std::uint64_t paints_ = 0;
   std::string last_failure_;

@@ -6,9 +6,9 @@
 
 namespace trocar::app {
 
-using anatomy::ContourId;
+using contours::ContourId;
 
-ContourEditor::ContourEditor(anatomy::ContourWorkspace& workspace) : workspace_(&workspace) {
+ContourEditor::ContourEditor(contours::ContourWorkspace& workspace) : workspace_(&workspace) {
   // begin where the work is
   const auto& structures = workspace.Document().Points().structures;
   for (int s = 0; s < static_cast<int>(structures.size()); ++s) {
@@ -224,7 +224,7 @@ void ContourEditor::Propagate(int direction) {
            " %. Correct it where it is wrong.");
 }
 
-void ContourEditor::GoTo(const std::optional<anatomy::EditPlace>& place, const char* verb) {
+void ContourEditor::GoTo(const std::optional<contours::EditPlace>& place, const char* verb) {
   if (!place) return;
   choice_.reset();
   ChooseStructure(place->structure);

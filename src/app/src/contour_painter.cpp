@@ -9,7 +9,7 @@ namespace trocar::app {
 namespace {
 
 using CairoContext = Cairo::RefPtr<Cairo::Context>;
-using anatomy::FitNote;
+using contours::FitNote;
 
 constexpr Colour3 kClicked{0.98, 0.30, 0.26}, kAdapted{1.00, 0.85, 0.20}, kSpline{0.30, 0.95, 0.45};
 constexpr Colour3 kReference{0.35, 0.85, 1.00}, kWarning{1.00, 0.62, 0.15};
@@ -76,7 +76,7 @@ void TextOutlined(const CairoContext& cairo, double x, double y, const std::stri
   cairo->fill();
 }
 
-Cairo::RefPtr<Cairo::ImageSurface> MakeSurface(const anatomy::ColorImage& image) {
+Cairo::RefPtr<Cairo::ImageSurface> MakeSurface(const images::ColorImage& image) {
   auto surface = Cairo::ImageSurface::create(Cairo::Surface::Format::RGB24, image.width, image.height);
   surface->flush();
   unsigned char* data = surface->get_data();
@@ -141,7 +141,7 @@ core::Status ContourPainter::PreparePicture(ContourEditor& editor, const PaintOp
     picture_ = MakeSurface(*image);
   }
   picture_slice_ = editor.Slice();
-  picture_window_ = is_suggested ? anatomy::DisplayWindow{0, 0} : options.window;
+  picture_window_ = is_suggested ? images::DisplayWindow{0, 0} : options.window;
   return {};
 }
 
@@ -246,7 +246,7 @@ void ContourPainter::PaintOrgan(const CairoContext& cairo, ContourEditor& editor
 }
 
 void ContourPainter::PaintPoints(const CairoContext& cairo, ContourEditor& editor,
-                                 const anatomy::SliceFit& fit) {
+                                 const contours::SliceFit& fit) {
   const auto& here = editor.Here();
   const auto on_canvas = [&](const Vec2& p) { return ToCanvas(editor.view, editor.size, p); };
   // seen from far, points must not hide the curve
@@ -291,7 +291,7 @@ void ContourPainter::PaintPoints(const CairoContext& cairo, ContourEditor& edito
         Square(cairo, from, 2.4 * size, kClicked);
       }
       const auto& choice = editor.Choice();
-      const anatomy::ContourId id{editor.Structure(), editor.Slice(), is_hole, static_cast<int>(c)};
+      const contours::ContourId id{editor.Structure(), editor.Slice(), is_hole, static_cast<int>(c)};
       if (choice && choice->id == id && choice->point && *choice->point < polygons[c].size()) {
         const Vec2 at = on_canvas(polygons[c][*choice->point]);
         cairo->begin_new_sub_path();

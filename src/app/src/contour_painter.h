@@ -25,7 +25,7 @@ Colour3 OrganColour(const std::string& name, int structure);
 
 struct PaintOptions {
   bool has_points = true, has_fill = true, has_ghosts = true, has_reference = false;
-  anatomy::DisplayWindow window;  ///< of grey pictures
+  images::DisplayWindow window;  ///< of grey pictures
 };
 
 class ContourPainter {
@@ -46,20 +46,20 @@ class ContourPainter {
   void PaintOrgan(const Cairo::RefPtr<Cairo::Context>& cairo, ContourEditor& editor,
                   const PaintOptions& options, int structure);
   void PaintPoints(const Cairo::RefPtr<Cairo::Context>& cairo, ContourEditor& editor,
-                   const anatomy::SliceFit& fit);
+                   const contours::SliceFit& fit);
   void PaintOpen(const Cairo::RefPtr<Cairo::Context>& cairo, ContourEditor& editor);
   void PaintMargins(const Cairo::RefPtr<Cairo::Context>& cairo, const ContourEditor& editor);
 
   // the slice as a surface, and scaled for the view
   Cairo::RefPtr<Cairo::ImageSurface> picture_, scaled_picture_;
   int picture_slice_ = -1;
-  anatomy::DisplayWindow picture_window_;
+  images::DisplayWindow picture_window_;
   CanvasView scaled_view_;
   int scaled_width_ = 0, scaled_height_ = 0;
   std::uint64_t scaled_ = 0;
   // borders of the reference in this slice
   int reference_slice_ = -1;
-  std::vector<anatomy::ContourWorkspace::ReferenceLines> reference_;
+  std::vector<contours::ContourWorkspace::ReferenceLines> reference_;
 };
 
 }  // namespace trocar::app

@@ -310,7 +310,7 @@ void ContourPanel::RefreshSlice() {
   SetText(notes_, SliceNotes(*editor_));
 }
 
-void ContourPanel::SetMesh(int structure, anatomy::OrganMesh mesh) {
+void ContourPanel::SetMesh(int structure, contours::OrganMesh mesh) {
   problems_.erase(structure);
   meshes_[structure] = std::move(mesh);
   ShowSurfaces();
@@ -332,7 +332,7 @@ void ContourPanel::ShowSurfaces() {
   std::vector<render::FigureSurface> surfaces;
   if (editor_ != nullptr) {
     const auto& points = editor_->Workspace().Document().Points();
-    const auto directions = anatomy::AxisDirections(points);
+    const auto directions = contours::AxisDirections(points);
     constexpr double kMmPerM = 1000.0;
     // a frame of the pictures that is left-handed in the body turns its triangles
     const auto& [a, b, c] = directions;
@@ -381,7 +381,7 @@ void ContourPanel::ShowMeshText() {
   SetText(mesh_text_, text);
 }
 
-void ContourPanel::ShowJob(const anatomy::MeshJob::State& state) {
+void ContourPanel::ShowJob(const contours::MeshJob::State& state) {
   progress_.set_fraction(state.is_busy ? state.fraction : 0);
   progress_.set_opacity(state.is_busy ? 1 : 0);
   cancel_.set_opacity(state.is_busy ? 1 : 0);

@@ -10,8 +10,8 @@
 #include <string>
 
 #include "mesh_view.h"
-#include "trocar/anatomy/mesh_job.h"
 #include "trocar/app/contour_editor.h"
+#include "trocar/contours/mesh_job.h"
 
 namespace trocar::app {
 
@@ -25,14 +25,14 @@ class ContourPanel : public Gtk::Box {
   /// Refreshes what the document and the editor say.
   void Refresh();
   /// A new surface of an organ.
-  void SetMesh(int structure, anatomy::OrganMesh mesh);
+  void SetMesh(int structure, contours::OrganMesh mesh);
   /// Why an organ has no surface.
   void SetMeshProblem(int structure, const std::string& problem);
   /// Forgets all surfaces: organs have been added or deleted.
   void ClearMeshes();
-  void ShowJob(const anatomy::MeshJob::State& state);
+  void ShowJob(const contours::MeshJob::State& state);
   MeshView& View() { return view_; }
-  const std::map<int, anatomy::OrganMesh>& Meshes() const { return meshes_; }
+  const std::map<int, contours::OrganMesh>& Meshes() const { return meshes_; }
 
   sigc::signal<void()>& SignalEdited() { return signal_edited_; }
   sigc::signal<void(ContourAction)>& SignalAction() { return signal_action_; }
@@ -65,7 +65,7 @@ class ContourPanel : public Gtk::Box {
   Gtk::Label mesh_text_;
   Gtk::ProgressBar progress_;
   Gtk::Button cancel_{"Cancel"};
-  std::map<int, anatomy::OrganMesh> meshes_;
+  std::map<int, contours::OrganMesh> meshes_;
   std::map<int, std::string> problems_;
   std::size_t shown_surfaces_ = 0;
   sigc::signal<void()> signal_edited_, signal_cancel_;

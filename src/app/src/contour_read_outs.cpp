@@ -37,7 +37,7 @@ std::string Thousands(std::size_t value) {
 
 }  // namespace
 
-double CalcArea(const anatomy::SliceFit& fit, double pixel_mm) {
+double CalcArea(const contours::SliceFit& fit, double pixel_mm) {
   double area = 0;
   for (const auto& contour : fit.contours) area += ShoelaceArea(contour->spline);
   for (const auto& hole : fit.holes) area -= ShoelaceArea(hole->spline);
@@ -81,7 +81,7 @@ std::string SliceText(ContourEditor& editor) {
 std::string SliceNotes(ContourEditor& editor) {
   const auto fit = editor.Fit();
   if (!fit.ok()) return {};
-  std::map<anatomy::FitProblem, std::pair<std::size_t, double>> problems;  // how many, and their length
+  std::map<contours::FitProblem, std::pair<std::size_t, double>> problems;  // how many, and their length
   for (const auto* group : {&(*fit)->contours, &(*fit)->holes}) {
     for (const auto& contour : *group) {
       for (const auto& note : contour->notes) {
@@ -96,7 +96,7 @@ std::string SliceNotes(ContourEditor& editor) {
   for (const auto& [problem, sum] : problems) {
     if (!text.empty()) text += "\n";
     text += Count(sum.first, "place") + Format(" (%.0f mm): ", sum.second * pixel_mm) +
-            std::string(anatomy::FitProblemText(problem));
+            std::string(contours::FitProblemText(problem));
   }
   return text;
 }
@@ -111,14 +111,14 @@ std::string PointerText(const ContourEditor& editor) {
   return text;
 }
 
-std::string SeriesText(const anatomy::ImageSeriesInfo& series) {
+std::string SeriesText(const images::ImageSeriesInfo& series) {
   return Format("%s, %d x %d pixels of %.4g mm, slices of %.4g mm \u00b7 ", series.format.c_str(),
                 series.width, series.height, series.pixel_mm, series.slice_mm) +
          "columns to " + series.axes[0] + ", rows to " + series.axes[1] + ", slices to " + series.axes[2] +
          (series.file_frame.empty() ? "" : " \u00b7 file in " + series.file_frame);
 }
 
-std::string MeshText(const std::string& name, const anatomy::OrganMesh& mesh) {
+std::string MeshText(const std::string& name, const contours::OrganMesh& mesh) {
   return name + ": " + Thousands(mesh.mesh.triangles.size()) + Format(" triangles, %.0f mL", mesh.volume_ml) +
          (mesh.is_closed && mesh.is_manifold ? "" : ", NOT CLOSED") +
          Format(" \u00b7 %.1f mm", mesh.spacing_mm);

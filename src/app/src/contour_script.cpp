@@ -93,8 +93,8 @@ class Words {
     return static_cast<std::size_t>(std::max(value, 0));
   }
   Vec2 Place(std::size_t i) { return {Number(i), Number(i + 1)}; }
-  anatomy::ContourId Contour(std::size_t i, const ContourEditor& editor) {
-    anatomy::ContourId id{editor.Structure(), editor.Slice(), false, 0};
+  contours::ContourId Contour(std::size_t i, const ContourEditor& editor) {
+    contours::ContourId id{editor.Structure(), editor.Slice(), false, 0};
     std::string word = step_.words[i];
     if (word.starts_with('h')) id.is_hole = true, word.erase(0, 1);
     const auto index = ReadNumber(word);

@@ -31,7 +31,7 @@ ContourWindow::ContourWindow(const Options& options, const core::Stopwatch& sinc
   MakeKeys();
   MakeRoutes();
   ShowAll();
-  anatomy::WorkspaceOptions workspace;
+  contours::WorkspaceOptions workspace;
   workspace.images = options_.images;
   workspace.points = options_.points;
   workspace.reference = options_.reference;
@@ -203,7 +203,7 @@ void ContourWindow::MakeRoutes() {
     if (meshes_ != nullptr) meshes_->Cancel();
   });
   panel_.View().SignalFailed().connect(sigc::mem_fun(*this, &ContourWindow::Report));
-  series_bar_.SignalAnswered().connect([this](const anatomy::ImageSeriesOptions& series) {
+  series_bar_.SignalAnswered().connect([this](const images::ImageSeriesOptions& series) {
     auto options = loading_options_;
     options.series = series;
     StartLoading(std::move(options));
@@ -225,14 +225,14 @@ void ContourWindow::MakeRoutes() {
 
 // opening
 
-void ContourWindow::StartLoading(anatomy::WorkspaceOptions options) {
+void ContourWindow::StartLoading(contours::WorkspaceOptions options) {
   if (loader_.joinable()) return;
   loading_options_ = std::move(options);
   busy_.set_visible(true);
   Tell("Opening the pictures ...");
   loader_ = std::thread([this] {
     loading_.emplace(
-        anatomy::ContourWorkspace::Open(loading_options_, [this](std::string_view what, double fraction) {
+        contours::ContourWorkspace::Open(loading_options_, [this](std::string_view what, double fraction) {
           {
             const std::lock_guard lock(progress_mutex_);
             progress_what_ = what;
@@ -264,7 +264,7 @@ void ContourWindow::FinishLoading() {
   meshes_.reset();
   autosave_.reset();
   prefetcher_.reset();
-  workspace_ = std::make_unique<anatomy::ContourWorkspace>(std::move(*opened));
+  workspace_ = std::make_unique<contours::ContourWorkspace>(std::move(*opened));
   // a run that nobody watches leaves no side file and asks nothing
   const bool is_watched = options_.screenshot.empty() && !options_.is_measuring;
   lock_.reset();
@@ -275,8 +275,8 @@ void ContourWindow::FinishLoading() {
     Report(error);
   };
   editor_->on_event = [this](const std::string& text) { Tell(text); };
-  prefetcher_ = std::make_unique<anatomy::SlicePrefetcher>(workspace_->Store());
-  meshes_ = std::make_unique<anatomy::MeshJob>(workspace_->Fits(), [this] { mesh_changed_.emit(); });
+  prefetcher_ = std::make_unique<contours::SlicePrefetcher>(workspace_->Store());
+  meshes_ = std::make_unique<contours::MeshJob>(workspace_->Fits(), [this] { mesh_changed_.emit(); });
   canvas_.SetEditor(editor_.get());
   slices_.SetEditor(editor_.get());
   panel_.SetEditor(editor_.get());
@@ -309,14 +309,14 @@ bool ContourWindow::AskForSizes() {
 
 std::filesystem::path ContourWindow::AutosaveFile() const {
   const auto& options = workspace_->Options();
-  if (!options.points.empty()) return anatomy::AutosavePath(options.points);
+  if (!options.points.empty()) return contours::AutosavePath(options.points);
   // nameless contours are kept by the place of their pictures
   std::string name = std::filesystem::absolute(options.images).lexically_normal().string();
   std::replace(name.begin(), name.end(), '/', '_');
   constexpr std::size_t kLongestName = 120;
   if (name.size() > kLongestName) name.erase(0, name.size() - kLongestName);
-  return anatomy::AutosavePath(std::filesystem::path(Glib::get_user_data_dir()) / "trocar" / "contours" /
-                               (name + ".json"));
+  return contours::AutosavePath(std::filesystem::path(Glib::get_user_data_dir()) / "trocar" / "contours" /
+                                (name + ".json"));
 }
 
 bool ContourWindow::TakeLock() {
@@ -338,7 +338,7 @@ bool ContourWindow::TakeLock() {
 }
 
 void ContourWindow::StartAutosave() {
-  autosave_ = std::make_unique<anatomy::ContourAutosave>(AutosaveFile());
+  autosave_ = std::make_unique<contours::ContourAutosave>(AutosaveFile());
   if (workspace_->Document().IsDirty()) autosave_->Offer(workspace_->Document().Text());
   autosave_timer_.disconnect();
   autosave_timer_ = Glib::signal_timeout().connect(
@@ -352,7 +352,7 @@ void ContourWindow::StartAutosave() {
 }
 
 void ContourWindow::OfferRecovered() {
-  auto found = anatomy::FindAutosaved(AutosaveFile(), workspace_->SavedText());
+  auto found = contours::FindAutosaved(AutosaveFile(), workspace_->SavedText());
   if (!found.ok()) return Report(found.error());
   if (!found->has_value()) return;
   const auto saved = workspace_->Document().Points();
@@ -513,7 +513,7 @@ void ContourWindow::RequestMeshes(bool is_all) {
   }
   for (int s = 0; s < static_cast<int>(structures.size()); ++s) {
     auto request = workspace_->MakeMeshRequest(s);
-    anatomy::Structure& before = meshed_[static_cast<std::size_t>(s)];
+    contours::Structure& before = meshed_[static_cast<std::size_t>(s)];
     const auto& now = request.content;
     if (!is_all && before.slices == now.slices && before.adaption == now.adaption && before.name == now.name)
       continue;

@@ -19,9 +19,9 @@
 #include "message_bars.h"
 #include "series_bar.h"
 #include "trocar/anatomy/build_patient.h"
-#include "trocar/anatomy/contour_autosave.h"
 #include "trocar/app/contour_script.h"
 #include "trocar/app/options.h"
+#include "trocar/contours/contour_autosave.h"
 #include "trocar/core/clock.h"
 #include "trocar/core/file_lock.h"
 
@@ -42,7 +42,7 @@ class ContourWindow : public Gtk::ApplicationWindow {
   void MakeRoutes();
 
   // opening
-  void StartLoading(anatomy::WorkspaceOptions options);
+  void StartLoading(contours::WorkspaceOptions options);
   void FinishLoading();
   bool AskForSizes();
   bool TakeLock();
@@ -105,21 +105,21 @@ class ContourWindow : public Gtk::ApplicationWindow {
   bool is_showing_ = false;  // buttons are being set by us
 
   // order matters: what computes goes before what it computes on
-  std::unique_ptr<anatomy::ContourWorkspace> workspace_;
+  std::unique_ptr<contours::ContourWorkspace> workspace_;
   std::unique_ptr<ContourEditor> editor_;
   std::optional<core::FileLock> lock_;  // of the side file, which belongs to one window
-  std::unique_ptr<anatomy::ContourAutosave> autosave_;
-  std::unique_ptr<anatomy::SlicePrefetcher> prefetcher_;
-  std::unique_ptr<anatomy::MeshJob> meshes_;
+  std::unique_ptr<contours::ContourAutosave> autosave_;
+  std::unique_ptr<contours::SlicePrefetcher> prefetcher_;
+  std::unique_ptr<contours::MeshJob> meshes_;
   Glib::Dispatcher mesh_changed_;
   std::uint64_t shown_revision_ = 0;
-  std::vector<anatomy::Structure> meshed_;  // what the last requests were made from
+  std::vector<contours::Structure> meshed_;  // what the last requests were made from
   sigc::connection coarse_timer_, autosave_timer_;
 
   std::thread loader_, builder_;
   Glib::Dispatcher loaded_, built_, progressed_;
-  anatomy::WorkspaceOptions loading_options_;
-  std::optional<core::Result<anatomy::ContourWorkspace>> loading_;
+  contours::WorkspaceOptions loading_options_;
+  std::optional<core::Result<contours::ContourWorkspace>> loading_;
   std::optional<core::Result<anatomy::BuildReport>> building_;
   std::stop_source build_stop_;
   std::filesystem::path build_folder_;

@@ -60,7 +60,7 @@ SeriesBar::SeriesBar() : Gtk::Box(Gtk::Orientation::VERTICAL) {
   append(complaint_);
 }
 
-void SeriesBar::Ask(const anatomy::ImageSeriesOptions& series) {
+void SeriesBar::Ask(const images::ImageSeriesOptions& series) {
   series_ = series;
   Fill(MakeSeriesForm(series));
   const bool is_again = series.pixel_mm || series.slice_mm || series.axes;

@@ -15,21 +15,21 @@ class SeriesBar : public Gtk::Box {
   SeriesBar();
 
   /// Shows the fields with what is known of `series`.
-  void Ask(const anatomy::ImageSeriesOptions& series);
+  void Ask(const images::ImageSeriesOptions& series);
   /// Fills the fields, as a hand would.
   void Fill(const SeriesForm& form);
   /// Reads the fields: sends what they say, or shows which one is wrong.
   void Answer();
   /// What is wrong with the fields; empty if nothing is.
   std::string Complaint() const { return complaint_.get_text().raw(); }
-  sigc::signal<void(anatomy::ImageSeriesOptions)>& SignalAnswered() { return signal_answered_; }
+  sigc::signal<void(images::ImageSeriesOptions)>& SignalAnswered() { return signal_answered_; }
 
  private:
-  anatomy::ImageSeriesOptions series_;
+  images::ImageSeriesOptions series_;
   Gtk::Entry pixel_, slice_;
   std::array<Gtk::DropDown, 3> axes_;
   Gtk::Label complaint_;
-  sigc::signal<void(anatomy::ImageSeriesOptions)> signal_answered_;
+  sigc::signal<void(images::ImageSeriesOptions)> signal_answered_;
 };
 
 }  // namespace trocar::app

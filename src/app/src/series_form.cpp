@@ -47,14 +47,14 @@ std::span<const char* const> PatientDirections() noexcept {
   return kDirections;
 }
 
-SeriesForm MakeSeriesForm(const anatomy::ImageSeriesOptions& series) {
+SeriesForm MakeSeriesForm(const images::ImageSeriesOptions& series) {
   SeriesForm form{LengthText(series.pixel_mm), LengthText(series.slice_mm), {}};
   if (series.axes) form.axes = *series.axes;
   return form;
 }
 
-core::Result<anatomy::ImageSeriesOptions> ReadSeriesForm(const SeriesForm& form,
-                                                         anatomy::ImageSeriesOptions series) {
+core::Result<images::ImageSeriesOptions> ReadSeriesForm(const SeriesForm& form,
+                                                        images::ImageSeriesOptions series) {
   const auto pixel_mm = ReadLength(form.pixel_mm, "Pixel", 0.01, 20.0);
   if (!pixel_mm) return pixel_mm.error();
   const auto slice_mm = ReadLength(form.slice_mm, "Slice distance", 0.01, 50.0);

@@ -8,9 +8,9 @@
 #include <set>
 #include <string>
 
-#include "trocar/anatomy/overlay.h"
 #include "trocar/app/contour_read_outs.h"
 #include "trocar/app/contour_script.h"
+#include "trocar/images/png_file.h"
 #include "trocar_test/temporary_folder.h"
 
 namespace trocar::app {
@@ -21,7 +21,7 @@ class Editor : public testing::Test {
  protected:
   void SetUp() override {
     for (int slice = 1; slice <= 5; ++slice) {
-      anatomy::ColorImage image{120, 100, std::vector<std::uint8_t>(120 * 100 * 3, 40)};
+      images::ColorImage image{120, 100, std::vector<std::uint8_t>(120 * 100 * 3, 40)};
       for (int y = 0; y < 100; ++y) {
         for (int x = 0; x < 120; ++x) {
           const double inside = std::clamp(30.5 - std::hypot(x - 60.0, y - 50.0), 0.0, 1.0);
@@ -29,13 +29,13 @@ class Editor : public testing::Test {
         }
       }
       ASSERT_TRUE(
-          anatomy::WritePng(folder_.Path() / "slices" / ("s" + std::to_string(slice) + ".png"), image).ok());
+          images::WritePng(folder_.Path() / "slices" / ("s" + std::to_string(slice) + ".png"), image).ok());
     }
-    anatomy::WorkspaceOptions options;
+    contours::WorkspaceOptions options;
     options.images = folder_.Path() / "slices";
     options.series.pixel_mm = 0.5, options.series.slice_mm = 2;
     options.series.axes = {"left", "posterior", "inferior"};
-    auto opened = anatomy::ContourWorkspace::Open(options);
+    auto opened = contours::ContourWorkspace::Open(options);
     ASSERT_TRUE(opened.ok()) << opened.error().Text();
     workspace_.emplace(std::move(*opened));
     editor_.emplace(*workspace_);
@@ -57,7 +57,7 @@ class Editor : public testing::Test {
   }
 
   test::TemporaryFolder folder_;
-  std::optional<anatomy::ContourWorkspace> workspace_;
+  std::optional<contours::ContourWorkspace> workspace_;
   std::optional<ContourEditor> editor_;
   std::optional<core::Error> error_;
 };
@@ -219,7 +219,7 @@ TEST_F(Editor, EveryScriptVerbRuns) {
     if (!*done) window_verbs.insert(step.verb);
   }
   EXPECT_EQ(window_verbs, (std::set<std::string>{"await", "show"}));
-  const auto read = anatomy::ReadControlPoints(saved, anatomy::Completeness::kDraft);
+  const auto read = contours::ReadControlPoints(saved, contours::Completeness::kDraft);
   ASSERT_TRUE(read.ok());
   EXPECT_EQ(read->structures.size(), 2u);
   EXPECT_EQ(read->structures[0].slices.size(), 1u);

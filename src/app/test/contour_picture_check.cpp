@@ -8,13 +8,13 @@
 #include <string>
 #include <vector>
 
-#include "trocar/anatomy/overlay.h"
 #include "trocar/core/safe_file.h"
+#include "trocar/images/png_file.h"
 #include "window_picture.h"
 
 namespace {
 
-using trocar::anatomy::ColorImage;
+using trocar::images::ColorImage;
 namespace fs = std::filesystem;
 
 constexpr int kWidth = 320, kHeight = 240, kSlices = 12;
@@ -36,7 +36,7 @@ int Make(const fs::path& folder) {
           image.At(x, y)[c] = static_cast<std::uint8_t>(shade[c] + (x * 7 + y * 13) % 9);
       }
     }
-    if (!trocar::anatomy::WritePng(folder / "slices" / ("s" + std::to_string(slice) + ".png"), image).ok())
+    if (!trocar::images::WritePng(folder / "slices" / ("s" + std::to_string(slice) + ".png"), image).ok())
       return Fail("cannot write the slices");
   }
   std::string script = "# a disc drawn in one slice and carried on\norgan liver\nslice 2\n";

@@ -12,7 +12,7 @@ using testing::HasSubstr;
 const std::array<std::string, 3> kAxial = {"left", "posterior", "inferior"};
 
 TEST(SeriesForm, BecomesWhatASeriesIsOpenedWith) {
-  anatomy::ImageSeriesOptions known;
+  images::ImageSeriesOptions known;
   known.series = 2, known.pattern = "s{slice}.png";
   const auto read = ReadSeriesForm({" 0.528", "1,5 ", kAxial}, known);
   ASSERT_TRUE(read.ok()) << read.error().Text();
@@ -29,7 +29,7 @@ TEST(SeriesForm, BecomesWhatASeriesIsOpenedWith) {
 }
 
 TEST(SeriesForm, LeavesToTheFilesWhatIsEmpty) {
-  anatomy::ImageSeriesOptions known;
+  images::ImageSeriesOptions known;
   known.pixel_mm = 3, known.axes = kAxial;
   const auto read = ReadSeriesForm({"", "2", {}}, known);
   ASSERT_TRUE(read.ok());

@@ -67,7 +67,7 @@ core::Status BuildFromLabels(const anatomy::LabelOptions& options) {
   std::vector<std::vector<std::string>> rows = {{"organ", "slices", "triangles", "closed", "manifold",
                                                  "genus", "cuts", "min angle [deg]", "volume [mL]",
                                                  "volume change [%]", "distance [mm]", "mean [mm]"}};
-  for (const anatomy::OrganReport& organ : report->organs) {
+  for (const contours::OrganReport& organ : report->organs) {
     rows.push_back({organ.name, std::to_string(organ.slices), std::to_string(organ.triangles),
                     organ.closed ? "yes" : "NO", organ.manifold ? "yes" : "NO", std::to_string(organ.genus),
                     std::to_string(organ.self_intersections), FormatNumber(organ.min_angle_deg, 3),
@@ -96,10 +96,10 @@ void AddFromLabelsCommand(CLI::App& anatomy, Outcome& outcome) {
       ->required()
       ->type_name("PATIENT");
   command->add_option("--liver", options->liver, "Label of the liver, if it cannot be found by itself")
-      ->check(CLI::Range(1, 255))
+      ->check(CLI::Range(1, images::kLargestLabel))
       ->type_name("LABEL");
   command->add_option("--gallbladder", options->gallbladder, "Label of the gallbladder, likewise")
-      ->check(CLI::Range(1, 255))
+      ->check(CLI::Range(1, images::kLargestLabel))
       ->type_name("LABEL");
   command->footer(
       "Labels are found by the names that 3D Slicer and TotalSegmentator write into the file, by\n"

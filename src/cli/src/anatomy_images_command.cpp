@@ -12,22 +12,22 @@
 #include "command.h"
 #include "console.h"
 #include "image_options.h"
-#include "trocar/anatomy/contact_sheet.h"
-#include "trocar/anatomy/image_series.h"
-#include "trocar/anatomy/overlay.h"
 #include "trocar/core/printable.h"
+#include "trocar/images/contact_sheet.h"
+#include "trocar/images/image_series.h"
+#include "trocar/images/png_file.h"
 
 namespace trocar::cli {
 namespace {
 
 struct ImagesArguments {
   std::string path, axes, window, preview;
-  anatomy::ImageSeriesOptions options;
+  images::ImageSeriesOptions options;
   double memory_mb = 2048;
   bool is_json = false;
 };
 
-std::string FormatSlices(const anatomy::ImageSeriesInfo& info) {
+std::string FormatSlices(const images::ImageSeriesInfo& info) {
   const int first = info.slice_numbers.front(), last = info.slice_numbers.back();
   std::string text = std::to_string(info.slice_numbers.size()) + ", number " + std::to_string(first);
   if (last == first) return text;
@@ -36,7 +36,7 @@ std::string FormatSlices(const anatomy::ImageSeriesInfo& info) {
   return step == 1 ? text : text + " in steps of " + std::to_string(step);
 }
 
-void PrintForPerson(const anatomy::ImageSeriesInfo& info, const anatomy::DisplayWindow& window) {
+void PrintForPerson(const images::ImageSeriesInfo& info, const images::DisplayWindow& window) {
   std::vector<std::vector<std::string>> rows = {{"what", "found"}};
   rows.push_back(
       {"format", info.format + (info.pattern.empty() ? "" : ", files " + core::Printable(info.pattern))});
@@ -61,7 +61,7 @@ void PrintForPerson(const anatomy::ImageSeriesInfo& info, const anatomy::Display
   std::fputs(FormatTable(rows).c_str(), stdout);
 }
 
-void PrintJson(const anatomy::ImageSeriesInfo& info, const anatomy::DisplayWindow& window) {
+void PrintJson(const images::ImageSeriesInfo& info, const images::DisplayWindow& window) {
   nlohmann::ordered_json json;
   json["format"] = info.format;
   json["pattern"] = info.pattern;
@@ -90,7 +90,7 @@ core::Status Show(ImagesArguments arguments) {
     if (!axes) return axes.error();
     arguments.options.axes = *axes;
   }
-  std::optional<anatomy::DisplayWindow> window;
+  std::optional<images::DisplayWindow> window;
   if (!arguments.window.empty()) {
     const auto parsed = ParseWindow(arguments.window);
     if (!parsed) return parsed.error();
@@ -98,22 +98,22 @@ core::Status Show(ImagesArguments arguments) {
   }
   arguments.options.memory_bytes = static_cast<std::size_t>(arguments.memory_mb) << 20;
   ProgressBar bar("opening", 1.0);
-  const anatomy::Progress progress = [&](std::string_view what, double fraction) {
+  const images::Progress progress = [&](std::string_view what, double fraction) {
     bar.SetLabel(what);
     bar.Show(fraction);
   };
-  const auto series = anatomy::ImageSeries::Open(arguments.path, arguments.options, progress);
+  const auto series = images::ImageSeries::Open(arguments.path, arguments.options, progress);
   if (!series) {
     bar.Finish();
     return series.error();
   }
-  const anatomy::ImageSeriesInfo& info = series->Info();
-  const anatomy::DisplayWindow shown = window.value_or(info.suggested_window);
+  const images::ImageSeriesInfo& info = series->Info();
+  const images::DisplayWindow shown = window.value_or(info.suggested_window);
   if (!arguments.preview.empty()) {
-    const auto sheet = anatomy::DrawContactSheet(*series, shown, {}, progress);
+    const auto sheet = images::DrawContactSheet(*series, shown, {}, progress);
     bar.Finish();
     if (!sheet) return sheet.error();
-    if (auto status = anatomy::WritePng(arguments.preview, *sheet); !status) return status;
+    if (auto status = images::WritePng(arguments.preview, *sheet); !status) return status;
   }
   bar.Finish();
   arguments.is_json ? PrintJson(info, shown) : PrintForPerson(info, shown);

@@ -10,13 +10,13 @@
 
 #include "command.h"
 #include "console.h"
-#include "trocar/anatomy/label_edges.h"
+#include "trocar/contours/label_edges.h"
 
 namespace trocar::cli {
 namespace {
 
 struct Arguments {
-  anatomy::LabelEdgeOptions options;
+  contours::LabelEdgeOptions options;
   std::string control_points, images, reference;
   bool is_json = false;
 };
@@ -27,11 +27,11 @@ std::string Format(const char* format, double value) {
   return text;
 }
 
-void PrintTable(const anatomy::LabelEdges& edges) {
+void PrintTable(const contours::LabelEdges& edges) {
   std::vector<std::vector<std::string>> rows = {{"organ", "labels", "places", "edge seen",
                                                  "mean distance [mm]", "median", "signed mean", "within 1 mm",
                                                  "drawn contours [mm]"}};
-  const auto add = [&](const std::vector<anatomy::LabelEdgeReport>& reports, const char* labels) {
+  const auto add = [&](const std::vector<contours::LabelEdgeReport>& reports, const char* labels) {
     for (const auto& report : reports) {
       rows.push_back({report.name, labels, std::to_string(report.places), Format("%.2f", report.seen),
                       Format("%.2f", report.mean_mm), Format("%.2f", report.median_mm),
@@ -46,8 +46,8 @@ void PrintTable(const anatomy::LabelEdges& edges) {
               edges.shift_mm[0], edges.shift_mm[1], edges.shift_mm[2]);
 }
 
-void PrintJson(const anatomy::LabelEdges& edges) {
-  const auto list = [](const std::vector<anatomy::LabelEdgeReport>& reports) {
+void PrintJson(const contours::LabelEdges& edges) {
+  const auto list = [](const std::vector<contours::LabelEdgeReport>& reports) {
     nlohmann::json all = nlohmann::json::array();
     for (const auto& report : reports) {
       all.push_back({{"name", report.name},
@@ -67,12 +67,12 @@ void PrintJson(const anatomy::LabelEdges& edges) {
 }
 
 core::Status Measure(const Arguments& arguments) {
-  anatomy::LabelEdgeOptions options = arguments.options;
+  contours::LabelEdgeOptions options = arguments.options;
   options.control_points = arguments.control_points;
   options.images = arguments.images;
   options.reference = arguments.reference;
   ProgressBar bar("measuring", 1.0);
-  const auto edges = anatomy::MeasureLabelEdges(options, [&](std::string_view what, double fraction) {
+  const auto edges = contours::MeasureLabelEdges(options, [&](std::string_view what, double fraction) {
     bar.SetLabel(what);
     bar.Show(fraction);
   });

@@ -12,7 +12,7 @@
 
 #include "command.h"
 #include "console.h"
-#include "trocar/anatomy/contour_rehearsal.h"
+#include "trocar/contours/contour_rehearsal.h"
 
 namespace trocar::cli {
 namespace {
@@ -21,7 +21,7 @@ struct Spread {
   double mean = 0, deviation = 0, least = 0, most = 0;
 };
 
-Spread CalcSpread(const anatomy::OrganRehearsal& organ, double (*value)(const anatomy::RehearsalRun&)) {
+Spread CalcSpread(const contours::OrganRehearsal& organ, double (*value)(const contours::RehearsalRun&)) {
   Spread spread;
   const auto n = static_cast<double>(organ.runs.size());
   for (const auto& run : organ.runs) spread.mean += value(run) / n;
@@ -38,16 +38,16 @@ Spread CalcSpread(const anatomy::OrganRehearsal& organ, double (*value)(const an
 /// A measure of the table and its name in JSON.
 struct Measure {
   const char* key;
-  double (*value)(const anatomy::RehearsalRun&);
+  double (*value)(const contours::RehearsalRun&);
 };
 
 constexpr Measure kMeasures[] = {
-    {"error_placed_mm", [](const anatomy::RehearsalRun& r) { return r.error_placed_mm; }},
-    {"error_adapted_mm", [](const anatomy::RehearsalRun& r) { return r.error_adapted_mm; }},
-    {"dice_placed", [](const anatomy::RehearsalRun& r) { return r.dice_placed; }},
-    {"dice_adapted", [](const anatomy::RehearsalRun& r) { return r.dice_adapted; }}};
+    {"error_placed_mm", [](const contours::RehearsalRun& r) { return r.error_placed_mm; }},
+    {"error_adapted_mm", [](const contours::RehearsalRun& r) { return r.error_adapted_mm; }},
+    {"dice_placed", [](const contours::RehearsalRun& r) { return r.dice_placed; }},
+    {"dice_adapted", [](const contours::RehearsalRun& r) { return r.dice_adapted; }}};
 
-void PrintTable(const std::vector<anatomy::OrganRehearsal>& organs) {
+void PrintTable(const std::vector<contours::OrganRehearsal>& organs) {
   std::vector<std::vector<std::string>> rows = {{"organ", "runs", "slices", "points", "inserted",
                                                  "point error placed [mm]", "adapted [mm]", "Dice placed",
                                                  "adapted"}};
@@ -68,7 +68,7 @@ void PrintTable(const std::vector<anatomy::OrganRehearsal>& organs) {
   std::fputs(FormatTable(rows).c_str(), stdout);
 }
 
-void PrintJson(const std::vector<anatomy::OrganRehearsal>& organs) {
+void PrintJson(const std::vector<contours::OrganRehearsal>& organs) {
   nlohmann::json list = nlohmann::json::array();
   for (const auto& organ : organs) {
     nlohmann::json entry = {{"name", organ.name}, {"runs", nlohmann::json::array()}};
@@ -94,21 +94,21 @@ void PrintJson(const std::vector<anatomy::OrganRehearsal>& organs) {
 }
 
 struct Arguments {
-  anatomy::RehearsalOptions options;
+  contours::RehearsalOptions options;
   std::string control_points, images, reference, overlays;
   std::vector<int> points = {8, 12};
   bool is_json = false;
 };
 
 core::Status Rehearse(const Arguments& arguments) {
-  anatomy::RehearsalOptions options = arguments.options;
+  contours::RehearsalOptions options = arguments.options;
   options.control_points = arguments.control_points;
   options.images = arguments.images;
   options.reference = arguments.reference;
   options.clicks.points = {arguments.points.front(), arguments.points.back()};
   if (!arguments.overlays.empty()) options.overlays = arguments.overlays;
   ProgressBar bar("rehearsing", 1.0);
-  const auto organs = anatomy::RehearseContours(options, [&](std::string_view what, double fraction) {
+  const auto organs = contours::RehearseContours(options, [&](std::string_view what, double fraction) {
     bar.SetLabel(what);
     bar.Show(fraction);
   });

@@ -42,7 +42,7 @@ core::Result<std::array<std::string, 3>> ParseAxes(const std::string& text) {
   return std::array{parts[0], parts[1], parts[2]};
 }
 
-core::Result<anatomy::DisplayWindow> ParseWindow(const std::string& text) {
+core::Result<images::DisplayWindow> ParseWindow(const std::string& text) {
   const auto parts = SplitAtCommas(text);
   const auto centre = ParseNumber(parts.front()), width = ParseNumber(parts.back());
   if (parts.size() != 2 || !centre || !width || !(*width > 0)) {
@@ -51,7 +51,7 @@ core::Result<anatomy::DisplayWindow> ParseWindow(const std::string& text) {
                            "\" is not like 40,400 (centre and width, in the file's grey "
                            "values)"};
   }
-  return anatomy::DisplayWindow{*centre, *width};
+  return images::DisplayWindow{*centre, *width};
 }
 
 }  // namespace trocar::cli

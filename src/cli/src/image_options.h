@@ -6,8 +6,8 @@
 #include <optional>
 #include <string>
 
-#include "trocar/anatomy/image_series.h"
 #include "trocar/core/result.h"
+#include "trocar/images/image_series.h"
 
 namespace trocar::cli {
 
@@ -17,6 +17,6 @@ core::Result<std::array<std::string, 3>> ParseAxes(const std::string& text);
 
 /// "40,400": centre and width.
 /// \return kUsage unless these are two numbers, the second above 0
-core::Result<anatomy::DisplayWindow> ParseWindow(const std::string& text);
+core::Result<images::DisplayWindow> ParseWindow(const std::string& text);
 
 }  // namespace trocar::cli

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "run_trocar.h"
-#include "trocar/anatomy/image_stack.h"
-#include "trocar/anatomy/overlay.h"
 #include "trocar/core/safe_file.h"
+#include "trocar/images/image_stack.h"
+#include "trocar/images/png_file.h"
 
 namespace trocar::cli {
 namespace {
@@ -27,9 +27,9 @@ class ImagesCommand : public testing::Test {
               ("images_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
     fs::remove_all(folder_);
     for (int i = 3; i <= 9; ++i) {
-      const anatomy::ColorImage picture{
+      const images::ColorImage picture{
           40, 30, std::vector<std::uint8_t>(40 * 30 * 3, static_cast<std::uint8_t>(20 * i))};
-      ASSERT_TRUE(anatomy::WritePng(folder_ / "stack" / ("s" + std::to_string(i) + ".png"), picture).ok());
+      ASSERT_TRUE(images::WritePng(folder_ / "stack" / ("s" + std::to_string(i) + ".png"), picture).ok());
     }
   }
   void TearDown() override { fs::remove_all(folder_); }
@@ -60,7 +60,7 @@ TEST_F(ImagesCommand, SaysWhatASeriesIs) {
   for (const char* text :
        {"PNG, files s{slice}.png", "7, number 3 to 9", "40 x 30 pixels", "0.7 mm", "posterior", "colour"})
     EXPECT_THAT(printed.out, HasSubstr(text));
-  const auto preview = anatomy::ReadImage(Path("preview.png"));
+  const auto preview = images::ReadImage(Path("preview.png"));
   ASSERT_TRUE(preview.ok()) << preview.error().Text();
   EXPECT_EQ(preview->At(preview->width - 300, 100)[0] % 20, 0) << "a slice of one shade";
 }

@@ -10,7 +10,7 @@
 #include <string>
 
 #include "run_trocar.h"
-#include "trocar/anatomy/control_points.h"
+#include "trocar/contours/control_points.h"
 #include "trocar/core/safe_file.h"
 #include "trocar_test/temporary_folder.h"
 
@@ -51,13 +51,13 @@ TEST_F(Schemas, AcceptWhatTheProgramWrites) {
   EXPECT_EQ(check(phantom / "patient" / "patient.json"), 0);
   EXPECT_EQ(check(phantom / "control_points.json"), 0);
   // as the contour window saves what is unfinished
-  auto points = anatomy::ReadControlPoints(phantom / "control_points.json");
+  auto points = contours::ReadControlPoints(phantom / "control_points.json");
   ASSERT_TRUE(points.ok()) << points.error().Text();
   points->structures[0].slices[0].open = {{3.5, 4.5}, {6.0, 7.0}};
   points->structures.push_back({});
   points->structures.back().name = "spleen";
   points->structures.back().triangle_budget = 1500;
-  ASSERT_TRUE(anatomy::WriteControlPoints(folder.Path() / "draft.json", *points).ok());
+  ASSERT_TRUE(contours::WriteControlPoints(folder.Path() / "draft.json", *points).ok());
   EXPECT_EQ(check(folder.Path() / "draft.json"), 0);
 }
 

@@ -10,10 +10,10 @@
 #include <string>
 #include <vector>
 
-#include "trocar/anatomy/build_organs.h"
-#include "trocar/anatomy/image_series.h"
 #include "trocar/anatomy/patient.h"
+#include "trocar/contours/build_organs.h"
 #include "trocar/core/result.h"
+#include "trocar/images/image_series.h"
 
 namespace trocar::anatomy {
 
@@ -21,7 +21,7 @@ struct BuildOptions {
   std::filesystem::path control_points;            ///< file, see control_points.h
   std::filesystem::path images;                    ///< any series that image_series.h opens
   int dicom_series = 0;                            ///< which one, where a folder holds several: 1, 2, ...
-  std::optional<DisplayWindow> window;             ///< of grey images; the suggested one if not given
+  std::optional<images::DisplayWindow> window;     ///< of grey images; the suggested one if not given
   std::filesystem::path output;                    ///< patient folder to write; empty: nothing is written
   std::optional<std::filesystem::path> reference;  ///< NIfTI label map that judges the result
   std::optional<std::filesystem::path> overlays;   ///< folder for one PNG a slice
@@ -35,7 +35,7 @@ struct BuildOptions {
 
 struct BuildReport {
   Patient patient;
-  std::vector<OrganReport> organs;
+  std::vector<contours::OrganReport> organs;
   std::size_t overlays = 0;  ///< pictures written
 };
 
@@ -44,7 +44,7 @@ struct BuildReport {
 ///
 /// Where two structures overlap, the one later in the file keeps the place.
 /// \return the first error of any step; then nothing has been written
-core::Result<BuildReport> BuildPatient(const BuildOptions& options, const Progress& progress = {});
+core::Result<BuildReport> BuildPatient(const BuildOptions& options, const images::Progress& progress = {});
 
 /// The table of results as text, one line an organ.
 std::string FormatReport(const BuildReport& report);

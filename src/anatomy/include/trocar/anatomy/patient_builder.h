@@ -7,17 +7,12 @@
 #include <string>
 #include <vector>
 
-#include "trocar/anatomy/control_points.h"
 #include "trocar/anatomy/patient.h"
+#include "trocar/contours/control_points.h"
 #include "trocar/core/result.h"
+#include "trocar/meshing/structure_mesh.h"
 
 namespace trocar::anatomy {
-
-/// Closed mesh of one structure in the frame of the pictures: column, row, slice times their distances [mm].
-struct StructureMesh {
-  std::string name;
-  geometry::TriangleMesh mesh;
-};
 
 /// Sizes that the rules by geometry use.
 struct RegionSettings {
@@ -45,8 +40,8 @@ struct RegionSettings {
 ///   gallbladder is attached to the corners of the nearest liver triangle that carry it.
 /// Without any tube the usual ducts and arteries are placed by the landmarks (is_seen = false).
 /// \return kPatientInvalid when "liver" or "gallbladder" is missing or they do not touch
-core::Result<Patient> AssemblePatient(const ControlPoints& points,
-                                      const std::vector<StructureMesh>& structures,
+core::Result<Patient> AssemblePatient(const contours::ControlPoints& points,
+                                      const std::vector<meshing::StructureMesh>& structures,
                                       const RegionSettings& settings = {});
 
 }  // namespace trocar::anatomy

@@ -8,15 +8,15 @@
 #include <string>
 
 #include "trocar/anatomy/build_patient.h"
-#include "trocar/anatomy/image_stack.h"
 #include "trocar/core/result.h"
+#include "trocar/images/image_stack.h"
 
 namespace trocar::anatomy {
 
 struct LabelOptions {
   std::filesystem::path labels;  ///< label map or folder of masks, as ReadLabelVolume reads
   std::filesystem::path output;  ///< patient folder to write; empty: nothing is written
-  int liver = 0;                 ///< label, 1 to 255; 0: found by FindLabels
+  int liver = 0;                 ///< label, 1 to kLargestLabel; 0: found by FindLabels
   int gallbladder = 0;           ///< likewise
   double spacing_mm = 1.0;       ///< of the volume's lattice, 0.4 to 4
   double gap_mm = 0.7;           ///< left free around the gallbladder
@@ -31,12 +31,13 @@ struct OrganLabels {
 /// gallbladder, else TotalSegmentator's 5 and 4 where 5 occurs more often than 1 and 2, else 1 and 2.
 /// \return kLabelsMismatch when a label does not occur (it names the label and those that do), or when the
 ///         file names one of the organs and not the other
-core::Result<OrganLabels> FindLabels(const LabelVolume& volume, const LabelOptions& options);
+core::Result<OrganLabels> FindLabels(const images::LabelVolume& volume, const LabelOptions& options);
 
 /// Fills, meshes and assembles liver and gallbladder as BuildPatient does. The header's directions (LPS or
 /// RAS, turned or mirrored axes) are obeyed. Ducts and arteries are the generator's usual ones, placed by
 /// landmarks (is_seen = false); the neck of the gallbladder is its more cranial and posterior end.
 /// \return the first error of any step; then nothing has been written
-core::Result<BuildReport> BuildPatientFromLabels(const LabelOptions& options, const Progress& progress = {});
+core::Result<BuildReport> BuildPatientFromLabels(const LabelOptions& options,
+                                                 const images::Progress& progress = {});
 
 }  // namespace trocar::anatomy

@@ -8,10 +8,10 @@
 #include <memory>
 #include <vector>
 
-#include "trocar/anatomy/control_points.h"
-#include "trocar/anatomy/image_stack.h"
 #include "trocar/anatomy/patient.h"
+#include "trocar/contours/control_points.h"
 #include "trocar/core/result.h"
+#include "trocar/images/image_stack.h"
 
 namespace trocar::anatomy {
 
@@ -46,16 +46,16 @@ class Phantom {
 
   /// One picture: surroundings, organs with smooth borders, texture, blur and grain.
   /// \param slice  1 to SliceCount() (TROCAR_ASSERT)
-  ColorImage DrawSlice(int slice) const;
+  images::ColorImage DrawSlice(int slice) const;
   /// Which organ each pixel's centre lies in.
   /// \return (height * width)
   std::vector<std::uint8_t> LabelSlice(int slice) const;
 
   /// How the pictures lie, and what a hasty person would have clicked: points beside the true contours on
   /// every n-th slice, the ducts and landmarks as they are.
-  ControlPoints MakeControlPoints() const;
+  contours::ControlPoints MakeControlPoints() const;
   /// All labels, with their names, at their place in the world (LPS).
-  LabelVolume MakeLabels(const Progress& progress = {}) const;
+  images::LabelVolume MakeLabels(const images::Progress& progress = {}) const;
 
  private:
   struct Content;
@@ -64,13 +64,14 @@ class Phantom {
 };
 
 /// NRRD file, uncompressed, with the labels' names as 3D Slicer keeps them; ReadLabelVolume reads it back.
-core::Status WriteLabelVolume(const std::filesystem::path& path, const LabelVolume& volume);
+/// \pre no label is larger than 255 (TROCAR_ASSERT)
+core::Status WriteLabelVolume(const std::filesystem::path& path, const images::LabelVolume& volume);
 
 /// Writes slices/phantom-NNNN.png, labels.nrrd, control_points.json and patient/ (the truth) into a folder.
 ///
 /// \param folder  is made; it must not exist, or be empty
 /// \return kFileUnwritable, or the error of Phantom::Make
 core::Status WritePhantom(const std::filesystem::path& folder, const Patient& patient,
-                          const PhantomOptions& options, const Progress& progress = {});
+                          const PhantomOptions& options, const images::Progress& progress = {});
 
 }  // namespace trocar::anatomy

@@ -8,15 +8,15 @@
 #include <string>
 #include <vector>
 
-#include "trocar/anatomy/contour_workspace.h"
 #include "trocar/app/canvas_view.h"
 #include "trocar/app/contour_keys.h"
+#include "trocar/contours/contour_workspace.h"
 
 namespace trocar::app {
 
 /// A contour, and one of its points or none.
 struct ContourChoice {
-  anatomy::ContourId id;
+  contours::ContourId id;
   std::optional<std::size_t> point;
 
   friend bool operator==(const ContourChoice&, const ContourChoice&) = default;
@@ -27,10 +27,10 @@ class ContourEditor {
   static constexpr double kReach = 9;  ///< how near the pointer must come to a point or curve [pixels]
 
   /// \param workspace  outlives the editor
-  explicit ContourEditor(anatomy::ContourWorkspace& workspace);
+  explicit ContourEditor(contours::ContourWorkspace& workspace);
 
-  anatomy::ContourWorkspace& Workspace() { return *workspace_; }
-  const anatomy::ContourWorkspace& Workspace() const { return *workspace_; }
+  contours::ContourWorkspace& Workspace() { return *workspace_; }
+  const contours::ContourWorkspace& Workspace() const { return *workspace_; }
 
   // what is looked at and worked on
   int Slice() const { return slice_; }
@@ -45,7 +45,7 @@ class ContourEditor {
   /// Slices that page keys and propagation go at once, 1 to 50.
   int SliceStep() const { return slice_step_; }
   void SetSliceStep(int step);
-  const anatomy::SliceContours& Here() const { return workspace_->Document().At(structure_, slice_); }
+  const contours::SliceContours& Here() const { return workspace_->Document().At(structure_, slice_); }
 
   CanvasView view;
   CanvasSize size;
@@ -61,9 +61,9 @@ class ContourEditor {
   /// Place of the pointer [pixels of the picture]; nothing when it is elsewhere.
   const std::optional<Vec2>& Pointer() const { return pointer_; }
   /// Fit of the slice that is shown; the quick one while a point of it is dragged.
-  core::Result<std::shared_ptr<const anatomy::SliceFit>> Fit() {
+  core::Result<std::shared_ptr<const contours::SliceFit>> Fit() {
     return workspace_->Fit(structure_, slice_,
-                           is_dragging_ ? anatomy::FitEffort::kQuick : anatomy::FitEffort::kWhole);
+                           is_dragging_ ? contours::FitEffort::kQuick : contours::FitEffort::kWhole);
   }
   /// From the open contour's last point to the pointer, as a click would add it; empty when nothing is open.
   std::vector<Vec2> RubberLine();
@@ -82,14 +82,14 @@ class ContourEditor {
 
  private:
   void Tell(const core::Status& status);
-  void GoTo(const std::optional<anatomy::EditPlace>& place, const char* verb);
+  void GoTo(const std::optional<contours::EditPlace>& place, const char* verb);
   void CloseContour();
   void DeleteChosen();
   void Propagate(int direction);
   std::optional<ContourChoice> FindPoint(const Vec2& at);
   bool InsertOnCurve(const Vec2& at);
 
-  anatomy::ContourWorkspace* workspace_;
+  contours::ContourWorkspace* workspace_;
   int structure_ = 0, slice_ = 0, slice_step_ = 1;
   bool is_scissors_ = false, is_dragging_ = false;
   Vec2 grip_;  // from the pointer to the dragged point [pixels of the picture]

@@ -4,8 +4,8 @@
 
 #include <string>
 
-#include "trocar/anatomy/mesh_job.h"
 #include "trocar/app/contour_editor.h"
+#include "trocar/contours/mesh_job.h"
 
 namespace trocar::app {
 
@@ -18,11 +18,11 @@ std::string SliceNotes(ContourEditor& editor);
 /// "pixel 512.0, 240.5   LPS 12.3, -45.0, 120.0 mm"; empty when the pointer is elsewhere
 std::string PointerText(const ContourEditor& editor);
 /// "1280 x 720 px of 0.528 mm, slices of 1 mm · columns to left, rows to anterior · file: LPS"
-std::string SeriesText(const anatomy::ImageSeriesInfo& series);
+std::string SeriesText(const images::ImageSeriesInfo& series);
 /// "liver: 5,000 triangles, 1403 mL · 2.1 mm": the lattice it was made on
-std::string MeshText(const std::string& name, const anatomy::OrganMesh& mesh);
+std::string MeshText(const std::string& name, const contours::OrganMesh& mesh);
 
 /// Area that the fitted contours enclose, holes taken off [mm^2].
-double CalcArea(const anatomy::SliceFit& fit, double pixel_mm);
+double CalcArea(const contours::SliceFit& fit, double pixel_mm);
 
 }  // namespace trocar::app

@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <string>
 
-#include "trocar/anatomy/image_series.h"
 #include "trocar/core/result.h"
+#include "trocar/images/image_series.h"
 
 namespace trocar::app {
 
@@ -32,13 +32,13 @@ struct Options {
   std::string calibrate;  ///< "tip", "trocar" or "jaw": measured as soon as the device answers; empty: none
 
   // the contour window
-  std::filesystem::path images;        ///< not empty: open the contour window on these pictures
-  std::filesystem::path points;        ///< file of contours, which need not exist yet; empty: none
-  std::filesystem::path reference;     ///< label map to compare with; empty: none
-  anatomy::ImageSeriesOptions series;  ///< what the pictures do not say
-  std::filesystem::path script;        ///< commands to begin with; empty: none
-  bool has_autosave = false;           ///< also in a run that nobody watches
-  bool is_measuring = false;           ///< drag a point for some seconds, print the times and quit
+  std::filesystem::path images;       ///< not empty: open the contour window on these pictures
+  std::filesystem::path points;       ///< file of contours, which need not exist yet; empty: none
+  std::filesystem::path reference;    ///< label map to compare with; empty: none
+  images::ImageSeriesOptions series;  ///< what the pictures do not say
+  std::filesystem::path script;       ///< commands to begin with; empty: none
+  bool has_autosave = false;          ///< also in a run that nobody watches
+  bool is_measuring = false;          ///< drag a point for some seconds, print the times and quit
   // the patient editor
   std::filesystem::path patient;     ///< not empty: open the patient editor on this folder
   std::string editor_tool = "look";  ///< "look", "paint", "tubes" or "landmarks"

@@ -6,8 +6,8 @@
 #include <span>
 #include <string>
 
-#include "trocar/anatomy/image_series.h"
 #include "trocar/core/result.h"
+#include "trocar/images/image_series.h"
 
 namespace trocar::app {
 
@@ -22,12 +22,12 @@ struct SeriesForm {
 std::span<const char* const> PatientDirections() noexcept;
 
 /// What is known already, as texts.
-SeriesForm MakeSeriesForm(const anatomy::ImageSeriesOptions& series);
+SeriesForm MakeSeriesForm(const images::ImageSeriesOptions& series);
 
 /// \param series  what else is known; sizes and axes are replaced
 /// \return kUsage with the field that is wrong: lengths are 0.01 to 20 and 0.01 to 50 mm, with a decimal point or
 ///         comma; of the axes all or none are given, in three different directions
-core::Result<anatomy::ImageSeriesOptions> ReadSeriesForm(const SeriesForm& form,
-                                                         anatomy::ImageSeriesOptions series);
+core::Result<images::ImageSeriesOptions> ReadSeriesForm(const SeriesForm& form,
+                                                        images::ImageSeriesOptions series);
 
 }  // namespace trocar::app

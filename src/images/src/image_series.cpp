@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/images/image_series.h"
+
+#include <algorithm>
+
+#include "series_content.h"
+#include "series_geometry.h"
+#include "trocar/core/assert.h"
+#include "trocar/core/printable.h"
+#include "trocar/images/slice_names.h"
+#include "volume_file.h"
+
+namespace trocar::images {
+namespace {
+
+namespace fs = std::filesystem;
+using core::Error;
+using core::ErrorCode;
+using Content = ImageSeries::Content;
+
+/// A volume in one file.
+core::Status OpenVolume(const fs::path& path, const ImageSeriesOptions& options, const Progress& progress,
+                        Content& content) {
+  if (progress) progress("reading the volume", 0.0);
+  auto decoded = DecodeFile(path, Links::kFollow, *content.pool);
+  if (!decoded) return decoded.error();
+  const ImageHeader& header = decoded->header;
+  ImageSeriesInfo& info = content.info;
+  info.format = FormatName(header.kind);
+  info.file_frame = FrameName(header.frame);
+  for (int k = 0; k < static_cast<int>(header.depth); ++k) info.slice_numbers.push_back(k);
+  if (auto status = SetGeometry(GeometryOf(header), header, options, info); !status)
+    return Error{status.error().code, core::Printable(path.string()) + ": " + status.error().message};
+  SetGreyValues(header, decoded->samples.Data(), header.SampleCount(), info);
+  content.headers = {header};
+  content.samples = std::move(decoded->samples);
+  return {};
+}
+
+/// Sorts a folder's names into what could be a slice.
+struct FolderContent {
+  std::vector<std::string> files, dicom;
+  std::string volume;  ///< a file that is a series by itself
+};
+
+core::Result<FolderContent> LookInto(const fs::path& folder) {
+  auto names = ListFolder(folder);
+  if (!names) return names.error();
+  FolderContent content;
+  for (std::string& name : *names) {
+    std::error_code ignored;
+    if (fs::symlink_status(folder / name, ignored).type() == fs::file_type::directory) continue;
+    if (!IsPictureName(name)) {
+      // a link or a pipe among the slices is refused here, not left out
+      const auto file = ImportFile::Open(folder / name, Links::kRefuse);
+      if (!file && file.error().code == ErrorCode::kImagePathUnsafe) return file.error();
+      const FileKind kind = file ? SniffKind(file->ReadBegin(348)) : FileKind::kUnknown;
+      if (kind == FileKind::kDicom) content.dicom.push_back(name);
+      const bool is_volume = kind >= FileKind::kNifti || name.ends_with(".nii.gz");
+      if (is_volume && content.volume.empty()) content.volume = name;
+    }
+    content.files.push_back(std::move(name));
+  }
+  return content;
+}
+
+core::Status OpenFolder(const fs::path& folder, const ImageSeriesOptions& options, const Progress& progress,
+                        Content& content) {
+  auto found = LookInto(folder);
+  if (!found) return found.error();
+  if (found->files.empty())
+    return Error{ErrorCode::kImageSliceMissing,
+                 "the folder holds no files; name the one that the slices lie in"};
+  if (options.pattern.empty() && !found->dicom.empty()) {
+    content.info.ignored_files = found->files.size() - found->dicom.size();
+    return OpenDicom(folder, found->dicom, Links::kRefuse, options, progress, content);
+  }
+  auto status = OpenStack(folder, found->files, options, progress, content);
+  if (!status && status.error().code == ErrorCode::kImageSliceMissing && !found->volume.empty() &&
+      options.pattern.empty()) {
+    return Error{ErrorCode::kImageSliceMissing, "the folder holds no slices, but the volume " +
+                                                    core::Printable(found->volume) +
+                                                    "; name that file itself"};
+  }
+  return status;
+}
+
+}  // namespace
+
+ImageSeries::ImageSeries(std::shared_ptr<const Content> content) : content_(std::move(content)) {}
+
+const ImageSeriesInfo& ImageSeries::Info() const {
+  return content_->info;
+}
+
+core::Result<ImageSeries> ImageSeries::Open(const fs::path& path, const ImageSeriesOptions& options,
+                                            const Progress& progress) {
+  TROCAR_ASSERT(std::is_sorted(options.slices.begin(), options.slices.end()));
+  ImportLimits limits;
+  limits.most_bytes = options.memory_bytes;
+  constexpr std::uint64_t kForItself = std::uint64_t{1} << 30;  // libraries, and a copy of one picture
+  limits.reader_bytes = 2 * limits.most_bytes + kForItself;
+  auto content = std::make_shared<Content>(limits);
+  std::error_code failure;
+  core::Status status;
+  if (fs::is_directory(path, failure)) {
+    status = OpenFolder(path, options, progress, *content);
+    const bool is_named =
+        !status && status.error().message.find(path.filename().string()) != std::string::npos;
+    if (!status && !is_named)
+      status = Error{status.error().code, core::Printable(path.string()) + ": " + status.error().message};
+  } else {
+    const auto file = ImportFile::Open(path, Links::kFollow);
+    if (!file && file.error().code == ErrorCode::kFileMissing) {
+      return Error{ErrorCode::kImageFolderMissing,
+                   core::Printable(path.string()) + " does not exist; name the folder or file of the images"};
+    }
+    if (!file) return file.error();
+    if (SniffKind(file->ReadBegin(348)) == FileKind::kDicom) {
+      const std::string name = path.filename().string();
+      status = OpenDicom(path.parent_path(), {&name, 1}, Links::kFollow, options, progress, *content);
+    } else {
+      status = OpenVolume(path, options, progress, *content);
+    }
+  }
+  if (!status) return status.error();
+  // a volume is here whole: its readers are no longer needed, and nobody else may write to it any more
+  if (content->files.empty()) content->pool.reset();
+  if (progress) progress("reading slices", 1.0);
+  return ImageSeries(std::move(content));
+}
+
+core::Result<ColorImage> ImageSeries::ReadSlice(int number, const DisplayWindow& window) const {
+  TROCAR_ASSERT(window.width > 0);
+  const ImageSeriesInfo& info = content_->info;
+  const auto found = std::lower_bound(info.slice_numbers.begin(), info.slice_numbers.end(), number);
+  if (found == info.slice_numbers.end() || *found != number) {
+    return Error{ErrorCode::kImageSliceMissing, "the series has no slice " + std::to_string(number) +
+                                                    "; it has " + std::to_string(info.slice_numbers.front()) +
+                                                    " to " + std::to_string(info.slice_numbers.back())};
+  }
+  const auto slice = static_cast<std::size_t>(found - info.slice_numbers.begin());
+  const ImageHeader& header = content_->HeaderOf(slice);
+  if (content_->files.empty()) {
+    const std::byte* samples = content_->samples.Data() + slice * PictureBytes(header);
+    return RenderSlice(header, samples, window, info.width, info.height);
+  }
+  auto picture = content_->WithPicture(slice, [&](const std::byte* samples) {
+    return RenderSlice(header, samples, window, info.width, info.height);
+  });
+  if (!picture)
+    return Error{picture.error().code, "slice " + std::to_string(number) + ": " + picture.error().message};
+  return picture;
+}
+
+core::Result<std::map<int, ColorImage>> ReadSlices(const ImageSeries& series, std::span<const int> numbers,
+                                                   const DisplayWindow& window, const Progress& progress) {
+  std::vector<ColorImage> pictures(numbers.size());
+  const auto status = ForEach(numbers.size(), progress, "reading slices", [&](std::size_t i) -> core::Status {
+    auto picture = series.ReadSlice(numbers[i], window);
+    if (!picture) return picture.error();
+    pictures[i] = std::move(*picture);
+    return {};
+  });
+  if (!status) return status.error();
+  std::map<int, ColorImage> images;
+  for (std::size_t i = 0; i < numbers.size(); ++i) images[numbers[i]] = std::move(pictures[i]);
+  return images;
+}
+
+}  // namespace trocar::images

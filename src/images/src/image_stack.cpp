@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/images/image_stack.h"
+
+#include <cmath>
+
+#include "trocar/core/printable.h"
+#include "volume_file.h"
+
+namespace trocar::images {
+namespace {
+
+namespace fs = std::filesystem;
+using core::Error;
+using core::ErrorCode;
+
+constexpr std::uint64_t kMostVoxels = std::uint64_t{1} << 28;
+constexpr std::uint64_t kForItself = std::uint64_t{1} << 30;  // address space of a reader beside the samples
+
+Error Undecodable(const fs::path& path, const std::string& why) {
+  return {ErrorCode::kImageUndecodable, core::Printable(path.string()) + ": " + why};
+}
+
+core::Result<DecodedFile> DecodeAlone(const fs::path& path, std::uint64_t most_bytes,
+                                      Links links = Links::kFollow) {
+  ImportLimits limits;
+  limits.most_bytes = most_bytes;
+  limits.reader_bytes = 2 * most_bytes + kForItself;
+  ImportPool pool(limits, 1);
+  return DecodeFile(path, links, pool);
+}
+
+core::Result<LabelVolume> ReadLabelFile(const fs::path& path, Links links) {
+  auto decoded = DecodeAlone(path, kMostVoxels * SampleBytes(SampleKind::kFloat32), links);
+  if (!decoded) return decoded.error();
+  const ImageHeader& header = decoded->header;
+  if (header.kind < FileKind::kNifti || header.channels != 1)
+    return Undecodable(path, "it is no volume of labels; name a NIfTI, NRRD or MetaImage label map");
+  const std::uint64_t count = header.SampleCount();
+  if (count > kMostVoxels)
+    return Error{ErrorCode::kImageTooLarge,
+                 core::Printable(path.string()) + ": it has more than 2^28 voxels; crop or resample it"};
+  const bool has_spacing = header.spacing[0] > 0 && header.spacing[1] > 0 && header.spacing[2] > 0;
+  if (header.frame == FileFrame::kNotSaid || !has_spacing) {
+    return Error{ErrorCode::kImageSpacingUnknown,
+                 core::Printable(path.string()) +
+                     ": it does not say how large its voxels are or how it lies in the "
+                     "body; save it with both, for instance with 3D Slicer"};
+  }
+  LabelVolume volume;
+  volume.size = {static_cast<int>(header.width), static_cast<int>(header.height),
+                 static_cast<int>(header.depth)};
+  for (int axis = 0; axis < 3; ++axis) {
+    volume.origin[axis] = header.origin[axis];
+    for (int k = 0; k < 3; ++k) volume.direction[axis][k] = header.direction[axis][k] * header.spacing[axis];
+  }
+  volume.labels.resize(count);
+  if (const std::string fault = CopyLabels(header, decoded->samples.Data(), volume.labels); !fault.empty()) {
+    return Undecodable(
+        path, "its voxels are no labels: " + fault +
+                  "; name a label map of whole numbers from 0 on (32-bit integers where they are large), "
+                  "resampled by nearest neighbour if at all");
+  }
+  volume.names = std::move(decoded->names);
+  return volume;
+}
+
+/// The file of an organ's mask in a folder; empty where there is none.
+fs::path FindMask(const fs::path& folder, const std::string& organ) {
+  std::error_code ignored;
+  for (const char* ending : {".nii.gz", ".nii", ".nrrd", ".mha"}) {
+    const fs::path file = folder / (organ + ending);
+    if (fs::symlink_status(file, ignored).type() != fs::file_type::not_found) return file;
+  }
+  return {};
+}
+
+bool LieAlike(const LabelVolume& a, const LabelVolume& b) {
+  constexpr double kSamePlaceMm = 0.01;  // headers hold single precision
+  const auto is_same = [](double x, double y) { return std::fabs(x - y) <= kSamePlaceMm; };
+  bool is_alike = a.size == b.size;
+  for (std::size_t k = 0; k < 3; ++k) {
+    is_alike = is_alike && is_same(a.origin[k], b.origin[k]);
+    // what a voxel's step differs by adds up to the last voxel
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      is_alike =
+          is_alike && is_same(a.size[axis] * a.direction[axis][k], a.size[axis] * b.direction[axis][k]);
+  }
+  return is_alike;
+}
+
+/// One mask an organ, named after it: what TotalSegmentator writes unless it is told otherwise (--ml).
+core::Result<LabelVolume> ReadMasks(const fs::path& folder) {
+  LabelVolume all;
+  for (const auto& [organ, label] : {std::pair{"liver", 1}, {"gallbladder", 2}}) {
+    const fs::path file = FindMask(folder, organ);
+    if (file.empty()) {
+      return Error{ErrorCode::kFileMissing,
+                   core::Printable(folder.string()) + " holds no mask named " + organ +
+                       ".nii.gz (or .nii, .nrrd, .mha); name a folder with one for the liver and one for the "
+                       "gallbladder, or one file with all labels"};
+    }
+    auto mask = ReadLabelFile(file, Links::kRefuse);
+    if (!mask) return mask.error();
+    if (all.labels.empty()) {
+      all.size = mask->size, all.direction = mask->direction, all.origin = mask->origin;
+      all.labels.resize(mask->labels.size());
+    } else if (!LieAlike(all, *mask)) {
+      return Error{ErrorCode::kLabelsMismatch, core::Printable(folder.string()) +
+                                                   ": its masks differ in size or place; write them all for "
+                                                   "the same image"};
+    }
+    for (std::size_t i = 0; i < all.labels.size(); ++i) {
+      if (mask->labels[i] != 0) all.labels[i] = label;
+    }
+    all.names.emplace_back(organ, label);
+  }
+  return all;
+}
+
+}  // namespace
+
+core::Result<ColorImage> ReadImage(const fs::path& path) {
+  constexpr std::uint64_t kMostPixels = std::uint64_t{1} << 28;
+  const auto decoded = DecodeAlone(path, 3 * kMostPixels);
+  if (!decoded) return decoded.error();
+  const ImageHeader& header = decoded->header;
+  if (header.kind > FileKind::kTiff || header.depth != 1 || header.samples != SampleKind::kUint8) {
+    return Error{ErrorCode::kImageUnsupported,
+                 core::Printable(path.string()) + ": it is no single picture of 8 bits; convert it to PNG"};
+  }
+  return RenderSlice(header, decoded->samples.Data(), {}, static_cast<int>(header.width),
+                     static_cast<int>(header.height));
+}
+
+core::Result<LabelVolume> ReadLabelVolume(const fs::path& path) {
+  std::error_code ignored;
+  return fs::is_directory(path, ignored) ? ReadMasks(path) : ReadLabelFile(path, Links::kFollow);
+}
+
+}  // namespace trocar::images

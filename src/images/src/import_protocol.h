@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file import_protocol.h  What this program and its image reader, a process of its own, say to each other.
+///
+/// One request, one reply, both of fixed size, over a SOCK_SEQPACKET socket; files and the memory for samples
+/// travel as descriptors. Both programs come from one build, so plain structs do. The reader is not trusted:
+/// ReadReply in import_worker.cpp checks every field.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+#include <type_traits>
+
+namespace trocar::images {
+
+inline constexpr std::uint32_t kImportVersion = 2;
+inline constexpr int kImportSocket = 3;             // descriptor in the reader
+inline constexpr int kExitOutOfMemory = 40;         // exit status of the reader
+inline constexpr std::size_t kMostDescriptors = 3;  // of one request
+inline constexpr std::size_t kMostSegments = 1024;  // an atlas of the whole body names a few hundred
+
+/// Why a DICOM report or plan is not read; among slices it is passed over.
+inline constexpr const char* kWithoutPicture = "it is a DICOM file without a picture";
+
+enum class FileKind : std::uint32_t { kUnknown, kJpeg, kPng, kTiff, kDicom, kNifti, kNrrd, kMetaImage };
+enum class ImportOperation : std::uint32_t { kProbe = 1, kDecode = 2 };
+
+/// How samples are handed over, in this computer's byte order. Those of 64 bits are turned into kFloat32.
+enum class SampleKind : std::uint32_t { kUint8, kInt16, kUint16, kFloat32, kInt32, kUint32 };
+inline constexpr SampleKind kLastSampleKind = SampleKind::kUint32;
+inline constexpr std::size_t SampleBytes(SampleKind kind) {
+  switch (kind) {
+    case SampleKind::kUint8:
+      return 1;
+    case SampleKind::kInt16:
+    case SampleKind::kUint16:
+      return 2;
+    default:
+      return 4;
+  }
+}
+
+/// Which way the file's own coordinates run.
+enum class FileFrame : std::uint32_t { kNotSaid, kLps, kRas };
+
+/// Descriptors that come with it: the file; its data file or none; for kDecode, the memory for samples.
+struct ImportRequest {
+  std::uint32_t version = kImportVersion;
+  ImportOperation operation = ImportOperation::kProbe;
+  std::uint32_t has_data_file = 0;
+  std::uint32_t most_side = 0;         ///< of a picture [pixels]
+  std::uint64_t most_bytes = 0;        ///< of all samples
+  std::uint32_t is_size_believed = 0;  ///< 1: the header is not compared with the bytes present (tests only)
+  std::uint32_t seconds = 0;           ///< the reader ends itself after this time
+  std::uint64_t offset = 0;            ///< kDecode: where in the memory the samples go [bytes]
+  std::uint64_t room = 0;              ///< kDecode: how many bytes there are from there
+};
+
+/// What a header says. Lengths are in millimetres, directions and places in LPS.
+struct ImageHeader {
+  FileKind kind = FileKind::kUnknown;
+  std::uint32_t width = 0, height = 0, depth = 0;
+  std::uint32_t channels = 0;  ///< 1 grey, 3 red, green, blue
+  SampleKind samples = SampleKind::kUint8;
+  std::uint32_t bits = 0;  ///< of a sample in the file
+  FileFrame frame = FileFrame::kNotSaid;
+  double spacing[3] = {0, 0, 0};  ///< 0: the file does not say
+  double origin[3] = {0, 0, 0};
+  double direction[3][3] = {};  ///< [axis] unit vectors; zero where frame is kNotSaid
+  double slope = 1, intercept = 0;
+  std::uint32_t has_window = 0, is_inverted = 0;  ///< inverted: large values are dark
+  double window_centre = 0, window_width = 0;
+  // DICOM: hashes, so that no name travels
+  std::uint64_t series_hash = 0, patient_hash = 0, frame_hash = 0;
+  std::int32_t instance_number = 0;
+  std::uint32_t has_position = 0;  ///< of a single slice: position and orientation were given
+  std::uint32_t segments = 0;
+  char data_file[256] = {};  ///< name of the file with the samples; empty: they follow the header
+
+  std::uint64_t SampleCount() const {
+    return std::uint64_t{width} * height * depth * channels;  // checked to fit by both sides
+  }
+};
+
+/// Name of a label, as 3D Slicer's NRRD and TotalSegmentator's NIfTI files have them.
+struct SegmentName {
+  char name[60] = {};
+  std::int32_t label = 0;
+};
+
+struct ImportReply {
+  std::uint32_t version = kImportVersion;
+  std::int32_t code = 0;  ///< core::ErrorCode
+  char why[240] = {};     ///< of an error: plain words without anything from the file
+  ImageHeader header;
+  SegmentName names[kMostSegments] = {};
+};
+
+static_assert(std::is_trivially_copyable_v<ImportRequest> && std::is_trivially_copyable_v<ImportReply>);
+
+/// The kind of file that begins like this (at least 348 bytes where the file has them; unpacked if gzip).
+inline FileKind SniffKind(std::string_view begin) {
+  const auto has = [&](std::size_t at, std::string_view text) {
+    return begin.size() >= at + text.size() && begin.substr(at, text.size()) == text;
+  };
+  if (has(0, "\xff\xd8\xff")) return FileKind::kJpeg;
+  if (has(0, "\x89PNG\r\n\x1a\n")) return FileKind::kPng;
+  if (has(0, std::string_view("II*\0", 4)) || has(0, std::string_view("MM\0*", 4))) return FileKind::kTiff;
+  if (has(0, std::string_view("II+\0", 4)) || has(0, std::string_view("MM\0+", 4))) return FileKind::kTiff;
+  if (has(128, "DICM")) return FileKind::kDicom;
+  if (has(0, "NRRD000")) return FileKind::kNrrd;
+  if (has(344, std::string_view("n+1\0", 4)) || has(344, std::string_view("ni1\0", 4)) || has(4, "n+2")) {
+    return FileKind::kNifti;
+  }
+  if (has(0, "ObjectType") || has(0, "NDims") || has(0, "Comment =")) return FileKind::kMetaImage;
+  // DICOM without its preamble begins with an element of group 8 or 2
+  if (has(0, std::string_view("\x08\0", 2)) || has(0, std::string_view("\x02\0\0\0UL", 6)))
+    return FileKind::kDicom;
+  return FileKind::kUnknown;
+}
+
+}  // namespace trocar::images

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: Apache-2.0
+// Label maps of every width, in the three formats of volumes, written here byte by byte.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <limits>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "trocar/core/safe_file.h"
+#include "trocar/images/image_stack.h"
+#include "trocar_test/temporary_folder.h"
+
+namespace trocar::images {
+namespace {
+
+using core::ErrorCode;
+using testing::HasSubstr;
+
+constexpr int kX = 4, kY = 3, kZ = 2;
+
+template <typename Sample>
+std::string Bytes(const std::vector<double>& values) {
+  std::string bytes;
+  for (const double value : values) {
+    const auto sample = static_cast<Sample>(value);
+    bytes.append(reinterpret_cast<const char*>(&sample), sizeof sample);
+  }
+  return bytes;
+}
+
+struct TypeNames {
+  std::int16_t nifti;
+  const char *nrrd, *meta;
+};
+template <typename Sample>
+TypeNames NamesOf() {
+  if constexpr (std::is_same_v<Sample, std::uint8_t>) return {2, "uint8", "MET_UCHAR"};
+  if constexpr (std::is_same_v<Sample, std::int16_t>) return {4, "int16", "MET_SHORT"};
+  if constexpr (std::is_same_v<Sample, std::int32_t>) return {8, "int32", "MET_INT"};
+  if constexpr (std::is_same_v<Sample, float>) return {16, "float", "MET_FLOAT"};
+  if constexpr (std::is_same_v<Sample, double>) return {64, "double", "MET_DOUBLE"};
+  if constexpr (std::is_same_v<Sample, std::uint16_t>) return {512, "uint16", "MET_USHORT"};
+  if constexpr (std::is_same_v<Sample, std::uint32_t>) return {768, "uint32", "MET_UINT"};
+  if constexpr (std::is_same_v<Sample, std::int64_t>) return {1024, "int64", "MET_LONG_LONG"};
+}
+
+template <typename T>
+void Put(std::string& text, std::size_t at, T value) {
+  std::memcpy(&text[at], &value, sizeof value);
+}
+
+template <typename Sample>
+std::string FormatNifti(const std::vector<double>& values, float slope = 1, float intercept = 0) {
+  std::string text(352, '\0');
+  Put<std::int32_t>(text, 0, 348);
+  const std::int16_t dims[8] = {3, kX, kY, kZ, 1, 1, 1, 1};
+  std::memcpy(&text[40], dims, sizeof dims);
+  Put<std::int16_t>(text, 70, NamesOf<Sample>().nifti);
+  Put<std::int16_t>(text, 72, 8 * sizeof(Sample));
+  const float sizes[8] = {1, 2, 2, 3, 1, 1, 1, 1};
+  std::memcpy(&text[76], sizes, sizeof sizes);
+  Put<float>(text, 108, 352);
+  Put<float>(text, 112, slope);
+  Put<float>(text, 116, intercept);
+  Put<char>(text, 123, 2);          // mm
+  Put<std::int16_t>(text, 254, 1);  // the rows below hold
+  const float rows[12] = {2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 3, 0};
+  std::memcpy(&text[280], rows, sizeof rows);
+  std::memcpy(&text[344], "n+1", 4);
+  return text + Bytes<Sample>(values);
+}
+
+template <typename Sample>
+std::string FormatNrrd(const std::vector<double>& values) {
+  return std::string("NRRD0004\ntype: ") + NamesOf<Sample>().nrrd +
+         "\ndimension: 3\nspace: left-posterior-superior\nsizes: 4 3 2\nspace directions: (2,0,0) (0,2,0) "
+         "(0,0,3)\n"
+         "kinds: domain domain domain\nendian: little\nencoding: raw\nspace origin: (0,0,0)\n\n" +
+         Bytes<Sample>(values);
+}
+
+template <typename Sample>
+std::string FormatMeta(const std::vector<double>& values) {
+  return std::string(
+             "ObjectType = Image\nNDims = 3\nBinaryData = True\nBinaryDataByteOrderMSB = False\n"
+             "CompressedData = False\nTransformMatrix = 1 0 0 0 1 0 0 0 1\nOffset = 0 0 0\n"
+             "ElementSpacing = 2 2 3\nDimSize = 4 3 2\nElementType = ") +
+         NamesOf<Sample>().meta + "\nElementDataFile = LOCAL\n" + Bytes<Sample>(values);
+}
+
+class LabelMap : public testing::Test {
+ protected:
+  core::Result<LabelVolume> Read(const char* name, const std::string& content) {
+    EXPECT_TRUE(core::WriteFile(folder_.Path() / name, content).ok());
+    return ReadLabelVolume(folder_.Path() / name);
+  }
+  std::string Refusal(const char* name, const std::string& content) {
+    const auto read = Read(name, content);
+    EXPECT_FALSE(read.ok()) << name;
+    if (read.ok()) return "";
+    EXPECT_EQ(read.error().code, ErrorCode::kImageUndecodable);
+    return read.error().message;
+  }
+  static std::vector<double> Values(double largest) {
+    std::vector<double> values(kX * kY * kZ, 0.0);
+    values[3] = 1, values[7] = largest, values[11] = largest - 1, values[20] = 2;
+    return values;
+  }
+
+  template <typename Sample>
+  void ExpectRead(double largest) {
+    const std::vector<double> values = Values(largest);
+    const std::vector<std::int32_t> expected(values.begin(), values.end());
+    for (const auto& [name, content] :
+         {std::pair{"a.nii", FormatNifti<Sample>(values)}, std::pair{"a.nrrd", FormatNrrd<Sample>(values)},
+          std::pair{"a.mha", FormatMeta<Sample>(values)}}) {
+      const auto read = Read(name, content);
+      ASSERT_TRUE(read.ok()) << name << ": " << read.error().Text();
+      EXPECT_EQ(read->labels, expected) << name << ", " << NamesOf<Sample>().nrrd;
+    }
+  }
+
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(LabelMap, IsReadInEveryWidth) {
+  ExpectRead<std::uint8_t>(255);
+  ExpectRead<std::int16_t>(32767);
+  ExpectRead<std::uint16_t>(65535);
+  ExpectRead<std::int32_t>(614'454'277);
+  ExpectRead<std::int32_t>(kLargestLabel);
+  ExpectRead<std::uint32_t>(kLargestLabel);
+  ExpectRead<std::int64_t>(16'777'216);
+  ExpectRead<float>(65536);
+  ExpectRead<double>(16'777'216);
+}
+
+TEST_F(LabelMap, ObeysSlopeAndIntercept) {
+  const auto read = Read("a.nii", FormatNifti<std::uint8_t>(Values(200), 500, 3));
+  ASSERT_TRUE(read.ok()) << read.error().Text();
+  EXPECT_EQ(read->labels[7], 100'003);
+  EXPECT_EQ(read->labels[0], 3);
+}
+
+TEST_F(LabelMap, IsRefusedWithTheReason) {
+  auto values = Values(9);
+  values[7] = 2.5;
+  EXPECT_THAT(Refusal("a.nii", FormatNifti<float>(values)), HasSubstr("2.5 is no whole number"));
+  EXPECT_THAT(Refusal("a.nrrd", FormatNrrd<double>(values)), HasSubstr("2.5 is no whole number"));
+  EXPECT_THAT(Refusal("a.mha", FormatMeta<float>(values)), HasSubstr("nearest neighbour"));
+  values[7] = -1;
+  EXPECT_THAT(Refusal("a.nii", FormatNifti<std::int16_t>(values)), HasSubstr("-1 is negative"));
+  EXPECT_THAT(Refusal("a.nrrd", FormatNrrd<std::int32_t>(values)), HasSubstr("-1 is negative"));
+  values[7] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THAT(Refusal("a.mha", FormatMeta<float>(values)), HasSubstr("no number"));
+  values[7] = 4294967295.0;
+  EXPECT_THAT(Refusal("a.nii", FormatNifti<std::uint32_t>(values)),
+              HasSubstr("4294967295 is larger than 2147483647"));
+  // two labels beyond 2^24 may be one as floating point: never taken without a word
+  values[7] = 16'777'218;
+  EXPECT_THAT(Refusal("a.nrrd", FormatNrrd<float>(values)), HasSubstr("32-bit integers"));
+  EXPECT_THAT(Refusal("a.nii", FormatNifti<std::int64_t>(values)), HasSubstr("is larger than 16777216"));
+}
+
+}  // namespace
+}  // namespace trocar::images
