@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "trocar/app/key_bindings.h"
+#include "trocar/app/simulator_commands.h"
 #include "trocar/app/session_control.h"
 
 namespace trocar::app {

@@ -6,7 +6,7 @@
 
 #include <span>
 
-#include "trocar/app/key_bindings.h"
+#include "trocar/app/simulator_commands.h"
 
 namespace trocar::app {
 

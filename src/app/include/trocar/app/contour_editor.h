@@ -10,7 +10,7 @@
 
 #include "trocar/anatomy/contour_workspace.h"
 #include "trocar/app/canvas_view.h"
-#include "trocar/app/contour_keys.h"
+#include "trocar/app/contour_commands.h"
 
 namespace trocar::app {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "trocar/app/key_bindings.h"
+#include "trocar/app/simulator_commands.h"
 
 #include <gtest/gtest.h>
 
