@@ -57,6 +57,13 @@ struct CommandButton {
   const char* label = "";
   const char* tip = "";
   bool is_toggle = false, is_primary = false;
+  bool is_linked = false;  ///< joined to its neighbours that are, too
+};
+
+/// How a button looks now; the window's presenter says it.
+struct ButtonState {
+  bool is_shown = true, is_enabled = true, is_checked = false;
+  std::string label, tip;
 };
 
 /// \tparam Action  what is done; == compares
