@@ -171,6 +171,7 @@ void HandEvents::OnButton(guint button, bool is_down) {
     if (button == kLeftButton && !control_->IsDemonstration()) {
       is_taken_ = true;
       picture_.set_cursor("none");
+      signal_taken_.emit();
     }
     return;
   }

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "trocar/app/key_bindings.h"
 #include "trocar/app/session_control.h"
+#include "trocar/app/simulator_commands.h"
 
 namespace trocar::app {
 
@@ -32,6 +32,8 @@ class HandEvents {
   void ReleasePointer();
   /// Everything but motion.
   sigc::signal<void(Action)>& SignalAction() { return signal_action_; }
+  /// A click into the picture has taken the pointer.
+  sigc::signal<void()>& SignalTaken() { return signal_taken_; }
 
  private:
   bool OnKeyPressed(guint keyval, guint keycode, Gdk::ModifierType state);
@@ -53,6 +55,7 @@ class HandEvents {
   std::vector<guint> held_;         // key symbols, so that repeats toggle nothing
   std::map<guint, Action> own_keys_;
   sigc::signal<void(Action)> signal_action_;
+  sigc::signal<void()> signal_taken_;
 };
 
 }  // namespace trocar::app

@@ -5,7 +5,7 @@
 
 namespace trocar::app {
 
-HelpCard::HelpCard(std::span<const KeyHelp> rows) {
+HelpCard::HelpCard(const std::vector<KeyHelp>& rows) {
   add_css_class("help");
   set_halign(Gtk::Align::CENTER);
   set_valign(Gtk::Align::CENTER);

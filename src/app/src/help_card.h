@@ -4,15 +4,15 @@
 
 #include <gtkmm.h>
 
-#include <span>
+#include <vector>
 
-#include "trocar/app/key_bindings.h"
+#include "trocar/app/command.h"
 
 namespace trocar::app {
 
 class HelpCard : public Gtk::Box {
  public:
-  explicit HelpCard(std::span<const KeyHelp> rows);
+  explicit HelpCard(const std::vector<KeyHelp>& rows);
 };
 
 }  // namespace trocar::app

@@ -15,7 +15,7 @@
 
 int main(int argc, char** argv) {
   const trocar::core::Stopwatch since_start;
-  const trocar::core::Result<trocar::app::Command> command = trocar::app::ParseCommandLine(argc, argv);
+  const trocar::core::Result<trocar::app::CommandLine> command = trocar::app::ParseCommandLine(argc, argv);
   if (!command) {
     std::fprintf(stderr, "%s\n", command.error().Text().c_str());
     return 2;

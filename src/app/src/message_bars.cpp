@@ -76,12 +76,12 @@ void MessageBars::ShowNotice(const std::string& text) {
   bar.append(*close);
 }
 
-void MessageBars::Ask(const std::string& text, std::vector<Answer> answers) {
-  const auto old =
-      std::find_if(shown_.begin(), shown_.end(), [&](const Shown& shown) { return shown.text == text; });
+void MessageBars::Ask(Question question) {
+  const auto old = std::find_if(shown_.begin(), shown_.end(),
+                                [&](const Shown& shown) { return shown.text == question.text; });
   if (old != shown_.end()) Remove(*old->bar);
-  Gtk::Box& bar = AddBar("question", "", text);
-  for (const Answer& answer : answers) {
+  Gtk::Box& bar = AddBar("question", "", question.text);
+  for (const Answer& answer : question.answers) {
     auto* button = Gtk::make_managed<Gtk::Button>(answer.label);
     button->set_valign(Gtk::Align::CENTER);
     if (answer.is_suggested) button->add_css_class("primary");
@@ -94,7 +94,7 @@ void MessageBars::Ask(const std::string& text, std::vector<Answer> answers) {
     });
     bar.append(*button);
   }
-  shown_.back().answers = std::move(answers);
+  shown_.back().answers = std::move(question.answers);
 }
 
 bool MessageBars::Press(const std::string& label) {

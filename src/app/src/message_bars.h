@@ -4,29 +4,23 @@
 
 #include <gtkmm.h>
 
-#include <functional>
 #include <string>
 #include <vector>
 
+#include "trocar/app/question.h"
 #include "trocar/core/result.h"
 
 namespace trocar::app {
 
 class MessageBars : public Gtk::ScrolledWindow {
  public:
-  struct Answer {
-    std::string label;
-    std::function<void()> act;
-    bool is_suggested = false;
-  };
-
   MessageBars();
 
   /// Code, and message with the remedy. The same error again is counted, not repeated.
   void ShowError(const core::Error& error);
   void ShowNotice(const std::string& text);
   /// Goes with the first answer. A question with the same text takes the place of the old one.
-  void Ask(const std::string& text, std::vector<Answer> answers);
+  void Ask(Question question);
   /// Gives the answer of that label to the first question that has it, as a click would.
   /// \return false where none has it
   bool Press(const std::string& label);

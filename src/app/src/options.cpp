@@ -12,8 +12,8 @@
 
 namespace trocar::app {
 
-core::Result<Command> ParseCommandLine(int argc, const char* const* argv) {
-  Command command;
+core::Result<CommandLine> ParseCommandLine(int argc, const char* const* argv) {
+  CommandLine command;
   Options& options = command.options;
   CLI::App app{"Trocar: the simulator window. Operate on a virtual abdomen with mouse and keyboard.",
                "trocar-window"};

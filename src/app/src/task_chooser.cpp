@@ -54,17 +54,17 @@ core::Status TaskChooser::Load() {
   if (!data) return data.error();
   AddTitle("Training tasks");
   for (const session::TaskEntry& task : *tasks) {
-    TaskWish wish;
-    wish.task = task.key;
-    AddRow(task.name, task.about, task.levels, wish);
+    TaskRequest request;
+    request.task = task.key;
+    AddRow(task.name, task.about, task.levels, request);
   }
   AddTitle("On a patient");
   for (const char* file : kScenes) {
-    TaskWish wish;
-    wish.scene = *data / "scenes" / file;
-    auto document = core::JsonDocument::Read(wish.scene);
+    TaskRequest request;
+    request.scene = *data / "scenes" / file;
+    auto document = core::JsonDocument::Read(request.scene);
     if (!document) return document.error();
-    AddRow(document->Root().Text("name"), document->Root().TextOr("about", ""), {}, wish);
+    AddRow(document->Root().Text("name"), document->Root().TextOr("about", ""), {}, request);
     if (const auto status = document->Check(); !status) return status.error();
   }
   is_loaded_ = true;
@@ -79,7 +79,7 @@ void TaskChooser::AddTitle(const char* text) {
 }
 
 void TaskChooser::AddRow(const std::string& name, const std::string& about,
-                         const std::vector<std::string>& levels, TaskWish wish) {
+                         const std::vector<std::string>& levels, TaskRequest request) {
   auto* row = Gtk::make_managed<Gtk::Box>();
   row->set_spacing(8);
   auto* text = Gtk::make_managed<Gtk::Box>(Gtk::Orientation::VERTICAL);
@@ -98,7 +98,7 @@ void TaskChooser::AddRow(const std::string& name, const std::string& about,
   auto* level = Gtk::make_managed<Gtk::DropDown>();
   if (!levels.empty()) {
     level->set_model(Gtk::StringList::create({levels.begin(), levels.end()}));
-    const auto normal = std::find(levels.begin(), levels.end(), wish.choice.level);
+    const auto normal = std::find(levels.begin(), levels.end(), request.choice.level);
     level->set_selected(static_cast<guint>(normal - levels.begin()));
     level->set_valign(Gtk::Align::CENTER);
     level->set_size_request(kLevelWidth, -1);
@@ -107,10 +107,10 @@ void TaskChooser::AddRow(const std::string& name, const std::string& about,
   auto* start = Gtk::make_managed<Gtk::Button>("Start");
   start->set_valign(Gtk::Align::CENTER);
   start->set_tooltip_text(name);
-  start->signal_clicked().connect([this, level, levels, wish]() mutable {
-    if (level->get_selected() < levels.size()) wish.choice.level = levels[level->get_selected()];
-    wish.choice.seed = static_cast<std::uint64_t>(seed_.get_value_as_int());
-    signal_chosen_.emit(wish);
+  start->signal_clicked().connect([this, level, levels, request]() mutable {
+    if (level->get_selected() < levels.size()) request.choice.level = levels[level->get_selected()];
+    request.choice.seed = static_cast<std::uint64_t>(seed_.get_value_as_int());
+    signal_chosen_.emit(request);
   });
   row->append(*start);
   rows_.append(*row);

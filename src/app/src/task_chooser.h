@@ -4,20 +4,12 @@
 
 #include <gtkmm.h>
 
-#include <filesystem>
 #include <string>
 #include <vector>
 
-#include "trocar/session/task.h"
+#include "trocar/app/task_request.h"
 
 namespace trocar::app {
-
-/// What a person chose: a task with its level and seed, or a scene.
-struct TaskWish {
-  std::string task;             ///< key; empty: `scene` is meant
-  std::filesystem::path scene;  ///< file
-  session::TaskChoice choice;
-};
 
 class TaskChooser : public Gtk::Box {
  public:
@@ -25,18 +17,18 @@ class TaskChooser : public Gtk::Box {
 
   /// Fills the list with what is delivered, once. \return the first file's error
   core::Status Load();
-  sigc::signal<void(TaskWish)>& SignalChosen() { return signal_chosen_; }
+  sigc::signal<void(TaskRequest)>& SignalChosen() { return signal_chosen_; }
   sigc::signal<void()>& SignalClosed() { return signal_closed_; }
 
  private:
   void AddTitle(const char* text);
   void AddRow(const std::string& name, const std::string& about, const std::vector<std::string>& levels,
-              TaskWish wish);
+              TaskRequest request);
 
   Gtk::Box rows_{Gtk::Orientation::VERTICAL};
   Gtk::SpinButton seed_;
   bool is_loaded_ = false;
-  sigc::signal<void(TaskWish)> signal_chosen_;
+  sigc::signal<void(TaskRequest)> signal_chosen_;
   sigc::signal<void()> signal_closed_;
 };
 

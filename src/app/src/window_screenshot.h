@@ -13,5 +13,7 @@ namespace trocar::app {
 /// Call it outside of a frame.
 /// \return kFileUnwritable
 core::Status SaveScreenshot(Gtk::Window& window, const std::filesystem::path& path);
+/// Likewise; false where the window has nothing to show yet, as while it is laid out anew.
+core::Result<bool> TrySaveScreenshot(Gtk::Window& window, const std::filesystem::path& path);
 
 }  // namespace trocar::app

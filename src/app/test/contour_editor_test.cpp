@@ -255,7 +255,7 @@ TEST(ContourKeys, TheHelpNamesWhatTheKeysDo) {
   EXPECT_EQ(FindContourAction('x', false, false), ContourAction::kNone);
   EXPECT_FALSE(WorksEverywhere(ContourAction::kUndo)) << "a text field has its own";
   EXPECT_TRUE(WorksEverywhere(ContourAction::kSave));
-  EXPECT_GT(ContourKeyHelpRows().size(), 15u);
+  EXPECT_GT(ContourHelp().size(), 15u);
 }
 
 }  // namespace

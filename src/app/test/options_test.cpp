@@ -9,14 +9,14 @@
 namespace trocar::app {
 namespace {
 
-core::Result<Command> Parse(std::initializer_list<const char*> arguments) {
+core::Result<CommandLine> Parse(std::initializer_list<const char*> arguments) {
   std::vector<const char*> argv{"trocar-window"};
   argv.insert(argv.end(), arguments);
   return ParseCommandLine(static_cast<int>(argv.size()), argv.data());
 }
 
 TEST(Options, DefaultsOpenTheBuiltInSceneInAWindow) {
-  const core::Result<Command> command = Parse({});
+  const core::Result<CommandLine> command = Parse({});
   ASSERT_TRUE(command.ok());
   EXPECT_FALSE(command->is_text_only);
   EXPECT_TRUE(command->options.scene.empty());
@@ -25,8 +25,9 @@ TEST(Options, DefaultsOpenTheBuiltInSceneInAWindow) {
 }
 
 TEST(Options, ReadsEveryOption) {
-  const core::Result<Command> command = Parse({"--scene", "a.json", "--threads", "2", "--fullscreen",
-                                               "--demonstration", "--screenshot", "b.png", "--after", "1.5"});
+  const core::Result<CommandLine> command =
+      Parse({"--scene", "a.json", "--threads", "2", "--fullscreen", "--demonstration", "--screenshot",
+             "b.png", "--after", "1.5"});
   ASSERT_TRUE(command.ok());
   EXPECT_EQ(command->options.scene, "a.json");
   EXPECT_EQ(command->options.threads, 2);
@@ -37,12 +38,13 @@ TEST(Options, ReadsEveryOption) {
 }
 
 TEST(Options, ReadsTasks) {
-  const core::Result<Command> command = Parse({"--task", "clip_and_cut", "--level", "hard", "--seed", "9"});
+  const core::Result<CommandLine> command =
+      Parse({"--task", "clip_and_cut", "--level", "hard", "--seed", "9"});
   ASSERT_TRUE(command.ok()) << command.error().Text();
   EXPECT_EQ(command->options.task, "clip_and_cut");
   EXPECT_EQ(command->options.level, "hard");
   EXPECT_EQ(command->options.seed, 9u);
-  const core::Result<Command> list = Parse({"--tasks"});
+  const core::Result<CommandLine> list = Parse({"--tasks"});
   ASSERT_TRUE(list.ok());
   EXPECT_TRUE(list->options.is_task_list);
   EXPECT_FALSE(Parse({"--tasks", "--task", "clip_and_cut"}).ok());
@@ -50,7 +52,7 @@ TEST(Options, ReadsTasks) {
 }
 
 TEST(Options, ReadsTheContourWindowsOptions) {
-  const core::Result<Command> command =
+  const core::Result<CommandLine> command =
       Parse({"--contours", "slices", "--points", "p.json", "--reference", "l.nii.gz", "--pixel-mm", "0.5",
              "--slice-mm", "2", "--axes", "left,posterior,superior", "--script", "s", "--measure", "--series",
              "2", "--pattern", "s{slice}.png"});
@@ -78,11 +80,11 @@ TEST(Options, ReadsTheContourWindowsOptions) {
 }
 
 TEST(Options, HelpAndVersionArePrinted) {
-  const core::Result<Command> help = Parse({"--help"});
+  const core::Result<CommandLine> help = Parse({"--help"});
   ASSERT_TRUE(help.ok());
   EXPECT_TRUE(help->is_text_only);
   EXPECT_NE(help->text.find("--scene"), std::string::npos);
-  const core::Result<Command> version = Parse({"--version"});
+  const core::Result<CommandLine> version = Parse({"--version"});
   ASSERT_TRUE(version.ok());
   EXPECT_EQ(version->text.find("trocar-window "), 0u);
 }
@@ -95,7 +97,7 @@ TEST(Options, WrongOnesNameTheRemedy) {
                                                                  {"--after", "nan", "--screenshot", "a.png"},
                                                                  {"--after", "2"},
                                                                  {"--scene"}}) {
-    const core::Result<Command> command = Parse(arguments);
+    const core::Result<CommandLine> command = Parse(arguments);
     ASSERT_FALSE(command.ok());
     EXPECT_EQ(command.error().code, core::ErrorCode::kUsage);
     EXPECT_NE(command.error().message.find("trocar-window --help"), std::string::npos);

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "trocar/app/canvas_view.h"
-#include "trocar/app/contour_keys.h"
+#include "trocar/app/contour_commands.h"
 #include "trocar/contours/contour_workspace.h"
 
 namespace trocar::app {

@@ -45,14 +45,14 @@ struct Options {
 };
 
 /// What the command line asks for.
-struct Command {
+struct CommandLine {
   Options options;
   bool is_text_only = false;  ///< print `text` and leave with success: --help, --version
   std::string text;
 };
 
 /// \return kUsage with what is wrong and how to get help
-core::Result<Command> ParseCommandLine(int argc, const char* const* argv);
+core::Result<CommandLine> ParseCommandLine(int argc, const char* const* argv);
 
 /// Threads for the solver when the person names none: half of the processors, at least 1, at most 4; the
 /// other half draws.

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file contour_keys.h  What each key does in the contour window, and the help that says so. One table feeds
-/// both.
+/// \file contour_commands.h  The contour window's commands: keys, header bar and help page come from one table.
 #pragma once
 
 #include <cstdint>
 #include <span>
 
-#include "trocar/app/key_bindings.h"
+#include "trocar/app/command.h"
 
 namespace trocar::app {
 
@@ -30,6 +29,8 @@ enum class ContourAction {
   kPropagateForward,
   kPropagateBack,
   kToggleScissors,
+  kPointsMode,
+  kScissorsMode,
   kUndo,
   kRedo,
   kFitView,
@@ -50,13 +51,30 @@ enum class ContourAction {
   kQuit,
 };
 
+/// What must be the case for a command to be possible.
+enum class ContourNeeds {
+  kNothing,
+  kDocument,  ///< contours are open
+  kUndo,      ///< likewise, and there is something to take back
+  kRedo,
+  kReference,  ///< likewise, and a label map to compare with
+  kNoBuild,    ///< likewise, and no patient is being built
+};
+
+using ContourCommand = Command<ContourAction, ContourNeeds>;
+
+/// All of them; those with a button in the order of the header bar, from the left.
+std::span<const ContourCommand> ContourCommands() noexcept;
+/// The help page.
+std::vector<KeyHelp> ContourHelp();
+
+ContourNeeds FindNeeds(ContourAction action) noexcept;
+
 /// Meaning of a key over the picture.
 /// \param keyval  X11 key symbol, as GDK gives it; letters in either case
 ContourAction FindContourAction(std::uint32_t keyval, bool control, bool shift) noexcept;
 
 /// True if the key has its meaning while another part of the window has the keyboard.
 bool WorksEverywhere(ContourAction action) noexcept;
-
-std::span<const KeyHelp> ContourKeyHelpRows() noexcept;
 
 }  // namespace trocar::app

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "trocar/app/key_bindings.h"
+#include "trocar/app/simulator_commands.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@ namespace {
 
 using device::Motion;
 
-TEST(KeyBindings, EveryMotionHasAKey) {
+TEST(SimulatorCommands, EveryMotionHasAKey) {
   std::set<Motion> reached;
   for (std::uint32_t key = 0; key < 0x10000; ++key) {
     const KeyMeaning meaning = FindKeyMeaning(key, false);
@@ -21,18 +21,21 @@ TEST(KeyBindings, EveryMotionHasAKey) {
   EXPECT_EQ(reached.size(), static_cast<std::size_t>(Motion::kCount));
 }
 
-TEST(KeyBindings, EveryActionHasAKey) {
-  std::set<Action> reached{FindKeyMeaning('q', true).action};
-  for (std::uint32_t key = 0; key < 0x10000; ++key) reached.insert(FindKeyMeaning(key, false).action);
+TEST(SimulatorCommands, EveryActionHasAKeyOrAButton) {
+  std::set<Action> reached{Action::kNone};
+  for (const SimulatorCommand& command : SimulatorCommands()) {
+    if (command.keys[0].key != 0 || command.button.side != ButtonSide::kNone)
+      reached.insert(command.action.action);
+  }
   EXPECT_EQ(reached.size(), static_cast<std::size_t>(Action::kQuit) + 1);
 }
 
-TEST(KeyBindings, LettersWorkInEitherCase) {
+TEST(SimulatorCommands, LettersWorkInEitherCase) {
   for (std::uint32_t letter = 'a'; letter <= 'z'; ++letter)
     EXPECT_EQ(FindKeyMeaning(letter, false), FindKeyMeaning(letter - 'a' + 'A', false));
 }
 
-TEST(KeyBindings, NamedKeysDoWhatTheHelpSays) {
+TEST(SimulatorCommands, NamedKeysDoWhatTheHelpSays) {
   EXPECT_EQ(FindKeyMeaning(' ', false).action, Action::kTogglePause);
   EXPECT_EQ(FindKeyMeaning('r', false).action, Action::kReset);
   EXPECT_EQ(FindKeyMeaning(0xff09, false).action, Action::kSwitchHand);
@@ -49,7 +52,7 @@ TEST(KeyBindings, NamedKeysDoWhatTheHelpSays) {
   EXPECT_EQ(FindKeyMeaning('r', true).action, Action::kNone) << "Ctrl+R is no reset";
 }
 
-TEST(KeyBindings, EveryActOfAButtonIsAnActionOfItsOwn) {
+TEST(SimulatorCommands, EveryActOfAButtonIsAnActionOfItsOwn) {
   std::set<Action> actions;
   for (std::size_t i = 1; i < device::kActCount; ++i) {
     const Action action = FindAction(static_cast<device::HandAct>(i));
@@ -61,7 +64,7 @@ TEST(KeyBindings, EveryActOfAButtonIsAnActionOfItsOwn) {
   EXPECT_EQ(FindAction(device::HandAct::kClutch), FindKeyMeaning(',', false).action);
 }
 
-TEST(KeyBindings, PanelKeepsTheKeysThatSlidersNeed) {
+TEST(SimulatorCommands, PanelKeepsTheKeysThatSlidersNeed) {
   EXPECT_FALSE(WorksInPanel(Action::kMove));
   EXPECT_FALSE(WorksInPanel(Action::kSwitchHand));
   EXPECT_FALSE(WorksInPanel(Action::kTogglePause)) << "Space presses the focused button there";
@@ -69,9 +72,9 @@ TEST(KeyBindings, PanelKeepsTheKeysThatSlidersNeed) {
   EXPECT_TRUE(WorksInPanel(Action::kReleasePointer));
 }
 
-TEST(KeyBindings, HelpNamesEveryKeyThatActs) {
+TEST(SimulatorCommands, HelpNamesEveryKeyThatActs) {
   std::string all;
-  for (const KeyHelp& row : KeyHelpRows()) all += std::string(" ") + row.keys + " ";
+  for (const KeyHelp& row : SimulatorHelp()) all += " " + row.keys + " ";
   for (std::uint32_t key = 'a'; key <= 'z'; ++key) {
     const std::string name(1, static_cast<char>(key - 'a' + 'A'));
     const bool is_named = all.find(" " + name + " ") != std::string::npos;

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file key_bindings.h  What each key does, and the help that says so. One table feeds both.
+/// \file simulator_commands.h  The simulator window's commands: keys, header bar and help page come from one table.
 #pragma once
 
 #include <cstdint>
 #include <span>
 
+#include "trocar/app/command.h"
 #include "trocar/device/hand_buttons.h"
 #include "trocar/device/mouse_keyboard.h"
 
@@ -33,6 +34,10 @@ enum class Action {
   kToggleForces,
   kToggleMask,
   kToggleFulcrum,
+  kToggleForceFeedback,
+  kCheckPose,
+  kToggleTaskList,
+  kOpenDevices,
   kToggleFullscreen,
   kToggleHelp,
   kReleasePointer,
@@ -47,6 +52,22 @@ struct KeyMeaning {
   friend bool operator==(const KeyMeaning&, const KeyMeaning&) = default;
 };
 
+/// What must be the case for a command to be possible.
+enum class SimulatorNeeds {
+  kNothing,
+  kNoFailure,
+  kScene,    ///< a simulation runs, and nothing has failed
+  kScript,   ///< likewise, and it has a script or an expert
+  kHaptics,  ///< likewise, and a haptic device holds a hand
+};
+
+using SimulatorCommand = Command<KeyMeaning, SimulatorNeeds>;
+
+/// All of them; those with a button in the order of the header bar, from the left.
+std::span<const SimulatorCommand> SimulatorCommands() noexcept;
+/// The help page.
+std::vector<KeyHelp> SimulatorHelp();
+
 /// Meaning of a key in the picture.
 ///
 /// \param keyval   X11 key symbol, as GDK gives it; letters in either case
@@ -56,16 +77,11 @@ KeyMeaning FindKeyMeaning(std::uint32_t keyval, bool control) noexcept;
 /// Meaning of a key that a person's settings give an act to: foot pedals that are keyboards.
 Action FindAction(device::HandAct act) noexcept;
 
+/// What an action needs; kNothing for one without a row.
+SimulatorNeeds FindNeeds(Action action) noexcept;
+
 /// True if the key has its meaning even while a slider of the panel has the keyboard.
 bool WorksInPanel(Action action) noexcept;
-
-/// One line of the help.
-struct KeyHelp {
-  const char* group;
-  const char* keys;
-  const char* meaning;
-};
-std::span<const KeyHelp> KeyHelpRows() noexcept;
 
 /// The permanent line under the picture.
 const char* ShortHelp() noexcept;

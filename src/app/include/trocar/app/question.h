@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file question.h  What a window may ask a person, and what follows each answer.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace trocar::app {
+
+struct Answer {
+  std::string label;
+  std::function<void()> act;
+  bool is_suggested = false;
+};
+
+struct Question {
+  std::string text;
+  std::vector<Answer> answers;
+};
+
+/// What a person is asked to choose in the file system.
+enum class FileQuestion { kOpenContours, kSaveContours, kPatientFolder };
+
+}  // namespace trocar::app

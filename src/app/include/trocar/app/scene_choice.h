@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file scene_choice.h  Which scene the simulator window plays: a file, a training task or an operation, by its name.
+#pragma once
+
+#include "trocar/app/options.h"
+#include "trocar/session/simulation.h"
+
+namespace trocar::app {
+
+/// The scene that the options name; the demonstration where they name none. `task` may be a training task or, as for
+/// `trocar play`, an operation: a scene of the data folder that has one.
+///
+/// \return kUnknownName with what is known, or the file's error
+core::Result<session::Scene> ReadChosenScene(const Options& options);
+
+/// Likewise, ready to run.
+core::Result<session::Simulation> MakeChosenSimulation(const Options& options);
+
+}  // namespace trocar::app

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file simulator_presenter.h  What the simulator window does, without a widget: loading, commands, frames, tasks.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "trocar/app/background_job.h"
+#include "trocar/app/options.h"
+#include "trocar/app/read_outs.h"
+#include "trocar/app/session_control.h"
+#include "trocar/app/simulator_commands.h"
+#include "trocar/app/task_request.h"
+#include "trocar/app/task_result.h"
+#include "trocar/app/unattended_play.h"
+#include "trocar/core/clock.h"
+#include "trocar/view/laparoscope_view.h"
+
+namespace trocar::app {
+
+/// All that the window says and shows, besides the picture and the panel.
+struct SimulatorPage {
+  std::string title = "Trocar";
+  std::string hint, badge, state, event, haptics;
+  bool is_event_warning = false;
+  bool is_help_open = false, is_task_list_open = false, is_result_open = false;
+  view::ViewOptions view;
+  std::optional<core::Error> failure;
+};
+
+/// What the presenter needs of a window.
+class SimulatorScreen {
+ public:
+  virtual ~SimulatorScreen() = default;
+  /// Brings the widgets to what the page and the presenter's commands say.
+  virtual void Show(const SimulatorPage& page) = 0;
+  /// What picture, panel and hands work on from now on; null: nothing, before the old one ends.
+  virtual void UseControl(SessionControl* control) = 0;
+  /// \return names of keys that can have no act
+  virtual std::vector<std::string> UseKeys(const std::map<std::string, device::HandAct>& keys) = 0;
+  /// Fills the list of tasks. \return the first file's error
+  virtual core::Status FillTaskList() = 0;
+  virtual void FillResult(const TaskResult& result) = 0;
+  virtual void ReleasePointer() = 0;
+  virtual bool IsPointerTaken() const = 0;
+  virtual void FocusPicture() = 0;
+  /// What is the window's alone: full screen, panes, the page of devices, the end.
+  virtual void DoInWindow(Action action) = 0;
+};
+
+class SimulatorPresenter {
+ public:
+  /// \param screen     outlives the presenter
+  /// \param on_loaded  called by another thread when FinishLoading() is due
+  SimulatorPresenter(const Options& options, const core::Stopwatch& since_start, SimulatorScreen& screen,
+                     std::function<void()> on_loaded);
+
+  /// Begins to read the scene that the options name.
+  void Start();
+  /// Takes over what has been read.
+  void FinishLoading();
+  /// Gives up the scene that is shown and reads the one that was chosen; nothing while one is being read.
+  void Open(const TaskRequest& request);
+
+  /// Does what a key or a button asks for, where it is possible.
+  void Do(Action action);
+  bool IsEnabled(Action action) const;
+  /// How the command's button looks now.
+  ButtonState FindButton(const SimulatorCommand& command) const;
+
+  void OpenTaskList();
+  void CloseTaskList();
+  void CloseResult();
+  void PlayAgain();
+  /// Writes the task's result: JSON or a page, by the file's ending.
+  void SaveResult(const std::filesystem::path& path);
+
+  /// What is to be drawn in a frame.
+  struct FrameWork {
+    const session::Snapshot* snapshot = nullptr;  ///< null: nothing runs
+    bool are_forces_due = false, are_times_due = false;
+    UnattendedPlay::Step run = UnattendedPlay::Step::kGoOn;
+  };
+  /// \param now  of the frame clock [s]
+  /// \param field_of_view, pixels  as SessionControl::SetPicture
+  FrameWork Advance(double now, double field_of_view, double pixels);
+  /// A picture has been drawn.
+  void CountPicture();
+  double PictureRate() const { return frames_.Rate(since_start_.Seconds()); }
+  const StageMeter& Stages() const { return stages_; }
+  /// What a run that nobody watches prints.
+  PlayReport MakeReport(int width, int height) const;
+
+  /// Stops the simulation and says so; the first failure stays.
+  void Fail(const core::Error& error);
+  const std::optional<core::Error>& GetFailure() const { return page_.failure; }
+  /// Writes what --haptic-record asks for; call it once the window has closed.
+  void SaveHapticRecord();
+
+  SessionControl* Control() { return control_.get(); }
+  const Options& GetOptions() const { return options_; }
+  const SimulatorPage& Page() const { return page_; }
+
+ private:
+  bool Meets(SimulatorNeeds needs) const;
+  bool IsChecked(Action action) const;
+  bool IsForceOn() const;
+  core::Status UseDevices();
+  void Drop();
+  void Refresh();
+  void Announce(const std::string& text, bool is_warning = false);
+  void ShowEvents(const session::Snapshot& snapshot);
+  void ShowHaptics();
+  void ShowTask(const session::TaskSnapshot& now);
+  void SetPaused(bool is_paused);
+  void SetDemonstration(bool is_on);
+  void Reset();
+  void ReleaseAll();
+  void ToggleForceFeedback();
+  bool DoWithHands(Action action);
+  bool DoWithView(Action action);
+
+  Options options_;
+  core::Stopwatch since_start_;
+  SimulatorScreen* screen_;
+  SimulatorPage page_;
+  UnattendedPlay unattended_;
+  bool is_fulcrum_mirrored_ = false, has_script_ = false;
+  std::unique_ptr<SessionControl> control_;  // null while loading
+  StageMeter stages_;
+  FrameMeter frames_;
+  TaskErrorLog error_log_;
+  TaskResult result_;             // of the task that is over
+  bool is_result_known_ = false;  // it has been shown
+  std::uint64_t seen_events_ = 0;
+  double first_picture_ = 0;                                  // since the start of the program [s]
+  double last_frame_ = 0, last_forces_ = 0, last_times_ = 0;  // of the frame clock [s]
+  BackgroundJob<core::Result<session::Simulation>> loading_;
+};
+
+}  // namespace trocar::app

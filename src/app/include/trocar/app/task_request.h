@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file task_request.h  What a person chose from the list of tasks and operations.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "trocar/session/task.h"
+
+namespace trocar::app {
+
+/// A task with its level and seed, or a scene.
+struct TaskRequest {
+  std::string task;             ///< key; empty: `scene` is meant
+  std::filesystem::path scene;  ///< file
+  session::TaskChoice choice;
+};
+
+}  // namespace trocar::app

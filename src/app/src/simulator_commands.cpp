@@ -1,0 +1,272 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/app/simulator_commands.h"
+
+namespace trocar::app {
+namespace {
+
+using device::Motion;
+
+using enum SimulatorNeeds;
+
+constexpr KeyMeaning Move(Motion motion) {
+  return {Action::kMove, motion};
+}
+constexpr KeyMeaning Do(Action action) {
+  return {action, Motion::kCount};
+}
+
+// One row a command. A row without a group goes on with the help's line before it.
+constexpr SimulatorCommand kCommands[] = {
+    {.help = {"Instruments", "Click", "take the instruments with the mouse"}},
+    {.id = "release-pointer",
+     .action = Do(Action::kReleasePointer),
+     .keys = {{{key::kEscape}}},
+     .help = {"Instruments", "", "give the mouse back"},
+     .works_everywhere = true},
+    {.id = "left-hand",
+     .action = Do(Action::kChooseLeft),
+     .needs = kScene,
+     .keys = {{{'1'}}},
+     .also = {{{key::kPad1}}},
+     .help = {"Instruments", "", "left hand"}},
+    {.id = "right-hand",
+     .action = Do(Action::kChooseRight),
+     .needs = kScene,
+     .keys = {{{'2'}}},
+     .also = {{{key::kPad2}}},
+     .help = {"", "", "right hand"}},
+    {.id = "other-hand",
+     .action = Do(Action::kSwitchHand),
+     .needs = kScene,
+     .keys = {{{key::kTab}}},
+     .also = {{{key::kIsoLeftTab}}},
+     .help = {"", "", "the other hand"}},
+    {.help = {"Instruments", "Mouse", "move the tip in the picture"}},
+    {.id = "in",
+     .action = Move(Motion::kIn),
+     .keys = {{{'i'}}},
+     .also = {{{key::kPageUp}}},
+     .help = {"Instruments", "Wheel", "tip into the picture"}},
+    {.id = "out",
+     .action = Move(Motion::kOut),
+     .keys = {{{'o'}}},
+     .also = {{{key::kPageDown}}},
+     .help = {"", "", "back out"}},
+    {.id = "up",
+     .action = Move(Motion::kUp),
+     .keys = {{{'w'}}},
+     .also = {{{key::kUp}}},
+     .help = {"Instruments", "Arrows", "move the tip with the keyboard"}},
+    {.id = "left", .action = Move(Motion::kLeft), .keys = {{{'a'}}}, .also = {{{key::kLeft}}}},
+    {.id = "down", .action = Move(Motion::kDown), .keys = {{{'s'}}}, .also = {{{key::kDown}}}},
+    {.id = "right", .action = Move(Motion::kRight), .keys = {{{'d'}}}, .also = {{{key::kRight}}}},
+    {.id = "close-jaws",
+     .action = Move(Motion::kCloseJaw),
+     .keys = {{{'g'}}},
+     .help = {"Instruments", "Left button", "close the jaws (hold)"}},
+    {.id = "open-jaws",
+     .action = Move(Motion::kOpenJaw),
+     .keys = {{{'b'}}},
+     .help = {"Instruments", "Right button", "open the jaws (hold)"}},
+    {.id = "spin-left",
+     .action = Move(Motion::kSpinLeft),
+     .keys = {{{'q'}}},
+     .help = {"Instruments", "", "spin the instrument (hold)"}},
+    {.id = "spin-right", .action = Move(Motion::kSpinRight), .keys = {{{'e'}}}},
+    {.id = "tasks",
+     .action = Do(Action::kToggleTaskList),
+     .needs = kNoFailure,
+     .button = {ButtonSide::kStart, "Tasks", "Choose a training task or an operation"}},
+    {.id = "run",
+     .action = Do(Action::kTogglePause),
+     .needs = kScene,
+     .keys = {{{' '}}},
+     .help = {"Simulation", "", "start or pause"},
+     .button = {ButtonSide::kStart, "Start", "Start or pause the simulation", false, true}},
+    {.id = "reset",
+     .action = Do(Action::kReset),
+     .needs = kScene,
+     .keys = {{{'r'}}},
+     .help = {"Simulation", "", "reset"},
+     .button = {ButtonSide::kStart, "Reset", "Back to the beginning"}},
+    {.id = "demonstration",
+     .action = Do(Action::kToggleDemonstration),
+     .needs = kScript,
+     .keys = {{{'p'}}},
+     .help = {"Simulation", "", "play the demonstration, or take over from it"},
+     .button = {ButtonSide::kStart, "Demonstration",
+                "The script of the scene moves both hands; press again to take over", true}},
+    {.id = "real-trocar",
+     .action = Do(Action::kToggleFulcrum),
+     .keys = {{{'t'}}},
+     .help = {"Instruments", "", "real trocar: the mouse is the handle, the tip goes the other way"},
+     .button = {ButtonSide::kStart, "Real trocar",
+                "As in a real trocar: the mouse is the handle, so the tip goes the other way. Off: the tip "
+                "follows the mouse",
+                true}},
+    {.id = "check-pose",
+     .action = Do(Action::kCheckPose),
+     .needs = kHaptics,
+     .button = {ButtonSide::kStart, "Check pose", "Confirm which haptic device is which hand"}},
+    {.id = "force-feedback",
+     .action = Do(Action::kToggleForceFeedback),
+     .needs = kHaptics,
+     .button = {ButtonSide::kStart, "Force",
+                "Force feedback of the haptic device: asks for it, or takes it away (Esc takes it away, too)",
+                true}},
+    {.id = "next-tool",
+     .action = Do(Action::kNextTool),
+     .needs = kScene,
+     .keys = {{{'x'}}},
+     .help = {"Operation", "", "next tool"}},
+    {.id = "previous-tool",
+     .action = Do(Action::kPreviousTool),
+     .needs = kScene,
+     .keys = {{{'z'}}},
+     .help = {"", "", "previous tool of this hand"}},
+    {.id = "cut",
+     .action = Do(Action::kHoldCut),
+     .needs = kScene,
+     .keys = {{{'v'}}},
+     .help = {"Operation", "", "yellow pedal: cut"}},
+    {.id = "coagulate",
+     .action = Do(Action::kHoldCoagulate),
+     .needs = kScene,
+     .keys = {{{'n'}}},
+     .help = {"", "", "blue pedal: coagulate (hold)"}},
+    {.id = "rinse",
+     .action = Do(Action::kHoldRinse),
+     .needs = kScene,
+     .keys = {{{'j'}}},
+     .help = {"Operation", "", "rinse"}},
+    {.id = "aspirate",
+     .action = Do(Action::kHoldAspirate),
+     .needs = kScene,
+     .keys = {{{'k'}}},
+     .help = {"", "", "suck (hold)"}},
+    {.id = "clutch",
+     .action = Do(Action::kHoldClutch),
+     .needs = kScene,
+     .keys = {{{','}}},
+     .help = {"Operation", "", "clutch (hold)"}},
+    {.id = "freeze",
+     .action = Do(Action::kFreeze),
+     .needs = kScene,
+     .keys = {{{'y'}}},
+     .help = {"", "", "freeze: the tool stands still although its device moves"}},
+    {.id = "assistant",
+     .action = Do(Action::kAssistant),
+     .needs = kScene,
+     .keys = {{{'u'}}},
+     .help = {"Operation", "", "assistant: take and lift the fundus, relax, let go, wait"}},
+    {.id = "hold-laparoscope",
+     .action = Do(Action::kHoldLaparoscope),
+     .needs = kScene,
+     .keys = {{{'c'}}},
+     .help = {"Laparoscope", "Middle button",
+              "hold, then move the mouse to look around, wheel to go in and out"}},
+    {.id = "camera-holder",
+     .action = Do(Action::kToggleCameraHolder),
+     .needs = kScene,
+     .keys = {{{'l'}}},
+     .help = {"Laparoscope", "", "automatic holder: keeps both tips in the picture; C takes over"}},
+    {.id = "devices",
+     .action = Do(Action::kOpenDevices),
+     .needs = kScene,
+     .button = {ButtonSide::kEnd, "Devices",
+                "Find, try and calibrate devices, and choose what holds the instruments"}},
+    {.id = "forces",
+     .action = Do(Action::kToggleForces),
+     .keys = {{{'f'}}},
+     .help = {"View", "", "force arrows"},
+     .button = {ButtonSide::kEnd, "Forces", "Arrows for the forces on the instruments", true}},
+    {.id = "mask",
+     .action = Do(Action::kToggleMask),
+     .keys = {{{'m'}}},
+     .help = {"View", "", "round mask of the laparoscope"},
+     .button = {ButtonSide::kEnd, "Mask", "Round mask of the laparoscope", true}},
+    {.id = "fullscreen",
+     .action = Do(Action::kToggleFullscreen),
+     .keys = {{{key::kF11}}},
+     .help = {"View", "", "full screen"},
+     .button = {ButtonSide::kEnd, "Full screen", "Full screen and back"},
+     .works_everywhere = true},
+    {.id = "switch-pane",
+     .action = Do(Action::kSwitchPane),
+     .keys = {{{key::kF6}}},
+     .help = {"View", "", "between picture and panel"},
+     .works_everywhere = true},
+    {.id = "help",
+     .action = Do(Action::kToggleHelp),
+     .keys = {{{'h'}, {key::kF1}}},
+     .help = {"View", "", "this help"},
+     .button = {ButtonSide::kEnd, "Help", "All keys", true},
+     .works_everywhere = true},
+    {.id = "quit",
+     .action = Do(Action::kQuit),
+     .keys = {{Ctrl('q')}},
+     .help = {"View", "", "quit"},
+     .button = {ButtonSide::kEnd, "Quit", "Leave the program"},
+     .works_everywhere = true},
+};
+
+}  // namespace
+
+std::span<const SimulatorCommand> SimulatorCommands() noexcept {
+  return kCommands;
+}
+
+std::vector<KeyHelp> SimulatorHelp() {
+  constexpr const char* kGroups[] = {"Instruments", "Operation", "Laparoscope", "Simulation", "View"};
+  return MakeKeyHelp(SimulatorCommands(), kGroups);
+}
+
+KeyMeaning FindKeyMeaning(std::uint32_t keyval, bool control) noexcept {
+  const SimulatorCommand* command = FindCommand(SimulatorCommands(), keyval, control, false);
+  return command == nullptr ? KeyMeaning{} : command->action;
+}
+
+SimulatorNeeds FindNeeds(Action action) noexcept {
+  const SimulatorCommand* command = FindCommand(SimulatorCommands(), Do(action));
+  return command == nullptr ? kNothing : command->needs;
+}
+
+Action FindAction(device::HandAct act) noexcept {
+  switch (act) {
+    case device::HandAct::kCut:
+      return Action::kHoldCut;
+    case device::HandAct::kCoagulate:
+      return Action::kHoldCoagulate;
+    case device::HandAct::kRinse:
+      return Action::kHoldRinse;
+    case device::HandAct::kAspirate:
+      return Action::kHoldAspirate;
+    case device::HandAct::kNextTool:
+      return Action::kNextTool;
+    case device::HandAct::kPreviousTool:
+      return Action::kPreviousTool;
+    case device::HandAct::kAssistant:
+      return Action::kAssistant;
+    case device::HandAct::kClutch:
+      return Action::kHoldClutch;
+    case device::HandAct::kFreeze:
+      return Action::kFreeze;
+    case device::HandAct::kNone:
+    case device::HandAct::kCount:
+      break;
+  }
+  return Action::kNone;
+}
+
+bool WorksInPanel(Action action) noexcept {
+  const SimulatorCommand* command = FindCommand(SimulatorCommands(), Do(action));
+  return command != nullptr && command->works_everywhere;
+}
+
+const char* ShortHelp() noexcept {
+  return "1 2 Tab hand  ·  mouse, wheel move  ·  left / right button close / open jaws  ·  Q E spin  ·  "
+         "X Z tool  ·  V N current  ·  J K rinse, suck  ·  U assistant  ·  "
+         "C laparoscope  ·  Space pause  ·  H help";
+}
+
+}  // namespace trocar::app

@@ -1,0 +1,435 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/app/simulator_presenter.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "trocar/app/hints.h"
+#include "trocar/app/scene_choice.h"
+#include "trocar/core/log.h"
+#include "trocar/core/safe_file.h"
+#include "trocar/device/device_spec.h"
+
+namespace trocar::app {
+namespace {
+
+constexpr double kForcePeriod = 0.1;   // between refreshes of the forces [s]
+constexpr double kTimesPeriod = 0.25;  // between refreshes of the other numbers [s]
+
+}  // namespace
+
+SimulatorPresenter::SimulatorPresenter(const Options& options, const core::Stopwatch& since_start,
+                                       SimulatorScreen& screen, std::function<void()> on_loaded)
+    : options_(options),
+      since_start_(since_start),
+      screen_(&screen),
+      unattended_(options),
+      loading_(std::move(on_loaded)) {}
+
+// loading
+
+void SimulatorPresenter::Start() {
+  loading_.Start([options = options_] { return MakeChosenSimulation(options); });
+  Refresh();
+}
+
+void SimulatorPresenter::FinishLoading() {
+  auto simulation = loading_.Take();
+  if (page_.failure) return;
+  if (!simulation.ok()) return Fail(simulation.error());
+  auto control = SessionControl::Make(std::move(simulation).value());
+  if (!control) return Fail(control.error());
+  control_ = std::move(control).value();
+  has_script_ = control_->HasScript();
+  control_->SetMirrorFulcrum(is_fulcrum_mirrored_);
+  if (const auto used = UseDevices(); !used) return Fail(used.error());
+  if (options_.igtl_port >= 0) {
+    if (const core::Status served = control_->Serve(options_.igtl_port); !served) return Fail(served.error());
+    core::Log(core::LogLevel::kInfo,
+              "OpenIGTLink: viewers may connect to localhost:" + std::to_string(control_->ServedPort()));
+  }
+  screen_->UseControl(control_.get());
+  page_.title = "Trocar: " + control_->GetScene().name;
+  Announce("Ready.");
+  if (options_.is_demonstration || unattended_.IsOn()) SetDemonstration(true);
+  SetPaused(false);
+}
+
+/// What the options name, with the person's settings.
+core::Status SimulatorPresenter::UseDevices() {
+  const device::LoadedStore loaded = device::LoadDeviceStore(device::FindDeviceStore());
+  if (loaded.complaint) core::Log(core::LogLevel::kWarning, loaded.complaint->Text());
+  for (const std::string& key : screen_->UseKeys(loaded.store.keys)) {
+    core::Log(
+        core::LogLevel::kWarning,
+        "the key \"" + key + "\" of the device settings can have no act; docs/devices.md says which can");
+  }
+  if (!options_.haptics.empty()) {
+    const device::ButtonMap buttons = loaded.store.Buttons("haptics");
+    if (auto started = control_->UseHaptics(options_.haptics, buttons); !started) return started;
+  }
+  if (options_.device.empty()) return {};
+  auto driver = device::MakeDriver(options_.device, loaded.store, device::SystemClock());
+  if (!driver) return driver.error();
+  control_->UseDevice(std::move(driver).value(), device::FindButtons(options_.device, loaded.store));
+  return {};
+}
+
+void SimulatorPresenter::Open(const TaskRequest& request) {
+  if (loading_.IsRunning()) return;
+  Drop();
+  options_.task = request.task;
+  options_.scene = request.scene;
+  options_.level = request.choice.level;
+  options_.seed = request.choice.seed;
+  options_.is_demonstration = false;
+  screen_->FocusPicture();
+  Start();
+}
+
+/// Ends the scene that is shown.
+void SimulatorPresenter::Drop() {
+  screen_->ReleasePointer();
+  screen_->UseControl(nullptr);
+  control_.reset();
+  stages_ = {};
+  error_log_ = {};
+  seen_events_ = 0;
+  is_result_known_ = false;
+  page_.is_task_list_open = page_.is_result_open = false;
+}
+
+// commands
+
+bool SimulatorPresenter::Meets(SimulatorNeeds needs) const {
+  const bool is_good = !page_.failure;
+  switch (needs) {
+    case SimulatorNeeds::kNothing:
+      return true;
+    case SimulatorNeeds::kNoFailure:
+      return is_good;
+    case SimulatorNeeds::kScene:
+      return is_good && control_ != nullptr;
+    case SimulatorNeeds::kScript:
+      return is_good && control_ != nullptr && has_script_;
+    case SimulatorNeeds::kHaptics:
+      return is_good && control_ != nullptr && control_->Haptics() != nullptr;
+  }
+  return false;
+}
+
+bool SimulatorPresenter::IsEnabled(Action action) const {
+  return Meets(FindNeeds(action));
+}
+
+bool SimulatorPresenter::IsChecked(Action action) const {
+  switch (action) {
+    case Action::kToggleDemonstration:
+      return control_ != nullptr && control_->IsDemonstration();
+    case Action::kToggleForces:
+      return page_.view.has_force_arrows;
+    case Action::kToggleMask:
+      return page_.view.has_mask;
+    case Action::kToggleFulcrum:
+      return is_fulcrum_mirrored_;
+    case Action::kToggleHelp:
+      return page_.is_help_open;
+    case Action::kToggleForceFeedback:
+      return IsForceOn();
+    default:
+      return false;
+  }
+}
+
+/// What is, not what was asked for.
+bool SimulatorPresenter::IsForceOn() const {
+  if (control_ == nullptr || control_->Haptics() == nullptr) return false;
+  const session::HapticStatus& status = control_->Haptics()->Latest();
+  return std::any_of(status.hands.begin(), status.hands.end(), [](const session::HapticHandStatus& hand) {
+    return hand.state != haptics::ArmState::kUnarmed;
+  });
+}
+
+ButtonState SimulatorPresenter::FindButton(const SimulatorCommand& command) const {
+  const Action action = command.action.action;
+  ButtonState state;
+  state.is_enabled = Meets(command.needs);
+  state.is_checked = IsChecked(action);
+  state.is_shown = command.needs != SimulatorNeeds::kHaptics || !options_.haptics.empty() ||
+                   (control_ != nullptr && control_->Haptics() != nullptr);
+  state.label = command.button.label;
+  if (action == Action::kTogglePause && control_ != nullptr && !control_->IsPaused()) state.label = "Pause";
+  state.tip = TipText(command.button.tip, command.keys);
+  return state;
+}
+
+void SimulatorPresenter::Do(Action action) {
+  if (!IsEnabled(action)) return Refresh();
+  if (!DoWithHands(action) && !DoWithView(action)) screen_->DoInWindow(action);
+  Refresh();
+}
+
+bool SimulatorPresenter::DoWithHands(Action action) {
+  switch (action) {
+    case Action::kTogglePause:
+      SetPaused(!control_->IsPaused());
+      return true;
+    case Action::kReset:
+      Reset();
+      return true;
+    case Action::kToggleDemonstration:
+      SetDemonstration(!control_->IsDemonstration());
+      return true;
+    case Action::kNextTool:
+    case Action::kPreviousTool:
+      control_->StepTool(action == Action::kNextTool ? 1 : -1);
+      return true;
+    case Action::kFreeze:
+      control_->ToggleFreeze();
+      return true;
+    case Action::kAssistant:
+      control_->StepAssistant();
+      return true;
+    case Action::kToggleCameraHolder:
+      control_->SetCameraHolder(!control_->HasCameraHolder());
+      return true;
+    case Action::kChooseLeft:
+      control_->ChooseHand(device::kLeftHand);
+      return true;
+    case Action::kChooseRight:
+      control_->ChooseHand(device::kRightHand);
+      return true;
+    case Action::kSwitchHand:
+      control_->SwitchHand();
+      return true;
+    case Action::kToggleForceFeedback:
+      ToggleForceFeedback();
+      return true;
+    case Action::kCheckPose:
+      control_->Haptics()->BeginCheckPose();
+      return true;
+    case Action::kToggleFulcrum:
+      is_fulcrum_mirrored_ = !is_fulcrum_mirrored_;
+      if (control_ != nullptr) control_->SetMirrorFulcrum(is_fulcrum_mirrored_);
+      return true;
+    default:
+      return false;
+  }
+}
+
+bool SimulatorPresenter::DoWithView(Action action) {
+  switch (action) {
+    case Action::kToggleForces:
+      page_.view.has_force_arrows = !page_.view.has_force_arrows;
+      return true;
+    case Action::kToggleMask:
+      page_.view.has_mask = !page_.view.has_mask;
+      return true;
+    case Action::kToggleHelp:
+      page_.is_help_open = !page_.is_help_open;
+      return true;
+    case Action::kToggleTaskList:
+      page_.is_task_list_open ? CloseTaskList() : OpenTaskList();
+      return true;
+    case Action::kReleasePointer:
+      ReleaseAll();
+      return true;
+    default:
+      return false;
+  }
+}
+
+void SimulatorPresenter::ToggleForceFeedback() {
+  session::HapticLoop& haptics = *control_->Haptics();
+  IsForceOn() ? haptics.Stop() : haptics.RequestArm();
+}
+
+/// Esc: no force, no pointer, no card over the picture.
+void SimulatorPresenter::ReleaseAll() {
+  if (control_ != nullptr && control_->Haptics() != nullptr) control_->Haptics()->Stop();
+  screen_->ReleasePointer();
+  screen_->FocusPicture();
+  page_.is_help_open = page_.is_task_list_open = page_.is_result_open = false;
+}
+
+void SimulatorPresenter::SetPaused(bool is_paused) {
+  control_->SetPaused(is_paused);
+  Refresh();
+}
+
+void SimulatorPresenter::SetDemonstration(bool is_on) {
+  screen_->ReleasePointer();
+  control_->SetDemonstration(is_on);
+  if (is_on) control_->SetPaused(false);
+  Refresh();
+}
+
+void SimulatorPresenter::Reset() {
+  control_->Reset();
+  Announce("Reset.");
+}
+
+// tasks
+
+void SimulatorPresenter::OpenTaskList() {
+  if (page_.failure) return;
+  if (const core::Status filled = screen_->FillTaskList(); !filled) return Fail(filled.error());
+  screen_->ReleasePointer();
+  page_.is_result_open = page_.is_help_open = false;
+  page_.is_task_list_open = true;
+  Refresh();
+}
+
+void SimulatorPresenter::CloseTaskList() {
+  page_.is_task_list_open = false;
+  Refresh();
+}
+
+void SimulatorPresenter::CloseResult() {
+  page_.is_result_open = false;
+  Refresh();
+}
+
+void SimulatorPresenter::PlayAgain() {
+  Do(Action::kReset);
+  screen_->FocusPicture();
+}
+
+void SimulatorPresenter::ShowTask(const session::TaskSnapshot& now) {
+  error_log_.Add(now);
+  if (!now.IsOver()) {
+    // begun anew
+    if (is_result_known_) CloseResult();
+    is_result_known_ = false;
+    return;
+  }
+  if (is_result_known_) return;
+  is_result_known_ = true;
+  result_ = MakeTaskResult(control_->GetScene(), now, error_log_.Errors());
+  result_.is_demonstration = control_->IsDemonstration();
+  screen_->ReleasePointer();
+  screen_->FillResult(result_);
+  page_.is_result_open = true;
+  Refresh();
+}
+
+void SimulatorPresenter::SaveResult(const std::filesystem::path& path) {
+  const core::Status saved = core::WriteFile(
+      path, path.extension() == ".json" ? FormatTaskResultJson(result_) : FormatTaskResultHtml(result_));
+  if (!saved) core::Log(core::LogLevel::kError, saved.error().Text());
+  Announce(saved ? "Saved " + path.string() : saved.error().Text());
+}
+
+// frames
+
+SimulatorPresenter::FrameWork SimulatorPresenter::Advance(double now, double field_of_view, double pixels) {
+  const double dt = last_frame_ > 0.0 ? now - last_frame_ : 0.0;
+  last_frame_ = now;
+  FrameWork work;
+  if (control_ == nullptr || page_.failure) return work;
+  control_->SetPicture(field_of_view, pixels);
+  const session::Snapshot& snapshot = control_->Advance(dt);
+  work.snapshot = &snapshot;
+  stages_.Add(snapshot);
+  ShowEvents(snapshot);
+  if (control_->GetScene().task) ShowTask(snapshot.task);
+  if (const std::string message = control_->TakeDeviceMessage(); !message.empty())
+    Announce(message, page_.is_event_warning);
+  work.are_forces_due = now - last_forces_ > kForcePeriod;
+  work.are_times_due = now - last_times_ > kTimesPeriod;
+  if (work.are_forces_due) {
+    last_forces_ = now;
+    ShowHaptics();
+    Refresh();
+  }
+  if (work.are_times_due) last_times_ = now;
+  work.run = unattended_.Advance(snapshot.time, since_start_.Seconds());
+  if (work.run == UnattendedPlay::Step::kGiveUp) Fail(unattended_.Complaint());
+  return work;
+}
+
+void SimulatorPresenter::CountPicture() {
+  frames_.Add(since_start_.Seconds());
+  if (first_picture_ == 0.0) first_picture_ = since_start_.Seconds();
+}
+
+PlayReport SimulatorPresenter::MakeReport(int width, int height) const {
+  PlayReport report;
+  report.screenshot = options_.screenshot.filename().string();
+  report.width = width, report.height = height;
+  report.first_picture = first_picture_;
+  if (control_ != nullptr) {
+    report.statistics = control_->Statistics();
+    if (control_->Haptics() != nullptr)
+      report.haptics = session::FormatHapticsJson(control_->Haptics()->Latest());
+  }
+  report.pictures = frames_.Count();
+  report.pictures_per_second = PictureRate();
+  report.has_task_list = page_.is_task_list_open;
+  if (page_.is_result_open) report.result = result_.verdict;
+  return report;
+}
+
+// what is shown
+
+void SimulatorPresenter::Fail(const core::Error& error) {
+  if (page_.failure) return;
+  page_.failure = error;
+  core::Log(core::LogLevel::kError, error.Text());
+  if (control_ != nullptr) control_->SetPaused(true);
+  page_.is_task_list_open = page_.is_result_open = false;
+  Announce(error.Text());
+  // nobody is there to read the card
+  if (unattended_.IsOn()) screen_->DoInWindow(Action::kQuit);
+}
+
+void SimulatorPresenter::SaveHapticRecord() {
+  if (options_.haptic_record.empty() || control_ == nullptr) return;
+  const core::Status saved =
+      core::WriteFile(options_.haptic_record, control_->GetHapticRecord().FormatJson());
+  if (saved) return;
+  core::Log(core::LogLevel::kError, saved.error().Text());
+  if (!page_.failure) page_.failure = saved.error();
+}
+
+void SimulatorPresenter::Announce(const std::string& text, bool is_warning) {
+  page_.event = text;
+  page_.is_event_warning = is_warning;
+  Refresh();
+}
+
+void SimulatorPresenter::ShowEvents(const session::Snapshot& snapshot) {
+  if (snapshot.event_count < seen_events_) seen_events_ = 0;
+  if (snapshot.event_count == seen_events_) return;
+  seen_events_ = snapshot.event_count;
+  const session::Event& newest = snapshot.events[(snapshot.event_count - 1) % snapshot.events.size()];
+  Announce(DescribeEvent(newest, control_->GetScene()), IsWarning(newest.kind));
+}
+
+void SimulatorPresenter::ShowHaptics() {
+  session::HapticLoop* haptics = control_->Haptics();
+  if (haptics != nullptr) page_.haptics = session::DescribeHaptics(haptics->Latest());
+}
+
+void SimulatorPresenter::Refresh() {
+  Situation situation;
+  situation.is_loaded = control_ != nullptr;
+  if (control_ != nullptr) {
+    situation.is_paused = control_->IsPaused();
+    situation.is_demonstration = control_->IsDemonstration();
+    situation.is_demonstration_over = control_->IsDemonstrationOver();
+    situation.is_laparoscope_held = control_->IsLaparoscopeHeld();
+    situation.has_camera_holder = control_->HasCameraHolder();
+    situation.is_right_hand = control_->GetHand() == device::kRightHand;
+    situation.is_fulcrum_mirrored = control_->IsFulcrumMirrored();
+  }
+  situation.is_pointer_taken = screen_->IsPointerTaken();
+  page_.hint = page_.failure ? "" : HintText(situation);
+  page_.badge = page_.failure ? "" : BadgeText(situation);
+  page_.state = page_.failure ? "Stopped" : StateText(situation);
+  if (control_ != nullptr)
+    page_.state += "   ·   " + std::to_string(static_cast<int>(PictureRate() + 0.5)) + " pictures/s";
+  screen_->Show(page_);
+}
+
+}  // namespace trocar::app

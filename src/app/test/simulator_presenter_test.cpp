@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/app/simulator_presenter.h"
+
+#include <gtest/gtest.h>
+
+#include <future>
+
+#include "trocar/core/safe_file.h"
+#include "trocar_test/temporary_folder.h"
+
+namespace trocar::app {
+namespace {
+
+/// Remembers what it was told, as a window without widgets.
+struct FakeScreen : SimulatorScreen {
+  void Show(const SimulatorPage& shown) override { page = shown; }
+  void UseControl(SessionControl* used) override { control = used; }
+  std::vector<std::string> UseKeys(const std::map<std::string, device::HandAct>&) override { return {}; }
+  core::Status FillTaskList() override { return list_status; }
+  void FillResult(const TaskResult&) override { ++results; }
+  void ReleasePointer() override { is_pointer_taken = false; }
+  bool IsPointerTaken() const override { return is_pointer_taken; }
+  void FocusPicture() override { ++focused; }
+  void DoInWindow(Action action) override { done.push_back(action); }
+
+  SimulatorPage page;
+  SessionControl* control = nullptr;
+  core::Status list_status;
+  int results = 0, focused = 0;
+  bool is_pointer_taken = false;
+  std::vector<Action> done;
+};
+
+class Presenter : public testing::Test {
+ protected:
+  void Begin(const Options& options) {
+    presenter_.emplace(options, since_start_, screen_, [this] { loaded_.set_value(); });
+    presenter_->Start();
+  }
+  void Load() {
+    loaded_.get_future().wait();
+    loaded_ = {};
+    presenter_->FinishLoading();
+  }
+  void BeginTask() {
+    Options options;
+    options.task = "peg_transfer";
+    options.threads = 1;
+    Begin(options);
+    Load();
+  }
+  bool IsEnabled(const char* id) const {
+    for (const SimulatorCommand& command : SimulatorCommands()) {
+      if (std::string(command.id) == id) return presenter_->FindButton(command).is_enabled;
+    }
+    ADD_FAILURE() << id;
+    return false;
+  }
+
+  core::Stopwatch since_start_;
+  FakeScreen screen_;
+  std::promise<void> loaded_;
+  std::optional<SimulatorPresenter> presenter_;  // ends before what it uses
+};
+
+TEST_F(Presenter, LoadsBesideTheWindow) {
+  Options options;
+  options.task = "peg_transfer";
+  Begin(options);
+  EXPECT_EQ(screen_.page.state, "Loading the patient");
+  EXPECT_FALSE(IsEnabled("run"));
+  EXPECT_TRUE(IsEnabled("tasks"));
+  Load();
+  EXPECT_NE(screen_.control, nullptr);
+  EXPECT_EQ(screen_.page.event, "Ready.");
+  EXPECT_NE(screen_.page.title.find("Trocar: "), std::string::npos);
+  EXPECT_FALSE(screen_.control->IsPaused());
+  EXPECT_TRUE(IsEnabled("run"));
+  EXPECT_FALSE(IsEnabled("force-feedback")) << "no haptic device";
+}
+
+TEST_F(Presenter, SaysWhatCannotBeLoaded) {
+  Options options;
+  options.scene = "no_such_scene.json";
+  Begin(options);
+  Load();
+  ASSERT_TRUE(screen_.page.failure);
+  EXPECT_EQ(screen_.page.failure->code, core::ErrorCode::kFileMissing);
+  EXPECT_EQ(screen_.page.state, "Stopped");
+  EXPECT_FALSE(IsEnabled("tasks"));
+  EXPECT_TRUE(screen_.done.empty()) << "a person reads the card";
+  presenter_->Do(Action::kReset);  // nothing to do it with
+}
+
+TEST_F(Presenter, ClosesARunThatNobodyWatchesWhenItFails) {
+  Options options;
+  options.scene = "no_such_scene.json";
+  options.screenshot = "window.png";
+  Begin(options);
+  Load();
+  EXPECT_EQ(screen_.done, std::vector{Action::kQuit});
+}
+
+TEST_F(Presenter, DoesItsCommands) {
+  BeginTask();
+  SessionControl& control = *screen_.control;
+  presenter_->Do(Action::kTogglePause);
+  EXPECT_TRUE(control.IsPaused());
+  EXPECT_EQ(screen_.page.state.rfind("Paused", 0), 0u);
+  presenter_->Do(Action::kTogglePause);
+  EXPECT_FALSE(control.IsPaused());
+  presenter_->Do(Action::kChooseLeft);
+  EXPECT_EQ(control.GetHand(), device::kLeftHand);
+  presenter_->Do(Action::kToggleFulcrum);
+  EXPECT_TRUE(control.IsFulcrumMirrored());
+  presenter_->Do(Action::kToggleForces);
+  EXPECT_FALSE(screen_.page.view.has_force_arrows);
+  presenter_->Do(Action::kToggleMask);
+  EXPECT_FALSE(screen_.page.view.has_mask);
+  presenter_->Do(Action::kToggleHelp);
+  EXPECT_TRUE(screen_.page.is_help_open);
+  presenter_->Do(Action::kToggleFullscreen);
+  EXPECT_EQ(screen_.done, std::vector{Action::kToggleFullscreen});
+  presenter_->Do(Action::kToggleForceFeedback);  // not possible: no haptic device
+}
+
+TEST_F(Presenter, EscapeClosesTheCardsAndGivesThePointerBack) {
+  BeginTask();
+  screen_.is_pointer_taken = true;
+  presenter_->Do(Action::kToggleHelp);
+  presenter_->Do(Action::kReleasePointer);
+  EXPECT_FALSE(screen_.page.is_help_open);
+  EXPECT_FALSE(screen_.is_pointer_taken);
+}
+
+TEST_F(Presenter, OpensAnotherTaskFromTheList) {
+  BeginTask();
+  presenter_->Do(Action::kToggleTaskList);
+  EXPECT_TRUE(screen_.page.is_task_list_open);
+  presenter_->Open({"clip_and_cut", {}, {}});
+  EXPECT_EQ(screen_.control, nullptr) << "the old one has ended";
+  EXPECT_FALSE(screen_.page.is_task_list_open);
+  presenter_->Open({"peg_transfer", {}, {}});  // one is being read: nothing
+  Load();
+  EXPECT_EQ(presenter_->GetOptions().task, "clip_and_cut");
+  EXPECT_NE(screen_.control, nullptr);
+}
+
+TEST_F(Presenter, FailsWhereTheListCannotBeRead) {
+  BeginTask();
+  screen_.list_status = core::Error{core::ErrorCode::kFileMissing, "no tasks"};
+  presenter_->OpenTaskList();
+  EXPECT_FALSE(screen_.page.is_task_list_open);
+  EXPECT_TRUE(presenter_->GetFailure());
+}
+
+TEST_F(Presenter, RefreshesNumbersNowAndThen) {
+  BeginTask();
+  EXPECT_TRUE(presenter_->Advance(100.0, 1.0, 500).are_forces_due);
+  const auto soon = presenter_->Advance(100.016, 1.0, 500);
+  EXPECT_NE(soon.snapshot, nullptr);
+  EXPECT_FALSE(soon.are_forces_due);
+  EXPECT_FALSE(soon.are_times_due);
+  EXPECT_TRUE(presenter_->Advance(100.3, 1.0, 500).are_times_due);
+}
+
+TEST_F(Presenter, SavesTheResultWhereItCan) {
+  BeginTask();
+  test::TemporaryFolder folder;
+  presenter_->SaveResult(folder.Path() / "result.json");
+  EXPECT_TRUE(core::ReadFile(folder.Path() / "result.json").ok());
+  EXPECT_EQ(screen_.page.event.rfind("Saved ", 0), 0u);
+  presenter_->SaveResult(folder.Path() / "missing" / "deep" / ("x" + std::string(400, 'y') + ".html"));
+  EXPECT_EQ(screen_.page.event.rfind("E-", 0), 0u) << screen_.page.event;
+}
+
+}  // namespace
+}  // namespace trocar::app
