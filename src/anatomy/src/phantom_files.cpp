@@ -7,8 +7,8 @@
 #include <string>
 
 #include "trocar/anatomy/phantom.h"
-#include "trocar/core/partial_path.h"
 #include "trocar/core/assert.h"
+#include "trocar/core/partial_path.h"
 #include "trocar/core/safe_file.h"
 #include "trocar/images/png_file.h"
 #include "trocar/images/slice_names.h"

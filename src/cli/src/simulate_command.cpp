@@ -30,8 +30,8 @@ namespace {
 
 struct SimulateOptions {
   std::string scene;
-  std::string patient;  // in place of the scene's
-  std::string device;   // in place of the script's hands
+  std::string patient;        // in place of the scene's
+  std::string device;         // in place of the script's hands
   std::string save, restore;  // files of states, or empty
   HapticOptions haptics;
   int igtl_port = -1;  // -1: nobody looks on

@@ -15,7 +15,7 @@ using math::Vec3;
 
 /// A ball of 14 mm around (30, 30, 30) mm as label 7, with another label around it.
 images::LabelVolume MakeBall(std::array<int, 3> size, const std::array<double, 3>& voxel_mm,
-                     double* enclosed_mm3 = nullptr) {
+                             double* enclosed_mm3 = nullptr) {
   images::LabelVolume labels;
   labels.size = size;
   std::size_t count = 0;

@@ -46,7 +46,8 @@ core::Status Simulation::Content::MakeParts(int threads, SolveOn solve_on) {
   }
   conservation = std::make_unique<tissue::Conservation>(tissue_model, made.conservation);
   world.tissue = model->tissue_at_start;
-  world.conserved = world.good_conserved = model->conserved_at_start;
+  world.conserved = model->conserved_at_start;
+  world.good_conserved = model->conserved_at_start;
   world.guard.emplace(tissue_model);
   auto touch = ToolContacts::Make(scene, tissue_model, made.surfaces, model->tissue_at_start);
   if (!touch.ok()) return touch.error();
@@ -219,11 +220,12 @@ void Simulation::CutPatch(Hand hand, haptics::LocalPatch& patch) noexcept {
   const surgery::ContactSet& contacts = c.world.touch.Contacts();
   std::array<std::uint8_t, surgery::ContactSet::kCapacity> hands;
   for (std::size_t i = 0; i < contacts.links.size(); ++i) hands[i] = contacts.links[i].hand;
-  content_->patch_cutter->Cut(
-      {c.world.topology.Model(), c.world.tissue, c.tick.load, contacts.springs, std::span(hands).first(contacts.links.size()),
-       static_cast<std::uint8_t>(hand), c.world.grasps[hand].Nodes(), c.world.touch.Device(hand), c.world.forces[hand],
-       c.tick.verdict == tissue::GuardVerdict::kGood, c.world.tick, true, c.GetScene().instruments[hand].p_world_port},
-      patch);
+  content_->patch_cutter->Cut({c.world.topology.Model(), c.world.tissue, c.tick.load, contacts.springs,
+                               std::span(hands).first(contacts.links.size()), static_cast<std::uint8_t>(hand),
+                               c.world.grasps[hand].Nodes(), c.world.touch.Device(hand), c.world.forces[hand],
+                               c.tick.verdict == tissue::GuardVerdict::kGood, c.world.tick, true,
+                               c.GetScene().instruments[hand].p_world_port},
+                              patch);
 }
 
 double Simulation::CalcEquilibriumError() const {

@@ -32,7 +32,8 @@ struct WorldState {
   std::uint64_t tick = 0;
   Topology topology;
   tissue::TissueState tissue;
-  tissue::ConservationState conserved, good_conserved;  ///< now, and after the last good tick
+  tissue::ConservationState conserved;
+  tissue::ConservationTick good_conserved;  ///< after the last good tick
   std::optional<tissue::StateGuard> guard;
   std::array<instrument::TrocarJoints, kHandCount> joints;
   std::array<surgery::Grasp, kHandCount> grasps;

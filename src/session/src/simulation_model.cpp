@@ -49,10 +49,11 @@ core::Status Fill(const tissue::TissueModel& tissue_model, int threads, Simulati
     const double change = tissue::FillToPressure(solver, organ, pressures[organ], {}, conservation,
                                                  model.tissue_at_start, model.conserved_at_start);
     if (!(change < kFilledTolerance)) {
-      return core::Error{core::ErrorCode::kSceneInvalid,
-                         "the wall of \"" + model.tissue->surfaces[organ].name +
-                             "\" does not hold its internal pressure; lower internal_pressure_pa, or make the "
-                             "wall stiffer"};
+      return core::Error{
+          core::ErrorCode::kSceneInvalid,
+          "the wall of \"" + model.tissue->surfaces[organ].name +
+              "\" does not hold its internal pressure; lower internal_pressure_pa, or make the "
+              "wall stiffer"};
     }
   }
   return {};

@@ -20,8 +20,8 @@ struct SimulationModel {
   std::shared_ptr<const PatientTissue> tissue;  ///< before any cut
   WallSprings walls;
   bool walls_tear = false;
-  std::int32_t hollow_organ = -1;  ///< leaks when its wall tears
-  tissue::TissueState tissue_at_start;           ///< at rest, tense organs filled
+  std::int32_t hollow_organ = -1;       ///< leaks when its wall tears
+  tissue::TissueState tissue_at_start;  ///< at rest, tense organs filled
   tissue::ConservationState conserved_at_start;
   std::uint64_t fingerprint = 0;  ///< of all that makes a state one of this model
 };

@@ -53,11 +53,12 @@ core::Result<std::span<const std::byte>> ReadHeader(const SimulationModel& model
   const auto fields = bytes.subspan(sizeof(header));
   if (header.magic != kMagic) return Refuse("this is no saved state of Trocar");
   if (header.version != kVersion) {
-    return Refuse("the state was saved in format " + std::to_string(header.version) + ", this program reads " +
-                  std::to_string(kVersion) + "; save it again with this version");
+    return Refuse("the state was saved in format " + std::to_string(header.version) +
+                  ", this program reads " + std::to_string(kVersion) + "; save it again with this version");
   }
   if (header.fingerprint != model.fingerprint)
-    return Refuse("the state was saved of another scene, patient or seed; restore it into the one it came from");
+    return Refuse(
+        "the state was saved of another scene, patient or seed; restore it into the one it came from");
   if (header.size != fields.size() || header.checksum != CalcChecksum(fields))
     return Refuse("the state is damaged: its checksum does not fit; take another copy of it");
   return fields;
@@ -168,7 +169,8 @@ core::Status Simulation::RestoreWithout(std::span<const std::byte> bytes, const 
   archive.Omit(field);
   core::Status restored = c.Restore(archive);
   if (!restored.ok()) {
-    core::StateArchive back = core::StateArchive::ForRestore(std::span<const std::byte>(before).subspan(sizeof(Header)));
+    core::StateArchive back =
+        core::StateArchive::ForRestore(std::span<const std::byte>(before).subspan(sizeof(Header)));
     const core::Status as_before = c.Restore(back);
     TROCAR_ASSERT(as_before.ok());  // saved by this simulation
   }

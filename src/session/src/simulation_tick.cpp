@@ -93,14 +93,10 @@ ToolsNow Simulation::Content::GetTools() const noexcept {
 
 TissueNow Simulation::Content::GetTissue() const noexcept {
   const WorldState& w = world;
-  return {&w.topology.Model(),
-          &w.topology.Definition(),
-          &w.tissue,
-          conservation.get(),
-          &w.conserved,
-          w.touch.Organs(),
-          &w.touch.Tubes(),
-          std::span(tick.torn_springs).first(tick.torn_spring_count)};
+  return {&w.topology.Model(), &w.topology.Definition(),
+          &w.tissue,           conservation.get(),
+          &w.conserved,        w.touch.Organs(),
+          &w.touch.Tubes(),    std::span(tick.torn_springs).first(tick.torn_spring_count)};
 }
 
 void Simulation::Content::FindContacts() noexcept {
@@ -146,8 +142,7 @@ void Simulation::Content::Grasp() noexcept {
     tick.changes[hand] = surgery::UpdateGrasp(tool, w.touch.Proxy(hand), w.touch.Device(hand),
                                               w.joints[hand].jaw, w.touch.Organs(), &w.touch.Tubes(),
                                               w.topology.Model(), grasp_settings, grasp, w.tissue);
-    tick.changed_organs[hand] =
-        tick.changes[hand] == surgery::GraspChange::kReleased ? held : grasp.surface;
+    tick.changed_organs[hand] = tick.changes[hand] == surgery::GraspChange::kReleased ? held : grasp.surface;
   }
 }
 
@@ -207,7 +202,7 @@ void Simulation::Content::GuardTissue() noexcept {
   if (is_good) {
     w.good_conserved = w.conserved;
   } else {
-    w.conserved = w.good_conserved;
+    static_cast<tissue::ConservationTick&>(w.conserved) = w.good_conserved;
   }
   const auto touched = w.touch.CalcTouch(w.tissue, is_good);
   for (int hand = 0; hand < kHandCount; ++hand) {
@@ -311,8 +306,7 @@ void Simulation::Content::Judge() noexcept {
   const bool are_touching = world.touch.AreToolsTouching();
   if (are_touching && !j.were_tools_touching) Emit(EventKind::kToolsTouch, -1, -1, 0.0);
   j.were_tools_touching = are_touching;
-  if (tick.torn_count > 0)
-    Emit(EventKind::kTear, -1, model->tissue->strand_organs[tick.torn[0]], 0.0);
+  if (tick.torn_count > 0) Emit(EventKind::kTear, -1, model->tissue->strand_organs[tick.torn[0]], 0.0);
   if (tick.torn_spring_count > 0)
     Emit(EventKind::kTear, -1, world.topology.Walls().organs[tick.torn_springs[0]], 0.0);
   if (tick.verdict == tissue::GuardVerdict::kRestored) Emit(EventKind::kStateRestored, -1, -1, 0.0);

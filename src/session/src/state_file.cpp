@@ -44,7 +44,8 @@ core::Status WriteStateFile(const std::filesystem::path& path, const Simulation&
   return core::WriteFile(path, content);
 }
 
-core::Result<std::vector<std::byte>> ReadStateFile(const std::filesystem::path& path, Simulation& simulation) {
+core::Result<std::vector<std::byte>> ReadStateFile(const std::filesystem::path& path,
+                                                   Simulation& simulation) {
   const auto content = core::ReadFile(path, kLargestFile);
   if (!content) return content.error();
   const auto refuse = [&](const char* why) {

@@ -249,8 +249,7 @@ Finding TaskMonitor::FindOfEvents(const Scene& scene, const Snapshot& snapshot,
   return {};
 }
 
-void TaskMonitor::UpdateGoals(const Scene& scene, const Snapshot& snapshot,
-                              TaskSnapshot& progress) noexcept {
+void TaskMonitor::UpdateGoals(const Scene& scene, const Snapshot& snapshot, TaskSnapshot& progress) noexcept {
   const Task& task = *scene.task;
   int stage = std::numeric_limits<int>::max();
   for (std::size_t g = 0; g < task.goals.size(); ++g) {

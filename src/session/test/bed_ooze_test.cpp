@@ -133,7 +133,7 @@ TEST_F(BedOozeTest, IsCountedAsBlood) {
   MakeOperation();
   Tear(0.0, 1.0);
   for (int i = 0; i < 1200; ++i) Judge();
-  const OperationResult result = operation_->Result();
+  const OperationResult result = Result();
   const auto& blood = result.fluids.fluids[static_cast<std::size_t>(surgery::Fluid::kBlood)];
   EXPECT_GT(result.bed_blood, 1e-6);
   EXPECT_NEAR(blood.left, result.bed_blood, 1e-3 * blood.left);

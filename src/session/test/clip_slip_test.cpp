@@ -121,10 +121,8 @@ TEST_F(ClipSlipTest, GoodClipsStayForTheWholeOperation) {
 // A hole beyond the clips that stay opens nothing that still flows, as where a stump is coagulated.
 TEST_F(ClipSlipTest, AHoleCountsAsUnclippedOnlyWhereNoClipHoldsTheSideThatStays) {
   const auto counts = [this](std::uint32_t tube, double share) {
-    OperationJudge judge;
-    judge.Clear(false);
-    judge.OnHole({tube, share * LengthOf(tube)}, *vessels_, {}, kRight, 0.0);
-    return judge.Errors().Count(training::OperationError::kUnclippedCut) == 1;
+    const VesselJudgement at = vessels_->JudgePlace({tube, share * LengthOf(tube)});
+    return at.may_be_divided && at.staying_clips == 0;
   };
   for (const char* name : {"cystic_artery", "cystic_duct"}) {
     const std::uint32_t tube = FindTube(name);
@@ -211,7 +209,7 @@ TEST_F(ClipSlipTest, IsTheSameAgain) {
     ledger_ = {};
     Wait(10.0);
     core::StateHash hash;
-    vessels_->AddTo(hash);
+    core::AddStateTo(hash, *vessels_);
     return hash.Value();
   };
   EXPECT_EQ(run(), run());

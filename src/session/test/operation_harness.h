@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "operation/operation.h"
+#include "operation/operation_judge.h"
 #include "trocar/session/simulation.h"
 
 namespace trocar::session {
@@ -50,10 +51,12 @@ class OperationHarness : public testing::Test {
     tubes_ = std::move(*surgery::MakeTubeSet(state_.position, std::move(tubes)));
   }
 
-  static const PatientTissue& Tissue() {
-    static const PatientTissue tissue = std::move(*MakePatientTissue(*OperationScene(), Operation::kSpare));
+  static const std::shared_ptr<const PatientTissue>& SharedTissue() {
+    static const auto tissue = std::make_shared<const PatientTissue>(
+        std::move(*MakePatientTissue(*OperationScene(), Operation::kSpare)));
     return tissue;
   }
+  static const PatientTissue& Tissue() { return *SharedTissue(); }
   std::span<const surgery::OrganSurface> Organs() const { return organs_; }
   std::span<const Vec3> Position() const { return state_.position; }
   const SurfaceInfo& Gallbladder() const { return Tissue().surfaces[static_cast<std::size_t>(gallbladder_)]; }
@@ -61,9 +64,10 @@ class OperationHarness : public testing::Test {
   void MakeOperation() {
     state_ = tissue::MakeRestState(model_);
     conserved_ = conservation_->MakeState(state_);
-    auto made = Operation::Make(*OperationScene(), Tissue());
+    auto made = Operation::Make(*OperationScene(), SharedTissue());
     ASSERT_TRUE(made.ok()) << made.error().Text();
     operation_ = std::move(*made);
+    judge_.emplace(*OperationScene(), Tissue(), *operation_);
     input_ = CalcScriptInput(*OperationScene(), 0.0);
     grasps_ = {};
     hands_ = {};
@@ -79,15 +83,32 @@ class OperationHarness : public testing::Test {
   TissueNow Now() {
     return {&model_, &Tissue().definition, &state_, &*conservation_, &conserved_, organs_, &tubes_, torn_};
   }
-  void Act() { (void)operation_->Act(hands_, Now()); }
+  void Act() {
+    OperatedTissue operated{state_, conserved_, grasps_};
+    operation_->Act(hands_, Now(), operated);
+    operation_->Heat(hands_, Now(), operated);
+    operation_->Assist(hands_, Now(), operated);
+    (void)operation_->EndCuts();
+  }
+  /// What follows the solve; the acts up to here are forgotten, the events stay until the next tick.
   void Judge() {
-    operation_->Judge(hands_, Now());
+    OperatedTissue operated{state_, conserved_, grasps_};
+    operation_->Flow(hands_, Now(), operated);
+    operation_->MoveLoose(hands_, Now());
+    judge_->Update(*operation_, hands_, Now(), hands_.camera);
     hands_.time += kTick;
+  }
+  OperationResult Result() const {
+    OperationResult result;
+    operation_->AddTo(result);
+    judge_->AddTo(result);
+    return result;
   }
   OperationSnapshot Published() const {
     OperationSnapshot snapshot;
     operation_->Size(snapshot);
     operation_->Publish(state_, snapshot);
+    judge_->Publish(snapshot);
     return snapshot;
   }
 
@@ -151,6 +172,7 @@ class OperationHarness : public testing::Test {
   int gallbladder_ = -1, liver_ = -1;
   std::vector<std::uint32_t> torn_;
   std::unique_ptr<Operation> operation_;
+  std::optional<OperationJudge> judge_;
   Input input_;
   HandsNow hands_;
   std::array<surgery::Grasp, kHandCount> grasps_;

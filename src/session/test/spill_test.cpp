@@ -258,12 +258,12 @@ class SpillTest : public OperationHarness {
 TEST_F(SpillTest, ATornWallSpillsStonesThatAreToldAndCounted) {
   MakeOperation();
   Judge();
-  EXPECT_EQ(operation_->Result().stones.spilled, 0);
+  EXPECT_EQ(Result().stones.spilled, 0);
   int told = 0;
   operation_->BeginTick();
   Spill(15e-6);
-  for (const OperationNote& note : operation_->Notes()) told += note.kind == EventKind::kStoneSpilled ? 1 : 0;
-  const OperationResult result = operation_->Result();
+  for (const OperationEvent& event : operation_->Events()) told += event.kind == EventKind::kStoneSpilled ? 1 : 0;
+  const OperationResult result = Result();
   ASSERT_GT(result.stones.spilled, 1);
   EXPECT_EQ(told, std::min(result.stones.spilled, 8)) << "as many as a tick has room to tell";
   EXPECT_EQ(result.injuries.spilled_stones, result.stones.spilled);
@@ -274,7 +274,7 @@ TEST_F(SpillTest, ATornWallSpillsStonesThatAreToldAndCounted) {
 TEST_F(SpillTest, TheHashFollowsThem) {
   const auto hash = [&] {
     core::StateHash value;
-    operation_->AddTo(value);
+    core::AddStateTo(value, *operation_);
     return value.Value();
   };
   MakeOperation();
@@ -308,10 +308,10 @@ TEST_F(SpillTest, WhatIsNotRetrievedIsAnErrorWhenTheBagIsOut) {
         }
       }
       input_.controls[kRight].aspirate = false;
-      ASSERT_EQ(operation_->Result().stones.spilled, 0);
+      ASSERT_EQ(Result().stones.spilled, 0);
     }
     TakeGallbladderOut();
-    const OperationResult result = operation_->Result();
+    const OperationResult result = Result();
     ASSERT_TRUE(result.is_completed);
     const std::size_t errors = result.errors.Count(training::OperationError::kStonesLeft);
     EXPECT_EQ(errors, retrieves ? 0u : 1u);
@@ -340,12 +340,12 @@ TEST_F(SpillTest, AStoneGoesOutWithTheToolThatHoldsIt) {
   ASSERT_TRUE(operation_->HoldsStone(kRight));
   Judge();
   bool was_told = false;
-  for (const OperationNote& note : operation_->Notes()) was_told |= note.kind == EventKind::kStoneTaken;
+  for (const OperationEvent& event : operation_->Events()) was_told |= event.kind == EventKind::kStoneTaken;
   EXPECT_TRUE(was_told);
-  const int before = operation_->Result().stones.spilled;
+  const int before = Result().stones.spilled;
   SelectTool(kRight, instrument::ToolKind::kHook);
-  EXPECT_EQ(operation_->Result().stones.taken_out, 1);
-  EXPECT_EQ(operation_->Result().stones.spilled, before - 1);
+  EXPECT_EQ(Result().stones.taken_out, 1);
+  EXPECT_EQ(Result().stones.spilled, before - 1);
   EXPECT_FALSE(operation_->HoldsStone(kRight));
 }
 

@@ -31,10 +31,10 @@ class TubeEnd : public OperationHarness {
   void Part(std::uint32_t strand) { state_.strand_is_intact[strand] = 0; }
   void Tick() { Act(), Judge(); }
   std::size_t CountErrors(training::OperationError error) const {
-    return static_cast<std::size_t>(operation_->Result().errors.Count(error));
+    return static_cast<std::size_t>(Result().errors.Count(error));
   }
   double BloodLost() const {
-    return operation_->Result().fluids.fluids[static_cast<std::size_t>(surgery::Fluid::kBlood)].left;
+    return Result().fluids.fluids[static_cast<std::size_t>(surgery::Fluid::kBlood)].left;
   }
 };
 

@@ -58,8 +58,8 @@ inline constexpr bool kIsPlainState<surgery::BodyState> = sizeof(surgery::BodySt
 template <>
 inline constexpr bool kIsPlainState<surgery::ToolState> = sizeof(surgery::ToolState) == 89 * 8;
 template <>
-inline constexpr bool kIsPlainState<surgery::ContactPointState> =
-    sizeof(surgery::ContactPointState) == 40 * 8;
+inline constexpr bool kIsPlainState<surgery::ContactPointState> = sizeof(surgery::ContactPointState) ==
+                                                                  40 * 8;
 }  // namespace trocar::core
 
 namespace trocar::surgery {
@@ -136,9 +136,9 @@ ContactPointState SavePoint(const btPersistentManifold& manifold, const btManifo
   ContactPointState state;
   state.pair = PairOf(manifold);
   state.children = ChildrenOf(p);
-  state.vectors = {Numbers(p.m_localPointA),       Numbers(p.m_localPointB),
-                   Numbers(p.m_positionWorldOnA),  Numbers(p.m_positionWorldOnB),
-                   Numbers(p.m_normalWorldOnB),    Numbers(p.m_lateralFrictionDir1),
+  state.vectors = {Numbers(p.m_localPointA),        Numbers(p.m_localPointB),
+                   Numbers(p.m_positionWorldOnA),   Numbers(p.m_positionWorldOnB),
+                   Numbers(p.m_normalWorldOnB),     Numbers(p.m_lateralFrictionDir1),
                    Numbers(p.m_lateralFrictionDir2)};
   state.numbers = {p.m_distance1,
                    p.m_combinedFriction,

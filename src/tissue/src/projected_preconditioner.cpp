@@ -48,9 +48,9 @@ void ProjectedPreconditioner::PreconditionGradients(const Kernels& kernels, Work
     gram_[row] = CalcDots(kernels, workers, &Constraint::preconditioned_gradient, active_[row].gradient);
 }
 
-ProjectedPreconditioner::SmallVector ProjectedPreconditioner::CalcDots(const Kernels& kernels, Workers& workers,
-                                              AlignedVector<Float4> Constraint::*part,
-                                              const AlignedVector<Float4>& v) const noexcept {
+ProjectedPreconditioner::SmallVector ProjectedPreconditioner::CalcDots(
+    const Kernels& kernels, Workers& workers, AlignedVector<Float4> Constraint::*part,
+    const AlignedVector<Float4>& v) const noexcept {
   std::array<SmallVector, Workers::kMaxChunks> parts;
   const std::uint32_t chunks =
       ForEachNodeChunk(workers, v.size(), [&](std::uint32_t first, std::uint32_t last, std::uint32_t chunk) {
@@ -82,8 +82,8 @@ void ProjectedPreconditioner::ProjectResidual(const Kernels& kernels, Workers& w
       transposed[row][column] = gram_[column][row];
   }
   SmallVector share{};
-  math::SolveSmall<math::Pivots::kNone>(transposed, CalcDots(kernels, workers, &Constraint::preconditioned_gradient, r), active_.size(),
-             share);
+  math::SolveSmall<math::Pivots::kNone>(
+      transposed, CalcDots(kernels, workers, &Constraint::preconditioned_gradient, r), active_.size(), share);
   ForEachNodeChunk(workers, r.size(), [&](std::uint32_t first, std::uint32_t last, std::uint32_t) {
     Subtract(kernels, share, &Constraint::gradient, r, first, last);
   });
@@ -96,7 +96,8 @@ DotAndLongest ProjectedPreconditioner::Apply(const Kernels& kernels, Workers& wo
   hierarchy_->Apply(kernels, workers, r.data(), z.data());
   if (active_.empty()) return CalcDotAndLongest(kernels, workers, r, z);
   SmallVector share{};
-  math::SolveSmall<math::Pivots::kNone>(gram_, CalcDots(kernels, workers, &Constraint::gradient, z), active_.size(), share);
+  math::SolveSmall<math::Pivots::kNone>(gram_, CalcDots(kernels, workers, &Constraint::gradient, z),
+                                        active_.size(), share);
   return CalcDotAndLongest(kernels, workers, r, z, [&](std::uint32_t first, std::uint32_t last) {
     Subtract(kernels, share, &Constraint::preconditioned_gradient, z, first, last);
   });

@@ -8,8 +8,8 @@ namespace trocar::session {
 
 /// The picture's camera.
 struct Camera {
-  math::Pose X_world_camera;       ///< looks along -z
-  double field_of_view = 0;  ///< whole, diagonal [rad]
+  math::Pose X_world_camera;  ///< looks along -z
+  double field_of_view = 0;   ///< whole, diagonal [rad]
 };
 
 }  // namespace trocar::session

@@ -22,7 +22,7 @@ struct HandAct {
 };
 
 /// An act that can be an error, with what decides whether it is one.
-struct OperationAct {
+struct EmittedAct {
   enum class Kind : std::uint8_t {
     kError,  ///< `error`, whatever else is true
     kClip,
@@ -32,28 +32,28 @@ struct OperationAct {
   Vec3 position;           ///< world frame [m]
   std::int32_t hand = -1;  ///< or -1
   training::OperationError error = training::OperationError::kExcessForce;
-  ClipResult clip;             ///< of kClip
-  VesselJudgement vessel;      ///< of the others but kError: the duct or vessel there
+  ClipResult clip;         ///< of kClip
+  VesselJudgement vessel;  ///< of the others but kError: the duct or vessel there
 };
 
 /// The acts of one tick. Fixed room; the same error of the same hand, and the same triplet of it, are kept once.
-class OperationActs {
+class EmittedActs {
  public:
   void Clear() noexcept {
     act_count_ = hand_act_count_ = 0;
     was_exchanged_ = {};
   }
   void Report(training::OperationError error, const Vec3& p, int hand) noexcept {
-    for (const OperationAct& act : Acts()) {
-      if (act.kind == OperationAct::Kind::kError && act.error == error && act.hand == hand) return;
+    for (const EmittedAct& act : Acts()) {
+      if (act.kind == EmittedAct::Kind::kError && act.error == error && act.hand == hand) return;
     }
-    OperationAct act;
+    EmittedAct act;
     act.position = p;
     act.hand = hand;
     act.error = error;
     Add(act);
   }
-  void Add(const OperationAct& act) noexcept {
+  void Add(const EmittedAct& act) noexcept {
     if (act_count_ < acts_.size()) acts_[act_count_++] = act;
   }
   void Add(const training::Triplet& triplet, int hand) noexcept {
@@ -64,13 +64,13 @@ class OperationActs {
   }
   void SetExchanged(int hand) noexcept { was_exchanged_[static_cast<std::size_t>(hand)] = true; }
 
-  std::span<const OperationAct> Acts() const { return std::span(acts_).first(act_count_); }
+  std::span<const EmittedAct> Acts() const { return std::span(acts_).first(act_count_); }
   std::span<const HandAct> HandActs() const { return std::span(hand_acts_).first(hand_act_count_); }
   /// Another tool was put into the trocar.
   bool WasExchanged(int hand) const { return was_exchanged_[static_cast<std::size_t>(hand)]; }
 
  private:
-  std::array<OperationAct, 128> acts_{};
+  std::array<EmittedAct, 128> acts_{};
   std::array<HandAct, 16> hand_acts_{};
   std::size_t act_count_ = 0, hand_act_count_ = 0;
   std::array<bool, kHandCount> was_exchanged_{};

@@ -16,7 +16,7 @@ constexpr double kOutside = 0.031, kExchangeSeconds = 0.5;
 constexpr double kMainDistance = 0.010;  // fibres nearer to what must stay are left alone [m]
 /// Where blood and bile gather, seen from the infundibulum: to the right and behind, in Morison's pouch [m].
 constexpr Vec3 kPouch{-0.015, 0.0, -0.025};
-constexpr double kBelowAll = -0.03;   // under the lowest organ: what falls beside everything stops there [m]
+constexpr double kBelowAll = -0.03;  // under the lowest organ: what falls beside everything stops there [m]
 
 }  // namespace
 

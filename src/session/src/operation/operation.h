@@ -13,8 +13,8 @@
 #include "bed_ooze.h"
 #include "camera.h"
 #include "electrosurgery.h"
-#include "gallbladder_hold.h"
 #include "emitted_acts.h"
+#include "gallbladder_hold.h"
 #include "patient_tissue.h"
 #include "sheet_watch.h"
 #include "stone_work.h"
@@ -33,8 +33,8 @@ struct HandsNow {
   std::array<Vec3, kHandCount> forces;  ///< on the tools in the tick before, world frame [N]
   Vec3 gravity;                         ///< [m/s^2]
   Camera camera;                        ///< as the trainee saw when the hands moved
-  double time = 0;     ///< [s]
-  double seconds = 0;  ///< of the tick
+  double time = 0;                      ///< [s]
+  double seconds = 0;                   ///< of the tick
 };
 
 /// The tissue that is operated on, as it is.
@@ -112,7 +112,7 @@ class Operation {
   void MoveLoose(const HandsNow& hands, const TissueNow& tissue) noexcept;
 
   /// What was done in this tick, for the judge.
-  const OperationActs& Acts() const { return acts_; }
+  const EmittedActs& Acts() const { return acts_; }
   /// What happened in this tick.
   std::span<const OperationEvent> Events() const { return std::span(events_).first(event_count_); }
 
@@ -209,7 +209,7 @@ class Operation {
   std::optional<VesselWork> vessels_;
   Electrosurgery heat_;
   GallbladderHold hold_;
-  OperationActs acts_;
+  EmittedActs acts_;
   std::optional<Assistant> assistant_;
   std::uint32_t assistant_node_ = 0;  // of what it takes
   surgery::TopologyChange change_;

@@ -71,8 +71,8 @@ void Operation::CutWith(const surgery::BladeMove& move, int hand, const HandsNow
   const std::size_t tubes = vessels_->Cut(move, *tissue.definition, tissue.state->position, change_, places);
   for (const TubePlace& place : std::span(places).first(tubes)) {
     const auto surface = static_cast<std::int32_t>(organs_.size() + place.tube);
-    OperationAct act;
-    act.kind = OperationAct::Kind::kCut;
+    EmittedAct act;
+    act.kind = EmittedAct::Kind::kCut;
     act.position = hands.X_proxy[static_cast<std::size_t>(hand)].translation;
     act.hand = hand;
     act.vessel = vessels_->JudgePlace(place);
@@ -142,8 +142,8 @@ void Operation::Spread(int hand, const HandsNow& hands, const TissueNow& tissue,
         if (kind == StrandInfo::Kind::kEnd) continue;  // a duct's end does not give way to a jaw
         operated.state.strand_is_intact[torn[i]] = 0;
         acts_.Add({InstrumentKind::kGrasper, Verb::kDissect,
-                     TargetOf(tissue, static_cast<std::uint32_t>(tissue.definition->rest.size()) + torn[i])},
-                    hand);
+                   TargetOf(tissue, static_cast<std::uint32_t>(tissue.definition->rest.size()) + torn[i])},
+                  hand);
       }
     }
   }
@@ -177,8 +177,7 @@ void Operation::UseElectrode(int hand, const HandsNow& hands, const TissueNow& t
   double& idle = hands_[h].idle_seconds;
   if (count == 0) {
     idle += hands.seconds;
-    if (idle > kIdleSeconds)
-      acts_.Report(OperationError::kEnergyWithoutContact, X.translation, hand);
+    if (idle > kIdleSeconds) acts_.Report(OperationError::kEnergyWithoutContact, X.translation, hand);
     return;
   }
   idle = 0;
@@ -191,8 +190,7 @@ void Operation::UseElectrode(int hand, const HandsNow& hands, const TissueNow& t
       tool.kind == instrument::ToolKind::kHook ? InstrumentKind::kHook : InstrumentKind::kBipolar;
   for (std::size_t i = 0; i < count; ++i) {
     const bool is_strand = targets[i].part >= tissue.definition->rest.size();
-    acts_.Add({kind, is_strand ? Verb::kDissect : Verb::kCoagulate, TargetOf(tissue, targets[i].part)},
-                hand);
+    acts_.Add({kind, is_strand ? Verb::kDissect : Verb::kCoagulate, TargetOf(tissue, targets[i].part)}, hand);
   }
   const bool is_near = std::any_of(main_ducts_.begin(), main_ducts_.end(), [&](std::uint32_t node) {
     return math::Distance(tissue.state->position[node], X.translation) < kNearDuct;
@@ -218,8 +216,8 @@ void Operation::Heat(const HandsNow& hands, const TissueNow& tissue, OperatedTis
     } else if (IsOf(node, liver_)) {
       acts_.Report(OperationError::kLiverBurnt, p, hand);
     } else if (vessels_->MakeHole(node, kBurntHole, place)) {
-      OperationAct act;
-      act.kind = OperationAct::Kind::kHole;
+      EmittedAct act;
+      act.kind = EmittedAct::Kind::kHole;
       act.position = p;
       act.hand = hand;
       act.vessel = vessels_->JudgePlace(place);
@@ -239,8 +237,8 @@ void Operation::OpenTubeEnds(const TissueNow& tissue) noexcept {
     end.is_off = true;
     TubePlace place;
     if (!vessels_->MakeHole(end.node, end.section, place)) continue;
-    OperationAct act;
-    act.kind = OperationAct::Kind::kHole;
+    EmittedAct act;
+    act.kind = EmittedAct::Kind::kHole;
     act.position = tissue.state->position[end.node];
     act.vessel = vessels_->JudgePlace(place);
     // of what is divided already only the gallbladder's side is left
@@ -267,8 +265,8 @@ void Operation::UseClips(int hand, const HandsNow& hands, const TissueNow& tissu
   const ClipResult clip = vessels_->Clip(tool, hands.X_proxy[h], state.caught, tissue.state->position);
   state.caught.reset();
   state.opened = 0;
-  OperationAct act;
-  act.kind = OperationAct::Kind::kClip;
+  EmittedAct act;
+  act.kind = EmittedAct::Kind::kClip;
   act.position = hands.X_proxy[h].translation;
   act.hand = hand;
   act.clip = clip;

@@ -25,13 +25,13 @@ void OperationJudge::Report(OperationError error, const Vec3& p, int hand, doubl
   errors_.Add({error, time, p, hand});
 }
 
-void OperationJudge::JudgeAct(const OperationAct& act, double time) noexcept {
+void OperationJudge::JudgeAct(const EmittedAct& act, double time) noexcept {
   const auto report = [&](OperationError error) { Report(error, act.position, act.hand, time); };
   switch (act.kind) {
-    case OperationAct::Kind::kError:
+    case EmittedAct::Kind::kError:
       report(act.error);
       break;
-    case OperationAct::Kind::kClip:
+    case EmittedAct::Kind::kClip:
       if (act.clip.kind == ClipResult::Kind::kLost) {
         report(OperationError::kClipDropped);
         break;
@@ -41,7 +41,7 @@ void OperationJudge::JudgeAct(const OperationAct& act, double time) noexcept {
       if (act.clip.is_crossed) report(OperationError::kClipCrossed);
       if (act.clip.kind == ClipResult::Kind::kPartial) report(OperationError::kClipPartial);
       break;
-    case OperationAct::Kind::kCut:
+    case EmittedAct::Kind::kCut:
       if (!act.vessel.may_be_divided) {
         report(OperationError::kWrongStructureCut);
         break;
@@ -52,7 +52,7 @@ void OperationJudge::JudgeAct(const OperationAct& act, double time) noexcept {
       if (act.vessel.staying_clips > 0 && act.vessel.staying_clips < kClipsThatStay)
         report(OperationError::kTooFewClips);
       break;
-    case OperationAct::Kind::kHole:
+    case EmittedAct::Kind::kHole:
       if (!act.vessel.may_be_divided) {
         report(OperationError::kWrongStructureBurnt);
       } else if (act.vessel.staying_clips == 0) {
@@ -63,7 +63,7 @@ void OperationJudge::JudgeAct(const OperationAct& act, double time) noexcept {
 }
 
 void OperationJudge::JudgeHand(int hand, const Operation& operation, const HandsNow& hands,
-                               const Camera& camera, OperationActs& acts) noexcept {
+                               const Camera& camera, EmittedActs& acts) noexcept {
   const auto h = static_cast<std::size_t>(hand);
   const Vec3& tip = hands.X_proxy[h].translation;
   const surgery::Grasp& grasp = (*hands.grasps)[h];
@@ -93,8 +93,8 @@ void OperationJudge::JudgeHand(int hand, const Operation& operation, const Hands
 void OperationJudge::Update(const Operation& operation, const HandsNow& hands, const TissueNow& tissue,
                             const Camera& camera) noexcept {
   told_errors_ = errors_.Entries().size();
-  OperationActs acts = operation.Acts();
-  for (const OperationAct& act : acts.Acts()) JudgeAct(act, hands.time);
+  EmittedActs acts = operation.Acts();
+  for (const EmittedAct& act : acts.Acts()) JudgeAct(act, hands.time);
   for (int hand = 0; hand < kHandCount; ++hand) JudgeHand(hand, operation, hands, camera, acts);
 
   watch_.Update(*tissue.state, operation.Vessels(), tissue.organs, camera);

@@ -40,9 +40,9 @@ class OperationJudge {
     double blind_seconds = 0;
   };
   void Report(training::OperationError error, const Vec3& p, int hand, double time) noexcept;
-  void JudgeAct(const OperationAct& act, double time) noexcept;
+  void JudgeAct(const EmittedAct& act, double time) noexcept;
   void JudgeHand(int hand, const Operation& operation, const HandsNow& hands, const Camera& camera,
-                 OperationActs& acts) noexcept;
+                 EmittedActs& acts) noexcept;
 
   bool has_view_ = true;  // there is a critical view to be had before anything is clipped; constant
   DissectionWatch watch_;

@@ -18,7 +18,9 @@ constexpr double kPushLength = 0.060;  // of a shaft that pushes stones aside [m
 
 void Operation::Flow(const HandsNow& hands, const TissueNow& tissue, OperatedTissue& operated) noexcept {
   const bool has_gallbladder = gallbladder_ >= 0;
-  const auto leaked = [&] { return operated.conserved.organs[static_cast<std::size_t>(gallbladder_)].leaked; };
+  const auto leaked = [&] {
+    return operated.conserved.organs[static_cast<std::size_t>(gallbladder_)].leaked;
+  };
   if (has_gallbladder) {
     const double now = leaked() - leaked_seen_;
     if (now > 0.0) fluids_.Leak(surgery::Fluid::kBile, now);

@@ -281,7 +281,9 @@ void StoneWork::VisitState(core::StateArchive& archive) {
   archive.Field("held", held_);
   archive.Field("has_taken", has_taken_);
   archive.Field("carried", carried_);
-  const auto is_stone = [&](std::int32_t i) { return i >= -1 && i < static_cast<std::int32_t>(stones_.size()); };
+  const auto is_stone = [&](std::int32_t i) {
+    return i >= -1 && i < static_cast<std::int32_t>(stones_.size());
+  };
   if (archive.IsRestoring() && !std::all_of(held_.begin(), held_.end(), is_stone)) {
     held_ = {-1, -1};
     archive.Fail("are held that there are not");

@@ -25,6 +25,7 @@ using math::Vec2;
 void FillContour(std::span<const Vec2> contour, images::Mask& mask);
 
 /// Union of the contours without the holes.
-images::Mask FillArea(const std::vector<std::vector<Vec2>>& contours, const std::vector<std::vector<Vec2>>& holes);
+images::Mask FillArea(const std::vector<std::vector<Vec2>>& contours,
+                      const std::vector<std::vector<Vec2>>& holes);
 
 }  // namespace trocar::contours

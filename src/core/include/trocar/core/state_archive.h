@@ -50,8 +50,8 @@ class StateArchive {
   template <typename T>
   void Field(std::string_view name, T& value) {
     Enter(name);
-    // what cannot be copied leaves out the fields of which it consists
-    if constexpr (std::is_copy_constructible_v<T>) {
+    // a class leaves out the fields of which it consists
+    if constexpr (std::is_copy_constructible_v<T> && !requires { value.VisitState(*this); }) {
       if (IsOmitted()) {
         T other = value;
         Visit(other);
