@@ -311,6 +311,28 @@ TEST(DeviceGuard, ALostDeviceIsForgotten) {
   EXPECT_EQ(g.guard.GetCounts().jumps, 0u);
 }
 
+TEST(DeviceGuard, ADeviceThatComesBackBeginsAnew) {
+  Guarded g;
+  g.sample.status = device::ForceDeviceStatus::kLost;
+  for (int i = 0; i < 100; ++i) g.Wait();
+  // its last report is taken although it is not new, and its silence counts from here
+  g.sample.status = device::ForceDeviceStatus::kOk;
+  EXPECT_EQ(g.Wait().fault, Fault::kNone);
+  EXPECT_TRUE(g.device.has_pose);
+  EXPECT_EQ(g.device.scale, 1.0);
+  for (int i = 0; i < 10; ++i) EXPECT_EQ(g.Wait().fault, Fault::kNone);
+  for (int i = 0; i < 10; ++i) g.Wait();
+  EXPECT_EQ(g.device.fault, Fault::kSilent);
+  // and so do its bad reports
+  Guarded bad;
+  bad.sample.position.x = std::nan("");
+  bad.Report(), bad.Report();
+  bad.sample.status = device::ForceDeviceStatus::kLost;
+  bad.Wait();
+  bad.sample.status = device::ForceDeviceStatus::kOk;
+  EXPECT_NE(bad.Report().fault, Fault::kBadSamples);
+}
+
 TEST(LoopGuard, CountsSoftensAndStops) {
   LoopGuard guard;
   LoopTiming timing = guard.Step(0.0004);
