@@ -71,6 +71,26 @@ TEST(ForceDriver, IsNotOpenedWithLimitsThatNoHandHolds) {
   EXPECT_EQ(configure([](ForceLimits&) {}), ErrorCode::kNone);
   EXPECT_EQ(configure([](ForceLimits& limits) { limits.max_force = kLargestForceLimit; }), ErrorCode::kNone);
   EXPECT_EQ(configure([](ForceLimits& limits) { limits.max_force = kSmallestForceLimit; }), ErrorCode::kNone);
+  EXPECT_EQ(configure([](ForceLimits& limits) {
+              limits = {};
+              limits.max_force = 3.3;
+            }),
+            ErrorCode::kNone)
+      << "what is not known is 0";
+  EXPECT_EQ(configure([](ForceLimits& limits) {
+              limits.max_force = limits.max_continuous_force = 50;
+              limits.max_stiffness = 100'000, limits.damping = 100, limits.friction = 10, limits.mass = 10;
+              limits.position_step = 0.01;
+              limits.workspace_min = {-3, -3, -3}, limits.workspace_max = {3, 3, 3};
+            }),
+            ErrorCode::kNone)
+      << "the largest of everything";
+  for (int axis = 0; axis < 3; ++axis) {
+    EXPECT_EQ(configure([&](ForceLimits& limits) { limits.workspace_min[axis] = -3.01; }),
+              ErrorCode::kDeviceSettings);
+    EXPECT_EQ(configure([&](ForceLimits& limits) { limits.workspace_max[axis] = 3.01; }),
+              ErrorCode::kDeviceSettings);
+  }
   double ForceLimits::*const numbers[] = {&ForceLimits::max_force,     &ForceLimits::max_continuous_force,
                                           &ForceLimits::max_stiffness, &ForceLimits::damping,
                                           &ForceLimits::friction,      &ForceLimits::mass,

@@ -190,6 +190,16 @@ STAND_IN void hdGetDoublev(unsigned int what, double* values) {
     if (kind == 3) values[10] = -1;
     if (kind == 4) values[0] = values[5] = values[10] = 2;
     if (kind == 5) values[4] = 0.6, values[5] = 0.8;
+    if (kind == 6) {
+      const double n[3] = {2.0 / 3, -1.0 / 3, 2.0 / 3}, c = std::cos(0.6), s = std::sin(0.6);
+      const double cross[9] = {0, n[2], -n[1], -n[2], 0, n[0], n[1], -n[0], 0};
+      for (int column = 0; column < 3; ++column) {
+        for (int row = 0; row < 3; ++row)
+          values[4 * column + row] =
+              (row == column ? c : 0) + (1 - c) * n[row] * n[column] + s * cross[3 * column + row];
+      }
+    }
+    if (kind >= 7) values[5 * (kind - 7)] = 1.1;
   }
   if (what == 0x2551) {
     const double box[] = {-80, -60, -35, 80, 60, 35};
@@ -253,6 +263,7 @@ STAND_IN void hdStartScheduler() {
   });
 }
 STAND_IN void hdStopScheduler() {
+  if (!is_running) ++misuses;
   is_running = false;
   if (scheduler.joinable()) scheduler.join();
 }
