@@ -55,6 +55,68 @@ TEST(Driver, WalksThroughItsLifeInOrder) {
   EXPECT_EQ(driver.calls, (std::vector<std::string>{"configure", "activate", "deactivate", "cleanup"}));
 }
 
+/// Counts its calls, and is lost when it is told so.
+class MockForceDriver : public ForceDriver {
+ public:
+  MockForceDriver() : ForceDriver("mock", 2) {}
+  ForceLimits GetLimits(int) const noexcept override { return MakeTouchLimits(); }
+  ReadStatus next = ReadStatus::kFresh;
+  std::vector<std::string> calls;
+
+ private:
+  core::Status DoConfigure() override { return calls.push_back("configure"), core::Status{}; }
+  core::Status DoActivate() override { return calls.push_back("activate"), core::Status{}; }
+  void DoDeactivate() noexcept override { calls.push_back("deactivate"); }
+  void DoCleanup() noexcept override { calls.push_back("cleanup"); }
+  ReadStatus DoRead(std::span<HandSample>) noexcept override { return next; }
+  ReadStatus DoReadForceSamples(std::span<ForceSample> samples) noexcept override {
+    for (ForceSample& sample : samples) sample.status = ForceDeviceStatus::kOk;
+    return next;
+  }
+  void DoSendForce(int channel, const GatedForce& force) noexcept override {
+    EXPECT_EQ(force.Get(), math::Vec3{});
+    calls.push_back("send " + std::to_string(channel));
+  }
+};
+
+// what reads a thousand times a second closes nothing: a library may take its time
+TEST(ForceDriver, ALostDeviceGetsZeroAndIsClosedLater) {
+  using Calls = std::vector<std::string>;
+  for (const int way : {0, 1, 2}) {
+    MockForceDriver driver;
+    std::array<ForceSample, 2> samples;
+    EXPECT_EQ(driver.ReadForceSamples(samples), ReadStatus::kNotActive);
+    EXPECT_EQ(samples[1].status, ForceDeviceStatus::kLost);
+    driver.SendForce(0, {});
+    EXPECT_EQ(driver.calls, Calls{}) << "nothing before it is active";
+    ASSERT_TRUE(driver.Configure().ok() && driver.Activate().ok());
+    EXPECT_EQ(driver.ReadForceSamples(samples), ReadStatus::kFresh);
+    EXPECT_EQ(samples[0].status, ForceDeviceStatus::kOk);
+    EXPECT_FALSE(driver.NeedsRelease());
+    driver.Release();
+    driver.SendForce(1, {});
+    EXPECT_EQ(driver.calls, (Calls{"configure", "activate", "send 1"}));
+    driver.next = ReadStatus::kLost;
+    driver.calls.clear();
+    EXPECT_EQ(driver.ReadForceSamples(samples), ReadStatus::kLost);
+    EXPECT_EQ(samples[0].status, ForceDeviceStatus::kLost);
+    EXPECT_EQ(samples[1].status, ForceDeviceStatus::kLost);
+    EXPECT_EQ(driver.GetState(), DriverState::kUnconfigured);
+    EXPECT_TRUE(driver.NeedsRelease());
+    EXPECT_EQ(driver.ReadForceSamples(samples), ReadStatus::kNotActive);
+    EXPECT_EQ(driver.calls, (Calls{"send 0", "send 1"})) << "zero to each, and no more";
+    driver.calls.clear();
+    driver.next = ReadStatus::kFresh;
+    if (way == 0) driver.Release(), driver.Release();
+    if (way == 1) ASSERT_TRUE(driver.Configure().ok());
+    if (way == 2) driver.Finalize();
+    EXPECT_FALSE(driver.NeedsRelease());
+    Calls expected{"deactivate", "cleanup"};
+    if (way == 1) expected.push_back("configure");
+    EXPECT_EQ(driver.calls, expected);
+  }
+}
+
 // every family, in every build: the base class asks
 TEST(ForceDriver, IsNotOpenedWithLimitsThatNoHandHolds) {
   const double nan = std::nan("");

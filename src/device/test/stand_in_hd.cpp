@@ -86,7 +86,7 @@ void Suffer() {
 }
 std::array<std::atomic<bool>, 2> is_pushing;
 std::atomic<unsigned int> current{0};
-std::atomic<bool> is_running{false};
+std::atomic<bool> is_running{false}, is_scheduled{false};
 std::thread scheduler;
 unsigned int (*callback)(void*) = nullptr;
 void* callback_data = nullptr;
@@ -243,6 +243,7 @@ STAND_IN const char* hdGetErrorString(unsigned int) {
 }
 STAND_IN unsigned long hdScheduleAsynchronous(unsigned int (*wanted)(void*), void* data, unsigned short) {
   callback = wanted;
+  is_scheduled = state.is_stepped != 1;
   callback_data = data;
   return 1;
 }
@@ -256,14 +257,17 @@ STAND_IN void hdStartScheduler() {
     while (is_running) {
       if (HasFault(StandInFault::kCrash)) std::raise(SIGSEGV);
       const bool is_silent = HasFault(StandInFault::kSilentScheduler);
-      if (!is_silent && callback != nullptr && callback(callback_data) == 0) break;
+      if (!is_silent && callback != nullptr && callback(callback_data) == 0) {
+        is_scheduled = false;
+        break;
+      }
       ++callbacks;
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
   });
 }
 STAND_IN void hdStopScheduler() {
-  if (!is_running) ++misuses;
+  if (!is_running || is_scheduled) ++misuses;  // the callback has said that it is done
   is_running = false;
   if (scheduler.joinable()) scheduler.join();
 }

@@ -242,6 +242,13 @@ TEST(ForceGate, ClampsAndLimitsTheRise) {
   EXPECT_NEAR(gated.Step({0, 1, 0}).force.Get().y, rise, 1e-9) << "through zero";
 }
 
+TEST(ForceGate, UnarmedItLimitsNothing) {
+  Gated gated;
+  gated.input.is_warm = true;
+  EXPECT_EQ(gated.Run(3, {5, 0, 0}).limits, 0);
+  EXPECT_EQ(gated.output.heat, 0.0);
+}
+
 TEST(ForceGate, RefusesWhatNoTissueGives) {
   const double nan = std::nan("");
   const auto reason = [](const Vec3& force, const auto& change) {
