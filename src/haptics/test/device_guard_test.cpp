@@ -224,6 +224,14 @@ TEST(DeviceGuard, TurningIsLimitedToThirtyRadiansASecond) {
   }
 }
 
+TEST(DeviceGuard, AStylusThatStandsAskewDoesNotTurn) {
+  Guarded g(0);
+  g.sample.orientation = {0.5, 0.5, -0.5, 0.5};
+  for (int i = 0; i < 20; ++i) g.Report();
+  EXPECT_EQ(g.guard.GetCounts().jumps, 0u);
+  EXPECT_EQ(g.guard.GetCounts().good, 20u);
+}
+
 TEST(DeviceGuard, TheThirdJumpInARowIsWhereTheDeviceIs) {
   Guarded g;
   EXPECT_EQ(g.ReportAt({0, 0, 0.1}).fault, Fault::kNone);

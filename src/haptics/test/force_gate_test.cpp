@@ -225,6 +225,21 @@ TEST(ForceGate, AfterAFaultOfUpToASecondTheRampIsHalfASecond) {
   EXPECT_EQ(halfway.output.state, ArmState::kRamping);
 }
 
+TEST(ForceGate, AShortRampThatBreaksOffIsFollowedByALongOne) {
+  Gated gated;
+  gated.Arm();
+  gated.Step();
+  for (int i = 0; i < 2; ++i) {
+    gated.gate.Stop();
+    gated.Step();
+    gated.gate.RequestArm();
+    gated.Run(104);
+    ASSERT_EQ(gated.output.state, ArmState::kRamping);
+  }
+  gated.Run(600);
+  EXPECT_EQ(gated.output.state, ArmState::kRamping);
+}
+
 TEST(ForceGate, ClampsAndLimitsTheRise) {
   Gated gated;
   gated.Arm();
