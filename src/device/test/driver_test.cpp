@@ -55,6 +55,68 @@ TEST(Driver, WalksThroughItsLifeInOrder) {
   EXPECT_EQ(driver.calls, (std::vector<std::string>{"configure", "activate", "deactivate", "cleanup"}));
 }
 
+/// Counts its calls, and is lost when it is told so.
+class MockForceDriver : public ForceDriver {
+ public:
+  MockForceDriver() : ForceDriver("mock", 2) {}
+  ForceLimits GetLimits(int) const noexcept override { return MakeTouchLimits(); }
+  ReadStatus next = ReadStatus::kFresh;
+  std::vector<std::string> calls;
+
+ private:
+  core::Status DoConfigure() override { return calls.push_back("configure"), core::Status{}; }
+  core::Status DoActivate() override { return calls.push_back("activate"), core::Status{}; }
+  void DoDeactivate() noexcept override { calls.push_back("deactivate"); }
+  void DoCleanup() noexcept override { calls.push_back("cleanup"); }
+  ReadStatus DoRead(std::span<HandSample>) noexcept override { return next; }
+  ReadStatus DoReadForceSamples(std::span<ForceSample> samples) noexcept override {
+    for (ForceSample& sample : samples) sample.status = ForceDeviceStatus::kOk;
+    return next;
+  }
+  void DoSendForce(int channel, const GatedForce& force) noexcept override {
+    EXPECT_EQ(force.Get(), math::Vec3{});
+    calls.push_back("send " + std::to_string(channel));
+  }
+};
+
+// what reads a thousand times a second closes nothing: a library may take its time
+TEST(ForceDriver, ALostDeviceGetsZeroAndIsClosedLater) {
+  using Calls = std::vector<std::string>;
+  for (const int way : {0, 1, 2}) {
+    MockForceDriver driver;
+    std::array<ForceSample, 2> samples;
+    EXPECT_EQ(driver.ReadForceSamples(samples), ReadStatus::kNotActive);
+    EXPECT_EQ(samples[1].status, ForceDeviceStatus::kLost);
+    driver.SendForce(0, {});
+    EXPECT_EQ(driver.calls, Calls{}) << "nothing before it is active";
+    ASSERT_TRUE(driver.Configure().ok() && driver.Activate().ok());
+    EXPECT_EQ(driver.ReadForceSamples(samples), ReadStatus::kFresh);
+    EXPECT_EQ(samples[0].status, ForceDeviceStatus::kOk);
+    EXPECT_FALSE(driver.NeedsRelease());
+    driver.Release();
+    driver.SendForce(1, {});
+    EXPECT_EQ(driver.calls, (Calls{"configure", "activate", "send 1"}));
+    driver.next = ReadStatus::kLost;
+    driver.calls.clear();
+    EXPECT_EQ(driver.ReadForceSamples(samples), ReadStatus::kLost);
+    EXPECT_EQ(samples[0].status, ForceDeviceStatus::kLost);
+    EXPECT_EQ(samples[1].status, ForceDeviceStatus::kLost);
+    EXPECT_EQ(driver.GetState(), DriverState::kUnconfigured);
+    EXPECT_TRUE(driver.NeedsRelease());
+    EXPECT_EQ(driver.ReadForceSamples(samples), ReadStatus::kNotActive);
+    EXPECT_EQ(driver.calls, (Calls{"send 0", "send 1"})) << "zero to each, and no more";
+    driver.calls.clear();
+    driver.next = ReadStatus::kFresh;
+    if (way == 0) driver.Release(), driver.Release();
+    if (way == 1) ASSERT_TRUE(driver.Configure().ok());
+    if (way == 2) driver.Finalize();
+    EXPECT_FALSE(driver.NeedsRelease());
+    Calls expected{"deactivate", "cleanup"};
+    if (way == 1) expected.push_back("configure");
+    EXPECT_EQ(driver.calls, expected);
+  }
+}
+
 // every family, in every build: the base class asks
 TEST(ForceDriver, IsNotOpenedWithLimitsThatNoHandHolds) {
   const double nan = std::nan("");
@@ -71,6 +133,26 @@ TEST(ForceDriver, IsNotOpenedWithLimitsThatNoHandHolds) {
   EXPECT_EQ(configure([](ForceLimits&) {}), ErrorCode::kNone);
   EXPECT_EQ(configure([](ForceLimits& limits) { limits.max_force = kLargestForceLimit; }), ErrorCode::kNone);
   EXPECT_EQ(configure([](ForceLimits& limits) { limits.max_force = kSmallestForceLimit; }), ErrorCode::kNone);
+  EXPECT_EQ(configure([](ForceLimits& limits) {
+              limits = {};
+              limits.max_force = 3.3;
+            }),
+            ErrorCode::kNone)
+      << "what is not known is 0";
+  EXPECT_EQ(configure([](ForceLimits& limits) {
+              limits.max_force = limits.max_continuous_force = 50;
+              limits.max_stiffness = 100'000, limits.damping = 100, limits.friction = 10, limits.mass = 10;
+              limits.position_step = 0.01;
+              limits.workspace_min = {-3, -3, -3}, limits.workspace_max = {3, 3, 3};
+            }),
+            ErrorCode::kNone)
+      << "the largest of everything";
+  for (int axis = 0; axis < 3; ++axis) {
+    EXPECT_EQ(configure([&](ForceLimits& limits) { limits.workspace_min[axis] = -3.01; }),
+              ErrorCode::kDeviceSettings);
+    EXPECT_EQ(configure([&](ForceLimits& limits) { limits.workspace_max[axis] = 3.01; }),
+              ErrorCode::kDeviceSettings);
+  }
   double ForceLimits::*const numbers[] = {&ForceLimits::max_force,     &ForceLimits::max_continuous_force,
                                           &ForceLimits::max_stiffness, &ForceLimits::damping,
                                           &ForceLimits::friction,      &ForceLimits::mass,

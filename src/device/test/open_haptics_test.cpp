@@ -63,6 +63,8 @@ TEST_F(OpenHapticsTest, ReadsTwoDevicesInSiUnits) {
   ASSERT_TRUE(WaitFor([&] { return driver.ReadForceSamples(samples) == ReadStatus::kFresh; }));
   EXPECT_NEAR(samples[0].position.x, -0.04, 1e-12);
   EXPECT_NEAR(samples[1].position.x, 0.04, 1e-12);
+  EXPECT_NEAR(samples[0].position.y, -0.01, 1e-12);
+  EXPECT_NEAR(samples[0].position.z, 0.005, 1e-12);
   EXPECT_NEAR(samples[0].velocity.x, 0.1, 1e-12);
   EXPECT_EQ(samples[0].buttons, 1u);
   EXPECT_EQ(samples[1].temperature, 0.4);
@@ -225,7 +227,16 @@ TEST_F(OpenHapticsTest, ABadTransformIsNoGoodPose) {
     const math::Quaternion& q = samples[0].orientation;
     return q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z;
   };
-  for (const int kind : {1, 2, 3, 4, 5}) {
+  // a rotation that is one: 0.6 rad about (2, -1, 2) / 3
+  set(6);
+  const double half = 0.3, s = std::sin(half) / 3.0;
+  EXPECT_TRUE(WaitFor([&] {
+    driver.ReadForceSamples(samples);
+    const math::Quaternion& q = samples[0].orientation;
+    return std::fabs(q.w - std::cos(half)) < 1e-9 && std::fabs(q.x - 2 * s) < 1e-9 &&
+           std::fabs(q.y + s) < 1e-9 && std::fabs(q.z - 2 * s) < 1e-9;
+  }));
+  for (const int kind : {1, 2, 3, 4, 5, 7, 8, 9}) {
     set(0);
     ASSERT_TRUE(
         WaitFor([&] { return driver.ReadForceSamples(samples) == ReadStatus::kFresh && turn() == 1.0; }));

@@ -86,7 +86,7 @@ void Suffer() {
 }
 std::array<std::atomic<bool>, 2> is_pushing;
 std::atomic<unsigned int> current{0};
-std::atomic<bool> is_running{false};
+std::atomic<bool> is_running{false}, is_scheduled{false};
 std::thread scheduler;
 unsigned int (*callback)(void*) = nullptr;
 void* callback_data = nullptr;
@@ -190,6 +190,16 @@ STAND_IN void hdGetDoublev(unsigned int what, double* values) {
     if (kind == 3) values[10] = -1;
     if (kind == 4) values[0] = values[5] = values[10] = 2;
     if (kind == 5) values[4] = 0.6, values[5] = 0.8;
+    if (kind == 6) {
+      const double n[3] = {2.0 / 3, -1.0 / 3, 2.0 / 3}, c = std::cos(0.6), s = std::sin(0.6);
+      const double cross[9] = {0, n[2], -n[1], -n[2], 0, n[0], n[1], -n[0], 0};
+      for (int column = 0; column < 3; ++column) {
+        for (int row = 0; row < 3; ++row)
+          values[4 * column + row] =
+              (row == column ? c : 0) + (1 - c) * n[row] * n[column] + s * cross[3 * column + row];
+      }
+    }
+    if (kind >= 7) values[5 * (kind - 7)] = 1.1;
   }
   if (what == 0x2551) {
     const double box[] = {-80, -60, -35, 80, 60, 35};
@@ -233,6 +243,7 @@ STAND_IN const char* hdGetErrorString(unsigned int) {
 }
 STAND_IN unsigned long hdScheduleAsynchronous(unsigned int (*wanted)(void*), void* data, unsigned short) {
   callback = wanted;
+  is_scheduled = state.is_stepped != 1;
   callback_data = data;
   return 1;
 }
@@ -246,13 +257,17 @@ STAND_IN void hdStartScheduler() {
     while (is_running) {
       if (HasFault(StandInFault::kCrash)) std::raise(SIGSEGV);
       const bool is_silent = HasFault(StandInFault::kSilentScheduler);
-      if (!is_silent && callback != nullptr && callback(callback_data) == 0) break;
+      if (!is_silent && callback != nullptr && callback(callback_data) == 0) {
+        is_scheduled = false;
+        break;
+      }
       ++callbacks;
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
   });
 }
 STAND_IN void hdStopScheduler() {
+  if (!is_running || is_scheduled) ++misuses;  // the callback has said that it is done
   is_running = false;
   if (scheduler.joinable()) scheduler.join();
 }

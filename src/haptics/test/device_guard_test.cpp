@@ -224,6 +224,14 @@ TEST(DeviceGuard, TurningIsLimitedToThirtyRadiansASecond) {
   }
 }
 
+TEST(DeviceGuard, AStylusThatStandsAskewDoesNotTurn) {
+  Guarded g(0);
+  g.sample.orientation = {0.5, 0.5, -0.5, 0.5};
+  for (int i = 0; i < 20; ++i) g.Report();
+  EXPECT_EQ(g.guard.GetCounts().jumps, 0u);
+  EXPECT_EQ(g.guard.GetCounts().good, 20u);
+}
+
 TEST(DeviceGuard, TheThirdJumpInARowIsWhereTheDeviceIs) {
   Guarded g;
   EXPECT_EQ(g.ReportAt({0, 0, 0.1}).fault, Fault::kNone);
@@ -309,6 +317,29 @@ TEST(DeviceGuard, ALostDeviceIsForgotten) {
   EXPECT_EQ(g.device.position.x, 0.3);
   EXPECT_EQ(g.device.velocity, Vec3{});
   EXPECT_EQ(g.guard.GetCounts().jumps, 0u);
+}
+
+TEST(DeviceGuard, ADeviceThatComesBackBeginsAnew) {
+  Guarded g;
+  g.sample.status = device::ForceDeviceStatus::kLost;
+  for (int i = 0; i < 100; ++i) g.Wait();
+  // its last report is taken although it is not new, and its silence counts from here
+  g.sample.status = device::ForceDeviceStatus::kOk;
+  EXPECT_EQ(g.Wait().fault, Fault::kNone);
+  EXPECT_TRUE(g.device.has_pose);
+  EXPECT_EQ(g.device.scale, 1.0);
+  for (int i = 0; i < 10; ++i) EXPECT_EQ(g.Wait().fault, Fault::kNone);
+  for (int i = 0; i < 10; ++i) g.Wait();
+  EXPECT_EQ(g.device.fault, Fault::kSilent);
+  // and so do its bad reports
+  Guarded bad;
+  bad.sample.position.x = std::nan("");
+  bad.Report(), bad.Report();
+  bad.sample.status = device::ForceDeviceStatus::kLost;
+  bad.Wait();
+  bad.sample.status = device::ForceDeviceStatus::kOk;
+  for (int i = 0; i < 2; ++i) EXPECT_NE(bad.Report().fault, Fault::kBadSamples);
+  EXPECT_EQ(bad.Report().fault, Fault::kBadSamples) << "the third since it came back";
 }
 
 TEST(LoopGuard, CountsSoftensAndStops) {

@@ -65,7 +65,7 @@ TEST(ForceCheck, LetsOutWhatAGateLetsOutAndNothingElse) {
     EXPECT_TRUE(strict.HasRefused());
     EXPECT_EQ(strict.Pass({0.2, 0, 0}), Vec3{}) << "latched";
   }
-  EXPECT_EQ(ForceCheck(inf).Pass({1, 0, 0}), Vec3{}) << "and nothing to one that no hand holds";
+  EXPECT_EQ(ForceCheck(inf).Pass({0.2, 0, 0}), Vec3{}) << "and nothing to one that no hand holds";
   EXPECT_EQ(ForceCheck().Pass({1e-6, 0, 0}), Vec3{}) << "a check that knows no device passes nothing";
 }
 

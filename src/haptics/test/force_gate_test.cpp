@@ -89,6 +89,13 @@ TEST(ForceGate, WithoutUsableSettingsItNeverArms) {
   EXPECT_TRUE(is_broken([](GateSettings& s) { s.max_continuous_force = 3.4; }));
   EXPECT_FALSE(is_broken([](GateSettings& s) { s.max_continuous_force = 3.3; }));
   EXPECT_TRUE(is_broken([](GateSettings& s) { s.max_speed = s.guard_speed; }));
+  EXPECT_FALSE(is_broken([](GateSettings& s) { s.guard_speed = 0.01; }));
+  EXPECT_FALSE(is_broken([](GateSettings& s) { s.max_speed = 99.0; }));
+  EXPECT_TRUE(is_broken([](GateSettings& s) { s.max_speed = 100.0; }));
+  EXPECT_FALSE(is_broken([](GateSettings& s) { s.max_force = 0.1, s.max_continuous_force = 0.01; }));
+  EXPECT_TRUE(is_broken([](GateSettings& s) { s.max_force = 0.099, s.max_continuous_force = 0.01; }));
+  EXPECT_FALSE(is_broken([](GateSettings& s) { s.max_rise = 0.01; }));
+  EXPECT_TRUE(is_broken([](GateSettings& s) { s.max_rise = 0.002 * kMax; }));
 }
 
 TEST(ForceGate, ArmsAfterFourGoodTicksInARow) {
@@ -120,6 +127,9 @@ TEST(ForceGate, ArmsAgainstLessThanThreeTenthsOfANewton) {
   Gated free;
   free.gate.RequestArm();
   EXPECT_EQ(free.Run(4, {0.299, 0, 0}).state, ArmState::kRamping);
+  Gated edge;
+  edge.gate.RequestArm();
+  EXPECT_EQ(edge.Run(10, {0.3, 0, 0}).state, ArmState::kUnarmed);
   Gated pressed;
   pressed.gate.RequestArm();
   pressed.Run(4, {0, 0.301, 0});
@@ -149,6 +159,28 @@ TEST(ForceGate, AWishLapsesAfterHalfASecond) {
   armed.Run(10);
   EXPECT_EQ(armed.output.state, ArmState::kUnarmed);
   EXPECT_EQ(armed.output.reason, Fault::kStopped);
+}
+
+// no wish outlives a fault, not even one of a single tick
+TEST(ForceGate, AFaultEndsTheWish) {
+  GateSettings settings = Settings();
+  settings.arming_ticks = 1;
+  Gated gated(settings);
+  gated.gate.RequestArm();
+  gated.input.fault = Fault::kJump;
+  gated.Step();
+  gated.input.fault = Fault::kNone;
+  gated.Run(5);
+  EXPECT_EQ(gated.output.state, ArmState::kUnarmed);
+  EXPECT_EQ(gated.output.reason, Fault::kJump) << "why it is not armed stays told";
+  // and one that comes in the middle of a ramp, too
+  gated.gate.RequestArm();
+  gated.Step();
+  ASSERT_EQ(gated.output.state, ArmState::kRamping);
+  gated.input.fault = Fault::kSilent;
+  gated.Step({0.2, 0, 0});
+  EXPECT_EQ(gated.output.state, ArmState::kUnarmed);
+  EXPECT_EQ(gated.Size(), 0.0);
 }
 
 TEST(ForceGate, TheRampIsEvenAndTwoSecondsLong) {
@@ -193,6 +225,21 @@ TEST(ForceGate, AfterAFaultOfUpToASecondTheRampIsHalfASecond) {
   EXPECT_EQ(halfway.output.state, ArmState::kRamping);
 }
 
+TEST(ForceGate, AShortRampThatBreaksOffIsFollowedByALongOne) {
+  Gated gated;
+  gated.Arm();
+  gated.Step();
+  for (int i = 0; i < 2; ++i) {
+    gated.gate.Stop();
+    gated.Step();
+    gated.gate.RequestArm();
+    gated.Run(104);
+    ASSERT_EQ(gated.output.state, ArmState::kRamping);
+  }
+  gated.Run(600);
+  EXPECT_EQ(gated.output.state, ArmState::kRamping);
+}
+
 TEST(ForceGate, ClampsAndLimitsTheRise) {
   Gated gated;
   gated.Arm();
@@ -208,6 +255,13 @@ TEST(ForceGate, ClampsAndLimitsTheRise) {
   EXPECT_NEAR(gated.Step({0, -1, 0}).force.Get().y, -1.0, 1e-12) << "a fall is free";
   EXPECT_EQ(gated.output.limits, 0);
   EXPECT_NEAR(gated.Step({0, 1, 0}).force.Get().y, rise, 1e-9) << "through zero";
+}
+
+TEST(ForceGate, UnarmedItLimitsNothing) {
+  Gated gated;
+  gated.input.is_warm = true;
+  EXPECT_EQ(gated.Run(3, {5, 0, 0}).limits, 0);
+  EXPECT_EQ(gated.output.heat, 0.0);
 }
 
 TEST(ForceGate, RefusesWhatNoTissueGives) {

@@ -25,9 +25,10 @@ constexpr int kPriorityAboveLowest = 10;
 /// Between two attempts to open a lost device again [ns].
 constexpr std::int64_t kTryAgain = 500'000'000;
 
-bool AskForRealTime() noexcept {
+/// \param below  the loop's own priority
+bool AskForRealTime(int below = 0) noexcept {
   sched_param parameters{};
-  parameters.sched_priority = sched_get_priority_min(SCHED_FIFO) + kPriorityAboveLowest;
+  parameters.sched_priority = sched_get_priority_min(SCHED_FIFO) + kPriorityAboveLowest - below;
   return pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameters) == 0;
 }
 
@@ -71,6 +72,8 @@ class Reopener {
     state_.notify_one();
   }
   void Run() {
+    // it starts processes and maps memory: held up by others meanwhile, it would hold the loop's page faults up
+    static_cast<void>(AskForRealTime(1));
     while (true) {
       state_.wait(State::kIdle, std::memory_order_acquire);
       State expected = State::kOpening;

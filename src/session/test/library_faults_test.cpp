@@ -171,6 +171,7 @@ class LibraryFaults : public testing::Test {
     }
     times.ReportAndJudge(std::string(what) + ", library");
     std::printf("%s: longest period of the loop %.2f ms\n", what, 1e3 * longest_period);
+    ZeroTimes::JudgePeriod(what, longest_period);
     EXPECT_EQ(motors_->bad_forces, 0) << "not finite, above the clamp or with too fast a rise";
   }
   /// The next one begins with a loop that is well.

@@ -179,6 +179,56 @@ TEST_F(OpenHapticsHost, AHostThatDiesIsALostDeviceThatComesBack) {
   EXPECT_TRUE(WaitFor(3, [&] { return driver.ReadForceSamples(samples) == ReadStatus::kFresh; }));
 }
 
+// each way in which the library or its process fails: zero at the motors, a lost device, and back at once. The times are judged
+// by a limit that a busy machine keeps; library_faults_tests measures them under a running loop
+TEST_F(OpenHapticsHost, EveryFailureOfTheLibraryIsZeroAndALostDevice) {
+  constexpr double kGenerous = 0.100;  // [s]
+  const auto kill_it = [&](int signal) { return [this, signal] { ::kill(motors_->process, signal); }; };
+  const auto fail = [&](StandInFault fault) { return [this, fault] { motors_->fault = fault; }; };
+  const std::function<void()> strikes[] = {kill_it(SIGKILL),
+                                           kill_it(SIGSTOP),
+                                           fail(StandInFault::kCrash),
+                                           fail(StandInFault::kSilentScheduler),
+                                           fail(StandInFault::kHangingCall),
+                                           fail(StandInFault::kSlowCalls)};
+  OpenHaptics driver(settings_);
+  for (const auto& strike : strikes) {
+    SCOPED_TRACE(&strike - strikes);
+    motors_->fault = StandInFault::kNone;
+    const core::Status configured = driver.Configure();
+    ASSERT_TRUE(configured.ok()) << configured.error().Text();
+    ASSERT_TRUE(driver.Activate().ok());
+    std::array<ForceSample, 2> samples;
+    ReadStatus last = ReadStatus::kUnchanged;
+    const auto tick = [&] {
+      for (int channel = 0; channel < 2; ++channel)
+        driver.SendForce(channel, haptics::ForceGate::Make({1.5, 0, 0}));
+      last = driver.ReadForceSamples(samples);
+      return last == ReadStatus::kLost;
+    };
+    // half a second without a complaint: nobody ends a library that is well
+    ASSERT_FALSE(WaitFor(0.5, tick));
+    ASSERT_TRUE(WaitFor(5, [&] { return tick(), IsPushing(); }));
+    const pid_t before = motors_->process;
+    motors_->fault_process = before;
+    const core::Stopwatch watch;
+    strike();
+    ASSERT_TRUE(WaitFor(5, tick)) << "told in time";
+    EXPECT_LE(watch.Seconds(), kGenerous);
+    ASSERT_TRUE(WaitFor(5, [&] { return !IsPushing(); }));
+    EXPECT_LE(watch.Seconds(), kGenerous);
+    EXPECT_TRUE(WaitFor(5, [&] { return motors_->process != before; })) << "another one has taken over";
+    EXPECT_LE(watch.Seconds(), kGenerous);
+    EXPECT_EQ(samples[0].status, device::ForceDeviceStatus::kLost);
+    EXPECT_EQ(driver.GetState(), device::DriverState::kUnconfigured);
+  }
+  motors_->fault = StandInFault::kNone;
+  ASSERT_TRUE(driver.Configure().ok());
+  EXPECT_EQ(motors_->devices, 2);
+  driver.Finalize();
+  EXPECT_EQ(motors_->devices, 0);
+}
+
 TEST_F(OpenHapticsHost, ErrorsOfTheLibraryComeThrough) {
   settings_.hd_file = "libHD_that_nobody_has.so";
   const core::Status missing = OpenHaptics(settings_).Configure();
