@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "trocar/bench/physics_checks.h"
+#include "trocar/core/progress_bar.h"
 #include "trocar/core/statistics.h"
 #include "trocar/core/text_table.h"
 #include "trocar/session/scene.h"
@@ -37,7 +38,7 @@ core::Result<PhysicsCheck> CheckVolume(const std::filesystem::path& path) {
   std::vector<double> errors(organs.size(), 0.0), seconds;
   for (std::size_t i = 0; i < std::min<std::size_t>(organs.size(), 6); ++i)
     check.lines.push_back({organs[i].name, {}});
-  ProgressBar progress("playing " + scene->name, ticks);
+  core::ProgressBar progress("playing " + scene->name, ticks);
   for (int tick = 0; tick < ticks; ++tick) {
     simulation->Step(session::CalcScriptInput(*scene, simulation->GetSnapshot().time));
     const session::Snapshot& now = simulation->GetSnapshot();
@@ -66,7 +67,7 @@ core::Result<PhysicsCheck> CheckTickRate(const std::filesystem::path& path, doub
   std::vector<std::vector<math::Vec3>> ends;
   std::vector<math::Vec3> start;
   const std::vector<double> rates{60, 120, 240};
-  ProgressBar progress("three tick rates", static_cast<double>(rates.size()));
+  core::ProgressBar progress("three tick rates", static_cast<double>(rates.size()));
   for (const double rate : rates) {
     auto read = session::ReadScene(path);
     if (!read.ok()) return read.error();

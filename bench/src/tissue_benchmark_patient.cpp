@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "tissue_benchmark.h"
+#include "trocar/core/progress_bar.h"
 #include "trocar/core/statistics.h"
 #include "trocar/core/text_table.h"
 #include "trocar/session/simulation.h"
@@ -34,7 +35,7 @@ core::Status RunPatientCases(const BenchmarkOptions& options, BenchmarkResult& r
   int unsettled = 0;
   std::uint64_t first_hash = 0;
   const int repeats = std::max(2, options.repeats);
-  ProgressBar bar("the patient's script, the first time judged", repeats);
+  core::ProgressBar bar("the patient's script, the first time judged", repeats);
   for (int repeat = 0; repeat < repeats; ++repeat) {
     made->Reset();
     for (int tick = 0; tick < ticks; ++tick) {

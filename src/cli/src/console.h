@@ -1,42 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file console.h  Progress for a person at a terminal.
+/// \file console.h  What the commands print with: tables and progress.
 #pragma once
 
-#include <string>
-#include <string_view>
-
+#include "trocar/core/progress_bar.h"
 #include "trocar/core/text_table.h"
 
 namespace trocar::cli {
 
 using core::FormatNumber;
 using core::FormatTable;
-
-/// One line that is redrawn, on standard error; silent where that is not a terminal, and in the first half
-/// second.
-class ProgressBar {
- public:
-  /// \param label  what is going on;
-  /// \param total  steps, > 0
-  ProgressBar(std::string label, double total);
-  ~ProgressBar();
-  ProgressBar(const ProgressBar&) = delete;
-  ProgressBar& operator=(const ProgressBar&) = delete;
-
-  /// \param done  steps so far, 0 to total
-  void Show(double done);
-  /// Replaces what is said to be going on.
-  void SetLabel(std::string_view label) { label_ = label; }
-  /// Wipes the line.
-  void Finish();
-
- private:
-  std::string label_;
-  double total_;
-  bool is_terminal_;
-  bool is_drawn_ = false;
-  long long start_;     // [ns]
-  long long last_ = 0;  // [ns]
-};
+using core::ProgressBar;
 
 }  // namespace trocar::cli

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "console.h"
+#include "trocar/core/progress_bar.h"
 
 #include <unistd.h>
 
@@ -9,7 +9,7 @@
 
 #include "trocar/core/clock.h"
 
-namespace trocar::cli {
+namespace trocar::core {
 namespace {
 
 constexpr long long kQuietNanoseconds = 500'000'000;   // work shorter than this shows nothing
@@ -22,7 +22,7 @@ ProgressBar::ProgressBar(std::string label, double total)
     : label_(std::move(label)),
       total_(total),
       is_terminal_(::isatty(STDERR_FILENO) == 1),
-      start_(core::NowNanoseconds()) {}
+      start_(NowNanoseconds()) {}
 
 ProgressBar::~ProgressBar() {
   Finish();
@@ -30,7 +30,7 @@ ProgressBar::~ProgressBar() {
 
 void ProgressBar::Show(double done) {
   if (!is_terminal_) return;
-  const long long now = core::NowNanoseconds();
+  const long long now = NowNanoseconds();
   if (now - start_ < kQuietNanoseconds || now - last_ < kRedrawNanoseconds) return;
   last_ = now;
   is_drawn_ = true;
@@ -47,4 +47,4 @@ void ProgressBar::Finish() {
   is_drawn_ = false;
 }
 
-}  // namespace trocar::cli
+}  // namespace trocar::core

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "console.h"
+#include "trocar/core/progress_bar.h"
 
 #include <gtest/gtest.h>
 
-namespace trocar::cli {
+namespace trocar::core {
 namespace {
 
 TEST(ProgressBar, IsSilentWhereThereIsNoTerminal) {
@@ -16,4 +16,4 @@ TEST(ProgressBar, IsSilentWhereThereIsNoTerminal) {
 }
 
 }  // namespace
-}  // namespace trocar::cli
+}  // namespace trocar::core

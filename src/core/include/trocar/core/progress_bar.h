@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file progress_bar.h  Progress for a person at a terminal.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace trocar::core {
+
+/// One line that is redrawn, on standard error; silent where that is not a terminal, and in the first half
+/// second.
+class ProgressBar {
+ public:
+  /// \param label  what is going on;
+  /// \param total  steps, > 0
+  ProgressBar(std::string label, double total);
+  ~ProgressBar();
+  ProgressBar(const ProgressBar&) = delete;
+  ProgressBar& operator=(const ProgressBar&) = delete;
+
+  /// \param done  steps so far, 0 to total
+  void Show(double done);
+  /// Replaces what is said to be going on.
+  void SetLabel(std::string_view label) { label_ = label; }
+  /// Wipes the line.
+  void Finish();
+
+ private:
+  std::string label_;
+  double total_;
+  bool is_terminal_;
+  bool is_drawn_ = false;
+  long long start_;     // [ns]
+  long long last_ = 0;  // [ns]
+};
+
+}  // namespace trocar::core
