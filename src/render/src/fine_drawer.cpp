@@ -6,7 +6,6 @@
 #include <cstddef>
 
 #include "fine_shaders.h"
-#include "material_look.h"
 #include "shaders.h"
 #include "single_precision.h"
 
@@ -104,7 +103,7 @@ core::Status FineDrawer::Make() {
   return {};
 }
 
-void FineDrawer::DrawFibres(std::span<const Fibre> fibres, const Viewport& viewport) {
+void FineDrawer::DrawFibres(const Looks& looks, std::span<const Fibre> fibres, const Viewport& viewport) {
   corners_.clear();
   indices_.clear();
   const Frame3 X_camera_world(viewport.X_camera_world);
@@ -114,7 +113,7 @@ void FineDrawer::DrawFibres(std::span<const Fibre> fibres, const Viewport& viewp
     if (a.z > -kNearest || b.z > -kNearest ||
         !IsSeen(0.5 * (a + b), 0.5 * length + fibre.wave + fibre.width, viewport))
       continue;
-    const MaterialLook& look = GetLook(fibre.material);
+    const MaterialLook& look = looks[fibre.material];
     const double pixels = viewport.focal * length / -std::max(a.z, b.z);
     const std::size_t steps = fibre.wave == 0.0 || pixels < kStraightPixels ? 1
                               : pixels < kBentPixels                        ? 2
@@ -151,7 +150,7 @@ void FineDrawer::DrawFibres(std::span<const Fibre> fibres, const Viewport& viewp
   Draw();
 }
 
-void FineDrawer::DrawBlobs(std::span<const Blob> blobs, const Viewport& viewport) {
+void FineDrawer::DrawBlobs(const Looks& looks, std::span<const Blob> blobs, const Viewport& viewport) {
   corners_.clear();
   indices_.clear();
   std::array<std::array<double, 2>, kBlobSides> circle;
@@ -161,7 +160,7 @@ void FineDrawer::DrawBlobs(std::span<const Blob> blobs, const Viewport& viewport
   for (const Blob& blob : blobs) {
     const Vec3 centre = X_camera_world * blob.centre;
     if (!IsSeen(centre, 1.5 * blob.radius, viewport)) continue;
-    const MaterialLook& look = GetLook(blob.material);
+    const MaterialLook& look = looks[blob.material];
     const Vec3 to_eye = -math::Normalized(centre);
     // turned and lumpy: no two alike
     const Vec3 turned =

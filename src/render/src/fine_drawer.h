@@ -15,6 +15,7 @@
 #include "shader_program.h"
 #include "trocar/core/result.h"
 #include "trocar/render/frame.h"
+#include "trocar/render/looks.h"
 
 namespace trocar::render {
 
@@ -40,8 +41,8 @@ class FineDrawer {
   const Program& GetProgram() const { return program_; }
 
   /// \pre blending is on
-  void DrawFibres(std::span<const Fibre> fibres, const Viewport& viewport);
-  void DrawBlobs(std::span<const Blob> blobs, const Viewport& viewport);
+  void DrawFibres(const Looks& looks, std::span<const Fibre> fibres, const Viewport& viewport);
+  void DrawBlobs(const Looks& looks, std::span<const Blob> blobs, const Viewport& viewport);
 
   /// Triangles of the last call.
   std::size_t TriangleCount() const { return indices_.size() / 3; }

@@ -5,16 +5,12 @@
 #include <cmath>
 
 #include "camera_matrices.h"
-#include "material_look.h"
 #include "single_precision.h"
 
 namespace trocar::render {
 namespace {
 
 using math::Vec3;
-
-constexpr Vec3 kLightOffset{0, 0.0035, 0.001};  // m, camera frame: the fibres leave beside the lens
-constexpr double kThickSmoke = 22.0;            // 1/m: half of the light is lost on 45 mm where smoke is 1
 
 void SetShades(const Program& program, const std::vector<Shade>& shades, const math::Pose& X_camera_world) {
   std::array<float, 4 * kMaxShades> first{};
@@ -37,13 +33,13 @@ void SetShades(const Program& program, const std::vector<Shade>& shades, const m
 
 }  // namespace
 
-void SetFrameUniforms(const Program& program, const Frame& frame, const math::Pose& X_camera_world, int width,
-                      int height) {
+void SetFrameUniforms(const Program& program, const Looks& looks, const Frame& frame,
+                      const math::Pose& X_camera_world, int width, int height) {
   glUseProgram(program.name);
   program.Set("u_clip_from_camera", MakeProjection(frame.camera, width, height));
-  program.Set("u_light", ToFloat(kLightOffset));
+  program.Set("u_light", ToFloat(looks.light_offset));
   program.Set("u_power", ToFloat(std::max(0.0, frame.light_power)));
-  program.Set("u_smoke", std::array<float, 2>{ToFloat(kThickSmoke * std::clamp(frame.smoke, 0.0, 1.0)),
+  program.Set("u_smoke", std::array<float, 2>{ToFloat(looks.smoke * std::clamp(frame.smoke, 0.0, 1.0)),
                                               ToFloat(std::fmod(0.6 * frame.time, 200.0 * M_PI))});
   program.Set("u_mask", Colour{ToFloat(0.5 * width), ToFloat(0.5 * height),
                                frame.has_mask ? ToFloat(0.5 * kMaskDiameter * height) : 0.0f});

@@ -5,12 +5,13 @@
 #include "shader_program.h"
 #include "trocar/math/pose.h"
 #include "trocar/render/frame.h"
+#include "trocar/render/looks.h"
 
 namespace trocar::render {
 
 /// Sets them in one program, which becomes the current one.
 /// \param width, height  of the picture [pixels]
-void SetFrameUniforms(const Program& program, const Frame& frame, const math::Pose& X_camera_world, int width,
-                      int height);
+void SetFrameUniforms(const Program& program, const Looks& looks, const Frame& frame,
+                      const math::Pose& X_camera_world, int width, int height);
 
 }  // namespace trocar::render

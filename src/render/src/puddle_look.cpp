@@ -5,23 +5,21 @@
 
 namespace trocar::render {
 
-MaterialLook MixLook(const Puddle& puddle) {
+MaterialLook MixLook(const Looks& looks, const Puddle& puddle) {
   const std::array<Material, 3> liquids = {Material::kBlood, Material::kBile, Material::kRinse};
   const std::array<double, 3> amounts = {puddle.blood, puddle.bile, puddle.rinse};
-  // how strongly each colours what it is mixed with
-  constexpr std::array<double, 3> kPigment = {8.0, 1.5, 0.1};
   double all = 0, pigment = 0;
   for (std::size_t i = 0; i < 3; ++i) {
     all += amounts[i];
-    pigment += kPigment[i] * amounts[i];
+    pigment += looks.pigment[i] * amounts[i];
   }
-  MaterialLook mixed = GetLook(Material::kBlood);
+  MaterialLook mixed = looks[Material::kBlood];
   if (!(all > 0.0)) return mixed;
   mixed.low = mixed.high = {};
   mixed.opacity = 0;
   for (std::size_t i = 0; i < 3; ++i) {
-    const MaterialLook& look = GetLook(liquids[i]);
-    const float colour = ToFloat(kPigment[i] * amounts[i] / pigment);
+    const MaterialLook& look = looks[liquids[i]];
+    const float colour = ToFloat(looks.pigment[i] * amounts[i] / pigment);
     for (std::size_t k = 0; k < 3; ++k) {
       mixed.low[k] += colour * look.low[k];
       mixed.high[k] += colour * look.high[k];

@@ -2,12 +2,12 @@
 /// \file puddle_look.h  What a mixture of blood, bile and rinse looks like.
 #pragma once
 
-#include "material_look.h"
 #include "trocar/render/frame.h"
+#include "trocar/render/looks.h"
 
 namespace trocar::render {
 
 /// What a puddle looks like: it is as clear as its liquids by their shares, and as coloured as their pigments.
-MaterialLook MixLook(const Puddle& puddle);
+MaterialLook MixLook(const Looks& looks, const Puddle& puddle);
 
 }  // namespace trocar::render

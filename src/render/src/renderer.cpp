@@ -28,10 +28,6 @@ using math::Vec3;
 constexpr double kOverlayDepth = 0.01;  // share of the depth buffer that is kept for arrows
 constexpr double kArrowHeadLength = 4.5, kArrowHeadRadius = 2.4;  // in radii of the arrow's shaft
 
-bool IsClear(const Surface& surface) {
-  return GetLook(surface.material).opacity < 1.0f;
-}
-
 /// Masks, depth and viewport for the whole picture, and the colour where nothing is.
 void ClearPicture(const Frame& frame, int width, int height) {
   glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
@@ -49,6 +45,7 @@ void ClearPicture(const Frame& frame, int width, int height) {
 }  // namespace
 
 struct Renderer::Content {
+  Looks looks;
   SurfaceStore surfaces;
   SurfaceDrawer surface_drawer;
   FineDrawer fine;
@@ -68,10 +65,16 @@ struct Renderer::Content {
     return {};
   }
 
+  bool IsClear(const Surface& surface) const { return looks[surface.material].opacity < 1.0f; }
+
+  void DrawSurface(const Surface& surface, const Pose& X_camera_surface, const Vec3& scale = {1, 1, 1}) {
+    surface_drawer.Draw(surface, X_camera_surface, scale, looks[surface.material]);
+  }
+
   void SetUniforms(const Frame& frame, const Pose& X_camera_world, int width, int height) {
     for (const Program& program : surface_drawer.GetPrograms())
-      SetFrameUniforms(program, frame, X_camera_world, width, height);
-    SetFrameUniforms(fine.GetProgram(), frame, X_camera_world, width, height);
+      SetFrameUniforms(program, looks, frame, X_camera_world, width, height);
+    SetFrameUniforms(fine.GetProgram(), looks, frame, X_camera_world, width, height);
   }
 
   void DrawScene(const Frame& frame, const Viewport& viewport) {
@@ -82,10 +85,10 @@ struct Renderer::Content {
     for (const SurfaceDraw& draw : frame.surfaces) {
       const Surface* surface = surfaces.Find(draw.surface);
       if (surface != nullptr && !IsClear(*surface))
-        surface_drawer.Draw(*surface, viewport.X_camera_world * draw.X_world_surface);
+        DrawSurface(*surface, viewport.X_camera_world * draw.X_world_surface);
     }
     glDisable(GL_CULL_FACE);  // blobs face the eye
-    fine.DrawBlobs(frame.blobs, viewport);
+    fine.DrawBlobs(looks, frame.blobs, viewport);
     glEnable(GL_CULL_FACE);
     DrawClear(frame, viewport);
     glDepthRange(0.0, 1.0);
@@ -101,16 +104,16 @@ struct Renderer::Content {
       if (!(p.radius > 0.0)) continue;
       const Pose X_world_puddle{math::RotationBetween({0, 0, 1}, p.up), p.centre};
       surface_drawer.Draw(*surfaces.Find(puddle), viewport.X_camera_world * X_world_puddle,
-                          {p.radius, p.radius, p.radius}, MixLook(p));
+                          {p.radius, p.radius, p.radius}, MixLook(looks, p));
     }
     for (const SurfaceDraw& draw : frame.surfaces) {
       const Surface* surface = surfaces.Find(draw.surface);
       if (surface != nullptr && IsClear(*surface))
-        surface_drawer.Draw(*surface, viewport.X_camera_world * draw.X_world_surface);
+        DrawSurface(*surface, viewport.X_camera_world * draw.X_world_surface);
     }
     // ribbons face the eye
     glDisable(GL_CULL_FACE);
-    fine.DrawFibres(frame.fibres, viewport);
+    fine.DrawFibres(looks, frame.fibres, viewport);
     glEnable(GL_CULL_FACE);
     glDepthMask(GL_TRUE);
     glDisable(GL_BLEND);
@@ -124,12 +127,12 @@ struct Renderer::Content {
     const double head = std::min(kArrowHeadLength * arrow.radius, length);
     const double rod_length = length - head;
     if (rod_length > 0.0) {
-      surface_drawer.Draw(*surfaces.Find(rod), X_camera_world * Pose{rotation, arrow.p_world_tail},
-                          {arrow.radius, arrow.radius, rod_length});
+      DrawSurface(*surfaces.Find(rod), X_camera_world * Pose{rotation, arrow.p_world_tail},
+                  {arrow.radius, arrow.radius, rod_length});
     }
-    surface_drawer.Draw(*surfaces.Find(cone),
-                        X_camera_world * Pose{rotation, arrow.p_world_tail + rod_length * direction},
-                        {kArrowHeadRadius * arrow.radius, kArrowHeadRadius * arrow.radius, head});
+    DrawSurface(*surfaces.Find(cone),
+                X_camera_world * Pose{rotation, arrow.p_world_tail + rod_length * direction},
+                {kArrowHeadRadius * arrow.radius, kArrowHeadRadius * arrow.radius, head});
   }
 };
 
@@ -138,9 +141,10 @@ Renderer::Renderer(Renderer&&) noexcept = default;
 Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 Renderer::~Renderer() = default;
 
-core::Result<Renderer> Renderer::Make() {
+core::Result<Renderer> Renderer::Make(const Looks& looks) {
   if (const auto status = CheckGraphicsVersion(); !status) return status.error();
   auto content = std::make_unique<Content>();
+  content->looks = looks;
   if (const auto status = content->Make(); !status) return status.error();
   return Renderer(std::move(content));
 }

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <vector>
 
-#include "material_look.h"
 #include "shaders.h"
 #include "single_precision.h"
 #include "trocar/render/frame.h"
+#include "trocar/render/looks.h"
 
 namespace trocar::render {
 namespace {

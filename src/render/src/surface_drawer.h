@@ -2,12 +2,12 @@
 /// \file surface_drawer.h  Draws surfaces with the shader of their material: tissue, tool, or what light passes through.
 #pragma once
 
-#include "material_look.h"
 #include "noise_textures.h"
 #include "shader_program.h"
 #include "surface_store.h"
 #include "trocar/core/result.h"
 #include "trocar/math/pose.h"
+#include "trocar/render/looks.h"
 
 namespace trocar::render {
 
@@ -33,9 +33,6 @@ class SurfaceDrawer {
   /// \pre blending is on where the look's opacity is below 1
   void Draw(const Surface& surface, const math::Pose& X_camera_surface, const math::Vec3& scale,
             const MaterialLook& look);
-  void Draw(const Surface& surface, const math::Pose& X_camera_surface, const math::Vec3& scale = {1, 1, 1}) {
-    Draw(surface, X_camera_surface, scale, GetLook(surface.material));
-  }
 
  private:
   Program tissue_, tool_, clear_;

@@ -24,7 +24,9 @@ class DrawingTest : public testing::Test {
     auto target = OffscreenTarget::Make(kWidth, kHeight);
     ASSERT_TRUE(target.ok()) << target.error().Text();
     target_.emplace(std::move(*target));
-    auto renderer = Renderer::Make();
+    const auto looks = ReadLooks(std::filesystem::path(TROCAR_SOURCE_DIR) / kLooksFile);
+    ASSERT_TRUE(looks.ok()) << looks.error().Text();
+    auto renderer = Renderer::Make(*looks);
     ASSERT_TRUE(renderer.ok()) << renderer.error().Text();
     renderer_.emplace(std::move(*renderer));
   }

@@ -24,6 +24,7 @@
 #include "trocar/render/background.h"
 #include "trocar/render/openness.h"
 #include "trocar/session/ground.h"
+#include "trocar/session/scene.h"
 #include "tube_shape.h"
 
 namespace trocar::view {
@@ -219,7 +220,11 @@ core::Result<LaparoscopeView> LaparoscopeView::Make(const session::Scene& scene,
                                                     std::span<const SurfaceInfo> surfaces,
                                                     const Snapshot& start,
                                                     std::span<const session::StrandInfo> strands) {
-  auto renderer = render::Renderer::Make();
+  const auto data = session::FindDataFolder();
+  if (!data) return data.error();
+  const auto looks = render::ReadLooks(*data / render::kLooksFile);
+  if (!looks) return looks.error();
+  auto renderer = render::Renderer::Make(*looks);
   if (!renderer) return renderer.error();
   auto content = std::make_unique<Content>(std::move(*renderer));
   if (auto status = content->AddShapes(surfaces, start); !status) return status.error();

@@ -9,6 +9,7 @@
 #include "trocar/core/result.h"
 #include "trocar/geometry/triangle_mesh.h"
 #include "trocar/render/frame.h"
+#include "trocar/render/looks.h"
 
 namespace trocar::render {
 
@@ -28,7 +29,7 @@ class Renderer {
  public:
   /// \pre an OpenGL context is current
   /// \return kGraphicsTooOld (below 3.3, or OpenGL ES) or kShaderFailed with the compiler's words
-  static core::Result<Renderer> Make();
+  static core::Result<Renderer> Make(const Looks& looks);
 
   Renderer(Renderer&&) noexcept;
   Renderer& operator=(Renderer&&) noexcept;

@@ -1,16 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file material_look.h  Parameters of the two shaders, one row a material.
+/// \file looks.h  What the laparoscope shows, read from a file: light, smoke, liquids and the surface of every material.
 #pragma once
 
 #include <array>
+#include <filesystem>
 
+#include "trocar/core/result.h"
+#include "trocar/math/vector.h"
 #include "trocar/render/material.h"
 
 namespace trocar::render {
 
 using Colour = std::array<float, 3>;
 
-/// Colours are linear (not sRGB) reflectances in [0, 1].
+/// Parameters of the two shaders for one material. Colours are linear (not sRGB) reflectances in [0, 1].
 struct MaterialLook {
   bool is_tissue = true;      ///< false: the shader of tools
   Colour low{}, high{};       ///< between these by smooth noise
@@ -33,6 +36,22 @@ struct MaterialLook {
   float emission = 0;         ///< light of its own [-]
 };
 
-const MaterialLook& GetLook(Material material) noexcept;
+struct Looks {
+  std::array<MaterialLook, static_cast<std::size_t>(Material::kCount)> materials;
+  math::Vec3 light_offset;          ///< of the light beside the lens, camera frame [m]
+  double smoke = 0;                 ///< share of the light that is lost on the way where smoke is 1 [1/m]
+  std::array<double, 3> pigment{};  ///< how strongly blood, bile and rinse colour a mixture [-]
+
+  const MaterialLook& operator[](Material material) const {
+    return materials[static_cast<std::size_t>(material)];
+  }
+};
+
+/// Where the looks lie in the data folder.
+inline constexpr const char* kLooksFile = "assets/looks/laparoscope.json";
+
+/// Reads looks (schemas/looks.schema.json); each material must be there.
+/// \return the file's error: kFileMissing, kJsonSyntax or kJsonField with the place
+core::Result<Looks> ReadLooks(const std::filesystem::path& path);
 
 }  // namespace trocar::render
