@@ -51,7 +51,7 @@ std::vector<int> FindParts(const geometry::Rows& neighbours, const std::vector<c
   return part;
 }
 
-void meshing::KeepLargestPart(const geometry::Rows& neighbours, std::vector<char>& marked) {
+void KeepLargestPart(const geometry::Rows& neighbours, std::vector<char>& marked) {
   std::vector<std::size_t> sizes;
   const auto part = FindParts(neighbours, marked, sizes);
   if (sizes.empty()) return;
@@ -63,7 +63,7 @@ void meshing::KeepLargestPart(const geometry::Rows& neighbours, std::vector<char
 void FillHoles(const geometry::Rows& neighbours, std::vector<char>& marked) {
   std::vector<char> rest(marked.size());
   for (std::size_t v = 0; v < marked.size(); ++v) rest[v] = !marked[v];
-  meshing::KeepLargestPart(neighbours, rest);
+  KeepLargestPart(neighbours, rest);
   for (std::size_t v = 0; v < marked.size(); ++v) marked[v] = !rest[v];
 }
 
@@ -125,7 +125,7 @@ LiverRegions FindLiverRegions(const TriangleMesh& liver, const meshing::NearestS
         faces > kFacesDiaphragm || (faces > 0 && Dot(normals[v], kLeftOfDome) > kFacesLeftOfDome);
     face[v] = is_outer && depths[v] < settings.hull_depth;
   }
-  meshing::KeepLargestPart(neighbours, face);
+  KeepLargestPart(neighbours, face);
   FillHoles(neighbours, face);
 
   // around the gallbladder, and along its border, the liver can be lifted
@@ -142,7 +142,7 @@ LiverRegions FindLiverRegions(const TriangleMesh& liver, const meshing::NearestS
     });
     if (is_margin || is_clear[v]) fixed[v] = 0;
   }
-  meshing::KeepLargestPart(neighbours, fixed);
+  KeepLargestPart(neighbours, fixed);
 
   // ligaments hold the face up to its border
   const geometry::Box box = geometry::CalcBox(liver.positions);
@@ -160,8 +160,8 @@ LiverRegions FindLiverRegions(const TriangleMesh& liver, const meshing::NearestS
     coronary[v] = Dot(normals[v], kTowardsDiaphragm) > 0 && normals[v].y > kCoronarySuperior &&
                   is_posterior && is_high && beside < 0 && !is_clear[v];
   }
-  meshing::KeepLargestPart(neighbours, falciform);
-  meshing::KeepLargestPart(neighbours, coronary);
+  KeepLargestPart(neighbours, falciform);
+  KeepLargestPart(neighbours, coronary);
   return {ListMarked(fixed), ListMarked(falciform), ListMarked(coronary)};
 }
 
