@@ -105,7 +105,7 @@ std::string PointerText(const ContourEditor& editor) {
   const auto& pointer = editor.Pointer();
   if (!pointer) return {};
   std::string text = Format("pixel %.1f, %.1f", pointer->x, pointer->y);
-  if (const auto place = FindPatientPlace(editor.Workspace().Series(), editor.Slice(), *pointer)) {
+  if (const auto place = contours::FindPatientPlace(editor.Workspace().Series(), editor.Slice(), *pointer)) {
     text += Format("   LPS %.1f, %.1f, %.1f mm", (*place)[0], (*place)[1], (*place)[2]);
   }
   return text;
