@@ -172,6 +172,7 @@ core::Status Simulation::RestoreWithout(std::span<const std::byte> bytes, const 
     core::StateArchive back =
         core::StateArchive::ForRestore(std::span<const std::byte>(before).subspan(sizeof(Header)));
     const core::Status as_before = c.Restore(back);
+    if (!as_before.ok()) fprintf(stderr, "%s | %s | omit %s\n", restored.error().Text().c_str(), as_before.error().Text().c_str(), field.c_str());
     TROCAR_ASSERT(as_before.ok());  // saved by this simulation
   }
   return restored;

@@ -36,13 +36,13 @@ class Vocabulary : public testing::Test {
   void Start(Condition condition) {
     scene_.task->goals[0].steps = {condition};
     scene_.task->errors[0].when = {condition};
-    monitor_.Reset(scene_, snapshot_);
+    monitor_.Reset(scene_, snapshot_.task);
     snapshot_.instruments[0].X_world_device.translation = {1, 0, 0};  // far from home: the clock runs
   }
   void Tick(int count = 1) {
     for (int i = 0; i < count; ++i) {
       ++snapshot_.tick;
-      monitor_.Update(scene_, snapshot_);
+      monitor_.Update(scene_, snapshot_, snapshot_.task);
     }
   }
   bool IsDone() const { return snapshot_.task.goals[0].is_done; }
@@ -330,7 +330,7 @@ TEST_F(Vocabulary, StagesWaitForThoseBefore) {
   task.goals[1].steps[0].other = 1;
   task.goals[1].stage = 1;
   task.errors[0].when.clear();
-  monitor_.Reset(scene_, snapshot_);
+  monitor_.Reset(scene_, snapshot_.task);
   Ring().touches = 2;
   Tick(3);
   EXPECT_FALSE(snapshot_.task.goals[1].is_done);

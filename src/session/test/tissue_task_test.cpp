@@ -189,12 +189,12 @@ class TissueWords : public testing::Test {
   void Start(const Condition& condition) {
     scene_.task->goals[0].steps = {condition};
     scene_.task->errors[0].when = {condition};
-    monitor_.Reset(scene_, snapshot_);
+    monitor_.Reset(scene_, snapshot_.task);
     snapshot_.instruments[0].X_world_device.translation = {1, 0, 0};
   }
   void Tick() {
     ++snapshot_.tick;
-    monitor_.Update(scene_, snapshot_);
+    monitor_.Update(scene_, snapshot_, snapshot_.task);
   }
   void Happens(EventKind kind, const Vec3& p_rest, int error = -1) {
     Event event{kind, snapshot_.tick, kRight, -1, 0};
