@@ -11,7 +11,7 @@
 #include "trocar/anatomy/patient.h"
 #include "trocar/core/safe_file.h"
 #include "trocar/device/device_store.h"
-#include "trocar/session/scene.h"
+#include "trocar/scene/scene.h"
 #include "trocar_test/temporary_folder.h"
 
 namespace trocar::cli {
@@ -174,7 +174,7 @@ void CompareRanges(const Schema& schema, const Json& document, const Reader& rea
 class FieldRanges : public testing::Test {
  protected:
   Reader SceneReader() {
-    return [this](const Json& json) { return ErrorOf(session::ReadScene(Written("scene.json", json))); };
+    return [this](const Json& json) { return ErrorOf(scene::ReadScene(Written("scene.json", json))); };
   }
   fs::path Written(const std::string& name, const Json& json) {
     const fs::path path = folder_.Path() / name;
@@ -335,7 +335,7 @@ TEST_F(FieldRanges, SchemaAndReaderAgreeOnScriptsAndMaterials) {
                        {"keys", {{{"time_s", 0}, {"left", hand()}, {"right", hand()}}}}};
   ExpectAgreement("script", {script}, [&](const Json& json) {
     Written("script.json", json);
-    return ErrorOf(session::ReadScene(Written("scene.json", scene)));
+    return ErrorOf(scene::ReadScene(Written("scene.json", scene)));
   });
   scene = OperationScene();
   scene["materials"][0] = {{"organ", "liver"}, {"file", "material.json"}};
@@ -346,7 +346,7 @@ TEST_F(FieldRanges, SchemaAndReaderAgreeOnScriptsAndMaterials) {
   material.update(Json{{"format", "trocar-material"}, {"version", 1}, {"sources", sources}});
   ExpectAgreement("material", {material}, [&](const Json& json) {
     Written("material.json", json);
-    return ErrorOf(session::ReadScene(Written("scene.json", scene)));
+    return ErrorOf(scene::ReadScene(Written("scene.json", scene)));
   });
 }
 
@@ -419,7 +419,7 @@ TEST_F(FieldRanges, ALongListOfMaterialsCostsNoMoreThanItsLength) {
   scene = OperationScene();
   for (int i = 0; i < 100; ++i)
     scene["materials"].push_back({{"organ", "other_" + std::to_string(i)}, {"file", shared.string()}});
-  const auto read = session::ReadScene(Written("scene.json", scene));
+  const auto read = scene::ReadScene(Written("scene.json", scene));
   ASSERT_TRUE(read.ok()) << read.error().Text();
   EXPECT_EQ(read->materials.back().organ, "other_99");
   EXPECT_EQ(read->materials.back().source, read->materials[5].source);
