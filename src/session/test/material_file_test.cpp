@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <set>
+#include <utility>
 
 #include "small_scene.h"
 #include "trocar/session/simulation.h"
@@ -21,8 +22,14 @@ class MaterialFile : public SmallScene {
 
   core::Result<OrganMaterial> ReadOne(const std::string& text) {
     Write("wall.json", text);
-    auto document = core::JsonDocument::Parse(R"({"organ": "gallbladder", "file": "wall.json"})", "test");
-    return ReadMaterial(document->Root(), folder_);
+    return ReadEntry();
+  }
+  core::Result<OrganMaterial> ReadEntry() {
+    auto document = core::JsonDocument::Parse(
+        R"({"materials": [{"organ": "gallbladder", "file": "wall.json"}]})", "test");
+    auto materials = ReadMaterials(document->Root(), folder_);
+    if (!materials.ok()) return materials.error();
+    return std::move(materials->front());
   }
   static std::string Replace(std::string text, const std::string& what, const std::string& by) {
     const auto at = text.find(what);
@@ -61,8 +68,7 @@ TEST_F(MaterialFile, RefusesWhatIsWrong) {
   for (std::size_t length = 0; length < text.size(); length += 7)
     EXPECT_FALSE(ReadOne(text.substr(0, length)).ok());
   std::filesystem::remove(folder_ / "wall.json");
-  auto document = core::JsonDocument::Parse(R"({"organ": "gallbladder", "file": "wall.json"})", "test");
-  EXPECT_FALSE(ReadMaterial(document->Root(), folder_).ok());
+  EXPECT_FALSE(ReadEntry().ok());
 }
 
 TEST_F(MaterialFile, ATenseGallbladderStartsUnderItsPressure) {
