@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <set>
+#include <utility>
 
 #include "small_scene.h"
 #include "trocar/simulation/simulation.h"
@@ -25,14 +26,16 @@ class MaterialFile : public SmallScene {
       R"( "internal_pressure_pa": 300, "failure_force_n": 9, "sources": {"young_modulus_pa": "a table",)"
       R"( "wall_thickness_mm": "a tunable", "internal_pressure_pa": "hydrops", "failure_force_n": "a tunable"}})";
 
-  static constexpr const char* kScene = R"({"materials": [{"organ": "gallbladder", "file": "wall.json"}]})";
-
   core::Result<OrganMaterial> ReadOne(const std::string& text) {
     Write("wall.json", text);
-    auto document = core::JsonDocument::Parse(kScene, "test");
-    auto read = ReadMaterials(document->Root(), folder_);
-    if (!read.ok()) return read.error();
-    return read->front();
+    return ReadEntry();
+  }
+  core::Result<OrganMaterial> ReadEntry() {
+    auto document = core::JsonDocument::Parse(
+        R"({"materials": [{"organ": "gallbladder", "file": "wall.json"}]})", "test");
+    auto materials = ReadMaterials(document->Root(), folder_);
+    if (!materials.ok()) return materials.error();
+    return std::move(materials->front());
   }
   static std::string Replace(std::string text, const std::string& what, const std::string& by) {
     const auto at = text.find(what);
@@ -71,8 +74,7 @@ TEST_F(MaterialFile, RefusesWhatIsWrong) {
   for (std::size_t length = 0; length < text.size(); length += 7)
     EXPECT_FALSE(ReadOne(text.substr(0, length)).ok());
   std::filesystem::remove(folder_ / "wall.json");
-  auto document = core::JsonDocument::Parse(kScene, "test");
-  EXPECT_FALSE(ReadMaterials(document->Root(), folder_).ok());
+  EXPECT_FALSE(ReadEntry().ok());
 }
 
 TEST_F(MaterialFile, ATenseGallbladderStartsUnderItsPressure) {
