@@ -97,9 +97,8 @@ TEST_F(Planted, DownwardIncludeIsFound) {
 }
 
 TEST_F(Planted, BenchmarksAreLookedAtToo) {
-  ASSERT_TRUE(
-      core::WriteFile(folder_.Path() / "bench/src/a.cpp", "#include \"trocar/cli/run_command.h\"\n").ok());
-  EXPECT_THAT(FindBreachesOfModule(ReadLayers(), folder_.Path(), "bench"), SizeIs(1));
+  ASSERT_TRUE(core::WriteFile(Folder() / "bench/src/a.cpp", "#include \"trocar/cli/run_command.h\"\n").ok());
+  EXPECT_THAT(FindBreachesOfModule(ReadLayers(), Folder(), "bench"), SizeIs(1));
 }
 
 TEST_F(Planted, SidewaysIncludeIsFoundHoweverItIsWritten) {

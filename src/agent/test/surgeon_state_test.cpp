@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cstddef>
-#include <cstdlib>
 #include <memory>
 #include <set>
 #include <string>
@@ -175,8 +174,7 @@ INSTANTIATE_TEST_SUITE_P(
                     OperationErrorScenario::kCutsLiver, OperationErrorScenario::kInsertsBlind));
 
 /// What a whole operation shows of its surgeon's memory.
-TEST(OperationSlow, EveryFieldOfTheOperatorIsNeeded) {
-  if (std::getenv("TROCAR_SLOW_TESTS") == nullptr) GTEST_SKIP() << "minutes; set TROCAR_SLOW_TESTS=1";
+TEST(OperatorMemoryWhole, EveryFieldOfTheOperatorIsNeeded) {
   const CholecystectomySurgeon fresh(OperationScene(), SurgeonSkill{}, OperationErrorScenario::kNone, 1);
   Fields fields;
   PlayWithFollowers(OperationScene(), fresh, RandomTicks(17, 40, 50000), 72000, fields);

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <string>
 #include <vector>
 
@@ -97,7 +96,6 @@ TEST(MeshLabels, LeavesNoSliverWhereRepairAloneDoes) {
 }
 
 TEST(MeshLabelsSlow, LeaveNoSliverInRandomMaps) {
-  if (std::getenv("TROCAR_SLOW_TESTS") == nullptr) GTEST_SKIP() << "set TROCAR_SLOW_TESTS=1 to run it";
   for (std::uint64_t seed = 0; seed < 40; ++seed) ExpectNoSliver(MakeRandomFaults(seed));
 }
 
