@@ -11,8 +11,8 @@
 #include <array>
 #include <span>
 
-#include "link_hierarchy.h"
 #include "linearisation.h"
+#include "link_hierarchy.h"
 #include "node_vectors.h"
 #include "trocar/tissue/equilibrium.h"
 
@@ -55,9 +55,9 @@ class ProjectedPreconditioner {
 
  private:
   struct Constraint {
-    std::size_t index = 0;                           // in the set
-    AlignedVector<Float4> gradient;                  // (padded) G
-    AlignedVector<Float4> preconditioned_gradient;   // (padded) Y
+    std::size_t index = 0;                          // in the set
+    AlignedVector<Float4> gradient;                 // (padded) G
+    AlignedVector<Float4> preconditioned_gradient;  // (padded) Y
   };
   /// Of each constraint's part with v.
   SmallVector CalcDots(const Kernels& kernels, Workers& workers, AlignedVector<Float4> Constraint::*part,
