@@ -26,13 +26,13 @@ Vec3 CholecystectomySurgeon::Aim(const Snapshot& seen, std::size_t tube, double 
 }
 
 void CholecystectomySurgeon::LineUp(const std::string& what, std::size_t tube, double share, double jaw) {
-  OperationAct& act = Add(OperationAct::Kind::kLineUp, "line up the " + what, 5.0);
+  SurgeonAct& act = Add(SurgeonAct::Kind::kLineUp, "line up the " + what, 5.0);
   act.tube = tube;
   act.share = share;
   act.amount = jaw;
 }
 
-void CholecystectomySurgeon::LineUpTool(const OperationAct& act, const Snapshot& seen) {
+void CholecystectomySurgeon::LineUpTool(const SurgeonAct& act, const Snapshot& seen) {
   HandMotion& hand = HandOf(kRight);
   const Vec3 p = TubePoint(seen, act.tube, act.share);
   const Vec3 shaft = math::Normalized(p - hand.Port());
@@ -48,14 +48,14 @@ void CholecystectomySurgeon::PlaceClip(std::size_t tube, double share, double be
   LineUp("clip", tube, share, applier.max_jaw);
   Reach(kRight, Place::Aim(tube, share, -beyond * applier.jaw_length), 0.4);
   Wait(0.2);
-  OperationAct& act = Decide(OperationAct::Kind::kCheckPlacedClip, "look at the clip's tips");
+  SurgeonAct& act = Decide(SurgeonAct::Kind::kCheckPlacedClip, "look at the clip's tips");
   act.tube = tube;
   act.share = share;
   act.amount = beyond;
   act.count = tries;
 }
 
-void CholecystectomySurgeon::CheckPlacedClip(const OperationAct& act, const Snapshot& seen) {
+void CholecystectomySurgeon::CheckPlacedClip(const SurgeonAct& act, const Snapshot& seen) {
   const double length = instrument::FindTool("clip_applier")->jaw_length;
   const Pose& X = seen.instruments[kRight].X_world_tool;
   const Vec3 in = math::Inverse(X) * TubePoint(seen, act.tube, act.share);
@@ -192,10 +192,10 @@ void CholecystectomySurgeon::PlanErrorScenario(OperationErrorScenario error_scen
       Place in_liver = Place::Of(Place::Kind::kInLiver);
       in_liver.back = -0.006;
       Reach(kRight, in_liver, 0.5);
-      Add(OperationAct::Kind::kPressCutPedal, "press the pedal", 1.0);
+      Add(SurgeonAct::Kind::kPressCutPedal, "press the pedal", 1.0);
       in_liver.back = 0.010;
       Reach(kRight, in_liver, 0.1);
-      Add(OperationAct::Kind::kLiftFoot, "let go of the pedal", 1.0);
+      Add(SurgeonAct::Kind::kLiftFoot, "let go of the pedal", 1.0);
       break;
     }
     case OperationErrorScenario::kInsertsBlind:

@@ -18,8 +18,8 @@ constexpr double kJawCloseSeconds = 0.7;  // likewise over a vessel
 
 }  // namespace
 
-void CholecystectomySurgeon::Begin(const OperationAct& act, const Snapshot& seen) {
-  using Kind = OperationAct::Kind;
+void CholecystectomySurgeon::Begin(const SurgeonAct& act, const Snapshot& seen) {
+  using Kind = SurgeonAct::Kind;
   if (act.IsDecision()) {
     std::swap(acts_, inserted_);
     PlanOn(act, seen);
@@ -87,8 +87,8 @@ void CholecystectomySurgeon::Begin(const OperationAct& act, const Snapshot& seen
   }
 }
 
-bool CholecystectomySurgeon::IsDone(const OperationAct& act, const Snapshot& seen) {
-  using Kind = OperationAct::Kind;
+bool CholecystectomySurgeon::IsDone(const SurgeonAct& act, const Snapshot& seen) {
+  using Kind = SurgeonAct::Kind;
   const auto h = static_cast<std::size_t>(act.hand);
   HandMotion& hand = hands_[h];
   switch (act.kind) {
@@ -140,8 +140,8 @@ bool CholecystectomySurgeon::IsDone(const OperationAct& act, const Snapshot& see
   }
 }
 
-void CholecystectomySurgeon::PlanOn(const OperationAct& act, const Snapshot& seen) {
-  using Kind = OperationAct::Kind;
+void CholecystectomySurgeon::PlanOn(const SurgeonAct& act, const Snapshot& seen) {
+  using Kind = SurgeonAct::Kind;
   switch (act.kind) {
     case Kind::kChooseHold:
       return ChooseHold(act, seen);

@@ -108,7 +108,7 @@ void CholecystectomySurgeon::Dissect(DissectionGoal goal) {
 }
 
 void CholecystectomySurgeon::GoOn() {
-  Add(OperationAct::Kind::kDissect, "dissect " + dissection_.goal.what, 1200.0);
+  Add(SurgeonAct::Kind::kDissect, "dissect " + dissection_.goal.what, 1200.0);
 }
 
 /// Goes on; when the left hand has slipped, it takes hold anew first.

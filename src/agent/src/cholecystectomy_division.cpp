@@ -30,12 +30,12 @@ constexpr double kMostOff = 0.004;       // by which a hand aims beside what it 
 
 /// Divides tubes; where nothing more fits, the gallbladder is held and drawn otherwise, and tools may come nearer to the rest.
 void CholecystectomySurgeon::Divide(std::vector<std::size_t> tubes, int rounds) {
-  OperationAct& act = Decide(OperationAct::Kind::kDivide, "plan the clips");
+  SurgeonAct& act = Decide(SurgeonAct::Kind::kDivide, "plan the clips");
   act.tubes = std::move(tubes);
   act.count = rounds;
 }
 
-void CholecystectomySurgeon::PlanDivision(const OperationAct& act, const Snapshot& seen) {
+void CholecystectomySurgeon::PlanDivision(const SurgeonAct& act, const Snapshot& seen) {
   const int rounds = act.count;
   Division work;
   for (const std::size_t tube : act.tubes) {
@@ -51,7 +51,7 @@ void CholecystectomySurgeon::PlanDivision(const OperationAct& act, const Snapsho
   work.acts_left = kMostActs;
   work.care = rounds == kRounds ? 1.0 : rounds == kRounds - 1 ? 0.7 : 0.4;
   division_ = std::move(work);
-  Decide(OperationAct::Kind::kGoOnDividing, "plan the clips");
+  Decide(SurgeonAct::Kind::kGoOnDividing, "plan the clips");
   Divide(act.tubes, rounds - 1);
 }
 
@@ -75,7 +75,7 @@ void CholecystectomySurgeon::GoOnDividing(const Snapshot& seen) {
       } else {
         CutAt(which, steps[which].arc);
       }
-      Decide(OperationAct::Kind::kGoOnDividing, "plan the clips");
+      Decide(SurgeonAct::Kind::kGoOnDividing, "plan the clips");
       return;
     }
   }
@@ -83,13 +83,13 @@ void CholecystectomySurgeon::GoOnDividing(const Snapshot& seen) {
 
 void CholecystectomySurgeon::ClipAt(std::size_t which, double arc) {
   Take(ToolKind::kClipApplier);
-  OperationAct& act = Add(OperationAct::Kind::kLineUpClip, "line up the clip", 5.0);
+  SurgeonAct& act = Add(SurgeonAct::Kind::kLineUpClip, "line up the clip", 5.0);
   act.tube = which;
   act.share = arc;
   CloseWhenBetween(which, arc, kTries);
 }
 
-void CholecystectomySurgeon::LineUpClip(const OperationAct& act, const Snapshot& seen) {
+void CholecystectomySurgeon::LineUpClip(const SurgeonAct& act, const Snapshot& seen) {
   const std::size_t tube = division_.tubes[act.tube];
   const double arc = act.share;
   offset_ = {};
@@ -110,13 +110,13 @@ void CholecystectomySurgeon::CloseWhenBetween(std::size_t which, double arc, int
   between.back = instrument::FindTool("clip_applier")->jaw_length;
   Reach(kRight, between, 0.4);
   Wait(0.2);
-  OperationAct& act = Decide(OperationAct::Kind::kCheckClip, "look at the clip's tips");
+  SurgeonAct& act = Decide(SurgeonAct::Kind::kCheckClip, "look at the clip's tips");
   act.tube = which;
   act.share = arc;
   act.count = tries;
 }
 
-void CholecystectomySurgeon::CheckClip(const OperationAct& act, const Snapshot& seen) {
+void CholecystectomySurgeon::CheckClip(const SurgeonAct& act, const Snapshot& seen) {
   const std::size_t which = act.tube, tube = division_.tubes[which];
   const double arc = act.share, length = instrument::FindTool("clip_applier")->jaw_length;
   const Pose& X = seen.instruments[kRight].X_world_tool;
@@ -153,7 +153,7 @@ void CholecystectomySurgeon::CheckClip(const OperationAct& act, const Snapshot& 
 
 void CholecystectomySurgeon::CutAt(std::size_t which, double arc) {
   Take(ToolKind::kScissors);
-  OperationAct& line_up = Add(OperationAct::Kind::kLineUpScissors, "line up the scissors", 5.0);
+  SurgeonAct& line_up = Add(SurgeonAct::Kind::kLineUpScissors, "line up the scissors", 5.0);
   line_up.tube = which;
   line_up.share = arc;
   Place between = Place::OnTube(division_.tubes[which], arc);
@@ -163,16 +163,16 @@ void CholecystectomySurgeon::CutAt(std::size_t which, double arc) {
     Reach(kRight, between, 0.4);
     Wait(0.15);
     // the tool may have been pushed aside
-    OperationAct& look = Decide(OperationAct::Kind::kCheckBlades, "look at the blades");
+    SurgeonAct& look = Decide(SurgeonAct::Kind::kCheckBlades, "look at the blades");
     look.tube = which;
     look.share = arc;
   }
-  OperationAct& cut = Decide(OperationAct::Kind::kCheckBeforeCut, "look before the cut");
+  SurgeonAct& cut = Decide(SurgeonAct::Kind::kCheckBeforeCut, "look before the cut");
   cut.tube = which;
   cut.share = arc;
 }
 
-void CholecystectomySurgeon::LineUpScissors(const OperationAct& act, const Snapshot& seen) {
+void CholecystectomySurgeon::LineUpScissors(const SurgeonAct& act, const Snapshot& seen) {
   const std::size_t tube = division_.tubes[act.tube];
   offset_ = {};
   const std::vector<TubeLine> lines = LinesOf(seen);
@@ -186,7 +186,7 @@ void CholecystectomySurgeon::LineUpScissors(const OperationAct& act, const Snaps
   hand.MoveTo(p - kStandOff * math::Normalized(p - hand.Port()));
 }
 
-void CholecystectomySurgeon::CheckBlades(const OperationAct& act, const Snapshot& seen) {
+void CholecystectomySurgeon::CheckBlades(const SurgeonAct& act, const Snapshot& seen) {
   const double length = instrument::FindTool("scissors")->jaw_length;
   const Pose& X = seen.instruments[kRight].X_world_tool;
   const Vec3 off =
@@ -195,7 +195,7 @@ void CholecystectomySurgeon::CheckBlades(const OperationAct& act, const Snapshot
 }
 
 /// Cuts between the clips, and with no other vessel between the blades.
-void CholecystectomySurgeon::CheckBeforeCut(const OperationAct& act, const Snapshot& seen) {
+void CholecystectomySurgeon::CheckBeforeCut(const SurgeonAct& act, const Snapshot& seen) {
   const std::size_t tube = division_.tubes[act.tube];
   const std::vector<TubeLine> lines = LinesOf(seen);
   const auto clips = ClipsOn(seen, tube);
@@ -206,17 +206,17 @@ void CholecystectomySurgeon::CheckBeforeCut(const OperationAct& act, const Snaps
   const bool is_safe = distal >= 1 && static_cast<std::ptrdiff_t>(clips.size()) - distal >= 2;
   if (is_safe) SetJaw("cut", 0.0);
   Withdraw();
-  OperationAct& look = Decide(OperationAct::Kind::kCheckDivision, "look at the cut");
+  SurgeonAct& look = Decide(SurgeonAct::Kind::kCheckDivision, "look at the cut");
   look.tube = act.tube;
   look.share = act.share;
 }
 
 /// A small vessel that still bleeds is shut by heat, where nothing that must stay is near.
 void CholecystectomySurgeon::StopBleeding(int rounds) {
-  Decide(OperationAct::Kind::kStopBleeding, "look for blood").count = rounds;
+  Decide(SurgeonAct::Kind::kStopBleeding, "look for blood").count = rounds;
 }
 
-void CholecystectomySurgeon::PlanCoagulation(const OperationAct& act, const Snapshot& seen) {
+void CholecystectomySurgeon::PlanCoagulation(const SurgeonAct& act, const Snapshot& seen) {
   if (act.count <= 0) return;
   const auto& leaks = seen.operation.leaks;
   const auto end = leaks.begin() + static_cast<std::ptrdiff_t>(seen.operation.leak_count);
@@ -228,7 +228,7 @@ void CholecystectomySurgeon::PlanCoagulation(const OperationAct& act, const Snap
   });
   if (leak == end) return;
   Take(ToolKind::kHook);
-  OperationAct& burn = Decide(OperationAct::Kind::kCoagulate, "coagulate");
+  SurgeonAct& burn = Decide(SurgeonAct::Kind::kCoagulate, "coagulate");
   burn.place = Place::At(leak->position).ForHook();
   burn.seconds = kBurnSeconds;
   StopBleeding(act.count - 1);
@@ -239,7 +239,7 @@ void CholecystectomySurgeon::Withdraw() {
 }
 
 void CholecystectomySurgeon::Take(instrument::ToolKind kind) {
-  Decide(OperationAct::Kind::kTake, "take a tool").tool_kind = kind;
+  Decide(SurgeonAct::Kind::kTake, "take a tool").tool_kind = kind;
 }
 
 }  // namespace trocar::agent

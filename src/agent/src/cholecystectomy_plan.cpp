@@ -47,7 +47,7 @@ void CholecystectomySurgeon::PlanOperation() {
 void CholecystectomySurgeon::FreeGallbladder() {
   const Place neck = Place::AtNode(neck_);
   camera_follows_ = true;
-  Add(OperationAct::Kind::kAssist, "assistant: retract", 8.0).command = AssistantCommand::kRetract;
+  Add(SurgeonAct::Kind::kAssist, "assistant: retract", 8.0).command = AssistantCommand::kRetract;
   LookAt(neck, 0.0, 0.090);
   HoldOn(neck);
   const std::size_t duct = FindTube("cystic_duct");
@@ -57,41 +57,41 @@ void CholecystectomySurgeon::FreeGallbladder() {
   FreeLowerThird(kRounds);
   ShowCriticalView(kRounds);
   // without the view nothing is clipped; a gallbladder that is still tied is not taken off its bed
-  Decide(OperationAct::Kind::kTimeOut, "time-out");
+  Decide(SurgeonAct::Kind::kTimeOut, "time-out");
   Divide(entering_);
   StopBleeding();
-  Decide(OperationAct::Kind::kCheckStumps, "look at the stumps");
+  Decide(SurgeonAct::Kind::kCheckStumps, "look at the stumps");
   FreeFromBed(kBedRounds);
 }
 
 /// Takes the gallbladder with the left hand, clear of the liver, and again elsewhere when nothing was taken.
 void CholecystectomySurgeon::HoldOn(const Place& near, int tries, const HoldFilter& may) {
-  OperationAct& act = Decide(OperationAct::Kind::kChooseHold, "choose a hold");
+  SurgeonAct& act = Decide(SurgeonAct::Kind::kChooseHold, "choose a hold");
   act.place = near;
   act.count = tries;
   act.may = may;
 }
 
-void CholecystectomySurgeon::ChooseHold(const OperationAct& act, const Snapshot& seen) {
+void CholecystectomySurgeon::ChooseHold(const SurgeonAct& act, const Snapshot& seen) {
   if (act.count <= 0) return;
   if (seen.instruments[kLeft].is_grasping) LetGo(kLeft);
-  OperationAct& next = Decide(OperationAct::Kind::kTakeHold, act.doing);
+  SurgeonAct& next = Decide(SurgeonAct::Kind::kTakeHold, act.doing);
   next.place = act.place;
   next.count = act.count;
   next.may = act.may;
 }
 
-void CholecystectomySurgeon::TakeHold(const OperationAct& act, const Snapshot& seen) {
+void CholecystectomySurgeon::TakeHold(const SurgeonAct& act, const Snapshot& seen) {
   const std::uint32_t node = FindHold(seen, Find(act.place, seen), missed_holds_, act.may);
   Grasp(kLeft, Place::AtNode(node), kGrip);
-  OperationAct& next = Decide(OperationAct::Kind::kCheckHold, "look at the hold");
+  SurgeonAct& next = Decide(SurgeonAct::Kind::kCheckHold, "look at the hold");
   next.place = act.place;
   next.count = act.count;
   next.may = act.may;
   next.node = node;
 }
 
-void CholecystectomySurgeon::CheckHold(const OperationAct& act, const Snapshot& seen) {
+void CholecystectomySurgeon::CheckHold(const SurgeonAct& act, const Snapshot& seen) {
   const InstrumentSnapshot& hand = seen.instruments[kLeft];
   if (hand.is_grasping && hand.organ == scene_->patient.FindOrgan("gallbladder")) return;
   missed_holds_.push_back(act.node);
@@ -101,10 +101,10 @@ void CholecystectomySurgeon::CheckHold(const OperationAct& act, const Snapshot& 
 
 /// The hepatocystic triangle: bluntly, beside ducts too; what is left elsewhere, with the hook.
 void CholecystectomySurgeon::ClearTriangle(int rounds) {
-  Decide(OperationAct::Kind::kClearTriangle, "look at the triangle").count = rounds;
+  Decide(SurgeonAct::Kind::kClearTriangle, "look at the triangle").count = rounds;
 }
 
-void CholecystectomySurgeon::PlanTriangle(const OperationAct& act, const Snapshot& seen) {
+void CholecystectomySurgeon::PlanTriangle(const SurgeonAct& act, const Snapshot& seen) {
   std::vector<std::uint32_t> fat = TriangleStrands();
   std::vector<std::uint32_t> covering;
   if (!AreTubesBare(seen)) covering = CoveringStrands();
@@ -121,12 +121,12 @@ void CholecystectomySurgeon::PlanTriangle(const OperationAct& act, const Snapsho
   spreading_ = std::move(work);
   Take(ToolKind::kDissector);
   Spread();
-  OperationAct& next = Decide(OperationAct::Kind::kCheckTriangle, "look at the triangle");
+  SurgeonAct& next = Decide(SurgeonAct::Kind::kCheckTriangle, "look at the triangle");
   next.strands = std::move(fat);
   next.count = act.count;
 }
 
-void CholecystectomySurgeon::CheckTriangle(const OperationAct& act, const Snapshot& seen) {
+void CholecystectomySurgeon::CheckTriangle(const SurgeonAct& act, const Snapshot& seen) {
   if (!IsTriangleClear(seen)) {
     std::vector<std::uint32_t> left = act.strands;
     if (!AreTubesBare(seen)) {
@@ -144,10 +144,10 @@ void CholecystectomySurgeon::CheckTriangle(const OperationAct& act, const Snapsh
 }
 
 void CholecystectomySurgeon::FreeLowerThird(int rounds) {
-  Decide(OperationAct::Kind::kFreeLowerThird, "look at the bed").count = rounds;
+  Decide(SurgeonAct::Kind::kFreeLowerThird, "look at the bed").count = rounds;
 }
 
-void CholecystectomySurgeon::PlanLowerThird(const OperationAct& act, const Snapshot& seen) {
+void CholecystectomySurgeon::PlanLowerThird(const SurgeonAct& act, const Snapshot& seen) {
   const std::vector<std::uint32_t> lower = BedStrands(kLowerShare);
   const bool is_enough = seen.operation.critical_view.criteria[1] == 2;
   if (is_enough || ShareLeft(seen, lower) == 0.0 || act.count <= 0) return;
@@ -169,21 +169,21 @@ void CholecystectomySurgeon::PlanLowerThird(const OperationAct& act, const Snaps
 /// Both views; where something is missing, back to it first. A second cystic artery is divided before: only two structures
 /// may be left.
 void CholecystectomySurgeon::ShowCriticalView(int rounds) {
-  Decide(OperationAct::Kind::kShowCriticalView, "look for what is missing").count = rounds;
+  Decide(SurgeonAct::Kind::kShowCriticalView, "look for what is missing").count = rounds;
 }
 
-void CholecystectomySurgeon::PlanCriticalView(const OperationAct& act, const Snapshot& seen) {
+void CholecystectomySurgeon::PlanCriticalView(const SurgeonAct& act, const Snapshot& seen) {
   if (seen.operation.critical_view.IsAchieved() || act.count <= 0) return;
   ClearTriangle(2);
   FreeLowerThird(2);
-  Decide(OperationAct::Kind::kDivideExtraArtery, "count what enters");
+  Decide(SurgeonAct::Kind::kDivideExtraArtery, "count what enters");
   Place out_of_the_way = Place::AtNode(neck_);
   out_of_the_way.back = kBesideView;
   Reach(kRight, out_of_the_way);
-  Decide(OperationAct::Kind::kFollowWithCamera, "look").is_on = false;
+  Decide(SurgeonAct::Kind::kFollowWithCamera, "look").is_on = false;
   for (const int side : {+1, -1}) LookFromSide(side, kNeckTurns);
   LookAt(Place::OnTube(FindTube("cystic_duct"), 0.4), 0.0, 0.080);
-  Decide(OperationAct::Kind::kFollowWithCamera, "look").is_on = true;
+  Decide(SurgeonAct::Kind::kFollowWithCamera, "look").is_on = true;
   ShowCriticalView(act.count - 1);
 }
 
@@ -242,16 +242,16 @@ std::optional<instrument::TrocarJoints> CholecystectomySurgeon::FindSideView(con
 /// Looks at the triangle from one side of its front; where the picture does not get there, the left hand turns the
 /// neck towards it, farther with each try.
 void CholecystectomySurgeon::LookFromSide(int side, int tries) {
-  OperationAct& act = Decide(OperationAct::Kind::kLookFromSide, "look from aside");
+  SurgeonAct& act = Decide(SurgeonAct::Kind::kLookFromSide, "look from aside");
   act.side = side;
   act.count = tries;
 }
 
-void CholecystectomySurgeon::PlanLookFromSide(const OperationAct& act, const Snapshot& seen) {
+void CholecystectomySurgeon::PlanLookFromSide(const SurgeonAct& act, const Snapshot& seen) {
   const auto& score = seen.operation.critical_view;
   if (score.IsAchieved() || score.Sum() < 6) return;
   if (const auto view = FindSideView(seen, act.side)) {
-    Add(OperationAct::Kind::kLookFrom, "look from aside", 8.0).camera = *view;
+    Add(SurgeonAct::Kind::kLookFrom, "look from aside", 8.0).camera = *view;
     Wait(1.3);
     return;
   }
@@ -290,10 +290,10 @@ Place CholecystectomySurgeon::MiddleOf(std::vector<std::uint32_t> strands) const
 
 /// The gallbladder off its bed: holds change, because the old one may have slipped and what is free is drawn elsewhere.
 void CholecystectomySurgeon::FreeFromBed(int rounds) {
-  Decide(OperationAct::Kind::kFreeFromBed, "look at the bed").count = rounds;
+  Decide(SurgeonAct::Kind::kFreeFromBed, "look at the bed").count = rounds;
 }
 
-void CholecystectomySurgeon::PlanBed(const OperationAct& act, const Snapshot& seen) {
+void CholecystectomySurgeon::PlanBed(const SurgeonAct& act, const Snapshot& seen) {
   const std::vector<std::uint32_t> bed = BedStrands(1.0);
   if (ShareLeft(seen, bed) == 0.0 || act.count <= 0) return;
   const Vec3 axis = BedAxis();
@@ -317,20 +317,20 @@ void CholecystectomySurgeon::PlanBed(const OperationAct& act, const Snapshot& se
 }
 
 void CholecystectomySurgeon::Remove() {
-  Add(OperationAct::Kind::kAssist, "assistant: release", 4.0).command = AssistantCommand::kRelease;
+  Add(SurgeonAct::Kind::kAssist, "assistant: release", 4.0).command = AssistantCommand::kRelease;
   DrawGently(kLeft, 0.03 * bed_normal_);
   const Place middle = Place::Of(Place::Kind::kGallbladder);
   LookAt(middle, 0.0, 0.100);
   Exchange(kRight, ToolKind::kBag);
   Reach(kRight, middle);
-  Add(OperationAct::Kind::kCloseBag, "close the bag", 4.0);
+  Add(SurgeonAct::Kind::kCloseBag, "close the bag", 4.0);
   LetGo(kLeft);
   // the bag goes by where the left hand's tool lies
   Reach(kLeft, Place::BehindTip(kLeft, kOutOfTheWay));
   Exchange(kRight, ToolKind::kHook);
   // it ends with the bag outside, not with a tool's jaws
   acts_.pop_back();
-  acts_.back().kind = OperationAct::Kind::kTakeOut;
+  acts_.back().kind = SurgeonAct::Kind::kTakeOut;
 }
 
 }  // namespace trocar::agent

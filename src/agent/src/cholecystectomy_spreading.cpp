@@ -20,7 +20,7 @@ constexpr double kPoor = 0.3;         // of what was hoped for
 /// Works on `spreading_`.
 void CholecystectomySurgeon::Spread() {
   spreading_.tries.assign(spreading_.strands.size(), 0);
-  Add(OperationAct::Kind::kSpread, "spread the hepatocystic triangle", 600.0);
+  Add(SurgeonAct::Kind::kSpread, "spread the hepatocystic triangle", 600.0);
 }
 
 bool CholecystectomySurgeon::GoOnSpreading(Spreading& work, const Snapshot& seen) {

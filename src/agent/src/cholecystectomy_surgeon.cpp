@@ -192,7 +192,7 @@ Input CholecystectomySurgeon::Act(const Snapshot& seen) {
   if (stops_) acts_.clear();
   if (acts_.empty()) has_finished_ = true;
   if (!acts_.empty()) {
-    OperationAct& act = acts_.front();
+    SurgeonAct& act = acts_.front();
     if (!has_begun_) {
       Begin(act, seen);
       has_begun_ = true;

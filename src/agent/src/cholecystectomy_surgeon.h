@@ -78,15 +78,13 @@ class CholecystectomySurgeon final : public Surgeon {
   void FreeGallbladder();
 
   // what is under way
-  void Begin(const OperationAct& act, const Snapshot& seen);
-  bool IsDone(const OperationAct& act, const Snapshot& seen);
+  void Begin(const SurgeonAct& act, const Snapshot& seen);
+  bool IsDone(const SurgeonAct& act, const Snapshot& seen);
   /// Plans on; what it adds is done next.
-  void PlanOn(const OperationAct& act, const Snapshot& seen);
-  OperationAct& Add(OperationAct::Kind kind, std::string doing, double patience);
+  void PlanOn(const SurgeonAct& act, const Snapshot& seen);
+  SurgeonAct& Add(SurgeonAct::Kind kind, std::string doing, double patience);
   /// Adds an act that plans on when it is reached, from what is seen then.
-  OperationAct& Decide(OperationAct::Kind kind, std::string doing) {
-    return Add(kind, std::move(doing), 1.0);
-  }
+  SurgeonAct& Decide(SurgeonAct::Kind kind, std::string doing) { return Add(kind, std::move(doing), 1.0); }
   Vec3 Find(const Place& place, const Snapshot& seen) const;
   Vec3 FindUnhooked(const Place& place, const Snapshot& seen) const;
 
@@ -101,7 +99,7 @@ class CholecystectomySurgeon final : public Surgeon {
   void LetGo(int hand);
   void Ease(int hand);
   void LineUp(const std::string& what, std::size_t tube, double share, double jaw);
-  void LineUpTool(const OperationAct& act, const Snapshot& seen);
+  void LineUpTool(const SurgeonAct& act, const Snapshot& seen);
   void PlaceClip(std::size_t tube, double share, double beyond = 0.5, int tries = 2);
   void CloseClip(std::size_t tube, double share);
   void CutTube(std::size_t tube, double share);
@@ -128,34 +126,34 @@ class CholecystectomySurgeon final : public Surgeon {
   bool IsEnough(const DissectionGoal& goal, const Snapshot& seen) const;
 
   // the operation's parts
-  void ChooseHold(const OperationAct& act, const Snapshot& seen);
-  void TakeHold(const OperationAct& act, const Snapshot& seen);
-  void CheckHold(const OperationAct& act, const Snapshot& seen);
+  void ChooseHold(const SurgeonAct& act, const Snapshot& seen);
+  void TakeHold(const SurgeonAct& act, const Snapshot& seen);
+  void CheckHold(const SurgeonAct& act, const Snapshot& seen);
   void ClearTriangle(int rounds);
-  void PlanTriangle(const OperationAct& act, const Snapshot& seen);
-  void CheckTriangle(const OperationAct& act, const Snapshot& seen);
-  void PlanLowerThird(const OperationAct& act, const Snapshot& seen);
-  void PlanCriticalView(const OperationAct& act, const Snapshot& seen);
-  void PlanLookFromSide(const OperationAct& act, const Snapshot& seen);
-  void PlanBed(const OperationAct& act, const Snapshot& seen);
-  void CheckPlacedClip(const OperationAct& act, const Snapshot& seen);
+  void PlanTriangle(const SurgeonAct& act, const Snapshot& seen);
+  void CheckTriangle(const SurgeonAct& act, const Snapshot& seen);
+  void PlanLowerThird(const SurgeonAct& act, const Snapshot& seen);
+  void PlanCriticalView(const SurgeonAct& act, const Snapshot& seen);
+  void PlanLookFromSide(const SurgeonAct& act, const Snapshot& seen);
+  void PlanBed(const SurgeonAct& act, const Snapshot& seen);
+  void CheckPlacedClip(const SurgeonAct& act, const Snapshot& seen);
   void FreeLowerThird(int rounds);
   void ShowCriticalView(int rounds);
   void LookFromSide(int side, int tries);
   std::optional<instrument::TrocarJoints> FindSideView(const Snapshot& seen, int side);
   std::optional<std::size_t> FindExtraArtery(const Snapshot& seen);
   void Divide(std::vector<std::size_t> tubes, int rounds = 3);
-  void PlanDivision(const OperationAct& act, const Snapshot& seen);
+  void PlanDivision(const SurgeonAct& act, const Snapshot& seen);
   void GoOnDividing(const Snapshot& seen);
   void ClipAt(std::size_t which, double arc);
-  void LineUpClip(const OperationAct& act, const Snapshot& seen);
-  void LineUpScissors(const OperationAct& act, const Snapshot& seen);
+  void LineUpClip(const SurgeonAct& act, const Snapshot& seen);
+  void LineUpScissors(const SurgeonAct& act, const Snapshot& seen);
   void CloseWhenBetween(std::size_t which, double arc, int tries);
-  void CheckClip(const OperationAct& act, const Snapshot& seen);
+  void CheckClip(const SurgeonAct& act, const Snapshot& seen);
   void CutAt(std::size_t which, double arc);
-  void CheckBlades(const OperationAct& act, const Snapshot& seen);
-  void CheckBeforeCut(const OperationAct& act, const Snapshot& seen);
-  void PlanCoagulation(const OperationAct& act, const Snapshot& seen);
+  void CheckBlades(const SurgeonAct& act, const Snapshot& seen);
+  void CheckBeforeCut(const SurgeonAct& act, const Snapshot& seen);
+  void PlanCoagulation(const SurgeonAct& act, const Snapshot& seen);
   void Withdraw();
   void StopBleeding(int rounds = 4);
   void Take(instrument::ToolKind kind);
@@ -233,7 +231,7 @@ class CholecystectomySurgeon final : public Surgeon {
   std::uint64_t trees_tick_ = kNever;           // of the snapshot that they follow
   std::uint32_t neck_ = 0, hold_ = 0, fundus_ = 0, liver_node_ = 0;
   Vec3 bed_normal_;  // from the liver towards the gallbladder, at rest
-  std::deque<OperationAct> acts_,
+  std::deque<SurgeonAct> acts_,
       inserted_;           // the latter by the act that is under way, to be done next; empty between ticks
   Dissection dissection_;  // that is under way, or planned next
   Spreading spreading_;

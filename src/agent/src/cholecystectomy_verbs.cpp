@@ -16,8 +16,8 @@ constexpr double kWellInside = 0.85;  // of the picture's width
 
 }  // namespace
 
-OperationAct& CholecystectomySurgeon::Add(OperationAct::Kind kind, std::string doing, double patience) {
-  OperationAct act;
+SurgeonAct& CholecystectomySurgeon::Add(SurgeonAct::Kind kind, std::string doing, double patience) {
+  SurgeonAct act;
   act.kind = kind;
   act.doing = std::move(doing);
   act.patience = patience;
@@ -26,25 +26,25 @@ OperationAct& CholecystectomySurgeon::Add(OperationAct::Kind kind, std::string d
 }
 
 void CholecystectomySurgeon::Reach(int hand, const Place& tip, double hurry) {
-  OperationAct& act = Add(OperationAct::Kind::kReach, "reach", 5.0);
+  SurgeonAct& act = Add(SurgeonAct::Kind::kReach, "reach", 5.0);
   act.hand = hand;
   act.place = tip;
   act.hurry = hurry;
 }
 
 void CholecystectomySurgeon::Jaw(int hand, double share) {
-  OperationAct& act = Add(OperationAct::Kind::kJaw, share > 0.5 ? "open" : "close", 2.0);
+  SurgeonAct& act = Add(SurgeonAct::Kind::kJaw, share > 0.5 ? "open" : "close", 2.0);
   act.hand = hand;
   act.amount = share;
 }
 
 /// Of the right hand's tool, in the time that jaws need to close.
 void CholecystectomySurgeon::SetJaw(std::string doing, double jaw) {
-  Add(OperationAct::Kind::kSetJaw, std::move(doing), 2.0).amount = jaw;
+  Add(SurgeonAct::Kind::kSetJaw, std::move(doing), 2.0).amount = jaw;
 }
 
 void CholecystectomySurgeon::Wait(double seconds) {
-  Add(OperationAct::Kind::kWait, "wait", seconds + 1.0).seconds = seconds;
+  Add(SurgeonAct::Kind::kWait, "wait", seconds + 1.0).seconds = seconds;
 }
 
 void CholecystectomySurgeon::Exchange(int hand, instrument::ToolKind kind, bool over_field) {
@@ -57,8 +57,8 @@ void CholecystectomySurgeon::Exchange(int hand, instrument::ToolKind kind, bool 
     waiting.hand = hand;
     Reach(hand, waiting);
   }
-  OperationAct& act = Add(OperationAct::Kind::kExchange,
-                          "exchange " + (found != tray.end() ? found->name : std::string("nothing")), 6.0);
+  SurgeonAct& act = Add(SurgeonAct::Kind::kExchange,
+                        "exchange " + (found != tray.end() ? found->name : std::string("nothing")), 6.0);
   act.hand = hand;
   act.tool = static_cast<std::uint8_t>(found - tray.begin());
   // what comes in comes in closed; an open clip applier that closes would lose its clip
@@ -89,7 +89,7 @@ void CholecystectomySurgeon::Draw(int hand, const Vec3& by) {
 
 /// Draws until the pull is felt.
 void CholecystectomySurgeon::DrawGently(int hand, const Vec3& by) {
-  OperationAct& act = Add(OperationAct::Kind::kDraw, "draw", 5.0);
+  SurgeonAct& act = Add(SurgeonAct::Kind::kDraw, "draw", 5.0);
   act.hand = hand;
   act.by = by;
   Wait(0.2);
@@ -97,7 +97,7 @@ void CholecystectomySurgeon::DrawGently(int hand, const Vec3& by) {
 
 /// Gives way to what it holds until hardly a pull is felt: what is let go under a pull springs back.
 void CholecystectomySurgeon::Ease(int hand) {
-  Add(OperationAct::Kind::kEase, "ease", 3.0).hand = hand;
+  Add(SurgeonAct::Kind::kEase, "ease", 3.0).hand = hand;
 }
 
 void CholecystectomySurgeon::LetGo(int hand) {
@@ -110,14 +110,14 @@ void CholecystectomySurgeon::LetGo(int hand) {
 
 void CholecystectomySurgeon::Burn(int hand, const Place& at, double seconds) {
   Reach(hand, at, 0.5);
-  OperationAct& act = Add(OperationAct::Kind::kBurn, "burn", seconds + 1.0);
+  SurgeonAct& act = Add(SurgeonAct::Kind::kBurn, "burn", seconds + 1.0);
   act.hand = hand;
   act.seconds = seconds;
 }
 
 /// Turns the laparoscope so that it looks at a place from aside: by `turn` about the cystic duct.
 void CholecystectomySurgeon::LookAt(const Place& target, double turn, double distance) {
-  OperationAct& act = Add(OperationAct::Kind::kLook, "look", 8.0);
+  SurgeonAct& act = Add(SurgeonAct::Kind::kLook, "look", 8.0);
   act.place = target;
   act.amount = turn;
   act.distance = distance;

@@ -67,7 +67,7 @@ void HoldFilter::VisitState(core::StateArchive& archive) {
   archive.Field("peels", peels);
 }
 
-void OperationAct::VisitState(core::StateArchive& archive) {
+void SurgeonAct::VisitState(core::StateArchive& archive) {
   archive.Field("kind", kind);
   archive.Field("doing", doing);
   archive.Field("patience", patience);

@@ -71,7 +71,7 @@ struct HoldFilter {
 };
 
 /// One thing to do: begun once, then waited for. The decisions plan on when they are reached, from what is seen then.
-struct OperationAct {
+struct SurgeonAct {
   enum class Kind : std::uint8_t {
     kAssist,
     kReach,
