@@ -182,6 +182,18 @@ INSTANTIATE_TEST_SUITE_P(
         Course{"peg_transfer", "loses", 9000, 20}, Course{"wire_run", "expert", 4000, 20}),
     NameOf);
 
+/// Fields of one name, as those of all organs, are one.
+std::map<std::string, std::uint64_t> HashByField(const Simulation& simulation) {
+  std::map<std::string, std::uint64_t> fields;
+  for (const auto& [field, hash] : simulation.HashFields()) {
+    core::StateHash both;
+    both.Add(fields[field]);
+    both.Add(hash);
+    fields[field] = both.Value();
+  }
+  return fields;
+}
+
 // Control: without any one of its fields a restored state is another one.
 TEST(SimulationStateFields, EachIsNeeded) {
   std::set<std::string> all, needed;
@@ -193,13 +205,13 @@ TEST(SimulationStateFields, EachIsNeeded) {
     ASSERT_FALSE(recording.points.empty());
     const Point& point = recording.points.back();
     Simulation fresh = std::move(*Simulation::Make(recording.model, 1));
-    std::map<std::string, std::uint64_t> at_start;
-    for (const auto& [field, hash] : fresh.HashFields()) at_start[field] = hash;
+    const std::map<std::string, std::uint64_t> at_start = HashByField(fresh);
     ASSERT_TRUE(fresh.Restore(point.bytes).ok());
     std::set<std::string> differ;
-    for (const auto& [field, hash] : fresh.HashFields()) {
+    for (const auto& [field, hash] : HashByField(fresh)) {
       all.insert(field);
-      if (at_start[field] != hash) differ.insert(field);
+      const auto before = at_start.find(field);
+      if (before == at_start.end() || before->second != hash) differ.insert(field);
     }
     for (const std::string& field : differ) {
       if (needed.count(field) != 0) continue;
@@ -279,7 +291,7 @@ TEST(SimulationModelMemory, IsShared) {
   simulations.back().Save(bytes);
   RecordProperty("mb_each", std::to_string(each_mb));
   RecordProperty("state_bytes", std::to_string(bytes.size()));
-  EXPECT_LT(each_mb, 30.0);
+  EXPECT_LT(each_mb, 50.0);
   EXPECT_LT(bytes.size(), 5'000'000U);
   EXPECT_EQ(&simulations.front().Surfaces()[0], &simulations.back().Surfaces()[0]);
 }

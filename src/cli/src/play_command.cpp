@@ -15,6 +15,7 @@
 #include "console.h"
 #include "part_folder.h"
 #include "play_operation.h"
+#include "play_state.h"
 #include "trocar/agent/surgeon.h"
 #include "trocar/core/safe_file.h"
 #include "trocar/core/statistics.h"
@@ -36,6 +37,7 @@ struct PlayArguments {
   std::uint64_t seed = 1;
   int threads = 1;
   double most_seconds = 3600;
+  PlayFiles files;
   bool is_json = false, is_list = false;
 };
 
@@ -208,6 +210,10 @@ core::Result<PlayReport> PlayBlind(std::shared_ptr<const scene::Scene> scene, ag
   auto made = simulation::Simulation::Make(scene, arguments.threads);
   if (!made) return made.error();
   simulation::Simulation simulation = std::move(*made);
+  if (!arguments.files.restore.empty()) {
+    if (auto restored = RestorePlay(arguments.files.restore, simulation, surgeon); !restored)
+      return restored.error();
+  }
   Watcher watcher(*scene);
   const std::size_t goals = scene->task->goals.size();
   ProgressBar progress("playing", static_cast<double>(goals));
@@ -222,6 +228,9 @@ core::Result<PlayReport> PlayBlind(std::shared_ptr<const scene::Scene> scene, ag
     progress.Show(static_cast<double>(done));
   }
   progress.Finish();
+  if (!arguments.files.save.empty()) {
+    if (auto saved = SavePlay(arguments.files.save, simulation, surgeon); !saved) return saved.error();
+  }
   return watcher.Finish(simulation.GetSnapshot(), simulation.Hash());
 }
 
@@ -273,13 +282,18 @@ core::Status PlayOne(scene::Scene scene, const PlayArguments& arguments) {
   if (!size) return size.error();
   return PlayOperation(shared, **surgeon,
                        {arguments.output, (*size)[0], (*size)[1], arguments.threads, arguments.most_seconds,
-                        arguments.is_json});
+                        arguments.is_json, arguments.files});
 }
 
 core::Status Play(const PlayArguments& arguments, Outcome& outcome) {
   if (arguments.is_list) return PrintList();
   if (arguments.surgeon.empty() || arguments.task.empty())
     return core::Error{core::ErrorCode::kUsage, "a surgeon and --task are needed; see trocar play --list"};
+  const bool has_files = !arguments.files.restore.empty() || !arguments.files.save.empty();
+  if (has_files && !arguments.output.empty()) {
+    return core::Error{core::ErrorCode::kUsage,
+                       "--save and --restore go without pictures; leave out -o, or play from the start"};
+  }
   auto operation = FindOperation(arguments.task, arguments.patient, arguments.seed);
   if (!operation.ok()) return operation.error();
   if (*operation) return PlayOne(std::move(**operation), arguments);
@@ -329,6 +343,12 @@ void AddPlayCommand(CLI::App& app, Outcome& outcome) {
   command->add_option("--size", arguments->size, "Of pictures and video [pixels]")
       ->type_name("WxH")
       ->capture_default_str();
+  command->add_option("--save", arguments->files.save, "Write the state and the surgeon's memory at the end")
+      ->type_name("FILE");
+  command
+      ->add_option("--restore", arguments->files.restore,
+                   "Go on where --save left off: the same task, level, patient, seed and surgeon")
+      ->type_name("FILE");
   command->add_flag("--json", arguments->is_json, "Machine-readable");
   command->add_flag("--list", arguments->is_list, "Show tasks and surgeons, and do nothing");
   command->footer(

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "play_state.h"
 #include "trocar/agent/surgeon.h"
 #include "trocar/core/result.h"
 
@@ -18,6 +19,7 @@ struct OperationPlay {
   int threads = 1;
   double most_seconds = 3600;
   bool is_json = false;
+  PlayFiles files;  ///< only without pictures
 };
 
 /// The scene of that name, or at that path, where it is an operation.

@@ -7,9 +7,14 @@
 #include <limits>
 #include <new>
 #include <set>
+#include <vector>
+#include <string>
+#include <sstream>
+#include <filesystem>
 
 #include "allocation_counter.h"
 #include "small_scene.h"
+#include "trocar/core/safe_file.h"
 
 namespace trocar::simulation {
 
@@ -240,6 +245,20 @@ TEST_F(SimulationTest, MissingMaterialIsNamed) {
   ASSERT_FALSE(simulation.ok());
   EXPECT_EQ(simulation.error().code, core::ErrorCode::kSceneInvalid);
   EXPECT_NE(simulation.error().message.find("gallbladder"), std::string::npos);
+}
+
+// The map of the step names the stages in the order in which they run.
+TEST(StageName, IsThatOfTheMapInTheDocuments) {
+  const auto page = core::ReadFile(std::filesystem::path(TROCAR_SOURCE_DIR) / "docs/step.md");
+  ASSERT_TRUE(page.ok());
+  std::vector<std::string> stages;
+  std::istringstream lines(*page);
+  for (std::string line; std::getline(lines, line);) {
+    if (line.rfind("| `", 0) == 0) stages.push_back(line.substr(3, line.find('`', 3) - 3));
+  }
+  ASSERT_EQ(stages.size(), static_cast<std::size_t>(kStageCount));
+  for (int i = 0; i < kStageCount; ++i)
+    EXPECT_EQ(stages[static_cast<std::size_t>(i)], StageName(static_cast<Stage>(i))) << i;
 }
 
 TEST(StageName, HasANameForEachStageAndEvent) {
