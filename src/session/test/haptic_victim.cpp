@@ -15,9 +15,6 @@
 
 int main(int argument_count, char** arguments) {
   using namespace trocar;
-  using namespace trocar::scene;
-  using namespace trocar::simulation;
-  using namespace trocar::agent;
   using namespace trocar::session;
   if (argument_count != 3) return 2;  // DESCRIPTOR SUPERVISOR
   device::SimulatedForceSettings simulated;

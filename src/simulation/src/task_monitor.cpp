@@ -360,30 +360,4 @@ void TaskMonitor::VisitState(core::StateArchive& archive) {
   archive.Field("events_before", events_before_);
 }
 
-void VisitState(core::StateArchive& archive, GoalSnapshot& goal) {
-  archive.Field("steps_done", goal.steps_done);
-  archive.Field("is_done", goal.is_done);
-  archive.Field("is_open", goal.is_open);
-  archive.Field("held_seconds", goal.held_seconds);
-}
-
-void VisitState(core::StateArchive& archive, TaskError& error) {
-  archive.Field("rule", error.rule);
-  archive.Field("time", error.time);
-  archive.Field("position", error.position);
-  archive.Field("object", error.object);
-  archive.Field("hand", error.hand);
-}
-
-void VisitState(core::StateArchive& archive, TaskSnapshot& task) {
-  archive.Field("phase", task.phase);
-  archive.Field("time", task.time);
-  archive.FixedField("goals", task.goals);
-  archive.FixedField("errors", task.errors);
-  archive.Field("penalty", task.penalty);
-  archive.Field("score", task.score);
-  archive.Field("error_count", task.error_count);
-  archive.Field("last_errors", task.last_errors);
-}
-
 }  // namespace trocar::simulation
