@@ -6,6 +6,7 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <filesystem>
 #include <functional>
 #include <span>
 #include <thread>
@@ -19,7 +20,7 @@ using device::Motion;
 class SessionControlTest : public testing::Test {
  protected:
   void SetUp() override { Open(std::string(TROCAR_SOURCE_DIR) + "/scenes/demonstration.json"); }
-  void Open(const char* path) {
+  void Open(const std::filesystem::path& path) {
     core::Result<scene::Scene> scene = scene::ReadScene(path);
     ASSERT_TRUE(scene.ok()) << scene.error().Text();
     for (scene::InstrumentSetup& setup : scene->instruments) setup.tray.resize(3, setup.tray.front());

@@ -74,5 +74,4 @@ void VisitState(core::StateArchive& archive, TaskSnapshot& task) {
   archive.Field("last_errors", task.last_errors);
 }
 
-
 }  // namespace trocar::scene

@@ -4,13 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <new>
 #include <set>
-#include <vector>
-#include <string>
 #include <sstream>
-#include <filesystem>
+#include <string>
+#include <vector>
 
 #include "allocation_counter.h"
 #include "small_scene.h"

@@ -395,8 +395,8 @@ Conservation::Projection Conservation::ProjectOnce(TissueState& tissue, std::spa
     error[i] = is_open ? 0.0 : std::clamp(organ.target - organ.volume, -limit, limit);
     is_done = is_done && std::fabs(error[i]) <= kVolumeTolerance * organ.target;
   }
-    if (is_done || !math::SolveSmall<math::Pivots::kRows>(compliance_, error, count, lambda))
-      return Projection::kNone;
+  if (is_done || !math::SolveSmall<math::Pivots::kRows>(compliance_, error, count, lambda))
+    return Projection::kNone;
   for (std::size_t i = 0; i < count; ++i) {
     const OrganVolume& organ = state.organs[i];
     // through a hole gas enters before the sac is sucked in
