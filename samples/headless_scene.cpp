@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "trocar/session/simulation.h"
+#include "trocar/simulation/simulation.h"
 
 int main(int count, char** arguments) {
   using namespace trocar;
@@ -14,25 +14,25 @@ int main(int count, char** arguments) {
     std::fprintf(stderr, "usage: %s scenes/demonstration.json\n", arguments[0]);
     return 2;
   }
-  auto read = session::ReadScene(arguments[1]);
+  auto read = scene::ReadScene(arguments[1]);
   if (!read.ok()) {
     std::fprintf(stderr, "%s\n", read.error().Text().c_str());
     return 1;
   }
-  const auto scene = std::make_shared<const session::Scene>(std::move(*read));
-  auto simulation = session::Simulation::Make(scene, 1);
+  const auto scene = std::make_shared<const scene::Scene>(std::move(*read));
+  auto simulation = simulation::Simulation::Make(scene, 1);
   if (!simulation.ok()) {
     std::fprintf(stderr, "%s\n", simulation.error().Text().c_str());
     return 1;
   }
   std::uint64_t printed = 0;
   while (simulation->GetSnapshot().time < scene->script.Duration()) {
-    simulation->Step(session::CalcScriptInput(*scene, simulation->GetSnapshot().time));
-    const session::Snapshot& now = simulation->GetSnapshot();
+    simulation->Step(scene::CalcScriptInput(*scene, simulation->GetSnapshot().time));
+    const simulation::Snapshot& now = simulation->GetSnapshot();
     for (; printed < now.event_count; ++printed) {
-      const session::Event& event = now.events[printed % now.events.size()];
-      std::printf("%6.2f s  %s hand: %s, %.2f N\n", now.time, event.hand == session::kLeft ? "left" : "right",
-                  std::string(session::EventName(event.kind)).c_str(), event.force);
+      const scene::Event& event = now.events[printed % now.events.size()];
+      std::printf("%6.2f s  %s hand: %s, %.2f N\n", now.time, event.hand == scene::kLeft ? "left" : "right",
+                  std::string(scene::EventName(event.kind)).c_str(), event.force);
     }
   }
 }

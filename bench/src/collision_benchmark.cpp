@@ -10,7 +10,7 @@
 #include "trocar/geometry/mesh_measures.h"
 #include "trocar/geometry/primitives.h"
 #include "trocar/math/random.h"
-#include "trocar/session/scene.h"
+#include "trocar/scene/scene.h"
 
 namespace trocar::bench {
 namespace {
@@ -163,9 +163,9 @@ core::Result<BenchmarkResult> RunCollisionBenchmark(const BenchmarkOptions& opti
       !status) {
     return status.error();
   }
-  const core::Result<std::filesystem::path> folder = session::FindDataFolder();
+  const core::Result<std::filesystem::path> folder = scene::FindDataFolder();
   if (!folder) return folder.error();
-  const core::Result<session::Scene> scene = session::ReadScene(*folder / "scenes/demonstration.json");
+  const core::Result<scene::Scene> scene = scene::ReadScene(*folder / "scenes/demonstration.json");
   if (!scene) return scene.error();
   for (const anatomy::Organ& organ : scene->patient.organs) {
     if (core::Status status = RunMesh(organ.name, organ.mesh, options, result); !status)

@@ -21,7 +21,7 @@ namespace trocar::bench {
 namespace {
 
 using math::Vec3;
-using session::Hand;
+using scene::Hand;
 
 constexpr double kSecondsPerRepeat = 4;
 constexpr double kPressDepth = 0.008;  // beyond where a tool would touch [m]
@@ -52,10 +52,10 @@ struct Lead {
 };
 
 /// The nearest point of an organ, from a tool at home.
-Vec3 FindTissue(const session::Simulation& simulation, const Vec3& p_world_tip) {
-  const session::Snapshot& snapshot = simulation.GetSnapshot();
+Vec3 FindTissue(const simulation::Simulation& simulation, const Vec3& p_world_tip) {
+  const simulation::Snapshot& snapshot = simulation.GetSnapshot();
   Vec3 nearest = p_world_tip + Vec3{1, 0, 0};
-  for (const session::SurfaceInfo& surface : simulation.Surfaces()) {
+  for (const scene::SurfaceInfo& surface : simulation.Surfaces()) {
     if (surface.triangles.empty()) continue;
     for (std::uint32_t i = surface.first_node; i < surface.first_node + surface.node_count; ++i) {
       const Vec3& node = snapshot.positions[i];
@@ -88,7 +88,7 @@ class Onlooker {
     render::Image image;
     while (!is_stopping_.load()) {
       const core::Stopwatch watch;
-      const session::Snapshot& snapshot = runner_.Latest();
+      const simulation::Snapshot& snapshot = runner_.Latest();
       sees_contact_.store(snapshot.instruments[0].is_touching && snapshot.instruments[1].is_touching);
       if (view) {
         view->Update(snapshot);
@@ -131,7 +131,7 @@ class NoWork : public device::ForceDriver {
 struct Person {
   session::HapticLoop& loop;
   device::SimulatedForceDevice& device;
-  std::array<Lead, session::kHandCount>& leads;
+  std::array<Lead, scene::kHandCount>& leads;
 
   bool WaitFor(double seconds, bool (*condition)(const session::HapticStatus&)) {
     const core::Stopwatch watch;
@@ -145,7 +145,7 @@ struct Person {
     for (int attempt = 0; attempt < 5; ++attempt) {
       loop.BeginCheckPose();
       Sleep(0.1);
-      for (int hand = 0; hand < session::kHandCount; ++hand) {
+      for (int hand = 0; hand < scene::kHandCount; ++hand) {
         device.SetButtons(hand, 1);
         Sleep(0.5);
         device.SetButtons(hand, 0);
@@ -163,12 +163,12 @@ struct Person {
     const core::Stopwatch watch;
     while (watch.Seconds() < kArmingTime) {
       for (Lead& lead : leads) lead.is_pressing.store(false);
-      for (int hand = 0; hand < session::kHandCount; ++hand) device.SetButtons(hand, kSwitchAndJaws);
+      for (int hand = 0; hand < scene::kHandCount; ++hand) device.SetButtons(hand, kSwitchAndJaws);
       Sleep(2.6);
       loop.RequestArm();
       const bool is_armed = WaitFor(3.0, [](const session::HapticStatus& status) {
-        return status.hands[session::kLeft].state == haptics::ArmState::kArmed &&
-               status.hands[session::kRight].state == haptics::ArmState::kArmed;
+        return status.hands[scene::kLeft].state == haptics::ArmState::kArmed &&
+               status.hands[scene::kRight].state == haptics::ArmState::kArmed;
       });
       if (!is_armed) continue;
       for (Lead& lead : leads) lead.is_pressing.store(true);
@@ -187,20 +187,20 @@ void Add(BenchmarkResult& result, const char* name, double value, const char* un
 
 core::Result<BenchmarkResult> RunHapticsBenchmark(const BenchmarkOptions& options) {
   const double seconds = kSecondsPerRepeat * options.repeats;
-  auto folder = session::FindDataFolder();
+  auto folder = scene::FindDataFolder();
   if (!folder) return folder.error();
-  auto scene = session::ReadScene(*folder / "scenes/demonstration.json");
+  auto scene = scene::ReadScene(*folder / "scenes/demonstration.json");
   if (!scene) return scene.error();
   auto simulation =
-      session::Simulation::Make(std::make_shared<const session::Scene>(std::move(*scene)), options.threads);
+      simulation::Simulation::Make(std::make_shared<const scene::Scene>(std::move(*scene)), options.threads);
   if (!simulation) return simulation.error();
 
   // devices, and where they are led
   session::HapticLoopSettings settings;
   settings.supervisor = session::SupervisorLink::FindProgram();
   settings.count_allocations = CountThreadAllocations;
-  std::array<Lead, session::kHandCount> leads;
-  for (const Hand hand : {session::kLeft, session::kRight}) {
+  std::array<Lead, scene::kHandCount> leads;
+  for (const Hand hand : {scene::kLeft, scene::kRight}) {
     settings.hands.push_back(session::MakeHapticHand(
         simulation->GetScene(), simulation->GetSnapshot().X_world_laparoscope, hand, 0.5));
     const haptics::DeviceMap& map = settings.hands.back().map;
@@ -227,7 +227,7 @@ core::Result<BenchmarkResult> RunHapticsBenchmark(const BenchmarkOptions& option
   }
 
   device::SimulatedForceSettings simulated;
-  simulated.channel_count = session::kHandCount;
+  simulated.channel_count = scene::kHandCount;
   simulated.path = [&leads](int channel, double time) {
     return leads[static_cast<std::size_t>(channel)].At(time);
   };
@@ -248,8 +248,8 @@ core::Result<BenchmarkResult> RunHapticsBenchmark(const BenchmarkOptions& option
   while (watch.Seconds() < seconds) {
     Sleep(0.05);
     const session::HapticStatus& status = (*loop)->Latest();
-    const auto& left = status.hands[session::kLeft];
-    const auto& right = status.hands[session::kRight];
+    const auto& left = status.hands[scene::kLeft];
+    const auto& right = status.hands[scene::kRight];
     looks += 1;
     touched += onlooker.SeesContact() ? 1 : 0;
     const bool are_armed =

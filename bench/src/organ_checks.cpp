@@ -7,8 +7,8 @@
 #include "trocar/core/progress_bar.h"
 #include "trocar/core/statistics.h"
 #include "trocar/core/text_table.h"
-#include "trocar/session/scene.h"
-#include "trocar/session/simulation.h"
+#include "trocar/scene/scene.h"
+#include "trocar/simulation/simulation.h"
 
 namespace trocar::bench {
 namespace {
@@ -19,10 +19,10 @@ constexpr double kTickTarget = 0.004;
 }  // namespace
 
 core::Result<PhysicsCheck> CheckVolume(const std::filesystem::path& path) {
-  auto read = session::ReadScene(path);
+  auto read = scene::ReadScene(path);
   if (!read.ok()) return read.error();
-  const auto scene = std::make_shared<const session::Scene>(std::move(*read));
-  auto simulation = session::Simulation::Make(scene, 1);
+  const auto scene = std::make_shared<const scene::Scene>(std::move(*read));
+  auto simulation = simulation::Simulation::Make(scene, 1);
   if (!simulation.ok()) return simulation.error();
   const double duration = scene->script.Duration();
   const auto ticks = static_cast<int>(std::lround(duration / scene->tick_seconds));
@@ -40,8 +40,8 @@ core::Result<PhysicsCheck> CheckVolume(const std::filesystem::path& path) {
     check.lines.push_back({organs[i].name, {}});
   core::ProgressBar progress("playing " + scene->name, ticks);
   for (int tick = 0; tick < ticks; ++tick) {
-    simulation->Step(session::CalcScriptInput(*scene, simulation->GetSnapshot().time));
-    const session::Snapshot& now = simulation->GetSnapshot();
+    simulation->Step(scene::CalcScriptInput(*scene, simulation->GetSnapshot().time));
+    const simulation::Snapshot& now = simulation->GetSnapshot();
     seconds.push_back(now.tick_seconds);
     for (std::size_t i = 0; i < organs.size(); ++i) {
       errors[i] = std::max(errors[i], std::fabs(now.organs[i].volume / now.organs[i].target - 1.0));
@@ -69,19 +69,19 @@ core::Result<PhysicsCheck> CheckTickRate(const std::filesystem::path& path, doub
   const std::vector<double> rates{60, 120, 240};
   core::ProgressBar progress("three tick rates", static_cast<double>(rates.size()));
   for (const double rate : rates) {
-    auto read = session::ReadScene(path);
+    auto read = scene::ReadScene(path);
     if (!read.ok()) return read.error();
     read->tick_seconds = 1.0 / rate;
-    const auto scene = std::make_shared<const session::Scene>(std::move(*read));
-    auto simulation = session::Simulation::Make(scene, 1);
+    const auto scene = std::make_shared<const scene::Scene>(std::move(*read));
+    auto simulation = simulation::Simulation::Make(scene, 1);
     if (!simulation.ok()) return simulation.error();
     start = simulation->GetSnapshot().positions;
     const auto ticks = static_cast<int>(std::lround(time * rate));
     for (int tick = 0; tick < ticks; ++tick) {
-      simulation->Step(session::CalcScriptInput(*scene, simulation->GetSnapshot().time));
+      simulation->Step(scene::CalcScriptInput(*scene, simulation->GetSnapshot().time));
     }
     // the hands hold still until the tissue has come to rest
-    for (int tick = 0; tick < 120; ++tick) simulation->Step(session::CalcScriptInput(*scene, time));
+    for (int tick = 0; tick < 120; ++tick) simulation->Step(scene::CalcScriptInput(*scene, time));
     ends.push_back(simulation->GetSnapshot().positions);
     progress.Show(static_cast<double>(ends.size()));
   }

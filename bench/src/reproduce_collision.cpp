@@ -10,7 +10,7 @@
 #include "trocar/geometry/mesh_measures.h"
 #include "trocar/geometry/primitives.h"
 #include "trocar/math/random.h"
-#include "trocar/session/scene.h"
+#include "trocar/scene/scene.h"
 
 namespace trocar::bench {
 namespace {
@@ -35,9 +35,9 @@ core::Result<std::vector<NamedMesh>> FindMeshes(bool is_quick) {
   for (int subdivisions = 1; subdivisions <= (is_quick ? 3 : 5); ++subdivisions)
     meshes.push_back({"ball", geometry::MakeSphere({0, 0, 0}, 0.1, subdivisions)});
   meshes.push_back({"grid", geometry::MakeGrid(46, 0.004)});
-  const auto folder = session::FindDataFolder();
+  const auto folder = scene::FindDataFolder();
   if (!folder.ok()) return folder.error();
-  auto scene = session::ReadScene(*folder / "scenes/demonstration.json");
+  auto scene = scene::ReadScene(*folder / "scenes/demonstration.json");
   if (!scene.ok()) return scene.error();
   for (anatomy::Organ& organ : scene->patient.organs)
     meshes.push_back({"built-in " + organ.name, std::move(organ.mesh)});

@@ -12,7 +12,7 @@
 #include "trocar/bench/experiment.h"
 #include "trocar/core/statistics.h"
 #include "trocar/core/text_table.h"
-#include "trocar/session/simulation.h"
+#include "trocar/simulation/simulation.h"
 
 namespace trocar::bench {
 namespace {
@@ -145,19 +145,19 @@ core::Status AddGrid(const ExperimentOptions& options, Experiment& experiment) {
 }
 
 core::Status AddPatient(const ExperimentOptions& options, Experiment& experiment) {
-  const auto folder = session::FindDataFolder();
+  const auto folder = scene::FindDataFolder();
   if (!folder) return folder.error();
-  auto read = session::ReadScene(*folder / "scenes/retraction.json");
+  auto read = scene::ReadScene(*folder / "scenes/retraction.json");
   if (!read) return read.error();
-  const auto scene = std::make_shared<const session::Scene>(std::move(read).value());
-  auto made = session::Simulation::Make(scene, options.threads);
+  const auto scene = std::make_shared<const scene::Scene>(std::move(read).value());
+  auto made = simulation::Simulation::Make(scene, options.threads);
   if (!made) return made.error();
   const int ticks = options.is_quick ? 121 : 1801;
   std::vector<double> times, errors;
   PlotLine line{"true error", {}}, wanted{"0.0005", {}};
   int unsettled = 0;
   for (int tick = 0; tick < ticks; ++tick) {
-    const session::Input input = session::CalcScriptInput(*scene, tick * scene->tick_seconds);
+    const scene::Input input = scene::CalcScriptInput(*scene, tick * scene->tick_seconds);
     const WorkStopwatch stopwatch(options.threads);
     made->Step(input);
     times.push_back(1e3 * stopwatch.Seconds());

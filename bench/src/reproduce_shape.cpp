@@ -9,7 +9,7 @@
 #include "trocar/core/text_table.h"
 #include "trocar/geometry/mesh_topology.h"
 #include "trocar/geometry/primitives.h"
-#include "trocar/session/scene.h"
+#include "trocar/scene/scene.h"
 #include "trocar/tissue/equilibrium.h"
 
 namespace trocar::bench {
@@ -90,9 +90,9 @@ core::Result<ShapeError> Sag(const Shape& shape, double virtual_stiffness,
 }
 
 core::Result<Shape> FindLiver() {
-  const auto folder = session::FindDataFolder();
+  const auto folder = scene::FindDataFolder();
   if (!folder.ok()) return folder.error();
-  auto scene = session::ReadScene(*folder / "scenes/demonstration.json");
+  auto scene = scene::ReadScene(*folder / "scenes/demonstration.json");
   if (!scene.ok()) return scene.error();
   const int index = scene->patient.FindOrgan("liver");
   if (index < 0) return WrongAnswer("table2", "the built-in patient has no liver");

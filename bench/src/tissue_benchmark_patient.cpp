@@ -10,7 +10,7 @@
 #include "trocar/core/progress_bar.h"
 #include "trocar/core/statistics.h"
 #include "trocar/core/text_table.h"
-#include "trocar/session/simulation.h"
+#include "trocar/simulation/simulation.h"
 
 namespace trocar::bench {
 namespace {
@@ -21,12 +21,12 @@ constexpr double kErrorLimit = 1e-3;
 }  // namespace
 
 core::Status RunPatientCases(const BenchmarkOptions& options, BenchmarkResult& result) {
-  const core::Result<std::filesystem::path> folder = session::FindDataFolder();
+  const core::Result<std::filesystem::path> folder = scene::FindDataFolder();
   if (!folder) return folder.error();
-  core::Result<session::Scene> read = session::ReadScene(*folder / "scenes/retraction.json");
+  core::Result<scene::Scene> read = scene::ReadScene(*folder / "scenes/retraction.json");
   if (!read) return read.error();
-  const auto scene = std::make_shared<const session::Scene>(std::move(read).value());
-  core::Result<session::Simulation> made = session::Simulation::Make(scene, options.threads);
+  const auto scene = std::make_shared<const scene::Scene>(std::move(read).value());
+  core::Result<simulation::Simulation> made = simulation::Simulation::Make(scene, options.threads);
   if (!made) return made.error();
   const int ticks = static_cast<int>(scene->script.Duration() / scene->tick_seconds) + 1;
   std::vector<double> tick_ms(static_cast<std::size_t>(ticks), INFINITY), errors;
@@ -40,7 +40,7 @@ core::Status RunPatientCases(const BenchmarkOptions& options, BenchmarkResult& r
     made->Reset();
     for (int tick = 0; tick < ticks; ++tick) {
       bar.Show(repeat + static_cast<double>(tick) / ticks);
-      const session::Input input = session::CalcScriptInput(*scene, tick * scene->tick_seconds);
+      const scene::Input input = scene::CalcScriptInput(*scene, tick * scene->tick_seconds);
       const core::Stopwatch stopwatch;
       made->Step(input);
       // the same work in every run: the shortest time is the one that nothing else disturbed

@@ -13,7 +13,7 @@ for compiler in "${compilers[@]}"; do
 done
 
 tissue=$source_folder/src/tissue
-sources=("$source_folder/tests/bits/solve_bits.cpp" "$tissue"/src/*.cpp "$source_folder"/src/core/src/{assert,simd_level}.cpp
+sources=("$source_folder/tests/bits/solve_bits.cpp" "$tissue"/src/*.cpp "$source_folder"/src/core/src/{assert,simd_level,state_archive}.cpp
   "$source_folder"/src/math/src/pose.cpp "$source_folder"/src/geometry/src/{distance,mesh_measures,mesh_topology,primitives}.cpp)
 # what CMakeLists.txt gives them, but for the optimisation
 flags=(-std=c++20 -ffp-contract=off -fno-math-errno -fno-trapping-math -DNDEBUG -w -I"$tissue/src")

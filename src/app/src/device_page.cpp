@@ -215,7 +215,7 @@ void DevicePage::ShowHaptics(double now) {
   const session::HapticStatus& status = loop->Latest();
   haptics_.set_text(session::DescribeHaptics(status));
   const device::Channel hand = GetHand();
-  if (hand < session::kHandCount) forces_.push_back({now, status.hands[hand].force});
+  if (hand < scene::kHandCount) forces_.push_back({now, status.hands[hand].force});
   while (!forces_.empty() && forces_.front().time < now - DeviceBench::kHistory) forces_.pop_front();
   is_showing_ = true;
   force_.set_active(std::any_of(

@@ -78,7 +78,7 @@ void Panel::AddTask() {
   task_card_->append(task_errors_);
 }
 
-void Panel::ShowTask(const session::Snapshot& snapshot) {
+void Panel::ShowTask(const simulation::Snapshot& snapshot) {
   if (control_ == nullptr || !control_->GetScene().task) return;
   const TaskReadOut text = DescribeTask(*control_->GetScene().task, snapshot.task);
   SetText(*task_time_, text.time);
@@ -152,15 +152,15 @@ void Panel::AddHands() {
     card.append(row.bar);
     if (&row != &hands_.back()) row.bar.set_margin_bottom(6);
   }
-  hands_[session::kLeft].name.set_text("1  Left hand");
-  hands_[session::kRight].name.set_text("2  Right hand");
+  hands_[scene::kLeft].name.set_text("1  Left hand");
+  hands_[scene::kRight].name.set_text("2  Right hand");
 }
 
 void Panel::AddOperation() {
   operation_card_ = &AddCard("Operation");
-  for (int hand = 0; hand < session::kHandCount; ++hand) {
+  for (int hand = 0; hand < scene::kHandCount; ++hand) {
     auto* line = Gtk::make_managed<Gtk::Box>();
-    auto* name = Gtk::make_managed<Gtk::Label>(hand == session::kLeft ? "Left tool" : "Right tool");
+    auto* name = Gtk::make_managed<Gtk::Label>(hand == scene::kLeft ? "Left tool" : "Right tool");
     SetLabel(*name, "name");
     name->set_size_request(kNameWidth, -1);
     Gtk::DropDown& tray = trays_[static_cast<std::size_t>(hand)];
@@ -168,7 +168,7 @@ void Panel::AddOperation() {
     tray.set_tooltip_text("Exchanges the tool through this trocar (X next, Z previous, for the chosen hand)");
     tray.property_selected().signal_changed().connect([this, hand] {
       if (control_ == nullptr || is_showing_) return;
-      control_->ChooseTool(static_cast<session::Hand>(hand),
+      control_->ChooseTool(static_cast<scene::Hand>(hand),
                            trays_[static_cast<std::size_t>(hand)].get_selected());
     });
     line->append(*name);
@@ -183,16 +183,16 @@ void Panel::AddOperation() {
   assistant_.set_tooltip_text("Command to the assistant with the third grasper (U: the next one)");
   assistant_.property_selected().signal_changed().connect([this] {
     if (control_ == nullptr || is_showing_ || assistant_.get_selected() > 3) return;
-    control_->CommandAssistant(static_cast<session::AssistantCommand>(assistant_.get_selected()));
+    control_->CommandAssistant(static_cast<scene::AssistantCommand>(assistant_.get_selected()));
   });
   assistant_does_ = &AddLine(*operation_card_, "Assistant", "What the third hand does");
   operation_card_->append(assistant_);
 }
 
-void Panel::ShowOperation(const session::Snapshot& snapshot) {
+void Panel::ShowOperation(const simulation::Snapshot& snapshot) {
   if (control_ == nullptr) return;
-  const session::Scene& scene = control_->GetScene();
-  const session::Input& input = control_->GetInput();
+  const scene::Scene& scene = control_->GetScene();
+  const scene::Input& input = control_->GetInput();
   is_showing_ = true;
   std::string clips;
   for (std::size_t hand = 0; hand < trays_.size(); ++hand) {
@@ -204,8 +204,8 @@ void Panel::ShowOperation(const session::Snapshot& snapshot) {
     if (place < tray.size() && tray[place].clips > 0) {
       clips += (clips.empty() ? "" : " and ") + std::to_string(snapshot.operation.clips_left[hand]);
     }
-    SetText(hands_[hand].name, (hand == session::kLeft ? "1  Left " : "2  Right ") +
-                                   ToolLabel(scene, snapshot, static_cast<session::Hand>(hand)));
+    SetText(hands_[hand].name, (hand == scene::kLeft ? "1  Left " : "2  Right ") +
+                                   ToolLabel(scene, snapshot, static_cast<scene::Hand>(hand)));
   }
   SetText(*clips_, clips.empty() ? "—" : clips);
   SetText(*blood_, DescribeFluid(snapshot.operation.fluids, surgery::Fluid::kBlood));
@@ -236,7 +236,7 @@ void Panel::AddSettings() {
             "Chebyshev: fast, the one to operate with. Relaxation: the paper's reference.");
         solver_.property_selected().signal_changed().connect([this] {
           if (control_ == nullptr || is_showing_ || solver_.get_selected() >= SolverChoices().size()) return;
-          session::LiveSettings settings = control_->GetSettings();
+          scene::LiveSettings settings = control_->GetSettings();
           settings.solver.kind = SolverChoices()[solver_.get_selected()].kind;
           control_->SetSettings(settings);
         });
@@ -262,7 +262,7 @@ void Panel::AddSettings() {
     SliderRow* shown = widgets.get();
     slider.signal_value_changed().connect([this, &row, shown] {
       if (control_ == nullptr || is_showing_) return;
-      session::LiveSettings settings = control_->GetSettings();
+      scene::LiveSettings settings = control_->GetSettings();
       SetFromForm(row, shown->slider.get_value(), settings);
       control_->SetSettings(settings);
       SetText(shown->value, FormatSetting(row, control_->GetSettings()));
@@ -311,9 +311,9 @@ void Panel::AddMeasures() {
 void Panel::AddStages() {
   Gtk::Box& table = AddCard("Stages of a tick [ms]");
   table.set_spacing(1);
-  for (int stage = 0; stage < session::kStageCount; ++stage) {
+  for (int stage = 0; stage < simulation::kStageCount; ++stage) {
     auto* line = Gtk::make_managed<Gtk::Box>();
-    auto* name = Gtk::make_managed<Gtk::Label>(StageLabel(static_cast<session::Stage>(stage)));
+    auto* name = Gtk::make_managed<Gtk::Label>(StageLabel(static_cast<simulation::Stage>(stage)));
     SetLabel(*name, "fine");
     name->set_hexpand(true);
     SetLabel(stages_[stage], "stage", Gtk::Align::END);
@@ -365,7 +365,7 @@ void Panel::SetControl(SessionControl* control) {
 void Panel::ShowSettings() {
   if (control_ == nullptr) return;
   is_showing_ = true;
-  const session::LiveSettings& settings = control_->GetSettings();
+  const scene::LiveSettings& settings = control_->GetSettings();
   for (std::size_t i = 0; i < sliders_.size(); ++i) {
     const SettingRow& row = SettingRows()[i];
     sliders_[i]->slider.set_value(PositionInForm(row, settings));
@@ -376,12 +376,12 @@ void Panel::ShowSettings() {
   is_showing_ = false;
 }
 
-void Panel::ShowForces(const session::Snapshot& snapshot) {
+void Panel::ShowForces(const simulation::Snapshot& snapshot) {
   if (control_ == nullptr) return;
   const anatomy::Patient& patient = control_->GetScene().patient;
-  for (int hand = 0; hand < session::kHandCount; ++hand) {
+  for (int hand = 0; hand < scene::kHandCount; ++hand) {
     HandRow& row = hands_[hand];
-    const session::InstrumentSnapshot& instrument = snapshot.instruments[hand];
+    const simulation::InstrumentSnapshot& instrument = snapshot.instruments[hand];
     const double force = math::Norm(instrument.force);
     const ForceThresholds thresholds = FindForceThresholds(OrganLabel(patient, instrument.organ));
     SetText(row.force, FormatForce(force));
@@ -399,7 +399,7 @@ void Panel::ShowForces(const session::Snapshot& snapshot) {
   }
 }
 
-void Panel::ShowTimes(const session::Snapshot& snapshot, const session::RunnerStatistics& statistics,
+void Panel::ShowTimes(const simulation::Snapshot& snapshot, const session::RunnerStatistics& statistics,
                       const StageMeter& stages, double frame_rate) {
   SetText(*residual_, FormatResidual(snapshot.residual));
   SetText(*iterations_, std::to_string(snapshot.iterations));
@@ -409,7 +409,7 @@ void Panel::ShowTimes(const session::Snapshot& snapshot, const session::RunnerSt
                       (statistics.is_real_time ? ", real-time" : ""));
   SetText(*frames_, std::to_string(static_cast<int>(frame_rate + 0.5)));
   SetText(*time_, FormatTime(snapshot.time));
-  for (int stage = 0; stage < session::kStageCount; ++stage) {
+  for (int stage = 0; stage < simulation::kStageCount; ++stage) {
     char text[32];
     std::snprintf(text, sizeof text, "%.3f", 1e3 * stages.Seconds()[stage]);
     SetText(stages_[stage], text);

@@ -22,13 +22,13 @@ class Panel : public Gtk::ScrolledWindow {
   /// \param control  outlives the panel's use
   void SetControl(SessionControl* control);
   /// Refreshes forces and contacts.
-  void ShowForces(const session::Snapshot& snapshot);
+  void ShowForces(const simulation::Snapshot& snapshot);
   /// Refreshes tools, liquids and the assistant.
-  void ShowOperation(const session::Snapshot& snapshot);
+  void ShowOperation(const simulation::Snapshot& snapshot);
   /// Refreshes how the task goes; nothing in a scene without one.
-  void ShowTask(const session::Snapshot& snapshot);
+  void ShowTask(const simulation::Snapshot& snapshot);
   /// Refreshes solver and time read-outs.
-  void ShowTimes(const session::Snapshot& snapshot, const session::RunnerStatistics& statistics,
+  void ShowTimes(const simulation::Snapshot& snapshot, const session::RunnerStatistics& statistics,
                  const StageMeter& stages, double frame_rate);
   /// Moves the sliders to the control's settings.
   void ShowSettings();
@@ -60,9 +60,9 @@ class Panel : public Gtk::ScrolledWindow {
   Gtk::Box* task_card_ = nullptr;
   Gtk::Label task_name_, task_about_, task_next_, task_errors_;
   Gtk::Label *task_time_ = nullptr, *task_progress_ = nullptr, *task_score_ = nullptr;
-  std::array<HandRow, session::kHandCount> hands_;
+  std::array<HandRow, scene::kHandCount> hands_;
   Gtk::Box* operation_card_ = nullptr;  // hidden where there is one tool a hand, and nothing else to do
-  std::array<Gtk::DropDown, session::kHandCount> trays_;
+  std::array<Gtk::DropDown, scene::kHandCount> trays_;
   Gtk::DropDown assistant_;
   Gtk::Label *clips_ = nullptr, *blood_ = nullptr, *bile_ = nullptr, *stones_ = nullptr,
              *assistant_does_ = nullptr;
@@ -73,7 +73,7 @@ class Panel : public Gtk::ScrolledWindow {
   Gtk::Button defaults_{"Defaults"};
   Gtk::Label *residual_ = nullptr, *iterations_ = nullptr, *tick_ = nullptr, *late_ = nullptr,
              *frames_ = nullptr, *time_ = nullptr;
-  std::array<Gtk::Label, session::kStageCount> stages_;
+  std::array<Gtk::Label, simulation::kStageCount> stages_;
 };
 
 }  // namespace trocar::app

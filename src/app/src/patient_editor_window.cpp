@@ -3,7 +3,7 @@
 
 #include <cstdio>
 
-#include "trocar/session/scene.h"
+#include "trocar/scene/scene.h"
 #include "window_screenshot.h"
 
 namespace trocar::app {
@@ -32,7 +32,7 @@ const char* HintOf(EditorTool tool) {
 
 /// Whether the folder belongs to what was delivered: it is never overwritten without a question.
 bool IsDelivered(const std::filesystem::path& folder) {
-  const auto data = session::FindDataFolder();
+  const auto data = scene::FindDataFolder();
   if (!data) return false;
   std::error_code failure;
   const auto inside = std::filesystem::relative(folder, *data / "assets", failure);

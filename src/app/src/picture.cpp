@@ -14,8 +14,8 @@ Picture::Picture() {
   add_css_class("picture");
 }
 
-void Picture::SetScene(const session::Scene* scene, std::span<const session::SurfaceInfo> surfaces,
-                       std::span<const session::StrandInfo> strands) {
+void Picture::SetScene(const scene::Scene* scene, std::span<const scene::SurfaceInfo> surfaces,
+                       std::span<const scene::StrandInfo> strands) {
   scene_ = scene;
   surfaces_ = surfaces;
   strands_ = strands;

@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "trocar/core/result.h"
-#include "trocar/session/simulation.h"
+#include "trocar/simulation/simulation.h"
 #include "trocar/view/laparoscope_view.h"
 
 namespace trocar::app {
@@ -19,10 +19,10 @@ class Picture : public Gtk::GLArea {
 
   /// What is drawn from now on; both must outlive the picture's last frame. The view itself is made in the
   /// next frame.
-  void SetScene(const session::Scene* scene, std::span<const session::SurfaceInfo> surfaces,
-                std::span<const session::StrandInfo> strands);
+  void SetScene(const scene::Scene* scene, std::span<const scene::SurfaceInfo> surfaces,
+                std::span<const scene::StrandInfo> strands);
   /// State of the next frame; null draws an empty picture. Valid until the next call.
-  void SetSnapshot(const session::Snapshot* snapshot) { snapshot_ = snapshot; }
+  void SetSnapshot(const simulation::Snapshot* snapshot) { snapshot_ = snapshot; }
   /// Angle that CirclePixels() span in the picture [rad].
   double FieldOfView() const;
   /// Diameter of the laparoscope's round picture on the screen [pixels of the window].
@@ -43,10 +43,10 @@ class Picture : public Gtk::GLArea {
  private:
   void Fail(const core::Error& error);
 
-  const session::Scene* scene_ = nullptr;
-  std::span<const session::SurfaceInfo> surfaces_;
-  std::span<const session::StrandInfo> strands_;
-  const session::Snapshot* snapshot_ = nullptr;
+  const scene::Scene* scene_ = nullptr;
+  std::span<const scene::SurfaceInfo> surfaces_;
+  std::span<const scene::StrandInfo> strands_;
+  const simulation::Snapshot* snapshot_ = nullptr;
   std::optional<view::LaparoscopeView> view_;
   view::ViewOptions options_;
   bool has_failed_ = false;

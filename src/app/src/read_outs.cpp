@@ -52,8 +52,8 @@ std::string FormatTime(double seconds) {
   return Print("%lld:%02lld.%lld", tenths / 600, tenths / 10 % 60, tenths % 10);
 }
 
-TaskReadOut DescribeTask(const session::Task& task, const session::TaskSnapshot& now) {
-  using session::TaskPhase;
+TaskReadOut DescribeTask(const scene::Task& task, const scene::TaskSnapshot& now) {
+  using scene::TaskPhase;
   TaskReadOut text;
   text.time = FormatTime(now.time);
   if (std::isfinite(task.time_limit)) text.time += " / " + FormatTime(task.time_limit);
@@ -104,16 +104,16 @@ std::string OrganLabel(const anatomy::Patient& patient, std::int32_t organ) {
   return index < patient.tubes.size() ? WithSpaces(patient.tubes[index].name) : "tissue";
 }
 
-std::string HandLabel(const session::Scene& scene, std::int32_t hand) {
-  if (hand < 0 || hand >= session::kHandCount) return "instrument";
-  const session::InstrumentSetup& setup = scene.instruments[static_cast<std::size_t>(hand)];
+std::string HandLabel(const scene::Scene& scene, std::int32_t hand) {
+  if (hand < 0 || hand >= scene::kHandCount) return "instrument";
+  const scene::InstrumentSetup& setup = scene.instruments[static_cast<std::size_t>(hand)];
   // where tools are exchanged, the one at the start may not be the one that is meant
-  return (hand == session::kLeft ? "left " : "right ") +
+  return (hand == scene::kLeft ? "left " : "right ") +
          (setup.tray.size() > 1 ? "hand" : WithSpaces(setup.tool.name));
 }
 
-std::string ToolLabel(const session::Scene& scene, const session::Snapshot& snapshot, session::Hand hand) {
-  const session::InstrumentSetup& setup = scene.instruments[hand];
+std::string ToolLabel(const scene::Scene& scene, const simulation::Snapshot& snapshot, scene::Hand hand) {
+  const scene::InstrumentSetup& setup = scene.instruments[hand];
   const std::size_t place = snapshot.operation.tools[hand];
   const instrument::Tool& tool = place < setup.tray.size() ? setup.tray[place] : setup.tool;
   std::string label = WithSpaces(tool.name);
@@ -133,13 +133,13 @@ std::string DescribeFluid(const surgery::FluidLedger& fluids, surgery::Fluid flu
   return FormatMillilitres(account.left) + ", " + FormatMillilitres(account.pooled) + " in the abdomen";
 }
 
-std::string DescribeStones(std::span<const session::StoneSnapshot> stones) {
-  using session::StonePlace;
-  const auto is_out = [](const session::StoneSnapshot& stone) {
+std::string DescribeStones(std::span<const simulation::StoneSnapshot> stones) {
+  using simulation::StonePlace;
+  const auto is_out = [](const simulation::StoneSnapshot& stone) {
     return stone.place == StonePlace::kSpilled || stone.place == StonePlace::kHeld;
   };
   const auto out = std::count_if(stones.begin(), stones.end(), is_out);
-  const auto inside = std::count_if(stones.begin(), stones.end(), [](const session::StoneSnapshot& stone) {
+  const auto inside = std::count_if(stones.begin(), stones.end(), [](const simulation::StoneSnapshot& stone) {
     return stone.place == StonePlace::kInside;
   });
   const auto retrieved = static_cast<std::ptrdiff_t>(stones.size()) - out - inside;
@@ -147,85 +147,86 @@ std::string DescribeStones(std::span<const session::StoneSnapshot> stones) {
   return Print("%td in the abdomen, %td retrieved", out, retrieved);
 }
 
-std::string DescribeAssistant(session::AssistantCommand command, bool is_holding) {
+std::string DescribeAssistant(scene::AssistantCommand command, bool is_holding) {
   switch (command) {
-    case session::AssistantCommand::kRetract:
+    case scene::AssistantCommand::kRetract:
       return is_holding ? "retracts the fundus" : "reaches for the fundus";
-    case session::AssistantCommand::kRelax:
+    case scene::AssistantCommand::kRelax:
       return is_holding ? "holds the fundus" : "reaches for the fundus";
-    case session::AssistantCommand::kRelease:
+    case scene::AssistantCommand::kRelease:
       return "lets go and withdraws";
     default:
       return "waits";
   }
 }
 
-std::string DescribeContact(const session::InstrumentSnapshot& instrument, const anatomy::Patient& patient) {
+std::string DescribeContact(const simulation::InstrumentSnapshot& instrument,
+                            const anatomy::Patient& patient) {
   if (instrument.is_grasping) return "holds the " + OrganLabel(patient, instrument.organ);
   if (instrument.is_touching) return "touches the " + OrganLabel(patient, instrument.organ);
   return "free";
 }
 
-std::string DescribeEvent(const session::Event& event, const session::Scene& scene) {
+std::string DescribeEvent(const scene::Event& event, const scene::Scene& scene) {
   const std::string hand = Capitalised(HandLabel(scene, event.hand)) + ": ";
   const std::string organ = OrganLabel(scene.patient, event.organ);
   // a grasp begins with no force yet: "0.0 N" would say nothing
   const std::string force = event.force < 0.05 ? "" : ", " + FormatForce(event.force);
   switch (event.kind) {
-    case session::EventKind::kGrasp:
+    case scene::EventKind::kGrasp:
       return hand + "grasped the " + organ + force;
-    case session::EventKind::kRelease:
+    case scene::EventKind::kRelease:
       return hand + "let the " + organ + " go";
-    case session::EventKind::kSlip:
+    case scene::EventKind::kSlip:
       return hand + "the " + organ + " slipped" + force;
-    case session::EventKind::kGraspMissed:
+    case scene::EventKind::kGraspMissed:
       return hand + "closed on nothing; open the jaws and go deeper";
-    case session::EventKind::kStateRestored:
+    case scene::EventKind::kStateRestored:
       return Capitalised(organ) + ": was not finite, last good state restored (E-SIM-001)";
-    case session::EventKind::kOrganFrozen:
+    case scene::EventKind::kOrganFrozen:
       return Capitalised(organ) + ": held still, press R to reset (E-SIM-002)";
-    case session::EventKind::kTear:
+    case scene::EventKind::kTear:
       return event.organ < 0 ? "A duct or vessel was torn off" : Capitalised(organ) + ": an attachment tore";
-    case session::EventKind::kPinchDamage:
+    case scene::EventKind::kPinchDamage:
       return hand + "pinched the " + organ + " too hard" + force;
-    case session::EventKind::kToolsTouch:
+    case scene::EventKind::kToolsTouch:
       return "The instruments met";
-    case session::EventKind::kExchangeRefused:
+    case scene::EventKind::kExchangeRefused:
       return hand + "open the jaws and let go before the tool is exchanged";
-    case session::EventKind::kClipClosed:
+    case scene::EventKind::kClipClosed:
       return hand + "closed a clip on the " + organ;
-    case session::EventKind::kTubeCut:
+    case scene::EventKind::kTubeCut:
       return hand + "cut the " + organ;
-    case session::EventKind::kNoClipsLeft:
+    case scene::EventKind::kNoClipsLeft:
       return hand + "there is no clip left; exchange the tool for a full one";
-    case session::EventKind::kUsedOutside:
+    case scene::EventKind::kUsedOutside:
       return hand + "the tool is out of its trocar; push it in before it is used";
-    case session::EventKind::kClipSlipped:
+    case scene::EventKind::kClipSlipped:
       return "A clip slipped off the " + organ;
-    case session::EventKind::kStoneSpilled:
+    case scene::EventKind::kStoneSpilled:
       return "A stone spilled out of the gallbladder";
-    case session::EventKind::kStoneTaken:
+    case scene::EventKind::kStoneTaken:
       return hand + "took a stone";
-    case session::EventKind::kStoneRetrieved:
+    case scene::EventKind::kStoneRetrieved:
       return hand + "retrieved a stone";
-    case session::EventKind::kOperationError:
+    case scene::EventKind::kOperationError:
       return std::string(training::ExplanationOf(static_cast<training::OperationError>(event.error)));
   }
   return "";
 }
 
-bool IsWarning(session::EventKind kind) noexcept {
-  return kind == session::EventKind::kSlip || kind == session::EventKind::kStateRestored ||
-         kind == session::EventKind::kOrganFrozen || kind == session::EventKind::kTear ||
-         kind == session::EventKind::kPinchDamage || kind == session::EventKind::kClipSlipped ||
-         kind == session::EventKind::kStoneSpilled || kind == session::EventKind::kOperationError;
+bool IsWarning(scene::EventKind kind) noexcept {
+  return kind == scene::EventKind::kSlip || kind == scene::EventKind::kStateRestored ||
+         kind == scene::EventKind::kOrganFrozen || kind == scene::EventKind::kTear ||
+         kind == scene::EventKind::kPinchDamage || kind == scene::EventKind::kClipSlipped ||
+         kind == scene::EventKind::kStoneSpilled || kind == scene::EventKind::kOperationError;
 }
 
-std::string StageLabel(session::Stage stage) {
-  return Capitalised(WithSpaces(session::StageName(stage)));
+std::string StageLabel(simulation::Stage stage) {
+  return Capitalised(WithSpaces(simulation::StageName(stage)));
 }
 
-void StageMeter::Add(const session::Snapshot& snapshot) noexcept {
+void StageMeter::Add(const simulation::Snapshot& snapshot) noexcept {
   if (has_any_ && snapshot.tick == last_tick_) return;
   constexpr double kWeight = 1.0 / 60;
   for (std::size_t stage = 0; stage < seconds_.size(); ++stage) {

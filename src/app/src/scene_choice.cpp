@@ -16,7 +16,7 @@ constexpr const char* kDefaultScene = "demonstration.json";
 
 /// The scene file of that name, or nothing where there is none with an operation.
 core::Result<std::optional<std::filesystem::path>> FindOperationFile(const std::string& name) {
-  const auto data = session::FindDataFolder();
+  const auto data = scene::FindDataFolder();
   if (!data) return data.error();
   for (const std::filesystem::path& path :
        {std::filesystem::path(name), *data / "scenes" / (name + ".json")}) {
@@ -31,34 +31,35 @@ core::Result<std::optional<std::filesystem::path>> FindOperationFile(const std::
 
 }  // namespace
 
-core::Result<session::Scene> ReadChosenScene(const Options& options) {
+core::Result<scene::Scene> ReadChosenScene(const Options& options) {
   if (options.task.empty()) {
-    if (!options.scene.empty()) return session::ReadScene(options.scene);
-    const auto data = session::FindDataFolder();
+    if (!options.scene.empty()) return scene::ReadScene(options.scene);
+    const auto data = scene::FindDataFolder();
     if (!data) return data.error();
-    return session::ReadScene(*data / "scenes" / kDefaultScene);
+    return scene::ReadScene(*data / "scenes" / kDefaultScene);
   }
   const auto operation = FindOperationFile(options.task);
   if (!operation) return operation.error();
   if (operation->has_value()) {
-    auto scene = session::ReadScene(**operation);
+    auto scene = scene::ReadScene(**operation);
     if (scene.ok()) scene->seed = options.seed;
     return scene;
   }
-  const auto task = session::FindTask(options.task);
+  const auto task = scene::FindTask(options.task);
   if (!task) {
     if (task.error().code != core::ErrorCode::kUnknownName) return task.error();
     return core::Error{task.error().code, task.error().message + "; or the operation \"cholecystectomy\""};
   }
-  return session::ReadTask(*task, {options.level, options.seed, {}});
+  return scene::ReadTask(*task, {options.level, options.seed, {}});
 }
 
-core::Result<session::Simulation> MakeChosenSimulation(const Options& options) {
+core::Result<simulation::Simulation> MakeChosenSimulation(const Options& options) {
   auto scene = ReadChosenScene(options);
   if (!scene) return scene.error();
   const int threads =
       options.threads > 0 ? options.threads : ChooseThreads(std::thread::hardware_concurrency());
-  return session::Simulation::Make(std::make_shared<const session::Scene>(std::move(scene).value()), threads);
+  return simulation::Simulation::Make(std::make_shared<const scene::Scene>(std::move(scene).value()),
+                                      threads);
 }
 
 }  // namespace trocar::app

@@ -23,15 +23,15 @@ constexpr double kLookDistance = 0.08;
 /// Part of a shaft that stays outside for the hand [m].
 constexpr double kHandlePart = 0.03;
 
-device::MouseKeyboardSettings DeviceSettings(const session::Scene& scene) {
+device::MouseKeyboardSettings DeviceSettings(const scene::Scene& scene) {
   device::MouseKeyboardSettings settings;
   settings.shaft_length = scene.instruments[0].tool.shaft_length;
-  for (const session::InstrumentSetup& setup : scene.instruments)
+  for (const scene::InstrumentSetup& setup : scene.instruments)
     settings.shaft_length = std::min(settings.shaft_length, setup.tool.shaft_length);
   for (int channel = 0; channel < device::kChannelCount; ++channel) {
     device::HandLimits& limits = settings.limits[channel];
     limits.max_depth = std::min(limits.max_depth, settings.shaft_length - kHandlePart);
-    if (channel < session::kHandCount) limits.max_jaw = scene.instruments[channel].tool.max_jaw;
+    if (channel < scene::kHandCount) limits.max_jaw = scene.instruments[channel].tool.max_jaw;
   }
   // a laparoscope may look in from right below the wall
   settings.limits[device::kLaparoscope].min_depth = 0.005;
@@ -40,7 +40,7 @@ device::MouseKeyboardSettings DeviceSettings(const session::Scene& scene) {
 
 }  // namespace
 
-core::Result<std::unique_ptr<SessionControl>> SessionControl::Make(session::Simulation simulation) {
+core::Result<std::unique_ptr<SessionControl>> SessionControl::Make(simulation::Simulation simulation) {
   const device::MouseKeyboardSettings settings = DeviceSettings(simulation.GetScene());
   std::unique_ptr<SessionControl> control(new SessionControl(std::move(simulation), settings));
   if (const core::Status status = control->device_.Configure(); !status) return status.error();
@@ -50,22 +50,23 @@ core::Result<std::unique_ptr<SessionControl>> SessionControl::Make(session::Simu
   return control;
 }
 
-SessionControl::SessionControl(session::Simulation simulation, const device::MouseKeyboardSettings& settings)
+SessionControl::SessionControl(simulation::Simulation simulation,
+                               const device::MouseKeyboardSettings& settings)
     : runner_(std::move(simulation), &haptic_link_),
       device_hands_(runner_.GetScene()),
       stylus_hands_(runner_.GetScene()),
       device_(settings) {}
 
 void SessionControl::PlaceAtHome() {
-  const session::Scene& scene = runner_.GetScene();
+  const scene::Scene& scene = runner_.GetScene();
   device_.ReleaseAll();
-  device_.Place(device::kLeftHand, SampleOf(scene.instruments[session::kLeft].home));
-  device_.Place(device::kRightHand, SampleOf(scene.instruments[session::kRight].home));
+  device_.Place(device::kLeftHand, SampleOf(scene.instruments[scene::kLeft].home));
+  device_.Place(device::kRightHand, SampleOf(scene.instruments[scene::kRight].home));
   device_.Place(device::kLaparoscope, SampleOf(scene.laparoscope.home));
 }
 
-const session::Snapshot& SessionControl::Advance(double dt) {
-  const session::Snapshot& snapshot = runner_.Latest();
+const simulation::Snapshot& SessionControl::Advance(double dt) {
+  const simulation::Snapshot& snapshot = runner_.Latest();
   time_ = snapshot.time;
   if (haptic_loop_ != nullptr) haptic_record_.Add(since_start_.Seconds(), haptic_loop_->Latest());
   if (server_ != nullptr && snapshot.tick != served_tick_) {
@@ -166,7 +167,7 @@ void SessionControl::ApplyDevice() {
 /// Pedals of a stylus reach the tick by the loop's own way; what a press changes for good comes in here.
 void SessionControl::ApplyStylusButtons() {
   const session::HapticStatus& status = haptic_loop_->Latest();
-  const session::DeviceActs acts = {status.hands[session::kLeft].acts, status.hands[session::kRight].acts};
+  const session::DeviceActs acts = {status.hands[scene::kLeft].acts, status.hands[scene::kRight].acts};
   if (MayAct()) {
     stylus_hands_.Step(acts, input_);
   } else {
@@ -209,20 +210,20 @@ bool SessionControl::IsDemonstrationOver() const {
   return is_demonstration_ && runner_.IsScriptOver();
 }
 
-void SessionControl::ChooseTool(session::Hand hand, std::size_t place) {
+void SessionControl::ChooseTool(scene::Hand hand, std::size_t place) {
   if (place < runner_.GetScene().instruments[hand].tray.size())
     input_.controls[hand].tool = static_cast<std::uint8_t>(place);
 }
 
 void SessionControl::StepTool(int step) {
-  const auto hand = static_cast<session::Hand>(hand_);
+  const auto hand = static_cast<scene::Hand>(hand_);
   const auto count = static_cast<int>(runner_.GetScene().instruments[hand].tray.size());
   if (count > 0)
     ChooseTool(hand, static_cast<std::size_t>((input_.controls[hand].tool + step + count) % count));
 }
 
 void SessionControl::SetPedal(Pedal pedal, bool is_down) {
-  session::HandControls& controls = input_.controls[hand_];
+  scene::HandControls& controls = input_.controls[hand_];
   is_down = is_down && !IsPaused() && !is_demonstration_;
   switch (pedal) {
     case Pedal::kCut:
@@ -238,19 +239,19 @@ void SessionControl::SetPedal(Pedal pedal, bool is_down) {
       controls.aspirate = is_down;
       break;
     case Pedal::kClutch:
-      device_hands_.SetClutch(static_cast<session::Hand>(hand_), is_down);
+      device_hands_.SetClutch(static_cast<scene::Hand>(hand_), is_down);
       break;
   }
 }
 
 void SessionControl::ToggleFreeze() {
-  if (MayAct()) device_hands_.ToggleFreeze(static_cast<session::Hand>(hand_));
+  if (MayAct()) device_hands_.ToggleFreeze(static_cast<scene::Hand>(hand_));
 }
 
 void SessionControl::ReleasePedals() {
-  for (session::HandControls& controls : input_.controls)
+  for (scene::HandControls& controls : input_.controls)
     controls.cut = controls.coagulate = controls.rinse = controls.aspirate = false;
-  for (const session::Hand hand : {session::kLeft, session::kRight}) device_hands_.SetClutch(hand, false);
+  for (const scene::Hand hand : {scene::kLeft, scene::kRight}) device_hands_.SetClutch(hand, false);
 }
 
 void SessionControl::StepAssistant() {
@@ -283,8 +284,8 @@ void SessionControl::SetPicture(double field_of_view, double pixels) {
   pixels_ = pixels;
 }
 
-void SessionControl::SetSettings(const session::LiveSettings& settings) {
-  input_.settings = session::ClampSettings(settings);
+void SessionControl::SetSettings(const scene::LiveSettings& settings) {
+  input_.settings = scene::ClampSettings(settings);
 }
 
 }  // namespace trocar::app

@@ -8,7 +8,7 @@
 namespace trocar::app {
 namespace {
 
-using session::LiveSettings;
+using scene::LiveSettings;
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kMaxTiltDeg = 0.6 / kDegree;

@@ -295,7 +295,7 @@ void SimulatorPresenter::PlayAgain() {
   screen_->FocusPicture();
 }
 
-void SimulatorPresenter::ShowTask(const session::TaskSnapshot& now) {
+void SimulatorPresenter::ShowTask(const scene::TaskSnapshot& now) {
   error_log_.Add(now);
   if (!now.IsOver()) {
     // begun anew
@@ -328,7 +328,7 @@ SimulatorPresenter::FrameWork SimulatorPresenter::Advance(double now, double fie
   FrameWork work;
   if (control_ == nullptr || page_.failure) return work;
   control_->SetPicture(field_of_view, pixels);
-  const session::Snapshot& snapshot = control_->Advance(dt);
+  const simulation::Snapshot& snapshot = control_->Advance(dt);
   work.snapshot = &snapshot;
   stages_.Add(snapshot);
   ShowEvents(snapshot);
@@ -398,11 +398,11 @@ void SimulatorPresenter::Announce(const std::string& text, bool is_warning) {
   Refresh();
 }
 
-void SimulatorPresenter::ShowEvents(const session::Snapshot& snapshot) {
+void SimulatorPresenter::ShowEvents(const simulation::Snapshot& snapshot) {
   if (snapshot.event_count < seen_events_) seen_events_ = 0;
   if (snapshot.event_count == seen_events_) return;
   seen_events_ = snapshot.event_count;
-  const session::Event& newest = snapshot.events[(snapshot.event_count - 1) % snapshot.events.size()];
+  const scene::Event& newest = snapshot.events[(snapshot.event_count - 1) % snapshot.events.size()];
   Announce(DescribeEvent(newest, control_->GetScene()), IsWarning(newest.kind));
 }
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "trocar/core/json.h"
-#include "trocar/session/scene.h"
+#include "trocar/scene/scene.h"
 
 namespace trocar::app {
 namespace {
@@ -48,12 +48,12 @@ TaskChooser::TaskChooser() : Gtk::Box(Gtk::Orientation::VERTICAL) {
 
 core::Status TaskChooser::Load() {
   if (is_loaded_) return {};
-  const auto tasks = session::ListTasks();
+  const auto tasks = scene::ListTasks();
   if (!tasks) return tasks.error();
-  const auto data = session::FindDataFolder();
+  const auto data = scene::FindDataFolder();
   if (!data) return data.error();
   AddTitle("Training tasks");
-  for (const session::TaskEntry& task : *tasks) {
+  for (const scene::TaskEntry& task : *tasks) {
     TaskRequest request;
     request.task = task.key;
     AddRow(task.name, task.about, task.levels, request);

@@ -14,7 +14,7 @@ namespace trocar::app {
 namespace {
 
 using core::EscapeMarkup;
-using session::TaskPhase;
+using scene::TaskPhase;
 
 constexpr const char* kStyle = R"(
 body { font: 16px/1.5 system-ui, "DejaVu Sans", sans-serif; color: #1d2327; background: #fff; margin: 0 auto;
@@ -47,7 +47,7 @@ std::string FormatPoints(double points) {
 
 }  // namespace
 
-void TaskErrorLog::Add(const session::TaskSnapshot& now) {
+void TaskErrorLog::Add(const scene::TaskSnapshot& now) {
   if (now.error_count < seen_) {
     errors_.clear();
     seen_ = 0;
@@ -58,10 +58,10 @@ void TaskErrorLog::Add(const session::TaskSnapshot& now) {
     errors_.push_back(now.last_errors[seen_ % ring]);
 }
 
-TaskResult MakeTaskResult(const session::Scene& scene, const session::TaskSnapshot& now,
-                          const std::vector<session::TaskError>& errors) {
+TaskResult MakeTaskResult(const scene::Scene& scene, const scene::TaskSnapshot& now,
+                          const std::vector<scene::TaskError>& errors) {
   TROCAR_ASSERT(scene.task.has_value());
-  const session::Task& task = *scene.task;
+  const scene::Task& task = *scene.task;
   TaskResult result;
   result.task = task.name;
   result.level = task.level;
@@ -73,15 +73,15 @@ TaskResult MakeTaskResult(const session::Scene& scene, const session::TaskSnapsh
   result.is_score_percent = task.reference_points > 0;
   for (std::size_t g = 0; g < task.goals.size(); ++g)
     result.goals.push_back({task.goals[g].name, g < now.goals.size() && now.goals[g].is_done});
-  for (const session::TaskError& error : errors) {
-    const session::ErrorRule& rule = task.errors[static_cast<std::size_t>(error.rule)];
+  for (const scene::TaskError& error : errors) {
+    const scene::ErrorRule& rule = task.errors[static_cast<std::size_t>(error.rule)];
     TaskResult::ErrorRow row{
         error.time, rule.name,    rule.about,    std::string(training::NameOf(rule.severity)),
         "",         rule.penalty, error.position};
     if (error.object >= 0) row.by = scene.objects[static_cast<std::size_t>(error.object)].name;
     if (error.hand >= 0)
-      row.by += (row.by.empty() ? "" : ", ") +
-                std::string(error.hand == session::kLeft ? "left hand" : "right hand");
+      row.by +=
+          (row.by.empty() ? "" : ", ") + std::string(error.hand == scene::kLeft ? "left hand" : "right hand");
     result.errors.push_back(std::move(row));
   }
   return result;
@@ -100,7 +100,7 @@ std::string FormatTaskResultJson(const TaskResult& result) {
                                  {"level", result.level},
                                  {"seed", result.seed},
                                  {"demonstration", result.is_demonstration},
-                                 {"phase", session::PhaseName(result.phase)},
+                                 {"phase", scene::PhaseName(result.phase)},
                                  {"time_s", result.time},
                                  {"score", result.score},
                                  {"score_unit", result.is_score_percent ? "percent" : "points"},

@@ -12,7 +12,8 @@ void Tips::Set(Gtk::Widget& widget, const std::string& text) {
     if (tip->widget != &widget) continue;
     if (tip->text == text) return;
     tip->text = text;
-    return widget.trigger_tooltip_query();
+    if (tip->timer.connected()) widget.trigger_tooltip_query();
+    return;
   }
   tips_.push_back(std::make_unique<Tip>(Tip{&widget, text, {}, {}}));
   Tip& tip = *tips_.back();
@@ -55,6 +56,8 @@ bool Tips::Query(Tip& tip, const Glib::RefPtr<Gtk::Tooltip>& tooltip) {
 
 void Tips::End() {
   for (const auto& tip : tips_) {
+    // GTK asks a widget for its tip when told to look again, wherever the pointer is: leave the others alone
+    if (!tip->timer.connected()) continue;
     tip->timer.disconnect();
     tip->clock.End();
     tip->widget->trigger_tooltip_query();

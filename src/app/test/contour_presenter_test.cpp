@@ -10,6 +10,7 @@
 
 #include "trocar/contours/overlay.h"
 #include "trocar/core/safe_file.h"
+#include "trocar/images/png_file.h"
 #include "trocar_test/temporary_folder.h"
 
 namespace trocar::app {

@@ -8,8 +8,8 @@
 namespace trocar::app {
 namespace {
 
-session::Scene TwoOrgans() {
-  session::Scene scene;
+scene::Scene TwoOrgans() {
+  scene::Scene scene;
   scene.patient.organs.resize(2);
   scene.patient.organs[0].name = "liver";
   scene.patient.organs[1].name = "gallbladder";
@@ -44,8 +44,8 @@ TEST(ReadOuts, ForceIsJudgedByTheOrgan) {
 }
 
 TEST(ReadOuts, ContactIsSaidInWords) {
-  const session::Scene scene = TwoOrgans();
-  session::InstrumentSnapshot instrument;
+  const scene::Scene scene = TwoOrgans();
+  simulation::InstrumentSnapshot instrument;
   EXPECT_EQ(DescribeContact(instrument, scene.patient), "free");
   instrument.is_touching = true;
   instrument.organ = 0;
@@ -58,32 +58,32 @@ TEST(ReadOuts, ContactIsSaidInWords) {
 }
 
 TEST(ReadOuts, EventsAreSaidInWords) {
-  const session::Scene scene = TwoOrgans();
-  using session::EventKind;
-  EXPECT_EQ(DescribeEvent({EventKind::kGrasp, 10, session::kLeft, 1, 2.1}, scene),
+  const scene::Scene scene = TwoOrgans();
+  using scene::EventKind;
+  EXPECT_EQ(DescribeEvent({EventKind::kGrasp, 10, scene::kLeft, 1, 2.1}, scene),
             "Left grasper: grasped the gallbladder, 2.1 N");
-  EXPECT_EQ(DescribeEvent({EventKind::kRelease, 10, session::kRight, 1, 0}, scene),
+  EXPECT_EQ(DescribeEvent({EventKind::kRelease, 10, scene::kRight, 1, 0}, scene),
             "Right grasper: let the gallbladder go");
-  EXPECT_EQ(DescribeEvent({EventKind::kSlip, 10, session::kRight, 0, 4.0}, scene),
+  EXPECT_EQ(DescribeEvent({EventKind::kSlip, 10, scene::kRight, 0, 4.0}, scene),
             "Right grasper: the liver slipped, 4.0 N");
-  EXPECT_EQ(DescribeEvent({EventKind::kPinchDamage, 10, session::kRight, 0, 3.0}, scene),
+  EXPECT_EQ(DescribeEvent({EventKind::kPinchDamage, 10, scene::kRight, 0, 3.0}, scene),
             "Right grasper: pinched the liver too hard, 3.0 N");
   EXPECT_EQ(DescribeEvent({EventKind::kToolsTouch, 10, -1, -1, 0}, scene), "The instruments met");
   EXPECT_EQ(DescribeEvent({EventKind::kStateRestored, 10, -1, 0, 0}, scene),
             "Liver: was not finite, last good state restored (E-SIM-001)");
-  EXPECT_EQ(DescribeEvent({EventKind::kGrasp, 10, session::kLeft, 0, 0.01}, scene),
+  EXPECT_EQ(DescribeEvent({EventKind::kGrasp, 10, scene::kLeft, 0, 0.01}, scene),
             "Left grasper: grasped the liver");
   EXPECT_TRUE(IsWarning(EventKind::kSlip));
   EXPECT_FALSE(IsWarning(EventKind::kGrasp));
 }
 
 TEST(ReadOuts, StagesHaveNamesForPeople) {
-  EXPECT_EQ(StageLabel(session::Stage::kFindContacts), "Find contacts");
+  EXPECT_EQ(StageLabel(simulation::Stage::kFindContacts), "Find contacts");
 }
 
 TEST(StageMeter, SmoothsAndCountsATickOnce) {
   StageMeter meter;
-  session::Snapshot snapshot;
+  simulation::Snapshot snapshot;
   snapshot.tick = 1;
   snapshot.stage_seconds.fill(0.002);
   meter.Add(snapshot);
@@ -112,53 +112,52 @@ TEST(FrameMeter, HoldsMoreFramesThanItKeeps) {
 }
 
 TEST(DescribeEvent, ARefusedExchangeSaysWhatToDo) {
-  const session::Scene scene;
-  EXPECT_EQ(DescribeEvent({session::EventKind::kExchangeRefused, 1, session::kLeft, -1, 0.0}, scene),
+  const scene::Scene scene;
+  EXPECT_EQ(DescribeEvent({scene::EventKind::kExchangeRefused, 1, scene::kLeft, -1, 0.0}, scene),
             "Left grasper: open the jaws and let go before the tool is exchanged");
 }
 
 TEST(DescribeEvent, ImpossibleActsAndSurgerysErrorsAreAnsweredInWords) {
-  session::Scene scene;
-  scene.instruments[session::kRight].tool = *instrument::FindTool("clip_applier");
-  const auto text = [&](session::EventKind kind, int error = -1) {
-    session::Event event{kind, 1, session::kRight, -1, 0.0};
+  scene::Scene scene;
+  scene.instruments[scene::kRight].tool = *instrument::FindTool("clip_applier");
+  const auto text = [&](scene::EventKind kind, int error = -1) {
+    scene::Event event{kind, 1, scene::kRight, -1, 0.0};
     event.error = error;
     return DescribeEvent(event, scene);
   };
-  EXPECT_EQ(text(session::EventKind::kNoClipsLeft),
+  EXPECT_EQ(text(scene::EventKind::kNoClipsLeft),
             "Right clip applier: there is no clip left; exchange the tool for a full one");
-  scene.instruments[session::kRight].tray = {*instrument::FindTool("clip_applier"),
-                                             *instrument::FindTool("scissors")};
-  EXPECT_EQ(text(session::EventKind::kTubeCut), "Right hand: cut the tissue") << "whichever tool it has now";
-  EXPECT_EQ(text(session::EventKind::kStoneTaken), "Right hand: took a stone");
-  EXPECT_EQ(text(session::EventKind::kStoneRetrieved), "Right hand: retrieved a stone");
-  EXPECT_EQ(text(session::EventKind::kStoneSpilled), "A stone spilled out of the gallbladder");
-  EXPECT_TRUE(IsWarning(session::EventKind::kStoneSpilled));
-  EXPECT_EQ(text(session::EventKind::kClipSlipped), "A clip slipped off the tissue");
-  EXPECT_NE(text(session::EventKind::kUsedOutside).find("push it in"), std::string::npos);
+  scene.instruments[scene::kRight].tray = {*instrument::FindTool("clip_applier"),
+                                           *instrument::FindTool("scissors")};
+  EXPECT_EQ(text(scene::EventKind::kTubeCut), "Right hand: cut the tissue") << "whichever tool it has now";
+  EXPECT_EQ(text(scene::EventKind::kStoneTaken), "Right hand: took a stone");
+  EXPECT_EQ(text(scene::EventKind::kStoneRetrieved), "Right hand: retrieved a stone");
+  EXPECT_EQ(text(scene::EventKind::kStoneSpilled), "A stone spilled out of the gallbladder");
+  EXPECT_TRUE(IsWarning(scene::EventKind::kStoneSpilled));
+  EXPECT_EQ(text(scene::EventKind::kClipSlipped), "A clip slipped off the tissue");
+  EXPECT_NE(text(scene::EventKind::kUsedOutside).find("push it in"), std::string::npos);
   const auto error = training::OperationError::kClipCrossed;
-  EXPECT_EQ(text(session::EventKind::kOperationError, static_cast<int>(error)),
-            training::ExplanationOf(error));
-  EXPECT_TRUE(IsWarning(session::EventKind::kOperationError));
-  EXPECT_FALSE(IsWarning(session::EventKind::kClipClosed));
+  EXPECT_EQ(text(scene::EventKind::kOperationError, static_cast<int>(error)), training::ExplanationOf(error));
+  EXPECT_TRUE(IsWarning(scene::EventKind::kOperationError));
+  EXPECT_FALSE(IsWarning(scene::EventKind::kClipClosed));
 }
 
 TEST(ToolLabel, NamesTheToolInUseAndItsClips) {
-  session::Scene scene;
-  scene.instruments[session::kRight].tray = {*instrument::FindTool("hook"),
-                                             *instrument::FindTool("clip_applier")};
-  session::Snapshot snapshot;
-  EXPECT_EQ(ToolLabel(scene, snapshot, session::kRight), "hook");
-  snapshot.operation.tools[session::kRight] = 1;
-  snapshot.operation.clips_left[session::kRight] = 12;
-  EXPECT_EQ(ToolLabel(scene, snapshot, session::kRight), "clip applier, 12 clips");
-  snapshot.operation.clips_left[session::kRight] = 1;
-  EXPECT_EQ(ToolLabel(scene, snapshot, session::kRight), "clip applier, 1 clip");
+  scene::Scene scene;
+  scene.instruments[scene::kRight].tray = {*instrument::FindTool("hook"),
+                                           *instrument::FindTool("clip_applier")};
+  simulation::Snapshot snapshot;
+  EXPECT_EQ(ToolLabel(scene, snapshot, scene::kRight), "hook");
+  snapshot.operation.tools[scene::kRight] = 1;
+  snapshot.operation.clips_left[scene::kRight] = 12;
+  EXPECT_EQ(ToolLabel(scene, snapshot, scene::kRight), "clip applier, 12 clips");
+  snapshot.operation.clips_left[scene::kRight] = 1;
+  EXPECT_EQ(ToolLabel(scene, snapshot, scene::kRight), "clip applier, 1 clip");
 }
 
 TEST(DescribeStones, CountsWhatCameOutOfTheGallbladder) {
-  using session::StonePlace;
-  std::vector<session::StoneSnapshot> stones(5);
+  using simulation::StonePlace;
+  std::vector<simulation::StoneSnapshot> stones(5);
   EXPECT_EQ(DescribeStones({}), "none spilled");
   EXPECT_EQ(DescribeStones(stones), "none spilled");
   stones[0].place = StonePlace::kSpilled, stones[1].place = StonePlace::kHeld;
@@ -177,15 +176,15 @@ TEST(DescribeFluid, SaysWhatWasLostAndWhatLiesThere) {
 }
 
 TEST(DescribeTask, SaysClockProgressErrorsAndResult) {
-  session::Task task;
+  scene::Task task;
   task.goals.resize(2);
   task.goals[0].name = "First";
   task.goals[1].name = "Second";
   task.errors.resize(1);
   task.errors[0].about = "It fell";
   task.time_limit = 90;
-  session::TaskSnapshot now;
-  now.phase = session::TaskPhase::kRunning;
+  scene::TaskSnapshot now;
+  now.phase = scene::TaskPhase::kRunning;
   now.goals.resize(2);
   now.goals[0].is_done = true;
   now.goals[1].is_open = true;
@@ -198,7 +197,7 @@ TEST(DescribeTask, SaysClockProgressErrorsAndResult) {
   EXPECT_EQ(text.score, "—");
   EXPECT_EQ(text.next, "Next: Second");
   EXPECT_EQ(text.errors, "2 × It fell");
-  now.phase = session::TaskPhase::kCompleted;
+  now.phase = scene::TaskPhase::kCompleted;
   text = DescribeTask(task, now);
   EXPECT_EQ(text.score, "55.5");
   EXPECT_NE(text.next.find("Completed"), std::string::npos);

@@ -6,7 +6,7 @@
 namespace trocar::app {
 namespace {
 
-core::Result<session::Scene> Read(const std::string& task) {
+core::Result<scene::Scene> Read(const std::string& task) {
   Options options;
   options.task = task;
   options.seed = 5;

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <filesystem>
 #include <functional>
 #include <span>
 #include <thread>
@@ -19,19 +20,19 @@ using device::Motion;
 class SessionControlTest : public testing::Test {
  protected:
   void SetUp() override { Open(std::string(TROCAR_SOURCE_DIR) + "/scenes/demonstration.json"); }
-  void Open(const char* path) {
-    core::Result<session::Scene> scene = session::ReadScene(path);
+  void Open(const std::filesystem::path& path) {
+    core::Result<scene::Scene> scene = scene::ReadScene(path);
     ASSERT_TRUE(scene.ok()) << scene.error().Text();
-    for (session::InstrumentSetup& setup : scene->instruments) setup.tray.resize(3, setup.tray.front());
-    core::Result<session::Simulation> simulation =
-        session::Simulation::Make(std::make_shared<const session::Scene>(std::move(scene).value()), 1);
+    for (scene::InstrumentSetup& setup : scene->instruments) setup.tray.resize(3, setup.tray.front());
+    core::Result<simulation::Simulation> simulation =
+        simulation::Simulation::Make(std::make_shared<const scene::Scene>(std::move(scene).value()), 1);
     ASSERT_TRUE(simulation.ok()) << simulation.error().Text();
     core::Result<std::unique_ptr<SessionControl>> made = SessionControl::Make(std::move(simulation).value());
     ASSERT_TRUE(made.ok()) << made.error().Text();
     control = std::move(made).value();
   }
   /// Frames of 1/60 s until the snapshot satisfies `is_reached`; gives up after a minute.
-  bool AdvanceUntil(const std::function<bool(const session::Snapshot&)>& is_reached) {
+  bool AdvanceUntil(const std::function<bool(const simulation::Snapshot&)>& is_reached) {
     for (int frame = 0; frame < 6000; ++frame) {
       if (is_reached(control->Advance(1.0 / 60))) return true;
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
@@ -45,8 +46,8 @@ TEST_F(SessionControlTest, StartsPausedAtHomeWithTheScenesSettings) {
   EXPECT_TRUE(control->IsPaused());
   control->Device().SetKey(Motion::kIn, true);
   EXPECT_EQ(control->Advance(0.05).tick, 0u);
-  EXPECT_EQ(control->GetInput().hands[session::kRight].depth,
-            control->GetScene().instruments[session::kRight].home.depth)
+  EXPECT_EQ(control->GetInput().hands[scene::kRight].depth,
+            control->GetScene().instruments[scene::kRight].home.depth)
       << "paused hands stand still";
   EXPECT_EQ(control->GetSettings(), control->GetScene().settings);
 }
@@ -57,16 +58,16 @@ TEST_F(SessionControlTest, PedalsBelongToTheChosenHandAndAPauseReleasesThem) {
   control->SetPedal(Pedal::kCut, true);
   control->SetPedal(Pedal::kRinse, true);
   const auto& controls = control->GetInput().controls;
-  EXPECT_TRUE(controls[session::kLeft].cut && controls[session::kLeft].rinse);
-  EXPECT_FALSE(controls[session::kRight].cut || controls[session::kLeft].coagulate);
+  EXPECT_TRUE(controls[scene::kLeft].cut && controls[scene::kLeft].rinse);
+  EXPECT_FALSE(controls[scene::kRight].cut || controls[scene::kLeft].coagulate);
   control->SwitchHand();
-  EXPECT_FALSE(controls[session::kLeft].cut || controls[session::kRight].cut) << "no foot stays on a pedal";
+  EXPECT_FALSE(controls[scene::kLeft].cut || controls[scene::kRight].cut) << "no foot stays on a pedal";
   control->SetPedal(Pedal::kCoagulate, true);
-  EXPECT_TRUE(controls[session::kRight].coagulate);
+  EXPECT_TRUE(controls[scene::kRight].coagulate);
   control->SetPaused(true);
-  EXPECT_FALSE(controls[session::kRight].coagulate);
+  EXPECT_FALSE(controls[scene::kRight].coagulate);
   control->SetPedal(Pedal::kCoagulate, true);
-  EXPECT_FALSE(controls[session::kRight].coagulate) << "a pedal does nothing while paused";
+  EXPECT_FALSE(controls[scene::kRight].coagulate) << "a pedal does nothing while paused";
 }
 
 /// What a device says, set by the test; lost while `is_plugged` is false.
@@ -97,18 +98,18 @@ TEST_F(SessionControlTest, ADevicesButtonsReachTheOperationAndALossLetsGo) {
   FakeDevice::Shared shared;
   control->UseDevice(std::make_unique<FakeDevice>(shared));
   control->SetPaused(false);
-  const auto left = [&]() -> const session::HandControls& {
-    return control->GetSentInput().controls[session::kLeft];
+  const auto left = [&]() -> const scene::HandControls& {
+    return control->GetSentInput().controls[scene::kLeft];
   };
   const auto until = [&](const std::function<bool()>& claim) {
-    return AdvanceUntil([&](const session::Snapshot&) { return claim(); });
+    return AdvanceUntil([&](const simulation::Snapshot&) { return claim(); });
   };
   shared.pan = 0.2;
-  ASSERT_TRUE(until([&] { return control->GetSentInput().hands[session::kLeft].pan == 0.2; }));
+  ASSERT_TRUE(until([&] { return control->GetSentInput().hands[scene::kLeft].pan == 0.2; }));
   shared.buttons = 1;
   ASSERT_TRUE(until([&] { return left().cut; }));
-  EXPECT_FALSE(control->GetInput().controls[session::kLeft].cut) << "no key";
-  EXPECT_FALSE(control->GetSentInput().controls[session::kRight].cut);
+  EXPECT_FALSE(control->GetInput().controls[scene::kLeft].cut) << "no key";
+  EXPECT_FALSE(control->GetSentInput().controls[scene::kRight].cut);
   shared.buttons = 8;
   ASSERT_TRUE(until([&] { return left().tool == 1; }));
   EXPECT_FALSE(left().cut);
@@ -121,7 +122,7 @@ TEST_F(SessionControlTest, ADevicesButtonsReachTheOperationAndALossLetsGo) {
   EXPECT_EQ(left().tool, 1) << "the tool stays";
   shared.is_plugged = true;
   control->SetPaused(false);
-  ASSERT_TRUE(until([&] { return control->GetSentInput().hands[session::kLeft].pan == 0.5; }));
+  ASSERT_TRUE(until([&] { return control->GetSentInput().hands[scene::kLeft].pan == 0.5; }));
   for (int frame = 0; frame < 20; ++frame) control->Advance(0.01);
   EXPECT_FALSE(left().coagulate) << "the foot that stayed does not count";
   control->ChooseHand(device::kLeftHand);
@@ -130,10 +131,10 @@ TEST_F(SessionControlTest, ADevicesButtonsReachTheOperationAndALossLetsGo) {
   shared.pan = 0.9;
   device::SystemClock().Sleep(0.02);
   control->Advance(0.01);
-  EXPECT_EQ(control->GetSentInput().hands[session::kLeft].pan, 0.5);
+  EXPECT_EQ(control->GetSentInput().hands[scene::kLeft].pan, 0.5);
   control->SetPedal(Pedal::kClutch, false);
   control->Advance(0.01);
-  EXPECT_NEAR(control->GetSentInput().hands[session::kLeft].pan, 0.5, 1e-12) << "it goes on from there";
+  EXPECT_NEAR(control->GetSentInput().hands[scene::kLeft].pan, 0.5, 1e-12) << "it goes on from there";
 }
 
 TEST_F(SessionControlTest, ADevicesPedalsDoNothingWhilePaused) {
@@ -141,61 +142,61 @@ TEST_F(SessionControlTest, ADevicesPedalsDoNothingWhilePaused) {
   control->UseDevice(std::make_unique<FakeDevice>(shared));
   shared.pan = 0.2;
   ASSERT_TRUE(AdvanceUntil(
-      [&](const session::Snapshot&) { return control->GetSentInput().hands[session::kLeft].pan == 0.2; }));
+      [&](const simulation::Snapshot&) { return control->GetSentInput().hands[scene::kLeft].pan == 0.2; }));
   shared.buttons = 1 | 8;
   for (int frame = 0; frame < 20; ++frame) {
     device::SystemClock().Sleep(0.005);
     control->Advance(0.01);
   }
-  EXPECT_FALSE(control->GetSentInput().controls[session::kLeft].cut);
+  EXPECT_FALSE(control->GetSentInput().controls[scene::kLeft].cut);
   control->SetPaused(false);
   control->Advance(0.01);
-  EXPECT_TRUE(control->GetSentInput().controls[session::kLeft].cut) << "it is held";
-  EXPECT_EQ(control->GetSentInput().controls[session::kLeft].tool, 0) << "that press was for nothing";
+  EXPECT_TRUE(control->GetSentInput().controls[scene::kLeft].cut) << "it is held";
+  EXPECT_EQ(control->GetSentInput().controls[scene::kLeft].tool, 0) << "that press was for nothing";
 }
 
 TEST_F(SessionControlTest, ToolsGoRoundTheTrayAndTheAssistantObeys) {
-  const auto& tray = control->GetScene().instruments[session::kRight].tray;
+  const auto& tray = control->GetScene().instruments[scene::kRight].tray;
   ASSERT_FALSE(tray.empty());
   control->ChooseHand(device::kRightHand);
   for (std::size_t i = 0; i < tray.size(); ++i) {
-    EXPECT_EQ(control->GetInput().controls[session::kRight].tool, i);
+    EXPECT_EQ(control->GetInput().controls[scene::kRight].tool, i);
     control->StepTool(1);
   }
-  EXPECT_EQ(control->GetInput().controls[session::kRight].tool, 0);
+  EXPECT_EQ(control->GetInput().controls[scene::kRight].tool, 0);
   control->StepTool(-1);
-  EXPECT_EQ(control->GetInput().controls[session::kRight].tool, tray.size() - 1);
-  control->ChooseTool(session::kRight, tray.size());
-  EXPECT_EQ(control->GetInput().controls[session::kRight].tool, tray.size() - 1) << "no such place";
+  EXPECT_EQ(control->GetInput().controls[scene::kRight].tool, tray.size() - 1);
+  control->ChooseTool(scene::kRight, tray.size());
+  EXPECT_EQ(control->GetInput().controls[scene::kRight].tool, tray.size() - 1) << "no such place";
   control->StepAssistant();
-  EXPECT_EQ(control->GetInput().assistant, session::AssistantCommand::kRetract);
+  EXPECT_EQ(control->GetInput().assistant, scene::AssistantCommand::kRetract);
   control->Reset();
-  EXPECT_EQ(control->GetInput().assistant, session::AssistantCommand::kWait);
-  EXPECT_EQ(control->GetInput().controls[session::kRight].tool, 0);
+  EXPECT_EQ(control->GetInput().assistant, scene::AssistantCommand::kWait);
+  EXPECT_EQ(control->GetInput().controls[scene::kRight].tool, 0);
 }
 
 TEST_F(SessionControlTest, HeldKeyMovesTheToolOfTheSimulation) {
   control->SetPaused(false);
   control->ChooseHand(device::kLeftHand);
-  ASSERT_TRUE(AdvanceUntil([](const session::Snapshot& now) { return now.tick > 2; }));
-  const math::Vec3 start = control->Advance(0).instruments[session::kLeft].X_world_tool.translation;
+  ASSERT_TRUE(AdvanceUntil([](const simulation::Snapshot& now) { return now.tick > 2; }));
+  const math::Vec3 start = control->Advance(0).instruments[scene::kLeft].X_world_tool.translation;
   const math::Pose X_world_view = control->Advance(0).X_world_laparoscope;
   const math::Vec3 right = math::Rotate(X_world_view.rotation, {1, 0, 0});
   control->Device().SetKey(Motion::kRight, true);
-  EXPECT_TRUE(AdvanceUntil([&](const session::Snapshot& now) {
-    return math::Dot(now.instruments[session::kLeft].X_world_tool.translation - start, right) > 0.005;
+  EXPECT_TRUE(AdvanceUntil([&](const simulation::Snapshot& now) {
+    return math::Dot(now.instruments[scene::kLeft].X_world_tool.translation - start, right) > 0.005;
   })) << "the tip goes to the right in the picture";
-  const math::Vec3 moved = control->Advance(0).instruments[session::kLeft].X_world_tool.translation - start;
+  const math::Vec3 moved = control->Advance(0).instruments[scene::kLeft].X_world_tool.translation - start;
   EXPECT_GT(math::Dot(moved, right), 0.95 * math::Norm(moved)) << "and nowhere else";
 }
 
 TEST_F(SessionControlTest, SettingsReachTheRunningSimulation) {
   control->SetPaused(false);
-  session::LiveSettings settings = control->GetSettings();
+  scene::LiveSettings settings = control->GetSettings();
   settings.gravity = 3.0;
   control->SetSettings(settings);
   EXPECT_TRUE(AdvanceUntil(
-      [](const session::Snapshot& now) { return std::abs(math::Norm(now.gravity) - 3.0) < 1e-9; }));
+      [](const simulation::Snapshot& now) { return std::abs(math::Norm(now.gravity) - 3.0) < 1e-9; }));
   settings.gravity = 1e9;
   control->SetSettings(settings);
   EXPECT_EQ(control->GetSettings().gravity, 30.0) << "clamped";
@@ -207,15 +208,15 @@ TEST_F(SessionControlTest, DemonstrationMovesTheHandsAndIsTakenOverWithoutAJump)
   ASSERT_TRUE(control->HasScript());
   control->SetDemonstration(true);
   control->SetPaused(false);
-  const double home = control->GetScene().instruments[session::kLeft].home.depth;
-  ASSERT_TRUE(AdvanceUntil([&](const session::Snapshot& now) {
-    return std::abs(now.instruments[session::kLeft].joints.depth - home) > 0.01;
+  const double home = control->GetScene().instruments[scene::kLeft].home.depth;
+  ASSERT_TRUE(AdvanceUntil([&](const simulation::Snapshot& now) {
+    return std::abs(now.instruments[scene::kLeft].joints.depth - home) > 0.01;
   }));
-  const session::InstrumentSnapshot before = control->Advance(0).instruments[session::kLeft];
+  const simulation::InstrumentSnapshot before = control->Advance(0).instruments[scene::kLeft];
   control->SetDemonstration(false);
   control->Advance(0);
-  EXPECT_NEAR(control->GetInput().hands[session::kLeft].depth, before.joints.depth, 0.005);
-  EXPECT_NEAR(control->GetInput().hands[session::kLeft].pan, before.joints.pan, 0.05);
+  EXPECT_NEAR(control->GetInput().hands[scene::kLeft].depth, before.joints.depth, 0.005);
+  EXPECT_NEAR(control->GetInput().hands[scene::kLeft].pan, before.joints.pan, 0.05);
 }
 
 TEST_F(SessionControlTest, ATaskWithoutAScriptIsShownByTheExpertAndTakenOverWithTheToolInUse) {
@@ -223,15 +224,15 @@ TEST_F(SessionControlTest, ATaskWithoutAScriptIsShownByTheExpertAndTakenOverWith
   ASSERT_TRUE(control->HasScript());
   control->SetDemonstration(true);
   control->SetPaused(false);
-  EXPECT_TRUE(AdvanceUntil([](const session::Snapshot& now) {
-    return now.operation.tools[session::kRight] == 1;
+  EXPECT_TRUE(AdvanceUntil([](const simulation::Snapshot& now) {
+    return now.operation.tools[scene::kRight] == 1;
   })) << "three clips, then the scissors";
   EXPECT_EQ(control->Advance(0).operation.clip_count, 3u);
   EXPECT_FALSE(control->IsDemonstrationOver());
   control->SetDemonstration(false);
-  EXPECT_EQ(control->GetInput().controls[session::kRight].tool, 1) << "it is not exchanged back";
+  EXPECT_EQ(control->GetInput().controls[scene::kRight].tool, 1) << "it is not exchanged back";
   control->SetDemonstration(true);
-  EXPECT_TRUE(AdvanceUntil([&](const session::Snapshot& now) {
+  EXPECT_TRUE(AdvanceUntil([&](const simulation::Snapshot& now) {
     return now.task.IsOver() && control->IsDemonstrationOver();
   })) << "from the beginning to the end";
 }
@@ -242,7 +243,7 @@ TEST_F(SessionControlTest, TheExpertsLaparoscopeIsTakenOverWhereItIs) {
   control->SetPaused(false);
   const double home = control->GetScene().laparoscope.home.pan;
   ASSERT_TRUE(AdvanceUntil(
-      [&](const session::Snapshot& now) { return std::abs(now.laparoscope.pan - home) > 0.05; }));
+      [&](const simulation::Snapshot& now) { return std::abs(now.laparoscope.pan - home) > 0.05; }));
   const instrument::TrocarJoints before = control->Advance(0).laparoscope;
   control->SetDemonstration(false);
   control->Advance(0);
@@ -252,12 +253,12 @@ TEST_F(SessionControlTest, TheExpertsLaparoscopeIsTakenOverWhereItIs) {
 TEST_F(SessionControlTest, ResetGoesHomeAndToTheFirstTick) {
   control->SetPaused(false);
   control->Device().SetKey(Motion::kIn, true);
-  ASSERT_TRUE(AdvanceUntil([](const session::Snapshot& now) { return now.tick > 30; }));
+  ASSERT_TRUE(AdvanceUntil([](const simulation::Snapshot& now) { return now.tick > 30; }));
   control->SetPaused(true);
   control->Reset();
-  EXPECT_TRUE(AdvanceUntil([](const session::Snapshot& now) { return now.tick == 0; }));
-  EXPECT_EQ(control->GetInput().hands[session::kRight].depth,
-            control->GetScene().instruments[session::kRight].home.depth);
+  EXPECT_TRUE(AdvanceUntil([](const simulation::Snapshot& now) { return now.tick == 0; }));
+  EXPECT_EQ(control->GetInput().hands[scene::kRight].depth,
+            control->GetScene().instruments[scene::kRight].home.depth);
 }
 
 TEST_F(SessionControlTest, LaparoscopeIsHeldAndGivenBackToTheSameHand) {
@@ -279,7 +280,7 @@ TEST_F(SessionControlTest, TheAutomaticCameraIsTakenOverWhereItIs) {
   // a tool goes aside until the holder has to follow
   control->Device().SetKey(Motion::kRight, true);
   const instrument::TrocarJoints home = control->GetScene().laparoscope.home;
-  ASSERT_TRUE(AdvanceUntil([&](const session::Snapshot& now) {
+  ASSERT_TRUE(AdvanceUntil([&](const simulation::Snapshot& now) {
     return std::abs(now.laparoscope.pan - home.pan) + std::abs(now.laparoscope.tilt - home.tilt) > 0.05;
   }));
   control->Device().SetKey(Motion::kRight, false);

@@ -21,18 +21,18 @@ const SettingRow& Row(const std::string& label) {
 TEST(SettingsForm, EverySliderReachesItsOwnSettingWithinTheSessionsRange) {
   for (const SettingRow& row : SettingRows()) {
     for (const double position : {0.0, 0.3, 1.0}) {
-      session::LiveSettings settings;
+      scene::LiveSettings settings;
       SetFromForm(row, position, settings);
-      EXPECT_EQ(session::ClampSettings(settings), settings) << row.label << " at " << position;
+      EXPECT_EQ(scene::ClampSettings(settings), settings) << row.label << " at " << position;
       EXPECT_NEAR(PositionInForm(row, settings),
                   row.scale.is_whole ? PositionInForm(row, settings) : position, 1e-9);
       for (const SettingRow& other : SettingRows()) {
         if (&other == &row) continue;
-        EXPECT_EQ(other.get(settings), other.get(session::LiveSettings{}))
+        EXPECT_EQ(other.get(settings), other.get(scene::LiveSettings{}))
             << row.label << " moved " << other.label;
       }
     }
-    session::LiveSettings low, high;
+    scene::LiveSettings low, high;
     SetFromForm(row, 0.0, low);
     SetFromForm(row, 1.0, high);
     EXPECT_LT(row.get(low), row.get(high)) << row.label;
@@ -51,7 +51,7 @@ TEST(SettingsForm, OffersEverySetting) {
 }
 
 TEST(SettingsForm, WritesValuesWithUnits) {
-  session::LiveSettings settings;
+  scene::LiveSettings settings;
   EXPECT_EQ(FormatSetting(Row("Stiffness"), settings), "1.00 ×");
   EXPECT_EQ(FormatSetting(Row("Gravity"), settings), "9.81 m/s²");
   EXPECT_EQ(FormatSetting(Row("Iterations"), settings), "40");

@@ -8,12 +8,12 @@
 namespace trocar::app {
 namespace {
 
-session::Scene MakeScene() {
-  session::Scene scene;
+scene::Scene MakeScene() {
+  scene::Scene scene;
   scene.seed = 7;
   scene.objects.resize(1);
   scene.objects[0].name = "ring";
-  session::Task task;
+  scene::Task task;
   task.name = "Rings <on> pegs";
   task.level = "hard";
   task.goals.resize(2);
@@ -22,16 +22,16 @@ session::Scene MakeScene() {
   task.errors.resize(1);
   task.errors[0].name = "dropped";
   task.errors[0].about = "A ring \"fell\" & rolled";
-  task.errors[0].severity = session::Severity::kMajor;
+  task.errors[0].severity = training::Severity::kMajor;
   task.errors[0].penalty = 12.5;
   task.reference_points = 200;
   scene.task = task;
   return scene;
 }
 
-session::TaskSnapshot MakeEnd() {
-  session::TaskSnapshot now;
-  now.phase = session::TaskPhase::kTimeOver;
+scene::TaskSnapshot MakeEnd() {
+  scene::TaskSnapshot now;
+  now.phase = scene::TaskPhase::kTimeOver;
   now.time = 83.26;
   now.score = 41.24;
   now.goals.resize(2);
@@ -41,7 +41,7 @@ session::TaskSnapshot MakeEnd() {
 
 TEST(TaskErrorLog, KeepsEveryErrorOnceAndForgetsThoseOfTheRunBefore) {
   TaskErrorLog log;
-  session::TaskSnapshot now;
+  scene::TaskSnapshot now;
   const auto happen = [&](double time) {
     now.last_errors[now.error_count % now.last_errors.size()] = {0, time, {}, -1, -1};
     ++now.error_count;
@@ -67,8 +67,7 @@ TEST(TaskErrorLog, KeepsEveryErrorOnceAndForgetsThoseOfTheRunBefore) {
 }
 
 TEST(TaskResult, SaysGoalsErrorsTimeAndScore) {
-  const auto result =
-      MakeTaskResult(MakeScene(), MakeEnd(), {{0, 12.34, {0.01, 0, -0.1}, 0, session::kRight}});
+  const auto result = MakeTaskResult(MakeScene(), MakeEnd(), {{0, 12.34, {0.01, 0, -0.1}, 0, scene::kRight}});
   EXPECT_EQ(result.verdict, "The time is over");
   EXPECT_EQ(FormatScore(result), "41.2 %");
   ASSERT_EQ(result.goals.size(), 2u);
@@ -80,8 +79,7 @@ TEST(TaskResult, SaysGoalsErrorsTimeAndScore) {
 }
 
 TEST(TaskResult, IsWrittenAsJson) {
-  const auto result =
-      MakeTaskResult(MakeScene(), MakeEnd(), {{0, 12.34, {0.01, 0, -0.1}, -1, session::kLeft}});
+  const auto result = MakeTaskResult(MakeScene(), MakeEnd(), {{0, 12.34, {0.01, 0, -0.1}, -1, scene::kLeft}});
   const auto json = nlohmann::json::parse(FormatTaskResultJson(result));
   EXPECT_EQ(json.at("format"), "trocar-task-result");
   EXPECT_EQ(json.at("task"), "Rings <on> pegs");

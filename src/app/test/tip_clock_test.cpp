@@ -25,5 +25,11 @@ TEST(TipClock, EndsWhenThePersonWorks) {
   EXPECT_TRUE(clock.Ask(0.2));
 }
 
+TEST(TipClock, KeepsTheFirstVisitAfterWorkElsewhere) {
+  TipClock clock;
+  clock.End();
+  EXPECT_TRUE(clock.Ask(0));
+}
+
 }  // namespace
 }  // namespace trocar::app

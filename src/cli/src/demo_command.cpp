@@ -56,21 +56,21 @@ bool ParseSize(const std::string& text, int& width, int& height) {
   return std::sscanf(text.c_str(), "%5dx%5d%c", &width, &height, &end) == 2;
 }
 
-core::Result<std::shared_ptr<const session::Scene>> ReadSceneOrBuiltIn(const std::string& path,
-                                                                       const std::string& patient) {
+core::Result<std::shared_ptr<const scene::Scene>> ReadSceneOrBuiltIn(const std::string& path,
+                                                                     const std::string& patient) {
   fs::path file = path;
   if (path.empty()) {
-    const core::Result<fs::path> folder = session::FindDataFolder();
+    const core::Result<fs::path> folder = scene::FindDataFolder();
     if (!folder) return folder.error();
     file = *folder / "scenes/demonstration.json";
   }
-  core::Result<session::Scene> scene = session::ReadScene(file, patient);
+  core::Result<scene::Scene> scene = scene::ReadScene(file, patient);
   if (!scene) return scene.error();
-  return std::make_shared<const session::Scene>(std::move(scene).value());
+  return std::make_shared<const scene::Scene>(std::move(scene).value());
 }
 
 /// The metrics, what they were measured on, and what force feedback did: null without it.
-std::string FormatMetricsFile(const training::SessionMetrics& metrics, const session::Scene& scene,
+std::string FormatMetricsFile(const training::SessionMetrics& metrics, const scene::Scene& scene,
                               const view::DemoReport& played, const HapticInput* haptics) {
   nlohmann::ordered_json json = {{"program", "trocar " + std::string(core::VersionText())},
                                  {"scene", scene.name},
@@ -87,7 +87,7 @@ std::string FormatMetricsFile(const training::SessionMetrics& metrics, const ses
   return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
 
-core::Result<std::string> MakePage(const session::Scene& scene, const view::DemoReport& played,
+core::Result<std::string> MakePage(const scene::Scene& scene, const view::DemoReport& played,
                                    const MotionLog& log, const HapticInput* haptics,
                                    std::string metrics_json) {
   ReportContent content;
@@ -120,7 +120,7 @@ core::Result<std::string> MakePage(const session::Scene& scene, const view::Demo
   return FormatReportPage(content);
 }
 
-void PrintSummary(const view::DemoReport& played, const session::Scene& scene, const fs::path& output) {
+void PrintSummary(const view::DemoReport& played, const scene::Scene& scene, const fs::path& output) {
   std::printf("Played %s s of \"%s\": %llu ticks, state hash %s\n",
               FormatNumber(static_cast<double>(played.ticks) * scene.tick_seconds).c_str(),
               scene.name.c_str(), static_cast<unsigned long long>(played.ticks),
@@ -147,7 +147,7 @@ core::Status Play(const DemoArguments& arguments) {
   MotionLog log(**scene, arguments.seconds > 0 ? arguments.seconds + 1 : (*scene)->script.Duration() + 1);
   std::unique_ptr<net::IgtlServer> server;
   std::unique_ptr<HapticInput> haptics;
-  options.on_start = [&](const session::Simulation& simulation) -> core::Status {
+  options.on_start = [&](const simulation::Simulation& simulation) -> core::Status {
     if (arguments.igtl_port >= 0) {
       auto listening = ServeViewers(arguments.igtl_port, simulation);
       if (!listening) return listening.error();
@@ -160,10 +160,10 @@ core::Status Play(const DemoArguments& arguments) {
     }
     return {};
   };
-  options.after_step = [&](session::Simulation& simulation) {
+  options.after_step = [&](simulation::Simulation& simulation) {
     if (haptics != nullptr) haptics->AfterStep(simulation);
   };
-  options.on_tick = [&](const session::Snapshot& snapshot) {
+  options.on_tick = [&](const simulation::Snapshot& snapshot) {
     log.Record(snapshot);
     if (server != nullptr) server->Publish(snapshot);
   };
@@ -173,7 +173,7 @@ core::Status Play(const DemoArguments& arguments) {
     if (!opened) return opened.error();
     device = std::move(*opened);
   }
-  options.change_input = [&](double time, session::Input& input) {
+  options.change_input = [&](double time, scene::Input& input) {
     if (device != nullptr) device->Apply(time, input);
     if (haptics != nullptr) haptics->Apply(time, input);
   };

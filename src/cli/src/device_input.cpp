@@ -8,7 +8,7 @@
 namespace trocar::cli {
 
 core::Result<std::unique_ptr<DeviceInput>> DeviceInput::Open(const std::string& spec,
-                                                             const session::Scene& scene) {
+                                                             const scene::Scene& scene) {
   std::unique_ptr<DeviceInput> input(new DeviceInput(scene));
   input->clock_ = spec.starts_with("play:") ? &input->simulated_ : &device::SystemClock();
   const device::DeviceStore store = LoadStoreOrWarn();
@@ -29,7 +29,7 @@ DeviceInput::~DeviceInput() {
     core::Log(core::LogLevel::kWarning, driver_->GetName() + ": " + held_back);
 }
 
-void DeviceInput::Apply(double time, session::Input& input) {
+void DeviceInput::Apply(double time, scene::Input& input) {
   if (clock_ == &simulated_) {
     simulated_.Set(time);
   } else {

@@ -17,8 +17,7 @@ namespace trocar::cli {
 class DeviceInput {
  public:
   /// \return the device's error
-  static core::Result<std::unique_ptr<DeviceInput>> Open(const std::string& spec,
-                                                         const session::Scene& scene);
+  static core::Result<std::unique_ptr<DeviceInput>> Open(const std::string& spec, const scene::Scene& scene);
 
   /// Says in the log what came in and was not used.
   ~DeviceInput();
@@ -27,12 +26,12 @@ class DeviceInput {
   /// it is lost, stay where they were; no pedal does.
   ///
   /// \param time  of the tick [s]; with a real device, waits until so much time has passed since Open()
-  void Apply(double time, session::Input& input);
+  void Apply(double time, scene::Input& input);
   /// kDeviceLost once the device was lost.
   core::Status Check() const;
 
  private:
-  explicit DeviceInput(const session::Scene& scene) : hands_(scene) {}
+  explicit DeviceInput(const scene::Scene& scene) : hands_(scene) {}
 
   device::ManualClock simulated_;
   device::Clock* clock_ = nullptr;
@@ -41,7 +40,7 @@ class DeviceInput {
   session::DeviceSamples samples_;
   device::HandButtons buttons_;
   session::DeviceHands hands_;
-  session::Input held_;
+  scene::Input held_;
   bool has_held_ = false;
   bool is_lost_ = false;
 };

@@ -24,7 +24,7 @@
 #include "trocar/render/image.h"
 #include "trocar/render/offscreen_context.h"
 #include "trocar/render/video_writer.h"
-#include "trocar/session/scene.h"
+#include "trocar/scene/scene.h"
 #include "trocar/tissue_cuda/gpu_solver.h"
 
 namespace trocar::cli {
@@ -344,12 +344,12 @@ Finding CheckThreeDMouse(const fs::path& root) {
 }
 
 Finding CheckDataFolder() {
-  const core::Result<fs::path> folder = session::FindDataFolder();
+  const core::Result<fs::path> folder = scene::FindDataFolder();
   const std::string remedy =
       "set TROCAR_DATA_DIR to the folder that holds assets/ and scenes/, or restore both from the repository";
   if (!folder)
     return {"data", Health::kMissing, folder.error().Text(), "the built-in patient cannot be found", remedy};
-  const core::Result<session::Scene> scene = session::ReadScene(*folder / "scenes/demonstration.json");
+  const core::Result<scene::Scene> scene = scene::ReadScene(*folder / "scenes/demonstration.json");
   if (!scene) {
     return {"data", Health::kMissing, scene.error().Text(), "the built-in scene cannot be read", remedy};
   }

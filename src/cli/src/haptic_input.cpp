@@ -30,7 +30,7 @@ std::string NextStep(const session::HapticStatus& status) {
     case haptics::CheckPoseState::kAsking:
       break;
   }
-  return std::string("bring the ") + (status.asked == session::kLeft ? "left" : "right") +
+  return std::string("bring the ") + (status.asked == scene::kLeft ? "left" : "right") +
          " device to the middle of its reach and hold its first button";
 }
 
@@ -54,7 +54,7 @@ void AddHapticOptions(CLI::App& command, HapticOptions& options) {
 }
 
 core::Result<std::unique_ptr<HapticInput>> HapticInput::Open(const HapticOptions& options,
-                                                             const session::Simulation& simulation) {
+                                                             const simulation::Simulation& simulation) {
   auto driver = device::MakeForceDriver(options.name);
   if (!driver) return driver.error();
   const auto settings = session::MakeHapticSettings(**driver, simulation.GetScene(),
@@ -72,13 +72,13 @@ core::Result<std::unique_ptr<HapticInput>> HapticInput::Open(const HapticOptions
   return input;
 }
 
-void HapticInput::Apply(double time, session::Input& input) {
+void HapticInput::Apply(double time, scene::Input& input) {
   device::SystemClock().Sleep(time - since_start_.Seconds());
   hands_.Take(link_, input);
 }
 
-void HapticInput::AfterStep(session::Simulation& simulation) {
-  for (const session::Hand hand : {session::kLeft, session::kRight}) {
+void HapticInput::AfterStep(simulation::Simulation& simulation) {
+  for (const scene::Hand hand : {scene::kLeft, scene::kRight}) {
     simulation.CutPatch(hand, link_.patches[hand].Back());
     link_.patches[hand].Publish();
   }

@@ -10,7 +10,7 @@
 #include "trocar/core/result.h"
 #include "trocar/session/haptic_loop.h"
 #include "trocar/session/haptic_record.h"
-#include "trocar/session/simulation.h"
+#include "trocar/simulation/simulation.h"
 
 namespace trocar::cli {
 
@@ -30,12 +30,12 @@ class HapticInput {
   /// \param simulation  before its first tick
   /// \return the device's error, kDeviceSettings or kHapticSupervisor
   static core::Result<std::unique_ptr<HapticInput>> Open(const HapticOptions& options,
-                                                         const session::Simulation& simulation);
+                                                         const simulation::Simulation& simulation);
 
   /// Waits until `time` [s] has passed since Open(), and replaces the hands that the devices hold.
-  void Apply(double time, session::Input& input);
+  void Apply(double time, scene::Input& input);
   /// Gives the tissue round the tools to the loop.
-  void AfterStep(session::Simulation& simulation);
+  void AfterStep(simulation::Simulation& simulation);
 
   const session::HapticRecord& Record() const { return record_; }
   /// Writes the record where the options ask for it.

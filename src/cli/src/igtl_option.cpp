@@ -18,7 +18,8 @@ void AddIgtlOption(CLI::App& command, int& port) {
       ->type_name("PORT");
 }
 
-core::Result<std::unique_ptr<net::IgtlServer>> ServeViewers(int port, const session::Simulation& simulation) {
+core::Result<std::unique_ptr<net::IgtlServer>> ServeViewers(int port,
+                                                            const simulation::Simulation& simulation) {
   net::IgtlServerSettings settings;
   settings.port = port;
   auto listening = net::IgtlServer::Make(settings, simulation.Surfaces());

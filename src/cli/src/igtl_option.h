@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "trocar/net/igtl_server.h"
-#include "trocar/session/simulation.h"
+#include "trocar/simulation/simulation.h"
 
 namespace trocar::cli {
 
@@ -16,6 +16,7 @@ void AddIgtlOption(CLI::App& command, int& port);
 /// Listens, and says where.
 /// \param port  0 lets the system choose
 /// \return kDeviceBusy
-core::Result<std::unique_ptr<net::IgtlServer>> ServeViewers(int port, const session::Simulation& simulation);
+core::Result<std::unique_ptr<net::IgtlServer>> ServeViewers(int port,
+                                                            const simulation::Simulation& simulation);
 
 }  // namespace trocar::cli

@@ -7,10 +7,10 @@
 namespace trocar::cli {
 namespace {
 
-using session::EventKind;
+using scene::EventKind;
 using training::GraspEventKind;
 
-training::RecorderSettings MakeSettings(const session::Scene& scene, double seconds) {
+training::RecorderSettings MakeSettings(const scene::Scene& scene, double seconds) {
   training::RecorderSettings settings;
   settings.dt = scene.tick_seconds;
   settings.tool_names = {"left", "right"};
@@ -20,18 +20,18 @@ training::RecorderSettings MakeSettings(const session::Scene& scene, double seco
 
 }  // namespace
 
-MotionLog::MotionLog(const session::Scene& scene, double seconds)
+MotionLog::MotionLog(const scene::Scene& scene, double seconds)
     : field_of_view_(scene.laparoscope.field_of_view), recorder_(MakeSettings(scene, seconds)) {
   times_.reserve(static_cast<std::size_t>(seconds / scene.tick_seconds) + 1);
 }
 
-void MotionLog::Record(const session::Snapshot& snapshot) {
+void MotionLog::Record(const simulation::Snapshot& snapshot) {
   // events of this tick; the ring holds the newest only
   const auto ring = static_cast<std::uint64_t>(snapshot.events.size());
   for (std::uint64_t n =
            std::max(known_events_, snapshot.event_count > ring ? snapshot.event_count - ring : 0);
        n < snapshot.event_count; ++n) {
-    const session::Event& event = snapshot.events[n % ring];
+    const scene::Event& event = snapshot.events[n % ring];
     if (event.hand < 0) continue;
     const auto tool = static_cast<std::uint32_t>(event.hand);
     switch (event.kind) {
@@ -68,9 +68,9 @@ void MotionLog::Record(const session::Snapshot& snapshot) {
   }
   known_events_ = snapshot.event_count;
 
-  std::array<training::ToolSample, session::kHandCount> samples;
+  std::array<training::ToolSample, scene::kHandCount> samples;
   for (std::size_t hand = 0; hand < samples.size(); ++hand) {
-    const session::InstrumentSnapshot& instrument = snapshot.instruments[hand];
+    const simulation::InstrumentSnapshot& instrument = snapshot.instruments[hand];
     training::ToolSample& sample = samples[hand];
     sample.tip = instrument.X_world_tool.translation;
     sample.axis = math::Rotate(instrument.X_world_tool.rotation, {0, 0, -1});
@@ -78,7 +78,7 @@ void MotionLog::Record(const session::Snapshot& snapshot) {
     sample.jaw = instrument.joints.jaw;
     sample.spin = instrument.joints.spin;
     sample.force = math::Norm(instrument.force);
-    sample.in_view = session::IsInView(snapshot.X_world_laparoscope, field_of_view_, sample.tip);
+    sample.in_view = simulation::IsInView(snapshot.X_world_laparoscope, field_of_view_, sample.tip);
     sample.grasping = instrument.is_grasping;
     sample.in_contact = instrument.is_touching;
   }

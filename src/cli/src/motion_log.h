@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "trocar/math/vector.h"
-#include "trocar/session/scene.h"
-#include "trocar/session/snapshot.h"
+#include "trocar/scene/scene.h"
+#include "trocar/simulation/snapshot.h"
 #include "trocar/training/motion_recorder.h"
 
 namespace trocar::cli {
@@ -16,10 +16,10 @@ namespace trocar::cli {
 class MotionLog {
  public:
   /// \param seconds  room for so much [s], > 0
-  MotionLog(const session::Scene& scene, double seconds);
+  MotionLog(const scene::Scene& scene, double seconds);
 
   /// Call after every tick, with every tick.
-  void Record(const session::Snapshot& snapshot);
+  void Record(const simulation::Snapshot& snapshot);
 
   const training::MotionRecording& Recording() const { return recorder_.Recording(); }
   const std::vector<double>& Times() const { return times_; }  ///< (ticks) [s]

@@ -15,18 +15,19 @@
 #include "console.h"
 #include "part_folder.h"
 #include "play_operation.h"
+#include "play_state.h"
+#include "trocar/agent/surgeon.h"
 #include "trocar/core/safe_file.h"
 #include "trocar/core/statistics.h"
-#include "trocar/session/simulation.h"
-#include "trocar/session/surgeon.h"
-#include "trocar/session/task.h"
+#include "trocar/scene/task.h"
+#include "trocar/simulation/simulation.h"
 #include "trocar/view/demo.h"
 
 namespace trocar::cli {
 namespace {
 
-using session::Snapshot;
-using session::TaskPhase;
+using scene::TaskPhase;
+using simulation::Snapshot;
 
 constexpr double kMillilitre = 1e6;  // per m^3
 
@@ -36,24 +37,25 @@ struct PlayArguments {
   std::uint64_t seed = 1;
   int threads = 1;
   double most_seconds = 3600;
+  PlayFiles files;
   bool is_json = false, is_list = false;
 };
 
 /// What a run came to.
 struct PlayReport {
-  session::TaskSnapshot task;
+  scene::TaskSnapshot task;
   double blood_ml = 0, bile_ml = 0;
   double tick_p99_ms = 0, cut_tick_max_ms = 0;
   double seconds = 0;
   std::uint64_t hash = 0;
   bool gave_up = false;
-  std::vector<session::TaskError> errors;  // all of them, in order
+  std::vector<scene::TaskError> errors;  // all of them, in order
 };
 
 /// Follows a run tick by tick.
 class Watcher {
  public:
-  explicit Watcher(const session::Scene& scene) : scene_(scene) {}
+  explicit Watcher(const scene::Scene& scene) : scene_(scene) {}
 
   void See(const Snapshot& snapshot) {
     tick_ms_.push_back(1e3 * snapshot.tick_seconds);
@@ -61,7 +63,7 @@ class Watcher {
       topology_ = snapshot.operation.topology_version;
       cut_tick_max_ms_ = std::max(cut_tick_max_ms_, 1e3 * snapshot.tick_seconds);
     }
-    const session::TaskSnapshot& task = snapshot.task;
+    const scene::TaskSnapshot& task = snapshot.task;
     const auto ring = static_cast<std::uint64_t>(task.last_errors.size());
     const std::uint64_t oldest = task.error_count > ring ? task.error_count - ring : 0;
     for (std::uint64_t n = std::max(known_errors_, oldest); n < task.error_count; ++n)
@@ -85,12 +87,12 @@ class Watcher {
   }
 
  private:
-  const session::Scene& scene_;
+  const scene::Scene& scene_;
   std::vector<double> tick_ms_;
   std::uint32_t topology_ = 0;
   double cut_tick_max_ms_ = 0;
   std::uint64_t known_errors_ = 0;
-  std::vector<session::TaskError> errors_;
+  std::vector<scene::TaskError> errors_;
 };
 
 std::string HashText(std::uint64_t hash) {
@@ -99,8 +101,8 @@ std::string HashText(std::uint64_t hash) {
   return text;
 }
 
-nlohmann::ordered_json ErrorJson(const session::Scene& scene, const session::TaskError& error) {
-  const session::ErrorRule& rule = scene.task->errors[static_cast<std::size_t>(error.rule)];
+nlohmann::ordered_json ErrorJson(const scene::Scene& scene, const scene::TaskError& error) {
+  const scene::ErrorRule& rule = scene.task->errors[static_cast<std::size_t>(error.rule)];
   const auto& p = error.position;
   nlohmann::ordered_json json = {{"error", rule.name},
                                  {"about", rule.about},
@@ -108,18 +110,18 @@ nlohmann::ordered_json ErrorJson(const session::Scene& scene, const session::Tas
                                  {"time_s", error.time},
                                  {"at_mm", {1e3 * p.x, 1e3 * p.y, 1e3 * p.z}}};
   if (error.object >= 0) json["object"] = scene.objects[static_cast<std::size_t>(error.object)].name;
-  if (error.hand >= 0) json["hand"] = error.hand == session::kLeft ? "left" : "right";
+  if (error.hand >= 0) json["hand"] = error.hand == scene::kLeft ? "left" : "right";
   return json;
 }
 
-void PrintJson(const session::Scene& scene, const PlayReport& report) {
+void PrintJson(const scene::Scene& scene, const PlayReport& report) {
   nlohmann::ordered_json json = {{"completed", report.task.phase == TaskPhase::kCompleted},
                                  {"critical_view", nullptr},
                                  {"critical_errors", nlohmann::ordered_json::array()},
                                  {"errors", nlohmann::ordered_json::array()}};
-  for (const session::TaskError& error : report.errors) {
+  for (const scene::TaskError& error : report.errors) {
     const bool is_critical =
-        scene.task->errors[static_cast<std::size_t>(error.rule)].severity == session::Severity::kCritical;
+        scene.task->errors[static_cast<std::size_t>(error.rule)].severity == training::Severity::kCritical;
     json[is_critical ? "critical_errors" : "errors"].push_back(ErrorJson(scene, error));
   }
   json.update({{"blood_ml", report.blood_ml},
@@ -129,7 +131,7 @@ void PrintJson(const session::Scene& scene, const PlayReport& report) {
                {"hash", HashText(report.hash)},
                {"score", report.task.score},
                {"time_s", report.task.time},
-               {"phase", session::PhaseName(report.task.phase)}});
+               {"phase", scene::PhaseName(report.task.phase)}});
   nlohmann::ordered_json goals = nlohmann::ordered_json::array();
   for (std::size_t g = 0; g < report.task.goals.size(); ++g) {
     goals.push_back({{"goal", scene.task->goals[g].name},
@@ -141,17 +143,17 @@ void PrintJson(const session::Scene& scene, const PlayReport& report) {
   std::printf("%s\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
 }
 
-void PrintForPerson(const session::Scene& scene, const PlayReport& report) {
+void PrintForPerson(const scene::Scene& scene, const PlayReport& report) {
   const auto done = std::count_if(report.task.goals.begin(), report.task.goals.end(),
                                   [](const auto& goal) { return goal.is_done; });
   std::printf("%s, level %s: %s after %s s, %td of %zu goals, score %s\n", scene.task->name.c_str(),
               scene.task->level.c_str(),
-              report.gave_up ? "given up" : std::string(session::PhaseName(report.task.phase)).c_str(),
+              report.gave_up ? "given up" : std::string(scene::PhaseName(report.task.phase)).c_str(),
               FormatNumber(report.task.time, 4).c_str(), done, report.task.goals.size(),
               FormatNumber(report.task.score, 4).c_str());
   for (std::size_t e = 0; e < scene.task->errors.size(); ++e) {
     if (report.task.errors[e] == 0) continue;
-    const session::ErrorRule& rule = scene.task->errors[e];
+    const scene::ErrorRule& rule = scene.task->errors[e];
     std::printf("  %u x %s: %s (%s, %s points each)\n", report.task.errors[e], rule.name.c_str(),
                 rule.about.c_str(), std::string(training::NameOf(rule.severity)).c_str(),
                 FormatNumber(rule.penalty).c_str());
@@ -164,11 +166,11 @@ void PrintForPerson(const session::Scene& scene, const PlayReport& report) {
 constexpr std::size_t kListWidth = 100;  // columns
 
 /// A task in one line, and below it who can do it, in lines that a terminal holds.
-void PrintTask(const std::string& key, const std::string& levels, const session::Scene& scene) {
+void PrintTask(const std::string& key, const std::string& levels, const scene::Scene& scene) {
   std::printf("%s%s: %s\n", key.c_str(), levels.empty() ? "" : (" (" + levels + ")").c_str(),
               scene.name.c_str());
   std::string line = "   ";
-  for (const session::SurgeonEntry& entry : session::ListSurgeons()) {
+  for (const agent::SurgeonEntry& entry : agent::ListSurgeons()) {
     if (!entry.suits(scene)) continue;
     const std::string name = entry.name;
     if (line.size() + 1 + name.size() > kListWidth) {
@@ -181,10 +183,10 @@ void PrintTask(const std::string& key, const std::string& levels, const session:
 }
 
 core::Status PrintList() {
-  const auto tasks = session::ListTasks();
+  const auto tasks = scene::ListTasks();
   if (!tasks) return tasks.error();
-  for (const session::TaskEntry& task : *tasks) {
-    const auto scene = session::ReadTask(task.path);
+  for (const scene::TaskEntry& task : *tasks) {
+    const auto scene = scene::ReadTask(task.path);
     if (!scene) return scene.error();
     std::string levels;
     for (const std::string& level : task.levels) levels += (levels.empty() ? "" : ", ") + level;
@@ -196,18 +198,22 @@ core::Status PrintList() {
   std::printf("\n");
   std::vector<std::vector<std::string>> rows;
   rows = {{"surgeon", "error", "about"}};
-  for (const session::SurgeonEntry& entry : session::ListSurgeons())
+  for (const agent::SurgeonEntry& entry : agent::ListSurgeons())
     rows.push_back({entry.name, *entry.error == 0 ? "-" : entry.error, entry.about});
   std::fputs(FormatTable(rows).c_str(), stdout);
   return {};
 }
 
 /// Without pictures.
-core::Result<PlayReport> PlayBlind(std::shared_ptr<const session::Scene> scene, session::Surgeon& surgeon,
+core::Result<PlayReport> PlayBlind(std::shared_ptr<const scene::Scene> scene, agent::Surgeon& surgeon,
                                    const PlayArguments& arguments) {
-  auto made = session::Simulation::Make(scene, arguments.threads);
+  auto made = simulation::Simulation::Make(scene, arguments.threads);
   if (!made) return made.error();
-  session::Simulation simulation = std::move(*made);
+  simulation::Simulation simulation = std::move(*made);
+  if (!arguments.files.restore.empty()) {
+    if (auto restored = RestorePlay(arguments.files.restore, simulation, surgeon); !restored)
+      return restored.error();
+  }
   Watcher watcher(*scene);
   const std::size_t goals = scene->task->goals.size();
   ProgressBar progress("playing", static_cast<double>(goals));
@@ -222,6 +228,9 @@ core::Result<PlayReport> PlayBlind(std::shared_ptr<const session::Scene> scene, 
     progress.Show(static_cast<double>(done));
   }
   progress.Finish();
+  if (!arguments.files.save.empty()) {
+    if (auto saved = SavePlay(arguments.files.save, simulation, surgeon); !saved) return saved.error();
+  }
   return watcher.Finish(simulation.GetSnapshot(), simulation.Hash());
 }
 
@@ -234,7 +243,7 @@ core::Result<std::array<int, 2>> ReadSize(const std::string& text) {
 }
 
 /// With pictures and a video.
-core::Result<PlayReport> PlayForTheEye(std::shared_ptr<const session::Scene> scene, session::Surgeon& surgeon,
+core::Result<PlayReport> PlayForTheEye(std::shared_ptr<const scene::Scene> scene, agent::Surgeon& surgeon,
                                        const PlayArguments& arguments) {
   view::DemoOptions options;
   const auto size = ReadSize(arguments.size);
@@ -265,30 +274,35 @@ core::Result<PlayReport> PlayForTheEye(std::shared_ptr<const session::Scene> sce
 }
 
 /// An operation on a patient.
-core::Status PlayOne(session::Scene scene, const PlayArguments& arguments) {
-  const auto shared = std::make_shared<const session::Scene>(std::move(scene));
-  auto surgeon = session::MakeSurgeon(arguments.surgeon, shared, arguments.seed);
+core::Status PlayOne(scene::Scene scene, const PlayArguments& arguments) {
+  const auto shared = std::make_shared<const scene::Scene>(std::move(scene));
+  auto surgeon = agent::MakeSurgeon(arguments.surgeon, shared, arguments.seed);
   if (!surgeon) return surgeon.error();
   const auto size = ReadSize(arguments.size);
   if (!size) return size.error();
   return PlayOperation(shared, **surgeon,
                        {arguments.output, (*size)[0], (*size)[1], arguments.threads, arguments.most_seconds,
-                        arguments.is_json});
+                        arguments.is_json, arguments.files});
 }
 
 core::Status Play(const PlayArguments& arguments, Outcome& outcome) {
   if (arguments.is_list) return PrintList();
   if (arguments.surgeon.empty() || arguments.task.empty())
     return core::Error{core::ErrorCode::kUsage, "a surgeon and --task are needed; see trocar play --list"};
+  const bool has_files = !arguments.files.restore.empty() || !arguments.files.save.empty();
+  if (has_files && !arguments.output.empty()) {
+    return core::Error{core::ErrorCode::kUsage,
+                       "--save and --restore go without pictures; leave out -o, or play from the start"};
+  }
   auto operation = FindOperation(arguments.task, arguments.patient, arguments.seed);
   if (!operation.ok()) return operation.error();
   if (*operation) return PlayOne(std::move(**operation), arguments);
-  const auto path = session::FindTask(arguments.task);
+  const auto path = scene::FindTask(arguments.task);
   if (!path) return path.error();
-  auto read = session::ReadTask(*path, {arguments.level, arguments.seed, arguments.patient});
+  auto read = scene::ReadTask(*path, {arguments.level, arguments.seed, arguments.patient});
   if (!read) return read.error();
-  const auto scene = std::make_shared<const session::Scene>(std::move(*read));
-  auto surgeon = session::MakeSurgeon(arguments.surgeon, scene, arguments.seed);
+  const auto scene = std::make_shared<const scene::Scene>(std::move(*read));
+  auto surgeon = agent::MakeSurgeon(arguments.surgeon, scene, arguments.seed);
   if (!surgeon) return surgeon.error();
   const auto report = arguments.output.empty() ? PlayBlind(scene, **surgeon, arguments)
                                                : PlayForTheEye(scene, **surgeon, arguments);
@@ -329,6 +343,12 @@ void AddPlayCommand(CLI::App& app, Outcome& outcome) {
   command->add_option("--size", arguments->size, "Of pictures and video [pixels]")
       ->type_name("WxH")
       ->capture_default_str();
+  command->add_option("--save", arguments->files.save, "Write the state and the surgeon's memory at the end")
+      ->type_name("FILE");
+  command
+      ->add_option("--restore", arguments->files.restore,
+                   "Go on where --save left off: the same task, level, patient, seed and surgeon")
+      ->type_name("FILE");
   command->add_flag("--json", arguments->is_json, "Machine-readable");
   command->add_flag("--list", arguments->is_list, "Show tasks and surgeons, and do nothing");
   command->footer(

@@ -11,7 +11,7 @@
 #include "part_folder.h"
 #include "trocar/core/json.h"
 #include "trocar/core/statistics.h"
-#include "trocar/session/simulation.h"
+#include "trocar/simulation/simulation.h"
 #include "trocar/training/injury.h"
 #include "trocar/view/demo.h"
 
@@ -19,8 +19,8 @@ namespace trocar::cli {
 namespace {
 
 using nlohmann::ordered_json;
-using session::OperationResult;
-using session::Snapshot;
+using simulation::OperationResult;
+using simulation::Snapshot;
 
 constexpr double kMillilitre = 1e6;  // per m^3
 
@@ -56,7 +56,7 @@ ordered_json ErrorJson(const training::ErrorEntry& entry) {
                        {"severity", training::NameOf(training::SeverityOf(entry.error))},
                        {"time_s", entry.time},
                        {"at_mm", {1e3 * entry.place.x, 1e3 * entry.place.y, 1e3 * entry.place.z}}};
-  if (entry.hand >= 0 && entry.hand < session::kHandCount) json["hand"] = kHands[entry.hand];
+  if (entry.hand >= 0 && entry.hand < scene::kHandCount) json["hand"] = kHands[entry.hand];
   return json;
 }
 
@@ -92,7 +92,7 @@ ordered_json MakeJson(const OperationResult& result, const Run& run) {
   return json;
 }
 
-void PrintForPerson(const session::Scene& scene, const OperationResult& result, const Run& run) {
+void PrintForPerson(const scene::Scene& scene, const OperationResult& result, const Run& run) {
   std::printf("%s: %s after %s s\n", scene.name.c_str(), result.is_completed ? "completed" : "not completed",
               FormatNumber(run.seconds, 4).c_str());
   std::printf("Critical view of safety: %s\n",
@@ -113,7 +113,7 @@ void PrintForPerson(const session::Scene& scene, const OperationResult& result, 
               FormatNumber(Left(result, surgery::Fluid::kBlood), 3).c_str(),
               FormatNumber(Left(result, surgery::Fluid::kBile), 3).c_str(),
               std::string(training::StrasbergName(result.injuries.strasberg)).c_str());
-  const session::StoneCount& stones = result.stones;
+  const simulation::StoneCount& stones = result.stones;
   if (stones.inside < stones.all) {
     std::printf("Of %d stones %d came out of the gallbladder; spilled and not retrieved: %d\n", stones.all,
                 stones.all - stones.inside, stones.spilled);
@@ -140,27 +140,27 @@ double Share(const Snapshot& now) {
 
 }  // namespace
 
-core::Result<std::optional<session::Scene>> FindOperation(const std::string& name,
-                                                          const std::filesystem::path& patient_folder,
-                                                          std::uint64_t seed) {
+core::Result<std::optional<scene::Scene>> FindOperation(const std::string& name,
+                                                        const std::filesystem::path& patient_folder,
+                                                        std::uint64_t seed) {
   std::filesystem::path path = name;
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored)) {
-    const auto data = session::FindDataFolder();
+    const auto data = scene::FindDataFolder();
     if (!data.ok()) return data.error();
     path = *data / "scenes" / (name + ".json");
-    if (!std::filesystem::exists(path, ignored)) return std::optional<session::Scene>();
+    if (!std::filesystem::exists(path, ignored)) return std::optional<scene::Scene>();
   }
   const auto document = core::JsonDocument::Read(path);
   if (!document.ok()) return document.error();
-  if (!document->Root().Has("operation")) return std::optional<session::Scene>();
-  auto scene = session::ReadScene(path, patient_folder);
+  if (!document->Root().Has("operation")) return std::optional<scene::Scene>();
+  auto scene = scene::ReadScene(path, patient_folder);
   if (!scene.ok()) return scene.error();
   scene->seed = seed;
-  return std::optional<session::Scene>(std::move(*scene));
+  return std::optional<scene::Scene>(std::move(*scene));
 }
 
-core::Status PlayOperation(std::shared_ptr<const session::Scene> scene, session::Surgeon& surgeon,
+core::Status PlayOperation(std::shared_ptr<const scene::Scene> scene, agent::Surgeon& surgeon,
                            const OperationPlay& play) {
   Run run;
   OperationResult result;
@@ -172,12 +172,18 @@ core::Status PlayOperation(std::shared_ptr<const session::Scene> scene, session:
     progress.Show(Share(now));
   };
   if (play.output.empty()) {
-    auto made = session::Simulation::Make(scene, play.threads);
+    auto made = simulation::Simulation::Make(scene, play.threads);
     if (!made.ok()) return made.error();
-    session::Simulation simulation = std::move(*made);
+    simulation::Simulation simulation = std::move(*made);
+    if (!play.files.restore.empty()) {
+      if (auto restored = RestorePlay(play.files.restore, simulation, surgeon); !restored) return restored;
+    }
     while (!surgeon.HasFinished() && simulation.GetSnapshot().time < play.most_seconds) {
       simulation.Step(surgeon.Act(simulation.GetSnapshot()));
       see(simulation.GetSnapshot());
+    }
+    if (!play.files.save.empty()) {
+      if (auto saved = SavePlay(play.files.save, simulation, surgeon); !saved) return saved;
     }
     run.hash = simulation.Hash();
     result = *simulation.GetOperationResult();

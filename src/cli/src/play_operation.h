@@ -7,8 +7,9 @@
 #include <optional>
 #include <string>
 
+#include "play_state.h"
+#include "trocar/agent/surgeon.h"
 #include "trocar/core/result.h"
-#include "trocar/session/surgeon.h"
 
 namespace trocar::cli {
 
@@ -18,16 +19,17 @@ struct OperationPlay {
   int threads = 1;
   double most_seconds = 3600;
   bool is_json = false;
+  PlayFiles files;  ///< only without pictures
 };
 
 /// The scene of that name, or at that path, where it is an operation.
 /// \return nothing where there is none: then it is a task; the file's error where it is one that cannot be read
-core::Result<std::optional<session::Scene>> FindOperation(const std::string& name,
-                                                          const std::filesystem::path& patient_folder,
-                                                          std::uint64_t seed);
+core::Result<std::optional<scene::Scene>> FindOperation(const std::string& name,
+                                                        const std::filesystem::path& patient_folder,
+                                                        std::uint64_t seed);
 
 /// Runs to the surgeon's end and prints what it came to.
-core::Status PlayOperation(std::shared_ptr<const session::Scene> scene, session::Surgeon& surgeon,
+core::Status PlayOperation(std::shared_ptr<const scene::Scene> scene, agent::Surgeon& surgeon,
                            const OperationPlay& play);
 
 }  // namespace trocar::cli

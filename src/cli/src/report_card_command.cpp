@@ -13,7 +13,7 @@
 #include "trocar/bench/benchmark.h"
 #include "trocar/bench/physics_checks.h"
 #include "trocar/core/safe_file.h"
-#include "trocar/session/scene.h"
+#include "trocar/scene/scene.h"
 
 namespace trocar::cli {
 namespace {
@@ -36,7 +36,7 @@ core::Result<std::vector<bench::PhysicsCheck>> RunChecks(const ReportCardOptions
   progress.Finish();
   if (options.is_quick) return checks;
   std::filesystem::path scene = options.scene, demonstration;
-  const auto data = session::FindDataFolder();
+  const auto data = scene::FindDataFolder();
   if (!data.ok()) return data.error();
   demonstration = *data / "scenes" / "demonstration.json";
   if (scene.empty()) scene = *data / "scenes" / "retraction.json";

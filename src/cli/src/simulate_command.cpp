@@ -22,8 +22,8 @@
 #include "trocar/core/log.h"
 #include "trocar/core/statistics.h"
 #include "trocar/net/igtl_server.h"
-#include "trocar/session/simulation.h"
-#include "trocar/session/state_file.h"
+#include "trocar/simulation/simulation.h"
+#include "trocar/simulation/state_file.h"
 
 namespace trocar::cli {
 namespace {
@@ -66,23 +66,23 @@ std::string FormatHash(std::uint64_t hash) {
 }
 
 /// One line in the tick in which the processor takes over from the GPU.
-void WarnOnce(const session::Simulation& simulation, std::string& said) {
+void WarnOnce(const simulation::Simulation& simulation, std::string& said) {
   if (!said.empty() || simulation.GpuError() == nullptr) return;
   said = simulation.GpuError()->Text();
   core::Log(core::LogLevel::kWarning, said);
 }
 
 core::Result<SimulateReport> Simulate(const SimulateOptions& options) {
-  core::Result<session::Scene> read = session::ReadScene(options.scene, options.patient);
+  core::Result<scene::Scene> read = scene::ReadScene(options.scene, options.patient);
   if (!read) return read.error();
-  auto scene = std::make_shared<session::Scene>(std::move(read).value());
+  auto scene = std::make_shared<scene::Scene>(std::move(read).value());
   if (options.has_seed) scene->seed = options.seed;
-  core::Result<session::Simulation> made = session::Simulation::Make(
-      scene, options.threads, options.uses_gpu ? session::SolveOn::kGpu : session::SolveOn::kProcessor);
+  core::Result<simulation::Simulation> made = simulation::Simulation::Make(
+      scene, options.threads, options.uses_gpu ? simulation::SolveOn::kGpu : simulation::SolveOn::kProcessor);
   if (!made) return made.error();
-  session::Simulation simulation = std::move(made).value();
+  simulation::Simulation simulation = std::move(made).value();
   if (!options.restore.empty()) {
-    const auto restored = session::ReadStateFile(options.restore, simulation);
+    const auto restored = simulation::ReadStateFile(options.restore, simulation);
     if (!restored) return restored.error();
   }
   std::unique_ptr<DeviceInput> device;
@@ -107,21 +107,21 @@ core::Result<SimulateReport> Simulate(const SimulateOptions& options) {
   }
 
   const auto count = static_cast<std::size_t>(options.ticks);
-  std::array<std::vector<double>, session::kStageCount> stage_ms;
+  std::array<std::vector<double>, simulation::kStageCount> stage_ms;
   for (auto& times : stage_ms) times.reserve(count);
   std::vector<double> tick_ms;
   tick_ms.reserve(count);
   SimulateReport report;
   ProgressBar progress("simulating", options.ticks);
   for (int tick = 0; tick < options.ticks; ++tick) {
-    session::Input input = session::CalcScriptInput(*scene, simulation.GetSnapshot().time);
+    scene::Input input = scene::CalcScriptInput(*scene, simulation.GetSnapshot().time);
     if (device != nullptr) device->Apply(simulation.GetSnapshot().time, input);
     if (haptics != nullptr) haptics->Apply(simulation.GetSnapshot().time, input);
     const core::Stopwatch stopwatch;
     simulation.Step(input);
     if (haptics != nullptr) haptics->AfterStep(simulation);
     tick_ms.push_back(1e3 * stopwatch.Seconds());
-    const session::Snapshot& snapshot = simulation.GetSnapshot();
+    const simulation::Snapshot& snapshot = simulation.GetSnapshot();
     for (std::size_t i = 0; i < stage_ms.size(); ++i) stage_ms[i].push_back(1e3 * snapshot.stage_seconds[i]);
     for (const auto& instrument : snapshot.instruments) {
       report.max_force_n = std::max(report.max_force_n, math::Norm(instrument.force));
@@ -132,7 +132,7 @@ core::Result<SimulateReport> Simulate(const SimulateOptions& options) {
   }
   progress.Finish();
   if (!options.save.empty()) {
-    if (const core::Status saved = session::WriteStateFile(options.save, simulation); !saved)
+    if (const core::Status saved = simulation::WriteStateFile(options.save, simulation); !saved)
       return saved.error();
   }
   if (device != nullptr) {
@@ -143,9 +143,9 @@ core::Result<SimulateReport> Simulate(const SimulateOptions& options) {
   report.hash = FormatHash(simulation.Hash());
   report.ticks = simulation.GetSnapshot().tick;
   report.residual = simulation.GetSnapshot().residual;
-  for (int i = 0; i < session::kStageCount; ++i) {
+  for (int i = 0; i < simulation::kStageCount; ++i) {
     const auto& times = stage_ms[static_cast<std::size_t>(i)];
-    report.stages.push_back({std::string(session::StageName(static_cast<session::Stage>(i))),
+    report.stages.push_back({std::string(simulation::StageName(static_cast<simulation::Stage>(i))),
                              core::CalcPercentile(times, 0.5), core::CalcPercentile(times, 0.99)});
   }
   report.tick_p99_ms = core::CalcPercentile(tick_ms, 0.99);

@@ -9,20 +9,20 @@ namespace trocar::cli {
 namespace {
 
 using math::Pose;
-using session::EventKind;
+using scene::EventKind;
 
 // The laparoscope looks along -z.
 TEST(IsInView, IsAConeInFrontOfTheLens) {
   const double fov = 1.2;
-  EXPECT_TRUE(session::IsInView({}, fov, {0, 0, -0.1}));
-  EXPECT_FALSE(session::IsInView({}, fov, {0, 0, 0.1}));
-  EXPECT_FALSE(session::IsInView({}, fov, {0, 0, 0}));
-  EXPECT_TRUE(session::IsInView({}, fov, {0.1 * std::tan(0.59), 0, -0.1}));
-  EXPECT_FALSE(session::IsInView({}, fov, {0, 0.1 * std::tan(0.61), -0.1}));
+  EXPECT_TRUE(simulation::IsInView({}, fov, {0, 0, -0.1}));
+  EXPECT_FALSE(simulation::IsInView({}, fov, {0, 0, 0.1}));
+  EXPECT_FALSE(simulation::IsInView({}, fov, {0, 0, 0}));
+  EXPECT_TRUE(simulation::IsInView({}, fov, {0.1 * std::tan(0.59), 0, -0.1}));
+  EXPECT_FALSE(simulation::IsInView({}, fov, {0, 0.1 * std::tan(0.61), -0.1}));
   // moved and turned to look along +x
   const Pose X_world_laparoscope{math::RotationAbout({0, 1, 0}, -M_PI / 2), {1, 2, 3}};
-  EXPECT_TRUE(session::IsInView(X_world_laparoscope, fov, {1.1, 2, 3}));
-  EXPECT_FALSE(session::IsInView(X_world_laparoscope, fov, {0.9, 2, 3}));
+  EXPECT_TRUE(simulation::IsInView(X_world_laparoscope, fov, {1.1, 2, 3}));
+  EXPECT_FALSE(simulation::IsInView(X_world_laparoscope, fov, {0.9, 2, 3}));
 }
 
 class Log : public testing::Test {
@@ -37,20 +37,20 @@ class Log : public testing::Test {
     log_.Record(snapshot_);
   }
 
-  session::Scene scene_;
+  scene::Scene scene_;
   MotionLog log_{scene_, 10};
-  session::Snapshot snapshot_;
+  simulation::Snapshot snapshot_;
 };
 
 TEST_F(Log, TakesOverPoseForceAndState) {
-  auto& right = snapshot_.instruments[session::kRight];
+  auto& right = snapshot_.instruments[scene::kRight];
   right.X_world_tool.translation = {0.01, 0.02, -0.1};
   right.force = {0, 3, 4};
   right.joints.depth = 0.12;
   right.is_grasping = true;
   right.is_touching = true;
   Tick();
-  const auto& sample = log_.Recording().tools[session::kRight].front();
+  const auto& sample = log_.Recording().tools[scene::kRight].front();
   EXPECT_EQ(sample.tip, (math::Vec3{0.01, 0.02, -0.1}));
   EXPECT_DOUBLE_EQ(sample.force, 5.0);
   EXPECT_DOUBLE_EQ(sample.insertion, 0.12);
@@ -62,24 +62,24 @@ TEST_F(Log, TakesOverPoseForceAndState) {
 }
 
 TEST_F(Log, CountsEveryEventOnce) {
-  Add(EventKind::kGrasp, session::kLeft);
+  Add(EventKind::kGrasp, scene::kLeft);
   Tick();
   Tick();
-  Add(EventKind::kSlip, session::kLeft);
-  Add(EventKind::kGraspMissed, session::kRight);
+  Add(EventKind::kSlip, scene::kLeft);
+  Add(EventKind::kGraspMissed, scene::kRight);
   Add(EventKind::kStateRestored, -1);
   Tick();
   for (int i = 0; i < 20; ++i) {
-    Add(EventKind::kGrasp, session::kRight);
+    Add(EventKind::kGrasp, scene::kRight);
     Tick();
   }
   const auto metrics = training::CalcSessionMetrics(log_.Recording());
   ASSERT_TRUE(metrics.ok());
-  EXPECT_EQ(metrics->tools[session::kLeft].grasp_attempts, 1);
-  EXPECT_EQ(metrics->tools[session::kLeft].grasp_successes, 1);
-  EXPECT_EQ(metrics->tools[session::kLeft].grasp_slips, 1);
-  EXPECT_EQ(metrics->tools[session::kRight].grasp_attempts, 21);
-  EXPECT_EQ(metrics->tools[session::kRight].grasp_successes, 20);
+  EXPECT_EQ(metrics->tools[scene::kLeft].grasp_attempts, 1);
+  EXPECT_EQ(metrics->tools[scene::kLeft].grasp_successes, 1);
+  EXPECT_EQ(metrics->tools[scene::kLeft].grasp_slips, 1);
+  EXPECT_EQ(metrics->tools[scene::kRight].grasp_attempts, 21);
+  EXPECT_EQ(metrics->tools[scene::kRight].grasp_successes, 20);
 }
 
 }  // namespace

@@ -44,24 +44,39 @@ bool IsTooDeep(std::string_view text) {
   return false;
 }
 
-/// Notices the first field that an object gives twice, while the parser runs: the parser itself keeps the last.
-class TwiceWatch {
+/// Notices the first field that an object gives twice: the parser that builds the document keeps the last of them.
+///
+/// A pass of its own, because a callback of the building parser would make it search each list anew at each element.
+class TwiceWatch : public nlohmann::json_sax<nlohmann::json> {
  public:
-  bool See(nlohmann::json::parse_event_t event, const nlohmann::json& parsed) {
-    using Event = nlohmann::json::parse_event_t;
-    if (event == Event::object_start) {
-      open_.emplace_back();
-    } else if (event == Event::object_end) {
-      open_.pop_back();
-    } else if (event == Event::key) {
-      open_.back().key = parsed.get<std::string>();
-      if (!open_.back().seen.insert(open_.back().key).second && !twice_) {
-        twice_.emplace();
-        for (const Object& object : open_) *twice_ += (twice_->empty() ? "" : ".") + object.key;
-      }
-    }
+  bool null() override { return true; }
+  bool boolean(bool) override { return true; }
+  bool number_integer(number_integer_t) override { return true; }
+  bool number_unsigned(number_unsigned_t) override { return true; }
+  bool number_float(number_float_t, const string_t&) override { return true; }
+  bool string(string_t&) override { return true; }
+  bool binary(binary_t&) override { return true; }
+  bool start_array(std::size_t) override { return true; }
+  bool end_array() override { return true; }
+  bool start_object(std::size_t) override {
+    open_.emplace_back();
     return true;
   }
+  bool end_object() override {
+    open_.pop_back();
+    return true;
+  }
+  bool key(string_t& name) override {
+    open_.back().key = name;
+    if (open_.back().seen.insert(name).second) return true;
+    twice_.emplace();
+    for (const Object& object : open_) *twice_ += (twice_->empty() ? "" : ".") + object.key;
+    return false;
+  }
+  bool parse_error(std::size_t, const std::string&, const nlohmann::detail::exception&) override {
+    return false;  // the parser that builds the document says it better
+  }
+
   /// "settings.tolerance"
   const std::optional<std::string>& Twice() const { return twice_; }
 
@@ -249,8 +264,8 @@ Result<JsonDocument> JsonDocument::Parse(std::string_view text, std::string sour
   content->source = std::move(source);
   TwiceWatch watch;
   try {
-    content->root = nlohmann::json::parse(
-        text, [&](int, auto event, const nlohmann::json& parsed) { return watch.See(event, parsed); });
+    content->root = nlohmann::json::parse(text);
+    (void)nlohmann::json::sax_parse(text, &watch);
   } catch (const nlohmann::json::exception& failure) {
     return Error{ErrorCode::kJsonSyntax, content->source + ": not valid JSON: " + failure.what()};
   }

@@ -26,10 +26,10 @@ bool IsDue(double time, double period, double& next) noexcept {
   return true;
 }
 
-std::string FormatTools(const session::Snapshot& snapshot) {
+std::string FormatTools(const simulation::Snapshot& snapshot) {
   const std::array<device::IgtlTool, 3> tools = {{
-      {"LeftTool", RasFromWorld(snapshot.instruments[session::kLeft].X_world_tool)},
-      {"RightTool", RasFromWorld(snapshot.instruments[session::kRight].X_world_tool)},
+      {"LeftTool", RasFromWorld(snapshot.instruments[scene::kLeft].X_world_tool)},
+      {"RightTool", RasFromWorld(snapshot.instruments[scene::kRight].X_world_tool)},
       {"Laparoscope", RasFromWorld(snapshot.X_world_laparoscope)},
   }};
   std::string bytes;
@@ -38,11 +38,11 @@ std::string FormatTools(const session::Snapshot& snapshot) {
   return bytes + device::FormatIgtlTrackingData("Tools", tools, snapshot.time);
 }
 
-std::string FormatOrgans(std::span<const session::SurfaceInfo> organs, const session::Snapshot& snapshot) {
+std::string FormatOrgans(std::span<const scene::SurfaceInfo> organs, const simulation::Snapshot& snapshot) {
   std::string bytes;
   std::vector<math::Vec3> points;
   std::vector<std::uint32_t> corners;
-  for (const session::SurfaceInfo& organ : organs) {
+  for (const scene::SurfaceInfo& organ : organs) {
     if (organ.first_node + std::size_t{organ.node_count} > snapshot.positions.size()) continue;
     points.clear();
     corners.clear();
@@ -70,11 +70,11 @@ IgtlServer::IgtlServer(const IgtlServerSettings& settings, std::unique_ptr<devic
     : settings_(settings), listener_(std::move(listener)) {}
 
 core::Result<std::unique_ptr<IgtlServer>> IgtlServer::Make(const IgtlServerSettings& settings,
-                                                           std::span<const session::SurfaceInfo> surfaces) {
+                                                           std::span<const scene::SurfaceInfo> surfaces) {
   auto listener = device::TcpListener::Make(settings.port, settings.is_local_only);
   if (!listener) return listener.error();
   std::unique_ptr<IgtlServer> server(new IgtlServer(settings, std::move(*listener)));
-  for (const session::SurfaceInfo& surface : surfaces) {
+  for (const scene::SurfaceInfo& surface : surfaces) {
     if (!surface.triangles.empty()) server->organs_.push_back(surface);
   }
   return server;
@@ -108,7 +108,7 @@ void IgtlServer::Serve(Viewer& viewer, double time) {
   if (heard.is_lost || sent.is_lost || time - viewer.last_sent > kPatience) viewer.line.reset();
 }
 
-void IgtlServer::Publish(const session::Snapshot& snapshot) {
+void IgtlServer::Publish(const simulation::Snapshot& snapshot) {
   const double time = snapshot.time;
   // back at the first tick
   if (next_tools_ > time + settings_.organ_period + settings_.tool_period) {

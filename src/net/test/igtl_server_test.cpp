@@ -31,19 +31,19 @@ class IgtlServerTest : public testing::Test {
  protected:
   static constexpr std::uint32_t kNodes = 2000;
   void SetUp() override {
-    session::SurfaceInfo organ;
+    scene::SurfaceInfo organ;
     organ.name = "liver";
     organ.node_count = kNodes;
     organ.triangles = {{0, 1, 2}, {0, 2, 3}};
-    session::SurfaceInfo duct;
+    scene::SurfaceInfo duct;
     duct.name = "cystic_duct";
     duct.first_node = kNodes;
     duct.node_count = 2;
     snapshot_.positions.resize(kNodes + 2, {0.1, 0.2, 0.3});
-    snapshot_.instruments[session::kLeft].X_world_tool.translation = {0.01, 0.02, 0.03};
+    snapshot_.instruments[scene::kLeft].X_world_tool.translation = {0.01, 0.02, 0.03};
     IgtlServerSettings settings;
     settings.port = 0;
-    const session::SurfaceInfo surfaces[] = {organ, duct};
+    const scene::SurfaceInfo surfaces[] = {organ, duct};
     auto made = IgtlServer::Make(settings, surfaces);
     ASSERT_TRUE(made.ok()) << made.error().Text();
     server_ = std::move(*made);
@@ -87,7 +87,7 @@ class IgtlServerTest : public testing::Test {
     return counts;
   }
 
-  session::Snapshot snapshot_;
+  simulation::Snapshot snapshot_;
   std::unique_ptr<IgtlServer> server_;
 };
 
@@ -154,7 +154,7 @@ TEST_F(IgtlServerTest, TheSlowestMakesRoom) {
 TEST_F(IgtlServerTest, IgnoresWhatItIsTold) {
   const auto viewer = Connect();
   Tick(1);
-  const session::Snapshot before = snapshot_;
+  const simulation::Snapshot before = snapshot_;
   ASSERT_GT(
       viewer->Write(device::FormatIgtlTransform("LeftTool", {{}, {9, 9, 9}}, 0) + std::string(20000, 'x'))
           .count,

@@ -4,6 +4,10 @@
 #include "trocar/session/hand_joints.h"
 
 namespace trocar::session {
+
+using scene::HandControls;
+using scene::kLeft;
+using scene::kRight;
 namespace {
 
 using device::HandAct;

@@ -12,6 +12,9 @@
 #include "trocar/session/hand_joints.h"
 
 namespace trocar::session {
+
+using scene::kLeft;
+using scene::kRight;
 namespace {
 
 constexpr double kReadPeriod = 0.002;  // [s]

@@ -4,6 +4,8 @@
 #include "trocar/session/haptic_loop.h"
 
 namespace trocar::session {
+
+using scene::InstrumentSetup;
 namespace {
 
 std::string DescribeHand(const HapticHandStatus& hand, const char* name) {

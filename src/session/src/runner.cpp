@@ -8,13 +8,19 @@
 #include <utility>
 #include <vector>
 
+#include "trocar/agent/surgeon.h"
 #include "trocar/core/clock.h"
 #include "trocar/core/newest_slot.h"
 #include "trocar/core/real_time.h"
 #include "trocar/core/statistics.h"
-#include "trocar/session/surgeon.h"
 
 namespace trocar::session {
+
+using agent::ListSurgeons;
+using agent::MakeSurgeon;
+using agent::Surgeon;
+using agent::SurgeonEntry;
+using scene::CalcScriptInput;
 namespace {
 
 constexpr std::string_view kExpert = "expert";

@@ -4,6 +4,10 @@
 #include <gtest/gtest.h>
 
 namespace trocar::session {
+
+using scene::HandControls;
+using scene::kLeft;
+using scene::kRight;
 namespace {
 
 using device::HandAct;

@@ -15,6 +15,8 @@
 #include "trocar/instrument/trocar_kinematics.h"
 
 namespace trocar::session {
+
+using scene::kRight;
 namespace {
 
 using device::kLeftHand;

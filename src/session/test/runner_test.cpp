@@ -10,6 +10,9 @@
 #include "small_scene.h"
 
 namespace trocar::session {
+
+using scene::CalcScriptInput;
+using scene::SmallScene;
 namespace {
 
 class RunnerTest : public SmallScene {

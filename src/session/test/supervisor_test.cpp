@@ -19,6 +19,8 @@
 #include "trocar/session/haptic_loop.h"
 
 namespace trocar::session {
+
+using scene::Condition;
 namespace {
 
 using Got = ForceWire::Got;

@@ -60,8 +60,10 @@ std::size_t FindCutStrands(const BladeMove& move, std::span<const tissue::Strand
 void VisitState(core::StateArchive& archive, BladeState& blade) {
   std::uint8_t has_edge = blade.edge ? 1 : 0;
   archive.Field("has_edge", has_edge);
-  if (archive.IsRestoring())
-    blade.edge = has_edge != 0 ? std::optional<geometry::BladeEdge>({}) : std::nullopt;
+  if (archive.IsRestoring()) {
+    blade.edge.reset();
+    if (has_edge != 0) blade.edge.emplace();
+  }
   if (blade.edge) {
     archive.Field("a", blade.edge->a);
     archive.Field("b", blade.edge->b);

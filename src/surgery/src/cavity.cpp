@@ -95,6 +95,7 @@ CavityContact MakeCavityContact(const Cavity& cavity, std::span<const OrganSurfa
 void FollowOrgan(const Cavity& cavity, std::span<const OrganSurface> organs, std::span<const Vec3> positions,
                  const CavityContactSettings& settings, CavityContact& contact) {
   const OrganSurface& surface = organs[contact.organ];
+  if (contact.allowed.size() > surface.node_count) contact.allowed.resize(surface.node_count);  // uncut again
   for (std::size_t i = contact.allowed.size(); i < surface.node_count; ++i) {
     const auto rooms = cavity.FindRooms(positions[surface.first_node + i]);
     std::array<double, kCavityParts>& allowed = contact.allowed.emplace_back();

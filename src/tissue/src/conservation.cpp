@@ -21,8 +21,8 @@ constexpr int kMaxProjections = 8;
 /// No projection changes a volume by more than this share [-]: what is farther off comes home over several
 /// ticks.
 constexpr double kMaxVolumeStep = 0.1;
-/// Nor does one move any node farther than this [m]: how an organ answers is known as it lay at rest, and one that hangs by
-/// a few strands, turned and folded, may answer otherwise.
+/// Nor does one move any node farther than this [m]: the responses are those of the organ at rest, and one that hangs by a
+/// few strands, turned and folded, may respond otherwise.
 constexpr double kMaxShift = 0.002;
 /// The responses need no more accuracy than this: they steer the search, the constraint itself is exact [-].
 constexpr double kResponseTolerance = 0.02;
@@ -247,7 +247,7 @@ std::span<const Vec3> Conservation::CalcForce(const TissueState& tissue, const T
     std::copy(load.external_force.begin(), load.external_force.end(), base_force_.begin());
   }
   AddFrameForce(tissue, load, state);
-  has_slopes_ = CalcSlopes(tissue, state);
+  has_compliance_ = CalcCompliance(tissue, state);
   SetPressureForce(state);
   return force_;
 }
@@ -343,7 +343,7 @@ bool Conservation::MeasureVolumes(const TissueState& tissue, ConservationState& 
 }
 
 /// The same where AreVolumesInReach() has just measured these positions.
-bool Conservation::TakeAhead(ConservationState& state) noexcept {
+bool Conservation::TakeMeasuredAhead(ConservationState& state) noexcept {
   has_ahead_ = false;
   bool is_good = true;
   for (std::size_t i = 0; i < settings_.organs.size(); ++i) {
@@ -355,8 +355,8 @@ bool Conservation::TakeAhead(ConservationState& state) noexcept {
   return is_good;
 }
 
-/// How each volume answers the pressure in each organ, with the nodes that are held now.
-bool Conservation::CalcSlopes(const TissueState& tissue, ConservationState& state) noexcept {
+/// The compliance dV_i / dP_j of the volumes, with the nodes that are held now.
+bool Conservation::CalcCompliance(const TissueState& tissue, ConservationState& state) noexcept {
   if (!MeasureVolumes(tissue, state)) return false;
   const std::size_t count = settings_.organs.size();
   for (std::size_t organ = 0; organ < count; ++organ) {
@@ -373,16 +373,16 @@ bool Conservation::CalcSlopes(const TissueState& tissue, ConservationState& stat
     const auto gradient = OrganPart(i, gradient_);
     for (std::size_t j = 0; j < count; ++j) {
       const auto shift = OrganPart(i, shifts_[j]);
-      slopes_[i][j] = 0;
-      for (std::size_t k = 0; k < gradient.size(); ++k) slopes_[i][j] += math::Dot(gradient[k], shift[k]);
+      compliance_[i][j] = 0;
+      for (std::size_t k = 0; k < gradient.size(); ++k) compliance_[i][j] += math::Dot(gradient[k], shift[k]);
     }
-    is_good = is_good && slopes_[i][i] > 0.0;
-    state.organs[i].compliance = slopes_[i][i];
+    is_good = is_good && compliance_[i][i] > 0.0;
+    state.organs[i].compliance = compliance_[i][i];
   }
   return is_good;
 }
 
-/// One Newton step on all volumes, as last measured, with the slopes at hand.
+/// One Newton step on all volumes, as last measured, with the compliance at hand.
 Conservation::Projection Conservation::ProjectOnce(TissueState& tissue, std::span<Vec3> before,
                                                    ConservationState& state) noexcept {
   const std::size_t count = settings_.organs.size();
@@ -395,7 +395,7 @@ Conservation::Projection Conservation::ProjectOnce(TissueState& tissue, std::spa
     error[i] = is_open ? 0.0 : std::clamp(organ.target - organ.volume, -limit, limit);
     is_done = is_done && std::fabs(error[i]) <= kVolumeTolerance * organ.target;
   }
-  if (is_done || !math::SolveSmall<math::Pivots::kRows>(slopes_, error, count, lambda))
+  if (is_done || !math::SolveSmall<math::Pivots::kRows>(compliance_, error, count, lambda))
     return Projection::kNone;
   for (std::size_t i = 0; i < count; ++i) {
     const OrganVolume& organ = state.organs[i];
@@ -433,14 +433,14 @@ Conservation::Projection Conservation::ProjectOnce(TissueState& tissue, std::spa
     for (std::size_t i = 0; i < count; ++i) state.organs[i].volume = volume[i];
     return Projection::kDone;
   }
-  // the slopes are those of another shape, and lead astray, as where a cut left a loose flap: stand still
+  // the compliance is that of another shape, as where a cut left a loose flap: the step is taken back
   move_by(-part);
   return Projection::kTakenBack;
 }
 
 void Conservation::KeepVolumes(TissueState& tissue, std::span<Vec3> before,
                                ConservationState& state) noexcept {
-  if (has_slopes_ && (has_ahead_ ? TakeAhead(state) : MeasureVolumes(tissue, state)))
+  if (has_compliance_ && (has_ahead_ ? TakeMeasuredAhead(state) : MeasureVolumes(tissue, state)))
     (void)ProjectOnce(tissue, before, state);
   SetPressureForce(state);
 }
@@ -466,7 +466,7 @@ void Conservation::AddPressure(std::size_t organ, double change, ConservationSta
 void Conservation::Leak(double dt, ConservationState& state) const noexcept {
   for (std::size_t i = 0; i < settings_.organs.size(); ++i) {
     OrganVolume& organ = state.organs[i];
-    // where a cut has just changed how the volume answers, that is not known: the pressure then holds all through the tick
+    // just after a cut the compliance may not be known: the pressure is then taken as constant during the tick
     const double compliance =
         organ.compliance > 0.0 ? organ.compliance : std::numeric_limits<double>::infinity();
     const double flow =
@@ -482,7 +482,7 @@ void Conservation::Enforce(const TissueLoad& load, double dt, TissueState& tissu
   VolumeResponses& responses = state.responses;
   if (load.stiffness_scale != responses.stiffness_scale || load.shape_scale != responses.shape_scale)
     responses.is_settled = false;
-  // the responses of before steer well enough for a while, and a tick that cuts has enough to do already
+  // the old responses steer well enough for a while, and a tick that cuts has no time for new ones
   const bool is_late = std::exchange(responses.has_new_topology, false);
   if (!responses.is_settled && (is_late || (!has_time && responses.ticks_waited < kMaxTicksWaited))) {
     ++responses.ticks_waited;
@@ -493,7 +493,7 @@ void Conservation::Enforce(const TissueLoad& load, double dt, TissueState& tissu
   }
   if (!MeasureVolumes(tissue, state)) return;
   Leak(dt, state);
-  auto last = has_slopes_ ? Projection::kDone : Projection::kNone;
+  auto last = has_compliance_ ? Projection::kDone : Projection::kNone;
   bool has_moved = false;
   for (int i = 0; i < kMaxProjections && last == Projection::kDone; ++i) {
     last = ProjectOnce(tissue, {}, state);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file line_smoother.h  Ducts and vessels within a system of springs, solved directly.
+/// \file line_smoother.h  Line smoother of the multigrid: ducts and vessels, chains of nodes, are solved directly.
 ///
 /// A chain of nodes is stiff along and hardly held across: a thousand to one in the built-in patient. Damped
 /// Jacobi and coarse levels made of translations leave its bending for the conjugate gradients, and a
@@ -61,13 +61,14 @@ class LineSmoother {
   // three unknowns a node; rows of the factor from their first column to the diagonal
   std::vector<std::uint32_t> first_;
   std::vector<std::size_t> row_starts_;
-  std::vector<double> factor_, whole_;  // room for Factorise; the latter for its diagonal as it was
-  std::vector<float> lower_;            // the factor, with the inverses of its diagonal
-  std::vector<float> columns_;          // the same below its diagonal, column by column
+  std::vector<double> factor_,
+      whole_;                   // workspace of Factorise; the latter for the diagonal before elimination
+  std::vector<float> lower_;    // the factor, with the inverses of its diagonal
+  std::vector<float> columns_;  // the same below its diagonal, column by column
   std::vector<std::size_t> column_starts_;
   std::vector<float> values_;  // (3 nodes)
   bool is_factorised_ = false;
-  // room for SetGraph
+  // workspace of SetGraph
   std::vector<std::uint8_t> is_candidate_;    // (n)
   std::vector<std::uint32_t> place_, marks_;  // (n)
   std::vector<std::uint32_t> chain_;          // the one that was found last

@@ -44,7 +44,7 @@ struct OrderedModel {
   void Reserve(double share);
 };
 /// Takes a model over.
-/// \note Allocates nothing where the vectors of `made` have room.
+/// \note Allocates nothing where the vectors of `made` have the capacity.
 void SetOrderedModel(const TissueModel& model, OrderedModel& made);
 OrderedModel MakeOrderedModel(const TissueModel& model);
 
@@ -55,7 +55,7 @@ struct OrderedLoad {
   std::vector<ContactSpring> contacts;
   double stiffness_scale = 1, shape_scale = 1;
 };
-/// Fills `ordered`, whose vectors have room, from the caller's order.
+/// Fills `ordered`, whose vectors have the capacity, from the caller's order.
 /// \note Real-time safe.
 void SetOrderedLoad(const OrderedModel& model, const TissueLoad& load, const TissueState& state,
                     OrderedLoad& ordered) noexcept;

@@ -223,7 +223,7 @@ void LinkHierarchy::Reserve(double share) {
   for (auto* list : {&places_, &counts_}) list->reserve(nodes);
   coarse_entry_.reserve(links);
   line_smoother_.Reserve(share);
-  // another graph may need other levels: each has room for half of the one before, and there are two more
+  // another graph may need other levels: each gets the capacity for half of the one before, and there are two more
   std::size_t level_nodes = nodes, steps = links / kSliceNodes;
   for (std::size_t at = 0; at < std::min(level_count_ + 2, kMaxLevels); ++at) {
     if (at == levels_.size()) levels_.emplace_back();
@@ -232,7 +232,7 @@ void LinkHierarchy::Reserve(double share) {
     steps = std::max(more(level.layout.others.size() / kSliceNodes), steps / 2);
     level.Reserve(level_nodes, steps);
   }
-  for (auto* room : {&factor_, &rows_}) room->reserve(9 * kDirectNodes * kDirectNodes);
+  for (auto* matrix : {&factor_, &rows_}) matrix->reserve(9 * kDirectNodes * kDirectNodes);
   inverse_.reserve(9 * kDirectNodes * kDirectNodes);
 }
 
@@ -392,7 +392,7 @@ void LinkHierarchy::SolveCoarsest(const Float4* b, Float4* x) const noexcept {
   for (std::uint32_t i = 0; i < nodes; ++i) x[i] = {sum[3 * i], sum[3 * i + 1], sum[3 * i + 2], 0.0f};
 }
 
-/// x = (from +) damped block Jacobi of b - K from, and on the finest level what the chains answer together instead.
+/// x = (from +) damped block Jacobi of b - K from, and on the finest level the line smoother on its chains instead.
 ///
 /// \param from  nullptr for zero
 void LinkHierarchy::Smooth(const Kernels& kernels, Workers& workers, std::size_t at, const Float4* from,

@@ -108,11 +108,11 @@ class LinkHierarchy {
   std::vector<LinkLevel> levels_;  // the first level_count_ are in use
   std::size_t level_count_ = 0;
   LineSmoother line_smoother_;
-  // room for SetGraph
+  // workspace of SetGraph
   Aggregation aggregation_;
   LinkGraph fine_;
   std::vector<std::uint32_t> places_, counts_, coarse_entry_;
-  std::vector<double> factor_, rows_;  // room for the inversion of the coarsest level, dense
+  std::vector<double> factor_, rows_;  // workspace of the inversion of the coarsest level, dense
   std::vector<float> inverse_;         // of the coarsest level; empty where that is too large
   bool is_inverted_ = false;
 };

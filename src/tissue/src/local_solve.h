@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file local_solve.h  The few nodes that snap, brought to rest on their own.
+/// \file local_solve.h  Nonlinear elimination: the few nodes that snap through are brought to rest by a solve of their own.
 ///
-/// Where a fold snaps, a dozen nodes of the built-in patient have far to go, in many short steps, and all others hardly
-/// move: what is strongly nonlinear is local. After each Newton step of the whole the nodes that went farthest, and
+/// In a snap-through a dozen nodes of the built-in patient move far, in many short steps, and all others hardly move: the
+/// strong nonlinearity is local. After each Newton step of the whole the nodes that went farthest, and
 /// those around them, are solved with all others held, which costs little because they are few; the next step of the
 /// whole begins where they have come to rest. Source: Cai and Li, "Inexact Newton methods with restricted additive
 /// Schwarz based nonlinear elimination for problems with high local nonlinearity", SIAM J. Sci. Comput. 33, 2011.
@@ -38,7 +38,7 @@ class LocalSolve {
   /// \param load     of the whole, with what is intact of its strands
   /// \param step     (padded nodes of the whole) [m]
   /// \param longest  of the step [m], > 0
-  /// \return false where they are more than there is room for, the step then being no local matter, or none
+  /// \return false where they are more than the capacity, the step then being no local matter, or none
   /// \note Real-time safe.
   bool Gather(const OrderedLoad& load, std::span<const std::uint8_t> strand_is_intact,
               std::span<const Float4> step, double longest) noexcept;

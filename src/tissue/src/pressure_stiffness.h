@@ -34,7 +34,7 @@ class PressureStiffness {
   void Reserve(double share);
 
   /// Takes the surfaces, at most kMaxConstraints.
-  /// \note Allocates nothing where the model has room for their triangles.
+  /// \note Allocates nothing where the capacity is enough for their triangles.
   void SetSurfaces(std::span<const PressedSurface> surfaces);
   /// Computes the follower stiffness.
   /// \param pressure  (surfaces) [Pa]

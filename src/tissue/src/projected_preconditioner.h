@@ -2,7 +2,7 @@
 /// \file projected_preconditioner.h  Multigrid as a preconditioner that stays on linear constraints.
 ///
 /// With M^-1 a V-cycle, G the gradients of the constraints and Y = M^-1 G the preconditioned gradients, a residual r is
-/// answered by P M^-1 P^T r, P = I - Y (G^T Y)^-1 G^T. That is symmetric and stays on the constraints whatever Y is, and
+/// preconditioned to P M^-1 P^T r, P = I - Y (G^T Y)^-1 G^T. That is symmetric and stays on the constraints whatever Y is, and
 /// is best with the Y above. What P^T takes from r is carried by the constraints' multipliers. Source: Gould, Hribar,
 /// Nocedal, "On the solution of equality constrained quadratic programming problems arising in optimization", SIAM J.
 /// Sci. Comput. 23, 2001.

@@ -33,8 +33,8 @@ struct NodeOrderWorkspace {
 /// McKee, "Reducing the bandwidth of sparse symmetric matrices", ACM 1969), then by degree within short runs,
 /// so that the rows of a slice are alike in length.
 /// \param[out] order  (n) old index of each new place
-/// \note Allocates nothing where the vectors have room.
-void FindNodeOrder(const NodeGraph& graph, NodeOrderWorkspace& room, std::vector<std::uint32_t>& order);
+/// \note Allocates nothing where the vectors have the capacity.
+void FindNodeOrder(const NodeGraph& graph, NodeOrderWorkspace& workspace, std::vector<std::uint32_t>& order);
 
 /// A graph's neighbours in slices of kSliceNodes.
 struct SliceLayout {
@@ -55,7 +55,7 @@ struct SliceLayout {
   }
   SliceTable Table() const { return {starts.data(), others.data()}; }
 };
-/// \note Allocates nothing where the vectors of `layout` have room.
+/// \note Allocates nothing where the vectors of `layout` have the capacity.
 void SetSliceLayout(const NodeGraph& graph, SliceLayout& layout);
 
 }  // namespace trocar::tissue

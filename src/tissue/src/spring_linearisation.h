@@ -31,7 +31,7 @@ struct SlicedSprings {
   std::vector<double> stiffness;             // (steps * kLanes) k
   std::vector<double> stiffness_times_rest;  // (steps * kLanes) k l
 };
-/// \note Allocates nothing where the vectors have room.
+/// \note Allocates nothing where the vectors have the capacity.
 void SetSlicedSprings(const TissueModel& model, SlicedSprings& sliced);
 
 class SpringLinearisation {

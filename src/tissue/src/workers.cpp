@@ -15,7 +15,7 @@
 namespace trocar::tissue {
 namespace {
 
-/// Looks at a flag before the processor is offered to somebody else: about 20 microseconds.
+/// Reads of a flag before the thread yields its processor: about 20 microseconds.
 constexpr int kSpinLimit = 500;
 
 void Pause(int& spins) noexcept {

@@ -14,10 +14,10 @@
 
 namespace trocar::tissue {
 
-/// A loop of an iterative solver takes some ten microseconds, less than it takes to wake a thread. Helpers
-/// therefore stay awake for the length of a solve (Session) and take chunks as they come. The calling thread
-/// waits only for chunks that somebody has begun: a helper that never gets a processor holds nobody up. What
-/// a chunk computes must not depend on who runs it or when; then results do not depend on the threads.
+/// A loop of an iterative solver takes some ten microseconds, less than it takes to wake a thread. Workers therefore stay
+/// awake for the length of a solve (Session), spin between loops, and take chunks as they come. The calling thread waits
+/// only for chunks that have been begun: a worker that never gets a processor delays nobody. What a chunk computes must not
+/// depend on who runs it or when; then results do not depend on the threads.
 class Workers {
  public:
   /// \param threads  >= 1, with the caller
@@ -27,7 +27,7 @@ class Workers {
 
   int Threads() const { return threads_; }
 
-  /// Keeps the helpers awake until it goes.
+  /// Keeps the workers awake while it lives.
   class Session {
    public:
     explicit Session(Workers& workers) noexcept;
@@ -57,7 +57,7 @@ class Workers {
  private:
   using Call = void (*)(const void*, std::uint32_t);
 
-  /// A loop's number and its chunks in one word: a helper that is late must not read the count of the next.
+  /// A loop's number and its chunks in one word: a worker that is late must not read the count of the next loop.
   struct Loop {
     static constexpr std::uint64_t kPlaces = 2 * kMaxChunks;
     std::uint64_t number;
@@ -70,7 +70,7 @@ class Workers {
   // each of what different threads write at the same time has a cache line of its own: to fetch one from another processor
   // takes a tenth of a microsecond, and an iteration has some twenty loops
   static constexpr std::size_t kLine = 64;
-  /// A thread's share of the chunks, which others take from when their own is done; see Loop.
+  /// One thread's share of the chunks; others take from it when their own is done. See Loop.
   struct Slot {
     alignas(kLine) std::atomic<std::uint64_t> taken = 0;  // last loop that took from it; the next chunk
     alignas(kLine) std::atomic<std::uint64_t> done = 0;   // last loop that the thread worked in; chunks done

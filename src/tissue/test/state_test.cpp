@@ -38,8 +38,10 @@ struct Course {
   int perforated = kNever;
   int cut = kNever;                        ///< the tail comes off, and a node of the sac is parted
   int scaled = kNever, unscaled = kNever;  ///< the springs are stiffer between
-  std::set<int> bad;                       ///< a node is thrown away after the solve
-  bool tears = false;                      ///< springs gather damage
+  double scale = 1.3;
+  bool scales_shape = false;  ///< the virtual springs instead
+  std::set<int> bad;          ///< a node is thrown away after the solve
+  bool tears = false;         ///< springs gather damage
 };
 
 struct System {
@@ -56,8 +58,11 @@ System MakeSystem(bool tears) {
   const auto n = static_cast<std::uint32_t>(definition.rest.size());
   system.sac = {0, n, mesh.triangles};
   if (tears)
-    definition.laws.push_back(
-        {.stiffening = 8, .stiffening_strain = 0.02, .failure_strain = 0.6, .damage_rate = 300.0});
+    definition.laws.push_back({.stiffening = 8,
+                               .stiffening_strain = 0.02,
+                               .failure_strain = 0.3,
+                               .damage_rate = 100.0,
+                               .damage_exponent = 2.0});
   for (Spring& spring : definition.springs) spring.law = tears ? 1 : 0;
   const auto add_node = [&](const Vec3& rest, double mass, double shape) {
     definition.rest.push_back(rest), definition.mass.push_back(mass),
@@ -72,9 +77,10 @@ System MakeSystem(bool tears) {
   }
   std::uint32_t last = 0;  // of the sac, lowest along y
   for (std::uint32_t i = 0; i < n; ++i) last = mesh.positions[i].y < mesh.positions[last].y ? i : last;
+  const Vec3 lowest = mesh.positions[last];
   system.first_tail = static_cast<std::uint32_t>(definition.rest.size());
   for (std::uint32_t k = 0; k < kTailNodes; ++k) {
-    const Vec3 rest = mesh.positions[last] + Vec3{0.001 * (k % 2), -0.002 * (k + 1), 0.0005 * k};
+    const Vec3 rest = lowest + Vec3{0.001 * (k % 2), -0.002 * (k + 1), 0.0005 * k};
     const std::uint32_t node = add_node(rest, 2e-4, 0.05);
     definition.springs.push_back({last, node, 80.0, math::Distance(definition.rest[last], rest)});
     last = node;
@@ -110,10 +116,10 @@ class Tissue {
 
   void Tick() {
     ++tick_;
-    if (tick_ == course_->cut) Cut();
     Move();
     TissueLoad load{.gravity = {0.5, -1.0, 0.2}};
-    load.stiffness_scale = tick_ >= course_->scaled && tick_ < course_->unscaled ? 1.3 : 1.0;
+    const bool is_scaled = tick_ >= course_->scaled && tick_ < course_->unscaled;
+    (course_->scales_shape ? load.shape_scale : load.stiffness_scale) = is_scaled ? course_->scale : 1.0;
     if (!guard_->IsFrozen()) {
       const SolveReport report =
           SolveConserving(*solver_, course_->solver, kSeconds, *conservation_, load, state_, conserved_);
@@ -128,6 +134,7 @@ class Tissue {
     if (tick_ == course_->strands_are_cut)
       std::fill(state_.strand_is_intact.begin(), state_.strand_is_intact.end(), 0);
     if (tick_ == course_->perforated) conservation_->Perforate(0, 2e-6, conserved_);
+    if (tick_ == course_->cut) Cut();
   }
 
   /// What an onlooker sees: the outcome, not what is remembered.
@@ -222,7 +229,7 @@ class Tissue {
       state_.position[i] = kCentre + math::Rotate(X.rotation, arm) + X.translation;
     }
   }
-  /// The tail's spring to the sac goes; a node of the sac is parted in two that share its springs.
+  /// The tail's spring to the sac goes, and another; a node of the sac is parted in two that share its springs.
   void Cut() {
     TissueDefinition& definition = system_.definition;
     const std::uint32_t twin = system_.first_spare, node = 20;
@@ -232,7 +239,7 @@ class Tissue {
     for (std::size_t i = 0; i < definition.springs.size(); ++i) {
       Spring spring = definition.springs[i];
       const bool is_tails = std::max(spring.a, spring.b) == system_.first_tail;
-      if (is_tails) continue;
+      if (is_tails || i == 0) continue;
       if ((spring.a == node || spring.b == node) && (takes = !takes))
         (spring.a == node ? spring.a : spring.b) = twin;
       springs.push_back(spring);
@@ -277,11 +284,19 @@ std::vector<Course> Courses() {
       {.name = "cut, and no strand gone", .solver = Newton(), .ticks = 40, .cut = 15},
       {.name = "in a hurry", .solver = Newton(3), .ticks = 70, .strands_are_cut = 20, .cut = 15},
       {.name = "stiffer for a while", .solver = Newton(), .scaled = 20, .unscaled = 40},
+      {.name = "firmer for a while",
+       .solver = Newton(),
+       .scaled = 20,
+       .unscaled = 30,
+       .scale = 2000,
+       .scales_shape = true},
+      {.name = "gone wrong after the cut", .solver = Newton(), .ticks = 30, .cut = 15, .bad = {16}},
+      {.name = "gone wrong in a hurry", .solver = Newton(4), .ticks = 30, .bad = {20}},
       {.name = "torn", .solver = Newton(), .strands_are_cut = 25, .cut = 18, .tears = true},
       {.name = "gone wrong",
        .solver = Newton(),
        .strands_are_cut = 10,
-       .perforated = 18,
+       .perforated = 16,
        .cut = 14,
        .bad = {19, 24, 25, 30, 40, 41, 42}}};
   for (const SolverKind kind : kSolverKinds) {
@@ -344,8 +359,10 @@ TEST(TissueState, GoesOnFromAnyTickInSolversMadeAnew) {
 
 // Control: each field, left out, shows in what becomes of the tissue, in some course from some tick.
 TEST(TissueState, NoFieldIsSavedInVain) {
+  constexpr int kTicksAfter = 30;
   std::set<std::string> open;
   for (const Course& course : Courses()) {
+    if (course.solver.kind != SolverKind::kNewtonMultigrid) continue;
     const Recorded run = RunWhole(course);
     if (open.empty()) {
       for (const std::string& path : Tissue(course, 1).FieldPaths()) open.insert(path);
@@ -363,7 +380,7 @@ TEST(TissueState, NoFieldIsSavedInVain) {
         Tissue tissue(course, 1);
         // what cannot be put together without the field is told apart, too
         if (!tissue.Restore(run.bytes[static_cast<std::size_t>(at)], at, false, path).empty()) return true;
-        while (tissue.TickCount() < course.ticks) {
+        while (tissue.TickCount() < std::min(course.ticks, at + kTicksAfter)) {
           tissue.Tick();
           if (tissue.OutcomeHash() != run.outcomes[static_cast<std::size_t>(tissue.TickCount())]) return true;
         }

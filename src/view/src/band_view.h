@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "trocar/render/renderer.h"
-#include "trocar/session/scene.h"
-#include "trocar/session/snapshot.h"
+#include "trocar/scene/scene.h"
+#include "trocar/simulation/snapshot.h"
 
 namespace trocar::view {
 
@@ -16,9 +16,9 @@ class BandView {
  public:
   /// Uploads everything.
   /// \param strands  as in Simulation::Strands()
-  void Add(render::Renderer& renderer, const session::Scene& scene,
-           std::span<const session::StrandInfo> strands, std::span<const math::Vec3> start);
-  void Append(const session::Snapshot& snapshot, std::vector<render::SurfaceDraw>& surfaces) const;
+  void Add(render::Renderer& renderer, const scene::Scene& scene, std::span<const scene::StrandInfo> strands,
+           std::span<const math::Vec3> start);
+  void Append(const simulation::Snapshot& snapshot, std::vector<render::SurfaceDraw>& surfaces) const;
 
  private:
   struct Piece {

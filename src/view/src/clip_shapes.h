@@ -6,13 +6,13 @@
 
 #include "trocar/geometry/triangle_mesh.h"
 #include "trocar/render/renderer.h"
-#include "trocar/session/operation_snapshot.h"
+#include "trocar/simulation/operation_snapshot.h"
 
 namespace trocar::view {
 
 inline constexpr double kClipLength = 0.009;  ///< from the bend to the tips [m]
 
-/// A bent strip: both legs along +x, `gap` apart, in the frame of session::ClipSnapshot. The same connectivity for every
+/// A bent strip: both legs along +x, `gap` apart, in the frame of simulation::ClipSnapshot. The same connectivity for every
 /// gap.
 /// \param gap  between the legs [m], >= 0
 geometry::TriangleMesh MakeClip(double gap);
@@ -20,7 +20,8 @@ geometry::TriangleMesh MakeClip(double gap);
 class ClipShapes {
  public:
   /// Adds the clips of a snapshot, uploading those that are new or have closed further.
-  void AddTo(render::Renderer& renderer, render::Frame& frame, const session::OperationSnapshot& operation);
+  void AddTo(render::Renderer& renderer, render::Frame& frame,
+             const simulation::OperationSnapshot& operation);
 
  private:
   struct Shown {

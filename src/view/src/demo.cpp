@@ -13,7 +13,7 @@
 #include "trocar/render/offscreen_context.h"
 #include "trocar/render/offscreen_target.h"
 #include "trocar/render/video_writer.h"
-#include "trocar/session/simulation.h"
+#include "trocar/simulation/simulation.h"
 
 namespace trocar::view {
 namespace {
@@ -25,7 +25,7 @@ core::Error WrongUse(const std::string& what) {
   return {core::ErrorCode::kUsage, "demonstration: " + what};
 }
 
-core::Result<double> FindDuration(const session::Scene& scene, const DemoOptions& options) {
+core::Result<double> FindDuration(const scene::Scene& scene, const DemoOptions& options) {
   if (!(options.duration >= 0.0 && options.duration <= kLongestDemo))
     return WrongUse("the duration must be 0 to 3600 s");
   if (options.duration > 0.0) return options.duration;
@@ -58,7 +58,7 @@ std::string PictureName(std::size_t number) {
 
 }  // namespace
 
-core::Result<DemoReport> PlayDemonstration(std::shared_ptr<const session::Scene> scene,
+core::Result<DemoReport> PlayDemonstration(std::shared_ptr<const scene::Scene> scene,
                                            const DemoOptions& options) {
   if (options.width < 16 || options.width > 4096 || options.height < 16 || options.height > 4096) {
     return WrongUse("the picture must have 16 to 4096 pixels a side");
@@ -69,7 +69,7 @@ core::Result<DemoReport> PlayDemonstration(std::shared_ptr<const session::Scene>
   const auto duration = FindDuration(*scene, options);
   if (!duration) return duration.error();
 
-  auto simulation = session::Simulation::Make(scene, options.threads);
+  auto simulation = simulation::Simulation::Make(scene, options.threads);
   if (!simulation) return simulation.error();
   auto context = render::OffscreenContext::Make();
   if (!context) return context.error();
@@ -105,8 +105,8 @@ core::Result<DemoReport> PlayDemonstration(std::shared_ptr<const session::Scene>
     const auto tick_goal = static_cast<std::uint64_t>(std::floor(time / scene->tick_seconds + 1e-6));
     while (report.ticks < tick_goal) {
       const double now = simulation->GetSnapshot().time;
-      session::Input input = options.surgeon != nullptr ? options.surgeon->Act(simulation->GetSnapshot())
-                                                        : session::CalcScriptInput(*scene, now);
+      scene::Input input = options.surgeon != nullptr ? options.surgeon->Act(simulation->GetSnapshot())
+                                                      : scene::CalcScriptInput(*scene, now);
       if (options.change_input) options.change_input(now, input);
       simulation->Step(input);
       ++report.ticks;

@@ -3,14 +3,14 @@
 #pragma once
 
 #include "trocar/render/renderer.h"
-#include "trocar/session/snapshot.h"
+#include "trocar/simulation/snapshot.h"
 
 namespace trocar::view {
 
 /// Runs of liquid down from the leaks of one snapshot.
 class Film {
  public:
-  explicit Film(const session::Snapshot& snapshot);
+  explicit Film(const simulation::Snapshot& snapshot);
   bool IsEmpty() const { return runs_.empty(); }
   /// Adds what wets a place to its mark.
   void Wet(const math::Vec3& p_world, render::SurfaceMark& mark) const;

@@ -65,7 +65,7 @@ void AddSparks(render::Frame& frame, const instrument::Tool& tool, const Pose& X
 
 }  // namespace
 
-void HandTools::Add(render::Renderer& renderer, const session::Scene& scene) {
+void HandTools::Add(render::Renderer& renderer, const scene::Scene& scene) {
   const auto upload = [&renderer](const instrument::Tool& tool) {
     ShownTool shown{tool, {}};
     for (const instrument::ToolPart& part : instrument::MakeParts(tool))
@@ -74,7 +74,7 @@ void HandTools::Add(render::Renderer& renderer, const session::Scene& scene) {
   };
   assistant_ = upload(*instrument::FindTool("grasper"));
   for (std::size_t i = 0; i < hands_.size(); ++i) {
-    const session::InstrumentSetup& setup = scene.instruments[i];
+    const scene::InstrumentSetup& setup = scene.instruments[i];
     Hand& hand = hands_[i];
     hand.p_world_port = setup.p_world_port;
     double widest = 0;
@@ -88,10 +88,10 @@ void HandTools::Add(render::Renderer& renderer, const session::Scene& scene) {
   }
 }
 
-void HandTools::AddTo(render::Frame& frame, const session::Snapshot& snapshot) const {
+void HandTools::AddTo(render::Frame& frame, const simulation::Snapshot& snapshot) const {
   for (std::size_t i = 0; i < hands_.size(); ++i) {
     const Hand& hand = hands_[i];
-    const session::InstrumentSnapshot& now = snapshot.instruments[i];
+    const simulation::InstrumentSnapshot& now = snapshot.instruments[i];
     const ShownTool& shown =
         hand.tray[std::min<std::size_t>(snapshot.operation.tools[i], hand.tray.size() - 1)];
     for (const Part& part : shown.parts) {
@@ -109,8 +109,8 @@ void HandTools::AddTo(render::Frame& frame, const session::Snapshot& snapshot) c
   AddAssistant(frame, snapshot);
 }
 
-void HandTools::AddAssistant(render::Frame& frame, const session::Snapshot& snapshot) const {
-  const session::OperationSnapshot& operation = snapshot.operation;
+void HandTools::AddAssistant(render::Frame& frame, const simulation::Snapshot& snapshot) const {
+  const simulation::OperationSnapshot& operation = snapshot.operation;
   if (!operation.has_assistant) return;
   for (const Part& part : assistant_.parts) {
     const Pose X_tool_part = instrument::CalcPartPose(assistant_.tool, part.kind, operation.assistant_jaw);

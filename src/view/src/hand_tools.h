@@ -7,17 +7,17 @@
 
 #include "trocar/instrument/tool.h"
 #include "trocar/render/renderer.h"
-#include "trocar/session/scene.h"
-#include "trocar/session/snapshot.h"
+#include "trocar/scene/scene.h"
+#include "trocar/simulation/snapshot.h"
 
 namespace trocar::view {
 
 class HandTools {
  public:
   /// Uploads every tool of both trays, so that an exchange shows at once.
-  void Add(render::Renderer& renderer, const session::Scene& scene);
+  void Add(render::Renderer& renderer, const scene::Scene& scene);
   /// Adds tools, the assistant's grasper, sleeves, the shade that they throw and sparks.
-  void AddTo(render::Frame& frame, const session::Snapshot& snapshot) const;
+  void AddTo(render::Frame& frame, const simulation::Snapshot& snapshot) const;
 
  private:
   struct Part {
@@ -33,9 +33,9 @@ class HandTools {
     math::Vec3 p_world_port;
     render::SurfaceId sleeve;
   };
-  void AddAssistant(render::Frame& frame, const session::Snapshot& snapshot) const;
+  void AddAssistant(render::Frame& frame, const simulation::Snapshot& snapshot) const;
 
-  std::array<Hand, session::kHandCount> hands_;
+  std::array<Hand, scene::kHandCount> hands_;
   ShownTool assistant_;  // the third grasper
 };
 

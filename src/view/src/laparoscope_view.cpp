@@ -23,8 +23,8 @@
 #include "trocar/geometry/mesh_topology.h"
 #include "trocar/render/background.h"
 #include "trocar/render/openness.h"
-#include "trocar/session/ground.h"
-#include "trocar/session/scene.h"
+#include "trocar/scene/scene.h"
+#include "trocar/simulation/ground.h"
 #include "tube_shape.h"
 
 namespace trocar::view {
@@ -34,8 +34,8 @@ using geometry::Triangle;
 using geometry::TriangleMesh;
 using math::Vec3;
 using render::Material;
-using session::Snapshot;
-using session::SurfaceInfo;
+using scene::SurfaceInfo;
+using simulation::Snapshot;
 
 constexpr double kOpennessReach = 0.030;  // m; farther folds cast no soft shade
 constexpr double kSmallestForce = 0.02;   // N; below, an arrow would only flicker
@@ -81,7 +81,7 @@ struct LaparoscopeView::Content {
   BandView bands;
   double light_scale = 1;
   render::Frame frame;
-  std::array<Vec3, session::kHandCount> forces, tips;
+  std::array<Vec3, scene::kHandCount> forces, tips;
 
   explicit Content(render::Renderer made) : renderer(std::move(made)) {}
 
@@ -118,7 +118,7 @@ struct LaparoscopeView::Content {
     };
     for (const OrganShape& organ : organs) surround(organ);
     for (const TubeShape& tube : tubes) surround(tube);
-    auto parts = render::MakeAbdomen(inside, session::FindOmentumBalls(surfaces, start.positions));
+    auto parts = render::MakeAbdomen(inside, simulation::FindOmentumBalls(surfaces, start.positions));
     for (auto& part : parts) meshes.push_back(part.mesh);
     std::vector<const TriangleMesh*> occluders;
     for (const TriangleMesh& mesh : meshes) occluders.push_back(&mesh);
@@ -159,7 +159,7 @@ struct LaparoscopeView::Content {
 
   /// Cuts: takes over connectivity where the snapshot brings one that is new.
   void FollowTopology(const Snapshot& snapshot) {
-    const session::OperationSnapshot& operation = snapshot.operation;
+    const simulation::OperationSnapshot& operation = snapshot.operation;
     if (topology_version == operation.topology_version) return;
     // back at the start, or nearer to it: rows may come to mean something else
     if (topology_version && operation.topology_version < *topology_version) memory = memory_at_start;
@@ -216,11 +216,11 @@ LaparoscopeView::LaparoscopeView(LaparoscopeView&&) noexcept = default;
 LaparoscopeView& LaparoscopeView::operator=(LaparoscopeView&&) noexcept = default;
 LaparoscopeView::~LaparoscopeView() = default;
 
-core::Result<LaparoscopeView> LaparoscopeView::Make(const session::Scene& scene,
+core::Result<LaparoscopeView> LaparoscopeView::Make(const scene::Scene& scene,
                                                     std::span<const SurfaceInfo> surfaces,
                                                     const Snapshot& start,
-                                                    std::span<const session::StrandInfo> strands) {
-  const auto data = session::FindDataFolder();
+                                                    std::span<const scene::StrandInfo> strands) {
+  const auto data = scene::FindDataFolder();
   if (!data) return data.error();
   const auto looks = render::ReadLooks(*data / render::kLooksFile);
   if (!looks) return looks.error();

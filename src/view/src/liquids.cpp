@@ -30,7 +30,7 @@ constexpr double kHighest = 0.060;                        // m that a pool may r
 constexpr double kFlatness = 0.30;                        // depth of a pool in cube roots of its volume
 constexpr double kShallowest = 0.0010, kDeepest = 0.012;  // m
 
-void AddJet(render::Frame& frame, const session::LeakSnapshot& leak, const Vec3& gravity, double time,
+void AddJet(render::Frame& frame, const simulation::LeakSnapshot& leak, const Vec3& gravity, double time,
             Material liquid, std::uint32_t seed) {
   double speed = std::min(kFastest, kJetSpeed + kJetGain * leak.rate);
   if (leak.fluid == surgery::Fluid::kBlood) {
@@ -53,7 +53,7 @@ void AddJet(render::Frame& frame, const session::LeakSnapshot& leak, const Vec3&
   }
 }
 
-void AddDrip(render::Frame& frame, const session::LeakSnapshot& leak, const Vec3& down, double time,
+void AddDrip(render::Frame& frame, const simulation::LeakSnapshot& leak, const Vec3& down, double time,
              Material liquid, std::uint32_t seed) {
   // a bead that swells at the opening, then runs down
   const double volume = 4.0 / 3.0 * M_PI * kDropRadius * kDropRadius * kDropRadius;
@@ -67,11 +67,11 @@ void AddDrip(render::Frame& frame, const session::LeakSnapshot& leak, const Vec3
 
 }  // namespace
 
-void AddStreams(render::Frame& frame, const session::Snapshot& snapshot) {
-  const session::OperationSnapshot& operation = snapshot.operation;
+void AddStreams(render::Frame& frame, const simulation::Snapshot& snapshot) {
+  const simulation::OperationSnapshot& operation = snapshot.operation;
   const Vec3 down = math::Normalized(snapshot.gravity, {0, 0, -1});
   for (std::size_t i = 0; i < std::min(operation.leak_count, operation.leaks.size()); ++i) {
-    const session::LeakSnapshot& leak = operation.leaks[i];
+    const simulation::LeakSnapshot& leak = operation.leaks[i];
     if (!(leak.rate > kLeastRate)) continue;
     const Material liquid = leak.fluid == surgery::Fluid::kBlood ? Material::kBlood : Material::kBile;
     const auto seed = static_cast<std::uint32_t>(64 * i);
@@ -90,7 +90,7 @@ std::vector<GroundPiece> MakeGround(const geometry::TriangleMesh& mesh) {
   return ground;
 }
 
-void Pool::AddTo(render::Frame& frame, const session::Snapshot& snapshot) const {
+void Pool::AddTo(render::Frame& frame, const simulation::Snapshot& snapshot) const {
   const surgery::FluidLedger& fluids = snapshot.operation.fluids;
   const double volume = fluids.Pooled();
   if (!(volume > kLeastPool)) return;

@@ -7,12 +7,12 @@
 
 #include "trocar/geometry/triangle_mesh.h"
 #include "trocar/render/frame.h"
-#include "trocar/session/snapshot.h"
+#include "trocar/simulation/snapshot.h"
 
 namespace trocar::view {
 
 /// Adds what runs and drips out of every leak.
-void AddStreams(render::Frame& frame, const session::Snapshot& snapshot);
+void AddStreams(render::Frame& frame, const simulation::Snapshot& snapshot);
 
 /// What lies under a pool: a small piece of a surface that faces up or down.
 struct GroundPiece {
@@ -27,7 +27,7 @@ class Pool {
  public:
   explicit Pool(std::vector<GroundPiece> ground) : ground_(std::move(ground)) {}
 
-  void AddTo(render::Frame& frame, const session::Snapshot& snapshot) const;
+  void AddTo(render::Frame& frame, const simulation::Snapshot& snapshot) const;
 
  private:
   std::vector<GroundPiece> ground_;

@@ -16,7 +16,7 @@ using geometry::TriangleMesh;
 using math::Pose;
 using math::Vec3;
 using render::Material;
-using session::ObjectColour;
+using scene::ObjectColour;
 using surgery::RigidShape;
 
 constexpr int kSides = 28;
@@ -133,23 +133,23 @@ void Append(TriangleMesh& to, const TriangleMesh& mesh, const Pose& X) {
 }
 
 /// Lines of a mark about the origin.
-TriangleMesh MakeMark(const session::Region& region) {
+TriangleMesh MakeMark(const scene::Region& region) {
   TriangleMesh mesh;
   const double reach = region.radius > 0 ? region.radius : std::min(region.half.x, region.half.y);
   switch (region.mark) {
-    case session::RegionMark::kBall:
+    case scene::RegionMark::kBall:
       return geometry::MakeSphere({}, reach, 3);
-    case session::RegionMark::kRing:
+    case scene::RegionMark::kRing:
       Append(mesh, MakeTorus(reach, kMarkThickness),
              {{}, {0, 0, region.radius > 0 ? 0.0 : -0.5 * region.half.z}});
       break;
-    case session::RegionMark::kCage:
+    case scene::RegionMark::kCage:
       Append(mesh, MakeTorus(reach, kMarkThickness), {});
       Append(mesh, MakeTorus(reach, kMarkThickness), {math::RotationAbout({1, 0, 0}, M_PI / 2), {}});
       Append(mesh, MakeTorus(reach, kMarkThickness), {math::RotationAbout({0, 1, 0}, M_PI / 2), {}});
       break;
-    case session::RegionMark::kBand:
-    case session::RegionMark::kNone:
+    case scene::RegionMark::kBand:
+    case scene::RegionMark::kNone:
       break;
   }
   return mesh;
@@ -157,17 +157,17 @@ TriangleMesh MakeMark(const session::Region& region) {
 
 }  // namespace
 
-void ObjectView::AddMark(render::Renderer& renderer, std::size_t index, const session::Snapshot& start) {
-  const session::Region& region = task_->regions[index];
-  if (region.mark == session::RegionMark::kNone) return;
+void ObjectView::AddMark(render::Renderer& renderer, std::size_t index, const simulation::Snapshot& start) {
+  const scene::Region& region = task_->regions[index];
+  if (region.mark == scene::RegionMark::kNone) return;
   Mark mark;
   mark.region = index;
   TriangleMesh mesh = MakeMark(region);
   Pose X{{}, region.centre};
-  if (region.mark == session::RegionMark::kBand) {
+  if (region.mark == scene::RegionMark::kBand) {
     const auto pieces = std::span(start.operation.tube_pieces).first(start.operation.tube_piece_count);
     double nearest = std::numeric_limits<double>::infinity(), radius = 0;
-    for (const session::TubePiece& piece : pieces) {
+    for (const simulation::TubePiece& piece : pieces) {
       const Vec3 &a = start.positions[piece.a], &b = start.positions[piece.b];
       const double t = std::clamp(math::Dot(region.centre - a, b - a) / math::SquaredNorm(b - a), 0.0, 1.0);
       const double distance = math::Distance(region.centre, math::Lerp(a, b, t));
@@ -190,10 +190,10 @@ void ObjectView::AddMark(render::Renderer& renderer, std::size_t index, const se
   marks_.push_back(mark);
 }
 
-void ObjectView::Add(render::Renderer& renderer, const session::Scene& scene,
-                     const session::Snapshot& start) {
+void ObjectView::Add(render::Renderer& renderer, const scene::Scene& scene,
+                     const simulation::Snapshot& start) {
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
-    const session::SceneObject& object = scene.objects[i];
+    const scene::SceneObject& object = scene.objects[i];
     for (const RigidShape& shape : object.body.shapes) {
       const bool is_sharp = shape.kind == RigidShape::Kind::kBox;
       const TriangleMesh mesh = MakeShape(shape);
@@ -206,7 +206,8 @@ void ObjectView::Add(render::Renderer& renderer, const session::Scene& scene,
   for (std::size_t region = 0; region < task_->regions.size(); ++region) AddMark(renderer, region, start);
 }
 
-void ObjectView::Append(const session::Snapshot& snapshot, std::vector<render::SurfaceDraw>& surfaces) const {
+void ObjectView::Append(const simulation::Snapshot& snapshot,
+                        std::vector<render::SurfaceDraw>& surfaces) const {
   for (const Part& part : parts_)
     surfaces.push_back({part.surface, snapshot.objects[part.object].X_world_object * part.X_object_part});
   if (!task_) return;
@@ -223,10 +224,10 @@ void ObjectView::Append(const session::Snapshot& snapshot, std::vector<render::S
 }
 
 /// Of the goal that is being worked on, else of the first that may be: where it leads to next.
-std::vector<int> ObjectView::FindNextRegions(const session::TaskSnapshot& now) const {
+std::vector<int> ObjectView::FindNextRegions(const scene::TaskSnapshot& now) const {
   std::ptrdiff_t chosen = -1;
   for (std::size_t g = 0; g < now.goals.size(); ++g) {
-    const bool may_be = now.phase == session::TaskPhase::kReady ? g == 0 : now.goals[g].is_open;
+    const bool may_be = now.phase == scene::TaskPhase::kReady ? g == 0 : now.goals[g].is_open;
     if (may_be && (chosen < 0 || (now.goals[g].steps_done > 0 &&
                                   now.goals[static_cast<std::size_t>(chosen)].steps_done == 0)))
       chosen = static_cast<std::ptrdiff_t>(g);
@@ -240,9 +241,9 @@ std::vector<int> ObjectView::FindNextRegions(const session::TaskSnapshot& now) c
   return {};
 }
 
-TriangleMesh MakeTrainerBox(const session::Scene& scene) {
+TriangleMesh MakeTrainerBox(const scene::Scene& scene) {
   Vec3 low = scene.laparoscope.p_world_port, high = low;
-  for (const session::SceneObject& object : scene.objects) {
+  for (const scene::SceneObject& object : scene.objects) {
     low = math::Min(low, object.body.X_world_body.translation);
     high = math::Max(high, object.body.X_world_body.translation);
   }

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "trocar/render/renderer.h"
-#include "trocar/session/scene.h"
-#include "trocar/session/snapshot.h"
+#include "trocar/scene/scene.h"
+#include "trocar/simulation/snapshot.h"
 
 namespace trocar::view {
 
@@ -16,9 +16,9 @@ class ObjectView {
  public:
   /// Uploads everything.
   /// \param start  the first snapshot: where ducts are that marks belong to
-  void Add(render::Renderer& renderer, const session::Scene& scene, const session::Snapshot& start);
+  void Add(render::Renderer& renderer, const scene::Scene& scene, const simulation::Snapshot& start);
   /// Appends what a snapshot shows to a frame; what is to be done next is marked brightly.
-  void Append(const session::Snapshot& snapshot, std::vector<render::SurfaceDraw>& surfaces) const;
+  void Append(const simulation::Snapshot& snapshot, std::vector<render::SurfaceDraw>& surfaces) const;
 
  private:
   struct Part {
@@ -35,19 +35,19 @@ class ObjectView {
     std::uint32_t a = 0, b = 0;
     double t = 0;
   };
-  std::vector<int> FindNextRegions(const session::TaskSnapshot& now) const;
-  void AddMark(render::Renderer& renderer, std::size_t region, const session::Snapshot& start);
+  std::vector<int> FindNextRegions(const scene::TaskSnapshot& now) const;
+  void AddMark(render::Renderer& renderer, std::size_t region, const simulation::Snapshot& start);
 
-  std::optional<session::Task> task_;
+  std::optional<scene::Task> task_;
   std::vector<Part> parts_;
   std::vector<Mark> marks_;
 };
 
-render::Material MaterialOf(session::ObjectColour colour);
+render::Material MaterialOf(scene::ObjectColour colour);
 /// Along z, closed; half the length between the centres of its ends [m].
 geometry::TriangleMesh MakeCapsule(double radius, double half_length);
 
 /// The inside of a box trainer: floor and walls round the objects, seen from within.
-geometry::TriangleMesh MakeTrainerBox(const session::Scene& scene);
+geometry::TriangleMesh MakeTrainerBox(const scene::Scene& scene);
 
 }  // namespace trocar::view

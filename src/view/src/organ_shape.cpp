@@ -55,14 +55,14 @@ void RefineMarks(std::span<const geometry::Edge> edges, std::size_t coarse,
   }
 }
 
-render::SurfaceMark HeatMark(const session::OperationSnapshot& operation, std::size_t row) {
+render::SurfaceMark HeatMark(const simulation::OperationSnapshot& operation, std::size_t row) {
   render::SurfaceMark mark;
   if (row < operation.blanching.size()) mark.blanching = ToByte(operation.blanching[row]);
   if (row < operation.charring.size()) mark.charring = ToByte(operation.charring[row]);
   return mark;
 }
 
-OrganShape::OrganShape(const session::SurfaceInfo& info, render::Material material)
+OrganShape::OrganShape(const scene::SurfaceInfo& info, render::Material material)
     : material_(material), triangles_(info.triangles) {
   rows_.resize(info.node_count);
   for (std::uint32_t i = 0; i < info.node_count; ++i) rows_[i] = info.first_node + i;
@@ -97,12 +97,12 @@ void OrganShape::SetTriangles(std::span<const Triangle> triangles, std::span<con
   is_changed_ = true;
 }
 
-void OrganShape::Update(const session::Snapshot& snapshot, const Film& film) {
+void OrganShape::Update(const simulation::Snapshot& snapshot, const Film& film) {
   for (std::size_t v = 0; v < rows_.size(); ++v) positions_[v] = snapshot.positions[rows_[v]];
   geometry::CalcVertexNormals(positions_, triangles_, normals_);
   refiner_->Refine(positions_, normals_, fine_positions_, fine_normals_);
 
-  const session::OperationSnapshot& operation = snapshot.operation;
+  const simulation::OperationSnapshot& operation = snapshot.operation;
   if (operation.blanching.empty() && operation.charring.empty() && film.IsEmpty() && !has_marks_) return;
   marks_.resize(refiner_->VertexCount());
   bool has_any = false;

@@ -10,7 +10,7 @@
 #include "row_memory.h"
 #include "trocar/render/renderer.h"
 #include "trocar/render/surface_refiner.h"
-#include "trocar/session/simulation.h"
+#include "trocar/simulation/simulation.h"
 
 namespace trocar::view {
 
@@ -19,13 +19,13 @@ using math::Vec3;
 
 class OrganShape {
  public:
-  OrganShape(const session::SurfaceInfo& info, render::Material material);
+  OrganShape(const scene::SurfaceInfo& info, render::Material material);
 
   /// Connectivity after a cut, over rows of the snapshot. Where it has changed the surface is uploaded anew at the next
   /// Upload.
   void SetTriangles(std::span<const Triangle> triangles, std::span<const Vec3> positions, RowMemory& memory);
   /// Moves the vertices to a snapshot's nodes.
-  void Update(const session::Snapshot& snapshot, const Film& film);
+  void Update(const simulation::Snapshot& snapshot, const Film& film);
 
   /// First upload.
   /// \param openness  (vertices before they are refined) [-]
@@ -61,6 +61,6 @@ void RefineMarks(std::span<const geometry::Edge> edges, std::size_t coarse,
                  std::vector<render::SurfaceMark>& marks);
 
 /// What heat has left on a node.
-render::SurfaceMark HeatMark(const session::OperationSnapshot& operation, std::size_t row);
+render::SurfaceMark HeatMark(const simulation::OperationSnapshot& operation, std::size_t row);
 
 }  // namespace trocar::view

@@ -49,11 +49,12 @@ geometry::TriangleMesh MakeStone(double radius, std::uint64_t seed) {
 }  // namespace
 
 void StoneView::AddTo(render::Renderer& renderer, render::Frame& frame,
-                      const session::OperationSnapshot& operation) {
+                      const simulation::OperationSnapshot& operation) {
   shapes_.resize(std::max(shapes_.size(), operation.stones.size()));
   for (std::size_t i = 0; i < operation.stones.size(); ++i) {
-    const session::StoneSnapshot& stone = operation.stones[i];
-    if (stone.place != session::StonePlace::kSpilled && stone.place != session::StonePlace::kHeld) continue;
+    const simulation::StoneSnapshot& stone = operation.stones[i];
+    if (stone.place != simulation::StonePlace::kSpilled && stone.place != simulation::StonePlace::kHeld)
+      continue;
     Shape& shape = shapes_[i];
     if (shape.radius != stone.radius) {
       if (shape.radius > 0.0) renderer.RemoveSurface(shape.surface);

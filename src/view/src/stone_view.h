@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "trocar/render/renderer.h"
-#include "trocar/session/snapshot.h"
+#include "trocar/simulation/snapshot.h"
 
 namespace trocar::view {
 
@@ -13,7 +13,8 @@ namespace trocar::view {
 class StoneView {
  public:
   /// Adds the stones that lie in the abdomen or between jaws; uploads each when it is first seen.
-  void AddTo(render::Renderer& renderer, render::Frame& frame, const session::OperationSnapshot& operation);
+  void AddTo(render::Renderer& renderer, render::Frame& frame,
+             const simulation::OperationSnapshot& operation);
 
  private:
   struct Shape {

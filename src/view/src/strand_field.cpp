@@ -11,7 +11,7 @@
 namespace trocar::view {
 namespace {
 
-using Kind = session::StrandInfo::Kind;
+using Kind = scene::StrandInfo::Kind;
 using math::Vec3;
 using render::Material;
 
@@ -36,16 +36,16 @@ double CalcWave(double rest_length, double length) {
 
 }  // namespace
 
-StrandField::StrandField(std::span<const session::StrandInfo> strands, std::span<const Vec3> start) {
+StrandField::StrandField(std::span<const scene::StrandInfo> strands, std::span<const Vec3> start) {
   std::vector<Vec3> middles;  // of the peritoneum's strands
-  const auto middle_of = [&start](const session::StrandInfo& info) {
+  const auto middle_of = [&start](const scene::StrandInfo& info) {
     return 0.5 * (start[info.a] + start[info.b]);
   };
-  for (const session::StrandInfo& info : strands) {
+  for (const scene::StrandInfo& info : strands) {
     TROCAR_ASSERT(info.a < start.size() && info.b < start.size());
     if (info.kind == Kind::kPeritoneum) middles.push_back(middle_of(info));
   }
-  for (const session::StrandInfo& info : strands) {
+  for (const scene::StrandInfo& info : strands) {
     double breadth = 0;
     if (info.kind == Kind::kPeritoneum) {
       // once, at the start; the square of some hundreds
@@ -61,7 +61,7 @@ StrandField::StrandField(std::span<const session::StrandInfo> strands, std::span
   }
 }
 
-void StrandField::AddTo(render::Frame& frame, const session::Snapshot& snapshot) const {
+void StrandField::AddTo(render::Frame& frame, const simulation::Snapshot& snapshot) const {
   const std::vector<std::uint8_t>& intact = snapshot.operation.strand_is_intact;
   for (std::size_t i = 0; i < strands_.size(); ++i) {
     if (i < intact.size() && intact[i] == 0) continue;

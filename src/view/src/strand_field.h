@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "trocar/render/frame.h"
-#include "trocar/session/operation_snapshot.h"
-#include "trocar/session/snapshot.h"
+#include "trocar/simulation/operation_snapshot.h"
+#include "trocar/simulation/snapshot.h"
 
 namespace trocar::view {
 
@@ -16,14 +16,14 @@ class StrandField {
   /// \param strands  constant while the scene runs
   /// \param start    positions of their ends at rest [m]
   /// \pre the strands' rows lie in `start` (TROCAR_ASSERT)
-  StrandField(std::span<const session::StrandInfo> strands, std::span<const math::Vec3> start);
+  StrandField(std::span<const scene::StrandInfo> strands, std::span<const math::Vec3> start);
 
   /// Adds the strands that still hold; all of them where the snapshot does not say.
-  void AddTo(render::Frame& frame, const session::Snapshot& snapshot) const;
+  void AddTo(render::Frame& frame, const simulation::Snapshot& snapshot) const;
 
  private:
   struct Strand {
-    session::StrandInfo info;
+    scene::StrandInfo info;
     double rest_length;  // [m]
     double breadth;      // of the film of a peritoneal strand [m]
   };

@@ -33,7 +33,7 @@ std::size_t NodeOf(const TubeChain& chain, std::size_t vertex) {
 }
 
 /// Between the legs of a clip the walls lie on each other and spread to the sides.
-Vec3 PressFlat(const Vec3& p_world, const math::Pose& X_clip_world, const session::ClipSnapshot& clip) {
+Vec3 PressFlat(const Vec3& p_world, const math::Pose& X_clip_world, const simulation::ClipSnapshot& clip) {
   Vec3 p = X_clip_world * p_world;
   const double far = std::abs(p.z);
   if (far > kClipFlat + kClipFade || std::abs(p.x) > kClipReach || std::abs(p.y) > kClipReach) return p_world;
@@ -47,14 +47,14 @@ Vec3 PressFlat(const Vec3& p_world, const math::Pose& X_clip_world, const sessio
 
 }  // namespace
 
-std::vector<TubeChain> FindChains(std::span<const session::TubePiece> pieces, std::uint32_t surface,
-                                  const session::SurfaceInfo& info) {
+std::vector<TubeChain> FindChains(std::span<const simulation::TubePiece> pieces, std::uint32_t surface,
+                                  const scene::SurfaceInfo& info) {
   struct Node {
     std::vector<std::uint32_t> neighbours;
     double radius = 0;
   };
   std::map<std::uint32_t, Node> nodes;
-  for (const session::TubePiece& piece : pieces) {
+  for (const simulation::TubePiece& piece : pieces) {
     if (piece.surface != surface || piece.a == piece.b) continue;
     nodes[piece.a].neighbours.push_back(piece.b);
     nodes[piece.b].neighbours.push_back(piece.a);
@@ -97,7 +97,7 @@ std::vector<TubeChain> FindChains(std::span<const session::TubePiece> pieces, st
   return chains;
 }
 
-TubeShape::TubeShape(const session::SurfaceInfo& info, std::uint32_t index, render::Material material)
+TubeShape::TubeShape(const scene::SurfaceInfo& info, std::uint32_t index, render::Material material)
     : info_(info), index_(index), material_(material) {
   TubeChain chain;
   for (std::uint32_t i = 0; i < info.node_count; ++i) chain.rows.push_back(info.first_node + i);
@@ -128,7 +128,7 @@ void TubeShape::Resize() {
   marks_.clear();
 }
 
-void TubeShape::SetPieces(std::span<const session::TubePiece> pieces, RowMemory& memory,
+void TubeShape::SetPieces(std::span<const simulation::TubePiece> pieces, RowMemory& memory,
                           std::span<const Vec3> positions) {
   std::vector<TubeChain> chains = FindChains(pieces, index_, info_);
   if (chains == chains_) return;
@@ -149,8 +149,8 @@ void TubeShape::SetPieces(std::span<const session::TubePiece> pieces, RowMemory&
   is_changed_ = true;
 }
 
-void TubeShape::Update(const session::Snapshot& snapshot, const Film& film) {
-  const session::OperationSnapshot& operation = snapshot.operation;
+void TubeShape::Update(const simulation::Snapshot& snapshot, const Film& film) {
+  const simulation::OperationSnapshot& operation = snapshot.operation;
   std::size_t offset = 0;
   for (const TubeChain& chain : chains_) {
     nodes_.resize(chain.rows.size());
@@ -160,7 +160,7 @@ void TubeShape::Update(const session::Snapshot& snapshot, const Film& film) {
     offset += SkinSize(chain);
   }
   for (std::size_t i = 0; i < std::min(operation.clip_count, operation.clips.size()); ++i) {
-    const session::ClipSnapshot& clip = operation.clips[i];
+    const simulation::ClipSnapshot& clip = operation.clips[i];
     if (clip.is_lost) continue;
     const math::Pose X_clip_world = math::Inverse(clip.X_world_clip);
     for (Vec3& p : positions_) p = PressFlat(p, X_clip_world, clip);

@@ -8,7 +8,7 @@
 #include "film.h"
 #include "row_memory.h"
 #include "trocar/render/renderer.h"
-#include "trocar/session/simulation.h"
+#include "trocar/simulation/simulation.h"
 
 namespace trocar::view {
 
@@ -27,18 +27,18 @@ struct TubeChain {
 
 /// Runs of one surface's pieces, in the order of their lowest rows. A branching ends a run.
 /// \param info  of the tube: its first and last node are the ends that it has had from the beginning
-std::vector<TubeChain> FindChains(std::span<const session::TubePiece> pieces, std::uint32_t surface,
-                                  const session::SurfaceInfo& info);
+std::vector<TubeChain> FindChains(std::span<const simulation::TubePiece> pieces, std::uint32_t surface,
+                                  const scene::SurfaceInfo& info);
 
 class TubeShape {
  public:
-  TubeShape(const session::SurfaceInfo& info, std::uint32_t index, render::Material material);
+  TubeShape(const scene::SurfaceInfo& info, std::uint32_t index, render::Material material);
 
   /// Pieces after a cut. Where they have changed the surface is uploaded anew at the next Upload.
-  void SetPieces(std::span<const session::TubePiece> pieces, RowMemory& memory,
+  void SetPieces(std::span<const simulation::TubePiece> pieces, RowMemory& memory,
                  std::span<const Vec3> positions);
   /// Moves the skin to a snapshot's nodes; clips press it flat.
-  void Update(const session::Snapshot& snapshot, const Film& film);
+  void Update(const simulation::Snapshot& snapshot, const Film& film);
 
   void Add(render::Renderer& renderer, std::span<const double> openness, RowMemory& memory);
   void Upload(render::Renderer& renderer, const RowMemory& memory);
@@ -56,7 +56,7 @@ class TubeShape {
   void AddSurface(render::Renderer& renderer, const RowMemory& memory);
   void UpdateLumens();
 
-  session::SurfaceInfo info_;
+  scene::SurfaceInfo info_;
   std::uint32_t index_;
   render::Material material_;
   render::SurfaceId surface_, lumens_;

@@ -17,9 +17,9 @@ namespace fs = std::filesystem;
 class DemoTest : public testing::Test {
  protected:
   void SetUp() override {
-    auto scene = session::ReadScene(fs::path(TROCAR_SOURCE_DIR) / "scenes" / "demonstration.json");
+    auto scene = scene::ReadScene(fs::path(TROCAR_SOURCE_DIR) / "scenes" / "demonstration.json");
     ASSERT_TRUE(scene.ok()) << scene.error().Text();
-    scene_ = std::make_shared<const session::Scene>(std::move(*scene));
+    scene_ = std::make_shared<const scene::Scene>(std::move(*scene));
     folder_ = fs::path(testing::TempDir()) /
               (std::string("trocar_demo_") + testing::UnitTest::GetInstance()->current_test_info()->name());
     fs::remove_all(folder_);
@@ -29,7 +29,7 @@ class DemoTest : public testing::Test {
     options_.duration = 0.2;
   }
 
-  std::shared_ptr<const session::Scene> scene_;
+  std::shared_ptr<const scene::Scene> scene_;
   fs::path folder_;
   DemoOptions options_;
 };
@@ -38,7 +38,7 @@ TEST_F(DemoTest, WritesVideoAndPicturesAndCallsForEveryTick) {
   options_.picture_times = {0.0, 0.1, 0.2, 7.0};  // the last lies beyond the end
   std::uint64_t ticks = 0;
   double done = 0;
-  options_.on_tick = [&](const session::Snapshot& snapshot) { EXPECT_EQ(snapshot.tick, ++ticks); };
+  options_.on_tick = [&](const simulation::Snapshot& snapshot) { EXPECT_EQ(snapshot.tick, ++ticks); };
   options_.on_progress = [&](double share) { done = share; };
   const auto report = PlayDemonstration(scene_, options_);
   ASSERT_TRUE(report.ok()) << report.error().Text();
@@ -77,10 +77,10 @@ TEST_F(DemoTest, PlaysWhatTheSimulationAlonePlays) {
   options_.has_video = false;
   const auto report = PlayDemonstration(scene_, options_);
   ASSERT_TRUE(report.ok()) << report.error().Text();
-  auto simulation = session::Simulation::Make(scene_, 1);
+  auto simulation = simulation::Simulation::Make(scene_, 1);
   ASSERT_TRUE(simulation.ok());
   for (std::uint64_t tick = 0; tick < report->ticks; ++tick) {
-    simulation->Step(session::CalcScriptInput(*scene_, simulation->GetSnapshot().time));
+    simulation->Step(scene::CalcScriptInput(*scene_, simulation->GetSnapshot().time));
   }
   EXPECT_EQ(report->state_hash, simulation->Hash());
 }
@@ -109,10 +109,10 @@ TEST_F(DemoTest, RefusesOptionsOutOfRange) {
 }
 
 TEST_F(DemoTest, WithoutScriptAndDurationSaysSo) {
-  session::Scene bare = *scene_;
+  scene::Scene bare = *scene_;
   bare.script.keys.clear();
   options_.duration = 0;
-  const auto report = PlayDemonstration(std::make_shared<const session::Scene>(bare), options_);
+  const auto report = PlayDemonstration(std::make_shared<const scene::Scene>(bare), options_);
   ASSERT_FALSE(report.ok());
   EXPECT_EQ(report.error().code, core::ErrorCode::kScriptInvalid);
 }

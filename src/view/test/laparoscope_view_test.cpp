@@ -30,7 +30,7 @@ class LaparoscopeViewTest : public testing::Test {
                          static_cast<std::uint32_t>(ball.positions.size()),
                          ball.triangles,
                          {}});
-    session::SurfaceInfo duct{
+    scene::SurfaceInfo duct{
         "cystic_duct", "duct", surfaces_[0].node_count, 8, {}, std::vector<double>(8, 0.002)};
     for (int i = 0; i < 8; ++i) snapshot_.positions.push_back({0.02 + 0.003 * i, -0.02, -0.10});
     surfaces_.push_back(duct);
@@ -81,9 +81,9 @@ class LaparoscopeViewTest : public testing::Test {
     return change;
   }
 
-  session::Scene scene_;
-  session::Snapshot snapshot_;
-  std::vector<session::SurfaceInfo> surfaces_;
+  scene::Scene scene_;
+  simulation::Snapshot snapshot_;
+  std::vector<scene::SurfaceInfo> surfaces_;
   std::optional<render::OffscreenContext> context_;
   std::optional<render::OffscreenTarget> target_;
   std::optional<LaparoscopeView> view_;

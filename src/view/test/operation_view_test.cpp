@@ -56,7 +56,7 @@ class OperationViewTest : public testing::Test {
     target_.emplace(std::move(*target));
   }
 
-  void MakeView(std::span<const session::StrandInfo> strands = {}, bool has_background = false) {
+  void MakeView(std::span<const scene::StrandInfo> strands = {}, bool has_background = false) {
     auto view = LaparoscopeView::Make(scene_, surfaces_, now_, strands);
     ASSERT_TRUE(view.ok()) << view.error().Text();
     view_.emplace(std::move(*view));
@@ -103,10 +103,10 @@ class OperationViewTest : public testing::Test {
 
   Vec3 DuctNode(std::uint32_t i) const { return now_.positions[ball_count_ + i]; }
 
-  session::Scene scene_;
-  session::Snapshot now_;
+  scene::Scene scene_;
+  simulation::Snapshot now_;
   std::uint32_t ball_count_ = 0;
-  std::vector<session::SurfaceInfo> surfaces_;
+  std::vector<scene::SurfaceInfo> surfaces_;
   std::optional<render::OffscreenContext> context_;
   std::optional<render::OffscreenTarget> target_;
   std::optional<LaparoscopeView> view_;
@@ -141,7 +141,7 @@ TEST_F(OperationViewTest, AClipIsSeenBetweenTheJawsWhileThereIsOne) {
 TEST_F(OperationViewTest, AClipLiesWhereItIsAndPressesTheDuctFlat) {
   MakeView();
   const Image bare = Draw();
-  session::ClipSnapshot clip;
+  simulation::ClipSnapshot clip;
   // legs along y, closing what runs along x
   clip.X_world_clip = {
       math::RotationAbout({0, 1, 0}, 0.5 * M_PI) * math::RotationAbout({0, 0, 1}, 0.5 * M_PI), DuctNode(6)};
@@ -159,9 +159,9 @@ TEST_F(OperationViewTest, AClipLiesWhereItIsAndPressesTheDuctFlat) {
 }
 
 TEST_F(OperationViewTest, StrandsAreSeenWhileTheyHold) {
-  std::vector<session::StrandInfo> strands;
+  std::vector<scene::StrandInfo> strands;
   math::Random random(1);
-  using Kind = session::StrandInfo::Kind;
+  using Kind = scene::StrandInfo::Kind;
   for (const Kind kind : {Kind::kBed, Kind::kAdhesion, Kind::kTriangle, Kind::kPeritoneum}) {
     for (int i = 0; i < 25; ++i) {
       const auto row = static_cast<std::uint32_t>(now_.positions.size());
@@ -275,7 +275,7 @@ TEST_F(OperationViewTest, ACutDuctEndsInTwoStumpsWithADarkLumen) {
 TEST_F(OperationViewTest, BloodRunsDripsAndWetsBelowALeak) {
   MakeView();
   const Image dry = Draw();
-  session::LeakSnapshot& leak = now_.operation.leaks[0];
+  simulation::LeakSnapshot& leak = now_.operation.leaks[0];
   leak = {{0, 0.006, -0.0863}, {0, 0, 1}, surgery::Fluid::kBlood, 1e-6};
   EXPECT_EQ(Draw(), dry) << "not counted yet";
   now_.operation.leak_count = 1;
@@ -325,10 +325,10 @@ TEST_F(OperationViewTest, StonesAreSeenOnceTheyAreOut) {
   MakeView();
   const Image clean = Draw();
   now_.operation.stones.assign(3, {});
-  session::StoneSnapshot& stone = now_.operation.stones[1];
-  stone = {{0.001, 0.004, -0.083}, 0.002, session::StonePlace::kInside, -1};
+  simulation::StoneSnapshot& stone = now_.operation.stones[1];
+  stone = {{0.001, 0.004, -0.083}, 0.002, simulation::StonePlace::kInside, -1};
   EXPECT_EQ(Draw(), clean);
-  for (const auto place : {session::StonePlace::kSpilled, session::StonePlace::kHeld}) {
+  for (const auto place : {simulation::StonePlace::kSpilled, simulation::StonePlace::kHeld}) {
     stone.place = place;
     const Change change = CountChanges(clean, Draw(), stone.position, 0.0024);
     EXPECT_GT(change.near, 20);
@@ -338,8 +338,8 @@ TEST_F(OperationViewTest, StonesAreSeenOnceTheyAreOut) {
   // another of another size in its place, as in another operation
   stone.radius = 0.004;
   EXPECT_GT(CountChanges(clean, Draw(), stone.position, 0.0048).near, 100);
-  for (const auto place :
-       {session::StonePlace::kInBag, session::StonePlace::kAspirated, session::StonePlace::kTakenOut}) {
+  for (const auto place : {simulation::StonePlace::kInBag, simulation::StonePlace::kAspirated,
+                           simulation::StonePlace::kTakenOut}) {
     stone.place = place;
     EXPECT_EQ(Draw(), clean);
   }

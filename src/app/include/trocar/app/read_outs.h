@@ -9,8 +9,8 @@
 #include <string_view>
 
 #include "trocar/anatomy/patient.h"
-#include "trocar/session/scene.h"
-#include "trocar/session/snapshot.h"
+#include "trocar/scene/scene.h"
+#include "trocar/simulation/snapshot.h"
 
 namespace trocar::app {
 
@@ -44,26 +44,27 @@ std::string FormatResidual(double residual);
 /// "gallbladder", "cystic duct": an organ's name with spaces; "tissue" where the index names none.
 std::string OrganLabel(const anatomy::Patient& patient, std::int32_t organ);
 /// "left grasper"; "left hand" where it has several tools
-std::string HandLabel(const session::Scene& scene, std::int32_t hand);
+std::string HandLabel(const scene::Scene& scene, std::int32_t hand);
 
 /// Name of the tool that a hand has in use, with spaces: "clip applier, 12 clips", "hook".
-std::string ToolLabel(const session::Scene& scene, const session::Snapshot& snapshot, session::Hand hand);
+std::string ToolLabel(const scene::Scene& scene, const simulation::Snapshot& snapshot, scene::Hand hand);
 /// "4.2 mL"
 std::string FormatMillilitres(double volume);
 /// What has left the vessels and organs, and what of it still lies there: "12.0 mL, 3.5 mL in the abdomen".
 std::string DescribeFluid(const surgery::FluidLedger& fluids, surgery::Fluid fluid);
 /// Gallstones outside of the gallbladder: "none spilled", "3 in the abdomen, 2 retrieved".
-std::string DescribeStones(std::span<const session::StoneSnapshot> stones);
+std::string DescribeStones(std::span<const simulation::StoneSnapshot> stones);
 /// "waits", "retracts the fundus", ...
-std::string DescribeAssistant(session::AssistantCommand command, bool is_holding);
+std::string DescribeAssistant(scene::AssistantCommand command, bool is_holding);
 
 /// "holds the gallbladder", "touches the liver", "free"
-std::string DescribeContact(const session::InstrumentSnapshot& instrument, const anatomy::Patient& patient);
+std::string DescribeContact(const simulation::InstrumentSnapshot& instrument,
+                            const anatomy::Patient& patient);
 
 /// "Left grasper: grasped the gallbladder, 2.1 N", "Tissue: last good state restored".
-std::string DescribeEvent(const session::Event& event, const session::Scene& scene);
+std::string DescribeEvent(const scene::Event& event, const scene::Scene& scene);
 /// True for what should be seen at once: slips, missed grasps, restored states.
-bool IsWarning(session::EventKind kind) noexcept;
+bool IsWarning(scene::EventKind kind) noexcept;
 
 /// How a task goes, for a person.
 struct TaskReadOut {
@@ -73,21 +74,21 @@ struct TaskReadOut {
   std::string next;      ///< "Next: Ring 2 to the right"; after the end, the result
   std::string errors;    ///< "2 x The ring touched the wire", a line each
 };
-TaskReadOut DescribeTask(const session::Task& task, const session::TaskSnapshot& now);
+TaskReadOut DescribeTask(const scene::Task& task, const scene::TaskSnapshot& now);
 
 /// "Find contacts"
-std::string StageLabel(session::Stage stage);
+std::string StageLabel(simulation::Stage stage);
 
 /// Smoothed times of the stages, fed with every snapshot that is drawn.
 class StageMeter {
  public:
   /// Takes the stage times of a tick; the same tick twice counts once.
-  void Add(const session::Snapshot& snapshot) noexcept;
+  void Add(const simulation::Snapshot& snapshot) noexcept;
   /// Exponential mean over about 60 snapshots [s].
-  const std::array<double, session::kStageCount>& Seconds() const noexcept { return seconds_; }
+  const std::array<double, simulation::kStageCount>& Seconds() const noexcept { return seconds_; }
 
  private:
-  std::array<double, session::kStageCount> seconds_{};
+  std::array<double, simulation::kStageCount> seconds_{};
   std::uint64_t last_tick_ = 0;
   bool has_any_ = false;
 };

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "trocar/app/options.h"
-#include "trocar/session/simulation.h"
+#include "trocar/simulation/simulation.h"
 
 namespace trocar::app {
 
@@ -11,9 +11,9 @@ namespace trocar::app {
 /// `trocar play`, an operation: a scene of the data folder that has one.
 ///
 /// \return kUnknownName with what is known, or the file's error
-core::Result<session::Scene> ReadChosenScene(const Options& options);
+core::Result<scene::Scene> ReadChosenScene(const Options& options);
 
 /// Likewise, ready to run.
-core::Result<session::Simulation> MakeChosenSimulation(const Options& options);
+core::Result<simulation::Simulation> MakeChosenSimulation(const Options& options);
 
 }  // namespace trocar::app

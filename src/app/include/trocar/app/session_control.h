@@ -24,7 +24,7 @@ class SessionControl {
  public:
   /// Starts paused, with the hands at home.
   /// \return kDeviceSettings where the scene's tools cannot be held
-  static core::Result<std::unique_ptr<SessionControl>> Make(session::Simulation simulation);
+  static core::Result<std::unique_ptr<SessionControl>> Make(simulation::Simulation simulation);
 
   /// Lets a device hold the hands that it sees; the mouse keeps the others. Where the device is lost the simulation is
   /// paused, and stays so when it comes back until the person starts it.
@@ -56,7 +56,7 @@ class SessionControl {
   /// Moves the hands on by `dt` [s] and hands the newest wish to the simulation; while paused the hands stand
   /// still.
   /// \return the newest state, valid until the next call
-  const session::Snapshot& Advance(double dt);
+  const simulation::Snapshot& Advance(double dt);
 
   void SetPaused(bool is_paused);
   bool IsPaused() const { return runner_.IsPaused(); }
@@ -81,7 +81,7 @@ class SessionControl {
   bool HasCameraHolder() const { return input_.settings.holds_camera; }
   bool IsLaparoscopeHeld() const { return device_.GetChosen() == device::kLaparoscope; }
   /// Asks for a tool of a hand's tray; a place that the tray does not have is ignored.
-  void ChooseTool(session::Hand hand, std::size_t place);
+  void ChooseTool(scene::Hand hand, std::size_t place);
   /// The next tool of the chosen hand, or with -1 the one before, round the tray.
   void StepTool(int step);
   /// Of the chosen hand. Only one hand has pedals at a time: choosing the other releases them. Pedals of devices are apart.
@@ -89,7 +89,7 @@ class SessionControl {
   void ReleasePedals();
   /// The chosen hand's tool stands still although its device moves, until it is called again.
   void ToggleFreeze();
-  void CommandAssistant(session::AssistantCommand command) { input_.assistant = command; }
+  void CommandAssistant(scene::AssistantCommand command) { input_.assistant = command; }
   /// Retract, relax, release, wait, and again.
   void StepAssistant();
 
@@ -101,23 +101,23 @@ class SessionControl {
   void SetPicture(double field_of_view, double pixels);
 
   /// Settings of the next ticks; clamped to their ranges.
-  const session::LiveSettings& GetSettings() const { return input_.settings; }
-  void SetSettings(const session::LiveSettings& settings);
+  const scene::LiveSettings& GetSettings() const { return input_.settings; }
+  void SetSettings(const scene::LiveSettings& settings);
   /// Those of the scene.
   void RestoreSettings() { SetSettings(runner_.GetScene().settings); }
 
   device::MouseKeyboard& Device() { return device_; }
-  const session::Scene& GetScene() const { return runner_.GetScene(); }
-  std::span<const session::SurfaceInfo> Surfaces() const { return runner_.Surfaces(); }
-  std::span<const session::StrandInfo> Strands() const { return runner_.Strands(); }
+  const scene::Scene& GetScene() const { return runner_.GetScene(); }
+  std::span<const scene::SurfaceInfo> Surfaces() const { return runner_.Surfaces(); }
+  std::span<const scene::StrandInfo> Strands() const { return runner_.Strands(); }
   session::RunnerStatistics Statistics() const { return runner_.Statistics(); }
   /// What the person wants by mouse, keys and panel, and where devices hold the hands.
-  const session::Input& GetInput() const { return input_; }
+  const scene::Input& GetInput() const { return input_; }
   /// What the last Advance() gave to the simulation: the pedals of devices are in it, too.
-  const session::Input& GetSentInput() const { return sent_; }
+  const scene::Input& GetSentInput() const { return sent_; }
 
  private:
-  SessionControl(session::Simulation simulation, const device::MouseKeyboardSettings& settings);
+  SessionControl(simulation::Simulation simulation, const device::MouseKeyboardSettings& settings);
   void PlaceAtHome();
   void ApplyDevice();
   void ApplyStylusButtons();
@@ -137,7 +137,7 @@ class SessionControl {
   core::Stopwatch since_start_;
   std::unique_ptr<net::IgtlServer> server_;  // may be null
   std::uint64_t served_tick_ = 0;
-  session::Input input_, sent_;
+  scene::Input input_, sent_;
   device::Channel hand_ = device::kRightHand;
   bool is_demonstration_ = false;
   bool is_fulcrum_mirrored_ = false;

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "trocar/app/slider_scale.h"
-#include "trocar/session/input.h"
+#include "trocar/scene/input.h"
 
 namespace trocar::app {
 
@@ -19,20 +19,20 @@ struct SettingRow {
   const char* tooltip;  ///< what it means and what to expect
   SliderScale scale;    ///< in the unit shown
   int decimals;  ///< digits after the point; negative: that many significant digits, scientific below 0.01
-  double si_per_unit;                                 ///< SI value of one unit shown
-  double (*get)(const session::LiveSettings&);        ///< SI
-  void (*set)(session::LiveSettings&, double value);  ///< SI
+  double si_per_unit;                               ///< SI value of one unit shown
+  double (*get)(const scene::LiveSettings&);        ///< SI
+  void (*set)(scene::LiveSettings&, double value);  ///< SI
 };
 
 /// All rows, group after group.
 std::span<const SettingRow> SettingRows() noexcept;
 
 /// Slider position of the row's value in `settings`, 0 to 1.
-double PositionInForm(const SettingRow& row, const session::LiveSettings& settings);
+double PositionInForm(const SettingRow& row, const scene::LiveSettings& settings);
 /// Writes the value at a slider position into `settings`.
-void SetFromForm(const SettingRow& row, double position, session::LiveSettings& settings);
+void SetFromForm(const SettingRow& row, double position, scene::LiveSettings& settings);
 /// "1.50 x", "9.81 m/s²", "12°"
-std::string FormatSetting(const SettingRow& row, const session::LiveSettings& settings);
+std::string FormatSetting(const SettingRow& row, const scene::LiveSettings& settings);
 
 /// A solver as the panel names it.
 struct SolverChoice {

@@ -81,7 +81,7 @@ class SimulatorPresenter {
 
   /// What is to be drawn in a frame.
   struct FrameWork {
-    const session::Snapshot* snapshot = nullptr;  ///< null: nothing runs
+    const simulation::Snapshot* snapshot = nullptr;  ///< null: nothing runs
     bool are_forces_due = false, are_times_due = false;
     UnattendedPlay::Step run = UnattendedPlay::Step::kGoOn;
   };
@@ -113,9 +113,9 @@ class SimulatorPresenter {
   void Drop();
   void Refresh();
   void Announce(const std::string& text, bool is_warning = false);
-  void ShowEvents(const session::Snapshot& snapshot);
+  void ShowEvents(const simulation::Snapshot& snapshot);
   void ShowHaptics();
-  void ShowTask(const session::TaskSnapshot& now);
+  void ShowTask(const scene::TaskSnapshot& now);
   void SetPaused(bool is_paused);
   void SetDemonstration(bool is_on);
   void Reset();
@@ -139,7 +139,7 @@ class SimulatorPresenter {
   std::uint64_t seen_events_ = 0;
   double first_picture_ = 0;                                  // since the start of the program [s]
   double last_frame_ = 0, last_forces_ = 0, last_times_ = 0;  // of the frame clock [s]
-  BackgroundJob<core::Result<session::Simulation>> loading_;
+  BackgroundJob<core::Result<simulation::Simulation>> loading_;
 };
 
 }  // namespace trocar::app

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <string>
 
-#include "trocar/session/task.h"
+#include "trocar/scene/task.h"
 
 namespace trocar::app {
 
@@ -13,7 +13,7 @@ namespace trocar::app {
 struct TaskRequest {
   std::string task;             ///< key; empty: `scene` is meant
   std::filesystem::path scene;  ///< file
-  session::TaskChoice choice;
+  scene::TaskChoice choice;
 };
 
 }  // namespace trocar::app

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "trocar/session/scene.h"
-#include "trocar/session/snapshot.h"
+#include "trocar/scene/scene.h"
+#include "trocar/simulation/snapshot.h"
 
 namespace trocar::app {
 
@@ -15,11 +15,11 @@ namespace trocar::app {
 class TaskErrorLog {
  public:
   /// Takes over what is new. A run that began anew empties the log.
-  void Add(const session::TaskSnapshot& now);
-  const std::vector<session::TaskError>& Errors() const { return errors_; }
+  void Add(const scene::TaskSnapshot& now);
+  const std::vector<scene::TaskError>& Errors() const { return errors_; }
 
  private:
-  std::vector<session::TaskError> errors_;
+  std::vector<scene::TaskError> errors_;
   std::uint64_t seen_ = 0;
 };
 
@@ -38,7 +38,7 @@ struct TaskResult {
   std::string task, level;
   std::uint64_t seed = 0;
   bool is_demonstration = false;  ///< of the scripted expert, nobody's own
-  session::TaskPhase phase = session::TaskPhase::kNone;
+  scene::TaskPhase phase = scene::TaskPhase::kNone;
   std::string verdict;  ///< "Completed", "The time is over", "Ended by an error"
   double time = 0;      ///< [s]
   double score = 0;
@@ -48,8 +48,8 @@ struct TaskResult {
 };
 
 /// \pre the scene has a task (TROCAR_ASSERT)
-TaskResult MakeTaskResult(const session::Scene& scene, const session::TaskSnapshot& now,
-                          const std::vector<session::TaskError>& errors);
+TaskResult MakeTaskResult(const scene::Scene& scene, const scene::TaskSnapshot& now,
+                          const std::vector<scene::TaskError>& errors);
 
 /// "87.4", "87.4 %"
 std::string FormatScore(const TaskResult& result);

@@ -14,8 +14,9 @@ class TipClock {
     if (begin_ < 0) begin_ = now;
     return !is_over_ && now - begin_ < kLongest;
   }
-  /// The person has begun to do something: no tip until the pointer has left.
-  void End() { is_over_ = true; }
+  /// The person has begun to do something: no tip until the pointer has left. Nothing where none was asked for, so that
+  /// a window that becomes active takes no tip from its first visit.
+  void End() { is_over_ = begin_ >= 0; }
   /// The pointer has left: the next visit begins anew.
   void Leave() { *this = {}; }
 

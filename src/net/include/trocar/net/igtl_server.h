@@ -10,8 +10,8 @@
 #include "trocar/core/result.h"
 #include "trocar/device/igtl.h"
 #include "trocar/device/tcp_port.h"
-#include "trocar/session/simulation.h"
-#include "trocar/session/snapshot.h"
+#include "trocar/simulation/simulation.h"
+#include "trocar/simulation/snapshot.h"
 
 namespace trocar::net {
 
@@ -36,11 +36,11 @@ class IgtlServer {
   /// \param surfaces  of the simulation
   /// \return kDeviceBusy where the port is taken
   static core::Result<std::unique_ptr<IgtlServer>> Make(const IgtlServerSettings& settings,
-                                                        std::span<const session::SurfaceInfo> surfaces);
+                                                        std::span<const scene::SurfaceInfo> surfaces);
 
   /// Call it after every tick. Sends what is due and never waits.
   /// \note Not real-time safe: allocates
-  void Publish(const session::Snapshot& snapshot);
+  void Publish(const simulation::Snapshot& snapshot);
 
   int Port() const noexcept { return listener_->Port(); }
   std::size_t ViewerCount() const noexcept { return viewers_.size(); }
@@ -59,7 +59,7 @@ class IgtlServer {
 
   IgtlServerSettings settings_;
   std::unique_ptr<device::TcpListener> listener_;
-  std::vector<session::SurfaceInfo> organs_;
+  std::vector<scene::SurfaceInfo> organs_;
   std::vector<Viewer> viewers_;
   double next_tools_ = 0, next_organs_ = 0;  // simulated time [s]
 };

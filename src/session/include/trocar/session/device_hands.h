@@ -7,9 +7,15 @@
 
 #include "trocar/device/hand_buttons.h"
 #include "trocar/device/mouse_keyboard.h"
-#include "trocar/session/scene.h"
+#include "trocar/scene/scene.h"
 
 namespace trocar::session {
+
+using scene::AssistantCommand;
+using scene::Hand;
+using scene::Input;
+using scene::kHandCount;
+using scene::Scene;
 
 using DeviceSamples = std::array<device::HandSample, device::kChannelCount>;
 using DeviceActs = std::array<device::HandActs, kHandCount>;

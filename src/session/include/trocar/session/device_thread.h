@@ -11,8 +11,8 @@
 #include "trocar/device/jaw_sensor.h"
 #include "trocar/device/mouse_keyboard.h"
 #include "trocar/device/ports.h"
+#include "trocar/scene/scene.h"
 #include "trocar/session/device_hands.h"
-#include "trocar/session/scene.h"
 
 namespace trocar::session {
 

@@ -16,12 +16,17 @@
 #include "trocar/device/force_driver.h"
 #include "trocar/haptics/check_pose.h"
 #include "trocar/haptics/haptic_channel.h"
+#include "trocar/scene/scene.h"
 #include "trocar/session/device_hands.h"
-#include "trocar/session/scene.h"
-#include "trocar/session/snapshot.h"
 #include "trocar/session/supervisor_link.h"
+#include "trocar/simulation/snapshot.h"
 
 namespace trocar::session {
+
+using math::Pose;
+using math::Vec3;
+using scene::kLeft;
+using scene::kRight;
 
 /// One channel of the device and the hand it stands for.
 struct HapticHand {

@@ -6,9 +6,14 @@
 #include <memory>
 
 #include "trocar/session/haptic_loop.h"
-#include "trocar/session/simulation.h"
+#include "trocar/simulation/simulation.h"
 
 namespace trocar::session {
+
+using scene::StrandInfo;
+using scene::SurfaceInfo;
+using simulation::Simulation;
+using simulation::Snapshot;
 
 /// Counters since the start; the clock decides when a tick runs, never what it computes.
 struct RunnerStatistics {

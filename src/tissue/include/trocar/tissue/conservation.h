@@ -48,8 +48,8 @@ struct OrganVolume {
   double leaked = 0;        ///< since the start [m^3]
 };
 
-/// How the tissue at rest, with the links and scales of now, answers one pascal in each organ. Computed over several
-/// ticks after they changed; what was known before steers well enough meanwhile.
+/// Displacement of the tissue by a pressure of 1 Pa in each organ, at rest, with the links and scales of now. Computed over
+/// several ticks after these changed; meanwhile the old one steers the projections well enough.
 struct VolumeResponses {
   std::vector<std::vector<Vec3>> displacement;  ///< (organs)(n) in the rest frame [m/Pa]
   double stiffness_scale = 1, shape_scale = 1;  ///< of the load for which they were computed
@@ -93,8 +93,8 @@ class Conservation {
   /// State at rest: every organ at its rest volume and without pressure, frames where anatomy was imaged.
   ConservationState MakeState(const TissueState& rest_state) const;
 
-  /// Goes on with a model that a cut has changed: as many nodes, and strands, as before. How volumes answer pressures is
-  /// taken from before the cut and worked out anew over the next ticks.
+  /// Goes on with a model that a cut has changed: as many nodes, and strands, as before. The old responses are
+  /// kept as an initial guess and computed anew over the next ticks.
   ///
   /// \param model  must outlive this
   /// \param organs  as many as before, each a closed surface
@@ -143,8 +143,8 @@ class Conservation {
   /// After a solve: lets fluid leak for `dt` [s], brings each volume to its target exactly, and moves the
   /// frames of held free regions to their best fit.
   ///
-  /// \param has_time  whether this tick can follow a change of topology or stiffness with how the volumes answer; what was
-  ///                  known before steers well enough, but after kMaxTicksWaited ticks one goes on with it all the same
+  /// \param has_time  whether this tick can afford to update the responses after a change of topology or stiffness; after
+  ///                  kMaxTicksWaited ticks without time they are updated all the same
   /// \note Real-time safe; a state that is not finite is left for the state guard.
   void Enforce(const TissueLoad& load, double dt, TissueState& tissue, ConservationState& state,
                bool has_time = true) noexcept;
@@ -168,9 +168,9 @@ class Conservation {
   double MeasureVolume(std::size_t organ, const TissueState& tissue) const noexcept;
   double MeasureGradient(std::size_t organ, const TissueState& tissue,
                          std::span<Vec3> gradient) const noexcept;
-  bool TakeAhead(ConservationState& state) noexcept;
+  bool TakeMeasuredAhead(ConservationState& state) noexcept;
   bool MeasureVolumes(const TissueState& tissue, ConservationState& state) noexcept;
-  bool CalcSlopes(const TissueState& tissue, ConservationState& state) noexcept;
+  bool CalcCompliance(const TissueState& tissue, ConservationState& state) noexcept;
   /// Whether every volume was at its target, or the state moved, or moved and came back but for rounding.
   enum class Projection { kNone, kDone, kTakenBack };
   Projection ProjectOnce(TissueState& tissue, std::span<Vec3> before, ConservationState& state) noexcept;
@@ -196,8 +196,8 @@ class Conservation {
   std::vector<Vec3> base_force_;  // (n) without pressure
   std::vector<Vec3> force_;       // (n)
   std::vector<ConstraintSet::NodeRange> organ_nodes_;
-  SmallMatrix slopes_{};  // dV_i by one pascal in organ j, of this tick [m^3/Pa]
-  bool has_slopes_ = false;
+  SmallMatrix compliance_{};  // dV_i by one pascal in organ j, of this tick [m^3/Pa]
+  bool has_compliance_ = false;
   FreeRegions next_regions_;
 };
 

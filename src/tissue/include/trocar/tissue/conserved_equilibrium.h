@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file conserved_equilibrium.h  The exact answer to the problem that a tick solves: to judge ticks by.
+/// \file conserved_equilibrium.h  The exact solution of the problem that a tick solves, as a reference for its error.
 #pragma once
 
 #include "trocar/tissue/conservation.h"

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file linear_response.h  How the tissue answers a small force: K u = f with the stiffness of the present
-/// state.
+/// \file linear_response.h  Displacement by a small force: K u = f with the stiffness of the present state.
 #pragma once
 
 #include <span>

@@ -10,12 +10,12 @@
 #include <string>
 #include <vector>
 
+#include "trocar/agent/surgeon.h"
 #include "trocar/core/result.h"
-#include "trocar/session/operation_result.h"
-#include "trocar/session/scene.h"
-#include "trocar/session/simulation.h"
-#include "trocar/session/snapshot.h"
-#include "trocar/session/surgeon.h"
+#include "trocar/scene/scene.h"
+#include "trocar/simulation/operation_result.h"
+#include "trocar/simulation/simulation.h"
+#include "trocar/simulation/snapshot.h"
 #include "trocar/view/laparoscope_view.h"
 
 namespace trocar::view {
@@ -30,13 +30,15 @@ struct DemoOptions {
   bool has_video = true;
   ViewOptions view;
   /// nullptr, or who acts in the script's place, until they have finished; `duration` is then the longest
-  session::Surgeon* surgeon = nullptr;
-  std::function<core::Status(const session::Simulation&)> on_start;  ///< before the first tick; may be empty
+  agent::Surgeon* surgeon = nullptr;
+  std::function<core::Status(const simulation::Simulation&)>
+      on_start;  ///< before the first tick; may be empty
   /// may change the script's input of a tick at that time [s]; may be empty
-  std::function<void(double, session::Input&)> change_input;
-  std::function<void(session::Simulation&)> after_step;   ///< after every tick, before on_tick; may be empty
-  std::function<void(const session::Snapshot&)> on_tick;  ///< after every tick; may be empty
-  std::function<void(double)> on_progress;                ///< share done, 0 to 1, once a frame; may be empty
+  std::function<void(double, scene::Input&)> change_input;
+  std::function<void(simulation::Simulation&)>
+      after_step;  ///< after every tick, before on_tick; may be empty
+  std::function<void(const simulation::Snapshot&)> on_tick;  ///< after every tick; may be empty
+  std::function<void(double)> on_progress;  ///< share done, 0 to 1, once a frame; may be empty
 };
 
 struct DemoPicture {
@@ -53,7 +55,7 @@ struct DemoReport {
   double draw_p99 = 0;                ///< [s]
   std::uint64_t state_hash = 0;       ///< of the simulation at the end
   std::string graphics;               ///< what drew it, for example "llvmpipe (LLVM 15.0.6, 256 bits)"
-  std::optional<session::OperationResult> operation;  ///< of a scene that is one
+  std::optional<simulation::OperationResult> operation;  ///< of a scene that is one
 };
 
 /// Steps the simulation with the script's hands, draws it off-screen, writes demo.webm and picture_NNN.png.
@@ -63,7 +65,7 @@ struct DemoReport {
 ///         kScriptInvalid (no script and no duration) or the simulation's error; a video that failed leaves
 ///         no file
 /// \note Takes an OpenGL context of its own on the calling thread and gives it up at the end.
-core::Result<DemoReport> PlayDemonstration(std::shared_ptr<const session::Scene> scene,
+core::Result<DemoReport> PlayDemonstration(std::shared_ptr<const scene::Scene> scene,
                                            const DemoOptions& options);
 
 }  // namespace trocar::view

@@ -7,9 +7,9 @@
 
 #include "trocar/core/result.h"
 #include "trocar/render/renderer.h"
-#include "trocar/session/scene.h"
-#include "trocar/session/simulation.h"
-#include "trocar/session/snapshot.h"
+#include "trocar/scene/scene.h"
+#include "trocar/simulation/simulation.h"
+#include "trocar/simulation/snapshot.h"
 
 namespace trocar::view {
 
@@ -34,10 +34,10 @@ class LaparoscopeView {
   /// \param start     first snapshot: its shapes are the rest shapes that the surfaces' patterns stick to
   /// \param strands   that dissection divides, in the order of OperationSnapshot::strand_is_intact
   /// \return the renderer's error, or kUnknownName for a material that render/material.h does not know
-  static core::Result<LaparoscopeView> Make(const session::Scene& scene,
-                                            std::span<const session::SurfaceInfo> surfaces,
-                                            const session::Snapshot& start,
-                                            std::span<const session::StrandInfo> strands = {});
+  static core::Result<LaparoscopeView> Make(const scene::Scene& scene,
+                                            std::span<const scene::SurfaceInfo> surfaces,
+                                            const simulation::Snapshot& start,
+                                            std::span<const scene::StrandInfo> strands = {});
 
   LaparoscopeView(LaparoscopeView&&) noexcept;
   LaparoscopeView& operator=(LaparoscopeView&&) noexcept;
@@ -47,7 +47,7 @@ class LaparoscopeView {
   const ViewOptions& GetOptions() const;
 
   /// Takes over shapes and poses of a snapshot of the same scene.
-  void Update(const session::Snapshot& snapshot);
+  void Update(const simulation::Snapshot& snapshot);
   /// Draws the last snapshot into the bound framebuffer.
   /// \param width, height  of it [pixels]
   void Draw(int width, int height);

@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: Apache-2.0
+// How each act begins and when it is done.
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "cholecystectomy_surgeon.h"
+#include "state_fields.h"
+
+namespace trocar::agent {
+namespace {
+
+constexpr double kPull = 12.0;            // at which a hand stops to draw [N]
+constexpr double kNoPull = 0.8;           // [N]
+constexpr double kEaseStep = 0.003;       // [m]
+constexpr double kJawSeconds = 0.6;       // for jaws to open or close
+constexpr double kJawCloseSeconds = 0.7;  // likewise over a vessel
+
+}  // namespace
+
+void CholecystectomySurgeon::Begin(const SurgeonAct& act, const Snapshot& seen) {
+  using Kind = SurgeonAct::Kind;
+  if (act.IsDecision()) {
+    std::swap(acts_, inserted_);
+    PlanOn(act, seen);
+    std::swap(acts_, inserted_);
+    return;
+  }
+  const auto h = static_cast<std::size_t>(act.hand);
+  HandMotion& hand = hands_[h];
+  switch (act.kind) {
+    case Kind::kAssist:
+      assistant_ = act.command;
+      break;
+    case Kind::kReach:
+      hand.MoveTo(Find(act.place, seen), act.hurry);
+      break;
+    case Kind::kJaw:
+      hand.SetJaw(act.amount * scene_->instruments[h].tray[seen.operation.tools[h]].max_jaw);
+      break;
+    case Kind::kSetJaw:
+      hand.SetJaw(act.amount);
+      break;
+    case Kind::kExchange:
+    case Kind::kTakeOut:
+      controls_[h].tool = act.tool;
+      break;
+    case Kind::kDraw:
+      hand.MoveTo(hand.Tip() + act.by, 0.25);
+      break;
+    case Kind::kBurn:
+      controls_[h].coagulate = true;
+      break;
+    case Kind::kPressCutPedal:
+      controls_[h].cut = true;
+      break;
+    case Kind::kLiftFoot:
+      controls_[h].cut = false;
+      break;
+    case Kind::kLook: {
+      field_ = act.place;
+      const Vec3 p = Find(act.place, seen);
+      const Vec3 to_eye = math::Normalized(scene_->laparoscope.p_world_port - p);
+      const Vec3 along = TubeDirection(seen, FindTube("cystic_duct"), 0.5);
+      AimCamera(p, math::Rotate(math::RotationAbout(along, act.amount), to_eye), act.distance);
+      break;
+    }
+    case Kind::kLookFrom:
+      camera_to_ = act.camera;
+      break;
+    case Kind::kLineUp:
+      LineUpTool(act, seen);
+      break;
+    case Kind::kLineUpClip:
+      LineUpClip(act, seen);
+      break;
+    case Kind::kLineUpScissors:
+      LineUpScissors(act, seen);
+      break;
+    case Kind::kDissect:
+      dissection_.traction.p_hold = HandOf(kLeft).Tip();
+      dissection_.traction.drawn = 0;
+      unheld_seconds_ = 0;
+      break;
+    default:  // waits, or begins with what is seen
+      break;
+  }
+}
+
+bool CholecystectomySurgeon::IsDone(const SurgeonAct& act, const Snapshot& seen) {
+  using Kind = SurgeonAct::Kind;
+  const auto h = static_cast<std::size_t>(act.hand);
+  HandMotion& hand = hands_[h];
+  switch (act.kind) {
+    case Kind::kAssist:
+      return act.command == AssistantCommand::kRelease
+                 ? !seen.operation.is_assistant_holding
+                 : seen.operation.is_assistant_holding || !seen.operation.has_assistant;
+    case Kind::kReach:
+    case Kind::kLineUp:
+    case Kind::kLineUpClip:
+    case Kind::kLineUpScissors:
+      return !hand.IsMoving() && !hand.IsTurning();
+    case Kind::kJaw:
+      return act_seconds_ > kJawSeconds;
+    case Kind::kSetJaw:
+      return act_seconds_ > kJawCloseSeconds;
+    case Kind::kWait:
+      return act_seconds_ >= act.seconds;
+    case Kind::kExchange:
+      return seen.operation.tools[h] == act.tool;
+    case Kind::kTakeOut:
+      return seen.operation.is_completed;
+    case Kind::kCloseBag:
+      return seen.operation.is_in_bag;
+    case Kind::kDraw: {
+      const bool is_tight = math::Norm(seen.instruments[h].force) > kPull;
+      if (is_tight) hand.MoveTo(hand.Tip());
+      return is_tight || !hand.IsMoving();
+    }
+    case Kind::kEase: {
+      const Vec3& force = seen.instruments[h].force;
+      if (math::Norm(force) < kNoPull) return true;
+      if (!hand.IsMoving()) hand.MoveTo(hand.Tip() + kEaseStep * math::Normalized(force), 0.5);
+      return false;
+    }
+    case Kind::kBurn:
+      if (act_seconds_ < act.seconds) return false;
+      controls_[h].coagulate = false;
+      return true;
+    case Kind::kLook:
+    case Kind::kLookFrom:
+      return camera_ == camera_to_;
+    case Kind::kDissect:
+      return GoOnOrHoldAnew(seen);
+    case Kind::kSpread:
+      return GoOnSpreading(spreading_, seen);
+    default:  // decisions and pedals
+      return true;
+  }
+}
+
+void CholecystectomySurgeon::PlanOn(const SurgeonAct& act, const Snapshot& seen) {
+  using Kind = SurgeonAct::Kind;
+  switch (act.kind) {
+    case Kind::kChooseHold:
+      return ChooseHold(act, seen);
+    case Kind::kTakeHold:
+      return TakeHold(act, seen);
+    case Kind::kCheckHold:
+      return CheckHold(act, seen);
+    case Kind::kTake:
+      if (scene_->instruments[kRight].tray[seen.operation.tools[kRight]].kind != act.tool_kind)
+        Exchange(kRight, act.tool_kind);
+      return;
+    case Kind::kClearTriangle:
+      return PlanTriangle(act, seen);
+    case Kind::kCheckTriangle:
+      return CheckTriangle(act, seen);
+    case Kind::kFreeLowerThird:
+      return PlanLowerThird(act, seen);
+    case Kind::kShowCriticalView:
+      return PlanCriticalView(act, seen);
+    case Kind::kDivideExtraArtery:
+      if (const auto extra = FindExtraArtery(seen)) Divide({*extra});
+      return;
+    case Kind::kFollowWithCamera:
+      camera_follows_ = act.is_on;
+      return;
+    case Kind::kLookFromSide:
+      return PlanLookFromSide(act, seen);
+    case Kind::kTimeOut:
+      stops_ = !has_view_;
+      return;
+    case Kind::kCheckStumps:
+      stops_ = !std::all_of(entering_.begin(), entering_.end(),
+                            [&](std::size_t tube) { return IsDivided(seen, tube); });
+      return;
+    case Kind::kFreeFromBed:
+      return PlanBed(act, seen);
+    case Kind::kDivide:
+      return PlanDivision(act, seen);
+    case Kind::kGoOnDividing:
+      return GoOnDividing(seen);
+    case Kind::kCheckClip:
+      return CheckClip(act, seen);
+    case Kind::kCheckBlades:
+      return CheckBlades(act, seen);
+    case Kind::kCheckBeforeCut:
+      return CheckBeforeCut(act, seen);
+    case Kind::kCheckDivision:
+      if (!IsDivided(seen, division_.tubes[act.tube])) division_.avoid[act.tube].push_back(act.share);
+      return;
+    case Kind::kCheckPlacedClip:
+      return CheckPlacedClip(act, seen);
+    case Kind::kStopBleeding:
+      return PlanCoagulation(act, seen);
+    case Kind::kCoagulate:
+      Burn(kRight, act.place, act.seconds);
+      return Withdraw();
+    default:
+      return;
+  }
+}
+
+void CholecystectomySurgeon::VisitState(core::StateArchive& archive) {
+  archive.Field("hands", hands_);
+  archive.Field("controls", controls_);
+  archive.Field("assistant", assistant_);
+  archive.Field("camera", camera_);
+  archive.Field("camera_to", camera_to_);
+  archive.Field("first_azimuth", first_azimuth_);
+  archive.Field("has_looked", has_looked_);
+  archive.Field("has_view", has_view_);
+  archive.Field("stops", stops_);
+  VisitQueue(archive, "acts", acts_);
+  archive.Field("dissection", dissection_);
+  archive.Field("spreading", spreading_);
+  archive.Field("division", division_);
+  archive.Field("has_begun", has_begun_);
+  archive.Field("has_finished", has_finished_);
+  archive.Field("act_seconds", act_seconds_);
+  archive.Field("field", field_);
+  archive.Field("camera_follows", camera_follows_);
+  archive.Field("unseen_seconds", unseen_seconds_);
+  archive.Field("unheld_seconds", unheld_seconds_);
+  archive.Field("missed_holds", missed_holds_);
+  archive.Field("heat", heat_);
+  archive.Field("beyond", beyond_);
+  archive.Field("offset", offset_);
+  archive.Field("doing", doing_);
+  if (archive.IsRestoring()) trees_tick_ = kNever;
+}
+
+}  // namespace trocar::agent

@@ -1,0 +1,336 @@
+// SPDX-License-Identifier: Apache-2.0
+// The operation, part by part; each part looks at what has come of it and goes on until it is enough.
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "cholecystectomy_surgeon.h"
+
+namespace trocar::agent {
+
+using math::Pose;
+using scene::CalcLaparoscopePose;
+using scene::FindView;
+using scene::ViewRequest;
+using simulation::InstrumentSnapshot;
+using simulation::IsInView;
+namespace {
+
+using instrument::ToolKind;
+
+constexpr double kLowerShare = 0.44;  // of the bed that is freed before the view [-]
+constexpr int kRounds = 4, kBedRounds = 12;
+constexpr double kPedicleWeight = 3.0;  // of fibres on the cystic duct and artery, among others
+constexpr double kBesideView = 0.05;    // of a tool, out of the way of the view [m]
+constexpr double kGrip = 0.07;          // of the jaws: 14 N of pinch
+constexpr double kTurnStep = 0.2;       // of the lens about the duct, to either side in turn [rad]
+constexpr int kTurnSteps = 26;
+constexpr double kTilts[] = {0.0, 0.5, -0.5};           // of the lens along the duct [rad]
+constexpr double kAside = 0.4;                          // of a view from the front of the neck [rad]
+constexpr double kDistances[] = {0.060, 0.072, 0.050};  // of the lens from the duct [m]
+constexpr double kSkin = 0.004;      // sight ends at the skin of a duct, not at its axis [m]
+constexpr double kNeckStep = 0.008;  // of the hold about the duct, to show the other side of the neck [m]
+constexpr int kNeckTurns = 7;
+constexpr double kPeelShare = 0.2;  // of the bed's fibres that are left: where the gallbladder peels off [-]
+/// How far the flap is folded back at first [m], and how steeply [-].
+constexpr double kFold = 0.030, kFoldUp = 0.6;
+constexpr double kOutOfTheWay = 0.080;  // of a tool that waits while the bag leaves [m]
+
+}  // namespace
+
+void CholecystectomySurgeon::PlanOperation() {
+  FreeGallbladder();
+  Remove();
+}
+
+/// From the first look until the gallbladder hangs on nothing.
+void CholecystectomySurgeon::FreeGallbladder() {
+  const Place neck = Place::AtNode(neck_);
+  camera_follows_ = true;
+  Add(SurgeonAct::Kind::kAssist, "assistant: retract", 8.0).command = AssistantCommand::kRetract;
+  LookAt(neck, 0.0, 0.090);
+  HoldOn(neck);
+  const std::size_t duct = FindTube("cystic_duct");
+  const Vec3 duct_way = math::Normalized(rest_[tube_nodes_[duct].front()] - rest_[tube_nodes_[duct].back()]);
+  DrawGently(kLeft, 0.006 * duct_way + 0.003 * bed_normal_);
+  ClearTriangle(kRounds);
+  FreeLowerThird(kRounds);
+  ShowCriticalView(kRounds);
+  // without the view nothing is clipped; a gallbladder that is still tied is not taken off its bed
+  Decide(SurgeonAct::Kind::kTimeOut, "time-out");
+  Divide(entering_);
+  StopBleeding();
+  Decide(SurgeonAct::Kind::kCheckStumps, "look at the stumps");
+  FreeFromBed(kBedRounds);
+}
+
+/// Takes the gallbladder with the left hand, clear of the liver, and again elsewhere when nothing was taken.
+void CholecystectomySurgeon::HoldOn(const Place& near, int tries, const HoldFilter& may) {
+  SurgeonAct& act = Decide(SurgeonAct::Kind::kChooseHold, "choose a hold");
+  act.place = near;
+  act.count = tries;
+  act.may = may;
+}
+
+void CholecystectomySurgeon::ChooseHold(const SurgeonAct& act, const Snapshot& seen) {
+  if (act.count <= 0) return;
+  if (seen.instruments[kLeft].is_grasping) LetGo(kLeft);
+  SurgeonAct& next = Decide(SurgeonAct::Kind::kTakeHold, act.doing);
+  next.place = act.place;
+  next.count = act.count;
+  next.may = act.may;
+}
+
+void CholecystectomySurgeon::TakeHold(const SurgeonAct& act, const Snapshot& seen) {
+  const std::uint32_t node = FindHold(seen, Find(act.place, seen), missed_holds_, act.may);
+  Grasp(kLeft, Place::AtNode(node), kGrip);
+  SurgeonAct& next = Decide(SurgeonAct::Kind::kCheckHold, "look at the hold");
+  next.place = act.place;
+  next.count = act.count;
+  next.may = act.may;
+  next.node = node;
+}
+
+void CholecystectomySurgeon::CheckHold(const SurgeonAct& act, const Snapshot& seen) {
+  const InstrumentSnapshot& hand = seen.instruments[kLeft];
+  if (hand.is_grasping && hand.organ == scene_->patient.FindOrgan("gallbladder")) return;
+  missed_holds_.push_back(act.node);
+  LetGo(kLeft);
+  HoldOn(act.place, act.count - 1, act.may);
+}
+
+/// The hepatocystic triangle: bluntly, beside ducts too; what is left elsewhere, with the hook.
+void CholecystectomySurgeon::ClearTriangle(int rounds) {
+  Decide(SurgeonAct::Kind::kClearTriangle, "look at the triangle").count = rounds;
+}
+
+void CholecystectomySurgeon::PlanTriangle(const SurgeonAct& act, const Snapshot& seen) {
+  std::vector<std::uint32_t> fat = TriangleStrands();
+  std::vector<std::uint32_t> covering;
+  if (!AreTubesBare(seen)) covering = CoveringStrands();
+  const bool is_clear = seen.operation.facts.cleared_share >= kCleared && covering.empty();
+  if (is_clear || act.count <= 0) return;
+  Spreading work;
+  work.strands = covering;
+  work.weights.assign(covering.size(), kPedicleWeight);
+  for (const std::uint32_t i : fat) {
+    if (std::find(covering.begin(), covering.end(), i) != covering.end()) continue;
+    work.strands.push_back(i);
+    work.weights.push_back(1.0);
+  }
+  spreading_ = std::move(work);
+  Take(ToolKind::kDissector);
+  Spread();
+  SurgeonAct& next = Decide(SurgeonAct::Kind::kCheckTriangle, "look at the triangle");
+  next.strands = std::move(fat);
+  next.count = act.count;
+}
+
+void CholecystectomySurgeon::CheckTriangle(const SurgeonAct& act, const Snapshot& seen) {
+  if (!IsTriangleClear(seen)) {
+    std::vector<std::uint32_t> left = act.strands;
+    if (!AreTubesBare(seen)) {
+      const std::vector<std::uint32_t> over = CoveringStrands();
+      left.insert(left.end(), over.begin(), over.end());
+    }
+    std::vector<double> order;
+    // the front first
+    for (const std::uint32_t i : left)
+      order.push_back(-0.25 * (rest_[strands_[i].a] + rest_[strands_[i].b]).z);
+    Take(ToolKind::kHook);
+    Dissect({"the hepatocystic triangle", left, order, 1.0, DissectionGoal::Until::kTriangleClear});
+  }
+  ClearTriangle(act.count - 1);
+}
+
+void CholecystectomySurgeon::FreeLowerThird(int rounds) {
+  Decide(SurgeonAct::Kind::kFreeLowerThird, "look at the bed").count = rounds;
+}
+
+void CholecystectomySurgeon::PlanLowerThird(const SurgeonAct& act, const Snapshot& seen) {
+  const std::vector<std::uint32_t> lower = BedStrands(kLowerShare);
+  const bool is_enough = seen.operation.critical_view.criteria[1] == 2;
+  if (is_enough || ShareLeft(seen, lower) == 0.0 || act.count <= 0) return;
+  const Vec3 axis = BedAxis();
+  std::vector<double> order;
+  for (const std::uint32_t i : lower)
+    order.push_back(0.5 * math::Dot(rest_[strands_[i].a] - rest_[neck_], axis));
+  // by the infundibulum, which is drawn off the liver, to the sides and back over what is not free
+  const Vec3 back = math::Normalized(axis - math::Dot(axis, bed_normal_) * bed_normal_);
+  const Vec3 way = math::Normalized(bed_normal_ + back);
+  Take(ToolKind::kHook);
+  HoldOn(MiddleOf(PeelStrands(seen, lower)), kHoldTries, {HoldFilter::Kind::kInfundibulum});
+  DrawGently(kLeft, 0.010 * way);
+  Dissect(
+      {"the lower third of the bed", lower, order, 0.97, DissectionGoal::Until::kLowerThirdFree, 0.028, way});
+  FreeLowerThird(act.count - 1);
+}
+
+/// Both views; where something is missing, back to it first. A second cystic artery is divided before: only two structures
+/// may be left.
+void CholecystectomySurgeon::ShowCriticalView(int rounds) {
+  Decide(SurgeonAct::Kind::kShowCriticalView, "look for what is missing").count = rounds;
+}
+
+void CholecystectomySurgeon::PlanCriticalView(const SurgeonAct& act, const Snapshot& seen) {
+  if (seen.operation.critical_view.IsAchieved() || act.count <= 0) return;
+  ClearTriangle(2);
+  FreeLowerThird(2);
+  Decide(SurgeonAct::Kind::kDivideExtraArtery, "count what enters");
+  Place out_of_the_way = Place::AtNode(neck_);
+  out_of_the_way.back = kBesideView;
+  Reach(kRight, out_of_the_way);
+  Decide(SurgeonAct::Kind::kFollowWithCamera, "look").is_on = false;
+  for (const int side : {+1, -1}) LookFromSide(side, kNeckTurns);
+  LookAt(Place::OnTube(FindTube("cystic_duct"), 0.4), 0.0, 0.080);
+  Decide(SurgeonAct::Kind::kFollowWithCamera, "look").is_on = true;
+  ShowCriticalView(act.count - 1);
+}
+
+/// Where more than two structures enter, an artery that can be divided.
+std::optional<std::size_t> CholecystectomySurgeon::FindExtraArtery(const Snapshot& seen) {
+  std::vector<std::size_t> arteries;
+  for (const std::size_t tube : entering_) {
+    const bool is_artery = scene_->patient.tubes[tube].kind == anatomy::TubeKind::kArtery;
+    if (is_artery && !IsDivided(seen, tube)) arteries.push_back(tube);
+  }
+  if (arteries.size() < 2) return std::nullopt;
+  const std::vector<TubeLine> lines = LinesOf(seen);
+  for (const double care : {1.0, 0.7, 0.4}) {
+    for (const std::size_t tube : arteries) {
+      const auto step = FindNextStep(FieldOf(seen, tube, lines, care), ClipsOn(seen, tube), {});
+      if (step.kind != DivisionStep::Kind::kNone) return tube;
+    }
+  }
+  return arteries.back();
+}
+
+/// A pose of the laparoscope that shows the triangle from one side of its front, with nothing before it.
+std::optional<instrument::TrocarJoints> CholecystectomySurgeon::FindSideView(const Snapshot& seen, int side) {
+  const std::size_t duct = FindTube("cystic_duct"), hepatic = FindTube("common_hepatic_duct");
+  const std::array<Vec3, 3> points = {TubePoint(seen, duct, 0.3), TubePoint(seen, duct, 0.7),
+                                      0.5 * (TubePoint(seen, duct, 0.5) + TubePoint(seen, hepatic, 0.5))};
+  const Vec3 middle = (points[0] + points[1] + points[2]) * (1.0 / 3.0);
+  const Vec3 to_eye = math::Normalized(scene_->laparoscope.p_world_port - middle);
+  const Vec3 along = TubeDirection(seen, duct, 0.5);
+  const Vec3 across = math::Normalized(math::Cross(along, to_eye), {1, 0, 0});
+  for (int step = 0; step < kTurnSteps; ++step) {
+    const double turn = (step % 2 == 0 ? 1 : -1) * kTurnStep * (1 + step / 2);
+    for (const double tilt : kTilts) {
+      const math::Quaternion turned = math::RotationAbout(along, turn) * math::RotationAbout(across, tilt);
+      for (const double distance : kDistances) {
+        ViewRequest request;
+        request.p_world = middle;
+        request.distance = distance;
+        request.facing = math::Rotate(turned, to_eye);
+        const auto found = FindView(scene_->laparoscope, request);
+        if (!found) continue;
+        const Pose X = CalcLaparoscopePose(scene_->laparoscope, *found);
+        if (side * CalcAzimuth(seen, X.translation) < kAside) continue;
+        const bool shows_all = std::all_of(points.begin(), points.end(), [&](const Vec3& p) {
+          const Vec3 end = p + kSkin * math::Normalized(X.translation - p);
+          return IsInView(X, scene_->laparoscope.field_of_view, p) &&
+                 Clearance(seen, {X.translation, end}) > 0.0002;
+        });
+        if (shows_all) return found;
+      }
+    }
+  }
+  return std::nullopt;
+}
+
+/// Looks at the triangle from one side of its front; where the picture does not get there, the left hand turns the
+/// neck towards it, farther with each try.
+void CholecystectomySurgeon::LookFromSide(int side, int tries) {
+  SurgeonAct& act = Decide(SurgeonAct::Kind::kLookFromSide, "look from aside");
+  act.side = side;
+  act.count = tries;
+}
+
+void CholecystectomySurgeon::PlanLookFromSide(const SurgeonAct& act, const Snapshot& seen) {
+  const auto& score = seen.operation.critical_view;
+  if (score.IsAchieved() || score.Sum() < 6) return;
+  if (const auto view = FindSideView(seen, act.side)) {
+    Add(SurgeonAct::Kind::kLookFrom, "look from aside", 8.0).camera = *view;
+    Wait(1.3);
+    return;
+  }
+  if (act.count <= 0 || !seen.instruments[kLeft].is_grasping) return;
+  const std::size_t duct = FindTube("cystic_duct");
+  const Vec3 axis = math::Normalized(TubePoint(seen, duct, 0.0) - TubePoint(seen, duct, 1.0));
+  const Vec3 arm = HandOf(kLeft).Tip() - TubePoint(seen, duct, 0.0);
+  const Vec3 off_axis = math::Normalized(arm - math::Dot(arm, axis) * axis, bed_normal_);
+  DrawGently(kLeft, -act.side * kNeckStep * math::Cross(axis, off_axis));
+  LookFromSide(act.side, act.count - 1);
+}
+
+/// The first fibres of those that are left, from the neck on: there the gallbladder peels off. At least one.
+/// \pre one is left
+std::vector<std::uint32_t> CholecystectomySurgeon::PeelStrands(const Snapshot& seen,
+                                                               const std::vector<std::uint32_t>& bed) const {
+  const Vec3 axis = math::Normalized(rest_[fundus_] - rest_[neck_]);
+  std::vector<std::pair<double, std::uint32_t>> along;
+  for (const std::uint32_t i : bed) {
+    if (seen.operation.strand_is_intact[i])
+      along.emplace_back(math::Dot(rest_[strands_[i].a] - rest_[neck_], axis), i);
+  }
+  std::sort(along.begin(), along.end());
+  along.resize(std::max<std::size_t>(1, static_cast<std::size_t>(kPeelShare * along.size())));
+  std::vector<std::uint32_t> peel;
+  for (const auto& [place, strand] : along) peel.push_back(strand);
+  return peel;
+}
+
+/// The middle of the gallbladder's ends of fibres.
+Place CholecystectomySurgeon::MiddleOf(std::vector<std::uint32_t> strands) const {
+  Place place = Place::Of(Place::Kind::kStrands);
+  place.strands = std::move(strands);
+  return place;
+}
+
+/// The gallbladder off its bed: holds change, because the old one may have slipped and what is free is drawn elsewhere.
+void CholecystectomySurgeon::FreeFromBed(int rounds) {
+  Decide(SurgeonAct::Kind::kFreeFromBed, "look at the bed").count = rounds;
+}
+
+void CholecystectomySurgeon::PlanBed(const SurgeonAct& act, const Snapshot& seen) {
+  const std::vector<std::uint32_t> bed = BedStrands(1.0);
+  if (ShareLeft(seen, bed) == 0.0 || act.count <= 0) return;
+  const Vec3 axis = BedAxis();
+  std::vector<double> order;
+  for (const std::uint32_t i : bed)
+    order.push_back(0.5 * math::Dot(rest_[strands_[i].a] - rest_[neck_], axis));
+  const std::vector<std::uint32_t> peel = PeelStrands(seen, bed);
+  const Place left = MiddleOf(peel);
+  // what is free is folded back over what is not: there the fibres lie open
+  const HoldFilter is_free{HoldFilter::Kind::kFree,
+                           math::Dot(rest_[strands_[peel[peel.size() / 2]].a] - rest_[neck_], axis)};
+  const Vec3 back = math::Normalized(axis - math::Dot(axis, bed_normal_) * bed_normal_);
+  const Vec3 fold = math::Normalized(kFoldUp * bed_normal_ + back);
+  Take(ToolKind::kHook);
+  LookAt(left, 0.0, 0.100);
+  HoldOn(left, kHoldTries, is_free);
+  DrawGently(kLeft, kFold * fold);
+  Dissect({"the gallbladder from its bed", bed, order, 1.0, DissectionGoal::Until::kBedStep, 0.070, fold,
+           is_free, ShareLeft(seen, bed)});
+  FreeFromBed(act.count - 1);
+}
+
+void CholecystectomySurgeon::Remove() {
+  Add(SurgeonAct::Kind::kAssist, "assistant: release", 4.0).command = AssistantCommand::kRelease;
+  DrawGently(kLeft, 0.03 * bed_normal_);
+  const Place middle = Place::Of(Place::Kind::kGallbladder);
+  LookAt(middle, 0.0, 0.100);
+  Exchange(kRight, ToolKind::kBag);
+  Reach(kRight, middle);
+  Add(SurgeonAct::Kind::kCloseBag, "close the bag", 4.0);
+  LetGo(kLeft);
+  // the bag goes by where the left hand's tool lies
+  Reach(kLeft, Place::BehindTip(kLeft, kOutOfTheWay));
+  Exchange(kRight, ToolKind::kHook);
+  // it ends with the bag outside, not with a tool's jaws
+  acts_.pop_back();
+  acts_.back().kind = SurgeonAct::Kind::kTakeOut;
+}
+
+}  // namespace trocar::agent

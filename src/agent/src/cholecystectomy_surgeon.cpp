@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cholecystectomy_surgeon.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <span>
+#include <utility>
+
+namespace trocar::agent {
+
+using scene::CalcLaparoscopePose;
+using scene::FindView;
+using scene::InstrumentSetup;
+using scene::ViewRequest;
+using simulation::DescribeModel;
+using simulation::InstrumentSnapshot;
+using simulation::IsInView;
+namespace {
+
+/// Where the left hand holds the gallbladder: from the neck towards the fundus, and off the bed [m].
+constexpr double kHoldBack = 0.020, kHoldBeside = 0.012;
+constexpr double kCameraRate = 0.25;      // [rad/s]
+constexpr double kSeenWell = 0.8;         // of the picture's width: what lies within is followed by nobody
+constexpr double kFollowSeconds = 0.3;    // a tip is out of there before the picture follows [s]
+constexpr double kFollowDistance = 0.09;  // of the lens from what it follows [m]
+constexpr double kNeckRadius = 0.015;     // what lies so near to the infundibulum turns with the neck [m]
+constexpr double kWorks = 0.06;           // a tool this deep is at work [m]
+
+HandMotion MakeHand(const Scene& scene, int hand, const HandSkill& skill, std::uint64_t seed) {
+  const InstrumentSetup& setup = scene.instruments[static_cast<std::size_t>(hand)];
+  return {setup.p_world_port, setup.home, skill, seed + static_cast<std::uint64_t>(hand)};
+}
+
+}  // namespace
+
+bool IsCholecystectomy(const Scene& scene) {
+  using instrument::ToolKind;
+  const anatomy::Patient& patient = scene.patient;
+  const auto has_organ = [&](const char* name) { return patient.FindOrgan(name) >= 0; };
+  const auto has_landmark = [&](const char* name) { return patient.FindLandmark(name) != nullptr; };
+  const auto has_tube = [&](const char* name) {
+    return std::ranges::any_of(patient.tubes, [&](const anatomy::Tube& tube) { return tube.name == name; });
+  };
+  const auto has_tool = [&](ToolKind kind) {
+    return std::ranges::any_of(scene.instruments[kRight].tray,
+                               [&](const instrument::Tool& tool) { return tool.kind == kind; });
+  };
+  return scene.operation.has_value() && has_organ("gallbladder") && has_organ("liver") &&
+         has_landmark("infundibulum") && has_landmark("fundus") && has_landmark("liver_edge") &&
+         has_tube("cystic_duct") && has_tube("cystic_artery") && has_tube("common_hepatic_duct") &&
+         has_tool(ToolKind::kHook) && has_tool(ToolKind::kClipApplier) && has_tool(ToolKind::kScissors) &&
+         has_tool(ToolKind::kBag);
+}
+
+CholecystectomySurgeon::CholecystectomySurgeon(std::shared_ptr<const Scene> scene, const SurgeonSkill& skill,
+                                               OperationErrorScenario error_scenario, std::uint64_t seed)
+    : scene_(std::move(scene)),
+      hands_{MakeHand(*scene_, kLeft, skill.hand, seed), MakeHand(*scene_, kRight, skill.hand, seed)},
+      camera_(scene_->laparoscope.home),
+      camera_to_(scene_->laparoscope.home) {
+  auto model = DescribeModel(*scene_);
+  if (!model.ok()) {
+    // the simulation of such a scene says why
+    has_finished_ = true;
+  } else {
+    Learn(std::move(*model));
+    error_scenario == OperationErrorScenario::kNone ? PlanOperation() : PlanErrorScenario(error_scenario);
+  }
+}
+
+void CholecystectomySurgeon::Learn(ModelDescription model) {
+  const anatomy::Patient& patient = scene_->patient;
+  strands_ = std::move(model.strands);
+  surfaces_ = std::move(model.surfaces);
+  rest_ = std::move(model.rest);
+  for (std::size_t t = 0; t < patient.tubes.size(); ++t) {
+    const SurfaceInfo& surface = surfaces_[patient.organs.size() + t];
+    std::vector<std::uint32_t> nodes;
+    for (std::uint32_t k = 0; k < surface.node_count; ++k) nodes.push_back(surface.first_node + k);
+    if (patient.tubes[t].to == "gallbladder") std::reverse(nodes.begin(), nodes.end());
+    tube_nodes_.push_back(std::move(nodes));
+  }
+  const int gallbladder = patient.FindOrgan("gallbladder"), liver = patient.FindOrgan("liver");
+  // what anatomy teaches of each tube
+  for (std::size_t t = 0; t < model.tube_roles.size(); ++t) {
+    const anatomy::Tube& tube = patient.tubes[t];
+    if (tube.from == "gallbladder" || tube.to == "gallbladder") entering_.push_back(t);
+    const SurfaceInfo& surface = surfaces_[patient.organs.size() + t];
+    for (std::uint32_t k = 0; k < surface.node_count; ++k) {
+      const training::VesselRole role = model.tube_roles[t][k];
+      if (!training::MayBeDivided(role)) main_nodes_.push_back(surface.first_node + k);
+      const bool is_duct = tube.kind == anatomy::TubeKind::kDuct;
+      if (!training::MayBeDivided(role) && is_duct) main_ducts_.push_back(surface.first_node + k);
+      const bool is_kept_artery = !training::MayBeDivided(role) && !is_duct;
+      if (is_kept_artery || role == training::VesselRole::kSubvesicalDuct)
+        careful_nodes_.push_back(surface.first_node + k);
+    }
+  }
+  for (std::size_t i = 0; i < patient.organs.size(); ++i) {
+    const SurfaceInfo& surface = surfaces_[i];
+    auto tree = collision::TriangleTree::Make(
+        std::span(rest_).subspan(surface.first_node, surface.node_count), patient.organs[i].mesh.triangles);
+    trees_.push_back(tree.ok() ? std::move(*tree) : collision::TriangleTree());
+  }
+  for (std::uint32_t i = 0; i < strands_.size(); ++i) {
+    const bool enters = std::any_of(entering_.begin(), entering_.end(), [&](std::size_t tube) {
+      return strands_[i].a == tube_nodes_[tube].front();
+    });
+    if (strands_[i].kind == StrandInfo::Kind::kEnd && enters) end_strands_.push_back(i);
+  }
+  const auto landmark = [&](const char* name) { return patient.FindLandmark(name)->position; };
+  neck_ = FindNode(gallbladder, landmark("infundibulum"));
+  fundus_ = FindNode(gallbladder, landmark("fundus"));
+  liver_node_ = FindNode(liver, landmark("liver_edge"));
+  for (const StrandInfo& strand : strands_) {
+    if (strand.kind == StrandInfo::Kind::kBed) bed_normal_ += rest_[strand.a] - rest_[strand.b];
+  }
+  bed_normal_ = math::Normalized(bed_normal_, {0, -1, 0});
+  // beside the neck, so that both tools have room
+  const Vec3 axis = math::Normalized(landmark("fundus") - landmark("infundibulum"));
+  hold_ = FindNode(gallbladder, landmark("infundibulum") + kHoldBack * axis + kHoldBeside * bed_normal_);
+  const SurfaceInfo& surface = surfaces_[static_cast<std::size_t>(gallbladder)];
+  for (std::uint32_t node = surface.first_node; node < surface.first_node + surface.node_count; ++node) {
+    if (math::Distance(rest_[node], landmark("infundibulum")) <= kNeckRadius) neck_nodes_.push_back(node);
+  }
+  field_ = Place::AtNode(neck_);
+}
+
+/// The picture goes where the right hand works.
+void CholecystectomySurgeon::FollowWithCamera(const Snapshot& seen) {
+  const InstrumentSnapshot& hand = seen.instruments[kRight];
+  const Vec3& tip = hand.X_world_tool.translation;
+  const bool is_seen = hand.joints.depth < kWorks ||
+                       IsInView(seen.X_world_laparoscope, kSeenWell * scene_->laparoscope.field_of_view, tip);
+  unseen_seconds_ = is_seen ? 0.0 : unseen_seconds_ + scene_->tick_seconds;
+  if (unseen_seconds_ < kFollowSeconds || !(camera_ == camera_to_)) return;
+  const Vec3 middle = 0.5 * (tip + Find(field_, seen));
+  AimCamera(middle, math::Normalized(scene_->laparoscope.p_world_port - middle), kFollowDistance);
+  unseen_seconds_ = 0;
+}
+
+/// Turns the laparoscope to a place, at about a distance; nothing where it does not get there.
+void CholecystectomySurgeon::AimCamera(const Vec3& p, const Vec3& facing, double distance) {
+  for (const double share : {1.0, 0.85, 1.15, 0.7, 1.3, 0.55}) {
+    ViewRequest request;
+    request.p_world = p;
+    request.distance = share * distance;
+    request.facing = facing;
+    if (const auto view = FindView(scene_->laparoscope, request)) {
+      camera_to_ = *view;
+      return;
+    }
+  }
+}
+
+std::uint32_t CholecystectomySurgeon::FindNode(std::int32_t organ, const Vec3& p) const {
+  const SurfaceInfo& surface = surfaces_[static_cast<std::size_t>(organ)];
+  std::uint32_t nearest = surface.first_node;
+  for (std::uint32_t i = 0; i < surface.node_count; ++i) {
+    const std::uint32_t node = surface.first_node + i;
+    if (math::SquaredDistance(rest_[node], p) < math::SquaredDistance(rest_[nearest], p)) nearest = node;
+  }
+  return nearest;
+}
+
+std::size_t CholecystectomySurgeon::FindTube(std::string_view name) const {
+  const auto& tubes = scene_->patient.tubes;
+  const auto found =
+      std::find_if(tubes.begin(), tubes.end(), [&](const anatomy::Tube& tube) { return tube.name == name; });
+  return found == tubes.end() ? 0 : static_cast<std::size_t>(found - tubes.begin());
+}
+
+Vec3 CholecystectomySurgeon::TubePoint(const Snapshot& seen, std::size_t tube, double share) const {
+  const auto& nodes = tube_nodes_[tube];
+  const double at = std::clamp(share, 0.0, 1.0) * static_cast<double>(nodes.size() - 1);
+  const auto i = std::min(nodes.size() - 2, static_cast<std::size_t>(at));
+  return math::Lerp(seen.positions[nodes[i]], seen.positions[nodes[i + 1]], at - static_cast<double>(i));
+}
+
+Vec3 CholecystectomySurgeon::TubeDirection(const Snapshot& seen, std::size_t tube, double share) const {
+  return math::Normalized(TubePoint(seen, tube, share + 0.08) - TubePoint(seen, tube, share - 0.08));
+}
+
+Input CholecystectomySurgeon::Act(const Snapshot& seen) {
+  const double dt = scene_->tick_seconds;
+  if (!has_looked_ && !tube_nodes_.empty()) {
+    first_azimuth_ = CalcAzimuth(seen, CalcLaparoscopePose(scene_->laparoscope, camera_).translation);
+    has_looked_ = true;
+  }
+  has_view_ = has_view_ || seen.operation.critical_view.IsAchieved();
+  if (stops_) acts_.clear();
+  if (acts_.empty()) has_finished_ = true;
+  if (!acts_.empty()) {
+    SurgeonAct& act = acts_.front();
+    if (!has_begun_) {
+      Begin(act, seen);
+      has_begun_ = true;
+      act_seconds_ = 0;
+      doing_ = act.doing;
+    }
+    act_seconds_ += dt;
+    if (IsDone(act, seen) || act_seconds_ > act.patience) {
+      acts_.pop_front();
+      has_begun_ = false;
+      acts_.insert(acts_.begin(), std::make_move_iterator(inserted_.begin()),
+                   std::make_move_iterator(inserted_.end()));
+      inserted_.clear();
+    }
+  }
+  if (camera_follows_) FollowWithCamera(seen);
+  const auto follow = [&](double& now, double to) {
+    now += std::clamp(to - now, -kCameraRate * dt, kCameraRate * dt);
+  };
+  follow(camera_.pan, camera_to_.pan);
+  follow(camera_.tilt, camera_to_.tilt);
+  camera_.spin += std::clamp(camera_to_.spin - camera_.spin, -4 * kCameraRate * dt, 4 * kCameraRate * dt);
+  camera_.depth += std::clamp(camera_to_.depth - camera_.depth, -0.03 * dt, 0.03 * dt);
+  camera_.jaw = camera_to_.jaw;
+  Input input;
+  for (int hand = 0; hand < kHandCount; ++hand)
+    input.hands[static_cast<std::size_t>(hand)] = HandOf(hand).Step(dt);
+  input.controls = controls_;
+  input.assistant = assistant_;
+  input.laparoscope = camera_;
+  input.settings = scene_->settings;
+  return input;
+}
+
+}  // namespace trocar::agent

@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file cholecystectomy_surgeon.h  Scripted surgeons of the cholecystectomy: one who does all of it, and careless ones.
+///
+/// They know the patient as a surgeon does, from what is seen: where ducts, gallbladder and fibres are now
+/// (Snapshot), never what the simulation thinks of it but for what the window shows: the critical view.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "division_plan.h"
+#include "heat_memory.h"
+#include "operation_plan.h"
+#include "spread_plan.h"
+#include "task_surgeon.h"
+#include "trocar/agent/surgeon.h"
+#include "trocar/collision/segment_distance.h"
+#include "trocar/collision/triangle_tree.h"
+#include "trocar/simulation/model_description.h"
+
+namespace trocar::agent {
+
+using scene::StrandInfo;
+using scene::SurfaceInfo;
+using simulation::ModelDescription;
+
+/// The one thing that a careless surgeon does wrong; kNone: the whole operation, well done.
+enum class OperationErrorScenario : std::uint8_t {
+  kNone,
+  kClipsMainDuct,
+  kCutsMainDuct,
+  kBurnsMainDuct,
+  kCutsUnclipped,
+  kClipsEarly,
+  kTooFewClips,
+  kCrossesClips,
+  kClipsPartly,
+  kBleeds,
+  kSlipsClip,
+  kPerforates,
+  kLeavesStones,
+  kBurnsLiver,
+  kBurnsNearDuct,
+  kBurnsUnseen,
+  kBurnsAir,
+  kDropsClip,
+  kGraspsLiver,
+  kPullsHard,
+  kCutsLiver,
+  kInsertsBlind
+};
+
+class CholecystectomySurgeon final : public Surgeon {
+ public:
+  CholecystectomySurgeon(std::shared_ptr<const Scene> scene, const SurgeonSkill& skill,
+                         OperationErrorScenario error_scenario, std::uint64_t seed);
+
+  Input Act(const Snapshot& seen) override;
+  bool HasFinished() const override { return has_finished_; }
+  std::string_view Doing() const override { return doing_; }
+  void VisitState(core::StateArchive& archive) override;
+
+ private:
+  static constexpr int kHoldTries = 3;
+  static constexpr double kCleared = 0.91;  // of the triangle: a little more than the view asks [-]
+  static constexpr std::uint64_t kNever = ~std::uint64_t{0};
+
+  void Learn(ModelDescription model);
+  void PlanOperation();
+  void PlanErrorScenario(OperationErrorScenario error_scenario);
+  void FreeGallbladder();
+
+  // what is under way
+  void Begin(const SurgeonAct& act, const Snapshot& seen);
+  bool IsDone(const SurgeonAct& act, const Snapshot& seen);
+  /// Plans on; what it adds is done next.
+  void PlanOn(const SurgeonAct& act, const Snapshot& seen);
+  SurgeonAct& Add(SurgeonAct::Kind kind, std::string doing, double patience);
+  /// Adds an act that plans on when it is reached, from what is seen then.
+  SurgeonAct& Decide(SurgeonAct::Kind kind, std::string doing) { return Add(kind, std::move(doing), 1.0); }
+  Vec3 Find(const Place& place, const Snapshot& seen) const;
+  Vec3 FindUnhooked(const Place& place, const Snapshot& seen) const;
+
+  // verbs
+  void Reach(int hand, const Place& tip, double hurry = 1);
+  void Jaw(int hand, double share);
+  void Wait(double seconds);
+  void Exchange(int hand, instrument::ToolKind kind, bool over_field = true);
+  void Grasp(int hand, const Place& at, double squeeze = 0);
+  void Draw(int hand, const Vec3& by);
+  void DrawGently(int hand, const Vec3& by);
+  void LetGo(int hand);
+  void Ease(int hand);
+  void LineUp(const std::string& what, std::size_t tube, double share, double jaw);
+  void LineUpTool(const SurgeonAct& act, const Snapshot& seen);
+  void PlaceClip(std::size_t tube, double share, double beyond = 0.5, int tries = 2);
+  void CloseClip(std::size_t tube, double share);
+  void CutTube(std::size_t tube, double share);
+  void Burn(int hand, const Place& at, double seconds);
+  void SetJaw(std::string doing, double jaw);
+  void Dissect(DissectionGoal goal);
+  bool GoOnDissecting(Dissection& work, const Snapshot& seen);
+  void WorkOnFibre(Dissection& work, const Snapshot& seen);
+  double ChooseFibre(Dissection& work, const Snapshot& seen);
+  Traction PlanTraction(const DissectionGoal& goal) const;
+  bool TakeUpSlack(Traction& traction, const Snapshot& seen, double parted);
+  void LeaveFibre(Dissection& work);
+  void BackOff();
+  void Swing(Dissection& work);
+  void GoOnSwinging(Traction& traction, const Snapshot& seen);
+  Vec3 HookStand(const Snapshot& seen, std::uint32_t strand, double spin) const;
+  void Approach(HookTarget& target, const Vec3& tip);
+  void LookAt(const Place& target, double turn, double distance);
+  void HoldOn(const Place& near, int tries = kHoldTries, const HoldFilter& may = {});
+  void Spread();
+  bool GoOnSpreading(Spreading& work, const Snapshot& seen);
+  void GoOn();
+  bool GoOnOrHoldAnew(const Snapshot& seen);
+  bool IsEnough(const DissectionGoal& goal, const Snapshot& seen) const;
+
+  // the operation's parts
+  void ChooseHold(const SurgeonAct& act, const Snapshot& seen);
+  void TakeHold(const SurgeonAct& act, const Snapshot& seen);
+  void CheckHold(const SurgeonAct& act, const Snapshot& seen);
+  void ClearTriangle(int rounds);
+  void PlanTriangle(const SurgeonAct& act, const Snapshot& seen);
+  void CheckTriangle(const SurgeonAct& act, const Snapshot& seen);
+  void PlanLowerThird(const SurgeonAct& act, const Snapshot& seen);
+  void PlanCriticalView(const SurgeonAct& act, const Snapshot& seen);
+  void PlanLookFromSide(const SurgeonAct& act, const Snapshot& seen);
+  void PlanBed(const SurgeonAct& act, const Snapshot& seen);
+  void CheckPlacedClip(const SurgeonAct& act, const Snapshot& seen);
+  void FreeLowerThird(int rounds);
+  void ShowCriticalView(int rounds);
+  void LookFromSide(int side, int tries);
+  std::optional<instrument::TrocarJoints> FindSideView(const Snapshot& seen, int side);
+  std::optional<std::size_t> FindExtraArtery(const Snapshot& seen);
+  void Divide(std::vector<std::size_t> tubes, int rounds = 3);
+  void PlanDivision(const SurgeonAct& act, const Snapshot& seen);
+  void GoOnDividing(const Snapshot& seen);
+  void ClipAt(std::size_t which, double arc);
+  void LineUpClip(const SurgeonAct& act, const Snapshot& seen);
+  void LineUpScissors(const SurgeonAct& act, const Snapshot& seen);
+  void CloseWhenBetween(std::size_t which, double arc, int tries);
+  void CheckClip(const SurgeonAct& act, const Snapshot& seen);
+  void CutAt(std::size_t which, double arc);
+  void CheckBlades(const SurgeonAct& act, const Snapshot& seen);
+  void CheckBeforeCut(const SurgeonAct& act, const Snapshot& seen);
+  void PlanCoagulation(const SurgeonAct& act, const Snapshot& seen);
+  void Withdraw();
+  void StopBleeding(int rounds = 4);
+  void Take(instrument::ToolKind kind);
+  void FreeFromBed(int rounds);
+  void Remove();
+
+  // knowledge
+  std::vector<std::uint32_t> TriangleStrands() const;
+  std::vector<std::uint32_t> CoveringStrands() const;
+  std::vector<std::uint32_t> BedStrands(double share) const;
+  bool IsNearMain(const Vec3& p, double distance) const;
+  double EndDistance(const Snapshot& seen, const collision::Segment& segment) const;
+  double CalcAzimuth(const Snapshot& seen, const Vec3& eye) const;
+  bool AreTubesBare(const Snapshot& seen) const;
+  bool IsTriangleClear(const Snapshot& seen) const;
+  bool MayHold(const HoldFilter& may, std::uint32_t node) const;
+  Vec3 BedAxis() const;  // from the infundibulum to the fundus, at rest
+  std::vector<std::uint32_t> PeelStrands(const Snapshot& seen, const std::vector<std::uint32_t>& bed) const;
+  Place MiddleOf(std::vector<std::uint32_t> strands) const;
+  double ShareLeft(const Snapshot& seen, const std::vector<std::uint32_t>& strands) const;
+  TubeLine LineOf(const Snapshot& seen, std::size_t tube) const;
+  std::vector<TubeLine> LinesOf(const Snapshot& seen) const;
+  std::vector<double> ClipsOn(const Snapshot& seen, std::size_t tube) const;
+  bool IsDivided(const Snapshot& seen, std::size_t tube) const;
+  DivisionField FieldOf(const Snapshot& seen, std::size_t tube, const std::vector<TubeLine>& lines,
+                        double care);
+  double Clearance(const Snapshot& seen, const collision::Segment& segment);
+  std::uint32_t FindHold(const Snapshot& seen, const Vec3& near, const std::vector<std::uint32_t>& avoid,
+                         const HoldFilter& may);
+  void FollowWithCamera(const Snapshot& seen);
+  void AimCamera(const Vec3& p, const Vec3& facing, double distance);
+  Vec3 TubePoint(const Snapshot& seen, std::size_t tube, double share) const;
+  Vec3 TubeDirection(const Snapshot& seen, std::size_t tube, double share) const;
+  std::uint32_t FindNode(std::int32_t organ, const Vec3& p) const;
+  std::size_t FindTube(std::string_view name) const;
+  Vec3 HookTip(const Vec3& at) const;
+  Vec3 HookToe(const Vec3& at, double spin) const;
+  struct HookWay {
+    double spin = 0;   ///< of the hook [rad]
+    double clear = 0;  ///< that the shaft passes by organs [m]
+  };
+  HookWay FindHookWay(const Snapshot& seen, const Vec3& at);
+  Vec3 HookPoint(const Snapshot& seen) const;
+  collision::Segment HookWire(const Snapshot& seen) const;
+  Vec3 HookedPoint(const Snapshot& seen, std::uint32_t strand) const;
+  /// Nearest points of the hook's wire and of a fibre.
+  collision::SegmentSegmentPoints HookGap(const Snapshot& seen, std::uint32_t strand) const;
+  /// That far beyond a point of a tube, as seen from the right hand's trocar; negative: before it.
+  Vec3 Aim(const Snapshot& seen, std::size_t tube, double share, double ahead) const;
+  Vec3 WallBesideHold(const Snapshot& seen) const;
+  HandMotion& HandOf(int hand) { return hands_[static_cast<std::size_t>(hand)]; }
+
+  std::shared_ptr<const Scene> scene_;
+  std::array<HandMotion, kHandCount> hands_;
+  std::array<HandControls, kHandCount> controls_;
+  AssistantCommand assistant_ = AssistantCommand::kWait;
+  instrument::TrocarJoints camera_, camera_to_;
+
+  std::vector<StrandInfo> strands_;
+  std::vector<SurfaceInfo> surfaces_;
+  std::vector<Vec3> rest_;
+  std::vector<std::vector<std::uint32_t>>
+      tube_nodes_;                         // (tubes) from the gallbladder's end, where one enters it
+  std::vector<std::uint32_t> neck_nodes_;  // around the infundibulum
+  double first_azimuth_ = 0;               // of the lens, at the start [rad]
+  bool has_looked_ = false;
+  bool has_view_ = false;                       // the critical view was achieved
+  bool stops_ = false;                          // bails out: it is not safe to go on
+  std::vector<std::size_t> entering_;           // tubes that enter the gallbladder
+  std::vector<std::uint32_t> end_strands_;      // where they do
+  std::vector<std::uint32_t> main_nodes_;       // of ducts and arteries that must stay
+  std::vector<std::uint32_t> main_ducts_;       // of the ducts among them
+  std::vector<std::uint32_t> careful_nodes_;    // of those arteries, and of small ducts of the bed
+  std::vector<collision::TriangleTree> trees_;  // (organs)
+  std::uint64_t trees_tick_ = kNever;           // of the snapshot that they follow
+  std::uint32_t neck_ = 0, hold_ = 0, fundus_ = 0, liver_node_ = 0;
+  Vec3 bed_normal_;  // from the liver towards the gallbladder, at rest
+  std::deque<SurgeonAct> acts_,
+      inserted_;           // the latter by the act that is under way, to be done next; empty between ticks
+  Dissection dissection_;  // that is under way, or planned next
+  Spreading spreading_;
+  Division division_;
+  bool has_begun_ = false, has_finished_ = false;
+  double act_seconds_ = 0;
+  Place field_;                  // what the picture is about
+  bool camera_follows_ = false;  // the right hand's tool
+  double unseen_seconds_ = 0;
+  double unheld_seconds_ = 0;
+  std::vector<std::uint32_t> missed_holds_;
+  HeatMemory heat_;
+  double beyond_ = 0.5;  // share of the jaws that goes past the vessel [-]
+  Vec3 offset_;          // by which the right hand aims beside what it wants to meet [m]
+  std::string doing_;
+};
+
+/// Whether a scene is one that they can operate on.
+bool IsCholecystectomy(const Scene& scene);
+
+}  // namespace trocar::agent

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/agent/hand_motion.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "trocar/math/random.h"
+#include "trocar/math/state_fields.h"
+
+namespace trocar::agent {
+namespace {
+
+/// Peak over mean speed of a minimum-jerk reach.
+constexpr double kPeakOverMean = 1.875;
+
+double StepTowards(double from, double to, double most) {
+  return from + std::clamp(to - from, -most, most);
+}
+
+}  // namespace
+
+HandMotion::HandMotion(const Vec3& p_world_port, const instrument::TrocarJoints& start,
+                       const HandSkill& skill, std::uint64_t seed)
+    : p_world_port_(p_world_port),
+      skill_(skill),
+      random_(seed),
+      spin_(start.spin),
+      spin_goal_(start.spin),
+      jaw_(start.jaw),
+      jaw_goal_(start.jaw) {
+  math::Random random(seed);
+  for (auto& axis : tremor_) {
+    for (Sine& sine : axis) sine = {random.Uniform(8.0, 12.0), random.Uniform(0.0, 2.0 * M_PI)};
+  }
+  random_ = random.NextWord();
+  from_ = to_ = tip_ = instrument::CalcToolPose(p_world_port, start).translation;
+}
+
+void HandMotion::VisitState(core::StateArchive& archive) {
+  archive.Field("random", random_);
+  archive.Field("time", time_);
+  archive.Field("from", from_);
+  archive.Field("to", to_);
+  archive.Field("tip", tip_);
+  archive.Field("reach_time", reach_time_);
+  archive.Field("reach_duration", reach_duration_);
+  archive.Field("spin", spin_);
+  archive.Field("spin_goal", spin_goal_);
+  archive.Field("jaw", jaw_);
+  archive.Field("jaw_goal", jaw_goal_);
+}
+
+void HandMotion::MoveTo(const Vec3& p_world_tip, double hurry) {
+  math::Random random(random_);
+  const double e = skill_.aim_error;
+  const Vec3 miss{random.Uniform(-e, e), random.Uniform(-e, e), random.Uniform(-e, e)};
+  random_ = random.NextWord();
+  from_ = tip_;
+  to_ = p_world_tip + miss;
+  reach_time_ = 0;
+  reach_duration_ =
+      std::max(skill_.shortest, kPeakOverMean * math::Distance(from_, to_) / (skill_.speed * hurry));
+}
+
+void HandMotion::Turn(double spin) {
+  spin_goal_ = spin_ + std::remainder(spin - spin_, 2 * M_PI);
+}
+
+void HandMotion::SetJaw(double jaw) {
+  jaw_goal_ = jaw;
+}
+
+Vec3 HandMotion::BehindTip(double way) const {
+  return tip_ + way * math::Normalized(p_world_port_ - tip_);
+}
+
+bool HandMotion::IsMoving() const {
+  return reach_time_ < reach_duration_;
+}
+
+bool HandMotion::IsTurning() const {
+  return spin_ != spin_goal_ || jaw_ != jaw_goal_;
+}
+
+Vec3 HandMotion::CalcTremor() const {
+  Vec3 offset;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const Sine& sine : tremor_[static_cast<std::size_t>(axis)])
+      offset[axis] += skill_.tremor / kSines * std::sin(2 * M_PI * sine.frequency * time_ + sine.phase);
+  }
+  return offset;
+}
+
+instrument::TrocarJoints HandMotion::Step(double dt) {
+  time_ += dt;
+  if (IsMoving()) {
+    reach_time_ = std::min(reach_time_ + dt, reach_duration_);
+    const double t = reach_time_ / reach_duration_;
+    tip_ = math::Lerp(from_, to_, t * t * t * (10 + t * (-15 + 6 * t)));
+  }
+  spin_ = StepTowards(spin_, spin_goal_, skill_.spin_rate * dt);
+  jaw_ = StepTowards(jaw_, jaw_goal_, skill_.jaw_rate * dt);
+  return instrument::FindJoints(p_world_port_, tip_ + CalcTremor(), spin_, jaw_);
+}
+
+double FindSpin(const Vec3& p_world_port, const Vec3& p_world_tip, const Vec3& across) noexcept {
+  const math::Pose X =
+      instrument::CalcToolPose(p_world_port, instrument::FindJoints(p_world_port, p_world_tip, 0.0, 0.0));
+  const Vec3 in_tool = math::Rotate(math::Inverse(X.rotation), across);
+  // spin turns the opening direction +y towards -x; both senses open alike, so the smaller turn
+  const double spin = std::atan2(-in_tool.x, in_tool.y);
+  return spin > M_PI / 2 ? spin - M_PI : spin < -M_PI / 2 ? spin + M_PI : spin;
+}
+
+}  // namespace trocar::agent

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file spread_plan.h  Where a dissector's jaws open so that they part as many fibres as can be, and push nothing else.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "trocar/collision/queries.h"
+#include "trocar/instrument/tool.h"
+
+namespace trocar::agent {
+
+using math::Vec3;
+
+/// What lies before the jaws.
+struct SpreadField {
+  std::vector<collision::Segment> fibres;  ///< that are to be parted [m]
+  std::vector<double> weights;             ///< (fibres) what parting one is worth
+  struct Round {
+    Vec3 p;             ///< [m]
+    double radius = 0;  ///< [m]
+  };
+  std::vector<Round> tubes;  ///< points of ducts and arteries that the jaws go beside
+  Vec3 port;                 ///< [m]
+  Vec3 tip;                  ///< where the hand is now [m]
+  double spin = 0;           ///< likewise [rad]
+  const instrument::Tool* tool = nullptr;
+  /// Distance from a segment to the nearest organ [m].
+  std::function<double(const collision::Segment&)> clearance;
+};
+
+struct SpreadPose {
+  Vec3 tip;             ///< [m]
+  double spin = 0;      ///< [rad]
+  double worth = 0;     ///< of what parts
+  std::size_t aim = 0;  ///< the fibre that it was found for
+};
+
+/// Jaws stay this far open between two spreads, as a share: closed they would grasp.
+inline constexpr double kNarrow = 0.25;
+
+/// The best of poses at some of the fibres.
+/// \param tries  (fibres) how often a spread at each came to nothing; tried ones come later
+/// \return nothing where no spread is worth it
+std::optional<SpreadPose> FindSpread(const SpreadField& field, std::span<const std::uint8_t> tries);
+
+}  // namespace trocar::agent

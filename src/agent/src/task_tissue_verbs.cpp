@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: Apache-2.0
+// What hands and feet do to ducts and bands.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "task_surgeon.h"
+
+namespace trocar::agent {
+
+using math::Pose;
+using scene::ConditionKind;
+using scene::kRight;
+using scene::ModelBand;
+using scene::ModelSheet;
+namespace {
+
+constexpr double kStandOff = 0.014;    // of a tip from what is lined up [m]
+constexpr double kReady = 0.4;         // opening of jaws that have let go, as a share: no new clip comes
+constexpr double kCloseSeconds = 0.7;  // for jaws to close over tissue [s]
+constexpr double kScissorDepth = 0.4;  // of a duct between blades, as a share of them from the tips
+constexpr double kRunIn = 0.003;       // of a cut that leads to a line, from outside [m]
+constexpr double kDrift = 0.0004;      // outwards in one turn, so that its end meets the run-in [m]
+constexpr int kWaypoints = 60;         // of a circle
+constexpr double kMostBurning = 6.0;   // [s]
+constexpr double kBetter = 0.0005;     // of one place on a band over another, for more room [m]
+
+/// Spin that turns the tool's +y as nearly as can be along `across`; FindSpin leaves open which way round.
+double FindUpperSpin(const Vec3& port, const Vec3& tip, const Vec3& across) {
+  const double spin = FindSpin(port, tip, across);
+  const Pose X = instrument::CalcToolPose(port, instrument::FindJoints(port, tip, spin, 0.0));
+  return math::Dot(math::Rotate(X.rotation, {0, 1, 0}), across) < 0 ? spin + M_PI : spin;
+}
+
+}  // namespace
+
+TissueSpot TaskSurgeon::FindOnTube(const Vec3& p_rest) const {
+  TissueSpot best;
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const auto& [row_a, row_b] : start_pieces_) {
+    const Vec3 &a = start_[row_a], &b = start_[row_b];
+    const double t = std::clamp(math::Dot(p_rest - a, b - a) / math::SquaredNorm(b - a), 0.0, 1.0);
+    const double distance = math::Distance(p_rest, math::Lerp(a, b, t));
+    if (!(distance < nearest)) continue;
+    nearest = distance;
+    best = {row_a, row_b, t};
+  }
+  return best;
+}
+
+void TaskSurgeon::PlanTissue(const Snapshot& seen, const Condition& wanted) {
+  if (AddTissueErrorScenario(seen, wanted)) return;
+  const auto place = [&] {
+    return scene_->task->regions[static_cast<std::size_t>(wanted.regions.front())].centre;
+  };
+  switch (wanted.kind) {
+    case ConditionKind::kClipped:
+      CloseClip(seen, place(), 0.5);
+      break;
+    case ConditionKind::kDivided:
+      CutTube(seen, place());
+      break;
+    case ConditionKind::kCutFree:
+      CutCircle(seen, wanted.sheet, 0.0, 1.0);
+      break;
+    default:
+      BurnBand(seen, wanted.band);
+      break;
+  }
+  Wait(wanted.seconds + 0.1);
+}
+
+/// Has a hand take up a tool, out of the way of the tissue.
+int TaskSurgeon::TakeTool(const Snapshot& seen, instrument::ToolKind kind) {
+  for (int hand = kRight; hand >= kLeft; --hand) {
+    const auto h = static_cast<std::size_t>(hand);
+    const auto& tray = scene_->instruments[h].tray;
+    const auto found =
+        std::find_if(tray.begin(), tray.end(), [&](const auto& tool) { return tool.kind == kind; });
+    if (found == tray.end()) continue;
+    const auto index = static_cast<std::uint8_t>(found - tray.begin());
+    if (seen.operation.tools[h] == index) return hand;
+    HandOf(hand).SetJaw(0);
+    ReachPoint(hand,
+               instrument::CalcToolPose(scene_->instruments[h].p_world_port, scene_->instruments[h].home)
+                   .translation);
+    TaskAct act{TaskAct::Kind::kExchangeTool, "exchange for the " + found->name};
+    act.hand = hand;
+    act.tool = index;
+    Add(std::move(act));
+    return hand;
+  }
+  return kRight;
+}
+
+/// Before a place on a duct, jaws across it.
+void TaskSurgeon::LineUp(int hand, const TissueSpot& spot, double jaw) {
+  TaskAct& act = Reach(TaskAct::Kind::kLineUp, hand);
+  act.doing = "line up";
+  act.patience = 8.0;
+  act.spot = spot;
+  act.amount = jaw;
+}
+
+void TaskSurgeon::BeginLineUp(const TaskAct& act, const Snapshot& seen) {
+  HandMotion& motion = HandOf(act.hand);
+  const Vec3 p = act.spot.At(seen);
+  const Vec3 shaft = math::Normalized(p - motion.Port());
+  motion.Turn(FindSpin(motion.Port(), p, math::Cross(shaft, act.spot.Along(seen))));
+  motion.SetJaw(act.amount);
+  motion.MoveTo(p - kStandOff * shaft);
+}
+
+/// The tip goes to a place on tissue, or beyond it along the shaft.
+void TaskSurgeon::Advance(int hand, const TissueSpot& spot, double ahead) {
+  TaskAct& act = Reach(TaskAct::Kind::kReachSpot, hand, 0.4);
+  act.spot = spot;
+  act.amount = ahead;
+}
+
+/// \param depth_share  of the jaws beyond the duct
+void TaskSurgeon::CloseClip(const Snapshot& seen, const Vec3& p_rest, double depth_share) {
+  const instrument::Tool& applier = *instrument::FindTool("clip_applier");
+  const int hand = TakeTool(seen, instrument::ToolKind::kClipApplier);
+  const TissueSpot spot = FindOnTube(p_rest);
+  LineUp(hand, spot, applier.max_jaw);
+  Advance(hand, spot, depth_share * applier.jaw_length);
+  SetJaw("close the clip", hand, 0.0, kCloseSeconds);
+  SetJaw("leave it", hand, kReady * applier.max_jaw, 0.3);
+  Advance(hand, spot, -kStandOff);
+}
+
+void TaskSurgeon::CutTube(const Snapshot& seen, const Vec3& p_rest) {
+  const instrument::Tool& scissors = *instrument::FindTool("scissors");
+  const int hand = TakeTool(seen, instrument::ToolKind::kScissors);
+  const TissueSpot spot = FindOnTube(p_rest);
+  LineUp(hand, spot, scissors.max_jaw);
+  Advance(hand, spot, kScissorDepth * scissors.jaw_length);
+  SetJaw("cut", hand, 0.0, kCloseSeconds);
+  Advance(hand, spot, -kStandOff);
+}
+
+void TaskSurgeon::PressPedal(int hand, double seconds) {
+  TaskAct act{TaskAct::Kind::kPressPedal, "press the pedal", seconds + 1.0};
+  act.hand = hand;
+  act.seconds = seconds;
+  Add(std::move(act));
+}
+
+/// The tip goes where the middle of the hook's toe, which points down, lies in the sheet.
+void TaskSurgeon::FollowSheet(int hand, const Vec3& p_sheet, double hurry) {
+  TaskAct& act = Reach(TaskAct::Kind::kFollowSheet, hand, hurry);
+  act.doing = "follow the line";
+  act.patience = 8.0;
+  act.p = p_sheet;
+}
+
+void TaskSurgeon::BeginFollowSheet(const TaskAct& act) {
+  HandMotion& motion = HandOf(act.hand);
+  const double spin = FindUpperSpin(motion.Port(), act.p, {0, 0, -1});
+  const Pose X =
+      instrument::CalcToolPose(motion.Port(), instrument::FindJoints(motion.Port(), act.p, spin, 0.0));
+  const Vec3 p_tool_middle = 0.5 * (instrument::kHookToe.a + instrument::kHookToe.b);
+  motion.Turn(spin);
+  motion.MoveTo(act.p - math::Rotate(X.rotation, p_tool_middle), act.hurry);
+}
+
+void TaskSurgeon::BeginReachBand(const TaskAct& act) {
+  HandMotion& motion = HandOf(act.hand);
+  motion.Turn(FindUpperSpin(motion.Port(), act.p, act.q));
+  motion.MoveTo(act.p - kStandOff * math::Normalized(act.p - motion.Port()));
+}
+
+/// With hook and current: to the circle from outside, round it, and out over the cut with which it began.
+/// \param aside  of the line, outwards [m]
+void TaskSurgeon::CutCircle(const Snapshot& seen, int sheet, double aside, double turns) {
+  const int hand = TakeTool(seen, instrument::ToolKind::kHook);
+  const ModelSheet& cloth = scene_->model->sheets[static_cast<std::size_t>(sheet)];
+  const auto at = [&](double turn, double out) {
+    const double angle = 2 * M_PI * turn - 0.5 * M_PI;
+    return cloth.centre + (cloth.circle + aside + out) * Vec3{std::cos(angle), std::sin(angle), 0};
+  };
+  const auto pedal = [this, hand](bool is_down) {
+    TaskAct act;
+    act.kind = is_down ? TaskAct::Kind::kPressCutPedal : TaskAct::Kind::kLiftFoot;
+    act.doing = is_down ? "press the pedal" : "lift the foot";
+    act.hand = hand;
+    Add(std::move(act));
+  };
+  const Vec3 begin = at(0, kRunIn);
+  FollowSheet(hand, begin + Vec3{0, 0, kStandOff}, 1.0);
+  FollowSheet(hand, begin, 0.5);
+  pedal(true);
+  FollowSheet(hand, at(0, 0), 0.3);
+  for (int i = 1; i <= kWaypoints * turns; ++i) {
+    const double turn = static_cast<double>(i) / kWaypoints;
+    FollowSheet(hand, at(turn, kDrift * turn), 0.3);
+  }
+  FollowSheet(hand, at(turns + 1.0 / kWaypoints, 2 * kDrift), 0.3);
+  pedal(false);
+  FollowSheet(hand, begin + Vec3{0, 0, kStandOff}, 1.0);
+}
+
+/// Where along a band there is most room between it and the others that hold.
+double TaskSurgeon::FindClearPlace(const Snapshot& seen, int band) const {
+  const auto& bands = scene_->model->bands;
+  const ModelBand& cord = bands[static_cast<std::size_t>(band)];
+  double best = 0.5, most_room = -1;
+  for (const double t : {0.5, 0.4, 0.6, 0.3, 0.7}) {
+    const Vec3 p = math::Lerp(cord.from, cord.to, t);
+    double room = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < bands.size(); ++i) {
+      if (static_cast<int>(i) == band || seen.operation.band_is_whole[i] == 0) continue;
+      const Vec3 &a = bands[i].from, along = bands[i].to - a;
+      const double s = std::clamp(math::Dot(p - a, along) / math::SquaredNorm(along), 0.0, 1.0);
+      room = std::min(room, math::Distance(p, a + s * along));
+    }
+    if (room > most_room + kBetter) most_room = room, best = t;
+  }
+  return best;
+}
+
+/// The hook's toe along a band, and current until it parts.
+void TaskSurgeon::BurnBand(const Snapshot& seen, int band) {
+  const int hand = TakeTool(seen, instrument::ToolKind::kHook);
+  const ModelBand& cord = scene_->model->bands[static_cast<std::size_t>(band)];
+  const Vec3 along = math::Normalized(cord.to - cord.from);
+  const double toe = math::Distance(instrument::kHookToe.a, instrument::kHookToe.b);
+  const Vec3 tip = math::Lerp(cord.from, cord.to, FindClearPlace(seen, band)) - 0.5 * toe * along;
+  const Vec3 before = tip - kStandOff * math::Normalized(tip - HandOf(hand).Port());
+  TaskAct& reach = Reach(TaskAct::Kind::kReachBand, hand);
+  reach.doing = "reach for " + cord.name;
+  reach.patience = 8.0;
+  reach.p = tip;
+  reach.q = along;
+  ReachPoint(hand, tip, 0.3);
+  TaskAct burn{TaskAct::Kind::kBurnBand, "burn " + cord.name, kMostBurning};
+  burn.hand = hand;
+  burn.object = band;
+  Add(std::move(burn));
+  ReachPoint(hand, before, 0.5);
+}
+
+}  // namespace trocar::agent

@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: Apache-2.0
+// The operation on the built-in patient: what tools do, and whether every careless surgeon is caught.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "connective_tissue.h"
+#include "operation/vessel_map.h"
+#include "operation_harness.h"
+#include "trocar/agent/surgeon.h"
+#include "trocar/anatomy/generate_patient.h"
+#include "trocar/simulation/simulation.h"
+
+namespace trocar::agent {
+
+using math::Vec3;
+using scene::CalcScriptInput;
+using scene::ConnectiveTissue;
+using scene::Event;
+using scene::EventKind;
+using scene::Fibre;
+using scene::FibreEnd;
+using scene::kHandCount;
+using scene::kLeft;
+using scene::kRight;
+using scene::MakeConnectiveTissue;
+using scene::ReadScene;
+using simulation::MakeVesselMap;
+using simulation::Operation;
+using simulation::OperationResult;
+using simulation::OperationScene;
+using simulation::Simulation;
+using simulation::VesselMap;
+using simulation::VesselPlace;
+namespace {
+
+Simulation MakeOperation() {
+  auto made = Simulation::Make(OperationScene(), 1);
+  EXPECT_TRUE(made.ok()) << (made.ok() ? "" : made.error().Text());
+  return std::move(*made);
+}
+
+/// Runs a surgeon to the end, or for that long.
+OperationResult Play(const std::string& name, Simulation& simulation, double most_seconds = 120) {
+  auto surgeon = MakeSurgeon(name, OperationScene(), 1);
+  EXPECT_TRUE(surgeon.ok());
+  while (!(*surgeon)->HasFinished() && simulation.GetSnapshot().time < most_seconds)
+    simulation.Step((*surgeon)->Act(simulation.GetSnapshot()));
+  return *simulation.GetOperationResult();
+}
+
+TEST(ConnectiveTissue, FillsTheTriangleWithThousandsOfFibres) {
+  const anatomy::Patient& patient = OperationScene()->patient;
+  const ConnectiveTissue fat = MakeConnectiveTissue(patient, 0.0022, 1);
+  EXPECT_GT(fat.lobules.size(), 150u);
+  EXPECT_GT(fat.fibres.size(), 1000u);
+  EXPECT_TRUE(
+      std::any_of(fat.fibres.begin(), fat.fibres.end(), [](const Fibre& f) { return f.is_peritoneum; }));
+  for (const Fibre& fibre : fat.fibres) {
+    EXPECT_GT(fibre.length, 0.0);
+    EXPECT_LT(fibre.length, 0.008);
+    ASSERT_EQ(fibre.a.of, FibreEnd::Of::kLobule);
+    ASSERT_LT(fibre.a.which, fat.lobules.size());
+  }
+  // nothing lies in a duct
+  for (const anatomy::Tube& tube : patient.tubes) {
+    for (std::size_t k = 0; k < tube.line.points.size(); ++k) {
+      for (const Vec3& lobule : fat.lobules)
+        ASSERT_GE(math::Distance(lobule, tube.line.points[k]), tube.line.radii[k]);
+    }
+  }
+  const ConnectiveTissue again = MakeConnectiveTissue(patient, 0.0022, 1);
+  EXPECT_EQ(again.lobules, fat.lobules);
+  EXPECT_NE(MakeConnectiveTissue(patient, 0.0022, 2).lobules, fat.lobules);
+}
+
+TEST(ConnectiveTissue, NeedsDucts) {
+  anatomy::Patient patient = OperationScene()->patient;
+  patient.tubes.clear();
+  EXPECT_TRUE(MakeConnectiveTissue(patient, 0.0022, 1).lobules.empty());
+}
+
+TEST(VesselMap, JoinsDuctsAndArteriesAsThePatientHasThem) {
+  auto map = MakeVesselMap(OperationScene()->patient);
+  ASSERT_TRUE(map.ok()) << map.error().Text();
+  ASSERT_TRUE(map->anatomy.liver && map->anatomy.bowel && map->anatomy.aorta && map->anatomy.right_liver);
+  EXPECT_EQ(map->anatomy.gallbladder.size(), 2u) << "cystic duct and cystic artery";
+  ASSERT_EQ(map->gallbladder_ducts.size(), 1u);
+  surgery::VesselActs acts;
+  (void)map->network.Solve(acts);
+  EXPECT_TRUE(map->network.AreConnected(acts, *map->anatomy.liver, *map->anatomy.bowel));
+  EXPECT_TRUE(map->network.AreConnected(acts, *map->anatomy.liver, map->gallbladder_ducts[0]));
+  EXPECT_FALSE(map->network.AreConnected(acts, *map->anatomy.liver, *map->anatomy.aorta));
+
+  // a cut cystic artery bleeds 1 to 2 mL/s (domain facts, section 1.4); a clip upstream stops it
+  const auto& tubes = OperationScene()->patient.tubes;
+  const auto artery =
+      static_cast<std::size_t>(std::find_if(tubes.begin(), tubes.end(),
+                                            [](const auto& tube) { return tube.name == "cystic_artery"; }) -
+                               tubes.begin());
+  const double length = map->arcs[artery].back();
+  const VesselPlace cut = map->Find(artery, 0.6 * length), clip = map->Find(artery, 0.3 * length);
+  EXPECT_EQ(map->anatomy.roles[cut.vessel], training::VesselRole::kCysticArtery);
+  acts.openings.push_back({cut.vessel, cut.position, true, 0.0, {}});
+  const double rate = map->network.Solve(acts).rate[static_cast<std::size_t>(surgery::Fluid::kBlood)];
+  EXPECT_GT(rate, 1.0e-6);
+  EXPECT_LT(rate, 2.0e-6);
+  acts.clips.push_back({clip.vessel, clip.position, 1.0});
+  EXPECT_LT(map->network.Solve(acts).rate[static_cast<std::size_t>(surgery::Fluid::kBlood)], 0.05 * rate);
+}
+
+TEST(Operation, ExchangesToolsButNotWhileHolding) {
+  Simulation simulation = MakeOperation();
+  Input input = CalcScriptInput(*OperationScene(), 0.0);
+  input.controls[kRight].tool = 3;
+  double least_depth = 1;
+  for (int tick = 0; tick < 240; ++tick) {
+    simulation.Step(input);
+    least_depth = std::min(least_depth, simulation.GetSnapshot().instruments[kRight].joints.depth);
+  }
+  EXPECT_EQ(simulation.GetSnapshot().operation.tools[kRight], 3);
+  EXPECT_EQ(OperationScene()->instruments[kRight].tray[3].name, "scissors");
+  EXPECT_LT(least_depth, 0.035) << "it was drawn out";
+  EXPECT_NEAR(simulation.GetSnapshot().instruments[kRight].joints.depth, input.hands[kRight].depth, 1e-6)
+      << "and the next one went in";
+
+  // with the gallbladder in the jaws there is no exchange
+  simulation.Reset();
+  (void)Play("grasps_liver", simulation, 4.0);
+  ASSERT_TRUE(simulation.GetSnapshot().instruments[kLeft].is_grasping);
+  Input held = CalcScriptInput(*OperationScene(), 0.0);
+  for (int hand = 0; hand < kHandCount; ++hand)
+    held.hands[hand] = simulation.GetSnapshot().instruments[hand].joints;
+  held.controls[kLeft].tool = 1;
+  for (int tick = 0; tick < 120; ++tick) simulation.Step(held);
+  EXPECT_EQ(simulation.GetSnapshot().operation.tools[kLeft], 0);
+  const Snapshot& after = simulation.GetSnapshot();
+  EXPECT_TRUE(std::any_of(after.events.begin(), after.events.end(),
+                          [](const Event& event) { return event.kind == EventKind::kExchangeRefused; }));
+}
+
+TEST(Operation, BloodAndBileAreAccountedFor) {
+  Simulation simulation = MakeOperation();
+  const OperationResult result = Play("bleeds", simulation, 30.0);
+  const auto& blood = result.fluids.fluids[static_cast<std::size_t>(surgery::Fluid::kBlood)];
+  EXPECT_GT(blood.left, 10e-6) << "half a minute of an open cystic artery";
+  for (const auto& account : result.fluids.fluids)
+    EXPECT_NEAR(account.left, account.pooled + account.aspirated, 1e-3 * account.left);
+  EXPECT_GT(simulation.GetSnapshot().operation.leak_count, 0u);
+}
+
+TEST(Operation, BeginsAgainAsItBeganAndRepeats) {
+  Simulation simulation = MakeOperation();
+  const std::uint64_t start = simulation.Hash();
+  (void)Play("cuts_unclipped", simulation, 5.0);
+  ASSERT_GT(simulation.GetSnapshot().operation.topology_version, 0u) << "something was cut";
+  const std::uint64_t end = simulation.Hash();
+  simulation.Reset();
+  EXPECT_EQ(simulation.Hash(), start);
+  (void)Play("cuts_unclipped", simulation, 5.0);
+  EXPECT_EQ(simulation.Hash(), end);
+}
+
+// Making the solver anew takes its part of the tick.
+TEST(Operation, ATickThatCutsSolvesHalfAsMuch) {
+  Simulation simulation = MakeOperation();
+  const int most = OperationScene()->settings.solver.max_newton_steps;
+  ASSERT_EQ(most, 3);
+  auto surgeon = MakeSurgeon("cuts_unclipped", OperationScene(), 1);
+  ASSERT_TRUE(surgeon.ok());
+  std::uint32_t topology = 0;
+  int cuts = 0, most_without = 0;
+  while (!(*surgeon)->HasFinished() && simulation.GetSnapshot().time < 5.0) {
+    simulation.Step((*surgeon)->Act(simulation.GetSnapshot()));
+    const Snapshot& seen = simulation.GetSnapshot();
+    if (seen.operation.topology_version == topology) {
+      most_without = std::max(most_without, seen.iterations);
+      continue;
+    }
+    topology = seen.operation.topology_version;
+    ++cuts;
+    EXPECT_LE(seen.iterations, (most + 1) / 2);
+    EXPECT_GT(seen.iterations, 0);
+  }
+  EXPECT_GT(cuts, 0);
+  EXPECT_EQ(most_without, most);
+}
+
+TEST(OperationWhole, AnExpertGoesFromTheFirstLookToTheBag) {
+  Simulation simulation = MakeOperation();
+  const OperationResult result = Play("expert", simulation, 900.0);
+  EXPECT_TRUE(result.is_completed);
+  EXPECT_TRUE(result.was_critical_view_achieved);
+  for (const training::ErrorEntry& error : result.errors.Entries())
+    EXPECT_NE(training::SeverityOf(error.error), training::Severity::kCritical)
+        << training::NameOf(error.error);
+  EXPECT_LT(result.injuries.strasberg, training::Strasberg::kD);
+}
+
+/// Goes through the whole operation before it errs.
+TEST(OperationWhole, WhoLeavesStonesIsCaught) {
+  Simulation simulation = MakeOperation();
+  const OperationResult result = Play("leaves_stones", simulation, 900.0);
+  EXPECT_TRUE(result.is_completed);
+  EXPECT_EQ(result.errors.Count(training::OperationError::kStonesLeft), 1u);
+  EXPECT_GT(result.stones.spilled, 0);
+}
+
+/// Patients from nowhere, with the variants that they are drawn with; figure of the issue: 18 of 20.
+TEST(OperationWhole, AnExpertOperatesOnGeneratedPatients) {
+  constexpr int kPatients = 20, kWanted = 18;
+  int good = 0;
+  std::size_t critical = 0;
+  for (int seed = 1; seed <= kPatients; ++seed) {
+    const auto folder = std::filesystem::path(testing::TempDir()) / ("operated-" + std::to_string(seed));
+    std::filesystem::remove_all(folder);
+    const auto patient = anatomy::GeneratePatient(static_cast<std::uint64_t>(seed));
+    ASSERT_TRUE(patient.ok()) << patient.error().Text();
+    ASSERT_TRUE(anatomy::WritePatient(folder, *patient).ok());
+    auto read = ReadScene(std::filesystem::path(TROCAR_SOURCE_DIR) / "scenes/cholecystectomy.json", folder);
+    ASSERT_TRUE(read.ok()) << read.error().Text();
+    const auto scene = std::make_shared<const Scene>(std::move(*read));
+    auto simulation = Simulation::Make(scene, 1);
+    ASSERT_TRUE(simulation.ok()) << simulation.error().Text();
+    auto surgeon = MakeSurgeon("expert", scene, 1);
+    ASSERT_TRUE(surgeon.ok());
+    while (!(*surgeon)->HasFinished() && simulation->GetSnapshot().time < 900.0)
+      simulation->Step((*surgeon)->Act(simulation->GetSnapshot()));
+    const OperationResult result = *simulation->GetOperationResult();
+    const std::size_t own = result.errors.Count(training::Severity::kCritical);
+    const bool is_good = result.is_completed && result.was_critical_view_achieved && own == 0;
+    std::printf("patient %d: completed %d, critical view %d, critical errors %zu, %.0f s\n", seed,
+                result.is_completed, result.was_critical_view_achieved, own, simulation->GetSnapshot().time);
+    good += is_good ? 1 : 0;
+    critical += own;
+    std::filesystem::remove_all(folder);
+  }
+  EXPECT_GE(good, kWanted);
+  EXPECT_EQ(critical, 0u) << "no expert commits a critical error";
+}
+
+/// Each careless surgeon commits the error that it is listed with.
+class CarelessSurgeon : public testing::TestWithParam<std::string> {};
+
+TEST_P(CarelessSurgeon, IsCaught) {
+  const auto all = ListSurgeons();
+  const auto entry = std::find_if(all.begin(), all.end(), [&](const SurgeonEntry& surgeon) {
+    return surgeon.name == GetParam() && surgeon.suits(*OperationScene());
+  });
+  ASSERT_NE(entry, all.end());
+  Simulation simulation = MakeOperation();
+  const OperationResult result = Play(GetParam(), simulation);
+  std::string found;
+  for (const training::ErrorEntry& error : result.errors.Entries())
+    found += std::string(training::NameOf(error.error)) + " ";
+  EXPECT_NE(found.find(entry->error), std::string::npos) << "found only: " << found;
+}
+
+INSTANTIATE_TEST_SUITE_P(All, CarelessSurgeon,
+                         testing::Values("clips_main_duct", "cuts_main_duct", "burns_main_duct",
+                                         "cuts_unclipped", "clips_early", "too_few_clips", "crosses_clips",
+                                         "clips_partly", "bleeds", "slips_clip", "perforates", "burns_liver",
+                                         "burns_near_duct", "burns_unseen", "burns_air", "drops_clip",
+                                         "grasps_liver", "pulls_hard", "cuts_liver", "inserts_blind"),
+                         [](const auto& surgeon) { return surgeon.param; });
+
+}  // namespace
+}  // namespace trocar::agent

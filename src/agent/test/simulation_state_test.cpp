@@ -1,0 +1,300 @@
+// SPDX-License-Identifier: Apache-2.0
+// A state that was saved goes on to the same bits: in the same simulation, in a fresh one, and whoever looks on or not.
+// The simulation in a process of its own is played by tests/command/state_file_test.cpp.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <memory>
+#include <ostream>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "task_play.h"
+#include "trocar/math/random.h"
+
+namespace trocar::agent {
+
+using scene::CalcScriptInput;
+using scene::ReadScene;
+using simulation::InstrumentSnapshot;
+using simulation::MakeSimulationModel;
+using simulation::OperationSnapshot;
+using simulation::SimulationModel;
+using simulation::StatePart;
+using simulation::StonePlace;
+using simulation::StoneSnapshot;
+namespace {
+
+/// A scene, and who acts in it.
+struct Course {
+  std::string name;     ///< of a delivered task, or of a scene file
+  std::string surgeon;  ///< "" for the scene's script
+  int ticks = 0;        ///< at most
+  int points = 0;       ///< random ticks at which it is saved
+  bool at_events = true;
+};
+
+void PrintTo(const Course& course, std::ostream* out) {
+  *out << course.name << " " << course.surgeon;
+}
+
+constexpr int kGoesOn = 240;  // ticks after a point
+
+std::shared_ptr<const Scene> ReadCourse(const Course& course) {
+  const auto file = std::filesystem::path(TROCAR_SOURCE_DIR) / "scenes" / (course.name + ".json");
+  if (!std::filesystem::exists(file)) return ReadDelivered(course.name);
+  auto scene = ReadScene(file);
+  EXPECT_TRUE(scene.ok()) << scene.error().Text();
+  return std::make_shared<const Scene>(std::move(*scene));
+}
+
+/// Cuts, clips, stones, things taken: where a state is the least like the one of before.
+std::uint64_t CountEvents(const Snapshot& snapshot) {
+  const OperationSnapshot& operation = snapshot.operation;
+  std::uint64_t count = operation.topology_version + operation.clip_count + snapshot.task.error_count;
+  for (const StoneSnapshot& stone : operation.stones) count += stone.place != StonePlace::kInside ? 1 : 0;
+  for (const InstrumentSnapshot& tool : snapshot.instruments) count += tool.is_grasping ? 1 : 0;
+  return count;
+}
+
+struct Point {
+  std::size_t tick = 0;
+  std::vector<std::byte> bytes;
+  std::uint64_t hash = 0, hash_after = 0;
+};
+
+/// One course with its inputs, and the states on its way.
+struct Recording {
+  std::shared_ptr<const SimulationModel> model;
+  std::vector<Input> inputs;
+  std::vector<Point> points;
+};
+
+Recording Record(const Course& course, std::shared_ptr<const Scene> scene) {
+  Recording recording;
+  auto model = MakeSimulationModel(scene);
+  EXPECT_TRUE(model.ok()) << model.error().Text();
+  recording.model = *model;
+  Simulation simulation = std::move(*Simulation::Make(recording.model, 1));
+  std::unique_ptr<Surgeon> surgeon;
+  if (!course.surgeon.empty()) surgeon = std::move(*MakeSurgeon(course.surgeon, scene, 1));
+  math::Random random(std::hash<std::string>()(course.name));
+  std::set<std::size_t> chosen;
+  for (int i = 0; i < course.points; ++i)
+    chosen.insert(static_cast<std::size_t>(random.Uniform(0.0, 1.0) * course.ticks));
+  std::uint64_t events = 0, events_saved = 0;
+  std::map<std::size_t, std::size_t> ends;  // tick to point
+  for (std::size_t tick = 0; tick < static_cast<std::size_t>(course.ticks + kGoesOn); ++tick) {
+    if (const auto end = ends.find(tick); end != ends.end())
+      recording.points[end->second].hash_after = simulation.Hash();
+    const Snapshot& seen = simulation.GetSnapshot();
+    const bool is_event = course.at_events && CountEvents(seen) != events && events_saved < 12;
+    events = CountEvents(seen);
+    if (is_event) ++events_saved;
+    const bool is_over = surgeon != nullptr && surgeon->HasFinished();
+    const bool has_time = tick < static_cast<std::size_t>(course.ticks);
+    if ((chosen.count(tick) != 0 || is_event) && has_time && !is_over) {
+      ends[tick + kGoesOn] = recording.points.size();
+      Point& point = recording.points.emplace_back();
+      point.tick = tick;
+      simulation.Save(point.bytes);
+      point.hash = simulation.Hash();
+    }
+    const Input input =
+        surgeon != nullptr ? surgeon->Act(seen) : CalcScriptInput(simulation.GetScene(), seen.time);
+    recording.inputs.push_back(input);
+    simulation.Step(input);
+  }
+  return recording;
+}
+
+void GoOn(const Recording& recording, const Point& point, Simulation& simulation) {
+  for (std::size_t tick = point.tick; tick < point.tick + kGoesOn; ++tick)
+    simulation.Step(recording.inputs[tick]);
+}
+
+void CheckCourse(const Course& course) {
+  const auto scene = ReadCourse(course);
+  const Recording recording = Record(course, scene);
+  ASSERT_GE(recording.points.size(), 2U) << course.name;
+  Simulation used = std::move(*Simulation::Make(recording.model, 2));
+  // backwards, so that every state is one of another past
+  for (std::size_t i = recording.points.size(); i-- > 0;) {
+    const Point& point = recording.points[i];
+    Simulation fresh = std::move(*Simulation::Make(recording.model, 1));
+    for (Simulation* simulation : {&used, &fresh}) {
+      const core::Status restored = simulation->Restore(point.bytes);
+      ASSERT_TRUE(restored.ok()) << restored.error().Text();
+      ASSERT_EQ(simulation->Hash(), point.hash) << course.name << ", tick " << point.tick;
+      GoOn(recording, point, *simulation);
+      ASSERT_EQ(simulation->Hash(), point.hash_after)
+          << course.name << ", " << kGoesOn << " ticks after tick " << point.tick
+          << (simulation == &fresh ? ", in a fresh simulation" : "");
+    }
+  }
+}
+
+class SimulationState : public testing::TestWithParam<Course> {};
+TEST_P(SimulationState, GoesOnToTheSameBits) {
+  CheckCourse(GetParam());
+}
+std::string NameOf(const testing::TestParamInfo<Course>& info) {
+  return info.param.name + (info.param.surgeon.empty() ? "" : "_" + info.param.surgeon);
+}
+INSTANTIATE_TEST_SUITE_P(Scenes, SimulationState,
+                         testing::Values(Course{"retraction", "", 700, 2},
+                                         Course{"demonstration", "", 700, 2}, Course{"tearing", "", 500, 2},
+                                         Course{"cholecystectomy", "", 120, 2}),
+                         NameOf);
+INSTANTIATE_TEST_SUITE_P(Tasks, SimulationState,
+                         testing::Values(Course{"camera_navigation_0", "expert", 900, 3},
+                                         Course{"camera_navigation_30", "expert", 900, 3},
+                                         Course{"clip_and_cut", "crosses_clips", 1700, 3},
+                                         Course{"hook_dissection", "expert", 1000, 3},
+                                         Course{"instrument_navigation", "clashes", 900, 3},
+                                         Course{"lift_and_grasp", "drops", 1200, 3},
+                                         Course{"object_transport", "pulls_apart", 1200, 3},
+                                         Course{"pattern_cut", "expert", 2000, 3},
+                                         Course{"peg_transfer", "expert", 1500, 3},
+                                         Course{"wire_run", "touches_wire", 1200, 3}),
+                         NameOf);
+
+class SimulationStateSlow : public testing::TestWithParam<Course> {};
+TEST_P(SimulationStateSlow, GoesOnToTheSameBits) {
+  CheckCourse(GetParam());
+}
+INSTANTIATE_TEST_SUITE_P(
+    Courses, SimulationStateSlow,
+    testing::Values(
+        Course{"retraction", "", 6000, 20}, Course{"demonstration", "", 2000, 20},
+        Course{"tearing", "", 1500, 20}, Course{"cholecystectomy", "expert", 40'000, 20},
+        Course{"cholecystectomy", "leaves_stones", 60'000, 20},
+        Course{"camera_navigation_0", "expert", 1600, 20}, Course{"camera_navigation_30", "expert", 1600, 20},
+        Course{"clip_and_cut", "expert", 1800, 20}, Course{"hook_dissection", "burns_spared", 1100, 20},
+        Course{"instrument_navigation", "expert", 2400, 20}, Course{"lift_and_grasp", "expert", 4000, 20},
+        Course{"object_transport", "expert", 4000, 20}, Course{"pattern_cut", "cuts_aside", 2200, 20},
+        Course{"peg_transfer", "loses", 9000, 20}, Course{"wire_run", "expert", 4000, 20}),
+    NameOf);
+
+/// Fields of one name, as those of all organs, are one.
+std::map<std::string, std::uint64_t> HashByField(const Simulation& simulation) {
+  std::map<std::string, std::uint64_t> fields;
+  for (const auto& [field, hash] : simulation.HashFields()) {
+    core::StateHash both;
+    both.Add(fields[field]);
+    both.Add(hash);
+    fields[field] = both.Value();
+  }
+  return fields;
+}
+
+// Control: without any one of its fields a restored state is another one.
+TEST(SimulationStateFields, EachIsNeeded) {
+  std::set<std::string> all, needed;
+  for (const Course& course :
+       {Course{"pattern_cut", "expert", 1600, 2}, Course{"clip_and_cut", "crosses_clips", 1500, 1},
+        Course{"hook_dissection", "expert", 900, 1}, Course{"peg_transfer", "expert", 700, 1},
+        Course{"retraction", "", 400, 1}}) {
+    const Recording recording = Record(course, ReadCourse(course));
+    ASSERT_FALSE(recording.points.empty());
+    const Point& point = recording.points.back();
+    Simulation fresh = std::move(*Simulation::Make(recording.model, 1));
+    const std::map<std::string, std::uint64_t> at_start = HashByField(fresh);
+    ASSERT_TRUE(fresh.Restore(point.bytes).ok());
+    std::set<std::string> differ;
+    for (const auto& [field, hash] : HashByField(fresh)) {
+      all.insert(field);
+      const auto before = at_start.find(field);
+      if (before == at_start.end() || before->second != hash) differ.insert(field);
+    }
+    for (const std::string& field : differ) {
+      if (needed.count(field) != 0) continue;
+      fresh.Reset();
+      // what does not fit the rest is refused, which is as good
+      const core::Status restored = fresh.RestoreWithout(point.bytes, field);
+      EXPECT_TRUE(!restored.ok() || fresh.Hash() != point.hash) << course.name << ": " << field;
+      needed.insert(field);
+    }
+  }
+  // those that these courses leave as they begin are played by the slow tests alone
+  EXPECT_GT(needed.size(), all.size() / 2) << needed.size() << " of " << all.size();
+}
+
+// Judging, publishing and task rules change nothing of the world.
+TEST(SimulationWorld, IsTheSameWithoutThoseWhoLook) {
+  for (const Course& course :
+       {Course{"pattern_cut", "expert", 1200, 1}, Course{"clip_and_cut", "crosses_clips", 1200, 1},
+        Course{"peg_transfer", "expert", 600, 1}}) {
+    const Recording recording = Record(course, ReadCourse(course));
+    Simulation judged = std::move(*Simulation::Make(recording.model, 1));
+    Simulation alone = std::move(*Simulation::Make(recording.model, 1));
+    for (const Input& input : recording.inputs) {
+      judged.Step(input);
+      alone.StepWorld(input);
+    }
+    EXPECT_EQ(alone.Hash(StatePart::kWorld), judged.Hash(StatePart::kWorld)) << course.name;
+    EXPECT_NE(alone.Hash(), judged.Hash()) << course.name << ": the control; nothing was judged";
+  }
+}
+
+TEST(SimulationStateBytes, RefusesWhatIsDamagedOrOfAnotherModel) {
+  const auto scene = ReadDelivered("hook_dissection");
+  Simulation simulation = std::move(*Simulation::Make(scene, 1));
+  std::vector<std::byte> bytes;
+  simulation.Save(bytes);
+  const std::uint64_t hash = simulation.Hash();
+  const auto refuses = [&](std::span<const std::byte> damaged) {
+    const core::Status restored = simulation.Restore(damaged);
+    return !restored.ok() && restored.error().code == core::ErrorCode::kStateInvalid;
+  };
+  for (std::size_t length = 0; length < bytes.size(); length += 1 + bytes.size() / 97)
+    EXPECT_TRUE(refuses(std::span(bytes).first(length))) << length;
+  for (std::size_t at = 0; at < bytes.size(); at += 1 + bytes.size() / 101) {
+    bytes[at] ^= std::byte{0x10};
+    EXPECT_TRUE(refuses(bytes)) << "byte " << at;
+    bytes[at] ^= std::byte{0x10};
+  }
+  std::vector<std::byte> longer = bytes;
+  longer.push_back({});
+  EXPECT_TRUE(refuses(longer));
+  Simulation other = std::move(*Simulation::Make(ReadDelivered("clip_and_cut"), 1));
+  EXPECT_FALSE(other.Restore(bytes).ok());
+  EXPECT_EQ(simulation.Hash(), hash) << "what was refused has changed nothing";
+  EXPECT_TRUE(simulation.Restore(bytes).ok());
+}
+
+std::size_t ResidentBytes() {
+  std::ifstream file("/proc/self/statm");
+  std::size_t pages = 0, resident = 0;
+  file >> pages >> resident;
+  return resident * 4096;
+}
+
+// One more simulation of a model adds its state and scratch alone.
+TEST(SimulationModelMemory, IsShared) {
+  const auto scene = ReadCourse({"cholecystectomy", "", 0, 0});
+  auto model = MakeSimulationModel(scene);
+  ASSERT_TRUE(model.ok());
+  std::vector<Simulation> simulations;
+  simulations.push_back(std::move(*Simulation::Make(*model, 1)));
+  const std::size_t before = ResidentBytes();
+  constexpr std::size_t kMore = 8;
+  for (std::size_t i = 0; i < kMore; ++i) simulations.push_back(std::move(*Simulation::Make(*model, 1)));
+  const double each_mb = static_cast<double>(ResidentBytes() - before) / kMore * 1e-6;
+  std::vector<std::byte> bytes;
+  simulations.back().Save(bytes);
+  RecordProperty("mb_each", std::to_string(each_mb));
+  RecordProperty("state_bytes", std::to_string(bytes.size()));
+  EXPECT_LT(each_mb, 50.0);
+  EXPECT_LT(bytes.size(), 5'000'000U);
+  EXPECT_EQ(&simulations.front().Surfaces()[0], &simulations.back().Surfaces()[0]);
+}
+
+}  // namespace
+}  // namespace trocar::agent

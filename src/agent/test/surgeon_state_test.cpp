@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: Apache-2.0
+// A surgeon whose memory was saved and restored into a new one goes on as if nothing had happened.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <memory>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "cholecystectomy_surgeon.h"
+#include "operation_harness.h"
+#include "task_play.h"
+#include "task_surgeon.h"
+#include "trocar/math/random.h"
+#include "trocar/simulation/simulation.h"
+
+namespace trocar::agent {
+
+using simulation::OperationScene;
+namespace {
+
+using testing::IsEmpty;
+
+std::vector<std::byte> Save(Surgeon& surgeon) {
+  std::vector<std::byte> bytes;
+  core::StateArchive archive = core::StateArchive::ForSave(bytes);
+  surgeon.VisitState(archive);
+  EXPECT_TRUE(archive.ok()) << archive.Failure();
+  return bytes;
+}
+
+/// \param omitted  path of a field that keeps its value, or ""
+void Restore(Surgeon& surgeon, const std::vector<std::byte>& bytes, const std::string& omitted = {}) {
+  core::StateArchive archive = core::StateArchive::ForRestore(bytes);
+  archive.Omit(omitted);
+  surgeon.VisitState(archive);
+  ASSERT_TRUE(archive.ok()) << archive.Failure();
+  EXPECT_TRUE(archive.IsAtEnd());
+}
+
+std::set<std::string> FieldsOf(Surgeon& surgeon) {
+  std::set<std::string> paths;
+  core::StateHash hash;
+  core::StateArchive archive = core::StateArchive::ForHash(hash);
+  archive.Trace([&](const std::string& path, std::uint64_t) { paths.insert(path); });
+  surgeon.VisitState(archive);
+  return paths;
+}
+
+/// Without a field, another surgeon comes of it within this time [ticks].
+constexpr int kWatchedTicks = 1200;
+
+/// Which fields were there, and without which of them another surgeon would have come of it.
+struct Fields {
+  std::set<std::string> all, decisive;
+};
+
+/// One that follows the played surgeon's eyes, from a tick on.
+template <typename T>
+struct Follower {
+  std::unique_ptr<T> surgeon;
+  std::string omitted;  ///< "": it must do the same
+  int last_tick = 0;    ///< until which it is watched
+};
+
+/// Lets `make()` operate, and at each tick of `at` restores followers: one whole, and one without each field.
+template <typename T>
+void PlayWithFollowers(const std::shared_ptr<const Scene>& scene, const T& fresh, const std::set<int>& at,
+                       int most_ticks, Fields& fields) {
+  auto simulation = Simulation::Make(scene, 1);
+  ASSERT_TRUE(simulation.ok()) << simulation.error().Text();
+  T surgeon(fresh);
+  std::vector<Follower<T>> followers;
+  for (int tick = 0; tick < most_ticks && !surgeon.HasFinished(); ++tick) {
+    if (at.contains(tick)) {
+      const std::vector<std::byte> bytes = Save(surgeon);
+      const std::set<std::string> paths = FieldsOf(surgeon);
+      fields.all.insert(paths.begin(), paths.end());
+      followers.push_back({std::make_unique<T>(fresh), "", most_ticks});
+      Restore(*followers.back().surgeon, bytes);
+      ASSERT_EQ(Save(*followers.back().surgeon), bytes);
+      for (const std::string& path : paths) {
+        if (fields.decisive.contains(path)) continue;
+        followers.push_back({std::make_unique<T>(fresh), path, tick + kWatchedTicks});
+        Restore(*followers.back().surgeon, bytes, path);
+      }
+    }
+    const Snapshot& seen = simulation->GetSnapshot();
+    const Input input = surgeon.Act(seen);
+    std::erase_if(followers, [&](const Follower<T>& follower) {
+      const bool is_same = follower.surgeon->Act(seen) == input &&
+                           follower.surgeon->Doing() == surgeon.Doing() &&
+                           follower.surgeon->HasFinished() == surgeon.HasFinished();
+      EXPECT_TRUE(is_same || !follower.omitted.empty()) << "tick " << tick << ", " << surgeon.Doing();
+      if (!is_same) fields.decisive.insert(follower.omitted);
+      return !is_same || tick >= follower.last_tick || fields.decisive.contains(follower.omitted);
+    });
+    ASSERT_FALSE(testing::Test::HasFailure());
+    simulation->Step(input);
+  }
+}
+
+std::set<int> RandomTicks(std::uint64_t seed, int count, int below) {
+  math::Random random(seed);
+  std::set<int> ticks;
+  while (static_cast<int>(ticks.size()) < count)
+    ticks.insert(static_cast<int>(random.Uniform(1.0, static_cast<double>(below))));
+  return ticks;
+}
+
+constexpr const char* kTasks[] = {"camera_navigation_30",  "clip_and_cut",   "hook_dissection",
+                                  "instrument_navigation", "lift_and_grasp", "object_transport",
+                                  "pattern_cut",           "peg_transfer",   "wire_run"};
+
+SurgeonSkill Unsteady() {
+  SurgeonSkill skill;
+  skill.hand.aim_error = 0.0008;
+  skill.pause = 0.4;
+  skill.miss_share = 0.35;
+  return skill;
+}
+
+class TaskMemory : public testing::TestWithParam<const char*> {};
+
+TEST_P(TaskMemory, GoesOnAfterRestoring) {
+  const auto scene = ReadDelivered(GetParam());
+  for (const SurgeonEntry& entry : ListSurgeons()) {
+    if (!entry.suits(*scene)) continue;
+    SCOPED_TRACE(entry.name);
+    const std::unique_ptr<Surgeon> made = entry.make(scene, 3);
+    const auto& fresh = dynamic_cast<const TaskSurgeon&>(*made);
+    Fields fields;
+    PlayWithFollowers(scene, fresh, RandomTicks(7, 3, 3000), 3600, fields);
+    if (HasFatalFailure() || HasFailure()) return;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Tasks, TaskMemory, testing::ValuesIn(kTasks),
+                         [](const auto& task) { return std::string(task.param); });
+
+// Negative control: what is left out is missed in one task or another.
+TEST(SurgeonMemory, EveryFieldOfATaskSurgeonIsNeeded) {
+  Fields fields;
+  for (const char* task : kTasks) {
+    const auto scene = ReadDelivered(task);
+    for (const ErrorScenario scenario : {ErrorScenario::kNone, ErrorScenario::kLeavesView}) {
+      const TaskSurgeon fresh(scene, Unsteady(), scenario, 5);
+      PlayWithFollowers(scene, fresh, RandomTicks(11, 24, 4000), 12000, fields);
+      ASSERT_FALSE(HasFailure());
+    }
+  }
+  std::set<std::string> idle;
+  for (const std::string& path : fields.all) {
+    if (!fields.decisive.contains(path)) idle.insert(path);
+  }
+  EXPECT_THAT(idle, IsEmpty());
+}
+
+class OperationMemory : public testing::TestWithParam<OperationErrorScenario> {};
+
+TEST_P(OperationMemory, GoesOnAfterRestoring) {
+  const CholecystectomySurgeon fresh(OperationScene(), Unsteady(), GetParam(), 3);
+  Fields fields;
+  PlayWithFollowers(OperationScene(), fresh, RandomTicks(13, 3, 500), 700, fields);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Scenarios, OperationMemory,
+    testing::Values(OperationErrorScenario::kNone, OperationErrorScenario::kClipsMainDuct,
+                    OperationErrorScenario::kCutsUnclipped, OperationErrorScenario::kPerforates,
+                    OperationErrorScenario::kGraspsLiver, OperationErrorScenario::kPullsHard,
+                    OperationErrorScenario::kCutsLiver, OperationErrorScenario::kInsertsBlind));
+
+/// What a whole operation shows of its surgeon's memory.
+TEST(OperatorMemoryWhole, EveryFieldOfTheOperatorIsNeeded) {
+  const CholecystectomySurgeon fresh(OperationScene(), SurgeonSkill{}, OperationErrorScenario::kNone, 1);
+  Fields fields;
+  PlayWithFollowers(OperationScene(), fresh, RandomTicks(17, 40, 50000), 72000, fields);
+  std::string idle;
+  for (const std::string& path : fields.all) {
+    if (!fields.decisive.contains(path)) idle += path + " ";
+  }
+  EXPECT_EQ(idle, "") << "of " << fields.all.size();
+}
+
+}  // namespace
+}  // namespace trocar::agent

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+#include "trocar/scene/scene.h"
+
+namespace trocar::scene {
+namespace fs = std::filesystem;
+
+core::Result<fs::path> FindDataFolder() {
+  std::vector<fs::path> places;
+  if (const char* named = std::getenv("TROCAR_DATA_DIR"); named != nullptr && *named != '\0') {
+    places.emplace_back(named);  // whoever names a folder wants that one
+  } else {
+    std::error_code failure;
+    const fs::path program = fs::read_symlink("/proc/self/exe", failure);
+    if (!failure) {
+      places.push_back(program.parent_path() / "../share/trocar");
+      places.push_back(program.parent_path());
+    }
+    places.emplace_back(TROCAR_SOURCE_TREE);
+  }
+  std::string tried;
+  for (const fs::path& place : places) {
+    std::error_code failure;
+    if (fs::is_directory(place / "assets", failure) && fs::is_directory(place / "scenes", failure)) {
+      return fs::weakly_canonical(place);
+    }
+    tried += (tried.empty() ? "" : ", ") + place.string();
+  }
+  return core::Error{core::ErrorCode::kFileMissing, "no folder with assets/ and scenes/ was found (tried " +
+                                                        tried + "); set TROCAR_DATA_DIR to it"};
+}
+
+}  // namespace trocar::scene

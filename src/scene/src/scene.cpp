@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/scene/scene.h"
+
+#include <cmath>
+#include <string>
+
+#include "field_ranges.h"
+#include "material_file.h"
+#include "scene_objects.h"
+#include "scene_reader.h"
+#include "script.h"
+#include "tissue_model_file.h"
+#include "trocar/core/json.h"
+
+namespace trocar::scene {
+namespace {
+
+constexpr double kDegree = M_PI / 180.0;
+
+/// A landmark with an offset, or a point: {"at": "fundus", "offset_mm": [0, 0, 10]}, {"at_mm": [0, 40, -120]}.
+Vec3 ReadTarget(const core::JsonView& view, std::string_view key, const anatomy::Patient& patient) {
+  const core::JsonView target = view.Object(key);
+  target.AllowOnly({"at", "offset_mm", "at_mm"});
+  if (target.Has("at_mm")) return ReadPointMm(target, "at_mm");
+  const std::string name = target.Text("at");
+  const anatomy::Landmark* landmark = patient.FindLandmark(name);
+  if (landmark == nullptr) {
+    target.Complain(patient.landmarks.empty()
+                        ? "a scene without a patient has no landmarks; say where with at_mm: [x, y, z]"
+                        : "there is no landmark \"" + name + "\" in the patient",
+                    core::ErrorCode::kUnknownName);
+    return {};
+  }
+  return landmark->position +
+         (target.Has("offset_mm") ? ReadPointMm(target, "offset_mm", range::kOffsetMm) : Vec3{});
+}
+
+void ReadInstrument(const core::JsonView& root, const char* hand, const anatomy::Patient& patient,
+                    InstrumentSetup& setup) {
+  const core::JsonView view = root.Object("instruments").Object(hand);
+  view.AllowOnly({"tool", "tray", "port_mm", "tip", "spin_deg", "jaw_deg"});
+  const auto add = [&](const std::string& name) {
+    if (const instrument::Tool* tool = instrument::FindTool(name); tool != nullptr) {
+      setup.tray.push_back(*tool);
+    } else {
+      view.Complain(
+          "there is no tool \"" + name +
+              "\"; known are grasper, maryland, hook, scissors, clip_applier, suction_irrigator and bag",
+          core::ErrorCode::kUnknownName);
+    }
+  };
+  add(view.Text("tool"));
+  if (view.Has("tray")) {
+    for (const core::JsonView& name : view.Array("tray")) add(name.AsText());
+  }
+  if (!setup.tray.empty()) setup.tool = setup.tray.front();
+  setup.p_world_port = ReadPointMm(view, "port_mm");
+  setup.home = instrument::FindJoints(setup.p_world_port, ReadTarget(view, "tip", patient),
+                                      view.NumberOr("spin_deg", 0.0, range::kTurnDeg) * kDegree,
+                                      view.NumberOr("jaw_deg", 0.0, range::kJawDeg) * kDegree);
+}
+
+void ReadOperation(const core::JsonView& root, const anatomy::Patient& patient, Scene& scene) {
+  if (!root.Has("operation")) return;
+  const core::JsonView view = root.Object("operation");
+  view.AllowOnly({"fat_spacing_mm", "assistant", "gallstones"});
+  OperationSetup setup;
+  setup.fat_spacing = 0.001 * view.NumberOr("fat_spacing_mm", 1e3 * setup.fat_spacing, range::kFatSpacingMm);
+  if (setup.fat_spacing > 0.0 && setup.fat_spacing < 0.0015)
+    view.Complain("fat_spacing_mm must be 0, for none, or at least 1.5");
+  if (view.Has("gallstones")) {
+    const core::JsonView stones = view.Object("gallstones");
+    stones.AllowOnly({"count", "median_diameter_mm"});
+    setup.gallstones.count = stones.Integer("count", {0, surgery::kMostGallstones});
+    setup.gallstones.median_diameter =
+        0.001 * stones.NumberOr("median_diameter_mm", 1e3 * setup.gallstones.median_diameter,
+                                range::kGallstoneDiameterMm);
+  }
+  if (patient.tubes.empty())
+    view.Complain(
+        "the patient has no ducts; an operation needs them: place a template with trocar anatomy edit");
+  if (view.Has("assistant")) {
+    const core::JsonView hand = view.Object("assistant");
+    hand.AllowOnly({"port_mm", "at", "lift_mm"});
+    AssistantSetup assistant;
+    assistant.tool = *instrument::FindTool("grasper");
+    assistant.p_world_port = ReadPointMm(hand, "port_mm");
+    assistant.landmark = hand.Text("at");
+    assistant.lift = ReadPointMm(hand, "lift_mm", range::kOffsetMm);
+    if (patient.FindLandmark(assistant.landmark) == nullptr)
+      hand.Complain("there is no landmark \"" + assistant.landmark + "\" in the patient",
+                    core::ErrorCode::kUnknownName);
+    setup.assistant = std::move(assistant);
+  }
+  scene.operation = std::move(setup);
+}
+
+void ReadLaparoscope(const core::JsonView& root, const anatomy::Patient& patient, LaparoscopeSetup& setup,
+                     LiveSettings& settings) {
+  const core::JsonView view = root.Object("laparoscope");
+  view.AllowOnly({"port_mm", "target", "depth_mm", "view_angle_deg", "post_deg", "field_of_view_deg",
+                  "look_at_target", "holder"});
+  const std::string holder = view.TextOr("holder", "trainee");
+  if (holder != "trainee" && holder != "automatic")
+    view.Complain("holder must be trainee or automatic, not \"" + holder + "\"",
+                  core::ErrorCode::kUnknownName);
+  settings.holds_camera = holder == "automatic";
+  setup.p_world_port = ReadPointMm(view, "port_mm");
+  setup.home = instrument::FindJoints(setup.p_world_port, ReadTarget(view, "target", patient),
+                                      view.NumberOr("post_deg", 0.0, range::kTurnDeg) * kDegree, 0.0);
+  setup.home.depth = 0.001 * view.Number("depth_mm", range::kLaparoscopeDepthMm);
+  setup.view_angle = view.NumberOr("view_angle_deg", 0.0, range::kViewAngleDeg) * kDegree;
+  setup.field_of_view = view.NumberOr("field_of_view_deg", 75.0, range::kFieldOfViewDeg) * kDegree;
+  if (!view.BooleanOr("look_at_target", false)) return;
+  ViewRequest request;
+  request.p_world = ReadTarget(view, "target", patient);
+  request.distance = std::max(0.02, math::Distance(request.p_world, setup.p_world_port) - setup.home.depth);
+  if (const auto found = FindView(setup, request)) setup.home = *found;
+}
+
+/// Complains where two of the ports are one hole: no two shafts pass it, and no surgeon would place them so.
+void CheckPorts(const core::JsonView& root, const Scene& scene) {
+  struct Port {
+    const char* name;
+    Vec3 p_world;
+  };
+  std::vector<Port> ports = {{"the left instrument", scene.instruments[kLeft].p_world_port},
+                             {"the right instrument", scene.instruments[kRight].p_world_port},
+                             {"the laparoscope", scene.laparoscope.p_world_port}};
+  if (scene.operation && scene.operation->assistant)
+    ports.push_back({"the assistant", scene.operation->assistant->p_world_port});
+  for (std::size_t i = 0; i < ports.size(); ++i) {
+    for (std::size_t j = i + 1; j < ports.size(); ++j) {
+      if (math::Distance(ports[i].p_world, ports[j].p_world) >= 0.001 * range::kLeastPortDistanceMm) continue;
+      root.Complain(std::string(ports[i].name) + " and " + ports[j].name +
+                        " have their ports in one place; keep port_mm at least 5 mm apart",
+                    core::ErrorCode::kSceneInvalid);
+      return;
+    }
+  }
+}
+
+void ReadSettings(const core::JsonView& root, LiveSettings& settings) {
+  if (!root.Has("settings")) return;
+  const core::JsonView view = root.Object("settings");
+  view.AllowOnly({"stiffness_scale", "shape_scale", "gravity_m_s2", "head_up_deg", "right_up_deg", "solver",
+                  "max_iterations", "tolerance", "max_error", "max_newton_steps", "max_linear_total",
+                  "follow_snap_through"});
+  settings.stiffness_scale =
+      view.NumberOr("stiffness_scale", settings.stiffness_scale, range::kStiffnessScale);
+  settings.shape_scale = view.NumberOr("shape_scale", settings.shape_scale, range::kShapeScale);
+  settings.gravity = view.NumberOr("gravity_m_s2", settings.gravity, range::kGravity);
+  settings.head_up = view.NumberOr("head_up_deg", 0.0, range::kTiltDeg) * kDegree;
+  settings.right_up = view.NumberOr("right_up_deg", 0.0, range::kTiltDeg) * kDegree;
+  settings.solver.max_iterations =
+      view.IntegerOr("max_iterations", settings.solver.max_iterations, range::kMaxIterations);
+  settings.solver.tolerance = view.NumberOr("tolerance", settings.solver.tolerance, range::kTolerance);
+  settings.solver.max_error = view.NumberOr("max_error", settings.solver.max_error, range::kMaxError);
+  settings.solver.max_newton_steps =
+      view.IntegerOr("max_newton_steps", settings.solver.max_newton_steps, range::kMaxNewtonSteps);
+  settings.solver.max_linear_total =
+      view.IntegerOr("max_linear_total", settings.solver.max_linear_total, range::kMaxLinearTotal);
+  settings.solver.follows_snap_through =
+      view.BooleanOr("follow_snap_through", settings.solver.follows_snap_through);
+  const std::string solver = view.TextOr("solver", "adaptive");
+  if (const auto kind = tissue::FindSolverKind(solver); kind) {
+    settings.solver.kind = *kind;
+  } else {
+    std::string names;
+    for (const auto known : tissue::kSolverKinds)
+      names += (names.empty() ? "" : ", ") + std::string(tissue::SolverName(known));
+    view.Complain("there is no solver \"" + solver + "\"; known are " + names, core::ErrorCode::kUnknownName);
+  }
+}
+
+}  // namespace
+
+core::Result<Scene> ReadSceneFields(const core::JsonDocument& document, const core::JsonView& view,
+                                    const std::filesystem::path& folder,
+                                    const std::filesystem::path& patient_folder) {
+  view.AllowOnly({"format", "version", "name", "about", "patient", "tick_hz", "seed", "settings", "materials",
+                  "instruments", "laparoscope", "script", "operation", "objects", "model"});
+  Scene scene;
+  scene.name = view.TextOr("name", "");
+  scene.tick_seconds = 1.0 / view.NumberOr("tick_hz", 120.0, range::kTickHz);
+  scene.seed = static_cast<std::uint64_t>(view.IntegerOr("seed", 0, range::kSeed));
+  if (view.Has("objects")) scene.objects = ReadObjects(view, "objects");
+  // what needs no patient may have no patient
+  const bool has_patient = (scene.objects.empty() && !view.Has("model")) || view.Has("patient");
+  const std::string own_patient = has_patient ? view.Text("patient") : "";
+  if (!has_patient && !patient_folder.empty())
+    view.Complain("is without a patient, so none can take its place", core::ErrorCode::kSceneInvalid);
+  if (view.Has("model")) {
+    if (view.Has("patient") || view.Has("operation"))
+      view.Complain("a model takes the place of patient and operation; leave them out",
+                    core::ErrorCode::kSceneInvalid);
+    if (scene.objects.empty())
+      view.Complain("a model stands among objects, at least on a board", core::ErrorCode::kSceneInvalid);
+    ReadTissueModel(view.Object("model"), scene);
+  }
+  if (const auto status = document.Check(); !status.ok()) return status.error();
+
+  if (has_patient) {
+    scene.patient_folder = patient_folder.empty() ? folder / own_patient : patient_folder;
+    auto patient = anatomy::ReadPatient(scene.patient_folder);
+    if (!patient.ok()) return patient.error();
+    scene.patient = std::move(*patient);
+  }
+  if (has_patient || view.Has("materials")) {
+    auto materials = ReadMaterials(view, folder);
+    if (!materials.ok()) return materials.error();
+    scene.materials = std::move(*materials);
+  }
+  ReadSettings(view, scene.settings);
+  view.Object("instruments").AllowOnly({"left", "right"});
+  ReadInstrument(view, "left", scene.patient, scene.instruments[kLeft]);
+  ReadInstrument(view, "right", scene.patient, scene.instruments[kRight]);
+  ReadLaparoscope(view, scene.patient, scene.laparoscope, scene.settings);
+  ReadOperation(view, scene.patient, scene);
+  CheckPorts(view, scene);
+  const std::string script = view.TextOr("script", "");
+  if (const auto status = document.Check(); !status.ok()) return status.error();
+  if (!script.empty()) {
+    auto read = ReadScript(folder / script, scene.patient);
+    if (!read.ok()) return read.error();
+    scene.script = std::move(*read);
+  }
+  return scene;
+}
+
+core::Result<Scene> ReadScene(const std::filesystem::path& path,
+                              const std::filesystem::path& patient_folder) {
+  auto document = core::JsonDocument::Read(path);
+  if (!document.ok()) return document.error();
+  const core::JsonView root = document->Root();
+  const std::string format = root.Text("format");
+  if (format == "trocar-task") return ReadTask(path, {.patient_folder = patient_folder});
+  if (format != "trocar-scene") root.Complain("format must be \"trocar-scene\" (or \"trocar-task\")");
+  if (root.Integer("version") != 1) root.Complain("version must be 1");
+  if (root.Text("name").empty()) root.Complain("the scene needs a name");
+  return ReadSceneFields(*document, root, path.parent_path(), patient_folder);
+}
+
+}  // namespace trocar::scene

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene_objects.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+namespace trocar::scene {
+namespace {
+
+using math::Vec3;
+using surgery::RigidShape;
+
+constexpr double kDegree = M_PI / 180.0;
+constexpr std::size_t kMaxPathPoints = 200;
+constexpr std::string_view kColours[] = {"red", "yellow", "green", "blue", "white", "grey", "black", "steel"};
+static_assert(std::size(kColours) == static_cast<std::size_t>(ObjectColour::kCount));
+
+std::string JoinColours() {
+  std::string all;
+  for (const auto name : kColours) all += (all.empty() ? "" : ", ") + std::string(name);
+  return all;
+}
+
+/// Place [mm] and turn [deg] about x, then y, then z of the frame it stands in.
+math::Pose ReadPlace(const core::JsonView& view) {
+  math::Pose pose;
+  if (view.Has("at_mm")) pose.translation = ReadPointMm(view, "at_mm");
+  if (view.Has("turn_deg")) {
+    const auto turn = view.Numbers("turn_deg", 3, range::kTurnDeg);
+    pose.rotation = math::RotationAbout({0, 0, 1}, turn[2] * kDegree) *
+                    math::RotationAbout({0, 1, 0}, turn[1] * kDegree) *
+                    math::RotationAbout({1, 0, 0}, turn[0] * kDegree);
+  }
+  return pose;
+}
+
+/// A bent wire: a capsule from each point to the next.
+void AddPath(const core::JsonView& view, std::vector<RigidShape>& shapes) {
+  view.AllowOnly({"kind", "radius_mm", "points_mm"});
+  const double radius = 0.001 * view.Number("radius_mm", range::kPathRadiusMm);
+  std::vector<Vec3> points;
+  for (const core::JsonView& one : view.Array("points_mm")) {
+    const auto mm = one.AsNumbers(3, range::kPlaceMm);
+    points.push_back(0.001 * Vec3{mm[0], mm[1], mm[2]});
+  }
+  if (points.size() < 2 || points.size() > kMaxPathPoints) {
+    view.Complain("a path needs 2 to 200 points", core::ErrorCode::kSceneInvalid);
+    return;
+  }
+  for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+    const Vec3 along = points[i + 1] - points[i];
+    const double length = math::Norm(along);
+    if (!(length > 0)) {
+      view.Complain("two points of a path are the same", core::ErrorCode::kSceneInvalid);
+      return;
+    }
+    shapes.push_back({RigidShape::Kind::kCapsule,
+                      {radius, 0, 0.5 * length},
+                      {math::RotationBetween({0, 0, 1}, along / length), 0.5 * (points[i] + points[i + 1])}});
+  }
+}
+
+void ReadShape(const core::JsonView& view, std::vector<RigidShape>& shapes) {
+  const std::string kind = view.Text("kind");
+  if (kind == "path") return AddPath(view, shapes);
+  RigidShape shape;
+  shape.X_body_shape = ReadPlace(view);
+  const auto mm = [&](const char* key) { return 0.001 * view.Number(key, range::kShapeMm); };
+  if (kind == "box") {
+    view.AllowOnly({"kind", "at_mm", "turn_deg", "size_mm"});
+    const auto size = view.Numbers("size_mm", 3, range::kShapeMm);
+    for (int axis = 0; axis < 3; ++axis) shape.size[axis] = 0.0005 * size[static_cast<std::size_t>(axis)];
+  } else if (kind == "cylinder") {
+    view.AllowOnly({"kind", "at_mm", "turn_deg", "radius_mm", "height_mm"});
+    shape.kind = RigidShape::Kind::kCylinder;
+    shape.size = {mm("radius_mm"), 0, 0.5 * mm("height_mm")};
+  } else if (kind == "capsule") {
+    view.AllowOnly({"kind", "at_mm", "turn_deg", "radius_mm", "length_mm"});
+    shape.kind = RigidShape::Kind::kCapsule;
+    shape.size = {mm("radius_mm"), 0, 0.5 * mm("length_mm")};
+  } else if (kind == "sphere") {
+    view.AllowOnly({"kind", "at_mm", "radius_mm"});
+    shape.kind = RigidShape::Kind::kSphere;
+    shape.size.x = mm("radius_mm");
+  } else if (kind == "ring") {
+    view.AllowOnly({"kind", "at_mm", "turn_deg", "radius_mm", "thickness_mm"});
+    shape.kind = RigidShape::Kind::kRing;
+    shape.size = {mm("radius_mm"), 0.5 * mm("thickness_mm"), 0};
+    if (shape.size.y >= shape.size.x)
+      view.Complain("a ring must be thinner than it is wide: thickness_mm below 2 radius_mm",
+                    core::ErrorCode::kSceneInvalid);
+  } else {
+    view.Complain(
+        "there is no shape \"" + kind + "\"; known are box, cylinder, capsule, sphere, ring and path",
+        core::ErrorCode::kUnknownName);
+  }
+  shapes.push_back(shape);
+}
+
+SceneObject ReadObject(const core::JsonView& view) {
+  view.AllowOnly({"name", "about", "shapes", "at_mm", "turn_deg", "mass_g", "friction", "colour", "grips"});
+  SceneObject object;
+  object.name = view.Text("name");
+  for (const core::JsonView& shape : view.Array("shapes")) ReadShape(shape, object.body.shapes);
+  if (object.body.shapes.empty())
+    view.Complain("an object needs at least one shape", core::ErrorCode::kSceneInvalid);
+  object.body.X_world_body = ReadPlace(view);
+  object.body.mass = 0.001 * view.NumberOr("mass_g", 0.0, range::kMassG);
+  object.body.friction = view.NumberOr("friction", 0.8, range::kFriction);
+  const std::string colour = view.TextOr("colour", "grey");
+  if (const auto found = FindColour(colour); found) {
+    object.colour = *found;
+  } else {
+    view.Complain("there is no colour \"" + colour + "\"; known are " + JoinColours(),
+                  core::ErrorCode::kUnknownName);
+  }
+  if (!view.Has("grips")) return object;
+  for (const core::JsonView& one : view.Array("grips")) {
+    one.AllowOnly({"at_mm", "across", "open_deg"});
+    ObjectGrip grip;
+    grip.point = ReadPointMm(one, "at_mm");
+    if (one.Has("across")) grip.across = ReadDirection(one, "across");
+    if (one.Has("open_deg")) grip.opening = one.Number("open_deg", range::kGripOpenDeg) * kDegree;
+    object.grips.push_back(grip);
+  }
+  return object;
+}
+
+}  // namespace
+
+std::string_view ColourName(ObjectColour colour) noexcept {
+  return kColours[static_cast<std::size_t>(colour)];
+}
+
+std::optional<ObjectColour> FindColour(std::string_view name) noexcept {
+  for (std::size_t i = 0; i < std::size(kColours); ++i) {
+    if (kColours[i] == name) return static_cast<ObjectColour>(i);
+  }
+  return std::nullopt;
+}
+
+math::Vec3 ReadPointMm(const core::JsonView& view, std::string_view key, core::NumberRange each) {
+  const auto mm = view.Numbers(key, 3, each);
+  return 0.001 * math::Vec3{mm[0], mm[1], mm[2]};
+}
+
+math::Vec3 ReadDirection(const core::JsonView& view, std::string_view key) {
+  const auto n = view.Numbers(key, 3, range::kDirection);
+  const math::Vec3 direction{n[0], n[1], n[2]};
+  if (!(math::Norm(direction) > 1e-6))
+    view.Complain(std::string(key) + " is a direction: one of its parts must differ from 0",
+                  core::ErrorCode::kSceneInvalid);
+  return math::Normalized(direction, {1, 0, 0});
+}
+
+std::vector<SceneObject> ReadObjects(const core::JsonView& scene, std::string_view key) {
+  std::vector<SceneObject> objects;
+  for (const core::JsonView& view : scene.Array(key)) {
+    if (objects.size() == kMaxObjects) {
+      view.Complain(
+          "a scene may have at most 64 objects; join those that never move into one of several shapes",
+          core::ErrorCode::kSceneInvalid);
+      break;
+    }
+    objects.push_back(ReadObject(view));
+    const auto same = [&](const SceneObject& other) { return other.name == objects.back().name; };
+    if (std::any_of(objects.begin(), objects.end() - 1, same))
+      view.Complain("another object is called \"" + objects.back().name + "\" already; names must differ",
+                    core::ErrorCode::kSceneInvalid);
+  }
+  return objects;
+}
+
+}  // namespace trocar::scene

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file tissue_model_file.h  Reading of a scene's "model": tissue that a training task makes for itself.
+#pragma once
+
+#include "trocar/core/json.h"
+#include "trocar/scene/scene.h"
+
+namespace trocar::scene {
+
+/// Of a sheet's vertices: those that stay where they are.
+inline constexpr const char* kHeldRegion = "held";
+
+/// Reads `model` into Scene::model and Scene::patient, and makes the scene an operation; complains in the view's
+/// document.
+void ReadTissueModel(const core::JsonView& view, Scene& scene);
+
+}  // namespace trocar::scene

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file operation_snapshot.h  What surgery has changed: cut surfaces and tubes, clips, burns, what runs and what lies there.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "trocar/geometry/triangle_mesh.h"
+#include "trocar/math/pose.h"
+#include "trocar/scene/input.h"
+#include "trocar/scene/tissue_layout.h"
+#include "trocar/surgery/flow_network.h"
+#include "trocar/training/critical_view.h"
+#include "trocar/training/triplet.h"
+
+namespace trocar::simulation {
+
+using scene::kHandCount;
+
+/// A clip, open or closed. Frame: origin in its middle, +x along its legs towards their tips, +z along what it closes.
+struct ClipSnapshot {
+  math::Pose X_world_clip;
+  double gap = 0;           ///< between its legs [m]
+  bool is_lost = false;     ///< lies in the abdomen
+  bool is_crossed = false;  ///< lies over another clip
+  double closure = 0;       ///< share of the vessel that it holds, 0 to 1 [-]
+  math::Vec3 p_rest;  ///< where on its vessel, as that was at rest, world frame [m]; of a lost clip nothing
+
+  /// Closed around the whole of a vessel, and over no other.
+  bool IsGood() const { return !is_lost && !is_crossed && closure > 0.999; }
+};
+
+/// What runs out of a cut or a hole.
+struct LeakSnapshot {
+  math::Vec3 position;   ///< world frame [m]
+  math::Vec3 direction;  ///< unit, out of the opening
+  surgery::Fluid fluid = surgery::Fluid::kBlood;
+  double rate = 0;  ///< [m^3/s]
+};
+
+/// A piece of a duct or vessel between two of its nodes; pieces that end alone are stumps.
+struct TubePiece {
+  std::uint32_t a = 0, b = 0;         ///< rows of Snapshot::positions
+  double radius_a = 0, radius_b = 0;  ///< [m]
+  std::uint32_t surface = 0;          ///< index in Simulation::Surfaces()
+};
+
+/// Where a gallstone is.
+enum class StonePlace : std::uint8_t {
+  kInside,   ///< of the gallbladder
+  kSpilled,  ///< in the abdomen
+  kHeld,     ///< between the jaws of `hand`
+  kInBag,    ///< of its own; what is in the gallbladder goes with that
+  kAspirated,
+  kTakenOut  ///< through a trocar
+};
+
+struct StoneSnapshot {
+  math::Vec3 position;  ///< of its centre, world frame [m]; of a spilled or held one
+  double radius = 0;    ///< [m]
+  StonePlace place = StonePlace::kInside;
+  std::int32_t hand = -1;  ///< that holds it
+};
+
+/// Where liver bleeds from what was torn off it without heat.
+struct OozeSnapshot {
+  math::Vec3 position;  ///< world frame [m]
+  double rate = 0;      ///< [m^3/s]
+};
+
+/// How a sheet is cut along the circle that is drawn on it. Places and lengths are those of the sheet at rest.
+struct SheetSnapshot {
+  double cut_length = 0;  ///< [m]
+  double farthest = 0;    ///< of a cut from the line: inside of it, or round the piece that came free [m]
+  double off_area = 0;    ///< between the line and the rim of that piece [m^2]
+  bool is_free = false;   ///< what the line encloses hangs on the border no more
+  math::Vec3 p_farthest;  ///< world frame [m]
+};
+
+/// Fixed sizes while a scene runs, so that copying allocates nothing.
+struct OperationSnapshot {
+  std::array<std::uint8_t, kHandCount> tools{};  ///< in use, by place in InstrumentSetup::tray
+  std::array<bool, kHandCount> has_current{};    ///< flows through the electrode into tissue
+  std::array<int, kHandCount> clips_left{};      ///< in the tool in use
+  /// (Simulation::Strands()) 1 while it holds
+  std::vector<std::uint8_t> strand_is_intact;
+  /// (nodes) 0 to 1 [-]; empty where the scene has no electrode
+  std::vector<float> blanching, charring;
+  /// Triangles of each organ over the rows of Snapshot::positions: organ i has triangles[first[i]] to
+  /// triangles[first[i] + count[i]]. Empty where the scene has nothing that cuts: SurfaceInfo::triangles hold.
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  std::vector<std::uint32_t> first_triangle, triangle_count;  ///< (organs)
+  std::uint32_t topology_version = 0;                         ///< grows when triangles or tube pieces change
+  std::vector<TubePiece> tube_pieces;                         ///< the first tube_piece_count count
+  std::size_t tube_piece_count = 0;
+  std::vector<ClipSnapshot> clips;  ///< the first clip_count count
+  std::size_t clip_count = 0;
+  std::array<math::Vec3, 32> tube_cuts{};  ///< the first tube_cut_count count: where at rest, world frame [m]
+  std::size_t tube_cut_count = 0;
+  std::vector<std::uint8_t> band_is_whole;  ///< (ModelSetup::bands)
+  std::vector<SheetSnapshot> sheets;        ///< (ModelSetup::sheets)
+  std::array<LeakSnapshot, 32> leaks{};
+  std::size_t leak_count = 0;
+  std::array<OozeSnapshot, 32> oozes{};  ///< the first ooze_count count: those that bleed most
+  std::size_t ooze_count = 0;
+  std::vector<StoneSnapshot> stones;  ///< the patient's gallstones
+  surgery::FluidLedger fluids;
+  math::Vec3 p_world_pool;  ///< lowest place, where blood, bile and rinse gather [m]
+  double smoke = 0;         ///< in the view, 0 none to 1 thick [-]
+  bool has_assistant = false;
+  math::Pose X_world_assistant;  ///< of the third grasper
+  double assistant_jaw = 0;      ///< [rad]
+  bool is_assistant_holding = false;
+  /// How the dissection stands.
+  struct Facts {
+    double cleared_share = 0, detached_share = 0;
+    int structures_entering = 0;
+  } facts;
+  training::CriticalViewScore critical_view;
+  training::Phase phase = training::Phase::kPreparation;
+  std::size_t errors = 0, critical_errors = 0;  ///< so far
+  bool is_gallbladder_free = false, is_in_bag = false, is_completed = false;
+};
+
+}  // namespace trocar::simulation

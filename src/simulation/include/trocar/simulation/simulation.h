@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file simulation.h  The tick: fixed, deterministic, staged and timed.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "trocar/core/result.h"
+#include "trocar/haptics/local_patch.h"
+#include "trocar/scene/scene.h"
+#include "trocar/simulation/model_description.h"
+#include "trocar/simulation/operation_result.h"
+#include "trocar/simulation/snapshot.h"
+
+namespace trocar::simulation {
+
+using scene::Hand;
+using scene::Input;
+
+/// Where equilibrium is found.
+enum class SolveOn {
+  kProcessor,
+  kGpu  ///< where there is one, else on the processor; other bits than the processor's, in single precision
+};
+
+/// What is constant while a surgery runs: scene, patient, the tissue at rest. Shared by any number of simulations.
+struct SimulationModel;
+
+/// \param threads  used to fill tense organs, >= 1
+/// \return kSceneInvalid or kPatientInvalid
+core::Result<std::shared_ptr<const SimulationModel>> MakeSimulationModel(std::shared_ptr<const Scene> scene,
+                                                                         int threads = 1);
+
+/// Parts of a simulation's state.
+enum class StatePart : std::uint8_t {
+  kAll,
+  kWorld  ///< without events, errors, phases, task rules and all else that only looks
+};
+
+/// One running surgery: a model, a state, and scratch. The same model and the same inputs give the same bits, for any
+/// number of threads.
+class Simulation {
+ public:
+  /// \param threads  used by the solver, >= 1
+  /// \return kSceneInvalid or kPatientInvalid
+  static core::Result<Simulation> Make(std::shared_ptr<const Scene> scene, int threads,
+                                       SolveOn solve_on = SolveOn::kProcessor);
+  /// One more of the same model.
+  static core::Result<Simulation> Make(std::shared_ptr<const SimulationModel> model, int threads,
+                                       SolveOn solve_on = SolveOn::kProcessor);
+
+  Simulation(Simulation&&) noexcept;
+  Simulation& operator=(Simulation&&) noexcept;
+  ~Simulation();
+
+  /// One tick.
+  /// \note No lock or file. Allocates only in a tick in which a blade parts an organ, a duct or a vessel.
+  void Step(const Input& input) noexcept;
+  /// One tick in which nothing is judged or published: the world is the same after it, the snapshot that of before.
+  void StepWorld(const Input& input) noexcept;
+  /// Back to the first tick.
+  void Reset();
+
+  /// All that decides the future, as bytes with format, model and checksum, for a file, another process or Restore.
+  /// \param[out] bytes  replaced; its memory is used again
+  void Save(std::vector<std::byte>& bytes) const;
+  /// Takes up a saved state: from then on the same inputs give the same bits as where it was saved.
+  /// \return kStateInvalid where it is damaged, of another format or another model; then all is as it was
+  core::Status Restore(std::span<const std::byte> bytes);
+
+  const Scene& GetScene() const;
+  /// Organs, then tubes; constant.
+  std::span<const SurfaceInfo> Surfaces() const;
+  /// What dissection divides, constant; empty where the scene is no operation.
+  std::span<const StrandInfo> Strands() const;
+  /// How the operation stands; nothing where the scene is none.
+  /// \note Allocates.
+  std::optional<OperationResult> GetOperationResult() const;
+  /// State after the last Step(); valid until the next.
+  const Snapshot& GetSnapshot() const;
+  /// Cuts out the tissue around one tool for the haptic loop, after a Step.
+  /// \note Real-time safe: no allocation, lock or throw.
+  void CutPatch(Hand hand, haptics::LocalPatch& patch) noexcept;
+  /// How far the tissue was from equilibrium when the last tick's solve ended: the largest distance of a node
+  /// to the equilibrium that an exact solver reaches from there under the same load and with the same volumes,
+  /// over the largest distance of any node from rest [-]. NaN where that solver does not come to rest.
+  /// \note For tests and benchmarks: takes many times as long as a tick, and allocates.
+  double CalcEquilibriumError() const;
+  /// Name of the GPU that solves; empty when the processor does.
+  std::string_view GpuName() const;
+  /// Why the GPU that was asked for does not solve, from the tick in which it failed; else nullptr.
+  const core::Error* GpuError() const;
+  /// Fingerprint of the state.
+  std::uint64_t Hash(StatePart part = StatePart::kAll) const;
+  /// Names and fingerprints of all fields of the state, in their order: where two states differ.
+  std::vector<std::pair<std::string, std::uint64_t>> HashFields() const;
+  /// Restore for tests: leaves one field out, "world/tissue/position" for instance, which keeps its value.
+  core::Status RestoreWithout(std::span<const std::byte> bytes, const std::string& field);
+
+ private:
+  struct Content;
+  explicit Simulation(std::unique_ptr<Content> content);
+  std::unique_ptr<Content> content_;
+};
+
+}  // namespace trocar::simulation

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "operation/electrosurgery.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "trocar/collision/segment_distance.h"
+#include "trocar/core/assert.h"
+
+namespace trocar::simulation {
+namespace {
+
+using collision::Segment;
+
+/// Layer of a wall through which heat passes along it [m].
+constexpr double kLayerDepth = 0.0015;
+/// Section of a fibre [m].
+constexpr double kFibreWidth = 0.0005;
+/// The shortest strands, those of the bed, stand for a patch of areolar tissue of which so much is fibre [kg].
+constexpr double kLeastStrandMass = 0.5e-6;
+constexpr double kLeastNodeMass = 2e-6;
+constexpr double kDensity = 1000;  // of fat and fibres [kg/m^3]
+/// What lies as far from the metal as this gets a quarter of what touches it gets [m].
+constexpr double kQuarterPower = 0.0004;
+
+}  // namespace
+
+Electrosurgery::Electrosurgery(const tissue::TissueDefinition& definition, std::span<const double> heat_mass,
+                               std::span<const StrandInfo> strands)
+    : node_count_(definition.rest.size()), strands_(strands.begin(), strands.end()) {
+  TROCAR_ASSERT(heat_mass.size() == node_count_ && strands.size() == definition.strands.size());
+  std::vector<surgery::HeatNode> nodes;
+  for (const double mass : heat_mass) nodes.push_back({std::max(mass, kLeastNodeMass), 1.0});
+  const surgery::HeatConstants constants;
+  std::vector<surgery::HeatLink> links;
+  for (const tissue::Spring& spring : definition.springs) {
+    const double length = math::Distance(definition.rest[spring.a], definition.rest[spring.b]);
+    if (length > 0.0)
+      links.push_back(
+          {spring.a, spring.b, surgery::CalcHeatConductance(constants, 0.5 * length, kLayerDepth, length)});
+  }
+  for (std::uint32_t i = 0; i < strands.size(); ++i) {
+    const StrandInfo& strand = strands[i];
+    const double length =
+        std::max(kFibreWidth, math::Distance(definition.rest[strand.a], definition.rest[strand.b]));
+    nodes.push_back({std::max(kLeastStrandMass, kDensity * kFibreWidth * kFibreWidth * length), 0.0});
+    const auto part = static_cast<std::uint32_t>(node_count_ + i);
+    const double half = surgery::CalcHeatConductance(constants, kFibreWidth, kFibreWidth, 0.5 * length);
+    links.push_back({strand.a, part, half});
+    links.push_back({strand.b, part, half});
+  }
+  heat_.emplace_back(nodes, links, constants);
+  cold_ = heat_.front().MakeState();
+  sources_.reserve(kMostSources);
+  was_parted_.resize(node_count_);
+  Reset();
+}
+
+void Electrosurgery::Reset() {
+  state_ = cold_;
+  std::fill(was_parted_.begin(), was_parted_.end(), std::uint8_t{0});
+  sources_.clear();
+  parted_strands_ = 0;
+  power_ = 0;
+  is_cold_ = true;
+}
+
+std::size_t Electrosurgery::FindTargets(const Electrode& electrode,
+                                        std::span<const surgery::OrganSurface> organs,
+                                        const surgery::TubeSet& tubes, const tissue::TissueState& tissue,
+                                        std::span<Target> found) const noexcept {
+  std::size_t count = 0;
+  const auto add = [&](std::uint32_t part, double distance, double share) {
+    if (count < found.size()) found[count++] = {part, std::max(0.0, distance), share};
+  };
+  for (std::uint32_t i = 0; i < strands_.size(); ++i) {
+    if (!tissue.strand_is_intact[i]) continue;
+    const Segment strand{tissue.position[strands_[i].a], tissue.position[strands_[i].b]};
+    const double distance =
+        std::sqrt(collision::FindNearestSegmentSegment(electrode.bare, strand).squared_distance) -
+        0.5 * kFibreWidth;
+    if (distance <= electrode.reach) add(static_cast<std::uint32_t>(node_count_ + i), distance, 1.0);
+  }
+  for (const surgery::OrganSurface& organ : organs) {
+    const auto nearest = organ.tree
+                             .FindNearestToSegment(organ.Nodes(tissue.position), electrode.bare,
+                                                   {.max_distance = electrode.reach})
+                             .nearest;
+    if (!nearest.Found()) continue;
+    for (const std::uint32_t corner : organ.triangles[nearest.triangle])
+      add(organ.first_node + corner, std::sqrt(nearest.squared_distance), 1.0 / 3.0);
+  }
+  const auto tube = tubes.tree.FindNearest(tissue.position, electrode.bare, electrode.reach);
+  if (tube.Found()) {
+    const collision::TubePiece& piece = tubes.tree.Pieces()[tube.piece];
+    add(piece.a, tube.distance, 0.5), add(piece.b, tube.distance, 0.5);
+  }
+  return count;
+}
+
+void Electrosurgery::AddPower(const Electrode& electrode, std::span<const Target> targets) noexcept {
+  double sum = 0;
+  const auto weight = [](const Target& target) {
+    const double near = kQuarterPower / (kQuarterPower + target.distance);
+    return target.share * near * near;
+  };
+  for (const Target& target : targets) sum += weight(target);
+  for (const Target& target : targets) {
+    if (sources_.size() == kMostSources) break;
+    sources_.push_back({target.part, electrode.power * weight(target) / sum});
+  }
+}
+
+std::size_t Electrosurgery::Step(double seconds, tissue::TissueState& tissue,
+                                 std::span<std::uint32_t> parted_nodes) noexcept {
+  parted_strands_ = 0;
+  power_ = 0;
+  if (is_cold_ && sources_.empty()) return 0;
+  is_cold_ = false;
+  for (const auto& source : sources_) power_ += source.power;
+  heat_.front().Step(sources_, seconds, state_);
+  sources_.clear();
+  for (std::uint32_t i = 0; i < strands_.size(); ++i) {
+    if (!tissue.strand_is_intact[i]) continue;
+    if (InjuryOf(static_cast<std::uint32_t>(node_count_ + i)) < surgery::HeatInjury::kParted) continue;
+    tissue.strand_is_intact[i] = 0;
+    ++parted_strands_;
+  }
+  std::size_t count = 0;
+  for (std::uint32_t i = 0; i < node_count_; ++i) {
+    if (was_parted_[i] || InjuryOf(i) < surgery::HeatInjury::kParted) continue;
+    if (count == parted_nodes.size()) break;
+    was_parted_[i] = 1;
+    parted_nodes[count++] = i;
+  }
+  return count;
+}
+
+void Electrosurgery::CopyNode(std::uint32_t from, std::uint32_t to) noexcept {
+  state_.temperature[to] = state_.temperature[from];
+  state_.water[to] = state_.water[from];
+  state_.damage[to] = state_.damage[from];
+  state_.charring[to] = state_.charring[from];
+  was_parted_[to] = was_parted_[from];
+}
+
+void Electrosurgery::Publish(OperationSnapshot& snapshot) const noexcept {
+  for (std::size_t i = 0; i < snapshot.blanching.size(); ++i) {
+    snapshot.blanching[i] = static_cast<float>(std::min(1.0, state_.damage[i]));
+    snapshot.charring[i] = static_cast<float>(state_.charring[i]);
+  }
+}
+
+void Electrosurgery::VisitState(core::StateArchive& archive) {
+  archive.Field("is_cold", is_cold_);
+  // what was never warmed is as it was made
+  if (is_cold_) {
+    if (archive.IsRestoring()) Reset();
+    return;
+  }
+  archive.Field("heat", state_);
+  archive.FixedField("was_parted", was_parted_);
+}
+
+}  // namespace trocar::simulation

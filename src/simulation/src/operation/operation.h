@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file operation.h  Surgery in the tick: tools that cut, burn, clip, rinse and carry away, and what comes of it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "operation/assistant.h"
+#include "operation/bed_ooze.h"
+#include "operation/camera.h"
+#include "operation/electrosurgery.h"
+#include "operation/emitted_acts.h"
+#include "operation/gallbladder_hold.h"
+#include "operation/sheet_monitor.h"
+#include "operation/stone_work.h"
+#include "operation/vessel_work.h"
+#include "trocar/scene/patient_tissue.h"
+#include "trocar/surgery/cuttable_organ.h"
+
+namespace trocar::simulation {
+
+using scene::EventKind;
+using scene::HandControls;
+using scene::PatientTissue;
+using scene::SpareNodes;
+using surgery::WallHoles;
+
+/// What a tick knows of the hands.
+struct HandsNow {
+  const Input* input = nullptr;
+  std::array<instrument::TrocarJoints, kHandCount> joints;
+  std::array<Pose, kHandCount> X_proxy, X_device;
+  std::array<surgery::GraspChange, kHandCount> changes{};
+  const std::array<surgery::Grasp, kHandCount>* grasps = nullptr;
+  std::array<Vec3, kHandCount> forces;  ///< on the tools in the tick before, world frame [N]
+  Vec3 gravity;                         ///< [m/s^2]
+  Camera camera;                        ///< as the trainee saw when the hands moved
+  double time = 0;                      ///< [s]
+  double seconds = 0;                   ///< of the tick
+};
+
+/// The tissue that is operated on, as it is.
+struct TissueNow {
+  const tissue::TissueModel* model = nullptr;
+  const tissue::TissueDefinition* definition = nullptr;
+  const tissue::TissueState* state = nullptr;
+  const tissue::Conservation* conservation = nullptr;
+  const tissue::ConservationState* conserved = nullptr;
+  std::span<const surgery::OrganSurface> organs;
+  const surgery::TubeSet* tubes = nullptr;
+  std::span<const std::uint32_t> torn_springs;  ///< of walls, in this tick
+};
+
+/// What the stages of an operation change beside the operation itself: the same tissue, and what hands hold of it.
+struct OperatedTissue {
+  tissue::TissueState& state;
+  tissue::ConservationState& conserved;
+  std::array<surgery::Grasp, kHandCount>& grasps;
+};
+
+/// Something that an operation emits: it becomes an event of the tick.
+struct OperationEvent {
+  EventKind kind = EventKind::kClipClosed;
+  std::int32_t hand = -1;
+  std::int32_t surface = -1;  ///< as in Event::organ
+  Vec3 p_rest;                ///< of a clip or a cut: where on its vessel at rest, world frame [m]
+};
+
+class Operation {
+ public:
+  /// Nodes that cuts may use.
+  static constexpr SpareNodes kSpare{500, 32};
+
+  /// \return kPatientInvalid or kMeshInvalid
+  static core::Result<std::unique_ptr<Operation>> Make(const Scene& scene,
+                                                       std::shared_ptr<const PatientTissue> tissue);
+
+  /// First of all in a tick: what the one before emitted is forgotten.
+  void BeginTick() noexcept;
+
+  // --- tools
+
+  const instrument::Tool& Tool(int hand) const {
+    return scene_->instruments[hand].tray[active_[static_cast<std::size_t>(hand)]];
+  }
+  /// What the hand's joints become: a tool that is exchanged is drawn out.
+  /// \param is_holding  then there is no exchange, unless it is the bag that holds
+  /// \return false where an exchange was asked for and refused
+  /// \note Real-time safe.
+  bool MoveTool(int hand, const HandControls& controls, bool is_holding, double seconds,
+                instrument::TrocarJoints& wanted) noexcept;
+
+  /// What stones between the jaws leave of their movement; stones are taken and let go here.
+  /// \param is_holding  tissue
+  /// \note Real-time safe.
+  double StopJaw(int hand, double jaw_before, double jaw, bool is_holding) noexcept;
+  bool HoldsStone(int hand) const { return stones_.HeldBy(hand) >= 0; }
+
+  // --- the stages of a tick
+
+  /// Tools cut, clip, rinse, and let current flow.
+  /// \note Real-time safe, as are all stages.
+  void Act(const HandsNow& hands, const TissueNow& tissue, OperatedTissue& operated) noexcept;
+  /// What current has heated gives way.
+  void Heat(const HandsNow& hands, const TissueNow& tissue, OperatedTissue& operated) noexcept;
+  /// The third hand.
+  void Assist(const HandsNow& hands, const TissueNow& tissue, OperatedTissue& operated) noexcept;
+  /// What Act has cut. \return whether nodes or springs changed: then Change() says which
+  bool EndCuts() noexcept;
+  const surgery::TopologyChange& Change() const { return change_; }
+  /// After the solve: blood and bile run, stones leave with the bile, clips slip.
+  void Flow(const HandsNow& hands, const TissueNow& tissue, OperatedTissue& operated) noexcept;
+  /// What lies loose falls, is pushed and carried.
+  void MoveLoose(const HandsNow& hands, const TissueNow& tissue) noexcept;
+
+  /// What was done in this tick, for the judge.
+  const EmittedActs& Acts() const { return acts_; }
+  /// What happened in this tick.
+  std::span<const OperationEvent> Events() const { return std::span(events_).first(event_count_); }
+
+  std::int32_t Liver() const { return liver_; }
+  std::int32_t Gallbladder() const { return gallbladder_; }
+  const VesselWork& Vessels() const { return *vessels_; }
+  const StoneWork& Stones() const { return stones_; }
+  const surgery::FluidLedger& Fluids() const { return fluids_; }
+  const Vec3& Pool() const { return p_pool_; }
+  bool IsGallbladderFree() const { return is_gallbladder_free_; }
+  bool IsInBag() const { return is_in_bag_; }
+  bool IsCompleted() const { return is_completed_; }
+  training::Target TargetOfSurface(std::int32_t surface) const noexcept;
+  /// (strands) as dissection counts them: what lies around ducts that must stay is none of its business.
+  std::span<const StrandInfo> DissectedStrands() const { return dissected_; }
+
+  const surgery::CuttableOrgan& Organ(std::size_t i) const { return organs_[i]; }
+  /// Ducts and vessels as they are now, for contacts.
+  std::vector<collision::TubePiece> TubePieces() const;
+  std::vector<std::uint32_t> TubesOfPieces() const;
+  std::span<const StrandInfo> Strands() const { return strands_; }
+
+  void Size(OperationSnapshot& snapshot) const;
+  void Publish(const tissue::TissueState& tissue, OperationSnapshot& snapshot) const noexcept;
+  /// Adds what this one knows.
+  void AddTo(OperationResult& result) const;
+
+  /// Meshes and lines with their cuts. Before VisitState.
+  void VisitTopology(core::StateArchive& archive);
+  void VisitState(core::StateArchive& archive);
+
+ private:
+  struct HandState {
+    surgery::BladeState blade, spread_upper, spread_lower;
+    std::vector<geometry::CutFront> fronts;    // (organs)
+    bool has_clip_open = false;                // the applier has been opened since its last clip
+    double opened = 0;                         // the applier's jaws, at the most [rad]
+    std::optional<VesselWork::Caught> caught;  // between them then
+    int clips = 0;
+    bool has_current = false;
+    double idle_seconds = 0;  // pedal down, nothing touched
+    bool was_refused = false;
+    bool was_open = false;  // jaws, since they closed last
+    bool was_told_outside = false;
+    double exchange_seconds = 0;
+    void VisitState(core::StateArchive& archive);
+  };
+
+  Operation(const Scene& scene, std::vector<StrandInfo> strands)
+      : scene_(&scene), strands_(std::move(strands)) {}
+  core::Status MakeAll();
+  void MakeOoze();
+  double WidestTool(int hand) const noexcept;
+  void UseBlade(int hand, const HandsNow& hands, const TissueNow& tissue, OperatedTissue& operated) noexcept;
+  void CutWith(const surgery::BladeMove& move, int hand, const HandsNow& hands, const TissueNow& tissue,
+               OperatedTissue& operated, bool cuts_strands) noexcept;
+  void CutStrands(const surgery::BladeMove& move, int hand, training::InstrumentKind kind,
+                  const TissueNow& tissue, OperatedTissue& operated) noexcept;
+  void CutOrgans(const surgery::BladeMove& move, int hand, training::InstrumentKind kind,
+                 const HandsNow& hands, const TissueNow& tissue, OperatedTissue& operated) noexcept;
+  void Spread(int hand, const HandsNow& hands, const TissueNow& tissue, OperatedTissue& operated) noexcept;
+  void UseElectrode(int hand, const HandsNow& hands, const TissueNow& tissue) noexcept;
+  void UseClips(int hand, const HandsNow& hands, const TissueNow& tissue) noexcept;
+  void UseFluids(int hand, const HandsNow& hands) noexcept;
+  void UseBag(int hand, const HandsNow& hands, const TissueNow& tissue, OperatedTissue& operated) noexcept;
+  void OpenTubeEnds(const TissueNow& tissue) noexcept;
+  void SpillStones(double leaked, const TissueNow& tissue) noexcept;
+  void SlipClips(const HandsNow& hands, const TissueNow& tissue) noexcept;
+  void EmitRetrieved(int hand, int count) noexcept;
+  void RefuseImpossible(int hand, const HandsNow& hands) noexcept;
+  training::Target TargetOf(const TissueNow& tissue, std::uint32_t part) const noexcept;
+  bool IsOf(std::uint32_t node, std::int32_t organ) const noexcept;
+  void Emit(const OperationEvent& event) noexcept;
+
+  const Scene* scene_;  // outlives this
+  std::vector<StrandInfo> strands_;
+  std::shared_ptr<const PatientTissue> made_;
+  std::vector<StrandInfo> dissected_;
+  std::int32_t liver_ = -1, gallbladder_ = -1;
+  std::vector<std::uint32_t> main_nodes_;  // of ducts and arteries that must stay
+  std::vector<std::uint32_t> main_ducts_;  // of the ducts among them
+  /// Where a duct or artery enters the gallbladder.
+  struct TubeEnd {
+    std::uint32_t node = 0;              // of the tube
+    std::vector<std::uint32_t> strands;  // that tie it
+    double section = 0;                  // [m^2]
+    bool is_off = false;
+  };
+  std::vector<TubeEnd> tube_ends_;
+  Vec3 p_pool_;
+
+  std::vector<surgery::CuttableOrgan> organs_;
+  std::vector<SheetMonitor> sheets_;  // (ModelSetup::sheets), which are the organs
+  std::optional<VesselWork> vessels_;
+  Electrosurgery heat_;
+  GallbladderHold hold_;
+  EmittedActs acts_;
+  std::optional<Assistant> assistant_;
+  std::uint32_t assistant_node_ = 0;  // of what it takes
+  surgery::TopologyChange change_;
+  surgery::FluidLedger fluids_;
+  WallHoles holes_;  // of the gallbladder
+  StoneWork stones_;
+  BedOoze ooze_;
+  std::vector<surgery::LooseStone*> loose_clips_;  // scratch
+  double deepest_ = 0;                             // z below which nothing falls [m]
+
+  std::array<std::size_t, kHandCount> active_{};
+  std::array<HandState, kHandCount> hands_;
+  std::array<Pose, kHandCount> X_world_tools_;  // that are seen, in the tick before
+  double leaked_seen_ = 0, open_area_ = 0, smoke_ = 0;
+  std::uint32_t topology_version_ = 0;
+  bool is_in_bag_ = false, is_completed_ = false, is_gallbladder_free_ = false;
+  std::int32_t bag_hand_ = -1;
+  std::array<OperationEvent, 8> events_{};
+  std::size_t event_count_ = 0;
+  std::vector<std::uint32_t> band_strands_, band_starts_;  // (bands) the strands of each, by band_starts_
+};
+
+}  // namespace trocar::simulation

@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "operation/vessel_map.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+namespace trocar::simulation {
+
+using math::Vec3;
+namespace {
+
+using surgery::FlowJunction;
+using surgery::FlowVessel;
+using surgery::Fluid;
+using training::VesselRole;
+
+/// Pressures above the abdomen's 12 mmHg of gas [Pa], conductances [m^3/(Pa s)]. Aorta: decision 0026. Bile: secretion against
+/// 2.5 kPa, 0.6 mL/min; the sphincter opens at 1.3 kPa: general knowledge, tunables.
+constexpr FlowJunction kAorta{12e3, 1.25e-10}, kArteryBed{1e3, 5e-12}, kLiverSecretion{2.5e3, 8e-12},
+    kBowel{1.3e3, 5e-11}, kGallbladder{1.3e3, 1e-10};
+/// Share of a tube's outer radius that is open inside [-].
+constexpr double kLumen = 0.7;
+constexpr double kShortestVessel = 1e-4;  // [m]
+
+std::vector<double> CalcArcs(const std::vector<Vec3>& points) {
+  std::vector<double> arcs{0.0};
+  for (std::size_t i = 1; i < points.size(); ++i)
+    arcs.push_back(arcs.back() + math::Distance(points[i - 1], points[i]));
+  return arcs;
+}
+
+VesselRole RoleOf(const std::string& tube) {
+  const auto has = [&](const char* part) { return tube.find(part) != std::string::npos; };
+  if (has("artery")) return has("cystic") ? VesselRole::kCysticArtery : VesselRole::kRightHepaticArtery;
+  if (has("cystic")) return VesselRole::kCysticDuct;
+  if (has("subvesical")) return VesselRole::kSubvesicalDuct;
+  if (has("aberrant")) return VesselRole::kAberrantRightDuct;
+  if (has("right")) return VesselRole::kRightHepaticDuct;
+  if (has("left")) return VesselRole::kLeftHepaticDuct;
+  return has("bile") ? VesselRole::kCommonBileDuct : VesselRole::kCommonHepaticDuct;
+}
+
+/// Builds junctions where tubes end and where others join them.
+class Builder {
+ public:
+  explicit Builder(const anatomy::Patient& patient) : patient_(patient), cuts_(patient.tubes.size()) {}
+
+  core::Result<VesselMap> Build() {
+    for (const anatomy::Tube& tube : patient_.tubes) arcs_.push_back(CalcArcs(tube.line.points));
+    for (std::size_t t = 0; t < patient_.tubes.size(); ++t) {
+      for (const bool is_first : {true, false}) Node(t, is_first ? 0 : arcs_[t].size() - 1);
+    }
+    for (std::size_t t = 0; t < patient_.tubes.size(); ++t) {
+      for (const bool is_first : {true, false}) JoinEnd(t, is_first);
+    }
+    for (std::size_t t = 0; t < patient_.tubes.size(); ++t) {
+      for (const bool is_first : {true, false}) SupplyEnd(t, is_first);
+    }
+    return Finish();
+  }
+
+ private:
+  /// A place on a tube where vessels begin or end.
+  struct Cut {
+    std::size_t point;
+    std::size_t group;  // of places that are one junction
+  };
+
+  std::size_t Node(std::size_t tube, std::size_t point) {
+    for (const Cut& cut : cuts_[tube]) {
+      if (cut.point == point) return cut.group;
+    }
+    groups_.push_back(groups_.size());
+    cuts_[tube].push_back({point, groups_.size() - 1});
+    return groups_.size() - 1;
+  }
+  std::size_t Root(std::size_t group) const {
+    while (groups_[group] != group) group = groups_[group];
+    return group;
+  }
+  const std::string& EndName(std::size_t t, bool is_first) const {
+    return is_first ? patient_.tubes[t].from : patient_.tubes[t].to;
+  }
+  std::size_t EndPoint(std::size_t t, bool is_first) const { return is_first ? 0 : arcs_[t].size() - 1; }
+
+  void JoinEnd(std::size_t t, bool is_first) {
+    for (std::size_t other = 0; other < patient_.tubes.size(); ++other) {
+      if (other == t || patient_.tubes[other].name != EndName(t, is_first)) continue;
+      const Vec3& end = patient_.tubes[t].line.points[EndPoint(t, is_first)];
+      const auto& points = patient_.tubes[other].line.points;
+      std::size_t nearest = 0;
+      for (std::size_t k = 1; k < points.size(); ++k) {
+        if (math::Distance(points[k], end) < math::Distance(points[nearest], end)) nearest = k;
+      }
+      const std::size_t a = Root(Node(other, nearest)), b = Root(Node(t, EndPoint(t, is_first)));
+      groups_[std::max(a, b)] = std::min(a, b);
+      joined_.push_back({t, is_first});
+      // where the other tube's own end lies there too, it is no loose end either
+      for (const bool others_first : {true, false}) {
+        if (EndPoint(other, others_first) == nearest) joined_.push_back({other, others_first});
+      }
+    }
+  }
+
+  void SupplyEnd(std::size_t t, bool is_first) {
+    if (std::find(joined_.begin(), joined_.end(), std::pair{t, is_first}) != joined_.end()) return;
+    const anatomy::Tube& tube = patient_.tubes[t];
+    const std::string& name = EndName(t, is_first);
+    const bool is_artery = tube.kind == anatomy::TubeKind::kArtery, is_outside = patient_.FindOrgan(name) < 0;
+    FlowJunction supply =
+        is_artery ? (is_outside ? kAorta : kArteryBed) : (is_outside ? kBowel : kLiverSecretion);
+    if (!is_artery && name == "gallbladder") supply = kGallbladder;
+    supplies_.push_back({Root(Node(t, EndPoint(t, is_first))), supply, t, is_first});
+  }
+
+  core::Result<VesselMap> Finish() {
+    std::vector<std::uint32_t> number(groups_.size(), 0);
+    std::vector<FlowJunction> junctions;
+    for (std::size_t g = 0; g < groups_.size(); ++g) {
+      if (Root(g) != g) continue;
+      number[g] = static_cast<std::uint32_t>(junctions.size());
+      junctions.emplace_back();
+    }
+    std::vector<FlowVessel> vessels;
+    std::vector<std::vector<std::uint32_t>> of_tube(patient_.tubes.size());
+    std::vector<std::vector<double>> starts(patient_.tubes.size());
+    training::BiliaryAnatomy anatomy;
+    for (std::size_t t = 0; t < patient_.tubes.size(); ++t) {
+      const anatomy::Tube& tube = patient_.tubes[t];
+      std::sort(cuts_[t].begin(), cuts_[t].end(),
+                [](const Cut& a, const Cut& b) { return a.point < b.point; });
+      for (std::size_t i = 0; i + 1 < cuts_[t].size(); ++i) {
+        const Cut &from = cuts_[t][i], &to = cuts_[t][i + 1];
+        double radius = 0;
+        for (std::size_t k = from.point; k <= to.point; ++k) radius += tube.line.radii[k];
+        radius *= kLumen / static_cast<double>(to.point - from.point + 1);
+        of_tube[t].push_back(static_cast<std::uint32_t>(vessels.size()));
+        starts[t].push_back(arcs_[t][from.point]);
+        vessels.push_back({tube.kind == anatomy::TubeKind::kArtery ? Fluid::kBlood : Fluid::kBile,
+                           number[Root(from.group)], number[Root(to.group)],
+                           std::max(kShortestVessel, arcs_[t][to.point] - arcs_[t][from.point]), radius});
+        anatomy.roles.push_back(RoleOf(tube.name));
+      }
+    }
+    std::vector<std::uint32_t> gallbladder_ducts;
+    for (const Supply& supply : supplies_) {
+      const std::uint32_t j = number[Root(supply.group)];
+      junctions[j] = supply.junction;
+      const bool is_artery = patient_.tubes[supply.tube].kind == anatomy::TubeKind::kArtery;
+      const std::string& name = EndName(supply.tube, supply.is_first);
+      if (name == "gallbladder") {
+        anatomy.gallbladder.push_back(j);
+        if (!is_artery) gallbladder_ducts.push_back(j);
+      } else if (is_artery && patient_.FindOrgan(name) < 0) {
+        anatomy.aorta = j;
+      } else if (is_artery) {
+        anatomy.right_liver = j;
+      } else if (patient_.FindOrgan(name) < 0) {
+        anatomy.bowel = j;
+      } else if (!anatomy.liver ||
+                 RoleOf(patient_.tubes[supply.tube].name) == VesselRole::kCommonHepaticDuct) {
+        anatomy.liver = j;
+      }
+    }
+    FindUpstream(vessels, anatomy);
+    auto network = surgery::FlowNetwork::Make(std::move(vessels), std::move(junctions));
+    if (!network.ok()) return network.error();
+    return VesselMap{std::move(*network), std::move(anatomy), std::move(arcs_),
+                     std::move(of_tube),  std::move(starts),  std::move(gallbladder_ducts)};
+  }
+
+  /// Which end of each vessel bile or blood comes from, and how far below the confluence it begins: by the shortest way from
+  /// the liver's duct, or from the aorta.
+  static void FindUpstream(const std::vector<FlowVessel>& vessels, training::BiliaryAnatomy& anatomy) {
+    std::uint32_t junction_count = 0;
+    for (const FlowVessel& vessel : vessels)
+      junction_count = std::max({junction_count, vessel.from + 1, vessel.to + 1});
+    std::vector<double> distance(junction_count, std::numeric_limits<double>::infinity());
+    for (const auto& source : {anatomy.liver, anatomy.aorta}) {
+      if (source && *source < junction_count) distance[*source] = 0.0;
+    }
+    for (std::uint32_t round = 0; round < junction_count; ++round) {
+      for (const FlowVessel& vessel : vessels) {
+        distance[vessel.to] = std::min(distance[vessel.to], distance[vessel.from] + vessel.length);
+        distance[vessel.from] = std::min(distance[vessel.from], distance[vessel.to] + vessel.length);
+      }
+    }
+    for (const FlowVessel& vessel : vessels) {
+      const bool is_from = distance[vessel.from] <= distance[vessel.to];
+      anatomy.is_upstream_from.push_back(is_from);
+      const double upper = distance[is_from ? vessel.from : vessel.to];
+      anatomy.below_confluence.push_back(std::isfinite(upper) ? upper : 0.0);
+    }
+  }
+
+  struct Supply {
+    std::size_t group;
+    FlowJunction junction;
+    std::size_t tube;
+    bool is_first;
+  };
+
+  const anatomy::Patient& patient_;
+  std::vector<std::vector<double>> arcs_;
+  std::vector<std::vector<Cut>> cuts_;
+  std::vector<std::size_t> groups_;  // union-find over places
+  std::vector<std::pair<std::size_t, bool>> joined_;
+  std::vector<Supply> supplies_;
+};
+
+}  // namespace
+
+VesselPlace VesselMap::Find(std::size_t tube, double arc) const {
+  const auto& own = vessels_of_tube[tube];
+  std::size_t i = 0;
+  while (i + 1 < own.size() && starts[tube][i + 1] <= arc) ++i;
+  const double length = network.Vessels()[own[i]].length;
+  return {own[i], std::clamp(arc - starts[tube][i], 0.0, length)};
+}
+
+core::Result<VesselMap> MakeVesselMap(const anatomy::Patient& patient) {
+  return Builder(patient).Build();
+}
+
+}  // namespace trocar::simulation

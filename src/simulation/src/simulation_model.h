@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file simulation_model.h  What is constant while a surgery runs, shared by any number of simulations.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "topology.h"
+#include "trocar/scene/patient_tissue.h"
+#include "trocar/simulation/simulation.h"
+#include "trocar/tissue/conservation.h"
+
+namespace trocar::simulation {
+
+using scene::PatientTissue;
+
+/// Gravity in which the organs were imaged: the body lay on its back [m/s^2].
+inline constexpr Vec3 kImagingGravity{0, 0, -9.81};
+
+struct SimulationModel {
+  std::shared_ptr<const Scene> scene;
+  std::shared_ptr<const PatientTissue> tissue;  ///< before any cut
+  WallSprings walls;
+  bool walls_tear = false;
+  std::int32_t hollow_organ = -1;       ///< leaks when its wall tears
+  tissue::TissueState tissue_at_start;  ///< at rest, tense organs filled
+  tissue::ConservationState conserved_at_start;
+  std::uint64_t fingerprint = 0;  ///< of all that makes a state one of this model
+};
+
+}  // namespace trocar::simulation
