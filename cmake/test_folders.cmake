@@ -5,6 +5,6 @@ if(TROCAR_BUILD_TESTS)
   set_source_files_properties(tests/folders.cpp PROPERTIES
     COMPILE_DEFINITIONS TROCAR_TEST_SOURCE_FOLDER="${PROJECT_SOURCE_DIR}")
   target_include_directories(trocar_test_folders PUBLIC tests/include)
-  target_compile_options(trocar_test_folders INTERFACE "SHELL:-include ${PROJECT_SOURCE_DIR}/tests/include/trocar_test/folders.h")
+  target_compile_options(trocar_test_folders INTERFACE "SHELL:-include trocar_test/folders.h")
   target_link_libraries(trocar_test_folders PUBLIC trocar_compile_options)
 endif()
