@@ -20,6 +20,8 @@ add_library(trocar_compile_options INTERFACE)
 # sqrt without errno and comparisons without traps change no result and let loops run in lanes
 target_compile_options(trocar_compile_options INTERFACE
   -ffp-contract=off -fno-math-errno -fno-trapping-math -Wall -Wextra -Wshadow -Wnon-virtual-dtor -Wno-missing-field-initializers)
+# __FILE__ and debug information name files from the repository on: objects do not depend on where a clone lies
+target_compile_options(trocar_compile_options INTERFACE -ffile-prefix-map=${PROJECT_SOURCE_DIR}=.)
 # Once the optimiser has inlined it, GCC 12 takes std::string's own copying for an overlap (its bug 105651), by the page.
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 14)
   target_compile_options(trocar_compile_options INTERFACE -Wno-restrict)
