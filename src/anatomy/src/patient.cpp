@@ -311,7 +311,7 @@ core::Status CheckSize(const Organ& organ) {
   const double size = math::Norm(high - low), reach = std::max(math::Norm(low), math::Norm(high));
   if (size >= kSmallestOrgan && size <= kLargestOrgan && reach * kMmPerMetre <= 2 * kCoordinateMm.max)
     return {};
-  char text[200];
+  char text[240];
   std::snprintf(
       text, sizeof text,
       "%.60s is %.3g mm large and lies up to %.3g mm from the origin; an organ is 2 to 1000 mm; check the "

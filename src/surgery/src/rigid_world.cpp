@@ -87,6 +87,14 @@ constexpr double kWorldRadius = 1.0;  // what is farther away has left the scene
 constexpr int kSolverIterations = 30;  // stacks stand
 constexpr int kPooledManifolds = 512;  // more are taken from the heap
 
+/// Bullet's own constructor leaves the numbers as they are in memory.
+btJointFeedback NoFeedback() {
+  const btVector3 zero(0, 0, 0);
+  btJointFeedback feedback;
+  feedback.m_appliedForceBodyA = feedback.m_appliedForceBodyB = zero;
+  feedback.m_appliedTorqueBodyA = feedback.m_appliedTorqueBodyB = zero;
+  return feedback;
+}
 btVector3 ToBullet(const Vec3& v) {
   return {v.x * kScale, v.y * kScale, v.z * kScale};
 }
@@ -267,7 +275,7 @@ struct RigidWorld::Content {
     std::array<std::unique_ptr<btRigidBody>, kToolPartCount> parts;
     std::array<btTransform, kToolPartCount> from, to;
     std::unique_ptr<btFixedConstraint> hold;
-    btJointFeedback feedback{};
+    btJointFeedback feedback = NoFeedback();
     std::int32_t held = -1;
     double hold_force = 0;
     int ticks_over = 0;
@@ -640,7 +648,7 @@ struct RigidWorld::Content {
     tool.hold = std::make_unique<btFixedConstraint>(*tool.parts[kShaftPart], body, X_carrier_body,
                                                     btTransform::getIdentity());
     tool.hold->setJointFeedback(&tool.feedback);
-    tool.feedback = {};
+    tool.feedback = NoFeedback();
     world->addConstraint(tool.hold.get());
     tool.held = body_index;
   }
