@@ -211,7 +211,8 @@ core::Result<PlayReport> PlayBlind(std::shared_ptr<const scene::Scene> scene, ag
   if (!made) return made.error();
   simulation::Simulation simulation = std::move(*made);
   if (!arguments.files.restore.empty()) {
-    if (auto restored = RestorePlay(arguments.files.restore, simulation, surgeon); !restored)
+    if (auto restored = RestorePlay(arguments.files.restore, arguments.files.who, simulation, surgeon);
+        !restored)
       return restored.error();
   }
   Watcher watcher(*scene);
@@ -229,7 +230,8 @@ core::Result<PlayReport> PlayBlind(std::shared_ptr<const scene::Scene> scene, ag
   }
   progress.Finish();
   if (!arguments.files.save.empty()) {
-    if (auto saved = SavePlay(arguments.files.save, simulation, surgeon); !saved) return saved.error();
+    if (auto saved = SavePlay(arguments.files.save, arguments.files.who, simulation, surgeon); !saved)
+      return saved.error();
   }
   return watcher.Finish(simulation.GetSnapshot(), simulation.Hash());
 }
@@ -354,7 +356,10 @@ void AddPlayCommand(CLI::App& app, Outcome& outcome) {
   command->footer(
       "The same task, level, surgeon and seed give the same hash.\n"
       "Example: trocar play expert --task peg_transfer --seed 3 --json");
-  command->callback([arguments, &outcome] { outcome.status = Play(*arguments, outcome); });
+  command->callback([arguments, &outcome] {
+    arguments->files.who = arguments->surgeon + ", seed " + std::to_string(arguments->seed);
+    outcome.status = Play(*arguments, outcome);
+  });
 }
 
 }  // namespace trocar::cli

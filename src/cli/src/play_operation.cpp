@@ -176,14 +176,15 @@ core::Status PlayOperation(std::shared_ptr<const scene::Scene> scene, agent::Sur
     if (!made.ok()) return made.error();
     simulation::Simulation simulation = std::move(*made);
     if (!play.files.restore.empty()) {
-      if (auto restored = RestorePlay(play.files.restore, simulation, surgeon); !restored) return restored;
+      if (auto restored = RestorePlay(play.files.restore, play.files.who, simulation, surgeon); !restored)
+        return restored;
     }
     while (!surgeon.HasFinished() && simulation.GetSnapshot().time < play.most_seconds) {
       simulation.Step(surgeon.Act(simulation.GetSnapshot()));
       see(simulation.GetSnapshot());
     }
     if (!play.files.save.empty()) {
-      if (auto saved = SavePlay(play.files.save, simulation, surgeon); !saved) return saved;
+      if (auto saved = SavePlay(play.files.save, play.files.who, simulation, surgeon); !saved) return saved;
     }
     run.hash = simulation.Hash();
     result = *simulation.GetOperationResult();

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "trocar/agent/surgeon.h"
 #include "trocar/core/result.h"
@@ -13,13 +14,15 @@ namespace trocar::cli {
 /// Where a play comes from and where it is left; empty paths: the first tick, and nowhere.
 struct PlayFiles {
   std::filesystem::path restore, save;
+  std::string who;  ///< name and seed of the surgeon
 };
 
-/// Both as they were when the file was written, by the same kind of surgeon on the same scene.
+/// Both as they were when the file was written, by the surgeon of the same name and seed on the same scene.
+/// \param who  name and seed of the surgeon
 /// \return the file's error, or kStateInvalid
-core::Status RestorePlay(const std::filesystem::path& path, simulation::Simulation& simulation,
-                         agent::Surgeon& surgeon);
-core::Status SavePlay(const std::filesystem::path& path, const simulation::Simulation& simulation,
-                      agent::Surgeon& surgeon);
+core::Status RestorePlay(const std::filesystem::path& path, const std::string& who,
+                         simulation::Simulation& simulation, agent::Surgeon& surgeon);
+core::Status SavePlay(const std::filesystem::path& path, const std::string& who,
+                      const simulation::Simulation& simulation, agent::Surgeon& surgeon);
 
 }  // namespace trocar::cli

@@ -34,10 +34,15 @@ double CalcVolume(const TriangleMesh& mesh) {
   return geometry::CalcVolume(mesh.positions, mesh.triangles);
 }
 
+/// Least triangles for each one wanted, and most of the volume that may be lost, where clefts are closed by halving
+/// once more.
+constexpr double kFewestWhenBlunt = 2.0, kVolumeLostWhenBlunt = 0.01;
+
 /// The surface to decimate, with the rounds of smoothing that suit its lattice.
 struct FirstSurface {
   TriangleMesh mesh;
   double rounds = 1.0;  // as a share of those asked for
+  int halvings = 0;     // of the volume that it comes from
 };
 
 /// Share of the samples inside whose nearest sample of the halved volume lies outside with all its
@@ -73,6 +78,22 @@ double CalcShareLost(const ScalarVolume& volume, const ScalarVolume& half) {
   return static_cast<double>(gone) / static_cast<double>(all);
 }
 
+/// The surface of the volume halved once more than before: clefts close that are too narrow for the triangles, whose
+/// walls would cut each other. Nothing where that leaves too few triangles or takes too much away.
+std::optional<FirstSurface> MakeBlunterSurface(const ScalarVolume& volume, const FirstSurface& before,
+                                               double budget) {
+  ScalarVolume halved = volume;
+  for (int i = 0; i <= before.halvings; ++i) {
+    ScalarVolume next = HalveResolution(halved);
+    KeepLargestPart(next);
+    if (CalcShareLost(halved, next) > kVolumeLostWhenBlunt) return std::nullopt;
+    halved = std::move(next);
+  }
+  TriangleMesh mesh = MarchCubes(halved);
+  if (static_cast<double>(mesh.triangles.size()) < kFewestWhenBlunt * budget) return std::nullopt;
+  return FirstSurface{std::move(mesh), kRoundsWhenHalved * before.rounds, before.halvings + 1};
+}
+
 /// Halves the volume while its surface stays fine enough for the budget and keeps its parts.
 std::optional<FirstSurface> MakeCoarserSurface(const ScalarVolume& volume, const TriangleMesh& fine,
                                                double wanted) {
@@ -89,11 +110,45 @@ std::optional<FirstSurface> MakeCoarserSurface(const ScalarVolume& volume, const
     if (mesh.triangles.empty() || std::fabs(CalcVolume(mesh) / CalcVolume(fine) - 1.0) > kVolumeChanged)
       break;
     if (geometry::InspectMesh(mesh).genus > genus) break;
-    coarser = FirstSurface{std::move(mesh), kRoundsWhenHalved * (coarser ? coarser->rounds : 1.0)};
+    coarser = FirstSurface{std::move(mesh), kRoundsWhenHalved * (coarser ? coarser->rounds : 1.0),
+                           coarser ? coarser->halvings + 1 : 1};
     halved = std::move(next);
     from = &halved;
   }
   return coarser;
+}
+
+/// A mesh with what is still wrong with it.
+struct Attempt {
+  MeshedVolume made;
+  std::size_t slivers = 0;
+
+  bool IsGood() const { return made.repair.self_intersections == 0 && slivers == 0; }
+  bool operator<(const Attempt& other) const {
+    return std::pair(made.repair.self_intersections, slivers) <
+           std::pair(other.made.repair.self_intersections, other.slivers);
+  }
+};
+
+/// Smooths, decimates and repairs.
+/// \param share  of the smoothing that was asked for
+core::Result<Attempt> MeshSurface(const FirstSurface& surface, double enclosed, double share,
+                                  const MeshingSettings& settings) {
+  TriangleMesh smooth = surface.mesh;
+  SmoothingSettings smoothing = settings.smoothing;
+  smoothing.iterations = static_cast<int>(std::lround(share * surface.rounds * smoothing.iterations));
+  SmoothMesh(smooth, smoothing);
+  SetVolume(smooth, enclosed);
+  auto decimated = DecimateMesh(smooth, {.triangle_budget = settings.triangle_budget});
+  if (!decimated.ok()) return decimated.error();
+  Attempt attempt{{std::move(*decimated), {}, {}}};
+  RepairSettings repair;
+  repair.min_angle_deg = settings.min_angle_deg;
+  repair.fewest_triangles = static_cast<std::size_t>(std::ceil(kFewest * settings.triangle_budget));
+  attempt.made.repair = RepairMesh(attempt.made.mesh, repair);
+  attempt.slivers = RemoveSlivers(attempt.made.mesh, {.least_angle_deg = settings.sliver_angle_deg,
+                                                      .fewest_triangles = repair.fewest_triangles});
+  return attempt;
 }
 
 }  // namespace
@@ -152,36 +207,24 @@ core::Result<MeshedVolume> MeshVolume(ScalarVolume volume, const MeshingSettings
                        "the volume encloses nothing; check its contours or labels"};
   }
   const double enclosed = CalcVolume(fine);
-  const auto coarser = MakeCoarserSurface(volume, fine, settings.oversampling * settings.triangle_budget);
-  const TriangleMesh& surface = coarser ? coarser->mesh : fine;
-
-  std::optional<MeshedVolume> best;
-  std::size_t best_slivers = 0;
-  for (const double share : kSmoothingShares) {
-    TriangleMesh smooth = surface;
-    SmoothingSettings smoothing = settings.smoothing;
-    smoothing.iterations =
-        static_cast<int>(std::lround(share * (coarser ? coarser->rounds : 1.0) * smoothing.iterations));
-    SmoothMesh(smooth, smoothing);
-    SetVolume(smooth, enclosed);
-    auto decimated = DecimateMesh(smooth, {.triangle_budget = settings.triangle_budget});
-    if (!decimated.ok()) return decimated.error();
-    MeshedVolume made{std::move(*decimated), {}, {}};
-    RepairSettings repair;
-    repair.min_angle_deg = settings.min_angle_deg;
-    repair.fewest_triangles = static_cast<std::size_t>(std::ceil(kFewest * settings.triangle_budget));
-    made.repair = RepairMesh(made.mesh, repair);
-    const std::size_t slivers = RemoveSlivers(made.mesh, {.least_angle_deg = settings.sliver_angle_deg,
-                                                          .fewest_triangles = repair.fewest_triangles});
-    const std::size_t cuts = made.repair.self_intersections;
-    if (!best || std::pair(cuts, slivers) < std::pair(best->repair.self_intersections, best_slivers)) {
-      best = std::move(made);
-      best_slivers = slivers;
+  auto coarser = MakeCoarserSurface(volume, fine, settings.oversampling * settings.triangle_budget);
+  std::optional<FirstSurface> surface = coarser ? std::move(*coarser) : FirstSurface{fine};
+  std::optional<Attempt> best;
+  for (int bluntness = 0; bluntness < 2 && surface && !(best && best->IsGood()); ++bluntness) {
+    for (const double share : kSmoothingShares) {
+      auto attempt = MeshSurface(*surface, enclosed, share, settings);
+      if (!attempt.ok()) {
+        // a blunter surface is a second choice: what there is already stands
+        if (bluntness > 0) break;
+        return attempt.error();
+      }
+      if (!best || *attempt < *best) best = std::move(*attempt);
+      if (best->IsGood()) break;
     }
-    if (best->repair.self_intersections == 0 && best_slivers == 0) break;
+    if (!best->IsGood()) surface = MakeBlunterSurface(volume, *surface, settings.triangle_budget);
   }
-  best->quality = InspectQuality(best->mesh, fine, settings.distance_samples);
-  return std::move(*best);
+  best->made.quality = InspectQuality(best->made.mesh, fine, settings.distance_samples);
+  return std::move(best->made);
 }
 
 }  // namespace trocar::meshing

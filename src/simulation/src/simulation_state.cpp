@@ -124,6 +124,7 @@ void Simulation::Content::VisitJudgement(core::StateArchive& archive) {
   archive.Field("was_frozen", j.was_frozen);
   archive.Field("were_tools_touching", j.were_tools_touching);
   // of the last solve, for those who look
+  for (tissue::OrganVolume& organ : world.conserved.organs) archive.Field("organ_volume", organ.volume);
   archive.Field("gravity", tick.gravity);
   archive.Field("residual", tick.report.residual);
   archive.Field("iterations", tick.report.iterations);
@@ -172,9 +173,6 @@ core::Status Simulation::RestoreWithout(std::span<const std::byte> bytes, const 
     core::StateArchive back =
         core::StateArchive::ForRestore(std::span<const std::byte>(before).subspan(sizeof(Header)));
     const core::Status as_before = c.Restore(back);
-    if (!as_before.ok())
-      fprintf(stderr, "%s | %s | omit %s\n", restored.error().Text().c_str(),
-              as_before.error().Text().c_str(), field.c_str());
     TROCAR_ASSERT(as_before.ok());  // saved by this simulation
   }
   return restored;

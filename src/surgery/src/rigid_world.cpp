@@ -615,6 +615,10 @@ struct RigidWorld::Content {
     LoadContacts(state.contacts);
   }
 
+  /// Drops what Bullet remembers beyond the state: the order of its lists and trees, which comes of all that ever touched.
+  /// So the next tick has the same bits where a state has been restored. At the end of whatever changes pairs.
+  void Renew() { Load(Save()); }
+
   void LoadContacts(const std::vector<ContactPointState>& contacts) {
     world->performDiscreteCollisionDetection();
     for (int m = 0; m < dispatcher->getNumManifolds(); ++m) {
@@ -758,9 +762,7 @@ void RigidWorld::Step() {
     tool.ticks_over = math::Norm(pulls[t]) > tool.hold_force ? tool.ticks_over + 1 : 0;
     if (tool.ticks_over >= kSlipTicks) content.Release(tool);
   }
-  // Drops what Bullet remembers beyond the state: the order of its lists and trees, which comes of all that ever touched.
-  // So the next tick has the same bits where a state has been restored.
-  content.Load(content.Save());
+  content.Renew();
 }
 
 std::int32_t RigidWorld::FindBodyInJaws(std::uint32_t tool) const {
@@ -786,6 +788,7 @@ void RigidWorld::Hold(std::uint32_t tool_index, std::uint32_t body_index, double
   body.activate(true);
   tool.hold_force = hold_force;
   tool.ticks_over = 0;
+  content_->Renew();
 }
 
 void RigidWorld::SetHoldForce(std::uint32_t tool, double hold_force) {
@@ -793,7 +796,9 @@ void RigidWorld::SetHoldForce(std::uint32_t tool, double hold_force) {
 }
 
 void RigidWorld::Release(std::uint32_t tool) {
+  if (!content_->tools[tool].hold) return;
   content_->Release(content_->tools[tool]);
+  content_->Renew();
 }
 
 std::int32_t RigidWorld::HeldBy(std::uint32_t tool) const {
