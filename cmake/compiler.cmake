@@ -26,6 +26,10 @@ target_compile_options(trocar_compile_options INTERFACE -ffile-prefix-map=${PROJ
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 14)
   target_compile_options(trocar_compile_options INTERFACE -Wno-restrict)
 endif()
+# says only that a file is not the first of its unit
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND TROCAR_UNITY)
+  target_compile_options(trocar_compile_options INTERFACE -Wno-subobject-linkage)
+endif()
 if(TROCAR_ENABLE_ASSERTS OR CMAKE_BUILD_TYPE STREQUAL "Debug")
   target_compile_definitions(trocar_compile_options INTERFACE TROCAR_ENABLE_ASSERTS=1)
 endif()

@@ -6,7 +6,7 @@
 # name is also one of the module's headers is compiled alone. CMake looks at the files when it runs; where a name written
 # since then clashes, the compiler says so and `cmake BUILD_FOLDER` sorts anew.
 option(TROCAR_UNITY "Compile several source files at a time; OFF is better for editing single files" ON)
-set(TROCAR_UNITY_SIZE 8 CACHE STRING "Most source files in one unit")
+set(TROCAR_UNITY_SIZE 12 CACHE STRING "Most source files in one unit")
 
 # the private names that a source file defines, and its text
 function(trocar_private_names file names_variable text_variable)
