@@ -5,6 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <utility>
 
 #include "small_scene.h"
 #include "trocar/simulation/simulation.h"
@@ -14,6 +18,8 @@ namespace trocar::simulation {
 using scene::CalcLaparoscopePose;
 using scene::CalcScriptInput;
 using scene::FindView;
+using scene::kRight;
+using scene::ReadScene;
 using scene::SmallScene;
 using scene::ViewRequest;
 namespace {
@@ -138,5 +144,26 @@ TEST_F(AutomaticCamera, IsASettingOfTheSceneAndMovesTheSnapshotsLaparoscope) {
   EXPECT_EQ(simulation->GetSnapshot().laparoscope, shared->laparoscope.home);
 }
 
-}  // namespace
-}  // namespace trocar::simulation
+/// Errors of an operation in which the hand looks away while current flows into tissue near the picture's middle.
+std::size_t CountErrorsOutOfView(bool holds_camera) {
+  auto scene = ReadScene(std::filesystem::path(TROCAR_SOURCE_DIR) / "scenes/cholecystectomy.json");
+  EXPECT_TRUE(scene.ok()) << scene.error().Text();
+  auto simulation = Simulation::Make(std::make_shared<const Scene>(std::move(*scene)), 1);
+  EXPECT_TRUE(simulation.ok());
+  const Scene& played = simulation->GetScene();
+  Input input = CalcScriptInput(played, 0.0);
+  input.settings.holds_camera = holds_camera;
+  const auto& tray = played.instruments[kRight].tray;
+  const auto hook = std::find_if(tray.begin(), tray.end(), [](const instrument::Tool& tool) {
+    return tool.kind == instrument::ToolKind::kHook;
+  });
+  input.controls[kRight].tool = static_cast<std::uint8_t>(hook - tray.begin());
+  const Vec3 p_seen = CalcLaparoscopePose(played.laparoscope, played.laparoscope.home) * Vec3{0, 0, -0.08};
+  for (int tick = 0; tick < 360; ++tick) {
+    // the automatic holder does not look where the hand's laparoscope goes
+    if (tick >= 120) input.laparoscope.pan = played.laparoscope.home.pan - 1.2;
+    if (tick >= 120)
+      input.hands[kRight] = instrument::FindJoints(played.instruments[kRight].p_world_port, p_seen, 0.0, 0.0);
+    input.controls[kRight].coagulate = tick >= 300;
+    simulation->Step(input);
+  }

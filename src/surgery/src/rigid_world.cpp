@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// The only file that sees Bullet.
 #include "trocar/surgery/rigid_world.h"
 
 #include <BulletDynamics/ConstraintSolver/btFixedConstraint.h>
@@ -8,11 +7,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <string>
 #include <tuple>
 #include <utility>
 
+#include "bullet_units.h"
+#include "rigid_shapes.h"
+#include "rigid_state.h"
 #include "trocar/core/assert.h"
 #include "trocar/core/state_archive.h"
 #include "trocar/math/state_fields.h"
@@ -20,57 +21,8 @@
 namespace trocar::surgery {
 namespace {
 
-// What Bullet's objects have to hold again for the next step to have the same bits.
-
-using TransformState = std::array<double, 12>;  // rows of the rotation, then the origin [cm]
-
-struct BodyState {
-  TransformState X_world_body{};
-  std::array<double, 3> velocity{}, turn{};  // [cm/s], [rad/s]
-  double deactivation_seconds = 0;
-  std::int64_t activation = 0;  // Bullet's
-  std::uint64_t touches = 0;
-};
-
-struct ToolState {
-  std::array<TransformState, kToolPartCount> parts{}, from{};
-  TransformState X_carrier_body{};  // of what it holds
-  double hold_force = 0;
-  std::int32_t held = -1, ticks_over = 0;
-  Vec3 force;
-};
-
-/// One point of a contact manifold, with what warm-starts the next step.
-struct ContactPointState {
-  std::array<std::int32_t, 4> pair{};      // user index and tool part of both bodies
-  std::array<std::int32_t, 4> children{};  // part and child shape of both
-  std::array<std::array<double, 3>, 7> vectors{};
-  std::array<double, 14> numbers{};
-  std::int32_t flags = 0, life_time = 0;
-};
-
-}  // namespace
-}  // namespace trocar::surgery
-
-namespace trocar::core {
-template <>
-inline constexpr bool kIsPlainState<surgery::BodyState> = sizeof(surgery::BodyState) == 21 * 8;
-template <>
-inline constexpr bool kIsPlainState<surgery::ToolState> = sizeof(surgery::ToolState) == 89 * 8;
-template <>
-inline constexpr bool kIsPlainState<surgery::ContactPointState> = sizeof(surgery::ContactPointState) ==
-                                                                  40 * 8;
-}  // namespace trocar::core
-
-namespace trocar::surgery {
-namespace {
-
-// Bullet's tolerances are made for things of a size of one: it counts in centimetres
-constexpr double kScale = 100.0;
 constexpr int kFewestSubsteps = 4;  // of a tick: pegs are thin
 constexpr int kMostSubsteps = 32;
-constexpr double kMargin = 0.01;        // of shapes [cm]
-constexpr int kRingParts = 16;          // capsules that make a ring
 constexpr int kSlipTicks = 3;           // the pull must exceed the hold that many ticks in a row
 constexpr double kRestSpeed = 1e-3;     // [m/s]
 constexpr double kRestTurn = 0.05;      // [rad/s]
@@ -95,152 +47,11 @@ btJointFeedback NoFeedback() {
   feedback.m_appliedTorqueBodyA = feedback.m_appliedTorqueBodyB = zero;
   return feedback;
 }
-btVector3 ToBullet(const Vec3& v) {
-  return {v.x * kScale, v.y * kScale, v.z * kScale};
-}
-Vec3 FromBullet(const btVector3& v) {
-  return {v.x() / kScale, v.y() / kScale, v.z() / kScale};
-}
-btTransform ToBullet(const Pose& X) {
-  return btTransform(btQuaternion(X.rotation.x, X.rotation.y, X.rotation.z, X.rotation.w),
-                     ToBullet(X.translation));
-}
-Pose FromBullet(const btTransform& X) {
-  const btQuaternion q = X.getRotation();
-  return {math::Quaternion{q.w(), q.x(), q.y(), q.z()}, FromBullet(X.getOrigin())};
-}
-
-std::array<double, 3> Numbers(const btVector3& v) {
-  return {v.x(), v.y(), v.z()};
-}
-btVector3 Vector(const std::array<double, 3>& v) {
-  return {v[0], v[1], v[2]};
-}
-
-TransformState SaveTransform(const btTransform& X) {
-  TransformState state{};
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column)
-      state[static_cast<std::size_t>(3 * row + column)] = X.getBasis()[row][column];
-    state[static_cast<std::size_t>(9 + row)] = X.getOrigin()[row];
-  }
-  return state;
-}
-btTransform LoadTransform(const TransformState& s) {
-  return btTransform(btMatrix3x3(s[0], s[1], s[2], s[3], s[4], s[5], s[6], s[7], s[8]),
-                     btVector3(s[9], s[10], s[11]));
-}
-
-/// Bodies of a manifold by what does not change when they are made anew.
-std::array<std::int32_t, 4> PairOf(const btPersistentManifold& manifold) {
-  return {manifold.getBody0()->getUserIndex(), manifold.getBody0()->getUserIndex2(),
-          manifold.getBody1()->getUserIndex(), manifold.getBody1()->getUserIndex2()};
-}
-std::array<std::int32_t, 4> ChildrenOf(const btManifoldPoint& p) {
-  return {p.m_partId0, p.m_index0, p.m_partId1, p.m_index1};
-}
-
-ContactPointState SavePoint(const btPersistentManifold& manifold, const btManifoldPoint& p) {
-  ContactPointState state;
-  state.pair = PairOf(manifold);
-  state.children = ChildrenOf(p);
-  state.vectors = {Numbers(p.m_localPointA),        Numbers(p.m_localPointB),
-                   Numbers(p.m_positionWorldOnA),   Numbers(p.m_positionWorldOnB),
-                   Numbers(p.m_normalWorldOnB),     Numbers(p.m_lateralFrictionDir1),
-                   Numbers(p.m_lateralFrictionDir2)};
-  state.numbers = {p.m_distance1,
-                   p.m_combinedFriction,
-                   p.m_combinedRollingFriction,
-                   p.m_combinedSpinningFriction,
-                   p.m_combinedRestitution,
-                   p.m_appliedImpulse,
-                   p.m_prevRHS,
-                   p.m_appliedImpulseLateral1,
-                   p.m_appliedImpulseLateral2,
-                   p.m_contactMotion1,
-                   p.m_contactMotion2,
-                   p.m_contactCFM,
-                   p.m_contactERP,
-                   p.m_frictionCFM};
-  state.flags = p.m_contactPointFlags;
-  state.life_time = p.m_lifeTime;
-  return state;
-}
-
-btManifoldPoint LoadPoint(const ContactPointState& state) {
-  btManifoldPoint p;
-  p.m_localPointA = Vector(state.vectors[0]);
-  p.m_localPointB = Vector(state.vectors[1]);
-  p.m_positionWorldOnA = Vector(state.vectors[2]);
-  p.m_positionWorldOnB = Vector(state.vectors[3]);
-  p.m_normalWorldOnB = Vector(state.vectors[4]);
-  p.m_lateralFrictionDir1 = Vector(state.vectors[5]);
-  p.m_lateralFrictionDir2 = Vector(state.vectors[6]);
-  p.m_partId0 = state.children[0];
-  p.m_index0 = state.children[1];
-  p.m_partId1 = state.children[2];
-  p.m_index1 = state.children[3];
-  double* const into[] = {&p.m_distance1,
-                          &p.m_combinedFriction,
-                          &p.m_combinedRollingFriction,
-                          &p.m_combinedSpinningFriction,
-                          &p.m_combinedRestitution,
-                          &p.m_appliedImpulse,
-                          &p.m_prevRHS,
-                          &p.m_appliedImpulseLateral1,
-                          &p.m_appliedImpulseLateral2,
-                          &p.m_contactMotion1,
-                          &p.m_contactMotion2,
-                          &p.m_contactCFM,
-                          &p.m_contactERP,
-                          &p.m_frictionCFM};
-  for (std::size_t i = 0; i < std::size(into); ++i) *into[i] = state.numbers[i];
-  p.m_contactPointFlags = state.flags;
-  p.m_lifeTime = state.life_time;
-  return p;
-}
 
 bool IsFinite(const Pose& X) {
   const double sum = X.rotation.w + X.rotation.x + X.rotation.y + X.rotation.z + X.translation.x +
                      X.translation.y + X.translation.z;
   return std::isfinite(sum);
-}
-
-bool IsPositive(double value) {
-  return value > 0 && std::isfinite(value);
-}
-
-bool HasSize(const RigidShape& shape) {
-  const Vec3& s = shape.size;
-  switch (shape.kind) {
-    case RigidShape::Kind::kBox:
-      return IsPositive(s.x) && IsPositive(s.y) && IsPositive(s.z);
-    case RigidShape::Kind::kCylinder:
-    case RigidShape::Kind::kCapsule:
-      return IsPositive(s.x) && IsPositive(s.z);
-    case RigidShape::Kind::kSphere:
-      return IsPositive(s.x);
-    case RigidShape::Kind::kRing:
-      return IsPositive(s.y) && s.x > s.y && std::isfinite(s.x);
-  }
-  return false;
-}
-
-/// Half of what a shape measures where it is thinnest [m].
-double HalfWidth(const RigidShape& shape) {
-  const Vec3& s = shape.size;
-  switch (shape.kind) {
-    case RigidShape::Kind::kBox:
-      return std::min({s.x, s.y, s.z});
-    case RigidShape::Kind::kCylinder:
-      return std::min(s.x, s.z);
-    case RigidShape::Kind::kCapsule:
-    case RigidShape::Kind::kSphere:
-      return s.x;
-    case RigidShape::Kind::kRing:
-      return s.y;
-  }
-  return 0;
 }
 
 core::Error Refuse(const std::string& why) {
@@ -338,55 +149,6 @@ struct RigidWorld::Content {
     world->getSolverInfo().m_solverMode &= ~SOLVER_RANDMIZE_ORDER;
     for (std::size_t i = 0; i < bodies.size(); ++i) Add(i);
     for (std::size_t i = 0; i < tools.size(); ++i) AddToolParts(i);
-  }
-
-  static void MakeShapes(const RigidBody& definition,
-                         std::vector<std::unique_ptr<btCollisionShape>>& shapes) {
-    auto whole = std::make_unique<btCompoundShape>();
-    const auto add = [&](const Pose& X_body_shape, std::unique_ptr<btCollisionShape> shape) {
-      shape->setMargin(kMargin);
-      whole->addChildShape(ToBullet(X_body_shape), shape.get());
-      shapes.push_back(std::move(shape));
-    };
-    const auto along_z = [](double radius, double half_length) {
-      auto capsule = std::make_unique<btCapsuleShapeZ>(radius * kScale, 2 * half_length * kScale);
-      return capsule;
-    };
-    for (const RigidShape& shape : definition.shapes) {
-      const Vec3& s = shape.size;
-      switch (shape.kind) {
-        case RigidShape::Kind::kBox:
-          add(shape.X_body_shape, std::make_unique<btBoxShape>(ToBullet(s)));
-          break;
-        case RigidShape::Kind::kCylinder:
-          add(shape.X_body_shape, std::make_unique<btCylinderShapeZ>(ToBullet(Vec3{s.x, s.x, s.z})));
-          break;
-        case RigidShape::Kind::kCapsule: {
-          auto capsule = along_z(s.x, s.z);
-          whole->addChildShape(ToBullet(shape.X_body_shape), capsule.get());
-          shapes.push_back(std::move(capsule));
-          break;
-        }
-        case RigidShape::Kind::kSphere: {
-          auto sphere = std::make_unique<btSphereShape>(s.x * kScale);
-          whole->addChildShape(ToBullet(shape.X_body_shape), sphere.get());
-          shapes.push_back(std::move(sphere));
-          break;
-        }
-        case RigidShape::Kind::kRing:
-          for (int part = 0; part < kRingParts; ++part) {
-            const double angle = 2 * std::numbers::pi * part / kRingParts;
-            const Vec3 out{std::cos(angle), std::sin(angle), 0},
-                tangent{-std::sin(angle), std::cos(angle), 0};
-            const Pose X_ring_part{math::RotationBetween({0, 0, 1}, tangent), s.x * out};
-            auto capsule = along_z(s.y, s.x * std::tan(std::numbers::pi / kRingParts));
-            whole->addChildShape(ToBullet(shape.X_body_shape * X_ring_part), capsule.get());
-            shapes.push_back(std::move(capsule));
-          }
-          break;
-      }
-    }
-    shapes.push_back(std::move(whole));
   }
 
   void Add(std::size_t index) {
@@ -514,25 +276,8 @@ struct RigidWorld::Content {
     }
   }
 
-  /// All that the next step depends on, in an order that depends on nothing else.
-  struct State {
-    std::vector<BodyState> bodies;
-    std::vector<ToolState> tools;
-    std::vector<std::vector<std::uint8_t>> touched;  // (tools x parts) by body
-    std::vector<ContactPointState> contacts;
-    Vec3 gravity;
-
-    void VisitState(core::StateArchive& archive) {
-      archive.Field("bodies", bodies);
-      archive.Field("tools", tools);
-      archive.Field("touched", touched);
-      archive.Field("contacts", contacts);
-      archive.Field("gravity", gravity);
-    }
-  };
-
-  State Save() const {
-    State state;
+  RigidState Save() const {
+    RigidState state;
     state.gravity = gravity;
     for (const Body& body : bodies) {
       const btRigidBody& rigid = *body.body;
@@ -566,21 +311,9 @@ struct RigidWorld::Content {
     return state;
   }
 
-  bool Fits(const State& state) const {
-    const auto is_body = [&](std::int32_t held) {
-      return held >= -1 && held < static_cast<std::int32_t>(bodies.size());
-    };
-    return state.bodies.size() == bodies.size() && state.tools.size() == tools.size() &&
-           state.touched.size() == tools.size() * kToolPartCount &&
-           std::all_of(state.touched.begin(), state.touched.end(),
-                       [&](const auto& of_part) { return of_part.size() == bodies.size(); }) &&
-           std::all_of(state.tools.begin(), state.tools.end(),
-                       [&](const ToolState& tool) { return is_body(tool.held); });
-  }
-
   /// A new world in which everything is as in `state`. Of its contacts those stay that Bullet finds again.
-  /// \pre Fits(state)
-  void Load(const State& state) {
+  /// \pre state.Fits(bodies, tools)
+  void Load(const RigidState& state) {
     gravity = state.gravity;
     // Bullet's trees depend on where their leaves begin
     for (std::size_t t = 0; t < tools.size(); ++t) {
@@ -612,32 +345,13 @@ struct RigidWorld::Content {
       if (saved.held >= 0) AddHold(tool, saved.held, LoadTransform(saved.X_carrier_body));
       tool.ticks_over = saved.ticks_over;
     }
-    LoadContacts(state.contacts);
+    world->performDiscreteCollisionDetection();
+    LoadContacts(state.contacts, *dispatcher);
   }
 
   /// Drops what Bullet remembers beyond the state: the order of its lists and trees, which comes of all that ever touched.
   /// So the next tick has the same bits where a state has been restored. At the end of whatever changes pairs.
   void Renew() { Load(Save()); }
-
-  void LoadContacts(const std::vector<ContactPointState>& contacts) {
-    world->performDiscreteCollisionDetection();
-    for (int m = 0; m < dispatcher->getNumManifolds(); ++m) {
-      btPersistentManifold& manifold = *dispatcher->getManifoldByIndexInternal(m);
-      if (manifold.getNumContacts() == 0) continue;
-      const auto key = std::pair(PairOf(manifold), ChildrenOf(manifold.getContactPoint(0)));
-      manifold.clearManifold();
-      auto saved = std::lower_bound(contacts.begin(), contacts.end(), key,
-                                    [](const ContactPointState& point, const auto& wanted) {
-                                      return std::pair(point.pair, point.children) < wanted;
-                                    });
-      for (; saved != contacts.end() && std::pair(saved->pair, saved->children) == key &&
-             manifold.getNumContacts() < MANIFOLD_CACHE_SIZE;
-           ++saved) {
-        manifold.setNumContacts(manifold.getNumContacts() + 1);
-        manifold.getContactPoint(manifold.getNumContacts() - 1) = LoadPoint(*saved);
-      }
-    }
-  }
 
   void AddHold(Tool& tool, std::int32_t body_index, const btTransform& X_carrier_body) {
     btRigidBody& body = *bodies[static_cast<std::size_t>(body_index)].body;
@@ -866,10 +580,10 @@ void RigidWorld::Reset() {
 }
 
 void RigidWorld::VisitState(core::StateArchive& archive) {
-  Content::State state = content_->Save();
+  RigidState state = content_->Save();
   state.VisitState(archive);
   if (!archive.IsRestoring() || !archive.ok()) return;
-  if (!content_->Fits(state)) {
+  if (!state.Fits(content_->bodies.size(), content_->tools.size())) {
     archive.Fail("is of other bodies or tools");
     return;
   }
