@@ -12,6 +12,7 @@
 #include "patient_editor_window.h"
 #include "simulator_window.h"
 #include "trocar/app/options.h"
+#include "trocar/core/partial_path.h"
 
 int main(int argc, char** argv) {
   const trocar::core::Stopwatch since_start;
@@ -32,6 +33,7 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "%s\n", error.Text().c_str());
     return EXIT_FAILURE;
   }
+  trocar::core::RemovePartialPathsOnSignals();
   trocar::app::ChooseComposition();
   const auto application = Gtk::Application::create("", Gio::Application::Flags::NON_UNIQUE);
   std::unique_ptr<trocar::app::SimulatorWindow> simulator;

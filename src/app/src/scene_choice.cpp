@@ -7,27 +7,10 @@
 #include <thread>
 #include <utility>
 
-#include "trocar/core/json.h"
-
 namespace trocar::app {
 namespace {
 
 constexpr const char* kDefaultScene = "demonstration.json";
-
-/// The scene file of that name, or nothing where there is none with an operation.
-core::Result<std::optional<std::filesystem::path>> FindOperationFile(const std::string& name) {
-  const auto data = scene::FindDataFolder();
-  if (!data) return data.error();
-  for (const std::filesystem::path& path :
-       {std::filesystem::path(name), *data / "scenes" / (name + ".json")}) {
-    std::error_code ignored;
-    if (!std::filesystem::is_regular_file(path, ignored)) continue;
-    const auto document = core::JsonDocument::Read(path);
-    if (!document) return document.error();
-    if (document->Root().Has("operation")) return std::optional(path);
-  }
-  return std::optional<std::filesystem::path>();
-}
 
 }  // namespace
 
@@ -38,13 +21,9 @@ core::Result<scene::Scene> ReadChosenScene(const Options& options) {
     if (!data) return data.error();
     return scene::ReadScene(*data / "scenes" / kDefaultScene);
   }
-  const auto operation = FindOperationFile(options.task);
+  auto operation = scene::FindOperation(options.task, {}, options.seed);
   if (!operation) return operation.error();
-  if (operation->has_value()) {
-    auto scene = scene::ReadScene(**operation);
-    if (scene.ok()) scene->seed = options.seed;
-    return scene;
-  }
+  if (operation->has_value()) return std::move(**operation);
   const auto task = scene::FindTask(options.task);
   if (!task) {
     if (task.error().code != core::ErrorCode::kUnknownName) return task.error();

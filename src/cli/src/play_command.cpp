@@ -192,7 +192,7 @@ core::Status PrintList() {
     for (const std::string& level : task.levels) levels += (levels.empty() ? "" : ", ") + level;
     PrintTask(task.key, levels, *scene);
   }
-  const auto operation = FindOperation("cholecystectomy", {}, 0);
+  const auto operation = scene::FindOperation("cholecystectomy", {}, 0);
   if (!operation) return operation.error();
   if (*operation) PrintTask("cholecystectomy", "", **operation);
   std::printf("\n");
@@ -296,7 +296,7 @@ core::Status Play(const PlayArguments& arguments, Outcome& outcome) {
     return core::Error{core::ErrorCode::kUsage,
                        "--save and --restore go without pictures; leave out -o, or play from the start"};
   }
-  auto operation = FindOperation(arguments.task, arguments.patient, arguments.seed);
+  auto operation = scene::FindOperation(arguments.task, arguments.patient, arguments.seed);
   if (!operation.ok()) return operation.error();
   if (*operation) return PlayOne(std::move(**operation), arguments);
   const auto path = scene::FindTask(arguments.task);

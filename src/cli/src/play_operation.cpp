@@ -140,26 +140,6 @@ double Share(const Snapshot& now) {
 
 }  // namespace
 
-core::Result<std::optional<scene::Scene>> FindOperation(const std::string& name,
-                                                        const std::filesystem::path& patient_folder,
-                                                        std::uint64_t seed) {
-  std::filesystem::path path = name;
-  std::error_code ignored;
-  if (!std::filesystem::exists(path, ignored)) {
-    const auto data = scene::FindDataFolder();
-    if (!data.ok()) return data.error();
-    path = *data / "scenes" / (name + ".json");
-    if (!std::filesystem::exists(path, ignored)) return std::optional<scene::Scene>();
-  }
-  const auto document = core::JsonDocument::Read(path);
-  if (!document.ok()) return document.error();
-  if (!document->Root().Has("operation")) return std::optional<scene::Scene>();
-  auto scene = scene::ReadScene(path, patient_folder);
-  if (!scene.ok()) return scene.error();
-  scene->seed = seed;
-  return std::optional<scene::Scene>(std::move(*scene));
-}
-
 core::Status PlayOperation(std::shared_ptr<const scene::Scene> scene, agent::Surgeon& surgeon,
                            const OperationPlay& play) {
   Run run;

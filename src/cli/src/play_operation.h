@@ -22,12 +22,6 @@ struct OperationPlay {
   PlayFiles files;  ///< only without pictures
 };
 
-/// The scene of that name, or at that path, where it is an operation.
-/// \return nothing where there is none: then it is a task; the file's error where it is one that cannot be read
-core::Result<std::optional<scene::Scene>> FindOperation(const std::string& name,
-                                                        const std::filesystem::path& patient_folder,
-                                                        std::uint64_t seed);
-
 /// Runs to the surgeon's end and prints what it came to.
 core::Status PlayOperation(std::shared_ptr<const scene::Scene> scene, agent::Surgeon& surgeon,
                            const OperationPlay& play);

@@ -2,7 +2,11 @@
 #include "trocar/scene/scene.h"
 
 #include <cmath>
+#include <filesystem>
+#include <optional>
 #include <string>
+#include <system_error>
+#include <utility>
 
 #include "field_ranges.h"
 #include "material_file.h"
@@ -239,6 +243,26 @@ core::Result<Scene> ReadScene(const std::filesystem::path& path,
   if (root.Integer("version") != 1) root.Complain("version must be 1");
   if (root.Text("name").empty()) root.Complain("the scene needs a name");
   return ReadSceneFields(*document, root, path.parent_path(), patient_folder);
+}
+
+core::Result<std::optional<Scene>> FindOperation(const std::string& name,
+                                                 const std::filesystem::path& patient_folder,
+                                                 std::uint64_t seed) {
+  std::filesystem::path path = name;
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(path, ignored)) {
+    const auto data = FindDataFolder();
+    if (!data.ok()) return data.error();
+    path = *data / "scenes" / (name + ".json");
+  }
+  if (!std::filesystem::is_regular_file(path, ignored)) return std::optional<Scene>();
+  const auto document = core::JsonDocument::Read(path);
+  if (!document.ok()) return document.error();
+  if (!document->Root().Has("operation")) return std::optional<Scene>();
+  auto scene = ReadScene(path, patient_folder);
+  if (!scene.ok()) return scene.error();
+  scene->seed = seed;
+  return std::optional<Scene>(std::move(*scene));
 }
 
 }  // namespace trocar::scene

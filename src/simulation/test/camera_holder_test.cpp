@@ -167,3 +167,15 @@ std::size_t CountErrorsOutOfView(bool holds_camera) {
     input.controls[kRight].coagulate = tick >= 300;
     simulation->Step(input);
   }
+  return simulation->GetOperationResult()->errors.Count(training::OperationError::kEnergyOutOfView);
+}
+
+// What is judged is what the trainee sees: the holder's picture, not the one that the hand's device points at.
+TEST(CameraHolderOperation, IsJudgedThroughThePictureThatIsSeen) {
+  EXPECT_EQ(CountErrorsOutOfView(true), 0U);
+  EXPECT_EQ(CountErrorsOutOfView(false), 1U)
+      << "the control: the hand holds the camera itself, and looks away";
+}
+
+}  // namespace
+}  // namespace trocar::simulation

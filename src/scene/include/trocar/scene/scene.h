@@ -164,4 +164,10 @@ std::optional<instrument::TrocarJoints> FindView(const LaparoscopeSetup& setup, 
 /// The script's input at `time` [s], clamped to its first and last key; the home pose without a script.
 Input CalcScriptInput(const Scene& scene, double time);
 
+/// The scene of that name, or at that path, where it is an operation.
+/// \return nothing where there is none: then it is a task; the file's error where it is one that cannot be read
+core::Result<std::optional<Scene>> FindOperation(const std::string& name,
+                                                 const std::filesystem::path& patient_folder,
+                                                 std::uint64_t seed);
+
 }  // namespace trocar::scene
