@@ -26,6 +26,7 @@ for compiler in "${compilers[@]}"; do
     folder=$scratch/$compiler$level
     rm -rf "$folder"
     mkdir -p "$folder"
+    running=0
     for file in "${sources[@]}"; do
       own=()
       if [ "$architecture" = x86_64 ]; then
@@ -35,8 +36,12 @@ for compiler in "${compilers[@]}"; do
             own=(-mavx512f -mavx512vl -mavx512dq -mavx512bw -mfma -mprefer-vector-width=512) ;;
         esac
       fi
-      "$compiler" "${flags[@]}" "$level" "${own[@]}" -c "$file" -o "$folder/$(basename "$file" .cpp).o"
+      # as many at a time as there are processors
+      [ $running -lt "$(nproc)" ] || { wait -n; running=$((running - 1)); }
+      "$compiler" "${flags[@]}" "$level" "${own[@]}" -c "$file" -o "$folder/$(basename "$file" .cpp).o" &
+      running=$((running + 1))
     done
+    for ((; running > 0; --running)); do wait -n; done
     "$compiler" "$folder"/*.o -ltbb -lpthread -o "$folder/solve_bits"
     "$folder/solve_bits" > "$folder/bits"
     [ -s "$folder/bits" ] || { echo "$compiler $level: nothing was printed"; exit 1; }

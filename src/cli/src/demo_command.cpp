@@ -21,8 +21,10 @@
 #include "igtl_option.h"
 #include "motion_log.h"
 #include "part_folder.h"
+#include "picture_size.h"
 #include "report.h"
 #include "trocar/core/safe_file.h"
+#include "trocar/core/state_hash.h"
 #include "trocar/core/version.h"
 #include "trocar/training/motion_metrics.h"
 #include "trocar/view/demo.h"
@@ -43,18 +45,6 @@ struct DemoArguments {
   int igtl_port = -1;
   HapticOptions haptics;
 };
-
-std::string FormatHash(std::uint64_t hash) {
-  char text[17];
-  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash));
-  return text;
-}
-
-/// "1280x720"; false for anything else.
-bool ParseSize(const std::string& text, int& width, int& height) {
-  char end = 0;
-  return std::sscanf(text.c_str(), "%5dx%5d%c", &width, &height, &end) == 2;
-}
 
 core::Result<std::shared_ptr<const scene::Scene>> ReadSceneOrBuiltIn(const std::string& path,
                                                                      const std::string& patient) {
@@ -77,7 +67,7 @@ std::string FormatMetricsFile(const training::SessionMetrics& metrics, const sce
                                  {"patient", scene.patient.name},
                                  {"seed", scene.seed},
                                  {"ticks", played.ticks},
-                                 {"state_hash", FormatHash(played.state_hash)}};
+                                 {"state_hash", core::HashText(played.state_hash)}};
   json.update(nlohmann::ordered_json::parse(training::FormatMetricsJson(metrics), nullptr, false));
   json["haptics"] = nullptr;
   if (haptics != nullptr) {
@@ -95,7 +85,7 @@ core::Result<std::string> MakePage(const scene::Scene& scene, const view::DemoRe
   content.patient = scene.patient.name;
   content.provenance = scene.patient.provenance;
   content.seed = scene.seed;
-  content.hash = FormatHash(played.state_hash);
+  content.hash = core::HashText(played.state_hash);
   content.ticks = played.ticks;
   content.tick_seconds = scene.tick_seconds;
   content.version = core::VersionText();
@@ -124,7 +114,7 @@ void PrintSummary(const view::DemoReport& played, const scene::Scene& scene, con
   std::printf("Played %s s of \"%s\": %llu ticks, state hash %s\n",
               FormatNumber(static_cast<double>(played.ticks) * scene.tick_seconds).c_str(),
               scene.name.c_str(), static_cast<unsigned long long>(played.ticks),
-              FormatHash(played.state_hash).c_str());
+              core::HashText(played.state_hash).c_str());
   std::printf("Drew %llu frames with %s: median %s ms, p99 %s ms a frame\n",
               static_cast<unsigned long long>(played.frames), played.graphics.c_str(),
               FormatNumber(1e3 * played.draw_median, 3).c_str(),
@@ -135,9 +125,9 @@ void PrintSummary(const view::DemoReport& played, const scene::Scene& scene, con
 
 core::Status Play(const DemoArguments& arguments) {
   view::DemoOptions options;
-  if (!ParseSize(arguments.size, options.width, options.height)) {
-    return core::Error{core::ErrorCode::kUsage, "--size: \"" + arguments.size + "\" is not like 1280x720"};
-  }
+  const auto size = ReadSize(arguments.size);
+  if (!size) return size.error();
+  options.width = (*size)[0], options.height = (*size)[1];
   const auto scene = ReadSceneOrBuiltIn(arguments.scene, arguments.patient);
   if (!scene) return scene.error();
   PartFolder part(arguments.output);

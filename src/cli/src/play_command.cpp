@@ -11,13 +11,16 @@
 #include <utility>
 #include <vector>
 
+#include "attempt_recording.h"
 #include "command.h"
 #include "console.h"
 #include "part_folder.h"
+#include "picture_size.h"
 #include "play_operation.h"
 #include "play_state.h"
 #include "trocar/agent/surgeon.h"
 #include "trocar/core/safe_file.h"
+#include "trocar/core/state_hash.h"
 #include "trocar/core/statistics.h"
 #include "trocar/scene/task.h"
 #include "trocar/simulation/simulation.h"
@@ -33,7 +36,7 @@ constexpr double kMillilitre = 1e6;  // per m^3
 
 struct PlayArguments {
   std::string surgeon, task, patient, output;
-  std::string level = "normal", size = "1280x720";
+  std::string level = "normal", size = "1280x720", record;
   std::uint64_t seed = 1;
   int threads = 1;
   double most_seconds = 3600;
@@ -95,12 +98,6 @@ class Watcher {
   std::vector<scene::TaskError> errors_;
 };
 
-std::string HashText(std::uint64_t hash) {
-  char text[17];
-  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash));
-  return text;
-}
-
 nlohmann::ordered_json ErrorJson(const scene::Scene& scene, const scene::TaskError& error) {
   const scene::ErrorRule& rule = scene.task->errors[static_cast<std::size_t>(error.rule)];
   const auto& p = error.position;
@@ -128,7 +125,7 @@ void PrintJson(const scene::Scene& scene, const PlayReport& report) {
                {"bile_ml", report.bile_ml},
                {"tick_p99_ms", report.tick_p99_ms},
                {"cut_tick_max_ms", report.cut_tick_max_ms},
-               {"hash", HashText(report.hash)},
+               {"hash", core::HashText(report.hash)},
                {"score", report.task.score},
                {"time_s", report.task.time},
                {"phase", scene::PhaseName(report.task.phase)}});
@@ -159,7 +156,7 @@ void PrintForPerson(const scene::Scene& scene, const PlayReport& report) {
                 FormatNumber(rule.penalty).c_str());
   }
   std::printf("Tick p99 %s ms, state hash %s\n", FormatNumber(report.tick_p99_ms, 3).c_str(),
-              HashText(report.hash).c_str());
+              core::HashText(report.hash).c_str());
   std::printf("Training feedback, not certified assessment.\n");
 }
 
@@ -204,6 +201,13 @@ core::Status PrintList() {
   return {};
 }
 
+record::Description DescribePlay(const PlayArguments& arguments) {
+  record::Description description = Describe(record::Description::Kind::kTask, arguments.task,
+                                             arguments.patient, arguments.seed, arguments.files.who);
+  description.level = arguments.level;
+  return description;
+}
+
 /// Without pictures.
 core::Result<PlayReport> PlayBlind(std::shared_ptr<const scene::Scene> scene, agent::Surgeon& surgeon,
                                    const PlayArguments& arguments) {
@@ -215,11 +219,15 @@ core::Result<PlayReport> PlayBlind(std::shared_ptr<const scene::Scene> scene, ag
         !restored)
       return restored.error();
   }
+  auto recording = AttemptRecording::Start(arguments.record, DescribePlay(arguments), simulation);
+  if (!recording.ok()) return recording.error();
   Watcher watcher(*scene);
   const std::size_t goals = scene->task->goals.size();
   ProgressBar progress("playing", static_cast<double>(goals));
   while (!surgeon.HasFinished() && simulation.GetSnapshot().time < arguments.most_seconds) {
-    simulation.Step(surgeon.Act(simulation.GetSnapshot()));
+    const scene::Input input = surgeon.Act(simulation.GetSnapshot());
+    simulation.Step(input);
+    recording->Add(input, simulation);
     const Snapshot& now = simulation.GetSnapshot();
     watcher.See(now);
     if (now.tick % 30 != 0) continue;
@@ -229,19 +237,12 @@ core::Result<PlayReport> PlayBlind(std::shared_ptr<const scene::Scene> scene, ag
     progress.Show(static_cast<double>(done));
   }
   progress.Finish();
+  if (auto finished = recording->Finish(simulation); !finished) return finished.error();
   if (!arguments.files.save.empty()) {
     if (auto saved = SavePlay(arguments.files.save, arguments.files.who, simulation, surgeon); !saved)
       return saved.error();
   }
   return watcher.Finish(simulation.GetSnapshot(), simulation.Hash());
-}
-
-core::Result<std::array<int, 2>> ReadSize(const std::string& text) {
-  std::array<int, 2> size{};
-  char end = 0;
-  if (std::sscanf(text.c_str(), "%5dx%5d%c", &size[0], &size[1], &end) != 2)
-    return core::Error{core::ErrorCode::kUsage, "--size: \"" + text + "\" is not like 1280x720"};
-  return size;
 }
 
 /// With pictures and a video.
@@ -282,9 +283,12 @@ core::Status PlayOne(scene::Scene scene, const PlayArguments& arguments) {
   if (!surgeon) return surgeon.error();
   const auto size = ReadSize(arguments.size);
   if (!size) return size.error();
+  record::Description description = DescribePlay(arguments);
+  description.kind = record::Description::Kind::kOperation;
+  description.level.clear();
   return PlayOperation(shared, **surgeon,
                        {arguments.output, (*size)[0], (*size)[1], arguments.threads, arguments.most_seconds,
-                        arguments.is_json, arguments.files});
+                        arguments.is_json, arguments.files, arguments.record, std::move(description)});
 }
 
 core::Status Play(const PlayArguments& arguments, Outcome& outcome) {
@@ -295,6 +299,11 @@ core::Status Play(const PlayArguments& arguments, Outcome& outcome) {
   if (has_files && !arguments.output.empty()) {
     return core::Error{core::ErrorCode::kUsage,
                        "--save and --restore go without pictures; leave out -o, or play from the start"};
+  }
+  if (!arguments.record.empty() && !arguments.output.empty()) {
+    return core::Error{
+        core::ErrorCode::kUsage,
+        "--record goes without pictures; leave out -o, and draw the recording: trocar replay FILE -o DIR"};
   }
   auto operation = scene::FindOperation(arguments.task, arguments.patient, arguments.seed);
   if (!operation.ok()) return operation.error();
@@ -351,6 +360,7 @@ void AddPlayCommand(CLI::App& app, Outcome& outcome) {
       ->add_option("--restore", arguments->files.restore,
                    "Go on where --save left off: the same task, level, patient, seed and surgeon")
       ->type_name("FILE");
+  AddRecordOption(*command, arguments->record);
   command->add_flag("--json", arguments->is_json, "Machine-readable");
   command->add_flag("--list", arguments->is_list, "Show tasks and surgeons, and do nothing");
   command->footer(

@@ -7,9 +7,11 @@
 #include <utility>
 #include <vector>
 
+#include "attempt_recording.h"
 #include "console.h"
 #include "part_folder.h"
 #include "trocar/core/json.h"
+#include "trocar/core/state_hash.h"
 #include "trocar/core/statistics.h"
 #include "trocar/simulation/simulation.h"
 #include "trocar/training/injury.h"
@@ -40,12 +42,6 @@ struct Run {
   }
 };
 
-std::string HashText(std::uint64_t hash) {
-  char text[17];
-  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash));
-  return text;
-}
-
 double Left(const OperationResult& result, surgery::Fluid fluid) {
   return kMillilitre * result.fluids.fluids[static_cast<std::size_t>(fluid)].left;
 }
@@ -73,7 +69,7 @@ ordered_json MakeJson(const OperationResult& result, const Run& run) {
                {"bile_ml", Left(result, surgery::Fluid::kBile)},
                {"tick_p99_ms", core::CalcPercentile(run.tick_ms, 0.99)},
                {"cut_tick_max_ms", run.cut_tick_max_ms},
-               {"hash", HashText(run.hash)},
+               {"hash", core::HashText(run.hash)},
                {"time_s", run.seconds},
                {"phase", training::NameOf(result.phase)},
                {"strasberg", training::StrasbergName(result.injuries.strasberg)},
@@ -120,7 +116,7 @@ void PrintForPerson(const scene::Scene& scene, const OperationResult& result, co
   }
   std::printf("Tick p99 %s ms, longest tick with a cut %s ms, state hash %s\n",
               FormatNumber(core::CalcPercentile(run.tick_ms, 0.99), 3).c_str(),
-              FormatNumber(run.cut_tick_max_ms, 3).c_str(), HashText(run.hash).c_str());
+              FormatNumber(run.cut_tick_max_ms, 3).c_str(), core::HashText(run.hash).c_str());
   std::printf("Training feedback, not certified assessment.\n");
 }
 
@@ -159,10 +155,15 @@ core::Status PlayOperation(std::shared_ptr<const scene::Scene> scene, agent::Sur
       if (auto restored = RestorePlay(play.files.restore, play.files.who, simulation, surgeon); !restored)
         return restored;
     }
+    auto recording = AttemptRecording::Start(play.record, play.description, simulation);
+    if (!recording.ok()) return recording.error();
     while (!surgeon.HasFinished() && simulation.GetSnapshot().time < play.most_seconds) {
-      simulation.Step(surgeon.Act(simulation.GetSnapshot()));
+      const scene::Input input = surgeon.Act(simulation.GetSnapshot());
+      simulation.Step(input);
+      recording->Add(input, simulation);
       see(simulation.GetSnapshot());
     }
+    if (auto finished = recording->Finish(simulation); !finished) return finished;
     if (!play.files.save.empty()) {
       if (auto saved = SavePlay(play.files.save, play.files.who, simulation, surgeon); !saved) return saved;
     }

@@ -10,6 +10,7 @@
 #include "play_state.h"
 #include "trocar/agent/surgeon.h"
 #include "trocar/core/result.h"
+#include "trocar/record/recording.h"
 
 namespace trocar::cli {
 
@@ -19,7 +20,9 @@ struct OperationPlay {
   int threads = 1;
   double most_seconds = 3600;
   bool is_json = false;
-  PlayFiles files;  ///< only without pictures
+  PlayFiles files;                  ///< only without pictures
+  std::string record;               ///< file of a recording, or empty; only without pictures
+  record::Description description;  ///< of that recording
 };
 
 /// Runs to the surgeon's end and prints what it came to.

@@ -79,6 +79,8 @@ int ParseAndRun(int argc, char** argv) {
   AddDemoCommand(app, outcome);
   AddPlayCommand(app, outcome);
   AddSimulateCommand(app, outcome);
+  AddReplayCommand(app, outcome);
+  AddRecordCommand(app, outcome);
   AddAnatomyCommand(app, outcome);
   AddDevicesCommand(app, outcome);
   AddBenchCommand(app, outcome);

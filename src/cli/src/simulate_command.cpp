@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "attempt_recording.h"
 #include "command.h"
 #include "console.h"
 #include "device_input.h"
@@ -20,6 +21,7 @@
 #include "igtl_option.h"
 #include "trocar/core/clock.h"
 #include "trocar/core/log.h"
+#include "trocar/core/state_hash.h"
 #include "trocar/core/statistics.h"
 #include "trocar/net/igtl_server.h"
 #include "trocar/simulation/simulation.h"
@@ -33,6 +35,7 @@ struct SimulateOptions {
   std::string patient;        // in place of the scene's
   std::string device;         // in place of the script's hands
   std::string save, restore;  // files of states, or empty
+  std::string record;         // file of a recording, or empty
   HapticOptions haptics;
   int igtl_port = -1;  // -1: nobody looks on
   int ticks = 0;
@@ -59,12 +62,6 @@ struct SimulateReport {
   std::optional<session::HapticSummary> haptics;
 };
 
-std::string FormatHash(std::uint64_t hash) {
-  char text[17];
-  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash));
-  return text;
-}
-
 /// One line in the tick in which the processor takes over from the GPU.
 void WarnOnce(const simulation::Simulation& simulation, std::string& said) {
   if (!said.empty() || simulation.GpuError() == nullptr) return;
@@ -73,6 +70,10 @@ void WarnOnce(const simulation::Simulation& simulation, std::string& said) {
 }
 
 core::Result<SimulateReport> Simulate(const SimulateOptions& options) {
+  if (!options.record.empty() && options.uses_gpu) {
+    return core::Error{core::ErrorCode::kUsage,
+                       "--record goes without --gpu, whose bits another computer does not repeat"};
+  }
   core::Result<scene::Scene> read = scene::ReadScene(options.scene, options.patient);
   if (!read) return read.error();
   auto scene = std::make_shared<scene::Scene>(std::move(read).value());
@@ -106,6 +107,15 @@ core::Result<SimulateReport> Simulate(const SimulateOptions& options) {
     haptics = std::move(*opened);
   }
 
+  const std::string player = options.haptics.name.empty()
+                                 ? (options.device.empty() ? std::string("script") : options.device)
+                                 : options.haptics.name;
+  auto recording = AttemptRecording::Start(
+      options.record,
+      Describe(record::Description::Kind::kScene, options.scene, options.patient, scene->seed, player),
+      simulation);
+  if (!recording) return recording.error();
+
   const auto count = static_cast<std::size_t>(options.ticks);
   std::array<std::vector<double>, simulation::kStageCount> stage_ms;
   for (auto& times : stage_ms) times.reserve(count);
@@ -120,6 +130,7 @@ core::Result<SimulateReport> Simulate(const SimulateOptions& options) {
     const core::Stopwatch stopwatch;
     simulation.Step(input);
     if (haptics != nullptr) haptics->AfterStep(simulation);
+    recording->Add(input, simulation);
     tick_ms.push_back(1e3 * stopwatch.Seconds());
     const simulation::Snapshot& snapshot = simulation.GetSnapshot();
     for (std::size_t i = 0; i < stage_ms.size(); ++i) stage_ms[i].push_back(1e3 * snapshot.stage_seconds[i]);
@@ -131,6 +142,7 @@ core::Result<SimulateReport> Simulate(const SimulateOptions& options) {
     progress.Show(tick + 1);
   }
   progress.Finish();
+  if (const core::Status finished = recording->Finish(simulation); !finished) return finished.error();
   if (!options.save.empty()) {
     if (const core::Status saved = simulation::WriteStateFile(options.save, simulation); !saved)
       return saved.error();
@@ -140,7 +152,7 @@ core::Result<SimulateReport> Simulate(const SimulateOptions& options) {
   }
 
   if (report.gpu.empty()) report.gpu = simulation.GpuName();
-  report.hash = FormatHash(simulation.Hash());
+  report.hash = core::HashText(simulation.Hash());
   report.ticks = simulation.GetSnapshot().tick;
   report.residual = simulation.GetSnapshot().residual;
   for (int i = 0; i < simulation::kStageCount; ++i) {
@@ -222,6 +234,7 @@ void AddSimulateCommand(CLI::App& app, Outcome& outcome) {
       ->add_option("--restore", options->restore,
                    "Go on from a state that was saved of the same scene, patient and seed")
       ->type_name("FILE");
+  AddRecordOption(*command, options->record);
   AddIgtlOption(*command, options->igtl_port);
   AddHapticOptions(*command, options->haptics);
   command->add_flag("--gpu", options->uses_gpu,

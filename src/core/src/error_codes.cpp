@@ -57,6 +57,8 @@ constexpr ErrorEntry kTable[] = {
     {ErrorCode::kOutOfMemory, "E-SIM-005", "more memory is needed than there is"},
     {ErrorCode::kStateInvalid, "E-SIM-006",
      "a saved state is damaged, of another version or of another scene"},
+    {ErrorCode::kRecordingInvalid, "E-REC-001",
+     "a recording is damaged, of another version, or its scene has changed since"},
     {ErrorCode::kNoGraphics, "E-GL-001", "no OpenGL context can be made"},
     {ErrorCode::kGraphicsTooOld, "E-GL-002", "OpenGL is older than 3.3"},
     {ErrorCode::kShaderFailed, "E-GL-003", "a shader does not compile"},

@@ -16,6 +16,11 @@ bool AskForRealTime(RealTimePolicy policy, int above_lowest) noexcept {
   return pthread_setschedparam(pthread_self(), scheduler, &parameters) == 0;
 }
 
+void LeaveRealTime() noexcept {
+  const sched_param none{};
+  pthread_setschedparam(pthread_self(), SCHED_OTHER, &none);
+}
+
 void SleepUntil(std::int64_t time) noexcept {
   timespec until{};
   until.tv_sec = time / 1'000'000'000;

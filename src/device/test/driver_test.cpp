@@ -108,7 +108,9 @@ TEST(ForceDriver, ALostDeviceGetsZeroAndIsClosedLater) {
     driver.calls.clear();
     driver.next = ReadStatus::kFresh;
     if (way == 0) driver.Release(), driver.Release();
-    if (way == 1) ASSERT_TRUE(driver.Configure().ok());
+    if (way == 1) {
+      ASSERT_TRUE(driver.Configure().ok());
+    }
     if (way == 2) driver.Finalize();
     EXPECT_FALSE(driver.NeedsRelease());
     Calls expected{"deactivate", "cleanup"};

@@ -8,11 +8,13 @@
 #include <utility>
 #include <vector>
 
+#include "attempt_keeper.h"
 #include "trocar/agent/surgeon.h"
 #include "trocar/core/clock.h"
 #include "trocar/core/newest_slot.h"
 #include "trocar/core/real_time.h"
 #include "trocar/core/statistics.h"
+#include "trocar/record/input_codec.h"
 
 namespace trocar::session {
 
@@ -30,7 +32,8 @@ constexpr int kPriorityAboveLowest = 0;
 }  // namespace
 
 struct Runner::Content {
-  Content(Simulation taken, HapticLink* link) : simulation(std::move(taken)), haptics(link) {}
+  Content(Simulation taken, HapticLink* link, std::optional<AttemptKeeping> kept)
+      : simulation(std::move(taken)), haptics(link), attempts(std::move(kept)) {}
 
   Simulation simulation;
   HapticLink* haptics;
@@ -44,6 +47,7 @@ struct Runner::Content {
   std::atomic<bool> is_real_time{false};
   std::unique_ptr<Surgeon> expert;  // of the thread; none before it is needed
   std::atomic<bool> is_script_over{false};
+  AttemptKeeper attempts;
   std::thread thread;
 
   /// What the script does in the next tick, or the expert where there is no script.
@@ -95,6 +99,7 @@ void Runner::Content::Run() {
   while (!is_stopping.load(std::memory_order_relaxed)) {
     if (const int wanted = resets_wanted.load(std::memory_order_acquire); wanted != resets_done) {
       resets_done = wanted;
+      attempts.End(simulation);
       simulation.Reset();
       expert.reset();
       is_script_over.store(false, std::memory_order_relaxed);
@@ -107,7 +112,10 @@ void Runner::Content::Run() {
       // while the script moves the tools, nothing of theirs may be felt
       const bool is_felt = !is_scripted.load(std::memory_order_relaxed);
       if (is_felt && haptics != nullptr) haptic_hands.Take(*haptics, now);
+      record::RoundJoints(now);
+      attempts.BeforeStep(simulation);
       simulation.Step(now);
+      attempts.AfterStep(now, simulation);
       if (is_felt) PublishPatches();
       Publish();
       ticks.fetch_add(1, std::memory_order_relaxed);
@@ -128,10 +136,11 @@ void Runner::Content::Run() {
     }
     core::SleepUntil(next);
   }
+  attempts.End(simulation);
 }
 
-Runner::Runner(Simulation simulation, HapticLink* haptics)
-    : content_(std::make_unique<Content>(std::move(simulation), haptics)) {
+Runner::Runner(Simulation simulation, HapticLink* haptics, std::optional<AttemptKeeping> keeping)
+    : content_(std::make_unique<Content>(std::move(simulation), haptics, std::move(keeping))) {
   content_->Publish();
   content_->snapshot_slot.Update();
   content_->thread = std::thread([content = content_.get()] { content->Run(); });
@@ -178,6 +187,10 @@ const Snapshot& Runner::Latest() {
 RunnerStatistics Runner::Statistics() const {
   return {content_->ticks.load(), content_->late_ticks.load(), content_->tick_median.load(),
           content_->tick_p99.load(), content_->is_real_time.load()};
+}
+
+std::optional<record::RecorderStatus> Runner::RecordingStatus() const {
+  return content_->attempts.Status();
 }
 
 const Scene& Runner::GetScene() const {

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "small_scene.h"
+#include "trocar/record/replay.h"
 
 namespace trocar::session {
 
@@ -72,6 +73,54 @@ TEST_F(RunnerTest, EndsAtOnceEvenWhileRunning) {
     Runner runner(MakeSimulation());
     runner.SetPaused(false);
   }
+}
+
+TEST_F(RunnerTest, KeepsEachAttemptInAFileThatReplaysToTheBit) {
+  const auto kept = folder_ / "attempts";
+  AttemptKeeping keeping{kept, {}};
+  keeping.description.name = (folder_ / "scene.json").string();
+  {
+    auto simulation = MakeSimulation();
+    keeping.description.seed = simulation.GetScene().seed;
+    Runner runner(std::move(simulation), nullptr, keeping);
+    runner.SetScripted(true);
+    for (int attempt = 0; attempt < 2; ++attempt) {
+      runner.SetPaused(false);
+      ASSERT_TRUE(Eventually([&] { return runner.Latest().tick > 140; }));
+      EXPECT_EQ(runner.RecordingStatus().value().failure, std::nullopt);
+      runner.SetPaused(true);
+      runner.Reset();
+      ASSERT_TRUE(Eventually([&] { return runner.Latest().tick == 0; }));
+    }
+    runner.SetPaused(false);
+    ASSERT_TRUE(Eventually([&] { return runner.Latest().tick > 5; }));
+  }
+  // the third was hardly begun
+  int count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(kept)) {
+    ++count;
+    auto recording = record::ReadRecording(entry.path());
+    ASSERT_TRUE(recording.ok()) << recording.error().Text();
+    EXPECT_TRUE(recording->ending.has_value());
+    EXPECT_GT(recording->inputs.size(), 140u);
+    auto replay = record::Replay::Open(std::move(*recording), 1);
+    ASSERT_TRUE(replay.ok()) << replay.error().Text();
+    const auto verified = replay->Verify();
+    ASSERT_TRUE(verified.ok()) << verified.error().Text();
+    EXPECT_TRUE(verified->IsVerified());
+  }
+  EXPECT_EQ(count, 2);
+}
+
+TEST_F(RunnerTest, GoesOnWhereAttemptsCannotBeKept) {
+  Write("attempts", "a file where the folder should be");
+  AttemptKeeping keeping{folder_ / "attempts", {}};
+  keeping.description.name = (folder_ / "scene.json").string();
+  Runner runner(MakeSimulation(), nullptr, keeping);
+  runner.SetScripted(true);
+  runner.SetPaused(false);
+  ASSERT_TRUE(Eventually([&] { return runner.Latest().tick > 20; }));
+  EXPECT_EQ(runner.RecordingStatus().value().failure.value().code, core::ErrorCode::kFileUnwritable);
 }
 
 }  // namespace

@@ -178,6 +178,10 @@ core::Status Simulation::RestoreWithout(std::span<const std::byte> bytes, const 
   return restored;
 }
 
+std::uint64_t Simulation::ModelFingerprint() const {
+  return content_->model->fingerprint;
+}
+
 std::uint64_t Simulation::Hash(StatePart part) const {
   core::StateHash hash;
   core::StateArchive archive = core::StateArchive::ForHash(hash);

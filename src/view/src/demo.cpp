@@ -71,6 +71,9 @@ core::Result<DemoReport> PlayDemonstration(std::shared_ptr<const scene::Scene> s
 
   auto simulation = simulation::Simulation::Make(scene, options.threads);
   if (!simulation) return simulation.error();
+  if (!options.start.empty()) {
+    if (const auto restored = simulation->Restore(options.start); !restored) return restored.error();
+  }
   auto context = render::OffscreenContext::Make();
   if (!context) return context.error();
   auto target = render::OffscreenTarget::Make(options.width, options.height);

@@ -58,6 +58,7 @@ enum class ErrorCode {
   kUnstableStep,
   kOutOfMemory,
   kStateInvalid,
+  kRecordingInvalid,
   // drawing and video
   kNoGraphics,
   kGraphicsTooOld,

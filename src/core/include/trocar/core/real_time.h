@@ -17,6 +17,9 @@ enum class RealTimePolicy {
 /// \return false where the system refuses; the thread goes on as it was
 bool AskForRealTime(RealTimePolicy policy, int above_lowest) noexcept;
 
+/// The calling thread takes its turn with all others again: a thread inherits the priority of the one that started it.
+void LeaveRealTime() noexcept;
+
 /// Sleeps until NowNanoseconds() is `time` [ns], through every signal; returns at once where it is past.
 /// \note Real-time safe but for the sleep.
 void SleepUntil(std::int64_t time) noexcept;

@@ -9,6 +9,14 @@
 
 namespace trocar::core {
 
+/// 16 lower-case hexadecimal digits.
+inline std::string HashText(std::uint64_t hash) {
+  static constexpr char kDigits[] = "0123456789abcdef";
+  std::string text(16, '0');
+  for (auto digit = text.rbegin(); digit != text.rend(); ++digit, hash >>= 4) *digit = kDigits[hash & 15];
+  return text;
+}
+
 /// FNV-1a over 64-bit words with a final avalanche (Fowler, Noll, Vo; finaliser of MurmurHash3).
 class StateHash {
  public:
@@ -25,14 +33,7 @@ class StateHash {
     return h ^ (h >> 33);
   }
 
-  /// 16 lower-case hexadecimal digits.
-  std::string Text() const {
-    static constexpr char kDigits[] = "0123456789abcdef";
-    std::string text(16, '0');
-    std::uint64_t value = Value();
-    for (auto digit = text.rbegin(); digit != text.rend(); ++digit, value >>= 4) *digit = kDigits[value & 15];
-    return text;
-  }
+  std::string Text() const { return HashText(Value()); }
 
  private:
   std::uint64_t hash_ = 0xcbf29ce484222325ULL;

@@ -3,8 +3,11 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <memory>
+#include <optional>
 
+#include "trocar/record/recorder.h"
 #include "trocar/session/haptic_loop.h"
 #include "trocar/simulation/simulation.h"
 
@@ -26,6 +29,12 @@ struct RunnerStatistics {
   bool is_real_time = false;
 };
 
+/// Where attempts are kept, and what they are of.
+struct AttemptKeeping {
+  std::filesystem::path folder;     ///< made when the first attempt begins
+  record::Description description;  ///< of the scene that runs
+};
+
 /// Owns the simulation thread. All members are called from one other thread (the window's).
 class Runner {
  public:
@@ -33,7 +42,9 @@ class Runner {
   /// \param simulation  taken over
   /// \param haptics     nullptr, or the mailboxes of a haptic loop, which must outlive this: hands that it drives take
   ///                    the place of the input's, and every tick publishes their tissue
-  explicit Runner(Simulation simulation, HapticLink* haptics = nullptr);
+  /// \param keeping     nothing, or where each attempt is recorded: from its first tick to the reset or the end of this
+  explicit Runner(Simulation simulation, HapticLink* haptics = nullptr,
+                  std::optional<AttemptKeeping> keeping = {});
   ~Runner();
   Runner(const Runner&) = delete;
   Runner& operator=(const Runner&) = delete;
@@ -55,6 +66,8 @@ class Runner {
   /// The newest state; the reference stays valid until the next call.
   const Snapshot& Latest();
   RunnerStatistics Statistics() const;
+  /// Of the attempt that runs or ran last; nothing before the first one, or where none are kept.
+  std::optional<record::RecorderStatus> RecordingStatus() const;
   const Scene& GetScene() const;
   std::span<const SurfaceInfo> Surfaces() const;
   std::span<const StrandInfo> Strands() const;

@@ -97,6 +97,8 @@ class Simulation {
   std::string_view GpuName() const;
   /// Why the GPU that was asked for does not solve, from the tick in which it failed; else nullptr.
   const core::Error* GpuError() const;
+  /// Fingerprint of the model: scene, patient and tissue at rest. States of one model fit each other.
+  std::uint64_t ModelFingerprint() const;
   /// Fingerprint of the state.
   std::uint64_t Hash(StatePart part = StatePart::kAll) const;
   /// Names and fingerprints of all fields of the state, in their order: where two states differ.

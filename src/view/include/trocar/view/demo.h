@@ -2,6 +2,7 @@
 /// \file demo.h  Plays a scene's script without a window and keeps it as a video and pictures.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -31,6 +32,7 @@ struct DemoOptions {
   ViewOptions view;
   /// nullptr, or who acts in the script's place, until they have finished; `duration` is then the longest
   agent::Surgeon* surgeon = nullptr;
+  std::vector<std::byte> start;  ///< a saved state from which it goes on; empty: the first tick
   std::function<core::Status(const simulation::Simulation&)>
       on_start;  ///< before the first tick; may be empty
   /// may change the script's input of a tick at that time [s]; may be empty

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "command.h"
+#include "console.h"
+#include "trocar/record/recording.h"
+
+namespace trocar::cli {
+namespace {
+
+using nlohmann::ordered_json;
+using record::Recording;
+
+constexpr std::size_t kShownErrors = 20;
+
+ordered_json InfoJson(const Recording& recording) {
+  const record::Description& d = recording.description;
+  ordered_json json = {{"of", d.name},
+                       {"level", d.level},
+                       {"patient", d.patient},
+                       {"seed", d.seed},
+                       {"player", d.player},
+                       {"started", d.started},
+                       {"program", d.program},
+                       {"compiler", d.compiler},
+                       {"first_tick", recording.FirstTick()},
+                       {"ticks", recording.inputs.size()},
+                       {"seconds", recording.Seconds()},
+                       {"hashes", recording.hashes.size()},
+                       {"keyframes", recording.KeyframeTicks().size()},
+                       {"bytes", recording.file_bytes},
+                       {"whole_bytes", recording.whole_bytes},
+                       {"damage", recording.damage.empty() ? ordered_json() : ordered_json(recording.damage)},
+                       {"finished", recording.ending.has_value()},
+                       {"events", ordered_json::array()},
+                       {"marks", ordered_json::array()},
+                       {"outcome", nullptr}};
+  for (const record::EventMark& event : recording.events) {
+    json["events"].push_back({{"time_s", static_cast<double>(event.tick) * d.tick_seconds},
+                              {"kind", event.kind},
+                              {"error", event.is_error},
+                              {"hand", event.hand}});
+  }
+  for (const record::TextMark& mark : recording.marks)
+    json["marks"].push_back(
+        {{"time_s", static_cast<double>(mark.tick) * d.tick_seconds}, {"text", mark.text}});
+  if (recording.ending) json["outcome"] = ordered_json::parse(recording.ending->outcome, nullptr, false);
+  return json;
+}
+
+std::string HowItEnded(const Recording& recording) {
+  if (!recording.damage.empty()) {
+    return "damaged: " + recording.damage + "; " + std::to_string(recording.whole_bytes) + " of " +
+           std::to_string(recording.file_bytes) + " bytes are whole (trocar record repair)";
+  }
+  return recording.ending ? "finished"
+                          : "not finished: the program ended before the attempt; what is there is whole";
+}
+
+void PrintInfo(const Recording& recording) {
+  const record::Description& d = recording.description;
+  const std::string what = d.name + (d.level.empty() ? "" : ", level " + d.level) +
+                           (d.patient.empty() ? "" : ", patient " + d.patient) + ", seed " +
+                           std::to_string(d.seed);
+  std::vector<std::vector<std::string>> rows = {
+      {"recording of", what},
+      {"played by", d.player},
+      {"started", d.started},
+      {"written by", "trocar " + d.program + ", " + d.compiler},
+      {"length",
+       FormatNumber(recording.Seconds(), 4) + " s, " + std::to_string(recording.inputs.size()) + " ticks"},
+      {"size", FormatNumber(1e-6 * static_cast<double>(recording.file_bytes), 3) + " MB, with " +
+                   std::to_string(recording.KeyframeTicks().size()) + " keyframes and " +
+                   std::to_string(recording.hashes.size()) + " hashes"},
+      {"state", HowItEnded(recording)}};
+  std::fputs(FormatTable(rows).c_str(), stdout);
+  const auto errors = std::count_if(recording.events.begin(), recording.events.end(),
+                                    [](const record::EventMark& event) { return event.is_error; });
+  if (errors > 0) std::printf("\n%td errors:\n", errors);
+  std::size_t shown = 0;
+  for (const record::EventMark& event : recording.events) {
+    if (!event.is_error || ++shown > kShownErrors) continue;
+    std::printf("  %8.2f s  %s%s%s\n", static_cast<double>(event.tick) * d.tick_seconds, event.kind.c_str(),
+                event.about.empty() ? "" : ": ", event.about.c_str());
+  }
+  if (shown > kShownErrors) std::printf("  and %zu more (--json)\n", shown - kShownErrors);
+  for (const record::TextMark& mark : recording.marks)
+    std::printf("  %8.2f s  \"%s\"\n", static_cast<double>(mark.tick) * d.tick_seconds, mark.text.c_str());
+}
+
+void AddInfo(CLI::App& record, Outcome& outcome) {
+  CLI::App* command = record.add_subcommand("info", "Say what a recording is of, and how it ended");
+  auto path = std::make_shared<std::string>();
+  auto is_json = std::make_shared<bool>(false);
+  command->add_option("file", *path, "Recording")->required()->type_name("FILE");
+  command->add_flag("--json", *is_json, "Machine-readable, with all events");
+  command->callback([path, is_json, &outcome] {
+    const auto recording = record::ReadRecording(*path);
+    if (!recording.ok()) {
+      outcome.status = recording.error();
+    } else if (*is_json) {
+      std::printf("%s\n",
+                  InfoJson(*recording).dump(2, ' ', false, ordered_json::error_handler_t::replace).c_str());
+    } else {
+      PrintInfo(*recording);
+    }
+  });
+}
+
+void AddVerify(CLI::App& record, Outcome& outcome) {
+  CLI::App* command = record.add_subcommand(
+      "verify", "Check every byte of a recording by its checksums; trocar replay --verify computes it again");
+  auto path = std::make_shared<std::string>();
+  command->add_option("file", *path, "Recording")->required()->type_name("FILE");
+  command->callback([path, &outcome] {
+    const auto recording = record::ReadRecording(*path);
+    if (!recording.ok()) {
+      outcome.status = recording.error();
+      return;
+    }
+    for (std::size_t frame = 0; frame < recording->KeyframeTicks().size(); ++frame) {
+      if (const auto state = recording->ReadKeyframe(frame); !state.ok()) {
+        outcome.status = state.error();
+        return;
+      }
+    }
+    std::printf("%s: %s\n", path->c_str(), HowItEnded(*recording).c_str());
+    outcome.has_finding = !recording->damage.empty();
+  });
+}
+
+void AddRepair(CLI::App& record, Outcome& outcome) {
+  CLI::App* command =
+      record.add_subcommand("repair", "Write what is whole of a damaged recording to a new file");
+  auto from = std::make_shared<std::string>(), to = std::make_shared<std::string>();
+  command->add_option("file", *from, "Recording")->required()->type_name("FILE");
+  command->add_option("-o,--output", *to, "New file")->required()->type_name("FILE");
+  command->callback([from, to, &outcome] {
+    outcome.status = record::RepairRecording(*from, *to);
+    if (!outcome.status.ok()) return;
+    const auto repaired = record::ReadRecording(*to);
+    if (repaired.ok()) {
+      std::printf("%s holds %s s; the damage and what came after it are left out\n", to->c_str(),
+                  FormatNumber(repaired->Seconds(), 4).c_str());
+    }
+  });
+}
+
+}  // namespace
+
+void AddRecordCommand(CLI::App& app, Outcome& outcome) {
+  CLI::App* command = app.add_subcommand("record", "Look at a recording, check it, or repair it");
+  command->require_subcommand(1);
+  AddInfo(*command, outcome);
+  AddVerify(*command, outcome);
+  AddRepair(*command, outcome);
+  command->footer(
+      "trocar play and trocar simulate write one with --record FILE.\n"
+      "Example: trocar record info attempt.trocar");
+}
+
+}  // namespace trocar::cli

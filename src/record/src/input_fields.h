@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+// What of an input is written field by field where it changes.
+#pragma once
+
+#include <vector>
+
+#include "trocar/core/state_archive.h"
+#include "trocar/scene/input.h"
+
+namespace trocar::tissue {
+
+inline void VisitState(core::StateArchive& archive, SolverSettings& settings) {
+  archive.Field("kind", settings.kind);
+  archive.Field("max_iterations", settings.max_iterations);
+  archive.Field("tolerance", settings.tolerance);
+  archive.Field("alpha", settings.alpha);
+  archive.Field("max_error", settings.max_error);
+  archive.Field("max_newton_steps", settings.max_newton_steps);
+  archive.Field("max_linear_iterations", settings.max_linear_iterations);
+  archive.Field("max_linear_total", settings.max_linear_total);
+  archive.Field("follows_snap_through", settings.follows_snap_through);
+  archive.Field("law_error", settings.law_error);
+  archive.Field("max_outer_iterations", settings.max_outer_iterations);
+}
+
+}  // namespace trocar::tissue
+
+namespace trocar::scene {
+
+inline void VisitState(core::StateArchive& archive, HandControls& controls) {
+  archive.Field("tool", controls.tool);
+  archive.Field("cut", controls.cut);
+  archive.Field("coagulate", controls.coagulate);
+  archive.Field("rinse", controls.rinse);
+  archive.Field("aspirate", controls.aspirate);
+}
+
+inline void VisitState(core::StateArchive& archive, LiveSettings& settings) {
+  archive.Field("stiffness_scale", settings.stiffness_scale);
+  archive.Field("shape_scale", settings.shape_scale);
+  archive.Field("gravity", settings.gravity);
+  archive.Field("head_up", settings.head_up);
+  archive.Field("right_up", settings.right_up);
+  archive.Field("holds_camera", settings.holds_camera);
+  archive.Field("solver", settings.solver);
+}
+
+}  // namespace trocar::scene
+
+namespace trocar::record {
+
+/// Bit for bit, so that what is not a number is the same as itself.
+inline bool HaveSameFields(const scene::LiveSettings& a, const scene::LiveSettings& b) {
+  std::vector<std::byte> of_a, of_b;
+  core::SaveState(a, of_a);
+  core::SaveState(b, of_b);
+  return of_a == of_b;
+}
+
+}  // namespace trocar::record

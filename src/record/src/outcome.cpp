@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/record/outcome.h"
+
+#include <nlohmann/json.hpp>
+
+#include "trocar/training/critical_view.h"
+#include "trocar/training/injury.h"
+#include "trocar/training/operation_error.h"
+
+namespace trocar::record {
+namespace {
+
+using nlohmann::ordered_json;
+using simulation::OperationResult;
+
+constexpr double kMillilitre = 1e6;  // per m^3
+
+ordered_json OutcomeOf(const scene::Task& task, const scene::TaskSnapshot& now) {
+  ordered_json json = {{"phase", scene::PhaseName(now.phase)},
+                       {"task_seconds", now.time},
+                       {"score", now.score},
+                       {"penalty", now.penalty},
+                       {"goals", ordered_json::array()},
+                       {"errors", ordered_json::object()}};
+  for (std::size_t g = 0; g < now.goals.size(); ++g) {
+    json["goals"].push_back({{"goal", task.goals[g].name},
+                             {"done", now.goals[g].is_done},
+                             {"steps_done", now.goals[g].steps_done}});
+  }
+  for (std::size_t e = 0; e < now.errors.size(); ++e) {
+    if (now.errors[e] > 0) json["errors"][task.errors[e].name] = now.errors[e];
+  }
+  return json;
+}
+
+ordered_json OutcomeOf(const OperationResult& result) {
+  const auto left = [&](surgery::Fluid fluid) {
+    return kMillilitre * result.fluids.fluids[static_cast<std::size_t>(fluid)].left;
+  };
+  ordered_json errors = ordered_json::array();
+  for (const training::ErrorEntry& entry : result.errors.Entries()) {
+    errors.push_back({{"error", training::NameOf(entry.error)},
+                      {"severity", training::NameOf(training::SeverityOf(entry.error))},
+                      {"time_s", entry.time},
+                      {"hand", entry.hand}});
+  }
+  return {{"completed", result.is_completed},
+          {"critical_view", result.was_critical_view_achieved},
+          {"phase", training::NameOf(result.phase)},
+          {"error_count", result.errors.Count()},
+          {"errors", std::move(errors)},
+          {"strasberg", training::StrasbergName(result.injuries.strasberg)},
+          {"right_liver_without_blood", result.injuries.is_right_liver_without_blood},
+          {"blood_ml", left(surgery::Fluid::kBlood)},
+          {"bile_ml", left(surgery::Fluid::kBile)},
+          {"stones_spilled", result.stones.spilled},
+          {"cleared_share", result.facts.cleared_share},
+          {"detached_share", result.facts.detached_share}};
+}
+
+}  // namespace
+
+std::string CalcOutcome(const simulation::Simulation& simulation) {
+  const simulation::Snapshot& now = simulation.GetSnapshot();
+  ordered_json json = {{"seconds", now.time}};
+  if (const auto& task = simulation.GetScene().task) json["task"] = OutcomeOf(*task, now.task);
+  if (const auto result = simulation.GetOperationResult()) json["operation"] = OutcomeOf(*result);
+  return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+}
+
+}  // namespace trocar::record

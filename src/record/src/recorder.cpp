@@ -1,0 +1,390 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/record/recorder.h"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <condition_variable>
+#include <ctime>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "chunk.h"
+#include "chunk_writer.h"
+#include "recording_json.h"
+#include "trocar/core/log.h"
+#include "trocar/core/real_time.h"
+#include "trocar/core/version.h"
+#include "trocar/record/input_codec.h"
+#include "trocar/record/outcome.h"
+
+namespace trocar::record {
+namespace {
+
+using simulation::Simulation;
+
+/// Ticks that wait for the writer at most: more than half a minute, in which a disk may stall.
+constexpr std::size_t kRingSize = 4096;
+constexpr auto kWritePeriod = std::chrono::milliseconds(50);
+constexpr double kChunkSeconds = 0.1;
+constexpr std::size_t kStateSlots = 2;
+/// A keyframe that stands alone comes first in each group; the others are told apart from it.
+constexpr int kKeyframeGroup = 8;
+constexpr double kLowSeconds = 60, kLowShare = 0.05;
+
+/// What one tick hands over.
+struct Entry {
+  Input input;
+  std::uint64_t tick = 0;
+  std::uint64_t hash = 0;
+  bool has_hash = false;
+  int state_slot = -1;  // a keyframe after this tick
+  std::uint8_t event_count = 0;
+  std::uint8_t error_count = 0;
+  std::array<scene::Event, simulation::kEventRing> events{};
+  std::array<scene::TaskError, 4> errors{};  // of the task's rules
+};
+
+std::string CompilerText() {
+#if defined(__clang__)
+  return "clang " + std::to_string(__clang_major__) + "." + std::to_string(__clang_minor__);
+#elif defined(__GNUC__)
+  return "g++ " + std::to_string(__GNUC__) + "." + std::to_string(__GNUC_MINOR__);
+#else
+  return "unknown";
+#endif
+}
+
+std::string WallClockText() {
+  const std::time_t now = std::time(nullptr);
+  std::tm local{};
+  ::localtime_r(&now, &local);
+  char text[40];
+  const std::size_t length = std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%S%z", &local);
+  return {text, length};
+}
+
+std::uint64_t TicksIn(double seconds, double tick_seconds) {
+  return seconds > 0
+             ? std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::llround(seconds / tick_seconds)))
+             : 0;
+}
+
+}  // namespace
+
+struct Recorder::Content {
+  Content(ChunkWriter opened, RecorderSettings wanted, const Simulation& simulation)
+      : settings(std::move(wanted)),
+        writer(std::move(opened)),
+        scene(simulation.GetScene()),
+        tick_seconds(scene.tick_seconds),
+        hash_ticks(TicksIn(settings.hash_seconds, tick_seconds)),
+        keyframe_ticks(TicksIn(settings.keyframe_seconds, tick_seconds)),
+        chunk_ticks(TicksIn(kChunkSeconds, tick_seconds)),
+        ring(kRingSize) {}
+
+  RecorderSettings settings;
+  ChunkWriter writer;  // of the writing thread, once that runs
+  const scene::Scene& scene;
+  double tick_seconds;
+  std::uint64_t hash_ticks, keyframe_ticks, chunk_ticks;
+
+  // from the simulation's thread to the writer
+  std::vector<Entry> ring;
+  std::atomic<std::uint64_t> head{0}, tail{0};  // entries put and taken
+  std::array<std::vector<std::byte>, kStateSlots> states;
+  std::array<std::atomic<bool>, kStateSlots> is_state_free{true, true};
+  std::atomic<bool> has_overrun{false};
+  // of the simulation's thread
+  std::uint64_t seen_events = 0, seen_errors = 0, next_keyframe = 0;
+
+  // of the writing thread
+  InputEncoder encoder;
+  bool is_new_row = true;
+  std::vector<std::byte> group_base, content_bytes;
+  int in_group = 0;
+  std::uint64_t first_of_chunk = 0;
+  std::uint32_t in_chunk = 0;
+
+  mutable std::mutex mutex;  // of what follows; never taken by Add
+  std::condition_variable wake;
+  bool is_stopping = false;
+  std::vector<TextMark> marks;
+  RecorderStatus status;
+  std::atomic<std::uint64_t> kept{0};
+  std::atomic<bool> has_failed{false};
+  std::thread thread;
+
+  void NoteEvents(const simulation::Snapshot& now, Entry& entry);
+  int TakeStateSlot();
+  void Run();
+  void WriteEntries();
+  void CloseChunk();
+  void WriteKeyframe(const Entry& entry);
+  void WriteEvents(const Entry& entry);
+  bool WriteMarks();
+  void SyncAndTell();
+  void Stop();
+};
+
+void Recorder::Content::NoteEvents(const simulation::Snapshot& now, Entry& entry) {
+  const std::uint64_t oldest =
+      now.event_count > simulation::kEventRing ? now.event_count - simulation::kEventRing : 0;
+  for (std::uint64_t n = std::max(seen_events, oldest); n < now.event_count; ++n)
+    entry.events[entry.event_count++] = now.events[n % simulation::kEventRing];
+  seen_events = now.event_count;
+  const auto ring_size = static_cast<std::uint64_t>(now.task.last_errors.size());
+  const std::uint64_t most = std::min<std::uint64_t>(ring_size, entry.errors.size());
+  const std::uint64_t first = now.task.error_count > most ? now.task.error_count - most : 0;
+  for (std::uint64_t n = std::max(seen_errors, first); n < now.task.error_count; ++n)
+    entry.errors[entry.error_count++] = now.task.last_errors[n % ring_size];
+  seen_errors = now.task.error_count;
+}
+
+int Recorder::Content::TakeStateSlot() {
+  for (std::size_t slot = 0; slot < kStateSlots; ++slot) {
+    if (is_state_free[slot].load(std::memory_order_acquire)) {
+      is_state_free[slot].store(false, std::memory_order_relaxed);
+      return static_cast<int>(slot);
+    }
+  }
+  return -1;
+}
+
+void Recorder::Content::CloseChunk() {
+  if (in_chunk == 0) return;
+  const std::uint32_t head_word = in_chunk | (is_new_row ? kNewRow : 0);
+  std::array<std::byte, 4> count{};
+  for (std::size_t i = 0; i < count.size(); ++i) count[i] = static_cast<std::byte>(head_word >> (8 * i));
+  std::copy(count.begin(), count.end(), content_bytes.begin());
+  writer.Put(ChunkKind::kInputs, first_of_chunk, content_bytes);
+  in_chunk = 0;
+  is_new_row = false;
+}
+
+void Recorder::Content::WriteKeyframe(const Entry& entry) {
+  CloseChunk();
+  auto& state = states[static_cast<std::size_t>(entry.state_slot)];
+  if (in_group == 0) group_base.clear();
+  writer.Put(ChunkKind::kKeyframe, entry.tick, CompressState(state, group_base), false);
+  if (in_group == 0) group_base = state;
+  in_group = (in_group + 1) % kKeyframeGroup;
+  is_state_free[static_cast<std::size_t>(entry.state_slot)].store(true, std::memory_order_release);
+  // whoever begins at a keyframe needs no input before it
+  encoder.Reset();
+  is_new_row = true;
+}
+
+void Recorder::Content::WriteEvents(const Entry& entry) {
+  if (entry.event_count == 0 && entry.error_count == 0) return;
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (std::uint8_t i = 0; i < entry.event_count; ++i) list.push_back(EventJson(entry.events[i]));
+  for (std::uint8_t i = 0; i < entry.error_count; ++i)
+    list.push_back(TaskErrorJson(*scene.task, entry.tick, entry.errors[i]));
+  const std::string text = list.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  writer.Put(ChunkKind::kEvents, entry.tick, BytesOf(text));
+}
+
+void Recorder::Content::WriteEntries() {
+  std::uint64_t taken = tail.load(std::memory_order_relaxed);
+  const std::uint64_t put = head.load(std::memory_order_acquire);
+  for (; taken < put; ++taken) {
+    const Entry& entry = ring[taken % kRingSize];
+    if (in_chunk == 0) {
+      first_of_chunk = entry.tick - 1;
+      content_bytes.assign(4, std::byte{});
+    }
+    encoder.Encode(entry.input, content_bytes);
+    if (++in_chunk >= chunk_ticks) CloseChunk();
+    if (entry.has_hash) {
+      CloseChunk();
+      std::array<std::byte, 8> hash{};
+      for (std::size_t i = 0; i < hash.size(); ++i) hash[i] = static_cast<std::byte>(entry.hash >> (8 * i));
+      writer.Put(ChunkKind::kHash, entry.tick, hash);
+    }
+    if (entry.event_count > 0 || entry.error_count > 0) {
+      CloseChunk();
+      WriteEvents(entry);
+    }
+    if (entry.state_slot >= 0) WriteKeyframe(entry);
+    tail.store(taken + 1, std::memory_order_release);
+  }
+  CloseChunk();
+}
+
+bool Recorder::Content::WriteMarks() {
+  std::vector<TextMark> now;
+  {
+    const std::lock_guard lock(mutex);
+    now.swap(marks);
+  }
+  for (const TextMark& mark : now) writer.Put(ChunkKind::kMark, mark.tick, BytesOf(mark.text));
+}
+
+void Recorder::Content::SyncAndTell() {
+  const std::uint64_t written = tail.load(std::memory_order_relaxed);
+  const int files = writer.FileCount();
+  const core::Status synced = writer.Sync();
+  if (writer.FileCount() != files)
+    in_group = 0;  // the keyframe that others are told apart from stayed behind
+  const Space space = writer.GetSpace();
+  const std::lock_guard lock(mutex);
+  status.path = writer.Path();
+  status.bytes = writer.Bytes();
+  if (!synced.ok()) {
+    status.failure = synced.error();
+    has_failed.store(true);
+    core::Log(core::LogLevel::kWarning, "the recording has stopped: " + synced.error().Text());
+    return;
+  }
+  kept.store(written);
+  const double seconds = static_cast<double>(written) * tick_seconds;
+  if (seconds > 1 && status.bytes > 0)
+    status.seconds_left = static_cast<double>(space.free) * seconds / static_cast<double>(status.bytes);
+  status.is_space_low = status.seconds_left < kLowSeconds ||
+                        static_cast<double>(space.free) < kLowShare * static_cast<double>(space.all);
+}
+
+void Recorder::Content::Run() {
+  core::LeaveRealTime();
+  while (!has_failed.load()) {
+    bool is_last = false;
+    {
+      std::unique_lock lock(mutex);
+      wake.wait_for(lock, kWritePeriod, [&] { return is_stopping; });
+      is_last = is_stopping;
+    }
+    const bool has_ticks = head.load() != tail.load();
+    WriteEntries();
+    const bool has_marks = WriteMarks();
+    if (has_ticks || has_marks || is_last) SyncAndTell();
+    if (is_last) return;
+  }
+}
+
+void Recorder::Content::Stop() {
+  if (!thread.joinable()) return;
+  {
+    const std::lock_guard lock(mutex);
+    is_stopping = true;
+  }
+  wake.notify_one();
+  thread.join();
+}
+
+core::Result<std::unique_ptr<Recorder>> Recorder::Start(const std::filesystem::path& path,
+                                                        Description description, const Simulation& simulation,
+                                                        RecorderSettings settings) {
+  description.tick_seconds = simulation.GetScene().tick_seconds;
+  description.model = simulation.ModelFingerprint();
+  description.first_tick = simulation.GetSnapshot().tick;
+  description.program = std::string(core::VersionText());
+  description.compiler = CompilerText();
+  description.started = WallClockText();
+  auto writer = ChunkWriter::Open(path, settings.open);
+  if (!writer.ok()) return writer.error();
+  auto content = std::make_unique<Content>(std::move(*writer), std::move(settings), simulation);
+  const std::string text = WriteDescription(description);
+  content->writer.Put(ChunkKind::kDescription, description.first_tick, BytesOf(text));
+  // memory for all saved states, so that Add allocates as good as never
+  for (auto& state : content->states) simulation.Save(state);
+  if (description.first_tick > 0) {
+    content->writer.Put(ChunkKind::kKeyframe, description.first_tick, CompressState(content->states[0], {}));
+    content->group_base = content->states[0];
+    content->in_group = 1;
+  }
+  if (const core::Status synced = content->writer.Sync(); !synced.ok()) return synced.error();
+  content->status.path = content->writer.Path();
+  content->status.bytes = content->writer.Bytes();
+  content->seen_events = simulation.GetSnapshot().event_count;
+  content->seen_errors = simulation.GetSnapshot().task.error_count;
+  content->next_keyframe = description.first_tick + content->keyframe_ticks;
+  content->thread = std::thread([c = content.get()] { c->Run(); });
+  return std::unique_ptr<Recorder>(new Recorder(std::move(content)));
+}
+
+Recorder::Recorder(std::unique_ptr<Content> content) : content_(std::move(content)) {}
+
+Recorder::~Recorder() {
+  content_->Stop();
+}
+
+void Recorder::Add(const Input& input, const Simulation& simulation) noexcept {
+  Content& c = *content_;
+  if (c.has_overrun.load(std::memory_order_relaxed) || c.has_failed.load(std::memory_order_relaxed)) return;
+  const std::uint64_t put = c.head.load(std::memory_order_relaxed);
+  while (put - c.tail.load(std::memory_order_acquire) >= kRingSize) {
+    if (!c.settings.waits) {
+      c.has_overrun.store(true, std::memory_order_relaxed);
+      return;
+    }
+    if (c.has_failed.load()) return;
+    std::this_thread::sleep_for(kWritePeriod);
+  }
+  const simulation::Snapshot& now = simulation.GetSnapshot();
+  Entry& entry = c.ring[put % kRingSize];
+  entry.input = input;
+  entry.tick = now.tick;
+  entry.event_count = entry.error_count = 0;
+  c.NoteEvents(now, entry);
+  entry.has_hash = c.hash_ticks != 0 && now.tick % c.hash_ticks == 0;
+  if (entry.has_hash) entry.hash = simulation.Hash();
+  entry.state_slot = -1;
+  if (c.keyframe_ticks != 0 && now.tick >= c.next_keyframe) {
+    entry.state_slot = c.TakeStateSlot();
+    // where nobody waits, so that the same attempt gives the same bytes however slow the disk
+    while (entry.state_slot < 0 && c.settings.waits && !c.has_failed.load()) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      entry.state_slot = c.TakeStateSlot();
+    }
+    if (entry.state_slot >= 0) {
+      simulation.Save(c.states[static_cast<std::size_t>(entry.state_slot)]);
+      c.next_keyframe = now.tick + c.keyframe_ticks;
+    }
+  }
+  c.head.store(put + 1, std::memory_order_release);
+}
+
+void Recorder::Mark(std::string text) {
+  Content& c = *content_;
+  const std::uint64_t put = c.head.load(std::memory_order_acquire);
+  const std::uint64_t tick = put > 0 ? c.ring[(put - 1) % kRingSize].tick : 0;
+  const std::lock_guard lock(c.mutex);
+  c.marks.push_back({tick, std::move(text)});
+}
+
+RecorderStatus Recorder::Status() const {
+  const Content& c = *content_;
+  const std::lock_guard lock(c.mutex);
+  RecorderStatus status = c.status;
+  status.added = c.head.load();
+  status.kept = c.kept.load();
+  if (!status.failure && c.has_overrun.load()) {
+    status.failure =
+        core::Error{core::ErrorCode::kFileUnwritable,
+                    status.path.string() +
+                        ": the disk did not take the recording in half a minute; it ends there. Record to "
+                        "another disk"};
+  }
+  return status;
+}
+
+core::Status Recorder::Finish(const Simulation& simulation) {
+  Content& c = *content_;
+  c.Stop();
+  const RecorderStatus now = Status();
+  if (now.failure) return *now.failure;
+  const Ending ending{simulation.GetSnapshot().tick, simulation.Hash(), CalcOutcome(simulation)};
+  const std::string text = WriteEnding(ending);
+  c.writer.Put(ChunkKind::kEnding, ending.ticks, BytesOf(text));
+  c.SyncAndTell();
+  if (const auto failure = Status().failure) return *failure;
+  return {};
+}
+
+}  // namespace trocar::record

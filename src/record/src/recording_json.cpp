@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "recording_json.h"
+
+#include <array>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "trocar/core/state_hash.h"
+#include "trocar/training/operation_error.h"
+
+namespace trocar::record {
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr std::array<const char*, 3> kKinds = {"scene", "task", "operation"};
+
+bool ReadHex(const ordered_json& json, const char* key, std::uint64_t& value) {
+  const auto found = json.find(key);
+  if (found == json.end() || !found->is_string()) return false;
+  const auto& text = found->get_ref<const std::string&>();
+  if (text.size() != 16 || text.find_first_not_of("0123456789abcdef") != std::string::npos) return false;
+  value = std::stoull(text, nullptr, 16);
+  return true;
+}
+
+bool ReadText(const ordered_json& json, const char* key, std::string& value) {
+  const auto found = json.find(key);
+  if (found == json.end() || !found->is_string()) return false;
+  value = found->get<std::string>();
+  return true;
+}
+
+bool ReadCount(const ordered_json& json, const char* key, std::uint64_t& value) {
+  const auto found = json.find(key);
+  if (found == json.end() || !found->is_number_unsigned()) return false;
+  value = found->get<std::uint64_t>();
+  return true;
+}
+
+std::string Dump(const ordered_json& json) {
+  return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+}
+
+}  // namespace
+
+std::string WriteDescription(const Description& d) {
+  return Dump({{"kind", kKinds[static_cast<std::size_t>(d.kind)]},
+               {"name", d.name},
+               {"level", d.level},
+               {"patient", d.patient},
+               {"seed", d.seed},
+               {"tick_seconds", d.tick_seconds},
+               {"model", core::HashText(d.model)},
+               {"first_tick", d.first_tick},
+               {"player", d.player},
+               {"program", d.program},
+               {"compiler", d.compiler},
+               {"started", d.started}});
+}
+
+bool ReadDescription(std::string_view text, Description& d) {
+  const ordered_json json = ordered_json::parse(text, nullptr, false);
+  if (!json.is_object()) return false;
+  std::string kind;
+  if (!ReadText(json, "kind", kind)) return false;
+  std::size_t k = 0;
+  while (k < kKinds.size() && kind != kKinds[k]) ++k;
+  if (k == kKinds.size()) return false;
+  d.kind = static_cast<Description::Kind>(k);
+  const auto tick_seconds = json.find("tick_seconds");
+  if (tick_seconds == json.end() || !tick_seconds->is_number()) return false;
+  d.tick_seconds = tick_seconds->get<double>();
+  return d.tick_seconds > 0 && std::isfinite(d.tick_seconds) && ReadText(json, "name", d.name) &&
+         ReadText(json, "level", d.level) && ReadText(json, "patient", d.patient) &&
+         ReadCount(json, "seed", d.seed) && ReadHex(json, "model", d.model) &&
+         ReadCount(json, "first_tick", d.first_tick) && ReadText(json, "player", d.player) &&
+         ReadText(json, "program", d.program) && ReadText(json, "compiler", d.compiler) &&
+         ReadText(json, "started", d.started);
+}
+
+std::string WriteEnding(const Ending& ending) {
+  return Dump({{"ticks", ending.ticks}, {"hash", core::HashText(ending.hash)}, {"outcome", ending.outcome}});
+}
+
+bool ReadEnding(std::string_view text, Ending& ending) {
+  const ordered_json json = ordered_json::parse(text, nullptr, false);
+  return json.is_object() && ReadCount(json, "ticks", ending.ticks) && ReadHex(json, "hash", ending.hash) &&
+         ReadText(json, "outcome", ending.outcome);
+}
+
+ordered_json EventJson(const scene::Event& event) {
+  if (event.kind == scene::EventKind::kOperationError && event.error >= 0) {
+    const auto error = static_cast<training::OperationError>(event.error);
+    return {{"tick", event.tick},
+            {"kind", training::NameOf(error)},
+            {"about", training::ExplanationOf(error)},
+            {"hand", event.hand},
+            {"error", true}};
+  }
+  return {{"tick", event.tick}, {"kind", scene::EventName(event.kind)}, {"hand", event.hand}};
+}
+
+ordered_json TaskErrorJson(const scene::Task& task, std::uint64_t tick, const scene::TaskError& error) {
+  const scene::ErrorRule& rule = task.errors[static_cast<std::size_t>(error.rule)];
+  return {{"tick", tick}, {"kind", rule.name}, {"about", rule.about}, {"hand", error.hand}, {"error", true}};
+}
+
+bool ReadEvents(std::string_view text, std::vector<EventMark>& events) {
+  const ordered_json json = ordered_json::parse(text, nullptr, false);
+  if (!json.is_array()) return false;
+  for (const ordered_json& entry : json) {
+    EventMark event;
+    if (!entry.is_object() || !ReadCount(entry, "tick", event.tick) || !ReadText(entry, "kind", event.kind))
+      return false;
+    ReadText(entry, "about", event.about);
+    if (const auto hand = entry.find("hand"); hand != entry.end() && hand->is_number_integer())
+      event.hand = hand->get<int>();
+    event.is_error = entry.contains("error") && entry.at("error") == true;
+    events.push_back(std::move(event));
+  }
+  return true;
+}
+
+}  // namespace trocar::record

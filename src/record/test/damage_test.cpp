@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+// Recordings that are cut, changed, of another time or of nothing.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+
+#include "recorded_scene.h"
+#include "trocar/core/safe_file.h"
+
+namespace trocar::record {
+namespace {
+
+constexpr std::size_t kCutSize = 64 << 10;
+
+class Damage : public RecordedScene {
+ protected:
+  void SetUp() override {
+    RecordedScene::SetUp();
+    Record(600);
+    const auto content = core::ReadFile(File());
+    ASSERT_TRUE(content.ok());
+    const auto view = std::as_bytes(std::span(*content));
+    bytes_.assign(view.begin(), view.end());
+  }
+  /// What was read is the beginning of what was recorded.
+  void ExpectBeginning(const Recording& recording) const {
+    ASSERT_LE(recording.inputs.size(), 600u);
+    for (std::size_t tick = 0; tick < recording.inputs.size(); tick += 37)
+      ASSERT_EQ(recording.inputs[tick], InputOf(tick));
+    if (!recording.inputs.empty()) {
+      ASSERT_EQ(recording.inputs.back(), InputOf(recording.inputs.size() - 1));
+    }
+  }
+  std::vector<std::byte> bytes_;
+};
+
+TEST_F(Damage, EveryTruncationIsNoticedAndWhatIsBeforeIsRead) {
+  const std::size_t most = std::min(bytes_.size() - 1, kCutSize);
+  std::size_t before = 0;
+  for (std::size_t size = 0; size <= most; ++size) {
+    const auto recording = ReadRecording(std::span(bytes_).first(size), "cut");
+    if (!recording.ok()) {
+      ASSERT_EQ(recording.error().code, core::ErrorCode::kRecordingInvalid);
+      continue;
+    }
+    // between two chunks nothing is damaged, but it has no ending
+    ASSERT_FALSE(recording->ending.has_value()) << size;
+    ASSERT_EQ(recording->damage.empty(), recording->whole_bytes == size) << size;
+    ASSERT_GE(recording->inputs.size(), before);
+    before = recording->inputs.size();
+    if (size % 1024 == 0) ExpectBeginning(*recording);
+  }
+  EXPECT_GT(before, 50u);
+}
+
+TEST_F(Damage, EveryFlippedBitIsNoticed) {
+  std::mt19937_64 random(3);
+  const std::size_t size = std::min(bytes_.size(), kCutSize);
+  int most_read = 0;
+  for (int trial = 0; trial < 100000; ++trial) {
+    std::vector<std::byte>& bytes = bytes_;
+    const std::size_t at = random() % size;
+    const auto bit = static_cast<std::byte>(1u << random() % 8);
+    bytes[at] ^= bit;
+    const auto recording = ReadRecording(std::span(bytes).first(size), "flipped");
+    bytes[at] ^= bit;
+    if (!recording.ok()) {
+      ASSERT_EQ(recording.error().code, core::ErrorCode::kRecordingInvalid);
+      continue;
+    }
+    ASSERT_FALSE(recording->damage.empty()) << "byte " << at;
+    ASSERT_LE(recording->whole_bytes, at) << "byte " << at;
+    most_read = std::max(most_read, static_cast<int>(recording->inputs.size()));
+    if (trial % 1000 == 0) ExpectBeginning(*recording);
+  }
+  EXPECT_GT(most_read, 50);
+}
+
+TEST_F(Damage, AChunkOfAnotherFileIsNone) {
+  const std::vector<std::byte> one = bytes_;
+  std::filesystem::remove(File());
+  Record(600);
+  const auto content = core::ReadFile(File());
+  ASSERT_TRUE(content.ok());
+  // the same attempt, so that chunks lie at the same places
+  std::vector<std::byte> mixed = one;
+  const auto other = std::as_bytes(std::span(*content));
+  ASSERT_GT(other.size(), 4000u);
+  std::copy(other.begin() + 4000,
+            other.begin() + static_cast<std::ptrdiff_t>(std::min(other.size(), one.size())),
+            mixed.begin() + 4000);
+  const auto recording = ReadRecording(mixed, "mixed");
+  ASSERT_TRUE(recording.ok());
+  EXPECT_FALSE(recording->damage.empty());
+  EXPECT_LE(recording->whole_bytes, 4000u);
+}
+
+TEST_F(Damage, ALaterFormatIsRefusedWithWhatToDo) {
+  bytes_[8] = std::byte{2};
+  const auto recording = ReadRecording(bytes_, "later");
+  ASSERT_FALSE(recording.ok());
+  EXPECT_EQ(recording.error().code, core::ErrorCode::kRecordingInvalid);
+  EXPECT_THAT(recording.error().message, testing::HasSubstr("format 2"));
+}
+
+TEST_F(Damage, WhatIsNoRecordingIsRefused) {
+  Write("text.trocar", "a text that is long enough to be taken for a header");
+  const auto recording = ReadRecording(folder_ / "text.trocar");
+  ASSERT_FALSE(recording.ok());
+  EXPECT_EQ(recording.error().code, core::ErrorCode::kRecordingInvalid);
+  EXPECT_EQ(ReadRecording(folder_ / "none.trocar").error().code, core::ErrorCode::kFileMissing);
+}
+
+TEST_F(Damage, IsRepairedByCuttingItOff) {
+  std::vector<std::byte> damaged = bytes_;
+  damaged[damaged.size() * 2 / 3] ^= std::byte{1};
+  Write("damaged.trocar", std::string(reinterpret_cast<const char*>(damaged.data()), damaged.size()));
+  const auto repaired = folder_ / "repaired.trocar";
+  const core::Status status = RepairRecording(folder_ / "damaged.trocar", repaired);
+  ASSERT_TRUE(status.ok()) << status.error().Text();
+  const auto recording = ReadRecording(repaired);
+  ASSERT_TRUE(recording.ok());
+  EXPECT_EQ(recording->damage, "");
+  EXPECT_GT(recording->inputs.size(), 50u);
+  ExpectBeginning(*recording);
+  EXPECT_EQ(RepairRecording(File(), folder_ / "none").error().code, core::ErrorCode::kRecordingInvalid);
+}
+
+}  // namespace
+}  // namespace trocar::record

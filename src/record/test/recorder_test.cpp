@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/record/recorder.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <thread>
+
+#include "recorded_scene.h"
+#include "trocar/core/version.h"
+
+namespace trocar::record {
+namespace {
+
+class RecorderTest : public RecordedScene {};
+
+TEST_F(RecorderTest, KeepsEveryInputHashKeyframeAndTheEnding) {
+  Record(400);
+  auto recording = ReadRecording(File());
+  ASSERT_TRUE(recording.ok()) << recording.error().Text();
+  EXPECT_EQ(recording->damage, "");
+  ASSERT_EQ(recording->inputs.size(), 400u);
+  for (std::uint64_t tick = 0; tick < 400; ++tick) ASSERT_EQ(recording->inputs[tick], InputOf(tick)) << tick;
+  EXPECT_EQ(recording->hashes.size(), 400u / 30);
+  EXPECT_THAT(recording->KeyframeTicks(), testing::ElementsAre(60, 120, 180, 240, 300, 360));
+  ASSERT_TRUE(recording->ending.has_value());
+  EXPECT_EQ(recording->ending->ticks, 400u);
+  EXPECT_EQ(recording->ending->hash, hash_);
+  EXPECT_THAT(recording->ending->outcome, testing::HasSubstr("\"seconds\""));
+  ASSERT_EQ(recording->marks.size(), 1u);
+  EXPECT_EQ(recording->marks[0].text, "the end");
+  EXPECT_EQ(recording->marks[0].tick, 400u);
+  const Description& d = recording->description;
+  EXPECT_EQ(d.player, "a test");
+  EXPECT_EQ(d.program, core::VersionText());
+  EXPECT_EQ(d.first_tick, 0u);
+  EXPECT_EQ(d.tick_seconds, scene_->tick_seconds);
+  EXPECT_FALSE(d.compiler.empty());
+  EXPECT_FALSE(d.started.empty());
+}
+
+TEST_F(RecorderTest, AKeyframeIsTheSavedState) {
+  Record(400);
+  auto recording = ReadRecording(File());
+  ASSERT_TRUE(recording.ok());
+  auto simulation = Make();
+  std::vector<std::byte> state;
+  std::size_t frame = 0;
+  for (std::uint64_t tick = 0; tick < 400; ++tick) {
+    simulation.Step(InputOf(tick));
+    if (frame < recording->KeyframeTicks().size() && recording->KeyframeTicks()[frame] == tick + 1) {
+      const auto read = recording->ReadKeyframe(frame++);
+      ASSERT_TRUE(read.ok()) << read.error().Text();
+      simulation.Save(state);
+      EXPECT_EQ(*read, state) << "tick " << tick + 1;
+    }
+  }
+  EXPECT_EQ(frame, 6u);
+}
+
+TEST_F(RecorderTest, NotesEvents) {
+  auto simulation = Make();
+  auto recorder = Recorder::Start(File(), Describe(), simulation, Settings());
+  ASSERT_TRUE(recorder.ok());
+  std::vector<std::string> seen;
+  std::uint64_t count = 0;
+  for (int tick = 0; tick < 150; ++tick) {
+    const Input input = scene::CalcScriptInput(*scene_, simulation.GetSnapshot().time);
+    simulation.Step(input);
+    (*recorder)->Add(input, simulation);
+    const auto& now = simulation.GetSnapshot();
+    for (; count < now.event_count; ++count)
+      seen.emplace_back(scene::EventName(now.events[count % simulation::kEventRing].kind));
+  }
+  ASSERT_TRUE((*recorder)->Finish(simulation).ok());
+  EXPECT_FALSE(seen.empty());
+  const auto recording = ReadRecording(File());
+  ASSERT_TRUE(recording.ok());
+  std::vector<std::string> noted;
+  for (const EventMark& event : recording->events) noted.push_back(event.kind);
+  EXPECT_EQ(noted, seen);
+}
+
+TEST_F(RecorderTest, GoesOnFromTheMiddle) {
+  auto simulation = Make();
+  for (std::uint64_t tick = 0; tick < 100; ++tick) simulation.Step(InputOf(tick));
+  std::vector<std::byte> start;
+  simulation.Save(start);
+  auto recorder = Recorder::Start(File(), Describe(), simulation, Settings());
+  ASSERT_TRUE(recorder.ok());
+  for (std::uint64_t tick = 100; tick < 200; ++tick) {
+    simulation.Step(InputOf(tick));
+    (*recorder)->Add(InputOf(tick), simulation);
+  }
+  ASSERT_TRUE((*recorder)->Finish(simulation).ok());
+  const auto recording = ReadRecording(File());
+  ASSERT_TRUE(recording.ok());
+  EXPECT_EQ(recording->FirstTick(), 100u);
+  EXPECT_EQ(recording->LastTick(), 200u);
+  ASSERT_FALSE(recording->KeyframeTicks().empty());
+  EXPECT_EQ(recording->KeyframeTicks()[0], 100u);
+  EXPECT_EQ(*recording->ReadKeyframe(0), start);
+}
+
+TEST_F(RecorderTest, NeverReplacesAFile) {
+  Write("attempt.trocar", "somebody's");
+  auto simulation = Make();
+  const auto recorder = Recorder::Start(File(), Describe(), simulation);
+  ASSERT_FALSE(recorder.ok());
+  EXPECT_EQ(recorder.error().code, core::ErrorCode::kFileUnwritable);
+  EXPECT_THAT(recorder.error().message, testing::HasSubstr("name a new one"));
+}
+
+TEST_F(RecorderTest, TellsWhatIsSafe) {
+  auto simulation = Make();
+  auto recorder = Recorder::Start(File(), Describe(), simulation, Settings());
+  ASSERT_TRUE(recorder.ok());
+  for (std::uint64_t tick = 0; tick < 60; ++tick) {
+    simulation.Step(InputOf(tick));
+    (*recorder)->Add(InputOf(tick), simulation);
+  }
+  for (int i = 0; i < 1000 && (*recorder)->Status().kept < 60; ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  const RecorderStatus status = (*recorder)->Status();
+  EXPECT_EQ(status.added, 60u);
+  EXPECT_EQ(status.kept, 60u);
+  EXPECT_GT(status.bytes, 100u);
+  EXPECT_FALSE(status.failure.has_value());
+  EXPECT_EQ(status.path, File());
+  // it is there without Finish
+  const auto recording = ReadRecording(File());
+  ASSERT_TRUE(recording.ok());
+  EXPECT_EQ(recording->inputs.size(), 60u);
+  EXPECT_FALSE(recording->ending.has_value());
+}
+
+}  // namespace
+}  // namespace trocar::record

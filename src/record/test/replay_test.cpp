@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/record/replay.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "recorded_scene.h"
+#include "trocar/record/outcome.h"
+
+namespace trocar::record {
+namespace {
+
+constexpr std::uint64_t kTicks = 500;
+
+class ReplayTest : public RecordedScene {
+ protected:
+  void SetUp() override {
+    RecordedScene::SetUp();
+    Record(kTicks);
+    auto simulation = Make();
+    hashes_.push_back(simulation.Hash());
+    for (std::uint64_t tick = 0; tick < kTicks; ++tick) {
+      simulation.Step(InputOf(tick));
+      hashes_.push_back(simulation.Hash());
+    }
+  }
+  Recording ReadIt() {
+    auto recording = ReadRecording(File());
+    EXPECT_TRUE(recording.ok());
+    return std::move(*recording);
+  }
+  Replay OpenIt(int threads = 1) {
+    auto replay = Replay::Open(ReadIt(), threads);
+    EXPECT_TRUE(replay.ok()) << replay.error().Text();
+    return std::move(*replay);
+  }
+  std::vector<std::uint64_t> hashes_;  // after each tick
+};
+
+TEST_F(ReplayTest, IsTheSameToTheBitWithAnyNumberOfThreads) {
+  for (const int threads : {1, 2, 4}) {
+    Replay replay = OpenIt(threads);
+    const auto verified = replay.Verify();
+    ASSERT_TRUE(verified.ok()) << verified.error().Text();
+    EXPECT_TRUE(verified->IsVerified());
+    EXPECT_EQ(verified->ticks, kTicks);
+    EXPECT_EQ(verified->hashes, kTicks / 30 + 1);
+    EXPECT_EQ(replay.GetSimulation().Hash(), hash_);
+  }
+}
+
+TEST_F(ReplayTest, SeeksToAnyMoment) {
+  Replay replay = OpenIt();
+  std::mt19937_64 random(8);
+  for (int i = 0; i < 60; ++i) {
+    const std::uint64_t tick = random() % (kTicks + 1);
+    const auto status = replay.Seek(tick);
+    ASSERT_TRUE(status.ok()) << status.error().Text();
+    ASSERT_EQ(replay.Tick(), tick);
+    ASSERT_EQ(replay.GetSimulation().Hash(), hashes_[tick]) << "tick " << tick;
+  }
+  EXPECT_FALSE(replay.GetDivergence().has_value());
+  ASSERT_TRUE(replay.Seek(kTicks + 1000).ok());
+  EXPECT_TRUE(replay.IsAtEnd());
+}
+
+TEST_F(ReplayTest, AChangedInputDiverges) {
+  Recording recording = ReadIt();
+  recording.inputs[200].hands[1].depth += 0.002;
+  auto replay = Replay::Open(std::move(recording), 1);
+  ASSERT_TRUE(replay.ok());
+  const auto verified = replay->Verify();
+  ASSERT_TRUE(verified.ok());
+  EXPECT_FALSE(verified->IsVerified());
+  ASSERT_TRUE(verified->divergence.has_value());
+  EXPECT_GT(verified->divergence->tick, 200u);
+  EXPECT_LE(verified->divergence->tick, 240u) << "at the next hash";
+}
+
+TEST_F(ReplayTest, AChangedOutcomeDoesNotPass) {
+  Recording recording = ReadIt();
+  recording.ending->outcome = R"({"seconds":1.0})";
+  auto replay = Replay::Open(std::move(recording), 1);
+  ASSERT_TRUE(replay.ok());
+  const auto verified = replay->Verify();
+  ASSERT_TRUE(verified.ok());
+  EXPECT_FALSE(verified->divergence.has_value());
+  EXPECT_FALSE(verified->IsVerified());
+}
+
+TEST_F(ReplayTest, AnotherSceneIsRefused) {
+  std::string text = SceneText();
+  const std::size_t at = text.find("\"instruments\"");
+  ASSERT_NE(at, std::string::npos);
+  Recording recording = ReadIt();
+  recording.description.model ^= 1;
+  const auto replay = Replay::Open(std::move(recording), 1);
+  ASSERT_FALSE(replay.ok());
+  EXPECT_EQ(replay.error().code, core::ErrorCode::kRecordingInvalid);
+  EXPECT_THAT(replay.error().message, testing::HasSubstr("changed"));
+}
+
+TEST_F(ReplayTest, WithoutAnEndingItReplaysWhatIsThere) {
+  Recording recording = ReadIt();
+  recording.ending.reset();
+  auto replay = Replay::Open(std::move(recording), 1);
+  ASSERT_TRUE(replay.ok());
+  const auto verified = replay->Verify();
+  ASSERT_TRUE(verified.ok());
+  EXPECT_TRUE(verified->IsVerified());
+}
+
+TEST_F(ReplayTest, SomebodyElseTakesOver) {
+  Replay replay = OpenIt();
+  ASSERT_TRUE(replay.Seek(250).ok());
+  simulation::Simulation branch = std::move(replay).Branch();
+  EXPECT_EQ(branch.Hash(), hashes_[250]);
+  for (std::uint64_t tick = 250; tick < 300; ++tick) branch.Step(InputOf(tick));
+  EXPECT_EQ(branch.Hash(), hashes_[300]);
+  branch.Step(InputOf(0));
+  EXPECT_NE(branch.Hash(), hashes_[301]);
+}
+
+}  // namespace
+}  // namespace trocar::record

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "attempt_keeper.h"
+
+#include <array>
+#include <ctime>
+#include <string>
+#include <system_error>
+
+#include "trocar/core/log.h"
+
+namespace trocar::session {
+namespace {
+
+/// A shorter attempt is a look at the scene.
+constexpr double kShortestAttempt = 1.0;  // s
+
+/// "2026-11-24_225020_peg_transfer.trocar"; a number makes it one that there is not yet.
+std::filesystem::path MakeName(const AttemptKeeping& keeping) {
+  const std::time_t now = std::time(nullptr);
+  std::tm local{};
+  ::localtime_r(&now, &local);
+  std::array<char, 32> time{};
+  std::strftime(time.data(), time.size(), "%Y-%m-%d_%H%M%S_", &local);
+  const std::string name = time.data() + std::filesystem::path(keeping.description.name).stem().string();
+  for (int number = 1;; ++number) {
+    const auto path = keeping.folder / (name + (number == 1 ? "" : "_" + std::to_string(number)) + ".trocar");
+    std::error_code ignored;
+    if (!std::filesystem::exists(path, ignored)) return path;
+  }
+}
+
+}  // namespace
+
+void AttemptKeeper::BeforeStep(const Simulation& simulation) {
+  if (!keeping_ || recorder_ != nullptr || has_failed_) return;
+  auto recorder = record::Recorder::Start(MakeName(*keeping_), keeping_->description, simulation);
+  const std::lock_guard lock(mutex_);
+  if (recorder.ok()) {
+    recorder_ = std::move(*recorder);
+    return;
+  }
+  has_failed_ = true;
+  last_ = record::RecorderStatus{};
+  last_->failure = recorder.error();
+  core::Log(core::LogLevel::kWarning, "attempts are not recorded: " + recorder.error().Text());
+}
+
+void AttemptKeeper::End(const Simulation& simulation) {
+  if (recorder_ == nullptr) return;
+  const bool is_short =
+      static_cast<double>(recorder_->Status().added) * simulation.GetScene().tick_seconds < kShortestAttempt;
+  if (const core::Status finished = recorder_->Finish(simulation); !finished.ok())
+    core::Log(core::LogLevel::kWarning, "the recording is not whole: " + finished.error().Text());
+  const std::lock_guard lock(mutex_);
+  last_ = recorder_->Status();
+  recorder_.reset();
+  std::error_code ignored;
+  if (is_short) std::filesystem::remove(last_->path, ignored);
+}
+
+std::optional<record::RecorderStatus> AttemptKeeper::Status() const {
+  const std::lock_guard lock(mutex_);
+  return recorder_ != nullptr ? recorder_->Status() : last_;
+}
+
+}  // namespace trocar::session

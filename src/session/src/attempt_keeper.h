@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// Records each attempt of a running simulation to a file of its own.
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <optional>
+
+#include "trocar/record/recorder.h"
+#include "trocar/session/runner.h"
+
+namespace trocar::session {
+
+/// Called from the simulation's thread, Status from any.
+class AttemptKeeper {
+ public:
+  /// \param keeping  nothing: no attempt is kept
+  explicit AttemptKeeper(std::optional<AttemptKeeping> keeping) : keeping_(std::move(keeping)) {}
+
+  /// Opens the file of a new attempt where none is open, and holds its first tick up for that long. Where it cannot be
+  /// opened, that is logged once and the surgery goes on unrecorded.
+  void BeforeStep(const Simulation& simulation);
+  void AfterStep(const Input& input, const Simulation& simulation) noexcept {
+    if (recorder_ != nullptr) recorder_->Add(input, simulation);
+  }
+  /// The attempt is over: writes its ending. One that was hardly begun is taken away.
+  void End(const Simulation& simulation);
+
+  std::optional<record::RecorderStatus> Status() const;
+
+ private:
+  std::optional<AttemptKeeping> keeping_;
+  mutable std::mutex mutex_;  // of what follows, where Status may look
+  std::unique_ptr<record::Recorder> recorder_;
+  std::optional<record::RecorderStatus> last_;
+  bool has_failed_ = false;
+};
+
+}  // namespace trocar::session
