@@ -34,7 +34,7 @@ constexpr auto kWritePeriod = std::chrono::milliseconds(50);
 constexpr double kChunkSeconds = 0.1;
 constexpr std::size_t kStateSlots = 2;
 /// A keyframe that stands alone comes first in each group; the others are told apart from it.
-constexpr int kKeyframeGroup = 8;
+constexpr int kKeyframeGroup = 12;
 constexpr double kLowSeconds = 60, kLowShare = 0.05;
 
 /// What one tick hands over.
@@ -224,6 +224,7 @@ bool Recorder::Content::WriteMarks() {
     now.swap(marks);
   }
   for (const TextMark& mark : now) writer.Put(ChunkKind::kMark, mark.tick, BytesOf(mark.text));
+  return !now.empty();
 }
 
 void Recorder::Content::SyncAndTell() {
