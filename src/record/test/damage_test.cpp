@@ -4,8 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstddef>
+#include <cstring>
 #include <random>
 
+#include "chunk.h"
 #include "recorded_scene.h"
 #include "trocar/core/safe_file.h"
 
@@ -126,6 +129,43 @@ TEST_F(Damage, IsRepairedByCuttingItOff) {
   EXPECT_GT(recording->inputs.size(), 50u);
   ExpectBeginning(*recording);
   EXPECT_EQ(RepairRecording(File(), folder_ / "none").error().code, core::ErrorCode::kRecordingInvalid);
+}
+
+TEST_F(Damage, WrongContentUnderARightChecksumIsReadOrRefused) {
+  std::mt19937_64 random(4);
+  // where the chunks begin
+  std::vector<std::size_t> starts;
+  std::uint64_t file_id = 0;
+  std::memcpy(&file_id, bytes_.data() + offsetof(FileHeader, file_id), sizeof file_id);
+  for (std::size_t at = sizeof(FileHeader); at < bytes_.size();) {
+    ChunkHeader header;
+    std::memcpy(&header, bytes_.data() + at, sizeof header);
+    starts.push_back(at);
+    at += sizeof header + header.size;
+  }
+  int refused = 0;
+  for (int trial = 0; trial < 3000; ++trial) {
+    const std::size_t at = starts[random() % starts.size()];
+    std::vector<std::byte> bytes = bytes_;
+    ChunkHeader header;
+    std::memcpy(&header, bytes.data() + at, sizeof header);
+    const auto content = std::span(bytes).subspan(at + sizeof header, header.size);
+    for (int change = 0; change < 3 && !content.empty(); ++change)
+      content[random() % std::min<std::size_t>(content.size(), 40)] = static_cast<std::byte>(random());
+    if (random() % 5 == 0) header.kind = static_cast<ChunkKind>(random() % 9);
+    header.checksum = CalcChunkChecksum(file_id, header, content);
+    std::memcpy(bytes.data() + at, &header, sizeof header);
+    const auto recording = ReadRecording(bytes, "changed");
+    if (!recording.ok() || !recording->damage.empty()) {
+      ++refused;
+      continue;
+    }
+    for (std::size_t frame = 0; frame < recording->KeyframeTicks().size(); ++frame) {
+      const auto state = recording->ReadKeyframe(frame);
+      if (!state.ok()) ++refused;
+    }
+  }
+  EXPECT_GT(refused, 1000);
 }
 
 }  // namespace
