@@ -34,9 +34,8 @@ using HandPages = std::array<HandPage, scene::kHandCount>;
 
 /// Tools, liquids and the assistant.
 struct OperationPage {
-  std::array<std::string, scene::kHandCount> hands;  ///< "1  Left grasper"
-  std::array<std::size_t, scene::kHandCount>
-      asked{};  ///< place in the tray; the exchange follows later
+  std::array<std::string, scene::kHandCount> hands;    ///< "1  Left grasper"
+  std::array<std::size_t, scene::kHandCount> asked{};  ///< place in the tray; the exchange follows later
   std::string clips, blood, bile, stones, assistant;
   bool has_assistant = false;
   scene::AssistantCommand command{};
