@@ -69,8 +69,10 @@ if("render" IN_LIST TROCAR_MODULES)
 endif()
 if("gui" IN_LIST TROCAR_MODULES AND TROCAR_BUILD_WINDOW)
   pkg_check_modules(GTKMM REQUIRED IMPORTED_TARGET gtkmm-4.0)
-  # GTK needs it; a test of the windows moves the pointer with it
-  pkg_check_modules(X11 REQUIRED IMPORTED_TARGET x11)
+  if(TROCAR_BUILD_TESTS)
+    # moves the pointer over the windows
+    pkg_check_modules(X11 REQUIRED IMPORTED_TARGET x11)
+  endif()
 endif()
 # optional: headers of Embree 3 or 4, which `trocar bench collision` measures itself against
 find_path(TROCAR_EMBREE_INCLUDE_DIR NAMES embree3/rtcore.h embree4/rtcore.h)

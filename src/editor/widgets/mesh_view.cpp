@@ -65,48 +65,56 @@ void MeshView::MakeButtons() {
 }
 
 void MeshView::MakeGestures() {
+  AddDrag();
+  for (const guint number : {GDK_BUTTON_SECONDARY, GDK_BUTTON_MIDDLE}) AddPanning(number);
+  AddPointer();
+  AddWheel();
+}
+
+/// The primary button turns, or does what the caller takes it for.
+void MeshView::AddDrag() {
   const auto primary = Gtk::GestureDrag::create();
   primary->set_button(GDK_BUTTON_PRIMARY);
   auto* drag = primary.get();
-  primary->signal_drag_begin().connect([this, drag](double x, double y) {
-    area_.grab_focus();
-    drag_x_ = drag_y_ = 0;
-    is_taken_ = on_press && on_press(Pick(x, y, drag->get_current_event_state()));
-  });
-  const auto at = [drag](double dx, double dy) {
+  const auto pick_at = [this, drag](double dx, double dy) {
     double x = 0, y = 0;
     drag->get_start_point(x, y);
-    return std::pair{x + dx, y + dy};
+    return Pick(x + dx, y + dy, drag->get_current_event_state());
   };
-  primary->signal_drag_update().connect([this, drag, at](double dx, double dy) {
+  primary->signal_drag_begin().connect([this, pick_at](double, double) {
+    area_.grab_focus();
+    drag_x_ = drag_y_ = 0;
+    is_taken_ = on_press && on_press(pick_at(0, 0));
+  });
+  primary->signal_drag_update().connect([this, pick_at](double dx, double dy) {
     if (is_taken_) {
-      const auto [x, y] = at(dx, dy);
-      if (on_drag) on_drag(Pick(x, y, drag->get_current_event_state()));
+      if (on_drag) on_drag(pick_at(dx, dy));
     } else {
       render::Orbit(camera_, dx - drag_x_, dy - drag_y_, get_height());
       area_.queue_render();
     }
     drag_x_ = dx, drag_y_ = dy;
   });
-  primary->signal_drag_end().connect([this, drag, at](double dx, double dy) {
-    const auto [x, y] = at(dx, dy);
-    if (is_taken_ && on_release) on_release(Pick(x, y, drag->get_current_event_state()));
+  primary->signal_drag_end().connect([this, pick_at](double dx, double dy) {
+    if (is_taken_ && on_release) on_release(pick_at(dx, dy));
     is_taken_ = false;
   });
   area_.add_controller(primary);
+}
 
-  for (const guint number : {GDK_BUTTON_SECONDARY, GDK_BUTTON_MIDDLE}) {
-    const auto pan = Gtk::GestureDrag::create();
-    pan->set_button(number);
-    pan->signal_drag_begin().connect([this](double, double) { drag_x_ = drag_y_ = 0; });
-    pan->signal_drag_update().connect([this](double dx, double dy) {
-      render::Pan(camera_, dx - drag_x_, dy - drag_y_, get_height());
-      drag_x_ = dx, drag_y_ = dy;
-      area_.queue_render();
-    });
-    area_.add_controller(pan);
-  }
+void MeshView::AddPanning(unsigned button) {
+  const auto pan = Gtk::GestureDrag::create();
+  pan->set_button(button);
+  pan->signal_drag_begin().connect([this](double, double) { drag_x_ = drag_y_ = 0; });
+  pan->signal_drag_update().connect([this](double dx, double dy) {
+    render::Pan(camera_, dx - drag_x_, dy - drag_y_, get_height());
+    drag_x_ = dx, drag_y_ = dy;
+    area_.queue_render();
+  });
+  area_.add_controller(pan);
+}
 
+void MeshView::AddPointer() {
   const auto motion = Gtk::EventControllerMotion::create();
   auto* moved = motion.get();
   motion->signal_motion().connect([this, moved](double x, double y) {
@@ -120,7 +128,9 @@ void MeshView::MakeGestures() {
     if (on_leave) on_leave();
   });
   area_.add_controller(motion);
+}
 
+void MeshView::AddWheel() {
   const auto wheel = Gtk::EventControllerScroll::create();
   wheel->set_flags(Gtk::EventControllerScroll::Flags::VERTICAL);
   auto* turned = wheel.get();

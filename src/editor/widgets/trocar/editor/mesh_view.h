@@ -61,6 +61,10 @@ class MeshView : public Gtk::Overlay {
  private:
   void MakeButtons();
   void MakeGestures();
+  void AddDrag();
+  void AddPanning(unsigned button);
+  void AddPointer();
+  void AddWheel();
   void Realize();
   void Unrealize();
   bool Render();
