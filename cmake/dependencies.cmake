@@ -70,8 +70,12 @@ if("render" IN_LIST TROCAR_MODULES)
   pkg_check_modules(EGL REQUIRED IMPORTED_TARGET egl)
   pkg_check_modules(GSTREAMER REQUIRED IMPORTED_TARGET gstreamer-1.0 gstreamer-app-1.0 gstreamer-video-1.0)
 endif()
-if("app" IN_LIST TROCAR_MODULES AND TROCAR_BUILD_WINDOW)
+if("gui" IN_LIST TROCAR_MODULES AND TROCAR_BUILD_WINDOW)
   pkg_check_modules(GTKMM REQUIRED IMPORTED_TARGET gtkmm-4.0)
+  if(TROCAR_BUILD_TESTS)
+    # moves the pointer over the windows
+    pkg_check_modules(X11 REQUIRED IMPORTED_TARGET x11)
+  endif()
 endif()
 # optional: headers of Embree 3 or 4, which `trocar bench collision` measures itself against
 find_path(TROCAR_EMBREE_INCLUDE_DIR NAMES embree3/rtcore.h embree4/rtcore.h)

@@ -6,18 +6,18 @@
 #include <array>
 #include <cmath>
 
-#include "trocar/app/contour_script.h"
 #include "trocar/core/version.h"
 #include "trocar/device/force_device_spec.h"
+#include "trocar/editor/contour_script.h"
 
 namespace trocar::app {
+namespace {
 
-core::Result<CommandLine> ParseCommandLine(int argc, const char* const* argv) {
-  CommandLine command;
-  Options& options = command.options;
-  CLI::App app{"Trocar: the simulator window. Operate on a virtual abdomen with mouse and keyboard.",
-               "trocar-window"};
-  app.set_version_flag("--version", "trocar-window " + std::string(core::VersionText()));
+core::Error Refusal(const std::string& what) {
+  return {core::ErrorCode::kUsage, what + "; see trocar-window --help"};
+}
+
+void AddScene(CLI::App& app, Options& options) {
   app.add_option("--scene", options.scene,
                  "Scene to open, a JSON file (default: the built-in demonstration)");
   CLI::Option* task =
@@ -34,6 +34,9 @@ core::Result<CommandLine> ParseCommandLine(int argc, const char* const* argv) {
   app.add_option("--threads", options.threads, "Threads of the solver; 0 chooses by the processors")
       ->check(CLI::Range(0, 256))
       ->capture_default_str();
+}
+
+void AddHands(CLI::App& app, Options& options) {
   app.add_option(
       "--device", options.device,
       "Hands of a tracker or other device in place of the mouse's, as `trocar devices list` names it");
@@ -46,17 +49,22 @@ core::Result<CommandLine> ParseCommandLine(int argc, const char* const* argv) {
   app.add_option("--igtl", options.igtl_port,
                  "Show tools and organs to 3D Slicer on this port of this machine (OpenIGTLink; 0: any port)")
       ->check(CLI::Range(0, 65535));
+}
+
+void AddRun(CLI::App& app, Options& options) {
   app.add_flag("--fullscreen", options.is_fullscreen, "Start in full screen (F11 switches)");
   app.add_flag("--demonstration", options.is_demonstration,
                "Start with the demonstration: the script moves both hands");
-  CLI::Option* screenshot = app.add_option(
-      "--screenshot", options.screenshot,
-      "Play the demonstration (with --edit-patient: show the patient), save the window's picture "
-      "in this PNG file, print what was measured as JSON, and quit");
-  app.add_option("--after", options.screenshot_after, "With --screenshot: after this many seconds")
+  app.add_option("--screenshot", options.run.screenshot,
+                 "Play the demonstration (with --edit-patient: show the patient), save the window's picture "
+                 "in this PNG file, print what was measured as JSON, and quit");
+  app.add_option("--after", options.run.screenshot_after, "With --screenshot: after this many seconds")
       ->check(CLI::Range(0.0, 3600.0))
-      ->needs(screenshot)
+      ->needs("--screenshot")
       ->capture_default_str();
+}
+
+void AddDevicePage(CLI::App& app, Options& options) {
   CLI::Option* devices =
       app.add_flag("--devices", options.is_device_page,
                    "Open the page that finds, tries and calibrates devices; --device is tried at once")
@@ -67,6 +75,33 @@ core::Result<CommandLine> ParseCommandLine(int argc, const char* const* argv) {
                  "With --devices: measure this as soon as the device answers")
       ->check(CLI::IsMember({"tip", "trocar", "jaw"}))
       ->needs(devices);
+}
+
+/// \param axes  read by SetAxes() afterwards
+void AddSeries(CLI::App& app, images::ImageSeriesOptions& series, std::string& axes) {
+  app.add_option("--pixel-mm", series.pixel_mm,
+                 "With --contours: side of a pixel, where the files do not say it [mm]")
+      ->check(CLI::Range(0.01, 20.0))
+      ->needs("--contours");
+  app.add_option("--slice-mm", series.slice_mm,
+                 "With --contours: between two slices, where the files do not say it [mm]")
+      ->check(CLI::Range(0.01, 50.0))
+      ->needs("--contours");
+  app.add_option("--series", series.series,
+                 "With --contours: which DICOM series, where a folder holds several")
+      ->check(CLI::Range(1, 100000))
+      ->needs("--contours");
+  app.add_option("--pattern", series.pattern,
+                 "With --contours: only pictures with such names, where a folder holds several stacks: "
+                 "image-{slice:04}.jpeg")
+      ->needs("--contours");
+  app.add_option("--axes", axes,
+                 "With --contours: where columns, rows and slices go to, where the files do not say it, for "
+                 "example left,posterior,superior")
+      ->needs("--contours");
+}
+
+void AddContours(CLI::App& app, editor::ContourOptions& options, std::string& axes) {
   CLI::Option* contours =
       app.add_option("--contours", options.images,
                      "Open the contour window on these pictures: a folder, a DICOM series or a "
@@ -80,46 +115,61 @@ core::Result<CommandLine> ParseCommandLine(int argc, const char* const* argv) {
       ->needs(contours);
   app.add_option("--reference", options.reference, "With --contours: label map to compare with (NIfTI, NRRD)")
       ->needs(contours);
-  app.add_option("--pixel-mm", options.series.pixel_mm,
-                 "With --contours: side of a pixel, where the files do not say it [mm]")
-      ->check(CLI::Range(0.01, 20.0))
-      ->needs(contours);
-  app.add_option("--slice-mm", options.series.slice_mm,
-                 "With --contours: between two slices, where the files do not say it [mm]")
-      ->check(CLI::Range(0.01, 50.0))
-      ->needs(contours);
-  app.add_option("--series", options.series.series,
-                 "With --contours: which DICOM series, where a folder holds several")
-      ->check(CLI::Range(1, 100000))
-      ->needs(contours);
-  app.add_option("--pattern", options.series.pattern,
-                 "With --contours: only pictures with such names, where a folder holds several stacks: "
-                 "image-{slice:04}.jpeg")
-      ->needs(contours);
-  std::string axes;
-  app.add_option("--axes", axes,
-                 "With --contours: where columns, rows and slices go to, where the files do not say it, for "
-                 "example left,posterior,superior")
-      ->needs(contours);
+  AddSeries(app, options.series, axes);
   app.add_option("--script", options.script, "With --contours: commands to begin with, one a line (below)")
       ->needs(contours);
   app.add_flag("--autosave", options.has_autosave,
-               "With --screenshot: keep and recover unsaved work, as a window that somebody watches does")
+               "With --screenshot: keep and recover unsaved work, as a window that a person attends does")
       ->needs(contours)
-      ->needs(screenshot);
+      ->needs("--screenshot");
   app.add_flag("--measure", options.is_measuring,
                "With --contours: drag points by itself, print the times as JSON, and quit")
       ->needs(contours);
-  CLI::Option* patient = app.add_option("--edit-patient", options.patient,
-                                        "Open the patient editor on this folder: regions, ducts, landmarks")
-                             ->excludes("--scene")
-                             ->excludes("--demonstration")
-                             ->excludes(contours);
-  app.add_option("--tool", options.editor_tool, "With --edit-patient: tool to begin with")
+}
+
+void AddPatientEditor(CLI::App& app, std::filesystem::path& patient, std::string& tool) {
+  CLI::Option* edit = app.add_option("--edit-patient", patient,
+                                     "Open the patient editor on this folder: regions, ducts, landmarks")
+                          ->excludes("--scene")
+                          ->excludes("--demonstration")
+                          ->excludes("--contours");
+  app.add_option("--tool", tool, "With --edit-patient: tool to begin with")
       ->check(CLI::IsMember({"look", "paint", "tubes", "landmarks"}))
-      ->needs(patient)
+      ->needs(edit)
       ->capture_default_str();
-  app.footer("Commands of --script:\n" + DescribeContourScript() +
+}
+
+/// \param text  three directions with commas; empty: nothing is said
+core::Status SetAxes(const std::string& text, images::ImageSeriesOptions& series) {
+  if (text.empty()) return {};
+  std::array<std::string, 3> names;
+  std::size_t count = 0;
+  for (std::size_t at = 0; at <= text.size(); ++count) {
+    const std::size_t end = std::min(text.find(',', at), text.size());
+    if (count < names.size()) names[count] = text.substr(at, end - at);
+    at = end + 1;
+  }
+  if (count != names.size())
+    return Refusal("--axes takes three directions, for example left,posterior,superior");
+  series.axes = names;
+  return {};
+}
+
+}  // namespace
+
+core::Result<CommandLine> ParseCommandLine(int argc, const char* const* argv) {
+  CommandLine command;
+  std::string axes, tool = "look";
+  CLI::App app{"Trocar: the simulator window. Operate on a virtual abdomen with mouse and keyboard.",
+               "trocar-window"};
+  app.set_version_flag("--version", "trocar-window " + std::string(core::VersionText()));
+  AddScene(app, command.options);
+  AddHands(app, command.options);
+  AddRun(app, command.options);
+  AddDevicePage(app, command.options);
+  AddContours(app, command.contours, axes);
+  AddPatientEditor(app, command.patient_editor.patient, tool);
+  app.footer("Commands of --script:\n" + editor::DescribeContourScript() +
              "\nKeys are shown in the window: press H, in the contour window F1. Without a display, `trocar "
              "simulate` runs the same scene "
              "headless.");
@@ -132,28 +182,13 @@ core::Result<CommandLine> ParseCommandLine(int argc, const char* const* argv) {
     command.is_text_only = true;
     command.text = app.version() + "\n";
   } catch (const CLI::Error& error) {
-    return core::Error{core::ErrorCode::kUsage, std::string(error.what()) + "; see trocar-window --help"};
+    return Refusal(error.what());
   }
-  if (!std::isfinite(options.screenshot_after)) {
-    return core::Error{core::ErrorCode::kUsage,
-                       "--after must be a number of seconds; see trocar-window --help"};
-  }
-  if (!axes.empty()) {
-    std::array<std::string, 3> names;
-    std::size_t count = 0;
-    for (std::size_t at = 0; at <= axes.size(); ++count) {
-      const std::size_t end = std::min(axes.find(',', at), axes.size());
-      if (count < names.size()) names[count] = axes.substr(at, end - at);
-      at = end + 1;
-    }
-    if (count != names.size()) {
-      return core::Error{
-          core::ErrorCode::kUsage,
-          "--axes takes three directions, for example left,posterior,superior; see trocar-window "
-          "--help"};
-    }
-    options.series.axes = names;
-  }
+  if (!std::isfinite(command.options.run.screenshot_after))
+    return Refusal("--after must be a number of seconds");
+  if (const core::Status set = SetAxes(axes, command.contours.series); !set) return set.error();
+  command.patient_editor.tool = *editor::FindEditorTool(tool);
+  command.contours.run = command.patient_editor.run = command.options.run;
   return command;
 }
 

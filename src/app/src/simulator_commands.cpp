@@ -5,6 +5,9 @@ namespace trocar::app {
 namespace {
 
 using device::Motion;
+using gui::ButtonSide;
+using gui::Ctrl;
+namespace key = gui::key;
 
 using enum SimulatorNeeds;
 
@@ -82,7 +85,7 @@ constexpr SimulatorCommand kCommands[] = {
      .needs = kScene,
      .keys = {{{' '}}},
      .help = {"Simulation", "", "start or pause"},
-     .button = {ButtonSide::kStart, "Start", "Start or pause the simulation", false, true}},
+     .button = {ButtonSide::kStart, "Start", "Start or pause the simulation", false, true, false, 84}},
     {.id = "reset",
      .action = Do(Action::kReset),
      .needs = kScene,
@@ -216,7 +219,7 @@ std::span<const SimulatorCommand> SimulatorCommands() noexcept {
   return kCommands;
 }
 
-std::vector<KeyHelp> SimulatorHelp() {
+std::vector<gui::KeyHelp> SimulatorHelp() {
   constexpr const char* kGroups[] = {"Instruments", "Operation", "Laparoscope", "Simulation", "View"};
   return MakeKeyHelp(SimulatorCommands(), kGroups);
 }

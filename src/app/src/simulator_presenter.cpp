@@ -150,16 +150,16 @@ bool SimulatorPresenter::IsForceOn() const {
   });
 }
 
-ButtonState SimulatorPresenter::FindButton(const SimulatorCommand& command) const {
+gui::ButtonState SimulatorPresenter::FindButton(const SimulatorCommand& command) const {
   const Action action = command.action.action;
-  ButtonState state;
+  gui::ButtonState state;
   state.is_enabled = Meets(command.needs);
   state.is_checked = IsChecked(action);
   state.is_shown = command.needs != SimulatorNeeds::kHaptics || !options_.haptics.empty() ||
                    (control_ != nullptr && control_->Haptics() != nullptr);
   state.label = command.button.label;
   if (action == Action::kTogglePause && control_ != nullptr && !control_->IsPaused()) state.label = "Pause";
-  state.tip = TipText(command.button.tip, command.keys);
+  state.tip = gui::TipText(command.button.tip, command.keys);
   return state;
 }
 
@@ -355,7 +355,7 @@ void SimulatorPresenter::CountPicture() {
 
 PlayReport SimulatorPresenter::MakeReport(int width, int height) const {
   PlayReport report;
-  report.screenshot = options_.screenshot.filename().string();
+  report.screenshot = options_.run.screenshot.filename().string();
   report.width = width, report.height = height;
   report.first_picture = first_picture_;
   if (control_ != nullptr) {

@@ -3,13 +3,13 @@
 #include <cstdio>
 #include <vector>
 
-#include "window_picture.h"
+#include "trocar_test/window_picture.h"
 
-using trocar::app::Fail;
+using trocar::test::Fail;
 
 int main(int argc, char** argv) {
   if (argc != 2) return Fail("usage: device_page_picture_check PICTURE.png");
-  const trocar::app::WindowPicture image = trocar::app::ReadWindowPicture(argv[1]);
+  const trocar::test::WindowPicture image = trocar::test::ReadWindowPicture(argv[1]);
   // the right part, behind the names: blue pan, green tilt, violet turn, yellow depth
   int pan = 0, tilt = 0, turn = 0, depth = 0;
   for (unsigned y = 40; y < image.height - 40; ++y) {

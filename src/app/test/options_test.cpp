@@ -20,7 +20,9 @@ TEST(Options, DefaultsOpenTheBuiltInSceneInAWindow) {
   ASSERT_TRUE(command.ok());
   EXPECT_FALSE(command->is_text_only);
   EXPECT_TRUE(command->options.scene.empty());
-  EXPECT_TRUE(command->options.screenshot.empty());
+  EXPECT_TRUE(command->options.run.IsAttended());
+  EXPECT_TRUE(command->contours.images.empty());
+  EXPECT_TRUE(command->patient_editor.patient.empty());
   EXPECT_FALSE(command->options.is_fullscreen);
 }
 
@@ -33,8 +35,8 @@ TEST(Options, ReadsEveryOption) {
   EXPECT_EQ(command->options.threads, 2);
   EXPECT_TRUE(command->options.is_fullscreen);
   EXPECT_TRUE(command->options.is_demonstration);
-  EXPECT_EQ(command->options.screenshot, "b.png");
-  EXPECT_EQ(command->options.screenshot_after, 1.5);
+  EXPECT_EQ(command->options.run.screenshot, "b.png");
+  EXPECT_EQ(command->options.run.screenshot_after, 1.5);
 }
 
 TEST(Options, ReadsTasks) {
@@ -57,7 +59,7 @@ TEST(Options, ReadsTheContourWindowsOptions) {
              "--slice-mm", "2", "--axes", "left,posterior,superior", "--script", "s", "--measure", "--series",
              "2", "--pattern", "s{slice}.png"});
   ASSERT_TRUE(command.ok()) << command.error().Text();
-  const Options& options = command->options;
+  const editor::ContourOptions& options = command->contours;
   EXPECT_EQ(options.images, "slices");
   EXPECT_EQ(options.points, "p.json");
   EXPECT_EQ(options.reference, "l.nii.gz");
@@ -77,6 +79,28 @@ TEST(Options, ReadsTheContourWindowsOptions) {
            {"--contours", "a", "--series", "0"}}) {
     EXPECT_FALSE(Parse(wrong).ok());
   }
+}
+
+TEST(Options, ReadsThePatientEditorsOptions) {
+  const core::Result<CommandLine> command =
+      Parse({"--edit-patient", "folder", "--tool", "tubes", "--screenshot", "p.png", "--after", "2"});
+  ASSERT_TRUE(command.ok()) << command.error().Text();
+  EXPECT_EQ(command->patient_editor.patient, "folder");
+  EXPECT_EQ(command->patient_editor.tool, editor::EditorTool::kTubes);
+  EXPECT_EQ(command->patient_editor.run.screenshot, "p.png");
+  EXPECT_EQ(command->patient_editor.run.screenshot_after, 2);
+  EXPECT_FALSE(command->contours.IsAttended());
+  EXPECT_FALSE(Parse({"--edit-patient", "folder", "--tool", "saw"}).ok());
+  EXPECT_FALSE(Parse({"--edit-patient", "folder", "--contours", "slices"}).ok());
+  EXPECT_FALSE(Parse({"--tool", "tubes"}).ok()) << "of which patient?";
+}
+
+TEST(Options, ReadsTheDevicePagesOptions) {
+  const core::Result<CommandLine> command = Parse({"--devices", "--device", "gamepad", "--calibrate", "tip"});
+  ASSERT_TRUE(command.ok()) << command.error().Text();
+  EXPECT_TRUE(command->options.is_device_page);
+  EXPECT_EQ(command->options.calibrate, "tip");
+  EXPECT_FALSE(Parse({"--calibrate", "tip"}).ok());
 }
 
 TEST(Options, HelpAndVersionArePrinted) {

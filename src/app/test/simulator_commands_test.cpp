@@ -6,10 +6,17 @@
 #include <set>
 #include <string>
 
+#include "trocar_test/sound_commands.h"
+
 namespace trocar::app {
 namespace {
 
 using device::Motion;
+
+TEST(SimulatorCommands, AreSound) {
+  test::ExpectSoundCommands(SimulatorCommands());
+  test::ExpectWholeHelp(SimulatorCommands(), SimulatorHelp());
+}
 
 TEST(SimulatorCommands, EveryMotionHasAKey) {
   std::set<Motion> reached;
@@ -24,7 +31,7 @@ TEST(SimulatorCommands, EveryMotionHasAKey) {
 TEST(SimulatorCommands, EveryActionHasAKeyOrAButton) {
   std::set<Action> reached{Action::kNone};
   for (const SimulatorCommand& command : SimulatorCommands()) {
-    if (command.keys[0].key != 0 || command.button.side != ButtonSide::kNone)
+    if (command.keys[0].key != 0 || command.button.side != gui::ButtonSide::kNone)
       reached.insert(command.action.action);
   }
   EXPECT_EQ(reached.size(), static_cast<std::size_t>(Action::kQuit) + 1);
@@ -74,7 +81,7 @@ TEST(SimulatorCommands, PanelKeepsTheKeysThatSlidersNeed) {
 
 TEST(SimulatorCommands, HelpNamesEveryKeyThatActs) {
   std::string all;
-  for (const KeyHelp& row : SimulatorHelp()) all += " " + row.keys + " ";
+  for (const gui::KeyHelp& row : SimulatorHelp()) all += " " + row.keys + " ";
   for (std::uint32_t key = 'a'; key <= 'z'; ++key) {
     const std::string name(1, static_cast<char>(key - 'a' + 'A'));
     const bool is_named = all.find(" " + name + " ") != std::string::npos;

@@ -95,7 +95,7 @@ TEST_F(Presenter, SaysWhatCannotBeLoaded) {
 TEST_F(Presenter, ClosesARunThatNobodyWatchesWhenItFails) {
   Options options;
   options.scene = "no_such_scene.json";
-  options.screenshot = "window.png";
+  options.run.screenshot = "window.png";
   Begin(options);
   Load();
   EXPECT_EQ(screen_.done, std::vector{Action::kQuit});

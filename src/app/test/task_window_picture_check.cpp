@@ -4,11 +4,11 @@
 #include <string>
 
 #include "trocar/core/safe_file.h"
-#include "window_picture.h"
+#include "trocar_test/window_picture.h"
 
 namespace {
 
-using trocar::app::Fail;
+using trocar::test::Fail;
 
 /// The report that trocar-window printed among other lines.
 nlohmann::json ReadReport(const char* file) {
@@ -37,7 +37,7 @@ int main(int argc, char** argv) {
     return Fail("the list of tasks is shown when it should not be, or not");
   if (report.at("result") != (is_list ? "" : "Completed"))
     return Fail("the result is " + report.at("result").dump());
-  const auto picture = trocar::app::ReadWindowPicture(argv[2]);
+  const auto picture = trocar::test::ReadWindowPicture(argv[2]);
   // the card lies in the middle of the laparoscope's picture, left of the panel
   const unsigned x0 = picture.width / 5, x1 = picture.width * 3 / 5, y0 = picture.height / 4,
                  y1 = picture.height * 3 / 4;

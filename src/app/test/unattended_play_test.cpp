@@ -10,8 +10,8 @@ namespace {
 
 Options MakeOptions() {
   Options options;
-  options.screenshot = "window.png";
-  options.screenshot_after = 2;
+  options.run.screenshot = "window.png";
+  options.run.screenshot_after = 2;
   return options;
 }
 

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "trocar/core/safe_file.h"
-#include "window_picture.h"
+#include "trocar_test/window_picture.h"
 
-using trocar::app::Fail;
+using trocar::test::Fail;
 
 int main(int argc, char** argv) {
   if (argc != 3) return Fail("usage: window_picture_check PICTURE.png REPORT.json");
@@ -24,7 +24,7 @@ int main(int argc, char** argv) {
   if (report.at("ticks").get<int>() < 200) return Fail("two seconds are at least 200 ticks of 1/120 s");
   if (report.at("pictures").get<int>() < 2) return Fail("fewer than 2 pictures were drawn");
 
-  const trocar::app::WindowPicture image = trocar::app::ReadWindowPicture(argv[1]);
+  const trocar::test::WindowPicture image = trocar::test::ReadWindowPicture(argv[1]);
 
   // the middle of the laparoscope's picture shows tissue: red over blue, in many shades
   std::set<int> shades;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file options.h  Command line of trocar-window: the simulator, or with --contours the contour window.
+/// \file options.h  Command line of trocar-window: the simulator, the page of devices, or one of the editors.
 #pragma once
 
 #include <cstdint>
@@ -7,10 +7,13 @@
 #include <string>
 
 #include "trocar/core/result.h"
-#include "trocar/images/image_series.h"
+#include "trocar/editor/contour_options.h"
+#include "trocar/editor/patient_editor_options.h"
+#include "trocar/gui/run_options.h"
 
 namespace trocar::app {
 
+/// Of the simulator and the page of devices.
 struct Options {
   std::filesystem::path scene;   ///< empty: the built-in demonstration
   std::string task;              ///< training task by its name or file, in place of `scene`; empty: none
@@ -23,31 +26,20 @@ struct Options {
   std::filesystem::path haptic_record;  ///< what force feedback did, written at the end; empty: none
   int igtl_port = -1;                   ///< viewers over OpenIGTLink may connect here; 0: any port, -1: none
   bool is_fullscreen = false;
-  bool is_demonstration = false;     ///< start with the script moving both hands
-  std::filesystem::path screenshot;  ///< empty: none. Otherwise play, save the window's picture and quit
-  double screenshot_after = 5;       ///< after this many seconds of simulation [s]
+  bool is_demonstration = false;  ///< start with the script moving both hands
+  gui::RunOptions run;            ///< its time is simulated
 
   // the device page
   bool is_device_page = false;  ///< open it alone; `device` is tried at once
   std::string calibrate;  ///< "tip", "trocar" or "jaw": measured as soon as the device answers; empty: none
-
-  // the contour window
-  std::filesystem::path images;       ///< not empty: open the contour window on these pictures
-  std::filesystem::path points;       ///< file of contours, which need not exist yet; empty: none
-  std::filesystem::path reference;    ///< label map to compare with; empty: none
-  images::ImageSeriesOptions series;  ///< what the pictures do not say
-  std::filesystem::path script;       ///< commands to begin with; empty: none
-  bool has_autosave = false;          ///< also in a run that nobody watches
-  bool is_measuring = false;          ///< drag a point for some seconds, print the times and quit
-  // the patient editor
-  std::filesystem::path patient;     ///< not empty: open the patient editor on this folder
-  std::string editor_tool = "look";  ///< "look", "paint", "tubes" or "landmarks"
 };
 
 /// What the command line asks for.
 struct CommandLine {
   Options options;
-  bool is_text_only = false;  ///< print `text` and leave with success: --help, --version
+  editor::ContourOptions contours;              ///< with pictures: open the contour window
+  editor::PatientEditorOptions patient_editor;  ///< with a patient: open the patient editor
+  bool is_text_only = false;                    ///< print `text` and leave with success: --help, --version
   std::string text;
 };
 

@@ -53,7 +53,7 @@ class SessionControl {
   /// Port that viewers may connect to, or -1.
   int ServedPort() const { return server_ != nullptr ? server_->Port() : -1; }
 
-  /// Moves the hands on by `dt` [s] and hands the newest wish to the simulation; while paused the hands stand
+  /// Moves the hands on by `dt` [s] and gives the newest request to the simulation; while paused the hands stand
   /// still.
   /// \return the newest state, valid until the next call
   const simulation::Snapshot& Advance(double dt);

@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <span>
 
-#include "trocar/app/command.h"
 #include "trocar/device/hand_buttons.h"
 #include "trocar/device/mouse_keyboard.h"
+#include "trocar/gui/command.h"
 
 namespace trocar::app {
 
@@ -61,12 +61,12 @@ enum class SimulatorNeeds {
   kHaptics,  ///< likewise, and a haptic device holds a hand
 };
 
-using SimulatorCommand = Command<KeyMeaning, SimulatorNeeds>;
+using SimulatorCommand = gui::Command<KeyMeaning, SimulatorNeeds>;
 
 /// All of them; those with a button in the order of the header bar, from the left.
 std::span<const SimulatorCommand> SimulatorCommands() noexcept;
 /// The help page.
-std::vector<KeyHelp> SimulatorHelp();
+std::vector<gui::KeyHelp> SimulatorHelp();
 
 /// Meaning of a key in the picture.
 ///

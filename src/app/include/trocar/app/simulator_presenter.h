@@ -9,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "trocar/app/background_job.h"
 #include "trocar/app/options.h"
 #include "trocar/app/read_outs.h"
 #include "trocar/app/session_control.h"
@@ -18,6 +17,7 @@
 #include "trocar/app/task_result.h"
 #include "trocar/app/unattended_play.h"
 #include "trocar/core/clock.h"
+#include "trocar/gui/background_job.h"
 #include "trocar/view/laparoscope_view.h"
 
 namespace trocar::app {
@@ -70,7 +70,7 @@ class SimulatorPresenter {
   void Do(Action action);
   bool IsEnabled(Action action) const;
   /// How the command's button looks now.
-  ButtonState FindButton(const SimulatorCommand& command) const;
+  gui::ButtonState FindButton(const SimulatorCommand& command) const;
 
   void OpenTaskList();
   void CloseTaskList();
@@ -92,7 +92,7 @@ class SimulatorPresenter {
   void CountPicture();
   double PictureRate() const { return frames_.Rate(since_start_.Seconds()); }
   const StageMeter& Stages() const { return stages_; }
-  /// What a run that nobody watches prints.
+  /// What a run that is not attended prints.
   PlayReport MakeReport(int width, int height) const;
 
   /// Stops the simulation and says so; the first failure stays.
@@ -139,7 +139,7 @@ class SimulatorPresenter {
   std::uint64_t seen_events_ = 0;
   double first_picture_ = 0;                                  // since the start of the program [s]
   double last_frame_ = 0, last_forces_ = 0, last_times_ = 0;  // of the frame clock [s]
-  BackgroundJob<core::Result<simulation::Simulation>> loading_;
+  gui::BackgroundJob<core::Result<simulation::Simulation>> loading_;
 };
 
 }  // namespace trocar::app

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file unattended_play.h  A run of the simulator window that nobody watches: when its picture is due, and its report.
+/// \file unattended_play.h  A run of the simulator window that is not attended: when its picture is due, and its report.
 #pragma once
 
 #include <filesystem>
@@ -20,7 +20,7 @@ class UnattendedPlay {
   };
 
   explicit UnattendedPlay(const Options& options)
-      : after_(options.screenshot_after), is_on_(!options.screenshot.empty()) {}
+      : after_(options.run.screenshot_after), is_on_(!options.run.IsAttended()) {}
 
   bool IsOn() const { return is_on_; }
   /// \param simulated  of the newest state [s]

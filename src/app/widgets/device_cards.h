@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file device_cards.h  The cards of the page of devices; what they show and do is the presenter's.
+#pragma once
+
+#include <gtkmm.h>
+
+#include <string>
+#include <vector>
+
+#include "trocar/app/device_presenter.h"
+#include "trocar/gui/card.h"
+
+namespace trocar::app {
+
+/// What is plugged in, and which device is tried.
+class FoundCard : public gui::Card {
+ public:
+  explicit FoundCard(DevicePresenter& presenter);
+  void ShowFound(const std::vector<std::string>& devices);
+  void Show(const DevicePageState& state);
+
+ private:
+  Gtk::ListBox found_;
+  Gtk::Entry spec_;
+  Gtk::Button test_{"Test"}, stop_{"Stop"}, find_{"Look again"};
+};
+
+/// Which hand, and what is measured of it.
+class CalibrationCard : public gui::Card {
+ public:
+  explicit CalibrationCard(DevicePresenter& presenter);
+  void Show(const DevicePageState& state);
+
+ private:
+  Gtk::DropDown hand_;
+  Gtk::Button tip_{"Tip"}, trocar_{"Trocar"}, jaw_{"Jaw"}, swap_{"Swap hands"};
+  Gtk::ProgressBar progress_;
+  Gtk::Label hint_, result_;
+};
+
+/// Which device holds the hands of the running operation, and its force.
+class UseCard : public gui::Card {
+ public:
+  explicit UseCard(DevicePresenter& presenter);
+  void Show(const DevicePageState& state);
+
+ private:
+  Gtk::Button use_{"Hold the instruments"};
+  Gtk::Entry haptic_name_;
+  Gtk::Button use_haptics_{"Use"}, check_pose_{"Check pose"};
+  Gtk::ToggleButton force_{"Force"};
+  Gtk::Label haptics_;
+  bool is_showing_ = false;  // the toggle is being set by us
+};
+
+}  // namespace trocar::app

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file simulator_window.h  The simulator window's widgets; what they show and do is the presenter's.
+#pragma once
+
+#include <gtkmm.h>
+
+#include <memory>
+#include <optional>
+
+#include "device_page.h"
+#include "failure_card.h"
+#include "hand_events.h"
+#include "panel.h"
+#include "picture.h"
+#include "result_card.h"
+#include "task_chooser.h"
+#include "trocar/app/simulator_presenter.h"
+#include "trocar/gui/command_bar.h"
+#include "trocar/gui/help_card.h"
+
+namespace trocar::app {
+
+class SimulatorWindow : public Gtk::ApplicationWindow, private SimulatorScreen {
+ public:
+  /// \param since_start  runs since the program began
+  SimulatorWindow(const Options& options, const core::Stopwatch& since_start);
+  ~SimulatorWindow() override;
+
+  /// Writes what --haptic-record asks for; call it once the window has closed.
+  void SaveHapticRecord() { presenter_->SaveHapticRecord(); }
+  /// What went wrong, if anything did: the program's exit status follows it.
+  const std::optional<core::Error>& GetFailure() const { return presenter_->GetFailure(); }
+
+ private:
+  void MakeContent();
+  void MakeOverlay();
+  void MakeRoutes();
+  bool OnFrame(const Glib::RefPtr<Gdk::FrameClock>& clock);
+  void OpenDevices();
+  void SwitchPane();
+  void ChooseAndSaveResult();
+
+  // SimulatorScreen
+  void Show(const SimulatorPage& page) override;
+  void UseControl(SessionControl* control) override;
+  std::vector<std::string> UseKeys(const std::map<std::string, device::HandAct>& keys) override;
+  core::Status FillTaskList() override;
+  void FillResult(const TaskResult& result) override { result_card_.Show(result); }
+  void ReleasePointer() override { hands_->ReleasePointer(); }
+  bool IsPointerTaken() const override { return hands_->IsPointerTaken(); }
+  void FocusPicture() override { picture_.grab_focus(); }
+  void DoInWindow(Action action) override;
+
+  gui::Tips tips_;
+  gui::CommandBar<KeyMeaning, SimulatorNeeds> bar_;
+  Gtk::Overlay overlay_;
+  Picture picture_;
+  Panel panel_;
+  gui::HelpCard help_card_{SimulatorHelp()};
+  TaskChooser chooser_;
+  ResultCard result_card_;
+  FailureCard failure_card_;
+  Gtk::Label badge_, hint_, event_, state_, haptics_;
+  std::unique_ptr<HandEvents> hands_;
+  Glib::Dispatcher loaded_;
+  std::unique_ptr<SimulatorPresenter> presenter_;
+  std::unique_ptr<DevicePage> device_page_;  // of the presenter's control
+};
+
+}  // namespace trocar::app

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file patient_editor_options.h  What the patient editor is opened with.
+#pragma once
+
+#include <filesystem>
+
+#include "trocar/editor/patient_editor.h"
+#include "trocar/gui/run_options.h"
+
+namespace trocar::editor {
+
+struct PatientEditorOptions {
+  std::filesystem::path patient;  ///< folder
+  EditorTool tool = EditorTool::kLook;
+  gui::RunOptions run;
+};
+
+}  // namespace trocar::editor

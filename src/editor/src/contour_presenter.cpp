@@ -1,0 +1,564 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/editor/contour_presenter.h"
+
+#include <utility>
+#include <vector>
+
+#include "trocar/core/assert.h"
+#include "trocar/core/log.h"
+#include "trocar/editor/contour_read_outs.h"
+
+namespace trocar::editor {
+namespace {
+
+constexpr unsigned kSurfaceDelay = 60;    // after an edit until the surface is made anew [ms]
+constexpr unsigned kAutosaveLook = 1000;  // between looks at how the autosave went [ms]
+
+}  // namespace
+
+ContourPresenter::ContourPresenter(const ContourOptions& options, std::filesystem::path user_folder,
+                                   ContourScreen& screen, ContourWakes wakes)
+    : options_(options),
+      user_folder_(std::move(user_folder)),
+      screen_(&screen),
+      wakes_(std::move(wakes)),
+      loading_(wakes_.on_loaded),
+      building_(wakes_.on_built) {}
+
+ContourPresenter::~ContourPresenter() {
+  surfaces_.reset();
+}
+
+// opening
+
+void ContourPresenter::Start() {
+  contours::WorkspaceOptions workspace;
+  workspace.images = options_.images;
+  workspace.points = options_.points;
+  workspace.reference = options_.reference;
+  workspace.series = options_.series;
+  Refresh();
+  Open(std::move(workspace));
+}
+
+void ContourPresenter::Open(contours::WorkspaceOptions options) {
+  if (loading_.IsRunning()) return;
+  loading_options_ = std::move(options);
+  page_.is_busy = true;
+  ShowHint("Opening the pictures ...");
+  loading_.Start([this, options = loading_options_] {
+    return contours::ContourWorkspace::Open(options, [this](std::string_view what, double fraction) {
+      progress_.Set(what, fraction);
+      wakes_.on_progress();
+    });
+  });
+}
+
+void ContourPresenter::OpenWith(const images::ImageSeriesOptions& series) {
+  auto options = loading_options_;
+  options.series = series;
+  Open(std::move(options));
+}
+
+void ContourPresenter::FinishLoading() {
+  auto opened = loading_.Take();
+  page_.is_busy = false;
+  page_.state.clear();
+  ShowHint("");
+  if (!opened.ok()) return OpeningFailed(opened.error());
+  UseWorkspace(std::move(*opened));
+}
+
+void ContourPresenter::OpeningFailed(const core::Error& error) {
+  if (error.code == core::ErrorCode::kImageSpacingUnknown) {
+    has_asked_sizes_ = true;
+    if (screen_->AskSizes(loading_options_.series)) return;
+  }
+  if (!options_.IsAttended()) return Abandon(error);
+  // what was typed may be what is wrong
+  if (has_asked_sizes_) (void)screen_->AskSizes(loading_options_.series);
+  Report(error);
+}
+
+/// Ends the contours that are shown.
+void ContourPresenter::Drop() {
+  screen_->UseEditor(nullptr);
+  surfaces_.reset();
+  prefetcher_.reset();
+  side_file_.Release();
+  editor_.reset();
+}
+
+void ContourPresenter::UseWorkspace(contours::ContourWorkspace workspace) {
+  Drop();
+  workspace_ = std::make_unique<contours::ContourWorkspace>(std::move(workspace));
+  // a run that is not attended leaves no side file and asks nothing
+  const bool is_kept = (options_.IsAttended() || options_.has_autosave) && TakeSideFile();
+  if (is_kept) OfferRecovered();
+  editor_ = std::make_unique<ContourEditor>(*workspace_);
+  editor_->on_error = [this](const core::Error& error) {
+    if (error.code == core::ErrorCode::kEditRefused) return ShowHint(error.message, true);
+    Report(error);
+  };
+  editor_->on_event = [this](const std::string& text) { ShowHint(text); };
+  prefetcher_ = std::make_unique<contours::SlicePrefetcher>(workspace_->Store());
+  surfaces_ = std::make_unique<SurfaceUpdates>(*workspace_, wakes_.on_surfaces);
+  screen_->UseEditor(editor_.get());
+  page_.has_reference = workspace_->HasReference() && options_.run.IsAttended();
+  page_.series = SeriesText(workspace_->Series());
+  if (is_kept) StartAutosave();
+  shown_revision_ = workspace_->Document().Revision();
+  RequestSurfaces(true);
+  screen_->FocusCanvas();
+  Refresh();
+  PrefetchNeighbours();
+}
+
+// the side file
+
+bool ContourPresenter::TakeSideFile() {
+  const auto taken = side_file_.Take(FindSideFile(workspace_->Options(), user_folder_));
+  if (taken.ok()) return true;
+  if (taken.error().code != core::ErrorCode::kFileInUse) {
+    Report(taken.error());
+    return false;
+  }
+  core::Log(core::LogLevel::kWarning, taken.error().Text());
+  screen_->Ask({"These contours are open in another window: " + taken.error().message +
+                    ". Whichever saves last overwrites the other.",
+                {{"Close this window", [this] { screen_->DoInWindow(ContourAction::kQuit); }, true},
+                 {"Go on without autosave", [] {}}}});
+  return false;
+}
+
+void ContourPresenter::StartAutosave() {
+  side_file_.Start();
+  if (workspace_->Document().IsDirty()) side_file_.Offer(workspace_->Document().Text());
+  screen_->StartTimer(ContourTimer::kAutosave, kAutosaveLook);
+}
+
+void ContourPresenter::OfferRecovered() {
+  auto found = side_file_.FindLeft(workspace_->SavedText());
+  if (!found.ok()) return Report(found.error());
+  if (!found->has_value()) return;
+  const auto saved = workspace_->Document().Points();
+  workspace_->Replace(std::move(**found));
+  const auto back = [this, saved] {
+    if (editor_ == nullptr) return;
+    workspace_->Replace(saved);
+    workspace_->Document().MarkSaved();
+    editor_->Choose({});
+    editor_->ChooseStructure(0);
+    side_file_.Discard();
+    OnEdited();
+  };
+  screen_->Ask({"The last session ended without saving. What it had is shown; it is not in the file yet.",
+                {{"Go on with it", [] {}, true}, {"Back to the file", back}}});
+}
+
+bool ContourPresenter::OnTimer(ContourTimer timer) {
+  if (timer == ContourTimer::kSurfaces) {
+    are_surfaces_due_ = false;
+    RequestSurfaces(false);
+    return false;
+  }
+  if (!side_file_.IsKeeping()) return false;
+  if (const auto status = side_file_.LastStatus(); !status.ok()) Report(status.error());
+  Refresh();
+  return true;
+}
+
+// commands
+
+bool ContourPresenter::Meets(ContourNeeds needs) const {
+  const bool is_open = editor_ != nullptr;
+  switch (needs) {
+    case ContourNeeds::kNothing:
+      return true;
+    case ContourNeeds::kDocument:
+      return is_open;
+    case ContourNeeds::kUndo:
+      return is_open && workspace_->Document().CanUndo();
+    case ContourNeeds::kRedo:
+      return is_open && workspace_->Document().CanRedo();
+    case ContourNeeds::kReference:
+      return is_open && workspace_->HasReference();
+    case ContourNeeds::kNoBuild:
+      return is_open && !building_.IsRunning();
+  }
+  return false;
+}
+
+bool ContourPresenter::IsChecked(ContourAction action) const {
+  switch (action) {
+    case ContourAction::kPointsMode:
+      return editor_ != nullptr && !editor_->IsScissors();
+    case ContourAction::kScissorsMode:
+      return editor_ != nullptr && editor_->IsScissors();
+    case ContourAction::kToggleReference:
+      return page_.has_reference;
+    case ContourAction::kToggleGhosts:
+      return page_.has_ghosts;
+    case ContourAction::kToggleHelp:
+      return page_.is_help_open;
+    default:
+      return false;
+  }
+}
+
+gui::ButtonState ContourPresenter::FindButton(const ContourCommand& command) const {
+  gui::ButtonState state;
+  state.is_enabled = Meets(command.needs);
+  state.is_checked = IsChecked(command.action);
+  state.label = command.button.label;
+  std::string tip = command.button.tip;
+  if (state.is_enabled && command.action == ContourAction::kUndo)
+    tip += ": " + workspace_->Document().UndoText();
+  if (state.is_enabled && command.action == ContourAction::kRedo)
+    tip += ": " + workspace_->Document().RedoText();
+  state.tip = gui::TipText(tip.c_str(), command.keys);
+  return state;
+}
+
+void ContourPresenter::Do(ContourAction action) {
+  if (action == ContourAction::kBuild && building_.IsRunning())
+    return ShowHint("A patient is being built already", true);
+  // a command that the editor refuses says so itself
+  const ContourNeeds needs = FindNeeds(action);
+  const bool is_editors = needs == ContourNeeds::kUndo || needs == ContourNeeds::kRedo;
+  if (!Meets(needs) && !(is_editors && editor_ != nullptr)) return Refresh();
+  if (DoWithFiles(action) || DoWithView(action)) return Refresh();
+  if (editor_ == nullptr) return;
+  const int slice = editor_->Slice();
+  ShowHint("");
+  editor_->Do(action);
+  OnEdited();
+  if (editor_->Slice() != slice) PrefetchNeighbours();
+}
+
+bool ContourPresenter::DoWithFiles(ContourAction action) {
+  switch (action) {
+    case ContourAction::kOpen:
+      ChooseAndOpen();
+      return true;
+    case ContourAction::kSave:
+      Save();
+      return true;
+    case ContourAction::kSaveAs:
+      SaveAs([] {});
+      return true;
+    case ContourAction::kBuild:
+      ChooseAndBuild();
+      return true;
+    default:
+      return false;
+  }
+}
+
+bool ContourPresenter::DoWithView(ContourAction action) {
+  switch (action) {
+    case ContourAction::kToggleReference:
+      page_.has_reference = !page_.has_reference;
+      return true;
+    case ContourAction::kToggleGhosts:
+      page_.has_ghosts = !page_.has_ghosts;
+      return true;
+    case ContourAction::kToggleStages:
+      page_.has_points = !page_.has_points;
+      return true;
+    case ContourAction::kToggleFill:
+      page_.has_fill = !page_.has_fill;
+      return true;
+    case ContourAction::kToggleHelp:
+      page_.is_help_open = !page_.is_help_open;
+      return true;
+    case ContourAction::kCancel:
+      if (!page_.is_help_open) return false;
+      page_.is_help_open = false;
+      return true;
+    case ContourAction::kPointsMode:
+    case ContourAction::kScissorsMode:
+      editor_->SetScissors(action == ContourAction::kScissorsMode);
+      return true;
+    case ContourAction::kToggleFullscreen:
+    case ContourAction::kQuit:
+      screen_->DoInWindow(action);
+      return true;
+    default:
+      return false;
+  }
+}
+
+bool ContourPresenter::SetPart(std::string_view part, bool is_on) {
+  if (part == "reference") {
+    page_.has_reference = is_on;
+  } else if (part == "ghosts") {
+    page_.has_ghosts = is_on;
+  } else if (part == "points") {
+    page_.has_points = is_on;
+  } else if (part == "fill") {
+    page_.has_fill = is_on;
+  } else if (part == "help") {
+    page_.is_help_open = is_on;
+  } else {
+    return false;
+  }
+  Refresh();
+  return true;
+}
+
+void ContourPresenter::GoToSlice(int slice) {
+  if (editor_ == nullptr || editor_->Slice() == slice) return;
+  editor_->SetSlice(slice);
+  ShowHint("");
+  PrefetchNeighbours();
+}
+
+void ContourPresenter::StepSlice(int steps) {
+  if (editor_ != nullptr) GoToSlice(workspace_->StepSlice(editor_->Slice(), steps));
+}
+
+void ContourPresenter::OnEdited() {
+  if (workspace_ == nullptr) return;
+  const std::uint64_t revision = workspace_->Document().Revision();
+  if (revision != shown_revision_) {
+    shown_revision_ = revision;
+    if (page_.is_hint_warning) ShowHint("");
+    side_file_.Offer(workspace_->Document().Text());
+    // a drag makes many changes; each surface that is begun shows one of them
+    if (!are_surfaces_due_) screen_->StartTimer(ContourTimer::kSurfaces, kSurfaceDelay);
+    are_surfaces_due_ = true;
+  }
+  Refresh();
+}
+
+// files
+
+void ContourPresenter::ChooseAndOpen() {
+  screen_->ChooseFile(FileQuestion::kOpenContours, [this](const std::filesystem::path& file) {
+    auto options = workspace_ != nullptr ? workspace_->Options() : loading_options_;
+    options.points = file;
+    const auto open = [this, options] { Open(options); };
+    if (workspace_ == nullptr || !workspace_->Document().IsDirty()) return open();
+    const auto save_first = [this, open] {
+      workspace_->Options().points.empty() ? SaveAs(open) : Save() ? open() : void();
+    };
+    const auto discard = [this, open] {
+      side_file_.Discard();
+      open();
+    };
+    screen_->Ask(
+        {"The contours that are open are not saved.",
+         {{"Save, then open", save_first, true}, {"Open without saving", discard}, {"Stay", [] {}}}});
+  });
+}
+
+bool ContourPresenter::Save() {
+  const auto file = workspace_->Options().points;
+  if (file.empty()) {
+    SaveAs([] {});
+    return false;
+  }
+  if (const auto status = workspace_->Save(file); !status.ok()) {
+    Report(status.error());
+    return false;
+  }
+  side_file_.Discard();
+  ShowHint("Saved " + file.filename().string());
+  return true;
+}
+
+void ContourPresenter::SaveAs(std::function<void()> then) {
+  screen_->ChooseFile(FileQuestion::kSaveContours,
+                      [this, then = std::move(then)](const std::filesystem::path& file) {
+                        if (const auto status = workspace_->Save(file); !status.ok())
+                          return Report(status.error());
+                        // the side file goes with the name
+                        side_file_.Discard();
+                        side_file_.Release();
+                        if (TakeSideFile()) StartAutosave();
+                        ShowHint("Saved " + file.filename().string());
+                        then();
+                      });
+}
+
+void ContourPresenter::ChooseAndBuild() {
+  // the build reads the file, so that it can be repeated from the command line
+  if (workspace_->Options().points.empty()) return SaveAs([this] { ChooseAndBuild(); });
+  if (workspace_->Document().IsDirty() && !Save()) return;
+  screen_->ChooseFile(FileQuestion::kPatientFolder,
+                      [this](const std::filesystem::path& folder) { StartBuild(folder); });
+}
+
+bool ContourPresenter::CanBuild() const {
+  return editor_ != nullptr && !building_.IsRunning() && !workspace_->Options().points.empty() &&
+         !workspace_->Document().IsDirty();
+}
+
+void ContourPresenter::StartBuild(const std::filesystem::path& folder) {
+  TROCAR_ASSERT(CanBuild());
+  build_folder_ = folder;
+  anatomy::BuildOptions options;
+  options.control_points = workspace_->Options().points;
+  options.images = workspace_->Options().images;
+  options.dicom_series = workspace_->Options().series.series;
+  options.output = folder;
+  if (!workspace_->Options().reference.empty()) options.reference = workspace_->Options().reference;
+  build_stop_ = {};
+  options.stop = build_stop_.get_token();
+  page_.is_busy = page_.is_building = true;
+  page_.is_stopping = false;
+  building_.Start([this, options] {
+    return anatomy::BuildPatient(options, [this](std::string_view what, double fraction) {
+      progress_.Set(what, fraction);
+      wakes_.on_progress();
+    });
+  });
+  Refresh();
+}
+
+void ContourPresenter::StopBuild() {
+  build_stop_.request_stop();
+  page_.is_stopping = true;
+  Refresh();
+}
+
+void ContourPresenter::FinishBuild() {
+  const auto report = building_.Take();
+  page_.is_busy = page_.is_building = false;
+  if (!report.ok() && report.error().code == core::ErrorCode::kCancelled) {
+    ShowHint("The patient was given up; nothing was written");
+  } else if (!report.ok()) {
+    Report(report.error());
+  } else {
+    std::string text = "Wrote the patient " + build_folder_.string() + ":";
+    for (const auto& organ : report->organs) {
+      text += " " + organ.name + " " + std::to_string(organ.triangles) + " triangles, " +
+              std::to_string(static_cast<int>(organ.volume_ml + 0.5)) + " mL;";
+    }
+    text.back() = '.';
+    screen_->ShowNotice(text + " Check it with: trocar anatomy check");
+  }
+  Refresh();
+}
+
+void ContourPresenter::ShowProgress() {
+  if (!page_.is_busy) return;
+  const gui::JobProgress::Value value = progress_.Get();
+  page_.fraction = value.fraction;
+  page_.state = value.what;
+  screen_->Show(page_);
+}
+
+// closing
+
+void ContourPresenter::CloseAnyway() {
+  is_closing_ = true;
+  screen_->DoInWindow(ContourAction::kQuit);
+}
+
+bool ContourPresenter::OnClose() {
+  if (is_closing_) {
+    side_file_.Discard();
+    return false;
+  }
+  const bool is_lossy = options_.IsAttended() && workspace_ != nullptr && workspace_->Document().IsDirty();
+  if (is_lossy) {
+    const auto leave = [this] { CloseAnyway(); };
+    const auto save = [this, leave] {
+      workspace_->Options().points.empty() ? SaveAs(leave) : Save() ? leave() : void();
+    };
+    screen_->Ask({"The contours are not saved.",
+                  {{"Save and close", save, true}, {"Close without saving", leave}, {"Stay", [] {}}}});
+    return true;
+  }
+  if (building_.IsRunning()) {
+    const auto give_up = [this] {
+      build_stop_.request_stop();
+      CloseAnyway();
+    };
+    screen_->Ask({"The patient is still being built.",
+                  {{"Wait", [] {}, true},
+                   {"Give it up and close", give_up},
+                   {"Close when it is done", [this] { CloseAnyway(); }}}});
+    return true;
+  }
+  side_file_.Discard();
+  return false;
+}
+
+void ContourPresenter::Abandon(const core::Error& error) {
+  if (failure_) return;
+  failure_ = error;
+  core::Log(core::LogLevel::kError, error.Text());
+  screen_->DoInWindow(ContourAction::kQuit);
+}
+
+// surfaces and pictures
+
+void ContourPresenter::RequestSurfaces(bool is_all) {
+  if (surfaces_ == nullptr) return;
+  const SurfaceUpdates::Change change = surfaces_->Request(is_all);
+  if (change.is_everything_new) screen_->ForgetSurfaces();
+  // an organ nobody has begun needs no message
+  for (const int structure : change.without) screen_->ShowSurfaceProblem(structure, "");
+}
+
+void ContourPresenter::TakeSurfaces() {
+  if (surfaces_ == nullptr) return;
+  for (auto& outcome : surfaces_->Take()) {
+    if (outcome.result.ok()) {
+      screen_->ShowSurface(outcome.structure, std::move(*outcome.result));
+    } else if (outcome.result.error().code != core::ErrorCode::kCancelled) {
+      screen_->ShowSurfaceProblem(outcome.structure, outcome.result.error().message);
+    }
+  }
+  screen_->ShowSurfaceJob(surfaces_->GetState());
+}
+
+void ContourPresenter::CancelSurfaces() {
+  if (surfaces_ != nullptr) surfaces_->Cancel();
+}
+
+bool ContourPresenter::AreSurfacesDone() const {
+  return !are_surfaces_due_ && (surfaces_ == nullptr || !surfaces_->GetState().is_busy);
+}
+
+void ContourPresenter::PrefetchNeighbours() {
+  std::vector<int> wanted;
+  for (const int step : {1, -1, 2, -2, 3, -3})
+    wanted.push_back(workspace_->StepSlice(editor_->Slice(), step));
+  prefetcher_->Request(std::move(wanted));
+}
+
+// what is shown
+
+void ContourPresenter::ShowHint(const std::string& text, bool is_warning) {
+  page_.hint = text;
+  page_.is_hint_warning = is_warning;
+  Refresh();
+}
+
+void ContourPresenter::Report(const core::Error& error) {
+  core::Log(core::LogLevel::kError, error.Text());
+  screen_->ShowError(error);
+}
+
+std::string ContourPresenter::DescribeState() const {
+  if (workspace_->Document().IsDirty())
+    return side_file_.WrittenCount() > 0 ? "Not saved \u00b7 autosaved" : "Not saved";
+  return workspace_->Options().points.empty() ? "New" : "Saved";
+}
+
+void ContourPresenter::Refresh() {
+  page_.is_document_open = editor_ != nullptr;
+  if (editor_ != nullptr) {
+    const auto& file = workspace_->Options().points;
+    const std::string name = file.empty() ? "new contours" : file.filename().string();
+    page_.title = (workspace_->Document().IsDirty() ? "\u2022 " : "") + name;
+    if (!page_.is_busy) page_.state = DescribeState();
+  }
+  screen_->Show(page_);
+}
+
+}  // namespace trocar::editor

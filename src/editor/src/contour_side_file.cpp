@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/editor/contour_side_file.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "trocar/core/assert.h"
+
+namespace trocar::editor {
+
+std::filesystem::path FindSideFile(const contours::WorkspaceOptions& options,
+                                   const std::filesystem::path& user_folder) {
+  if (!options.points.empty()) return contours::AutosavePath(options.points);
+  std::string name = std::filesystem::absolute(options.images).lexically_normal().string();
+  std::replace(name.begin(), name.end(), '/', '_');
+  constexpr std::size_t kLongestName = 120;
+  if (name.size() > kLongestName) name.erase(0, name.size() - kLongestName);
+  return contours::AutosavePath(user_folder / "trocar" / "contours" / (name + ".json"));
+}
+
+core::Status ContourSideFile::Take(const std::filesystem::path& file) {
+  Release();
+  auto taken = core::FileLock::Take(file.string() + ".lock");
+  if (!taken.ok()) return taken.error();
+  lock_.emplace(std::move(*taken));
+  file_ = file;
+  return {};
+}
+
+void ContourSideFile::Release() {
+  autosave_.reset();
+  lock_.reset();
+}
+
+core::Result<std::optional<contours::ControlPoints>> ContourSideFile::FindLeft(
+    const std::string& saved_text) const {
+  TROCAR_ASSERT(IsTaken());
+  return contours::FindAutosaved(file_, saved_text);
+}
+
+void ContourSideFile::Start() {
+  TROCAR_ASSERT(IsTaken());
+  autosave_ = std::make_unique<contours::ContourAutosave>(file_);
+}
+
+void ContourSideFile::Offer(const std::string& text) {
+  if (autosave_ != nullptr) autosave_->Offer(text);
+}
+
+void ContourSideFile::Discard() {
+  if (autosave_ != nullptr) autosave_->Discard();
+}
+
+}  // namespace trocar::editor

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/gui/command.h"
+
+namespace trocar::gui {
+namespace {
+
+struct NamedKey {
+  std::uint32_t key;
+  const char* name;
+};
+constexpr NamedKey kNamedKeys[] = {
+    {' ', "Space"},           {',', "Comma"},          {key::kBackSpace, "Backspace"},
+    {key::kTab, "Tab"},       {key::kReturn, "Enter"}, {key::kEscape, "Esc"},
+    {key::kHome, "Home"},     {key::kLeft, "Left"},    {key::kUp, "Up"},
+    {key::kRight, "Right"},   {key::kDown, "Down"},    {key::kPageUp, "Page Up"},
+    {key::kEnd, "End"},       {key::kF1, "F1"},        {key::kPageDown, "Page Down"},
+    {key::kInsert, "Insert"}, {key::kF6, "F6"},        {key::kF11, "F11"},
+    {key::kDelete, "Delete"}};
+
+constexpr const char* kBetweenKeys = "   ";
+
+std::string NameOf(std::uint32_t key) {
+  for (const NamedKey& each : kNamedKeys) {
+    if (each.key == key) return each.name;
+  }
+  if (key >= 'a' && key <= 'z') key -= 'a' - 'A';
+  return std::string(1, static_cast<char>(key));
+}
+
+void Join(std::string& text, const std::string& more, const char* between) {
+  if (more.empty()) return;
+  if (!text.empty()) text += between;
+  text += more;
+}
+
+}  // namespace
+
+std::string KeyText(const KeyStroke& stroke) {
+  return std::string(stroke.control ? "Ctrl+" : "") + (stroke.shift ? "Shift+" : "") + NameOf(stroke.key);
+}
+
+void AppendHelp(std::span<const KeyStroke> keys, const CommandHelp& help, std::vector<KeyHelp>& rows) {
+  if (*help.group != '\0') rows.push_back({help.group, "", ""});
+  if (rows.empty()) return;
+  KeyHelp& row = rows.back();
+  Join(row.keys, help.gesture, kBetweenKeys);
+  for (const KeyStroke& stroke : keys) {
+    if (stroke.key != 0) Join(row.keys, KeyText(stroke), kBetweenKeys);
+  }
+  Join(row.meaning, help.meaning, ", ");
+}
+
+std::vector<KeyHelp> SortByGroup(std::vector<KeyHelp> rows, std::span<const char* const> groups) {
+  std::vector<KeyHelp> sorted;
+  for (const char* group : groups) {
+    for (const KeyHelp& row : rows) {
+      if (row.group == group) sorted.push_back(row);
+    }
+  }
+  return sorted;
+}
+
+std::string TipText(const char* tip, std::span<const KeyStroke> keys) {
+  std::string names;
+  for (const KeyStroke& stroke : keys) {
+    if (stroke.key != 0) Join(names, KeyText(stroke), " or ");
+  }
+  return names.empty() ? tip : std::string(tip) + " (" + names + ")";
+}
+
+}  // namespace trocar::gui

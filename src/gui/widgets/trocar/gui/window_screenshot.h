@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file window_screenshot.h  A window's picture as a PNG file.
+#pragma once
+
+#include <gtkmm.h>
+
+#include <filesystem>
+
+#include "trocar/core/result.h"
+
+namespace trocar::gui {
+
+/// Call it outside of a frame.
+/// \return kFileUnwritable
+core::Status SaveScreenshot(Gtk::Window& window, const std::filesystem::path& path);
+/// Likewise; false where the window has nothing to show yet, as while it is laid out anew.
+core::Result<bool> TrySaveScreenshot(Gtk::Window& window, const std::filesystem::path& path);
+
+}  // namespace trocar::gui

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/gui/window_screenshot.h"
+
+namespace trocar::gui {
+
+core::Result<bool> TrySaveScreenshot(Gtk::Window& window, const std::filesystem::path& path) {
+  const auto paintable = Gtk::WidgetPaintable::create(window);
+  const auto snapshot = Gtk::Snapshot::create();
+  paintable->snapshot(snapshot, window.get_width(), window.get_height());
+  GskRenderNode* node = gtk_snapshot_to_node(snapshot->gobj());
+  GdkTexture* texture =
+      node == nullptr
+          ? nullptr
+          : gsk_renderer_render_texture(gtk_native_get_renderer(GTK_NATIVE(window.gobj())), node, nullptr);
+  const bool is_saved = texture != nullptr && gdk_texture_save_to_png(texture, path.c_str());
+  const bool is_drawn = texture != nullptr;
+  if (is_drawn) g_object_unref(texture);
+  if (node != nullptr) gsk_render_node_unref(node);
+  if (!is_drawn) return false;
+  if (is_saved) return true;
+  return core::Error{core::ErrorCode::kFileUnwritable,
+                     "cannot write " + path.string() + ": check the folder and its permissions"};
+}
+
+core::Status SaveScreenshot(Gtk::Window& window, const std::filesystem::path& path) {
+  const auto saved = TrySaveScreenshot(window, path);
+  if (!saved.ok()) return saved.error();
+  if (*saved) return {};
+  return core::Error{core::ErrorCode::kNoGraphics,
+                     "the window shows nothing that " + path.string() + " could hold; try again"};
+}
+
+}  // namespace trocar::gui
