@@ -9,6 +9,7 @@
 #include "trocar/core/version.h"
 #include "trocar/device/force_device_spec.h"
 #include "trocar/editor/contour_script.h"
+#include "trocar/record/recording.h"
 
 namespace trocar::app {
 namespace {
@@ -49,6 +50,20 @@ void AddHands(CLI::App& app, Options& options) {
   app.add_option("--igtl", options.igtl_port,
                  "Show tools and organs to 3D Slicer on this port of this machine (OpenIGTLink; 0: any port)")
       ->check(CLI::Range(0, 65535));
+}
+
+/// \param is_off  read by ChooseRecordings() afterwards
+void AddRecordings(CLI::App& app, Options& options, bool& is_off) {
+  CLI::Option* folder = app.add_option("--recordings", options.recordings,
+                                       "Folder in which every attempt is kept, for trocar replay (default: "
+                                       "~/.local/share/trocar/recordings; none with --screenshot)");
+  app.add_flag("--no-recordings", is_off, "Keep no attempt")->excludes(folder);
+}
+
+/// A person's attempts are kept, those of an unattended run only where it asks for that.
+void ChooseRecordings(bool is_off, Options& options) {
+  if (!is_off && options.recordings.empty() && options.run.IsAttended())
+    options.recordings = record::FindRecordingFolder();
 }
 
 void AddRun(CLI::App& app, Options& options) {
@@ -160,11 +175,13 @@ core::Status SetAxes(const std::string& text, images::ImageSeriesOptions& series
 core::Result<CommandLine> ParseCommandLine(int argc, const char* const* argv) {
   CommandLine command;
   std::string axes, tool = "look";
+  bool keeps_none = false;
   CLI::App app{"Trocar: the simulator window. Operate on a virtual abdomen with mouse and keyboard.",
                "trocar-window"};
   app.set_version_flag("--version", "trocar-window " + std::string(core::VersionText()));
   AddScene(app, command.options);
   AddHands(app, command.options);
+  AddRecordings(app, command.options, keeps_none);
   AddRun(app, command.options);
   AddDevicePage(app, command.options);
   AddContours(app, command.contours, axes);
@@ -188,6 +205,7 @@ core::Result<CommandLine> ParseCommandLine(int argc, const char* const* argv) {
     return Refusal("--after must be a number of seconds");
   if (const core::Status set = SetAxes(axes, command.contours.series); !set) return set.error();
   command.patient_editor.tool = *editor::FindEditorTool(tool);
+  ChooseRecordings(keeps_none, command.options);
   command.contours.run = command.patient_editor.run = command.options.run;
   return command;
 }

@@ -41,4 +41,22 @@ core::Result<simulation::Simulation> MakeChosenSimulation(const Options& options
                                       threads);
 }
 
+record::Description DescribeChosenScene(const Options& options, const scene::Scene& scene) {
+  using Kind = record::Description::Kind;
+  record::Description description;
+  description.kind = options.task.empty() ? Kind::kScene : scene.task ? Kind::kTask : Kind::kOperation;
+  description.name = options.task;
+  if (description.kind == Kind::kTask) description.level = options.level;
+  if (description.kind == Kind::kScene) {
+    const auto data = scene::FindDataFolder();
+    const auto built_in = data.ok() ? *data / "scenes" / kDefaultScene : std::filesystem::path(kDefaultScene);
+    description.name = std::filesystem::absolute(options.scene.empty() ? built_in : options.scene).string();
+  }
+  description.seed = scene.seed;
+  std::string hands = options.device.empty() ? "mouse and keyboard" : options.device;
+  if (!options.haptics.empty()) hands += ", " + options.haptics;
+  description.player = hands;
+  return description;
+}
+
 }  // namespace trocar::app

@@ -40,9 +40,11 @@ device::MouseKeyboardSettings DeviceSettings(const scene::Scene& scene) {
 
 }  // namespace
 
-core::Result<std::unique_ptr<SessionControl>> SessionControl::Make(simulation::Simulation simulation) {
+core::Result<std::unique_ptr<SessionControl>> SessionControl::Make(
+    simulation::Simulation simulation, std::optional<session::AttemptKeeping> keeping) {
   const device::MouseKeyboardSettings settings = DeviceSettings(simulation.GetScene());
-  std::unique_ptr<SessionControl> control(new SessionControl(std::move(simulation), settings));
+  std::unique_ptr<SessionControl> control(
+      new SessionControl(std::move(simulation), settings, std::move(keeping)));
   if (const core::Status status = control->device_.Configure(); !status) return status.error();
   if (const core::Status status = control->device_.Activate(); !status) return status.error();
   control->PlaceAtHome();
@@ -51,8 +53,9 @@ core::Result<std::unique_ptr<SessionControl>> SessionControl::Make(simulation::S
 }
 
 SessionControl::SessionControl(simulation::Simulation simulation,
-                               const device::MouseKeyboardSettings& settings)
-    : runner_(std::move(simulation), &haptic_link_),
+                               const device::MouseKeyboardSettings& settings,
+                               std::optional<session::AttemptKeeping> keeping)
+    : runner_(std::move(simulation), &haptic_link_, std::move(keeping)),
       device_hands_(runner_.GetScene()),
       stylus_hands_(runner_.GetScene()),
       device_(settings) {}

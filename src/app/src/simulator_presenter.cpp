@@ -37,7 +37,10 @@ void SimulatorPresenter::FinishLoading() {
   auto simulation = loading_.Take();
   if (page_.failure) return;
   if (!simulation.ok()) return Fail(simulation.error());
-  auto control = SessionControl::Make(std::move(simulation).value());
+  std::optional<session::AttemptKeeping> keeping;
+  if (!options_.recordings.empty())
+    keeping = {options_.recordings, DescribeChosenScene(options_, simulation->GetScene())};
+  auto control = SessionControl::Make(std::move(simulation).value(), std::move(keeping));
   if (!control) return Fail(control.error());
   control_ = std::move(control).value();
   has_script_ = control_->HasScript();
@@ -307,10 +310,25 @@ void SimulatorPresenter::ShowTask(const scene::TaskSnapshot& now) {
   is_result_known_ = true;
   result_ = MakeTaskResult(control_->GetScene(), now, error_log_.Errors());
   result_.is_demonstration = control_->IsDemonstration();
+  if (const auto recording = control_->Recording(); recording && !recording->failure)
+    result_.recording = recording->path.string();
   screen_->ReleasePointer();
   screen_->FillResult(result_);
   page_.is_result_open = true;
   Refresh();
+}
+
+/// A recording that stopped, or soon will, is said once.
+void SimulatorPresenter::ShowRecording() {
+  const auto recording = control_->Recording();
+  const bool has_stopped = recording && recording->failure;
+  const bool is_low = recording && recording->is_space_low;
+  if (has_stopped && !is_recording_stopped_)
+    Announce("This attempt is recorded no longer: " + recording->failure->Text(), true);
+  if (is_low && !is_space_low_ && !has_stopped)
+    Announce("The disk is nearly full; the recording of this attempt will end soon.", true);
+  is_recording_stopped_ = has_stopped;
+  is_space_low_ = is_low;
 }
 
 void SimulatorPresenter::SaveResult(const std::filesystem::path& path) {
@@ -342,7 +360,10 @@ SimulatorPresenter::FrameWork SimulatorPresenter::Advance(double now, double fie
     ShowHaptics();
     Refresh();
   }
-  if (work.are_times_due) last_times_ = now;
+  if (work.are_times_due) {
+    last_times_ = now;
+    ShowRecording();
+  }
   work.run = unattended_.Advance(snapshot.time, since_start_.Seconds());
   if (work.run == UnattendedPlay::Step::kGiveUp) Fail(unattended_.Complaint());
   return work;

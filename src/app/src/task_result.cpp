@@ -104,6 +104,7 @@ std::string FormatTaskResultJson(const TaskResult& result) {
                                  {"time_s", result.time},
                                  {"score", result.score},
                                  {"score_unit", result.is_score_percent ? "percent" : "points"},
+                                 {"recording", result.recording},
                                  {"goals", nlohmann::ordered_json::array()},
                                  {"errors", nlohmann::ordered_json::array()}};
   for (const TaskResult::GoalRow& goal : result.goals)

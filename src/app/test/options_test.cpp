@@ -3,6 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <vector>
+
+#include "trocar/record/recording.h"
+
 #include <initializer_list>
 #include <vector>
 
@@ -37,6 +41,20 @@ TEST(Options, ReadsEveryOption) {
   EXPECT_TRUE(command->options.is_demonstration);
   EXPECT_EQ(command->options.run.screenshot, "b.png");
   EXPECT_EQ(command->options.run.screenshot_after, 1.5);
+}
+
+TEST(Options, APersonsAttemptsAreKept) {
+  const auto recordings = [](std::vector<const char*> arguments) {
+    arguments.insert(arguments.begin(), "trocar-window");
+    const auto command = ParseCommandLine(static_cast<int>(arguments.size()), arguments.data());
+    EXPECT_TRUE(command.ok());
+    return command->options.recordings;
+  };
+  EXPECT_EQ(recordings({}), record::FindRecordingFolder());
+  EXPECT_EQ(recordings({"--recordings", "kept"}), "kept");
+  EXPECT_EQ(recordings({"--no-recordings"}), "");
+  EXPECT_EQ(recordings({"--screenshot", "window.png"}), "") << "nobody plays";
+  EXPECT_EQ(recordings({"--screenshot", "window.png", "--recordings", "kept"}), "kept");
 }
 
 TEST(Options, ReadsTasks) {

@@ -3,9 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <future>
+#include <thread>
 
 #include "trocar/core/safe_file.h"
+#include "trocar/record/replay.h"
 #include "trocar_test/temporary_folder.h"
 
 namespace trocar::app {
@@ -77,6 +80,50 @@ TEST_F(Presenter, LoadsBesideTheWindow) {
   EXPECT_FALSE(screen_.control->IsPaused());
   EXPECT_TRUE(IsEnabled("run"));
   EXPECT_FALSE(IsEnabled("force-feedback")) << "no haptic device";
+}
+
+TEST_F(Presenter, KeepsEveryAttemptWhereItIsToldTo) {
+  test::TemporaryFolder folder;
+  Options options;
+  options.task = "peg_transfer";
+  options.level = "normal";
+  options.seed = 5;
+  options.threads = 1;
+  options.recordings = folder.Path() / "kept";
+  Begin(options);
+  Load();
+  for (int i = 0; i < 500 && screen_.control->Advance(0.01).tick < 150; ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  const auto recording = screen_.control->Recording();
+  ASSERT_TRUE(recording.has_value());
+  EXPECT_FALSE(recording->failure.has_value());
+  presenter_.reset();  // the window closes
+  auto read = record::ReadRecording(recording->path);
+  ASSERT_TRUE(read.ok()) << read.error().Text();
+  EXPECT_TRUE(read->ending.has_value());
+  EXPECT_EQ(read->description.name, "peg_transfer");
+  EXPECT_EQ(read->description.player, "mouse and keyboard");
+  auto replay = record::Replay::Open(std::move(*read), 1);
+  ASSERT_TRUE(replay.ok()) << replay.error().Text();
+  EXPECT_TRUE(replay->Verify()->IsVerified());
+}
+
+TEST_F(Presenter, SaysThatAttemptsCannotBeKept) {
+  test::TemporaryFolder folder;
+  ASSERT_TRUE(core::WriteFile(folder.Path() / "kept", "a file where the folder should be").ok());
+  Options options;
+  options.task = "peg_transfer";
+  options.threads = 1;
+  options.recordings = folder.Path() / "kept";
+  Begin(options);
+  Load();
+  for (int i = 1; i < 500 && screen_.page.event.find("recorded no longer") == std::string::npos; ++i) {
+    presenter_->Advance(0.02 * i, 1.0, 700);
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  EXPECT_NE(screen_.page.event.find("recorded no longer"), std::string::npos);
+  EXPECT_NE(screen_.page.event.find("E-IO-003"), std::string::npos);
+  EXPECT_FALSE(screen_.control->IsPaused());
 }
 
 TEST_F(Presenter, SaysWhatCannotBeLoaded) {

@@ -74,12 +74,16 @@ void ResultCard::Show(const TaskResult& result) {
                   (result.is_demonstration ? ", shown by the expert" : ""));
   verdict_.set_text(result.verdict + " after " + FormatTime(result.time));
   score_.set_text("Score " + FormatScore(result));
+  const bool is_completed = result.phase == scene::TaskPhase::kCompleted;
+  score_.set_css_classes({is_completed ? "force" : "note"});
   for (const TaskResult::GoalRow& goal : result.goals)
     AddLine(goal.is_done ? "✓" : "—", goal.name, "", "meaning");
-  if (result.errors.empty()) AddLine("", "No errors.", "", "meaning");
+  if (result.errors.empty())
+    AddLine("", is_completed ? "No errors." : "No errors, but not all goals were reached.", "", "meaning");
   for (const TaskResult::ErrorRow& error : result.errors)
     AddLine(FormatTime(error.time), error.about + (error.by.empty() ? "" : " (" + error.by + ")"),
             error.severity, "note");
+  if (!result.recording.empty()) AddLine("", "Recorded: " + result.recording, "", "meaning");
 }
 
 }  // namespace trocar::app

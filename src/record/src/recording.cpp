@@ -2,6 +2,7 @@
 #include "trocar/record/recording.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <cstring>
 #include <random>
 #include <utility>
@@ -170,6 +171,18 @@ core::Result<Recording> ReadRecording(const std::filesystem::path& path) {
   const auto content = core::ReadFile(path, kLargestFile);
   if (!content.ok()) return content.error();
   return ReadRecording(std::as_bytes(std::span(*content)), path.string());
+}
+
+std::filesystem::path FindRecordingFolder() {
+  const auto variable = [](const char* name) -> std::string {
+    const char* value = std::getenv(name);
+    return value == nullptr ? "" : value;
+  };
+  std::filesystem::path folder = variable("TROCAR_DATA_HOME");
+  if (const std::string data = variable("XDG_DATA_HOME"); folder.empty() && !data.empty())
+    folder = std::filesystem::path(data) / "trocar";
+  if (folder.empty()) folder = std::filesystem::path(variable("HOME")) / ".local/share/trocar";
+  return folder / "recordings";
 }
 
 core::Result<scene::Scene> MakeScene(const Description& d) {

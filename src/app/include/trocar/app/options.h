@@ -24,6 +24,7 @@ struct Options {
   std::string device;   ///< hands of a device, as `trocar devices list` names it; empty: mouse and keyboard
   std::string haptics;  ///< haptic device; empty: none
   std::filesystem::path haptic_record;  ///< what force feedback did, written at the end; empty: none
+  std::filesystem::path recordings;     ///< folder in which every attempt is kept; empty: none is
   int igtl_port = -1;                   ///< viewers over OpenIGTLink may connect here; 0: any port, -1: none
   bool is_fullscreen = false;
   bool is_demonstration = false;  ///< start with the script moving both hands

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "trocar/app/options.h"
+#include "trocar/record/recording.h"
 #include "trocar/simulation/simulation.h"
 
 namespace trocar::app {
@@ -15,5 +16,8 @@ core::Result<scene::Scene> ReadChosenScene(const Options& options);
 
 /// Likewise, ready to run.
 core::Result<simulation::Simulation> MakeChosenSimulation(const Options& options);
+
+/// What a recording of it is of. \param scene  as chosen
+record::Description DescribeChosenScene(const Options& options, const scene::Scene& scene);
 
 }  // namespace trocar::app

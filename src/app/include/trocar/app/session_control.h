@@ -4,6 +4,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "trocar/core/clock.h"
@@ -24,7 +25,9 @@ class SessionControl {
  public:
   /// Starts paused, with the hands at home.
   /// \return kDeviceSettings where the scene's tools cannot be held
-  static core::Result<std::unique_ptr<SessionControl>> Make(simulation::Simulation simulation);
+  /// \param keeping  nothing, or where each attempt is recorded
+  static core::Result<std::unique_ptr<SessionControl>> Make(
+      simulation::Simulation simulation, std::optional<session::AttemptKeeping> keeping = {});
 
   /// Lets a device hold the hands that it sees; the mouse keeps the others. Where the device is lost the simulation is
   /// paused, and stays so when it comes back until the person starts it.
@@ -110,6 +113,8 @@ class SessionControl {
   const scene::Scene& GetScene() const { return runner_.GetScene(); }
   std::span<const scene::SurfaceInfo> Surfaces() const { return runner_.Surfaces(); }
   std::span<const scene::StrandInfo> Strands() const { return runner_.Strands(); }
+  /// Of the attempt that runs or ran last; nothing where none is kept.
+  std::optional<record::RecorderStatus> Recording() const { return runner_.RecordingStatus(); }
   session::RunnerStatistics Statistics() const { return runner_.Statistics(); }
   /// What the person wants by mouse, keys and panel, and where devices hold the hands.
   const scene::Input& GetInput() const { return input_; }
@@ -117,7 +122,8 @@ class SessionControl {
   const scene::Input& GetSentInput() const { return sent_; }
 
  private:
-  SessionControl(simulation::Simulation simulation, const device::MouseKeyboardSettings& settings);
+  SessionControl(simulation::Simulation simulation, const device::MouseKeyboardSettings& settings,
+                 std::optional<session::AttemptKeeping> keeping);
   void PlaceAtHome();
   void ApplyDevice();
   void ApplyStylusButtons();

@@ -116,6 +116,7 @@ class SimulatorPresenter {
   void ShowEvents(const simulation::Snapshot& snapshot);
   void ShowHaptics();
   void ShowTask(const scene::TaskSnapshot& now);
+  void ShowRecording();
   void SetPaused(bool is_paused);
   void SetDemonstration(bool is_on);
   void Reset();
@@ -134,8 +135,9 @@ class SimulatorPresenter {
   StageMeter stages_;
   FrameMeter frames_;
   TaskErrorLog error_log_;
-  TaskResult result_;             // of the task that is over
-  bool is_result_known_ = false;  // it has been shown
+  TaskResult result_;                                         // of the task that is over
+  bool is_recording_stopped_ = false, is_space_low_ = false;  // they have been said
+  bool is_result_known_ = false;                              // it has been shown
   std::uint64_t seen_events_ = 0;
   double first_picture_ = 0;                                  // since the start of the program [s]
   double last_frame_ = 0, last_forces_ = 0, last_times_ = 0;  // of the frame clock [s]

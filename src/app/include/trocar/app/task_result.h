@@ -43,6 +43,7 @@ struct TaskResult {
   double time = 0;      ///< [s]
   double score = 0;
   bool is_score_percent = false;  ///< of an able surgeon's points
+  std::string recording;          ///< file of the attempt; empty where it is not kept
   std::vector<GoalRow> goals;
   std::vector<ErrorRow> errors;
 };

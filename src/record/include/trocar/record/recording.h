@@ -107,6 +107,10 @@ class Recording {
   std::vector<Keyframe> keyframes_;  // compressed
 };
 
+/// Where attempts are kept that nobody named a file for: TROCAR_DATA_HOME, else XDG_DATA_HOME/trocar, else
+/// HOME/.local/share/trocar; there "recordings".
+std::filesystem::path FindRecordingFolder();
+
 /// Reads a recording. What lies behind damage is not read: Recording::damage tells.
 /// \return kFileMissing, kFileUnreadable, kFileTooLarge; kRecordingInvalid where not even the description is whole, or of
 /// another format
