@@ -95,8 +95,8 @@ Cairo::RefPtr<Cairo::ImageSurface> MakeSurface(const images::ColorImage& image) 
 }  // namespace
 
 Colour3 OrganColour(const std::string& name, int structure) {
-  if (name == "liver") return kPalette[0];
-  if (name == "gallbladder") return kPalette[1];
+  if (name == NameOf(roles::OrganRole::kLiver)) return kPalette[0];
+  if (name == NameOf(roles::OrganRole::kGallbladder)) return kPalette[1];
   return kPalette[2 + std::max(structure, 0) % 4];
 }
 

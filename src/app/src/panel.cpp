@@ -383,7 +383,7 @@ void Panel::ShowForces(const simulation::Snapshot& snapshot) {
     HandRow& row = hands_[hand];
     const simulation::InstrumentSnapshot& instrument = snapshot.instruments[hand];
     const double force = math::Norm(instrument.force);
-    const ForceThresholds thresholds = FindForceThresholds(OrganLabel(patient, instrument.organ));
+    const ForceThresholds thresholds = FindForceThresholds(patient.RoleOfOrgan(instrument.organ));
     SetText(row.force, FormatForce(force));
     SetLevel(row.force, JudgeForce(force, thresholds));
     SetText(row.contact, DescribeContact(instrument, patient));

@@ -230,7 +230,7 @@ void PatientEditorWindow::Load(bool is_recovered) {
   if (const auto tool = FindEditorTool(options_.editor_tool)) editor_->tool = *tool;
   const auto& tubes = editor_->GetPatient().tubes;
   for (std::uint32_t i = 0; i < tubes.size(); ++i) {
-    if (tubes[i].name == "cystic_duct") editor_->ChooseTube(i);
+    if (tubes[i].role == anatomy::TubeRole::kCysticDuct) editor_->ChooseTube(i);
   }
   if (editor_->tool == EditorTool::kTubes) editor_->look.liver_opacity = 0.35;
   panel_.SetEditor(editor_.get());
@@ -246,7 +246,8 @@ void PatientEditorWindow::Load(bool is_recovered) {
   if (!options_.screenshot.empty()) {
     if (editor_->tool == EditorTool::kTubes || editor_->tool == EditorTool::kLandmarks) {
       view_.LookFrom(render::Viewpoint::kUmbilicus);
-      LookAt(editor_->tool == EditorTool::kTubes ? "cystic_duct" : "gallbladder");
+      LookAt(editor_->tool == EditorTool::kTubes ? NameOf(anatomy::TubeRole::kCysticDuct)
+                                                 : NameOf(anatomy::OrganRole::kGallbladder));
     }
     Glib::signal_timeout().connect_once(sigc::mem_fun(*this, &PatientEditorWindow::TakeScreenshot),
                                         static_cast<unsigned>(1000 * options_.screenshot_after));

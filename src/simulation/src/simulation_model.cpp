@@ -94,7 +94,7 @@ core::Result<std::shared_ptr<const SimulationModel>> MakeSimulationModel(std::sh
   const tissue::TissueModel tissue_model = tissue::MakeTissueModel(model->tissue->definition);
   model->walls = MakeWalls(model->scene->patient, *model->tissue);
   model->walls_tear = tissue::HasTearingSprings(tissue_model);
-  model->hollow_organ = model->scene->patient.FindOrgan("gallbladder");
+  model->hollow_organ = model->scene->patient.OrganOf(roles::OrganRole::kGallbladder);
   if (const auto filled = Fill(tissue_model, std::max(1, threads), *model); !filled.ok())
     return filled.error();
   model->fingerprint = CalcFingerprint(*model);

@@ -10,6 +10,7 @@
 
 namespace trocar::simulation {
 
+using roles::OrganRole;
 using scene::InstrumentSetup;
 using scene::kLeft;
 using scene::kRight;
@@ -40,7 +41,7 @@ core::Result<ToolContacts> ToolContacts::Make(const Scene& scene, const tissue::
   for (std::size_t i = 0; i < organs.size(); ++i) {
     auto surface = surgery::MakeOrganSurface(model.rest, surfaces[i].first_node, organs[i].mesh);
     if (!surface.ok()) return surface.error();
-    if (surfaces[i].material == "liver") {
+    if (surfaces[i].organ == OrganRole::kLiver) {
       surface->damage_pinch_small = surface->damage_pinch_full = kLiverDamagePinch;
     }
     surgery::UpdateOrganSurface(*surface, at_start.position);
@@ -64,7 +65,8 @@ core::Result<ToolContacts> ToolContacts::Make(const Scene& scene, const tissue::
 /// The gallbladder lies on the liver, ducts and vessels on both; of other organs nothing is known to touch.
 void ToolContacts::MakePairs(const Scene& scene, const tissue::TissueModel& model,
                              const tissue::TissueState& at_start) {
-  const int liver = scene.patient.FindOrgan("liver"), gallbladder = scene.patient.FindOrgan("gallbladder");
+  const int liver = scene.patient.OrganOf(OrganRole::kLiver),
+            gallbladder = scene.patient.OrganOf(OrganRole::kGallbladder);
   if (liver >= 0 && gallbladder >= 0) {
     for (const auto& [from, to] : {std::pair{gallbladder, liver}, std::pair{liver, gallbladder}}) {
       AddPair(surgery::MakeOrganPair(organs_, at_start.position, static_cast<std::uint8_t>(from),
@@ -106,12 +108,11 @@ void ToolContacts::MakeCavity(const Scene& scene, const tissue::TissueModel& mod
     const auto own = organ.Nodes(at_start.position);
     nodes.insert(nodes.end(), own.begin(), own.end());
   }
-  if (const int liver = scene.patient.FindOrgan("liver"); liver >= 0) {
+  if (const int liver = scene.patient.OrganOf(OrganRole::kLiver); liver >= 0) {
     const auto own = organs_[liver].Nodes(at_start.position);
-    for (const anatomy::Region& region : scene.patient.organs[liver].regions) {
-      if (region.name != anatomy::kDiaphragmaticFace) continue;
-      for (const std::uint32_t vertex : region.vertices) face.push_back(own[vertex]);
-    }
+    const anatomy::Region* dome = scene.patient.organs[liver].RegionOf(roles::RegionRole::kDiaphragmaticFace);
+    for (std::size_t i = 0; dome != nullptr && i < dome->vertices.size(); ++i)
+      face.push_back(own[dome->vertices[i]]);
   }
   cavity_ = surgery::FitCavity(ports, face, nodes);
   for (std::size_t organ = 0; organ < organs_.size(); ++organ) {

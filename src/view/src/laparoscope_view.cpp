@@ -90,11 +90,14 @@ struct LaparoscopeView::Content {
     memory.Resize(start.positions.size());
     for (std::uint32_t i = 0; i < surfaces.size(); ++i) {
       const SurfaceInfo& info = surfaces[i];
-      const auto material = render::FindMaterial(info.material);
+      auto material = render::FindMaterial(info.look);
+      // an organ of which nothing is known is covered with serosa, as most of the abdomen's are
+      if (!material && !info.triangles.empty() && info.organ == roles::OrganRole::kOther)
+        material = Material::kBowel;
       if (!material) {
-        return core::Error{core::ErrorCode::kUnknownName, "surface " + info.name + " has the material \"" +
-                                                              info.material +
-                                                              "\", which has no look; see render/material.h"};
+        return core::Error{core::ErrorCode::kUnknownName, "surface " + info.name + " looks like \"" +
+                                                              info.look +
+                                                              "\", which is no look; see render/material.h"};
       }
       TROCAR_ASSERT(std::size_t{info.first_node} + info.node_count <= start.positions.size());
       if (info.triangles.empty()) {

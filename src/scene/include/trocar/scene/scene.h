@@ -97,7 +97,7 @@ struct ModelSetup {
 
 /// How stiff one organ is; see tissue/material.h for the formulas.
 struct OrganMaterial {
-  std::string organ;
+  std::string organ;              ///< its name, or what tissue it is: "liver", "gallbladder_bed", "duct"
   double young_modulus = 0;       ///< of the wall or capsule [Pa]
   double wall_thickness = 0;      ///< [m]
   double foundation_modulus = 0;  ///< of what lies behind the surface [Pa]
@@ -110,6 +110,7 @@ struct OrganMaterial {
   tissue::SpringLaw wall_law;    ///< of the wall's edges: how it stiffens and tears
   double internal_pressure = 0;  ///< under which the organ is filled and sealed before the first tick [Pa]
   std::string source;
+  roles::TissueRole tissue = roles::ConventionalRole<roles::TissueRole>(organ);
 };
 
 struct Scene {
