@@ -321,7 +321,7 @@ void Simulation::Content::Judge() noexcept {
     Emit(event.kind, event.hand, event.surface, 0.0);
     last().p_rest = event.p_rest;
   }
-  j.operation->Update(*world.operation, tick.hands, GetTissue(), GetCamera());
+  j.operation->Update(world.operation->Observe(tick.hands, GetTissue(), GetCamera()));
   for (const training::ErrorEntry& entry : j.operation->NewErrors()) {
     Emit(EventKind::kOperationError, entry.hand, -1, 0.0);
     last().error = static_cast<std::int32_t>(entry.error);
@@ -358,7 +358,7 @@ void Simulation::Content::Publish() noexcept {
   }
   if (w.operation != nullptr) {
     w.operation->Publish(w.tissue, snapshot.operation);
-    judgement.operation->Publish(snapshot.operation);
+    simulation::Publish(*judgement.operation, snapshot.operation);
   }
   snapshot.residual = tick.report.residual;
   snapshot.iterations = tick.report.iterations;

@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <memory>
 
-#include "operation/stone_work.h"
+#include "operation/gallbladder_anatomy.h"
 #include "operation_harness.h"
 #include "trocar/geometry/primitives.h"
 #include "trocar/surgery/wall_holes.h"
@@ -81,20 +81,20 @@ TEST(WallHoles, NodesSideBySideMakeOneHole) {
 }
 
 /// Stones of the built-in patient, and the organs as they lie at rest.
-class StoneWorkTest : public OperationHarness {
+class GallstoneSpillTest : public OperationHarness {
  protected:
   void MakeStones(int count, double diameter) {
     const Scene scene = WithStones(count, diameter);
-    auto made = StoneWork::Make(scene, Tissue().surfaces, Tissue().definition.rest);
+    auto made = MakeGallstones(scene, Tissue().surfaces, Tissue().definition.rest);
     ASSERT_TRUE(made.ok()) << made.error().Text();
     stones_ = std::move(*made);
   }
 
   /// Beside the gallbladder's body, on its free side.
-  WallHole Hole(double rim) const {
+  surgery::WallHole Hole(double rim) const {
     const SurfaceInfo& wall = Gallbladder();
     const Vec3 body = OperationScene()->patient.FindLandmark("gallbladder_body")->position;
-    WallHole hole;
+    surgery::WallHole hole;
     hole.rim = rim;
     double nearest = 1;
     for (std::uint32_t i = 0; i < wall.node_count; ++i) {
@@ -117,10 +117,9 @@ class StoneWorkTest : public OperationHarness {
   }
 
   std::vector<StoneSnapshot> Seen() const {
-    OperationSnapshot snapshot;
-    stones_.Size(snapshot);
-    stones_.Publish(snapshot);
-    return snapshot.stones;
+    std::vector<StoneSnapshot> stones(stones_.Size());
+    stones_.Publish(stones);
+    return stones;
   }
   /// The first that lies in the abdomen.
   StoneSnapshot Spilled() const {
@@ -131,10 +130,10 @@ class StoneWorkTest : public OperationHarness {
     return {};
   }
 
-  StoneWork stones_;
+  surgery::GallstoneSpill stones_;
 };
 
-TEST_F(StoneWorkTest, OnlyWhatFitsLeavesAndOnlyAsFastAsTheBile) {
+TEST_F(GallstoneSpillTest, OnlyWhatFitsLeavesAndOnlyAsFastAsTheBile) {
   MakeStones(30, 0.004);
   const double content = 30e-6, rim = M_PI * 0.004;
   int fitting = 0;
@@ -156,7 +155,7 @@ TEST_F(StoneWorkTest, OnlyWhatFitsLeavesAndOnlyAsFastAsTheBile) {
   EXPECT_EQ(stones_.Count().inside, stones_.Count().all);
 }
 
-TEST_F(StoneWorkTest, FallOntoWhatLiesBelowAndLieStill) {
+TEST_F(GallstoneSpillTest, FallOntoWhatLiesBelowAndLieStill) {
   MakeStones(12, 0.003);
   ASSERT_GT(stones_.Spill(30e-6, 30e-6, Hole(0.05)), 10);
   Fall(4.0);
@@ -175,7 +174,7 @@ TEST_F(StoneWorkTest, FallOntoWhatLiesBelowAndLieStill) {
   EXPECT_GE(still, 9) << "what other stones hold up may creep";
 }
 
-TEST_F(StoneWorkTest, SmallOnesAreSuckedUp) {
+TEST_F(GallstoneSpillTest, SmallOnesAreSuckedUp) {
   MakeStones(20, 0.0036);
   const int out = stones_.Spill(30e-6, 30e-6, Hole(0.05));
   Fall(3.0);
@@ -192,7 +191,7 @@ TEST_F(StoneWorkTest, SmallOnesAreSuckedUp) {
   EXPECT_EQ(stones_.Count().spilled, wide) << "what does not pass the bore stays";
 }
 
-TEST_F(StoneWorkTest, JawsTakeOneStopAtItAndLetGo) {
+TEST_F(GallstoneSpillTest, JawsTakeOneStopAtItAndLetGo) {
   MakeStones(1, 0.004);
   ASSERT_EQ(stones_.Spill(30e-6, 30e-6, Hole(0.05)), 1);
   Fall(3.0);
@@ -228,7 +227,7 @@ TEST_F(StoneWorkTest, JawsTakeOneStopAtItAndLetGo) {
   EXPECT_LT(Seen()[0].position.z, stone.position.z + 0.01) << "it has fallen";
 }
 
-TEST_F(StoneWorkTest, WhatIsLetGoOverTheBagIsInIt) {
+TEST_F(GallstoneSpillTest, WhatIsLetGoOverTheBagIsInIt) {
   MakeStones(2, 0.004);
   ASSERT_EQ(stones_.Spill(30e-6, 30e-6, Hole(0.05)), 2);
   // the mouth lies ahead of the tip, the pouch hangs towards -y: here downwards

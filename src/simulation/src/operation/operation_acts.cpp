@@ -67,15 +67,15 @@ void Operation::CutWith(const surgery::BladeMove& move, int hand, const HandsNow
                         const TissueNow& tissue, OperatedTissue& operated, bool cuts_strands) noexcept {
   const InstrumentKind kind = cuts_strands ? InstrumentKind::kScissors : InstrumentKind::kHook;
   if (cuts_strands) CutStrands(move, hand, kind, tissue, operated);
-  std::array<TubePlace, surgery::CuttableTubes::kMostCuts> places;
+  std::array<surgery::TubePlace, surgery::CuttableTubes::kMostCuts> places;
   const std::size_t tubes = vessels_->Cut(move, *tissue.definition, tissue.state->position, change_, places);
-  for (const TubePlace& place : std::span(places).first(tubes)) {
+  for (const surgery::TubePlace& place : std::span(places).first(tubes)) {
     const auto surface = static_cast<std::int32_t>(organs_.size() + place.tube);
     EmittedAct act;
     act.kind = EmittedAct::Kind::kCut;
     act.position = hands.X_proxy[static_cast<std::size_t>(hand)].translation;
     act.hand = hand;
-    act.vessel = vessels_->JudgePlace(place);
+    act.vessel = training::JudgePlace(biliary_, *vessels_, place);
     acts_.Add(act);
     Emit({EventKind::kTubeCut, hand, surface, vessels_->RestPoint(place)});
     acts_.Add({kind, Verb::kCut, TargetOfSurface(surface)}, hand);
@@ -160,7 +160,7 @@ void Operation::UseElectrode(int hand, const HandsNow& hands, const TissueNow& t
   }
   const instrument::Tool& tool = Tool(hand);
   const Pose& X = hands.X_proxy[h];
-  Electrosurgery::Electrode electrode;
+  surgery::Electrosurgery::Electrode electrode;
   if (tool.kind == instrument::ToolKind::kHook) {
     const surgery::BladeSettings blade;
     electrode.bare = {X * blade.p_tool_hook.a, X * blade.p_tool_hook.b};
@@ -169,9 +169,9 @@ void Operation::UseElectrode(int hand, const HandsNow& hands, const TissueNow& t
   }
   electrode.power = controls.cut ? kCutPower : kCoagulatePower;
   electrode.reach = controls.cut ? kCutReach : kCoagulateReach;
-  if (!IsInView(hands.camera.X_world_camera, hands.camera.field_of_view, X.translation))
+  if (!instrument::IsInView(hands.camera.X_world_camera, hands.camera.field_of_view, X.translation))
     acts_.Report(OperationError::kEnergyOutOfView, X.translation, hand);
-  std::array<Electrosurgery::Target, 96> targets;
+  std::array<surgery::Electrosurgery::Target, 96> targets;
   const std::size_t count =
       heat_.FindTargets(electrode, tissue.organs, *tissue.tubes, *tissue.state, targets);
   double& idle = hands_[h].idle_seconds;
@@ -208,7 +208,7 @@ void Operation::Heat(const HandsNow& hands, const TissueNow& tissue, OperatedTis
   }
   for (const std::uint32_t node : std::span(parted).first(count)) {
     const Vec3& p = tissue.state->position[node];
-    TubePlace place;
+    surgery::TubePlace place;
     if (IsOf(node, gallbladder_)) {
       tissue.conservation->Perforate(static_cast<std::size_t>(gallbladder_), kBurntHole, operated.conserved);
       holes_.Add(node, kBurntRim);
@@ -220,7 +220,7 @@ void Operation::Heat(const HandsNow& hands, const TissueNow& tissue, OperatedTis
       act.kind = EmittedAct::Kind::kHole;
       act.position = p;
       act.hand = hand;
-      act.vessel = vessels_->JudgePlace(place);
+      act.vessel = training::JudgePlace(biliary_, *vessels_, place);
       acts_.Add(act);
     }
   }
@@ -235,12 +235,12 @@ void Operation::OpenTubeEnds(const TissueNow& tissue) noexcept {
                                   [&](std::uint32_t i) { return tissue.state->strand_is_intact[i] != 0; }))
       continue;
     end.is_off = true;
-    TubePlace place;
+    surgery::TubePlace place;
     if (!vessels_->MakeHole(end.node, end.section, place)) continue;
     EmittedAct act;
     act.kind = EmittedAct::Kind::kHole;
     act.position = tissue.state->position[end.node];
-    act.vessel = vessels_->JudgePlace(place);
+    act.vessel = training::JudgePlace(biliary_, *vessels_, place);
     // of what is divided already only the gallbladder's side is left
     if (act.vessel.cuts == 0) acts_.Add(act);
   }
@@ -262,7 +262,8 @@ void Operation::UseClips(int hand, const HandsNow& hands, const TissueNow& tissu
   if (!state.has_clip_open || jaw > kClipClosed * tool.max_jaw) return;
   state.has_clip_open = false;
   --state.clips;
-  const ClipResult clip = vessels_->Clip(tool, hands.X_proxy[h], state.caught, tissue.state->position);
+  const surgery::ClipResult clip =
+      vessels_->Clip(tool, hands.X_proxy[h], state.caught, tissue.state->position);
   state.caught.reset();
   state.opened = 0;
   EmittedAct act;
@@ -270,9 +271,10 @@ void Operation::UseClips(int hand, const HandsNow& hands, const TissueNow& tissu
   act.position = hands.X_proxy[h].translation;
   act.hand = hand;
   act.clip = clip;
-  if (clip.kind != ClipResult::Kind::kLost) act.vessel = vessels_->JudgePlace(clip.place);
+  if (clip.kind != surgery::ClipResult::Kind::kLost)
+    act.vessel = training::JudgePlace(biliary_, *vessels_, clip.place);
   acts_.Add(act);
-  if (clip.kind == ClipResult::Kind::kLost) return;
+  if (clip.kind == surgery::ClipResult::Kind::kLost) return;
   const auto surface = static_cast<std::int32_t>(organs_.size() + clip.place.tube);
   acts_.Add({InstrumentKind::kClipper, Verb::kClip, TargetOfSurface(surface)}, hand);
   Emit({EventKind::kClipClosed, hand, surface, vessels_->RestPoint(clip.place)});
@@ -293,8 +295,8 @@ void Operation::RefuseImpossible(int hand, const HandsNow& hands) noexcept {
   const bool is_used =
       has_bitten || controls.cut || controls.coagulate || controls.rinse || controls.aspirate;
   const bool is_outside = hands.joints[h].depth < kOutOfTrocar;
-  if (is_used && is_outside && !state.was_told_outside) Emit({EventKind::kUsedOutside, hand, -1, {}});
-  state.was_told_outside = is_outside && (is_used || state.was_told_outside);
+  if (is_used && is_outside && !state.was_outside_emitted) Emit({EventKind::kUsedOutside, hand, -1, {}});
+  state.was_outside_emitted = is_outside && (is_used || state.was_outside_emitted);
   if (has_bitten && !is_outside && tool.kind == instrument::ToolKind::kClipApplier && state.clips == 0 &&
       !state.has_clip_open)
     Emit({EventKind::kNoClipsLeft, hand, -1, {}});

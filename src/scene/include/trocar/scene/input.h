@@ -5,14 +5,16 @@
 #include <array>
 #include <cstdint>
 
+#include "trocar/instrument/hand.h"
 #include "trocar/instrument/trocar_kinematics.h"
 #include "trocar/tissue/solver_settings.h"
 
 namespace trocar::scene {
 
-/// Index of a hand in every per-hand array.
-enum Hand { kLeft = 0, kRight = 1 };
-inline constexpr int kHandCount = 2;
+using instrument::Hand;
+using instrument::kHandCount;
+using instrument::kLeft;
+using instrument::kRight;
 
 /// What a hand and its foot do besides moving the tool.
 struct HandControls {

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "operation/vessel_map.h"
+#include "trocar/scene/patient_vessels.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
+#include <utility>
+#include <vector>
 
-namespace trocar::simulation {
+namespace trocar::scene {
 
 using math::Vec3;
 namespace {
@@ -14,6 +16,7 @@ namespace {
 using surgery::FlowJunction;
 using surgery::FlowVessel;
 using surgery::Fluid;
+using surgery::VesselMap;
 using training::VesselRole;
 
 /// Pressures above the abdomen's 12 mmHg of gas [Pa], conductances [m^3/(Pa s)]. Aorta: decision 0026. Bile: secretion against
@@ -43,11 +46,11 @@ VesselRole RoleOf(const std::string& tube) {
 }
 
 /// Builds junctions where tubes end and where others join them.
-class Builder {
+class VesselBuilder {
  public:
-  explicit Builder(const anatomy::Patient& patient) : patient_(patient), cuts_(patient.tubes.size()) {}
+  explicit VesselBuilder(const anatomy::Patient& patient) : patient_(patient), cuts_(patient.tubes.size()) {}
 
-  core::Result<VesselMap> Build() {
+  core::Result<PatientVessels> Build() {
     for (const anatomy::Tube& tube : patient_.tubes) arcs_.push_back(CalcArcs(tube.line.points));
     for (std::size_t t = 0; t < patient_.tubes.size(); ++t) {
       for (const bool is_first : {true, false}) Node(t, is_first ? 0 : arcs_[t].size() - 1);
@@ -115,7 +118,7 @@ class Builder {
     supplies_.push_back({Root(Node(t, EndPoint(t, is_first))), supply, t, is_first});
   }
 
-  core::Result<VesselMap> Finish() {
+  core::Result<PatientVessels> Finish() {
     std::vector<std::uint32_t> number(groups_.size(), 0);
     std::vector<FlowJunction> junctions;
     for (std::size_t g = 0; g < groups_.size(); ++g) {
@@ -167,8 +170,9 @@ class Builder {
     FindUpstream(vessels, anatomy);
     auto network = surgery::FlowNetwork::Make(std::move(vessels), std::move(junctions));
     if (!network.ok()) return network.error();
-    return VesselMap{std::move(*network), std::move(anatomy), std::move(arcs_),
-                     std::move(of_tube),  std::move(starts),  std::move(gallbladder_ducts)};
+    return PatientVessels{VesselMap{std::move(*network), std::move(arcs_), std::move(of_tube),
+                                    std::move(starts), std::move(gallbladder_ducts)},
+                          std::move(anatomy)};
   }
 
   /// Which end of each vessel bile or blood comes from, and how far below the confluence it begins: by the shortest way from
@@ -212,16 +216,8 @@ class Builder {
 
 }  // namespace
 
-VesselPlace VesselMap::Find(std::size_t tube, double arc) const {
-  const auto& own = vessels_of_tube[tube];
-  std::size_t i = 0;
-  while (i + 1 < own.size() && starts[tube][i + 1] <= arc) ++i;
-  const double length = network.Vessels()[own[i]].length;
-  return {own[i], std::clamp(arc - starts[tube][i], 0.0, length)};
+core::Result<PatientVessels> MakePatientVessels(const anatomy::Patient& patient) {
+  return VesselBuilder(patient).Build();
 }
 
-core::Result<VesselMap> MakeVesselMap(const anatomy::Patient& patient) {
-  return Builder(patient).Build();
-}
-
-}  // namespace trocar::simulation
+}  // namespace trocar::scene
