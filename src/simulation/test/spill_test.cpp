@@ -75,7 +75,7 @@ TEST(WallHoles, NodesSideBySideMakeOneHole) {
   EXPECT_NEAR(find().rim, 0.004 + 2 * apart, 1e-12);
   holes.Add(t[2], 0.004);
   EXPECT_GE(find().rim, 0.004 + 2 * apart);
-  // more than it has room for
+  // more than its capacity
   for (std::uint32_t i = 0; i < ball.mesh.positions.size(); ++i) holes.Add(i, 0.001);
   EXPECT_TRUE(std::isfinite(find().rim));
 }
@@ -213,7 +213,7 @@ TEST_F(GallstoneSpillTest, JawsTakeOneStopAtItAndLetGo) {
   close(0.0);
   ASSERT_EQ(stones_.HeldBy(kLeft), 0);
   EXPECT_TRUE(stones_.HasTaken(kLeft));
-  EXPECT_FALSE(stones_.HasTaken(kLeft)) << "told once";
+  EXPECT_FALSE(stones_.HasTaken(kLeft)) << "emitted once";
   EXPECT_NEAR(jaw, 2 * std::asin(stone.radius / (grasper.jaw_length - 0.008)), 0.01) << "it keeps them apart";
   EXPECT_EQ(stones_.Count().spilled, 1) << "still in the abdomen";
   // lifted, and let go
@@ -260,14 +260,14 @@ TEST_F(SpillTest, ATornWallSpillsStonesThatAreToldAndCounted) {
   MakeOperation();
   Judge();
   EXPECT_EQ(Result().stones.spilled, 0);
-  int told = 0;
+  int emitted = 0;
   operation_->BeginTick();
   Spill(15e-6);
   for (const OperationEvent& event : operation_->Events())
-    told += event.kind == EventKind::kStoneSpilled ? 1 : 0;
+    emitted += event.kind == EventKind::kStoneSpilled ? 1 : 0;
   const OperationResult result = Result();
   ASSERT_GT(result.stones.spilled, 1);
-  EXPECT_EQ(told, std::min(result.stones.spilled, 8)) << "as many as a tick has room to tell";
+  EXPECT_EQ(emitted, std::min(result.stones.spilled, 8)) << "as many as the capacity of a tick";
   EXPECT_EQ(result.injuries.spilled_stones, result.stones.spilled);
   EXPECT_EQ(result.stones.inside + result.stones.spilled, result.stones.all);
   EXPECT_NEAR(result.fluids.fluids[static_cast<std::size_t>(surgery::Fluid::kBile)].left, 15e-6, 1e-12);
@@ -371,7 +371,7 @@ TEST(Spilling, TheHookPerforatesAndStonesComeOutWithTheBile) {
   const Vec3 outwards{0.82, -0.55, -0.18};
   Input input = CalcScriptInput(*scene, 0.0);
   std::uint64_t known = 0;
-  int told = 0;
+  int emitted = 0;
   for (int tick = 0; tick < 120 * 12; ++tick) {
     // pressed on until it gives: it moves off, and the wire may come to lie beside it
     const double away = tick < 180 ? 0.02 * (1.0 - tick / 180.0) : -0.002 - 0.001 * (tick - 180) / 120.0;
@@ -380,12 +380,12 @@ TEST(Spilling, TheHookPerforatesAndStonesComeOutWithTheBile) {
     input.controls[kRight].coagulate = tick >= 180;
     simulation.Step(input);
     for (; known < seen.event_count; ++known)
-      told += seen.events[known % seen.events.size()].kind == EventKind::kStoneSpilled ? 1 : 0;
-    if (told >= 2) break;
+      emitted += seen.events[known % seen.events.size()].kind == EventKind::kStoneSpilled ? 1 : 0;
+    if (emitted >= 2) break;
   }
   const OperationResult result = *simulation.GetOperationResult();
   EXPECT_GE(result.stones.spilled, 2);
-  EXPECT_EQ(result.stones.spilled, told);
+  EXPECT_EQ(result.stones.spilled, emitted);
   EXPECT_GT(result.errors.Count(training::OperationError::kGallbladderPerforated), 0u);
   // no more than their share of the bile
   const OrganSnapshot& bile = seen.organs[static_cast<std::size_t>(scene->patient.FindOrgan("gallbladder"))];

@@ -317,7 +317,7 @@ void VisitState(core::StateArchive& archive, VesselActs& acts) {
       (acts.clips.size() > VesselActs::kMostClips || acts.openings.size() > VesselActs::kMostOpenings)) {
     acts.clips.clear();
     acts.openings.clear();
-    archive.Fail("has more clips or openings than there is room for");
+    archive.Fail("has more clips or openings than its capacity");
   }
 }
 
@@ -330,7 +330,7 @@ void VisitState(core::StateArchive& archive, FlowReport& report) {
   archive.Field("leak_count", report.leak_count);
   if (archive.IsRestoring() && report.leak_count > report.leaks.size()) {
     report.leak_count = 0;
-    archive.Fail("has more leaks than there is room for");
+    archive.Fail("has more leaks than its capacity");
   }
   for (std::size_t i = 0; i < report.leak_count; ++i) {
     Leak& leak = report.leaks[i];

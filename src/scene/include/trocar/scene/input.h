@@ -27,7 +27,7 @@ struct HandControls {
   friend bool operator==(const HandControls&, const HandControls&) = default;
 };
 
-/// What the assistant has been told to do with the third grasper, at the fundus.
+/// What the assistant is commanded to do with the third grasper, at the fundus.
 enum class AssistantCommand : std::uint8_t {
   kWait,     ///< out of the way
   kRetract,  ///< take the fundus and lift it over the liver's edge towards the right shoulder

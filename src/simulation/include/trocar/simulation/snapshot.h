@@ -76,7 +76,7 @@ enum class Stage {
 std::string_view StageName(Stage stage) noexcept;
 inline constexpr int kStageCount = static_cast<int>(Stage::kCount);
 
-/// Of how many of the newest events a snapshot tells.
+/// How many of the newest events a snapshot holds.
 inline constexpr std::size_t kEventRing = 8;
 
 /// Copying into one that has been used before does not allocate (the sizes never change while a scene runs).

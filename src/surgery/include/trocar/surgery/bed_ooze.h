@@ -38,7 +38,7 @@ class BedOoze {
 
   double Rate() const noexcept { return rate_; }  ///< of the last tick [m^3/s]
   double Lost() const noexcept { return lost_; }  ///< since the start [m^3]
-  /// The places that bleed most, most first, as far as there is room.
+  /// The places that bleed most, most first, as many as fit.
   /// \return how many
   std::size_t Publish(std::span<const math::Vec3> position, std::span<OozeSnapshot> oozes) const noexcept;
   void VisitState(core::StateArchive& archive);

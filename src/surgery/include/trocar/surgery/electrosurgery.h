@@ -47,7 +47,7 @@ class Electrosurgery {
   void AddPower(const Electrode& electrode, std::span<const Target> targets) noexcept;
 
   /// One tick: heat flows, strands that are parted give way.
-  /// \param[out] parted_nodes  tissue nodes that were parted in this tick, ascending; the first that it has room for
+  /// \param[out] parted_nodes  tissue nodes that were parted in this tick, ascending; the first ones that fit
   /// \return how many nodes
   /// \note Real-time safe.
   std::size_t Step(double seconds, tissue::TissueState& tissue,
@@ -60,7 +60,7 @@ class Electrosurgery {
   /// Strands that heat parted in the last Step.
   std::size_t PartedStrands() const { return parted_strands_; }
   double Power() const { return power_; }  ///< of the last Step [W]
-  /// \param[out] blanching, charring  the first nodes, as many as there is room for, 0 to 1 [-]
+  /// \param[out] blanching, charring  of the first nodes, 0 to 1 [-]
   void Publish(std::span<float> blanching, std::span<float> charring) const noexcept;
   const HeatState& State() const { return state_; }
   void VisitState(core::StateArchive& archive);

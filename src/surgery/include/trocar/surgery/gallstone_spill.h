@@ -75,7 +75,7 @@ class GallstoneSpill {
 
   StoneCount Count() const noexcept;
   std::size_t Size() const noexcept { return stones_.size(); }
-  /// \pre Room for all (TROCAR_ASSERT)
+  /// \pre At least Size() (TROCAR_ASSERT)
   void Publish(std::span<StoneSnapshot> stones) const noexcept;
   void VisitState(core::StateArchive& archive);
 

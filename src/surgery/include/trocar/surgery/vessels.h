@@ -74,9 +74,9 @@ class Vessels {
   void ReserveFor(TopologyChange& change) const { tubes_.ReserveFor(change); }
 
   /// Cuts what a blade passed over.
-  /// \param[out] places  of the cuts; room for CuttableTubes::kMostCuts
+  /// \param[out] places  of the cuts; at least CuttableTubes::kMostCuts
   /// \return how many
-  /// \note Real-time safe while `change` has room.
+  /// \note Real-time safe within the capacity of `change`.
   std::size_t Cut(const BladeMove& move, const tissue::TissueDefinition& definition,
                   std::span<const Vec3> position, TopologyChange& change,
                   std::span<TubePlace> places) noexcept;
@@ -105,11 +105,11 @@ class Vessels {
   /// \note Real-time safe.
   std::size_t Slip(double seconds, std::span<const ClipPull> pulls, std::span<const Vec3> position,
                    std::span<SlippedClip> slipped) noexcept;
-  /// Adds the lost clips, which fall as stones do, as far as `loose` has room.
+  /// Adds the lost clips, which fall as stones do, up to the capacity of `loose`.
   void FindLooseClips(std::vector<LooseStone*>& loose) noexcept;
 
   /// Makes a hole where a node of a tube was burnt through.
-  /// \return false where the node is of no tube, or there is no room
+  /// \return false where the node is of no tube, or there are kMostOpenings
   bool MakeHole(std::uint32_t node, double area, TubePlace& place) noexcept;
 
   /// Seals openings within `reach` of a point by `share` of their size each [-]; only vessels that are narrow enough.
@@ -126,7 +126,7 @@ class Vessels {
   /// Cuts through one tube.
   std::size_t CountCuts(std::uint32_t tube) const noexcept;
 
-  // What is seen; each fills what the span has room for and returns how many.
+  // What is seen; each fills the span as far as it goes and returns how many.
   /// \param first_surface  index of the first tube's surface in the scene
   std::size_t PublishPieces(std::size_t first_surface, std::span<TubePiece> pieces) const noexcept;
   std::size_t PublishClips(std::span<const Vec3> position, std::span<ClipSnapshot> clips) const noexcept;
