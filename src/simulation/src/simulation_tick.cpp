@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "bad_tick.h"
 #include "simulation_content.h"
 #include "trocar/tissue/conserved_equilibrium.h"
 #include "trocar/tissue/damage.h"
@@ -201,11 +202,10 @@ void Simulation::Content::GuardTissue() noexcept {
   WorldState& w = world;
   tick.verdict = w.guard->Check(w.tissue, tick.report.is_finite);
   const bool is_good = tick.verdict == tissue::GuardVerdict::kGood;
-  // what a bad tick left in the pressures and frames goes with it
   if (is_good) {
     w.good_conserved = w.conserved;
   } else {
-    static_cast<tissue::ConservationTick&>(w.conserved) = w.good_conserved;
+    TakeBack(w.good_conserved, w.conserved);
   }
   const auto touched = w.touch.CalcTouch(w.tissue, is_good);
   for (int hand = 0; hand < kHandCount; ++hand) {
