@@ -19,12 +19,6 @@ using surgery::Fluid;
 using surgery::VesselMap;
 using training::VesselRole;
 
-/// Pressures above the abdomen's 12 mmHg of gas [Pa], conductances [m^3/(Pa s)]. Aorta: decision 0026. Bile: secretion against
-/// 2.5 kPa, 0.6 mL/min; the sphincter opens at 1.3 kPa: general knowledge, tunables.
-constexpr FlowJunction kAorta{12e3, 1.25e-10}, kArteryBed{1e3, 5e-12}, kLiverSecretion{2.5e3, 8e-12},
-    kBowel{1.3e3, 5e-11}, kGallbladder{1.3e3, 1e-10};
-/// Share of a tube's outer radius that is open inside [-].
-constexpr double kLumen = 0.7;
 constexpr double kShortestVessel = 1e-4;  // [m]
 
 std::vector<double> CalcArcs(const std::vector<Vec3>& points) {
@@ -48,7 +42,9 @@ VesselRole RoleOf(const std::string& tube) {
 /// Builds junctions where tubes end and where others join them.
 class VesselBuilder {
  public:
-  explicit VesselBuilder(const anatomy::Patient& patient) : patient_(patient), cuts_(patient.tubes.size()) {}
+  VesselBuilder(const anatomy::Patient& patient, const VesselSupplies& supplies,
+                const surgery::FluidTable& fluids)
+      : patient_(patient), settings_(supplies), fluids_(fluids), cuts_(patient.tubes.size()) {}
 
   core::Result<PatientVessels> Build() {
     for (const anatomy::Tube& tube : patient_.tubes) arcs_.push_back(CalcArcs(tube.line.points));
@@ -112,9 +108,9 @@ class VesselBuilder {
     const anatomy::Tube& tube = patient_.tubes[t];
     const std::string& name = EndName(t, is_first);
     const bool is_artery = tube.kind == anatomy::TubeKind::kArtery, is_outside = patient_.FindOrgan(name) < 0;
-    FlowJunction supply =
-        is_artery ? (is_outside ? kAorta : kArteryBed) : (is_outside ? kBowel : kLiverSecretion);
-    if (!is_artery && name == "gallbladder") supply = kGallbladder;
+    FlowJunction supply = is_artery ? (is_outside ? settings_.aorta : settings_.artery_bed)
+                                    : (is_outside ? settings_.bowel : settings_.liver);
+    if (!is_artery && name == "gallbladder") supply = settings_.gallbladder;
     supplies_.push_back({Root(Node(t, EndPoint(t, is_first))), supply, t, is_first});
   }
 
@@ -138,7 +134,7 @@ class VesselBuilder {
         const Cut &from = cuts_[t][i], &to = cuts_[t][i + 1];
         double radius = 0;
         for (std::size_t k = from.point; k <= to.point; ++k) radius += tube.line.radii[k];
-        radius *= kLumen / static_cast<double>(to.point - from.point + 1);
+        radius *= settings_.lumen_share / static_cast<double>(to.point - from.point + 1);
         of_tube[t].push_back(static_cast<std::uint32_t>(vessels.size()));
         starts[t].push_back(arcs_[t][from.point]);
         vessels.push_back({tube.kind == anatomy::TubeKind::kArtery ? Fluid::kBlood : Fluid::kBile,
@@ -168,7 +164,7 @@ class VesselBuilder {
       }
     }
     FindUpstream(vessels, anatomy);
-    auto network = surgery::FlowNetwork::Make(std::move(vessels), std::move(junctions));
+    auto network = surgery::FlowNetwork::Make(std::move(vessels), std::move(junctions), fluids_);
     if (!network.ok()) return network.error();
     return PatientVessels{VesselMap{std::move(*network), std::move(arcs_), std::move(of_tube),
                                     std::move(starts), std::move(gallbladder_ducts)},
@@ -207,6 +203,8 @@ class VesselBuilder {
   };
 
   const anatomy::Patient& patient_;
+  const VesselSupplies& settings_;
+  const surgery::FluidTable& fluids_;
   std::vector<std::vector<double>> arcs_;
   std::vector<std::vector<Cut>> cuts_;
   std::vector<std::size_t> groups_;  // union-find over places
@@ -216,8 +214,10 @@ class VesselBuilder {
 
 }  // namespace
 
-core::Result<PatientVessels> MakePatientVessels(const anatomy::Patient& patient) {
-  return VesselBuilder(patient).Build();
+core::Result<PatientVessels> MakePatientVessels(const anatomy::Patient& patient,
+                                                const VesselSupplies& supplies,
+                                                const surgery::FluidTable& fluids) {
+  return VesselBuilder(patient, supplies, fluids).Build();
 }
 
 }  // namespace trocar::scene

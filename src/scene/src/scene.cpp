@@ -67,7 +67,7 @@ void ReadInstrument(const core::JsonView& root, const char* hand, const anatomy:
 void ReadOperation(const core::JsonView& root, const anatomy::Patient& patient, Scene& scene) {
   if (!root.Has("operation")) return;
   const core::JsonView view = root.Object("operation");
-  view.AllowOnly({"fat_spacing_mm", "assistant", "gallstones"});
+  view.AllowOnly({"fat_spacing_mm", "assistant", "gallstones", "parameters"});
   OperationSetup setup;
   setup.fat_spacing = 0.001 * view.NumberOr("fat_spacing_mm", 1e3 * setup.fat_spacing, range::kFatSpacingMm);
   if (setup.fat_spacing > 0.0 && setup.fat_spacing < 0.0015)
@@ -97,6 +97,23 @@ void ReadOperation(const core::JsonView& root, const anatomy::Patient& patient, 
     setup.assistant = std::move(assistant);
   }
   scene.operation = std::move(setup);
+}
+
+/// The operation's tables: those that the scene names, else the delivered ones.
+core::Status ReadParameters(const core::JsonView& root, const std::filesystem::path& folder,
+                            OperationSetup& operation) {
+  std::filesystem::path path;
+  if (root.Has("operation") && root.Object("operation").Has("parameters")) {
+    path = folder / root.Object("operation").Text("parameters");
+  } else {
+    const auto data = FindDataFolder();
+    if (!data.ok()) return data.error();
+    path = *data / kOperationParametersFile;
+  }
+  const auto read = ReadOperationParameters(path);
+  if (!read.ok()) return read.error();
+  operation.parameters = *read;
+  return {};
 }
 
 void ReadLaparoscope(const core::JsonView& root, const anatomy::Patient& patient, LaparoscopeSetup& setup,
@@ -224,6 +241,10 @@ core::Result<Scene> ReadSceneFields(const core::JsonDocument& document, const co
   CheckPorts(view, scene);
   const std::string script = view.TextOr("script", "");
   if (const auto status = document.Check(); !status.ok()) return status.error();
+  if (scene.operation) {
+    if (const auto status = ReadParameters(view, folder, *scene.operation); !status.ok())
+      return status.error();
+  }
   if (!script.empty()) {
     auto read = ReadScript(folder / script, scene.patient);
     if (!read.ok()) return read.error();

@@ -12,39 +12,32 @@ namespace {
 
 using collision::Segment;
 
-/// Layer of a wall through which heat passes along it [m].
-constexpr double kLayerDepth = 0.0015;
-/// Section of a fibre [m].
-constexpr double kFibreWidth = 0.0005;
-/// The shortest strands, those of the bed, stand for a patch of areolar tissue of which so much is fibre [kg].
-constexpr double kLeastStrandMass = 0.5e-6;
-constexpr double kLeastNodeMass = 2e-6;
-constexpr double kDensity = 1000;  // of fat and fibres [kg/m^3]
-/// What lies as far from the metal as this gets a quarter of what touches it gets [m].
-constexpr double kQuarterPower = 0.0004;
-
 }  // namespace
 
-Electrosurgery::Electrosurgery(const tissue::TissueDefinition& definition, std::span<const double> heat_mass)
-    : node_count_(definition.rest.size()), strands_(definition.strands) {
+Electrosurgery::Electrosurgery(const tissue::TissueDefinition& definition, std::span<const double> heat_mass,
+                               const ElectrosurgerySettings& settings)
+    : settings_(settings), node_count_(definition.rest.size()), strands_(definition.strands) {
   TROCAR_ASSERT(heat_mass.size() == node_count_);
   std::vector<HeatNode> nodes;
-  for (const double mass : heat_mass) nodes.push_back({std::max(mass, kLeastNodeMass), 1.0});
-  const HeatConstants constants;
+  for (const double mass : heat_mass) nodes.push_back({std::max(mass, settings_.least_node_mass), 1.0});
+  const HeatConstants& constants = settings_.tissue;
   std::vector<HeatLink> links;
   for (const tissue::Spring& spring : definition.springs) {
     const double length = math::Distance(definition.rest[spring.a], definition.rest[spring.b]);
     if (length > 0.0)
       links.push_back(
-          {spring.a, spring.b, CalcHeatConductance(constants, 0.5 * length, kLayerDepth, length)});
+          {spring.a, spring.b, CalcHeatConductance(constants, 0.5 * length, settings_.layer_depth, length)});
   }
   for (std::uint32_t i = 0; i < strands_.size(); ++i) {
     const tissue::Strand& strand = strands_[i];
     const double length =
-        std::max(kFibreWidth, math::Distance(definition.rest[strand.a], definition.rest[strand.b]));
-    nodes.push_back({std::max(kLeastStrandMass, kDensity * kFibreWidth * kFibreWidth * length), 0.0});
+        std::max(settings_.fibre_width, math::Distance(definition.rest[strand.a], definition.rest[strand.b]));
+    nodes.push_back({std::max(settings_.least_strand_mass, settings_.fibre_density * settings_.fibre_width *
+                                                               settings_.fibre_width * length),
+                     0.0});
     const auto part = static_cast<std::uint32_t>(node_count_ + i);
-    const double half = CalcHeatConductance(constants, kFibreWidth, kFibreWidth, 0.5 * length);
+    const double half =
+        CalcHeatConductance(constants, settings_.fibre_width, settings_.fibre_width, 0.5 * length);
     links.push_back({strand.a, part, half});
     links.push_back({strand.b, part, half});
   }
@@ -76,7 +69,7 @@ std::size_t Electrosurgery::FindTargets(const Electrode& electrode, std::span<co
     const Segment strand{tissue.position[strands_[i].a], tissue.position[strands_[i].b]};
     const double distance =
         std::sqrt(collision::FindNearestSegmentSegment(electrode.bare, strand).squared_distance) -
-        0.5 * kFibreWidth;
+        0.5 * settings_.fibre_width;
     if (distance <= electrode.reach) add(static_cast<std::uint32_t>(node_count_ + i), distance, 1.0);
   }
   for (const OrganSurface& organ : organs) {
@@ -98,8 +91,8 @@ std::size_t Electrosurgery::FindTargets(const Electrode& electrode, std::span<co
 
 void Electrosurgery::AddPower(const Electrode& electrode, std::span<const Target> targets) noexcept {
   double sum = 0;
-  const auto weight = [](const Target& target) {
-    const double near = kQuarterPower / (kQuarterPower + target.distance);
+  const auto weight = [this](const Target& target) {
+    const double near = settings_.quarter_power / (settings_.quarter_power + target.distance);
     return target.share * near * near;
   };
   for (const Target& target : targets) sum += weight(target);

@@ -154,10 +154,11 @@ std::size_t Vessels::SlipStump(const Stump& stump, double seconds, std::span<con
     std::size_t end = i;
     for (; end < count && (end == i || along(*row[end]) - along(*row[end - 1]) <= kClipWidth); ++end) {
       const Clipped& member = *row[end];
-      const ClipHold own = CalcClipHold({member.closure, member.is_weak, member.vessel_radius});
+      const ClipHold own =
+          CalcClipHold({member.closure, member.is_weak, member.vessel_radius}, settings_.clips);
       hold.pressure += own.pressure, hold.pull += own.pull;
     }
-    const double slip = CalcSlipSpeed(CalcClipLoad(hold, pressure, pull));
+    const double slip = CalcSlipSpeed(CalcClipLoad(hold, pressure, pull), settings_.clips);
     for (std::size_t k = i; k < end; ++k) speed[k] = std::max(speed[k], slip);
     if (clip.closure >= kTight) pressure = 0.0;
   }

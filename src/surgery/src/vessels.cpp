@@ -7,18 +7,10 @@
 #include "trocar/math/state_fields.h"
 
 namespace trocar::surgery {
-namespace {
-
-/// Heat seals vessels up to this radius inside [m]: a millimetre across is held to be safe, more is not.
-constexpr double kMostSealed = 0.0009;
-/// Bile left in a gallbladder that cannot run out, as a share of what there was.
-constexpr double kLeastFilling = 0.1;
-
-}  // namespace
 
 Vessels::Vessels(VesselMap map, std::span<const VesselTube> tubes, std::uint32_t first_spare,
-                 std::uint32_t spare_count)
-    : map_(std::move(map)), tubes_(first_spare, spare_count) {
+                 std::uint32_t spare_count, const VesselSettings& settings)
+    : settings_(settings), map_(std::move(map)), tubes_(first_spare, spare_count) {
   for (std::uint32_t t = 0; t < tubes.size(); ++t) {
     const VesselTube& tube = tubes[t];
     rest_.emplace_back(tube.points.begin(), tube.points.end());
@@ -92,7 +84,7 @@ bool Vessels::MakeHole(std::uint32_t node, double area, TubePlace& place) noexce
 
 void Vessels::Seal(const Vec3& p, double reach, double share, std::span<const Vec3> position) noexcept {
   for (std::size_t i = 0; i < acts_.openings.size(); ++i) {
-    if (map_.network.Vessels()[acts_.openings[i].vessel].radius > kMostSealed) continue;
+    if (map_.network.Vessels()[acts_.openings[i].vessel].radius > settings_.most_sealed_radius) continue;
     for (std::size_t end = 0; end < 2; ++end) {
       if (math::Distance(position[tubes_.Node(ends_[i].points[end])], p) > reach) continue;
       double& sealed = acts_.openings[i].sealed[end];
@@ -116,7 +108,7 @@ void Vessels::Flow(double seconds, std::int32_t hollow, tissue::ConservationStat
   for (const std::uint32_t j : map_.gallbladder_ducts) {
     const double lost = map_.network.SupplyAt(j) * seconds;
     const double before = organ->target + organ->leaked;
-    if (lost > 0.0 && organ->target - lost > kLeastFilling * before)
+    if (lost > 0.0 && organ->target - lost > settings_.least_filling * before)
       organ->target -= lost, organ->leaked += lost;
   }
 }

@@ -77,13 +77,14 @@ double NumberOf(const anatomy::Patient& patient, std::string_view name, double o
 }  // namespace
 
 surgery::Vessels MakeVessels(surgery::VesselMap map, const anatomy::Patient& patient,
-                             const scene::PatientTissue& tissue, std::uint32_t spare_count) {
+                             const scene::PatientTissue& tissue, std::uint32_t spare_count,
+                             const surgery::VesselSettings& settings) {
   std::vector<surgery::VesselTube> tubes;
   for (std::size_t t = 0; t < patient.tubes.size(); ++t) {
     const geometry::CentreLine& line = patient.tubes[t].line;
     tubes.push_back({tissue.surfaces[patient.organs.size() + t].first_node, line.points, line.radii});
   }
-  return {std::move(map), tubes, tissue.first_spare.back(), spare_count};
+  return {std::move(map), tubes, tissue.first_spare.back(), spare_count, settings};
 }
 
 std::vector<surgery::EnteringTube> FindEnteringTubes(const anatomy::Patient& patient,

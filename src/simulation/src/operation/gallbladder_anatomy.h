@@ -18,7 +18,8 @@ namespace trocar::simulation {
 /// \param map  of the patient: see scene::MakePatientVessels
 /// \param spare_count  nodes for the ends of cuts
 surgery::Vessels MakeVessels(surgery::VesselMap map, const anatomy::Patient& patient,
-                             const scene::PatientTissue& tissue, std::uint32_t spare_count);
+                             const scene::PatientTissue& tissue, std::uint32_t spare_count,
+                             const surgery::VesselSettings& settings = {});
 
 /// \param surfaces  organs, then tubes
 /// \param strands   (strands)

@@ -65,10 +65,11 @@ core::Status Operation::MakeAll() {
   sheets_.clear();
   for (std::size_t i = 0; scene_->model && i < scene_->model->sheets.size(); ++i)
     sheets_.push_back(MakePatternCutMonitor(scene_->model->sheets[i], organs_[i].Mesh()));
-  auto vessels = scene::MakePatientVessels(patient);
+  const scene::OperationParameters& parameters = scene_->operation->parameters;
+  auto vessels = scene::MakePatientVessels(patient, parameters.supplies, parameters.fluids);
   if (!vessels.ok()) return vessels.error();
   biliary_ = std::move(vessels->anatomy);
-  vessels_ = MakeVessels(std::move(vessels->map), patient, tissue, kSpare.tubes);
+  vessels_ = MakeVessels(std::move(vessels->map), patient, tissue, kSpare.tubes, parameters.vessels);
   vessels_->ReserveFor(change_);
   change_.Clear();
 
@@ -100,7 +101,7 @@ core::Status Operation::MakeAll() {
     });
     if (is_near) strand.kind = StrandInfo::Kind::kEnd;
   }
-  heat_ = surgery::Electrosurgery(tissue.definition, tissue.heat_mass);
+  heat_ = surgery::Electrosurgery(tissue.definition, tissue.heat_mass, parameters.heat);
   attachment_ = MakeAttachment(patient, tissue.surfaces, dissected_);
   assistant_.reset();
   if (scene_->operation->assistant) {
@@ -159,7 +160,8 @@ void Operation::MakeOoze() {
     const bool is_b = IsOf(strand.b, liver_);
     if (is_b || IsOf(strand.a, liver_)) fibres.push_back({i, is_b ? strand.b : strand.a, is_bed});
   }
-  ooze_ = surgery::BedOoze(fibres, CalcPathology(scene_->patient).bed_bleeding);
+  ooze_ = surgery::BedOoze(fibres, CalcPathology(scene_->patient).bed_bleeding,
+                           scene_->operation->parameters.bed);
 }
 
 void Operation::Emit(const OperationEvent& event) noexcept {

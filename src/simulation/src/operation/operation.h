@@ -193,6 +193,10 @@ class Operation {
   training::Target TargetOfSurface(std::int32_t surface) const noexcept;
   bool IsOf(std::uint32_t node, std::int32_t organ) const noexcept;
   void Emit(const OperationEvent& event) noexcept;
+  const scene::ElectrodeParameters& Electrode() const noexcept {
+    return scene_->operation->parameters.electrode;
+  }
+  const scene::SuctionParameters& Suction() const noexcept { return scene_->operation->parameters.suction; }
 
   const Scene* scene_;  // outlives this
   std::vector<StrandInfo> strands_;

@@ -11,7 +11,6 @@ namespace {
 using training::OperationError;
 
 constexpr double kTornHole = 1e-6;     // of the wall that a torn spring leaves open at each end [m^2]
-constexpr double kSmokeFades = 0.08;   // share of the smoke a second that leaves with the gas [1/s]
 constexpr double kPushLength = 0.060;  // of a shaft that pushes stones aside [m]
 
 }  // namespace
@@ -31,7 +30,7 @@ void Operation::Flow(const HandsNow& hands, const TissueNow& tissue, OperatedTis
   fluids_.Leak(surgery::Fluid::kBlood,
                ooze_.Update(*tissue.state, heat_, made_->definition.rest.size(), hands.seconds));
   if (has_gallbladder) leaked_seen_ = leaked();
-  smoke_ = std::clamp(smoke_ * (1.0 - kSmokeFades * hands.seconds), 0.0, 1.0);
+  smoke_ = std::clamp(smoke_ * (1.0 - Suction().smoke_fade * hands.seconds), 0.0, 1.0);
   is_gallbladder_free_ = attachment_.IsFree(*tissue.state, *vessels_);
 }
 

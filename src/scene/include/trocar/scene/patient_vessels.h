@@ -4,6 +4,7 @@
 
 #include "trocar/anatomy/patient.h"
 #include "trocar/core/result.h"
+#include "trocar/scene/operation_parameters.h"
 #include "trocar/surgery/vessel_map.h"
 #include "trocar/training/injury.h"
 
@@ -17,6 +18,8 @@ struct PatientVessels {
 /// Tubes are divided where others join them. What leaves the scene is fed by the aorta or drained by the bowel; what ends in
 /// an organ belongs to it.
 /// \return kPatientInvalid where the ducts make no network
-core::Result<PatientVessels> MakePatientVessels(const anatomy::Patient& patient);
+core::Result<PatientVessels> MakePatientVessels(const anatomy::Patient& patient,
+                                                const VesselSupplies& supplies = {},
+                                                const surgery::FluidTable& fluids = surgery::kBileAndBlood);
 
 }  // namespace trocar::scene

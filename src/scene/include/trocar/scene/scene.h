@@ -15,6 +15,7 @@
 #include "trocar/core/result.h"
 #include "trocar/instrument/tool.h"
 #include "trocar/scene/input.h"
+#include "trocar/scene/operation_parameters.h"
 #include "trocar/scene/scene_object.h"
 #include "trocar/scene/task.h"
 #include "trocar/surgery/gallstones.h"
@@ -69,6 +70,7 @@ struct OperationSetup {
   std::optional<AssistantSetup> assistant;
   /// Of a patient whose parameters say nothing of stones.
   surgery::GallstoneSettings gallstones;
+  OperationParameters parameters;
 };
 
 /// A cord between two fixed points, of pieces one after the other: divided when one of them is.

@@ -8,6 +8,7 @@
 
 #include "trocar/core/state_archive.h"
 #include "trocar/surgery/electrosurgery.h"
+#include "trocar/surgery/surgery_settings.h"
 #include "trocar/surgery/surgery_snapshot.h"
 #include "trocar/tissue/tissue_model.h"
 
@@ -22,13 +23,11 @@ struct LiverFibre {
 
 /// Each fibre of bed and adhesions leaves, where it held on the liver, a place that bleeds a little: less and less as it
 /// clots, and no more once heat has blanched it. What heat parts does not bleed.
-///
-/// No source gives the rate; tunables: a whole bed torn off loses 15 mL, half of that in the first minute.
 class BedOoze {
  public:
   BedOoze() = default;
   /// \param bleeding  factor of the patient's disease [-], >= 0
-  BedOoze(std::span<const LiverFibre> fibres, double bleeding);
+  BedOoze(std::span<const LiverFibre> fibres, double bleeding, const BedOozeSettings& settings = {});
 
   /// One tick.
   /// \return what ran out [m^3]
@@ -49,6 +48,7 @@ class BedOoze {
     bool was_intact = true;
     double left = 0;  // that will still run out [m^3]
   };
+  BedOozeSettings settings_;
   std::vector<Place> places_;
   double volume_ = 0;  // of one place [m^3]
   double rate_ = 0, lost_ = 0;

@@ -9,6 +9,7 @@
 
 #include "trocar/core/state_archive.h"
 #include "trocar/surgery/organ_surface.h"
+#include "trocar/surgery/surgery_settings.h"
 #include "trocar/surgery/tissue_heat.h"
 #include "trocar/tissue/tissue_model.h"
 
@@ -20,7 +21,8 @@ class Electrosurgery {
   Electrosurgery() = default;
   /// \param definition  of the tissue, strands included
   /// \param heat_mass   (n) of the layer that warms with a node [kg], >= 0
-  Electrosurgery(const tissue::TissueDefinition& definition, std::span<const double> heat_mass);
+  Electrosurgery(const tissue::TissueDefinition& definition, std::span<const double> heat_mass,
+                 const ElectrosurgerySettings& settings = {});
 
   /// Everything cold and whole.
   void Reset();
@@ -68,6 +70,7 @@ class Electrosurgery {
  private:
   static constexpr std::size_t kMostSources = 256;
 
+  ElectrosurgerySettings settings_;
   std::size_t node_count_ = 0;
   std::vector<tissue::Strand> strands_;
   std::vector<TissueHeat> heat_;  // one, or none before it is made

@@ -12,6 +12,7 @@
 #include "trocar/instrument/tool.h"
 #include "trocar/surgery/cuttable_tubes.h"
 #include "trocar/surgery/gallstones.h"
+#include "trocar/surgery/surgery_settings.h"
 #include "trocar/surgery/surgery_snapshot.h"
 #include "trocar/surgery/vessel_map.h"
 #include "trocar/tissue/conservation.h"
@@ -62,7 +63,7 @@ class Vessels {
   /// \param tubes  only read while this is made
   /// \param first_spare, spare_count  nodes for the ends of cuts
   Vessels(VesselMap map, std::span<const VesselTube> tubes, std::uint32_t first_spare,
-          std::uint32_t spare_count);
+          std::uint32_t spare_count, const VesselSettings& settings = {});
 
   const VesselMap& Map() const { return map_; }
   const VesselActs& Acts() const { return acts_; }
@@ -174,6 +175,7 @@ class Vessels {
   std::size_t SlipStump(const Stump& stump, double seconds, std::span<const ClipPull> pulls,
                         std::span<const Vec3> position, std::span<SlippedClip> slipped) noexcept;
 
+  VesselSettings settings_;
   VesselMap map_;
   CuttableTubes tubes_;
   std::vector<std::uint32_t> tube_of_;   // (points)
