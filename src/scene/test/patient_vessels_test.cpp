@@ -44,5 +44,21 @@ TEST(PatientVessels, JoinsDuctsAndArteriesAsThePatientHasThem) {
   EXPECT_LT(map.network.Solve(acts).rate[static_cast<std::size_t>(surgery::Fluid::kBlood)], 0.05 * rate);
 }
 
+// Supplies are a table: without pressure in the aorta nothing bleeds.
+TEST(PatientVessels, AreFedAsTheirTableSays) {
+  auto scene = ReadScene(std::filesystem::path(TROCAR_SOURCE_DIR) / "scenes/cholecystectomy.json");
+  ASSERT_TRUE(scene.ok()) << scene.error().Text();
+  VesselSupplies supplies;
+  supplies.aorta.pressure = supplies.artery_bed.pressure = 0.0;
+  auto made = MakePatientVessels(scene->patient, supplies);
+  ASSERT_TRUE(made.ok()) << made.error().Text();
+  const auto& roles = made->anatomy.roles;
+  const auto artery = static_cast<std::uint32_t>(
+      std::find(roles.begin(), roles.end(), training::VesselRole::kCysticArtery) - roles.begin());
+  surgery::VesselActs acts;
+  acts.openings.push_back({artery, 0.001, true, 0.0, {}});
+  EXPECT_EQ(made->map.network.Solve(acts).rate[static_cast<std::size_t>(surgery::Fluid::kBlood)], 0.0);
+}
+
 }  // namespace
 }  // namespace trocar::scene
