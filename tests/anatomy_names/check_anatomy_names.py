@@ -11,6 +11,7 @@ TABLE = "src/roles/include/trocar/roles/roles.h"
 
 # Tables of other people's words that contain the same ones. Nothing is compared with an organ's name there.
 OTHER_TABLES = {
+    "src/scene/src/operation_parameters.cpp": "fields of an operation's parameters: what liver and gallbladder give and take",
     "src/training/src/triplet.cpp": "targets as CholecT50 writes them",
     "src/anatomy/src/patient_parameters.cpp": "parameters of a generated patient, one of which asks for a subvesical duct",
 }

@@ -119,7 +119,7 @@ void CholecystectomySurgeon::Learn(ModelDescription model) {
     if (strand.kind == StrandInfo::Kind::kBed) bed_normal_ += rest_[strand.a] - rest_[strand.b];
   }
   bed_normal_ = math::Normalized(bed_normal_, {0, -1, 0});
-  // beside the neck, so that both tools have room
+  // beside the neck, so that both tools have clearance
   const Vec3 axis = math::Normalized(fundus - neck);
   hold_ = FindNode(gallbladder_, neck + kHoldBack * axis + kHoldBeside * bed_normal_);
   const SurfaceInfo& surface = surfaces_[static_cast<std::size_t>(gallbladder_)];

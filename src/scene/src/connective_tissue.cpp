@@ -119,8 +119,8 @@ ConnectiveTissue MakeConnectiveTissue(const anatomy::Patient& patient, double sp
     return least;
   };
   const auto& ends = cystic.line.points;
-  const Vec3 meeting = near_hepatic(ends.front()) < near_hepatic(ends.back()) ? ends.front() : ends.back();
-  const std::vector<Vec3> duct = LineFrom(cystic, meeting), plate = LineFrom(hepatic, meeting);
+  const Vec3 junction = near_hepatic(ends.front()) < near_hepatic(ends.back()) ? ends.front() : ends.back();
+  const std::vector<Vec3> duct = LineFrom(cystic, junction), plate = LineFrom(hepatic, junction);
   const Vec3 across = duct.back() - duct.front(), up = plate.back() - plate.front();
   const Vec3 normal = math::Normalized(math::Cross(across, up), {0, 0, 1});
 

@@ -133,7 +133,7 @@ void AddOrgan(const anatomy::Organ& organ, const OrganMaterial& material, const 
     definition.springs.push_back(spring);
   }
   made.spring_organs.resize(definition.springs.size(), static_cast<std::int32_t>(made.surfaces.size() - 1));
-  // room for what cuts add: they follow the organ's nodes, so that these stay in one piece
+  // spare nodes for what cuts add: they follow the organ's nodes, so that these stay in one piece
   made.first_spare.push_back(static_cast<std::uint32_t>(definition.rest.size()));
   if (spare.by_organ > 0) surgery::AddSpareNodes(spare.by_organ, definition);
   made.heat_mass.resize(definition.rest.size(), 0.0);

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "simulation_model.h"
 
+#include <array>
+#include <bit>
+#include <cstdint>
 #include <utility>
 
 #include "operation/operation.h"
@@ -77,6 +80,11 @@ std::uint64_t CalcFingerprint(const SimulationModel& model) {
   for (const InstrumentSetup& setup : scene.instruments) {
     for (const double value : {setup.p_world_port.x, setup.p_world_port.y, setup.p_world_port.z})
       hash.Add(value);
+  }
+  // states that were saved with the delivered tables stay what they are
+  if (scene.operation && scene.operation->parameters != scene::OperationParameters{}) {
+    using Words = std::array<std::uint64_t, sizeof(scene::OperationParameters) / sizeof(std::uint64_t)>;
+    for (const std::uint64_t word : std::bit_cast<Words>(scene.operation->parameters)) hash.Add(word);
   }
   return hash.Value();
 }

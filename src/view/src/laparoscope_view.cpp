@@ -39,7 +39,6 @@ using simulation::Snapshot;
 
 constexpr double kOpennessReach = 0.030;  // m; farther folds cast no soft shade
 constexpr double kSmallestForce = 0.02;   // N; below, an arrow would only flicker
-constexpr double kTrainerLight = 1.8;     // of a box trainer, whose walls are darker than tissue and farther
 constexpr double kLongestArrow = 0.045;   // m
 
 /// Openness of a surface that will move: averaged over neighbours and never dark, because where it lies
@@ -238,7 +237,7 @@ core::Result<LaparoscopeView> LaparoscopeView::Make(const scene::Scene& scene,
     content->AddSurroundings(surfaces, start);
   } else {
     content->AddModel();
-    content->light_scale = kTrainerLight;
+    content->light_scale = looks->trainer_light;
     content->background.push_back(
         {content->renderer.AddSurface(MakeTrainerBox(scene), Material::kSleeve), {}});
   }

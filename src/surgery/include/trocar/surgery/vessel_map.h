@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file vessel_map.h  The patient's ducts and arteries as a network with flow, and what each part of it is to the surgeon.
+/// \file vessel_map.h  Ducts and arteries as a network with flow, and where along each tube its vessels lie.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <vector>
 
-#include "trocar/scene/scene.h"
 #include "trocar/surgery/flow_network.h"
-#include "trocar/training/injury.h"
 
-namespace trocar::simulation {
+namespace trocar::surgery {
 
 /// Place in the network.
 struct VesselPlace {
@@ -18,9 +16,9 @@ struct VesselPlace {
   double position = 0;  ///< from the vessel's `from` end [m]
 };
 
+/// Tubes are divided into vessels where others join them.
 struct VesselMap {
-  surgery::FlowNetwork network;
-  training::BiliaryAnatomy anatomy;
+  FlowNetwork network;
   std::vector<std::vector<double>> arcs;  ///< (tubes)(points) length from the tube's first point [m]
   /// (tubes) the vessels along each, in the order of their points
   std::vector<std::vector<std::uint32_t>> vessels_of_tube;
@@ -31,9 +29,4 @@ struct VesselMap {
   VesselPlace Find(std::size_t tube, double arc) const;
 };
 
-/// Tubes are divided where others join them. What leaves the scene is fed by the aorta or drained by the bowel; what ends in
-/// an organ belongs to it.
-/// \return kPatientInvalid where the ducts make no network
-core::Result<VesselMap> MakeVesselMap(const anatomy::Patient& patient);
-
-}  // namespace trocar::simulation
+}  // namespace trocar::surgery

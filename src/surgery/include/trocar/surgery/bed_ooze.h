@@ -6,25 +6,28 @@
 #include <span>
 #include <vector>
 
-#include "operation/electrosurgery.h"
 #include "trocar/core/state_archive.h"
-#include "trocar/simulation/operation_snapshot.h"
+#include "trocar/surgery/electrosurgery.h"
+#include "trocar/surgery/surgery_settings.h"
+#include "trocar/surgery/surgery_snapshot.h"
 #include "trocar/tissue/tissue_model.h"
 
-namespace trocar::simulation {
+namespace trocar::surgery {
+
+/// A fibre between the liver and the gallbladder.
+struct LiverFibre {
+  std::uint32_t strand = 0;
+  std::uint32_t node = 0;  ///< on the liver
+  bool is_bed = true;      ///< else an adhesion
+};
 
 /// Each fibre of bed and adhesions leaves, where it held on the liver, a place that bleeds a little: less and less as it
 /// clots, and no more once heat has blanched it. What heat parts does not bleed.
-///
-/// No source gives the rate; tunables: a whole bed torn off loses 15 mL, half of that in the first minute.
 class BedOoze {
  public:
   BedOoze() = default;
-  /// \param strands  of the whole tissue
-  /// \param on_liver  (strands) its node on the liver, or kNoNode
   /// \param bleeding  factor of the patient's disease [-], >= 0
-  BedOoze(std::span<const StrandInfo> strands, std::span<const std::uint32_t> on_liver, double bleeding);
-  static constexpr std::uint32_t kNoNode = 0xffffffff;
+  BedOoze(std::span<const LiverFibre> fibres, double bleeding, const BedOozeSettings& settings = {});
 
   /// One tick.
   /// \return what ran out [m^3]
@@ -34,7 +37,9 @@ class BedOoze {
 
   double Rate() const noexcept { return rate_; }  ///< of the last tick [m^3/s]
   double Lost() const noexcept { return lost_; }  ///< since the start [m^3]
-  void Publish(std::span<const math::Vec3> position, OperationSnapshot& snapshot) const noexcept;
+  /// The places that bleed most, most first, as many as fit.
+  /// \return how many
+  std::size_t Publish(std::span<const math::Vec3> position, std::span<OozeSnapshot> oozes) const noexcept;
   void VisitState(core::StateArchive& archive);
 
  private:
@@ -43,9 +48,10 @@ class BedOoze {
     bool was_intact = true;
     double left = 0;  // that will still run out [m^3]
   };
+  BedOozeSettings settings_;
   std::vector<Place> places_;
   double volume_ = 0;  // of one place [m^3]
   double rate_ = 0, lost_ = 0;
 };
 
-}  // namespace trocar::simulation
+}  // namespace trocar::surgery

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "operation/electrosurgery.h"
+#include "trocar/surgery/electrosurgery.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,45 +7,37 @@
 #include "trocar/collision/segment_distance.h"
 #include "trocar/core/assert.h"
 
-namespace trocar::simulation {
+namespace trocar::surgery {
 namespace {
 
 using collision::Segment;
 
-/// Layer of a wall through which heat passes along it [m].
-constexpr double kLayerDepth = 0.0015;
-/// Section of a fibre [m].
-constexpr double kFibreWidth = 0.0005;
-/// The shortest strands, those of the bed, stand for a patch of areolar tissue of which so much is fibre [kg].
-constexpr double kLeastStrandMass = 0.5e-6;
-constexpr double kLeastNodeMass = 2e-6;
-constexpr double kDensity = 1000;  // of fat and fibres [kg/m^3]
-/// What lies as far from the metal as this gets a quarter of what touches it gets [m].
-constexpr double kQuarterPower = 0.0004;
-
 }  // namespace
 
 Electrosurgery::Electrosurgery(const tissue::TissueDefinition& definition, std::span<const double> heat_mass,
-                               std::span<const StrandInfo> strands)
-    : node_count_(definition.rest.size()), strands_(strands.begin(), strands.end()) {
-  TROCAR_ASSERT(heat_mass.size() == node_count_ && strands.size() == definition.strands.size());
-  std::vector<surgery::HeatNode> nodes;
-  for (const double mass : heat_mass) nodes.push_back({std::max(mass, kLeastNodeMass), 1.0});
-  const surgery::HeatConstants constants;
-  std::vector<surgery::HeatLink> links;
+                               const ElectrosurgerySettings& settings)
+    : settings_(settings), node_count_(definition.rest.size()), strands_(definition.strands) {
+  TROCAR_ASSERT(heat_mass.size() == node_count_);
+  std::vector<HeatNode> nodes;
+  for (const double mass : heat_mass) nodes.push_back({std::max(mass, settings_.least_node_mass), 1.0});
+  const HeatConstants& constants = settings_.tissue;
+  std::vector<HeatLink> links;
   for (const tissue::Spring& spring : definition.springs) {
     const double length = math::Distance(definition.rest[spring.a], definition.rest[spring.b]);
     if (length > 0.0)
       links.push_back(
-          {spring.a, spring.b, surgery::CalcHeatConductance(constants, 0.5 * length, kLayerDepth, length)});
+          {spring.a, spring.b, CalcHeatConductance(constants, 0.5 * length, settings_.layer_depth, length)});
   }
-  for (std::uint32_t i = 0; i < strands.size(); ++i) {
-    const StrandInfo& strand = strands[i];
+  for (std::uint32_t i = 0; i < strands_.size(); ++i) {
+    const tissue::Strand& strand = strands_[i];
     const double length =
-        std::max(kFibreWidth, math::Distance(definition.rest[strand.a], definition.rest[strand.b]));
-    nodes.push_back({std::max(kLeastStrandMass, kDensity * kFibreWidth * kFibreWidth * length), 0.0});
+        std::max(settings_.fibre_width, math::Distance(definition.rest[strand.a], definition.rest[strand.b]));
+    nodes.push_back({std::max(settings_.least_strand_mass, settings_.fibre_density * settings_.fibre_width *
+                                                               settings_.fibre_width * length),
+                     0.0});
     const auto part = static_cast<std::uint32_t>(node_count_ + i);
-    const double half = surgery::CalcHeatConductance(constants, kFibreWidth, kFibreWidth, 0.5 * length);
+    const double half =
+        CalcHeatConductance(constants, settings_.fibre_width, settings_.fibre_width, 0.5 * length);
     links.push_back({strand.a, part, half});
     links.push_back({strand.b, part, half});
   }
@@ -65,9 +57,8 @@ void Electrosurgery::Reset() {
   is_cold_ = true;
 }
 
-std::size_t Electrosurgery::FindTargets(const Electrode& electrode,
-                                        std::span<const surgery::OrganSurface> organs,
-                                        const surgery::TubeSet& tubes, const tissue::TissueState& tissue,
+std::size_t Electrosurgery::FindTargets(const Electrode& electrode, std::span<const OrganSurface> organs,
+                                        const TubeSet& tubes, const tissue::TissueState& tissue,
                                         std::span<Target> found) const noexcept {
   std::size_t count = 0;
   const auto add = [&](std::uint32_t part, double distance, double share) {
@@ -78,10 +69,10 @@ std::size_t Electrosurgery::FindTargets(const Electrode& electrode,
     const Segment strand{tissue.position[strands_[i].a], tissue.position[strands_[i].b]};
     const double distance =
         std::sqrt(collision::FindNearestSegmentSegment(electrode.bare, strand).squared_distance) -
-        0.5 * kFibreWidth;
+        0.5 * settings_.fibre_width;
     if (distance <= electrode.reach) add(static_cast<std::uint32_t>(node_count_ + i), distance, 1.0);
   }
-  for (const surgery::OrganSurface& organ : organs) {
+  for (const OrganSurface& organ : organs) {
     const auto nearest = organ.tree
                              .FindNearestToSegment(organ.Nodes(tissue.position), electrode.bare,
                                                    {.max_distance = electrode.reach})
@@ -100,8 +91,8 @@ std::size_t Electrosurgery::FindTargets(const Electrode& electrode,
 
 void Electrosurgery::AddPower(const Electrode& electrode, std::span<const Target> targets) noexcept {
   double sum = 0;
-  const auto weight = [](const Target& target) {
-    const double near = kQuarterPower / (kQuarterPower + target.distance);
+  const auto weight = [this](const Target& target) {
+    const double near = settings_.quarter_power / (settings_.quarter_power + target.distance);
     return target.share * near * near;
   };
   for (const Target& target : targets) sum += weight(target);
@@ -122,13 +113,13 @@ std::size_t Electrosurgery::Step(double seconds, tissue::TissueState& tissue,
   sources_.clear();
   for (std::uint32_t i = 0; i < strands_.size(); ++i) {
     if (!tissue.strand_is_intact[i]) continue;
-    if (InjuryOf(static_cast<std::uint32_t>(node_count_ + i)) < surgery::HeatInjury::kParted) continue;
+    if (InjuryOf(static_cast<std::uint32_t>(node_count_ + i)) < HeatInjury::kParted) continue;
     tissue.strand_is_intact[i] = 0;
     ++parted_strands_;
   }
   std::size_t count = 0;
   for (std::uint32_t i = 0; i < node_count_; ++i) {
-    if (was_parted_[i] || InjuryOf(i) < surgery::HeatInjury::kParted) continue;
+    if (was_parted_[i] || InjuryOf(i) < HeatInjury::kParted) continue;
     if (count == parted_nodes.size()) break;
     was_parted_[i] = 1;
     parted_nodes[count++] = i;
@@ -144,10 +135,11 @@ void Electrosurgery::CopyNode(std::uint32_t from, std::uint32_t to) noexcept {
   was_parted_[to] = was_parted_[from];
 }
 
-void Electrosurgery::Publish(OperationSnapshot& snapshot) const noexcept {
-  for (std::size_t i = 0; i < snapshot.blanching.size(); ++i) {
-    snapshot.blanching[i] = static_cast<float>(std::min(1.0, state_.damage[i]));
-    snapshot.charring[i] = static_cast<float>(state_.charring[i]);
+void Electrosurgery::Publish(std::span<float> blanching, std::span<float> charring) const noexcept {
+  TROCAR_ASSERT(blanching.size() == charring.size() && blanching.size() <= state_.damage.size());
+  for (std::size_t i = 0; i < blanching.size(); ++i) {
+    blanching[i] = static_cast<float>(std::min(1.0, state_.damage[i]));
+    charring[i] = static_cast<float>(state_.charring[i]);
   }
 }
 
@@ -162,4 +154,4 @@ void Electrosurgery::VisitState(core::StateArchive& archive) {
   archive.FixedField("was_parted", was_parted_);
 }
 
-}  // namespace trocar::simulation
+}  // namespace trocar::surgery

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file stone_work.h  The patient's gallstones: inside, spilled, between jaws, in the bag, sucked up.
+/// \file gallstone_spill.h  The patient's gallstones: inside, spilled, between jaws, in the bag, sucked up.
 #pragma once
 
 #include <array>
@@ -7,48 +7,46 @@
 #include <span>
 #include <vector>
 
+#include "trocar/core/result.h"
 #include "trocar/core/state_archive.h"
+#include "trocar/geometry/triangle_mesh.h"
+#include "trocar/instrument/hand.h"
 #include "trocar/instrument/tool.h"
-#include "trocar/scene/scene.h"
-#include "trocar/simulation/operation_result.h"
-#include "trocar/simulation/snapshot.h"
+#include "trocar/surgery/flow_network.h"
 #include "trocar/surgery/gallstones.h"
+#include "trocar/surgery/surgery_snapshot.h"
 #include "trocar/surgery/wall_holes.h"
 
-namespace trocar::simulation {
+namespace trocar::surgery {
 
-using scene::Scene;
-using scene::SurfaceInfo;
-using scene::VisitState;
-using surgery::WallHole;
+using instrument::kHandCount;
+using math::Pose;
 
-/// How many stones a patient has, and how large: by the patient's parameters, else by the scene.
-surgery::GallstoneSettings FindGallstones(const Scene& scene);
-
-class StoneWork {
+class GallstoneSpill {
  public:
-  static constexpr std::size_t kMostOthers = surgery::VesselActs::kMostClips;  ///< of Move
+  static constexpr std::size_t kMostOthers = VesselActs::kMostClips;  ///< of Move
 
-  /// Gallstones of a scene; none where it has none.
-  /// \param surfaces, positions  at rest: what the omentum passes under, where stones come to lie
+  /// No stones.
+  GallstoneSpill() = default;
+  /// \param diameters  see DrawGallstones [m]; all are inside
+  /// \param omentum    where they come to lie when they fall beside the organs; fixed
   /// \return kMeshInvalid
-  static core::Result<StoneWork> Make(const Scene& scene, std::span<const SurfaceInfo> surfaces,
-                                      std::span<const Vec3> positions);
+  static core::Result<GallstoneSpill> Make(std::span<const double> diameters, geometry::TriangleMesh omentum);
   /// All are inside again.
   void Reset() noexcept;
 
   bool HasInside() const noexcept;
 
   /// What ran out of the hole in this tick takes stones with it.
-  /// \param leaked, content  see surgery::CalcStoneOutflow
+  /// \param leaked, content  see CalcStoneOutflow
   /// \return how many
   int Spill(double leaked, double content, const WallHole& hole) noexcept;
 
   /// Falling, sliding, lying; those that are held move with their tools.
   /// \param ground  without the omentum, which is this one's
   /// \param others  what falls as stones do, before them: lost clips; without an omentum they stay where they are
-  void Move(surgery::StoneGround ground, std::span<const Pose> X_world_tools,
-            std::span<surgery::LooseStone* const> others, double seconds) noexcept;
+  void Move(StoneGround ground, std::span<const Pose> X_world_tools, std::span<LooseStone* const> others,
+            double seconds) noexcept;
   /// The triangles of organs have changed.
   void ForgetSupports() noexcept;
 
@@ -76,13 +74,14 @@ class StoneWork {
   bool HasTaken(int hand) noexcept;
 
   StoneCount Count() const noexcept;
-  void Size(OperationSnapshot& snapshot) const { snapshot.stones.assign(stones_.size(), {}); }
-  void Publish(OperationSnapshot& snapshot) const noexcept;
+  std::size_t Size() const noexcept { return stones_.size(); }
+  /// \pre At least Size() (TROCAR_ASSERT)
+  void Publish(std::span<StoneSnapshot> stones) const noexcept;
   void VisitState(core::StateArchive& archive);
 
  private:
   struct Stone {
-    surgery::LooseStone body;
+    LooseStone body;
     StonePlace place = StonePlace::kInside;
     double opening = 0;  // of the jaws that hold it [rad]
     Vec3 p_tool;         // while held [m]
@@ -91,17 +90,17 @@ class StoneWork {
   /// The omentum, constant.
   struct Bed {
     geometry::TriangleMesh mesh;
-    surgery::OrganSurface surface;
+    OrganSurface surface;
   };
   void AddSpilled() noexcept;
   void LetGo(int hand) noexcept;
 
   std::vector<Stone> stones_;
-  std::vector<surgery::LooseStone*> loose_;  // scratch
-  std::shared_ptr<const Bed> bed_;           // shared by copies, which differ in state alone
+  std::vector<LooseStone*> loose_;  // scratch
+  std::shared_ptr<const Bed> bed_;  // shared by copies, which differ in state alone
   std::array<std::int32_t, kHandCount> held_{-1, -1};
   std::array<bool, kHandCount> has_taken_{};
   double carried_ = 0;  // part of a stone that has come to the hole
 };
 
-}  // namespace trocar::simulation
+}  // namespace trocar::surgery

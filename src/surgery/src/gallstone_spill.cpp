@@ -1,71 +1,46 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "operation/stone_work.h"
+#include "trocar/surgery/gallstone_spill.h"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "trocar/geometry/mesh_measures.h"
+#include "trocar/core/assert.h"
 #include "trocar/math/state_fields.h"
-#include "trocar/simulation/ground.h"
 
-namespace trocar::simulation {
+namespace trocar::surgery {
 namespace {
 
-constexpr std::uint64_t kSeed = 0x73746f6e6573;  // the stones' own stream
-constexpr double kOutSpeed = 0.03;               // at which a stone leaves with the bile [m/s]
-constexpr double kOutGap = 0.0003;               // beyond the hole [m]
-constexpr double kSuctionReach = 0.003;          // of the bore beyond a stone's surface [m]
-// shares of the jaws' opening, as those of surgery::GraspSettings
+constexpr double kOutSpeed = 0.03;       // at which a stone leaves with the bile [m/s]
+constexpr double kOutGap = 0.0003;       // beyond the hole [m]
+constexpr double kSuctionReach = 0.003;  // of the bore beyond a stone's surface [m]
+// shares of the jaws' opening, as those of GraspSettings
 constexpr double kClosed = 0.20, kOpen = 0.35;
 constexpr double kLetGo = 0.05;      // more than the stone is wide [rad]
 constexpr double kNearHinge = 0.25;  // of the jaws' length: what lies nearer to the hinge is not taken
 constexpr double kJawReach = 0.5;    // of a stone's radius, beside and beyond the jaws
 
-double NumberOf(const anatomy::Patient& patient, std::string_view name, double otherwise) {
-  const anatomy::Parameter* parameter = patient.FindParameter(name);
-  const double* number = parameter == nullptr ? nullptr : std::get_if<double>(&parameter->value);
-  return number == nullptr ? otherwise : *number;
-}
-
 }  // namespace
 
-surgery::GallstoneSettings FindGallstones(const Scene& scene) {
-  surgery::GallstoneSettings stones =
-      scene.operation ? scene.operation->gallstones : surgery::GallstoneSettings{};
-  stones.count =
-      std::clamp(static_cast<int>(std::lround(NumberOf(scene.patient, "gallstone_count", stones.count))), 0,
-                 surgery::kMostGallstones);
-  stones.median_diameter =
-      1e-3 *
-      std::clamp(NumberOf(scene.patient, "gallstone_diameter", 1e3 * stones.median_diameter), 1.0, 30.0);
-  return stones;
-}
-
-core::Result<StoneWork> StoneWork::Make(const Scene& scene, std::span<const SurfaceInfo> surfaces,
-                                        std::span<const Vec3> positions) {
-  StoneWork made;
-  const int gallbladder = scene.patient.FindOrgan("gallbladder");
-  const surgery::GallstoneSettings settings = FindGallstones(scene);
-  if (gallbladder < 0) return made;
-  const geometry::TriangleMesh& wall = scene.patient.organs[static_cast<std::size_t>(gallbladder)].mesh;
-  const double capacity = geometry::CalcVolume(wall.positions, wall.triangles);
-  for (const double diameter : surgery::DrawGallstones(settings, capacity, scene.seed ^ kSeed)) {
+core::Result<GallstoneSpill> GallstoneSpill::Make(std::span<const double> diameters,
+                                                  geometry::TriangleMesh omentum) {
+  GallstoneSpill made;
+  for (const double diameter : diameters) {
     Stone stone;
     stone.body.radius = 0.5 * diameter;
     made.stones_.push_back(stone);
   }
   made.loose_.reserve(made.stones_.size() + kMostOthers);
   auto bed = std::make_shared<Bed>();
-  bed->mesh = geometry::MakeOmentum(FindOmentumBalls(surfaces, positions));
-  auto surface = surgery::MakeOrganSurface(bed->mesh.positions, 0, bed->mesh);
+  bed->mesh = std::move(omentum);
+  auto surface = MakeOrganSurface(bed->mesh.positions, 0, bed->mesh);
   if (!surface.ok()) return surface.error();
   bed->surface = std::move(*surface);
   made.bed_ = std::move(bed);
   return made;
 }
 
-void StoneWork::Reset() noexcept {
+void GallstoneSpill::Reset() noexcept {
   for (Stone& stone : stones_) {
     const double radius = stone.body.radius;
     stone = {};
@@ -76,18 +51,18 @@ void StoneWork::Reset() noexcept {
   carried_ = 0;
 }
 
-bool StoneWork::HasInside() const noexcept {
+bool GallstoneSpill::HasInside() const noexcept {
   return std::any_of(stones_.begin(), stones_.end(),
                      [](const Stone& stone) { return stone.place == StonePlace::kInside; });
 }
 
-int StoneWork::Spill(double leaked, double content, const WallHole& hole) noexcept {
-  const double passing = surgery::CalcPassingDiameter(hole.rim);
+int GallstoneSpill::Spill(double leaked, double content, const WallHole& hole) noexcept {
+  const double passing = CalcPassingDiameter(hole.rim);
   const auto fits = [passing](const Stone& stone) {
     return stone.place == StonePlace::kInside && 2.0 * stone.body.radius <= passing;
   };
   const auto fitting = static_cast<std::size_t>(std::count_if(stones_.begin(), stones_.end(), fits));
-  carried_ += surgery::CalcStoneOutflow(leaked, content, fitting);
+  carried_ += CalcStoneOutflow(leaked, content, fitting);
   int count = 0;
   for (; carried_ >= 1.0; carried_ -= 1.0) {
     const auto next = std::find_if(stones_.begin(), stones_.end(), fits);
@@ -101,14 +76,14 @@ int StoneWork::Spill(double leaked, double content, const WallHole& hole) noexce
   return count;
 }
 
-void StoneWork::AddSpilled() noexcept {
+void GallstoneSpill::AddSpilled() noexcept {
   for (Stone& stone : stones_) {
     if (stone.place == StonePlace::kSpilled) loose_.push_back(&stone.body);
   }
 }
 
-void StoneWork::Move(surgery::StoneGround ground, std::span<const Pose> X_world_tools,
-                     std::span<surgery::LooseStone* const> others, double seconds) noexcept {
+void GallstoneSpill::Move(StoneGround ground, std::span<const Pose> X_world_tools,
+                          std::span<LooseStone* const> others, double seconds) noexcept {
   for (std::size_t hand = 0; hand < held_.size(); ++hand) {
     if (held_[hand] < 0) continue;
     Stone& stone = stones_[static_cast<std::size_t>(held_[hand])];
@@ -121,28 +96,28 @@ void StoneWork::Move(surgery::StoneGround ground, std::span<const Pose> X_world_
   if (loose_.empty()) return;
   ground.bed = &bed_->surface;
   ground.bed_positions = bed_->mesh.positions;
-  surgery::MoveStones(ground, seconds, loose_);
+  MoveStones(ground, seconds, loose_);
 }
 
-void StoneWork::ForgetSupports() noexcept {
+void GallstoneSpill::ForgetSupports() noexcept {
   loose_.clear();
   AddSpilled();
   surgery::ForgetSupports(loose_);
 }
 
-void StoneWork::LetGo(int hand) noexcept {
+void GallstoneSpill::LetGo(int hand) noexcept {
   std::int32_t& held = held_[static_cast<std::size_t>(hand)];
   Stone& stone = stones_[static_cast<std::size_t>(held)];
   stone.place = StonePlace::kSpilled;
-  stone.body.support = surgery::LooseStone::kOnNothing;
+  stone.body.support = LooseStone::kOnNothing;
   stone.body.velocity = {};
   stone.body.anchor = stone.body.position;
   stone.body.still_seconds = 0;
   held = -1;
 }
 
-double StoneWork::StopJaw(int hand, const instrument::Tool& tool, const Pose& X_world_tool, double jaw_before,
-                          double jaw, bool can_take) noexcept {
+double GallstoneSpill::StopJaw(int hand, const instrument::Tool& tool, const Pose& X_world_tool,
+                               double jaw_before, double jaw, bool can_take) noexcept {
   std::int32_t& held = held_[static_cast<std::size_t>(hand)];
   const double closed = kClosed * tool.max_jaw, open = kOpen * tool.max_jaw;
   if (held >= 0) {
@@ -178,16 +153,16 @@ double StoneWork::StopJaw(int hand, const instrument::Tool& tool, const Pose& X_
   return std::max(jaw, widest);
 }
 
-double StoneWork::HeldDiameter(int hand) const noexcept {
+double GallstoneSpill::HeldDiameter(int hand) const noexcept {
   const std::int32_t held = HeldBy(hand);
   return held < 0 ? 0.0 : 2.0 * stones_[static_cast<std::size_t>(held)].body.radius;
 }
 
-bool StoneWork::HasTaken(int hand) noexcept {
+bool GallstoneSpill::HasTaken(int hand) noexcept {
   return std::exchange(has_taken_[static_cast<std::size_t>(hand)], false);
 }
 
-int StoneWork::Aspirate(const Vec3& p_world_tip, double bore) noexcept {
+int GallstoneSpill::Aspirate(const Vec3& p_world_tip, double bore) noexcept {
   int count = 0;
   for (Stone& stone : stones_) {
     const double radius = stone.body.radius;
@@ -199,7 +174,7 @@ int StoneWork::Aspirate(const Vec3& p_world_tip, double bore) noexcept {
   return count;
 }
 
-int StoneWork::CatchInBag(const Pose& X_world_bag) noexcept {
+int GallstoneSpill::CatchInBag(const Pose& X_world_bag) noexcept {
   const Pose X_bag_world = math::Inverse(X_world_bag);
   constexpr double kRadius = 0.5 * instrument::kBagMouth;
   int count = 0;
@@ -214,7 +189,7 @@ int StoneWork::CatchInBag(const Pose& X_world_bag) noexcept {
   return count;
 }
 
-int StoneWork::TakeOut(int hand) noexcept {
+int GallstoneSpill::TakeOut(int hand) noexcept {
   std::int32_t& held = held_[static_cast<std::size_t>(hand)];
   if (held < 0) return 0;
   stones_[static_cast<std::size_t>(held)].place = StonePlace::kTakenOut;
@@ -222,7 +197,7 @@ int StoneWork::TakeOut(int hand) noexcept {
   return 1;
 }
 
-int StoneWork::BagWith(std::int32_t organ) noexcept {
+int GallstoneSpill::BagWith(std::int32_t organ) noexcept {
   int count = 0;
   for (Stone& stone : stones_) {
     if (stone.place != StonePlace::kSpilled || stone.body.support != organ) continue;
@@ -232,7 +207,7 @@ int StoneWork::BagWith(std::int32_t organ) noexcept {
   return count;
 }
 
-StoneCount StoneWork::Count() const noexcept {
+StoneCount GallstoneSpill::Count() const noexcept {
   StoneCount count;
   count.all = static_cast<int>(stones_.size());
   for (const Stone& stone : stones_) {
@@ -258,10 +233,11 @@ StoneCount StoneWork::Count() const noexcept {
   return count;
 }
 
-void StoneWork::Publish(OperationSnapshot& snapshot) const noexcept {
+void GallstoneSpill::Publish(std::span<StoneSnapshot> stones) const noexcept {
+  TROCAR_ASSERT(stones.size() >= stones_.size());
   for (std::size_t i = 0; i < stones_.size(); ++i) {
     const Stone& stone = stones_[i];
-    StoneSnapshot& shown = snapshot.stones[i];
+    StoneSnapshot& shown = stones[i];
     shown = {stone.body.position, stone.body.radius, stone.place, -1};
     for (int hand = 0; hand < kHandCount; ++hand) {
       if (HeldBy(hand) == static_cast<std::int32_t>(i)) shown.hand = hand;
@@ -269,14 +245,14 @@ void StoneWork::Publish(OperationSnapshot& snapshot) const noexcept {
   }
 }
 
-void StoneWork::Stone::VisitState(core::StateArchive& archive) {
+void GallstoneSpill::Stone::VisitState(core::StateArchive& archive) {
   archive.Field("body", body);
   archive.Field("place", place);
   archive.Field("opening", opening);
   archive.Field("p_tool", p_tool);
 }
 
-void StoneWork::VisitState(core::StateArchive& archive) {
+void GallstoneSpill::VisitState(core::StateArchive& archive) {
   archive.FixedField("stones", stones_);
   archive.Field("held", held_);
   archive.Field("has_taken", has_taken_);
@@ -290,4 +266,4 @@ void StoneWork::VisitState(core::StateArchive& archive) {
   }
 }
 
-}  // namespace trocar::simulation
+}  // namespace trocar::surgery

@@ -7,14 +7,13 @@
 #include <span>
 #include <vector>
 
-#include "trocar/simulation/operation_snapshot.h"
+#include "trocar/core/state_archive.h"
 #include "trocar/surgery/organ_surface.h"
+#include "trocar/surgery/surgery_settings.h"
 #include "trocar/surgery/tissue_heat.h"
 #include "trocar/tissue/tissue_model.h"
 
-namespace trocar::simulation {
-
-using scene::StrandInfo;
+namespace trocar::surgery {
 
 /// Nodes of the tissue first, then its strands: each is a part that has one temperature.
 class Electrosurgery {
@@ -22,9 +21,8 @@ class Electrosurgery {
   Electrosurgery() = default;
   /// \param definition  of the tissue, strands included
   /// \param heat_mass   (n) of the layer that warms with a node [kg], >= 0
-  /// \param strands     (strands)
   Electrosurgery(const tissue::TissueDefinition& definition, std::span<const double> heat_mass,
-                 std::span<const StrandInfo> strands);
+                 const ElectrosurgerySettings& settings = {});
 
   /// Everything cold and whole.
   void Reset();
@@ -43,15 +41,15 @@ class Electrosurgery {
   /// What the metal touches, and so has current: strands that hold, and the nearest organ or tube.
   /// \return how many were put into `found`
   /// \note Real-time safe.
-  std::size_t FindTargets(const Electrode& electrode, std::span<const surgery::OrganSurface> organs,
-                          const surgery::TubeSet& tubes, const tissue::TissueState& tissue,
+  std::size_t FindTargets(const Electrode& electrode, std::span<const OrganSurface> organs,
+                          const TubeSet& tubes, const tissue::TissueState& tissue,
                           std::span<Target> found) const noexcept;
 
   /// Adds an electrode's power to the next Step, shared out by nearness.
   void AddPower(const Electrode& electrode, std::span<const Target> targets) noexcept;
 
   /// One tick: heat flows, strands that are parted give way.
-  /// \param[out] parted_nodes  tissue nodes that were parted in this tick, ascending; the first that it has room for
+  /// \param[out] parted_nodes  tissue nodes that were parted in this tick, ascending; the first ones that fit
   /// \return how many nodes
   /// \note Real-time safe.
   std::size_t Step(double seconds, tissue::TissueState& tissue,
@@ -60,28 +58,28 @@ class Electrosurgery {
   /// A node that a cut has made is as warm and burnt as the one it was made from.
   void CopyNode(std::uint32_t from, std::uint32_t to) noexcept;
 
-  surgery::HeatInjury InjuryOf(std::uint32_t part) const noexcept {
-    return surgery::TissueHeat::InjuryOf(state_, part);
-  }
+  HeatInjury InjuryOf(std::uint32_t part) const noexcept { return TissueHeat::InjuryOf(state_, part); }
   /// Strands that heat parted in the last Step.
   std::size_t PartedStrands() const { return parted_strands_; }
   double Power() const { return power_; }  ///< of the last Step [W]
-  void Publish(OperationSnapshot& snapshot) const noexcept;
-  const surgery::HeatState& State() const { return state_; }
+  /// \param[out] blanching, charring  of the first nodes, 0 to 1 [-]
+  void Publish(std::span<float> blanching, std::span<float> charring) const noexcept;
+  const HeatState& State() const { return state_; }
   void VisitState(core::StateArchive& archive);
 
  private:
   static constexpr std::size_t kMostSources = 256;
 
+  ElectrosurgerySettings settings_;
   std::size_t node_count_ = 0;
-  std::vector<StrandInfo> strands_;
-  std::vector<surgery::TissueHeat> heat_;  // one, or none before it is made
-  surgery::HeatState state_, cold_;
+  std::vector<tissue::Strand> strands_;
+  std::vector<TissueHeat> heat_;  // one, or none before it is made
+  HeatState state_, cold_;
   std::vector<std::uint8_t> was_parted_;  // (nodes)
-  std::vector<surgery::TissueHeat::Source> sources_;
+  std::vector<TissueHeat::Source> sources_;
   std::size_t parted_strands_ = 0;
   double power_ = 0;
   bool is_cold_ = true;
 };
 
-}  // namespace trocar::simulation
+}  // namespace trocar::surgery

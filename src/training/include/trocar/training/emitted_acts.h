@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file emitted_acts.h  What hands did to tissue in a tick, as it was at that moment. The operation emits it, the judge
-/// reads it at the end of the tick.
+/// \file emitted_acts.h  What hands did to tissue in a tick, as it was at that moment. What simulates an operation emits it, the
+/// judge reads it at the end of the tick.
 #pragma once
 
 #include <algorithm>
@@ -8,16 +8,17 @@
 #include <cstdint>
 #include <span>
 
-#include "operation/vessel_work.h"
-#include "trocar/simulation/simulation.h"
+#include "trocar/instrument/hand.h"
+#include "trocar/surgery/vessels.h"
 #include "trocar/training/operation_error.h"
 #include "trocar/training/triplet.h"
+#include "trocar/training/vessel_judgement.h"
 
-namespace trocar::simulation {
+namespace trocar::training {
 
 /// One thing that a hand did.
 struct HandAct {
-  training::Triplet triplet;
+  Triplet triplet;
   std::int32_t hand = -1;
 };
 
@@ -29,21 +30,23 @@ struct EmittedAct {
     kCut,  ///< through a duct or vessel
     kHole  ///< burnt or torn into one
   } kind = Kind::kError;
-  Vec3 position;           ///< world frame [m]
+  math::Vec3 position;     ///< world frame [m]
   std::int32_t hand = -1;  ///< or -1
-  training::OperationError error = training::OperationError::kExcessForce;
-  ClipResult clip;         ///< of kClip
-  VesselJudgement vessel;  ///< of the others but kError: the duct or vessel there
+  OperationError error = OperationError::kExcessForce;
+  surgery::ClipResult clip;  ///< of kClip
+  VesselJudgement vessel;    ///< of the others but kError: the duct or vessel there
 };
 
-/// The acts of one tick. Fixed room; the same error of the same hand, and the same triplet of it, are kept once.
+/// The acts of one tick. Fixed capacity; the same error of the same hand, and the same triplet of it, are kept once.
 class EmittedActs {
  public:
+  static constexpr std::size_t kMostActs = 128, kMostHandActs = 16;
+
   void Clear() noexcept {
     act_count_ = hand_act_count_ = 0;
     was_exchanged_ = {};
   }
-  void Report(training::OperationError error, const Vec3& p, int hand) noexcept {
+  void Report(OperationError error, const math::Vec3& p, int hand) noexcept {
     for (const EmittedAct& act : Acts()) {
       if (act.kind == EmittedAct::Kind::kError && act.error == error && act.hand == hand) return;
     }
@@ -56,7 +59,7 @@ class EmittedActs {
   void Add(const EmittedAct& act) noexcept {
     if (act_count_ < acts_.size()) acts_[act_count_++] = act;
   }
-  void Add(const training::Triplet& triplet, int hand) noexcept {
+  void Add(const Triplet& triplet, int hand) noexcept {
     for (const HandAct& act : HandActs()) {
       if (act.triplet == triplet && act.hand == hand) return;
     }
@@ -70,10 +73,10 @@ class EmittedActs {
   bool WasExchanged(int hand) const { return was_exchanged_[static_cast<std::size_t>(hand)]; }
 
  private:
-  std::array<EmittedAct, 128> acts_{};
-  std::array<HandAct, 16> hand_acts_{};
+  std::array<EmittedAct, kMostActs> acts_{};
+  std::array<HandAct, kMostHandActs> hand_acts_{};
   std::size_t act_count_ = 0, hand_act_count_ = 0;
-  std::array<bool, kHandCount> was_exchanged_{};
+  std::array<bool, instrument::kHandCount> was_exchanged_{};
 };
 
-}  // namespace trocar::simulation
+}  // namespace trocar::training

@@ -1,27 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "operation/vessel_map.h"
+#include "trocar/scene/patient_vessels.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <string>
+#include <utility>
+#include <vector>
 
-namespace trocar::simulation {
+namespace trocar::scene {
 
 using math::Vec3;
 namespace {
 
+using roles::OrganRole;
 using surgery::FlowJunction;
 using surgery::FlowVessel;
 using surgery::Fluid;
+using surgery::VesselMap;
 using training::VesselRole;
 
-/// Pressures above the abdomen's 12 mmHg of gas [Pa], conductances [m^3/(Pa s)]. Aorta: decision 0026. Bile: secretion against
-/// 2.5 kPa, 0.6 mL/min; the sphincter opens at 1.3 kPa: general knowledge, tunables.
-constexpr FlowJunction kAorta{12e3, 1.25e-10}, kArteryBed{1e3, 5e-12}, kLiverSecretion{2.5e3, 8e-12},
-    kBowel{1.3e3, 5e-11}, kGallbladder{1.3e3, 1e-10};
-/// Share of a tube's outer radius that is open inside [-].
-constexpr double kLumen = 0.7;
 constexpr double kShortestVessel = 1e-4;  // [m]
 
 std::vector<double> CalcArcs(const std::vector<Vec3>& points) {
@@ -31,23 +28,22 @@ std::vector<double> CalcArcs(const std::vector<Vec3>& points) {
   return arcs;
 }
 
-VesselRole RoleOf(const std::string& tube) {
-  const auto has = [&](const char* part) { return tube.find(part) != std::string::npos; };
-  if (has("artery")) return has("cystic") ? VesselRole::kCysticArtery : VesselRole::kRightHepaticArtery;
-  if (has("cystic")) return VesselRole::kCysticDuct;
-  if (has("subvesical")) return VesselRole::kSubvesicalDuct;
-  if (has("aberrant")) return VesselRole::kAberrantRightDuct;
-  if (has("right")) return VesselRole::kRightHepaticDuct;
-  if (has("left")) return VesselRole::kLeftHepaticDuct;
-  return has("bile") ? VesselRole::kCommonBileDuct : VesselRole::kCommonHepaticDuct;
+/// What nothing is known of must stay, as the common hepatic duct and the right hepatic artery must.
+VesselRole RoleOf(const anatomy::Tube& tube) {
+  const bool is_artery = tube.kind == anatomy::TubeKind::kArtery;
+  const bool is_known = tube.role != VesselRole::kOther && roles::IsDuct(tube.role) != is_artery;
+  if (is_known) return tube.role;
+  return is_artery ? VesselRole::kRightHepaticArtery : VesselRole::kCommonHepaticDuct;
 }
 
 /// Builds junctions where tubes end and where others join them.
-class Builder {
+class VesselBuilder {
  public:
-  explicit Builder(const anatomy::Patient& patient) : patient_(patient), cuts_(patient.tubes.size()) {}
+  VesselBuilder(const anatomy::Patient& patient, const VesselSupplies& supplies,
+                const surgery::FluidTable& fluids)
+      : patient_(patient), settings_(supplies), fluids_(fluids), cuts_(patient.tubes.size()) {}
 
-  core::Result<VesselMap> Build() {
+  core::Result<PatientVessels> Build() {
     for (const anatomy::Tube& tube : patient_.tubes) arcs_.push_back(CalcArcs(tube.line.points));
     for (std::size_t t = 0; t < patient_.tubes.size(); ++t) {
       for (const bool is_first : {true, false}) Node(t, is_first ? 0 : arcs_[t].size() - 1);
@@ -80,42 +76,53 @@ class Builder {
     while (groups_[group] != group) group = groups_[group];
     return group;
   }
-  const std::string& EndName(std::size_t t, bool is_first) const {
-    return is_first ? patient_.tubes[t].from : patient_.tubes[t].to;
+  /// Organs, then tubes; -1 where it leaves the scene.
+  int EndPart(std::size_t t, bool is_first) const {
+    return patient_.FindPart(is_first ? patient_.tubes[t].from : patient_.tubes[t].to);
   }
   std::size_t EndPoint(std::size_t t, bool is_first) const { return is_first ? 0 : arcs_[t].size() - 1; }
 
   void JoinEnd(std::size_t t, bool is_first) {
-    for (std::size_t other = 0; other < patient_.tubes.size(); ++other) {
-      if (other == t || patient_.tubes[other].name != EndName(t, is_first)) continue;
-      const Vec3& end = patient_.tubes[t].line.points[EndPoint(t, is_first)];
-      const auto& points = patient_.tubes[other].line.points;
-      std::size_t nearest = 0;
-      for (std::size_t k = 1; k < points.size(); ++k) {
-        if (math::Distance(points[k], end) < math::Distance(points[nearest], end)) nearest = k;
-      }
-      const std::size_t a = Root(Node(other, nearest)), b = Root(Node(t, EndPoint(t, is_first)));
-      groups_[std::max(a, b)] = std::min(a, b);
-      joined_.push_back({t, is_first});
-      // where the other tube's own end lies there too, it is no loose end either
-      for (const bool others_first : {true, false}) {
-        if (EndPoint(other, others_first) == nearest) joined_.push_back({other, others_first});
-      }
+    const int part = EndPart(t, is_first);
+    if (part < 0 || IsOrgan(part)) return;
+    const std::size_t other = static_cast<std::size_t>(part) - patient_.organs.size();
+    if (other == t) return;
+    const Vec3& end = patient_.tubes[t].line.points[EndPoint(t, is_first)];
+    const auto& points = patient_.tubes[other].line.points;
+    std::size_t nearest = 0;
+    for (std::size_t k = 1; k < points.size(); ++k) {
+      if (math::Distance(points[k], end) < math::Distance(points[nearest], end)) nearest = k;
+    }
+    const std::size_t a = Root(Node(other, nearest)), b = Root(Node(t, EndPoint(t, is_first)));
+    groups_[std::max(a, b)] = std::min(a, b);
+    joined_.push_back({t, is_first});
+    // where the other tube's own end lies there too, it is no loose end either
+    for (const bool others_first : {true, false}) {
+      if (EndPoint(other, others_first) == nearest) joined_.push_back({other, others_first});
     }
   }
 
   void SupplyEnd(std::size_t t, bool is_first) {
     if (std::find(joined_.begin(), joined_.end(), std::pair{t, is_first}) != joined_.end()) return;
     const anatomy::Tube& tube = patient_.tubes[t];
-    const std::string& name = EndName(t, is_first);
-    const bool is_artery = tube.kind == anatomy::TubeKind::kArtery, is_outside = patient_.FindOrgan(name) < 0;
-    FlowJunction supply =
-        is_artery ? (is_outside ? kAorta : kArteryBed) : (is_outside ? kBowel : kLiverSecretion);
-    if (!is_artery && name == "gallbladder") supply = kGallbladder;
-    supplies_.push_back({Root(Node(t, EndPoint(t, is_first))), supply, t, is_first});
+    const int organ = EndPart(t, is_first);
+    const OrganRole role = patient_.RoleOfOrgan(organ);
+    FlowJunction supply;
+    if (tube.kind == anatomy::TubeKind::kArtery) {
+      supply = IsOrgan(organ) ? settings_.artery_bed : settings_.aorta;
+    } else {
+      supply = role == OrganRole::kLiver         ? settings_.liver
+               : role == OrganRole::kGallbladder ? settings_.gallbladder
+                                                 : settings_.bowel;
+    }
+    supplies_.push_back({Root(Node(t, EndPoint(t, is_first))), supply, t, organ});
   }
 
-  core::Result<VesselMap> Finish() {
+  bool IsOrgan(int part) const {
+    return part >= 0 && static_cast<std::size_t>(part) < patient_.organs.size();
+  }
+
+  core::Result<PatientVessels> Finish() {
     std::vector<std::uint32_t> number(groups_.size(), 0);
     std::vector<FlowJunction> junctions;
     for (std::size_t g = 0; g < groups_.size(); ++g) {
@@ -135,13 +142,13 @@ class Builder {
         const Cut &from = cuts_[t][i], &to = cuts_[t][i + 1];
         double radius = 0;
         for (std::size_t k = from.point; k <= to.point; ++k) radius += tube.line.radii[k];
-        radius *= kLumen / static_cast<double>(to.point - from.point + 1);
+        radius *= settings_.lumen_share / static_cast<double>(to.point - from.point + 1);
         of_tube[t].push_back(static_cast<std::uint32_t>(vessels.size()));
         starts[t].push_back(arcs_[t][from.point]);
         vessels.push_back({tube.kind == anatomy::TubeKind::kArtery ? Fluid::kBlood : Fluid::kBile,
                            number[Root(from.group)], number[Root(to.group)],
                            std::max(kShortestVessel, arcs_[t][to.point] - arcs_[t][from.point]), radius});
-        anatomy.roles.push_back(RoleOf(tube.name));
+        anatomy.roles.push_back(RoleOf(tube));
       }
     }
     std::vector<std::uint32_t> gallbladder_ducts;
@@ -149,26 +156,27 @@ class Builder {
       const std::uint32_t j = number[Root(supply.group)];
       junctions[j] = supply.junction;
       const bool is_artery = patient_.tubes[supply.tube].kind == anatomy::TubeKind::kArtery;
-      const std::string& name = EndName(supply.tube, supply.is_first);
-      if (name == "gallbladder") {
+      const OrganRole role = patient_.RoleOfOrgan(supply.organ);
+      if (role == OrganRole::kGallbladder) {
         anatomy.gallbladder.push_back(j);
         if (!is_artery) gallbladder_ducts.push_back(j);
-      } else if (is_artery && patient_.FindOrgan(name) < 0) {
-        anatomy.aorta = j;
-      } else if (is_artery) {
+      } else if (is_artery && role == OrganRole::kLiver) {
         anatomy.right_liver = j;
-      } else if (patient_.FindOrgan(name) < 0) {
+      } else if (is_artery) {
+        if (!IsOrgan(supply.organ)) anatomy.aorta = j;
+      } else if (role != OrganRole::kLiver) {
         anatomy.bowel = j;
       } else if (!anatomy.liver ||
-                 RoleOf(patient_.tubes[supply.tube].name) == VesselRole::kCommonHepaticDuct) {
+                 RoleOf(patient_.tubes[supply.tube]) == VesselRole::kCommonHepaticDuct) {
         anatomy.liver = j;
       }
     }
     FindUpstream(vessels, anatomy);
-    auto network = surgery::FlowNetwork::Make(std::move(vessels), std::move(junctions));
+    auto network = surgery::FlowNetwork::Make(std::move(vessels), std::move(junctions), fluids_);
     if (!network.ok()) return network.error();
-    return VesselMap{std::move(*network), std::move(anatomy), std::move(arcs_),
-                     std::move(of_tube),  std::move(starts),  std::move(gallbladder_ducts)};
+    return PatientVessels{VesselMap{std::move(*network), std::move(arcs_), std::move(of_tube),
+                                    std::move(starts), std::move(gallbladder_ducts)},
+                          std::move(anatomy)};
   }
 
   /// Which end of each vessel bile or blood comes from, and how far below the confluence it begins: by the shortest way from
@@ -199,10 +207,12 @@ class Builder {
     std::size_t group;
     FlowJunction junction;
     std::size_t tube;
-    bool is_first;
+    int organ;  // that it comes from or goes to; none: beyond the scene
   };
 
   const anatomy::Patient& patient_;
+  const VesselSupplies& settings_;
+  const surgery::FluidTable& fluids_;
   std::vector<std::vector<double>> arcs_;
   std::vector<std::vector<Cut>> cuts_;
   std::vector<std::size_t> groups_;  // union-find over places
@@ -212,16 +222,10 @@ class Builder {
 
 }  // namespace
 
-VesselPlace VesselMap::Find(std::size_t tube, double arc) const {
-  const auto& own = vessels_of_tube[tube];
-  std::size_t i = 0;
-  while (i + 1 < own.size() && starts[tube][i + 1] <= arc) ++i;
-  const double length = network.Vessels()[own[i]].length;
-  return {own[i], std::clamp(arc - starts[tube][i], 0.0, length)};
+core::Result<PatientVessels> MakePatientVessels(const anatomy::Patient& patient,
+                                                const VesselSupplies& supplies,
+                                                const surgery::FluidTable& fluids) {
+  return VesselBuilder(patient, supplies, fluids).Build();
 }
 
-core::Result<VesselMap> MakeVesselMap(const anatomy::Patient& patient) {
-  return Builder(patient).Build();
-}
-
-}  // namespace trocar::simulation
+}  // namespace trocar::scene

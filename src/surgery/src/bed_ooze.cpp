@@ -1,34 +1,30 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "operation/bed_ooze.h"
+#include "trocar/surgery/bed_ooze.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace trocar::simulation {
+namespace trocar::surgery {
 namespace {
 
-constexpr double kBedVolume = 15e-6;   // of a whole bed torn off [m^3]
-constexpr double kClotSeconds = 87.0;  // in which bleeding falls to 1/e: to a half in a minute [s]
-constexpr double kLeastLeft = 1e-12;   // a place that has less has clotted [m^3]
+constexpr double kLeastLeft = 1e-12;  // a place that has less has clotted [m^3]
 
 }  // namespace
 
-BedOoze::BedOoze(std::span<const StrandInfo> strands, std::span<const std::uint32_t> on_liver,
-                 double bleeding) {
+BedOoze::BedOoze(std::span<const LiverFibre> fibres, double bleeding, const BedOozeSettings& settings)
+    : settings_(settings) {
   std::size_t in_bed = 0;
-  for (std::uint32_t i = 0; i < strands.size(); ++i) {
-    const bool is_bed = strands[i].kind == StrandInfo::Kind::kBed;
-    if ((!is_bed && strands[i].kind != StrandInfo::Kind::kAdhesion) || on_liver[i] == kNoNode) continue;
-    places_.push_back({i, on_liver[i], true, 0.0});
-    in_bed += is_bed ? 1 : 0;
+  for (const LiverFibre& fibre : fibres) {
+    places_.push_back({fibre.strand, fibre.node, true, 0.0});
+    in_bed += fibre.is_bed ? 1 : 0;
   }
   // adhesions bleed as much, fibre by fibre
-  volume_ = in_bed > 0 ? bleeding * kBedVolume / static_cast<double>(in_bed) : 0.0;
+  volume_ = in_bed > 0 ? bleeding * settings_.bed_volume / static_cast<double>(in_bed) : 0.0;
 }
 
 double BedOoze::Update(const tissue::TissueState& tissue, const Electrosurgery& heat, std::size_t node_count,
                        double seconds) noexcept {
-  const double share = 1.0 - std::exp(-seconds / kClotSeconds);
+  const double share = 1.0 - std::exp(-seconds / settings_.clot_seconds);
   double out = 0;
   for (Place& place : places_) {
     const bool is_intact = tissue.strand_is_intact[place.strand] != 0;
@@ -36,8 +32,8 @@ double BedOoze::Update(const tissue::TissueState& tissue, const Electrosurgery& 
     place.was_intact = is_intact;
     if (!is_torn && place.left == 0.0) continue;
     const auto part = static_cast<std::uint32_t>(node_count + place.strand);
-    const bool is_sealed = heat.InjuryOf(place.node) >= surgery::HeatInjury::kBlanched ||
-                           heat.InjuryOf(part) >= surgery::HeatInjury::kBlanched;
+    const bool is_sealed =
+        heat.InjuryOf(place.node) >= HeatInjury::kBlanched || heat.InjuryOf(part) >= HeatInjury::kBlanched;
     if (is_torn) place.left = volume_;
     if (is_sealed || place.left < kLeastLeft) place.left = 0.0;
     const double drop = share * place.left;
@@ -49,17 +45,17 @@ double BedOoze::Update(const tissue::TissueState& tissue, const Electrosurgery& 
   return out;
 }
 
-void BedOoze::Publish(std::span<const math::Vec3> position, OperationSnapshot& snapshot) const noexcept {
-  auto& shown = snapshot.oozes;
+std::size_t BedOoze::Publish(std::span<const math::Vec3> position,
+                             std::span<OozeSnapshot> shown) const noexcept {
   std::size_t count = 0;
   for (const Place& place : places_) {
-    const double rate = place.left / kClotSeconds;
+    const double rate = place.left / settings_.clot_seconds;
     if (!(rate > 0.0) || (count == shown.size() && rate <= shown.back().rate)) continue;
     std::size_t at = count < shown.size() ? count++ : count - 1;
     for (; at > 0 && shown[at - 1].rate < rate; --at) shown[at] = shown[at - 1];
     shown[at] = {position[place.node], rate};
   }
-  snapshot.ooze_count = count;
+  return count;
 }
 
 void BedOoze::VisitState(core::StateArchive& archive) {
@@ -71,4 +67,4 @@ void BedOoze::VisitState(core::StateArchive& archive) {
   archive.Field("lost", lost_);
 }
 
-}  // namespace trocar::simulation
+}  // namespace trocar::surgery

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "operation/sheet_monitor.h"
+#include "trocar/training/pattern_cut_monitor.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "trocar/math/state_fields.h"
 
-namespace trocar::simulation {
+namespace trocar::training {
 namespace {
 
 using geometry::EditableMesh;
@@ -25,7 +25,7 @@ double CalcAreaOff(const Vec3& a, const Vec3& b, double radius) noexcept {
 
 }  // namespace
 
-SheetMonitor::SheetMonitor(const ModelSheet& sheet, const EditableMesh& mesh)
+PatternCutMonitor::PatternCutMonitor(const PatternSheet& sheet, const EditableMesh& mesh)
     : sheet_(sheet), piece_(mesh.TriangleCapacity(), 0) {
   stack_.reserve(mesh.TriangleCapacity());
   const auto rest = mesh.Rest();
@@ -35,13 +35,13 @@ SheetMonitor::SheetMonitor(const ModelSheet& sheet, const EditableMesh& mesh)
   }
 }
 
-bool SheetMonitor::IsBorder(const Vec3& p_rest) const noexcept {
+bool PatternCutMonitor::IsBorder(const Vec3& p_rest) const noexcept {
   const Vec3 d = p_rest - sheet_.centre;
   return std::fabs(d.x) >= sheet_.half.x - kOnBorder || std::fabs(d.y) >= sheet_.half.y - kOnBorder;
 }
 
 /// Finds what hangs together with the middle, and whether the border is part of it.
-void SheetMonitor::MarkPiece(const EditableMesh& mesh) noexcept {
+void PatternCutMonitor::MarkPiece(const EditableMesh& mesh) noexcept {
   std::fill(piece_.begin(), piece_.end(), std::uint8_t{0});
   stack_.clear();
   const auto visit = [&](std::uint32_t h) {
@@ -61,7 +61,7 @@ void SheetMonitor::MarkPiece(const EditableMesh& mesh) noexcept {
   }
 }
 
-void SheetMonitor::Update(const EditableMesh& mesh) noexcept {
+void PatternCutMonitor::Update(const EditableMesh& mesh) noexcept {
   MarkPiece(mesh);
   now_.cut_length = now_.off_area = now_.farthest = 0;
   for (std::uint32_t h = 0; h < 3 * mesh.TriangleCount(); ++h) {
@@ -80,7 +80,7 @@ void SheetMonitor::Update(const EditableMesh& mesh) noexcept {
   }
 }
 
-void SheetMonitor::VisitState(core::StateArchive& archive) {
+void PatternCutMonitor::VisitState(core::StateArchive& archive) {
   archive.Field("cut_length", now_.cut_length);
   archive.Field("farthest", now_.farthest);
   archive.Field("off_area", now_.off_area);
@@ -88,4 +88,4 @@ void SheetMonitor::VisitState(core::StateArchive& archive) {
   archive.Field("p_farthest", now_.p_farthest);
 }
 
-}  // namespace trocar::simulation
+}  // namespace trocar::training

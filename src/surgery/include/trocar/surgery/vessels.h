@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file vessel_work.h  Clips, cuts and holes in ducts and arteries, and what runs out of them.
+/// \file vessels.h  Ducts and arteries with their clips, cuts and holes, and what runs out of them.
 #pragma once
 
 #include <array>
@@ -8,19 +8,18 @@
 #include <span>
 #include <vector>
 
-#include "operation/vessel_map.h"
 #include "trocar/core/state_archive.h"
 #include "trocar/instrument/tool.h"
-#include "trocar/scene/scene.h"
-#include "trocar/simulation/snapshot.h"
 #include "trocar/surgery/cuttable_tubes.h"
 #include "trocar/surgery/gallstones.h"
+#include "trocar/surgery/surgery_settings.h"
+#include "trocar/surgery/surgery_snapshot.h"
+#include "trocar/surgery/vessel_map.h"
 #include "trocar/tissue/conservation.h"
 
-namespace trocar::simulation {
+namespace trocar::surgery {
 
-using scene::SurfaceInfo;
-using scene::VisitState;
+using math::Pose;
 
 /// Where along a tube something is.
 struct TubePlace {
@@ -39,13 +38,6 @@ struct ClipResult {
   bool is_crossed = false;  ///< lies over another clip
 };
 
-/// What a place of a duct or vessel is to the surgeon when something is done there.
-struct VesselJudgement {
-  bool may_be_divided = false;
-  int staying_clips = 0;  ///< tight ones between the place and the side that stays
-  std::size_t cuts = 0;   ///< through the whole tube, so far
-};
-
 /// A hand that holds a duct or vessel.
 struct ClipPull {
   std::span<const std::uint32_t> nodes;  ///< that it holds
@@ -57,30 +49,37 @@ struct SlippedClip {
   Vec3 position;  ///< where it fell off, world frame [m]
 };
 
+/// A duct or artery at rest.
+struct VesselTube {
+  std::uint32_t first_node = 0;   ///< of its points, in order along it
+  std::span<const Vec3> points;   ///< (n) [m]
+  std::span<const double> radii;  ///< (n) outside [m]
+};
+
 /// The ducts and arteries of one operation. Points of the graph of CuttableTubes are points here.
-class VesselWork {
+class Vessels {
  public:
-  /// \param surfaces     the tubes' alone
+  /// \param map    of these tubes
+  /// \param tubes  only read while this is made
   /// \param first_spare, spare_count  nodes for the ends of cuts
-  /// \return kPatientInvalid
-  static core::Result<VesselWork> Make(const anatomy::Patient& patient, std::span<const SurfaceInfo> surfaces,
-                                       std::uint32_t first_spare, std::uint32_t spare_count);
+  Vessels(VesselMap map, std::span<const VesselTube> tubes, std::uint32_t first_spare,
+          std::uint32_t spare_count, const VesselSettings& settings = {});
 
   const VesselMap& Map() const { return map_; }
-  const surgery::VesselActs& Acts() const { return acts_; }
-  const surgery::CuttableTubes& Tubes() const { return tubes_; }
+  const VesselActs& Acts() const { return acts_; }
+  const CuttableTubes& Tubes() const { return tubes_; }
   /// Where a place was at rest, world frame [m].
   Vec3 RestPoint(const TubePlace& place) const noexcept;
   std::uint32_t TubeOf(std::uint32_t point) const { return tube_of_[point]; }
   double ArcOf(std::uint32_t point) const { return arc_of_[point]; }
-  void ReserveFor(surgery::TopologyChange& change) const { tubes_.ReserveFor(change); }
+  void ReserveFor(TopologyChange& change) const { tubes_.ReserveFor(change); }
 
   /// Cuts what a blade passed over.
-  /// \param[out] places  of the cuts; room for CuttableTubes::kMostCuts
+  /// \param[out] places  of the cuts; at least CuttableTubes::kMostCuts
   /// \return how many
-  /// \note Real-time safe while `change` has room.
-  std::size_t Cut(const surgery::BladeMove& move, const tissue::TissueDefinition& definition,
-                  std::span<const Vec3> position, surgery::TopologyChange& change,
+  /// \note Real-time safe within the capacity of `change`.
+  std::size_t Cut(const BladeMove& move, const tissue::TissueDefinition& definition,
+                  std::span<const Vec3> position, TopologyChange& change,
                   std::span<TubePlace> places) noexcept;
 
   /// A place of a vessel between the legs of a clip.
@@ -107,11 +106,11 @@ class VesselWork {
   /// \note Real-time safe.
   std::size_t Slip(double seconds, std::span<const ClipPull> pulls, std::span<const Vec3> position,
                    std::span<SlippedClip> slipped) noexcept;
-  /// Adds the lost clips, which fall as stones do, as far as `loose` has room.
-  void FindLooseClips(std::vector<surgery::LooseStone*>& loose) noexcept;
+  /// Adds the lost clips, which fall as stones do, up to the capacity of `loose`.
+  void FindLooseClips(std::vector<LooseStone*>& loose) noexcept;
 
   /// Makes a hole where a node of a tube was burnt through.
-  /// \return false where the node is of no tube, or there is no room
+  /// \return false where the node is of no tube, or there are kMostOpenings
   bool MakeHole(std::uint32_t node, double area, TubePlace& place) noexcept;
 
   /// Seals openings within `reach` of a point by `share` of their size each [-]; only vessels that are narrow enough.
@@ -122,15 +121,19 @@ class VesselWork {
   /// \param hollow  index of that organ, or -1
   /// \note Real-time safe.
   void Flow(double seconds, std::int32_t hollow, tissue::ConservationState& conserved,
-            surgery::FluidLedger& ledger) noexcept;
+            FluidLedger& ledger) noexcept;
 
-  const surgery::FlowReport& Report() const { return report_; }
+  const FlowReport& Report() const { return report_; }
   /// Cuts through one tube.
   std::size_t CountCuts(std::uint32_t tube) const noexcept;
 
-  void Publish(std::span<const Vec3> position, std::size_t organ_count,
-               OperationSnapshot& snapshot) const noexcept;
-  VesselJudgement JudgePlace(const TubePlace& place) const noexcept;
+  // What is seen; each fills the span as far as it goes and returns how many.
+  /// \param first_surface  index of the first tube's surface in the scene
+  std::size_t PublishPieces(std::size_t first_surface, std::span<TubePiece> pieces) const noexcept;
+  std::size_t PublishClips(std::span<const Vec3> position, std::span<ClipSnapshot> clips) const noexcept;
+  /// Where at rest tubes were cut through, world frame [m].
+  std::size_t PublishCuts(std::span<Vec3> cuts) const noexcept;
+  std::size_t PublishLeaks(std::span<const Vec3> position, std::span<LeakSnapshot> leaks) const noexcept;
 
   /// The lines with their cuts, and what else is joined to what. Before VisitState.
   void VisitTopology(core::StateArchive& archive);
@@ -138,8 +141,6 @@ class VesselWork {
   void VisitState(core::StateArchive& archive);
 
  private:
-  explicit VesselWork(VesselMap map, std::uint32_t first_spare, std::uint32_t spare_count)
-      : map_(std::move(map)), tubes_(first_spare, spare_count) {}
   struct Clipped {
     std::uint32_t a = 0, b = 0;  // points of the edge
     double t = 0;                // from a to b
@@ -147,10 +148,10 @@ class VesselWork {
     double gap = 0;              // [m]
     bool is_lost = false, is_crossed = false;
     double closure = 0;
-    bool is_weak = false;       // it crosses another, or another it
-    double vessel_radius = 0;   // outside [m]
-    std::uint32_t act = 0;      // in acts_.clips, unless it closed around nothing
-    surgery::LooseStone loose;  // where it lies when it is lost
+    bool is_weak = false;      // it crosses another, or another it
+    double vessel_radius = 0;  // outside [m]
+    std::uint32_t act = 0;     // in acts_.clips, unless it closed around nothing
+    LooseStone loose;          // where it lies when it is lost
     TubePlace place;
     void VisitState(core::StateArchive& archive);
   };
@@ -170,19 +171,20 @@ class VesselWork {
   void MoveClips(const geometry::CentreLineCut& cut) noexcept;
   double CalcPull(const Clipped& clip, const Stump& stump, std::span<const Vec3> position,
                   std::span<const ClipPull> pulls) const noexcept;
-  void Reseat(Clipped& clip) noexcept;
+  void FindEdge(Clipped& clip) noexcept;
   std::size_t SlipStump(const Stump& stump, double seconds, std::span<const ClipPull> pulls,
                         std::span<const Vec3> position, std::span<SlippedClip> slipped) noexcept;
 
+  VesselSettings settings_;
   VesselMap map_;
-  surgery::CuttableTubes tubes_;
+  CuttableTubes tubes_;
   std::vector<std::uint32_t> tube_of_;   // (points)
   std::vector<double> arc_of_;           // (points) [m]
   std::vector<std::vector<Vec3>> rest_;  // (tubes)(points) [m]
-  surgery::VesselActs acts_;
+  VesselActs acts_;
   std::vector<Clipped> clips_;
   std::vector<OpeningEnds> ends_;  // of acts_.openings
-  surgery::FlowReport report_;
+  FlowReport report_;
 };
 
-}  // namespace trocar::simulation
+}  // namespace trocar::surgery
