@@ -30,14 +30,15 @@ constexpr double kLength = 0.030;  // of a cut [m]
 
 /// What the built-in materials say of a wall, SI.
 struct Wall {
-  const char* organ;
+  roles::OrganRole organ;
   double young_modulus, thickness, foundation_modulus, depth;
   bool is_solid;
   Vec3 seen_from;
   double drawn;  // each side, to let the cut gape [m]
 };
-constexpr Wall kWalls[] = {{"liver", 1e6, 4e-5, 5400, 0.080, true, {-0.2, -0.45, 0.87}, 0.003},
-                           {"gallbladder", 255e3, 0.002, 1000, 0.030, false, {-0.1, -0.75, 0.65}, 0.003}};
+constexpr Wall kWalls[] = {
+    {roles::OrganRole::kLiver, 1e6, 4e-5, 5400, 0.080, true, {-0.2, -0.45, 0.87}, 0.003},
+    {roles::OrganRole::kGallbladder, 255e3, 0.002, 1000, 0.030, false, {-0.1, -0.75, 0.65}, 0.003}};
 
 surgery::WallMaterial MakeWallMaterial(const geometry::TriangleMesh& mesh, const Wall& wall) {
   const double area = geometry::CalcArea(mesh.positions, mesh.triangles);
@@ -216,8 +217,8 @@ int main(int count, char** arguments) {
   if (!patient.ok()) return fail(patient.error());
   Theatre theatre;
   std::array<Site, 2> sites;
-  const int gallbladder = patient->FindOrgan("gallbladder");
-  if (gallbladder < 0 || patient->FindOrgan("liver") < 0) {
+  const int gallbladder = patient->OrganOf(roles::OrganRole::kGallbladder);
+  if (gallbladder < 0 || patient->OrganOf(roles::OrganRole::kLiver) < 0) {
     std::fprintf(stderr, "the patient has no liver or no gallbladder\n");
     return 1;
   }
@@ -225,7 +226,7 @@ int main(int count, char** arguments) {
   const Vec3 fundus = *std::min_element(fundus_of.begin(), fundus_of.end(),
                                         [](const Vec3& a, const Vec3& b) { return a.y - a.z < b.y - b.z; });
   for (std::size_t i = 0; i < 2; ++i) {
-    const auto& organ = patient->organs[static_cast<std::size_t>(patient->FindOrgan(kWalls[i].organ))];
+    const auto& organ = patient->organs[static_cast<std::size_t>(patient->OrganOf(kWalls[i].organ))];
     if (const auto added = AddOrgan(organ, kWalls[i], theatre); !added.ok()) return fail(added.error());
     sites[i] = FindSite(organ.mesh, math::Normalized(kWalls[i].seen_from), fundus);
   }

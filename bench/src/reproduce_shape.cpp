@@ -94,14 +94,13 @@ core::Result<Shape> FindLiver() {
   if (!folder.ok()) return folder.error();
   auto scene = scene::ReadScene(*folder / "scenes/demonstration.json");
   if (!scene.ok()) return scene.error();
-  const int index = scene->patient.FindOrgan("liver");
+  const int index = scene->patient.OrganOf(roles::OrganRole::kLiver);
   if (index < 0) return WrongAnswer("table2", "the built-in patient has no liver");
   anatomy::Organ& organ = scene->patient.organs[static_cast<std::size_t>(index)];
-  Shape shape{"liver", std::move(organ.mesh), {}, {0, 0, -kGravity}};
+  Shape shape{NameOf(organ.role), std::move(organ.mesh), {}, {0, 0, -kGravity}};
   for (const anatomy::Region& region : organ.regions) {
-    const bool is_held = region.name == anatomy::kDiaphragmaticFace || region.name == anatomy::kFalciform ||
-                         region.name == anatomy::kCoronary;
-    if (is_held) shape.fixed.insert(shape.fixed.end(), region.vertices.begin(), region.vertices.end());
+    if (roles::IsFixed(region.role))
+      shape.fixed.insert(shape.fixed.end(), region.vertices.begin(), region.vertices.end());
   }
   return shape;
 }

@@ -84,7 +84,7 @@ void CholecystectomySurgeon::CutTube(std::size_t tube, double share) {
 
 /// Of the gallbladder, near what the left hand holds, so that it does not give way; towards the right hand's trocar.
 Vec3 CholecystectomySurgeon::WallBesideHold(const Snapshot& seen) const {
-  const SurfaceInfo& wall = surfaces_[static_cast<std::size_t>(scene_->patient.FindOrgan("gallbladder"))];
+  const SurfaceInfo& wall = surfaces_[static_cast<std::size_t>(gallbladder_)];
   const auto positions = std::span(seen.positions).subspan(wall.first_node, wall.node_count);
   const auto cost = [&](const Vec3& p) {
     const double away = math::Distance(p, hands_[kLeft].Tip());
@@ -96,8 +96,8 @@ Vec3 CholecystectomySurgeon::WallBesideHold(const Snapshot& seen) const {
 
 void CholecystectomySurgeon::PlanErrorScenario(OperationErrorScenario error_scenario) {
   using instrument::ToolKind;
-  const std::size_t duct = FindTube("cystic_duct"), artery = FindTube("cystic_artery"),
-                    main = FindTube("common_hepatic_duct");
+  const std::size_t duct = FindTube(TubeRole::kCysticDuct), artery = FindTube(TubeRole::kCysticArtery),
+                    main = FindTube(TubeRole::kCommonHepaticDuct);
   const Place liver = Place::AtNode(liver_node_);
   Place above_neck = Place::Of(Place::Kind::kAboveNode);
   above_neck.node = neck_;

@@ -61,7 +61,7 @@ void CholecystectomySurgeon::Begin(const SurgeonAct& act, const Snapshot& seen) 
       field_ = act.place;
       const Vec3 p = Find(act.place, seen);
       const Vec3 to_eye = math::Normalized(scene_->laparoscope.p_world_port - p);
-      const Vec3 along = TubeDirection(seen, FindTube("cystic_duct"), 0.5);
+      const Vec3 along = TubeDirection(seen, FindTube(TubeRole::kCysticDuct), 0.5);
       AimCamera(p, math::Rotate(math::RotationAbout(along, act.amount), to_eye), act.distance);
       break;
     }

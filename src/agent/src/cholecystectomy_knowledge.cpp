@@ -37,7 +37,7 @@ double CholecystectomySurgeon::CalcAzimuth(const Snapshot& seen, const Vec3& eye
   tissue::MotionMoments moments;
   for (const std::uint32_t node : neck_nodes_) moments.AddPoint(1.0, rest_[node], seen.positions[node]);
   const Pose X_world_neck = tissue::FitRigidMotion(moments, math::Quaternion{});
-  const auto& duct = tube_nodes_[FindTube("cystic_duct")];
+  const auto& duct = tube_nodes_[FindTube(TubeRole::kCysticDuct)];
   const Vec3 along = math::Normalized(rest_[duct.front()] - rest_[duct.back()]);
   const Vec3 front = math::Normalized(Vec3{0, 0, 1} - along * along.z, {1, 0, 0});
   const Vec3 to_eye =
@@ -158,7 +158,8 @@ double CholecystectomySurgeon::ShareLeft(const Snapshot& seen,
 TubeLine CholecystectomySurgeon::LineOf(const Snapshot& seen, std::size_t tube) const {
   const anatomy::Tube& made = scene_->patient.tubes[tube];
   TubeLine line{{}, made.line.radii};
-  if (made.to == "gallbladder") std::reverse(line.radii.begin(), line.radii.end());
+  if (surfaces_[scene_->patient.organs.size() + tube].ends[1] == gallbladder_)
+    std::reverse(line.radii.begin(), line.radii.end());
   for (const std::uint32_t node : tube_nodes_[tube]) line.points.push_back(seen.positions[node]);
   return line;
 }
@@ -236,8 +237,7 @@ DivisionField CholecystectomySurgeon::FieldOf(const Snapshot& seen, std::size_t 
 std::uint32_t CholecystectomySurgeon::FindHold(const Snapshot& seen, const Vec3& near,
                                                const std::vector<std::uint32_t>& avoid,
                                                const HoldFilter& may) {
-  const auto gallbladder = static_cast<std::size_t>(scene_->patient.FindOrgan("gallbladder"));
-  const auto liver = static_cast<std::size_t>(scene_->patient.FindOrgan("liver"));
+  const auto gallbladder = static_cast<std::size_t>(gallbladder_), liver = static_cast<std::size_t>(liver_);
   const SurfaceInfo& surface = surfaces_[gallbladder];
   std::vector<Vec3> normals(surface.node_count);
   for (const auto& triangle : surface.triangles) {

@@ -50,7 +50,7 @@ void CholecystectomySurgeon::FreeGallbladder() {
   Add(SurgeonAct::Kind::kAssist, "assistant: retract", 8.0).command = AssistantCommand::kRetract;
   LookAt(neck, 0.0, 0.090);
   HoldOn(neck);
-  const std::size_t duct = FindTube("cystic_duct");
+  const std::size_t duct = FindTube(TubeRole::kCysticDuct);
   const Vec3 duct_way = math::Normalized(rest_[tube_nodes_[duct].front()] - rest_[tube_nodes_[duct].back()]);
   DrawGently(kLeft, 0.006 * duct_way + 0.003 * bed_normal_);
   ClearTriangle(kRounds);
@@ -93,7 +93,7 @@ void CholecystectomySurgeon::TakeHold(const SurgeonAct& act, const Snapshot& see
 
 void CholecystectomySurgeon::CheckHold(const SurgeonAct& act, const Snapshot& seen) {
   const InstrumentSnapshot& hand = seen.instruments[kLeft];
-  if (hand.is_grasping && hand.organ == scene_->patient.FindOrgan("gallbladder")) return;
+  if (hand.is_grasping && hand.organ == gallbladder_) return;
   missed_holds_.push_back(act.node);
   LetGo(kLeft);
   HoldOn(act.place, act.count - 1, act.may);
@@ -182,7 +182,7 @@ void CholecystectomySurgeon::PlanCriticalView(const SurgeonAct& act, const Snaps
   Reach(kRight, out_of_the_way);
   Decide(SurgeonAct::Kind::kFollowWithCamera, "look").is_on = false;
   for (const int side : {+1, -1}) LookFromSide(side, kNeckTurns);
-  LookAt(Place::OnTube(FindTube("cystic_duct"), 0.4), 0.0, 0.080);
+  LookAt(Place::OnTube(FindTube(TubeRole::kCysticDuct), 0.4), 0.0, 0.080);
   Decide(SurgeonAct::Kind::kFollowWithCamera, "look").is_on = true;
   ShowCriticalView(act.count - 1);
 }
@@ -207,7 +207,7 @@ std::optional<std::size_t> CholecystectomySurgeon::FindExtraArtery(const Snapsho
 
 /// A pose of the laparoscope that shows the triangle from one side of its front, with nothing before it.
 std::optional<instrument::TrocarJoints> CholecystectomySurgeon::FindSideView(const Snapshot& seen, int side) {
-  const std::size_t duct = FindTube("cystic_duct"), hepatic = FindTube("common_hepatic_duct");
+  const std::size_t duct = FindTube(TubeRole::kCysticDuct), hepatic = FindTube(TubeRole::kCommonHepaticDuct);
   const std::array<Vec3, 3> points = {TubePoint(seen, duct, 0.3), TubePoint(seen, duct, 0.7),
                                       0.5 * (TubePoint(seen, duct, 0.5) + TubePoint(seen, hepatic, 0.5))};
   const Vec3 middle = (points[0] + points[1] + points[2]) * (1.0 / 3.0);
@@ -256,7 +256,7 @@ void CholecystectomySurgeon::PlanLookFromSide(const SurgeonAct& act, const Snaps
     return;
   }
   if (act.count <= 0 || !seen.instruments[kLeft].is_grasping) return;
-  const std::size_t duct = FindTube("cystic_duct");
+  const std::size_t duct = FindTube(TubeRole::kCysticDuct);
   const Vec3 axis = math::Normalized(TubePoint(seen, duct, 0.0) - TubePoint(seen, duct, 1.0));
   const Vec3 arm = HandOf(kLeft).Tip() - TubePoint(seen, duct, 0.0);
   const Vec3 off_axis = math::Normalized(arm - math::Dot(arm, axis) * axis, bed_normal_);

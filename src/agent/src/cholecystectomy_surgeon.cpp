@@ -37,18 +37,17 @@ HandMotion MakeHand(const Scene& scene, int hand, const HandSkill& skill, std::u
 bool IsCholecystectomy(const Scene& scene) {
   using instrument::ToolKind;
   const anatomy::Patient& patient = scene.patient;
-  const auto has_organ = [&](const char* name) { return patient.FindOrgan(name) >= 0; };
-  const auto has_landmark = [&](const char* name) { return patient.FindLandmark(name) != nullptr; };
-  const auto has_tube = [&](const char* name) {
-    return std::ranges::any_of(patient.tubes, [&](const anatomy::Tube& tube) { return tube.name == name; });
-  };
+  const auto has_organ = [&](OrganRole role) { return patient.OrganOf(role) >= 0; };
+  const auto has_landmark = [&](LandmarkRole role) { return patient.LandmarkOf(role) != nullptr; };
+  const auto has_tube = [&](TubeRole role) { return patient.TubeOf(role) >= 0; };
   const auto has_tool = [&](ToolKind kind) {
     return std::ranges::any_of(scene.instruments[kRight].tray,
                                [&](const instrument::Tool& tool) { return tool.kind == kind; });
   };
-  return scene.operation.has_value() && has_organ("gallbladder") && has_organ("liver") &&
-         has_landmark("infundibulum") && has_landmark("fundus") && has_landmark("liver_edge") &&
-         has_tube("cystic_duct") && has_tube("cystic_artery") && has_tube("common_hepatic_duct") &&
+  return scene.operation.has_value() && has_organ(OrganRole::kGallbladder) && has_organ(OrganRole::kLiver) &&
+         has_landmark(LandmarkRole::kInfundibulum) && has_landmark(LandmarkRole::kFundus) &&
+         has_landmark(LandmarkRole::kLiverEdge) && has_tube(TubeRole::kCysticDuct) &&
+         has_tube(TubeRole::kCysticArtery) && has_tube(TubeRole::kCommonHepaticDuct) &&
          has_tool(ToolKind::kHook) && has_tool(ToolKind::kClipApplier) && has_tool(ToolKind::kScissors) &&
          has_tool(ToolKind::kBag);
 }
@@ -74,19 +73,20 @@ void CholecystectomySurgeon::Learn(ModelDescription model) {
   strands_ = std::move(model.strands);
   surfaces_ = std::move(model.surfaces);
   rest_ = std::move(model.rest);
+  gallbladder_ = scene::FindSurface(surfaces_, OrganRole::kGallbladder);
+  liver_ = scene::FindSurface(surfaces_, OrganRole::kLiver);
   for (std::size_t t = 0; t < patient.tubes.size(); ++t) {
     const SurfaceInfo& surface = surfaces_[patient.organs.size() + t];
     std::vector<std::uint32_t> nodes;
     for (std::uint32_t k = 0; k < surface.node_count; ++k) nodes.push_back(surface.first_node + k);
-    if (patient.tubes[t].to == "gallbladder") std::reverse(nodes.begin(), nodes.end());
+    if (surface.ends[1] == gallbladder_) std::reverse(nodes.begin(), nodes.end());
     tube_nodes_.push_back(std::move(nodes));
   }
-  const int gallbladder = patient.FindOrgan("gallbladder"), liver = patient.FindOrgan("liver");
   // what anatomy teaches of each tube
   for (std::size_t t = 0; t < model.tube_roles.size(); ++t) {
     const anatomy::Tube& tube = patient.tubes[t];
-    if (tube.from == "gallbladder" || tube.to == "gallbladder") entering_.push_back(t);
     const SurfaceInfo& surface = surfaces_[patient.organs.size() + t];
+    if (surface.Joins(gallbladder_)) entering_.push_back(t);
     for (std::uint32_t k = 0; k < surface.node_count; ++k) {
       const training::VesselRole role = model.tube_roles[t][k];
       if (!training::MayBeDivided(role)) main_nodes_.push_back(surface.first_node + k);
@@ -109,20 +109,22 @@ void CholecystectomySurgeon::Learn(ModelDescription model) {
     });
     if (strands_[i].kind == StrandInfo::Kind::kEnd && enters) end_strands_.push_back(i);
   }
-  const auto landmark = [&](const char* name) { return patient.FindLandmark(name)->position; };
-  neck_ = FindNode(gallbladder, landmark("infundibulum"));
-  fundus_ = FindNode(gallbladder, landmark("fundus"));
-  liver_node_ = FindNode(liver, landmark("liver_edge"));
+  const Vec3 neck = patient.LandmarkOf(LandmarkRole::kInfundibulum)->position,
+             fundus = patient.LandmarkOf(LandmarkRole::kFundus)->position,
+             edge = patient.LandmarkOf(LandmarkRole::kLiverEdge)->position;
+  neck_ = FindNode(gallbladder_, neck);
+  fundus_ = FindNode(gallbladder_, fundus);
+  liver_node_ = FindNode(liver_, edge);
   for (const StrandInfo& strand : strands_) {
     if (strand.kind == StrandInfo::Kind::kBed) bed_normal_ += rest_[strand.a] - rest_[strand.b];
   }
   bed_normal_ = math::Normalized(bed_normal_, {0, -1, 0});
-  // beside the neck, so that both tools have room
-  const Vec3 axis = math::Normalized(landmark("fundus") - landmark("infundibulum"));
-  hold_ = FindNode(gallbladder, landmark("infundibulum") + kHoldBack * axis + kHoldBeside * bed_normal_);
-  const SurfaceInfo& surface = surfaces_[static_cast<std::size_t>(gallbladder)];
+  // beside the neck, so that both tools have clearance
+  const Vec3 axis = math::Normalized(fundus - neck);
+  hold_ = FindNode(gallbladder_, neck + kHoldBack * axis + kHoldBeside * bed_normal_);
+  const SurfaceInfo& surface = surfaces_[static_cast<std::size_t>(gallbladder_)];
   for (std::uint32_t node = surface.first_node; node < surface.first_node + surface.node_count; ++node) {
-    if (math::Distance(rest_[node], landmark("infundibulum")) <= kNeckRadius) neck_nodes_.push_back(node);
+    if (math::Distance(rest_[node], neck) <= kNeckRadius) neck_nodes_.push_back(node);
   }
   field_ = Place::AtNode(neck_);
 }
@@ -164,11 +166,8 @@ std::uint32_t CholecystectomySurgeon::FindNode(std::int32_t organ, const Vec3& p
   return nearest;
 }
 
-std::size_t CholecystectomySurgeon::FindTube(std::string_view name) const {
-  const auto& tubes = scene_->patient.tubes;
-  const auto found =
-      std::find_if(tubes.begin(), tubes.end(), [&](const anatomy::Tube& tube) { return tube.name == name; });
-  return found == tubes.end() ? 0 : static_cast<std::size_t>(found - tubes.begin());
+std::size_t CholecystectomySurgeon::FindTube(TubeRole role) const {
+  return static_cast<std::size_t>(std::max(0, scene_->patient.TubeOf(role)));
 }
 
 Vec3 CholecystectomySurgeon::TubePoint(const Snapshot& seen, std::size_t tube, double share) const {

@@ -23,10 +23,14 @@
 #include "trocar/agent/surgeon.h"
 #include "trocar/collision/segment_distance.h"
 #include "trocar/collision/triangle_tree.h"
+#include "trocar/roles/roles.h"
 #include "trocar/simulation/model_description.h"
 
 namespace trocar::agent {
 
+using roles::LandmarkRole;
+using roles::OrganRole;
+using roles::TubeRole;
 using scene::StrandInfo;
 using scene::SurfaceInfo;
 using simulation::ModelDescription;
@@ -188,7 +192,7 @@ class CholecystectomySurgeon final : public Surgeon {
   Vec3 TubePoint(const Snapshot& seen, std::size_t tube, double share) const;
   Vec3 TubeDirection(const Snapshot& seen, std::size_t tube, double share) const;
   std::uint32_t FindNode(std::int32_t organ, const Vec3& p) const;
-  std::size_t FindTube(std::string_view name) const;
+  std::size_t FindTube(TubeRole role) const;
   Vec3 HookTip(const Vec3& at) const;
   Vec3 HookToe(const Vec3& at, double spin) const;
   struct HookWay {
@@ -214,6 +218,7 @@ class CholecystectomySurgeon final : public Surgeon {
 
   std::vector<StrandInfo> strands_;
   std::vector<SurfaceInfo> surfaces_;
+  std::int32_t gallbladder_ = -1, liver_ = -1;  // of surfaces_
   std::vector<Vec3> rest_;
   std::vector<std::vector<std::uint32_t>>
       tube_nodes_;                         // (tubes) from the gallbladder's end, where one enters it

@@ -157,8 +157,7 @@ Vec3 CholecystectomySurgeon::FindUnhooked(const Place& place, const Snapshot& se
       return sum / static_cast<double>(place.strands.size());
     }
     case Place::Kind::kGallbladder: {
-      const SurfaceInfo& surface =
-          surfaces_[static_cast<std::size_t>(scene_->patient.FindOrgan("gallbladder"))];
+      const SurfaceInfo& surface = surfaces_[static_cast<std::size_t>(gallbladder_)];
       Vec3 centre;
       for (std::uint32_t i = 0; i < surface.node_count; ++i)
         centre += seen.positions[surface.first_node + i] / static_cast<double>(surface.node_count);

@@ -23,7 +23,7 @@ constexpr double kBesideLegs = 0.0017;    // of another vessel's axis, beside th
 constexpr double kBesideBlades = 0.0007;  // of anything else, beside the open blades [m]
 constexpr double kWiderThan = 0.0010;     // than the vessel, on either side, blades are opened [m]
 constexpr double kOwnLoop = 0.005;        // along the tube: farther off it is as another one [m]
-constexpr double kShaftWay = 0.09;        // of the shaft, beyond the tip, for which there has to be room [m]
+constexpr double kShaftWay = 0.09;        // of the shaft, beyond the tip, which has to be clear [m]
 constexpr double kTried = 0.0007;         // a place this near to one that failed is the same [m]
 /// Between neighbours among clips and cut, the best first [m].
 constexpr double kGaps[] = {0.0035, 0.0030, 0.0026, 0.0022, 0.0019, kLeastGap};

@@ -24,7 +24,7 @@ namespace {
 /// A plan that has led nowhere so often is given up.
 constexpr int kMostFruitlessPlans = 12;
 /// Above where a thing lay and where it goes, it is passed from hand to hand [m].
-constexpr double kMeetingHeight = 0.045;
+constexpr double kTransferHeight = 0.045;
 /// Above a place a thing is lowered from [m], and let go [m].
 constexpr double kAbovePlace = 0.028, kLetGoHeight = 0.0025;
 
@@ -268,11 +268,11 @@ void TaskSurgeon::PlanHandOver(const Snapshot& seen, int object, int from, int t
   }
   if (AddErrorScenario(seen, from, object)) return;
   const Vec3 start = scene_->objects[o].body.X_world_body.translation;
-  const Vec3 meeting{0, start.y, start.z + kMeetingHeight};
+  const Vec3 transfer{0, start.y, start.z + kTransferHeight};
   if (!has_to) {
     if (!in_place) {
-      Rise(from, start.z + 0.5 * kMeetingHeight - thing.X_world_object.translation.z);
-      Carry(from, object, meeting);
+      Rise(from, start.z + 0.5 * kTransferHeight - thing.X_world_object.translation.z);
+      Carry(from, object, transfer);
     }
     const auto grips = scene_->objects[o].grips.size();
     PickUp(to, object, grips < 2 ? 0 : to);

@@ -23,7 +23,7 @@ constexpr double kRunIn = 0.003;       // of a cut that leads to a line, from ou
 constexpr double kDrift = 0.0004;      // outwards in one turn, so that its end meets the run-in [m]
 constexpr int kWaypoints = 60;         // of a circle
 constexpr double kMostBurning = 6.0;   // [s]
-constexpr double kBetter = 0.0005;     // of one place on a band over another, for more room [m]
+constexpr double kBetter = 0.0005;     // of one place on a band over another, for more clearance [m]
 
 /// Spin that turns the tool's +y as nearly as can be along `across`; FindSpin leaves open which way round.
 double FindUpperSpin(const Vec3& port, const Vec3& tip, const Vec3& across) {
@@ -201,21 +201,21 @@ void TaskSurgeon::CutCircle(const Snapshot& seen, int sheet, double aside, doubl
   FollowSheet(hand, begin + Vec3{0, 0, kStandOff}, 1.0);
 }
 
-/// Where along a band there is most room between it and the others that hold.
+/// Where along a band there is most clearance between it and the others that hold.
 double TaskSurgeon::FindClearPlace(const Snapshot& seen, int band) const {
   const auto& bands = scene_->model->bands;
   const ModelBand& cord = bands[static_cast<std::size_t>(band)];
-  double best = 0.5, most_room = -1;
+  double best = 0.5, most_clearance = -1;
   for (const double t : {0.5, 0.4, 0.6, 0.3, 0.7}) {
     const Vec3 p = math::Lerp(cord.from, cord.to, t);
-    double room = std::numeric_limits<double>::infinity();
+    double clearance = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < bands.size(); ++i) {
       if (static_cast<int>(i) == band || seen.operation.band_is_whole[i] == 0) continue;
       const Vec3 &a = bands[i].from, along = bands[i].to - a;
       const double s = std::clamp(math::Dot(p - a, along) / math::SquaredNorm(along), 0.0, 1.0);
-      room = std::min(room, math::Distance(p, a + s * along));
+      clearance = std::min(clearance, math::Distance(p, a + s * along));
     }
-    if (room > most_room + kBetter) most_room = room, best = t;
+    if (clearance > most_clearance + kBetter) most_clearance = clearance, best = t;
   }
   return best;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What hands and camera are told to do, one after the other.
+// What hands and camera do, one after the other.
 #include <algorithm>
 #include <cmath>
 #include <utility>

@@ -10,7 +10,6 @@
 #include <string>
 
 #include "connective_tissue.h"
-#include "operation/vessel_map.h"
 #include "operation_harness.h"
 #include "trocar/agent/surgeon.h"
 #include "trocar/anatomy/generate_patient.h"
@@ -30,13 +29,10 @@ using scene::kLeft;
 using scene::kRight;
 using scene::MakeConnectiveTissue;
 using scene::ReadScene;
-using simulation::MakeVesselMap;
 using simulation::Operation;
 using simulation::OperationResult;
 using simulation::OperationScene;
 using simulation::Simulation;
-using simulation::VesselMap;
-using simulation::VesselPlace;
 namespace {
 
 Simulation MakeOperation() {
@@ -83,35 +79,6 @@ TEST(ConnectiveTissue, NeedsDucts) {
   anatomy::Patient patient = OperationScene()->patient;
   patient.tubes.clear();
   EXPECT_TRUE(MakeConnectiveTissue(patient, 0.0022, 1).lobules.empty());
-}
-
-TEST(VesselMap, JoinsDuctsAndArteriesAsThePatientHasThem) {
-  auto map = MakeVesselMap(OperationScene()->patient);
-  ASSERT_TRUE(map.ok()) << map.error().Text();
-  ASSERT_TRUE(map->anatomy.liver && map->anatomy.bowel && map->anatomy.aorta && map->anatomy.right_liver);
-  EXPECT_EQ(map->anatomy.gallbladder.size(), 2u) << "cystic duct and cystic artery";
-  ASSERT_EQ(map->gallbladder_ducts.size(), 1u);
-  surgery::VesselActs acts;
-  (void)map->network.Solve(acts);
-  EXPECT_TRUE(map->network.AreConnected(acts, *map->anatomy.liver, *map->anatomy.bowel));
-  EXPECT_TRUE(map->network.AreConnected(acts, *map->anatomy.liver, map->gallbladder_ducts[0]));
-  EXPECT_FALSE(map->network.AreConnected(acts, *map->anatomy.liver, *map->anatomy.aorta));
-
-  // a cut cystic artery bleeds 1 to 2 mL/s (domain facts, section 1.4); a clip upstream stops it
-  const auto& tubes = OperationScene()->patient.tubes;
-  const auto artery =
-      static_cast<std::size_t>(std::find_if(tubes.begin(), tubes.end(),
-                                            [](const auto& tube) { return tube.name == "cystic_artery"; }) -
-                               tubes.begin());
-  const double length = map->arcs[artery].back();
-  const VesselPlace cut = map->Find(artery, 0.6 * length), clip = map->Find(artery, 0.3 * length);
-  EXPECT_EQ(map->anatomy.roles[cut.vessel], training::VesselRole::kCysticArtery);
-  acts.openings.push_back({cut.vessel, cut.position, true, 0.0, {}});
-  const double rate = map->network.Solve(acts).rate[static_cast<std::size_t>(surgery::Fluid::kBlood)];
-  EXPECT_GT(rate, 1.0e-6);
-  EXPECT_LT(rate, 2.0e-6);
-  acts.clips.push_back({clip.vessel, clip.position, 1.0});
-  EXPECT_LT(map->network.Solve(acts).rate[static_cast<std::size_t>(surgery::Fluid::kBlood)], 0.05 * rate);
 }
 
 TEST(Operation, ExchangesToolsButNotWhileHolding) {

@@ -8,16 +8,15 @@
 #include <optional>
 #include <vector>
 
-#include "operation/sheet_monitor.h"
 #include "task_play.h"
 #include "trocar/geometry/surface_cut.h"
+#include "trocar/training/pattern_cut_monitor.h"
 
 namespace trocar::agent {
 
 using math::Vec3;
 using scene::ModelSheet;
-using simulation::SheetMonitor;
-using simulation::SheetSnapshot;
+using training::PatternCut;
 namespace {
 
 // --- its judge, against closed formulas
@@ -44,10 +43,10 @@ class Sheet : public testing::Test {
     for (int i = 0; i < kPieces; ++i)
       (void)cutter_->Cut(edge(1.0 * i / kPieces), edge((i + 1.0) / kPieces), {}, front, *mesh_);
   }
-  SheetSnapshot Judge() const {
-    SheetMonitor watch(setup_, *mesh_);
-    watch.Update(*mesh_);
-    return watch.Now();
+  PatternCut Judge() const {
+    training::PatternCutMonitor monitor({setup_.centre, setup_.half, setup_.circle}, *mesh_);
+    monitor.Update(*mesh_);
+    return monitor.Now();
   }
 
   ModelSheet setup_;
@@ -58,7 +57,7 @@ class Sheet : public testing::Test {
 constexpr double kSnap = 0.0007;  // that a cut may lie beside the blade: a fifth of an edge
 
 TEST_F(Sheet, UncutIsHeldAndRight) {
-  const SheetSnapshot now = Judge();
+  const PatternCut now = Judge();
   EXPECT_FALSE(now.is_free);
   EXPECT_EQ(now.cut_length, 0);
   EXPECT_EQ(now.farthest, 0);
@@ -82,7 +81,7 @@ TEST_F(Sheet, ASquareCutOutDiffersFromTheCircleAsTheFormulaSays) {
   Cut({beyond, r, 0}, {-beyond, r, 0});
   EXPECT_FALSE(Judge().is_free);
   Cut({-r, beyond, 0}, {-r, -beyond, 0});
-  const SheetSnapshot now = Judge();
+  const PatternCut now = Judge();
   EXPECT_TRUE(now.is_free);
   EXPECT_NEAR(now.farthest, (std::sqrt(2.0) - 1) * r, 0.0025) << "the corners; an edge is 3 mm long";
   EXPECT_NEAR(now.off_area, (4 - M_PI) * r * r, 0.1 * (4 - M_PI) * r * r);
@@ -99,7 +98,7 @@ TEST(PatternCut, TheExpertsPieceIsFreeRoundAndLeftWhereItWas) {
     simulation->Step((*surgeon)->Act(simulation->GetSnapshot()));
   const Snapshot& now = simulation->GetSnapshot();
   ASSERT_EQ(now.operation.sheets.size(), 1u);
-  const SheetSnapshot& sheet = now.operation.sheets[0];
+  const PatternCut& sheet = now.operation.sheets[0];
   EXPECT_TRUE(sheet.is_free);
   const double around = 2 * M_PI * scene->model->sheets[0].circle;
   EXPECT_GT(sheet.cut_length, around);

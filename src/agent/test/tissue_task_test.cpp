@@ -30,8 +30,8 @@ using scene::Task;
 using scene::TaskPhase;
 using simulation::ClipSnapshot;
 using simulation::OperationSnapshot;
-using simulation::SheetSnapshot;
 using simulation::TaskMonitor;
+using training::PatternCut;
 namespace {
 
 namespace fs = std::filesystem;
@@ -326,7 +326,7 @@ TEST_F(TissueWords, PartedMeansThatBand) {
 TEST_F(TissueWords, ASheetIsFreeOffItsLineOrOfTheWrongArea) {
   scene_.model->sheets.resize(1);
   snapshot_.operation.sheets.resize(1);
-  SheetSnapshot& sheet = snapshot_.operation.sheets[0];
+  PatternCut& sheet = snapshot_.operation.sheets[0];
   const auto is_true = [&](ConditionKind kind, double amount) {
     Condition condition = Of(kind);
     condition.sheet = 0;

@@ -128,9 +128,13 @@ class Placer {
   Obstacle liver_, gallbladder_;
 };
 
-contours::TubePoints MakeTubePoints(const char* name, const char* kind, const char* from, const char* to,
+/// How control points name what lies beyond the pictures.
+constexpr const char* kOutside = "outside";
+
+contours::TubePoints MakeTubePoints(TubeRole role, const char* from, const char* to,
                                     const std::vector<Vec3>& line, double first_radius, double last_radius) {
-  contours::TubePoints tube{name, kind, from, to, false, {}};
+  const TubeKind kind = roles::IsDuct(role) ? TubeKind::kDuct : TubeKind::kArtery;
+  contours::TubePoints tube{NameOf(role), KindName(kind), from, to, false, {}};
   for (std::size_t i = 0; i < line.size(); ++i) {
     const double t = static_cast<double>(i) / static_cast<double>(line.size() - 1);
     tube.points.push_back(
@@ -275,12 +279,12 @@ std::vector<contours::TubePoints> PlaceDucts(const TriangleMesh& liver, const Tr
                                  bile_length, kBehind);
 
   std::vector<contours::TubePoints> tubes = {
-      MakeTubePoints("cystic_duct", "duct", "gallbladder", "common_bile_duct", cystic, cystic_mouth,
-                     cystic_radius),
-      MakeTubePoints("common_hepatic_duct", "duct", "liver", "common_bile_duct", hepatic,
-                     0.85 * hepatic_radius, hepatic_radius),
-      MakeTubePoints("common_bile_duct", "duct", "common_hepatic_duct", "outside", bile, bile_radius,
-                     0.85 * bile_radius)};
+      MakeTubePoints(TubeRole::kCysticDuct, NameOf(OrganRole::kGallbladder),
+                     NameOf(TubeRole::kCommonBileDuct), cystic, cystic_mouth, cystic_radius),
+      MakeTubePoints(TubeRole::kCommonHepaticDuct, NameOf(OrganRole::kLiver),
+                     NameOf(TubeRole::kCommonBileDuct), hepatic, 0.85 * hepatic_radius, hepatic_radius),
+      MakeTubePoints(TubeRole::kCommonBileDuct, NameOf(TubeRole::kCommonHepaticDuct), kOutside, bile,
+                     bile_radius, 0.85 * bile_radius)};
 
   // right hepatic artery: from the left, behind the common hepatic duct, through the triangle into the liver
   const double artery_radius = 0.5 * number("hepatic_artery_diameter");
@@ -297,8 +301,8 @@ std::vector<contours::TubePoints> PlaceDucts(const TriangleMesh& liver, const Tr
   });
   const Vec3 origin = placer.PushOut(crossing + Vec3{26, -7, -3}, artery_radius + kClearMm);
   const auto artery = placer.Route({origin, crossing, turn, entry}, artery_radius, 0.0, kBehind);
-  tubes.push_back(MakeTubePoints("right_hepatic_artery", "artery", "outside", "liver", artery, artery_radius,
-                                 0.8 * artery_radius));
+  tubes.push_back(MakeTubePoints(TubeRole::kRightHepaticArtery, kOutside, NameOf(OrganRole::kLiver), artery,
+                                 artery_radius, 0.8 * artery_radius));
 
   // cystic arteries: from the artery's turn to the gallbladder's free side, and deep to it
   const bool is_double = is_yes("double_cystic_artery");
@@ -307,7 +311,8 @@ std::vector<contours::TubePoints> PlaceDucts(const TriangleMesh& liver, const Tr
   // the second one enters another side of the gallbladder, also where neither is long enough to choose
   constexpr double kApartMm = 8.0;
   std::vector<Vec3> entries;
-  const auto place_artery = [&](const char* name, const Vec3& side, const std::vector<Vec3>& from_line) {
+  const auto place_artery = [&](const char* name_ending, const Vec3& side,
+                                const std::vector<Vec3>& from_line) {
     const Vec3 start = *std::min_element(
         from_line.begin(), from_line.end(),
         [&](const Vec3& a, const Vec3& b) { return Distance(a, turn) < Distance(b, turn); });
@@ -321,14 +326,15 @@ std::vector<contours::TubePoints> PlaceDucts(const TriangleMesh& liver, const Tr
     });
     entries.push_back(target);
     const Vec3 middle = placer.PushOut(0.5 * (start + target), radius + kClearMm);
-    tubes.push_back(MakeTubePoints(name, "artery", "right_hepatic_artery", "gallbladder",
-                                   placer.Route({start, middle, target}, radius, length, side), radius,
-                                   0.85 * radius));
+    tubes.push_back(MakeTubePoints(
+        TubeRole::kCysticArtery, NameOf(TubeRole::kRightHepaticArtery), NameOf(OrganRole::kGallbladder),
+        placer.Route({start, middle, target}, radius, length, side), radius, 0.85 * radius));
+    tubes.back().name += name_ending;
   };
-  place_artery("cystic_artery", math::Normalized(Vec3{0.7, -0.4, 0.4}), artery);
-  if (is_double) place_artery("cystic_artery_deep", math::Normalized(Vec3{-0.5, -0.6, -0.3}), artery);
+  place_artery("", math::Normalized(Vec3{0.7, -0.4, 0.4}), artery);
+  if (is_double) place_artery("_deep", math::Normalized(Vec3{-0.5, -0.6, -0.3}), artery);
 
-  if (is_yes("subvesical_duct")) {
+  if (is_yes(NameOf(TubeRole::kSubvesicalDuct))) {
     // out of the liver at the bed's medial border, along it to the common hepatic duct
     const double small = 0.5 * number("subvesical_duct_diameter");
     const Vec3 goal = PointAt(hepatic, 0.3);
@@ -337,11 +343,11 @@ std::vector<contours::TubePoints> PlaceDucts(const TriangleMesh& liver, const Tr
       const double away = placer.Gallbladder().Find(p, outward);
       return std::fabs(away - 4.0) + 0.5 * std::fabs(Distance(p, neck) - 28.0) - 0.2 * Dot(p - neck, kLeft);
     });
-    tubes.push_back(
-        MakeTubePoints("subvesical_duct", "duct", "liver", "common_hepatic_duct",
-                       placer.Route({start, placer.PushOut(0.5 * (start + goal), small + kClearMm), goal},
-                                    small, 0.0, kLeft),
-                       small, small));
+    tubes.push_back(MakeTubePoints(
+        TubeRole::kSubvesicalDuct, NameOf(OrganRole::kLiver), NameOf(TubeRole::kCommonHepaticDuct),
+        placer.Route({start, placer.PushOut(0.5 * (start + goal), small + kClearMm), goal}, small, 0.0,
+                     kLeft),
+        small, small));
   }
   return tubes;
 }
@@ -364,9 +370,9 @@ std::vector<Tube> MakeTemplateTubes(const TriangleMesh& liver, const TriangleMes
                                  is_whole ? parameters : std::span<const Parameter>(*usual));
   std::vector<Tube> tubes;
   for (const contours::TubePoints& points : placed) {
-    const auto name_of = [](const std::string& end) { return end == "outside" ? std::string() : end; };
+    const auto name_of = [](const std::string& end) { return end == kOutside ? std::string() : end; };
     Tube tube{points.name,
-              points.kind == "artery" ? TubeKind::kArtery : TubeKind::kDuct,
+              points.kind == KindName(TubeKind::kArtery) ? TubeKind::kArtery : TubeKind::kDuct,
               name_of(points.from),
               name_of(points.to),
               {},
@@ -393,7 +399,7 @@ double CalcLengthMm(const contours::TubePoints& tube) {
 contours::ControlPoints MakeWorldFrame() {
   contours::ControlPoints points;
   points.axes = {"left", "superior", "anterior"};
-  points.origin_landmark = "fundus";
+  points.origin_landmark = NameOf(LandmarkRole::kFundus);
   points.origin_mm = {-75, 95, -70};
   return points;
 }

@@ -345,7 +345,8 @@ core::Result<Patient> GeneratePatient(std::uint64_t seed, std::span<const Parame
   const Body body(*parameters, seed);
 
   auto liver = MakeStructure(
-      "liver", Sample(body.LiverBox(), kLiverSpacingMm, [&](const Vec3& p) { return body.LiverDistance(p); }),
+      NameOf(OrganRole::kLiver),
+      Sample(body.LiverBox(), kLiverSpacingMm, [&](const Vec3& p) { return body.LiverDistance(p); }),
       meshing::kLiverTriangles);
   if (!liver.ok()) return liver.error();
   geometry::Box box = geometry::CalcBox(body.Gallbladder().points);
@@ -353,7 +354,7 @@ core::Result<Patient> GeneratePatient(std::uint64_t seed, std::span<const Parame
       *std::max_element(body.Gallbladder().radii.begin(), body.Gallbladder().radii.end()) + 3.0;
   box.min -= Vec3{reach, reach, reach}, box.max += Vec3{reach, reach, reach};
   auto gallbladder = MakeStructure(
-      "gallbladder",
+      NameOf(OrganRole::kGallbladder),
       Sample(box, kGallbladderSpacingMm, [&](const Vec3& p) { return body.GallbladderDistance(p); }),
       meshing::kGallbladderTriangles);
   if (!gallbladder.ok()) return gallbladder.error();
@@ -363,7 +364,7 @@ core::Result<Patient> GeneratePatient(std::uint64_t seed, std::span<const Parame
   frame.provenance = "Made by a computer from the seed and the parameters listed here; no person's images";
   frame.tubes = PlaceDucts(liver->mesh, gallbladder->mesh, body.Neck(), *parameters);
   const Vec3 fissure = body.FissurePoint();
-  frame.landmarks = {{"umbilical_fissure", fissure.z, {fissure.x, fissure.y}}};
+  frame.landmarks = {{NameOf(LandmarkRole::kUmbilicalFissure), fissure.z, {fissure.x, fissure.y}}};
 
   const auto measure = [&](const char* name, double value, const char* unit) {
     parameters->push_back({name, value, unit, "measured on the result"});

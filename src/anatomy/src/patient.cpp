@@ -58,6 +58,22 @@ std::uint32_t IndexFrom(const JsonView& view) {
   return static_cast<std::uint32_t>(value);
 }
 
+/// The role that is stated, or that of the name.
+template <class Role>
+Role RoleFrom(const JsonView& view, const std::string& name) {
+  if (!view.Has("role")) return roles::ConventionalRole<Role>(name);
+  const auto role = roles::FindRole<Role>(view.Text("role"));
+  if (!role) view.Complain("role must be other, or one of " + roles::ListNames<Role>());
+  return role.value_or(Role::kOther);
+}
+
+/// States a role that the name does not say.
+template <class Thing>
+void StateRole(const Thing& thing, nlohmann::ordered_json& json) {
+  using Role = decltype(thing.role);
+  if (thing.role != roles::ConventionalRole<Role>(thing.name)) json["role"] = roles::NameOf(thing.role);
+}
+
 /// One top-level field a line, long lists of numbers on one line.
 std::string FormatPatient(const Patient& patient) {
   using Json = nlohmann::ordered_json;
@@ -73,9 +89,12 @@ std::string FormatPatient(const Patient& patient) {
   std::vector<Json> organs, attachments, tubes, landmarks;
   for (const Organ& organ : patient.organs) {
     Json regions = Json::array();
-    for (const Region& region : organ.regions)
+    for (const Region& region : organ.regions) {
       regions.push_back({{"name", region.name}, {"vertices", region.vertices}});
+      StateRole(region, regions.back());
+    }
     organs.push_back({{"name", organ.name}, {"mesh", organ.name + ".ply"}, {"regions", regions}});
+    StateRole(organ, organs.back());
   }
   // runs of attachments between the same organs share one entry
   for (std::size_t i = 0; i < patient.attachments.size();) {
@@ -96,15 +115,17 @@ std::string FormatPatient(const Patient& patient) {
       radii.push_back(kMmPerMetre * tube.line.radii[i]);
     }
     tubes.push_back({{"name", tube.name},
-                     {"kind", tube.kind == TubeKind::kDuct ? "duct" : "artery"},
+                     {"kind", KindName(tube.kind)},
                      {"from", tube.from},
                      {"to", tube.to},
                      {"seen", tube.is_seen},
                      {"points", points},
                      {"radii", radii}});
+    StateRole(tube, tubes.back());
   }
   for (const Landmark& landmark : patient.landmarks) {
     landmarks.push_back({{"name", landmark.name}, {"position", PointJson(landmark.position)}});
+    StateRole(landmark, landmarks.back());
   }
   append_list("organs", organs, false);
   append_list("attachments", attachments, false);
@@ -129,6 +150,38 @@ std::string FormatPatient(const Patient& patient) {
 
 }  // namespace
 
+const Region* Organ::RegionOf(RegionRole wanted) const {
+  const auto found = std::find_if(regions.begin(), regions.end(),
+                                  [&](const Region& region) { return region.role == wanted; });
+  return found == regions.end() ? nullptr : &*found;
+}
+
+int Patient::OrganOf(OrganRole role) const {
+  for (std::size_t i = 0; i < organs.size(); ++i) {
+    if (organs[i].role == role) return static_cast<int>(i);
+  }
+  return -1;
+}
+
+int Patient::TubeOf(TubeRole role) const {
+  for (std::size_t i = 0; i < tubes.size(); ++i) {
+    if (tubes[i].role == role) return static_cast<int>(i);
+  }
+  return -1;
+}
+
+OrganRole Patient::RoleOfOrgan(int organ) const {
+  const auto index = static_cast<std::size_t>(organ);
+  return organ >= 0 && index < organs.size() ? organs[index].role : OrganRole::kOther;
+}
+
+const Landmark* Patient::LandmarkOf(LandmarkRole role) const {
+  for (const Landmark& landmark : landmarks) {
+    if (landmark.role == role) return &landmark;
+  }
+  return nullptr;
+}
+
 int Patient::FindOrgan(std::string_view organ_name) const {
   for (std::size_t i = 0; i < organs.size(); ++i) {
     if (organs[i].name == organ_name) return static_cast<int>(i);
@@ -136,11 +189,25 @@ int Patient::FindOrgan(std::string_view organ_name) const {
   return -1;
 }
 
+int Patient::FindTube(std::string_view tube_name) const {
+  for (std::size_t i = 0; i < tubes.size(); ++i) {
+    if (tubes[i].name == tube_name) return static_cast<int>(i);
+  }
+  return -1;
+}
+
+int Patient::FindPart(std::string_view part_name) const {
+  const int organ = FindOrgan(part_name), tube = FindTube(part_name);
+  if (organ >= 0) return organ;
+  return tube < 0 ? -1 : static_cast<int>(organs.size()) + tube;
+}
+
 const Landmark* Patient::FindLandmark(std::string_view landmark_name) const {
   for (const Landmark& landmark : landmarks) {
     if (landmark.name == landmark_name) return &landmark;
   }
-  return nullptr;
+  const LandmarkRole role = roles::ConventionalRole<LandmarkRole>(landmark_name);
+  return role == LandmarkRole::kOther ? nullptr : LandmarkOf(role);
 }
 
 const Parameter* Patient::FindParameter(std::string_view parameter_name) const {
@@ -165,15 +232,16 @@ core::Result<UncheckedPatient> ReadPatientUnchecked(const fs::path& folder) {
   patient.name = root.Text("name");
   patient.provenance = root.Text("provenance");
   for (const JsonView& view : root.Array("organs")) {
-    view.AllowOnly({"name", "mesh", "regions"});
-    Organ organ;
-    organ.name = view.Text("name");
+    view.AllowOnly({"name", "role", "mesh", "regions"});
+    Organ organ{view.Text("name"), {}, {}};
+    organ.role = RoleFrom<OrganRole>(view, organ.name);
     // the mesh lies beside patient.json under the organ's own name: no path can lead out of the folder
     if (!IsPlainName(organ.name)) view.Complain("name must consist of a-z, 0-9 and _");
     if (view.Text("mesh") != organ.name + ".ply") view.Complain("mesh must be the organ's name and .ply");
     for (const JsonView& region_view : view.Array("regions")) {
-      region_view.AllowOnly({"name", "vertices"});
+      region_view.AllowOnly({"name", "role", "vertices"});
       Region region{region_view.Text("name"), {}};
+      region.role = RoleFrom<RegionRole>(region_view, region.name);
       for (const JsonView& vertex : region_view.Array("vertices"))
         region.vertices.push_back(IndexFrom(vertex));
       organ.regions.push_back(std::move(region));
@@ -198,12 +266,16 @@ core::Result<UncheckedPatient> ReadPatientUnchecked(const fs::path& folder) {
     }
   }
   for (const JsonView& view : root.Array("tubes")) {
-    view.AllowOnly({"name", "kind", "from", "to", "seen", "points", "radii"});
-    Tube tube;
-    tube.name = view.Text("name");
+    view.AllowOnly({"name", "role", "kind", "from", "to", "seen", "points", "radii"});
+    Tube tube{view.Text("name")};
+    tube.role = RoleFrom<TubeRole>(view, tube.name);
     const std::string kind = view.Text("kind");
-    if (kind != "duct" && kind != "artery") view.Complain("kind must be \"duct\" or \"artery\"");
-    tube.kind = kind == "artery" ? TubeKind::kArtery : TubeKind::kDuct;
+    const auto known = FindKind(kind);
+    if (!known) view.Complain("kind must be \"duct\" or \"artery\"");
+    tube.kind = known.value_or(TubeKind::kDuct);
+    const bool is_duct = tube.kind == TubeKind::kDuct;
+    if (view.Has("role") && tube.role != TubeRole::kOther && roles::IsDuct(tube.role) != is_duct)
+      view.Complain("role does not fit the kind: a " + roles::SpokenName(tube.role) + " is no " + kind);
     tube.from = view.TextOr("from", "");
     tube.to = view.TextOr("to", "");
     tube.is_seen = view.BooleanOr("seen", true);
@@ -216,8 +288,10 @@ core::Result<UncheckedPatient> ReadPatientUnchecked(const fs::path& folder) {
     patient.tubes.push_back(std::move(tube));
   }
   for (const JsonView& view : root.Array("landmarks")) {
-    view.AllowOnly({"name", "position"});
-    patient.landmarks.push_back({view.Text("name"), PointFrom(view, "position")});
+    view.AllowOnly({"name", "role", "position"});
+    Landmark landmark{view.Text("name"), PointFrom(view, "position")};
+    landmark.role = RoleFrom<LandmarkRole>(view, landmark.name);
+    patient.landmarks.push_back(std::move(landmark));
   }
   if (root.Has("parameters")) {
     for (const JsonView& view : root.Array("parameters")) {
@@ -320,10 +394,21 @@ core::Status CheckSize(const Organ& organ) {
   return Error{ErrorCode::kPatientInvalid, text};
 }
 
+/// Refuses a role that two of the things have.
+template <class Thing>
+core::Status CheckRoles(const std::vector<Thing>& things, const std::string& what) {
+  const Thing* second = FindSecondOfRole(things);
+  if (second == nullptr) return {};
+  return Invalid("two " + what + " have the role " + roles::SpokenName(second->role) + ", '" + second->name +
+                 "' is one of them");
+}
+
 }  // namespace
 
 core::Status CheckPatient(const Patient& patient) {
   if (patient.organs.empty()) return Invalid("it has no organ");
+  if (core::Status good = CheckRoles(patient.organs, "organs"); !good) return good;
+  if (core::Status good = CheckRoles(patient.landmarks, "landmarks"); !good) return good;
   std::set<std::string> names;
   for (const Organ& organ : patient.organs) {
     if (!IsPlainName(organ.name))
@@ -342,6 +427,7 @@ core::Status CheckPatient(const Patient& patient) {
                                                   " flat triangles); repair it"};
     }
     if (!report.outward) return Invalid("the triangles of " + organ.name + " face inwards");
+    if (core::Status good = CheckRoles(organ.regions, "regions of " + organ.name); !good) return good;
     std::set<std::string> regions;
     for (const Region& region : organ.regions) {
       if (!regions.insert(region.name).second)

@@ -90,9 +90,8 @@ Vec3 FindEnd(const TriangleMesh& mesh, const meshing::NearestSurface& surface, c
 
 Tube MakeTube(const contours::TubePoints& points, const ImageFrame& frame, const std::set<std::string>& known,
               double spacing) {
-  Tube tube;
-  tube.name = points.name;
-  tube.kind = points.kind == "artery" ? TubeKind::kArtery : TubeKind::kDuct;
+  Tube tube{points.name};
+  tube.kind = points.kind == KindName(TubeKind::kArtery) ? TubeKind::kArtery : TubeKind::kDuct;
   // ends outside the scene have no name in a patient
   tube.from = known.contains(points.from) ? points.from : "";
   tube.to = known.contains(points.to) ? points.to : "";
@@ -117,7 +116,8 @@ core::Result<Patient> AssemblePatient(const contours::ControlPoints& points,
   for (const meshing::StructureMesh& structure : structures) {
     patient.organs.push_back({structure.name, frame.FromMm(structure.mesh), {}});
   }
-  const int liver_index = patient.FindOrgan("liver"), gallbladder_index = patient.FindOrgan("gallbladder");
+  const int liver_index = patient.OrganOf(OrganRole::kLiver),
+            gallbladder_index = patient.OrganOf(OrganRole::kGallbladder);
   if (liver_index < 0 || gallbladder_index < 0) {
     return core::Error{
         core::ErrorCode::kPatientInvalid,
@@ -134,8 +134,8 @@ core::Result<Patient> AssemblePatient(const contours::ControlPoints& points,
   for (const contours::TubePoints& tube_points : points.tubes) {
     Tube tube = MakeTube(tube_points, frame, known, settings.tube_spacing);
     const auto snap = [&](Vec3& end) { end = gallbladder_surface.Find(end).at.point; };
-    if (tube.from == "gallbladder") snap(tube.line.points.front());
-    if (tube.to == "gallbladder") snap(tube.line.points.back());
+    if (tube.from == gallbladder.name) snap(tube.line.points.front());
+    if (tube.to == gallbladder.name) snap(tube.line.points.back());
     patient.tubes.push_back(std::move(tube));
   }
   // joints become exact; what lies too far away stays, for the linter to find
@@ -144,10 +144,8 @@ core::Result<Patient> AssemblePatient(const contours::ControlPoints& points,
   // the gallbladder's ends along its long axis; the cystic duct starts at the infundibulum
   Vec3 centre;
   Vec3 axis = FindLongAxis(gallbladder.mesh, centre);
-  const auto duct = std::find_if(patient.tubes.begin(), patient.tubes.end(),
-                                 [](const Tube& t) { return t.name == "cystic_duct"; });
-  const bool has_duct = duct != patient.tubes.end();
-  const Vec3 towards_fundus = has_duct ? centre - duct->line.points.front() : Vec3{0, -1, 1};
+  const int duct = patient.TubeOf(TubeRole::kCysticDuct);
+  const Vec3 towards_fundus = duct >= 0 ? centre - patient.tubes[duct].line.points.front() : Vec3{0, -1, 1};
   if (Dot(axis, towards_fundus) < 0) axis = -axis;
   const Vec3 fundus = FindEnd(gallbladder.mesh, gallbladder_surface, axis);
   const Vec3 infundibulum = FindEnd(gallbladder.mesh, gallbladder_surface, -axis);
@@ -158,7 +156,7 @@ core::Result<Patient> AssemblePatient(const contours::ControlPoints& points,
     JoinTubes(patient);
   }
 
-  const contours::LandmarkPoint* fissure = points.FindLandmark("umbilical_fissure");
+  const contours::LandmarkPoint* fissure = points.FindLandmark(NameOf(LandmarkRole::kUmbilicalFissure));
   const double falciform_x =
       fissure ? frame.FromPixel(fissure->slice, fissure->pixel).x : infundibulum.x + 0.02;
   const LiverRegions regions = FindLiverRegions(liver.mesh, gallbladder_surface, falciform_x, settings);
@@ -188,23 +186,26 @@ core::Result<Patient> AssemblePatient(const contours::ControlPoints& points,
     patient.attachments.push_back({kGallbladderBed, static_cast<std::uint32_t>(gallbladder_index), pair[0],
                                    static_cast<std::uint32_t>(liver_index), pair[1]});
   }
-  patient.landmarks = {{"fundus", fundus}, {"infundibulum", infundibulum}, {"gallbladder_body", body}};
-  if (edge != nullptr) patient.landmarks.push_back({"liver_edge", *edge});
-  const auto middle_of = [&](std::string_view name) -> const Vec3* {
-    for (const Tube& tube : patient.tubes) {
-      if (tube.name == name) return &tube.line.points[tube.line.points.size() / 2];
-    }
-    return nullptr;
+  patient.landmarks = {{NameOf(LandmarkRole::kFundus), fundus},
+                       {NameOf(LandmarkRole::kInfundibulum), infundibulum},
+                       {NameOf(LandmarkRole::kGallbladderBody), body}};
+  if (edge != nullptr) patient.landmarks.push_back({NameOf(LandmarkRole::kLiverEdge), *edge});
+  const auto middle_of = [&](TubeRole role) -> const Vec3* {
+    const int tube = patient.TubeOf(role);
+    if (tube < 0) return nullptr;
+    const auto& line = patient.tubes[tube].line.points;
+    return &line[line.size() / 2];
   };
-  const Vec3 *cystic = middle_of("cystic_duct"), *hepatic = middle_of("common_hepatic_duct");
-  if (cystic && hepatic) patient.landmarks.push_back({"hepatocystic_triangle", 0.5 * (*cystic + *hepatic)});
+  const Vec3 *cystic = middle_of(TubeRole::kCysticDuct), *hepatic = middle_of(TubeRole::kCommonHepaticDuct);
+  if (cystic && hepatic)
+    patient.landmarks.push_back({NameOf(LandmarkRole::kHepatocysticTriangle), 0.5 * (*cystic + *hepatic)});
   for (const contours::LandmarkPoint& placed : points.landmarks) {
     patient.landmarks.push_back({placed.name, frame.FromPixel(placed.slice, placed.pixel)});
   }
 
   // the origin: the umbilicus on the insufflated wall, known by one landmark's place. Pictures show a wall that is
   // not insufflated, so that without either the fundus goes where the scenes expect it
-  constexpr std::string_view kUmbilicus = "umbilicus";
+  constexpr std::string_view kUmbilicus = NameOf(LandmarkRole::kUmbilicus);
   const bool is_placed = patient.FindLandmark(kUmbilicus) != nullptr;
   const contours::ControlPoints usual = MakeWorldFrame();
   const bool is_given = !points.origin_landmark.empty();

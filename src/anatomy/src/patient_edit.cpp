@@ -58,13 +58,13 @@ std::vector<Vec3> Drag(geometry::CentreLine& line, std::uint32_t point, const Ve
 
 /// Strands of the gallbladder's bed after its region has changed.
 void FollowBed(Patient& patient, std::uint32_t gallbladder, const Region& bed) {
-  const int liver = patient.FindOrgan("liver");
+  const int liver = patient.OrganOf(OrganRole::kLiver);
   if (liver < 0 || patient.organs[liver].mesh.triangles.empty()) return;
   const auto is_in_bed = [&](std::uint32_t v) {
     return std::binary_search(bed.vertices.begin(), bed.vertices.end(), v);
   };
   const auto is_strand = [&](const Attachment& a) {
-    return a.name == kGallbladderBed && a.organ_a == gallbladder;
+    return a.organ_a == gallbladder && a.organ_b == static_cast<std::uint32_t>(liver);
   };
   std::erase_if(patient.attachments,
                 [&](const Attachment& a) { return is_strand(a) && !is_in_bed(a.vertex_a); });
@@ -141,7 +141,7 @@ core::Status PaintRegion(Patient& patient, std::string_view organ_name, std::str
     std::set_difference(old.begin(), old.end(), brush.begin(), brush.end(), std::back_inserter(painted));
   }
   region->vertices = std::move(painted);
-  if (organ.name == "gallbladder" && region->name == kGallbladderBed)
+  if (organ.role == OrganRole::kGallbladder && region->role == RegionRole::kGallbladderBed)
     FollowBed(patient, static_cast<std::uint32_t>(index), *region);
   return {};
 }
@@ -236,9 +236,7 @@ core::Status JoinTubeEnd(Patient& patient, std::uint32_t tube, TubeEnd end, std:
 }
 
 core::Status AddTube(Patient& patient, Tube tube) {
-  const bool is_taken = patient.FindOrgan(tube.name) >= 0 ||
-                        std::any_of(patient.tubes.begin(), patient.tubes.end(),
-                                    [&](const Tube& other) { return other.name == tube.name; });
+  const bool is_taken = patient.FindOrgan(tube.name) >= 0 || patient.FindTube(tube.name) >= 0;
   if (is_taken || !IsPlainName(tube.name))
     return Invalid("the name \"" + tube.name + "\" is taken or no plain word (a-z, 0-9 and _)");
   const auto& line = tube.line;
@@ -264,18 +262,32 @@ core::Status RemoveTube(Patient& patient, std::uint32_t tube) {
 
 std::vector<std::string> FindMissingTubes(const Patient& patient) {
   std::vector<std::string> missing;
-  for (const char* name :
-       {"cystic_duct", "common_hepatic_duct", "common_bile_duct", "right_hepatic_artery", "cystic_artery"}) {
-    if (std::none_of(patient.tubes.begin(), patient.tubes.end(),
-                     [&](const Tube& t) { return t.name == name; }))
-      missing.emplace_back(name);
+  for (const TubeRole role : {TubeRole::kCysticDuct, TubeRole::kCommonHepaticDuct, TubeRole::kCommonBileDuct,
+                              TubeRole::kRightHepaticArtery, TubeRole::kCysticArtery}) {
+    if (patient.TubeOf(role) < 0) missing.emplace_back(roles::NameOf(role));
   }
   return missing;
 }
 
+namespace {
+
+/// What the patient calls the organ or tube of a conventional name.
+std::string FindOwnName(const Patient& patient, const std::string& conventional) {
+  if (patient.FindOrgan(conventional) >= 0 || patient.FindTube(conventional) >= 0) return conventional;
+  const OrganRole organ = roles::ConventionalRole<OrganRole>(conventional);
+  if (organ != OrganRole::kOther && patient.OrganOf(organ) >= 0)
+    return patient.organs[patient.OrganOf(organ)].name;
+  const TubeRole tube = roles::ConventionalRole<TubeRole>(conventional);
+  if (tube != TubeRole::kOther && patient.TubeOf(tube) >= 0) return patient.tubes[patient.TubeOf(tube)].name;
+  return conventional;
+}
+
+}  // namespace
+
 core::Status AddTemplateTube(Patient& patient, std::string_view name) {
-  const int liver = patient.FindOrgan("liver"), gallbladder = patient.FindOrgan("gallbladder");
-  const Landmark* neck = patient.FindLandmark("infundibulum");
+  const int liver = patient.OrganOf(OrganRole::kLiver),
+            gallbladder = patient.OrganOf(OrganRole::kGallbladder);
+  const Landmark* neck = patient.LandmarkOf(LandmarkRole::kInfundibulum);
   if (liver < 0 || gallbladder < 0 || neck == nullptr)
     return Invalid("ducts are placed by liver, gallbladder and the landmark infundibulum; place it first");
   auto tubes = MakeTemplateTubes(patient.organs[liver].mesh, patient.organs[gallbladder].mesh, neck->position,
@@ -289,7 +301,8 @@ core::Status AddTemplateTube(Patient& patient, std::string_view name) {
   // its ends meet the patient's own tubes, wherever those run
   const auto index = static_cast<std::uint32_t>(patient.tubes.size() - 1);
   for (const TubeEnd end : {TubeEnd::kFrom, TubeEnd::kTo}) {
-    const std::string target = end == TubeEnd::kFrom ? patient.tubes[index].from : patient.tubes[index].to;
+    const std::string target =
+        FindOwnName(patient, end == TubeEnd::kFrom ? patient.tubes[index].from : patient.tubes[index].to);
     if (!JoinTubeEnd(patient, index, end, target)) {
       // what it would join is missing, too: it leaves the scene there
       if (auto status = JoinTubeEnd(patient, index, end, ""); !status) return status;
@@ -302,17 +315,20 @@ core::Status PlaceLandmark(Patient& patient, std::string_view name, const Vec3& 
   if (!IsPlainName(name)) return Invalid("a landmark's name consists of a-z, 0-9 and _");
   if (!math::IsFinite(position)) return Invalid("the place is not finite");
   Vec3 place = position;
-  const int gallbladder = patient.FindOrgan("gallbladder");
-  if ((name == "fundus" || name == "infundibulum") && gallbladder >= 0 &&
+  const auto known = std::find_if(patient.landmarks.begin(), patient.landmarks.end(),
+                                  [&](const Landmark& landmark) { return landmark.name == name; });
+  const LandmarkRole role =
+      known == patient.landmarks.end() ? roles::ConventionalRole<LandmarkRole>(name) : known->role;
+  const int gallbladder = patient.OrganOf(OrganRole::kGallbladder);
+  if ((role == LandmarkRole::kFundus || role == LandmarkRole::kInfundibulum) && gallbladder >= 0 &&
       !patient.organs[gallbladder].mesh.triangles.empty()) {
     place = meshing::NearestSurface(patient.organs[gallbladder].mesh).Find(position).at.point;
   }
-  for (Landmark& landmark : patient.landmarks) {
-    if (landmark.name != name) continue;
-    landmark.position = place;
-    return {};
+  if (known == patient.landmarks.end()) {
+    patient.landmarks.push_back({std::string(name), place});
+  } else {
+    known->position = place;
   }
-  patient.landmarks.push_back({std::string(name), place});
   return {};
 }
 

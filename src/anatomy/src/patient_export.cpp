@@ -31,19 +31,19 @@ constexpr std::array<double, 3> kLiver = {0.31, 0.07, 0.05}, kGallbladder = {0.3
                                 kDuct = {0.45, 0.46, 0.16}, kArtery = {0.55, 0.06, 0.05},
                                 kOther = {0.60, 0.38, 0.32};
 
-std::array<double, 3> ColourOf(std::string_view organ) {
-  return organ == "liver" ? kLiver : organ == "gallbladder" ? kGallbladder : kOther;
+std::array<double, 3> ColourOf(OrganRole organ) {
+  return organ == OrganRole::kLiver ? kLiver : organ == OrganRole::kGallbladder ? kGallbladder : kOther;
 }
 
 /// Everything that has a surface, in the world frame.
 std::vector<NamedMesh> CollectMeshes(const Patient& patient, int tube_sides) {
   std::vector<NamedMesh> meshes;
   for (const Organ& organ : patient.organs) {
-    meshes.push_back({organ.name, organ.mesh, organ.name, ColourOf(organ.name)});
+    meshes.push_back({organ.name, organ.mesh, organ.name, ColourOf(organ.role)});
   }
   for (const Tube& tube : patient.tubes) {
     const bool is_duct = tube.kind == TubeKind::kDuct;
-    meshes.push_back({tube.name, geometry::MakeTube(tube.line, tube_sides), is_duct ? "duct" : "artery",
+    meshes.push_back({tube.name, geometry::MakeTube(tube.line, tube_sides), KindName(tube.kind),
                       is_duct ? kDuct : kArtery});
   }
   return meshes;

@@ -94,8 +94,8 @@ core::Result<OrganLabels> FindLabels(const images::LabelVolume& volume, const La
     OrganLabels usual;
     for (const auto& [name, label] : volume.names) {
       const std::string plain = LowerCase(name);
-      if (plain == "liver") usual.liver = label;
-      if (plain == "gallbladder") usual.gallbladder = label;
+      if (plain == NameOf(OrganRole::kLiver)) usual.liver = label;
+      if (plain == NameOf(OrganRole::kGallbladder)) usual.gallbladder = label;
     }
     usual.convention = "segment names";
     if (usual.liver == 0 && usual.gallbladder == 0) {
@@ -110,12 +110,14 @@ core::Result<OrganLabels> FindLabels(const images::LabelVolume& volume, const La
     found.convention = usual.convention;
   }
   // a number in place of a name that the file does not have would take some other organ
-  for (const auto& [name, label] : {std::pair{"liver", found.liver}, {"gallbladder", found.gallbladder}}) {
+  const std::pair<const char*, int> both[] = {{NameOf(OrganRole::kLiver), found.liver},
+                                              {NameOf(OrganRole::kGallbladder), found.gallbladder}};
+  for (const auto& [name, label] : both) {
     if (label != 0) continue;
     return Mismatch("the label map names its labels, and none of them is the " + std::string(name) +
                     "; say which one it is with --" + name);
   }
-  for (const auto& [name, label] : {std::pair{"liver", found.liver}, {"gallbladder", found.gallbladder}}) {
+  for (const auto& [name, label] : both) {
     if (label > 0 && CountOf(counts, label) > 0) continue;
     return Mismatch("the label map has no label " + std::to_string(label) + ", which should be the " + name +
                     " (found by: " + found.convention + "); it has " + ListLabels(counts) +
@@ -166,8 +168,9 @@ core::Result<BuildReport> BuildPatientFromLabels(const LabelOptions& options,
     const char* name;
     int label, triangles;
   };
-  const Part parts[] = {{"liver", labels->liver, meshing::kLiverTriangles},
-                        {"gallbladder", labels->gallbladder, meshing::kGallbladderTriangles}};
+  const Part parts[] = {
+      {NameOf(OrganRole::kLiver), labels->liver, meshing::kLiverTriangles},
+      {NameOf(OrganRole::kGallbladder), labels->gallbladder, meshing::kGallbladderTriangles}};
   const auto counts = CountLabels(*volume);
   BuildReport report;
   std::vector<meshing::ScalarVolume> volumes;

@@ -62,20 +62,12 @@ void Linter::Add(const char* code, std::string where, std::string text) {
   report_.findings.push_back({code, std::move(where), std::move(text)});
 }
 
-const Organ* Linter::FindUsable(std::string_view name) const {
-  const int index = patient_.FindOrgan(name);
-  return index >= 0 && is_usable_[index] ? &patient_.organs[index] : nullptr;
+const Organ* Linter::FindUsable(int organ) const {
+  return organ >= 0 && is_usable_[organ] ? &patient_.organs[organ] : nullptr;
 }
 
-const Tube* Linter::FindTube(std::string_view name) const {
-  for (const Tube& tube : patient_.tubes) {
-    if (tube.name == name) return &tube;
-  }
-  return nullptr;
-}
-
-std::optional<Vec3> Linter::FindPlace(std::string_view name) const {
-  const Landmark* landmark = patient_.FindLandmark(name);
+std::optional<Vec3> Linter::FindPlace(LandmarkRole role) const {
+  const Landmark* landmark = patient_.LandmarkOf(role);
   if (landmark == nullptr || !math::IsFinite(landmark->position)) return std::nullopt;
   return landmark->position;
 }
@@ -91,13 +83,23 @@ void Linter::LintNames() {
   look(patient_.organs, "organs");
   look(patient_.tubes, "tubes");
   look(patient_.landmarks, "landmarks");
+  const auto look_at_roles = [this](const auto& things, const std::string& where, const char* what) {
+    if (const auto* second = FindSecondOfRole(things))
+      Add("L-ROLE-TWICE", where + second->name,
+          std::string("another ") + what + " is the " + roles::SpokenName(second->role) +
+              ", too; state another role, or \"other\"");
+  };
+  look_at_roles(patient_.organs, "", "organ");
+  look_at_roles(patient_.landmarks, "", "landmark");
+  for (const Organ& organ : patient_.organs) look_at_roles(organ.regions, organ.name + "/", "region");
   for (const Tube& tube : patient_.tubes) {
     if (patient_.FindOrgan(tube.name) >= 0)
       Add("L-NAME-TWICE", tube.name, "an organ and a tube have this name; rename one");
   }
-  for (const char* organ : {"liver", "gallbladder"}) {
-    if (patient_.FindOrgan(organ) < 0)
-      Add("L-ORGAN-MISSING", organ, "there is no such organ; place its contours and build the patient again");
+  for (const OrganRole organ : {OrganRole::kLiver, OrganRole::kGallbladder}) {
+    if (patient_.OrganOf(organ) < 0)
+      Add("L-ORGAN-MISSING", roles::NameOf(organ),
+          "there is no such organ; place its contours and build the patient again");
   }
 }
 

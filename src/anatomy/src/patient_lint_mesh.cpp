@@ -116,7 +116,7 @@ void Linter::LintSurface(const Organ& organ, MeshSummary& summary) {
 }
 
 void Linter::LintUnit() {
-  const Organ* liver = FindUsable("liver");
+  const Organ* liver = FindUsable(OrganRole::kLiver);
   if (liver == nullptr) return;
   const double size = LongestSide(liver->mesh);
   const auto fits = [](double metres) { return metres >= kLiverSizeMin && metres <= kLiverSizeMax; };
@@ -127,7 +127,7 @@ void Linter::LintUnit() {
   if (fits(10.0 * size)) guess = ": the file looks like centimetres; its numbers must be millimetres";
   if (fits(size / 1000.0))
     guess = ": this looks like millimetres taken for metres; divide the coordinates by 1000";
-  Add("L-UNIT", "liver",
+  Add("L-UNIT", liver->name,
       "the longest side of its box is " + Mm(size) + ", and a liver's is 100 to 400 mm" + guess);
 }
 
@@ -135,8 +135,9 @@ void Linter::LintVolumes() {
   if (!is_unit_right_) return;
   for (std::size_t i = 0; i < patient_.organs.size(); ++i) {
     const MeshSummary& mesh = report_.meshes[i];
-    const bool is_liver = mesh.name == "liver";
-    if (!mesh.closed || (!is_liver && mesh.name != "gallbladder")) continue;
+    const OrganRole role = patient_.organs[i].role;
+    const bool is_liver = role == OrganRole::kLiver;
+    if (!mesh.closed || (!is_liver && role != OrganRole::kGallbladder)) continue;
     const Range& range = is_liver ? kLiverMl : kGallbladderMl;
     const double volume = std::fabs(mesh.volume_ml);
     if (volume >= range.min && volume <= range.max) continue;

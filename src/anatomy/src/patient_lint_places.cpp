@@ -29,53 +29,58 @@ Vec3 CalcCentre(const TriangleMesh& mesh) {
 }  // namespace
 
 void Linter::LintLandmarks() {
-  for (const char* name : {"umbilicus", "fundus", "infundibulum"}) {
-    if (patient_.FindLandmark(name) == nullptr)
-      Add("L-LANDMARK-MISSING", name, "there is no such landmark; place it");
+  for (const LandmarkRole role :
+       {LandmarkRole::kUmbilicus, LandmarkRole::kFundus, LandmarkRole::kInfundibulum}) {
+    if (patient_.LandmarkOf(role) == nullptr)
+      Add("L-LANDMARK-MISSING", roles::NameOf(role), "there is no such landmark; place it");
   }
   for (const Landmark& landmark : patient_.landmarks) {
     if (!math::IsFinite(landmark.position))
       Add("L-LANDMARK-NUMBER", landmark.name, "its position is not finite; place it again");
   }
-  const Organ* gallbladder = FindUsable("gallbladder");
+  const Organ* gallbladder = FindUsable(OrganRole::kGallbladder);
   if (gallbladder == nullptr || !is_unit_right_) return;
   const meshing::NearestSurface surface(gallbladder->mesh);
-  for (const char* name : {"fundus", "infundibulum"}) {
-    const Landmark* landmark = patient_.FindLandmark(name);
+  for (const LandmarkRole role : {LandmarkRole::kFundus, LandmarkRole::kInfundibulum}) {
+    const Landmark* landmark = patient_.LandmarkOf(role);
     if (landmark == nullptr || !math::IsFinite(landmark->position)) continue;
     const double distance = surface.Find(landmark->position).distance;
     if (distance > kLandmarkReach) {
-      Add("L-LANDMARK-FAR", name,
+      Add("L-LANDMARK-FAR", landmark->name,
           "it lies " + Mm(distance) + " from the surface of the gallbladder; place it there (at most 5 mm)");
     }
   }
 }
 
 void Linter::LintSides() {
-  const auto umbilicus = FindPlace("umbilicus");
-  for (const char* name : {"liver", "gallbladder"}) {
-    const Organ* organ = FindUsable(name);
+  const auto umbilicus = FindPlace(LandmarkRole::kUmbilicus);
+  for (const OrganRole role : {OrganRole::kLiver, OrganRole::kGallbladder}) {
+    const Organ* organ = FindUsable(role);
     if (!umbilicus || organ == nullptr) continue;
     const double left = CalcCentre(organ->mesh).x - umbilicus->x;
     if (left <= 0) continue;
-    Add("L-SIDE-LEFT-RIGHT", name,
+    Add("L-SIDE-LEFT-RIGHT", organ->name,
         "its centre lies " + Mm(left) +
             " to the patient's left of the umbilicus, and it belongs to the right: left and right are "
             "swapped "
             "(RAS read as LPS?)");
   }
-  const auto fundus = FindPlace("fundus");
-  auto inner = FindPlace("infundibulum");
-  const Tube* hepatic = FindTube("common_hepatic_duct");
-  if (!inner && hepatic != nullptr && IsWellFormed(*hepatic)) inner = hepatic->line.points.front();
+  const auto fundus = FindPlace(LandmarkRole::kFundus);
+  auto inner = FindPlace(LandmarkRole::kInfundibulum);
+  const int hepatic = patient_.TubeOf(TubeRole::kCommonHepaticDuct);
+  if (!inner && hepatic >= 0 && IsWellFormed(patient_.tubes[hepatic]))
+    inner = patient_.tubes[hepatic].line.points.front();
   if (!fundus || !inner) return;
+  const int gallbladder = patient_.OrganOf(OrganRole::kGallbladder);
+  const std::string where =
+      gallbladder < 0 ? roles::NameOf(OrganRole::kGallbladder) : patient_.organs[gallbladder].name;
   if (fundus->y >= inner->y) {
-    Add("L-SIDE-CRANIAL-CAUDAL", "gallbladder",
+    Add("L-SIDE-CRANIAL-CAUDAL", where,
         "the fundus does not lie caudal to the infundibulum: cranial and caudal are swapped (slices in the "
         "wrong order?)");
   }
   if (fundus->z <= inner->z) {
-    Add("L-SIDE-ANTERIOR-POSTERIOR", "gallbladder",
+    Add("L-SIDE-ANTERIOR-POSTERIOR", where,
         "the fundus does not lie anterior to the infundibulum: anterior and posterior are swapped (RAS "
         "read as "
         "LPS?)");
@@ -83,7 +88,7 @@ void Linter::LintSides() {
 }
 
 void Linter::LintDepth() {
-  const Organ *liver = FindUsable("liver"), *gallbladder = FindUsable("gallbladder");
+  const Organ *liver = FindUsable(OrganRole::kLiver), *gallbladder = FindUsable(OrganRole::kGallbladder);
   if (liver == nullptr || gallbladder == nullptr || !is_unit_right_) return;
   const TriangleMesh mesh = Outward(liver->mesh);
   const meshing::NearestSurface surface(mesh);
@@ -97,7 +102,7 @@ void Linter::LintDepth() {
     if (depth > deepest) deepest = depth, place = p;
   }
   if (inside == 0) return;
-  Add("L-GALLBLADDER-DEEP", "gallbladder",
+  Add("L-GALLBLADDER-DEEP", gallbladder->name,
       Count(inside, "vertex lies", "vertices lie") + " deeper than 2 mm inside the liver, the deepest " +
           Mm(deepest) + " at " + PlaceText(place) + "; part the two contours there");
 }

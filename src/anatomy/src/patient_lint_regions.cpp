@@ -20,14 +20,15 @@ constexpr double kVisceralShare = 0.05;
 
 void Linter::LintRegions(std::size_t index) {
   const Organ& organ = patient_.organs[index];
-  std::vector<const char*> wanted;
-  if (organ.name == "liver") wanted = {kDiaphragmaticFace, kFalciform, kCoronary, kGallbladderBed};
-  if (organ.name == "gallbladder") wanted = {kGallbladderBed};
-  for (const char* name : wanted) {
-    const bool is_there = std::any_of(organ.regions.begin(), organ.regions.end(),
-                                      [&](const Region& region) { return region.name == name; });
-    if (!is_there)
-      Add("L-REGION-MISSING", organ.name + "/" + name, "there is no such region; build the patient again");
+  std::vector<RegionRole> wanted;
+  if (organ.role == OrganRole::kLiver)
+    wanted = {RegionRole::kDiaphragmaticFace, RegionRole::kFalciform, RegionRole::kCoronary,
+              RegionRole::kGallbladderBed};
+  if (organ.role == OrganRole::kGallbladder) wanted = {RegionRole::kGallbladderBed};
+  for (const RegionRole role : wanted) {
+    if (organ.RegionOf(role) == nullptr)
+      Add("L-REGION-MISSING", organ.name + "/" + roles::NameOf(role),
+          "there is no such region; build the patient again");
   }
   std::set<std::string> names;
   for (const Region& region : organ.regions) {
@@ -52,7 +53,7 @@ void Linter::LintRegions(std::size_t index) {
 }
 
 void Linter::LintFixedFaces() {
-  const Organ* liver = FindUsable("liver");
+  const Organ* liver = FindUsable(OrganRole::kLiver);
   if (liver == nullptr || !is_unit_right_) return;
   const TriangleMesh mesh = Outward(liver->mesh);
   const auto normals =
@@ -60,10 +61,11 @@ void Linter::LintFixedFaces() {
   const auto areas = geometry::CalcVertexAreas(mesh.positions, mesh.triangles);
   std::set<std::uint32_t> bed;
   for (const Region& region : liver->regions) {
-    if (region.name == kGallbladderBed) bed.insert(region.vertices.begin(), region.vertices.end());
+    if (region.role == RegionRole::kGallbladderBed)
+      bed.insert(region.vertices.begin(), region.vertices.end());
   }
   for (const Region& region : liver->regions) {
-    if (region.name != kDiaphragmaticFace && region.name != kFalciform && region.name != kCoronary) continue;
+    if (!roles::IsFixed(region.role)) continue;
     double all = 0, visceral = 0;
     std::size_t in_bed = 0;
     for (const auto v : region.vertices) {
@@ -73,12 +75,12 @@ void Linter::LintFixedFaces() {
       in_bed += bed.contains(v) ? 1 : 0;
     }
     if (visceral > kVisceralShare * all) {
-      Add("L-REGION-VISCERAL", "liver/" + region.name,
+      Add("L-REGION-VISCERAL", liver->name + "/" + region.name,
           Rounded(100.0 * visceral / all) +
               " % of this fixed region lies on the visceral face, which must be free to move; draw it "
               "again");
     } else if (in_bed > 0) {
-      Add("L-REGION-VISCERAL", "liver/" + region.name,
+      Add("L-REGION-VISCERAL", liver->name + "/" + region.name,
           Count(in_bed, "vertex", "vertices") +
               " of this fixed region also belong to the gallbladder bed, which must be free to move; draw "
               "it "

@@ -16,7 +16,7 @@ namespace {
 using geometry::TriangleMesh;
 
 struct TubeRange {
-  std::string_view name;
+  TubeRole role;
   TubeKind kind;
   Range radius_mm, length_mm;
 };
@@ -24,17 +24,17 @@ struct TubeRange {
 /// Normal calibre and length widened by the variations and dilatations that are known; the last two stand for
 /// every other duct and artery.
 constexpr TubeRange kTubeRanges[] = {
-    {"cystic_duct", TubeKind::kDuct, {0.5, 2.5}, {5.0, 80.0}},
-    {"common_hepatic_duct", TubeKind::kDuct, {0.5, 5.0}, {10.0, 60.0}},
-    {"common_bile_duct", TubeKind::kDuct, {0.75, 7.5}, {30.0, 120.0}},
-    {"cystic_artery", TubeKind::kArtery, {0.3, 2.0}, {3.0, 60.0}},
-    {"", TubeKind::kDuct, {0.25, 7.5}, {1.0, 200.0}},
-    {"", TubeKind::kArtery, {0.25, 6.0}, {1.0, 300.0}},
+    {TubeRole::kCysticDuct, TubeKind::kDuct, {0.5, 2.5}, {5.0, 80.0}},
+    {TubeRole::kCommonHepaticDuct, TubeKind::kDuct, {0.5, 5.0}, {10.0, 60.0}},
+    {TubeRole::kCommonBileDuct, TubeKind::kDuct, {0.75, 7.5}, {30.0, 120.0}},
+    {TubeRole::kCysticArtery, TubeKind::kArtery, {0.3, 2.0}, {3.0, 60.0}},
+    {TubeRole::kOther, TubeKind::kDuct, {0.25, 7.5}, {1.0, 200.0}},
+    {TubeRole::kOther, TubeKind::kArtery, {0.25, 6.0}, {1.0, 300.0}},
 };
 
 const TubeRange& FindRange(const Tube& tube) {
   for (const TubeRange& range : kTubeRanges) {
-    if (range.name == tube.name || (range.name.empty() && range.kind == tube.kind)) return range;
+    if (range.role == TubeRole::kOther ? range.kind == tube.kind : range.role == tube.role) return range;
   }
   return *std::prev(std::end(kTubeRanges));
 }
@@ -63,8 +63,9 @@ bool IsWellFormed(const Tube& tube) {
 void Linter::LintTubeEnd(const Tube& tube, const std::string& target, const Vec3& end,
                          const std::string& where) {
   if (target.empty()) return;  // leaves the scene
-  const Tube* other = FindTube(target);
-  const bool is_known = patient_.FindOrgan(target) >= 0 || (other != nullptr && other != &tube);
+  const int organ_index = patient_.FindOrgan(target), tube_index = patient_.FindTube(target);
+  const Tube* other = tube_index < 0 ? nullptr : &patient_.tubes[tube_index];
+  const bool is_known = organ_index >= 0 || (other != nullptr && other != &tube);
   if (!is_known) {
     Add("L-TUBE-END", where,
         "it ends nowhere: '" + target +
@@ -74,12 +75,12 @@ void Linter::LintTubeEnd(const Tube& tube, const std::string& target, const Vec3
   }
   if (!is_unit_right_ || !IsWellFormed(tube)) return;
   double distance = 0;
-  if (const Organ* organ = FindUsable(target); organ != nullptr) {
+  if (const Organ* organ = FindUsable(organ_index); organ != nullptr) {
     const TriangleMesh mesh = Outward(organ->mesh);
     const meshing::NearestSurface surface(mesh);
     distance = surface.Find(end).distance;
     // ducts and arteries of the liver run on inside it
-    if (target == "liver" && distance > kJoinReach && surface.IsInside(end)) distance = 0;
+    if (organ->role == OrganRole::kLiver && distance > kJoinReach && surface.IsInside(end)) distance = 0;
   } else if (other != nullptr && IsWellFormed(*other)) {
     distance = DistanceToTube(end, other->line);
   }
@@ -110,12 +111,13 @@ void Linter::LintTubes() {
 
 /// What leaves the scene must still be joined to something in it.
 void Linter::LintTubeLinks(const Tube& tube) {
-  if (tube.name == "cystic_duct" && (tube.from.empty() || tube.to.empty())) {
+  if (tube.role == TubeRole::kCysticDuct && (tube.from.empty() || tube.to.empty())) {
     Add("L-TUBE-END", tube.name + (tube.from.empty() ? "/from" : "/to"),
         "it ends nowhere: a cystic duct joins the gallbladder to a duct and never leaves the scene");
     return;
   }
-  if (tube.name == "cystic_artery" && tube.from != "gallbladder" && tube.to != "gallbladder") {
+  if (tube.role == TubeRole::kCysticArtery && patient_.FindOrganRole(tube.from) != OrganRole::kGallbladder &&
+      patient_.FindOrganRole(tube.to) != OrganRole::kGallbladder) {
     Add("L-TUBE-END", tube.name, "it ends nowhere: a cystic artery leads to the gallbladder");
     return;
   }
@@ -159,10 +161,11 @@ void Linter::LintTubeGraph() {
             ": ducts and arteries branch and never meet again; cut or rename one of the ends");
   }
   // bile must get out: from the cystic duct there is a way to an end that leaves the scene
-  const Tube* cystic = FindTube("cystic_duct");
-  if (cystic == nullptr || !IsWellFormed(*cystic) || cystic->from.empty() || cystic->to.empty()) return;
-  const auto index = static_cast<std::uint32_t>(cystic - patient_.tubes.data());
-  const auto ducts = FindConnectedTubes(patient_, graph, index);
+  const int index = patient_.TubeOf(TubeRole::kCysticDuct);
+  if (index < 0) return;
+  const Tube& cystic = patient_.tubes[index];
+  if (!IsWellFormed(cystic) || cystic.from.empty() || cystic.to.empty()) return;
+  const auto ducts = FindConnectedTubes(patient_, graph, static_cast<std::uint32_t>(index));
   const bool is_alone = ducts.size() == 1;
   const bool has_outlet = std::any_of(graph.nodes.begin(), graph.nodes.end(), [&](const TubeNode& node) {
     return node.kind == TubeNode::Kind::kOpen &&
@@ -170,7 +173,7 @@ void Linter::LintTubeGraph() {
   });
   // a duct that joins nothing has its own finding
   if (!has_outlet && !is_alone) {
-    Add("L-DUCT-CLOSED", cystic->name,
+    Add("L-DUCT-CLOSED", cystic.name,
         "no duct that it joins leaves the scene, so bile cannot flow off: leave the lower end of the common "
         "bile duct without a name");
   }

@@ -23,10 +23,11 @@ class Linter {
 
  private:
   void Add(const char* code, std::string where, std::string text);
-  const Organ* FindUsable(std::string_view name) const;
-  const Tube* FindTube(std::string_view name) const;
+  /// An organ whose mesh is usable, or null.
+  const Organ* FindUsable(int organ) const;
+  const Organ* FindUsable(OrganRole role) const { return FindUsable(patient_.OrganOf(role)); }
   /// A finite landmark's place.
-  std::optional<Vec3> FindPlace(std::string_view name) const;
+  std::optional<Vec3> FindPlace(LandmarkRole role) const;
 
   // patient_lint.cpp
   void LintNames();

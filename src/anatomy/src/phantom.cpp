@@ -28,13 +28,13 @@ constexpr double kUnevenLight = 0.05, kFlicker = 0.012;  // at noise 1, of the l
 
 /// What a structure's pixels are called, and the smallest contour that a person would draw [mm^2].
 struct Target {
-  const char* organ;
+  OrganRole organ;
   std::uint8_t label;
   int triangles;
   double smallest;
 };
-constexpr Target kTargets[] = {{"liver", kLiverLabel, 5132, 120.0},
-                               {"gallbladder", kGallbladderLabel, 1798, 30.0}};
+constexpr Target kTargets[] = {{OrganRole::kLiver, kLiverLabel, 5132, 120.0},
+                               {OrganRole::kGallbladder, kGallbladderLabel, 1798, 30.0}};
 
 core::Error Usage(const std::string& text) {
   return {core::ErrorCode::kUsage, text};
@@ -154,8 +154,8 @@ Phantom::~Phantom() = default;
 core::Result<Phantom> Phantom::Make(const Patient& patient, const PhantomOptions& options) {
   if (const auto status = CheckOptions(options); !status) return status.error();
   for (const Target& target : kTargets) {
-    if (patient.FindOrgan(target.organ) < 0) {
-      return core::Error{core::ErrorCode::kPatientInvalid, std::string("the patient has no ") + target.organ +
+    if (patient.OrganOf(target.organ) < 0) {
+      return core::Error{core::ErrorCode::kPatientInvalid, "the patient has no " + SpokenName(target.organ) +
                                                                "; a phantom shows liver and gallbladder"};
     }
   }
@@ -166,8 +166,8 @@ core::Result<Phantom> Phantom::Make(const Patient& patient, const PhantomOptions
   c.grid = {static_cast<int>(std::ceil((box.max.x - box.min.x) / options.pixel_mm)),
             static_cast<int>(std::ceil((box.max.z - box.min.z) / options.pixel_mm)), options.pixel_mm};
   c.slices = static_cast<int>(std::ceil((box.max.y - box.min.y) / options.slice_mm));
-  c.liver = c.ToPicture(patient.organs[patient.FindOrgan("liver")].mesh);
-  c.gallbladder = c.ToPicture(patient.organs[patient.FindOrgan("gallbladder")].mesh);
+  c.liver = c.ToPicture(patient.organs[patient.OrganOf(OrganRole::kLiver)].mesh);
+  c.gallbladder = c.ToPicture(patient.organs[patient.OrganOf(OrganRole::kGallbladder)].mesh);
   for (const Tube& tube : patient.tubes)
     c.tubes.emplace_back(tube.kind, c.ToPicture(geometry::MakeTube(tube.line, kTubeSides)));
   if (const Parameter* wall = patient.FindParameter("gallbladder_wall"))
@@ -294,8 +294,8 @@ contours::ControlPoints Phantom::MakeControlPoints() const {
   points.pixel_mm = c.options.pixel_mm;
   points.slice_mm = c.options.slice_mm;
   points.axes = {"left", "posterior", "inferior"};
-  if (const Landmark* fundus = c.patient.FindLandmark("fundus")) {
-    points.origin_landmark = "fundus";
+  if (const Landmark* fundus = c.patient.LandmarkOf(LandmarkRole::kFundus)) {
+    points.origin_landmark = NameOf(fundus->role);
     for (int axis = 0; axis < 3; ++axis) points.origin_mm[axis] = kMmPerMetre * fundus->position[axis];
   }
   const auto in_picture = [&](const Vec2& mm) {
@@ -305,7 +305,7 @@ contours::ControlPoints Phantom::MakeControlPoints() const {
   for (const Target& target : kTargets) {
     const auto& mesh = target.label == kLiverLabel ? c.liver : c.gallbladder;
     contours::Structure structure;
-    structure.name = target.organ;
+    structure.name = NameOf(target.organ);
     structure.triangle_budget = target.triangles;
     structure.reference_label = target.label;
     structure.adaption.max_shift_px =
@@ -345,12 +345,13 @@ contours::ControlPoints Phantom::MakeControlPoints() const {
     points.structures.push_back(std::move(structure));
   }
   constexpr double kTubeSpacing = 0.004;  // m
+  // the structures have their conventional names here, whatever the patient calls its organs
+  const auto end_name = [&](const std::string& end) {
+    const OrganRole role = c.patient.FindOrganRole(end);
+    return role != OrganRole::kOther ? NameOf(role) : end.empty() ? "outside" : end;
+  };
   for (const Tube& tube : c.patient.tubes) {
-    contours::TubePoints placed{tube.name,
-                                tube.kind == TubeKind::kDuct ? "duct" : "artery",
-                                tube.from.empty() ? "outside" : tube.from,
-                                tube.to.empty() ? "outside" : tube.to,
-                                true,
+    contours::TubePoints placed{tube.name, KindName(tube.kind), end_name(tube.from), end_name(tube.to), true,
                                 {}};
     const auto line = geometry::Resample(tube.line, kTubeSpacing);
     for (std::size_t i = 0; i < line.points.size(); ++i) {
@@ -364,11 +365,12 @@ contours::ControlPoints Phantom::MakeControlPoints() const {
   }
   for (const Landmark& landmark : c.patient.landmarks) {
     // the others are found again from the meshes
-    if (landmark.name != "umbilical_fissure" && landmark.name != "umbilicus") continue;
+    if (landmark.role != LandmarkRole::kUmbilicalFissure && landmark.role != LandmarkRole::kUmbilicus)
+      continue;
     const Vec3 p = c.ToPicture(landmark.position);
     const double slice = p.z / c.options.slice_mm;
     if (slice >= points.first_slice && slice <= points.last_slice)
-      points.landmarks.push_back({landmark.name, slice, in_picture({p.x, p.y})});
+      points.landmarks.push_back({NameOf(landmark.role), slice, in_picture({p.x, p.y})});
   }
   return points;
 }
@@ -381,8 +383,8 @@ images::LabelVolume Phantom::MakeLabels(const images::Progress& progress) const 
   volume.direction = {{{c.options.pixel_mm, 0, 0}, {0, c.options.pixel_mm, 0}, {0, 0, -c.options.slice_mm}}};
   const Vec3 corner = c.ToWorldMm(0, 0, c.options.slice_mm);
   volume.origin = {corner.x, -corner.z, corner.y};
-  volume.names = {{"liver", kLiverLabel},
-                  {"gallbladder", kGallbladderLabel},
+  volume.names = {{NameOf(OrganRole::kLiver), kLiverLabel},
+                  {NameOf(OrganRole::kGallbladder), kGallbladderLabel},
                   {"bile_ducts", kDuctLabel},
                   {"arteries", kArteryLabel}};
   const std::size_t plane = static_cast<std::size_t>(c.grid.width) * c.grid.height;

@@ -122,13 +122,14 @@ double PhantomBody::Ball::Distance(const Vec3& p) const {
 }
 
 PhantomBody::PhantomBody(const Patient& patient, std::uint64_t seed) : noise_(seed) {
-  const int liver = patient.FindOrgan("liver"), gallbladder = patient.FindOrgan("gallbladder");
+  const int liver = patient.OrganOf(OrganRole::kLiver),
+            gallbladder = patient.OrganOf(OrganRole::kGallbladder);
   liver_ = geometry::CalcBox(patient.organs[liver].mesh.positions);
   liver_ = {Millimetres(liver_.min), Millimetres(liver_.max)};
   const geometry::Box gallbladder_box = geometry::CalcBox(patient.organs[gallbladder].mesh.positions);
-  const Landmark* landmark = patient.FindLandmark("fundus");
+  const Landmark* landmark = patient.LandmarkOf(LandmarkRole::kFundus);
   const Vec3 fundus = Millimetres(landmark != nullptr ? landmark->position : gallbladder_box.min);
-  const Landmark* neck_mark = patient.FindLandmark("infundibulum");
+  const Landmark* neck_mark = patient.LandmarkOf(LandmarkRole::kInfundibulum);
   const Vec3 porta = Millimetres(neck_mark != nullptr ? neck_mark->position : gallbladder_box.max);
 
   const double mid = midline_ = liver_.min.x + kMidlineShare * (liver_.max.x - liver_.min.x);

@@ -19,13 +19,6 @@ bool IsUsable(const Tube& tube) {
                      [](const Vec3& p) { return math::IsFinite(p); });
 }
 
-int FindTube(const Patient& patient, std::string_view name) {
-  for (std::size_t i = 0; i < patient.tubes.size(); ++i) {
-    if (patient.tubes[i].name == name) return static_cast<int>(i);
-  }
-  return -1;
-}
-
 std::uint32_t EndPoint(const Tube& tube, TubeEnd end) {
   return end == TubeEnd::kFrom ? 0 : static_cast<std::uint32_t>(tube.line.points.size() - 1);
 }
@@ -69,7 +62,7 @@ double CalcGap(const Vec3& end, const geometry::CentreLine& other, std::uint32_t
 /// The other tube that this end names and reaches, or -1.
 int FindJoined(const Patient& patient, std::size_t tube, TubeEnd end, double reach) {
   const Tube& self = patient.tubes[tube];
-  const int other = FindTube(patient, EndName(self, end));
+  const int other = patient.FindTube(EndName(self, end));
   if (other < 0 || other == static_cast<int>(tube) || !IsUsable(patient.tubes[other])) return -1;
   const Vec3& at = self.line.points[EndPoint(self, end)];
   const auto& line = patient.tubes[other].line;
@@ -136,8 +129,8 @@ TubeGraph MakeTubeGraph(const Patient& patient) {
 }
 
 std::vector<std::uint32_t> FindEnteringTubes(const Patient& patient, const TubeGraph& graph,
-                                             std::string_view organ) {
-  const int wanted = patient.FindOrgan(organ);
+                                             OrganRole organ) {
+  const int wanted = patient.OrganOf(organ);
   std::vector<std::uint32_t> tubes;
   for (const TubeNode& node : graph.nodes) {
     if (node.kind == TubeNode::Kind::kOrgan && node.organ == wanted) tubes.push_back(node.vertices[0].tube);
@@ -206,12 +199,13 @@ std::vector<OpenJoint> JoinTubes(Patient& patient, double reach) {
       const Vec3 here = tube.line.points[point];
       Vec3 wanted = here;
       double gap = 0;
-      const int other = FindTube(patient, name), organ = patient.FindOrgan(name);
+      const int other = patient.FindTube(name), organ = patient.FindOrgan(name);
       if (organ >= 0 && !patient.organs[organ].mesh.triangles.empty()) {
         const meshing::NearestSurface surface(patient.organs[organ].mesh);
         const meshing::SurfacePoint near = surface.Find(here);
         // ducts and arteries of the liver run on inside it
-        if (name != "liver" || !surface.IsInside(here)) wanted = near.at.point, gap = near.distance;
+        if (patient.organs[organ].role != OrganRole::kLiver || !surface.IsInside(here))
+          wanted = near.at.point, gap = near.distance;
       } else if (other >= 0 && other != static_cast<int>(t) && IsUsable(patient.tubes[other])) {
         const auto& line = patient.tubes[other].line;
         const std::uint32_t met = FindNearestPoint(line, here);

@@ -126,7 +126,7 @@ TEST_P(EachWrong, IsFoundAndNothingElse) {
 const Wrong kWrongs[] = {
     {"OrganMissing",
      [](Patient& p) {
-       p.organs[0].name = "spleen";
+       p.organs[0].name = "spleen", p.organs[0].role = OrganRole::kOther;
        TubeOf(p, "common_hepatic_duct").from = "";
        TubeOf(p, "right_hepatic_artery").to = "";
      },
@@ -138,6 +138,11 @@ const Wrong kWrongs[] = {
      {"L-NAME-TWICE"},
      "right_hepatic_artery",
      "two tubes"},
+    {"RoleTwice",
+     [](Patient& p) { p.landmarks.back().role = LandmarkRole::kFundus; },
+     {"L-ROLE-TWICE", "L-LANDMARK-MISSING"},
+     "umbilicus",
+     "is the fundus, too"},
     {"OpenMesh",
      [](Patient& p) { Liver(p).mesh.triangles.pop_back(); },
      {"L-MESH-OPEN"},

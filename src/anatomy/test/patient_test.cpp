@@ -63,6 +63,52 @@ class PatientFolder : public testing::Test {
   fs::path base_, folder_;
 };
 
+TEST_F(PatientFolder, StatesTheRolesThatNamesDoNotSay) {
+  ASSERT_TRUE(WritePatient(folder_, MakePatient()).ok());
+  EXPECT_EQ(core::ReadFile(folder_ / "patient.json")->find("role"), std::string::npos)
+      << "conventional names say what they are";
+  Patient patient = MakePatient();
+  patient.organs[0].name = "hepar";
+  patient.organs[0].regions[0].name = "dome";
+  patient.organs[1].role = OrganRole::kOther;
+  patient.tubes[1].name = "arteria_cystica";
+  patient.landmarks[1].name = "apex";
+  patient.tubes[1].to = "hepar";
+  ASSERT_TRUE(WritePatient(folder_, patient).ok());
+  const auto read = ReadPatient(folder_);
+  ASSERT_TRUE(read.ok()) << read.error().Text();
+  EXPECT_EQ(read->OrganOf(OrganRole::kLiver), 0);
+  EXPECT_EQ(read->FindOrganRole("hepar"), OrganRole::kLiver);
+  EXPECT_EQ(read->OrganOf(OrganRole::kGallbladder), -1) << "stated to be none, whatever its name";
+  ASSERT_NE(read->organs[0].RegionOf(RegionRole::kDiaphragmaticFace), nullptr);
+  EXPECT_EQ(read->organs[0].RegionOf(RegionRole::kDiaphragmaticFace)->name, "dome");
+  EXPECT_EQ(read->TubeOf(TubeRole::kCysticArtery), 1);
+  EXPECT_EQ(read->TubeOf(TubeRole::kCommonBileDuct), 0);
+  EXPECT_EQ(read->TubeOf(TubeRole::kCysticDuct), -1);
+  ASSERT_NE(read->LandmarkOf(LandmarkRole::kFundus), nullptr);
+  EXPECT_EQ(read->FindLandmark("fundus"), read->LandmarkOf(LandmarkRole::kFundus)) << "found by its role";
+  EXPECT_EQ(read->FindLandmark("apex"), read->LandmarkOf(LandmarkRole::kFundus));
+  EXPECT_EQ(read->FindLandmark("other"), nullptr);
+}
+
+TEST_F(PatientFolder, RefusesRolesThatDoNotFit) {
+  const auto refuse = [&](const std::string& from, const std::string& to, const std::string& why) {
+    ASSERT_TRUE(WritePatient(folder_, MakePatient()).ok());
+    Rewrite(from, to);
+    const auto read = ReadPatient(folder_);
+    ASSERT_FALSE(read.ok()) << to;
+    EXPECT_NE(read.error().message.find(why), std::string::npos) << read.error().Text();
+  };
+  refuse(R"("name":"gallbladder")", R"("name":"gallbladder","role":"spleen")",
+         "role must be other, or one of liver");
+  refuse(R"("name":"gallbladder")", R"("name":"gallbladder","role":"liver")", "have the role liver");
+  refuse(R"("name":"umbilicus")", R"("name":"umbilicus","role":"fundus")", "have the role fundus");
+  refuse(R"("name":"falciform")", R"("name":"falciform","role":"diaphragmatic_face")",
+         "have the role diaphragmatic face");
+  refuse(R"("name":"cystic_artery")", R"("name":"cystic_artery","role":"cystic_duct")",
+         "a cystic duct is no artery");
+}
+
 TEST_F(PatientFolder, ComesBack) {
   const Patient written = MakePatient();
   ASSERT_TRUE(WritePatient(folder_, written).ok());

@@ -52,8 +52,8 @@ TEST(TubeGraph, FindsJointsOrgansAndOpenEnds) {
   EXPECT_EQ(graph.pieces[2].first, 5u);
   EXPECT_EQ(graph.pieces[1].to, graph.pieces[2].from);
   EXPECT_EQ(graph.pieces[0].to, graph.pieces[1].to);
-  EXPECT_EQ(FindEnteringTubes(patient, graph, "gallbladder"), (std::vector<std::uint32_t>{0, 2}));
-  EXPECT_TRUE(FindEnteringTubes(patient, graph, "liver").empty());
+  EXPECT_EQ(FindEnteringTubes(patient, graph, OrganRole::kGallbladder), (std::vector<std::uint32_t>{0, 2}));
+  EXPECT_TRUE(FindEnteringTubes(patient, graph, OrganRole::kLiver).empty());
   EXPECT_EQ(FindConnectedTubes(patient, graph, 0), (std::vector<std::uint32_t>{0, 1}));
   EXPECT_EQ(FindConnectedTubes(patient, graph, 2), (std::vector<std::uint32_t>{2}));
   EXPECT_TRUE(FindCycleTubes(patient, graph).empty());
@@ -136,7 +136,7 @@ TEST(TubeGraph, GeneratedPatientIsOneTreeOfDuctsAndOneOfArteries) {
     (patient->tubes[t].kind == TubeKind::kDuct ? ducts : arteries) += 1;
   }
   EXPECT_EQ(FindConnectedTubes(*patient, graph, static_cast<std::uint32_t>(cystic)).size(), ducts);
-  EXPECT_EQ(FindEnteringTubes(*patient, graph, "gallbladder").size(), 3u);  // duct and two arteries
+  EXPECT_EQ(FindEnteringTubes(*patient, graph, OrganRole::kGallbladder).size(), 3u);  // duct and two arteries
   // joints are exact: every node's vertices share one place
   for (const TubeNode& node : graph.nodes) {
     EXPECT_NE(node.kind, TubeNode::Kind::kNowhere);

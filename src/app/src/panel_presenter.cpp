@@ -47,7 +47,7 @@ HandPages MakeHandPages(const scene::Scene& scene, const simulation::Snapshot& s
     HandPage& page = pages[hand];
     page.force_n = math::Norm(instrument.force);
     page.force = FormatForce(page.force_n);
-    page.thresholds = FindForceThresholds(OrganLabel(scene.patient, instrument.organ));
+    page.thresholds = FindForceThresholds(scene.patient.RoleOfOrgan(instrument.organ));
     page.level = JudgeForce(page.force_n, page.thresholds);
     page.contact = DescribeContact(instrument, scene.patient);
     page.is_chosen = static_cast<std::size_t>(chosen) == hand;

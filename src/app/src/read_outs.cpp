@@ -29,8 +29,8 @@ std::string Print(const char* format, Values... values) {
 
 }  // namespace
 
-ForceThresholds FindForceThresholds(std::string_view organ) noexcept {
-  return organ == "gallbladder" ? ForceThresholds{8.0, 12.0} : ForceThresholds{3.0, 6.0};
+ForceThresholds FindForceThresholds(roles::OrganRole organ) noexcept {
+  return organ == roles::OrganRole::kGallbladder ? ForceThresholds{8.0, 12.0} : ForceThresholds{3.0, 6.0};
 }
 
 ForceLevel JudgeForce(double force, const ForceThresholds& thresholds) noexcept {

@@ -30,15 +30,16 @@ TEST(ReadOuts, NumbersCarryUnits) {
 }
 
 TEST(ReadOuts, ForceIsJudgedByTheOrgan) {
-  const ForceThresholds liver = FindForceThresholds("liver"),
-                        gallbladder = FindForceThresholds("gallbladder");
+  const ForceThresholds liver = FindForceThresholds(roles::OrganRole::kLiver),
+                        gallbladder = FindForceThresholds(roles::OrganRole::kGallbladder);
   EXPECT_EQ(JudgeForce(2.9, liver), ForceLevel::kCalm);
   EXPECT_EQ(JudgeForce(3.0, liver), ForceLevel::kWarning);
   EXPECT_EQ(JudgeForce(6.0, liver), ForceLevel::kDanger);
   EXPECT_EQ(JudgeForce(7.9, gallbladder), ForceLevel::kCalm);
   EXPECT_EQ(JudgeForce(8.0, gallbladder), ForceLevel::kWarning);
   EXPECT_EQ(JudgeForce(12.0, gallbladder), ForceLevel::kDanger);
-  EXPECT_EQ(FindForceThresholds("spleen").warning, liver.warning) << "unknown tissue is treated gently";
+  EXPECT_EQ(FindForceThresholds(roles::OrganRole::kOther).warning, liver.warning)
+      << "unknown tissue is treated gently";
   EXPECT_EQ(JudgeForce(NAN, gallbladder), ForceLevel::kDanger);
   EXPECT_GT(kForceBarEnd, gallbladder.danger) << "both marks lie on the bar";
 }

@@ -46,10 +46,10 @@ void PrintLegend(const anatomy::Patient& patient, bool has_regions) {
   };
   std::vector<std::vector<std::string>> rows = {{"in the picture", "colour"}};
   for (const anatomy::Organ& organ : patient.organs) {
-    rows.push_back(row(organ.name, view::OrganColour(organ.name)));
+    rows.push_back(row(organ.name, view::OrganColour(organ.role)));
     if (!has_regions) continue;
     for (const anatomy::Region& region : organ.regions)
-      rows.push_back(row(organ.name + "/" + region.name, view::RegionColour(region.name)));
+      rows.push_back(row(organ.name + "/" + region.name, view::RegionColour(region.role)));
   }
   for (const anatomy::Tube& tube : patient.tubes) rows.push_back(row(tube.name, view::TubeColour(tube)));
   std::fputs(FormatTable(rows).c_str(), stdout);

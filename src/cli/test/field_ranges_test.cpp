@@ -291,6 +291,12 @@ TEST_F(FieldRanges, SchemaAndReaderAgreeOnScenes) {
   ExpectAgreement("scene", {OperationScene(), BoardScene(Tubes()), BoardScene(Sheets())}, SceneReader());
 }
 
+TEST_F(FieldRanges, SchemaAndReaderAgreeOnOperationParameters) {
+  ExpectAgreement("operation", {Load(kRoot / scene::kOperationParametersFile)}, [this](const Json& json) {
+    return ErrorOf(scene::ReadOperationParameters(Written("parameters.json", json)));
+  });
+}
+
 /// A task around a scene, with every rule that has a number.
 Json TaskAround(Json scene) {
   for (const char* key : {"format", "version", "name", "seed"}) scene.erase(key);

@@ -11,12 +11,14 @@
 #include "trocar/contours/reference_judge.h"
 #include "trocar/core/safe_file.h"
 #include "trocar/meshing/volume_mesher.h"
+#include "trocar/roles/roles.h"
 
 namespace trocar::contours {
 namespace {
 
 using core::Error;
 using core::ErrorCode;
+using roles::OrganRole;
 
 constexpr double kPathTolerance = 1.0;  // pixels
 
@@ -34,8 +36,9 @@ ControlPoints BeginPoints(const images::ImageSeriesInfo& info, const std::filesy
   points.width = info.width, points.height = info.height;
   points.pixel_mm = info.pixel_mm, points.slice_mm = info.slice_mm;
   points.axes = info.axes;
-  for (const auto& [name, triangles] : {std::pair("liver", meshing::kLiverTriangles),
-                                        std::pair("gallbladder", meshing::kGallbladderTriangles)}) {
+  for (const auto& [name, triangles] :
+       {std::pair(NameOf(OrganRole::kLiver), meshing::kLiverTriangles),
+        std::pair(NameOf(OrganRole::kGallbladder), meshing::kGallbladderTriangles)}) {
     Structure structure;
     structure.name = name;
     structure.triangle_budget = triangles;

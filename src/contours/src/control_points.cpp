@@ -10,12 +10,14 @@
 
 #include "trocar/core/json.h"
 #include "trocar/core/safe_file.h"
+#include "trocar/roles/roles.h"
 
 namespace trocar::contours {
 namespace {
 
 using core::ErrorCode;
 using core::JsonView;
+using roles::TissueRole;
 
 constexpr int kVersion = 1;
 constexpr const char* kFormat = "trocar-control-points";
@@ -147,7 +149,8 @@ TubePoints ReadTube(const ControlPoints& points, const JsonView& view) {
   tube.name = view.Text("name");
   if (tube.name.empty()) view.Complain("needs a name");
   tube.kind = view.Text("kind");
-  if (tube.kind != "duct" && tube.kind != "artery") view.Complain("kind must be \"duct\" or \"artery\"");
+  if (tube.kind != NameOf(TissueRole::kDuct) && tube.kind != NameOf(TissueRole::kArtery))
+    view.Complain("kind must be \"duct\" or \"artery\"");
   tube.from = view.TextOr("from", "");
   tube.to = view.TextOr("to", "");
   tube.is_seen = view.BooleanOr("seen", true);

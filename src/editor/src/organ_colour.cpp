@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "trocar/roles/roles.h"
+
 namespace trocar::editor {
 namespace {
 
@@ -12,8 +14,8 @@ constexpr render::SrgbColour kPalette[] = {{0.90, 0.52, 0.42}, {0.52, 0.86, 0.50
 }  // namespace
 
 render::SrgbColour OrganColour(const std::string& name, int structure) {
-  if (name == "liver") return kPalette[0];
-  if (name == "gallbladder") return kPalette[1];
+  if (name == NameOf(roles::OrganRole::kLiver)) return kPalette[0];
+  if (name == NameOf(roles::OrganRole::kGallbladder)) return kPalette[1];
   return kPalette[2 + std::max(structure, 0) % 4];
 }
 

@@ -35,16 +35,17 @@ std::optional<EditorTool> FindEditorTool(std::string_view name) noexcept {
 PatientEditor::PatientEditor(anatomy::PatientDocument document) : document_(std::move(document)) {
   for (const anatomy::Organ& organ : GetPatient().organs)
     neighbours_.push_back(geometry::FindVertexNeighbours(organ.mesh.triangles, organ.mesh.positions.size()));
+  if (const std::vector<RegionChoice> regions = Regions(); !regions.empty()) region = regions.front();
 }
 
 std::vector<RegionChoice> PatientEditor::Regions() const {
   std::vector<RegionChoice> choices;
   for (const anatomy::Organ& organ : GetPatient().organs) {
     std::vector<std::string> names;
-    if (organ.name == "liver")
+    if (organ.role == anatomy::OrganRole::kLiver)
       names = {anatomy::kDiaphragmaticFace, anatomy::kFalciform, anatomy::kCoronary,
                anatomy::kGallbladderBed};
-    if (organ.name == "gallbladder") names = {anatomy::kGallbladderBed};
+    if (organ.role == anatomy::OrganRole::kGallbladder) names = {anatomy::kGallbladderBed};
     for (const anatomy::Region& each : organ.regions) {
       if (std::find(names.begin(), names.end(), each.name) == names.end()) names.push_back(each.name);
     }

@@ -88,7 +88,7 @@ void PatientEditorPresenter::FinishLoading() {
   editor_->tool = options_.tool;
   const auto& tubes = editor_->GetPatient().tubes;
   for (std::uint32_t i = 0; i < tubes.size(); ++i) {
-    if (tubes[i].name == "cystic_duct") editor_->ChooseTube(i);
+    if (tubes[i].role == anatomy::TubeRole::kCysticDuct) editor_->ChooseTube(i);
   }
   if (editor_->tool == EditorTool::kTubes) editor_->look.liver_opacity = kTubeOpacity;
   screen_->UseEditor(editor_.get());

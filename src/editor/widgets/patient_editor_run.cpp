@@ -37,7 +37,8 @@ void PatientEditorRun::Look() {
   const EditorTool tool = at_.presenter.Editor()->tool;
   if (tool != EditorTool::kTubes && tool != EditorTool::kLandmarks) return;
   at_.view.LookFrom(render::Viewpoint::kUmbilicus);
-  at_.presenter.LookAt(tool == EditorTool::kTubes ? "cystic_duct" : "gallbladder");
+  at_.presenter.LookAt(tool == EditorTool::kTubes ? NameOf(anatomy::TubeRole::kCysticDuct)
+                                                           : NameOf(anatomy::OrganRole::kGallbladder));
 }
 
 void PatientEditorRun::SaveScreenshot() {

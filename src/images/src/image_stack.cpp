@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "trocar/core/printable.h"
+#include "trocar/roles/roles.h"
 #include "volume_file.h"
 
 namespace trocar::images {
@@ -12,6 +13,7 @@ namespace {
 namespace fs = std::filesystem;
 using core::Error;
 using core::ErrorCode;
+using roles::OrganRole;
 
 constexpr std::uint64_t kMostVoxels = std::uint64_t{1} << 28;
 constexpr std::uint64_t kForItself = std::uint64_t{1} << 30;  // address space of a reader beside the samples
@@ -91,7 +93,8 @@ bool LieAlike(const LabelVolume& a, const LabelVolume& b) {
 /// One mask an organ, named after it: what TotalSegmentator writes unless it is told otherwise (--ml).
 core::Result<LabelVolume> ReadMasks(const fs::path& folder) {
   LabelVolume all;
-  for (const auto& [organ, label] : {std::pair{"liver", 1}, {"gallbladder", 2}}) {
+  for (const auto& [organ, label] :
+       {std::pair{NameOf(OrganRole::kLiver), 1}, {NameOf(OrganRole::kGallbladder), 2}}) {
     const fs::path file = FindMask(folder, organ);
     if (file.empty()) {
       return Error{ErrorCode::kFileMissing,

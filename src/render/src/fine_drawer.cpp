@@ -72,8 +72,10 @@ FineDrawer::~FineDrawer() {
   for (const GLuint buffer : {corners_on_card_, indices_on_card_}) glDeleteBuffers(1, &buffer);
 }
 
-core::Status FineDrawer::Make() {
-  auto program = MakeProgram({kFineVertexHead, kShadingFunctions, kFineVertexShader}, {kFineFragmentShader});
+core::Status FineDrawer::Make(const Looks& looks) {
+  const std::string colours = MakeEffectColours(looks);
+  auto program = MakeProgram({kFineVertexHead, colours.c_str(), kShadingFunctions, kFineVertexShader},
+                             {kFineFragmentShader});
   if (!program) return program.error();
   program_ = *program;
   const auto offset = [](std::size_t bytes) { return reinterpret_cast<const void*>(bytes); };

@@ -35,7 +35,7 @@ class FineDrawer {
   ~FineDrawer();
 
   /// \return kShaderFailed with the compiler's words
-  core::Status Make();
+  core::Status Make(const Looks& looks);
 
   /// For the uniforms that the renderer sets once a frame.
   const Program& GetProgram() const { return program_; }

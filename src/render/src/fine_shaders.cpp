@@ -20,7 +20,7 @@ void main() {
   // the lamp is beside the lens: the light comes from where the eye is
   float facing = clamp(dot(a_normal, to_eye), 0.0, 1.0);
   float light = CalcLight(inverse_distance, to_eye.z);
-  vec3 shade = mix(vec3(0.42, 0.30, 0.24), vec3(1.0), a_passing.z * (0.5 + 0.5 * facing));
+  vec3 shade = mix(kStrandShade, vec3(1.0), a_passing.z * (0.5 + 0.5 * facing));
   float wet = a_albedo.a * facing * facing;
   wet *= wet;
   wet *= wet;
@@ -77,7 +77,7 @@ void main() {
   vec3 albedo = mix(u_high, u_low, facing);
   float point = u_gloss.x * exp2(u_gloss.y * (abs(dot(n, h)) - 1.0));
   // what it mirrors: the warm wall all round
-  vec3 mirrored = (0.015 + 0.30 * rim * rim * rim) * vec3(0.50, 0.26, 0.20) * (0.3 + 0.7 * min(light, 1.5));
+  vec3 mirrored = (0.015 + 0.30 * rim * rim * rim) * kMirroredWall * (0.3 + 0.7 * min(light, 1.5));
   vec3 colour = albedo * (0.25 + 0.75 * facing) * (0.05 + light) + mirrored + (0.6 * point + u_gloss.z * facing * facing) * min(light, 2.0);
   float opacity = clamp(u_opacity * (1.0 + 1.2 * rim * rim) * v_rest.w + 0.8 * point * v_rest.w, 0.0, 1.0);
   o_colour = vec4(Finish(2.1 * colour, v_position, gl_FragCoord.xy), opacity);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -76,19 +77,44 @@ MaterialLook ReadLook(const JsonView& view) {
   return look;
 }
 
+void ReadEffects(const JsonView& view, Looks& looks) {
+  for (const std::string& name : view.Keys()) {
+    bool is_known = false;
+    for (std::size_t i = 0; i < looks.effects.size(); ++i)
+      is_known = is_known || EffectName(static_cast<Effect>(i)) == name;
+    if (!is_known) view.Complain("there is no effect \"" + name + "\"");
+  }
+  for (std::size_t i = 0; i < looks.effects.size(); ++i) {
+    const std::vector<double> numbers = ReadNumbers(view, EffectName(static_cast<Effect>(i)), kShare);
+    if (numbers.size() == 3) std::copy(numbers.begin(), numbers.end(), looks.effects[i].begin());
+  }
+}
+
 }  // namespace
+
+std::string_view EffectName(Effect effect) noexcept {
+  static constexpr std::string_view kNames[] = {
+      "smoke",           "blanched",      "scorched",        "charred",       "blood_film",
+      "bile_film",       "thin_rim",      "shade",           "bounce",        "tissue_highlight",
+      "metal_highlight", "mirrored_lens", "mirrored_tissue", "mirrored_wall", "strand_shade"};
+  static_assert(std::size(kNames) == static_cast<std::size_t>(Effect::kCount));
+  return kNames[static_cast<std::size_t>(effect)];
+}
 
 core::Result<Looks> ReadLooks(const std::filesystem::path& path) {
   auto document = core::JsonDocument::Read(path);
   if (!document.ok()) return document.error();
   const JsonView root = document->Root();
-  root.AllowOnly({"format", "version", "about", "light_offset_m", "smoke_per_m", "pigment", "materials"});
+  root.AllowOnly({"format", "version", "about", "light_offset_m", "smoke_per_m", "pigment", "trainer_light",
+                  "effects_linear", "materials"});
   if (root.Text("format") != "trocar-looks") root.Complain("format must be \"trocar-looks\"");
   if (root.Integer("version") != 1) root.Complain("version must be 1");
   Looks looks;
   if (const auto offset = ReadNumbers(root, "light_offset_m", {-0.1, 0.1}); offset.size() == 3)
     looks.light_offset = {offset[0], offset[1], offset[2]};
   looks.smoke = root.Number("smoke_per_m", {0, 10000});
+  looks.trainer_light = root.Number("trainer_light", {0, 100});
+  ReadEffects(root.Object("effects_linear"), looks);
   const JsonView pigment = root.Object("pigment");
   pigment.AllowOnly({"blood", "bile", "rinse"});
   constexpr NumberRange kPigment{1e-4, 1000};

@@ -4,14 +4,40 @@
 #include <cstddef>
 #include <iterator>
 
+#include "trocar/roles/roles.h"
+
 namespace trocar::render {
 namespace {
 
-constexpr std::string_view kNames[] = {
-    "liver",      "gallbladder",   "duct",         "artery",      "fat",           "bowel", "peritoneum",
-    "shaft",      "steel",         "sleeve",       "force",       "fibre",         "film",  "blood",
-    "bile",       "rinse",         "lumen",        "titanium",    "pouch",         "stone", "spark",
-    "red_rubber", "yellow_rubber", "green_rubber", "blue_rubber", "white_plastic", "mark"};
+using roles::TissueRole;
+
+constexpr std::string_view kNames[] = {NameOf(TissueRole::kLiver),
+                                       NameOf(TissueRole::kGallbladder),
+                                       NameOf(TissueRole::kDuct),
+                                       NameOf(TissueRole::kArtery),
+                                       "fat",
+                                       "bowel",
+                                       "peritoneum",
+                                       "shaft",
+                                       "steel",
+                                       "sleeve",
+                                       "force",
+                                       "fibre",
+                                       "film",
+                                       "blood",
+                                       "bile",
+                                       "rinse",
+                                       "lumen",
+                                       "titanium",
+                                       "pouch",
+                                       "stone",
+                                       "spark",
+                                       "red_rubber",
+                                       "yellow_rubber",
+                                       "green_rubber",
+                                       "blue_rubber",
+                                       "white_plastic",
+                                       "mark"};
 static_assert(std::size(kNames) == static_cast<std::size_t>(Material::kCount));
 
 }  // namespace

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "trocar/roles/roles.h"
+
 namespace trocar::render {
 namespace {
 
@@ -28,7 +30,7 @@ const std::array<Stand, static_cast<std::size_t>(Viewpoint::kCount)> kStands = {
     {"left", {1, 0, 0}, {0, 1, 0}},
     {"superior", {0, 1, 0}, {0, 0, 1}},
     {"inferior", {0, -1, 0}, {0, 0, 1}},
-    {"umbilicus", {0.32, -0.75, 0.58}, {0, 1, 0}},
+    {NameOf(roles::LandmarkRole::kUmbilicus), {0.32, -0.75, 0.58}, {0, 1, 0}},
 }};
 
 double CalcFocal(const OrbitCamera& camera, int height) {

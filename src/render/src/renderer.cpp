@@ -53,8 +53,8 @@ struct Renderer::Content {
   SurfaceId rod, cone, puddle;
 
   core::Status Make() {
-    if (const auto status = surface_drawer.Make(); !status) return status;
-    if (const auto status = fine.Make(); !status) return status;
+    if (const auto status = surface_drawer.Make(looks); !status) return status;
+    if (const auto status = fine.Make(looks); !status) return status;
     if (const auto status = round.Make(); !status) return status;
     const auto add = [&](const geometry::TriangleMesh& mesh, Material material) {
       return surfaces.Add(mesh.triangles, mesh.positions, material, {});

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shaders.h"
 
+#include <array>
+#include <charconv>
+#include <iterator>
+
 namespace trocar::render {
 
 const char* const kSurfaceVertexShader = R"(#version 330 core
@@ -68,7 +72,7 @@ vec3 AddSmoke(vec3 light, vec3 position) {
   vec2 at = 6.0 * position.xy / -position.z;
   float swirl = sin(at.x + u_smoke.y + 1.3 * sin(at.y - 0.7 * u_smoke.y)) + sin(1.7 * at.y - u_smoke.y + sin(1.9 * at.x));
   float clear = exp2(u_smoke.x * position.z * (1.0 + 0.22 * swirl));
-  return mix(vec3(0.66, 0.65, 0.64) * min(u_power, 1.5), light, clear);
+  return mix(kSmoke * min(u_power, 1.5), light, clear);
 }
 
 // Exposure, film curve, the lens's darker rim, the mask's soft edge, sRGB.
@@ -120,20 +124,20 @@ void main() {
   albedo = mix(albedo, u_vessel, u_amounts.y * vessel * vessel);
   // a thin wall seen edge-on is brighter and paler
   float rim = 1.0 - facing;
-  albedo += u_glow * rim * rim * (vec3(0.5) * albedo + vec3(0.06));
+  albedo += u_glow * rim * rim * (vec3(0.5) * albedo + kThinRim);
 
   float wet_share = u_gloss.x, sheen_share = u_gloss.z;
   if (v_mark != vec4(0.0)) {
     // the edges of a burn and of a film of liquid follow the tissue's grain
     float grain = 0.5 * detail.r + 0.5 * broad.r - 0.5;
     float cooked = clamp(v_mark.x + 0.5 * grain * v_mark.x, 0.0, 1.0);
-    albedo = mix(albedo, vec3(0.62, 0.53, 0.40) * (0.85 + 0.3 * detail.r), 0.9 * cooked);
+    albedo = mix(albedo, kBlanched * (0.85 + 0.3 * detail.r), 0.9 * cooked);
     vec2 film = smoothstep(0.12, 0.60, v_mark.zw + 0.6 * grain);
-    albedo = mix(albedo, vec3(0.30, 0.28, 0.030), 0.75 * film.y);
-    albedo = mix(albedo, vec3(0.17, 0.005, 0.006), 0.90 * film.x);
+    albedo = mix(albedo, kBileFilm, 0.75 * film.y);
+    albedo = mix(albedo, kBloodFilm, 0.90 * film.x);
     float brown = smoothstep(0.05, 0.40, v_mark.y + 0.35 * grain * sqrt(v_mark.y));
     float black = smoothstep(0.35, 0.80, v_mark.y + 0.50 * grain);
-    albedo = mix(mix(albedo, vec3(0.115, 0.050, 0.022), brown), vec3(0.010, 0.008, 0.007), black);
+    albedo = mix(mix(albedo, kScorched, brown), kCharred, black);
     wet_share = mix(mix(wet_share, max(wet_share, 0.8), max(film.x, film.y)), 0.12, max(brown, 0.6 * cooked));
     sheen_share *= 1.0 - 0.85 * brown;
   }
@@ -142,13 +146,13 @@ void main() {
   float light = CalcLight(inverse_distance, to_eye.z);
   vec3 diffuse = clamp((vec3(to_lamp) + u_wrap) / (1.0 + u_wrap), 0.0, 1.0);
   // folds and the shade of tools stay reddish: light reaches them through tissue
-  vec3 shade = mix(vec3(0.30, 0.20, 0.18), vec3(1.0), ambient);
+  vec3 shade = mix(kShade, vec3(1.0), ambient);
   float half_cosine = max(0.5 * (to_lamp + dot(bumpy, to_eye)), 0.0);
   // the wet film is broken up by fine noise
   float wet = wet_share * exp2(u_gloss.y * (half_cosine - 1.0)) * (0.4 + 1.2 * detail.r) * ambient;
   float sheen = sheen_share * exp2(18.0 * (half_cosine - 1.0));
-  vec3 bounce = vec3(0.060, 0.036, 0.028) * (0.4 + 0.6 * ambient);
-  vec3 colour = albedo * (diffuse * shade * light + bounce * (0.4 + light)) + (wet + sheen) * min(light, 2.0) * vec3(1.0, 0.98, 0.95);
+  vec3 bounce = kBounce * (0.4 + 0.6 * ambient);
+  vec3 colour = albedo * (diffuse * shade * light + bounce * (0.4 + light)) + (wet + sheen) * min(light, 2.0) * kTissueHighlight;
   o_colour = WithBrightness(Finish(2.1 * colour, v_position, gl_FragCoord.xy));
 }
 )";
@@ -171,7 +175,7 @@ void main() {
   // what the metal mirrors: warm tissue all round, the dark middle of the lens, grooves of the grinding
   vec3 mirrored = 2.0 * dot(n, to_eye) * n - to_eye;
   float away = 0.5 - 0.5 * mirrored.z;
-  vec3 room = mix(vec3(0.10, 0.08, 0.08), vec3(0.58, 0.27, 0.20), away * away) * (0.55 + 0.45 * mirrored.y);
+  vec3 room = mix(kMirroredLens, kMirroredTissue, away * away) * (0.55 + 0.45 * mirrored.y);
   float grooves = 1.0 - u_grooves * (0.5 + 0.5 * sin(v_rest.z * 5200.0));
 
   float cosine = clamp(dot(n, l), 0.0, 1.0);
@@ -182,7 +186,7 @@ void main() {
   vec3 base = mix(u_low, u_high, cosine * cosine);
   vec3 colour = base * (0.55 * cosine + 0.04) * light * grooves;
   colour += (u_gloss.z + 0.12 * rim * rim * rim) * room * (0.25 + 0.75 * min(light, 1.5));
-  colour += u_gloss.x * (0.30 * streak + 0.8 * point) * min(light, 2.0) * vec3(1.0, 0.98, 0.96);
+  colour += u_gloss.x * (0.30 * streak + 0.8 * point) * min(light, 2.0) * kMetalHighlight;
   o_colour = WithBrightness(Finish(1.6 * colour, v_position, gl_FragCoord.xy));
 }
 )";
@@ -227,5 +231,25 @@ out vec4 o_colour;
 uniform vec3 u_colour;
 void main() { o_colour = vec4(u_colour, 1.0); }
 )";
+
+std::string MakeEffectColours(const Looks& looks) {
+  static constexpr const char* kNames[] = {
+      "kSmoke",          "kBlanched",     "kScorched",       "kCharred",      "kBloodFilm",
+      "kBileFilm",       "kThinRim",      "kShade",          "kBounce",       "kTissueHighlight",
+      "kMetalHighlight", "kMirroredLens", "kMirroredTissue", "kMirroredWall", "kStrandShade"};
+  static_assert(std::size(kNames) == static_cast<std::size_t>(Effect::kCount));
+  std::string source;
+  for (std::size_t i = 0; i < looks.effects.size(); ++i) {
+    source += std::string("const vec3 ") + kNames[i] + " = vec3(";
+    for (std::size_t k = 0; k < 3; ++k) {
+      // as many digits as tell the number from every other, and no locale's comma
+      std::array<char, 32> digits{};
+      const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), looks.effects[i][k]).ptr;
+      source.append(k == 0 ? "" : ", ").append(digits.data(), end);
+    }
+    source += ");\n";
+  }
+  return source;
+}
 
 }  // namespace trocar::render

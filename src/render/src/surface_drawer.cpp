@@ -41,17 +41,18 @@ SurfaceDrawer::~SurfaceDrawer() {
   for (const Program& program : GetPrograms()) glDeleteProgram(program.name);
 }
 
-core::Status SurfaceDrawer::Make() {
-  const auto tissue =
-      MakeProgram({kSurfaceVertexShader}, {kFragmentHead, kShadingFunctions, kTissueFragmentShader});
+core::Status SurfaceDrawer::Make(const Looks& looks) {
+  const std::string colours = MakeEffectColours(looks);
+  const auto tissue = MakeProgram({kSurfaceVertexShader},
+                                  {kFragmentHead, colours.c_str(), kShadingFunctions, kTissueFragmentShader});
   if (!tissue) return tissue.error();
   tissue_ = *tissue;
-  const auto tool =
-      MakeProgram({kSurfaceVertexShader}, {kFragmentHead, kShadingFunctions, kToolFragmentShader});
+  const auto tool = MakeProgram({kSurfaceVertexShader},
+                                {kFragmentHead, colours.c_str(), kShadingFunctions, kToolFragmentShader});
   if (!tool) return tool.error();
   tool_ = *tool;
-  const auto clear =
-      MakeProgram({kClearVertexShader}, {kFragmentHead, kShadingFunctions, kClearFragmentShader});
+  const auto clear = MakeProgram({kClearVertexShader},
+                                 {kFragmentHead, colours.c_str(), kShadingFunctions, kClearFragmentShader});
   if (!clear) return clear.error();
   clear_ = *clear;
   noise_.Make();

@@ -20,7 +20,7 @@ class SurfaceDrawer {
   ~SurfaceDrawer();
 
   /// \return kShaderFailed with the compiler's words
-  core::Status Make();
+  core::Status Make(const Looks& looks);
 
   /// For the uniforms that the renderer sets once a frame.
   std::array<Program, 3> GetPrograms() const { return {tool_, clear_, tissue_}; }

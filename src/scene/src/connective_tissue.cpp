@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string_view>
 
 #include "trocar/collision/queries.h"
 #include "trocar/collision/triangle_tree.h"
@@ -23,12 +22,6 @@ constexpr double kReach = 1.55;
 constexpr std::size_t kMostNeighbours = 6, kMostTies = 2;
 /// Clear of the organs' surfaces [m].
 constexpr double kClearance = 0.0004;
-
-const anatomy::Tube* FindTube(const anatomy::Patient& patient, std::string_view name) {
-  const auto found = std::find_if(patient.tubes.begin(), patient.tubes.end(),
-                                  [&](const anatomy::Tube& tube) { return tube.name == name; });
-  return found == patient.tubes.end() ? nullptr : &*found;
-}
 
 /// A tube's line from the end that is nearer to `start`.
 std::vector<Vec3> LineFrom(const anatomy::Tube& tube, const Vec3& start) {
@@ -115,18 +108,19 @@ class Surroundings {
 
 ConnectiveTissue MakeConnectiveTissue(const anatomy::Patient& patient, double spacing, std::uint64_t seed) {
   ConnectiveTissue made;
-  const anatomy::Tube* cystic = FindTube(patient, "cystic_duct");
-  const anatomy::Tube* hepatic = FindTube(patient, "common_hepatic_duct");
-  if (cystic == nullptr || hepatic == nullptr) return made;
+  const int cystic_index = patient.TubeOf(roles::TubeRole::kCysticDuct),
+            hepatic_index = patient.TubeOf(roles::TubeRole::kCommonHepaticDuct);
+  if (cystic_index < 0 || hepatic_index < 0) return made;
+  const anatomy::Tube &cystic = patient.tubes[cystic_index], &hepatic = patient.tubes[hepatic_index];
   // both lines lead away from where the ducts meet
   const auto near_hepatic = [&](const Vec3& p) {
     double least = std::numeric_limits<double>::infinity();
-    for (const Vec3& q : hepatic->line.points) least = std::min(least, math::Distance(p, q));
+    for (const Vec3& q : hepatic.line.points) least = std::min(least, math::Distance(p, q));
     return least;
   };
-  const auto& ends = cystic->line.points;
-  const Vec3 meeting = near_hepatic(ends.front()) < near_hepatic(ends.back()) ? ends.front() : ends.back();
-  const std::vector<Vec3> duct = LineFrom(*cystic, meeting), plate = LineFrom(*hepatic, meeting);
+  const auto& ends = cystic.line.points;
+  const Vec3 junction = near_hepatic(ends.front()) < near_hepatic(ends.back()) ? ends.front() : ends.back();
+  const std::vector<Vec3> duct = LineFrom(cystic, junction), plate = LineFrom(hepatic, junction);
   const Vec3 across = duct.back() - duct.front(), up = plate.back() - plate.front();
   const Vec3 normal = math::Normalized(math::Cross(across, up), {0, 0, 1});
 

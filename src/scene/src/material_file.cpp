@@ -102,6 +102,7 @@ core::Result<std::vector<OrganMaterial>> ReadMaterials(const core::JsonView& sce
     }
     auto material = ReadMaterial(view, folder, files);
     if (!material.ok()) return material.error();
+    material->tissue = roles::ConventionalRole<roles::TissueRole>(organ);
     material->organ = std::move(organ);
     materials.push_back(std::move(*material));
   }

@@ -67,11 +67,16 @@ Pathology CalcPathology(const anatomy::Patient& patient) {
 std::vector<OrganMaterial> CalcPatientMaterials(const Scene& scene, const Pathology& pathology) {
   std::vector<OrganMaterial> materials = scene.materials;
   for (OrganMaterial& material : materials) {
+    using roles::TissueRole;
+    // one that names an organ of the patient's is of what the organ is
+    if (material.tissue == TissueRole::kOther)
+      material.tissue = roles::TissueOf(scene.patient.FindOrganRole(material.organ));
     MaterialFactors factors;
-    if (material.organ == "liver") factors = pathology.liver;
-    if (material.organ == "gallbladder") factors = pathology.gallbladder;
-    if (material.organ == anatomy::kGallbladderBed) factors = pathology.bed;
-    if (material.organ == "duct" || material.organ == "artery") factors = pathology.tubes;
+    if (material.tissue == TissueRole::kLiver) factors = pathology.liver;
+    if (material.tissue == TissueRole::kGallbladder) factors = pathology.gallbladder;
+    if (material.tissue == TissueRole::kGallbladderBed) factors = pathology.bed;
+    if (material.tissue == TissueRole::kDuct || material.tissue == TissueRole::kArtery)
+      factors = pathology.tubes;
     material.young_modulus *= factors.young_modulus;
     material.wall_thickness *= factors.wall_thickness;
     material.foundation_modulus *= factors.foundation_modulus;
@@ -83,12 +88,12 @@ std::vector<OrganMaterial> CalcPatientMaterials(const Scene& scene, const Pathol
 std::vector<std::pair<std::uint32_t, std::uint32_t>> FindAdhesions(const anatomy::Patient& patient,
                                                                    double share) {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
-  const int liver = patient.FindOrgan("liver"), gallbladder = patient.FindOrgan("gallbladder");
+  const int liver = patient.OrganOf(roles::OrganRole::kLiver),
+            gallbladder = patient.OrganOf(roles::OrganRole::kGallbladder);
   if (liver < 0 || gallbladder < 0 || !(share > 0)) return pairs;
   std::set<std::uint32_t> bed;
-  for (const auto& region : patient.organs[gallbladder].regions) {
-    if (region.name == anatomy::kGallbladderBed) bed.insert(region.vertices.begin(), region.vertices.end());
-  }
+  if (const auto* region = patient.organs[gallbladder].RegionOf(roles::RegionRole::kGallbladderBed))
+    bed.insert(region->vertices.begin(), region->vertices.end());
   const auto& wall = patient.organs[gallbladder].mesh.positions;
   const auto& surface = patient.organs[liver].mesh.positions;
   for (std::uint32_t v = 0; v < wall.size(); ++v) {

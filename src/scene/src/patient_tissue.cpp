@@ -15,6 +15,9 @@
 #include "trocar/tissue/material.h"
 
 namespace trocar::scene {
+
+using roles::OrganRole;
+using roles::TissueRole;
 namespace {
 
 /// Bending springs of a tube, as a share of its axial stiffness [-]: keeps it a smooth curve.
@@ -36,10 +39,25 @@ constexpr double kFatElongation = 1.5, kPeritoneumElongation = 0.8;
 /// The end of a tube is tied to this many of the nearest vertices of its organ.
 constexpr std::size_t kEndStrands = 4;
 
-const OrganMaterial* FindMaterial(std::span<const OrganMaterial> materials, std::string_view name) {
+/// The first material of a tissue, or null.
+const OrganMaterial* FindMaterial(std::span<const OrganMaterial> materials, TissueRole tissue) {
   const auto found = std::find_if(materials.begin(), materials.end(),
-                                  [&](const OrganMaterial& material) { return material.organ == name; });
+                                  [&](const OrganMaterial& material) { return material.tissue == tissue; });
   return found == materials.end() ? nullptr : &*found;
+}
+
+/// The material that names the organ, else that of its tissue.
+const OrganMaterial* FindMaterial(std::span<const OrganMaterial> materials, const anatomy::Organ& organ) {
+  const auto named = std::find_if(materials.begin(), materials.end(), [&](const OrganMaterial& material) {
+    return material.organ == organ.name;
+  });
+  if (named != materials.end()) return &*named;
+  const TissueRole tissue = roles::TissueOf(organ.role);
+  return tissue == TissueRole::kOther ? nullptr : FindMaterial(materials, tissue);
+}
+
+TissueRole TissueOf(anatomy::TubeKind kind) {
+  return kind == anatomy::TubeKind::kArtery ? TissueRole::kArtery : TissueRole::kDuct;
 }
 
 core::Error MissingMaterial(const std::string& name) {
@@ -82,12 +100,16 @@ void AddOrgan(const anatomy::Organ& organ, const OrganMaterial& material, const 
   auto& definition = made.definition;
   const auto first = static_cast<std::uint32_t>(definition.rest.size());
   const auto& mesh = organ.mesh;
+  const std::string look = sheet != nullptr                  ? kSheetLook
+                           : organ.role != OrganRole::kOther ? NameOf(organ.role)
+                                                             : organ.name;
   made.surfaces.push_back({organ.name,
-                           sheet != nullptr ? kSheetLook : organ.name,
+                           look,
                            first,
                            static_cast<std::uint32_t>(mesh.positions.size()),
                            mesh.triangles,
-                           {}});
+                           {},
+                           organ.role});
   definition.rest.insert(definition.rest.end(), mesh.positions.begin(), mesh.positions.end());
   if (sheet == nullptr)
     made.conservation.organs.push_back(
@@ -111,14 +133,12 @@ void AddOrgan(const anatomy::Organ& organ, const OrganMaterial& material, const 
     definition.springs.push_back(spring);
   }
   made.spring_organs.resize(definition.springs.size(), static_cast<std::int32_t>(made.surfaces.size() - 1));
-  // room for what cuts add: they follow the organ's nodes, so that these stay in one piece
+  // spare nodes for what cuts add: they follow the organ's nodes, so that these stay in one piece
   made.first_spare.push_back(static_cast<std::uint32_t>(definition.rest.size()));
   if (spare.by_organ > 0) surgery::AddSpareNodes(spare.by_organ, definition);
   made.heat_mass.resize(definition.rest.size(), 0.0);
   for (const anatomy::Region& region : organ.regions) {
-    const bool is_fixed = region.name == anatomy::kDiaphragmaticFace || region.name == anatomy::kFalciform ||
-                          region.name == anatomy::kCoronary || region.name == kHeldRegion;
-    if (!is_fixed) continue;
+    if (!roles::IsFixed(region.role)) continue;
     for (const auto vertex : region.vertices) definition.fixed.push_back(first + vertex);
   }
 }
@@ -156,7 +176,8 @@ void AddAttachments(const Scene& scene, const OrganMaterial& bed, PatientTissue&
 void AddAdhesions(const Scene& scene, const OrganMaterial& bed, double share, PatientTissue& made) {
   const auto pairs = FindAdhesions(scene.patient, share);
   if (pairs.empty()) return;
-  const int liver = scene.patient.FindOrgan("liver"), gallbladder = scene.patient.FindOrgan("gallbladder");
+  const int liver = scene.patient.OrganOf(OrganRole::kLiver),
+            gallbladder = scene.patient.OrganOf(OrganRole::kGallbladder);
   const auto& mesh = scene.patient.organs[gallbladder].mesh;
   const auto areas = geometry::CalcVertexAreas(mesh.positions, mesh.triangles);
   for (const auto& pair : pairs) {
@@ -195,7 +216,14 @@ void AddTube(const anatomy::Tube& tube, const OrganMaterial& material, PatientTi
   auto& definition = made.definition;
   const auto first = static_cast<std::uint32_t>(definition.rest.size());
   const auto count = static_cast<std::uint32_t>(tube.line.points.size());
-  made.surfaces.push_back({tube.name, material.organ, first, count, {}, tube.line.radii});
+  made.surfaces.push_back({tube.name,
+                           NameOf(TissueOf(tube.kind)),
+                           first,
+                           count,
+                           {},
+                           tube.line.radii,
+                           OrganRole::kOther,
+                           tube.role});
   definition.rest.insert(definition.rest.end(), tube.line.points.begin(), tube.line.points.end());
   const double spacing = geometry::CalcLength(tube.line) / (count - 1);
   for (std::uint32_t i = 0; i < count; ++i) {
@@ -219,23 +247,22 @@ void AddTube(const anatomy::Tube& tube, const OrganMaterial& material, PatientTi
 }
 
 void TieTubes(const Scene& scene, std::span<const OrganMaterial> materials, PatientTissue& made) {
-  for (const anatomy::Tube& tube : scene.patient.tubes) {
-    const auto self = std::find_if(made.surfaces.begin(), made.surfaces.end(),
-                                   [&](const SurfaceInfo& surface) { return surface.name == tube.name; });
-    const OrganMaterial& material = *FindMaterial(materials, self->material);
-    const std::uint32_t ends[2] = {self->first_node, self->first_node + self->node_count - 1};
-    const std::string* names[2] = {&tube.from, &tube.to};
-    for (int end = 0; end < 2; ++end) {
-      const auto other =
-          std::find_if(made.surfaces.begin(), made.surfaces.end(),
-                       [&](const SurfaceInfo& surface) { return surface.name == *names[end]; });
-      if (other == made.surfaces.end()) {
+  const anatomy::Patient& patient = scene.patient;
+  for (std::size_t t = 0; t < patient.tubes.size(); ++t) {
+    const anatomy::Tube& tube = patient.tubes[t];
+    SurfaceInfo& self = made.surfaces[patient.organs.size() + t];
+    const OrganMaterial& material = *FindMaterial(materials, TissueOf(tube.kind));
+    const std::uint32_t ends[2] = {self.first_node, self.first_node + self.node_count - 1};
+    for (std::size_t end = 0; end < 2; ++end) {
+      self.ends[end] = patient.FindPart(end == 0 ? tube.from : tube.to);
+      if (self.ends[end] < 0) {
         made.definition.fixed.push_back(ends[end]);  // leaves the scene
         continue;
       }
-      const double stiffness = tissue::CalcTubeStiffness(material.young_modulus, self->radii.front(),
+      const double stiffness = tissue::CalcTubeStiffness(material.young_modulus, self.radii.front(),
                                                          material.wall_thickness, 0.004);
-      TieEnd(ends[end], *other, stiffness, material.failure_force, made);
+      TieEnd(ends[end], made.surfaces[static_cast<std::size_t>(self.ends[end])], stiffness,
+             material.failure_force, made);
     }
   }
 }
@@ -257,7 +284,7 @@ void AddConnectiveTissue(const Scene& scene, const ConnectiveTissue& fat, double
     const std::size_t surface = end.of == FibreEnd::Of::kOrgan ? end.which : organ_count + end.which;
     return made.surfaces[surface].first_node + end.index;
   };
-  const int liver = scene.patient.FindOrgan("liver");
+  const int liver = scene.patient.OrganOf(OrganRole::kLiver);
   for (const Fibre& fibre : fat.fibres) {
     const double share = fibre.is_peritoneum ? kPeritoneumShare : 1.0;
     definition.strands.push_back(
@@ -312,7 +339,7 @@ core::Result<PatientTissue> MakePatientTissue(const Scene& scene, const SpareNod
                            " can be simulated"};
   }
   for (const anatomy::Organ& organ : scene.patient.organs) {
-    const OrganMaterial* material = FindMaterial(materials, organ.name);
+    const OrganMaterial* material = FindMaterial(materials, organ);
     if (material == nullptr) return MissingMaterial(organ.name);
     const ModelSheet* sheet = scene.model ? &scene.model->sheets[made.surfaces.size()] : nullptr;
     if (sheet == nullptr) {
@@ -322,15 +349,14 @@ core::Result<PatientTissue> MakePatientTissue(const Scene& scene, const SpareNod
     made.internal_pressure.push_back(material->internal_pressure);
   }
   if (!scene.patient.attachments.empty()) {
-    const OrganMaterial* bed = FindMaterial(materials, anatomy::kGallbladderBed);
-    if (bed == nullptr) return MissingMaterial(anatomy::kGallbladderBed);
+    const OrganMaterial* bed = FindMaterial(materials, TissueRole::kGallbladderBed);
+    if (bed == nullptr) return MissingMaterial(NameOf(TissueRole::kGallbladderBed));
     AddAttachments(scene, *bed, made);
     AddAdhesions(scene, *bed, pathology.adhesions, made);
   }
   for (const anatomy::Tube& tube : scene.patient.tubes) {
-    const std::string kind = tube.kind == anatomy::TubeKind::kArtery ? "artery" : "duct";
-    const OrganMaterial* material = FindMaterial(materials, kind);
-    if (material == nullptr) return MissingMaterial(kind);
+    const OrganMaterial* material = FindMaterial(materials, TissueOf(tube.kind));
+    if (material == nullptr) return MissingMaterial(anatomy::KindName(tube.kind));
     AddTube(tube, *material, made);
   }
   TieTubes(scene, materials, made);

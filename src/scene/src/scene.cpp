@@ -67,7 +67,7 @@ void ReadInstrument(const core::JsonView& root, const char* hand, const anatomy:
 void ReadOperation(const core::JsonView& root, const anatomy::Patient& patient, Scene& scene) {
   if (!root.Has("operation")) return;
   const core::JsonView view = root.Object("operation");
-  view.AllowOnly({"fat_spacing_mm", "assistant", "gallstones"});
+  view.AllowOnly({"fat_spacing_mm", "assistant", "gallstones", "parameters"});
   OperationSetup setup;
   setup.fat_spacing = 0.001 * view.NumberOr("fat_spacing_mm", 1e3 * setup.fat_spacing, range::kFatSpacingMm);
   if (setup.fat_spacing > 0.0 && setup.fat_spacing < 0.0015)
@@ -89,14 +89,33 @@ void ReadOperation(const core::JsonView& root, const anatomy::Patient& patient, 
     AssistantSetup assistant;
     assistant.tool = *instrument::FindTool("grasper");
     assistant.p_world_port = ReadPointMm(hand, "port_mm");
-    assistant.landmark = hand.Text("at");
     assistant.lift = ReadPointMm(hand, "lift_mm", range::kOffsetMm);
-    if (patient.FindLandmark(assistant.landmark) == nullptr)
-      hand.Complain("there is no landmark \"" + assistant.landmark + "\" in the patient",
-                    core::ErrorCode::kUnknownName);
+    const std::string name = hand.Text("at");
+    if (const anatomy::Landmark* landmark = patient.FindLandmark(name)) {
+      assistant.p_world_target = landmark->position;
+    } else {
+      hand.Complain("there is no landmark \"" + name + "\" in the patient", core::ErrorCode::kUnknownName);
+    }
     setup.assistant = std::move(assistant);
   }
   scene.operation = std::move(setup);
+}
+
+/// The operation's tables: those that the scene names, else the delivered ones.
+core::Status ReadParameters(const core::JsonView& root, const std::filesystem::path& folder,
+                            OperationSetup& operation) {
+  std::filesystem::path path;
+  if (root.Has("operation") && root.Object("operation").Has("parameters")) {
+    path = folder / root.Object("operation").Text("parameters");
+  } else {
+    const auto data = FindDataFolder();
+    if (!data.ok()) return data.error();
+    path = *data / kOperationParametersFile;
+  }
+  const auto read = ReadOperationParameters(path);
+  if (!read.ok()) return read.error();
+  operation.parameters = *read;
+  return {};
 }
 
 void ReadLaparoscope(const core::JsonView& root, const anatomy::Patient& patient, LaparoscopeSetup& setup,
@@ -224,6 +243,10 @@ core::Result<Scene> ReadSceneFields(const core::JsonDocument& document, const co
   CheckPorts(view, scene);
   const std::string script = view.TextOr("script", "");
   if (const auto status = document.Check(); !status.ok()) return status.error();
+  if (scene.operation) {
+    if (const auto status = ReadParameters(view, folder, *scene.operation); !status.ok())
+      return status.error();
+  }
   if (!script.empty()) {
     auto read = ReadScript(folder / script, scene.patient);
     if (!read.ok()) return read.error();

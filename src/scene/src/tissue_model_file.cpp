@@ -29,11 +29,10 @@ void CheckName(const JsonView& view, const Things& things, const char* what) {
 /// Both ends leave the scene, so that they are held where they are.
 anatomy::Tube ReadTube(const JsonView& view, const Vec3& origin) {
   view.AllowOnly({"name", "about", "kind", "from_mm", "to_mm", "radius_mm", "sag_mm", "spacing_mm"});
-  anatomy::Tube tube;
-  tube.name = view.Text("name");
-  const std::string kind = view.TextOr("kind", "duct");
-  if (kind != "duct" && kind != "artery") view.Complain("kind is duct or artery", ErrorCode::kUnknownName);
-  tube.kind = kind == "artery" ? anatomy::TubeKind::kArtery : anatomy::TubeKind::kDuct;
+  anatomy::Tube tube{view.Text("name")};
+  const auto kind = anatomy::FindKind(view.TextOr("kind", anatomy::KindName(tube.kind)));
+  if (!kind) view.Complain("kind is duct or artery", ErrorCode::kUnknownName);
+  tube.kind = kind.value_or(tube.kind);
   const Vec3 from = origin + ReadPointMm(view, "from_mm"), to = origin + ReadPointMm(view, "to_mm");
   const double radius = 0.001 * view.Number("radius_mm", range::kTubeRadiusMm);
   const double sag = 0.001 * view.NumberOr("sag_mm", 0.0, range::kSagMm);

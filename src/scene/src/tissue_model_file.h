@@ -8,7 +8,7 @@
 namespace trocar::scene {
 
 /// Of a sheet's vertices: those that stay where they are.
-inline constexpr const char* kHeldRegion = "held";
+inline constexpr const char* kHeldRegion = roles::NameOf(roles::RegionRole::kHeld);
 
 /// Reads `model` into Scene::model and Scene::patient, and makes the scene an operation; complains in the view's
 /// document.

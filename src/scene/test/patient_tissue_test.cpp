@@ -31,7 +31,7 @@ TEST_F(PatientTissueTest, LaysOrganAfterOrganThenTubes) {
   ASSERT_EQ(made_.surfaces.size(), 3u);
   EXPECT_EQ(made_.surfaces[1].first_node, made_.surfaces[0].node_count);
   EXPECT_EQ(made_.surfaces[2].name, "cystic_duct");
-  EXPECT_EQ(made_.surfaces[2].material, "duct");
+  EXPECT_EQ(made_.surfaces[2].look, "duct");
   EXPECT_EQ(made_.surfaces[2].first_node + made_.surfaces[2].node_count, made_.definition.rest.size());
 }
 

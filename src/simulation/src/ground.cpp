@@ -4,9 +4,8 @@
 namespace trocar::simulation {
 namespace {
 
-constexpr double kGap = 0.002;               // between what lies above and the omentum [m]
-constexpr std::uint32_t kEvery = 3;          // vertex of an organ: they lie close
-constexpr const char* kOnOmentum = "liver";  // rests on it
+constexpr double kGap = 0.002;       // between what lies above and the omentum [m]
+constexpr std::uint32_t kEvery = 3;  // vertex of an organ: they lie close
 
 }  // namespace
 
@@ -14,7 +13,7 @@ std::vector<geometry::Ball> FindOmentumBalls(std::span<const SurfaceInfo> surfac
                                              std::span<const Vec3> positions) {
   std::vector<geometry::Ball> balls;
   for (const SurfaceInfo& surface : surfaces) {
-    if (surface.material == kOnOmentum) continue;
+    if (surface.organ == roles::OrganRole::kLiver) continue;  // the omentum rests on it
     const bool is_tube = surface.triangles.empty();
     for (std::uint32_t i = 0; i < surface.node_count; i += is_tube ? 1 : kEvery) {
       const double radius = is_tube ? surface.radii[i] : 0.0;

@@ -4,8 +4,8 @@
 #include <utility>
 
 #include "operation/operation.h"
-#include "operation/vessel_map.h"
 #include "trocar/scene/patient_tissue.h"
+#include "trocar/scene/patient_vessels.h"
 
 namespace trocar::simulation {
 
@@ -15,12 +15,12 @@ core::Result<ModelDescription> DescribeModel(const Scene& scene) {
   auto tissue = MakePatientTissue(scene, scene.operation.has_value() ? Operation::kSpare : SpareNodes{});
   if (!tissue.ok()) return tissue.error();
   ModelDescription description;
-  const auto map = MakeVesselMap(scene.patient);
-  for (std::size_t t = 0; map.ok() && t < scene.patient.tubes.size(); ++t) {
+  const auto vessels = scene::MakePatientVessels(scene.patient);
+  for (std::size_t t = 0; vessels.ok() && t < scene.patient.tubes.size(); ++t) {
     const SurfaceInfo& surface = tissue->surfaces[scene.patient.organs.size() + t];
     std::vector<training::VesselRole>& roles = description.tube_roles.emplace_back();
     for (std::uint32_t k = 0; k < surface.node_count; ++k)
-      roles.push_back(map->anatomy.roles[map->Find(t, map->arcs[t][k]).vessel]);
+      roles.push_back(vessels->anatomy.roles[vessels->map.Find(t, vessels->map.arcs[t][k]).vessel]);
   }
   description.surfaces = std::move(tissue->surfaces);
   description.strands = std::move(tissue->strands);

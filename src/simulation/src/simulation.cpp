@@ -45,7 +45,7 @@ core::Status Simulation::Content::MakeParts(int threads, SolveOn solve_on) {
     auto operation = Operation::Make(scene, model->tissue);
     if (!operation.ok()) return operation.error();
     world.operation = std::move(*operation);
-    judgement.operation.emplace(scene, made, *world.operation);
+    judgement.operation.emplace(world.operation->MakeJudge());
   }
   conservation = std::make_unique<tissue::Conservation>(tissue_model, made.conservation);
   world.tissue = model->tissue_at_start;
@@ -211,7 +211,7 @@ std::optional<OperationResult> Simulation::GetOperationResult() const {
   if (c.world.operation == nullptr) return std::nullopt;
   OperationResult result;
   c.world.operation->AddTo(result);
-  c.judgement.operation->AddTo(result);
+  AddTo(*c.judgement.operation, result);
   return result;
 }
 const Snapshot& Simulation::GetSnapshot() const {

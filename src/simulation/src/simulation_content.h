@@ -11,7 +11,6 @@
 
 #include "camera_holder.h"
 #include "operation/operation.h"
-#include "operation/operation_judge.h"
 #include "rigid_stage.h"
 #include "simulation_model.h"
 #include "task_monitor.h"
@@ -49,7 +48,7 @@ struct WorldState {
 
 /// What those who only look have seen.
 struct JudgementState {
-  std::optional<OperationJudge> operation;  ///< where the scene is one
+  std::optional<training::OperationJudge> operation;  ///< where the scene is one
   TaskMonitor monitor;
   TaskSnapshot task;
   std::array<Event, kEventRing> events{};

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "simulation_model.h"
 
+#include <array>
+#include <bit>
+#include <cstdint>
 #include <utility>
 
 #include "operation/operation.h"
@@ -78,6 +81,11 @@ std::uint64_t CalcFingerprint(const SimulationModel& model) {
     for (const double value : {setup.p_world_port.x, setup.p_world_port.y, setup.p_world_port.z})
       hash.Add(value);
   }
+  // states that were saved with the delivered tables stay what they are
+  if (scene.operation && scene.operation->parameters != scene::OperationParameters{}) {
+    using Words = std::array<std::uint64_t, sizeof(scene::OperationParameters) / sizeof(std::uint64_t)>;
+    for (const std::uint64_t word : std::bit_cast<Words>(scene.operation->parameters)) hash.Add(word);
+  }
   return hash.Value();
 }
 
@@ -94,7 +102,7 @@ core::Result<std::shared_ptr<const SimulationModel>> MakeSimulationModel(std::sh
   const tissue::TissueModel tissue_model = tissue::MakeTissueModel(model->tissue->definition);
   model->walls = MakeWalls(model->scene->patient, *model->tissue);
   model->walls_tear = tissue::HasTearingSprings(tissue_model);
-  model->hollow_organ = model->scene->patient.FindOrgan("gallbladder");
+  model->hollow_organ = model->scene->patient.OrganOf(roles::OrganRole::kGallbladder);
   if (const auto filled = Fill(tissue_model, std::max(1, threads), *model); !filled.ok())
     return filled.error();
   model->fingerprint = CalcFingerprint(*model);

@@ -134,8 +134,14 @@ core::Status Simulation::Content::Restore(core::StateArchive& archive) {
   VisitState(archive);
   if (!archive.ok()) return Refuse("the saved state does not fit: " + archive.Failure());
   if (!archive.IsAtEnd()) return Refuse("the saved state goes on after its last field");
+  // what is asked between ticks, the force on a hand among it, sees the load of the last one
+  const tissue::VolumeResponses& responses = world.conserved.responses;
+  tick.load = {tick.gravity - kImagingGravity,
+               responses.stiffness_scale,
+               responses.shape_scale,
+               world.touch.Contacts().springs,
+               {}};
   // the rest of a tick's scratch is made in the next one
-  tick.load = {};
   tick.changes = {};
   tick.verdict = tissue::GuardVerdict::kGood;
   tick.torn_count = tick.torn_spring_count = 0;

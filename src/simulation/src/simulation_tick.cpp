@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "bad_tick.h"
 #include "simulation_content.h"
 #include "trocar/tissue/conserved_equilibrium.h"
 #include "trocar/tissue/damage.h"
@@ -201,11 +202,10 @@ void Simulation::Content::GuardTissue() noexcept {
   WorldState& w = world;
   tick.verdict = w.guard->Check(w.tissue, tick.report.is_finite);
   const bool is_good = tick.verdict == tissue::GuardVerdict::kGood;
-  // what a bad tick left in the pressures and frames goes with it
   if (is_good) {
     w.good_conserved = w.conserved;
   } else {
-    static_cast<tissue::ConservationTick&>(w.conserved) = w.good_conserved;
+    TakeBack(w.good_conserved, w.conserved);
   }
   const auto touched = w.touch.CalcTouch(w.tissue, is_good);
   for (int hand = 0; hand < kHandCount; ++hand) {
@@ -321,7 +321,7 @@ void Simulation::Content::Judge() noexcept {
     Emit(event.kind, event.hand, event.surface, 0.0);
     last().p_rest = event.p_rest;
   }
-  j.operation->Update(*world.operation, tick.hands, GetTissue(), GetCamera());
+  j.operation->Update(world.operation->Observe(tick.hands, GetTissue(), GetCamera()));
   for (const training::ErrorEntry& entry : j.operation->NewErrors()) {
     Emit(EventKind::kOperationError, entry.hand, -1, 0.0);
     last().error = static_cast<std::int32_t>(entry.error);
@@ -358,7 +358,7 @@ void Simulation::Content::Publish() noexcept {
   }
   if (w.operation != nullptr) {
     w.operation->Publish(w.tissue, snapshot.operation);
-    judgement.operation->Publish(snapshot.operation);
+    simulation::Publish(*judgement.operation, snapshot.operation);
   }
   snapshot.residual = tick.report.residual;
   snapshot.iterations = tick.report.iterations;

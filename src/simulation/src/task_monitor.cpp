@@ -71,7 +71,7 @@ Finding FindOfTissue(const Scene& scene, const OperationSnapshot& now, const Con
     return {now.band_is_whole[i] == 0, math::Lerp(band.from, band.to, 0.5), -1};
   }
   if (c.sheet >= 0) {
-    const SheetSnapshot& sheet = now.sheets[static_cast<std::size_t>(c.sheet)];
+    const training::PatternCut& sheet = now.sheets[static_cast<std::size_t>(c.sheet)];
     const bool is_true = c.kind == ConditionKind::kCutFree      ? sheet.is_free
                          : c.kind == ConditionKind::kCutOffLine ? sheet.farthest >= c.amount
                                                                 : sheet.off_area >= c.amount;
@@ -95,7 +95,7 @@ void TaskMonitor::Reset(const Scene& scene, TaskSnapshot& task) {
   tracks_.assign(scene.objects.size(), {});
   for (std::size_t i = 0; i < tracks_.size(); ++i)
     tracks_[i].start_height = scene.objects[i].body.X_world_body.translation.z;
-  watches_.clear();
+  condition_monitors_.clear();
   task = {};
   events_before_ = 0;
   for (int hand = 0; hand < kHandCount; ++hand) {
@@ -105,7 +105,7 @@ void TaskMonitor::Reset(const Scene& scene, TaskSnapshot& task) {
   }
   X_world_start_view_ = instrument::CalcToolPose(scene.laparoscope.p_world_port, scene.laparoscope.home);
   if (!scene.task) return;
-  for (const ErrorRule& rule : scene.task->errors) watches_.emplace_back(rule.when.size());
+  for (const ErrorRule& rule : scene.task->errors) condition_monitors_.emplace_back(rule.when.size());
   task.phase = TaskPhase::kReady;
   task.goals.resize(scene.task->goals.size());
   task.errors.resize(scene.task->errors.size());
@@ -294,13 +294,14 @@ void TaskMonitor::UpdateErrors(const Scene& scene, const Snapshot& snapshot, Tas
     const ErrorRule& rule = task.errors[e];
     for (std::size_t i = 0; i < rule.when.size(); ++i) {
       const Condition& condition = rule.when[i];
-      Watch& watch = watches_[e][i];
+      ConditionMonitor& monitor = condition_monitors_[e][i];
       const Finding found = Find(scene, snapshot, condition);
-      watch.seconds = found.is_true ? watch.seconds + scene.tick_seconds : 0.0;
-      if (!found.is_true) watch.is_counted = false;
+      monitor.seconds = found.is_true ? monitor.seconds + scene.tick_seconds : 0.0;
+      if (!found.is_true) monitor.is_counted = false;
       const bool is_moment = IsMoment(condition.kind);
-      if (!found.is_true || watch.is_counted || (!is_moment && watch.seconds < condition.seconds)) continue;
-      watch.is_counted = true;
+      if (!found.is_true || monitor.is_counted || (!is_moment && monitor.seconds < condition.seconds))
+        continue;
+      monitor.is_counted = true;
       ++now.errors[e];
       now.penalty += rule.penalty;
       now.last_errors[now.error_count % now.last_errors.size()] = {
@@ -351,10 +352,10 @@ void TaskMonitor::VisitState(core::StateArchive& archive) {
     archive.Field("is_falling", track.is_falling);
     archive.Field("let_go_height", track.let_go_height);
   }
-  for (auto& rule : watches_) {
-    for (Watch& watch : rule) {
-      archive.Field("seconds", watch.seconds);
-      archive.Field("is_counted", watch.is_counted);
+  for (auto& rule : condition_monitors_) {
+    for (ConditionMonitor& monitor : rule) {
+      archive.Field("seconds", monitor.seconds);
+      archive.Field("is_counted", monitor.is_counted);
     }
   }
   archive.Field("events_before", events_before_);

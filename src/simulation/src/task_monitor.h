@@ -44,7 +44,7 @@ class TaskMonitor {
     double let_go_height = 0;   ///< [m]
   };
   /// A condition of an error: how long it has been true, and whether that has been counted.
-  struct Watch {
+  struct ConditionMonitor {
     double seconds = 0;
     bool is_counted = false;
   };
@@ -61,8 +61,8 @@ class TaskMonitor {
   void UpdateErrors(const Scene& scene, const Snapshot& snapshot, TaskSnapshot& task) noexcept;
   void Judge(const Task& task, TaskSnapshot& now) const noexcept;
 
-  std::vector<Track> tracks_;                // (objects)
-  std::vector<std::vector<Watch>> watches_;  // (errors) of (conditions)
+  std::vector<Track> tracks_;                                      // (objects)
+  std::vector<std::vector<ConditionMonitor>> condition_monitors_;  // (errors) of (conditions)
   std::array<Vec3, kHandCount> start_tips_;
   Pose X_world_start_view_;
   std::uint64_t events_before_ = 0;  // of the ticks before

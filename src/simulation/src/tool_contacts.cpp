@@ -10,6 +10,7 @@
 
 namespace trocar::simulation {
 
+using roles::OrganRole;
 using scene::InstrumentSetup;
 using scene::kLeft;
 using scene::kRight;
@@ -40,7 +41,7 @@ core::Result<ToolContacts> ToolContacts::Make(const Scene& scene, const tissue::
   for (std::size_t i = 0; i < organs.size(); ++i) {
     auto surface = surgery::MakeOrganSurface(model.rest, surfaces[i].first_node, organs[i].mesh);
     if (!surface.ok()) return surface.error();
-    if (surfaces[i].material == "liver") {
+    if (surfaces[i].organ == OrganRole::kLiver) {
       surface->damage_pinch_small = surface->damage_pinch_full = kLiverDamagePinch;
     }
     surgery::UpdateOrganSurface(*surface, at_start.position);
@@ -64,7 +65,8 @@ core::Result<ToolContacts> ToolContacts::Make(const Scene& scene, const tissue::
 /// The gallbladder lies on the liver, ducts and vessels on both; of other organs nothing is known to touch.
 void ToolContacts::MakePairs(const Scene& scene, const tissue::TissueModel& model,
                              const tissue::TissueState& at_start) {
-  const int liver = scene.patient.FindOrgan("liver"), gallbladder = scene.patient.FindOrgan("gallbladder");
+  const int liver = scene.patient.OrganOf(OrganRole::kLiver),
+            gallbladder = scene.patient.OrganOf(OrganRole::kGallbladder);
   if (liver >= 0 && gallbladder >= 0) {
     for (const auto& [from, to] : {std::pair{gallbladder, liver}, std::pair{liver, gallbladder}}) {
       AddPair(surgery::MakeOrganPair(organs_, at_start.position, static_cast<std::uint8_t>(from),
@@ -106,12 +108,11 @@ void ToolContacts::MakeCavity(const Scene& scene, const tissue::TissueModel& mod
     const auto own = organ.Nodes(at_start.position);
     nodes.insert(nodes.end(), own.begin(), own.end());
   }
-  if (const int liver = scene.patient.FindOrgan("liver"); liver >= 0) {
+  if (const int liver = scene.patient.OrganOf(OrganRole::kLiver); liver >= 0) {
     const auto own = organs_[liver].Nodes(at_start.position);
-    for (const anatomy::Region& region : scene.patient.organs[liver].regions) {
-      if (region.name != anatomy::kDiaphragmaticFace) continue;
-      for (const std::uint32_t vertex : region.vertices) face.push_back(own[vertex]);
-    }
+    const anatomy::Region* dome = scene.patient.organs[liver].RegionOf(roles::RegionRole::kDiaphragmaticFace);
+    for (std::size_t i = 0; dome != nullptr && i < dome->vertices.size(); ++i)
+      face.push_back(own[dome->vertices[i]]);
   }
   cavity_ = surgery::FitCavity(ports, face, nodes);
   for (std::size_t organ = 0; organ < organs_.size(); ++organ) {
@@ -135,8 +136,9 @@ core::Status ToolContacts::UpdateTopology(const tissue::TissueModel& model, cons
     surface->damage_pinch_full = organs_[i].damage_pinch_full;
     surgery::UpdateOrganSurface(*surface, tissue.position);
     organs_[i] = std::move(*surface);
-    for (surgery::OrganPair& pair : pairs_) surgery::FollowOrgan(organs_, static_cast<std::uint8_t>(i), pair);
-    surgery::FollowOrgan(cavity_, organs_, tissue.position, cavity_settings_, cavity_contacts_[i]);
+    for (surgery::OrganPair& pair : pairs_)
+      surgery::UpdateTopology(organs_, static_cast<std::uint8_t>(i), pair);
+    surgery::UpdateTopology(cavity_, organs_, tissue.position, cavity_settings_, cavity_contacts_[i]);
   }
   if (!pieces.empty()) {
     auto tree = collision::CapsuleTree::Make(tissue.position, pieces);
@@ -172,7 +174,8 @@ void ToolContacts::Reset(const Scene& scene, const std::array<instrument::Trocar
   for (surgery::OrganPair& pair : pairs_) surgery::ResetPair(pair);
 }
 
-surgery::Touchables ToolContacts::MakeTouchables(const tissue::TissueState& tissue) const noexcept {
+surgery::ContactCandidates ToolContacts::MakeContactCandidates(
+    const tissue::TissueState& tissue) const noexcept {
   const std::size_t organs = has_sheets_ ? 0 : organs_.size();
   return {std::span(organs_).first(organs), &tubes_, tissue.position, positions_before_,
           std::span(surface_motion_).last(organs + 1)};
@@ -183,14 +186,14 @@ std::span<const tissue::ContactSpring> ToolContacts::Find(const Scene& scene, co
   std::swap(contacts_, last_);
   contacts_.Clear();
   std::array<surgery::ToolMotion, kHandCount> motions;
-  const surgery::Touchables touchables = MakeTouchables(tissue);
+  const surgery::ContactCandidates candidates = MakeContactCandidates(tissue);
   for (int hand = 0; hand < kHandCount; ++hand) {
     const InstrumentSetup& setup = scene.instruments[hand];
     X_world_device_[hand] = instrument::CalcToolPose(setup.p_world_port, now.joints[hand]);
     motions[hand] = {now.tools[hand],      static_cast<std::uint8_t>(hand), X_world_proxy_before_[hand],
                      X_world_proxy_[hand], X_world_device_[hand],           jaw_before_[hand],
                      now.joints[hand].jaw, now.grasped_surfaces[hand]};
-    surgery::FindContacts(motions[hand], touchables, settings_, last_, contacts_);
+    surgery::FindContacts(motions[hand], candidates, settings_, last_, contacts_);
     limits_[hand].limits.clear();
   }
   tools_ = surgery::FindToolsContact(motions, limits_);
@@ -221,9 +224,9 @@ std::array<ToolTouch, kHandCount> ToolContacts::CalcTouch(const tissue::TissueSt
   }
   for (surgery::OrganPair& pair : pairs_) {
     if (is_good) {
-      surgery::KeepOrganPushes(tissue.position, contacts_, pair);
+      surgery::KeepWarmStartForces(tissue.position, contacts_, pair);
     } else {
-      surgery::ForgetOrganPushes(pair);
+      surgery::ForgetWarmStartForces(pair);
     }
   }
   // triangles have other numbers after a cut: what stuck to them is forgotten once its force has been read
@@ -247,16 +250,16 @@ void ToolContacts::Update(const Scene& scene, const ToolsNow& now,
     tube_motion = std::max(tube_motion, CalcMotion(nodes_of(positions_before_), nodes_of(tissue.position)));
   }
   surface_motion_.back() = tube_motion;
-  const surgery::Touchables touchables = MakeTouchables(tissue);
-  for (int hand = 0; hand < kHandCount; ++hand) PlaceProxy(scene, hand, now, touchables);
+  const surgery::ContactCandidates candidates = MakeContactCandidates(tissue);
+  for (int hand = 0; hand < kHandCount; ++hand) PlaceProxy(scene, hand, now, candidates);
 }
 
 void ToolContacts::PlaceProxy(const Scene& scene, int hand, const ToolsNow& now,
-                              const surgery::Touchables& touchables) noexcept {
+                              const surgery::ContactCandidates& candidates) noexcept {
   const InstrumentSetup& setup = scene.instruments[hand];
   const surgery::ToolDrive drive{setup.p_world_port, now.joints[hand]};
   surgery::ProxyLimits& limits = limits_[hand];
-  surgery::AddContactLimits(static_cast<std::uint8_t>(hand), contacts_, touchables.positions, limits);
+  surgery::AddContactLimits(static_cast<std::uint8_t>(hand), contacts_, candidates.positions, limits);
   instrument::TrocarJoints proxy;
   X_world_proxy_before_[hand] = X_world_proxy_[hand];
   for (int round = 0;; ++round) {
@@ -264,7 +267,7 @@ void ToolContacts::PlaceProxy(const Scene& scene, int hand, const ToolsNow& now,
     X_world_proxy_[hand] = instrument::CalcToolPose(setup.p_world_port, proxy);
     overlap_[hand] =
         surgery::AddOverlapLimits(*now.tools[hand], X_world_proxy_[hand], X_world_device_[hand],
-                                  now.joints[hand].jaw, touchables, now.grasped_surfaces[hand], limits);
+                                  now.joints[hand].jaw, candidates, now.grasped_surfaces[hand], limits);
     if (overlap_[hand] == 0.0 || round == kOverlapRounds) break;
   }
   offset_[hand] = {proxy.pan - drive.device.pan, proxy.tilt - drive.device.tilt, 0.0,

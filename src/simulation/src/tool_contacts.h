@@ -81,9 +81,9 @@ class ToolContacts {
   void VisitState(core::StateArchive& archive);
 
  private:
-  surgery::Touchables MakeTouchables(const tissue::TissueState& tissue) const noexcept;
+  surgery::ContactCandidates MakeContactCandidates(const tissue::TissueState& tissue) const noexcept;
   void PlaceProxy(const Scene& scene, int hand, const ToolsNow& now,
-                  const surgery::Touchables& touchables) noexcept;
+                  const surgery::ContactCandidates& candidates) noexcept;
 
   void MakePairs(const Scene& scene, const tissue::TissueModel& model, const tissue::TissueState& at_start);
   void AddPair(surgery::OrganPair pair, const tissue::TissueModel& model);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file topology.h  The one owner of what is joined to what: nodes and springs as surgery has left them.
 ///
-/// What is built over nodes and springs (solver, volumes, contacts, ...) registers once, and is told in the same way
+/// What is built over nodes and springs (solver, volumes, contacts, ...) registers once, and is notified in the same way
 /// after a cut, after a state was restored and after a surgery began again.
 #pragma once
 
@@ -40,14 +40,14 @@ class Topology {
 
   void Register(Update update) { updates_.push_back(std::move(update)); }
 
-  /// Takes a cut into model and state, and tells all that registered, in their order.
+  /// Takes a cut into model and state, and notifies all that registered, in their order.
   /// \note Not real-time safe: allocates.
   void Cut(const surgery::TopologyChange& change, tissue::TissueState& state);
 
-  /// Version, nodes, springs and walls. What is registered has to be told by Restored() once meshes and lines have been
+  /// Version, nodes, springs and walls. What is registered has to be notified by Restored() once meshes and lines have been
   /// restored, too.
   void VisitState(core::StateArchive& archive);
-  /// After restoring: makes the model and tells all that registered, unless all is as it was.
+  /// After restoring: makes the model and notifies all that registered, unless all is as it was.
   void Restored();
 
  private:
@@ -58,7 +58,7 @@ class Topology {
   WallSprings walls_;
   std::uint32_t version_ = 0;
   std::uint64_t history_ = 0;  // fingerprint of all cuts so far
-  bool is_other_ = false;      // restored, and not yet told
+  bool is_other_ = false;      // restored, and not yet notified
   std::vector<Update> updates_;
 };
 

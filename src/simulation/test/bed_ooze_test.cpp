@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "operation/bed_ooze.h"
+#include "trocar/surgery/bed_ooze.h"
 
 #include <gtest/gtest.h>
 
@@ -18,21 +18,25 @@ constexpr double kBed = 15e-6;  // of a whole bed [m^3]
 
 class BedOozeTest : public OperationHarness {
  protected:
-  BedOozeTest() : heat_(Tissue().definition, Tissue().heat_mass, Tissue().strands) { Make(1.0); }
+  BedOozeTest() : heat_(Tissue().definition, Tissue().heat_mass) { Make(1.0); }
 
   void Make(double bleeding) {
     const SurfaceInfo& liver = Tissue().surfaces[static_cast<std::size_t>(liver_)];
-    std::vector<std::uint32_t> on_liver(Tissue().strands.size(), BedOoze::kNoNode);
+    std::vector<surgery::LiverFibre> fibres;
     bed_.clear();
-    for (std::uint32_t i = 0; i < on_liver.size(); ++i) {
+    on_liver_.assign(Tissue().strands.size(), 0);
+    for (std::uint32_t i = 0; i < on_liver_.size(); ++i) {
       const StrandInfo& strand = Tissue().strands[i];
+      const bool is_bed = strand.kind == StrandInfo::Kind::kBed;
+      if (is_bed) bed_.push_back(i);
+      if (!is_bed && strand.kind != StrandInfo::Kind::kAdhesion) continue;
       for (const std::uint32_t node : {strand.a, strand.b}) {
-        if (node >= liver.first_node && node < liver.first_node + liver.node_count) on_liver[i] = node;
+        if (node < liver.first_node || node >= liver.first_node + liver.node_count) continue;
+        on_liver_[i] = node;
+        fibres.push_back({i, node, is_bed});
       }
-      if (strand.kind == StrandInfo::Kind::kBed) bed_.push_back(i);
     }
-    on_liver_ = on_liver;
-    ooze_ = BedOoze(Tissue().strands, on_liver, bleeding);
+    ooze_ = surgery::BedOoze(fibres, bleeding);
   }
   double Wait(double seconds) {
     double out = 0;
@@ -47,8 +51,8 @@ class BedOozeTest : public OperationHarness {
       state_.strand_is_intact[bed_[i]] = 0;
   }
 
-  Electrosurgery heat_;
-  BedOoze ooze_;
+  surgery::Electrosurgery heat_;
+  surgery::BedOoze ooze_;
   std::vector<std::uint32_t> bed_, on_liver_;
 };
 
@@ -89,8 +93,8 @@ TEST_F(BedOozeTest, HeatStopsItAndWhatHeatPartsNeverBleeds) {
   const auto n = Tissue().definition.rest.size();
   std::array<std::uint32_t, 16> parted;
   for (std::size_t i = 0; i < bed_.size() / 3; ++i) {
-    const Electrosurgery::Target target{static_cast<std::uint32_t>(n + bed_[i]), 0.0, 1.0};
-    Electrosurgery::Electrode electrode;
+    const surgery::Electrosurgery::Target target{static_cast<std::uint32_t>(n + bed_[i]), 0.0, 1.0};
+    surgery::Electrosurgery::Electrode electrode;
     electrode.power = 25.0;
     for (int tick = 0; tick < 40 && state_.strand_is_intact[bed_[i]] != 0; ++tick) {
       heat_.AddPower(electrode, {&target, 1});
@@ -105,8 +109,8 @@ TEST_F(BedOozeTest, HeatStopsItAndWhatHeatPartsNeverBleeds) {
   const std::uint32_t torn = bed_.back();
   state_.strand_is_intact[torn] = 0;
   EXPECT_GT(Wait(1.0), 0.0);
-  const Electrosurgery::Target place{on_liver_[torn], 0.0, 1.0};
-  Electrosurgery::Electrode electrode;
+  const surgery::Electrosurgery::Target place{on_liver_[torn], 0.0, 1.0};
+  surgery::Electrosurgery::Electrode electrode;
   electrode.power = 25.0;
   for (int tick = 0; tick < 1200 && heat_.InjuryOf(place.part) < surgery::HeatInjury::kBlanched; ++tick) {
     heat_.AddPower(electrode, {&place, 1});
@@ -121,13 +125,10 @@ TEST_F(BedOozeTest, ShowsThePlacesThatBleedMost) {
   Wait(60.0);
   Tear(0.2, 1.0);
   Wait(kTick);
-  OperationSnapshot snapshot;
-  ooze_.Publish(state_.position, snapshot);
-  ASSERT_EQ(snapshot.ooze_count, snapshot.oozes.size());
-  for (std::size_t i = 1; i < snapshot.ooze_count; ++i)
-    EXPECT_LE(snapshot.oozes[i].rate, snapshot.oozes[i - 1].rate);
-  EXPECT_NEAR(snapshot.oozes.back().rate, snapshot.oozes.front().rate, 0.01 * snapshot.oozes.front().rate)
-      << "the fresh ones";
+  std::array<surgery::OozeSnapshot, 32> oozes;
+  ASSERT_EQ(ooze_.Publish(state_.position, oozes), oozes.size());
+  for (std::size_t i = 1; i < oozes.size(); ++i) EXPECT_LE(oozes[i].rate, oozes[i - 1].rate);
+  EXPECT_NEAR(oozes.back().rate, oozes.front().rate, 0.01 * oozes.front().rate) << "the fresh ones";
 }
 
 // In the operation: what ran out lies in the pool, to the drop.

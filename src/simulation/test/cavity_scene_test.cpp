@@ -38,7 +38,7 @@ struct FittedCavity {
       const auto& rest = organs[organ].mesh.positions;
       for (std::size_t i = 0; i < rest.size(); ++i) {
         const Vec3& p = simulation.GetSnapshot().positions[simulation.Surfaces()[organ].first_node + i];
-        const auto before = cavity.FindRooms(rest[i]), now = cavity.FindRooms(p);
+        const auto before = cavity.FindClearances(rest[i]), now = cavity.FindClearances(p);
         for (int part = 0; part < surgery::kCavityParts; ++part)
           beyond = std::max(beyond, std::min(0.0, before[part].distance) - now[part].distance);
       }

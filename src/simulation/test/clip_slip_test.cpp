@@ -5,7 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "operation/gallbladder_anatomy.h"
 #include "operation_harness.h"
+#include "trocar/scene/patient_vessels.h"
+#include "trocar/training/vessel_judgement.h"
 
 namespace trocar::simulation {
 namespace {
@@ -18,10 +21,10 @@ class ClipSlipTest : public OperationHarness {
     state_ = tissue::MakeRestState(model_);
     conserved_ = conservation_->MakeState(state_);
     const auto& patient = OperationScene()->patient;
-    auto made = VesselWork::Make(patient, std::span(Tissue().surfaces).subspan(patient.organs.size()),
-                                 Tissue().first_spare.back(), Operation::kSpare.tubes);
+    auto made = scene::MakePatientVessels(patient);
     ASSERT_TRUE(made.ok()) << made.error().Text();
-    vessels_.emplace(std::move(*made));
+    anatomy_ = std::move(made->anatomy);
+    vessels_.emplace(MakeVessels(std::move(made->map), patient, Tissue(), Operation::kSpare.tubes));
     vessels_->ReserveFor(change_);
   }
 
@@ -34,7 +37,7 @@ class ClipSlipTest : public OperationHarness {
   double LengthOf(std::uint32_t tube) const { return vessels_->Map().arcs[tube].back(); }
 
   /// Edge of the graph around an arc.
-  VesselWork::Caught At(std::uint32_t tube, double arc) const {
+  surgery::Vessels::Caught At(std::uint32_t tube, double arc) const {
     const auto& graph = vessels_->Tubes().Graph();
     for (const geometry::Edge& edge : graph.edges) {
       if (vessels_->TubeOf(edge[0]) != tube) continue;
@@ -45,15 +48,15 @@ class ClipSlipTest : public OperationHarness {
     ADD_FAILURE() << "no edge at " << arc;
     return {};
   }
-  Vec3 PointAt(const VesselWork::Caught& at) const {
+  Vec3 PointAt(const surgery::Vessels::Caught& at) const {
     return math::Lerp(state_.position[vessels_->Tubes().Node(at.a)],
                       state_.position[vessels_->Tubes().Node(at.b)], at.t);
   }
 
   /// \param closure  share of the vessel between the legs, 0 to 1
-  ClipResult Clip(std::uint32_t tube, double share, double closure = 1.0) {
+  surgery::ClipResult Clip(std::uint32_t tube, double share, double closure = 1.0) {
     const instrument::Tool& applier = *instrument::FindTool("clip_applier");
-    VesselWork::Caught caught = At(tube, share * LengthOf(tube));
+    surgery::Vessels::Caught caught = At(tube, share * LengthOf(tube));
     const double half = 0.5 * M_PI * caught.radius / applier.jaw_length;
     if (closure < 1.0) caught.jaw_at = 1.0 + half * (1.0 - 2.0 * closure);
     const Vec3 along =
@@ -66,7 +69,7 @@ class ClipSlipTest : public OperationHarness {
   }
 
   void Cut(std::uint32_t tube, double share) {
-    const VesselWork::Caught at = At(tube, share * LengthOf(tube));
+    const surgery::Vessels::Caught at = At(tube, share * LengthOf(tube));
     const Vec3 p = PointAt(at);
     const Vec3 axis = math::Normalized(state_.position[vessels_->Tubes().Node(at.b)] -
                                        state_.position[vessels_->Tubes().Node(at.a)]);
@@ -74,7 +77,7 @@ class ClipSlipTest : public OperationHarness {
     const auto blade = [&](double s) {
       return geometry::BladeEdge{p - 0.0012 * edge + s * way, p + 0.0012 * edge + s * way};
     };
-    std::array<TubePlace, surgery::CuttableTubes::kMostCuts> places;
+    std::array<surgery::TubePlace, surgery::CuttableTubes::kMostCuts> places;
     ASSERT_EQ(
         vessels_->Cut({blade(-0.0012), blade(0.0012)}, Tissue().definition, state_.position, change_, places),
         1u);
@@ -88,9 +91,9 @@ class ClipSlipTest : public OperationHarness {
     std::size_t slipped = 0;
     double blood = 0, bile = 0;  // that still run [m^3/s]
   };
-  After Wait(double seconds, std::span<const ClipPull> pulls = {}) {
+  After Wait(double seconds, std::span<const surgery::ClipPull> pulls = {}) {
     After after;
-    std::array<SlippedClip, 4> slipped;
+    std::array<surgery::SlippedClip, 4> slipped;
     for (double t = 0; t < seconds; t += kTick) {
       vessels_->Flow(kTick, gallbladder_, conserved_, ledger_);
       after.slipped += vessels_->Slip(kTick, pulls, state_.position, slipped);
@@ -101,7 +104,8 @@ class ClipSlipTest : public OperationHarness {
     return after;
   }
 
-  std::optional<VesselWork> vessels_;
+  training::BiliaryAnatomy anatomy_;
+  std::optional<surgery::Vessels> vessels_;
   surgery::TopologyChange change_;
   surgery::FluidLedger ledger_;
 };
@@ -109,7 +113,8 @@ class ClipSlipTest : public OperationHarness {
 TEST_F(ClipSlipTest, GoodClipsStayForTheWholeOperation) {
   for (const char* name : {"cystic_artery", "cystic_duct"}) {
     const std::uint32_t tube = FindTube(name);
-    for (const double share : {0.3, 0.4, 0.8}) EXPECT_EQ(Clip(tube, share).kind, ClipResult::Kind::kClosed);
+    for (const double share : {0.3, 0.4, 0.8})
+      EXPECT_EQ(Clip(tube, share).kind, surgery::ClipResult::Kind::kClosed);
     Cut(tube, 0.6);
   }
   const After after = Wait(600.0);
@@ -121,13 +126,13 @@ TEST_F(ClipSlipTest, GoodClipsStayForTheWholeOperation) {
 // A hole beyond the clips that stay opens nothing that still flows, as where a stump is coagulated.
 TEST_F(ClipSlipTest, AHoleCountsAsUnclippedOnlyWhereNoClipHoldsTheSideThatStays) {
   const auto counts = [this](std::uint32_t tube, double share) {
-    const VesselJudgement at = vessels_->JudgePlace({tube, share * LengthOf(tube)});
+    const auto at = training::JudgePlace(anatomy_, *vessels_, {tube, share * LengthOf(tube)});
     return at.may_be_divided && at.staying_clips == 0;
   };
   for (const char* name : {"cystic_artery", "cystic_duct"}) {
     const std::uint32_t tube = FindTube(name);
     EXPECT_TRUE(counts(tube, 0.2) && counts(tube, 0.7)) << name << " without clips";
-    EXPECT_EQ(Clip(tube, 0.4).kind, ClipResult::Kind::kClosed);
+    EXPECT_EQ(Clip(tube, 0.4).kind, surgery::ClipResult::Kind::kClosed);
     EXPECT_NE(counts(tube, 0.2), counts(tube, 0.7)) << name << ": on one side of the clip it still flows";
   }
   EXPECT_FALSE(counts(FindTube("cystic_artery"), 0.7)) << "the gallbladder's side";
@@ -135,7 +140,7 @@ TEST_F(ClipSlipTest, AHoleCountsAsUnclippedOnlyWhereNoClipHoldsTheSideThatStays)
 
 TEST_F(ClipSlipTest, APartialClipSlipsOffAnArteryThatThenBleeds) {
   const std::uint32_t artery = FindTube("cystic_artery");
-  EXPECT_EQ(Clip(artery, 0.4, 0.7).kind, ClipResult::Kind::kPartial);
+  EXPECT_EQ(Clip(artery, 0.4, 0.7).kind, surgery::ClipResult::Kind::kPartial);
   Wait(5.0);
   EXPECT_NEAR(vessels_->Acts().clips[0].closure, 0.7, 1e-9)
       << "a vessel that is whole has no end to slip off";
@@ -149,13 +154,10 @@ TEST_F(ClipSlipTest, APartialClipSlipsOffAnArteryThatThenBleeds) {
   EXPECT_GT(after.blood, 1e-6);
   EXPECT_GT(after.blood, soon.blood);
   EXPECT_EQ(vessels_->Acts().clips[0].closure, 0.0);
-  OperationSnapshot snapshot;
-  snapshot.clips.resize(4);
-  snapshot.tube_pieces.resize(200);
-  vessels_->Publish(state_.position, 2, snapshot);
-  ASSERT_EQ(snapshot.clip_count, 1u);
-  EXPECT_TRUE(snapshot.clips[0].is_lost);
-  EXPECT_FALSE(snapshot.clips[0].IsGood());
+  std::array<surgery::ClipSnapshot, 4> clips;
+  ASSERT_EQ(vessels_->PublishClips(state_.position, clips), 1u);
+  EXPECT_TRUE(clips[0].is_lost);
+  EXPECT_FALSE(clips[0].IsGood());
 }
 
 TEST_F(ClipSlipTest, CrossedClipsSlipOffTogether) {
@@ -184,18 +186,18 @@ TEST_F(ClipSlipTest, APullOfFiveNewtonTakesOffWhatFourLeave) {
   const std::uint32_t duct = FindTube("cystic_duct");
   Clip(duct, 0.4);
   Cut(duct, 0.6);
-  const VesselWork::Caught at = At(duct, 0.57 * LengthOf(duct));  // between clip and cut
+  const surgery::Vessels::Caught at = At(duct, 0.57 * LengthOf(duct));  // between clip and cut
   const std::array<std::uint32_t, 2> held{vessels_->Tubes().Node(at.a), vessels_->Tubes().Node(at.b)};
   const Vec3 off = math::Normalized(state_.position[held[1]] - state_.position[held[0]]);
   for (const double pull : {4.0, -8.0}) {
-    const ClipPull hand{held, pull * off};
+    const surgery::ClipPull hand{held, pull * off};
     EXPECT_EQ(Wait(30.0, {&hand, 1}).slipped, 0u) << pull;
   }
-  const ClipPull aside{held, 8.0 * math::AnyPerpendicular(off)};
+  const surgery::ClipPull aside{held, 8.0 * math::AnyPerpendicular(off)};
   EXPECT_EQ(Wait(30.0, {&aside, 1}).slipped, 0u) << "not along the vessel";
   std::size_t slipped = 0;
   for (int i = 0; i < 60 && slipped == 0; ++i) {
-    const ClipPull hand{held, 8.0 * off};
+    const surgery::ClipPull hand{held, 8.0 * off};
     slipped = Wait(1.0, {&hand, 1}).slipped;
   }
   EXPECT_EQ(slipped, 1u);

@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "operation/operation.h"
-#include "operation/operation_judge.h"
 #include "trocar/simulation/simulation.h"
 
 namespace trocar::simulation {
@@ -72,7 +71,7 @@ class OperationHarness : public testing::Test {
     auto made = Operation::Make(*OperationScene(), SharedTissue());
     ASSERT_TRUE(made.ok()) << made.error().Text();
     operation_ = std::move(*made);
-    judge_.emplace(*OperationScene(), Tissue(), *operation_);
+    judge_.emplace(operation_->MakeJudge());
     input_ = CalcScriptInput(*OperationScene(), 0.0);
     grasps_ = {};
     hands_ = {};
@@ -100,20 +99,20 @@ class OperationHarness : public testing::Test {
     OperatedTissue operated{state_, conserved_, grasps_};
     operation_->Flow(hands_, Now(), operated);
     operation_->MoveLoose(hands_, Now());
-    judge_->Update(*operation_, hands_, Now(), hands_.camera);
+    judge_->Update(operation_->Observe(hands_, Now(), hands_.camera));
     hands_.time += kTick;
   }
   OperationResult Result() const {
     OperationResult result;
     operation_->AddTo(result);
-    judge_->AddTo(result);
+    AddTo(*judge_, result);
     return result;
   }
   OperationSnapshot Published() const {
     OperationSnapshot snapshot;
     operation_->Size(snapshot);
     operation_->Publish(state_, snapshot);
-    judge_->Publish(snapshot);
+    Publish(*judge_, snapshot);
     return snapshot;
   }
 
@@ -177,7 +176,7 @@ class OperationHarness : public testing::Test {
   int gallbladder_ = -1, liver_ = -1;
   std::vector<std::uint32_t> torn_;
   std::unique_ptr<Operation> operation_;
-  std::optional<OperationJudge> judge_;
+  std::optional<training::OperationJudge> judge_;
   Input input_;
   HandsNow hands_;
   std::array<surgery::Grasp, kHandCount> grasps_;

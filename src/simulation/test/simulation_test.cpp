@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstddef>
 #include <filesystem>
 #include <limits>
 #include <new>
@@ -99,6 +100,27 @@ TEST_F(SimulationTest, ResetStartsTheSameSurgeryAgain) {
   EXPECT_EQ(simulation.Hash(), at_start);
   Play(simulation, 100);
   EXPECT_EQ(simulation.Hash(), first);
+}
+
+// What is asked between two ticks has the same answer in a simulation that was just restored.
+TEST_F(SimulationTest, ARestoredSimulationHasItsLoadBeforeTheNextTick) {
+  Simulation simulation = Make();
+  Input input = CalcScriptInput(*scene_, 0.0);
+  input.settings.gravity = 5.0;
+  input.settings.stiffness_scale = 1.5;
+  std::size_t contacts = 0;
+  for (int i = 0; i < 400 && contacts == 0; ++i) {
+    input.hands = CalcScriptInput(*scene_, simulation.GetSnapshot().time).hands;
+    simulation.Step(input);
+    contacts = simulation.GetSnapshot().contacts;
+  }
+  ASSERT_GT(contacts, 0u);
+  for (int i = 0; i < 5; ++i) simulation.Step(input);
+  std::vector<std::byte> bytes;
+  simulation.Save(bytes);
+  Simulation other = Make();
+  ASSERT_TRUE(other.Restore(bytes).ok());
+  EXPECT_EQ(other.CalcEquilibriumError(), simulation.CalcEquilibriumError());
 }
 
 TEST_F(SimulationTest, TickAllocatesNothing) {

@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <memory>
 
-#include "operation/stone_work.h"
+#include "operation/gallbladder_anatomy.h"
 #include "operation_harness.h"
 #include "trocar/geometry/primitives.h"
 #include "trocar/surgery/wall_holes.h"
@@ -75,26 +75,26 @@ TEST(WallHoles, NodesSideBySideMakeOneHole) {
   EXPECT_NEAR(find().rim, 0.004 + 2 * apart, 1e-12);
   holes.Add(t[2], 0.004);
   EXPECT_GE(find().rim, 0.004 + 2 * apart);
-  // more than it has room for
+  // more than its capacity
   for (std::uint32_t i = 0; i < ball.mesh.positions.size(); ++i) holes.Add(i, 0.001);
   EXPECT_TRUE(std::isfinite(find().rim));
 }
 
 /// Stones of the built-in patient, and the organs as they lie at rest.
-class StoneWorkTest : public OperationHarness {
+class GallstoneSpillTest : public OperationHarness {
  protected:
   void MakeStones(int count, double diameter) {
     const Scene scene = WithStones(count, diameter);
-    auto made = StoneWork::Make(scene, Tissue().surfaces, Tissue().definition.rest);
+    auto made = MakeGallstones(scene, Tissue().surfaces, Tissue().definition.rest);
     ASSERT_TRUE(made.ok()) << made.error().Text();
     stones_ = std::move(*made);
   }
 
   /// Beside the gallbladder's body, on its free side.
-  WallHole Hole(double rim) const {
+  surgery::WallHole Hole(double rim) const {
     const SurfaceInfo& wall = Gallbladder();
     const Vec3 body = OperationScene()->patient.FindLandmark("gallbladder_body")->position;
-    WallHole hole;
+    surgery::WallHole hole;
     hole.rim = rim;
     double nearest = 1;
     for (std::uint32_t i = 0; i < wall.node_count; ++i) {
@@ -117,10 +117,9 @@ class StoneWorkTest : public OperationHarness {
   }
 
   std::vector<StoneSnapshot> Seen() const {
-    OperationSnapshot snapshot;
-    stones_.Size(snapshot);
-    stones_.Publish(snapshot);
-    return snapshot.stones;
+    std::vector<StoneSnapshot> stones(stones_.Size());
+    stones_.Publish(stones);
+    return stones;
   }
   /// The first that lies in the abdomen.
   StoneSnapshot Spilled() const {
@@ -131,10 +130,10 @@ class StoneWorkTest : public OperationHarness {
     return {};
   }
 
-  StoneWork stones_;
+  surgery::GallstoneSpill stones_;
 };
 
-TEST_F(StoneWorkTest, OnlyWhatFitsLeavesAndOnlyAsFastAsTheBile) {
+TEST_F(GallstoneSpillTest, OnlyWhatFitsLeavesAndOnlyAsFastAsTheBile) {
   MakeStones(30, 0.004);
   const double content = 30e-6, rim = M_PI * 0.004;
   int fitting = 0;
@@ -156,7 +155,7 @@ TEST_F(StoneWorkTest, OnlyWhatFitsLeavesAndOnlyAsFastAsTheBile) {
   EXPECT_EQ(stones_.Count().inside, stones_.Count().all);
 }
 
-TEST_F(StoneWorkTest, FallOntoWhatLiesBelowAndLieStill) {
+TEST_F(GallstoneSpillTest, FallOntoWhatLiesBelowAndLieStill) {
   MakeStones(12, 0.003);
   ASSERT_GT(stones_.Spill(30e-6, 30e-6, Hole(0.05)), 10);
   Fall(4.0);
@@ -175,7 +174,7 @@ TEST_F(StoneWorkTest, FallOntoWhatLiesBelowAndLieStill) {
   EXPECT_GE(still, 9) << "what other stones hold up may creep";
 }
 
-TEST_F(StoneWorkTest, SmallOnesAreSuckedUp) {
+TEST_F(GallstoneSpillTest, SmallOnesAreSuckedUp) {
   MakeStones(20, 0.0036);
   const int out = stones_.Spill(30e-6, 30e-6, Hole(0.05));
   Fall(3.0);
@@ -192,7 +191,7 @@ TEST_F(StoneWorkTest, SmallOnesAreSuckedUp) {
   EXPECT_EQ(stones_.Count().spilled, wide) << "what does not pass the bore stays";
 }
 
-TEST_F(StoneWorkTest, JawsTakeOneStopAtItAndLetGo) {
+TEST_F(GallstoneSpillTest, JawsTakeOneStopAtItAndLetGo) {
   MakeStones(1, 0.004);
   ASSERT_EQ(stones_.Spill(30e-6, 30e-6, Hole(0.05)), 1);
   Fall(3.0);
@@ -214,7 +213,7 @@ TEST_F(StoneWorkTest, JawsTakeOneStopAtItAndLetGo) {
   close(0.0);
   ASSERT_EQ(stones_.HeldBy(kLeft), 0);
   EXPECT_TRUE(stones_.HasTaken(kLeft));
-  EXPECT_FALSE(stones_.HasTaken(kLeft)) << "told once";
+  EXPECT_FALSE(stones_.HasTaken(kLeft)) << "emitted once";
   EXPECT_NEAR(jaw, 2 * std::asin(stone.radius / (grasper.jaw_length - 0.008)), 0.01) << "it keeps them apart";
   EXPECT_EQ(stones_.Count().spilled, 1) << "still in the abdomen";
   // lifted, and let go
@@ -228,7 +227,7 @@ TEST_F(StoneWorkTest, JawsTakeOneStopAtItAndLetGo) {
   EXPECT_LT(Seen()[0].position.z, stone.position.z + 0.01) << "it has fallen";
 }
 
-TEST_F(StoneWorkTest, WhatIsLetGoOverTheBagIsInIt) {
+TEST_F(GallstoneSpillTest, WhatIsLetGoOverTheBagIsInIt) {
   MakeStones(2, 0.004);
   ASSERT_EQ(stones_.Spill(30e-6, 30e-6, Hole(0.05)), 2);
   // the mouth lies ahead of the tip, the pouch hangs towards -y: here downwards
@@ -261,14 +260,14 @@ TEST_F(SpillTest, ATornWallSpillsStonesThatAreToldAndCounted) {
   MakeOperation();
   Judge();
   EXPECT_EQ(Result().stones.spilled, 0);
-  int told = 0;
+  int emitted = 0;
   operation_->BeginTick();
   Spill(15e-6);
   for (const OperationEvent& event : operation_->Events())
-    told += event.kind == EventKind::kStoneSpilled ? 1 : 0;
+    emitted += event.kind == EventKind::kStoneSpilled ? 1 : 0;
   const OperationResult result = Result();
   ASSERT_GT(result.stones.spilled, 1);
-  EXPECT_EQ(told, std::min(result.stones.spilled, 8)) << "as many as a tick has room to tell";
+  EXPECT_EQ(emitted, std::min(result.stones.spilled, 8)) << "as many as the capacity of a tick";
   EXPECT_EQ(result.injuries.spilled_stones, result.stones.spilled);
   EXPECT_EQ(result.stones.inside + result.stones.spilled, result.stones.all);
   EXPECT_NEAR(result.fluids.fluids[static_cast<std::size_t>(surgery::Fluid::kBile)].left, 15e-6, 1e-12);
@@ -372,7 +371,7 @@ TEST(Spilling, TheHookPerforatesAndStonesComeOutWithTheBile) {
   const Vec3 outwards{0.82, -0.55, -0.18};
   Input input = CalcScriptInput(*scene, 0.0);
   std::uint64_t known = 0;
-  int told = 0;
+  int emitted = 0;
   for (int tick = 0; tick < 120 * 12; ++tick) {
     // pressed on until it gives: it moves off, and the wire may come to lie beside it
     const double away = tick < 180 ? 0.02 * (1.0 - tick / 180.0) : -0.002 - 0.001 * (tick - 180) / 120.0;
@@ -381,12 +380,12 @@ TEST(Spilling, TheHookPerforatesAndStonesComeOutWithTheBile) {
     input.controls[kRight].coagulate = tick >= 180;
     simulation.Step(input);
     for (; known < seen.event_count; ++known)
-      told += seen.events[known % seen.events.size()].kind == EventKind::kStoneSpilled ? 1 : 0;
-    if (told >= 2) break;
+      emitted += seen.events[known % seen.events.size()].kind == EventKind::kStoneSpilled ? 1 : 0;
+    if (emitted >= 2) break;
   }
   const OperationResult result = *simulation.GetOperationResult();
   EXPECT_GE(result.stones.spilled, 2);
-  EXPECT_EQ(result.stones.spilled, told);
+  EXPECT_EQ(result.stones.spilled, emitted);
   EXPECT_GT(result.errors.Count(training::OperationError::kGallbladderPerforated), 0u);
   // no more than their share of the bile
   const OrganSnapshot& bile = seen.organs[static_cast<std::size_t>(scene->patient.FindOrgan("gallbladder"))];

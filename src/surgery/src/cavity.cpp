@@ -46,22 +46,22 @@ void FitDome(std::span<const Vec3> points, Cavity& cavity) {
 
 }  // namespace
 
-std::array<CavityRoom, kCavityParts> Cavity::FindRooms(const Vec3& p) const noexcept {
-  std::array<CavityRoom, kCavityParts> rooms;
-  for (CavityRoom& room : rooms) room = {kFar, {0, 0, 1}};
+std::array<CavityClearance, kCavityParts> Cavity::FindClearances(const Vec3& p) const noexcept {
+  std::array<CavityClearance, kCavityParts> clearances;
+  for (CavityClearance& clearance : clearances) clearance = {kFar, {0, 0, 1}};
   if (has_wall) {
     const Vec3 slope{2.0 * across * p.x, 2.0 * along * p.y, 1.0};
     const double size = math::Norm(slope);
-    rooms[0] = {(wall_top - across * p.x * p.x - along * p.y * p.y - p.z) / size, -slope / size};
+    clearances[0] = {(wall_top - across * p.x * p.x - along * p.y * p.y - p.z) / size, -slope / size};
   }
   if (has_dome) {
     const double x = p.x - dome_x, z = p.z - dome_z;
     const Vec3 slope{2.0 * dome_across * x, 1.0, 2.0 * dome_deep * z};
     const double size = math::Norm(slope);
-    rooms[1] = {(dome_top - dome_across * x * x - dome_deep * z * z - p.y) / size, -slope / size};
+    clearances[1] = {(dome_top - dome_across * x * x - dome_deep * z * z - p.y) / size, -slope / size};
   }
-  if (has_floor) rooms[2] = {p.z - floor, {0, 0, 1}};
-  return rooms;
+  if (has_floor) clearances[2] = {p.z - floor, {0, 0, 1}};
+  return clearances;
 }
 
 Cavity FitCavity(std::span<const Vec3> ports, std::span<const Vec3> diaphragm, std::span<const Vec3> organs) {
@@ -86,21 +86,22 @@ CavityContact MakeCavityContact(const Cavity& cavity, std::span<const OrganSurfa
                                 std::uint8_t organ, const CavityContactSettings& settings) {
   CavityContact made;
   made.organ = organ;
-  FollowOrgan(cavity, organs, positions, settings, made);
+  UpdateTopology(cavity, organs, positions, settings, made);
   const auto own = is_fixed.subspan(organs[organ].first_node, organs[organ].node_count);
   made.is_held.assign(own.begin(), own.end());
   return made;
 }
 
-void FollowOrgan(const Cavity& cavity, std::span<const OrganSurface> organs, std::span<const Vec3> positions,
-                 const CavityContactSettings& settings, CavityContact& contact) {
+void UpdateTopology(const Cavity& cavity, std::span<const OrganSurface> organs,
+                    std::span<const Vec3> positions, const CavityContactSettings& settings,
+                    CavityContact& contact) {
   const OrganSurface& surface = organs[contact.organ];
   if (contact.allowed.size() > surface.node_count) contact.allowed.resize(surface.node_count);  // uncut again
   for (std::size_t i = contact.allowed.size(); i < surface.node_count; ++i) {
-    const auto rooms = cavity.FindRooms(positions[surface.first_node + i]);
+    const auto clearances = cavity.FindClearances(positions[surface.first_node + i]);
     std::array<double, kCavityParts>& allowed = contact.allowed.emplace_back();
     for (int part = 0; part < kCavityParts; ++part)
-      allowed[part] = std::min(0.0, rooms[part].distance) - settings.play;
+      allowed[part] = std::min(0.0, clearances[part].distance) - settings.play;
   }
   contact.is_held.resize(surface.node_count, 0);
 }
@@ -117,11 +118,11 @@ void FindCavityContacts(const Cavity& cavity, std::span<const OrganSurface> orga
   for (std::uint32_t i = 0; i < surface.node_count; ++i) {
     if (contact.is_held[i] != 0) continue;
     const Vec3& p = positions[first + i];
-    const auto rooms = cavity.FindRooms(p);
+    const auto clearances = cavity.FindClearances(p);
     for (int part = 0; part < kCavityParts; ++part) {
-      const double room = rooms[part].distance - contact.allowed[i][part];
-      const double outwards = -math::Dot(rooms[part].inwards, p - positions_before[first + i]);
-      if (!(room < kShareOfPlay * settings.play + std::clamp(outwards, 0.0, kMostMotion))) continue;
+      const double clearance = clearances[part].distance - contact.allowed[i][part];
+      const double outwards = -math::Dot(clearances[part].inwards, p - positions_before[first + i]);
+      if (!(clearance < kShareOfPlay * settings.play + std::clamp(outwards, 0.0, kMostMotion))) continue;
       if (contacts.springs.size() == ContactSet::kCapacity) {
         ++contacts.dropped;
         continue;
@@ -129,8 +130,8 @@ void FindCavityContacts(const Cavity& cavity, std::span<const OrganSurface> orga
       const std::uint32_t other = i > 0 ? first : first + 1, third = i > 1 ? first + 1 : first + 2;
       contacts.springs.push_back({{first + i, other, third},
                                   {1.0, 0.0, 0.0},
-                                  rooms[part].inwards,
-                                  math::Dot(rooms[part].inwards, p) - room,
+                                  clearances[part].inwards,
+                                  math::Dot(clearances[part].inwards, p) - clearance,
                                   settings.stiffness});
       ContactLink link;
       link.hand = kNoHand;

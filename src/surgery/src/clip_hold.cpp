@@ -5,26 +5,15 @@
 #include <cmath>
 
 namespace trocar::surgery {
-namespace {
 
-constexpr double kPressure = 40e3;       // 300 mmHg: Deans 1995 [Pa]
-constexpr double kPull = 4.4;            // between 4.08 and 4.78 N: Nelson 1992 [N]
-constexpr double kCrossedShare = 0.1;    // legs that do not lie flat hold by a corner
-constexpr double kThickRadius = 0.0025;  // of a vessel that the clip is meant for, outside [m]
-constexpr double kPartialPower = 6.0;    // of the closure: what lies beyond the tips keeps them apart
-constexpr double kSpeed = 0.001;         // of a clip under twice what it withstands [m/s]
-constexpr double kFastest = 0.005;       // [m/s]
-
-}  // namespace
-
-ClipHold CalcClipHold(const ClipGrip& grip) noexcept {
+ClipHold CalcClipHold(const ClipGrip& grip, const ClipHoldSettings& settings) noexcept {
   const double closure = std::clamp(grip.closure, 0.0, 1.0);
-  double share = std::pow(closure, kPartialPower);
-  if (grip.is_crossed) share *= kCrossedShare;
+  double share = std::pow(closure, settings.partial_power);
+  if (grip.is_crossed) share *= settings.crossed_share;
   // more tissue between the legs springs them open
-  const double thick = kThickRadius / std::max(grip.vessel_radius, kThickRadius);
+  const double thick = settings.thick_radius / std::max(grip.vessel_radius, settings.thick_radius);
   share *= thick * thick;
-  return {share * kPressure, share * kPull};
+  return {share * settings.pressure, share * settings.pull};
 }
 
 double CalcClipLoad(const ClipHold& hold, double pressure, double pull) noexcept {
@@ -33,8 +22,8 @@ double CalcClipLoad(const ClipHold& hold, double pressure, double pull) noexcept
          std::max(0.0, pull) / std::max(hold.pull, kLeastPull);
 }
 
-double CalcSlipSpeed(double load) noexcept {
-  return std::clamp(kSpeed * (load - 1.0), 0.0, kFastest);
+double CalcSlipSpeed(double load, const ClipHoldSettings& settings) noexcept {
+  return std::clamp(settings.slip_speed * (load - 1.0), 0.0, settings.fastest_slip);
 }
 
 }  // namespace trocar::surgery

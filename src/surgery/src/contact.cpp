@@ -16,10 +16,10 @@ using collision::Capsule;
 using collision::MovingSegment;
 using collision::Segment;
 
-/// Triangles or pieces that one body of a tool can meet in a tick.
+/// Triangles or pieces that one body of a tool can touch in a tick.
 constexpr std::size_t kMostCandidates = 512;
 /// Springs of one body of a tool against one organ. Where more triangles are in its way, as in a crumpled sac, those that it
-/// meets first stop it: the rest would only leave no room for what keeps organs apart.
+/// touches first stop it: the rest would use up the capacity that organs need against each other.
 constexpr std::size_t kMostByBody = 64;
 /// Tissue that snaps back farther than this in one solve is followed only so far [m].
 constexpr double kMostMotion = 0.03;
@@ -32,7 +32,7 @@ constexpr double kSamePoint = 1e-9;
 /// A body's way, and what is looked for on it.
 struct Search {
   const ToolMotion& motion;
-  const Touchables& touchables;
+  const ContactCandidates& candidates;
   const ContactSettings& settings;
   const ContactSet& last;
   ToolBody body;
@@ -52,20 +52,20 @@ double FindLastDepth(const ContactSet& last, std::uint8_t hand, double stiffness
   return largest / stiffness;
 }
 
-/// Where a body meets a surface: point of the tissue by its nodes, and the direction away from the tool.
-struct Meeting {
+/// Where a body touches a surface: point of the tissue by its nodes, and the direction away from the tool.
+struct ContactPoint {
   std::array<std::uint32_t, 3> nodes;
   std::array<double, 3> weights;
   double parameter;  // on the body's axis
   Vec3 normal;       // unit
   double reach;      // sum of the radii [m]
-  double rank = 0;   // low for what is met early, beyond 1 what is only near at the end
-  double time = -1;  // on the body's way, 0 to 1; negative: it was met in the last solve
+  double rank = 0;   // low for what is touched early, beyond 1 what is only near at the end
+  double time = -1;  // on the body's way, 0 to 1; negative: it was touched in the last solve
 };
 
-Vec3 PointOf(const Meeting& meeting, std::span<const Vec3> positions) noexcept {
+Vec3 PointOf(const ContactPoint& contact, std::span<const Vec3> positions) noexcept {
   Vec3 point;
-  for (int i = 0; i < 3; ++i) point += meeting.weights[i] * positions[meeting.nodes[i]];
+  for (int i = 0; i < 3; ++i) point += contact.weights[i] * positions[contact.nodes[i]];
   return point;
 }
 
@@ -101,7 +101,7 @@ Vec3 FindStretch(const Search& search, std::uint64_t key, const Vec3& normal) no
   const std::ptrdiff_t at = FindLast(search.last, key);
   if (at < 0) return {};
   const ContactLink& before = search.last.links[static_cast<std::size_t>(at)];
-  const Vec3 tissue = PointOf(search.last.springs[static_cast<std::size_t>(at)], search.touchables.positions);
+  const Vec3 tissue = PointOf(search.last.springs[static_cast<std::size_t>(at)], search.candidates.positions);
   const Vec3 carried = search.motion.X_world_device * before.p_tool_stuck - tissue;
   const Vec3 along = carried - math::Dot(carried, normal) * normal;
   const double most = search.settings.friction * before.normal_force / search.settings.stiffness;
@@ -109,53 +109,54 @@ Vec3 FindStretch(const Search& search, std::uint64_t key, const Vec3& normal) no
   return length > most ? (most / length) * along : along;
 }
 
-void AddContact(const Search& search, const Meeting& meeting, std::size_t surface, std::uint32_t item,
+void AddContact(const Search& search, const ContactPoint& contact, std::size_t surface, std::uint32_t item,
                 ContactSet& contacts) noexcept {
-  const Vec3 p_device = math::Lerp(search.way.to.start, search.way.to.end, meeting.parameter);
+  const Vec3 p_device = math::Lerp(search.way.to.start, search.way.to.end, contact.parameter);
   const std::uint64_t key = MakeKey(search, surface, item);
-  const Vec3 tissue = PointOf(meeting, search.touchables.positions);
-  const Vec3 stretch = FindStretch(search, key, meeting.normal);
+  const Vec3 tissue = PointOf(contact, search.candidates.positions);
+  const Vec3 stretch = FindStretch(search, key, contact.normal);
   const Vec3 stuck = tissue + stretch;
   ContactLink link;
   link.key = key;
   link.hand = search.motion.hand;
   link.surface = static_cast<std::uint8_t>(surface);
-  link.is_pinch = IsPinch(*search.motion.tool, search.body, search.motion.X_world_device, meeting.normal);
+  link.is_pinch = IsPinch(*search.motion.tool, search.body, search.motion.X_world_device, contact.normal);
   // what lies between blades is not squeezed out
   if (link.is_pinch && ClosesAroundTubes(*search.motion.tool)) return;
   link.p_device = p_device;
   link.p_tool_stuck = math::Inverse(search.motion.X_world_device) * stuck;
-  const double device_offset = math::Dot(meeting.normal, p_device) + meeting.reach;
-  const double offset = std::min(device_offset, math::Dot(meeting.normal, tissue) + search.most_push);
+  const double device_offset = math::Dot(contact.normal, p_device) + contact.reach;
+  const double offset = std::min(device_offset, math::Dot(contact.normal, tissue) + search.most_push);
   link.held_back = device_offset - offset;
-  AddSpring({meeting.nodes, meeting.weights, meeting.normal, offset, search.settings.stiffness}, link,
+  AddSpring({contact.nodes, contact.weights, contact.normal, offset, search.settings.stiffness}, link,
             contacts);
   const double length = math::Norm(stretch);
   if (!(length > kSamePoint)) return;
   const Vec3 along = stretch / length;
   link.is_friction = true;
-  AddSpring({meeting.nodes, meeting.weights, along, math::Dot(along, stuck), search.settings.stiffness}, link,
+  AddSpring({contact.nodes, contact.weights, along, math::Dot(along, stuck), search.settings.stiffness}, link,
             contacts);
 }
 
 /// What bore in the last tick goes half way to where the surfaces are nearest now: along an edge that lies nearly along the
 /// tool that place is ill-conditioned, and would leap to and fro with every solve.
-void KeepSteady(const Search& search, std::size_t surface, std::uint32_t item, Meeting& meeting) noexcept {
+void SmoothContactPoint(const Search& search, std::size_t surface, std::uint32_t item,
+                        ContactPoint& contact) noexcept {
   const std::ptrdiff_t at = FindLast(search.last, MakeKey(search, surface, item));
-  if (at < 0 || meeting.time < 0.0) return;
+  if (at < 0 || contact.time < 0.0) return;
   const tissue::ContactSpring& before = search.last.springs[static_cast<std::size_t>(at)];
-  if (!(search.last.links[static_cast<std::size_t>(at)].normal_force > 0.0) || before.nodes != meeting.nodes)
+  if (!(search.last.links[static_cast<std::size_t>(at)].normal_force > 0.0) || before.nodes != contact.nodes)
     return;
-  Meeting steady = meeting;
-  for (int i = 0; i < 3; ++i) steady.weights[i] = 0.5 * (before.weights[i] + meeting.weights[i]);
-  const Segment axis = search.way.At(meeting.time);
-  const Vec3 tissue = PointOf(steady, search.touchables.positions);
+  ContactPoint steady = contact;
+  for (int i = 0; i < 3; ++i) steady.weights[i] = 0.5 * (before.weights[i] + contact.weights[i]);
+  const Segment axis = search.way.At(contact.time);
+  const Vec3 tissue = PointOf(steady, search.candidates.positions);
   steady.parameter = geometry::FindNearestOnSegment(tissue, axis.start, axis.end);
   const Vec3 away = tissue - math::Lerp(axis.start, axis.end, steady.parameter);
   const double distance = math::Norm(away);
   if (!(distance > kSamePoint)) return;
   steady.normal = away / distance;
-  meeting = steady;
+  contact = steady;
 }
 
 bool Overlaps(const geometry::Box& box, const Capsule& capsule) noexcept {
@@ -171,14 +172,14 @@ bool Overlaps(const geometry::Box& box, const Capsule& capsule) noexcept {
 bool HasSnapped(const Search& search, std::span<const std::uint32_t> nodes) noexcept {
   const double margin2 = search.settings.margin * search.settings.margin;
   return std::any_of(nodes.begin(), nodes.end(), [&](std::uint32_t node) {
-    return math::SquaredDistance(search.touchables.positions[node],
-                                 search.touchables.positions_before[node]) > margin2;
+    return math::SquaredDistance(search.candidates.positions[node],
+                                 search.candidates.positions_before[node]) > margin2;
   });
 }
 
 /// \return false where the body does not come near the triangle, or only from inside of the organ
-bool MeetTriangle(const Search& search, const std::array<std::uint32_t, 3>& nodes,
-                  Meeting& meeting) noexcept {
+bool FindTriangleContact(const Search& search, const std::array<std::uint32_t, 3>& nodes,
+                         ContactPoint& contact) noexcept {
   const auto corners = [&](std::span<const Vec3> positions) {
     return std::array<Vec3, 3>{positions[nodes[0]], positions[nodes[1]], positions[nodes[2]]};
   };
@@ -189,7 +190,7 @@ bool MeetTriangle(const Search& search, const std::array<std::uint32_t, 3>& node
     const Vec3 outward = math::Cross(at[1] - at[0], at[2] - at[0]);
     // a fold may turn its back on the tool, and is no less in the way; from inside of an organ it is its other wall
     if (!search.is_outside && !(math::Dot(away, outward) < 0.0)) return false;
-    meeting = {nodes,
+    contact = {nodes,
                sweep.points.on_triangle.weights,
                sweep.points.parameter,
                away / distance,
@@ -197,24 +198,24 @@ bool MeetTriangle(const Search& search, const std::array<std::uint32_t, 3>& node
                sweep.time + std::max(0.0, distance - search.radius)};
     return true;
   };
-  const std::array<Vec3, 3> now = corners(search.touchables.positions);
+  const std::array<Vec3, 3> now = corners(search.candidates.positions);
   const auto sweep = collision::SweepToTriangle(search.way, {now, now}, search.radius);
   const bool is_near =
       sweep.is_hit || std::sqrt(sweep.points.squared_distance) < search.radius + search.settings.margin;
   if (is_near && take(sweep, now)) {
-    meeting.time = sweep.time;
+    contact.time = sweep.time;
     return true;
   }
   // tissue that shot past the tool in the last solve is met where it passed
   if (!HasSnapped(search, nodes)) return false;
-  const std::array<Vec3, 3> before = corners(search.touchables.positions_before);
+  const std::array<Vec3, 3> before = corners(search.candidates.positions_before);
   const collision::MovingTriangle moving{before, now};
   const auto passed = collision::SweepToTriangle(search.way_before, moving, search.radius);
   return passed.is_hit && take(passed, moving.At(passed.time));
 }
 
-bool MeetPiece(const Search& search, const collision::TubePiece& piece, std::uint32_t other,
-               Meeting& meeting) noexcept {
+bool FindPieceContact(const Search& search, const collision::TubePiece& piece, std::uint32_t other,
+                      ContactPoint& contact) noexcept {
   const auto axis = [&](std::span<const Vec3> positions) {
     return Segment{positions[piece.a], positions[piece.b]};
   };
@@ -224,15 +225,15 @@ bool MeetPiece(const Search& search, const collision::TubePiece& piece, std::uin
     const double distance = math::Norm(away);
     if (!(distance > kSamePoint)) return false;
     const double t = sweep.points.parameter_b;
-    meeting = {
+    contact = {
         {piece.a, piece.b, other}, {1.0 - t, t, 0.0}, sweep.points.parameter_a, away / distance, reach};
     return true;
   };
-  const Segment now = axis(search.touchables.positions);
+  const Segment now = axis(search.candidates.positions);
   const std::uint32_t nodes[2] = {piece.a, piece.b};
   if (HasSnapped(search, nodes)) {
     const auto passed =
-        collision::SweepToSegment(search.way_before, {axis(search.touchables.positions_before), now}, reach);
+        collision::SweepToSegment(search.way_before, {axis(search.candidates.positions_before), now}, reach);
     if (passed.is_hit && passed.time > 0.0) return take(passed);
   }
   const auto sweep = collision::SweepToSegment(search.way, {now, now}, reach);
@@ -243,7 +244,7 @@ bool MeetPiece(const Search& search, const collision::TubePiece& piece, std::uin
 
 /// Whether the proxy of a body lies outside of an organ: it may have been folded over it.
 bool IsOutside(const Search& search, const OrganSurface& organ, double reach) noexcept {
-  const auto nodes = organ.Nodes(search.touchables.positions);
+  const auto nodes = organ.Nodes(search.candidates.positions);
   const auto near = organ.tree.FindNearestToSegment(nodes, search.way.from, {.max_distance = reach});
   if (!near.Found()) return true;
   const auto side =
@@ -254,7 +255,7 @@ bool IsOutside(const Search& search, const OrganSurface& organ, double reach) no
 /// A body that lies inside of an organ all the same pushes the wall that is nearest to it back across itself.
 void PushOut(const Search& search, const OrganSurface& organ, std::size_t surface,
              ContactSet& contacts) noexcept {
-  const auto nodes = organ.Nodes(search.touchables.positions);
+  const auto nodes = organ.Nodes(search.candidates.positions);
   const auto& axis = search.way.from;
   const auto near = organ.tree.FindNearestToSegment(nodes, axis, {.max_distance = search.radius});
   if (!near.Found()) return;
@@ -262,12 +263,12 @@ void PushOut(const Search& search, const OrganSurface& organ, std::size_t surfac
   const Vec3 outward = math::Cross(nodes[t[1]] - nodes[t[0]], nodes[t[2]] - nodes[t[0]]);
   const Vec3 normal = math::Normalized(outward, Vec3{});
   if (!(math::SquaredNorm(normal) > 0.0)) return;
-  const Meeting meeting{{organ.first_node + t[0], organ.first_node + t[1], organ.first_node + t[2]},
-                        near.nearest.weights,
-                        near.parameter,
-                        -normal,
-                        search.radius};
-  AddContact(search, meeting, surface, near.nearest.triangle, contacts);
+  const ContactPoint contact{{organ.first_node + t[0], organ.first_node + t[1], organ.first_node + t[2]},
+                             near.nearest.weights,
+                             near.parameter,
+                             -normal,
+                             search.radius};
+  AddContact(search, contact, surface, near.nearest.triangle, contacts);
 }
 
 std::array<std::uint32_t, 3> NodesOf(const OrganSurface& organ, std::uint32_t triangle) noexcept {
@@ -282,8 +283,9 @@ std::size_t KeepFirstMet(const Search& search, const OrganSurface& organ,
   std::array<std::pair<double, std::uint32_t>, kMostCandidates> met;
   std::size_t count = 0;
   for (const std::uint32_t triangle : found) {
-    Meeting meeting;
-    if (MeetTriangle(search, NodesOf(organ, triangle), meeting)) met[count++] = {meeting.rank, triangle};
+    ContactPoint contact;
+    if (FindTriangleContact(search, NodesOf(organ, triangle), contact))
+      met[count++] = {contact.rank, triangle};
   }
   const std::size_t kept = std::min(count, kMostByBody);
   std::partial_sort(met.begin(), met.begin() + static_cast<std::ptrdiff_t>(kept),
@@ -294,35 +296,35 @@ std::size_t KeepFirstMet(const Search& search, const OrganSurface& organ,
 }
 
 void FindOnOrgan(Search& search, std::size_t surface, ContactSet& contacts) noexcept {
-  const OrganSurface& organ = search.touchables.organs[surface];
-  const double motion = std::min(kMostMotion, search.touchables.surface_motion[surface]);
+  const OrganSurface& organ = search.candidates.organs[surface];
+  const double motion = std::min(kMostMotion, search.candidates.surface_motion[surface]);
   const double slack = search.settings.margin + (motion > search.settings.margin ? motion : 0.0);
   const Capsule swept = collision::CalcSweptCapsule(search.way, search.radius + slack);
   if (!Overlaps(organ.box, swept)) return;
   std::array<std::uint32_t, kMostCandidates> found;
-  const std::size_t count = organ.tree.FindWithin(organ.Nodes(search.touchables.positions), swept, found);
+  const std::size_t count = organ.tree.FindWithin(organ.Nodes(search.candidates.positions), swept, found);
   contacts.dropped += count > found.size() ? count - found.size() : 0;
   const std::size_t before = contacts.springs.size();
   search.is_outside = count == 0 || IsOutside(search, organ, search.radius + slack);
   std::size_t kept = std::min(count, found.size());
   if (kept > kMostByBody) kept = KeepFirstMet(search, organ, std::span(found).first(kept));
   for (std::size_t i = 0; i < kept; ++i) {
-    Meeting meeting;
-    if (!MeetTriangle(search, NodesOf(organ, found[i]), meeting)) continue;
-    KeepSteady(search, surface, found[i], meeting);
-    AddContact(search, meeting, surface, found[i], contacts);
+    ContactPoint contact;
+    if (!FindTriangleContact(search, NodesOf(organ, found[i]), contact)) continue;
+    SmoothContactPoint(search, surface, found[i], contact);
+    AddContact(search, contact, surface, found[i], contacts);
   }
   if (count > 0 && contacts.springs.size() == before) PushOut(search, organ, surface, contacts);
 }
 
 void FindOnTubes(const Search& search, ContactSet& contacts) noexcept {
-  const TubeSet& set = *search.touchables.tubes;
-  const std::size_t organ_count = search.touchables.organs.size();
-  const double motion = std::min(kMostMotion, search.touchables.surface_motion[organ_count]);
+  const TubeSet& set = *search.candidates.tubes;
+  const std::size_t organ_count = search.candidates.organs.size();
+  const double motion = std::min(kMostMotion, search.candidates.surface_motion[organ_count]);
   const double slack = search.settings.margin + (motion > search.settings.margin ? motion : 0.0);
   const Capsule swept = collision::CalcSweptCapsule(search.way, search.radius + slack);
   std::array<std::uint32_t, kMostCandidates> found;
-  const std::size_t count = set.tree.FindWithin(search.touchables.positions, swept, found);
+  const std::size_t count = set.tree.FindWithin(search.candidates.positions, swept, found);
   contacts.dropped += count > found.size() ? count - found.size() : 0;
   for (std::size_t i = 0; i < std::min(count, found.size()); ++i) {
     const std::uint32_t tube = set.tube_of_piece[found[i]];
@@ -334,8 +336,9 @@ void FindOnTubes(const Search& search, ContactSet& contacts) noexcept {
     // a spring has three nodes; the third, which bears nothing, is any other
     std::uint32_t other = 0;
     while (other == piece.a || other == piece.b) ++other;
-    Meeting meeting;
-    if (MeetPiece(search, piece, other, meeting)) AddContact(search, meeting, surface, found[i], contacts);
+    ContactPoint contact;
+    if (FindPieceContact(search, piece, other, contact))
+      AddContact(search, contact, surface, found[i], contacts);
   }
 }
 
@@ -388,9 +391,9 @@ void ContactSet::Clear() noexcept {
   dropped = 0;
 }
 
-void FindContacts(const ToolMotion& motion, const Touchables& touchables, const ContactSettings& settings,
-                  const ContactSet& last, ContactSet& contacts) noexcept {
-  TROCAR_ASSERT(touchables.surface_motion.size() == touchables.organs.size() + 1);
+void FindContacts(const ToolMotion& motion, const ContactCandidates& candidates,
+                  const ContactSettings& settings, const ContactSet& last, ContactSet& contacts) noexcept {
+  TROCAR_ASSERT(candidates.surface_motion.size() == candidates.organs.size() + 1);
   const auto before = CalcToolBodies(*motion.tool, motion.jaw_before, motion.X_world_proxy_before);
   const auto proxy = CalcToolBodies(*motion.tool, motion.jaw_before, motion.X_world_proxy);
   const auto device = CalcToolBodies(*motion.tool, motion.jaw, motion.X_world_device);
@@ -398,7 +401,7 @@ void FindContacts(const ToolMotion& motion, const Touchables& touchables, const 
   for (int body = 0; body < kToolBodyCount; ++body) {
     if (!HasBody(*motion.tool, static_cast<ToolBody>(body))) continue;
     Search search{motion,
-                  touchables,
+                  candidates,
                   settings,
                   last,
                   static_cast<ToolBody>(body),
@@ -406,13 +409,13 @@ void FindContacts(const ToolMotion& motion, const Touchables& touchables, const 
                   {before[body].axis, proxy[body].axis},
                   device[body].radius,
                   most_push};
-    for (std::size_t surface = 0; surface < touchables.organs.size(); ++surface) {
+    for (std::size_t surface = 0; surface < candidates.organs.size(); ++surface) {
       const bool is_in_jaws =
           search.body != ToolBody::kShaft && static_cast<std::int32_t>(surface) == motion.grasped_surface;
       if (!is_in_jaws) FindOnOrgan(search, surface, contacts);
     }
     const bool slips_around = search.body != ToolBody::kShaft && ClosesAroundTubes(*motion.tool);
-    if (touchables.tubes != nullptr && !slips_around) FindOnTubes(search, contacts);
+    if (candidates.tubes != nullptr && !slips_around) FindOnTubes(search, contacts);
   }
 }
 
@@ -465,7 +468,7 @@ void VisitState(core::StateArchive& archive, ContactSet& contacts) {
   archive.Field("dropped", contacts.dropped);
   if (archive.IsRestoring()) {
     if (count > ContactSet::kCapacity) {
-      archive.Fail("has more contacts than there is room for");
+      archive.Fail("has more contacts than its capacity");
       return;
     }
     contacts.springs.resize(count);

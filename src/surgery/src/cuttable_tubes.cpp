@@ -83,9 +83,9 @@ std::size_t CuttableTubes::Cut(const BladeMove& move, const tissue::TissueDefini
   std::size_t count = 0;
   const geometry::BladeMoves moves = geometry::MakeFlatMoves(move.before, move.now);
   for (const geometry::FlatMove& part : moves.Moves()) {
-    const std::size_t room =
+    const std::size_t capacity =
         std::min<std::size_t>({cuts.size() - count, kMostCuts - count, (end_spare_ - next_spare_) / 2});
-    const std::size_t made = geometry::CutCentreLines(part.sweep, graph_, cuts.subspan(count, room));
+    const std::size_t made = geometry::CutCentreLines(part.sweep, graph_, cuts.subspan(count, capacity));
     for (std::size_t i = 0; i < 2 * made; ++i) nodes_.push_back(next_spare_++);
     for (std::size_t i = count; i < count + made; ++i) ListCut(cuts[i], definition, change);
     count += made;

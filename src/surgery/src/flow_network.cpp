@@ -31,10 +31,6 @@ double CalcSection(double radius) noexcept {
 
 }  // namespace
 
-FluidProperties PropertiesOf(Fluid fluid) noexcept {
-  return fluid == Fluid::kBlood ? FluidProperties{3.5e-3, 1060.0} : FluidProperties{1.0e-3, 1010.0};
-}
-
 VesselActs::VesselActs() {
   clips.reserve(kMostClips);
   openings.reserve(kMostOpenings);
@@ -54,7 +50,7 @@ struct FlowNetwork::Outlet {
 };
 
 core::Result<FlowNetwork> FlowNetwork::Make(std::vector<FlowVessel> vessels,
-                                            std::vector<FlowJunction> junctions) {
+                                            std::vector<FlowJunction> junctions, const FluidTable& fluids) {
   const auto refuse = [](const std::string& why) {
     return core::Error{core::ErrorCode::kPatientInvalid, "ducts and vessels: " + why};
   };
@@ -81,7 +77,7 @@ core::Result<FlowNetwork> FlowNetwork::Make(std::vector<FlowVessel> vessels,
     if (!std::isfinite(junction.pressure) || !std::isfinite(junction.conductance) || junction.conductance < 0)
       return refuse("a supply is not finite, or its conductance is negative");
   }
-  return FlowNetwork(std::move(vessels), std::move(junctions));
+  return FlowNetwork(std::move(vessels), std::move(junctions), fluids);
 }
 
 void FlowNetwork::SetPressure(std::size_t junction, double pressure) noexcept {
@@ -96,7 +92,7 @@ std::size_t FlowNetwork::CutIntoPieces(const VesselActs& acts, std::span<Piece> 
   piece_count = outlet_count = 0;
   for (std::uint32_t v = 0; v < vessels_.size(); ++v) {
     const FlowVessel& vessel = vessels_[v];
-    const FluidProperties fluid = PropertiesOf(vessel.fluid);
+    const FluidProperties& fluid = fluids_[static_cast<std::size_t>(vessel.fluid)];
     // openings of this vessel in the order of their places; of equal ones in that of the acts
     std::array<std::uint32_t, VesselActs::kMostOpenings> order{};
     std::size_t count = 0;
@@ -317,7 +313,7 @@ void VisitState(core::StateArchive& archive, VesselActs& acts) {
       (acts.clips.size() > VesselActs::kMostClips || acts.openings.size() > VesselActs::kMostOpenings)) {
     acts.clips.clear();
     acts.openings.clear();
-    archive.Fail("has more clips or openings than there is room for");
+    archive.Fail("has more clips or openings than its capacity");
   }
 }
 
@@ -330,7 +326,7 @@ void VisitState(core::StateArchive& archive, FlowReport& report) {
   archive.Field("leak_count", report.leak_count);
   if (archive.IsRestoring() && report.leak_count > report.leaks.size()) {
     report.leak_count = 0;
-    archive.Fail("has more leaks than there is room for");
+    archive.Fail("has more leaks than its capacity");
   }
   for (std::size_t i = 0; i < report.leak_count; ++i) {
     Leak& leak = report.leaks[i];

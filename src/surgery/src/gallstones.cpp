@@ -233,7 +233,7 @@ std::vector<double> DrawGallstones(const GallstoneSettings& settings, double cap
   TROCAR_ASSERT(settings.count >= 0 && settings.count <= kMostGallstones && settings.median_diameter > 0);
   math::Random random(seed);
   std::vector<double> diameters;
-  double room = kMostFilling * capacity;
+  double unfilled = kMostFilling * capacity;
   for (int i = 0; i < settings.count; ++i) {
     // Box and Muller; cut off at three deviations
     const double u = 1.0 - random.Uniform(), v = random.Uniform();
@@ -241,8 +241,8 @@ std::vector<double> DrawGallstones(const GallstoneSettings& settings, double cap
         std::clamp(std::sqrt(-2.0 * std::log(u)) * std::cos(2.0 * std::numbers::pi * v), -3.0, 3.0);
     const double diameter = std::max(kSmallest, settings.median_diameter * std::exp(kSpread * z));
     const double volume = std::numbers::pi / 6.0 * diameter * diameter * diameter;
-    if (volume > room) continue;
-    room -= volume;
+    if (volume > unfilled) continue;
+    unfilled -= volume;
     diameters.push_back(diameter);
   }
   return diameters;

@@ -196,7 +196,7 @@ void VisitState(core::StateArchive& archive, Grasp& grasp) {
   archive.Field("ticks_over_limit", grasp.ticks_over_limit);
   if (archive.IsRestoring() && grasp.count > Grasp::kCapacity) {
     grasp.count = 0;
-    archive.Fail("holds more nodes than there is room for");
+    archive.Fail("holds more nodes than its capacity");
   }
 }
 

@@ -49,7 +49,7 @@ Place FindPlace(const OrganSurface& organ, std::span<const Vec3> nodes, const Ve
 void Resize(OrganPair& pair) {
   pair.allowed.resize(pair.node_count, 0.0);
   pair.is_inside.resize(pair.node_count, 0);
-  pair.push.resize(pair.node_count, 0.0);
+  pair.warm_start.resize(pair.node_count, 0.0);
   pair.is_bound.resize(pair.node_count, 0);
   pair.last_triangle.resize(pair.node_count, collision::kNoTriangle);
   pair.spring.resize(pair.node_count, kNoSpring);
@@ -110,7 +110,7 @@ OrganPair MakeTubePair(std::span<const OrganSurface> organs, std::span<const Vec
   return MakePair(organs[surface_of], positions, std::move(pair), settings);
 }
 
-void FollowOrgan(std::span<const OrganSurface> organs, std::uint8_t changed, OrganPair& pair) {
+void UpdateTopology(std::span<const OrganSurface> organs, std::uint8_t changed, OrganPair& pair) {
   if (changed == pair.nodes_of) {
     pair.node_count = organs[changed].node_count;
     Resize(pair);
@@ -126,23 +126,24 @@ void ResetPair(OrganPair& pair) noexcept {
   std::copy_n(pair.allowed_at_rest.begin(), count, pair.allowed.begin());
   std::copy_n(pair.inside_at_rest.begin(), count, pair.is_inside.begin());
   std::fill(pair.clear.begin(), pair.clear.end(), ClearVertex{});
-  ForgetOrganPushes(pair);
+  ForgetWarmStartForces(pair);
 }
 
-void ForgetOrganPushes(OrganPair& pair) noexcept {
-  std::fill(pair.push.begin(), pair.push.end(), 0.0);
+void ForgetWarmStartForces(OrganPair& pair) noexcept {
+  std::fill(pair.warm_start.begin(), pair.warm_start.end(), 0.0);
   std::fill(pair.spring.begin(), pair.spring.end(), kNoSpring);
 }
 
-void KeepOrganPushes(std::span<const Vec3> positions, const ContactSet& contacts, OrganPair& pair) noexcept {
+void KeepWarmStartForces(std::span<const Vec3> positions, const ContactSet& contacts,
+                         OrganPair& pair) noexcept {
   for (std::uint32_t i = 0; i < pair.node_count; ++i) {
     const std::uint32_t at = pair.spring[i];
-    pair.push[i] = 0.0;
+    pair.warm_start[i] = 0.0;
     if (at == kNoSpring) continue;
     double depth = 0;
     for (const std::uint32_t k : {at, at + 1})
       depth += 0.5 * std::max(0.0, tissue::CalcContactDepth(contacts.springs[k], positions));
-    pair.push[i] = std::min(depth, kMostKept);
+    pair.warm_start[i] = std::min(depth, kMostKept);
   }
 }
 
@@ -166,8 +167,8 @@ void FindOrganContacts(std::span<const OrganSurface> organs, std::span<const Vec
     pair.clear[i] = {p, spare > 0.0 ? to.travel + spare : 0.0};
     if (!place.is_near) continue;
     pair.last_triangle[i] = place.nearest.triangle;
-    const double room = std::max(gap - pair.allowed[i], -kMostPush);
-    if (room > settings.ahead) continue;
+    const double clearance = std::max(gap - pair.allowed[i], -kMostPush);
+    if (clearance > settings.ahead) continue;
     if (contacts.springs.size() + 2 > ContactSet::kCapacity) {
       ++contacts.dropped;
       continue;
@@ -178,7 +179,7 @@ void FindOrganContacts(std::span<const OrganSurface> organs, std::span<const Vec
     link.key = ~std::uint64_t{0};
     link.surface = pair.nodes_of;
     // each gives way by half of what is missing, against what presses it already
-    const double ahead = pair.push[i] - 0.5 * room;
+    const double ahead = pair.warm_start[i] - 0.5 * clearance;
     const auto& t = to.triangles[place.nearest.triangle];
     pair.spring[i] = static_cast<std::uint32_t>(contacts.springs.size());
     contacts.springs.push_back({{node, to.first_node + t[0], to.first_node + t[1]},
@@ -200,7 +201,7 @@ void FindOrganContacts(std::span<const OrganSurface> organs, std::span<const Vec
 void VisitState(core::StateArchive& archive, OrganPair& pair) {
   archive.FixedField("allowed", pair.allowed);
   archive.FixedField("is_inside", pair.is_inside);
-  archive.FixedField("push", pair.push);
+  archive.FixedField("warm_start", pair.warm_start);
   archive.FixedField("last_triangle", pair.last_triangle);
   archive.FixedField("clear", pair.clear);
 }

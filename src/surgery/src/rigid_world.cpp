@@ -218,7 +218,7 @@ struct RigidWorld::Content {
     return false;
   }
 
-  void NoteTouch(const btPersistentManifold& manifold) {
+  void RecordTouch(const btPersistentManifold& manifold) {
     const int a = manifold.getBody0()->getUserIndex(), b = manifold.getBody1()->getUserIndex();
     if (a >= 64 || b >= 64 || !IsTouching(manifold)) return;
     bodies[static_cast<std::size_t>(a)].touches |= std::uint64_t{1} << b;
@@ -231,7 +231,7 @@ struct RigidWorld::Content {
     for (int m = 0; m < dispatcher->getNumManifolds(); ++m) {
       const btPersistentManifold& manifold = *dispatcher->getManifoldByIndexInternal(m);
       if (manifold.getBody0()->getUserIndex2() < 0 && manifold.getBody1()->getUserIndex2() < 0) {
-        NoteTouch(manifold);
+        RecordTouch(manifold);
         continue;
       }
       for (const bool is_first : {true, false}) {

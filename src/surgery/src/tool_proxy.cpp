@@ -79,8 +79,8 @@ TrocarJoints FindProxy(const ToolDrive& drive, const TrocarJoints& last_offset,
         now += row[joint] * offset[joint];
       }
       if (!(give > 0.0)) continue;
-      const double push =
-          std::max(0.0, pushes[i] + (now - limits[i].room - kCompliance * pushes[i]) / (give + kCompliance));
+      const double push = std::max(
+          0.0, pushes[i] + (now - limits[i].clearance - kCompliance * pushes[i]) / (give + kCompliance));
       const double change = push - pushes[i];
       pushes[i] = push;
       largest = std::max(largest, std::fabs(change) * give);
@@ -96,7 +96,7 @@ TrocarJoints FindProxy(const ToolDrive& drive, const TrocarJoints& last_offset,
 }
 
 double AddOverlapLimits(const instrument::Tool& tool, const Pose& X_world_proxy, const Pose& X_world_device,
-                        double jaw, const Touchables& touchables, std::int32_t grasped_surface,
+                        double jaw, const ContactCandidates& candidates, std::int32_t grasped_surface,
                         ProxyLimits& limits) noexcept {
   const auto proxy = CalcToolBodies(tool, jaw, X_world_proxy),
              device = CalcToolBodies(tool, jaw, X_world_device);
@@ -111,10 +111,10 @@ double AddOverlapLimits(const instrument::Tool& tool, const Pose& X_world_proxy,
     const bool is_jaw = body != static_cast<int>(ToolBody::kShaft);
     if (!HasBody(tool, static_cast<ToolBody>(body))) continue;
     const double radius = proxy[body].radius;
-    for (std::size_t surface = 0; surface < touchables.organs.size(); ++surface) {
+    for (std::size_t surface = 0; surface < candidates.organs.size(); ++surface) {
       if (is_jaw && static_cast<std::int32_t>(surface) == grasped_surface) continue;
-      const OrganSurface& organ = touchables.organs[surface];
-      const auto nodes = organ.Nodes(touchables.positions);
+      const OrganSurface& organ = candidates.organs[surface];
+      const auto nodes = organ.Nodes(candidates.positions);
       const auto near = organ.tree.FindNearestToSegment(nodes, proxy[body].axis, {.max_distance = radius});
       if (!near.Found()) continue;
       const auto side =
@@ -127,10 +127,10 @@ double AddOverlapLimits(const instrument::Tool& tool, const Pose& X_world_proxy,
       add(body, near.parameter, is_outside ? away / distance : -side.normal,
           is_outside ? radius - distance : radius + distance);
     }
-    if (touchables.tubes == nullptr || (is_jaw && ClosesAroundTubes(tool))) continue;
-    const auto near = touchables.tubes->tree.FindNearest(touchables.positions, proxy[body].axis, radius);
+    if (candidates.tubes == nullptr || (is_jaw && ClosesAroundTubes(tool))) continue;
+    const auto near = candidates.tubes->tree.FindNearest(candidates.positions, proxy[body].axis, radius);
     if (!near.Found()) continue;
-    const std::size_t surface = touchables.organs.size() + touchables.tubes->tube_of_piece[near.piece];
+    const std::size_t surface = candidates.organs.size() + candidates.tubes->tube_of_piece[near.piece];
     if (is_jaw && static_cast<std::int32_t>(surface) == grasped_surface) continue;
     const Vec3 away = near.axes.on_b - near.axes.on_a;
     if (!(math::SquaredNorm(away) > 0.0)) continue;

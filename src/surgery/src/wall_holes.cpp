@@ -100,7 +100,7 @@ void WallHoles::VisitState(core::StateArchive& archive) {
   archive.Field("count", count_);
   if (archive.IsRestoring() && count_ > kMost) {
     count_ = 0;
-    archive.Fail("are more than there is room for");
+    archive.Fail("exceed their capacity");
   }
   for (Place& place : std::span(places_).first(count_)) {
     archive.Field("node", place.node);

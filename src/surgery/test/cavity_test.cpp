@@ -43,15 +43,15 @@ TEST(FitCavity, FindsTheDomeThroughTheDiaphragmaticFace) {
   EXPECT_NEAR(cavity.dome_deep, 6.0, 1e-6);
   EXPECT_FALSE(cavity.has_wall);
   EXPECT_FALSE(cavity.has_floor);
-  EXPECT_TRUE(std::isinf(cavity.FindRooms({})[kWall].distance));
+  EXPECT_TRUE(std::isinf(cavity.FindClearances({})[kWall].distance));
 }
 
 TEST(FitCavity, PutsTheFrontWallThroughTheStandardPorts) {
   const Vec3 ports[] = {{0, 0, 0}, {-0.015, 0.130, -0.005}, {-0.085, 0.080, -0.015}, {-0.140, 0.035, -0.045}};
   const Cavity cavity = FitCavity(ports, {}, {});
-  for (const Vec3& port : ports) EXPECT_NEAR(cavity.FindRooms(port)[kWall].distance, 0.0, 0.003);
-  EXPECT_NEAR(cavity.FindRooms({0, 0, -0.03})[kWall].distance, 0.03, 0.002);
-  EXPECT_LT(cavity.FindRooms({0, 0, 0.01})[kWall].distance, 0.0);
+  for (const Vec3& port : ports) EXPECT_NEAR(cavity.FindClearances(port)[kWall].distance, 0.0, 0.003);
+  EXPECT_NEAR(cavity.FindClearances({0, 0, -0.03})[kWall].distance, 0.03, 0.002);
+  EXPECT_LT(cavity.FindClearances({0, 0, 0.01})[kWall].distance, 0.0);
 }
 
 TEST(FitCavity, AFaceThatIsNoDomeOrTooFewPointsMakeNone) {
@@ -83,16 +83,17 @@ TEST(Cavity, TheDirectionInwardsIsTheSlopeOfTheRoom) {
     Vec3 p{random.Uniform(-0.1, 0.1), random.Uniform(-0.1, 0.2), random.Uniform(-0.2, 0.0)};
     for (const std::size_t part : {kWall, kDome, kFloor}) {
       // the two domes' distances are right near them
-      const auto there = cavity.FindRooms(p)[part];
+      const auto there = cavity.FindClearances(p)[part];
       Vec3 q = p;
       for (int k = 0; k < 20; ++k)
-        q -= cavity.FindRooms(q)[part].distance * cavity.FindRooms(q)[part].inwards;
-      const auto room = cavity.FindRooms(q)[part];
-      EXPECT_NEAR(room.distance, 0.0, 1e-9);
-      EXPECT_NEAR(math::Norm(room.inwards), 1.0, 1e-12);
-      const auto further = cavity.FindRooms(q + kStep * room.inwards)[part];
-      EXPECT_NEAR((further.distance - room.distance) / kStep, 1.0, 1e-3) << i;
-      EXPECT_GT(there.distance * math::Dot(p - q, room.inwards), -1e-12) << "inside is where the room is";
+        q -= cavity.FindClearances(q)[part].distance * cavity.FindClearances(q)[part].inwards;
+      const auto clearance = cavity.FindClearances(q)[part];
+      EXPECT_NEAR(clearance.distance, 0.0, 1e-9);
+      EXPECT_NEAR(math::Norm(clearance.inwards), 1.0, 1e-12);
+      const auto further = cavity.FindClearances(q + kStep * clearance.inwards)[part];
+      EXPECT_NEAR((further.distance - clearance.distance) / kStep, 1.0, 1e-3) << i;
+      EXPECT_GT(there.distance * math::Dot(p - q, clearance.inwards), -1e-12)
+          << "inside is where the room is";
     }
   }
 }
@@ -134,7 +135,8 @@ class BallInCavity : public testing::Test {
   /// Farthest that a vertex lies outside of the dome.
   double Outside() const {
     double outside = 0;
-    for (const Vec3& p : state_.position) outside = std::max(outside, -cavity_.FindRooms(p)[kDome].distance);
+    for (const Vec3& p : state_.position)
+      outside = std::max(outside, -cavity_.FindClearances(p)[kDome].distance);
     return outside;
   }
 
@@ -199,7 +201,7 @@ TEST_F(BallInCavity, VerticesThatACutMadeKeepTheirPlace) {
   Make(-0.003);
   const std::size_t before = contact_.allowed.size();
   contact_.allowed.resize(before / 2), contact_.is_held.resize(before / 2);
-  FollowOrgan(cavity_, organs_, state_.position, settings_, contact_);
+  UpdateTopology(cavity_, organs_, state_.position, settings_, contact_);
   EXPECT_EQ(contact_.allowed.size(), before);
   EXPECT_EQ(contact_.is_held.size(), before);
   for (int tick = 0; tick < 5; ++tick) {

@@ -50,15 +50,15 @@ TEST_F(Contact, ReactionBalancesTheFoundation) {
   EXPECT_NEAR(math::Distance(foundation, reaction.force), 0.0, 0.02 * math::Norm(reaction.force));
 }
 
-// A crumpled sac has hundreds of triangles in a tool's way; contact between organs needs room as well.
+// A crumpled sac has hundreds of triangles in a tool's way; contact between organs needs its share of the capacity.
 TEST_F(Contact, ACrowdOfTrianglesIsStoppedByThoseMetFirst) {
   const auto fine = geometry::MakeSphere({0, 0, 0}, 0.02, 6);
   std::vector<OrganSurface> organs;
   organs.push_back(MakeOrganSurface(fine.positions, 0, fine).value());
   const std::vector<double> motion(2, 0.0);
-  const Touchables touchables{organs, nullptr, fine.positions, fine.positions, motion};
+  const ContactCandidates candidates{organs, nullptr, fine.positions, fine.positions, motion};
   const Pose outside = PoseAt(JointsAt({0, 0, 0.0225})), deep = PoseAt(JointsAt({0, 0, 0.002}));
-  FindContacts({&tool_, 0, outside, outside, deep, 0.0, 0.0, -1}, touchables, settings_, last_, contacts_);
+  FindContacts({&tool_, 0, outside, outside, deep, 0.0, 0.0, -1}, candidates, settings_, last_, contacts_);
   std::array<std::uint32_t, 4096> found;
   const auto body = CalcToolBodies(tool_, 0.0, deep)[0];
   EXPECT_GT(organs[0].tree.FindWithin(fine.positions, body, found), 0u);
@@ -116,7 +116,7 @@ TEST_F(Contact, TissueThatTurnsItsBackIsTouched) {
                .z > 0.0;
   };
   const Pose X = PoseAt(JointsAt({0.009, 0, 0.0215}));
-  FindContacts({&tool_, 0, X, X, X, 0, 0, -1}, GetTouchables(), settings_, last_, contacts_);
+  FindContacts({&tool_, 0, X, X, X, 0, 0, -1}, GetContactCandidates(), settings_, last_, contacts_);
   int turned = 0;
   for (const auto& spring : contacts_.springs) {
     const bool is_of_top = std::find(spring.nodes.begin(), spring.nodes.end(), top) != spring.nodes.end();
@@ -188,10 +188,10 @@ TEST_F(Contact, TissueThatSnappedPastTheToolIsCaught) {
   tubes_.tree.Update(state_.position);
   const ToolMotion motion{&tool_, 0, X_proxy_, X_proxy_, PoseAt(joints), 0, 0, -1};
   motion_ = {0, 0};
-  FindContacts(motion, GetTouchables(), settings_, last_, contacts_);
+  FindContacts(motion, GetContactCandidates(), settings_, last_, contacts_);
   EXPECT_TRUE(contacts_.springs.empty()) << "negative control: as if nothing had moved";
   motion_ = {0, 0.024};
-  FindContacts(motion, GetTouchables(), settings_, last_, contacts_);
+  FindContacts(motion, GetContactCandidates(), settings_, last_, contacts_);
   ASSERT_FALSE(contacts_.springs.empty());
   EXPECT_LT(contacts_.springs[0].normal.z, 0.0) << "pushed back down";
   EXPECT_GT(tissue::CalcContactDepth(contacts_.springs[0], state_.position), 0.0);
@@ -204,8 +204,8 @@ TEST_F(Contact, WhatBearsGoesHalfWayToWhereItIsNearestNow) {
   const auto joints = JointsAt({0.0006, 0.0003, 0.0175});
   const ToolMotion motion{&tool_, 0, X_proxy_before_, X_proxy_, PoseAt(joints), 0.0, 0.0, -1};
   ContactSet kept, fresh;
-  FindContacts(motion, GetTouchables(), settings_, contacts_, kept);
-  FindContacts(motion, GetTouchables(), settings_, ContactSet{}, fresh);
+  FindContacts(motion, GetContactCandidates(), settings_, contacts_, kept);
+  FindContacts(motion, GetContactCandidates(), settings_, ContactSet{}, fresh);
   const auto find = [](const ContactSet& set, std::uint64_t key) {
     const auto at = std::find_if(set.links.begin(), set.links.end(), [key](const ContactLink& link) {
       return link.key == key && !link.is_friction;
@@ -232,7 +232,7 @@ TEST_F(Contact, WhatBearsGoesHalfWayToWhereItIsNearestNow) {
 TEST_F(Contact, ASetThatIsFullCountsWhatItDrops) {
   Place(JointsAt({0, 0, 0.0215}));
   const ToolMotion motion{&tool_, 0, X_proxy_, X_proxy_, PoseAt(JointsAt({0, 0, 0.016})), 0, 0, -1};
-  for (int i = 0; i < 300; ++i) FindContacts(motion, GetTouchables(), settings_, last_, contacts_);
+  for (int i = 0; i < 300; ++i) FindContacts(motion, GetContactCandidates(), settings_, last_, contacts_);
   EXPECT_EQ(contacts_.springs.size(), ContactSet::kCapacity);
   EXPECT_GT(contacts_.dropped, 0u);
 }

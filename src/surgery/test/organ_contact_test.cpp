@@ -47,7 +47,7 @@ class OrganContact : public testing::Test {
     if (has_contact) FindOrganContacts(organs_, state_.position, settings_, pair_, contacts_);
     (void)solver_->Solve({tissue::SolverKind::kChebyshevJacobi2015, 500, 1e-6, 0.0},
                          {.gravity = gravity, .contacts = contacts_.springs}, state_);
-    if (has_contact) KeepOrganPushes(state_.position, contacts_, pair_);
+    if (has_contact) KeepWarmStartForces(state_.position, contacts_, pair_);
     for (OrganSurface& organ : organs_) UpdateOrganSurface(organ, state_.position);
   }
   /// Moves the small ball down.
@@ -125,9 +125,9 @@ TEST_F(OrganContact, WhatDoesNotGiveWayIsPressedHarderEachTick) {
       deepest = std::max(deepest, node);
     }
     EXPECT_NEAR(deepest, 0.001 * std::min(tick, 31), 1e-9) << "up to 3 N kept";
-    KeepOrganPushes(state_.position, contacts_, pair_);
+    KeepWarmStartForces(state_.position, contacts_, pair_);
   }
-  ForgetOrganPushes(pair_);
+  ForgetWarmStartForces(pair_);
   contacts_.Clear();
   FindOrganContacts(organs_, state_.position, settings_, pair_, contacts_);
   for (const auto& spring : contacts_.springs)
@@ -139,14 +139,14 @@ TEST_F(OrganContact, WhatHasPartedIsPressedNoMore) {
   Make(0.001);
   Overlap(0.004);
   FindOrganContacts(organs_, state_.position, settings_, pair_, contacts_);
-  KeepOrganPushes(state_.position, contacts_, pair_);
-  EXPECT_GT(*std::max_element(pair_.push.begin(), pair_.push.end()), 0.0009);
+  KeepWarmStartForces(state_.position, contacts_, pair_);
+  EXPECT_GT(*std::max_element(pair_.warm_start.begin(), pair_.warm_start.end()), 0.0009);
   Overlap(-0.009);
   contacts_.Clear();
   FindOrganContacts(organs_, state_.position, settings_, pair_, contacts_);
   EXPECT_TRUE(contacts_.springs.empty());
-  KeepOrganPushes(state_.position, contacts_, pair_);
-  EXPECT_EQ(*std::max_element(pair_.push.begin(), pair_.push.end()), 0.0);
+  KeepWarmStartForces(state_.position, contacts_, pair_);
+  EXPECT_EQ(*std::max_element(pair_.warm_start.begin(), pair_.warm_start.end()), 0.0);
 }
 
 // The large ball's top vertex lies beyond its neighbours, so that triangles lie there face down, under the small ball.
@@ -221,10 +221,10 @@ TEST_F(OrganContact, ResetForgetsWhatHappened) {
   Overlap(-0.001);
   Overlap(0.003);
   FindOrganContacts(organs_, state_.position, settings_, pair_, contacts_);
-  KeepOrganPushes(state_.position, contacts_, pair_);
-  EXPECT_NE(pair_.push, made.push);
+  KeepWarmStartForces(state_.position, contacts_, pair_);
+  EXPECT_NE(pair_.warm_start, made.warm_start);
   ResetPair(pair_);
-  EXPECT_EQ(pair_.push, made.push);
+  EXPECT_EQ(pair_.warm_start, made.warm_start);
   EXPECT_EQ(pair_.allowed, made.allowed);
   EXPECT_EQ(pair_.is_inside, made.is_inside);
 }
@@ -289,7 +289,7 @@ class TubeOnOrgan : public testing::Test {
     if (has_contact) FindOrganContacts(organs_, state_.position, settings_, pair_, contacts_);
     (void)solver_->Solve({tissue::SolverKind::kChebyshevJacobi2015, 500, 1e-6, 0.0},
                          {.gravity = gravity, .contacts = contacts_.springs}, state_);
-    if (has_contact) KeepOrganPushes(state_.position, contacts_, pair_);
+    if (has_contact) KeepWarmStartForces(state_.position, contacts_, pair_);
   }
   /// Deepest that the duct's skin lies in the ball; the ball's facets count as the ball.
   double Overlap() const {

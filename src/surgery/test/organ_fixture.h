@@ -72,7 +72,7 @@ class OrganFixture : public testing::Test {
     contacts_.Clear();
     const ToolMotion motion{&tool_,         0,         X_proxy_before_, X_proxy_,
                             PoseAt(device), last_jaw_, device.jaw,      grasped};
-    FindContacts(motion, GetTouchables(), settings_, last_, contacts_);
+    FindContacts(motion, GetContactCandidates(), settings_, last_, contacts_);
     before_ = state_.position;
     const auto solved = solver_->Solve({tissue::SolverKind::kChebyshevJacobi2015, 800, 1e-6, 0.0},
                                        {.contacts = contacts_.springs}, state_);
@@ -91,8 +91,8 @@ class OrganFixture : public testing::Test {
     for (int round = 0; round < 4; ++round) {
       const auto proxy = FindProxy({kPort, device}, offset_, limits.limits);
       X_proxy_ = PoseAt(proxy);
-      overlap_ =
-          AddOverlapLimits(tool_, X_proxy_, PoseAt(device), device.jaw, GetTouchables(), grasped, limits);
+      overlap_ = AddOverlapLimits(tool_, X_proxy_, PoseAt(device), device.jaw, GetContactCandidates(),
+                                  grasped, limits);
       proxy_ = proxy;
       if (overlap_ == 0.0) break;
     }
@@ -109,7 +109,9 @@ class OrganFixture : public testing::Test {
     last_.Clear();
   }
 
-  Touchables GetTouchables() const { return {organs_, &tubes_, state_.position, before_, motion_}; }
+  ContactCandidates GetContactCandidates() const {
+    return {organs_, &tubes_, state_.position, before_, motion_};
+  }
   Vec3 DuctMiddle() const { return state_.position[first_duct_node_ + kDuctNodes / 2]; }
 
   static constexpr Vec3 kPort{0, 0, 0.15};

@@ -140,8 +140,8 @@ TEST_F(ToolProxy, LiesOutsideBesideASharpRim) {
     const auto joints = instrument::FindJoints({gap, 0, 0.15}, {gap, 0, -0.1}, 0.0, 0.0);
     const Pose X = instrument::CalcToolPose({gap, height, 0.15}, joints);
     ProxyLimits limits;
-    const Touchables touchables{organs_, nullptr, state_.position, before_, motion_};
-    const double overlap = AddOverlapLimits(tool_, X, X, 0.0, touchables, -1, limits);
+    const ContactCandidates candidates{organs_, nullptr, state_.position, before_, motion_};
+    const double overlap = AddOverlapLimits(tool_, X, X, 0.0, candidates, -1, limits);
     EXPECT_NEAR(overlap, tool_.shaft_radius - gap, 1e-6);
     for (const ProxyLimit& limit : limits.limits)
       EXPECT_LT(limit.normal.x, -0.9) << "the rim is on the right";

@@ -41,30 +41,6 @@ bool MayBeDivided(VesselRole role) noexcept {
          role == VesselRole::kSubvesicalDuct;
 }
 
-std::string_view RoleName(VesselRole role) noexcept {
-  switch (role) {
-    case VesselRole::kCysticDuct:
-      return "cystic duct";
-    case VesselRole::kCommonHepaticDuct:
-      return "common hepatic duct";
-    case VesselRole::kCommonBileDuct:
-      return "common bile duct";
-    case VesselRole::kRightHepaticDuct:
-      return "right hepatic duct";
-    case VesselRole::kLeftHepaticDuct:
-      return "left hepatic duct";
-    case VesselRole::kAberrantRightDuct:
-      return "aberrant right duct";
-    case VesselRole::kSubvesicalDuct:
-      return "subvesical duct";
-    case VesselRole::kCysticArtery:
-      return "cystic artery";
-    case VesselRole::kRightHepaticArtery:
-      return "right hepatic artery";
-  }
-  return "";
-}
-
 std::string_view StrasbergName(Strasberg injury) noexcept {
   constexpr std::string_view kNames[] = {"none", "A", "B", "C", "D", "E1", "E2", "E3", "E4", "E5"};
   return kNames[static_cast<std::size_t>(injury)];

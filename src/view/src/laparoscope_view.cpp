@@ -39,7 +39,6 @@ using simulation::Snapshot;
 
 constexpr double kOpennessReach = 0.030;  // m; farther folds cast no soft shade
 constexpr double kSmallestForce = 0.02;   // N; below, an arrow would only flicker
-constexpr double kTrainerLight = 1.8;     // of a box trainer, whose walls are darker than tissue and farther
 constexpr double kLongestArrow = 0.045;   // m
 
 /// Openness of a surface that will move: averaged over neighbours and never dark, because where it lies
@@ -90,11 +89,14 @@ struct LaparoscopeView::Content {
     memory.Resize(start.positions.size());
     for (std::uint32_t i = 0; i < surfaces.size(); ++i) {
       const SurfaceInfo& info = surfaces[i];
-      const auto material = render::FindMaterial(info.material);
+      auto material = render::FindMaterial(info.look);
+      // an organ of which nothing is known is covered with serosa, as most of the abdomen's are
+      if (!material && !info.triangles.empty() && info.organ == roles::OrganRole::kOther)
+        material = Material::kBowel;
       if (!material) {
-        return core::Error{core::ErrorCode::kUnknownName, "surface " + info.name + " has the material \"" +
-                                                              info.material +
-                                                              "\", which has no look; see render/material.h"};
+        return core::Error{core::ErrorCode::kUnknownName, "surface " + info.name + " looks like \"" +
+                                                              info.look +
+                                                              "\", which is no look; see render/material.h"};
       }
       TROCAR_ASSERT(std::size_t{info.first_node} + info.node_count <= start.positions.size());
       if (info.triangles.empty()) {
@@ -235,7 +237,7 @@ core::Result<LaparoscopeView> LaparoscopeView::Make(const scene::Scene& scene,
     content->AddSurroundings(surfaces, start);
   } else {
     content->AddModel();
-    content->light_scale = kTrainerLight;
+    content->light_scale = looks->trainer_light;
     content->background.push_back(
         {content->renderer.AddSurface(MakeTrainerBox(scene), Material::kSleeve), {}});
   }

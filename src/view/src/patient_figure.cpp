@@ -5,6 +5,9 @@
 #include <numeric>
 
 namespace trocar::view {
+
+using anatomy::OrganRole;
+using anatomy::RegionRole;
 namespace {
 
 using render::SrgbColour;
@@ -12,40 +15,40 @@ using render::SrgbColour;
 constexpr int kTubeSides = 14;
 constexpr SrgbColour kAttachmentColour = {0.95, 0.93, 0.80}, kLandmarkColour = {1.0, 1.0, 1.0};
 
-struct NamedColour {
-  std::string_view name;
-  SrgbColour colour;
-};
-constexpr NamedColour kOrganColours[] = {{"liver", {0.66, 0.36, 0.31}}, {"gallbladder", {0.49, 0.62, 0.38}}};
-constexpr NamedColour kRegionColours[] = {{anatomy::kDiaphragmaticFace, {0.38, 0.57, 0.86}},
-                                          {anatomy::kFalciform, {0.97, 0.74, 0.26}},
-                                          {anatomy::kCoronary, {0.74, 0.47, 0.88}},
-                                          {anatomy::kGallbladderBed, {0.30, 0.80, 0.62}}};
 constexpr SrgbColour kOtherColour = {0.7, 0.7, 0.7};
 
 }  // namespace
 
-SrgbColour OrganColour(std::string_view organ) {
-  for (const NamedColour& each : kOrganColours) {
-    if (each.name == organ) return each.colour;
-  }
-  return kOtherColour;
+SrgbColour OrganColour(OrganRole organ) {
+  if (organ == OrganRole::kLiver) return {0.66, 0.36, 0.31};
+  return organ == OrganRole::kGallbladder ? SrgbColour{0.49, 0.62, 0.38} : kOtherColour;
 }
 
-SrgbColour RegionColour(std::string_view region) {
-  for (const NamedColour& each : kRegionColours) {
-    if (each.name == region) return each.colour;
+SrgbColour RegionColour(RegionRole region) {
+  switch (region) {
+    case RegionRole::kDiaphragmaticFace:
+      return {0.38, 0.57, 0.86};
+    case RegionRole::kFalciform:
+      return {0.97, 0.74, 0.26};
+    case RegionRole::kCoronary:
+      return {0.74, 0.47, 0.88};
+    case RegionRole::kGallbladderBed:
+      return {0.30, 0.80, 0.62};
+    case RegionRole::kHeld:
+    case RegionRole::kOther:
+      break;
   }
   return kOtherColour;
 }
 
 SrgbColour TubeColour(const anatomy::Tube& tube) {
   if (tube.kind == anatomy::TubeKind::kArtery) return {0.88, 0.24, 0.22};
-  return tube.name == "cystic_duct" ? SrgbColour{0.80, 0.86, 0.32} : SrgbColour{0.58, 0.72, 0.26};
+  return tube.role == anatomy::TubeRole::kCysticDuct ? SrgbColour{0.80, 0.86, 0.32}
+                                                     : SrgbColour{0.58, 0.72, 0.26};
 }
 
 std::vector<SrgbColour> CalcOrganColours(const anatomy::Organ& organ, bool has_regions) {
-  std::vector<SrgbColour> colours(organ.mesh.positions.size(), OrganColour(organ.name));
+  std::vector<SrgbColour> colours(organ.mesh.positions.size(), OrganColour(organ.role));
   if (!has_regions) return colours;
   std::vector<std::size_t> order(organ.regions.size());
   std::iota(order.begin(), order.end(), 0u);
@@ -54,7 +57,7 @@ std::vector<SrgbColour> CalcOrganColours(const anatomy::Organ& organ, bool has_r
   });
   for (const std::size_t i : order) {
     for (const auto v : organ.regions[i].vertices) {
-      if (v < colours.size()) colours[v] = RegionColour(organ.regions[i].name);
+      if (v < colours.size()) colours[v] = RegionColour(organ.regions[i].role);
     }
   }
   return colours;
@@ -66,7 +69,7 @@ PatientFigure MakePatientFigure(const anatomy::Patient& patient, const PatientFi
     render::FigureSurface surface{organ.mesh.triangles, organ.mesh.positions,
                                   CalcOrganColours(organ, options.has_regions)};
     surface.has_edges = options.has_edges;
-    if (organ.name == "liver") surface.opacity = options.liver_opacity;
+    if (organ.role == OrganRole::kLiver) surface.opacity = options.liver_opacity;
     surface.is_pickable = surface.opacity > 0;
     figure.surfaces.push_back(std::move(surface));
   }

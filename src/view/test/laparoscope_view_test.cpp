@@ -170,7 +170,7 @@ TEST_F(LaparoscopeViewTest, CameraFollowsTheLaparoscope) {
 }
 
 TEST_F(LaparoscopeViewTest, UnknownMaterialIsNamed) {
-  surfaces_[0].material = "granite";
+  surfaces_[1].look = "granite";
   const auto view = LaparoscopeView::Make(scene_, surfaces_, snapshot_);
   ASSERT_FALSE(view.ok());
   EXPECT_EQ(view.error().code, core::ErrorCode::kUnknownName);

@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "operation/gallbladder_anatomy.h"
 #include "trocar/instrument/state_fields.h"
 #include "trocar/math/state_fields.h"
 #include "trocar/scene/pathology.h"
+#include "trocar/scene/patient_vessels.h"
 
 namespace trocar::simulation {
 
@@ -22,12 +24,17 @@ constexpr double kMainDistance = 0.010;  // fibres nearer to what must stay are 
 constexpr Vec3 kPouch{-0.015, 0.0, -0.025};
 constexpr double kBelowAll = -0.03;  // under the lowest organ: what falls beside everything stops there [m]
 
+training::PatternCutMonitor MakePatternCutMonitor(const scene::ModelSheet& sheet,
+                                                  const geometry::EditableMesh& mesh) {
+  return {{sheet.centre, sheet.half, sheet.circle}, mesh};
+}
+
 }  // namespace
 
 core::Result<std::unique_ptr<Operation>> Operation::Make(const Scene& scene,
                                                          std::shared_ptr<const PatientTissue> tissue) {
   std::unique_ptr<Operation> made(new Operation(scene, tissue->strands));
-  auto stones = StoneWork::Make(scene, tissue->surfaces, tissue->definition.rest);
+  auto stones = MakeGallstones(scene, tissue->surfaces, tissue->definition.rest);
   made->made_ = std::move(tissue);
   if (!stones.ok()) return stones.error();
   made->stones_ = std::move(*stones);
@@ -39,8 +46,8 @@ core::Result<std::unique_ptr<Operation>> Operation::Make(const Scene& scene,
 core::Status Operation::MakeAll() {
   const anatomy::Patient& patient = scene_->patient;
   const PatientTissue& tissue = *made_;
-  liver_ = patient.FindOrgan("liver");
-  gallbladder_ = patient.FindOrgan("gallbladder");
+  liver_ = scene::FindSurface(tissue.surfaces, roles::OrganRole::kLiver);
+  gallbladder_ = scene::FindSurface(tissue.surfaces, roles::OrganRole::kGallbladder);
   const std::size_t organ_count = patient.organs.size();
   organs_.clear();
   for (std::size_t i = 0; i < organ_count; ++i) {
@@ -57,11 +64,12 @@ core::Status Operation::MakeAll() {
   }
   sheets_.clear();
   for (std::size_t i = 0; scene_->model && i < scene_->model->sheets.size(); ++i)
-    sheets_.emplace_back(scene_->model->sheets[i], organs_[i].Mesh());
-  auto vessels = VesselWork::Make(patient, std::span(tissue.surfaces).subspan(organ_count),
-                                  tissue.first_spare.back(), kSpare.tubes);
+    sheets_.push_back(MakePatternCutMonitor(scene_->model->sheets[i], organs_[i].Mesh()));
+  const scene::OperationParameters& parameters = scene_->operation->parameters;
+  auto vessels = scene::MakePatientVessels(patient, parameters.supplies, parameters.fluids);
   if (!vessels.ok()) return vessels.error();
-  vessels_ = std::move(*vessels);
+  biliary_ = std::move(vessels->anatomy);
+  vessels_ = MakeVessels(std::move(vessels->map), patient, tissue, kSpare.tubes, parameters.vessels);
   vessels_->ReserveFor(change_);
   change_.Clear();
 
@@ -70,23 +78,17 @@ core::Status Operation::MakeAll() {
   for (std::size_t t = 0; t < patient.tubes.size(); ++t) {
     const SurfaceInfo& surface = tissue.surfaces[organ_count + t];
     for (std::uint32_t k = 0; k < surface.node_count; ++k) {
-      const VesselPlace place = vessels_->Map().Find(t, vessels_->Map().arcs[t][k]);
-      if (training::MayBeDivided(vessels_->Map().anatomy.roles[place.vessel])) continue;
+      const surgery::VesselPlace place = vessels_->Map().Find(t, vessels_->Map().arcs[t][k]);
+      if (training::MayBeDivided(biliary_.roles[place.vessel])) continue;
       main_nodes_.push_back(surface.first_node + k);
       if (patient.tubes[t].kind == anatomy::TubeKind::kDuct) main_ducts_.push_back(surface.first_node + k);
     }
   }
   tube_ends_.clear();
-  for (std::size_t t = 0; t < patient.tubes.size(); ++t) {
-    const anatomy::Tube& tube = patient.tubes[t];
-    if (tube.from != "gallbladder" && tube.to != "gallbladder") continue;
-    const SurfaceInfo& surface = tissue.surfaces[organ_count + t];
-    const std::uint32_t last = tube.to == "gallbladder" ? surface.node_count - 1 : 0;
-    const double radius = surface.radii[last];
-    TubeEnd end{surface.first_node + last, {}, M_PI * radius * radius};
-    for (std::uint32_t i = 0; i < strands_.size(); ++i) {
-      if (strands_[i].kind == StrandInfo::Kind::kEnd && strands_[i].a == end.node) end.strands.push_back(i);
-    }
+  for (surgery::EnteringTube& tube : FindEnteringTubes(patient, tissue.surfaces, strands_)) {
+    const SurfaceInfo& surface = tissue.surfaces[organ_count + tube.tube];
+    const double radius = surface.radii[tube.nodes.front() - surface.first_node];
+    TubeEnd end{tube.nodes.front(), std::move(tube.end_strands), M_PI * radius * radius};
     if (!end.strands.empty()) tube_ends_.push_back(std::move(end));
   }
   // what lies around ducts that must stay is none of the dissection's business
@@ -99,12 +101,12 @@ core::Status Operation::MakeAll() {
     });
     if (is_near) strand.kind = StrandInfo::Kind::kEnd;
   }
-  heat_ = Electrosurgery(tissue.definition, tissue.heat_mass, strands_);
-  hold_ = GallbladderHold(patient, tissue.surfaces, dissected_);
+  heat_ = surgery::Electrosurgery(tissue.definition, tissue.heat_mass, parameters.heat);
+  attachment_ = MakeAttachment(patient, tissue.surfaces, dissected_);
   assistant_.reset();
   if (scene_->operation->assistant) {
     const AssistantSetup& setup = *scene_->operation->assistant;
-    const Vec3& target = patient.FindLandmark(setup.landmark)->position;
+    const Vec3& target = setup.p_world_target;
     assistant_.emplace(setup, target);
     // the landmark moves with the organ: the nearest vertex at rest carries it
     const SurfaceInfo& surface = tissue.surfaces[static_cast<std::size_t>(std::max(0, gallbladder_))];
@@ -115,7 +117,7 @@ core::Status Operation::MakeAll() {
         assistant_node_ = node;
     }
   }
-  const anatomy::Landmark* neck = patient.FindLandmark("infundibulum");
+  const anatomy::Landmark* neck = patient.LandmarkOf(roles::LandmarkRole::kInfundibulum);
   p_pool_ = (neck != nullptr ? neck->position : Vec3{}) + kPouch;
   fluids_ = {};
   holes_ = {};
@@ -150,13 +152,16 @@ core::Status Operation::MakeAll() {
 
 /// What bleeds where the gallbladder comes off the liver.
 void Operation::MakeOoze() {
-  std::vector<std::uint32_t> on_liver(strands_.size(), BedOoze::kNoNode);
-  for (std::size_t i = 0; i < strands_.size(); ++i) {
-    for (const std::uint32_t node : {strands_[i].a, strands_[i].b}) {
-      if (IsOf(node, liver_)) on_liver[i] = node;
-    }
+  std::vector<surgery::LiverFibre> fibres;
+  for (std::uint32_t i = 0; i < strands_.size(); ++i) {
+    const StrandInfo& strand = strands_[i];
+    const bool is_bed = strand.kind == StrandInfo::Kind::kBed;
+    if (!is_bed && strand.kind != StrandInfo::Kind::kAdhesion) continue;
+    const bool is_b = IsOf(strand.b, liver_);
+    if (is_b || IsOf(strand.a, liver_)) fibres.push_back({i, is_b ? strand.b : strand.a, is_bed});
   }
-  ooze_ = BedOoze(strands_, on_liver, CalcPathology(scene_->patient).bed_bleeding);
+  ooze_ = surgery::BedOoze(fibres, CalcPathology(scene_->patient).bed_bleeding,
+                           scene_->operation->parameters.bed);
 }
 
 void Operation::Emit(const OperationEvent& event) noexcept {
@@ -274,10 +279,9 @@ training::Target Operation::TargetOfSurface(std::int32_t surface) const noexcept
   if (surface < 0) return Target::kNullTarget;
   if (surface == liver_) return Target::kLiver;
   if (surface == gallbladder_) return Target::kGallbladder;
-  const std::string& name = made_->surfaces[static_cast<std::size_t>(surface)].name;
-  if (name.find("cystic_duct") == 0) return Target::kCysticDuct;
-  if (name.find("cystic_artery") == 0) return Target::kCysticArtery;
-  return Target::kBloodVessel;
+  const roles::TubeRole tube = made_->surfaces[static_cast<std::size_t>(surface)].tube;
+  if (tube == roles::TubeRole::kCysticDuct) return Target::kCysticDuct;
+  return tube == roles::TubeRole::kCysticArtery ? Target::kCysticArtery : Target::kBloodVessel;
 }
 
 training::Target Operation::TargetOf(const TissueNow& tissue, std::uint32_t part) const noexcept {
@@ -331,7 +335,7 @@ void Operation::Size(OperationSnapshot& snapshot) const {
   snapshot.clips.assign(surgery::VesselActs::kMostClips, {});
   snapshot.band_is_whole.assign(band_starts_.size() - 1, 1);
   snapshot.sheets.assign(sheets_.size(), {});
-  stones_.Size(snapshot);
+  snapshot.stones.assign(stones_.Size(), {});
   snapshot.tube_pieces.assign(vessels_->Tubes().Graph().edges.size() + kSpare.tubes / 2, {});
   std::size_t triangles = 0;
   snapshot.first_triangle.clear();
@@ -360,7 +364,7 @@ void Operation::Publish(const tissue::TissueState& tissue, OperationSnapshot& sn
     snapshot.band_is_whole[band] =
         std::all_of(own.begin(), own.end(), [&](std::uint32_t i) { return tissue.strand_is_intact[i] != 0; });
   }
-  heat_.Publish(snapshot);
+  heat_.Publish(snapshot.blanching, snapshot.charring);
   if (snapshot.topology_version != topology_version_) {
     for (std::size_t i = 0; i < organs_.size(); ++i) {
       const surgery::CuttableOrgan& organ = organs_[i];
@@ -373,9 +377,12 @@ void Operation::Publish(const tissue::TissueState& tissue, OperationSnapshot& sn
     }
     snapshot.topology_version = topology_version_;
   }
-  vessels_->Publish(tissue.position, organs_.size(), snapshot);
-  ooze_.Publish(tissue.position, snapshot);
-  stones_.Publish(snapshot);
+  snapshot.tube_piece_count = vessels_->PublishPieces(organs_.size(), snapshot.tube_pieces);
+  snapshot.clip_count = vessels_->PublishClips(tissue.position, snapshot.clips);
+  snapshot.tube_cut_count = vessels_->PublishCuts(snapshot.tube_cuts);
+  snapshot.leak_count = vessels_->PublishLeaks(tissue.position, snapshot.leaks);
+  snapshot.ooze_count = ooze_.Publish(tissue.position, snapshot.oozes);
+  stones_.Publish(snapshot.stones);
   snapshot.fluids = fluids_;
   snapshot.p_world_pool = p_pool_;
   snapshot.smoke = smoke_;
@@ -392,7 +399,7 @@ void Operation::Publish(const tissue::TissueState& tissue, OperationSnapshot& sn
 
 void Operation::AddTo(OperationResult& result) const {
   surgery::FlowNetwork network = vessels_->Map().network;
-  result.injuries = training::JudgeInjuries(vessels_->Map().anatomy, vessels_->Acts(), network);
+  result.injuries = training::JudgeInjuries(biliary_, vessels_->Acts(), network);
   result.fluids = fluids_;
   result.bed_blood = ooze_.Lost();
   result.stones = stones_.Count();
@@ -400,6 +407,60 @@ void Operation::AddTo(OperationResult& result) const {
   result.is_gallbladder_free = is_gallbladder_free_;
   result.is_in_bag = is_in_bag_;
   result.is_completed = is_completed_;
+}
+
+// --- what a judge sees
+
+training::OperationJudge Operation::MakeJudge() const {
+  const PatientTissue& tissue = *made_;
+  return {training::DissectionMonitor(
+              MakeDissectedAnatomy(scene_->patient, tissue.surfaces, dissected_, tissue.definition.rest),
+              tissue.definition.rest),
+          gallbladder_ >= 0};
+}
+
+training::OperationObservation Operation::Observe(const HandsNow& hands, const TissueNow& tissue,
+                                                  const Camera& camera) const noexcept {
+  training::OperationObservation now{hands.time,
+                                     hands.seconds,
+                                     acts_,
+                                     {},
+                                     *tissue.state,
+                                     *vessels_,
+                                     tissue.organs,
+                                     camera,
+                                     {is_gallbladder_free_, is_in_bag_, is_completed_},
+                                     fluids_.fluids[static_cast<std::size_t>(surgery::Fluid::kBlood)].left,
+                                     stones_.Count().spilled,
+                                     p_pool_};
+  for (std::size_t hand = 0; hand < now.hands.size(); ++hand) {
+    training::ObservedHand& seen = now.hands[hand];
+    const surgery::Grasp& grasp = (*hands.grasps)[hand];
+    seen.p_world_tip = hands.X_proxy[hand].translation;
+    seen.depth = hands.joints[hand].depth;
+    seen.is_retracting = grasp.IsHolding() && Tool(static_cast<int>(hand)).kind != instrument::ToolKind::kBag;
+    seen.is_holding_liver = grasp.surface == liver_;
+    if (seen.is_retracting) seen.held = TargetOfSurface(grasp.surface);
+    seen.change = hands.changes[hand];
+  }
+  return now;
+}
+
+void Publish(const training::OperationJudge& judge, OperationSnapshot& snapshot) noexcept {
+  const training::DissectionFacts& facts = judge.Facts();
+  snapshot.facts = {facts.cleared_share, facts.detached_share, facts.structures_entering};
+  snapshot.critical_view = judge.View();
+  snapshot.phase = judge.CurrentPhase();
+  snapshot.errors = judge.Errors().Count();
+  snapshot.critical_errors = judge.Errors().Count(training::Severity::kCritical);
+}
+
+void AddTo(const training::OperationJudge& judge, OperationResult& result) {
+  result.errors = judge.Errors();
+  result.facts = judge.Facts();
+  result.critical_view = judge.View();
+  result.was_critical_view_achieved = judge.WasViewAchieved();
+  result.phase = judge.CurrentPhase();
 }
 
 // --- state
@@ -417,7 +478,7 @@ void Operation::HandState::VisitState(core::StateArchive& archive) {
   archive.Field("idle_seconds", idle_seconds);
   archive.Field("was_refused", was_refused);
   archive.Field("was_open", was_open);
-  archive.Field("was_told_outside", was_told_outside);
+  archive.Field("was_outside_emitted", was_outside_emitted);
   archive.Field("exchange_seconds", exchange_seconds);
 }
 

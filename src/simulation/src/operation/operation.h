@@ -10,24 +10,32 @@
 #include <vector>
 
 #include "operation/assistant.h"
-#include "operation/bed_ooze.h"
-#include "operation/camera.h"
-#include "operation/electrosurgery.h"
-#include "operation/emitted_acts.h"
-#include "operation/gallbladder_hold.h"
-#include "operation/sheet_monitor.h"
-#include "operation/stone_work.h"
-#include "operation/vessel_work.h"
+#include "trocar/instrument/camera.h"
 #include "trocar/scene/patient_tissue.h"
+#include "trocar/simulation/operation_result.h"
+#include "trocar/simulation/simulation.h"
+#include "trocar/surgery/bed_ooze.h"
 #include "trocar/surgery/cuttable_organ.h"
+#include "trocar/surgery/electrosurgery.h"
+#include "trocar/surgery/gallbladder_attachment.h"
+#include "trocar/surgery/gallstone_spill.h"
+#include "trocar/surgery/vessels.h"
+#include "trocar/training/operation_judge.h"
+#include "trocar/training/pattern_cut_monitor.h"
 
 namespace trocar::simulation {
 
+using instrument::Camera;
 using scene::EventKind;
 using scene::HandControls;
 using scene::PatientTissue;
+using scene::Scene;
 using scene::SpareNodes;
+using scene::StrandInfo;
+using scene::SurfaceInfo;
 using surgery::WallHoles;
+using training::EmittedAct;
+using training::EmittedActs;
 
 /// What a tick knows of the hands.
 struct HandsNow {
@@ -117,23 +125,15 @@ class Operation {
   /// What lies loose falls, is pushed and carried.
   void MoveLoose(const HandsNow& hands, const TissueNow& tissue) noexcept;
 
-  /// What was done in this tick, for the judge.
-  const EmittedActs& Acts() const { return acts_; }
+  /// What a judge sees of this tick, which has to outlive it.
+  /// \param camera  through which the trainee looks
+  training::OperationObservation Observe(const HandsNow& hands, const TissueNow& tissue,
+                                         const Camera& camera) const noexcept;
   /// What happened in this tick.
   std::span<const OperationEvent> Events() const { return std::span(events_).first(event_count_); }
 
-  std::int32_t Liver() const { return liver_; }
-  std::int32_t Gallbladder() const { return gallbladder_; }
-  const VesselWork& Vessels() const { return *vessels_; }
-  const StoneWork& Stones() const { return stones_; }
-  const surgery::FluidLedger& Fluids() const { return fluids_; }
-  const Vec3& Pool() const { return p_pool_; }
-  bool IsGallbladderFree() const { return is_gallbladder_free_; }
-  bool IsInBag() const { return is_in_bag_; }
-  bool IsCompleted() const { return is_completed_; }
-  training::Target TargetOfSurface(std::int32_t surface) const noexcept;
-  /// (strands) as dissection counts them: what lies around ducts that must stay is none of its business.
-  std::span<const StrandInfo> DissectedStrands() const { return dissected_; }
+  /// A judge who knows this operation's anatomy.
+  training::OperationJudge MakeJudge() const;
 
   const surgery::CuttableOrgan& Organ(std::size_t i) const { return organs_[i]; }
   /// Ducts and vessels as they are now, for contacts.
@@ -153,16 +153,16 @@ class Operation {
  private:
   struct HandState {
     surgery::BladeState blade, spread_upper, spread_lower;
-    std::vector<geometry::CutFront> fronts;    // (organs)
-    bool has_clip_open = false;                // the applier has been opened since its last clip
-    double opened = 0;                         // the applier's jaws, at the most [rad]
-    std::optional<VesselWork::Caught> caught;  // between them then
+    std::vector<geometry::CutFront> fronts;          // (organs)
+    bool has_clip_open = false;                      // the applier has been opened since its last clip
+    double opened = 0;                               // the applier's jaws, at the most [rad]
+    std::optional<surgery::Vessels::Caught> caught;  // between them then
     int clips = 0;
     bool has_current = false;
     double idle_seconds = 0;  // pedal down, nothing touched
     bool was_refused = false;
     bool was_open = false;  // jaws, since they closed last
-    bool was_told_outside = false;
+    bool was_outside_emitted = false;
     double exchange_seconds = 0;
     void VisitState(core::StateArchive& archive);
   };
@@ -190,8 +190,13 @@ class Operation {
   void EmitRetrieved(int hand, int count) noexcept;
   void RefuseImpossible(int hand, const HandsNow& hands) noexcept;
   training::Target TargetOf(const TissueNow& tissue, std::uint32_t part) const noexcept;
+  training::Target TargetOfSurface(std::int32_t surface) const noexcept;
   bool IsOf(std::uint32_t node, std::int32_t organ) const noexcept;
   void Emit(const OperationEvent& event) noexcept;
+  const scene::ElectrodeParameters& Electrode() const noexcept {
+    return scene_->operation->parameters.electrode;
+  }
+  const scene::SuctionParameters& Suction() const noexcept { return scene_->operation->parameters.suction; }
 
   const Scene* scene_;  // outlives this
   std::vector<StrandInfo> strands_;
@@ -211,18 +216,19 @@ class Operation {
   Vec3 p_pool_;
 
   std::vector<surgery::CuttableOrgan> organs_;
-  std::vector<SheetMonitor> sheets_;  // (ModelSetup::sheets), which are the organs
-  std::optional<VesselWork> vessels_;
-  Electrosurgery heat_;
-  GallbladderHold hold_;
+  std::vector<training::PatternCutMonitor> sheets_;  // (ModelSetup::sheets), which are the organs
+  std::optional<surgery::Vessels> vessels_;
+  training::BiliaryAnatomy biliary_;  // of the vessels; constant
+  surgery::Electrosurgery heat_;
+  surgery::GallbladderAttachment attachment_;
   EmittedActs acts_;
   std::optional<Assistant> assistant_;
   std::uint32_t assistant_node_ = 0;  // of what it takes
   surgery::TopologyChange change_;
   surgery::FluidLedger fluids_;
   WallHoles holes_;  // of the gallbladder
-  StoneWork stones_;
-  BedOoze ooze_;
+  surgery::GallstoneSpill stones_;
+  surgery::BedOoze ooze_;
   std::vector<surgery::LooseStone*> loose_clips_;  // scratch
   double deepest_ = 0;                             // z below which nothing falls [m]
 
@@ -237,5 +243,9 @@ class Operation {
   std::size_t event_count_ = 0;
   std::vector<std::uint32_t> band_strands_, band_starts_;  // (bands) the strands of each, by band_starts_
 };
+
+/// Adds what a judge knows.
+void Publish(const training::OperationJudge& judge, OperationSnapshot& snapshot) noexcept;
+void AddTo(const training::OperationJudge& judge, OperationResult& result);
 
 }  // namespace trocar::simulation

@@ -13,26 +13,11 @@ using training::InstrumentKind;
 using training::OperationError;
 using training::Verb;
 
-// Electrosurgery; domain facts, section 1.3: 20 to 40 W
-constexpr double kCutPower = 35.0, kCoagulatePower = 25.0;      // [W]
-constexpr double kCutReach = 0.0008, kCoagulateReach = 0.0012;  // of the current beside the metal [m]
 constexpr double kIdleSeconds = 0.25;  // of current into nothing that no eye would note
 constexpr double kNearDuct = 0.005;    // domain facts, section 1.4 [m]
-constexpr double kSealReach = 0.003;   // [m]
-constexpr double kSealHeat = 15.0;     // that shuts the end of a small vessel [J]
-constexpr double kBurntHole = 1e-6;    // left by a node that was burnt through [m^2]
-/// Rim of that hole [m]: a slit as long as the hook's toe (domain facts, section 1.3). Its lips lie on each other, so that bile
-/// finds the smaller area and a stone the whole rim.
-constexpr double kBurntRim = 2 * 0.0045;
-constexpr double kSmokeByHeat = 0.0012;  // [1/J]
 
 // Clip applier: closed and open again, as shares of its opening
 constexpr double kClipClosed = 0.12, kClipOpen = 0.6;
-
-// Suction-irrigator: general knowledge, tunables
-constexpr double kRinseRate = 20e-6, kAspirateRate = 40e-6;  // [m^3/s]
-constexpr double kSuctionReach = 0.012;                      // of the tip beyond the pool's edge [m]
-constexpr double kSmokeSucked = 1.5;                         // share of the smoke a second [1/s]
 
 constexpr double kOutOfTrocar = 0.035;  // a tool that is less deep has its tip in the trocar [m]
 
@@ -67,15 +52,15 @@ void Operation::CutWith(const surgery::BladeMove& move, int hand, const HandsNow
                         const TissueNow& tissue, OperatedTissue& operated, bool cuts_strands) noexcept {
   const InstrumentKind kind = cuts_strands ? InstrumentKind::kScissors : InstrumentKind::kHook;
   if (cuts_strands) CutStrands(move, hand, kind, tissue, operated);
-  std::array<TubePlace, surgery::CuttableTubes::kMostCuts> places;
+  std::array<surgery::TubePlace, surgery::CuttableTubes::kMostCuts> places;
   const std::size_t tubes = vessels_->Cut(move, *tissue.definition, tissue.state->position, change_, places);
-  for (const TubePlace& place : std::span(places).first(tubes)) {
+  for (const surgery::TubePlace& place : std::span(places).first(tubes)) {
     const auto surface = static_cast<std::int32_t>(organs_.size() + place.tube);
     EmittedAct act;
     act.kind = EmittedAct::Kind::kCut;
     act.position = hands.X_proxy[static_cast<std::size_t>(hand)].translation;
     act.hand = hand;
-    act.vessel = vessels_->JudgePlace(place);
+    act.vessel = training::JudgePlace(biliary_, *vessels_, place);
     acts_.Add(act);
     Emit({EventKind::kTubeCut, hand, surface, vessels_->RestPoint(place)});
     acts_.Add({kind, Verb::kCut, TargetOfSurface(surface)}, hand);
@@ -115,7 +100,8 @@ void Operation::CutOrgans(const surgery::BladeMove& move, int hand, InstrumentKi
     for (std::size_t k = 0; k < found; ++k) area += openings[k].area;
     if (found == 0) continue;
     acts_.Report(OperationError::kGallbladderPerforated, tip, hand);
-    tissue.conservation->Perforate(i, std::max(kBurntHole, area - open_area_), operated.conserved);
+    tissue.conservation->Perforate(i, std::max(Electrode().burnt_hole, area - open_area_),
+                                   operated.conserved);
     open_area_ = std::max(area, open_area_);
   }
 }
@@ -160,18 +146,19 @@ void Operation::UseElectrode(int hand, const HandsNow& hands, const TissueNow& t
   }
   const instrument::Tool& tool = Tool(hand);
   const Pose& X = hands.X_proxy[h];
-  Electrosurgery::Electrode electrode;
+  surgery::Electrosurgery::Electrode electrode;
   if (tool.kind == instrument::ToolKind::kHook) {
     const surgery::BladeSettings blade;
     electrode.bare = {X * blade.p_tool_hook.a, X * blade.p_tool_hook.b};
   } else {
     electrode.bare = {X.translation, X * Vec3{0, 0, 0.25 * tool.jaw_length}};
   }
-  electrode.power = controls.cut ? kCutPower : kCoagulatePower;
-  electrode.reach = controls.cut ? kCutReach : kCoagulateReach;
-  if (!IsInView(hands.camera.X_world_camera, hands.camera.field_of_view, X.translation))
+  const scene::CurrentParameters& current = controls.cut ? Electrode().cut : Electrode().coagulate;
+  electrode.power = current.power;
+  electrode.reach = current.reach;
+  if (!instrument::IsInView(hands.camera.X_world_camera, hands.camera.field_of_view, X.translation))
     acts_.Report(OperationError::kEnergyOutOfView, X.translation, hand);
-  std::array<Electrosurgery::Target, 96> targets;
+  std::array<surgery::Electrosurgery::Target, 96> targets;
   const std::size_t count =
       heat_.FindTargets(electrode, tissue.organs, *tissue.tubes, *tissue.state, targets);
   double& idle = hands_[h].idle_seconds;
@@ -184,8 +171,8 @@ void Operation::UseElectrode(int hand, const HandsNow& hands, const TissueNow& t
   hands_[h].has_current = true;
   heat_.AddPower(electrode, std::span(targets).first(count));
   if (controls.coagulate)
-    vessels_->Seal(X.translation, kSealReach, electrode.power * hands.seconds / kSealHeat,
-                   tissue.state->position);
+    vessels_->Seal(X.translation, Electrode().seal_reach,
+                   electrode.power * hands.seconds / Electrode().seal_heat, tissue.state->position);
   const InstrumentKind kind =
       tool.kind == instrument::ToolKind::kHook ? InstrumentKind::kHook : InstrumentKind::kBipolar;
   for (std::size_t i = 0; i < count; ++i) {
@@ -201,26 +188,27 @@ void Operation::UseElectrode(int hand, const HandsNow& hands, const TissueNow& t
 void Operation::Heat(const HandsNow& hands, const TissueNow& tissue, OperatedTissue& operated) noexcept {
   std::array<std::uint32_t, 16> parted;
   const std::size_t count = heat_.Step(hands.seconds, operated.state, parted);
-  smoke_ += kSmokeByHeat * heat_.Power() * hands.seconds;
+  smoke_ += Electrode().smoke_by_heat * heat_.Power() * hands.seconds;
   std::int32_t hand = -1;
   for (int i = 0; i < kHandCount; ++i) {
     if (hands_[static_cast<std::size_t>(i)].has_current) hand = i;
   }
   for (const std::uint32_t node : std::span(parted).first(count)) {
     const Vec3& p = tissue.state->position[node];
-    TubePlace place;
+    surgery::TubePlace place;
     if (IsOf(node, gallbladder_)) {
-      tissue.conservation->Perforate(static_cast<std::size_t>(gallbladder_), kBurntHole, operated.conserved);
-      holes_.Add(node, kBurntRim);
+      tissue.conservation->Perforate(static_cast<std::size_t>(gallbladder_), Electrode().burnt_hole,
+                                     operated.conserved);
+      holes_.Add(node, Electrode().burnt_rim);
       acts_.Report(OperationError::kGallbladderPerforated, p, hand);
     } else if (IsOf(node, liver_)) {
       acts_.Report(OperationError::kLiverBurnt, p, hand);
-    } else if (vessels_->MakeHole(node, kBurntHole, place)) {
+    } else if (vessels_->MakeHole(node, Electrode().burnt_hole, place)) {
       EmittedAct act;
       act.kind = EmittedAct::Kind::kHole;
       act.position = p;
       act.hand = hand;
-      act.vessel = vessels_->JudgePlace(place);
+      act.vessel = training::JudgePlace(biliary_, *vessels_, place);
       acts_.Add(act);
     }
   }
@@ -235,12 +223,12 @@ void Operation::OpenTubeEnds(const TissueNow& tissue) noexcept {
                                   [&](std::uint32_t i) { return tissue.state->strand_is_intact[i] != 0; }))
       continue;
     end.is_off = true;
-    TubePlace place;
+    surgery::TubePlace place;
     if (!vessels_->MakeHole(end.node, end.section, place)) continue;
     EmittedAct act;
     act.kind = EmittedAct::Kind::kHole;
     act.position = tissue.state->position[end.node];
-    act.vessel = vessels_->JudgePlace(place);
+    act.vessel = training::JudgePlace(biliary_, *vessels_, place);
     // of what is divided already only the gallbladder's side is left
     if (act.vessel.cuts == 0) acts_.Add(act);
   }
@@ -262,7 +250,8 @@ void Operation::UseClips(int hand, const HandsNow& hands, const TissueNow& tissu
   if (!state.has_clip_open || jaw > kClipClosed * tool.max_jaw) return;
   state.has_clip_open = false;
   --state.clips;
-  const ClipResult clip = vessels_->Clip(tool, hands.X_proxy[h], state.caught, tissue.state->position);
+  const surgery::ClipResult clip =
+      vessels_->Clip(tool, hands.X_proxy[h], state.caught, tissue.state->position);
   state.caught.reset();
   state.opened = 0;
   EmittedAct act;
@@ -270,9 +259,10 @@ void Operation::UseClips(int hand, const HandsNow& hands, const TissueNow& tissu
   act.position = hands.X_proxy[h].translation;
   act.hand = hand;
   act.clip = clip;
-  if (clip.kind != ClipResult::Kind::kLost) act.vessel = vessels_->JudgePlace(clip.place);
+  if (clip.kind != surgery::ClipResult::Kind::kLost)
+    act.vessel = training::JudgePlace(biliary_, *vessels_, clip.place);
   acts_.Add(act);
-  if (clip.kind == ClipResult::Kind::kLost) return;
+  if (clip.kind == surgery::ClipResult::Kind::kLost) return;
   const auto surface = static_cast<std::int32_t>(organs_.size() + clip.place.tube);
   acts_.Add({InstrumentKind::kClipper, Verb::kClip, TargetOfSurface(surface)}, hand);
   Emit({EventKind::kClipClosed, hand, surface, vessels_->RestPoint(clip.place)});
@@ -293,8 +283,8 @@ void Operation::RefuseImpossible(int hand, const HandsNow& hands) noexcept {
   const bool is_used =
       has_bitten || controls.cut || controls.coagulate || controls.rinse || controls.aspirate;
   const bool is_outside = hands.joints[h].depth < kOutOfTrocar;
-  if (is_used && is_outside && !state.was_told_outside) Emit({EventKind::kUsedOutside, hand, -1, {}});
-  state.was_told_outside = is_outside && (is_used || state.was_told_outside);
+  if (is_used && is_outside && !state.was_outside_emitted) Emit({EventKind::kUsedOutside, hand, -1, {}});
+  state.was_outside_emitted = is_outside && (is_used || state.was_outside_emitted);
   if (has_bitten && !is_outside && tool.kind == instrument::ToolKind::kClipApplier && state.clips == 0 &&
       !state.has_clip_open)
     Emit({EventKind::kNoClipsLeft, hand, -1, {}});
@@ -304,17 +294,17 @@ void Operation::UseFluids(int hand, const HandsNow& hands) noexcept {
   const auto h = static_cast<std::size_t>(hand);
   const HandControls& controls = hands.input->controls[h];
   if (controls.rinse) {
-    fluids_.Rinse(kRinseRate * hands.seconds);
+    fluids_.Rinse(Suction().rinse_rate * hands.seconds);
     acts_.Add({InstrumentKind::kIrrigator, Verb::kIrrigate, training::Target::kFluid}, hand);
   }
   if (!controls.aspirate) return;
-  smoke_ *= std::max(0.0, 1.0 - kSmokeSucked * hands.seconds);
+  smoke_ *= std::max(0.0, 1.0 - Suction().smoke_rate * hands.seconds);
   EmitRetrieved(hand, stones_.Aspirate(hands.X_proxy[h].translation,
                                        2.0 * instrument::kSuctionBore * Tool(hand).shaft_radius));
   // the pool as a half sphere
   const double radius = std::cbrt(fluids_.Pooled() * 3.0 / (2.0 * M_PI));
-  if (math::Distance(hands.X_proxy[h].translation, p_pool_) > radius + kSuctionReach) return;
-  if (fluids_.Aspirate(kAspirateRate * hands.seconds) > 0.0)
+  if (math::Distance(hands.X_proxy[h].translation, p_pool_) > radius + Suction().pool_reach) return;
+  if (fluids_.Aspirate(Suction().aspirate_rate * hands.seconds) > 0.0)
     acts_.Add({InstrumentKind::kIrrigator, Verb::kAspirate, training::Target::kFluid}, hand);
 }
 

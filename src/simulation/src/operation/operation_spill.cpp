@@ -11,7 +11,6 @@ namespace {
 using training::OperationError;
 
 constexpr double kTornHole = 1e-6;     // of the wall that a torn spring leaves open at each end [m^2]
-constexpr double kSmokeFades = 0.08;   // share of the smoke a second that leaves with the gas [1/s]
 constexpr double kPushLength = 0.060;  // of a shaft that pushes stones aside [m]
 
 }  // namespace
@@ -31,8 +30,8 @@ void Operation::Flow(const HandsNow& hands, const TissueNow& tissue, OperatedTis
   fluids_.Leak(surgery::Fluid::kBlood,
                ooze_.Update(*tissue.state, heat_, made_->definition.rest.size(), hands.seconds));
   if (has_gallbladder) leaked_seen_ = leaked();
-  smoke_ = std::clamp(smoke_ * (1.0 - kSmokeFades * hands.seconds), 0.0, 1.0);
-  is_gallbladder_free_ = hold_.IsFree(*tissue.state, *vessels_);
+  smoke_ = std::clamp(smoke_ * (1.0 - Suction().smoke_fade * hands.seconds), 0.0, 1.0);
+  is_gallbladder_free_ = attachment_.IsFree(*tissue.state, *vessels_);
 }
 
 void Operation::SpillStones(double leaked, const TissueNow& tissue) noexcept {
@@ -45,7 +44,7 @@ void Operation::SpillStones(double leaked, const TissueNow& tissue) noexcept {
   }
   if (!(leaked > 0.0) || is_in_bag_ || !stones_.HasInside()) return;
   const auto organ = static_cast<std::size_t>(gallbladder_);
-  const WallHole hole =
+  const surgery::WallHole hole =
       holes_.FindLargest(tissue.organs[organ], tissue.state->position, organs_[organ].Mesh());
   if (!(hole.rim > 0.0)) return;
   const int spilled = stones_.Spill(leaked, leaked + tissue.conserved->organs[organ].target, hole);
@@ -79,12 +78,12 @@ void Operation::MoveLoose(const HandsNow& hands, const TissueNow& tissue) noexce
 }
 
 void Operation::SlipClips(const HandsNow& hands, const TissueNow& tissue) noexcept {
-  std::array<ClipPull, kHandCount> pulls;
+  std::array<surgery::ClipPull, kHandCount> pulls;
   for (std::size_t hand = 0; hand < pulls.size(); ++hand)
     pulls[hand] = {(*hands.grasps)[hand].Nodes(), -hands.forces[hand]};
-  std::array<SlippedClip, 4> slipped;
+  std::array<surgery::SlippedClip, 4> slipped;
   const std::size_t count = vessels_->Slip(hands.seconds, pulls, tissue.state->position, slipped);
-  for (const SlippedClip& clip : std::span(slipped).first(count)) {
+  for (const surgery::SlippedClip& clip : std::span(slipped).first(count)) {
     acts_.Report(OperationError::kClipSlipped, clip.position, -1);
     Emit({EventKind::kClipSlipped, -1, static_cast<std::int32_t>(organs_.size() + clip.place.tube),
           vessels_->RestPoint(clip.place)});

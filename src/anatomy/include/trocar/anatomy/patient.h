@@ -2,8 +2,10 @@
 /// \file patient.h  A patient: organs, named regions, bed attachments, ducts and vessels, landmarks.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -12,15 +14,24 @@
 #include "trocar/core/result.h"
 #include "trocar/geometry/triangle_mesh.h"
 #include "trocar/geometry/tube.h"
+#include "trocar/roles/roles.h"
 
 namespace trocar::anatomy {
 
 using math::Vec3;
+using roles::LandmarkRole;
+using roles::OrganRole;
+using roles::RegionRole;
+using roles::TubeRole;
+
+/// Names are for files and persons; programs ask for roles. A file may state a role; otherwise it is that of a
+/// conventional name.
 
 /// Vertices of one organ that share a role, for example "diaphragmatic_face".
 struct Region {
   std::string name;
   std::vector<std::uint32_t> vertices;  ///< ascending
+  RegionRole role = roles::ConventionalRole<RegionRole>(name);
 
   friend bool operator==(const Region&, const Region&) = default;
 };
@@ -30,6 +41,10 @@ struct Organ {
   std::string name;             ///< "liver", "gallbladder"
   geometry::TriangleMesh mesh;  ///< closed, manifold, outward; world frame [m]
   std::vector<Region> regions;
+  OrganRole role = roles::ConventionalRole<OrganRole>(name);
+
+  /// The region of that role, or null.
+  const Region* RegionOf(RegionRole wanted) const;
 };
 
 /// Connective tissue between a vertex of one organ and a vertex of another; it can be dissected.
@@ -42,6 +57,16 @@ struct Attachment {
 };
 
 enum class TubeKind { kDuct, kArtery };
+/// "duct", "artery"
+constexpr const char* KindName(TubeKind kind) noexcept {
+  return roles::NameOf(kind == TubeKind::kArtery ? roles::TissueRole::kArtery : roles::TissueRole::kDuct);
+}
+constexpr std::optional<TubeKind> FindKind(std::string_view name) noexcept {
+  for (const TubeKind kind : {TubeKind::kDuct, TubeKind::kArtery}) {
+    if (name == KindName(kind)) return kind;
+  }
+  return std::nullopt;
+}
 
 /// Duct or vessel. `from` and `to` name an organ, another tube, or nothing where it leaves the scene.
 struct Tube {
@@ -50,6 +75,7 @@ struct Tube {
   std::string from, to;
   geometry::CentreLine line;  ///< world frame [m]
   bool is_seen = true;        ///< false: placed by landmarks because the images do not show it
+  TubeRole role = roles::ConventionalRole<TubeRole>(name);
 
   friend bool operator==(const Tube&, const Tube&) = default;
 };
@@ -57,6 +83,7 @@ struct Tube {
 struct Landmark {
   std::string name;  ///< "umbilicus", "fundus", "infundibulum"
   Vec3 position;     ///< world frame [m]
+  LandmarkRole role = roles::ConventionalRole<LandmarkRole>(name);
 
   friend bool operator==(const Landmark&, const Landmark&) = default;
 };
@@ -71,6 +98,19 @@ struct Parameter {
   friend bool operator==(const Parameter&, const Parameter&) = default;
 };
 
+/// The first whose role one before it has, or null. The same name twice is another mistake, and no such one.
+template <class Thing>
+const Thing* FindSecondOfRole(const std::vector<Thing>& things) {
+  for (std::size_t i = 0; i < things.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      if (things[i].role != decltype(Thing::role)::kOther && things[i].role == things[j].role &&
+          things[i].name != things[j].name)
+        return &things[i];
+    }
+  }
+  return nullptr;
+}
+
 /// World frame: metres, x to the patient's left, y cranial, z anterior; origin at the umbilicus on the
 /// insufflated wall.
 struct Patient {
@@ -82,17 +122,35 @@ struct Patient {
   std::vector<Landmark> landmarks;
   std::vector<Parameter> parameters;  ///< none for a patient built from photographs
 
-  /// Index of the organ, or -1.
+  /// Index of the organ of that role, or -1.
+  int OrganOf(OrganRole role) const;
+  /// Index of the first duct or artery of that role, or -1.
+  int TubeOf(TubeRole role) const;
+  /// The role of the organ at that index; kOther beyond the organs, where tubes are.
+  OrganRole RoleOfOrgan(int organ) const;
+  /// The landmark of that role, or null.
+  const Landmark* LandmarkOf(LandmarkRole role) const;
+
+  // what a file or a person names
+
+  /// Index of the organ of that name, or -1.
   int FindOrgan(std::string_view organ_name) const;
+  /// Index of the duct or artery of that name, or -1.
+  int FindTube(std::string_view tube_name) const;
+  /// Index of the organ or tube of that name, tubes after organs, or -1: what a tube's end joins.
+  int FindPart(std::string_view part_name) const;
+  /// The role of the organ of that name; kOther where there is none.
+  OrganRole FindOrganRole(std::string_view organ_name) const { return RoleOfOrgan(FindOrgan(organ_name)); }
+  /// The landmark of that name, else the one whose role is called so; null where there is none.
   const Landmark* FindLandmark(std::string_view landmark_name) const;
   const Parameter* FindParameter(std::string_view parameter_name) const;
 };
 
 /// Names of the paper's four boundary rules (section 3.2.2).
-inline constexpr const char* kDiaphragmaticFace = "diaphragmatic_face";
-inline constexpr const char* kFalciform = "falciform";
-inline constexpr const char* kCoronary = "coronary";
-inline constexpr const char* kGallbladderBed = "gallbladder_bed";
+inline constexpr const char* kDiaphragmaticFace = roles::NameOf(RegionRole::kDiaphragmaticFace);
+inline constexpr const char* kFalciform = roles::NameOf(RegionRole::kFalciform);
+inline constexpr const char* kCoronary = roles::NameOf(RegionRole::kCoronary);
+inline constexpr const char* kGallbladderBed = roles::NameOf(RegionRole::kGallbladderBed);
 
 /// Reads a patient folder: patient.json and one PLY file an organ, in LPS millimetres; converted here, once,
 /// to the world frame.
@@ -112,8 +170,8 @@ core::Result<UncheckedPatient> ReadPatientUnchecked(const std::filesystem::path&
 /// Writes the folder that ReadPatient reads; nothing is left behind when it fails.
 core::Status WritePatient(const std::filesystem::path& folder, const Patient& patient);
 
-/// Closed, manifold, outward organs; regions and attachments in range; tubes finite with positive radii;
-/// names of parameters unique and their numbers finite.
+/// Closed, manifold, outward organs; at most one of each role, and so with landmarks and an organ's regions; regions
+/// and attachments in range; tubes finite with positive radii; names of parameters unique and their numbers finite.
 core::Status CheckPatient(const Patient& patient);
 
 }  // namespace trocar::anatomy

@@ -5,7 +5,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <string_view>
 #include <vector>
 
 #include "trocar/anatomy/patient.h"
@@ -58,8 +57,7 @@ TubeGraph MakeTubeGraph(const Patient& patient);
 
 /// Tubes with an end in the organ, ascending; each once.
 /// \return indices into patient.tubes
-std::vector<std::uint32_t> FindEnteringTubes(const Patient& patient, const TubeGraph& graph,
-                                             std::string_view organ);
+std::vector<std::uint32_t> FindEnteringTubes(const Patient& patient, const TubeGraph& graph, OrganRole organ);
 
 /// Tubes of a kind that can be reached from a tube along tubes of that kind, itself included, ascending.
 std::vector<std::uint32_t> FindConnectedTubes(const Patient& patient, const TubeGraph& graph,

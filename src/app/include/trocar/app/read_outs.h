@@ -26,7 +26,7 @@ struct ForceThresholds {
 inline constexpr double kForceBarEnd = 15.0;
 
 /// Gallbladder: 8 and 12 N (traction, tear). Liver and everything else: 3 and 6 N (push, capsule tear).
-ForceThresholds FindForceThresholds(std::string_view organ) noexcept;
+ForceThresholds FindForceThresholds(roles::OrganRole organ) noexcept;
 /// A force that is not finite is a danger.
 ForceLevel JudgeForce(double force, const ForceThresholds& thresholds) noexcept;
 

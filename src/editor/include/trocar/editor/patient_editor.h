@@ -37,7 +37,7 @@ class PatientEditor {
   const anatomy::Patient& GetPatient() const { return document_.GetPatient(); }
 
   EditorTool tool = EditorTool::kLook;
-  RegionChoice region{"liver", anatomy::kDiaphragmaticFace};
+  RegionChoice region{NameOf(anatomy::OrganRole::kLiver), anatomy::kDiaphragmaticFace};
   bool is_erasing = false;
   double brush_radius = 0.010;  ///< [m], 1 to 40 mm
   double reach = 0.012;         ///< how far along a tube neighbours follow a point that moves [m]

@@ -3,7 +3,9 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <filesystem>
+#include <string_view>
 
 #include "trocar/core/result.h"
 #include "trocar/math/vector.h"
@@ -36,11 +38,37 @@ struct MaterialLook {
   float emission = 0;         ///< light of its own [-]
 };
 
+/// Colours of light and of what lies on tissue, linear.
+enum class Effect {
+  kSmoke,            ///< smoke between lens and tissue
+  kBlanched,         ///< tissue whose proteins have coagulated
+  kScorched,         ///< tissue that has dried
+  kCharred,          ///< tissue that has burnt
+  kBloodFilm,        ///< tissue under a film of blood
+  kBileFilm,         ///< tissue under a film of bile
+  kThinRim,          ///< added at the rim of a thin wall
+  kShade,            ///< what is left of the light in folds and in the shade of tools
+  kBounce,           ///< light that tissue throws back on tissue
+  kTissueHighlight,  ///< of the wet film
+  kMetalHighlight,   ///< of tools
+  kMirroredLens,     ///< what metal mirrors around the lens
+  kMirroredTissue,   ///< what metal mirrors beside it
+  kMirroredWall,     ///< what liquids mirror
+  kStrandShade,      ///< what is left of the light on the far side of strands and drops
+  kCount
+};
+/// "smoke", "blanched", ...
+std::string_view EffectName(Effect effect) noexcept;
+
 struct Looks {
   std::array<MaterialLook, static_cast<std::size_t>(Material::kCount)> materials;
   math::Vec3 light_offset;          ///< of the light beside the lens, camera frame [m]
   double smoke = 0;                 ///< share of the light that is lost on the way where smoke is 1 [1/m]
   std::array<double, 3> pigment{};  ///< how strongly blood, bile and rinse colour a mixture [-]
+  double trainer_light =
+      1;  ///< power of the light in a box trainer, whose walls are darker than tissue and farther [-]
+  /// Linear, 0 to 1.
+  std::array<std::array<double, 3>, static_cast<std::size_t>(Effect::kCount)> effects{};
 
   const MaterialLook& operator[](Material material) const {
     return materials[static_cast<std::size_t>(material)];

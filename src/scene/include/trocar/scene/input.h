@@ -5,14 +5,16 @@
 #include <array>
 #include <cstdint>
 
+#include "trocar/instrument/hand.h"
 #include "trocar/instrument/trocar_kinematics.h"
 #include "trocar/tissue/solver_settings.h"
 
 namespace trocar::scene {
 
-/// Index of a hand in every per-hand array.
-enum Hand { kLeft = 0, kRight = 1 };
-inline constexpr int kHandCount = 2;
+using instrument::Hand;
+using instrument::kHandCount;
+using instrument::kLeft;
+using instrument::kRight;
 
 /// What a hand and its foot do besides moving the tool.
 struct HandControls {
@@ -25,7 +27,7 @@ struct HandControls {
   friend bool operator==(const HandControls&, const HandControls&) = default;
 };
 
-/// What the assistant has been told to do with the third grasper, at the fundus.
+/// What the assistant is commanded to do with the third grasper, at the fundus.
 enum class AssistantCommand : std::uint8_t {
   kWait,     ///< out of the way
   kRetract,  ///< take the fundus and lift it over the liver's edge towards the right shoulder

@@ -34,7 +34,7 @@ struct SpareNodes {
   std::uint32_t tubes = 0;
 };
 
-/// Room that a solver keeps for cuts, as a share of springs and strands [-]: they go on in the same memory.
+/// Capacity that a solver keeps for cuts, as a share of springs and strands [-]: they go on in the same memory.
 inline constexpr double kSpareShareForCuts = 0.5;
 
 /// Nodes: every organ's vertices, then every tube's centre line. Springs: mesh edges by van Gelder, tubes

@@ -15,6 +15,7 @@
 #include "trocar/core/result.h"
 #include "trocar/instrument/tool.h"
 #include "trocar/scene/input.h"
+#include "trocar/scene/operation_parameters.h"
 #include "trocar/scene/scene_object.h"
 #include "trocar/scene/task.h"
 #include "trocar/surgery/gallstones.h"
@@ -58,9 +59,9 @@ struct Script {
 /// The third grasper and who holds it.
 struct AssistantSetup {
   instrument::Tool tool;
-  Vec3 p_world_port;     ///< [m]
-  std::string landmark;  ///< of the patient: what it takes
-  Vec3 lift;             ///< from where it took it, when told to retract [m]
+  Vec3 p_world_port;    ///< [m]
+  Vec3 p_world_target;  ///< a landmark of the patient: what it takes, as it lies at rest [m]
+  Vec3 lift;            ///< from where it took it, when told to retract [m]
 };
 
 /// What makes a scene an operation: tissue to be dissected, and tools that do more than push and hold.
@@ -69,6 +70,7 @@ struct OperationSetup {
   std::optional<AssistantSetup> assistant;
   /// Of a patient whose parameters say nothing of stones.
   surgery::GallstoneSettings gallstones;
+  OperationParameters parameters;
 };
 
 /// A cord between two fixed points, of pieces one after the other: divided when one of them is.
@@ -97,7 +99,7 @@ struct ModelSetup {
 
 /// How stiff one organ is; see tissue/material.h for the formulas.
 struct OrganMaterial {
-  std::string organ;
+  std::string organ;              ///< its name, or what tissue it is: "liver", "gallbladder_bed", "duct"
   double young_modulus = 0;       ///< of the wall or capsule [Pa]
   double wall_thickness = 0;      ///< [m]
   double foundation_modulus = 0;  ///< of what lies behind the surface [Pa]
@@ -110,6 +112,7 @@ struct OrganMaterial {
   tissue::SpringLaw wall_law;    ///< of the wall's edges: how it stiffens and tears
   double internal_pressure = 0;  ///< under which the organ is filled and sealed before the first tick [Pa]
   std::string source;
+  roles::TissueRole tissue = roles::ConventionalRole<roles::TissueRole>(organ);
 };
 
 struct Scene {

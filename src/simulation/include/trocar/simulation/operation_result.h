@@ -3,6 +3,7 @@
 #pragma once
 
 #include "trocar/surgery/flow_network.h"
+#include "trocar/surgery/surgery_snapshot.h"
 #include "trocar/training/critical_view.h"
 #include "trocar/training/injury.h"
 #include "trocar/training/operation_error.h"
@@ -10,15 +11,7 @@
 
 namespace trocar::simulation {
 
-/// What has become of the patient's gallstones.
-struct StoneCount {
-  int all = 0;
-  int inside = 0;   ///< of the gallbladder
-  int spilled = 0;  ///< in the abdomen, those between jaws among them
-  int in_bag = 0;   ///< of its own, beside the gallbladder
-  int aspirated = 0;
-  int taken_out = 0;  ///< through a trocar
-};
+using surgery::StoneCount;
 
 struct OperationResult {
   training::ErrorLog errors;

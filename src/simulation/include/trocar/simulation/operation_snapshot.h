@@ -11,72 +11,20 @@
 #include "trocar/scene/input.h"
 #include "trocar/scene/tissue_layout.h"
 #include "trocar/surgery/flow_network.h"
+#include "trocar/surgery/surgery_snapshot.h"
 #include "trocar/training/critical_view.h"
+#include "trocar/training/pattern_cut_monitor.h"
 #include "trocar/training/triplet.h"
 
 namespace trocar::simulation {
 
 using scene::kHandCount;
-
-/// A clip, open or closed. Frame: origin in its middle, +x along its legs towards their tips, +z along what it closes.
-struct ClipSnapshot {
-  math::Pose X_world_clip;
-  double gap = 0;           ///< between its legs [m]
-  bool is_lost = false;     ///< lies in the abdomen
-  bool is_crossed = false;  ///< lies over another clip
-  double closure = 0;       ///< share of the vessel that it holds, 0 to 1 [-]
-  math::Vec3 p_rest;  ///< where on its vessel, as that was at rest, world frame [m]; of a lost clip nothing
-
-  /// Closed around the whole of a vessel, and over no other.
-  bool IsGood() const { return !is_lost && !is_crossed && closure > 0.999; }
-};
-
-/// What runs out of a cut or a hole.
-struct LeakSnapshot {
-  math::Vec3 position;   ///< world frame [m]
-  math::Vec3 direction;  ///< unit, out of the opening
-  surgery::Fluid fluid = surgery::Fluid::kBlood;
-  double rate = 0;  ///< [m^3/s]
-};
-
-/// A piece of a duct or vessel between two of its nodes; pieces that end alone are stumps.
-struct TubePiece {
-  std::uint32_t a = 0, b = 0;         ///< rows of Snapshot::positions
-  double radius_a = 0, radius_b = 0;  ///< [m]
-  std::uint32_t surface = 0;          ///< index in Simulation::Surfaces()
-};
-
-/// Where a gallstone is.
-enum class StonePlace : std::uint8_t {
-  kInside,   ///< of the gallbladder
-  kSpilled,  ///< in the abdomen
-  kHeld,     ///< between the jaws of `hand`
-  kInBag,    ///< of its own; what is in the gallbladder goes with that
-  kAspirated,
-  kTakenOut  ///< through a trocar
-};
-
-struct StoneSnapshot {
-  math::Vec3 position;  ///< of its centre, world frame [m]; of a spilled or held one
-  double radius = 0;    ///< [m]
-  StonePlace place = StonePlace::kInside;
-  std::int32_t hand = -1;  ///< that holds it
-};
-
-/// Where liver bleeds from what was torn off it without heat.
-struct OozeSnapshot {
-  math::Vec3 position;  ///< world frame [m]
-  double rate = 0;      ///< [m^3/s]
-};
-
-/// How a sheet is cut along the circle that is drawn on it. Places and lengths are those of the sheet at rest.
-struct SheetSnapshot {
-  double cut_length = 0;  ///< [m]
-  double farthest = 0;    ///< of a cut from the line: inside of it, or round the piece that came free [m]
-  double off_area = 0;    ///< between the line and the rim of that piece [m^2]
-  bool is_free = false;   ///< what the line encloses hangs on the border no more
-  math::Vec3 p_farthest;  ///< world frame [m]
-};
+using surgery::ClipSnapshot;
+using surgery::LeakSnapshot;
+using surgery::OozeSnapshot;
+using surgery::StonePlace;
+using surgery::StoneSnapshot;
+using surgery::TubePiece;
 
 /// Fixed sizes while a scene runs, so that copying allocates nothing.
 struct OperationSnapshot {
@@ -98,8 +46,8 @@ struct OperationSnapshot {
   std::size_t clip_count = 0;
   std::array<math::Vec3, 32> tube_cuts{};  ///< the first tube_cut_count count: where at rest, world frame [m]
   std::size_t tube_cut_count = 0;
-  std::vector<std::uint8_t> band_is_whole;  ///< (ModelSetup::bands)
-  std::vector<SheetSnapshot> sheets;        ///< (ModelSetup::sheets)
+  std::vector<std::uint8_t> band_is_whole;   ///< (ModelSetup::bands)
+  std::vector<training::PatternCut> sheets;  ///< (ModelSetup::sheets)
   std::array<LeakSnapshot, 32> leaks{};
   std::size_t leak_count = 0;
   std::array<OozeSnapshot, 32> oozes{};  ///< the first ooze_count count: those that bleed most

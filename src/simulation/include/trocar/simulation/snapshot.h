@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "trocar/core/state_archive.h"
+#include "trocar/instrument/camera.h"
 #include "trocar/math/pose.h"
 #include "trocar/scene/event.h"
 #include "trocar/scene/input.h"
@@ -17,6 +18,7 @@
 
 namespace trocar::simulation {
 
+using instrument::IsInView;
 using scene::Event;
 using scene::ObjectSnapshot;
 using scene::TaskSnapshot;
@@ -74,7 +76,7 @@ enum class Stage {
 std::string_view StageName(Stage stage) noexcept;
 inline constexpr int kStageCount = static_cast<int>(Stage::kCount);
 
-/// Of how many of the newest events a snapshot tells.
+/// How many of the newest events a snapshot holds.
 inline constexpr std::size_t kEventRing = 8;
 
 /// Copying into one that has been used before does not allocate (the sizes never change while a scene runs).
@@ -93,16 +95,12 @@ struct Snapshot {
   double residual = 0;               ///< largest node residual, relative: see tissue/solver_settings.h [-]
   int iterations = 0;                ///< of the solver in this tick
   std::size_t contacts = 0;          ///< contact springs of this tick
-  std::size_t dropped_contacts = 0;  ///< for which there was no room
+  std::size_t dropped_contacts = 0;  ///< beyond the capacity
   Vec3 gravity;                      ///< world frame [m/s^2]
   std::array<double, kStageCount> stage_seconds{};  ///< wall time of each stage of the last tick
   double tick_seconds = 0;                          ///< sum of the stages [s]
   std::uint64_t event_count = 0;                    ///< since the start; the newest are in `events`
   std::array<Event, kEventRing> events{};           ///< ring: event n at n % kEventRing
 };
-
-/// Whether a point lies in the round picture of a laparoscope. What hides it is not asked.
-/// \param field_of_view  across the round picture [rad]
-bool IsInView(const Pose& X_world_laparoscope, double field_of_view, const Vec3& p_world) noexcept;
 
 }  // namespace trocar::simulation

@@ -53,7 +53,7 @@ std::optional<BladeMove> MoveBlade(const instrument::Tool& tool, const Pose& X_w
 /// Finds the intact strands that a move crosses.
 ///
 /// \param strands  of the definition from which the state's model was made
-/// \param[out] cut  indices, ascending; the first ones that it has room for
+/// \param[out] cut  indices, ascending; the first ones that fit
 /// \return how many
 /// \note Real-time safe; the state is left as it is.
 std::size_t FindCutStrands(const BladeMove& move, std::span<const tissue::Strand> strands,

@@ -15,12 +15,12 @@
 
 namespace trocar::surgery {
 
-/// Parts of the cavity, in the order of Cavity::FindRooms.
+/// Parts of the cavity, in the order of Cavity::FindClearances.
 enum class CavityPart : std::uint8_t { kFrontWall, kDiaphragm, kFloor };
 inline constexpr int kCavityParts = 3;
 
 /// Distance of a point to one part, and the way back inside.
-struct CavityRoom {
+struct CavityClearance {
   double distance = 0;  ///< > 0 inside of the cavity [m]
   Vec3 inwards;         ///< unit
 };
@@ -41,7 +41,7 @@ struct Cavity {
   bool has_floor = false;
 
   /// \note Real-time safe. Distances to the two domes are of first order: height over slope, right near them.
-  std::array<CavityRoom, kCavityParts> FindRooms(const Vec3& p) const noexcept;
+  std::array<CavityClearance, kCavityParts> FindClearances(const Vec3& p) const noexcept;
 };
 
 /// Front wall through the ports (least squares of its height; its curvatures are those of the standard four ports of a
@@ -79,8 +79,9 @@ CavityContact MakeCavityContact(const Cavity& cavity, std::span<const OrganSurfa
 
 /// After a cut of the organ: new vertices may lie where they are.
 /// \note Not real-time safe: allocates.
-void FollowOrgan(const Cavity& cavity, std::span<const OrganSurface> organs, std::span<const Vec3> positions,
-                 const CavityContactSettings& settings, CavityContact& contact);
+void UpdateTopology(const Cavity& cavity, std::span<const OrganSurface> organs,
+                    std::span<const Vec3> positions, const CavityContactSettings& settings,
+                    CavityContact& contact);
 
 /// Adds the springs of one organ's vertices against the parts that they are at; links carry kNoHand.
 ///

@@ -15,17 +15,30 @@ struct ClipGrip {
   double vessel_radius = 0;  ///< outside [m], > 0
 };
 
+/// What clips withstand, and how fast they slip beyond that.
+struct ClipHoldSettings {
+  double pressure = 40e3;        ///< 300 mmHg: Deans 1995 [Pa]
+  double pull = 4.4;             ///< between 4.08 and 4.78 N: Nelson 1992 [N]
+  double crossed_share = 0.1;    ///< of both: legs that do not lie flat hold by a corner [-]
+  double thick_radius = 0.0025;  ///< of a vessel that the clip is meant for, outside [m]
+  double partial_power = 6.0;    ///< of the closure: what lies beyond the tips keeps them apart [-]
+  double slip_speed = 0.001;     ///< under twice what it withstands [m/s]
+  double fastest_slip = 0.005;   ///< [m/s]
+
+  friend bool operator==(const ClipHoldSettings&, const ClipHoldSettings&) = default;
+};
+
 /// What it withstands, each alone.
 struct ClipHold {
   double pressure = 0;  ///< on its closed side above the other [Pa]
   double pull = 0;      ///< along the vessel, at its free end [N]
 };
-ClipHold CalcClipHold(const ClipGrip& grip) noexcept;
+ClipHold CalcClipHold(const ClipGrip& grip, const ClipHoldSettings& settings = {}) noexcept;
 
 /// Pressure and pull together, as a share of what the clip withstands: above 1 it slips.
 double CalcClipLoad(const ClipHold& hold, double pressure, double pull) noexcept;
 
 /// How fast a clip slips under a load [m/s]; 0 up to a load of 1.
-double CalcSlipSpeed(double load) noexcept;
+double CalcSlipSpeed(double load, const ClipHoldSettings& settings = {}) noexcept;
 
 }  // namespace trocar::surgery

@@ -57,7 +57,7 @@ bool IsPinch(const instrument::Tool& tool, ToolBody body, const Pose& X_world_to
              const Vec3& normal) noexcept;
 
 /// What a tool touches. Surfaces are counted as organs first, then tubes.
-struct Touchables {
+struct ContactCandidates {
   std::span<const OrganSurface> organs;
   const TubeSet* tubes = nullptr;          ///< or nullptr for none
   std::span<const Vec3> positions;         ///< (n) of the whole system, now [m]
@@ -78,7 +78,7 @@ struct ContactLink {
   double normal_force = 0;   ///< after the solve [N]
 };
 
-/// Contact springs of a tick with what they belong to. Fixed room: when full, later contacts of the tick are
+/// Contact springs of a tick with what they belong to. Fixed capacity: when full, later contacts of the tick are
 /// dropped and counted.
 struct ContactSet {
   static constexpr std::size_t kCapacity = 960;
@@ -107,8 +107,8 @@ struct ToolMotion {
 ///
 /// \param last  contacts of the tick before, after CalcReactions: what sticks where
 /// \note Real-time safe.
-void FindContacts(const ToolMotion& motion, const Touchables& touchables, const ContactSettings& settings,
-                  const ContactSet& last, ContactSet& contacts) noexcept;
+void FindContacts(const ToolMotion& motion, const ContactCandidates& candidates,
+                  const ContactSettings& settings, const ContactSet& last, ContactSet& contacts) noexcept;
 
 /// What one hand's contacts amount to after the solve.
 struct ContactReaction {

@@ -40,8 +40,8 @@ class CuttableOrgan {
   ///
   /// \param position  (n) of the whole system [m]
   /// \param[in,out] front  where this blade stands in this organ
-  /// \param[in,out] change  gets what the cut changes in the system; it must have room for it (CalcRoom)
-  /// \note Real-time safe: no allocation while `change` has room.
+  /// \param[in,out] change  gets what the cut changes in the system; within the capacity that ReserveFor gives it
+  /// \note Real-time safe: no allocation within the capacity of `change`.
   geometry::CutReport Cut(const geometry::BladeEdge& before, const geometry::BladeEdge& now,
                           std::span<const Vec3> position, geometry::CutFront& front,
                           TopologyChange& change) noexcept;

@@ -33,9 +33,9 @@ class CuttableTubes {
   /// \param definition  as it is now: masses and springs of the nodes
   /// \param position    (n) of the whole system [m]
   /// \param[in,out] change  gets nodes and springs; see Reserve
-  /// \param[out] cuts   one for each cut; room for kMostCuts
+  /// \param[out] cuts   one for each cut; at least kMostCuts
   /// \return how many cuts
-  /// \note Real-time safe while `change` has room.
+  /// \note Real-time safe within the capacity of `change`.
   std::size_t Cut(const BladeMove& move, const tissue::TissueDefinition& definition,
                   std::span<const Vec3> position, TopologyChange& change,
                   std::span<geometry::CentreLineCut> cuts) noexcept;

@@ -25,13 +25,17 @@ struct VesselOpening;
 void VisitState(core::StateArchive& archive, VesselClip& clip);
 void VisitState(core::StateArchive& archive, VesselOpening& opening);
 
-/// Dynamic viscosity [Pa s] and density [kg/m^3].
+/// Of one fluid.
 struct FluidProperties {
-  double viscosity, density;
+  double viscosity = 0;  ///< dynamic [Pa s], > 0
+  double density = 0;    ///< [kg/m^3], > 0
+
+  friend bool operator==(const FluidProperties&, const FluidProperties&) = default;
 };
-/// Blood 3.5 mPa s, 1060 kg/m^3; bile 1.0 mPa s, 1010 kg/m^3. Viscosities are general knowledge, densities the
-/// domain facts' section 2.
-FluidProperties PropertiesOf(Fluid fluid) noexcept;
+/// By Fluid.
+using FluidTable = std::array<FluidProperties, kFluidCount>;
+/// Viscosities are general knowledge, densities the domain facts' section 2.
+inline constexpr FluidTable kBileAndBlood{{{1.0e-3, 1010.0}, {3.5e-3, 1060.0}}};
 
 /// A duct or vessel from one junction to another.
 struct FlowVessel {
@@ -45,6 +49,8 @@ struct FlowVessel {
 struct FlowJunction {
   double pressure = 0;     ///< behind the conductance [Pa]
   double conductance = 0;  ///< of what supplies or drains it [m^3/(Pa s)]; 0: a mere junction
+
+  friend bool operator==(const FlowJunction&, const FlowJunction&) = default;
 };
 
 /// A clip across a vessel. It narrows the clipped 3 mm to the radius (1 - closure) of before.
@@ -102,7 +108,8 @@ class FlowNetwork {
 
   /// \return kPatientInvalid where a vessel names no junction, has no length or radius, is not finite, joins
   /// vessels of another fluid, or where there are too many
-  static core::Result<FlowNetwork> Make(std::vector<FlowVessel> vessels, std::vector<FlowJunction> junctions);
+  static core::Result<FlowNetwork> Make(std::vector<FlowVessel> vessels, std::vector<FlowJunction> junctions,
+                                        const FluidTable& fluids = kBileAndBlood);
 
   std::span<const FlowVessel> Vessels() const { return vessels_; }
   std::span<const FlowJunction> Junctions() const { return junctions_; }
@@ -129,8 +136,8 @@ class FlowNetwork {
  private:
   struct Piece;
   struct Outlet;
-  FlowNetwork(std::vector<FlowVessel> vessels, std::vector<FlowJunction> junctions)
-      : vessels_(std::move(vessels)), junctions_(std::move(junctions)) {}
+  FlowNetwork(std::vector<FlowVessel> vessels, std::vector<FlowJunction> junctions, const FluidTable& fluids)
+      : vessels_(std::move(vessels)), junctions_(std::move(junctions)), fluids_(fluids) {}
   std::size_t CutIntoPieces(const VesselActs& acts, std::span<Piece> pieces, std::span<Outlet> outlets,
                             std::size_t& piece_count, std::size_t& outlet_count) const noexcept;
 
@@ -139,6 +146,7 @@ class FlowNetwork {
 
   std::vector<FlowVessel> vessels_;
   std::vector<FlowJunction> junctions_;
+  FluidTable fluids_;  // constant
   std::array<double, kMostNodes> pressure_{};
 };
 

@@ -52,7 +52,7 @@ struct OrganPair {
   // state
   std::vector<double> allowed;          ///< (node_count) the same now: what has come out stays out [m]
   std::vector<std::uint8_t> is_inside;  ///< (node_count) of the surface
-  std::vector<double> push;  ///< (node_count) how far its springs were pressed by the last solve [m]
+  std::vector<double> warm_start;  ///< (node_count) how far its springs were pressed by the last solve [m]
   std::vector<std::uint8_t> is_bound;        ///< (node_count) tied to the other organ: left to its strands
   std::vector<std::uint32_t> last_triangle;  ///< (node_count) where the search starts
   std::vector<std::uint32_t> spring;         ///< (node_count) the first of its two in the set, or kNoSpring
@@ -75,7 +75,7 @@ OrganPair MakeTubePair(std::span<const OrganSurface> organs, std::span<const Vec
 
 /// After a cut of an organ: new vertices keep off the other organ like any, and every search starts anew.
 /// \note Not real-time safe: allocates.
-void FollowOrgan(std::span<const OrganSurface> organs, std::uint8_t changed, OrganPair& pair);
+void UpdateTopology(std::span<const OrganSurface> organs, std::uint8_t changed, OrganPair& pair);
 
 /// As made. \note Real-time safe.
 void ResetPair(OrganPair& pair) noexcept;
@@ -85,14 +85,15 @@ void ResetPair(OrganPair& pair) noexcept;
 void FindOrganContacts(std::span<const OrganSurface> organs, std::span<const Vec3> positions,
                        const OrganContactSettings& settings, OrganPair& pair, ContactSet& contacts) noexcept;
 
-/// After the solve: keeps what presses each spring, for the next tick. Without it every tick begins without load.
+/// After the solve: keeps what presses each spring as the initial guess of its force in the next tick (warm start).
 /// \param positions  (n) after it [m]
 /// \note Real-time safe.
-void KeepOrganPushes(std::span<const Vec3> positions, const ContactSet& contacts, OrganPair& pair) noexcept;
+void KeepWarmStartForces(std::span<const Vec3> positions, const ContactSet& contacts,
+                         OrganPair& pair) noexcept;
 
 /// After a solve that was taken back.
 /// \note Real-time safe.
-void ForgetOrganPushes(OrganPair& pair) noexcept;
+void ForgetWarmStartForces(OrganPair& pair) noexcept;
 
 /// Hand of a contact that no tool makes.
 inline constexpr std::uint8_t kNoHand = 0xff;

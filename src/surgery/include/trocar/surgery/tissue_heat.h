@@ -30,6 +30,8 @@ struct HeatConstants {
   double damage_energy = 2.577e5;  ///< Arrhenius' activation energy, liver [J/mol]
   double char_temperature = 180;   ///< where dry tissue blackens [deg C]
   double most_temperature = 400;   ///< of dry tissue: what goes beyond is radiated [deg C]
+
+  friend bool operator==(const HeatConstants&, const HeatConstants&) = default;
 };
 
 /// A part of tissue that has one temperature.

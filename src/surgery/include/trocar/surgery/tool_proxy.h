@@ -23,14 +23,14 @@ struct ToolDrive {
   instrument::TrocarJoints device;  ///< after limits
 };
 
-/// The tool's axis at `point` must stay on this side: normal . (x - point) <= room.
+/// The tool's axis at `point` must stay on this side: normal . (x - point) <= clearance.
 struct ProxyLimit {
-  Vec3 point;       ///< of the device's axis [m]
-  Vec3 normal;      ///< unit, into what is touched
-  double room = 0;  ///< [m]; negative: the device lies this deep
+  Vec3 point;            ///< of the device's axis [m]
+  Vec3 normal;           ///< unit, into what is touched
+  double clearance = 0;  ///< [m]; negative: the device lies this deep
 };
 
-/// Planes that keep a proxy out. Fixed room: when full, the rest is dropped.
+/// Planes that keep a proxy out. Fixed capacity: when full, the rest is dropped.
 struct ProxyLimits {
   static constexpr std::size_t kCapacity = ContactSet::kCapacity + 32;
   std::vector<ProxyLimit> limits;  ///< reserved to kCapacity
@@ -58,12 +58,12 @@ instrument::TrocarJoints FindProxy(const ToolDrive& drive, const instrument::Tro
 /// Looks whether the proxy overlaps organs or tubes after all, and adds a limit for each body and surface where
 /// it does; tissue between the jaws does not count.
 ///
-/// \param touchables       trees and positions of now
+/// \param candidates       trees and positions of now
 /// \param grasped_surface  left out for the jaws, or -1
 /// \return greatest overlap of a body's surface with the tissue [m], 0 for none
 /// \note Real-time safe.
 double AddOverlapLimits(const instrument::Tool& tool, const Pose& X_world_proxy, const Pose& X_world_device,
-                        double jaw, const Touchables& touchables, std::int32_t grasped_surface,
+                        double jaw, const ContactCandidates& candidates, std::int32_t grasped_surface,
                         ProxyLimits& limits) noexcept;
 
 }  // namespace trocar::surgery

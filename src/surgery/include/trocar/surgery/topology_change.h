@@ -2,7 +2,7 @@
 /// \file topology_change.h  What a cut changes in the mass-spring system: the list from which a solver takes it in the same
 /// tick.
 ///
-/// Nodes are never renumbered. Room for new ones lies in the system from the start, as spare nodes that are fixed and
+/// Nodes are never renumbered. The capacity for new ones is in the system from the start, as spare nodes that are fixed and
 /// joined to nothing; springs are named by their two nodes. docs/cutting.md says how stiffness and mass are shared out.
 #pragma once
 
@@ -41,13 +41,13 @@ struct SpringChange {
   std::array<std::uint32_t, 2> inherits = {geometry::kNone, geometry::kNone};
 };
 
-/// All changes of one tick. Fixed room, so that a tick allocates nothing.
+/// All changes of one tick. Fixed capacity, so that a tick allocates nothing.
 struct TopologyChange {
   std::vector<NodeChange> nodes;
   std::vector<SpringChange> springs;       ///< one for each pair of nodes
   std::vector<std::uint32_t> cut_strands;  ///< indices, ascending
 
-  /// Room for so many of each.
+  /// Reserves so many of each.
   void Reserve(std::size_t node_count, std::size_t spring_count, std::size_t strand_count);
   void Clear() noexcept;
   bool IsEmpty() const { return nodes.empty() && springs.empty() && cut_strands.empty(); }

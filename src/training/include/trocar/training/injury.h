@@ -10,24 +10,13 @@
 #include <string_view>
 #include <vector>
 
+#include "trocar/roles/roles.h"
 #include "trocar/surgery/flow_network.h"
 
 namespace trocar::training {
 
 /// What a duct or artery is to the surgeon.
-enum class VesselRole : std::uint8_t {
-  kCysticDuct,
-  kCommonHepaticDuct,
-  kCommonBileDuct,
-  kRightHepaticDuct,
-  kLeftHepaticDuct,
-  kAberrantRightDuct,  ///< drains a part of the right lobe below the confluence
-  kSubvesicalDuct,     ///< Luschka's: small, in the bed
-  kCysticArtery,
-  kRightHepaticArtery
-};
-/// "cystic duct", ...
-std::string_view RoleName(VesselRole role) noexcept;
+using VesselRole = roles::TubeRole;
 /// Cystic duct, cystic artery and small ducts of the bed; every other duct and artery must stay.
 bool MayBeDivided(VesselRole role) noexcept;
 

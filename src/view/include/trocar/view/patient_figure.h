@@ -3,7 +3,6 @@
 /// arteries, landmarks and attachments.
 #pragma once
 
-#include <string_view>
 #include <vector>
 
 #include "trocar/anatomy/patient.h"
@@ -25,9 +24,9 @@ struct PatientFigure {
 };
 
 /// Colour of an organ's surface outside of its regions.
-render::SrgbColour OrganColour(std::string_view organ);
-/// Colour of a region; another one for each of the known names, grey for the rest.
-render::SrgbColour RegionColour(std::string_view region);
+render::SrgbColour OrganColour(anatomy::OrganRole organ);
+/// Colour of a region; another one for each role, grey for the rest.
+render::SrgbColour RegionColour(anatomy::RegionRole region);
 render::SrgbColour TubeColour(const anatomy::Tube& tube);
 
 /// Colours of one organ's vertices: a vertex of several regions has the smallest one's.

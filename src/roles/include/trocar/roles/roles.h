@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file roles.h  What organs, ducts, vessels, regions, landmarks and materials are to surgery, and how files name it.
+///
+/// A role is resolved once, where a patient is read or made; programs ask for the role afterwards, never for a name. The
+/// names stand here and nowhere else (tests/anatomy_names looks for others).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <iterator>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <type_traits>
+
+namespace trocar::roles {
+
+/// kOther: an organ that is simulated and drawn, and of which nothing more is known.
+enum class OrganRole : std::uint8_t { kOther, kLiver, kGallbladder };
+
+/// kOther: a duct or artery that must stay, as the common hepatic duct or the right hepatic artery must.
+enum class TubeRole : std::uint8_t {
+  kOther,
+  kCysticDuct,
+  kCommonHepaticDuct,
+  kCommonBileDuct,
+  kRightHepaticDuct,
+  kLeftHepaticDuct,
+  kAberrantRightDuct,  ///< drains a part of the right lobe below the confluence
+  kSubvesicalDuct,     ///< Luschka's: small, in the bed
+  kCysticArtery,
+  kRightHepaticArtery
+};
+
+/// Vertices of an organ. The first three and kHeld are the fixed boundary of section 3.2.2 of the paper.
+enum class RegionRole : std::uint8_t {
+  kOther,
+  kDiaphragmaticFace,
+  kFalciform,
+  kCoronary,
+  kHeld,  ///< the border of a training task's sheet
+  kGallbladderBed
+};
+
+enum class LandmarkRole : std::uint8_t {
+  kOther,
+  kUmbilicus,
+  kUmbilicalFissure,
+  kFundus,
+  kInfundibulum,
+  kGallbladderBody,
+  kLiverEdge,
+  kHepatocysticTriangle
+};
+
+/// What a material is of.
+enum class TissueRole : std::uint8_t { kOther, kLiver, kGallbladder, kGallbladderBed, kDuct, kArtery };
+
+/// Names as files write them, in the order of the roles.
+template <class Role>
+struct RoleNames;
+template <>
+struct RoleNames<OrganRole> {
+  static constexpr const char* kNames[] = {"other", "liver", "gallbladder"};
+};
+template <>
+struct RoleNames<TubeRole> {
+  static constexpr const char* kNames[] = {"other",
+                                           "cystic_duct",
+                                           "common_hepatic_duct",
+                                           "common_bile_duct",
+                                           "right_hepatic_duct",
+                                           "left_hepatic_duct",
+                                           "aberrant_right_duct",
+                                           "subvesical_duct",
+                                           "cystic_artery",
+                                           "right_hepatic_artery"};
+};
+template <>
+struct RoleNames<RegionRole> {
+  static constexpr const char* kNames[] = {"other", "diaphragmatic_face", "falciform", "coronary",
+                                           "held",  "gallbladder_bed"};
+};
+template <>
+struct RoleNames<LandmarkRole> {
+  static constexpr const char* kNames[] = {
+      "other",        "umbilicus",        "umbilical_fissure", "fundus",
+      "infundibulum", "gallbladder_body", "liver_edge",        "hepatocystic_triangle"};
+};
+template <>
+struct RoleNames<TissueRole> {
+  static constexpr const char* kNames[] = {"other",           "liver", "gallbladder",
+                                           "gallbladder_bed", "duct",  "artery"};
+};
+
+/// "gallbladder", "cystic_duct"
+template <class Role>
+constexpr const char* NameOf(Role role) noexcept {
+  return RoleNames<Role>::kNames[static_cast<std::size_t>(role)];
+}
+
+/// The role of that name; nothing where there is none.
+template <class Role>
+constexpr std::optional<Role> FindRole(std::string_view name) noexcept {
+  for (std::size_t i = 0; i < std::size(RoleNames<Role>::kNames); ++i) {
+    if (name == RoleNames<Role>::kNames[i]) return static_cast<Role>(i);
+  }
+  return std::nullopt;
+}
+
+/// The role of what bears a conventional name and whose file says nothing else.
+template <class Role>
+constexpr Role ConventionalRole(std::string_view name) noexcept {
+  return FindRole<Role>(name).value_or(Role::kOther);
+}
+/// A patient may have several of one role: "cystic_artery_deep" is a cystic artery, too.
+template <>
+constexpr TubeRole ConventionalRole<TubeRole>(std::string_view name) noexcept {
+  for (std::size_t i = 1; i < std::size(RoleNames<TubeRole>::kNames); ++i) {
+    const std::string_view conventional = RoleNames<TubeRole>::kNames[i];
+    if (name == conventional || (name.starts_with(conventional) && name[conventional.size()] == '_'))
+      return static_cast<TubeRole>(i);
+  }
+  return TubeRole::kOther;
+}
+
+/// "cystic duct": as a person reads it.
+std::string SpokenName(std::string_view name);
+template <class Role>
+requires std::is_enum_v<Role> std::string SpokenName(Role role) {
+  return SpokenName(std::string_view(NameOf(role)));
+}
+
+/// "liver, gallbladder": every role but kOther, for messages.
+template <class Role>
+std::string ListNames() {
+  std::string names;
+  for (std::size_t i = 1; i < std::size(RoleNames<Role>::kNames); ++i)
+    names += (i == 1 ? "" : ", ") + std::string(RoleNames<Role>::kNames[i]);
+  return names;
+}
+
+/// A duct rather than an artery.
+constexpr bool IsDuct(TubeRole role) noexcept {
+  return role != TubeRole::kCysticArtery && role != TubeRole::kRightHepaticArtery;
+}
+/// Whether a region's vertices never move.
+constexpr bool IsFixed(RegionRole role) noexcept {
+  return role == RegionRole::kDiaphragmaticFace || role == RegionRole::kFalciform ||
+         role == RegionRole::kCoronary || role == RegionRole::kHeld;
+}
+/// What an organ is made of.
+constexpr TissueRole TissueOf(OrganRole role) noexcept {
+  return role == OrganRole::kLiver         ? TissueRole::kLiver
+         : role == OrganRole::kGallbladder ? TissueRole::kGallbladder
+                                           : TissueRole::kOther;
+}
+
+}  // namespace trocar::roles

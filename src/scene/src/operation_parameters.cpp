@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/scene/operation_parameters.h"
+
+#include "trocar/core/json.h"
+
+namespace trocar::scene {
+namespace {
+
+using core::JsonView;
+using core::NumberRange;
+using surgery::Fluid;
+
+// In which ranges the figures mean something; schemas/operation.schema.json says the same.
+constexpr NumberRange kViscosity{1e-05, 1};
+constexpr NumberRange kFluidDensity{100, 20000};
+constexpr NumberRange kPressure{-50000, 50000};
+constexpr NumberRange kConductance{1e-15, 1e-06};
+constexpr NumberRange kLeastShare{0.01, 1};
+constexpr NumberRange kRadius{1e-05, 0.02};
+constexpr NumberRange kShare{0, 1};
+constexpr NumberRange kClipPressure{1, 1000000.0};
+constexpr NumberRange kClipPull{0.01, 100};
+constexpr NumberRange kPower{1, 100};
+constexpr NumberRange kSlipSpeed{0, 0.1};
+constexpr NumberRange kVolume{0, 0.001};
+constexpr NumberRange kSeconds{0.1, 36000};
+constexpr NumberRange kSpecificHeat{100, 100000};
+constexpr NumberRange kConductivity{0.001, 100};
+constexpr NumberRange kLatentHeat{10000, 100000000.0};
+constexpr NumberRange kRate{0, 100};
+constexpr NumberRange kDamageRate{0, 1e+60};
+constexpr NumberRange kDamageEnergy{0, 10000000.0};
+constexpr NumberRange kTemperature{100, 3000};
+constexpr NumberRange kLength{1e-06, 0.05};
+constexpr NumberRange kTissueDensity{1, 20000};
+constexpr NumberRange kMass{1e-09, 0.01};
+constexpr NumberRange kWatts{0, 500};
+constexpr NumberRange kJoules{0.001, 100000};
+constexpr NumberRange kArea{0, 0.001};
+constexpr NumberRange kSmoke{0, 1};
+constexpr NumberRange kFlowRate{0, 0.01};
+
+std::size_t Index(Fluid fluid) {
+  return static_cast<std::size_t>(fluid);
+}
+
+void ReadFluid(const JsonView& view, surgery::FluidProperties& fluid) {
+  view.AllowOnly({"viscosity_pa_s", "density_kg_m3"});
+  fluid.viscosity = view.Number("viscosity_pa_s", kViscosity);
+  fluid.density = view.Number("density_kg_m3", kFluidDensity);
+}
+
+void ReadJunction(const JsonView& view, surgery::FlowJunction& junction) {
+  view.AllowOnly({"pressure_pa", "conductance_m3_per_pa_s"});
+  junction.pressure = view.Number("pressure_pa", kPressure);
+  junction.conductance = view.Number("conductance_m3_per_pa_s", kConductance);
+}
+
+void ReadFluids(const JsonView& root, OperationParameters& made) {
+  const JsonView group = root.Object("fluids");
+  group.AllowOnly({"bile", "blood", "source"});
+  (void)group.Text("source");
+  ReadFluid(group.Object("bile"), made.fluids[Index(Fluid::kBile)]);
+  ReadFluid(group.Object("blood"), made.fluids[Index(Fluid::kBlood)]);
+}
+
+void ReadSupplies(const JsonView& root, OperationParameters& made) {
+  const JsonView group = root.Object("supplies");
+  group.AllowOnly({"aorta", "artery_bed", "liver", "bowel", "gallbladder", "lumen_share", "source"});
+  (void)group.Text("source");
+  ReadJunction(group.Object("aorta"), made.supplies.aorta);
+  ReadJunction(group.Object("artery_bed"), made.supplies.artery_bed);
+  ReadJunction(group.Object("liver"), made.supplies.liver);
+  ReadJunction(group.Object("bowel"), made.supplies.bowel);
+  ReadJunction(group.Object("gallbladder"), made.supplies.gallbladder);
+  made.supplies.lumen_share = group.Number("lumen_share", kLeastShare);
+}
+
+void ReadVessels(const JsonView& root, OperationParameters& made) {
+  const JsonView group = root.Object("vessels");
+  group.AllowOnly({"most_sealed_radius_m", "least_filling", "source"});
+  (void)group.Text("source");
+  made.vessels.most_sealed_radius = group.Number("most_sealed_radius_m", kRadius);
+  made.vessels.least_filling = group.Number("least_filling", kShare);
+}
+
+void ReadClips(const JsonView& root, OperationParameters& made) {
+  const JsonView group = root.Object("clips");
+  group.AllowOnly({"pressure_pa", "pull_n", "crossed_share", "thick_radius_m", "partial_power",
+                   "slip_speed_m_s", "fastest_slip_m_s", "source"});
+  (void)group.Text("source");
+  made.vessels.clips.pressure = group.Number("pressure_pa", kClipPressure);
+  made.vessels.clips.pull = group.Number("pull_n", kClipPull);
+  made.vessels.clips.crossed_share = group.Number("crossed_share", kShare);
+  made.vessels.clips.thick_radius = group.Number("thick_radius_m", kRadius);
+  made.vessels.clips.partial_power = group.Number("partial_power", kPower);
+  made.vessels.clips.slip_speed = group.Number("slip_speed_m_s", kSlipSpeed);
+  made.vessels.clips.fastest_slip = group.Number("fastest_slip_m_s", kSlipSpeed);
+}
+
+void ReadBed(const JsonView& root, OperationParameters& made) {
+  const JsonView group = root.Object("bed");
+  group.AllowOnly({"volume_m3", "clot_s", "source"});
+  (void)group.Text("source");
+  made.bed.bed_volume = group.Number("volume_m3", kVolume);
+  made.bed.clot_seconds = group.Number("clot_s", kSeconds);
+}
+
+void ReadHeat(const JsonView& root, OperationParameters& made) {
+  const JsonView group = root.Object("heat");
+  group.AllowOnly({"specific_heat_j_kg_k", "conductivity_w_m_k", "water_share", "latent_heat_j_kg",
+                   "perfusion_per_s", "damage_rate_per_s", "damage_energy_j_mol", "char_temperature_c",
+                   "most_temperature_c", "layer_depth_m", "fibre_width_m", "fibre_density_kg_m3",
+                   "least_strand_mass_kg", "least_node_mass_kg", "quarter_power_m", "source"});
+  (void)group.Text("source");
+  made.heat.tissue.specific_heat = group.Number("specific_heat_j_kg_k", kSpecificHeat);
+  made.heat.tissue.conductivity = group.Number("conductivity_w_m_k", kConductivity);
+  made.heat.tissue.water_share = group.Number("water_share", kLeastShare);
+  made.heat.tissue.latent_heat = group.Number("latent_heat_j_kg", kLatentHeat);
+  made.heat.tissue.perfusion = group.Number("perfusion_per_s", kRate);
+  made.heat.tissue.damage_rate = group.Number("damage_rate_per_s", kDamageRate);
+  made.heat.tissue.damage_energy = group.Number("damage_energy_j_mol", kDamageEnergy);
+  made.heat.tissue.char_temperature = group.Number("char_temperature_c", kTemperature);
+  made.heat.tissue.most_temperature = group.Number("most_temperature_c", kTemperature);
+  made.heat.layer_depth = group.Number("layer_depth_m", kLength);
+  made.heat.fibre_width = group.Number("fibre_width_m", kLength);
+  made.heat.fibre_density = group.Number("fibre_density_kg_m3", kTissueDensity);
+  made.heat.least_strand_mass = group.Number("least_strand_mass_kg", kMass);
+  made.heat.least_node_mass = group.Number("least_node_mass_kg", kMass);
+  made.heat.quarter_power = group.Number("quarter_power_m", kLength);
+}
+
+void ReadElectrode(const JsonView& root, OperationParameters& made) {
+  const JsonView group = root.Object("electrode");
+  group.AllowOnly({"cut_power_w", "cut_reach_m", "coagulate_power_w", "coagulate_reach_m", "seal_reach_m",
+                   "seal_heat_j", "burnt_hole_m2", "burnt_rim_m", "smoke_by_heat_per_j", "source"});
+  (void)group.Text("source");
+  made.electrode.cut.power = group.Number("cut_power_w", kWatts);
+  made.electrode.cut.reach = group.Number("cut_reach_m", kLength);
+  made.electrode.coagulate.power = group.Number("coagulate_power_w", kWatts);
+  made.electrode.coagulate.reach = group.Number("coagulate_reach_m", kLength);
+  made.electrode.seal_reach = group.Number("seal_reach_m", kLength);
+  made.electrode.seal_heat = group.Number("seal_heat_j", kJoules);
+  made.electrode.burnt_hole = group.Number("burnt_hole_m2", kArea);
+  made.electrode.burnt_rim = group.Number("burnt_rim_m", kLength);
+  made.electrode.smoke_by_heat = group.Number("smoke_by_heat_per_j", kSmoke);
+}
+
+void ReadSuction(const JsonView& root, OperationParameters& made) {
+  const JsonView group = root.Object("suction");
+  group.AllowOnly({"rinse_rate_m3_s", "aspirate_rate_m3_s", "pool_reach_m", "smoke_rate_per_s",
+                   "smoke_fade_per_s", "source"});
+  (void)group.Text("source");
+  made.suction.rinse_rate = group.Number("rinse_rate_m3_s", kFlowRate);
+  made.suction.aspirate_rate = group.Number("aspirate_rate_m3_s", kFlowRate);
+  made.suction.pool_reach = group.Number("pool_reach_m", kLength);
+  made.suction.smoke_rate = group.Number("smoke_rate_per_s", kRate);
+  made.suction.smoke_fade = group.Number("smoke_fade_per_s", kRate);
+}
+
+}  // namespace
+
+core::Result<OperationParameters> ReadOperationParameters(const std::filesystem::path& path) {
+  auto document = core::JsonDocument::Read(path);
+  if (!document.ok()) return document.error();
+  const JsonView root = document->Root();
+  root.AllowOnly({"format", "version", "about", "fluids", "supplies", "vessels", "clips", "bed", "heat",
+                  "electrode", "suction"});
+  if (root.Text("format") != "trocar-operation") root.Complain("format must be \"trocar-operation\"");
+  if (root.Integer("version") != 1) root.Complain("version must be 1");
+  OperationParameters made;
+  ReadFluids(root, made);
+  ReadSupplies(root, made);
+  ReadVessels(root, made);
+  ReadClips(root, made);
+  ReadBed(root, made);
+  ReadHeat(root, made);
+  ReadElectrode(root, made);
+  ReadSuction(root, made);
+  if (const auto status = document->Check(); !status.ok()) return status.error();
+  return made;
+}
+
+}  // namespace trocar::scene

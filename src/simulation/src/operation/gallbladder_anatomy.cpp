@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "operation/gallbladder_anatomy.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+#include <utility>
+#include <variant>
+
+#include "trocar/geometry/mesh_measures.h"
+#include "trocar/simulation/ground.h"
+
+namespace trocar::simulation {
+
+using math::Vec3;
+using roles::LandmarkRole;
+using roles::OrganRole;
+using roles::TubeRole;
+using scene::FindSurface;
+using scene::Scene;
+using scene::StrandInfo;
+using scene::SurfaceInfo;
+namespace {
+
+/// What lies this near to the infundibulum turns with the neck [m].
+constexpr double kNeckRadius = 0.015;
+constexpr std::uint64_t kStoneSeed = 0x73746f6e6573;  // the stones' own stream
+
+/// A tube's nodes, from the gallbladder on where it ends there.
+std::vector<std::uint32_t> ListNodes(const SurfaceInfo& surface, std::int32_t gallbladder) {
+  std::vector<std::uint32_t> nodes;
+  for (std::uint32_t k = 0; k < surface.node_count; ++k) nodes.push_back(surface.first_node + k);
+  if (gallbladder >= 0 && surface.ends[1] == gallbladder) std::reverse(nodes.begin(), nodes.end());
+  return nodes;
+}
+
+/// Strands of fat, peritoneum and adhesions at each node.
+geometry::Rows ListFibres(std::span<const StrandInfo> strands, std::size_t node_count) {
+  using Kind = StrandInfo::Kind;
+  std::vector<std::vector<std::uint32_t>> at(node_count);
+  for (std::uint32_t i = 0; i < strands.size(); ++i) {
+    const Kind kind = strands[i].kind;
+    if (kind != Kind::kTriangle && kind != Kind::kPeritoneum && kind != Kind::kAdhesion) continue;
+    at[strands[i].a].push_back(i);
+    at[strands[i].b].push_back(i);
+  }
+  geometry::Rows rows{{0}, {}};
+  for (const auto& list : at) {
+    rows.values.insert(rows.values.end(), list.begin(), list.end());
+    rows.starts.push_back(static_cast<std::uint32_t>(rows.values.size()));
+  }
+  return rows;
+}
+
+/// Cystic and common hepatic duct, from where they meet on.
+void FindDucts(std::span<const SurfaceInfo> surfaces, std::span<const Vec3> rest,
+               training::DissectedAnatomy& found) {
+  auto &cystic = found.cystic_duct, &hepatic = found.hepatic_duct;
+  const std::int32_t gallbladder = FindSurface(surfaces, OrganRole::kGallbladder);
+  const auto list = [&](TubeRole role) {
+    const std::int32_t tube = FindSurface(surfaces, role);
+    return tube < 0 ? std::vector<std::uint32_t>{}
+                    : ListNodes(surfaces[static_cast<std::size_t>(tube)], gallbladder);
+  };
+  cystic = list(TubeRole::kCysticDuct), hepatic = list(TubeRole::kCommonHepaticDuct);
+  std::reverse(cystic.begin(), cystic.end());
+  if (!hepatic.empty() && !cystic.empty() &&
+      math::Distance(rest[hepatic.back()], rest[cystic.front()]) <
+          math::Distance(rest[hepatic.front()], rest[cystic.front()]))
+    std::reverse(hepatic.begin(), hepatic.end());
+}
+
+double NumberOf(const anatomy::Patient& patient, std::string_view name, double otherwise) {
+  const anatomy::Parameter* parameter = patient.FindParameter(name);
+  const double* number = parameter == nullptr ? nullptr : std::get_if<double>(&parameter->value);
+  return number == nullptr ? otherwise : *number;
+}
+
+}  // namespace
+
+surgery::Vessels MakeVessels(surgery::VesselMap map, const anatomy::Patient& patient,
+                             const scene::PatientTissue& tissue, std::uint32_t spare_count,
+                             const surgery::VesselSettings& settings) {
+  std::vector<surgery::VesselTube> tubes;
+  for (std::size_t t = 0; t < patient.tubes.size(); ++t) {
+    const geometry::CentreLine& line = patient.tubes[t].line;
+    tubes.push_back({tissue.surfaces[patient.organs.size() + t].first_node, line.points, line.radii});
+  }
+  return {std::move(map), tubes, tissue.first_spare.back(), spare_count, settings};
+}
+
+std::vector<surgery::EnteringTube> FindEnteringTubes(const anatomy::Patient& patient,
+                                                     std::span<const SurfaceInfo> surfaces,
+                                                     std::span<const StrandInfo> strands) {
+  std::vector<surgery::EnteringTube> found;
+  const std::int32_t gallbladder = FindSurface(surfaces, OrganRole::kGallbladder);
+  if (gallbladder < 0) return found;
+  const SurfaceInfo& organ = surfaces[static_cast<std::size_t>(gallbladder)];
+  for (std::uint32_t t = 0; t < patient.tubes.size(); ++t) {
+    const SurfaceInfo& tube = surfaces[patient.organs.size() + t];
+    // one that only grazes the bed, Luschka's duct, is divided with the bed
+    if (!tube.Joins(gallbladder)) continue;
+    surgery::EnteringTube entering{t, ListNodes(tube, gallbladder), {}};
+    for (std::uint32_t i = 0; i < strands.size(); ++i) {
+      const StrandInfo& strand = strands[i];
+      if (strand.kind == StrandInfo::Kind::kEnd && strand.a == entering.nodes.front() &&
+          strand.b >= organ.first_node && strand.b < organ.first_node + organ.node_count)
+        entering.end_strands.push_back(i);
+    }
+    found.push_back(std::move(entering));
+  }
+  return found;
+}
+
+surgery::GallbladderAttachment MakeAttachment(const anatomy::Patient& patient,
+                                              std::span<const SurfaceInfo> surfaces,
+                                              std::span<const StrandInfo> strands) {
+  using Kind = StrandInfo::Kind;
+  const bool has_axis = patient.LandmarkOf(LandmarkRole::kFundus) != nullptr &&
+                        patient.LandmarkOf(LandmarkRole::kInfundibulum) != nullptr;
+  std::vector<std::uint32_t> holding;
+  for (std::uint32_t i = 0; i < strands.size(); ++i) {
+    if (strands[i].kind == Kind::kAdhesion || (strands[i].kind == Kind::kBed && has_axis))
+      holding.push_back(i);
+  }
+  return {std::move(holding), FindEnteringTubes(patient, surfaces, strands)};
+}
+
+training::DissectedAnatomy MakeDissectedAnatomy(const anatomy::Patient& patient,
+                                                std::span<const SurfaceInfo> surfaces,
+                                                std::span<const StrandInfo> strands,
+                                                std::span<const Vec3> rest) {
+  using Kind = StrandInfo::Kind;
+  training::DissectedAnatomy found;
+  const anatomy::Landmark *fundus = patient.LandmarkOf(LandmarkRole::kFundus),
+                          *neck = patient.LandmarkOf(LandmarkRole::kInfundibulum);
+  for (std::uint32_t i = 0; i < strands.size(); ++i) {
+    const Kind kind = strands[i].kind;
+    if (kind == Kind::kTriangle || kind == Kind::kPeritoneum) found.triangle.push_back(i);
+    if (kind != Kind::kBed || fundus == nullptr || neck == nullptr) continue;
+    const Vec3 axis = fundus->position - neck->position;
+    found.bed.push_back(
+        {i, math::Dot(rest[strands[i].a] - neck->position, axis) / std::max(1e-12, math::SquaredNorm(axis))});
+  }
+  found.fibres = ListFibres(strands, rest.size());
+  const std::int32_t gallbladder = FindSurface(surfaces, OrganRole::kGallbladder);
+  if (gallbladder < 0) return found;
+  found.entering = FindEnteringTubes(patient, surfaces, strands);
+  FindDucts(surfaces, rest, found);
+  const SurfaceInfo& organ = surfaces[static_cast<std::size_t>(gallbladder)];
+  for (std::uint32_t k = 0; neck != nullptr && k < organ.node_count; ++k) {
+    if (math::Distance(rest[organ.first_node + k], neck->position) <= kNeckRadius)
+      found.neck.push_back(organ.first_node + k);
+  }
+  return found;
+}
+
+surgery::GallstoneSettings FindGallstones(const Scene& scene) {
+  surgery::GallstoneSettings stones =
+      scene.operation ? scene.operation->gallstones : surgery::GallstoneSettings{};
+  stones.count =
+      std::clamp(static_cast<int>(std::lround(NumberOf(scene.patient, "gallstone_count", stones.count))), 0,
+                 surgery::kMostGallstones);
+  stones.median_diameter =
+      1e-3 *
+      std::clamp(NumberOf(scene.patient, "gallstone_diameter", 1e3 * stones.median_diameter), 1.0, 30.0);
+  return stones;
+}
+
+core::Result<surgery::GallstoneSpill> MakeGallstones(const Scene& scene,
+                                                     std::span<const SurfaceInfo> surfaces,
+                                                     std::span<const Vec3> rest) {
+  const std::int32_t gallbladder = FindSurface(surfaces, OrganRole::kGallbladder);
+  if (gallbladder < 0) return surgery::GallstoneSpill{};
+  const geometry::TriangleMesh& wall = scene.patient.organs[static_cast<std::size_t>(gallbladder)].mesh;
+  const double capacity = geometry::CalcVolume(wall.positions, wall.triangles);
+  const std::vector<double> diameters =
+      surgery::DrawGallstones(FindGallstones(scene), capacity, scene.seed ^ kStoneSeed);
+  return surgery::GallstoneSpill::Make(diameters, geometry::MakeOmentum(FindOmentumBalls(surfaces, rest)));
+}
+
+}  // namespace trocar::simulation

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file gallbladder_anatomy.h  Which tubes, strands and nodes of a patient's tissue an operation on the gallbladder is about.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "trocar/scene/patient_tissue.h"
+#include "trocar/surgery/bed_ooze.h"
+#include "trocar/surgery/gallbladder_attachment.h"
+#include "trocar/surgery/gallstone_spill.h"
+#include "trocar/training/dissection_monitor.h"
+
+namespace trocar::simulation {
+
+/// The patient's ducts and arteries among the nodes of its tissue.
+/// \param map  of the patient: see scene::MakePatientVessels
+/// \param spare_count  nodes for the ends of cuts
+surgery::Vessels MakeVessels(surgery::VesselMap map, const anatomy::Patient& patient,
+                             const scene::PatientTissue& tissue, std::uint32_t spare_count,
+                             const surgery::VesselSettings& settings = {});
+
+/// \param surfaces  organs, then tubes
+/// \param strands   (strands)
+std::vector<surgery::EnteringTube> FindEnteringTubes(const anatomy::Patient& patient,
+                                                     std::span<const scene::SurfaceInfo> surfaces,
+                                                     std::span<const scene::StrandInfo> strands);
+
+/// What holds the gallbladder.
+surgery::GallbladderAttachment MakeAttachment(const anatomy::Patient& patient,
+                                              std::span<const scene::SurfaceInfo> surfaces,
+                                              std::span<const scene::StrandInfo> strands);
+
+/// \param rest  (nodes) [m]
+training::DissectedAnatomy MakeDissectedAnatomy(const anatomy::Patient& patient,
+                                                std::span<const scene::SurfaceInfo> surfaces,
+                                                std::span<const scene::StrandInfo> strands,
+                                                std::span<const math::Vec3> rest);
+
+/// How many stones a patient has, and how large: by the patient's parameters, else by the scene.
+surgery::GallstoneSettings FindGallstones(const scene::Scene& scene);
+/// Gallstones of a scene; none where it has none.
+/// \param surfaces, rest  what the omentum passes under, where stones come to lie
+/// \return kMeshInvalid
+core::Result<surgery::GallstoneSpill> MakeGallstones(const scene::Scene& scene,
+                                                     std::span<const scene::SurfaceInfo> surfaces,
+                                                     std::span<const math::Vec3> rest);
+
+}  // namespace trocar::simulation

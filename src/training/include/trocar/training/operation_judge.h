@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file operation_judge.h  What the acts of an operation amount to: errors, phases and the critical view.
+/// It only looks: a tick without it leaves the same world.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "trocar/core/state_archive.h"
+#include "trocar/instrument/camera.h"
+#include "trocar/instrument/hand.h"
+#include "trocar/surgery/grasp.h"
+#include "trocar/training/critical_view.h"
+#include "trocar/training/dissection_monitor.h"
+#include "trocar/training/emitted_acts.h"
+#include "trocar/training/operation_error.h"
+#include "trocar/training/triplet.h"
+
+namespace trocar::training {
+
+/// What a tick shows of a hand.
+struct ObservedHand {
+  math::Vec3 p_world_tip;      ///< of the tool that is seen [m]
+  double depth = 0;            ///< of the tool in its trocar [m]
+  bool is_retracting = false;  ///< jaws hold tissue
+  bool is_holding_liver = false;
+  Target held = Target::kNullTarget;                          ///< while retracting
+  surgery::GraspChange change = surgery::GraspChange::kNone;  ///< in this tick
+};
+
+/// What a tick shows of an operation, at its end.
+struct OperationObservation {
+  double time = 0;     ///< [s]
+  double seconds = 0;  ///< of the tick, > 0
+  const EmittedActs& acts;
+  std::array<ObservedHand, instrument::kHandCount> hands;
+  const tissue::TissueState& tissue;
+  const surgery::Vessels& vessels;
+  std::span<const surgery::OrganSurface> organs;
+  instrument::Camera camera;  ///< through which the trainee looks
+  OperationFacts facts;
+  double blood_lost = 0;   ///< since the start [m^3]
+  int spilled_stones = 0;  ///< that lie in the abdomen
+  math::Vec3 p_pool;       ///< where fluids gather, world frame [m]
+};
+
+class OperationJudge {
+ public:
+  /// \param has_critical_view  there is a critical view to be had before anything is clipped
+  OperationJudge(DissectionMonitor dissection, bool has_critical_view);
+
+  /// Once a tick, at its end.
+  /// \note Real-time safe.
+  void Update(const OperationObservation& now) noexcept;
+
+  /// Errors of the last Update.
+  std::span<const ErrorEntry> NewErrors() const { return errors_.Entries().subspan(errors_before_); }
+
+  const ErrorLog& Errors() const { return errors_; }
+  const DissectionFacts& Facts() const { return dissection_.Facts(); }
+  const CriticalViewScore& View() const { return view_.Score(); }
+  /// At some time before.
+  bool WasViewAchieved() const { return was_achieved_; }
+  Phase CurrentPhase() const { return phases_.Current(); }
+  void VisitState(core::StateArchive& archive);
+
+ private:
+  struct HandState {
+    bool is_inserting = false;
+    double blind_seconds = 0;
+  };
+  void JudgeAct(const EmittedAct& act, double time) noexcept;
+  void JudgeHand(int hand, const OperationObservation& now) noexcept;
+  void JudgePhase(const OperationObservation& now) noexcept;
+
+  bool has_view_ = true;  // constant
+  DissectionMonitor dissection_;
+  ErrorLog errors_;
+  CriticalView view_;
+  PhaseRecogniser phases_;
+  std::array<HandState, instrument::kHandCount> hands_;
+  bool was_achieved_ = false, was_completed_ = false;
+  std::size_t errors_before_ = 0;
+};
+
+}  // namespace trocar::training
