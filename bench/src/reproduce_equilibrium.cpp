@@ -80,7 +80,7 @@ Arrival TimeSolver(const GridCase& grid, const tissue::TissueState& truth, Solve
   int count = kind == SolverKind::kAdaptive ? 40 : counts_steps ? 1 : 10;
   for (; count <= kMostIterations; count = std::max(count + 1, static_cast<int>(kGrowth * count))) {
     settings.max_iterations = count;
-    if (counts_steps) settings.max_newton_steps = count;
+    if (counts_steps) settings.newton.max_steps = count;
     solve();
     if (arrival.error < kWantedError || kind == SolverKind::kAdaptive) break;
   }

@@ -124,11 +124,11 @@ ExperimentResult ReproduceTable2(const ExperimentOptions& options, ExperimentSto
   tissue::SolverSettings exact;
   exact.kind = tissue::SolverKind::kNewtonMultigrid;
   exact.max_error = 1e-5;
-  exact.max_newton_steps = 300;
-  exact.max_linear_iterations = 1000;
+  exact.newton.max_steps = 300;
+  exact.newton.max_linear_iterations = 1000;
   tissue::SolverSettings printed;
   printed.kind = tissue::SolverKind::kRelaxationPaper;
-  printed.alpha = kAlpha;
+  printed.relaxation.alpha = kAlpha;
   printed.tolerance = 0;
   printed.max_iterations = options.is_quick ? kQuickIterations : kIterations;
 

@@ -56,7 +56,7 @@ core::Result<double> TimeIteration(const GridCase& grid, const Contender& conten
   tissue::TissueState state = start;
   int counted = 0;
   const auto time = [&](int count) {
-    settings.max_iterations = settings.max_newton_steps = count;
+    settings.max_iterations = settings.newton.max_steps = count;
     return TimeShortestWork(
         options.threads, options.is_quick ? 1 : options.repeats, [&] { state.position = start.position; },
         [&] { counted = solver.Solve(settings, grid.Load(), state).iterations; });

@@ -68,8 +68,8 @@ core::Result<tissue::TissueState> FindTruth(const std::string& name, const GridC
   tissue::SolverSettings exact;
   exact.kind = SolverKind::kNewtonMultigrid;
   exact.max_error = 1e-9;
-  exact.max_newton_steps = 100;
-  exact.max_linear_iterations = 300;
+  exact.newton.max_steps = 100;
+  exact.newton.max_linear_iterations = 300;
   tissue::EquilibriumSolver judge(grid.model, 1);
   tissue::TissueState truth = state;
   (void)judge.Solve(exact, grid.Load(), truth);

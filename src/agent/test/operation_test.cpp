@@ -136,7 +136,7 @@ TEST(Operation, BeginsAgainAsItBeganAndRepeats) {
 // Making the solver anew takes its part of the tick.
 TEST(Operation, ATickThatCutsSolvesHalfAsMuch) {
   Simulation simulation = MakeOperation();
-  const int most = OperationScene()->settings.solver.max_newton_steps;
+  const int most = OperationScene()->settings.solver.newton.max_steps;
   ASSERT_EQ(most, 3);
   auto surgeon = MakeSurgeon("cuts_unclipped", OperationScene(), 1);
   ASSERT_TRUE(surgeon.ok());

@@ -153,9 +153,9 @@ TEST_F(SceneFile, ReadsTheBoundsOfTheSolver) {
   };
   const auto scene = with(R"("max_newton_steps": 3, "max_linear_total": 20, "follow_snap_through": false)");
   ASSERT_TRUE(scene.ok()) << scene.error().Text();
-  EXPECT_EQ(scene->settings.solver.max_newton_steps, 3);
-  EXPECT_EQ(scene->settings.solver.max_linear_total, 20);
-  EXPECT_FALSE(scene->settings.solver.follows_snap_through);
+  EXPECT_EQ(scene->settings.solver.newton.max_steps, 3);
+  EXPECT_EQ(scene->settings.solver.newton.max_linear_total, 20);
+  EXPECT_FALSE(scene->settings.solver.newton.follows_snap_through);
   const auto wrong = with(R"("max_linear_total": 0)");
   ASSERT_FALSE(wrong.ok());
   EXPECT_THAT(wrong.error().Text(), HasSubstr("max_linear_total"));
@@ -167,13 +167,13 @@ TEST(ClampSettings, BoundsEverySettingAndSwallowsNan) {
   settings.gravity = -1;
   settings.head_up = std::nan("");
   settings.solver.max_iterations = -5;
-  settings.solver.max_linear_total = 0;
+  settings.solver.newton.max_linear_total = 0;
   const LiveSettings clamped = ClampSettings(settings);
   EXPECT_EQ(clamped.stiffness_scale, 20.0);
   EXPECT_EQ(clamped.gravity, 0.0);
   EXPECT_EQ(clamped.head_up, 0.0);
   EXPECT_EQ(clamped.solver.max_iterations, 1);
-  EXPECT_EQ(clamped.solver.max_linear_total, 1);
+  EXPECT_EQ(clamped.solver.newton.max_linear_total, 1);
   EXPECT_EQ(ClampSettings({}), LiveSettings{});
 }
 

@@ -15,7 +15,7 @@ namespace {
 
 /// Boxes reach this much beyond their corners, as a part of the largest coordinate: a point interpolated
 /// between the corners may round to just outside of them.
-constexpr double kBoxSlack = 16.0 * std::numeric_limits<double>::epsilon();
+constexpr double kBoxMargin = 16.0 * std::numeric_limits<double>::epsilon();
 
 /// The longest axis of the members' box: 0, 1 or 2.
 int FindLongestAxis(std::span<const Vec3> centroids, std::span<const std::uint32_t> members) {
@@ -142,9 +142,9 @@ void CentroidHierarchy::RefitLeaf(std::span<const Vec3> positions, std::uint32_t
   const auto fit = [](double x, double y, double z, double& low, double& high) {
     low = std::min(std::min(x, y), z);
     high = std::max(std::max(x, y), z);
-    const double slack = kBoxSlack * std::max(std::fabs(low), std::fabs(high));
-    low -= slack;
-    high += slack;
+    const double margin = kBoxMargin * std::max(std::fabs(low), std::fabs(high));
+    low -= margin;
+    high += margin;
   };
   Box& box = boxes_[leaves_[triangle]];
   fit(a.x, b.x, c.x, box.min.x, box.max.x);

@@ -17,7 +17,7 @@ namespace {
 
 /// Lower bounds give this part of the largest coordinate away, so that rounding never excludes the nearest
 /// triangle.
-constexpr double kBoundSlack = 64.0 * std::numeric_limits<double>::epsilon();
+constexpr double kBoundMargin = 64.0 * std::numeric_limits<double>::epsilon();
 
 double LargestCoordinate(const Vec3& a) {
   return std::max({std::fabs(a.x), std::fabs(a.y), std::fabs(a.z)});
@@ -34,10 +34,10 @@ class SegmentBound {
 
   /// [m^2]
   double operator()(const Box& box) const {
-    const double slack =
-        kBoundSlack * std::max({scale_, LargestCoordinate(box.min), LargestCoordinate(box.max)});
-    const auto gap = [slack](double low, double high, double other_low, double other_high) {
-      return std::max(0.0, std::max(low - other_high, other_low - high) - slack);
+    const double margin =
+        kBoundMargin * std::max({scale_, LargestCoordinate(box.min), LargestCoordinate(box.max)});
+    const auto gap = [margin](double low, double high, double other_low, double other_high) {
+      return std::max(0.0, std::max(low - other_high, other_low - high) - margin);
     };
     const double dx = gap(box.min.x, box.max.x, box_.min.x, box_.max.x);
     const double dy = gap(box.min.y, box.max.y, box_.min.y, box_.max.y);
@@ -45,7 +45,7 @@ class SegmentBound {
     const Vec3 centre = 0.5 * (box.min + box.max);
     const double t = geometry::FindNearestOnSegment(centre, segment_.start, segment_.end);
     const double to_sphere = math::Distance(centre, segment_.start + t * (segment_.end - segment_.start)) -
-                             0.5 * math::Distance(box.min, box.max) - slack;
+                             0.5 * math::Distance(box.min, box.max) - margin;
     return std::max(dx * dx + dy * dy + dz * dz, to_sphere > 0.0 ? to_sphere * to_sphere : 0.0);
   }
 

@@ -12,11 +12,11 @@ namespace {
 
 /// A box grown by this share of its largest coordinate holds its corners, which single precision moves by 2^-24
 /// of themselves, and whatever double precision computes between them [-].
-constexpr float kBoxSlack = 4e-7f;
+constexpr float kBoxMargin = 4e-7f;
 /// What three products of a direction and a position lose, as a share of the largest coordinate [-].
-constexpr float kDotSlack = 4e-6f;
+constexpr float kDotMargin = 4e-6f;
 /// Of a squared length [-].
-constexpr float kSquareSlack = 4e-6f;
+constexpr float kSquareMargin = 4e-6f;
 /// Below this, floats lose their relative precision [m], [m^2].
 constexpr float kTiny = 1e-37f;
 
@@ -56,10 +56,10 @@ inline void FitLeaf(const WideLeaf& leaf, const std::uint32_t* leaf_points, cons
     high = Larger(high, p);
   }
   const Quad radius = leaf.largest_radius - Quad{};
-  const Quad slack =
-      kBoxSlack * Larger(Larger(AbsoluteOf(low), AbsoluteOf(high)), radius) + radius + (kTiny - Quad{});
-  low -= slack;
-  high += slack;
+  const Quad margin =
+      kBoxMargin * Larger(Larger(AbsoluteOf(low), AbsoluteOf(high)), radius) + radius + (kTiny - Quad{});
+  low -= margin;
+  high += margin;
   for (int axis = 0; axis < 3; ++axis) {
     node.low[axis][lane] = low[axis];
     node.high[axis][lane] = high[axis];
@@ -119,7 +119,7 @@ inline Vector Direction(const Vector& v) {
 
 inline Lanes SquareOfBound(Lanes distance) {
   const Lanes positive = Larger(distance, Lanes{});
-  return positive * positive * (1.0f - kSquareSlack) - kTiny;
+  return positive * positive * (1.0f - kSquareMargin) - kTiny;
 }
 
 struct PointQuery {
@@ -134,13 +134,13 @@ struct PointQuery {
       return Larger(Larger(Load(node.low[axis]) - at, at - Load(node.high[axis])), Lanes{});
     };
     const Lanes dx = gap(0, p.x), dy = gap(1, p.y), dz = gap(2, p.z);
-    return (dx * dx + dy * dy + dz * dz) * (1.0f - kSquareSlack) - kTiny;
+    return (dx * dx + dy * dy + dz * dz) * (1.0f - kSquareMargin) - kTiny;
   }
   Lanes BoundItems(const Vector& a, const Vector& b, const Vector& c, Lanes item_scale, Lanes radius) const {
     const Vector away = p - FindRoughlyNearest(p, a, b, c);
     const Vector n = Direction(away);
     const Lanes reach = Smaller(Smaller(Dot(n, p - a), Dot(n, p - b)), Dot(n, p - c));
-    return SquareOfBound(reach - kDotSlack * Larger(scale, item_scale) - radius);
+    return SquareOfBound(reach - kDotMargin * Larger(scale, item_scale) - radius);
   }
 };
 
@@ -162,10 +162,10 @@ struct SegmentQuery {
   Lanes BoundBoxes(const WideNode& node) const {
     const Vector box_low{Load(node.low[0]), Load(node.low[1]), Load(node.low[2])};
     const Vector box_high{Load(node.high[0]), Load(node.high[1]), Load(node.high[2])};
-    const Lanes slack =
-        kDotSlack * Larger(scale, Larger(LargestCoordinate(box_low), LargestCoordinate(box_high)));
+    const Lanes margin =
+        kDotMargin * Larger(scale, Larger(LargestCoordinate(box_low), LargestCoordinate(box_high)));
     const auto gap = [&](Lanes a_low, Lanes a_high, Lanes b_low, Lanes b_high) {
-      return Larger(Larger(a_low - b_high, b_low - a_high) - slack, Lanes{});
+      return Larger(Larger(a_low - b_high, b_low - a_high) - margin, Lanes{});
     };
     const Lanes dx = gap(box_low.x, box_high.x, low.x, high.x),
                 dy = gap(box_low.y, box_high.y, low.y, high.y),
@@ -174,9 +174,9 @@ struct SegmentQuery {
     const Vector away = centre - FindOnSegment(from, along, length2, centre);
     const Vector n = Direction(away);
     const Lanes box_reach = Absolute(n.x) * half.x + Absolute(n.y) * half.y + Absolute(n.z) * half.z;
-    const Lanes apart = Smaller(Dot(n, centre - from), Dot(n, centre - to)) - box_reach - slack;
+    const Lanes apart = Smaller(Dot(n, centre - from), Dot(n, centre - to)) - box_reach - margin;
     // a direction that is not a number says nothing
-    return Larger(SquareOfBound(apart), (dx * dx + dy * dy + dz * dz) * (1.0f - kSquareSlack) - kTiny);
+    return Larger(SquareOfBound(apart), (dx * dx + dy * dy + dz * dz) * (1.0f - kSquareMargin) - kTiny);
   }
   Lanes BoundItems(const Vector& a, const Vector& b, const Vector& c, Lanes item_scale, Lanes radius) const {
     // from the middle of the triangle to the segment, back to the triangle, and to the segment again
@@ -188,7 +188,7 @@ struct SegmentQuery {
       return Smaller(Dot(n, from - corner), Dot(n, to - corner));
     };
     const Lanes reach = Smaller(Smaller(to_corner(a), to_corner(b)), to_corner(c));
-    return SquareOfBound(reach - kDotSlack * Larger(scale, item_scale) - radius);
+    return SquareOfBound(reach - kDotMargin * Larger(scale, item_scale) - radius);
   }
 };
 

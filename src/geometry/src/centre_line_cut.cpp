@@ -29,7 +29,7 @@ void CentreLineGraph::ReserveCuts(std::size_t count) {
   edges.reserve(edges.size() + count);
 }
 
-std::size_t CentreLineGraph::RoomForCuts() const {
+std::size_t CentreLineGraph::CutCapacity() const {
   const std::size_t points =
       std::min({rest.capacity(), positions.capacity(), radii.capacity(), is_cut_end.capacity()});
   return std::min((points - rest.size()) / 2, edges.capacity() - edges.size());
@@ -67,7 +67,7 @@ std::size_t CutCentreLines(const FlatSweep& sweep, CentreLineGraph& graph,
                  math::Distance(graph.positions[cut.ends[0]], here) < kShortest * length + kLeastStump;
         });
     if (is_cut_already) continue;
-    if (graph.RoomForCuts() == 0) break;
+    if (graph.CutCapacity() == 0) break;
     CentreLineCut cut{e, static_cast<std::uint32_t>(graph.edges.size()), a,
                       b, std::clamp(*at, kShortest, 1.0 - kShortest),    {}};
     for (auto& end : cut.ends) end = AddEnd(graph, a, b, cut.t);

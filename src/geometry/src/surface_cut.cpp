@@ -324,7 +324,7 @@ void VisitState(core::StateArchive& archive, CutFront& front) {
   archive.Field("count", front.count);
   if (archive.IsRestoring() && front.count > CutFront::kCapacity) {
     front.count = 0;
-    archive.Fail("has more tips than there is room for");
+    archive.Fail("has more tips than the capacity");
   }
 }
 

@@ -65,8 +65,8 @@ class PressedSheet {
     tissue::SolverSettings exact;
     exact.kind = tissue::SolverKind::kNewtonMultigrid;
     exact.max_error = 1e-10;
-    exact.max_newton_steps = 200;
-    exact.max_linear_iterations = 300;
+    exact.newton.max_steps = 200;
+    exact.newton.max_linear_iterations = 300;
     tissue::EquilibriumSolver solver(model, 1);
     solver.Solve(exact, load, state);
     force = solver.CalcReaction(load, state, held);

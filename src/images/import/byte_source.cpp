@@ -62,11 +62,11 @@ class DeflatedSource : public ByteSource {
         stream_.avail_in = static_cast<uInt>(packed_.Read(buffer_.data(), buffer_.size()));
         if (stream_.avail_in == 0) break;
       }
-      const std::size_t room = std::min(bytes - have, kMostAtOnce);
+      const std::size_t capacity = std::min(bytes - have, kMostAtOnce);
       stream_.next_out = static_cast<Bytef*>(to) + have;
-      stream_.avail_out = static_cast<uInt>(room);
+      stream_.avail_out = static_cast<uInt>(capacity);
       const int state = ::inflate(&stream_, Z_NO_FLUSH);
-      have += room - stream_.avail_out;
+      have += capacity - stream_.avail_out;
       if (state == Z_STREAM_END) {
         StartNextMember();
       } else if (state != Z_OK && state != Z_BUF_ERROR) {

@@ -76,13 +76,13 @@ namespace {
 /// Memory of the other program, for as long as one picture is decoded.
 class SampleMemory {
  public:
-  SampleMemory(int fd, std::uint64_t offset, std::uint64_t room) {
+  SampleMemory(int fd, std::uint64_t offset, std::uint64_t capacity) {
     // a mapping begins with a page
     const auto page = static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
     const std::uint64_t begin = offset / page * page;
     struct stat info {};
     std::uint64_t end = 0;
-    if (__builtin_add_overflow(offset, room, &end) || ::fstat(fd, &info) != 0 ||
+    if (__builtin_add_overflow(offset, capacity, &end) || ::fstat(fd, &info) != 0 ||
         static_cast<std::uint64_t>(info.st_size) < end) {
       throw Failure{ErrorCode::kImportCrashed, "the memory for its samples is too small"};
     }
@@ -142,9 +142,9 @@ void Answer(const ImportRequest& request, std::span<const Descriptor> descriptor
   if (request.has_data_file != 0) job.data_file = Measure(descriptors[1]);
   std::optional<SampleMemory> memory;
   if (request.operation == ImportOperation::kDecode) {
-    memory.emplace(descriptors[request.has_data_file != 0 ? 2 : 1].Get(), request.offset, request.room);
+    memory.emplace(descriptors[request.has_data_file != 0 ? 2 : 1].Get(), request.offset, request.capacity);
     job.samples = memory->Samples();
-    job.request.most_bytes = std::min(request.most_bytes, request.room);
+    job.request.most_bytes = std::min(request.most_bytes, request.capacity);
   }
   Read(job, reply);
 }

@@ -158,7 +158,7 @@ core::Status ImportPool::Decode(const ImportFile& file, const ImportFile* data_f
   request.is_size_believed = limits_.is_size_believed;
   request.seconds = static_cast<std::uint32_t>(seconds) + kGraceSeconds;
   request.offset = offset;
-  request.room = bytes;
+  request.capacity = bytes;
   std::vector<int> descriptors = {file.Get()};
   if (data_file != nullptr) descriptors.push_back(data_file->Get());
   descriptors.push_back(buffer.Get());

@@ -54,7 +54,7 @@ struct ImportRequest {
   std::uint32_t is_size_believed = 0;  ///< 1: the header is not compared with the bytes present (tests only)
   std::uint32_t seconds = 0;           ///< the reader ends itself after this time
   std::uint64_t offset = 0;            ///< kDecode: where in the memory the samples go [bytes]
-  std::uint64_t room = 0;              ///< kDecode: how many bytes there are from there
+  std::uint64_t capacity = 0;          ///< kDecode: how many bytes there are from there
 };
 
 /// What a header says. Lengths are in millimetres, directions and places in LPS.

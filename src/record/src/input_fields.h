@@ -9,18 +9,30 @@
 
 namespace trocar::tissue {
 
+inline void VisitState(core::StateArchive& archive, RelaxationSettings& settings) {
+  archive.Field("alpha", settings.alpha);
+}
+
+inline void VisitState(core::StateArchive& archive, NewtonSettings& settings) {
+  archive.Field("max_steps", settings.max_steps);
+  archive.Field("max_linear_iterations", settings.max_linear_iterations);
+  archive.Field("max_linear_total", settings.max_linear_total);
+  archive.Field("follows_snap_through", settings.follows_snap_through);
+}
+
+inline void VisitState(core::StateArchive& archive, OuterIterationSettings& settings) {
+  archive.Field("law_error", settings.law_error);
+  archive.Field("max_count", settings.max_count);
+}
+
 inline void VisitState(core::StateArchive& archive, SolverSettings& settings) {
   archive.Field("kind", settings.kind);
   archive.Field("max_iterations", settings.max_iterations);
   archive.Field("tolerance", settings.tolerance);
-  archive.Field("alpha", settings.alpha);
+  archive.Field("relaxation", settings.relaxation);
   archive.Field("max_error", settings.max_error);
-  archive.Field("max_newton_steps", settings.max_newton_steps);
-  archive.Field("max_linear_iterations", settings.max_linear_iterations);
-  archive.Field("max_linear_total", settings.max_linear_total);
-  archive.Field("follows_snap_through", settings.follows_snap_through);
-  archive.Field("law_error", settings.law_error);
-  archive.Field("max_outer_iterations", settings.max_outer_iterations);
+  archive.Field("newton", settings.newton);
+  archive.Field("outer", settings.outer);
 }
 
 }  // namespace trocar::tissue

@@ -150,13 +150,13 @@ core::Result<Renderer> Renderer::Make(const Looks& looks) {
 }
 
 SurfaceId Renderer::AddSurface(std::span<const Triangle> triangles, std::span<const Vec3> rest,
-                               Material material, std::span<const double> openness) {
-  return content_->surfaces.Add(triangles, rest, material, openness);
+                               Material material, std::span<const double> ambient_occlusion) {
+  return content_->surfaces.Add(triangles, rest, material, ambient_occlusion);
 }
 
 SurfaceId Renderer::AddSurface(const geometry::TriangleMesh& mesh, Material material,
-                               std::span<const double> openness) {
-  return AddSurface(mesh.triangles, mesh.positions, material, openness);
+                               std::span<const double> ambient_occlusion) {
+  return AddSurface(mesh.triangles, mesh.positions, material, ambient_occlusion);
 }
 
 void Renderer::UpdateSurface(SurfaceId id, std::span<const Vec3> positions, std::span<const Vec3> normals) {

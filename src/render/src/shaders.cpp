@@ -10,7 +10,7 @@ namespace trocar::render {
 const char* const kSurfaceVertexShader = R"(#version 330 core
 layout(location = 0) in vec3 a_position;
 layout(location = 1) in vec3 a_normal;
-layout(location = 2) in vec4 a_rest;  // rest position, openness
+layout(location = 2) in vec4 a_rest;  // rest position, ambient occlusion
 layout(location = 3) in vec4 a_mark;  // blanching, charring, film of blood, film of bile
 uniform mat4 u_camera_from_surface;
 uniform mat3 u_rotation;              // of the above, without its scale

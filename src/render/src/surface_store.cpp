@@ -17,7 +17,7 @@ using math::Vec3;
 /// A vertex of the constant buffer.
 struct RestVertex {
   std::array<float, 3> rest;
-  float openness;
+  float ambient_occlusion;
 };
 
 bool IsInUse(const Surface& surface) {
@@ -40,8 +40,8 @@ SurfaceStore::~SurfaceStore() {
 }
 
 SurfaceId SurfaceStore::Add(std::span<const Triangle> triangles, std::span<const Vec3> rest,
-                            Material material, std::span<const double> openness) {
-  TROCAR_ASSERT(openness.empty() || openness.size() == rest.size());
+                            Material material, std::span<const double> ambient_occlusion) {
+  TROCAR_ASSERT(ambient_occlusion.empty() || ambient_occlusion.size() == rest.size());
   auto free_place = std::find_if_not(surfaces_.begin(), surfaces_.end(), IsInUse);
   if (free_place == surfaces_.end()) free_place = surfaces_.insert(surfaces_.end(), Surface{});
   Surface& surface = *free_place;
@@ -62,7 +62,7 @@ SurfaceId SurfaceStore::Add(std::span<const Triangle> triangles, std::span<const
   glVertexAttribPointer(2, 4, GL_FLOAT, GL_FALSE, sizeof(RestVertex), offset(0));
   std::vector<RestVertex> rest_vertices(rest.size());
   for (std::size_t i = 0; i < rest.size(); ++i) {
-    rest_vertices[i] = {ToFloat(rest[i]), openness.empty() ? 1.0f : ToFloat(openness[i])};
+    rest_vertices[i] = {ToFloat(rest[i]), ambient_occlusion.empty() ? 1.0f : ToFloat(ambient_occlusion[i])};
   }
   glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(rest_vertices.size() * sizeof(RestVertex)),
                rest_vertices.data(), GL_STATIC_DRAW);

@@ -25,7 +25,7 @@ struct Surface {
   std::size_t vertex_count = 0;
 };
 
-/// Attributes of a vertex: 0 position, 1 normal, 2 rest position and openness, 3 marks.
+/// Attributes of a vertex: 0 position, 1 normal, 2 rest position and ambient_occlusion, 3 marks.
 /// Needs the OpenGL context of the renderer that owns it.
 class SurfaceStore {
  public:
@@ -36,7 +36,7 @@ class SurfaceStore {
 
   /// What the renderer's members of the same names say.
   SurfaceId Add(std::span<const geometry::Triangle> triangles, std::span<const math::Vec3> rest,
-                Material material, std::span<const double> openness);
+                Material material, std::span<const double> ambient_occlusion);
   void Remove(SurfaceId id);
 
   /// \return nullptr for what was removed or never there

@@ -24,10 +24,12 @@ LiveSettings ClampSettings(const LiveSettings& settings) noexcept {
   clamped.solver.max_iterations = std::clamp(settings.solver.max_iterations, 1, 100'000);
   clamped.solver.tolerance = ClampOr(settings.solver.tolerance, 0.0, 1.0, normal.solver.tolerance);
   clamped.solver.max_error = ClampOr(settings.solver.max_error, 1e-9, 1.0, normal.solver.max_error);
-  clamped.solver.max_newton_steps = std::clamp(settings.solver.max_newton_steps, 1, 1000);
-  clamped.solver.max_linear_total = std::clamp(settings.solver.max_linear_total, 1, 100'000);
-  clamped.solver.max_linear_iterations = std::clamp(settings.solver.max_linear_iterations, 1, 10'000);
-  clamped.solver.alpha = ClampOr(settings.solver.alpha, 0.0, 1e6, normal.solver.alpha);
+  clamped.solver.newton.max_steps = std::clamp(settings.solver.newton.max_steps, 1, 1000);
+  clamped.solver.newton.max_linear_total = std::clamp(settings.solver.newton.max_linear_total, 1, 100'000);
+  clamped.solver.newton.max_linear_iterations =
+      std::clamp(settings.solver.newton.max_linear_iterations, 1, 10'000);
+  clamped.solver.relaxation.alpha =
+      ClampOr(settings.solver.relaxation.alpha, 0.0, 1e6, normal.solver.relaxation.alpha);
   return clamped;
 }
 

@@ -179,12 +179,12 @@ void ReadSettings(const core::JsonView& root, LiveSettings& settings) {
       view.IntegerOr("max_iterations", settings.solver.max_iterations, range::kMaxIterations);
   settings.solver.tolerance = view.NumberOr("tolerance", settings.solver.tolerance, range::kTolerance);
   settings.solver.max_error = view.NumberOr("max_error", settings.solver.max_error, range::kMaxError);
-  settings.solver.max_newton_steps =
-      view.IntegerOr("max_newton_steps", settings.solver.max_newton_steps, range::kMaxNewtonSteps);
-  settings.solver.max_linear_total =
-      view.IntegerOr("max_linear_total", settings.solver.max_linear_total, range::kMaxLinearTotal);
-  settings.solver.follows_snap_through =
-      view.BooleanOr("follow_snap_through", settings.solver.follows_snap_through);
+  settings.solver.newton.max_steps =
+      view.IntegerOr("max_newton_steps", settings.solver.newton.max_steps, range::kMaxNewtonSteps);
+  settings.solver.newton.max_linear_total =
+      view.IntegerOr("max_linear_total", settings.solver.newton.max_linear_total, range::kMaxLinearTotal);
+  settings.solver.newton.follows_snap_through =
+      view.BooleanOr("follow_snap_through", settings.solver.newton.follows_snap_through);
   const std::string solver = view.TextOr("solver", "adaptive");
   if (const auto kind = tissue::FindSolverKind(solver); kind) {
     settings.solver.kind = *kind;

@@ -25,7 +25,8 @@ void Simulation::Content::MakeSolver(SolveOn solve_on) {
     tissue::SolverOptions options;
     options.threads = thread_count;
     if (GetScene().operation) options.spare_share = kSpareShareForCuts;
-    solver = std::make_unique<tissue::EquilibriumSolver>(tissue_model, options);
+    solver = std::make_unique<tissue::EquilibriumSolver>(tissue_model, options, model->solver_model);
+    solver->Prepare(GetScene().settings.solver, model->tissue->conservation.organs.size());
     return;
   }
   auto made = std::make_unique<tissue_cuda::GpuOrCpuSolver>(tissue_model, thread_count,
@@ -127,7 +128,7 @@ void Simulation::Content::Begin() {
   MoveCamera(home);
   HoldCamera();
   Publish();
-  Save(start);
+  std::call_once(model->has_start, [this] { Save(model->start); });
 }
 
 core::Result<Simulation> Simulation::Make(std::shared_ptr<const SimulationModel> model, int threads,
@@ -238,10 +239,10 @@ double Simulation::CalcEquilibriumError() const {
   tissue::SolverSettings exact;
   exact.kind = tissue::SolverKind::kNewtonMultigrid;
   exact.max_error = 1e-7;
-  exact.max_newton_steps = 200;
-  exact.max_linear_iterations = 300;
-  exact.law_error = 1e-7;
-  exact.max_outer_iterations = 50;
+  exact.newton.max_steps = 200;
+  exact.newton.max_linear_iterations = 300;
+  exact.outer.law_error = 1e-7;
+  exact.outer.max_count = 50;
   tissue::EquilibriumSolver judge(c.world.topology.Model(), 1);
   const tissue::SolveReport solved =
       tissue::FindConservedEquilibrium(judge, exact, *c.conservation, c.tick.load, state, c.world.conserved);

@@ -91,7 +91,6 @@ struct Simulation::Content {
   int thread_count = 1;
   Snapshot snapshot;
   std::unique_ptr<haptics::PatchCutter> patch_cutter;
-  std::vector<std::byte> start;  // the state of the first tick
 
   const Scene& GetScene() const noexcept { return *model->scene; }
   const instrument::Tool& ToolOf(int hand) const noexcept {

@@ -47,6 +47,7 @@ core::Status Fill(const tissue::TissueModel& tissue_model, int threads, Simulati
   options.threads = threads;
   if (model.scene->operation) options.spare_share = kSpareShareForCuts;
   tissue::EquilibriumSolver solver(tissue_model, options);
+  model.solver_model = solver.ShareModel();
   tissue::Conservation conservation(tissue_model, model.tissue->conservation);
   model.tissue_at_start = tissue::MakeRestState(tissue_model);
   model.conserved_at_start = conservation.MakeState(model.tissue_at_start);

@@ -2,8 +2,11 @@
 /// \file simulation_model.h  What is constant while a surgery runs, shared by any number of simulations.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <mutex>
+#include <vector>
 
 #include "topology.h"
 #include "trocar/scene/patient_tissue.h"
@@ -26,6 +29,11 @@ struct SimulationModel {
   tissue::TissueState tissue_at_start;  ///< at rest, tense organs filled
   tissue::ConservationState conserved_at_start;
   std::uint64_t fingerprint = 0;  ///< of all that makes a state one of this model
+  /// What the solvers make of the uncut tissue.
+  std::shared_ptr<const tissue::SolverModel> solver_model;
+  /// State of the first tick. The first simulation of the model saves it: it is the same in all of them.
+  mutable std::vector<std::byte> start;
+  mutable std::once_flag has_start;
 };
 
 }  // namespace trocar::simulation

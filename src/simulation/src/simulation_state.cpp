@@ -154,7 +154,7 @@ core::Status Simulation::Content::Restore(core::StateArchive& archive) {
 }
 
 void Simulation::Reset() {
-  const core::Status restored = Restore(content_->start);
+  const core::Status restored = Restore(content_->model->start);
   TROCAR_ASSERT(restored.ok());  // saved by this simulation
 }
 

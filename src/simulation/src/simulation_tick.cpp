@@ -191,8 +191,8 @@ void Simulation::Content::SolveTissue() noexcept {
   tissue::SolverSettings bounds = tick.settings.solver;
   if (tick.has_cut) {
     // making the solver anew has taken its part of the tick
-    bounds.max_newton_steps = (bounds.max_newton_steps + 1) / 2;
-    bounds.max_linear_total = (bounds.max_linear_total + 1) / 2;
+    bounds.newton.max_steps = (bounds.newton.max_steps + 1) / 2;
+    bounds.newton.max_linear_total = (bounds.newton.max_linear_total + 1) / 2;
   }
   tick.report = tissue::SolveConserving(*solver, bounds, GetScene().tick_seconds, *conservation, tick.load,
                                         w.tissue, w.conserved);

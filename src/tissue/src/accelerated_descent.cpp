@@ -88,13 +88,10 @@ int RunCycles(System& system, const Kernels& kernels, Workers& workers, int max_
 
 }  // namespace
 
-AcceleratedDescent::AcceleratedDescent(const TissueModel& model, const OrderedModel& ordered, bool use_grid)
-    : ordered_(&ordered), use_grid_(use_grid) {
-  SetModel(model);
-}
-
-void AcceleratedDescent::SetModel(const TissueModel& model) {
+void AcceleratedDescent::SetModel(const TissueModel& model, const OrderedModel& ordered,
+                                  const std::optional<GridShape>& grid_shape) {
   model_ = &model;
+  ordered_ = &ordered;
   edge_length_ = model.half_springs.empty() ? 0.0 : model.half_springs.front().rest_length;
   lowest_ratio_ = INFINITY;
   for (std::size_t i = 0; i < model.Size(); ++i) {
@@ -106,16 +103,18 @@ void AcceleratedDescent::SetModel(const TissueModel& model) {
   }
   grids_.clear();
   loads_.clear();
-  const auto shape = use_grid_ ? FindGridShape(model) : std::nullopt;
-  if (!shape) {
+  if (!grid_shape) {
     ordered_load_.constant.resize(model.Size());
     ordered_load_.is_free.resize(model.Size());
     ordered_load_.contacts.reserve(kMaxContacts);
-    if (slices_ == nullptr) slices_ = std::make_unique<SpringSlices>();
+    if (slices_ == nullptr) {
+      slices_ = std::make_unique<SpringSlices>();
+      slices_->Reserve(ordered, spare_share_);
+    }
     slices_->SetModel(*ordered_);
     return;
   }
-  GridModel grid = MakeGridModel(model, *shape);
+  GridModel grid = MakeGridModel(model, *grid_shape);
   while (true) {
     grids_.emplace_back(grid);
     loads_.push_back({std::vector<Vec3>(grid.Size()), std::vector<double>(grid.Size()),
@@ -123,10 +122,6 @@ void AcceleratedDescent::SetModel(const TissueModel& model) {
     if (std::min(grid.shape.rows, grid.shape.columns) < 2 * kSmallestGrid) break;
     grid = MakeCoarseGrid(grid);
   }
-}
-
-void AcceleratedDescent::Reserve(double share) {
-  if (slices_ != nullptr) slices_->Reserve(share);
 }
 
 bool AcceleratedDescent::IsCold(const TissueState& state) const noexcept {
@@ -190,7 +185,7 @@ void AcceleratedDescent::SetGridLoads(const TissueLoad& load, const TissueState&
 }
 
 SolveReport AcceleratedDescent::SolveGrid(const Kernels& kernels, Workers& workers,
-                                          const SolverSettings& settings, const TissueLoad& load,
+                                          const AcceleratedSettings& settings, const TissueLoad& load,
                                           TissueState& state, ConstraintSet* constraints) noexcept {
   // well conditioned, the finest grid alone is as fast
   const std::size_t levels = IsCold(state) && !IsWellConditioned(load) ? grids_.size() : 1;
@@ -239,13 +234,13 @@ SolveReport AcceleratedDescent::SolveGrid(const Kernels& kernels, Workers& worke
 }
 
 SolveReport AcceleratedDescent::SolveSlices(const Kernels& kernels, Workers& workers,
-                                            const SolverSettings& settings, const TissueLoad& load,
+                                            const AcceleratedSettings& settings, const TissueLoad& load,
                                             TissueState& state, ConstraintSet* constraints) noexcept {
   SolveReport report;
   const std::uint32_t n = ordered_->Size();
   const auto read_state = [&] {
     SetOrderedLoad(*ordered_, load, state, ordered_load_);
-    slices_->SetLoad(*ordered_, ordered_load_, state.strand_is_intact);
+    slices_->SetLoad(*ordered_, *springs_, ordered_load_, state.strand_is_intact);
     for (std::uint32_t i = 0; i < n; ++i) {
       slices_->SetDisplacement(i, state.position[ordered_->old_of_new[i]] - ordered_->rest[i]);
     }
@@ -259,7 +254,7 @@ SolveReport AcceleratedDescent::SolveSlices(const Kernels& kernels, Workers& wor
   read_state();
   const auto refresh = [&] {
     if (ordered_load_.contacts.empty()) return;
-    slices_->SetLoad(*ordered_, ordered_load_, state.strand_is_intact);
+    slices_->SetLoad(*ordered_, *springs_, ordered_load_, state.strand_is_intact);
     for (const ContactSpring& contact : ordered_load_.contacts) {
       double along = 0;
       for (int corner = 0; corner < 3; ++corner) {
@@ -296,7 +291,7 @@ SolveReport AcceleratedDescent::SolveSlices(const Kernels& kernels, Workers& wor
 }
 
 SolveReport AcceleratedDescent::Solve(const Kernels& kernels, Workers& workers,
-                                      const SolverSettings& settings, const TissueLoad& load,
+                                      const AcceleratedSettings& settings, const TissueLoad& load,
                                       TissueState& state, ConstraintSet* constraints) noexcept {
   return IsStructured() ? SolveGrid(kernels, workers, settings, load, state, constraints)
                         : SolveSlices(kernels, workers, settings, load, state, constraints);

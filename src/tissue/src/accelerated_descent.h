@@ -11,6 +11,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "linearisation.h"
@@ -20,15 +21,25 @@
 
 namespace trocar::tissue {
 
+/// What ends it.
+struct AcceleratedSettings {
+  int max_iterations;
+  double max_error;  ///< see SolverSettings [-]
+};
+
 class AcceleratedDescent {
  public:
-  /// \param ordered   the same model in the solvers' order; must outlive this
-  /// \param use_grid  take a structured mesh as a stencil where the model is one
-  AcceleratedDescent(const TissueModel& model, const OrderedModel& ordered, bool use_grid);
-  /// Goes on with another model of as many nodes; `ordered` has followed.
-  /// \note Allocates nothing where Reserve() was enough and no structured mesh is or was there.
-  void SetModel(const TissueModel& model);
-  void Reserve(double share);
+  /// \param springs      in the solvers' order, as they are linearised; must outlive this
+  /// \param spare_share  capacity for so many times more links
+  AcceleratedDescent(const OrderedSprings& springs, double spare_share)
+      : springs_(&springs), spare_share_(spare_share) {}
+  /// Takes a model, or another of as many nodes.
+  ///
+  /// \param ordered     the same in the solvers' order; both must outlive this
+  /// \param grid_shape  where it is a structured mesh and is to be taken as a stencil
+  /// \note Allocates nothing where the spare share was enough and no structured mesh is or was there.
+  void SetModel(const TissueModel& model, const OrderedModel& ordered,
+                const std::optional<GridShape>& grid_shape);
 
   bool IsStructured() const { return !grids_.empty(); }
   /// True where every free node is at rest, and a coarse-to-fine start will be made.
@@ -37,19 +48,20 @@ class AcceleratedDescent {
   bool IsWellConditioned(const TissueLoad& load) const noexcept;
   /// Moves the free nodes from where they are. Contacts count by their force at the start of every cycle.
   /// \note Real-time safe; bounded by settings.max_iterations.
-  SolveReport Solve(const Kernels& kernels, Workers& workers, const SolverSettings& settings,
+  SolveReport Solve(const Kernels& kernels, Workers& workers, const AcceleratedSettings& settings,
                     const TissueLoad& load, TissueState& state, ConstraintSet* constraints) noexcept;
 
  private:
-  SolveReport SolveGrid(const Kernels& kernels, Workers& workers, const SolverSettings& settings,
+  SolveReport SolveGrid(const Kernels& kernels, Workers& workers, const AcceleratedSettings& settings,
                         const TissueLoad& load, TissueState& state, ConstraintSet* constraints) noexcept;
-  SolveReport SolveSlices(const Kernels& kernels, Workers& workers, const SolverSettings& settings,
+  SolveReport SolveSlices(const Kernels& kernels, Workers& workers, const AcceleratedSettings& settings,
                           const TissueLoad& load, TissueState& state, ConstraintSet* constraints) noexcept;
   void SetGridLoads(const TissueLoad& load, const TissueState& state, std::size_t levels) noexcept;
 
-  const TissueModel* model_;
-  const OrderedModel* ordered_;
-  bool use_grid_;
+  const OrderedSprings* springs_;
+  double spare_share_;
+  const TissueModel* model_ = nullptr;
+  const OrderedModel* ordered_ = nullptr;
   double edge_length_ = 0;   // of the first spring [m]
   double lowest_ratio_ = 0;  // smallest k_virtual / sum k of a node [-]
   // structured

@@ -23,18 +23,15 @@ SolveReport SolveAdaptive(EquilibriumSolver::Content& c, const SolverSettings& s
   // A whole Newton step between two projections undoes constraints whose gradients it does not know, and pressure
   // and shape then swing about each other. The recurrence projects every few iterations.
   if (constraints != nullptr && constraints->Nodes().empty())
-    return SolveChebyshevJacobiWang2015(c, settings, load, state, constraints);
+    return c.SolveChebyshev(settings, load, state, constraints);
   SolveReport descent;
-  if (constraints == nullptr && c.accelerated->IsStructured() && c.spring_linearisation->IsPlain()) {
-    if (c.accelerated->IsCold(state) || c.accelerated->IsWellConditioned(load)) {
-      SolverSettings long_enough = settings;
-      long_enough.max_iterations = kDescentIterations;
-      descent = c.accelerated->Solve(*c.kernels, *c.workers, long_enough, load, state, nullptr);
+  if (constraints == nullptr && c.grid.has_value() && c.spring_linearisation.IsPlain()) {
+    if (c.Accelerated().IsCold(state) || c.Accelerated().IsWellConditioned(load)) {
+      descent = c.SolveAccelerated(kDescentIterations, settings.max_error, load, state, nullptr);
       if (descent.converged) return descent;
     }
   }
-  SolveReport report =
-      c.newton->Solve(*c.kernels, *c.workers, settings, load, state, constraints, extrapolation);
+  SolveReport report = c.SolveNewton(settings, load, state, constraints, extrapolation);
   report.coarse_levels = descent.coarse_levels;
   report.iterations += descent.iterations;
   return report;

@@ -9,13 +9,16 @@ namespace trocar::tissue {
 /// Spare elements beyond the share: small levels grow by more than their share.
 inline constexpr std::size_t kLeastCapacity = 1024;
 
-/// Spare capacity of `share` times the elements there are, and kLeastCapacity more.
+/// Capacity for `share` times more elements than `count`, and kLeastCapacity more; without a share for `count`.
+inline std::size_t AddSpare(std::size_t count, double share) {
+  if (!(share > 0.0)) return count;
+  return count + static_cast<std::size_t>(share * static_cast<double>(count)) + kLeastCapacity;
+}
+
+/// Capacity in each of the vectors for `count` elements and the share.
 template <typename... Vectors>
-void ReserveMore(double share, Vectors&... vectors) {
-  const auto reserve = [share](auto& v) {
-    v.reserve(v.size() + static_cast<std::size_t>(share * static_cast<double>(v.size())) + kLeastCapacity);
-  };
-  (reserve(vectors), ...);
+void ReserveWithSpare(std::size_t count, double share, Vectors&... vectors) {
+  (vectors.reserve(AddSpare(count, share)), ...);
 }
 
 }  // namespace trocar::tissue

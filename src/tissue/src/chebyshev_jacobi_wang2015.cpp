@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "capacity.h"
 #include "solver_content.h"
 
 namespace trocar::tissue {
@@ -68,27 +69,25 @@ double Larger(double a, double b) noexcept {
 
 /// Runs work(chunk, first, last) over all nodes in chunks of fixed size, on one thread or several.
 template <typename Work>
-void ForEachChunk(EquilibriumSolver::Content& content, std::uint32_t n, const Work& work) noexcept {
+void ForEachChunk(Workers& workers, std::uint32_t n, const Work& work) noexcept {
   const std::uint32_t size = CalcChunk(n);
-  content.workers->Run((n + size - 1) / size, [&](std::uint32_t chunk) {
-    work(chunk, chunk * size, std::min(n, (chunk + 1) * size));
-  });
+  workers.Run((n + size - 1) / size,
+              [&](std::uint32_t chunk) { work(chunk, chunk * size, std::min(n, (chunk + 1) * size)); });
 }
 
 /// Refills the forces that change with the positions of few nodes: strands and contacts.
-void SetOtherForces(EquilibriumSolver::Content& content, const TissueLoad& load,
-                    const TissueState& state) noexcept {
-  const TissueModel& model = *content.model;
+void SetOtherForces(const TissueModel& model, const TissueLoad& load, const TissueState& state,
+                    ChebyshevScratch& scratch) noexcept {
   const auto set = [&](std::uint32_t i, const Vec3& force) {
     for (int axis = 0; axis < 3; ++axis)
-      content.slices[i / kLanes].other_force[axis][i % kLanes] = force[axis];
+      scratch.slices[i / kLanes].other_force[axis][i % kLanes] = force[axis];
   };
   const auto add = [&](std::uint32_t i, const Vec3& force) {
     for (int axis = 0; axis < 3; ++axis)
-      content.slices[i / kLanes].other_force[axis][i % kLanes] += force[axis];
+      scratch.slices[i / kLanes].other_force[axis][i % kLanes] += force[axis];
   };
-  for (const std::uint32_t i : content.touched_nodes) set(i, content.constant_force[i]);
-  for (const std::uint32_t i : content.strand_nodes) {
+  for (const std::uint32_t i : scratch.touched_nodes) set(i, scratch.constant_force[i]);
+  for (const std::uint32_t i : scratch.strand_nodes) {
     Vec3 pull;
     for (auto h = model.strand_starts[i]; h < model.strand_starts[i + 1]; ++h) {
       const auto& strand = model.half_strands[h];
@@ -96,7 +95,7 @@ void SetOtherForces(EquilibriumSolver::Content& content, const TissueLoad& load,
       pull += strand.stiffness * ((state.position[strand.other] - state.position[i]) -
                                   (model.rest[strand.other] - model.rest[i]));
     }
-    set(i, content.constant_force[i] + load.stiffness_scale * pull);
+    set(i, scratch.constant_force[i] + load.stiffness_scale * pull);
   }
   for (const ContactSpring& contact : load.contacts) {
     const double depth = CalcContactDepth(contact, state.position);
@@ -107,45 +106,42 @@ void SetOtherForces(EquilibriumSolver::Content& content, const TissueLoad& load,
 }
 
 /// Weight and external force of every node; strands and contacts are added in every iteration.
-void SetConstantForces(EquilibriumSolver::Content& content, const TissueLoad& load) noexcept {
-  const TissueModel& model = *content.model;
+void SetConstantForces(const TissueModel& model, const TissueLoad& load, ChebyshevScratch& scratch) noexcept {
   for (std::uint32_t i = 0; i < model.Size(); ++i) {
     Vec3 force = model.mass[i] * load.gravity;
     if (!load.external_force.empty()) force += load.external_force[i];
-    content.constant_force[i] = force;
+    scratch.constant_force[i] = force;
     for (int axis = 0; axis < 3; ++axis)
-      content.slices[i / kLanes].other_force[axis][i % kLanes] = force[axis];
+      scratch.slices[i / kLanes].other_force[axis][i % kLanes] = force[axis];
   }
 }
 
 /// Sets what stays for the whole solve.
-void SetSlices(EquilibriumSolver::Content& content, const TissueLoad& load,
-               const TissueState& state) noexcept {
-  const TissueModel& model = *content.model;
+void SetSlices(const TissueModel& model, const TissueLoad& load, const TissueState& state,
+               ChebyshevScratch& scratch) noexcept {
   const auto n = static_cast<std::uint32_t>(model.Size());
   for (std::uint32_t i = 0; i < n; ++i) {
-    SliceData& data = content.slices[i / kLanes];
+    SliceData& data = scratch.slices[i / kLanes];
     const std::uint32_t lane = i % kLanes;
     data.shape_stiffness[lane] = load.shape_scale * model.shape_stiffness[i];
     data.is_free[lane] = state.condition[i] == NodeCondition::kPrescribed ? 0.0 : 1.0;
     for (int axis = 0; axis < 3; ++axis) data.rest[axis][lane] = model.rest[i][axis];
   }
-  SetConstantForces(content, load);
-  content.touched_nodes.clear();
+  SetConstantForces(model, load, scratch);
+  scratch.touched_nodes.clear();
   for (const ContactSpring& contact : load.contacts) {
-    if (content.touched_nodes.size() + 3 > content.touched_nodes.capacity()) break;
-    content.touched_nodes.insert(content.touched_nodes.end(), contact.nodes.begin(), contact.nodes.end());
+    if (scratch.touched_nodes.size() + 3 > scratch.touched_nodes.capacity()) break;
+    scratch.touched_nodes.insert(scratch.touched_nodes.end(), contact.nodes.begin(), contact.nodes.end());
   }
 }
 
 /// Inverse of each node's own stiffness. A touched node counts as pressed, so that a contact that opens and
 /// closes cannot make it jump.
-void SetBlocks(EquilibriumSolver::Content& content, const TissueLoad& load, const TissueState& state,
-               double transverse_share) noexcept {
-  const TissueModel& model = *content.model;
+void SetBlocks(const TissueModel& model, Workers& workers, const TissueLoad& load, const TissueState& state,
+               double transverse_share, ChebyshevScratch& scratch) noexcept {
   const auto n = static_cast<std::uint32_t>(model.Size());
-  auto& blocks = content.blocks;
-  ForEachChunk(content, n, [&](std::uint32_t, std::uint32_t first, std::uint32_t last) {
+  auto& blocks = scratch.blocks;
+  ForEachChunk(workers, n, [&](std::uint32_t, std::uint32_t first, std::uint32_t last) {
     for (auto i = first; i < last; ++i) blocks[i] = CalcBlock(model, load, state, transverse_share, i);
   });
   for (const ContactSpring& contact : load.contacts) {
@@ -153,25 +149,46 @@ void SetBlocks(EquilibriumSolver::Content& content, const TissueLoad& load, cons
       AddDirection(blocks[contact.nodes[i]], contact.normal, contact.weights[i] * contact.stiffness);
     }
   }
-  ForEachChunk(content, n, [&](std::uint32_t, std::uint32_t first, std::uint32_t last) {
+  ForEachChunk(workers, n, [&](std::uint32_t, std::uint32_t first, std::uint32_t last) {
     for (auto i = first; i < last; ++i) {
       const bool is_free = state.condition[i] != NodeCondition::kPrescribed;
       const Symmetric3 inverse = is_free ? Invert(blocks[i]) : Symmetric3{};
       for (int entry = 0; entry < 6; ++entry)
-        content.slices[i / kLanes].inverse_block[entry][i % kLanes] = inverse[entry];
+        scratch.slices[i / kLanes].inverse_block[entry][i % kLanes] = inverse[entry];
     }
   });
 }
 
 }  // namespace
 
-SolveReport SolveChebyshevJacobiWang2015(EquilibriumSolver::Content& content, const SolverSettings& settings,
+ChebyshevScratch::ChebyshevScratch(const TissueModel& model, double spare_share) {
+  const std::size_t n = model.Size();
+  previous.resize(n);
+  blocks.resize(n);
+  slices.resize((n + kLanes - 1) / kLanes, SliceData{});
+  constant_force.resize(n);
+  touched_nodes.reserve(3 * kMaxContacts);
+  chunk_reports.resize(n / CalcChunk(n) + 1);
+  ReserveWithSpare(model.half_strands.size(), spare_share, strand_nodes);
+  SetModel(model);
+}
+
+void ChebyshevScratch::SetModel(const TissueModel& model) {
+  strand_nodes.clear();
+  for (std::uint32_t i = 0; i < model.Size(); ++i) {
+    if (model.strand_starts[i] < model.strand_starts[i + 1]) strand_nodes.push_back(i);
+  }
+}
+
+SolveReport SolveChebyshevJacobiWang2015(const LinearisedModel& springs, ChebyshevScratch& scratch,
+                                         Workers& workers, const IterationSettings& settings,
                                          const TissueLoad& load, TissueState& state,
                                          ConstraintSet* constraints) noexcept {
-  const auto n = static_cast<std::uint32_t>(content.model->Size());
-  SetSlices(content, load, state);
+  const TissueModel& model = springs.model;
+  const auto n = static_cast<std::uint32_t>(model.Size());
+  SetSlices(model, load, state, scratch);
   double transverse_share = kTransverseShare;
-  SetBlocks(content, load, state, transverse_share);
+  SetBlocks(model, workers, load, state, transverse_share, scratch);
   SolveReport report;
   int cycle_length = std::min(settings.max_iterations, kFirstCycle);
   StepFactors factors{load.stiffness_scale, 1.0, 1.0, kMaxStep, true};
@@ -189,18 +206,18 @@ SolveReport SolveChebyshevJacobiWang2015(EquilibriumSolver::Content& content, co
     factors.omega = in_cycle == 0   ? 1.0
                     : in_cycle == 1 ? 2.0 / (2.0 - rho * rho)
                                     : 4.0 / (4.0 - rho * rho * factors.omega);
-    SetOtherForces(content, load, state);
-    ForEachChunk(content, n, [&](std::uint32_t chunk, std::uint32_t first, std::uint32_t last) {
+    SetOtherForces(model, load, state, scratch);
+    ForEachChunk(workers, n, [&](std::uint32_t chunk, std::uint32_t first, std::uint32_t last) {
       SliceReport slice_report;
       for (std::uint32_t slice = first / kLanes; slice * kLanes < last; ++slice) {
-        UpdateSlice(content.springs, content.slices[slice], factors, state.position.data(),
-                    content.previous.data(), n, slice, slice_report);
+        UpdateSlice(springs.sliced, scratch.slices[slice], factors, state.position.data(),
+                    scratch.previous.data(), n, slice, slice_report);
       }
-      content.chunk_reports[chunk] = slice_report;
+      scratch.chunk_reports[chunk] = slice_report;
     });
     SliceReport all;
     for (std::uint32_t chunk = 0; chunk * CalcChunk(n) < n; ++chunk) {
-      const SliceReport& part = content.chunk_reports[chunk];
+      const SliceReport& part = scratch.chunk_reports[chunk];
       all.residual2 = Larger(all.residual2, part.residual2);
       all.force2 = Larger(all.force2, part.force2);
       all.is_cut_short = all.is_cut_short || part.is_cut_short;
@@ -212,11 +229,11 @@ SolveReport SolveChebyshevJacobiWang2015(EquilibriumSolver::Content& content, co
     if (report.converged) break;  // the state's positions are those the residual belongs to
 
     ++report.iterations;
-    std::swap(state.position, content.previous);
+    std::swap(state.position, scratch.previous);
     ++in_cycle;
     if (constraints != nullptr && report.iterations % constraints->Interval() == 0) {
-      constraints->Project(state, content.previous);
-      SetConstantForces(content, load);
+      constraints->Project(state, scratch.previous);
+      SetConstantForces(model, load, scratch);
     }
     smallest = std::fmin(smallest, residual);
     if (residual > kGrowthLimit * smallest) {
@@ -229,7 +246,7 @@ SolveReport SolveChebyshevJacobiWang2015(EquilibriumSolver::Content& content, co
       in_cycle = 0;
     }
     if (in_cycle == 0 && report.iterations < settings.max_iterations)
-      SetBlocks(content, load, state, transverse_share);
+      SetBlocks(model, workers, load, state, transverse_share, scratch);
   }
   return report;
 }

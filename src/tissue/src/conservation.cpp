@@ -96,9 +96,6 @@ Conservation::Conservation(const TissueModel& model, ConservationSettings settin
   force_.resize(n);
   next_regions_.of_node.resize(n);
   shifts_.assign(settings_.organs.size(), std::vector<Vec3>(n));
-  first_responses_.displacement = shifts_;
-  (void)UpdateResponses(rest_, {}, kFirstResponseIterations, kFirstResponseTolerance, first_responses_);
-  first_responses_.is_settled = true;
 }
 
 void Conservation::SetOrgans(std::vector<ClosedOrgan> organs) {
@@ -124,7 +121,7 @@ void Conservation::UpdateTopology(const TissueModel& model, std::vector<ClosedOr
   std::fill(state.last_motion.begin(), state.last_motion.end(), Vec3{});
 }
 
-ConservationState Conservation::MakeState(const TissueState& rest_state) const {
+ConservationState Conservation::MakeState(const TissueState& rest_state) {
   ConservationState state;
   for (const ClosedOrgan& organ : settings_.organs) {
     TROCAR_ASSERT(std::size_t{organ.first_node} + organ.node_count <= model_->Size());
@@ -140,7 +137,9 @@ ConservationState Conservation::MakeState(const TissueState& rest_state) const {
   state.intact_links = CountIntact(rest_state);
   state.last_position = rest_state.position;
   state.last_motion.resize(model_->Size());
-  state.responses = first_responses_;
+  state.responses.displacement.assign(settings_.organs.size(), std::vector<Vec3>(model_->Size()));
+  (void)UpdateResponses(MakeRestState(*model_), {}, kFirstResponseIterations, kFirstResponseTolerance,
+                        state.responses);
   state.responses.is_settled = state.intact_links == model_->strand_count + model_->SpringCount();
   return state;
 }

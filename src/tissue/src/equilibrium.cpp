@@ -5,7 +5,6 @@
 #include <cmath>
 #include <utility>
 
-#include "capacity.h"
 #include "node_force.h"
 #include "solver_content.h"
 #include "trocar/core/assert.h"
@@ -40,21 +39,24 @@ bool HangsOnStrand(const TissueModel& model, const TissueState& state, std::uint
 SolveReport SolveLinearised(EquilibriumSolver::Content& c, const SolverSettings& settings,
                             const TissueLoad& load, TissueState& state, ConstraintSet* constraints,
                             std::span<const Vec3> extrapolation) noexcept {
+  const IterationSettings iteration{settings.max_iterations, settings.tolerance};
   if (settings.kind == SolverKind::kRelaxationPaper)
-    return SolveRelaxationPaper(c, settings, load, state, constraints);
+    return SolveRelaxationPaper(c.spring_linearisation.Nodewise().model, iteration, settings.relaxation, load,
+                                state, constraints);
   if (settings.kind == SolverKind::kGaussSeidelBrown2001)
-    return SolveGaussSeidelBrown2001(c, settings, load, state, constraints);
+    return SolveGaussSeidelBrown2001(c.spring_linearisation.Nodewise().model, c.GaussSeidel(), iteration,
+                                     load, state, constraints);
   const Workers::Session session(*c.workers);
   switch (settings.kind) {
     case SolverKind::kChebyshevJacobi2015:
-      return SolveChebyshevJacobiWang2015(c, settings, load, state, constraints);
+      return c.SolveChebyshev(settings, load, state, constraints);
     case SolverKind::kAcceleratedDescent:
       // a stencil has no place for springs of their own; the recurrence in double precision has
-      if (c.accelerated->IsStructured() && !c.spring_linearisation->IsPlain())
-        return SolveChebyshevJacobiWang2015(c, settings, load, state, constraints);
-      return c.accelerated->Solve(*c.kernels, *c.workers, settings, load, state, constraints);
+      if (c.grid.has_value() && !c.spring_linearisation.IsPlain())
+        return c.SolveChebyshev(settings, load, state, constraints);
+      return c.SolveAccelerated(settings.max_iterations, settings.max_error, load, state, constraints);
     case SolverKind::kNewtonMultigrid:
-      return c.newton->Solve(*c.kernels, *c.workers, settings, load, state, constraints, extrapolation);
+      return c.SolveNewton(settings, load, state, constraints, extrapolation);
     default:
       return SolveAdaptive(c, settings, load, state, constraints, extrapolation);
   }
@@ -62,59 +64,128 @@ SolveReport SolveLinearised(EquilibriumSolver::Content& c, const SolverSettings&
 
 }  // namespace
 
-EquilibriumSolver::EquilibriumSolver(const TissueModel& model, int threads)
-    : EquilibriumSolver(model, SolverOptions{.threads = threads}) {}
+// --- memory
 
-EquilibriumSolver::EquilibriumSolver(const TissueModel& model, const SolverOptions& options)
-    : content_(std::make_unique<Content>()) {
-  const std::size_t n = model.Size();
-  Content& c = *content_;
-  c.laws = &model;
-  c.kernels = &GetKernels(options.simd);
-  c.workers = std::make_unique<Workers>(options.threads);
-  c.newton = std::make_unique<NewtonMultigrid>(model);
-  c.accelerated = std::make_unique<AcceleratedDescent>(model, c.newton->Springs(), options.recognises_grids);
-  SetSlicedSprings(model, c.springs);
-  c.spring_linearisation = std::make_unique<SpringLinearisation>(model, c.springs, c.newton->Springs());
-  c.model = &c.spring_linearisation->Model();
-  c.SetStrandNodes(model);
-  c.wave.reserve(n);
-  c.visited.resize(n);
-  c.residual.resize(n);
-  c.unconstrained_condition.resize(n);
-  c.previous.resize(n);
-  c.blocks.resize(n);
-  c.slices.resize((n + kLanes - 1) / kLanes, SliceData{});
-  c.constant_force.resize(n);
-  c.touched_nodes.reserve(3 * kMaxContacts);
-  c.chunk_reports.resize(n / CalcChunk(n) + 1);
-  if (options.spare_share > 0.0) c.Reserve(options.spare_share);
+EquilibriumSolver::Content::Content(const TissueModel& model, const SolverOptions& how,
+                                    std::shared_ptr<const SolverModel> same_model)
+    : laws(&model),
+      options(how),
+      shared(same_model != nullptr ? std::move(same_model)
+                                   : std::make_shared<const SolverModel>(MakeSolverModel(model))),
+      made(shared.get()),
+      grid(how.recognises_grids ? FindGridShape(model) : std::nullopt),
+      spring_linearisation(how.spare_share),
+      unconstrained_condition(model.Size()),
+      workers(std::make_unique<Workers>(how.threads)),
+      kernels(&GetKernels(how.simd)) {
+  TROCAR_ASSERT(made->ordered.Size() == model.Size() && made->ends.size() == model.SpringCount());
+  if (options.spare_share > 0.0) builder.Reserve(*shared, options.spare_share, own);
+  spring_linearisation.SetModel(model, *made);
 }
 
-void EquilibriumSolver::UpdateTopology(const TissueModel& model) {
-  Content& c = *content_;
-  TROCAR_ASSERT(model.Size() == c.model->Size());
-  c.laws = &model;
-  c.newton->SetModel(model);
-  c.accelerated->SetModel(model);
-  SetSlicedSprings(model, c.springs);
-  c.spring_linearisation->SetModel(model);
-  c.SetStrandNodes(model);
+void EquilibriumSolver::Content::UpdateTopology(const TissueModel& model) {
+  TROCAR_ASSERT(model.Size() == laws->Size());
+  laws = &model;
+  builder.Build(model, own);
+  made = &own;
+  grid = options.recognises_grids ? FindGridShape(model) : std::nullopt;
+  spring_linearisation.SetModel(model, *made);
+  if (chebyshev_ != nullptr) chebyshev_->SetModel(model);
+  if (accelerated_ != nullptr) accelerated_->SetModel(model, made->ordered, grid);
+  if (newton_ != nullptr) newton_->SetModel(*made);
 }
 
-void EquilibriumSolver::Content::SetStrandNodes(const TissueModel& with) {
-  strand_nodes.clear();
-  for (std::uint32_t i = 0; i < with.Size(); ++i) {
-    if (with.strand_starts[i] < with.strand_starts[i + 1]) strand_nodes.push_back(i);
+GaussSeidelScratch& EquilibriumSolver::Content::GaussSeidel() {
+  if (gauss_seidel_ == nullptr) gauss_seidel_ = std::make_unique<GaussSeidelScratch>(laws->Size());
+  return *gauss_seidel_;
+}
+
+ChebyshevScratch& EquilibriumSolver::Content::Chebyshev() {
+  if (chebyshev_ == nullptr) chebyshev_ = std::make_unique<ChebyshevScratch>(*laws, options.spare_share);
+  return *chebyshev_;
+}
+
+AcceleratedDescent& EquilibriumSolver::Content::Accelerated() {
+  if (accelerated_ == nullptr) {
+    accelerated_ = std::make_unique<AcceleratedDescent>(spring_linearisation.Ordered(), options.spare_share);
+    accelerated_->SetModel(*laws, made->ordered, grid);
+  }
+  return *accelerated_;
+}
+
+NewtonMultigrid& EquilibriumSolver::Content::Newton() {
+  if (newton_ == nullptr) {
+    newton_ = std::make_unique<NewtonMultigrid>(*made, spring_linearisation.Ordered(), options.spare_share);
+  }
+  return *newton_;
+}
+
+void EquilibriumSolver::Content::Prepare(const SolverSettings& settings, std::size_t constraints) {
+  const auto prepare_chebyshev = [&] { (void)Chebyshev(), (void)spring_linearisation.Nodewise(); };
+  switch (settings.kind) {
+    case SolverKind::kRelaxationPaper:
+      (void)spring_linearisation.Nodewise();
+      return;
+    case SolverKind::kGaussSeidelBrown2001:
+      (void)spring_linearisation.Nodewise(), (void)GaussSeidel();
+      return;
+    case SolverKind::kChebyshevJacobi2015:
+      return prepare_chebyshev();
+    case SolverKind::kAcceleratedDescent:
+      (void)Accelerated();
+      if (grid) prepare_chebyshev();
+      return;
+    case SolverKind::kAdaptive:
+      if (constraints == 0) prepare_chebyshev();
+      if (grid) (void)Accelerated();
+      [[fallthrough]];
+    case SolverKind::kNewtonMultigrid:
+      Newton().Prepare(constraints, settings.newton.follows_snap_through);
   }
 }
 
-void EquilibriumSolver::Content::Reserve(double share) {
-  newton->Reserve(share);
-  accelerated->Reserve(share);
-  spring_linearisation->Reserve(share);
-  ReserveMore(share, springs.starts, springs.others, springs.stiffness, springs.stiffness_times_rest,
-              strand_nodes);
+// --- methods, each with what it uses of the settings
+
+SolveReport EquilibriumSolver::Content::SolveChebyshev(const SolverSettings& settings, const TissueLoad& load,
+                                                       TissueState& state,
+                                                       ConstraintSet* constraints) noexcept {
+  return SolveChebyshevJacobiWang2015(spring_linearisation.Nodewise(), Chebyshev(), *workers,
+                                      {settings.max_iterations, settings.tolerance}, load, state,
+                                      constraints);
+}
+
+SolveReport EquilibriumSolver::Content::SolveAccelerated(int max_iterations, double max_error,
+                                                         const TissueLoad& load, TissueState& state,
+                                                         ConstraintSet* constraints) noexcept {
+  return Accelerated().Solve(*kernels, *workers, {max_iterations, max_error}, load, state, constraints);
+}
+
+SolveReport EquilibriumSolver::Content::SolveNewton(const SolverSettings& settings, const TissueLoad& load,
+                                                    TissueState& state, ConstraintSet* constraints,
+                                                    std::span<const Vec3> extrapolation) noexcept {
+  return Newton().Solve(*kernels, *workers, settings.max_error, settings.newton, load, state, constraints,
+                        extrapolation);
+}
+
+// --- the solver
+
+EquilibriumSolver::EquilibriumSolver(const TissueModel& model, int threads)
+    : EquilibriumSolver(model, SolverOptions{.threads = threads}) {}
+
+EquilibriumSolver::EquilibriumSolver(const TissueModel& model, const SolverOptions& options,
+                                     std::shared_ptr<const SolverModel> same_model)
+    : content_(std::make_unique<Content>(model, options, std::move(same_model))) {}
+
+void EquilibriumSolver::UpdateTopology(const TissueModel& model) {
+  content_->UpdateTopology(model);
+}
+
+void EquilibriumSolver::Prepare(const SolverSettings& settings, std::size_t constraints) {
+  content_->Prepare(settings, constraints);
+}
+
+std::shared_ptr<const SolverModel> EquilibriumSolver::ShareModel() const noexcept {
+  return content_->shared;
 }
 
 EquilibriumSolver::~EquilibriumSolver() = default;
@@ -122,26 +193,26 @@ EquilibriumSolver::EquilibriumSolver(EquilibriumSolver&&) noexcept = default;
 EquilibriumSolver& EquilibriumSolver::operator=(EquilibriumSolver&&) noexcept = default;
 
 bool EquilibriumSolver::IsStructured() const noexcept {
-  return content_->accelerated->IsStructured();
+  return content_->grid.has_value();
 }
 
 SolveReport EquilibriumSolver::Solve(const SolverSettings& settings, const TissueLoad& load,
                                      TissueState& state, ConstraintSet* constraints,
                                      std::span<const Vec3> extrapolation) noexcept {
-  TROCAR_ASSERT(state.position.size() == content_->model->Size());
+  TROCAR_ASSERT(state.position.size() == content_->laws->Size());
   TROCAR_ASSERT(load.contacts.size() <= kMaxContacts);
   Content& c = *content_;
   if (!IsFinite(load, state)) return {.is_finite = false};
-  if (!c.spring_linearisation->UpdateFactors(state)) return {.is_finite = false};
+  if (!c.spring_linearisation.UpdateFactors(state)) return {.is_finite = false};
   // a node without any spring has no equilibrium: it stays where it is
-  const std::span<const std::uint32_t> unconstrained = c.spring_linearisation->Unconstrained();
+  const std::span<const std::uint32_t> unconstrained = c.spring_linearisation.Unconstrained();
   for (std::size_t i = 0; i < unconstrained.size(); ++i) {
     c.unconstrained_condition[i] = state.condition[unconstrained[i]];
     if (!HangsOnStrand(*c.laws, state, unconstrained[i]))
       state.condition[unconstrained[i]] = NodeCondition::kPrescribed;
   }
   const SolveReport report =
-      c.spring_linearisation->Iterate(settings, state, [&](const SolverSettings& rest) noexcept {
+      c.spring_linearisation.Iterate(settings, state, [&](const SolverSettings& rest) noexcept {
         // the first solve goes there, the others begin where it ended
         const auto guess = std::exchange(extrapolation, {});
         return SolveLinearised(c, rest, load, state, constraints, guess);

@@ -38,17 +38,20 @@ double CalcNodeStiffness(const TissueModel& model, const TissueLoad& load, const
 
 }  // namespace
 
-SolveReport SolveGaussSeidelBrown2001(EquilibriumSolver::Content& content, const SolverSettings& settings,
-                                      const TissueLoad& load, TissueState& state,
-                                      ConstraintSet* constraints) noexcept {
-  const TissueModel& model = *content.model;
+GaussSeidelScratch::GaussSeidelScratch(std::size_t node_count) : visited(node_count), residual(node_count) {
+  wave.reserve(node_count);
+}
+
+SolveReport SolveGaussSeidelBrown2001(const TissueModel& model, GaussSeidelScratch& scratch,
+                                      const IterationSettings& settings, const TissueLoad& load,
+                                      TissueState& state, ConstraintSet* constraints) noexcept {
   const auto n = static_cast<std::uint32_t>(model.Size());
-  std::vector<std::uint32_t>& wave = content.wave;
+  std::vector<std::uint32_t>& wave = scratch.wave;
   const auto calc_residual = [&](std::uint32_t i) {
     return GatherNodeForce(model, state.strand_is_intact, load, state.position, i) +
            GatherContactForce(load, state.position, i);
   };
-  std::fill(content.visited.begin(), content.visited.end(), 0u);
+  std::fill(scratch.visited.begin(), scratch.visited.end(), 0u);
   SolveReport report;
   while (true) {
     // every node's balance: where the next wave starts, and whether one is needed
@@ -56,8 +59,8 @@ SolveReport SolveGaussSeidelBrown2001(EquilibriumSolver::Content& content, const
     for (std::uint32_t i = 0; i < n; ++i) {
       if (state.condition[i] == NodeCondition::kPrescribed) continue;
       scale = std::fmax(scale, CalcForceScale(model, load, state.position, i));
-      content.residual[i] = math::Norm(calc_residual(i));
-      largest = std::fmax(largest, content.residual[i]);
+      scratch.residual[i] = math::Norm(calc_residual(i));
+      largest = std::fmax(largest, scratch.residual[i]);
     }
     report.force_scale = scale;
     report.residual = scale > 0.0 ? largest / scale : 0.0;
@@ -68,8 +71,8 @@ SolveReport SolveGaussSeidelBrown2001(EquilibriumSolver::Content& content, const
     const auto sweep = static_cast<std::uint32_t>(++report.iterations);
     wave.clear();
     for (std::uint32_t i = 0; i < n; ++i) {
-      if (state.condition[i] == NodeCondition::kPrescribed || !(content.residual[i] > threshold)) continue;
-      content.visited[i] = sweep;
+      if (state.condition[i] == NodeCondition::kPrescribed || !(scratch.residual[i] > threshold)) continue;
+      scratch.visited[i] = sweep;
       wave.push_back(i);
     }
     for (std::size_t at = 0; at < wave.size(); ++at) {
@@ -79,8 +82,8 @@ SolveReport SolveGaussSeidelBrown2001(EquilibriumSolver::Content& content, const
       const double stiffness = CalcNodeStiffness(model, load, state, i);
       if (stiffness > 0.0) state.position[i] += residual / stiffness;
       const auto reach = [&](std::uint32_t other) {
-        if (content.visited[other] == sweep || state.condition[other] == NodeCondition::kPrescribed) return;
-        content.visited[other] = sweep;
+        if (scratch.visited[other] == sweep || state.condition[other] == NodeCondition::kPrescribed) return;
+        scratch.visited[other] = sweep;
         wave.push_back(other);
       };
       for (auto h = model.spring_starts[i]; h < model.spring_starts[i + 1]; ++h)

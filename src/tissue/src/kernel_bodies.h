@@ -174,113 +174,145 @@ inline Lanes CalcSecant(const float* springs, GridDirection direction, Lanes len
 
 enum class GridRow { kHalo, kPlain, kMeasured };
 
-/// One row: updates its nodes unless it is only the halo of the rows below, and leaves in `reaction` the
-/// forces of its springs to the next row, which feels the opposite. Lengths are taken a block ahead, so that
-/// the divider works while the forces of the block before are added up, where the compiler keeps that order.
+/// A block's springs to the row below and to the next column: references to variables, because compilers would keep a struct
+/// of the links themselves in memory.
+struct RowLinks {
+  GridLinks &south, &south_east, &south_west, &east;
+};
+
+/// One row of a step: where its numbers lie, and what is done with a block of its columns.
 template <bool kHasWest, bool kIsAligned, GridRow kRow>
-void StepRow(const GridStep& s, std::uint32_t row, LargestResidual& largest) {
-  const std::size_t stride = s.stride;
-  const float* springs = row + 1 == s.rows ? s.last_springs : s.springs + std::size_t{row} * s.spring_row;
-  const float* node = s.nodes + std::size_t{s.node_rows[row]} * 5 * stride;
-  const float* const u = s.u + 3 * row * stride;
-  const float* const below = u + 3 * stride;
-  float* const previous = s.previous + 3 * row * stride;
-  const std::size_t direction = 3 * stride + 2 * kSliceNodes;
-  const float* const above = s.reaction + (row + 1) % 2 * 3 * direction + kSliceNodes;
-  float* const reaction = s.reaction + row % 2 * 3 * direction + kSliceNodes;
-  const Lanes omega = All(s.omega), damping = All(s.damping);
-  const float* const before_from = s.is_first ? u : previous;
-  constexpr bool kIsHalo = kRow == GridRow::kHalo;
+struct RowStep {
+  static constexpr bool kIsHalo = kRow == GridRow::kHalo;
+
+  std::size_t stride, direction;  // floats from axis to axis, and from one direction's reactions to the next
+  const float *springs, *node;    // of the present block
+  const float *u, *below, *before_from;
+  float* previous;
+  const float* above;  // reactions of the row above
+  float* reaction;
+  Lanes omega, damping;
   Vector east_before = {};
 
-  const auto measure = [&](std::size_t column, GridLinks & south, GridLinks & south_east,
-                           GridLinks & south_west, GridLinks & east) __attribute__((always_inline)) {
+  RowStep(const GridStep& s, std::uint32_t row)
+      : stride(s.stride),
+        direction(3 * stride + 2 * kSliceNodes),
+        springs(row + 1 == s.rows ? s.last_springs : s.springs + std::size_t{row} * s.spring_row),
+        node(s.nodes + std::size_t{s.node_rows[row]} * 5 * stride),
+        u(s.u + 3 * row * stride),
+        below(u + 3 * stride),
+        before_from(s.is_first ? u : s.previous + 3 * row * stride),
+        previous(s.previous + 3 * row * stride),
+        above(s.reaction + (row + 1) % 2 * 3 * direction + kSliceNodes),
+        reaction(s.reaction + row % 2 * 3 * direction + kSliceNodes),
+        omega(All(s.omega)),
+        damping(All(s.damping)) {}
+
+  [[gnu::always_inline]] Lanes CalcSpringLength(GridDirection where, const float* there, std::size_t column,
+                                                const Vector& here, GridLinks& links) const {
+    links.along = CalcExtent<kIsAligned>(springs, where, LoadRow(there + column, stride) - here);
+    return CalcLength(links.along);
+  }
+
+  /// Extents and lengths of the block's springs.
+  [[gnu::always_inline]] void Measure(std::size_t column, const RowLinks& links) const {
     Vector here = LoadRow(u + column, stride);
     KeepInRegister(here);
-    const auto calc_length = [&](GridDirection where, const float* there, GridLinks& links)
-        __attribute__((always_inline)) {
-      links.along = CalcExtent<kIsAligned>(springs, where, LoadRow(there + column, stride) - here);
-      return CalcLength(links.along);
-    };
-    Lanes south_length = calc_length(kSouth, below, south);
-    Lanes south_east_length = calc_length(kSouthEast, below + 1, south_east);
-    if constexpr (kHasWest) south_west.value = calc_length(kSouthWest, below - 1, south_west);
+    Lanes south = CalcSpringLength(kSouth, below, column, here, links.south);
+    Lanes south_east = CalcSpringLength(kSouthEast, below + 1, column, here, links.south_east);
+    if constexpr (kHasWest)
+      links.south_west.value = CalcSpringLength(kSouthWest, below - 1, column, here, links.south_west);
     // all roots before the first quotient: the divider loses time when it goes from one to the other
     if constexpr (kIsHalo) {
-      BeginTogether(south_length, south_east_length);
+      BeginTogether(south, south_east);
     } else {
-      Lanes east_length = calc_length(kEast, u + 1, east);
-      BeginTogether(south_length, south_east_length, east_length);
-      east.value = east_length;
+      Lanes east = CalcSpringLength(kEast, u + 1, column, here, links.east);
+      BeginTogether(south, south_east, east);
+      links.east.value = east;
     }
-    south.value = south_length, south_east.value = south_east_length;
-  };
-  const auto divide = [&](GridLinks & south, GridLinks & south_east, GridLinks & south_west, GridLinks & east)
-      __attribute__((always_inline)) {
-    south.value = CalcSecant(springs, kSouth, south.value);
-    south_east.value = CalcSecant(springs, kSouthEast, south_east.value);
-    if constexpr (kHasWest) south_west.value = CalcSecant(springs, kSouthWest, south_west.value);
-    if constexpr (!kIsHalo) east.value = CalcSecant(springs, kEast, east.value);
-  };
-  const auto finish = [&](std::size_t column, const GridLinks& south, const GridLinks& south_east,
-                          const GridLinks& south_west, const GridLinks& east) __attribute__((always_inline)) {
-    const Vector on_south = south.Force(), on_south_east = south_east.Force();
+    links.south.value = south, links.south_east.value = south_east;
+  }
+
+  /// Lengths to secant stiffness.
+  [[gnu::always_inline]] void Divide(const RowLinks& links) const {
+    links.south.value = CalcSecant(springs, kSouth, links.south.value);
+    links.south_east.value = CalcSecant(springs, kSouthEast, links.south_east.value);
+    if constexpr (kHasWest) links.south_west.value = CalcSecant(springs, kSouthWest, links.south_west.value);
+    if constexpr (!kIsHalo) links.east.value = CalcSecant(springs, kEast, links.east.value);
+  }
+
+  /// Adds up the forces, leaves those on the row below, and moves the nodes.
+  [[gnu::always_inline]] void Finish(std::size_t column, const RowLinks& links, LargestResidual& largest) {
+    const Vector on_south = links.south.Force(), on_south_east = links.south_east.Force();
     Vector force = on_south + on_south_east;
     Vector on_south_west;
     if constexpr (kHasWest) {
-      on_south_west = south_west.Force();
+      on_south_west = links.south_west.Force();
       force = force + on_south_west;
     }
-    if constexpr (!kIsHalo) {
-      const Vector here = LoadRow(u + column, stride);
-      // the springs of the row above, from straight above and from either side
-      force = force - LoadRow(above + column, stride);
-      force = force - LoadRow(above + direction + column - 1, stride);
-      if constexpr (kHasWest) force = force - LoadRow(above + 2 * direction + column + 1, stride);
-      const Vector on_east = east.Force();
-      force = (force + on_east) - ShiftUp(east_before, on_east);
-      east_before = on_east;
-      force = MulAdd(-Load(node + 3 * kSliceNodes), here, force) + LoadRow(node, kSliceNodes);
-      const Lanes step_length = Load(node + 4 * kSliceNodes);
-      Lanes step = damping * step_length;
-      Vector before = LoadRow(before_from + column, stride);
-      KeepInRegister(step), KeepInRegister(before);
-      StoreRow(previous + column, stride, MulAdd(omega, MulAdd(step, force, here) - before, before));
-      if constexpr (kRow == GridRow::kMeasured) largest.Add(step_length, force);
-    }
+    if constexpr (!kIsHalo) MoveNodes(column, links.east.Force(), force, largest);
     StoreRow(reaction + column, stride, on_south);
     StoreRow(reaction + direction + column, stride, on_south_east);
     if constexpr (kHasWest) StoreRow(reaction + 2 * direction + column, stride, on_south_west);
     node += TROCAR_LANES + ((column + TROCAR_LANES) % kSliceNodes == 0 ? 4 * kSliceNodes : 0);
-  };
+  }
 
-  // the links are variables, not a struct or an array, which compilers would keep in memory
-  GridLinks south, south_east, south_west, east;
-  const auto go_on = [&](std::size_t column) {
+  /// \param force  of the springs to the row below
+  [[gnu::always_inline]] void MoveNodes(std::size_t column, const Vector& on_east, Vector force,
+                                        LargestResidual& largest) {
+    const Vector here = LoadRow(u + column, stride);
+    // the springs of the row above, from straight above and from either side
+    force = force - LoadRow(above + column, stride);
+    force = force - LoadRow(above + direction + column - 1, stride);
+    if constexpr (kHasWest) force = force - LoadRow(above + 2 * direction + column + 1, stride);
+    force = (force + on_east) - ShiftUp(east_before, on_east);
+    east_before = on_east;
+    force = MulAdd(-Load(node + 3 * kSliceNodes), here, force) + LoadRow(node, kSliceNodes);
+    const Lanes step_length = Load(node + 4 * kSliceNodes);
+    Lanes step = damping * step_length;
+    Vector before = LoadRow(before_from + column, stride);
+    KeepInRegister(step), KeepInRegister(before);
+    StoreRow(previous + column, stride, MulAdd(omega, MulAdd(step, force, here) - before, before));
+    if constexpr (kRow == GridRow::kMeasured) largest.Add(step_length, force);
+  }
+
+  /// The springs of the block that begins at `column`.
+  [[gnu::always_inline]] void GoOn(std::size_t column) {
     springs += TROCAR_LANES + (column % kSliceNodes == 0 ? (5 * kGridDirections - 1) * kSliceNodes : 0);
-  };
+  }
+};
+
+/// One row: updates its nodes unless it is only the halo of the rows below, and leaves the forces of its springs to the next
+/// row, which feels the opposite. Lengths are taken a block ahead, so that the divider works while the forces of the block
+/// before are added up, where the compiler keeps that order.
+template <bool kHasWest, bool kIsAligned, GridRow kRow>
+void StepRow(const GridStep& s, std::uint32_t row, LargestResidual& largest) {
+  RowStep<kHasWest, kIsAligned, kRow> step(s, row);
+  const std::size_t stride = s.stride;
+  GridLinks south, south_east, south_west, east;
+  const RowLinks links{south, south_east, south_west, east};
   if constexpr (!kKeepsOrder) {
     for (std::size_t column = 0; column < stride; column += TROCAR_LANES) {
-      if (column > 0) go_on(column);
-      measure(column, south, south_east, south_west, east);
-      divide(south, south_east, south_west, east);
-      finish(column, south, south_east, south_west, east);
+      if (column > 0) step.GoOn(column);
+      step.Measure(column, links);
+      step.Divide(links);
+      step.Finish(column, links, largest);
     }
     return;
   }
-  measure(0, south, south_east, south_west, east);
-  divide(south, south_east, south_west, east);
+  step.Measure(0, links);
+  step.Divide(links);
   for (std::size_t column = TROCAR_LANES; column < stride; column += TROCAR_LANES) {
-    go_on(column);
+    step.GoOn(column);
     GridLinks next_south, next_south_east, next_south_west, next_east;
-    measure(column, next_south, next_south_east, next_south_west, next_east);
-    finish(column - TROCAR_LANES, south, south_east, south_west, east);
+    step.Measure(column, {next_south, next_south_east, next_south_west, next_east});
+    step.Finish(column - TROCAR_LANES, links, largest);
     south = next_south, south_east = next_south_east;
     if constexpr (kHasWest) south_west = next_south_west;
-    if constexpr (!kIsHalo) east = next_east;
-    divide(south, south_east, south_west, east);
+    if constexpr (!RowStep<kHasWest, kIsAligned, kRow>::kIsHalo) east = next_east;
+    step.Divide(links);
   }
-  finish(stride - TROCAR_LANES, south, south_east, south_west, east);
+  step.Finish(stride - TROCAR_LANES, links, largest);
 }
 
 template <bool kHasWest, bool kIsAligned>

@@ -130,9 +130,9 @@ bool LineSmoother::FactoriseOnce(const LinkLevel& level, std::span<const float> 
     if (level.is_free[i] != 0.0f) {
       for (std::size_t v = 0; v < 6; ++v)
         block[v] = static_cast<double>(level.diagonal_excess[DiagonalAt(i) + v * kSliceNodes]);
-      for (std::uint32_t step = 0; step < level.layout.RowSteps(i); ++step) {
-        const std::size_t entry = level.layout.Entry(i, step);
-        if (level.layout.others[entry] == i) break;
+      for (std::uint32_t step = 0; step < level.layout->RowSteps(i); ++step) {
+        const std::size_t entry = level.layout->Entry(i, step);
+        if (level.layout->others[entry] == i) break;
         for (std::size_t v = 0; v < 6; ++v)
           block[v] += static_cast<double>(level.off_diagonal[OffDiagonalAt(entry) + v * kSliceNodes]);
         for (const std::size_t v : {0u, 3u, 5u})
@@ -199,9 +199,9 @@ void LineSmoother::Solve(const LinkLevel& level, const Float4* from, const Float
       };
       const Float4& here = from[i];
       subtract(level.diagonal_excess.data() + DiagonalAt(i), here.x, here.y, here.z);
-      for (std::uint32_t step = 0; step < level.layout.RowSteps(i); ++step) {
-        const std::size_t entry = level.layout.Entry(i, step);
-        const std::uint32_t other = level.layout.others[entry];
+      for (std::uint32_t step = 0; step < level.layout->RowSteps(i); ++step) {
+        const std::size_t entry = level.layout->Entry(i, step);
+        const std::uint32_t other = level.layout->others[entry];
         if (other == i) break;
         const Float4& there = from[other];
         subtract(level.off_diagonal.data() + OffDiagonalAt(entry), here.x - there.x, here.y - there.y,

@@ -42,11 +42,11 @@ Vec3 ToVec3(const Double4& v) {
 
 }  // namespace
 
-void SetOrderedModel(const TissueModel& model, OrderedModel& made) {
+void SetOrderedModel(const TissueModel& model, OrderedModelWorkspace& workspace, OrderedModel& made) {
   const auto n = static_cast<std::uint32_t>(model.Size());
-  NodeGraph& old_graph = made.workspace.graph;
-  SetGraph(model, old_graph, made.workspace.stiffness);
-  FindNodeOrder(old_graph, made.workspace.order, made.old_of_new);
+  NodeGraph& old_graph = workspace.graph;
+  SetGraph(model, old_graph, workspace.stiffness);
+  FindNodeOrder(old_graph, workspace.order, made.old_of_new);
   made.new_of_old.resize(n);
   for (std::uint32_t i = 0; i < n; ++i) made.new_of_old[made.old_of_new[i]] = i;
   made.graph.Clear();
@@ -55,7 +55,7 @@ void SetOrderedModel(const TissueModel& model, OrderedModel& made) {
   for (const std::uint32_t old : made.old_of_new) {
     for (auto h = old_graph.starts[old]; h < old_graph.starts[old + 1]; ++h) {
       made.graph.others.push_back(made.new_of_old[old_graph.others[h]]);
-      made.graph_stiffness.push_back(made.workspace.stiffness[h]);
+      made.graph_stiffness.push_back(workspace.stiffness[h]);
     }
     made.graph.starts.push_back(static_cast<std::uint32_t>(made.graph.others.size()));
     made.rest.push_back(model.rest[old]);
@@ -63,17 +63,12 @@ void SetOrderedModel(const TissueModel& model, OrderedModel& made) {
     made.shape.push_back(model.shape_stiffness[old]);
   }
   SetSliceLayout(made.graph, made.layout);
-  made.stiffness.assign(made.layout.Steps() * kSliceNodes, 0.0);
-  made.rest_length.assign(made.layout.Steps() * kSliceNodes, 0.0);
   made.spring_entries.resize(model.half_springs.size());
   for (std::uint32_t i = 0; i < n; ++i) {
     const std::uint32_t old = made.old_of_new[i];
     std::uint32_t place = 0;
-    for (auto h = model.spring_starts[old]; h < model.spring_starts[old + 1]; ++h, ++place) {
-      const std::size_t entry = made.spring_entries[h] = made.layout.Entry(i, place);
-      made.stiffness[entry] = model.half_springs[h].stiffness;
-      made.rest_length[entry] = model.half_springs[h].rest_length;
-    }
+    for (auto h = model.spring_starts[old]; h < model.spring_starts[old + 1]; ++h, ++place)
+      made.spring_entries[h] = static_cast<std::uint32_t>(made.layout.Entry(i, place));
     for (auto h = model.strand_starts[old]; h < model.strand_starts[old + 1]; ++h, ++place) {
       const auto& half = model.half_strands[h];
       made.strands.push_back(
@@ -84,13 +79,47 @@ void SetOrderedModel(const TissueModel& model, OrderedModel& made) {
 
 OrderedModel MakeOrderedModel(const TissueModel& model) {
   OrderedModel made;
-  SetOrderedModel(model, made);
+  OrderedModelWorkspace workspace;
+  SetOrderedModel(model, workspace, made);
   return made;
 }
 
-void OrderedModel::Reserve(double share) {
-  ReserveMore(share, graph.others, graph_stiffness, layout.starts, layout.others, stiffness, rest_length,
-              spring_entries, strands, workspace.graph.others, workspace.stiffness, workspace.order.places);
+void OrderedModel::Reserve(const OrderedModel& like, double share) {
+  const std::size_t n = like.Size();
+  for (auto* list : {&old_of_new, &new_of_old}) list->reserve(n);
+  graph.starts.reserve(n + 1), layout.starts.reserve(like.layout.starts.size());
+  rest.reserve(n), mass.reserve(n), shape.reserve(n);
+  ReserveWithSpare(like.graph.others.size(), share, graph.others, graph_stiffness);
+  ReserveWithSpare(like.layout.others.size(), share, layout.others);
+  ReserveWithSpare(like.spring_entries.size(), share, spring_entries);
+  ReserveWithSpare(like.strands.size(), share, strands);
+}
+
+void OrderedModelWorkspace::Reserve(const OrderedModel& like, double share) {
+  const std::size_t n = like.Size();
+  graph.starts.reserve(n + 1);
+  order.roots.reserve(n), order.is_placed.reserve(n);
+  ReserveWithSpare(like.graph.others.size(), share, graph.others, stiffness);
+  order.places.reserve(AddSpare(n, share));  // by degree: a node has fewer links than there are nodes
+}
+
+void SetOrderedSprings(const TissueModel& model, const OrderedModel& ordered, OrderedSprings& springs) {
+  const std::size_t entries = ordered.layout.Steps() * kSliceNodes;
+  springs.stiffness.assign(entries, 0.0), springs.rest_length.assign(entries, 0.0);
+  for (std::size_t h = 0; h < model.half_springs.size(); ++h) {
+    springs.stiffness[ordered.spring_entries[h]] = model.half_springs[h].stiffness;
+    springs.rest_length[ordered.spring_entries[h]] = model.half_springs[h].rest_length;
+  }
+  double sum = 0;
+  std::size_t count = 0;
+  for (const double rest : springs.rest_length) sum += rest, count += rest > 0.0;
+  springs.mean_length = count > 0 ? sum / static_cast<double>(count) : 0.0;
+}
+
+OrderedSprings MakeOrderedSprings(const TissueModel& model, const OrderedModel& ordered) {
+  OrderedSprings springs;
+  SetOrderedSprings(model, ordered, springs);
+  return springs;
 }
 
 void SetOrderedLoad(const OrderedModel& model, const TissueLoad& load, const TissueState& state,
@@ -132,8 +161,8 @@ void AddContactLinks(const OrderedLoad& load, const Balance& balance, const Floa
   }
 }
 
-void Linearisation::SetModel() {
-  const OrderedModel& model = *model_;
+void Linearisation::SetModel(const OrderedModel& model) {
+  model_ = &model;
   nodes_.assign(model.layout.PaddedNodes() * kBalanceValues, 0.0);
   shift_.assign(model.layout.Steps() * kSliceNodes, 0.0f);
   for (std::uint32_t i = 0; i < model.Size(); ++i) {
@@ -146,14 +175,10 @@ void Linearisation::SetModel() {
   }
 }
 
-void Linearisation::Reserve(double share) {
-  ReserveMore(share, shift_, strand_nodes_);
-}
-
-void Linearisation::ReserveFor(std::size_t nodes, std::size_t entries) {
+void Linearisation::Reserve(std::size_t nodes, std::size_t entries, std::size_t strand_ends) {
   nodes_.reserve(nodes * kBalanceValues);
   shift_.reserve(entries);
-  strand_nodes_.reserve(nodes);
+  strand_nodes_.reserve(std::min(nodes, strand_ends));
 }
 
 void Linearisation::SetLoad(const OrderedLoad& load, std::span<const std::uint8_t> strand_is_intact,
@@ -263,7 +288,7 @@ void Linearisation::AddContactDiagonal(LinkLevel& level, const Balance& balance)
 void Linearisation::Run(const Kernels& kernels, Workers& workers, BalancePass pass, double energy,
                         Balance& balance) noexcept {
   pass.table = model_->layout.Table();
-  pass.stiffness = model_->stiffness.data(), pass.rest_length = model_->rest_length.data();
+  pass.stiffness = springs_->stiffness.data(), pass.rest_length = springs_->rest_length.data();
   pass.stiffness_scale = load_->stiffness_scale;
   pass.nodes = nodes_.data();
   pass.residual = balance.residual.data();

@@ -11,19 +11,17 @@
 
 namespace trocar::tissue {
 
-/// A model with its nodes in the solvers' order and its springs and strands in slices. Constant.
+/// A model with its nodes in the solvers' order, and where its springs and strands lie in slices. Constant.
 struct OrderedModel {
   std::vector<std::uint32_t> old_of_new;  // (n)
   std::vector<std::uint32_t> new_of_old;  // (n)
   NodeGraph graph;                        // springs, then strands, of each node
   std::vector<double> graph_stiffness;    // (graph.others) k [N/m]
   SliceLayout layout;
-  AlignedVector<double> stiffness;          // (entries) k of springs [N/m]; 0 for strands and padding
-  AlignedVector<double> rest_length;        // (entries) [m]
-  std::vector<std::size_t> spring_entries;  // (half-springs of the model) place of each
-  std::vector<Vec3> rest;                   // (n) [m]
-  std::vector<double> mass;                 // (n) [kg]
-  std::vector<double> shape;                // (n) k_virtual [N/m]
+  std::vector<std::uint32_t> spring_entries;  // (half-springs of the model) place of each
+  std::vector<Vec3> rest;                     // (n) [m]
+  std::vector<double> mass;                   // (n) [kg]
+  std::vector<double> shape;                  // (n) k_virtual [N/m]
 
   struct StrandEntry {
     std::uint32_t node, other, strand;
@@ -32,21 +30,33 @@ struct OrderedModel {
   };
   std::vector<StrandEntry> strands;  // from both ends
 
-  /// Of SetOrderedModel: the graph in the caller's order.
-  struct Workspace {
-    NodeGraph graph;
-    std::vector<double> stiffness;
-    NodeOrderWorkspace order;
-  } workspace;
-
   std::uint32_t Size() const { return layout.node_count; }
-  /// Capacity for `share` times more links than there are.
-  void Reserve(double share);
+  /// Capacity for as many links as `like` has, and `share` times more.
+  void Reserve(const OrderedModel& like, double share);
+};
+/// Memory of SetOrderedModel: the graph in the caller's order.
+struct OrderedModelWorkspace {
+  NodeGraph graph;
+  std::vector<double> stiffness;
+  NodeOrderWorkspace order;
+
+  void Reserve(const OrderedModel& like, double share);
 };
 /// Takes a model over.
-/// \note Allocates nothing where the vectors of `made` have the capacity.
-void SetOrderedModel(const TissueModel& model, OrderedModel& made);
+/// \note Allocates nothing where the vectors have the capacity.
+void SetOrderedModel(const TissueModel& model, OrderedModelWorkspace& workspace, OrderedModel& made);
 OrderedModel MakeOrderedModel(const TissueModel& model);
+
+/// The springs of an ordered model as they are linearised now.
+struct OrderedSprings {
+  AlignedVector<double> stiffness;    // (entries) k [N/m]; 0 for strands and padding
+  AlignedVector<double> rest_length;  // (entries) [m]
+  double mean_length = 0;             // mean rest length of the model's own springs [m]
+};
+/// Takes the model's own springs.
+/// \note Allocates nothing where the vectors have the capacity.
+void SetOrderedSprings(const TissueModel& model, const OrderedModel& ordered, OrderedSprings& springs);
+OrderedSprings MakeOrderedSprings(const TissueModel& model, const OrderedModel& ordered);
 
 /// What acts in one solve, in the solvers' order.
 struct OrderedLoad {
@@ -83,14 +93,15 @@ void AddContactLinks(const OrderedLoad& load, const Balance& balance, const Floa
 /// Evaluates the balance of a model and its stiffness -dR/dx.
 class Linearisation {
  public:
-  explicit Linearisation(const OrderedModel& model) : model_(&model) { SetModel(); }
+  /// \param springs  of the model; must outlive this
+  explicit Linearisation(const OrderedSprings& springs) : springs_(&springs) {}
 
-  /// Follows a change of the model.
+  /// Capacity for a model of so many nodes, entries and ends of strands.
+  void Reserve(std::size_t nodes, std::size_t entries, std::size_t strand_ends);
+  /// Takes a model, or a change of it.
+  /// \param model  must outlive this
   /// \note Allocates nothing where Reserve() was enough.
-  void SetModel();
-  void Reserve(double share);
-  /// Capacity for another model, of so many nodes and entries.
-  void ReserveFor(std::size_t nodes, std::size_t entries);
+  void SetModel(const OrderedModel& model);
 
   /// Takes what acts in one solve; sets is_free and diagonal_excess of `level`.
   /// \note Real-time safe.
@@ -126,7 +137,8 @@ class Linearisation {
   void Run(const Kernels& kernels, Workers& workers, BalancePass pass, double energy,
            Balance& balance) noexcept;
 
-  const OrderedModel* model_;
+  const OrderedModel* model_ = nullptr;
+  const OrderedSprings* springs_;
   const OrderedLoad* load_ = nullptr;
   std::span<const std::uint8_t> strand_is_intact_;
   AlignedVector<double> nodes_;              // (slices, kBalanceValues, kSliceNodes)

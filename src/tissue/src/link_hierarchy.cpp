@@ -3,9 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
-#include "capacity.h"
 #include "node_vectors.h"
 
 namespace trocar::tissue {
@@ -13,14 +11,6 @@ namespace {
 
 /// Slices a thread takes at a time: eight parts of a patient, so that two or four threads have the same to do.
 constexpr std::uint32_t kChunkSlices = 28;
-/// Slices of a coarser level that a thread gathers at a time.
-constexpr std::uint32_t kChunkCoarseSlices = 8;
-/// A level this small is solved directly.
-constexpr std::uint32_t kDirectNodes = 24;
-/// Passes of pairwise joining for one level: up to 2^n nodes in an aggregate.
-constexpr int kPairings = 2;
-/// A level has at most nine tenths of the nodes of the one before; patients have six.
-constexpr std::size_t kMaxLevels = 32;
 /// On coarse links [-]: an aggregate is about two nodes wide, over which a step is twice as steep as a slope. A half is
 /// right for slopes alone; between 0.6 and 0.8 conjugate gradients need the fewest iterations.
 constexpr double kCoarseLinkScale = 0.7;
@@ -56,13 +46,6 @@ Symmetric3 ReadSymmetric(const AlignedVector<float>& values, std::size_t at) {
   return m;
 }
 
-constexpr std::uint32_t kNoEntry = ~std::uint32_t{0};
-
-/// Slices of a level of so many that one thread gathers at a time.
-std::uint32_t CoarseChunkSize(std::uint32_t slices) {
-  return std::max(kChunkCoarseSlices, slices / Workers::kMaxChunks + 1);
-}
-
 /// to += scale (link + shift), six values kStride apart.
 ///
 /// \param links, shift  of the level; shift null where there is none
@@ -86,19 +69,20 @@ void MarkNearHeld(LinkLevel& level) noexcept {
   for (std::uint32_t i = 0; i < n; ++i) {
     if (level.is_free[i] != 0.0f) continue;
     level.near_held[i] = 1;
-    for (std::uint32_t h = 0; h < level.layout.RowSteps(i); ++h)
-      level.near_held[level.layout.others[level.layout.Entry(i, h)]] = 1;
+    for (std::uint32_t h = 0; h < level.layout->RowSteps(i); ++h)
+      level.near_held[level.layout->others[level.layout->Entry(i, h)]] = 1;
   }
 }
 
 /// Copies the links, known in the rows of their lower nodes, into those of the upper ones.
-void MirrorLinks(LinkLevel& level, std::uint32_t first_slice, std::uint32_t last_slice) noexcept {
-  const std::size_t last = std::size_t{level.layout.starts[last_slice]} * kSliceNodes;
-  const std::uint32_t* const mirror = level.mirror_entry.data();
+void MirrorLinks(const LevelTopology& topology, LinkLevel& level, std::uint32_t first_slice,
+                 std::uint32_t last_slice) noexcept {
+  const SliceLayout& layout = topology.layout;
+  const std::size_t last = std::size_t{layout.starts[last_slice]} * kSliceNodes;
+  const std::uint32_t* const mirror = topology.mirror_entry.data();
   float* const links = level.off_diagonal.data();
-  for (std::size_t entry = std::size_t{level.layout.starts[first_slice]} * kSliceNodes; entry < last;
-       ++entry) {
-    if (mirror[entry] == kNoEntry) continue;
+  for (std::size_t entry = std::size_t{layout.starts[first_slice]} * kSliceNodes; entry < last; ++entry) {
+    if (mirror[entry] == LevelTopology::kNoEntry) continue;
     const float* const from = links + OffDiagonalAt(mirror[entry]);
     float* const to = links + OffDiagonalAt(entry);
     for (std::size_t v = 0; v < 6; ++v) to[v * kSliceNodes] = from[v * kSliceNodes];
@@ -106,148 +90,75 @@ void MirrorLinks(LinkLevel& level, std::uint32_t first_slice, std::uint32_t last
 }
 }  // namespace
 
-void LinkLevel::SetGraph(const NodeGraph& graph) {
-  SetSliceLayout(graph, layout);
-  const std::size_t padded = layout.PaddedNodes(), entries = layout.Steps() * kSliceNodes;
+void LinkLevel::SetLayout(const SliceLayout& of) {
+  layout = &of;
+  const std::size_t padded = of.PaddedNodes(), entries = of.Steps() * kSliceNodes;
   off_diagonal.assign(6 * entries, 0.0f);
   diagonal_excess.assign(6 * padded, 0.0f), inverse.assign(6 * padded, 0.0f), is_free.assign(padded, 0.0f);
   x.assign(padded, {}), b.assign(padded, {}), r.assign(padded, {});
-  aggregate.clear(), member_starts.clear(), members.clear();
-  coarsened.clear(), coarsened_starts.clear(), mirror_entry.clear(), near_held.clear();
+  near_held.assign(of.node_count, 0);
 }
 
-void LinkLevel::Reserve(std::size_t nodes, std::size_t steps) {
-  layout.starts.reserve(nodes / kSliceNodes + 2);
-  for (auto* entries : {&layout.others, &mirror_entry}) entries->reserve(steps * kSliceNodes);
-  coarsened.reserve(steps * kSliceNodes / 2);
+void LinkLevel::Reserve(const LevelCapacity& capacity) {
+  const auto [nodes, steps] = capacity;
   near_held.reserve(nodes);
   off_diagonal.reserve(6 * steps * kSliceNodes);
   for (auto* blocks : {&diagonal_excess, &inverse}) blocks->reserve(6 * nodes);
   is_free.reserve(nodes);
-  for (auto* list : {&aggregate, &member_starts, &members, &coarsened_starts}) list->reserve(nodes + 2);
   for (auto* vector : {&x, &b, &r}) vector->reserve(nodes);
 }
 
 LinkMatrix LinkLevel::Matrix() const {
-  return {layout.Table(), off_diagonal.data(), diagonal_excess.data(),
-          inverse.data(), is_free.data(),      nullptr};
+  return {layout->Table(), off_diagonal.data(), diagonal_excess.data(),
+          inverse.data(),  is_free.data(),      nullptr};
 }
 
 void RunPass(const Kernels& kernels, Workers& workers, const LinkLevel& level, LinkPass pass, const Float4* x,
              const Float4* b, float factor, Float4* out, const float* follower) noexcept {
   LinkMatrix matrix = level.Matrix();
   matrix.follower = follower;
-  ForEachSliceChunk(workers, level.layout.Slices(), [&](std::uint32_t first, std::uint32_t last) {
+  ForEachSliceChunk(workers, level.layout->Slices(), [&](std::uint32_t first, std::uint32_t last) {
     kernels.multiply(matrix, pass, x, b, factor, out, first, last);
   });
 }
 
-LinkHierarchy::LinkHierarchy(const NodeGraph& graph, std::span<const double> stiffness) : levels_(1) {
+LinkHierarchy::LinkHierarchy(const HierarchyTopology& topology, const NodeGraph& graph, double spare_share) {
+  const std::vector<LevelCapacity> capacities = CalcLevelCapacities(topology, spare_share);
   levels_.reserve(kMaxLevels);
-  SetGraph(graph, stiffness);
+  levels_.resize(capacities.size());
+  for (std::size_t at = 0; at < capacities.size(); ++at) levels_[at].Reserve(capacities[at]);
+  constexpr std::size_t kMostUnknowns = 3 * kDirectNodes;
+  for (auto* matrix : {&factor_, &rows_}) matrix->reserve(kMostUnknowns * kMostUnknowns);
+  inverse_.reserve(kMostUnknowns * kMostUnknowns);
+  SetTopology(topology, graph);
+  if (spare_share > 0.0) line_smoother_.Reserve(spare_share);
 }
 
-void LinkHierarchy::SetGraph(const NodeGraph& graph, std::span<const double> stiffness) {
-  fine_.graph.starts = graph.starts;
-  fine_.graph.others = graph.others;
-  fine_.stiffness.assign(stiffness.begin(), stiffness.end());
-  levels_.front().SetGraph(graph);
-  line_smoother_.SetGraph(graph, levels_.front().layout);
+void LinkHierarchy::SetTopology(const HierarchyTopology& topology, const NodeGraph& graph) {
+  topology_ = &topology;
+  if (levels_.size() < topology.level_count) levels_.resize(topology.level_count);
+  for (std::size_t at = 0; at < topology.level_count; ++at) levels_[at].SetLayout(topology.levels[at].layout);
+  line_smoother_.SetGraph(graph, topology.levels.front().layout);
   is_inverted_ = false;
-  for (level_count_ = 1; fine_.graph.Size() > kDirectNodes && level_count_ < kMaxLevels; ++level_count_) {
-    aggregation_.Join(fine_, kPairings);
-    const NodeGraph& coarse = aggregation_.Coarse().graph;
-    if (coarse.Size() == 0 || 10 * coarse.Size() > 9 * fine_.graph.Size()) break;  // hardly a link left
-    if (levels_.size() == level_count_) levels_.emplace_back();
-    levels_[level_count_].SetGraph(coarse);
-    FillTransfer(fine_.graph, coarse, level_count_ - 1);
-    std::swap(fine_, aggregation_.Coarse());
-  }
   const std::size_t unknowns = Coarsest().Size() <= kDirectNodes ? 3 * std::size_t{Coarsest().Size()} : 0;
   factor_.resize(unknowns * unknowns);
   rows_.resize(unknowns * unknowns);
   inverse_.resize(unknowns * unknowns);
 }
 
-/// The way from a level to the next: members of the aggregates, and the coarse link that each link is part of.
-void LinkHierarchy::FillTransfer(const NodeGraph& fine, const NodeGraph& coarse, std::size_t at) {
-  LinkLevel& level = levels_[at];
-  LinkLevel& next = levels_[at + 1];
-  level.aggregate = aggregation_.Aggregate();
-  Aggregation::ListMembers(level.aggregate, coarse.Size(), level.member_starts, level.members);
-  level.near_held.assign(level.Size(), 0);
-  const std::uint32_t chunk_nodes = CoarseChunkSize(next.layout.Slices()) * kSliceNodes;
-  coarse_entry_.assign(level.layout.Steps() * kSliceNodes, kNoEntry);
-  next.mirror_entry.assign(next.layout.Steps() * kSliceNodes, kNoEntry);
-  places_.assign(coarse.Size(), 0), counts_.assign(coarse.Size(), 0);
-  level.coarsened_starts.clear();
-  std::uint32_t coarsened = 0;
-  for (std::uint32_t from = 0; from < coarse.Size(); ++from) {
-    if (from % chunk_nodes == 0) level.coarsened_starts.push_back(coarsened);
-    for (auto h = coarse.starts[from]; h < coarse.starts[from + 1]; ++h) {
-      const std::uint32_t to = coarse.others[h];
-      places_[to] = static_cast<std::uint32_t>(next.layout.Entry(from, h - coarse.starts[from]));
-      // rows are in ascending order: this is the next of the other's row
-      if (to > from) next.mirror_entry[next.layout.Entry(to, counts_[to]++)] = places_[to];
-    }
-    for (auto m = level.member_starts[from]; m < level.member_starts[from + 1]; ++m) {
-      const std::uint32_t i = level.members[m];
-      for (auto h = fine.starts[i]; h < fine.starts[i + 1]; ++h) {
-        const std::uint32_t to = level.aggregate[fine.others[h]];
-        if (to <= from) continue;
-        coarse_entry_[level.layout.Entry(i, h - fine.starts[i])] = places_[to];
-        ++coarsened;
-      }
-    }
-  }
-  level.coarsened_starts.push_back(coarsened);
-  level.coarsened.resize(coarsened);
-  counts_.assign(level.coarsened_starts.begin(), level.coarsened_starts.end());
-  std::uint32_t entry = 0;
-  for (std::uint32_t slice = 0; slice < level.layout.Slices(); ++slice) {
-    for (const std::uint32_t end = level.layout.starts[slice + 1] * kSliceNodes; entry < end; ++entry) {
-      if (coarse_entry_[entry] == kNoEntry) continue;
-      const std::uint32_t node = slice * kSliceNodes + entry % kSliceNodes;
-      level.coarsened[counts_[level.aggregate[node] / chunk_nodes]++] = {entry, coarse_entry_[entry], node};
-    }
-  }
-}
-
-void LinkHierarchy::Reserve(double share) {
-  const auto more = [share](std::size_t count) {
-    return static_cast<std::size_t>((1.0 + share) * static_cast<double>(count)) + kLeastCapacity;
-  };
-  const std::size_t nodes = more(levels_.front().Size()), links = more(levels_.front().layout.others.size());
-  fine_.Reserve(nodes, links);
-  aggregation_.Reserve(nodes, links);
-  for (auto* list : {&places_, &counts_}) list->reserve(nodes);
-  coarse_entry_.reserve(links);
-  line_smoother_.Reserve(share);
-  // another graph may need other levels: each gets the capacity for half of the one before, and there are two more
-  std::size_t level_nodes = nodes, steps = links / kSliceNodes;
-  for (std::size_t at = 0; at < std::min(level_count_ + 2, kMaxLevels); ++at) {
-    if (at == levels_.size()) levels_.emplace_back();
-    LinkLevel& level = levels_[at];
-    level_nodes = std::max(more(level.x.size()), level_nodes / 2);
-    steps = std::max(more(level.layout.others.size() / kSliceNodes), steps / 2);
-    level.Reserve(level_nodes, steps);
-  }
-  for (auto* matrix : {&factor_, &rows_}) matrix->reserve(9 * kDirectNodes * kDirectNodes);
-  inverse_.reserve(9 * kDirectNodes * kDirectNodes);
-}
-
 /// Each chunk of aggregates gathers from its members, one after the other: no two threads write the same number, and
 /// sums do not depend on who forms them. A link is gathered by the lower of its two aggregates, and copied to the other.
 void LinkHierarchy::Coarsen(Workers& workers, std::size_t at, std::span<const float> shift) noexcept {
+  const LevelTopology& transfer = topology_->levels[at];
   LinkLevel& level = levels_[at];
   LinkLevel& next = levels_[at + 1];
   MarkNearHeld(level);
-  const std::uint32_t slices = next.layout.Slices(), size = CoarseChunkSize(slices);
+  const std::uint32_t slices = next.layout->Slices(), size = CoarseChunkSize(slices);
   workers.Run((slices + size - 1) / size, [&](std::uint32_t chunk) {
     const std::uint32_t first = chunk * size, last = std::min(slices, first + size);
     constexpr std::size_t kBlock = 6 * kSliceNodes;
-    std::fill(next.off_diagonal.begin() + static_cast<std::ptrdiff_t>(kBlock * next.layout.starts[first]),
-              next.off_diagonal.begin() + static_cast<std::ptrdiff_t>(kBlock * next.layout.starts[last]),
+    std::fill(next.off_diagonal.begin() + static_cast<std::ptrdiff_t>(kBlock * next.layout->starts[first]),
+              next.off_diagonal.begin() + static_cast<std::ptrdiff_t>(kBlock * next.layout->starts[last]),
               0.0f);
     const std::uint32_t end = std::min(next.Size(), last * kSliceNodes);
     for (std::uint32_t a = first * kSliceNodes; a < end; ++a) GatherDiagonal(at, a, shift);
@@ -256,11 +167,11 @@ void LinkHierarchy::Coarsen(Workers& workers, std::size_t at, std::span<const fl
     const float* const links = level.off_diagonal.data();
     const float* const shift_of = shift.empty() ? nullptr : shift.data();
     float* const coarse_links = next.off_diagonal.data();
-    const std::uint32_t* const others = level.layout.others.data();
+    const std::uint32_t* const others = level.layout->others.data();
     for (const CoarsenedLink& link :
-         std::span(level.coarsened)
-             .subspan(level.coarsened_starts[chunk],
-                      level.coarsened_starts[chunk + 1] - level.coarsened_starts[chunk])) {
+         std::span(transfer.coarsened)
+             .subspan(transfer.coarsened_starts[chunk],
+                      transfer.coarsened_starts[chunk + 1] - transfer.coarsened_starts[chunk])) {
       if (near_held[link.node] != 0 && (is_free[link.node] == 0.0f || is_free[others[link.entry]] == 0.0f))
         continue;
       AddLink<kSliceNodes>(links, shift_of, link.entry, static_cast<float>(kCoarseLinkScale),
@@ -268,26 +179,27 @@ void LinkHierarchy::Coarsen(Workers& workers, std::size_t at, std::span<const fl
     }
   });
   workers.Run((slices + size - 1) / size, [&](std::uint32_t chunk) {
-    MirrorLinks(next, chunk * size, std::min(slices, (chunk + 1) * size));
+    MirrorLinks(topology_->levels[at + 1], next, chunk * size, std::min(slices, (chunk + 1) * size));
   });
 }
 
 /// The diagonal excess of an aggregate: that of its members, and their links to held nodes.
 void LinkHierarchy::GatherDiagonal(std::size_t at, std::uint32_t aggregate,
                                    std::span<const float> shift) noexcept {
+  const LevelTopology& transfer = topology_->levels[at];
   const LinkLevel& level = levels_[at];
   LinkLevel& next = levels_[at + 1];
   float excess[6] = {}, is_free = 0.0f;
-  for (auto m = level.member_starts[aggregate]; m < level.member_starts[aggregate + 1]; ++m) {
-    const std::uint32_t i = level.members[m];
+  for (auto m = transfer.member_starts[aggregate]; m < transfer.member_starts[aggregate + 1]; ++m) {
+    const std::uint32_t i = transfer.members[m];
     if (level.is_free[i] == 0.0f) continue;
     is_free = 1.0f;
     for (std::size_t v = 0; v < 6; ++v) excess[v] += level.diagonal_excess[DiagonalAt(i) + v * kSliceNodes];
     if (level.near_held[i] == 0) continue;
-    for (std::uint32_t h = 0; h < level.layout.RowSteps(i); ++h) {
-      const std::size_t entry = level.layout.Entry(i, h);
-      if (level.layout.others[entry] == i) break;
-      if (level.is_free[level.layout.others[entry]] == 0.0f)
+    for (std::uint32_t h = 0; h < level.layout->RowSteps(i); ++h) {
+      const std::size_t entry = level.layout->Entry(i, h);
+      if (level.layout->others[entry] == i) break;
+      if (level.is_free[level.layout->others[entry]] == 0.0f)
         AddLink<1>(level.off_diagonal.data(), shift.empty() ? nullptr : shift.data(), entry, 1.0f, excess);
     }
   }
@@ -298,11 +210,11 @@ void LinkHierarchy::GatherDiagonal(std::size_t at, std::uint32_t aggregate,
 
 void LinkHierarchy::UpdateCoarse(const Kernels& kernels, Workers& workers,
                                  std::span<const float> shift) noexcept {
-  for (std::size_t at = 0; at + 1 < level_count_; ++at) {
+  for (std::size_t at = 0; at + 1 < topology_->level_count; ++at) {
     Coarsen(workers, at, at == 0 ? shift : std::span<const float>());
     LinkLevel& next = levels_[at + 1];
     const LinkMatrix matrix = next.Matrix();
-    ForEachSliceChunk(workers, next.layout.Slices(), [&](std::uint32_t first, std::uint32_t last) {
+    ForEachSliceChunk(workers, next.layout->Slices(), [&](std::uint32_t first, std::uint32_t last) {
       kernels.invert_blocks(matrix, next.inverse.data(), first, last);
     });
   }
@@ -326,9 +238,9 @@ void LinkHierarchy::InvertCoarsest() noexcept {
       continue;
     }
     add(i, i, ReadSymmetric(level.diagonal_excess, DiagonalAt(i)), 1.0);
-    for (std::uint32_t step = 0; step < level.layout.RowSteps(i); ++step) {
-      const std::size_t entry = level.layout.Entry(i, step);
-      const std::uint32_t other = level.layout.others[entry];
+    for (std::uint32_t step = 0; step < level.layout->RowSteps(i); ++step) {
+      const std::size_t entry = level.layout->Entry(i, step);
+      const std::uint32_t other = level.layout->others[entry];
       if (other == i) continue;
       const Symmetric3 link = ReadSymmetric(level.off_diagonal, OffDiagonalAt(entry));
       add(i, i, link, 1.0);
@@ -401,7 +313,7 @@ void LinkHierarchy::Smooth(const Kernels& kernels, Workers& workers, std::size_t
   const LinkMatrix matrix = level.Matrix();
   const LinkPass pass = from == nullptr ? LinkPass::kStart : LinkPass::kSmooth;
   const bool has_chains = at == 0 && !line_smoother_.Nodes().empty();
-  const std::uint32_t slices = level.layout.Slices(), size = SliceChunkSize(slices), first = has_chains;
+  const std::uint32_t slices = level.layout->Slices(), size = SliceChunkSize(slices), first = has_chains;
   workers.Run(first + (slices + size - 1) / size, [&](std::uint32_t chunk) {
     if (chunk < first) return line_smoother_.Solve(level, from, b);
     kernels.multiply(matrix, pass, from, b, kDamping, x, (chunk - first) * size,
@@ -413,7 +325,7 @@ void LinkHierarchy::Smooth(const Kernels& kernels, Workers& workers, std::size_t
 void LinkHierarchy::Cycle(const Kernels& kernels, Workers& workers, std::size_t at, const Float4* b,
                           Float4* x) noexcept {
   LinkLevel& level = levels_[at];
-  const bool is_last = at + 1 == level_count_;
+  const bool is_last = at + 1 == topology_->level_count;
   if (is_last && is_inverted_) return SolveCoarsest(b, x);
   Smooth(kernels, workers, at, nullptr, b, level.x.data());
   if (is_last) {
@@ -425,11 +337,12 @@ void LinkHierarchy::Cycle(const Kernels& kernels, Workers& workers, std::size_t 
   }
   RunPass(kernels, workers, level, LinkPass::kResidual, level.x.data(), b, 0.0f, level.r.data());
   LinkLevel& next = levels_[at + 1];
-  ForEachSliceChunk(workers, next.layout.Slices(), [&](std::uint32_t first, std::uint32_t last) {
+  const LevelTopology& transfer = topology_->levels[at];
+  ForEachSliceChunk(workers, next.layout->Slices(), [&](std::uint32_t first, std::uint32_t last) {
     for (std::uint32_t a = first * kSliceNodes; a < std::min(next.Size(), last * kSliceNodes); ++a) {
       Float4 sum;
-      for (auto m = level.member_starts[a]; m < level.member_starts[a + 1]; ++m) {
-        const Float4& r = level.r[level.members[m]];
+      for (auto m = transfer.member_starts[a]; m < transfer.member_starts[a + 1]; ++m) {
+        const Float4& r = level.r[transfer.members[m]];
         sum.x += r.x, sum.y += r.y, sum.z += r.z, sum.w += r.w;
       }
       next.b[a] = sum;
@@ -438,8 +351,9 @@ void LinkHierarchy::Cycle(const Kernels& kernels, Workers& workers, std::size_t 
   Cycle(kernels, workers, at + 1, next.b.data(), next.r.data());
   ForEachNodeChunk(workers, level.Size(), [&](std::uint32_t first, std::uint32_t last, std::uint32_t) {
     for (std::uint32_t i = first; i < last; ++i) {
-      if (level.aggregate[i] == Aggregation::kNone) continue;
-      const Float4& coarse = next.r[level.aggregate[i]];
+      const std::uint32_t aggregate = transfer.aggregate[i];
+      if (aggregate == Aggregation::kNone) continue;
+      const Float4& coarse = next.r[aggregate];
       const float is_free = level.is_free[i];
       Float4& here = level.x[i];
       here.x += is_free * coarse.x, here.y += is_free * coarse.y, here.z += is_free * coarse.z,

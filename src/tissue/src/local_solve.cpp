@@ -22,18 +22,19 @@ constexpr double kSeenShare = 0.1;
 
 }  // namespace
 
-LocalSolve::LocalSolve(const OrderedModel& whole) : whole_(&whole), linearisation_(model_) {
+LocalSolve::LocalSolve(const OrderedModel& whole, const OrderedSprings& springs)
+    : whole_(&whole), whole_springs_(&springs), linearisation_(springs_) {
   const std::size_t n = std::min<std::size_t>(whole.layout.PaddedNodes(), kMaxNodes), links = n * kMaxRow;
   local_of_.assign(whole.Size(), kNone);
   nodes_.reserve(n);
   whole_entries_.reserve(links);
   for (auto* list : {&model_.graph.starts, &model_.layout.starts}) list->reserve(n + 1);
   for (auto* list : {&model_.graph.others, &model_.layout.others}) list->reserve(links);
-  for (auto* values : {&model_.stiffness, &model_.rest_length}) values->reserve(links);
+  for (auto* values : {&springs_.stiffness, &springs_.rest_length}) values->reserve(links);
   model_.rest.reserve(n), model_.shape.reserve(n), model_.strands.reserve(links);
   load_.constant.reserve(n), load_.is_free.reserve(n), load_.contacts.reserve(kMaxContacts);
-  level_.Reserve(n, links / kSliceNodes);
-  linearisation_.ReserveFor(n, links);
+  level_.Reserve({n, links / kSliceNodes});
+  linearisation_.Reserve(n, links, n);
   balance_.residual.reserve(n), balance_.is_pressing.resize(kMaxContacts);
   for (auto* vector : {&position_, &start_, &first_}) vector->reserve(n);
   for (auto* vector : {&step_, &r_, &z_, &p_, &q_}) vector->reserve(n);
@@ -112,14 +113,14 @@ bool LocalSolve::SetLinks() noexcept {
     longest = 0;
   }
   if (padded > model_.layout.others.capacity()) return false;
-  level_.SetGraph(graph);
-  model_.layout = level_.layout;
-  model_.stiffness.assign(padded, 0.0), model_.rest_length.assign(padded, 0.0);
+  SetSliceLayout(graph, model_.layout);
+  level_.SetLayout(model_.layout);
+  springs_.stiffness.assign(padded, 0.0), springs_.rest_length.assign(padded, 0.0);
   for (std::uint32_t a = 0; a < nodes_.size(); ++a) {
     for (auto h = graph.starts[a]; h < graph.starts[a + 1]; ++h) {
       const std::size_t entry = model_.layout.Entry(a, h - graph.starts[a]);
-      model_.stiffness[entry] = whole.stiffness[whole_entries_[h]];
-      model_.rest_length[entry] = whole.rest_length[whole_entries_[h]];
+      springs_.stiffness[entry] = whole_springs_->stiffness[whole_entries_[h]];
+      springs_.rest_length[entry] = whole_springs_->rest_length[whole_entries_[h]];
     }
   }
   return true;
@@ -169,7 +170,7 @@ bool LocalSolve::Gather(const OrderedLoad& load, std::span<const std::uint8_t> s
     model_.rest.push_back(whole_->rest[node]);
     model_.shape.push_back(whole_->shape[node]);
   }
-  linearisation_.SetModel();
+  linearisation_.SetModel(model_);
   SetLoad(load);
   const std::size_t padded = model_.layout.PaddedNodes();
   for (auto* vector : {&position_, &start_, &first_}) vector->resize(padded);

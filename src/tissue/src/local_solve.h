@@ -28,8 +28,10 @@ class LocalSolve {
     double smallest_ritz = INFINITY;  ///< see SmallestRitz; of block Jacobi as the preconditioner
   };
 
-  /// \param whole  must outlive this
-  explicit LocalSolve(const OrderedModel& whole);
+  /// \param whole, springs  must outlive this
+  LocalSolve(const OrderedModel& whole, const OrderedSprings& springs);
+  /// Takes another model with as many nodes.
+  void SetModel(const OrderedModel& whole) noexcept { whole_ = &whole; }
   LocalSolve(const LocalSolve&) = delete;  // parts point at each other
   LocalSolve& operator=(const LocalSolve&) = delete;
 
@@ -73,11 +75,13 @@ class LocalSolve {
   bool IsFree(std::uint32_t local) const { return local < free_count_; }
 
   const OrderedModel* whole_;
+  const OrderedSprings* whole_springs_;
   std::vector<std::uint32_t> nodes_;  // as the whole numbers them: those that move, then those that hold them
   std::vector<std::uint32_t> local_of_;  // (nodes of the whole) place in nodes_, or kNone
   std::uint32_t free_count_ = 0;
   std::vector<std::size_t> whole_entries_;  // (links of model_.graph) place in the whole
   OrderedModel model_;
+  OrderedSprings springs_;
   OrderedLoad load_;
   std::span<const std::uint8_t> strand_is_intact_;
   LinkLevel level_;

@@ -163,10 +163,11 @@ core::Result<TissueRepairs> CheckTissue(TissueDefinition& definition, std::size_
 core::Status CheckSolverSettings(const SolverSettings& settings, const TissueModel& model,
                                  const TissueLoad& load) {
   const double largest = CalcLargestAlpha(model, load);
-  if (settings.kind != SolverKind::kRelaxationPaper || settings.alpha <= largest) return {};
-  return core::Error{core::ErrorCode::kUnstableStep,
-                     "alpha " + std::to_string(settings.alpha) + " m/N would blow the tissue up; at most " +
-                         std::to_string(largest) + " is stable here, or 0 to take half of that"};
+  if (settings.kind != SolverKind::kRelaxationPaper || settings.relaxation.alpha <= largest) return {};
+  return core::Error{core::ErrorCode::kUnstableStep, "alpha " + std::to_string(settings.relaxation.alpha) +
+                                                         " m/N would blow the tissue up; at most " +
+                                                         std::to_string(largest) +
+                                                         " is stable here, or 0 to take half of that"};
 }
 
 }  // namespace trocar::tissue

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "capacity.h"
 #include "node_vectors.h"
 
 namespace trocar::tissue {
@@ -57,14 +58,19 @@ bool HasSurfaces(const ConstraintSet& constraints) noexcept {
 
 // --- memory
 
-NewtonMultigrid::NewtonMultigrid(const TissueModel& model)
-    : model_(MakeOrderedModel(model)),
-      hierarchy_(model_.graph, model_.graph_stiffness),
-      linearisation_(model_),
-      pressure_(model_),
-      local_solve_(model_),
-      preconditioner_(model_, hierarchy_) {
-  const std::size_t n = model_.Size(), padded = model_.layout.PaddedNodes();
+NewtonMultigrid::NewtonMultigrid(const SolverModel& made, const OrderedSprings& springs, double spare_share)
+    : model_(&made.ordered),
+      springs_(&springs),
+      spare_share_(spare_share),
+      hierarchy_(made.hierarchy, made.ordered.graph, spare_share),
+      linearisation_(springs),
+      pressure_(made.ordered),
+      preconditioner_(made.ordered, hierarchy_) {
+  const OrderedModel& model = *model_;
+  const std::size_t n = model.Size(), padded = model.layout.PaddedNodes();
+  linearisation_.Reserve(padded, AddSpare(model.layout.Steps() * kSliceNodes, spare_share),
+                         AddSpare(model.strands.size(), spare_share));
+  linearisation_.SetModel(model);
   load_.constant.resize(n);
   load_.is_free.resize(n);
   load_.contacts.reserve(kMaxContacts);
@@ -72,30 +78,23 @@ NewtonMultigrid::NewtonMultigrid(const TissueModel& model)
   balance_.residual.resize(padded);
   balance_.is_pressing.resize(kMaxContacts);
   for (auto* vector : {&step_, &r_, &z_, &p_, &q_}) vector->resize(padded);
-  SetEdgeLength();
 }
 
-void NewtonMultigrid::SetModel(const TissueModel& model) {
-  SetOrderedModel(model, model_);
-  hierarchy_.SetGraph(model_.graph, model_.graph_stiffness);
-  linearisation_.SetModel();
-  pressure_.SetModel();
-  preconditioner_.Invalidate();
-  SetEdgeLength();
+void NewtonMultigrid::SetModel(const SolverModel& made) {
+  model_ = &made.ordered;
+  hierarchy_.SetTopology(made.hierarchy, made.ordered.graph);
+  linearisation_.SetModel(made.ordered);
+  pressure_.SetModel(made.ordered);
+  if (local_solve_ != nullptr) local_solve_->SetModel(made.ordered);
+  preconditioner_.SetModel(made.ordered);
 }
 
-void NewtonMultigrid::Reserve(double share) {
-  model_.Reserve(share);
-  hierarchy_.Reserve(share);
-  linearisation_.Reserve(share);
-  pressure_.Reserve(share);
-}
-
-void NewtonMultigrid::SetEdgeLength() noexcept {
-  double sum = 0;
-  std::size_t count = 0;
-  for (const double rest : model_.rest_length) sum += rest, count += rest > 0.0;
-  edge_length_ = count > 0 ? sum / static_cast<double>(count) : 0.0;
+void NewtonMultigrid::Prepare(std::size_t constraints, bool follows_snap_through) {
+  preconditioner_.Prepare(constraints);
+  if (!follows_snap_through || local_solve_ != nullptr) return;
+  const SliceLayout& layout = model_->layout;
+  pressure_.Reserve(layout.PaddedNodes(), AddSpare(layout.Steps() * kSliceNodes, spare_share_));
+  local_solve_ = std::make_unique<LocalSolve>(*model_, *springs_);
 }
 
 // --- positions and constraints
@@ -103,16 +102,16 @@ void NewtonMultigrid::SetEdgeLength() noexcept {
 void NewtonMultigrid::ReadPositions(const TissueState& state, std::uint32_t first,
                                     std::uint32_t last) noexcept {
   for (std::uint32_t i = first; i < last; ++i) {
-    const Vec3& p = state.position[model_.old_of_new[i]];
+    const Vec3& p = state.position[model_->old_of_new[i]];
     position_[i] = {p.x, p.y, p.z, 0.0};
   }
 }
 
 void NewtonMultigrid::WriteBack(Workers& workers, TissueState& state) const noexcept {
-  ForEachNodeChunk(workers, model_.Size(), [&](std::uint32_t first, std::uint32_t last, std::uint32_t) {
+  ForEachNodeChunk(workers, model_->Size(), [&](std::uint32_t first, std::uint32_t last, std::uint32_t) {
     for (std::uint32_t i = first; i < last; ++i) {
       if (load_.is_free[i])
-        state.position[model_.old_of_new[i]] = {position_[i].x, position_[i].y, position_[i].z};
+        state.position[model_->old_of_new[i]] = {position_[i].x, position_[i].y, position_[i].z};
     }
   });
 }
@@ -129,9 +128,9 @@ void NewtonMultigrid::ProjectConstraints(Context& c) noexcept {
   for (std::size_t active = 0; active < preconditioner_.Count(); ++active)
     c.constraints->AddMultiplier(preconditioner_.IndexOf(active), -preconditioner_.Multipliers()[active]);
   c.constraints->Project(c.state, {});
-  ForEachNodeChunk(c.workers, model_.Size(), [&](std::uint32_t first, std::uint32_t last, std::uint32_t) {
+  ForEachNodeChunk(c.workers, model_->Size(), [&](std::uint32_t first, std::uint32_t last, std::uint32_t) {
     ReadPositions(c.state, first, last);
-    SetOrderedForce(model_, c.load, first, last, load_);
+    SetOrderedForce(*model_, c.load, first, last, load_);
     linearisation_.SetForce(first, last);
   });
 }
@@ -168,9 +167,9 @@ void NewtonMultigrid::Multiply(Context& c, const Float4* x, Float4* out) noexcep
 // --- phases of a solve
 
 void NewtonMultigrid::Begin(Context& c) noexcept {
-  SetOrderedLoad(model_, c.load, c.state, load_);
+  SetOrderedLoad(*model_, c.load, c.state, load_);
   linearisation_.SetLoad(load_, c.state.strand_is_intact, hierarchy_.Finest());
-  ReadPositions(c.state, 0, model_.Size());
+  ReadPositions(c.state, 0, model_->Size());
   has_follower_stiffness_ = c.follows_snap_through && HasSurfaces(*c.constraints);
   if (has_follower_stiffness_) TakeSurfaces(*c.constraints);
   preconditioner_.Clear();
@@ -179,16 +178,16 @@ void NewtonMultigrid::Begin(Context& c) noexcept {
 /// Begins at the extrapolated initial guess if the energy is lower there and the constraints are in reach.
 void NewtonMultigrid::Predict(Context& c, std::span<const Vec3> extrapolation) noexcept {
   if (c.constraints == nullptr) return;
-  const double least = kLeastExtrapolation * edge_length_;
+  const double least = kLeastExtrapolation * springs_->mean_length;
   double longest2 = 0;
   for (const Vec3& move : extrapolation) longest2 = std::fmax(longest2, math::SquaredNorm(move));
   if (!(longest2 > least * least)) return;
   linearisation_.CalcBalance(c.kernels, c.workers, position_, balance_);
   const double before = balance_.energy;
   std::copy(position_.begin(), position_.end(), start_.begin());
-  for (std::uint32_t i = 0; i < model_.Size(); ++i) {
+  for (std::uint32_t i = 0; i < model_->Size(); ++i) {
     if (!load_.is_free[i]) continue;
-    const Vec3& move = extrapolation[model_.old_of_new[i]];
+    const Vec3& move = extrapolation[model_->old_of_new[i]];
     position_[i] = {start_[i].x + move.x, start_[i].y + move.y, start_[i].z + move.z, 0.0};
   }
   linearisation_.CalcBalance(c.kernels, c.workers, position_, balance_);
@@ -234,7 +233,7 @@ void NewtonMultigrid::Estimate(Context& c) noexcept {
                        ? c.visible_error / (CalcVisibleShare(c.smallest_ritz) * c.displacement_scale)
                    : c.visible_error > 0.0 ? INFINITY
                                            : 0.0;
-  c.report.converged = c.report.error <= c.settings.max_error;
+  c.report.converged = c.report.error <= c.max_error;
 }
 
 /// Solves K step_ = residual until the error left in the step is small enough or the trust region ends.
@@ -243,8 +242,8 @@ NewtonMultigrid::Step NewtonMultigrid::SolveStep(Context& c) noexcept {
   step.energy_before = balance_.energy;
   step.multipliers_before = preconditioner_.Multipliers();
   const double loose = kForcing * c.visible_error;
-  const double tolerance = (c.follows_snap_through ? kLinearShare : kLooseLinearShare) *
-                           c.settings.max_error * c.displacement_scale;
+  const double tolerance =
+      (c.follows_snap_through ? kLinearShare : kLooseLinearShare) * c.max_error * c.displacement_scale;
   step.linear = SolveTruncated(
       c.kernels, c.workers, std::min(c.settings.max_linear_iterations, CountLeft(c)), c.region.Radius(),
       {step_, r_, z_, p_, q_}, [&] { Multiply(c, p_.data(), q_.data()); },
@@ -278,7 +277,7 @@ NewtonMultigrid::Advancement NewtonMultigrid::SearchLine(Context& c, const Step&
 
 void NewtonMultigrid::TryShare(Context& c, const Step& step, Advancement& advancement) noexcept {
   const double share = advancement.share;
-  ForEachNodeChunk(c.workers, model_.Size(), [&](std::uint32_t first, std::uint32_t last, std::uint32_t) {
+  ForEachNodeChunk(c.workers, model_->Size(), [&](std::uint32_t first, std::uint32_t last, std::uint32_t) {
     for (std::uint32_t i = first; i < last; ++i) position_[i] = Advance(start_[i], share, step_[i]);
   });
   // constraints will change the balance again: their stiffness is computed after that
@@ -300,7 +299,7 @@ void NewtonMultigrid::TryShare(Context& c, const Step& step, Advancement& advanc
   c.report.local_solves += advancement.local.steps > 0;
   advancement.is_lower = AreConstraintsInReach(c);
   if (advancement.is_lower || advancement.local.steps == 0) return;
-  local_solve_.TakeBack(position_);
+  local_solve_->TakeBack(position_);
   advancement.local = {};
   advancement.is_lower = AreConstraintsInReach(c);
 }
@@ -309,18 +308,18 @@ void NewtonMultigrid::TryShare(Context& c, const Step& step, Advancement& advanc
 LocalSolve::Report NewtonMultigrid::SolveLocally(Context& c, const Step& step,
                                                  const Advancement& advancement) noexcept {
   if (!c.follows_snap_through) return {};
-  if (!local_solve_.Gather(load_, c.state.strand_is_intact, step_, step.length)) return {};
+  if (!local_solve_->Gather(load_, c.state.strand_is_intact, step_, step.length)) return {};
   for (std::size_t active = 0; active < preconditioner_.Count(); ++active)
-    local_solve_.AddForce(preconditioner_.Gradient(active), -advancement.multipliers[active]);
-  return local_solve_.Solve(c.kernels, c.workers, c.settings.max_error * c.displacement_scale, edge_length_,
-                            position_);
+    local_solve_->AddForce(preconditioner_.Gradient(active), -advancement.multipliers[active]);
+  return local_solve_->Solve(c.kernels, c.workers, c.max_error * c.displacement_scale, springs_->mean_length,
+                             position_);
 }
 
 /// Keeps coarse levels and Ritz value in step with a move.
 void NewtonMultigrid::FollowMove(Context& c, const Step& step, const Advancement& advancement) noexcept {
   c.moved += advancement.share * step.length + advancement.local.longest;
-  if (c.moved > kStaleMove * edge_length_) UpdateCoarseLevels(c);
-  if (advancement.share * step.length > kSnapMove * edge_length_) c.smallest_ritz = INFINITY;
+  if (c.moved > kStaleMove * springs_->mean_length) UpdateCoarseLevels(c);
+  if (advancement.share * step.length > kSnapMove * springs_->mean_length) c.smallest_ritz = INFINITY;
   c.smallest_ritz = std::fmin(c.smallest_ritz, kLocalRitzFactor * advancement.local.smallest_ritz);
   // an equilibrium that negative curvature was met next to is a saddle, and not the end
   if (c.follows_snap_through && step.linear.met_negative_curvature) c.smallest_ritz = 0.0;
@@ -331,7 +330,7 @@ void NewtonMultigrid::EstimateAfter(Context& c, const Step& step) noexcept {
   Estimate(c);
   if (!c.follows_snap_through) return;
   const bool falls_short =
-      c.visible_error > kContraction * before && c.report.error > kSmallError * c.settings.max_error;
+      c.visible_error > kContraction * before && c.report.error > kSmallError * c.max_error;
   if (step.linear.met_negative_curvature || falls_short) c.report.converged = false;
 }
 
@@ -340,20 +339,22 @@ int NewtonMultigrid::CountLeft(const Context& c) noexcept {
 }
 
 bool NewtonMultigrid::IsAtBound(const Context& c) noexcept {
-  return c.report.iterations >= c.settings.max_newton_steps || CountLeft(c) <= 0;
+  return c.report.iterations >= c.settings.max_steps || CountLeft(c) <= 0;
 }
 
-SolveReport NewtonMultigrid::Solve(const Kernels& kernels, Workers& workers, const SolverSettings& settings,
-                                   const TissueLoad& load, TissueState& state, ConstraintSet* constraints,
-                                   std::span<const Vec3> extrapolation) noexcept {
+SolveReport NewtonMultigrid::Solve(const Kernels& kernels, Workers& workers, double max_error,
+                                   const NewtonSettings& settings, const TissueLoad& load, TissueState& state,
+                                   ConstraintSet* constraints, std::span<const Vec3> extrapolation) noexcept {
+  if (constraints != nullptr) Prepare(constraints->Nodes().size(), settings.follows_snap_through);
   Context c{kernels,
             workers,
+            max_error,
             settings,
             load,
             state,
             constraints,
             settings.follows_snap_through && constraints != nullptr,
-            TrustRegion(edge_length_),
+            TrustRegion(springs_->mean_length),
             {}};
   Begin(c);
   Predict(c, extrapolation);
@@ -373,7 +374,7 @@ SolveReport NewtonMultigrid::Solve(const Kernels& kernels, Workers& workers, con
       // a contact that does not press yet, or springs that stiffen as they turn, do not show in the stiffness: shorter
       // steps find them, where there is time for such
       const bool has_time = CountLeft(c) >= settings.max_linear_iterations;
-      if (has_time && c.region.Radius() > kLeastRadius * edge_length_) continue;
+      if (has_time && c.region.Radius() > kLeastRadius * springs_->mean_length) continue;
       break;
     }
     preconditioner_.Multipliers() = advancement.multipliers;

@@ -7,12 +7,14 @@
 /// and estimate again. docs/tissue.md derives the estimate.
 #pragma once
 
+#include <memory>
 #include <span>
 
 #include "linearisation.h"
 #include "local_solve.h"
 #include "pressure_stiffness.h"
 #include "projected_preconditioner.h"
+#include "solver_model.h"
 #include "trocar/tissue/equilibrium.h"
 #include "truncated_conjugate_gradients.h"
 #include "trust_region.h"
@@ -22,23 +24,24 @@ namespace trocar::tissue {
 /// Memory and methods of the Newton solver. Nothing in it outlasts a solve but what is made from the model.
 class NewtonMultigrid {
  public:
-  explicit NewtonMultigrid(const TissueModel& model);
-  /// Goes on with another model of as many nodes.
-  /// \note Allocates nothing where Reserve() was enough.
-  void SetModel(const TissueModel& model);
-  void Reserve(double share);
+  /// \param made, springs  of one model, the springs as they are linearised; must outlive this
+  /// \param spare_share    capacity for so many times more links
+  NewtonMultigrid(const SolverModel& made, const OrderedSprings& springs, double spare_share);
+  /// Goes on with another model of as many nodes, whose springs `springs` holds by now.
+  /// \note Allocates nothing where the spare share was enough.
+  void SetModel(const SolverModel& made);
+  /// Makes what solves with so many constraints need; else the first of them does.
+  void Prepare(std::size_t constraints, bool follows_snap_through);
   NewtonMultigrid(const NewtonMultigrid&) = delete;  // parts point at each other
   NewtonMultigrid& operator=(const NewtonMultigrid&) = delete;
 
+  /// \param max_error      see SolverSettings [-]
   /// \param constraints    null for none
   /// \param extrapolation  as EquilibriumSolver::Solve takes it; used with constraints only
-  /// \note Real-time safe; bounded by settings.max_newton_steps, max_linear_iterations and max_linear_total.
-  SolveReport Solve(const Kernels& kernels, Workers& workers, const SolverSettings& settings,
-                    const TissueLoad& load, TissueState& state, ConstraintSet* constraints,
-                    std::span<const Vec3> extrapolation) noexcept;
-
-  /// The springs it works with, for SpringLinearisation to keep up to date, and for others to read.
-  OrderedModel& Springs() noexcept { return model_; }
+  /// \note Real-time safe after Prepare(); bounded by settings.max_steps, max_linear_iterations and max_linear_total.
+  SolveReport Solve(const Kernels& kernels, Workers& workers, double max_error,
+                    const NewtonSettings& settings, const TissueLoad& load, TissueState& state,
+                    ConstraintSet* constraints, std::span<const Vec3> extrapolation) noexcept;
 
  private:
   using SmallVector = ProjectedPreconditioner::SmallVector;
@@ -47,7 +50,8 @@ class NewtonMultigrid {
   struct Context {
     const Kernels& kernels;
     Workers& workers;
-    const SolverSettings& settings;
+    double max_error;
+    const NewtonSettings& settings;
     const TissueLoad& load;
     TissueState& state;
     ConstraintSet* constraints;
@@ -100,20 +104,20 @@ class NewtonMultigrid {
   void Multiply(Context& c, const Float4* x, Float4* out) noexcept;
   void ReadPositions(const TissueState& state, std::uint32_t first, std::uint32_t last) noexcept;
   void WriteBack(Workers& workers, TissueState& state) const noexcept;
-  void SetEdgeLength() noexcept;
 
-  OrderedModel model_;
+  const OrderedModel* model_;
+  const OrderedSprings* springs_;
+  double spare_share_;
   OrderedLoad load_;
   LinkHierarchy hierarchy_;
   Linearisation linearisation_;
   PressureStiffness pressure_;
-  LocalSolve local_solve_;
+  std::unique_ptr<LocalSolve> local_solve_;  // for solves that follow snap-through
   ProjectedPreconditioner preconditioner_;
   AlignedVector<Double4> position_, start_;  // (padded)
   Balance balance_;
   AlignedVector<Float4> step_, r_, z_, p_, q_;  // (padded)
   bool has_follower_stiffness_ = false;         // whether pressures are in the stiffness of this solve
-  double edge_length_ = 0;                      // mean rest length of the springs [m]
 };
 
 }  // namespace trocar::tissue

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "capacity.h"
 #include "node_vectors.h"
 #include "trocar/core/assert.h"
 
@@ -14,20 +13,17 @@ constexpr std::size_t kNoEntry = static_cast<std::size_t>(-1);
 
 }  // namespace
 
-void PressureStiffness::SetModel() {
-  const std::size_t entries = model_->layout.Steps() * kSliceNodes, padded = model_->layout.PaddedNodes();
+void PressureStiffness::SetModel(const OrderedModel& model) noexcept {
+  model_ = &model;
   surfaces_.clear(), triangles_.clear();
-  left_.resize(entries), right_.resize(entries);
-  follower_stiffness_.resize(3 * entries);
-  surface_of_.resize(padded), factor_.resize(padded);
-  surfaces_.reserve(kMaxConstraints);
-  triangles_.reserve(2 * padded);  // a closed surface has twice as many as nodes, less four
   has_pressure_ = false;
 }
 
-void PressureStiffness::Reserve(double share) {
-  ReserveMore(share, left_, right_, follower_stiffness_, surface_of_, factor_);
-  triangles_.reserve(2 * factor_.capacity());
+void PressureStiffness::Reserve(std::size_t nodes, std::size_t entries) {
+  surfaces_.reserve(kMaxConstraints);
+  triangles_.reserve(2 * nodes);  // a closed surface has twice as many as nodes, less four
+  surface_of_.reserve(nodes), factor_.reserve(nodes);
+  left_.reserve(entries), right_.reserve(entries), follower_stiffness_.reserve(3 * entries);
 }
 
 void PressureStiffness::SetSurfaces(std::span<const PressedSurface> surfaces) {
@@ -60,7 +56,10 @@ std::size_t PressureStiffness::FindEntry(std::uint32_t a, std::uint32_t b) const
 /// A link that is no edge, or whose edge has one triangle, has its own node on either side: nothing lies across it.
 void PressureStiffness::FindCorners() noexcept {
   const SliceLayout& layout = model_->layout;
-  std::fill(surface_of_.begin(), surface_of_.end(), kNoSurface);
+  const std::size_t entries = layout.Steps() * kSliceNodes;
+  surface_of_.assign(layout.PaddedNodes(), kNoSurface);
+  factor_.resize(layout.PaddedNodes());
+  left_.resize(entries), right_.resize(entries), follower_stiffness_.resize(3 * entries);
   const auto for_each_entry = [&](const auto& work) {
     for (std::uint32_t slice = 0; slice < layout.Slices(); ++slice) {
       for (std::uint32_t step = layout.starts[slice]; step < layout.starts[slice + 1]; ++step) {

@@ -27,14 +27,15 @@ struct PressedSurface {
 /// The follower stiffness of a LinkMatrix over a model's links.
 class PressureStiffness {
  public:
-  explicit PressureStiffness(const OrderedModel& model) : model_(&model) { SetModel(); }
-  /// Follows a change of the model.
-  /// \note Allocates nothing where Reserve() was enough.
-  void SetModel();
-  void Reserve(double share);
+  /// \param model  must outlive this
+  explicit PressureStiffness(const OrderedModel& model) { SetModel(model); }
+  /// Takes another model, without surfaces.
+  void SetModel(const OrderedModel& model) noexcept;
+  /// Capacity for models of so many nodes and entries.
+  void Reserve(std::size_t nodes, std::size_t entries);
 
   /// Takes the surfaces, at most kMaxConstraints.
-  /// \note Allocates nothing where the capacity is enough for their triangles.
+  /// \note Allocates nothing where Reserve() was enough.
   void SetSurfaces(std::span<const PressedSurface> surfaces);
   /// Computes the follower stiffness.
   /// \param pressure  (surfaces) [Pa]
@@ -54,7 +55,7 @@ class PressureStiffness {
   /// Place of the link from a to b, or kNoEntry.
   std::size_t FindEntry(std::uint32_t a, std::uint32_t b) const noexcept;
 
-  const OrderedModel* model_;
+  const OrderedModel* model_ = nullptr;
   struct KnownSurface {
     std::uint32_t first_node;
     std::size_t triangle_count;

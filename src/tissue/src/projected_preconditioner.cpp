@@ -3,13 +3,22 @@
 
 #include <algorithm>
 
+#include "trocar/core/assert.h"
 #include "trocar/math/small_solver.h"
 
 namespace trocar::tissue {
-ProjectedPreconditioner::ProjectedPreconditioner(const OrderedModel& model, LinkHierarchy& hierarchy)
-    : model_(&model), hierarchy_(&hierarchy) {
-  const std::size_t padded = model.layout.PaddedNodes();
-  for (Constraint& c : storage_) c.gradient.resize(padded), c.preconditioned_gradient.resize(padded);
+
+void ProjectedPreconditioner::SetModel(const OrderedModel& model) noexcept {
+  TROCAR_ASSERT(model.layout.PaddedNodes() == model_->layout.PaddedNodes());
+  model_ = &model;
+  Invalidate();
+}
+
+void ProjectedPreconditioner::Prepare(std::size_t constraints) {
+  TROCAR_ASSERT(constraints <= kMaxConstraints);
+  const std::size_t padded = model_->layout.PaddedNodes();
+  for (Constraint& c : std::span(storage_).first(constraints))
+    c.gradient.resize(padded), c.preconditioned_gradient.resize(padded);
 }
 
 void ProjectedPreconditioner::SetActive(const ConstraintSet* set) noexcept {

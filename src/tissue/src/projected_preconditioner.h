@@ -24,7 +24,12 @@ class ProjectedPreconditioner {
   using SmallMatrix = std::array<SmallVector, kMaxConstraints>;
 
   /// \param model, hierarchy  must outlive this
-  ProjectedPreconditioner(const OrderedModel& model, LinkHierarchy& hierarchy);
+  ProjectedPreconditioner(const OrderedModel& model, LinkHierarchy& hierarchy)
+      : model_(&model), hierarchy_(&hierarchy) {}
+  /// Takes another model, whose levels the hierarchy has.
+  void SetModel(const OrderedModel& model) noexcept;
+  /// Vectors for so many constraints. Those of more are made where they become active.
+  void Prepare(std::size_t constraints);
 
   /// Without any constraint.
   void Clear() noexcept { active_ = {}; }

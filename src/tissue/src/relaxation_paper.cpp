@@ -9,13 +9,13 @@
 #include "solver_content.h"
 
 namespace trocar::tissue {
-SolveReport SolveRelaxationPaper(EquilibriumSolver::Content& content, const SolverSettings& settings,
-                                 const TissueLoad& load, TissueState& state,
-                                 ConstraintSet* constraints) noexcept {
-  const TissueModel& model = *content.model;
+
+SolveReport SolveRelaxationPaper(const TissueModel& model, const IterationSettings& settings,
+                                 const RelaxationSettings& relaxation, const TissueLoad& load,
+                                 TissueState& state, ConstraintSet* constraints) noexcept {
   const auto n = static_cast<std::uint32_t>(model.Size());
   // half of the bound damps every mode of the linear system without oscillation
-  const double alpha = settings.alpha > 0.0 ? settings.alpha : 0.5 * CalcLargestAlpha(model, load);
+  const double alpha = relaxation.alpha > 0.0 ? relaxation.alpha : 0.5 * CalcLargestAlpha(model, load);
   SolveReport report;
   for (report.iterations = 0; report.iterations < settings.max_iterations;) {
     double largest = 0, scale = 0;

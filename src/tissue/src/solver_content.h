@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file solver_content.h  What the solvers share.
+/// \file solver_content.h  What the solvers share, and what each is handed.
 #pragma once
 
 #include <algorithm>
 #include <array>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "accelerated_descent.h"
@@ -42,24 +43,27 @@ void UpdateSlice(const SlicedSprings& springs, const SliceData& data, const Step
                  const Vec3* position, Vec3* previous, std::uint32_t node_count, std::uint32_t slice,
                  SliceReport& report) noexcept;
 
-struct EquilibriumSolver::Content {
-  const TissueModel* laws = nullptr;   // the caller's: springs with their laws
-  const TissueModel* model = nullptr;  // the same with the springs linearised: what the solvers take
-  std::unique_ptr<SpringLinearisation> spring_linearisation;
-  std::vector<NodeCondition>
-      unconstrained_condition;  // of the nodes that a solve holds because nothing constrains them
-  std::unique_ptr<Workers> workers;
-  const Kernels* kernels = nullptr;
-  std::unique_ptr<NewtonMultigrid> newton;
-  std::unique_ptr<AcceleratedDescent> accelerated;
+/// What ends an iteration that measures its residual.
+struct IterationSettings {
+  int max_iterations;
+  double tolerance;  ///< on the residual [-]
+};
 
-  // Gauss-Seidel
+/// Memory of Gauss-Seidel.
+struct GaussSeidelScratch {
+  explicit GaussSeidelScratch(std::size_t node_count);
+
   std::vector<std::uint32_t> wave;     // nodes of a sweep, in the order in which they are reached
   std::vector<std::uint32_t> visited;  // (n) last sweep that came by
   std::vector<double> residual;        // (n) [N]
+};
 
-  // Chebyshev
-  SlicedSprings springs;
+/// Memory of the Chebyshev iteration.
+struct ChebyshevScratch {
+  ChebyshevScratch(const TissueModel& model, double spare_share);
+  /// Goes on with another model of as many nodes.
+  void SetModel(const TissueModel& model);
+
   std::vector<Vec3> previous;      // (n) positions of the iteration before
   std::vector<Symmetric3> blocks;  // (n) the node's own stiffness
   std::vector<SliceData> slices;
@@ -67,20 +71,58 @@ struct EquilibriumSolver::Content {
   std::vector<std::uint32_t> strand_nodes;   // those with strands
   std::vector<std::uint32_t> touched_nodes;  // those with contacts in this solve
   std::vector<SliceReport> chunk_reports;
-
-  void SetStrandNodes(const TissueModel& with);
-  void Reserve(double share);
 };
 
-SolveReport SolveRelaxationPaper(EquilibriumSolver::Content& content, const SolverSettings& settings,
-                                 const TissueLoad& load, TissueState& state,
-                                 ConstraintSet* constraints) noexcept;
-SolveReport SolveGaussSeidelBrown2001(EquilibriumSolver::Content& content, const SolverSettings& settings,
-                                      const TissueLoad& load, TissueState& state,
-                                      ConstraintSet* constraints) noexcept;
-SolveReport SolveChebyshevJacobiWang2015(EquilibriumSolver::Content& content, const SolverSettings& settings,
+SolveReport SolveRelaxationPaper(const TissueModel& model, const IterationSettings& settings,
+                                 const RelaxationSettings& relaxation, const TissueLoad& load,
+                                 TissueState& state, ConstraintSet* constraints) noexcept;
+SolveReport SolveGaussSeidelBrown2001(const TissueModel& model, GaussSeidelScratch& scratch,
+                                      const IterationSettings& settings, const TissueLoad& load,
+                                      TissueState& state, ConstraintSet* constraints) noexcept;
+SolveReport SolveChebyshevJacobiWang2015(const LinearisedModel& springs, ChebyshevScratch& scratch,
+                                         Workers& workers, const IterationSettings& settings,
                                          const TissueLoad& load, TissueState& state,
                                          ConstraintSet* constraints) noexcept;
+
+/// What one solver needs is made when it first runs, or before by Prepare(): most simulations run one solver for ever.
+struct EquilibriumSolver::Content {
+  Content(const TissueModel& model, const SolverOptions& options, std::shared_ptr<const SolverModel> made);
+  void UpdateTopology(const TissueModel& model);
+  void Prepare(const SolverSettings& settings, std::size_t constraints);
+
+  SolveReport SolveChebyshev(const SolverSettings& settings, const TissueLoad& load, TissueState& state,
+                             ConstraintSet* constraints) noexcept;
+  SolveReport SolveAccelerated(int max_iterations, double max_error, const TissueLoad& load,
+                               TissueState& state, ConstraintSet* constraints) noexcept;
+  SolveReport SolveNewton(const SolverSettings& settings, const TissueLoad& load, TissueState& state,
+                          ConstraintSet* constraints, std::span<const Vec3> extrapolation) noexcept;
+
+  GaussSeidelScratch& GaussSeidel();
+  ChebyshevScratch& Chebyshev();
+  AcceleratedDescent& Accelerated();
+  NewtonMultigrid& Newton();
+
+  const TissueModel* laws;  // the caller's: springs with their laws
+  SolverOptions options;
+  // Constant, and shared with the other solvers of the same model; each outlives the one that made it. After a cut a solver
+  // has one of its own, for which it has set memory aside.
+  std::shared_ptr<const SolverModel> shared;
+  SolverModel own;
+  SolverModelBuilder builder;
+  const SolverModel* made;  // the one that holds now
+  std::optional<GridShape> grid;
+  SpringLinearisation spring_linearisation;
+  std::vector<NodeCondition>
+      unconstrained_condition;  // of the nodes that a solve holds because nothing constrains them
+  std::unique_ptr<Workers> workers;
+  const Kernels* kernels;
+
+ private:
+  std::unique_ptr<GaussSeidelScratch> gauss_seidel_;
+  std::unique_ptr<ChebyshevScratch> chebyshev_;
+  std::unique_ptr<AcceleratedDescent> accelerated_;
+  std::unique_ptr<NewtonMultigrid> newton_;
+};
 
 /// Accelerated descent where a structured mesh starts cold, then Newton until the error is small enough.
 SolveReport SolveAdaptive(EquilibriumSolver::Content& content, const SolverSettings& settings,

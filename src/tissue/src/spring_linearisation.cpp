@@ -2,6 +2,7 @@
 #include "spring_linearisation.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "capacity.h"
 #include "trocar/core/assert.h"
@@ -9,44 +10,45 @@
 
 namespace trocar::tissue {
 
-SpringLinearisation::SpringLinearisation(const TissueModel& model, SlicedSprings& sliced,
-                                         OrderedModel& ordered)
-    : sliced_(&sliced), ordered_(&ordered) {
-  SetModel(model);
-}
-
-void SpringLinearisation::SetModel(const TissueModel& model) {
+void SpringLinearisation::SetModel(const TissueModel& model, const SolverModel& made) {
+  if (model_ == nullptr) {
+    const std::size_t springs = model.SpringCount(), entries = made.ordered.layout.Steps() * kSliceNodes;
+    ReserveWithSpare(springs, spare_share_, factor_, is_changed_, elastic_);
+    ReserveWithSpare(entries, spare_share_, ordered_.stiffness, ordered_.rest_length);
+    unconstrained_.reserve(model.Size());
+  }
   model_ = &model;
-  linearised_ = model;
-  ends_.assign(model.SpringCount(), {});
+  made_ = &made;
+  SetOrderedSprings(model, made.ordered, ordered_);
+  if (nodewise_ != nullptr) {
+    nodewise_->model = model;
+    SetSlicedSprings(model, nodewise_->sliced);
+  }
   factor_.assign(model.SpringCount(), 1.0);
   is_changed_.assign(model.SpringCount(), 0);
   changed_count_ = 0;
   unconstrained_.clear();
   elastic_.clear();
-  const SlicedSprings& sliced = *sliced_;
-  for (std::uint32_t i = 0; i < model.Size(); ++i) {
-    const std::size_t first = std::size_t{sliced.starts[i / kLanes]} * kLanes + i % kLanes;
-    for (auto h = model.spring_starts[i]; h < model.spring_starts[i + 1]; ++h) {
-      const auto& half = model.half_springs[h];
-      const std::size_t place = first + std::size_t{h - model.spring_starts[i]} * kLanes;
-      Ends& ends = ends_[half.spring];
-      if (i < half.other) {
-        ends.a = i, ends.half_a = h, ends.sliced_a = place;
-      } else {
-        ends.b = i, ends.half_b = h, ends.sliced_b = place;
-      }
-    }
-  }
-  unconstrained_.reserve(model.Size());
   for (std::uint32_t spring = 0; spring < model.SpringCount(); ++spring) {
     if (model.laws[model.spring_law[spring]].stiffening > 0.0) elastic_.push_back(spring);
   }
 }
 
-void SpringLinearisation::Reserve(double share) {
-  ReserveMore(share, linearised_.half_springs, linearised_.half_strands, linearised_.spring_law, ends_,
-              factor_, is_changed_, elastic_);
+const LinearisedModel& SpringLinearisation::Nodewise() {
+  if (nodewise_ != nullptr) return *nodewise_;
+  nodewise_ = std::make_unique<LinearisedModel>();
+  auto& [model, sliced] = *nodewise_;
+  const std::size_t springs = model_->SpringCount();
+  ReserveWithSpare(2 * springs, spare_share_, model.half_springs, sliced.others, sliced.stiffness,
+                   sliced.stiffness_times_rest);
+  ReserveWithSpare(springs, spare_share_, model.spring_law);
+  model = *model_;
+  SetSlicedSprings(*model_, sliced);
+  for (std::uint32_t spring = 0; spring < springs; ++spring) {
+    const std::size_t entry = made_->ordered.spring_entries[made_->ends[spring].half_a];
+    if (is_changed_[spring]) SetNodewise(spring, ordered_.stiffness[entry], ordered_.rest_length[entry]);
+  }
+  return *nodewise_;
 }
 
 bool SpringLinearisation::UpdateFactors(const TissueState& state) noexcept {
@@ -61,7 +63,7 @@ bool SpringLinearisation::UpdateFactors(const TissueState& state) noexcept {
     }
     factor_[spring] = factor;
     has_changed = true;
-    const auto& half = model_->half_springs[ends_[spring].half_a];
+    const auto& half = model_->half_springs[made_->ends[spring].half_a];
     SetTangent(spring, factor * half.stiffness, half.rest_length);
   }
   if (has_changed) FindUnconstrained();
@@ -84,37 +86,47 @@ void SpringLinearisation::FindUnconstrained() noexcept {
 double SpringLinearisation::UpdateTangents(const TissueState& state) noexcept {
   double error = 0, largest = 0;
   for (const std::uint32_t spring : elastic_) {
-    const Ends& ends = ends_[spring];
+    const SpringEnds& ends = made_->ends[spring];
     const auto& half = model_->half_springs[ends.half_a];
-    const auto& before = linearised_.half_springs[ends.half_a];
+    const std::size_t entry = made_->ordered.spring_entries[ends.half_a];
+    const double stiffness_before = ordered_.stiffness[entry], rest_before = ordered_.rest_length[entry];
     const double length = math::Distance(state.position[ends.a], state.position[ends.b]);
     const TangentSpring next = CalcTangentSpring(model_->laws[model_->spring_law[spring]], factor_[spring],
                                                  half.stiffness, half.rest_length, length);
     const double tension = next.stiffness * (length - next.rest_length);
-    error = std::fmax(error, std::fabs(tension - before.stiffness * (length - before.rest_length)));
+    error = std::fmax(error, std::fabs(tension - stiffness_before * (length - rest_before)));
     largest = std::fmax(largest, std::fabs(tension));
-    if (next.stiffness != before.stiffness || next.rest_length != before.rest_length)
+    if (next.stiffness != stiffness_before || next.rest_length != rest_before)
       SetTangent(spring, next.stiffness, next.rest_length);
   }
   return error > 0.0 ? error / largest : 0.0;
 }
 
 void SpringLinearisation::SetTangent(std::uint32_t spring, double stiffness, double rest_length) noexcept {
-  const Ends& ends = ends_[spring];
+  const SpringEnds& ends = made_->ends[spring];
   const auto& own = model_->half_springs[ends.half_a];
   const bool is_changed = stiffness != own.stiffness || rest_length != own.rest_length;
   changed_count_ += is_changed;
   changed_count_ -= is_changed_[spring];
   is_changed_[spring] = is_changed;
   for (const std::uint32_t h : {ends.half_a, ends.half_b}) {
-    linearised_.half_springs[h].stiffness = stiffness;
-    linearised_.half_springs[h].rest_length = rest_length;
-    ordered_->stiffness[ordered_->spring_entries[h]] = stiffness;
-    ordered_->rest_length[ordered_->spring_entries[h]] = rest_length;
+    const std::size_t entry = made_->ordered.spring_entries[h];
+    ordered_.stiffness[entry] = stiffness;
+    ordered_.rest_length[entry] = rest_length;
   }
-  for (const std::size_t place : {ends.sliced_a, ends.sliced_b}) {
-    sliced_->stiffness[place] = stiffness;
-    sliced_->stiffness_times_rest[place] = stiffness * rest_length;
+  if (nodewise_ != nullptr) SetNodewise(spring, stiffness, rest_length);
+}
+
+void SpringLinearisation::SetNodewise(std::uint32_t spring, double stiffness, double rest_length) noexcept {
+  const SpringEnds& ends = made_->ends[spring];
+  auto& [model, sliced] = *nodewise_;
+  for (const auto& [node, h] : {std::pair{ends.a, ends.half_a}, std::pair{ends.b, ends.half_b}}) {
+    model.half_springs[h].stiffness = stiffness;
+    model.half_springs[h].rest_length = rest_length;
+    const std::size_t step = std::size_t{sliced.starts[node / kLanes]} + h - model.spring_starts[node];
+    const std::size_t place = step * kLanes + node % kLanes;
+    sliced.stiffness[place] = stiffness;
+    sliced.stiffness_times_rest[place] = stiffness * rest_length;
   }
 }
 

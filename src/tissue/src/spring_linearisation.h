@@ -11,9 +11,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
+#include <span>
 #include <vector>
 
-#include "linearisation.h"
+#include "solver_model.h"
 #include "trocar/tissue/equilibrium.h"
 
 namespace trocar::tissue {
@@ -34,18 +36,26 @@ struct SlicedSprings {
 /// \note Allocates nothing where the vectors have the capacity.
 void SetSlicedSprings(const TissueModel& model, SlicedSprings& sliced);
 
+/// The model with linearised springs, for solvers that go node by node in the caller's order.
+struct LinearisedModel {
+  TissueModel model;
+  SlicedSprings sliced;
+};
+
 class SpringLinearisation {
  public:
-  /// \param model    the springs with their laws; must outlive this
-  /// \param sliced, ordered  where the solvers keep the springs
-  SpringLinearisation(const TissueModel& model, SlicedSprings& sliced, OrderedModel& ordered);
-  /// Goes on with another model, which the solvers' springs have followed.
-  /// \note Allocates nothing where Reserve() was enough.
-  void SetModel(const TissueModel& model);
-  void Reserve(double share);
+  /// \param spare_share  capacity for so many times more springs
+  explicit SpringLinearisation(double spare_share) : spare_share_(spare_share) {}
+  /// Takes another model, whose springs are whole and at rest.
+  ///
+  /// \param model  the springs with their laws; must outlive this, as `made` of it must
+  /// \note Allocates nothing where the spare share was enough.
+  void SetModel(const TissueModel& model, const SolverModel& made);
 
-  /// The model with linearised springs.
-  const TissueModel& Model() const { return linearised_; }
+  /// The linearised springs in the solvers' order.
+  const OrderedSprings& Ordered() const { return ordered_; }
+  /// The model with linearised springs; made when it is first asked for, and kept up to date from then on.
+  const LinearisedModel& Nodewise();
   /// True where every spring is whole and follows Hooke's law: the linearised springs are the model's own.
   bool IsPlain() const { return changed_count_ == 0; }
 
@@ -67,20 +77,20 @@ class SpringLinearisation {
     const bool counts_iterations = settings.kind != SolverKind::kNewtonMultigrid;
     // without virtual springs it cannot tell that it arrived, and would leave nothing for a second outer iteration
     const bool ends_by_count = settings.kind == SolverKind::kAcceleratedDescent;
+    const OuterIterationSettings& outer = settings.outer;
     SolverSettings next = settings;
-    if (ends_by_count)
-      next.max_iterations = std::max(1, settings.max_iterations / settings.max_outer_iterations);
+    if (ends_by_count) next.max_iterations = std::max(1, settings.max_iterations / outer.max_count);
     SolveReport report = solve(next), last = report;
     while (last.is_finite) {
       report.law_error = UpdateTangents(state);
-      const bool holds = report.law_error <= settings.law_error;
+      const bool holds = report.law_error <= outer.law_error;
       if (holds && (last.converged || !ends_by_count)) break;
       report.converged = report.converged && holds;
-      next.max_newton_steps -= counts_steps ? last.iterations : 0;
-      next.max_linear_total -= counts_steps ? last.linear_iterations : 0;
+      next.newton.max_steps -= counts_steps ? last.iterations : 0;
+      next.newton.max_linear_total -= counts_steps ? last.linear_iterations : 0;
       next.max_iterations -= counts_iterations && !ends_by_count ? last.iterations : 0;
-      if (report.outer_iterations >= settings.max_outer_iterations || next.max_newton_steps <= 0 ||
-          next.max_linear_total <= 0 || next.max_iterations <= 0)
+      if (report.outer_iterations >= outer.max_count || next.newton.max_steps <= 0 ||
+          next.newton.max_linear_total <= 0 || next.max_iterations <= 0)
         break;
       last = solve(next);
       Add(last, report);
@@ -96,17 +106,14 @@ class SpringLinearisation {
   void SetTangent(std::uint32_t spring, double stiffness, double rest_length) noexcept;
   static void Add(const SolveReport& outer_iteration, SolveReport& sum) noexcept;
 
-  struct Ends {
-    std::uint32_t a, b;            // nodes
-    std::uint32_t half_a, half_b;  // half-springs at each
-    std::size_t sliced_a, sliced_b;
-  };
-  const TissueModel* model_;
-  SlicedSprings* sliced_;
-  OrderedModel* ordered_;
-  TissueModel linearised_;
-  std::vector<Ends> ends_;                // (springs)
-  std::vector<double> factor_;            // (springs) as linearised_ has it
+  void SetNodewise(std::uint32_t spring, double stiffness, double rest_length) noexcept;
+
+  double spare_share_;
+  const TissueModel* model_ = nullptr;
+  const SolverModel* made_ = nullptr;
+  OrderedSprings ordered_;
+  std::unique_ptr<LinearisedModel> nodewise_;
+  std::vector<double> factor_;            // (springs) as they are linearised
   std::vector<std::uint32_t> elastic_;    // springs whose law stiffens
   std::vector<std::uint8_t> is_changed_;  // (springs) other than the model's own
   std::size_t changed_count_ = 0;

@@ -42,27 +42,27 @@ SliceLookup FindLookup(const std::uint32_t* others, std::uint32_t first) {
 }  // namespace
 
 void SpringSlices::SetModel(const OrderedModel& model) {
-  layout_ = model.layout;
-  springs_.assign(layout_.Steps() * kSpringFloats, 0.0f);
-  nodes_.assign(layout_.PaddedNodes() * 5, 0.0f);
-  u_.assign(layout_.PaddedNodes(), {});
+  layout_ = &model.layout;
+  springs_.assign(layout_->Steps() * kSpringFloats, 0.0f);
+  nodes_.assign(layout_->PaddedNodes() * 5, 0.0f);
+  u_.assign(layout_->PaddedNodes(), {});
   previous_ = u_;
-  u_by_slice_.assign(layout_.PaddedNodes() * 3, 0.0f);
+  u_by_slice_.assign(layout_->PaddedNodes() * 3, 0.0f);
   previous_by_slice_ = u_by_slice_;
   SetLookups();
   reach_ = 0;
-  for (std::uint32_t slice = 0; slice < layout_.Slices(); ++slice) {
-    for (std::size_t entry = std::size_t{layout_.starts[slice]} * kSliceNodes;
-         entry < std::size_t{layout_.starts[slice + 1]} * kSliceNodes; ++entry) {
-      const std::uint32_t other = layout_.others[entry] / kSliceNodes;
+  for (std::uint32_t slice = 0; slice < layout_->Slices(); ++slice) {
+    for (std::size_t entry = std::size_t{layout_->starts[slice]} * kSliceNodes;
+         entry < std::size_t{layout_->starts[slice + 1]} * kSliceNodes; ++entry) {
+      const std::uint32_t other = layout_->others[entry] / kSliceNodes;
       reach_ = std::max(reach_, other > slice ? other - slice : slice - other);
     }
   }
   for (std::uint32_t i = 0; i < model.Size(); ++i) {
-    for (std::uint32_t step = 0; step < layout_.RowSteps(i); ++step) {
-      const std::size_t entry = layout_.Entry(i, step);
+    for (std::uint32_t step = 0; step < layout_->RowSteps(i); ++step) {
+      const std::size_t entry = layout_->Entry(i, step);
       float* const spring = springs_.data() + entry / kSliceNodes * kSpringFloats + entry % kSliceNodes;
-      const Vec3 offset = model.rest[layout_.others[entry]] - model.rest[i];
+      const Vec3 offset = model.rest[layout_->others[entry]] - model.rest[i];
       for (int axis = 0; axis < 3; ++axis) spring[axis * kSliceNodes] = static_cast<float>(offset[axis]);
     }
   }
@@ -70,11 +70,11 @@ void SpringSlices::SetModel(const OrderedModel& model) {
 
 void SpringSlices::SetLookups() {
   lookups_.clear();
-  is_scattered_.assign(layout_.Slices(), 0);
+  is_scattered_.assign(layout_->Slices(), 0);
   std::size_t found = 0;
-  for (std::uint32_t slice = 0; slice < layout_.Slices(); ++slice) {
-    for (std::size_t step = layout_.starts[slice]; step < layout_.starts[slice + 1]; ++step) {
-      const std::uint32_t* const others = layout_.others.data() + step * kSliceNodes;
+  for (std::uint32_t slice = 0; slice < layout_->Slices(); ++slice) {
+    for (std::size_t step = layout_->starts[slice]; step < layout_->starts[slice + 1]; ++step) {
+      const std::uint32_t* const others = layout_->others.data() + step * kSliceNodes;
       lookups_.push_back(FindLookup(others, slice * kSliceNodes));
       if (lookups_.back().pairs > 0) {
         ++found;
@@ -87,11 +87,13 @@ void SpringSlices::SetLookups() {
   is_by_slice_ = false;
 }
 
-void SpringSlices::Reserve(double share) {
-  ReserveMore(share, layout_.starts, layout_.others, lookups_, springs_);
+void SpringSlices::Reserve(const OrderedModel& like, double share) {
+  const std::size_t steps = AddSpare(like.layout.Steps(), share);
+  lookups_.reserve(steps);
+  springs_.reserve(steps * kSpringFloats);
 }
 
-void SpringSlices::SetLoad(const OrderedModel& model, const OrderedLoad& load,
+void SpringSlices::SetLoad(const OrderedModel& model, const OrderedSprings& springs, const OrderedLoad& load,
                            std::span<const std::uint8_t> strand_is_intact) noexcept {
   lowest_ = 1.0;
   smallest_shape_ = INFINITY;
@@ -99,13 +101,13 @@ void SpringSlices::SetLoad(const OrderedModel& model, const OrderedLoad& load,
     return springs_.data() + entry / kSliceNodes * kSpringFloats + entry % kSliceNodes;
   };
   for (std::uint32_t i = 0; i < model.Size(); ++i) {
-    for (std::uint32_t step = 0; step < layout_.RowSteps(i); ++step) {
-      const std::size_t entry = layout_.Entry(i, step);
-      if (layout_.others[entry] == i) break;
-      const double k = load.stiffness_scale * model.stiffness[entry];
+    for (std::uint32_t step = 0; step < layout_->RowSteps(i); ++step) {
+      const std::size_t entry = layout_->Entry(i, step);
+      if (layout_->others[entry] == i) break;
+      const double k = load.stiffness_scale * springs.stiffness[entry];
       float* const spring = spring_at(entry);
       spring[3 * kSliceNodes] = static_cast<float>(k);
-      spring[4 * kSliceNodes] = static_cast<float>(k * model.rest_length[entry]);
+      spring[4 * kSliceNodes] = static_cast<float>(k * springs.rest_length[entry]);
     }
   }
   for (const auto& strand : model.strands) {
@@ -116,9 +118,9 @@ void SpringSlices::SetLoad(const OrderedModel& model, const OrderedLoad& load,
   }
   for (std::uint32_t i = 0; i < model.Size(); ++i) {
     double sum = 0;
-    for (std::uint32_t step = 0; step < layout_.RowSteps(i); ++step) {
-      const std::size_t entry = layout_.Entry(i, step);
-      if (layout_.others[entry] == i) break;
+    for (std::uint32_t step = 0; step < layout_->RowSteps(i); ++step) {
+      const std::size_t entry = layout_->Entry(i, step);
+      if (layout_->others[entry] == i) break;
       sum += static_cast<double>(spring_at(entry)[3 * kSliceNodes]);
     }
     const double shape = load.shape_scale * model.shape[i], bound = 2.0 * sum + shape;
@@ -156,7 +158,7 @@ void SpringSlices::SetDisplacement(std::uint32_t node, const Vec3& u) noexcept {
 SliceStep SpringSlices::MakeStep(const Kernels& kernels, float omega, float damping, bool is_first,
                                  bool is_measured) noexcept {
   is_by_slice_ = has_lookups_ && kernels.looks_up;
-  return {.table = layout_.Table(),
+  return {.table = layout_->Table(),
           .springs = springs_.data(),
           .nodes = nodes_.data(),
           .u = u_.data(),
@@ -178,7 +180,7 @@ void SpringSlices::SwapDisplacements() noexcept {
 
 double SpringSlices::Step(const Kernels& kernels, Workers& workers, float omega, float damping, bool is_first,
                           bool is_measured) noexcept {
-  const std::uint32_t slices = layout_.Slices();
+  const std::uint32_t slices = layout_->Slices();
   const std::uint32_t chunk_slices = std::max(kChunkSlices, slices / Workers::kMaxChunks + 1);
   const std::uint32_t chunks = (slices + chunk_slices - 1) / chunk_slices;
   std::array<float, Workers::kMaxChunks> largest2;
@@ -195,7 +197,7 @@ double SpringSlices::Step(const Kernels& kernels, Workers& workers, float omega,
 
 std::uint32_t SpringSlices::CountRanges(int threads) const {
   // at each edge a range leaves out kFollowing - 1 reaches at the most: at least half is left to be done together
-  const auto most = static_cast<std::uint32_t>(layout_.Slices() / (4 * kFollowing * (reach_ + 1)));
+  const auto most = static_cast<std::uint32_t>(layout_->Slices() / (4 * kFollowing * (reach_ + 1)));
   return std::min(static_cast<std::uint32_t>(threads), most);
 }
 
@@ -227,7 +229,7 @@ double SpringSlices::Iterate(const Kernels& kernels, Workers& workers, std::span
 /// writes over the displacements of two before, which nobody needs by then.
 double SpringSlices::FollowEachOther(const Kernels& kernels, Workers& workers,
                                      std::span<const SliceStep> steps, std::uint32_t ranges) noexcept {
-  const std::uint32_t slices = layout_.Slices();
+  const std::uint32_t slices = layout_->Slices();
   const auto edge_of = [&](std::uint32_t range) { return slices / ranges * range; };
   std::array<float, 2 * Workers::kMaxChunks> largest2{};
   workers.Run(ranges, [&](std::uint32_t range) {
@@ -265,7 +267,7 @@ double SpringSlices::FollowEachOther(const Kernels& kernels, Workers& workers,
 
 double SpringSlices::LargestDisplacement() const noexcept {
   double largest2 = 0;
-  for (std::uint32_t i = 0; i < layout_.node_count; ++i) {
+  for (std::uint32_t i = 0; i < layout_->node_count; ++i) {
     largest2 = std::max(largest2, math::SquaredNorm(GetDisplacement(i)));
   }
   return std::sqrt(largest2);

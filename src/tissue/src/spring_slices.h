@@ -13,12 +13,15 @@ namespace trocar::tissue {
 class SpringSlices {
  public:
   /// Takes a model over, without displacements.
+  /// \param model  must outlive this
   /// \note Allocates nothing where Reserve() was enough.
   void SetModel(const OrderedModel& model);
-  void Reserve(double share);
+  /// Capacity for `share` times more links than `like` has.
+  void Reserve(const OrderedModel& like, double share);
 
-  /// \param load  in the solvers' order, without contacts
-  void SetLoad(const OrderedModel& model, const OrderedLoad& load,
+  /// \param springs  of the model
+  /// \param load     in the solvers' order, without contacts
+  void SetLoad(const OrderedModel& model, const OrderedSprings& springs, const OrderedLoad& load,
                std::span<const std::uint8_t> strand_is_intact) noexcept;
   void SetDisplacement(std::uint32_t node, const Vec3& u) noexcept;
   Vec3 GetDisplacement(std::uint32_t node) const noexcept {
@@ -62,7 +65,7 @@ class SpringSlices {
   double FollowEachOther(const Kernels& kernels, Workers& workers, std::span<const SliceStep> steps,
                          std::uint32_t ranges) noexcept;
 
-  SliceLayout layout_;
+  const SliceLayout* layout_ = nullptr;
   std::uint32_t reach_ = 0;                 // slices to the farthest neighbour
   std::vector<SliceLookup> lookups_;        // as in SliceStep
   std::vector<std::uint8_t> is_scattered_;  // as in SliceStep

@@ -56,7 +56,7 @@ TEST(Conservation, NewtonKnowsHowPressureTurns) {
     state.organs[0].target *= 1.2;
     SolverSettings settings = kExact;
     settings.kind = SolverKind::kNewtonMultigrid;
-    settings.follows_snap_through = follows_snap_through;
+    settings.newton.follows_snap_through = follows_snap_through;
     Pulled pulled;
     for (int tick = 1; tick <= 20; ++tick) {
       sac.Hold(sac.Pole({0, 0, 1}), {{}, std::max(0, tick - 10) * Vec3{3e-4, 0, 1e-4}});
@@ -98,7 +98,7 @@ TEST(Conservation, TheJudgeOfATickKeepsTheVolumeAndFindsWhatExactTicksComeTo) {
     return most;
   };
   SolverSettings short_tick = newton;
-  short_tick.max_newton_steps = 2;
+  short_tick.newton.max_steps = 2;
   for (int i = 0; i < 3; ++i) tick(short_tick);
 
   const Sac before = sac;
@@ -123,19 +123,19 @@ TEST(Conservation, TheJudgeOfATickKeepsTheVolumeAndFindsWhatExactTicksComeTo) {
 // A hand that goes on draws the tissue on: a tick that may do little is nearer the equilibrium if it begins where the
 // last one leads.
 TEST(Conservation, ATickThatMayDoLittleFollowsAHandThatGoesOn) {
-  const auto pull = [](bool leads) {
+  const auto pull = [](bool extrapolates) {
     Sac sac(3e4);
     Conservation conservation(sac.model, sac.settings);
     EquilibriumSolver solver(sac.model, 1), judge(sac.model, 1);
     ConservationState state = conservation.MakeState(sac.tissue);
     SolverSettings newton = kExact, little = kExact;
     newton.kind = little.kind = SolverKind::kNewtonMultigrid;
-    little.max_linear_total = 4;
+    little.newton.max_linear_total = 4;
     TissueLoad load;
     for (int tick = 1; tick <= 30; ++tick) {
       sac.Hold(sac.Pole({-1, 0, 0}), {{}, tick * Vec3{-2e-4, 1e-4, 0}});
       load = {.gravity = {0.5, -1.0, 0.2}};
-      if (!leads) std::fill(state.last_motion.begin(), state.last_motion.end(), Vec3{});
+      if (!extrapolates) std::fill(state.last_motion.begin(), state.last_motion.end(), Vec3{});
       (void)SolveConserving(solver, little, kTick, conservation, load, sac.tissue, state);
     }
     Sac judged = sac;
@@ -150,7 +150,7 @@ TEST(Conservation, ATickThatMayDoLittleFollowsAHandThatGoesOn) {
   EXPECT_LT(with, 0.2 * without);
 }
 
-// Where the hand turns back, the way that the last tick leads is uphill.
+// Where the hand turns back, the extrapolated initial guess lies uphill.
 TEST(Conservation, AnExtrapolationUphillIsNotTaken) {
   const auto tick = [](const Vec3& extrapolation) {
     Sac sac(3e4);
@@ -159,7 +159,7 @@ TEST(Conservation, AnExtrapolationUphillIsNotTaken) {
     ConservationState state = conservation.MakeState(sac.tissue);
     SolverSettings little = kExact;
     little.kind = SolverKind::kNewtonMultigrid;
-    little.max_linear_total = 4;
+    little.newton.max_linear_total = 4;
     sac.Hold(sac.Pole({-1, 0, 0}), {{}, {-0.002, 0.001, 0}});
     TissueLoad load;
     std::fill(state.last_motion.begin(), state.last_motion.end(), extrapolation);
@@ -185,8 +185,8 @@ TEST(Conservation, LocalSolvesSaveStepsInASnapThrough) {
     ConservationState state = conservation.MakeState(sac.tissue);
     SolverSettings settings, exact = kExact;
     settings.kind = exact.kind = SolverKind::kNewtonMultigrid;
-    settings.follows_snap_through = follows_snap_through;
-    exact.follows_snap_through = false;
+    settings.newton.follows_snap_through = follows_snap_through;
+    exact.newton.follows_snap_through = false;
     Dented dented;
     TissueLoad load;
     for (int tick = 1; tick <= 40; ++tick) {

@@ -90,7 +90,7 @@ TEST(CheckSolverSettings, NamesAnUnstableStepAndTheLargestThatIsNot) {
   const double largest = CalcLargestAlpha(model, {});
   SolverSettings settings{SolverKind::kRelaxationPaper, 100, 1e-4, largest};
   EXPECT_TRUE(CheckSolverSettings(settings, model, {}).ok());
-  settings.alpha = 1.01 * largest;
+  settings.relaxation.alpha = 1.01 * largest;
   const auto status = CheckSolverSettings(settings, model, {});
   ASSERT_FALSE(status.ok());
   EXPECT_EQ(status.error().code, core::ErrorCode::kUnstableStep);

@@ -13,6 +13,7 @@
 #include "linearisation.h"
 #include "local_solve.h"
 #include "smallest_ritz.h"
+#include "solver_model.h"
 #include "test_systems.h"
 #include "trocar/tissue/equilibrium.h"
 
@@ -64,7 +65,9 @@ TissueState Shake(const TissueModel& model, double by, unsigned seed) {
 
 /// The balance and the stiffness of one state, in the solvers' order.
 struct Evaluated {
-  OrderedModel model;
+  SolverModel made;
+  const OrderedModel& model = made.ordered;
+  OrderedSprings springs;
   OrderedLoad load;
   LinkHierarchy hierarchy;
   Linearisation linearisation;
@@ -74,10 +77,12 @@ struct Evaluated {
   const Kernels* kernels;
 
   Evaluated(const TissueModel& from, const TissueLoad& loads, const TissueState& state, SimdLevel level)
-      : model(MakeOrderedModel(from)),
-        hierarchy(model.graph, model.graph_stiffness),
-        linearisation(model),
+      : made(MakeSolverModel(from)),
+        springs(MakeOrderedSprings(from, model)),
+        hierarchy(made.hierarchy, model.graph),
+        linearisation(springs),
         kernels(&GetKernels(level)) {
+    linearisation.SetModel(model);
     load.constant.resize(model.Size()), load.is_free.resize(model.Size());
     load.contacts.reserve(kMaxContacts);
     SetOrderedLoad(model, loads, state, load);
@@ -124,16 +129,17 @@ TEST(LinkHierarchy, CoarseLevelsAreTheSumsOfTheirMembers) {
   ASSERT_GE(levels.size(), 3u);
   for (std::size_t at = 0; at + 1 < levels.size(); ++at) {
     const LinkLevel &fine = levels[at], &coarse = levels[at + 1];
+    const std::vector<std::uint32_t>& aggregate = evaluated.made.hierarchy.levels[at].aggregate;
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::array<double, 6>> links;
-    std::vector<std::array<double, 6>> grounds(coarse.Size());
+    std::vector<std::array<double, 6>> diagonals(coarse.Size());
     std::size_t held = 0;
     for (std::uint32_t i = 0; i < fine.Size(); ++i) {
-      if (fine.is_free[i] == 0.0f || fine.aggregate[i] == Aggregation::kNone) continue;
-      auto& ground = grounds[fine.aggregate[i]];
-      for (std::size_t v = 0; v < 6; ++v) ground[v] += ValueAt(fine.diagonal_excess, i, v);
-      for (std::uint32_t h = 0; h < fine.layout.RowSteps(i); ++h) {
-        const std::size_t entry = fine.layout.Entry(i, h);
-        const std::uint32_t other = fine.layout.others[entry];
+      if (fine.is_free[i] == 0.0f || aggregate[i] == Aggregation::kNone) continue;
+      auto& diagonal = diagonals[aggregate[i]];
+      for (std::size_t v = 0; v < 6; ++v) diagonal[v] += ValueAt(fine.diagonal_excess, i, v);
+      for (std::uint32_t h = 0; h < fine.layout->RowSteps(i); ++h) {
+        const std::size_t entry = fine.layout->Entry(i, h);
+        const std::uint32_t other = fine.layout->others[entry];
         if (other == i) break;
         std::array<double, 6> link;
         for (std::size_t v = 0; v < 6; ++v) link[v] = ValueAt(fine.off_diagonal, entry, v);
@@ -141,21 +147,21 @@ TEST(LinkHierarchy, CoarseLevelsAreTheSumsOfTheirMembers) {
           link[v] += at == 0 ? static_cast<double>(evaluated.linearisation.StabilisingShift()[entry]) : 0.0;
         const bool is_held = fine.is_free[other] == 0.0f;
         held += is_held;
-        if (!is_held && fine.aggregate[other] == fine.aggregate[i]) continue;
-        auto& sum = is_held ? ground : links[{fine.aggregate[i], fine.aggregate[other]}];
+        if (!is_held && aggregate[other] == aggregate[i]) continue;
+        auto& sum = is_held ? diagonal : links[{aggregate[i], aggregate[other]}];
         for (std::size_t v = 0; v < 6; ++v) sum[v] += (is_held ? 1.0 : 0.7) * link[v];
       }
     }
     EXPECT_TRUE(at > 0 || held > 0) << "the patient has held nodes";
     for (std::uint32_t a = 0; a < coarse.Size(); ++a) {
       for (std::size_t v = 0; v < 6; ++v) {
-        EXPECT_NEAR(ValueAt(coarse.diagonal_excess, a, v), grounds[a][v],
-                    1e-6 * (std::fabs(grounds[a][0]) + 1000.0))
+        EXPECT_NEAR(ValueAt(coarse.diagonal_excess, a, v), diagonals[a][v],
+                    1e-6 * (std::fabs(diagonals[a][0]) + 1000.0))
             << at << " " << a;
       }
-      for (std::uint32_t h = 0; h < coarse.layout.RowSteps(a); ++h) {
-        const std::size_t entry = coarse.layout.Entry(a, h);
-        const std::uint32_t b = coarse.layout.others[entry];
+      for (std::uint32_t h = 0; h < coarse.layout->RowSteps(a); ++h) {
+        const std::size_t entry = coarse.layout->Entry(a, h);
+        const std::uint32_t b = coarse.layout->others[entry];
         if (b == a) break;
         const std::array<double, 6> sum = links[{a, b}];
         for (std::size_t v = 0; v < 6; ++v) {
@@ -205,7 +211,7 @@ TEST(LinkHierarchy, ArraysBeginAtCacheLines) {
       EXPECT_TRUE(is_aligned(values->data()));
     for (const auto* nodes : {&level.x, &level.b, &level.r}) EXPECT_TRUE(is_aligned(nodes->data()));
   }
-  EXPECT_TRUE(is_aligned(here.model.stiffness.data()) && is_aligned(here.model.rest_length.data()));
+  EXPECT_TRUE(is_aligned(here.springs.stiffness.data()) && is_aligned(here.springs.rest_length.data()));
 }
 
 // Oracle: forces and differences of energy against the plain evaluation, with every kind of spring.
@@ -336,7 +342,7 @@ TEST(NewtonMultigrid, KeepsItsPromiseOnADuct) {
   SolverSettings settings;
   settings.kind = SolverKind::kNewtonMultigrid;
   SolverSettings exact = settings;
-  exact.max_error = 1e-9, exact.max_newton_steps = 200, exact.max_linear_iterations = 1000;
+  exact.max_error = 1e-9, exact.newton.max_steps = 200, exact.newton.max_linear_iterations = 1000;
   for (int tick = 0; tick < 20; ++tick) {
     state.position[patient.duct.back()] += {0.0002, 0.0005, 0.0};
     const SolveReport report = solver.Solve(settings, {}, state);
@@ -380,7 +386,7 @@ TEST(LocalSolve, ComesToRestWhereAllOthersAreHeld) {
   Evaluated whole(model, load, state, FindSimdLevel());
   const std::vector<Double4> before = whole.position;
 
-  LocalSolve local(whole.model);
+  LocalSolve local(whole.model, whole.springs);
   const auto step = MakeStep(whole.model, {9, patient.duct[2], 30});
   ASSERT_TRUE(local.Gather(whole.load, state.strand_is_intact, step, 1e-3));
   std::vector<Float4> more(whole.model.layout.PaddedNodes());
@@ -419,7 +425,7 @@ TEST(LocalSolve, IsASmallPartOfTheModelOrNone) {
   const TissueModel model = MakeTissueModel(patient.definition);
   const TissueState state = Shake(model, 3e-5, 7);
   const Evaluated whole(model, {}, state, SimdLevel::kBaseline);
-  LocalSolve local(whole.model);
+  LocalSolve local(whole.model, whole.springs);
   // slow: two rings around node 9, less what is held
   std::vector<bool> is_near(model.Size());
   is_near[9] = true;

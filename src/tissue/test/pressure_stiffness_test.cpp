@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "link_hierarchy.h"
+#include "solver_model.h"
 #include "test_systems.h"
 #include "trocar/tissue/volume_constraint.h"
 
@@ -47,8 +48,9 @@ struct Spheres {
 };
 
 /// The follower stiffness of one state, in the solvers' order.
-struct Turned {
-  OrderedModel model;
+struct Follower {
+  SolverModel made;
+  const OrderedModel& model = made.ordered;
   OrderedLoad load;
   LinkHierarchy hierarchy;
   PressureStiffness pressure;
@@ -56,9 +58,9 @@ struct Turned {
   Workers workers;
   const Kernels& kernels;
 
-  Turned(const Spheres& from, SimdLevel level, int threads = 1)
-      : model(MakeOrderedModel(from.model)),
-        hierarchy(model.graph, model.graph_stiffness),
+  Follower(const Spheres& from, SimdLevel level, int threads = 1)
+      : made(MakeSolverModel(from.model)),
+        hierarchy(made.hierarchy, model.graph),
         pressure(model),
         workers(threads),
         kernels(GetKernels(level)) {
@@ -125,7 +127,7 @@ TEST(PressureStiffness, IsTheDerivativeOfWhatPressuresDo) {
     largest = std::fmax(largest, math::Distance(before[i], after[i]) / (2 * by));
   ASSERT_GT(largest, 1.0);
   for (const SimdLevel level : Levels()) {
-    const std::vector<Vec3> product = Turned(spheres, level).Multiply(direction);
+    const std::vector<Vec3> product = Follower(spheres, level).Multiply(direction);
     for (std::size_t i = 0; i < product.size(); ++i) {
       const bool is_held = spheres.state.condition[i] == NodeCondition::kPrescribed;
       const Vec3 wanted = is_held ? Vec3{} : (before[i] - after[i]) / (2 * by);
@@ -138,22 +140,22 @@ TEST(PressureStiffness, IsTheSameForAnyThreadsAndWideVectors) {
   const Spheres spheres;
   const std::vector<Vec3> direction = MakeDirection(spheres);
   const SimdLevel level = FindSimdLevel();
-  const std::vector<Vec3> one = Turned(spheres, level).Multiply(direction);
-  EXPECT_EQ(Turned(spheres, level, 3).Multiply(direction), one);
+  const std::vector<Vec3> one = Follower(spheres, level).Multiply(direction);
+  EXPECT_EQ(Follower(spheres, level, 3).Multiply(direction), one);
   if (!HasSimdLevel(SimdLevel::kAvx512)) GTEST_SKIP() << "this processor has no AVX-512";
-  EXPECT_EQ(Turned(spheres, SimdLevel::kAvx2).Multiply(direction), one);
+  EXPECT_EQ(Follower(spheres, SimdLevel::kAvx2).Multiply(direction), one);
 }
 
 // A cut gives a surface other triangles; the same ones are not looked at again.
 TEST(PressureStiffness, FollowsItsSurfaces) {
   Spheres spheres;
   const std::vector<Vec3> direction = MakeDirection(spheres);
-  Turned turned(spheres, FindSimdLevel());
-  const std::vector<Vec3> product = turned.Multiply(direction);
+  Follower follower(spheres, FindSimdLevel());
+  const std::vector<Vec3> product = follower.Multiply(direction);
   const auto update = [&] {
-    turned.pressure.SetSurfaces(spheres.surfaces);
-    turned.pressure.Update(turned.kernels, turned.workers, Spheres::kPressure, turned.position);
-    return turned.Multiply(direction);
+    follower.pressure.SetSurfaces(spheres.surfaces);
+    follower.pressure.Update(follower.kernels, follower.workers, Spheres::kPressure, follower.position);
+    return follower.Multiply(direction);
   };
   EXPECT_EQ(update(), product);
 
@@ -174,8 +176,8 @@ TEST(PressureStiffness, FollowsItsSurfaces) {
   }
 
   constexpr double kNone[] = {0.0, 0.0};
-  turned.pressure.Update(turned.kernels, turned.workers, kNone, turned.position);
-  EXPECT_EQ(turned.pressure.FollowerStiffness(), nullptr);
+  follower.pressure.Update(follower.kernels, follower.workers, kNone, follower.position);
+  EXPECT_EQ(follower.pressure.FollowerStiffness(), nullptr);
 }
 
 }  // namespace

@@ -17,8 +17,7 @@ namespace trocar::tissue {
 inline constexpr SolverSettings kExact{.max_iterations = 1000,
                                        .tolerance = 1e-8,
                                        .max_error = 1e-9,
-                                       .max_newton_steps = 100,
-                                       .max_linear_iterations = 200};
+                                       .newton = {.max_steps = 100, .max_linear_iterations = 200}};
 inline constexpr double kRadius = 0.015, kMembrane = 510.0, kTick = 1.0 / 120;
 
 /// A sac on a bed: a sphere whose cap is tied by strands to fixed nodes.

@@ -68,7 +68,7 @@ TEST(NewtonMultigrid, MovesALightSheetOnStiffVirtualSprings) {
     SolverSettings settings;
     settings.kind = SolverKind::kNewtonMultigrid;
     settings.max_error = 1e-5;
-    settings.max_linear_iterations = 1000;
+    settings.newton.max_linear_iterations = 1000;
     EquilibriumSolver solver(model, 1);
     const SolveReport report = solver.Solve(settings, {.gravity = {0, -9.81, 0}}, state);
     EXPECT_TRUE(report.converged) << shape << ": " << report.error;
@@ -99,8 +99,8 @@ TissueState Relax(const Sheet& sheet) {
 SolverSettings Exact(SolverKind kind) {
   SolverSettings settings{kind, 100'000, 1e-9, 0.0};
   settings.max_error = 1e-5;
-  settings.max_newton_steps = 200;
-  settings.max_linear_iterations = 300;
+  settings.newton.max_steps = 200;
+  settings.newton.max_linear_iterations = 300;
   if (kind == SolverKind::kAcceleratedDescent) {
     // what single precision bears
     settings.max_error = 5e-5;
@@ -154,7 +154,7 @@ TEST(NewtonMultigrid, SpendsNoMoreThanATickMayAndArrivesInMoreTicks) {
   SolveReport report = solver.Solve(settings, sheet.Load(), state);
   EXPECT_GT(report.linear_iterations, 7) << "negative control";
   state = sheet.start;
-  settings.max_linear_total = 7;
+  settings.newton.max_linear_total = 7;
   int ticks = 0;
   do {
     report = solver.Solve(settings, sheet.Load(), state);
@@ -174,8 +174,8 @@ TEST_P(EverySolver, GivesTheSameBitsForAnyNumberOfThreads) {
       EquilibriumSolver solver(sheet.model, threads);
       SolverSettings settings{GetParam(), 60, 0.0, 0.0};
       settings.max_error = 1e-9;
-      settings.max_newton_steps = 2;
-      settings.max_linear_iterations = 12;
+      settings.newton.max_steps = 2;
+      settings.newton.max_linear_iterations = 12;
       (void)solver.Solve(settings, sheet.Load(), state);
       return Hash(state);
     };
@@ -328,7 +328,7 @@ TEST(Newton, ItsEstimateBoundsTheTrueErrorWhereTheResidualDoesNot) {
   }
   const double error = CalcError(sheet.model, state, truth);
   SolverSettings look = exact;
-  look.max_newton_steps = 0;
+  look.newton.max_steps = 0;
   const SolveReport report = solver.Solve(look, sheet.Load(), state);
   EXPECT_LT(report.residual, 0.1 * error);
   EXPECT_GT(report.error, 0.5 * error);
@@ -381,7 +381,7 @@ TEST(Newton, FindsAContactThatDoesNotPressYet) {
   const double z = (kForce + kStiffness * kAhead) / (3 * 0.1 + kStiffness);
   for (const Vec3& p : state.position) EXPECT_NEAR(p.z, z, 1e-10);
 
-  settings.max_linear_total = 12;  // no time for another step after such a one
+  settings.newton.max_linear_total = 12;  // no time for another step after such a one
   state = MakeRestState(model);
   EXPECT_FALSE(solver.Solve(settings, load, state).converged);
   EXPECT_EQ(state.position[0].z, 0.0);

@@ -23,16 +23,16 @@ constexpr SpringLaw kWall{.stiffening = 12.0, .stiffening_strain = 0.2};
 SolverSettings Exact(SolverKind kind) {
   SolverSettings settings{kind, 2'000'000, 1e-10, 0.0};
   settings.max_error = 1e-7;
-  settings.max_newton_steps = 1000;
-  settings.max_linear_iterations = 300;
-  settings.law_error = 1e-9;
-  settings.max_outer_iterations = 60;
+  settings.newton.max_steps = 1000;
+  settings.newton.max_linear_iterations = 300;
+  settings.outer.law_error = 1e-9;
+  settings.outer.max_count = 60;
   if (kind == SolverKind::kAcceleratedDescent) {
     // what single precision bears
     settings.max_iterations = 200'000;
     settings.tolerance = 1e-6;
     settings.max_error = 1e-5;
-    settings.law_error = 1e-4;
+    settings.outer.law_error = 1e-4;
   }
   return settings;
 }
@@ -249,7 +249,7 @@ TEST_P(SpringLawSolvers, GivesTheSameBitsForAnyNumberOfThreads) {
   }
 }
 
-// Ticks with the running bounds end where one long solve ends: nothing is lost between the rounds.
+// Ticks with the running bounds end where one long solve ends: nothing is lost between outer iterations.
 TEST(SpringLawTicks, SettleOnTheLaw) {
   const Pulled sheet = MakePulled(true);
   const TissueLoad load{.gravity = {0, 0, -1}};
@@ -262,7 +262,7 @@ TEST(SpringLawTicks, SettleOnTheLaw) {
   EXPECT_LT(CalcError(sheet.model, state, exact), 1e-3);
 }
 
-// The rounds of a tick share what it may do.
+// The outer iterations of a tick share what it may do.
 TEST(SpringLawTicks, RoundsSpendTogetherNoMoreThanATickMay) {
   const Pulled sheet = MakePulled(true);
   const TissueLoad load{.gravity = {0, 0, -1}};
@@ -274,8 +274,8 @@ TEST(SpringLawTicks, RoundsSpendTogetherNoMoreThanATickMay) {
   };
   const SolveReport whole = solve();
   ASSERT_GT(whole.outer_iterations, 2);
-  settings.max_linear_total = whole.linear_iterations / 2;
-  EXPECT_LE(solve().linear_iterations, settings.max_linear_total);
+  settings.newton.max_linear_total = whole.linear_iterations / 2;
+  EXPECT_LE(solve().linear_iterations, settings.newton.max_linear_total);
 }
 
 TEST_P(SpringLawSolvers, ANodeThatLosesItsLastSpringStaysFinite) {

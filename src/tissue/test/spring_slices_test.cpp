@@ -91,10 +91,12 @@ constexpr Vec3 kLoad = {0.001, 0.002, -0.02};  // on every node [N]
 /// A sliced mesh before its first iteration.
 struct Sliced {
   OrderedModel ordered;
+  OrderedSprings springs;
   SpringSlices slices;
   PlainIteration plain;
 
-  explicit Sliced(const TissueModel& model) : ordered(MakeOrderedModel(model)), plain{model, {}, {}} {
+  explicit Sliced(const TissueModel& model)
+      : ordered(MakeOrderedModel(model)), springs(MakeOrderedSprings(model, ordered)), plain{model, {}, {}} {
     slices.SetModel(ordered);
     OrderedLoad load;
     std::mt19937 random(3);
@@ -104,7 +106,7 @@ struct Sliced {
       load.is_free.push_back(model.is_fixed[ordered.old_of_new[i]] ? 0 : 1);
       plain.u.push_back({offset(random), offset(random), offset(random)});
     }
-    slices.SetLoad(ordered, load, {});
+    slices.SetLoad(ordered, springs, load, {});
     for (std::uint32_t i = 0; i < ordered.Size(); ++i)
       slices.SetDisplacement(i, plain.u[ordered.old_of_new[i]]);
   }

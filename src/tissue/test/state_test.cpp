@@ -274,7 +274,7 @@ class Tissue {
 SolverSettings Newton(int max_linear_total = 100000) {
   SolverSettings settings;
   settings.kind = SolverKind::kNewtonMultigrid;
-  settings.max_linear_total = max_linear_total;
+  settings.newton.max_linear_total = max_linear_total;
   return settings;
 }
 

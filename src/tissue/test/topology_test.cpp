@@ -6,13 +6,14 @@
 #include <atomic>
 #include <cmath>
 #include <cstdlib>
+#include <memory>
 #include <new>
 #include <random>
 #include <set>
 #include <vector>
 
 #include "aggregation.h"
-#include "link_hierarchy.h"
+#include "hierarchy_topology.h"
 #include "test_systems.h"
 #include "trocar/tissue/conservation.h"
 #include "trocar/tissue/equilibrium.h"
@@ -146,7 +147,7 @@ TEST(AfterACut, NothingIsAllocatedWithinTheReserve) {
   Theatre theatre(5);
   TissueModel model = MakeTissueModel(theatre.definition);
   EquilibriumSolver solver(model, {.threads = 1, .spare_share = 0.5});
-  TissueState state = Pull(model);
+  for (const SolverKind kind : kSolverKinds) solver.Prepare({.kind = kind}, 1);
   for (int cut = 0; cut < 30; ++cut) {
     theatre.Cut();
     model = MakeTissueModel(theatre.definition);
@@ -172,6 +173,47 @@ TEST(AfterACut, NothingIsAllocatedWithinTheReserve) {
   (void)small.Solve({}, {}, one);
   (void)anew.Solve({}, {}, other);
   EXPECT_EQ(one.position, other.position);
+}
+
+// What a solver needs is made by Prepare(), or else by its first solve; no later one allocates.
+TEST_P(AfterACut, OnlyAFirstSolveAllocates) {
+  const SolverSettings settings{.kind = GetParam()};
+  const Theatre theatre(4);
+  const TissueModel model = MakeTissueModel(theatre.definition);
+  TissueState state = Pull(model);
+  const auto count = [&](EquilibriumSolver& solver) {
+    const int before = allocations;
+    (void)solver.Solve(settings, {.gravity = {0, 0, -3}}, state);
+    return allocations - before;
+  };
+  EquilibriumSolver prepared(model, 1), unprepared(model, 1);
+  prepared.Prepare(settings, 0);
+  EXPECT_EQ(count(prepared), 0);
+  EXPECT_GT(count(unprepared), 0) << "negative control";
+  EXPECT_EQ(count(unprepared), 0);
+}
+
+// Solvers of one model share what it is made into, until a cut gives each its own; the one that made it may be gone.
+TEST_P(AfterACut, SharedMemoryChangesNoBit) {
+  const SolverSettings settings{.kind = GetParam()};
+  Theatre theatre(6);
+  TissueModel model = MakeTissueModel(theatre.definition);
+  auto first = std::make_unique<EquilibriumSolver>(model, SolverOptions{.spare_share = 0.5});
+  EquilibriumSolver second(model, {.spare_share = 0.5}, first->ShareModel());
+  EXPECT_EQ(second.ShareModel(), first->ShareModel());
+  first.reset();
+  EquilibriumSolver alone(model, 1);
+  const auto expect_same = [&] {
+    TissueState state = Pull(model), expected = state;
+    (void)second.Solve(settings, {.gravity = {0, 0, -3}}, state);
+    (void)alone.Solve(settings, {.gravity = {0, 0, -3}}, expected);
+    EXPECT_EQ(state.position, expected.position);
+  };
+  expect_same();
+  theatre.Cut();
+  model = MakeTissueModel(theatre.definition);
+  second.UpdateTopology(model), alone.UpdateTopology(model);
+  expect_same();
 }
 
 // A sheet that was a stencil is none after a cut, and one again when it is whole.
@@ -326,16 +368,17 @@ TEST(Aggregation, SumsTheLinksBetweenAggregates) {
 }
 
 // Spare nodes do not hang about on the coarser levels: the last one is small enough for a direct solution.
-TEST(LinkHierarchy, LeavesSpareNodesOut) {
+TEST(HierarchyBuilder, LeavesSpareNodesOut) {
   Theatre theatre(3);
   for (int more = 0; more < 500; ++more) {
     theatre.definition.rest.push_back({});
     theatre.definition.mass.push_back(0), theatre.definition.shape_stiffness.push_back(0);
   }
   const LinkGraph fine = MakeLinkGraph(MakeTissueModel(theatre.definition));
-  const LinkHierarchy hierarchy(fine.graph, fine.stiffness);
-  EXPECT_LE(hierarchy.Levels().back().Size(), 24u);
-  EXPECT_LT(hierarchy.Levels()[1].Size(), theatre.mesh.positions.size() / 2);
+  HierarchyTopology hierarchy;
+  HierarchyBuilder().Build(fine.graph, fine.stiffness, hierarchy);
+  EXPECT_LE(hierarchy.Coarsest().layout.node_count, 24u);
+  EXPECT_LT(hierarchy.levels[1].layout.node_count, theatre.mesh.positions.size() / 2);
 }
 
 }  // namespace

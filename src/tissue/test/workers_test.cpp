@@ -11,9 +11,9 @@
 namespace trocar::tissue {
 namespace {
 
-// A helper that comes late to a loop finds it at its end, and may look at the next, of more chunks, while that is being
-// set up. Loops of next to nothing, long and short by turns, make helpers late at every step of it.
-TEST(Workers, DoEachChunkOnceHoweverLateAHelperIs) {
+// A worker that comes late to a loop finds it at its end, and may look at the next, of more chunks, while that is being
+// set up. Loops of next to nothing, long and short by turns, make workers late at every step of it.
+TEST(Workers, DoEachChunkOnceHoweverLateAWorkerIs) {
   constexpr std::uint32_t kFew = 2, kMany = 4;
   constexpr int kLoops = 2'000'000;
   for (const int threads : {2, 3}) {
@@ -35,7 +35,7 @@ TEST(Workers, DoEachChunkOnceHoweverLateAHelperIs) {
   }
 }
 
-// Without a session no helper is awake: the caller takes everybody's share.
+// Without a session no worker is awake: the caller takes everybody's share.
 TEST(Workers, TheCallerDoesWhatNobodyHasBegun) {
   for (const int threads : {2, 3, 8}) {
     Workers workers(threads);

@@ -41,7 +41,7 @@ void SetPaperLoad(const tissue::TissueLoad& load, double alpha, PaperArgs<Real, 
                   static_cast<Real>(load.gravity.z)};
 }
 
-/// What stays while the model does, and the room to work in.
+/// What stays while the model does, and the memory to work in.
 template <typename Real, typename Heap>
 TiledArgs<Real, typename Heap::Memory> BindTiledArrays(const TiledArrays<Real>& arrays, Heap& heap) {
   TiledArgs<Real, typename Heap::Memory> args;

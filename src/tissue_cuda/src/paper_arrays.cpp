@@ -31,7 +31,7 @@ bool IsGrid(const TissueModel& model, GridShape grid) {
   for (std::uint32_t i = 0; i < model.Size(); ++i) {
     for (auto h = model.spring_starts[i]; h < model.spring_starts[i + 1]; ++h) {
       if (!FindDirection(grid, i, model.half_springs[h].other)) return false;
-      // one spring a direction: the arrays have room for no more
+      // one spring a direction: the arrays have the capacity for no more
       if (h > model.spring_starts[i] && model.half_springs[h].other == model.half_springs[h - 1].other)
         return false;
     }

@@ -53,7 +53,9 @@ class PaperSolve final : public GpuSolve {
     }
     FillPoints(arrays_, *model_, state, load, positions_, forces_);
     // half of the bound damps every mode of the linear system without oscillation
-    SetPaperLoad(load, settings.alpha > 0.0 ? settings.alpha : 0.5 * CalcLargestStep(load), args_);
+    SetPaperLoad(load,
+                 settings.relaxation.alpha > 0.0 ? settings.relaxation.alpha : 0.5 * CalcLargestStep(load),
+                 args_);
     args_.external_force = forces_.empty() ? nullptr : external_force_;
     Status status = gpu_->Mark(kMarkBegin);
     if (status) status = Upload(buffers_[0], positions_);

@@ -21,8 +21,8 @@
 #include "trocar/core/assert.h"
 #include "trocar/geometry/mesh_measures.h"
 #include "trocar/geometry/mesh_topology.h"
+#include "trocar/render/ambient_occlusion.h"
 #include "trocar/render/background.h"
-#include "trocar/render/openness.h"
 #include "trocar/scene/scene.h"
 #include "trocar/simulation/ground.h"
 #include "tube_shape.h"
@@ -37,28 +37,29 @@ using render::Material;
 using scene::SurfaceInfo;
 using simulation::Snapshot;
 
-constexpr double kOpennessReach = 0.030;  // m; farther folds cast no soft shade
-constexpr double kSmallestForce = 0.02;   // N; below, an arrow would only flicker
-constexpr double kLongestArrow = 0.045;   // m
+constexpr double kOcclusionReach = 0.030;  // m; farther folds cast no soft shade
+constexpr double kSmallestForce = 0.02;    // N; below, an arrow would only flicker
+constexpr double kLongestArrow = 0.045;    // m
 
-/// Openness of a surface that will move: averaged over neighbours and never dark, because where it lies
+/// Ambient occlusion of a surface that will move: averaged over neighbours and never dark, because where it lies
 /// against another organ at rest it may later be pulled free.
-std::vector<double> SoftenOpenness(std::vector<double> openness, std::span<const Triangle> triangles) {
+std::vector<double> SoftenAmbientOcclusion(std::vector<double> ambient_occlusion,
+                                           std::span<const Triangle> triangles) {
   constexpr int kRounds = 3;
   constexpr double kDarkest = 0.45;
-  const geometry::Rows neighbours = geometry::FindVertexNeighbours(triangles, openness.size());
+  const geometry::Rows neighbours = geometry::FindVertexNeighbours(triangles, ambient_occlusion.size());
   for (int round = 0; round < kRounds; ++round) {
-    std::vector<double> next = openness;
-    for (std::size_t i = 0; i < openness.size(); ++i) {
+    std::vector<double> next = ambient_occlusion;
+    for (std::size_t i = 0; i < ambient_occlusion.size(); ++i) {
       const auto row = neighbours.Row(i);
-      double sum = openness[i];
-      for (const std::uint32_t j : row) sum += openness[j];
+      double sum = ambient_occlusion[i];
+      for (const std::uint32_t j : row) sum += ambient_occlusion[j];
       next[i] = sum / static_cast<double>(row.size() + 1);
     }
-    openness = std::move(next);
+    ambient_occlusion = std::move(next);
   }
-  for (double& value : openness) value = kDarkest + (1.0 - kDarkest) * value;
-  return openness;
+  for (double& value : ambient_occlusion) value = kDarkest + (1.0 - kDarkest) * value;
+  return ambient_occlusion;
 }
 
 }  // namespace
@@ -126,11 +127,11 @@ struct LaparoscopeView::Content {
     for (const TriangleMesh& mesh : meshes) occluders.push_back(&mesh);
 
     const auto add = [&](auto& shape) {
-      shape.Add(
-          renderer,
-          SoftenOpenness(render::CalcOpenness(occluders, shape.Positions(), shape.Normals(), kOpennessReach),
-                         shape.Triangles()),
-          memory);
+      shape.Add(renderer,
+                SoftenAmbientOcclusion(render::CalcAmbientOcclusion(occluders, shape.Positions(),
+                                                                    shape.Normals(), kOcclusionReach),
+                                       shape.Triangles()),
+                memory);
     };
     for (OrganShape& organ : organs) add(organ);
     for (TubeShape& tube : tubes) add(tube);
@@ -139,8 +140,9 @@ struct LaparoscopeView::Content {
     for (const auto& part : parts) {
       std::vector<Vec3> normals(part.mesh.positions.size());
       geometry::CalcVertexNormals(part.mesh.positions, part.mesh.triangles, normals);
-      const auto openness = render::CalcOpenness(occluders, part.mesh.positions, normals, kOpennessReach);
-      background.push_back({renderer.AddSurface(part.mesh, part.material, openness), {}});
+      const auto ambient_occlusion =
+          render::CalcAmbientOcclusion(occluders, part.mesh.positions, normals, kOcclusionReach);
+      background.push_back({renderer.AddSurface(part.mesh, part.material, ambient_occlusion), {}});
       // the wall is a dome over everything
       if (part.material == Material::kPeritoneum) continue;
       const std::vector<GroundPiece> pieces = MakeGround(part.mesh);

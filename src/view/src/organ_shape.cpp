@@ -122,21 +122,23 @@ void OrganShape::Update(const simulation::Snapshot& snapshot, const Film& film) 
 void OrganShape::AddSurface(render::Renderer& renderer, const RowMemory& memory) {
   std::vector<Vec3> rest(rows_.size()), normals(rows_.size()), fine_rest(refiner_->VertexCount()),
       fine_normals(refiner_->VertexCount());
-  std::vector<double> openness(refiner_->VertexCount());
+  std::vector<double> ambient_occlusion(refiner_->VertexCount());
   for (std::size_t v = 0; v < rows_.size(); ++v) {
     rest[v] = memory.rest[rows_[v]];
-    openness[v] = memory.openness[rows_[v]];
+    ambient_occlusion[v] = memory.ambient_occlusion[rows_[v]];
   }
   geometry::CalcVertexNormals(rest, triangles_, normals);
   refiner_->Refine(rest, normals, fine_rest, fine_normals);
   const auto edges = refiner_->Edges();
   for (std::size_t i = 0; i < edges.size(); ++i)
-    openness[rows_.size() + i] = 0.5 * (openness[edges[i][0]] + openness[edges[i][1]]);
-  surface_ = renderer.AddSurface(refiner_->Triangles(), fine_rest, material_, openness);
+    ambient_occlusion[rows_.size() + i] =
+        0.5 * (ambient_occlusion[edges[i][0]] + ambient_occlusion[edges[i][1]]);
+  surface_ = renderer.AddSurface(refiner_->Triangles(), fine_rest, material_, ambient_occlusion);
 }
 
-void OrganShape::Add(render::Renderer& renderer, std::span<const double> openness, RowMemory& memory) {
-  for (std::size_t v = 0; v < rows_.size(); ++v) memory.Set(rows_[v], positions_[v], openness[v]);
+void OrganShape::Add(render::Renderer& renderer, std::span<const double> ambient_occlusion,
+                     RowMemory& memory) {
+  for (std::size_t v = 0; v < rows_.size(); ++v) memory.Set(rows_[v], positions_[v], ambient_occlusion[v]);
   AddSurface(renderer, memory);
 }
 

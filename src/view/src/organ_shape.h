@@ -28,8 +28,8 @@ class OrganShape {
   void Update(const simulation::Snapshot& snapshot, const Film& film);
 
   /// First upload.
-  /// \param openness  (vertices before they are refined) [-]
-  void Add(render::Renderer& renderer, std::span<const double> openness, RowMemory& memory);
+  /// \param ambient_occlusion  (vertices before they are refined) [-]
+  void Add(render::Renderer& renderer, std::span<const double> ambient_occlusion, RowMemory& memory);
   void Upload(render::Renderer& renderer, const RowMemory& memory);
 
   render::SurfaceId Surface() const { return surface_; }

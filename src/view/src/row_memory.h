@@ -11,24 +11,24 @@ namespace trocar::view {
 
 /// One entry a row of Snapshot::positions. Rows that a cut brings into use learn from their neighbours.
 struct RowMemory {
-  std::vector<math::Vec3> rest;  ///< where the material's pattern sticks to it [m]
-  std::vector<double> openness;  ///< of render/openness.h [-]
+  std::vector<math::Vec3> rest;           ///< where the material's pattern sticks to it [m]
+  std::vector<double> ambient_occlusion;  ///< of render/ambient_occlusion.h [-]
   std::vector<std::uint8_t> is_known;
 
   void Resize(std::size_t rows) {
     rest.resize(rows);
-    openness.resize(rows, 1.0);
+    ambient_occlusion.resize(rows, 1.0);
     is_known.resize(rows, 0);
   }
-  void Set(std::size_t row, const math::Vec3& place, double open) {
+  void Set(std::size_t row, const math::Vec3& place, double occlusion) {
     rest[row] = place;
-    openness[row] = open;
+    ambient_occlusion[row] = occlusion;
     is_known[row] = 1;
   }
   /// A row that lies near one that is known.
   /// \param offset  from it [m]
   void Learn(std::size_t row, std::size_t known, const math::Vec3& offset) {
-    Set(row, rest[known] + offset, openness[known]);
+    Set(row, rest[known] + offset, ambient_occlusion[known]);
   }
 };
 

@@ -212,14 +212,15 @@ void TubeShape::UpdateLumens() {
   }
 }
 
-void TubeShape::Add(render::Renderer& renderer, std::span<const double> openness, RowMemory& memory) {
+void TubeShape::Add(render::Renderer& renderer, std::span<const double> ambient_occlusion,
+                    RowMemory& memory) {
   const std::vector<std::uint32_t>& rows = chains_[0].rows;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     Vec3 centre;
     double open = 0;
     for (std::size_t side = 0; side < kSides; ++side) {
       centre += positions_[i * kSides + side] / kSides;
-      open += openness[i * kSides + side] / kSides;
+      open += ambient_occlusion[i * kSides + side] / kSides;
     }
     memory.Set(rows[i], centre, open);
   }
@@ -228,17 +229,17 @@ void TubeShape::Add(render::Renderer& renderer, std::span<const double> openness
 
 void TubeShape::AddSurface(render::Renderer& renderer, const RowMemory& memory) {
   std::vector<Vec3> rest(positions_.size());
-  std::vector<double> openness(positions_.size());
+  std::vector<double> ambient_occlusion(positions_.size());
   std::size_t offset = 0;
   for (const TubeChain& chain : chains_) {
     nodes_.resize(chain.rows.size());
     for (std::size_t i = 0; i < nodes_.size(); ++i) nodes_[i] = memory.rest[chain.rows[i]];
     geometry::CalcTubeSkin(nodes_, chain.radii, kSides, std::span(rest).subspan(offset, SkinSize(chain)));
     for (std::size_t v = 0; v < SkinSize(chain); ++v)
-      openness[offset + v] = memory.openness[chain.rows[NodeOf(chain, v)]];
+      ambient_occlusion[offset + v] = memory.ambient_occlusion[chain.rows[NodeOf(chain, v)]];
     offset += SkinSize(chain);
   }
-  surface_ = renderer.AddSurface(triangles_, rest, material_, openness);
+  surface_ = renderer.AddSurface(triangles_, rest, material_, ambient_occlusion);
   lumens_ = {};
   if (!lumen_triangles_.empty())
     lumens_ = renderer.AddSurface(lumen_triangles_, lumen_positions_, render::Material::kLumen);

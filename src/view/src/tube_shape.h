@@ -40,7 +40,7 @@ class TubeShape {
   /// Moves the skin to a snapshot's nodes; clips press it flat.
   void Update(const simulation::Snapshot& snapshot, const Film& film);
 
-  void Add(render::Renderer& renderer, std::span<const double> openness, RowMemory& memory);
+  void Add(render::Renderer& renderer, std::span<const double> ambient_occlusion, RowMemory& memory);
   void Upload(render::Renderer& renderer, const RowMemory& memory);
 
   render::SurfaceId Surface() const { return surface_; }

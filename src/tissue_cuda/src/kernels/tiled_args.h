@@ -61,7 +61,7 @@ struct TiledArgs {
 
   std::uint32_t nodes = 0;  ///< without padding
   std::uint32_t tiles = 0;
-  std::uint32_t max_border = 0, max_links = 0;  ///< of any tile: room in shared memory
+  std::uint32_t max_border = 0, max_links = 0;  ///< of any tile: capacity of shared memory
   ChebyshevSettings<Real> settings;
   Real stiffness_scale = 1, shape_scale = 1;
   Triple<double> gravity{};  ///< [m/s^2]

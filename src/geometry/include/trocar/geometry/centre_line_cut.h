@@ -21,10 +21,10 @@ struct CentreLineGraph {
   std::vector<Edge> edges;               ///< (ne) pairs of points, in the line's direction
   std::vector<std::uint8_t> is_cut_end;  ///< (np) 1 for an end that a cut made
 
-  /// Room for cuts, so that they allocate nothing: each takes two points and an edge.
+  /// Capacity for cuts, so that they allocate nothing: each takes two points and an edge.
   void ReserveCuts(std::size_t count);
-  /// How many more cuts there is room for.
-  std::size_t RoomForCuts() const;
+  /// How many more cuts there is capacity for.
+  std::size_t CutCapacity() const;
 };
 
 /// All but positions, which follow the tissue.
@@ -49,9 +49,9 @@ inline constexpr double kLeastStump = 0.0005;
 
 /// Cuts every line that a flat sweep crosses, in present positions. No piece of an edge is shorter than a tenth of it.
 ///
-/// \param[out] cuts  the first ones that it has room for; more are not made
+/// \param[out] cuts  the first ones that it has the capacity for; more are not made
 /// \return how many
-/// \pre graph.ReserveCuts was called; beyond its room nothing is cut
+/// \pre graph.ReserveCuts was called; beyond its capacity nothing is cut
 /// \note Real-time safe.
 std::size_t CutCentreLines(const FlatSweep& sweep, CentreLineGraph& graph,
                            std::span<CentreLineCut> cuts) noexcept;

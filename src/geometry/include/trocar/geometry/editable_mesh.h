@@ -56,7 +56,7 @@ struct TouchedTriangle {
 class EditableMesh {
  public:
   /// \param rest       manifold, with or without boundary; other triangles than those of `rest` never touch it
-  /// \param spare_vertices, spare_triangles  room for edits
+  /// \param spare_vertices, spare_triangles  capacity for edits
   /// \return kMeshInvalid: an index out of range, a position that is not finite, not manifold
   /// \note Not real-time safe: allocates all memory that edits need.
   static core::Result<EditableMesh> Make(const TriangleMesh& rest, std::size_t spare_vertices,

@@ -27,7 +27,7 @@ inline std::uint32_t NextOnRim(const EditableMesh& mesh, std::uint32_t h) {
 
 /// Finds the openings, lowest half-edge first.
 ///
-/// \param[out] openings  the first ones that it has room for
+/// \param[out] openings  the first ones that it has the capacity for
 /// \return how many there are
 /// \note Real-time safe.
 std::size_t FindOpenings(const EditableMesh& mesh, std::span<Opening> openings) noexcept;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file small_solver.h  Linear systems of a few unknowns, whose room is known when compiling.
+/// \file small_solver.h  Linear systems of a few unknowns, whose capacity is known when compiling.
 #pragma once
 
 #include <array>

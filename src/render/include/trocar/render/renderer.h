@@ -39,12 +39,12 @@ class Renderer {
   ///
   /// \param triangles  (nt) counter-clockwise seen from where it is drawn
   /// \param rest       (nv) where the patterns of its material stick to it [m]
-  /// \param openness   (nv) of openness.h, or empty for 1 everywhere [-]
-  /// \pre indices below nv; openness empty or (nv) (TROCAR_ASSERT)
+  /// \param ambient_occlusion   (nv) of ambient_occlusion.h, or empty for 1 everywhere [-]
+  /// \pre indices below nv; ambient_occlusion empty or (nv) (TROCAR_ASSERT)
   SurfaceId AddSurface(std::span<const geometry::Triangle> triangles, std::span<const math::Vec3> rest,
-                       Material material, std::span<const double> openness = {});
+                       Material material, std::span<const double> ambient_occlusion = {});
   SurfaceId AddSurface(const geometry::TriangleMesh& mesh, Material material,
-                       std::span<const double> openness = {});
+                       std::span<const double> ambient_occlusion = {});
 
   /// New shape of a deforming surface; its pattern moves with it.
   /// \param positions, normals  (nv) as added [m], [-] unit

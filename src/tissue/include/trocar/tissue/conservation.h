@@ -90,8 +90,11 @@ class Conservation {
   /// \pre at most kMaxClosedOrgans, indices in range, volumes > 0 (TROCAR_ASSERT)
   Conservation(const TissueModel& model, ConservationSettings settings);
 
-  /// State at rest: every organ at its rest volume and without pressure, frames where anatomy was imaged.
-  ConservationState MakeState(const TissueState& rest_state) const;
+  /// State at rest: every organ at its rest volume and without pressure, frames where anatomy was imaged, responses of the
+  /// whole tissue under the usual scales.
+  ///
+  /// \note Not real-time safe: computes the responses, which takes as long as some hundred ticks.
+  ConservationState MakeState(const TissueState& rest_state);
 
   /// Goes on with a model that a cut has changed: as many nodes, and strands, as before. The old responses are
   /// kept as an initial guess and computed anew over the next ticks.
@@ -182,7 +185,6 @@ class Conservation {
 
   const TissueModel* model_;
   ConservationSettings settings_;
-  VolumeResponses first_responses_;  // of the whole tissue that this was made for, under the usual scales
   LinearResponse linear_;
   TissueState rest_;  // with the strands and spring factors of linear_
   double linear_stiffness_scale_ = 1, linear_shape_scale_ = 1;  // of linear_
@@ -205,7 +207,7 @@ class Conservation {
 /// tenth of its volume from tick to tick: the softer it gets, the less may happen between two projections.
 inline constexpr int kProjectionInterval = 5;
 
-/// One tick's equilibrium with shape and volume kept: carry along, solve with projections, enforce.
+/// One tick's equilibrium with shape and volume kept: predict rigid motions, solve with projections, enforce.
 ///
 /// \param[in,out] load  external_force is added to, and left as the solver saw it, so that CalcReaction
 /// agrees

@@ -17,7 +17,7 @@ inline constexpr double kNeverTears = std::numeric_limits<double>::infinity();
 /// when a freed organ is turned, so no frame is needed; a force limit F is the elongation F / k.
 ///
 /// \param max_elongation  (strands) [m], > 0 or kNeverTears
-/// \param[out] torn       indices of the strands torn now, lowest first; more tear than it has room for
+/// \param[out] torn       indices of the strands torn now, lowest first; more tear than it has the capacity for
 /// \return how many tore
 /// \note Real-time safe.
 std::size_t TearStrands(const TissueModel& model, std::span<const double> max_elongation, TissueState& state,
@@ -28,7 +28,7 @@ std::size_t TearStrands(const TissueModel& model, std::span<const double> max_el
 /// reaches one. StabilisingShift springs gather none. A torn spring has the factor zero, and nothing makes it whole again.
 ///
 /// \param dt           length of the tick [s], >= 0
-/// \param[out] torn    indices of the springs torn now, lowest first; more tear than it has room for
+/// \param[out] torn    indices of the springs torn now, lowest first; more tear than it has the capacity for
 /// \return how many tore
 /// \note Real-time safe.
 /// Source: ultimate strains of wall and liver: domain facts 3.1; D += (sigma / sigma_0)^m dt: domain facts 3.3, with

@@ -90,14 +90,20 @@ class ConstraintSet {
 };
 inline constexpr std::size_t kMaxConstraints = 8;
 
-/// Memory of the solvers, made once for a model so that a solve allocates nothing.
+/// What all solvers of one model share: its nodes in the order of their memory, and the levels of the multigrid. Constant.
+struct SolverModel;
+
+/// The solvers of one model and their memory.
 class EquilibriumSolver {
  public:
   /// \param model    must outlive the solver
   /// \param threads  >= 1; the result does not depend on it
   EquilibriumSolver(const TissueModel& model, int threads);
+  /// \param same_model  of another solver of an equal model, to share its memory; null makes one. Shared, because none of
+  ///                    the solvers outlives the others for sure.
   /// \pre HasSimdLevel(options.simd)
-  EquilibriumSolver(const TissueModel& model, const SolverOptions& options);
+  EquilibriumSolver(const TissueModel& model, const SolverOptions& options,
+                    std::shared_ptr<const SolverModel> same_model = nullptr);
   virtual ~EquilibriumSolver();
   EquilibriumSolver(EquilibriumSolver&&) noexcept;
   EquilibriumSolver& operator=(EquilibriumSolver&&) noexcept;
@@ -111,11 +117,18 @@ class EquilibriumSolver {
   ///       Structured meshes allocate.
   virtual void UpdateTopology(const TissueModel& model);
 
+  /// Makes the memory that solves with these settings and so many constraints need, so that none of them allocates. Other
+  /// solves make what they need when they first run.
+  void Prepare(const SolverSettings& settings, std::size_t constraints);
+
+  /// Of the model that the solver was made for.
+  std::shared_ptr<const SolverModel> ShareModel() const noexcept;
+
   /// Moves every node that is not prescribed towards equilibrium, starting from the state's positions.
   /// \param constraints    null for none; a solve that they disturb has not converged
   /// \param extrapolation  (n) from the state's positions to the extrapolated initial guess, or empty [m]. Newton's method
   ///                       begins there if the energy is lower and the constraints are in reach; others do not.
-  /// \note Real-time safe: no allocation, lock or throw of ours; bounded by settings.max_iterations.
+  /// \note Real-time safe after Prepare(): no allocation, lock or throw of ours; bounded by the settings' counts.
   virtual SolveReport Solve(const SolverSettings& settings, const TissueLoad& load, TissueState& state,
                             ConstraintSet* constraints = nullptr,
                             std::span<const Vec3> extrapolation = {}) noexcept;

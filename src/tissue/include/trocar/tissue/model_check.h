@@ -36,7 +36,7 @@ core::Result<TissueRepairs> CheckTissue(TissueDefinition& definition, std::size_
 /// Memory of a model and an EquilibriumSolver, estimated from above [bytes].
 std::size_t CalcTissueMemory(const TissueDefinition& definition) noexcept;
 
-/// \return kUnstableStep where settings.alpha is beyond what any state of the model bears, naming the largest
+/// \return kUnstableStep where settings.relaxation.alpha is beyond what any state of the model bears, naming the largest
 /// that is
 ///         not (CalcLargestAlpha); only the relaxation takes an alpha
 core::Status CheckSolverSettings(const SolverSettings& settings, const TissueModel& model,

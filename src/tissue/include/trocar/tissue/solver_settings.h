@@ -24,31 +24,53 @@ std::string_view SolverName(SolverKind kind) noexcept;
 /// The kind of that name; nothing for an unknown one.
 std::optional<SolverKind> FindSolverKind(std::string_view name) noexcept;
 
+/// Of the relaxation alone.
+struct RelaxationSettings {
+  double alpha = 0;  ///< step [m/N]; 0 takes half of the stability bound of Gershgorin's theorem
+
+  friend bool operator==(const RelaxationSettings&, const RelaxationSettings&) = default;
+};
+
+/// Of Newton's method alone.
+struct NewtonSettings {
+  int max_steps = 40;              ///< per tick; two as a rule, many in a snap-through
+  int max_linear_iterations = 60;  ///< of conjugate gradients, per step
+  /// The same of all steps of a tick together, with the halvings of steps that led uphill, >= 1: bounds its time.
+  int max_linear_total = 100000;
+  /// With constraints: whether to follow a fold through its snap-through. The few nodes that move far are then brought to
+  /// rest by a local solve, the stiffness has the follower stiffness of pressures, and steps are solved until a mode that
+  /// turns soft shows. A tick that ends at its bounds anyway has no time for it.
+  bool follows_snap_through = true;
+
+  friend bool operator==(const NewtonSettings&, const NewtonSettings&) = default;
+};
+
+/// Of the outer iterations, which linearise springs that stiffen and solve again, whichever the solver.
+struct OuterIterationSettings {
+  /// They end where the tensions are off by less than this part of the largest tension [-].
+  double law_error = 1e-3;
+  int max_count = 4;  ///< solves per tick, >= 1; they share the bounds of the solver
+
+  friend bool operator==(const OuterIterationSettings&, const OuterIterationSettings&) = default;
+};
+
+/// Which solver runs, and what bounds it. Where a solve ends is said once for all solvers that end there; what one of them
+/// alone needs stands in its own struct. Each solver is handed what it uses and sees nothing else (solver_content.h).
+///
 /// Work is bounded by counts and tolerances, never by the clock, so that results repeat.
 struct SolverSettings {
   SolverKind kind = SolverKind::kAdaptive;
-  int max_iterations = 40;  ///< per tick, 1 to 100000
-  /// Stop when the largest residual of any free node is below this fraction of the largest force that any
-  /// spring, load or contact exerts [-].
+  /// Of every solver but Newton's: per tick, 1 to 100000. Forty of `chebyshev` fit into a tick of a patient.
+  int max_iterations = 40;
+  /// Relaxation, Gauss-Seidel, Chebyshev: stop when the largest residual of any free node is below this fraction of the
+  /// largest force that any spring, load or contact exerts [-].
   double tolerance = 1e-4;
-  double alpha = 0;  ///< step of the relaxation [m/N]; 0 takes the stability bound of Gershgorin's theorem
-
-  /// Newton: stop when the estimated distance of any node to the equilibrium is below this fraction of the
-  /// largest distance of any node from rest [-].
+  RelaxationSettings relaxation;
+  /// Accelerated descent, Newton: stop when the estimated distance of any node to the equilibrium is below this fraction of
+  /// the largest distance of any node from rest [-].
   double max_error = 4e-4;
-  int max_newton_steps = 40;       ///< per tick; two as a rule, many in a snap-through
-  int max_linear_iterations = 60;  ///< of conjugate gradients, per Newton step
-  /// The same of all Newton steps of a tick together, with the halvings of steps that led uphill, >= 1: bounds its time.
-  int max_linear_total = 100000;
-  /// Newton with constraints: whether to follow a fold through its snap-through. The few nodes that move far are then brought
-  /// to rest by a local solve, the stiffness has the follower stiffness of pressures, and steps are solved until a mode
-  /// that turns soft shows. A tick that ends at its bounds anyway has no time for it.
-  bool follows_snap_through = true;
-
-  /// Springs that stiffen are linearised, outer iteration after outer iteration, until their tensions are off by less than
-  /// this part of the largest tension [-].
-  double law_error = 1e-3;
-  int max_outer_iterations = 4;  ///< solves per tick, >= 1; they share the bounds above
+  NewtonSettings newton;
+  OuterIterationSettings outer;
 
   friend bool operator==(const SolverSettings&, const SolverSettings&) = default;
 };

@@ -138,7 +138,7 @@ struct ContactSpring {
   double stiffness = 0;             ///< [N/m]
 };
 
-/// Most contacts that a solver has room for.
+/// Most contacts that a solver has the capacity for.
 inline constexpr std::size_t kMaxContacts = 1024;
 
 /// What acts on the system in one solve.

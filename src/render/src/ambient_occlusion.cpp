@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "trocar/render/openness.h"
+#include "trocar/render/ambient_occlusion.h"
 
 #include <algorithm>
 #include <array>
@@ -88,14 +88,14 @@ std::array<Vec3, kDirections> MakeDirections() {
 
 }  // namespace
 
-std::vector<double> CalcOpenness(std::span<const TriangleMesh* const> occluders,
-                                 std::span<const Vec3> positions, std::span<const Vec3> normals,
-                                 double reach) {
+std::vector<double> CalcAmbientOcclusion(std::span<const TriangleMesh* const> occluders,
+                                         std::span<const Vec3> positions, std::span<const Vec3> normals,
+                                         double reach) {
   TROCAR_ASSERT(positions.size() == normals.size() && reach > 0.0);
   const double cell = reach / kCellsPerReach;
   const SurfaceGrid grid(occluders, cell);
   const auto directions = MakeDirections();
-  std::vector<double> openness(positions.size(), 1.0);
+  std::vector<double> ambient_occlusion(positions.size(), 1.0);
   for (std::size_t i = 0; i < positions.size(); ++i) {
     const Vec3 n = normals[i], s = math::AnyPerpendicular(n), t = math::Cross(n, s);
     // above the cells that the surface itself fills
@@ -109,9 +109,9 @@ std::vector<double> CalcOpenness(std::span<const TriangleMesh* const> occluders,
         break;
       }
     }
-    openness[i] = 1.0 - covered / kDirections;
+    ambient_occlusion[i] = 1.0 - covered / kDirections;
   }
-  return openness;
+  return ambient_occlusion;
 }
 
 }  // namespace trocar::render

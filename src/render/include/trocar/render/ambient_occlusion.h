@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file openness.h  How open a surface lies: a stand-in for the soft shade in folds, worked out once.
+/// \file ambient_occlusion.h  Ambient occlusion of a surface at rest: the soft shade in folds, computed once.
 #pragma once
 
 #include <span>
@@ -9,7 +9,8 @@
 
 namespace trocar::render {
 
-/// Share of the sky over each point that nothing nearby covers; what is farther counts less.
+/// Ambient occlusion of each point, as maps of it are stored: the share of the sky that nothing nearby covers. What is farther
+/// away counts less.
 ///
 /// \param occluders  meshes that cover [m]
 /// \param positions  (n) [m]
@@ -20,8 +21,8 @@ namespace trocar::render {
 ///          too near to be told from the surface itself
 /// Source: obscurance on a voxel grid, after Zhukov, Iones, Kronin, "An ambient light illumination model",
 /// 1998.
-std::vector<double> CalcOpenness(std::span<const geometry::TriangleMesh* const> occluders,
-                                 std::span<const math::Vec3> positions, std::span<const math::Vec3> normals,
-                                 double reach);
+std::vector<double> CalcAmbientOcclusion(std::span<const geometry::TriangleMesh* const> occluders,
+                                         std::span<const math::Vec3> positions,
+                                         std::span<const math::Vec3> normals, double reach);
 
 }  // namespace trocar::render
