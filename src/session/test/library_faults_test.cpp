@@ -13,6 +13,7 @@
 
 #include "child_processes.h"
 #include "force_wire.h"
+#include "machine_watch.h"
 #include "stand_in_page.h"
 #include "trocar/device/open_haptics.h"
 #include "trocar/math/random.h"
@@ -119,13 +120,15 @@ class LibraryFaults : public testing::Test {
     ASSERT_NE(loop_, nullptr);
     ZeroTimes times;
     math::Random random(7);
-    double longest_period = 0;
+    LoopPeriods periods;
+    MachineWatch machine;
     for (int i = 0; i < ForceWire::Repeats(); ++i) {
       if (loop_ == nullptr) Start();
       ASSERT_TRUE(Arm());
       ::usleep(static_cast<useconds_t>(random.Uniform(20e3, 40e3)));
       motors_->fault_process = motors_->process.load();
       loop_->ClearTimes();
+      machine.Forget();
       ::usleep(20'000);
       double absence = 0;
       const std::int64_t struck = core::NowNanoseconds();
@@ -136,12 +139,11 @@ class LibraryFaults : public testing::Test {
         ASSERT_FALSE(IsPushing()) << "it came back";
         ::usleep(1000);
       }
-      longest_period = std::max(longest_period, loop_->CalcPeriodPercentile(1.0));
+      periods.Add(loop_->CalcPeriodPercentile(1.0), machine.LongestAbsence());
       Recover();
     }
     times.ReportAndJudge(std::string(what) + ", library");
-    std::printf("%s: longest period of the loop %.2f ms\n", what, 1e3 * longest_period);
-    ZeroTimes::JudgePeriod(what, longest_period);
+    periods.ReportAndJudge(what);
     EXPECT_EQ(motors_->bad_forces, 0) << "not finite, above the clamp or with too fast a rise";
   }
   /// The next one begins with a loop that is well.

@@ -200,9 +200,13 @@ TEST_F(OpenHapticsHost, EveryFailureOfTheLibraryIsZeroAndALostDevice) {
     ASSERT_TRUE(WaitFor(5, [&] { return !IsPushing(); }));
     EXPECT_LE(watch.Seconds(), kGenerous);
     EXPECT_TRUE(WaitFor(5, [&] { return motors_->process != before; })) << "another one has taken over";
+    const pid_t spare = motors_->process;
     EXPECT_LE(watch.Seconds(), kGenerous);
     EXPECT_EQ(samples[0].status, device::ForceDeviceStatus::kLost);
     EXPECT_EQ(driver.GetState(), device::DriverState::kUnconfigured);
+    ASSERT_TRUE(driver.Configure().ok());
+    EXPECT_EQ(motors_->process, spare) << "and it is the one from now on";
+    ASSERT_TRUE(driver.Cleanup().ok());
   }
   motors_->fault = StandInFault::kNone;
   ASSERT_TRUE(driver.Configure().ok());
@@ -250,8 +254,9 @@ class LibraryProcess : public OpenHapticsHost {
     EXPECT_EQ(::send(process_->Socket(), request.data(), request.size(), MSG_NOSIGNAL),
               static_cast<ssize_t>(request.size()));
     pollfd answered{process_->Socket(), POLLIN, 0};
-    if (::poll(&answered, 1, 10'000) == 1)
+    if (::poll(&answered, 1, 10'000) == 1) {
       EXPECT_EQ(::recv(process_->Socket(), &reply, sizeof reply, 0), static_cast<ssize_t>(sizeof reply));
+    }
     return reply;
   }
   std::string Devices() const { return settings_.hd_file + "\nLeft\nRight\n"; }

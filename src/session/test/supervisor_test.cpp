@@ -11,7 +11,9 @@
 #include <atomic>
 #include <cmath>
 #include <cstdlib>
+#include <cstring>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,6 +22,7 @@
 #include "supervisor_protocol.h"
 #include "supervisor_watch.h"
 #include "trocar/core/clock.h"
+#include "trocar/device/companion.h"
 #include "trocar/device/simulated_force_device.h"
 #include "trocar/session/haptic_loop.h"
 
@@ -331,8 +334,66 @@ TEST(SupervisorLink, WhileWeBeatItKeepsQuietAndASupervisorThatIsGoneIsNoticed) {
   EXPECT_LT(wait_for(false), 5.0) << "stopped";
   ::kill(supervisor, SIGCONT);
   EXPECT_LT(wait_for(true), 5.0) << "and it goes on";
+  // killed: its end of the socket tells before any time has passed
+  const std::int64_t now = core::NowNanoseconds() + 30'000'000'000;
+  ASSERT_TRUE(link->IsAlive(now));
   ::kill(supervisor, SIGKILL);
-  EXPECT_LT(wait_for(false), 5.0) << "killed";
+  const core::Stopwatch killed;
+  while (link->IsAlive(now) && killed.Seconds() < 5.0) ::usleep(1000);
+  EXPECT_LT(killed.Seconds(), 5.0);
+}
+
+/// The program alone, as the simulator speaks to it.
+class SupervisorProcess : public testing::Test {
+ protected:
+  void SetUp() override {
+    auto started = device::Companion::Start(FindSupervisor(), "--watch", sizeof(SupervisorPage),
+                                            core::ErrorCode::kHapticSupervisor, "");
+    ASSERT_TRUE(started.ok());
+    process_.emplace(std::move(*started));
+  }
+  /// \param bytes  of the message that travel
+  void Send(const HeldWire& wire, std::size_t bytes, std::uint32_t frame_size) {
+    WireMessage message;
+    message.size = frame_size;
+    std::memcpy(message.zero_frame, wire.Wire().zero_frame.data(), wire.Wire().size);
+    iovec part{&message, bytes};
+    alignas(cmsghdr) char control[CMSG_SPACE(sizeof(int))] = {};
+    msghdr header{};
+    header.msg_iov = &part;
+    header.msg_iovlen = 1;
+    header.msg_control = control;
+    header.msg_controllen = sizeof control;
+    cmsghdr* carried = CMSG_FIRSTHDR(&header);
+    carried->cmsg_level = SOL_SOCKET;
+    carried->cmsg_type = SCM_RIGHTS;
+    carried->cmsg_len = CMSG_LEN(sizeof(int));
+    std::memcpy(CMSG_DATA(carried), &wire.Wire().file, sizeof(int));
+    EXPECT_EQ(::sendmsg(process_->Socket(), &header, MSG_NOSIGNAL), static_cast<ssize_t>(bytes));
+  }
+  std::optional<device::Companion> process_;
+};
+
+TEST_F(SupervisorProcess, HoldsEightWiresAndNoneThatAMessageDoesNotDescribe) {
+  HeldWire cut(1), too_long(2);
+  Send(cut, sizeof(WireMessage) - 1, 3);
+  Send(too_long, sizeof(WireMessage), device::SupervisedWire::kMaxBytes + 1);
+  for (HeldWire* refused : {&cut, &too_long}) {
+    refused->CloseHost();
+    const core::Stopwatch watch;
+    while (!refused->IsClosed() && watch.Seconds() < 10.0) EXPECT_EQ(refused->CountZeros(0.01), 0);
+    EXPECT_TRUE(refused->IsClosed()) << "not kept";
+  }
+  std::vector<std::unique_ptr<HeldWire>> wires;
+  for (int i = 0; i < kMaxWires; ++i) {
+    wires.push_back(std::make_unique<HeldWire>(static_cast<std::uint8_t>(i + 1)));
+    Send(*wires.back(), sizeof(WireMessage), 3);
+  }
+  ::shutdown(process_->Socket(), SHUT_RDWR);
+  int status = -1;
+  EXPECT_EQ(::waitpid(process_->Process(), &status, 0), process_->Process());
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+  for (const auto& wire : wires) EXPECT_EQ(wire->CountZeros(0.02), 3);
 }
 
 TEST(SupervisorLink, WithoutItThereIsNoForce) {

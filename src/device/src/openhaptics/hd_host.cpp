@@ -47,8 +47,10 @@ core::Result<Reply> TakeReply(int socket, int milliseconds) {
   Reply reply;
   if (::recv(socket, &reply, sizeof reply, 0) != static_cast<ssize_t>(sizeof reply))
     return HostError("the process of the maker's library is gone");
-  reply.text[sizeof reply.text - 1] = 0;
-  if (reply.code != 0) return core::Error{static_cast<ErrorCode>(reply.code), reply.text};
+  if (reply.code != 0) {
+    const std::string text(reply.text, ::strnlen(reply.text, sizeof reply.text));
+    return core::Error{static_cast<ErrorCode>(reply.code), text};
+  }
   if (reply.count > ForceMailbox::kMaxDevices) return HostError("the maker's library answers nonsense");
   return reply;
 }
