@@ -429,6 +429,13 @@ TEST(ForceGate, AForceThatDrivesTheDeviceOnFadesFromOneMetreASecond) {
   weak.Run(30, {0.1, 0, 0});
   weak.input.velocity = {1.5, 0, 0};
   EXPECT_NEAR(math::Norm(weak.Step({0.1, 0, 0}).force.Get()), 0.05, 1e-9);
+  GateSettings wide = Settings();
+  wide.guard_speed = 0.5;
+  Gated early(wide);
+  early.Arm();
+  early.Run(30, {1, 0, 0});
+  early.input.velocity = {1.25, 0, 0};
+  EXPECT_NEAR(math::Norm(early.Step({1, 0, 0}).force.Get()), 0.5, 1e-9) << "half way from 0.5 to 2 m/s";
   weak.input.velocity = {0, 1.5, 0};
   weak.Run(300, {0.1, 0, 0});
   EXPECT_NEAR(weak.Size(), 0.1, 1e-9) << "across the force";

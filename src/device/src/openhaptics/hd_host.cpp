@@ -209,7 +209,6 @@ namespace {
 /// Looks every millisecond whether the library still calls; when it does not, its process ends, and with it every hold on
 /// the device. The simulator sees that at once, even where it is the simulator that has died.
 void GuardLibrary(HdDevices& devices, HdHostPage& page, const std::atomic<bool>& is_ending) noexcept {
-  GoFirst();
   core::BeatWatch watch(kLongestBeatLook);
   while (!is_ending.load(std::memory_order_acquire)) {
     const timespec look{0, kBeatLook};
