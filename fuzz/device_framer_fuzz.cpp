@@ -106,10 +106,12 @@ class Expected {
   device::JawFilter filters[device::kJawTools];
   std::uint32_t now = 0;
   InChunks(bytes, length, [&](std::string_view report) {
-    const auto values = device::ParseHidReport(report);
+    const device::HidReport read = device::ParseHidReport(report);
+    const auto& values = read.raw;
+    Require(read.milliseconds.has_value() == (report.size() == device::kHidReportSize));
     for (std::size_t tool = 0; tool < values.size(); ++tool) {
       if (!values[tool]) continue;
-      Require(report.size() == 2 * values.size());
+      Require(report.size() == device::kHidReportSize || report.size() == device::kHidReportSizeWithoutClock);
       Require(*values[tool] >= 0 && *values[tool] <= device::kMaxJawRaw);
       Require(static_cast<unsigned char>(report[2 * tool]) == (*values[tool] & 0xff) &&
               static_cast<unsigned char>(report[2 * tool + 1]) == *values[tool] >> 8);

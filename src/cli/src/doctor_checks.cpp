@@ -21,6 +21,7 @@
 
 #include "child_process.h"
 #include "program_folder.h"
+#include "trocar/core/real_time.h"
 #include "trocar/render/image.h"
 #include "trocar/render/offscreen_context.h"
 #include "trocar/render/video_writer.h"
@@ -32,8 +33,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kDriverTimeout = 30;  // the first shader cache of a cold driver takes seconds [s]
-constexpr int kWantedPriority = 21;    // of the haptic supervisor, the highest that Trocar asks for
+constexpr double kDriverTimeout = 30;   // the first shader cache of a cold driver takes seconds [s]
+constexpr int kWantedAboveLowest = 20;  // of the haptic supervisor, the highest that Trocar asks for
 
 std::string ReadEnvironment(const char* name) {
   const char* value = std::getenv(name);
@@ -117,10 +118,8 @@ bool TryVideo(std::string& text) {
 }
 
 bool TryRealTime(std::string& text) {
-  sched_param parameter{};
-  parameter.sched_priority = kWantedPriority;
-  if (::sched_setscheduler(0, SCHED_FIFO, &parameter) == 0) return true;
-  text = std::strerror(errno);
+  if (core::AskForRealTime(core::RealTimePolicy::kFirstInFirstOut, kWantedAboveLowest)) return true;
+  text = "the system permits no real-time priority";
   return false;
 }
 
@@ -281,7 +280,8 @@ Finding CheckRealTime() {
   const ChildAnswer answer = AskChild(TryRealTime, kDriverTimeout);
   if (answer.end == ChildEnd::kAnswered) {
     return {"real-time", Health::kGood,
-            "priority " + std::to_string(kWantedPriority) + " granted (limit " + allowed + ")",
+            "priority " + std::to_string(sched_get_priority_min(SCHED_FIFO) + kWantedAboveLowest) +
+                " granted (limit " + allowed + ")",
             "simulation and force feedback run before drawing, so that their ticks are even", ""};
   }
   return {"real-time", Health::kLimited, answer.text + " (limit " + allowed + ")",

@@ -5,6 +5,7 @@
 #include <set>
 #include <string>
 
+#include "trocar/core/beat_watch.h"
 #include "trocar/core/error_codes.h"
 #include "trocar/core/result.h"
 #include "trocar/core/safe_file.h"
@@ -31,6 +32,20 @@ TEST(Result, HoldsAValueOrAnError) {
   const Result<int> bad = Error{ErrorCode::kImageSliceMissing, "slice 0561 is missing"};
   ASSERT_FALSE(bad.ok());
   EXPECT_EQ(bad.error().Text(), "E-IMG-002 slice 0561 is missing");
+}
+
+TEST(BeatWatch, CountsNoMoreThanALongLookBetweenTwoLooks) {
+  BeatWatch watch(2000);
+  watch.Forget(100'000);
+  EXPECT_EQ(watch.Look(0, 101'000), 1000) << "no beat yet is silence, too";
+  EXPECT_EQ(watch.Look(5, 102'000), 0);
+  EXPECT_EQ(watch.Look(5, 103'000), 1000);
+  EXPECT_EQ(watch.Look(5, 105'000), 3000);
+  EXPECT_EQ(watch.Look(5, 155'000), 5000) << "the watcher itself was away";
+  EXPECT_EQ(watch.Look(4, 156'000), 0) << "any change is a beat";
+  EXPECT_EQ(watch.Look(4, 157'000), 1000);
+  watch.Forget(158'000);
+  EXPECT_EQ(watch.Look(4, 158'500), 500);
 }
 
 TEST(CalcPercentile, InterpolatesBetweenRanks) {

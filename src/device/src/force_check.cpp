@@ -11,11 +11,10 @@ namespace trocar::device {
 using math::Vec3;
 
 double CalcRise(const Vec3& force, const Vec3& before) noexcept {
-  const double length = math::Norm(before);
-  const double along = length > 0.0 ? math::Dot(force, before) / length : 0.0;
+  const double along = math::Dot(force, before);
   if (along <= 0.0) return math::Norm(force);
-  if (along >= length) return math::Distance(force, before);
-  return math::Norm(math::Cross(force, before)) / length;
+  if (along >= math::SquaredNorm(before)) return math::Distance(force, before);
+  return math::Norm(math::Cross(force, before)) / math::Norm(before);
 }
 
 Vec3 LimitRise(const Vec3& wanted, const Vec3& before, double rise) noexcept {

@@ -59,7 +59,8 @@ TEST(Driver, WalksThroughItsLifeInOrder) {
 class MockForceDriver : public ForceDriver {
  public:
   MockForceDriver() : ForceDriver("mock", 2) {}
-  ForceLimits GetLimits(int) const noexcept override { return MakeTouchLimits(); }
+  ForceLimits GetLimits(int) const noexcept override { return limits; }
+  ForceLimits limits = MakeTouchLimits();
   ReadStatus next = ReadStatus::kFresh;
   std::vector<std::string> calls;
 
@@ -119,6 +120,17 @@ TEST(ForceDriver, ALostDeviceGetsZeroAndIsClosedLater) {
   }
 }
 
+// what was opened is closed again where its limits are refused
+TEST(ForceDriver, ARefusedDeviceIsClosed) {
+  MockForceDriver driver;
+  driver.limits.max_force = 251;
+  EXPECT_EQ(driver.Configure().error().code, ErrorCode::kDeviceSettings);
+  EXPECT_EQ(driver.calls, (std::vector<std::string>{"configure", "cleanup"}));
+  EXPECT_EQ(driver.GetState(), DriverState::kUnconfigured);
+  driver.Finalize();
+  EXPECT_EQ(driver.calls.size(), 2u);
+}
+
 // every family, in every build: the base class asks
 TEST(ForceDriver, IsNotOpenedWithLimitsThatNoHandHolds) {
   const double nan = std::nan("");
@@ -163,6 +175,20 @@ TEST(ForceDriver, IsNotOpenedWithLimitsThatNoHandHolds) {
     for (const double bad : {nan, -1.0, 1e6, 1e308, std::numeric_limits<double>::infinity()})
       EXPECT_EQ(configure([&](ForceLimits& limits) { limits.*number = bad; }), ErrorCode::kDeviceSettings)
           << bad;
+  }
+  const std::pair<double ForceLimits::*, double> largest[] = {{&ForceLimits::max_continuous_force, 50},
+                                                              {&ForceLimits::max_stiffness, 100'000},
+                                                              {&ForceLimits::damping, 100},
+                                                              {&ForceLimits::friction, 10},
+                                                              {&ForceLimits::mass, 10},
+                                                              {&ForceLimits::position_step, 0.01}};
+  for (const auto& [number, limit] : largest) {
+    for (const double share : {1.0, 1.001}) {
+      EXPECT_EQ(
+          configure([&, part = number, value = share * limit](ForceLimits& limits) { limits.*part = value; }),
+          share > 1.0 ? ErrorCode::kDeviceSettings : ErrorCode::kNone)
+          << share * limit;
+    }
   }
   EXPECT_EQ(configure([](ForceLimits& limits) { limits.max_force = 50.001; }), ErrorCode::kDeviceSettings);
   EXPECT_EQ(configure([](ForceLimits& limits) { limits.max_force = 0.099; }), ErrorCode::kDeviceSettings);
@@ -234,6 +260,8 @@ TEST(Driver, LostDeviceIsClosedAndComesBackOnlyWhenConfiguredAgain) {
   EXPECT_EQ(driver.Read(samples), ReadStatus::kLost);
   EXPECT_FALSE(samples[0].is_valid || samples[1].is_valid);
   EXPECT_EQ(driver.GetState(), DriverState::kUnconfigured);
+  EXPECT_FALSE(driver.NeedsRelease());
+  EXPECT_EQ(driver.calls, (std::vector<std::string>{"configure", "activate", "deactivate", "cleanup"}));
   driver.next = ReadStatus::kFresh;
   EXPECT_EQ(driver.Read(samples), ReadStatus::kNotActive);
   EXPECT_TRUE(driver.Configure().ok());
@@ -247,6 +275,11 @@ TEST(Driver, FinalizesOnce) {
   driver.Finalize();
   EXPECT_EQ(driver.GetState(), DriverState::kFinalized);
   EXPECT_TRUE(driver.calls.empty());
+  MockDriver inactive;
+  ASSERT_TRUE(inactive.Configure().ok());
+  inactive.Finalize();
+  EXPECT_EQ(inactive.calls, (std::vector<std::string>{"configure", "cleanup"}))
+      << "only what was opened is closed";
 }
 
 }  // namespace

@@ -17,6 +17,8 @@
 #include "trocar/core/clock.h"
 #include "trocar/device/device_spec.h"
 #include "trocar/device/emulator.h"
+#include "trocar/math/rotation_angle.h"
+#include "wait_for.h"
 
 namespace trocar::device {
 namespace {
@@ -91,10 +93,7 @@ TEST(HaplyMessages, HandsOnWhatTheServiceSays) {
     return state;
   };
   EXPECT_EQ(parse("9", R"({"w":1,"x":0,"y":0,"z":0})").devices[0].position.x, 9.0);
-  const auto length = [&](const std::string& grip) {
-    const math::Quaternion q = parse("0", grip).grip;
-    return q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z;
-  };
+  const auto length = [&](const std::string& grip) { return math::SquaredNorm(parse("0", grip).grip); };
   EXPECT_EQ(length(R"({"w":1,"x":0,"y":0,"z":0})"), 1.0);
   EXPECT_EQ(length(R"({"w":0,"x":0,"y":0,"z":0})"), 0.0);
   EXPECT_EQ(length(R"({"w":3,"x":0,"y":0,"z":0})"), 9.0);
@@ -141,13 +140,6 @@ class HaplyTest : public testing::Test {
   math::Vec3 Force(int device) {
     const std::lock_guard lock(mutex_);
     return forces_->newtons[static_cast<std::size_t>(device)];
-  }
-  static bool WaitFor(const std::function<bool()>& is_reached) {
-    for (int i = 0; i < 4000; ++i) {
-      if (is_reached()) return true;
-      SystemClock().Sleep(0.001);
-    }
-    return false;
   }
   bool Push() {
     return WaitFor([this] {

@@ -207,50 +207,93 @@ TEST_F(JawSensorTest, SaysThatTheLineIsSilent) {
   EXPECT_EQ(driver_->Configure().error().code, ErrorCode::kDeviceStale);
 }
 
-/// Gives 4-byte reports as a HID device does.
+/// Gives reports as a HID device does, each at once.
 class FakeHid : public Transport {
  public:
   IoResult Read(std::span<char> buffer) noexcept override {
     if (is_gone) return {0, true};
-    if (!has_report) return {};
-    has_report = false;
+    if (reports.empty()) return {};
+    const std::string report = reports.front();
+    reports.erase(reports.begin());
     std::copy(report.begin(), report.end(), buffer.begin());
     return {report.size(), false};
   }
   IoResult Write(std::string_view) noexcept override { return {}; }
-  std::string report = {'\x00', '\x02', '\xff', '\x03'};  // 512, 1023
-  bool has_report = true, is_gone = false;
+  std::vector<std::string> reports = {{'\x00', '\x02', '\xff', '\x03'}};  // 512, 1023
+  bool is_gone = false;
 };
 
-TEST(JawSensorHid, ReadsReports) {
-  JawSettings settings;
-  settings.format = JawFormat::kHid;
-  ManualClock clock;
-  FakeHid* hid = nullptr;
-  JawSensor driver(
-      settings,
-      [&]() -> core::Result<std::unique_ptr<Transport>> {
-        auto made = std::make_unique<FakeHid>();
-        hid = made.get();
-        return std::unique_ptr<Transport>(std::move(made));
-      },
-      clock);
-  ASSERT_TRUE(driver.Configure().ok());
-  ASSERT_TRUE(driver.Activate().ok());
-  EXPECT_EQ(driver.GetRaw(0), 512);
-  EXPECT_EQ(driver.GetRaw(1), 1023);
-  hid->report = {'\x00', '\x7f', '\x10', '\x00'};  // 32512 is no value of this converter
-  hid->has_report = true;
-  HandSamples samples;
-  driver.Read(samples);
-  EXPECT_EQ(driver.GetRaw(0), 512);
-  EXPECT_EQ(driver.GetRaw(1), 16);
-  hid->is_gone = true;
-  EXPECT_EQ(driver.Read(samples), ReadStatus::kLost);
+class JawSensorHid : public testing::Test {
+ protected:
+  JawSensorHid() {
+    settings_.format = JawFormat::kHid;
+    driver_ = std::make_unique<JawSensor>(
+        settings_,
+        [&]() -> core::Result<std::unique_ptr<Transport>> {
+          auto made = std::make_unique<FakeHid>();
+          hid_ = made.get();
+          return std::unique_ptr<Transport>(std::move(made));
+        },
+        clock_);
+  }
+  void Start() {
+    ASSERT_TRUE(driver_->Configure().ok());
+    ASSERT_TRUE(driver_->Activate().ok());
+  }
+  JawSettings settings_;
+  ManualClock clock_;
+  FakeHid* hid_ = nullptr;
+  std::unique_ptr<JawSensor> driver_;
+  HandSamples samples_;
+};
+
+TEST_F(JawSensorHid, ReadsReports) {
+  ASSERT_NO_FATAL_FAILURE(Start());
+  EXPECT_EQ(driver_->GetRaw(0), 512);
+  EXPECT_EQ(driver_->GetRaw(1), 1023);
+  clock_.Set(0.01);
+  hid_->reports = {{'\x00', '\x7f', '\x10', '\x00'}};  // 32512 is no value of this converter
+  driver_->Read(samples_);
+  EXPECT_EQ(driver_->GetRaw(0), 512);
+  EXPECT_EQ(driver_->GetRaw(1), 16);
+  // several at once: the newest counts
+  clock_.Set(0.02);
+  hid_->reports = {{'\x01', '\x00', '\x02', '\x00'}, {'\x03', '\x00', '\x04', '\x00'}, "short"};
+  driver_->Read(samples_);
+  EXPECT_EQ(driver_->GetRaw(0), 3);
+  EXPECT_EQ(driver_->GetRaw(1), 4);
+  hid_->is_gone = true;
+  EXPECT_EQ(driver_->Read(samples_), ReadStatus::kLost);
+}
+
+// the USB engine of a board whose program stands still goes on sending the last report
+TEST_F(JawSensorHid, AFrozenBoardIsNotSeenAndLostWhereItSendsItsClock) {
+  for (const bool has_clock : {true, false}) {
+    clock_.Set(0);
+    ASSERT_NO_FATAL_FAILURE(Start());
+    double hidden = 0, lost = 0;
+    for (int i = 1; i < 200 && lost == 0; ++i) {
+      const double now = 0.010 * i;
+      clock_.Set(now);
+      // the clock runs over on the way, and stands still from 0.3 s on
+      hid_->reports = {
+          FormatHidReport({100, 200}, static_cast<std::uint16_t>(65'400 + 10 * std::min(i, 30)))};
+      if (!has_clock) hid_->reports[0].resize(kHidReportSizeWithoutClock);
+      if (driver_->Read(samples_) == ReadStatus::kLost) lost = now;
+      if (hidden == 0 && !samples_[kLeftHand].is_valid) hidden = now;
+    }
+    if (!has_clock) {
+      EXPECT_EQ(lost, 0.0) << "without a clock it cannot be told from a jaw that is held still";
+      EXPECT_TRUE(samples_[kLeftHand].is_valid && samples_[kRightHand].is_valid);
+      continue;
+    }
+    EXPECT_NEAR(hidden, 0.3 + 0.1, 0.015);
+    EXPECT_NEAR(lost, 0.3 + 0.5, 0.015);
+  }
 }
 
 // the emulated sensor gives what the text sensor would: packets, one report each
-TEST(JawSensorHid, ReadsAnEmulatedSensorByItsSocket) {
+TEST(JawSensorHidEmulator, IsReadByItsSocket) {
   const std::string path = testing::TempDir() + "/trocar_jaw_hid_" + std::to_string(::getpid());
   auto host = *EmulatorHost::MakeLocal(MakeJawEmulator({{}, CalcHandMotion, JawFormat::kHid}), path,
                                        kHidReportSize, {{FaultKind::kUnplug, 2.0, 1e9, 0}});

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "trocar/math/random.h"
+#include "trocar/math/rotation_angle.h"
 
 namespace trocar::device {
 namespace {
@@ -47,10 +48,6 @@ std::string RandomStream(PolhemusFormat format, math::Random& random, int record
     bytes +=
         FormatRecord(format, RequestedItems(format), RandomRecord(random), false, random.NextWord() & 0xffff);
   return bytes;
-}
-
-double Angle(const Quaternion& a, const Quaternion& b) {
-  return 2 * std::acos(std::min(1.0, std::fabs(a.w * b.w + a.x * b.x + a.y * b.y + a.z * b.z)));
 }
 
 bool AreSame(const std::vector<TrackerRecord>& a, const std::vector<TrackerRecord>& b) {
@@ -128,7 +125,7 @@ TEST(PolhemusFramer, GivesBackWhatWasSent) {
       ASSERT_EQ(got.size(), 1u) << FormatName(format) << " seed 3, record " << i;
       EXPECT_EQ(got[0].station, sent.station);
       EXPECT_LT(math::Distance(got[0].position, sent.position), is_ascii ? 0.00023 : 1e-6);
-      EXPECT_LT(Angle(got[0].rotation, sent.rotation), is_ascii ? 3e-4 : 1e-3);
+      EXPECT_LT(math::AngleBetween(got[0].rotation, sent.rotation), is_ascii ? 3e-4 : 1e-3);
     }
   }
 }
@@ -236,7 +233,7 @@ TEST(PolhemusFramer, SurvivesRandomBytes) {
     for (const TrackerRecord& record : records) {
       EXPECT_TRUE(math::IsFinite(record.position));
       EXPECT_LE(math::Norm(record.position), 18.0);
-      EXPECT_NEAR(Angle(record.rotation, record.rotation), 0.0, 1e-6);
+      EXPECT_NEAR(math::AngleBetween(record.rotation, record.rotation), 0.0, 1e-6);
     }
   }
 }

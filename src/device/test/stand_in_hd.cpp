@@ -110,6 +110,11 @@ STAND_IN int StandInCallbacks() {
 STAND_IN void StandInLimits(const double* three) {
   for (std::size_t i = 0; i < 3; ++i) state.limits[i] = three[i];
 }
+/// Lets a StandInFault happen in this process.
+STAND_IN void StandInFail(int fault) {
+  state.fault = static_cast<StandInFault>(fault);
+  state.fault_process = ::getpid();
+}
 STAND_IN void StandInTransform(int kind) {
   state.transform = kind;
 }
@@ -199,7 +204,9 @@ STAND_IN void hdGetDoublev(unsigned int what, double* values) {
               (row == column ? c : 0) + (1 - c) * n[row] * n[column] + s * cross[3 * column + row];
       }
     }
-    if (kind >= 7) values[5 * (kind - 7)] = 1.1;
+    if (kind >= 7 && kind <= 9) values[5 * (kind - 7)] = 1.1;
+    if (kind == 10) values[9] = std::sin(0.25), values[10] = std::cos(0.25);
+    if (kind == 11) values[4] = std::sin(0.04), values[5] = std::cos(0.04);
   }
   if (what == 0x2551) {
     const double box[] = {-80, -60, -35, 80, 60, 35};

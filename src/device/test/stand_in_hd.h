@@ -27,7 +27,7 @@ struct StandInState {
   /// What the devices say of themselves: largest force [N], continuous force [N], stiffness [N/mm].
   std::array<std::atomic<double>, 3> limits{3.3, 0.88, 1.02};
   /// What the devices report: 1: no numbers, 2: all zero, 3: a mirror, 4: columns twice as long, 5: not at right angles, 7 to 9:
-  /// one column too long; 6: a rotation.
+  /// one column too long; 10: the third column tilted by 0.25 rad; 6: a rotation; 11: one whose second column is 0.04 rad off.
   std::atomic<int> transform{0};
   std::array<std::atomic<double>, 3> temperatures{0.2, 0.4, 0.1};  ///< of the motors [-]
   std::atomic<int> is_stepped{

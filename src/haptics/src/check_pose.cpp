@@ -9,7 +9,6 @@ namespace trocar::haptics {
 void CheckPose::Begin() noexcept {
   state_ = CheckPoseState::kAsking;
   asked_ = 0;
-  held_ticks_ = 0;
   has_start_ = false;
 }
 
@@ -42,7 +41,7 @@ void CheckPose::Step(std::span<const GuardedDevice> devices) noexcept {
       is_there && asked.is_calibrated && asked.fault == Fault::kNone && (asked.buttons & 1U) != 0;
   held_ticks_ = is_held ? held_ticks_ + 1 : 0;
   if (held_ticks_ < settings_.ticks) return;
-  held_ticks_ = 0;
+  // the next one is asked for once every button is up, so it begins to count from none
   has_start_ = false;
   if (++asked_ == devices.size()) state_ = CheckPoseState::kConfirmed;
 }

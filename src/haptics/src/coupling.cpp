@@ -30,8 +30,8 @@ double CalcStiffnessCap(const device::ForceLimits& limits, double tick) noexcept
   TROCAR_ASSERT(tick > 0.0);
   double cap = std::numeric_limits<double>::infinity();
   if (limits.damping > 0.0) cap = std::min(cap, 2.0 * limits.damping / tick);
-  if (limits.friction > 0.0 && limits.position_step > 0.0)
-    cap = std::min(cap, 2.0 * limits.friction / limits.position_step);
+  // infinite, and so no bound, without the encoders' step
+  if (limits.friction > 0.0) cap = std::min(cap, 2.0 * limits.friction / limits.position_step);
   if (limits.max_stiffness > 0.0) cap = std::min(cap, limits.max_stiffness);
   return cap < std::numeric_limits<double>::infinity() ? cap : kCautiousStiffness;
 }

@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <utility>
 
 #include "guards.h"
+#include "trocar/math/rotation_angle.h"
 
 namespace trocar::haptics {
 namespace {
@@ -17,23 +19,16 @@ constexpr double kSmallStep = 0.0005;
 constexpr double kSmallTurn = 0.02;
 
 bool IsPlausible(const device::ForceSample& sample, double max_reach) noexcept {
-  const math::Quaternion& q = sample.orientation;
-  const double norm = q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z;
-  return math::IsFinite(sample.position) && math::Norm(sample.position) <= max_reach &&
-         std::fabs(norm - 1.0) < 0.1;  // false for NaN
-}
-
-/// Angle between two orientations; q and -q are the same one [rad].
-double CalcTurn(const math::Quaternion& a, const math::Quaternion& b) noexcept {
-  const double dot = std::fabs(a.w * b.w + a.x * b.x + a.y * b.y + a.z * b.z);
-  return 2.0 * std::acos(std::min(1.0, dot));
+  // false for NaN
+  return math::Norm(sample.position) <= max_reach &&
+         std::fabs(math::SquaredNorm(sample.orientation) - 1.0) < 0.1;
 }
 
 }  // namespace
 
 void DeviceGuard::Accept(const device::ForceSample& sample, double elapsed) noexcept {
   if (held_.has_pose) {
-    const Vec3 velocity = (sample.position - held_.position) / std::max(elapsed, kShortestGap);
+    const Vec3 velocity = (sample.position - held_.position) / elapsed;
     const double share = elapsed / (elapsed + settings_.velocity_time);
     held_.velocity += share * (velocity - held_.velocity);
   }
@@ -62,7 +57,7 @@ void DeviceGuard::Take(const device::ForceSample& sample, double now) noexcept {
   const double elapsed = std::max(now - last_good_, kShortestGap);
   if (IsOn(Guard::kJump) && held_.has_pose) {
     const double moved = math::Distance(sample.position, held_.position);
-    const double turned = CalcTurn(math::Normalized(sample.orientation), held_.orientation);
+    const double turned = math::AngleBetween(math::Normalized(sample.orientation), held_.orientation);
     if (moved > settings_.max_speed * elapsed + kSmallStep ||
         turned > settings_.max_turn_rate * elapsed + kSmallTurn) {
       ++counts_.jumps;
@@ -85,20 +80,15 @@ GuardedDevice DeviceGuard::Step(const device::ForceSample& sample, double now) n
     held_ = {};
     return held_;
   }
-  if (was_lost_) {
-    was_lost_ = false;
-    held_ = {};
-    held_.fault = Fault::kNone;
+  const bool is_back = std::exchange(was_lost_, false);
+  if (is_back) {
     bad_in_row_ = jumps_in_row_ = 0;
     window_ = 0;
-    // what was reported before is taken; 0 is no report yet
-    sequence_ = sample.sequence > 0 ? sample.sequence - 1 : 0;
-    last_good_ = now;
   }
-  if (sample.sequence != sequence_) {
-    sequence_ = sample.sequence;
-    Take(sample, now);
-  }
+  // of a device that is back what it reported before is taken, too; 0 is no report yet
+  const bool is_new = is_back ? sample.sequence > 0 : sample.sequence != sequence_;
+  sequence_ = sample.sequence;
+  if (is_new) Take(sample, now);
   if (IsOn(Guard::kBadSamples) && held_.fault == Fault::kNone &&
       std::popcount(window_) >= settings_.max_bad_in_window)
     held_.fault = Fault::kBadSamples;

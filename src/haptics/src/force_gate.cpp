@@ -22,10 +22,6 @@ double CalcRiseLimit(const GateSettings& settings) noexcept {
   return settings.max_rise - settings.tick / settings.short_ramp_time * settings.max_force;
 }
 
-int CountTicks(double time, double tick) noexcept {
-  return std::max(1, static_cast<int>(std::lround(time / tick)));
-}
-
 /// Whether a gate can keep its promises with these settings; false for what is no number.
 bool AreUsable(const GateSettings& settings) noexcept {
   return settings.tick > 0.0 && settings.tick <= 0.1 && settings.max_force >= device::kSmallestForceLimit &&
@@ -37,19 +33,20 @@ bool AreUsable(const GateSettings& settings) noexcept {
 
 /// Share that is left of a force that drives a fast device on.
 double CalcSpeedShare(const GateSettings& settings, const Vec3& force, const Vec3& velocity) noexcept {
+  if (math::Dot(force, velocity) <= 0.0) return 1.0;
   const double speed = math::Norm(velocity);
-  if (math::Dot(force, velocity) <= 0.0 || speed <= settings.guard_speed) return 1.0;
   return std::clamp((settings.max_speed - speed) / (settings.max_speed - settings.guard_speed), 0.0, 1.0);
 }
 
 /// Share of the force that the motors' heat allows.
 double CalcHeatShare(const GateSettings& settings, double size, double heat, bool is_warm) noexcept {
-  const double room = std::clamp((1.0 - heat) / (1.0 - kDeratingHeat), 0.0, 1.0);
-  if (room >= 1.0 && !is_warm) return 1.0;
-  double allowed =
-      settings.max_continuous_force + (settings.max_force - settings.max_continuous_force) * room;
-  if (is_warm) allowed = kWarmShare * settings.max_continuous_force;
-  return size <= allowed ? 1.0 : allowed / size;
+  double allowed = kWarmShare * settings.max_continuous_force;
+  if (!is_warm) {
+    if (heat <= kDeratingHeat) return 1.0;
+    const double room = (1.0 - heat) / (1.0 - kDeratingHeat);
+    allowed = settings.max_continuous_force + (settings.max_force - settings.max_continuous_force) * room;
+  }
+  return std::min(1.0, allowed / size);
 }
 
 }  // namespace
@@ -76,13 +73,21 @@ std::string_view ArmStateName(ArmState state) noexcept {
   return "unknown";
 }
 
+bool MaySend(const GateSettings& settings, ArmState state, const Vec3& force, const Vec3& sent) noexcept {
+  if (force == Vec3{}) return true;
+  return state != ArmState::kUnarmed &&
+         math::Norm(force) <= settings.max_force * (1.0 + device::kForceRounding) &&
+         device::CalcRise(force, sent) <= settings.max_rise + device::kForceRounding;
+}
+
 ForceGate::ForceGate(const GateSettings& settings)
     : settings_(settings), is_broken_(IsOn(Guard::kSettings) && !AreUsable(settings)) {
   if (is_broken_) reason_ = Fault::kGate;
 }
 
 void ForceGate::RequestArm() noexcept {
-  if (state_ == ArmState::kUnarmed) request_ticks_ = CountTicks(settings_.request_life, settings_.tick);
+  if (state_ == ArmState::kUnarmed)
+    request_ticks_ = static_cast<int>(std::lround(settings_.request_life / settings_.tick));
 }
 
 void ForceGate::Stop() noexcept {
@@ -124,13 +129,14 @@ void ForceGate::UpdateArming(Fault fault, double wanted) noexcept {
     request_ticks_ = IsOn(Guard::kLatch) ? 0 : 1 << 20;
     ramp_ = 0;
     good_ticks_ = 0;
+    ++fault_ticks_;
+    return;
   }
   switch (state_) {
     case ArmState::kUnarmed:
       ++fault_ticks_;
       if (request_ticks_ == 0) break;
       --request_ticks_;
-      if (fault != Fault::kNone) break;
       if (wanted >= settings_.max_arming_force) {
         good_ticks_ = 0;
         reason_ = Fault::kForceAtArming;
@@ -140,7 +146,6 @@ void ForceGate::UpdateArming(Fault fault, double wanted) noexcept {
         if (!IsOn(Guard::kRamp)) ramp_rise_ = 1.0;
         state_ = ArmState::kRamping;
         reason_ = Fault::kNone;
-        request_ticks_ = 0;
         was_armed_ = false;
       }
       break;
@@ -155,15 +160,8 @@ void ForceGate::UpdateArming(Fault fault, double wanted) noexcept {
   }
 }
 
-/// The promises once more, by arithmetic of its own and on the force itself; false for what is no number.
-bool ForceGate::MaySend(const Vec3& force) const noexcept {
-  if (force == Vec3{}) return true;
-  return state_ != ArmState::kUnarmed &&
-         math::Norm(force) <= settings_.max_force * (1.0 + device::kForceRounding) &&
-         device::CalcRise(force, sent_) <= settings_.max_rise + device::kForceRounding;
-}
-
-GateOutput ForceGate::Step(const GateInput& input) noexcept {
+/// All stages but the last look.
+GateOutput ForceGate::LimitForce(const GateInput& input) noexcept {
   GateOutput output;
   const Fault fault = FindFaultOfTick(input);
   Vec3 force = fault == Fault::kNone ? input.force.newton : Vec3{};
@@ -173,41 +171,36 @@ GateOutput ForceGate::Step(const GateInput& input) noexcept {
     force *= settings_.max_force / size;
     output.limits |= kClamped;
   }
-  const double wanted = math::Norm(force);
+  // armed
+  UpdateArming(fault, math::Norm(force));
+  if (IsOn(Guard::kArmed) && state_ == ArmState::kUnarmed) {
+    scale_ = 0;
+    return {};
+  }
   // rise
-  const Vec3 limited =
-      IsOn(Guard::kRise) ? device::LimitRise(force, limited_, CalcRiseLimit(settings_)) : force;
-  if (!(limited == force)) output.limits |= kRiseLimited;
-  limited_ = limited;
+  limited_ = IsOn(Guard::kRise) ? device::LimitRise(force, limited_, CalcRiseLimit(settings_)) : force;
+  if (!(limited_ == force)) output.limits |= kRiseLimited;
   // speed, heat
-  const double speed_share = IsOn(Guard::kSpeed) ? CalcSpeedShare(settings_, limited, input.velocity) : 1.0;
+  const double speed_share = IsOn(Guard::kSpeed) ? CalcSpeedShare(settings_, limited_, input.velocity) : 1.0;
   if (speed_share < 1.0) output.limits |= kSpeedLimited;
   const bool is_warm = input.is_warm || input.temperature >= settings_.warm_temperature;
   const double heat_share =
-      IsOn(Guard::kHeat) ? CalcHeatShare(settings_, math::Norm(limited), heat_, is_warm) : 1.0;
+      IsOn(Guard::kHeat) ? CalcHeatShare(settings_, math::Norm(limited_), heat_, is_warm) : 1.0;
   if (heat_share < 1.0) output.limits |= kHeatLimited;
   // ramp; the scales fall at once and rise slowly
-  UpdateArming(fault, wanted);
   const double asked = std::clamp(input.scale, 0.0, 1.0) * speed_share * heat_share * ramp_;
   const double rise = IsOn(Guard::kRamp) ? settings_.tick / settings_.short_ramp_time : 1.0;
-  scale_ = fault == Fault::kNone ? std::min(asked, scale_ + rise) : 0.0;
-  // armed
-  const bool may_send = state_ != ArmState::kUnarmed && fault == Fault::kNone;
-  if (may_send || !IsOn(Guard::kArmed)) {
-    output.force = device::GatedForce(IsOn(Guard::kArmed) ? scale_ * limited : limited);
-  } else {
-    limited_ = {};
-    scale_ = 0;
-    output.limits = 0;
-  }
-  if (IsOn(Guard::kOutput) && !MaySend(output.force.Get())) {
-    // what should be impossible: zero for good, and nothing of it is kept
+  scale_ = std::min(asked, scale_ + rise);
+  output.force = device::GatedForce(IsOn(Guard::kArmed) ? scale_ * limited_ : limited_);
+  return output;
+}
+
+GateOutput ForceGate::Step(const GateInput& input) noexcept {
+  GateOutput output = LimitForce(input);
+  if (IsOn(Guard::kOutput) && !MaySend(settings_, state_, output.force.Get(), sent_)) {
+    // what should be impossible: the tick once more by a broken gate, which is zero for good
     is_broken_ = true;
-    output.force = {};
-    state_ = ArmState::kUnarmed;
-    reason_ = Fault::kGate;
-    limited_ = {};
-    scale_ = heat_ = 0;
+    output = LimitForce(input);
   }
   sent_ = output.force.Get();
   const double load = math::Norm(output.force.Get()) / settings_.max_continuous_force;

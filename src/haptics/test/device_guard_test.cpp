@@ -19,7 +19,7 @@ math::Quaternion TurnAboutZ(double angle) {
 /// A guard that has believed `warm_up` reports of a device that stands still.
 class Guarded {
  public:
-  explicit Guarded(int warm_up = 50) {
+  explicit Guarded(int warm_up = 50, const DeviceGuardSettings& settings = {}) : guard(settings) {
     sample.status = device::ForceDeviceStatus::kOk;
     sample.is_calibrated = true;
     sample.buttons = 5;
@@ -75,12 +75,57 @@ TEST(DeviceGuard, BelievesAGoodReportAsItIs) {
   EXPECT_FALSE(g.device.is_calibrated);
 }
 
+TEST(DeviceGuard, KnowsNothingOfADeviceThatHasNotReported) {
+  const GuardedDevice device;
+  EXPECT_FALSE(device.has_pose || device.is_warm || device.is_calibrated);
+  EXPECT_EQ(device.buttons, 0u);
+  EXPECT_EQ(device.jaw, 0.0);
+  EXPECT_EQ(device.temperature, 0.0);
+  EXPECT_EQ(device.scale, 0.0);
+  EXPECT_EQ(device.fault, Fault::kDeviceLost);
+  const DeviceGuardCounts counts;
+  EXPECT_EQ(counts.good + counts.bad + counts.jumps + counts.silences, 0u);
+  Guarded g(0);
+  g.Wait(30);
+  EXPECT_EQ(g.device.fault, Fault::kSilent);
+  EXPECT_EQ(g.guard.GetCounts().silences, 1u);
+}
+
+// what lies on a limit is within it
+TEST(DeviceGuard, TheLimitsThemselvesAreGood) {
+  // numbers whose sums and differences are exact
+  DeviceGuardSettings settings;
+  settings.stale_age = 0.5;
+  settings.silent_age = 1.0;
+  Guarded g(0, settings);
+  const auto report = [&](double now, double x) {
+    ++g.sample.sequence;
+    g.sample.position.x = x;
+    return g.device = g.guard.Step(g.sample, now);
+  };
+  report(8.0, 0.0);
+  report(8.25, 0.25);
+  ASSERT_GT(g.device.velocity.x, 0.0);
+  EXPECT_GT(g.guard.Step(g.sample, 8.75).velocity.x, 0.0) << "at the age from which silence counts";
+  EXPECT_EQ(g.guard.GetCounts().silences, 0u);
+  EXPECT_EQ(g.guard.Step(g.sample, 8.7500001).velocity.x, 0.0);
+  EXPECT_EQ(g.guard.Step(g.sample, 9.2499999).fault, Fault::kNone);
+  EXPECT_EQ(g.guard.Step(g.sample, 9.25).fault, Fault::kSilent) << "at which the force is zero";
+  Guarded fast(0);
+  fast.now = 8.0;
+  fast.Report(0);
+  fast.sample.position.z = 2.0 * 0.25 + 0.0005;
+  ++fast.sample.sequence;
+  fast.guard.Step(fast.sample, 8.25);
+  EXPECT_EQ(fast.guard.GetCounts().jumps, 0u) << "2 m/s and the encoders' step";
+}
+
 TEST(DeviceGuard, ReachEndsAtAMetre) {
-  for (const double reach : {0.999, 1.001, 5.0, 30.0}) {
+  for (const double reach : {0.999, 1.0, 1.001, 5.0, 30.0}) {
     Guarded g(0);
     g.ReportAt({0, reach, 0});
     EXPECT_EQ(g.guard.GetCounts().bad, reach > 1.0 ? 1u : 0u) << reach;
-    EXPECT_EQ(g.device.has_pose, reach < 1.0) << reach;
+    EXPECT_EQ(g.device.has_pose, reach <= 1.0) << reach;
   }
 }
 
@@ -183,6 +228,12 @@ TEST(DeviceGuard, TheWindowsFaultStaysUntilTheBadOnesAreOutOfIt) {
   g.sample.status = device::ForceDeviceStatus::kOk;
   g.sample.position.y = 0.0;
   EXPECT_EQ(g.Report().fault, Fault::kNone);
+  int reports = 1;
+  for (; g.device.fault == Fault::kNone; ++reports) {
+    g.sample.position.y = reports % 2 == 1 ? std::nan("") : 0.0;
+    g.Report();
+  }
+  EXPECT_EQ(reports, 16) << "all eight of every second one";
 }
 
 TEST(DeviceGuard, SpeedIsLimitedToTwoMetresASecond) {
@@ -222,6 +273,15 @@ TEST(DeviceGuard, TurningIsLimitedToThirtyRadiansASecond) {
     g.ReportTurned(q);
     EXPECT_EQ(g.guard.GetCounts().jumps, 1u) << "about any axis";
   }
+  // and from wherever the stylus points
+  for (const double turn : {0.0495, 0.0505}) {
+    Guarded g(0);
+    const math::Quaternion askew{0.5, 0.5, -0.5, 0.5};
+    g.ReportTurned(askew);
+    for (int i = 0; i < 20; ++i) g.Report();
+    g.ReportTurned(askew * TurnAboutZ(turn));
+    EXPECT_EQ(g.guard.GetCounts().jumps, turn > 0.05 ? 1u : 0u) << turn;
+  }
 }
 
 TEST(DeviceGuard, AStylusThatStandsAskewDoesNotTurn) {
@@ -230,6 +290,15 @@ TEST(DeviceGuard, AStylusThatStandsAskewDoesNotTurn) {
   for (int i = 0; i < 20; ++i) g.Report();
   EXPECT_EQ(g.guard.GetCounts().jumps, 0u);
   EXPECT_EQ(g.guard.GetCounts().good, 20u);
+}
+
+TEST(DeviceGuard, AJumpHasNoVelocity) {
+  Guarded g;
+  for (int tick = 1; tick <= 20; ++tick) g.ReportAt({0.0005 * tick, 0, 0});
+  ASSERT_GT(g.device.velocity.x, 0.4);
+  for (int i = 0; i < 3; ++i) g.ReportAt({0, 0, 0.1});
+  EXPECT_EQ(g.device.fault, Fault::kJump);
+  EXPECT_EQ(g.device.velocity, Vec3{}) << "not even that of the way before it";
 }
 
 TEST(DeviceGuard, TheThirdJumpInARowIsWhereTheDeviceIs) {
@@ -343,13 +412,17 @@ TEST(DeviceGuard, ADeviceThatComesBackBeginsAnew) {
 }
 
 TEST(LoopGuard, CountsSoftensAndStops) {
+  EXPECT_EQ(LoopTiming{}.stiffness_scale, 1.0);
+  EXPECT_EQ(LoopTiming{}.fault, Fault::kNone);
+  EXPECT_FALSE(LoopTiming{}.is_late);
   LoopGuard guard;
   LoopTiming timing = guard.Step(0.0004);
   EXPECT_FALSE(timing.is_late);
+  EXPECT_FALSE(guard.Step(0.0005).is_late) << "half a period";
   timing = guard.Step(0.0006);
   EXPECT_TRUE(timing.is_late);
   EXPECT_EQ(timing.stiffness_scale, 1.0);
-  timing = guard.Step(0.0049);
+  timing = guard.Step(0.005);
   EXPECT_EQ(timing.stiffness_scale, 1.0);
   EXPECT_EQ(timing.fault, Fault::kNone);
   timing = guard.Step(0.0051);
@@ -360,7 +433,7 @@ TEST(LoopGuard, CountsSoftensAndStops) {
     timing = guard.Step(0.0);
     ASSERT_NEAR(timing.stiffness_scale, std::fmin(1.0, 0.5 + 0.001 * tick), 1e-9) << tick;
   }
-  EXPECT_EQ(guard.Step(0.0199).fault, Fault::kNone);
+  EXPECT_EQ(guard.Step(0.020).fault, Fault::kNone);
   EXPECT_EQ(guard.Step(0.0201).fault, Fault::kOverrun);
   EXPECT_EQ(guard.Step(0.0).fault, Fault::kNone);
   EXPECT_EQ(guard.Step(std::nan("")).fault, Fault::kOverrun) << "a lateness that is no number is no promise";

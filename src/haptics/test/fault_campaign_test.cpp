@@ -66,6 +66,10 @@ TEST(ForceCheck, LetsOutWhatAGateLetsOutAndNothingElse) {
     EXPECT_EQ(strict.Pass({0.2, 0, 0}), Vec3{}) << "latched";
   }
   EXPECT_EQ(ForceCheck(inf).Pass({0.2, 0, 0}), Vec3{}) << "and nothing to one that no hand holds";
+  EXPECT_EQ(ForceCheck(50.1).Pass({0.2, 0, 0}), Vec3{});
+  EXPECT_EQ(ForceCheck(0.09).Pass({0.05, 0, 0}), Vec3{});
+  for (const double limit : {device::kSmallestForceLimit, device::kLargestForceLimit})
+    EXPECT_EQ(ForceCheck(limit).Pass({0.1, 0, 0}), (Vec3{0.1, 0, 0})) << limit;
   EXPECT_EQ(ForceCheck().Pass({1e-6, 0, 0}), Vec3{}) << "a check that knows no device passes nothing";
 }
 
@@ -75,7 +79,25 @@ TEST(CalcRise, IsTheDistanceToTheWayFromZero) {
   EXPECT_DOUBLE_EQ(device::CalcRise({1, 0, 0}, {2, 0, 0}), 0.0) << "a fall";
   EXPECT_DOUBLE_EQ(device::CalcRise({1, 1, 0}, {2, 0, 0}), 1.0);
   EXPECT_DOUBLE_EQ(device::CalcRise({-1, 0, 0}, {2, 0, 0}), 1.0);
+  EXPECT_DOUBLE_EQ(device::CalcRise({0.3, 0, 0}, {0.1, 0, 0}), 0.2) << "small ones, too";
+  EXPECT_DOUBLE_EQ(device::CalcRise({0.3, 0.4, 0}, {4, 0, 0}), 0.4);
   EXPECT_FALSE(device::CalcRise({std::nan(""), 0, 0}, {2, 0, 0}) <= 1e9);
+}
+
+TEST(LimitRise, StaysNearTheWayFromZero) {
+  const auto limited = [](const Vec3& wanted, const Vec3& before, const Vec3& expected) {
+    EXPECT_NEAR(math::Distance(device::LimitRise(wanted, before, 0.5), expected), 0.0, 1e-12);
+  };
+  limited({0.4, 0, 0}, {}, {0.4, 0, 0});
+  limited({0.5, 0, 0}, {}, {0.5, 0, 0});
+  limited({2, 0, 0}, {}, {0.5, 0, 0});
+  limited({0.8, 0, 0}, {0.4, 0, 0}, {0.8, 0, 0});
+  limited({3, 0, 0}, {1, 0, 0}, {1.5, 0, 0});
+  limited({0.2, 0, 0}, {3, 0, 0}, {0.2, 0, 0});
+  limited({-2, 0, 0}, {1, 0, 0}, {-0.5, 0, 0});
+  limited({0.5, 2, 0}, {1, 0, 0}, {0.5, 0.5, 0});
+  EXPECT_FALSE(math::IsFinite(device::LimitRise({std::nan(""), 0, 0}, {1, 0, 0}, 0.5)))
+      << "and hides nothing";
 }
 
 TEST(FaultTable, NamesEveryFaultInOrderWithARemedy) {

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "trocar/math/random.h"
+#include "trocar/math/rotation_angle.h"
 
 namespace trocar::math {
 namespace {
@@ -49,6 +50,17 @@ TEST(RotationFromAxes, ReproducesTheAxesForEveryBranch) {
         RotationFromAxes(Rotate(q, {1, 0, 0}), Rotate(q, {0, 1, 0}), Rotate(q, {0, 0, 1}));
     EXPECT_NEAR(std::abs(q.w * back.w + q.x * back.x + q.y * back.y + q.z * back.z), 1.0, 1e-12);
   }
+}
+
+TEST(RotationAngle, IsThatOfTheShortestWay) {
+  const Quaternion askew = RotationAbout(Normalized(Vec3{1, -2, 0.5}), 2.0);
+  for (const Vec3& axis : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}) {
+    const Quaternion turned = askew * RotationAbout(axis, 0.3);
+    EXPECT_NEAR(AngleBetween(askew, turned), 0.3, 1e-12);
+    EXPECT_NEAR(AngleBetween(askew, {-turned.w, -turned.x, -turned.y, -turned.z}), 0.3, 1e-12);
+  }
+  EXPECT_EQ(AngleBetween({1, 0, 0, 0}, {1 + 1e-15, 0, 0, 0}), 0.0) << "a rounded unit quaternion";
+  EXPECT_EQ(SquaredNorm(Quaternion{1, -2, 3, -4}), 30.0);
 }
 
 }  // namespace

@@ -1,13 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trocar/session/haptic_loop.h"
 
-#include <pthread.h>
-#include <sched.h>
-#include <time.h>
-
 #include <algorithm>
 #include <atomic>
-#include <cerrno>
 #include <functional>
 #include <optional>
 #include <thread>
@@ -16,6 +11,7 @@
 #include "haptic_tick.h"
 #include "time_histogram.h"
 #include "trocar/core/clock.h"
+#include "trocar/core/real_time.h"
 
 namespace trocar::session {
 namespace {
@@ -25,23 +21,9 @@ constexpr int kPriorityAboveLowest = 10;
 /// Between two attempts to open a lost device again [ns].
 constexpr std::int64_t kTryAgain = 500'000'000;
 
-/// \param below  the loop's own priority
-bool AskForRealTime(int below = 0) noexcept {
-  sched_param parameters{};
-  parameters.sched_priority = sched_get_priority_min(SCHED_FIFO) + kPriorityAboveLowest - below;
-  return pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameters) == 0;
-}
-
 /// Sleeps until shortly before, then spins: sleep alone wakes late.
 void WaitUntil(std::int64_t due, std::int64_t spin) noexcept {
-  const std::int64_t sleep_until = due - spin;
-  if (core::NowNanoseconds() < sleep_until) {
-    timespec until{};
-    until.tv_sec = sleep_until / 1'000'000'000;
-    until.tv_nsec = sleep_until % 1'000'000'000;
-    while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr) == EINTR) {
-    }
-  }
+  core::SleepUntil(due - spin);
   while (core::NowNanoseconds() < due) {
   }
 }
@@ -73,7 +55,7 @@ class Reopener {
   }
   void Run() {
     // it starts processes and maps memory: held up by others meanwhile, it would hold the loop's page faults up
-    static_cast<void>(AskForRealTime(1));
+    static_cast<void>(core::AskForRealTime(core::RealTimePolicy::kFirstInFirstOut, kPriorityAboveLowest - 1));
     while (true) {
       state_.wait(State::kIdle, std::memory_order_acquire);
       State expected = State::kOpening;
@@ -118,7 +100,7 @@ struct HapticLoop::Content {
     input.wants_check_pose = wants_check_pose.exchange(false);
     input.is_pedal_held = is_pedal_held.load(std::memory_order_relaxed);
     if (supervisor) {
-      input.is_supervised = supervisor->IsAlive(input.now);
+      input.is_supervised = supervisor->IsAlive(start);
       input.is_supervisor_tripped = supervisor->TakeTrip();
     }
     return input;
@@ -145,7 +127,8 @@ core::Status HapticLoop::Content::Connect() {
 }
 
 void HapticLoop::Content::Run() noexcept {
-  const bool is_real_time = AskForRealTime();
+  const bool is_real_time =
+      core::AskForRealTime(core::RealTimePolicy::kFirstInFirstOut, kPriorityAboveLowest);
   const auto period = static_cast<std::int64_t>(1e9 * settings.period);
   const auto spin = static_cast<std::int64_t>(1e9 * settings.spin);
   const CountAllocations count = settings.count_allocations;

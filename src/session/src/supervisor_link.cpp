@@ -3,20 +3,19 @@
 
 #include <sys/socket.h>
 
-#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <utility>
 
 #include "supervisor_protocol.h"
+#include "trocar/core/beat_watch.h"
 #include "trocar/device/companion.h"
 
 namespace trocar::session {
 namespace {
 
-constexpr double kLongestOwnSilence = 0.020;  // of the supervisor [s]
-/// Most of it that counts between two looks: when we did not run ourselves, the supervisor may not have run either [s].
-constexpr double kLongestLook = 0.002;
+constexpr std::int64_t kLongestOwnSilence = 20'000'000;  // of the supervisor [ns]
+constexpr std::int64_t kLongestLook = 2'000'000;         // that counts of it between two looks [ns]
 constexpr const char* kRemedy =
     "without the supervisor there is no force: reinstall Trocar, or build the target trocar-supervisor";
 
@@ -32,8 +31,8 @@ struct SupervisorLink::Content {
 
   device::Companion companion;
   SupervisorPage* page;
-  std::uint64_t seen_beats = 0, seen_trips = 0;
-  double silence = 0, last_look = 0;  // [s]
+  core::BeatWatch watch{kLongestLook};
+  std::uint64_t seen_trips = 0;
 };
 
 std::filesystem::path SupervisorLink::FindProgram() {
@@ -85,16 +84,14 @@ void SupervisorLink::Beat() noexcept {
   content_->page->beats.fetch_add(1, std::memory_order_release);
 }
 
-bool SupervisorLink::IsAlive(double now) noexcept {
-  Content& c = *content_;
-  const std::uint64_t beats = c.page->supervisor_beats.load(std::memory_order_relaxed);
-  c.silence = beats != c.seen_beats ? 0.0 : c.silence + std::clamp(now - c.last_look, 0.0, kLongestLook);
-  c.seen_beats = beats;
-  c.last_look = now;
+bool SupervisorLink::IsAlive(std::int64_t now) noexcept {
+  const std::uint64_t beats = content_->page->supervisor_beats.load(std::memory_order_relaxed);
+  const std::int64_t silence = content_->watch.Look(beats, now);
   // its end of the socket closes with it, and it never says anything
   char nothing;
-  const bool has_ended = ::recv(c.companion.Socket(), &nothing, 1, MSG_PEEK | MSG_DONTWAIT) == 0;
-  return !has_ended && beats > 0 && c.silence <= kLongestOwnSilence;
+  const bool has_ended =
+      ::recv(content_->companion.Socket(), &nothing, sizeof nothing, MSG_PEEK | MSG_DONTWAIT) == 0;
+  return !has_ended && beats > 0 && silence <= kLongestOwnSilence;
 }
 
 bool SupervisorLink::TakeTrip() noexcept {

@@ -3,21 +3,18 @@
 // stand-in are at zero. The motors keep their last force until somebody sends another or opens the device again: a device
 // without a watchdog of its own. Built a second time with nobody watching the library's process: then the force must stay.
 // TROCAR_REPEATS sets how often each is done (2 by default).
-#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <signal.h>
-#include <sys/mman.h>
 #include <unistd.h>
 
 #include <atomic>
-#include <filesystem>
-#include <fstream>
-#include <new>
 #include <string>
 #include <thread>
 
+#include "child_processes.h"
 #include "force_wire.h"
-#include "stand_in_hd.h"
+#include "machine_watch.h"
+#include "stand_in_page.h"
 #include "trocar/device/open_haptics.h"
 #include "trocar/math/random.h"
 #include "trocar/session/haptic_loop.h"
@@ -25,34 +22,11 @@
 namespace trocar::session {
 namespace {
 
-namespace fs = std::filesystem;
-
-/// Child process of this one that was started with so an option; 0: none.
-pid_t FindChild(const std::string& option) {
-  for (const auto& task : fs::directory_iterator("/proc/self/task")) {
-    std::ifstream children(task.path() / "children");
-    for (pid_t child = 0; children >> child;) {
-      std::ifstream line("/proc/" + std::to_string(child) + "/cmdline");
-      const std::string words((std::istreambuf_iterator<char>(line)), {});
-      if (words.find(option) != std::string::npos) return child;
-    }
-  }
-  return 0;
-}
-
 /// A loop that presses tissue with both devices of a stand-in library in another process.
 class LibraryFaults : public testing::Test {
  protected:
   void SetUp() override {
-    page_ = fs::path(testing::TempDir()) / ("trocar_library_faults_" + std::to_string(::getpid()));
-    const int file = ::open(page_.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
-    ASSERT_EQ(::ftruncate(file, sizeof(StandInState)), 0);
-    void* memory = ::mmap(nullptr, sizeof(StandInState), PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
-    ::close(file);
-    ASSERT_NE(memory, MAP_FAILED);
-    motors_ = new (memory) StandInState;
     motors_->is_led = 1;
-    ::setenv(kStandInPage, page_.c_str(), 1);
     tissue_ = std::thread([this] { FeedTissue(); });
     Start();
     ForceWire::ReadInRealTime();
@@ -63,9 +37,6 @@ class LibraryFaults : public testing::Test {
     loop_.reset();
     is_ending_ = true;
     tissue_.join();
-    ::unsetenv(kStandInPage);
-    ::munmap(motors_, sizeof(StandInState));
-    fs::remove(page_);
   }
   void Start() {
     device::OpenHapticsSettings library;
@@ -149,13 +120,15 @@ class LibraryFaults : public testing::Test {
     ASSERT_NE(loop_, nullptr);
     ZeroTimes times;
     math::Random random(7);
-    double longest_period = 0;
+    LoopPeriods periods;
+    MachineWatch machine;
     for (int i = 0; i < ForceWire::Repeats(); ++i) {
       if (loop_ == nullptr) Start();
       ASSERT_TRUE(Arm());
       ::usleep(static_cast<useconds_t>(random.Uniform(20e3, 40e3)));
       motors_->fault_process = motors_->process.load();
       loop_->ClearTimes();
+      machine.Forget();
       ::usleep(20'000);
       double absence = 0;
       const std::int64_t struck = core::NowNanoseconds();
@@ -166,12 +139,11 @@ class LibraryFaults : public testing::Test {
         ASSERT_FALSE(IsPushing()) << "it came back";
         ::usleep(1000);
       }
-      longest_period = std::max(longest_period, loop_->CalcPeriodPercentile(1.0));
+      periods.Add(loop_->CalcPeriodPercentile(1.0), machine.LongestAbsence());
       Recover();
     }
     times.ReportAndJudge(std::string(what) + ", library");
-    std::printf("%s: longest period of the loop %.2f ms\n", what, 1e3 * longest_period);
-    ZeroTimes::JudgePeriod(what, longest_period);
+    periods.ReportAndJudge(what);
     EXPECT_EQ(motors_->bad_forces, 0) << "not finite, above the clamp or with too fast a rise";
   }
   /// The next one begins with a loop that is well.
@@ -183,10 +155,10 @@ class LibraryFaults : public testing::Test {
 
   std::unique_ptr<HapticLoop> loop_;
   HapticLink link_;
-  StandInState* motors_ = nullptr;
+  StandInPage page_;
+  StandInState* const motors_ = page_.Get();
 
  private:
-  fs::path page_;
   std::thread tissue_;
   std::atomic<bool> is_pressing_{false}, is_ending_{false};
 };

@@ -1,66 +1,48 @@
 // SPDX-License-Identifier: Apache-2.0
 // libHD in the supervisor's process: what the motors do when the simulator's process is killed, stopped or well.
-#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <poll.h>
 #include <sched.h>
 #include <signal.h>
-#include <sys/mman.h>
+#include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
-#include <filesystem>
+#include <cstring>
 #include <functional>
 #include <new>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "openhaptics/hd_host_page.h"
 #include "stand_in_gate.h"
-#include "stand_in_hd.h"
+#include "stand_in_page.h"
 #include "trocar/core/clock.h"
+#include "trocar/device/companion.h"
 #include "trocar/device/open_haptics.h"
 #include "trocar/device/ports.h"
+#include "wait_for.h"
 
 namespace trocar::session {
 namespace {
 
-namespace fs = std::filesystem;
 using device::ForceSample;
 using device::OpenHaptics;
 using device::ReadStatus;
-
-bool WaitFor(double seconds, const std::function<bool()>& is_reached) {
-  const core::Stopwatch watch;
-  while (watch.Seconds() < seconds) {
-    if (is_reached()) return true;
-    device::SystemClock().Sleep(0.0002);
-  }
-  return is_reached();
-}
+using device::WaitFor;
 
 class OpenHapticsHost : public testing::Test {
  protected:
   void SetUp() override {
-    page_ = fs::path(testing::TempDir()) / ("trocar_stand_in_" + std::to_string(::getpid()));
-    const int file = ::open(page_.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
-    ASSERT_EQ(::ftruncate(file, sizeof(StandInState)), 0);
-    void* memory = ::mmap(nullptr, sizeof(StandInState), PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
-    ::close(file);
-    ASSERT_NE(memory, MAP_FAILED);
-    motors_ = new (memory) StandInState;
-    ::setenv(kStandInPage, page_.c_str(), 1);
     settings_.hd_file = TROCAR_STAND_IN_HD;
     settings_.names = {"Left", "Right"};
     // another one where tools/mutate-safety changes it
     const char* other = std::getenv("TROCAR_TEST_SUPERVISOR");
     settings_.host = other != nullptr ? other : TROCAR_SUPERVISOR;
-  }
-  void TearDown() override {
-    ::unsetenv(kStandInPage);
-    ::munmap(motors_, sizeof(StandInState));
-    fs::remove(page_);
   }
   bool IsPushing() const { return motors_->forces[0][0] != 0 || motors_->forces[1][0] != 0; }
 
@@ -91,8 +73,8 @@ class OpenHapticsHost : public testing::Test {
   }
 
   device::OpenHapticsSettings settings_;
-  fs::path page_;
-  StandInState* motors_ = nullptr;
+  StandInPage page_;
+  StandInState* const motors_ = page_.Get();
 };
 
 TEST_F(OpenHapticsHost, ReadsAndPushesThroughTheOtherProcess) {
@@ -218,15 +200,171 @@ TEST_F(OpenHapticsHost, EveryFailureOfTheLibraryIsZeroAndALostDevice) {
     ASSERT_TRUE(WaitFor(5, [&] { return !IsPushing(); }));
     EXPECT_LE(watch.Seconds(), kGenerous);
     EXPECT_TRUE(WaitFor(5, [&] { return motors_->process != before; })) << "another one has taken over";
+    const pid_t spare = motors_->process;
     EXPECT_LE(watch.Seconds(), kGenerous);
     EXPECT_EQ(samples[0].status, device::ForceDeviceStatus::kLost);
     EXPECT_EQ(driver.GetState(), device::DriverState::kUnconfigured);
+    ASSERT_TRUE(driver.Configure().ok());
+    EXPECT_EQ(motors_->process, spare) << "and it is the one from now on";
+    ASSERT_TRUE(driver.Cleanup().ok());
   }
   motors_->fault = StandInFault::kNone;
   ASSERT_TRUE(driver.Configure().ok());
   EXPECT_EQ(motors_->devices, 2);
   driver.Finalize();
   EXPECT_EQ(motors_->devices, 0);
+}
+
+// a spare that cannot open the devices either is ended, and the next opening begins with another process
+TEST_F(OpenHapticsHost, ASpareThatFailsIsReplaced) {
+  OpenHaptics driver(settings_);
+  ASSERT_TRUE(driver.Configure().ok() && driver.Activate().ok());
+  std::array<ForceSample, 2> samples;
+  ASSERT_TRUE(WaitFor(3, [&] { return driver.ReadForceSamples(samples) == ReadStatus::kFresh; }));
+  const pid_t first = motors_->process;
+  ::kill(first, SIGSTOP);
+  motors_->pending_error = 0x0304;  // for the spare
+  ASSERT_TRUE(WaitFor(5, [&] { return driver.ReadForceSamples(samples) == ReadStatus::kLost; }));
+  ASSERT_TRUE(WaitFor(5, [&] { return motors_->pending_error == 0; }));
+  const core::Status again = driver.Configure();
+  ASSERT_TRUE(again.ok()) << again.error().Text();
+  ASSERT_TRUE(driver.Activate().ok());
+  EXPECT_TRUE(WaitFor(3, [&] { return driver.ReadForceSamples(samples) == ReadStatus::kFresh; }));
+  EXPECT_EQ(motors_->devices, 2);
+  driver.Finalize();
+  EXPECT_EQ(motors_->devices, 0);
+}
+
+/// The library's process alone, as the simulator speaks to it.
+class LibraryProcess : public OpenHapticsHost {
+ protected:
+  using Reply = device::hd_host::Reply;
+  void SetUp() override {
+    OpenHapticsHost::SetUp();
+    auto started = device::Companion::Start(settings_.host, "--openhaptics", sizeof(device::HdHostPage),
+                                            core::ErrorCode::kDeviceUnsupported, "");
+    ASSERT_TRUE(started.ok());
+    process_.emplace(std::move(*started));
+    page_of_host_ = new (process_->Page()) device::HdHostPage;
+    page_of_host_->mailbox.Clear();
+  }
+  Reply Ask(const std::string& request) {
+    Reply reply;
+    reply.code = -1;
+    EXPECT_EQ(::send(process_->Socket(), request.data(), request.size(), MSG_NOSIGNAL),
+              static_cast<ssize_t>(request.size()));
+    pollfd answered{process_->Socket(), POLLIN, 0};
+    if (::poll(&answered, 1, 10'000) == 1) {
+      EXPECT_EQ(::recv(process_->Socket(), &reply, sizeof reply, 0), static_cast<ssize_t>(sizeof reply));
+    }
+    return reply;
+  }
+  std::string Devices() const { return settings_.hd_file + "\nLeft\nRight\n"; }
+  bool Push() {
+    return WaitFor(3, [&] {
+      page_of_host_->mailbox.Send(0, haptics::ForceGate::Make({1, 0, 0}));
+      return IsPushing();
+    });
+  }
+  bool HasReports(double seconds) {
+    std::array<ForceSample, 2> samples;
+    return WaitFor(seconds, [&] { return page_of_host_->mailbox.Read(samples) == ReadStatus::kFresh; });
+  }
+  /// \return exit status; -1 where it goes on
+  int WaitForEnd() {
+    int status = -1;
+    if (!WaitFor(10, [&] { return ::waitpid(process_->Process(), &status, WNOHANG) != 0; })) return -1;
+    return WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + WTERMSIG(status);
+  }
+  static constexpr int kLost = static_cast<int>(core::ErrorCode::kDeviceLost);
+
+  std::optional<device::Companion> process_;
+  device::HdHostPage* page_of_host_ = nullptr;
+};
+
+TEST_F(LibraryProcess, AnswersEveryRequestAndEndsWithItsSocket) {
+  EXPECT_EQ(Ask("start").code, kLost);
+  EXPECT_STREQ(
+      Ask("start").text,
+      "openhaptics: nothing is open; switch the device off and on, and check it with the maker's program");
+  EXPECT_EQ(Ask("x").code, kLost) << "no request";
+  EXPECT_EQ(Ask("stop").code, 0);
+  const Reply missing = Ask("open\n" + std::string(2000, 'x') + "\nLeft\n");
+  EXPECT_EQ(missing.code, static_cast<int>(core::ErrorCode::kDeviceUnsupported));
+  EXPECT_EQ(std::strlen(missing.text), sizeof missing.text - 1) << "cut, and ended";
+  EXPECT_EQ(missing.count, 0u);
+  const Reply open = Ask("open\n" + Devices());
+  EXPECT_EQ(open.code, 0);
+  EXPECT_EQ(open.text[0], 0);
+  ASSERT_EQ(open.count, 2u);
+  EXPECT_EQ(open.limits[1].max_force, 3.3);
+  EXPECT_EQ(motors_->devices, 2);
+  EXPECT_EQ(Ask("open\n" + Devices()).code, kLost) << "it is open";
+  EXPECT_EQ(Ask("rescue\n" + Devices()).code, kLost);
+  EXPECT_EQ(Ask("neither").code, kLost);
+  EXPECT_EQ(motors_->devices, 2);
+  EXPECT_FALSE(HasReports(0.03)) << "not started";
+  for (int i = 0; i < 2; ++i) {
+    EXPECT_EQ(Ask("start").code, 0);
+    EXPECT_TRUE(HasReports(3));
+    EXPECT_TRUE(Push());
+    EXPECT_EQ(Ask("stop").code, 0);
+    EXPECT_FALSE(IsPushing());
+    HasReports(0.01);
+    EXPECT_FALSE(HasReports(0.1)) << "stopped, and no reason for the watchdog";
+  }
+  EXPECT_EQ(Ask("start").code, 0);
+  EXPECT_TRUE(Push());
+  ::shutdown(process_->Socket(), SHUT_RDWR);
+  EXPECT_EQ(WaitForEnd(), 0);
+  EXPECT_FALSE(IsPushing());
+  EXPECT_EQ(motors_->devices, 0);
+  EXPECT_EQ(motors_->misuses, 0);
+}
+
+TEST_F(LibraryProcess, BeatsEveryMillisecondBeforeEverybodyElse) {
+  const std::uint64_t before = page_of_host_->beats;
+  const core::Stopwatch watch;
+  device::SystemClock().Sleep(0.3);
+  const double beats = static_cast<double>(page_of_host_->beats - before);
+  EXPECT_GT(beats, 10);
+  EXPECT_LT(beats, 1.5e3 * watch.Seconds());
+  sched_param parameters{};
+  parameters.sched_priority = sched_get_priority_min(SCHED_FIFO) + 15;
+  const bool is_permitted = ::sched_setscheduler(0, SCHED_FIFO, &parameters) == 0;
+  const sched_param ordinary{};
+  ::sched_setscheduler(0, SCHED_OTHER, &ordinary);
+  if (!is_permitted) return;
+  sched_param of_host{};
+  EXPECT_EQ(::sched_getparam(process_->Process(), &of_host), 0);
+  EXPECT_EQ(of_host.sched_priority, parameters.sched_priority) << "above the loop, below the supervisor";
+}
+
+TEST_F(LibraryProcess, OneThatTakesOverSendsZeroAndWaits) {
+  motors_->forces[0][0] = 1.5;
+  const Reply rescued = Ask("rescue\n" + Devices());
+  EXPECT_EQ(rescued.code, 0);
+  EXPECT_EQ(rescued.count, 2u);
+  EXPECT_EQ(rescued.limits[0].max_force, 3.3);
+  EXPECT_FALSE(IsPushing());
+  HasReports(0.01);
+  EXPECT_FALSE(HasReports(0.1)) << "until somebody asks for the devices";
+  EXPECT_EQ(Ask("start").code, 0);
+  EXPECT_TRUE(Push());
+  EXPECT_EQ(motors_->misuses, 0);
+}
+
+// with nobody else to do it, the process itself takes the force away
+TEST_F(LibraryProcess, ALibraryThatStandsIsZeroAndTheEndOfItsProcess) {
+  ASSERT_EQ(Ask("open\n" + Devices()).code, 0);
+  ASSERT_EQ(Ask("start").code, 0);
+  ASSERT_TRUE(Push());
+  motors_->fault_process = process_->Process();
+  const core::Stopwatch watch;
+  motors_->fault = StandInFault::kSilentScheduler;
+  EXPECT_EQ(WaitForEnd(), device::hd_host::kLibraryStands);
+  EXPECT_GT(watch.Seconds(), 0.010) << "a scheduler may be late";
+  EXPECT_FALSE(IsPushing());
 }
 
 TEST_F(OpenHapticsHost, ErrorsOfTheLibraryComeThrough) {
@@ -241,6 +379,12 @@ TEST_F(OpenHapticsHost, ErrorsOfTheLibraryComeThrough) {
   EXPECT_EQ(motors_->devices, 0) << "the first is given back";
   settings_.names = {"Left\nRight"};
   EXPECT_EQ(OpenHaptics(settings_).Configure().error().code, core::ErrorCode::kDeviceSettings);
+  settings_.names = {"Left", ""};
+  EXPECT_EQ(OpenHaptics(settings_).Configure().error().code, core::ErrorCode::kDeviceSettings);
+  settings_.names = {std::string(4096, 'x')};
+  EXPECT_EQ(OpenHaptics(settings_).Configure().error().code, core::ErrorCode::kDeviceSettings);
+  settings_.names = {std::string(3000, 'x')};
+  EXPECT_TRUE(OpenHaptics(settings_).Configure().ok()) << "the stand-in knows every name but one";
   settings_.names = {"Left"};
   settings_.host = "/no/such/trocar-supervisor";
   EXPECT_EQ(OpenHaptics(settings_).Configure().error().code, core::ErrorCode::kDeviceUnsupported);

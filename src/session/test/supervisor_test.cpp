@@ -11,10 +11,17 @@
 #include <atomic>
 #include <cmath>
 #include <cstdlib>
+#include <cstring>
+#include <memory>
+#include <optional>
 #include <string>
+#include <vector>
 
+#include "child_processes.h"
 #include "force_wire.h"
+#include "supervisor_protocol.h"
 #include "trocar/core/clock.h"
+#include "trocar/device/companion.h"
 #include "trocar/device/simulated_force_device.h"
 #include "trocar/session/haptic_loop.h"
 
@@ -148,6 +155,220 @@ INSTANTIATE_TEST_SUITE_P(On, Supervisor, testing::Values(WireKind::kTerminal, Wi
                          [](const auto& wire) {
                            return wire.param == WireKind::kTerminal ? "Terminal" : "Socket";
                          });
+
+/// The device's end of a wire that the supervisor holds a copy of.
+class HeldWire {
+ public:
+  explicit HeldWire(std::uint8_t mark, bool is_closed_after = false, std::size_t size = 3) {
+    int ends[2];
+    EXPECT_EQ(::socketpair(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0, ends), 0);
+    device_ = ends[0], host_ = ends[1];
+    wire_.file = host_;
+    wire_.size = size;
+    wire_.zero_frame.fill(mark);
+    wire_.zero_frame[1] = 0;
+    wire_.is_closed_after = is_closed_after;
+  }
+  HeldWire(const HeldWire&) = delete;
+  HeldWire& operator=(const HeldWire&) = delete;
+  ~HeldWire() {
+    ::close(device_);
+    CloseHost();
+  }
+  const device::SupervisedWire& Wire() const { return wire_; }
+  void CloseHost() {
+    if (host_ >= 0) ::close(host_);
+    host_ = -1;
+  }
+  /// Zero frames that came within `seconds`; every byte has to be of one.
+  int CountZeros(double seconds) {
+    const core::Stopwatch watch;
+    std::size_t bytes = 0;
+    while (watch.Seconds() < seconds && !is_closed_) {
+      std::uint8_t got[64];
+      const ssize_t size = ::read(device_, got, sizeof got);
+      is_closed_ = size == 0;
+      for (ssize_t i = 0; i < size; ++i, ++bytes) EXPECT_EQ(got[i], wire_.zero_frame[bytes % wire_.size]);
+      if (size < 0) ::usleep(500);
+    }
+    EXPECT_EQ(bytes % wire_.size, 0u);
+    return static_cast<int>(bytes / wire_.size);
+  }
+  /// Nobody holds the other end any more, or it was shut down.
+  bool IsClosed() const { return is_closed_; }
+
+ private:
+  device::SupervisedWire wire_;
+  int device_ = -1, host_ = -1;
+  bool is_closed_ = false;
+};
+
+TEST(SupervisorLink, WatchesEveryWireFromTheFirstBeatOn) {
+  auto link = SupervisorLink::Start(FindSupervisor());
+  ASSERT_TRUE(link.ok()) << link.error().Text();
+  HeldWire left(1), right(2, true);
+  ASSERT_TRUE(link->AddWire({}).ok()) << "a device that is reached through a library";
+  ASSERT_TRUE(link->AddWire(left.Wire()).ok());
+  ASSERT_TRUE(link->AddWire(right.Wire()).ok());
+  EXPECT_EQ(left.CountZeros(0.05), 0) << "nobody has pushed yet";
+  EXPECT_FALSE(link->TakeTrip());
+  const core::Stopwatch alive;
+  while (!link->IsAlive(core::NowNanoseconds()) && alive.Seconds() < 10.0) ::usleep(500);
+  EXPECT_TRUE(link->IsAlive(core::NowNanoseconds()));
+  link->Beat();
+  // on a busy machine later than 10 ms, never earlier
+  const core::Stopwatch beat;
+  int zeros = 0;
+  while (zeros == 0 && beat.Seconds() < 10.0) zeros = left.CountZeros(0.001);
+  EXPECT_GE(beat.Seconds(), 0.009);
+  EXPECT_GE(left.CountZeros(0.1), 3) << "again and again";
+  EXPECT_GE(right.CountZeros(0.01), 3);
+  EXPECT_TRUE(link->TakeTrip());
+  EXPECT_FALSE(link->TakeTrip()) << "told once";
+  // a device that is gone: the copies are closed, and what comes back has a wire of its own
+  link->ForgetWires();
+  left.CloseHost();
+  while (!left.IsClosed() && beat.Seconds() < 20.0) left.CountZeros(0.01);
+  EXPECT_TRUE(left.IsClosed());
+  right.CountZeros(0.05);  // what was on its way
+  EXPECT_EQ(right.CountZeros(0.05), 0) << "forgotten";
+  std::vector<std::unique_ptr<HeldWire>> wires;
+  for (int i = 0; i < kMaxWires + 1; ++i) {
+    wires.push_back(std::make_unique<HeldWire>(static_cast<std::uint8_t>(i + 1)));
+    ASSERT_TRUE(link->AddWire(wires.back()->Wire()).ok());
+  }
+  for (int i = 0; i < kMaxWires; ++i) EXPECT_GE(wires[static_cast<std::size_t>(i)]->CountZeros(0.05), 1) << i;
+  EXPECT_EQ(wires.back()->CountZeros(0.05), 0) << "more than it can hold";
+  wires.back()->CloseHost();
+  wires.back()->CountZeros(0.05);
+  EXPECT_TRUE(wires.back()->IsClosed()) << "and not kept";
+}
+
+// at our end, whatever came before it: a connection to a service is shut down as well
+TEST(SupervisorLink, TheLastWordsAreThreeZeros) {
+  HeldWire line(3), service(4, true, device::SupervisedWire::kMaxBytes);
+  {
+    auto link = SupervisorLink::Start(FindSupervisor());
+    ASSERT_TRUE(link.ok()) << link.error().Text();
+    ASSERT_TRUE(link->AddWire(line.Wire()).ok());
+    ASSERT_TRUE(link->AddWire(service.Wire()).ok());
+  }
+  EXPECT_EQ(line.CountZeros(0.05), 3);
+  EXPECT_FALSE(line.IsClosed()) << "we hold it still";
+  EXPECT_EQ(service.CountZeros(0.05), 3);
+  EXPECT_TRUE(service.IsClosed());
+}
+
+TEST(SupervisorLink, WhileWeBeatItKeepsQuietAndASupervisorThatIsGoneIsNoticed) {
+  auto link = SupervisorLink::Start(FindSupervisor());
+  ASSERT_TRUE(link.ok()) << link.error().Text();
+  HeldWire wire(5);
+  ASSERT_TRUE(link->AddWire(wire.Wire()).ok());
+  const bool is_permitted = ForceWire::ReadInRealTime();
+  bool was_alive = false;
+  const core::Stopwatch watch;
+  while (watch.Seconds() < 0.5) {
+    link->Beat();
+    was_alive = link->IsAlive(core::NowNanoseconds()) || was_alive;
+    ::usleep(1000);
+  }
+  const sched_param ordinary{};
+  ::sched_setscheduler(0, SCHED_OTHER, &ordinary);
+  EXPECT_TRUE(was_alive);
+  // a machine that let this thread stand still for 10 ms is told of, too
+  EXPECT_EQ(wire.CountZeros(0.001) > 0, link->TakeTrip());
+  const pid_t supervisor = FindChild("--watch");
+  ASSERT_GT(supervisor, 0);
+  sched_param priority{};
+  EXPECT_EQ(::sched_getparam(supervisor, &priority), 0);
+  if (is_permitted) {
+    EXPECT_EQ(priority.sched_priority, sched_get_priority_min(SCHED_FIFO) + 20) << "before everybody else";
+  }
+  ::kill(supervisor, SIGSTOP);
+  // silent for 20 ms, of which a time in which this thread itself did not run counts no more than 2
+  for (const std::int64_t look : {1, 1000}) {
+    ::usleep(50'000);
+    const std::int64_t first = core::NowNanoseconds();
+    link->IsAlive(first);
+    const int looks = look == 1 ? 20 : 10;
+    for (int i = 1; i <= looks; ++i) EXPECT_TRUE(link->IsAlive(first + i * look * 1'000'000)) << i;
+    EXPECT_FALSE(link->IsAlive(first + (looks + 1) * look * 1'000'000));
+    if (look != 1) break;
+    ::kill(supervisor, SIGCONT);
+    ::usleep(50'000);
+    ::kill(supervisor, SIGSTOP);
+  }
+  const auto wait_for = [&](bool is_alive) {
+    constexpr std::int64_t kAhead = 20'000'000'000;  // of the looks above; time never falls
+    const core::Stopwatch waited;
+    while (waited.Seconds() < 5.0 && link->IsAlive(core::NowNanoseconds() + kAhead) != is_alive)
+      ::usleep(1000);
+    return waited.Seconds();
+  };
+  EXPECT_LT(wait_for(false), 5.0) << "stopped";
+  ::kill(supervisor, SIGCONT);
+  EXPECT_LT(wait_for(true), 5.0) << "and it goes on";
+  // killed: its end of the socket tells before any time has passed
+  const std::int64_t now = core::NowNanoseconds() + 30'000'000'000;
+  ASSERT_TRUE(link->IsAlive(now));
+  ::kill(supervisor, SIGKILL);
+  const core::Stopwatch killed;
+  while (link->IsAlive(now) && killed.Seconds() < 5.0) ::usleep(1000);
+  EXPECT_LT(killed.Seconds(), 5.0);
+}
+
+/// The program alone, as the simulator speaks to it.
+class SupervisorProcess : public testing::Test {
+ protected:
+  void SetUp() override {
+    auto started = device::Companion::Start(FindSupervisor(), "--watch", sizeof(SupervisorPage),
+                                            core::ErrorCode::kHapticSupervisor, "");
+    ASSERT_TRUE(started.ok());
+    process_.emplace(std::move(*started));
+  }
+  /// \param bytes  of the message that travel
+  void Send(const HeldWire& wire, std::size_t bytes, std::uint32_t frame_size) {
+    WireMessage message;
+    message.size = frame_size;
+    std::memcpy(message.zero_frame, wire.Wire().zero_frame.data(), wire.Wire().size);
+    iovec part{&message, bytes};
+    alignas(cmsghdr) char control[CMSG_SPACE(sizeof(int))] = {};
+    msghdr header{};
+    header.msg_iov = &part;
+    header.msg_iovlen = 1;
+    header.msg_control = control;
+    header.msg_controllen = sizeof control;
+    cmsghdr* carried = CMSG_FIRSTHDR(&header);
+    carried->cmsg_level = SOL_SOCKET;
+    carried->cmsg_type = SCM_RIGHTS;
+    carried->cmsg_len = CMSG_LEN(sizeof(int));
+    std::memcpy(CMSG_DATA(carried), &wire.Wire().file, sizeof(int));
+    EXPECT_EQ(::sendmsg(process_->Socket(), &header, MSG_NOSIGNAL), static_cast<ssize_t>(bytes));
+  }
+  std::optional<device::Companion> process_;
+};
+
+TEST_F(SupervisorProcess, HoldsEightWiresAndNoneThatAMessageDoesNotDescribe) {
+  HeldWire cut(1), too_long(2);
+  Send(cut, sizeof(WireMessage) - 1, 3);
+  Send(too_long, sizeof(WireMessage), device::SupervisedWire::kMaxBytes + 1);
+  for (HeldWire* refused : {&cut, &too_long}) {
+    refused->CloseHost();
+    const core::Stopwatch watch;
+    while (!refused->IsClosed() && watch.Seconds() < 10.0) EXPECT_EQ(refused->CountZeros(0.01), 0);
+    EXPECT_TRUE(refused->IsClosed()) << "not kept";
+  }
+  std::vector<std::unique_ptr<HeldWire>> wires;
+  for (int i = 0; i < kMaxWires; ++i) {
+    wires.push_back(std::make_unique<HeldWire>(static_cast<std::uint8_t>(i + 1)));
+    Send(*wires.back(), sizeof(WireMessage), 3);
+  }
+  ::shutdown(process_->Socket(), SHUT_RDWR);
+  int status = -1;
+  EXPECT_EQ(::waitpid(process_->Process(), &status, 0), process_->Process());
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+  for (const auto& wire : wires) EXPECT_EQ(wire->CountZeros(0.02), 3);
+}
 
 TEST(SupervisorLink, WithoutItThereIsNoForce) {
   device::SimulatedForceSettings simulated;

@@ -28,7 +28,7 @@ class JawEmulator : public Emulator {
         raw[tool] = static_cast<int>(std::lround(sensor.closed + opening * (sensor.open - sensor.closed)));
       }
       if (emulation_.format == JawFormat::kHid) {
-        bytes += FormatHidReport(raw);
+        bytes += FormatHidReport(raw, static_cast<std::uint16_t>(static_cast<std::uint32_t>(1e3 * next_)));
         continue;
       }
       for (int tool = 0; tool < kJawTools; ++tool)

@@ -40,7 +40,7 @@ class ForceMailbox {
   }
   void Send(int channel, const GatedForce& force) noexcept {
     const auto index = static_cast<std::size_t>(channel);
-    if (channel < 0 || index >= kMaxDevices) return;
+    if (index >= kMaxDevices) return;  // a negative channel, too
     command_[index] = {force.Get(), core::NowNanoseconds()};
     commands_.Back() = command_;
     commands_.Publish();

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "trocar/device/force_driver.h"
+#include "trocar/math/rotation_angle.h"
 
 namespace trocar::device {
 
@@ -16,11 +17,10 @@ inline constexpr double kFarthestStylus = 2.0;
 ///
 /// \param p_device_trocar  above the middle of the workspace, device frame [m]
 inline void SetHand(const ForceSample& report, const math::Vec3& p_device_trocar, HandSample& hand) noexcept {
-  const math::Quaternion& q = report.orientation;
-  const double turn = q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z;
   // false for what is no number
   hand.is_valid = report.sequence > 0 && report.is_calibrated &&
-                  math::Norm(report.position) <= kFarthestStylus && std::fabs(turn - 1.0) < 0.1;
+                  math::Norm(report.position) <= kFarthestStylus &&
+                  std::fabs(math::SquaredNorm(report.orientation) - 1.0) < 0.1;
   if (!hand.is_valid) return;
   // device: x right, y up, z towards the person; world: x right, y away from the person, z up
   const math::Vec3 way = report.position - p_device_trocar;

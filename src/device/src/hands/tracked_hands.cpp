@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "trocar/math/rotation_angle.h"
+
 namespace trocar::device {
 namespace {
 
@@ -14,16 +16,9 @@ constexpr double kReach = 5.0;            // of any tracker here [m]
 /// So many doubtful poses in a row and the hand is not seen (faults D4).
 constexpr int kBadInRow = 3;
 
-double AngleBetween(const Quaternion& a, const Quaternion& b) noexcept {
-  // q and -q are one rotation
-  return 2.0 * std::acos(std::min(1.0, std::fabs(a.w * b.w + a.x * b.x + a.y * b.y + a.z * b.z)));
-}
-
 bool IsPlausible(const Pose& pose) noexcept {
-  const Quaternion& q = pose.rotation;
-  const double norm = q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z;
   // false for NaN
-  return math::Norm(pose.translation) <= kReach && std::fabs(norm - 1.0) <= 0.05;
+  return math::Norm(pose.translation) <= kReach && std::fabs(math::SquaredNorm(pose.rotation) - 1.0) <= 0.05;
 }
 
 /// `spin` or that plus whole turns, whichever is nearest to `before`.
@@ -63,7 +58,7 @@ bool TrackedHands::Gate(Hand& hand, Pose& pose, double time) noexcept {
     ++counts_.flips;
   }
   if (math::Distance(pose.translation, before) > kPositionSlack + settings_.max_speed * gap ||
-      AngleBetween(pose.rotation, hand.X_source_sensor.rotation) >
+      math::AngleBetween(pose.rotation, hand.X_source_sensor.rotation) >
           kAngleSlack + settings_.max_turn_rate * gap) {
     ++counts_.jumps;
     return false;

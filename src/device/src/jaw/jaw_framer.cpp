@@ -66,20 +66,23 @@ Parsed JawFramer::Parse(std::string_view bytes, JawReading& reading) noexcept {
   return line.Result();
 }
 
-std::array<std::optional<int>, kJawTools> ParseHidReport(std::string_view report) noexcept {
-  std::array<std::optional<int>, kJawTools> values;
-  if (report.size() != kHidReportSize) return values;
-  for (std::size_t tool = 0; tool < values.size(); ++tool) {
-    const auto low = static_cast<unsigned char>(report[2 * tool]);
-    const auto high = static_cast<unsigned char>(report[2 * tool + 1]);
-    if (const int raw = low | high << 8; raw <= kMaxJawRaw) values[tool] = raw;
+HidReport ParseHidReport(std::string_view bytes) noexcept {
+  HidReport report;
+  if (bytes.size() != kHidReportSize && bytes.size() != kHidReportSizeWithoutClock) return report;
+  const auto word = [&](std::size_t n) {
+    return static_cast<unsigned char>(bytes[2 * n]) | static_cast<unsigned char>(bytes[2 * n + 1]) << 8;
+  };
+  for (std::size_t tool = 0; tool < report.raw.size(); ++tool) {
+    if (const int raw = word(tool); raw <= kMaxJawRaw) report.raw[tool] = raw;
   }
-  return values;
+  if (bytes.size() == kHidReportSize) report.milliseconds = static_cast<std::uint16_t>(word(kJawTools));
+  return report;
 }
 
-std::string FormatHidReport(const std::array<int, kJawTools>& raw) {
+std::string FormatHidReport(const std::array<int, kJawTools>& raw, std::uint16_t milliseconds) {
   std::string report;
-  for (const int value : raw) report += {static_cast<char>(value & 0xff), static_cast<char>(value >> 8)};
+  for (const int value : {raw[0], raw[1], static_cast<int>(milliseconds)})
+    report += {static_cast<char>(value & 0xff), static_cast<char>(value >> 8)};
   return report;
 }
 

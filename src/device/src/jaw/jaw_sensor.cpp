@@ -87,6 +87,7 @@ core::Status JawSensor::DoConfigure() {
   transport_ = std::move(*opened);
   framer_.Restart();
   for (Tool& tool : tools_) tool = {};
+  hid_clock_ = 0;
   const double end = clock_.Now() + settings_.answer_time;
   while (clock_.Now() < end && !tools_[0].raw && !tools_[1].raw) {
     if (Drain(clock_.Now()).is_lost) {
@@ -111,7 +112,7 @@ core::Status JawSensor::DoActivate() {
 
 void JawSensor::Take(const JawReading& reading, double now) noexcept {
   Tool& tool = tools_[static_cast<std::size_t>(reading.tool)];
-  // a board whose clock stands still repeats an old value: the line is alive, the jaw is not seen
+  // a board whose clock stands still repeats an old value: it is there, the jaw is not seen
   if (tool.raw && reading.milliseconds == tool.milliseconds) return;
   tool.milliseconds = reading.milliseconds;
   const JawCalibration& calibration = settings_.calibrations[static_cast<std::size_t>(reading.tool)];
@@ -127,6 +128,7 @@ void JawSensor::Take(const JawReading& reading, double now) noexcept {
 /// Takes in what is there.
 IoResult JawSensor::Drain(double now) noexcept {
   std::array<char, kReadSize> bytes;
+  std::array<std::optional<int>, kJawTools> newest;  // of reports without a clock
   IoResult got;
   for (int i = 0; i < kMaxReads; ++i) {
     got = transport_->Read(bytes);
@@ -135,11 +137,17 @@ IoResult JawSensor::Drain(double now) noexcept {
       framer_.Feed({bytes.data(), got.count}, [&](const JawReading& reading) { Take(reading, now); });
       continue;
     }
-    const auto values = ParseHidReport({bytes.data(), got.count});
-    const auto milliseconds = static_cast<std::uint32_t>(static_cast<std::uint64_t>(1e3 * now));
-    for (int tool = 0; tool < kJawTools; ++tool) {
-      if (const auto raw = values[static_cast<std::size_t>(tool)]) Take({tool, milliseconds, *raw}, now);
+    const HidReport report = ParseHidReport({bytes.data(), got.count});
+    if (report.milliseconds) hid_clock_ += static_cast<std::uint16_t>(*report.milliseconds - hid_clock_);
+    for (std::size_t tool = 0; tool < report.raw.size(); ++tool) {
+      const std::optional<int>& raw = report.raw[tool];
+      if (raw && report.milliseconds) Take({static_cast<int>(tool), hid_clock_, *raw}, now);
+      if (raw && !report.milliseconds) newest[tool] = raw;
     }
+  }
+  const auto milliseconds = static_cast<std::uint32_t>(static_cast<std::uint64_t>(1e3 * now));
+  for (std::size_t tool = 0; tool < newest.size(); ++tool) {
+    if (newest[tool]) Take({static_cast<int>(tool), milliseconds, *newest[tool]}, now);
   }
   return got;
 }

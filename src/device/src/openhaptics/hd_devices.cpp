@@ -57,10 +57,11 @@ core::Error HdDevices::LibraryError(const std::string& what, unsigned int code) 
 
 core::Result<ForceLimits> HdDevices::OpenDevice(const std::string& name) {
   const hd::Handle device = libhd_->init_device(name.c_str());
+  // one that opens with an error is closed with the rest
+  if (device != hd::kInvalidHandle) devices_.push_back(device);
   const hd::ErrorInfo error = libhd_->get_error();
   if (device == hd::kInvalidHandle || (error.code != hd::kSuccess && !hd::IsPassing(error.code)))
     return LibraryError("\"" + name + "\" does not open", error.code);
-  devices_.push_back(device);
   libhd_->make_current(device);
   ForceLimits limit;
   libhd_->get_doubles(hd::kMaxForce, &limit.max_force);

@@ -2,11 +2,10 @@
 #include "hd_host.h"
 
 #include <poll.h>
-#include <pthread.h>
-#include <sched.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/socket.h>
+#include <time.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -15,33 +14,27 @@
 #include <cstring>
 #include <new>
 #include <thread>
-#include <type_traits>
 #include <utility>
 
 #include "hd_devices.h"
+#include "trocar/core/beat_watch.h"
 #include "trocar/core/clock.h"
+#include "trocar/core/real_time.h"
 
 namespace trocar::device {
 namespace {
 
 using core::ErrorCode;
 
-// requests: "open", the library's file and the names of the devices on lines of their own; "rescue", the same after another
-// process failed; "start"; "stop"
-constexpr std::string_view kOpen = "open\n", kRescue = "rescue\n", kStart = "start", kStop = "stop";
-constexpr std::size_t kLongestRequest = 4096;
+using hd_host::kLongestRequest;
+using hd_host::kOpen;
+using hd_host::kRescue;
+using hd_host::kStart;
+using hd_host::kStop;
+using hd_host::Reply;
+
 constexpr int kOpenTime = 15'000;   // for the library to open its devices [ms]
 constexpr int kAnswerTime = 2'000;  // for the rest [ms]
-
-struct Reply {
-  std::int32_t code = 0;  // core::ErrorCode
-  std::uint32_t count = 0;
-  ForceLimits limits[ForceMailbox::kMaxDevices];
-  char text[600] = {};
-};
-static_assert(std::is_trivially_copyable_v<Reply>);
-// both ends are this program's, from one build; neither destroys what the other may still read
-static_assert(std::is_trivially_destructible_v<HdHostPage>);
 
 core::Error HostError(const std::string& what) {
   return {ErrorCode::kDeviceLost,
@@ -54,8 +47,10 @@ core::Result<Reply> TakeReply(int socket, int milliseconds) {
   Reply reply;
   if (::recv(socket, &reply, sizeof reply, 0) != static_cast<ssize_t>(sizeof reply))
     return HostError("the process of the maker's library is gone");
-  reply.text[sizeof reply.text - 1] = 0;
-  if (reply.code != 0) return core::Error{static_cast<ErrorCode>(reply.code), reply.text};
+  if (reply.code != 0) {
+    const std::string text(reply.text, ::strnlen(reply.text, sizeof reply.text));
+    return core::Error{static_cast<ErrorCode>(reply.code), text};
+  }
   if (reply.count > ForceMailbox::kMaxDevices) return HostError("the maker's library answers nonsense");
   return reply;
 }
@@ -89,11 +84,11 @@ OpenHapticsSettings ReadSettings(std::string_view lines) {
   return settings;
 }
 
-/// As urgent as the supervisor, where the system permits it: its threads inherit it.
+/// Above the haptic loop, below the supervisor. Threads that are started afterwards inherit it.
+constexpr int kPriorityAboveLowest = 15;
+
 void GoFirst() noexcept {
-  sched_param parameters{};
-  parameters.sched_priority = sched_get_priority_min(SCHED_FIFO) + 15;
-  static_cast<void>(::pthread_setschedparam(::pthread_self(), SCHED_FIFO, &parameters));
+  static_cast<void>(core::AskForRealTime(core::RealTimePolicy::kFirstInFirstOut, kPriorityAboveLowest));
 }
 
 core::Result<std::string> FormatOpen(const OpenHapticsSettings& settings) {
@@ -165,7 +160,7 @@ core::Status HdHost::Open(const OpenHapticsSettings& settings, std::vector<Force
 void HdHost::Watch() noexcept {
   GoFirst();
   const HdHostPage& page = Page(*active_);
-  BeatWatch watch;
+  core::BeatWatch watch(kLongestBeatLook);
   watch.Forget(core::NowNanoseconds());
   while (!is_ending_.load(std::memory_order_acquire)) {
     // the socket closes with the process, however it ends
@@ -214,8 +209,7 @@ namespace {
 /// Looks every millisecond whether the library still calls; when it does not, its process ends, and with it every hold on
 /// the device. The simulator sees that at once, even where it is the simulator that has died.
 void GuardLibrary(HdDevices& devices, HdHostPage& page, const std::atomic<bool>& is_ending) noexcept {
-  GoFirst();
-  BeatWatch watch;
+  core::BeatWatch watch(kLongestBeatLook);
   while (!is_ending.load(std::memory_order_acquire)) {
     const timespec look{0, kBeatLook};
     ::nanosleep(&look, nullptr);
@@ -224,7 +218,7 @@ void GuardLibrary(HdDevices& devices, HdHostPage& page, const std::atomic<bool>&
     if (kIsHostWatched && watch.Look(devices.CountCalls(), now) >= kLongestCallSilence) {
       // a library that is well but for its scheduler takes a zero; should it hang, the simulator's watch ends us
       devices.PushZero();
-      ::_exit(3);
+      ::_exit(hd_host::kLibraryStands);
     }
     page.beats.fetch_add(1, std::memory_order_release);
   }

@@ -3,9 +3,10 @@
 /// other, or the library, dead.
 #pragma once
 
-#include <algorithm>
 #include <atomic>
 #include <cstdint>
+#include <string_view>
+#include <type_traits>
 
 #include "hands/force_mailbox.h"
 
@@ -18,8 +19,31 @@ struct HdHostPage {
   std::atomic<std::uint64_t> beats{0};
 };
 
-/// Between two looks at a beat [ns].
-inline constexpr std::int64_t kBeatLook = 1'000'000;
+// both ends are this program's, from one build; neither destroys what the other may still read
+static_assert(std::is_trivially_destructible_v<HdHostPage>);
+
+namespace hd_host {
+
+/// Requests: "open", the library's file and the names of the devices on lines of their own; "rescue", the same after another
+/// process failed; "start"; "stop". Each is answered.
+inline constexpr std::string_view kOpen = "open\n", kRescue = "rescue\n", kStart = "start", kStop = "stop";
+inline constexpr std::size_t kLongestRequest = 4096;
+
+struct Reply {
+  std::int32_t code = 0;    ///< core::ErrorCode
+  std::uint32_t count = 0;  ///< of limits
+  ForceLimits limits[ForceMailbox::kMaxDevices];
+  char text[600] = {};  ///< of an error, ended by 0
+};
+static_assert(std::is_trivially_copyable_v<Reply>);
+
+/// Of a process whose library stands still, and that has ended itself for it.
+inline constexpr int kLibraryStands = 3;
+
+}  // namespace hd_host
+
+/// Between two looks at a beat, and the longest time between them that counts [ns].
+inline constexpr std::int64_t kBeatLook = 1'000'000, kLongestBeatLook = 2'000'000;
 /// Without a call of the library for so long its process ends itself, and the system closes the device [ns].
 inline constexpr std::int64_t kLongestCallSilence = 12'000'000;
 /// Without a beat for so long the process is ended from outside [ns]: it stands still as a whole.
@@ -30,26 +54,5 @@ inline constexpr bool kIsHostWatched = false;  // the negative control
 #else
 inline constexpr bool kIsHostWatched = true;
 #endif
-
-/// How long a counter has stood still, as seen by somebody who looks every kBeatLook. Time in which the machine did not let
-/// the watcher itself run does not count: then nobody ran.
-class BeatWatch {
- public:
-  /// \return [ns] for which `count` has not changed
-  std::int64_t Look(std::uint64_t count, std::int64_t now) noexcept {
-    silence_ = count != last_count_ ? 0 : silence_ + std::min(now - last_look_, 2 * kBeatLook);
-    last_count_ = count;
-    last_look_ = now;
-    return silence_;
-  }
-  void Forget(std::int64_t now) noexcept {
-    silence_ = 0;
-    last_look_ = now;
-  }
-
- private:
-  std::uint64_t last_count_ = 0;
-  std::int64_t last_look_ = 0, silence_ = 0;
-};
 
 }  // namespace trocar::device

@@ -57,7 +57,7 @@ OpenHaptics::~OpenHaptics() {
 
 ForceLimits OpenHaptics::GetLimits(int channel) const noexcept {
   const auto index = static_cast<std::size_t>(channel);
-  return channel >= 0 && index < content_->limits.size() ? content_->limits[index] : ForceLimits{};
+  return index < content_->limits.size() ? content_->limits[index] : ForceLimits{};
 }
 
 core::Status OpenHaptics::DoConfigure() {

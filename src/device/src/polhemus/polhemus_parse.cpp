@@ -6,6 +6,7 @@
 
 #include "polhemus_layout.h"
 #include "trocar/device/polhemus.h"
+#include "trocar/math/rotation_angle.h"
 
 namespace trocar::device {
 namespace {
@@ -46,7 +47,7 @@ bool SetPosition(const Vec3& inches, TrackerRecord& record) noexcept {
 }
 
 bool SetRotation(const Quaternion& q, TrackerRecord& record) noexcept {
-  const double norm = std::sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
+  const double norm = std::sqrt(math::SquaredNorm(q));
   if (!(std::fabs(norm - 1.0) <= kUnitTolerance)) return false;
   record.rotation = math::Normalized(q);
   return true;

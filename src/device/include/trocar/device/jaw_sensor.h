@@ -30,7 +30,7 @@ struct JawReading {
 
 enum class JawFormat {
   kText,  ///< lines "J,<tool>,<ms>,<raw>" over USB serial
-  kHid    ///< 4-byte HID reports: left and right, 16 bits each, low byte first
+  kHid    ///< HID reports: left, right and milliseconds, 16 bits each, low byte first
 };
 
 /// Takes lines apart. A line is right to the last character or it is garbage.
@@ -48,13 +48,17 @@ class JawFramer {
   Framer<JawReading, 32> framer_;
 };
 
-/// Raw values of a HID report, left and right: 16 bits each, low byte first. None where the report has another size, or for a
-/// value beyond kMaxJawRaw.
-std::array<std::optional<int>, kJawTools> ParseHidReport(std::string_view report) noexcept;
-
-inline constexpr std::size_t kHidReportSize = 2 * kJawTools;  ///< [bytes]
+struct HidReport {
+  std::array<std::optional<int>, kJawTools> raw;  ///< 0 to kMaxJawRaw; none where the value is beyond that
+  /// Of the sensor's own clock, which runs over. None from boards without one: whether those still measure cannot be known [ms].
+  std::optional<std::uint16_t> milliseconds;
+};
+inline constexpr std::size_t kHidReportSize = 2 * (kJawTools + 1),
+                             kHidReportSizeWithoutClock = 2 * kJawTools;  ///< [bytes]
+/// Nothing where the report has another size.
+HidReport ParseHidReport(std::string_view bytes) noexcept;
 /// What ParseHidReport() reads.
-std::string FormatHidReport(const std::array<int, kJawTools>& raw);
+std::string FormatHidReport(const std::array<int, kJawTools>& raw, std::uint16_t milliseconds);
 
 /// "J,1,1234,512\r\n"
 std::string FormatReading(const JawReading& reading);
@@ -129,7 +133,8 @@ class JawSensor : public Driver {
   std::unique_ptr<Transport> transport_;
   JawFramer framer_;
   std::array<Tool, kJawTools> tools_;
-  double last_reading_ = 0;  // [s]
+  std::uint32_t hid_clock_ = 0;  // of the sensor, unwrapped [ms]
+  double last_reading_ = 0;      // [s]
   bool is_new_ = false;
 };
 

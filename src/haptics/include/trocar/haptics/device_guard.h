@@ -70,7 +70,6 @@ class DeviceGuard {
   bool was_stale_ = false;
   int bad_in_row_ = 0, jumps_in_row_ = 0;
   std::uint32_t window_ = 0;  // a bit for each of the last kWindow reports, set where it was bad or a jump
-  Vec3 jumped_to_;            // [m]
   DeviceGuardCounts counts_;
 };
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file force_gate.h  The one way out for a force.
 ///
-/// finite -> unit and frame -> clamp -> rise -> speed -> heat -> ramp -> armed -> checked once more. A pure function of its input and a
+/// finite -> unit and frame -> clamp -> armed -> rise -> speed -> heat -> ramp -> checked once more. A pure function of its input and a
 /// small state; no clock, no device. Only its output is a device::GatedForce, and a driver sends nothing else.
 #pragma once
 
@@ -77,6 +77,10 @@ struct GateOutput {
   double heat = 0;                      ///< of the motors, 1 is what they bear for ever [-]
 };
 
+/// The gate's promises once more, by arithmetic of its own and on the force itself; false for what is no number.
+/// \param sent  output of the tick before [N]
+bool MaySend(const GateSettings& settings, ArmState state, const Vec3& force, const Vec3& sent) noexcept;
+
 class ForceGate {
  public:
   /// A gate whose settings are out of range never arms, whatever the build: they come from a device.
@@ -100,7 +104,7 @@ class ForceGate {
  private:
   Fault FindFaultOfTick(const GateInput& input) const noexcept;
   void UpdateArming(Fault fault, double wanted) noexcept;
-  bool MaySend(const Vec3& force) const noexcept;
+  GateOutput LimitForce(const GateInput& input) noexcept;
 
   GateSettings settings_;
   ArmState state_ = ArmState::kUnarmed;

@@ -38,9 +38,9 @@ class SupervisorLink {
   /// \note Real-time safe.
   void Beat() noexcept;
   /// The supervisor has not ended, and its own beat is no older than 20 ms; call it about as often as Beat().
-  /// \param now  [s]
+  /// \param now  [ns]
   /// \note Real-time safe.
-  bool IsAlive(double now) noexcept;
+  bool IsAlive(std::int64_t now) noexcept;
   /// Whether it had to act since the last call.
   /// \note Real-time safe.
   bool TakeTrip() noexcept;
