@@ -240,8 +240,8 @@ int main(int count, char** arguments) {
     const auto& mesh = theatre.organs[i].Mesh();
     std::array<geometry::Opening, 4> openings;
     const std::size_t open = geometry::FindOpenings(mesh, openings);
-    std::printf("%s: %zu edges opened, %zu left uncut, %zu wall triangles, %zu openings", kWalls[i].organ,
-                report.opened, report.refused, report.wall_triangles, open);
+    std::printf("%s: %zu edges opened, %zu left uncut, %zu wall triangles, %zu openings",
+                NameOf(kWalls[i].organ), report.opened, report.refused, report.wall_triangles, open);
     if (open > 0) std::printf(", the first with a rim of %.1f mm", 1e3 * openings[0].length);
     std::printf("\n  %zu nodes; processor time of %d cutting ticks, mean and worst:", theatre.model.Size(),
                 theatre.cutting_ticks);
