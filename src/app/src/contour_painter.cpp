@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "trocar/roles/roles.h"
+
 namespace trocar::app {
 namespace {
 
