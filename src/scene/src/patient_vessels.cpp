@@ -166,8 +166,7 @@ class VesselBuilder {
         if (!IsOrgan(supply.organ)) anatomy.aorta = j;
       } else if (role != OrganRole::kLiver) {
         anatomy.bowel = j;
-      } else if (!anatomy.liver ||
-                 RoleOf(patient_.tubes[supply.tube]) == VesselRole::kCommonHepaticDuct) {
+      } else if (!anatomy.liver || RoleOf(patient_.tubes[supply.tube]) == VesselRole::kCommonHepaticDuct) {
         anatomy.liver = j;
       }
     }

@@ -169,6 +169,15 @@ TEST_F(LaparoscopeViewTest, CameraFollowsTheLaparoscope) {
   EXPECT_EQ(view_->GetFrame().camera.field_of_view, scene_.laparoscope.field_of_view);
 }
 
+TEST_F(LaparoscopeViewTest, AnOrganOfWhichNothingIsKnownIsDrawn) {
+  const Image known = Draw();
+  surfaces_[0].name = surfaces_[0].look = "spleen";
+  auto view = LaparoscopeView::Make(scene_, surfaces_, snapshot_);
+  ASSERT_TRUE(view.ok()) << view.error().Text();
+  view_.emplace(std::move(*view));
+  EXPECT_GT(CountChanges(known, Draw(), {0, 0, -0.10}, 40).near, 500) << "there, covered with serosa";
+}
+
 TEST_F(LaparoscopeViewTest, UnknownMaterialIsNamed) {
   surfaces_[1].look = "granite";
   const auto view = LaparoscopeView::Make(scene_, surfaces_, snapshot_);
