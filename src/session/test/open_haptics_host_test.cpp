@@ -241,6 +241,10 @@ class LibraryProcess : public OpenHapticsHost {
   using Reply = device::hd_host::Reply;
   void SetUp() override {
     OpenHapticsHost::SetUp();
+    StartProcess();
+  }
+  void StartProcess() {
+    process_.reset();
     auto started = device::Companion::Start(settings_.host, "--openhaptics", sizeof(device::HdHostPage),
                                             core::ErrorCode::kDeviceUnsupported, "");
     ASSERT_TRUE(started.ok());
@@ -356,15 +360,24 @@ TEST_F(LibraryProcess, OneThatTakesOverSendsZeroAndWaits) {
 
 // with nobody else to do it, the process itself takes the force away
 TEST_F(LibraryProcess, ALibraryThatStandsIsZeroAndTheEndOfItsProcess) {
-  ASSERT_EQ(Ask("open\n" + Devices()).code, 0);
-  ASSERT_EQ(Ask("start").code, 0);
-  ASSERT_TRUE(Push());
-  motors_->fault_process = process_->Process();
-  const core::Stopwatch watch;
-  motors_->fault = StandInFault::kSilentScheduler;
-  EXPECT_EQ(WaitForEnd(), device::hd_host::kLibraryStands);
-  EXPECT_GT(watch.Seconds(), 0.010) << "a scheduler may be late";
-  EXPECT_FALSE(IsPushing());
+  double soonest = 1;
+  for (int i = 0; i < 20 && soonest > 0.020; ++i) {
+    motors_->fault = StandInFault::kNone;
+    if (i > 0) {
+      ASSERT_NO_FATAL_FAILURE(StartProcess());
+    }
+    ASSERT_EQ(Ask("open\n" + Devices()).code, 0);
+    ASSERT_EQ(Ask("start").code, 0);
+    ASSERT_TRUE(Push());
+    motors_->fault_process = process_->Process();
+    const core::Stopwatch watch;
+    motors_->fault = StandInFault::kSilentScheduler;
+    ASSERT_EQ(WaitForEnd(), device::hd_host::kLibraryStands);
+    EXPECT_GT(watch.Seconds(), 0.010) << "a scheduler may be late";
+    EXPECT_FALSE(IsPushing());
+    soonest = std::min(soonest, watch.Seconds());
+  }
+  EXPECT_LE(soonest, 0.020) << "12 ms without a call, and an end that a busy machine delays now and then";
 }
 
 TEST_F(OpenHapticsHost, ErrorsOfTheLibraryComeThrough) {
