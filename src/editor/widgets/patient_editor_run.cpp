@@ -38,7 +38,7 @@ void PatientEditorRun::Look() {
   if (tool != EditorTool::kTubes && tool != EditorTool::kLandmarks) return;
   at_.view.LookFrom(render::Viewpoint::kUmbilicus);
   at_.presenter.LookAt(tool == EditorTool::kTubes ? NameOf(anatomy::TubeRole::kCysticDuct)
-                                                           : NameOf(anatomy::OrganRole::kGallbladder));
+                                                  : NameOf(anatomy::OrganRole::kGallbladder));
 }
 
 void PatientEditorRun::SaveScreenshot() {

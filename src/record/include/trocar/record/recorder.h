@@ -19,7 +19,7 @@ namespace trocar::record {
 
 struct RecorderSettings {
   double keyframe_seconds = 30;  ///< between saved states: what seeking has to compute at most [s]; 0: none
-  double hash_seconds = 1;      ///< between hashes of the state [s]
+  double hash_seconds = 1;       ///< between hashes of the state [s]
   /// Where no person's time counts: Add waits for a writer that falls behind. Else the recording would end there.
   bool waits = false;
   OpenStorage open = MakeFile;
