@@ -100,7 +100,7 @@ void ForbidCalls() {
 
 }  // namespace
 
-void EnterSandbox(std::uint64_t memory_bytes) {
+void EnterSandbox([[maybe_unused]] std::uint64_t memory_bytes) {
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // they reserve terabytes
   Limit(RLIMIT_AS, memory_bytes);
 #endif
