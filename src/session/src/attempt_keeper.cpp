@@ -5,6 +5,7 @@
 #include <ctime>
 #include <string>
 #include <system_error>
+#include <utility>
 
 #include "trocar/core/log.h"
 
@@ -31,9 +32,11 @@ std::filesystem::path MakeName(const AttemptKeeping& keeping) {
 
 }  // namespace
 
-void AttemptKeeper::BeforeStep(const Simulation& simulation) {
+void AttemptKeeper::BeforeStep(const Simulation& simulation, bool is_demonstration) {
   if (!keeping_ || recorder_ != nullptr || has_failed_) return;
-  auto recorder = record::Recorder::Start(MakeName(*keeping_), keeping_->description, simulation);
+  record::Description description = keeping_->description;
+  if (is_demonstration) description.player = "the demonstration";
+  auto recorder = record::Recorder::Start(MakeName(*keeping_), std::move(description), simulation);
   const std::lock_guard lock(mutex_);
   if (recorder.ok()) {
     recorder_ = std::move(*recorder);

@@ -19,7 +19,8 @@ class AttemptKeeper {
 
   /// Opens the file of a new attempt where none is open, and holds its first tick up for that long. Where it cannot be
   /// opened, that is logged once and the surgery goes on unrecorded.
-  void BeforeStep(const Simulation& simulation);
+  /// \param is_demonstration  nobody's own: it begins with the script or the expert
+  void BeforeStep(const Simulation& simulation, bool is_demonstration);
   void AfterStep(const Input& input, const Simulation& simulation) noexcept {
     if (recorder_ != nullptr) recorder_->Add(input, simulation);
   }

@@ -113,7 +113,7 @@ void Runner::Content::Run() {
       const bool is_felt = !is_scripted.load(std::memory_order_relaxed);
       if (is_felt && haptics != nullptr) haptic_hands.Take(*haptics, now);
       record::RoundJoints(now);
-      attempts.BeforeStep(simulation);
+      attempts.BeforeStep(simulation, !is_felt);
       simulation.Step(now);
       attempts.AfterStep(now, simulation);
       if (is_felt) PublishPatches();

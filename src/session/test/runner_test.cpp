@@ -103,6 +103,7 @@ TEST_F(RunnerTest, KeepsEachAttemptInAFileThatReplaysToTheBit) {
     auto recording = record::ReadRecording(entry.path());
     ASSERT_TRUE(recording.ok()) << recording.error().Text();
     EXPECT_TRUE(recording->ending.has_value());
+    EXPECT_EQ(recording->description.player, "the demonstration");
     EXPECT_GT(recording->inputs.size(), 140u);
     auto replay = record::Replay::Open(std::move(*recording), 1);
     ASSERT_TRUE(replay.ok()) << replay.error().Text();
