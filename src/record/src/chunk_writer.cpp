@@ -48,32 +48,31 @@ core::Status ChunkWriter::WriteWaiting() {
 
 core::Status ChunkWriter::StartAnew() {
   ++file_count_;
-  path_ = first_path_.parent_path() / (first_path_.stem().string() + "-" + std::to_string(file_count_) +
-                                       first_path_.extension().string());
-  auto storage = open_(path_);
-  if (!storage.ok()) return storage.error();
+  const std::filesystem::path path =
+      first_path_.parent_path() /
+      (first_path_.stem().string() + "-" + std::to_string(file_count_) + first_path_.extension().string());
+  auto storage = open_(path);
+  if (!storage.ok()) return storage.error();  // also where somebody else has such a file
   storage_ = std::move(*storage);
+  path_ = path;
   file_id_ = MakeFileId();
   number_ = written_ = 0;
   waiting_ = MakeFileHeader(file_id_);
   for (const Kept& chunk : kept_)
     PutChunk(file_id_, number_++, chunk.kind, chunk.tick, chunk.content, waiting_);
-  return {};
+  const core::Status status = WriteWaiting();
+  if (!status.ok()) {
+    // a new file that could not be written either is only in the way
+    std::error_code ignored;
+    std::filesystem::remove(path_, ignored);
+    path_ = first_path_;
+  }
+  return status;
 }
 
 core::Status ChunkWriter::Sync() {
   core::Status status = WriteWaiting();
-  while (!status.ok() && file_count_ < kMostFiles) {
-    const std::filesystem::path failed = path_;
-    core::Status anew = StartAnew();
-    if (anew.ok()) anew = WriteWaiting();
-    if (anew.ok()) return {};
-    // a new file that could not be written either is only in the way
-    std::error_code ignored;
-    if (path_ != first_path_) std::filesystem::remove(path_, ignored);
-    path_ = first_path_;
-    status = anew;
-  }
+  while (!status.ok() && file_count_ < kMostFiles) status = StartAnew();
   return status;
 }
 

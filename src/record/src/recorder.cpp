@@ -83,6 +83,7 @@ struct Recorder::Content {
         writer(std::move(opened)),
         scene(simulation.GetScene()),
         tick_seconds(scene.tick_seconds),
+        first_tick(simulation.GetSnapshot().tick),
         hash_ticks(TicksIn(settings.hash_seconds, tick_seconds)),
         keyframe_ticks(TicksIn(settings.keyframe_seconds, tick_seconds)),
         chunk_ticks(TicksIn(kChunkSeconds, tick_seconds)),
@@ -92,6 +93,7 @@ struct Recorder::Content {
   ChunkWriter writer;  // of the writing thread, once that runs
   const scene::Scene& scene;
   double tick_seconds;
+  std::uint64_t first_tick;
   std::uint64_t hash_ticks, keyframe_ticks, chunk_ticks;
 
   // from the simulation's thread to the writer
@@ -181,7 +183,6 @@ void Recorder::Content::WriteKeyframe(const Entry& entry) {
 }
 
 void Recorder::Content::WriteEvents(const Entry& entry) {
-  if (entry.event_count == 0 && entry.error_count == 0) return;
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (std::uint8_t i = 0; i < entry.event_count; ++i) list.push_back(EventJson(entry.events[i]));
   for (std::uint8_t i = 0; i < entry.error_count; ++i)
@@ -354,7 +355,7 @@ void Recorder::Add(const Input& input, const Simulation& simulation) noexcept {
 void Recorder::Mark(std::string text) {
   Content& c = *content_;
   const std::uint64_t put = c.head.load(std::memory_order_acquire);
-  const std::uint64_t tick = put > 0 ? c.ring[(put - 1) % kRingSize].tick : 0;
+  const std::uint64_t tick = put > 0 ? c.ring[(put - 1) % kRingSize].tick : c.first_tick;
   const std::lock_guard lock(c.mutex);
   c.marks.push_back({tick, std::move(text)});
 }

@@ -2,7 +2,6 @@
 #include "trocar/record/recording.h"
 
 #include <algorithm>
-#include <cstdlib>
 #include <cstring>
 #include <random>
 #include <utility>
@@ -10,6 +9,7 @@
 #include "chunk.h"
 #include "recording_json.h"
 #include "trocar/core/safe_file.h"
+#include "trocar/core/user_folder.h"
 #include "trocar/record/input_codec.h"
 #include "trocar/scene/task.h"
 
@@ -174,15 +174,7 @@ core::Result<Recording> ReadRecording(const std::filesystem::path& path) {
 }
 
 std::filesystem::path FindRecordingFolder() {
-  const auto variable = [](const char* name) -> std::string {
-    const char* value = std::getenv(name);
-    return value == nullptr ? "" : value;
-  };
-  std::filesystem::path folder = variable("TROCAR_DATA_HOME");
-  if (const std::string data = variable("XDG_DATA_HOME"); folder.empty() && !data.empty())
-    folder = std::filesystem::path(data) / "trocar";
-  if (folder.empty()) folder = std::filesystem::path(variable("HOME")) / ".local/share/trocar";
-  return folder / "recordings";
+  return core::FindUserDataFolder() / "recordings";
 }
 
 core::Result<scene::Scene> MakeScene(const Description& d) {

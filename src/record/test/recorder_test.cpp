@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <cstdlib>
 #include <thread>
 
 #include "recorded_scene.h"
@@ -89,6 +90,7 @@ TEST_F(RecorderTest, GoesOnFromTheMiddle) {
   simulation.Save(start);
   auto recorder = Recorder::Start(File(), Describe(), simulation, Settings());
   ASSERT_TRUE(recorder.ok());
+  (*recorder)->Mark("from here");
   for (std::uint64_t tick = 100; tick < 200; ++tick) {
     simulation.Step(InputOf(tick));
     (*recorder)->Add(InputOf(tick), simulation);
@@ -101,6 +103,8 @@ TEST_F(RecorderTest, GoesOnFromTheMiddle) {
   ASSERT_FALSE(recording->KeyframeTicks().empty());
   EXPECT_EQ(recording->KeyframeTicks()[0], 100u);
   EXPECT_EQ(*recording->ReadKeyframe(0), start);
+  ASSERT_EQ(recording->marks.size(), 1u);
+  EXPECT_EQ(recording->marks[0].tick, 100u);
 }
 
 TEST_F(RecorderTest, NeverReplacesAFile) {
@@ -133,6 +137,20 @@ TEST_F(RecorderTest, TellsWhatIsSafe) {
   ASSERT_TRUE(recording.ok());
   EXPECT_EQ(recording->inputs.size(), 60u);
   EXPECT_FALSE(recording->ending.has_value());
+}
+
+TEST(RecordingFolder, IsWhereThePersonKeepsData) {
+  const auto with = [](const char* own, const char* shared) {
+    ::setenv("TROCAR_DATA_HOME", own, 1);
+    ::setenv("XDG_DATA_HOME", shared, 1);
+    const auto folder = FindRecordingFolder();
+    ::unsetenv("TROCAR_DATA_HOME");
+    ::unsetenv("XDG_DATA_HOME");
+    return folder;
+  };
+  EXPECT_EQ(with("/own", "/shared"), "/own/recordings");
+  EXPECT_EQ(with("", "/shared"), "/shared/trocar/recordings");
+  EXPECT_EQ(with("", ""), std::filesystem::path(std::getenv("HOME")) / ".local/share/trocar/recordings");
 }
 
 }  // namespace

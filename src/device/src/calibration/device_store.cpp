@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <system_error>
@@ -13,6 +12,7 @@
 
 #include "trocar/core/json.h"
 #include "trocar/core/safe_file.h"
+#include "trocar/core/user_folder.h"
 
 namespace trocar::device {
 namespace {
@@ -230,15 +230,7 @@ ButtonMap DeviceStore::Buttons(const std::string& kind) const {
 }
 
 fs::path FindDeviceStore() {
-  const auto variable = [](const char* name) -> std::string {
-    const char* value = std::getenv(name);
-    return value == nullptr ? "" : value;
-  };
-  if (const std::string folder = variable("TROCAR_CONFIG_DIR"); !folder.empty())
-    return fs::path(folder) / "devices.json";
-  if (const std::string folder = variable("XDG_CONFIG_HOME"); !folder.empty())
-    return fs::path(folder) / "trocar/devices.json";
-  return fs::path(variable("HOME")) / ".config/trocar/devices.json";
+  return core::FindConfigFolder() / "devices.json";
 }
 
 LoadedStore LoadDeviceStore(const fs::path& path) {
