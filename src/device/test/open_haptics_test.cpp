@@ -276,6 +276,12 @@ TEST_F(OpenHapticsTest, ABadTransformIsNoGoodPose) {
     const math::Quaternion& q = samples[0].orientation;
     return std::fabs(q.w - 1.0) < 1e-9 && std::fabs(q.z) < 1e-9;
   }));
+  // as far askew as is still put right
+  set(12);
+  for (int i = 0; i < 20; ++i) {
+    ASSERT_TRUE(WaitFor([&] { return driver.ReadForceSamples(samples) == ReadStatus::kFresh; }));
+    EXPECT_NEAR(turn(), 1.0, 1e-9);
+  }
   for (const int kind : {1, 2, 3, 4, 5, 7, 8, 9, 10}) {
     set(0);
     ASSERT_TRUE(

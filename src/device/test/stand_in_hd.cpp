@@ -206,6 +206,7 @@ STAND_IN void hdGetDoublev(unsigned int what, double* values) {
     }
     if (kind >= 7 && kind <= 9) values[5 * (kind - 7)] = 1.1;
     if (kind == 10) values[9] = std::sin(0.25), values[10] = std::cos(0.25);
+    if (kind == 12) values[8] = 0.2;
     if (kind == 11) values[4] = std::sin(0.04), values[5] = std::cos(0.04);
   }
   if (what == 0x2551) {

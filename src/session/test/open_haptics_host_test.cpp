@@ -18,6 +18,7 @@
 #include <string>
 #include <vector>
 
+#include "child_processes.h"
 #include "openhaptics/hd_host_page.h"
 #include "stand_in_gate.h"
 #include "stand_in_page.h"
@@ -388,14 +389,22 @@ TEST_F(OpenHapticsHost, ErrorsOfTheLibraryComeThrough) {
   EXPECT_NE(missing.error().message.find("install"), std::string::npos);
   settings_.hd_file = TROCAR_STAND_IN_HD;
   settings_.names = {"Left", "nobody"};
-  EXPECT_EQ(OpenHaptics(settings_).Configure().error().code, core::ErrorCode::kDeviceLost);
+  OpenHaptics refused(settings_);
+  EXPECT_EQ(refused.Configure().error().code, core::ErrorCode::kDeviceLost);
   EXPECT_EQ(motors_->devices, 0) << "the first is given back";
+  EXPECT_EQ(FindChild("--openhaptics"), 0) << "and no process stays";
   settings_.names = {"Left\nRight"};
   EXPECT_EQ(OpenHaptics(settings_).Configure().error().code, core::ErrorCode::kDeviceSettings);
   settings_.names = {"Left", ""};
   EXPECT_EQ(OpenHaptics(settings_).Configure().error().code, core::ErrorCode::kDeviceSettings);
   settings_.names = {std::string(4096, 'x')};
   EXPECT_EQ(OpenHaptics(settings_).Configure().error().code, core::ErrorCode::kDeviceSettings);
+  // as long as a request may be, and a byte more
+  const std::size_t around = settings_.hd_file.size() + 2 + device::hd_host::kRescue.size();
+  settings_.names = {std::string(device::hd_host::kLongestRequest - around + 1, 'x')};
+  EXPECT_EQ(OpenHaptics(settings_).Configure().error().code, core::ErrorCode::kDeviceSettings);
+  settings_.names.front().pop_back();
+  EXPECT_TRUE(OpenHaptics(settings_).Configure().ok());
   settings_.names = {std::string(3000, 'x')};
   EXPECT_TRUE(OpenHaptics(settings_).Configure().ok()) << "the stand-in knows every name but one";
   settings_.names = {"Left"};

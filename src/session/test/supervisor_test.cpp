@@ -244,6 +244,31 @@ TEST(SupervisorLink, WatchesEveryWireFromTheFirstBeatOn) {
   EXPECT_TRUE(wires.back()->IsClosed()) << "and not kept";
 }
 
+// descriptor 0 is a file as any other, where the program was started without standard input
+TEST(SupervisorLink, AWireMayHaveTheFirstDescriptor) {
+  HeldWire wire(6);
+  const int input = ::dup(STDIN_FILENO);
+  ASSERT_EQ(::dup2(wire.Wire().file, STDIN_FILENO), STDIN_FILENO);
+  device::SupervisedWire first = wire.Wire();
+  first.file = STDIN_FILENO;
+  {
+    auto link = SupervisorLink::Start(FindSupervisor());
+    ASSERT_TRUE(link.ok()) << link.error().Text();
+    EXPECT_TRUE(link->AddWire(first).ok());
+  }
+  input < 0 ? ::close(STDIN_FILENO) : ::dup2(input, STDIN_FILENO);
+  if (input >= 0) ::close(input);
+  EXPECT_EQ(wire.CountZeros(0.05), 3);
+}
+
+TEST(SupervisorProcess, EndsWithAnErrorWhereItHasNoMemoryToWatch) {
+  const pid_t process = ::fork();
+  if (process == 0) ::_exit(RunSupervisor(-1, -1));
+  int status = 0;
+  ASSERT_EQ(::waitpid(process, &status, 0), process);
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 1) << status;
+}
+
 // at our end, whatever came before it: a connection to a service is shut down as well
 TEST(SupervisorLink, TheLastWordsAreThreeZeros) {
   HeldWire line(3), service(4, true, device::SupervisedWire::kMaxBytes);
