@@ -185,6 +185,7 @@ class Operation {
   void UseFluids(int hand, const HandsNow& hands) noexcept;
   void UseBag(int hand, const HandsNow& hands, const TissueNow& tissue, OperatedTissue& operated) noexcept;
   void OpenTubeEnds(const TissueNow& tissue) noexcept;
+  void KeepLeaked(tissue::OrganVolume& gallbladder) const noexcept;
   void SpillStones(double leaked, const TissueNow& tissue) noexcept;
   void SlipClips(const HandsNow& hands, const TissueNow& tissue) noexcept;
   void EmitRetrieved(int hand, int count) noexcept;

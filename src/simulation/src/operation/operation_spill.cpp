@@ -16,12 +16,11 @@ constexpr double kPushLength = 0.060;  // of a shaft that pushes stones aside [m
 }  // namespace
 
 void Operation::Flow(const HandsNow& hands, const TissueNow& tissue, OperatedTissue& operated) noexcept {
-  const bool has_gallbladder = gallbladder_ >= 0;
-  const auto leaked = [&] {
-    return operated.conserved.organs[static_cast<std::size_t>(gallbladder_)].leaked;
-  };
-  if (has_gallbladder) {
-    const double now = leaked() - leaked_seen_;
+  tissue::OrganVolume* const gallbladder =
+      gallbladder_ >= 0 ? &operated.conserved.organs[static_cast<std::size_t>(gallbladder_)] : nullptr;
+  if (gallbladder != nullptr) {
+    KeepLeaked(*gallbladder);
+    const double now = gallbladder->leaked - leaked_seen_;
     if (now > 0.0) fluids_.Leak(surgery::Fluid::kBile, now);
     SpillStones(now, tissue);
   }
@@ -29,9 +28,18 @@ void Operation::Flow(const HandsNow& hands, const TissueNow& tissue, OperatedTis
   SlipClips(hands, tissue);
   fluids_.Leak(surgery::Fluid::kBlood,
                ooze_.Update(*tissue.state, heat_, made_->definition.rest.size(), hands.seconds));
-  if (has_gallbladder) leaked_seen_ = leaked();
+  if (gallbladder != nullptr) leaked_seen_ = gallbladder->leaked;
   smoke_ = std::clamp(smoke_ * (1.0 - Suction().smoke_fade * hands.seconds), 0.0, 1.0);
   is_gallbladder_free_ = attachment_.IsFree(*tissue.state, *vessels_);
+}
+
+/// A bad tick takes the organ back to the last good solve, and with it the bile that ran out after that solve. It is in the
+/// ledger already: it stays out, or it would be counted again when it runs out again.
+void Operation::KeepLeaked(tissue::OrganVolume& gallbladder) const noexcept {
+  const double back = leaked_seen_ - gallbladder.leaked;
+  if (!(back > 0.0)) return;
+  gallbladder.target -= back;
+  gallbladder.leaked = leaked_seen_;
 }
 
 void Operation::SpillStones(double leaked, const TissueNow& tissue) noexcept {
