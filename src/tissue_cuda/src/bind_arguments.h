@@ -10,6 +10,7 @@
 #include "kernels/tiled_args.h"
 #include "paper_arrays.h"
 #include "tiled_arrays.h"
+#include "trocar/tissue_cuda/gpu_solver.h"
 
 namespace trocar::tissue_cuda {
 
@@ -73,7 +74,7 @@ TiledArgs<Real, typename Heap::Memory> BindTiledArrays(const TiledArrays<Real>& 
 
 /// Factors of one solve.
 template <typename Real, typename Memory>
-void SetTiledLoad(const tissue::SolverSettings& settings, const tissue::TissueLoad& load,
+void SetTiledLoad(const GpuSettings& settings, const tissue::TissueLoad& load,
                   TiledArgs<Real, Memory>& args) {
   args.settings = {};
   args.settings.max_iterations = static_cast<std::uint32_t>(settings.max_iterations);

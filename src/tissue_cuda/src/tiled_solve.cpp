@@ -33,8 +33,8 @@ class TiledSolve final : public GpuSolve {
     return ChooseKernel(options.forbid_resident);
   }
 
-  core::Result<tissue::SolveReport> Run(const tissue::SolverSettings& settings,
-                                        const tissue::TissueLoad& load, tissue::TissueState& state,
+  core::Result<tissue::SolveReport> Run(const GpuSettings& settings, const tissue::TissueLoad& load,
+                                        tissue::TissueState& state,
                                         tissue::ConstraintSet* constraints) override {
     SetTiledLoad(settings, load, args_);
     if (constraints == nullptr) {
