@@ -157,13 +157,13 @@ class TiledSolve final : public GpuSolve {
       const core::Result<std::uint32_t> at_once =
           gpu_->CountResidentBlocks(*kernel, shape_.threads, shape_.shared_bytes);
       if (!at_once) return at_once.error();
-      if (is_resident && *at_once < args_.tiles) continue;
+      if (is_resident && *at_once < args_.mesh.tiles) continue;
       if (*at_once == 0) {
         return core::Error{core::ErrorCode::kGpuFailed, "the GPU takes no block of the solver's kernel"};
       }
       kernel_ = *kernel;
       is_resident_ = is_resident;
-      shape_.blocks = std::min(*at_once, args_.tiles);
+      shape_.blocks = std::min(*at_once, args_.mesh.tiles);
       return {};
     }
     return core::Error{core::ErrorCode::kGpuFailed, "the GPU takes no block of the solver's kernel"};
