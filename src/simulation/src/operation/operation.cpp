@@ -420,7 +420,7 @@ training::OperationJudge Operation::MakeJudge() const {
   return {training::DissectionMonitor(MakeDissectedAnatomy(scene_->patient, tissue.surfaces, facts_.dissected,
                                                            tissue.definition.rest),
                                       tissue.definition.rest),
-          facts_.gallbladder >= 0};
+          facts_.gallbladder >= 0, scene_->operation->parameters.judgement};
 }
 
 training::OperationObservation Operation::Observe(const HandsNow& hands, const TissueNow& tissue,

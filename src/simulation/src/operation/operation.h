@@ -202,6 +202,9 @@ class Operation {
     return scene_->operation->parameters.electrode;
   }
   const scene::SuctionParameters& Suction() const noexcept { return scene_->operation->parameters.suction; }
+  const training::JudgementSettings& Judgement() const noexcept {
+    return scene_->operation->parameters.judgement;
+  }
 
   const Scene* scene_;  // outlives this
   std::vector<StrandInfo> strands_;

@@ -13,9 +13,6 @@ using training::InstrumentKind;
 using training::OperationError;
 using training::Verb;
 
-constexpr double kIdleSeconds = 0.25;  // of current into nothing that no eye would note
-constexpr double kNearDuct = 0.005;    // domain facts, section 1.4 [m]
-
 // Clip applier: closed and open again, as shares of its opening
 constexpr double kClipClosed = 0.12, kClipOpen = 0.6;
 
@@ -164,7 +161,8 @@ void Operation::UseElectrode(int hand, const HandsNow& hands, const TissueNow& t
   double& idle = hands_[h].idle_seconds;
   if (count == 0) {
     idle += hands.seconds;
-    if (idle > kIdleSeconds) acts_.Report(OperationError::kEnergyWithoutContact, X.translation, hand);
+    if (idle > Judgement().idle_seconds)
+      acts_.Report(OperationError::kEnergyWithoutContact, X.translation, hand);
     return;
   }
   idle = 0;
@@ -181,7 +179,7 @@ void Operation::UseElectrode(int hand, const HandsNow& hands, const TissueNow& t
   }
   const bool is_near =
       std::any_of(facts_.main_ducts.begin(), facts_.main_ducts.end(), [&](std::uint32_t node) {
-        return math::Distance(tissue.state->position[node], X.translation) < kNearDuct;
+        return math::Distance(tissue.state->position[node], X.translation) < Judgement().near_duct;
       });
   if (is_near) acts_.Report(OperationError::kEnergyNearDuct, X.translation, hand);
 }
