@@ -10,7 +10,7 @@ namespace trocar::agent {
 namespace {
 
 constexpr double kBack = 0.008;       // of the tip before the next spread [m]
-constexpr double kOpenSeconds = 1.0;  // of patience with opening jaws [s]
+constexpr double kOpenSeconds = 1.0;  // that it waits for opening jaws [s]
 constexpr std::size_t kFew = 3;       // fibres: a spread that parts fewer was hardly worth it
 constexpr int kMostFruitless = 4;     // such spreads in a row
 constexpr double kPoor = 0.3;         // of what was hoped for

@@ -203,7 +203,7 @@ Input CholecystectomySurgeon::Act(const Snapshot& seen) {
       doing_ = act.doing;
     }
     act_seconds_ += dt;
-    if (IsDone(act, seen) || act_seconds_ > act.patience) {
+    if (IsDone(act, seen) || act_seconds_ > act.time_limit) {
       acts_.pop_front();
       has_begun_ = false;
       acts_.insert(acts_.begin(), std::make_move_iterator(inserted_.begin()),

@@ -89,7 +89,7 @@ class CholecystectomySurgeon final : public Surgeon {
   bool IsDone(const SurgeonAct& act, const Snapshot& seen);
   /// Plans on; what it adds is done next.
   void PlanOn(const SurgeonAct& act, const Snapshot& seen);
-  SurgeonAct& Add(SurgeonAct::Kind kind, std::string doing, double patience);
+  SurgeonAct& Add(SurgeonAct::Kind kind, std::string doing, double time_limit);
   /// Adds an act that plans on when it is reached, from what is seen then.
   SurgeonAct& Decide(SurgeonAct::Kind kind, std::string doing) { return Add(kind, std::move(doing), 1.0); }
   Vec3 Find(const Place& place, const Snapshot& seen) const;

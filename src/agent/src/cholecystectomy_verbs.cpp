@@ -16,11 +16,11 @@ constexpr double kWellInside = 0.85;  // of the picture's width
 
 }  // namespace
 
-SurgeonAct& CholecystectomySurgeon::Add(SurgeonAct::Kind kind, std::string doing, double patience) {
+SurgeonAct& CholecystectomySurgeon::Add(SurgeonAct::Kind kind, std::string doing, double time_limit) {
   SurgeonAct act;
   act.kind = kind;
   act.doing = std::move(doing);
-  act.patience = patience;
+  act.time_limit = time_limit;
   acts_.push_back(std::move(act));
   return acts_.back();
 }
