@@ -151,7 +151,7 @@ void SurfaceCutter::Content::SplitOrSnap(const Crossing& crossing) noexcept {
   TROCAR_ASSERT(h != kNone);
   for (const double t : {crossing.t, 0.5}) {
     if (!MaySplit(*mesh, h, t, settings.min_angle)) continue;
-    if (!mesh->HasRoom(1, 2)) {
+    if (!mesh->HasCapacity(1, 2)) {
       report.is_full = true;
       break;
     }
@@ -239,7 +239,7 @@ void SurfaceCutter::Content::OpenWithoutWalls() noexcept {
       if (v < mesh->To(h)) scored.push_back(h);
     });
   }
-  if (!mesh->HasRoom(copies, 0)) {
+  if (!mesh->HasCapacity(copies, 0)) {
     report.is_full = true;
     return;
   }
@@ -279,7 +279,7 @@ std::uint32_t SurfaceCutter::Content::FindEnd(const Pierced& at, const CutFront&
 std::uint32_t SurfaceCutter::Content::InsertAt(const Pierced& at) noexcept {
   const auto weights = CalcWeights(*mesh, at.triangle, at.point);
   if (!MayInsert(*mesh, at.triangle, weights, kInsertAngles * settings.min_angle)) return kNone;
-  if (!mesh->HasRoom(1, 2)) {
+  if (!mesh->HasCapacity(1, 2)) {
     report.is_full = true;
     return kNone;
   }

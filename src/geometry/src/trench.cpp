@@ -272,7 +272,7 @@ void TrenchBuilder::Open(std::span<const std::uint32_t> path, const FlatSweep& s
     copies += static_cast<std::size_t>(mesh.CountCopies(v));
     bottoms += state_[v] == Bottom::kPlanned ? 1 : 0;
   }
-  if (copies > 0 && !mesh.HasRoom(copies + bottoms, 4 * scored_.size())) {
+  if (copies > 0 && !mesh.HasCapacity(copies + bottoms, 4 * scored_.size())) {
     report.is_full = true;
     return;
   }

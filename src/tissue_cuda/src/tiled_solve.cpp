@@ -28,7 +28,7 @@ class TiledSolve final : public GpuSolve {
   }
 
   Status Start(const GpuOptions& options) {
-    MakeRoom();
+    Reserve();
     if (!memory_.GetStatus()) return memory_.GetStatus();
     return ChooseKernel(options.forbid_resident);
   }
@@ -109,7 +109,7 @@ class TiledSolve final : public GpuSolve {
   }
 
   /// For everything that a solve brings, so that no solve allocates.
-  void MakeRoom() {
+  void Reserve() {
     const std::size_t n = model_->Size();
     constexpr std::size_t kMaxTouched = 3 * tissue::kMaxContacts;
     args_.positions = memory_.Array<Triple<double>>("positions", n);
