@@ -41,7 +41,7 @@ constexpr double kMainClear = 0.0060, kCarefulClear = 0.0035, kTipClear = 0.0055
 constexpr double kEndClear = 0.0008, kEndFar = 0.0020;
 /// Shares of a fibre at which it is taken, the best first.
 constexpr double kFibreShares[] = {0.5, 0.7, 0.3, 0.85, 0.15};
-constexpr double kSeen = 0.95;  // of the picture's width: nobody presses a pedal for what is out of it
+constexpr double kSeen = 0.95;  // of the picture's width: no pedal is pressed for what lies outside of it
 /// Current is for the fibre on the hook: what it does not part soon goes into the wall behind. Of one fibre at a time,
 /// of one place until it is left alone, and what is left of it when it may be gone on with [s].
 constexpr double kMostHeat = 0.25, kHot = 0.40, kWarm = 0.20;

@@ -132,7 +132,7 @@ void SurfaceCutter::Content::CutAnew(const FlatSweep& sweep) noexcept {
 void SurfaceCutter::Content::CutPath(const FlatSweep& sweep) noexcept {
   if (finder.Chosen().empty()) return;
   report.crossings += finder.Chosen().size();
-  // first what lies near to a vertex, so that no edge is split whose end is in the path already
+  // crossings near a vertex come first: an edge whose end is already in the path is then not split
   for (const auto index : finder.Chosen()) {
     const Crossing& crossing = finder.Crossings()[index];
     if (crossing.t <= settings.snap || crossing.t >= 1.0 - settings.snap) {
@@ -228,8 +228,8 @@ void SurfaceCutter::Content::OpenWithoutWalls() noexcept {
     parted.push_back(v);
   };
   for (const auto v : on) see(v);
-  // whoever is parted takes all of its scored edges along, and who stands at their other ends: where the pools were full,
-  // edges wait that are not of this path
+  // a vertex that is parted opens all of its scored edges, and with them the vertices at their other ends. Some of these edges may
+  // be of an earlier path: they were scored when the pools were full
   for (std::size_t next = 0; next < parted.size(); ++next) {
     const std::uint32_t v = parted[next];
     copies += static_cast<std::size_t>(mesh->CountCopies(v));
