@@ -20,9 +20,9 @@ namespace {
 
 /// Where the left hand holds the gallbladder: from the neck towards the fundus, and off the bed [m].
 constexpr double kHoldBack = 0.020, kHoldBeside = 0.012;
-constexpr double kCameraRate = 0.25;      // [rad/s]
-constexpr double kSeenWell = 0.8;         // of the picture's width: the camera does not follow what lies within
-constexpr double kFollowSeconds = 0.3;    // a tip is out of there before the picture follows [s]
+constexpr double kCameraRate = 0.25;    // [rad/s]
+constexpr double kSeenWell = 0.8;       // of the picture's width: the camera does not follow what lies within
+constexpr double kFollowSeconds = 0.3;  // a tip is out of there before the picture follows [s]
 constexpr double kFollowDistance = 0.09;  // of the lens from what it follows [m]
 constexpr double kNeckRadius = 0.015;     // what lies so near to the infundibulum turns with the neck [m]
 constexpr double kWorks = 0.06;           // a tool this deep is at work [m]
