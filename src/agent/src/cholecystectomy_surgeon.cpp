@@ -55,9 +55,8 @@ bool IsCholecystectomy(const Scene& scene) {
 CholecystectomySurgeon::CholecystectomySurgeon(std::shared_ptr<const Scene> scene, const SurgeonSkill& skill,
                                                OperationErrorScenario error_scenario, std::uint64_t seed)
     : scene_(std::move(scene)),
-      hands_{MakeHand(*scene_, kLeft, skill.hand, seed), MakeHand(*scene_, kRight, skill.hand, seed)},
-      picture_.camera(scene_->laparoscope.home),
-      picture_.to(scene_->laparoscope.home) {
+      hands_{MakeHand(*scene_, kLeft, skill.hand, seed), MakeHand(*scene_, kRight, skill.hand, seed)} {
+  picture_.camera = picture_.to = scene_->laparoscope.home;
   auto model = DescribeModel(*scene_);
   if (!model.ok()) {
     // the simulation of such a scene says why
