@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <map>
@@ -35,7 +36,7 @@ struct Listed {
 const std::map<std::string, Listed>& Table() {
   static const std::map<std::string, Listed> table = [] {
     std::map<std::string, Listed> by_course;
-    std::ifstream file(TROCAR_SOURCE_DIR "/src/agent/test/state_fields.txt");
+    std::ifstream file(std::filesystem::path(TROCAR_SOURCE_DIR) / "src/agent/test/state_fields.txt");
     EXPECT_TRUE(file.good());
     for (std::string line; std::getline(file, line);) {
       if (line.empty() || line[0] == '#') continue;
