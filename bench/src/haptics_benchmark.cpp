@@ -179,6 +179,19 @@ struct Person {
   }
 };
 
+/// 99.9th percentile of the period of a loop without work [s].
+core::Result<double> MeasureBareLoop(double seconds) {
+  session::HapticLink nobody;
+  session::HapticLoopSettings bare;
+  bare.hands.emplace_back();
+  auto loop = session::HapticLoop::Start(std::make_unique<NoWork>(), bare, nobody);
+  if (!loop) return loop.error();
+  Sleep(0.5);
+  (*loop)->ClearTimes();
+  Sleep(seconds);
+  return (*loop)->CalcPeriodPercentile(0.999);
+}
+
 void Add(BenchmarkResult& result, const char* name, double value, const char* unit) {
   result.cases.push_back({name, value, unit});
 }
@@ -212,19 +225,8 @@ core::Result<BenchmarkResult> RunHapticsBenchmark(const BenchmarkOptions& option
   runner.SetPaused(false);
   const Onlooker onlooker(runner);
 
-  // a bare loop first
-  double control_p999 = 0;
-  {
-    session::HapticLink nobody;
-    session::HapticLoopSettings bare;
-    bare.hands.emplace_back();
-    auto control = session::HapticLoop::Start(std::make_unique<NoWork>(), bare, nobody);
-    if (!control) return control.error();
-    Sleep(0.5);
-    (*control)->ClearTimes();
-    Sleep(seconds);
-    control_p999 = (*control)->CalcPeriodPercentile(0.999);
-  }
+  const core::Result<double> control_p999 = MeasureBareLoop(seconds);
+  if (!control_p999) return control_p999.error();
 
   device::SimulatedForceSettings simulated;
   simulated.channel_count = scene::kHandCount;
@@ -273,7 +275,7 @@ core::Result<BenchmarkResult> RunHapticsBenchmark(const BenchmarkOptions& option
   Add(result, "tick_cpu_p99.9", 1e6 * (*loop)->CalcCpuPercentile(0.999), "us");
   Add(result, "period_p50", 1e6 * (*loop)->CalcPeriodPercentile(0.5), "us");
   Add(result, "period_p99.9", 1e6 * (*loop)->CalcPeriodPercentile(0.999), "us");
-  Add(result, "control_period_p99.9", 1e6 * control_p999, "us");
+  Add(result, "control_period_p99.9", 1e6 * *control_p999, "us");
   Add(result, "rate", static_cast<double>(status.ticks - ticks_before) / passed, "1/s");
   if (CanCountAllocations()) {
     Add(result, "allocations", static_cast<double>((*loop)->CountAllocated()), "1");

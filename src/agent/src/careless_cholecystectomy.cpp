@@ -84,7 +84,7 @@ void CholecystectomySurgeon::CutTube(std::size_t tube, double share) {
 
 /// Of the gallbladder, near what the left hand holds, so that it does not give way; towards the right hand's trocar.
 Vec3 CholecystectomySurgeon::WallBesideHold(const Snapshot& seen) const {
-  const SurfaceInfo& wall = surfaces_[static_cast<std::size_t>(gallbladder_)];
+  const SurfaceInfo& wall = known_.surfaces[static_cast<std::size_t>(known_.gallbladder)];
   const auto positions = std::span(seen.positions).subspan(wall.first_node, wall.node_count);
   const auto cost = [&](const Vec3& p) {
     const double away = math::Distance(p, hands_[kLeft].Tip());
@@ -94,13 +94,38 @@ Vec3 CholecystectomySurgeon::WallBesideHold(const Snapshot& seen) const {
                            [&](const Vec3& a, const Vec3& b) { return cost(a) < cost(b); });
 }
 
+/// A light grip, and a strong pull.
+void CholecystectomySurgeon::PullHard() {
+  Grasp(kLeft, Place::AtNode(known_.hold), 0.17);
+  Draw(kLeft, {0.0, -0.09, 0.06});
+  Wait(1.0);
+}
+
+void CholecystectomySurgeon::CutIntoLiver() {
+  Place in_liver = Place::Of(Place::Kind::kInLiver);
+  in_liver.back = -0.006;
+  Reach(kRight, in_liver, 0.5);
+  Add(SurgeonAct::Kind::kPressCutPedal, "press the pedal", 1.0);
+  in_liver.back = 0.010;
+  Reach(kRight, in_liver, 0.1);
+  Add(SurgeonAct::Kind::kLiftFoot, "let go of the pedal", 1.0);
+}
+
+/// Exchanges a tool far from the picture, and does not look for it.
+void CholecystectomySurgeon::InsertBlind() {
+  Exchange(kRight, instrument::ToolKind::kScissors);
+  Reach(kRight, Place::At(HandOf(kRight).Port() + 0.10 * Vec3{0.6, -0.3, -0.7}));
+  Exchange(kRight, instrument::ToolKind::kHook, false);
+  Wait(3.0);
+}
+
 void CholecystectomySurgeon::PlanErrorScenario(OperationErrorScenario error_scenario) {
   using instrument::ToolKind;
   const std::size_t duct = FindTube(TubeRole::kCysticDuct), artery = FindTube(TubeRole::kCysticArtery),
                     main = FindTube(TubeRole::kCommonHepaticDuct);
-  const Place liver = Place::AtNode(liver_node_);
+  const Place liver = Place::AtNode(known_.liver_node);
   Place above_neck = Place::Of(Place::Kind::kAboveNode);
-  above_neck.node = neck_;
+  above_neck.node = known_.neck;
   above_neck.back = 0.05;
   const auto clip = [this] { Exchange(kRight, ToolKind::kClipApplier); };
   const auto scissors = [this] { Exchange(kRight, ToolKind::kScissors); };
@@ -154,7 +179,7 @@ void CholecystectomySurgeon::PlanErrorScenario(OperationErrorScenario error_scen
       Wait(10.0);
       break;
     case OperationErrorScenario::kPerforates:
-      Burn(kRight, Place::AtNode(neck_).ForHook(), 10.0);
+      Burn(kRight, Place::AtNode(known_.neck).ForHook(), 10.0);
       break;
     case OperationErrorScenario::kLeavesStones:
       FreeGallbladder();
@@ -183,26 +208,13 @@ void CholecystectomySurgeon::PlanErrorScenario(OperationErrorScenario error_scen
       Grasp(kLeft, liver);
       break;
     case OperationErrorScenario::kPullsHard:
-      // a light grip, and a strong pull
-      Grasp(kLeft, Place::AtNode(hold_), 0.17);
-      Draw(kLeft, {0.0, -0.09, 0.06});
-      Wait(1.0);
+      PullHard();
       break;
-    case OperationErrorScenario::kCutsLiver: {
-      Place in_liver = Place::Of(Place::Kind::kInLiver);
-      in_liver.back = -0.006;
-      Reach(kRight, in_liver, 0.5);
-      Add(SurgeonAct::Kind::kPressCutPedal, "press the pedal", 1.0);
-      in_liver.back = 0.010;
-      Reach(kRight, in_liver, 0.1);
-      Add(SurgeonAct::Kind::kLiftFoot, "let go of the pedal", 1.0);
+    case OperationErrorScenario::kCutsLiver:
+      CutIntoLiver();
       break;
-    }
     case OperationErrorScenario::kInsertsBlind:
-      Exchange(kRight, ToolKind::kScissors);
-      Reach(kRight, Place::At(HandOf(kRight).Port() + 0.10 * Vec3{0.6, -0.3, -0.7}));
-      Exchange(kRight, ToolKind::kHook, false);
-      Wait(3.0);
+      InsertBlind();
       break;
   }
   Wait(0.5);

@@ -58,7 +58,7 @@ void CholecystectomySurgeon::Begin(const SurgeonAct& act, const Snapshot& seen) 
       controls_[h].cut = false;
       break;
     case Kind::kLook: {
-      field_ = act.place;
+      picture_.field = act.place;
       const Vec3 p = Find(act.place, seen);
       const Vec3 to_eye = math::Normalized(scene_->laparoscope.p_world_port - p);
       const Vec3 along = TubeDirection(seen, FindTube(TubeRole::kCysticDuct), 0.5);
@@ -66,7 +66,7 @@ void CholecystectomySurgeon::Begin(const SurgeonAct& act, const Snapshot& seen) 
       break;
     }
     case Kind::kLookFrom:
-      camera_to_ = act.camera;
+      picture_.to = act.camera;
       break;
     case Kind::kLineUp:
       LineUpTool(act, seen);
@@ -130,7 +130,7 @@ bool CholecystectomySurgeon::IsDone(const SurgeonAct& act, const Snapshot& seen)
       return true;
     case Kind::kLook:
     case Kind::kLookFrom:
-      return camera_ == camera_to_;
+      return picture_.camera == picture_.to;
     case Kind::kDissect:
       return GoOnOrHoldAnew(seen);
     case Kind::kSpread:
@@ -165,7 +165,7 @@ void CholecystectomySurgeon::PlanOn(const SurgeonAct& act, const Snapshot& seen)
       if (const auto extra = FindExtraArtery(seen)) Divide({*extra});
       return;
     case Kind::kFollowWithCamera:
-      camera_follows_ = act.is_on;
+      picture_.follows = act.is_on;
       return;
     case Kind::kLookFromSide:
       return PlanLookFromSide(act, seen);
@@ -173,7 +173,7 @@ void CholecystectomySurgeon::PlanOn(const SurgeonAct& act, const Snapshot& seen)
       stops_ = !has_view_;
       return;
     case Kind::kCheckStumps:
-      stops_ = !std::all_of(entering_.begin(), entering_.end(),
+      stops_ = !std::all_of(known_.entering.begin(), known_.entering.end(),
                             [&](std::size_t tube) { return IsDivided(seen, tube); });
       return;
     case Kind::kFreeFromBed:
@@ -207,10 +207,10 @@ void CholecystectomySurgeon::VisitState(core::StateArchive& archive) {
   archive.Field("hands", hands_);
   archive.Field("controls", controls_);
   archive.Field("assistant", assistant_);
-  archive.Field("camera", camera_);
-  archive.Field("camera_to", camera_to_);
-  archive.Field("first_azimuth", first_azimuth_);
-  archive.Field("has_looked", has_looked_);
+  archive.Field("camera", picture_.camera);
+  archive.Field("camera_to", picture_.to);
+  archive.Field("first_azimuth", picture_.first_azimuth);
+  archive.Field("has_looked", picture_.has_looked);
   archive.Field("has_view", has_view_);
   archive.Field("stops", stops_);
   VisitQueue(archive, "acts", acts_);
@@ -220,9 +220,9 @@ void CholecystectomySurgeon::VisitState(core::StateArchive& archive) {
   archive.Field("has_begun", has_begun_);
   archive.Field("has_finished", has_finished_);
   archive.Field("act_seconds", act_seconds_);
-  archive.Field("field", field_);
-  archive.Field("camera_follows", camera_follows_);
-  archive.Field("unseen_seconds", unseen_seconds_);
+  archive.Field("field", picture_.field);
+  archive.Field("camera_follows", picture_.follows);
+  archive.Field("unseen_seconds", picture_.unseen_seconds);
   archive.Field("unheld_seconds", unheld_seconds_);
   archive.Field("missed_holds", missed_holds_);
   archive.Field("heat", heat_);

@@ -41,7 +41,7 @@ constexpr double kMainClear = 0.0060, kCarefulClear = 0.0035, kTipClear = 0.0055
 constexpr double kEndClear = 0.0008, kEndFar = 0.0020;
 /// Shares of a fibre at which it is taken, the best first.
 constexpr double kFibreShares[] = {0.5, 0.7, 0.3, 0.85, 0.15};
-constexpr double kSeen = 0.95;  // of the picture's width: nobody presses a pedal for what is out of it
+constexpr double kSeen = 0.95;  // of the picture's width: no pedal is pressed for what lies outside of it
 /// Current is for the fibre on the hook: what it does not part soon goes into the wall behind. Of one fibre at a time,
 /// of one place until it is left alone, and what is left of it when it may be gone on with [s].
 constexpr double kMostHeat = 0.25, kHot = 0.40, kWarm = 0.20;
@@ -151,12 +151,12 @@ collision::Segment CholecystectomySurgeon::HookWire(const Snapshot& seen) const 
 collision::SegmentSegmentPoints CholecystectomySurgeon::HookGap(const Snapshot& seen,
                                                                 std::uint32_t strand) const {
   return collision::FindNearestSegmentSegment(
-      HookWire(seen), {seen.positions[strands_[strand].a], seen.positions[strands_[strand].b]});
+      HookWire(seen), {seen.positions[known_.strands[strand].a], seen.positions[known_.strands[strand].b]});
 }
 
 /// Where the hook takes a fibre: in its middle, or farther from where duct and artery enter the gallbladder.
 Vec3 CholecystectomySurgeon::HookedPoint(const Snapshot& seen, std::uint32_t strand) const {
-  const Vec3 &a = seen.positions[strands_[strand].a], &b = seen.positions[strands_[strand].b];
+  const Vec3 &a = seen.positions[known_.strands[strand].a], &b = seen.positions[known_.strands[strand].b];
   for (const double share : kFibreShares) {
     const Vec3 p = math::Lerp(a, b, share);
     if (EndDistance(seen, {p, p}) > kEndFar) return p;
@@ -219,10 +219,11 @@ void CholecystectomySurgeon::WorkOnFibre(Dissection& work, const Snapshot& seen)
   const double distance = std::sqrt(gap.squared_distance);
   const double field_of_view = kSeen * scene_->laparoscope.field_of_view;
   const bool is_seen = IsInView(seen.X_world_laparoscope, field_of_view, HookPoint(seen));
-  const bool is_clear = EndDistance(seen, HookWire(seen)) > kEndClear &&
-                        std::none_of(main_ducts_.begin(), main_ducts_.end(), [&](std::uint32_t node) {
-                          return math::Distance(seen.positions[node], HookPoint(seen)) < kTipClear;
-                        });
+  const bool is_clear =
+      EndDistance(seen, HookWire(seen)) > kEndClear &&
+      std::none_of(known_.main_ducts.begin(), known_.main_ducts.end(), [&](std::uint32_t node) {
+        return math::Distance(seen.positions[node], HookPoint(seen)) < kTipClear;
+      });
   coagulate = distance < kOnHook && is_seen && is_clear;
   if (coagulate) {
     heat_.Add(gap.on_a, scene_->tick_seconds);
@@ -259,7 +260,7 @@ double CholecystectomySurgeon::ChooseFibre(Dissection& work, const Snapshot& see
         return math::SquaredDistance(seen.positions[node], at) < clear * clear;
       });
     };
-    if (is_near(main_ducts_, kMainClear) || is_near(careful_nodes_, kCarefulClear)) continue;
+    if (is_near(known_.main_ducts, kMainClear) || is_near(known_.careful_nodes, kCarefulClear)) continue;
     if (EndDistance(seen, {at, at}) < kEndClear) continue;
     if (heat_.At(at) > kWarm) {
       work.waits = true;
@@ -272,9 +273,9 @@ double CholecystectomySurgeon::ChooseFibre(Dissection& work, const Snapshot& see
       continue;
     }
     // what is stretched lies open
-    const StrandInfo& strand = strands_[strands[i]];
+    const StrandInfo& strand = known_.strands[strands[i]];
     const double stretch = math::Distance(seen.positions[strand.a], seen.positions[strand.b]) -
-                           math::Distance(rest_[strand.a], rest_[strand.b]);
+                           math::Distance(known_.rest[strand.a], known_.rest[strand.b]);
     const Vec3 out = math::Normalized(HandOf(kRight).Port() - at);
     const double way = std::min(kShaftClear, Clearance(seen, {at + kWayFrom * out, at + kWayTo * out}));
     list.emplace_back(work.goal.order[i] + kFarCost * math::Distance(at, tip) +

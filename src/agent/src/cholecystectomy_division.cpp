@@ -43,9 +43,10 @@ void CholecystectomySurgeon::PlanDivision(const SurgeonAct& act, const Snapshot&
   }
   if (work.tubes.empty() || rounds <= 0) return;
   if (rounds < kRounds) {
-    const Vec3 aside = math::Normalized(math::Cross(bed_normal_, rest_[fundus_] - rest_[neck_]));
-    HoldOn(Place::AtNode(neck_));
-    DrawGently(kLeft, 0.008 * bed_normal_ + (rounds % 2 == 0 ? 0.012 : -0.012) * aside);
+    const Vec3 aside = math::Normalized(
+        math::Cross(known_.bed_normal, known_.rest[known_.fundus] - known_.rest[known_.neck]));
+    HoldOn(Place::AtNode(known_.neck));
+    DrawGently(kLeft, 0.008 * known_.bed_normal + (rounds % 2 == 0 ? 0.012 : -0.012) * aside);
   }
   work.avoid.resize(work.tubes.size());
   work.acts_left = kMostActs;
@@ -221,9 +222,10 @@ void CholecystectomySurgeon::PlanCoagulation(const SurgeonAct& act, const Snapsh
   const auto& leaks = seen.operation.leaks;
   const auto end = leaks.begin() + static_cast<std::ptrdiff_t>(seen.operation.leak_count);
   const auto leak = std::find_if(leaks.begin(), end, [&](const LeakSnapshot& found) {
-    const bool is_near_main = std::any_of(main_nodes_.begin(), main_nodes_.end(), [&](std::uint32_t node) {
-      return math::Distance(seen.positions[node], found.position) < kBurnClear;
-    });
+    const bool is_near_main =
+        std::any_of(known_.main_nodes.begin(), known_.main_nodes.end(), [&](std::uint32_t node) {
+          return math::Distance(seen.positions[node], found.position) < kBurnClear;
+        });
     return found.fluid == surgery::Fluid::kBlood && !is_near_main;
   });
   if (leak == end) return;

@@ -35,32 +35,33 @@ constexpr double kLeastFlap = 0.012,
 /// start.
 double CholecystectomySurgeon::CalcAzimuth(const Snapshot& seen, const Vec3& eye) const {
   tissue::MotionMoments moments;
-  for (const std::uint32_t node : neck_nodes_) moments.AddPoint(1.0, rest_[node], seen.positions[node]);
+  for (const std::uint32_t node : known_.neck_nodes)
+    moments.AddPoint(1.0, known_.rest[node], seen.positions[node]);
   const Pose X_world_neck = tissue::FitRigidMotion(moments, math::Quaternion{});
-  const auto& duct = tube_nodes_[FindTube(TubeRole::kCysticDuct)];
-  const Vec3 along = math::Normalized(rest_[duct.front()] - rest_[duct.back()]);
+  const auto& duct = known_.tube_nodes[FindTube(TubeRole::kCysticDuct)];
+  const Vec3 along = math::Normalized(known_.rest[duct.front()] - known_.rest[duct.back()]);
   const Vec3 front = math::Normalized(Vec3{0, 0, 1} - along * along.z, {1, 0, 0});
   const Vec3 to_eye =
-      math::Rotate(math::Inverse(X_world_neck.rotation), eye - X_world_neck * rest_[duct.front()]);
+      math::Rotate(math::Inverse(X_world_neck.rotation), eye - X_world_neck * known_.rest[duct.front()]);
   const double azimuth = std::atan2(math::Dot(to_eye, math::Cross(along, front)), math::Dot(to_eye, front));
-  return std::remainder(azimuth - first_azimuth_, 2.0 * M_PI);
+  return std::remainder(azimuth - picture_.first_azimuth, 2.0 * M_PI);
 }
 
 bool CholecystectomySurgeon::IsNearMain(const Vec3& p, double distance) const {
-  return std::any_of(main_nodes_.begin(), main_nodes_.end(), [&](std::uint32_t node) {
-    return math::SquaredDistance(rest_[node], p) < distance * distance;
+  return std::any_of(known_.main_nodes.begin(), known_.main_nodes.end(), [&](std::uint32_t node) {
+    return math::SquaredDistance(known_.rest[node], p) < distance * distance;
   });
 }
 
 /// How far a segment is from where a duct or artery that is whole enters the gallbladder [m].
 double CholecystectomySurgeon::EndDistance(const Snapshot& seen, const collision::Segment& segment) const {
   double least = std::numeric_limits<double>::infinity();
-  for (const std::uint32_t i : end_strands_) {
-    const collision::Segment end{seen.positions[strands_[i].a], seen.positions[strands_[i].b]};
+  for (const std::uint32_t i : known_.end_strands) {
+    const collision::Segment end{seen.positions[known_.strands[i].a], seen.positions[known_.strands[i].b]};
     const double distance = collision::FindNearestSegmentSegment(end, segment).squared_distance;
     if (distance >= least) continue;
-    const bool is_whole = std::any_of(entering_.begin(), entering_.end(), [&](std::size_t tube) {
-      return tube_nodes_[tube].front() == strands_[i].a && !IsDivided(seen, tube);
+    const bool is_whole = std::any_of(known_.entering.begin(), known_.entering.end(), [&](std::size_t tube) {
+      return known_.tube_nodes[tube].front() == known_.strands[i].a && !IsDivided(seen, tube);
     });
     if (is_whole) least = distance;
   }
@@ -70,29 +71,31 @@ double CholecystectomySurgeon::EndDistance(const Snapshot& seen, const collision
 /// Fat and peritoneum of the triangle but for what lies around what must stay.
 std::vector<std::uint32_t> CholecystectomySurgeon::TriangleStrands() const {
   std::vector<std::uint32_t> found;
-  for (std::uint32_t i = 0; i < strands_.size(); ++i) {
-    if (strands_[i].kind != Kind::kTriangle && strands_[i].kind != Kind::kPeritoneum) continue;
-    if (!IsNearMain(0.5 * (rest_[strands_[i].a] + rest_[strands_[i].b]), kMainDistance)) found.push_back(i);
+  for (std::uint32_t i = 0; i < known_.strands.size(); ++i) {
+    if (known_.strands[i].kind != Kind::kTriangle && known_.strands[i].kind != Kind::kPeritoneum) continue;
+    if (!IsNearMain(0.5 * (known_.rest[known_.strands[i].a] + known_.rest[known_.strands[i].b]),
+                    kMainDistance))
+      found.push_back(i);
   }
   return found;
 }
 
 /// Fibres that cover the ends of the tubes that enter the gallbladder.
 std::vector<std::uint32_t> CholecystectomySurgeon::CoveringStrands() const {
-  std::vector<std::uint8_t> is_end(rest_.size(), 0);
-  for (const std::size_t tube : entering_) {
+  std::vector<std::uint8_t> is_end(known_.rest.size(), 0);
+  for (const std::size_t tube : known_.entering) {
     double arc = 0;
-    const auto& nodes = tube_nodes_[tube];
+    const auto& nodes = known_.tube_nodes[tube];
     for (std::size_t k = 1; k < nodes.size(); ++k) {
-      arc += math::Distance(rest_[nodes[k - 1]], rest_[nodes[k]]);
+      arc += math::Distance(known_.rest[nodes[k - 1]], known_.rest[nodes[k]]);
       if (arc < kSkeletonised) is_end[nodes[k]] = 1;
     }
   }
   std::vector<std::uint32_t> found;
-  for (std::uint32_t i = 0; i < strands_.size(); ++i) {
-    const Kind kind = strands_[i].kind;
+  for (std::uint32_t i = 0; i < known_.strands.size(); ++i) {
+    const Kind kind = known_.strands[i].kind;
     if (kind != Kind::kTriangle && kind != Kind::kPeritoneum && kind != Kind::kAdhesion) continue;
-    if (is_end[strands_[i].a] || is_end[strands_[i].b]) found.push_back(i);
+    if (is_end[known_.strands[i].a] || is_end[known_.strands[i].b]) found.push_back(i);
   }
   return found;
 }
@@ -100,15 +103,16 @@ std::vector<std::uint32_t> CholecystectomySurgeon::CoveringStrands() const {
 /// Whether each tube that still enters the gallbladder lies bare next to it, as far as the view asks and a little more.
 bool CholecystectomySurgeon::AreTubesBare(const Snapshot& seen) const {
   if (seen.operation.critical_view.criteria[2] == 2) return true;
-  std::vector<std::uint8_t> is_covered(rest_.size(), 0);
-  for (std::size_t i = 0; i < strands_.size(); ++i) {
-    const Kind kind = strands_[i].kind;
+  std::vector<std::uint8_t> is_covered(known_.rest.size(), 0);
+  for (std::size_t i = 0; i < known_.strands.size(); ++i) {
+    const Kind kind = known_.strands[i].kind;
     if (kind != Kind::kTriangle && kind != Kind::kPeritoneum && kind != Kind::kAdhesion) continue;
-    if (seen.operation.strand_is_intact[i]) is_covered[strands_[i].a] = is_covered[strands_[i].b] = 1;
+    if (seen.operation.strand_is_intact[i])
+      is_covered[known_.strands[i].a] = is_covered[known_.strands[i].b] = 1;
   }
-  return std::all_of(entering_.begin(), entering_.end(), [&](std::size_t tube) {
+  return std::all_of(known_.entering.begin(), known_.entering.end(), [&](std::size_t tube) {
     if (IsDivided(seen, tube)) return true;
-    const auto& nodes = tube_nodes_[tube];
+    const auto& nodes = known_.tube_nodes[tube];
     double length = 0;
     for (std::size_t k = 1; k < nodes.size() && !is_covered[nodes[k]]; ++k)
       length += math::Distance(seen.positions[nodes[k - 1]], seen.positions[nodes[k]]);
@@ -121,12 +125,12 @@ bool CholecystectomySurgeon::IsTriangleClear(const Snapshot& seen) const {
 }
 
 Vec3 CholecystectomySurgeon::BedAxis() const {
-  return math::Normalized(rest_[fundus_] - rest_[neck_]);
+  return math::Normalized(known_.rest[known_.fundus] - known_.rest[known_.neck]);
 }
 
 bool CholecystectomySurgeon::MayHold(const HoldFilter& may, std::uint32_t node) const {
   if (may.kind == HoldFilter::Kind::kAny) return true;
-  const double along = math::Dot(rest_[node] - rest_[neck_], BedAxis());
+  const double along = math::Dot(known_.rest[node] - known_.rest[known_.neck], BedAxis());
   if (may.kind == HoldFilter::Kind::kInfundibulum) return along < kInfundibulum;
   const double before = may.peels - along;
   return before > kLeastFlap && before < kMostFlap;
@@ -134,15 +138,18 @@ bool CholecystectomySurgeon::MayHold(const HoldFilter& may, std::uint32_t node) 
 
 /// Bed and adhesions over a share of the bed's length, from the infundibulum on.
 std::vector<std::uint32_t> CholecystectomySurgeon::BedStrands(double share) const {
-  const Vec3 axis = math::Normalized(rest_[fundus_] - rest_[neck_]);
-  const auto along = [&](std::uint32_t i) { return math::Dot(rest_[strands_[i].a] - rest_[neck_], axis); };
+  const Vec3 axis = math::Normalized(known_.rest[known_.fundus] - known_.rest[known_.neck]);
+  const auto along = [&](std::uint32_t i) {
+    return math::Dot(known_.rest[known_.strands[i].a] - known_.rest[known_.neck], axis);
+  };
   double first = std::numeric_limits<double>::infinity(), last = -first;
-  for (std::uint32_t i = 0; i < strands_.size(); ++i) {
-    if (strands_[i].kind == Kind::kBed) first = std::min(first, along(i)), last = std::max(last, along(i));
+  for (std::uint32_t i = 0; i < known_.strands.size(); ++i) {
+    if (known_.strands[i].kind == Kind::kBed)
+      first = std::min(first, along(i)), last = std::max(last, along(i));
   }
   std::vector<std::uint32_t> found;
-  for (std::uint32_t i = 0; i < strands_.size(); ++i) {
-    const bool is_bed = strands_[i].kind == Kind::kBed || strands_[i].kind == Kind::kAdhesion;
+  for (std::uint32_t i = 0; i < known_.strands.size(); ++i) {
+    const bool is_bed = known_.strands[i].kind == Kind::kBed || known_.strands[i].kind == Kind::kAdhesion;
     if (is_bed && along(i) <= first + share * (last - first)) found.push_back(i);
   }
   return found;
@@ -158,15 +165,15 @@ double CholecystectomySurgeon::ShareLeft(const Snapshot& seen,
 TubeLine CholecystectomySurgeon::LineOf(const Snapshot& seen, std::size_t tube) const {
   const anatomy::Tube& made = scene_->patient.tubes[tube];
   TubeLine line{{}, made.line.radii};
-  if (surfaces_[scene_->patient.organs.size() + tube].ends[1] == gallbladder_)
+  if (known_.surfaces[scene_->patient.organs.size() + tube].ends[1] == known_.gallbladder)
     std::reverse(line.radii.begin(), line.radii.end());
-  for (const std::uint32_t node : tube_nodes_[tube]) line.points.push_back(seen.positions[node]);
+  for (const std::uint32_t node : known_.tube_nodes[tube]) line.points.push_back(seen.positions[node]);
   return line;
 }
 
 std::vector<TubeLine> CholecystectomySurgeon::LinesOf(const Snapshot& seen) const {
   std::vector<TubeLine> lines;
-  for (std::size_t t = 0; t < tube_nodes_.size(); ++t) lines.push_back(LineOf(seen, t));
+  for (std::size_t t = 0; t < known_.tube_nodes.size(); ++t) lines.push_back(LineOf(seen, t));
   return lines;
 }
 
@@ -196,12 +203,12 @@ bool CholecystectomySurgeon::IsDivided(const Snapshot& seen, std::size_t tube) c
   const auto count = std::count_if(
       pieces.begin(), pieces.begin() + static_cast<std::ptrdiff_t>(seen.operation.tube_piece_count),
       [&](const TubePiece& piece) { return piece.surface == surface; });
-  return static_cast<std::size_t>(count) >= tube_nodes_[tube].size();
+  return static_cast<std::size_t>(count) >= known_.tube_nodes[tube].size();
 }
 
 double CholecystectomySurgeon::Clearance(const Snapshot& seen, const collision::Segment& segment) {
   const auto positions = [&](std::size_t i) {
-    return std::span(seen.positions).subspan(surfaces_[i].first_node, surfaces_[i].node_count);
+    return std::span(seen.positions).subspan(known_.surfaces[i].first_node, known_.surfaces[i].node_count);
   };
   if (trees_tick_ != seen.tick) {
     trees_tick_ = seen.tick;
@@ -237,8 +244,9 @@ DivisionField CholecystectomySurgeon::FieldOf(const Snapshot& seen, std::size_t 
 std::uint32_t CholecystectomySurgeon::FindHold(const Snapshot& seen, const Vec3& near,
                                                const std::vector<std::uint32_t>& avoid,
                                                const HoldFilter& may) {
-  const auto gallbladder = static_cast<std::size_t>(gallbladder_), liver = static_cast<std::size_t>(liver_);
-  const SurfaceInfo& surface = surfaces_[gallbladder];
+  const auto gallbladder = static_cast<std::size_t>(known_.gallbladder),
+             liver = static_cast<std::size_t>(known_.liver);
+  const SurfaceInfo& surface = known_.surfaces[gallbladder];
   std::vector<Vec3> normals(surface.node_count);
   for (const auto& triangle : surface.triangles) {
     const Vec3 &a = seen.positions[surface.first_node + triangle[0]],
@@ -248,9 +256,9 @@ std::uint32_t CholecystectomySurgeon::FindHold(const Snapshot& seen, const Vec3&
   }
   (void)Clearance(seen, {near, near});  // brings the trees up to date
   const auto positions =
-      std::span(seen.positions).subspan(surfaces_[liver].first_node, surfaces_[liver].node_count);
+      std::span(seen.positions).subspan(known_.surfaces[liver].first_node, known_.surfaces[liver].node_count);
   const double length = scene_->instruments[kLeft].tool.jaw_length;
-  std::uint32_t best = hold_;
+  std::uint32_t best = known_.hold;
   double best_worth = -std::numeric_limits<double>::infinity();
   for (std::uint32_t i = 0; i < surface.node_count; ++i) {
     const std::uint32_t node = surface.first_node + i;

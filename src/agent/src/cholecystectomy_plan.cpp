@@ -45,20 +45,21 @@ void CholecystectomySurgeon::PlanOperation() {
 
 /// From the first look until the gallbladder hangs on nothing.
 void CholecystectomySurgeon::FreeGallbladder() {
-  const Place neck = Place::AtNode(neck_);
-  camera_follows_ = true;
+  const Place neck = Place::AtNode(known_.neck);
+  picture_.follows = true;
   Add(SurgeonAct::Kind::kAssist, "assistant: retract", 8.0).command = AssistantCommand::kRetract;
   LookAt(neck, 0.0, 0.090);
   HoldOn(neck);
   const std::size_t duct = FindTube(TubeRole::kCysticDuct);
-  const Vec3 duct_way = math::Normalized(rest_[tube_nodes_[duct].front()] - rest_[tube_nodes_[duct].back()]);
-  DrawGently(kLeft, 0.006 * duct_way + 0.003 * bed_normal_);
+  const Vec3 duct_way = math::Normalized(known_.rest[known_.tube_nodes[duct].front()] -
+                                         known_.rest[known_.tube_nodes[duct].back()]);
+  DrawGently(kLeft, 0.006 * duct_way + 0.003 * known_.bed_normal);
   ClearTriangle(kRounds);
   FreeLowerThird(kRounds);
   ShowCriticalView(kRounds);
   // without the view nothing is clipped; a gallbladder that is still tied is not taken off its bed
   Decide(SurgeonAct::Kind::kTimeOut, "time-out");
-  Divide(entering_);
+  Divide(known_.entering);
   StopBleeding();
   Decide(SurgeonAct::Kind::kCheckStumps, "look at the stumps");
   FreeFromBed(kBedRounds);
@@ -93,7 +94,7 @@ void CholecystectomySurgeon::TakeHold(const SurgeonAct& act, const Snapshot& see
 
 void CholecystectomySurgeon::CheckHold(const SurgeonAct& act, const Snapshot& seen) {
   const InstrumentSnapshot& hand = seen.instruments[kLeft];
-  if (hand.is_grasping && hand.organ == gallbladder_) return;
+  if (hand.is_grasping && hand.organ == known_.gallbladder) return;
   missed_holds_.push_back(act.node);
   LetGo(kLeft);
   HoldOn(act.place, act.count - 1, act.may);
@@ -136,7 +137,7 @@ void CholecystectomySurgeon::CheckTriangle(const SurgeonAct& act, const Snapshot
     std::vector<double> order;
     // the front first
     for (const std::uint32_t i : left)
-      order.push_back(-0.25 * (rest_[strands_[i].a] + rest_[strands_[i].b]).z);
+      order.push_back(-0.25 * (known_.rest[known_.strands[i].a] + known_.rest[known_.strands[i].b]).z);
     Take(ToolKind::kHook);
     Dissect({"the hepatocystic triangle", left, order, 1.0, DissectionGoal::Until::kTriangleClear});
   }
@@ -154,10 +155,10 @@ void CholecystectomySurgeon::PlanLowerThird(const SurgeonAct& act, const Snapsho
   const Vec3 axis = BedAxis();
   std::vector<double> order;
   for (const std::uint32_t i : lower)
-    order.push_back(0.5 * math::Dot(rest_[strands_[i].a] - rest_[neck_], axis));
+    order.push_back(0.5 * math::Dot(known_.rest[known_.strands[i].a] - known_.rest[known_.neck], axis));
   // by the infundibulum, which is drawn off the liver, to the sides and back over what is not free
-  const Vec3 back = math::Normalized(axis - math::Dot(axis, bed_normal_) * bed_normal_);
-  const Vec3 way = math::Normalized(bed_normal_ + back);
+  const Vec3 back = math::Normalized(axis - math::Dot(axis, known_.bed_normal) * known_.bed_normal);
+  const Vec3 way = math::Normalized(known_.bed_normal + back);
   Take(ToolKind::kHook);
   HoldOn(MiddleOf(PeelStrands(seen, lower)), kHoldTries, {HoldFilter::Kind::kInfundibulum});
   DrawGently(kLeft, 0.010 * way);
@@ -177,7 +178,7 @@ void CholecystectomySurgeon::PlanCriticalView(const SurgeonAct& act, const Snaps
   ClearTriangle(2);
   FreeLowerThird(2);
   Decide(SurgeonAct::Kind::kDivideExtraArtery, "count what enters");
-  Place out_of_the_way = Place::AtNode(neck_);
+  Place out_of_the_way = Place::AtNode(known_.neck);
   out_of_the_way.back = kBesideView;
   Reach(kRight, out_of_the_way);
   Decide(SurgeonAct::Kind::kFollowWithCamera, "look").is_on = false;
@@ -190,7 +191,7 @@ void CholecystectomySurgeon::PlanCriticalView(const SurgeonAct& act, const Snaps
 /// Where more than two structures enter, an artery that can be divided.
 std::optional<std::size_t> CholecystectomySurgeon::FindExtraArtery(const Snapshot& seen) {
   std::vector<std::size_t> arteries;
-  for (const std::size_t tube : entering_) {
+  for (const std::size_t tube : known_.entering) {
     const bool is_artery = scene_->patient.tubes[tube].kind == anatomy::TubeKind::kArtery;
     if (is_artery && !IsDivided(seen, tube)) arteries.push_back(tube);
   }
@@ -259,7 +260,7 @@ void CholecystectomySurgeon::PlanLookFromSide(const SurgeonAct& act, const Snaps
   const std::size_t duct = FindTube(TubeRole::kCysticDuct);
   const Vec3 axis = math::Normalized(TubePoint(seen, duct, 0.0) - TubePoint(seen, duct, 1.0));
   const Vec3 arm = HandOf(kLeft).Tip() - TubePoint(seen, duct, 0.0);
-  const Vec3 off_axis = math::Normalized(arm - math::Dot(arm, axis) * axis, bed_normal_);
+  const Vec3 off_axis = math::Normalized(arm - math::Dot(arm, axis) * axis, known_.bed_normal);
   DrawGently(kLeft, -act.side * kNeckStep * math::Cross(axis, off_axis));
   LookFromSide(act.side, act.count - 1);
 }
@@ -268,11 +269,11 @@ void CholecystectomySurgeon::PlanLookFromSide(const SurgeonAct& act, const Snaps
 /// \pre one is left
 std::vector<std::uint32_t> CholecystectomySurgeon::PeelStrands(const Snapshot& seen,
                                                                const std::vector<std::uint32_t>& bed) const {
-  const Vec3 axis = math::Normalized(rest_[fundus_] - rest_[neck_]);
+  const Vec3 axis = math::Normalized(known_.rest[known_.fundus] - known_.rest[known_.neck]);
   std::vector<std::pair<double, std::uint32_t>> along;
   for (const std::uint32_t i : bed) {
     if (seen.operation.strand_is_intact[i])
-      along.emplace_back(math::Dot(rest_[strands_[i].a] - rest_[neck_], axis), i);
+      along.emplace_back(math::Dot(known_.rest[known_.strands[i].a] - known_.rest[known_.neck], axis), i);
   }
   std::sort(along.begin(), along.end());
   along.resize(std::max<std::size_t>(1, static_cast<std::size_t>(kPeelShare * along.size())));
@@ -299,14 +300,15 @@ void CholecystectomySurgeon::PlanBed(const SurgeonAct& act, const Snapshot& seen
   const Vec3 axis = BedAxis();
   std::vector<double> order;
   for (const std::uint32_t i : bed)
-    order.push_back(0.5 * math::Dot(rest_[strands_[i].a] - rest_[neck_], axis));
+    order.push_back(0.5 * math::Dot(known_.rest[known_.strands[i].a] - known_.rest[known_.neck], axis));
   const std::vector<std::uint32_t> peel = PeelStrands(seen, bed);
   const Place left = MiddleOf(peel);
   // what is free is folded back over what is not: there the fibres lie open
-  const HoldFilter is_free{HoldFilter::Kind::kFree,
-                           math::Dot(rest_[strands_[peel[peel.size() / 2]].a] - rest_[neck_], axis)};
-  const Vec3 back = math::Normalized(axis - math::Dot(axis, bed_normal_) * bed_normal_);
-  const Vec3 fold = math::Normalized(kFoldUp * bed_normal_ + back);
+  const HoldFilter is_free{
+      HoldFilter::Kind::kFree,
+      math::Dot(known_.rest[known_.strands[peel[peel.size() / 2]].a] - known_.rest[known_.neck], axis)};
+  const Vec3 back = math::Normalized(axis - math::Dot(axis, known_.bed_normal) * known_.bed_normal);
+  const Vec3 fold = math::Normalized(kFoldUp * known_.bed_normal + back);
   Take(ToolKind::kHook);
   LookAt(left, 0.0, 0.100);
   HoldOn(left, kHoldTries, is_free);
@@ -318,7 +320,7 @@ void CholecystectomySurgeon::PlanBed(const SurgeonAct& act, const Snapshot& seen
 
 void CholecystectomySurgeon::Remove() {
   Add(SurgeonAct::Kind::kAssist, "assistant: release", 4.0).command = AssistantCommand::kRelease;
-  DrawGently(kLeft, 0.03 * bed_normal_);
+  DrawGently(kLeft, 0.03 * known_.bed_normal);
   const Place middle = Place::Of(Place::Kind::kGallbladder);
   LookAt(middle, 0.0, 0.100);
   Exchange(kRight, ToolKind::kBag);

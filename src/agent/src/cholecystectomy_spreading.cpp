@@ -10,7 +10,7 @@ namespace trocar::agent {
 namespace {
 
 constexpr double kBack = 0.008;       // of the tip before the next spread [m]
-constexpr double kOpenSeconds = 1.0;  // of patience with opening jaws [s]
+constexpr double kOpenSeconds = 1.0;  // that it waits for opening jaws [s]
 constexpr std::size_t kFew = 3;       // fibres: a spread that parts fewer was hardly worth it
 constexpr int kMostFruitless = 4;     // such spreads in a row
 constexpr double kPoor = 0.3;         // of what was hoped for
@@ -37,13 +37,13 @@ bool CholecystectomySurgeon::GoOnSpreading(Spreading& work, const Snapshot& seen
       std::vector<std::uint32_t> index;
       for (std::uint32_t i = 0; i < work.strands.size(); ++i) {
         if (!is_intact(work.strands[i])) continue;
-        const StrandInfo& strand = strands_[work.strands[i]];
+        const StrandInfo& strand = known_.strands[work.strands[i]];
         field.fibres.push_back({seen.positions[strand.a], seen.positions[strand.b]});
         field.weights.push_back(work.weights[i]);
         tries.push_back(work.tries[i]);
         index.push_back(i);
       }
-      for (std::size_t t = 0; t < tube_nodes_.size(); ++t) {
+      for (std::size_t t = 0; t < known_.tube_nodes.size(); ++t) {
         const TubeLine line = LineOf(seen, t);
         for (std::size_t k = 0; k < line.points.size(); ++k)
           field.tubes.push_back({line.points[k], line.radii[k]});

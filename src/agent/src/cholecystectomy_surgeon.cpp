@@ -20,9 +20,9 @@ namespace {
 
 /// Where the left hand holds the gallbladder: from the neck towards the fundus, and off the bed [m].
 constexpr double kHoldBack = 0.020, kHoldBeside = 0.012;
-constexpr double kCameraRate = 0.25;      // [rad/s]
-constexpr double kSeenWell = 0.8;         // of the picture's width: what lies within is followed by nobody
-constexpr double kFollowSeconds = 0.3;    // a tip is out of there before the picture follows [s]
+constexpr double kCameraRate = 0.25;    // [rad/s]
+constexpr double kSeenWell = 0.8;       // of the picture's width: the camera does not follow what lies within
+constexpr double kFollowSeconds = 0.3;  // a tip is out of there before the picture follows [s]
 constexpr double kFollowDistance = 0.09;  // of the lens from what it follows [m]
 constexpr double kNeckRadius = 0.015;     // what lies so near to the infundibulum turns with the neck [m]
 constexpr double kWorks = 0.06;           // a tool this deep is at work [m]
@@ -55,9 +55,8 @@ bool IsCholecystectomy(const Scene& scene) {
 CholecystectomySurgeon::CholecystectomySurgeon(std::shared_ptr<const Scene> scene, const SurgeonSkill& skill,
                                                OperationErrorScenario error_scenario, std::uint64_t seed)
     : scene_(std::move(scene)),
-      hands_{MakeHand(*scene_, kLeft, skill.hand, seed), MakeHand(*scene_, kRight, skill.hand, seed)},
-      camera_(scene_->laparoscope.home),
-      camera_to_(scene_->laparoscope.home) {
+      hands_{MakeHand(*scene_, kLeft, skill.hand, seed), MakeHand(*scene_, kRight, skill.hand, seed)} {
+  picture_.camera = picture_.to = scene_->laparoscope.home;
   auto model = DescribeModel(*scene_);
   if (!model.ok()) {
     // the simulation of such a scene says why
@@ -70,63 +69,65 @@ CholecystectomySurgeon::CholecystectomySurgeon(std::shared_ptr<const Scene> scen
 
 void CholecystectomySurgeon::Learn(ModelDescription model) {
   const anatomy::Patient& patient = scene_->patient;
-  strands_ = std::move(model.strands);
-  surfaces_ = std::move(model.surfaces);
-  rest_ = std::move(model.rest);
-  gallbladder_ = scene::FindSurface(surfaces_, OrganRole::kGallbladder);
-  liver_ = scene::FindSurface(surfaces_, OrganRole::kLiver);
+  known_.strands = std::move(model.strands);
+  known_.surfaces = std::move(model.surfaces);
+  known_.rest = std::move(model.rest);
+  known_.gallbladder = scene::FindSurface(known_.surfaces, OrganRole::kGallbladder);
+  known_.liver = scene::FindSurface(known_.surfaces, OrganRole::kLiver);
   for (std::size_t t = 0; t < patient.tubes.size(); ++t) {
-    const SurfaceInfo& surface = surfaces_[patient.organs.size() + t];
+    const SurfaceInfo& surface = known_.surfaces[patient.organs.size() + t];
     std::vector<std::uint32_t> nodes;
     for (std::uint32_t k = 0; k < surface.node_count; ++k) nodes.push_back(surface.first_node + k);
-    if (surface.ends[1] == gallbladder_) std::reverse(nodes.begin(), nodes.end());
-    tube_nodes_.push_back(std::move(nodes));
+    if (surface.ends[1] == known_.gallbladder) std::reverse(nodes.begin(), nodes.end());
+    known_.tube_nodes.push_back(std::move(nodes));
   }
   // what anatomy teaches of each tube
   for (std::size_t t = 0; t < model.tube_roles.size(); ++t) {
     const anatomy::Tube& tube = patient.tubes[t];
-    const SurfaceInfo& surface = surfaces_[patient.organs.size() + t];
-    if (surface.Joins(gallbladder_)) entering_.push_back(t);
+    const SurfaceInfo& surface = known_.surfaces[patient.organs.size() + t];
+    if (surface.Joins(known_.gallbladder)) known_.entering.push_back(t);
     for (std::uint32_t k = 0; k < surface.node_count; ++k) {
       const training::VesselRole role = model.tube_roles[t][k];
-      if (!training::MayBeDivided(role)) main_nodes_.push_back(surface.first_node + k);
+      if (!training::MayBeDivided(role)) known_.main_nodes.push_back(surface.first_node + k);
       const bool is_duct = tube.kind == anatomy::TubeKind::kDuct;
-      if (!training::MayBeDivided(role) && is_duct) main_ducts_.push_back(surface.first_node + k);
+      if (!training::MayBeDivided(role) && is_duct) known_.main_ducts.push_back(surface.first_node + k);
       const bool is_kept_artery = !training::MayBeDivided(role) && !is_duct;
       if (is_kept_artery || role == training::VesselRole::kSubvesicalDuct)
-        careful_nodes_.push_back(surface.first_node + k);
+        known_.careful_nodes.push_back(surface.first_node + k);
     }
   }
   for (std::size_t i = 0; i < patient.organs.size(); ++i) {
-    const SurfaceInfo& surface = surfaces_[i];
-    auto tree = collision::TriangleTree::Make(
-        std::span(rest_).subspan(surface.first_node, surface.node_count), patient.organs[i].mesh.triangles);
+    const SurfaceInfo& surface = known_.surfaces[i];
+    auto tree =
+        collision::TriangleTree::Make(std::span(known_.rest).subspan(surface.first_node, surface.node_count),
+                                      patient.organs[i].mesh.triangles);
     trees_.push_back(tree.ok() ? std::move(*tree) : collision::TriangleTree());
   }
-  for (std::uint32_t i = 0; i < strands_.size(); ++i) {
-    const bool enters = std::any_of(entering_.begin(), entering_.end(), [&](std::size_t tube) {
-      return strands_[i].a == tube_nodes_[tube].front();
+  for (std::uint32_t i = 0; i < known_.strands.size(); ++i) {
+    const bool enters = std::any_of(known_.entering.begin(), known_.entering.end(), [&](std::size_t tube) {
+      return known_.strands[i].a == known_.tube_nodes[tube].front();
     });
-    if (strands_[i].kind == StrandInfo::Kind::kEnd && enters) end_strands_.push_back(i);
+    if (known_.strands[i].kind == StrandInfo::Kind::kEnd && enters) known_.end_strands.push_back(i);
   }
   const Vec3 neck = patient.LandmarkOf(LandmarkRole::kInfundibulum)->position,
              fundus = patient.LandmarkOf(LandmarkRole::kFundus)->position,
              edge = patient.LandmarkOf(LandmarkRole::kLiverEdge)->position;
-  neck_ = FindNode(gallbladder_, neck);
-  fundus_ = FindNode(gallbladder_, fundus);
-  liver_node_ = FindNode(liver_, edge);
-  for (const StrandInfo& strand : strands_) {
-    if (strand.kind == StrandInfo::Kind::kBed) bed_normal_ += rest_[strand.a] - rest_[strand.b];
+  known_.neck = FindNode(known_.gallbladder, neck);
+  known_.fundus = FindNode(known_.gallbladder, fundus);
+  known_.liver_node = FindNode(known_.liver, edge);
+  for (const StrandInfo& strand : known_.strands) {
+    if (strand.kind == StrandInfo::Kind::kBed)
+      known_.bed_normal += known_.rest[strand.a] - known_.rest[strand.b];
   }
-  bed_normal_ = math::Normalized(bed_normal_, {0, -1, 0});
+  known_.bed_normal = math::Normalized(known_.bed_normal, {0, -1, 0});
   // beside the neck, so that both tools have clearance
   const Vec3 axis = math::Normalized(fundus - neck);
-  hold_ = FindNode(gallbladder_, neck + kHoldBack * axis + kHoldBeside * bed_normal_);
-  const SurfaceInfo& surface = surfaces_[static_cast<std::size_t>(gallbladder_)];
+  known_.hold = FindNode(known_.gallbladder, neck + kHoldBack * axis + kHoldBeside * known_.bed_normal);
+  const SurfaceInfo& surface = known_.surfaces[static_cast<std::size_t>(known_.gallbladder)];
   for (std::uint32_t node = surface.first_node; node < surface.first_node + surface.node_count; ++node) {
-    if (math::Distance(rest_[node], neck) <= kNeckRadius) neck_nodes_.push_back(node);
+    if (math::Distance(known_.rest[node], neck) <= kNeckRadius) known_.neck_nodes.push_back(node);
   }
-  field_ = Place::AtNode(neck_);
+  picture_.field = Place::AtNode(known_.neck);
 }
 
 /// The picture goes where the right hand works.
@@ -135,11 +136,11 @@ void CholecystectomySurgeon::FollowWithCamera(const Snapshot& seen) {
   const Vec3& tip = hand.X_world_tool.translation;
   const bool is_seen = hand.joints.depth < kWorks ||
                        IsInView(seen.X_world_laparoscope, kSeenWell * scene_->laparoscope.field_of_view, tip);
-  unseen_seconds_ = is_seen ? 0.0 : unseen_seconds_ + scene_->tick_seconds;
-  if (unseen_seconds_ < kFollowSeconds || !(camera_ == camera_to_)) return;
-  const Vec3 middle = 0.5 * (tip + Find(field_, seen));
+  picture_.unseen_seconds = is_seen ? 0.0 : picture_.unseen_seconds + scene_->tick_seconds;
+  if (picture_.unseen_seconds < kFollowSeconds || !(picture_.camera == picture_.to)) return;
+  const Vec3 middle = 0.5 * (tip + Find(picture_.field, seen));
   AimCamera(middle, math::Normalized(scene_->laparoscope.p_world_port - middle), kFollowDistance);
-  unseen_seconds_ = 0;
+  picture_.unseen_seconds = 0;
 }
 
 /// Turns the laparoscope to a place, at about a distance; nothing where it does not get there.
@@ -150,18 +151,19 @@ void CholecystectomySurgeon::AimCamera(const Vec3& p, const Vec3& facing, double
     request.distance = share * distance;
     request.facing = facing;
     if (const auto view = FindView(scene_->laparoscope, request)) {
-      camera_to_ = *view;
+      picture_.to = *view;
       return;
     }
   }
 }
 
 std::uint32_t CholecystectomySurgeon::FindNode(std::int32_t organ, const Vec3& p) const {
-  const SurfaceInfo& surface = surfaces_[static_cast<std::size_t>(organ)];
+  const SurfaceInfo& surface = known_.surfaces[static_cast<std::size_t>(organ)];
   std::uint32_t nearest = surface.first_node;
   for (std::uint32_t i = 0; i < surface.node_count; ++i) {
     const std::uint32_t node = surface.first_node + i;
-    if (math::SquaredDistance(rest_[node], p) < math::SquaredDistance(rest_[nearest], p)) nearest = node;
+    if (math::SquaredDistance(known_.rest[node], p) < math::SquaredDistance(known_.rest[nearest], p))
+      nearest = node;
   }
   return nearest;
 }
@@ -171,7 +173,7 @@ std::size_t CholecystectomySurgeon::FindTube(TubeRole role) const {
 }
 
 Vec3 CholecystectomySurgeon::TubePoint(const Snapshot& seen, std::size_t tube, double share) const {
-  const auto& nodes = tube_nodes_[tube];
+  const auto& nodes = known_.tube_nodes[tube];
   const double at = std::clamp(share, 0.0, 1.0) * static_cast<double>(nodes.size() - 1);
   const auto i = std::min(nodes.size() - 2, static_cast<std::size_t>(at));
   return math::Lerp(seen.positions[nodes[i]], seen.positions[nodes[i + 1]], at - static_cast<double>(i));
@@ -183,9 +185,10 @@ Vec3 CholecystectomySurgeon::TubeDirection(const Snapshot& seen, std::size_t tub
 
 Input CholecystectomySurgeon::Act(const Snapshot& seen) {
   const double dt = scene_->tick_seconds;
-  if (!has_looked_ && !tube_nodes_.empty()) {
-    first_azimuth_ = CalcAzimuth(seen, CalcLaparoscopePose(scene_->laparoscope, camera_).translation);
-    has_looked_ = true;
+  if (!picture_.has_looked && !known_.tube_nodes.empty()) {
+    picture_.first_azimuth =
+        CalcAzimuth(seen, CalcLaparoscopePose(scene_->laparoscope, picture_.camera).translation);
+    picture_.has_looked = true;
   }
   has_view_ = has_view_ || seen.operation.critical_view.IsAchieved();
   if (stops_) acts_.clear();
@@ -199,7 +202,7 @@ Input CholecystectomySurgeon::Act(const Snapshot& seen) {
       doing_ = act.doing;
     }
     act_seconds_ += dt;
-    if (IsDone(act, seen) || act_seconds_ > act.patience) {
+    if (IsDone(act, seen) || act_seconds_ > act.time_limit) {
       acts_.pop_front();
       has_begun_ = false;
       acts_.insert(acts_.begin(), std::make_move_iterator(inserted_.begin()),
@@ -207,21 +210,22 @@ Input CholecystectomySurgeon::Act(const Snapshot& seen) {
       inserted_.clear();
     }
   }
-  if (camera_follows_) FollowWithCamera(seen);
+  if (picture_.follows) FollowWithCamera(seen);
   const auto follow = [&](double& now, double to) {
     now += std::clamp(to - now, -kCameraRate * dt, kCameraRate * dt);
   };
-  follow(camera_.pan, camera_to_.pan);
-  follow(camera_.tilt, camera_to_.tilt);
-  camera_.spin += std::clamp(camera_to_.spin - camera_.spin, -4 * kCameraRate * dt, 4 * kCameraRate * dt);
-  camera_.depth += std::clamp(camera_to_.depth - camera_.depth, -0.03 * dt, 0.03 * dt);
-  camera_.jaw = camera_to_.jaw;
+  follow(picture_.camera.pan, picture_.to.pan);
+  follow(picture_.camera.tilt, picture_.to.tilt);
+  picture_.camera.spin +=
+      std::clamp(picture_.to.spin - picture_.camera.spin, -4 * kCameraRate * dt, 4 * kCameraRate * dt);
+  picture_.camera.depth += std::clamp(picture_.to.depth - picture_.camera.depth, -0.03 * dt, 0.03 * dt);
+  picture_.camera.jaw = picture_.to.jaw;
   Input input;
   for (int hand = 0; hand < kHandCount; ++hand)
     input.hands[static_cast<std::size_t>(hand)] = HandOf(hand).Step(dt);
   input.controls = controls_;
   input.assistant = assistant_;
-  input.laparoscope = camera_;
+  input.laparoscope = picture_.camera;
   input.settings = scene_->settings;
   return input;
 }

@@ -79,6 +79,9 @@ class CholecystectomySurgeon final : public Surgeon {
   void Learn(ModelDescription model);
   void PlanOperation();
   void PlanErrorScenario(OperationErrorScenario error_scenario);
+  void PullHard();
+  void CutIntoLiver();
+  void InsertBlind();
   void FreeGallbladder();
 
   // what is under way
@@ -86,7 +89,7 @@ class CholecystectomySurgeon final : public Surgeon {
   bool IsDone(const SurgeonAct& act, const Snapshot& seen);
   /// Plans on; what it adds is done next.
   void PlanOn(const SurgeonAct& act, const Snapshot& seen);
-  SurgeonAct& Add(SurgeonAct::Kind kind, std::string doing, double patience);
+  SurgeonAct& Add(SurgeonAct::Kind kind, std::string doing, double time_limit);
   /// Adds an act that plans on when it is reached, from what is seen then.
   SurgeonAct& Decide(SurgeonAct::Kind kind, std::string doing) { return Add(kind, std::move(doing), 1.0); }
   Vec3 Find(const Place& place, const Snapshot& seen) const;
@@ -214,28 +217,40 @@ class CholecystectomySurgeon final : public Surgeon {
   std::array<HandMotion, kHandCount> hands_;
   std::array<HandControls, kHandCount> controls_;
   AssistantCommand assistant_ = AssistantCommand::kWait;
-  instrument::TrocarJoints camera_, camera_to_;
+  /// What this operator shows of the field.
+  struct Picture {
+    instrument::TrocarJoints camera, to;
+    Place field;               // what it is about
+    bool follows = false;      // the right hand's tool
+    double first_azimuth = 0;  // of the lens, at the start [rad]
+    bool has_looked = false;
+    double unseen_seconds = 0;
+  };
+  Picture picture_;
 
-  std::vector<StrandInfo> strands_;
-  std::vector<SurfaceInfo> surfaces_;
-  std::int32_t gallbladder_ = -1, liver_ = -1;  // of surfaces_
-  std::vector<Vec3> rest_;
-  std::vector<std::vector<std::uint32_t>>
-      tube_nodes_;                         // (tubes) from the gallbladder's end, where one enters it
-  std::vector<std::uint32_t> neck_nodes_;  // around the infundibulum
-  double first_azimuth_ = 0;               // of the lens, at the start [rad]
-  bool has_looked_ = false;
+  /// What is known of the patient before the first cut; constant.
+  struct Knowledge {
+    std::vector<StrandInfo> strands;
+    std::vector<SurfaceInfo> surfaces;
+    std::int32_t gallbladder = -1, liver = -1;  // of surfaces
+    std::vector<Vec3> rest;
+    std::vector<std::vector<std::uint32_t>>
+        tube_nodes;                            // (tubes) from the gallbladder's end, where one enters it
+    std::vector<std::uint32_t> neck_nodes;     // around the infundibulum
+    std::vector<std::size_t> entering;         // tubes that enter the gallbladder
+    std::vector<std::uint32_t> end_strands;    // where they do
+    std::vector<std::uint32_t> main_nodes;     // of ducts and arteries that must stay
+    std::vector<std::uint32_t> main_ducts;     // of the ducts among them
+    std::vector<std::uint32_t> careful_nodes;  // of those arteries, and of small ducts of the bed
+    std::uint32_t neck = 0, hold = 0, fundus = 0, liver_node = 0;
+    Vec3 bed_normal;  // from the liver towards the gallbladder, at rest
+  };
+  Knowledge known_;
+
   bool has_view_ = false;                       // the critical view was achieved
   bool stops_ = false;                          // bails out: it is not safe to go on
-  std::vector<std::size_t> entering_;           // tubes that enter the gallbladder
-  std::vector<std::uint32_t> end_strands_;      // where they do
-  std::vector<std::uint32_t> main_nodes_;       // of ducts and arteries that must stay
-  std::vector<std::uint32_t> main_ducts_;       // of the ducts among them
-  std::vector<std::uint32_t> careful_nodes_;    // of those arteries, and of small ducts of the bed
   std::vector<collision::TriangleTree> trees_;  // (organs)
   std::uint64_t trees_tick_ = kNever;           // of the snapshot that they follow
-  std::uint32_t neck_ = 0, hold_ = 0, fundus_ = 0, liver_node_ = 0;
-  Vec3 bed_normal_;  // from the liver towards the gallbladder, at rest
   std::deque<SurgeonAct> acts_,
       inserted_;           // the latter by the act that is under way, to be done next; empty between ticks
   Dissection dissection_;  // that is under way, or planned next
@@ -243,9 +258,6 @@ class CholecystectomySurgeon final : public Surgeon {
   Division division_;
   bool has_begun_ = false, has_finished_ = false;
   double act_seconds_ = 0;
-  Place field_;                  // what the picture is about
-  bool camera_follows_ = false;  // the right hand's tool
-  double unseen_seconds_ = 0;
   double unheld_seconds_ = 0;
   std::vector<std::uint32_t> missed_holds_;
   HeatMemory heat_;

@@ -31,8 +31,8 @@ Traction CholecystectomySurgeon::PlanTraction(const DissectionGoal& goal) const 
   traction.enough_pull = traction.most_pull * (goal.IsFlapHeld() ? kEnoughFree : kEnoughTied);
   traction.fibres_before = goal.strands.size();
   if (goal.traction <= 0.0) return traction;
-  const Vec3 axis = math::Normalized(rest_[fundus_] - rest_[neck_]);
-  const Vec3 aside = math::Normalized(math::Cross(bed_normal_, axis));
+  const Vec3 axis = math::Normalized(known_.rest[known_.fundus] - known_.rest[known_.neck]);
+  const Vec3 aside = math::Normalized(math::Cross(known_.bed_normal, axis));
   std::vector<Vec3> sides = {Vec3{}, aside, -1.0 * aside, axis};
   // what is free goes to the sides first: off the bed it would stay before the hook
   if (goal.IsFlapHeld()) sides = {2.0 * aside, -2.0 * aside, Vec3{}, aside, -1.0 * aside};

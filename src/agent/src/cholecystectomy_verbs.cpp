@@ -16,11 +16,11 @@ constexpr double kWellInside = 0.85;  // of the picture's width
 
 }  // namespace
 
-SurgeonAct& CholecystectomySurgeon::Add(SurgeonAct::Kind kind, std::string doing, double patience) {
+SurgeonAct& CholecystectomySurgeon::Add(SurgeonAct::Kind kind, std::string doing, double time_limit) {
   SurgeonAct act;
   act.kind = kind;
   act.doing = std::move(doing);
-  act.patience = patience;
+  act.time_limit = time_limit;
   acts_.push_back(std::move(act));
   return acts_.back();
 }
@@ -153,11 +153,11 @@ Vec3 CholecystectomySurgeon::FindUnhooked(const Place& place, const Snapshot& se
     }
     case Place::Kind::kStrands: {
       Vec3 sum;
-      for (const std::uint32_t i : place.strands) sum += seen.positions[strands_[i].a];
+      for (const std::uint32_t i : place.strands) sum += seen.positions[known_.strands[i].a];
       return sum / static_cast<double>(place.strands.size());
     }
     case Place::Kind::kGallbladder: {
-      const SurfaceInfo& surface = surfaces_[static_cast<std::size_t>(gallbladder_)];
+      const SurfaceInfo& surface = known_.surfaces[static_cast<std::size_t>(known_.gallbladder)];
       Vec3 centre;
       for (std::uint32_t i = 0; i < surface.node_count; ++i)
         centre += seen.positions[surface.first_node + i] / static_cast<double>(surface.node_count);
@@ -166,7 +166,7 @@ Vec3 CholecystectomySurgeon::FindUnhooked(const Place& place, const Snapshot& se
     case Place::Kind::kBesideHold:
       return WallBesideHold(seen);
     case Place::Kind::kInLiver: {
-      const Vec3 p = seen.positions[liver_node_];
+      const Vec3 p = seen.positions[known_.liver_node];
       const Vec3 in = math::Normalized(p - right.Port());
       return p + 0.006 * in + place.back * math::Normalized(math::Cross(in, {0, 1, 0}));
     }
@@ -179,7 +179,7 @@ Vec3 CholecystectomySurgeon::FindUnhooked(const Place& place, const Snapshot& se
     case Place::Kind::kOverField:
       break;
   }
-  const Vec3 field = Find(field_, seen);
+  const Vec3 field = Find(picture_.field, seen);
   const Vec3 back = math::Normalized(hand.Port() - field);
   constexpr double kWaiting[] = {0.045, 0.038, 0.031, 0.024};  // [m]
   for (const double away : kWaiting) {

@@ -119,7 +119,8 @@ TubeLine::Near TubeLine::FindNearest(const Vec3& p) const {
 namespace {
 
 /// Whether jaws and shaft come there past the organs.
-bool HasRoom(const DivisionField& field, const instrument::Tool& tool, const Segment& jaws, const Vec3& tip) {
+bool HasClearance(const DivisionField& field, const instrument::Tool& tool, const Segment& jaws,
+                  const Vec3& tip) {
   const Vec3 out = math::Normalized(field.port - tip, {0, 0, 1});
   const Segment shaft{tip + tool.jaw_length * out, tip + kShaftWay * out};
   return field.clearance(jaws) >= field.care * 0.5 * tool.jaw_width &&
@@ -138,7 +139,7 @@ std::optional<double> FindClip(const DivisionField& field, double arc) {
     if (beyond * length < half || (1.0 - beyond) * length < half) continue;
     const Vec3 tip = p + beyond * length * in;
     const Segment legs{tip, tip - length * in};
-    if (!HasRoom(field, *field.applier, legs, tip)) continue;
+    if (!HasClearance(field, *field.applier, legs, tip)) continue;
     const bool is_alone = std::none_of(field.others.begin(), field.others.end(), [&](const TubeLine* other) {
       return other->FindNearest(legs).distance < field.care * kBesideLegs;
     });
@@ -174,7 +175,7 @@ std::optional<ScissorsPose> FindCut(const DivisionField& field, double arc) {
       if (meets_other || IsNearLine(blades, *field.tube, kBesideBlades, arc - kOwnLoop, arc + kOwnLoop))
         continue;
       if (blades.Clearance(field.clearance) < field.care * kBesideBlades) continue;
-      if (!HasRoom(field, *field.scissors, {tip, blades.hinge}, tip)) continue;
+      if (!HasClearance(field, *field.scissors, {tip, blades.hinge}, tip)) continue;
       return pose;
     }
   }

@@ -70,7 +70,7 @@ void HoldFilter::VisitState(core::StateArchive& archive) {
 void SurgeonAct::VisitState(core::StateArchive& archive) {
   archive.Field("kind", kind);
   archive.Field("doing", doing);
-  archive.Field("patience", patience);
+  archive.Field("time_limit", time_limit);
   archive.Field("hand", hand);
   archive.Field("place", place);
   archive.Field("hurry", hurry);

@@ -119,7 +119,7 @@ struct SurgeonAct {
     kCoagulate
   } kind = Kind::kWait;
   std::string doing;
-  double patience = 0;  ///< after which it is left [s]
+  double time_limit = 0;  ///< after which it is left [s]
   std::int32_t hand = kRight;
   Place place;
   double hurry = 1;                ///< times the skill's speed

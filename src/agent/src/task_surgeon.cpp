@@ -68,7 +68,7 @@ Input TaskSurgeon::Act(const Snapshot& seen) {
       acts_.pop_front();
       has_begun_ = false;
       pause_ = random_.Uniform(0.0, skill_.pause);
-    } else if (act_seconds_ > act.patience) {
+    } else if (act_seconds_ > act.time_limit) {
       acts_.clear();
       has_begun_ = false;
       for (HandControls& controls : controls_) controls.cut = controls.coagulate = false;

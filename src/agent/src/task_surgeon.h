@@ -92,7 +92,7 @@ struct TaskAct {
     kBurnBand        ///< until `object`, a band, parts
   } kind = Kind::kPass;
   std::string doing;
-  double patience = 6.0;  ///< then the whole plan is made anew [s]
+  double time_limit = 6.0;  ///< then the whole plan is made anew [s]
   std::int32_t hand = kLeft;
   std::int32_t object = -1;  ///< Scene::objects, or a band
   std::int32_t grip = 0;     ///< of SceneObject::grips

@@ -97,7 +97,7 @@ int TaskSurgeon::TakeTool(const Snapshot& seen, instrument::ToolKind kind) {
 void TaskSurgeon::LineUp(int hand, const TissueSpot& spot, double jaw) {
   TaskAct& act = Reach(TaskAct::Kind::kLineUp, hand);
   act.doing = "line up";
-  act.patience = 8.0;
+  act.time_limit = 8.0;
   act.spot = spot;
   act.amount = jaw;
 }
@@ -151,7 +151,7 @@ void TaskSurgeon::PressPedal(int hand, double seconds) {
 void TaskSurgeon::FollowSheet(int hand, const Vec3& p_sheet, double hurry) {
   TaskAct& act = Reach(TaskAct::Kind::kFollowSheet, hand, hurry);
   act.doing = "follow the line";
-  act.patience = 8.0;
+  act.time_limit = 8.0;
   act.p = p_sheet;
 }
 
@@ -230,7 +230,7 @@ void TaskSurgeon::BurnBand(const Snapshot& seen, int band) {
   const Vec3 before = tip - kStandOff * math::Normalized(tip - HandOf(hand).Port());
   TaskAct& reach = Reach(TaskAct::Kind::kReachBand, hand);
   reach.doing = "reach for " + cord.name;
-  reach.patience = 8.0;
+  reach.time_limit = 8.0;
   reach.p = tip;
   reach.q = along;
   ReachPoint(hand, tip, 0.3);

@@ -29,7 +29,7 @@ TaskAct& TaskSurgeon::Reach(TaskAct::Kind kind, int hand, double hurry) {
   TaskAct act;
   act.kind = kind;
   act.doing = "reach";
-  act.patience = 15.0;
+  act.time_limit = 15.0;
   act.hand = hand;
   act.hurry = hurry;
   Add(std::move(act));
@@ -79,7 +79,7 @@ void TaskSurgeon::PickUp(int hand, int object, int grip) {
   TaskAct close;
   close.kind = TaskAct::Kind::kCloseOn;
   close.doing = "close on " + name;
-  close.patience = 1.2;
+  close.time_limit = 1.2;
   close.hand = hand;
   close.object = object;
   Add(std::move(close));
@@ -270,7 +270,7 @@ void TissueSpot::VisitState(core::StateArchive& archive) {
 void TaskAct::VisitState(core::StateArchive& archive) {
   archive.Field("kind", kind);
   archive.Field("doing", doing);
-  archive.Field("patience", patience);
+  archive.Field("time_limit", time_limit);
   archive.Field("hand", hand);
   archive.Field("object", object);
   archive.Field("grip", grip);

@@ -134,7 +134,7 @@ TEST(DivisionPlan, LeavesOtherVesselsAlone) {
   EXPECT_EQ(FindNextStep(field, {}, {}).kind, Kind::kNone);
 }
 
-TEST(DivisionPlan, NeedsRoomForTheShaft) {
+TEST(DivisionPlan, NeedsClearanceForTheShaft) {
   const TubeLine tube = Straight(0.034, 0.00125);
   DivisionField field = FieldOver(tube);
   // a wall along x = 8 mm, on the gallbladder's side

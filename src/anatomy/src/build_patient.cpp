@@ -35,7 +35,7 @@ core::Status WriteOverlays(const std::filesystem::path& folder,
 }  // namespace
 
 core::Result<BuildReport> BuildPatient(const BuildOptions& options, const images::Progress& progress) {
-  const auto tell = [&](std::string_view what, double part) {
+  const auto report_progress = [&](std::string_view what, double part) {
     if (progress) progress(what, part);
   };
   const Error given_up{core::ErrorCode::kCancelled, "the patient was given up; nothing was written"};
@@ -77,7 +77,7 @@ core::Result<BuildReport> BuildPatient(const BuildOptions& options, const images
   if (!built.ok()) return built.error();
   BuildReport report;
   report.organs = std::move(built->organs);
-  tell("assembling the patient", 0.0);
+  report_progress("assembling the patient", 0.0);
   auto patient = AssemblePatient(*points, built->meshes);
   if (!patient.ok()) return patient.error();
   report.patient = std::move(*patient);
@@ -92,7 +92,7 @@ core::Result<BuildReport> BuildPatient(const BuildOptions& options, const images
       return status.error();
     report.overlays = built->overlays.size();
   }
-  tell("done", 1.0);
+  report_progress("done", 1.0);
   return report;
 }
 

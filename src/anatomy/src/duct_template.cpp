@@ -202,154 +202,196 @@ Vec3 PointAt(const std::vector<Vec3>& line, double t) {
   return math::Lerp(line[i], line[i + 1], at - static_cast<double>(i));
 }
 
+/// Ducts and arteries of one patient, each placed by those before it [mm].
+class DuctTemplate {
+ public:
+  DuctTemplate(const TriangleMesh& liver, const TriangleMesh& gallbladder, const Vec3& neck,
+               std::span<const Parameter> parameters)
+      : placer_(liver, gallbladder), neck_(neck), parameters_(parameters) {}
+
+  std::vector<contours::TubePoints> Place() {
+    PlaceHepaticDuct();
+    PlaceCysticDuct();
+    PlaceBileDuct();
+    PlaceHepaticArtery();
+    const bool is_double = IsYes("double_cystic_artery");
+    PlaceCysticArtery("", math::Normalized(Vec3{0.7, -0.4, 0.4}), is_double);
+    if (is_double) PlaceCysticArtery("_deep", math::Normalized(Vec3{-0.5, -0.6, -0.3}), is_double);
+    if (IsYes(NameOf(TubeRole::kSubvesicalDuct))) PlaceSubvesicalDuct();
+    return std::move(tubes_);
+  }
+
+ private:
+  double Number(std::string_view name) const { return NumberOf(parameters_, name); }
+  bool IsYes(std::string_view name) const { return TextOf(parameters_, name) == "yes"; }
+  bool IsInserted(std::string_view how) const { return TextOf(parameters_, "cystic_duct_insertion") == how; }
+  /// Runs beside the common hepatic duct before it joins it.
+  bool RunsBeside() const { return IsInserted("parallel") || IsInserted("low"); }
+
+  /// Common hepatic duct, from the liver down to the place where the cystic duct reaches it.
+  void PlaceHepaticDuct() {
+    hepatic_radius_ = 0.5 * Number("hepatic_duct_diameter");
+    const double cystic_length = Number("cystic_duct_length");
+    double hepatic_length = Number("hepatic_duct_length");
+    bile_length_ = Number("bile_duct_length");
+    double reach = 0.86 * cystic_length;
+    if (IsInserted("medial")) reach = 0.70 * cystic_length;
+    if (RunsBeside()) reach = 0.86 * std::max(0.35 * cystic_length, cystic_length - kInsertionMm);
+    const bool is_high = IsInserted("high");
+    const double upper = is_high ? kHighShare * hepatic_length : hepatic_length;
+    hilum_ = FindHilum(placer_, neck_, is_high ? kTowardsHighHilum : kTowardsHilum, reach, 0.96 * upper);
+    along_ = math::Normalized(hilum_.junction - hilum_.confluence, -kUpTheDuct);
+    right_ =
+        math::Normalized(neck_ - hilum_.junction - Dot(neck_ - hilum_.junction, along_) * along_, -kLeft);
+    junction_ = hilum_.junction;
+    std::vector<Vec3> way = {hilum_.confluence, hilum_.junction};
+    if (RunsBeside()) {
+      junction_ = placer_.PushOut(hilum_.junction + std::min(kInsertionMm, 0.6 * cystic_length) *
+                                                        math::Normalized(along_ + kDownTheDuct),
+                                  hepatic_radius_ + kClearMm);
+      const double further = Distance(junction_, hilum_.junction);
+      way.push_back(junction_);
+      hepatic_length += further, bile_length_ -= further;
+    } else {
+      bile_length_ += hepatic_length - upper;
+      hepatic_length = upper;
+    }
+    hepatic_ = placer_.Route(way, hepatic_radius_, hepatic_length, kLeft);
+  }
+
+  /// The last part of a low or parallel cystic duct: beside the common hepatic duct, then into it.
+  std::vector<Vec3> PlaceBesideHepaticDuct(double cystic_radius) const {
+    std::vector<Vec3> beside;
+    if (!RunsBeside()) return beside;
+    const double away = hepatic_radius_ + cystic_radius + (IsInserted("parallel") ? 0.4 : 4.0);
+    const double first =
+        Distance(hilum_.confluence, hilum_.junction) /
+        (Distance(hilum_.confluence, hilum_.junction) + Distance(hilum_.junction, junction_));
+    constexpr int kSteps = 10;
+    for (int i = 1; i <= kSteps; ++i) {
+      const double t = static_cast<double>(i) / kSteps;
+      beside.push_back(PointAt(hepatic_, first + t * (1 - first)) +
+                       (away * std::min(1.0, 5 * (1 - t))) * right_);
+    }
+    return beside;
+  }
+
+  void PlaceCysticDuct() {
+    cystic_radius_ = 0.5 * Number("cystic_duct_diameter");
+    // the duct leaves the gallbladder as a funnel, but no wider than a cystic duct may be
+    constexpr double kWidestMouthMm = 2.45;
+    const double mouth = std::max(cystic_radius_, std::min(1.25 * cystic_radius_, kWidestMouthMm));
+    std::vector<Vec3> way = {neck_};
+    if (IsInserted("medial")) {
+      const double around = hepatic_radius_ + cystic_radius_ + 0.6;
+      way.push_back(junction_ - 5.0 * along_ + around * math::Normalized(right_ + kBehind));
+      way.push_back(junction_ - 2.5 * along_ + around * kBehind);
+      way.push_back(junction_ - around * right_);
+    }
+    const std::vector<Vec3> beside = PlaceBesideHepaticDuct(cystic_radius_);
+    double along_length = 0;
+    for (std::size_t i = 1; i < beside.size(); ++i) along_length += Distance(beside[i - 1], beside[i]);
+    way.push_back(beside.empty() ? junction_ : beside.front());
+    const Vec3 sag = math::Normalized(kDownTheDuct - 0.3 * kLeft);
+    auto cystic = placer_.Route(way, cystic_radius_, Number("cystic_duct_length") - along_length, sag);
+    if (!beside.empty()) cystic.insert(cystic.end(), beside.begin() + 1, beside.end());
+    tubes_.push_back(MakeTubePoints(TubeRole::kCysticDuct, NameOf(OrganRole::kGallbladder),
+                                    NameOf(TubeRole::kCommonBileDuct), cystic, mouth, cystic_radius_));
+    tubes_.push_back(MakeTubePoints(TubeRole::kCommonHepaticDuct, NameOf(OrganRole::kLiver),
+                                    NameOf(TubeRole::kCommonBileDuct), hepatic_, 0.85 * hepatic_radius_,
+                                    hepatic_radius_));
+  }
+
+  /// Common bile duct, with its gentle curve to the pancreas.
+  void PlaceBileDuct() {
+    const double radius = 0.5 * Number("bile_duct_diameter");
+    const Vec3 end = junction_ + 0.96 * bile_length_ * kDownTheDuct;
+    const auto bile =
+        placer_.Route({junction_, math::Lerp(junction_, end, 0.5), end}, radius, bile_length_, kBehind);
+    tubes_.push_back(MakeTubePoints(TubeRole::kCommonBileDuct, NameOf(TubeRole::kCommonHepaticDuct), kOutside,
+                                    bile, radius, 0.85 * radius));
+  }
+
+  /// Right hepatic artery: from the left, behind the common hepatic duct, through the triangle into the liver.
+  void PlaceHepaticArtery() {
+    const double radius = 0.5 * Number("hepatic_artery_diameter");
+    const Vec3 crossing =
+        placer_.PushOut(PointAt(hepatic_, 0.45) + (hepatic_radius_ + radius + 0.8) * kBehind, radius + 0.5);
+    turn_ = crossing + std::min(9.0, 0.4 * Distance(neck_, hilum_.junction)) * right_ - 1.0 * kBehind;
+    if (IsYes("moynihan_hump")) {
+      // the loop comes to lie on the gallbladder's neck
+      turn_ = neck_ + (radius + cystic_radius_ + 1.5) * math::Normalized(crossing - neck_ + Vec3{0, 4, 0});
+    }
+    turn_ = placer_.PushOut(turn_, radius + kClearMm);
+    const Vec3 entry = FindVertex(placer_.Liver().Mesh(), [&](const Vec3& p) {
+      return Distance(p, crossing + 8.0 * right_ + 12.0 * kUpTheDuct) + 40.0 * (Distance(p, neck_) < 6.0);
+    });
+    const Vec3 origin = placer_.PushOut(crossing + Vec3{26, -7, -3}, radius + kClearMm);
+    artery_ = placer_.Route({origin, crossing, turn_, entry}, radius, 0.0, kBehind);
+    tubes_.push_back(MakeTubePoints(TubeRole::kRightHepaticArtery, kOutside, NameOf(OrganRole::kLiver),
+                                    artery_, radius, 0.8 * radius));
+  }
+
+  /// Cystic artery: from the hepatic artery's turn to a side of the gallbladder.
+  void PlaceCysticArtery(const char* name_ending, const Vec3& side, bool is_double) {
+    const double length = Number("cystic_artery_length");
+    const double radius = 0.5 * Number("cystic_artery_diameter") * (is_double ? 0.8 : 1.0);
+    // the second one enters another side of the gallbladder, also where neither is long enough to choose
+    constexpr double kApartMm = 8.0;
+    const Vec3 start = *std::min_element(artery_.begin(), artery_.end(), [&](const Vec3& a, const Vec3& b) {
+      return Distance(a, turn_) < Distance(b, turn_);
+    });
+    const Vec3 target = FindVertex(placer_.Gallbladder().Mesh(), [&](const Vec3& p) {
+      const double reach_miss = Distance(p, start) - 0.9 * length;
+      Vec3 outward;
+      const double depth = placer_.Liver().Find(p, outward);
+      double crowding = 0;
+      for (const Vec3& other : entries_) crowding += std::max(0.0, kApartMm - Distance(p, other));
+      return std::fabs(reach_miss) - 0.6 * Dot(p - neck_, side) + (depth < 2.0 ? 10.0 : 0.0) +
+             10.0 * crowding;
+    });
+    entries_.push_back(target);
+    const Vec3 middle = placer_.PushOut(0.5 * (start + target), radius + kClearMm);
+    tubes_.push_back(MakeTubePoints(
+        TubeRole::kCysticArtery, NameOf(TubeRole::kRightHepaticArtery), NameOf(OrganRole::kGallbladder),
+        placer_.Route({start, middle, target}, radius, length, side), radius, 0.85 * radius));
+    tubes_.back().name += name_ending;
+  }
+
+  /// Out of the liver at the bed's medial border, along it to the common hepatic duct.
+  void PlaceSubvesicalDuct() {
+    const double radius = 0.5 * Number("subvesical_duct_diameter");
+    const Vec3 goal = PointAt(hepatic_, 0.3);
+    const Vec3 start = FindVertex(placer_.Liver().Mesh(), [&](const Vec3& p) {
+      Vec3 outward;
+      const double away = placer_.Gallbladder().Find(p, outward);
+      return std::fabs(away - 4.0) + 0.5 * std::fabs(Distance(p, neck_) - 28.0) - 0.2 * Dot(p - neck_, kLeft);
+    });
+    tubes_.push_back(MakeTubePoints(
+        TubeRole::kSubvesicalDuct, NameOf(OrganRole::kLiver), NameOf(TubeRole::kCommonHepaticDuct),
+        placer_.Route({start, placer_.PushOut(0.5 * (start + goal), radius + kClearMm), goal}, radius, 0.0,
+                      kLeft),
+        radius, radius));
+  }
+
+  Placer placer_;
+  Vec3 neck_;
+  std::span<const Parameter> parameters_;
+  double hepatic_radius_ = 0, cystic_radius_ = 0, bile_length_ = 0;
+  Hilum hilum_;
+  Vec3 along_, right_;  // the common hepatic duct; towards the gallbladder
+  Vec3 junction_;       // of the cystic duct with it
+  std::vector<Vec3> hepatic_, artery_;
+  Vec3 turn_;                  // of the right hepatic artery
+  std::vector<Vec3> entries_;  // of cystic arteries
+  std::vector<contours::TubePoints> tubes_;
+};
+
 }  // namespace
 
 std::vector<contours::TubePoints> PlaceDucts(const TriangleMesh& liver, const TriangleMesh& gallbladder,
                                              const Vec3& neck, std::span<const Parameter> parameters) {
-  const Placer placer(liver, gallbladder);
-  const auto number = [&](std::string_view name) { return NumberOf(parameters, name); };
-  const auto is_yes = [&](std::string_view name) { return TextOf(parameters, name) == "yes"; };
-  const std::string& insertion = TextOf(parameters, "cystic_duct_insertion");
-  const double cystic_radius = 0.5 * number("cystic_duct_diameter");
-  // the duct leaves the gallbladder as a funnel, but no wider than a cystic duct may be
-  constexpr double kWidestMouthMm = 2.45;
-  const double cystic_mouth = std::max(cystic_radius, std::min(1.25 * cystic_radius, kWidestMouthMm));
-  const double hepatic_radius = 0.5 * number("hepatic_duct_diameter");
-  const double bile_radius = 0.5 * number("bile_duct_diameter");
-  const double cystic_length = number("cystic_duct_length");
-  const bool is_parallel = insertion == "parallel", is_low = insertion == "low";
-  double hepatic_length = number("hepatic_duct_length"), bile_length = number("bile_duct_length");
-
-  // common hepatic duct down to the place where the cystic duct reaches it
-  double reach = 0.86 * cystic_length;
-  if (insertion == "medial") reach = 0.70 * cystic_length;
-  if (is_parallel || is_low) reach = 0.86 * std::max(0.35 * cystic_length, cystic_length - kInsertionMm);
-  const double upper = insertion == "high" ? kHighShare * hepatic_length : hepatic_length;
-  const Hilum hilum =
-      FindHilum(placer, neck, insertion == "high" ? kTowardsHighHilum : kTowardsHilum, reach, 0.96 * upper);
-  const Vec3 along = math::Normalized(hilum.junction - hilum.confluence, -kUpTheDuct);
-  const Vec3 right =
-      math::Normalized(neck - hilum.junction - Dot(neck - hilum.junction, along) * along, -kLeft);
-  Vec3 junction = hilum.junction;
-  std::vector<Vec3> hepatic_way = {hilum.confluence, hilum.junction};
-  if (is_parallel || is_low) {
-    junction = placer.PushOut(
-        hilum.junction + std::min(kInsertionMm, 0.6 * cystic_length) * math::Normalized(along + kDownTheDuct),
-        hepatic_radius + kClearMm);
-    const double further = Distance(junction, hilum.junction);
-    hepatic_way.push_back(junction);
-    hepatic_length += further, bile_length -= further;
-  } else {
-    bile_length += hepatic_length - upper;
-    hepatic_length = upper;
-  }
-  const auto hepatic = placer.Route(hepatic_way, hepatic_radius, hepatic_length, kLeft);
-
-  // cystic duct
-  std::vector<Vec3> cystic_way = {neck};
-  if (insertion == "medial") {
-    const double around = hepatic_radius + cystic_radius + 0.6;
-    cystic_way.push_back(junction - 5.0 * along + around * math::Normalized(right + kBehind));
-    cystic_way.push_back(junction - 2.5 * along + around * kBehind);
-    cystic_way.push_back(junction - around * right);
-  }
-  // a low or parallel duct first comes beside the common hepatic duct, then runs along it
-  std::vector<Vec3> beside;
-  if (is_parallel || is_low) {
-    const double away = hepatic_radius + cystic_radius + (is_parallel ? 0.4 : 4.0);
-    const double first = Distance(hilum.confluence, hilum.junction) /
-                         (Distance(hilum.confluence, hilum.junction) + Distance(hilum.junction, junction));
-    constexpr int kSteps = 10;
-    for (int i = 1; i <= kSteps; ++i) {
-      const double t = static_cast<double>(i) / kSteps;
-      beside.push_back(PointAt(hepatic, first + t * (1 - first)) +
-                       (away * std::min(1.0, 5 * (1 - t))) * right);
-    }
-  }
-  double along_length = 0;
-  for (std::size_t i = 1; i < beside.size(); ++i) along_length += Distance(beside[i - 1], beside[i]);
-  cystic_way.push_back(beside.empty() ? junction : beside.front());
-  const Vec3 sag = math::Normalized(kDownTheDuct - 0.3 * kLeft);
-  auto cystic = placer.Route(cystic_way, cystic_radius, cystic_length - along_length, sag);
-  if (!beside.empty()) cystic.insert(cystic.end(), beside.begin() + 1, beside.end());
-
-  // common bile duct, with its gentle curve to the pancreas
-  const Vec3 bile_end = junction + 0.96 * bile_length * kDownTheDuct;
-  const auto bile = placer.Route({junction, math::Lerp(junction, bile_end, 0.5), bile_end}, bile_radius,
-                                 bile_length, kBehind);
-
-  std::vector<contours::TubePoints> tubes = {
-      MakeTubePoints(TubeRole::kCysticDuct, NameOf(OrganRole::kGallbladder),
-                     NameOf(TubeRole::kCommonBileDuct), cystic, cystic_mouth, cystic_radius),
-      MakeTubePoints(TubeRole::kCommonHepaticDuct, NameOf(OrganRole::kLiver),
-                     NameOf(TubeRole::kCommonBileDuct), hepatic, 0.85 * hepatic_radius, hepatic_radius),
-      MakeTubePoints(TubeRole::kCommonBileDuct, NameOf(TubeRole::kCommonHepaticDuct), kOutside, bile,
-                     bile_radius, 0.85 * bile_radius)};
-
-  // right hepatic artery: from the left, behind the common hepatic duct, through the triangle into the liver
-  const double artery_radius = 0.5 * number("hepatic_artery_diameter");
-  const Vec3 crossing = placer.PushOut(
-      PointAt(hepatic, 0.45) + (hepatic_radius + artery_radius + 0.8) * kBehind, artery_radius + 0.5);
-  Vec3 turn = crossing + std::min(9.0, 0.4 * Distance(neck, hilum.junction)) * right - 1.0 * kBehind;
-  if (is_yes("moynihan_hump")) {
-    // the loop comes to lie on the gallbladder's neck
-    turn = neck + (artery_radius + cystic_radius + 1.5) * math::Normalized(crossing - neck + Vec3{0, 4, 0});
-  }
-  turn = placer.PushOut(turn, artery_radius + kClearMm);
-  const Vec3 entry = FindVertex(liver, [&](const Vec3& p) {
-    return Distance(p, crossing + 8.0 * right + 12.0 * kUpTheDuct) + 40.0 * (Distance(p, neck) < 6.0);
-  });
-  const Vec3 origin = placer.PushOut(crossing + Vec3{26, -7, -3}, artery_radius + kClearMm);
-  const auto artery = placer.Route({origin, crossing, turn, entry}, artery_radius, 0.0, kBehind);
-  tubes.push_back(MakeTubePoints(TubeRole::kRightHepaticArtery, kOutside, NameOf(OrganRole::kLiver), artery,
-                                 artery_radius, 0.8 * artery_radius));
-
-  // cystic arteries: from the artery's turn to the gallbladder's free side, and deep to it
-  const bool is_double = is_yes("double_cystic_artery");
-  const double length = number("cystic_artery_length");
-  const double radius = 0.5 * number("cystic_artery_diameter") * (is_double ? 0.8 : 1.0);
-  // the second one enters another side of the gallbladder, also where neither is long enough to choose
-  constexpr double kApartMm = 8.0;
-  std::vector<Vec3> entries;
-  const auto place_artery = [&](const char* name_ending, const Vec3& side,
-                                const std::vector<Vec3>& from_line) {
-    const Vec3 start = *std::min_element(
-        from_line.begin(), from_line.end(),
-        [&](const Vec3& a, const Vec3& b) { return Distance(a, turn) < Distance(b, turn); });
-    const Vec3 target = FindVertex(gallbladder, [&](const Vec3& p) {
-      const double reach_miss = Distance(p, start) - 0.9 * length;
-      Vec3 outward;
-      const double depth = placer.Liver().Find(p, outward);
-      double crowding = 0;
-      for (const Vec3& other : entries) crowding += std::max(0.0, kApartMm - Distance(p, other));
-      return std::fabs(reach_miss) - 0.6 * Dot(p - neck, side) + (depth < 2.0 ? 10.0 : 0.0) + 10.0 * crowding;
-    });
-    entries.push_back(target);
-    const Vec3 middle = placer.PushOut(0.5 * (start + target), radius + kClearMm);
-    tubes.push_back(MakeTubePoints(
-        TubeRole::kCysticArtery, NameOf(TubeRole::kRightHepaticArtery), NameOf(OrganRole::kGallbladder),
-        placer.Route({start, middle, target}, radius, length, side), radius, 0.85 * radius));
-    tubes.back().name += name_ending;
-  };
-  place_artery("", math::Normalized(Vec3{0.7, -0.4, 0.4}), artery);
-  if (is_double) place_artery("_deep", math::Normalized(Vec3{-0.5, -0.6, -0.3}), artery);
-
-  if (is_yes(NameOf(TubeRole::kSubvesicalDuct))) {
-    // out of the liver at the bed's medial border, along it to the common hepatic duct
-    const double small = 0.5 * number("subvesical_duct_diameter");
-    const Vec3 goal = PointAt(hepatic, 0.3);
-    const Vec3 start = FindVertex(liver, [&](const Vec3& p) {
-      Vec3 outward;
-      const double away = placer.Gallbladder().Find(p, outward);
-      return std::fabs(away - 4.0) + 0.5 * std::fabs(Distance(p, neck) - 28.0) - 0.2 * Dot(p - neck, kLeft);
-    });
-    tubes.push_back(MakeTubePoints(
-        TubeRole::kSubvesicalDuct, NameOf(OrganRole::kLiver), NameOf(TubeRole::kCommonHepaticDuct),
-        placer.Route({start, placer.PushOut(0.5 * (start + goal), small + kClearMm), goal}, small, 0.0,
-                     kLeft),
-        small, small));
-  }
-  return tubes;
+  return DuctTemplate(liver, gallbladder, neck, parameters).Place();
 }
 
 std::vector<Tube> MakeTemplateTubes(const TriangleMesh& liver, const TriangleMesh& gallbladder,

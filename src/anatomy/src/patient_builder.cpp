@@ -104,6 +104,37 @@ Tube MakeTube(const contours::TubePoints& points, const ImageFrame& frame, const
   return tube;
 }
 
+/// Moves a patient so that its origin is the umbilicus on the insufflated wall, known by one landmark's place. Pictures show a wall
+/// that is not insufflated, so that without either the fundus goes where the scenes expect it.
+core::Status MoveToOrigin(const contours::ControlPoints& points, Patient& patient) {
+  constexpr std::string_view kUmbilicus = NameOf(LandmarkRole::kUmbilicus);
+  const bool is_placed = patient.FindLandmark(kUmbilicus) != nullptr;
+  const contours::ControlPoints usual = MakeWorldFrame();
+  const bool is_given = !points.origin_landmark.empty();
+  const std::string anchor_name = is_given    ? points.origin_landmark
+                                  : is_placed ? std::string(kUmbilicus)
+                                              : usual.origin_landmark;
+  const Landmark* anchor = patient.FindLandmark(anchor_name);
+  if (anchor == nullptr) {
+    return core::Error{core::ErrorCode::kPatientInvalid, "the origin's landmark '" + anchor_name +
+                                                             "' is not known; use fundus or infundibulum"};
+  }
+  const auto& place_mm = is_given    ? points.origin_mm
+                         : is_placed ? std::array{0.0, 0.0, 0.0}
+                                     : usual.origin_mm;
+  const Vec3 shift = kMetresPerMm * Vec3{place_mm[0], place_mm[1], place_mm[2]} - anchor->position;
+  for (Organ& organ : patient.organs) {
+    for (Vec3& p : organ.mesh.positions) p += shift;
+  }
+  for (Tube& tube : patient.tubes) {
+    for (Vec3& p : tube.line.points) p += shift;
+  }
+  for (Landmark& landmark : patient.landmarks) landmark.position += shift;
+  // both: CheckPatient refuses the name that is there twice
+  if (is_given || !is_placed) patient.landmarks.push_back({std::string(kUmbilicus), {0, 0, 0}});
+  return {};
+}
+
 }  // namespace
 
 core::Result<Patient> AssemblePatient(const contours::ControlPoints& points,
@@ -203,33 +234,7 @@ core::Result<Patient> AssemblePatient(const contours::ControlPoints& points,
     patient.landmarks.push_back({placed.name, frame.FromPixel(placed.slice, placed.pixel)});
   }
 
-  // the origin: the umbilicus on the insufflated wall, known by one landmark's place. Pictures show a wall that is
-  // not insufflated, so that without either the fundus goes where the scenes expect it
-  constexpr std::string_view kUmbilicus = NameOf(LandmarkRole::kUmbilicus);
-  const bool is_placed = patient.FindLandmark(kUmbilicus) != nullptr;
-  const contours::ControlPoints usual = MakeWorldFrame();
-  const bool is_given = !points.origin_landmark.empty();
-  const std::string anchor_name = is_given    ? points.origin_landmark
-                                  : is_placed ? std::string(kUmbilicus)
-                                              : usual.origin_landmark;
-  const Landmark* anchor = patient.FindLandmark(anchor_name);
-  if (anchor == nullptr) {
-    return core::Error{core::ErrorCode::kPatientInvalid, "the origin's landmark '" + anchor_name +
-                                                             "' is not known; use fundus or infundibulum"};
-  }
-  const auto& place_mm = is_given    ? points.origin_mm
-                         : is_placed ? std::array{0.0, 0.0, 0.0}
-                                     : usual.origin_mm;
-  const Vec3 shift = kMetresPerMm * Vec3{place_mm[0], place_mm[1], place_mm[2]} - anchor->position;
-  for (Organ& organ : patient.organs) {
-    for (Vec3& p : organ.mesh.positions) p += shift;
-  }
-  for (Tube& tube : patient.tubes) {
-    for (Vec3& p : tube.line.points) p += shift;
-  }
-  for (Landmark& landmark : patient.landmarks) landmark.position += shift;
-  // both: CheckPatient refuses the name that is there twice
-  if (is_given || !is_placed) patient.landmarks.push_back({std::string(kUmbilicus), {0, 0, 0}});
+  if (const auto status = MoveToOrigin(points, patient); !status.ok()) return status.error();
   if (const auto status = CheckPatient(patient); !status.ok()) return status.error();
   return patient;
 }

@@ -132,14 +132,14 @@ core::Result<OrganLabels> FindLabels(const images::LabelVolume& volume, const La
 
 core::Result<BuildReport> BuildPatientFromLabels(const LabelOptions& options,
                                                  const images::Progress& progress) {
-  const auto tell = [&](std::string_view what, double part) {
+  const auto report_progress = [&](std::string_view what, double part) {
     if (progress) progress(what, part);
   };
   if (!(options.spacing_mm >= 0.4 && options.spacing_mm <= 4.0) ||
       !(options.gap_mm >= 0.0 && options.gap_mm <= 5.0)) {
     return Error{ErrorCode::kUsage, "spacing_mm must lie between 0.4 and 4, gap_mm between 0 and 5"};
   }
-  tell("reading labels", 0.0);
+  report_progress("reading labels", 0.0);
   const auto volume = images::ReadLabelVolume(options.labels);
   if (!volume.ok()) return volume.error();
   std::array<double, 3> step{};
@@ -175,7 +175,7 @@ core::Result<BuildReport> BuildPatientFromLabels(const LabelOptions& options,
   BuildReport report;
   std::vector<meshing::ScalarVolume> volumes;
   for (const Part& part : parts) {
-    tell(std::string("filling ") + part.name, 0.1);
+    report_progress(std::string("filling ") + part.name, 0.1);
     auto slices = meshing::FillLabelSlices(*volume, part.label, step, pixel);
     contours::OrganReport organ;
     organ.name = part.name;
@@ -195,7 +195,7 @@ core::Result<BuildReport> BuildPatientFromLabels(const LabelOptions& options,
 
   std::vector<meshing::StructureMesh> meshes;
   for (std::size_t i = 0; i < volumes.size(); ++i) {
-    tell(std::string("meshing ") + parts[i].name, 0.3 + 0.3 * static_cast<double>(i));
+    report_progress(std::string("meshing ") + parts[i].name, 0.3 + 0.3 * static_cast<double>(i));
     meshing::MeshingSettings settings;
     settings.triangle_budget = parts[i].triangles;
     auto meshed = meshing::MeshVolume(std::move(volumes[i]), settings);
@@ -211,7 +211,7 @@ core::Result<BuildReport> BuildPatientFromLabels(const LabelOptions& options,
     meshes.push_back({parts[i].name, std::move(mesh)});
   }
 
-  tell("assembling the patient", 0.9);
+  report_progress("assembling the patient", 0.9);
   auto usual = DrawParameters(0, MakeUsualSettings());
   if (!usual.ok()) return usual.error();
   contours::ControlPoints frame = MakeWorldFrame();
@@ -226,7 +226,7 @@ core::Result<BuildReport> BuildPatientFromLabels(const LabelOptions& options,
   if (!options.output.empty()) {
     if (const auto status = WritePatient(options.output, report.patient); !status.ok()) return status.error();
   }
-  tell("done", 1.0);
+  report_progress("done", 1.0);
   return report;
 }
 

@@ -2,6 +2,7 @@
 #include "trocar/app/simulator_presenter.h"
 
 #include <algorithm>
+#include <span>
 #include <utility>
 
 #include "trocar/app/hints.h"
@@ -126,22 +127,8 @@ bool SimulatorPresenter::IsEnabled(Action action) const {
 }
 
 bool SimulatorPresenter::IsChecked(Action action) const {
-  switch (action) {
-    case Action::kToggleDemonstration:
-      return control_ != nullptr && control_->IsDemonstration();
-    case Action::kToggleForces:
-      return page_.view.has_force_arrows;
-    case Action::kToggleMask:
-      return page_.view.has_mask;
-    case Action::kToggleFulcrum:
-      return is_fulcrum_mirrored_;
-    case Action::kToggleHelp:
-      return page_.is_help_open;
-    case Action::kToggleForceFeedback:
-      return IsForceOn();
-    default:
-      return false;
-  }
+  const Handler* handler = gui::FindHandler(Handlers(), action);
+  return handler != nullptr && handler->is_checked != nullptr && handler->is_checked(*this);
 }
 
 /// What is, not what was asked for.
@@ -168,78 +155,56 @@ gui::ButtonState SimulatorPresenter::FindButton(const SimulatorCommand& command)
 
 void SimulatorPresenter::Do(Action action) {
   if (!IsEnabled(action)) return Refresh();
-  if (!DoWithHands(action) && !DoWithView(action)) screen_->DoInWindow(action);
+  const Handler* handler = gui::FindHandler(Handlers(), action);
+  if (handler == nullptr) {
+    screen_->DoInWindow(action);
+  } else {
+    handler->run(*this);
+  }
   Refresh();
 }
 
-bool SimulatorPresenter::DoWithHands(Action action) {
-  switch (action) {
-    case Action::kTogglePause:
-      SetPaused(!control_->IsPaused());
-      return true;
-    case Action::kReset:
-      Reset();
-      return true;
-    case Action::kToggleDemonstration:
-      SetDemonstration(!control_->IsDemonstration());
-      return true;
-    case Action::kNextTool:
-    case Action::kPreviousTool:
-      control_->StepTool(action == Action::kNextTool ? 1 : -1);
-      return true;
-    case Action::kFreeze:
-      control_->ToggleFreeze();
-      return true;
-    case Action::kAssistant:
-      control_->StepAssistant();
-      return true;
-    case Action::kToggleCameraHolder:
-      control_->SetCameraHolder(!control_->HasCameraHolder());
-      return true;
-    case Action::kChooseLeft:
-      control_->ChooseHand(device::kLeftHand);
-      return true;
-    case Action::kChooseRight:
-      control_->ChooseHand(device::kRightHand);
-      return true;
-    case Action::kSwitchHand:
-      control_->SwitchHand();
-      return true;
-    case Action::kToggleForceFeedback:
-      ToggleForceFeedback();
-      return true;
-    case Action::kCheckPose:
-      control_->Haptics()->BeginCheckPose();
-      return true;
-    case Action::kToggleFulcrum:
-      is_fulcrum_mirrored_ = !is_fulcrum_mirrored_;
-      if (control_ != nullptr) control_->SetMirrorFulcrum(is_fulcrum_mirrored_);
-      return true;
-    default:
-      return false;
-  }
-}
-
-bool SimulatorPresenter::DoWithView(Action action) {
-  switch (action) {
-    case Action::kToggleForces:
-      page_.view.has_force_arrows = !page_.view.has_force_arrows;
-      return true;
-    case Action::kToggleMask:
-      page_.view.has_mask = !page_.view.has_mask;
-      return true;
-    case Action::kToggleHelp:
-      page_.is_help_open = !page_.is_help_open;
-      return true;
-    case Action::kToggleTaskList:
-      page_.is_task_list_open ? CloseTaskList() : OpenTaskList();
-      return true;
-    case Action::kReleasePointer:
-      ReleaseAll();
-      return true;
-    default:
-      return false;
-  }
+std::span<const SimulatorPresenter::Handler> SimulatorPresenter::Handlers() noexcept {
+  using Self = SimulatorPresenter;
+  static constexpr Handler kHandlers[] = {
+      // the simulation
+      {Action::kTogglePause, [](Self& self) { self.SetPaused(!self.control_->IsPaused()); }},
+      {Action::kReset, [](Self& self) { self.Reset(); }},
+      {Action::kToggleDemonstration,
+       [](Self& self) { self.SetDemonstration(!self.control_->IsDemonstration()); },
+       [](const Self& self) { return self.control_ != nullptr && self.control_->IsDemonstration(); }},
+      // hands
+      {Action::kNextTool, [](Self& self) { self.control_->StepTool(1); }},
+      {Action::kPreviousTool, [](Self& self) { self.control_->StepTool(-1); }},
+      {Action::kFreeze, [](Self& self) { self.control_->ToggleFreeze(); }},
+      {Action::kAssistant, [](Self& self) { self.control_->StepAssistant(); }},
+      {Action::kToggleCameraHolder,
+       [](Self& self) { self.control_->SetCameraHolder(!self.control_->HasCameraHolder()); }},
+      {Action::kChooseLeft, [](Self& self) { self.control_->ChooseHand(device::kLeftHand); }},
+      {Action::kChooseRight, [](Self& self) { self.control_->ChooseHand(device::kRightHand); }},
+      {Action::kSwitchHand, [](Self& self) { self.control_->SwitchHand(); }},
+      {Action::kToggleForceFeedback, [](Self& self) { self.ToggleForceFeedback(); },
+       [](const Self& self) { return self.IsForceOn(); }},
+      {Action::kCheckPose, [](Self& self) { self.control_->Haptics()->BeginCheckPose(); }},
+      {Action::kToggleFulcrum,
+       [](Self& self) {
+         self.is_fulcrum_mirrored_ = !self.is_fulcrum_mirrored_;
+         if (self.control_ != nullptr) self.control_->SetMirrorFulcrum(self.is_fulcrum_mirrored_);
+       },
+       [](const Self& self) { return self.is_fulcrum_mirrored_; }},
+      // the picture and what lies over it
+      {Action::kToggleForces,
+       [](Self& self) { self.page_.view.has_force_arrows = !self.page_.view.has_force_arrows; },
+       [](const Self& self) { return self.page_.view.has_force_arrows; }},
+      {Action::kToggleMask, [](Self& self) { self.page_.view.has_mask = !self.page_.view.has_mask; },
+       [](const Self& self) { return self.page_.view.has_mask; }},
+      {Action::kToggleHelp, [](Self& self) { self.page_.is_help_open = !self.page_.is_help_open; },
+       [](const Self& self) { return self.page_.is_help_open; }},
+      {Action::kToggleTaskList,
+       [](Self& self) { self.page_.is_task_list_open ? self.CloseTaskList() : self.OpenTaskList(); }},
+      {Action::kReleasePointer, [](Self& self) { self.ReleaseAll(); }},
+  };
+  return kHandlers;
 }
 
 void SimulatorPresenter::ToggleForceFeedback() {

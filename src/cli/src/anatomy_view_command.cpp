@@ -10,6 +10,7 @@
 #include "command.h"
 #include "console.h"
 #include "trocar/render/figure_picture.h"
+#include "trocar/scene/scene.h"
 #include "trocar/view/patient_figure.h"
 
 namespace trocar::cli {
@@ -37,7 +38,7 @@ core::Result<geometry::Box> FindFocus(const anatomy::Patient& patient, const vie
                      "the patient has no \"" + name + "\" to focus on; it has " + known};
 }
 
-void PrintLegend(const anatomy::Patient& patient, bool has_regions) {
+void PrintLegend(const anatomy::Patient& patient, const view::PatientFigureOptions& options) {
   const auto row = [](const std::string& what, const render::SrgbColour& colour) {
     char text[8];
     std::snprintf(text, sizeof(text), "#%02x%02x%02x", static_cast<int>(255 * colour[0] + 0.5),
@@ -46,12 +47,12 @@ void PrintLegend(const anatomy::Patient& patient, bool has_regions) {
   };
   std::vector<std::vector<std::string>> rows = {{"in the picture", "colour"}};
   for (const anatomy::Organ& organ : patient.organs) {
-    rows.push_back(row(organ.name, view::OrganColour(organ.role)));
-    if (!has_regions) continue;
+    rows.push_back(row(organ.name, options.colours.Of(organ.role)));
+    if (!options.has_regions) continue;
     for (const anatomy::Region& region : organ.regions)
-      rows.push_back(row(organ.name + "/" + region.name, view::RegionColour(region.role)));
+      rows.push_back(row(organ.name + "/" + region.name, options.colours.Of(region.role)));
   }
-  for (const anatomy::Tube& tube : patient.tubes) rows.push_back(row(tube.name, view::TubeColour(tube)));
+  for (const anatomy::Tube& tube : patient.tubes) rows.push_back(row(tube.name, options.colours.Of(tube)));
   std::fputs(FormatTable(rows).c_str(), stdout);
 }
 
@@ -69,7 +70,12 @@ core::Status View(const ViewArguments& arguments) {
   }
   const auto patient = anatomy::ReadPatient(arguments.patient);
   if (!patient) return patient.error();
+  const auto data = scene::FindDataFolder();
+  if (!data) return data.error();
+  const auto colours = view::ReadPatientColours(*data / view::kPatientColoursFile);
+  if (!colours) return colours.error();
   view::PatientFigureOptions options;
+  options.colours = *colours;
   options.has_regions = arguments.has_regions;
   options.has_attachments = arguments.has_attachments;
   options.has_edges = arguments.has_edges;
@@ -89,7 +95,7 @@ core::Status View(const ViewArguments& arguments) {
   constexpr int kColumns = 3;
   if (auto status = render::WritePng(arguments.picture, render::TilePictures(*pictures, kColumns)); !status)
     return status;
-  PrintLegend(*patient, arguments.has_regions);
+  PrintLegend(*patient, options);
   std::printf("\nWrote %s\n", arguments.picture.c_str());
   return {};
 }

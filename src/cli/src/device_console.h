@@ -13,7 +13,7 @@
 
 namespace trocar::cli {
 
-/// Turns Ctrl+C and a terminate signal into a wish to end, so that nothing that was measured is lost.
+/// Turns Ctrl+C and a terminate signal into a request to end, so that nothing that was measured is lost.
 class InterruptWatch {
  public:
   InterruptWatch();

@@ -77,7 +77,7 @@ core::Status ReadSkippedFrom(const ControlPoints& points, const std::filesystem:
 core::Result<BuiltOrgans> BuildOrgans(const ControlPoints& points,
                                       const std::map<int, images::ColorImage>& images,
                                       const OrganOptions& options, const images::Progress& progress) {
-  const auto tell = [&](std::string_view what, double part) {
+  const auto report_progress = [&](std::string_view what, double part) {
     if (progress) progress(what, part);
   };
   if (!(options.spacing_mm >= 0.4 && options.spacing_mm <= 4.0) ||
@@ -89,11 +89,11 @@ core::Result<BuiltOrgans> BuildOrgans(const ControlPoints& points,
   std::vector<meshing::ScalarVolume> volumes;
   const auto count = static_cast<double>(points.structures.size());
   for (const Structure& structure : points.structures) {
-    tell("following contours of " + structure.name, static_cast<double>(volumes.size()) / count);
+    report_progress("following contours of " + structure.name, static_cast<double>(volumes.size()) / count);
     auto contoured = FollowContours(points, structure, images, options.stop, overlays);
     if (!contoured.ok()) return contoured.error();
     const images::Progress tell_part = [&](std::string_view what, double part) {
-      tell(what, (static_cast<double>(volumes.size()) + part) / count);
+      report_progress(what, (static_cast<double>(volumes.size()) + part) / count);
     };
     if (auto status = AddSlicesByPictures(points, structure, images, options, tell_part, *contoured); !status)
       return status.error();
@@ -119,7 +119,7 @@ core::Result<BuiltOrgans> BuildOrgans(const ControlPoints& points,
   for (std::size_t i = 0; i < volumes.size(); ++i) {
     const Structure& structure = points.structures[i];
     if (options.stop.stop_requested()) return GivenUp();
-    tell("meshing " + structure.name, static_cast<double>(i) / count);
+    report_progress("meshing " + structure.name, static_cast<double>(i) / count);
     meshing::MeshingSettings settings;
     settings.triangle_budget = structure.triangle_budget;
     auto meshed = meshing::MeshVolume(std::move(volumes[i]), settings);

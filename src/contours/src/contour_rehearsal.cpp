@@ -160,7 +160,7 @@ core::Result<std::vector<OrganRehearsal>> RehearseContours(const RehearsalOption
   for (const Structure& structure : series->structures) organs.push_back({structure.name, {}});
   std::map<int, images::ColorImage> images;
   for (int run = 0; run < options.runs; ++run) {
-    const auto tell = [&](std::string_view what, double part) {
+    const auto report = [&](std::string_view what, double part) {
       if (progress) progress(what, (run + part) / options.runs);
     };
     const std::uint64_t seed = options.seed + static_cast<std::uint64_t>(run);
@@ -173,15 +173,15 @@ core::Result<std::vector<OrganRehearsal>> RehearseContours(const RehearsalOption
       }
     }
     const std::vector<int> numbers(missing.begin(), missing.end());
-    tell("reading slices", 0.0);
+    report("reading slices", 0.0);
     auto loaded = ReadContouredSlices(*series, options.images, numbers);
     if (!loaded.ok()) return loaded.error();
     images.merge(*loaded);
 
     for (std::size_t i = 0; i < organs.size(); ++i) organs[i].runs.push_back({.seed = seed});
     for (const bool is_adapted : {false, true}) {
-      tell(is_adapted ? "building from adapted points" : "building from clicked points",
-           is_adapted ? 0.55 : 0.1);
+      report(is_adapted ? "building from adapted points" : "building from clicked points",
+             is_adapted ? 0.55 : 0.1);
       ControlPoints used = clicked;
       if (!is_adapted) {
         for (Structure& structure : used.structures) structure.adaption.max_shift_px = 0;

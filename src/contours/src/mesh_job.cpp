@@ -55,7 +55,7 @@ core::Result<OrganMesh> MakePreviewMesh(const MeshRequest& request, SliceFits& f
                                         const MeshProgress& progress) {
   const core::Stopwatch stopwatch;
   const Error given_up{ErrorCode::kCancelled, "the preview was given up"};
-  const auto tell = [&](std::string_view what, double fraction) {
+  const auto report_progress = [&](std::string_view what, double fraction) {
     return !progress || progress(what, fraction);
   };
   const auto& slices = request.content.slices;
@@ -63,7 +63,8 @@ core::Result<OrganMesh> MakePreviewMesh(const MeshRequest& request, SliceFits& f
   std::vector<std::vector<std::vector<Vec2>>> curves;  // of each slice; empty where it has holes
   int low_x = 1 << 30, low_y = low_x, high_x = -low_x, high_y = -low_x;
   for (std::size_t i = 0; i < slices.size(); ++i) {
-    if (!tell("following contours", 0.4 * static_cast<double>(i) / static_cast<double>(slices.size()))) {
+    if (!report_progress("following contours",
+                         0.4 * static_cast<double>(i) / static_cast<double>(slices.size()))) {
       return given_up;
     }
     if (slices[i].contours.empty()) continue;
@@ -89,11 +90,11 @@ core::Result<OrganMesh> MakePreviewMesh(const MeshRequest& request, SliceFits& f
   organ.level = level;
   organ.spacing_mm = CalcPreviewSpacing(extent, request.pixel_mm, level);
 
-  if (!tell("interpolating slices", 0.4)) return given_up;
+  if (!report_progress("interpolating slices", 0.4)) return given_up;
   if (level == MeshLevel::kFine) filled = InsertMatched(filled, curves, organ.spacing_mm);
   auto volume = meshing::MakeVolume(filled, request.pixel_mm, organ.spacing_mm);
   if (!volume.ok()) return Error{volume.error().code, request.content.name + ": " + volume.error().message};
-  if (!tell("making the surface", 0.7)) return given_up;
+  if (!report_progress("making the surface", 0.7)) return given_up;
   meshing::MeshingSettings settings;
   settings.triangle_budget = request.content.triangle_budget;
   settings.distance_samples = 0;

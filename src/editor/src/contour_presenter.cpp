@@ -190,20 +190,8 @@ bool ContourPresenter::Meets(ContourNeeds needs) const {
 }
 
 bool ContourPresenter::IsChecked(ContourAction action) const {
-  switch (action) {
-    case ContourAction::kPointsMode:
-      return editor_ != nullptr && !editor_->IsScissors();
-    case ContourAction::kScissorsMode:
-      return editor_ != nullptr && editor_->IsScissors();
-    case ContourAction::kToggleReference:
-      return page_.has_reference;
-    case ContourAction::kToggleGhosts:
-      return page_.has_ghosts;
-    case ContourAction::kToggleHelp:
-      return page_.is_help_open;
-    default:
-      return false;
-  }
+  const Handler* handler = gui::FindHandler(Handlers(), action);
+  return handler != nullptr && handler->is_checked != nullptr && handler->is_checked(*this);
 }
 
 gui::ButtonState ContourPresenter::FindButton(const ContourCommand& command) const {
@@ -227,7 +215,12 @@ void ContourPresenter::Do(ContourAction action) {
   const ContourNeeds needs = FindNeeds(action);
   const bool is_editors = needs == ContourNeeds::kUndo || needs == ContourNeeds::kRedo;
   if (!Meets(needs) && !(is_editors && editor_ != nullptr)) return Refresh();
-  if (DoWithFiles(action) || DoWithView(action)) return Refresh();
+  // Esc closes the help first, and is the editor's otherwise
+  const bool is_mine = action != ContourAction::kCancel || page_.is_help_open;
+  if (const Handler* handler = gui::FindHandler(Handlers(), action); handler != nullptr && is_mine) {
+    handler->run(*this);
+    return Refresh();
+  }
   if (editor_ == nullptr) return;
   const int slice = editor_->Slice();
   ShowHint("");
@@ -236,57 +229,35 @@ void ContourPresenter::Do(ContourAction action) {
   if (editor_->Slice() != slice) PrefetchNeighbours();
 }
 
-bool ContourPresenter::DoWithFiles(ContourAction action) {
-  switch (action) {
-    case ContourAction::kOpen:
-      ChooseAndOpen();
-      return true;
-    case ContourAction::kSave:
-      Save();
-      return true;
-    case ContourAction::kSaveAs:
-      SaveAs([] {});
-      return true;
-    case ContourAction::kBuild:
-      ChooseAndBuild();
-      return true;
-    default:
-      return false;
-  }
-}
-
-bool ContourPresenter::DoWithView(ContourAction action) {
-  switch (action) {
-    case ContourAction::kToggleReference:
-      page_.has_reference = !page_.has_reference;
-      return true;
-    case ContourAction::kToggleGhosts:
-      page_.has_ghosts = !page_.has_ghosts;
-      return true;
-    case ContourAction::kToggleStages:
-      page_.has_points = !page_.has_points;
-      return true;
-    case ContourAction::kToggleFill:
-      page_.has_fill = !page_.has_fill;
-      return true;
-    case ContourAction::kToggleHelp:
-      page_.is_help_open = !page_.is_help_open;
-      return true;
-    case ContourAction::kCancel:
-      if (!page_.is_help_open) return false;
-      page_.is_help_open = false;
-      return true;
-    case ContourAction::kPointsMode:
-    case ContourAction::kScissorsMode:
-      editor_->SetScissors(action == ContourAction::kScissorsMode);
-      return true;
-    case ContourAction::kToggleFullscreen:
-    case ContourAction::kQuit:
-      screen_->DoInWindow(action);
-      return true;
-    default:
-      return false;
-  }
+std::span<const ContourPresenter::Handler> ContourPresenter::Handlers() noexcept {
+  using Self = ContourPresenter;
+  static constexpr Handler kHandlers[] = {
+      // files
+      {ContourAction::kOpen, [](Self& self) { self.ChooseAndOpen(); }},
+      {ContourAction::kSave, [](Self& self) { self.Save(); }},
+      {ContourAction::kSaveAs, [](Self& self) { self.SaveAs([] {}); }},
+      {ContourAction::kBuild, [](Self& self) { self.ChooseAndBuild(); }},
+      // the picture and what lies over it
+      {ContourAction::kToggleReference,
+       [](Self& self) { self.page_.has_reference = !self.page_.has_reference; },
+       [](const Self& self) { return self.page_.has_reference; }},
+      {ContourAction::kToggleGhosts, [](Self& self) { self.page_.has_ghosts = !self.page_.has_ghosts; },
+       [](const Self& self) { return self.page_.has_ghosts; }},
+      {ContourAction::kToggleStages, [](Self& self) { self.page_.has_points = !self.page_.has_points; }},
+      {ContourAction::kToggleFill, [](Self& self) { self.page_.has_fill = !self.page_.has_fill; }},
+      {ContourAction::kToggleHelp, [](Self& self) { self.page_.is_help_open = !self.page_.is_help_open; },
+       [](const Self& self) { return self.page_.is_help_open; }},
+      {ContourAction::kCancel, [](Self& self) { self.page_.is_help_open = false; }},
+      {ContourAction::kPointsMode, [](Self& self) { self.editor_->SetScissors(false); },
+       [](const Self& self) { return self.editor_ != nullptr && !self.editor_->IsScissors(); }},
+      {ContourAction::kScissorsMode, [](Self& self) { self.editor_->SetScissors(true); },
+       [](const Self& self) { return self.editor_ != nullptr && self.editor_->IsScissors(); }},
+      // the window's own
+      {ContourAction::kToggleFullscreen,
+       [](Self& self) { self.screen_->DoInWindow(ContourAction::kToggleFullscreen); }},
+      {ContourAction::kQuit, [](Self& self) { self.screen_->DoInWindow(ContourAction::kQuit); }},
+  };
+  return kHandlers;
 }
 
 bool ContourPresenter::SetPart(std::string_view part, bool is_on) {

@@ -101,7 +101,7 @@ view::PatientFigure PatientEditor::MakeFigure(const std::optional<render::Surfac
   }
   if (tool == EditorTool::kTubes && tube_) {
     const anatomy::Tube& tube = GetPatient().tubes[*tube_];
-    figure.surfaces[organs + *tube_].colours = {Lighter(view::TubeColour(tube))};
+    figure.surfaces[organs + *tube_].colours = {Lighter(look.colours.Of(tube))};
     figure.marks.lines.push_back({tube.line.points, kChosen, 1.5, true});
     for (std::size_t i = 0; i < tube.line.points.size(); ++i) {
       const bool is_chosen = point_ == i;

@@ -84,7 +84,12 @@ void PatientEditorPresenter::Load(bool is_recovered) {
 void PatientEditorPresenter::FinishLoading() {
   auto document = loading_.Take();
   if (!document) return Fail(document.error());
+  const auto data = scene::FindDataFolder();
+  if (!data) return Fail(data.error());
+  const auto colours = view::ReadPatientColours(*data / view::kPatientColoursFile);
+  if (!colours) return Fail(colours.error());
   editor_ = std::make_unique<PatientEditor>(std::move(document).value());
+  editor_->look.colours = *colours;
   editor_->tool = options_.tool;
   const auto& tubes = editor_->GetPatient().tubes;
   for (std::uint32_t i = 0; i < tubes.size(); ++i) {

@@ -54,7 +54,7 @@ void AddRegions(const PatientEditor& editor, PatientPanelPage& page) {
 void AddTubes(const PatientEditor& editor, PatientPanelPage& page) {
   const anatomy::Patient& patient = editor.GetPatient();
   for (const anatomy::Tube& tube : patient.tubes)
-    page.tubes.push_back({Spoken(tube.name), view::TubeColour(tube), !tube.is_seen});
+    page.tubes.push_back({Spoken(tube.name), editor.look.colours.Of(tube), !tube.is_seen});
   for (const std::string& name : anatomy::FindMissingTubes(patient))
     page.missing.names.push_back(Spoken(name));
   page.can_add = !page.missing.names.empty();

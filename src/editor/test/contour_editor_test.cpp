@@ -19,11 +19,7 @@ namespace {
 class Editor : public testing::Test {
  protected:
   void SetUp() override {
-    WriteDisc(folder_.Path() / "slices");
-    contours::WorkspaceOptions options;
-    options.images = folder_.Path() / "slices";
-    options.series = DiscSeries();
-    auto opened = contours::ContourWorkspace::Open(options);
+    auto opened = OpenDisc(folder_.Path() / "slices");
     ASSERT_TRUE(opened.ok()) << opened.error().Text();
     workspace_.emplace(std::move(*opened));
     editor_.emplace(*workspace_);

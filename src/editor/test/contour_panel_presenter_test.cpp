@@ -11,7 +11,7 @@
 namespace trocar::editor {
 namespace {
 
-/// Remembers what it was told, as a panel without widgets.
+/// Keeps what it was given, as a panel without widgets.
 struct FakeContourPanel : ContourPanelScreen {
   void Show(const ContourPanelPage& shown) override { page = shown; }
   void ShowSurfaces(std::vector<render::FigureSurface> shown, bool is_fit_wanted) override {
@@ -30,11 +30,7 @@ struct FakeContourPanel : ContourPanelScreen {
 class ContourPanelTest : public testing::Test {
  protected:
   void SetUp() override {
-    WriteDisc(folder_.Path() / "slices");
-    contours::WorkspaceOptions options;
-    options.images = folder_.Path() / "slices";
-    options.series = DiscSeries();
-    auto opened = contours::ContourWorkspace::Open(options);
+    auto opened = OpenDisc(folder_.Path() / "slices");
     ASSERT_TRUE(opened.ok()) << opened.error().Text();
     workspace_.emplace(std::move(*opened));
     editor_.emplace(*workspace_);

@@ -3,9 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include <condition_variable>
-#include <mutex>
-
+#include "awaited_flags.h"
 #include "disc_series.h"
 #include "trocar/contours/overlay.h"
 #include "trocar/core/safe_file.h"
@@ -14,7 +12,7 @@
 namespace trocar::editor {
 namespace {
 
-/// Remembers what it was told, as a window without widgets.
+/// Keeps what it was given, as a window without widgets.
 struct FakeScreen : ContourScreen {
   void Show(const ContourPage& shown) override { page = shown; }
   void UseEditor(ContourEditor* used) override { editor = used; }
@@ -63,25 +61,13 @@ class ContourPresenterTest : public testing::Test {
   }
 
   void Begin() {
-    const auto wake = [this](bool& flag) {
-      return [this, &flag] {
-        const std::lock_guard lock(mutex_);
-        flag = true;
-        changed_.notify_all();
-      };
-    };
     presenter_.emplace(options_, folder_.Path() / "user", screen_,
-                       ContourWakes{wake(is_loaded_), wake(is_built_), [] {}, [] {}});
+                       ContourWakes{flags_.Raise(is_loaded_), flags_.Raise(is_built_), [] {}, [] {}});
     presenter_->Start();
   }
   void Load() {
-    Await(is_loaded_);
+    flags_.Await(is_loaded_);
     presenter_->FinishLoading();
-  }
-  void Await(bool& flag) {
-    std::unique_lock lock(mutex_);
-    changed_.wait(lock, [&] { return flag; });
-    flag = false;
   }
   void Open() {
     Begin();
@@ -100,9 +86,8 @@ class ContourPresenterTest : public testing::Test {
   test::TemporaryFolder folder_;
   ContourOptions options_;
   FakeScreen screen_;
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  bool is_loaded_ = false, is_built_ = false;  // guarded by mutex_
+  AwaitedFlags flags_;
+  bool is_loaded_ = false, is_built_ = false;  // raised by flags_
   std::optional<ContourPresenter> presenter_;  // ends before what it uses
 };
 
@@ -200,14 +185,9 @@ TEST_F(ContourPresenterTest, TwoWindowsDoNotKeepOneSideFile) {
   Open();
   FakeScreen other_screen;
   ContourPresenter other(options_, folder_.Path() / "user", other_screen,
-                         ContourWakes{[this] {
-                                        const std::lock_guard lock(mutex_);
-                                        is_loaded_ = true;
-                                        changed_.notify_all();
-                                      },
-                                      [] {}, [] {}, [] {}});
+                         ContourWakes{flags_.Raise(is_loaded_), [] {}, [] {}, [] {}});
   other.Start();
-  Await(is_loaded_);
+  flags_.Await(is_loaded_);
   other.FinishLoading();
   ASSERT_EQ(other_screen.questions.size(), 1u);
   EXPECT_FALSE(other.SideFile().IsKeeping());
@@ -227,7 +207,7 @@ TEST_F(ContourPresenterTest, BuildsBesideTheWindowAndCanGiveUp) {
   EXPECT_TRUE(presenter_->OnClose()) << "the build is not lost without a question";
   presenter_->StopBuild();
   EXPECT_TRUE(screen_.page.is_stopping);
-  Await(is_built_);
+  flags_.Await(is_built_);
   presenter_->FinishBuild();
   EXPECT_FALSE(screen_.page.is_building);
   EXPECT_TRUE(presenter_->IsEnabled(ContourAction::kBuild));

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <string>
 
+#include "trocar/contours/contour_workspace.h"
 #include "trocar/images/image_series.h"
 #include "trocar/images/png_file.h"
 
@@ -33,6 +34,15 @@ inline images::ImageSeriesOptions DiscSeries() {
   series.pixel_mm = 0.5, series.slice_mm = 2;
   series.axes = {"left", "posterior", "inferior"};
   return series;
+}
+
+/// New contours on them.
+inline core::Result<contours::ContourWorkspace> OpenDisc(const std::filesystem::path& folder) {
+  WriteDisc(folder);
+  contours::WorkspaceOptions options;
+  options.images = folder;
+  options.series = DiscSeries();
+  return contours::ContourWorkspace::Open(options);
 }
 
 }  // namespace trocar::editor

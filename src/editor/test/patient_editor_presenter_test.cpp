@@ -3,10 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include <condition_variable>
 #include <filesystem>
-#include <mutex>
 
+#include "awaited_flags.h"
 #include "trocar_test/temporary_folder.h"
 
 namespace trocar::editor {
@@ -14,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Remembers what it was told, as a window without widgets.
+/// Keeps what it was given, as a window without widgets.
 struct FakePatientScreen : PatientScreen {
   void Show(const PatientPage& shown) override { page = shown; }
   void UseEditor(PatientEditor* used) override { editor = used; }
@@ -59,23 +58,11 @@ class PatientPresenterTest : public testing::Test {
     fs::copy(kDelivered, options_.patient, fs::copy_options::recursive);
   }
   void Begin() {
-    const auto wake = [this](bool& flag) {
-      return [this, &flag] {
-        const std::lock_guard lock(mutex_);
-        flag = true;
-        changed_.notify_all();
-      };
-    };
-    presenter_.emplace(options_, screen_, PatientWakes{wake(is_loaded_), wake(is_checked_)});
+    presenter_.emplace(options_, screen_, PatientWakes{flags_.Raise(is_loaded_), flags_.Raise(is_checked_)});
     presenter_->Start();
   }
-  void Await(bool& flag) {
-    std::unique_lock lock(mutex_);
-    changed_.wait(lock, [&] { return flag; });
-    flag = false;
-  }
   void Load() {
-    Await(is_loaded_);
+    flags_.Await(is_loaded_);
     presenter_->FinishLoading();
   }
   void Open() {
@@ -95,9 +82,8 @@ class PatientPresenterTest : public testing::Test {
   test::TemporaryFolder folder_;
   PatientEditorOptions options_;
   FakePatientScreen screen_;
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  bool is_loaded_ = false, is_checked_ = false;      // guarded by mutex_
+  AwaitedFlags flags_;
+  bool is_loaded_ = false, is_checked_ = false;      // raised by flags_
   std::optional<PatientEditorPresenter> presenter_;  // ends before what it uses
 };
 
@@ -167,9 +153,9 @@ TEST_F(PatientPresenterTest, ChecksBesideTheWindowAfterTheLastEdit) {
   EXPECT_FALSE(presenter_->OnTimer(PatientTimer::kCheck));
   Edit();
   EXPECT_FALSE(presenter_->OnTimer(PatientTimer::kCheck)) << "while the first one runs";
-  Await(is_checked_);
+  flags_.Await(is_checked_);
   presenter_->FinishCheck();
-  Await(is_checked_);
+  flags_.Await(is_checked_);
   presenter_->FinishCheck();
   EXPECT_EQ(screen_.reports.size(), 2u);
   screen_.timers.clear();

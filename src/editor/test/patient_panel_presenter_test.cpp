@@ -8,7 +8,7 @@
 namespace trocar::editor {
 namespace {
 
-/// Remembers what it was told, as a panel without widgets.
+/// Keeps what it was given, as a panel without widgets.
 struct FakePatientPanel : PatientPanelScreen {
   void Show(const PatientPanelPage& shown) override { page = shown; }
   void OnEdited() override { ++edits; }

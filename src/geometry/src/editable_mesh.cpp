@@ -123,7 +123,7 @@ void EditableMesh::ClearJournal() noexcept {
 
 std::uint32_t EditableMesh::AddVertex(const VertexSource& source, const Vec3& rest,
                                       const Vec3& position) noexcept {
-  TROCAR_ASSERT(HasRoom(1, 0));
+  TROCAR_ASSERT(HasCapacity(1, 0));
   rest_.push_back(rest);
   positions_.push_back(position);
   sources_.push_back(source);
@@ -132,7 +132,7 @@ std::uint32_t EditableMesh::AddVertex(const VertexSource& source, const Vec3& re
 }
 
 std::uint32_t EditableMesh::AddTriangle(const Triangle& corners, TriangleKind kind) noexcept {
-  TROCAR_ASSERT(HasRoom(0, 1));
+  TROCAR_ASSERT(HasCapacity(0, 1));
   const auto t = static_cast<std::uint32_t>(triangles_.size());
   triangles_.push_back(corners);
   kinds_.push_back(kind);
@@ -153,7 +153,7 @@ void EditableMesh::Join(std::uint32_t h, std::uint32_t g) noexcept {
 }
 
 std::uint32_t EditableMesh::SplitEdge(std::uint32_t h, double t) noexcept {
-  TROCAR_ASSERT(HasRoom(1, 2) && t > 0.0 && t < 1.0);
+  TROCAR_ASSERT(HasCapacity(1, 2) && t > 0.0 && t < 1.0);
   const std::uint32_t a = From(h), b = To(h), c = Opposite(h);
   const std::uint32_t g = twins_[h];
   const std::uint8_t is_scored = scored_[h];
@@ -197,7 +197,7 @@ std::uint32_t EditableMesh::SplitEdge(std::uint32_t h, double t) noexcept {
 }
 
 std::uint32_t EditableMesh::SplitTriangle(std::uint32_t t, const std::array<double, 3>& weights) noexcept {
-  TROCAR_ASSERT(HasRoom(1, 2));
+  TROCAR_ASSERT(HasCapacity(1, 2));
   const Triangle corners = triangles_[t];
   const auto at = [&](const std::vector<Vec3>& x) {
     return weights[0] * x[corners[0]] + weights[1] * x[corners[1]] + weights[2] * x[corners[2]];

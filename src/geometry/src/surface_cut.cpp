@@ -132,7 +132,7 @@ void SurfaceCutter::Content::CutAnew(const FlatSweep& sweep) noexcept {
 void SurfaceCutter::Content::CutPath(const FlatSweep& sweep) noexcept {
   if (finder.Chosen().empty()) return;
   report.crossings += finder.Chosen().size();
-  // first what lies near to a vertex, so that no edge is split whose end is in the path already
+  // crossings near a vertex come first: an edge whose end is already in the path is then not split
   for (const auto index : finder.Chosen()) {
     const Crossing& crossing = finder.Crossings()[index];
     if (crossing.t <= settings.snap || crossing.t >= 1.0 - settings.snap) {
@@ -151,7 +151,7 @@ void SurfaceCutter::Content::SplitOrSnap(const Crossing& crossing) noexcept {
   TROCAR_ASSERT(h != kNone);
   for (const double t : {crossing.t, 0.5}) {
     if (!MaySplit(*mesh, h, t, settings.min_angle)) continue;
-    if (!mesh->HasRoom(1, 2)) {
+    if (!mesh->HasCapacity(1, 2)) {
       report.is_full = true;
       break;
     }
@@ -228,8 +228,8 @@ void SurfaceCutter::Content::OpenWithoutWalls() noexcept {
     parted.push_back(v);
   };
   for (const auto v : on) see(v);
-  // whoever is parted takes all of its scored edges along, and who stands at their other ends: where the pools were full,
-  // edges wait that are not of this path
+  // a vertex that is parted opens all of its scored edges, and with them the vertices at their other ends. Some of these edges may
+  // be of an earlier path: they were scored when the pools were full
   for (std::size_t next = 0; next < parted.size(); ++next) {
     const std::uint32_t v = parted[next];
     copies += static_cast<std::size_t>(mesh->CountCopies(v));
@@ -239,7 +239,7 @@ void SurfaceCutter::Content::OpenWithoutWalls() noexcept {
       if (v < mesh->To(h)) scored.push_back(h);
     });
   }
-  if (!mesh->HasRoom(copies, 0)) {
+  if (!mesh->HasCapacity(copies, 0)) {
     report.is_full = true;
     return;
   }
@@ -279,7 +279,7 @@ std::uint32_t SurfaceCutter::Content::FindEnd(const Pierced& at, const CutFront&
 std::uint32_t SurfaceCutter::Content::InsertAt(const Pierced& at) noexcept {
   const auto weights = CalcWeights(*mesh, at.triangle, at.point);
   if (!MayInsert(*mesh, at.triangle, weights, kInsertAngles * settings.min_angle)) return kNone;
-  if (!mesh->HasRoom(1, 2)) {
+  if (!mesh->HasCapacity(1, 2)) {
     report.is_full = true;
     return kNone;
   }

@@ -187,7 +187,7 @@ bool TrenchBuilder::PlanBottoms(std::span<const std::uint32_t> path, const FlatS
     vertices_.push_back(v);
   };
   for (const auto v : path) see(v);
-  // whoever is parted takes all of its scored edges along
+  // a vertex that is parted opens all of its scored edges
   for (std::size_t next = 0; next < vertices_.size(); ++next) {
     const std::uint32_t v = vertices_[next];
     mesh.ForEachAround(v, [&](std::uint32_t h) {
@@ -272,7 +272,7 @@ void TrenchBuilder::Open(std::span<const std::uint32_t> path, const FlatSweep& s
     copies += static_cast<std::size_t>(mesh.CountCopies(v));
     bottoms += state_[v] == Bottom::kPlanned ? 1 : 0;
   }
-  if (copies > 0 && !mesh.HasRoom(copies + bottoms, 4 * scored_.size())) {
+  if (copies > 0 && !mesh.HasCapacity(copies + bottoms, 4 * scored_.size())) {
     report.is_full = true;
     return;
   }

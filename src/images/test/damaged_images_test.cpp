@@ -131,9 +131,9 @@ void AddGoodSlices(const fs::path& folder) {
     ASSERT_TRUE(core::WriteFile(folder / ("s" + std::to_string(i) + ".png"), MakePng(8, 6, 6)).ok());
 }
 
-std::vector<Case> MakeCases() {
+std::vector<Case> MakeNiftiCases() {
   const float nan = std::nanf("");
-  std::vector<Case> cases = {
+  return {
       {"NiftiCutInHeader", ErrorCode::kImageUndecodable, "a.nii", [] { return Cut(MakeNifti(), 200); }},
       {"NiftiCutInSamples", ErrorCode::kImageTruncated, "a.nii", [] { return Cut(MakeNifti(), 500); }},
       {"Nifti200Dimensions", ErrorCode::kImageUndecodable, "a.nii", NiftiWith<std::int16_t>(40, 200)},
@@ -187,6 +187,11 @@ std::vector<Case> MakeCases() {
       {"GzipThatCannotHoldItsVolume", ErrorCode::kImageTruncated, "a.nii.gz",
        [] { return Gzip(NiftiWithSides(512, 512, 60)()); }},
       {"GzipOfSomethingElse", ErrorCode::kImageUndecodable, "a.nii.gz", [] { return Gzip("a letter home"); }},
+  };
+}
+
+std::vector<Case> MakeNrrdAndMetaCases() {
+  return {
       {"Empty", ErrorCode::kImageUndecodable, "a.nrrd", [] { return std::string(); }},
       {"NrrdCutInHeader", ErrorCode::kImageTruncated, "a.nrrd", Nrrd({}, false)},
       {"NrrdNegativeSide", ErrorCode::kImageUndecodable, "a.nrrd", Nrrd({"sizes: 8 -6 4"})},
@@ -228,6 +233,11 @@ std::vector<Case> MakeCases() {
       {"MetaDataInAnotherFolder", ErrorCode::kImagePathUnsafe, "a.mhd", Meta({}, "../a.raw")},
       {"MetaList", ErrorCode::kImageUnsupported, "a.mhd", Meta({}, "LIST")},
       {"MetaNumberedFiles", ErrorCode::kImageUnsupported, "a.mhd", Meta({}, "a%03d.raw 1 4 1")},
+  };
+}
+
+std::vector<Case> MakePictureCases() {
+  return {
       {"PngBomb65535", ErrorCode::kImageTooLarge, "a.png", [] { return MakePng(65535, 65535, 0); }},
       {"PngBeyondTheBudget", ErrorCode::kImageTooLarge, "a.png", [] { return MakePng(16000, 16000, 0); }},
       {"PngThatCannotHoldItsPixels", ErrorCode::kImageTruncated, "a.png",
@@ -260,6 +270,11 @@ std::vector<Case> MakeCases() {
       {"TiffStripOutside", ErrorCode::kImageUndecodable, "a.tif",
        [] { return MakeTiff(64, 64, 1, 1u << 30); }},
       {"TiffLyingBomb", ErrorCode::kImageTooLarge, "a.tif", [] { return MakeTiff(60000, 60000, 1, 8); }},
+  };
+}
+
+std::vector<Case> MakeFolderCases() {
+  return {
       {"SliceIsALink",
        ErrorCode::kImagePathUnsafe,
        "",
@@ -316,6 +331,11 @@ std::vector<Case> MakeCases() {
          ASSERT_TRUE(core::WriteFile(folder / "1", MakeDicom({})).ok());
          fs::create_symlink("1", folder / "2");
        }},
+  };
+}
+
+std::vector<Case> MakeDicomCases() {
+  return {
       {"DicomCutInElements", ErrorCode::kImageTruncated, "a.dcm", [] { return Cut(MakeDicom({}), 400); }},
       {"DicomCutInPixels", ErrorCode::kImageTruncated, "a.dcm",
        [] {
@@ -388,6 +408,15 @@ std::vector<Case> MakeCases() {
       {"DicomWithThePreambleOfAPng", ErrorCode::kImageUndecodable, "a.dcm",
        [] { return MakeDicom({}).replace(0, 8, "\x89PNG\r\n\x1a\n"); }},
   };
+}
+
+std::vector<Case> MakeCases() {
+  std::vector<Case> cases;
+  for (const auto& make :
+       {MakeNiftiCases, MakeNrrdAndMetaCases, MakePictureCases, MakeFolderCases, MakeDicomCases}) {
+    const std::vector<Case> some = make();
+    cases.insert(cases.end(), some.begin(), some.end());
+  }
   return cases;
 }
 

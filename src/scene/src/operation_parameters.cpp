@@ -39,6 +39,10 @@ constexpr NumberRange kJoules{0.001, 100000};
 constexpr NumberRange kArea{0, 0.001};
 constexpr NumberRange kSmoke{0, 1};
 constexpr NumberRange kFlowRate{0, 0.01};
+constexpr NumberRange kSpeed{0, 1};
+constexpr NumberRange kJawAngle{0, 1};
+constexpr NumberRange kDepth{0, 0.3};
+constexpr NumberRange kAllowedSeconds{0, 600};
 
 std::size_t Index(Fluid fluid) {
   return static_cast<std::size_t>(fluid);
@@ -87,7 +91,8 @@ void ReadVessels(const JsonView& root, OperationParameters& made) {
 void ReadClips(const JsonView& root, OperationParameters& made) {
   const JsonView group = root.Object("clips");
   group.AllowOnly({"pressure_pa", "pull_n", "crossed_share", "thick_radius_m", "partial_power",
-                   "slip_speed_m_s", "fastest_slip_m_s", "source"});
+                   "slip_speed_m_s", "fastest_slip_m_s", "width_m", "height_m", "gap_m", "catch_beside_m",
+                   "drawn_away_m", "pulled_before_m", "source"});
   (void)group.Text("source");
   made.vessels.clips.pressure = group.Number("pressure_pa", kClipPressure);
   made.vessels.clips.pull = group.Number("pull_n", kClipPull);
@@ -96,6 +101,39 @@ void ReadClips(const JsonView& root, OperationParameters& made) {
   made.vessels.clips.partial_power = group.Number("partial_power", kPower);
   made.vessels.clips.slip_speed = group.Number("slip_speed_m_s", kSlipSpeed);
   made.vessels.clips.fastest_slip = group.Number("fastest_slip_m_s", kSlipSpeed);
+  surgery::ClipShape& shape = made.vessels.clip_shape;
+  shape.width = group.Number("width_m", kLength);
+  shape.height = group.Number("height_m", kLength);
+  shape.gap = group.Number("gap_m", kLength);
+  shape.catch_beside = group.Number("catch_beside_m", kLength);
+  shape.drawn_away = group.Number("drawn_away_m", kLength);
+  shape.pulled_before = group.Number("pulled_before_m", kLength);
+}
+
+void ReadStones(const JsonView& root, OperationParameters& made) {
+  const JsonView group = root.Object("stones");
+  group.AllowOnly({"out_speed_m_s", "out_gap_m", "suction_reach_m", "closed_share", "open_share",
+                   "let_go_rad", "near_hinge_share", "jaw_reach_share", "source"});
+  (void)group.Text("source");
+  made.stones.out_speed = group.Number("out_speed_m_s", kSpeed);
+  made.stones.out_gap = group.Number("out_gap_m", kLength);
+  made.stones.suction_reach = group.Number("suction_reach_m", kLength);
+  made.stones.closed_share = group.Number("closed_share", kShare);
+  made.stones.open_share = group.Number("open_share", kShare);
+  made.stones.let_go = group.Number("let_go_rad", kJawAngle);
+  made.stones.near_hinge = group.Number("near_hinge_share", kShare);
+  made.stones.jaw_reach = group.Number("jaw_reach_share", kShare);
+}
+
+void ReadJudgement(const JsonView& root, OperationParameters& made) {
+  const JsonView group = root.Object("judgement");
+  group.AllowOnly({"much_blood_m3", "near_duct_m", "idle_s", "tip_in_m", "blind_s", "source"});
+  (void)group.Text("source");
+  made.judgement.much_blood = group.Number("much_blood_m3", kVolume);
+  made.judgement.near_duct = group.Number("near_duct_m", kLength);
+  made.judgement.idle_seconds = group.Number("idle_s", kAllowedSeconds);
+  made.judgement.tip_in = group.Number("tip_in_m", kDepth);
+  made.judgement.blind_seconds = group.Number("blind_s", kAllowedSeconds);
 }
 
 void ReadBed(const JsonView& root, OperationParameters& made) {
@@ -164,8 +202,8 @@ core::Result<OperationParameters> ReadOperationParameters(const std::filesystem:
   auto document = core::JsonDocument::Read(path);
   if (!document.ok()) return document.error();
   const JsonView root = document->Root();
-  root.AllowOnly({"format", "version", "about", "fluids", "supplies", "vessels", "clips", "bed", "heat",
-                  "electrode", "suction"});
+  root.AllowOnly({"format", "version", "about", "fluids", "supplies", "vessels", "clips", "stones", "bed",
+                  "heat", "electrode", "suction", "judgement"});
   if (root.Text("format") != "trocar-operation") root.Complain("format must be \"trocar-operation\"");
   if (root.Integer("version") != 1) root.Complain("version must be 1");
   OperationParameters made;
@@ -173,10 +211,12 @@ core::Result<OperationParameters> ReadOperationParameters(const std::filesystem:
   ReadSupplies(root, made);
   ReadVessels(root, made);
   ReadClips(root, made);
+  ReadStones(root, made);
   ReadBed(root, made);
   ReadHeat(root, made);
   ReadElectrode(root, made);
   ReadSuction(root, made);
+  ReadJudgement(root, made);
   if (const auto status = document->Check(); !status.ok()) return status.error();
   return made;
 }

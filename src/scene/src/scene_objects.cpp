@@ -9,7 +9,7 @@ namespace trocar::scene {
 namespace {
 
 using math::Vec3;
-using surgery::RigidShape;
+using rigid::RigidShape;
 
 constexpr double kDegree = M_PI / 180.0;
 constexpr std::size_t kMaxPathPoints = 200;

@@ -71,6 +71,35 @@ class RulesReader {
     task_.regions.push_back(std::move(region));
   }
 
+  /// What the laparoscope has to see, from where.
+  void ReadView(const JsonView& view, const std::string& item, Condition& c) const {
+    c.regions = ReadRegions(view, item);
+    c.angle = view.NumberOr("within_deg", 5.0, range::kWithinDeg) * kDegree;
+    c.facing_angle = view.NumberOr("facing_deg", 180.0, range::kFacingDeg) * kDegree;
+    c.near = 0.001 * view.NumberOr("near_mm", 0.0, range::kHeightMm);
+    c.far = 0.001 * view.NumberOr("far_mm", 1000.0, range::kHeightMm);
+    if (c.near >= c.far) view.Complain("near_mm must be below far_mm", ErrorCode::kSceneInvalid);
+  }
+
+  /// An event, and in or outside of which regions it counts.
+  void ReadPlacedEvent(const JsonView& view, const std::string& item, Condition& c) const {
+    c.event = ReadEvent(view);
+    if (view.Has("region") || view.Has("regions")) c.regions = ReadRegions(view, item);
+    c.is_outside = view.BooleanOr("outside", false);
+    if (!c.regions.empty() && c.event != static_cast<int>(EventKind::kClipClosed) &&
+        c.event != static_cast<int>(EventKind::kTubeCut))
+      view.Complain("only clip_closed and tube_cut have a place", ErrorCode::kSceneInvalid);
+  }
+
+  /// A sheet, and how far a cut may be off its line.
+  void ReadCutSheet(const JsonView& view, const std::string& item, Condition& c) const {
+    c.sheet = FindName(view, scene_.model ? scene_.model->sheets : std::vector<ModelSheet>(),
+                       Fill(view.Text("sheet"), item), "sheet");
+    if (c.kind == ConditionKind::kCutOffLine)
+      c.amount = 1e-3 * view.Number("distance_mm", range::kCutDistanceMm);
+    if (c.kind == ConditionKind::kCutAreaOff) c.amount = 1e-6 * view.Number("area_mm2", range::kCutAreaMm2);
+  }
+
   Condition ReadCondition(const JsonView& view, const std::string& item) const {
     view.AllowOnly({"kind",       "about",   "object",  "other",       "hand",    "from",    "to",
                     "region",     "regions", "seconds", "height_mm",   "fall_mm", "newtons", "within_deg",
@@ -120,12 +149,7 @@ class RulesReader {
         c.hand = hand("hand"), c.regions = ReadRegions(view, item);
         break;
       case ConditionKind::kCameraSees:
-        c.regions = ReadRegions(view, item);
-        c.angle = view.NumberOr("within_deg", 5.0, range::kWithinDeg) * kDegree;
-        c.facing_angle = view.NumberOr("facing_deg", 180.0, range::kFacingDeg) * kDegree;
-        c.near = 0.001 * view.NumberOr("near_mm", 0.0, range::kHeightMm);
-        c.far = 0.001 * view.NumberOr("far_mm", 1000.0, range::kHeightMm);
-        if (c.near >= c.far) view.Complain("near_mm must be below far_mm", ErrorCode::kSceneInvalid);
+        ReadView(view, item, c);
         break;
       case ConditionKind::kTouches:
         object(), c.other = FindName(view, scene_.objects, Fill(view.Text("other"), item), "object");
@@ -147,12 +171,8 @@ class RulesReader {
         c.hand = hand("hand"), c.amount = view.Number("newtons", range::kNewtons);
         break;
       case ConditionKind::kEvent:
-        c.hand = hand("hand"), c.event = ReadEvent(view);
-        if (view.Has("region") || view.Has("regions")) c.regions = ReadRegions(view, item);
-        c.is_outside = view.BooleanOr("outside", false);
-        if (!c.regions.empty() && c.event != static_cast<int>(EventKind::kClipClosed) &&
-            c.event != static_cast<int>(EventKind::kTubeCut))
-          view.Complain("only clip_closed and tube_cut have a place", ErrorCode::kSceneInvalid);
+        c.hand = hand("hand");
+        ReadPlacedEvent(view, item, c);
         break;
       case ConditionKind::kOperationError:
         c.hand = hand("hand"), c.error = ReadOperationError(view);
@@ -167,12 +187,7 @@ class RulesReader {
       case ConditionKind::kCutFree:
       case ConditionKind::kCutOffLine:
       case ConditionKind::kCutAreaOff:
-        c.sheet = FindName(view, scene_.model ? scene_.model->sheets : std::vector<ModelSheet>(),
-                           Fill(view.Text("sheet"), item), "sheet");
-        if (c.kind == ConditionKind::kCutOffLine)
-          c.amount = 1e-3 * view.Number("distance_mm", range::kCutDistanceMm);
-        if (c.kind == ConditionKind::kCutAreaOff)
-          c.amount = 1e-6 * view.Number("area_mm2", range::kCutAreaMm2);
+        ReadCutSheet(view, item, c);
         break;
       case ConditionKind::kParted:
         c.band = FindName(view, scene_.model ? scene_.model->bands : std::vector<ModelBand>(),

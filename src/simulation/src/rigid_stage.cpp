@@ -14,8 +14,8 @@ using scene::kMaxObjects;
 using scene::SceneObject;
 namespace {
 
+using rigid::ToolCapsule;
 using surgery::GraspChange;
-using surgery::ToolCapsule;
 
 /// Of the shaft behind the jaws, what can touch things [m].
 constexpr double kShaftReach = 0.15;
@@ -32,11 +32,11 @@ constexpr double kObstacleStiffness = 400.0;
 constexpr double kObstacleReach = 0.002;
 
 void FindParts(const instrument::Tool& tool, double jaw, const Pose& X_world_tool,
-               ToolCapsule (&capsules)[surgery::kToolPartCount], Pose (&X)[surgery::kToolPartCount]) {
+               ToolCapsule (&capsules)[rigid::kToolPartCount], Pose (&X)[rigid::kToolPartCount]) {
   const instrument::ToolCapsules bodies = instrument::CalcCapsules(tool, jaw, kShaftReach);
-  const instrument::Capsule* parts[surgery::kToolPartCount] = {&bodies.shaft, &bodies.upper_jaw,
-                                                               &bodies.lower_jaw};
-  for (int part = 0; part < surgery::kToolPartCount; ++part) {
+  const instrument::Capsule* parts[rigid::kToolPartCount] = {&bodies.shaft, &bodies.upper_jaw,
+                                                             &bodies.lower_jaw};
+  for (int part = 0; part < rigid::kToolPartCount; ++part) {
     const instrument::Capsule& one = *parts[part];
     const Vec3 along = one.b - one.a;
     capsules[part] = {one.radius, 0.5 * math::Norm(along)};
@@ -56,13 +56,13 @@ core::Result<RigidStage> RigidStage::Make(const Scene& scene) {
       return core::Error{added.error().code, "object \"" + object.name + "\": " + added.error().message};
   }
   for (const InstrumentSetup& setup : scene.instruments) {
-    ToolCapsule capsules[surgery::kToolPartCount];
-    Pose X[surgery::kToolPartCount];
+    ToolCapsule capsules[rigid::kToolPartCount];
+    Pose X[rigid::kToolPartCount];
     FindParts(setup.tool, setup.home.jaw, instrument::CalcToolPose(setup.p_world_port, setup.home), capsules,
               X);
     if (const auto added = made.world_->AddTool(capsules, X); !added.ok()) return added.error();
   }
-  made.obstacles_.reserve(kMaxObjects * surgery::kToolPartCount);
+  made.obstacles_.reserve(kMaxObjects * rigid::kToolPartCount);
   return made;
 }
 
@@ -70,8 +70,8 @@ void RigidStage::Reset(const Scene& scene, const std::array<instrument::TrocarJo
   if (!world_) return;
   for (int hand = 0; hand < kHandCount; ++hand) {
     const auto h = static_cast<std::size_t>(hand);
-    ToolCapsule capsules[surgery::kToolPartCount];
-    Pose X[surgery::kToolPartCount];
+    ToolCapsule capsules[rigid::kToolPartCount];
+    Pose X[rigid::kToolPartCount];
     FindParts(scene.instruments[h].tool, joints[h].jaw,
               instrument::CalcToolPose(scene.instruments[h].p_world_port, joints[h]), capsules, X);
     world_->MoveTool(static_cast<std::uint32_t>(hand), X);
@@ -100,14 +100,14 @@ void RigidStage::FindObstacles(const Scene& scene,
   if (!world_) return;
   for (int hand = 0; hand < kHandCount; ++hand) {
     const auto h = static_cast<std::size_t>(hand);
-    ToolCapsule capsules[surgery::kToolPartCount];
-    Pose X[surgery::kToolPartCount];
+    ToolCapsule capsules[rigid::kToolPartCount];
+    Pose X[rigid::kToolPartCount];
     FindParts(scene.instruments[h].tool, joints[h].jaw, contacts.Device(hand), capsules, X);
     world_->FindObstacles(static_cast<std::uint32_t>(hand), X, kObstacleReach, obstacles_);
     hands_[h].obstacles = 0;
     hands_[h].obstacle_force = {};
     double deepest = 0;
-    for (const surgery::ToolObstacle& one : obstacles_) {
+    for (const rigid::ToolObstacle& one : obstacles_) {
       contacts.AddLimit(hand, {one.point, one.normal, -one.depth});
       if (!(one.depth > 0)) continue;
       hands_[h].obstacles |= std::uint64_t{1} << one.body;
@@ -158,8 +158,8 @@ void RigidStage::Step(const Scene& scene, const std::array<instrument::TrocarJoi
   world_->SetGravity(gravity);
   for (int hand = 0; hand < kHandCount; ++hand) {
     const auto h = static_cast<std::size_t>(hand);
-    ToolCapsule capsules[surgery::kToolPartCount];
-    Pose X[surgery::kToolPartCount];
+    ToolCapsule capsules[rigid::kToolPartCount];
+    Pose X[rigid::kToolPartCount];
     FindParts(scene.instruments[h].tool, joints[h].jaw, contacts.Proxy(hand), capsules, X);
     world_->MoveTool(static_cast<std::uint32_t>(hand), X);
   }

@@ -8,10 +8,10 @@
 
 #include "tool_contacts.h"
 #include "trocar/core/state_archive.h"
+#include "trocar/rigid/rigid_world.h"
 #include "trocar/scene/scene.h"
 #include "trocar/simulation/snapshot.h"
 #include "trocar/surgery/grasp.h"
-#include "trocar/surgery/rigid_world.h"
 
 namespace trocar::simulation {
 
@@ -69,12 +69,12 @@ class RigidStage {
   };
   void UpdateHold(const Scene& scene, int hand, double jaw);
 
-  std::optional<surgery::RigidWorld> world_;
+  std::optional<rigid::RigidWorld> world_;
   std::array<Hand, kHandCount> hands_;
   std::array<Vec3, kHandCount> forces_;
   std::array<RigidChange, kHandCount> changes_;
   std::array<std::int32_t, kHandCount> held_{-1, -1};
-  std::vector<surgery::ToolObstacle> obstacles_;
+  std::vector<rigid::ToolObstacle> obstacles_;
 };
 
 }  // namespace trocar::simulation

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "bad_tick.h"
 #include "operation/gallbladder_anatomy.h"
 #include "operation_harness.h"
 #include "trocar/geometry/primitives.h"
@@ -271,6 +272,26 @@ TEST_F(SpillTest, ATornWallSpillsStonesThatAreToldAndCounted) {
   EXPECT_EQ(result.injuries.spilled_stones, result.stones.spilled);
   EXPECT_EQ(result.stones.inside + result.stones.spilled, result.stones.all);
   EXPECT_NEAR(result.fluids.fluids[static_cast<std::size_t>(surgery::Fluid::kBile)].left, 15e-6, 1e-12);
+}
+
+// Bile that has run out is counted once, however often the tick after it goes wrong.
+TEST_F(SpillTest, ATickThatIsTakenBackGivesNoBileBack) {
+  MakeOperation();
+  Judge();
+  const tissue::ConservationTick good = conserved_;
+  tissue::OrganVolume& organ = conserved_.organs[static_cast<std::size_t>(gallbladder_)];
+  const double before = organ.target;
+  Spill(15e-6);
+  for (int bad = 0; bad < 3; ++bad) {
+    TakeBack(good, conserved_);
+    ASSERT_EQ(organ.leaked, 0.0) << "the control: the guard has given it back";
+    Judge();
+  }
+  organ.target -= 1e-6, organ.leaked += 1e-6;
+  Judge();
+  EXPECT_NEAR(Result().fluids.fluids[static_cast<std::size_t>(surgery::Fluid::kBile)].left, 16e-6, 1e-12);
+  EXPECT_NEAR(organ.leaked, 16e-6, 1e-12);
+  EXPECT_NEAR(organ.target, before - 16e-6, 1e-12);
 }
 
 TEST_F(SpillTest, TheHashFollowsThem) {

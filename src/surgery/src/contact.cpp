@@ -298,14 +298,14 @@ std::size_t KeepFirstMet(const Search& search, const OrganSurface& organ,
 void FindOnOrgan(Search& search, std::size_t surface, ContactSet& contacts) noexcept {
   const OrganSurface& organ = search.candidates.organs[surface];
   const double motion = std::min(kMostMotion, search.candidates.surface_motion[surface]);
-  const double slack = search.settings.margin + (motion > search.settings.margin ? motion : 0.0);
-  const Capsule swept = collision::CalcSweptCapsule(search.way, search.radius + slack);
+  const double allowance = search.settings.margin + (motion > search.settings.margin ? motion : 0.0);
+  const Capsule swept = collision::CalcSweptCapsule(search.way, search.radius + allowance);
   if (!Overlaps(organ.box, swept)) return;
   std::array<std::uint32_t, kMostCandidates> found;
   const std::size_t count = organ.tree.FindWithin(organ.Nodes(search.candidates.positions), swept, found);
   contacts.dropped += count > found.size() ? count - found.size() : 0;
   const std::size_t before = contacts.springs.size();
-  search.is_outside = count == 0 || IsOutside(search, organ, search.radius + slack);
+  search.is_outside = count == 0 || IsOutside(search, organ, search.radius + allowance);
   std::size_t kept = std::min(count, found.size());
   if (kept > kMostByBody) kept = KeepFirstMet(search, organ, std::span(found).first(kept));
   for (std::size_t i = 0; i < kept; ++i) {
@@ -321,8 +321,8 @@ void FindOnTubes(const Search& search, ContactSet& contacts) noexcept {
   const TubeSet& set = *search.candidates.tubes;
   const std::size_t organ_count = search.candidates.organs.size();
   const double motion = std::min(kMostMotion, search.candidates.surface_motion[organ_count]);
-  const double slack = search.settings.margin + (motion > search.settings.margin ? motion : 0.0);
-  const Capsule swept = collision::CalcSweptCapsule(search.way, search.radius + slack);
+  const double allowance = search.settings.margin + (motion > search.settings.margin ? motion : 0.0);
+  const Capsule swept = collision::CalcSweptCapsule(search.way, search.radius + allowance);
   std::array<std::uint32_t, kMostCandidates> found;
   const std::size_t count = set.tree.FindWithin(search.candidates.positions, swept, found);
   contacts.dropped += count > found.size() ? count - found.size() : 0;

@@ -9,22 +9,11 @@
 #include "trocar/math/state_fields.h"
 
 namespace trocar::surgery {
-namespace {
-
-constexpr double kOutSpeed = 0.03;       // at which a stone leaves with the bile [m/s]
-constexpr double kOutGap = 0.0003;       // beyond the hole [m]
-constexpr double kSuctionReach = 0.003;  // of the bore beyond a stone's surface [m]
-// shares of the jaws' opening, as those of GraspSettings
-constexpr double kClosed = 0.20, kOpen = 0.35;
-constexpr double kLetGo = 0.05;      // more than the stone is wide [rad]
-constexpr double kNearHinge = 0.25;  // of the jaws' length: what lies nearer to the hinge is not taken
-constexpr double kJawReach = 0.5;    // of a stone's radius, beside and beyond the jaws
-
-}  // namespace
-
 core::Result<GallstoneSpill> GallstoneSpill::Make(std::span<const double> diameters,
-                                                  geometry::TriangleMesh omentum) {
+                                                  geometry::TriangleMesh omentum,
+                                                  const StoneSettings& settings) {
   GallstoneSpill made;
+  made.settings_ = settings;
   for (const double diameter : diameters) {
     Stone stone;
     stone.body.radius = 0.5 * diameter;
@@ -68,8 +57,8 @@ int GallstoneSpill::Spill(double leaked, double content, const WallHole& hole) n
     const auto next = std::find_if(stones_.begin(), stones_.end(), fits);
     if (next == stones_.end()) break;
     next->place = StonePlace::kSpilled;
-    next->body.position = hole.position + (next->body.radius + kOutGap) * hole.outwards;
-    next->body.velocity = kOutSpeed * hole.outwards;
+    next->body.position = hole.position + (next->body.radius + settings_.out_gap) * hole.outwards;
+    next->body.velocity = settings_.out_speed * hole.outwards;
     next->body.anchor = next->body.position;
     ++count;
   }
@@ -119,10 +108,10 @@ void GallstoneSpill::LetGo(int hand) noexcept {
 double GallstoneSpill::StopJaw(int hand, const instrument::Tool& tool, const Pose& X_world_tool,
                                double jaw_before, double jaw, bool can_take) noexcept {
   std::int32_t& held = held_[static_cast<std::size_t>(hand)];
-  const double closed = kClosed * tool.max_jaw, open = kOpen * tool.max_jaw;
+  const double closed = settings_.closed_share * tool.max_jaw, open = settings_.open_share * tool.max_jaw;
   if (held >= 0) {
     const double opening = stones_[static_cast<std::size_t>(held)].opening;
-    if (jaw > std::max(opening + kLetGo, open)) LetGo(hand);
+    if (jaw > std::max(opening + settings_.let_go, open)) LetGo(hand);
     return std::max(jaw, opening);
   }
   if (!can_take || !(jaw < jaw_before)) return jaw;
@@ -133,8 +122,8 @@ double GallstoneSpill::StopJaw(int hand, const instrument::Tool& tool, const Pos
     if (stone.place != StonePlace::kSpilled) continue;
     const Vec3 p = X_tool_world * stone.body.position;
     const double radius = stone.body.radius, from_hinge = tool.jaw_length - p.z;
-    if (from_hinge < kNearHinge * tool.jaw_length || p.z < -kJawReach * radius) continue;
-    if (std::fabs(p.x) > 0.5 * tool.jaw_width + kJawReach * radius) continue;
+    if (from_hinge < settings_.near_hinge * tool.jaw_length || p.z < -settings_.jaw_reach * radius) continue;
+    if (std::fabs(p.x) > 0.5 * tool.jaw_width + settings_.jaw_reach * radius) continue;
     if (std::fabs(p.y) > from_hinge * std::tan(0.5 * jaw_before)) continue;
     const double opening = 2.0 * std::asin(std::min(1.0, radius / from_hinge));
     // taken as both jaws touch it, or as they close
@@ -167,7 +156,7 @@ int GallstoneSpill::Aspirate(const Vec3& p_world_tip, double bore) noexcept {
   for (Stone& stone : stones_) {
     const double radius = stone.body.radius;
     if (stone.place != StonePlace::kSpilled || 2.0 * radius > bore) continue;
-    if (math::Distance(stone.body.position, p_world_tip) > radius + kSuctionReach) continue;
+    if (math::Distance(stone.body.position, p_world_tip) > radius + settings_.suction_reach) continue;
     stone.place = StonePlace::kAspirated;
     ++count;
   }

@@ -12,17 +12,7 @@
 namespace trocar::surgery {
 namespace {
 
-/// A vessel is caught when its axis is this near to the line of the closed jaws, beside its radius [m].
-constexpr double kCatch = 0.0015;
-/// Width of a clip along the vessel: two whose middles are nearer lie over each other, or touch [m].
-constexpr double kClipWidth = 0.0012;
-constexpr double kDrawnAway = 0.004;    // a vessel that is farther from the closed jaws is out of them [m]
-constexpr double kClipHeight = 0.0012;  // of its middle over what it lies on, when it is lost [m]
-constexpr double kClosedGap = 0.0006;   // between the legs of a clip [m]
-
-constexpr double kFallsOff = 0.0006;  // of a clip's middle from the end: half of its width [m]
-constexpr double kTight = 0.999;      // closure that keeps the pressure from the next clip
-constexpr double kPulledAt = 0.0025;  // before a clip: what is held there holds the clip [m]
+constexpr double kTight = 0.999;  // closure that keeps the pressure from the next clip
 
 }  // namespace
 
@@ -39,7 +29,7 @@ std::optional<Vessels::Caught> Vessels::Catch(const instrument::Tool& tool, cons
     const double distance = std::sqrt(near.squared_distance);
     const double radius = std::lerp(graph.radii[edge[0]], graph.radii[edge[1]], near.parameter_b);
     const double half = near.parameter_a * tool.jaw_length * std::sin(0.5 * jaw);
-    if (distance > std::max(half, radius + kCatch) || distance >= best) continue;
+    if (distance > std::max(half, radius + settings_.clip_shape.catch_beside) || distance >= best) continue;
     best = distance;
     caught = Caught{edge[0], edge[1], near.parameter_b, near.parameter_a, radius};
   }
@@ -55,8 +45,8 @@ ClipResult Vessels::Clip(const instrument::Tool& tool, const Pose& X_world_tool,
   if (clips_.size() == VesselActs::kMostClips) return result;
   Clipped clip;
   clip.legs = math::Normalized(tip - hinge);
-  clip.gap = kClosedGap;
-  clip.loose.radius = kClipHeight;
+  clip.gap = settings_.clip_shape.gap;
+  clip.loose.radius = settings_.clip_shape.height;
   // what was between the legs may have been cut, or drawn away
   bool is_there = caught && std::any_of(edges.begin(), edges.end(), [&](const geometry::Edge& edge) {
                     return edge[0] == caught->a && edge[1] == caught->b;
@@ -64,7 +54,8 @@ ClipResult Vessels::Clip(const instrument::Tool& tool, const Pose& X_world_tool,
   if (is_there) {
     const Vec3 p = math::Lerp(position[tubes_.Node(caught->a)], position[tubes_.Node(caught->b)], caught->t);
     const double along = math::Dot(p - hinge, clip.legs);
-    is_there = math::Distance(p, hinge + std::clamp(along, 0.0, tool.jaw_length) * clip.legs) < kDrawnAway;
+    is_there = math::Distance(p, hinge + std::clamp(along, 0.0, tool.jaw_length) * clip.legs) <
+               settings_.clip_shape.drawn_away;
   }
   if (!is_there) {
     clip.is_lost = true;
@@ -81,7 +72,7 @@ ClipResult Vessels::Clip(const instrument::Tool& tool, const Pose& X_world_tool,
   clip.place = {tube_of_[clip.a], std::lerp(arc_of_[clip.a], arc_of_[clip.b], clip.t)};
   for (Clipped& other : clips_) {
     if (!other.is_lost && other.place.tube == clip.place.tube &&
-        std::fabs(other.place.arc - clip.place.arc) < kClipWidth)
+        std::fabs(other.place.arc - clip.place.arc) < settings_.clip_shape.width)
       result.is_crossed = other.is_weak = true;
   }
   const VesselPlace place = map_.Find(clip.place.tube, clip.place.arc);
@@ -106,7 +97,8 @@ double Vessels::CalcPull(const Clipped& clip, const Stump& stump, std::span<cons
   for (const ClipPull& hand : pulls) {
     const auto is_held = [&](std::uint32_t p) {
       const double beyond = stump.sign * (arc_of_[p] - clip.place.arc);
-      return tube_of_[p] == clip.place.tube && beyond > -kPulledAt && beyond <= free &&
+      return tube_of_[p] == clip.place.tube && beyond > -settings_.clip_shape.pulled_before &&
+             beyond <= free &&
              std::find(hand.nodes.begin(), hand.nodes.end(), tubes_.Node(p)) != hand.nodes.end();
     };
     bool is_pulled = false;
@@ -152,7 +144,8 @@ std::size_t Vessels::SlipStump(const Stump& stump, double seconds, std::span<con
     // a clip that moves takes along those that it runs into
     ClipHold hold;
     std::size_t end = i;
-    for (; end < count && (end == i || along(*row[end]) - along(*row[end - 1]) <= kClipWidth); ++end) {
+    for (; end < count && (end == i || along(*row[end]) - along(*row[end - 1]) <= settings_.clip_shape.width);
+         ++end) {
       const Clipped& member = *row[end];
       const ClipHold own =
           CalcClipHold({member.closure, member.is_weak, member.vessel_radius}, settings_.clips);
@@ -171,7 +164,8 @@ std::size_t Vessels::SlipStump(const Stump& stump, double seconds, std::span<con
     act.position += way;
     clip.place.arc += way;
     FindEdge(clip);
-    if (std::fabs(stump.cut - act.position) > kFallsOff && stump.sign * (stump.cut - act.position) > 0.0)
+    if (std::fabs(stump.cut - act.position) > 0.5 * settings_.clip_shape.width &&
+        stump.sign * (stump.cut - act.position) > 0.0)
       continue;
     if (fallen == slipped.size()) continue;  // in the next tick
     act.closure = 0.0;

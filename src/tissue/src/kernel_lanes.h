@@ -3,33 +3,23 @@
 /// compiler options: nothing here may have a name that the linker could share between them.
 #pragma once
 
-#if TROCAR_LANES > 4 || defined(__SSE2__)
-#include <immintrin.h>
+#include "kernels.h"
+#include "trocar/math/float_lanes.h"
+
+#if defined(__SSE2__)
 #define TROCAR_HAS_X86 1
 #endif
-
-#include "kernels.h"
 
 namespace trocar::tissue {
 namespace {
 
-typedef float Lanes __attribute__((vector_size(4 * TROCAR_LANES)));
-typedef std::int32_t LaneMask __attribute__((vector_size(4 * TROCAR_LANES)));
-
-inline Lanes Load(const float* from) {
-  Lanes v;
-  __builtin_memcpy(&v, from, sizeof v);
-  return v;
-}
-inline void Store(float* to, Lanes v) {
-  __builtin_memcpy(to, &v, sizeof v);
-}
-inline Lanes All(float value) {
-  return value - Lanes{};
-}
-inline Lanes Larger(Lanes a, Lanes b) {
-  return a > b ? a : b;
-}
+using math::All;
+using math::Lanes;
+using math::Larger;
+using math::Load;
+using math::Sqrt;
+using math::Store;
+using Vector = math::LaneVector;
 
 /// a b + c, rounded once where the level has an instruction for it.
 #if TROCAR_LANES == 16
@@ -43,25 +33,6 @@ inline Lanes MulAdd(Lanes a, Lanes b, Lanes c) {
 #else
 inline Lanes MulAdd(Lanes a, Lanes b, Lanes c) {
   return a * b + c;
-}
-#endif
-
-#if TROCAR_LANES == 16
-inline Lanes Sqrt(Lanes v) {
-  return (Lanes)_mm512_sqrt_ps((__m512)v);
-}
-#elif TROCAR_LANES == 8
-inline Lanes Sqrt(Lanes v) {
-  return (Lanes)_mm256_sqrt_ps((__m256)v);
-}
-#elif defined(TROCAR_HAS_X86)
-inline Lanes Sqrt(Lanes v) {
-  return (Lanes)_mm_sqrt_ps((__m128)v);
-}
-#else
-inline Lanes Sqrt(Lanes v) {
-  for (int lane = 0; lane < TROCAR_LANES; ++lane) v[lane] = __builtin_sqrtf(v[lane]);
-  return v;
 }
 #endif
 
@@ -80,9 +51,6 @@ inline Lanes Sqrt(Lanes v) {
 inline Lanes ShiftUp(Lanes before, Lanes v) {
   return __builtin_shufflevector(before, v, TROCAR_LANE_INDICES(TROCAR_LANES - 1));
 }
-struct Vector {
-  Lanes x, y, z;
-};
 
 /// Makes the compiler load once what it would take from memory at each use: the kernels wait for loads.
 inline void KeepInRegister([[maybe_unused]] Lanes& v) {
@@ -120,50 +88,6 @@ inline void BeginTogether([[maybe_unused]] Lanes& a, [[maybe_unused]] Lanes& b, 
 #endif
 }
 
-/// TROCAR_LANES nodes: one load of 16 bytes each, then a transpose in registers.
-#if defined(TROCAR_HAS_X86)
-template <typename At>
-inline Vector LoadNodes(const Float4* nodes, const At& at) {
-  const auto node = [&](int lane) { return _mm_load_ps(&nodes[at(lane)].x); };
-#if TROCAR_LANES == 16
-  const auto column = [&](int i) {
-    const __m256 low = _mm256_insertf128_ps(_mm256_castps128_ps256(node(i)), node(i + 4), 1);
-    const __m256 high = _mm256_insertf128_ps(_mm256_castps128_ps256(node(i + 8)), node(i + 12), 1);
-    return _mm512_insertf32x8(_mm512_castps256_ps512(low), high, 1);
-  };
-  const __m512 a = column(0), b = column(1), c = column(2), d = column(3);
-  const __m512d ab = (__m512d)_mm512_unpacklo_ps(a, b), cd = (__m512d)_mm512_unpacklo_ps(c, d);
-  const __m512d abz = (__m512d)_mm512_unpackhi_ps(a, b), cdz = (__m512d)_mm512_unpackhi_ps(c, d);
-  return {(Lanes)_mm512_unpacklo_pd(ab, cd), (Lanes)_mm512_unpackhi_pd(ab, cd),
-          (Lanes)_mm512_unpacklo_pd(abz, cdz)};
-#elif TROCAR_LANES == 8
-  const auto column = [&](int i) {
-    return _mm256_insertf128_ps(_mm256_castps128_ps256(node(i)), node(i + 4), 1);
-  };
-  const __m256 a = column(0), b = column(1), c = column(2), d = column(3);
-  const __m256d ab = (__m256d)_mm256_unpacklo_ps(a, b), cd = (__m256d)_mm256_unpacklo_ps(c, d);
-  const __m256d abz = (__m256d)_mm256_unpackhi_ps(a, b), cdz = (__m256d)_mm256_unpackhi_ps(c, d);
-  return {(Lanes)_mm256_unpacklo_pd(ab, cd), (Lanes)_mm256_unpackhi_pd(ab, cd),
-          (Lanes)_mm256_unpacklo_pd(abz, cdz)};
-#else
-  const __m128 a = node(0), b = node(1), c = node(2), d = node(3);
-  const __m128d ab = (__m128d)_mm_unpacklo_ps(a, b), cd = (__m128d)_mm_unpacklo_ps(c, d);
-  const __m128d abz = (__m128d)_mm_unpackhi_ps(a, b), cdz = (__m128d)_mm_unpackhi_ps(c, d);
-  return {(Lanes)_mm_unpacklo_pd(ab, cd), (Lanes)_mm_unpackhi_pd(ab, cd), (Lanes)_mm_unpacklo_pd(abz, cdz)};
-#endif
-}
-#else
-template <typename At>
-inline Vector LoadNodes(const Float4* nodes, const At& at) {
-  Vector v;
-  for (int lane = 0; lane < TROCAR_LANES; ++lane) {
-    const Float4& node = nodes[at(lane)];
-    v.x[lane] = node.x, v.y[lane] = node.y, v.z[lane] = node.z;
-  }
-  return v;
-}
-#endif
-
 /// TROCAR_LANES nodes side by side.
 inline Vector LoadNodes(const Float4* nodes) {
 #if TROCAR_LANES == 16
@@ -177,12 +101,12 @@ inline Vector LoadNodes(const Float4* nodes) {
   return {(Lanes)_mm512_shuffle_f32x4(ab, cd, 0x44), (Lanes)_mm512_shuffle_f32x4(ab, cd, 0xee),
           (Lanes)_mm512_shuffle_f32x4(abz, cdz, 0x44)};
 #else
-  return LoadNodes(nodes, [](int lane) { return lane; });
+  return math::LoadPoints(nodes, [](int lane) { return lane; });
 #endif
 }
 
 inline Vector GatherNodes(const Float4* nodes, const std::uint32_t* indices) {
-  return LoadNodes(nodes, [indices](int lane) { return indices[lane]; });
+  return math::LoadPoints(nodes, [indices](int lane) { return indices[lane]; });
 }
 
 #if TROCAR_LANES == 16
@@ -235,18 +159,6 @@ inline void StoreNodes(Float4* nodes, const Vector& v) {
 #endif
 }
 
-inline Vector operator+(const Vector& a, const Vector& b) {
-  return {a.x + b.x, a.y + b.y, a.z + b.z};
-}
-inline Vector operator-(const Vector& a, const Vector& b) {
-  return {a.x - b.x, a.y - b.y, a.z - b.z};
-}
-inline Vector operator*(Lanes s, const Vector& v) {
-  return {s * v.x, s * v.y, s * v.z};
-}
-inline Vector operator-(const Vector& v) {
-  return {-v.x, -v.y, -v.z};
-}
 inline Vector MulAdd(Lanes s, const Vector& v, const Vector& to) {
   return {MulAdd(s, v.x, to.x), MulAdd(s, v.y, to.y), MulAdd(s, v.z, to.z)};
 }

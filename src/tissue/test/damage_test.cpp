@@ -40,7 +40,7 @@ TEST_F(TearStrandsTest, TearsWhatIsLongerThanItsLimitAndNothingElse) {
   EXPECT_EQ(TearStrands(model_, limits, state_, torn), 0u) << "what is torn does not tear again";
 }
 
-TEST_F(TearStrandsTest, CountsMoreThanItHasRoomFor) {
+TEST_F(TearStrandsTest, CountsMoreThanItsCapacity) {
   const std::array<double, 4> limits{1e-4, 1e-4, 1e-4, 1e-4};
   for (int i = 0; i < 4; ++i) state_.position[2 * i + 1].z += 0.01;
   std::array<std::uint32_t, 2> torn{};

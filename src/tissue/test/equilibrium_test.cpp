@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "crumpled_sphere.h"
 #include "test_systems.h"
 #include "trocar/core/state_hash.h"
 
@@ -143,15 +144,9 @@ TEST(Chebyshev, NeedsFarFewerIterationsThanTheRelaxation) {
 // A crumpled start is far outside the range where the recurrence is provably stable: the safeguard must bring
 // it home.
 TEST(Chebyshev, ComesBackFromACrumpledStart) {
-  const auto mesh = geometry::MakeSphere({0, 0, 0}, 0.03, 3);
-  const TissueModel model = MakeTissueModel(MakeMembrane(mesh, 400.0, 2e4));
-  TissueState state = MakeRestState(model);
-  for (std::size_t i = 0; i < state.position.size(); ++i) {
-    const auto wobble = [&](int salt) {
-      return 0.01 * std::sin(12.9898 * static_cast<double>(i) + 78.233 * salt);
-    };
-    state.position[i] += Vec3{wobble(1), wobble(2), wobble(3)};
-  }
+  CrumpledSphere sphere;
+  const TissueModel& model = sphere.model;
+  TissueState& state = sphere.state;
   const double before = CalcEnergy(model, state, {});
   EquilibriumSolver solver(model, 1);
   (void)solver.Solve({SolverKind::kChebyshevJacobi2015, 5000, 1e-6, 0.0}, {}, state);

@@ -10,6 +10,7 @@
 #include "kernels/tiled_args.h"
 #include "paper_arrays.h"
 #include "tiled_arrays.h"
+#include "trocar/tissue_cuda/gpu_solver.h"
 
 namespace trocar::tissue_cuda {
 
@@ -45,23 +46,23 @@ void SetPaperLoad(const tissue::TissueLoad& load, double alpha, PaperArgs<Real, 
 template <typename Real, typename Heap>
 TiledArgs<Real, typename Heap::Memory> BindTiledArrays(const TiledArrays<Real>& arrays, Heap& heap) {
   TiledArgs<Real, typename Heap::Memory> args;
-  args.nodes = arrays.nodes;
-  args.tiles = arrays.tiles;
-  args.max_border = arrays.max_border;
-  args.max_links = arrays.max_links;
-  args.model_index = heap.Filled("model_index", arrays.model_index);
-  args.rest = heap.Filled("rest", arrays.rest);
-  args.mass = heap.Filled("mass", arrays.mass);
-  args.shape_stiffness = heap.Filled("shape_stiffness", arrays.shape_stiffness);
-  args.slice_starts = heap.Filled("slice_starts", arrays.slice_starts);
-  args.link_vectors = heap.Filled("link_vectors", arrays.link_vectors);
-  args.link_rests = heap.Filled("link_rests", arrays.link_rests);
-  args.link_others = heap.Filled("link_others", arrays.link_others);
-  args.link_locals = heap.Filled("link_locals", arrays.link_locals);
-  args.border_starts = heap.Filled("border_starts", arrays.border_starts);
-  args.borders = heap.Filled("borders", arrays.borders);
-  args.strand_starts = heap.Filled("strand_starts", arrays.strand_starts);
-  args.strands = heap.Filled("strands", arrays.strands);
+  args.mesh.nodes = arrays.nodes;
+  args.mesh.tiles = arrays.tiles;
+  args.mesh.max_border = arrays.max_border;
+  args.mesh.max_links = arrays.max_links;
+  args.mesh.model_index = heap.Filled("model_index", arrays.model_index);
+  args.mesh.rest = heap.Filled("rest", arrays.rest);
+  args.mesh.mass = heap.Filled("mass", arrays.mass);
+  args.mesh.shape_stiffness = heap.Filled("shape_stiffness", arrays.shape_stiffness);
+  args.mesh.slice_starts = heap.Filled("slice_starts", arrays.slice_starts);
+  args.mesh.link_vectors = heap.Filled("link_vectors", arrays.link_vectors);
+  args.mesh.link_rests = heap.Filled("link_rests", arrays.link_rests);
+  args.mesh.link_others = heap.Filled("link_others", arrays.link_others);
+  args.mesh.link_locals = heap.Filled("link_locals", arrays.link_locals);
+  args.mesh.border_starts = heap.Filled("border_starts", arrays.border_starts);
+  args.mesh.borders = heap.Filled("borders", arrays.borders);
+  args.mesh.strand_starts = heap.Filled("strand_starts", arrays.strand_starts);
+  args.mesh.strands = heap.Filled("strands", arrays.strands);
   const std::size_t all = arrays.model_index.size();
   args.displacements = heap.template Array<Quad<Real>>("displacements", 2 * all);
   args.node_constants = heap.template Array<Quad<Real>>("node_constants", 3 * all);
@@ -73,7 +74,7 @@ TiledArgs<Real, typename Heap::Memory> BindTiledArrays(const TiledArrays<Real>& 
 
 /// Factors of one solve.
 template <typename Real, typename Memory>
-void SetTiledLoad(const tissue::SolverSettings& settings, const tissue::TissueLoad& load,
+void SetTiledLoad(const GpuSettings& settings, const tissue::TissueLoad& load,
                   TiledArgs<Real, Memory>& args) {
   args.settings = {};
   args.settings.max_iterations = static_cast<std::uint32_t>(settings.max_iterations);

@@ -61,7 +61,7 @@ PaperProblem MakePaperProblem(std::uint32_t n, double shape_stiffness, bool is_s
   return problem;
 }
 
-core::Result<GpuAnswer> SolveOnce(GpuSolver& solver, const tissue::SolverSettings& settings,
+core::Result<GpuAnswer> SolveOnce(GpuSolver& solver, const GpuSettings& settings,
                                   const tissue::TissueLoad& load, const tissue::TissueState& start) {
   tissue::TissueState state = start;
   const core::Stopwatch stopwatch;

@@ -8,8 +8,6 @@ namespace trocar::tissue_cuda {
 
 using core::Status;
 using math::Vec3;
-using tissue::SolverKind;
-using tissue::SolverSettings;
 
 namespace {
 
@@ -49,7 +47,7 @@ Status CheckAgainstHost(GpuBenchmarkRun& run) {
       core::Result<GpuSolver> host = MakeGpuSolver(given->model, options, HostSource());
       if (!host) return host.error();
       for (const int iterations : {1, 60}) {
-        const SolverSettings settings{SolverKind::kChebyshevJacobi2015, iterations, 1e-30, 0.0};
+        const GpuSettings settings{iterations, 1e-30};
         const core::Result<GpuAnswer> found = SolveOnce(*gpu, settings, given->load, given->state);
         if (!found) return found.error();
         const core::Result<GpuAnswer> expected = SolveOnce(*host, settings, given->load, given->state);
@@ -83,8 +81,7 @@ Status CheckSteps(GpuBenchmarkRun& run) {
     if (options.layout == Layout::kTiled) continue;
     core::Result<GpuSolver> solver = MakeGpuSolver(problem.model, options, run.source);
     if (!solver) return solver.error();
-    const core::Result<GpuAnswer> found =
-        SolveOnce(*solver, {SolverKind::kRelaxationPaper, steps, 0.0, kAlpha}, load, problem.state);
+    const core::Result<GpuAnswer> found = SolveOnce(*solver, {steps, 0.0, kAlpha}, load, problem.state);
     if (!found) return found.error();
     const double error = CalcRelativeError(found->position, expected.position, problem.model.rest);
     const std::string name = "error/" + DescribeOptions(options) + "_" + std::to_string(n * n);
@@ -110,8 +107,7 @@ Status CheckEquilibrium(GpuBenchmarkRun& run) {
       if (!solver) return solver.error();
       const bool is_double = precision == Precision::kDouble;
       const core::Result<GpuAnswer> found =
-          SolveOnce(*solver, {SolverKind::kChebyshevJacobi2015, 5000, is_double ? 1e-9 : 3e-6, 0.0}, load,
-                    problem.state);
+          SolveOnce(*solver, {5000, is_double ? 1e-9 : 3e-6}, load, problem.state);
       if (!found) return found.error();
       const std::string name = std::string("error/tiled_") + std::string(PrecisionName(precision)) +
                                (is_scattered ? "_irregular_" : "_structured_") + std::to_string(n * n);

@@ -60,7 +60,7 @@ struct GpuAnswer {
   GpuTimes times;
   double wall_seconds = 0;
 };
-core::Result<GpuAnswer> SolveOnce(GpuSolver& solver, const tissue::SolverSettings& settings,
+core::Result<GpuAnswer> SolveOnce(GpuSolver& solver, const GpuSettings& settings,
                                   const tissue::TissueLoad& load, const tissue::TissueState& start);
 
 /// Largest distance of any node from where it should be, over the largest displacement.

@@ -8,8 +8,6 @@
 namespace trocar::tissue_cuda {
 
 using core::Status;
-using tissue::SolverKind;
-using tissue::SolverSettings;
 
 namespace {
 
@@ -20,7 +18,7 @@ struct Times {
   double kernels = std::numeric_limits<double>::infinity(), wall = kernels;  ///< [s]
 };
 
-core::Result<Times> TimeSolves(GpuBenchmarkRun& run, GpuSolver& solver, const SolverSettings& settings,
+core::Result<Times> TimeSolves(GpuBenchmarkRun& run, GpuSolver& solver, const GpuSettings& settings,
                                const PaperProblem& problem) {
   const tissue::TissueLoad load = problem.Load();
   Times times;
@@ -39,8 +37,7 @@ core::Result<double> TimeStep(GpuBenchmarkRun& run, const PaperProblem& problem,
   core::Result<GpuSolver> solver = MakeGpuSolver(problem.model, options, run.source);
   if (!solver) return solver.error();
   const int count = options.layout == Layout::kTiled ? run.sizes.iterations : run.sizes.steps;
-  const core::Result<Times> times =
-      TimeSolves(run, *solver, {SolverKind::kChebyshevJacobi2015, count, 0.0, 0.0}, problem);
+  const core::Result<Times> times = TimeSolves(run, *solver, {count, 0.0}, problem);
   if (!times) return times.error();
   return times->kernels / count;
 }
@@ -115,13 +112,12 @@ Status TimeFrame(GpuBenchmarkRun& run) {
   core::Result<GpuSolver> exact =
       MakeGpuSolver(problem.model, {Layout::kTiled, Precision::kDouble}, run.source);
   if (!exact) return exact.error();
-  const core::Result<GpuAnswer> truth =
-      SolveOnce(*exact, {SolverKind::kChebyshevJacobi2015, 20'000, 1e-10, 0.0}, load, problem.state);
+  const core::Result<GpuAnswer> truth = SolveOnce(*exact, {20'000, 1e-10}, load, problem.state);
   if (!truth) return truth.error();
   core::Result<GpuSolver> solver = MakeGpuSolver(problem.model, {}, run.source);
   if (!solver) return solver.error();
   // the fewest iterations, in steps of a tenth, that lead there
-  SolverSettings settings{SolverKind::kChebyshevJacobi2015, 20, 0.0, 0.0};
+  GpuSettings settings{20, 0.0};
   double error = 1;
   for (; settings.max_iterations < 5000; settings.max_iterations += 1 + settings.max_iterations / 10) {
     const core::Result<GpuAnswer> answer = SolveOnce(*solver, settings, load, problem.state);

@@ -41,7 +41,8 @@ tissue::SolveReport GpuOrCpuSolver::Solve(const tissue::SolverSettings& settings
                                           tissue::ConstraintSet* constraints,
                                           std::span<const math::Vec3> extrapolation) noexcept {
   if (gpu_ && RunsOnGpu(settings.kind) && HasPlainSprings(state)) {
-    const core::Result<tissue::SolveReport> report = gpu_->Solve(settings, load, state, constraints);
+    const core::Result<tissue::SolveReport> report =
+        gpu_->Solve(MakeGpuSettings(settings), load, state, constraints);
     if (report) return *report;
     gpu_error_ = report.error();
     gpu_.reset();

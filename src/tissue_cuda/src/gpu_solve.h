@@ -14,8 +14,8 @@ class GpuSolve {
  public:
   virtual ~GpuSolve() = default;
   /// \return an error, and the state's positions as they were
-  virtual core::Result<tissue::SolveReport> Run(const tissue::SolverSettings& settings,
-                                                const tissue::TissueLoad& load, tissue::TissueState& state,
+  virtual core::Result<tissue::SolveReport> Run(const GpuSettings& settings, const tissue::TissueLoad& load,
+                                                tissue::TissueState& state,
                                                 tissue::ConstraintSet* constraints) = 0;
   virtual bool IsResident() const noexcept { return false; }
 };

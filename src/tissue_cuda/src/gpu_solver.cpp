@@ -54,7 +54,11 @@ core::Result<GpuSolver> GpuSolver::Make(const tissue::TissueModel& model, const 
   return MakeGpuSolver(model, options, BuiltInSource());
 }
 
-core::Result<tissue::SolveReport> GpuSolver::Solve(const tissue::SolverSettings& settings,
+GpuSettings MakeGpuSettings(const tissue::SolverSettings& settings) noexcept {
+  return {settings.max_iterations, settings.tolerance, settings.relaxation.alpha};
+}
+
+core::Result<tissue::SolveReport> GpuSolver::Solve(const GpuSettings& settings,
                                                    const tissue::TissueLoad& load, tissue::TissueState& state,
                                                    tissue::ConstraintSet* constraints) noexcept {
   TROCAR_ASSERT(state.position.size() == content_->nodes && state.condition.size() == content_->nodes);

@@ -42,8 +42,8 @@ class PaperSolve final : public GpuSolve {
     return {};
   }
 
-  core::Result<tissue::SolveReport> Run(const tissue::SolverSettings& settings,
-                                        const tissue::TissueLoad& load, tissue::TissueState& state,
+  core::Result<tissue::SolveReport> Run(const GpuSettings& settings, const tissue::TissueLoad& load,
+                                        tissue::TissueState& state,
                                         tissue::ConstraintSet* constraints) override {
     if (!load.contacts.empty() || constraints != nullptr) {
       return core::Error{core::ErrorCode::kGpuLayout,
@@ -53,9 +53,7 @@ class PaperSolve final : public GpuSolve {
     }
     FillPoints(arrays_, *model_, state, load, positions_, forces_);
     // half of the bound damps every mode of the linear system without oscillation
-    SetPaperLoad(load,
-                 settings.relaxation.alpha > 0.0 ? settings.relaxation.alpha : 0.5 * CalcLargestStep(load),
-                 args_);
+    SetPaperLoad(load, settings.alpha > 0.0 ? settings.alpha : 0.5 * CalcLargestStep(load), args_);
     args_.external_force = forces_.empty() ? nullptr : external_force_;
     Status status = gpu_->Mark(kMarkBegin);
     if (status) status = Upload(buffers_[0], positions_);

@@ -28,13 +28,13 @@ class TiledSolve final : public GpuSolve {
   }
 
   Status Start(const GpuOptions& options) {
-    MakeRoom();
+    Reserve();
     if (!memory_.GetStatus()) return memory_.GetStatus();
     return ChooseKernel(options.forbid_resident);
   }
 
-  core::Result<tissue::SolveReport> Run(const tissue::SolverSettings& settings,
-                                        const tissue::TissueLoad& load, tissue::TissueState& state,
+  core::Result<tissue::SolveReport> Run(const GpuSettings& settings, const tissue::TissueLoad& load,
+                                        tissue::TissueState& state,
                                         tissue::ConstraintSet* constraints) override {
     SetTiledLoad(settings, load, args_);
     if (constraints == nullptr) {
@@ -109,7 +109,7 @@ class TiledSolve final : public GpuSolve {
   }
 
   /// For everything that a solve brings, so that no solve allocates.
-  void MakeRoom() {
+  void Reserve() {
     const std::size_t n = model_->Size();
     constexpr std::size_t kMaxTouched = 3 * tissue::kMaxContacts;
     args_.positions = memory_.Array<Triple<double>>("positions", n);
@@ -157,13 +157,13 @@ class TiledSolve final : public GpuSolve {
       const core::Result<std::uint32_t> at_once =
           gpu_->CountResidentBlocks(*kernel, shape_.threads, shape_.shared_bytes);
       if (!at_once) return at_once.error();
-      if (is_resident && *at_once < args_.tiles) continue;
+      if (is_resident && *at_once < args_.mesh.tiles) continue;
       if (*at_once == 0) {
         return core::Error{core::ErrorCode::kGpuFailed, "the GPU takes no block of the solver's kernel"};
       }
       kernel_ = *kernel;
       is_resident_ = is_resident;
-      shape_.blocks = std::min(*at_once, args_.tiles);
+      shape_.blocks = std::min(*at_once, args_.mesh.tiles);
       return {};
     }
     return core::Error{core::ErrorCode::kGpuFailed, "the GPU takes no block of the solver's kernel"};

@@ -58,7 +58,7 @@ void RunPaper(Layout layout, const tissue::TissueModel& model, const tissue::Tis
 
 /// One whole solve in our layout.
 template <template <typename, typename> class Kernel, typename Real>
-TiledReport RunTiled(const tissue::TissueModel& model, const tissue::SolverSettings& settings,
+TiledReport RunTiled(const tissue::TissueModel& model, const GpuSettings& settings,
                      const tissue::TissueLoad& load, std::uint32_t blocks, double max_step,
                      const ExecutorOptions& options, Watch& watch, tissue::TissueState& state) {
   const core::Result<TiledArrays<Real>> arrays = MakeTiledArrays<Real>(model);

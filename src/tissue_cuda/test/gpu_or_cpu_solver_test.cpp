@@ -78,7 +78,8 @@ TEST(GpuOrCpuSolver, CutSpringsAreSolvedOnTheProcessorAndTheGpuIsKept) {
   // asked directly, the GPU's solver says no instead of solving another tissue
   core::Result<GpuSolver> alone = MakeGpuSolver(model, {}, StandIn::Source());
   ASSERT_TRUE(alone);
-  EXPECT_EQ(alone->Solve(kChebyshev, kLoad, state).error().code, core::ErrorCode::kGpuLayout);
+  EXPECT_EQ(alone->Solve(MakeGpuSettings(kChebyshev), kLoad, state).error().code,
+            core::ErrorCode::kGpuLayout);
 }
 
 TEST(GpuOrCpuSolver, SpringsThatStiffenAreRefused) {

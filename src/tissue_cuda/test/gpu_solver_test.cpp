@@ -12,7 +12,6 @@ namespace {
 
 using core::ErrorCode;
 using tissue::SolverKind;
-using tissue::SolverSettings;
 using tissue::TissueModel;
 using tissue::TissueState;
 
@@ -86,9 +85,8 @@ TEST(GpuSolver, EveryLayoutAndPrecisionReachesTheCpusEquilibrium) {
         EXPECT_EQ(solver->IsResident(), layout == Layout::kTiled && !forbid_resident);
         TissueState found = given.state;
         const bool is_single = precision == Precision::kSingle;
-        const SolverSettings settings{SolverKind::kChebyshevJacobi2015,
-                                      layout == Layout::kTiled ? 1000 : 4000, is_single ? 1e-5 : 1e-8,
-                                      1.9 * 0.5 * tissue::CalcLargestAlpha(given.model, given.load)};
+        const GpuSettings settings{layout == Layout::kTiled ? 1000 : 4000, is_single ? 1e-5 : 1e-8,
+                                   1.9 * 0.5 * tissue::CalcLargestAlpha(given.model, given.load)};
         const auto report = solver->Solve(settings, given.load, found);
         ASSERT_TRUE(report) << report.error().Text();
         EXPECT_GT(report->iterations, 0);
@@ -137,9 +135,8 @@ TEST(GpuSolver, TakesNewConditionsForcesContactsAndStrandsWithoutBeingMadeAgain)
     }
     TissueState expected = state;
     tissue::EquilibriumSolver cpu(model, 1);
-    const SolverSettings settings{SolverKind::kChebyshevJacobi2015, 30, 1e-9, 0.0};
-    (void)cpu.Solve(settings, load, expected);
-    ASSERT_TRUE(solver->Solve(settings, load, state));
+    (void)cpu.Solve({SolverKind::kChebyshevJacobi2015, 30, 1e-9}, load, expected);
+    ASSERT_TRUE(solver->Solve({30, 1e-9}, load, state));
     EXPECT_LT(CalcLargestDistance(expected.position, state.position), 1e-12) << tick;
   }
 }
@@ -191,8 +188,7 @@ TEST(GpuSolver, AnErrorInTheMiddleOfARunLeavesTheStateUntouched) {
         if (!solver) continue;  // it failed before the first tick
         for (int tick = 0; tick < 3; ++tick) {
           const TissueState before = given.state;
-          const auto report =
-              solver->Solve({SolverKind::kChebyshevJacobi2015, 5, 1e-9, 0.0}, given.load, given.state);
+          const auto report = solver->Solve({5, 1e-9}, given.load, given.state);
           if (report) continue;
           ++failures;
           EXPECT_EQ(report.error().code, ErrorCode::kGpuFailed);

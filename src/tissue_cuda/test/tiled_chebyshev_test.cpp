@@ -14,7 +14,6 @@ namespace trocar::tissue_cuda {
 namespace {
 
 using tissue::SolverKind;
-using tissue::SolverSettings;
 using tissue::TissueModel;
 using tissue::TissueState;
 
@@ -26,7 +25,7 @@ struct Solved {
 };
 
 template <template <typename, typename> class Kernel, typename Real>
-Solved Solve(const Case& given, const SolverSettings& settings, std::uint32_t blocks, std::uint32_t seed) {
+Solved Solve(const Case& given, const GpuSettings& settings, std::uint32_t blocks, std::uint32_t seed) {
   TissueState state = given.state;
   Watch watch;
   const TiledReport report =
@@ -61,10 +60,12 @@ TEST(TiledChebyshev, TakesTheStepsOfTheCpusSolver) {
     for (const bool has_all : {false, true}) {
       const auto given = MakeCase(definition, has_all);
       for (const int iterations : {1, 2, 7, 45}) {
-        const SolverSettings settings{SolverKind::kChebyshevJacobi2015, iterations, 1e-300, 0.0};
+        const GpuSettings settings{iterations, 1e-300};
         TissueState expected = given->state;
         tissue::EquilibriumSolver cpu(given->model, 1);
-        const tissue::SolveReport report = cpu.Solve(settings, given->load, expected);
+        const tissue::SolveReport report =
+            cpu.Solve({SolverKind::kChebyshevJacobi2015, settings.max_iterations, settings.tolerance},
+                      given->load, expected);
         const Solved resident = Solve<TiledResident, double>(*given, settings, CountTiles(given->model), 3);
         EXPECT_LT(CalcLargestDistance(expected.position, resident.position), 1e-11) << iterations;
         EXPECT_EQ(resident.report.iterations, static_cast<std::uint32_t>(report.iterations));
@@ -78,7 +79,7 @@ TEST(TiledChebyshev, TakesTheStepsOfTheCpusSolver) {
 
 // Both kernels, any number of blocks, any order of threads: the same bits, in both precisions.
 TEST(TiledChebyshev, ResidentAndStreamingGiveTheSameBitsInAnyOrder) {
-  const SolverSettings settings{SolverKind::kChebyshevJacobi2015, 60, 1e-5, 0.0};
+  const GpuSettings settings{60, 1e-5};
   for (const auto& [name, definition] : MakeDefinitions()) {
     SCOPED_TRACE(name);
     const auto given = MakeCase(definition, true);
@@ -106,8 +107,7 @@ TEST(TiledChebyshev, SinglePrecisionReachesTheReferencesEquilibrium) {
     tissue::EquilibriumSolver reference(given->model, 1);
     ASSERT_TRUE(reference.Solve({SolverKind::kRelaxationPaper, 200'000, 1e-10, 0.0}, given->load, expected)
                     .converged);
-    const Solved found = Solve<TiledResident, float>(
-        *given, {SolverKind::kChebyshevJacobi2015, 1500, 1e-6, 0.0}, CountTiles(given->model), 0);
+    const Solved found = Solve<TiledResident, float>(*given, {1500, 1e-6}, CountTiles(given->model), 0);
     const double largest = CalcLargestDistance(expected.position, given->model.rest);
     if (given->model.Size() > 2) {
       EXPECT_GT(largest, 1e-4);  // else every node is held
@@ -119,23 +119,20 @@ TEST(TiledChebyshev, SinglePrecisionReachesTheReferencesEquilibrium) {
 
 TEST(TiledChebyshev, EndsWhereTheToleranceIsMetAndKeepsThatState) {
   const auto given = MakeCase(MakeGridSystem(20, 20, Springs::kVaried, 0.004), false);
-  const Solved loose =
-      Solve<TiledResident, double>(*given, {SolverKind::kChebyshevJacobi2015, 1000, 1e-2, 0.0}, 2, 0);
+  const Solved loose = Solve<TiledResident, double>(*given, {1000, 1e-2}, 2, 0);
   EXPECT_EQ(loose.report.converged, 1u);
   EXPECT_LE(loose.report.residual, 1e-2);
   // from there, nothing is left to do: no step is taken and no bit of a free node changes but by rounding
   Case again = *given;
   again.state.position = loose.position;
-  const Solved second =
-      Solve<TiledResident, double>(again, {SolverKind::kChebyshevJacobi2015, 1000, 1e-2, 0.0}, 2, 0);
+  const Solved second = Solve<TiledResident, double>(again, {1000, 1e-2}, 2, 0);
   EXPECT_EQ(second.report.iterations, 0u);
   EXPECT_LT(CalcLargestDistance(second.position, loose.position), 1e-17);
 }
 
 TEST(TiledChebyshev, LeavesPrescribedNodesToTheBit) {
   const auto given = MakeCase(MakeScatteredSphere(3, Springs::kVaried, 0.03), true);
-  const Solved solved =
-      Solve<TiledStreaming, float>(*given, {SolverKind::kChebyshevJacobi2015, 9, 1e-9, 0.0}, 2, 1);
+  const Solved solved = Solve<TiledStreaming, float>(*given, {9, 1e-9}, 2, 1);
   for (std::size_t i = 0; i < given->model.Size(); ++i) {
     if (given->state.condition[i] == NodeCondition::kPrescribed) {
       EXPECT_EQ(solved.position[i], given->state.position[i]);
@@ -147,7 +144,7 @@ TEST(TiledChebyshev, ANumberThatIsNoneEndsTheSolveAndIsSeen) {
   const auto given = MakeCase(MakeGridSystem(20, 20, Springs::kVaried, 0.004), false);
   given->state.position[111].y = std::nan("");
   for (int i = 0; i < 2; ++i) {
-    const SolverSettings settings{SolverKind::kChebyshevJacobi2015, 1000, 1e-6, 0.0};
+    const GpuSettings settings{1000, 1e-6};
     const Solved solved = i == 0 ? Solve<TiledResident, float>(*given, settings, 2, 0)
                                  : Solve<TiledStreaming, float>(*given, settings, 2, 0);
     EXPECT_EQ(solved.report.iterations, 1u);
@@ -175,7 +172,7 @@ struct WithoutBorder : TiledResident<Real, Memory> {
 // Negative controls: each barrier and the border are needed, and their absence is found.
 TEST(TiledChebyshev, NeedsEveryBarrierAndItsBorder) {
   const auto given = MakeCase(MakeGridSystem(31, 33, Springs::kVaried, 0.004), false);
-  const SolverSettings settings{SolverKind::kChebyshevJacobi2015, 3, 1e-9, 0.0};
+  const GpuSettings settings{3, 1e-9};
   const auto count_errors = [&](auto run, int removed) {
     TissueState state = given->state;
     Watch watch;

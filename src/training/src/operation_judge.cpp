@@ -9,15 +9,13 @@
 namespace trocar::training {
 namespace {
 
-constexpr double kMuchBlood = 50e-6;  // [m^3], domain facts, section 1.4
-constexpr int kClipsThatStay = 2;
-constexpr double kTipIn = 0.08;  // a tool this deep has been pushed in [m]
-constexpr double kBlindSeconds = 1.5;
+constexpr int kClipsThatStay = 2;  // on the patient's side of a cut: the rule that is taught
 
 }  // namespace
 
-OperationJudge::OperationJudge(DissectionMonitor dissection, bool has_critical_view)
-    : has_view_(has_critical_view), dissection_(std::move(dissection)) {}
+OperationJudge::OperationJudge(DissectionMonitor dissection, bool has_critical_view,
+                               const JudgementSettings& settings)
+    : has_view_(has_critical_view), settings_(settings), dissection_(std::move(dissection)) {}
 
 void OperationJudge::JudgeAct(const EmittedAct& act, double time) noexcept {
   const auto report = [&](OperationError error) { errors_.Add({error, time, act.position, act.hand}); };
@@ -68,9 +66,9 @@ void OperationJudge::JudgeHand(int hand, const OperationObservation& now) noexce
   if (!state.is_inserting) return;
   if (instrument::IsInView(now.camera.X_world_camera, now.camera.field_of_view, seen.p_world_tip)) {
     state.is_inserting = false;
-  } else if (seen.depth > kTipIn) {
+  } else if (seen.depth > settings_.tip_in) {
     state.blind_seconds += now.seconds;
-    if (state.blind_seconds > kBlindSeconds) {
+    if (state.blind_seconds > settings_.blind_seconds) {
       report(OperationError::kBlindInsertion);
       state.is_inserting = false;
     }
@@ -99,7 +97,7 @@ void OperationJudge::Update(const OperationObservation& now) noexcept {
   view_.Update(dissection_.Facts(), now.seconds);
   was_achieved_ = was_achieved_ || view_.Score().IsAchieved();
   JudgePhase(now);
-  if (now.blood_lost > kMuchBlood && errors_.Count(OperationError::kBleeding) == 0)
+  if (now.blood_lost > settings_.much_blood && errors_.Count(OperationError::kBleeding) == 0)
     errors_.Add({OperationError::kBleeding, now.time, now.p_pool, -1});
   const bool is_completed = now.facts.is_bag_leaving;
   if (is_completed && !was_completed_ && now.spilled_stones > 0)

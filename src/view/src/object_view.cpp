@@ -16,8 +16,8 @@ using geometry::TriangleMesh;
 using math::Pose;
 using math::Vec3;
 using render::Material;
+using rigid::RigidShape;
 using scene::ObjectColour;
-using surgery::RigidShape;
 
 constexpr int kSides = 28;
 constexpr int kRingSteps = 48;

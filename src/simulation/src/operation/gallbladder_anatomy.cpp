@@ -176,7 +176,8 @@ core::Result<surgery::GallstoneSpill> MakeGallstones(const Scene& scene,
   const double capacity = geometry::CalcVolume(wall.positions, wall.triangles);
   const std::vector<double> diameters =
       surgery::DrawGallstones(FindGallstones(scene), capacity, scene.seed ^ kStoneSeed);
-  return surgery::GallstoneSpill::Make(diameters, geometry::MakeOmentum(FindOmentumBalls(surfaces, rest)));
+  return surgery::GallstoneSpill::Make(diameters, geometry::MakeOmentum(FindOmentumBalls(surfaces, rest)),
+                                       scene.operation->parameters.stones);
 }
 
 }  // namespace trocar::simulation

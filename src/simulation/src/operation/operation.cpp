@@ -44,110 +44,113 @@ core::Result<std::unique_ptr<Operation>> Operation::Make(const Scene& scene,
 }
 
 core::Status Operation::MakeAll() {
-  const anatomy::Patient& patient = scene_->patient;
   const PatientTissue& tissue = *made_;
-  liver_ = scene::FindSurface(tissue.surfaces, roles::OrganRole::kLiver);
-  gallbladder_ = scene::FindSurface(tissue.surfaces, roles::OrganRole::kGallbladder);
-  const std::size_t organ_count = patient.organs.size();
-  organs_.clear();
-  for (std::size_t i = 0; i < organ_count; ++i) {
+  facts_.liver = scene::FindSurface(tissue.surfaces, roles::OrganRole::kLiver);
+  facts_.gallbladder = scene::FindSurface(tissue.surfaces, roles::OrganRole::kGallbladder);
+  if (const auto status = MakeOrgans(); !status.ok()) return status;
+  if (const auto status = MakeTubes(); !status.ok()) return status;
+  FindDissectedStrands();
+  heat_ = surgery::Electrosurgery(tissue.definition, tissue.heat_mass, scene_->operation->parameters.heat);
+  attachment_ = MakeAttachment(scene_->patient, tissue.surfaces, facts_.dissected);
+  MakeAssistant();
+  const anatomy::Landmark* neck = scene_->patient.LandmarkOf(roles::LandmarkRole::kInfundibulum);
+  facts_.p_pool = (neck != nullptr ? neck->position : Vec3{}) + kPouch;
+  facts_.deepest = kBelowAll;
+  for (const Vec3& p : tissue.definition.rest) facts_.deepest = std::min(facts_.deepest, p.z + kBelowAll);
+  stones_.Reset();
+  MakeOoze();
+  for (int hand = 0; hand < kHandCount; ++hand) {
+    HandState& state = hands_[static_cast<std::size_t>(hand)];
+    state.fronts.resize(organs_.size());
+    state.blade.jaw = state.spread_upper.jaw = scene_->instruments[hand].home.jaw;
+    state.clips = Tool(hand).clips;
+  }
+  return {};
+}
+
+core::Status Operation::MakeOrgans() {
+  const anatomy::Patient& patient = scene_->patient;
+  for (std::size_t i = 0; i < patient.organs.size(); ++i) {
     surgery::CuttableOrganSettings settings;
-    settings.wall = tissue.walls[i];
-    settings.cut.has_walls = static_cast<std::int32_t>(i) != gallbladder_ && !scene_->model;
-    settings.first_node = tissue.surfaces[i].first_node;
-    settings.first_spare = tissue.first_spare[i];
+    settings.wall = made_->walls[i];
+    settings.cut.has_walls = static_cast<std::int32_t>(i) != facts_.gallbladder && !scene_->model;
+    settings.first_node = made_->surfaces[i].first_node;
+    settings.first_spare = made_->first_spare[i];
     settings.spare_count = kSpare.by_organ;
     auto organ = surgery::CuttableOrgan::Make(patient.organs[i].mesh, settings);
     if (!organ.ok()) return organ.error();
     organ->ReserveFor(change_);
     organs_.push_back(std::move(*organ));
   }
-  sheets_.clear();
   for (std::size_t i = 0; scene_->model && i < scene_->model->sheets.size(); ++i)
     sheets_.push_back(MakePatternCutMonitor(scene_->model->sheets[i], organs_[i].Mesh()));
+  return {};
+}
+
+/// Ducts and vessels, which of them must stay, and where they enter the gallbladder.
+core::Status Operation::MakeTubes() {
+  const anatomy::Patient& patient = scene_->patient;
   const scene::OperationParameters& parameters = scene_->operation->parameters;
   auto vessels = scene::MakePatientVessels(patient, parameters.supplies, parameters.fluids);
   if (!vessels.ok()) return vessels.error();
-  biliary_ = std::move(vessels->anatomy);
-  vessels_ = MakeVessels(std::move(vessels->map), patient, tissue, kSpare.tubes, parameters.vessels);
+  facts_.biliary = std::move(vessels->anatomy);
+  vessels_ = MakeVessels(std::move(vessels->map), patient, *made_, kSpare.tubes, parameters.vessels);
   vessels_->ReserveFor(change_);
   change_.Clear();
-
-  main_nodes_.clear();
-  main_ducts_.clear();
   for (std::size_t t = 0; t < patient.tubes.size(); ++t) {
-    const SurfaceInfo& surface = tissue.surfaces[organ_count + t];
+    const SurfaceInfo& surface = made_->surfaces[patient.organs.size() + t];
     for (std::uint32_t k = 0; k < surface.node_count; ++k) {
       const surgery::VesselPlace place = vessels_->Map().Find(t, vessels_->Map().arcs[t][k]);
-      if (training::MayBeDivided(biliary_.roles[place.vessel])) continue;
-      main_nodes_.push_back(surface.first_node + k);
-      if (patient.tubes[t].kind == anatomy::TubeKind::kDuct) main_ducts_.push_back(surface.first_node + k);
+      if (training::MayBeDivided(facts_.biliary.roles[place.vessel])) continue;
+      facts_.main_nodes.push_back(surface.first_node + k);
+      if (patient.tubes[t].kind == anatomy::TubeKind::kDuct)
+        facts_.main_ducts.push_back(surface.first_node + k);
     }
   }
-  tube_ends_.clear();
-  for (surgery::EnteringTube& tube : FindEnteringTubes(patient, tissue.surfaces, strands_)) {
-    const SurfaceInfo& surface = tissue.surfaces[organ_count + tube.tube];
+  for (surgery::EnteringTube& tube : FindEnteringTubes(patient, made_->surfaces, strands_)) {
+    const SurfaceInfo& surface = made_->surfaces[patient.organs.size() + tube.tube];
     const double radius = surface.radii[tube.nodes.front() - surface.first_node];
     TubeEnd end{tube.nodes.front(), std::move(tube.end_strands), M_PI * radius * radius};
     if (!end.strands.empty()) tube_ends_.push_back(std::move(end));
   }
-  // what lies around ducts that must stay is none of the dissection's business
-  dissected_ = strands_;
-  for (StrandInfo& strand : dissected_) {
+  return {};
+}
+
+/// What lies around ducts that must stay is none of the dissection's business. Bands of a model are parted one by one.
+void Operation::FindDissectedStrands() {
+  const std::vector<Vec3>& rest = made_->definition.rest;
+  facts_.dissected = strands_;
+  for (StrandInfo& strand : facts_.dissected) {
     if (strand.kind != StrandInfo::Kind::kTriangle && strand.kind != StrandInfo::Kind::kPeritoneum) continue;
-    const Vec3 middle = 0.5 * (tissue.definition.rest[strand.a] + tissue.definition.rest[strand.b]);
-    const bool is_near = std::any_of(main_nodes_.begin(), main_nodes_.end(), [&](std::uint32_t node) {
-      return math::Distance(tissue.definition.rest[node], middle) < kMainDistance;
-    });
+    const Vec3 middle = 0.5 * (rest[strand.a] + rest[strand.b]);
+    const bool is_near =
+        std::any_of(facts_.main_nodes.begin(), facts_.main_nodes.end(),
+                    [&](std::uint32_t node) { return math::Distance(rest[node], middle) < kMainDistance; });
     if (is_near) strand.kind = StrandInfo::Kind::kEnd;
   }
-  heat_ = surgery::Electrosurgery(tissue.definition, tissue.heat_mass, parameters.heat);
-  attachment_ = MakeAttachment(patient, tissue.surfaces, dissected_);
-  assistant_.reset();
-  if (scene_->operation->assistant) {
-    const AssistantSetup& setup = *scene_->operation->assistant;
-    const Vec3& target = setup.p_world_target;
-    assistant_.emplace(setup, target);
-    // the landmark moves with the organ: the nearest vertex at rest carries it
-    const SurfaceInfo& surface = tissue.surfaces[static_cast<std::size_t>(std::max(0, gallbladder_))];
-    const auto& rest = tissue.definition.rest;
-    assistant_node_ = surface.first_node;
-    for (std::uint32_t node = surface.first_node; node < surface.first_node + surface.node_count; ++node) {
-      if (math::SquaredDistance(rest[node], target) < math::SquaredDistance(rest[assistant_node_], target))
-        assistant_node_ = node;
-    }
-  }
-  const anatomy::Landmark* neck = patient.LandmarkOf(roles::LandmarkRole::kInfundibulum);
-  p_pool_ = (neck != nullptr ? neck->position : Vec3{}) + kPouch;
-  fluids_ = {};
-  holes_ = {};
-  stones_.Reset();
-  MakeOoze();
-  deepest_ = kBelowAll;
-  for (const Vec3& p : tissue.definition.rest) deepest_ = std::min(deepest_, p.z + kBelowAll);
-  X_world_tools_ = {};
-  active_ = {};
-  for (int hand = 0; hand < kHandCount; ++hand) {
-    HandState& state = hands_[static_cast<std::size_t>(hand)];
-    state = {};
-    state.fronts.resize(organ_count);
-    state.blade.jaw = state.spread_upper.jaw = scene_->instruments[hand].home.jaw;
-    state.clips = Tool(hand).clips;
-  }
-  leaked_seen_ = open_area_ = smoke_ = 0;
-  topology_version_ = 0;
-  is_in_bag_ = is_completed_ = is_gallbladder_free_ = false;
-  bag_hand_ = -1;
-  BeginTick();
-  band_strands_.clear();
-  band_starts_.assign(1, 0);
+  facts_.band_starts.assign(1, 0);
   for (std::size_t band = 0; scene_->model && band < scene_->model->bands.size(); ++band) {
     for (std::uint32_t i = 0; i < strands_.size(); ++i) {
-      if (strands_[i].band == static_cast<std::int32_t>(band)) band_strands_.push_back(i);
+      if (strands_[i].band == static_cast<std::int32_t>(band)) facts_.band_strands.push_back(i);
     }
-    band_starts_.push_back(static_cast<std::uint32_t>(band_strands_.size()));
+    facts_.band_starts.push_back(static_cast<std::uint32_t>(facts_.band_strands.size()));
   }
-  return {};
+}
+
+void Operation::MakeAssistant() {
+  if (!scene_->operation->assistant) return;
+  const AssistantSetup& setup = *scene_->operation->assistant;
+  const Vec3& target = setup.p_world_target;
+  assistant_.emplace(setup, target);
+  // the landmark moves with the organ: the nearest vertex at rest carries it
+  const SurfaceInfo& surface = made_->surfaces[static_cast<std::size_t>(std::max(0, facts_.gallbladder))];
+  const auto& rest = made_->definition.rest;
+  facts_.assistant_node = surface.first_node;
+  for (std::uint32_t node = surface.first_node; node < surface.first_node + surface.node_count; ++node) {
+    if (math::SquaredDistance(rest[node], target) <
+        math::SquaredDistance(rest[facts_.assistant_node], target))
+      facts_.assistant_node = node;
+  }
 }
 
 /// What bleeds where the gallbladder comes off the liver.
@@ -157,15 +160,15 @@ void Operation::MakeOoze() {
     const StrandInfo& strand = strands_[i];
     const bool is_bed = strand.kind == StrandInfo::Kind::kBed;
     if (!is_bed && strand.kind != StrandInfo::Kind::kAdhesion) continue;
-    const bool is_b = IsOf(strand.b, liver_);
-    if (is_b || IsOf(strand.a, liver_)) fibres.push_back({i, is_b ? strand.b : strand.a, is_bed});
+    const bool is_b = IsOf(strand.b, facts_.liver);
+    if (is_b || IsOf(strand.a, facts_.liver)) fibres.push_back({i, is_b ? strand.b : strand.a, is_bed});
   }
   ooze_ = surgery::BedOoze(fibres, CalcPathology(scene_->patient).bed_bleeding,
                            scene_->operation->parameters.bed);
 }
 
 void Operation::Emit(const OperationEvent& event) noexcept {
-  if (event_count_ < events_.size()) events_[event_count_++] = event;
+  if (emitted_.count < emitted_.events.size()) emitted_.events[emitted_.count++] = event;
 }
 
 bool Operation::IsOf(std::uint32_t node, std::int32_t organ) const noexcept {
@@ -184,7 +187,7 @@ bool Operation::MoveTool(int hand, const HandControls& controls, bool is_holding
   const bool wants_other = controls.tool != active && controls.tool < scene_->instruments[hand].tray.size();
   // a stone goes out with the tool that holds it, where the trocar is wide enough
   const bool is_stuck = HoldsStone(hand) && stones_.HeldDiameter(hand) > WidestTool(hand);
-  const bool may = (!is_holding && !is_stuck) || bag_hand_ == hand;
+  const bool may = (!is_holding && !is_stuck) || retrieval_.bag_hand == hand;
   if (!wants_other || !may) {
     const bool is_refused = wants_other && !state.was_refused;
     state.was_refused = wants_other;
@@ -196,8 +199,8 @@ bool Operation::MoveTool(int hand, const HandControls& controls, bool is_holding
   wanted.jaw = 0;
   state.exchange_seconds += seconds;
   if (state.exchange_seconds < kExchangeSeconds) return true;
-  if (bag_hand_ == hand) {
-    is_completed_ = is_in_bag_;
+  if (retrieval_.bag_hand == hand) {
+    retrieval_.is_completed = retrieval_.is_in_bag;
     return true;
   }
   EmitRetrieved(hand, stones_.TakeOut(hand));
@@ -220,7 +223,7 @@ double Operation::WidestTool(int hand) const noexcept {
 }
 
 void Operation::BeginTick() noexcept {
-  event_count_ = 0;
+  emitted_.count = 0;
   acts_.Clear();
 }
 
@@ -258,8 +261,8 @@ void Operation::Act(const HandsNow& hands, const TissueNow& tissue, OperatedTiss
 
 void Operation::Assist(const HandsNow& hands, const TissueNow& tissue, OperatedTissue& operated) noexcept {
   if (!assistant_) return;
-  const AssistantCommand command = is_in_bag_ ? AssistantCommand::kRelease : hands.input->assistant;
-  (void)assistant_->Step(command, tissue.state->position[assistant_node_], hands.seconds, tissue.organs,
+  const AssistantCommand command = retrieval_.is_in_bag ? AssistantCommand::kRelease : hands.input->assistant;
+  (void)assistant_->Step(command, tissue.state->position[facts_.assistant_node], hands.seconds, tissue.organs,
                          *tissue.model, {}, operated.state);
 }
 
@@ -277,8 +280,8 @@ bool Operation::EndCuts() noexcept {
 training::Target Operation::TargetOfSurface(std::int32_t surface) const noexcept {
   using training::Target;
   if (surface < 0) return Target::kNullTarget;
-  if (surface == liver_) return Target::kLiver;
-  if (surface == gallbladder_) return Target::kGallbladder;
+  if (surface == facts_.liver) return Target::kLiver;
+  if (surface == facts_.gallbladder) return Target::kGallbladder;
   const roles::TubeRole tube = made_->surfaces[static_cast<std::size_t>(surface)].tube;
   if (tube == roles::TubeRole::kCysticDuct) return Target::kCysticDuct;
   return tube == roles::TubeRole::kCysticArtery ? Target::kCysticArtery : Target::kBloodVessel;
@@ -333,7 +336,7 @@ void Operation::Size(OperationSnapshot& snapshot) const {
   snapshot.blanching.assign(nodes, 0.0F);
   snapshot.charring.assign(nodes, 0.0F);
   snapshot.clips.assign(surgery::VesselActs::kMostClips, {});
-  snapshot.band_is_whole.assign(band_starts_.size() - 1, 1);
+  snapshot.band_is_whole.assign(facts_.band_starts.size() - 1, 1);
   snapshot.sheets.assign(sheets_.size(), {});
   snapshot.stones.assign(stones_.Size(), {});
   snapshot.tube_pieces.assign(vessels_->Tubes().Graph().edges.size() + kSpare.tubes / 2, {});
@@ -360,7 +363,8 @@ void Operation::Publish(const tissue::TissueState& tissue, OperationSnapshot& sn
   for (std::size_t i = 0; i < sheets_.size(); ++i) snapshot.sheets[i] = sheets_[i].Now();
   for (std::size_t band = 0; band < snapshot.band_is_whole.size(); ++band) {
     const auto own =
-        std::span(band_strands_).subspan(band_starts_[band], band_starts_[band + 1] - band_starts_[band]);
+        std::span(facts_.band_strands)
+            .subspan(facts_.band_starts[band], facts_.band_starts[band + 1] - facts_.band_starts[band]);
     snapshot.band_is_whole[band] =
         std::all_of(own.begin(), own.end(), [&](std::uint32_t i) { return tissue.strand_is_intact[i] != 0; });
   }
@@ -384,7 +388,7 @@ void Operation::Publish(const tissue::TissueState& tissue, OperationSnapshot& sn
   snapshot.ooze_count = ooze_.Publish(tissue.position, snapshot.oozes);
   stones_.Publish(snapshot.stones);
   snapshot.fluids = fluids_;
-  snapshot.p_world_pool = p_pool_;
+  snapshot.p_world_pool = facts_.p_pool;
   snapshot.smoke = smoke_;
   snapshot.has_assistant = assistant_.has_value();
   if (assistant_) {
@@ -392,54 +396,55 @@ void Operation::Publish(const tissue::TissueState& tissue, OperationSnapshot& sn
     snapshot.assistant_jaw = assistant_->Joints().jaw;
     snapshot.is_assistant_holding = assistant_->Held().IsHolding();
   }
-  snapshot.is_gallbladder_free = is_gallbladder_free_;
-  snapshot.is_in_bag = is_in_bag_;
-  snapshot.is_completed = is_completed_;
+  snapshot.is_gallbladder_free = retrieval_.is_gallbladder_free;
+  snapshot.is_in_bag = retrieval_.is_in_bag;
+  snapshot.is_completed = retrieval_.is_completed;
 }
 
 void Operation::AddTo(OperationResult& result) const {
   surgery::FlowNetwork network = vessels_->Map().network;
-  result.injuries = training::JudgeInjuries(biliary_, vessels_->Acts(), network);
+  result.injuries = training::JudgeInjuries(facts_.biliary, vessels_->Acts(), network);
   result.fluids = fluids_;
   result.bed_blood = ooze_.Lost();
   result.stones = stones_.Count();
   result.injuries.spilled_stones = result.stones.spilled;
-  result.is_gallbladder_free = is_gallbladder_free_;
-  result.is_in_bag = is_in_bag_;
-  result.is_completed = is_completed_;
+  result.is_gallbladder_free = retrieval_.is_gallbladder_free;
+  result.is_in_bag = retrieval_.is_in_bag;
+  result.is_completed = retrieval_.is_completed;
 }
 
 // --- what a judge sees
 
 training::OperationJudge Operation::MakeJudge() const {
   const PatientTissue& tissue = *made_;
-  return {training::DissectionMonitor(
-              MakeDissectedAnatomy(scene_->patient, tissue.surfaces, dissected_, tissue.definition.rest),
-              tissue.definition.rest),
-          gallbladder_ >= 0};
+  return {training::DissectionMonitor(MakeDissectedAnatomy(scene_->patient, tissue.surfaces, facts_.dissected,
+                                                           tissue.definition.rest),
+                                      tissue.definition.rest),
+          facts_.gallbladder >= 0, scene_->operation->parameters.judgement};
 }
 
 training::OperationObservation Operation::Observe(const HandsNow& hands, const TissueNow& tissue,
                                                   const Camera& camera) const noexcept {
-  training::OperationObservation now{hands.time,
-                                     hands.seconds,
-                                     acts_,
-                                     {},
-                                     *tissue.state,
-                                     *vessels_,
-                                     tissue.organs,
-                                     camera,
-                                     {is_gallbladder_free_, is_in_bag_, is_completed_},
-                                     fluids_.fluids[static_cast<std::size_t>(surgery::Fluid::kBlood)].left,
-                                     stones_.Count().spilled,
-                                     p_pool_};
+  training::OperationObservation now{
+      hands.time,
+      hands.seconds,
+      acts_,
+      {},
+      *tissue.state,
+      *vessels_,
+      tissue.organs,
+      camera,
+      {retrieval_.is_gallbladder_free, retrieval_.is_in_bag, retrieval_.is_completed},
+      fluids_.fluids[static_cast<std::size_t>(surgery::Fluid::kBlood)].left,
+      stones_.Count().spilled,
+      facts_.p_pool};
   for (std::size_t hand = 0; hand < now.hands.size(); ++hand) {
     training::ObservedHand& seen = now.hands[hand];
     const surgery::Grasp& grasp = (*hands.grasps)[hand];
     seen.p_world_tip = hands.X_proxy[hand].translation;
     seen.depth = hands.joints[hand].depth;
     seen.is_retracting = grasp.IsHolding() && Tool(static_cast<int>(hand)).kind != instrument::ToolKind::kBag;
-    seen.is_holding_liver = grasp.surface == liver_;
+    seen.is_holding_liver = grasp.surface == facts_.liver;
     if (seen.is_retracting) seen.held = TargetOfSurface(grasp.surface);
     seen.change = hands.changes[hand];
   }
@@ -493,7 +498,7 @@ void Operation::VisitState(core::StateArchive& archive) {
   archive.Field("heat", heat_);
   if (assistant_) archive.Field("assistant", *assistant_);
   archive.Field("fluids", fluids_);
-  archive.Field("holes", holes_);
+  archive.Field("holes", wall_.holes);
   archive.Field("stones", stones_);
   archive.Field("ooze", ooze_);
   archive.Field("active_tools", active_);
@@ -501,14 +506,14 @@ void Operation::VisitState(core::StateArchive& archive) {
   archive.Field("right_hand", hands_[kRight]);
   archive.Field("X_world_tools", X_world_tools_);
   for (TubeEnd& end : tube_ends_) archive.Field("is_tube_end_off", end.is_off);
-  archive.Field("leaked_seen", leaked_seen_);
-  archive.Field("open_area", open_area_);
+  archive.Field("leaked_seen", wall_.leaked_seen);
+  archive.Field("open_area", wall_.open_area);
   archive.Field("smoke", smoke_);
   archive.Field("topology_version", topology_version_);
-  archive.Field("is_in_bag", is_in_bag_);
-  archive.Field("is_completed", is_completed_);
-  archive.Field("is_gallbladder_free", is_gallbladder_free_);
-  archive.Field("bag_hand", bag_hand_);
+  archive.Field("is_in_bag", retrieval_.is_in_bag);
+  archive.Field("is_completed", retrieval_.is_completed);
+  archive.Field("is_gallbladder_free", retrieval_.is_gallbladder_free);
+  archive.Field("bag_hand", retrieval_.bag_hand);
   if (!archive.IsRestoring() || !archive.ok()) return;
   BeginTick();
   for (std::size_t hand = 0; hand < active_.size(); ++hand) {

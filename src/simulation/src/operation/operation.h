@@ -130,7 +130,7 @@ class Operation {
   training::OperationObservation Observe(const HandsNow& hands, const TissueNow& tissue,
                                          const Camera& camera) const noexcept;
   /// What happened in this tick.
-  std::span<const OperationEvent> Events() const { return std::span(events_).first(event_count_); }
+  std::span<const OperationEvent> Events() const { return std::span(emitted_.events).first(emitted_.count); }
 
   /// A judge who knows this operation's anatomy.
   training::OperationJudge MakeJudge() const;
@@ -170,6 +170,10 @@ class Operation {
   Operation(const Scene& scene, std::vector<StrandInfo> strands)
       : scene_(&scene), strands_(std::move(strands)) {}
   core::Status MakeAll();
+  core::Status MakeOrgans();
+  core::Status MakeTubes();
+  void FindDissectedStrands();
+  void MakeAssistant();
   void MakeOoze();
   double WidestTool(int hand) const noexcept;
   void UseBlade(int hand, const HandsNow& hands, const TissueNow& tissue, OperatedTissue& operated) noexcept;
@@ -185,6 +189,7 @@ class Operation {
   void UseFluids(int hand, const HandsNow& hands) noexcept;
   void UseBag(int hand, const HandsNow& hands, const TissueNow& tissue, OperatedTissue& operated) noexcept;
   void OpenTubeEnds(const TissueNow& tissue) noexcept;
+  void KeepLeaked(tissue::OrganVolume& gallbladder) const noexcept;
   void SpillStones(double leaked, const TissueNow& tissue) noexcept;
   void SlipClips(const HandsNow& hands, const TissueNow& tissue) noexcept;
   void EmitRetrieved(int hand, int count) noexcept;
@@ -197,14 +202,26 @@ class Operation {
     return scene_->operation->parameters.electrode;
   }
   const scene::SuctionParameters& Suction() const noexcept { return scene_->operation->parameters.suction; }
+  const training::JudgementSettings& Judgement() const noexcept {
+    return scene_->operation->parameters.judgement;
+  }
 
   const Scene* scene_;  // outlives this
   std::vector<StrandInfo> strands_;
   std::shared_ptr<const PatientTissue> made_;
-  std::vector<StrandInfo> dissected_;
-  std::int32_t liver_ = -1, gallbladder_ = -1;
-  std::vector<std::uint32_t> main_nodes_;  // of ducts and arteries that must stay
-  std::vector<std::uint32_t> main_ducts_;  // of the ducts among them
+  /// What is asked of the patient again and again; constant.
+  struct AnatomyFacts {
+    std::int32_t liver = -1, gallbladder = -1;
+    std::vector<std::uint32_t> main_nodes;  // of ducts and arteries that must stay
+    std::vector<std::uint32_t> main_ducts;  // of the ducts among them
+    std::vector<StrandInfo> dissected;
+    training::BiliaryAnatomy biliary;                      // of the vessels
+    Vec3 p_pool;                                           // where blood and bile gather
+    double deepest = 0;                                    // z below which nothing falls [m]
+    std::uint32_t assistant_node = 0;                      // of what the assistant takes
+    std::vector<std::uint32_t> band_strands, band_starts;  // (bands) the strands of each, by band_starts
+  };
+  AnatomyFacts facts_;
   /// Where a duct or artery enters the gallbladder.
   struct TubeEnd {
     std::uint32_t node = 0;              // of the tube
@@ -213,35 +230,44 @@ class Operation {
     bool is_off = false;
   };
   std::vector<TubeEnd> tube_ends_;
-  Vec3 p_pool_;
 
   std::vector<surgery::CuttableOrgan> organs_;
   std::vector<training::PatternCutMonitor> sheets_;  // (ModelSetup::sheets), which are the organs
   std::optional<surgery::Vessels> vessels_;
-  training::BiliaryAnatomy biliary_;  // of the vessels; constant
   surgery::Electrosurgery heat_;
   surgery::GallbladderAttachment attachment_;
   EmittedActs acts_;
   std::optional<Assistant> assistant_;
-  std::uint32_t assistant_node_ = 0;  // of what it takes
   surgery::TopologyChange change_;
   surgery::FluidLedger fluids_;
-  WallHoles holes_;  // of the gallbladder
+  /// What has become of the gallbladder's wall.
+  struct Wall {
+    WallHoles holes;
+    double open_area = 0;    // that cuts have made [m^2]
+    double leaked_seen = 0;  // that has been booked [m^3]
+  };
+  Wall wall_;
   surgery::GallstoneSpill stones_;
   surgery::BedOoze ooze_;
   std::vector<surgery::LooseStone*> loose_clips_;  // scratch
-  double deepest_ = 0;                             // z below which nothing falls [m]
 
   std::array<std::size_t, kHandCount> active_{};
   std::array<HandState, kHandCount> hands_;
   std::array<Pose, kHandCount> X_world_tools_;  // that are seen, in the tick before
-  double leaked_seen_ = 0, open_area_ = 0, smoke_ = 0;
+  double smoke_ = 0;
   std::uint32_t topology_version_ = 0;
-  bool is_in_bag_ = false, is_completed_ = false, is_gallbladder_free_ = false;
-  std::int32_t bag_hand_ = -1;
-  std::array<OperationEvent, 8> events_{};
-  std::size_t event_count_ = 0;
-  std::vector<std::uint32_t> band_strands_, band_starts_;  // (bands) the strands of each, by band_starts_
+  /// How far the gallbladder is on its way out.
+  struct Retrieval {
+    bool is_gallbladder_free = false, is_in_bag = false, is_completed = false;
+    std::int32_t bag_hand = -1;
+  };
+  Retrieval retrieval_;
+  /// Of this tick.
+  struct Emitted {
+    std::array<OperationEvent, 8> events{};
+    std::size_t count = 0;
+  };
+  Emitted emitted_;
 };
 
 /// Adds what a judge knows.

@@ -13,9 +13,6 @@ using training::InstrumentKind;
 using training::OperationError;
 using training::Verb;
 
-constexpr double kIdleSeconds = 0.25;  // of current into nothing that no eye would note
-constexpr double kNearDuct = 0.005;    // domain facts, section 1.4 [m]
-
 // Clip applier: closed and open again, as shares of its opening
 constexpr double kClipClosed = 0.12, kClipOpen = 0.6;
 
@@ -60,7 +57,7 @@ void Operation::CutWith(const surgery::BladeMove& move, int hand, const HandsNow
     act.kind = EmittedAct::Kind::kCut;
     act.position = hands.X_proxy[static_cast<std::size_t>(hand)].translation;
     act.hand = hand;
-    act.vessel = training::JudgePlace(biliary_, *vessels_, place);
+    act.vessel = training::JudgePlace(facts_.biliary, *vessels_, place);
     acts_.Add(act);
     Emit({EventKind::kTubeCut, hand, surface, vessels_->RestPoint(place)});
     acts_.Add({kind, Verb::kCut, TargetOfSurface(surface)}, hand);
@@ -90,7 +87,7 @@ void Operation::CutOrgans(const surgery::BladeMove& move, int hand, InstrumentKi
     const auto organ = static_cast<std::int32_t>(i);
     acts_.Add({kind, Verb::kCut, TargetOfSurface(organ)}, hand);
     if (scene_->model) continue;  // a sheet is there to be cut
-    if (organ != gallbladder_) {
+    if (organ != facts_.gallbladder) {
       acts_.Report(OperationError::kStructureTorn, tip, hand);
       continue;
     }
@@ -100,9 +97,9 @@ void Operation::CutOrgans(const surgery::BladeMove& move, int hand, InstrumentKi
     for (std::size_t k = 0; k < found; ++k) area += openings[k].area;
     if (found == 0) continue;
     acts_.Report(OperationError::kGallbladderPerforated, tip, hand);
-    tissue.conservation->Perforate(i, std::max(Electrode().burnt_hole, area - open_area_),
+    tissue.conservation->Perforate(i, std::max(Electrode().burnt_hole, area - wall_.open_area),
                                    operated.conserved);
-    open_area_ = std::max(area, open_area_);
+    wall_.open_area = std::max(area, wall_.open_area);
   }
 }
 
@@ -164,7 +161,8 @@ void Operation::UseElectrode(int hand, const HandsNow& hands, const TissueNow& t
   double& idle = hands_[h].idle_seconds;
   if (count == 0) {
     idle += hands.seconds;
-    if (idle > kIdleSeconds) acts_.Report(OperationError::kEnergyWithoutContact, X.translation, hand);
+    if (idle > Judgement().idle_seconds)
+      acts_.Report(OperationError::kEnergyWithoutContact, X.translation, hand);
     return;
   }
   idle = 0;
@@ -179,9 +177,10 @@ void Operation::UseElectrode(int hand, const HandsNow& hands, const TissueNow& t
     const bool is_strand = targets[i].part >= tissue.definition->rest.size();
     acts_.Add({kind, is_strand ? Verb::kDissect : Verb::kCoagulate, TargetOf(tissue, targets[i].part)}, hand);
   }
-  const bool is_near = std::any_of(main_ducts_.begin(), main_ducts_.end(), [&](std::uint32_t node) {
-    return math::Distance(tissue.state->position[node], X.translation) < kNearDuct;
-  });
+  const bool is_near =
+      std::any_of(facts_.main_ducts.begin(), facts_.main_ducts.end(), [&](std::uint32_t node) {
+        return math::Distance(tissue.state->position[node], X.translation) < Judgement().near_duct;
+      });
   if (is_near) acts_.Report(OperationError::kEnergyNearDuct, X.translation, hand);
 }
 
@@ -196,19 +195,19 @@ void Operation::Heat(const HandsNow& hands, const TissueNow& tissue, OperatedTis
   for (const std::uint32_t node : std::span(parted).first(count)) {
     const Vec3& p = tissue.state->position[node];
     surgery::TubePlace place;
-    if (IsOf(node, gallbladder_)) {
-      tissue.conservation->Perforate(static_cast<std::size_t>(gallbladder_), Electrode().burnt_hole,
+    if (IsOf(node, facts_.gallbladder)) {
+      tissue.conservation->Perforate(static_cast<std::size_t>(facts_.gallbladder), Electrode().burnt_hole,
                                      operated.conserved);
-      holes_.Add(node, Electrode().burnt_rim);
+      wall_.holes.Add(node, Electrode().burnt_rim);
       acts_.Report(OperationError::kGallbladderPerforated, p, hand);
-    } else if (IsOf(node, liver_)) {
+    } else if (IsOf(node, facts_.liver)) {
       acts_.Report(OperationError::kLiverBurnt, p, hand);
     } else if (vessels_->MakeHole(node, Electrode().burnt_hole, place)) {
       EmittedAct act;
       act.kind = EmittedAct::Kind::kHole;
       act.position = p;
       act.hand = hand;
-      act.vessel = training::JudgePlace(biliary_, *vessels_, place);
+      act.vessel = training::JudgePlace(facts_.biliary, *vessels_, place);
       acts_.Add(act);
     }
   }
@@ -217,7 +216,7 @@ void Operation::Heat(const HandsNow& hands, const TissueNow& tissue, OperatedTis
 
 /// A duct or artery that was burnt or torn off the gallbladder is open there, as one that was cut.
 void Operation::OpenTubeEnds(const TissueNow& tissue) noexcept {
-  if (is_in_bag_) return;
+  if (retrieval_.is_in_bag) return;
   for (TubeEnd& end : tube_ends_) {
     if (end.is_off || std::any_of(end.strands.begin(), end.strands.end(),
                                   [&](std::uint32_t i) { return tissue.state->strand_is_intact[i] != 0; }))
@@ -228,7 +227,7 @@ void Operation::OpenTubeEnds(const TissueNow& tissue) noexcept {
     EmittedAct act;
     act.kind = EmittedAct::Kind::kHole;
     act.position = tissue.state->position[end.node];
-    act.vessel = training::JudgePlace(biliary_, *vessels_, place);
+    act.vessel = training::JudgePlace(facts_.biliary, *vessels_, place);
     // of what is divided already only the gallbladder's side is left
     if (act.vessel.cuts == 0) acts_.Add(act);
   }
@@ -260,7 +259,7 @@ void Operation::UseClips(int hand, const HandsNow& hands, const TissueNow& tissu
   act.hand = hand;
   act.clip = clip;
   if (clip.kind != surgery::ClipResult::Kind::kLost)
-    act.vessel = training::JudgePlace(biliary_, *vessels_, clip.place);
+    act.vessel = training::JudgePlace(facts_.biliary, *vessels_, clip.place);
   acts_.Add(act);
   if (clip.kind == surgery::ClipResult::Kind::kLost) return;
   const auto surface = static_cast<std::int32_t>(organs_.size() + clip.place.tube);
@@ -303,7 +302,7 @@ void Operation::UseFluids(int hand, const HandsNow& hands) noexcept {
                                        2.0 * instrument::kSuctionBore * Tool(hand).shaft_radius));
   // the pool as a half sphere
   const double radius = std::cbrt(fluids_.Pooled() * 3.0 / (2.0 * M_PI));
-  if (math::Distance(hands.X_proxy[h].translation, p_pool_) > radius + Suction().pool_reach) return;
+  if (math::Distance(hands.X_proxy[h].translation, facts_.p_pool) > radius + Suction().pool_reach) return;
   if (fluids_.Aspirate(Suction().aspirate_rate * hands.seconds) > 0.0)
     acts_.Add({InstrumentKind::kIrrigator, Verb::kAspirate, training::Target::kFluid}, hand);
 }
@@ -312,9 +311,9 @@ void Operation::UseBag(int hand, const HandsNow& hands, const TissueNow& tissue,
                        OperatedTissue& operated) noexcept {
   const auto h = static_cast<std::size_t>(hand);
   acts_.Add({InstrumentKind::kSpecimenBag, Verb::kPack, training::Target::kGallbladder}, hand);
-  if (!is_in_bag_) EmitRetrieved(hand, stones_.CatchInBag(hands.X_device[h]));
-  if (is_in_bag_ || gallbladder_ < 0 || !is_gallbladder_free_) return;
-  const SurfaceInfo& surface = made_->surfaces[static_cast<std::size_t>(gallbladder_)];
+  if (!retrieval_.is_in_bag) EmitRetrieved(hand, stones_.CatchInBag(hands.X_device[h]));
+  if (retrieval_.is_in_bag || facts_.gallbladder < 0 || !retrieval_.is_gallbladder_free) return;
+  const SurfaceInfo& surface = made_->surfaces[static_cast<std::size_t>(facts_.gallbladder)];
   Vec3 centre;
   for (std::uint32_t i = 0; i < surface.node_count; ++i)
     centre += tissue.state->position[surface.first_node + i] / static_cast<double>(surface.node_count);
@@ -322,12 +321,12 @@ void Operation::UseBag(int hand, const HandsNow& hands, const TissueNow& tissue,
   if (math::Distance(centre, X.translation) > kMouth) return;
   // the other hands let go, and the bag closes around it
   for (surgery::Grasp& grasp : operated.grasps) {
-    if (grasp.surface == gallbladder_) surgery::ReleaseGrasp(*tissue.model, grasp, operated.state);
+    if (grasp.surface == facts_.gallbladder) surgery::ReleaseGrasp(*tissue.model, grasp, operated.state);
   }
   if (assistant_) surgery::ReleaseGrasp(*tissue.model, assistant_->Held(), operated.state);
   surgery::Grasp& held = operated.grasps[h];
   held = {};
-  held.surface = gallbladder_;
+  held.surface = facts_.gallbladder;
   held.pinch = held.damage_pinch = kBagGrip;
   const auto capacity = static_cast<std::uint32_t>(surgery::Grasp::kCapacity);
   const std::uint32_t step = std::max(1U, surface.node_count / capacity);
@@ -338,9 +337,9 @@ void Operation::UseBag(int hand, const HandsNow& hands, const TissueNow& tissue,
     held.p_tool_node[held.count++] = X_tool_world * tissue.state->position[node];
     operated.state.condition[node] = tissue::NodeCondition::kPrescribed;
   }
-  EmitRetrieved(hand, stones_.BagWith(gallbladder_));
-  is_in_bag_ = true;
-  bag_hand_ = hand;
+  EmitRetrieved(hand, stones_.BagWith(facts_.gallbladder));
+  retrieval_.is_in_bag = true;
+  retrieval_.bag_hand = hand;
 }
 
 }  // namespace trocar::simulation

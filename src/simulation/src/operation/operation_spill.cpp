@@ -16,39 +16,48 @@ constexpr double kPushLength = 0.060;  // of a shaft that pushes stones aside [m
 }  // namespace
 
 void Operation::Flow(const HandsNow& hands, const TissueNow& tissue, OperatedTissue& operated) noexcept {
-  const bool has_gallbladder = gallbladder_ >= 0;
-  const auto leaked = [&] {
-    return operated.conserved.organs[static_cast<std::size_t>(gallbladder_)].leaked;
-  };
-  if (has_gallbladder) {
-    const double now = leaked() - leaked_seen_;
+  tissue::OrganVolume* const gallbladder =
+      facts_.gallbladder >= 0 ? &operated.conserved.organs[static_cast<std::size_t>(facts_.gallbladder)]
+                              : nullptr;
+  if (gallbladder != nullptr) {
+    KeepLeaked(*gallbladder);
+    const double now = gallbladder->leaked - wall_.leaked_seen;
     if (now > 0.0) fluids_.Leak(surgery::Fluid::kBile, now);
     SpillStones(now, tissue);
   }
-  vessels_->Flow(hands.seconds, gallbladder_, operated.conserved, fluids_);
+  vessels_->Flow(hands.seconds, facts_.gallbladder, operated.conserved, fluids_);
   SlipClips(hands, tissue);
   fluids_.Leak(surgery::Fluid::kBlood,
                ooze_.Update(*tissue.state, heat_, made_->definition.rest.size(), hands.seconds));
-  if (has_gallbladder) leaked_seen_ = leaked();
+  if (gallbladder != nullptr) wall_.leaked_seen = gallbladder->leaked;
   smoke_ = std::clamp(smoke_ * (1.0 - Suction().smoke_fade * hands.seconds), 0.0, 1.0);
-  is_gallbladder_free_ = attachment_.IsFree(*tissue.state, *vessels_);
+  retrieval_.is_gallbladder_free = attachment_.IsFree(*tissue.state, *vessels_);
+}
+
+/// A bad tick takes the organ back to the last good solve, and with it the bile that ran out after that solve. It is in the
+/// ledger already: it stays out, or it would be counted again when it runs out again.
+void Operation::KeepLeaked(tissue::OrganVolume& gallbladder) const noexcept {
+  const double back = wall_.leaked_seen - gallbladder.leaked;
+  if (!(back > 0.0)) return;
+  gallbladder.target -= back;
+  gallbladder.leaked = wall_.leaked_seen;
 }
 
 void Operation::SpillStones(double leaked, const TissueNow& tissue) noexcept {
-  if (gallbladder_ < 0) return;
+  if (facts_.gallbladder < 0) return;
   for (const std::uint32_t i : tissue.torn_springs) {
     const tissue::Spring& spring = tissue.definition->springs[i];
     for (const std::uint32_t node : {spring.a, spring.b}) {
-      if (IsOf(node, gallbladder_)) holes_.Add(node, 2.0 * std::sqrt(M_PI * kTornHole));
+      if (IsOf(node, facts_.gallbladder)) wall_.holes.Add(node, 2.0 * std::sqrt(M_PI * kTornHole));
     }
   }
-  if (!(leaked > 0.0) || is_in_bag_ || !stones_.HasInside()) return;
-  const auto organ = static_cast<std::size_t>(gallbladder_);
+  if (!(leaked > 0.0) || retrieval_.is_in_bag || !stones_.HasInside()) return;
+  const auto organ = static_cast<std::size_t>(facts_.gallbladder);
   const surgery::WallHole hole =
-      holes_.FindLargest(tissue.organs[organ], tissue.state->position, organs_[organ].Mesh());
+      wall_.holes.FindLargest(tissue.organs[organ], tissue.state->position, organs_[organ].Mesh());
   if (!(hole.rim > 0.0)) return;
   const int spilled = stones_.Spill(leaked, leaked + tissue.conserved->organs[organ].target, hole);
-  for (int i = 0; i < spilled; ++i) Emit({EventKind::kStoneSpilled, -1, gallbladder_, {}});
+  for (int i = 0; i < spilled; ++i) Emit({EventKind::kStoneSpilled, -1, facts_.gallbladder, {}});
 }
 
 void Operation::MoveLoose(const HandsNow& hands, const TissueNow& tissue) noexcept {
@@ -57,7 +66,7 @@ void Operation::MoveLoose(const HandsNow& hands, const TissueNow& tissue) noexce
   ground.organs = tissue.organs;
   ground.positions = tissue.state->position;
   ground.gravity = hands.gravity;
-  ground.deepest = deepest_;
+  ground.deepest = facts_.deepest;
   std::array<surgery::StonePusher, 2 * kHandCount> pushers;
   std::size_t count = 0;
   for (int hand = 0; hand < kHandCount; ++hand) {

@@ -54,32 +54,39 @@ struct TiledReport {
 inline constexpr std::uint32_t kMaxima = 3;      // residual2, force2, is cut short
 inline constexpr std::uint32_t kMaximaSets = 3;  // one is written, one read, one cleared
 
+/// The model: constant.
 template <typename Real, typename Memory>
-struct TiledArgs {
+struct TiledMesh {
   template <typename T>
   using Array = typename Memory::template Array<T>;
 
   std::uint32_t nodes = 0;  ///< without padding
   std::uint32_t tiles = 0;
   std::uint32_t max_border = 0, max_links = 0;  ///< of any tile: capacity of shared memory
+  Array<std::uint32_t> model_index{};           ///< (256 tiles) renumbered -> model; kNoNode pads
+  Array<Triple<double>> rest{};                 ///< (256 tiles) [m]
+  Array<double> mass{};                         ///< (256 tiles) [kg]
+  Array<Real> shape_stiffness{};                ///< (256 tiles) [N/m]
+  Array<std::uint32_t> slice_starts{};          ///< (8 tiles + 1) first link of each slice
+  Array<Quad<Real>> link_vectors{};             ///< (links) see RestLink
+  Array<LengthExcess<Real>> link_rests{};       ///< (links)
+  Array<std::uint32_t> link_others{};           ///< (links) renumbered
+  Array<std::uint16_t> link_locals{};           ///< (links) place in the tile, or 256 + place in its border
+  Array<std::uint32_t> border_starts{};         ///< (tiles + 1)
+  Array<std::uint32_t> borders{};               ///< renumbered nodes of other tiles
+  Array<std::uint32_t> strand_starts{};         ///< (256 tiles + 1), or none
+  Array<HalfStrandEntry> strands{};
+};
+
+template <typename Real, typename Memory>
+struct TiledArgs {
+  template <typename T>
+  using Array = typename Memory::template Array<T>;
+
+  TiledMesh<Real, Memory> mesh;
   ChebyshevSettings<Real> settings;
   Real stiffness_scale = 1, shape_scale = 1;
   Triple<double> gravity{};  ///< [m/s^2]
-
-  // constant
-  Array<std::uint32_t> model_index{};      ///< (256 tiles) renumbered -> model; kNoNode pads
-  Array<Triple<double>> rest{};            ///< (256 tiles) [m]
-  Array<double> mass{};                    ///< (256 tiles) [kg]
-  Array<Real> shape_stiffness{};           ///< (256 tiles) [N/m]
-  Array<std::uint32_t> slice_starts{};     ///< (8 tiles + 1) first link of each slice
-  Array<Quad<Real>> link_vectors{};        ///< (links) see RestLink
-  Array<LengthExcess<Real>> link_rests{};  ///< (links)
-  Array<std::uint32_t> link_others{};      ///< (links) renumbered
-  Array<std::uint16_t> link_locals{};      ///< (links) place in the tile, or 256 + place in its border
-  Array<std::uint32_t> border_starts{};    ///< (tiles + 1)
-  Array<std::uint32_t> borders{};          ///< renumbered nodes of other tiles
-  Array<std::uint32_t> strand_starts{};    ///< (256 tiles + 1), or none
-  Array<HalfStrandEntry> strands{};
 
   // per solve, in the model's order
   Array<Triple<double>> positions{};       ///< in and out [m]

@@ -76,7 +76,7 @@ template <typename Real, typename Memory>
 TROCAR_HD Triple<Real> ReadDisplacement(const TiledArgs<Real, Memory>& args,
                                         const typename Memory::template Array<Triple<double>>& positions,
                                         std::uint32_t node, std::uint32_t model) {
-  const Triple<double> u = Load(positions, model) - Load(args.rest, node);
+  const Triple<double> u = Load(positions, model) - Load(args.mesh.rest, node);
   return {Real(u.x), Real(u.y), Real(u.z)};
 }
 
@@ -85,14 +85,14 @@ template <typename Real, typename Memory>
 TROCAR_HD NodeConstants<Real> ReadConstants(const TiledArgs<Real, Memory>& args, std::uint32_t node,
                                             std::uint32_t model) {
   NodeConstants<Real> constants;
-  Triple<double> force = Load(args.mass, node) * args.gravity;
+  Triple<double> force = Load(args.mesh.mass, node) * args.gravity;
   if (Exists(args.external_force)) force = force + Load(args.external_force, model);
   constants.force = {Real(force.x), Real(force.y), Real(force.z)};
-  constants.shape_stiffness = args.shape_scale * Load(args.shape_stiffness, node);
+  constants.shape_stiffness = args.shape_scale * Load(args.mesh.shape_stiffness, node);
   constants.is_free = Load(args.prescribed, model) == 0;
   constants.is_touched = args.touched > 0 && IsTouched(args, node);
-  constants.has_strands =
-      Exists(args.strand_starts) && Load(args.strand_starts, node) < Load(args.strand_starts, node + 1);
+  constants.has_strands = Exists(args.mesh.strand_starts) &&
+                          Load(args.mesh.strand_starts, node) < Load(args.mesh.strand_starts, node + 1);
   return constants;
 }
 
@@ -100,7 +100,7 @@ template <typename Real, typename Memory>
 TROCAR_HD void WritePosition(const TiledArgs<Real, Memory>& args,
                              const typename Memory::template Array<Triple<double>>& positions,
                              std::uint32_t node, std::uint32_t model, Triple<Real> u) {
-  const Triple<double> rest = Load(args.rest, node);
+  const Triple<double> rest = Load(args.mesh.rest, node);
   Store(positions, model, Triple<double>{rest.x + double(u.x), rest.y + double(u.y), rest.z + double(u.z)});
 }
 
@@ -113,7 +113,7 @@ TROCAR_HD Quad<Real> ToQuad(Triple<Real> u) {
 template <typename Real, typename Memory>
 TROCAR_HD void StoreConstants(const TiledArgs<Real, Memory>& args, std::uint32_t node,
                               const NodeConstants<Real>& constants) {
-  const std::size_t all = static_cast<std::size_t>(args.tiles) * kTileNodes;
+  const std::size_t all = static_cast<std::size_t>(args.mesh.tiles) * kTileNodes;
   const Symmetric<Real>& m = constants.inverse;
   const int flags =
       (constants.is_free ? 1 : 0) + (constants.is_touched ? 2 : 0) + (constants.has_strands ? 4 : 0);
@@ -124,7 +124,7 @@ TROCAR_HD void StoreConstants(const TiledArgs<Real, Memory>& args, std::uint32_t
 }
 template <typename Real, typename Memory>
 TROCAR_HD NodeConstants<Real> LoadConstants(const TiledArgs<Real, Memory>& args, std::uint32_t node) {
-  const std::size_t all = static_cast<std::size_t>(args.tiles) * kTileNodes;
+  const std::size_t all = static_cast<std::size_t>(args.mesh.tiles) * kTileNodes;
   const Quad<Real> a = Load(args.node_constants, node), b = Load(args.node_constants, all + node);
   const Quad<Real> c = Load(args.node_constants, 2 * all + node);
   const int flags = static_cast<int>(b.w);
@@ -208,10 +208,10 @@ struct TiledResident {
   template <typename Allocator>
   static TROCAR_HD Shared MakeShared(Allocator& allocator, const Args& args) {
     Shared shared;
-    shared.displacements = allocator.template Array<Quad<Real>>(kTileNodes + args.max_border);
-    shared.link_vectors = allocator.template Array<Quad<Real>>(args.max_links);
-    shared.link_rests = allocator.template Array<LengthExcess<Real>>(args.max_links);
-    shared.link_locals = allocator.template Array<std::uint16_t>(args.max_links);
+    shared.displacements = allocator.template Array<Quad<Real>>(kTileNodes + args.mesh.max_border);
+    shared.link_vectors = allocator.template Array<Quad<Real>>(args.mesh.max_links);
+    shared.link_rests = allocator.template Array<LengthExcess<Real>>(args.mesh.max_links);
+    shared.link_locals = allocator.template Array<std::uint16_t>(args.mesh.max_links);
     shared.maxima = allocator.template Array<Key>(2 * kMaxima);
     return shared;
   }
@@ -222,7 +222,7 @@ struct TiledResident {
   static TROCAR_HD void Run(const ThreadIndex& where, const Args& args, Shared& shared,
                             Registers& registers) {
     const std::uint32_t node = where.block * kTileNodes + where.thread;
-    const std::size_t all = static_cast<std::size_t>(args.tiles) * kTileNodes;
+    const std::size_t all = static_cast<std::size_t>(args.mesh.tiles) * kTileNodes;
     ChebyshevControl<Real>& control = registers.control;
     const auto for_each_link = [&](const auto& visit) {
       for (std::uint32_t link = registers.first_link; link < registers.last_link; link += kSliceNodes) {
@@ -233,17 +233,17 @@ struct TiledResident {
     };
     if constexpr (kPhase == 0) {
       Exchange::Clear(where, args, shared.maxima);
-      const std::uint32_t first = Load(args.slice_starts, where.block * (kTileNodes / kSliceNodes));
-      const std::uint32_t last = Load(args.slice_starts, (where.block + 1) * (kTileNodes / kSliceNodes));
+      const std::uint32_t first = Load(args.mesh.slice_starts, where.block * (kTileNodes / kSliceNodes));
+      const std::uint32_t last = Load(args.mesh.slice_starts, (where.block + 1) * (kTileNodes / kSliceNodes));
       for (std::uint32_t link = first + where.thread; link < last; link += kTileNodes) {
-        Store(shared.link_vectors, link - first, Load(args.link_vectors, link));
-        Store(shared.link_rests, link - first, Load(args.link_rests, link));
-        Store(shared.link_locals, link - first, Load(args.link_locals, link));
+        Store(shared.link_vectors, link - first, Load(args.mesh.link_vectors, link));
+        Store(shared.link_rests, link - first, Load(args.mesh.link_rests, link));
+        Store(shared.link_locals, link - first, Load(args.mesh.link_locals, link));
       }
       const std::uint32_t slice = node / kSliceNodes;
-      registers.first_link = Load(args.slice_starts, slice) - first + node % kSliceNodes;
-      registers.last_link = Load(args.slice_starts, slice + 1) - first;
-      registers.model = Load(args.model_index, node);
+      registers.first_link = Load(args.mesh.slice_starts, slice) - first + node % kSliceNodes;
+      registers.last_link = Load(args.mesh.slice_starts, slice + 1) - first;
+      registers.model = Load(args.mesh.model_index, node);
       control = ReadControl(args);
       const NodeStart<Real> start = ReadStart(args, node, registers.model);
       registers.constants = start.constants;
@@ -252,10 +252,10 @@ struct TiledResident {
       Store(args.displacements, control.Parity() * all + node, ToQuad(registers.here));
     } else if constexpr (kPhase == 1) {
       Store(shared.displacements, where.thread, ToQuad(registers.here));
-      const std::uint32_t first = Load(args.border_starts, where.block),
-                          last = Load(args.border_starts, where.block + 1);
+      const std::uint32_t first = Load(args.mesh.border_starts, where.block),
+                          last = Load(args.mesh.border_starts, where.block + 1);
       for (std::uint32_t at = first + where.thread; at < last; at += kTileNodes) {
-        const std::uint32_t other = Load(args.borders, at);
+        const std::uint32_t other = Load(args.mesh.borders, at);
         Store(shared.displacements, kTileNodes + (at - first),
               Load(args.displacements, control.Parity() * all + other));
       }
@@ -313,14 +313,14 @@ struct TiledStreaming {
   template <int kPhase>
   static TROCAR_HD void Run(const ThreadIndex& where, const Args& args, Shared& shared,
                             Registers& registers) {
-    const std::uint32_t all = args.tiles * kTileNodes, stride = where.blocks * kTileNodes;
+    const std::uint32_t all = args.mesh.tiles * kTileNodes, stride = where.blocks * kTileNodes;
     const std::uint32_t first_node = where.block * kTileNodes + where.thread;
     ChebyshevControl<Real>& control = registers.control;
     if constexpr (kPhase == 0) {
       Exchange::Clear(where, args, shared.maxima);
       control = ReadControl(args);
       for (std::uint32_t node = first_node; node < all; node += stride) {
-        const NodeStart<Real> start = ReadStart(args, node, Load(args.model_index, node));
+        const NodeStart<Real> start = ReadStart(args, node, Load(args.mesh.model_index, node));
         StoreConstants(args, node, start.constants);
         Store(args.displacements, std::size_t(control.Parity()) * all + node, ToQuad(start.here));
         Store(args.displacements, std::size_t(1 - control.Parity()) * all + node, ToQuad(start.before));
@@ -329,13 +329,13 @@ struct TiledStreaming {
       IterationMaxima<Real> maxima;
       for (std::uint32_t node = first_node; node < all; node += stride) {
         const std::uint32_t slice = node / kSliceNodes;
-        const std::uint32_t begin = Load(args.slice_starts, slice) + node % kSliceNodes;
-        const std::uint32_t end = Load(args.slice_starts, slice + 1);
+        const std::uint32_t begin = Load(args.mesh.slice_starts, slice) + node % kSliceNodes;
+        const std::uint32_t end = Load(args.mesh.slice_starts, slice + 1);
         const auto for_each_link = [&](const auto& visit) {
           for (std::uint32_t link = begin; link < end; link += kSliceNodes) {
-            const LengthExcess<Real> rest = Load(args.link_rests, link);
-            const RestLink<Real> rest_link{Load(args.link_vectors, link), rest.length, rest.excess};
-            visit(rest_link, LoadDisplacement(args, control.Parity(), Load(args.link_others, link)));
+            const LengthExcess<Real> rest = Load(args.mesh.link_rests, link);
+            const RestLink<Real> rest_link{Load(args.mesh.link_vectors, link), rest.length, rest.excess};
+            visit(rest_link, LoadDisplacement(args, control.Parity(), Load(args.mesh.link_others, link)));
           }
         };
         const Triple<Real> here = LoadDisplacement(args, control.Parity(), node);
@@ -359,7 +359,7 @@ struct TiledStreaming {
       ++registers.round;
     } else {
       for (std::uint32_t node = first_node; node < all; node += stride) {
-        WriteEnd(args, node, Load(args.model_index, node), LoadConstants(args, node),
+        WriteEnd(args, node, Load(args.mesh.model_index, node), LoadConstants(args, node),
                  LoadDisplacement(args, control.Parity(), node),
                  LoadDisplacement(args, 1 - control.Parity(), node));
       }

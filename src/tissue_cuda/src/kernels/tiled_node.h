@@ -81,7 +81,8 @@ struct Stretch {
 template <typename Real, typename Memory>
 TROCAR_HD Triple<Real> LoadDisplacement(const TiledArgs<Real, Memory>& args, std::uint32_t parity,
                                         std::uint32_t node) {
-  return First3(Load(args.displacements, static_cast<std::size_t>(parity) * args.tiles * kTileNodes + node));
+  return First3(
+      Load(args.displacements, static_cast<std::size_t>(parity) * args.mesh.tiles * kTileNodes + node));
 }
 
 /// Place of a node among the touched ones; the node is there.
@@ -129,8 +130,9 @@ TROCAR_HD Triple<Real> CalcOtherForce(const TiledArgs<Real, Memory>& args,
   Triple<Real> force = constants.force;
   if (constants.has_strands) {
     Triple<Real> pull{0, 0, 0};
-    for (std::uint32_t e = Load(args.strand_starts, node); e < Load(args.strand_starts, node + 1); ++e) {
-      const HalfStrandEntry strand = Load(args.strands, e);
+    for (std::uint32_t e = Load(args.mesh.strand_starts, node); e < Load(args.mesh.strand_starts, node + 1);
+         ++e) {
+      const HalfStrandEntry strand = Load(args.mesh.strands, e);
       if (Load(args.intact, strand.strand) == 0) continue;
       pull = pull + Real(strand.stiffness) * (LoadDisplacement(args, parity, strand.other) - here);
     }
@@ -172,8 +174,9 @@ TROCAR_HD Symmetric<Real> CalcInverseBlock(const TiledArgs<Real, Memory>& args,
     block.AddIsotropic(stiffness * across);
   });
   if (constants.has_strands) {
-    for (std::uint32_t e = Load(args.strand_starts, node); e < Load(args.strand_starts, node + 1); ++e) {
-      const HalfStrandEntry strand = Load(args.strands, e);
+    for (std::uint32_t e = Load(args.mesh.strand_starts, node); e < Load(args.mesh.strand_starts, node + 1);
+         ++e) {
+      const HalfStrandEntry strand = Load(args.mesh.strands, e);
       if (Load(args.intact, strand.strand) != 0)
         block.AddIsotropic(args.stiffness_scale * Real(strand.stiffness));
     }

@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -122,8 +123,9 @@ class SimulatorPresenter {
   void Reset();
   void ReleaseAll();
   void ToggleForceFeedback();
-  bool DoWithHands(Action action);
-  bool DoWithView(Action action);
+  using Handler = gui::CommandHandler<SimulatorPresenter, Action>;
+  /// What this one does itself; the window does the rest.
+  static std::span<const Handler> Handlers() noexcept;
 
   Options options_;
   core::Stopwatch since_start_;

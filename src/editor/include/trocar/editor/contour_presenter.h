@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <stop_token>
 #include <string>
 
@@ -138,8 +139,9 @@ class ContourPresenter {
  private:
   bool Meets(ContourNeeds needs) const;
   bool IsChecked(ContourAction action) const;
-  bool DoWithFiles(ContourAction action);
-  bool DoWithView(ContourAction action);
+  using Handler = gui::CommandHandler<ContourPresenter, ContourAction>;
+  /// What this one does itself; the editor does the rest.
+  static std::span<const Handler> Handlers() noexcept;
   void UseWorkspace(contours::ContourWorkspace workspace);
   void OpeningFailed(const core::Error& error);
   void Drop();

@@ -67,7 +67,7 @@ class EditableMesh {
   std::size_t VertexCapacity() const { return vertex_capacity_; }
   std::size_t TriangleCapacity() const { return triangle_capacity_; }
   /// Whether so many more fit.
-  bool HasRoom(std::size_t vertices, std::size_t triangles) const {
+  bool HasCapacity(std::size_t vertices, std::size_t triangles) const {
     return VertexCount() + vertices <= vertex_capacity_ && TriangleCount() + triangles <= triangle_capacity_;
   }
 
@@ -124,12 +124,12 @@ class EditableMesh {
   /// Puts a vertex on an edge and divides its one or two triangles. Areas stay; a scored edge stays scored.
   /// \param t  from From(h) to To(h), in (0, 1) [-]
   /// \return the new vertex, its half-edge to To(h) is Outgoing
-  /// \pre HasRoom(1, 2)
+  /// \pre HasCapacity(1, 2)
   std::uint32_t SplitEdge(std::uint32_t h, double t) noexcept;
 
   /// Puts a vertex into a triangle and divides it into three.
   /// \param weights  barycentric, > 0, sum 1 [-]
-  /// \pre HasRoom(1, 2)
+  /// \pre HasCapacity(1, 2)
   std::uint32_t SplitTriangle(std::uint32_t t, const std::array<double, 3>& weights) noexcept;
 
   /// Marks an inner edge as cut, or takes the mark back.
@@ -142,7 +142,7 @@ class EditableMesh {
   /// Gives each part of v's triangles a vertex of its own; the part with the triangle of the lowest number
   /// keeps v.
   /// \return number of copies, the last vertices
-  /// \pre HasRoom(CountCopies(v), 0)
+  /// \pre HasCapacity(CountCopies(v), 0)
   int SeparateParts(std::uint32_t v) noexcept;
 
   /// Makes a scored edge whose sides share no longer both ends a boundary.
@@ -150,10 +150,10 @@ class EditableMesh {
   bool Open(std::uint32_t h) noexcept;
 
   /// Adds a vertex below another, as part of a trench; AddTriangle connects it.
-  /// \pre HasRoom(1, 0)
+  /// \pre HasCapacity(1, 0)
   std::uint32_t AddVertex(const VertexSource& source, const Vec3& rest, const Vec3& position) noexcept;
   /// Adds a triangle without neighbours; Join connects it.
-  /// \pre HasRoom(0, 1)
+  /// \pre HasCapacity(0, 1)
   std::uint32_t AddTriangle(const Triangle& corners, TriangleKind kind) noexcept;
   /// Makes two boundary half-edges one inner edge.
   /// \pre they run in opposite directions between the same vertices

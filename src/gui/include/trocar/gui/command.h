@@ -120,6 +120,24 @@ const Command<Action, Needs>* FindCommand(std::span<const Command<Action, Needs>
   return nullptr;
 }
 
+/// What a window's presenter does for a command, one row an action: whoever looks for a command's effect finds it here.
+template <typename Presenter, typename Action>
+struct CommandHandler {
+  Action action{};
+  void (*run)(Presenter&) = nullptr;
+  bool (*is_checked)(const Presenter&) = nullptr;  ///< of a toggle; null: never
+};
+
+/// The row of an action, or null where the presenter does nothing for it.
+template <typename Presenter, typename Action>
+const CommandHandler<Presenter, Action>* FindHandler(
+    std::span<const CommandHandler<Presenter, Action>> handlers, const Action& action) noexcept {
+  for (const auto& handler : handlers) {
+    if (handler.action == action) return &handler;
+  }
+  return nullptr;
+}
+
 /// All rows of the help page.
 /// \param groups  in the order of the page; rows within a group stand in the order of the table
 template <typename Action, typename Needs>

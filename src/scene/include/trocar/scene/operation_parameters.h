@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file operation_parameters.h  How bile and blood flow, clips hold, current heats and suction works: the tables of an operation, read
-/// from a file.
+/// \file operation_parameters.h  How bile and blood flow, clips hold, stones are taken, current heats and suction works, and from
+/// where on something is an error: the tables of an operation, read from a file.
 #pragma once
 
 #include <filesystem>
@@ -8,6 +8,7 @@
 #include "trocar/core/result.h"
 #include "trocar/surgery/flow_network.h"
 #include "trocar/surgery/surgery_settings.h"
+#include "trocar/training/operation_judge.h"
 
 namespace trocar::scene {
 
@@ -59,10 +60,12 @@ struct OperationParameters {
   surgery::FluidTable fluids = surgery::kBileAndBlood;
   VesselSupplies supplies;
   surgery::VesselSettings vessels;
+  surgery::StoneSettings stones;
   surgery::BedOozeSettings bed;
   surgery::ElectrosurgerySettings heat;
   ElectrodeParameters electrode;
   SuctionParameters suction;
+  training::JudgementSettings judgement;
 
   friend bool operator==(const OperationParameters&, const OperationParameters&) = default;
 };

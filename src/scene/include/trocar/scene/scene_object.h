@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "trocar/surgery/rigid_world.h"
+#include "trocar/rigid/rigid_world.h"
 
 namespace trocar::scene {
 
@@ -38,7 +38,7 @@ struct ObjectGrip {
 
 struct SceneObject {
   std::string name;
-  surgery::RigidBody body;  ///< mass 0: it never moves
+  rigid::RigidBody body;  ///< mass 0: it never moves
   ObjectColour colour = ObjectColour::kRed;
   std::vector<ObjectGrip> grips;  ///< where scripted surgeons take it, the left hand's first
 

@@ -14,6 +14,7 @@
 #include "trocar/instrument/tool.h"
 #include "trocar/surgery/flow_network.h"
 #include "trocar/surgery/gallstones.h"
+#include "trocar/surgery/surgery_settings.h"
 #include "trocar/surgery/surgery_snapshot.h"
 #include "trocar/surgery/wall_holes.h"
 
@@ -31,7 +32,8 @@ class GallstoneSpill {
   /// \param diameters  see DrawGallstones [m]; all are inside
   /// \param omentum    where they come to lie when they fall beside the organs; fixed
   /// \return kMeshInvalid
-  static core::Result<GallstoneSpill> Make(std::span<const double> diameters, geometry::TriangleMesh omentum);
+  static core::Result<GallstoneSpill> Make(std::span<const double> diameters, geometry::TriangleMesh omentum,
+                                           const StoneSettings& settings = {});
   /// All are inside again.
   void Reset() noexcept;
 
@@ -95,6 +97,7 @@ class GallstoneSpill {
   void AddSpilled() noexcept;
   void LetGo(int hand) noexcept;
 
+  StoneSettings settings_;  // constant
   std::vector<Stone> stones_;
   std::vector<LooseStone*> loose_;  // scratch
   std::shared_ptr<const Bed> bed_;  // shared by copies, which differ in state alone

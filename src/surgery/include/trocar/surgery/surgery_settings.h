@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file surgery_settings.h  The tables of vessels, of the bed's oozing and of electrosurgery.
+/// \file surgery_settings.h  The tables of vessels, clips, stones, of the bed's oozing and of electrosurgery.
 #pragma once
 
 #include "trocar/surgery/clip_hold.h"
@@ -7,8 +7,35 @@
 
 namespace trocar::surgery {
 
+/// A clip, and what counts as between the legs of its applier. No source but the size of common clips: tunables.
+struct ClipShape {
+  double width = 0.0012;   ///< along the vessel: two whose middles are nearer lie over each other [m]
+  double height = 0.0012;  ///< of its middle over what it lies on, when it is lost [m]
+  double gap = 0.0006;     ///< between the closed legs [m]
+  double catch_beside =
+      0.0015;  ///< beside a vessel's radius: how near to the closed jaws its axis has to be [m]
+  double drawn_away = 0.004;      ///< from the closed jaws: what is farther is out of them [m]
+  double pulled_before = 0.0025;  ///< before a clip: what is held there holds the clip [m]
+
+  friend bool operator==(const ClipShape&, const ClipShape&) = default;
+};
+
+/// How jaws and suction take gallstones. Tunables; the shares of the jaws' opening are those of GraspSettings.
+struct StoneSettings {
+  double out_speed = 0.03;                        ///< at which a stone leaves with the bile [m/s]
+  double out_gap = 0.0003;                        ///< beyond the hole [m]
+  double suction_reach = 0.003;                   ///< of the bore beyond a stone's surface [m]
+  double closed_share = 0.20, open_share = 0.35;  ///< of the jaws' opening
+  double let_go = 0.05;                           ///< more than the stone is wide [rad]
+  double near_hinge = 0.25;  ///< of the jaws' length: what lies nearer to the hinge is not taken [-]
+  double jaw_reach = 0.5;    ///< of a stone's radius, beside and beyond the jaws [-]
+
+  friend bool operator==(const StoneSettings&, const StoneSettings&) = default;
+};
+
 struct VesselSettings {
   ClipHoldSettings clips;
+  ClipShape clip_shape;
   /// Heat seals vessels up to this radius inside [m]: a millimetre across is held to be safe, more is not.
   double most_sealed_radius = 0.0009;
   double least_filling =

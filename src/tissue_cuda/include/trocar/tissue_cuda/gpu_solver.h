@@ -40,6 +40,16 @@ struct GpuOptions {
   bool forbid_resident = false;  ///< kTiled: stream from global memory even where all tiles would fit at once
 };
 
+/// What bounds a solve on the GPU. It knows one method for each layout, so that there is none to choose.
+struct GpuSettings {
+  int max_iterations = 40;  ///< per solve, >= 1
+  double tolerance =
+      1e-4;          ///< ends where the largest residual is below this fraction of the largest force [-]
+  double alpha = 0;  ///< step of the paper's layouts [m/N]; 0 takes half of the stability bound
+};
+/// The part of a simulation's settings that the GPU uses.
+GpuSettings MakeGpuSettings(const tissue::SolverSettings& settings) noexcept;
+
 /// The GPU that would be used.
 struct GpuInformation {
   std::string name;
@@ -80,8 +90,8 @@ class GpuSolver {
   /// \return kGpuFailed after an error of the GPU or its driver, kGpuLayout for a load or a constraints that the
   /// layout cannot serve, and for springs that are cut or weakened; the state is then as it was before the call
   /// \note Allocates and throws nothing of ours unless it fails.
-  core::Result<tissue::SolveReport> Solve(const tissue::SolverSettings& settings,
-                                          const tissue::TissueLoad& load, tissue::TissueState& state,
+  core::Result<tissue::SolveReport> Solve(const GpuSettings& settings, const tissue::TissueLoad& load,
+                                          tissue::TissueState& state,
                                           tissue::ConstraintSet* constraints = nullptr) noexcept;
 
   const GpuInformation& Information() const noexcept;

@@ -45,10 +45,22 @@ struct OperationObservation {
   math::Vec3 p_pool;       ///< where fluids gather, world frame [m]
 };
 
+/// From where on something counts as an error. Source: domain facts, section 1.4, for the blood and the duct; the others are tunables.
+struct JudgementSettings {
+  double much_blood = 50e-6;   ///< [m^3]
+  double near_duct = 0.005;    ///< of current to a duct that must stay [m]
+  double idle_seconds = 0.25;  ///< of current into nothing that no eye would note [s]
+  double tip_in = 0.08;        ///< a tool this deep has been pushed in [m]
+  double blind_seconds = 1.5;  ///< for which it may be outside the picture then [s]
+
+  friend bool operator==(const JudgementSettings&, const JudgementSettings&) = default;
+};
+
 class OperationJudge {
  public:
   /// \param has_critical_view  there is a critical view to be had before anything is clipped
-  OperationJudge(DissectionMonitor dissection, bool has_critical_view);
+  OperationJudge(DissectionMonitor dissection, bool has_critical_view,
+                 const JudgementSettings& settings = {});
 
   /// Once a tick, at its end.
   /// \note Real-time safe.
@@ -74,7 +86,8 @@ class OperationJudge {
   void JudgeHand(int hand, const OperationObservation& now) noexcept;
   void JudgePhase(const OperationObservation& now) noexcept;
 
-  bool has_view_ = true;  // constant
+  bool has_view_ = true;        // constant
+  JudgementSettings settings_;  // constant
   DissectionMonitor dissection_;
   ErrorLog errors_;
   CriticalView view_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "trocar/surgery/rigid_world.h"
+#include "trocar/rigid/rigid_world.h"
 
 #include <BulletDynamics/ConstraintSolver/btFixedConstraint.h>
 #include <btBulletDynamicsCommon.h>
@@ -18,7 +18,7 @@
 #include "trocar/core/state_archive.h"
 #include "trocar/math/state_fields.h"
 
-namespace trocar::surgery {
+namespace trocar::rigid {
 namespace {
 
 constexpr int kFewestSubsteps = 4;  // of a tick: pegs are thin
@@ -590,4 +590,4 @@ void RigidWorld::VisitState(core::StateArchive& archive) {
   content_->Load(state);
 }
 
-}  // namespace trocar::surgery
+}  // namespace trocar::rigid

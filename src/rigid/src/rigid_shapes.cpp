@@ -6,7 +6,7 @@
 #include <numbers>
 #include <utility>
 
-namespace trocar::surgery {
+namespace trocar::rigid {
 namespace {
 
 constexpr int kRingParts = 16;  // capsules that make a ring
@@ -96,4 +96,4 @@ void MakeShapes(const RigidBody& definition, std::vector<std::unique_ptr<btColli
   shapes.push_back(std::move(whole));
 }
 
-}  // namespace trocar::surgery
+}  // namespace trocar::rigid

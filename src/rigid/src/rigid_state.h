@@ -9,9 +9,9 @@
 
 #include "bullet_units.h"
 #include "trocar/core/state_archive.h"
-#include "trocar/surgery/rigid_world.h"
+#include "trocar/rigid/rigid_world.h"
 
-namespace trocar::surgery {
+namespace trocar::rigid {
 
 using TransformState = std::array<double, 12>;  // rows of the rotation, then the origin [cm]
 
@@ -65,14 +65,13 @@ btManifoldPoint LoadPoint(const ContactPointState& state);
 /// Gives the manifolds that Bullet has just found their saved points; those that were not saved have none.
 void LoadContacts(const std::vector<ContactPointState>& contacts, btDispatcher& dispatcher);
 
-}  // namespace trocar::surgery
+}  // namespace trocar::rigid
 
 namespace trocar::core {
 template <>
-inline constexpr bool kIsPlainState<surgery::BodyState> = sizeof(surgery::BodyState) == 21 * 8;
+inline constexpr bool kIsPlainState<rigid::BodyState> = sizeof(rigid::BodyState) == 21 * 8;
 template <>
-inline constexpr bool kIsPlainState<surgery::ToolState> = sizeof(surgery::ToolState) == 89 * 8;
+inline constexpr bool kIsPlainState<rigid::ToolState> = sizeof(rigid::ToolState) == 89 * 8;
 template <>
-inline constexpr bool kIsPlainState<surgery::ContactPointState> = sizeof(surgery::ContactPointState) ==
-                                                                  40 * 8;
+inline constexpr bool kIsPlainState<rigid::ContactPointState> = sizeof(rigid::ContactPointState) == 40 * 8;
 }  // namespace trocar::core

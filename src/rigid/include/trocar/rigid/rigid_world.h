@@ -15,7 +15,7 @@
 #include "trocar/core/state_archive.h"
 #include "trocar/math/pose.h"
 
-namespace trocar::surgery {
+namespace trocar::rigid {
 
 using math::Pose;
 using math::Vec3;
@@ -124,4 +124,4 @@ class RigidWorld {
   std::unique_ptr<Content> content_;
 };
 
-}  // namespace trocar::surgery
+}  // namespace trocar::rigid

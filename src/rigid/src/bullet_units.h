@@ -6,7 +6,7 @@
 
 #include "trocar/math/pose.h"
 
-namespace trocar::surgery {
+namespace trocar::rigid {
 
 using math::Pose;
 using math::Vec3;
@@ -30,4 +30,4 @@ inline Pose FromBullet(const btTransform& X) {
   return {math::Quaternion{q.w(), q.x(), q.y(), q.z()}, FromBullet(X.getOrigin())};
 }
 
-}  // namespace trocar::surgery
+}  // namespace trocar::rigid

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "bullet_units.h"
-#include "trocar/surgery/rigid_world.h"
+#include "trocar/rigid/rigid_world.h"
 
-namespace trocar::surgery {
+namespace trocar::rigid {
 
 /// Finite, and larger than nothing.
 bool IsPositive(double value);
@@ -19,4 +19,4 @@ double HalfWidth(const RigidShape& shape);
 /// \param[out] shapes  parts of the body; the last is the whole, and holds the others
 void MakeShapes(const RigidBody& definition, std::vector<std::unique_ptr<btCollisionShape>>& shapes);
 
-}  // namespace trocar::surgery
+}  // namespace trocar::rigid

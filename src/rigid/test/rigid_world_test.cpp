@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "trocar/surgery/rigid_world.h"
+#include "trocar/rigid/rigid_world.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 
 #include "trocar/core/state_hash.h"
 
-namespace trocar::surgery {
+namespace trocar::rigid {
 namespace {
 
 using Kind = RigidShape::Kind;
@@ -368,4 +368,4 @@ TEST(RigidWorld, RefusesWhatIsNoBody) {
 }
 
 }  // namespace
-}  // namespace trocar::surgery
+}  // namespace trocar::rigid

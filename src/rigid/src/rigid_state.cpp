@@ -6,7 +6,7 @@
 
 #include "trocar/math/state_fields.h"
 
-namespace trocar::surgery {
+namespace trocar::rigid {
 
 std::array<double, 3> Numbers(const btVector3& v) {
   return {v.x(), v.y(), v.z()};
@@ -135,4 +135,4 @@ void LoadContacts(const std::vector<ContactPointState>& contacts, btDispatcher& 
   }
 }
 
-}  // namespace trocar::surgery
+}  // namespace trocar::rigid

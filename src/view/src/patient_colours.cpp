@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/view/patient_colours.h"
+
+#include <algorithm>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "trocar/core/json.h"
+
+namespace trocar::view {
+
+using anatomy::OrganRole;
+using anatomy::RegionRole;
+using anatomy::TubeRole;
+using render::SrgbColour;
+namespace {
+
+void ReadColour(const core::JsonView& view, std::string_view key, SrgbColour& colour) {
+  const std::vector<double> shares = view.Numbers(key, 3);
+  if (!std::all_of(shares.begin(), shares.end(), [](double share) { return share >= 0.0 && share <= 1.0; }))
+    view.Complain(std::string(key) + " must have numbers from 0 to 1");
+  std::copy_n(shares.begin(), std::min(shares.size(), colour.size()), colour.begin());
+}
+
+}  // namespace
+
+const SrgbColour& PatientColours::Of(OrganRole organ) const noexcept {
+  if (organ == OrganRole::kLiver) return liver;
+  return organ == OrganRole::kGallbladder ? gallbladder : other_organ;
+}
+
+const SrgbColour& PatientColours::Of(RegionRole region) const noexcept {
+  switch (region) {
+    case RegionRole::kDiaphragmaticFace:
+      return diaphragmatic_face;
+    case RegionRole::kFalciform:
+      return falciform;
+    case RegionRole::kCoronary:
+      return coronary;
+    case RegionRole::kGallbladderBed:
+      return gallbladder_bed;
+    case RegionRole::kHeld:
+    case RegionRole::kOther:
+      break;
+  }
+  return other_region;
+}
+
+const SrgbColour& PatientColours::Of(const anatomy::Tube& tube) const noexcept {
+  if (tube.kind == anatomy::TubeKind::kArtery) return artery;
+  return tube.role == TubeRole::kCysticDuct ? cystic_duct : other_duct;
+}
+
+core::Result<PatientColours> ReadPatientColours(const std::filesystem::path& path) {
+  auto document = core::JsonDocument::Read(path);
+  if (!document.ok()) return document.error();
+  const core::JsonView root = document->Root();
+  root.AllowOnly({"format", "version", "about", "organs_srgb", "regions_srgb", "tubes_srgb", "marks_srgb"});
+  if (root.Text("format") != "trocar-patient-colours")
+    root.Complain("format must be \"trocar-patient-colours\"");
+  if (root.Integer("version") != 1) root.Complain("version must be 1");
+  PatientColours colours;
+  const core::JsonView organs = root.Object("organs_srgb");
+  organs.AllowOnly({"liver", "gallbladder", "other"});
+  ReadColour(organs, "liver", colours.liver);
+  ReadColour(organs, "gallbladder", colours.gallbladder);
+  ReadColour(organs, "other", colours.other_organ);
+  const core::JsonView regions = root.Object("regions_srgb");
+  regions.AllowOnly({"diaphragmatic_face", "falciform", "coronary", "gallbladder_bed", "other"});
+  ReadColour(regions, "diaphragmatic_face", colours.diaphragmatic_face);
+  ReadColour(regions, "falciform", colours.falciform);
+  ReadColour(regions, "coronary", colours.coronary);
+  ReadColour(regions, "gallbladder_bed", colours.gallbladder_bed);
+  ReadColour(regions, "other", colours.other_region);
+  const core::JsonView tubes = root.Object("tubes_srgb");
+  tubes.AllowOnly({"artery", "cystic_duct", "other_duct"});
+  ReadColour(tubes, "artery", colours.artery);
+  ReadColour(tubes, "cystic_duct", colours.cystic_duct);
+  ReadColour(tubes, "other_duct", colours.other_duct);
+  const core::JsonView marks = root.Object("marks_srgb");
+  marks.AllowOnly({"attachment", "landmark"});
+  ReadColour(marks, "attachment", colours.attachment);
+  ReadColour(marks, "landmark", colours.landmark);
+  if (const auto status = document->Check(); !status.ok()) return status.error();
+  return colours;
+}
+
+}  // namespace trocar::view
