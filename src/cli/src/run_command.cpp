@@ -81,6 +81,10 @@ int ParseAndRun(int argc, char** argv) {
   AddSimulateCommand(app, outcome);
   AddReplayCommand(app, outcome);
   AddRecordCommand(app, outcome);
+  AddCourseCommand(app, outcome);
+  AddLevelsCommand(app, outcome);
+  AddExamCommand(app, outcome);
+  AddCertificateCommand(app, outcome);
   AddAnatomyCommand(app, outcome);
   AddDevicesCommand(app, outcome);
   AddBenchCommand(app, outcome);

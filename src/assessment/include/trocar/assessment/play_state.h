@@ -9,7 +9,7 @@
 #include "trocar/core/result.h"
 #include "trocar/simulation/simulation.h"
 
-namespace trocar::cli {
+namespace trocar::assessment {
 
 /// Where a play comes from and where it is left; empty paths: the first tick, and nowhere.
 struct PlayFiles {
@@ -25,4 +25,4 @@ core::Status RestorePlay(const std::filesystem::path& path, const std::string& w
 core::Status SavePlay(const std::filesystem::path& path, const std::string& who,
                       const simulation::Simulation& simulation, agent::Surgeon& surgeon);
 
-}  // namespace trocar::cli
+}  // namespace trocar::assessment

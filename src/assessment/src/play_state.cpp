@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "play_state.h"
+#include "trocar/assessment/play_state.h"
 
 #include <cstddef>
 #include <vector>
@@ -7,7 +7,7 @@
 #include "trocar/core/state_archive.h"
 #include "trocar/simulation/state_file.h"
 
-namespace trocar::cli {
+namespace trocar::assessment {
 
 core::Status RestorePlay(const std::filesystem::path& path, const std::string& who,
                          simulation::Simulation& simulation, agent::Surgeon& surgeon) {
@@ -33,4 +33,4 @@ core::Status SavePlay(const std::filesystem::path& path, const std::string& who,
   return simulation::WriteStateFile(path, simulation, player);
 }
 
-}  // namespace trocar::cli
+}  // namespace trocar::assessment
