@@ -80,6 +80,7 @@ int ParseAndRun(int argc, char** argv) {
   AddPlayCommand(app, outcome);
   AddSimulateCommand(app, outcome);
   AddReplayCommand(app, outcome);
+  AddMetricsCommand(app, outcome);
   AddRecordCommand(app, outcome);
   AddCourseCommand(app, outcome);
   AddLevelsCommand(app, outcome);
