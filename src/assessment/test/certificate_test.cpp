@@ -183,6 +183,11 @@ TEST_F(Certificates, KeysAreNotReplacedAndNoOtherFileIsTakenForOne) {
 
 TEST_F(Certificates, SaysThatItIsNoAssessmentOfCompetence) {
   EXPECT_NE(text_->find("not certified assessment"), std::string::npos);
+  // the fixed words are those of the page
+  const auto page = core::ReadFile(fs::path(TROCAR_SOURCE_DIR) / "docs/intended-use.md");
+  ASSERT_TRUE(page.ok());
+  EXPECT_NE(page->find("**Training feedback, not certified assessment.**"), std::string::npos);
+  EXPECT_NE(page->find("To certify, license or credential anybody"), std::string::npos);
 }
 
 TEST(Exam, SealIsBrokenByAnyOtherSetting) {
