@@ -2,6 +2,7 @@
 #include "trocar/assessment/certificate.h"
 
 #include <algorithm>
+#include <cmath>
 #include <system_error>
 #include <utility>
 
@@ -24,6 +25,7 @@ constexpr const char* kFormat = "trocar-certificate";
 constexpr std::size_t kLargestRecording = std::size_t{4} << 30;  // [bytes]
 constexpr core::NumberRange kBytes{1, 4294967296.0};
 constexpr std::string_view kPrivateHead = "trocar-private-key-1 ", kPublicHead = "trocar-public-key-1 ";
+constexpr double kSameMetric = 1e-9;  // of a metric, or of 1 where it is smaller [-]
 /// Before what is signed, so that a signature for something else is none for a certificate.
 constexpr std::string_view kDomain = "trocar-certificate-1\n";
 
@@ -108,6 +110,17 @@ core::Result<KeySeed> ReadPrivateKey(const fs::path& path) {
   if (is_key) return seed;
   return Error{ErrorCode::kKeyInvalid,
                path.string() + " holds no private key; make one with trocar certificate keygen"};
+}
+
+/// The same metrics, within what the mathematical libraries of two compilers may differ by.
+bool AreSame(const training::AttemptMetrics& a, const training::AttemptMetrics& b) {
+  return std::equal(a.values.begin(), a.values.end(), b.values.begin(), b.values.end(),
+                    [](const training::MetricValue& one, const training::MetricValue& other) {
+                      return one.metric == other.metric && one.hand == other.hand &&
+                             one.phase == other.phase && one.tool == other.tool &&
+                             std::fabs(one.value - other.value) <=
+                                 kSameMetric * std::max(1.0, std::fabs(one.value));
+                    });
 }
 
 bool PassesAll(const ExamSettings& exam, const AttemptResult& result) {
@@ -318,7 +331,7 @@ core::Result<Certificate> VerifyCertificate(const fs::path& path, const fs::path
   const AttemptResult& result = replayed->attempt.result;
   const bool is_same = replayed->outcome == certificate->outcome &&
                        result.is_completed == certificate->is_completed &&
-                       result.metrics.values == certificate->metrics.values &&
+                       AreSame(result.metrics, certificate->metrics) &&
                        PassesAll(certificate->exam, result) == certificate->is_passed;
   if (is_same) return certificate;
   return Error{

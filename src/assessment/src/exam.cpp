@@ -41,7 +41,8 @@ std::uint64_t ReadSeed(const JsonView& view) {
   const std::string text = view.Text("seed");
   std::uint64_t seed = 0;
   for (const char digit : text)
-    seed = digit >= '0' && digit <= '9' ? 10 * seed + (digit - '0') : ~std::uint64_t{0};
+    seed = digit >= '0' && digit <= '9' ? 10 * seed + static_cast<std::uint64_t>(digit - '0')
+                                        : ~std::uint64_t{0};
   if (text.empty() || text.size() > 16 || seed > kSeedMask || std::to_string(seed) != text)
     view.Complain("seed is a whole number below 2^52, as text", ErrorCode::kExamInvalid);
   return seed;

@@ -29,9 +29,9 @@ using core::Error;
 using core::ErrorCode;
 
 /// What levels are made of where nobody says otherwise.
-const std::vector<std::string> kOfTasks = {
-    "safety:errors_critical", "safety:errors_major",      "quality:errors_minor",
-    "time:task_time",         "economy:path_length:left", "economy:path_length:right"};
+const std::vector<std::string> kOfTasks = {"safety:errors_critical",   "safety:errors_major",
+                                           "quality:errors_minor",     "time:task_time",
+                                           "economy:path_length:left", "economy:path_length:right"};
 const std::vector<std::string> kOfOperations = {"safety:errors_critical",   "safety:errors_major",
                                                 "safety:blood_lost",        "time:time",
                                                 "economy:path_length:left", "economy:path_length:right"};

@@ -42,7 +42,9 @@ TEST(ExamCommand, SealsRunsCertifiesAndVerifies) {
     EXPECT_NE(verified.out.find(part), std::string::npos) << verified.out;
 
   for (const char* file : {"finals.json", "finals.published.json", "7.json"})
-    EXPECT_EQ(std::system(("'" + std::string(TROCAR_SOURCE_DIR) + "/tools/check-schemas' '" + path(file) + "' > /dev/null; test $? != 1").c_str()),
+    EXPECT_EQ(std::system(("'" + std::string(TROCAR_SOURCE_DIR) + "/tools/check-schemas' '" + path(file) +
+                           "' > /dev/null; test $? != 1")
+                              .c_str()),
               0)
         << file;
   refuse("E-EXM-006",

@@ -316,7 +316,7 @@ void TraceBuilder::Add(const Snapshot& now,
   c.AddJudgement(now);
   c.last.tick = now.tick;
   c.last.phase = now.task.phase;
-  c.last.score = now.task.score;
+  c.last.score = c.task ? scene::CalcShownScore(*c.task, now.task) : 0.0;
   c.last.task_time = now.task.time;
 }
 
