@@ -29,6 +29,11 @@ void AddPlayCommand(CLI::App& app, Outcome& outcome);
 void AddSimulateCommand(CLI::App& app, Outcome& outcome);
 void AddRecordCommand(CLI::App& app, Outcome& outcome);
 void AddReplayCommand(CLI::App& app, Outcome& outcome);
+void AddCourseCommand(CLI::App& app, Outcome& outcome);
+void AddLevelsCommand(CLI::App& app, Outcome& outcome);
+void AddExamCommand(CLI::App& app, Outcome& outcome);
+void AddCertificateCommand(CLI::App& app, Outcome& outcome);
+void AddMetricsCommand(CLI::App& app, Outcome& outcome);
 void AddAnatomyCommand(CLI::App& app, Outcome& outcome);
 /// Words like "hydrops=0.5".
 /// \return kUsage for one that is not like that

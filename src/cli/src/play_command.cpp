@@ -17,8 +17,8 @@
 #include "part_folder.h"
 #include "picture_size.h"
 #include "play_operation.h"
-#include "play_state.h"
 #include "trocar/agent/surgeon.h"
+#include "trocar/assessment/play_state.h"
 #include "trocar/core/safe_file.h"
 #include "trocar/core/state_hash.h"
 #include "trocar/core/statistics.h"
@@ -126,7 +126,8 @@ void PrintJson(const scene::Scene& scene, const PlayReport& report) {
                {"tick_p99_ms", report.tick_p99_ms},
                {"cut_tick_max_ms", report.cut_tick_max_ms},
                {"hash", core::HashText(report.hash)},
-               {"score", report.task.score},
+               {"score", scene::CalcShownScore(*scene.task, report.task)},
+               {"best_score", scene.task->best_score},
                {"time_s", report.task.time},
                {"phase", scene::PhaseName(report.task.phase)}});
   nlohmann::ordered_json goals = nlohmann::ordered_json::array();
@@ -140,6 +141,11 @@ void PrintJson(const scene::Scene& scene, const PlayReport& report) {
   std::printf("%s\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
 }
 
+std::string FormatShownScore(const scene::Task& task, const scene::TaskSnapshot& now) {
+  const std::string score = FormatNumber(scene::CalcShownScore(task, now), 4);
+  return task.reference_points > 0 ? score + " of " + FormatNumber(task.best_score, 4) : score + " points";
+}
+
 void PrintForPerson(const scene::Scene& scene, const PlayReport& report) {
   const auto done = std::count_if(report.task.goals.begin(), report.task.goals.end(),
                                   [](const auto& goal) { return goal.is_done; });
@@ -147,7 +153,7 @@ void PrintForPerson(const scene::Scene& scene, const PlayReport& report) {
               scene.task->level.c_str(),
               report.gave_up ? "given up" : std::string(scene::PhaseName(report.task.phase)).c_str(),
               FormatNumber(report.task.time, 4).c_str(), done, report.task.goals.size(),
-              FormatNumber(report.task.score, 4).c_str());
+              FormatShownScore(*scene.task, report.task).c_str());
   for (std::size_t e = 0; e < scene.task->errors.size(); ++e) {
     if (report.task.errors[e] == 0) continue;
     const scene::ErrorRule& rule = scene.task->errors[e];

@@ -7,12 +7,16 @@
 #include <optional>
 #include <string>
 
-#include "play_state.h"
+#include "trocar/assessment/play_state.h"
 #include "trocar/agent/surgeon.h"
 #include "trocar/core/result.h"
 #include "trocar/record/recording.h"
 
 namespace trocar::cli {
+
+using assessment::PlayFiles;
+using assessment::RestorePlay;
+using assessment::SavePlay;
 
 struct OperationPlay {
   std::filesystem::path output;  ///< folder for pictures and a video, or empty

@@ -80,7 +80,12 @@ int ParseAndRun(int argc, char** argv) {
   AddPlayCommand(app, outcome);
   AddSimulateCommand(app, outcome);
   AddReplayCommand(app, outcome);
+  AddMetricsCommand(app, outcome);
   AddRecordCommand(app, outcome);
+  AddCourseCommand(app, outcome);
+  AddLevelsCommand(app, outcome);
+  AddExamCommand(app, outcome);
+  AddCertificateCommand(app, outcome);
   AddAnatomyCommand(app, outcome);
   AddDevicesCommand(app, outcome);
   AddBenchCommand(app, outcome);

@@ -95,6 +95,19 @@ constexpr ErrorEntry kTable[] = {
     {ErrorCode::kHapticOverspeed, "E-HAP-010", "a haptic device ran away with its force"},
     {ErrorCode::kHapticSimulation, "E-HAP-011",
      "the simulation has no good tissue state for the haptic loop"},
+    {ErrorCode::kCourseInvalid, "E-CRS-001", "a course names what there is not, or contradicts itself"},
+    {ErrorCode::kProficiencyInvalid, "E-CRS-002", "thresholds of proficiency cannot be used"},
+    {ErrorCode::kAttemptsTooFew, "E-CRS-003", "there are too few attempts for what was asked"},
+    {ErrorCode::kStepLocked, "E-CRS-004", "a step of a course is locked until those before it are passed"},
+    {ErrorCode::kPreparationFailed, "E-CRS-005", "the start of a part of an operation could not be prepared"},
+    {ErrorCode::kExamInvalid, "E-EXM-001", "the settings of an exam cannot be used"},
+    {ErrorCode::kExamSealBroken, "E-EXM-002", "an exam's settings are not those that were published"},
+    {ErrorCode::kKeyInvalid, "E-EXM-003", "a file holds no key for signing or for checking signatures"},
+    {ErrorCode::kKeyUnsafe, "E-EXM-004", "a private key may be read by others"},
+    {ErrorCode::kCertificateInvalid, "E-EXM-005", "a certificate was changed, or is none"},
+    {ErrorCode::kCertificateSigner, "E-EXM-006", "a certificate was signed with another key than expected"},
+    {ErrorCode::kCertificateRecording, "E-EXM-007", "a recording is not the one that a certificate is of"},
+    {ErrorCode::kCertificateOutcome, "E-EXM-008", "a recording does not come to what its certificate says"},
 };
 static_assert(std::size(kTable) == static_cast<std::size_t>(ErrorCode::kCount));
 

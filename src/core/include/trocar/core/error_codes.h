@@ -99,6 +99,20 @@ enum class ErrorCode {
   kHapticNotCalibrated,
   kHapticOverspeed,
   kHapticSimulation,
+  // courses, levels, exams and certificates
+  kCourseInvalid,
+  kProficiencyInvalid,
+  kAttemptsTooFew,
+  kStepLocked,
+  kPreparationFailed,
+  kExamInvalid,
+  kExamSealBroken,
+  kKeyInvalid,
+  kKeyUnsafe,
+  kCertificateInvalid,
+  kCertificateSigner,
+  kCertificateRecording,
+  kCertificateOutcome,
   kCount
 };
 
