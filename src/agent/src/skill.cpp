@@ -82,9 +82,8 @@ bool NeedsBothHands(const Scene& scene) noexcept {
 
 bool HasElectrode(const Scene& scene) noexcept {
   return std::any_of(scene.instruments.begin(), scene.instruments.end(), [](const auto& instrument) {
-    return std::any_of(instrument.tray.begin(), instrument.tray.end(), [](const instrument::Tool& tool) {
-      return tool.kind == instrument::ToolKind::kHook;
-    });
+    return std::any_of(instrument.tray.begin(), instrument.tray.end(),
+                       [](const instrument::Tool& tool) { return tool.kind == instrument::ToolKind::kHook; });
   });
 }
 
@@ -184,9 +183,9 @@ core::Result<std::unique_ptr<Surgeon>> MakeSkilledSurgeon(std::shared_ptr<const 
   } else if (IsCholecystectomy(*scene)) {
     hands = std::make_unique<CholecystectomySurgeon>(scene, skill, OperationErrorScenario::kNone, seed);
   } else {
-    return core::Error{core::ErrorCode::kUnknownName,
-                       "\"" + scene->name +
-                           "\" is neither a training task nor a cholecystectomy; see trocar play --list"};
+    return core::Error{
+        core::ErrorCode::kUnknownName,
+        "\"" + scene->name + "\" is neither a training task nor a cholecystectomy; see trocar play --list"};
   }
   if (!(skill.delay > 0) && !(skill.camera_drift > 0)) return hands;
   return std::unique_ptr<Surgeon>(

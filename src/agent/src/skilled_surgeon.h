@@ -37,7 +37,7 @@ class SkilledSurgeon final : public Surgeon {
     void VisitState(core::StateArchive& archive);
   };
   std::vector<Waiting> waiting_;  // a ring
-  std::uint64_t acted_ = 0;                                          // inputs that were made
+  std::uint64_t acted_ = 0;       // inputs that were made
 };
 
 }  // namespace trocar::agent

@@ -39,8 +39,8 @@ SurgeonEntry WithWeakness() {
   return {NameOf(kWeakness).data(), AboutOf(kWeakness).data(), "",
           [](const Scene& scene) { return HasGoals(scene) && CanShow(kWeakness, scene); },
           [](std::shared_ptr<const Scene> scene, std::uint64_t seed) -> std::unique_ptr<Surgeon> {
-            auto made = MakeSkilledSurgeon(
-                std::move(scene), PlantWeakness(LevelSkill(SkillLevel::kExpert), kWeakness), seed);
+            auto made = MakeSkilledSurgeon(std::move(scene),
+                                           PlantWeakness(LevelSkill(SkillLevel::kExpert), kWeakness), seed);
             return made.ok() ? std::move(*made) : nullptr;
           }};
 }

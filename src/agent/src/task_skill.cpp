@@ -64,7 +64,8 @@ void TaskSurgeon::Anticipate(const TaskAct& act, const Snapshot& seen) {
       carried_to = next.p;
       is_carried = true;
     }
-    const bool is_its_act = next.hand == other && (MovesATip(next.kind) || next.kind == TaskAct::Kind::kGoBack);
+    const bool is_its_act =
+        next.hand == other && (MovesATip(next.kind) || next.kind == TaskAct::Kind::kGoBack);
     if (!is_its_act) continue;
     if (next.kind != TaskAct::Kind::kReachFor || !is_carried) return;
     work = carried_to;

@@ -179,13 +179,16 @@ TEST(Skill, TheSameSeedIsTheSamePerson) {
   const SurgeonSkill novice = SampleSkill(LevelSkill(SkillLevel::kNovice), 0.2, 4);
   const Shown once = Play("instrument_navigation", novice, 4);
   EXPECT_EQ(Play("instrument_navigation", novice, 4).hash, once.hash);
-  EXPECT_NE(Play("instrument_navigation", SampleSkill(LevelSkill(SkillLevel::kNovice), 0.2, 5), 4).hash, once.hash);
+  EXPECT_NE(Play("instrument_navigation", SampleSkill(LevelSkill(SkillLevel::kNovice), 0.2, 5), 4).hash,
+            once.hash);
 }
 
 // Each weakness against the same person without it.
 TEST(Weaknesses, ShowInWhatTheyName) {
   const SurgeonSkill able = LevelSkill(SkillLevel::kExpert);
-  const auto weak = [&](const char* task, Weakness weakness) { return Play(task, PlantWeakness(able, weakness), 3); };
+  const auto weak = [&](const char* task, Weakness weakness) {
+    return Play(task, PlantWeakness(able, weakness), 3);
+  };
   const Shown transport = Play("object_transport", able, 3), hook = Play("hook_dissection", able, 3),
               navigation = Play("instrument_navigation", able, 3);
   EXPECT_LT(2 * weak("object_transport", Weakness::kIdleHand).both, transport.both);

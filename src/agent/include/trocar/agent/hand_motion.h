@@ -65,9 +65,9 @@ class HandMotion {
   std::array<std::array<Sine, kSines>, 3> tremor_;
   double time_ = 0;
   Vec3 from_, to_, tip_;
-  Vec3 aim_;            // where the reach ends that first went past it
-  Vec3 bulge_;          // of the path, in its middle [m]
-  double speed_ = 0;    // of the reach [m/s]
+  Vec3 aim_;              // where the reach ends that first went past it
+  Vec3 bulge_;            // of the path, in its middle [m]
+  double speed_ = 0;      // of the reach [m/s]
   bool is_past_ = false;  // on the way past the aim
   double reach_time_ = 0, reach_duration_ = 0;
   double spin_, spin_goal_, jaw_, jaw_goal_;

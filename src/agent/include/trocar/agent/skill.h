@@ -26,9 +26,9 @@ struct SurgeonSkill {
       0;  ///< how often the free hand goes ahead to its next work while the other one moves [-], 0 to 1
   double wrong_plan =
       0;  ///< how often a step begins at another goal's thing, and has to begin again [-], 0 to 0.5
-  double press = 0;        ///< how far tools go past what they take, into what lies behind [m], >= 0
-  double early_pedal = 0;  ///< for which the pedal is pressed before the electrode touches [s], >= 0
-  double delay = 0;        ///< from seeing to acting [s], 0 to 0.5
+  double press = 0;         ///< how far tools go past what they take, into what lies behind [m], >= 0
+  double early_pedal = 0;   ///< for which the pedal is pressed before the electrode touches [s], >= 0
+  double delay = 0;         ///< from seeing to acting [s], 0 to 0.5
   double camera_drift = 0;  ///< how far the picture wanders off, to either side [rad], 0 to 0.6
 };
 
