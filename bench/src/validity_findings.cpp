@@ -85,9 +85,9 @@ std::optional<MetricFinding> FindOut(Values& groups, const Name& name, int repea
   finding.expert_sd = CalcDeviation(high);
   finding.middle_mean = CalcMean(middle);
   finding.separates = AreApart(low, high);
-  finding.is_ordered = !middle.empty() && (finding.middle_mean - finding.novice_mean) *
-                                                  (finding.middle_mean - finding.expert_mean) <
-                                              0;
+  finding.is_ordered =
+      !middle.empty() &&
+      (finding.middle_mean - finding.novice_mean) * (finding.middle_mean - finding.expert_mean) < 0;
   const double more = CalcAuc(low, high);
   const int sense = WorseSense(name.first);
   finding.auc = sense > 0 ? more : sense < 0 ? 1 - more : std::max(more, 1 - more);
@@ -145,7 +145,8 @@ GroupFinding FindOutOfGroup(Values& groups, const std::string& group, const std:
 
 }  // namespace
 
-std::vector<TaskFindings> FindOutOfStudy(const StudyOptions& options, const std::vector<StudyAttempt>& attempts) {
+std::vector<TaskFindings> FindOutOfStudy(const StudyOptions& options,
+                                         const std::vector<StudyAttempt>& attempts) {
   std::vector<TaskFindings> all;
   std::map<std::string, Values> tasks;
   for (const StudyAttempt& attempt : attempts) tasks[attempt.task][attempt.group].push_back(&attempt);

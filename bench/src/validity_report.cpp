@@ -82,7 +82,8 @@ std::string DistributionPlot(const MetricFinding& finding, const std::string& ta
     for (const StudyAttempt& attempt : attempts) {
       if (attempt.task != task || attempt.group != level) continue;
       for (const StudyValue& value : attempt.values) {
-        if (value.metric == finding.metric && value.hand == finding.hand) values.push_back(shown.scale * value.value);
+        if (value.metric == finding.metric && value.hand == finding.hand)
+          values.push_back(shown.scale * value.value);
       }
     }
     std::sort(values.begin(), values.end());
@@ -105,10 +106,11 @@ void AddTask(std::string& page, const TaskFindings& task, const std::vector<Stud
   const auto separating = std::count_if(task.metrics.begin(), task.metrics.end(),
                                         [](const MetricFinding& finding) { return finding.separates; });
   page += "<h2>" + EscapeMarkup(task.task) + ", level " + EscapeMarkup(task.level) + "</h2>\n<p>" +
-          std::to_string(task.attempts) + " attempts, " + std::to_string(task.completed) + " of them completed: " +
-          std::to_string(task.novices) + " by novices, " + std::to_string(task.middles) + " by intermediates, " +
-          std::to_string(task.experts) + " by experts, the rest by people with one weakness or one error. <b>" +
-          std::to_string(separating) + " of " + std::to_string(task.metrics.size()) +
+          std::to_string(task.attempts) + " attempts, " + std::to_string(task.completed) +
+          " of them completed: " + std::to_string(task.novices) + " by novices, " +
+          std::to_string(task.middles) + " by intermediates, " + std::to_string(task.experts) +
+          " by experts, the rest by people with one weakness or one error. <b>" + std::to_string(separating) +
+          " of " + std::to_string(task.metrics.size()) +
           " numbers separate novices and experts without overlap.</b></p>\n";
   int plots = 0;
   for (const MetricFinding& finding : task.metrics) {
@@ -117,7 +119,9 @@ void AddTask(std::string& page, const TaskFindings& task, const std::vector<Stud
   }
   AddMetricTable(page, task);
   if (!task.clusters.empty()) {
-    page += "<h3>Numbers that say the same</h3><p>Rank correlation above 0.9; one of each line is enough.</p><ul>\n";
+    page +=
+        "<h3>Numbers that say the same</h3><p>Rank correlation above 0.9; one of each line is "
+        "enough.</p><ul>\n";
     for (const auto& cluster : task.clusters) {
       page += "<li>";
       for (std::size_t i = 0; i < cluster.size(); ++i) page += (i > 0 ? "; " : "") + EscapeMarkup(cluster[i]);
@@ -127,13 +131,15 @@ void AddTask(std::string& page, const TaskFindings& task, const std::vector<Stud
   }
   if (!task.groups.empty()) {
     page +=
-        "<h3>People with one weakness, or one error</h3><table><tr><th>who</th><th>attempts</th><th>completed</th>"
+        "<h3>People with one weakness, or one "
+        "error</h3><table><tr><th>who</th><th>attempts</th><th>completed</th>"
         "<th>error found</th><th>shows most in</th><th>AUC</th></tr>\n";
     for (const GroupFinding& group : task.groups) {
-      page += "<tr><td>" + EscapeMarkup(group.group) + "</td><td class=\"number\">" + std::to_string(group.attempts) +
-              "</td><td class=\"number\">" + std::to_string(group.completed) + "</td><td class=\"number\">" +
-              std::to_string(group.caught) + "</td><td>" + EscapeMarkup(group.best_metric) +
-              "</td><td class=\"number\">" + Number(group.best_auc, 3) + "</td></tr>\n";
+      page += "<tr><td>" + EscapeMarkup(group.group) + "</td><td class=\"number\">" +
+              std::to_string(group.attempts) + "</td><td class=\"number\">" +
+              std::to_string(group.completed) + "</td><td class=\"number\">" + std::to_string(group.caught) +
+              "</td><td>" + EscapeMarkup(group.best_metric) + "</td><td class=\"number\">" +
+              Number(group.best_auc, 3) + "</td></tr>\n";
     }
     page += "</table>\n";
   }
@@ -153,20 +159,26 @@ ordered_json OrNull(const std::optional<double>& value) {
 
 std::string FormatStudyPage(const StudyOptions& options, const std::vector<TaskFindings>& findings,
                             const std::vector<StudyAttempt>& attempts, const std::string& machine) {
-  std::string page = "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>Validity study</title><style>";
+  std::string page =
+      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>Validity study</title><style>";
   page += kPageStyle;
   page += kPlotStyle;
   page += "</style></head><body>\n<h1>Which metrics find out who is a novice?</h1>\n<p>" +
-          std::to_string(attempts.size()) + " attempts by scripted people; " + std::to_string(options.people) +
-          " people of each group, who differ by up to " + Number(100 * options.spread, 3) + " %, seed " +
-          std::to_string(options.seed) + ". Trocar " + EscapeMarkup(core::VersionText()) + ", " +
-          EscapeMarkup(machine) +
-          ".</p>\n<p>The people are made by a program. What separates them may not separate residents; what does not "
-          "separate them will hardly separate anybody. This is no study of people and sets no standard of competence. " +
+          std::to_string(attempts.size()) + " attempts by scripted people; " +
+          std::to_string(options.people) + " people of each group, who differ by up to " +
+          Number(100 * options.spread, 3) + " %, seed " + std::to_string(options.seed) + ". Trocar " +
+          EscapeMarkup(core::VersionText()) + ", " + EscapeMarkup(machine) +
+          ".</p>\n<p>The people are made by a program. What separates them may not separate residents; what "
+          "does not "
+          "separate them will hardly separate anybody. This is no study of people and sets no standard of "
+          "competence. " +
           EscapeMarkup(training::MetricsDisclaimer()) +
-          ".</p>\n<p><b>Separates</b>: no value of a novice lies within the range of the experts' values, nor the other way "
-          "round. <b>Effect</b>: novices minus experts, in pooled standard deviations. <b>AUC</b>: the chance that a novice's "
-          "value is worse than an expert's; 0.5 says nothing. <b>ICC</b>(1,1) and Cronbach's <b>alpha</b>: how well an attempt "
+          ".</p>\n<p><b>Separates</b>: no value of a novice lies within the range of the experts' values, "
+          "nor the other way "
+          "round. <b>Effect</b>: novices minus experts, in pooled standard deviations. <b>AUC</b>: the "
+          "chance that a novice's "
+          "value is worse than an expert's; 0.5 says nothing. <b>ICC</b>(1,1) and Cronbach's <b>alpha</b>: "
+          "how well an attempt "
           "repeats on another seed, over people of all three levels; above " +
           Number(kGoodIcc, 3) + " is good.</p>\n";
   for (const TaskFindings& task : findings) AddTask(page, task, attempts);
@@ -179,20 +191,21 @@ std::string FormatStudyJson(const StudyOptions& options, const std::vector<TaskF
   for (const TaskFindings& task : findings) {
     ordered_json metrics = ordered_json::array(), groups = ordered_json::array();
     for (const MetricFinding& f : task.metrics) {
-      metrics.push_back({{"metric", f.metric},
-                         {"hand", f.hand},
-                         {"separates", f.separates},
-                         {"ordered", f.is_ordered},
-                         {"auc", f.auc},
-                         {"effect", OrNull(f.effect)},
-                         {"icc", OrNull(f.icc)},
-                         {"alpha", OrNull(f.alpha)},
-                         {"novice", {{"low", f.novice_low}, {"high", f.novice_high}, {"mean", f.novice_mean}}},
-                         {"intermediate", {{"mean", f.middle_mean}}},
-                         {"expert",
-                          {{"low", f.expert_low}, {"high", f.expert_high}, {"mean", f.expert_mean}, {"sd", f.expert_sd}}},
-                         {"novices", f.novices},
-                         {"experts", f.experts}});
+      metrics.push_back(
+          {{"metric", f.metric},
+           {"hand", f.hand},
+           {"separates", f.separates},
+           {"ordered", f.is_ordered},
+           {"auc", f.auc},
+           {"effect", OrNull(f.effect)},
+           {"icc", OrNull(f.icc)},
+           {"alpha", OrNull(f.alpha)},
+           {"novice", {{"low", f.novice_low}, {"high", f.novice_high}, {"mean", f.novice_mean}}},
+           {"intermediate", {{"mean", f.middle_mean}}},
+           {"expert",
+            {{"low", f.expert_low}, {"high", f.expert_high}, {"mean", f.expert_mean}, {"sd", f.expert_sd}}},
+           {"novices", f.novices},
+           {"experts", f.experts}});
     }
     for (const GroupFinding& g : task.groups) {
       groups.push_back({{"group", g.group},
@@ -223,17 +236,21 @@ std::string FormatStudyJson(const StudyOptions& options, const std::vector<TaskF
 
 std::string FormatStudyCsv(const std::vector<TaskFindings>& findings) {
   std::string csv =
-      "task,level,metric,hand,separates,ordered,auc,effect,icc,alpha,novice_low,novice_high,novice_mean,intermediate_mean,"
+      "task,level,metric,hand,separates,ordered,auc,effect,icc,alpha,novice_low,novice_high,novice_mean,"
+      "intermediate_mean,"
       "expert_low,expert_high,expert_mean,expert_sd,novices,experts\n";
-  const auto cell = [](const std::optional<double>& value) { return value ? Number(*value, 9) : std::string(); };
+  const auto cell = [](const std::optional<double>& value) {
+    return value ? Number(*value, 9) : std::string();
+  };
   for (const TaskFindings& task : findings) {
     for (const MetricFinding& f : task.metrics) {
-      csv += task.task + "," + task.level + "," + f.metric + "," + f.hand + "," + (f.separates ? "yes" : "no") + "," +
-             (f.is_ordered ? "yes" : "no");
-      for (const auto& value : {std::optional(f.auc), f.effect, f.icc, f.alpha, std::optional(f.novice_low),
-                                std::optional(f.novice_high), std::optional(f.novice_mean),
-                                std::optional(f.middle_mean), std::optional(f.expert_low),
-                                std::optional(f.expert_high), std::optional(f.expert_mean), std::optional(f.expert_sd)})
+      csv += task.task + "," + task.level + "," + f.metric + "," + f.hand + "," +
+             (f.separates ? "yes" : "no") + "," + (f.is_ordered ? "yes" : "no");
+      for (const auto& value :
+           {std::optional(f.auc), f.effect, f.icc, f.alpha, std::optional(f.novice_low),
+            std::optional(f.novice_high), std::optional(f.novice_mean), std::optional(f.middle_mean),
+            std::optional(f.expert_low), std::optional(f.expert_high), std::optional(f.expert_mean),
+            std::optional(f.expert_sd)})
         csv += "," + cell(value);
       csv += "," + std::to_string(f.novices) + "," + std::to_string(f.experts) + "\n";
     }
@@ -257,16 +274,18 @@ std::string FormatValidityJson(const StudyOptions& options, const std::vector<Ta
                       {"experts", f.experts}});
       measures.push_back(std::move(measure));
     }
-    tasks.push_back({{"task", task.task},
-                     {"level", task.level},
-                     {"people", {{"novice", task.novices}, {"intermediate", task.middles}, {"expert", task.experts}}},
-                     {"measures", std::move(measures)}});
+    tasks.push_back(
+        {{"task", task.task},
+         {"level", task.level},
+         {"people", {{"novice", task.novices}, {"intermediate", task.middles}, {"expert", task.experts}}},
+         {"measures", std::move(measures)}});
   }
   const ordered_json all = {
       {"format", "trocar-validity"},
       {"version", 1},
       {"about",
-       "Which numbers separate scripted novices and experts without overlap, and what scripted experts reach. Written by "
+       "Which numbers separate scripted novices and experts without overlap, and what scripted experts "
+       "reach. Written by "
        "trocar study; the people are made by a program, so that this sets no standard of competence."},
       {"study",
        {{"program", std::string(core::VersionText())},

@@ -89,8 +89,8 @@ core::Result<std::unique_ptr<Surgeon>> MakePerson(const StudyOptions& options, c
                                                   std::shared_ptr<const Scene> scene) {
   if (!job.group->error.empty()) return agent::MakeSurgeon(job.group->name, std::move(scene), job.seed);
   const std::uint64_t who = options.seed + kPersonStep * static_cast<std::uint64_t>(job.person + 1);
-  return agent::MakeSkilledSurgeon(std::move(scene), agent::SampleSkill(job.group->skill, options.spread, who),
-                                   job.seed);
+  return agent::MakeSkilledSurgeon(std::move(scene),
+                                   agent::SampleSkill(job.group->skill, options.spread, who), job.seed);
 }
 
 core::Result<StudyAttempt> PlayAttempt(const StudyOptions& options, const Job& job) {
@@ -119,8 +119,8 @@ core::Result<StudyAttempt> PlayAttempt(const StudyOptions& options, const Job& j
   for (std::size_t e = 0; e < rules.size(); ++e)
     attempt.is_caught = attempt.is_caught || (rules[e].name == job.group->error && end.task.errors[e] > 0);
   // a dawdler is caught by the end of the time
-  attempt.is_caught = attempt.is_caught ||
-                      (job.group->error == "time_over" && end.task.phase == scene::TaskPhase::kTimeOver);
+  attempt.is_caught =
+      attempt.is_caught || (job.group->error == "time_over" && end.task.phase == scene::TaskPhase::kTimeOver);
   for (const training::MetricValue& value : metrics->values) {
     if (value.phase.empty() && value.tool.empty())
       attempt.values.push_back({value.metric, value.hand, value.value});
@@ -133,9 +133,15 @@ core::Result<StudyAttempt> PlayAttempt(const StudyOptions& options, const Job& j
 json ToJson(const StudyAttempt& attempt) {
   json values = json::array();
   for (const StudyValue& value : attempt.values) values.push_back({value.metric, value.hand, value.value});
-  return {{"task", attempt.task},           {"group", attempt.group},   {"person", attempt.person},
-          {"repeat", attempt.repeat},       {"seed", attempt.seed},     {"phase", attempt.phase},
-          {"completed", attempt.is_completed}, {"caught", attempt.is_caught}, {"seconds", attempt.seconds},
+  return {{"task", attempt.task},
+          {"group", attempt.group},
+          {"person", attempt.person},
+          {"repeat", attempt.repeat},
+          {"seed", attempt.seed},
+          {"phase", attempt.phase},
+          {"completed", attempt.is_completed},
+          {"caught", attempt.is_caught},
+          {"seconds", attempt.seconds},
           {"values", std::move(values)}};
 }
 
@@ -143,7 +149,8 @@ std::optional<StudyAttempt> FromJson(const std::string& line) {
   const json read = json::parse(line, nullptr, false);
   if (!read.is_object() || !read.contains("values")) return std::nullopt;  // cut where the study was stopped
   try {
-    StudyAttempt attempt{read.at("task"), read.at("group"), read.at("person"), read.at("repeat"), read.at("seed")};
+    StudyAttempt attempt{read.at("task"), read.at("group"), read.at("person"), read.at("repeat"),
+                         read.at("seed")};
     attempt.phase = read.at("phase");
     attempt.is_completed = read.at("completed");
     attempt.is_caught = read.at("caught");
@@ -158,8 +165,12 @@ std::optional<StudyAttempt> FromJson(const std::string& line) {
 
 /// What must be the same for attempts to be compared.
 json DescribeStudy(const StudyOptions& options) {
-  return {{"format", "trocar-study"}, {"version", 1},          {"program", std::string(core::VersionText())},
-          {"level", options.level},   {"spread", options.spread}, {"seed", options.seed}};
+  return {{"format", "trocar-study"},
+          {"version", 1},
+          {"program", std::string(core::VersionText())},
+          {"level", options.level},
+          {"spread", options.spread},
+          {"seed", options.seed}};
 }
 
 core::Result<std::vector<StudyAttempt>> ReadBefore(const StudyOptions& options) {
@@ -174,8 +185,9 @@ core::Result<std::vector<StudyAttempt>> ReadBefore(const StudyOptions& options) 
     if (!theirs.ok()) return theirs.error();
     if (*theirs != mine) {
       return core::Error{core::ErrorCode::kUsage,
-                         head.string() + " is of a study with another level, spread, seed or program; choose another "
-                                         "folder with -o, or give the same options"};
+                         head.string() +
+                             " is of a study with another level, spread, seed or program; choose another "
+                             "folder with -o, or give the same options"};
     }
   } else if (const auto written = core::WriteFile(head, mine); !written.ok()) {
     return written.error();
@@ -227,8 +239,8 @@ core::Result<std::size_t> CountStudyAttempts(const StudyOptions& options) {
   return plan->jobs.size();
 }
 
-core::Result<std::vector<StudyAttempt>> RunStudy(const StudyOptions& options,
-                                                 const std::function<void(const std::string&, double)>& progress) {
+core::Result<std::vector<StudyAttempt>> RunStudy(
+    const StudyOptions& options, const std::function<void(const std::string&, double)>& progress) {
   const auto plan = MakePlan(options);
   if (!plan.ok()) return plan.error();
   auto before = ReadBefore(options);

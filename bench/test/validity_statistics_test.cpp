@@ -41,7 +41,7 @@ TEST(Apart, NeedsAGapBetweenTheRanges) {
 
 // Six people judged four times: Shrout and Fleiss 1979, table 2; they give ICC(1,1) = 0.17.
 TEST(IntraclassCorrelation, IsThatOfShroutAndFleiss) {
-  const std::vector<std::vector<double>> ratings = {{9, 2, 5, 8}, {6, 1, 3, 2}, {8, 4, 6, 8},
+  const std::vector<std::vector<double>> ratings = {{9, 2, 5, 8}, {6, 1, 3, 2},  {8, 4, 6, 8},
                                                     {7, 1, 2, 6}, {10, 5, 6, 9}, {6, 2, 4, 7}};
   EXPECT_NEAR(*CalcIntraclassCorrelation(ratings), 0.166, 5e-4);
   // alpha is their ICC(3,k), 0.91

@@ -81,7 +81,8 @@ std::vector<StudyAttempt> MadeUp(int people) {
         StudyAttempt attempt{"made_up", level, person, repeat, 1};
         attempt.is_completed = true;
         const double time = seconds + 0.2 * person + 0.05 * repeat;
-        attempt.values = {{"time", "", time}, {"coach:time", "", 2 * time}, {"coach:tremor", "", random.Uniform()}};
+        attempt.values = {
+            {"time", "", time}, {"coach:time", "", 2 * time}, {"coach:tremor", "", random.Uniform()}};
         if (level == "novice") attempt.values.push_back({"coach:detour", "", 1});
         attempts.push_back(attempt);
       }
@@ -97,7 +98,8 @@ TEST(Findings, SeparateRepeatAndClusterAsTheNumbersWereMade) {
   ASSERT_EQ(findings.size(), 1u);
   const TaskFindings& task = findings[0];
   const auto find = [&](const std::string& metric) {
-    return *std::find_if(task.metrics.begin(), task.metrics.end(), [&](const auto& f) { return f.metric == metric; });
+    return *std::find_if(task.metrics.begin(), task.metrics.end(),
+                         [&](const auto& f) { return f.metric == metric; });
   };
   EXPECT_TRUE(find("coach:time").separates);
   EXPECT_TRUE(find("coach:time").is_ordered);
@@ -125,8 +127,8 @@ TEST(Findings, SeparateRepeatAndClusterAsTheNumbersWereMade) {
 
 /// By what the coach calls a weakness.
 const std::map<Weakness, std::string> kTopics = {
-    {Weakness::kTremor, "tremor"},     {Weakness::kIdleHand, "idle_hand"},     {Weakness::kForce, "force"},
-    {Weakness::kEnergyInAir, "energy"}, {Weakness::kPoorCamera, "camera"}, {Weakness::kWandering, "path"}};
+    {Weakness::kTremor, "tremor"},      {Weakness::kIdleHand, "idle_hand"}, {Weakness::kForce, "force"},
+    {Weakness::kEnergyInAir, "energy"}, {Weakness::kPoorCamera, "camera"},  {Weakness::kWandering, "path"}};
 
 struct CoachSetting {
   training::CoachRules rules;

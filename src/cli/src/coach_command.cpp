@@ -103,10 +103,11 @@ core::Status Coach(const CoachArguments& arguments) {
     std::printf("%zu. %s%s%s\n", i + 1, one.sentence.c_str(), one.look.empty() ? "" : " ", one.look.c_str());
     std::printf("   Why: %s\n   Practise: %s (trocar play expert --task %s shows it)\n", one.why.c_str(),
                 one.practise.c_str(), one.exercise.c_str());
-    std::printf("   Rule %s: %s %s, threshold %s.\n", one.rule.c_str(),
-                FormatNumber(one.numbers.deviation, 3).c_str(),
-                one.numbers.expert_mean ? "standard deviations beyond scripted experts" : "times what is let pass",
-                FormatNumber(one.numbers.threshold, 3).c_str());
+    std::printf(
+        "   Rule %s: %s %s, threshold %s.\n", one.rule.c_str(),
+        FormatNumber(one.numbers.deviation, 3).c_str(),
+        one.numbers.expert_mean ? "standard deviations beyond scripted experts" : "times what is let pass",
+        FormatNumber(one.numbers.threshold, 3).c_str());
   }
   if (reference == nullptr)
     std::printf("No expert set is known for \"%s\": only absolute rules were asked.\n", task.c_str());
@@ -117,13 +118,14 @@ core::Status Coach(const CoachArguments& arguments) {
 }  // namespace
 
 void AddCoachCommand(CLI::App& app, Outcome& outcome) {
-  CLI::App* command =
-      app.add_subcommand("coach", "Say what cost most in a recorded attempt, where to look, and what to practise");
+  CLI::App* command = app.add_subcommand(
+      "coach", "Say what cost most in a recorded attempt, where to look, and what to practise");
   auto a = std::make_shared<CoachArguments>();
   command->add_option("file", a->file, "Recording")->required()->type_name("FILE");
   command->add_option("--rules", a->rules, "Rules in place of assets/coach/rules.json")->type_name("FILE");
   command
-      ->add_option("--validity", a->validity, "Expert sets in place of assets/validity.json, as trocar study writes them")
+      ->add_option("--validity", a->validity,
+                   "Expert sets in place of assets/validity.json, as trocar study writes them")
       ->type_name("FILE");
   command->add_option("--threads", a->threads, "Of the solver; the words are the same for any number")
       ->check(CLI::Range(1, 256))
@@ -132,7 +134,8 @@ void AddCoachCommand(CLI::App& app, Outcome& outcome) {
   command->add_flag("--json", a->is_json, "Machine-readable, with every rule's numbers");
   command->footer(
       "Every sentence comes from one rule and its numbers; none is a judgement of competence.\n"
-      "Example: trocar play wanders --task peg_transfer --record attempt.trocar && trocar coach attempt.trocar");
+      "Example: trocar play wanders --task peg_transfer --record attempt.trocar && trocar coach "
+      "attempt.trocar");
   command->callback([a, &outcome] { outcome.status = Coach(*a); });
 }
 

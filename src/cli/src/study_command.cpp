@@ -37,7 +37,8 @@ core::Status WriteStudy(const StudyArguments& arguments, const std::vector<bench
     return s;
   if (auto s = write("findings.json", bench::FormatStudyJson(arguments.options, findings)); !s.ok()) return s;
   if (auto s = write("findings.csv", bench::FormatStudyCsv(findings)); !s.ok()) return s;
-  if (auto s = write("validity.json", bench::FormatValidityJson(arguments.options, findings)); !s.ok()) return s;
+  if (auto s = write("validity.json", bench::FormatValidityJson(arguments.options, findings)); !s.ok())
+    return s;
   std::vector<std::vector<std::string>> rows = {
       {"task", "attempts", "completed", "numbers", "separate without overlap", "say the same"}};
   for (const bench::TaskFindings& task : findings) {
@@ -83,7 +84,9 @@ void AddStudyCommand(CLI::App& app, Outcome& outcome) {
       "study", "Find out which metrics separate scripted novices from experts, and how well they repeat");
   auto a = std::make_shared<StudyArguments>();
   a->options.tasks = {"instrument_navigation"};
-  command->add_option("--task", a->options.tasks, "Names of training tasks, with commas between (trocar play --list)")
+  command
+      ->add_option("--task", a->options.tasks,
+                   "Names of training tasks, with commas between (trocar play --list)")
       ->delimiter(',')
       ->type_name("TASK,...")
       ->capture_default_str();
@@ -91,8 +94,9 @@ void AddStudyCommand(CLI::App& app, Outcome& outcome) {
       ->type_name("LEVEL")
       ->capture_default_str();
   command
-      ->add_option("--people", a->options.people,
-                   "Of each group: novice, intermediate, expert, with one weakness each, careless in one way each")
+      ->add_option(
+          "--people", a->options.people,
+          "Of each group: novice, intermediate, expert, with one weakness each, careless in one way each")
       ->check(CLI::Range(2, 10000))
       ->type_name("N")
       ->capture_default_str();
@@ -110,19 +114,23 @@ void AddStudyCommand(CLI::App& app, Outcome& outcome) {
       ->check(CLI::Range(0, 2147483647))
       ->type_name("K")
       ->capture_default_str();
-  command->add_option("--jobs", a->options.jobs, "Attempts at a time; the findings are the same for any number")
+  command
+      ->add_option("--jobs", a->options.jobs, "Attempts at a time; the findings are the same for any number")
       ->check(CLI::Range(1, 256))
       ->type_name("J")
       ->capture_default_str();
   command
-      ->add_option("--most-seconds", a->options.most_seconds,
-                   "Stop after this time; the same command goes on where it stopped (exit status 1 until it is done)")
+      ->add_option(
+          "--most-seconds", a->options.most_seconds,
+          "Stop after this time; the same command goes on where it stopped (exit status 1 until it is done)")
       ->check(CLI::Range(0.0, 1e6))
       ->type_name("S");
-  command->add_flag("--levels-only", a->has_levels_only, "Leave out people with one weakness and careless ones");
+  command->add_flag("--levels-only", a->has_levels_only,
+                    "Leave out people with one weakness and careless ones");
   command
       ->add_option("-o,--output", a->output,
-                   "Folder for study.html, findings.json, findings.csv, validity.json, and attempts.jsonl from which a "
+                   "Folder for study.html, findings.json, findings.csv, validity.json, and attempts.jsonl "
+                   "from which a "
                    "stopped study goes on")
       ->required()
       ->type_name("DIR");

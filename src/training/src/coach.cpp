@@ -14,9 +14,9 @@ namespace trocar::training {
 namespace {
 
 constexpr std::string_view kCoach = "coach:", kEvent = "event:", kMetric = "metric:";
-constexpr std::array<std::string_view, 9> kMeasures = {"tremor",      "one_hand_waits", "peak_force",
+constexpr std::array<std::string_view, 9> kMeasures = {"tremor",        "one_hand_waits", "peak_force",
                                                        "energy_in_air", "tips_unseen",    "detour",
-                                                       "corrections", "pauses",         "time"};
+                                                       "corrections",   "pauses",         "time"};
 
 /// Words in braces of a text.
 std::vector<std::string> FindPlaceholders(const std::string& text) {
@@ -45,8 +45,9 @@ bool IsKnownMeasure(const std::string& measure) {
 }
 
 CoachRule ReadRule(const core::JsonView& view) {
-  view.AllowOnly({"id", "topic", "measure", "bad_when", "threshold_sd", "sd_floor", "least", "absolute", "weight",
-                  "shown_scale", "decimals", "sentence", "sentence_alone", "why", "exercise", "practise", "source"});
+  view.AllowOnly({"id", "topic", "measure", "bad_when", "threshold_sd", "sd_floor", "least", "absolute",
+                  "weight", "shown_scale", "decimals", "sentence", "sentence_alone", "why", "exercise",
+                  "practise", "source"});
   CoachRule rule;
   rule.id = view.Text("id");
   rule.topic = view.Text("topic");
@@ -70,7 +71,8 @@ CoachRule ReadRule(const core::JsonView& view) {
   rule.source = view.Text("source");
   CheckWords(view, "sentence", rule.sentence, true);
   CheckWords(view, "sentence_alone", rule.sentence_alone, false);
-  if (rule.absolute && !rule.is_high_bad) view.Complain("an absolute threshold is one from which on it is too much");
+  if (rule.absolute && !rule.is_high_bad)
+    view.Complain("an absolute threshold is one from which on it is too much");
   if (rule.absolute.has_value() == rule.sentence_alone.empty())
     view.Complain("absolute and sentence_alone go together");
   return rule;
@@ -82,8 +84,8 @@ struct Found {
 };
 
 /// What a rule asks for; nothing where it is not defined for the attempt.
-std::optional<Found> FindMeasure(const std::string& measure, const AttemptTrace& trace, const AttemptMetrics& metrics,
-                                 const std::vector<CoachMeasure>& measures) {
+std::optional<Found> FindMeasure(const std::string& measure, const AttemptTrace& trace,
+                                 const AttemptMetrics& metrics, const std::vector<CoachMeasure>& measures) {
   const std::string_view text = measure;
   if (text.starts_with(kEvent)) {
     const CoachMeasure count = CountEvents(trace, measure.substr(kEvent.size()));
@@ -110,7 +112,8 @@ const MeasureValidity* FindReference(const std::string& measure, const TaskValid
   if (!text.starts_with(kMetric)) return reference->Find(text);
   const std::string_view name = text.substr(kMetric.size());
   const std::size_t slash = name.find('/');
-  return reference->Find(name.substr(0, slash), slash == std::string_view::npos ? "" : name.substr(slash + 1));
+  return reference->Find(name.substr(0, slash),
+                         slash == std::string_view::npos ? "" : name.substr(slash + 1));
 }
 
 std::optional<AdviceNumbers> Weigh(const CoachRule& rule, double value, const MeasureValidity* expert) {
@@ -137,7 +140,8 @@ std::optional<AdviceNumbers> Weigh(const CoachRule& rule, double value, const Me
 
 std::string Fill(std::string text, std::string_view word, const std::string& with) {
   const std::string placeholder = "{" + std::string(word) + "}";
-  for (std::size_t at = text.find(placeholder); at != std::string::npos; at = text.find(placeholder, at + with.size()))
+  for (std::size_t at = text.find(placeholder); at != std::string::npos;
+       at = text.find(placeholder, at + with.size()))
     text.replace(at, placeholder.size(), with);
   return text;
 }
@@ -149,7 +153,9 @@ std::string Number(double value, int decimals) {
 }
 
 std::string HandWords(int hand) {
-  return hand == instrument::kLeft ? "the left hand" : hand == instrument::kRight ? "the right hand" : "both hands";
+  return hand == instrument::kLeft    ? "the left hand"
+         : hand == instrument::kRight ? "the right hand"
+                                      : "both hands";
 }
 
 Advice Speak(const CoachRule& rule, const AdviceNumbers& numbers, const std::optional<CoachMoment>& moment) {
@@ -164,7 +170,8 @@ Advice Speak(const CoachRule& rule, const AdviceNumbers& numbers, const std::opt
   advice.sentence = numbers.expert_mean ? rule.sentence : rule.sentence_alone;
   advice.sentence = Fill(advice.sentence, "value", Number(rule.shown_scale * numbers.value, rule.decimals));
   if (numbers.expert_mean)
-    advice.sentence = Fill(advice.sentence, "expert", Number(rule.shown_scale * *numbers.expert_mean, rule.decimals));
+    advice.sentence =
+        Fill(advice.sentence, "expert", Number(rule.shown_scale * *numbers.expert_mean, rule.decimals));
   advice.sentence = Fill(advice.sentence, "hand", HandWords(moment ? moment->hand : -1));
   if (moment) {
     advice.time = moment->time;
@@ -199,8 +206,8 @@ core::Result<CoachRules> ParseCoachRules(std::string_view text, const std::strin
   return rules;
 }
 
-std::vector<Advice> CoachAttempt(const AttemptTrace& trace, const AttemptMetrics& metrics, const CoachRules& rules,
-                                 const TaskValidity* reference) {
+std::vector<Advice> CoachAttempt(const AttemptTrace& trace, const AttemptMetrics& metrics,
+                                 const CoachRules& rules, const TaskValidity* reference) {
   const std::vector<CoachMeasure> measures = CalcCoachMeasures(trace);
   std::vector<Advice> all;
   for (const CoachRule& rule : rules.rules) {

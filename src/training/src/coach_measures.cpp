@@ -15,15 +15,15 @@
 namespace trocar::training {
 namespace {
 
-constexpr double kTremorLow = 7.0, kTremorHigh = 13.0;  // [Hz]
-constexpr double kTremorWindow = 2.0;                   // of the moment that is shown [s]
-constexpr double kSmooth = 6.0;                         // of the motion without tremor [Hz]
-constexpr double kMoves = 0.020, kRests = 0.005;        // [m/s]; as the metrics' movements
+constexpr double kTremorLow = 7.0, kTremorHigh = 13.0;   // [Hz]
+constexpr double kTremorWindow = 2.0;                    // of the moment that is shown [s]
+constexpr double kSmooth = 6.0;                          // of the motion without tremor [Hz]
+constexpr double kMoves = 0.020, kRests = 0.005;         // [m/s]; as the metrics' movements
 constexpr double kLongMove = 0.020, kShortMove = 0.010;  // [m]
-constexpr double kAtOnce = 0.25;                        // after a movement [s]
-constexpr double kBack = -0.7;                          // cosine of the angle between a movement and one back
-constexpr double kWaits = 1.0, kPause = 0.5;            // [s]
-constexpr double kLoaded = 0.05;                        // [N]
+constexpr double kAtOnce = 0.25;                         // after a movement [s]
+constexpr double kBack = -0.7;                // cosine of the angle between a movement and one back
+constexpr double kWaits = 1.0, kPause = 0.5;  // [s]
+constexpr double kLoaded = 0.05;              // [N]
 constexpr double kPeakShare = 0.99;
 
 using Hand = std::vector<ToolSample>;
@@ -68,7 +68,8 @@ std::optional<CoachMoment> LongestOf(const std::vector<Run>& runs, double dt, in
   const auto longest = std::max_element(runs.begin(), runs.end(),
                                         [](const Run& a, const Run& b) { return a.Length() < b.Length(); });
   if (longest == runs.end()) return std::nullopt;
-  return CoachMoment{static_cast<double>(longest->begin) * dt, static_cast<double>(longest->Length()) * dt, hand};
+  return CoachMoment{static_cast<double>(longest->begin) * dt, static_cast<double>(longest->Length()) * dt,
+                     hand};
 }
 
 bool IsLonger(const std::optional<CoachMoment>& a, const std::optional<CoachMoment>& b) {
@@ -79,7 +80,7 @@ bool IsLonger(const std::optional<CoachMoment>& a, const std::optional<CoachMome
 struct Motion {
   std::vector<Vec3> tips;
   std::vector<double> speed;
-  std::vector<Run> movements;  // from above kMoves back to kRests, with the way up from kRests
+  std::vector<Run> movements;            // from above kMoves back to kRests, with the way up from kRests
   std::vector<std::uint8_t> rests_long;  // (ticks) in a rest of kWaits or more
 
   Motion(const Hand& hand, double dt) : tips(SmoothTips(hand, dt, kSmooth)), speed(SpeedOf(tips, dt)) {
@@ -113,7 +114,8 @@ CoachMeasure CalcTremor(const AttemptTrace& trace) {
     const std::vector<Vec3> high = SmoothTips(trace.hands[h], trace.dt, kTremorHigh),
                             low = SmoothTips(trace.hands[h], trace.dt, kTremorLow);
     std::vector<double> sum(high.size() + 1, 0.0);
-    for (std::size_t i = 0; i < high.size(); ++i) sum[i + 1] = sum[i] + math::SquaredDistance(high[i], low[i]);
+    for (std::size_t i = 0; i < high.size(); ++i)
+      sum[i + 1] = sum[i] + math::SquaredDistance(high[i], low[i]);
     if (high.empty()) continue;
     measure.value = std::max(measure.value, std::sqrt(sum.back() / static_cast<double>(high.size())));
     for (std::size_t i = 0; i + window < sum.size(); i += window / 4 + 1) {
@@ -134,9 +136,9 @@ CoachMeasure CalcOneHandWaits(const AttemptTrace& trace, const Motions& motions)
     const auto waits = [&](std::size_t i) { return rests.rests_long[i] != 0 && works.speed[i] > kRests; };
     for (std::size_t i = 0; i < trace.Ticks(); ++i) alone += waits(i) ? 1 : 0;
     // the moment: the longest rest in which the other hand was at work
-    const auto longest = LongestOf(
-        FindRuns(trace.Ticks(), [&](std::size_t i) { return rests.rests_long[i] != 0; }), trace.dt,
-        static_cast<int>(h));
+    const auto longest =
+        LongestOf(FindRuns(trace.Ticks(), [&](std::size_t i) { return rests.rests_long[i] != 0; }), trace.dt,
+                  static_cast<int>(h));
     if (IsLonger(longest, measure.moment)) measure.moment = longest;
   }
   for (std::size_t i = 0; i < trace.Ticks(); ++i)

@@ -33,9 +33,10 @@ core::Result<Validity> ParseValidity(std::string_view text, const std::string& n
     TaskValidity made{task.Text("task"), task.Text("level"), {}};
     for (const core::JsonView& view : task.Array("measures")) {
       view.AllowOnly({"metric", "hand", "separates", "auc", "expert_mean", "expert_sd", "experts"});
-      made.measures.push_back({view.Text("metric"), view.TextOr("hand", ""), view.BooleanOr("separates", false),
-                               view.Number("auc", {0, 1}), view.Number("expert_mean"),
-                               view.Number("expert_sd", {0, 1e300}), view.Integer("experts", {1, 1e9})});
+      made.measures.push_back({view.Text("metric"), view.TextOr("hand", ""),
+                               view.BooleanOr("separates", false), view.Number("auc", {0, 1}),
+                               view.Number("expert_mean"), view.Number("expert_sd", {0, 1e300}),
+                               view.Integer("experts", {1, 1e9})});
     }
     validity.tasks.push_back(std::move(made));
   }
@@ -43,7 +44,8 @@ core::Result<Validity> ParseValidity(std::string_view text, const std::string& n
   return validity;
 }
 
-std::string_view ValidityWords(const TaskValidity* task, std::string_view metric, std::string_view hand) noexcept {
+std::string_view ValidityWords(const TaskValidity* task, std::string_view metric,
+                               std::string_view hand) noexcept {
   const MeasureValidity* found = task == nullptr ? nullptr : task->Find(metric, hand);
   if (found == nullptr) return "not studied";
   return found->separates ? "separates" : "does not separate";

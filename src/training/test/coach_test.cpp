@@ -46,7 +46,8 @@ AttemptTrace MakeAttempt(double seconds) {
 }
 
 const CoachMeasure& Get(const std::vector<CoachMeasure>& measures, const std::string& name) {
-  return *std::find_if(measures.begin(), measures.end(), [&](const CoachMeasure& one) { return one.name == name; });
+  return *std::find_if(measures.begin(), measures.end(),
+                       [&](const CoachMeasure& one) { return one.name == name; });
 }
 
 TEST(CoachMeasures, AreQuietForASteadyAttempt) {
@@ -139,7 +140,8 @@ TEST(CoachMeasures, CorrectionsAreShortWaysBackAtOnce) {
       const auto legs = static_cast<int>(time / period);
       const double in_leg = time - legs * period, sense = legs % 2 == 0 ? 1 : -1;
       // past the end by 6 mm, and back in the rest
-      trace.hands[h][i].tip.x += sense * 0.006 * (Blend(in_leg / kReachSeconds) - Blend((in_leg - kReachSeconds) / 0.3));
+      trace.hands[h][i].tip.x +=
+          sense * 0.006 * (Blend(in_leg / kReachSeconds) - Blend((in_leg - kReachSeconds) / 0.3));
     }
   }
   const CoachMeasure corrections = Get(CalcCoachMeasures(trace), "corrections");
@@ -170,8 +172,10 @@ constexpr const char* kRules = R"({"format": "trocar-coach-rules", "version": 1,
    "exercise": "peg_transfer", "practise": "p", "source": "s"}]})";
 
 TaskValidity MakeReference() {
-  return {"peg_transfer", "normal",
-          {{"coach:tremor", "", true, 1, 0.00005, 0.00001, 50}, {"path_length", "left", true, 1, 2.0, 0.5, 50}}};
+  return {
+      "peg_transfer",
+      "normal",
+      {{"coach:tremor", "", true, 1, 0.00005, 0.00001, 50}, {"path_length", "left", true, 1, 2.0, 0.5, 50}}};
 }
 
 TEST(Coach, SaysWhatItsNumbersSayInTheOrderOfTheirCost) {
@@ -223,7 +227,8 @@ TEST(CoachRules, RefuseWhatTheyCannotSay) {
   };
   EXPECT_TRUE(refuses("coach:tremor", "coach:humour"));
   EXPECT_TRUE(refuses("{expert} mm.", "{surgeon} mm."));
-  EXPECT_TRUE(refuses("\"sentence_alone\": \"Fell {value} times.\"", "\"sentence_alone\": \"Fell {expert} times.\""));
+  EXPECT_TRUE(
+      refuses("\"sentence_alone\": \"Fell {value} times.\"", "\"sentence_alone\": \"Fell {expert} times.\""));
   EXPECT_TRUE(refuses("\"absolute\": 1, \"weight\": 2,", "\"weight\": 2,"));
   EXPECT_TRUE(refuses("\"fell_often\"", "\"fell\""));
   EXPECT_TRUE(refuses("\"threshold_sd\": 3", "\"treshold_sd\": 3"));

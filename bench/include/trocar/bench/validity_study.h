@@ -21,14 +21,14 @@ namespace trocar::bench {
 struct StudyOptions {
   std::vector<std::string> tasks;  ///< keys of delivered tasks, without patients
   std::string level = "normal";
-  int people = 20;     ///< of each group
-  int repeats = 2;     ///< attempts of each novice, intermediate and expert, on other seeds; 1 for all others
+  int people = 20;  ///< of each group
+  int repeats = 2;  ///< attempts of each novice, intermediate and expert, on other seeds; 1 for all others
   double spread = 0.2;  ///< by which people of a group differ, agent::SampleSkill
   std::uint64_t seed = 1;
-  bool has_weaknesses = true;  ///< people with one weakness
-  bool has_careless = true;    ///< those who commit one error each
-  int jobs = 1;                ///< attempts at a time
-  double most_seconds = 0;     ///< wall clock, after which the study stops and can go on later [s]; 0: none
+  bool has_weaknesses = true;    ///< people with one weakness
+  bool has_careless = true;      ///< those who commit one error each
+  int jobs = 1;                  ///< attempts at a time
+  double most_seconds = 0;       ///< wall clock, after which the study stops and can go on later [s]; 0: none
   std::filesystem::path folder;  ///< attempts.jsonl: what was done is not done again
 };
 
@@ -55,10 +55,10 @@ struct MetricFinding {
   double novice_low = 0, novice_high = 0, novice_mean = 0;  ///< over people, in the metric's unit
   double middle_mean = 0;
   double expert_low = 0, expert_high = 0, expert_mean = 0, expert_sd = 0;
-  bool separates = false;       ///< novices and experts do not overlap
-  bool is_ordered = false;      ///< the intermediates' mean lies between
-  double auc = 0.5;             ///< that a novice's is worse; of metrics that are better neither way, the larger side
-  std::optional<double> effect;  ///< novices minus experts, pooled standard deviations
+  bool separates = false;   ///< novices and experts do not overlap
+  bool is_ordered = false;  ///< the intermediates' mean lies between
+  double auc = 0.5;  ///< that a novice's is worse; of metrics that are better neither way, the larger side
+  std::optional<double> effect;      ///< novices minus experts, pooled standard deviations
   std::optional<double> icc, alpha;  ///< over the repeats of all three levels
   int novices = 0, experts = 0;      ///< attempts in which it was defined
 };
@@ -91,7 +91,8 @@ core::Result<std::vector<StudyAttempt>> RunStudy(
 /// How many attempts the options ask for. \return kUnknownName
 core::Result<std::size_t> CountStudyAttempts(const StudyOptions& options);
 
-std::vector<TaskFindings> FindOutOfStudy(const StudyOptions& options, const std::vector<StudyAttempt>& attempts);
+std::vector<TaskFindings> FindOutOfStudy(const StudyOptions& options,
+                                         const std::vector<StudyAttempt>& attempts);
 
 /// For the product: assets/validity.json.
 std::string FormatValidityJson(const StudyOptions& options, const std::vector<TaskFindings>& findings);

@@ -30,10 +30,10 @@ struct CoachRule {
   double least = 0;     ///< on the bad side of it, whatever the expert set says, in the measure's unit
   /// Said without an expert set when the value passes this, in the measure's unit.
   std::optional<double> absolute;
-  double weight = 1;          ///< of a standard deviation beyond the mean, or of a multiple of `absolute` [-]
-  double shown_scale = 1;     ///< from the measure's unit to what the sentence shows
-  int decimals = 1;           ///< of what it shows
-  std::string sentence;       ///< with {value}, {expert}, {hand}
+  double weight = 1;       ///< of a standard deviation beyond the mean, or of a multiple of `absolute` [-]
+  double shown_scale = 1;  ///< from the measure's unit to what the sentence shows
+  int decimals = 1;        ///< of what it shows
+  std::string sentence;    ///< with {value}, {expert}, {hand}
   std::string sentence_alone;  ///< the same without {expert}; empty: nothing is said without an expert set
   std::string why;
   std::string exercise;  ///< key of a delivered task
@@ -56,8 +56,8 @@ core::Result<CoachRules> ParseCoachRules(std::string_view text, const std::strin
 
 /// What a rule was decided by.
 struct AdviceNumbers {
-  double value = 0;                                ///< in the measure's unit
-  std::optional<double> expert_mean, expert_sd;    ///< of the expert set; nothing where there is none
+  double value = 0;                              ///< in the measure's unit
+  std::optional<double> expert_mean, expert_sd;  ///< of the expert set; nothing where there is none
   double deviation = 0;  ///< standard deviations beyond the mean, or multiples of the absolute threshold [-]
   double threshold = 0;  ///< that it has passed, of the same [-]
   double cost = 0;       ///< weight * deviation: by it advice is ordered [-]
@@ -65,11 +65,11 @@ struct AdviceNumbers {
 
 struct Advice {
   std::string rule, topic;
-  std::string sentence;   ///< what was seen
-  std::string look;       ///< where to look: "Look at 0:41, the left hand."; empty where no moment stands out
-  std::string why;        ///< why it matters
-  std::string exercise;   ///< key of a delivered task
-  std::string practise;   ///< what to do there
+  std::string sentence;  ///< what was seen
+  std::string look;      ///< where to look: "Look at 0:41, the left hand."; empty where no moment stands out
+  std::string why;       ///< why it matters
+  std::string exercise;  ///< key of a delivered task
+  std::string practise;  ///< what to do there
   std::string source;
   std::optional<double> time;  ///< of the moment, since the attempt's first tick [s]
   int hand = -1;               ///< instrument::Hand, or -1
@@ -79,8 +79,8 @@ struct Advice {
 /// \param reference  the expert set of the same task, or nullptr: then only rules with an absolute threshold speak
 /// \return most costly first, at most CoachRules::most, one for each topic; empty where nothing stands out
 /// \note The same attempt gives the same words. Not real-time safe: allocates.
-std::vector<Advice> CoachAttempt(const AttemptTrace& trace, const AttemptMetrics& metrics, const CoachRules& rules,
-                                 const TaskValidity* reference);
+std::vector<Advice> CoachAttempt(const AttemptTrace& trace, const AttemptMetrics& metrics,
+                                 const CoachRules& rules, const TaskValidity* reference);
 
 /// "1:07"
 std::string FormatMoment(double seconds);

@@ -15,8 +15,8 @@ namespace trocar::training {
 
 /// One number of one task.
 struct MeasureValidity {
-  std::string metric;  ///< id of a definition, or "coach:NAME" of a coach's measure
-  std::string hand;    ///< as MetricValue::hand
+  std::string metric;      ///< id of a definition, or "coach:NAME" of a coach's measure
+  std::string hand;        ///< as MetricValue::hand
   bool separates = false;  ///< the values of novices and of experts do not overlap
   double auc = 0.5;        ///< that a novice's value is worse than an expert's, area under the ROC curve [-]
   double expert_mean = 0, expert_sd = 0;  ///< in the metric's unit
@@ -46,6 +46,7 @@ core::Result<Validity> ParseValidity(std::string_view text, const std::string& n
 
 /// The words that a report puts beside a number.
 /// \return "separates", "does not separate", or "not studied"
-std::string_view ValidityWords(const TaskValidity* task, std::string_view metric, std::string_view hand) noexcept;
+std::string_view ValidityWords(const TaskValidity* task, std::string_view metric,
+                               std::string_view hand) noexcept;
 
 }  // namespace trocar::training
