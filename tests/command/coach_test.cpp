@@ -81,7 +81,7 @@ TEST_F(CoachCommand, AStudyIsWrittenInPiecesAndReadByTheCoach) {
   ASSERT_EQ(asked.status, 0) << asked.err;
   EXPECT_EQ(json::parse(asked.out).at("expert_set"), true);
   EXPECT_EQ(json::parse(asked.out).at("advice")[0].at("rule"), "tremor");
-  ExpectError(Run({"study", "--task", "cholecystectomy", "-o", Path("other")}), "E-NAM-001");
+  ExpectError(Run({"study", "--task", "cholecystectomy", "-o", Path("other")}), "E-SCN-003");
 }
 
 TEST_F(CoachCommand, TheCriticalViewIsDrawnOfAnOperationAlone) {
