@@ -31,6 +31,7 @@ void AddRecordCommand(CLI::App& app, Outcome& outcome);
 void AddReplayCommand(CLI::App& app, Outcome& outcome);
 void AddCoachCommand(CLI::App& app, Outcome& outcome);
 void AddStudyCommand(CLI::App& app, Outcome& outcome);
+void AddMetricsCommand(CLI::App& app, Outcome& outcome);
 void AddAnatomyCommand(CLI::App& app, Outcome& outcome);
 /// Words like "hydrops=0.5".
 /// \return kUsage for one that is not like that

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "report.h"
 
-#include <nlohmann/json.hpp>
+#include <algorithm>
 
 #include "console.h"
+#include "metric_text.h"
 #include "trocar/bench/svg_plot.h"
 #include "trocar/core/markup.h"
-#include "trocar/training/motion_metrics.h"
+#include "trocar/training/metric_definition.h"
 
 namespace trocar::cli {
 namespace {
@@ -35,58 +36,39 @@ dt { color: #50575e; } code { font-size: .9em; }
 @media print { body { max-width: none; } }
 )";
 
-using training::BetterWhen;
-using training::MetricDefinition;
-
-std::string FormatValue(const nlohmann::json& value) {
-  if (value.is_number_integer()) return value.dump();
-  if (value.is_number()) return FormatNumber(value.get<double>(), 4);
-  if (value.is_string()) return EscapeMarkup(value.get<std::string>());
-  return "&ndash;";
+std::string CellText(const std::string& value) {
+  return value.empty() ? "&ndash;" : EscapeMarkup(value);
 }
 
-std::string FindValue(const nlohmann::json& object, std::string_view key) {
-  const auto found = object.find(std::string(key));
-  return found == object.end() ? "&ndash;" : FormatValue(*found);
+/// Unit, which way is better, and what it is.
+std::string FormatMeaning(const training::MetricDefinition& d) {
+  const bool is_neither = d.better == training::BetterWhen::kNeither;
+  return "<td>" + EscapeMarkup(d.shown_unit) + "</td><td>" +
+         (is_neither ? std::string() : std::string(NameOf(d.better))) + "</td><td>" + EscapeMarkup(d.about) +
+         " <small>(" + EscapeMarkup(d.source) + ")</small></td></tr>\n";
 }
 
-std::string FormatBetter(BetterWhen better) {
-  switch (better) {
-    case BetterWhen::kHigher:
-      return "higher";
-    case BetterWhen::kLower:
-      return "lower";
-    case BetterWhen::kNeither:
-      return "";
-  }
-  return "";
-}
-
-/// Rows of one kind: of each tool, or of the session.
-std::string FormatMetricsTable(const nlohmann::json& metrics, bool per_tool) {
+/// Rows of one kind: of each hand, or of the attempt and the camera.
+std::string FormatMetricsTable(const training::AttemptMetrics& metrics, bool per_hand) {
   std::string table = "<table>\n<tr><th>Measure</th>";
-  if (per_tool) {
-    for (const auto& tool : metrics.value("tools", nlohmann::json::array())) {
-      table += "<th>" + FindValue(tool, "tool") + "</th>";
-    }
-  } else {
-    table += "<th>Value</th>";
-  }
+  table += per_hand ? "<th>left</th><th>right</th>" : "<th>Value</th>";
   table += "<th>Unit</th><th>Better when</th><th>What it is</th></tr>\n";
-  for (const MetricDefinition& definition : training::MetricDefinitions()) {
-    if (definition.per_tool != per_tool) continue;
-    table += "<tr><td><code>" + EscapeMarkup(definition.name) + "</code></td>";
-    if (per_tool) {
-      for (const auto& tool : metrics.value("tools", nlohmann::json::array())) {
-        table += "<td class=\"number\">" + FindValue(tool, definition.name) + "</td>";
-      }
+  for (const MetricRow& row : MakeMetricRows(metrics, {}, {}, true)) {
+    const training::MetricDefinition& d = *row.definition;
+    const bool is_of_hands = std::find(d.of.begin(), d.of.end(), "hand") != d.of.end();
+    const bool is_of_others = d.of.size() > 1 || !is_of_hands;
+    if (per_hand ? !is_of_hands || d.id == "time" : !is_of_others) continue;
+    table += "<tr><td>" + EscapeMarkup(per_hand ? d.name : NameOfOther(d)) + "</td>";
+    const auto add = [&](const std::string& value) {
+      table += "<td class=\"number\">" + CellText(value) + "</td>";
+    };
+    if (per_hand) {
+      add(row.left);
+      add(row.right);
     } else {
-      table += "<td class=\"number\">" + FindValue(metrics, definition.name) + "</td>";
+      add(row.other);
     }
-    const std::string source =
-        definition.source.empty() ? "" : " <small>(" + EscapeMarkup(definition.source) + ")</small>";
-    table += "<td>" + EscapeMarkup(definition.unit) + "</td><td>" + FormatBetter(definition.better) +
-             "</td><td>" + EscapeMarkup(definition.meaning) + source + "</td></tr>\n";
+    table += FormatMeaning(d);
   }
   return table + "</table>\n";
 }
@@ -168,10 +150,7 @@ std::string EncodeBase64(std::string_view bytes) {
   return text;
 }
 
-core::Result<std::string> FormatReportPage(const ReportContent& content) {
-  const nlohmann::json metrics = nlohmann::json::parse(content.metrics_json, nullptr, false);
-  if (!metrics.is_object())
-    return core::Error{core::ErrorCode::kJsonSyntax, "the metrics are not a JSON object"};
+std::string FormatReportPage(const ReportContent& content) {
   std::string html =
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>" +
@@ -187,8 +166,8 @@ core::Result<std::string> FormatReportPage(const ReportContent& content) {
   }
   html += FormatPictures(content);
   html += "<h2>Force and path</h2>\n" + FormatPlots(content);
-  html += "<h2>Of each instrument</h2>\n" + FormatMetricsTable(metrics, true);
-  html += "<h2>Of the session</h2>\n" + FormatMetricsTable(metrics, false);
+  html += "<h2>Of each instrument</h2>\n" + FormatMetricsTable(content.metrics, true);
+  html += "<h2>Of the attempt</h2>\n" + FormatMetricsTable(content.metrics, false);
   html +=
       "<p>All numbers: <a href=\"metrics.json\">metrics.json</a>. A dash stands where a measure has no "
       "meaning for "

@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
-#include "trocar/core/result.h"
 #include "trocar/math/vector.h"
+#include "trocar/training/metric_value.h"
 
 namespace trocar::cli {
 
@@ -35,15 +35,14 @@ struct ReportContent {
   std::string version;      ///< of the program
   std::string video;        ///< file name beside the page; empty: none
   std::vector<ReportPicture> pictures;
-  std::string metrics_json;                         ///< of training::FormatMetricsJson
+  training::AttemptMetrics metrics;
   std::vector<std::array<std::string, 2>> haptics;  ///< of session::DescribeSummary; empty: none took part
   std::vector<double> times;                        ///< (samples) [s]
   std::vector<ReportHand> hands;
 };
 
 /// HTML that needs no network and no other file but the video.
-/// \return kJsonSyntax when metrics_json is not JSON
-core::Result<std::string> FormatReportPage(const ReportContent& content);
+std::string FormatReportPage(const ReportContent& content);
 
 /// RFC 4648, with padding.
 std::string EncodeBase64(std::string_view bytes);

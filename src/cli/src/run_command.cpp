@@ -82,6 +82,7 @@ int ParseAndRun(int argc, char** argv) {
   AddReplayCommand(app, outcome);
   AddCoachCommand(app, outcome);
   AddStudyCommand(app, outcome);
+  AddMetricsCommand(app, outcome);
   AddRecordCommand(app, outcome);
   AddAnatomyCommand(app, outcome);
   AddDevicesCommand(app, outcome);
