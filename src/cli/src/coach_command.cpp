@@ -20,6 +20,7 @@
 #include "trocar/training/coach.h"
 #include "trocar/training/metric_definition.h"
 #include "trocar/training/validity.h"
+#include "validity_note.h"
 
 namespace trocar::cli {
 namespace {
@@ -32,11 +33,16 @@ struct CoachArguments {
   bool is_json = false;
 };
 
-core::Result<std::string> ReadDelivered(const std::string& given, const char* delivered) {
-  if (!given.empty()) return core::ReadFile(given);
-  const auto data = scene::FindDataFolder();
-  if (!data.ok()) return data.error();
-  return core::ReadFile(*data / "assets" / delivered);
+core::Result<training::CoachRules> ReadRules(const std::string& path) {
+  std::filesystem::path file = path;
+  if (path.empty()) {
+    const auto data = scene::FindDataFolder();
+    if (!data.ok()) return data.error();
+    file = *data / "assets" / training::kCoachRulesFile;
+  }
+  const auto text = core::ReadFile(file);
+  if (!text.ok()) return text.error();
+  return training::ParseCoachRules(*text, file.string());
 }
 
 ordered_json OrNull(const std::optional<double>& value) {
@@ -65,19 +71,13 @@ ordered_json ToJson(const training::Advice& advice) {
 }
 
 core::Status Coach(const CoachArguments& arguments) {
-  const auto rules_text = ReadDelivered(arguments.rules, training::kCoachRulesFile);
-  if (!rules_text.ok()) return rules_text.error();
-  const auto rules = training::ParseCoachRules(
-      *rules_text, arguments.rules.empty() ? training::kCoachRulesFile : arguments.rules);
+  const auto rules = ReadRules(arguments.rules);
   if (!rules.ok()) return rules.error();
-  const auto validity_text = ReadDelivered(arguments.validity, training::kValidityFile);
-  if (!validity_text.ok()) return validity_text.error();
-  const auto validity = training::ParseValidity(
-      *validity_text, arguments.validity.empty() ? training::kValidityFile : arguments.validity);
+  const auto validity = ReadValidity(arguments.validity);
   if (!validity.ok()) return validity.error();
   auto recording = record::ReadRecording(arguments.file);
   if (!recording.ok()) return recording.error();
-  const std::string task = std::filesystem::path(recording->description.name).stem().string();
+  const std::string task = TaskKey(recording->description.name);
   ProgressBar progress("replaying", 1.0);
   const auto trace = record::TraceRecording(std::move(*recording), arguments.threads,
                                             [&](double share) { progress.Show(share); });
