@@ -33,6 +33,8 @@ void AddCourseCommand(CLI::App& app, Outcome& outcome);
 void AddLevelsCommand(CLI::App& app, Outcome& outcome);
 void AddExamCommand(CLI::App& app, Outcome& outcome);
 void AddCertificateCommand(CLI::App& app, Outcome& outcome);
+void AddCoachCommand(CLI::App& app, Outcome& outcome);
+void AddStudyCommand(CLI::App& app, Outcome& outcome);
 void AddMetricsCommand(CLI::App& app, Outcome& outcome);
 void AddAnatomyCommand(CLI::App& app, Outcome& outcome);
 /// Words like "hydrops=0.5".
