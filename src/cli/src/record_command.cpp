@@ -9,6 +9,7 @@
 
 #include "command.h"
 #include "console.h"
+#include "trocar/core/state_hash.h"
 #include "trocar/record/recording.h"
 
 namespace trocar::cli {
@@ -30,6 +31,7 @@ ordered_json InfoJson(const Recording& recording) {
                        {"program", d.program},
                        {"compiler", d.compiler},
                        {"first_tick", recording.FirstTick()},
+                       {"branched", nullptr},
                        {"ticks", recording.inputs.size()},
                        {"seconds", recording.Seconds()},
                        {"hashes", recording.hashes.size()},
@@ -41,9 +43,16 @@ ordered_json InfoJson(const Recording& recording) {
                        {"events", ordered_json::array()},
                        {"marks", ordered_json::array()},
                        {"outcome", nullptr}};
+  if (!d.branched_from.empty()) {
+    json["branched"] = {{"from", d.branched_from},
+                        {"id", core::HashText(d.branched_id)},
+                        {"tick", d.branched_tick},
+                        {"time_s", static_cast<double>(d.branched_tick) * d.tick_seconds}};
+  }
   for (const record::EventMark& event : recording.events) {
     json["events"].push_back({{"time_s", static_cast<double>(event.tick) * d.tick_seconds},
                               {"kind", event.kind},
+                              {"about", event.about},
                               {"error", event.is_error},
                               {"hand", event.hand}});
   }
@@ -73,6 +82,10 @@ void PrintInfo(const Recording& recording) {
       {"played by", d.player},
       {"started", d.started},
       {"written by", "trocar " + d.program + ", " + d.compiler},
+      {"goes on from", d.branched_from.empty()
+                           ? "-"
+                           : d.branched_from + " at " +
+                                 FormatNumber(static_cast<double>(d.branched_tick) * d.tick_seconds, 4) + " s"},
       {"length",
        FormatNumber(recording.Seconds(), 4) + " s, " + std::to_string(recording.inputs.size()) + " ticks"},
       {"size", FormatNumber(1e-6 * static_cast<double>(recording.file_bytes), 3) + " MB, with " +

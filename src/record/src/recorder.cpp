@@ -51,6 +51,7 @@ struct Entry {
   bool is_keyframe = false;  // ... for the recording, or else for the index beside it
   std::uint8_t event_count = 0;
   std::uint8_t error_count = 0;
+  std::optional<training::Phase> phase;  // of an operation, where another one began
   std::array<scene::Event, simulation::kEventRing> events{};
   std::array<scene::TaskError, 4> errors{};  // of the task's rules
 };
@@ -110,6 +111,7 @@ struct Recorder::Content {
   std::atomic<bool> has_overrun{false};
   // of the simulation's thread
   std::uint64_t seen_events = 0, seen_errors = 0, next_keyframe = 0, next_index = 0;
+  training::Phase seen_phase{};
 
   // of the writing thread
   InputEncoder encoder;
@@ -157,6 +159,8 @@ void Recorder::Content::NoteEvents(const simulation::Snapshot& now, Entry& entry
   for (std::uint64_t n = std::max(seen_errors, first); n < now.task.error_count; ++n)
     entry.errors[entry.error_count++] = now.task.last_errors[n % ring_size];
   seen_errors = now.task.error_count;
+  entry.phase.reset();
+  if (scene.operation && now.operation.phase != seen_phase) entry.phase = seen_phase = now.operation.phase;
 }
 
 int Recorder::Content::TakeStateSlot() {
@@ -225,6 +229,7 @@ void Recorder::Content::WriteEvents(const Entry& entry) {
   for (std::uint8_t i = 0; i < entry.event_count; ++i) list.push_back(EventJson(entry.events[i]));
   for (std::uint8_t i = 0; i < entry.error_count; ++i)
     list.push_back(TaskErrorJson(*scene.task, entry.tick, entry.errors[i]));
+  if (entry.phase) list.push_back(PhaseJson(entry.tick, *entry.phase));
   const std::string text = list.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
   writer.Put(ChunkKind::kEvents, entry.tick, BytesOf(text));
 }
@@ -246,7 +251,7 @@ void Recorder::Content::WriteEntries() {
       for (std::size_t i = 0; i < hash.size(); ++i) hash[i] = static_cast<std::byte>(entry.hash >> (8 * i));
       writer.Put(ChunkKind::kHash, entry.tick, hash);
     }
-    if (entry.event_count > 0 || entry.error_count > 0) {
+    if (entry.event_count > 0 || entry.error_count > 0 || entry.phase) {
       CloseChunk();
       WriteEvents(entry);
     }
@@ -350,6 +355,7 @@ core::Result<std::unique_ptr<Recorder>> Recorder::Start(const std::filesystem::p
   content->status.bytes = content->writer.Bytes();
   content->seen_events = simulation.GetSnapshot().event_count;
   content->seen_errors = simulation.GetSnapshot().task.error_count;
+  content->seen_phase = simulation.GetSnapshot().operation.phase;
   content->next_keyframe = description.first_tick + content->keyframe_ticks;
   content->next_index = description.first_tick + content->index_ticks;
   if (content->index_ticks > 0) {

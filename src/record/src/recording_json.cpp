@@ -116,6 +116,10 @@ ordered_json TaskErrorJson(const scene::Task& task, std::uint64_t tick, const sc
   return {{"tick", tick}, {"kind", rule.name}, {"about", rule.about}, {"hand", error.hand}, {"error", true}};
 }
 
+ordered_json PhaseJson(std::uint64_t tick, training::Phase phase) {
+  return {{"tick", tick}, {"kind", kPhaseKind}, {"about", training::NameOf(phase)}, {"hand", -1}};
+}
+
 bool ReadEvents(std::string_view text, std::vector<EventMark>& events) {
   const ordered_json json = ordered_json::parse(text, nullptr, false);
   if (!json.is_array()) return false;

@@ -59,6 +59,7 @@ struct ReplayRunner::Content {
     int threads = 1;
   };
   std::optional<BranchWish> branch_wish;
+  bool is_branching = false;
   std::optional<core::Result<Simulation>> branch;
   std::thread follower, filler;
 
@@ -100,10 +101,11 @@ void ReplayRunner::Content::SeekTo(std::uint64_t wanted) {
 void ReplayRunner::Content::Branch(const BranchWish& wish) {
   goal.store(wish.tick);
   while (!is_stopping.load() && replay.Tick() != wish.tick && goal.load() == wish.tick) SeekTo(wish.tick);
-  core::Result<Simulation> made = core::Error{core::ErrorCode::kRecordingInvalid, "another moment was asked for"};
-  if (replay.Tick() == wish.tick) made = replay.Branch(wish.threads);
+  std::optional<core::Result<Simulation>> made;
+  if (replay.Tick() == wish.tick) made.emplace(replay.Branch(wish.threads));
   const std::lock_guard lock(mutex);
   branch = std::move(made);
+  is_branching = false;
 }
 
 void ReplayRunner::Content::Follow() {
@@ -210,7 +212,8 @@ void ReplayRunner::AskForBranch(std::uint64_t tick, int threads) {
   Content& c = *content_;
   {
     const std::lock_guard lock(c.mutex);
-    if (c.branch_wish || c.branch) return;
+    if (c.is_branching || c.branch) return;
+    c.is_branching = true;
     tick = std::clamp(tick, GetRecording().FirstTick(), GetRecording().LastTick());
     c.branch_wish = Content::BranchWish{tick, threads};
     c.goal.store(tick);
@@ -220,7 +223,7 @@ void ReplayRunner::AskForBranch(std::uint64_t tick, int threads) {
 
 bool ReplayRunner::IsBranching() const {
   const std::lock_guard lock(content_->mutex);
-  return content_->branch_wish.has_value();
+  return content_->is_branching;
 }
 
 std::optional<core::Result<Simulation>> ReplayRunner::TakeBranch() {

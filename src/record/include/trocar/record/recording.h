@@ -53,11 +53,14 @@ struct HashMark {
   std::uint64_t hash = 0;
 };
 
+/// Kind of the event that says which phase of an operation begins.
+inline constexpr const char* kPhaseKind = "phase";
+
 /// Something that happened, for lists and for jumping to it; replay computes it again.
 struct EventMark {
   std::uint64_t tick = 0;
-  std::string kind;   ///< scene::EventName, or the name of a task's or an operation's error
-  std::string about;  ///< for a person; may be empty
+  std::string kind;   ///< scene::EventName, the name of a task's or an operation's error, or kPhaseKind
+  std::string about;  ///< for a person; may be empty; of a phase its name
   int hand = -1;      ///< scene::Hand, or -1
   bool is_error = false;
 };

@@ -42,7 +42,8 @@ class ReplayRunner {
   const simulation::Snapshot& Latest();
   ReplayStatus Status() const;
 
-  /// One more simulation that stands at a moment, for somebody else to play on; TakeBranch() gives it once it is made.
+  /// One more simulation that stands at a moment, for somebody else to play on; TakeBranch() gives it once it is made. A
+  /// SeekTo() elsewhere before that takes the wish back.
   /// \param threads  of its solver
   void AskForBranch(std::uint64_t tick, int threads);
   bool IsBranching() const;
