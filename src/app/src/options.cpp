@@ -61,14 +61,16 @@ void AddRecordings(CLI::App& app, Options& options, bool& is_off) {
 }
 
 void AddReplay(CLI::App& app, Options& options) {
-  CLI::Option* replay = app.add_option("--replay", options.replay,
-                                       "Play this recording: any moment, any speed, any camera; take over anywhere")
-                            ->excludes("--scene")
-                            ->excludes("--task")
-                            ->excludes("--tasks")
-                            ->excludes("--demonstration")
-                            ->excludes("--screenshot");
-  app.add_option("--beside", options.replay_beside, "With --replay: another recording beside it")->needs(replay);
+  CLI::Option* replay =
+      app.add_option("--replay", options.replay,
+                     "Play this recording: any moment, any speed, any camera; take over anywhere")
+          ->excludes("--scene")
+          ->excludes("--task")
+          ->excludes("--tasks")
+          ->excludes("--demonstration")
+          ->excludes("--screenshot");
+  app.add_option("--beside", options.replay_beside, "With --replay: another recording beside it")
+      ->needs(replay);
 }
 
 /// A person's attempts are kept, those of an unattended run only where it asks for that.

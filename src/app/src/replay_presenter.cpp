@@ -65,7 +65,8 @@ std::vector<ReplayMark> ListMarks(const record::Recording& recording) {
   return marks;
 }
 
-ReplayPresenter::ReplayPresenter(const Options& options, ReplayScreen& screen, std::function<void()> on_loaded)
+ReplayPresenter::ReplayPresenter(const Options& options, ReplayScreen& screen,
+                                 std::function<void()> on_loaded)
     : options_(options), screen_(&screen), loading_(std::move(on_loaded)) {
   page_.view.has_force_arrows = true;
 }
@@ -82,7 +83,8 @@ int ReplayPresenter::Threads() const {
   return options_.threads > 0 ? options_.threads : ChooseThreads(std::thread::hardware_concurrency());
 }
 
-core::Result<ReplayPresenter::Side> ReplayPresenter::OpenSide(const std::filesystem::path& path, int threads) {
+core::Result<ReplayPresenter::Side> ReplayPresenter::OpenSide(const std::filesystem::path& path,
+                                                              int threads) {
   auto recording = record::ReadRecording(path);
   if (!recording.ok()) return recording.error();
   record::ReplaySettings settings;

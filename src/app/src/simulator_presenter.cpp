@@ -83,7 +83,8 @@ void SimulatorPresenter::TakeOver(Branch branch) {
   if (!Use(std::move(branch.simulation), std::move(description))) return;
   control_->GoOnFrom(branch.last);
   char moment[48];
-  std::snprintf(moment, sizeof moment, " at %.1f s", static_cast<double>(from.branched_tick) * from.tick_seconds);
+  std::snprintf(moment, sizeof moment, " at %.1f s",
+                static_cast<double>(from.branched_tick) * from.tick_seconds);
   if (branch.is_experts) {
     control_->LetExpertGoOn();
     SetPaused(false);
@@ -104,7 +105,8 @@ void SimulatorPresenter::OpenRecording(const std::filesystem::path& recording) {
 
 void SimulatorPresenter::OpenRecordingList() {
   if (page_.failure) return;
-  screen_->FillRecordingList(options_.recordings.empty() ? record::FindRecordingFolder() : options_.recordings);
+  screen_->FillRecordingList(options_.recordings.empty() ? record::FindRecordingFolder()
+                                                         : options_.recordings);
   screen_->ReleasePointer();
   page_.is_result_open = page_.is_help_open = page_.is_task_list_open = false;
   page_.is_recording_list_open = true;

@@ -105,8 +105,8 @@ void RecordingChooser::AddRow(const record::RecordingSummary& recording) {
 void RecordingChooser::OpenFile() {
   auto* window = dynamic_cast<Gtk::Window*>(get_root());
   if (window == nullptr) return;
-  auto dialog =
-      Gtk::FileChooserNative::create("Open a recording", *window, Gtk::FileChooser::Action::OPEN, "Open", "Cancel");
+  auto dialog = Gtk::FileChooserNative::create("Open a recording", *window, Gtk::FileChooser::Action::OPEN,
+                                               "Open", "Cancel");
   auto filter = Gtk::FileFilter::create();
   filter->set_name("Recordings");
   filter->add_pattern("*.trocar");

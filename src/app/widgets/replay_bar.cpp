@@ -6,10 +6,10 @@
 namespace trocar::app {
 namespace {
 
-constexpr int kHeight = 46;      // [pixels]
-constexpr double kMargin = 14;   // left and right of the bar [pixels]
-constexpr double kTrack = 26;    // its middle, from the top [pixels]
-constexpr double kTick = 7;      // half of a mark [pixels]
+constexpr int kHeight = 46;     // [pixels]
+constexpr double kMargin = 14;  // left and right of the bar [pixels]
+constexpr double kTrack = 26;   // its middle, from the top [pixels]
+constexpr double kTick = 7;     // half of a mark [pixels]
 constexpr double kEventTick = 3;
 
 struct Colour {
@@ -55,8 +55,8 @@ void ReplayBar::SetMarks(const std::vector<ReplayMark>& marks) {
 }
 
 void ReplayBar::Show(const ReplayPage& page) {
-  if (begin_ == page.begin && end_ == page.end && time_ == page.time && seek_progress_ == page.seek_progress &&
-      known_share_ == page.known_share)
+  if (begin_ == page.begin && end_ == page.end && time_ == page.time &&
+      seek_progress_ == page.seek_progress && known_share_ == page.known_share)
     return;
   begin_ = page.begin, end_ = page.end, time_ = page.time;
   seek_progress_ = page.seek_progress, known_share_ = page.known_share;

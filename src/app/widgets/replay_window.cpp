@@ -146,13 +146,12 @@ void ReplayWindow::MakeRoutes() {
     const auto index = static_cast<std::size_t>(row->get_index());
     if (index < marks_.size()) presenter_->GoToMark(marks_[index]);
   });
-  chooser_.SignalChosen().connect([this](const std::filesystem::path& path) { presenter_->OpenBeside(path); });
+  chooser_.SignalChosen().connect(
+      [this](const std::filesystem::path& path) { presenter_->OpenBeside(path); });
   chooser_.SignalClosed().connect([this] { presenter_->Do(ReplayAction::kCloseCards); });
   sides_[ReplayPresenter::kOwn].picture.add_tick_callback(sigc::mem_fun(*this, &ReplayWindow::OnFrame));
   for (Side& side : sides_) {
-    side.picture.SignalFailed().connect([this](const core::Error& error) {
-      failure_card_.Show(error);
-    });
+    side.picture.SignalFailed().connect([this](const core::Error& error) { failure_card_.Show(error); });
   }
 }
 

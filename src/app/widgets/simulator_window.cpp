@@ -55,8 +55,9 @@ void SimulatorWindow::MakeOverlay() {
   hint_.set_halign(Gtk::Align::CENTER);
   hint_.set_valign(Gtk::Align::END);
   for (Gtk::Label* label : {&badge_, &hint_}) label->set_can_target(false);
-  for (Gtk::Widget* card : {static_cast<Gtk::Widget*>(&help_card_), static_cast<Gtk::Widget*>(&chooser_),
-                            static_cast<Gtk::Widget*>(&recordings_), static_cast<Gtk::Widget*>(&result_card_)})
+  for (Gtk::Widget* card :
+       {static_cast<Gtk::Widget*>(&help_card_), static_cast<Gtk::Widget*>(&chooser_),
+        static_cast<Gtk::Widget*>(&recordings_), static_cast<Gtk::Widget*>(&result_card_)})
     card->set_visible(false);
   for (Gtk::Widget* widget :
        {static_cast<Gtk::Widget*>(&badge_), static_cast<Gtk::Widget*>(&hint_),
@@ -113,7 +114,8 @@ void SimulatorWindow::MakeRoutes() {
   loaded_.connect([this] { presenter_->FinishLoading(); });
   chooser_.SignalChosen().connect([this](const TaskRequest& request) { presenter_->Open(request); });
   chooser_.SignalClosed().connect([this] { presenter_->CloseTaskList(); });
-  recordings_.SignalChosen().connect([this](const std::filesystem::path& path) { presenter_->OpenRecording(path); });
+  recordings_.SignalChosen().connect(
+      [this](const std::filesystem::path& path) { presenter_->OpenRecording(path); });
   recordings_.SignalClosed().connect([this] { presenter_->CloseRecordingList(); });
   result_card_.SignalAgain().connect([this] { presenter_->PlayAgain(); });
   result_card_.SignalOther().connect([this] { presenter_->OpenTaskList(); });

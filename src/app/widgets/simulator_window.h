@@ -26,7 +26,8 @@ class SimulatorWindow : public Gtk::ApplicationWindow, private SimulatorScreen {
  public:
   /// \param since_start  runs since the program began
   /// \param branch       nothing, or a moment of a recording from which it goes on in place of the scene that the options name
-  SimulatorWindow(const Options& options, const core::Stopwatch& since_start, std::optional<Branch> branch = {});
+  SimulatorWindow(const Options& options, const core::Stopwatch& since_start,
+                  std::optional<Branch> branch = {});
   ~SimulatorWindow() override;
 
   /// Writes what --haptic-record asks for; call it once the window has closed.

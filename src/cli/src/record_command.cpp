@@ -85,7 +85,8 @@ void PrintInfo(const Recording& recording) {
       {"goes on from", d.branched_from.empty()
                            ? "-"
                            : d.branched_from + " at " +
-                                 FormatNumber(static_cast<double>(d.branched_tick) * d.tick_seconds, 4) + " s"},
+                                 FormatNumber(static_cast<double>(d.branched_tick) * d.tick_seconds, 4) +
+                                 " s"},
       {"length",
        FormatNumber(recording.Seconds(), 4) + " s, " + std::to_string(recording.inputs.size()) + " ticks"},
       {"size", FormatNumber(1e-6 * static_cast<double>(recording.file_bytes), 3) + " MB, with " +

@@ -91,7 +91,8 @@ core::Status Verify(Replay& replay, const ReplayArguments& arguments, Outcome& o
 
 /// "What if": somebody else goes on from here.
 core::Status TakeOver(const Replay& replay, const ReplayArguments& arguments) {
-  record::Description description = record::DescribeBranch(replay.GetRecording(), arguments.file, replay.Tick());
+  record::Description description =
+      record::DescribeBranch(replay.GetRecording(), arguments.file, replay.Tick());
   const std::uint64_t seed = description.seed;
   auto branch = replay.Branch(arguments.threads);
   if (!branch.ok()) return branch.error();
@@ -191,20 +192,24 @@ void AddReplayCommand(CLI::App& app, Outcome& outcome) {
       ->type_name("WxH")
       ->capture_default_str();
   command
-      ->add_option("--side-by-side", a->beside,
-                   "Another recording, shown at the right from the same second on: one's own beside the expert's")
+      ->add_option(
+          "--side-by-side", a->beside,
+          "Another recording, shown at the right from the same second on: one's own beside the expert's")
       ->type_name("OTHER");
   command->add_option("--speed", a->video.speed, "Of the video: 0.5 is half as fast")
       ->check(CLI::Range(0.125, 64.0))
       ->type_name("X")
       ->capture_default_str();
-  command->add_option("--camera", a->video.camera, "As recorded, or from a side of the patient, without abdominal wall")
+  command
+      ->add_option("--camera", a->video.camera,
+                   "As recorded, or from a side of the patient, without abdominal wall")
       ->check(CLI::IsMember(ListReplayCameras()))
       ->type_name("SIDE")
       ->capture_default_str();
   command->add_flag("--no-forces", a->hides_forces, "Without the arrows of the forces on the tools");
-  command->add_flag("--ghosts", a->video.has_ghosts,
-                    "Show the ways of both tips in the last seconds, and with --side-by-side the other's tools, too");
+  command->add_flag(
+      "--ghosts", a->video.has_ghosts,
+      "Show the ways of both tips in the last seconds, and with --side-by-side the other's tools, too");
   command->add_option("--at", a->at, "Moment from which to go on otherwise [s]")
       ->check(CLI::Range(0.0, 1e6))
       ->type_name("S");

@@ -82,14 +82,14 @@ core::Status MakeReplayVideo(Replay& replay, Replay* other, const ReplayVideoOpt
   if (end <= options.from)
     return core::Error{core::ErrorCode::kUsage, "--from and --until leave nothing to show"};
 
-  const auto viewpoint =
-      options.camera == kRecorded ? std::nullopt : render::FindViewpoint(options.camera);
+  const auto viewpoint = options.camera == kRecorded ? std::nullopt : render::FindViewpoint(options.camera);
   std::vector<Replay*> replays = {&replay};
   if (other != nullptr) replays.push_back(other);
   std::vector<Shown> shown;
   std::vector<const simulation::Simulation*> simulations;
   for (Replay* each : replays) {
-    if (const auto status = each->Seek(TickAt(each->GetRecording(), options.from)); !status.ok()) return status;
+    if (const auto status = each->Seek(TickAt(each->GetRecording(), options.from)); !status.ok())
+      return status;
     shown.push_back(MakeShown(*each, viewpoint));
     simulations.push_back(&each->GetSimulation());
   }
@@ -121,7 +121,8 @@ core::Status MakeReplayVideo(Replay& replay, Replay* other, const ReplayVideoOpt
                   MakeOverlay(shown[i], beside, options.has_ghosts)};
     }
     if (const auto added = film->AddFrame(sides); !added.ok()) return added;
-    if (frame * kPictures >= static_cast<std::uint64_t>(pictures) * frames + frames / 2 && pictures < kPictures) {
+    if (frame * kPictures >= static_cast<std::uint64_t>(pictures) * frames + frames / 2 &&
+        pictures < kPictures) {
       char name[40];
       std::snprintf(name, sizeof name, "picture_%03d.png", ++pictures);
       if (const auto saved = film->SavePicture(part.Path() / name); !saved.ok()) return saved;

@@ -25,6 +25,7 @@ std::vector<std::string> ListReplayCameras();
 
 /// \param other  null, or what is shown at the right; the last picture of the shorter one stays
 /// \return kUsage (nothing to show, a bad size), or what drawing and writing say
-core::Status MakeReplayVideo(record::Replay& replay, record::Replay* other, const ReplayVideoOptions& options);
+core::Status MakeReplayVideo(record::Replay& replay, record::Replay* other,
+                             const ReplayVideoOptions& options);
 
 }  // namespace trocar::cli

@@ -72,24 +72,23 @@ void AddWindowCommand(CLI::App& app, Outcome& outcome) {
       "          trocar window --task peg_transfer --level easy\n"
       "          trocar window --replay attempt.trocar --beside expert.trocar\n"
       "          trocar window --device liberty:/dev/ttyUSB0+jaw:/dev/ttyACM0");
-  command->callback(
-      [scene, task, level, has_list, device, haptics, record, recordings, keeps_none, replay, beside, igtl_port,
-       &outcome] {
-        std::vector<std::string> arguments;
-        if (!scene->empty()) arguments = {"--scene", *scene};
-        if (!task->empty()) arguments.insert(arguments.end(), {"--task", *task});
-        if (!level->empty()) arguments.insert(arguments.end(), {"--level", *level});
-        if (*has_list) arguments.emplace_back("--tasks");
-        if (!device->empty()) arguments.insert(arguments.end(), {"--device", *device});
-        if (!haptics->empty()) arguments.insert(arguments.end(), {"--haptics", *haptics});
-        if (!record->empty()) arguments.insert(arguments.end(), {"--haptic-record", *record});
-        if (!recordings->empty()) arguments.insert(arguments.end(), {"--recordings", *recordings});
-        if (*keeps_none) arguments.emplace_back("--no-recordings");
-        if (!replay->empty()) arguments.insert(arguments.end(), {"--replay", *replay});
-        if (!beside->empty()) arguments.insert(arguments.end(), {"--beside", *beside});
-        if (*igtl_port >= 0) arguments.insert(arguments.end(), {"--igtl", std::to_string(*igtl_port)});
-        outcome.status = StartWindow(arguments);
-      });
+  command->callback([scene, task, level, has_list, device, haptics, record, recordings, keeps_none, replay,
+                     beside, igtl_port, &outcome] {
+    std::vector<std::string> arguments;
+    if (!scene->empty()) arguments = {"--scene", *scene};
+    if (!task->empty()) arguments.insert(arguments.end(), {"--task", *task});
+    if (!level->empty()) arguments.insert(arguments.end(), {"--level", *level});
+    if (*has_list) arguments.emplace_back("--tasks");
+    if (!device->empty()) arguments.insert(arguments.end(), {"--device", *device});
+    if (!haptics->empty()) arguments.insert(arguments.end(), {"--haptics", *haptics});
+    if (!record->empty()) arguments.insert(arguments.end(), {"--haptic-record", *record});
+    if (!recordings->empty()) arguments.insert(arguments.end(), {"--recordings", *recordings});
+    if (*keeps_none) arguments.emplace_back("--no-recordings");
+    if (!replay->empty()) arguments.insert(arguments.end(), {"--replay", *replay});
+    if (!beside->empty()) arguments.insert(arguments.end(), {"--beside", *beside});
+    if (*igtl_port >= 0) arguments.insert(arguments.end(), {"--igtl", std::to_string(*igtl_port)});
+    outcome.status = StartWindow(arguments);
+  });
 }
 
 }  // namespace trocar::cli

@@ -47,7 +47,7 @@ struct Entry {
   std::uint64_t tick = 0;
   std::uint64_t hash = 0;
   bool has_hash = false;
-  int state_slot = -1;  // the state after this tick ...
+  int state_slot = -1;       // the state after this tick ...
   bool is_keyframe = false;  // ... for the recording, or else for the index beside it
   std::uint8_t event_count = 0;
   std::uint8_t error_count = 0;
@@ -206,7 +206,8 @@ void Recorder::Content::WriteKeyframe(const Entry& entry) {
   CloseChunk();
   const auto& state = states[static_cast<std::size_t>(entry.state_slot)];
   if (in_group == 0) group_base.reset();
-  writer.Put(ChunkKind::kKeyframe, entry.tick, CompressState(state, group_base ? &*group_base : nullptr), false);
+  writer.Put(ChunkKind::kKeyframe, entry.tick, CompressState(state, group_base ? &*group_base : nullptr),
+             false);
   if (in_group == 0) group_base.emplace(state);
   in_group = (in_group + 1) % kKeyframeGroup;
   // whoever begins at a keyframe needs no input before it
@@ -346,7 +347,8 @@ core::Result<std::unique_ptr<Recorder>> Recorder::Start(const std::filesystem::p
   // memory for all saved states, so that Add allocates as good as never
   for (auto& state : content->states) simulation.Save(state);
   if (description.first_tick > 0) {
-    content->writer.Put(ChunkKind::kKeyframe, description.first_tick, CompressState(content->states[0], nullptr));
+    content->writer.Put(ChunkKind::kKeyframe, description.first_tick,
+                        CompressState(content->states[0], nullptr));
     content->group_base.emplace(content->states[0]);
     content->in_group = 1;
   }
@@ -360,8 +362,8 @@ core::Result<std::unique_ptr<Recorder>> Recorder::Start(const std::filesystem::p
   content->next_index = description.first_tick + content->index_ticks;
   if (content->index_ticks > 0) {
     content->index_path = IndexPathOf(content->writer.Path());
-    content->index.emplace(StateIndexSettings{content->index_path, content->writer.FileId(), description.model,
-                                              content->settings.index_bytes});
+    content->index.emplace(StateIndexSettings{content->index_path, content->writer.FileId(),
+                                              description.model, content->settings.index_bytes});
     // one that cannot be written is left to whoever replays
     if (!content->index->IsOnDisk()) content->index.reset();
   }

@@ -46,17 +46,17 @@ std::string Dump(const ordered_json& json) {
 
 std::string WriteDescription(const Description& d) {
   ordered_json json = {{"kind", kKinds[static_cast<std::size_t>(d.kind)]},
-               {"name", d.name},
-               {"level", d.level},
-               {"patient", d.patient},
-               {"seed", d.seed},
-               {"tick_seconds", d.tick_seconds},
-               {"model", core::HashText(d.model)},
-               {"first_tick", d.first_tick},
-               {"player", d.player},
-               {"program", d.program},
-               {"compiler", d.compiler},
-               {"started", d.started}};
+                       {"name", d.name},
+                       {"level", d.level},
+                       {"patient", d.patient},
+                       {"seed", d.seed},
+                       {"tick_seconds", d.tick_seconds},
+                       {"model", core::HashText(d.model)},
+                       {"first_tick", d.first_tick},
+                       {"player", d.player},
+                       {"program", d.program},
+                       {"compiler", d.compiler},
+                       {"started", d.started}};
   if (!d.branched_from.empty()) {
     json["branched"] = {
         {"from", d.branched_from}, {"id", core::HashText(d.branched_id)}, {"tick", d.branched_tick}};

@@ -68,8 +68,9 @@ bool ReadChunks(const FileView& file, std::uint64_t file_id, RecordingSummary& s
   std::uint64_t at = sizeof(FileHeader), number = 0, last_tick = 0;
   bool is_whole = true;
   for (ChunkHeader chunk; at < file.Size(); at += sizeof chunk + chunk.size, ++number) {
-    is_whole = file.Read(at, &chunk, sizeof chunk) && chunk.magic == ChunkHeader{}.magic && chunk.number == number &&
-               chunk.size <= kMostContent && at + sizeof chunk + chunk.size <= file.Size() &&
+    is_whole = file.Read(at, &chunk, sizeof chunk) && chunk.magic == ChunkHeader{}.magic &&
+               chunk.number == number && chunk.size <= kMostContent &&
+               at + sizeof chunk + chunk.size <= file.Size() &&
                (chunk.kind == ChunkKind::kDescription) == (number == 0);
     if (!is_whole) break;
     if (chunk.kind == ChunkKind::kInputs) {
@@ -81,7 +82,8 @@ bool ReadChunks(const FileView& file, std::uint64_t file_id, RecordingSummary& s
                chunk.kind == ChunkKind::kEnding) {
       content.resize(chunk.size);
       is_whole = file.Read(at + sizeof chunk, content.data(), content.size()) &&
-                 chunk.checksum == CalcChunkChecksum(file_id, chunk, content) && Take(chunk, content, events, summary);
+                 chunk.checksum == CalcChunkChecksum(file_id, chunk, content) &&
+                 Take(chunk, content, events, summary);
       if (!is_whole) break;
     }
   }
@@ -114,7 +116,8 @@ std::string NumberText(double value, const char* form) {
 core::Result<RecordingSummary> ReadSummary(const fs::path& path) {
   const FileView file(path);
   if (!file.IsOpen())
-    return core::Error{core::ErrorCode::kFileMissing, path.string() + " cannot be opened; check its name and rights"};
+    return core::Error{core::ErrorCode::kFileMissing,
+                       path.string() + " cannot be opened; check its name and rights"};
   FileHeader header;
   RecordingSummary summary;
   summary.path = path;

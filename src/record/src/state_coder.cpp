@@ -75,7 +75,8 @@ std::vector<std::byte> ExpandState(std::span<const std::byte> bytes, const State
   StateHeader header;
   if (bytes.size() < sizeof header) return {};
   std::memcpy(&header, bytes.data(), sizeof header);
-  if (header.size > kMostState || header.has_base > 1 || (header.has_base == 1) != (base != nullptr)) return {};
+  if (header.size > kMostState || header.has_base > 1 || (header.has_base == 1) != (base != nullptr))
+    return {};
   const std::span<const std::byte> of_base = base == nullptr ? std::span<const std::byte>() : base->Bytes();
   std::vector<std::byte> planes(header.size);
   const std::unique_ptr<ZSTD_DCtx, decltype(&::ZSTD_freeDCtx)> context(::ZSTD_createDCtx(), &::ZSTD_freeDCtx);

@@ -155,7 +155,8 @@ void StateIndex::WriteHeader() {
   IndexHeader header;
   header.recording = settings_.recording, header.model = settings_.model;
   end_ = sizeof header;
-  if (::ftruncate(descriptor_, 0) != 0 || !WriteAt(descriptor_, 0, &header, sizeof header)) is_writer_ = false;
+  if (::ftruncate(descriptor_, 0) != 0 || !WriteAt(descriptor_, 0, &header, sizeof header))
+    is_writer_ = false;
 }
 
 /// Up to the first entry that is none; their contents are checked when they are used.
@@ -164,7 +165,8 @@ void StateIndex::ReadEntries(std::uint64_t file_size) {
   EntryHeader header;
   while (end_ + sizeof header <= file_size && ReadAt(descriptor_, end_, &header, sizeof header)) {
     const std::uint64_t content = end_ + sizeof header;
-    if (header.magic != EntryHeader{}.magic || header.size > kMostContent || content + header.size > file_size)
+    if (header.magic != EntryHeader{}.magic || header.size > kMostContent ||
+        content + header.size > file_size)
       return;
     const auto place = Find(header.tick);
     const bool is_known = place != entries_.end() && place->tick == header.tick;
@@ -208,8 +210,9 @@ std::vector<std::byte> StateIndex::ReadContent(const Entry& entry) const {
   if (entry.offset == 0) return entry.bytes;
   EntryHeader header;
   std::vector<std::byte> bytes(entry.size);
-  if (!ReadAt(descriptor_, entry.offset - sizeof header, &header, sizeof header) || header.size != entry.size ||
-      header.tick != entry.tick || !ReadAt(descriptor_, entry.offset, bytes.data(), bytes.size()) ||
+  if (!ReadAt(descriptor_, entry.offset - sizeof header, &header, sizeof header) ||
+      header.size != entry.size || header.tick != entry.tick ||
+      !ReadAt(descriptor_, entry.offset, bytes.data(), bytes.size()) ||
       header.checksum != CalcChecksum(settings_.recording, header, bytes))
     return {};
   return bytes;

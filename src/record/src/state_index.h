@@ -16,7 +16,7 @@
 namespace trocar::record {
 
 struct StateIndexSettings {
-  std::filesystem::path path;  ///< empty: in memory, as where the file cannot be written
+  std::filesystem::path path;   ///< empty: in memory, as where the file cannot be written
   std::uint64_t recording = 0;  ///< file id of the recording: an index of another one is replaced
   std::uint64_t model = 0;      ///< its fingerprint, likewise
   /// Beyond it a file takes nothing more; of what is in memory every second state goes.

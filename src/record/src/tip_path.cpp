@@ -20,8 +20,7 @@ std::span<const math::Vec3> TipPath::Between(std::size_t hand, double from, doub
 
 TipPath CalcTipPath(const scene::Scene& scene, const Recording& recording, double step) {
   const double tick_seconds = recording.description.tick_seconds;
-  const auto stride =
-      std::max<std::size_t>(1, static_cast<std::size_t>(std::llround(step / tick_seconds)));
+  const auto stride = std::max<std::size_t>(1, static_cast<std::size_t>(std::llround(step / tick_seconds)));
   TipPath path;
   path.step = static_cast<double>(stride) * tick_seconds;
   path.first_time = static_cast<double>(recording.FirstTick() + 1) * tick_seconds;

@@ -137,8 +137,8 @@ TEST_F(RecorderTest, KeepsAnIndexWhereItIsWanted) {
   replay_settings.index = IndexPathOf(File());
   auto replay = Replay::Open(std::move(*recording), replay_settings);
   ASSERT_TRUE(replay.ok());
-  EXPECT_THAT(replay->KnownTicks(),
-              testing::ElementsAre(0, 12, 24, 36, 48, 60, 72, 84, 96, 108, 120, 132, 144, 156, 168, 180, 192));
+  EXPECT_THAT(replay->KnownTicks(), testing::ElementsAre(0, 12, 24, 36, 48, 60, 72, 84, 96, 108, 120, 132,
+                                                         144, 156, 168, 180, 192));
   ASSERT_TRUE(replay->Seek(200).ok());
   EXPECT_EQ(replay->GetSimulation().Hash(), hash_);
   // and is the same with and without

@@ -121,7 +121,10 @@ TEST_F(StateIndexTest, StaysWithinItsBytes) {
   StateIndexSettings settings = Settings();
   settings.most_bytes = 8000;
   for (const bool is_in_memory : {true, false}) {
-    if (is_in_memory) settings.path.clear(); else settings.path = Settings().path;
+    if (is_in_memory)
+      settings.path.clear();
+    else
+      settings.path = Settings().path;
     StateIndex index(settings);
     for (std::uint64_t tick = 0; tick < 100; ++tick) index.Add(tick, StateOf(tick));
     EXPECT_LT(index.Bytes(), 8000u + 4096u);

@@ -56,12 +56,13 @@ core::Result<FilmMaker> FilmMaker::Make(const FilmSettings& settings,
     view->SetOptions(settings.view);
     panes.push_back({std::move(*target), std::move(*view), i * (pane_width + kGap)});
   }
-  auto video =
-      render::VideoWriter::Make(settings.video, {settings.width, settings.height, settings.frames_per_second});
+  auto video = render::VideoWriter::Make(settings.video,
+                                         {settings.width, settings.height, settings.frames_per_second});
   if (!video) return video.error();
   render::Image whole;
   whole.width = settings.width, whole.height = settings.height;
-  whole.pixels.resize(3 * static_cast<std::size_t>(settings.width) * static_cast<std::size_t>(settings.height));
+  whole.pixels.resize(3 * static_cast<std::size_t>(settings.width) *
+                      static_cast<std::size_t>(settings.height));
   return FilmMaker(std::unique_ptr<Content>(
       new Content{std::move(*context), std::move(panes), std::move(*video), std::move(whole), {}, 0}));
 }

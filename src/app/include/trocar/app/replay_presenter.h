@@ -138,7 +138,8 @@ class ReplayPresenter {
   ReplayScreen* screen_;
   ReplayPage page_;
   std::array<std::optional<Side>, kSides> sides_;
-  bool is_playing_ = false, is_slow_ = false, has_ghosts_ = false, is_branch_experts_ = false, is_branching_ = false;
+  bool is_playing_ = false, is_slow_ = false, has_ghosts_ = false, is_branch_experts_ = false,
+       is_branching_ = false;
   bool has_diverged_ = false, was_there_ = false;
   std::size_t speed_ = 2;  // of the list
   std::optional<render::OrbitCamera> camera_;

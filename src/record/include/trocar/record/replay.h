@@ -95,7 +95,7 @@ class Replay {
   simulation::Simulation simulation_;
   int threads_ = 1;
   std::uint64_t visit_ticks_ = 0;
-  std::shared_ptr<StateIndex> index_;                   // also of Another
+  std::shared_ptr<StateIndex> index_;                    // also of Another
   std::shared_ptr<const std::vector<std::byte>> first_;  // state of the first tick
   std::size_t next_hash_ = 0;
   std::optional<Divergence> divergence_;

@@ -22,7 +22,8 @@ struct ReplayStatus {
   std::uint64_t tick = 0;  ///< of the state that the thread has come to
   bool is_there = false;   ///< the goal is reached, and Latest() shows it
   double progress = 1;     ///< of the seek that runs [-], 0 to 1
-  double known_share = 0;  ///< of the recording that lies within `fill_seconds` after a kept state or keyframe [-]
+  double known_share =
+      0;  ///< of the recording that lies within `fill_seconds` after a kept state or keyframe [-]
   std::optional<record::Divergence> divergence;  ///< what was computed is not what was recorded
   std::optional<core::Error> failure;            ///< the goal cannot be reached
 };
