@@ -38,6 +38,7 @@ class Program {
     const int status = application->run();
     if (finish_) finish_();
     const bool is_good = status == 0 && !(has_failed_ && has_failed_());
+    if (taken_over_ != nullptr) taken_over_->SaveHapticRecord();
     taken_over_.reset();
     window_.reset();
     return is_good ? EXIT_SUCCESS : EXIT_FAILURE;

@@ -4,10 +4,12 @@
 #include <CLI/Formatter.hpp>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <utility>
 
 #include "attempt_recording.h"
@@ -17,6 +19,7 @@
 #include "trocar/agent/surgeon.h"
 #include "trocar/core/clock.h"
 #include "trocar/core/state_hash.h"
+#include "trocar/core/version.h"
 #include "trocar/record/outcome.h"
 #include "trocar/record/replay.h"
 #include "trocar/simulation/state_file.h"
@@ -84,6 +87,11 @@ core::Status Verify(Replay& replay, const ReplayArguments& arguments, Outcome& o
                 recording.ending ? " and the outcome are those that were recorded"
                                  : " are those that were recorded; the recording has no ending");
   }
+  const std::string& program = recording.description.program;
+  if (!verified->IsVerified() && program != core::VersionText()) {
+    std::printf("It was recorded by version %s, and this is %s: replay it with that one.\n", program.c_str(),
+                std::string(core::VersionText()).c_str());
+  }
   if (!recording.damage.empty())
     std::printf("The file is damaged (%s): what comes after is missing.\n", recording.damage.c_str());
   return {};
@@ -124,13 +132,24 @@ core::Status TakeOver(const Replay& replay, const ReplayArguments& arguments) {
   return {};
 }
 
+/// With the states that lie beside it, where there are any; keeps none.
+core::Result<Replay> OpenReplay(Recording recording, const std::string& path, int threads) {
+  record::ReplaySettings settings;
+  settings.threads = threads;
+  settings.visit_seconds = 0;
+  std::error_code failure;
+  if (const auto index = record::IndexPathOf(path); std::filesystem::exists(index, failure))
+    settings.index = index;
+  return Replay::Open(std::move(recording), settings);
+}
+
 core::Status Draw(Replay& replay, const ReplayArguments& arguments) {
   ReplayVideoOptions options = arguments.video;
   options.has_forces = !arguments.hides_forces;
   if (arguments.beside.empty()) return MakeReplayVideo(replay, nullptr, options);
   auto recording = record::ReadRecording(arguments.beside);
   if (!recording.ok()) return recording.error();
-  auto other = Replay::Open(std::move(*recording), arguments.threads);
+  auto other = OpenReplay(std::move(*recording), arguments.beside, arguments.threads);
   if (!other.ok()) return other.error();
   return MakeReplayVideo(replay, &*other, options);
 }
@@ -155,7 +174,7 @@ core::Status DoReplay(const ReplayArguments& arguments, Outcome& outcome) {
     return core::Error{core::ErrorCode::kUsage, "the recording ends at " + FormatNumber(seconds, 4) +
                                                     " s, before " + FormatNumber(first, 4) + " s"};
   }
-  auto replay = Replay::Open(std::move(*recording), arguments.threads);
+  auto replay = OpenReplay(std::move(*recording), arguments.file, arguments.threads);
   if (!replay.ok()) return replay.error();
   if (arguments.is_verify || (arguments.video.output.empty() && !branches)) {
     if (const auto status = Verify(*replay, arguments, outcome); !status.ok()) return status;

@@ -166,6 +166,10 @@ core::Status Replay::Seek(std::uint64_t tick, const GoOn& go_on) {
   return {};
 }
 
+bool Replay::KeepsStatesOnDisk() const {
+  return index_->IsOnDisk();
+}
+
 core::Result<bool> Replay::FillGap(std::uint64_t tick, double seconds, const GoOn& go_on) {
   const std::uint64_t gap = TicksIn(seconds);
   std::vector<std::uint64_t> ticks = KnownTicks();

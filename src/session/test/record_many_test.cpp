@@ -3,8 +3,10 @@
 // replayed to the same bits. TROCAR_SESSIONS says how many the slow test plays, TROCAR_SESSIONS_FROM the first one's number.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <chrono>
 #include <cstdlib>
+#include <filesystem>
 #include <map>
 #include <random>
 #include <thread>

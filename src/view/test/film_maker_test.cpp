@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <filesystem>
+#include <optional>
+#include <vector>
 
 #include "trocar/core/safe_file.h"
 #include "trocar/render/image.h"

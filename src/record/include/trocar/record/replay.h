@@ -71,6 +71,8 @@ class Replay {
   /// Computes and keeps one state in a gap between known ones that is longer than `seconds`: the next gap after `tick`, or
   /// else the first one. \return false where there is none, or go_on said so
   core::Result<bool> FillGap(std::uint64_t tick, double seconds, const GoOn& go_on = {});
+  /// Whether kept states outlive this: the index can be written.
+  bool KeepsStatesOnDisk() const;
   /// The first hash that was not the recorded one since Open, in the ticks that were stepped.
   const std::optional<Divergence>& GetDivergence() const { return divergence_; }
 
