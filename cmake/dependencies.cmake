@@ -76,8 +76,9 @@ endif()
 if("gui" IN_LIST TROCAR_MODULES AND TROCAR_BUILD_WINDOW)
   pkg_check_modules(GTKMM REQUIRED IMPORTED_TARGET gtkmm-4.0)
   if(TROCAR_BUILD_TESTS)
-    # moves the pointer over the windows
+    # moves the pointer over the windows, clicks, and presses keys
     pkg_check_modules(X11 REQUIRED IMPORTED_TARGET x11)
+    pkg_check_modules(XTST REQUIRED IMPORTED_TARGET xtst)
   endif()
 endif()
 # optional: headers of Embree 3 or 4, which `trocar bench collision` measures itself against

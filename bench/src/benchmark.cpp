@@ -11,6 +11,8 @@ constexpr BenchmarkSuite kSuites[] = {
     {"contours", "the contour window: refit while a point is dragged, preview of an organ",
      RunContoursBenchmark},
     {"haptics", "the 1 kHz loop with both hands in contact, beside a bare loop", RunHapticsBenchmark},
+    {"recording", "what recording costs a tick; how quickly a replay runs, seeks and branches",
+     RunRecordingBenchmark},
     {"state", "saving, restoring and comparing a whole operation; memory of one more", RunStateBenchmark},
     {"tissue", "equilibrium of mass-spring grids and of the built-in patient", RunTissueBenchmark},
     {"tissue_cuda", "the GPU's memory layouts: checked, and timed where there is a GPU",

@@ -60,6 +60,19 @@ void AddRecordings(CLI::App& app, Options& options, bool& is_off) {
   app.add_flag("--no-recordings", is_off, "Keep no attempt")->excludes(folder);
 }
 
+void AddReplay(CLI::App& app, Options& options) {
+  CLI::Option* replay =
+      app.add_option("--replay", options.replay,
+                     "Play this recording: any moment, any speed, any camera; take over anywhere")
+          ->excludes("--scene")
+          ->excludes("--task")
+          ->excludes("--tasks")
+          ->excludes("--demonstration")
+          ->excludes("--screenshot");
+  app.add_option("--beside", options.replay_beside, "With --replay: another recording beside it")
+      ->needs(replay);
+}
+
 /// A person's attempts are kept, those of an unattended run only where it asks for that.
 void ChooseRecordings(bool is_off, Options& options) {
   if (!is_off && options.recordings.empty() && options.run.IsAttended())
@@ -183,6 +196,7 @@ core::Result<CommandLine> ParseCommandLine(int argc, const char* const* argv) {
   AddHands(app, command.options);
   AddRecordings(app, command.options, keeps_none);
   AddRun(app, command.options);
+  AddReplay(app, command.options);
   AddDevicePage(app, command.options);
   AddContours(app, command.contours, axes);
   AddPatientEditor(app, command.patient_editor.patient, tool);

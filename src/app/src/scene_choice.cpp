@@ -53,10 +53,14 @@ record::Description DescribeChosenScene(const Options& options, const scene::Sce
     description.name = std::filesystem::absolute(options.scene.empty() ? built_in : options.scene).string();
   }
   description.seed = scene.seed;
+  description.player = DescribeHands(options);
+  return description;
+}
+
+std::string DescribeHands(const Options& options) {
   std::string hands = options.device.empty() ? "mouse and keyboard" : options.device;
   if (!options.haptics.empty()) hands += ", " + options.haptics;
-  description.player = hands;
-  return description;
+  return hands;
 }
 
 }  // namespace trocar::app

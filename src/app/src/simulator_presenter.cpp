@@ -2,6 +2,7 @@
 #include "trocar/app/simulator_presenter.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <utility>
 
 #include "trocar/app/hints.h"
@@ -37,25 +38,84 @@ void SimulatorPresenter::FinishLoading() {
   auto simulation = loading_.Take();
   if (page_.failure) return;
   if (!simulation.ok()) return Fail(simulation.error());
+  record::Description description = DescribeChosenScene(options_, simulation->GetScene());
+  if (!Use(std::move(simulation).value(), std::move(description))) return;
+  Announce("Ready.");
+  if (options_.is_demonstration || unattended_.IsOn()) SetDemonstration(true);
+  SetPaused(false);
+}
+
+/// Shows a simulation, paused. \return false where something failed
+bool SimulatorPresenter::Use(simulation::Simulation simulation, record::Description description) {
+  const auto fail = [this](const core::Error& error) {
+    Fail(error);
+    return false;
+  };
   std::optional<session::AttemptKeeping> keeping;
-  if (!options_.recordings.empty())
-    keeping = {options_.recordings, DescribeChosenScene(options_, simulation->GetScene())};
-  auto control = SessionControl::Make(std::move(simulation).value(), std::move(keeping));
-  if (!control) return Fail(control.error());
+  if (!options_.recordings.empty()) keeping = {options_.recordings, std::move(description)};
+  auto control = SessionControl::Make(std::move(simulation), std::move(keeping));
+  if (!control) return fail(control.error());
   control_ = std::move(control).value();
   has_script_ = control_->HasScript();
   control_->SetMirrorFulcrum(is_fulcrum_mirrored_);
-  if (const auto used = UseDevices(); !used) return Fail(used.error());
+  if (const auto used = UseDevices(); !used) return fail(used.error());
   if (options_.igtl_port >= 0) {
-    if (const core::Status served = control_->Serve(options_.igtl_port); !served) return Fail(served.error());
+    if (const core::Status served = control_->Serve(options_.igtl_port); !served) return fail(served.error());
     core::Log(core::LogLevel::kInfo,
               "OpenIGTLink: viewers may connect to localhost:" + std::to_string(control_->ServedPort()));
   }
   screen_->UseControl(control_.get());
   page_.title = "Trocar: " + control_->GetScene().name;
-  Announce("Ready.");
-  if (options_.is_demonstration || unattended_.IsOn()) SetDemonstration(true);
-  SetPaused(false);
+  return true;
+}
+
+void SimulatorPresenter::TakeOver(Branch branch) {
+  if (loading_.IsRunning() || page_.failure) return;
+  Drop();
+  const record::Description& from = branch.description;
+  options_.task = from.kind == record::Description::Kind::kScene ? "" : from.name;
+  options_.scene = from.kind == record::Description::Kind::kScene ? from.name : "";
+  if (from.kind == record::Description::Kind::kTask) options_.level = from.level;
+  options_.seed = from.seed;
+  options_.is_demonstration = false;
+  record::Description description = from;
+  description.player = DescribeHands(options_);
+  if (!Use(std::move(branch.simulation), std::move(description))) return;
+  control_->GoOnFrom(branch.last);
+  char moment[48];
+  std::snprintf(moment, sizeof moment, " at %.1f s",
+                static_cast<double>(from.branched_tick) * from.tick_seconds);
+  if (branch.is_experts) {
+    control_->LetExpertGoOn();
+    SetPaused(false);
+    Announce("The expert goes on from " + from.branched_from + moment + ".");
+  } else {
+    Announce("Taken over from " + from.branched_from + moment + ". Start when your hands are ready.");
+  }
+  screen_->FocusPicture();
+  Refresh();
+}
+
+void SimulatorPresenter::OpenRecording(const std::filesystem::path& recording) {
+  page_.is_recording_list_open = false;
+  if (control_ != nullptr) control_->SetPaused(true);
+  screen_->OpenReplay(recording);
+  Refresh();
+}
+
+void SimulatorPresenter::OpenRecordingList() {
+  if (page_.failure) return;
+  screen_->FillRecordingList(options_.recordings.empty() ? record::FindRecordingFolder()
+                                                         : options_.recordings);
+  screen_->ReleasePointer();
+  page_.is_result_open = page_.is_help_open = page_.is_task_list_open = false;
+  page_.is_recording_list_open = true;
+  Refresh();
+}
+
+void SimulatorPresenter::CloseRecordingList() {
+  page_.is_recording_list_open = false;
+  Refresh();
 }
 
 /// What the options name, with the person's settings.
@@ -99,7 +159,7 @@ void SimulatorPresenter::Drop() {
   error_log_ = {};
   seen_events_ = 0;
   is_result_known_ = false;
-  page_.is_task_list_open = page_.is_result_open = false;
+  page_.is_task_list_open = page_.is_result_open = page_.is_recording_list_open = false;
 }
 
 // commands
@@ -234,6 +294,9 @@ bool SimulatorPresenter::DoWithView(Action action) {
     case Action::kToggleTaskList:
       page_.is_task_list_open ? CloseTaskList() : OpenTaskList();
       return true;
+    case Action::kToggleRecordingList:
+      page_.is_recording_list_open ? CloseRecordingList() : OpenRecordingList();
+      return true;
     case Action::kReleasePointer:
       ReleaseAll();
       return true;
@@ -252,7 +315,7 @@ void SimulatorPresenter::ReleaseAll() {
   if (control_ != nullptr && control_->Haptics() != nullptr) control_->Haptics()->Stop();
   screen_->ReleasePointer();
   screen_->FocusPicture();
-  page_.is_help_open = page_.is_task_list_open = page_.is_result_open = false;
+  page_.is_help_open = page_.is_task_list_open = page_.is_result_open = page_.is_recording_list_open = false;
 }
 
 void SimulatorPresenter::SetPaused(bool is_paused) {
@@ -278,7 +341,7 @@ void SimulatorPresenter::OpenTaskList() {
   if (page_.failure) return;
   if (const core::Status filled = screen_->FillTaskList(); !filled) return Fail(filled.error());
   screen_->ReleasePointer();
-  page_.is_result_open = page_.is_help_open = false;
+  page_.is_result_open = page_.is_help_open = page_.is_recording_list_open = false;
   page_.is_task_list_open = true;
   Refresh();
 }

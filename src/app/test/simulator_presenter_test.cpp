@@ -9,6 +9,7 @@
 
 #include "trocar/core/safe_file.h"
 #include "trocar/record/replay.h"
+#include "trocar/scene/task.h"
 #include "trocar_test/temporary_folder.h"
 
 namespace trocar::app {
@@ -21,6 +22,8 @@ struct FakeScreen : SimulatorScreen {
   std::vector<std::string> UseKeys(const std::map<std::string, device::HandAct>&) override { return {}; }
   core::Status FillTaskList() override { return list_status; }
   void FillResult(const TaskResult&) override { ++results; }
+  void FillRecordingList(const std::filesystem::path& folder) override { listed = folder; }
+  void OpenReplay(const std::filesystem::path& recording) override { replayed = recording; }
   void ReleasePointer() override { is_pointer_taken = false; }
   bool IsPointerTaken() const override { return is_pointer_taken; }
   void FocusPicture() override { ++focused; }
@@ -29,6 +32,7 @@ struct FakeScreen : SimulatorScreen {
   SimulatorPage page;
   SessionControl* control = nullptr;
   core::Status list_status;
+  std::filesystem::path listed, replayed;
   int results = 0, focused = 0;
   bool is_pointer_taken = false;
   std::vector<Action> done;
@@ -191,6 +195,106 @@ TEST_F(Presenter, OpensAnotherTaskFromTheList) {
   Load();
   EXPECT_EQ(presenter_->GetOptions().task, "clip_and_cut");
   EXPECT_NE(screen_.control, nullptr);
+}
+
+TEST_F(Presenter, ListsRecordingsAndPlaysOneInAWindowOfItsOwn) {
+  BeginTask();
+  presenter_->Do(Action::kToggleTaskList);
+  presenter_->Do(Action::kToggleRecordingList);
+  EXPECT_TRUE(screen_.page.is_recording_list_open);
+  EXPECT_FALSE(screen_.page.is_task_list_open) << "one card at a time";
+  EXPECT_EQ(screen_.listed, record::FindRecordingFolder());
+  presenter_->OpenRecording("a.trocar");
+  EXPECT_EQ(screen_.replayed, "a.trocar");
+  EXPECT_FALSE(screen_.page.is_recording_list_open);
+  EXPECT_TRUE(screen_.control->IsPaused());
+  presenter_->Do(Action::kToggleRecordingList);
+  presenter_->Do(Action::kReleasePointer);
+  EXPECT_FALSE(screen_.page.is_recording_list_open);
+}
+
+/// A moment of peg_transfer, 1.5 s after its start, at which nothing is touched.
+Branch MakeBranch(std::uint64_t seed) {
+  auto scene = scene::ReadTask(*scene::FindTask("peg_transfer"), {"easy", seed, {}});
+  EXPECT_TRUE(scene.ok());
+  const auto shared = std::make_shared<const scene::Scene>(std::move(*scene));
+  auto simulation = simulation::Simulation::Make(shared, 1);
+  EXPECT_TRUE(simulation.ok());
+  scene::Input input = scene::CalcScriptInput(*shared, 0);
+  input.hands[scene::kRight].pan += 0.1;
+  for (int tick = 0; tick < 180; ++tick) simulation->Step(input);
+  record::Description description;
+  description.kind = record::Description::Kind::kTask;
+  description.name = "peg_transfer", description.level = "easy", description.seed = seed;
+  description.player = "somebody";
+  description.tick_seconds = shared->tick_seconds;
+  description.branched_from = "first.trocar", description.branched_id = 77, description.branched_tick = 180;
+  return {std::move(*simulation), description, input, false};
+}
+
+TEST_F(Presenter, TakesOverFromARecording) {
+  test::TemporaryFolder folder;
+  Options options;
+  options.task = "clip_and_cut";
+  options.threads = 1;
+  options.recordings = folder.Path() / "kept";
+  Begin(options);
+  Load();
+  Branch branch = MakeBranch(4);
+  const scene::Input last = branch.last;
+  presenter_->TakeOver(std::move(branch));
+  ASSERT_NE(screen_.control, nullptr);
+  SessionControl& control = *screen_.control;
+  EXPECT_TRUE(control.IsPaused()) << "until the hands are ready";
+  EXPECT_NE(screen_.page.event.find("first.trocar at 1.5 s"), std::string::npos) << screen_.page.event;
+  EXPECT_EQ(presenter_->GetOptions().task, "peg_transfer");
+  EXPECT_EQ(presenter_->GetOptions().level, "easy");
+  EXPECT_EQ(control.Advance(0.01).tick, 180u);
+  EXPECT_NEAR(control.GetInput().hands[scene::kRight].pan, last.hands[scene::kRight].pan, 1e-9)
+      << "the hands rest where the tools stand";
+  presenter_->Do(Action::kTogglePause);
+  for (int i = 0; i < 500 && control.Advance(0.01).tick < 330; ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  EXPECT_GE(control.Advance(0.01).tick, 330u);
+  const auto recording = control.Recording();
+  presenter_->Do(Action::kReset);  // the first attempt ends; the next one goes on from nothing
+  for (int i = 0; i < 500 && (control.Advance(0.01).tick > 300 || control.Advance(0.01).tick < 150); ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  const auto next = control.Recording();
+  presenter_.reset();
+  ASSERT_TRUE(recording.has_value() && next.has_value());
+  auto read = record::ReadRecording(recording->path);
+  ASSERT_TRUE(read.ok()) << read.error().Text();
+  EXPECT_EQ(read->FirstTick(), 180u);
+  EXPECT_EQ(read->description.branched_from, "first.trocar");
+  EXPECT_EQ(read->description.branched_id, 77u);
+  EXPECT_EQ(read->description.branched_tick, 180u);
+  EXPECT_EQ(read->description.player, "mouse and keyboard");
+  auto replay = record::Replay::Open(std::move(*read), 1);
+  ASSERT_TRUE(replay.ok()) << replay.error().Text();
+  EXPECT_TRUE(replay->Verify()->IsVerified());
+  const auto anew = record::ReadRecording(next->path);
+  ASSERT_TRUE(anew.ok());
+  EXPECT_EQ(anew->FirstTick(), 0u);
+  EXPECT_EQ(anew->description.branched_from, "");
+}
+
+TEST_F(Presenter, LetsTheExpertGoOnFromARecording) {
+  BeginTask();
+  Branch branch = MakeBranch(4);
+  branch.is_experts = true;
+  presenter_->TakeOver(std::move(branch));
+  SessionControl& control = *screen_.control;
+  EXPECT_TRUE(control.IsDemonstration());
+  EXPECT_FALSE(control.IsPaused());
+  std::uint64_t least = ~std::uint64_t{0}, tick = 0;
+  for (int i = 0; i < 500 && tick < 300; ++i) {
+    tick = control.Advance(0.01).tick;
+    least = std::min(least, tick);
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  EXPECT_GE(tick, 300u);
+  EXPECT_GE(least, 180u) << "not from the beginning";
 }
 
 TEST_F(Presenter, FailsWhereTheListCannotBeRead) {

@@ -8,6 +8,7 @@
 #include <functional>
 
 #include "device_page.h"
+#include "replay_window.h"
 #include "simulator_window.h"
 #include "trocar/app/options.h"
 #include "trocar/core/log.h"
@@ -37,6 +38,8 @@ class Program {
     const int status = application->run();
     if (finish_) finish_();
     const bool is_good = status == 0 && !(has_failed_ && has_failed_());
+    if (taken_over_ != nullptr) taken_over_->SaveHapticRecord();
+    taken_over_.reset();
     window_.reset();
     return is_good ? EXIT_SUCCESS : EXIT_FAILURE;
   }
@@ -58,11 +61,20 @@ class Program {
       Use(std::make_unique<DevicePage>(options, nullptr));
     } else if (!command_.patient_editor.patient.empty()) {
       Use(std::make_unique<editor::PatientEditorWindow>(command_.patient_editor));
+    } else if (!options.replay.empty()) {
+      Use(std::make_unique<ReplayWindow>(options, [this](Branch branch) { TakeOver(std::move(branch)); }));
     } else {
       auto window = std::make_unique<SimulatorWindow>(options, since_start_);
       finish_ = [simulator = window.get()] { simulator->SaveHapticRecord(); };
       Use(std::move(window));
     }
+  }
+
+  /// Somebody goes on from a moment of the replay, in a window beside it.
+  void TakeOver(Branch branch) {
+    taken_over_ = std::make_unique<SimulatorWindow>(command_.options, since_start_, std::move(branch));
+    window_->get_application()->add_window(*taken_over_);
+    taken_over_->present();
   }
 
   template <typename Window>
@@ -74,6 +86,7 @@ class Program {
   core::Stopwatch since_start_;
   CommandLine command_;
   std::unique_ptr<Gtk::ApplicationWindow> window_;
+  std::unique_ptr<SimulatorWindow> taken_over_;
   std::function<void()> finish_;      // once the window has closed
   std::function<bool()> has_failed_;  // asked after that
 };

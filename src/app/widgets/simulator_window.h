@@ -12,6 +12,8 @@
 #include "hand_events.h"
 #include "panel.h"
 #include "picture.h"
+#include "recording_chooser.h"
+#include "replay_window.h"
 #include "result_card.h"
 #include "task_chooser.h"
 #include "trocar/app/simulator_presenter.h"
@@ -23,7 +25,9 @@ namespace trocar::app {
 class SimulatorWindow : public Gtk::ApplicationWindow, private SimulatorScreen {
  public:
   /// \param since_start  runs since the program began
-  SimulatorWindow(const Options& options, const core::Stopwatch& since_start);
+  /// \param branch       nothing, or a moment of a recording from which it goes on in place of the scene that the options name
+  SimulatorWindow(const Options& options, const core::Stopwatch& since_start,
+                  std::optional<Branch> branch = {});
   ~SimulatorWindow() override;
 
   /// Writes what --haptic-record asks for; call it once the window has closed.
@@ -45,6 +49,8 @@ class SimulatorWindow : public Gtk::ApplicationWindow, private SimulatorScreen {
   void UseControl(SessionControl* control) override;
   std::vector<std::string> UseKeys(const std::map<std::string, device::HandAct>& keys) override;
   core::Status FillTaskList() override;
+  void FillRecordingList(const std::filesystem::path& folder) override { recordings_.Load(folder); }
+  void OpenReplay(const std::filesystem::path& recording) override;
   void FillResult(const TaskResult& result) override { result_card_.Show(result); }
   void ReleasePointer() override { hands_->ReleasePointer(); }
   bool IsPointerTaken() const override { return hands_->IsPointerTaken(); }
@@ -58,6 +64,7 @@ class SimulatorWindow : public Gtk::ApplicationWindow, private SimulatorScreen {
   Panel panel_;
   gui::HelpCard help_card_{SimulatorHelp()};
   TaskChooser chooser_;
+  RecordingChooser recordings_{"Watch"};
   ResultCard result_card_;
   FailureCard failure_card_;
   Gtk::Label badge_, hint_, event_, state_, haptics_;
@@ -65,6 +72,7 @@ class SimulatorWindow : public Gtk::ApplicationWindow, private SimulatorScreen {
   Glib::Dispatcher loaded_;
   std::unique_ptr<SimulatorPresenter> presenter_;
   std::unique_ptr<DevicePage> device_page_;  // of the presenter's control
+  std::unique_ptr<ReplayWindow> replay_;
 };
 
 }  // namespace trocar::app

@@ -14,6 +14,10 @@ namespace {
 
 /// A shorter attempt is a look at the scene.
 constexpr double kShortestAttempt = 1.0;  // s
+/// Between states of the index, so that any moment is found in two seconds.
+constexpr double kIndexSeconds = 3;
+/// Of the indexes of all attempts; the oldest go first.
+constexpr std::uint64_t kIndexBytes = std::uint64_t{2} << 30;
 
 /// "2026-11-24_225020_peg_transfer.trocar"; a number makes it one that there is not yet.
 std::filesystem::path MakeName(const AttemptKeeping& keeping) {
@@ -36,7 +40,16 @@ void AttemptKeeper::BeforeStep(const Simulation& simulation, bool is_demonstrati
   if (!keeping_ || recorder_ != nullptr || has_failed_) return;
   record::Description description = keeping_->description;
   if (is_demonstration) description.player = "the demonstration";
-  auto recorder = record::Recorder::Start(MakeName(*keeping_), std::move(description), simulation);
+  if (simulation.GetSnapshot().tick != description.branched_tick) {
+    // begun anew: it goes on from nothing
+    description.branched_from.clear();
+    description.branched_id = description.branched_tick = 0;
+  }
+  record::TrimIndexes(keeping_->folder, kIndexBytes);
+  record::RecorderSettings settings;
+  settings.index_seconds = kIndexSeconds;
+  auto recorder =
+      record::Recorder::Start(MakeName(*keeping_), std::move(description), simulation, std::move(settings));
   const std::lock_guard lock(mutex_);
   if (recorder.ok()) {
     recorder_ = std::move(*recorder);
@@ -58,7 +71,9 @@ void AttemptKeeper::End(const Simulation& simulation) {
   last_ = recorder_->Status();
   recorder_.reset();
   std::error_code ignored;
-  if (is_short) std::filesystem::remove(last_->path, ignored);
+  if (!is_short) return;
+  std::filesystem::remove(last_->path, ignored);
+  std::filesystem::remove(record::IndexPathOf(last_->path), ignored);
 }
 
 std::optional<record::RecorderStatus> AttemptKeeper::Status() const {

@@ -52,6 +52,7 @@ core::Result<BenchmarkResult> RunAnatomyBenchmark(const BenchmarkOptions& option
 core::Result<BenchmarkResult> RunCollisionBenchmark(const BenchmarkOptions& options);
 core::Result<BenchmarkResult> RunContoursBenchmark(const BenchmarkOptions& options);
 core::Result<BenchmarkResult> RunHapticsBenchmark(const BenchmarkOptions& options);
+core::Result<BenchmarkResult> RunRecordingBenchmark(const BenchmarkOptions& options);
 core::Result<BenchmarkResult> RunStateBenchmark(const BenchmarkOptions& options);
 core::Result<BenchmarkResult> RunTissueBenchmark(const BenchmarkOptions& options);
 core::Result<BenchmarkResult> RunTissueCudaBenchmark(const BenchmarkOptions& options);

@@ -25,6 +25,8 @@ struct Options {
   std::string haptics;  ///< haptic device; empty: none
   std::filesystem::path haptic_record;  ///< what force feedback did, written at the end; empty: none
   std::filesystem::path recordings;     ///< folder in which every attempt is kept; empty: none is
+  std::filesystem::path replay;         ///< recording to play in place of a simulation; empty: none
+  std::filesystem::path replay_beside;  ///< with `replay`: another one beside it; empty: none
   int igtl_port = -1;                   ///< viewers over OpenIGTLink may connect here; 0: any port, -1: none
   bool is_fullscreen = false;
   bool is_demonstration = false;  ///< start with the script moving both hands

@@ -2,6 +2,8 @@
 /// \file scene_choice.h  Which scene the simulator window plays: a file, a training task or an operation, by its name.
 #pragma once
 
+#include <string>
+
 #include "trocar/app/options.h"
 #include "trocar/record/recording.h"
 #include "trocar/simulation/simulation.h"
@@ -19,5 +21,8 @@ core::Result<simulation::Simulation> MakeChosenSimulation(const Options& options
 
 /// What a recording of it is of. \param scene  as chosen
 record::Description DescribeChosenScene(const Options& options, const scene::Scene& scene);
+
+/// Who holds the instruments: "mouse and keyboard", a device's name.
+std::string DescribeHands(const Options& options);
 
 }  // namespace trocar::app

@@ -29,6 +29,13 @@ class SessionControl {
   static core::Result<std::unique_ptr<SessionControl>> Make(
       simulation::Simulation simulation, std::optional<session::AttemptKeeping> keeping = {});
 
+  /// For a simulation that stands in the middle of an attempt: the hands rest where the tools stand, tools and settings are
+  /// as they were, no pedal is pressed.
+  /// \param last  input of the tick before
+  void GoOnFrom(const scene::Input& last);
+  /// The scripted expert goes on from here, where SetDemonstration() would begin anew.
+  void LetExpertGoOn();
+
   /// Lets a device hold the hands that it sees; the mouse keeps the others. Where the device is lost the simulation is
   /// paused, and stays so when it comes back until the person starts it.
   /// \param driver   of device::kChannelCount channels, unconfigured

@@ -37,6 +37,7 @@ enum class Action {
   kToggleForceFeedback,
   kCheckPose,
   kToggleTaskList,
+  kToggleRecordingList,
   kOpenDevices,
   kToggleFullscreen,
   kToggleHelp,

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "trocar/app/branch.h"
 #include "trocar/app/options.h"
 #include "trocar/app/read_outs.h"
 #include "trocar/app/session_control.h"
@@ -28,6 +29,7 @@ struct SimulatorPage {
   std::string hint, badge, state, event, haptics;
   bool is_event_warning = false;
   bool is_help_open = false, is_task_list_open = false, is_result_open = false;
+  bool is_recording_list_open = false;
   view::ViewOptions view;
   std::optional<core::Error> failure;
 };
@@ -45,6 +47,10 @@ class SimulatorScreen {
   /// Fills the list of tasks. \return the first file's error
   virtual core::Status FillTaskList() = 0;
   virtual void FillResult(const TaskResult& result) = 0;
+  /// Reads the list of recordings anew, beside the window.
+  virtual void FillRecordingList(const std::filesystem::path& folder) = 0;
+  /// A window of its own plays a recording.
+  virtual void OpenReplay(const std::filesystem::path& recording) = 0;
   virtual void ReleasePointer() = 0;
   virtual bool IsPointerTaken() const = 0;
   virtual void FocusPicture() = 0;
@@ -66,6 +72,12 @@ class SimulatorPresenter {
   /// Gives up the scene that is shown and reads the one that was chosen; nothing while one is being read.
   void Open(const TaskRequest& request);
 
+  /// Gives up the scene that is shown and goes on from a moment of a recording: paused, until the person's hands are ready;
+  /// the expert begins at once. Nothing while a scene is being read.
+  void TakeOver(Branch branch);
+  /// Pauses, and plays a recording in a window of its own.
+  void OpenRecording(const std::filesystem::path& recording);
+
   /// Does what a key or a button asks for, where it is possible.
   void Do(Action action);
   bool IsEnabled(Action action) const;
@@ -74,6 +86,8 @@ class SimulatorPresenter {
 
   void OpenTaskList();
   void CloseTaskList();
+  void OpenRecordingList();
+  void CloseRecordingList();
   void CloseResult();
   void PlayAgain();
   /// Writes the task's result: JSON or a page, by the file's ending.
@@ -110,6 +124,7 @@ class SimulatorPresenter {
   bool IsChecked(Action action) const;
   bool IsForceOn() const;
   core::Status UseDevices();
+  bool Use(simulation::Simulation simulation, record::Description description);
   void Drop();
   void Refresh();
   void Announce(const std::string& text, bool is_warning = false);
