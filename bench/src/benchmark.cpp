@@ -12,6 +12,7 @@ constexpr BenchmarkSuite kSuites[] = {
      RunContoursBenchmark},
     {"haptics", "the 1 kHz loop with both hands in contact, beside a bare loop", RunHapticsBenchmark},
     {"state", "saving, restoring and comparing a whole operation; memory of one more", RunStateBenchmark},
+    {"store", "history pages and group percentiles in the store of a large centre (--attempts, --url)", RunStoreBenchmark},
     {"tissue", "equilibrium of mass-spring grids and of the built-in patient", RunTissueBenchmark},
     {"tissue_cuda", "the GPU's memory layouts: checked, and timed where there is a GPU",
      RunTissueCudaBenchmark},

@@ -29,6 +29,7 @@ void AddPlayCommand(CLI::App& app, Outcome& outcome);
 void AddSimulateCommand(CLI::App& app, Outcome& outcome);
 void AddRecordCommand(CLI::App& app, Outcome& outcome);
 void AddReplayCommand(CLI::App& app, Outcome& outcome);
+void AddStoreCommand(CLI::App& app, Outcome& outcome);
 void AddAnatomyCommand(CLI::App& app, Outcome& outcome);
 /// Words like "hydrops=0.5".
 /// \return kUsage for one that is not like that

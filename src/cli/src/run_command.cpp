@@ -81,6 +81,7 @@ int ParseAndRun(int argc, char** argv) {
   AddSimulateCommand(app, outcome);
   AddReplayCommand(app, outcome);
   AddRecordCommand(app, outcome);
+  AddStoreCommand(app, outcome);
   AddAnatomyCommand(app, outcome);
   AddDevicesCommand(app, outcome);
   AddBenchCommand(app, outcome);

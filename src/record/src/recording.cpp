@@ -158,6 +158,7 @@ core::Result<Recording> ReadRecording(std::span<const std::byte> bytes, const st
   if (header.checksum != CalcHeaderChecksum(header))
     return Refuse(name + " is damaged in its header; take another copy of it");
   Recording recording;
+  recording.file_id = header.file_id;
   recording.file_bytes = bytes.size();
   recording.damage = RecordingReader(recording).Read(bytes);
   if (recording.description.name.empty()) {

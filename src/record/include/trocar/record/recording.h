@@ -82,6 +82,7 @@ class Recording {
   ~Recording();
 
   Description description;
+  std::uint64_t file_id = 0;  ///< random: tells files apart that are of the same
   std::vector<Input> inputs;  ///< input i belongs to the tick that makes description.first_tick + i + 1 ticks
   std::vector<HashMark> hashes;
   std::vector<EventMark> events;
