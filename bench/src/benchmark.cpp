@@ -14,6 +14,7 @@ constexpr BenchmarkSuite kSuites[] = {
     {"recording", "what recording costs a tick; how quickly a replay runs, seeks and branches",
      RunRecordingBenchmark},
     {"state", "saving, restoring and comparing a whole operation; memory of one more", RunStateBenchmark},
+    {"store", "history pages and group percentiles in the store of a large centre (--attempts, --url)", RunStoreBenchmark},
     {"tissue", "equilibrium of mass-spring grids and of the built-in patient", RunTissueBenchmark},
     {"tissue_cuda", "the GPU's memory layouts: checked, and timed where there is a GPU",
      RunTissueCudaBenchmark},

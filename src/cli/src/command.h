@@ -36,6 +36,7 @@ void AddCertificateCommand(CLI::App& app, Outcome& outcome);
 void AddCoachCommand(CLI::App& app, Outcome& outcome);
 void AddStudyCommand(CLI::App& app, Outcome& outcome);
 void AddMetricsCommand(CLI::App& app, Outcome& outcome);
+void AddStoreCommand(CLI::App& app, Outcome& outcome);
 void AddAnatomyCommand(CLI::App& app, Outcome& outcome);
 /// Words like "hydrops=0.5".
 /// \return kUsage for one that is not like that

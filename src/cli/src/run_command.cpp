@@ -88,6 +88,7 @@ int ParseAndRun(int argc, char** argv) {
   AddLevelsCommand(app, outcome);
   AddExamCommand(app, outcome);
   AddCertificateCommand(app, outcome);
+  AddStoreCommand(app, outcome);
   AddAnatomyCommand(app, outcome);
   AddDevicesCommand(app, outcome);
   AddBenchCommand(app, outcome);

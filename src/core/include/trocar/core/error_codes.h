@@ -59,6 +59,16 @@ enum class ErrorCode {
   kOutOfMemory,
   kStateInvalid,
   kRecordingInvalid,
+  // store
+  kStoreBusy,
+  kStoreFull,
+  kStoreAway,
+  kStoreSchema,
+  kStoreDamaged,
+  kStoreReadOnly,
+  kStoreRefused,
+  kStoreUnknown,
+  kStoreInvalid,
   // drawing and video
   kNoGraphics,
   kGraphicsTooOld,
