@@ -59,6 +59,11 @@ enum class ErrorCode {
   kOutOfMemory,
   kStateInvalid,
   kRecordingInvalid,
+  // reports, ratings, learning records
+  kRatingInvalid,
+  kXapiUnsafe,
+  kXapiAway,
+  kXapiRefused,
   // drawing and video
   kNoGraphics,
   kGraphicsTooOld,
