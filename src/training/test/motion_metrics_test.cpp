@@ -224,6 +224,7 @@ TEST(AttemptMetrics, RefusesBadSettingsAndSamples) {
       [](MetricSettings& s) { s.cutoff_hz = std::nan(""); },
       [](MetricSettings& s) { s.noise_step = -1; },
       [](MetricSettings& s) { s.release_share = 0; },
+      [](MetricSettings& s) { s.idle_window = 0; },
       [](MetricSettings& s) { s.movement_end_speed = 1; },
       [](MetricSettings& s) { s.safe_duct_distance = std::nan(""); },
       [](MetricSettings& s) { s.sparc.pad_level = kMaxPadLevel + 1; },
