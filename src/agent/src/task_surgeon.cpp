@@ -130,6 +130,7 @@ void TaskSurgeon::Plan(const Snapshot& seen) {
     if (fruitless_plans_ > kMostFruitlessPlans) break;
     goal_name_ = task.goals[g].name;
     if (AddIdleErrorScenario(seen)) return;
+    if (skill_.wrong_plan > 0 && now.steps_done == 0 && BeginAtTheWrongPlace(seen, g)) return;
     PlanStep(seen, task.goals[g], now.steps_done);
     return;
   }
@@ -244,7 +245,7 @@ void TaskSurgeon::PlanPlace(const Snapshot& seen, int object, const std::vector<
   if (seen.instruments[static_cast<std::size_t>(1 - hand)].object >= 0) WithDraw(hand);
   Rise(hand, std::max(0.0, best->centre.z + kAbovePlace - thing.X_world_object.translation.z));
   Carry(hand, object, best->centre + Vec3{0, 0, kAbovePlace});
-  Carry(hand, object, best->centre + Vec3{0, 0, kLetGoHeight}, 0.6);
+  Carry(hand, object, best->centre + Vec3{0, 0, kLetGoHeight - skill_.press}, 0.6);
   LetGo(hand);
   WithDraw(hand);
 }

@@ -29,6 +29,8 @@ void AddPlayCommand(CLI::App& app, Outcome& outcome);
 void AddSimulateCommand(CLI::App& app, Outcome& outcome);
 void AddRecordCommand(CLI::App& app, Outcome& outcome);
 void AddReplayCommand(CLI::App& app, Outcome& outcome);
+void AddCoachCommand(CLI::App& app, Outcome& outcome);
+void AddStudyCommand(CLI::App& app, Outcome& outcome);
 void AddMetricsCommand(CLI::App& app, Outcome& outcome);
 void AddAnatomyCommand(CLI::App& app, Outcome& outcome);
 /// Words like "hydrops=0.5".

@@ -19,6 +19,7 @@
 #include "trocar/training/attempt_metrics.h"
 #include "trocar/training/metric_definition.h"
 #include "trocar/training/trace_file.h"
+#include "validity_note.h"
 
 namespace trocar::cli {
 namespace {
@@ -83,15 +84,18 @@ std::string FormatMetricsFile(const TracedFile& traced, const AttemptMetrics& me
   return json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 
-std::string FormatWords(const TracedFile& traced, const AttemptMetrics& metrics, bool has_parts) {
-  std::string text;
+std::string FormatWords(const TracedFile& traced, const AttemptMetrics& metrics, bool has_parts,
+                        const training::Validity& validity) {
+  std::string text, note;
   if (traced.of.contains("of")) {
     text += traced.of["of"].get<std::string>() + ", played by " + traced.of["player"].get<std::string>() +
             ", " + FormatNumber(traced.trace.Seconds()) + " s" +
             (traced.of["finished"] == true ? "" : " (the recording was not finished)") + "\n\n";
+    const std::string task = TaskKey(traced.of["of"].get<std::string>());
+    note = FormatValidityNote(metrics, task, validity.FindTask(task)) + "\n";
   }
-  return text + FormatMetricsText(metrics, has_parts) + "\n" + std::string(training::MetricsDisclaimer()) +
-         ". trocar metrics --list says what each number is.\n";
+  return text + FormatMetricsText(metrics, has_parts) + "\n" + note +
+         std::string(training::MetricsDisclaimer()) + ". trocar metrics --list says what each number is.\n";
 }
 
 core::Status PutOut(const std::string& text, const std::string& output) {
@@ -128,7 +132,9 @@ core::Status Measure(const MetricsArguments& arguments) {
   if (!metrics.ok()) return metrics.error();
   if (arguments.is_json) return PutOut(FormatMetricsFile(*traced, *metrics), arguments.output);
   if (arguments.is_csv) return PutOut(training::FormatMetricsCsv(*metrics), arguments.output);
-  return PutOut(FormatWords(*traced, *metrics, arguments.has_parts), arguments.output);
+  const auto validity = ReadValidity();
+  if (!validity.ok()) return validity.error();
+  return PutOut(FormatWords(*traced, *metrics, arguments.has_parts, *validity), arguments.output);
 }
 
 }  // namespace

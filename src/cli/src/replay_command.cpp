@@ -4,6 +4,7 @@
 #include <CLI/Formatter.hpp>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -21,7 +22,10 @@
 #include "trocar/core/state_hash.h"
 #include "trocar/record/outcome.h"
 #include "trocar/record/replay.h"
+#include "trocar/render/image.h"
 #include "trocar/simulation/state_file.h"
+#include "trocar/training/critical_view.h"
+#include "trocar/view/critical_view_picture.h"
 #include "trocar/view/demo.h"
 
 namespace trocar::cli {
@@ -37,7 +41,7 @@ struct ReplayArguments {
   double from = 0, until = std::numeric_limits<double>::infinity(), at = -1;  // [s]
   double most_seconds = 3600;
   int threads = 1;
-  bool is_verify = false, is_json = false;
+  bool is_verify = false, is_json = false, is_critical_view = false;
 };
 
 /// The recorded hands in the place of a surgeon's.
@@ -143,6 +147,63 @@ core::Status MakeVideo(const Replay& replay, const ReplayArguments& arguments) {
   return {};
 }
 
+/// Pictures of the moment at which the view was achieved, or of `at`, or of the end.
+core::Status DrawCriticalView(Replay& replay, const ReplayArguments& arguments) {
+  const auto size = ReadSize(arguments.size);
+  if (!size.ok()) return size.error();
+  if (!replay.GetSimulation().GetOperationResult())
+    return core::Error{core::ErrorCode::kUsage, "--critical-view needs the recording of an operation"};
+  const Recording& recording = replay.GetRecording();
+  const auto is_achieved = [&] {
+    return replay.GetSimulation().GetSnapshot().operation.critical_view.IsAchieved();
+  };
+  if (arguments.at >= 0) {
+    if (const auto status = replay.Seek(TickAt(recording, arguments.at)); !status.ok()) return status;
+  } else {
+    ProgressBar progress("looking for the critical view", 1.0);
+    while (!replay.IsAtEnd() && !is_achieved()) {
+      replay.Step();
+      if (replay.Tick() % 120 == 0)
+        progress.Show(static_cast<double>(replay.Tick()) / static_cast<double>(recording.LastTick()));
+    }
+    progress.Finish();
+  }
+  const auto doublet = view::RenderCriticalViewDoublet(replay.GetSimulation(), (*size)[0], (*size)[1]);
+  if (!doublet.ok()) return doublet.error();
+  const std::filesystem::path folder = arguments.output;
+  std::error_code failure;
+  std::filesystem::create_directories(folder, failure);  // what cannot be made cannot be written to
+  const auto write = [&](const char* name, const view::CriticalViewPicture& picture) {
+    return render::WritePng(folder / name, picture.image);
+  };
+  if (auto status = write("front.png", doublet->front); !status.ok()) return status;
+  if (auto status = write("back.png", doublet->back); !status.ok()) return status;
+  const simulation::OperationResult result = *replay.GetSimulation().GetOperationResult();
+  const double seconds = static_cast<double>(replay.Tick()) * recording.description.tick_seconds;
+  const auto& score = result.critical_view;
+  if (arguments.is_json) {
+    const auto picture = [](const char* name, const view::CriticalViewPicture& p) {
+      return ordered_json{{"file", name}, {"azimuth_rad", p.azimuth}, {"shows_triangle", p.shows_triangle}};
+    };
+    const ordered_json json = {{"at_s", seconds},
+                               {"achieved", score.IsAchieved()},
+                               {"triangle", score.criteria[0]},
+                               {"plate", score.criteria[1]},
+                               {"two_structures", score.criteria[2]},
+                               {"front", picture("front.png", doublet->front)},
+                               {"back", picture("back.png", doublet->back)}};
+    std::printf("%s\n", json.dump(2).c_str());
+    return {};
+  }
+  std::printf("%s holds front.png and back.png of %s s: the critical view is %s\n", arguments.output.c_str(),
+              FormatNumber(seconds, 4).c_str(), score.IsAchieved() ? "achieved" : "not achieved");
+  std::printf("Triangle cleared %d of 2, lower third off the plate %d of 2, two structures %d of 2\n",
+              score.criteria[0], score.criteria[1], score.criteria[2]);
+  for (const std::string& reason : training::ExplainCriticalView(result.facts, score))
+    std::printf("  %s\n", reason.c_str());
+  return {};
+}
+
 /// "What if": somebody else goes on from here.
 core::Status TakeOver(Replay replay, const ReplayArguments& arguments) {
   record::Description description = replay.GetRecording().description;
@@ -177,7 +238,10 @@ core::Status TakeOver(Replay replay, const ReplayArguments& arguments) {
 
 core::Status DoReplay(const ReplayArguments& arguments, Outcome& outcome) {
   const bool branches = !arguments.surgeon.empty() || !arguments.save.empty();
-  if (branches != (arguments.at >= 0))
+  if (arguments.is_critical_view && (branches || arguments.output.empty()))
+    return core::Error{core::ErrorCode::kUsage,
+                       "--critical-view goes with -o DIR, and with --at where another moment is wanted"};
+  if (!arguments.is_critical_view && branches != (arguments.at >= 0))
     return core::Error{core::ErrorCode::kUsage, "--at goes with --surgeon or --save, and these with --at"};
   if (!arguments.record.empty() && arguments.surgeon.empty())
     return core::Error{core::ErrorCode::kUsage,
@@ -195,6 +259,7 @@ core::Status DoReplay(const ReplayArguments& arguments, Outcome& outcome) {
   }
   auto replay = Replay::Open(std::move(*recording), arguments.threads);
   if (!replay.ok()) return replay.error();
+  if (arguments.is_critical_view) return DrawCriticalView(*replay, arguments);
   if (arguments.is_verify || (arguments.output.empty() && !branches)) {
     if (const auto status = Verify(*replay, arguments, outcome); !status.ok()) return status;
   }
@@ -229,6 +294,10 @@ void AddReplayCommand(CLI::App& app, Outcome& outcome) {
   command->add_option("--size", a->size, "Of video and pictures [pixels]")
       ->type_name("WxH")
       ->capture_default_str();
+  command->add_flag(
+      "--critical-view", a->is_critical_view,
+      "Of an operation: two pictures, front.png and back.png, of the moment at which the critical view was "
+      "achieved (or of --at, or of the end), to be scored by a person");
   command->add_option("--at", a->at, "Moment from which to go on otherwise [s]")
       ->check(CLI::Range(0.0, 1e6))
       ->type_name("S");
@@ -249,7 +318,8 @@ void AddReplayCommand(CLI::App& app, Outcome& outcome) {
       "  trocar play novice --task peg_transfer --record attempt.trocar\n"
       "  trocar replay attempt.trocar --verify\n"
       "  trocar replay attempt.trocar --from 10 --until 20 -o video\n"
-      "  trocar replay attempt.trocar --at 12.5 --surgeon expert");
+      "  trocar replay attempt.trocar --at 12.5 --surgeon expert\n"
+      "  trocar replay operation.trocar --critical-view -o doublet");
   command->callback([a, &outcome] { outcome.status = DoReplay(*a, outcome); });
 }
 

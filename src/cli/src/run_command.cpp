@@ -80,6 +80,8 @@ int ParseAndRun(int argc, char** argv) {
   AddPlayCommand(app, outcome);
   AddSimulateCommand(app, outcome);
   AddReplayCommand(app, outcome);
+  AddCoachCommand(app, outcome);
+  AddStudyCommand(app, outcome);
   AddMetricsCommand(app, outcome);
   AddRecordCommand(app, outcome);
   AddAnatomyCommand(app, outcome);
