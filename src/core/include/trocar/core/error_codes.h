@@ -69,6 +69,11 @@ enum class ErrorCode {
   kStoreRefused,
   kStoreUnknown,
   kStoreInvalid,
+  // reports, ratings, learning records
+  kRatingInvalid,
+  kXapiUnsafe,
+  kXapiAway,
+  kXapiRefused,
   // drawing and video
   kNoGraphics,
   kGraphicsTooOld,
