@@ -138,6 +138,7 @@ void ReplayPresenter::FinishLoading() {
     return Refresh();
   }
   UseSide(loading_side_, std::move(*opened));
+  if (loading_side_ == kOwn && options_.replay_at > 0) GoTo(options_.replay_at);
   if (loading_side_ == kOwn && !options_.replay_beside.empty()) return Load(kBeside, options_.replay_beside);
   Refresh();
 }

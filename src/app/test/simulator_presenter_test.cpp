@@ -22,6 +22,10 @@ struct FakeScreen : SimulatorScreen {
   std::vector<std::string> UseKeys(const std::map<std::string, device::HandAct>&) override { return {}; }
   core::Status FillTaskList() override { return list_status; }
   void FillResult(const TaskResult&) override { ++results; }
+  void OpenAttempt(const std::filesystem::path& recording, bool is_exam) override {
+    attempts.push_back(recording);
+    has_exam = has_exam || is_exam;
+  }
   void FillRecordingList(const std::filesystem::path& folder) override { listed = folder; }
   void OpenReplay(const std::filesystem::path& recording) override { replayed = recording; }
   void ReleasePointer() override { is_pointer_taken = false; }
@@ -33,6 +37,8 @@ struct FakeScreen : SimulatorScreen {
   SessionControl* control = nullptr;
   core::Status list_status;
   std::filesystem::path listed, replayed;
+  std::vector<std::filesystem::path> attempts;  // whose pages were opened
+  bool has_exam = false;
   int results = 0, focused = 0;
   bool is_pointer_taken = false;
   std::vector<Action> done;

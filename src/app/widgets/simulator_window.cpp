@@ -15,8 +15,9 @@ constexpr int kWidth = 1280, kHeight = 800;
 }  // namespace
 
 SimulatorWindow::SimulatorWindow(const Options& options, const core::Stopwatch& since_start,
-                                 std::optional<Branch> branch)
-    : bar_(SimulatorCommands(), tips_,
+                                 SimulatorServices services, Beginning beginning)
+    : services_(std::move(services)),
+      bar_(SimulatorCommands(), tips_,
            [this](const SimulatorCommand& command) { presenter_->Do(command.action.action); }) {
   set_title("Trocar");
   add_css_class("trocar");
@@ -26,13 +27,17 @@ SimulatorWindow::SimulatorWindow(const Options& options, const core::Stopwatch& 
   tips_.Adopt(panel_);
   hands_ = std::make_unique<HandEvents>(*this, picture_, panel_);
   presenter_ = std::make_unique<SimulatorPresenter>(
-      options, since_start, static_cast<SimulatorScreen&>(*this), [this] { loaded_.emit(); });
+      options, since_start, static_cast<SimulatorScreen&>(*this), [this] { loaded_.emit(); }, services_.hooks);
   MakeRoutes();
   panel_.set_sensitive(false);  // until there is something to set
   if (options.is_fullscreen) fullscreen();
   picture_.grab_focus();
-  if (branch) {
+  if (auto* branch = std::get_if<Branch>(&beginning)) {
     presenter_->TakeOver(std::move(*branch));
+  } else if (const auto* start = std::get_if<centre::Start>(&beginning)) {
+    presenter_->Open(*start);
+  } else if (const auto* task = std::get_if<TaskRequest>(&beginning)) {
+    presenter_->Open(*task);
   } else {
     presenter_->Start();
   }
@@ -198,6 +203,9 @@ void SimulatorWindow::DoInWindow(Action action) {
     case Action::kOpenDevices:
       OpenDevices();
       break;
+    case Action::kOpenCentre:
+      if (services_.open_centre) services_.open_centre();
+      break;
     case Action::kQuit:
       // never within a frame, which holds the GLArea
       Glib::signal_timeout().connect_once([this] { close(); }, 0);
@@ -218,6 +226,15 @@ void SimulatorWindow::OpenReplay(const std::filesystem::path& recording) {
   replay_->set_transient_for(*this);
   get_application()->add_window(*replay_);
   replay_->present();
+}
+
+void SimulatorWindow::OpenAttempt(const std::filesystem::path& recording, bool is_exam) {
+  // outside of the frame, which holds the GLArea: a window opens
+  Glib::signal_timeout().connect_once(
+      [this, recording, is_exam] {
+        if (services_.open_attempt) services_.open_attempt(recording, is_exam);
+      },
+      0);
 }
 
 void SimulatorWindow::SwitchPane() {

@@ -9,23 +9,13 @@
 #include <cstdio>
 #include <numbers>
 
+#include "cairo_text.h"
 #include "shown_text.h"
+#include "trocar/report/cairo_drawing.h"
 
 namespace trocar::report {
 namespace {
 
-// Pango takes the first that is installed; DejaVu Sans comes with Trocar's packages
-constexpr const char* kFamilies = "Inter,DejaVu Sans,sans-serif";
-constexpr int kSemiBold = 600;
-
-template <auto free_function>
-struct Deleter {
-  template <typename T>
-  void operator()(T* object) const {
-    free_function(object);
-  }
-};
-using LayoutOwner = std::unique_ptr<PangoLayout, Deleter<g_object_unref>>;
 using SurfaceOwner = std::unique_ptr<cairo_surface_t, Deleter<cairo_surface_destroy>>;
 using ContextOwner = std::unique_ptr<cairo_t, Deleter<cairo_destroy>>;
 
@@ -52,103 +42,10 @@ SurfaceOwner DecodePng(const std::string& png) {
   return picture;
 }
 
-void SetColour(cairo_t* cairo, std::uint32_t colour, double opacity = 1) {
-  cairo_set_source_rgba(cairo, (colour >> 16 & 0xff) / 255.0, (colour >> 8 & 0xff) / 255.0,
-                        (colour & 0xff) / 255.0, opacity);
-}
-
-LayoutOwner MakeLayout(cairo_t* cairo, std::string_view text, double width, const TextStyle& style) {
-  LayoutOwner layout(pango_cairo_create_layout(cairo));
-  PangoContext* context = pango_layout_get_context(layout.get());
-  pango_cairo_context_set_resolution(context, 72);  // a point is a unit of the page
-  PangoFontDescription* font = pango_font_description_new();
-  pango_font_description_set_family(font, kFamilies);
-  pango_font_description_set_absolute_size(font, style.size * PANGO_SCALE);
-  pango_font_description_set_weight(
-      font, style.is_bold ? static_cast<PangoWeight>(kSemiBold) : PANGO_WEIGHT_NORMAL);
-  pango_layout_set_font_description(layout.get(), font);
-  pango_font_description_free(font);
-  if (width > 0) {
-    pango_layout_set_width(layout.get(), static_cast<int>(width * PANGO_SCALE));
-    pango_layout_set_wrap(layout.get(), PANGO_WRAP_WORD_CHAR);
-  }
-  pango_layout_set_alignment(layout.get(), style.anchor == Anchor::kStart    ? PANGO_ALIGN_LEFT
-                                           : style.anchor == Anchor::kMiddle ? PANGO_ALIGN_CENTER
-                                                                             : PANGO_ALIGN_RIGHT);
-  const std::string shown = Shown(text);
-  pango_layout_set_text(layout.get(), shown.c_str(), static_cast<int>(shown.size()));
-  return layout;
-}
-
 double HeightOf(PangoLayout* layout) {
   int width = 0, height = 0;
   pango_layout_get_size(layout, &width, &height);
   return static_cast<double>(height) / PANGO_SCALE;
-}
-
-void Trace(cairo_t* cairo, const std::vector<Vec2>& points) {
-  bool is_down = false;
-  for (const Vec2& point : points) {
-    if (!std::isfinite(point.x) || !std::isfinite(point.y)) {
-      is_down = false;
-    } else if (is_down) {
-      cairo_line_to(cairo, point.x, point.y);
-    } else {
-      cairo_move_to(cairo, point.x, point.y);
-      is_down = true;
-    }
-  }
-}
-
-void Draw(cairo_t* cairo, const Line& line) {
-  const std::array<double, 2> dashed = {6, 4}, dotted = {1.5, 3};
-  if (line.dash != Dash::kSolid)
-    cairo_set_dash(cairo, line.dash == Dash::kDashed ? dashed.data() : dotted.data(), 2, 0);
-  cairo_set_line_width(cairo, line.width);
-  cairo_set_line_join(cairo, CAIRO_LINE_JOIN_ROUND);
-  SetColour(cairo, ColoursOf(line.ink).light);
-  Trace(cairo, line.points);
-  cairo_stroke(cairo);
-  cairo_set_dash(cairo, nullptr, 0, 0);
-}
-
-void Draw(cairo_t* cairo, const Area& area) {
-  Trace(cairo, area.points);
-  cairo_close_path(cairo);
-  SetColour(cairo, ColoursOf(area.ink).light, area.opacity);
-  cairo_fill(cairo);
-}
-
-void Draw(cairo_t* cairo, const Mark& mark) {
-  if (mark.kind == MarkKind::kDot) {
-    cairo_new_sub_path(cairo);
-    cairo_arc(cairo, mark.at.x, mark.at.y, mark.radius, 0, 2 * std::numbers::pi);
-  } else {
-    Trace(cairo, MakeMarkOutline(mark));
-    cairo_close_path(cairo);
-  }
-  SetColour(cairo, ColoursOf(mark.ink).light);
-  cairo_fill_preserve(cairo);
-  SetColour(cairo, kPaper.light);
-  cairo_set_line_width(cairo, 1);
-  cairo_stroke(cairo);
-}
-
-void Draw(cairo_t* cairo, const Label& label) {
-  const LayoutOwner layout = MakeLayout(cairo, label.text, 0, {label.size, 0, label.is_bold, Anchor::kStart});
-  int width = 0, height = 0;
-  pango_layout_get_size(layout.get(), &width, &height);
-  const double length = static_cast<double>(width) / PANGO_SCALE;
-  const double back = label.anchor == Anchor::kStart    ? 0
-                      : label.anchor == Anchor::kMiddle ? length / 2
-                                                        : length;
-  cairo_save(cairo);
-  cairo_translate(cairo, label.at.x, label.at.y);
-  if (label.is_upward) cairo_rotate(cairo, -std::numbers::pi / 2);
-  cairo_move_to(cairo, -back, -static_cast<double>(pango_layout_get_baseline(layout.get())) / PANGO_SCALE);
-  SetColour(cairo, ColoursOf(label.ink).light);
-  pango_cairo_show_layout(cairo, layout.get());
-  cairo_restore(cairo);
 }
 
 }  // namespace
@@ -219,7 +116,7 @@ double PdfCanvas::AddDrawing(const Drawing& drawing, double left, double top, do
   cairo_save(cairo);
   cairo_translate(cairo, left, top);
   cairo_scale(cairo, scale, scale);
-  for (const Shape& shape : drawing.shapes) std::visit([&](const auto& one) { Draw(cairo, one); }, shape);
+  PaintDrawing(*cairo, drawing, Ground::kLight);
   cairo_restore(cairo);
   return drawing.height * scale;
 }

@@ -72,6 +72,8 @@ class SessionControl {
   bool IsPaused() const { return runner_.IsPaused(); }
   /// Back to the first tick, hands at home; keeps running or paused, and the settings.
   void Reset();
+  /// The attempt is over: what is recorded ends here, and nothing more is until the next reset.
+  void EndAttempt() { runner_.EndAttempt(); }
   /// true: from the first tick on the script, or else a scripted expert, moves both hands. false: the person takes over
   /// where they are.
   void SetDemonstration(bool is_on);

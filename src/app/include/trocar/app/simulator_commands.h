@@ -30,6 +30,7 @@ enum class Action {
   kAssistant,   ///< the next command to the assistant
   kTogglePause,
   kReset,
+  kFinish,      ///< the attempt is over: its result
   kToggleDemonstration,
   kToggleForces,
   kToggleMask,
@@ -39,6 +40,7 @@ enum class Action {
   kToggleTaskList,
   kToggleRecordingList,
   kOpenDevices,
+  kOpenCentre,  ///< history, courses, groups, exams
   kToggleFullscreen,
   kToggleHelp,
   kReleasePointer,
@@ -58,7 +60,8 @@ enum class SimulatorNeeds {
   kNothing,
   kNoFailure,
   kScene,    ///< a simulation runs, and nothing has failed
-  kScript,   ///< likewise, and it has a script or an expert
+  kScript,   ///< likewise, it has a script or an expert, and it is no exam
+  kGuidance,  ///< likewise, and it is no exam
   kHaptics,  ///< likewise, and a haptic device holds a hand
 };
 

@@ -17,6 +17,7 @@
 #include "trocar/app/task_request.h"
 #include "trocar/app/task_result.h"
 #include "trocar/app/unattended_play.h"
+#include "trocar/centre/course_page.h"
 #include "trocar/core/clock.h"
 #include "trocar/gui/background_job.h"
 #include "trocar/view/laparoscope_view.h"
@@ -32,6 +33,11 @@ struct SimulatorPage {
   bool is_recording_list_open = false;
   view::ViewOptions view;
   std::optional<core::Error> failure;
+};
+
+/// Told of recordings that begin and that have ended, by the simulation's thread; either may be empty.
+struct AttemptHooks {
+  std::function<void(const std::filesystem::path&)> on_begin, on_end;
 };
 
 /// What the presenter needs of a window.
@@ -51,6 +57,8 @@ class SimulatorScreen {
   virtual void FillRecordingList(const std::filesystem::path& folder) = 0;
   /// A window of its own plays a recording.
   virtual void OpenReplay(const std::filesystem::path& recording) = 0;
+  /// An attempt that a person made is over, and is recorded: its page.
+  virtual void OpenAttempt(const std::filesystem::path& recording, bool is_exam) = 0;
   virtual void ReleasePointer() = 0;
   virtual bool IsPointerTaken() const = 0;
   virtual void FocusPicture() = 0;
@@ -63,7 +71,7 @@ class SimulatorPresenter {
   /// \param screen     outlives the presenter
   /// \param on_loaded  called by another thread when FinishLoading() is due
   SimulatorPresenter(const Options& options, const core::Stopwatch& since_start, SimulatorScreen& screen,
-                     std::function<void()> on_loaded);
+                     std::function<void()> on_loaded, AttemptHooks hooks = {});
 
   /// Begins to read the scene that the options name.
   void Start();
@@ -71,6 +79,8 @@ class SimulatorPresenter {
   void FinishLoading();
   /// Gives up the scene that is shown and reads the one that was chosen; nothing while one is being read.
   void Open(const TaskRequest& request);
+  /// Likewise with a step of a course, or an exam.
+  void Open(const centre::Start& start);
 
   /// Gives up the scene that is shown and goes on from a moment of a recording: paused, until the person's hands are ready;
   /// the expert begins at once. Nothing while a scene is being read.
@@ -125,6 +135,10 @@ class SimulatorPresenter {
   bool IsForceOn() const;
   core::Status UseDevices();
   bool Use(simulation::Simulation simulation, record::Description description);
+  void GoOn();
+  void Finish();
+  void EndAttempt();
+  bool IsExam() const { return start_ && start_->is_exam; }
   void Drop();
   void Refresh();
   void Announce(const std::string& text, bool is_warning = false);
@@ -141,6 +155,8 @@ class SimulatorPresenter {
   bool DoWithView(Action action);
 
   Options options_;
+  AttemptHooks hooks_;
+  std::optional<centre::Start> start_;  // that was opened in place of what the options name
   core::Stopwatch since_start_;
   SimulatorScreen* screen_;
   SimulatorPage page_;
@@ -153,6 +169,7 @@ class SimulatorPresenter {
   TaskResult result_;                                         // of the task that is over
   bool is_recording_stopped_ = false, is_space_low_ = false;  // they have been said
   bool is_result_known_ = false;                              // it has been shown
+  bool is_attempt_over_ = false;
   std::uint64_t seen_events_ = 0;
   double first_picture_ = 0;                                  // since the start of the program [s]
   double last_frame_ = 0, last_forces_ = 0, last_times_ = 0;  // of the frame clock [s]
