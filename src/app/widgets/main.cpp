@@ -60,7 +60,8 @@ class Program {
       window_->present();
     });
     const int status = application->run();
-    const bool is_good = status == 0 && !(has_failed_ && has_failed_());
+    const bool has_failed = has_failed_ && has_failed_();
+    const bool is_good = status == 0 && !has_failed;
     for (const auto& simulator : simulators_) simulator->SaveHapticRecord();
     {
       const std::lock_guard lock(mutex_);

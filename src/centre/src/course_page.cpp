@@ -188,7 +188,8 @@ core::Result<Start> PrepareStart(const StepName& name,
   description.name = step->IsOperation() ? step->operation : step->task;
   description.level = step->level;
   description.patient = prepared->patient.string();
-  description.seed = step->IsOperation() ? 0 : step->seed.value_or(DrawSeed());
+  // the expert who came so far operated on the scene of this seed
+  description.seed = step->IsOperation() ? settings.surgeon_seed : step->seed.value_or(DrawSeed());
   start.state = prepared->state;
   start.state_surgeon = prepared->surgeon;
   start.title = step->name;

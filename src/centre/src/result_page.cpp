@@ -234,7 +234,7 @@ core::Result<ReviewPage> LoadReview(const Access& access, const store::Attempt& 
     if (rating.rater != access.person) continue;
     for (ReviewPage::Form& form : page.forms) {
       for (ReviewPage::Item& item : form.items) {
-        if (form.key == rating.form && item.key == rating.item) item.points = rating.value;
+        if (form.name == rating.form && item.key == rating.item) item.points = rating.value;
       }
     }
   }
@@ -257,7 +257,7 @@ core::Status KeepRating(const Access& access, const ReviewPage& page, const Revi
   for (const ReviewPage::Item& item : form.items) {
     if (item.points == 0) continue;
     const auto kept = store::AddRating(desk->store, desk->viewer, page.attempt,
-                                       {form.key, item.key, item.points, access.person});
+                                       {form.name, item.key, item.points, access.person});
     if (!kept.ok()) return kept;
   }
   return {};

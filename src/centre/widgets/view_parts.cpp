@@ -11,7 +11,6 @@ Gtk::Label& MakeText(const std::string& text, const char* style) {
   label->set_xalign(0);
   label->set_halign(Gtk::Align::FILL);
   label->set_wrap(true);
-  label->set_natural_wrap_mode(Gtk::NaturalWrapMode::NONE);
   return *label;
 }
 

@@ -127,7 +127,7 @@ bool IsRatingItem(const Rating& rating) {
                                                 "tissue_handling", "autonomy"};
   static constexpr std::string_view kOsats[] = {
       "respect_for_tissue", "time_and_motion",   "instrument_handling",   "knowledge_of_instruments",
-      "use_of_assistants",  "flow_of_operation", "knowledge_of_procedure"};
+      "use_of_assistants",  "flow_and_planning", "knowledge_of_procedure"};
   const auto has = [&](const auto& items) {
     return std::find(std::begin(items), std::end(items), rating.item) != std::end(items);
   };

@@ -279,7 +279,7 @@ TEST_P(Attempts, CarryRemarksAndRatings) {
   EXPECT_EQ(remarks[1].tick, 480);
   EXPECT_GOOD(AddRating(Open(), viewer, id, {"GOALS", "tissue_handling", 3, ""}));
   EXPECT_GOOD(AddRating(Open(), viewer, id, {"GOALS", "tissue_handling", 4, ""}));
-  EXPECT_GOOD(AddRating(Open(), viewer, id, {"OSATS", "flow_of_operation", 5, ""}));
+  EXPECT_GOOD(AddRating(Open(), viewer, id, {"OSATS", "flow_and_planning", 5, ""}));
   EXPECT_CODE(AddRating(Open(), viewer, id, {"OSATS", "autonomy", 5, ""}), kStoreInvalid);
   EXPECT_CODE(AddRating(Open(), viewer, id, {"GOALS", "efficiency", 6, ""}), kStoreInvalid);
   EXPECT_CODE(AddRating(Open(), kOwner, id, {"GOALS", "efficiency", 3, ""}), kStoreRefused);
