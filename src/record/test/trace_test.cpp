@@ -179,7 +179,7 @@ TEST_F(TraceTest, IsTheSameLiveAndReplayedWithAnyNumberOfThreads) {
 TEST_F(TraceTest, RefusesARecordingThatReplaysToSomethingElse) {
   Record(300);
   Recording recording = ReadIt();
-  for (std::size_t tick = 100; tick < 115; ++tick) recording.inputs[tick].hands[1].spin += 0.3;
+  for (std::size_t tick = 200; tick < 215; ++tick) recording.inputs[tick].hands[1].spin += 0.3;
   const auto trace = TraceRecording(std::move(recording), 1);
   ASSERT_FALSE(trace.ok());
   EXPECT_EQ(trace.error().code, core::ErrorCode::kRecordingInvalid);

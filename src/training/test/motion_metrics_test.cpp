@@ -241,9 +241,7 @@ TEST(AttemptMetrics, RefusesBadSettingsAndSamples) {
       [](AttemptTrace& t) { t.hands[0][0].force = -1; },
       [](AttemptTrace& t) { t.hands[0][0].tool = 2; },
       [](AttemptTrace& t) { t.camera.resize(3); },
-      [](AttemptTrace& t) {
-        t.events.push_back({std::nan(""), "grasp"});
-      },
+      [](AttemptTrace& t) { t.events.resize(1), t.events[0].time = std::nan(""); },
       [](AttemptTrace& t) {
         t.phases.push_back({"", 0, 1});
       },
