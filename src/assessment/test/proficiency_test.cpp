@@ -144,6 +144,17 @@ TEST(MakeProficiency, TakesTheBestQuartileAndSlackWhereAsked) {
   EXPECT_DOUBLE_EQ(made->thresholds[1].value, 1) << "safety has no slack";
 }
 
+TEST(MakeProficiency, TakesTheMiddleBetweenExpertsAndNovicesWhereAsked) {
+  ExpertSetSettings settings = MakeSettings();
+  settings.rule = LevelRule::kMidpoint;
+  EXPECT_EQ(MakeProficiency(MakeExperts(), {}, settings).error().code, core::ErrorCode::kAttemptsTooFew);
+  const auto made =
+      MakeProficiency(MakeExperts(), std::vector<AttemptResult>(10, MakeResult(100, 5)), settings);
+  ASSERT_TRUE(made.ok());
+  EXPECT_DOUBLE_EQ(made->thresholds[0].value, 0.5 * (46.5 + 100));
+  EXPECT_DOUBLE_EQ(made->thresholds[1].value, 1) << "safety asks the experts alone";
+}
+
 TEST(MakeProficiency, DrawsGradesBetweenExpertsAndNovices) {
   std::vector<AttemptResult> novices;
   for (int i = 0; i < 10; ++i) novices.push_back(MakeResult(120 + 10 * i, 3));
