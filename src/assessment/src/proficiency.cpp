@@ -201,7 +201,7 @@ core::Result<Proficiency> MakeProficiency(std::span<const AttemptResult> experts
     const double expert = CalcQuantile(expert_composites, kExpertPercentile);
     const double novice = CalcQuantile(novice_composites, kNovicePercentile);
     result.grades.push_back({"expert", expert});
-    if (novice < expert) result.grades.push_back({"intermediate", novice});
+    if (novice < expert) result.grades.push_back({"intermediate", 0.5 * (expert + novice)});
     result.grades.push_back({"novice", -kMostDeviations});
   }
   return result;

@@ -162,7 +162,7 @@ TEST(MakeProficiency, DrawsGradesBetweenExpertsAndNovices) {
   ASSERT_TRUE(made.ok());
   ASSERT_EQ(made->grades.size(), 3u);
   EXPECT_EQ(Judge(*made, MakeResult(44, 0)).grade, "expert");
-  EXPECT_EQ(Judge(*made, MakeResult(60, 1)).grade, "intermediate");
+  EXPECT_EQ(Judge(*made, MakeResult(55, 0)).grade, "intermediate");
   EXPECT_EQ(Judge(*made, MakeResult(150, 4)).grade, "novice");
 }
 

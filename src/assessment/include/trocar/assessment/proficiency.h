@@ -127,8 +127,8 @@ struct ExpertSetSettings {
 inline constexpr std::size_t kLeastExpertAttempts = 10;
 
 /// Thresholds and norms of what experts did. Safety is not averaged: the worst of the completed expert attempts is the threshold.
-/// With novices there are grades: "expert" from the tenth percentile of the experts' composites on, "intermediate" from the
-/// ninetieth of the novices', where that is lower.
+/// With novices there are grades: "expert" from the tenth percentile of the experts' composites on, "intermediate" from half way
+/// between that and the ninetieth of the novices', where that is lower.
 /// \param novices  completed or not; may be empty but for LevelRule::kMidpoint
 /// \return kAttemptsTooFew for less than kLeastExpertAttempts completed attempts, or of novices where they are needed; kProficiencyInvalid where no metric is defined
 /// in all of them
