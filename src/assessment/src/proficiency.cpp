@@ -63,6 +63,10 @@ std::pair<double, std::string> FindLevel(const Norm& norm, double novice_mean, L
           "half way to the novices' mean of " + core::FormatNumber(novice_mean, 4)};
 }
 
+bool AreCounts(const std::vector<double>& values) {
+  return std::all_of(values.begin(), values.end(), [](double value) { return value == std::floor(value); });
+}
+
 /// Value and source of a threshold, of the values of experts and novices.
 void SetLevel(const Norm& norm, const std::vector<double>& experts, const std::vector<double>& novices,
               const ExpertSetSettings& settings, Threshold& threshold) {
@@ -76,6 +80,9 @@ void SetLevel(const Norm& norm, const std::vector<double>& experts, const std::v
     const double slack = settings.slack_deviations * norm.deviation;
     threshold.value = is_lower ? level + slack : level - slack;
     rule = name;
+    // half an error more or less is none: the whole number that asks the same
+    if (AreCounts(experts) && AreCounts(novices))
+      threshold.value = is_lower ? std::floor(threshold.value) : std::ceil(threshold.value);
     if (slack > 0) rule += " and " + core::FormatNumber(settings.slack_deviations, 3) + " deviations";
   }
   threshold.source = rule + "; " + std::to_string(norm.attempts) + " attempts of experts: mean " +
