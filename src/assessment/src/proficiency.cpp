@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "trocar/core/text_table.h"
 
@@ -40,26 +41,53 @@ Norm MakeNorm(const MetricKey& of, Better better, const std::vector<double>& val
   return norm;
 }
 
-/// The threshold that a set of experts gives.
-double CalcLevel(const Norm& norm, Purpose purpose, const std::vector<double>& values,
-                 const ExpertSetSettings& settings) {
-  const bool is_lower = norm.better == Better::kLower;
-  if (purpose == Purpose::kSafety)
-    return is_lower ? *std::max_element(values.begin(), values.end())
-                    : *std::min_element(values.begin(), values.end());
-  const double level = settings.rule == LevelRule::kMean ? norm.mean : norm.best_quartile;
-  const double slack = settings.slack_deviations * norm.deviation;
-  return is_lower ? level + slack : level - slack;
+std::vector<double> ValuesOf(std::span<const AttemptResult> attempts, const MetricKey& key) {
+  std::vector<double> values;
+  for (const AttemptResult& attempt : attempts) {
+    if (const double* value = Find(attempt.metrics, key)) values.push_back(*value);
+  }
+  return values;
 }
 
-std::string DescribeLevel(const Norm& norm, Purpose purpose, const ExpertSetSettings& settings) {
-  std::string text = purpose == Purpose::kSafety         ? "worst"
-                     : settings.rule == LevelRule::kMean ? "mean"
-                                                         : "best quartile";
-  if (purpose != Purpose::kSafety && settings.slack_deviations > 0)
-    text += " and " + core::FormatNumber(settings.slack_deviations, 3) + " deviations";
-  return text + " of " + std::to_string(norm.attempts) + " attempts: mean " +
-         core::FormatNumber(norm.mean, 4) + ", deviation " + core::FormatNumber(norm.deviation, 4);
+/// Of a set of experts: what the rule takes before slack, and its name.
+std::pair<double, std::string> FindLevel(const Norm& norm, double novice_mean, LevelRule rule) {
+  switch (rule) {
+    case LevelRule::kMean:
+      return {norm.mean, "mean"};
+    case LevelRule::kBestQuartile:
+      return {norm.best_quartile, "best quartile"};
+    case LevelRule::kMidpoint:
+      break;
+  }
+  return {0.5 * (norm.mean + novice_mean),
+          "half way to the novices' mean of " + core::FormatNumber(novice_mean, 4)};
+}
+
+bool AreCounts(const std::vector<double>& values) {
+  return std::all_of(values.begin(), values.end(), [](double value) { return value == std::floor(value); });
+}
+
+/// Value and source of a threshold, of the values of experts and novices.
+void SetLevel(const Norm& norm, const std::vector<double>& experts, const std::vector<double>& novices,
+              const ExpertSetSettings& settings, Threshold& threshold) {
+  const bool is_lower = norm.better == Better::kLower;
+  const auto [least, most] = std::minmax_element(experts.begin(), experts.end());
+  std::string rule = "worst";
+  threshold.value = is_lower ? *most : *least;
+  if (threshold.purpose != Purpose::kSafety) {
+    const double novice_mean = novices.empty() ? norm.mean : MakeNorm(norm.of, norm.better, novices).mean;
+    const auto [level, name] = FindLevel(norm, novice_mean, settings.rule);
+    const double slack = settings.slack_deviations * norm.deviation;
+    threshold.value = is_lower ? level + slack : level - slack;
+    rule = name;
+    // half an error more or less is none: the whole number that asks the same
+    if (AreCounts(experts) && AreCounts(novices))
+      threshold.value = is_lower ? std::floor(threshold.value) : std::ceil(threshold.value);
+    if (slack > 0) rule += " and " + core::FormatNumber(settings.slack_deviations, 3) + " deviations";
+  }
+  threshold.source = rule + "; " + std::to_string(norm.attempts) + " attempts of experts: mean " +
+                     core::FormatNumber(norm.mean, 4) + ", deviation " +
+                     core::FormatNumber(norm.deviation, 3);
 }
 
 std::vector<double> Composites(const std::vector<Norm>& norms, std::span<const AttemptResult> attempts) {
@@ -156,16 +184,17 @@ core::Result<Proficiency> MakeProficiency(std::span<const AttemptResult> experts
   result.task = settings.task;
   result.level = settings.level;
   result.source = settings.source;
+  if (settings.rule == LevelRule::kMidpoint && novices.size() < kLeastExpertAttempts) {
+    return Error{ErrorCode::kAttemptsTooFew,
+                 "a level half way to novices needs " + std::to_string(kLeastExpertAttempts) +
+                     " attempts of novices, and there are " + std::to_string(novices.size())};
+  }
   for (const Threshold& wanted : settings.of) {
-    std::vector<double> values;
-    for (const AttemptResult& expert : completed) {
-      if (const double* value = Find(expert.metrics, wanted.of)) values.push_back(*value);
-    }
+    const std::vector<double> values = ValuesOf(completed, wanted.of);
     if (values.size() < completed.size()) continue;
     const Norm norm = MakeNorm(wanted.of, wanted.better, values);
     Threshold threshold = wanted;
-    threshold.value = CalcLevel(norm, wanted.purpose, values, settings);
-    threshold.source = DescribeLevel(norm, wanted.purpose, settings);
+    SetLevel(norm, values, ValuesOf(novices, wanted.of), settings, threshold);
     result.norms.push_back(norm);
     result.thresholds.push_back(std::move(threshold));
   }
@@ -179,7 +208,7 @@ core::Result<Proficiency> MakeProficiency(std::span<const AttemptResult> experts
     const double expert = CalcQuantile(expert_composites, kExpertPercentile);
     const double novice = CalcQuantile(novice_composites, kNovicePercentile);
     result.grades.push_back({"expert", expert});
-    if (novice < expert) result.grades.push_back({"intermediate", novice});
+    if (novice < expert) result.grades.push_back({"intermediate", 0.5 * (expert + novice)});
     result.grades.push_back({"novice", -kMostDeviations});
   }
   return result;

@@ -106,10 +106,10 @@ TEST(CalcComposite, IsTheMeanOfWhatIsDefined) {
   EXPECT_FALSE(CalcComposite({}, MakeResult(45, 0).metrics));
 }
 
-// twelve experts, 41 to 52 s: mean 46.5, best quartile 43.75, deviation sqrt(13)
+// twelve experts, 41.5 to 52.5 s: mean 47, best quartile 44.25, deviation sqrt(13)
 std::vector<AttemptResult> MakeExperts() {
   std::vector<AttemptResult> experts;
-  for (int i = 0; i < 12; ++i) experts.push_back(MakeResult(41 + i, i == 3 ? 1 : 0));
+  for (int i = 0; i < 12; ++i) experts.push_back(MakeResult(41.5 + i, i == 3 ? 1 : 0));
   return experts;
 }
 
@@ -126,11 +126,11 @@ TEST(MakeProficiency, TakesTheMeanForTimeAndTheWorstForSafety) {
   const auto made = MakeProficiency(MakeExperts(), {}, MakeSettings());
   ASSERT_TRUE(made.ok()) << made.error().Text();
   ASSERT_EQ(made->thresholds.size(), 2u);
-  EXPECT_DOUBLE_EQ(made->thresholds[0].value, 46.5);
+  EXPECT_DOUBLE_EQ(made->thresholds[0].value, 47);
   EXPECT_DOUBLE_EQ(made->thresholds[1].value, 1);
   EXPECT_NE(made->thresholds[0].source.find("12 attempts"), std::string::npos);
   EXPECT_NEAR(made->norms[0].deviation, std::sqrt(13.0), 1e-12);
-  EXPECT_DOUBLE_EQ(made->norms[0].best_quartile, 43.75);
+  EXPECT_DOUBLE_EQ(made->norms[0].best_quartile, 44.25);
   EXPECT_TRUE(made->grades.empty());
 }
 
@@ -140,8 +140,19 @@ TEST(MakeProficiency, TakesTheBestQuartileAndSlackWhereAsked) {
   settings.slack_deviations = 2;
   const auto made = MakeProficiency(MakeExperts(), {}, settings);
   ASSERT_TRUE(made.ok());
-  EXPECT_NEAR(made->thresholds[0].value, 43.75 + 2 * std::sqrt(13.0), 1e-12);
+  EXPECT_NEAR(made->thresholds[0].value, 44.25 + 2 * std::sqrt(13.0), 1e-12);
   EXPECT_DOUBLE_EQ(made->thresholds[1].value, 1) << "safety has no slack";
+}
+
+TEST(MakeProficiency, TakesTheMiddleBetweenExpertsAndNovicesWhereAsked) {
+  ExpertSetSettings settings = MakeSettings();
+  settings.rule = LevelRule::kMidpoint;
+  EXPECT_EQ(MakeProficiency(MakeExperts(), {}, settings).error().code, core::ErrorCode::kAttemptsTooFew);
+  const auto made =
+      MakeProficiency(MakeExperts(), std::vector<AttemptResult>(10, MakeResult(100, 5)), settings);
+  ASSERT_TRUE(made.ok());
+  EXPECT_DOUBLE_EQ(made->thresholds[0].value, 0.5 * (47 + 100));
+  EXPECT_DOUBLE_EQ(made->thresholds[1].value, 1) << "safety asks the experts alone";
 }
 
 TEST(MakeProficiency, DrawsGradesBetweenExpertsAndNovices) {
@@ -151,8 +162,16 @@ TEST(MakeProficiency, DrawsGradesBetweenExpertsAndNovices) {
   ASSERT_TRUE(made.ok());
   ASSERT_EQ(made->grades.size(), 3u);
   EXPECT_EQ(Judge(*made, MakeResult(44, 0)).grade, "expert");
-  EXPECT_EQ(Judge(*made, MakeResult(60, 1)).grade, "intermediate");
+  EXPECT_EQ(Judge(*made, MakeResult(55, 0)).grade, "intermediate");
   EXPECT_EQ(Judge(*made, MakeResult(150, 4)).grade, "novice");
+}
+
+TEST(MakeProficiency, AsksForWholeNumbersOfWhatIsCounted) {
+  ExpertSetSettings settings = MakeSettings();
+  settings.of[1].purpose = Purpose::kQuality;
+  const auto made = MakeProficiency(MakeExperts(), {}, settings);
+  ASSERT_TRUE(made.ok());
+  EXPECT_EQ(made->thresholds[1].value, 0) << "the mean is a twelfth of an error";
 }
 
 TEST(MakeProficiency, NeedsTenCompletedAttempts) {

@@ -121,8 +121,9 @@ core::Status Make(const LevelsArguments& arguments) {
   assessment::ExpertSetSettings settings;
   settings.task = first.task;
   settings.level = first.level;
-  settings.rule =
-      arguments.rule == "mean" ? assessment::LevelRule::kMean : assessment::LevelRule::kBestQuartile;
+  settings.rule = arguments.rule == "mean"       ? assessment::LevelRule::kMean
+                  : arguments.rule == "midpoint" ? assessment::LevelRule::kMidpoint
+                                                 : assessment::LevelRule::kBestQuartile;
   settings.slack_deviations = arguments.slack;
   settings.source = arguments.source;
   const auto& defaults = first.level.empty() ? kOfOperations : kOfTasks;
@@ -195,8 +196,9 @@ void AddLevelsCommand(CLI::App& app, Outcome& outcome) {
   from->add_option("--novices", a->novices,
                    "Recordings of novices: then there are grades between them and experts")
       ->type_name("RECORDING");
-  from->add_option("--rule", a->rule, "What of the experts is the level")
-      ->check(CLI::IsMember({"mean", "best-quartile"}))
+  from->add_option("--rule", a->rule,
+                   "What the level is: of the experts, or half way between their mean and the novices'")
+      ->check(CLI::IsMember({"mean", "best-quartile", "midpoint"}))
       ->capture_default_str();
   from->add_option("--slack", a->slack, "So many of their standard deviations easier; safety never")
       ->check(CLI::Range(0.0, 10.0))

@@ -109,7 +109,11 @@ Verdict Judge(const Proficiency& proficiency, const AttemptResult& attempt);
 
 // --- from attempts of experts
 
-enum class LevelRule { kMean, kBestQuartile };
+enum class LevelRule {
+  kMean,          ///< of the experts
+  kBestQuartile,  ///< of the experts
+  kMidpoint       ///< half way between the means of experts and novices; needs as many novices as experts
+};
 
 struct ExpertSetSettings {
   std::string task, level;
@@ -123,9 +127,10 @@ struct ExpertSetSettings {
 inline constexpr std::size_t kLeastExpertAttempts = 10;
 
 /// Thresholds and norms of what experts did. Safety is not averaged: the worst of the completed expert attempts is the threshold.
-/// With novices there are grades: "expert" from the tenth percentile of the experts' composites on, "intermediate" from the
-/// ninetieth of the novices', where that is lower.
-/// \return kAttemptsTooFew for less than kLeastExpertAttempts completed attempts; kProficiencyInvalid where no metric is defined
+/// With novices there are grades: "expert" from the tenth percentile of the experts' composites on, "intermediate" from half way
+/// between that and the ninetieth of the novices', where that is lower.
+/// \param novices  completed or not; may be empty but for LevelRule::kMidpoint
+/// \return kAttemptsTooFew for less than kLeastExpertAttempts completed attempts, or of novices where they are needed; kProficiencyInvalid where no metric is defined
 /// in all of them
 core::Result<Proficiency> MakeProficiency(std::span<const AttemptResult> experts,
                                           std::span<const AttemptResult> novices,
