@@ -15,7 +15,7 @@
 namespace trocar::training {
 namespace {
 
-constexpr double kTremorLow = 7.0, kTremorHigh = 13.0;   // [Hz]
+constexpr double kTremorLow = 5.0, kTremorHigh = 20.0;   // [Hz]
 constexpr double kTremorWindow = 2.0;                    // of the moment that is shown [s]
 constexpr double kSmooth = 6.0;                          // of the motion without tremor [Hz]
 constexpr double kMoves = 0.020, kRests = 0.005;         // [m/s]; as the metrics' movements

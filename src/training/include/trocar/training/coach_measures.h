@@ -28,7 +28,7 @@ struct CoachMeasure {
 
 /// In this order:
 ///
-/// "tremor" [m]: root mean square of the tip's motion between 7 and 13 Hz, of the hand that trembles more.
+/// "tremor" [m]: root mean square of the tip's motion between 5 and 20 Hz, of the hand that trembles more.
 /// "one_hand_waits" [-]: of the time in which a hand moves, in which the other has rested for a second or more.
 /// "peak_force" [N]: that is passed in one hundredth of the time in which a tool is loaded.
 /// "energy_in_air" [s]: a current pedal is down and no current flows.
