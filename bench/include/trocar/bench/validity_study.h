@@ -83,7 +83,7 @@ struct TaskFindings {
 
 /// Plays what is not in the folder yet.
 /// \param progress  called with what is going on and the share done; may be empty
-/// \return every attempt, in the order of tasks, groups, people and repeats; kUsage where the folder holds a study of other
+/// \return every attempt, in the order of people, repeats, tasks and groups; kUsage where the folder holds a study of other
 ///         options or another program; kUnknownName; kFileUnwritable. Where the time is over, the attempts so far.
 core::Result<std::vector<StudyAttempt>> RunStudy(
     const StudyOptions& options, const std::function<void(const std::string&, double)>& progress = {});
