@@ -40,6 +40,20 @@ TEST_F(Schemas, AcceptEveryFileInAssetsAndScenes) {
   EXPECT_EQ(CheckSchemas(""), 0);
 }
 
+TEST_F(Schemas, AcceptMetricsTheirDefinitionsTracesAndTestVectors) {
+  test::TemporaryFolder folder;
+  const auto path = [&](const char* name) { return (folder.Path() / name).string(); };
+  const Printed played = RunTrocar({"simulate", (kRoot / "scenes/demonstration.json").string(), "--ticks",
+                                    "60", "--record", path("a.trocar")});
+  ASSERT_EQ(played.status, 0) << played.err;
+  const Printed measured =
+      RunTrocar({"metrics", path("a.trocar"), "--json", "-o", path("m.json"), "--trace", path("t.json")});
+  ASSERT_EQ(measured.status, 0) << measured.err;
+  EXPECT_EQ(CheckSchemas("'" + path("m.json") + "' '" + path("t.json") + "'"), 0);
+  EXPECT_EQ(CheckSchemas("'" + (kRoot / "docs/metrics.json").string() + "'"), 0);
+  EXPECT_EQ(CheckSchemas((kRoot / "tests/metrics/vectors").string() + "/*.json"), 0);
+}
+
 TEST_F(Schemas, AcceptWhatTheProgramWrites) {
   test::TemporaryFolder folder;
   const fs::path phantom = folder.Path() / "phantom";

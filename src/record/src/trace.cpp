@@ -60,6 +60,13 @@ training::CameraSample SampleCamera(const math::Pose& X_world_laparoscope) {
   return {X_world_laparoscope.translation, math::Rotate(rotation, {0, 0, -1}), std::atan2(up, right)};
 }
 
+/// Whether an event is that of closing a clip: around something, or around nothing.
+bool IsOfClip(const scene::Event& event, bool is_lost) {
+  if (!is_lost) return event.kind == EventKind::kClipClosed;
+  return event.kind == EventKind::kOperationError &&
+         event.error == static_cast<std::int32_t>(OperationError::kClipDropped);
+}
+
 /// What a rule says of an operation's error that the judge has found in the same tick is not a second error.
 bool Restates(const scene::ErrorRule& rule, const std::vector<OperationError>& found) {
   return std::any_of(rule.when.begin(), rule.when.end(), [&](const scene::Condition& condition) {
@@ -226,18 +233,17 @@ int TraceBuilder::Content::TubeAt(const Vec3& p, const std::vector<Vec3>& positi
 }
 
 void TraceBuilder::Content::AddClips(const Snapshot& now, const std::vector<scene::Event>& events) {
-  // clips are only ever added; who closed the new ones stands in the events, in the same order
-  auto event = events.begin();
+  // clips are only ever added; who closed the new ones stands in the events of the tick
+  std::vector<bool> is_used(events.size(), false);
   for (std::size_t i = trace.clips.size(); i < now.operation.clip_count; ++i) {
     const surgery::ClipSnapshot& clip = now.operation.clips[i];
-    event = std::find_if(event, events.end(), [&](const scene::Event& e) {
-      return clip.is_lost ? e.kind == EventKind::kOperationError &&
-                                e.error == static_cast<std::int32_t>(OperationError::kClipDropped)
-                          : e.kind == EventKind::kClipClosed;
-    });
     training::ClipRecord record;
     record.time = TimeOf(now.tick);
-    if (event != events.end()) record.hand = (event++)->hand;
+    for (std::size_t e = 0; e < events.size() && record.hand < 0; ++e) {
+      if (is_used[e] || !IsOfClip(events[e], clip.is_lost)) continue;
+      is_used[e] = true;
+      record.hand = events[e].hand;
+    }
     clip_tubes.push_back(clip.is_lost ? -1 : TubeAt(clip.X_world_clip.translation, now.positions));
     if (!clip.is_lost && record.hand >= 0) {
       const math::Pose& X = now.instruments[static_cast<std::size_t>(record.hand)].X_world_tool;

@@ -10,7 +10,7 @@
 namespace trocar::training {
 namespace {
 
-using nlohmann::json;
+using json = nlohmann::ordered_json;
 
 /// A text, or nothing for null.
 std::string TextOf(const json& object, const char* key) {
@@ -142,7 +142,7 @@ std::string FormatMetricDefinitionsPage() {
   for (const MetricDefinition& d : MetricDefinitions()) {
     page += "\n**" + d.name + "** (`" + d.id + "`, " + d.sampling +
             (d.frame.empty() ? "" : ", frame: " + d.frame) + "): " + d.formula + "." +
-            (d.undefined.empty() ? "" : " No value where " + d.undefined + ".") +
+            (d.undefined.empty() ? "" : " No value: " + d.undefined + ".") +
             (d.settings.empty() ? "" : " Settings: " + JoinWords(d.settings) + ".") + "\n";
     if (d.tolerance) {
       char text[120];

@@ -159,7 +159,7 @@ void MeasureBimanual(const MotionTrack& left, const MotionTrack& right, const At
   for (std::size_t k = 0; k < left.Size(); ++k) {
     if (!part.has_sample[k]) continue;
     samples += 1.0;
-    both += left.speed[k] >= settings.idle_speed && right.speed[k] >= settings.idle_speed;
+    both += left.slow_speed[k] >= settings.idle_speed && right.slow_speed[k] >= settings.idle_speed;
   }
   if (samples == 0.0) return;
   list.Add("bimanual_fraction", part, "", both / samples);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "motion_track.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -92,6 +93,19 @@ std::vector<double> CalcSpeed(const std::vector<Vec3>& x, double step) {
   return speed;
 }
 
+/// Speed from half a window before to half a window after, as far as there are samples.
+std::vector<double> CalcSlowSpeed(const std::vector<Vec3>& x, const MetricSettings& settings) {
+  const auto half = static_cast<std::size_t>(
+      std::max(1.0, std::floor(0.5 * settings.idle_window * settings.sample_rate_hz + 0.5)));
+  std::vector<double> speed(x.size(), 0.0);
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    const std::size_t from = k - std::min(k, half), to = std::min(k + half, x.size() - 1);
+    if (to > from)
+      speed[k] = math::Distance(x[from], x[to]) * settings.sample_rate_hz / static_cast<double>(to - from);
+  }
+  return speed;
+}
+
 std::vector<Movement> FindMovements(const std::vector<double>& speed, const MetricSettings& settings) {
   std::vector<Movement> movements;
   const double gap = settings.movement_gap * settings.sample_rate_hz;
@@ -131,10 +145,11 @@ void MeasureTrack(MotionTrack& track, const MetricSettings& settings) {
   const double step = 1.0 / settings.sample_rate_hz;
   for (Vec3& axis : track.axis) axis = math::Normalized(axis);
   track.speed = CalcSpeed(track.tip, step);
+  track.slow_speed = CalcSlowSpeed(track.tip, settings);
   track.squared_jerk = CalcSquaredJerk(track.tip, step);
   track.tip_step = CalcSteps(track.tip, settings.noise_step, math::Distance);
   track.axis_step = CalcSteps(track.axis, settings.angle_noise_step, AngleBetween);
-  track.is_resting = FindRests(track.speed, settings);
+  track.is_resting = FindRests(track.slow_speed, settings);
   track.movements = FindMovements(track.speed, settings);
 }
 

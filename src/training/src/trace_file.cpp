@@ -293,8 +293,9 @@ std::string FormatTraceJson(const AttemptTrace& trace) {
     json["hands"][kHandNames[hand]] = HandJson(trace.hands[hand]);
   json["camera"] = ordered_json::object();
   if (!trace.camera.empty()) {
-    WriteColumn(json["camera"], "lens", trace.camera,
-                [](const CameraSample& s) { return VectorJson(s.lens); });
+    // the lens stands there even where it never moved: without it there is no camera
+    ordered_json& lens = json["camera"]["lens"];
+    for (const CameraSample& sample : trace.camera) lens.push_back(VectorJson(sample.lens));
     WriteColumn(json["camera"], "direction", trace.camera,
                 [](const CameraSample& s) { return VectorJson(s.direction); });
     WriteColumn(json["camera"], "roll", trace.camera,

@@ -224,6 +224,7 @@ TEST(AttemptMetrics, RefusesBadSettingsAndSamples) {
       [](MetricSettings& s) { s.cutoff_hz = std::nan(""); },
       [](MetricSettings& s) { s.noise_step = -1; },
       [](MetricSettings& s) { s.release_share = 0; },
+      [](MetricSettings& s) { s.idle_window = 0; },
       [](MetricSettings& s) { s.movement_end_speed = 1; },
       [](MetricSettings& s) { s.safe_duct_distance = std::nan(""); },
       [](MetricSettings& s) { s.sparc.pad_level = kMaxPadLevel + 1; },
@@ -240,9 +241,7 @@ TEST(AttemptMetrics, RefusesBadSettingsAndSamples) {
       [](AttemptTrace& t) { t.hands[0][0].force = -1; },
       [](AttemptTrace& t) { t.hands[0][0].tool = 2; },
       [](AttemptTrace& t) { t.camera.resize(3); },
-      [](AttemptTrace& t) {
-        t.events.push_back({std::nan(""), "grasp"});
-      },
+      [](AttemptTrace& t) { t.events.resize(1), t.events[0].time = std::nan(""); },
       [](AttemptTrace& t) {
         t.phases.push_back({"", 0, 1});
       },

@@ -24,6 +24,7 @@ struct MetricSettings {
       0.005;                     ///< and it lasts as long as the speed stays above this [m/s], <= start speed
   double movement_gap = 0.2;     ///< peaks closer together belong to one movement [s], >= 0
   double idle_speed = 0.005;     ///< slower is idle [m/s], >= 0
+  double idle_window = 0.2;      ///< over which that speed is taken, so that noise is not motion [s], > 0
   double idle_duration = 0.5;    ///< if it lasts at least so long [s], >= 0
   double force_threshold = 3.0;  ///< above it tissue is at risk [N], >= 0
   double hard_contact_depth = 0.002;  ///< a tool that is pressed deeper touches hard [m], >= 0
