@@ -84,13 +84,15 @@ std::optional<MetricFinding> FindOut(Values& groups, const Name& name, int repea
   finding.expert_low = *high_least, finding.expert_high = *high_most, finding.expert_mean = CalcMean(high);
   finding.expert_sd = CalcDeviation(high);
   finding.middle_mean = CalcMean(middle);
-  finding.separates = AreApart(low, high);
   finding.is_ordered =
       !middle.empty() &&
       (finding.middle_mean - finding.novice_mean) * (finding.middle_mean - finding.expert_mean) < 0;
   const double more = CalcAuc(low, high);
   const int sense = WorseSense(name.first);
   finding.auc = sense > 0 ? more : sense < 0 ? 1 - more : std::max(more, 1 - more);
+  const bool are_apart = AreApart(low, high);
+  finding.separates = are_apart && finding.auc > 0.5;
+  finding.is_reversed = are_apart && !finding.separates;
   finding.effect = CalcEffectSize(low, high);
   std::vector<std::vector<double>> table;
   for (const auto* level : {&novices, &middles, &experts}) {

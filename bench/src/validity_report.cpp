@@ -67,7 +67,10 @@ void AddMetricTable(std::string& page, const TaskFindings& task) {
             "</td><td class=\"number\">" + Number(finding.effect) + "</td><td class=\"number\">" +
             Number(finding.auc, 3) + "</td><td class=\"number\">" + Number(finding.icc) +
             "</td><td class=\"number\">" + Number(finding.alpha) + "</td><td class=\"" +
-            (finding.separates ? "pass\">separates" : "limit\">does not separate") + "</td></tr>\n";
+            (finding.separates     ? "pass\">separates"
+             : finding.is_reversed ? "fail\">separates the wrong way round"
+                                   : "limit\">does not separate") +
+            "</td></tr>\n";
   }
   page += "</table>\n";
 }
@@ -175,7 +178,8 @@ std::string FormatStudyPage(const StudyOptions& options, const std::vector<TaskF
           EscapeMarkup(training::MetricsDisclaimer()) +
           ".</p>\n<p><b>Separates</b>: no value of a novice lies within the range of the experts' values, "
           "nor the other way "
-          "round. <b>Effect</b>: novices minus experts, in pooled standard deviations. <b>AUC</b>: the "
+          "round, and the novices' values are the worse ones; of what is better neither way, any gap counts. "
+          "<b>Effect</b>: novices minus experts, in pooled standard deviations. <b>AUC</b>: the "
           "chance that a novice's "
           "value is worse than an expert's; 0.5 says nothing. <b>ICC</b>(1,1) and Cronbach's <b>alpha</b>: "
           "how well an attempt "

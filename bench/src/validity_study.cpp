@@ -217,13 +217,14 @@ core::Result<Plan> MakePlan(const StudyOptions& options) {
     if (plan.groups.contains(task)) continue;
     plan.groups[task] = ListGroups(options, **scene);
   }
-  for (const auto& [task, groups] : plan.groups) {
-    for (const Group& group : groups) {
-      for (int person = 0; person < options.people; ++person) {
-        for (int repeat = 0; repeat < group.repeats; ++repeat) {
-          const std::uint64_t seed = options.seed + static_cast<std::uint64_t>(person) +
-                                     kRepeatStep * static_cast<std::uint64_t>(repeat);
-          plan.jobs.push_back({task, &group, person, repeat, seed});
+  // person after person, so that a study that is stopped early has some of every group
+  for (int person = 0; person < options.people; ++person) {
+    for (int repeat = 0; repeat < options.repeats; ++repeat) {
+      const std::uint64_t seed = options.seed + static_cast<std::uint64_t>(person) +
+                                 kRepeatStep * static_cast<std::uint64_t>(repeat);
+      for (const auto& [task, groups] : plan.groups) {
+        for (const Group& group : groups) {
+          if (repeat < group.repeats) plan.jobs.push_back({task, &group, person, repeat, seed});
         }
       }
     }

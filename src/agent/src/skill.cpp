@@ -87,6 +87,24 @@ bool HasElectrode(const Scene& scene) noexcept {
   });
 }
 
+/// Things that can be taken, or ducts and sheets that can be pressed.
+bool HasSomethingToPress(const Scene& scene) noexcept {
+  const bool has_things = std::any_of(scene.objects.begin(), scene.objects.end(),
+                                      [](const auto& object) { return object.Moves(); });
+  return has_things || !scene.patient.tubes.empty() || (scene.model && !scene.model->sheets.empty());
+}
+
+/// Goals in other places, one of which may be mistaken for another.
+bool HasOtherPlaces(const Scene& scene) noexcept {
+  if (!scene.task) return false;
+  return std::count_if(scene.task->goals.begin(), scene.task->goals.end(), [](const scene::Goal& goal) {
+           if (goal.steps.empty()) return false;
+           const scene::Condition& first = goal.steps.front();
+           return first.object >= 0 ||
+                  (!first.regions.empty() && first.kind != scene::ConditionKind::kCameraSees);
+         }) >= 2;
+}
+
 }  // namespace
 
 std::string_view NameOf(SkillLevel level) noexcept {
@@ -200,6 +218,10 @@ bool CanShow(Weakness weakness, const Scene& scene) noexcept {
       return HasElectrode(scene);
     case Weakness::kPoorCamera:
       return !scene.settings.holds_camera;
+    case Weakness::kForce:
+      return HasSomethingToPress(scene);
+    case Weakness::kWrongPlan:
+      return HasOtherPlaces(scene);
     default:
       return true;
   }

@@ -139,11 +139,15 @@ void TaskSurgeon::Plan(const Snapshot& seen) {
 
 /// What has left the picture and lies there is not fetched.
 bool TaskSurgeon::IsLost(const Snapshot& seen, const Goal& goal) const {
+  // who lets the picture wander knows that a thing is there all the same
+  const math::Pose X = skill_.camera_drift > 0
+                           ? scene::CalcLaparoscopePose(scene_->laparoscope, scene_->laparoscope.home)
+                           : seen.X_world_laparoscope;
   return std::any_of(goal.steps.begin(), goal.steps.end(), [&](const Condition& step) {
     if (step.object < 0) return false;
     const ObjectSnapshot& thing = seen.objects[static_cast<std::size_t>(step.object)];
-    return thing.held_by == 0 && !IsInView(seen.X_world_laparoscope, scene_->laparoscope.field_of_view,
-                                           thing.X_world_object.translation);
+    return thing.held_by == 0 &&
+           !IsInView(X, scene_->laparoscope.field_of_view, thing.X_world_object.translation);
   });
 }
 

@@ -238,7 +238,7 @@ void TaskSurgeon::BurnBand(const Snapshot& seen, int band) {
   reach.p = tip;
   reach.q = along;
   if (skill_.early_pedal > 0) PressPedal(hand, skill_.early_pedal);
-  ReachPoint(hand, tip + skill_.press * math::Normalized(tip - HandOf(hand).Port()), 0.3);
+  ReachPoint(hand, tip, 0.3);
   TaskAct burn{TaskAct::Kind::kBurnBand, "burn " + cord.name, kMostBurning};
   burn.hand = hand;
   burn.object = band;

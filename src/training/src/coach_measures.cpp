@@ -15,15 +15,15 @@
 namespace trocar::training {
 namespace {
 
-constexpr double kTremorLow = 7.0, kTremorHigh = 13.0;   // [Hz]
+constexpr double kTremorLow = 5.0, kTremorHigh = 20.0;   // [Hz]
 constexpr double kTremorWindow = 2.0;                    // of the moment that is shown [s]
 constexpr double kSmooth = 6.0;                          // of the motion without tremor [Hz]
 constexpr double kMoves = 0.020, kRests = 0.005;         // [m/s]; as the metrics' movements
 constexpr double kLongMove = 0.020, kShortMove = 0.010;  // [m]
 constexpr double kAtOnce = 0.25;                         // after a movement [s]
-constexpr double kBack = -0.7;                // cosine of the angle between a movement and one back
-constexpr double kWaits = 1.0, kPause = 0.5;  // [s]
-constexpr double kLoaded = 0.05;              // [N]
+constexpr double kBack = -0.7;  // cosine of the angle between a movement and one back
+constexpr double kWaits = 1.0, kPause = 0.5, kUnseen = 0.5;  // [s]
+constexpr double kLoaded = 0.05;                             // [N]
 constexpr double kPeakShare = 0.99;
 
 using Hand = std::vector<ToolSample>;
@@ -181,7 +181,9 @@ CoachMeasure CalcEnergyInAir(const AttemptTrace& trace) {
 CoachMeasure CalcTipsUnseen(const AttemptTrace& trace) {
   CoachMeasure measure{"tips_unseen", 0, std::nullopt};
   const auto unseen = [&](std::size_t i) { return !trace.hands[0][i].in_view || !trace.hands[1][i].in_view; };
-  const std::vector<Run> runs = FindRuns(trace.Ticks(), unseen);
+  std::vector<Run> runs = FindRuns(trace.Ticks(), unseen);
+  // a tip that trembles at the picture's border is not lost
+  std::erase_if(runs, [&](const Run& run) { return static_cast<double>(run.Length()) * trace.dt < kUnseen; });
   std::size_t ticks = 0;
   for (const Run& run : runs) ticks += run.Length();
   if (trace.Ticks() > 0) measure.value = static_cast<double>(ticks) / static_cast<double>(trace.Ticks());

@@ -55,8 +55,9 @@ struct MetricFinding {
   double novice_low = 0, novice_high = 0, novice_mean = 0;  ///< over people, in the metric's unit
   double middle_mean = 0;
   double expert_low = 0, expert_high = 0, expert_mean = 0, expert_sd = 0;
-  bool separates = false;   ///< novices and experts do not overlap
-  bool is_ordered = false;  ///< the intermediates' mean lies between
+  bool separates = false;  ///< novices and experts do not overlap, and the novices' values are the worse ones
+  bool is_reversed = false;  ///< they do not overlap, but the experts' values are the worse ones
+  bool is_ordered = false;   ///< the intermediates' mean lies between
   double auc = 0.5;  ///< that a novice's is worse; of metrics that are better neither way, the larger side
   std::optional<double> effect;      ///< novices minus experts, pooled standard deviations
   std::optional<double> icc, alpha;  ///< over the repeats of all three levels
@@ -83,7 +84,7 @@ struct TaskFindings {
 
 /// Plays what is not in the folder yet.
 /// \param progress  called with what is going on and the share done; may be empty
-/// \return every attempt, in the order of tasks, groups, people and repeats; kUsage where the folder holds a study of other
+/// \return every attempt, in the order of people, repeats, tasks and groups; kUsage where the folder holds a study of other
 ///         options or another program; kUnknownName; kFileUnwritable. Where the time is over, the attempts so far.
 core::Result<std::vector<StudyAttempt>> RunStudy(
     const StudyOptions& options, const std::function<void(const std::string&, double)>& progress = {});

@@ -2,7 +2,7 @@
 /// \file coach_measures.h  What the coach looks at: one number for each habit, and the moment at which it shows most.
 ///
 /// Metrics answer "how much"; a coach also needs "when". These are pure functions of a trace, of which some have no
-/// counterpart among the metrics, because the metrics' low-pass takes the tremor away.
+/// counterpart among the metrics, because the metrics' low-pass takes most of the tremor away, and leaves too much of it for paths.
 #pragma once
 
 #include <optional>
@@ -28,11 +28,11 @@ struct CoachMeasure {
 
 /// In this order:
 ///
-/// "tremor" [m]: root mean square of the tip's motion between 7 and 13 Hz, of the hand that trembles more.
+/// "tremor" [m]: root mean square of the tip's motion between 5 and 20 Hz, of the hand that trembles more.
 /// "one_hand_waits" [-]: of the time in which a hand moves, in which the other has rested for a second or more.
 /// "peak_force" [N]: that is passed in one hundredth of the time in which a tool is loaded.
 /// "energy_in_air" [s]: a current pedal is down and no current flows.
-/// "tips_unseen" [-]: part of the time in which a tip is out of the picture.
+/// "tips_unseen" [-]: part of the time in which a tip is out of the picture for half a second or more.
 /// "detour" [-]: of the movements longer than 20 mm, by how much the paths are longer than straight lines.
 /// "corrections" [-]: of the movements longer than 20 mm, how many are followed at once by a short one back.
 /// "pauses" [-]: part of the time in which both hands rest for half a second or more.
