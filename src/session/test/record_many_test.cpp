@@ -12,7 +12,9 @@
 #include <thread>
 
 #include "trocar/agent/surgeon.h"
+#include "trocar/core/clock.h"
 #include "trocar/device/force_device_spec.h"
+#include "trocar/record/input_codec.h"
 #include "trocar/record/replay.h"
 #include "trocar/scene/task.h"
 #include "trocar/session/runner.h"
