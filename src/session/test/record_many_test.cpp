@@ -154,6 +154,7 @@ class RecordMany : public testing::Test {
         MakeHapticSettings(**driver, simulation.GetScene(), simulation.GetSnapshot().X_world_laparoscope,
                            device::DefaultButtons());
     if (!settings.ok()) return "!" + settings.error().Text();
+    settings->supervisor.clear();  // hands without force are what is recorded
     RandomHands hands(simulation.GetScene(), seed);
     Runner runner(std::move(simulation), &link, AttemptKeeping{folder, description});
     {
