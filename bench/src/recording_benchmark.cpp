@@ -2,15 +2,20 @@
 // What recording costs a tick, how quickly a replay runs, seeks and branches.
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "trocar/agent/surgeon.h"
 #include "trocar/bench/benchmark.h"
 #include "trocar/core/partial_path.h"
+#include "trocar/device/force_device_spec.h"
+#include "trocar/device/ports.h"
 #include "trocar/record/recorder.h"
 #include "trocar/record/replay.h"
 #include "trocar/scene/scene.h"
+#include "trocar/session/haptic_loop.h"
+#include "trocar/session/runner.h"
 
 namespace trocar::bench {
 namespace {
@@ -18,6 +23,7 @@ namespace {
 using simulation::Simulation;
 
 constexpr double kSeconds = 12;         // of the operation that is recorded
+constexpr double kHapticSeconds = 4;    // that the 1 kHz loop is watched
 constexpr double kIndexSeconds = 3;     // as the window keeps it
 constexpr double kVisitSeconds = 0.75;  // as the replay window keeps it
 
@@ -128,6 +134,30 @@ core::Result<SeekTimes> Seek(const Played& played, int threads, const std::files
   return times;
 }
 
+/// Processor time of a tick of the 1 kHz loop, median [s]. \param folder  empty: nothing is recorded
+core::Result<double> TimeHapticTick(const Played& played, int threads, const std::filesystem::path& folder) {
+  auto simulation = Simulation::Make(played.model, threads);
+  if (!simulation) return simulation.error();
+  auto driver = device::MakeForceDriver("simulated:held");
+  if (!driver) return driver.error();
+  auto settings =
+      session::MakeHapticSettings(**driver, simulation->GetScene(),
+                                  simulation->GetSnapshot().X_world_laparoscope, device::DefaultButtons());
+  if (!settings) return settings.error();
+  settings->supervisor.clear();
+  session::HapticLink link;
+  std::optional<session::AttemptKeeping> keeping;
+  if (!folder.empty()) keeping = {folder, Describe()};
+  session::Runner runner(std::move(*simulation), &link, std::move(keeping));
+  auto loop = session::HapticLoop::Start(std::move(*driver), *settings, link);
+  if (!loop) return loop.error();
+  runner.SetPaused(false);
+  device::SystemClock().Sleep(1);
+  (*loop)->ClearTimes();
+  device::SystemClock().Sleep(kHapticSeconds);
+  return (*loop)->CalcCpuPercentile(0.5);
+}
+
 }  // namespace
 
 core::Result<BenchmarkResult> RunRecordingBenchmark(const BenchmarkOptions& options) {
@@ -147,6 +177,14 @@ core::Result<BenchmarkResult> RunRecordingBenchmark(const BenchmarkOptions& opti
     if (!recorded) return recorded.error();
     without = std::min(without, *plain), with = std::min(with, *recorded);
   }
+  double bare_loop = 1e9, recorded_loop = 1e9;
+  for (int i = 0; i < 2; ++i) {
+    const auto plain = TimeHapticTick(*played, options.threads, {});
+    if (!plain) return plain.error();
+    const auto recorded = TimeHapticTick(*played, options.threads, folder.Path() / "attempts");
+    if (!recorded) return recorded.error();
+    bare_loop = std::min(bare_loop, *plain), recorded_loop = std::min(recorded_loop, *recorded);
+  }
   const auto times = Seek(*played, options.threads, path);
   if (!times) return times.error();
   const double ticks = static_cast<double>(played->inputs.size());
@@ -159,6 +197,8 @@ core::Result<BenchmarkResult> RunRecordingBenchmark(const BenchmarkOptions& opti
       "the expert's first 12 s of the cholecystectomy; recorded with an index as in the window");
   result.cases = {{"tick", 1e3 * without / ticks, "ms"},
                   {"tick/recorded", 1e3 * with / ticks, "ms"},
+                  {"haptic tick", 1e6 * bare_loop, "us"},
+                  {"haptic tick/recorded", 1e6 * recorded_loop, "us"},
                   {"replay", 1e3 * times->replay / ticks, "ms"},
                   {"seek/index, just before the next state", times->indexed, "s"},
                   {"seek/visited, likewise", times->visited, "s"},
@@ -166,6 +206,7 @@ core::Result<BenchmarkResult> RunRecordingBenchmark(const BenchmarkOptions& opti
                   {"recording", size_of(path), "B"},
                   {"index of 3 s and visits", size_of(record::IndexPathOf(path)), "B"}};
   result.ratios = {{"a tick with recording to one without", with / without},
+                   {"a haptic tick with recording to one without", recorded_loop / bare_loop},
                    {"a tick of the replay to one without", times->replay / without}};
   return result;
 }

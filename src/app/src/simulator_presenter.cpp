@@ -108,8 +108,10 @@ void SimulatorPresenter::TakeOver(Branch branch) {
   options_.is_demonstration = false;
   record::Description description = from;
   description.player = DescribeHands(options_);
+  const std::uint64_t events = branch.simulation.GetSnapshot().event_count;
   if (!Use(std::move(branch.simulation), std::move(description))) return;
   control_->GoOnFrom(branch.last);
+  seen_events_ = events;
   char moment[48];
   std::snprintf(moment, sizeof moment, " at %.1f s",
                 static_cast<double>(from.branched_tick) * from.tick_seconds);

@@ -219,9 +219,9 @@ TEST_F(Presenter, ListsRecordingsAndPlaysOneInAWindowOfItsOwn) {
   EXPECT_FALSE(screen_.page.is_recording_list_open);
 }
 
-/// A moment of peg_transfer, 1.5 s after its start, at which nothing is touched.
+/// A moment of wire_run, 1.5 s after its start, at which nothing is touched.
 Branch MakeBranch(std::uint64_t seed) {
-  auto scene = scene::ReadTask(*scene::FindTask("peg_transfer"), {"easy", seed, {}});
+  auto scene = scene::ReadTask(*scene::FindTask("wire_run"), {"easy", seed, {}});
   EXPECT_TRUE(scene.ok());
   const auto shared = std::make_shared<const scene::Scene>(std::move(*scene));
   auto simulation = simulation::Simulation::Make(shared, 1);
@@ -231,7 +231,7 @@ Branch MakeBranch(std::uint64_t seed) {
   for (int tick = 0; tick < 180; ++tick) simulation->Step(input);
   record::Description description;
   description.kind = record::Description::Kind::kTask;
-  description.name = "peg_transfer", description.level = "easy", description.seed = seed;
+  description.name = "wire_run", description.level = "easy", description.seed = seed;
   description.player = "somebody";
   description.tick_seconds = shared->tick_seconds;
   description.branched_from = "first.trocar", description.branched_id = 77, description.branched_tick = 180;
@@ -253,7 +253,7 @@ TEST_F(Presenter, TakesOverFromARecording) {
   SessionControl& control = *screen_.control;
   EXPECT_TRUE(control.IsPaused()) << "until the hands are ready";
   EXPECT_NE(screen_.page.event.find("first.trocar at 1.5 s"), std::string::npos) << screen_.page.event;
-  EXPECT_EQ(presenter_->GetOptions().task, "peg_transfer");
+  EXPECT_EQ(presenter_->GetOptions().task, "wire_run");
   EXPECT_EQ(presenter_->GetOptions().level, "easy");
   EXPECT_EQ(control.Advance(0.01).tick, 180u);
   EXPECT_NEAR(control.GetInput().hands[scene::kRight].pan, last.hands[scene::kRight].pan, 1e-9)

@@ -90,7 +90,7 @@ void AddWindowCommand(CLI::App& app, Outcome& outcome) {
   AddIgtlOption(*command, *igtl_port);
   command->footer(
       "Examples: trocar window scenes/demonstration.json\n"
-      "          trocar window --task peg_transfer --level easy\n"
+      "          trocar window --task wire_run --level easy\n"
       "          trocar window --replay attempt.trocar --beside expert.trocar\n"
       "          trocar window --page courses --trainee \"Anna Berg\"\n"
       "          trocar window --device liberty:/dev/ttyUSB0+jaw:/dev/ttyACM0");

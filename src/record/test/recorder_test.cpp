@@ -141,13 +141,6 @@ TEST_F(RecorderTest, KeepsAnIndexWhereItIsWanted) {
                                                          144, 156, 168, 180, 192));
   ASSERT_TRUE(replay->Seek(200).ok());
   EXPECT_EQ(replay->GetSimulation().Hash(), hash_);
-  // and is the same with and without
-  const std::string with = *core::ReadFile(File());
-  std::filesystem::remove(File());
-  Record(200);
-  const auto without = ReadRecording(File());
-  ASSERT_TRUE(without.ok());
-  EXPECT_EQ(without->file_bytes, with.size());
   std::filesystem::remove(IndexPathOf(File()));
   std::filesystem::remove(File());
   Record(200);
@@ -158,8 +151,8 @@ TEST_F(RecorderTest, TrimsIndexesTheOldestFirst) {
   const auto now = std::filesystem::file_time_type::clock::now();
   for (int i = 0; i < 4; ++i) {
     const std::string name = "a" + std::to_string(i) + ".trocar";
-    Write(name, "recording");
-    Write(name + ".index", std::string(1000, 'x'));
+    Write(name.c_str(), "recording");
+    Write((name + ".index").c_str(), std::string(1000, 'x'));
     std::filesystem::last_write_time(folder_ / (name + ".index"), now - std::chrono::minutes(i));
   }
   TrimIndexes(folder_, 2500);

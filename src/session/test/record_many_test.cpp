@@ -12,7 +12,9 @@
 #include <thread>
 
 #include "trocar/agent/surgeon.h"
+#include "trocar/core/clock.h"
 #include "trocar/device/force_device_spec.h"
+#include "trocar/record/input_codec.h"
 #include "trocar/record/replay.h"
 #include "trocar/scene/task.h"
 #include "trocar/session/runner.h"
@@ -152,6 +154,7 @@ class RecordMany : public testing::Test {
         MakeHapticSettings(**driver, simulation.GetScene(), simulation.GetSnapshot().X_world_laparoscope,
                            device::DefaultButtons());
     if (!settings.ok()) return "!" + settings.error().Text();
+    settings->supervisor.clear();  // hands without force are what is recorded
     RandomHands hands(simulation.GetScene(), seed);
     Runner runner(std::move(simulation), &link, AttemptKeeping{folder, description});
     {

@@ -99,6 +99,8 @@ TEST_F(RunnerTest, KeepsEachAttemptInAFileThatReplaysToTheBit) {
   // the third was hardly begun
   int count = 0;
   for (const auto& entry : std::filesystem::directory_iterator(kept)) {
+    if (entry.path().extension() != ".trocar") continue;
+    EXPECT_TRUE(std::filesystem::exists(record::IndexPathOf(entry.path())));
     ++count;
     auto recording = record::ReadRecording(entry.path());
     ASSERT_TRUE(recording.ok()) << recording.error().Text();
