@@ -6,13 +6,16 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 #include <filesystem>
 #include <system_error>
+#include <thread>
 #include <unordered_map>
 #include <utility>
 
 #include "database.h"
+#include "trocar/core/clock.h"
 
 namespace trocar::store {
 namespace {
@@ -239,10 +242,24 @@ core::Result<std::unique_ptr<Database>> OpenSqlite(const std::string& path, doub
                                      "secure_delete=ON; PRAGMA cache_size=-16384");
       !set.ok())
     return set.error();
-  // a file that cannot be written keeps the mode that it has
-  if (!is_look && ::sqlite3_db_readonly(raw, "main") == 0) {
-    if (auto set = database->RunScript("PRAGMA journal_mode=WAL; PRAGMA synchronous=FULL"); !set.ok())
-      return set.error();
+  if (is_look) return std::unique_ptr<Database>(std::move(database));
+  if (::sqlite3_db_readonly(raw, "main") != 0) {
+    // its log may need a file that cannot be made
+    if (const auto seen = database->Run("SELECT COUNT(*) FROM sqlite_schema", {}); !seen.ok())
+      return core::Error{
+          ErrorCode::kStoreReadOnly,
+          path +
+              ": the store can be neither written nor read without the right to write; give yourself "
+              "the right to write the file and its folder"};
+    return std::unique_ptr<Database>(std::move(database));
+  }
+  // two programs that make the same store: SQLite does not wait by itself for this change
+  const core::Stopwatch watch;
+  while (true) {
+    const auto set = database->RunScript("PRAGMA journal_mode=WAL; PRAGMA synchronous=FULL");
+    if (set.ok()) break;
+    if (set.error().code != ErrorCode::kStoreBusy || watch.Seconds() > busy_seconds) return set.error();
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
   return std::unique_ptr<Database>(std::move(database));
 }

@@ -73,7 +73,7 @@ TEST(SpoolFile, IsFoundDamagedAtEveryByte) {
     bad[at] = static_cast<char>(bad[at] ^ 1);
     const auto read = ReadAttemptJson(bad, "flipped");
     // white space between the fields may become other white space
-    if (read.ok()) EXPECT_EQ(WriteAttemptJson(*read), good) << at;
+    EXPECT_TRUE(!read.ok() || WriteAttemptJson(*read) == good) << at;
   }
 }
 
