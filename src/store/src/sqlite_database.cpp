@@ -69,10 +69,27 @@ core::Error MakeError(int extended, const std::string& path) {
   }
 }
 
+/// Asks again every millisecond or so. SQLite's own pauses grow to 100 ms, in which a busy writer never lets another one in.
+struct Patience {
+  double seconds = 0;
+  core::Stopwatch watch;
+
+  static int Wait(void* self, int tries) {
+    auto& patience = *static_cast<Patience*>(self);
+    if (tries == 0) patience.watch.Restart();
+    if (patience.watch.Seconds() > patience.seconds) return 0;
+    std::this_thread::sleep_for(std::chrono::microseconds(300 + 211 * (tries % 5)));
+    return 1;
+  }
+};
+
 class SqliteDatabase final : public Database {
  public:
-  SqliteDatabase(Connection connection, std::string path)
-      : connection_(std::move(connection)), path_(std::move(path)) {}
+  SqliteDatabase(Connection connection, std::string path, double busy_seconds)
+      : connection_(std::move(connection)), path_(std::move(path)) {
+    patience_.seconds = busy_seconds;
+    ::sqlite3_busy_handler(connection_.get(), Patience::Wait, &patience_);
+  }
   ~SqliteDatabase() override { statements_.clear(); }
 
   sqlite3* Handle() { return connection_.get(); }
@@ -202,6 +219,7 @@ class SqliteDatabase final : public Database {
     return row;
   }
 
+  Patience patience_;
   Connection connection_;
   std::string path_;
   std::unordered_map<std::string, Statement> statements_;  // destroyed before the connection
@@ -236,8 +254,7 @@ core::Result<std::unique_ptr<Database>> OpenSqlite(const std::string& path, doub
   Connection connection(raw);
   if (code != SQLITE_OK) return MakeError(code, path);
   ::sqlite3_extended_result_codes(raw, 1);
-  ::sqlite3_busy_timeout(raw, static_cast<int>(1000 * busy_seconds));
-  auto database = std::make_unique<SqliteDatabase>(std::move(connection), path);
+  auto database = std::make_unique<SqliteDatabase>(std::move(connection), path, busy_seconds);
   if (auto set = database->RunScript("PRAGMA trusted_schema=OFF; PRAGMA foreign_keys=ON; PRAGMA "
                                      "secure_delete=ON; PRAGMA cache_size=-16384");
       !set.ok())
