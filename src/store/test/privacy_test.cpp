@@ -125,6 +125,23 @@ TEST_P(Privacy, ErasureNamesWhatItCannotReach) {
   EXPECT_TRUE(fs::exists(exchanged));
 }
 
+// A server skips what is not the account's own, without an error: that must not pass for erasure.
+TEST_P(Privacy, ErasureByAnAccountWithoutTheTablesIsNoErasure) {
+  if (GetParam() == Kind::kSqlite) return;  // has no accounts
+  PostgresServer& server = PostgresServer::Get();
+  EXPECT_GOOD(server.Administer("CREATE ROLE guest LOGIN"));
+  EXPECT_GOOD(server.Administer("GRANT ALL ON ALL TABLES IN SCHEMA public TO guest", database_));
+  Place guest = place_;
+  guest.url.replace(guest.url.find("postgres@"), 9, "guest@");
+  auto store = Store::Open(guest);
+  ASSERT_TRUE(store.ok()) << store.error().Text();
+  EXPECT_CODE(ErasePerson(*store, kOwner, gone_), kStoreReadOnly);
+  EXPECT_THAT(Find("REMARK-ON-QUUX"), Not(IsEmpty()));
+  // the owner finishes it
+  EXPECT_GOOD(Tidy(Open(), kOwner, 0));
+  EXPECT_THAT(Find("REMARK-ON-QUUX"), IsEmpty());
+}
+
 TEST_P(Privacy, ExportIsAllThatIsKnown) {
   const fs::path folder = folder_.Path() / "for them";
   EXPECT_EQ(Get(ExportPerson(Open(), kOwner, gone_, folder)), 20);
