@@ -200,6 +200,7 @@ void AddAdd(CLI::App& parent, const Options& options, Outcome& outcome) {
   auto arguments = std::make_shared<Arguments>();
   command->add_option("recording", arguments->file, "Recording")->required()->type_name("FILE");
   command->add_option("--trainee", arguments->trainee, "Whose attempt it is")->type_name("PSEUDONYM");
+  AddStoreOptions(*command, options);
   command->callback([options, arguments, &outcome] {
     outcome.status = [&]() -> core::Status {
       const auto recording = record::ReadRecording(arguments->file);
@@ -308,6 +309,7 @@ void AddBackup(CLI::App& parent, const Options& options, Outcome& outcome) {
   CLI::App* verify =
       parent.add_subcommand("verify", "Check every page, reference and sum of the store, or of a backup");
   verify->add_option("backup", *checked, "A backup in place of the store")->type_name("FILE");
+  AddStoreOptions(*verify, options);
   verify->callback([checked, options, &outcome] {
     if (!checked->empty()) {
       outcome.status = store::VerifyBackup(*checked);
@@ -372,8 +374,18 @@ core::Result<StoreSession> OpenSession(const StoreOptions& options, store::Store
   return StoreSession{std::move(*opened), viewer};
 }
 
+void AddStoreOptions(CLI::App& command, const std::shared_ptr<StoreOptions>& options) {
+  command
+      .add_option("--store", options->url, "SQLite file or postgresql://... (else TROCAR_STORE, else your own)")
+      ->type_name("URL");
+  command.add_option("--as", options->viewer, "Ask as this person: see and do what their role allows")
+      ->type_name("PSEUDONYM");
+  command.add_flag("--json", options->is_json, "Machine-readable");
+}
+
 void OnStore(CLI::App& command, const std::shared_ptr<StoreOptions>& options, Outcome& outcome,
              StoreWork work) {
+  AddStoreOptions(command, options);
   command.callback([options, &outcome, work = std::move(work)] {
     auto session = OpenSession(*options);
     outcome.status = session.ok() ? work(*session) : core::Status(session.error());
@@ -388,15 +400,7 @@ void AddStoreCommand(CLI::App& app, Outcome& outcome) {
   CLI::App* command =
       app.add_subcommand("store", "Trainees, groups and attempts: list, compare, back up, export, erase");
   command->require_subcommand(1);
-  command->fallthrough();  // the options below may stand behind the command, too
   auto options = std::make_shared<StoreOptions>();
-  command
-      ->add_option("--store", options->url,
-                   "SQLite file or postgresql://... (else TROCAR_STORE, else your own)")
-      ->type_name("URL");
-  command->add_option("--as", options->viewer, "Ask as this person: see and do what their role allows")
-      ->type_name("PSEUDONYM");
-  command->add_flag("--json", options->is_json, "Machine-readable");
   AddInfo(*command, options, outcome);
   AddStorePeopleCommands(*command, options, outcome);
   AddAttempts(*command, options, outcome);

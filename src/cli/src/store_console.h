@@ -15,7 +15,7 @@
 
 namespace trocar::cli {
 
-/// Options of `trocar store` itself, which each of its commands takes.
+/// Options that each command of `trocar store` takes.
 struct StoreOptions {
   std::string url, viewer;  // empty: the default store, its owner
   bool is_json = false;
@@ -30,7 +30,9 @@ struct StoreSession {
 /// Opens the store, and says what was done to it where it was damaged.
 core::Result<StoreSession> OpenSession(const StoreOptions& options, store::StoreSettings settings = {});
 
-/// A command that works on an open store.
+void AddStoreOptions(CLI::App& command, const std::shared_ptr<StoreOptions>& options);
+
+/// A command that works on an open store, with the options above.
 using StoreWork = std::function<core::Status(StoreSession&)>;
 void OnStore(CLI::App& command, const std::shared_ptr<StoreOptions>& options, Outcome& outcome,
              StoreWork work);

@@ -10,7 +10,7 @@
 #include <mutex>
 #include <pqxx/pqxx>
 #include <thread>
-#include <unordered_set>
+#include <unordered_map>
 #include <utility>
 
 #include "database.h"
@@ -128,7 +128,10 @@ class PostgresDatabase final : public Database {
       : connection_(options), answer_seconds_(answer_seconds) {
 #if PQXX_VERSION_MAJOR < 7
     // a silent new connection in the middle of a transaction would lose its first half
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wdeprecated-declarations"  // there is no other way in libpqxx 6
     connection_.inhibit_reactivation(true);
+#pragma GCC diagnostic pop
 #endif
     work_ = std::make_unique<pqxx::nontransaction>(connection_);
   }
@@ -203,6 +206,18 @@ class PostgresDatabase final : public Database {
   }
 
   core::Status Purge() override {
+    // to an account that is not theirs, the server skips tables with no more than a warning
+    const auto foreign =
+        Run("SELECT COUNT(*) FROM pg_class WHERE relname IN ('person', 'attempt', 'remark') AND "
+            "relnamespace = CAST(current_schema() AS regnamespace) AND NOT pg_has_role(relowner, "
+            "'USAGE')",
+            {});
+    if (!foreign.ok()) return foreign.error();
+    if (foreign->rows[0].Int(0) > 0)
+      return core::Error{
+          ErrorCode::kStoreReadOnly,
+          "this account does not own the store's tables, so that what was deleted stays in their "
+          "files; let their owner run trocar store tidy"};
     // FULL writes the tables anew, without what was deleted; pg_statistic holds samples of columns
     for (const char* step :
          {"SET statement_timeout = 0", "VACUUM (FULL, ANALYZE) person",
@@ -262,13 +277,16 @@ class PostgresDatabase final : public Database {
   }
 
   pqxx::result Execute(const std::string& sql, const std::vector<const char*>& places) {
-    if (is_prepared_.insert(sql).second) connection_.prepare(sql, sql);
+    // a server tells names apart by their first 63 bytes
+    const auto [prepared, is_new] = prepared_.try_emplace(sql, "q" + std::to_string(prepared_.size()));
+    const std::string& name = prepared->second;
+    if (is_new) connection_.prepare(name, sql);
 #if PQXX_VERSION_MAJOR < 7
-    return work_->exec_prepared(sql, pqxx::prepare::make_dynamic_params(places.begin(), places.end()));
+    return work_->exec_prepared(name, pqxx::prepare::make_dynamic_params(places.begin(), places.end()));
 #else
     pqxx::params values;
     for (const char* place : places) place == nullptr ? values.append() : values.append(std::string(place));
-    return work_->exec_prepared(sql, values);
+    return work_->exec_prepared(name, values);
 #endif
   }
 
@@ -309,7 +327,7 @@ class PostgresDatabase final : public Database {
   double answer_seconds_;
   SilenceWatch watch_;
   std::unique_ptr<pqxx::nontransaction> work_;
-  std::unordered_set<std::string> is_prepared_;
+  std::unordered_map<std::string, std::string> prepared_;  // text to name
   bool is_in_transaction_ = false, is_lost_ = false;
 };
 

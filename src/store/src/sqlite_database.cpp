@@ -6,13 +6,16 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 #include <filesystem>
 #include <system_error>
+#include <thread>
 #include <unordered_map>
 #include <utility>
 
 #include "database.h"
+#include "trocar/core/clock.h"
 
 namespace trocar::store {
 namespace {
@@ -66,10 +69,27 @@ core::Error MakeError(int extended, const std::string& path) {
   }
 }
 
+/// Asks again every millisecond or so. SQLite's own pauses grow to 100 ms, in which a busy writer never lets another one in.
+struct Patience {
+  double seconds = 0;
+  core::Stopwatch watch;
+
+  static int Wait(void* self, int tries) {
+    auto& patience = *static_cast<Patience*>(self);
+    if (tries == 0) patience.watch.Restart();
+    if (patience.watch.Seconds() > patience.seconds) return 0;
+    std::this_thread::sleep_for(std::chrono::microseconds(300 + 211 * (tries % 5)));
+    return 1;
+  }
+};
+
 class SqliteDatabase final : public Database {
  public:
-  SqliteDatabase(Connection connection, std::string path)
-      : connection_(std::move(connection)), path_(std::move(path)) {}
+  SqliteDatabase(Connection connection, std::string path, double busy_seconds)
+      : connection_(std::move(connection)), path_(std::move(path)) {
+    patience_.seconds = busy_seconds;
+    ::sqlite3_busy_handler(connection_.get(), Patience::Wait, &patience_);
+  }
   ~SqliteDatabase() override { statements_.clear(); }
 
   sqlite3* Handle() { return connection_.get(); }
@@ -199,6 +219,7 @@ class SqliteDatabase final : public Database {
     return row;
   }
 
+  Patience patience_;
   Connection connection_;
   std::string path_;
   std::unordered_map<std::string, Statement> statements_;  // destroyed before the connection
@@ -233,16 +254,29 @@ core::Result<std::unique_ptr<Database>> OpenSqlite(const std::string& path, doub
   Connection connection(raw);
   if (code != SQLITE_OK) return MakeError(code, path);
   ::sqlite3_extended_result_codes(raw, 1);
-  ::sqlite3_busy_timeout(raw, static_cast<int>(1000 * busy_seconds));
-  auto database = std::make_unique<SqliteDatabase>(std::move(connection), path);
+  auto database = std::make_unique<SqliteDatabase>(std::move(connection), path, busy_seconds);
   if (auto set = database->RunScript("PRAGMA trusted_schema=OFF; PRAGMA foreign_keys=ON; PRAGMA "
                                      "secure_delete=ON; PRAGMA cache_size=-16384");
       !set.ok())
     return set.error();
-  // a file that cannot be written keeps the mode that it has
-  if (!is_look && ::sqlite3_db_readonly(raw, "main") == 0) {
-    if (auto set = database->RunScript("PRAGMA journal_mode=WAL; PRAGMA synchronous=FULL"); !set.ok())
-      return set.error();
+  if (is_look) return std::unique_ptr<Database>(std::move(database));
+  if (::sqlite3_db_readonly(raw, "main") != 0) {
+    // its log may need a file that cannot be made
+    if (const auto seen = database->Run("SELECT COUNT(*) FROM sqlite_schema", {}); !seen.ok())
+      return core::Error{
+          ErrorCode::kStoreReadOnly,
+          path +
+              ": the store can be neither written nor read without the right to write; give yourself "
+              "the right to write the file and its folder"};
+    return std::unique_ptr<Database>(std::move(database));
+  }
+  // two programs that make the same store: SQLite does not wait by itself for this change
+  const core::Stopwatch watch;
+  while (true) {
+    const auto set = database->RunScript("PRAGMA journal_mode=WAL; PRAGMA synchronous=FULL");
+    if (set.ok()) break;
+    if (set.error().code != ErrorCode::kStoreBusy || watch.Seconds() > busy_seconds) return set.error();
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
   return std::unique_ptr<Database>(std::move(database));
 }

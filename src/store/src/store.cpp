@@ -2,12 +2,12 @@
 #include "trocar/store/store.h"
 
 #include <algorithm>
-#include <fstream>
 #include <system_error>
 #include <utility>
 #include <vector>
 
 #include "database.h"
+#include "private_file.h"
 #include "schema.h"
 #include "sql.h"
 #include "tables.h"
@@ -30,14 +30,15 @@ bool IsEmptyFolder(const fs::path& folder) {
   return failure || is_empty;
 }
 
+/// Lies in the folder of a place whose file was a store once.
+fs::path MarkerOf(const Place& place) {
+  return place.folder / "store";
+}
+
 /// Whether a file is a store that was damaged, and not something else that was named by mistake.
 bool WasStore(const Place& place) {
   std::error_code failure;
-  if (fs::exists(place.folder, failure)) return true;
-  std::ifstream file(place.url, std::ios::binary);
-  std::string head(15, '\0');
-  file.read(head.data(), 15);
-  return head == "SQLite format 3";
+  return fs::exists(MarkerOf(place), failure);
 }
 
 core::Status LookAtTables(Database& database) {
@@ -109,6 +110,9 @@ core::Result<Store> Store::OpenSound(const Place& place, const StoreSettings& se
     const auto sound =
         !failure && bytes <= kCheckedBytes ? CheckSqlite(**database) : LookAtTables(**database);
     if (!sound.ok()) return sound.error();
+    // without it the store is as good; only a damaged first page would not be known for what it was
+    if (!settings.only_look && !fs::exists(MarkerOf(place), failure))
+      (void)WritePrivateFile(MarkerOf(place), place.url + "\n").ok();
   }
   return Store(place, std::move(*database));
 }
@@ -123,7 +127,9 @@ core::Result<Store> Store::Open(const Place& place, const StoreSettings& setting
   if (store.ok() || store.error().code != ErrorCode::kStoreDamaged) return store;
   if (!WasStore(place))
     return core::Error{ErrorCode::kStoreSchema,
-                       place.url + ": this file is no store; name another file, or move it away"};
+                       place.url +
+                           ": this file is no store, or one that was damaged before it was ever opened here; "
+                           "name another file, or restore a backup"};
   if (settings.only_look) return store;
   return Rebuild(place, settings, "was damaged");
 }

@@ -120,7 +120,8 @@ TEST_P(Attempts, ArePagedNewestFirst) {
     std::set<std::int64_t> ids;
     for (std::size_t i = 0; i < all.size(); ++i) {
       ids.insert(all[i].id);
-      if (i > 0) EXPECT_GE(*ParseTime(all[i - 1].attempt.started), *ParseTime(all[i].attempt.started));
+      if (i == 0) continue;
+      EXPECT_GE(*ParseTime(all[i - 1].attempt.started), *ParseTime(all[i].attempt.started));
     }
     EXPECT_EQ(ids.size(), all.size()) << "an attempt is on two pages";
     return all.size();

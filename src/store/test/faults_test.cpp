@@ -190,6 +190,9 @@ TEST_P(SqliteFaults, AFileThatIsNoStoreStaysWhatItIs) {
   Place thesis{folder_.Path() / "thesis.txt", folder_.Path() / "thesis.files"};
   std::ofstream(thesis.url, std::ios::binary) << text;
   EXPECT_CODE(Store::Open(thesis), kStoreSchema);
+  // also when attempts already wait for it
+  EXPECT_FALSE(Get(KeepAttempt(thesis, MakeAttempt(1, trainee_))).is_in_store);
+  EXPECT_CODE(Store::Open(thesis), kStoreSchema);
   EXPECT_EQ(ReadAll(thesis.url), text);
   Place other{folder_.Path() / "other.sqlite", folder_.Path() / "other.files"};
   EXPECT_GOOD(Get(OpenSqlite(other.url, 2))->RunScript("CREATE TABLE recipes (name TEXT)"));

@@ -170,7 +170,7 @@ TEST_P(Maintenance, BadExportsChangeNothing) {
   EXPECT_CODE(import(replaced("\"membership\"", "\"sqlite_schema\"")), kJsonField);
   EXPECT_CODE(import("[]"), kJsonField);
   EXPECT_CODE(import("{}"), kStoreSchema);
-  EXPECT_CODE(import("\"x\""), kStoreSchema);
+  EXPECT_CODE(import("\"x\""), kJsonField);
   EXPECT_CODE(Import(*other, kOwner, folder_.Path() / "none.json"), kFileMissing);
   const StoreCounts counts = Get(CountAll(*other, kOwner));
   EXPECT_EQ(counts.people + counts.groups + counts.courses + counts.attempts, 0);

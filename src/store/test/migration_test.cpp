@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // From an empty database, and from every version that ever was, to today's tables.
+#include <atomic>
 #include <memory>
+#include <thread>
 
 #include "schema.h"
 #include "store_test.h"
@@ -51,7 +53,7 @@ TEST_P(MigrationOver, BringsEveryPastVersionUpToDate) {
     EXPECT_EQ(counts.attempts, 3);
     const auto page = Get(ListAttempts(Open(), kOwner, {"T-VERS1N", "", ""}));
     ASSERT_EQ(page.attempts.size(), 2u);
-    EXPECT_EQ(Get(FindAttempt(Open(), kOwner, page.attempts[0].id)).attempt.metrics.size(), 5u);
+    EXPECT_EQ(Get(FindAttempt(Open(), kOwner, page.attempts[0].id)).attempt.metrics.size(), 4u);
     // and it goes on from there
     EXPECT_TRUE(Get(AddAttempt(Open(), MakeAttempt(500, "T-VERS1N"))));
     EXPECT_GOOD(Verify(Open()));

@@ -73,7 +73,7 @@ TEST(SpoolFile, IsFoundDamagedAtEveryByte) {
     bad[at] = static_cast<char>(bad[at] ^ 1);
     const auto read = ReadAttemptJson(bad, "flipped");
     // white space between the fields may become other white space
-    if (read.ok()) EXPECT_EQ(WriteAttemptJson(*read), good) << at;
+    EXPECT_TRUE(!read.ok() || WriteAttemptJson(*read) == good) << at;
   }
 }
 
@@ -182,7 +182,7 @@ TEST_P(SpoolOver, LosesNothingWhenTheProgramIsKilled) {
     test::Process program({TROCAR_STORE_WRITER, place_.url, place_.folder, trainee, std::to_string(k * kMost),
                            std::to_string(kMost)});
     const int wanted = static_cast<int>(random() % 12);
-    for (int i = 0; i < 2000 && std::count(program.Out().begin(), program.Out().end(), '\n') < 1; ++i)
+    for (int i = 0; i < 2000 && program.Out().empty(); ++i)
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
     std::this_thread::sleep_for(std::chrono::milliseconds(wanted));
     program.Signal(SIGKILL);

@@ -34,13 +34,13 @@ T Get(core::Result<T> result) {
 
 #define EXPECT_GOOD(expression)                                                                       \
   do {                                                                                                \
-    const auto status_ = (expression);                                                                \
+    const auto& status_ = (expression);                                                               \
     EXPECT_TRUE(status_.ok()) << #expression << ": " << (status_.ok() ? "" : status_.error().Text()); \
   } while (false)
 
 #define EXPECT_CODE(expression, expected)                                                 \
   do {                                                                                    \
-    const auto status_ = (expression);                                                    \
+    const auto& status_ = (expression);                                                   \
     ASSERT_FALSE(status_.ok()) << #expression << " was allowed";                          \
     EXPECT_EQ(status_.error().code, core::ErrorCode::expected) << status_.error().Text(); \
   } while (false)

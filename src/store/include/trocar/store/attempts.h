@@ -44,7 +44,7 @@ struct StoredAttempt {
 /// \return kStoreInvalid
 core::Result<std::int64_t> ParseTime(std::string_view text);
 
-/// Stores an attempt, and what it changes in the standings.
+/// Stores an attempt, and what it changes in the standings. Whoever can open the store may add attempts.
 /// \return whether it is new; kStoreUnknown where its trainee is; kStoreInvalid where it lacks its key or a number is not finite
 core::Result<bool> AddAttempt(Store& store, const Attempt& attempt);
 
