@@ -168,6 +168,32 @@ TEST(FindTimeMarks, AreWholeSecondsAndMinutes) {
   EXPECT_THAT(FindTimeMarks(1800, 6), ElementsAre(0, 300, 600, 900, 1200, 1500, 1800));
 }
 
+TEST(FindAxisMarks, AreRoundAndInside) {
+  EXPECT_THAT(FindAxisMarks(0, 10, 5), ElementsAre(0, 2, 4, 6, 8, 10));
+  EXPECT_THAT(FindAxisMarks(-0.5, 1.2, 4), ElementsAre(-0.5, 0, 0.5, 1.0));
+  EXPECT_THAT(FindAxisMarks(93, 311, 4), ElementsAre(100, 200, 300));
+}
+
+TEST(FindLogMarks, ArePowersOfTenWithTwosAndFivesWhereTheyAreFew) {
+  EXPECT_THAT(FindLogMarks(0.9, 1.1e4), ElementsAre(1, 10, 100, 1000, 10'000));
+  EXPECT_THAT(FindLogMarks(3, 60), ElementsAre(5, 10, 20, 50));
+}
+
+TEST(ThinOut, KeepsEveryPeak) {
+  std::vector<math::Vec2> points;
+  for (int i = 0; i < 10'000; ++i)
+    points.push_back({static_cast<double>(i), i == 4321 ? 7.0 : i == 8765 ? -3.0 : 1.0});
+  const auto kept = ThinOut(points, 200);
+  EXPECT_LE(kept.size(), 200u);
+  EXPECT_TRUE(
+      std::is_sorted(kept.begin(), kept.end(), [](const auto& a, const auto& b) { return a.x < b.x; }));
+  const auto has = [&](double y) {
+    return std::any_of(kept.begin(), kept.end(), [&](const math::Vec2& point) { return point.y == y; });
+  };
+  EXPECT_TRUE(has(7.0));
+  EXPECT_TRUE(has(-3.0));
+}
+
 // WCAG 2.1, relative luminance and contrast ratio.
 double CalcLuminance(std::uint32_t colour) {
   const auto channel = [&](int shift) {

@@ -79,7 +79,7 @@ AttemptReport Fill(AttemptReport report, const std::string& text) {
   for (MetricRow& row : report.metrics) row.name = row.about = row.unit = text;
   report.doublet = DoubletView{"p", "q", 1, text};
   report.pictures = {{"p", text}};
-  report.devices = {{text, text}};
+  report.origin = {{text, text}};
   return report;
 }
 
