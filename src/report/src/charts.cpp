@@ -197,7 +197,7 @@ Drawing DrawLearningCurve(const LearningCurve& curve) {
   frame.y.Add(0);
   frame.y.Settle(0.06);
   frame.x.Add(0.5);
-  frame.x.Add(attempts + 0.5);
+  frame.x.Add(std::max(attempts, 1.0) + 0.5);
   frame.AddGround(drawing);
   frame.AddXAxis(drawing, static_cast<int>(std::clamp(attempts, 2.0, 10.0)), "attempt");
   frame.AddYAxis(drawing, 5, curve.measure + (curve.unit.empty() ? "" : " [" + curve.unit + "]"));
