@@ -101,7 +101,7 @@ core::Result<std::string> MakePage(const scene::Scene& scene, const view::DemoRe
       {"Ticks", std::to_string(played.ticks) + " of " + FormatNumber(1e3 * scene.tick_seconds) + " ms"},
       {"Where the patient comes from", scene.patient.provenance}};
   if (haptics == nullptr) {
-    report.origin.emplace_back("Force feedback", "no haptic device took part");
+    report.origin.emplace_back("Force feedback", "No haptic device took part.");
   } else {
     for (const auto& [what, how] : session::DescribeSummary(haptics->Record().CalcSummary()))
       report.origin.emplace_back("Force feedback: " + what, how);
