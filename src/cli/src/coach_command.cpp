@@ -4,7 +4,6 @@
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 #include <cstdio>
-#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -13,9 +12,7 @@
 
 #include "command.h"
 #include "console.h"
-#include "trocar/core/safe_file.h"
 #include "trocar/record/trace.h"
-#include "trocar/scene/scene.h"
 #include "trocar/training/attempt_metrics.h"
 #include "trocar/training/coach.h"
 #include "trocar/training/metric_definition.h"
@@ -32,18 +29,6 @@ struct CoachArguments {
   int threads = 1;
   bool is_json = false;
 };
-
-core::Result<training::CoachRules> ReadRules(const std::string& path) {
-  std::filesystem::path file = path;
-  if (path.empty()) {
-    const auto data = scene::FindDataFolder();
-    if (!data.ok()) return data.error();
-    file = *data / "assets" / training::kCoachRulesFile;
-  }
-  const auto text = core::ReadFile(file);
-  if (!text.ok()) return text.error();
-  return training::ParseCoachRules(*text, file.string());
-}
 
 ordered_json OrNull(const std::optional<double>& value) {
   return value ? ordered_json(*value) : ordered_json();
@@ -71,7 +56,7 @@ ordered_json ToJson(const training::Advice& advice) {
 }
 
 core::Status Coach(const CoachArguments& arguments) {
-  const auto rules = ReadRules(arguments.rules);
+  const auto rules = ReadCoachRules(arguments.rules);
   if (!rules.ok()) return rules.error();
   const auto validity = ReadValidity(arguments.validity);
   if (!validity.ok()) return validity.error();

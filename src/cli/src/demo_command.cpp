@@ -16,6 +16,7 @@
 #include <utility>
 #include <vector>
 
+#include "attempt_page.h"
 #include "command.h"
 #include "console.h"
 #include "device_input.h"
@@ -23,7 +24,6 @@
 #include "igtl_option.h"
 #include "part_folder.h"
 #include "picture_size.h"
-#include "report.h"
 #include "trocar/core/safe_file.h"
 #include "trocar/core/state_hash.h"
 #include "trocar/core/version.h"
@@ -82,35 +82,31 @@ std::string FormatDemoMetrics(const training::AttemptMetrics& metrics, const sce
 }
 
 core::Result<std::string> MakePage(const scene::Scene& scene, const view::DemoReport& played,
-                                   const training::AttemptTrace& trace, const HapticInput* haptics,
-                                   training::AttemptMetrics metrics) {
-  ReportContent content;
-  content.scene = scene.name;
-  content.patient = scene.patient.name;
-  content.provenance = scene.patient.provenance;
-  content.seed = scene.seed;
-  content.hash = core::HashText(played.state_hash);
-  content.ticks = played.ticks;
-  content.tick_seconds = scene.tick_seconds;
-  content.version = core::VersionText();
-  content.video = played.video.filename().string();
-  content.metrics = std::move(metrics);
-  if (haptics != nullptr) content.haptics = session::DescribeSummary(haptics->Record().CalcSummary());
+                                   const training::AttemptTrace& trace, const HapticInput* haptics) {
+  report::AttemptFacts facts = DescribeScene(scene, {});
+  facts.patient = scene.patient.name;
+  facts.seed = scene.seed;
+  facts.program = core::VersionText();
+  auto made = ReportTrace(trace, std::move(facts));
+  if (!made.ok()) return made.error();
+  report::AttemptReport report = std::move(*made);
+  report.film = played.video.filename().string();
   for (const view::DemoPicture& picture : played.pictures) {
     core::Result<std::string> png = core::ReadFile(picture.path);
     if (!png) return png.error();
-    content.pictures.push_back({"after " + FormatNumber(picture.time, 3) + " s", std::move(png).value()});
+    report.pictures.push_back({std::move(png).value(), "after " + FormatNumber(picture.time, 3) + " s"});
   }
-  for (std::size_t i = 0; i < trace.Ticks(); ++i) content.times.push_back(static_cast<double>(i) * trace.dt);
-  for (std::size_t h = 0; h < trace.hands.size(); ++h) {
-    ReportHand hand{h == scene::kLeft ? "left" : "right", {}, {}};
-    for (const training::ToolSample& sample : trace.hands[h]) {
-      hand.force.push_back(sample.force);
-      hand.p_world_tip.push_back(sample.tip);
-    }
-    content.hands.push_back(std::move(hand));
+  report.origin = {
+      {"State hash", core::HashText(played.state_hash)},
+      {"Ticks", std::to_string(played.ticks) + " of " + FormatNumber(1e3 * scene.tick_seconds) + " ms"},
+      {"Where the patient comes from", scene.patient.provenance}};
+  if (haptics == nullptr) {
+    report.origin.emplace_back("Force feedback", "No haptic device took part.");
+  } else {
+    for (const auto& [what, how] : session::DescribeSummary(haptics->Record().CalcSummary()))
+      report.origin.emplace_back("Force feedback: " + what, how);
   }
-  return FormatReportPage(content);
+  return report::FormatHtml(MakeDocument(report));
 }
 
 void PrintSummary(const view::DemoReport& played, const scene::Scene& scene, const fs::path& output) {
@@ -184,7 +180,7 @@ core::Status Play(const DemoArguments& arguments) {
   const core::Result<training::AttemptMetrics> metrics = training::CalcAttemptMetrics(attempt);
   if (!metrics) return metrics.error();
   const std::string metrics_text = FormatDemoMetrics(*metrics, **scene, *played, haptics.get());
-  const core::Result<std::string> page = MakePage(**scene, *played, attempt, haptics.get(), *metrics);
+  const core::Result<std::string> page = MakePage(**scene, *played, attempt, haptics.get());
   if (!page) return page.error();
   if (auto status = core::WriteFile(part.Path() / "metrics.json", metrics_text); !status) return status;
   if (auto status = core::WriteFile(part.Path() / "report.html", *page); !status) return status;

@@ -83,6 +83,9 @@ int ParseAndRun(int argc, char** argv) {
   AddCoachCommand(app, outcome);
   AddStudyCommand(app, outcome);
   AddMetricsCommand(app, outcome);
+  AddReportCommand(app, outcome);
+  AddRatingCommand(app, outcome);
+  AddXapiCommand(app, outcome);
   AddRecordCommand(app, outcome);
   AddCourseCommand(app, outcome);
   AddLevelsCommand(app, outcome);

@@ -23,6 +23,18 @@ core::Result<training::Validity> ReadValidity(const std::string& path) {
   return training::ParseValidity(*text, file.string());
 }
 
+core::Result<training::CoachRules> ReadCoachRules(const std::string& path) {
+  std::filesystem::path file = path;
+  if (path.empty()) {
+    const auto data = scene::FindDataFolder();
+    if (!data.ok()) return data.error();
+    file = *data / "assets" / training::kCoachRulesFile;
+  }
+  const auto text = core::ReadFile(file);
+  if (!text.ok()) return text.error();
+  return training::ParseCoachRules(*text, file.string());
+}
+
 std::string TaskKey(const std::string& description_name) {
   return std::filesystem::path(description_name).stem().string();
 }

@@ -340,7 +340,7 @@ Section MakeOrigin(const AttemptReport& report) {
   add("Played by", facts.player);
   add("Recording", facts.recording);
   add("Program", facts.program.empty() ? "" : "Trocar " + facts.program);
-  for (const auto& [name, value] : report.devices) add(name.c_str(), value);
+  for (const auto& [name, value] : report.origin) add(name.c_str(), value);
   section.blocks.emplace_back(std::move(rows));
   return section;
 }

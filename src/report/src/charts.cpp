@@ -12,12 +12,15 @@
 namespace trocar::report {
 namespace {
 
-constexpr double kWidth = 470;  // of drawings that stand side by side [px]
+constexpr double kWideWidth = 960;  // of a drawing that stands alone [px]
+constexpr double kWidth = 470;      // of drawings that stand side by side [px]
 constexpr std::size_t kMostAxes = 8, kFewestAxes = 3;
 // standard deviations of the expert set at the centre and at the rim of a radar
 constexpr double kWorst = -4, kBest = 2;
 // a set that agrees to a hair must not decide everything: share of the mean
 constexpr double kLeastDeviation = 0.05;
+constexpr Vec2 kRadarCentre = {232, 192};
+constexpr double kRadarRadius = 112, kRadarText = 120;  // [px]
 constexpr const char* kHands[] = {"left hand", "right hand"};
 constexpr Ink kHandInks[] = {Ink::kLeft, Ink::kRight};
 
@@ -59,23 +62,77 @@ struct RadarShape {
   }
 };
 
+/// "left hand: 3829 mm"
+std::string ValueText(const MetricRow& row) {
+  return (row.hand.empty() ? "" : row.hand + ": ") + FormatShown(row.value) +
+         (row.unit.empty() ? "" : " " + row.unit);
+}
+
+/// A long name in two lines, parted at the space nearest to its middle.
+std::vector<std::string> PartName(const std::string& name) {
+  constexpr std::size_t kOneLine = 16;
+  std::size_t best = std::string::npos;
+  const auto off = [&](std::size_t at) { return std::max(at, name.size() - at) - name.size() / 2; };
+  for (std::size_t at = name.find(' '); at != std::string::npos; at = name.find(' ', at + 1)) {
+    if (best == std::string::npos || off(at) < off(best)) best = at;
+  }
+  if (name.size() <= kOneLine || best == std::string::npos) return {name};
+  return {name.substr(0, best), name.substr(best + 1)};
+}
+
 void AddAxisName(Drawing& drawing, const RadarShape& radar, std::size_t axis, const MetricRow& row) {
   const Vec2 end = radar.At(axis, kBest), name = radar.At(axis, kBest + 0.45);
   drawing.shapes.emplace_back(Line{{radar.centre, end}, Ink::kGrid, 1});
   const double side = name.x - radar.centre.x;
   const Anchor anchor = std::fabs(side) < 8 ? Anchor::kMiddle : side > 0 ? Anchor::kStart : Anchor::kEnd;
-  const double lift = name.y < radar.centre.y - 8 ? -8 : name.y > radar.centre.y + 8 ? 8 : 0;
-  const double room = anchor == Anchor::kMiddle  ? 220
-                      : anchor == Anchor::kStart ? kWidth - name.x - 2
-                                                 : name.x - 2;
-  const std::string hand = row.hand.empty() ? "" : ", " + row.hand;
+  std::vector<std::string> lines = PartName(row.name);
+  lines.push_back(ValueText(row));
+  // above the rim, below it, or about its height
+  constexpr double kLine = 13;
+  const auto count = static_cast<double>(lines.size());
+  double y = name.y < radar.centre.y - 8   ? name.y - kLine * (count - 1)
+             : name.y > radar.centre.y + 8 ? name.y + 8
+                                           : name.y - kLine * (count - 2) / 2;
+  for (const std::string& line : lines) {
+    const bool is_value = &line == &lines.back();
+    drawing.shapes.emplace_back(Label{
+        {name.x, y}, CutToWidth(line, 10.5, kRadarText), is_value ? Ink::kMuted : Ink::kText, anchor, 10.5});
+    y += kLine;
+  }
+}
+
+/// The same numbers on straight lines below one another.
+void AddDeviations(Drawing& drawing, const std::vector<const MetricRow*>& axes) {
+  PlotFrame frame;
+  frame.left = 690, frame.top = 34, frame.width = 250, frame.height = 288;
+  frame.x.Add(kWorst), frame.x.Add(kBest);
+  frame.y.Add(0), frame.y.Add(static_cast<double>(axes.size()));
+  frame.AddGround(drawing);
+  frame.AddXAxis(drawing, 6, "standard deviations from the experts' mean; better to the right");
   drawing.shapes.emplace_back(
-      Label{{name.x, name.y + lift}, CutToWidth(row.name + hand, 10.5, room), Ink::kText, anchor, 10.5});
-  drawing.shapes.emplace_back(Label{{name.x, name.y + lift + 13},
-                                    FormatShown(row.value) + (row.unit.empty() ? "" : " " + row.unit),
-                                    Ink::kMuted,
-                                    anchor,
-                                    10});
+      Line{{frame.Map({0, frame.y.low}), frame.Map({0, frame.y.high})}, Ink::kExpert, 1.6, Dash::kDashed});
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    const MetricRow& row = *axes[i];
+    const double y = frame.y.high - 0.5 - static_cast<double>(i);
+    if (!row.group.empty()) {
+      const auto at = [&](double share) {
+        return CalcDeviation(
+            row,
+            row.group[static_cast<std::size_t>(share * static_cast<double>(row.group.size() - 1) + 0.5)]);
+      };
+      const double low = std::min(at(0.25), at(0.75)), high = std::max(at(0.25), at(0.75));
+      const Vec2 from = frame.Map({low, y + 0.18}), to = frame.Map({high, y - 0.18});
+      drawing.shapes.emplace_back(
+          Area{MakeRectangle(from.x, from.y, std::max(to.x - from.x, 1.0), to.y - from.y), Ink::kGroup, 0.35,
+               "Middle half of the group"});
+    }
+    const Vec2 here = frame.Map({CalcDeviation(row, row.value), y});
+    drawing.shapes.emplace_back(
+        Mark{here, MarkKind::kDot, Ink::kThis, 4.5, row.name + ", " + ValueText(row)});
+    const std::string name = row.name + (row.hand.empty() ? "" : ", " + row.hand);
+    drawing.shapes.emplace_back(
+        Label{{frame.left - 8, here.y + 4}, CutToWidth(name, 11, 200), Ink::kText, Anchor::kEnd, 11});
+  }
 }
 
 /// The middle half of the group as a ring of two edges.
@@ -126,7 +183,7 @@ Drawing DrawPaths(const AttemptReport& report, PathView view) {
   for (std::size_t h = 0; h < report.hands.size(); ++h) {
     const auto points = frame.Map(is_front ? report.hands[h].from_front : report.hands[h].from_head);
     if (points.empty()) continue;
-    drawing.shapes.emplace_back(Line{points, kHandInks[h], 1.3});
+    drawing.shapes.emplace_back(Line{points, kHandInks[h], 0.9});
     drawing.shapes.emplace_back(
         Mark{points.front(), MarkKind::kDot, kHandInks[h], 4.5, std::string("Start of the ") + kHands[h]});
     drawing.shapes.emplace_back(
@@ -142,9 +199,9 @@ std::optional<Drawing> DrawRadar(const AttemptReport& report) {
   if (axes.size() < kFewestAxes) return std::nullopt;
   Drawing drawing;
   drawing.title = "Compared with the expert set";
-  drawing.width = kWidth;
+  drawing.width = kWideWidth;
   drawing.height = 392;
-  const RadarShape radar{{kWidth / 2, 200}, 118, axes.size()};
+  const RadarShape radar{kRadarCentre, kRadarRadius, axes.size()};
   drawing.shapes.emplace_back(Area{radar.Ring(kBest), Ink::kPanel, 1, ""});
   for (const double ring : {-2.0, kBest}) drawing.shapes.emplace_back(Line{radar.Ring(ring), Ink::kGrid, 1});
   AddGroup(drawing, radar, axes);
@@ -168,7 +225,8 @@ std::optional<Drawing> DrawRadar(const AttemptReport& report) {
   std::vector<LegendEntry> legend = {{"this attempt", Ink::kThis},
                                      {"experts' mean", Ink::kExpert, Dash::kDashed}};
   if (!axes.front()->group.empty()) legend.push_back({"group, middle half", Ink::kGroup, Dash::kSolid, true});
-  AddLegend(drawing, 46, 382, legend);
+  AddDeviations(drawing, axes);
+  AddLegend(drawing, 60, 384, legend);
   drawing.description =
       "Standard deviations from the expert set's mean, better is further out; rings at -2, 0 and +2. " +
       values + ".";
@@ -197,7 +255,7 @@ Drawing DrawLearningCurve(const LearningCurve& curve) {
   frame.y.Add(0);
   frame.y.Settle(0.06);
   frame.x.Add(0.5);
-  frame.x.Add(attempts + 0.5);
+  frame.x.Add(std::max(attempts, 1.0) + 0.5);
   frame.AddGround(drawing);
   frame.AddXAxis(drawing, static_cast<int>(std::clamp(attempts, 2.0, 10.0)), "attempt");
   frame.AddYAxis(drawing, 5, curve.measure + (curve.unit.empty() ? "" : " [" + curve.unit + "]"));

@@ -165,6 +165,15 @@ class PageFlow {
     return height;
   }
 
+  /// Of a short table, which is not parted; 0 of a long one.
+  double MeasureWhole(const Table& table, const std::vector<double>& widths) {
+    constexpr std::size_t kMostRows = 16;
+    if (table.rows.size() > kMostRows) return 0;
+    double height = 40;  // caption and heading
+    for (const std::vector<Cell>& row : table.rows) height += MeasureRow(table, row, widths) + 2 * kCellRoom;
+    return std::min(height, kBottom - kTop);
+  }
+
   void WriteRow(const Table& table, const std::vector<Cell>& row, const std::vector<double>& widths,
                 double height) {
     double left = kMargin;
@@ -196,7 +205,7 @@ class PageFlow {
 
   void Write(const Table& table) {
     const std::vector<double> widths = MeasureColumns(table);
-    Break(70);
+    Break(std::max(70.0, MeasureWhole(table, widths)));
     y_ += canvas_.AddText(table.caption, kMargin, y_, kWidth, {8.6, ColoursOf(Ink::kText).light, true}) + 2;
     WriteTableHead(table, widths);
     for (const std::vector<Cell>& row : table.rows) {

@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kWidth = 960, kLabelRoom = 112, kRightRoom = 22;  // [px]
 constexpr double kPhaseHeight = 24, kLaneHeight = 18, kForceHeight = 74, kGap = 12;
+constexpr double kViewLabel = 16;  // its base line, where there is a critical view
 
 struct Lane {
   training::Severity severity;
@@ -111,7 +112,7 @@ Drawing DrawTimeline(const AttemptReport& report) {
   frame.x.Add(std::max(report.seconds, 1e-3));
   frame.y.Add(0);
   frame.y.Add(std::max(1.08 * peak, 0.5));
-  double top = 4;
+  double top = report.critical_view_time ? kViewLabel + 4 : 4;
   if (!report.phases.empty()) {
     frame.top = top;
     frame.height = kPhaseHeight;
@@ -133,12 +134,12 @@ Drawing DrawTimeline(const AttemptReport& report) {
   frame.AddXAxis(drawing, 10, "time [min:s]", true);
   if (report.critical_view_time) {
     const double at = frame.Map({*report.critical_view_time, 0}).x;
-    drawing.shapes.emplace_back(Line{{{at, 4}, {at, frame.Bottom()}}, Ink::kGood, 1.6, Dash::kDashed});
-    const bool is_late = at > kWidth - 180;
-    drawing.shapes.emplace_back(Label{{is_late ? at - 5 : at + 5, frame.top + 12},
-                                      "critical view",
+    drawing.shapes.emplace_back(
+        Line{{{at, kViewLabel}, {at, frame.Bottom()}}, Ink::kGood, 1.6, Dash::kDashed});
+    drawing.shapes.emplace_back(Label{{std::clamp(at, kLabelRoom + 60, kWidth - 80), kViewLabel - 3},
+                                      "critical view of safety",
                                       Ink::kGood,
-                                      is_late ? Anchor::kEnd : Anchor::kStart,
+                                      Anchor::kMiddle,
                                       10.5,
                                       true});
   }

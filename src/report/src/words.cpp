@@ -54,7 +54,7 @@ std::string FormatDuration(double seconds) {
 std::string FormatShown(double value) {
   const double size = std::fabs(value);
   char text[64];
-  if (size >= 1e7 || (size > 0 && size < 1e-3)) return core::FormatNumber(value, 3);
+  if (size >= 1e6 || (size > 0 && size < 1e-3)) return core::FormatNumber(value, 3);
   const int decimals = value == std::round(value) ? 0 : size >= 100 ? 0 : size >= 10 ? 1 : 2;
   std::snprintf(text, sizeof text, "%.*f", size < 0.1 && size > 0 ? 3 : decimals, value);
   return text;

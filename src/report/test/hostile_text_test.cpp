@@ -79,7 +79,7 @@ AttemptReport Fill(AttemptReport report, const std::string& text) {
   for (MetricRow& row : report.metrics) row.name = row.about = row.unit = text;
   report.doublet = DoubletView{"p", "q", 1, text};
   report.pictures = {{"p", text}};
-  report.devices = {{text, text}};
+  report.origin = {{text, text}};
   return report;
 }
 
@@ -122,13 +122,15 @@ TEST(HostileText, ChangesNoTagOfAPage) {
   ASSERT_GE(payloads.size(), 200u);
   AttemptReport sample = test::MakeOperationReport();
   sample.goals = {{"", 1.0}};
+  // a few rows of every table will do
+  sample.metrics.resize(40);
+  for (HandSeries& hand : sample.hands) hand = {};
   const std::string attempt = CalcSkeleton(FormatHtml(MakeDocument(Fill(sample, "harmless"))));
   const std::string trainee = CalcSkeleton(FormatHtml(MakeDocument(FillTrainee("harmless"))));
   EXPECT_NE(CalcSkeleton("<p>a<script>b</script></p>"), CalcSkeleton("<p>a</p>")) << "the test can tell";
   for (const std::string& payload : payloads) {
-    // long enough that the time line's narrow labels are there or cut as for the harmless one is no matter of tags
-    std::string page = FormatHtml(MakeDocument(Fill(sample, payload)));
-    std::string skeleton = CalcSkeleton(page);
+    const std::string skeleton = CalcSkeleton(FormatHtml(MakeDocument(Fill(sample, payload))));
+    // a label in a drawing is left out where it has no room
     const auto strip_labels = [](std::string text) {
       for (std::size_t at = text.find("<text"); at != std::string::npos; at = text.find("<text", at))
         text.erase(at, text.find("</text>", at) + 7 - at);

@@ -29,6 +29,25 @@ std::string MakePage() {
   return FormatHtml(MakeDocument(report));
 }
 
+/// Names of the attributes of all tags.
+std::set<std::string> ListAttributes(const std::string& page) {
+  std::set<std::string> names;
+  bool is_tag = false, is_quoted = false;
+  std::string word;
+  for (const char c : page) {
+    if (!is_tag) {
+      is_tag = c == '<';
+    } else if (c == '"') {
+      is_quoted = !is_quoted;
+    } else if (!is_quoted) {
+      if (c == '=') names.insert(word);
+      word = c == ' ' || c == '>' || c == '=' ? "" : word + c;
+      is_tag = c != '>';
+    }
+  }
+  return names;
+}
+
 // RFC 4648, section 10.
 TEST(EncodeBase64, AgreesWithTheStandardsVectors) {
   EXPECT_EQ(EncodeBase64(""), "");
@@ -46,7 +65,7 @@ TEST(Page, NeedsNoNetworkAndRunsNothing) {
                            "javascript:", " style=", "<object"})
     EXPECT_THAT(page, Not(HasSubstr(word)));
   EXPECT_THAT(page, HasSubstr("default-src 'none'"));
-  EXPECT_FALSE(std::regex_search(page, std::regex("<[^>]* on[a-z]+=")));
+  for (const std::string& name : ListAttributes(page)) EXPECT_NE(name.substr(0, 2), "on") << name;
 }
 
 TEST(Page, ItsPolicyAllowsItsOwnStyleAndNoOther) {

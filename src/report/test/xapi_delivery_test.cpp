@@ -28,6 +28,13 @@ namespace {
 
 using core::ErrorCode;
 
+/// Of a report that has what is needed.
+std::vector<XapiStatement> Make(const AttemptReport& report, const XapiSettings& settings) {
+  const auto statements = MakeStatements(report, settings);
+  EXPECT_TRUE(statements.ok()) << statements.error().Text();
+  return statements.ok() ? *statements : std::vector<XapiStatement>();
+}
+
 /// Runs for as long as it lives.
 class Peer {
  public:
@@ -78,7 +85,7 @@ class Delivery : public testing::Test {
     settings_.give_up_seconds = 10;
     settings_.on_trouble = [this](const std::string& text) { troubles_.push_back(text); };
     for (const XapiStatement& statement :
-         *MakeStatements(test::MakeTaskReport(), {"https://training.hospital.example", true})) {
+         Make(test::MakeTaskReport(), {"https://training.hospital.example", true})) {
       ASSERT_TRUE(queue_.Add(statement).ok());
       ids_.insert(statement.id);
     }

@@ -108,8 +108,9 @@ struct AttemptReport {
   std::vector<Advice> advice;
   std::optional<DoubletView> doublet;
   std::vector<Picture> pictures;
-  std::string film;                                          ///< file beside the page; may be empty
-  std::vector<std::pair<std::string, std::string>> devices;  ///< of force feedback; may be empty
+  std::string film;  ///< file beside the page; may be empty
+  std::vector<std::pair<std::string, std::string>>
+      origin;  ///< what else is known of where it comes from; may be empty
   std::array<HandSeries, 2> hands;
 };
 
