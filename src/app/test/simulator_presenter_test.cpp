@@ -118,6 +118,62 @@ TEST_F(Presenter, KeepsEveryAttemptWhereItIsToldTo) {
   EXPECT_TRUE(replay->Verify()->IsVerified());
 }
 
+TEST_F(Presenter, FinishEndsTheAttemptAndOpensItsPage) {
+  test::TemporaryFolder folder;
+  Options options;
+  options.task = "peg_transfer";
+  options.threads = 1;
+  options.recordings = folder.Path() / "kept";
+  Begin(options);
+  Load();
+  for (int i = 0; i < 500 && screen_.control->Advance(0.01).tick < 150; ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  EXPECT_TRUE(IsEnabled("finish"));
+  presenter_->Do(Action::kFinish);
+  ASSERT_EQ(screen_.attempts.size(), 1u);
+  EXPECT_FALSE(screen_.has_exam);
+  EXPECT_TRUE(screen_.control->IsPaused());
+  presenter_->Do(Action::kFinish);
+  EXPECT_EQ(screen_.attempts.size(), 1u) << "it is over";
+  bool is_whole = false;
+  for (int i = 0; i < 500 && !is_whole; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    const auto read = record::ReadRecording(screen_.attempts[0]);
+    is_whole = read.ok() && read->ending.has_value();
+  }
+  EXPECT_TRUE(is_whole) << "whole while the window is open";
+}
+
+TEST_F(Presenter, AnExamHasNoGuidanceAndNoSecondTry) {
+  test::TemporaryFolder folder;
+  Options options;
+  options.task = "peg_transfer";
+  options.threads = 1;
+  options.recordings = folder.Path() / "kept";
+  Begin(options);
+  Load();
+  EXPECT_TRUE(IsEnabled("reset"));
+  centre::Start start;
+  start.description.kind = record::Description::Kind::kTask;
+  start.description.name = "instrument_navigation", start.description.level = "normal";
+  start.description.seed = 12345;
+  start.title = "Exam: Finals";
+  start.is_exam = true;
+  presenter_->Open(start);
+  Load();
+  EXPECT_EQ(screen_.control->GetScene().seed, 12345u);
+  EXPECT_EQ(screen_.page.title, "Trocar: Exam: Finals");
+  EXPECT_TRUE(screen_.control->IsPaused()) << "until the hands are ready";
+  for (const char* id : {"reset", "demonstration", "camera-holder", "forces"}) EXPECT_FALSE(IsEnabled(id)) << id;
+  EXPECT_FALSE(screen_.page.view.has_force_arrows);
+  presenter_->Do(Action::kTogglePause);
+  for (int i = 0; i < 500 && screen_.control->Advance(0.01).tick < 150; ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  presenter_->Do(Action::kFinish);
+  ASSERT_EQ(screen_.attempts.size(), 1u);
+  EXPECT_TRUE(screen_.has_exam);
+}
+
 TEST_F(Presenter, SaysThatAttemptsCannotBeKept) {
   test::TemporaryFolder folder;
   ASSERT_TRUE(core::WriteFile(folder.Path() / "kept", "a file where the folder should be").ok());
