@@ -77,12 +77,14 @@ void AddReplay(CLI::App& app, Options& options) {
 }
 
 void AddCentre(CLI::App& app, Options& options) {
-  app.add_option("--store", options.store,
-                 "Where attempts are kept for history and courses: a SQLite file, or postgresql://... (default: "
-                 "TROCAR_STORE, else ~/.local/share/trocar/store/store.sqlite; none with --screenshot)");
-  app.add_option("--trainee", options.trainee,
-                 "Who operates: a name, which stays in a protected file on this computer, or a pseudonym (default: "
-                 "nobody in particular)");
+  app.add_option(
+      "--store", options.store,
+      "Where attempts are kept for history and courses: a SQLite file, or postgresql://... (default: "
+      "TROCAR_STORE, else ~/.local/share/trocar/store/store.sqlite; none with --screenshot)");
+  app.add_option(
+      "--trainee", options.trainee,
+      "Who operates: a name, which stays in a protected file on this computer, or a pseudonym (default: "
+      "nobody in particular)");
   CLI::Option* page =
       app.add_option("--page", options.page, "Open the training centre at this page, without the simulator")
           ->check(CLI::IsMember({"history", "courses", "group", "exam"}))
@@ -91,7 +93,8 @@ void AddCentre(CLI::App& app, Options& options) {
           ->excludes("--tasks")
           ->excludes("--demonstration")
           ->excludes("--replay");
-  app.add_option("--exam", options.exam, "With --page exam: sealed file to open, as trocar exam seal wrote it")
+  app.add_option("--exam", options.exam,
+                 "With --page exam: sealed file to open, as trocar exam seal wrote it")
       ->needs(page);
 }
 

@@ -46,7 +46,8 @@ core::Result<simulation::Simulation> MakeChosenSimulation(const Options& options
                                       ThreadsOf(options));
 }
 
-core::Result<simulation::Simulation> MakeStartedSimulation(const Options& options, const centre::Start& start) {
+core::Result<simulation::Simulation> MakeStartedSimulation(const Options& options,
+                                                           const centre::Start& start) {
   auto made = record::MakeScene(start.description);
   if (!made) return made.error();
   const auto scene = std::make_shared<const scene::Scene>(std::move(made).value());
@@ -56,7 +57,8 @@ core::Result<simulation::Simulation> MakeStartedSimulation(const Options& option
   const std::string name = start.state_surgeon.substr(0, start.state_surgeon.find(','));
   auto surgeon = agent::MakeSurgeon(name, scene, 1);
   if (!surgeon) return surgeon.error();
-  if (const auto restored = assessment::RestorePlay(start.state, start.state_surgeon, *simulation, **surgeon); !restored)
+  if (const auto restored = assessment::RestorePlay(start.state, start.state_surgeon, *simulation, **surgeon);
+      !restored)
     return restored.error();
   return simulation;
 }

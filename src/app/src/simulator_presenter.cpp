@@ -89,7 +89,8 @@ void SimulatorPresenter::GoOn() {
   const simulation::Snapshot& now = control_->Advance(0);
   scene::Input last;
   last.settings = control_->GetScene().settings;
-  for (std::size_t hand = 0; hand < last.controls.size(); ++hand) last.controls[hand].tool = now.operation.tools[hand];
+  for (std::size_t hand = 0; hand < last.controls.size(); ++hand)
+    last.controls[hand].tool = now.operation.tools[hand];
   if (now.operation.is_assistant_holding) last.assistant = scene::AssistantCommand::kRetract;
   const std::uint64_t events = now.event_count;
   control_->GoOnFrom(last);

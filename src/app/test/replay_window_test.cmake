@@ -26,6 +26,7 @@ if [ $status -eq 0 ] && [ $ended -ne 0 ]; then echo "the window ended with $ende
 exit $status
 ]])
 set(ENV{GTK_A11Y} none)
+set(ENV{TROCAR_STORE} ${FOLDER}/store.sqlite)
 execute_process(
   COMMAND ${DBUS} -- ${XVFB} -a -s "-screen 0 1280x800x24" sh ${FOLDER}/run.sh ${CHECK} ${FOLDER} ${WINDOW}
     --replay ${FOLDER}/recordings/first.trocar --recordings ${FOLDER}/recordings --threads 1

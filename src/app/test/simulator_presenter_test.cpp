@@ -164,7 +164,8 @@ TEST_F(Presenter, AnExamHasNoGuidanceAndNoSecondTry) {
   EXPECT_EQ(screen_.control->GetScene().seed, 12345u);
   EXPECT_EQ(screen_.page.title, "Trocar: Exam: Finals");
   EXPECT_TRUE(screen_.control->IsPaused()) << "until the hands are ready";
-  for (const char* id : {"reset", "demonstration", "camera-holder", "forces"}) EXPECT_FALSE(IsEnabled(id)) << id;
+  for (const char* id : {"reset", "demonstration", "camera-holder", "forces"})
+    EXPECT_FALSE(IsEnabled(id)) << id;
   EXPECT_FALSE(screen_.page.view.has_force_arrows);
   presenter_->Do(Action::kTogglePause);
   for (int i = 0; i < 500 && screen_.control->Advance(0.01).tick < 150; ++i)

@@ -165,11 +165,13 @@ class Program {
       options.replay = recording;
       options.replay_beside.clear();
       options.replay_at = time;
-      replay_ = std::make_unique<ReplayWindow>(options, [this](Branch branch) { Simulate(std::move(branch)); });
+      replay_ =
+          std::make_unique<ReplayWindow>(options, [this](Branch branch) { Simulate(std::move(branch)); });
       application_->add_window(*replay_);
       replay_->present();
     };
-    auto made = std::make_unique<centre::CentreWindow>(access_, Threads(), filing_.get(), std::move(services));
+    auto made =
+        std::make_unique<centre::CentreWindow>(access_, Threads(), filing_.get(), std::move(services));
     made->Presenter().SignalPerson([this](const std::string& person) { access_.person = person; });
     const std::lock_guard lock(mutex_);
     woken_ = made.get();
@@ -178,7 +180,8 @@ class Program {
 
   /// The one that is open, or a new one.
   centre::CentreWindow& OpenCentre() {
-    if (auto* first = dynamic_cast<centre::CentreWindow*>(window_.get()); first != nullptr && first->get_visible()) {
+    if (auto* first = dynamic_cast<centre::CentreWindow*>(window_.get());
+        first != nullptr && first->get_visible()) {
       first->present();
       return *first;
     }
@@ -249,7 +252,7 @@ class Program {
   std::vector<std::unique_ptr<SimulatorWindow>> simulators_;  // that were opened beside it
   std::unique_ptr<centre::CentreWindow> centre_;
   std::unique_ptr<ReplayWindow> replay_;
-  std::filesystem::path exam_;         // that is being sat
+  std::filesystem::path exam_;        // that is being sat
   std::function<bool()> has_failed_;  // asked once the windows have closed
 };
 

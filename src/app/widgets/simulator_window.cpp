@@ -27,7 +27,8 @@ SimulatorWindow::SimulatorWindow(const Options& options, const core::Stopwatch& 
   tips_.Adopt(panel_);
   hands_ = std::make_unique<HandEvents>(*this, picture_, panel_);
   presenter_ = std::make_unique<SimulatorPresenter>(
-      options, since_start, static_cast<SimulatorScreen&>(*this), [this] { loaded_.emit(); }, services_.hooks);
+      options, since_start, static_cast<SimulatorScreen&>(*this), [this] { loaded_.emit(); },
+      services_.hooks);
   MakeRoutes();
   panel_.set_sensitive(false);  // until there is something to set
   if (options.is_fullscreen) fullscreen();

@@ -177,15 +177,15 @@ struct AttemptFiling::Content {
     result.recording = one.recording;
     if (!fs::exists(one.recording, ignored)) {
       Forget(one.recording);
-      result.failure = Error{ErrorCode::kFileMissing,
-                             "there is no recording of this attempt: one that lasts less than a second is not kept"};
+      result.failure =
+          Error{ErrorCode::kFileMissing,
+                "there is no recording of this attempt: one that lasts less than a second is not kept"};
       const std::lock_guard lock(mutex);
       filed.push_back(std::move(result));
       return;
     }
-    auto judged = JudgeRecording(one.recording, {threads, one.step, one.person, [this](double share) {
-                                                   return Show(share);
-                                                 }});
+    auto judged = JudgeRecording(
+        one.recording, {threads, one.step, one.person, [this](double share) { return Show(share); }});
     std::optional<store::Attempt> attempt;
     if (judged.ok()) {
       attempt = judged->attempt;

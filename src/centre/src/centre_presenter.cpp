@@ -219,7 +219,8 @@ void CentrePresenter::BeSomebody(const std::string& text) {
     std::string name;
   };
   Ask("Looking for you", [this, access = access_, text]() -> Apply {
-    auto found = std::make_shared<Found>(Found{FindPseudonym(access, text)});  // a function's content is copied
+    auto found =
+        std::make_shared<Found>(Found{FindPseudonym(access, text)});  // a function's content is copied
     if (found->pseudonym.ok()) {
       found->name = NameOf(access, *found->pseudonym);
       Access theirs = access;
@@ -279,7 +280,8 @@ void CentrePresenter::ReadReview() {
 }
 
 void CentrePresenter::Jump(double time) {
-  if (page_.result) screen_->OpenReplay(page_.result->recording, page_.result->begin + std::max(0.0, time - kLead));
+  if (page_.result)
+    screen_->OpenReplay(page_.result->recording, page_.result->begin + std::max(0.0, time - kLead));
 }
 
 void CentrePresenter::PlayAgain() {
@@ -403,9 +405,10 @@ void CentrePresenter::ChooseCourse(const std::string& course) {
 }
 
 void CentrePresenter::StartStep(const std::string& step) {
-  const StepName name{page_.courses.course.empty() && page_.result ? page_.result->step.course : page_.courses.course,
-                      step};
-  Ask("Making the step ready; where it begins in the middle of an operation the expert operates up to there, once",
+  const StepName name{
+      page_.courses.course.empty() && page_.result ? page_.result->step.course : page_.courses.course, step};
+  Ask("Making the step ready; where it begins in the middle of an operation the expert operates up to there, "
+      "once",
       [this, name]() -> Apply {
         auto start = std::make_shared<core::Result<Start>>(
             PrepareStart(name, [this](double, const std::string&) { return !is_given_up_.load(); }));

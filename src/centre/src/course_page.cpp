@@ -30,10 +30,9 @@ std::chrono::sys_days Today() {
   const std::time_t now = std::time(nullptr);
   std::tm local{};
   ::localtime_r(&now, &local);
-  return std::chrono::sys_days(
-      std::chrono::year_month_day(std::chrono::year(local.tm_year + 1900),
-                                  std::chrono::month(static_cast<unsigned>(local.tm_mon) + 1),
-                                  std::chrono::day(static_cast<unsigned>(local.tm_mday))));
+  return std::chrono::sys_days(std::chrono::year_month_day(
+      std::chrono::year(local.tm_year + 1900), std::chrono::month(static_cast<unsigned>(local.tm_mon) + 1),
+      std::chrono::day(static_cast<unsigned>(local.tm_mday))));
 }
 
 std::string WhatOf(const Step& step) {
@@ -60,7 +59,8 @@ Attempt Convert(const store::Attempt& from, const Course& course) {
 }
 
 /// The person's attempts at tasks of the course, the oldest first.
-core::Result<std::vector<Attempt>> ListAttemptsAt(Desk& desk, const std::string& person, const Course& course) {
+core::Result<std::vector<Attempt>> ListAttemptsAt(Desk& desk, const std::string& person,
+                                                  const Course& course) {
   std::vector<std::string> tasks;
   for (const Step& step : course.steps) {
     const std::string& task = step.IsOperation() ? step.operation : step.task;
@@ -100,7 +100,8 @@ std::string ProgressText(const Step& step, const assessment::StepProgress& now) 
   if (now.attempts == 0) return "not tried yet";
   std::string text = std::to_string(now.passes) + " of " + std::to_string(step.passes) + " passes";
   if (step.consecutive_passes > 1)
-    text += ", " + std::to_string(now.longest_run) + " of " + std::to_string(step.consecutive_passes) + " in a row";
+    text += ", " + std::to_string(now.longest_run) + " of " + std::to_string(step.consecutive_passes) +
+            " in a row";
   return text + ", " + Count(now.attempts, "attempt");
 }
 
@@ -184,7 +185,8 @@ core::Result<Start> PrepareStart(const StepName& name,
   if (!prepared.ok()) return prepared.error();
   Start start;
   record::Description& description = start.description;
-  description.kind = step->IsOperation() ? record::Description::Kind::kOperation : record::Description::Kind::kTask;
+  description.kind =
+      step->IsOperation() ? record::Description::Kind::kOperation : record::Description::Kind::kTask;
   description.name = step->IsOperation() ? step->operation : step->task;
   description.level = step->level;
   description.patient = prepared->patient.string();

@@ -29,7 +29,8 @@ core::Result<std::vector<std::string>> ListMembers(Desk& desk, const std::string
     if (!people.ok()) return people.error();
     if (people->empty()) return members;
     for (const store::Person& person : *people) {
-      const bool is_member = std::find(person.groups.begin(), person.groups.end(), group) != person.groups.end();
+      const bool is_member =
+          std::find(person.groups.begin(), person.groups.end(), group) != person.groups.end();
       if (is_member && person.role == store::Role::kTrainee) members.push_back(person.pseudonym);
     }
     after = people->back().pseudonym;
@@ -53,7 +54,8 @@ GroupPage::Cell MakeCell(const Tally& tally, const std::string& task) {
   cell.text = Count(tally.attempts, "attempt");
   if (tally.last) {
     const bool is_percent = IsScorePercent(task, tally.level);
-    cell.text += "\nlast " + ScoreText(*tally.last, is_percent) + ", best " + ScoreText(*tally.best, is_percent);
+    cell.text +=
+        "\nlast " + ScoreText(*tally.last, is_percent) + ", best " + ScoreText(*tally.best, is_percent);
   } else {
     cell.text += "\n" + std::to_string(tally.completed) + " completed";
   }

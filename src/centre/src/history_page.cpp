@@ -15,8 +15,8 @@
 namespace trocar::centre {
 namespace {
 
-constexpr int kRows = 20;           // of a page
-constexpr int kMostCurve = 1000;    // attempts of which a curve is drawn: the newest
+constexpr int kRows = 20;         // of a page
+constexpr int kMostCurve = 1000;  // attempts of which a curve is drawn: the newest
 
 HistoryPage::Row MakeRow(const Access& access, const store::StoredAttempt& stored) {
   const store::Attempt& attempt = stored.attempt;
@@ -44,7 +44,8 @@ HistoryPage::Row MakeRow(const Access& access, const store::StoredAttempt& store
 }
 
 /// A task's attempts of one level, the oldest first.
-core::Result<std::vector<store::Attempt>> ListOfTask(Desk& desk, const HistoryQuery& query, std::string& level) {
+core::Result<std::vector<store::Attempt>> ListOfTask(Desk& desk, const HistoryQuery& query,
+                                                     std::string& level) {
   store::AttemptFilter filter;
   filter.trainee = query.person;
   filter.task = query.task;
@@ -79,8 +80,8 @@ void AddCurve(const std::vector<double>& seconds, const std::string& task, Histo
   }
   if (const auto trend = assessment::CalcTrend(seconds, assessment::Better::kLower); trend.ok()) {
     const char* const words[] = {"no trend", "getting faster", "getting slower"};
-    page.findings.push_back("Trend of the time: " +
-                            std::string(words[static_cast<std::size_t>(trend->verdict)]) + ".");
+    page.findings.push_back(
+        "Trend of the time: " + std::string(words[static_cast<std::size_t>(trend->verdict)]) + ".");
   }
   page.drawings.push_back(report::DrawLearningCurve(curve));
 }

@@ -24,7 +24,7 @@ using core::Error;
 using core::ErrorCode;
 using nlohmann::json;
 
-constexpr std::uint64_t kProgressTicks = 30;             // between two calls
+constexpr std::uint64_t kProgressTicks = 30;                 // between two calls
 constexpr const char* kDemonstration = "the demonstration";  // as session::Runner names its player
 
 /// "peg_transfer" of "/data/scenes/tasks/peg_transfer.json"
@@ -95,7 +95,8 @@ std::vector<report::MetricReference> MakeReferences(const assessment::Proficienc
     for (const training::MeasureValidity& one : validity->measures) {
       report::MetricReference& reference = find(one.metric, one.hand, "");
       reference.separates = one.separates;
-      if (one.experts > 1) reference.expert_mean = one.expert_mean, reference.expert_deviation = one.expert_sd;
+      if (one.experts > 1)
+        reference.expert_mean = one.expert_mean, reference.expert_deviation = one.expert_sd;
     }
   }
   if (proficiency != nullptr) {
@@ -266,7 +267,8 @@ std::string TaskNameOf(const std::string& key) {
   }
   std::string words = key;
   std::replace(words.begin(), words.end(), '_', ' ');
-  if (!words.empty() && words[0] >= 'a' && words[0] <= 'z') words[0] = static_cast<char>(words[0] - 'a' + 'A');
+  if (!words.empty() && words[0] >= 'a' && words[0] <= 'z')
+    words[0] = static_cast<char>(words[0] - 'a' + 'A');
   return words;
 }
 

@@ -43,8 +43,9 @@ void SetVerdict(const JudgedAttempt& judged, ResultPage& page) {
     page.tone = Tone::kGood;
     return;
   }
-  const auto missed = static_cast<std::size_t>(std::count_if(
-      judged.verdict->metrics.begin(), judged.verdict->metrics.end(), [](const auto& m) { return !m.is_met; }));
+  const auto missed =
+      static_cast<std::size_t>(std::count_if(judged.verdict->metrics.begin(), judged.verdict->metrics.end(),
+                                             [](const auto& m) { return !m.is_met; }));
   page.verdict = "Completed, not passed: " + std::to_string(missed) + " of " +
                  Count(judged.verdict->metrics.size(), "threshold") + " missed";
   page.tone = judged.verdict->is_safe ? Tone::kCaution : Tone::kBad;
@@ -81,7 +82,7 @@ void AddErrors(const report::AttemptReport& from, ResultPage& page) {
     if (!error.where.empty()) row.what += " (" + error.where + ")";
     if (error.hand >= 0) row.what += error.hand == 0 ? ", left hand" : ", right hand";
     row.severity = std::string(training::NameOf(error.severity));
-    row.tone = error.severity == training::Severity::kMinor ? Tone::kPlain
+    row.tone = error.severity == training::Severity::kMinor   ? Tone::kPlain
                : error.severity == training::Severity::kMajor ? Tone::kCaution
                                                               : Tone::kBad;
     page.errors.push_back(std::move(row));
@@ -100,7 +101,8 @@ std::string RangeText(const MetricRow& row) {
   const double low = *row.expert_mean - kRangeDeviations * *row.expert_deviation;
   const double high = *row.expert_mean + kRangeDeviations * *row.expert_deviation;
   const bool is_never_negative = *row.expert_mean >= 0;
-  return report::FormatShown(is_never_negative ? std::max(0.0, low) : low) + " – " + report::FormatShown(high);
+  return report::FormatShown(is_never_negative ? std::max(0.0, low) : low) + " – " +
+         report::FormatShown(high);
 }
 
 /// A person's best in a metric, in the unit that is shown.
@@ -143,7 +145,8 @@ ResultPage MakeResultPage(const JudgedAttempt& judged, const Access* access) {
   page.title = r.facts.task + (r.facts.level.empty() ? "" : ", " + r.facts.level);
   page.subtitle = report::FormatDate(r.facts.started) + "  ·  " + r.facts.player;
   if (access != nullptr) page.subtitle += "  ·  " + NameOf(*access, judged.attempt.trainee);
-  if (judged.is_demonstration) page.subtitle += "  ·  a demonstration, which is nobody's attempt and is not stored";
+  if (judged.is_demonstration)
+    page.subtitle += "  ·  a demonstration, which is nobody's attempt and is not stored";
   SetVerdict(judged, page);
   page.outcome = r.outcome;
   page.debriefing = judged.debriefing;
@@ -194,7 +197,8 @@ core::Result<std::int64_t> FindStored(Desk& desk, const store::Attempt& attempt)
     const auto page = store::ListAttempts(desk.store, desk.viewer, filter, from, kMost);
     if (!page.ok()) return page.error();
     for (const store::StoredAttempt& one : page->attempts) {
-      if (one.attempt.recording_id == attempt.recording_id && one.attempt.started == attempt.started) return one.id;
+      if (one.attempt.recording_id == attempt.recording_id && one.attempt.started == attempt.started)
+        return one.id;
     }
     from = page->next;
   } while (!from.empty());

@@ -103,7 +103,8 @@ TEST_F(Filing, LeavesAloneWhatAnotherProgramIsAt) {
   AttemptFiling first(access_, 1, [] {});
   first.Begin(recording_);
   RecordTask(recording_, "novice", kTask, "easy", 300);
-  for (int i = 0; i < 200 && CountNotes() == 0; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  for (int i = 0; i < 200 && CountNotes() == 0; ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
   ASSERT_EQ(CountNotes(), 1u);
   AttemptFiling second(access_, 1, [] {});
   std::this_thread::sleep_for(std::chrono::milliseconds(500));

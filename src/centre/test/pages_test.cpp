@@ -146,7 +146,8 @@ TEST_P(Pages, CourseMapOpensStepsAsTheyAreDone) {
     attempt.task = step->task, attempt.level = step->level;
     attempt.metrics.clear();
     for (const assessment::Threshold& threshold : step->proficiency.thresholds)
-      attempt.metrics.push_back({threshold.of.metric, threshold.of.hand, threshold.of.phase, threshold.value, ""});
+      attempt.metrics.push_back(
+          {threshold.of.metric, threshold.of.hand, threshold.of.phase, threshold.value, ""});
     Store(attempt);
   }
   const auto after = LoadCourse(access_, "basic-skills");

@@ -19,7 +19,8 @@ inline constexpr std::uint64_t kUntilOver = 200000;
 
 /// Plays a task and records it: until the task is over, or for so many ticks.
 inline void RecordTask(const std::filesystem::path& path, const char* surgeon_name, const char* task,
-                       const char* level, std::uint64_t ticks, const std::string& player = "mouse and keyboard") {
+                       const char* level, std::uint64_t ticks,
+                       const std::string& player = "mouse and keyboard") {
   auto scene = scene::ReadTask(*scene::FindTask(task), {level, 3, {}});
   ASSERT_TRUE(scene.ok()) << scene.error().Text();
   const auto shared = std::make_shared<const scene::Scene>(std::move(*scene));

@@ -92,7 +92,8 @@ void CentreWindow::MakeWho() {
   who_card_.set_size_request(kWhoWidth, -1);
   who_card_.append(MakeLine("Who are you?", "page-title"));
   who_card_.append(
-      MakeText("A name or a pseudonym, or nothing. Attempts from now on are kept under a pseudonym; your name stays in a "
+      MakeText("A name or a pseudonym, or nothing. Attempts from now on are kept under a pseudonym; your "
+               "name stays in a "
                "protected file on this computer.",
                "value"));
   who_.set_placeholder_text("nobody in particular");

@@ -121,14 +121,15 @@ void CourseView::ShowStep(const CoursePage& page) {
   for (const std::string& threshold : step.thresholds) detail_->append(MakeText("•  " + threshold, "value"));
   detail_->append(MakeText("So far: " + step.progress, "value"));
   const bool is_locked = step.state == StepState::kLocked;
-  Gtk::Button& start =
-      MakeButton(is_locked ? "Practise" : "Start", [this, key = step.key] { presenter_->StartStep(key); },
-                 is_locked ? nullptr : "primary");
+  Gtk::Button& start = MakeButton(
+      is_locked ? "Practise" : "Start", [this, key = step.key] { presenter_->StartStep(key); },
+      is_locked ? nullptr : "primary");
   start.set_halign(Gtk::Align::START);
   start.set_margin_top(8);
   if (is_locked) {
-    detail_->append(MakeText("It is locked until " + step.locked_by + " is done: an attempt now is practice and does not count.",
-                             "caution"));
+    detail_->append(MakeText(
+        "It is locked until " + step.locked_by + " is done: an attempt now is practice and does not count.",
+        "caution"));
   }
   detail_->append(start);
 }

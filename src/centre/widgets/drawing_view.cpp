@@ -19,7 +19,8 @@ DrawingView::DrawingView(int width) : width_(width) {
   set_draw_func(sigc::mem_fun(*this, &DrawingView::Draw));
   set_has_tooltip(true);
   signal_query_tooltip().connect(
-      [this](int x, int y, bool, const Glib::RefPtr<Gtk::Tooltip>& tip) { return QueryTip(x, y, tip); }, false);
+      [this](int x, int y, bool, const Glib::RefPtr<Gtk::Tooltip>& tip) { return QueryTip(x, y, tip); },
+      false);
 }
 
 void DrawingView::Show(const report::Drawing& drawing) {

@@ -21,10 +21,11 @@ void ExamView::Show(const CentrePage& shown) {
   };
   if (page.file.empty()) {
     Gtk::Box& card = MakeCard("No exam is open");
-    card.append(MakeText("An examiner seals the settings of an exam with `trocar exam seal`. Open that file here; what is "
-                         "sat under it is recorded, and the certificate says what it came to and nothing of anybody's "
-                         "competence.",
-                         "value"));
+    card.append(MakeText(
+        "An examiner seals the settings of an exam with `trocar exam seal`. Open that file here; what is "
+        "sat under it is recorded, and the certificate says what it came to and nothing of anybody's "
+        "competence.",
+        "value"));
     Gtk::Button& button = MakeButton("Open an exam…", open, "primary");
     button.set_halign(Gtk::Align::START);
     card.append(button);
@@ -46,14 +47,18 @@ void ExamView::Show(const CentrePage& shown) {
   all->append(facts);
 
   Gtk::Box& sit = MakeCard("1. Sit the exam");
-  sit.append(MakeText("Examinee: " + (page.examinee.empty() ? std::string("nobody yet; say at \"Who are you?\" who you are")
-                                                            : shown.who + " (" + page.examinee + ")"),
-                      page.examinee.empty() ? "caution" : "value"));
-  sit.append(MakeText("There is no demonstration, no camera holder, no force arrows and no second try. It ends with the task, or "
-                      "with Finish.",
-                      "value"));
+  sit.append(MakeText(
+      "Examinee: " + (page.examinee.empty() ? std::string("nobody yet; say at \"Who are you?\" who you are")
+                                            : shown.who + " (" + page.examinee + ")"),
+      page.examinee.empty() ? "caution" : "value"));
+  sit.append(
+      MakeText("There is no demonstration, no camera holder, no force arrows and no second try. It ends with "
+               "the task, or "
+               "with Finish.",
+               "value"));
   Gtk::Box& row = gui::MakeRow(8, {});
-  Gtk::Button& start = MakeButton("Start the exam", [this] { presenter_->StartExam(); }, "primary");
+  Gtk::Button& start = MakeButton(
+      "Start the exam", [this] { presenter_->StartExam(); }, "primary");
   start.set_sensitive(!page.examinee.empty() && page.recording.empty());
   row.append(start);
   row.append(MakeButton("Another exam…", open));
@@ -62,8 +67,10 @@ void ExamView::Show(const CentrePage& shown) {
   all->append(sit);
 
   Gtk::Box& sign = MakeCard("2. Issue the certificate");
-  sign.append(MakeText("The exam is computed again from its recording and signed with the centre's private key.", "value"));
-  Gtk::Button& issue = MakeButton("Issue…", [this, page] { ChooseKey(page); }, "primary");
+  sign.append(MakeText(
+      "The exam is computed again from its recording and signed with the centre's private key.", "value"));
+  Gtk::Button& issue = MakeButton(
+      "Issue…", [this, page] { ChooseKey(page); }, "primary");
   issue.set_halign(Gtk::Align::START);
   issue.set_sensitive(!page.recording.empty() && page.certificate.empty());
   sign.append(issue);
@@ -78,10 +85,12 @@ void ExamView::Show(const CentrePage& shown) {
 }
 
 void ExamView::ChooseKey(const ExamPage& page) {
-  ChooseFile("The centre's private key", Gtk::FileChooser::Action::OPEN, "", [this, page](const std::string& key) {
-    ChooseFile("Save the certificate", Gtk::FileChooser::Action::SAVE, page.recording.stem().string() + ".json",
-               [this, key](const std::string& file) { presenter_->IssueCertificate(key, file); });
-  });
+  ChooseFile("The centre's private key", Gtk::FileChooser::Action::OPEN, "",
+             [this, page](const std::string& key) {
+               ChooseFile("Save the certificate", Gtk::FileChooser::Action::SAVE,
+                          page.recording.stem().string() + ".json",
+                          [this, key](const std::string& file) { presenter_->IssueCertificate(key, file); });
+             });
 }
 
 void ExamView::ChooseFile(const char* title, Gtk::FileChooser::Action action, const std::string& name,

@@ -32,23 +32,25 @@ void GroupView::Show(const CentrePage& shown) {
   }
   all->append(head);
   if (page.group.empty()) {
-    all->append(MakeText(
-        "There is no group yet. `trocar store group add NAME` makes one, `trocar store group join NAME PSEUDONYM` "
-        "puts people into it.",
-        "value"));
+    all->append(
+        MakeText("There is no group yet. `trocar store group add NAME` makes one, `trocar store group join "
+                 "NAME PSEUDONYM` "
+                 "puts people into it.",
+                 "value"));
     append(MakePage(*all));
     return;
   }
   if (page.is_cut)
-    all->append(MakeText("Only the newest " + std::to_string(kMostGroupAttempts) + " attempts are counted.", "caution"));
+    all->append(MakeText("Only the newest " + std::to_string(kMostGroupAttempts) + " attempts are counted.",
+                         "caution"));
   Gtk::Box& card = MakeCard("Members and tasks");
   if (page.members.empty()) card.append(MakeText("This group has no trainees.", "value"));
   std::vector<std::string> names = {"member"};
   for (const GroupPage::Task& task : page.tasks) names.push_back(task.name);
   auto* table = Gtk::make_managed<Table>(names);
   for (const GroupPage::Member& member : page.members) {
-    Gtk::Button& open =
-        MakeButton(member.name, [this, who = member.pseudonym] { presenter_->ChoosePerson(who); }, "small");
+    Gtk::Button& open = MakeButton(
+        member.name, [this, who = member.pseudonym] { presenter_->ChoosePerson(who); }, "small");
     open.set_tooltip_text("Open the history");
     table->Add(open);
     for (const GroupPage::Cell& cell : member.cells)

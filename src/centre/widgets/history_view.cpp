@@ -57,8 +57,9 @@ Gtk::Widget& HistoryView::MakeList(const HistoryPage& page) {
   card.set_hexpand(true);
   card.set_valign(Gtk::Align::START);
   if (page.rows.empty()) {
-    card.append(MakeText("No attempt is kept here yet. Every attempt in the simulator enters by itself when it has ended.",
-                         "value"));
+    card.append(MakeText(
+        "No attempt is kept here yet. Every attempt in the simulator enters by itself when it has ended.",
+        "value"));
     return card;
   }
   const bool is_everyone = page.query.person.empty();
@@ -72,8 +73,10 @@ Gtk::Widget& HistoryView::MakeList(const HistoryPage& page) {
     table->AddText(row.outcome, StyleOf(row.tone));
     table->AddText(row.score);
     table->AddText(row.time);
-    Gtk::Button& result = MakeButton("Result", [this, row] { presenter_->OpenResultOf(row); }, "small");
-    Gtk::Button& replay = MakeButton("Replay", [this, row] { presenter_->OpenReplayOf(row); }, "small");
+    Gtk::Button& result = MakeButton(
+        "Result", [this, row] { presenter_->OpenResultOf(row); }, "small");
+    Gtk::Button& replay = MakeButton(
+        "Replay", [this, row] { presenter_->OpenReplayOf(row); }, "small");
     for (Gtk::Button* button : {&result, &replay}) {
       button->set_sensitive(!row.recording.empty());
       if (row.recording.empty()) button->set_tooltip_text("Its recording is not on this computer");
@@ -94,7 +97,8 @@ Gtk::Widget& HistoryView::MakeList(const HistoryPage& page) {
 }
 
 Gtk::Box& HistoryView::MakeLearning(const HistoryPage& page) {
-  Gtk::Box& card = MakeCard("How it is learnt" + (page.level.empty() ? std::string() : ", level " + page.level));
+  Gtk::Box& card =
+      MakeCard("How it is learnt" + (page.level.empty() ? std::string() : ", level " + page.level));
   card.set_size_request(kPlotWidth, -1);
   card.set_valign(Gtk::Align::START);
   if (page.query.task.empty()) {

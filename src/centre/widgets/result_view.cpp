@@ -30,7 +30,9 @@ void ResultView::Show(const CentrePage& shown) {
     title.set_halign(Gtk::Align::CENTER);
     wait->append(title);
     Gtk::Label& what = MakeLine(
-        "It is played again from its recording, to the bit, and measured. It is kept whatever you do meanwhile.", "name");
+        "It is played again from its recording, to the bit, and measured. It is kept whatever you do "
+        "meanwhile.",
+        "name");
     wait->append(what);
     append(*wait);
     return;
@@ -109,8 +111,9 @@ void ResultView::ShowAdvice(const ResultPage& page, Gtk::Box& into) {
     row->append(MakeText(advice.why, "value"));
     row->append(MakeText("Practise: " + advice.practise, "value"));
     if (advice.time) {
-      Gtk::Button& look = MakeButton("Look at " + report::FormatClock(*advice.time),
-                                     [this, time = *advice.time] { presenter_->Jump(time); }, "small");
+      Gtk::Button& look = MakeButton(
+          "Look at " + report::FormatClock(*advice.time),
+          [this, time = *advice.time] { presenter_->Jump(time); }, "small");
       look.set_halign(Gtk::Align::START);
       look.set_tooltip_text("Opens the replay a little before this moment");
       row->append(look);
@@ -124,14 +127,14 @@ void ResultView::ShowAdvice(const ResultPage& page, Gtk::Box& into) {
 void ResultView::ShowErrors(const ResultPage& page, Gtk::Box& into) {
   Gtk::Box& card = MakeCard("Errors");
   if (page.errors.empty()) {
-    card.append(MakeText(page.tone == Tone::kCaution ? "None was noted, but the attempt is not complete."
-                                                     : "None was noted.",
-                         "value"));
+    card.append(MakeText(
+        page.tone == Tone::kCaution ? "None was noted, but the attempt is not complete." : "None was noted.",
+        "value"));
   }
   for (const ResultPage::ErrorRow& error : page.errors) {
     Gtk::Box& row = gui::MakeRow(10, {});
-    Gtk::Button& jump =
-        MakeButton(error.clock + "  ▸", [this, time = error.time] { presenter_->Jump(time); }, "small");
+    Gtk::Button& jump = MakeButton(
+        error.clock + "  ▸", [this, time = error.time] { presenter_->Jump(time); }, "small");
     jump.set_tooltip_text("Opens the replay a little before this error");
     row.append(jump);
     Gtk::Label& what = MakeText(error.what, "value");
@@ -158,7 +161,8 @@ void ResultView::ShowNumbers(const ResultPage& page, Gtk::Box& into) {
     into.append(card);
   }
   Gtk::Box& card = MakeCard("All metrics");
-  auto* table = Gtk::make_managed<Table>(std::vector<std::string>{"", "this attempt", "range of experts", "own best"});
+  auto* table =
+      Gtk::make_managed<Table>(std::vector<std::string>{"", "this attempt", "range of experts", "own best"});
   for (const ResultPage::MetricRow& row : page.metrics) {
     Gtk::Label& name = MakeText(row.name, "name");
     name.set_hexpand(true);
@@ -177,7 +181,8 @@ Gtk::Box& ResultView::MakeActions(const ResultPage& page) {
   auto* line = Gtk::make_managed<Gtk::Box>();
   line->add_css_class("actions");
   line->set_spacing(8);
-  line->append(MakeButton("Again", [this] { presenter_->PlayAgain(); }, "primary"));
+  line->append(MakeButton(
+      "Again", [this] { presenter_->PlayAgain(); }, "primary"));
   const bool is_course = page.step.IsSet() || page.advice.empty();
   line->append(
       MakeButton(is_course ? "Next exercise" : "Exercise that helps", [this] { presenter_->PlayNext(); }));
@@ -189,11 +194,11 @@ Gtk::Box& ResultView::MakeActions(const ResultPage& page) {
 void ResultView::ChooseReport() {
   auto* window = dynamic_cast<Gtk::Window*>(get_root());
   if (window == nullptr) return;
-  auto dialog = Gtk::FileChooserNative::create("Save the report", *window, Gtk::FileChooser::Action::SAVE, "Save",
-                                               "Cancel");
+  auto dialog = Gtk::FileChooserNative::create("Save the report", *window, Gtk::FileChooser::Action::SAVE,
+                                               "Save", "Cancel");
   constexpr std::array<std::pair<const char*, const char*>, 4> kKinds = {
-      std::pair{"Page (HTML)", "*.html"}, std::pair{"For print (PDF)", "*.pdf"}, std::pair{"Table (CSV)", "*.csv"},
-      std::pair{"Data (JSON)", "*.json"}};
+      std::pair{"Page (HTML)", "*.html"}, std::pair{"For print (PDF)", "*.pdf"},
+      std::pair{"Table (CSV)", "*.csv"}, std::pair{"Data (JSON)", "*.json"}};
   for (const auto& [name, pattern] : kKinds) {
     auto filter = Gtk::FileFilter::create();
     filter->set_name(name);

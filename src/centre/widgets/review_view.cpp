@@ -30,7 +30,8 @@ void ReviewView::AddRemarks(const ReviewPage& review) {
   if (review.remarks.empty()) card.append(MakeText("Nobody has remarked anything.", "value"));
   for (const ReviewPage::Remark& remark : review.remarks) {
     Gtk::Box& row = gui::MakeRow(10, {});
-    row.append(MakeButton(remark.clock + "  ▸", [this, time = remark.time] { presenter_.Jump(time); }, "small"));
+    row.append(MakeButton(
+        remark.clock + "  ▸", [this, time = remark.time] { presenter_.Jump(time); }, "small"));
     Gtk::Label& text = MakeText(remark.text, "value");
     text.set_hexpand(true);
     row.append(text);
@@ -67,8 +68,9 @@ void ReviewView::AddForm(std::size_t index, Gtk::Box& into) {
     points->set_model(Gtk::StringList::create(words));
     points->set_selected(static_cast<guint>(item.points));
     points->set_valign(Gtk::Align::CENTER);
-    points->property_selected().signal_changed().connect(
-        [this, points, index, i] { forms_[index].items[i].points = static_cast<int>(points->get_selected()); });
+    points->property_selected().signal_changed().connect([this, points, index, i] {
+      forms_[index].items[i].points = static_cast<int>(points->get_selected());
+    });
     table->Add(*points);
     table->AddText(item.highest, "fine", true);
     table->EndRow();

@@ -69,20 +69,20 @@ void AddWindowCommand(CLI::App& app, Outcome& outcome) {
   auto store = std::make_shared<std::string>(), trainee = std::make_shared<std::string>(),
        page = std::make_shared<std::string>(), exam = std::make_shared<std::string>();
   command
-      ->add_option("--store", *store,
-                   "Where attempts are kept for history and courses: a SQLite file, or postgresql://... (default: "
-                   "TROCAR_STORE, else ~/.local/share/trocar/store/store.sqlite)")
+      ->add_option(
+          "--store", *store,
+          "Where attempts are kept for history and courses: a SQLite file, or postgresql://... (default: "
+          "TROCAR_STORE, else ~/.local/share/trocar/store/store.sqlite)")
       ->type_name("URL");
   command
       ->add_option("--trainee", *trainee,
                    "Who operates: a name, which stays in a protected file on this computer, or a pseudonym")
       ->type_name("NAME");
-  CLI::Option* centre = command
-                            ->add_option("--page", *page,
-                                         "Open the training centre at this page, without the simulator")
-                            ->check(CLI::IsMember({"history", "courses", "group", "exam"}))
-                            ->excludes("scene")
-                            ->excludes(one);
+  CLI::Option* centre =
+      command->add_option("--page", *page, "Open the training centre at this page, without the simulator")
+          ->check(CLI::IsMember({"history", "courses", "group", "exam"}))
+          ->excludes("scene")
+          ->excludes(one);
   command->add_option("--exam", *exam, "With --page exam: sealed file to open, as trocar exam seal wrote it")
       ->needs(centre)
       ->type_name("FILE");

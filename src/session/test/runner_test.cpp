@@ -122,7 +122,9 @@ TEST_F(RunnerTest, EndsAnAttemptAndRecordsNoMoreUntilTheReset) {
   AttemptKeeping keeping{kept, {}};
   keeping.description.name = (folder_ / "scene.json").string();
   std::atomic<int> begun{0}, ended{0};
-  keeping.on_begin = [&](const std::filesystem::path& path) { begun += path.extension() == ".trocar" ? 1 : 0; };
+  keeping.on_begin = [&](const std::filesystem::path& path) {
+    begun += path.extension() == ".trocar" ? 1 : 0;
+  };
   keeping.on_end = [&](const std::filesystem::path& path) { ended += path.extension() == ".trocar" ? 1 : 0; };
   {
     Runner runner(MakeSimulation(), nullptr, keeping);

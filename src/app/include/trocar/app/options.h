@@ -30,9 +30,10 @@ struct Options {
   double replay_at = 0;                 ///< with `replay`: moment at which it begins [s]
   std::string store;    ///< where attempts go, as store::FindPlace reads it; empty: the person's own
   std::string trainee;  ///< who operates: name or pseudonym; empty: nobody in particular
-  std::string page;     ///< open the training centre at "history", "courses", "group" or "exam"; empty: the simulator
+  std::string
+      page;  ///< open the training centre at "history", "courses", "group" or "exam"; empty: the simulator
   std::filesystem::path exam;  ///< with `page` "exam": sealed file to open; empty: none
-  int igtl_port = -1;                   ///< viewers over OpenIGTLink may connect here; 0: any port, -1: none
+  int igtl_port = -1;          ///< viewers over OpenIGTLink may connect here; 0: any port, -1: none
   bool is_fullscreen = false;
   bool is_demonstration = false;  ///< start with the script moving both hands
   gui::RunOptions run;            ///< its time is simulated

@@ -22,7 +22,8 @@ core::Result<simulation::Simulation> MakeChosenSimulation(const Options& options
 
 /// What a step of a course or an exam asks for, where it begins: at the first tick, or where the expert has left an operation.
 /// \return the scene's error; kStateInvalid where the state is of another scene
-core::Result<simulation::Simulation> MakeStartedSimulation(const Options& options, const centre::Start& start);
+core::Result<simulation::Simulation> MakeStartedSimulation(const Options& options,
+                                                           const centre::Start& start);
 
 /// What a recording of it is of. \param scene  as chosen
 record::Description DescribeChosenScene(const Options& options, const scene::Scene& scene);

@@ -30,7 +30,7 @@ enum class Action {
   kAssistant,   ///< the next command to the assistant
   kTogglePause,
   kReset,
-  kFinish,      ///< the attempt is over: its result
+  kFinish,  ///< the attempt is over: its result
   kToggleDemonstration,
   kToggleForces,
   kToggleMask,
@@ -59,10 +59,10 @@ struct KeyMeaning {
 enum class SimulatorNeeds {
   kNothing,
   kNoFailure,
-  kScene,    ///< a simulation runs, and nothing has failed
-  kScript,   ///< likewise, it has a script or an expert, and it is no exam
+  kScene,     ///< a simulation runs, and nothing has failed
+  kScript,    ///< likewise, it has a script or an expert, and it is no exam
   kGuidance,  ///< likewise, and it is no exam
-  kHaptics,  ///< likewise, and a haptic device holds a hand
+  kHaptics,   ///< likewise, and a haptic device holds a hand
 };
 
 using SimulatorCommand = gui::Command<KeyMeaning, SimulatorNeeds>;

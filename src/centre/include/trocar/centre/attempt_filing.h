@@ -18,9 +18,9 @@
 namespace trocar::centre {
 
 struct FilingStatus {
-  std::size_t measuring = 0;  ///< attempts that are being measured, or wait for it
-  double progress = 0;        ///< of the one that is being measured, 0 to 1
-  std::size_t waiting = 0;    ///< attempts in the spool
+  std::size_t measuring = 0;           ///< attempts that are being measured, or wait for it
+  double progress = 0;                 ///< of the one that is being measured, 0 to 1
+  std::size_t waiting = 0;             ///< attempts in the spool
   std::optional<core::Error> failure;  ///< why they wait, or why the last could not be kept
 };
 

@@ -27,7 +27,7 @@ enum class PageKind : std::uint8_t { kResult, kHistory, kCourses, kGroup, kExam 
 /// All that the window says and shows.
 struct CentrePage {
   PageKind kind = PageKind::kHistory;
-  std::string who;                 ///< a person's name, for the header
+  std::string who;                   ///< a person's name, for the header
   std::optional<ResultPage> result;  ///< nothing before an attempt was judged
   ReviewPage review;
   HistoryPage history;

@@ -17,11 +17,12 @@ namespace trocar::centre {
 /// What the simulator is asked to open.
 struct Start {
   record::Description description;  ///< of the scene
-  std::filesystem::path state;      ///< in the middle of an operation, as assessment::PrepareStep made it; empty: the first tick
-  std::string state_surgeon;        ///< who came so far
-  std::string title;                ///< for a person
-  StepName step;                    ///< for which it is made
-  bool is_exam = false;             ///< without guidance, and once only
+  std::filesystem::path
+      state;  ///< in the middle of an operation, as assessment::PrepareStep made it; empty: the first tick
+  std::string state_surgeon;  ///< who came so far
+  std::string title;          ///< for a person
+  StepName step;              ///< for which it is made
+  bool is_exam = false;       ///< without guidance, and once only
 };
 
 struct CoursePage {
@@ -30,9 +31,9 @@ struct CoursePage {
   };
   struct Step {
     std::string key, name, goal, what, briefing;
-    std::string progress;  ///< "2 of 3 passes, 1 in a row"
-    std::string due;       ///< "due 2026-11-30", "overdue since ..."; may be empty
-    std::string locked_by; ///< names; empty where it is not locked
+    std::string progress;   ///< "2 of 3 passes, 1 in a row"
+    std::string due;        ///< "due 2026-11-30", "overdue since ..."; may be empty
+    std::string locked_by;  ///< names; empty where it is not locked
     assessment::StepState state = assessment::StepState::kLocked;
     bool is_overdue = false;
     std::vector<std::string> thresholds;  ///< in words

@@ -36,7 +36,8 @@ core::Result<Start> PrepareExam(const ExamPage& page);
 /// Signs what the recording came to, writes it, checks it as anybody would, and keeps it in the store.
 /// \param key  private
 /// \return the page with its certificate; the certificate's error
-core::Result<ExamPage> IssueExamCertificate(const Access& access, ExamPage page, const std::filesystem::path& key,
+core::Result<ExamPage> IssueExamCertificate(const Access& access, ExamPage page,
+                                            const std::filesystem::path& key,
                                             const std::filesystem::path& file,
                                             const std::function<void(double)>& progress);
 

@@ -26,7 +26,7 @@ struct GroupPage {
     std::string key, name;
   };
   std::vector<std::string> groups;
-  std::string group;  ///< that is shown; empty where there is none
+  std::string group;        ///< that is shown; empty where there is none
   std::vector<Task> tasks;  ///< that somebody has tried
   std::vector<Member> members;
   bool is_cut = false;  ///< there are more attempts than were counted: the newest kMostGroupAttempts

@@ -22,8 +22,8 @@ struct StepName {
 };
 
 struct JudgeSettings {
-  int threads = 1;   ///< of the solver; the numbers are the same for any number
-  StepName step;     ///< what it was made for
+  int threads = 1;     ///< of the solver; the numbers are the same for any number
+  StepName step;       ///< what it was made for
   std::string person;  ///< pseudonym; may be empty
   /// Told the share done, 0 to 1; false gives up. May be empty.
   std::function<bool(double)> progress;
@@ -35,7 +35,7 @@ struct JudgedAttempt {
   std::optional<assessment::Verdict> verdict;  ///< nothing where there are no thresholds
   std::string debriefing;                      ///< of the step; empty without one
   StepName step;
-  double begin = 0;  ///< of the recording: where a replay of it begins [s]
+  double begin = 0;               ///< of the recording: where a replay of it begins [s]
   bool is_demonstration = false;  ///< of the script or the expert in the window: nobody's own
 };
 

@@ -51,7 +51,7 @@ struct ResultPage {
   std::vector<MetricRow> metrics;
   std::vector<report::Drawing> drawings;
   std::filesystem::path recording;
-  double begin = 0;  ///< of the recording [s]: where a replay of it begins
+  double begin = 0;              ///< of the recording [s]: where a replay of it begins
   report::AttemptReport report;  ///< for files
   StepName step;
 };
