@@ -16,6 +16,8 @@
 namespace trocar::centre {
 namespace {
 
+using store::Kind;
+using store::KindName;
 using store::Role;
 using testing::HasSubstr;
 
@@ -39,7 +41,7 @@ class Pages : public store::StoreTest {
     attempt.score = 100 - day;
     return attempt;
   }
-  void Store(const store::Attempt& attempt) {
+  void Keep(const store::Attempt& attempt) {
     const auto added = store::AddAttempt(Open(), attempt);
     ASSERT_TRUE(added.ok()) << added.error().Text();
   }
@@ -50,7 +52,7 @@ INSTANTIATE_OVER_DATABASES(Pages);
 
 TEST_P(Pages, HistoryListsTheNewestFirstByPages) {
   const std::string who = Add(Role::kTrainee);
-  for (int day = 1; day <= 25; ++day) Store(MakeOne(day, who, 100.0 / day, day > 3));
+  for (int day = 1; day <= 25; ++day) Keep(MakeOne(day, who, 100.0 / day, day > 3));
   access_.person = who;
   const auto first = LoadHistory(access_, {who, "", ""});
   ASSERT_TRUE(first.ok()) << first.error().Text();
@@ -69,7 +71,7 @@ TEST_P(Pages, HistoryListsTheNewestFirstByPages) {
 
 TEST_P(Pages, HistoryOfATaskShowsHowItIsLearnt) {
   const std::string who = Add(Role::kTrainee);
-  for (int day = 1; day <= 12; ++day) Store(MakeOne(day, who, 60 + 120.0 / day, day > 3));
+  for (int day = 1; day <= 12; ++day) Keep(MakeOne(day, who, 60 + 120.0 / day, day > 3));
   access_.person = who;
   const auto page = LoadHistory(access_, {who, "peg_transfer", ""});
   ASSERT_TRUE(page.ok()) << page.error().Text();
@@ -84,7 +86,7 @@ TEST_P(Pages, WhatIsNotCompletedIsNotGreen) {
   const std::string who = Add(Role::kTrainee);
   store::Attempt attempt = MakeOne(1, who, 60, std::nullopt);
   attempt.is_completed = false;
-  Store(attempt);
+  Keep(attempt);
   access_.person = who;
   const auto page = LoadHistory(access_, {who, "", ""});
   ASSERT_TRUE(page.ok());
@@ -94,7 +96,7 @@ TEST_P(Pages, WhatIsNotCompletedIsNotGreen) {
 
 TEST_P(Pages, TraineesSeeNobodyElsesHistory) {
   const std::string one = Add(Role::kTrainee), other = Add(Role::kTrainee);
-  Store(MakeOne(1, one, 60, true));
+  Keep(MakeOne(1, one, 60, true));
   access_.person = other;
   const auto page = LoadHistory(access_, {one, "", ""});
   EXPECT_TRUE(!page.ok() || page->rows.empty());
@@ -105,8 +107,8 @@ TEST_P(Pages, GroupShowsMembersAndWhatTheyCameTo) {
   ASSERT_TRUE(store::AddGroup(Open(), store::kOwner, "Ward 3").ok());
   for (const std::string& member : {instructor, one, two})
     ASSERT_TRUE(store::JoinGroup(Open(), store::kOwner, "Ward 3", member).ok());
-  Store(MakeOne(1, one, 90, false));
-  Store(MakeOne(2, one, 60, true));
+  Keep(MakeOne(1, one, 90, false));
+  Keep(MakeOne(2, one, 60, true));
   access_.person = instructor;
   const auto page = LoadGroup(access_, "");
   ASSERT_TRUE(page.ok()) << page.error().Text();
@@ -148,7 +150,7 @@ TEST_P(Pages, CourseMapOpensStepsAsTheyAreDone) {
     for (const assessment::Threshold& threshold : step->proficiency.thresholds)
       attempt.metrics.push_back(
           {threshold.of.metric, threshold.of.hand, threshold.of.phase, threshold.value, ""});
-    Store(attempt);
+    Keep(attempt);
   }
   const auto after = LoadCourse(access_, "basic-skills");
   ASSERT_TRUE(after.ok());
@@ -173,7 +175,7 @@ TEST_P(Pages, RemarksAndRatingsAreKept) {
   for (const std::string& member : {instructor, who})
     ASSERT_TRUE(store::JoinGroup(Open(), store::kOwner, "Ward 3", member).ok());
   const store::Attempt attempt = MakeOne(1, who, 90, false);
-  Store(attempt);
+  Keep(attempt);
   access_.person = instructor;
   auto review = LoadReview(access_, attempt);
   ASSERT_TRUE(review.ok()) << review.error().Text();
