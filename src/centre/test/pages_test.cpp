@@ -119,7 +119,9 @@ TEST_P(Pages, GroupShowsMembersAndWhatTheyCameTo) {
     const GroupPage::Cell& cell = member.cells[0];
     EXPECT_EQ(cell.attempts, member.pseudonym == one ? 2u : 0u);
     EXPECT_EQ(cell.is_passed, member.pseudonym == one);
-    if (member.pseudonym == one) EXPECT_THAT(cell.text, HasSubstr("last 98.0 %, best 99.0 %"));
+    if (member.pseudonym == one) {
+      EXPECT_THAT(cell.text, HasSubstr("last 98.0 %, best 99.0 %"));
+    }
   }
   access_.person = one;
   const auto refused = LoadGroup(access_, "");
@@ -161,8 +163,9 @@ TEST_P(Pages, CourseMapOpensStepsAsTheyAreDone) {
 TEST_P(Pages, CourseMapIsThereWhileTheStoreIsAway) {
   access_.place.url = GetParam() == store::Kind::kPostgres ? "postgresql:///nothing?host=/nowhere"
                                                            : (folder_.Path() / "away.files" / "x").string();
-  if (GetParam() == store::Kind::kSqlite)
+  if (GetParam() == store::Kind::kSqlite) {
     ASSERT_TRUE(core::WriteFile(folder_.Path() / "away.files", "a file where the folder should be").ok());
+  }
   const auto loaded = LoadCourse(access_, "basic-skills");
   ASSERT_TRUE(loaded.ok()) << loaded.error().Text();
   EXPECT_TRUE(loaded->store_failure.has_value());
