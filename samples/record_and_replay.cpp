@@ -56,10 +56,11 @@ int Replay(const std::filesystem::path& file) {
               verified->IsVerified() ? "the same to the bit" : "something else");
   if (const auto status = replay->Seek(120); !status.ok()) return Complain(status.error());
   scene::Input input = replay->GetRecording().inputs[120];
-  simulation::Simulation branch = std::move(*replay).Branch();
+  auto branch = replay->Branch(1);
+  if (!branch.ok()) return Complain(branch.error());
   input.hands[scene::kRight].depth -= 0.01;
-  for (int tick = 0; tick < 60; ++tick) branch.Step(input);
-  std::printf("taken over after 1 s and held back: the branch stands at %.2f s\n", branch.GetSnapshot().time);
+  for (int tick = 0; tick < 60; ++tick) branch->Step(input);
+  std::printf("taken over after 1 s and held back: the branch stands at %.2f s\n", branch->GetSnapshot().time);
   return 0;
 }
 

@@ -11,6 +11,7 @@
 #include "trocar/core/assert.h"
 #include "trocar/core/markup.h"
 #include "trocar/core/text_table.h"
+#include "trocar/report/axis.h"
 
 namespace trocar::bench {
 namespace {
@@ -77,54 +78,6 @@ std::string PathCommands(const std::vector<Vec2>& points, const Map& map) {
 
 }  // namespace
 
-std::vector<double> FindAxisMarks(double low, double high, int wanted) {
-  TROCAR_ASSERT(low < high && wanted >= 2);
-  const double rough = (high - low) / wanted;
-  const double power = std::pow(10.0, std::floor(std::log10(rough)));
-  double step = 10 * power;
-  for (const double factor : {1.0, 2.0, 5.0}) {
-    if (factor * power >= rough) {
-      step = factor * power;
-      break;
-    }
-  }
-  std::vector<double> marks;
-  for (double n = std::ceil(low / step - 1e-9); n * step <= high + 1e-9 * step; n += 1) {
-    marks.push_back(n == 0 ? 0.0 : n * step);  // never -0
-  }
-  return marks;
-}
-
-std::vector<double> FindLogMarks(double low, double high) {
-  TROCAR_ASSERT(0 < low && low < high);
-  const bool is_short = std::log10(high / low) < 2.5;
-  std::vector<double> marks;
-  for (double n = std::floor(std::log10(low)); n <= std::log10(high) + 1e-9; n += 1) {
-    for (const double factor : {1.0, 2.0, 5.0}) {
-      const double mark = factor * std::pow(10.0, n);
-      if ((factor == 1.0 || is_short) && mark >= low * (1 - 1e-9) && mark <= high * (1 + 1e-9))
-        marks.push_back(mark);
-    }
-  }
-  return marks;
-}
-
-std::vector<Vec2> ThinOut(const std::vector<Vec2>& points, std::size_t limit) {
-  TROCAR_ASSERT(limit >= 2);
-  if (points.size() <= limit) return points;
-  std::vector<Vec2> kept;
-  const std::size_t stretches = limit / 2;
-  for (std::size_t s = 0; s < stretches; ++s) {
-    const auto first = points.begin() + static_cast<std::ptrdiff_t>(s * points.size() / stretches);
-    const auto last = points.begin() + static_cast<std::ptrdiff_t>((s + 1) * points.size() / stretches);
-    const auto [low, high] =
-        std::minmax_element(first, last, [](const Vec2& a, const Vec2& b) { return a.y < b.y; });
-    kept.push_back(*std::min(low, high));
-    if (low != high) kept.push_back(*std::max(low, high));
-  }
-  return kept;
-}
-
 namespace {
 
 /// The lines with logarithms in place of the values on logarithmic axes.
@@ -143,10 +96,10 @@ std::vector<PlotLine> TakeLogarithms(const PlotSettings& settings, std::vector<P
 std::vector<std::pair<double, std::string>> FindMarks(double low, double high, int wanted, bool is_log) {
   std::vector<std::pair<double, std::string>> marks;
   if (is_log) {
-    for (const double mark : FindLogMarks(std::pow(10.0, low), std::pow(10.0, high)))
+    for (const double mark : report::FindLogMarks(std::pow(10.0, low), std::pow(10.0, high)))
       marks.emplace_back(std::log10(mark), core::FormatNumber(mark, 6));
   } else {
-    for (const double mark : FindAxisMarks(low, high, wanted))
+    for (const double mark : report::FindAxisMarks(low, high, wanted))
       marks.emplace_back(mark, core::FormatNumber(mark, 6));
   }
   return marks;
@@ -215,7 +168,8 @@ std::string FormatSvgPlot(const PlotSettings& settings, const std::vector<PlotLi
   for (std::size_t i = lines.size(); i-- > 0;) {
     const std::string stroke =
         std::string("stroke=\"") + kColours[i] + "\" stroke-dasharray=\"" + kDashes[i] + "\"";
-    const auto points = settings.has_equal_axes ? lines[i].points : ThinOut(lines[i].points, kMostPoints);
+    const auto points =
+        settings.has_equal_axes ? lines[i].points : report::ThinOut(lines[i].points, kMostPoints);
     svg += "<path class=\"line\" " + stroke + " d=\"" + PathCommands(points, map) + "\"/>\n";
     double at = kTop + 12 + 18.0 * static_cast<double>(i);
     if (has_column) {

@@ -10,30 +10,8 @@
 namespace trocar::bench {
 namespace {
 
-using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
-
-TEST(FindAxisMarks, AreRoundAndInside) {
-  EXPECT_THAT(FindAxisMarks(0, 10, 5), ElementsAre(0, 2, 4, 6, 8, 10));
-  EXPECT_THAT(FindAxisMarks(-0.5, 1.2, 4), ElementsAre(-0.5, 0, 0.5, 1.0));
-  EXPECT_THAT(FindAxisMarks(93, 311, 4), ElementsAre(100, 200, 300));
-}
-
-TEST(ThinOut, KeepsEveryPeak) {
-  std::vector<math::Vec2> points;
-  for (int i = 0; i < 10'000; ++i)
-    points.push_back({static_cast<double>(i), i == 4321 ? 7.0 : i == 8765 ? -3.0 : 1.0});
-  const auto kept = ThinOut(points, 200);
-  EXPECT_LE(kept.size(), 200u);
-  EXPECT_TRUE(
-      std::is_sorted(kept.begin(), kept.end(), [](const auto& a, const auto& b) { return a.x < b.x; }));
-  const auto has = [&](double y) {
-    return std::any_of(kept.begin(), kept.end(), [&](const math::Vec2& point) { return point.y == y; });
-  };
-  EXPECT_TRUE(has(7.0));
-  EXPECT_TRUE(has(-3.0));
-}
 
 TEST(FormatSvgPlot, DrawsALineFromCornerToCornerOfItsRange) {
   const std::string svg = FormatSvgPlot({"Title <1>", "x", "y"}, {{"left", {{0, 0}, {1, 1}}}});
@@ -48,11 +26,6 @@ TEST(FormatSvgPlot, LeavesAGapWhereAValueIsNotFinite) {
   EXPECT_THAT(svg, Not(HasSubstr("nan")));
   const std::string path = svg.substr(svg.find("stroke="));
   EXPECT_EQ(std::count(path.begin(), path.begin() + static_cast<long>(path.find("/>")), 'M'), 2);
-}
-
-TEST(FindLogMarks, ArePowersOfTenWithTwosAndFivesWhereTheyAreFew) {
-  EXPECT_THAT(FindLogMarks(0.9, 1.1e4), ElementsAre(1, 10, 100, 1000, 10'000));
-  EXPECT_THAT(FindLogMarks(3, 60), ElementsAre(5, 10, 20, 50));
 }
 
 TEST(FormatSvgPlot, LogarithmicAxesMakePowersALineAndLeaveZeroOut) {

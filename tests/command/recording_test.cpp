@@ -114,6 +114,87 @@ TEST_F(RecordingCommand, AnyPartIsDrawn) {
   EXPECT_THAT(List(), testing::IsSupersetOf({"video/demo.webm", "video/picture_001.png"}));
 }
 
+TEST_F(RecordingCommand, TwoAreDrawnBesideEachOther) {
+  const std::string file = Record(), other = Path("other.trocar");
+  EXPECT_EQ(Run({"replay", file, "--at", "6", "--surgeon", "expert", "--record", other}).status, 0);
+  const auto drawn =
+      Run({"replay", file, "--side-by-side", other, "--ghosts", "--no-forces", "--speed", "4", "--from", "4",
+           "--until", "8", "--camera", "anterior", "--size", "480x200", "-o", Path("both")});
+  EXPECT_EQ(drawn.status, 0) << drawn.err;
+  EXPECT_THAT(List(), testing::IsSupersetOf({"both/demo.webm", "both/picture_001.png"}));
+  ExpectError(Run({"replay", file, "--side-by-side", other}), "E-CLI-001", 2);
+  ExpectError(Run({"replay", file, "--speed", "0", "-o", Path("none")}), "E-CLI-001", 2);
+  ExpectError(Run({"replay", file, "--camera", "moon", "-o", Path("none")}), "E-CLI-001", 2);
+  ExpectError(Run({"replay", file, "--side-by-side", Path("none.trocar"), "-o", Path("none")}), "E-IO-001");
+}
+
+TEST_F(RecordingCommand, AnIndexIsMadeAndMayBeDeleted) {
+  const std::string file = Record(), state = Path("a.state"), other = Path("b.state");
+  EXPECT_EQ(Run({"replay", file, "--at", "7.5", "--save", state}).status, 0);
+  const auto made = Run({"record", "index", file, "--seconds", "1"});
+  EXPECT_EQ(made.status, 0) << made.err;
+  EXPECT_THAT(made.out, testing::HasSubstr("attempt.trocar.index holds 12 states"));
+  EXPECT_EQ(Run({"replay", file, "--at", "7.5", "--save", other}).status, 0);
+  EXPECT_EQ(Read(state), Read(other));
+  std::filesystem::remove(file + ".index");
+  EXPECT_EQ(RunJson({"replay", file}).at("verified"), true);
+  EXPECT_FALSE(std::filesystem::exists(file + ".index")) << "the command line makes none by itself";
+}
+
+TEST_F(RecordingCommand, ABranchSaysWhereItComesFrom) {
+  const std::string file = Record(), other = Path("other.trocar");
+  EXPECT_EQ(Run({"replay", file, "--at", "6", "--surgeon", "expert", "--record", other}).status, 0);
+  const json branched = RunJson({"record", "info", other}).at("branched");
+  EXPECT_EQ(branched.at("from"), "attempt.trocar");
+  EXPECT_EQ(branched.at("tick"), 720);
+  EXPECT_TRUE(RunJson({"record", "info", file}).at("branched").is_null());
+  EXPECT_THAT(Run({"record", "info", other}).out, testing::HasSubstr("attempt.trocar at 6 s"));
+}
+
+TEST_F(RecordingCommand, WhatCannotBeReplayedIsRefusedWithARemedy) {
+  // its scene has changed since
+  std::string scene = Read(Source("scenes/retraction.json"));
+  const std::string patient = Source("assets/patients/visible-human-male/patient");
+  const auto folder = Source("scenes/");
+  std::filesystem::copy_file(folder + "retraction.script.json", Path("retraction.script.json"));
+  Write("scene.json", scene);
+  const std::string file = Path("scene.trocar");
+  const auto simulated =
+      Run({"simulate", Path("scene.json"), "--patient", patient, "--ticks", "30", "--record", file});
+  ASSERT_EQ(simulated.status, 0) << simulated.err;
+  EXPECT_EQ(Run({"replay", file}).status, 0);
+  json changed = json::parse(scene);
+  changed["materials"][0]["young_modulus_pa"] = 9e5;
+  Write("scene.json", changed.dump());
+  const auto of_another = Run({"replay", file});
+  ExpectError(of_another, "E-REC-001");
+  EXPECT_THAT(of_another.err, testing::HasSubstr("put the old files back"));
+  std::filesystem::remove(Path("scene.json"));
+  ExpectError(Run({"replay", file}), "E-IO-001");
+  // it is from the future
+  std::string content = Read(file);
+  std::string future = content;
+  future[8] = 7;
+  Write("future.trocar", future);
+  const auto newer = Run({"replay", Path("future.trocar")});
+  ExpectError(newer, "E-REC-001");
+  EXPECT_THAT(newer.err, testing::HasSubstr("use the version that wrote it, or a newer one"));
+  ExpectError(Run({"record", "info", Path("future.trocar")}), "E-REC-001");
+  // it has no header
+  Write("short.trocar", content.substr(0, 20));
+  ExpectError(Run({"replay", Path("short.trocar")}), "E-REC-001");
+  ExpectError(Run({"record", "repair", Path("short.trocar"), "-o", Path("mended.trocar")}), "E-REC-001");
+}
+
+TEST_F(RecordingCommand, ACutRecordingIsReplayedUpToThereAndSaysSo) {
+  const std::string content = Read(Record());
+  Write("cut.trocar", content.substr(0, content.size() / 2));
+  const auto replayed = Run({"replay", Path("cut.trocar")});
+  EXPECT_EQ(replayed.status, 0) << replayed.err;
+  EXPECT_THAT(replayed.out, testing::AllOf(testing::StartsWith("VERIFIED"), testing::HasSubstr("no ending"),
+                                           testing::HasSubstr("damaged")));
+}
+
 TEST_F(RecordingCommand, SaysWhatDoesNotGoTogether) {
   const std::string file = Record();
   ExpectError(Run({"replay", file, "--at", "3"}), "E-CLI-001", 2);

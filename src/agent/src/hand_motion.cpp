@@ -12,6 +12,16 @@ namespace {
 
 /// Peak over mean speed of a minimum-jerk reach.
 constexpr double kPeakOverMean = 1.875;
+/// Shorter reaches are too near their end to stray [m].
+constexpr double kShortReach = 0.015;
+constexpr double kMostOvershoot = 0.006;  // [m]
+
+/// Across `along`, at an angle of `turn`, and never down: below lies what is operated on.
+Vec3 PickSide(const Vec3& along, double turn) {
+  const Vec3 level = math::Normalized(math::Cross(along, {0, 0, 1}), {1, 0, 0});
+  const Vec3 up = math::Cross(level, along);
+  return std::cos(turn) * level + std::sin(turn) * (up.z < 0 ? -1.0 : 1.0) * up;
+}
 
 double StepTowards(double from, double to, double most) {
   return from + std::clamp(to - from, -most, most);
@@ -42,6 +52,12 @@ void HandMotion::VisitState(core::StateArchive& archive) {
   archive.Field("from", from_);
   archive.Field("to", to_);
   archive.Field("tip", tip_);
+  if (skill_.wander > 0) archive.Field("bulge", bulge_);
+  if (skill_.overshoot > 0) {
+    archive.Field("aim", aim_);
+    archive.Field("speed", speed_);
+    archive.Field("is_past", is_past_);
+  }
   archive.Field("reach_time", reach_time_);
   archive.Field("reach_duration", reach_duration_);
   archive.Field("spin", spin_);
@@ -54,12 +70,27 @@ void HandMotion::MoveTo(const Vec3& p_world_tip, double hurry) {
   math::Random random(random_);
   const double e = skill_.aim_error;
   const Vec3 miss{random.Uniform(-e, e), random.Uniform(-e, e), random.Uniform(-e, e)};
+  const Vec3 way = p_world_tip + miss - tip_;
+  const double length = math::Norm(way);
+  const bool strays = length > kShortReach;
+  bulge_ = {};
+  if (skill_.wander > 0 && strays)
+    bulge_ = skill_.wander * length * PickSide((1 / length) * way, random.Uniform(0.0, M_PI));
   random_ = random.NextWord();
+  aim_ = p_world_tip + miss;
+  is_past_ = skill_.overshoot > 0 && strays;
+  Vec3 to = aim_;
+  if (is_past_) to = aim_ + std::min(skill_.overshoot, kMostOvershoot / length) * way;
+  BeginReach(to, skill_.speed * hurry);
+}
+
+void HandMotion::BeginReach(const Vec3& to, double speed) {
   from_ = tip_;
-  to_ = p_world_tip + miss;
+  to_ = to;
+  speed_ = speed;
   reach_time_ = 0;
-  reach_duration_ =
-      std::max(skill_.shortest, kPeakOverMean * math::Distance(from_, to_) / (skill_.speed * hurry));
+  const double way = math::Distance(from_, to_) + math::Norm(bulge_);
+  reach_duration_ = std::max(skill_.shortest, kPeakOverMean * way / speed_);
 }
 
 void HandMotion::Turn(double spin) {
@@ -96,7 +127,17 @@ instrument::TrocarJoints HandMotion::Step(double dt) {
   if (IsMoving()) {
     reach_time_ = std::min(reach_time_ + dt, reach_duration_);
     const double t = reach_time_ / reach_duration_;
-    tip_ = math::Lerp(from_, to_, t * t * t * (10 + t * (-15 + 6 * t)));
+    const double s = t * t * t * (10 + t * (-15 + 6 * t));
+    tip_ = math::Lerp(from_, to_, s);
+    if (skill_.wander > 0) {
+      const double bend = std::sin(M_PI * s);
+      tip_ = tip_ + bend * bend * bulge_;
+    }
+    if (is_past_ && !IsMoving()) {
+      is_past_ = false;
+      bulge_ = {};
+      BeginReach(aim_, speed_);
+    }
   }
   spin_ = StepTowards(spin_, spin_goal_, skill_.spin_rate * dt);
   jaw_ = StepTowards(jaw_, jaw_goal_, skill_.jaw_rate * dt);

@@ -2,28 +2,16 @@
 #include "trocar/agent/surgeon.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "cholecystectomy_surgeon.h"
 #include "task_surgeon.h"
+#include "trocar/agent/skill.h"
 
 namespace trocar::agent {
 
 using scene::ErrorRule;
 namespace {
-
-SurgeonSkill NoviceSkill() {
-  SurgeonSkill skill;
-  skill.hand.speed = 0.05;
-  skill.hand.shortest = 0.5;
-  skill.hand.tremor = 0.0003;
-  skill.hand.aim_error = 0.0010;
-  skill.hand.jaw_rate = 1.0;
-  skill.hand.spin_rate = 1.2;
-  skill.pause = 0.8;
-  skill.miss_share = 0.35;
-  skill.camera_speed = 0.03;
-  return skill;
-}
 
 bool HasGoals(const Scene& scene) {
   return scene.task && !scene.HasPatient();
@@ -39,6 +27,29 @@ std::unique_ptr<Surgeon> MakeCareless(std::shared_ptr<const Scene> scene, std::u
   return std::make_unique<TaskSurgeon>(std::move(scene), SurgeonSkill{}, kScenario, seed);
 }
 
+template <SkillLevel kLevel>
+std::unique_ptr<Surgeon> MakeOfLevel(std::shared_ptr<const Scene> scene, std::uint64_t seed) {
+  auto made = MakeSkilledSurgeon(std::move(scene), LevelSkill(kLevel), seed);
+  return made.ok() ? std::move(*made) : nullptr;
+}
+
+/// Able but for one thing. The names and lines are string literals, so that they end with a zero.
+template <Weakness kWeakness>
+SurgeonEntry WithWeakness() {
+  return {NameOf(kWeakness).data(), AboutOf(kWeakness).data(), "",
+          [](const Scene& scene) { return HasGoals(scene) && CanShow(kWeakness, scene); },
+          [](std::shared_ptr<const Scene> scene, std::uint64_t seed) -> std::unique_ptr<Surgeon> {
+            auto made = MakeSkilledSurgeon(std::move(scene),
+                                           PlantWeakness(LevelSkill(SkillLevel::kExpert), kWeakness), seed);
+            return made.ok() ? std::move(*made) : nullptr;
+          }};
+}
+
+template <std::size_t... kIndex>
+void AddWeaknesses(std::vector<SurgeonEntry>& all, std::index_sequence<kIndex...>) {
+  (all.push_back(WithWeakness<static_cast<Weakness>(kIndex)>()), ...);
+}
+
 constexpr const char *kDropped = "dropped", *kLost = "lost", *kWire = "wire_touched",
                      *kBoard = "board_pressed", *kView = "tip_out_of_view", *kClash = "tools_clash",
                      *kSlipped = "slipped", *kSmeared = "lens_smeared";
@@ -46,10 +57,10 @@ constexpr const char *kDropped = "dropped", *kLost = "lost", *kWire = "wire_touc
 const SurgeonEntry kTaskSurgeons[] = {
     {"expert", "does every goal of a task, without an error", "", HasGoals,
      MakeCareless<ErrorScenario::kNone>},
+    {"intermediate", "between the two: some pauses, misses and detours", "", HasGoals,
+     MakeOfLevel<SkillLevel::kIntermediate>},
     {"novice", "slow, hesitant, unsteady; closes the jaws beside things and tries again", "", HasGoals,
-     [](std::shared_ptr<const Scene> scene, std::uint64_t seed) -> std::unique_ptr<Surgeon> {
-       return std::make_unique<TaskSurgeon>(std::move(scene), NoviceSkill(), ErrorScenario::kNone, seed);
-     }},
+     MakeOfLevel<SkillLevel::kNovice>},
     {"drops", "lets a thing fall in mid-air, then goes on", kDropped,
      [](const Scene& scene) { return Counts(scene, kDropped); }, MakeCareless<ErrorScenario::kDrops>},
     {"loses", "carries a thing out of the field and drops it there", kLost,
@@ -109,11 +120,7 @@ std::unique_ptr<Surgeon> MakeCarelessOperator(std::shared_ptr<const Scene> scene
 const SurgeonEntry kOperators[] = {
     {"expert", "does the whole cholecystectomy", "", IsCholecystectomy,
      MakeCarelessOperator<OperationErrorScenario::kNone>},
-    {"novice", "does it slowly and unsteadily", "", IsCholecystectomy,
-     [](std::shared_ptr<const Scene> scene, std::uint64_t seed) -> std::unique_ptr<Surgeon> {
-       return std::make_unique<CholecystectomySurgeon>(std::move(scene), NoviceSkill(),
-                                                       OperationErrorScenario::kNone, seed);
-     }},
+    {"novice", "does it slowly and unsteadily", "", IsCholecystectomy, MakeOfLevel<SkillLevel::kNovice>},
     {"clips_main_duct", "closes a clip on the common hepatic duct", "wrong_structure_clipped",
      IsCholecystectomy, MakeCarelessOperator<OperationErrorScenario::kClipsMainDuct>},
     {"cuts_main_duct", "cuts the common hepatic duct", "wrong_structure_cut", IsCholecystectomy,
@@ -162,6 +169,7 @@ const SurgeonEntry kOperators[] = {
 
 std::vector<SurgeonEntry> ListSurgeons() {
   std::vector<SurgeonEntry> all(std::begin(kTaskSurgeons), std::end(kTaskSurgeons));
+  AddWeaknesses(all, std::make_index_sequence<kWeaknessCount>());
   all.insert(all.end(), std::begin(kOperators), std::end(kOperators));
   return all;
 }

@@ -130,6 +130,7 @@ void TaskSurgeon::Plan(const Snapshot& seen) {
     if (fruitless_plans_ > kMostFruitlessPlans) break;
     goal_name_ = task.goals[g].name;
     if (AddIdleErrorScenario(seen)) return;
+    if (skill_.wrong_plan > 0 && now.steps_done == 0 && BeginAtTheWrongPlace(seen, g)) return;
     PlanStep(seen, task.goals[g], now.steps_done);
     return;
   }
@@ -138,11 +139,15 @@ void TaskSurgeon::Plan(const Snapshot& seen) {
 
 /// What has left the picture and lies there is not fetched.
 bool TaskSurgeon::IsLost(const Snapshot& seen, const Goal& goal) const {
+  // who lets the picture wander knows that a thing is there all the same
+  const math::Pose X = skill_.camera_drift > 0
+                           ? scene::CalcLaparoscopePose(scene_->laparoscope, scene_->laparoscope.home)
+                           : seen.X_world_laparoscope;
   return std::any_of(goal.steps.begin(), goal.steps.end(), [&](const Condition& step) {
     if (step.object < 0) return false;
     const ObjectSnapshot& thing = seen.objects[static_cast<std::size_t>(step.object)];
-    return thing.held_by == 0 && !IsInView(seen.X_world_laparoscope, scene_->laparoscope.field_of_view,
-                                           thing.X_world_object.translation);
+    return thing.held_by == 0 &&
+           !IsInView(X, scene_->laparoscope.field_of_view, thing.X_world_object.translation);
   });
 }
 
@@ -244,7 +249,7 @@ void TaskSurgeon::PlanPlace(const Snapshot& seen, int object, const std::vector<
   if (seen.instruments[static_cast<std::size_t>(1 - hand)].object >= 0) WithDraw(hand);
   Rise(hand, std::max(0.0, best->centre.z + kAbovePlace - thing.X_world_object.translation.z));
   Carry(hand, object, best->centre + Vec3{0, 0, kAbovePlace});
-  Carry(hand, object, best->centre + Vec3{0, 0, kLetGoHeight}, 0.6);
+  Carry(hand, object, best->centre + Vec3{0, 0, kLetGoHeight - skill_.press}, 0.6);
   LetGo(hand);
   WithDraw(hand);
 }

@@ -6,11 +6,13 @@
 #include <cstdint>
 #include <deque>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "trocar/agent/hand_motion.h"
+#include "trocar/agent/skill.h"
 #include "trocar/agent/surgeon.h"
 #include "trocar/core/state_archive.h"
 #include "trocar/math/random.h"
@@ -23,14 +25,6 @@ using scene::HandControls;
 using scene::kHandCount;
 using scene::kLeft;
 using scene::Region;
-
-/// How a surgeon works.
-struct SurgeonSkill {
-  HandSkill hand;
-  double pause = 0.05;         ///< before each act, at most [s]
-  double miss_share = 0;       ///< of grasps that first close beside the thing [-]
-  double camera_speed = 0.09;  ///< of the lens [m/s]
-};
 
 /// The one thing that a careless surgeon does wrong, once.
 enum class ErrorScenario : std::uint8_t {
@@ -160,6 +154,10 @@ class TaskSurgeon final : public Surgeon {
   void FollowSheet(int hand, const Vec3& p_sheet, double hurry);
   Vec3 FindTip(const Snapshot& seen, int hand, int object, const Vec3& p_world_object) const;
   Vec3 GripTip(const Snapshot& seen, int hand, int object, int grip, double back) const;
+  // what skill adds: task_skill.cpp
+  void Anticipate(const TaskAct& act, const Snapshot& seen);
+  std::optional<Vec3> FindNextWork(const Snapshot& seen, int hand) const;
+  bool BeginAtTheWrongPlace(const Snapshot& seen, std::size_t goal);
   // errors: task_error_scenarios.cpp
   bool AddErrorScenario(const Snapshot& seen, int hand, int object, bool on_path = false);
   bool AddIdleErrorScenario(const Snapshot& seen);

@@ -115,7 +115,7 @@ void TaskSurgeon::BeginLineUp(const TaskAct& act, const Snapshot& seen) {
 void TaskSurgeon::Advance(int hand, const TissueSpot& spot, double ahead) {
   TaskAct& act = Reach(TaskAct::Kind::kReachSpot, hand, 0.4);
   act.spot = spot;
-  act.amount = ahead;
+  act.amount = ahead + (ahead > 0 ? skill_.press : 0.0);
 }
 
 /// \param depth_share  of the jaws beyond the duct
@@ -162,7 +162,7 @@ void TaskSurgeon::BeginFollowSheet(const TaskAct& act) {
       instrument::CalcToolPose(motion.Port(), instrument::FindJoints(motion.Port(), act.p, spin, 0.0));
   const Vec3 p_tool_middle = 0.5 * (instrument::kHookToe.a + instrument::kHookToe.b);
   motion.Turn(spin);
-  motion.MoveTo(act.p - math::Rotate(X.rotation, p_tool_middle), act.hurry);
+  motion.MoveTo(act.p - math::Rotate(X.rotation, p_tool_middle) - Vec3{0, 0, skill_.press}, act.hurry);
 }
 
 void TaskSurgeon::BeginReachBand(const TaskAct& act) {
@@ -189,6 +189,10 @@ void TaskSurgeon::CutCircle(const Snapshot& seen, int sheet, double aside, doubl
   };
   const Vec3 begin = at(0, kRunIn);
   FollowSheet(hand, begin + Vec3{0, 0, kStandOff}, 1.0);
+  if (skill_.early_pedal > 0) {
+    pedal(true);
+    Wait(skill_.early_pedal);
+  }
   FollowSheet(hand, begin, 0.5);
   pedal(true);
   FollowSheet(hand, at(0, 0), 0.3);
@@ -233,6 +237,7 @@ void TaskSurgeon::BurnBand(const Snapshot& seen, int band) {
   reach.time_limit = 8.0;
   reach.p = tip;
   reach.q = along;
+  if (skill_.early_pedal > 0) PressPedal(hand, skill_.early_pedal);
   ReachPoint(hand, tip, 0.3);
   TaskAct burn{TaskAct::Kind::kBurnBand, "burn " + cord.name, kMostBurning};
   burn.hand = hand;

@@ -62,7 +62,7 @@ Vec3 TaskSurgeon::GripTip(const Snapshot& seen, int hand, int object, int grip, 
   const Vec3 p =
       grips.empty() ? X.translation : X * grips[static_cast<std::size_t>(grip) % grips.size()].point;
   const Vec3 along = math::Normalized(p - hands_[static_cast<std::size_t>(hand)].Port());
-  return p + (kBite - back) * along;
+  return p + (kBite - back + (back > 0 ? 0.0 : skill_.press)) * along;
 }
 
 void TaskSurgeon::PickUp(int hand, int object, int grip) {
@@ -174,6 +174,7 @@ void TaskSurgeon::Begin(const TaskAct& act, const Snapshot& seen) {
   using Kind = TaskAct::Kind;
   HandMotion& hand = HandOf(act.hand);
   HandControls& controls = controls_[static_cast<std::size_t>(act.hand)];
+  if (skill_.anticipation > 0) Anticipate(act, seen);
   switch (act.kind) {
     case Kind::kReachPoint:
       return hand.MoveTo(act.p, act.hurry);

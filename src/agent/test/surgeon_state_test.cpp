@@ -135,6 +135,8 @@ constexpr const char* kTasks[] = {"camera_navigation_30",  "clip_and_cut",   "ho
 SurgeonSkill Unsteady() {
   SurgeonSkill skill;
   skill.hand.aim_error = 0.0008;
+  skill.hand.overshoot = 0.05;
+  skill.hand.wander = 0.1;
   skill.pause = 0.4;
   skill.miss_share = 0.35;
   return skill;
@@ -148,8 +150,9 @@ TEST_P(TaskMemory, GoesOnAfterRestoring) {
     if (!entry.suits(*scene)) continue;
     SCOPED_TRACE(entry.name);
     const std::unique_ptr<Surgeon> made = entry.make(scene, 3);
-    const auto& fresh = dynamic_cast<const TaskSurgeon&>(*made);
-    PlayWithFollowers(scene, fresh, RandomTicks(7, 3, 1800), 2400);
+    const auto* fresh = dynamic_cast<const TaskSurgeon*>(made.get());
+    if (fresh == nullptr) continue;  // with delay or drift: skill_test.cpp
+    PlayWithFollowers(scene, *fresh, RandomTicks(7, 3, 1800), 2400);
     ASSERT_FALSE(HasFailure());
   }
 }

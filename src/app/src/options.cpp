@@ -60,6 +60,44 @@ void AddRecordings(CLI::App& app, Options& options, bool& is_off) {
   app.add_flag("--no-recordings", is_off, "Keep no attempt")->excludes(folder);
 }
 
+void AddReplay(CLI::App& app, Options& options) {
+  CLI::Option* replay =
+      app.add_option("--replay", options.replay,
+                     "Play this recording: any moment, any speed, any camera; take over anywhere")
+          ->excludes("--scene")
+          ->excludes("--task")
+          ->excludes("--tasks")
+          ->excludes("--demonstration")
+          ->excludes("--screenshot");
+  app.add_option("--beside", options.replay_beside, "With --replay: another recording beside it")
+      ->needs(replay);
+  app.add_option("--at", options.replay_at, "With --replay: begin at this second")
+      ->needs(replay)
+      ->check(CLI::Range(0.0, 1e6));
+}
+
+void AddCentre(CLI::App& app, Options& options) {
+  app.add_option(
+      "--store", options.store,
+      "Where attempts are kept for history and courses: a SQLite file, or postgresql://... (default: "
+      "TROCAR_STORE, else ~/.local/share/trocar/store/store.sqlite; none with --screenshot)");
+  app.add_option(
+      "--trainee", options.trainee,
+      "Who operates: a name, which stays in a protected file on this computer, or a pseudonym (default: "
+      "nobody in particular)");
+  CLI::Option* page =
+      app.add_option("--page", options.page, "Open the training centre at this page, without the simulator")
+          ->check(CLI::IsMember({"history", "courses", "group", "exam"}))
+          ->excludes("--scene")
+          ->excludes("--task")
+          ->excludes("--tasks")
+          ->excludes("--demonstration")
+          ->excludes("--replay");
+  app.add_option("--exam", options.exam,
+                 "With --page exam: sealed file to open, as trocar exam seal wrote it")
+      ->needs(page);
+}
+
 /// A person's attempts are kept, those of an unattended run only where it asks for that.
 void ChooseRecordings(bool is_off, Options& options) {
   if (!is_off && options.recordings.empty() && options.run.IsAttended())
@@ -183,6 +221,8 @@ core::Result<CommandLine> ParseCommandLine(int argc, const char* const* argv) {
   AddHands(app, command.options);
   AddRecordings(app, command.options, keeps_none);
   AddRun(app, command.options);
+  AddReplay(app, command.options);
+  AddCentre(app, command.options);
   AddDevicePage(app, command.options);
   AddContours(app, command.contours, axes);
   AddPatientEditor(app, command.patient_editor.patient, tool);

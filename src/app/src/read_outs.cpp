@@ -60,7 +60,7 @@ TaskReadOut DescribeTask(const scene::Task& task, const scene::TaskSnapshot& now
   const auto done =
       std::count_if(now.goals.begin(), now.goals.end(), [](const auto& goal) { return goal.is_done; });
   text.progress = Print("%td of %zu", done, task.goals.size());
-  text.score = now.IsOver() ? Print("%.1f", now.score) : "—";
+  text.score = now.IsOver() ? Print("%.1f", scene::CalcShownScore(task, now)) : "—";
   switch (now.phase) {
     case TaskPhase::kCompleted:
       text.next = "Completed. Reset to try again.";

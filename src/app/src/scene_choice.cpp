@@ -7,10 +7,17 @@
 #include <thread>
 #include <utility>
 
+#include "trocar/agent/surgeon.h"
+#include "trocar/assessment/play_state.h"
+
 namespace trocar::app {
 namespace {
 
 constexpr const char* kDefaultScene = "demonstration.json";
+
+int ThreadsOf(const Options& options) {
+  return options.threads > 0 ? options.threads : ChooseThreads(std::thread::hardware_concurrency());
+}
 
 }  // namespace
 
@@ -35,10 +42,25 @@ core::Result<scene::Scene> ReadChosenScene(const Options& options) {
 core::Result<simulation::Simulation> MakeChosenSimulation(const Options& options) {
   auto scene = ReadChosenScene(options);
   if (!scene) return scene.error();
-  const int threads =
-      options.threads > 0 ? options.threads : ChooseThreads(std::thread::hardware_concurrency());
   return simulation::Simulation::Make(std::make_shared<const scene::Scene>(std::move(scene).value()),
-                                      threads);
+                                      ThreadsOf(options));
+}
+
+core::Result<simulation::Simulation> MakeStartedSimulation(const Options& options,
+                                                           const centre::Start& start) {
+  auto made = record::MakeScene(start.description);
+  if (!made) return made.error();
+  const auto scene = std::make_shared<const scene::Scene>(std::move(made).value());
+  auto simulation = simulation::Simulation::Make(scene, ThreadsOf(options));
+  if (!simulation || start.state.empty()) return simulation;
+  // the state's file also holds what the surgeon remembers who came so far: it is read and left
+  const std::string name = start.state_surgeon.substr(0, start.state_surgeon.find(','));
+  auto surgeon = agent::MakeSurgeon(name, scene, 1);
+  if (!surgeon) return surgeon.error();
+  if (const auto restored = assessment::RestorePlay(start.state, start.state_surgeon, *simulation, **surgeon);
+      !restored)
+    return restored.error();
+  return simulation;
 }
 
 record::Description DescribeChosenScene(const Options& options, const scene::Scene& scene) {
@@ -53,10 +75,14 @@ record::Description DescribeChosenScene(const Options& options, const scene::Sce
     description.name = std::filesystem::absolute(options.scene.empty() ? built_in : options.scene).string();
   }
   description.seed = scene.seed;
+  description.player = DescribeHands(options);
+  return description;
+}
+
+std::string DescribeHands(const Options& options) {
   std::string hands = options.device.empty() ? "mouse and keyboard" : options.device;
   if (!options.haptics.empty()) hands += ", " + options.haptics;
-  description.player = hands;
-  return description;
+  return hands;
 }
 
 }  // namespace trocar::app

@@ -68,6 +68,24 @@ void SessionControl::PlaceAtHome() {
   device_.Place(device::kLaparoscope, SampleOf(scene.laparoscope.home));
 }
 
+void SessionControl::GoOnFrom(const scene::Input& last) {
+  const simulation::Snapshot& snapshot = runner_.Latest();
+  device_.ReleaseAll();
+  for (const Channel hand : {device::kLeftHand, device::kRightHand})
+    device_.Place(hand, SampleOf(snapshot.instruments[hand].joints));
+  device_.Place(device::kLaparoscope, SampleOf(snapshot.laparoscope));
+  input_ = last;
+  ReleasePedals();
+}
+
+void SessionControl::LetExpertGoOn() {
+  if (!HasScript() || is_demonstration_) return;
+  is_demonstration_ = true;
+  device_.ReleaseAll();
+  ReleasePedals();
+  runner_.SetScripted(true);
+}
+
 const simulation::Snapshot& SessionControl::Advance(double dt) {
   const simulation::Snapshot& snapshot = runner_.Latest();
   time_ = snapshot.time;

@@ -2,6 +2,7 @@
 #include "trocar/app/simulator_presenter.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <span>
 #include <utility>
 
@@ -20,8 +21,10 @@ constexpr double kTimesPeriod = 0.25;  // between refreshes of the other numbers
 }  // namespace
 
 SimulatorPresenter::SimulatorPresenter(const Options& options, const core::Stopwatch& since_start,
-                                       SimulatorScreen& screen, std::function<void()> on_loaded)
+                                       SimulatorScreen& screen, std::function<void()> on_loaded,
+                                       AttemptHooks hooks)
     : options_(options),
+      hooks_(std::move(hooks)),
       since_start_(since_start),
       screen_(&screen),
       unattended_(options),
@@ -30,7 +33,11 @@ SimulatorPresenter::SimulatorPresenter(const Options& options, const core::Stopw
 // loading
 
 void SimulatorPresenter::Start() {
-  loading_.Start([options = options_] { return MakeChosenSimulation(options); });
+  if (start_) {
+    loading_.Start([options = options_, start = *start_] { return MakeStartedSimulation(options, start); });
+  } else {
+    loading_.Start([options = options_] { return MakeChosenSimulation(options); });
+  }
   Refresh();
 }
 
@@ -38,25 +45,109 @@ void SimulatorPresenter::FinishLoading() {
   auto simulation = loading_.Take();
   if (page_.failure) return;
   if (!simulation.ok()) return Fail(simulation.error());
+  record::Description description =
+      start_ ? start_->description : DescribeChosenScene(options_, simulation->GetScene());
+  if (start_) description.player = (start_->is_exam ? "exam, " : "") + DescribeHands(options_);
+  if (!Use(std::move(simulation).value(), std::move(description))) return;
+  if (start_) {
+    page_.title = "Trocar: " + start_->title;
+    if (!start_->state.empty()) GoOn();
+    // a person begins when the hands are ready
+    return Announce(start_->title + ". Start when your hands are ready.");
+  }
+  Announce("Ready.");
+  if (options_.is_demonstration || unattended_.IsOn()) SetDemonstration(true);
+  SetPaused(false);
+}
+
+/// Shows a simulation, paused. \return false where something failed
+bool SimulatorPresenter::Use(simulation::Simulation simulation, record::Description description) {
+  const auto fail = [this](const core::Error& error) {
+    Fail(error);
+    return false;
+  };
   std::optional<session::AttemptKeeping> keeping;
   if (!options_.recordings.empty())
-    keeping = {options_.recordings, DescribeChosenScene(options_, simulation->GetScene())};
-  auto control = SessionControl::Make(std::move(simulation).value(), std::move(keeping));
-  if (!control) return Fail(control.error());
+    keeping = {options_.recordings, std::move(description), hooks_.on_begin, hooks_.on_end};
+  auto control = SessionControl::Make(std::move(simulation), std::move(keeping));
+  if (!control) return fail(control.error());
   control_ = std::move(control).value();
   has_script_ = control_->HasScript();
   control_->SetMirrorFulcrum(is_fulcrum_mirrored_);
-  if (const auto used = UseDevices(); !used) return Fail(used.error());
+  if (const auto used = UseDevices(); !used) return fail(used.error());
   if (options_.igtl_port >= 0) {
-    if (const core::Status served = control_->Serve(options_.igtl_port); !served) return Fail(served.error());
+    if (const core::Status served = control_->Serve(options_.igtl_port); !served) return fail(served.error());
     core::Log(core::LogLevel::kInfo,
               "OpenIGTLink: viewers may connect to localhost:" + std::to_string(control_->ServedPort()));
   }
   screen_->UseControl(control_.get());
   page_.title = "Trocar: " + control_->GetScene().name;
-  Announce("Ready.");
-  if (options_.is_demonstration || unattended_.IsOn()) SetDemonstration(true);
-  SetPaused(false);
+  return true;
+}
+
+/// The hands take the instruments in the middle of an operation, as whoever came so far has left them.
+void SimulatorPresenter::GoOn() {
+  const simulation::Snapshot& now = control_->Advance(0);
+  scene::Input last;
+  last.settings = control_->GetScene().settings;
+  for (std::size_t hand = 0; hand < last.controls.size(); ++hand)
+    last.controls[hand].tool = now.operation.tools[hand];
+  if (now.operation.is_assistant_holding) last.assistant = scene::AssistantCommand::kRetract;
+  const std::uint64_t events = now.event_count;
+  control_->GoOnFrom(last);
+  seen_events_ = events;
+}
+
+void SimulatorPresenter::TakeOver(Branch branch) {
+  if (loading_.IsRunning() || page_.failure) return;
+  Drop();
+  start_.reset();
+  const record::Description& from = branch.description;
+  options_.task = from.kind == record::Description::Kind::kScene ? "" : from.name;
+  options_.scene = from.kind == record::Description::Kind::kScene ? from.name : "";
+  if (from.kind == record::Description::Kind::kTask) options_.level = from.level;
+  options_.seed = from.seed;
+  options_.is_demonstration = false;
+  record::Description description = from;
+  description.player = DescribeHands(options_);
+  const std::uint64_t events = branch.simulation.GetSnapshot().event_count;
+  if (!Use(std::move(branch.simulation), std::move(description))) return;
+  control_->GoOnFrom(branch.last);
+  seen_events_ = events;
+  char moment[48];
+  std::snprintf(moment, sizeof moment, " at %.1f s",
+                static_cast<double>(from.branched_tick) * from.tick_seconds);
+  if (branch.is_experts) {
+    control_->LetExpertGoOn();
+    SetPaused(false);
+    Announce("The expert goes on from " + from.branched_from + moment + ".");
+  } else {
+    Announce("Taken over from " + from.branched_from + moment + ". Start when your hands are ready.");
+  }
+  screen_->FocusPicture();
+  Refresh();
+}
+
+void SimulatorPresenter::OpenRecording(const std::filesystem::path& recording) {
+  page_.is_recording_list_open = false;
+  if (control_ != nullptr) control_->SetPaused(true);
+  screen_->OpenReplay(recording);
+  Refresh();
+}
+
+void SimulatorPresenter::OpenRecordingList() {
+  if (page_.failure) return;
+  screen_->FillRecordingList(options_.recordings.empty() ? record::FindRecordingFolder()
+                                                         : options_.recordings);
+  screen_->ReleasePointer();
+  page_.is_result_open = page_.is_help_open = page_.is_task_list_open = false;
+  page_.is_recording_list_open = true;
+  Refresh();
+}
+
+void SimulatorPresenter::CloseRecordingList() {
+  page_.is_recording_list_open = false;
+  Refresh();
 }
 
 /// What the options name, with the person's settings.
@@ -87,6 +178,21 @@ void SimulatorPresenter::Open(const TaskRequest& request) {
   options_.level = request.choice.level;
   options_.seed = request.choice.seed;
   options_.is_demonstration = false;
+  start_.reset();
+  screen_->FocusPicture();
+  Start();
+}
+
+void SimulatorPresenter::Open(const centre::Start& start) {
+  if (loading_.IsRunning()) return;
+  Drop();
+  options_.task = start.description.name;
+  options_.scene.clear();
+  options_.level = start.description.level;
+  options_.seed = start.description.seed;
+  options_.is_demonstration = false;
+  start_ = start;
+  if (start.is_exam) page_.view.has_force_arrows = false;
   screen_->FocusPicture();
   Start();
 }
@@ -99,8 +205,8 @@ void SimulatorPresenter::Drop() {
   stages_ = {};
   error_log_ = {};
   seen_events_ = 0;
-  is_result_known_ = false;
-  page_.is_task_list_open = page_.is_result_open = false;
+  is_result_known_ = is_attempt_over_ = false;
+  page_.is_task_list_open = page_.is_result_open = page_.is_recording_list_open = false;
 }
 
 // commands
@@ -115,7 +221,9 @@ bool SimulatorPresenter::Meets(SimulatorNeeds needs) const {
     case SimulatorNeeds::kScene:
       return is_good && control_ != nullptr;
     case SimulatorNeeds::kScript:
-      return is_good && control_ != nullptr && has_script_;
+      return is_good && control_ != nullptr && has_script_ && !IsExam();
+    case SimulatorNeeds::kGuidance:
+      return is_good && control_ != nullptr && !IsExam();
     case SimulatorNeeds::kHaptics:
       return is_good && control_ != nullptr && control_->Haptics() != nullptr;
   }
@@ -170,6 +278,7 @@ std::span<const SimulatorPresenter::Handler> SimulatorPresenter::Handlers() noex
       // the simulation
       {Action::kTogglePause, [](Self& self) { self.SetPaused(!self.control_->IsPaused()); }},
       {Action::kReset, [](Self& self) { self.Reset(); }},
+      {Action::kFinish, [](Self& self) { self.Finish(); }},
       {Action::kToggleDemonstration,
        [](Self& self) { self.SetDemonstration(!self.control_->IsDemonstration()); },
        [](const Self& self) { return self.control_ != nullptr && self.control_->IsDemonstration(); }},
@@ -202,6 +311,8 @@ std::span<const SimulatorPresenter::Handler> SimulatorPresenter::Handlers() noex
        [](const Self& self) { return self.page_.is_help_open; }},
       {Action::kToggleTaskList,
        [](Self& self) { self.page_.is_task_list_open ? self.CloseTaskList() : self.OpenTaskList(); }},
+      {Action::kToggleRecordingList,
+       [](Self& self) { self.page_.is_recording_list_open ? self.CloseRecordingList() : self.OpenRecordingList(); }},
       {Action::kReleasePointer, [](Self& self) { self.ReleaseAll(); }},
   };
   return kHandlers;
@@ -217,7 +328,7 @@ void SimulatorPresenter::ReleaseAll() {
   if (control_ != nullptr && control_->Haptics() != nullptr) control_->Haptics()->Stop();
   screen_->ReleasePointer();
   screen_->FocusPicture();
-  page_.is_help_open = page_.is_task_list_open = page_.is_result_open = false;
+  page_.is_help_open = page_.is_task_list_open = page_.is_result_open = page_.is_recording_list_open = false;
 }
 
 void SimulatorPresenter::SetPaused(bool is_paused) {
@@ -229,10 +340,14 @@ void SimulatorPresenter::SetDemonstration(bool is_on) {
   screen_->ReleasePointer();
   control_->SetDemonstration(is_on);
   if (is_on) control_->SetPaused(false);
+  if (is_on) is_attempt_over_ = false;  // it begins anew
   Refresh();
 }
 
 void SimulatorPresenter::Reset() {
+  // a step that begins in the middle of an operation begins there again
+  if (start_ && !start_->state.empty()) return Open(centre::Start(*start_));
+  is_attempt_over_ = false;
   control_->Reset();
   Announce("Reset.");
 }
@@ -243,7 +358,7 @@ void SimulatorPresenter::OpenTaskList() {
   if (page_.failure) return;
   if (const core::Status filled = screen_->FillTaskList(); !filled) return Fail(filled.error());
   screen_->ReleasePointer();
-  page_.is_result_open = page_.is_help_open = false;
+  page_.is_result_open = page_.is_help_open = page_.is_recording_list_open = false;
   page_.is_task_list_open = true;
   Refresh();
 }
@@ -263,6 +378,26 @@ void SimulatorPresenter::PlayAgain() {
   screen_->FocusPicture();
 }
 
+/// The recording ends here, and its page opens where a person made it.
+void SimulatorPresenter::EndAttempt() {
+  if (is_attempt_over_) return;
+  is_attempt_over_ = true;
+  const auto recording = control_->Recording();
+  const bool is_exam = IsExam();
+  control_->EndAttempt();
+  if (!recording || recording->failure || unattended_.IsOn() || control_->IsDemonstration()) return;
+  page_.is_result_open = false;
+  screen_->OpenAttempt(recording->path, is_exam);
+}
+
+void SimulatorPresenter::Finish() {
+  if (is_attempt_over_) return;
+  screen_->ReleasePointer();
+  control_->SetPaused(true);
+  Announce(IsExam() ? "The exam is over." : "The attempt is over. Reset begins another.");
+  EndAttempt();
+}
+
 void SimulatorPresenter::ShowTask(const scene::TaskSnapshot& now) {
   error_log_.Add(now);
   if (!now.IsOver()) {
@@ -280,6 +415,7 @@ void SimulatorPresenter::ShowTask(const scene::TaskSnapshot& now) {
   screen_->ReleasePointer();
   screen_->FillResult(result_);
   page_.is_result_open = true;
+  EndAttempt();
   Refresh();
 }
 
@@ -315,7 +451,12 @@ SimulatorPresenter::FrameWork SimulatorPresenter::Advance(double now, double fie
   work.snapshot = &snapshot;
   stages_.Add(snapshot);
   ShowEvents(snapshot);
-  if (control_->GetScene().task) ShowTask(snapshot.task);
+  if (control_->GetScene().task) {
+    ShowTask(snapshot.task);
+  } else if (snapshot.operation.is_completed && !is_attempt_over_) {
+    Announce("The operation is completed. Reset begins another.");
+    EndAttempt();
+  }
   if (const std::string message = control_->TakeDeviceMessage(); !message.empty())
     Announce(message, page_.is_event_warning);
   work.are_forces_due = now - last_forces_ > kForcePeriod;

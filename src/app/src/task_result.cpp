@@ -69,7 +69,8 @@ TaskResult MakeTaskResult(const scene::Scene& scene, const scene::TaskSnapshot& 
   result.phase = now.phase;
   result.verdict = VerdictOf(now.phase);
   result.time = now.time;
-  result.score = now.score;
+  result.score = scene::CalcShownScore(task, now);
+  result.best_score = task.best_score;
   result.is_score_percent = task.reference_points > 0;
   for (std::size_t g = 0; g < task.goals.size(); ++g)
     result.goals.push_back({task.goals[g].name, g < now.goals.size() && now.goals[g].is_done});
@@ -89,7 +90,11 @@ TaskResult MakeTaskResult(const scene::Scene& scene, const scene::TaskSnapshot& 
 
 std::string FormatScore(const TaskResult& result) {
   char text[32];
-  std::snprintf(text, sizeof text, result.is_score_percent ? "%.1f %%" : "%.1f", result.score);
+  if (result.is_score_percent) {
+    std::snprintf(text, sizeof text, "%.1f of %.0f", result.score, result.best_score);
+  } else {
+    std::snprintf(text, sizeof text, "%.1f points", result.score);
+  }
   return text;
 }
 
@@ -103,7 +108,8 @@ std::string FormatTaskResultJson(const TaskResult& result) {
                                  {"phase", scene::PhaseName(result.phase)},
                                  {"time_s", result.time},
                                  {"score", result.score},
-                                 {"score_unit", result.is_score_percent ? "percent" : "points"},
+                                 {"score_unit", result.is_score_percent ? "of_best_score" : "points"},
+                                 {"best_score", result.best_score},
                                  {"recording", result.recording},
                                  {"goals", nlohmann::ordered_json::array()},
                                  {"errors", nlohmann::ordered_json::array()}};

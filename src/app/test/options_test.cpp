@@ -71,6 +71,22 @@ TEST(Options, ReadsTasks) {
   EXPECT_FALSE(Parse({"--seed", "9"}).ok()) << "of which task?";
 }
 
+TEST(Options, ReadsWhatIsReplayed) {
+  const core::Result<CommandLine> command =
+      Parse({"--replay", "a.trocar", "--beside", "b.trocar", "--recordings", "kept"});
+  ASSERT_TRUE(command.ok()) << command.error().Text();
+  EXPECT_EQ(command->options.replay, "a.trocar");
+  EXPECT_EQ(command->options.replay_beside, "b.trocar");
+  EXPECT_EQ(command->options.recordings, "kept") << "for whoever takes over";
+  for (const auto& wrong : std::initializer_list<std::initializer_list<const char*>>{
+           {"--beside", "b.trocar"},
+           {"--replay", "a.trocar", "--task", "peg_transfer"},
+           {"--replay", "a.trocar", "--scene", "s.json"},
+           {"--replay", "a.trocar", "--screenshot", "p.png"}}) {
+    EXPECT_FALSE(Parse(wrong).ok());
+  }
+}
+
 TEST(Options, ReadsTheContourWindowsOptions) {
   const core::Result<CommandLine> command =
       Parse({"--contours", "slices", "--points", "p.json", "--reference", "l.nii.gz", "--pixel-mm", "0.5",

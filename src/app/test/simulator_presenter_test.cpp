@@ -9,6 +9,7 @@
 
 #include "trocar/core/safe_file.h"
 #include "trocar/record/replay.h"
+#include "trocar/scene/task.h"
 #include "trocar_test/temporary_folder.h"
 
 namespace trocar::app {
@@ -21,6 +22,12 @@ struct FakeScreen : SimulatorScreen {
   std::vector<std::string> UseKeys(const std::map<std::string, device::HandAct>&) override { return {}; }
   core::Status FillTaskList() override { return list_status; }
   void FillResult(const TaskResult&) override { ++results; }
+  void OpenAttempt(const std::filesystem::path& recording, bool is_exam) override {
+    attempts.push_back(recording);
+    has_exam = has_exam || is_exam;
+  }
+  void FillRecordingList(const std::filesystem::path& folder) override { listed = folder; }
+  void OpenReplay(const std::filesystem::path& recording) override { replayed = recording; }
   void ReleasePointer() override { is_pointer_taken = false; }
   bool IsPointerTaken() const override { return is_pointer_taken; }
   void FocusPicture() override { ++focused; }
@@ -29,6 +36,9 @@ struct FakeScreen : SimulatorScreen {
   SimulatorPage page;
   SessionControl* control = nullptr;
   core::Status list_status;
+  std::filesystem::path listed, replayed;
+  std::vector<std::filesystem::path> attempts;  // whose pages were opened
+  bool has_exam = false;
   int results = 0, focused = 0;
   bool is_pointer_taken = false;
   std::vector<Action> done;
@@ -106,6 +116,63 @@ TEST_F(Presenter, KeepsEveryAttemptWhereItIsToldTo) {
   auto replay = record::Replay::Open(std::move(*read), 1);
   ASSERT_TRUE(replay.ok()) << replay.error().Text();
   EXPECT_TRUE(replay->Verify()->IsVerified());
+}
+
+TEST_F(Presenter, FinishEndsTheAttemptAndOpensItsPage) {
+  test::TemporaryFolder folder;
+  Options options;
+  options.task = "peg_transfer";
+  options.threads = 1;
+  options.recordings = folder.Path() / "kept";
+  Begin(options);
+  Load();
+  for (int i = 0; i < 500 && screen_.control->Advance(0.01).tick < 150; ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  EXPECT_TRUE(IsEnabled("finish"));
+  presenter_->Do(Action::kFinish);
+  ASSERT_EQ(screen_.attempts.size(), 1u);
+  EXPECT_FALSE(screen_.has_exam);
+  EXPECT_TRUE(screen_.control->IsPaused());
+  presenter_->Do(Action::kFinish);
+  EXPECT_EQ(screen_.attempts.size(), 1u) << "it is over";
+  bool is_whole = false;
+  for (int i = 0; i < 500 && !is_whole; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    const auto read = record::ReadRecording(screen_.attempts[0]);
+    is_whole = read.ok() && read->ending.has_value();
+  }
+  EXPECT_TRUE(is_whole) << "whole while the window is open";
+}
+
+TEST_F(Presenter, AnExamHasNoGuidanceAndNoSecondTry) {
+  test::TemporaryFolder folder;
+  Options options;
+  options.task = "peg_transfer";
+  options.threads = 1;
+  options.recordings = folder.Path() / "kept";
+  Begin(options);
+  Load();
+  EXPECT_TRUE(IsEnabled("reset"));
+  centre::Start start;
+  start.description.kind = record::Description::Kind::kTask;
+  start.description.name = "instrument_navigation", start.description.level = "normal";
+  start.description.seed = 12345;
+  start.title = "Exam: Finals";
+  start.is_exam = true;
+  presenter_->Open(start);
+  Load();
+  EXPECT_EQ(screen_.control->GetScene().seed, 12345u);
+  EXPECT_EQ(screen_.page.title, "Trocar: Exam: Finals");
+  EXPECT_TRUE(screen_.control->IsPaused()) << "until the hands are ready";
+  for (const char* id : {"reset", "demonstration", "camera-holder", "forces"})
+    EXPECT_FALSE(IsEnabled(id)) << id;
+  EXPECT_FALSE(screen_.page.view.has_force_arrows);
+  presenter_->Do(Action::kTogglePause);
+  for (int i = 0; i < 500 && screen_.control->Advance(0.01).tick < 150; ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  presenter_->Do(Action::kFinish);
+  ASSERT_EQ(screen_.attempts.size(), 1u);
+  EXPECT_TRUE(screen_.has_exam);
 }
 
 TEST_F(Presenter, SaysThatAttemptsCannotBeKept) {
@@ -191,6 +258,106 @@ TEST_F(Presenter, OpensAnotherTaskFromTheList) {
   Load();
   EXPECT_EQ(presenter_->GetOptions().task, "clip_and_cut");
   EXPECT_NE(screen_.control, nullptr);
+}
+
+TEST_F(Presenter, ListsRecordingsAndPlaysOneInAWindowOfItsOwn) {
+  BeginTask();
+  presenter_->Do(Action::kToggleTaskList);
+  presenter_->Do(Action::kToggleRecordingList);
+  EXPECT_TRUE(screen_.page.is_recording_list_open);
+  EXPECT_FALSE(screen_.page.is_task_list_open) << "one card at a time";
+  EXPECT_EQ(screen_.listed, record::FindRecordingFolder());
+  presenter_->OpenRecording("a.trocar");
+  EXPECT_EQ(screen_.replayed, "a.trocar");
+  EXPECT_FALSE(screen_.page.is_recording_list_open);
+  EXPECT_TRUE(screen_.control->IsPaused());
+  presenter_->Do(Action::kToggleRecordingList);
+  presenter_->Do(Action::kReleasePointer);
+  EXPECT_FALSE(screen_.page.is_recording_list_open);
+}
+
+/// A moment of wire_run, 1.5 s after its start, at which nothing is touched.
+Branch MakeBranch(std::uint64_t seed) {
+  auto scene = scene::ReadTask(*scene::FindTask("wire_run"), {"easy", seed, {}});
+  EXPECT_TRUE(scene.ok());
+  const auto shared = std::make_shared<const scene::Scene>(std::move(*scene));
+  auto simulation = simulation::Simulation::Make(shared, 1);
+  EXPECT_TRUE(simulation.ok());
+  scene::Input input = scene::CalcScriptInput(*shared, 0);
+  input.hands[scene::kRight].pan += 0.1;
+  for (int tick = 0; tick < 180; ++tick) simulation->Step(input);
+  record::Description description;
+  description.kind = record::Description::Kind::kTask;
+  description.name = "wire_run", description.level = "easy", description.seed = seed;
+  description.player = "somebody";
+  description.tick_seconds = shared->tick_seconds;
+  description.branched_from = "first.trocar", description.branched_id = 77, description.branched_tick = 180;
+  return {std::move(*simulation), description, input, false};
+}
+
+TEST_F(Presenter, TakesOverFromARecording) {
+  test::TemporaryFolder folder;
+  Options options;
+  options.task = "clip_and_cut";
+  options.threads = 1;
+  options.recordings = folder.Path() / "kept";
+  Begin(options);
+  Load();
+  Branch branch = MakeBranch(4);
+  const scene::Input last = branch.last;
+  presenter_->TakeOver(std::move(branch));
+  ASSERT_NE(screen_.control, nullptr);
+  SessionControl& control = *screen_.control;
+  EXPECT_TRUE(control.IsPaused()) << "until the hands are ready";
+  EXPECT_NE(screen_.page.event.find("first.trocar at 1.5 s"), std::string::npos) << screen_.page.event;
+  EXPECT_EQ(presenter_->GetOptions().task, "wire_run");
+  EXPECT_EQ(presenter_->GetOptions().level, "easy");
+  EXPECT_EQ(control.Advance(0.01).tick, 180u);
+  EXPECT_NEAR(control.GetInput().hands[scene::kRight].pan, last.hands[scene::kRight].pan, 1e-9)
+      << "the hands rest where the tools stand";
+  presenter_->Do(Action::kTogglePause);
+  for (int i = 0; i < 500 && control.Advance(0.01).tick < 330; ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  EXPECT_GE(control.Advance(0.01).tick, 330u);
+  const auto recording = control.Recording();
+  presenter_->Do(Action::kReset);  // the first attempt ends; the next one goes on from nothing
+  for (int i = 0; i < 500 && (control.Advance(0.01).tick > 300 || control.Advance(0.01).tick < 150); ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  const auto next = control.Recording();
+  presenter_.reset();
+  ASSERT_TRUE(recording.has_value() && next.has_value());
+  auto read = record::ReadRecording(recording->path);
+  ASSERT_TRUE(read.ok()) << read.error().Text();
+  EXPECT_EQ(read->FirstTick(), 180u);
+  EXPECT_EQ(read->description.branched_from, "first.trocar");
+  EXPECT_EQ(read->description.branched_id, 77u);
+  EXPECT_EQ(read->description.branched_tick, 180u);
+  EXPECT_EQ(read->description.player, "mouse and keyboard");
+  auto replay = record::Replay::Open(std::move(*read), 1);
+  ASSERT_TRUE(replay.ok()) << replay.error().Text();
+  EXPECT_TRUE(replay->Verify()->IsVerified());
+  const auto anew = record::ReadRecording(next->path);
+  ASSERT_TRUE(anew.ok());
+  EXPECT_EQ(anew->FirstTick(), 0u);
+  EXPECT_EQ(anew->description.branched_from, "");
+}
+
+TEST_F(Presenter, LetsTheExpertGoOnFromARecording) {
+  BeginTask();
+  Branch branch = MakeBranch(4);
+  branch.is_experts = true;
+  presenter_->TakeOver(std::move(branch));
+  SessionControl& control = *screen_.control;
+  EXPECT_TRUE(control.IsDemonstration());
+  EXPECT_FALSE(control.IsPaused());
+  std::uint64_t least = ~std::uint64_t{0}, tick = 0;
+  for (int i = 0; i < 500 && tick < 300; ++i) {
+    tick = control.Advance(0.01).tick;
+    least = std::min(least, tick);
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  EXPECT_GE(tick, 300u);
+  EXPECT_GE(least, 180u) << "not from the beginning";
 }
 
 TEST_F(Presenter, FailsWhereTheListCannotBeRead) {

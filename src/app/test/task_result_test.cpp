@@ -25,6 +25,7 @@ scene::Scene MakeScene() {
   task.errors[0].severity = training::Severity::kMajor;
   task.errors[0].penalty = 12.5;
   task.reference_points = 200;
+  task.best_score = 85;
   scene.task = task;
   return scene;
 }
@@ -69,7 +70,7 @@ TEST(TaskErrorLog, KeepsEveryErrorOnceAndForgetsThoseOfTheRunBefore) {
 TEST(TaskResult, SaysGoalsErrorsTimeAndScore) {
   const auto result = MakeTaskResult(MakeScene(), MakeEnd(), {{0, 12.34, {0.01, 0, -0.1}, 0, scene::kRight}});
   EXPECT_EQ(result.verdict, "The time is over");
-  EXPECT_EQ(FormatScore(result), "41.2 %");
+  EXPECT_EQ(FormatScore(result), "35.1 of 85");
   ASSERT_EQ(result.goals.size(), 2u);
   EXPECT_TRUE(result.goals[0].is_done);
   EXPECT_FALSE(result.goals[1].is_done);
@@ -87,7 +88,7 @@ TEST(TaskResult, IsWrittenAsJson) {
   EXPECT_EQ(json.at("seed"), 7);
   EXPECT_EQ(json.at("demonstration"), false);
   EXPECT_EQ(json.at("phase"), "time_over");
-  EXPECT_EQ(json.at("score_unit"), "percent");
+  EXPECT_EQ(json.at("score_unit"), "of_best_score");
   EXPECT_EQ(json.at("goals").at(1).at("done"), false);
   EXPECT_EQ(json.at("errors").at(0).at("error"), "dropped");
   EXPECT_NEAR(json.at("errors").at(0).at("at_mm").at(2).get<double>(), -100, 1e-9);

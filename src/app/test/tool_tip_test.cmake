@@ -16,6 +16,7 @@ wait $window 2>/dev/null
 exit $status
 ]])
 set(ENV{GTK_A11Y} none)
+set(ENV{TROCAR_STORE} ${FOLDER}/store.sqlite)
 function(look name)
   execute_process(
     COMMAND ${DBUS} -- ${XVFB} -a -s "-screen 0 1280x800x24" sh ${FOLDER}/run.sh ${CHECK} ${FOLDER}/${name}.txt ${ARGN}

@@ -6,28 +6,53 @@
 #include <cstdio>
 #include <cstdlib>
 #include <functional>
+#include <memory>
+#include <mutex>
+#include <thread>
+#include <type_traits>
+#include <vector>
 
 #include "device_page.h"
+#include "replay_window.h"
 #include "simulator_window.h"
 #include "trocar/app/options.h"
+#include "trocar/centre/centre_window.h"
 #include "trocar/core/log.h"
 #include "trocar/core/partial_path.h"
 #include "trocar/editor/contour_window.h"
 #include "trocar/editor/patient_editor_window.h"
 #include "trocar/gui/composition.h"
 #include "trocar/gui/look.h"
+#include "trocar/gui/window_screenshot.h"
 #include "trocar/scene/scene.h"
 
 namespace trocar::app {
 namespace {
 
-/// The window that the command line asks for. It opens with the application and ends with it.
+/// The window that the command line asks for, and those that it opens. It opens with the application and ends with it.
 class Program {
  public:
   explicit Program(const CommandLine& command) : command_(command) {}
 
+  /// Who operates, and where attempts go. \return what the person has to change
+  core::Status FindStore() {
+    const Options& options = command_.options;
+    access_.place = store::FindPlace(options.store);
+    // one that nobody attends keeps an attempt only where it is told to
+    const bool keeps = !options.recordings.empty() && (options.run.IsAttended() || !options.store.empty());
+    if (!options.trainee.empty()) {
+      auto pseudonym = centre::FindPseudonym(access_, options.trainee);
+      if (!pseudonym.ok()) return pseudonym.error();
+      access_.person = std::move(*pseudonym);
+    }
+    if (keeps)
+      filing_ = std::make_unique<centre::AttemptFiling>(access_, Threads(), [this] { WakeCentre(); });
+    return {};
+  }
+
   int Run() {
     const auto application = Gtk::Application::create("", Gio::Application::Flags::NON_UNIQUE);
+    application_ = application.get();
     application->signal_activate().connect([&] {
       ApplyLook();
       Open();
@@ -35,9 +60,18 @@ class Program {
       window_->present();
     });
     const int status = application->run();
-    if (finish_) finish_();
-    const bool is_good = status == 0 && !(has_failed_ && has_failed_());
+    const bool has_failed = has_failed_ && has_failed_();
+    const bool is_good = status == 0 && !has_failed;
+    for (const auto& simulator : simulators_) simulator->SaveHapticRecord();
+    {
+      const std::lock_guard lock(mutex_);
+      woken_ = nullptr;
+    }
+    centre_.reset();
+    replay_.reset();
+    simulators_.clear();
     window_.reset();
+    filing_.reset();  // after whoever records
     return is_good ? EXIT_SUCCESS : EXIT_FAILURE;
   }
 
@@ -58,24 +92,168 @@ class Program {
       Use(std::make_unique<DevicePage>(options, nullptr));
     } else if (!command_.patient_editor.patient.empty()) {
       Use(std::make_unique<editor::PatientEditorWindow>(command_.patient_editor));
+    } else if (!options.replay.empty()) {
+      Use(std::make_unique<ReplayWindow>(options, [this](Branch branch) { Simulate(std::move(branch)); }));
+    } else if (!options.page.empty()) {
+      auto centre = MakeCentre();
+      OpenPage(*centre);
+      Use(std::move(centre));
     } else {
-      auto window = std::make_unique<SimulatorWindow>(options, since_start_);
-      finish_ = [simulator = window.get()] { simulator->SaveHapticRecord(); };
-      Use(std::move(window));
+      Use(MakeSimulator({}));
     }
+  }
+
+  int Threads() const {
+    return command_.options.threads > 0 ? command_.options.threads
+                                        : ChooseThreads(std::thread::hardware_concurrency());
+  }
+
+  // simulators
+
+  std::unique_ptr<SimulatorWindow> MakeSimulator(SimulatorWindow::Beginning beginning) {
+    SimulatorServices services;
+    services.open_centre = [this] { OpenCentre().Presenter().Open(centre::PageKind::kHistory); };
+    services.open_attempt = [this](const std::filesystem::path& recording, bool is_exam) {
+      ShowAttempt(recording, is_exam);
+    };
+    if (filing_ != nullptr) {
+      services.hooks.on_begin = [filing = filing_.get()](const auto& path) { filing->Begin(path); };
+      services.hooks.on_end = [filing = filing_.get()](const auto& path) { filing->End(path); };
+    }
+    return std::make_unique<SimulatorWindow>(command_.options, since_start_, std::move(services),
+                                             std::move(beginning));
+  }
+
+  /// Goes on in a window beside what is there, or in the simulator that is open.
+  void Simulate(SimulatorWindow::Beginning beginning) {
+    SimulatorWindow* open = OpenSimulator();
+    if (open != nullptr && !std::holds_alternative<Branch>(beginning)) {
+      if (const auto* start = std::get_if<centre::Start>(&beginning)) open->Presenter().Open(*start);
+      if (const auto* task = std::get_if<TaskRequest>(&beginning)) open->Presenter().Open(*task);
+      return open->present();
+    }
+    simulators_.push_back(MakeSimulator(std::move(beginning)));
+    application_->add_window(*simulators_.back());
+    simulators_.back()->present();
+  }
+
+  SimulatorWindow* OpenSimulator() {
+    for (const auto& one : simulators_) {
+      if (one->get_visible()) return one.get();
+    }
+    auto* first = dynamic_cast<SimulatorWindow*>(window_.get());
+    return first != nullptr && first->get_visible() ? first : nullptr;
+  }
+
+  // the training centre
+
+  std::unique_ptr<centre::CentreWindow> MakeCentre() {
+    centre::CentreServices services;
+    services.start = [this](const centre::Start& start) {
+      exam_ = start.is_exam ? OpenCentre().Presenter().Page().exam.file : std::filesystem::path();
+      Simulate(start);
+    };
+    services.start_task = [this](const std::string& task, const std::string& level) {
+      if (filing_ != nullptr) filing_->SetStep({});
+      TaskRequest request;
+      request.task = task;
+      if (!level.empty()) request.choice.level = level;
+      Simulate(request);
+    };
+    services.replay = [this](const std::filesystem::path& recording, double time) {
+      Options options = command_.options;
+      options.replay = recording;
+      options.replay_beside.clear();
+      options.replay_at = time;
+      replay_ =
+          std::make_unique<ReplayWindow>(options, [this](Branch branch) { Simulate(std::move(branch)); });
+      application_->add_window(*replay_);
+      replay_->present();
+    };
+    auto made =
+        std::make_unique<centre::CentreWindow>(access_, Threads(), filing_.get(), std::move(services));
+    made->Presenter().SignalPerson([this](const std::string& person) { access_.person = person; });
+    const std::lock_guard lock(mutex_);
+    woken_ = made.get();
+    return made;
+  }
+
+  /// The one that is open, or a new one.
+  centre::CentreWindow& OpenCentre() {
+    if (auto* first = dynamic_cast<centre::CentreWindow*>(window_.get());
+        first != nullptr && first->get_visible()) {
+      first->present();
+      return *first;
+    }
+    if (centre_ == nullptr || !centre_->get_visible()) {
+      {
+        const std::lock_guard lock(mutex_);
+        woken_ = nullptr;
+      }
+      centre_ = MakeCentre();
+      application_->add_window(*centre_);
+    }
+    centre_->present();
+    return *centre_;
+  }
+
+  void OpenPage(centre::CentreWindow& window) {
+    const std::string& page = command_.options.page;
+    centre::CentrePresenter& presenter = window.Presenter();
+    presenter.Open(page == "courses" ? centre::PageKind::kCourses
+                   : page == "group" ? centre::PageKind::kGroup
+                   : page == "exam"  ? centre::PageKind::kExam
+                                     : centre::PageKind::kHistory);
+    if (!command_.options.exam.empty()) presenter.OpenExamFile(command_.options.exam);
+    const gui::RunOptions& run = command_.options.run;
+    if (run.IsAttended()) return;
+    Glib::signal_timeout().connect_once(
+        [&window, path = run.screenshot] {
+          if (const auto saved = gui::SaveScreenshot(window, path); !saved.ok())
+            core::Log(core::LogLevel::kError, saved.error().Text());
+          window.close();
+        },
+        static_cast<unsigned>(1e3 * run.screenshot_after));
+  }
+
+  void ShowAttempt(const std::filesystem::path& recording, bool is_exam) {
+    centre::CentrePresenter& presenter = OpenCentre().Presenter();
+    if (is_exam) return presenter.EndExam(exam_, recording);
+    presenter.ExpectResult(recording);
+  }
+
+  /// By any thread.
+  void WakeCentre() {
+    const std::lock_guard lock(mutex_);
+    if (woken_ != nullptr) woken_->Wake();
   }
 
   template <typename Window>
   void Use(std::unique_ptr<Window> window) {
-    has_failed_ = [shown = window.get()] { return shown->GetFailure().has_value(); };
+    if constexpr (std::is_same_v<Window, SimulatorWindow>) {
+      has_failed_ = [shown = window.get()] {
+        shown->SaveHapticRecord();
+        return shown->GetFailure().has_value();
+      };
+    } else {
+      has_failed_ = [shown = window.get()] { return shown->GetFailure().has_value(); };
+    }
     window_ = std::move(window);
   }
 
   core::Stopwatch since_start_;
   CommandLine command_;
+  centre::Access access_;
+  std::mutex mutex_;
+  centre::CentreWindow* woken_ = nullptr;  // guarded by mutex_; told of the filing's news
+  std::unique_ptr<centre::AttemptFiling> filing_;
+  Gtk::Application* application_ = nullptr;
   std::unique_ptr<Gtk::ApplicationWindow> window_;
-  std::function<void()> finish_;      // once the window has closed
-  std::function<bool()> has_failed_;  // asked after that
+  std::vector<std::unique_ptr<SimulatorWindow>> simulators_;  // that were opened beside it
+  std::unique_ptr<centre::CentreWindow> centre_;
+  std::unique_ptr<ReplayWindow> replay_;
+  std::filesystem::path exam_;        // that is being sat
+  std::function<bool()> has_failed_;  // asked once the windows have closed
 };
 
 }  // namespace
@@ -99,6 +277,10 @@ int main(int argc, char** argv) {
                             "or WAYLAND_DISPLAY; without one, "
                             "`trocar simulate` runs the same scene headless"};
     std::fprintf(stderr, "%s\n", error.Text().c_str());
+    return EXIT_FAILURE;
+  }
+  if (const core::Status found = program.FindStore(); !found.ok()) {
+    std::fprintf(stderr, "%s\n", found.error().Text().c_str());
     return EXIT_FAILURE;
   }
   core::RemovePartialPathsOnSignals();

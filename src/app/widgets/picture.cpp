@@ -69,6 +69,7 @@ bool Picture::on_render(const Glib::RefPtr<Gdk::GLContext>&) {
     view_.emplace(std::move(made).value());
   }
   if (view_->GetOptions() != options_) view_->SetOptions(options_);
+  view_->SetOverlay(overlay_);
   view_->Update(*snapshot_);
   view_->Draw(get_width() * get_scale_factor(), get_height() * get_scale_factor());
   signal_drawn_.emit();

@@ -6,6 +6,7 @@
 
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "trocar/core/result.h"
 #include "trocar/simulation/simulation.h"
@@ -23,6 +24,8 @@ class Picture : public Gtk::GLArea {
                 std::span<const scene::StrandInfo> strands);
   /// State of the next frame; null draws an empty picture. Valid until the next call.
   void SetSnapshot(const simulation::Snapshot* snapshot) { snapshot_ = snapshot; }
+  /// What is shown besides the scene, until the next call.
+  void SetOverlay(view::Overlay overlay) { overlay_ = std::move(overlay); }
   /// Angle that CirclePixels() span in the picture [rad].
   double FieldOfView() const;
   /// Diameter of the laparoscope's round picture on the screen [pixels of the window].
@@ -49,6 +52,7 @@ class Picture : public Gtk::GLArea {
   const simulation::Snapshot* snapshot_ = nullptr;
   std::optional<view::LaparoscopeView> view_;
   view::ViewOptions options_;
+  view::Overlay overlay_;
   bool has_failed_ = false;
   sigc::signal<void()> signal_drawn_;
   sigc::signal<void(core::Error)> signal_failed_;

@@ -14,8 +14,10 @@ constexpr int kWidth = 1280, kHeight = 800;
 
 }  // namespace
 
-SimulatorWindow::SimulatorWindow(const Options& options, const core::Stopwatch& since_start)
-    : bar_(SimulatorCommands(), tips_,
+SimulatorWindow::SimulatorWindow(const Options& options, const core::Stopwatch& since_start,
+                                 SimulatorServices services, Beginning beginning)
+    : services_(std::move(services)),
+      bar_(SimulatorCommands(), tips_,
            [this](const SimulatorCommand& command) { presenter_->Do(command.action.action); }) {
   set_title("Trocar");
   add_css_class("trocar");
@@ -25,16 +27,26 @@ SimulatorWindow::SimulatorWindow(const Options& options, const core::Stopwatch& 
   tips_.Adopt(panel_);
   hands_ = std::make_unique<HandEvents>(*this, picture_, panel_);
   presenter_ = std::make_unique<SimulatorPresenter>(
-      options, since_start, static_cast<SimulatorScreen&>(*this), [this] { loaded_.emit(); });
+      options, since_start, static_cast<SimulatorScreen&>(*this), [this] { loaded_.emit(); },
+      services_.hooks);
   MakeRoutes();
   panel_.set_sensitive(false);  // until there is something to set
   if (options.is_fullscreen) fullscreen();
   picture_.grab_focus();
-  presenter_->Start();
+  if (auto* branch = std::get_if<Branch>(&beginning)) {
+    presenter_->TakeOver(std::move(*branch));
+  } else if (const auto* start = std::get_if<centre::Start>(&beginning)) {
+    presenter_->Open(*start);
+  } else if (const auto* task = std::get_if<TaskRequest>(&beginning)) {
+    presenter_->Open(*task);
+  } else {
+    presenter_->Start();
+  }
   if (options.is_task_list) presenter_->OpenTaskList();
 }
 
 SimulatorWindow::~SimulatorWindow() {
+  replay_.reset();
   UseControl(nullptr);
 }
 
@@ -49,13 +61,15 @@ void SimulatorWindow::MakeOverlay() {
   hint_.set_halign(Gtk::Align::CENTER);
   hint_.set_valign(Gtk::Align::END);
   for (Gtk::Label* label : {&badge_, &hint_}) label->set_can_target(false);
-  for (Gtk::Widget* card : {static_cast<Gtk::Widget*>(&help_card_), static_cast<Gtk::Widget*>(&chooser_),
-                            static_cast<Gtk::Widget*>(&result_card_)})
+  for (Gtk::Widget* card :
+       {static_cast<Gtk::Widget*>(&help_card_), static_cast<Gtk::Widget*>(&chooser_),
+        static_cast<Gtk::Widget*>(&recordings_), static_cast<Gtk::Widget*>(&result_card_)})
     card->set_visible(false);
   for (Gtk::Widget* widget :
        {static_cast<Gtk::Widget*>(&badge_), static_cast<Gtk::Widget*>(&hint_),
         static_cast<Gtk::Widget*>(&failure_card_), static_cast<Gtk::Widget*>(&help_card_),
-        static_cast<Gtk::Widget*>(&chooser_), static_cast<Gtk::Widget*>(&result_card_)})
+        static_cast<Gtk::Widget*>(&chooser_), static_cast<Gtk::Widget*>(&recordings_),
+        static_cast<Gtk::Widget*>(&result_card_)})
     overlay_.add_overlay(*widget);
 }
 
@@ -106,6 +120,9 @@ void SimulatorWindow::MakeRoutes() {
   loaded_.connect([this] { presenter_->FinishLoading(); });
   chooser_.SignalChosen().connect([this](const TaskRequest& request) { presenter_->Open(request); });
   chooser_.SignalClosed().connect([this] { presenter_->CloseTaskList(); });
+  recordings_.SignalChosen().connect(
+      [this](const std::filesystem::path& path) { presenter_->OpenRecording(path); });
+  recordings_.SignalClosed().connect([this] { presenter_->CloseRecordingList(); });
   result_card_.SignalAgain().connect([this] { presenter_->PlayAgain(); });
   result_card_.SignalOther().connect([this] { presenter_->OpenTaskList(); });
   result_card_.SignalSave().connect([this] { ChooseAndSaveResult(); });
@@ -139,6 +156,7 @@ void SimulatorWindow::Show(const SimulatorPage& page) {
   if (picture_.GetOptions() != page.view) picture_.SetOptions(page.view);
   help_card_.set_visible(page.is_help_open);
   chooser_.set_visible(page.is_task_list_open);
+  recordings_.set_visible(page.is_recording_list_open);
   result_card_.set_visible(page.is_result_open);
   gui::SetTextOrHide(hint_, page.hint);
   gui::SetTextOrHide(badge_, page.badge);
@@ -186,6 +204,9 @@ void SimulatorWindow::DoInWindow(Action action) {
     case Action::kOpenDevices:
       OpenDevices();
       break;
+    case Action::kOpenCentre:
+      if (services_.open_centre) services_.open_centre();
+      break;
     case Action::kQuit:
       // never within a frame, which holds the GLArea
       Glib::signal_timeout().connect_once([this] { close(); }, 0);
@@ -193,6 +214,28 @@ void SimulatorWindow::DoInWindow(Action action) {
     default:
       break;
   }
+}
+
+void SimulatorWindow::OpenReplay(const std::filesystem::path& recording) {
+  Options options = presenter_->GetOptions();
+  options.replay = recording;
+  options.replay_beside.clear();
+  replay_ = std::make_unique<ReplayWindow>(options, [this](Branch branch) {
+    presenter_->TakeOver(std::move(branch));
+    present();
+  });
+  replay_->set_transient_for(*this);
+  get_application()->add_window(*replay_);
+  replay_->present();
+}
+
+void SimulatorWindow::OpenAttempt(const std::filesystem::path& recording, bool is_exam) {
+  // outside of the frame, which holds the GLArea: a window opens
+  Glib::signal_timeout().connect_once(
+      [this, recording, is_exam] {
+        if (services_.open_attempt) services_.open_attempt(recording, is_exam);
+      },
+      0);
 }
 
 void SimulatorWindow::SwitchPane() {

@@ -4,14 +4,18 @@
 
 #include <gtkmm.h>
 
+#include <functional>
 #include <memory>
 #include <optional>
+#include <variant>
 
 #include "device_page.h"
 #include "failure_card.h"
 #include "hand_events.h"
 #include "panel.h"
 #include "picture.h"
+#include "recording_chooser.h"
+#include "replay_window.h"
 #include "result_card.h"
 #include "task_chooser.h"
 #include "trocar/app/simulator_presenter.h"
@@ -20,12 +24,24 @@
 
 namespace trocar::app {
 
+/// What other windows do for this one.
+struct SimulatorServices {
+  std::function<void()> open_centre;
+  std::function<void(const std::filesystem::path& recording, bool is_exam)> open_attempt;
+  AttemptHooks hooks;
+};
+
 class SimulatorWindow : public Gtk::ApplicationWindow, private SimulatorScreen {
  public:
   /// \param since_start  runs since the program began
-  SimulatorWindow(const Options& options, const core::Stopwatch& since_start);
+  /// \param beginning    nothing, or what is opened in place of the scene that the options name: a moment of a recording from which
+  ///                     it goes on, a step of a course or an exam, or a task
+  using Beginning = std::variant<std::monostate, Branch, centre::Start, TaskRequest>;
+  SimulatorWindow(const Options& options, const core::Stopwatch& since_start, SimulatorServices services,
+                  Beginning beginning = {});
   ~SimulatorWindow() override;
 
+  SimulatorPresenter& Presenter() { return *presenter_; }
   /// Writes what --haptic-record asks for; call it once the window has closed.
   void SaveHapticRecord() { presenter_->SaveHapticRecord(); }
   /// What went wrong, if anything did: the program's exit status follows it.
@@ -45,12 +61,16 @@ class SimulatorWindow : public Gtk::ApplicationWindow, private SimulatorScreen {
   void UseControl(SessionControl* control) override;
   std::vector<std::string> UseKeys(const std::map<std::string, device::HandAct>& keys) override;
   core::Status FillTaskList() override;
+  void FillRecordingList(const std::filesystem::path& folder) override { recordings_.Load(folder); }
+  void OpenReplay(const std::filesystem::path& recording) override;
+  void OpenAttempt(const std::filesystem::path& recording, bool is_exam) override;
   void FillResult(const TaskResult& result) override { result_card_.Show(result); }
   void ReleasePointer() override { hands_->ReleasePointer(); }
   bool IsPointerTaken() const override { return hands_->IsPointerTaken(); }
   void FocusPicture() override { picture_.grab_focus(); }
   void DoInWindow(Action action) override;
 
+  SimulatorServices services_;
   gui::Tips tips_;
   gui::CommandBar<KeyMeaning, SimulatorNeeds> bar_;
   Gtk::Overlay overlay_;
@@ -58,6 +78,7 @@ class SimulatorWindow : public Gtk::ApplicationWindow, private SimulatorScreen {
   Panel panel_;
   gui::HelpCard help_card_{SimulatorHelp()};
   TaskChooser chooser_;
+  RecordingChooser recordings_{"Watch"};
   ResultCard result_card_;
   FailureCard failure_card_;
   Gtk::Label badge_, hint_, event_, state_, haptics_;
@@ -65,6 +86,7 @@ class SimulatorWindow : public Gtk::ApplicationWindow, private SimulatorScreen {
   Glib::Dispatcher loaded_;
   std::unique_ptr<SimulatorPresenter> presenter_;
   std::unique_ptr<DevicePage> device_page_;  // of the presenter's control
+  std::unique_ptr<ReplayWindow> replay_;
 };
 
 }  // namespace trocar::app

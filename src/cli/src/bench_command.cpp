@@ -91,6 +91,14 @@ void AddBenchCommand(CLI::App& app, Outcome& outcome) {
       ->check(CLI::Range(1, 1000))
       ->type_name("N")
       ->capture_default_str();
+  command->add_option("--attempts", arguments->options.attempts, "With how many attempts the store is filled")
+      ->check(CLI::Range(1000, 10'000'000))
+      ->type_name("N")
+      ->capture_default_str();
+  command
+      ->add_option("--url", arguments->options.url,
+                   "An empty PostgreSQL database for the store (postgresql://...)")
+      ->type_name("URL");
   command->add_flag("--json", arguments->is_json, "Machine-readable: suite, machine, cases, ratios");
   command->footer(
       "A case whose answer is wrong ends the suite with E-BEN-001 and exit status 1.\n"

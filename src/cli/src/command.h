@@ -27,8 +27,19 @@ void AddWindowCommand(CLI::App& app, Outcome& outcome);
 void AddDemoCommand(CLI::App& app, Outcome& outcome);
 void AddPlayCommand(CLI::App& app, Outcome& outcome);
 void AddSimulateCommand(CLI::App& app, Outcome& outcome);
+void AddReportCommand(CLI::App& app, Outcome& outcome);
+void AddRatingCommand(CLI::App& app, Outcome& outcome);
+void AddXapiCommand(CLI::App& app, Outcome& outcome);
 void AddRecordCommand(CLI::App& app, Outcome& outcome);
 void AddReplayCommand(CLI::App& app, Outcome& outcome);
+void AddCourseCommand(CLI::App& app, Outcome& outcome);
+void AddLevelsCommand(CLI::App& app, Outcome& outcome);
+void AddExamCommand(CLI::App& app, Outcome& outcome);
+void AddCertificateCommand(CLI::App& app, Outcome& outcome);
+void AddCoachCommand(CLI::App& app, Outcome& outcome);
+void AddStudyCommand(CLI::App& app, Outcome& outcome);
+void AddMetricsCommand(CLI::App& app, Outcome& outcome);
+void AddStoreCommand(CLI::App& app, Outcome& outcome);
 void AddAnatomyCommand(CLI::App& app, Outcome& outcome);
 /// Words like "hydrops=0.5".
 /// \return kUsage for one that is not like that

@@ -4,29 +4,32 @@
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
+#include <array>
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <system_error>
 #include <utility>
 #include <vector>
 
+#include "attempt_page.h"
 #include "command.h"
 #include "console.h"
 #include "device_input.h"
 #include "haptic_input.h"
 #include "igtl_option.h"
-#include "motion_log.h"
 #include "part_folder.h"
 #include "picture_size.h"
-#include "report.h"
 #include "trocar/core/safe_file.h"
 #include "trocar/core/state_hash.h"
 #include "trocar/core/version.h"
-#include "trocar/training/motion_metrics.h"
+#include "trocar/record/trace.h"
+#include "trocar/training/attempt_metrics.h"
+#include "trocar/training/metric_definition.h"
 #include "trocar/view/demo.h"
 
 namespace trocar::cli {
@@ -60,15 +63,16 @@ core::Result<std::shared_ptr<const scene::Scene>> ReadSceneOrBuiltIn(const std::
 }
 
 /// The metrics, what they were measured on, and what force feedback did: null without it.
-std::string FormatMetricsFile(const training::SessionMetrics& metrics, const scene::Scene& scene,
+std::string FormatDemoMetrics(const training::AttemptMetrics& metrics, const scene::Scene& scene,
                               const view::DemoReport& played, const HapticInput* haptics) {
   nlohmann::ordered_json json = {{"program", "trocar " + std::string(core::VersionText())},
                                  {"scene", scene.name},
                                  {"patient", scene.patient.name},
                                  {"seed", scene.seed},
                                  {"ticks", played.ticks},
-                                 {"state_hash", core::HashText(played.state_hash)}};
-  json.update(nlohmann::ordered_json::parse(training::FormatMetricsJson(metrics), nullptr, false));
+                                 {"state_hash", core::HashText(played.state_hash)},
+                                 {"disclaimer", training::MetricsDisclaimer()}};
+  json["metrics"] = nlohmann::ordered_json::parse(training::FormatMetricsJson(metrics), nullptr, false);
   json["haptics"] = nullptr;
   if (haptics != nullptr) {
     const std::string summary = session::FormatSummaryJson(haptics->Record().CalcSummary());
@@ -78,36 +82,31 @@ std::string FormatMetricsFile(const training::SessionMetrics& metrics, const sce
 }
 
 core::Result<std::string> MakePage(const scene::Scene& scene, const view::DemoReport& played,
-                                   const MotionLog& log, const HapticInput* haptics,
-                                   std::string metrics_json) {
-  ReportContent content;
-  content.scene = scene.name;
-  content.patient = scene.patient.name;
-  content.provenance = scene.patient.provenance;
-  content.seed = scene.seed;
-  content.hash = core::HashText(played.state_hash);
-  content.ticks = played.ticks;
-  content.tick_seconds = scene.tick_seconds;
-  content.version = core::VersionText();
-  content.video = played.video.filename().string();
-  content.metrics_json = std::move(metrics_json);
-  if (haptics != nullptr) content.haptics = session::DescribeSummary(haptics->Record().CalcSummary());
+                                   const training::AttemptTrace& trace, const HapticInput* haptics) {
+  report::AttemptFacts facts = DescribeScene(scene, {});
+  facts.patient = scene.patient.name;
+  facts.seed = scene.seed;
+  facts.program = core::VersionText();
+  auto made = ReportTrace(trace, std::move(facts));
+  if (!made.ok()) return made.error();
+  report::AttemptReport report = std::move(*made);
+  report.film = played.video.filename().string();
   for (const view::DemoPicture& picture : played.pictures) {
     core::Result<std::string> png = core::ReadFile(picture.path);
     if (!png) return png.error();
-    content.pictures.push_back({"after " + FormatNumber(picture.time, 3) + " s", std::move(png).value()});
+    report.pictures.push_back({std::move(png).value(), "after " + FormatNumber(picture.time, 3) + " s"});
   }
-  content.times = log.Times();
-  const training::MotionRecording& recording = log.Recording();
-  for (std::size_t tool = 0; tool < recording.tools.size(); ++tool) {
-    ReportHand hand{recording.tool_names[tool], {}, {}};
-    for (const training::ToolSample& sample : recording.tools[tool]) {
-      hand.force.push_back(sample.force);
-      hand.p_world_tip.push_back(sample.tip);
-    }
-    content.hands.push_back(std::move(hand));
+  report.origin = {
+      {"State hash", core::HashText(played.state_hash)},
+      {"Ticks", std::to_string(played.ticks) + " of " + FormatNumber(1e3 * scene.tick_seconds) + " ms"},
+      {"Where the patient comes from", scene.patient.provenance}};
+  if (haptics == nullptr) {
+    report.origin.emplace_back("Force feedback", "No haptic device took part.");
+  } else {
+    for (const auto& [what, how] : session::DescribeSummary(haptics->Record().CalcSummary()))
+      report.origin.emplace_back("Force feedback: " + what, how);
   }
-  return FormatReportPage(content);
+  return report::FormatHtml(MakeDocument(report));
 }
 
 void PrintSummary(const view::DemoReport& played, const scene::Scene& scene, const fs::path& output) {
@@ -134,10 +133,13 @@ core::Status Play(const DemoArguments& arguments) {
   options.duration = arguments.seconds;
   options.threads = arguments.threads;
   options.output_folder = part.Path();
-  MotionLog log(**scene, arguments.seconds > 0 ? arguments.seconds + 1 : (*scene)->script.Duration() + 1);
+  std::optional<record::TraceBuilder> trace;
+  std::array<scene::HandControls, scene::kHandCount> controls{};
   std::unique_ptr<net::IgtlServer> server;
   std::unique_ptr<HapticInput> haptics;
   options.on_start = [&](const simulation::Simulation& simulation) -> core::Status {
+    trace.emplace(simulation);
+    trace->Add(simulation.GetSnapshot());
     if (arguments.igtl_port >= 0) {
       auto listening = ServeViewers(arguments.igtl_port, simulation);
       if (!listening) return listening.error();
@@ -154,7 +156,7 @@ core::Status Play(const DemoArguments& arguments) {
     if (haptics != nullptr) haptics->AfterStep(simulation);
   };
   options.on_tick = [&](const simulation::Snapshot& snapshot) {
-    log.Record(snapshot);
+    trace->Add(snapshot, controls);
     if (server != nullptr) server->Publish(snapshot);
   };
   std::unique_ptr<DeviceInput> device;
@@ -166,6 +168,7 @@ core::Status Play(const DemoArguments& arguments) {
   options.change_input = [&](double time, scene::Input& input) {
     if (device != nullptr) device->Apply(time, input);
     if (haptics != nullptr) haptics->Apply(time, input);
+    controls = input.controls;
   };
   ProgressBar progress("playing", 1.0);
   options.on_progress = [&](double done) { progress.Show(done); };
@@ -173,10 +176,11 @@ core::Status Play(const DemoArguments& arguments) {
   progress.Finish();
   if (!played) return played.error();
 
-  const core::Result<training::SessionMetrics> metrics = training::CalcSessionMetrics(log.Recording());
+  const training::AttemptTrace attempt = trace->Calc();
+  const core::Result<training::AttemptMetrics> metrics = training::CalcAttemptMetrics(attempt);
   if (!metrics) return metrics.error();
-  const std::string metrics_text = FormatMetricsFile(*metrics, **scene, *played, haptics.get());
-  const core::Result<std::string> page = MakePage(**scene, *played, log, haptics.get(), metrics_text);
+  const std::string metrics_text = FormatDemoMetrics(*metrics, **scene, *played, haptics.get());
+  const core::Result<std::string> page = MakePage(**scene, *played, attempt, haptics.get());
   if (!page) return page.error();
   if (auto status = core::WriteFile(part.Path() / "metrics.json", metrics_text); !status) return status;
   if (auto status = core::WriteFile(part.Path() / "report.html", *page); !status) return status;

@@ -11,20 +11,23 @@
 #include <utility>
 #include <vector>
 
+#include "attempt_page.h"
 #include "attempt_recording.h"
 #include "command.h"
 #include "console.h"
 #include "part_folder.h"
 #include "picture_size.h"
 #include "play_operation.h"
-#include "play_state.h"
 #include "trocar/agent/surgeon.h"
+#include "trocar/assessment/play_state.h"
 #include "trocar/core/safe_file.h"
 #include "trocar/core/state_hash.h"
 #include "trocar/core/statistics.h"
+#include "trocar/core/version.h"
 #include "trocar/scene/task.h"
 #include "trocar/simulation/simulation.h"
 #include "trocar/view/demo.h"
+#include "validity_note.h"
 
 namespace trocar::cli {
 namespace {
@@ -36,7 +39,7 @@ constexpr double kMillilitre = 1e6;  // per m^3
 
 struct PlayArguments {
   std::string surgeon, task, patient, output;
-  std::string level = "normal", size = "1280x720", record;
+  std::string level = "normal", size = "1280x720", record, report, person;
   std::uint64_t seed = 1;
   int threads = 1;
   double most_seconds = 3600;
@@ -126,7 +129,8 @@ void PrintJson(const scene::Scene& scene, const PlayReport& report) {
                {"tick_p99_ms", report.tick_p99_ms},
                {"cut_tick_max_ms", report.cut_tick_max_ms},
                {"hash", core::HashText(report.hash)},
-               {"score", report.task.score},
+               {"score", scene::CalcShownScore(*scene.task, report.task)},
+               {"best_score", scene.task->best_score},
                {"time_s", report.task.time},
                {"phase", scene::PhaseName(report.task.phase)}});
   nlohmann::ordered_json goals = nlohmann::ordered_json::array();
@@ -140,6 +144,11 @@ void PrintJson(const scene::Scene& scene, const PlayReport& report) {
   std::printf("%s\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
 }
 
+std::string FormatShownScore(const scene::Task& task, const scene::TaskSnapshot& now) {
+  const std::string score = FormatNumber(scene::CalcShownScore(task, now), 4);
+  return task.reference_points > 0 ? score + " of " + FormatNumber(task.best_score, 4) : score + " points";
+}
+
 void PrintForPerson(const scene::Scene& scene, const PlayReport& report) {
   const auto done = std::count_if(report.task.goals.begin(), report.task.goals.end(),
                                   [](const auto& goal) { return goal.is_done; });
@@ -147,7 +156,7 @@ void PrintForPerson(const scene::Scene& scene, const PlayReport& report) {
               scene.task->level.c_str(),
               report.gave_up ? "given up" : std::string(scene::PhaseName(report.task.phase)).c_str(),
               FormatNumber(report.task.time, 4).c_str(), done, report.task.goals.size(),
-              FormatNumber(report.task.score, 4).c_str());
+              FormatShownScore(*scene.task, report.task).c_str());
   for (std::size_t e = 0; e < scene.task->errors.size(); ++e) {
     if (report.task.errors[e] == 0) continue;
     const scene::ErrorRule& rule = scene.task->errors[e];
@@ -208,6 +217,15 @@ record::Description DescribePlay(const PlayArguments& arguments) {
   return description;
 }
 
+RunReport MakeRunReport(const scene::Scene& scene, const PlayArguments& arguments) {
+  report::AttemptFacts facts = report::DescribeAttempt(DescribePlay(arguments), "");
+  if (!scene.task) facts.level.clear();
+  facts.person = arguments.person;
+  facts.program = core::VersionText();
+  facts.task_key = TaskKey(facts.task_key);
+  return {arguments.report, DescribeScene(scene, std::move(facts))};
+}
+
 /// Without pictures.
 core::Result<PlayReport> PlayBlind(std::shared_ptr<const scene::Scene> scene, agent::Surgeon& surgeon,
                                    const PlayArguments& arguments) {
@@ -221,6 +239,8 @@ core::Result<PlayReport> PlayBlind(std::shared_ptr<const scene::Scene> scene, ag
   }
   auto recording = AttemptRecording::Start(arguments.record, DescribePlay(arguments), simulation);
   if (!recording.ok()) return recording.error();
+  RunReport run_report = MakeRunReport(*scene, arguments);
+  run_report.Start(simulation);
   Watcher watcher(*scene);
   const std::size_t goals = scene->task->goals.size();
   ProgressBar progress("playing", static_cast<double>(goals));
@@ -228,6 +248,7 @@ core::Result<PlayReport> PlayBlind(std::shared_ptr<const scene::Scene> scene, ag
     const scene::Input input = surgeon.Act(simulation.GetSnapshot());
     simulation.Step(input);
     recording->Add(input, simulation);
+    run_report.AfterStep(simulation, input);
     const Snapshot& now = simulation.GetSnapshot();
     watcher.See(now);
     if (now.tick % 30 != 0) continue;
@@ -238,6 +259,7 @@ core::Result<PlayReport> PlayBlind(std::shared_ptr<const scene::Scene> scene, ag
   }
   progress.Finish();
   if (auto finished = recording->Finish(simulation); !finished) return finished.error();
+  if (auto written = run_report.Write(); !written) return written.error();
   if (!arguments.files.save.empty()) {
     if (auto saved = SavePlay(arguments.files.save, arguments.files.who, simulation, surgeon); !saved)
       return saved.error();
@@ -269,9 +291,12 @@ core::Result<PlayReport> PlayForTheEye(std::shared_ptr<const scene::Scene> scene
     progress.SetLabel(FormatNumber(now.time, 3) + " s, " + std::string(surgeon.Doing()));
     progress.Show(static_cast<double>(done));
   };
+  RunReport run_report = MakeRunReport(*scene, arguments);
+  run_report.Follow(options);
   const auto played = view::PlayDemonstration(scene, options);
   progress.Finish();
   if (!played) return played.error();
+  if (auto written = run_report.Write(played->pictures); !written) return written.error();
   if (auto status = part.Keep(); !status) return status.error();
   return watcher.Finish(last, played->state_hash);
 }
@@ -286,9 +311,10 @@ core::Status PlayOne(scene::Scene scene, const PlayArguments& arguments) {
   record::Description description = DescribePlay(arguments);
   description.kind = record::Description::Kind::kOperation;
   description.level.clear();
-  return PlayOperation(shared, **surgeon,
-                       {arguments.output, (*size)[0], (*size)[1], arguments.threads, arguments.most_seconds,
-                        arguments.is_json, arguments.files, arguments.record, std::move(description)});
+  return PlayOperation(
+      shared, **surgeon,
+      {arguments.output, (*size)[0], (*size)[1], arguments.threads, arguments.most_seconds, arguments.is_json,
+       arguments.files, arguments.record, std::move(description), MakeRunReport(*shared, arguments)});
 }
 
 core::Status Play(const PlayArguments& arguments, Outcome& outcome) {
@@ -304,6 +330,10 @@ core::Status Play(const PlayArguments& arguments, Outcome& outcome) {
     return core::Error{
         core::ErrorCode::kUsage,
         "--record goes without pictures; leave out -o, and draw the recording: trocar replay FILE -o DIR"};
+  }
+  if (!arguments.report.empty()) {
+    // a wrong ending is told before minutes of playing
+    if (const auto kind = FindReportKind(arguments.report); !kind.ok()) return kind.error();
   }
   auto operation = scene::FindOperation(arguments.task, arguments.patient, arguments.seed);
   if (!operation.ok()) return operation.error();
@@ -361,6 +391,12 @@ void AddPlayCommand(CLI::App& app, Outcome& outcome) {
                    "Go on where --save left off: the same task, level, patient, seed and surgeon")
       ->type_name("FILE");
   AddRecordOption(*command, arguments->record);
+  command
+      ->add_option("--report", arguments->report,
+                   "Write what it came to: .html (one file, no network), .pdf, .csv or .json")
+      ->type_name("FILE");
+  command->add_option("--person", arguments->person, "Pseudonym that stands in the report")
+      ->type_name("PSEUDONYM");
   command->add_flag("--json", arguments->is_json, "Machine-readable");
   command->add_flag("--list", arguments->is_list, "Show tasks and surgeons, and do nothing");
   command->footer(

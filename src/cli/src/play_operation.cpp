@@ -137,7 +137,7 @@ double Share(const Snapshot& now) {
 }  // namespace
 
 core::Status PlayOperation(std::shared_ptr<const scene::Scene> scene, agent::Surgeon& surgeon,
-                           const OperationPlay& play) {
+                           OperationPlay play) {
   Run run;
   OperationResult result;
   ProgressBar progress("operating", 1.0);
@@ -157,13 +157,16 @@ core::Status PlayOperation(std::shared_ptr<const scene::Scene> scene, agent::Sur
     }
     auto recording = AttemptRecording::Start(play.record, play.description, simulation);
     if (!recording.ok()) return recording.error();
+    play.report.Start(simulation);
     while (!surgeon.HasFinished() && simulation.GetSnapshot().time < play.most_seconds) {
       const scene::Input input = surgeon.Act(simulation.GetSnapshot());
       simulation.Step(input);
       recording->Add(input, simulation);
+      play.report.AfterStep(simulation, input);
       see(simulation.GetSnapshot());
     }
     if (auto finished = recording->Finish(simulation); !finished) return finished;
+    if (auto written = play.report.Write(); !written) return written;
     if (!play.files.save.empty()) {
       if (auto saved = SavePlay(play.files.save, play.files.who, simulation, surgeon); !saved) return saved;
     }
@@ -178,8 +181,10 @@ core::Status PlayOperation(std::shared_ptr<const scene::Scene> scene, agent::Sur
     options.surgeon = &surgeon;
     options.duration = play.most_seconds;
     options.on_tick = see;
+    play.report.Follow(options);
     const auto played = view::PlayDemonstration(scene, options);
     if (!played.ok()) return played.error();
+    if (auto written = play.report.Write(played->pictures); !written) return written;
     if (auto status = part.Keep(); !status) return status;
     run.hash = played->state_hash;
     if (played->operation) result = *played->operation;

@@ -7,12 +7,17 @@
 #include <optional>
 #include <string>
 
-#include "play_state.h"
+#include "attempt_page.h"
+#include "trocar/assessment/play_state.h"
 #include "trocar/agent/surgeon.h"
 #include "trocar/core/result.h"
 #include "trocar/record/recording.h"
 
 namespace trocar::cli {
+
+using assessment::PlayFiles;
+using assessment::RestorePlay;
+using assessment::SavePlay;
 
 struct OperationPlay {
   std::filesystem::path output;  ///< folder for pictures and a video, or empty
@@ -23,10 +28,11 @@ struct OperationPlay {
   PlayFiles files;                  ///< only without pictures
   std::string record;               ///< file of a recording, or empty; only without pictures
   record::Description description;  ///< of that recording
+  RunReport report;
 };
 
 /// Runs to the surgeon's end and prints what it came to.
 core::Status PlayOperation(std::shared_ptr<const scene::Scene> scene, agent::Surgeon& surgeon,
-                           const OperationPlay& play);
+                           OperationPlay play);
 
 }  // namespace trocar::cli

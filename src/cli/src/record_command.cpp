@@ -4,12 +4,17 @@
 #include <CLI/Formatter.hpp>
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <system_error>
+#include <utility>
 
 #include "command.h"
 #include "console.h"
+#include "trocar/core/state_hash.h"
 #include "trocar/record/recording.h"
+#include "trocar/record/replay.h"
 
 namespace trocar::cli {
 namespace {
@@ -30,6 +35,7 @@ ordered_json InfoJson(const Recording& recording) {
                        {"program", d.program},
                        {"compiler", d.compiler},
                        {"first_tick", recording.FirstTick()},
+                       {"branched", nullptr},
                        {"ticks", recording.inputs.size()},
                        {"seconds", recording.Seconds()},
                        {"hashes", recording.hashes.size()},
@@ -41,9 +47,16 @@ ordered_json InfoJson(const Recording& recording) {
                        {"events", ordered_json::array()},
                        {"marks", ordered_json::array()},
                        {"outcome", nullptr}};
+  if (!d.branched_from.empty()) {
+    json["branched"] = {{"from", d.branched_from},
+                        {"id", core::HashText(d.branched_id)},
+                        {"tick", d.branched_tick},
+                        {"time_s", static_cast<double>(d.branched_tick) * d.tick_seconds}};
+  }
   for (const record::EventMark& event : recording.events) {
     json["events"].push_back({{"time_s", static_cast<double>(event.tick) * d.tick_seconds},
                               {"kind", event.kind},
+                              {"about", event.about},
                               {"error", event.is_error},
                               {"hand", event.hand}});
   }
@@ -73,6 +86,11 @@ void PrintInfo(const Recording& recording) {
       {"played by", d.player},
       {"started", d.started},
       {"written by", "trocar " + d.program + ", " + d.compiler},
+      {"goes on from", d.branched_from.empty()
+                           ? "-"
+                           : d.branched_from + " at " +
+                                 FormatNumber(static_cast<double>(d.branched_tick) * d.tick_seconds, 4) +
+                                 " s"},
       {"length",
        FormatNumber(recording.Seconds(), 4) + " s, " + std::to_string(recording.inputs.size()) + " ticks"},
       {"size", FormatNumber(1e-6 * static_cast<double>(recording.file_bytes), 3) + " MB, with " +
@@ -152,14 +170,72 @@ void AddRepair(CLI::App& record, Outcome& outcome) {
   });
 }
 
+core::Status MakeIndex(const std::string& path, double seconds, int threads) {
+  auto recording = record::ReadRecording(path);
+  if (!recording.ok()) return recording.error();
+  record::ReplaySettings settings;
+  settings.threads = threads;
+  settings.index = record::IndexPathOf(path);
+  settings.visit_seconds = 0;
+  auto replay = record::Replay::Open(std::move(*recording), settings);
+  if (!replay.ok()) return replay.error();
+  if (!replay->KeepsStatesOnDisk()) {
+    return core::Error{core::ErrorCode::kFileUnwritable,
+                       settings.index.string() +
+                           " cannot be written, or another program does so; check the folder and its rights"};
+  }
+  ProgressBar progress("replaying", 1.0);
+  for (;;) {
+    const auto filled = replay->FillGap(replay->Tick(), seconds);
+    if (!filled.ok()) return filled.error();
+    if (!*filled) break;
+    const record::Recording& of = replay->GetRecording();
+    progress.Show(static_cast<double>(replay->Tick() - of.FirstTick()) /
+                  static_cast<double>(std::max<std::size_t>(1, of.inputs.size())));
+  }
+  progress.Finish();
+  if (const auto& divergence = replay->GetDivergence()) {
+    return core::Error{core::ErrorCode::kRecordingInvalid, path + " is not replayed to the bit from tick " +
+                                                               std::to_string(divergence->tick) +
+                                                               " on; trocar replay --verify says more"};
+  }
+  std::error_code failure;
+  const auto bytes = std::filesystem::file_size(settings.index, failure);
+  std::printf("%s holds %zu states, %s MB; any moment is at most %s s after one\n", settings.index.c_str(),
+              replay->KnownTicks().size(), FormatNumber(1e-6 * static_cast<double>(bytes), 3).c_str(),
+              FormatNumber(seconds, 3).c_str());
+  return {};
+}
+
+void AddIndex(CLI::App& record, Outcome& outcome) {
+  CLI::App* command = record.add_subcommand(
+      "index", "Replay once and keep saved states beside a recording, so that any moment is found quickly");
+  auto path = std::make_shared<std::string>();
+  auto seconds = std::make_shared<double>(3);
+  auto threads = std::make_shared<int>(1);
+  command->add_option("file", *path, "Recording")->required()->type_name("FILE");
+  command->add_option("--seconds", *seconds, "Between two states [s]")
+      ->check(CLI::Range(0.1, 600.0))
+      ->type_name("S")
+      ->capture_default_str();
+  command->add_option("--threads", *threads, "Of the solver; the result is the same for any number")
+      ->check(CLI::Range(1, 256))
+      ->type_name("T")
+      ->capture_default_str();
+  command->callback(
+      [path, seconds, threads, &outcome] { outcome.status = MakeIndex(*path, *seconds, *threads); });
+}
+
 }  // namespace
 
 void AddRecordCommand(CLI::App& app, Outcome& outcome) {
-  CLI::App* command = app.add_subcommand("record", "Look at a recording, check it, or repair it");
+  CLI::App* command =
+      app.add_subcommand("record", "Look at a recording, check it, repair it, or make seeking in it quick");
   command->require_subcommand(1);
   AddInfo(*command, outcome);
   AddVerify(*command, outcome);
   AddRepair(*command, outcome);
+  AddIndex(*command, outcome);
   command->footer(
       "trocar play and trocar simulate write one with --record FILE.\n"
       "Example: trocar record info attempt.trocar");

@@ -80,7 +80,18 @@ int ParseAndRun(int argc, char** argv) {
   AddPlayCommand(app, outcome);
   AddSimulateCommand(app, outcome);
   AddReplayCommand(app, outcome);
+  AddCoachCommand(app, outcome);
+  AddStudyCommand(app, outcome);
+  AddMetricsCommand(app, outcome);
+  AddReportCommand(app, outcome);
+  AddRatingCommand(app, outcome);
+  AddXapiCommand(app, outcome);
   AddRecordCommand(app, outcome);
+  AddCourseCommand(app, outcome);
+  AddLevelsCommand(app, outcome);
+  AddExamCommand(app, outcome);
+  AddCertificateCommand(app, outcome);
+  AddStoreCommand(app, outcome);
   AddAnatomyCommand(app, outcome);
   AddDevicesCommand(app, outcome);
   AddBenchCommand(app, outcome);

@@ -40,6 +40,20 @@ TEST_F(Schemas, AcceptEveryFileInAssetsAndScenes) {
   EXPECT_EQ(CheckSchemas(""), 0);
 }
 
+TEST_F(Schemas, AcceptMetricsTheirDefinitionsTracesAndTestVectors) {
+  test::TemporaryFolder folder;
+  const auto path = [&](const char* name) { return (folder.Path() / name).string(); };
+  const Printed played = RunTrocar({"simulate", (kRoot / "scenes/demonstration.json").string(), "--ticks",
+                                    "60", "--record", path("a.trocar")});
+  ASSERT_EQ(played.status, 0) << played.err;
+  const Printed measured =
+      RunTrocar({"metrics", path("a.trocar"), "--json", "-o", path("m.json"), "--trace", path("t.json")});
+  ASSERT_EQ(measured.status, 0) << measured.err;
+  EXPECT_EQ(CheckSchemas("'" + path("m.json") + "' '" + path("t.json") + "'"), 0);
+  EXPECT_EQ(CheckSchemas("'" + (kRoot / "docs/metrics.json").string() + "'"), 0);
+  EXPECT_EQ(CheckSchemas((kRoot / "tests/metrics/vectors").string() + "/*.json"), 0);
+}
+
 TEST_F(Schemas, AcceptWhatTheProgramWrites) {
   test::TemporaryFolder folder;
   const fs::path phantom = folder.Path() / "phantom";
@@ -99,6 +113,8 @@ constexpr const char* kPoints = "assets/patients/visible-human-male/control_poin
 constexpr const char* kScene = "scenes/demonstration.json";
 constexpr const char* kMaterial = "assets/materials/liver.json";
 constexpr const char* kTask = "scenes/tasks/object_transport.json";
+constexpr const char* kCourse = "assets/courses/cholecystectomy.json";
+constexpr const char* kLevels = "assets/proficiency/peg_transfer-normal.json";
 constexpr const char* kScript = "scenes/demonstration.script.json";
 
 const Broken kBroken[] = {
@@ -135,6 +151,17 @@ const Broken kBroken[] = {
     {"TaskUnknownTool", kTask, [](Json& j) { j["scene"]["instruments"]["left"]["tool"] = "tongs"; }},
     {"TaskShapeOfNoSize", kTask, [](Json& j) { j["scene"]["objects"][0]["shapes"][0].erase("kind"); }},
     {"TaskParameterMisspelt", kTask, [](Json& j) { j["rules"]["time_limit_s"] = "{Limit"; }},
+    {"TaskLevelScoreOfNothing", kTask, [](Json& j) { j["level_scores"]["easy"] = 0; }},
+    {"CourseStepOfNothing", kCourse, [](Json& j) { j["steps"][0].erase("operation"); }},
+    {"CourseStepOfTwoThings", kCourse, [](Json& j) { j["steps"][0]["task"] = "wire_run"; }},
+    {"CourseWithoutBriefing", kCourse, [](Json& j) { j["steps"][0].erase("briefing"); }},
+    {"CourseUnknownMoment", kCourse, [](Json& j) { j["steps"][0]["until"] = "lunch"; }},
+    {"CourseThresholdBothWays", kCourse, [](Json& j) { j["steps"][0]["own_thresholds"][0]["at_least"] = 0; }},
+    {"CourseNoPass", kCourse, [](Json& j) { j["steps"][0]["consecutive_passes"] = 0; }},
+    {"CourseMisspelt", kCourse, [](Json& j) { j["steps"][0]["due_day"] = 3; }},
+    {"LevelsWithoutASource", kLevels, [](Json& j) { j["thresholds"][0].erase("source"); }},
+    {"LevelsOfNoPurpose", kLevels, [](Json& j) { j["thresholds"][0]["purpose"] = "haste"; }},
+    {"LevelsWithoutThreshold", kLevels, [](Json& j) { j["thresholds"] = Json::array(); }},
     {"ScriptFirstKeyWithOneHand", kScript, [](Json& j) { j["keys"][0].erase("right"); }},
     {"ScriptWithoutKeys", kScript, [](Json& j) { j["keys"] = Json::array(); }},
     {"ScriptJawTooWide", kScript, [](Json& j) { j["keys"][1]["left"]["jaw_deg"] = 120; }},

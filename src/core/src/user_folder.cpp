@@ -31,4 +31,8 @@ std::filesystem::path FindUserDataFolder() {
   return FindFolder("TROCAR_DATA_HOME", "XDG_DATA_HOME", ".local/share");
 }
 
+std::filesystem::path FindCacheFolder() {
+  return FindFolder("TROCAR_CACHE_HOME", "XDG_CACHE_HOME", ".cache");
+}
+
 }  // namespace trocar::core

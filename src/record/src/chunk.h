@@ -65,10 +65,4 @@ inline std::string_view TextOf(std::span<const std::byte> bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-/// A saved state in fewer bytes (zstd, byte planes apart): alone, or with what it has in common with an earlier one left out.
-/// \param base  empty, or that earlier one
-std::vector<std::byte> CompressState(std::span<const std::byte> state, std::span<const std::byte> base);
-/// \return nothing where the bytes are none of CompressState's
-std::vector<std::byte> ExpandState(std::span<const std::byte> bytes, std::span<const std::byte> base);
-
 }  // namespace trocar::record

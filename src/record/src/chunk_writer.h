@@ -26,6 +26,7 @@ class ChunkWriter {
   core::Status Sync();
 
   const std::filesystem::path& Path() const { return path_; }
+  std::uint64_t FileId() const { return file_id_; }
   std::uint64_t Bytes() const { return written_ + waiting_.size(); }
   /// How many files there have been.
   int FileCount() const { return file_count_; }

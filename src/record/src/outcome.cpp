@@ -18,7 +18,7 @@ constexpr double kMillilitre = 1e6;  // per m^3
 ordered_json OutcomeOf(const scene::Task& task, const scene::TaskSnapshot& now) {
   ordered_json json = {{"phase", scene::PhaseName(now.phase)},
                        {"task_seconds", now.time},
-                       {"score", now.score},
+                       {"score", scene::CalcShownScore(task, now)},
                        {"penalty", now.penalty},
                        {"goals", ordered_json::array()},
                        {"errors", ordered_json::object()}};

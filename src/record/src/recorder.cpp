@@ -10,6 +10,8 @@
 #include <ctime>
 #include <mutex>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <system_error>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -17,6 +19,8 @@
 #include "chunk.h"
 #include "chunk_writer.h"
 #include "recording_json.h"
+#include "state_coder.h"
+#include "state_index.h"
 #include "trocar/core/log.h"
 #include "trocar/core/real_time.h"
 #include "trocar/core/version.h"
@@ -32,7 +36,7 @@ using simulation::Simulation;
 constexpr std::size_t kRingSize = 4096;
 constexpr auto kWritePeriod = std::chrono::milliseconds(50);
 constexpr double kChunkSeconds = 0.1;
-constexpr std::size_t kStateSlots = 2;
+constexpr std::size_t kStateSlots = 3;
 /// A keyframe that stands alone comes first in each group; the others are told apart from it.
 constexpr int kKeyframeGroup = 12;
 constexpr double kLowSeconds = 60, kLowShare = 0.05;
@@ -43,9 +47,11 @@ struct Entry {
   std::uint64_t tick = 0;
   std::uint64_t hash = 0;
   bool has_hash = false;
-  int state_slot = -1;  // a keyframe after this tick
+  int state_slot = -1;       // the state after this tick ...
+  bool is_keyframe = false;  // ... for the recording, or else for the index beside it
   std::uint8_t event_count = 0;
   std::uint8_t error_count = 0;
+  std::optional<training::Phase> phase;  // of an operation, where another one began
   std::array<scene::Event, simulation::kEventRing> events{};
   std::array<scene::TaskError, 4> errors{};  // of the task's rules
 };
@@ -86,6 +92,7 @@ struct Recorder::Content {
         first_tick(simulation.GetSnapshot().tick),
         hash_ticks(TicksIn(settings.hash_seconds, tick_seconds)),
         keyframe_ticks(TicksIn(settings.keyframe_seconds, tick_seconds)),
+        index_ticks(TicksIn(settings.index_seconds, tick_seconds)),
         chunk_ticks(TicksIn(kChunkSeconds, tick_seconds)),
         ring(kRingSize) {}
 
@@ -94,22 +101,26 @@ struct Recorder::Content {
   const scene::Scene& scene;
   double tick_seconds;
   std::uint64_t first_tick;
-  std::uint64_t hash_ticks, keyframe_ticks, chunk_ticks;
+  std::uint64_t hash_ticks, keyframe_ticks, index_ticks, chunk_ticks;
 
   // from the simulation's thread to the writer
   std::vector<Entry> ring;
   std::atomic<std::uint64_t> head{0}, tail{0};  // entries put and taken
   std::array<std::vector<std::byte>, kStateSlots> states;
-  std::array<std::atomic<bool>, kStateSlots> is_state_free{true, true};
+  std::array<std::atomic<bool>, kStateSlots> is_state_free{true, true, true};
   std::atomic<bool> has_overrun{false};
   // of the simulation's thread
-  std::uint64_t seen_events = 0, seen_errors = 0, next_keyframe = 0;
+  std::uint64_t seen_events = 0, seen_errors = 0, next_keyframe = 0, next_index = 0;
+  training::Phase seen_phase{};
 
   // of the writing thread
   InputEncoder encoder;
   bool is_new_row = true;
-  std::vector<std::byte> group_base, content_bytes;
+  std::vector<std::byte> content_bytes;
+  std::optional<StatePlanes> group_base;  // of the keyframes
   int in_group = 0;
+  std::filesystem::path index_path;
+  std::optional<StateIndex> index;  // none where none is wanted, or the recording has gone to another file
   std::uint64_t first_of_chunk = 0;
   std::uint32_t in_chunk = 0;
 
@@ -124,10 +135,12 @@ struct Recorder::Content {
 
   void NoteEvents(const simulation::Snapshot& now, Entry& entry);
   int TakeStateSlot();
+  void SaveState(const Simulation& simulation, Entry& entry);
   void Run();
   void WriteEntries();
   void CloseChunk();
   void WriteKeyframe(const Entry& entry);
+  void WriteState(const Entry& entry);
   void WriteEvents(const Entry& entry);
   bool WriteMarks();
   void SyncAndTell();
@@ -146,6 +159,8 @@ void Recorder::Content::NoteEvents(const simulation::Snapshot& now, Entry& entry
   for (std::uint64_t n = std::max(seen_errors, first); n < now.task.error_count; ++n)
     entry.errors[entry.error_count++] = now.task.last_errors[n % ring_size];
   seen_errors = now.task.error_count;
+  entry.phase.reset();
+  if (scene.operation && now.operation.phase != seen_phase) entry.phase = seen_phase = now.operation.phase;
 }
 
 int Recorder::Content::TakeStateSlot() {
@@ -156,6 +171,24 @@ int Recorder::Content::TakeStateSlot() {
     }
   }
   return -1;
+}
+
+/// A keyframe or a state of the index, where one is due.
+void Recorder::Content::SaveState(const Simulation& simulation, Entry& entry) {
+  entry.state_slot = -1;
+  entry.is_keyframe = keyframe_ticks != 0 && entry.tick >= next_keyframe;
+  const bool is_index = index_ticks != 0 && entry.tick >= next_index;
+  if (!entry.is_keyframe && !is_index) return;
+  entry.state_slot = TakeStateSlot();
+  // where nobody waits, so that the same attempt gives the same bytes however slow the disk
+  while (entry.state_slot < 0 && settings.waits && !has_failed.load()) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    entry.state_slot = TakeStateSlot();
+  }
+  if (entry.state_slot < 0) return;
+  simulation.Save(states[static_cast<std::size_t>(entry.state_slot)]);
+  if (entry.is_keyframe) next_keyframe = entry.tick + keyframe_ticks;
+  if (is_index) next_index = entry.tick + index_ticks;
 }
 
 void Recorder::Content::CloseChunk() {
@@ -171,15 +204,25 @@ void Recorder::Content::CloseChunk() {
 
 void Recorder::Content::WriteKeyframe(const Entry& entry) {
   CloseChunk();
-  auto& state = states[static_cast<std::size_t>(entry.state_slot)];
-  if (in_group == 0) group_base.clear();
-  writer.Put(ChunkKind::kKeyframe, entry.tick, CompressState(state, group_base), false);
-  if (in_group == 0) group_base = state;
+  const auto& state = states[static_cast<std::size_t>(entry.state_slot)];
+  if (in_group == 0) group_base.reset();
+  writer.Put(ChunkKind::kKeyframe, entry.tick, CompressState(state, group_base ? &*group_base : nullptr),
+             false);
+  if (in_group == 0) group_base.emplace(state);
   in_group = (in_group + 1) % kKeyframeGroup;
-  is_state_free[static_cast<std::size_t>(entry.state_slot)].store(true, std::memory_order_release);
   // whoever begins at a keyframe needs no input before it
   encoder.Reset();
   is_new_row = true;
+}
+
+void Recorder::Content::WriteState(const Entry& entry) {
+  const auto slot = static_cast<std::size_t>(entry.state_slot);
+  if (entry.is_keyframe) {
+    WriteKeyframe(entry);
+  } else if (index) {
+    index->Add(entry.tick, states[slot]);
+  }
+  is_state_free[slot].store(true, std::memory_order_release);
 }
 
 void Recorder::Content::WriteEvents(const Entry& entry) {
@@ -187,6 +230,7 @@ void Recorder::Content::WriteEvents(const Entry& entry) {
   for (std::uint8_t i = 0; i < entry.event_count; ++i) list.push_back(EventJson(entry.events[i]));
   for (std::uint8_t i = 0; i < entry.error_count; ++i)
     list.push_back(TaskErrorJson(*scene.task, entry.tick, entry.errors[i]));
+  if (entry.phase) list.push_back(PhaseJson(entry.tick, *entry.phase));
   const std::string text = list.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
   writer.Put(ChunkKind::kEvents, entry.tick, BytesOf(text));
 }
@@ -208,11 +252,11 @@ void Recorder::Content::WriteEntries() {
       for (std::size_t i = 0; i < hash.size(); ++i) hash[i] = static_cast<std::byte>(entry.hash >> (8 * i));
       writer.Put(ChunkKind::kHash, entry.tick, hash);
     }
-    if (entry.event_count > 0 || entry.error_count > 0) {
+    if (entry.event_count > 0 || entry.error_count > 0 || entry.phase) {
       CloseChunk();
       WriteEvents(entry);
     }
-    if (entry.state_slot >= 0) WriteKeyframe(entry);
+    if (entry.state_slot >= 0) WriteState(entry);
     tail.store(taken + 1, std::memory_order_release);
   }
   CloseChunk();
@@ -232,8 +276,15 @@ void Recorder::Content::SyncAndTell() {
   const std::uint64_t written = tail.load(std::memory_order_relaxed);
   const int files = writer.FileCount();
   const core::Status synced = writer.Sync();
-  if (writer.FileCount() != files)
+  if (writer.FileCount() != files) {
     in_group = 0;  // the keyframe that others are told apart from stayed behind
+    if (index) {
+      // it is of the file that is given up
+      index.reset();
+      std::error_code ignored;
+      std::filesystem::remove(index_path, ignored);
+    }
+  }
   const Space space = writer.GetSpace();
   const std::lock_guard lock(mutex);
   status.path = writer.Path();
@@ -296,8 +347,9 @@ core::Result<std::unique_ptr<Recorder>> Recorder::Start(const std::filesystem::p
   // memory for all saved states, so that Add allocates as good as never
   for (auto& state : content->states) simulation.Save(state);
   if (description.first_tick > 0) {
-    content->writer.Put(ChunkKind::kKeyframe, description.first_tick, CompressState(content->states[0], {}));
-    content->group_base = content->states[0];
+    content->writer.Put(ChunkKind::kKeyframe, description.first_tick,
+                        CompressState(content->states[0], nullptr));
+    content->group_base.emplace(content->states[0]);
     content->in_group = 1;
   }
   if (const core::Status synced = content->writer.Sync(); !synced.ok()) return synced.error();
@@ -305,7 +357,17 @@ core::Result<std::unique_ptr<Recorder>> Recorder::Start(const std::filesystem::p
   content->status.bytes = content->writer.Bytes();
   content->seen_events = simulation.GetSnapshot().event_count;
   content->seen_errors = simulation.GetSnapshot().task.error_count;
+  content->seen_phase = simulation.GetSnapshot().operation.phase;
   content->next_keyframe = description.first_tick + content->keyframe_ticks;
+  content->next_index = description.first_tick + content->index_ticks;
+  if (content->index_ticks > 0) {
+    content->index_path = IndexPathOf(content->writer.Path());
+    content->index.emplace(StateIndexSettings{content->index_path, content->writer.FileId(),
+                                              description.model, content->settings.index_bytes});
+    // one that cannot be written is left to whoever replays
+    if (!content->index->IsOnDisk()) content->index.reset();
+  }
+  if (!content->index) content->index_ticks = 0;
   content->thread = std::thread([c = content.get()] { c->Run(); });
   return std::unique_ptr<Recorder>(new Recorder(std::move(content)));
 }
@@ -336,19 +398,7 @@ void Recorder::Add(const Input& input, const Simulation& simulation) noexcept {
   c.NoteEvents(now, entry);
   entry.has_hash = c.hash_ticks != 0 && now.tick % c.hash_ticks == 0;
   if (entry.has_hash) entry.hash = simulation.Hash();
-  entry.state_slot = -1;
-  if (c.keyframe_ticks != 0 && now.tick >= c.next_keyframe) {
-    entry.state_slot = c.TakeStateSlot();
-    // where nobody waits, so that the same attempt gives the same bytes however slow the disk
-    while (entry.state_slot < 0 && c.settings.waits && !c.has_failed.load()) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
-      entry.state_slot = c.TakeStateSlot();
-    }
-    if (entry.state_slot >= 0) {
-      simulation.Save(c.states[static_cast<std::size_t>(entry.state_slot)]);
-      c.next_keyframe = now.tick + c.keyframe_ticks;
-    }
-  }
+  c.SaveState(simulation, entry);
   c.head.store(put + 1, std::memory_order_release);
 }
 

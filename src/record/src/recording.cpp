@@ -8,6 +8,7 @@
 
 #include "chunk.h"
 #include "recording_json.h"
+#include "state_coder.h"
 #include "trocar/core/safe_file.h"
 #include "trocar/core/user_folder.h"
 #include "trocar/record/input_codec.h"
@@ -44,9 +45,14 @@ Recording::~Recording() = default;
 
 core::Result<std::vector<std::byte>> Recording::ReadKeyframe(std::size_t index) const {
   const Keyframe& keyframe = keyframes_[index];
-  std::vector<std::byte> base, state;
-  if (keyframe.base != index) base = ExpandState(keyframes_[keyframe.base].bytes, {});
-  state = ExpandState(keyframe.bytes, base);
+  std::vector<std::byte> state;
+  if (keyframe.base != index) {
+    const std::vector<std::byte> base = ExpandState(keyframes_[keyframe.base].bytes, nullptr);
+    const StatePlanes planes(base);
+    state = base.empty() ? base : ExpandState(keyframe.bytes, &planes);
+  } else {
+    state = ExpandState(keyframe.bytes, nullptr);
+  }
   if (state.empty()) return Refuse("a keyframe of the recording cannot be expanded; seek to before it");
   return state;
 }
@@ -101,7 +107,7 @@ class RecordingReader {
       case ChunkKind::kKeyframe: {
         if (chunk.tick != recording_.LastTick()) return "a keyframe is out of place";
         auto& frames = recording_.keyframes_;
-        const bool has_base = content.size() >= 16 && content[8] == std::byte{1};
+        const bool has_base = HasBase(content);
         if (!has_base) group_base_ = frames.size();
         if (has_base && group_base_ >= frames.size())
           return "a keyframe lacks the one that it is told apart from";
@@ -158,6 +164,7 @@ core::Result<Recording> ReadRecording(std::span<const std::byte> bytes, const st
   if (header.checksum != CalcHeaderChecksum(header))
     return Refuse(name + " is damaged in its header; take another copy of it");
   Recording recording;
+  recording.file_id = header.file_id;
   recording.file_bytes = bytes.size();
   recording.damage = RecordingReader(recording).Read(bytes);
   if (recording.description.name.empty()) {

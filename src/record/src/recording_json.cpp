@@ -45,18 +45,23 @@ std::string Dump(const ordered_json& json) {
 }  // namespace
 
 std::string WriteDescription(const Description& d) {
-  return Dump({{"kind", kKinds[static_cast<std::size_t>(d.kind)]},
-               {"name", d.name},
-               {"level", d.level},
-               {"patient", d.patient},
-               {"seed", d.seed},
-               {"tick_seconds", d.tick_seconds},
-               {"model", core::HashText(d.model)},
-               {"first_tick", d.first_tick},
-               {"player", d.player},
-               {"program", d.program},
-               {"compiler", d.compiler},
-               {"started", d.started}});
+  ordered_json json = {{"kind", kKinds[static_cast<std::size_t>(d.kind)]},
+                       {"name", d.name},
+                       {"level", d.level},
+                       {"patient", d.patient},
+                       {"seed", d.seed},
+                       {"tick_seconds", d.tick_seconds},
+                       {"model", core::HashText(d.model)},
+                       {"first_tick", d.first_tick},
+                       {"player", d.player},
+                       {"program", d.program},
+                       {"compiler", d.compiler},
+                       {"started", d.started}};
+  if (!d.branched_from.empty()) {
+    json["branched"] = {
+        {"from", d.branched_from}, {"id", core::HashText(d.branched_id)}, {"tick", d.branched_tick}};
+  }
+  return Dump(json);
 }
 
 bool ReadDescription(std::string_view text, Description& d) {
@@ -71,6 +76,11 @@ bool ReadDescription(std::string_view text, Description& d) {
   const auto tick_seconds = json.find("tick_seconds");
   if (tick_seconds == json.end() || !tick_seconds->is_number()) return false;
   d.tick_seconds = tick_seconds->get<double>();
+  if (const auto branched = json.find("branched"); branched != json.end()) {
+    if (!branched->is_object() || !ReadText(*branched, "from", d.branched_from) ||
+        !ReadHex(*branched, "id", d.branched_id) || !ReadCount(*branched, "tick", d.branched_tick))
+      return false;
+  }
   return d.tick_seconds > 0 && std::isfinite(d.tick_seconds) && ReadText(json, "name", d.name) &&
          ReadText(json, "level", d.level) && ReadText(json, "patient", d.patient) &&
          ReadCount(json, "seed", d.seed) && ReadHex(json, "model", d.model) &&
@@ -104,6 +114,10 @@ ordered_json EventJson(const scene::Event& event) {
 ordered_json TaskErrorJson(const scene::Task& task, std::uint64_t tick, const scene::TaskError& error) {
   const scene::ErrorRule& rule = task.errors[static_cast<std::size_t>(error.rule)];
   return {{"tick", tick}, {"kind", rule.name}, {"about", rule.about}, {"hand", error.hand}, {"error", true}};
+}
+
+ordered_json PhaseJson(std::uint64_t tick, training::Phase phase) {
+  return {{"tick", tick}, {"kind", kPhaseKind}, {"about", training::NameOf(phase)}, {"hand", -1}};
 }
 
 bool ReadEvents(std::string_view text, std::vector<EventMark>& events) {

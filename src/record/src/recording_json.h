@@ -9,6 +9,7 @@
 #include "trocar/record/recording.h"
 #include "trocar/scene/event.h"
 #include "trocar/scene/task.h"
+#include "trocar/training/triplet.h"
 
 namespace trocar::record {
 
@@ -25,6 +26,8 @@ bool ReadEnding(std::string_view text, Ending& ending);
 nlohmann::ordered_json EventJson(const scene::Event& event);
 nlohmann::ordered_json TaskErrorJson(const scene::Task& task, std::uint64_t tick,
                                      const scene::TaskError& error);
+/// A phase of an operation that begins.
+nlohmann::ordered_json PhaseJson(std::uint64_t tick, training::Phase phase);
 /// Appends a list of them.
 bool ReadEvents(std::string_view text, std::vector<EventMark>& events);
 

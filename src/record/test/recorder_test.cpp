@@ -9,7 +9,9 @@
 #include <thread>
 
 #include "recorded_scene.h"
+#include "trocar/core/safe_file.h"
 #include "trocar/core/version.h"
+#include "trocar/record/replay.h"
 
 namespace trocar::record {
 namespace {
@@ -105,6 +107,60 @@ TEST_F(RecorderTest, GoesOnFromTheMiddle) {
   EXPECT_EQ(*recording->ReadKeyframe(0), start);
   ASSERT_EQ(recording->marks.size(), 1u);
   EXPECT_EQ(recording->marks[0].tick, 100u);
+}
+
+TEST_F(RecorderTest, SaysFromWhichRecordingItBranched) {
+  auto simulation = Make();
+  Description description = Describe();
+  description.branched_from = "first.trocar";
+  description.branched_id = 0x1234567890abcdef;
+  description.branched_tick = 77;
+  auto recorder = Recorder::Start(File(), description, simulation, Settings());
+  ASSERT_TRUE(recorder.ok());
+  ASSERT_TRUE((*recorder)->Finish(simulation).ok());
+  const auto recording = ReadRecording(File());
+  ASSERT_TRUE(recording.ok());
+  EXPECT_EQ(recording->description.branched_from, "first.trocar");
+  EXPECT_EQ(recording->description.branched_id, 0x1234567890abcdefu);
+  EXPECT_EQ(recording->description.branched_tick, 77u);
+  EXPECT_NE(recording->file_id, 0u);
+}
+
+TEST_F(RecorderTest, KeepsAnIndexWhereItIsWanted) {
+  RecorderSettings settings = Settings();
+  settings.index_seconds = 0.1;  // 12 ticks; keyframes every 60
+  Record(200, settings);
+  auto recording = ReadRecording(File());
+  ASSERT_TRUE(recording.ok());
+  EXPECT_THAT(recording->KeyframeTicks(), testing::ElementsAre(60, 120, 180));
+  ReplaySettings replay_settings;
+  replay_settings.index = IndexPathOf(File());
+  auto replay = Replay::Open(std::move(*recording), replay_settings);
+  ASSERT_TRUE(replay.ok());
+  EXPECT_THAT(replay->KnownTicks(), testing::ElementsAre(0, 12, 24, 36, 48, 60, 72, 84, 96, 108, 120, 132,
+                                                         144, 156, 168, 180, 192));
+  ASSERT_TRUE(replay->Seek(200).ok());
+  EXPECT_EQ(replay->GetSimulation().Hash(), hash_);
+  std::filesystem::remove(IndexPathOf(File()));
+  std::filesystem::remove(File());
+  Record(200);
+  EXPECT_FALSE(std::filesystem::exists(IndexPathOf(File()))) << "nobody wants one";
+}
+
+TEST_F(RecorderTest, TrimsIndexesTheOldestFirst) {
+  const auto now = std::filesystem::file_time_type::clock::now();
+  for (int i = 0; i < 4; ++i) {
+    const std::string name = "a" + std::to_string(i) + ".trocar";
+    Write(name.c_str(), "recording");
+    Write((name + ".index").c_str(), std::string(1000, 'x'));
+    std::filesystem::last_write_time(folder_ / (name + ".index"), now - std::chrono::minutes(i));
+  }
+  TrimIndexes(folder_, 2500);
+  for (int i = 0; i < 4; ++i) {
+    const std::string name = "a" + std::to_string(i) + ".trocar";
+    EXPECT_TRUE(std::filesystem::exists(folder_ / name));
+    EXPECT_EQ(std::filesystem::exists(folder_ / (name + ".index")), i < 2) << i;
+  }
 }
 
 TEST_F(RecorderTest, NeverReplacesAFile) {

@@ -7,6 +7,7 @@
 #include <random>
 
 #include "recorded_scene.h"
+#include "trocar/core/safe_file.h"
 #include "trocar/record/outcome.h"
 
 namespace trocar::record {
@@ -116,12 +117,100 @@ TEST_F(ReplayTest, WithoutAnEndingItReplaysWhatIsThere) {
 TEST_F(ReplayTest, SomebodyElseTakesOver) {
   Replay replay = OpenIt();
   ASSERT_TRUE(replay.Seek(250).ok());
-  simulation::Simulation branch = std::move(replay).Branch();
-  EXPECT_EQ(branch.Hash(), hashes_[250]);
-  for (std::uint64_t tick = 250; tick < 300; ++tick) branch.Step(InputOf(tick));
-  EXPECT_EQ(branch.Hash(), hashes_[300]);
-  branch.Step(InputOf(0));
-  EXPECT_NE(branch.Hash(), hashes_[301]);
+  auto branch = replay.Branch(2);
+  ASSERT_TRUE(branch.ok()) << branch.error().Text();
+  EXPECT_EQ(branch->Hash(), hashes_[250]);
+  for (std::uint64_t tick = 250; tick < 300; ++tick) branch->Step(InputOf(tick));
+  EXPECT_EQ(branch->Hash(), hashes_[300]);
+  branch->Step(InputOf(0));
+  EXPECT_NE(branch->Hash(), hashes_[301]);
+  // the replay has stayed where it was
+  EXPECT_EQ(replay.GetSimulation().Hash(), hashes_[250]);
+}
+
+TEST_F(ReplayTest, ASeekThatIsNoLongerWantedEndsAndGoesOnLater) {
+  Replay replay = OpenIt();
+  int asked = 0;
+  ASSERT_TRUE(replay.Seek(59, [&] { return ++asked < 7; }).ok());
+  EXPECT_EQ(replay.Tick(), 7u);
+  ASSERT_TRUE(replay.Seek(59).ok());
+  EXPECT_EQ(replay.GetSimulation().Hash(), hashes_[59]);
+}
+
+TEST_F(ReplayTest, StatesBesideTheRecordingOutliveIt) {
+  ReplaySettings settings;
+  settings.index = IndexPathOf(File());
+  settings.visit_seconds = 0.1;  // 12 ticks
+  {
+    auto replay = Replay::Open(ReadIt(), settings);
+    ASSERT_TRUE(replay.ok());
+    ASSERT_TRUE(replay->Seek(55).ok());
+  }
+  auto replay = Replay::Open(ReadIt(), settings);
+  ASSERT_TRUE(replay.ok());
+  EXPECT_THAT(replay->KnownTicks(), testing::IsSupersetOf({0u, 12u, 24u, 36u, 48u, 60u}));
+  int steps = 0;
+  ASSERT_TRUE(replay->Seek(50, [&] { return ++steps < 1000; }).ok());
+  EXPECT_EQ(steps, 2) << "from the state of tick 48";
+  EXPECT_EQ(replay->GetSimulation().Hash(), hashes_[50]);
+}
+
+TEST_F(ReplayTest, FillsGapsUntilThereAreNone) {
+  Replay replay = OpenIt();
+  auto filler = replay.Another(0);
+  ASSERT_TRUE(filler.ok()) << filler.error().Text();
+  const double seconds = 20 * scene_->tick_seconds;
+  int filled = 0;
+  for (;;) {
+    const auto done = filler->FillGap(250, seconds);
+    ASSERT_TRUE(done.ok());
+    if (!*done) break;
+    if (filled++ == 0)
+      EXPECT_THAT(replay.KnownTicks(), testing::Contains(260u)) << "the gap after tick 250 first";
+  }
+  EXPECT_GT(filled, 10);
+  std::vector<std::uint64_t> ticks = replay.KnownTicks();
+  ticks.push_back(kTicks);
+  for (std::size_t i = 0; i + 1 < ticks.size(); ++i) EXPECT_LE(ticks[i + 1] - ticks[i], 20u);
+  int steps = 0;
+  ASSERT_TRUE(replay.Seek(333, [&] { return ++steps < 1000; }).ok());
+  EXPECT_LE(steps, 20);
+  EXPECT_EQ(replay.GetSimulation().Hash(), hashes_[333]);
+}
+
+TEST_F(ReplayTest, ADamagedStateBesideTheRecordingIsPassedBy) {
+  ReplaySettings settings;
+  settings.index = IndexPathOf(File());
+  settings.visit_seconds = 0.1;
+  {
+    auto replay = Replay::Open(ReadIt(), settings);
+    ASSERT_TRUE(replay.ok());
+    ASSERT_TRUE(replay->Seek(kTicks).ok());
+  }
+  std::string bytes = *core::ReadFile(settings.index);
+  std::mt19937_64 random(3);
+  for (int round = 0; round < 30; ++round) {
+    std::string damaged = bytes;
+    for (int i = 0; i < 4; ++i) damaged[random() % damaged.size()] ^= static_cast<char>(1 + random() % 255);
+    ASSERT_TRUE(core::WriteFile(settings.index, damaged).ok());
+    auto replay = Replay::Open(ReadIt(), settings);
+    ASSERT_TRUE(replay.ok());
+    const std::uint64_t tick = random() % kTicks;
+    ASSERT_TRUE(replay->Seek(tick).ok());
+    ASSERT_EQ(replay->GetSimulation().Hash(), hashes_[tick]) << "round " << round;
+    EXPECT_FALSE(replay->GetDivergence());
+  }
+}
+
+TEST_F(ReplayTest, VerifyingUsesNoStateBesideTheRecording) {
+  ReplaySettings settings;
+  settings.index = IndexPathOf(File());
+  auto replay = Replay::Open(ReadIt(), settings);
+  ASSERT_TRUE(replay.ok());
+  const auto verified = replay->Verify();
+  ASSERT_TRUE(verified.ok());
+  EXPECT_TRUE(verified->IsVerified());
+  EXPECT_EQ(std::filesystem::file_size(settings.index), 32u) << "a header";
 }
 
 }  // namespace

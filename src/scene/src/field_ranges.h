@@ -80,6 +80,7 @@ inline constexpr Range kTimeS{0, 36'000};  ///< ten hours
 // --- task
 inline constexpr Range kParameter{-1e6, 1e6};  ///< its place of use bounds it further
 inline constexpr Range kSpread{0, 1e6};
+inline constexpr Range kLevelScore{1, 100};
 inline constexpr Range kRegionMm{0.1, 1000};  ///< radius_mm, half_mm
 inline constexpr Range kTimeLimitS{1, 36'000};
 inline constexpr Range kPoints{0, 1e6};  ///< points, penalty, points_per_second_left

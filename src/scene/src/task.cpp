@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trocar/scene/task.h"
 
+#include <algorithm>
 #include <cmath>
 #include <iterator>
 
@@ -46,6 +47,11 @@ std::string_view PhaseName(TaskPhase phase) noexcept {
   static constexpr std::string_view kNames[] = {"none",      "ready",     "running",
                                                 "completed", "time_over", "ended"};
   return kNames[static_cast<std::size_t>(phase)];
+}
+
+double CalcShownScore(const Task& task, const TaskSnapshot& now) noexcept {
+  if (!(task.reference_points > 0)) return now.score;
+  return std::min(now.score, 100.0) * task.best_score / 100.0;
 }
 
 void VisitState(core::StateArchive& archive, GoalSnapshot& goal) {

@@ -30,6 +30,18 @@ std::vector<std::string> ReadLevels(const JsonView& root) {
   return levels;
 }
 
+/// What the best shown score of a level is: 100 where the file says nothing.
+double ReadBestScore(const JsonView& root, const std::vector<std::string>& levels, const std::string& level) {
+  if (!root.Has("level_scores")) return 100.0;
+  const JsonView scores = root.Object("level_scores");
+  for (const std::string& key : scores.Keys()) {
+    if (std::find(levels.begin(), levels.end(), key) == levels.end())
+      scores.Complain("there is no level \"" + key + "\" in levels", ErrorCode::kSceneInvalid);
+  }
+  for (const std::string& each : levels) (void)scores.Number(each, range::kLevelScore);
+  return scores.Number(level, range::kLevelScore);
+}
+
 /// Values of the parameters at a level, in alphabetical order; what is random comes from the seed.
 std::map<std::string, double> CalcParameters(const JsonView& root, const std::vector<std::string>& levels,
                                              const TaskChoice& choice) {
@@ -96,7 +108,8 @@ core::Result<Scene> ReadTask(const fs::path& path, const TaskChoice& choice) {
   auto document = core::JsonDocument::Parse(*text, path.string());
   if (!document.ok()) return document.error();
   const JsonView root = document->Root();
-  root.AllowOnly({"format", "version", "name", "about", "levels", "parameters", "scene", "regions", "rules"});
+  root.AllowOnly({"format", "version", "name", "about", "levels", "level_scores", "parameters", "scene",
+                  "regions", "rules"});
   if (root.Integer("version") != 1) root.Complain("version must be 1");
   const std::string name = root.Text("name"), about = root.Text("about");
   auto scene = ReadSceneFields(*document, root.Object("scene"), path.parent_path(), choice.patient_folder);
@@ -104,6 +117,7 @@ core::Result<Scene> ReadTask(const fs::path& path, const TaskChoice& choice) {
   scene->name = name;
   scene->seed = choice.seed;
   Task task = ReadTaskRules(root, *scene);
+  task.best_score = ReadBestScore(root, levels, choice.level);
   if (const auto status = document->Check(); !status.ok()) return status.error();
   task.name = name;
   task.about = about;

@@ -14,6 +14,10 @@ namespace {
 
 /// A shorter attempt is a look at the scene.
 constexpr double kShortestAttempt = 1.0;  // s
+/// Between states of the index, so that any moment is found in two seconds.
+constexpr double kIndexSeconds = 3;
+/// Of the indexes of all attempts; the oldest go first.
+constexpr std::uint64_t kIndexBytes = std::uint64_t{2} << 30;
 
 /// "2026-11-24_225020_peg_transfer.trocar"; a number makes it one that there is not yet.
 std::filesystem::path MakeName(const AttemptKeeping& keeping) {
@@ -33,15 +37,29 @@ std::filesystem::path MakeName(const AttemptKeeping& keeping) {
 }  // namespace
 
 void AttemptKeeper::BeforeStep(const Simulation& simulation, bool is_demonstration) {
-  if (!keeping_ || recorder_ != nullptr || has_failed_) return;
+  if (!keeping_ || recorder_ != nullptr || has_failed_ || is_closed_) return;
   record::Description description = keeping_->description;
   if (is_demonstration) description.player = "the demonstration";
-  auto recorder = record::Recorder::Start(MakeName(*keeping_), std::move(description), simulation);
-  const std::lock_guard lock(mutex_);
+  if (simulation.GetSnapshot().tick != description.branched_tick) {
+    // begun anew: it goes on from nothing
+    description.branched_from.clear();
+    description.branched_id = description.branched_tick = 0;
+  }
+  record::TrimIndexes(keeping_->folder, kIndexBytes);
+  record::RecorderSettings settings;
+  settings.index_seconds = kIndexSeconds;
+  auto recorder =
+      record::Recorder::Start(MakeName(*keeping_), std::move(description), simulation, std::move(settings));
   if (recorder.ok()) {
-    recorder_ = std::move(*recorder);
+    const std::filesystem::path path = (*recorder)->Status().path;
+    {
+      const std::lock_guard lock(mutex_);
+      recorder_ = std::move(*recorder);
+    }
+    if (keeping_->on_begin) keeping_->on_begin(path);
     return;
   }
+  const std::lock_guard lock(mutex_);
   has_failed_ = true;
   last_ = record::RecorderStatus{};
   last_->failure = recorder.error();
@@ -54,11 +72,19 @@ void AttemptKeeper::End(const Simulation& simulation) {
       static_cast<double>(recorder_->Status().added) * simulation.GetScene().tick_seconds < kShortestAttempt;
   if (const core::Status finished = recorder_->Finish(simulation); !finished.ok())
     core::Log(core::LogLevel::kWarning, "the recording is not whole: " + finished.error().Text());
-  const std::lock_guard lock(mutex_);
-  last_ = recorder_->Status();
-  recorder_.reset();
-  std::error_code ignored;
-  if (is_short) std::filesystem::remove(last_->path, ignored);
+  std::filesystem::path path;
+  {
+    const std::lock_guard lock(mutex_);
+    last_ = recorder_->Status();
+    recorder_.reset();
+    path = last_->path;
+  }
+  if (is_short) {
+    std::error_code ignored;
+    std::filesystem::remove(path, ignored);
+    std::filesystem::remove(record::IndexPathOf(path), ignored);
+  }
+  if (keeping_->on_end) keeping_->on_end(path);
 }
 
 std::optional<record::RecorderStatus> AttemptKeeper::Status() const {

@@ -26,6 +26,9 @@ class AttemptKeeper {
   }
   /// The attempt is over: writes its ending. One that was hardly begun is taken away.
   void End(const Simulation& simulation);
+  /// No attempt begins until it is opened again.
+  void Close() { is_closed_ = true; }
+  void Reopen() { is_closed_ = false; }
 
   std::optional<record::RecorderStatus> Status() const;
 
@@ -34,7 +37,7 @@ class AttemptKeeper {
   mutable std::mutex mutex_;  // of what follows, where Status may look
   std::unique_ptr<record::Recorder> recorder_;
   std::optional<record::RecorderStatus> last_;
-  bool has_failed_ = false;
+  bool has_failed_ = false, is_closed_ = false;
 };
 
 }  // namespace trocar::session

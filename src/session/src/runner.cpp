@@ -40,7 +40,7 @@ struct Runner::Content {
   HapticHandsReader haptic_hands;
   core::NewestSlot<Input> input_slot;
   core::NewestSlot<Snapshot> snapshot_slot;
-  std::atomic<bool> is_stopping{false}, is_paused{true}, is_scripted{false};
+  std::atomic<bool> is_stopping{false}, is_paused{true}, is_scripted{false}, is_end_wanted{false};
   std::atomic<int> resets_wanted{0};
   std::atomic<std::uint64_t> ticks{0}, late_ticks{0};
   std::atomic<double> tick_median{0}, tick_p99{0};
@@ -100,10 +100,16 @@ void Runner::Content::Run() {
     if (const int wanted = resets_wanted.load(std::memory_order_acquire); wanted != resets_done) {
       resets_done = wanted;
       attempts.End(simulation);
+      attempts.Reopen();
+      is_end_wanted.store(false, std::memory_order_relaxed);
       simulation.Reset();
       expert.reset();
       is_script_over.store(false, std::memory_order_relaxed);
       Publish();
+    }
+    if (is_end_wanted.exchange(false, std::memory_order_relaxed)) {
+      attempts.End(simulation);
+      attempts.Close();
     }
     if (input_slot.Update()) input = input_slot.Front();
     if (!is_paused.load(std::memory_order_relaxed)) {
@@ -177,6 +183,10 @@ bool Runner::IsPaused() const {
 }
 void Runner::Reset() {
   content_->resets_wanted.fetch_add(1, std::memory_order_release);
+}
+
+void Runner::EndAttempt() {
+  content_->is_end_wanted.store(true);
 }
 
 const Snapshot& Runner::Latest() {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <chrono>
 #include <functional>
 #include <thread>
@@ -99,6 +100,8 @@ TEST_F(RunnerTest, KeepsEachAttemptInAFileThatReplaysToTheBit) {
   // the third was hardly begun
   int count = 0;
   for (const auto& entry : std::filesystem::directory_iterator(kept)) {
+    if (entry.path().extension() != ".trocar") continue;
+    EXPECT_TRUE(std::filesystem::exists(record::IndexPathOf(entry.path())));
     ++count;
     auto recording = record::ReadRecording(entry.path());
     ASSERT_TRUE(recording.ok()) << recording.error().Text();
@@ -112,6 +115,36 @@ TEST_F(RunnerTest, KeepsEachAttemptInAFileThatReplaysToTheBit) {
     EXPECT_TRUE(verified->IsVerified());
   }
   EXPECT_EQ(count, 2);
+}
+
+TEST_F(RunnerTest, EndsAnAttemptAndRecordsNoMoreUntilTheReset) {
+  const auto kept = folder_ / "attempts";
+  AttemptKeeping keeping{kept, {}};
+  keeping.description.name = (folder_ / "scene.json").string();
+  std::atomic<int> begun{0}, ended{0};
+  keeping.on_begin = [&](const std::filesystem::path& path) {
+    begun += path.extension() == ".trocar" ? 1 : 0;
+  };
+  keeping.on_end = [&](const std::filesystem::path& path) { ended += path.extension() == ".trocar" ? 1 : 0; };
+  {
+    Runner runner(MakeSimulation(), nullptr, keeping);
+    runner.SetPaused(false);
+    ASSERT_TRUE(Eventually([&] { return runner.Latest().tick > 140; }));
+    EXPECT_EQ(begun.load(), 1);
+    EXPECT_EQ(ended.load(), 0);
+    runner.EndAttempt();
+    ASSERT_TRUE(Eventually([&] { return ended.load() == 1; }));
+    const auto path = runner.RecordingStatus().value().path;
+    const auto recording = record::ReadRecording(path);
+    ASSERT_TRUE(recording.ok()) << recording.error().Text();
+    EXPECT_TRUE(recording->ending.has_value()) << "it is whole while the simulation goes on";
+    const auto tick = runner.Latest().tick;
+    ASSERT_TRUE(Eventually([&] { return runner.Latest().tick > tick + 100; }));
+    EXPECT_EQ(begun.load(), 1) << "nothing more is recorded";
+    runner.Reset();
+    ASSERT_TRUE(Eventually([&] { return begun.load() == 2; }));
+  }
+  EXPECT_EQ(ended.load(), 2);
 }
 
 TEST_F(RunnerTest, GoesOnWhereAttemptsCannotBeKept) {

@@ -32,6 +32,7 @@ namespace {
 
 using geometry::Triangle;
 using geometry::TriangleMesh;
+using math::Pose;
 using math::Vec3;
 using render::Material;
 using scene::SurfaceInfo;
@@ -40,6 +41,8 @@ using simulation::Snapshot;
 constexpr double kOcclusionReach = 0.030;  // m; farther folds cast no soft shade
 constexpr double kSmallestForce = 0.02;    // N; below, an arrow would only flicker
 constexpr double kLongestArrow = 0.045;    // m
+constexpr double kPathWidth = 0.0007;      // m
+constexpr double kGhostWidth = 0.0014, kGhostJaw = 0.018, kGhostShaft = 0.15;  // m
 
 /// Ambient occlusion of a surface that will move: averaged over neighbours and never dark, because where it lies
 /// against another organ at rest it may later be pulled free.
@@ -81,6 +84,7 @@ struct LaparoscopeView::Content {
   BandView bands;
   double light_scale = 1;
   render::Frame frame;
+  Overlay overlay;
   std::array<Vec3, scene::kHandCount> forces, tips;
 
   explicit Content(render::Renderer made) : renderer(std::move(made)) {}
@@ -215,6 +219,26 @@ struct LaparoscopeView::Content {
   }
 };
 
+std::vector<Trail> MakePathTrails(std::span<const Vec3> left, std::span<const Vec3> right) {
+  return {{{left.begin(), left.end()}, Material::kBlueRubber, kPathWidth},
+          {{right.begin(), right.end()}, Material::kYellowRubber, kPathWidth}};
+}
+
+std::vector<Trail> MakeGhosts(const Snapshot& other) {
+  std::vector<Trail> ghosts;
+  for (const simulation::InstrumentSnapshot& now : other.instruments) {
+    const Pose& X = now.X_world_tool;
+    ghosts.push_back(
+        {{X * Vec3{0, 0, kGhostJaw}, X * Vec3{0, 0, kGhostShaft}}, Material::kWhitePlastic, kGhostWidth});
+    const double half = 0.5 * now.joints.jaw;
+    for (const double side : {-1.0, 1.0}) {
+      const Vec3 p_tool_end{0, side * kGhostJaw * std::sin(half), kGhostJaw * (1 - std::cos(half))};
+      ghosts.push_back({{X * Vec3{0, 0, kGhostJaw}, X * p_tool_end}, Material::kWhitePlastic, kGhostWidth});
+    }
+  }
+  return ghosts;
+}
+
 LaparoscopeView::LaparoscopeView(std::unique_ptr<Content> content) : content_(std::move(content)) {}
 LaparoscopeView::LaparoscopeView(LaparoscopeView&&) noexcept = default;
 LaparoscopeView& LaparoscopeView::operator=(LaparoscopeView&&) noexcept = default;
@@ -256,6 +280,9 @@ void LaparoscopeView::SetOptions(const ViewOptions& options) {
 const ViewOptions& LaparoscopeView::GetOptions() const {
   return content_->options;
 }
+void LaparoscopeView::SetOverlay(Overlay overlay) {
+  content_->overlay = std::move(overlay);
+}
 const render::Frame& LaparoscopeView::GetFrame() const {
   return content_->frame;
 }
@@ -296,7 +323,16 @@ void LaparoscopeView::Draw(int width, int height) {
   const std::size_t foreground = c.frame.surfaces.size();
   if (c.options.has_background)
     c.frame.surfaces.insert(c.frame.surfaces.end(), c.background.begin(), c.background.end());
+  const std::size_t fibres = c.frame.fibres.size();
+  for (const Trail& trail : c.overlay.trails) {
+    for (std::size_t i = 0; i + 1 < trail.points.size(); ++i)
+      c.frame.fibres.push_back({trail.points[i], trail.points[i + 1], trail.width, 0, trail.material, 0});
+  }
+  const Pose X_world_laparoscope = c.frame.camera.X_world_camera;
+  if (c.overlay.X_world_camera) c.frame.camera.X_world_camera = *c.overlay.X_world_camera;
   c.renderer.Draw(c.frame, width, height);
+  c.frame.camera.X_world_camera = X_world_laparoscope;
+  c.frame.fibres.resize(fibres);
   c.frame.surfaces.resize(foreground);
 }
 

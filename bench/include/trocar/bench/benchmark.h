@@ -15,8 +15,10 @@
 namespace trocar::bench {
 
 struct BenchmarkOptions {
-  int threads = 1;  ///< of what can use more than one
-  int repeats = 5;  ///< the quickest counts
+  int threads = 1;         ///< of what can use more than one
+  int repeats = 5;         ///< the quickest counts
+  int attempts = 100'000;  ///< of the store
+  std::string url;  ///< an empty database for the store; empty: a SQLite file for the time of the benchmark
 };
 
 struct BenchmarkCase {
@@ -52,7 +54,9 @@ core::Result<BenchmarkResult> RunAnatomyBenchmark(const BenchmarkOptions& option
 core::Result<BenchmarkResult> RunCollisionBenchmark(const BenchmarkOptions& options);
 core::Result<BenchmarkResult> RunContoursBenchmark(const BenchmarkOptions& options);
 core::Result<BenchmarkResult> RunHapticsBenchmark(const BenchmarkOptions& options);
+core::Result<BenchmarkResult> RunRecordingBenchmark(const BenchmarkOptions& options);
 core::Result<BenchmarkResult> RunStateBenchmark(const BenchmarkOptions& options);
+core::Result<BenchmarkResult> RunStoreBenchmark(const BenchmarkOptions& options);
 core::Result<BenchmarkResult> RunTissueBenchmark(const BenchmarkOptions& options);
 core::Result<BenchmarkResult> RunTissueCudaBenchmark(const BenchmarkOptions& options);
 

@@ -21,6 +21,10 @@ struct HandSkill {
   double aim_error = 0;    ///< of a reach's end, the most along each axis [m]
   double jaw_rate = 2.5;   ///< [rad/s]
   double spin_rate = 3.0;  ///< [rad/s]
+  /// Share of a reach by which it first goes past its end, 6 mm at most [-], >= 0.
+  double overshoot = 0;
+  /// Share of a reach by which its path bulges, to a side that is chosen anew each time; short ones do not [-], >= 0.
+  double wander = 0;
 };
 
 /// One tool in its trocar. Verbs begin something; Step goes on with it.
@@ -53,6 +57,7 @@ class HandMotion {
     double frequency, phase;
   };
   Vec3 CalcTremor() const;
+  void BeginReach(const Vec3& to, double speed);
 
   Vec3 p_world_port_;
   HandSkill skill_;
@@ -60,6 +65,10 @@ class HandMotion {
   std::array<std::array<Sine, kSines>, 3> tremor_;
   double time_ = 0;
   Vec3 from_, to_, tip_;
+  Vec3 aim_;              // where the reach ends that first went past it
+  Vec3 bulge_;            // of the path, in its middle [m]
+  double speed_ = 0;      // of the reach [m/s]
+  bool is_past_ = false;  // on the way past the aim
   double reach_time_ = 0, reach_duration_ = 0;
   double spin_, spin_goal_, jaw_, jaw_goal_;
 };

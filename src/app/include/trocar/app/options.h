@@ -25,7 +25,15 @@ struct Options {
   std::string haptics;  ///< haptic device; empty: none
   std::filesystem::path haptic_record;  ///< what force feedback did, written at the end; empty: none
   std::filesystem::path recordings;     ///< folder in which every attempt is kept; empty: none is
-  int igtl_port = -1;                   ///< viewers over OpenIGTLink may connect here; 0: any port, -1: none
+  std::filesystem::path replay;         ///< recording to play in place of a simulation; empty: none
+  std::filesystem::path replay_beside;  ///< with `replay`: another one beside it; empty: none
+  double replay_at = 0;                 ///< with `replay`: moment at which it begins [s]
+  std::string store;    ///< where attempts go, as store::FindPlace reads it; empty: the person's own
+  std::string trainee;  ///< who operates: name or pseudonym; empty: nobody in particular
+  std::string
+      page;  ///< open the training centre at "history", "courses", "group" or "exam"; empty: the simulator
+  std::filesystem::path exam;  ///< with `page` "exam": sealed file to open; empty: none
+  int igtl_port = -1;          ///< viewers over OpenIGTLink may connect here; 0: any port, -1: none
   bool is_fullscreen = false;
   bool is_demonstration = false;  ///< start with the script moving both hands
   gui::RunOptions run;            ///< its time is simulated

@@ -2,7 +2,10 @@
 /// \file scene_choice.h  Which scene the simulator window plays: a file, a training task or an operation, by its name.
 #pragma once
 
+#include <string>
+
 #include "trocar/app/options.h"
+#include "trocar/centre/course_page.h"
 #include "trocar/record/recording.h"
 #include "trocar/simulation/simulation.h"
 
@@ -17,7 +20,15 @@ core::Result<scene::Scene> ReadChosenScene(const Options& options);
 /// Likewise, ready to run.
 core::Result<simulation::Simulation> MakeChosenSimulation(const Options& options);
 
+/// What a step of a course or an exam asks for, where it begins: at the first tick, or where the expert has left an operation.
+/// \return the scene's error; kStateInvalid where the state is of another scene
+core::Result<simulation::Simulation> MakeStartedSimulation(const Options& options,
+                                                           const centre::Start& start);
+
 /// What a recording of it is of. \param scene  as chosen
 record::Description DescribeChosenScene(const Options& options, const scene::Scene& scene);
+
+/// Who holds the instruments: "mouse and keyboard", a device's name.
+std::string DescribeHands(const Options& options);
 
 }  // namespace trocar::app

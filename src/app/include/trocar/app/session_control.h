@@ -29,6 +29,13 @@ class SessionControl {
   static core::Result<std::unique_ptr<SessionControl>> Make(
       simulation::Simulation simulation, std::optional<session::AttemptKeeping> keeping = {});
 
+  /// For a simulation that stands in the middle of an attempt: the hands rest where the tools stand, tools and settings are
+  /// as they were, no pedal is pressed.
+  /// \param last  input of the tick before
+  void GoOnFrom(const scene::Input& last);
+  /// The scripted expert goes on from here, where SetDemonstration() would begin anew.
+  void LetExpertGoOn();
+
   /// Lets a device hold the hands that it sees; the mouse keeps the others. Where the device is lost the simulation is
   /// paused, and stays so when it comes back until the person starts it.
   /// \param driver   of device::kChannelCount channels, unconfigured
@@ -65,6 +72,8 @@ class SessionControl {
   bool IsPaused() const { return runner_.IsPaused(); }
   /// Back to the first tick, hands at home; keeps running or paused, and the settings.
   void Reset();
+  /// The attempt is over: what is recorded ends here, and nothing more is until the next reset.
+  void EndAttempt() { runner_.EndAttempt(); }
   /// true: from the first tick on the script, or else a scripted expert, moves both hands. false: the person takes over
   /// where they are.
   void SetDemonstration(bool is_on);

@@ -30,6 +30,7 @@ enum class Action {
   kAssistant,   ///< the next command to the assistant
   kTogglePause,
   kReset,
+  kFinish,  ///< the attempt is over: its result
   kToggleDemonstration,
   kToggleForces,
   kToggleMask,
@@ -37,7 +38,9 @@ enum class Action {
   kToggleForceFeedback,
   kCheckPose,
   kToggleTaskList,
+  kToggleRecordingList,
   kOpenDevices,
+  kOpenCentre,  ///< history, courses, groups, exams
   kToggleFullscreen,
   kToggleHelp,
   kReleasePointer,
@@ -56,9 +59,10 @@ struct KeyMeaning {
 enum class SimulatorNeeds {
   kNothing,
   kNoFailure,
-  kScene,    ///< a simulation runs, and nothing has failed
-  kScript,   ///< likewise, and it has a script or an expert
-  kHaptics,  ///< likewise, and a haptic device holds a hand
+  kScene,     ///< a simulation runs, and nothing has failed
+  kScript,    ///< likewise, it has a script or an expert, and it is no exam
+  kGuidance,  ///< likewise, and it is no exam
+  kHaptics,   ///< likewise, and a haptic device holds a hand
 };
 
 using SimulatorCommand = gui::Command<KeyMeaning, SimulatorNeeds>;

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "trocar/app/branch.h"
 #include "trocar/app/options.h"
 #include "trocar/app/read_outs.h"
 #include "trocar/app/session_control.h"
@@ -17,6 +18,7 @@
 #include "trocar/app/task_request.h"
 #include "trocar/app/task_result.h"
 #include "trocar/app/unattended_play.h"
+#include "trocar/centre/course_page.h"
 #include "trocar/core/clock.h"
 #include "trocar/gui/background_job.h"
 #include "trocar/view/laparoscope_view.h"
@@ -29,8 +31,14 @@ struct SimulatorPage {
   std::string hint, badge, state, event, haptics;
   bool is_event_warning = false;
   bool is_help_open = false, is_task_list_open = false, is_result_open = false;
+  bool is_recording_list_open = false;
   view::ViewOptions view;
   std::optional<core::Error> failure;
+};
+
+/// Told of recordings that begin and that have ended, by the simulation's thread; either may be empty.
+struct AttemptHooks {
+  std::function<void(const std::filesystem::path&)> on_begin, on_end;
 };
 
 /// What the presenter needs of a window.
@@ -46,6 +54,12 @@ class SimulatorScreen {
   /// Fills the list of tasks. \return the first file's error
   virtual core::Status FillTaskList() = 0;
   virtual void FillResult(const TaskResult& result) = 0;
+  /// Reads the list of recordings anew, beside the window.
+  virtual void FillRecordingList(const std::filesystem::path& folder) = 0;
+  /// A window of its own plays a recording.
+  virtual void OpenReplay(const std::filesystem::path& recording) = 0;
+  /// An attempt that a person made is over, and is recorded: its page.
+  virtual void OpenAttempt(const std::filesystem::path& recording, bool is_exam) = 0;
   virtual void ReleasePointer() = 0;
   virtual bool IsPointerTaken() const = 0;
   virtual void FocusPicture() = 0;
@@ -58,7 +72,7 @@ class SimulatorPresenter {
   /// \param screen     outlives the presenter
   /// \param on_loaded  called by another thread when FinishLoading() is due
   SimulatorPresenter(const Options& options, const core::Stopwatch& since_start, SimulatorScreen& screen,
-                     std::function<void()> on_loaded);
+                     std::function<void()> on_loaded, AttemptHooks hooks = {});
 
   /// Begins to read the scene that the options name.
   void Start();
@@ -66,6 +80,14 @@ class SimulatorPresenter {
   void FinishLoading();
   /// Gives up the scene that is shown and reads the one that was chosen; nothing while one is being read.
   void Open(const TaskRequest& request);
+  /// Likewise with a step of a course, or an exam.
+  void Open(const centre::Start& start);
+
+  /// Gives up the scene that is shown and goes on from a moment of a recording: paused, until the person's hands are ready;
+  /// the expert begins at once. Nothing while a scene is being read.
+  void TakeOver(Branch branch);
+  /// Pauses, and plays a recording in a window of its own.
+  void OpenRecording(const std::filesystem::path& recording);
 
   /// Does what a key or a button asks for, where it is possible.
   void Do(Action action);
@@ -75,6 +97,8 @@ class SimulatorPresenter {
 
   void OpenTaskList();
   void CloseTaskList();
+  void OpenRecordingList();
+  void CloseRecordingList();
   void CloseResult();
   void PlayAgain();
   /// Writes the task's result: JSON or a page, by the file's ending.
@@ -111,6 +135,11 @@ class SimulatorPresenter {
   bool IsChecked(Action action) const;
   bool IsForceOn() const;
   core::Status UseDevices();
+  bool Use(simulation::Simulation simulation, record::Description description);
+  void GoOn();
+  void Finish();
+  void EndAttempt();
+  bool IsExam() const { return start_ && start_->is_exam; }
   void Drop();
   void Refresh();
   void Announce(const std::string& text, bool is_warning = false);
@@ -128,6 +157,8 @@ class SimulatorPresenter {
   static std::span<const Handler> Handlers() noexcept;
 
   Options options_;
+  AttemptHooks hooks_;
+  std::optional<centre::Start> start_;  // that was opened in place of what the options name
   core::Stopwatch since_start_;
   SimulatorScreen* screen_;
   SimulatorPage page_;
@@ -140,6 +171,7 @@ class SimulatorPresenter {
   TaskResult result_;                                         // of the task that is over
   bool is_recording_stopped_ = false, is_space_low_ = false;  // they have been said
   bool is_result_known_ = false;                              // it has been shown
+  bool is_attempt_over_ = false;
   std::uint64_t seen_events_ = 0;
   double first_picture_ = 0;                                  // since the start of the program [s]
   double last_frame_ = 0, last_forces_ = 0, last_times_ = 0;  // of the frame clock [s]

@@ -42,7 +42,8 @@ struct TaskResult {
   std::string verdict;  ///< "Completed", "The time is over", "Ended by an error"
   double time = 0;      ///< [s]
   double score = 0;
-  bool is_score_percent = false;  ///< of an able surgeon's points
+  bool is_score_percent = false;  ///< of an able surgeon's points: then 0 to `best_score`
+  double best_score = 100;        ///< of this level
   std::string recording;          ///< file of the attempt; empty where it is not kept
   std::vector<GoalRow> goals;
   std::vector<ErrorRow> errors;
@@ -52,7 +53,7 @@ struct TaskResult {
 TaskResult MakeTaskResult(const scene::Scene& scene, const scene::TaskSnapshot& now,
                           const std::vector<scene::TaskError>& errors);
 
-/// "87.4", "87.4 %"
+/// "74.3 of 85", "87.4 points"
 std::string FormatScore(const TaskResult& result);
 /// Everything, as an object with "format": "trocar-task-result".
 std::string FormatTaskResultJson(const TaskResult& result);

@@ -59,6 +59,21 @@ enum class ErrorCode {
   kOutOfMemory,
   kStateInvalid,
   kRecordingInvalid,
+  // store
+  kStoreBusy,
+  kStoreFull,
+  kStoreAway,
+  kStoreSchema,
+  kStoreDamaged,
+  kStoreReadOnly,
+  kStoreRefused,
+  kStoreUnknown,
+  kStoreInvalid,
+  // reports, ratings, learning records
+  kRatingInvalid,
+  kXapiUnsafe,
+  kXapiAway,
+  kXapiRefused,
   // drawing and video
   kNoGraphics,
   kGraphicsTooOld,
@@ -99,6 +114,20 @@ enum class ErrorCode {
   kHapticNotCalibrated,
   kHapticOverspeed,
   kHapticSimulation,
+  // courses, levels, exams and certificates
+  kCourseInvalid,
+  kProficiencyInvalid,
+  kAttemptsTooFew,
+  kStepLocked,
+  kPreparationFailed,
+  kExamInvalid,
+  kExamSealBroken,
+  kKeyInvalid,
+  kKeyUnsafe,
+  kCertificateInvalid,
+  kCertificateSigner,
+  kCertificateRecording,
+  kCertificateOutcome,
   kCount
 };
 

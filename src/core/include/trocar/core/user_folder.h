@@ -10,5 +10,7 @@ namespace trocar::core {
 std::filesystem::path FindConfigFolder();
 /// Recordings and the like: TROCAR_DATA_HOME, else XDG_DATA_HOME/trocar, else HOME/.local/share/trocar.
 std::filesystem::path FindUserDataFolder();
+/// What can be made again: TROCAR_CACHE_HOME, else XDG_CACHE_HOME/trocar, else HOME/.cache/trocar.
+std::filesystem::path FindCacheFolder();
 
 }  // namespace trocar::core

@@ -8,7 +8,7 @@
 
 namespace trocar::record {
 
-/// A JSON object in one line: of a task its phase, time [s], score, goals and errors; of an operation whether it was completed,
+/// A JSON object in one line: of a task its phase, time [s], score as shown, goals and errors; of an operation whether it was completed,
 /// the critical view, errors, injuries, blood and bile [mL]; of a scene without a task only the time.
 /// The same state gives the same text, digit for digit.
 /// \note Allocates.

@@ -37,6 +37,10 @@ struct Description {
   std::string program;   ///< version that wrote it
   std::string compiler;  ///< that built it
   std::string started;   ///< wall clock with its offset: "2026-11-24T22:50:20+00:00"
+  /// Where it goes on from another recording ("take over here", "what if"): its file's name and id, and the tick; else empty
+  /// and 0.
+  std::string branched_from;
+  std::uint64_t branched_id = 0, branched_tick = 0;
 };
 
 /// Makes the scene that a recording is of.
@@ -49,11 +53,14 @@ struct HashMark {
   std::uint64_t hash = 0;
 };
 
+/// Kind of the event that says which phase of an operation begins.
+inline constexpr const char* kPhaseKind = "phase";
+
 /// Something that happened, for lists and for jumping to it; replay computes it again.
 struct EventMark {
   std::uint64_t tick = 0;
-  std::string kind;   ///< scene::EventName, or the name of a task's or an operation's error
-  std::string about;  ///< for a person; may be empty
+  std::string kind;   ///< scene::EventName, the name of a task's or an operation's error, or kPhaseKind
+  std::string about;  ///< for a person; may be empty; of a phase its name
   int hand = -1;      ///< scene::Hand, or -1
   bool is_error = false;
 };
@@ -82,6 +89,7 @@ class Recording {
   ~Recording();
 
   Description description;
+  std::uint64_t file_id = 0;  ///< random: tells files apart that are of the same
   std::vector<Input> inputs;  ///< input i belongs to the tick that makes description.first_tick + i + 1 ticks
   std::vector<HashMark> hashes;
   std::vector<EventMark> events;
@@ -106,6 +114,12 @@ class Recording {
   std::vector<std::uint64_t> keyframe_ticks_;
   std::vector<Keyframe> keyframes_;  // compressed
 };
+
+/// The state index beside a recording: attempt.trocar.index. It is made again where it is missing.
+std::filesystem::path IndexPathOf(const std::filesystem::path& recording);
+/// Deletes state indexes of a folder, the oldest first, until all of them together have no more than so many bytes.
+/// The recordings stay.
+void TrimIndexes(const std::filesystem::path& folder, std::uint64_t most_bytes);
 
 /// Where attempts are kept that nobody named a file for: TROCAR_DATA_HOME, else XDG_DATA_HOME/trocar, else
 /// HOME/.local/share/trocar; there "recordings".

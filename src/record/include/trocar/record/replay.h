@@ -3,10 +3,10 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -31,51 +31,80 @@ struct Verification {
   bool IsVerified() const { return !divergence && is_outcome_same; }
 };
 
+struct ReplaySettings {
+  int threads = 1;  ///< of the solver; the bits are the same for any number
+  /// File of saved states (IndexPathOf), read and added to; empty, or where it cannot be written: they are kept in memory.
+  std::filesystem::path index;
+  double visit_seconds = 0.75;  ///< between the states that are kept of what is stepped [s]; 0: none are
+};
+
+class StateIndex;
+
 /// A recording and a simulation that follows it.
 class Replay {
  public:
-  /// Makes the scene, and stands at the recording's first tick.
-  /// \param threads  of the solver; the bits are the same for any number
-  /// \return the scene's error; kRecordingInvalid where the scene, patient or program is not what was recorded
-  static core::Result<Replay> Open(Recording recording, int threads);
+  /// Asked between ticks of a long seek; false ends it where it stands.
+  using GoOn = std::function<bool()>;
 
-  const Recording& GetRecording() const { return recording_; }
+  /// Makes the scene, and stands at the recording's first tick.
+  /// \return the scene's error; kRecordingInvalid where the scene, patient or program is not what was recorded
+  static core::Result<Replay> Open(Recording recording, const ReplaySettings& settings);
+  static core::Result<Replay> Open(Recording recording, int threads);
+  /// One more of the same recording, with the same saved states, for another thread.
+  /// \param visit_seconds  as in ReplaySettings
+  core::Result<Replay> Another(double visit_seconds) const;
+
+  const Recording& GetRecording() const { return *recording_; }
   const simulation::Simulation& GetSimulation() const { return simulation_; }
   std::uint64_t Tick() const { return simulation_.GetSnapshot().tick; }
-  bool IsAtEnd() const { return Tick() >= recording_.LastTick(); }
+  bool IsAtEnd() const { return Tick() >= recording_->LastTick(); }
 
   /// The next recorded tick; nothing at the end. Compares the hash where one was recorded.
   void Step();
-  /// To just after that tick: from the nearest state before it, recorded or visited, and then tick after tick.
-  /// \param tick  clamped to what was recorded
-  /// \return kRecordingInvalid where no state before it can be restored
-  core::Status Seek(std::uint64_t tick);
+  /// To just after that tick: from the nearest state before it, recorded or kept, and then tick after tick.
+  /// \param tick   clamped to what was recorded
+  /// \param go_on  may be empty
+  /// \return kRecordingInvalid where a keyframe cannot be restored
+  core::Status Seek(std::uint64_t tick, const GoOn& go_on = {});
+  /// Ticks from which Seek can go on, ascending: the first one, keyframes and kept states.
+  std::vector<std::uint64_t> KnownTicks() const;
+  /// Computes and keeps one state in a gap between known ones that is longer than `seconds`: the next gap after `tick`, or
+  /// else the first one. \return false where there is none, or go_on said so
+  core::Result<bool> FillGap(std::uint64_t tick, double seconds, const GoOn& go_on = {});
+  /// Whether kept states outlive this: the index can be written.
+  bool KeepsStatesOnDisk() const;
   /// The first hash that was not the recorded one since Open, in the ticks that were stepped.
   const std::optional<Divergence>& GetDivergence() const { return divergence_; }
 
-  /// From the first tick to the last, comparing hashes, keyframes and outcome.
+  /// From the first tick to the last, comparing hashes, keyframes and outcome. Uses no kept state.
   /// \param progress  called with the share done, 0 to 1; may be empty
   core::Result<Verification> Verify(const std::function<void(double)>& progress = {});
 
-  /// Takes over here: the simulation as it stands, to be played on by somebody else.
-  simulation::Simulation Branch() && { return std::move(simulation_); }
+  /// Takes over here: one more simulation that stands where this one does, to be played on by somebody else.
+  /// \param threads  of its solver
+  core::Result<simulation::Simulation> Branch(int threads) const;
 
  private:
-  Replay(Recording recording, simulation::Simulation simulation);
-  void Remember();
+  using Model = std::shared_ptr<const simulation::SimulationModel>;
+  Replay(std::shared_ptr<const Recording> recording, Model model, simulation::Simulation simulation,
+         int threads, double visit_seconds);
+  core::Status GoTo(std::uint64_t tick);
+  void Keep();
+  std::uint64_t TicksIn(double seconds) const;
 
-  /// States that were visited, so that going back is quick; thinned out where they become too many.
-  struct Visited {
-    std::uint64_t tick = 0;
-    std::vector<std::byte> state;
-  };
-
-  Recording recording_;
+  std::shared_ptr<const Recording> recording_;  // also of Another
+  Model model_;
   simulation::Simulation simulation_;
-  std::vector<Visited> visited_;  // ascending
+  int threads_ = 1;
   std::uint64_t visit_ticks_ = 0;
+  std::shared_ptr<StateIndex> index_;                    // also of Another
+  std::shared_ptr<const std::vector<std::byte>> first_;  // state of the first tick
   std::size_t next_hash_ = 0;
   std::optional<Divergence> divergence_;
 };
+
+/// Of a recording that goes on from a moment of another: of the same scene, and it says from where it branched.
+/// \param path  of that recording
+Description DescribeBranch(const Recording& from, const std::filesystem::path& path, std::uint64_t tick);
 
 }  // namespace trocar::record

@@ -122,7 +122,8 @@ struct Task {
   std::vector<ErrorRule> errors;
   double time_limit = std::numeric_limits<double>::infinity();  ///< [s] from the first movement
   double points_per_second_left = 0;
-  double reference_points = 0;  ///< of an able surgeon: score is 100 for these; 0: score is in points
+  double reference_points = 0;  ///< of an able surgeon: TaskSnapshot::score is 100 for these; 0: in points
+  double best_score = 100;      ///< what a person is shown for the reference's points, or more, at this level
 };
 
 enum class TaskPhase : std::uint8_t { kNone, kReady, kRunning, kCompleted, kTimeOver, kEnded };
@@ -152,12 +153,16 @@ struct TaskSnapshot {
   std::vector<GoalSnapshot> goals;    ///< (Task::goals)
   std::vector<std::uint32_t> errors;  ///< (Task::errors) how often
   double penalty = 0;                 ///< points lost so far
-  double score = 0;                   ///< points, or per cent of the reference; final when the task is over
+  double score = 0;  ///< points, or per cent of the reference, without a limit; CalcShownScore is for people
   std::uint64_t error_count = 0;      ///< the newest are in `last_errors`
   std::array<TaskError, 16> last_errors{};  ///< ring: error n at n % 16
 
   bool IsOver() const { return phase >= TaskPhase::kCompleted; }
 };
+
+/// The score that a person is shown: from 0 to Task::best_score, which the reference's points reach and more points do not
+/// exceed; without a reference, points. What the state holds is not changed by it.
+double CalcShownScore(const Task& task, const TaskSnapshot& now) noexcept;
 
 void VisitState(core::StateArchive& archive, GoalSnapshot& goal);
 void VisitState(core::StateArchive& archive, TaskError& error);

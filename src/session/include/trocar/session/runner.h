@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 
@@ -33,6 +34,9 @@ struct RunnerStatistics {
 struct AttemptKeeping {
   std::filesystem::path folder;     ///< made when the first attempt begins
   record::Description description;  ///< of the scene that runs
+  /// Told of a file with an attempt that has just begun, and of one that is whole or cannot be. By the simulation's thread between
+  /// two ticks: they hand over and return. May be empty.
+  std::function<void(const std::filesystem::path&)> on_begin, on_end;
 };
 
 /// Owns the simulation thread. All members are called from one other thread (the window's).
@@ -62,6 +66,8 @@ class Runner {
   bool IsPaused() const;
   /// Back to tick 0; keeps paused or running.
   void Reset();
+  /// What is recorded ends with the tick that is being made; the simulation goes on unrecorded until the next reset.
+  void EndAttempt();
 
   /// The newest state; the reference stays valid until the next call.
   const Snapshot& Latest();

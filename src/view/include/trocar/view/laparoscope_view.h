@@ -3,7 +3,9 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
+#include <vector>
 
 #include "trocar/core/result.h"
 #include "trocar/render/renderer.h"
@@ -26,6 +28,24 @@ struct ViewOptions {
   friend bool operator==(const ViewOptions&, const ViewOptions&) = default;
 };
 
+/// A line through the picture: the way of a tip, or the shaft of a tool that is not there.
+struct Trail {
+  std::vector<math::Vec3> points;  ///< world frame [m]
+  render::Material material = render::Material::kMark;
+  double width = 0.0008;  ///< [m]
+};
+
+/// What a replay shows besides the scene.
+struct Overlay {
+  std::optional<math::Pose> X_world_camera;  ///< looks from here in place of the laparoscope, along -z
+  std::vector<Trail> trails;
+};
+
+/// The ways of both tips: the left hand's blue, the right hand's yellow.
+std::vector<Trail> MakePathTrails(std::span<const math::Vec3> left, std::span<const math::Vec3> right);
+/// Shafts and jaws of the tools of another attempt, in white.
+std::vector<Trail> MakeGhosts(const simulation::Snapshot& other);
+
 /// Organs, ducts, vessels, instruments and trocars of one scene in one OpenGL context, what surgery has changed, and the
 /// abdomen round them. The context must be current whenever a member is called and at destruction.
 class LaparoscopeView {
@@ -45,6 +65,9 @@ class LaparoscopeView {
 
   void SetOptions(const ViewOptions& options);
   const ViewOptions& GetOptions() const;
+
+  /// Until the next call.
+  void SetOverlay(Overlay overlay);
 
   /// Takes over shapes and poses of a snapshot of the same scene.
   void Update(const simulation::Snapshot& snapshot);

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file replay_window.h  The replay window's widgets; what they show and do is the presenter's.
+#pragma once
+
+#include <gtkmm.h>
+
+#include <array>
+#include <functional>
+#include <memory>
+#include <optional>
+
+#include "failure_card.h"
+#include "picture.h"
+#include "recording_chooser.h"
+#include "replay_bar.h"
+#include "trocar/app/replay_presenter.h"
+#include "trocar/gui/command_bar.h"
+#include "trocar/gui/help_card.h"
+
+namespace trocar::app {
+
+class ReplayWindow : public Gtk::ApplicationWindow, private ReplayScreen {
+ public:
+  /// \param options    names the recording
+  /// \param take_over  called when somebody goes on from a moment; never within a frame
+  ReplayWindow(const Options& options, std::function<void(Branch)> take_over);
+  ~ReplayWindow() override;
+
+  /// What went wrong, if anything did: the program's exit status follows it.
+  const std::optional<core::Error>& GetFailure() const { return presenter_->GetFailure(); }
+
+ private:
+  struct Side {
+    Gtk::Overlay overlay;
+    Picture picture;
+    Gtk::Label about;
+    double last_x = 0, last_y = 0;  // of the drag
+  };
+  void MakeContent();
+  void MakeSide(std::size_t side);
+  void MakeRoutes();
+  bool OnKey(guint keyval, guint keycode, Gdk::ModifierType state);
+  bool OnFrame(const Glib::RefPtr<Gdk::FrameClock>& clock);
+
+  // ReplayScreen
+  void Show(const ReplayPage& page) override;
+  void UseReplay(std::size_t side, const session::ReplayRunner* replay) override;
+  void ShowMarks(const std::vector<ReplayMark>& marks) override;
+  void FillRecordingList(const std::filesystem::path& folder) override { chooser_.Load(folder); }
+  void TakeOver(Branch branch) override;
+  void DoInWindow(ReplayAction action) override;
+
+  gui::Tips tips_;
+  gui::CommandBar<ReplayAction, ReplayNeeds> bar_;
+  std::array<Side, ReplayPresenter::kSides> sides_;
+  Gtk::Overlay overlay_;
+  ReplayBar time_bar_;
+  Gtk::ListBox mark_list_;
+  std::vector<ReplayMark> marks_;  // of the list's rows
+  RecordingChooser chooser_{"Beside"};
+  gui::HelpCard help_card_{ReplayHelp()};
+  FailureCard failure_card_;
+  Gtk::Label clock_, state_, message_;
+  std::function<void(Branch)> take_over_;
+  Glib::Dispatcher loaded_;
+  std::unique_ptr<ReplayPresenter> presenter_;
+};
+
+}  // namespace trocar::app

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file course_page.h  The map of a course: which steps are done, open or locked, and what each asks for.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "trocar/assessment/course.h"
+#include "trocar/centre/access.h"
+#include "trocar/centre/judged_attempt.h"
+#include "trocar/record/recording.h"
+
+namespace trocar::centre {
+
+/// What the simulator is asked to open.
+struct Start {
+  record::Description description;  ///< of the scene
+  std::filesystem::path
+      state;  ///< in the middle of an operation, as assessment::PrepareStep made it; empty: the first tick
+  std::string state_surgeon;  ///< who came so far
+  std::string title;          ///< for a person
+  StepName step;              ///< for which it is made
+  bool is_exam = false;       ///< without guidance, and once only
+};
+
+struct CoursePage {
+  struct Choice {
+    std::string key, name;
+  };
+  struct Step {
+    std::string key, name, goal, what, briefing;
+    std::string progress;   ///< "2 of 3 passes, 1 in a row"
+    std::string due;        ///< "due 2026-11-30", "overdue since ..."; may be empty
+    std::string locked_by;  ///< names; empty where it is not locked
+    assessment::StepState state = assessment::StepState::kLocked;
+    bool is_overdue = false;
+    std::vector<std::string> thresholds;  ///< in words
+  };
+  std::vector<Choice> courses;
+  std::string course;  ///< key of the one that is shown
+  std::string name, about, who;
+  std::vector<Step> steps;
+  std::string next;  ///< key of the step that comes next; empty where the course is done
+};
+
+/// Where the store is away, the course is shown all the same: nothing is known to be done.
+struct LoadedCourse {
+  CoursePage page;
+  std::optional<core::Error> store_failure;
+};
+/// \param course  key; empty: the first, or the one that was assigned
+/// \return the course's error
+core::Result<LoadedCourse> LoadCourse(const Access& access, const std::string& course);
+
+/// Makes what a step needs before it can begin; the scripted expert operates up to its first moment.
+/// \param progress  told the simulated time [s] and what the expert does; false gives up
+core::Result<Start> PrepareStart(const StepName& name,
+                                 const std::function<bool(double, const std::string&)>& progress);
+
+}  // namespace trocar::centre

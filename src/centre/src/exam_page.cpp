@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/centre/exam_page.h"
+
+#include <system_error>
+#include <utility>
+
+#include "trocar/assessment/certificate.h"
+#include "trocar/core/safe_file.h"
+#include "trocar/store/attempts.h"
+#include "words.h"
+
+namespace trocar::centre {
+
+core::Result<ExamPage> OpenExam(const std::filesystem::path& file) {
+  const auto exam = assessment::ReadExam(file);
+  if (!exam.ok()) return exam.error();
+  ExamPage page;
+  page.file = file;
+  page.name = exam->name;
+  // neither seed nor nonce: whoever sits the exam looks on
+  page.facts = {
+      {"Of", exam->IsOperation() ? TaskNameOf(exam->operation) + ", on a patient that nobody has seen"
+                                 : TaskNameOf(exam->task) + ", " + exam->level},
+      {"Sealed", report::FormatDate(exam->sealed)},
+      {"Commitment", exam->commitment}};
+  for (const assessment::Threshold& threshold : exam->passes)
+    page.thresholds.push_back(ThresholdText(threshold));
+  return page;
+}
+
+core::Result<Start> PrepareExam(const ExamPage& page) {
+  if (page.examinee.empty()) {
+    return core::Error{core::ErrorCode::kExamInvalid,
+                       "nobody has said who sits the exam; say at \"Who are you?\" who you are"};
+  }
+  const auto exam = assessment::ReadExam(page.file);
+  if (!exam.ok()) return exam.error();
+  auto description = assessment::DescribeExam(*exam);
+  if (!description.ok()) return description.error();
+  Start start;
+  start.description = std::move(*description);
+  start.title = "Exam: " + exam->name;
+  start.is_exam = true;
+  return start;
+}
+
+core::Result<ExamPage> IssueExamCertificate(const Access& access, ExamPage page,
+                                            const std::filesystem::path& key,
+                                            const std::filesystem::path& file,
+                                            const std::function<void(double)>& progress) {
+  const auto exam = assessment::ReadExam(page.file);
+  if (!exam.ok()) return exam.error();
+  assessment::ReplaySettings settings;
+  settings.progress = progress;
+  const auto text = assessment::IssueCertificate(*exam, page.recording, page.examinee, key, {}, settings);
+  if (!text.ok()) return text.error();
+  std::error_code failure;
+  if (std::filesystem::exists(file, failure)) {
+    return core::Error{
+        core::ErrorCode::kFileUnwritable,
+        file.string() + " is there already; a certificate is not replaced: choose another name"};
+  }
+  const auto certificate = assessment::ReadCertificate(*text, file.string());
+  if (!certificate.ok()) return certificate.error();
+  if (const auto written = core::WriteFile(file, *text); !written.ok()) return written.error();
+  page.certificate = file;
+  page.is_passed = certificate->is_passed;
+  page.finding = certificate->is_passed      ? "Passed. The certificate is signed."
+                 : certificate->is_completed ? "Completed, not passed. The certificate is signed and says so."
+                                             : "Not completed. The certificate is signed and says so.";
+  // the file is what counts; the store keeps a copy where it is there
+  auto desk = OpenDesk({access.place, access.settings, {}});
+  if (!desk.ok()) {
+    page.finding += " The store does not have it yet: " + desk.error().Text();
+    return page;
+  }
+  const auto kept =
+      store::AddCertificate(desk->store, desk->viewer, {certificate->recording_hash, page.examinee, *text});
+  if (!kept.ok()) page.finding += " The store does not have it: " + kept.error().Text();
+  return page;
+}
+
+}  // namespace trocar::centre

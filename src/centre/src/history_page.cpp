@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/centre/history_page.h"
+
+#include <algorithm>
+#include <system_error>
+#include <utility>
+
+#include "trocar/assessment/learning.h"
+#include "trocar/centre/judged_attempt.h"
+#include "trocar/report/charts.h"
+#include "trocar/scene/scene.h"
+#include "trocar/store/attempts.h"
+#include "words.h"
+
+namespace trocar::centre {
+namespace {
+
+constexpr int kRows = 20;         // of a page
+constexpr int kMostCurve = 1000;  // attempts of which a curve is drawn: the newest
+
+HistoryPage::Row MakeRow(const Access& access, const store::StoredAttempt& stored) {
+  const store::Attempt& attempt = stored.attempt;
+  HistoryPage::Row row;
+  row.id = stored.id;
+  row.when = report::FormatDate(attempt.started);
+  row.task = TaskNameOf(attempt.task) + (attempt.level.empty() ? "" : ", " + attempt.level);
+  row.person = NameOf(access, attempt.trainee);
+  if (!attempt.is_completed) {
+    row.outcome = "not completed";
+    row.tone = Tone::kCaution;
+  } else if (attempt.is_passed) {
+    row.outcome = *attempt.is_passed ? "passed" : "not passed";
+    row.tone = *attempt.is_passed ? Tone::kGood : Tone::kCaution;
+  } else {
+    row.outcome = "completed";
+  }
+  if (attempt.score) row.score = ScoreText(*attempt.score, IsScorePercent(attempt.task, attempt.level));
+  row.time = report::FormatClock(attempt.seconds);
+  std::error_code failure;
+  if (!attempt.recording.empty() && std::filesystem::exists(attempt.recording, failure))
+    row.recording = attempt.recording;
+  row.attempt = attempt;
+  return row;
+}
+
+/// A task's attempts of one level, the oldest first.
+core::Result<std::vector<store::Attempt>> ListOfTask(Desk& desk, const HistoryQuery& query,
+                                                     std::string& level) {
+  store::AttemptFilter filter;
+  filter.trainee = query.person;
+  filter.task = query.task;
+  const auto page = store::ListAttempts(desk.store, desk.viewer, filter, {}, kMostCurve);
+  if (!page.ok()) return page.error();
+  std::vector<store::Attempt> attempts;
+  if (!page->attempts.empty()) level = page->attempts.front().attempt.level;
+  for (const store::StoredAttempt& one : page->attempts) {
+    if (one.attempt.level == level) attempts.push_back(one.attempt);
+  }
+  std::reverse(attempts.begin(), attempts.end());
+  return attempts;
+}
+
+void AddCurve(const std::vector<double>& seconds, const std::string& task, HistoryPage& page) {
+  if (seconds.empty()) return;
+  report::LearningCurve curve;
+  curve.task = task;
+  curve.measure = "Time";
+  curve.unit = "s";
+  curve.values = seconds;
+  if (const auto fit = assessment::FitLearningCurve(seconds); fit.ok()) {
+    curve.fit = report::CurveFit{fit->plateau, fit->gain, fit->rate};
+    page.findings.push_back(
+        fit->gain == 0 ? "Time: no learning to be seen in " + Count(seconds.size(), "completed attempt") + "."
+                       : "Time: practice leads towards " + report::FormatDuration(fit->plateau) +
+                             (fit->is_rate_at_bound ? "; too few attempts to tell how fast." : "."));
+  } else {
+    page.findings.push_back("A learning curve takes " + std::to_string(assessment::kLeastAttempts) +
+                            " completed attempts; there " + (seconds.size() == 1 ? "is " : "are ") +
+                            std::to_string(seconds.size()) + ".");
+  }
+  if (const auto trend = assessment::CalcTrend(seconds, assessment::Better::kLower); trend.ok()) {
+    const char* const words[] = {"no trend", "getting faster", "getting slower"};
+    page.findings.push_back(
+        "Trend of the time: " + std::string(words[static_cast<std::size_t>(trend->verdict)]) + ".");
+  }
+  page.drawings.push_back(report::DrawLearningCurve(curve));
+}
+
+void AddCusum(const std::vector<bool>& failed, const std::string& task, HistoryPage& page) {
+  if (failed.empty()) return;
+  const auto cusum = assessment::CalcCusum(failed);
+  if (!cusum.ok()) return;
+  const char* const words[] = {"More attempts are needed to tell the failure rate.",
+                               "The failure rate is acceptable.", "The failure rate is too high."};
+  report::CusumChart chart;
+  chart.task = task;
+  chart.values = cusum->values;
+  chart.lower = cusum->h0, chart.upper = cusum->h1;
+  chart.verdict = words[static_cast<std::size_t>(cusum->verdict)];
+  page.findings.push_back("CUSUM: " + chart.verdict);
+  page.drawings.push_back(report::DrawCusum(chart));
+}
+
+/// How the newest completed attempt compares with each of the person's groups.
+void AddPlaces(Desk& desk, const HistoryQuery& query, const store::Attempt& newest, HistoryPage& page) {
+  if (query.person.empty() || !newest.score) return;
+  const auto person = store::FindViewer(desk.store, query.person);
+  if (!person.ok()) return;
+  const auto groups = store::ListGroups(desk.store, *person);
+  if (!groups.ok()) return;
+  store::MetricKey key;
+  key.task = newest.task, key.level = newest.level, key.metric = "score";
+  for (const store::Group& group : *groups) {
+    const auto place = store::CalcPercentile(desk.store, desk.viewer, group.name, key, *newest.score);
+    if (!place.ok()) {
+      if (place.error().code == core::ErrorCode::kStoreRefused)
+        page.findings.push_back("Group \"" + group.name + "\": a place is shown from " +
+                                std::to_string(store::kFewestTrainees) + " trainees on.");
+      continue;
+    }
+    page.findings.push_back("Group \"" + group.name + "\": percentile " +
+                            report::FormatShown(place->Percent()) + " of " +
+                            Count(static_cast<std::size_t>(place->trainees), "trainee") + ", by score.");
+  }
+}
+
+void AddTasks(HistoryPage& page) {
+  if (const auto tasks = scene::ListTasks(); tasks.ok()) {
+    for (const scene::TaskEntry& task : *tasks) page.tasks.push_back({task.key, task.name});
+  }
+  page.tasks.push_back({"cholecystectomy", TaskNameOf("cholecystectomy")});
+}
+
+}  // namespace
+
+core::Result<HistoryPage> LoadHistory(const Access& access, const HistoryQuery& query) {
+  auto desk = OpenDesk(access);
+  if (!desk.ok()) return desk.error();
+  HistoryPage page;
+  page.query = query;
+  page.who = query.person.empty() ? "Everyone" : NameOf(access, query.person);
+  AddTasks(page);
+  store::AttemptFilter filter;
+  filter.trainee = query.person;
+  filter.task = query.task;
+  const auto listed = store::ListAttempts(desk->store, desk->viewer, filter, query.page, kRows);
+  if (!listed.ok()) return listed.error();
+  for (const store::StoredAttempt& one : listed->attempts) page.rows.push_back(MakeRow(access, one));
+  page.next = listed->next;
+  if (query.task.empty()) return page;
+
+  const auto attempts = ListOfTask(*desk, query, page.level);
+  if (!attempts.ok()) return attempts.error();
+  std::vector<double> seconds;
+  std::vector<bool> failed;
+  for (const store::Attempt& attempt : *attempts) {
+    if (attempt.is_completed) seconds.push_back(attempt.seconds);
+    failed.push_back(!attempt.is_completed || (attempt.is_passed && !*attempt.is_passed));
+  }
+  // several people's attempts in one row would be nobody's learning
+  if (!query.person.empty() || access.person.empty()) {
+    const std::string task = TaskNameOf(query.task) + (page.level.empty() ? "" : ", " + page.level);
+    AddCurve(seconds, task, page);
+    AddCusum(failed, task, page);
+  }
+  const auto completed = std::find_if(attempts->rbegin(), attempts->rend(),
+                                      [](const store::Attempt& attempt) { return attempt.is_completed; });
+  if (completed != attempts->rend()) AddPlaces(*desk, query, *completed, page);
+  return page;
+}
+
+}  // namespace trocar::centre

@@ -1,0 +1,275 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/centre/judged_attempt.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "trocar/assessment/course.h"
+#include "trocar/assessment/milestone.h"
+#include "trocar/core/safe_file.h"
+#include "trocar/record/replay.h"
+#include "trocar/record/trace.h"
+#include "trocar/scene/scene.h"
+#include "trocar/store/keep_attempt.h"
+#include "trocar/training/attempt_metrics.h"
+#include "trocar/training/coach.h"
+#include "trocar/training/validity.h"
+
+namespace trocar::centre {
+namespace {
+
+namespace fs = std::filesystem;
+using core::Error;
+using core::ErrorCode;
+using nlohmann::json;
+
+constexpr std::uint64_t kProgressTicks = 30;                 // between two calls
+constexpr const char* kDemonstration = "the demonstration";  // as session::Runner names its player
+
+/// "peg_transfer" of "/data/scenes/tasks/peg_transfer.json"
+std::string KeyOf(const std::string& name) {
+  return name.ends_with(".json") ? fs::path(name).stem().string() : name;
+}
+
+/// Keeps in the outcome for which step the attempt was made: the store's attempts know no courses.
+void SetStepName(store::Attempt& attempt, const StepName& step) {
+  if (!step.IsSet()) return;
+  json outcome = json::parse(attempt.outcome, nullptr, false);
+  if (!outcome.is_object()) outcome = json::object();
+  outcome["course"] = {{"course", step.course}, {"step", step.step}};
+  attempt.outcome = outcome.dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
+core::Result<std::string> ReadAsset(const char* file) {
+  const auto data = scene::FindDataFolder();
+  if (!data.ok()) return data.error();
+  return core::ReadFile(*data / "assets" / file);
+}
+
+/// What was found out about the task's metrics; nothing where it has not been studied.
+std::optional<training::TaskValidity> FindValidity(const std::string& task) {
+  const auto text = ReadAsset(training::kValidityFile);
+  if (!text.ok()) return std::nullopt;
+  const auto validity = training::ParseValidity(*text, training::kValidityFile);
+  if (!validity.ok()) return std::nullopt;
+  const training::TaskValidity* found = validity->FindTask(task);
+  return found == nullptr ? std::nullopt : std::optional(*found);
+}
+
+std::vector<report::Advice> Coach(const training::AttemptTrace& trace,
+                                  const training::AttemptMetrics& metrics,
+                                  const std::optional<training::TaskValidity>& validity) {
+  std::vector<report::Advice> all;
+  const auto text = ReadAsset(training::kCoachRulesFile);
+  if (!text.ok()) return all;
+  const auto rules = training::ParseCoachRules(*text, training::kCoachRulesFile);
+  if (!rules.ok()) return all;
+  for (training::Advice& one :
+       training::CoachAttempt(trace, metrics, *rules, validity ? &*validity : nullptr)) {
+    report::Advice advice;
+    advice.sentence = std::move(one.sentence);
+    advice.why = std::move(one.why);
+    advice.exercise = std::move(one.exercise);
+    advice.practise = std::move(one.practise);
+    advice.time = one.time;
+    all.push_back(std::move(advice));
+  }
+  return all;
+}
+
+/// Ranges of experts: of the thresholds' expert set, and what the study adds.
+std::vector<report::MetricReference> MakeReferences(const assessment::Proficiency* proficiency,
+                                                    const std::optional<training::TaskValidity>& validity) {
+  std::vector<report::MetricReference> references;
+  const auto find = [&](const std::string& metric, const std::string& hand,
+                        const std::string& phase) -> report::MetricReference& {
+    for (report::MetricReference& one : references) {
+      if (one.metric == metric && one.hand == hand && one.phase == phase) return one;
+    }
+    report::MetricReference added;
+    added.metric = metric, added.hand = hand, added.phase = phase;
+    return references.emplace_back(std::move(added));
+  };
+  if (validity) {
+    for (const training::MeasureValidity& one : validity->measures) {
+      report::MetricReference& reference = find(one.metric, one.hand, "");
+      reference.separates = one.separates;
+      if (one.experts > 1)
+        reference.expert_mean = one.expert_mean, reference.expert_deviation = one.expert_sd;
+    }
+  }
+  if (proficiency != nullptr) {
+    for (const assessment::Norm& norm : proficiency->norms) {
+      report::MetricReference& reference = find(norm.of.metric, norm.of.hand, norm.of.phase);
+      reference.expert_mean = norm.mean, reference.expert_deviation = norm.deviation;
+    }
+  }
+  return references;
+}
+
+core::Result<std::optional<assessment::Proficiency>> FindThresholds(const std::string& task,
+                                                                    const std::string& level) {
+  auto all = assessment::ListProficiencies();
+  if (!all.ok()) return all.error();
+  for (assessment::Proficiency& one : *all) {
+    if (one.task == task && one.level == level) return std::optional(std::move(one));
+  }
+  return std::optional<assessment::Proficiency>();
+}
+
+/// A recording that was played again.
+struct Played {
+  training::AttemptTrace trace;
+  training::AttemptMetrics metrics;
+  std::string task;  // for a person
+  std::optional<double> score;
+  bool is_score_percent = false;
+  bool is_completed = false;
+};
+
+core::Result<Played> Play(record::Replay& replay, const assessment::Step* step,
+                          const std::function<bool(double)>& progress) {
+  const record::Recording& recording = replay.GetRecording();
+  const auto count = static_cast<double>(std::max<std::size_t>(1, recording.inputs.size()));
+  record::TraceBuilder builder(replay.GetSimulation());
+  builder.Add(replay.GetSimulation().GetSnapshot());
+  assessment::MilestoneWatch watch;
+  const auto until = step != nullptr ? step->until : assessment::Milestone::kCompleted;
+  if (step != nullptr) watch.Begin(step->from);
+  const bool is_part = until != assessment::Milestone::kCompleted;
+  while (!replay.IsAtEnd() && !(is_part && watch.HasReached(until))) {
+    const std::uint64_t done = replay.Tick() - recording.FirstTick();
+    replay.Step();
+    builder.Add(replay.GetSimulation().GetSnapshot(), recording.inputs[done].controls);
+    watch.See(replay.GetSimulation().GetSnapshot());
+    if (progress && done % kProgressTicks == 0 && !progress(static_cast<double>(done) / count))
+      return Error{ErrorCode::kCancelled, "the attempt was not measured to its end; open its result again"};
+  }
+  if (replay.GetDivergence()) {
+    return Error{
+        ErrorCode::kRecordingInvalid,
+        "the recording does not replay to the states that were recorded, so there is nothing to judge; "
+        "trocar replay --verify says where it differs"};
+  }
+  Played played;
+  played.trace = builder.Calc();
+  auto metrics = training::CalcAttemptMetrics(played.trace);
+  if (!metrics.ok()) return metrics.error();
+  played.metrics = std::move(*metrics);
+  const scene::Scene& scene = replay.GetSimulation().GetScene();
+  played.task = scene.task ? scene.task->name : scene.name;
+  played.is_completed = is_part ? watch.HasReached(until) : played.trace.outcome.is_completed;
+  if (is_part) played.trace.outcome.is_completed = played.is_completed;
+  if (scene.task) {
+    played.score = scene::CalcShownScore(*scene.task, replay.GetSimulation().GetSnapshot().task);
+    played.is_score_percent = scene.task->reference_points > 0;
+  }
+  return played;
+}
+
+core::Result<store::Attempt> Describe(const record::Recording& recording, const fs::path& path,
+                                      const JudgeSettings& settings) {
+  auto attempt = store::DescribeAttempt(recording, path);
+  if (!attempt.ok()) return attempt.error();
+  attempt->task = KeyOf(attempt->task);
+  // a folder of a user is nobody else's business
+  attempt->patient = fs::path(attempt->patient).filename().string();
+  attempt->trainee = settings.person;
+  SetStepName(*attempt, settings.step);
+  return attempt;
+}
+
+}  // namespace
+
+core::Result<store::Attempt> DescribeRecording(const fs::path& path, const std::string& person,
+                                               const StepName& step) {
+  const auto recording = record::ReadRecording(path);
+  if (!recording.ok()) return recording.error();
+  JudgeSettings settings;
+  settings.person = person, settings.step = step;
+  return Describe(*recording, path, settings);
+}
+
+core::Result<JudgedAttempt> JudgeRecording(const fs::path& path, const JudgeSettings& settings) {
+  auto recording = record::ReadRecording(path);
+  if (!recording.ok()) return recording.error();
+  JudgedAttempt judged;
+  auto attempt = Describe(*recording, path, settings);
+  if (!attempt.ok()) return attempt.error();
+  judged.attempt = std::move(*attempt);
+  judged.step = settings.step;
+  const record::Description description = recording->description;
+  judged.begin = static_cast<double>(recording->FirstTick()) * description.tick_seconds;
+  judged.is_demonstration = description.player == kDemonstration;
+
+  std::optional<assessment::Step> step;
+  if (settings.step.IsSet()) {
+    const auto course = assessment::FindCourse(settings.step.course);
+    if (!course.ok()) return course.error();
+    auto found = assessment::FindStep(*course, settings.step.step);
+    if (!found.ok()) return found.error();
+    step = std::move(*found);
+  }
+  auto replay = record::Replay::Open(std::move(*recording), settings.threads);
+  if (!replay.ok()) return replay.error();
+  auto played = Play(*replay, step ? &*step : nullptr, settings.progress);
+  if (!played.ok()) return played.error();
+
+  std::optional<assessment::Proficiency> proficiency;
+  if (step) {
+    proficiency = step->proficiency;
+    judged.attempt.patient = step->patient.Text();
+  } else {
+    auto found = FindThresholds(judged.attempt.task, judged.attempt.level);
+    if (!found.ok()) return found.error();
+    proficiency = std::move(*found);
+  }
+  judged.attempt.metrics = played->metrics.values;
+  judged.attempt.is_completed = played->is_completed;
+  judged.attempt.score = played->score;
+  if (proficiency) {
+    judged.verdict = assessment::Judge(*proficiency, {played->is_completed, played->metrics});
+    judged.attempt.is_passed = judged.verdict->is_passed;
+  }
+  if (step) judged.debriefing = judged.verdict->is_passed ? step->after_pass : step->after_fail;
+
+  const auto validity = FindValidity(judged.attempt.task);
+  const auto references = MakeReferences(proficiency ? &*proficiency : nullptr, validity);
+  const auto advice = Coach(played->trace, played->metrics, validity);
+  report::AttemptReportInput input;
+  input.facts = report::DescribeAttempt(description, played->task);
+  input.facts.person = settings.person;
+  input.facts.recording = path.filename().string();
+  input.facts.is_score_percent = played->is_score_percent;
+  input.references = references;
+  input.advice = advice;
+  judged.report = report::MakeAttemptReport(played->trace, played->metrics, input);
+  judged.report.score = played->score;
+  return judged;
+}
+
+StepName FindStepName(const store::Attempt& attempt) {
+  const json outcome = json::parse(attempt.outcome, nullptr, false);
+  if (!outcome.is_object() || !outcome.contains("course") || !outcome["course"].is_object()) return {};
+  const json& course = outcome["course"];
+  const auto text = [&course](const char* key) {
+    return course.contains(key) && course[key].is_string() ? course[key].get<std::string>() : std::string();
+  };
+  return {text("course"), text("step")};
+}
+
+std::string TaskNameOf(const std::string& key) {
+  if (const auto tasks = scene::ListTasks(); tasks.ok()) {
+    for (const scene::TaskEntry& task : *tasks) {
+      if (task.key == key) return task.name;
+    }
+  }
+  std::string words = key;
+  std::replace(words.begin(), words.end(), '_', ' ');
+  if (!words.empty() && words[0] >= 'a' && words[0] <= 'z')
+    words[0] = static_cast<char>(words[0] - 'a' + 'A');
+  return words;
+}
+
+}  // namespace trocar::centre

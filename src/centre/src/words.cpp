@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "words.h"
+
+#include <cstdio>
+
+#include "trocar/report/attempt_report.h"
+#include "trocar/scene/scene.h"
+#include "trocar/training/metric_definition.h"
+
+namespace trocar::centre {
+
+std::string Count(std::size_t count, const std::string& one) {
+  return std::to_string(count) + " " + one + (count == 1 ? "" : "s");
+}
+
+std::string MetricName(const assessment::MetricKey& key) {
+  const training::MetricDefinition* definition = training::FindMetric(key.metric);
+  std::string name = definition == nullptr ? key.metric : definition->name;
+  if (!key.hand.empty()) name += ", " + report::HandName(key.hand);
+  if (!key.phase.empty()) name += ", " + report::PhaseName(key.phase);
+  return name;
+}
+
+std::string MetricText(const std::string& metric, double value) {
+  const training::MetricDefinition* definition = training::FindMetric(metric);
+  if (definition == nullptr) return report::FormatShown(value);
+  std::string unit = definition->shown_unit;
+  if (unit.empty() && definition->unit != "1") unit = definition->unit;
+  return report::FormatShown(definition->shown_scale * value) + (unit.empty() ? "" : " " + unit);
+}
+
+std::string LimitText(const assessment::Threshold& threshold) {
+  return (threshold.better == assessment::Better::kLower ? "at most " : "at least ") +
+         MetricText(threshold.of.metric, threshold.value);
+}
+
+std::string ThresholdText(const assessment::Threshold& threshold) {
+  return MetricName(threshold.of) + ": " + LimitText(threshold);
+}
+
+std::string ScoreText(double score, bool is_percent) {
+  char text[48];
+  std::snprintf(text, sizeof text, is_percent ? "%.1f %%" : "%.1f points", score);
+  return text;
+}
+
+bool IsScorePercent(const std::string& task, const std::string& level) {
+  const auto path = scene::FindTask(task);
+  if (!path.ok()) return false;
+  const auto scene = scene::ReadTask(*path, {level.empty() ? "normal" : level, 1, {}});
+  return scene.ok() && scene->task && scene->task->reference_points > 0;
+}
+
+}  // namespace trocar::centre

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "history_view.h"
+
+#include "trocar/gui/card.h"
+#include "view_parts.h"
+
+namespace trocar::centre {
+namespace {
+
+constexpr int kPlotWidth = 440, kGap = 14, kTaskWidth = 220;  // [pixels]
+
+}  // namespace
+
+HistoryView::HistoryView() : Gtk::Box(Gtk::Orientation::VERTICAL) {}
+
+void HistoryView::Show(const CentrePage& shown) {
+  Clear(*this);
+  const HistoryPage& page = shown.history;
+  auto* all = Gtk::make_managed<Gtk::Box>(Gtk::Orientation::VERTICAL);
+  all->add_css_class("page");
+  all->set_spacing(kGap);
+  all->append(MakeHead(page));
+  auto* columns = Gtk::make_managed<Gtk::Box>();
+  columns->set_spacing(kGap);
+  columns->append(MakeList(page));
+  columns->append(MakeLearning(page));
+  all->append(*columns);
+  append(MakePage(*all));
+}
+
+Gtk::Box& HistoryView::MakeHead(const HistoryPage& page) {
+  Gtk::Box& head = gui::MakeRow(10, {});
+  Gtk::Label& title = MakeLine("History: " + (page.who.empty() ? std::string("…") : page.who), "page-title");
+  title.set_hexpand(true);
+  head.append(title);
+  head.append(MakeLine("Task", "name"));
+  auto* tasks = Gtk::make_managed<Gtk::DropDown>();
+  std::vector<Glib::ustring> names = {"All tasks"};
+  guint chosen = 0;
+  for (const HistoryPage::Task& task : page.tasks) {
+    if (task.key == page.query.task) chosen = static_cast<guint>(names.size());
+    names.push_back(task.name);
+  }
+  tasks->set_model(Gtk::StringList::create(names));
+  tasks->set_selected(chosen);
+  tasks->set_size_request(kTaskWidth, -1);
+  tasks->property_selected().signal_changed().connect([this, tasks, list = page.tasks] {
+    const guint now = tasks->get_selected();
+    presenter_->ChooseTask(now == 0 || now > list.size() ? std::string() : list[now - 1].key);
+  });
+  head.append(*tasks);
+  return head;
+}
+
+Gtk::Widget& HistoryView::MakeList(const HistoryPage& page) {
+  Gtk::Box& card = MakeCard("Attempts, the newest first");
+  card.set_hexpand(true);
+  card.set_valign(Gtk::Align::START);
+  if (page.rows.empty()) {
+    card.append(MakeText(
+        "No attempt is kept here yet. Every attempt in the simulator enters by itself when it has ended.",
+        "value"));
+    return card;
+  }
+  const bool is_everyone = page.query.person.empty();
+  std::vector<std::string> head = {"when", "task", "outcome", "score", "time", "", ""};
+  if (is_everyone) head.insert(head.begin() + 1, "who");
+  auto* table = Gtk::make_managed<Table>(head);
+  for (const HistoryPage::Row& row : page.rows) {
+    table->AddText(row.when);
+    if (is_everyone) table->AddText(row.person);
+    table->AddText(row.task, "value", true);
+    table->AddText(row.outcome, StyleOf(row.tone));
+    table->AddText(row.score);
+    table->AddText(row.time);
+    Gtk::Button& result = MakeButton(
+        "Result", [this, row] { presenter_->OpenResultOf(row); }, "small");
+    Gtk::Button& replay = MakeButton(
+        "Replay", [this, row] { presenter_->OpenReplayOf(row); }, "small");
+    for (Gtk::Button* button : {&result, &replay}) {
+      button->set_sensitive(!row.recording.empty());
+      if (row.recording.empty()) button->set_tooltip_text("Its recording is not on this computer");
+      table->Add(*button);
+    }
+    table->EndRow();
+  }
+  card.append(*table);
+  Gtk::Box& pages = gui::MakeRow(8, {});
+  Gtk::Button& newest = MakeButton("Newest", [this] { presenter_->GoToFirstPage(); });
+  newest.set_sensitive(!page.query.page.empty());
+  Gtk::Button& older = MakeButton("Older", [this] { presenter_->GoToNextPage(); });
+  older.set_sensitive(!page.next.empty());
+  pages.append(newest);
+  pages.append(older);
+  card.append(pages);
+  return card;
+}
+
+Gtk::Box& HistoryView::MakeLearning(const HistoryPage& page) {
+  Gtk::Box& card =
+      MakeCard("How it is learnt" + (page.level.empty() ? std::string() : ", level " + page.level));
+  card.set_size_request(kPlotWidth, -1);
+  card.set_valign(Gtk::Align::START);
+  if (page.query.task.empty()) {
+    card.append(MakeText("Choose a task to see its learning curve.", "value"));
+    return card;
+  }
+  if (page.drawings.empty() && page.findings.empty())
+    card.append(MakeText("There is no attempt at this task.", "value"));
+  for (const std::string& finding : page.findings) card.append(MakeText(finding, "value"));
+  for (const report::Drawing& drawing : page.drawings) card.append(MakePlot(drawing, kPlotWidth));
+  return card;
+}
+
+}  // namespace trocar::centre

@@ -1,0 +1,408 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <cstdio>
+#include <ctime>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "command.h"
+#include "console.h"
+#include "judgement_text.h"
+#include "trocar/assessment/attempt.h"
+#include "trocar/assessment/course.h"
+#include "trocar/assessment/judge_recording.h"
+#include "trocar/assessment/learning.h"
+#include "trocar/assessment/preparation.h"
+
+namespace trocar::cli {
+namespace {
+
+using assessment::Attempt;
+using assessment::Course;
+using assessment::Step;
+using nlohmann::ordered_json;
+
+constexpr std::size_t kWidth = 100;  // of printed words [columns]
+
+void PrintParagraph(const std::string& text, const std::string& indent) {
+  std::fputs(WrapText(text, kWidth, indent).c_str(), stdout);
+}
+
+std::string WhatOf(const Step& step) {
+  if (!step.IsOperation()) return step.task + ", level " + step.level;
+  std::string text = step.operation;
+  if (!step.patient.Text().empty()) text += ", patient " + step.patient.Text();
+  if (step.from != assessment::Milestone::kStart) text += ", from " + std::string(NameOf(step.from));
+  return text + ", " + std::string(DescribeUntil(step.until));
+}
+
+std::string PassesOf(const Step& step) {
+  std::string text =
+      std::to_string(step.consecutive_passes) + (step.consecutive_passes == 1 ? " pass" : " passes in a row");
+  if (step.passes > step.consecutive_passes) text += ", " + std::to_string(step.passes) + " in all";
+  return text;
+}
+
+core::Status List() {
+  const auto courses = assessment::ListCourses();
+  if (!courses.ok()) return courses.error();
+  std::vector<std::vector<std::string>> rows = {{"course", "steps", "name"}};
+  for (const Course& course : *courses)
+    rows.push_back({course.key, std::to_string(course.steps.size()), course.name});
+  std::fputs(FormatTable(rows).c_str(), stdout);
+  return {};
+}
+
+void PrintStep(const Step& step) {
+  std::printf("%s: %s\n", step.key.c_str(), step.name.c_str());
+  PrintParagraph(step.goal, "  ");
+  std::printf("  %s; %s\n", WhatOf(step).c_str(), PassesOf(step).c_str());
+  if (!step.prerequisites.empty()) {
+    std::string text;
+    for (const std::string& key : step.prerequisites) text += (text.empty() ? "" : ", ") + key;
+    std::printf("  after %s\n", text.c_str());
+  }
+  for (const auto& threshold : step.proficiency.thresholds)
+    std::printf("  %s\n", DescribeThreshold(threshold).c_str());
+}
+
+core::Status Show(const std::string& name, const std::string& step_key) {
+  const auto course = assessment::FindCourse(name);
+  if (!course.ok()) return course.error();
+  if (!step_key.empty()) {
+    const auto step = assessment::FindStep(*course, step_key);
+    if (!step.ok()) return step.error();
+    PrintStep(*step);
+    for (const auto& [heading, text] :
+         {std::pair{"Before", &step->briefing}, std::pair{"Passed", &step->after_pass},
+          std::pair{"Not passed", &step->after_fail}}) {
+      std::printf("\n%s\n", heading);
+      PrintParagraph(*text, "  ");
+    }
+    return {};
+  }
+  std::printf("%s\n", course->name.c_str());
+  PrintParagraph(course->about, "");
+  for (const Step& step : course->steps) {
+    std::printf("\n");
+    PrintStep(step);
+  }
+  return {};
+}
+
+core::Status Start(const std::string& name, const std::string& step_key, const std::string& cache,
+                   int threads) {
+  const auto course = assessment::FindCourse(name);
+  if (!course.ok()) return course.error();
+  const auto step = assessment::FindStep(*course, step_key);
+  if (!step.ok()) return step.error();
+  assessment::PreparationSettings settings;
+  settings.cache = cache;
+  settings.threads = threads;
+  ProgressBar bar("the expert operates up to this step", 600.0);
+  settings.progress = [&](double seconds, const std::string& doing) {
+    bar.SetLabel(FormatNumber(seconds, 3) + " s, " + doing);
+    bar.Show(seconds);
+    return true;
+  };
+  const auto prepared = assessment::PrepareStep(*step, settings);
+  bar.Finish();
+  if (!prepared.ok()) return prepared.error();
+  std::printf("%s\n", step->name.c_str());
+  PrintParagraph(step->briefing, "");
+  std::string command =
+      " --task " + (step->IsOperation() ? step->operation : step->task + " --level " + step->level);
+  if (step->seed) command += " --seed " + std::to_string(*step->seed);
+  if (!prepared->patient.empty()) command += " --patient " + prepared->patient.string();
+  if (!prepared->state.empty()) {
+    std::printf("\nThe operation stands at \"%s\", %s s on%s:\n  %s\n",
+                std::string(NameOf(step->from)).c_str(), FormatNumber(prepared->seconds, 4).c_str(),
+                prepared->was_cached ? " (kept from before)" : "", prepared->state.c_str());
+    command += " --restore " + prepared->state.string();
+  }
+  std::printf("\nLet the scripted expert do it:\n  trocar play expert%s --record attempt.trocar\n",
+              command.c_str());
+  std::printf("Judge a recording of it:\n  trocar course judge %s %s attempt.trocar\n", name.c_str(),
+              step_key.c_str());
+  return {};
+}
+
+struct JudgeArguments {
+  std::string course, step, recording, attempts, cache;
+  int threads = 1;
+  bool is_json = false;
+};
+
+core::Status Judge(const JudgeArguments& arguments, Outcome& outcome) {
+  const auto course = assessment::FindCourse(arguments.course);
+  if (!course.ok()) return course.error();
+  const auto step = assessment::FindStep(*course, arguments.step);
+  if (!step.ok()) return step.error();
+  if (!arguments.attempts.empty()) {
+    std::vector<Attempt> before;
+    std::error_code ignored;
+    if (std::filesystem::exists(arguments.attempts, ignored)) {
+      auto read = assessment::ReadAttempts(arguments.attempts);
+      if (!read.ok()) return read.error();
+      before = std::move(*read);
+    }
+    const auto progress = assessment::CalcProgress(*course, before);
+    for (const auto& now : progress.steps) {
+      if (now.key != step->key || now.state != assessment::StepState::kLocked) continue;
+      return core::Error{core::ErrorCode::kStepLocked,
+                         "the step \"" + step->key + "\" is locked until \"" + now.locked_by.front() +
+                             "\" is done; judge it without --attempts to practise"};
+    }
+  }
+  auto recording = record::ReadRecording(arguments.recording);
+  if (!recording.ok()) return recording.error();
+  ProgressBar bar("replaying", 1.0);
+  assessment::ReplaySettings settings;
+  settings.threads = arguments.threads;
+  settings.progress = [&](double share) { bar.Show(share); };
+  auto attempt = assessment::MakeAttempt(std::move(*recording), *course, *step, arguments.cache, settings);
+  bar.Finish();
+  if (!attempt.ok()) return attempt.error();
+  attempt->recording = arguments.recording;
+  const auto verdict = assessment::Judge(step->proficiency, attempt->result);
+  if (!arguments.attempts.empty()) {
+    if (const auto kept = assessment::AppendAttempt(arguments.attempts, *attempt); !kept.ok()) return kept;
+  }
+  outcome.has_finding = !verdict.is_passed;
+  if (arguments.is_json) {
+    std::printf("%s\n", VerdictJson(verdict).dump(2).c_str());
+    return {};
+  }
+  std::printf("%s: %s\n", step->name.c_str(), verdict.is_passed ? "PASSED" : "not passed");
+  PrintVerdict(verdict);
+  std::printf("\n");
+  PrintParagraph(verdict.is_passed ? step->after_pass : step->after_fail, "");
+  std::printf("Training feedback, not certified assessment.\n");
+  return {};
+}
+
+/// Time of an attempt, for its learning curve.
+const double* TimeOf(const Attempt& attempt) {
+  const auto& metrics = attempt.result.metrics;
+  const double* time = metrics.Find("task_time");
+  return time != nullptr ? time : metrics.Find("time");
+}
+
+/// What the attempts at one step say of learning, a line each.
+std::vector<std::string> DescribeLearning(const Course& course, const Step& step,
+                                          const std::vector<Attempt>& all) {
+  std::vector<double> times;
+  std::vector<bool> failed;
+  for (const Attempt& attempt : all) {
+    if (!IsAttemptAt(course, step, attempt)) continue;
+    failed.push_back(!assessment::Judge(step.proficiency, attempt.result).is_passed);
+    if (const double* time = TimeOf(attempt); time != nullptr && attempt.result.is_completed)
+      times.push_back(*time);
+  }
+  std::vector<std::string> lines;
+  if (failed.empty()) return lines;
+  if (const auto curve = assessment::FitLearningCurve(times); curve.ok()) {
+    lines.push_back(
+        curve->gain == 0
+            ? "time: no learning to be seen in " + std::to_string(times.size()) + " completed attempts"
+            : "time: " + FormatNumber(curve->plateau, 3) + " + " + FormatNumber(curve->gain, 3) + " n^-" +
+                  FormatNumber(curve->rate, 3) + " s, " + FormatNumber(curve->rms, 2) + " s unexplained" +
+                  (curve->is_rate_at_bound ? "; too few attempts to tell where it leads" : ""));
+  } else {
+    lines.push_back("time: " + curve.error().message);
+  }
+  if (const auto trend = assessment::CalcTrend(times, assessment::Better::kLower); trend.ok()) {
+    const char* const words[] = {"no trend", "getting faster", "getting slower"};
+    lines.push_back("trend: " + std::string(words[static_cast<int>(trend->verdict)]) + ", " +
+                    FormatNumber(trend->slope, 2) +
+                    " s an attempt (p = " + FormatNumber(trend->probability, 2) + ")");
+  }
+  if (const auto cusum = assessment::CalcCusum(failed); cusum.ok()) {
+    const char* const words[] = {"undecided", "the failure rate is acceptable",
+                                 "the failure rate is too high"};
+    lines.push_back("CUSUM: " + FormatNumber(cusum->values.back(), 3) + " between " +
+                    FormatNumber(cusum->h0, 3) + " and " + FormatNumber(cusum->h1, 3) + ": " +
+                    words[static_cast<int>(cusum->verdict)]);
+  }
+  return lines;
+}
+
+struct ProgressArguments {
+  std::string course, attempts, started, today;
+  bool is_json = false;
+};
+
+std::string Today() {
+  const std::time_t now = std::time(nullptr);
+  std::tm parts{};
+  localtime_r(&now, &parts);
+  char text[16];
+  std::strftime(text, sizeof text, "%Y-%m-%d", &parts);
+  return text;
+}
+
+core::Result<assessment::CourseDates> ReadDates(const ProgressArguments& arguments) {
+  assessment::CourseDates dates;
+  const auto read = [](const std::string& text, std::optional<std::chrono::sys_days>& day) {
+    if (text.empty()) return true;
+    day = assessment::ParseDay(text);
+    return day.has_value();
+  };
+  if (!read(arguments.started, dates.started) ||
+      !read(arguments.today.empty() ? Today() : arguments.today, dates.today))
+    return core::Error{core::ErrorCode::kUsage, "a day is written like 2026-11-25"};
+  return dates;
+}
+
+core::Status Progress(const ProgressArguments& arguments) {
+  const auto course = assessment::FindCourse(arguments.course);
+  if (!course.ok()) return course.error();
+  const auto attempts = assessment::ReadAttempts(arguments.attempts);
+  if (!attempts.ok()) return attempts.error();
+  const auto dates = ReadDates(arguments);
+  if (!dates.ok()) return dates.error();
+  const auto progress = assessment::CalcProgress(*course, *attempts, *dates);
+  if (arguments.is_json) {
+    ordered_json json = {
+        {"course", course->key},
+        {"done", progress.IsDone()},
+        {"next", progress.next ? ordered_json(progress.steps[*progress.next].key) : ordered_json()},
+        {"steps", ordered_json::array()}};
+    for (const auto& now : progress.steps) {
+      json["steps"].push_back(
+          {{"step", now.key},
+           {"state", NameOf(now.state)},
+           {"attempts", now.attempts},
+           {"passes", now.passes},
+           {"longest_run", now.longest_run},
+           {"locked_by", now.locked_by},
+           {"due", now.due ? ordered_json(assessment::FormatDay(*now.due)) : ordered_json()},
+           {"overdue", now.is_overdue}});
+    }
+    std::printf("%s\n", json.dump(2).c_str());
+    return {};
+  }
+  std::vector<std::vector<std::string>> rows = {{"step", "state", "attempts", "passed", "in a row", "due"}};
+  for (std::size_t i = 0; i < progress.steps.size(); ++i) {
+    const auto& now = progress.steps[i];
+    const Step& step = course->steps[i];
+    rows.push_back({now.key, std::string(NameOf(now.state)), std::to_string(now.attempts),
+                    std::to_string(now.passes) + " of " + std::to_string(step.passes),
+                    std::to_string(now.longest_run) + " of " + std::to_string(step.consecutive_passes),
+                    now.due ? assessment::FormatDay(*now.due) + (now.is_overdue ? ", overdue" : "") : "-"});
+  }
+  std::fputs(FormatTable(rows).c_str(), stdout);
+  for (const Step& step : course->steps) {
+    const auto lines = DescribeLearning(*course, step, *attempts);
+    if (!lines.empty()) std::printf("\n%s\n", step.name.c_str());
+    for (const std::string& line : lines) std::printf("  %s\n", line.c_str());
+  }
+  if (progress.next) {
+    std::printf("\nNext: %s\n", course->steps[*progress.next].name.c_str());
+  } else {
+    std::printf("\nThe course is done.\n");
+  }
+  return {};
+}
+
+void AddStart(CLI::App& course, Outcome& outcome) {
+  CLI::App* command = course.add_subcommand("start",
+                                            "Make a step ready: its patient, and the moment of the operation "
+                                            "from which it goes on; then its briefing");
+  auto name = std::make_shared<std::string>(), step = std::make_shared<std::string>(),
+       cache = std::make_shared<std::string>();
+  auto threads = std::make_shared<int>(1);
+  command->add_option("course", *name, "Course (trocar course list), or its file")
+      ->required()
+      ->type_name("COURSE");
+  command->add_option("step", *step, "Key of the step")->required()->type_name("STEP");
+  command->add_option("--cache", *cache, "Folder for what is made; the user's cache folder if not given")
+      ->type_name("DIR");
+  command->add_option("--threads", *threads, "Of the solver; the result is the same for any number")
+      ->check(CLI::Range(1, 256))
+      ->type_name("T")
+      ->capture_default_str();
+  command->footer(
+      "The first time the scripted expert operates up to the step, which takes minutes; then its state is "
+      "kept.\n"
+      "Example: trocar course start cholecystectomy bed");
+  command->callback([=, &outcome] { outcome.status = Start(*name, *step, *cache, *threads); });
+}
+
+void AddJudge(CLI::App& course, Outcome& outcome) {
+  CLI::App* command = course.add_subcommand(
+      "judge",
+      "Judge a recording by a step's thresholds, and say what comes after it; exit status 1 if not passed");
+  auto a = std::make_shared<JudgeArguments>();
+  command->add_option("course", a->course, "Course, or its file")->required()->type_name("COURSE");
+  command->add_option("step", a->step, "Key of the step")->required()->type_name("STEP");
+  command->add_option("recording", a->recording, "Recording of the attempt")->required()->type_name("FILE");
+  command->add_option("--attempts", a->attempts, "Add the attempt to this file, for trocar course progress")
+      ->type_name("FILE.json");
+  command->add_option("--cache", a->cache, "Folder for what is made; the user's cache folder if not given")
+      ->type_name("DIR");
+  command->add_option("--threads", a->threads, "Of the solver; the result is the same for any number")
+      ->check(CLI::Range(1, 256))
+      ->type_name("T")
+      ->capture_default_str();
+  command->add_flag("--json", a->is_json, "Machine-readable");
+  command->footer(
+      "Example: trocar course judge basic-skills peg_transfer attempt.trocar --attempts mine.json");
+  command->callback([a, &outcome] { outcome.status = Judge(*a, outcome); });
+}
+
+void AddProgress(CLI::App& course, Outcome& outcome) {
+  CLI::App* command = course.add_subcommand(
+      "progress", "Say which steps are done, open or locked, what is next and due, and how somebody learns");
+  auto a = std::make_shared<ProgressArguments>();
+  command->add_option("course", a->course, "Course, or its file")->required()->type_name("COURSE");
+  command->add_option("--attempts", a->attempts, "File that trocar course judge --attempts wrote")
+      ->required()
+      ->type_name("FILE.json");
+  command->add_option("--started", a->started, "Day on which the course began, for what is due")
+      ->type_name("DAY");
+  command->add_option("--today", a->today, "In place of the computer's day")->type_name("DAY");
+  command->add_flag("--json", a->is_json, "Machine-readable");
+  command->footer("Example: trocar course progress basic-skills --attempts mine.json --started 2026-11-02");
+  command->callback([a, &outcome] { outcome.status = Progress(*a); });
+}
+
+}  // namespace
+
+void AddCourseCommand(CLI::App& app, Outcome& outcome) {
+  CLI::App* command =
+      app.add_subcommand("course", "Courses: steps with goals, thresholds, and words before and after");
+  command->require_subcommand(1);
+  CLI::App* list = command->add_subcommand("list", "List the courses that are delivered");
+  list->callback([&outcome] { outcome.status = List(); });
+  CLI::App* show = command->add_subcommand("show", "Print a course, or one of its steps with all its words");
+  auto name = std::make_shared<std::string>(), step = std::make_shared<std::string>();
+  show->add_option("course", *name, "Course, or its file")->required()->type_name("COURSE");
+  show->add_option("step", *step, "Key of a step")->type_name("STEP");
+  show->callback([=, &outcome] { outcome.status = Show(*name, *step); });
+  CLI::App* check =
+      command->add_subcommand("check", "Say whether a course can be used, and if not, where and why");
+  auto file = std::make_shared<std::string>();
+  check->add_option("file", *file, "Course file (JSON)")->required()->type_name("FILE");
+  check->callback([=, &outcome] {
+    const auto course = assessment::ReadCourse(*file);
+    outcome.status = course.ok() ? core::Status() : core::Status(course.error());
+    if (!course.ok()) return;
+    std::printf("%s: %zu steps, usable\n", file->c_str(), course->steps.size());
+    for (const Step& one : course->steps) {
+      if (one.proficiency.thresholds.empty())
+        std::printf("  %s has no thresholds: whoever completes it passes\n", one.key.c_str());
+    }
+  });
+  AddStart(*command, outcome);
+  AddJudge(*command, outcome);
+  AddProgress(*command, outcome);
+  command->footer("Example: trocar course show basic-skills");
+}
+
+}  // namespace trocar::cli

@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "attempt_page.h"
+#include "command.h"
+#include "console.h"
+#include "trocar/core/safe_file.h"
+#include "trocar/report/rating.h"
+
+namespace trocar::cli {
+namespace {
+
+using nlohmann::ordered_json;
+
+struct FormArguments {
+  std::string form, output;
+};
+
+core::Status WriteForm(const FormArguments& arguments) {
+  const auto form = report::FindRatingForm(arguments.form);
+  if (!form.ok()) return form.error();
+  if (arguments.output.empty()) {
+    std::printf("%s\n%s\n", form->name.c_str(), form->about.c_str());
+    for (const report::RatingItem& item : form->items)
+      std::printf("\n  %s=1..5   %s\n    1 %s\n    3 %s\n    5 %s\n", item.key.c_str(), item.name.c_str(),
+                  item.lowest.c_str(), item.middle.c_str(), item.highest.c_str());
+    std::printf("\nSource: %s\n", form->source.c_str());
+    return {};
+  }
+  const auto kind = FindReportKind(arguments.output);
+  if (!kind.ok() || *kind == ReportKind::kCsv || *kind == ReportKind::kJson)
+    return core::Error{core::ErrorCode::kUsage, "a form is written to .html or .pdf"};
+  const report::Document sheet = report::MakeRatingSheet(*form);
+  const core::Status written = core::WriteFile(
+      arguments.output, *kind == ReportKind::kPdf ? report::FormatPdf(sheet) : report::FormatHtml(sheet));
+  if (written.ok()) std::printf("Wrote %s, to be printed\n", arguments.output.c_str());
+  return written;
+}
+
+struct EnterArguments {
+  report::Rating rating;
+  std::vector<std::string> points;
+  std::string output;
+};
+
+core::Status Enter(EnterArguments arguments) {
+  const auto form = report::FindRatingForm(arguments.rating.form);
+  if (!form.ok()) return form.error();
+  auto points = report::ParsePoints(*form, arguments.points);
+  if (!points.ok()) return points.error();
+  arguments.rating.form = form->key;
+  arguments.rating.points = std::move(*points);
+  arguments.rating.attempt = std::filesystem::path(arguments.rating.attempt).filename().string();
+  const std::string text = report::FormatRating(arguments.rating);
+  if (arguments.output.empty()) {
+    std::fputs(text.c_str(), stdout);
+    return {};
+  }
+  if (const auto written = core::WriteFile(arguments.output, text); !written.ok()) return written;
+  std::printf("%s: %d of %zu points, in %s\n", form->name.c_str(), arguments.rating.Sum(),
+              form->items.size() * report::kMostPoints, arguments.output.c_str());
+  return {};
+}
+
+struct AgreementArguments {
+  std::vector<std::string> files;
+  double confidence = 95;  // [%]
+  bool is_json = false;
+};
+
+ordered_json IccJson(const report::Icc& icc) {
+  return {{"value", icc.value}, {"low", icc.low}, {"high", icc.high}};
+}
+
+void PrintAgreement(const report::RatingForm& form, const report::FormAgreement& agreement,
+                    double confidence) {
+  std::printf("%s: %zu raters of %zu attempts; interval of %s %%\n\n", form.name.c_str(),
+              agreement.raters.size(), agreement.attempts.size(), FormatNumber(confidence, 3).c_str());
+  std::vector<std::vector<std::string>> rows = {
+      {"of", "ICC(2,1)", "interval", "ICC(2,k)", "interval", "ICC(3,1)", "interval", "one rater agrees"}};
+  const auto number = [](double value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.2f", value);
+    return std::string(text);
+  };
+  const auto interval = [&](const report::Icc& icc) { return number(icc.low) + " to " + number(icc.high); };
+  for (const auto& [of, icc] : agreement.of) {
+    rows.push_back({of, number(icc.two_random.value), interval(icc.two_random),
+                    number(icc.two_random_mean.value), interval(icc.two_random_mean),
+                    number(icc.three_fixed.value), interval(icc.three_fixed),
+                    std::string(report::DescribeAgreement(icc.two_random.value))});
+  }
+  std::fputs(FormatTable(rows).c_str(), stdout);
+  std::printf(
+      "\nICC(2,1): one rater, of any; ICC(2,k): the mean of these many; ICC(3,1): one of these raters, who "
+      "may differ by a constant.\n"
+      "Items whose ratings do not vary are left out. Words: Koo and Li 2016. Judge by the interval, not the "
+      "value alone.\n");
+}
+
+core::Status Compare(const AgreementArguments& arguments) {
+  std::vector<report::Rating> ratings;
+  for (const std::string& file : arguments.files) {
+    auto rating = report::ReadRating(file);
+    if (!rating.ok()) return rating.error();
+    ratings.push_back(std::move(*rating));
+  }
+  const auto form = report::FindRatingForm(ratings.front().form);
+  if (!form.ok()) return form.error();
+  const auto agreement = report::CompareRatings(*form, ratings, arguments.confidence / 100);
+  if (!agreement.ok()) return agreement.error();
+  if (!arguments.is_json) {
+    PrintAgreement(*form, *agreement, arguments.confidence);
+    return {};
+  }
+  ordered_json json = {{"form", form->key},
+                       {"attempts", agreement->attempts},
+                       {"raters", agreement->raters},
+                       {"confidence", arguments.confidence / 100},
+                       {"of", ordered_json::object()}};
+  for (const auto& [of, icc] : agreement->of) {
+    json["of"][of] = {{"icc_1_1", IccJson(icc.one_random)},      {"icc_2_1", IccJson(icc.two_random)},
+                      {"icc_3_1", IccJson(icc.three_fixed)},     {"icc_1_k", IccJson(icc.one_random_mean)},
+                      {"icc_2_k", IccJson(icc.two_random_mean)}, {"icc_3_k", IccJson(icc.three_fixed_mean)}};
+  }
+  std::printf("%s\n", json.dump(2, ' ', false, ordered_json::error_handler_t::replace).c_str());
+  return {};
+}
+
+void AddForm(CLI::App& rating, Outcome& outcome) {
+  CLI::App* command = rating.add_subcommand("form", "Show a form, or write it to be printed");
+  auto arguments = std::make_shared<FormArguments>();
+  command->add_option("form", arguments->form, "goals, osats, or a file of your own")
+      ->required()
+      ->type_name("FORM");
+  command->add_option("-o,--output", arguments->output, "To .html or .pdf; none: show its items")
+      ->type_name("FILE");
+  command->callback([arguments, &outcome] { outcome.status = WriteForm(*arguments); });
+}
+
+void AddEnter(CLI::App& rating, Outcome& outcome) {
+  CLI::App* command = rating.add_subcommand("enter", "Keep what somebody gave an attempt, as JSON");
+  auto arguments = std::make_shared<EnterArguments>();
+  command->add_option("form", arguments->rating.form, "goals, osats, or a file of your own")
+      ->required()
+      ->type_name("FORM");
+  command->add_option("points", arguments->points, "Points of every item, such as depth_perception=4")
+      ->required()
+      ->type_name("ITEM=1..5");
+  command->add_option("--attempt", arguments->rating.attempt, "What was rated: the recording")
+      ->required()
+      ->type_name("FILE");
+  command->add_option("--rater", arguments->rating.rater, "Pseudonym of the rater")
+      ->required()
+      ->type_name("PSEUDONYM");
+  command->add_option("--date", arguments->rating.rated, "When, such as 2026-11-24T22:50:20+01:00")
+      ->type_name("DATE");
+  command->add_option("--remarks", arguments->rating.remarks, "Free text")->type_name("TEXT");
+  command->add_option("-o,--output", arguments->output, "File to write; none: print it")->type_name("FILE");
+  command->callback([arguments, &outcome] { outcome.status = Enter(*arguments); });
+}
+
+void AddAgreement(CLI::App& rating, Outcome& outcome) {
+  CLI::App* command = rating.add_subcommand(
+      "agreement", "Say how well raters agree: intraclass correlation of Shrout and Fleiss");
+  auto arguments = std::make_shared<AgreementArguments>();
+  command->add_option("files", arguments->files, "Ratings of one form: every rater of every attempt")
+      ->required()
+      ->type_name("FILE");
+  command->add_option("--confidence", arguments->confidence, "Of the intervals [%]")
+      ->check(CLI::Range(50.0, 99.9))
+      ->type_name("P")
+      ->capture_default_str();
+  command->add_flag("--json", arguments->is_json, "Machine-readable, with all six coefficients");
+  command->callback([arguments, &outcome] { outcome.status = Compare(*arguments); });
+}
+
+}  // namespace
+
+void AddRatingCommand(CLI::App& app, Outcome& outcome) {
+  CLI::App* command = app.add_subcommand(
+      "rating", "What people think of an attempt: GOALS and OSATS forms, and how well raters agree");
+  command->require_subcommand(1);
+  AddForm(*command, outcome);
+  AddEnter(*command, outcome);
+  AddAgreement(*command, outcome);
+  command->footer(
+      "Examples:\n"
+      "  trocar rating form goals -o goals.pdf\n"
+      "  trocar rating enter goals depth_perception=4 bimanual_dexterity=3 efficiency=3 tissue_handling=4 "
+      "autonomy=5 \\\n"
+      "    --attempt attempt.trocar --rater I-2 -o rating.json\n"
+      "  trocar rating agreement ratings/*.json");
+}
+
+}  // namespace trocar::cli

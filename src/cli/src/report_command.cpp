@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "attempt_page.h"
+#include "command.h"
+#include "trocar/core/safe_file.h"
+#include "trocar/report/report_files.h"
+
+namespace trocar::cli {
+namespace {
+
+struct ReportArguments {
+  std::vector<std::string> files;
+  std::string output, person;
+  int threads = 1;
+  bool is_dictionary = false;
+};
+
+core::Status WriteDictionary(const ReportArguments& arguments) {
+  const std::string text = report::FormatDictionaryCsv();
+  if (!arguments.output.empty()) return core::WriteFile(arguments.output, text);
+  std::fputs(text.c_str(), stdout);
+  return {};
+}
+
+core::Status Report(ReportArguments arguments) {
+  if (arguments.is_dictionary) return WriteDictionary(arguments);
+  if (arguments.files.empty())
+    return core::Error{core::ErrorCode::kUsage, "name a recording, or several of one person"};
+  if (arguments.output.empty()) {
+    arguments.output = arguments.files.size() == 1
+                           ? std::filesystem::path(arguments.files[0]).replace_extension(".html").string()
+                           : "trainee.html";
+  }
+  // a wrong ending is told before minutes of replaying
+  if (const auto kind = FindReportKind(arguments.output); !kind.ok()) return kind.error();
+  std::vector<report::AttemptReport> reports;
+  for (const std::string& file : arguments.files) {
+    auto made = ReportRecording(file, arguments.person, arguments.threads);
+    if (!made.ok()) return made.error();
+    reports.push_back(std::move(*made));
+  }
+  std::stable_sort(reports.begin(), reports.end(),
+                   [](const report::AttemptReport& a, const report::AttemptReport& b) {
+                     return a.facts.started < b.facts.started;
+                   });
+  const core::Status written = reports.size() == 1
+                                   ? WriteReport(reports[0], arguments.output)
+                                   : WriteReport(report::MakeTraineeReport(reports), arguments.output);
+  if (!written.ok()) return written;
+  if (reports.size() == 1) std::printf("%s\n", reports[0].outcome.c_str());
+  std::printf("Wrote %s\n", arguments.output.c_str());
+  return {};
+}
+
+}  // namespace
+
+void AddReportCommand(CLI::App& app, Outcome& outcome) {
+  CLI::App* command =
+      app.add_subcommand("report", "Write what a recorded attempt came to, for people or for other programs");
+  auto arguments = std::make_shared<ReportArguments>();
+  command
+      ->add_option("files", arguments->files,
+                   "A recording; or several of one person, for a report of the trainee")
+      ->type_name("FILE");
+  command
+      ->add_option("-o,--output", arguments->output,
+                   "What to write: .html (one file, no network), .pdf, .csv or .json [the recording's name "
+                   "with .html]")
+      ->type_name("FILE");
+  command->add_option("--person", arguments->person, "Pseudonym of whose attempt it is")
+      ->type_name("PSEUDONYM");
+  command->add_option("--threads", arguments->threads, "Of the solver; the report is the same for any number")
+      ->check(CLI::Range(1, 256))
+      ->type_name("T")
+      ->capture_default_str();
+  command->add_flag("--dictionary", arguments->is_dictionary,
+                    "Only write what every column of CSV and field of JSON means, as CSV");
+  command->footer(
+      "Several recordings give the trainee's report: attempts, curves, what to practise.\n"
+      "Examples:\n"
+      "  trocar report attempt.trocar -o attempt.pdf --person T-7F3K2Q\n"
+      "  trocar report monday.trocar tuesday.trocar --person T-7F3K2Q -o trainee.html");
+  command->callback([arguments, &outcome] { outcome.status = Report(*arguments); });
+}
+
+}  // namespace trocar::cli

@@ -1,0 +1,418 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <chrono>
+#include <utility>
+
+#include "command.h"
+#include "console.h"
+#include "store_console.h"
+#include "trocar/core/log.h"
+#include "trocar/record/recording.h"
+#include "trocar/store/attempts.h"
+#include "trocar/store/keep_attempt.h"
+#include "trocar/store/maintenance.h"
+
+namespace trocar::cli {
+namespace {
+
+using nlohmann::ordered_json;
+using Options = std::shared_ptr<StoreOptions>;
+
+std::int64_t NowMilliseconds() {
+  return std::chrono::duration_cast<std::chrono::milliseconds>(
+             std::chrono::system_clock::now().time_since_epoch())
+      .count();
+}
+
+void AddInfo(CLI::App& parent, const Options& options, Outcome& outcome) {
+  CLI::App* command = parent.add_subcommand("info", "Say where the store is, and how much is in it");
+  OnStore(*command, options, outcome, [options](StoreSession& session) -> core::Status {
+    const auto counts = CountAll(session.store, session.viewer);
+    if (!counts.ok()) return counts.error();
+    const auto version = session.store.ReadVersion();
+    if (!version.ok()) return version.error();
+    const auto days = ReadRetention(session.store);
+    if (!days.ok()) return days.error();
+    const store::Place& place = session.store.GetPlace();
+    const store::Spool spool(place);
+    if (options->is_json) {
+      PrintStoreJson({{"store", place.Text()},
+                      {"folder", place.folder.string()},
+                      {"database", place.IsPostgres() ? "postgresql" : "sqlite"},
+                      {"version", *version},
+                      {"people", counts->people},
+                      {"groups", counts->groups},
+                      {"courses", counts->courses},
+                      {"attempts", counts->attempts},
+                      {"certificates", counts->certificates},
+                      {"waiting", spool.CountWaiting()},
+                      {"held", spool.CountHeld()},
+                      {"retention_days", *days}});
+      return {};
+    }
+    std::fputs(FormatTable({{"store", place.Text()},
+                            {"database", std::string(place.IsPostgres() ? "PostgreSQL" : "SQLite") +
+                                             ", tables of version " + std::to_string(*version)},
+                            {"names, spool, backups", place.folder.string()},
+                            {"people", std::to_string(counts->people) + " in " +
+                                           std::to_string(counts->groups) + " groups"},
+                            {"courses", std::to_string(counts->courses)},
+                            {"attempts", std::to_string(counts->attempts)},
+                            {"certificates", std::to_string(counts->certificates)},
+                            {"waiting in the spool", std::to_string(spool.CountWaiting()) + ", held " +
+                                                         std::to_string(spool.CountHeld())},
+                            {"attempts are kept", *days == 0 ? "for ever" : std::to_string(*days) + " days"}})
+                   .c_str(),
+               stdout);
+    return {};
+  });
+}
+
+std::string Result(const store::Attempt& attempt) {
+  if (!attempt.is_completed) return "not completed";
+  return !attempt.is_passed ? "completed" : *attempt.is_passed ? "passed" : "not passed";
+}
+
+ordered_json AttemptJson(const store::StoredAttempt& stored) {
+  const store::Attempt& a = stored.attempt;
+  return {{"id", stored.id},
+          {"recording_id", JsonText(a.recording_id)},
+          {"started", JsonText(a.started)},
+          {"trainee", a.trainee.empty() ? ordered_json() : JsonText(a.trainee)},
+          {"task", JsonText(a.task)},
+          {"level", JsonText(a.level)},
+          {"patient", JsonText(a.patient)},
+          {"seed", std::to_string(a.seed)},
+          {"seconds", a.seconds},
+          {"completed", a.is_completed},
+          {"passed", a.is_passed ? ordered_json(*a.is_passed) : ordered_json()},
+          {"score", a.score ? ordered_json(*a.score) : ordered_json()},
+          {"recording", JsonText(a.recording)}};
+}
+
+void AddAttempts(CLI::App& parent, const Options& options, Outcome& outcome) {
+  CLI::App* command = parent.add_subcommand("attempts", "List attempts, the newest first, a page at a time");
+  struct Arguments {
+    store::AttemptFilter filter;
+    std::string page;
+    int limit = 20;
+  };
+  auto arguments = std::make_shared<Arguments>();
+  command->add_option("--trainee", arguments->filter.trainee, "Of one trainee")->type_name("PSEUDONYM");
+  command->add_option("--group", arguments->filter.group, "Of the members of a group")->type_name("GROUP");
+  command->add_option("--task", arguments->filter.task, "Of one task")->type_name("TASK");
+  command->add_option("--limit", arguments->limit, "How many")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  command->add_option("--page", arguments->page, "Go on where a page ended: it says how")->type_name("PAGE");
+  OnStore(*command, options, outcome, [options, arguments](StoreSession& session) -> core::Status {
+    const auto page =
+        ListAttempts(session.store, session.viewer, arguments->filter, arguments->page, arguments->limit);
+    if (!page.ok()) return page.error();
+    if (options->is_json) {
+      ordered_json json = {{"attempts", ordered_json::array()},
+                           {"next", page->next.empty() ? ordered_json() : ordered_json(page->next)}};
+      for (const store::StoredAttempt& stored : page->attempts)
+        json["attempts"].push_back(AttemptJson(stored));
+      PrintStoreJson(json);
+      return {};
+    }
+    std::vector<std::vector<std::string>> rows = {
+        {"started", "trainee", "task", "level", "s", "score", "result"}};
+    for (const store::StoredAttempt& stored : page->attempts) {
+      const store::Attempt& a = stored.attempt;
+      rows.push_back({Shown(a.started), a.trainee.empty() ? "-" : Shown(a.trainee), Shown(a.task),
+                      Shown(a.level), FormatNumber(a.seconds, 4), a.score ? FormatNumber(*a.score, 3) : "-",
+                      Result(a)});
+    }
+    if (page->attempts.empty())
+      std::printf("no attempts\n");
+    else
+      std::fputs(FormatTable(rows).c_str(), stdout);
+    if (!page->next.empty()) std::printf("more: --page %s\n", page->next.c_str());
+    return {};
+  });
+}
+
+void AddPercentile(CLI::App& parent, const Options& options, Outcome& outcome) {
+  CLI::App* command = parent.add_subcommand(
+      "percentile",
+      "Compare a trainee, or a value, with a group: each trainee's latest completed attempt counts");
+  struct Arguments {
+    store::MetricKey key;
+    std::string group, trainee;
+    double value = 0;
+  };
+  auto arguments = std::make_shared<Arguments>();
+  command->add_option("--task", arguments->key.task, "Which task")->required()->type_name("TASK");
+  command->add_option("--level", arguments->key.level, "Which level")->type_name("LEVEL");
+  command->add_option("--metric", arguments->key.metric, "Which number: score, seconds, or a metric")
+      ->default_str("score")
+      ->type_name("METRIC");
+  command->add_option("--hand", arguments->key.hand, "left or right, where it is of a hand")
+      ->type_name("HAND");
+  command->add_option("--group", arguments->group, "Which group; all trainees where none is named")
+      ->type_name("GROUP");
+  auto* trainee =
+      command->add_option("--trainee", arguments->trainee, "Whose latest value")->type_name("PSEUDONYM");
+  auto* value = command->add_option("--value", arguments->value, "Which value")->excludes(trainee);
+  OnStore(*command, options, outcome, [options, arguments, value](StoreSession& session) -> core::Status {
+    if (arguments->key.metric.empty()) arguments->key.metric = "score";
+    double compared = arguments->value;
+    if (!arguments->trainee.empty()) {
+      const auto standing = FindStanding(session.store, session.viewer, arguments->trainee, arguments->key);
+      if (!standing.ok()) return standing.error();
+      if (!*standing)
+        return core::Error{core::ErrorCode::kStoreUnknown, "this trainee has completed no such attempt"};
+      compared = (*standing)->latest;
+    } else if (value->count() == 0) {
+      return core::Error{core::ErrorCode::kUsage, "name --trainee or --value"};
+    }
+    const auto percentile =
+        CalcPercentile(session.store, session.viewer, arguments->group, arguments->key, compared);
+    if (!percentile.ok()) return percentile.error();
+    if (options->is_json) {
+      PrintStoreJson({{"value", compared},
+                      {"below", percentile->below},
+                      {"equal", percentile->equal},
+                      {"trainees", percentile->trainees},
+                      {"percentile", percentile->Percent()}});
+    } else if (percentile->trainees == 0) {
+      std::printf("nobody there has completed this\n");
+    } else {
+      std::printf("%s: higher than %lld and equal to %lld of %lld trainees (percentile %s)\n",
+                  FormatNumber(compared).c_str(), static_cast<long long>(percentile->below),
+                  static_cast<long long>(percentile->equal), static_cast<long long>(percentile->trainees),
+                  FormatNumber(percentile->Percent(), 3).c_str());
+    }
+    return {};
+  });
+}
+
+void AddAdd(CLI::App& parent, const Options& options, Outcome& outcome) {
+  CLI::App* command =
+      parent.add_subcommand("add", "Keep a recorded attempt; it waits where the store is away");
+  struct Arguments {
+    std::string file, trainee;
+  };
+  auto arguments = std::make_shared<Arguments>();
+  command->add_option("recording", arguments->file, "Recording")->required()->type_name("FILE");
+  command->add_option("--trainee", arguments->trainee, "Whose attempt it is")->type_name("PSEUDONYM");
+  AddStoreOptions(*command, options);
+  command->callback([options, arguments, &outcome] {
+    outcome.status = [&]() -> core::Status {
+      const auto recording = record::ReadRecording(arguments->file);
+      if (!recording.ok()) return recording.error();
+      auto attempt = store::DescribeAttempt(*recording, arguments->file);
+      if (!attempt.ok()) return attempt.error();
+      attempt->trainee = arguments->trainee;
+      const auto kept = store::KeepAttempt(store::FindPlace(options->url), *attempt);
+      if (!kept.ok()) return kept.error();
+      if (!kept->rebuilt.empty()) core::Log(core::LogLevel::kWarning, kept->rebuilt);
+      if (options->is_json)
+        PrintStoreJson({{"in_store", kept->is_in_store},
+                        {"why_not", kept->failure ? ordered_json(kept->failure->Text()) : ordered_json()}});
+      else
+        std::printf("%s\n",
+                    kept->is_in_store ? "the attempt is in the store" : "the attempt waits in the spool");
+      // a store that is away is no failure: the attempt is safe; one that is refused wants a person
+      if (kept->failure) std::fprintf(stderr, "trocar: %s\n", kept->failure->Text().c_str());
+      outcome.has_finding = !kept->is_in_store;
+      return {};
+    }();
+  });
+}
+
+void AddDeliver(CLI::App& parent, const Options& options, Outcome& outcome) {
+  CLI::App* command = parent.add_subcommand("deliver", "Bring waiting attempts into the store");
+  auto has_held = std::make_shared<bool>(false);
+  command->add_flag("--held", *has_held, "Also those of trainees that the store did not know");
+  OnStore(*command, options, outcome, [options, has_held](StoreSession& session) -> core::Status {
+    const store::Spool spool(session.store.GetPlace());
+    const store::DeliveryReport report =
+        *has_held ? spool.DeliverHeld(session.store) : spool.Deliver(session.store);
+    if (options->is_json) {
+      PrintStoreJson({{"added", report.added},
+                      {"known", report.known},
+                      {"held", report.held},
+                      {"damaged", report.damaged},
+                      {"waiting", spool.CountWaiting()}});
+    } else {
+      std::printf("%d attempts are new in the store, %d were there already, %zu wait\n", report.added,
+                  report.known, spool.CountWaiting());
+      if (report.held > 0)
+        std::printf("%d are of trainees that the store does not know: add them, then use --held\n",
+                    report.held);
+      if (report.damaged > 0)
+        std::printf("%d are damaged and lie in %s\n", report.damaged,
+                    (session.store.GetPlace().SpoolFolder() / "damaged").c_str());
+    }
+    return report.failure ? core::Status(*report.failure) : core::Status();
+  });
+}
+
+void AddTransfer(CLI::App& parent, const Options& options, Outcome& outcome) {
+  auto file = std::make_shared<std::string>();
+  CLI::App* exporting = parent.add_subcommand(
+      "export",
+      "Write everything to a JSON file, or the numbers of all attempts to a CSV file; names are not in it");
+  exporting->add_option("file", *file, "New file: .json or .csv")->required()->type_name("FILE");
+  OnStore(*exporting, options, outcome, [file](StoreSession& session) -> core::Status {
+    const bool is_csv = file->ends_with(".csv");
+    if (!is_csv && !file->ends_with(".json"))
+      return core::Error{core::ErrorCode::kUsage, "the file's name ends with .json or .csv"};
+    auto done = is_csv ? ExportCsv(session.store, session.viewer, *file)
+                       : ExportJson(session.store, session.viewer, *file);
+    if (done.ok()) std::printf("%s is written\n", file->c_str());
+    return done;
+  });
+  CLI::App* importing = parent.add_subcommand(
+      "import", "Add what an export or a backup of another store holds; what is here stays as it is");
+  importing->add_option("file", *file, "Export (JSON) or backup (SQLite)")->required()->type_name("FILE");
+  OnStore(*importing, options, outcome, [file, options](StoreSession& session) -> core::Status {
+    const auto report = Import(session.store, session.viewer, *file);
+    if (!report.ok()) return report.error();
+    if (options->is_json) {
+      PrintStoreJson({{"people", report->people},
+                      {"groups", report->groups},
+                      {"courses", report->courses},
+                      {"attempts", report->attempts},
+                      {"known", report->known}});
+    } else {
+      std::printf(
+          "new: %lld people, %lld groups, %lld courses, %lld attempts; %lld attempts were here already\n",
+          static_cast<long long>(report->people), static_cast<long long>(report->groups),
+          static_cast<long long>(report->courses), static_cast<long long>(report->attempts),
+          static_cast<long long>(report->known));
+    }
+    return {};
+  });
+}
+
+void AddBackup(CLI::App& parent, const Options& options, Outcome& outcome) {
+  auto file = std::make_shared<std::string>();
+  CLI::App* backup = parent.add_subcommand("backup",
+                                           "Write a checksummed copy of the store, also while others use it; "
+                                           "a store by itself, of either database");
+  backup->add_option("file", *file, "New file; without it one in the store's own folder, which keeps five")
+      ->type_name("FILE");
+  OnStore(*backup, options, outcome, [file, options](StoreSession& session) -> core::Status {
+    const auto made = BackUp(session.store, session.viewer, *file);
+    if (!made.ok()) return made.error();
+    options->is_json ? PrintStoreJson({{"backup", made->string()}})
+                     : static_cast<void>(std::printf("%s is written and checked\n", made->c_str()));
+    return {};
+  });
+  auto checked = std::make_shared<std::string>();
+  CLI::App* verify =
+      parent.add_subcommand("verify", "Check every page, reference and sum of the store, or of a backup");
+  verify->add_option("backup", *checked, "A backup in place of the store")->type_name("FILE");
+  AddStoreOptions(*verify, options);
+  verify->callback([checked, options, &outcome] {
+    if (!checked->empty()) {
+      outcome.status = store::VerifyBackup(*checked);
+    } else {
+      store::StoreSettings settings;
+      settings.only_look = true;
+      auto session = OpenSession(*options, settings);
+      outcome.status = session.ok() ? Verify(session->store) : core::Status(session.error());
+    }
+    if (outcome.status.ok()) std::printf("all is sound\n");
+  });
+  CLI::App* migrate =
+      parent.add_subcommand("migrate", "Make the store, or bring its tables to this program's version");
+  OnStore(*migrate, options, outcome, [](StoreSession& session) -> core::Status {
+    const auto version = session.store.ReadVersion();
+    if (!version.ok()) return version.error();
+    std::printf("the tables are of version %d\n", *version);
+    return {};
+  });
+}
+
+void AddKeeping(CLI::App& parent, const Options& options, Outcome& outcome) {
+  auto days = std::make_shared<int>(0);
+  CLI::App* retain =
+      parent.add_subcommand("retain", "Say how long attempts are kept; trocar store tidy applies it");
+  retain->add_option("--days", *days, "0: for ever")->required()->check(CLI::Range(0, 36500));
+  OnStore(*retain, options, outcome, [days](StoreSession& session) -> core::Status {
+    auto set = SetRetention(session.store, session.viewer, *days);
+    if (set.ok())
+      std::printf("attempts are kept %s\n",
+                  *days == 0 ? "for ever" : (std::to_string(*days) + " days").c_str());
+    return set;
+  });
+  CLI::App* tidy = parent.add_subcommand(
+      "tidy", "Remove attempts that are older than they may be, with their recordings, and make a backup");
+  OnStore(*tidy, options, outcome, [options](StoreSession& session) -> core::Status {
+    const auto report = Tidy(session.store, session.viewer, NowMilliseconds());
+    if (!report.ok()) return report.error();
+    if (options->is_json)
+      PrintStoreJson({{"attempts", report->attempts},
+                      {"recordings", report->recordings},
+                      {"backup", report->backup.string()}});
+    else
+      std::printf("%lld attempts and %d recordings are removed; backup: %s\n",
+                  static_cast<long long>(report->attempts), report->recordings, report->backup.c_str());
+    return {};
+  });
+}
+
+}  // namespace
+
+core::Result<StoreSession> OpenSession(const StoreOptions& options, store::StoreSettings settings) {
+  auto opened = store::Store::Open(store::FindPlace(options.url), settings);
+  if (!opened.ok()) return opened.error();
+  if (!opened->Rebuilt().empty()) core::Log(core::LogLevel::kWarning, opened->Rebuilt());
+  store::Viewer viewer = store::Viewer::Owner();
+  if (!options.viewer.empty()) {
+    const auto found = FindViewer(*opened, options.viewer);
+    if (!found.ok()) return found.error();
+    viewer = *found;
+  }
+  return StoreSession{std::move(*opened), viewer};
+}
+
+void AddStoreOptions(CLI::App& command, const std::shared_ptr<StoreOptions>& options) {
+  command
+      .add_option("--store", options->url, "SQLite file or postgresql://... (else TROCAR_STORE, else your own)")
+      ->type_name("URL");
+  command.add_option("--as", options->viewer, "Ask as this person: see and do what their role allows")
+      ->type_name("PSEUDONYM");
+  command.add_flag("--json", options->is_json, "Machine-readable");
+}
+
+void OnStore(CLI::App& command, const std::shared_ptr<StoreOptions>& options, Outcome& outcome,
+             StoreWork work) {
+  AddStoreOptions(command, options);
+  command.callback([options, &outcome, work = std::move(work)] {
+    auto session = OpenSession(*options);
+    outcome.status = session.ok() ? work(*session) : core::Status(session.error());
+  });
+}
+
+void PrintStoreJson(const ordered_json& json) {
+  std::printf("%s\n", json.dump(2, ' ', false, ordered_json::error_handler_t::replace).c_str());
+}
+
+void AddStoreCommand(CLI::App& app, Outcome& outcome) {
+  CLI::App* command =
+      app.add_subcommand("store", "Trainees, groups and attempts: list, compare, back up, export, erase");
+  command->require_subcommand(1);
+  auto options = std::make_shared<StoreOptions>();
+  AddInfo(*command, options, outcome);
+  AddStorePeopleCommands(*command, options, outcome);
+  AddAttempts(*command, options, outcome);
+  AddPercentile(*command, options, outcome);
+  AddAdd(*command, options, outcome);
+  AddDeliver(*command, options, outcome);
+  AddTransfer(*command, options, outcome);
+  AddBackup(*command, options, outcome);
+  AddKeeping(*command, options, outcome);
+  command->footer(
+      "Example: trocar store trainee add --name \"Ada Lovelace\"\n"
+      "         trocar store add attempt.trocar --trainee T-7F3K2Q");
+}
+
+}  // namespace trocar::cli

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file study_command.cpp  `trocar study`: which metrics find out what scripted people were made to be.
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "command.h"
+#include "console.h"
+#include "trocar/bench/benchmark.h"
+#include "trocar/bench/validity_study.h"
+#include "trocar/core/safe_file.h"
+
+namespace trocar::cli {
+namespace {
+
+struct StudyArguments {
+  bench::StudyOptions options;
+  std::string output;
+  bool has_levels_only = false;
+};
+
+core::Status WriteStudy(const StudyArguments& arguments, const std::vector<bench::StudyAttempt>& attempts) {
+  const auto findings = bench::FindOutOfStudy(arguments.options, attempts);
+  const std::filesystem::path folder = arguments.output;
+  const auto write = [&](const char* name, const std::string& content) {
+    return core::WriteFile(folder / name, content);
+  };
+  if (auto s = write("study.html",
+                     bench::FormatStudyPage(arguments.options, findings, attempts, bench::DescribeMachine()));
+      !s.ok())
+    return s;
+  if (auto s = write("findings.json", bench::FormatStudyJson(arguments.options, findings)); !s.ok()) return s;
+  if (auto s = write("findings.csv", bench::FormatStudyCsv(findings)); !s.ok()) return s;
+  if (auto s = write("validity.json", bench::FormatValidityJson(arguments.options, findings)); !s.ok())
+    return s;
+  std::vector<std::vector<std::string>> rows = {
+      {"task", "attempts", "completed", "numbers", "separate without overlap", "say the same"}};
+  for (const bench::TaskFindings& task : findings) {
+    const auto separating = std::count_if(task.metrics.begin(), task.metrics.end(),
+                                          [](const auto& finding) { return finding.separates; });
+    rows.push_back({task.task, std::to_string(task.attempts), std::to_string(task.completed),
+                    std::to_string(task.metrics.size()), std::to_string(separating),
+                    std::to_string(task.clusters.size()) + " groups"});
+  }
+  std::fputs(FormatTable(rows).c_str(), stdout);
+  std::printf("\nPage: %s\n", (folder / "study.html").string().c_str());
+  std::printf("The people are made by a program: this sets no standard of competence.\n");
+  return {};
+}
+
+core::Status Study(const StudyArguments& arguments, Outcome& outcome) {
+  bench::StudyOptions options = arguments.options;
+  options.folder = arguments.output;
+  options.has_weaknesses = options.has_careless = !arguments.has_levels_only;
+  const auto wanted = bench::CountStudyAttempts(options);
+  if (!wanted.ok()) return wanted.error();
+  ProgressBar progress("playing", 1.0);
+  const auto attempts = bench::RunStudy(options, [&](const std::string& what, double share) {
+    progress.SetLabel(what);
+    progress.Show(share);
+  });
+  progress.Finish();
+  if (!attempts.ok()) return attempts.error();
+  StudyArguments done = arguments;
+  done.options = options;
+  if (auto status = WriteStudy(done, *attempts); !status.ok()) return status;
+  if (attempts->size() < *wanted) {
+    std::printf("%zu of %zu attempts are done; the same command goes on.\n", attempts->size(), *wanted);
+    outcome.has_finding = true;
+  }
+  return {};
+}
+
+}  // namespace
+
+void AddStudyCommand(CLI::App& app, Outcome& outcome) {
+  CLI::App* command = app.add_subcommand(
+      "study", "Find out which metrics separate scripted novices from experts, and how well they repeat");
+  auto a = std::make_shared<StudyArguments>();
+  a->options.tasks = {"instrument_navigation"};
+  command
+      ->add_option("--task", a->options.tasks,
+                   "Names of training tasks, with commas between (trocar play --list)")
+      ->delimiter(',')
+      ->type_name("TASK,...")
+      ->capture_default_str();
+  command->add_option("--level", a->options.level, "Difficulty, one of the tasks'")
+      ->type_name("LEVEL")
+      ->capture_default_str();
+  command
+      ->add_option(
+          "--people", a->options.people,
+          "Of each group: novice, intermediate, expert, with one weakness each, careless in one way each")
+      ->check(CLI::Range(2, 10000))
+      ->type_name("N")
+      ->capture_default_str();
+  command
+      ->add_option("--repeats", a->options.repeats,
+                   "Attempts of each novice, intermediate and expert, on other seeds: for the reliability")
+      ->check(CLI::Range(1, 20))
+      ->type_name("R")
+      ->capture_default_str();
+  command->add_option("--spread", a->options.spread, "By which share people of a group differ")
+      ->check(CLI::Range(0.0, 1.0))
+      ->type_name("SHARE")
+      ->capture_default_str();
+  command->add_option("--seed", a->options.seed, "The first of the seeds of people, tasks and hands")
+      ->check(CLI::Range(0, 2147483647))
+      ->type_name("K")
+      ->capture_default_str();
+  command
+      ->add_option("--jobs", a->options.jobs, "Attempts at a time; the findings are the same for any number")
+      ->check(CLI::Range(1, 256))
+      ->type_name("J")
+      ->capture_default_str();
+  command
+      ->add_option(
+          "--most-seconds", a->options.most_seconds,
+          "Stop after this time; the same command goes on where it stopped (exit status 1 until it is done)")
+      ->check(CLI::Range(0.0, 1e6))
+      ->type_name("S");
+  command->add_flag("--levels-only", a->has_levels_only,
+                    "Leave out people with one weakness and careless ones");
+  command
+      ->add_option("-o,--output", a->output,
+                   "Folder for study.html, findings.json, findings.csv, validity.json, and attempts.jsonl "
+                   "from which a "
+                   "stopped study goes on")
+      ->required()
+      ->type_name("DIR");
+  command->footer(
+      "The people are made by a program: what separates them may not separate residents.\n"
+      "Example: trocar study --task instrument_navigation,peg_transfer --people 50 --jobs 4 -o study");
+  command->callback([a, &outcome] { outcome.status = Study(*a, outcome); });
+}
+
+}  // namespace trocar::cli

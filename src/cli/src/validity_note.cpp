@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "validity_note.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <vector>
+
+#include "trocar/core/safe_file.h"
+#include "trocar/scene/scene.h"
+#include "trocar/training/metric_definition.h"
+
+namespace trocar::cli {
+
+core::Result<training::Validity> ReadValidity(const std::string& path) {
+  std::filesystem::path file = path;
+  if (path.empty()) {
+    const auto data = scene::FindDataFolder();
+    if (!data.ok()) return data.error();
+    file = *data / "assets" / training::kValidityFile;
+  }
+  const auto text = core::ReadFile(file);
+  if (!text.ok()) return text.error();
+  return training::ParseValidity(*text, file.string());
+}
+
+core::Result<training::CoachRules> ReadCoachRules(const std::string& path) {
+  std::filesystem::path file = path;
+  if (path.empty()) {
+    const auto data = scene::FindDataFolder();
+    if (!data.ok()) return data.error();
+    file = *data / "assets" / training::kCoachRulesFile;
+  }
+  const auto text = core::ReadFile(file);
+  if (!text.ok()) return text.error();
+  return training::ParseCoachRules(*text, file.string());
+}
+
+std::string TaskKey(const std::string& description_name) {
+  return std::filesystem::path(description_name).stem().string();
+}
+
+std::string FormatValidityNote(const training::AttemptMetrics& metrics, const std::string& task,
+                               const training::TaskValidity* validity) {
+  if (validity == nullptr)
+    return "Which of these numbers tell novices from experts in \"" + task +
+           "\" has not been studied (trocar study).\n";
+  std::vector<std::string> weak, unknown;
+  for (const training::MetricValue& value : metrics.values) {
+    if (!value.phase.empty() || !value.tool.empty()) continue;
+    const training::MetricDefinition* definition = training::FindMetric(value.metric);
+    std::string name = definition != nullptr ? definition->name : value.metric;
+    if (!value.hand.empty()) name += " (" + value.hand + ")";
+    const training::MeasureValidity* found = validity->Find(value.metric, value.hand);
+    if (found == nullptr) {
+      unknown.push_back(name);
+    } else if (!found->separates) {
+      weak.push_back(name);
+    }
+  }
+  const auto list = [](const char* heading, const std::vector<std::string>& names) {
+    if (names.empty()) return std::string();
+    std::string text = heading;
+    for (std::size_t i = 0; i < names.size(); ++i) text += (i > 0 ? "; " : " ") + names[i];
+    return text + ".\n";
+  };
+  return list("These do not separate scripted novices and experts in this task:", weak) +
+         list("Not studied in this task:", unknown);
+}
+
+}  // namespace trocar::cli

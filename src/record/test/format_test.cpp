@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+// A file of each format that there has been, kept for ever: what it says is read by every later version.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "trocar/record/recording.h"
+#include "trocar/record/recording_list.h"
+#include "trocar/record/replay.h"
+
+namespace trocar::record {
+namespace {
+
+std::filesystem::path FileOf(int format) {
+  return std::filesystem::path(TROCAR_SOURCE_DIR) / "src/record/test/data" /
+         ("format_" + std::to_string(format) + ".trocar");
+}
+
+TEST(Format, OneIsReadForEver) {
+  const auto recording = ReadRecording(FileOf(1));
+  ASSERT_TRUE(recording.ok()) << recording.error().Text();
+  EXPECT_EQ(recording->damage, "");
+  const Description& d = recording->description;
+  EXPECT_EQ(d.kind, Description::Kind::kTask);
+  EXPECT_EQ(d.name, "peg_transfer");
+  EXPECT_EQ(d.level, "normal");
+  EXPECT_EQ(d.seed, 3u);
+  EXPECT_EQ(d.player, "novice, seed 3");
+  EXPECT_EQ(d.program, "0.1.0");
+  EXPECT_EQ(d.branched_from, "");
+  ASSERT_EQ(recording->inputs.size(), 180u);
+  ASSERT_EQ(recording->hashes.size(), 1u);
+  EXPECT_EQ(recording->hashes[0].tick, 120u);
+  EXPECT_EQ(recording->hashes[0].hash, 0xb5b3f002fbe96e92u);
+  ASSERT_TRUE(recording->ending.has_value());
+  EXPECT_EQ(recording->ending->ticks, 180u);
+  EXPECT_EQ(recording->ending->hash, 0x13e2e79beef4ae25u);
+  EXPECT_THAT(recording->ending->outcome, testing::HasSubstr("Ring 1 to the right"));
+  const auto summary = ReadSummary(FileOf(1));
+  ASSERT_TRUE(summary.ok());
+  EXPECT_DOUBLE_EQ(summary->seconds, 1.5);
+}
+
+TEST(Format, OneIsReplayedWhereItsTaskIsStillTheSame) {
+  auto recording = ReadRecording(FileOf(1));
+  ASSERT_TRUE(recording.ok());
+  auto replay = Replay::Open(std::move(*recording), 1);
+  if (!replay.ok()) {
+    // a task that has changed since is refused, and not replayed to something else
+    EXPECT_EQ(replay.error().code, core::ErrorCode::kRecordingInvalid);
+    EXPECT_THAT(replay.error().message, testing::HasSubstr("has changed since"));
+    return;
+  }
+  const auto verified = replay->Verify();
+  ASSERT_TRUE(verified.ok());
+  EXPECT_EQ(verified->hashes, 2u);
+}
+
+}  // namespace
+}  // namespace trocar::record

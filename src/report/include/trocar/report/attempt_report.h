@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file attempt_report.h  What a person reads after an attempt, as plain values; document.h writes it.
+///
+/// Training feedback, not certified assessment.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "trocar/report/document.h"
+#include "trocar/training/attempt_trace.h"
+#include "trocar/training/metric_definition.h"
+#include "trocar/training/metric_value.h"
+
+namespace trocar::record {
+struct Description;
+}
+
+namespace trocar::report {
+
+/// Whose attempt it is and at what: what the trace does not know.
+struct AttemptFacts {
+  std::string person;    ///< pseudonym; empty: nobody in particular
+  std::string task;      ///< for a person: "Object transport"
+  std::string task_key;  ///< "object_transport"
+  std::string level;     ///< of a task; may be empty
+  std::string patient;   ///< may be empty
+  std::uint64_t seed = 0;
+  std::string started;            ///< RFC 3339; may be empty
+  std::string player;             ///< "expert, seed 3", "mouse and keyboard"
+  std::string program;            ///< version
+  std::string recording;          ///< file name without its folder; may be empty
+  bool is_score_percent = false;  ///< score 100 is an able surgeon's; otherwise it is in points
+};
+/// Of a recording. \param task  its name for a person
+AttemptFacts DescribeAttempt(const record::Description& description, std::string task);
+
+/// What others came to in one metric, in its SI unit.
+struct MetricReference {
+  std::string metric, hand, phase;
+  std::optional<double> expert_mean, expert_deviation;
+  std::vector<double> group;      ///< values of a group's trainees; may be empty
+  std::optional<bool> separates;  ///< novices from experts, as validated; nothing where nobody has looked
+};
+
+/// What the coach says.
+struct Advice {
+  std::string sentence, why, exercise, practise;
+  std::optional<double> time;  ///< of the moment to look at [s]
+};
+
+/// One row of the report, in the unit that is shown.
+struct MetricRow {
+  std::string id, hand, phase, tool;
+  std::string name, about, unit;  ///< for a person
+  training::BetterWhen better = training::BetterWhen::kNeither;
+  double value = 0;
+  double scale = 1;  ///< from SI to the shown unit
+  std::optional<double> expert_mean, expert_deviation;
+  std::vector<double> group;  ///< ascending
+  std::optional<bool> separates;
+};
+
+struct ErrorRow {
+  double time = 0;  ///< [s]
+  training::Severity severity = training::Severity::kMinor;
+  int hand = -1;      ///< instrument::Hand, or -1
+  std::string what;   ///< a sentence
+  std::string where;  ///< organ; may be empty
+};
+
+struct GoalRow {
+  std::string name;
+  std::optional<double> time;  ///< [s]
+};
+
+/// For the plots: what a hand did, thinned out.
+struct HandSeries {
+  std::vector<Vec2> force;  ///< time [s], [N]
+  std::vector<Vec2> from_front,
+      from_head;  ///< [mm]: to the patient's left and the head; to the left and the front
+};
+
+/// The doublet view of the critical view of safety: one moment from two sides.
+struct DoubletView {
+  std::string front_png, back_png;
+  double time = 0;  ///< [s]
+  std::string verdict;
+};
+
+struct AttemptReport {
+  AttemptFacts facts;
+  std::string outcome;  ///< a sentence
+  bool is_completed = false;
+  bool is_operation = false;
+  std::optional<double> score;  ///< see AttemptFacts::is_score_percent
+  double seconds = 0;
+  std::optional<double> critical_view_time;  ///< [s]
+  std::optional<double> blood_ml, bile_ml;   ///< of an operation
+  std::vector<GoalRow> goals;
+  std::vector<ErrorRow> errors;  ///< in order of time
+  std::vector<training::PhaseSpan> phases;
+  std::vector<MetricRow> metrics;  ///< in the order of the definitions
+  std::vector<Advice> advice;
+  std::optional<DoubletView> doublet;
+  std::vector<Picture> pictures;
+  std::string film;  ///< file beside the page; may be empty
+  std::vector<std::pair<std::string, std::string>>
+      origin;  ///< what else is known of where it comes from; may be empty
+  std::array<HandSeries, 2> hands;
+};
+
+struct AttemptReportInput {
+  AttemptFacts facts;
+  std::span<const MetricReference> references;
+  std::span<const Advice> advice;
+};
+
+/// Without pictures, which the caller adds.
+AttemptReport MakeAttemptReport(const training::AttemptTrace& trace, const training::AttemptMetrics& metrics,
+                                const AttemptReportInput& input);
+
+Document MakeDocument(const AttemptReport& report);
+
+// --- words
+
+/// "1:07", "2:03:09"
+std::string FormatClock(double seconds);
+/// "67 s", "12 min 7 s"
+std::string FormatDuration(double seconds);
+/// Number with as many digits as a reader needs.
+std::string FormatShown(double value);
+/// "24 November 2026, 22:50" of RFC 3339; as it is where it is none.
+std::string FormatDate(const std::string& date);
+/// "Dissection of the hepatocystic triangle" of "CalotTriangleDissection"; as it is where it is unknown.
+std::string PhaseName(const std::string& phase);
+/// "left hand", "right hand", "camera" or empty.
+std::string HandName(const std::string& hand);
+
+}  // namespace trocar::report

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file cairo_drawing.h  A drawing on a Cairo surface: in a PDF, or in a window.
+#pragma once
+
+#include "trocar/report/drawing.h"
+
+using cairo_t = struct _cairo;
+
+namespace trocar::report {
+
+/// What a drawing stands on.
+enum class Ground : std::uint8_t { kLight, kDark };
+
+/// Draws every shape, one pixel of the drawing to one unit of the surface.
+void PaintDrawing(cairo_t& cairo, const Drawing& drawing, Ground ground);
+
+}  // namespace trocar::report

@@ -1,0 +1,302 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/report/xapi.h"
+
+#include <fcntl.h>
+#include <sodium.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <nlohmann/json.hpp>
+
+#include "trocar/core/safe_file.h"
+#include "trocar/core/user_folder.h"
+
+namespace trocar::report {
+namespace {
+
+using nlohmann::ordered_json;
+namespace fs = std::filesystem;
+
+constexpr const char* kVerbs = "http://adlnet.gov/expapi/verbs/";
+constexpr const char* kActivityType = "http://adlnet.gov/expapi/activities/simulation";
+constexpr double kFullScore = 100;            // an able surgeon's [%]
+constexpr std::size_t kMostBytes = 1u << 20;  // of a statement's file
+
+/// A UUID that looks like a random one (version 4) and is the same for the same text.
+std::string MakeUuid(const std::string& text) {
+  std::array<unsigned char, 16> bytes;
+  crypto_generichash(bytes.data(), bytes.size(), reinterpret_cast<const unsigned char*>(text.data()),
+                     text.size(), nullptr, 0);
+  bytes[6] = static_cast<unsigned char>((bytes[6] & 0x0f) | 0x40);
+  bytes[8] = static_cast<unsigned char>((bytes[8] & 0x3f) | 0x80);
+  char uuid[40];
+  char* out = uuid;
+  for (std::size_t i = 0; i < bytes.size(); ++i) {
+    if (i == 4 || i == 6 || i == 8 || i == 10) *out++ = '-';
+    out += std::snprintf(out, 3, "%02x", bytes[i]);
+  }
+  return uuid;
+}
+
+/// Of an IRI's part: letters, digits and few signs stay, all else is written as %NN (RFC 3986).
+std::string EncodePart(std::string_view text) {
+  std::string encoded;
+  for (const char c : text) {
+    const bool is_plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+                          c == '-' || c == '_' || c == '.';
+    char hex[4];
+    std::snprintf(hex, sizeof hex, "%%%02X", static_cast<unsigned>(static_cast<unsigned char>(c)));
+    encoded += is_plain ? std::string(1, c) : hex;
+  }
+  return encoded;
+}
+
+/// "2026-11-24T21:50:20Z", so many seconds after an RFC 3339 time; empty where it is none.
+std::string AddSeconds(const std::string& time, double seconds) {
+  int year = 0, month = 0, day = 0, hour = 0, minute = 0, second = 0, read = 0;
+  if (std::sscanf(time.c_str(), "%4d-%2d-%2dT%2d:%2d:%2d%n", &year, &month, &day, &hour, &minute, &second,
+                  &read) != 6)
+    return "";
+  int offset_hour = 0, offset_minute = 0;
+  const std::size_t sign = time.find_first_of("+-", static_cast<std::size_t>(read));
+  if (sign != std::string::npos &&
+      std::sscanf(time.c_str() + sign + 1, "%2d:%2d", &offset_hour, &offset_minute) != 2)
+    return "";
+  const int offset =
+      (sign != std::string::npos && time[sign] == '-' ? -60 : 60) * (60 * offset_hour + offset_minute);
+  const std::chrono::year_month_day date{std::chrono::year(year),
+                                         std::chrono::month(static_cast<unsigned>(month)),
+                                         std::chrono::day(static_cast<unsigned>(day))};
+  if (!date.ok()) return "";
+  const std::int64_t clock = 3600LL * hour + 60 * minute + second - offset + std::llround(seconds);
+  const auto moment = std::chrono::sys_days(date) + std::chrono::seconds(clock);
+  const auto midnight = std::chrono::floor<std::chrono::days>(moment);
+  const std::chrono::year_month_day of_day(midnight);
+  const auto left = (moment - midnight).count();
+  char text[64];
+  std::snprintf(text, sizeof text, "%04d-%02u-%02uT%02d:%02d:%02dZ", static_cast<int>(of_day.year()),
+                static_cast<unsigned>(of_day.month()), static_cast<unsigned>(of_day.day()),
+                static_cast<int>(left / 3600), static_cast<int>(left / 60 % 60), static_cast<int>(left % 60));
+  return text;
+}
+
+ordered_json Word(const char* word) {
+  return {{"en", word}};
+}
+
+ordered_json MakeActivity(const AttemptFacts& facts) {
+  std::string id = "urn:trocar:task:" + EncodePart(facts.task_key);
+  if (!facts.level.empty()) id += ":level:" + EncodePart(facts.level);
+  return {{"objectType", "Activity"},
+          {"id", id},
+          {"definition",
+           {{"type", kActivityType},
+            {"name", {{"en", facts.task + (facts.level.empty() ? "" : ", " + facts.level)}}}}}};
+}
+
+ordered_json MakeScore(const AttemptReport& report) {
+  ordered_json score = {{"raw", *report.score}};
+  if (report.facts.is_score_percent) {
+    // better than the reference is the best that a scaled score can say
+    score["scaled"] = std::clamp(*report.score / kFullScore, 0.0, 1.0);
+  }
+  return score;
+}
+
+ordered_json MakeExtensions(const AttemptReport& report) {
+  std::array<int, 3> errors{};
+  for (const ErrorRow& error : report.errors) ++errors[static_cast<std::size_t>(error.severity)];
+  ordered_json extensions = {{"urn:trocar:seed", report.facts.seed},
+                             {"urn:trocar:errors:minor", errors[0]},
+                             {"urn:trocar:errors:major", errors[1]},
+                             {"urn:trocar:errors:critical", errors[2]}};
+  if (report.is_operation)
+    extensions["urn:trocar:critical-view-achieved"] = report.critical_view_time.has_value();
+  for (const MetricRow& row : report.metrics) {
+    if (!row.phase.empty() || !row.tool.empty()) continue;
+    std::string key = "urn:trocar:metric:" + EncodePart(row.id);
+    if (!row.hand.empty()) key += ":" + EncodePart(row.hand);
+    extensions[key] = row.scale != 0 ? row.value / row.scale : row.value;
+  }
+  return extensions;
+}
+
+std::string FormatPeriod(double seconds) {
+  char text[40];
+  std::snprintf(text, sizeof text, "PT%.2fS", std::fmax(seconds, 0));
+  return text;
+}
+
+core::Error Unwritable(const fs::path& path) {
+  return {core::ErrorCode::kFileUnwritable,
+          path.string() + ": " + std::strerror(errno) + "; check the folder, its rights and the space left"};
+}
+
+core::Status SyncPath(const fs::path& path, int flags) {
+  const int descriptor = ::open(path.c_str(), flags | O_CLOEXEC);
+  if (descriptor < 0) return Unwritable(path);
+  const bool is_synced = ::fsync(descriptor) == 0;
+  const int why = errno;
+  ::close(descriptor);
+  errno = why;
+  return is_synced ? core::Status() : Unwritable(path);
+}
+
+/// Survives a power cut once it has returned.
+core::Status WriteSynced(const fs::path& path, const std::string& content) {
+  std::error_code failure;
+  fs::create_directories(path.parent_path(), failure);
+  const fs::path part = path.string() + ".part";
+  const int descriptor = ::open(part.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
+  if (descriptor < 0) return Unwritable(part);
+  std::size_t written = 0;
+  bool is_good = true;
+  while (is_good && written < content.size()) {
+    const ssize_t count = ::write(descriptor, content.data() + written, content.size() - written);
+    if (count < 0 && errno == EINTR) continue;
+    is_good = count > 0;
+    if (is_good) written += static_cast<std::size_t>(count);
+  }
+  is_good = is_good && ::fsync(descriptor) == 0;
+  const int why = errno;
+  is_good = ::close(descriptor) == 0 && is_good;
+  if (!is_good) {
+    errno = why;
+    const core::Error error = Unwritable(part);
+    fs::remove(part, failure);
+    return error;
+  }
+  if (std::rename(part.c_str(), path.c_str()) != 0) return Unwritable(path);
+  return SyncPath(path.parent_path(), O_RDONLY | O_DIRECTORY);
+}
+
+std::vector<fs::path> ListFiles(const fs::path& folder) {
+  std::vector<std::pair<fs::file_time_type, fs::path>> files;
+  std::error_code failure;
+  for (const auto& entry : fs::directory_iterator(folder, failure)) {
+    if (entry.path().extension() == ".json" && entry.is_regular_file(failure))
+      files.emplace_back(entry.last_write_time(failure), entry.path());
+  }
+  std::sort(files.begin(), files.end());
+  std::vector<fs::path> paths;
+  for (auto& [time, path] : files) paths.push_back(std::move(path));
+  return paths;
+}
+
+std::optional<XapiStatement> ReadStatement(const fs::path& path) {
+  auto text = core::ReadFile(path, kMostBytes);
+  if (!text.ok()) return std::nullopt;
+  const auto json = nlohmann::json::parse(*text, nullptr, false);
+  if (!json.is_object() || json.value("id", "") != path.stem().string()) return std::nullopt;
+  return XapiStatement{path.stem().string(), std::move(*text)};
+}
+
+}  // namespace
+
+core::Result<std::vector<XapiStatement>> MakeStatements(const AttemptReport& report,
+                                                        const XapiSettings& settings) {
+  const AttemptFacts& facts = report.facts;
+  if (facts.person.empty())
+    return core::Error{core::ErrorCode::kUsage, "whose attempt it is must be said: --person PSEUDONYM"};
+  if (settings.home_page.rfind("http://", 0) != 0 && settings.home_page.rfind("https://", 0) != 0)
+    return core::Error{
+        core::ErrorCode::kUsage,
+        "the accounts' home page must be an address such as https://training.hospital.example"};
+  const std::string attempt = settings.home_page + '\n' + facts.person + '\n' + facts.task_key + '\n' +
+                              facts.level + '\n' + std::to_string(facts.seed) + '\n' + facts.started + '\n' +
+                              facts.recording;
+  const ordered_json actor = {{"objectType", "Agent"},
+                              {"account", {{"homePage", settings.home_page}, {"name", facts.person}}}};
+  std::vector<XapiStatement> statements;
+  const auto add = [&](const char* verb, double after, ordered_json result) {
+    const std::string id = MakeUuid(attempt + '\n' + verb);
+    ordered_json json = {{"id", id},
+                         {"actor", actor},
+                         {"verb", {{"id", kVerbs + std::string(verb)}, {"display", Word(verb)}}},
+                         {"object", MakeActivity(facts)}};
+    if (!result.empty()) json["result"] = std::move(result);
+    json["context"] = {{"registration", MakeUuid(attempt)},
+                       {"platform", "Trocar" + (facts.program.empty() ? "" : " " + facts.program)},
+                       {"language", "en"}};
+    if (const std::string time = AddSeconds(facts.started, after); !time.empty()) json["timestamp"] = time;
+    statements.push_back({id, json.dump(-1, ' ', false, ordered_json::error_handler_t::replace)});
+  };
+  add("attempted", 0, {});
+  ordered_json result = {{"completion", report.is_completed}, {"duration", FormatPeriod(report.seconds)}};
+  if (report.score && report.is_completed) result["score"] = MakeScore(report);
+  if (settings.is_passed) result["success"] = *settings.is_passed;
+  const ordered_json short_result = result;
+  result["extensions"] = MakeExtensions(report);
+  add(report.is_completed ? "completed" : "terminated", report.seconds, result);
+  if (report.score && report.is_completed) add("scored", report.seconds, short_result);
+  if (settings.is_passed) add(*settings.is_passed ? "passed" : "failed", report.seconds, short_result);
+  return statements;
+}
+
+fs::path XapiQueue::FindFolder() {
+  return core::FindUserDataFolder() / "xapi";
+}
+
+core::Status XapiQueue::Add(const XapiStatement& statement) {
+  const fs::path path = folder_ / (statement.id + ".json");
+  std::error_code failure;
+  if (fs::exists(path, failure)) return {};
+  return WriteSynced(path, statement.json);
+}
+
+std::vector<XapiStatement> XapiQueue::List() const {
+  std::vector<XapiStatement> statements;
+  for (const fs::path& path : ListFiles(folder_)) {
+    if (auto statement = ReadStatement(path)) statements.push_back(std::move(*statement));
+  }
+  return statements;
+}
+
+std::vector<fs::path> XapiQueue::ListRefused() const {
+  return ListFiles(folder_ / "refused");
+}
+
+core::Status XapiQueue::Remove(const std::string& id) {
+  const fs::path path = folder_ / (id + ".json");
+  std::error_code failure;
+  fs::remove(path, failure);
+  return failure ? core::Status(Unwritable(path)) : core::Status();
+}
+
+core::Status XapiQueue::Refuse(const XapiStatement& statement, const std::string& reason) {
+  const fs::path refused = folder_ / "refused";
+  if (auto status = WriteSynced(refused / (statement.id + ".txt"), reason + "\n"); !status.ok())
+    return status;
+  if (auto status = WriteSynced(refused / (statement.id + ".json"), statement.json); !status.ok())
+    return status;
+  return Remove(statement.id);
+}
+
+core::Result<std::size_t> XapiQueue::Erase(const std::string& pseudonym) {
+  std::size_t count = 0;
+  std::error_code failure;
+  for (const fs::path& folder : {folder_, folder_ / "refused"}) {
+    for (const fs::path& path : ListFiles(folder)) {
+      const auto text = core::ReadFile(path, kMostBytes);
+      if (!text.ok()) return text.error();
+      const auto json = nlohmann::json::parse(*text, nullptr, false);
+      const auto name = json.is_discarded() ? nlohmann::json()
+                                            : json.value(nlohmann::json::json_pointer("/actor/account/name"),
+                                                         nlohmann::json());
+      if (name != pseudonym) continue;
+      fs::remove(path, failure);
+      if (failure) return Unwritable(path);
+      fs::remove(fs::path(path).replace_extension(".txt"), failure);
+      ++count;
+    }
+  }
+  return count;
+}
+
+}  // namespace trocar::report

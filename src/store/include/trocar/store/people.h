@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file people.h  Trainees, instructors and administrators by pseudonym, groups, and who belongs to which. Names lie elsewhere:
+/// names.h.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "trocar/core/result.h"
+#include "trocar/store/store.h"
+
+namespace trocar::store {
+
+struct Person {
+  std::int64_t id = 0;
+  std::string pseudonym;  ///< "T-7F3K2Q"
+  Role role = Role::kTrainee;
+  std::vector<std::string> groups;  ///< of ListPeople, in alphabetical order
+};
+
+/// Letters and digits that are not mistaken for one another, at random, behind the role's letter: "T-7F3K2Q".
+std::string MakePseudonym(Role role);
+
+/// \param pseudonym  empty: one that is free
+/// \return kStoreInvalid where it is taken, or longer than 200 bytes
+core::Result<Person> AddPerson(Store& store, const Viewer& viewer, Role role, std::string pseudonym = {});
+/// \return kStoreUnknown
+core::Result<Person> FindPerson(Store& store, std::string_view pseudonym);
+/// Another pseudonym for the same person.
+core::Status RenamePerson(Store& store, const Viewer& viewer, std::string_view pseudonym,
+                          std::string_view to);
+core::Status SetRole(Store& store, const Viewer& viewer, std::string_view pseudonym, Role role);
+/// Those whom the viewer may see, by pseudonym. \param after  the last one of the page before; empty: from the first
+core::Result<std::vector<Person>> ListPeople(Store& store, const Viewer& viewer, std::string_view after,
+                                             int limit);
+/// The viewer that a person is. \return kStoreUnknown
+core::Result<Viewer> FindViewer(Store& store, std::string_view pseudonym);
+
+struct Group {
+  std::int64_t id = 0;
+  std::string name;
+  std::int64_t members = 0;
+};
+
+/// \return kStoreInvalid where there is one, or the name is empty or longer than 1000 bytes
+core::Result<Group> AddGroup(Store& store, const Viewer& viewer, std::string_view name);
+/// \return kStoreUnknown
+core::Result<Group> FindGroup(Store& store, std::string_view name);
+core::Status JoinGroup(Store& store, const Viewer& viewer, std::string_view group,
+                       std::string_view pseudonym);
+core::Status LeaveGroup(Store& store, const Viewer& viewer, std::string_view group,
+                        std::string_view pseudonym);
+/// Those of the viewer; all of an administrator.
+core::Result<std::vector<Group>> ListGroups(Store& store, const Viewer& viewer);
+
+/// Whether the viewer may see what belongs to this person: it is the person, or an instructor of one of their groups.
+/// \return kStoreRefused where not
+core::Status MaySee(Store& store, const Viewer& viewer, std::int64_t person);
+/// \return kStoreRefused unless an administrator
+core::Status MayManage(const Viewer& viewer);
+
+}  // namespace trocar::store

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// Rows of attempts that more than one source needs.
+#pragma once
+
+#include <vector>
+
+#include "database.h"
+#include "trocar/store/attempts.h"
+#include "trocar/training/metric_value.h"
+
+namespace trocar::store {
+
+/// What AddAttempt refuses. \return kStoreInvalid
+core::Status CheckAttempt(const Attempt& attempt);
+/// The metrics in the order of their key, with the score and the length.
+std::vector<training::MetricValue> ListMetrics(const Attempt& attempt);
+
+/// In the order of their key.
+core::Result<std::vector<training::MetricValue>> ReadMetrics(Database& database, std::int64_t attempt);
+
+/// A person's standings from their attempts, as AddAttempt would have made them one by one.
+core::Status RecalcStandings(Database& database, std::int64_t person);
+
+}  // namespace trocar::store

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// Files that only their owner may read.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "trocar/core/result.h"
+
+namespace trocar::store {
+
+/// A folder that only its owner may enter; made where it is missing. \return kFileUnwritable
+core::Status MakePrivateFolder(const std::filesystem::path& folder);
+
+/// Writes a file of mode 0600 in one piece: a reader sees the old one or the new one, and it survives a power cut after this returns.
+/// \return kFileUnwritable
+core::Status WritePrivateFile(const std::filesystem::path& path, std::string_view content);
+
+/// A file of mode 0600 that grows, and takes its name once it is whole.
+class PrivateFileWriter {
+ public:
+  static core::Result<PrivateFileWriter> Start(const std::filesystem::path& path);
+  PrivateFileWriter(PrivateFileWriter&& other) noexcept;
+  PrivateFileWriter& operator=(PrivateFileWriter&&) = delete;
+  /// Without Finish nothing is left.
+  ~PrivateFileWriter();
+
+  core::Status Append(std::string_view text);
+  core::Status Finish();
+
+ private:
+  PrivateFileWriter(std::filesystem::path path, std::string partial, int file);
+  core::Status Write();
+
+  std::filesystem::path path_;
+  std::string partial_, buffer_;
+  int file_;
+};
+
+/// Syncs a folder's entries. \return kFileUnwritable
+core::Status SyncFolder(const std::filesystem::path& folder);
+
+/// Overwrites a file's bytes with zeros, syncs, and removes it; one that is gone is no error. A disk may keep copies that no program reaches.
+core::Status EraseFile(const std::filesystem::path& path);
+
+}  // namespace trocar::store

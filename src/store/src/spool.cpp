@@ -1,0 +1,291 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/store/spool.h"
+
+#include <sodium.h>
+#include <sys/stat.h>
+#include <zlib.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <system_error>
+#include <utility>
+
+#include "database.h"
+#include "private_file.h"
+#include "sql.h"
+#include "trocar/core/json.h"
+#include "trocar/core/safe_file.h"
+#include "trocar/core/state_hash.h"
+
+namespace trocar::store {
+namespace {
+
+namespace fs = std::filesystem;
+using core::ErrorCode;
+using nlohmann::ordered_json;
+
+std::uint32_t CalcChecksum(std::string_view text) {
+  return static_cast<std::uint32_t>(
+      ::crc32(0, reinterpret_cast<const Bytef*>(text.data()), static_cast<uInt>(text.size())));
+}
+
+/// A name made from the key, never from what somebody typed: neither pseudonyms nor paths are in it.
+std::string FileName(const Attempt& attempt) {
+  std::string key = attempt.recording_id + '\n' + attempt.started;
+  unsigned char hash[16];
+  (void)::sodium_init();
+  ::crypto_generichash(hash, sizeof hash, reinterpret_cast<const unsigned char*>(key.data()), key.size(),
+                       nullptr, 0);
+  static constexpr std::string_view kDigits = "0123456789abcdef";
+  std::string name;
+  for (const unsigned char byte : hash) name += {kDigits[byte >> 4], kDigits[byte & 15]};
+  return name + ".json";
+}
+
+/// The attempts of a folder, oldest first.
+std::vector<fs::path> ListFiles(const fs::path& folder) {
+  std::vector<std::pair<fs::file_time_type, fs::path>> found;
+  std::error_code failure;
+  for (const auto& entry : fs::directory_iterator(folder, failure)) {
+    if (entry.path().extension() != ".json") continue;
+    const auto time = entry.last_write_time(failure);
+    if (!failure) found.emplace_back(time, entry.path());
+  }
+  std::sort(found.begin(), found.end());
+  std::vector<fs::path> files;
+  for (auto& [time, path] : found) files.push_back(std::move(path));
+  return files;
+}
+
+/// Where another program has moved it already, that is good, too.
+core::Status Move(const fs::path& from, const fs::path& folder) {
+  if (auto made = MakePrivateFolder(folder); !made.ok()) return made;
+  std::error_code failure;
+  fs::rename(from, folder / from.filename(), failure);
+  if (failure && failure != std::errc::no_such_file_or_directory)
+    return core::Error{ErrorCode::kFileUnwritable,
+                       from.string() + ": " + failure.message() + "; check its rights"};
+  return {};
+}
+
+ordered_json TextOrNull(const std::string& text) {
+  return text.empty() ? ordered_json() : ordered_json(EncodeText(text));
+}
+
+}  // namespace
+
+std::string WriteAttemptJson(const Attempt& attempt) {
+  ordered_json json = {{"recording_id", EncodeText(attempt.recording_id)},
+                       {"started", EncodeText(attempt.started)},
+                       {"trainee", TextOrNull(attempt.trainee)},
+                       {"task", EncodeText(attempt.task)},
+                       {"level", EncodeText(attempt.level)},
+                       {"patient", EncodeText(attempt.patient)},
+                       {"seed", std::to_string(attempt.seed)},
+                       {"seconds", attempt.seconds},
+                       {"completed", attempt.is_completed},
+                       {"passed", attempt.is_passed ? ordered_json(*attempt.is_passed) : ordered_json()},
+                       {"score", attempt.score ? ordered_json(*attempt.score) : ordered_json()},
+                       {"outcome", EncodeText(attempt.outcome)},
+                       {"recording", EncodeText(attempt.recording)},
+                       {"program", EncodeText(attempt.program)},
+                       {"metrics", ordered_json::array()}};
+  for (const training::MetricValue& m : attempt.metrics)
+    json["metrics"].push_back(
+        {EncodeText(m.metric), EncodeText(m.hand), EncodeText(m.phase), EncodeText(m.tool), m.value});
+  const std::string text = json.dump();
+  return "{\"format\": \"trocar-attempt\", \"version\": 1, \"crc32\": " + std::to_string(CalcChecksum(text)) +
+         ",\n\"attempt\": " + text + "}\n";
+}
+
+core::Result<Attempt> ReadAttemptJson(std::string_view text, const std::string& source) {
+  const core::Error damaged{
+      ErrorCode::kStoreDamaged,
+      source + ": this waiting attempt is damaged; it is kept in the folder \"damaged\""};
+  const ordered_json json = ordered_json::parse(text, nullptr, false);
+  for (const char* key : {"format", "version", "crc32", "attempt"}) {
+    if (!json.is_object() || !json.contains(key)) return damaged;
+  }
+  if (json["format"] != "trocar-attempt" || !json["crc32"].is_number_unsigned() ||
+      !json["attempt"].is_object())
+    return damaged;
+  if (json["version"] != 1)
+    return core::Error{ErrorCode::kStoreSchema,
+                       source + ": this attempt is of a later program; use that one"};
+  if (json["crc32"].get<std::uint32_t>() != CalcChecksum(json["attempt"].dump())) return damaged;
+  // what carries its checksum is as it was written; the fields are still checked, since anybody can write such a file
+  const auto document = core::JsonDocument::Parse(json["attempt"].dump(), source);
+  if (!document.ok()) return document.error();
+  const core::JsonView view = document->Root();
+  const auto text_of = [&](const char* key) { return DecodeText(view.Text(key)); };
+  Attempt attempt;
+  attempt.recording_id = text_of("recording_id");
+  attempt.started = text_of("started");
+  if (!json["attempt"].value("trainee", ordered_json()).is_null()) attempt.trainee = text_of("trainee");
+  attempt.task = text_of("task");
+  attempt.level = text_of("level");
+  attempt.patient = text_of("patient");
+  attempt.seed = std::strtoull(view.Text("seed").c_str(), nullptr, 10);
+  attempt.seconds = view.Number("seconds");
+  attempt.is_completed = view.BooleanOr("completed", false);
+  if (!json["attempt"].value("passed", ordered_json()).is_null())
+    attempt.is_passed = view.BooleanOr("passed", false);
+  if (!json["attempt"].value("score", ordered_json()).is_null()) attempt.score = view.Number("score");
+  attempt.outcome = text_of("outcome");
+  attempt.recording = text_of("recording");
+  attempt.program = text_of("program");
+  for (const core::JsonView& row : view.Array("metrics")) {
+    const std::vector<core::JsonView> fields = row.Elements();
+    if (fields.size() != 5) {
+      row.Complain("a metric is [metric, hand, phase, tool, value]");
+      continue;
+    }
+    attempt.metrics.push_back({DecodeText(fields[0].AsText()), DecodeText(fields[1].AsText()),
+                               DecodeText(fields[2].AsText()), fields[4].AsNumber(),
+                               DecodeText(fields[3].AsText())});
+  }
+  if (auto sound = document->Check(); !sound.ok()) return sound.error();
+  return attempt;
+}
+
+core::Status Spool::Keep(const Attempt& attempt) const {
+  return WritePrivateFile(folder_ / FileName(attempt), WriteAttemptJson(attempt));
+}
+
+namespace {
+
+/// Whether it is the attempt that cannot be stored, and not the store that cannot take any.
+bool IsOfAttempt(ErrorCode code) {
+  return code == ErrorCode::kStoreDamaged || code == ErrorCode::kStoreInvalid ||
+         code == ErrorCode::kJsonField || code == ErrorCode::kJsonSyntax || code == ErrorCode::kFileTooLarge;
+}
+
+struct DeliveryPlaces {
+  fs::path from;
+  bool stays = false;  // what the store has
+  fs::path done;       // where else it goes; empty: it is removed
+  fs::path held;       // of trainees that are unknown; empty: they are added
+  fs::path damaged;
+};
+
+void DeliverFolder(Store& store, const DeliveryPlaces& places, DeliveryReport& report) {
+  for (const fs::path& file : ListFiles(places.from)) {
+    const auto text = core::ReadFile(file);
+    if (!text.ok()) {
+      if (text.error().code == ErrorCode::kFileMissing) continue;  // another program has just delivered it
+      report.failure = text.error();
+      return;
+    }
+    const auto attempt = ReadAttemptJson(*text, file.filename().string());
+    core::Status moved;
+    if (!attempt.ok()) {
+      if (!IsOfAttempt(attempt.error().code)) {
+        report.failure = attempt.error();
+        return;
+      }
+      ++report.damaged;
+      moved = Move(file, places.damaged);
+    } else {
+      auto added = AddAttempt(store, *attempt);
+      const bool is_unknown = !added.ok() && added.error().code == ErrorCode::kStoreUnknown;
+      if (is_unknown && places.held.empty()) {
+        const auto person = AddPerson(store, Viewer::Owner(), Role::kTrainee, attempt->trainee);
+        if (person.ok()) added = AddAttempt(store, *attempt);
+      }
+      if (added.ok()) {
+        ++(*added ? report.added : report.known);
+        if (!places.stays) moved = places.done.empty() ? EraseFile(file) : Move(file, places.done);
+      } else if (is_unknown && !places.held.empty()) {
+        ++report.held;
+        moved = Move(file, places.held);
+      } else if (added.error().code == ErrorCode::kStoreInvalid) {
+        ++report.damaged;
+        moved = Move(file, places.damaged);
+      } else {
+        report.failure = added.error();
+        return;
+      }
+    }
+    if (!moved.ok()) {
+      report.failure = moved.error();
+      return;
+    }
+  }
+}
+
+}  // namespace
+
+DeliveryReport Spool::Deliver(Store& store) const {
+  DeliveryReport report;
+  DeliverFolder(store, {folder_, false, journal_, folder_ / "held", folder_ / "damaged"}, report);
+  return report;
+}
+
+DeliveryReport Spool::DeliverHeld(Store& store) const {
+  for (const fs::path& file : ListFiles(folder_ / "held")) {
+    if (auto moved = Move(file, folder_); !moved.ok()) return {0, 0, 0, 0, moved.error()};
+  }
+  return Deliver(store);
+}
+
+DeliveryReport Spool::DeliverJournal(Store& store) const {
+  DeliveryReport report;
+  DeliverFolder(store, {journal_, true, {}, {}, folder_ / "damaged"}, report);
+  return report;
+}
+
+std::size_t Spool::CountWaiting() const {
+  return ListFiles(folder_).size();
+}
+
+std::size_t Spool::CountHeld() const {
+  return ListFiles(folder_ / "held").size();
+}
+
+void Spool::ForgetJournal(std::int64_t before_ms) const {
+  for (const fs::path& file : ListFiles(journal_)) {
+    // moving a file into the journal changes its ctime, not its mtime
+    struct stat info {};
+    if (::stat(file.c_str(), &info) != 0) continue;
+    const std::int64_t moved_ms =
+        1000 * static_cast<std::int64_t>(info.st_ctim.tv_sec) + info.st_ctim.tv_nsec / 1000000;
+    std::error_code ignored;
+    if (moved_ms < before_ms) fs::remove(file, ignored);
+  }
+}
+
+core::Result<int> Spool::Erase(std::string_view trainee) const {
+  int erased = 0;
+  for (const fs::path& folder : {folder_, folder_ / "held", folder_ / "damaged", folder_ / "unmeasured", journal_}) {
+    if (folder.empty()) continue;
+    for (const fs::path& file : ListFiles(folder)) {
+      const auto text = core::ReadFile(file);
+      if (!text.ok()) {
+        if (text.error().code == ErrorCode::kFileMissing) continue;
+        return text.error();
+      }
+      const auto attempt = ReadAttemptJson(*text, file.filename().string());
+      // in a damaged one, the letters alone tell
+      const bool is_theirs =
+          attempt.ok() ? attempt->trainee == trainee : text->find(EncodeText(trainee)) != std::string::npos;
+      if (!is_theirs) continue;
+      if (auto gone = EraseFile(file); !gone.ok()) return gone.error();
+      ++erased;
+    }
+    std::error_code failure;
+    if (fs::exists(folder, failure)) {
+      if (auto synced = SyncFolder(folder); !synced.ok()) return synced.error();
+    }
+  }
+  return erased;
+}
+
+double BackOff::Next() {
+  const double most = std::min(most_, first_ * std::pow(2.0, std::min(failures_, 30)));
+  ++failures_;
+  // never 0: a server that is just back must not be asked in a loop
+  return most * (1.0 - 0.9 * std::generate_canonical<double, 53>(random_));
+}
+
+}  // namespace trocar::store

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// Small helpers for statements that are put together.
+#pragma once
+
+#include <chrono>
+#include <string>
+#include <utility>
+
+#include "database.h"
+#include "trocar/store/store.h"
+
+namespace trocar::store {
+
+inline std::int64_t NowMilliseconds() {
+  return std::chrono::duration_cast<std::chrono::milliseconds>(
+             std::chrono::system_clock::now().time_since_epoch())
+      .count();
+}
+
+/// Adds a parameter. \return its place: "$3"
+inline std::string Put(Parameters& parameters, Value value) {
+  parameters.push_back(std::move(value));
+  return "$" + std::to_string(parameters.size());
+}
+
+/// " AND ..." that leaves only people whom the viewer may see. \param column  that holds a person's id
+std::string OnlyVisible(const Viewer& viewer, const std::string& column, Parameters& parameters);
+
+inline core::Error Unknown(const std::string& what) {
+  return {core::ErrorCode::kStoreUnknown, what};
+}
+inline core::Error Invalid(const std::string& what) {
+  return {core::ErrorCode::kStoreInvalid, what};
+}
+inline core::Error Refused(const std::string& what) {
+  return {core::ErrorCode::kStoreRefused, what};
+}
+
+}  // namespace trocar::store
