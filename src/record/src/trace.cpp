@@ -56,8 +56,9 @@ double DistanceToTube(const Vec3& p, const SurfaceInfo& tube, const std::vector<
 
 training::CameraSample SampleCamera(const math::Pose& X_world_laparoscope) {
   const math::Quaternion& rotation = X_world_laparoscope.rotation;
-  const double right = math::Rotate(rotation, {1, 0, 0}).x, up = math::Rotate(rotation, {0, 1, 0}).x;
-  return {X_world_laparoscope.translation, math::Rotate(rotation, {0, 0, -1}), std::atan2(up, right)};
+  const double lean = math::Rotate(rotation, {1, 0, 0}).y;
+  return {X_world_laparoscope.translation, math::Rotate(rotation, {0, 0, -1}),
+          std::asin(std::clamp(lean, -1.0, 1.0))};
 }
 
 /// Whether an event is that of closing a clip: around something, or around nothing.

@@ -10,8 +10,8 @@
 namespace trocar::training {
 namespace {
 
-/// A spread of speed below it is rounding, not motion [m/s].
-constexpr double kConstantSpeed = 1e-6;
+/// A spread of speed below it is that of a still hand [m/s].
+constexpr double kConstantSpeed = 1e-3;
 /// Sine of the angle below which two directions are one [-].
 constexpr double kParallel = 1e-6;
 

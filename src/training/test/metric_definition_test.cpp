@@ -52,7 +52,7 @@ TEST(MetricDefinitions, NameTheSettingsOfTheProgram) {
                                                   {"movement_gap", s.movement_gap},
                                                   {"idle_speed", s.idle_speed},
                                                   {"idle_window", s.idle_window},
-      {"idle_duration", s.idle_duration},
+                                                  {"idle_duration", s.idle_duration},
                                                   {"force_threshold", s.force_threshold},
                                                   {"hard_contact_depth", s.hard_contact_depth},
                                                   {"release_share", s.release_share},

@@ -23,7 +23,7 @@ namespace trocar::training {
 ///
 /// \return kNumberNotFinite for a setting, dt or sample that is not finite or out of its range, and for hands of different lengths,
 /// named in the message
-/// \note Not real-time safe: allocates. Takes about a second for an hour of motion.
+/// \note Not real-time safe: allocates.
 core::Result<AttemptMetrics> CalcAttemptMetrics(const AttemptTrace& trace,
                                                 const MetricSettings& settings = {});
 

@@ -47,7 +47,7 @@ struct ToolSample {
 struct CameraSample {
   Vec3 lens;                 ///< [m], world frame
   Vec3 direction{0, 0, -1};  ///< unit vector of sight
-  double roll = 0;  ///< of the picture about the sight; 0 where the patient's left lies level to the right in it [rad]
+  double roll = 0;           ///< how far the picture's horizontal leans towards the patient's head [rad]
 };
 
 /// Something that happened.
@@ -79,7 +79,8 @@ struct ClipRecord {
   bool is_lost = false;  ///< lies in the abdomen
   bool is_misplaced =
       false;  ///< closed around a part only, or crosses another clip, or on what must stay open
-  std::optional<double> gap;  ///< to the nearest other clip on the same vessel, straight, as the vessel was at rest [m]
+  std::optional<double>
+      gap;  ///< to the nearest other clip on the same vessel, straight, as the vessel was at rest [m]
   std::optional<double>
       angle;  ///< between the applier's jaws and the vessel's line when it was closed, 0 to pi/2 [rad]
 };
