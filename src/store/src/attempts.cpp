@@ -107,6 +107,16 @@ core::Status MaySeeAttempt(Store& store, const Viewer& viewer, std::int64_t id) 
   return MaySee(store, viewer, found->rows[0].IntOrNull(0).value_or(-1));
 }
 
+/// Whether a page is found sooner among the newest attempts of all than among all attempts of the group: with 0.5 % of the people,
+/// 20 of theirs are expected among 4,000; all of theirs would be 5,000 of a million.
+core::Result<bool> IsLargeGroup(Database& database, std::int64_t group) {
+  constexpr std::int64_t kShare = 200;
+  const auto counts = database.Run(
+      "SELECT (SELECT COUNT(*) FROM membership WHERE group_id = $1), (SELECT COUNT(*) FROM person)", {group});
+  if (!counts.ok()) return counts.error();
+  return kShare * counts->rows[0].Int(0) > counts->rows[0].Int(1);
+}
+
 struct Cursor {
   std::int64_t started_ms = 0, id = 0;
 };
@@ -303,7 +313,11 @@ core::Result<AttemptPage> ListAttempts(Store& store, const Viewer& viewer, const
   if (!filter.group.empty()) {
     const auto group = FindGroup(store, filter.group);
     if (!group.ok()) return group.error();
-    where += " AND attempt.person_id IN (SELECT person_id FROM membership WHERE group_id = " +
+    const auto is_large = IsLargeGroup(store.GetDatabase(), group->id);
+    if (!is_large.ok()) return is_large.error();
+    // the plus keeps both databases from collecting all attempts of all members before they sort them
+    where += std::string(" AND ") + (*is_large ? "+" : "") +
+             "attempt.person_id IN (SELECT person_id FROM membership WHERE group_id = " +
              Put(parameters, group->id) + ")";
   }
   if (!filter.task.empty()) where += " AND attempt.task = " + Put(parameters, filter.task);

@@ -33,7 +33,8 @@ core::Result<std::string> CalcSha256(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
   if (!stream)
     return core::Error{ErrorCode::kFileMissing, file.string() + " cannot be opened; check the path"};
-  (void)::sodium_init();
+  [[maybe_unused]] const int started = ::sodium_init();  // again does nothing
+  TROCAR_ASSERT(started >= 0);
   crypto_hash_sha256_state state;
   ::crypto_hash_sha256_init(&state);
   std::vector<char> part(1u << 20);

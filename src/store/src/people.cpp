@@ -32,11 +32,17 @@ core::Status CheckPseudonym(std::string_view pseudonym) {
 
 std::string MakePseudonym(Role role) {
   static constexpr std::string_view kOfRole = "TIA";
-  (void)::sodium_init();  // again does nothing
+  [[maybe_unused]] const int started = ::sodium_init();  // again does nothing
+  TROCAR_ASSERT(started >= 0);
   std::string pseudonym = {kOfRole[static_cast<std::size_t>(role)], '-'};
   for (std::size_t i = 0; i < kPseudonymLetters; ++i)
     pseudonym += kLetters[::randombytes_uniform(static_cast<std::uint32_t>(kLetters.size()))];
   return pseudonym;
+}
+
+std::string Put(Parameters& parameters, Value value) {
+  parameters.push_back(std::move(value));
+  return "$" + std::to_string(parameters.size());
 }
 
 std::string OnlyVisible(const Viewer& viewer, const std::string& column, Parameters& parameters) {

@@ -34,7 +34,8 @@ std::uint32_t CalcChecksum(std::string_view text) {
 std::string FileName(const Attempt& attempt) {
   std::string key = attempt.recording_id + '\n' + attempt.started;
   unsigned char hash[16];
-  (void)::sodium_init();
+  [[maybe_unused]] const int started = ::sodium_init();  // again does nothing
+  TROCAR_ASSERT(started >= 0);
   ::crypto_generichash(hash, sizeof hash, reinterpret_cast<const unsigned char*>(key.data()), key.size(),
                        nullptr, 0);
   static constexpr std::string_view kDigits = "0123456789abcdef";

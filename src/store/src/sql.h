@@ -18,10 +18,7 @@ inline std::int64_t NowMilliseconds() {
 }
 
 /// Adds a parameter. \return its place: "$3"
-inline std::string Put(Parameters& parameters, Value value) {
-  parameters.push_back(std::move(value));
-  return "$" + std::to_string(parameters.size());
-}
+std::string Put(Parameters& parameters, Value value);
 
 /// " AND ..." that leaves only people whom the viewer may see. \param column  that holds a person's id
 std::string OnlyVisible(const Viewer& viewer, const std::string& column, Parameters& parameters);
