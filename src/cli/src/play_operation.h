@@ -7,8 +7,8 @@
 #include <optional>
 #include <string>
 
-#include "trocar/assessment/play_state.h"
 #include "trocar/agent/surgeon.h"
+#include "trocar/assessment/play_state.h"
 #include "trocar/core/result.h"
 #include "trocar/record/recording.h"
 
