@@ -8,8 +8,8 @@
 #include <string>
 
 #include "attempt_page.h"
-#include "trocar/assessment/play_state.h"
 #include "trocar/agent/surgeon.h"
+#include "trocar/assessment/play_state.h"
 #include "trocar/core/result.h"
 #include "trocar/record/recording.h"
 

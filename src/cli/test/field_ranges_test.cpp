@@ -316,6 +316,7 @@ TEST_F(FieldRanges, SchemaAndReaderAgreeOnTasks) {
   Json seen = {{"kind", "camera_sees"}, {"region", "ball"}, {"within_deg", 5},
                {"facing_deg", 30},      {"near_mm", 10},    {"far_mm", 100}};
   Json task = TaskAround(BoardScene(Tubes()));
+  task["level_scores"] = {{"normal", 85}};
   task["rules"] = {{"time_limit_s", 100},
                    {"points_per_second_left", 1},
                    {"reference_points", 100},

@@ -154,7 +154,7 @@ struct TaskSnapshot {
   std::vector<std::uint32_t> errors;  ///< (Task::errors) how often
   double penalty = 0;                 ///< points lost so far
   double score = 0;  ///< points, or per cent of the reference, without a limit; CalcShownScore is for people
-  std::uint64_t error_count = 0;      ///< the newest are in `last_errors`
+  std::uint64_t error_count = 0;            ///< the newest are in `last_errors`
   std::array<TaskError, 16> last_errors{};  ///< ring: error n at n % 16
 
   bool IsOver() const { return phase >= TaskPhase::kCompleted; }
