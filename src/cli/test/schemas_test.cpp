@@ -114,6 +114,8 @@ constexpr const char* kScene = "scenes/demonstration.json";
 constexpr const char* kMaterial = "assets/materials/liver.json";
 constexpr const char* kTask = "scenes/tasks/object_transport.json";
 constexpr const char* kScript = "scenes/demonstration.script.json";
+constexpr const char* kRules = "assets/coach/rules.json";
+constexpr const char* kValidity = "assets/validity.json";
 
 const Broken kBroken[] = {
     {"PatientUnit", kPatient, [](Json& j) { j["unit"] = "m"; }},
@@ -149,6 +151,11 @@ const Broken kBroken[] = {
     {"TaskUnknownTool", kTask, [](Json& j) { j["scene"]["instruments"]["left"]["tool"] = "tongs"; }},
     {"TaskShapeOfNoSize", kTask, [](Json& j) { j["scene"]["objects"][0]["shapes"][0].erase("kind"); }},
     {"TaskParameterMisspelt", kTask, [](Json& j) { j["rules"]["time_limit_s"] = "{Limit"; }},
+    {"RuleOfAnUnknownMeasure", kRules, [](Json& j) { j["rules"][0]["measure"] = "coach:humour"; }},
+    {"RuleWithoutASource", kRules, [](Json& j) { j["rules"][0].erase("source"); }},
+    {"RuleAbsoluteWithoutASentence", kRules, [](Json& j) { j["rules"][0]["absolute"] = 1; }},
+    {"ValidityChanceAboveOne", kValidity, [](Json& j) { j["tasks"][0]["measures"][0]["auc"] = 1.5; }},
+    {"ValidityWithoutAVerdict", kValidity, [](Json& j) { j["tasks"][0]["measures"][0].erase("separates"); }},
     {"ScriptFirstKeyWithOneHand", kScript, [](Json& j) { j["keys"][0].erase("right"); }},
     {"ScriptWithoutKeys", kScript, [](Json& j) { j["keys"] = Json::array(); }},
     {"ScriptJawTooWide", kScript, [](Json& j) { j["keys"][1]["left"]["jaw_deg"] = 120; }},
