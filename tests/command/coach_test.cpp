@@ -97,7 +97,7 @@ TEST_F(CoachCommand, TheCriticalViewIsDrawnOfAnOperationAlone) {
   ExpectError(Run({"replay", file, "--critical-view"}), "E-CLI-001", 2);
   ExpectError(
       Run({"replay", Record("expert", "instrument_navigation"), "--critical-view", "-o", Path("none")}),
-      "E-CLI-001");
+      "E-CLI-001", 2);
 }
 
 }  // namespace
