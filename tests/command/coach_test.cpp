@@ -94,10 +94,10 @@ TEST_F(CoachCommand, TheCriticalViewIsDrawnOfAnOperationAlone) {
   EXPECT_EQ(json::parse(drawn.out).at("achieved"), false);
   EXPECT_TRUE(std::filesystem::exists(Path("view/front.png")));
   EXPECT_TRUE(std::filesystem::exists(Path("view/back.png")));
-  ExpectError(Run({"replay", file, "--critical-view"}), "E-CLI-001");
+  ExpectError(Run({"replay", file, "--critical-view"}), "E-CLI-001", 2);
   ExpectError(
       Run({"replay", Record("expert", "instrument_navigation"), "--critical-view", "-o", Path("none")}),
-      "E-CLI-001");
+      "E-CLI-001", 2);
 }
 
 }  // namespace

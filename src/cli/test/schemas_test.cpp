@@ -116,6 +116,8 @@ constexpr const char* kTask = "scenes/tasks/object_transport.json";
 constexpr const char* kCourse = "assets/courses/cholecystectomy.json";
 constexpr const char* kLevels = "assets/proficiency/peg_transfer-normal.json";
 constexpr const char* kScript = "scenes/demonstration.script.json";
+constexpr const char* kRules = "assets/coach/rules.json";
+constexpr const char* kValidity = "assets/validity.json";
 
 const Broken kBroken[] = {
     {"PatientUnit", kPatient, [](Json& j) { j["unit"] = "m"; }},
@@ -162,6 +164,11 @@ const Broken kBroken[] = {
     {"LevelsWithoutASource", kLevels, [](Json& j) { j["thresholds"][0].erase("source"); }},
     {"LevelsOfNoPurpose", kLevels, [](Json& j) { j["thresholds"][0]["purpose"] = "haste"; }},
     {"LevelsWithoutThreshold", kLevels, [](Json& j) { j["thresholds"] = Json::array(); }},
+    {"RuleOfAnUnknownMeasure", kRules, [](Json& j) { j["rules"][0]["measure"] = "coach:humour"; }},
+    {"RuleWithoutASource", kRules, [](Json& j) { j["rules"][0].erase("source"); }},
+    {"RuleAbsoluteWithoutASentence", kRules, [](Json& j) { j["rules"][0]["absolute"] = 1; }},
+    {"ValidityChanceAboveOne", kValidity, [](Json& j) { j["tasks"][0]["measures"][0]["auc"] = 1.5; }},
+    {"ValidityWithoutAVerdict", kValidity, [](Json& j) { j["tasks"][0]["measures"][0].erase("separates"); }},
     {"ScriptFirstKeyWithOneHand", kScript, [](Json& j) { j["keys"][0].erase("right"); }},
     {"ScriptWithoutKeys", kScript, [](Json& j) { j["keys"] = Json::array(); }},
     {"ScriptJawTooWide", kScript, [](Json& j) { j["keys"][1]["left"]["jaw_deg"] = 120; }},
