@@ -103,7 +103,12 @@ TEST_F(RecordingCommand, SomebodyElseGoesOnAndIsRecordedToo) {
   const json verified = RunJson({"replay", other});
   EXPECT_EQ(verified.at("verified"), true);
   EXPECT_EQ(verified.at("hash"), went.at("hash"));
-  EXPECT_EQ(RunJson({"record", "info", other}).at("first_tick"), 720);
+  const json info = RunJson({"record", "info", other});
+  EXPECT_EQ(info.at("first_tick"), 720);
+  EXPECT_EQ(info.at("branched").at("from"), "attempt.trocar");
+  EXPECT_EQ(info.at("branched").at("tick"), 720);
+  EXPECT_TRUE(RunJson({"record", "info", file}).at("branched").is_null());
+  EXPECT_THAT(Run({"record", "info", other}).out, testing::HasSubstr("attempt.trocar at 6 s"));
 }
 
 TEST_F(RecordingCommand, AnyPartIsDrawn) {
@@ -116,7 +121,7 @@ TEST_F(RecordingCommand, AnyPartIsDrawn) {
 
 TEST_F(RecordingCommand, TwoAreDrawnBesideEachOther) {
   const std::string file = Record(), other = Path("other.trocar");
-  EXPECT_EQ(Run({"replay", file, "--at", "6", "--surgeon", "expert", "--record", other}).status, 0);
+  RunJson({"play", "expert", "--task", "peg_transfer", "--seconds", "7", "--seed", "3", "--record", other});
   const auto drawn =
       Run({"replay", file, "--side-by-side", other, "--ghosts", "--no-forces", "--speed", "4", "--from", "4",
            "--until", "8", "--camera", "anterior", "--size", "480x200", "-o", Path("both")});
@@ -139,16 +144,6 @@ TEST_F(RecordingCommand, AnIndexIsMadeAndMayBeDeleted) {
   std::filesystem::remove(file + ".index");
   EXPECT_EQ(RunJson({"replay", file}).at("verified"), true);
   EXPECT_FALSE(std::filesystem::exists(file + ".index")) << "the command line makes none by itself";
-}
-
-TEST_F(RecordingCommand, ABranchSaysWhereItComesFrom) {
-  const std::string file = Record(), other = Path("other.trocar");
-  EXPECT_EQ(Run({"replay", file, "--at", "6", "--surgeon", "expert", "--record", other}).status, 0);
-  const json branched = RunJson({"record", "info", other}).at("branched");
-  EXPECT_EQ(branched.at("from"), "attempt.trocar");
-  EXPECT_EQ(branched.at("tick"), 720);
-  EXPECT_TRUE(RunJson({"record", "info", file}).at("branched").is_null());
-  EXPECT_THAT(Run({"record", "info", other}).out, testing::HasSubstr("attempt.trocar at 6 s"));
 }
 
 TEST_F(RecordingCommand, WhatCannotBeReplayedIsRefusedWithARemedy) {

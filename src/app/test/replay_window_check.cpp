@@ -45,8 +45,8 @@ std::optional<Place> FindKnob(const WindowPicture& picture) {
 /// Pixels of the laparoscope's picture that differ.
 int CountDifferent(const WindowPicture& a, const WindowPicture& b) {
   int count = 0;
-  for (unsigned y = a.height / 5; y < a.height * 4 / 5; ++y) {
-    for (unsigned x = a.width / 5; x < a.width * 3 / 5; ++x) {
+  for (unsigned y = a.height / 6; y < a.height * 5 / 6; ++y) {
+    for (unsigned x = a.width / 40; x < a.width * 3 / 4; ++x) {
       const unsigned char *p = a.At(x, y), *q = b.At(x, y);
       count += std::abs(p[0] - q[0]) + std::abs(p[1] - q[1]) + std::abs(p[2] - q[2]) > 24 ? 1 : 0;
     }

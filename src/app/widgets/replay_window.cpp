@@ -101,6 +101,7 @@ void ReplayWindow::MakeContent() {
   auto* panel = Gtk::make_managed<Gtk::Box>(Gtk::Orientation::VERTICAL);
   panel->add_css_class("panel");
   panel->set_size_request(kListWidth, -1);
+  panel->set_hexpand(false);  // though its rows do
   auto* title = gui::MakeLabel("Errors, phases and remarks", "card-title");
   title->set_margin(8);
   panel->append(*title);
@@ -114,6 +115,7 @@ void ReplayWindow::MakeContent() {
 
   clock_.add_css_class("value");
   clock_.set_margin_start(12);
+  clock_.set_margin_end(8);
   auto* line = Gtk::make_managed<Gtk::Box>();
   line->append(clock_);
   line->append(time_bar_);

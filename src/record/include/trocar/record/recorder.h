@@ -18,7 +18,7 @@
 namespace trocar::record {
 
 struct RecorderSettings {
-  double keyframe_seconds = 30;  ///< between saved states: what seeking has to compute at most [s]; 0: none
+  double keyframe_seconds = 36;  ///< between saved states: what seeking without an index computes at most [s]; 0: none
   double hash_seconds = 1;       ///< between hashes of the state [s]
   /// Between states of the index beside the recording, which makes seeking quick and may be deleted [s]; 0: none is written.
   double index_seconds = 0;
