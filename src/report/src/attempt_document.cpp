@@ -356,7 +356,7 @@ Document MakeDocument(const AttemptReport& report) {
   const auto head = [&](const char* name, const std::string& value) {
     if (!value.empty()) document.head.emplace_back(name, value);
   };
-  head("Trainee", facts.person.empty() ? "nobody named" : facts.person);
+  head("Trainee", facts.person);
   head("Date", FormatDate(facts.started));
   head("Level", facts.level);
   head("Patient", facts.patient);
