@@ -20,14 +20,18 @@ using nlohmann::json;
 using testing::HasSubstr;
 using testing::Not;
 
+/// Exit status of tools/check-schemas.
+int CheckSchemas(const std::string& arguments) {
+  const std::filesystem::path root = TROCAR_SOURCE_DIR;
+  const int status = std::system(
+      ("'" + (root / "tools/check-schemas").string() + "' " + arguments + " > /dev/null 2>&1").c_str());
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
 bool IsValid(const std::string& file) {
-  const int status =
-      std::system(("'" TROCAR_SOURCE_DIR "/tools/check-schemas' '" + file + "' > /dev/null").c_str());
-  return WIFEXITED(status) && WEXITSTATUS(status) == 0;
+  return CheckSchemas("'" + file + "'") == 0;
 }
 bool HasSchemas() {
-  const int status = std::system("'" TROCAR_SOURCE_DIR "/tools/check-schemas' --check 2> /dev/null");
-  return WIFEXITED(status) && WEXITSTATUS(status) == 0;
+  return CheckSchemas("--check") == 0;
 }
 
 class ReportCommand : public testing::Test {

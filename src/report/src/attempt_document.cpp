@@ -98,8 +98,9 @@ Section MakeSummary(const AttemptReport& report) {
   Section section{"Result", {}};
   section.blocks.emplace_back(Paragraph{report.outcome, report.is_completed ? Tone::kGood : Tone::kCaution});
   Tiles tiles;
-  tiles.tiles.push_back(
-      {"Time", FormatClock(std::round(report.seconds)), "minutes and seconds", Tone::kPlain});
+  tiles.tiles.push_back({"Time", FormatClock(std::round(report.task_seconds.value_or(report.seconds))),
+                         report.task_seconds ? "from the first movement" : "minutes and seconds",
+                         Tone::kPlain});
   if (report.score) tiles.tiles.push_back(ScoreTile(report));
   tiles.tiles.push_back(ErrorTile(report));
   if (report.is_operation) {
@@ -356,7 +357,7 @@ Document MakeDocument(const AttemptReport& report) {
   const auto head = [&](const char* name, const std::string& value) {
     if (!value.empty()) document.head.emplace_back(name, value);
   };
-  head("Trainee", facts.person.empty() ? "nobody named" : facts.person);
+  head("Trainee", facts.person);
   head("Date", FormatDate(facts.started));
   head("Level", facts.level);
   head("Patient", facts.patient);

@@ -152,6 +152,7 @@ AttemptReport MakeAttemptReport(const AttemptTrace& trace, const training::Attem
   report.is_operation = trace.is_operation;
   report.score = trace.outcome.score;
   report.seconds = trace.Seconds();
+  if (trace.outcome.task_time > 0) report.task_seconds = trace.outcome.task_time;
   report.critical_view_time = trace.critical_view_time;
   if (trace.is_operation && !trace.fluids.empty()) {
     report.blood_ml = kMillilitre * trace.fluids.back().blood;

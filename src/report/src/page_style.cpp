@@ -48,7 +48,8 @@ tbody th { font-weight: 500; }
 td.good, th.good { color: var(--good); } td.caution, th.caution { color: var(--major); font-weight: 600; } td.bad, th.bad { color: var(--critical); font-weight: 650; }
 td.muted, th.muted { color: var(--muted); font-size: .93em; }
 .figures { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(100%, 26rem), 1fr)); gap: 1.2rem 1.6rem; margin: .9rem 0; }
-figure { margin: 0; min-width: 0; }
+figure { margin: 0; min-width: 0; } .figures.one figure:not(.wide) { max-width: 32rem; }
+.figures figure.wide { grid-column: 1 / -1; }
 figcaption { font-weight: 600; font-size: .9rem; padding-bottom: .3rem; }
 .pictures figcaption, .film figcaption { font-weight: 400; color: var(--muted); padding: .3rem 0 0; font-size: .85rem; }
 .pictures { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(100%, 18rem), 1fr)); gap: 1rem; margin: .9rem 0; }

@@ -151,7 +151,11 @@ core::Status SyncPath(const fs::path& path, int flags) {
 /// Survives a power cut once it has returned.
 core::Status WriteSynced(const fs::path& path, const std::string& content) {
   std::error_code failure;
-  fs::create_directories(path.parent_path(), failure);
+  const fs::path folder = path.parent_path();
+  // a new folder's own entry lies in its parent
+  if (fs::create_directories(folder, failure) && folder.has_parent_path()) {
+    if (auto status = SyncPath(folder.parent_path(), O_RDONLY | O_DIRECTORY); !status.ok()) return status;
+  }
   const fs::path part = path.string() + ".part";
   const int descriptor = ::open(part.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
   if (descriptor < 0) return Unwritable(part);
@@ -173,7 +177,7 @@ core::Status WriteSynced(const fs::path& path, const std::string& content) {
     return error;
   }
   if (std::rename(part.c_str(), path.c_str()) != 0) return Unwritable(path);
-  return SyncPath(path.parent_path(), O_RDONLY | O_DIRECTORY);
+  return SyncPath(folder, O_RDONLY | O_DIRECTORY);
 }
 
 std::vector<fs::path> ListFiles(const fs::path& folder) {

@@ -97,8 +97,9 @@ struct AttemptReport {
   std::string outcome;  ///< a sentence
   bool is_completed = false;
   bool is_operation = false;
-  std::optional<double> score;  ///< see AttemptFacts::is_score_percent
-  double seconds = 0;
+  std::optional<double> score;               ///< see AttemptFacts::is_score_percent
+  double seconds = 0;                        ///< from the first tick to the last
+  std::optional<double> task_seconds;        ///< of a task, from the first movement
   std::optional<double> critical_view_time;  ///< [s]
   std::optional<double> blood_ml, bile_ml;   ///< of an operation
   std::vector<GoalRow> goals;
