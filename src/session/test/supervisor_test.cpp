@@ -261,7 +261,7 @@ TEST(SupervisorLink, AWireMayHaveTheFirstDescriptor) {
   EXPECT_EQ(wire.CountZeros(0.05), 3);
 }
 
-TEST(SupervisorProcess, EndsWithAnErrorWhereItHasNoMemoryToWatch) {
+TEST(SupervisorProgram, EndsWithAnErrorWhereItHasNoMemoryToWatch) {
   const pid_t process = ::fork();
   if (process == 0) ::_exit(RunSupervisor(-1, -1));
   int status = 0;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "trocar/core/json.h"
+#include "trocar/roles/roles.h"
 
 namespace trocar::view {
 
@@ -61,22 +62,31 @@ core::Result<PatientColours> ReadPatientColours(const std::filesystem::path& pat
     root.Complain("format must be \"trocar-patient-colours\"");
   if (root.Integer("version") != 1) root.Complain("version must be 1");
   PatientColours colours;
+  using roles::NameOf;
   const core::JsonView organs = root.Object("organs_srgb");
-  organs.AllowOnly({"liver", "gallbladder", "other"});
-  ReadColour(organs, "liver", colours.liver);
-  ReadColour(organs, "gallbladder", colours.gallbladder);
+  constexpr const char* kLiver = NameOf(OrganRole::kLiver);
+  constexpr const char* kGallbladder = NameOf(OrganRole::kGallbladder);
+  organs.AllowOnly({kLiver, kGallbladder, "other"});
+  ReadColour(organs, kLiver, colours.liver);
+  ReadColour(organs, kGallbladder, colours.gallbladder);
   ReadColour(organs, "other", colours.other_organ);
   const core::JsonView regions = root.Object("regions_srgb");
-  regions.AllowOnly({"diaphragmatic_face", "falciform", "coronary", "gallbladder_bed", "other"});
-  ReadColour(regions, "diaphragmatic_face", colours.diaphragmatic_face);
-  ReadColour(regions, "falciform", colours.falciform);
-  ReadColour(regions, "coronary", colours.coronary);
-  ReadColour(regions, "gallbladder_bed", colours.gallbladder_bed);
+  constexpr const char* kDiaphragmatic = NameOf(RegionRole::kDiaphragmaticFace);
+  constexpr const char* kFalciform = NameOf(RegionRole::kFalciform);
+  constexpr const char* kCoronary = NameOf(RegionRole::kCoronary);
+  constexpr const char* kBed = NameOf(RegionRole::kGallbladderBed);
+  regions.AllowOnly({kDiaphragmatic, kFalciform, kCoronary, kBed, "other"});
+  ReadColour(regions, kDiaphragmatic, colours.diaphragmatic_face);
+  ReadColour(regions, kFalciform, colours.falciform);
+  ReadColour(regions, kCoronary, colours.coronary);
+  ReadColour(regions, kBed, colours.gallbladder_bed);
   ReadColour(regions, "other", colours.other_region);
   const core::JsonView tubes = root.Object("tubes_srgb");
-  tubes.AllowOnly({"artery", "cystic_duct", "other_duct"});
-  ReadColour(tubes, "artery", colours.artery);
-  ReadColour(tubes, "cystic_duct", colours.cystic_duct);
+  constexpr const char* kArtery = NameOf(roles::TissueRole::kArtery);
+  constexpr const char* kCysticDuct = NameOf(TubeRole::kCysticDuct);
+  tubes.AllowOnly({kArtery, kCysticDuct, "other_duct"});
+  ReadColour(tubes, kArtery, colours.artery);
+  ReadColour(tubes, kCysticDuct, colours.cystic_duct);
   ReadColour(tubes, "other_duct", colours.other_duct);
   const core::JsonView marks = root.Object("marks_srgb");
   marks.AllowOnly({"attachment", "landmark"});
