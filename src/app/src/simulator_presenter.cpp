@@ -312,7 +312,9 @@ std::span<const SimulatorPresenter::Handler> SimulatorPresenter::Handlers() noex
       {Action::kToggleTaskList,
        [](Self& self) { self.page_.is_task_list_open ? self.CloseTaskList() : self.OpenTaskList(); }},
       {Action::kToggleRecordingList,
-       [](Self& self) { self.page_.is_recording_list_open ? self.CloseRecordingList() : self.OpenRecordingList(); }},
+       [](Self& self) {
+         self.page_.is_recording_list_open ? self.CloseRecordingList() : self.OpenRecordingList();
+       }},
       {Action::kReleasePointer, [](Self& self) { self.ReleaseAll(); }},
   };
   return kHandlers;

@@ -148,8 +148,9 @@ core::Status DrawCriticalView(Replay& replay, const ReplayArguments& arguments) 
     std::printf("%s\n", json.dump(2).c_str());
     return {};
   }
-  std::printf("%s holds front.png and back.png of %s s: the critical view is %s\n", arguments.video.output.c_str(),
-              FormatNumber(seconds, 4).c_str(), score.IsAchieved() ? "achieved" : "not achieved");
+  std::printf("%s holds front.png and back.png of %s s: the critical view is %s\n",
+              arguments.video.output.c_str(), FormatNumber(seconds, 4).c_str(),
+              score.IsAchieved() ? "achieved" : "not achieved");
   std::printf("Triangle cleared %d of 2, lower third off the plate %d of 2, two structures %d of 2\n",
               score.criteria[0], score.criteria[1], score.criteria[2]);
   for (const std::string& reason : training::ExplainCriticalView(result.facts, score))

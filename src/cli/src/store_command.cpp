@@ -376,7 +376,8 @@ core::Result<StoreSession> OpenSession(const StoreOptions& options, store::Store
 
 void AddStoreOptions(CLI::App& command, const std::shared_ptr<StoreOptions>& options) {
   command
-      .add_option("--store", options->url, "SQLite file or postgresql://... (else TROCAR_STORE, else your own)")
+      .add_option("--store", options->url,
+                  "SQLite file or postgresql://... (else TROCAR_STORE, else your own)")
       ->type_name("URL");
   command.add_option("--as", options->viewer, "Ask as this person: see and do what their role allows")
       ->type_name("PSEUDONYM");

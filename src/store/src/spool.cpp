@@ -258,7 +258,8 @@ void Spool::ForgetJournal(std::int64_t before_ms) const {
 
 core::Result<int> Spool::Erase(std::string_view trainee) const {
   int erased = 0;
-  for (const fs::path& folder : {folder_, folder_ / "held", folder_ / "damaged", folder_ / "unmeasured", journal_}) {
+  for (const fs::path& folder :
+       {folder_, folder_ / "held", folder_ / "damaged", folder_ / "unmeasured", journal_}) {
     if (folder.empty()) continue;
     for (const fs::path& file : ListFiles(folder)) {
       const auto text = core::ReadFile(file);

@@ -18,8 +18,9 @@
 namespace trocar::record {
 
 struct RecorderSettings {
-  double keyframe_seconds = 36;  ///< between saved states: what seeking without an index computes at most [s]; 0: none
-  double hash_seconds = 1;       ///< between hashes of the state [s]
+  double keyframe_seconds =
+      36;  ///< between saved states: what seeking without an index computes at most [s]; 0: none
+  double hash_seconds = 1;  ///< between hashes of the state [s]
   /// Between states of the index beside the recording, which makes seeking quick and may be deleted [s]; 0: none is written.
   double index_seconds = 0;
   std::uint64_t index_bytes = std::uint64_t{1} << 30;  ///< beyond it the index takes no more
