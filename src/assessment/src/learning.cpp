@@ -112,6 +112,18 @@ core::Result<LearningCurve> FitLearningCurve(std::span<const double> values) {
   return curve;
 }
 
+std::string_view VerdictSentence(CusumVerdict verdict) noexcept {
+  switch (verdict) {
+    case CusumVerdict::kAcceptable:
+      return "The failure rate is acceptable.";
+    case CusumVerdict::kUnacceptable:
+      return "The failure rate is too high.";
+    case CusumVerdict::kUndecided:
+      break;
+  }
+  return "More attempts are needed to tell the failure rate.";
+}
+
 core::Result<Cusum> CalcCusum(const std::vector<bool>& failed, const CusumSettings& settings) {
   const double p0 = settings.acceptable, p1 = settings.unacceptable;
   const bool are_rates_good = p0 > 0 && p1 > p0 && p1 < 1;

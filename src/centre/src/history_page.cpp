@@ -90,13 +90,11 @@ void AddCusum(const std::vector<bool>& failed, const std::string& task, HistoryP
   if (failed.empty()) return;
   const auto cusum = assessment::CalcCusum(failed);
   if (!cusum.ok()) return;
-  const char* const words[] = {"More attempts are needed to tell the failure rate.",
-                               "The failure rate is acceptable.", "The failure rate is too high."};
   report::CusumChart chart;
   chart.task = task;
   chart.values = cusum->values;
   chart.lower = cusum->h0, chart.upper = cusum->h1;
-  chart.verdict = words[static_cast<std::size_t>(cusum->verdict)];
+  chart.verdict = assessment::VerdictSentence(cusum->verdict);
   page.findings.push_back("CUSUM: " + chart.verdict);
   page.drawings.push_back(report::DrawCusum(chart));
 }

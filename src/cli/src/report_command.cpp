@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <string>
 #include <utility>
@@ -12,6 +13,7 @@
 
 #include "attempt_page.h"
 #include "command.h"
+#include "trocar/assessment/learning.h"
 #include "trocar/core/safe_file.h"
 #include "trocar/report/report_files.h"
 
@@ -30,6 +32,23 @@ core::Status WriteDictionary(const ReportArguments& arguments) {
   if (!arguments.output.empty()) return core::WriteFile(arguments.output, text);
   std::fputs(text.c_str(), stdout);
   return {};
+}
+
+/// Curves' fits, and the sum of failures of each task: not passed, or not completed where there are no thresholds.
+void FillLearning(report::TraineeReport& report) {
+  for (report::LearningCurve& curve : report.curves) {
+    const auto fit = assessment::FitLearningCurve(curve.values);
+    if (fit.ok()) curve.fit = report::CurveFit{fit->plateau, fit->gain, fit->rate};
+  }
+  std::map<std::string, std::vector<bool>> failed;
+  for (const report::AttemptRow& row : report.attempts)
+    failed[row.task].push_back(!row.is_passed.value_or(row.is_completed));
+  for (const auto& [task, failures] : failed) {
+    const auto cusum = assessment::CalcCusum(failures);
+    if (!cusum.ok()) continue;
+    report.cusums.push_back({task, cusum->values, cusum->h0, cusum->h1,
+                             std::string(assessment::VerdictSentence(cusum->verdict))});
+  }
 }
 
 core::Status Report(ReportArguments arguments) {
@@ -53,9 +72,14 @@ core::Status Report(ReportArguments arguments) {
                    [](const report::AttemptReport& a, const report::AttemptReport& b) {
                      return a.facts.started < b.facts.started;
                    });
-  const core::Status written = reports.size() == 1
-                                   ? WriteReport(reports[0], arguments.output)
-                                   : WriteReport(report::MakeTraineeReport(reports), arguments.output);
+  core::Status written;
+  if (reports.size() == 1) {
+    written = WriteReport(reports[0], arguments.output);
+  } else {
+    report::TraineeReport trainee = report::MakeTraineeReport(reports);
+    FillLearning(trainee);
+    written = WriteReport(trainee, arguments.output);
+  }
   if (!written.ok()) return written;
   if (reports.size() == 1) std::printf("%s\n", reports[0].outcome.c_str());
   std::printf("Wrote %s\n", arguments.output.c_str());

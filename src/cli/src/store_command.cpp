@@ -8,6 +8,7 @@
 #include "command.h"
 #include "console.h"
 #include "store_console.h"
+#include "trocar/assessment/judge_recording.h"
 #include "trocar/core/log.h"
 #include "trocar/record/recording.h"
 #include "trocar/store/attempts.h"
@@ -191,6 +192,20 @@ void AddPercentile(CLI::App& parent, const Options& options, Outcome& outcome) {
   });
 }
 
+/// What the attempt's recording is measured to; an attempt that does not replay is kept without it.
+void Measure(record::Recording recording, store::Attempt& attempt) {
+  assessment::ReplaySettings settings;
+  ProgressBar progress("measuring", 1.0);
+  settings.progress = [&progress](double share) { progress.Show(share); };
+  auto measured = assessment::MakeAttempt(std::move(recording), settings);
+  if (!measured.ok()) {
+    core::Log(core::LogLevel::kWarning, "kept without metrics: " + measured.error().Text());
+    return;
+  }
+  attempt.metrics = std::move(measured->result.metrics.values);
+  attempt.score = measured->score;
+}
+
 void AddAdd(CLI::App& parent, const Options& options, Outcome& outcome) {
   CLI::App* command =
       parent.add_subcommand("add", "Keep a recorded attempt; it waits where the store is away");
@@ -203,11 +218,12 @@ void AddAdd(CLI::App& parent, const Options& options, Outcome& outcome) {
   AddStoreOptions(*command, options);
   command->callback([options, arguments, &outcome] {
     outcome.status = [&]() -> core::Status {
-      const auto recording = record::ReadRecording(arguments->file);
+      auto recording = record::ReadRecording(arguments->file);
       if (!recording.ok()) return recording.error();
       auto attempt = store::DescribeAttempt(*recording, arguments->file);
       if (!attempt.ok()) return attempt.error();
       attempt->trainee = arguments->trainee;
+      Measure(std::move(*recording), *attempt);
       const auto kept = store::KeepAttempt(store::FindPlace(options->url), *attempt);
       if (!kept.ok()) return kept.error();
       if (!kept->rebuilt.empty()) core::Log(core::LogLevel::kWarning, kept->rebuilt);

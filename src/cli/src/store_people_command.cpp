@@ -8,6 +8,7 @@
 #include "command.h"
 #include "console.h"
 #include "store_console.h"
+#include "trocar/report/xapi.h"
 #include "trocar/store/maintenance.h"
 #include "trocar/store/names.h"
 
@@ -161,16 +162,20 @@ void AddErase(CLI::App& trainee, const Options& options, Outcome& outcome) {
       return core::Error{core::ErrorCode::kUsage, "this removes a person for ever; add --yes to do it"};
     const auto report = ErasePerson(session.store, session.viewer, arguments->pseudonym);
     if (!report.ok()) return report.error();
+    // statements for a learning record store that have not been delivered
+    const auto statements = report::XapiQueue(report::XapiQueue::FindFolder()).Erase(arguments->pseudonym);
+    if (!statements.ok()) return statements.error();
     if (options->is_json) {
       PrintStoreJson({{"attempts", report->attempts},
                       {"recordings", report->recordings},
                       {"waiting", report->spooled},
+                      {"statements", *statements},
                       {"left", report->left},
                       {"backups", report->backups}});
       return {};
     }
-    std::printf("erased: %lld attempts, %d recordings, %d waiting attempts\n",
-                static_cast<long long>(report->attempts), report->recordings, report->spooled);
+    std::printf("erased: %lld attempts, %d recordings, %d waiting attempts, %zu waiting statements\n",
+                static_cast<long long>(report->attempts), report->recordings, report->spooled, *statements);
     for (const std::string& left : report->left) std::printf("not erased here: %s\n", left.c_str());
     for (const std::string& backup : report->backups)
       std::printf("this backup still holds them; delete it and make a new one: %s\n", backup.c_str());

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <optional>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "trocar/core/result.h"
@@ -56,6 +57,9 @@ enum class CusumVerdict {
   kAcceptable,   ///< at or below h0: the failure rate is the acceptable one
   kUnacceptable  ///< at or above h1: the failure rate is the unacceptable one
 };
+
+/// A sentence for a person: "The failure rate is acceptable."
+std::string_view VerdictSentence(CusumVerdict verdict) noexcept;
 
 struct Cusum {
   double step = 0;                                  ///< s: what a success takes off; a failure adds 1 - s
