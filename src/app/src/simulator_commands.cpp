@@ -208,7 +208,6 @@ constexpr SimulatorCommand kCommands[] = {
      .action = Do(Action::kToggleFullscreen),
      .keys = {{{key::kF11}}},
      .help = {"View", "", "full screen"},
-     .button = {ButtonSide::kEnd, "Full screen", "Full screen and back"},
      .works_everywhere = true},
     {.id = "switch-pane",
      .action = Do(Action::kSwitchPane),

@@ -27,7 +27,7 @@ if(NOT status EQUAL 0)
   message(FATAL_ERROR "the window: ${errors}\n${output}")
 endif()
 
-execute_process(COMMAND ${TROCAR} store --store ${FOLDER}/store.sqlite --json attempts OUTPUT_VARIABLE text
+execute_process(COMMAND ${TROCAR} store attempts --store ${FOLDER}/store.sqlite --json OUTPUT_VARIABLE text
   RESULT_VARIABLE status TIMEOUT 60)
 if(NOT status EQUAL 0)
   message(FATAL_ERROR "trocar store attempts ended with ${status}: ${text}")

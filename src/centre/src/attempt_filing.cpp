@@ -229,6 +229,7 @@ struct AttemptFiling::Content {
       const bool is_end = one.kind == Work::Kind::kEnd;
       lock.unlock();
       is_end ? End(std::move(one)) : Begin(one);
+      if (is_end) Look();  // what waits is known before it counts as measured
       lock.lock();
       if (is_end) --status.measuring;
       lock.unlock();

@@ -41,6 +41,7 @@ CentrePresenter::CentrePresenter(Access access, int threads, CentreScreen& scree
       }) {
   page_.history.query.person = access_.person;
   page_.exam.examinee = access_.person;
+  if (!access_.person.empty()) ReadRole();
 }
 
 CentrePresenter::~CentrePresenter() {
@@ -239,6 +240,17 @@ void CentrePresenter::BeSomebody(const std::string& text) {
       if (on_person_) on_person_(access_.person);
       if (page_.kind == PageKind::kGroup && is_trainee_) page_.kind = PageKind::kHistory;
       Read();
+    };
+  });
+}
+
+/// Groups are for instructors. Where the store is away, nobody is one.
+void CentrePresenter::ReadRole() {
+  is_trainee_ = true;
+  Ask("Looking for you", [this, access = access_]() -> Apply {
+    const auto desk = OpenDesk(access);
+    return [this, is_trainee = !desk.ok() || desk->viewer.role == store::Role::kTrainee] {
+      is_trainee_ = is_trainee;
     };
   });
 }

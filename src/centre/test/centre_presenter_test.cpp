@@ -107,6 +107,17 @@ TEST_F(Centre, BecomesSomebody) {
   EXPECT_TRUE(presenter_->IsEnabled(CentreAction::kShowGroup));
 }
 
+TEST_F(Centre, WhoIsNamedAtTheStartHasHisRole) {
+  const auto pseudonym = FindPseudonym(access_, "Anna Berg");
+  ASSERT_TRUE(pseudonym.ok());
+  access_.person = *pseudonym;
+  Begin();
+  EXPECT_FALSE(presenter_->IsEnabled(CentreAction::kShowGroup)) << "before it is known";
+  ASSERT_TRUE(Settle());
+  EXPECT_FALSE(presenter_->IsEnabled(CentreAction::kShowGroup));
+  EXPECT_EQ(screen_.page.who, "Anna Berg");
+}
+
 TEST_F(Centre, ShowsTheResultOfAnAttemptAndItsHistory) {
   AttemptFiling filing(access_, 1, [] {});
   Begin(&filing);

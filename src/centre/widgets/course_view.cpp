@@ -86,6 +86,7 @@ void CourseView::ShowMap(const CoursePage& page, Gtk::Box& into) {
     Gtk::Label& place = MakeLine(std::to_string(++number), "step-number");
     place.add_css_class(ClassOf(step.state));
     place.set_xalign(0.5);
+    place.set_valign(Gtk::Align::CENTER);
     content->append(place);
     auto* words = Gtk::make_managed<Gtk::Box>(Gtk::Orientation::VERTICAL);
     words->set_hexpand(true);

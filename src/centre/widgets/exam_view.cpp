@@ -48,8 +48,9 @@ void ExamView::Show(const CentrePage& shown) {
 
   Gtk::Box& sit = MakeCard("1. Sit the exam");
   sit.append(MakeText(
-      "Examinee: " + (page.examinee.empty() ? std::string("nobody yet; say at \"Who are you?\" who you are")
-                                            : shown.who + " (" + page.examinee + ")"),
+      "Examinee: " + (page.examinee.empty()
+                          ? std::string("nobody yet; say at \"Who are you?\" who you are")
+                          : shown.who + (shown.who == page.examinee ? "" : " (" + page.examinee + ")")),
       page.examinee.empty() ? "caution" : "value"));
   sit.append(
       MakeText("There is no demonstration, no camera holder, no force arrows and no second try. It ends with "

@@ -13,6 +13,7 @@ namespace trocar::centre {
 namespace {
 
 constexpr int kTextWidth = 520, kPlotWidth = 640, kGap = 14;  // [pixels]
+constexpr double kWidePlot = 600;  // a drawing that stands alone in its row [pixels]
 
 }  // namespace
 
@@ -53,11 +54,22 @@ void ResultView::Show(const CentrePage& shown) {
   if (!page.drawings.empty()) plots.append(MakePlot(page.drawings[0], kPlotWidth));
   right->append(plots);
   Gtk::Box& ways = MakeCard("Where both tips went, and how that compares");
-  for (std::size_t i = 1; i < page.drawings.size(); i += 2) {
-    Gtk::Box& row = gui::MakeRow(kGap, {});
-    row.append(MakePlot(page.drawings[i], (kPlotWidth - kGap) / 2));
-    if (i + 1 < page.drawings.size()) row.append(MakePlot(page.drawings[i + 1], (kPlotWidth - kGap) / 2));
-    ways.append(row);
+  Gtk::Box* row = nullptr;  // of two narrow plots
+  for (std::size_t i = 1; i < page.drawings.size(); ++i) {
+    const report::Drawing& drawing = page.drawings[i];
+    if (drawing.width > kWidePlot) {
+      ways.append(MakePlot(drawing, kPlotWidth));
+      row = nullptr;
+      continue;
+    }
+    const bool begins = row == nullptr;
+    if (begins) row = &gui::MakeRow(kGap, {});
+    row->append(MakePlot(drawing, (kPlotWidth - kGap) / 2));
+    if (begins) {
+      ways.append(*row);
+    } else {
+      row = nullptr;
+    }
   }
   right->append(ways);
   ShowNumbers(page, *right);

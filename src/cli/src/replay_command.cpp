@@ -15,6 +15,7 @@
 #include "attempt_recording.h"
 #include "command.h"
 #include "console.h"
+#include "picture_size.h"
 #include "replay_video.h"
 #include "trocar/agent/surgeon.h"
 #include "trocar/core/clock.h"

@@ -71,8 +71,9 @@ std::string WallClockText() {
   std::tm local{};
   ::localtime_r(&now, &local);
   char text[40];
-  const std::size_t length = std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%S%z", &local);
-  return {text, length};
+  std::string time(text, std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%S%z", &local));
+  time.insert(time.size() - 2, ":");  // RFC 3339: "+01:00"
+  return time;
 }
 
 std::uint64_t TicksIn(double seconds, double tick_seconds) {

@@ -219,7 +219,7 @@ core::Result<std::int64_t> ParseTime(std::string_view text) {
   if (at < text.size() && (text[at] == '+' || text[at] == '-')) {
     const int sign = text[at++] == '+' ? 1 : -1;
     const int hours = take(2);
-    if (!skip(':')) return wrong;
+    if (at < text.size() && text[at] == ':') ++at;  // recordings of before 2026-11-25 have none
     const int minutes = take(2);
     if (hours < 0 || hours > 23 || minutes < 0 || minutes > 59) return wrong;
     offset = sign * (60 * hours + minutes);

@@ -124,6 +124,7 @@ class CentrePresenter {
   void Read();
   void ReadHistory(const HistoryQuery& query);
   void ReadReview();
+  void ReadRole();
   void UseResult(const JudgedAttempt& judged);
   void FollowFiling();
   void Fail(const core::Error& error);
