@@ -20,7 +20,7 @@ class RecordingCommand : public Command {
   std::string Record() {
     const std::string file = Path("attempt.trocar");
     played_ = RunJson(
-        {"play", "novice", "--task", "peg_transfer", "--seconds", "12", "--seed", "3", "--record", file});
+        {"play", "loses", "--task", "peg_transfer", "--seconds", "12", "--seed", "3", "--record", file});
     return file;
   }
   json played_;
@@ -38,9 +38,8 @@ TEST_F(RecordingCommand, ATaskIsVerifiedByReplayingIt) {
   EXPECT_EQ(said.status, 0);
   EXPECT_THAT(said.out, testing::StartsWith("VERIFIED: "));
   // recording changes nothing
-  EXPECT_EQ(
-      RunJson({"play", "novice", "--task", "peg_transfer", "--seconds", "12", "--seed", "3"}).at("hash"),
-      played_.at("hash"));
+  EXPECT_EQ(RunJson({"play", "loses", "--task", "peg_transfer", "--seconds", "12", "--seed", "3"}).at("hash"),
+            played_.at("hash"));
 }
 
 TEST_F(RecordingCommand, AnOperationIsVerifiedFromAnyFolder) {
@@ -57,7 +56,7 @@ TEST_F(RecordingCommand, InfoSaysWhatItIs) {
   const json info = RunJson({"record", "info", file});
   EXPECT_EQ(info.at("of"), "peg_transfer");
   EXPECT_EQ(info.at("seed"), 3);
-  EXPECT_THAT(info.at("player").get<std::string>(), testing::HasSubstr("novice"));
+  EXPECT_THAT(info.at("player").get<std::string>(), testing::HasSubstr("loses"));
   EXPECT_NEAR(info.at("seconds").get<double>(), 12, 0.1);
   EXPECT_EQ(info.at("finished"), true);
   EXPECT_TRUE(info.at("damage").is_null());

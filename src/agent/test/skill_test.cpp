@@ -232,7 +232,9 @@ TEST(SkilledSurgeon, GoesOnAfterRestoring) {
       ASSERT_TRUE(restore.ok()) << restore.Failure();
     }
     const Input input = surgeon->Act(simulation->GetSnapshot());
-    if (follower != nullptr) ASSERT_EQ(follower->Act(simulation->GetSnapshot()), input) << tick;
+    if (follower != nullptr) {
+      ASSERT_EQ(follower->Act(simulation->GetSnapshot()), input) << tick;
+    }
     simulation->Step(input);
   }
 }

@@ -166,7 +166,7 @@ TEST(SurgeonMemory, EveryFieldOfATaskSurgeonIsNeeded) {
   for (const char* task : kTasks) {
     const auto scene = ReadDelivered(task);
     const TaskSurgeon fresh(scene, Unsteady(), ErrorScenario::kLeavesView, 5);
-    PlayWithFollowers(scene, fresh, RandomTicks(11, 12, 3600), 6000, &fields);
+    PlayWithFollowers(scene, fresh, RandomTicks(11, 20, 3600), 6000, &fields);
     ASSERT_FALSE(HasFailure());
   }
   std::set<std::string> idle;

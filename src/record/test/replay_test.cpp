@@ -165,8 +165,9 @@ TEST_F(ReplayTest, FillsGapsUntilThereAreNone) {
     const auto done = filler->FillGap(250, seconds);
     ASSERT_TRUE(done.ok());
     if (!*done) break;
-    if (filled++ == 0)
+    if (filled++ == 0) {
       EXPECT_THAT(replay.KnownTicks(), testing::Contains(260u)) << "the gap after tick 250 first";
+    }
   }
   EXPECT_GT(filled, 10);
   std::vector<std::uint64_t> ticks = replay.KnownTicks();

@@ -97,8 +97,8 @@ class Delivery : public testing::Test {
     const auto text = core::ReadFile(log_);
     std::istringstream lines(text.ok() ? *text : "");
     for (std::string line; std::getline(lines, line);) {
-      const auto json = nlohmann::json::parse(line);
-      times[json["id"]] += json["new"].get<bool>() ? 1 : 0;
+      const auto arrival = nlohmann::json::parse(line);
+      times[arrival["id"]] += arrival["new"].get<bool>() ? 1 : 0;
     }
     return times;
   }

@@ -69,7 +69,8 @@ std::string FindFault(const json& statement) {
       const double scaled = result["score"]["scaled"];
       if (scaled < -1 || scaled > 1) return "scaled";
     }
-    for (const auto& [key, value] : result.value("extensions", json::object()).items()) {
+    const json extensions = result.value("extensions", json::object());
+    for (const auto& [key, value] : extensions.items()) {
       if (!std::regex_match(key, iri)) return "extension " + key;
     }
   }
@@ -92,7 +93,7 @@ TEST(XapiStatements, HoldToTheSpecification) {
   AttemptReport report = test::MakeTaskReport();
   for (const double score : {87.5, 130.0, -5.0}) {
     report.score = score;
-    for (const std::string& key : {"object_transport", "my <odd> \"task\" ü"}) {
+    for (const char* key : {"object_transport", "my <odd> \"task\" ü"}) {
       report.facts.task_key = key;
       const auto statements = MakeStatements(report, kSettings);
       ASSERT_TRUE(statements.ok()) << statements.error().Text();

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace trocar::training {
@@ -86,14 +87,14 @@ int CountEvents(const AttemptTrace& trace, const AttemptPart& part, int hand, st
 }
 
 int CountRegrasps(const AttemptTrace& trace, const AttemptPart& part, int hand, double regrasp_time) {
-  std::optional<double> let_go;
+  double let_go = -std::numeric_limits<double>::infinity();
   int count = 0;
   for (const AttemptEvent& event : trace.events) {
     if (event.hand != hand) continue;
     if (event.kind == "release" || event.kind == "slip") let_go = event.time;
     if (event.kind != "grasp") continue;
-    if (let_go && event.time - *let_go <= regrasp_time && part.HasEvent(trace, event.time)) ++count;
-    let_go.reset();
+    if (event.time - let_go <= regrasp_time && part.HasEvent(trace, event.time)) ++count;
+    let_go = -std::numeric_limits<double>::infinity();
   }
   return count;
 }
