@@ -11,7 +11,7 @@ constexpr std::int64_t kRowsAtOnce = 2000;
 constexpr ColumnKind kText = ColumnKind::kText, kWhole = ColumnKind::kWhole, kNumber = ColumnKind::kNumber;
 
 const std::vector<Table>& AllTables() {
-  static const std::vector<Table> kTables = {
+  static const std::vector<Table> tables = {
       {"person",
        Reference::kPerson,
        "pseudonym",
@@ -124,7 +124,7 @@ const std::vector<Table>& AllTables() {
         {"person_id", kWhole, true, Reference::kPerson},
         {"content"},
         {"issued_ms", kWhole}}}};
-  return kTables;
+  return tables;
 }
 
 }  // namespace
