@@ -125,6 +125,7 @@ struct Played {
   std::string task;  // for a person
   std::optional<double> score;
   bool is_score_percent = false;
+  double best_score = 100;
   bool is_completed = false;
 };
 
@@ -164,6 +165,7 @@ core::Result<Played> Play(record::Replay& replay, const assessment::Step* step,
   if (scene.task) {
     played.score = scene::CalcShownScore(*scene.task, replay.GetSimulation().GetSnapshot().task);
     played.is_score_percent = scene.task->reference_points > 0;
+    played.best_score = scene.task->best_score;
   }
   return played;
 }
@@ -242,6 +244,7 @@ core::Result<JudgedAttempt> JudgeRecording(const fs::path& path, const JudgeSett
   input.facts.person = settings.person;
   input.facts.recording = path.filename().string();
   input.facts.is_score_percent = played->is_score_percent;
+  input.facts.best_score = played->best_score;
   input.references = references;
   input.advice = advice;
   judged.report = report::MakeAttemptReport(played->trace, played->metrics, input);

@@ -108,7 +108,7 @@ void AddDeviations(Drawing& drawing, const std::vector<const MetricRow*>& axes) 
   frame.x.Add(kWorst), frame.x.Add(kBest);
   frame.y.Add(0), frame.y.Add(static_cast<double>(axes.size()));
   frame.AddGround(drawing);
-  frame.AddXAxis(drawing, 6, "standard deviations from the experts' mean; better to the right");
+  frame.AddXAxis(drawing, 6, "SD from the experts' mean; right is better");
   drawing.shapes.emplace_back(
       Line{{frame.Map({0, frame.y.low}), frame.Map({0, frame.y.high})}, Ink::kExpert, 1.6, Dash::kDashed});
   for (std::size_t i = 0; i < axes.size(); ++i) {

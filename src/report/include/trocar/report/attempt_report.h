@@ -30,11 +30,13 @@ struct AttemptFacts {
   std::string level;     ///< of a task; may be empty
   std::string patient;   ///< may be empty
   std::uint64_t seed = 0;
-  std::string started;            ///< RFC 3339; may be empty
-  std::string player;             ///< "expert, seed 3", "mouse and keyboard"
-  std::string program;            ///< version
-  std::string recording;          ///< file name without its folder; may be empty
-  bool is_score_percent = false;  ///< score 100 is an able surgeon's; otherwise it is in points
+  std::string started;    ///< RFC 3339; may be empty
+  std::string player;     ///< "expert, seed 3", "mouse and keyboard"
+  std::string program;    ///< version
+  std::string recording;  ///< file name without its folder; may be empty
+  bool is_score_percent =
+      false;                ///< of an able surgeon's points, at most best_score; otherwise it is in points
+  double best_score = 100;  ///< scene::Task::best_score: what an able surgeon is shown at this level [%]
 };
 /// Of a recording. \param task  its name for a person
 AttemptFacts DescribeAttempt(const record::Description& description, std::string task);
