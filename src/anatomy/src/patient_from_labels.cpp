@@ -9,7 +9,9 @@
 #include <vector>
 
 #include "duct_template.h"
+#include "label_plausibility.h"
 #include "trocar/anatomy/patient_builder.h"
+#include "trocar/core/printable.h"
 #include "trocar/geometry/mesh_measures.h"
 #include "trocar/meshing/label_volume.h"
 #include "trocar/meshing/volume.h"
@@ -22,10 +24,14 @@ using core::Error;
 using core::ErrorCode;
 using math::Vec3;
 
-constexpr double kLargestVoxelMm = 20.0;
 constexpr double kMaxPixels = 4e6;  // of one slice after it was given square pixels
 // the same in the class maps total (version 2), total_v1 and total_mr
-constexpr int kTotalGallbladder = 4, kTotalLiver = 5;
+constexpr int kTotalSpleen = 1, kTotalGallbladder = 4, kTotalLiver = 5;
+
+constexpr const char* kWhereNone =
+    ". If the map shows another region of the body, or the organ was taken out before, there is nothing to "
+    "operate "
+    "on: a patient needs both";
 
 Error Mismatch(const std::string& why) {
   return {ErrorCode::kLabelsMismatch, why};
@@ -85,28 +91,95 @@ Vec3 FindNeck(const geometry::TriangleMesh& gallbladder) {
   return Dot(one, upwards) > Dot(other, upwards) ? one : other;
 }
 
+/// Liver and gallbladder of the map as meshes (left, cranial, anterior). What the map holds beside their largest parts
+/// is taken out of it, and told in the notes of `report`.
+core::Result<std::vector<meshing::StructureMesh>> MeshOrgans(
+    images::LabelVolume& volume, const MeasuredLabels& measured, const VoxelFrame& frame,
+    const LabelOptions& options, const images::Progress& progress, BuildReport& report) {
+  const std::array<double, 3>& step = frame.step_mm;
+  const double pixel = std::max(0.5, std::min(step[0], step[1]));
+  if (volume.size[0] * step[0] / pixel * (volume.size[1] * step[1] / pixel) > kMaxPixels)
+    return Mismatch("a slice covers too large an area; crop the map");
+  struct Part {
+    const char* name;
+    int label, triangles;
+    const std::vector<CutSide>& cuts;
+  };
+  const Part parts[] = {
+      {NameOf(OrganRole::kLiver), measured.labels.liver, meshing::kLiverTriangles, measured.liver.cuts},
+      {NameOf(OrganRole::kGallbladder), measured.labels.gallbladder, meshing::kGallbladderTriangles,
+       measured.gallbladder.cuts}};
+  std::vector<meshing::ScalarVolume> volumes;
+  for (const Part& part : parts) {
+    progress(std::string("filling ") + part.name, 0.1);
+    std::vector<double> parts_ml;
+    for (const std::size_t voxels : meshing::KeepLargestPart(volume, part.label))
+      parts_ml.push_back(static_cast<double>(voxels) * frame.VoxelMm3() / 1000.0);
+    if (const auto status = CheckParts(part.name, parts_ml, options.takes_largest_part); !status.ok())
+      return status.error();
+    for (std::string& note : DescribeLosses(part.name, parts_ml, part.cuts))
+      report.notes.push_back(std::move(note));
+    auto slices = meshing::FillLabelSlices(volume, part.label, step, pixel);
+    contours::OrganReport organ;
+    organ.name = part.name;
+    organ.slices = slices.size();
+    meshing::LabelVolumeSettings settings;
+    settings.spacing_mm = options.spacing_mm;
+    auto distances = meshing::MakeLabelVolume(std::move(slices), pixel, 1000.0 * parts_ml.front(), settings);
+    if (!distances.ok()) {
+      return Error{distances.error().code, std::string(part.name) + ", label " + std::to_string(part.label) +
+                                               ": " + distances.error().message};
+    }
+    volumes.push_back(std::move(*distances));
+    report.organs.push_back(organ);
+  }
+  meshing::Subtract(volumes[0], volumes[1], options.gap_mm);
+
+  std::vector<meshing::StructureMesh> meshes;
+  for (std::size_t i = 0; i < volumes.size(); ++i) {
+    progress(std::string("meshing ") + parts[i].name, 0.3 + 0.3 * static_cast<double>(i));
+    meshing::MeshingSettings settings;
+    settings.triangle_budget = parts[i].triangles;
+    auto meshed = meshing::MeshVolume(std::move(volumes[i]), settings);
+    if (!meshed.ok())
+      return Error{meshed.error().code, std::string(parts[i].name) + ": " + meshed.error().message};
+    contours::AddMeshQuality(report.organs[i], meshed->quality);
+    geometry::TriangleMesh& mesh = meshed->mesh;
+    for (Vec3& p : mesh.positions) p = p.x * frame.axes[0] + p.y * frame.axes[1] + p.z * frame.axes[2];
+    // a mirrored frame turns the triangles inside out
+    if (geometry::CalcVolume(mesh.positions, mesh.triangles) < 0) {
+      for (auto& t : mesh.triangles) std::swap(t[1], t[2]);
+    }
+    meshes.push_back({parts[i].name, std::move(mesh)});
+  }
+  return meshes;
+}
+
 }  // namespace
 
 core::Result<OrganLabels> FindLabels(const images::LabelVolume& volume, const LabelOptions& options) {
   const auto counts = CountLabels(volume);
-  OrganLabels found{options.liver, options.gallbladder, "named on request"};
+  OrganLabels found{options.liver, options.gallbladder, 0, "named on request"};
   if (found.liver == 0 || found.gallbladder == 0) {
     OrganLabels usual;
     for (const auto& [name, label] : volume.names) {
       const std::string plain = LowerCase(name);
       if (plain == NameOf(OrganRole::kLiver)) usual.liver = label;
       if (plain == NameOf(OrganRole::kGallbladder)) usual.gallbladder = label;
+      if (plain == "spleen") usual.spleen = label;
     }
     usual.convention = "segment names";
     if (usual.liver == 0 && usual.gallbladder == 0) {
       // spleen and right kidney are TotalSegmentator's 1 and 2: the liver is larger than both
       const bool is_total = CountOf(counts, kTotalLiver) > CountOf(counts, 1) &&
                             CountOf(counts, kTotalLiver) > CountOf(counts, 2);
-      usual = is_total ? OrganLabels{kTotalLiver, kTotalGallbladder, "TotalSegmentator's numbers"}
-                       : OrganLabels{1, 2, "1 and 2"};
+      usual = is_total
+                  ? OrganLabels{kTotalLiver, kTotalGallbladder, kTotalSpleen, "TotalSegmentator's numbers"}
+                  : OrganLabels{1, 2, 0, "1 and 2"};
     }
     if (found.liver == 0) found.liver = usual.liver;
     if (found.gallbladder == 0) found.gallbladder = usual.gallbladder;
+    found.spleen = usual.spleen;
     found.convention = usual.convention;
   }
   // a number in place of a name that the file does not have would take some other organ
@@ -115,13 +188,13 @@ core::Result<OrganLabels> FindLabels(const images::LabelVolume& volume, const La
   for (const auto& [name, label] : both) {
     if (label != 0) continue;
     return Mismatch("the label map names its labels, and none of them is the " + std::string(name) +
-                    "; say which one it is with --" + name);
+                    "; say which one it is with --" + name + kWhereNone);
   }
   for (const auto& [name, label] : both) {
     if (label > 0 && CountOf(counts, label) > 0) continue;
     return Mismatch("the label map has no label " + std::to_string(label) + ", which should be the " + name +
                     " (found by: " + found.convention + "); it has " + ListLabels(counts) +
-                    "; name the right one with --" + name);
+                    "; name the right one with --" + name + kWhereNone);
   }
   if (found.liver == found.gallbladder) {
     return Mismatch("liver and gallbladder have the same label " + std::to_string(found.liver) +
@@ -140,87 +213,31 @@ core::Result<BuildReport> BuildPatientFromLabels(const LabelOptions& options,
     return Error{ErrorCode::kUsage, "spacing_mm must lie between 0.4 and 4, gap_mm between 0 and 5"};
   }
   report_progress("reading labels", 0.0);
-  const auto volume = images::ReadLabelVolume(options.labels);
+  auto volume = images::ReadLabelVolume(options.labels);
   if (!volume.ok()) return volume.error();
-  std::array<double, 3> step{};
-  std::array<Vec3, 3> axes;  // of one millimetre along each axis, (left, cranial, anterior)
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto& d = volume->direction[axis];
-    const Vec3 world = {d[0], d[2], -d[1]};
-    step[axis] = Norm(world);
-    if (!(step[axis] > 0.01 && step[axis] <= kLargestVoxelMm)) {
-      return Mismatch(options.labels.string() + ": voxels measure " + std::to_string(step[axis]) +
-                      " mm along axis " + std::to_string(axis + 1) + "; they must measure 0.01 to 20 mm");
-    }
-    axes[axis] = world / step[axis];
-  }
-  if (std::fabs(Dot(Cross(axes[0], axes[1]), axes[2])) < 0.99) {
-    return Mismatch(options.labels.string() + ": its axes are not at right angles; resample it");
-  }
-  const double pixel = std::max(0.5, std::min(step[0], step[1]));
-  if (volume->size[0] * step[0] / pixel * (volume->size[1] * step[1] / pixel) > kMaxPixels) {
-    return Mismatch(options.labels.string() + ": a slice covers too large an area; crop it");
-  }
+  const auto frame = MakeVoxelFrame(*volume, options.is_mirrored);
+  if (!frame.ok())
+    return Error{frame.error().code, core::Printable(options.labels.string()) + ": " + frame.error().message};
   const auto labels = FindLabels(*volume, options);
   if (!labels.ok()) return labels.error();
+  report_progress("looking at the labels", 0.05);
+  const MeasuredLabels measured = MeasureOrgans(*volume, *labels, *frame);
+  if (const auto status = CheckBody(measured, options.is_mirrored); !status.ok()) return status.error();
 
-  struct Part {
-    const char* name;
-    int label, triangles;
-  };
-  const Part parts[] = {
-      {NameOf(OrganRole::kLiver), labels->liver, meshing::kLiverTriangles},
-      {NameOf(OrganRole::kGallbladder), labels->gallbladder, meshing::kGallbladderTriangles}};
-  const auto counts = CountLabels(*volume);
   BuildReport report;
-  std::vector<meshing::ScalarVolume> volumes;
-  for (const Part& part : parts) {
-    report_progress(std::string("filling ") + part.name, 0.1);
-    auto slices = meshing::FillLabelSlices(*volume, part.label, step, pixel);
-    contours::OrganReport organ;
-    organ.name = part.name;
-    organ.slices = slices.size();
-    meshing::LabelVolumeSettings settings;
-    settings.spacing_mm = options.spacing_mm;
-    const double enclosed = static_cast<double>(CountOf(counts, part.label)) * step[0] * step[1] * step[2];
-    auto distances = meshing::MakeLabelVolume(std::move(slices), pixel, enclosed, settings);
-    if (!distances.ok()) {
-      return Error{distances.error().code, std::string(part.name) + ", label " + std::to_string(part.label) +
-                                               ": " + distances.error().message};
-    }
-    volumes.push_back(std::move(*distances));
-    report.organs.push_back(organ);
-  }
-  meshing::Subtract(volumes[0], volumes[1], options.gap_mm);
-
-  std::vector<meshing::StructureMesh> meshes;
-  for (std::size_t i = 0; i < volumes.size(); ++i) {
-    report_progress(std::string("meshing ") + parts[i].name, 0.3 + 0.3 * static_cast<double>(i));
-    meshing::MeshingSettings settings;
-    settings.triangle_budget = parts[i].triangles;
-    auto meshed = meshing::MeshVolume(std::move(volumes[i]), settings);
-    if (!meshed.ok())
-      return Error{meshed.error().code, std::string(parts[i].name) + ": " + meshed.error().message};
-    contours::AddMeshQuality(report.organs[i], meshed->quality);
-    geometry::TriangleMesh& mesh = meshed->mesh;
-    for (Vec3& p : mesh.positions) p = p.x * axes[0] + p.y * axes[1] + p.z * axes[2];
-    // a mirrored frame turns the triangles inside out
-    if (geometry::CalcVolume(mesh.positions, mesh.triangles) < 0) {
-      for (auto& t : mesh.triangles) std::swap(t[1], t[2]);
-    }
-    meshes.push_back({parts[i].name, std::move(mesh)});
-  }
+  auto meshes = MeshOrgans(*volume, measured, *frame, options, report_progress, report);
+  if (!meshes.ok()) return meshes.error();
 
   report_progress("assembling the patient", 0.9);
   auto usual = DrawParameters(0, MakeUsualSettings());
   if (!usual.ok()) return usual.error();
-  contours::ControlPoints frame = MakeWorldFrame();
+  contours::ControlPoints world = MakeWorldFrame();
   // a file name may name a person: it is not kept
-  frame.name = "Patient from a label map";
-  frame.provenance = "Liver and gallbladder from a label map (" + labels->convention +
+  world.name = "Patient from a label map";
+  world.provenance = "Liver and gallbladder from a label map (" + labels->convention +
                      "); ducts and arteries placed by landmarks, not seen in the images";
-  frame.tubes = PlaceDucts(meshes[0].mesh, meshes[1].mesh, FindNeck(meshes[1].mesh), *usual);
-  auto patient = AssemblePatient(frame, meshes);
+  world.tubes = PlaceDucts((*meshes)[0].mesh, (*meshes)[1].mesh, FindNeck((*meshes)[1].mesh), *usual);
+  auto patient = AssemblePatient(world, *meshes);
   if (!patient.ok()) return patient.error();
   report.patient = std::move(*patient);
   if (!options.output.empty()) {

@@ -280,6 +280,49 @@ TEST_F(FromLabels, PassesOverExtensionsThatAreNoLabelTables) {
   }
 }
 
+TEST_F(FromLabels, RefusesWhatIsNoPerson) {
+  EXPECT_THAT(Failure(Write("swapped.nii", FormatNifti(MakeLabels(2, 1)))).message, HasSubstr("swapped"));
+  std::string centimetres = FormatNifti(MakeLabels(1, 2));
+  for (const std::size_t at : {280u, 300u, 320u}) Put<float>(centimetres, at, 0.3f);
+  EXPECT_THAT(Failure(Write("cm.nii", centimetres)).message, HasSubstr("centimetres"));
+  const core::Error none = Failure(Write("none.nii", FormatNifti(MakeLabels(1, 0))));
+  EXPECT_EQ(none.code, ErrorCode::kLabelsMismatch);
+  EXPECT_THAT(none.message, HasSubstr("taken out before"));
+}
+
+TEST_F(FromLabels, SaysWhatItLeavesOut) {
+  auto labels = MakeLabels(1, 2);
+  // a piece of 8 mL beside the liver
+  for (int k = 5; k < 12; ++k) {
+    for (int j = 5; j < 12; ++j) {
+      for (int i = 60; i < 66; ++i) labels[(static_cast<std::size_t>(k) * kY + j) * kX + i] = 1;
+    }
+  }
+  const auto report = Build(Write("pieces.nii", FormatNifti(labels)));
+  ASSERT_TRUE(report.ok()) << report.error().Text();
+  ASSERT_EQ(report->notes.size(), 1u);
+  EXPECT_THAT(report->notes[0], testing::AllOf(HasSubstr("2 parts"), HasSubstr("left out")));
+  const auto whole = Build(Write("whole.nii", FormatNifti(MakeLabels(1, 2))));
+  ASSERT_TRUE(whole.ok());
+  EXPECT_TRUE(whole->notes.empty());
+  // the piece does not swell the liver
+  EXPECT_NEAR(report->organs[0].volume_ml, whole->organs[0].volume_ml, 0.5);
+
+  // as large as a seventh of the liver
+  for (int k = 0; k < 10; ++k) {
+    for (int j = 0; j < 20; ++j) {
+      for (int i = 40; i < 68; ++i) labels[(static_cast<std::size_t>(k) * kY + j) * kX + i] = 1;
+    }
+  }
+  fs::remove_all(folder_ / "patient");
+  EXPECT_THAT(Failure(Write("two.nii", FormatNifti(labels))).message, HasSubstr("--largest-part"));
+  LabelOptions options;
+  options.labels = folder_ / "two.nii", options.spacing_mm = 2.0, options.takes_largest_part = true;
+  const auto largest = BuildPatientFromLabels(options);
+  ASSERT_TRUE(largest.ok()) << largest.error().Text();
+  EXPECT_NEAR(largest->organs[0].volume_ml, whole->organs[0].volume_ml, 0.5);
+}
+
 TEST_F(FromLabels, JoinsAFolderOfMasks) {
   const fs::path masks = folder_ / "segmentations";
   fs::create_directories(masks);

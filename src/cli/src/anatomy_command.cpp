@@ -77,6 +77,8 @@ core::Status BuildFromLabels(const anatomy::LabelOptions& options) {
   std::fputs(FormatTable(rows).c_str(), stdout);
   std::printf(
       "Distance: of mesh and label surface from each other, the largest both ways, and the mesh's mean.\n");
+  if (!report->notes.empty()) std::printf("\n");
+  for (const std::string& note : report->notes) std::printf("%s\n", note.c_str());
   std::printf("\n%s.\nWrote %s\n", report->patient.provenance.c_str(), options.output.c_str());
   return {};
 }
@@ -101,6 +103,11 @@ void AddFromLabelsCommand(CLI::App& anatomy, Outcome& outcome) {
   command->add_option("--gallbladder", options->gallbladder, "Label of the gallbladder, likewise")
       ->check(CLI::Range(1, images::kLargestLabel))
       ->type_name("LABEL");
+  command->add_flag(
+      "--mirrored", options->is_mirrored,
+      "Left and right of the map are swapped, or it is situs inversus: take it the other way round");
+  command->add_flag("--largest-part", options->takes_largest_part,
+                    "Take the largest part of an organ that is in several, whatever is lost");
   command->footer(
       "Labels are found by the names that 3D Slicer and TotalSegmentator write into the file, by\n"
       "TotalSegmentator's numbers (liver 5, gallbladder 4), or are 1 and 2. Ducts and arteries are placed by "

@@ -44,7 +44,7 @@ constexpr ErrorEntry kTable[] = {
     {ErrorCode::kContourEmpty, "E-ANA-003", "a contour or structure encloses nothing"},
     {ErrorCode::kMeshNotClosed, "E-ANA-004", "an organ's mesh is not closed and manifold"},
     {ErrorCode::kPatientInvalid, "E-ANA-005", "a patient is inconsistent"},
-    {ErrorCode::kLabelsMismatch, "E-ANA-006", "reference labels do not match the images"},
+    {ErrorCode::kLabelsMismatch, "E-ANA-006", "a label map does not fit the images, or is no person's"},
     {ErrorCode::kMeshInvalid, "E-GEO-001", "a mesh has a bad index or a coordinate that is not finite"},
     {ErrorCode::kSceneInvalid, "E-SCN-001", "a scene is inconsistent"},
     {ErrorCode::kScriptInvalid, "E-SCN-002", "a script is inconsistent"},

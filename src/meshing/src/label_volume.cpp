@@ -8,6 +8,7 @@
 #include <functional>
 #include <utility>
 
+#include "connected_parts.h"
 #include "trocar/core/assert.h"
 
 namespace trocar::meshing {
@@ -94,6 +95,18 @@ void SetInsideVolume(ScalarVolume& volume, double volume_mm3) {
 }
 
 }  // namespace
+
+std::vector<std::size_t> KeepLargestPart(images::LabelVolume& labels, int label) {
+  const auto width = static_cast<std::size_t>(labels.size[0]);
+  ConnectedParts parts(labels.size, [&](std::size_t row, int i) {
+    return labels.labels[row * width + static_cast<std::size_t>(i)] == label;
+  });
+  for (const Run& run : parts.FindLesser()) {
+    std::int32_t* row = &labels.labels[run.row * width];
+    std::fill(row + run.begin, row + run.end, 0);
+  }
+  return parts.CountSamples();
+}
 
 std::vector<FilledSlice> FillLabelSlices(const images::LabelVolume& labels, int label,
                                          const std::array<double, 3>& voxel_mm, double pixel_mm) {

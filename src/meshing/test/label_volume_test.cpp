@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "trocar/geometry/mesh_measures.h"
@@ -44,6 +45,23 @@ TEST(FillLabelSlices, CropsEverySliceAndLeavesEmptyOnesOut) {
   EXPECT_EQ(middle.height, 27);
   EXPECT_EQ(middle.At(13, 13), 1);
   EXPECT_TRUE(FillLabelSlices(MakeBall({60, 60, 60}, {1, 1, 1}), 9, {1, 1, 1}, 1.0).empty());
+}
+
+TEST(KeepLargestPart, CountsThePartsAndClearsTheLesser) {
+  images::LabelVolume labels = MakeBall({60, 60, 60}, {1, 1, 1});
+  const auto ball = static_cast<std::size_t>(std::count(labels.labels.begin(), labels.labels.end(), 7));
+  const auto at = [&](int i, int j, int k) -> std::int32_t& {
+    return labels.labels[static_cast<std::size_t>((k * 60 + j) * 60 + i)];
+  };
+  // three in a row across two axes, and one that only touches it over an edge
+  at(2, 2, 2) = at(3, 2, 2) = at(3, 3, 2) = 7;
+  at(4, 4, 2) = 7;
+  EXPECT_EQ(KeepLargestPart(labels, 7), (std::vector<std::size_t>{ball, 3, 1}));
+  EXPECT_EQ(at(2, 2, 2), 0);
+  EXPECT_EQ(at(4, 4, 2), 0);
+  EXPECT_EQ(at(1, 2, 2), 3) << "other labels stay";
+  EXPECT_EQ(KeepLargestPart(labels, 7), std::vector<std::size_t>{ball});
+  EXPECT_TRUE(KeepLargestPart(labels, 9).empty());
 }
 
 TEST(MakeLabelVolume, EnclosesTheLabelsWhateverTheVoxels) {

@@ -36,7 +36,8 @@ struct BuildOptions {
 struct BuildReport {
   Patient patient;
   std::vector<contours::OrganReport> organs;
-  std::size_t overlays = 0;  ///< pictures written
+  std::vector<std::string> notes;  ///< sentences: what the images have and the patient has not
+  std::size_t overlays = 0;        ///< pictures written
 };
 
 /// Reads control points and the slices they name, adapts, fills, builds volumes, meshes and the patient,

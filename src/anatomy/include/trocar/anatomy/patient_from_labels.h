@@ -14,16 +14,19 @@
 namespace trocar::anatomy {
 
 struct LabelOptions {
-  std::filesystem::path labels;  ///< label map or folder of masks, as ReadLabelVolume reads
-  std::filesystem::path output;  ///< patient folder to write; empty: nothing is written
-  int liver = 0;                 ///< label, 1 to kLargestLabel; 0: found by FindLabels
-  int gallbladder = 0;           ///< likewise
-  double spacing_mm = 1.0;       ///< of the volume's lattice, 0.4 to 4
-  double gap_mm = 0.7;           ///< left free around the gallbladder
+  std::filesystem::path labels;     ///< label map or folder of masks, as ReadLabelVolume reads
+  std::filesystem::path output;     ///< patient folder to write; empty: nothing is written
+  int liver = 0;                    ///< label, 1 to kLargestLabel; 0: found by FindLabels
+  int gallbladder = 0;              ///< likewise
+  double spacing_mm = 1.0;          ///< of the volume's lattice, 0.4 to 4
+  double gap_mm = 0.7;              ///< left free around the gallbladder
+  bool is_mirrored = false;         ///< left and right of the map are swapped: take it the other way round
+  bool takes_largest_part = false;  ///< also where a large part does not hang together with it
 };
 
 struct OrganLabels {
   int liver = 0, gallbladder = 0;
+  int spleen = 0;          ///< 0: not known; it tells left from right
   std::string convention;  ///< how they were found, in words
 };
 
@@ -35,8 +38,10 @@ core::Result<OrganLabels> FindLabels(const images::LabelVolume& volume, const La
 
 /// Fills, meshes and assembles liver and gallbladder as BuildPatient does. The header's directions (LPS or
 /// RAS, turned or mirrored axes) are obeyed. Ducts and arteries are the generator's usual ones, placed by
-/// landmarks (is_seen = false); the neck of the gallbladder is its more cranial and posterior end.
-/// \return the first error of any step; then nothing has been written
+/// landmarks (is_seen = false); the neck of the gallbladder is its more cranial and posterior end. Of each organ
+/// the largest part that hangs together is taken; `notes` of the report say what was lost.
+/// \return the first error of any step, and kLabelsMismatch with the likely reason for what cannot be a person's
+///         organs (docs/patients.md); then nothing has been written
 core::Result<BuildReport> BuildPatientFromLabels(const LabelOptions& options,
                                                  const images::Progress& progress = {});
 

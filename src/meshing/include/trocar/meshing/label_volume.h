@@ -19,6 +19,10 @@ struct LabelVolumeSettings {
                              ///< tunnels and threads of a voxel or two that no organ has
 };
 
+/// Makes voxels of `label` that do not hang together (6-connected) with its largest part 0.
+/// \return voxels of each part that there was, the largest first; empty where the label does not occur
+std::vector<std::size_t> KeepLargestPart(images::LabelVolume& labels, int label);
+
 /// Slices of one label along the third axis that are not empty, with square pixels of `pixel_mm`.
 /// \param voxel_mm  distance of voxels along each axis [mm], > 0
 std::vector<FilledSlice> FillLabelSlices(const images::LabelVolume& labels, int label,
