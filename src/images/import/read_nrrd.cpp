@@ -170,7 +170,7 @@ void ReadFrame(const Fields& fields, std::size_t first, std::size_t dimensions, 
   for (std::size_t k = 0; k < 3; ++k) header.origin[k] = (*signs)[k] * place[k];
 }
 
-/// Segment names that 3D Slicer keeps: Segment0_Name, Segment0_LabelValue.
+/// Segment names that 3D Slicer keeps: Segment0_Name, Segment0_LabelValue, Segment0_Layer.
 void ReadSegmentNames(const Fields& fields, ImportReply& reply) {
   for (std::size_t i = 0; i < kMostSegments; ++i) {
     const std::string segment = "Segment" + std::to_string(i);
@@ -179,7 +179,11 @@ void ReadSegmentNames(const Fields& fields, ImportReply& reply) {
     if (name == fields.pairs.end() || label == fields.pairs.end()) continue;
     const std::int64_t value = ParseWhole(label->second, "LabelValue");
     if (value < 1 || value > std::numeric_limits<std::int32_t>::max()) continue;
+    const auto layer = fields.pairs.find(segment + "_Layer");
+    const std::int64_t in_layer = layer == fields.pairs.end() ? 0 : ParseWhole(layer->second, "Layer");
+    if (in_layer < 0 || in_layer >= static_cast<std::int64_t>(reply.header.channels)) continue;
     SegmentName& entry = reply.names[reply.header.segments++];
+    entry.layer = static_cast<std::uint32_t>(in_layer);
     name->second.copy(entry.name, sizeof(entry.name) - 1);
     entry.label = static_cast<std::int32_t>(value);
   }
@@ -210,10 +214,18 @@ void ReadNrrd(const Job& job, ImportReply& reply) {
                         kinds != nullptr &&
                         (LowerCase(*kinds).starts_with("rgb-color") ||
                          LowerCase(*kinds).starts_with("vector") || LowerCase(*kinds).starts_with("3-color"));
-  const std::size_t first = is_color ? 1 : 0;
+  // segments that overlap lie in layers: 3D Slicer writes those as a first axis
+  const bool is_layered =
+      dimension == 4 && kinds != nullptr && LowerCase(*kinds).starts_with("list") && sides[0] >= 1;
+  if (is_layered && sides[0] > static_cast<std::int64_t>(kMostLayers)) {
+    throw Failure{ErrorCode::kImageTooLarge,
+                  "its segments lie in more than " + std::to_string(kMostLayers) + " layers"};
+  }
+  const std::size_t first = is_color || is_layered ? 1 : 0;
   SetSides(std::vector<std::int64_t>(sides.begin() + static_cast<std::ptrdiff_t>(first), sides.end()), job,
            header);
-  header.channels = is_color ? 3 : 1;
+  header.channels = is_color ? 3 : is_layered ? static_cast<std::uint32_t>(sides[0]) : 1;
+  header.is_layered = is_layered ? 1 : 0;
   header.samples = HandedOverAs(stored.type);
   header.bits = static_cast<std::uint32_t>(8 * StoredBytes(stored.type));
 

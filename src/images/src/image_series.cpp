@@ -24,6 +24,11 @@ core::Status OpenVolume(const fs::path& path, const ImageSeriesOptions& options,
   if (progress) progress("reading the volume", 0.0);
   auto decoded = DecodeFile(path, Links::kFollow, *content.pool);
   if (!decoded) return decoded.error();
+  if (decoded->header.is_layered != 0) {
+    return Error{ErrorCode::kImageUnsupported,
+                 core::Printable(path.string()) +
+                     ": it holds segments in layers, no image; it is read as a label map"};
+  }
   const ImageHeader& header = decoded->header;
   ImageSeriesInfo& info = content.info;
   info.format = FormatName(header.kind);

@@ -31,13 +31,46 @@ core::Result<DecodedFile> DecodeAlone(const fs::path& path, std::uint64_t most_b
   return DecodeFile(path, links, pool);
 }
 
+/// Joins layers whose segments may overlap into labels 1, 2, ... in the order of `segments`. A voxel of several
+/// segments goes to the smallest of them: a gallbladder within a liver stays whole.
+/// \return what keeps a sample from being a label; empty when all are labels
+std::string JoinLayers(const DecodedFile& file, LabelVolume& volume) {
+  const std::size_t count = volume.labels.size();
+  std::vector<std::int32_t> layer(count);
+  std::vector<std::size_t> sizes(file.names.size(), 0);
+  const auto for_each_voxel = [&](const auto& use) -> std::string {
+    for (std::uint32_t channel = 0; channel < file.header.channels; ++channel) {
+      if (std::string fault = CopyLabels(file.header, file.samples.Data(), channel, layer); !fault.empty())
+        return fault;
+      for (std::size_t segment = 0; segment < file.names.size(); ++segment) {
+        if (file.names[segment].layer != channel) continue;
+        for (std::size_t i = 0; i < count; ++i) {
+          if (layer[i] == file.names[segment].label) use(segment, i);
+        }
+      }
+    }
+    return {};
+  };
+  if (std::string fault = for_each_voxel([&](std::size_t segment, std::size_t) { ++sizes[segment]; });
+      !fault.empty())
+    return fault;
+  std::string fault = for_each_voxel([&](std::size_t segment, std::size_t i) {
+    std::int32_t& label = volume.labels[i];
+    if (label == 0 || sizes[segment] < sizes[static_cast<std::size_t>(label - 1)])
+      label = static_cast<std::int32_t>(segment + 1);
+  });
+  for (std::size_t segment = 0; segment < file.names.size(); ++segment)
+    volume.names.emplace_back(file.names[segment].name, static_cast<int>(segment + 1));
+  return fault;
+}
+
 core::Result<LabelVolume> ReadLabelFile(const fs::path& path, Links links) {
   auto decoded = DecodeAlone(path, kMostVoxels * SampleBytes(SampleKind::kFloat32), links);
   if (!decoded) return decoded.error();
   const ImageHeader& header = decoded->header;
-  if (header.kind < FileKind::kNifti || header.channels != 1)
+  if (header.kind < FileKind::kNifti || (header.channels != 1 && header.is_layered == 0))
     return Undecodable(path, "it is no volume of labels; name a NIfTI, NRRD or MetaImage label map");
-  const std::uint64_t count = header.SampleCount();
+  const std::uint64_t count = header.SampleCount() / header.channels;
   if (count > kMostVoxels)
     return Error{ErrorCode::kImageTooLarge,
                  core::Printable(path.string()) + ": it has more than 2^28 voxels; crop or resample it"};
@@ -56,13 +89,21 @@ core::Result<LabelVolume> ReadLabelFile(const fs::path& path, Links links) {
     for (int k = 0; k < 3; ++k) volume.direction[axis][k] = header.direction[axis][k] * header.spacing[axis];
   }
   volume.labels.resize(count);
-  if (const std::string fault = CopyLabels(header, decoded->samples.Data(), volume.labels); !fault.empty()) {
+  const bool is_layered = header.is_layered != 0;
+  if (is_layered && decoded->names.empty())
+    return Undecodable(path,
+                       "it has layers of segments, and does not say which label of which layer is what");
+  const std::string fault = is_layered ? JoinLayers(*decoded, volume)
+                                       : CopyLabels(header, decoded->samples.Data(), 0, volume.labels);
+  if (!fault.empty()) {
     return Undecodable(
         path, "its voxels are no labels: " + fault +
                   "; name a label map of whole numbers from 0 on (32-bit integers where they are large), "
                   "resampled by nearest neighbour if at all");
   }
-  volume.names = std::move(decoded->names);
+  if (!is_layered) {
+    for (const SegmentName& segment : decoded->names) volume.names.emplace_back(segment.name, segment.label);
+  }
   return volume;
 }
 

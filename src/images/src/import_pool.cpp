@@ -31,10 +31,14 @@ bool IsFinite(std::span<const double> numbers) {
 bool IsSane(const ImageHeader& header, const ImportLimits& limits) {
   const bool is_enumerated = header.kind >= FileKind::kJpeg && header.kind <= FileKind::kMetaImage &&
                              header.samples <= kLastSampleKind && header.frame <= FileFrame::kRas;
+  const bool is_layered = header.is_layered == 1 && header.kind == FileKind::kNrrd;
+  const bool has_channels = is_layered
+                                ? header.channels >= 1 && header.channels <= kMostLayers
+                                : header.is_layered == 0 && (header.channels == 1 || header.channels == 3);
   const bool is_sized = header.width >= 1 && header.width <= limits.most_side && header.height >= 1 &&
                         header.height <= limits.most_side && header.depth >= 1 &&
-                        header.depth <= limits.most_side && (header.channels == 1 || header.channels == 3) &&
-                        header.bits >= 1 && header.bits <= 64;
+                        header.depth <= limits.most_side && has_channels && header.bits >= 1 &&
+                        header.bits <= 64;
   if (!is_enumerated || !is_sized) return false;
   // four sides of 14 bits at most, so this cannot overflow with the default limits; with any, it is checked
   std::uint64_t bytes = SampleBytes(header.samples);
@@ -57,7 +61,8 @@ bool IsSane(const ImageHeader& header, const ImportLimits& limits) {
 bool IsSane(const ImportReply& reply, const ImportLimits& limits) {
   if (reply.version != kImportVersion || !IsTerminated(reply.why, sizeof(reply.why))) return false;
   for (const SegmentName& name : reply.names) {
-    if (!IsTerminated(name.name, sizeof(name.name)) || name.label < 0) return false;
+    if (!IsTerminated(name.name, sizeof(name.name)) || name.label < 0 || name.layer >= kMostLayers)
+      return false;
   }
   if (reply.code == 0) return IsSane(reply.header, limits);
   return reply.code >= static_cast<int>(ErrorCode::kImageFolderMissing) &&

@@ -14,11 +14,12 @@
 
 namespace trocar::images {
 
-inline constexpr std::uint32_t kImportVersion = 2;
+inline constexpr std::uint32_t kImportVersion = 3;
 inline constexpr int kImportSocket = 3;             // descriptor in the reader
 inline constexpr int kExitOutOfMemory = 40;         // exit status of the reader
 inline constexpr std::size_t kMostDescriptors = 3;  // of one request
 inline constexpr std::size_t kMostSegments = 1024;  // an atlas of the whole body names a few hundred
+inline constexpr std::uint32_t kMostLayers = 64;    // of segments that overlap
 
 /// Why a DICOM report or plan is not read; among slices it is passed over.
 inline constexpr const char* kWithoutPicture = "it is a DICOM file without a picture";
@@ -61,7 +62,8 @@ struct ImportRequest {
 struct ImageHeader {
   FileKind kind = FileKind::kUnknown;
   std::uint32_t width = 0, height = 0, depth = 0;
-  std::uint32_t channels = 0;  ///< 1 grey, 3 red, green, blue
+  std::uint32_t channels = 0;    ///< 1 grey, 3 red, green, blue; or the layers of a segmentation
+  std::uint32_t is_layered = 0;  ///< 1: the channels are label maps of one place, whose segments may overlap
   SampleKind samples = SampleKind::kUint8;
   std::uint32_t bits = 0;  ///< of a sample in the file
   FileFrame frame = FileFrame::kNotSaid;
@@ -85,8 +87,9 @@ struct ImageHeader {
 
 /// Name of a label, as 3D Slicer's NRRD and TotalSegmentator's NIfTI files have them.
 struct SegmentName {
-  char name[60] = {};
+  char name[56] = {};
   std::int32_t label = 0;
+  std::uint32_t layer = 0;  ///< in which channel, where the file is layered
 };
 
 struct ImportReply {

@@ -96,8 +96,7 @@ core::Result<DecodedFile> DecodeFile(const std::filesystem::path& path, Links li
   const auto status =
       pool.Decode(*file, data_file ? &*data_file : nullptr, decoded.header, decoded.samples, 0);
   if (!status) return status.error();
-  for (std::size_t i = 0; i < decoded.header.segments; ++i)
-    decoded.names.emplace_back(reply->names[i].name, reply->names[i].label);
+  decoded.names.assign(reply->names, reply->names + decoded.header.segments);
   return decoded;
 }
 
@@ -105,12 +104,13 @@ double SampleAt(const ImageHeader& header, const std::byte* samples, std::size_t
   return WithReader(header, samples, [i](const auto& at) { return at(i); });
 }
 
-std::string CopyLabels(const ImageHeader& header, const std::byte* samples, std::span<std::int32_t> labels) {
+std::string CopyLabels(const ImageHeader& header, const std::byte* samples, std::uint32_t channel,
+                       std::span<std::int32_t> labels) {
   // between larger ones not every whole number is a float, so that two labels may have become one
   const double largest = header.samples == SampleKind::kFloat32 ? kLargestFloatLabel : kLargestLabel;
   return WithReader(header, samples, [&](const auto& at) -> std::string {
     for (std::size_t i = 0; i < labels.size(); ++i) {
-      const double label = header.slope * at(i) + header.intercept;
+      const double label = header.slope * at(i * header.channels + channel) + header.intercept;
       if (!std::isfinite(label)) return "one is no number";
       if (label != std::floor(label)) return FormatValue(label) + " is no whole number";
       if (label < 0) return FormatValue(label) + " is negative";

@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <span>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "import_worker.h"
@@ -18,7 +17,7 @@ namespace trocar::images {
 struct DecodedFile {
   ImageHeader header;
   SampleBuffer samples;
-  std::vector<std::pair<std::string, int>> names;  ///< of labels, where the file has them (3D Slicer)
+  std::vector<SegmentName> names;  ///< of labels, where the file has them
 };
 
 /// \param links  whether `path` itself may be a symbolic link; its data file never is
@@ -27,10 +26,11 @@ core::Result<DecodedFile> DecodeFile(const std::filesystem::path& path, Links li
 /// Sample number `i` of all, in the file's units (slope and intercept not applied).
 double SampleAt(const ImageHeader& header, const std::byte* samples, std::size_t i);
 
-/// Grey samples as labels (slope and intercept applied).
+/// Samples of one channel as labels (slope and intercept applied).
 /// \return what keeps a sample from being a label, with its value; empty when all are whole numbers from 0 to
 ///         kLargestLabel that the file holds exactly
-std::string CopyLabels(const ImageHeader& header, const std::byte* samples, std::span<std::int32_t> labels);
+std::string CopyLabels(const ImageHeader& header, const std::byte* samples, std::uint32_t channel,
+                       std::span<std::int32_t> labels);
 
 /// Least and greatest grey value (slope and intercept applied), and a window that shows the most of it.
 struct GreyStatistics {

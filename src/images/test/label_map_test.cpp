@@ -3,15 +3,18 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
 #include <limits>
 #include <string>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "trocar/core/safe_file.h"
+#include "trocar/images/image_series.h"
 #include "trocar/images/image_stack.h"
 #include "trocar_test/temporary_folder.h"
 
@@ -165,6 +168,56 @@ TEST_F(LabelMap, IsRefusedWithTheReason) {
   values[7] = 16'777'218;
   EXPECT_THAT(Refusal("a.nrrd", FormatNrrd<float>(values)), HasSubstr("32-bit integers"));
   EXPECT_THAT(Refusal("a.nii", FormatNifti<std::int64_t>(values)), HasSubstr("is larger than 16777216"));
+}
+
+/// Segments in layers as 3D Slicer saves them when they overlap: the layers are the first axis.
+std::string FormatLayers(int layers, const std::string& segments, const std::vector<double>& interleaved) {
+  return "NRRD0004\ntype: unsigned char\ndimension: 4\nspace: left-posterior-superior\nsizes: " +
+         std::to_string(layers) +
+         " 4 3 2\nspace directions: none (2,0,0) (0,2,0) (0,0,3)\nkinds: list domain domain domain\n"
+         "encoding: raw\nspace origin: (0,0,0)\n" +
+         segments + "\n" + Bytes<std::uint8_t>(interleaved);
+}
+
+const char* const kTwoLayers =
+    "Segment0_Name:=liver\nSegment0_LabelValue:=1\nSegment0_Layer:=0\n"
+    "Segment1_Name:=gallbladder\nSegment1_LabelValue:=1\nSegment1_Layer:=1\n"
+    "Segment2_Name:=spleen\nSegment2_LabelValue:=2\nSegment2_Layer:=0\n";
+
+TEST_F(LabelMap, JoinsLayersOfSegmentsThatOverlap) {
+  std::vector<double> layers(2 * kX * kY * kZ, 0.0);
+  for (const std::size_t voxel : {3u, 4u, 5u, 6u}) layers[2 * voxel] = 1;  // liver
+  for (const std::size_t voxel : {6u, 7u}) layers[2 * voxel + 1] = 1;  // gallbladder, one voxel in the liver
+  layers[2 * 20] = 2;                                                  // spleen
+  const auto read = Read("two.seg.nrrd", FormatLayers(2, kTwoLayers, layers));
+  ASSERT_TRUE(read.ok()) << read.error().Text();
+  EXPECT_EQ(read->size, (std::array<int, 3>{kX, kY, kZ}));
+  EXPECT_EQ(read->direction[2][2], 3);
+  std::vector<std::int32_t> expected(kX * kY * kZ, 0);
+  expected[3] = expected[4] = expected[5] = 1;
+  expected[6] = expected[7] = 2;  // the smaller one keeps what both have
+  expected[20] = 3;
+  EXPECT_EQ(read->labels, expected);
+  EXPECT_EQ(read->names,
+            (std::vector<std::pair<std::string, int>>{{"liver", 1}, {"gallbladder", 2}, {"spleen", 3}}));
+}
+
+TEST_F(LabelMap, RefusesLayersThatSayNothing) {
+  const std::vector<double> layers(2 * kX * kY * kZ, 1.0);
+  EXPECT_THAT(Refusal("bare.nrrd", FormatLayers(2, "", layers)), HasSubstr("which label of which layer"));
+  // a segment in a layer that is not there is none
+  const auto read =
+      Read("odd.nrrd", FormatLayers(2,
+                                    "Segment0_Name:=liver\nSegment0_LabelValue:=1\n"
+                                    "Segment1_Name:=lost\nSegment1_LabelValue:=1\nSegment1_Layer:=2\n",
+                                    layers));
+  ASSERT_TRUE(read.ok()) << read.error().Text();
+  EXPECT_EQ(read->names.size(), 1u);
+  EXPECT_EQ(Read("many.nrrd", FormatLayers(65, kTwoLayers, layers)).error().code, ErrorCode::kImageTooLarge);
+  EXPECT_EQ(Read("cut.nrrd", FormatLayers(3, kTwoLayers, layers)).error().code, ErrorCode::kImageTruncated);
+  const auto series = ImageSeries::Open(folder_.Path() / "odd.nrrd", {});
+  ASSERT_FALSE(series.ok());
+  EXPECT_EQ(series.error().code, ErrorCode::kImageUnsupported);
 }
 
 }  // namespace
