@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "duct_template.h"
+#include "label_names.h"
 #include "label_plausibility.h"
 #include "trocar/anatomy/patient_builder.h"
 #include "trocar/core/printable.h"
@@ -215,6 +216,11 @@ core::Result<BuildReport> BuildPatientFromLabels(const LabelOptions& options,
   report_progress("reading labels", 0.0);
   auto volume = images::ReadLabelVolume(options.labels);
   if (!volume.ok()) return volume.error();
+  if (!options.names.empty()) {
+    auto names = ReadLabelNames(options.names);
+    if (!names.ok()) return names.error();
+    volume->names = std::move(*names);
+  }
   const auto frame = MakeVoxelFrame(*volume, options.is_mirrored);
   if (!frame.ok())
     return Error{frame.error().code, core::Printable(options.labels.string()) + ": " + frame.error().message};

@@ -280,6 +280,18 @@ TEST_F(FromLabels, PassesOverExtensionsThatAreNoLabelTables) {
   }
 }
 
+TEST_F(FromLabels, ObeysATableOfNames) {
+  LabelOptions options;
+  options.labels = Write("odd.nii", FormatNifti(MakeLabels(17, 3)));
+  options.names = Write("names.txt", "3 gallbladder 0 255 0 255\n17 liver 255 0 0 255\n");
+  options.spacing_mm = 2.0;
+  const auto report = BuildPatientFromLabels(options);
+  ASSERT_TRUE(report.ok()) << report.error().Text();
+  ExpectThatBody(*report);
+  options.names = folder_ / "none.txt";
+  EXPECT_EQ(BuildPatientFromLabels(options).error().code, ErrorCode::kFileMissing);
+}
+
 TEST_F(FromLabels, RefusesWhatIsNoPerson) {
   EXPECT_THAT(Failure(Write("swapped.nii", FormatNifti(MakeLabels(2, 1)))).message, HasSubstr("swapped"));
   std::string centimetres = FormatNifti(MakeLabels(1, 2));

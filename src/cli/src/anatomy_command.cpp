@@ -103,6 +103,12 @@ void AddFromLabelsCommand(CLI::App& anatomy, Outcome& outcome) {
   command->add_option("--gallbladder", options->gallbladder, "Label of the gallbladder, likewise")
       ->check(CLI::Range(1, images::kLargestLabel))
       ->type_name("LABEL");
+  command
+      ->add_option(
+          "--names", options->names,
+          "Table that says which label is what: JSON ({\"liver\": 5}, nnU-Net's dataset.json), a colour "
+          "table of 3D Slicer or a label description of ITK-SNAP")
+      ->type_name("FILE");
   command->add_flag(
       "--mirrored", options->is_mirrored,
       "Left and right of the map are swapped, or it is situs inversus: take it the other way round");

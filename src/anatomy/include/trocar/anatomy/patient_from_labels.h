@@ -16,6 +16,7 @@ namespace trocar::anatomy {
 struct LabelOptions {
   std::filesystem::path labels;     ///< label map or folder of masks, as ReadLabelVolume reads
   std::filesystem::path output;     ///< patient folder to write; empty: nothing is written
+  std::filesystem::path names;      ///< table of labels, in place of the file's own names; empty: none
   int liver = 0;                    ///< label, 1 to kLargestLabel; 0: found by FindLabels
   int gallbladder = 0;              ///< likewise
   double spacing_mm = 1.0;          ///< of the volume's lattice, 0.4 to 4
