@@ -33,6 +33,7 @@ SimulatorPresenter::SimulatorPresenter(const Options& options, const core::Stopw
 // loading
 
 void SimulatorPresenter::Start() {
+  is_closed_ = false;
   if (start_) {
     loading_.Start([options = options_, start = *start_] { return MakeStartedSimulation(options, start); });
   } else {
@@ -43,11 +44,11 @@ void SimulatorPresenter::Start() {
 
 void SimulatorPresenter::FinishLoading() {
   auto simulation = loading_.Take();
-  if (page_.failure) return;
+  if (page_.failure || is_closed_) return;
   if (!simulation.ok()) return Fail(simulation.error());
   record::Description description =
       start_ ? start_->description : DescribeChosenScene(options_, simulation->GetScene());
-  if (start_) description.player = (start_->is_exam ? "exam, " : "") + DescribeHands(options_);
+  if (start_) description.player = (start_->exam ? "exam, " : "") + DescribeHands(options_);
   if (!Use(std::move(simulation).value(), std::move(description))) return;
   if (start_) {
     page_.title = "Trocar: " + start_->title;
@@ -67,8 +68,13 @@ bool SimulatorPresenter::Use(simulation::Simulation simulation, record::Descript
     return false;
   };
   std::optional<session::AttemptKeeping> keeping;
-  if (!options_.recordings.empty())
-    keeping = {options_.recordings, std::move(description), hooks_.on_begin, hooks_.on_end};
+  if (!options_.recordings.empty()) {
+    keeping = {options_.recordings, std::move(description), {}, hooks_.on_end};
+    if (hooks_.on_begin) {
+      keeping->on_begin = [begin = hooks_.on_begin, step = start_ ? start_->step : centre::StepName()](
+                              const std::filesystem::path& path) { begin(path, step); };
+    }
+  }
   auto control = SessionControl::Make(std::move(simulation), std::move(keeping));
   if (!control) return fail(control.error());
   control_ = std::move(control).value();
@@ -100,6 +106,7 @@ void SimulatorPresenter::GoOn() {
 
 void SimulatorPresenter::TakeOver(Branch branch) {
   if (loading_.IsRunning() || page_.failure) return;
+  is_closed_ = false;
   Drop();
   start_.reset();
   const record::Description& from = branch.description;
@@ -192,9 +199,15 @@ void SimulatorPresenter::Open(const centre::Start& start) {
   options_.seed = start.description.seed;
   options_.is_demonstration = false;
   start_ = start;
-  if (start.is_exam) page_.view.has_force_arrows = false;
+  if (start.exam) page_.view.has_force_arrows = false;
   screen_->FocusPicture();
   Start();
+}
+
+void SimulatorPresenter::Close() {
+  is_closed_ = true;
+  SaveHapticRecord();
+  Drop();
 }
 
 /// Ends the scene that is shown.
@@ -385,11 +398,10 @@ void SimulatorPresenter::EndAttempt() {
   if (is_attempt_over_) return;
   is_attempt_over_ = true;
   const auto recording = control_->Recording();
-  const bool is_exam = IsExam();
   control_->EndAttempt();
   if (!recording || recording->failure || unattended_.IsOn() || control_->IsDemonstration()) return;
   page_.is_result_open = false;
-  screen_->OpenAttempt(recording->path, is_exam);
+  screen_->OpenAttempt(recording->path, start_ ? start_->exam : std::nullopt);
 }
 
 void SimulatorPresenter::Finish() {

@@ -9,10 +9,8 @@
 #include <set>
 #include <thread>
 
-#include "trocar/agent/surgeon.h"
+#include "recorded_attempt.h"
 #include "trocar/core/safe_file.h"
-#include "trocar/record/recorder.h"
-#include "trocar/scene/task.h"
 #include "trocar_test/sound_commands.h"
 #include "trocar_test/temporary_folder.h"
 
@@ -52,28 +50,11 @@ class ReplayPresenterTest : public testing::Test {
   }
   static std::filesystem::path File(const char* name) { return folder_->Path() / name; }
 
-  static void Record(const char* surgeon_name, const char* file, std::uint64_t ticks) {
-    auto scene = scene::ReadTask(*scene::FindTask("peg_transfer"), {"normal", 3, {}});
-    ASSERT_TRUE(scene.ok());
-    const auto shared = std::make_shared<const scene::Scene>(std::move(*scene));
-    auto simulation = simulation::Simulation::Make(shared, 1);
-    auto surgeon = agent::MakeSurgeon(surgeon_name, shared, 3);
-    ASSERT_TRUE(simulation.ok() && surgeon.ok());
-    record::Description description;
-    description.kind = record::Description::Kind::kTask;
-    description.name = "peg_transfer", description.level = "normal", description.seed = 3;
-    description.player = surgeon_name;
-    record::RecorderSettings settings;
-    settings.waits = true;
-    auto recorder = record::Recorder::Start(File(file), description, *simulation, settings);
-    ASSERT_TRUE(recorder.ok()) << recorder.error().Text();
-    for (std::uint64_t tick = 0; tick < ticks; ++tick) {
-      const auto input = (*surgeon)->Act(simulation->GetSnapshot());
-      simulation->Step(input);
-      (*recorder)->Add(input, *simulation);
-      if (tick == 999) (*recorder)->Mark("look here");
-    }
-    ASSERT_TRUE((*recorder)->Finish(*simulation).ok());
+  static void Record(const char* surgeon, const char* file, std::uint64_t ticks) {
+    test::RecordAttempt(File(file), test::DescribeTask("peg_transfer", "normal", 3, surgeon),
+                        {surgeon, 3, ticks, [](std::uint64_t tick, record::Recorder& recorder) {
+                           if (tick == 999) recorder.Mark("look here");
+                         }});
   }
 
   void Open(const char* file) {

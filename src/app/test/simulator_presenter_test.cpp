@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <future>
+#include <mutex>
 #include <thread>
 
 #include "trocar/core/safe_file.h"
@@ -22,9 +23,10 @@ struct FakeScreen : SimulatorScreen {
   std::vector<std::string> UseKeys(const std::map<std::string, device::HandAct>&) override { return {}; }
   core::Status FillTaskList() override { return list_status; }
   void FillResult(const TaskResult&) override { ++results; }
-  void OpenAttempt(const std::filesystem::path& recording, bool is_exam) override {
+  void OpenAttempt(const std::filesystem::path& recording,
+                   const std::optional<centre::ExamSitting>& sitting) override {
     attempts.push_back(recording);
-    has_exam = has_exam || is_exam;
+    exam = sitting;
   }
   void FillRecordingList(const std::filesystem::path& folder) override { listed = folder; }
   void OpenReplay(const std::filesystem::path& recording) override { replayed = recording; }
@@ -38,7 +40,7 @@ struct FakeScreen : SimulatorScreen {
   core::Status list_status;
   std::filesystem::path listed, replayed;
   std::vector<std::filesystem::path> attempts;  // whose pages were opened
-  bool has_exam = false;
+  std::optional<centre::ExamSitting> exam;      // of the last of them
   int results = 0, focused = 0;
   bool is_pointer_taken = false;
   std::vector<Action> done;
@@ -47,7 +49,8 @@ struct FakeScreen : SimulatorScreen {
 class Presenter : public testing::Test {
  protected:
   void Begin(const Options& options) {
-    presenter_.emplace(options, since_start_, screen_, [this] { loaded_.set_value(); });
+    presenter_.emplace(
+        options, since_start_, screen_, [this] { loaded_.set_value(); }, hooks_);
     presenter_->Start();
   }
   void Load() {
@@ -55,12 +58,57 @@ class Presenter : public testing::Test {
     loaded_ = {};
     presenter_->FinishLoading();
   }
-  void BeginTask() {
+  static Options TaskOptions(const char* task = "peg_transfer") {
     Options options;
-    options.task = "peg_transfer";
+    options.task = task;
     options.threads = 1;
+    return options;
+  }
+  void BeginTask() {
+    Begin(TaskOptions());
+    Load();
+  }
+  /// Attempts are kept in a folder.
+  void BeginRecording(const char* task = "peg_transfer") {
+    Options options = TaskOptions(task);
+    options.recordings = folder_.Path() / "kept";
     Begin(options);
     Load();
+  }
+  /// Lets the simulation run until a claim about its tick holds, for five seconds at most.
+  template <typename Claim>
+  bool RunUntil(Claim claim) {
+    for (int i = 0; i < 500; ++i) {
+      if (claim(screen_.control->Advance(0.01).tick)) return true;
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    return false;
+  }
+  bool RunTo(std::uint64_t tick) {
+    return RunUntil([tick](std::uint64_t now) { return now >= tick; });
+  }
+  /// Reads what was recorded, once it has ended.
+  static record::Recording ReadWhole(const std::filesystem::path& path) {
+    for (int i = 0; i < 500; ++i) {
+      auto read = record::ReadRecording(path);
+      if (read.ok() && read->ending.has_value()) return std::move(*read);
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    ADD_FAILURE() << path << " does not end";
+    return {};
+  }
+  static void ExpectVerified(record::Recording recording) {
+    auto replay = record::Replay::Open(std::move(recording), 1);
+    ASSERT_TRUE(replay.ok()) << replay.error().Text();
+    EXPECT_TRUE(replay->Verify()->IsVerified());
+  }
+  static centre::Start MakeStart(const char* task, const char* title) {
+    centre::Start start;
+    start.description.kind = record::Description::Kind::kTask;
+    start.description.name = task, start.description.level = "normal";
+    start.description.seed = 12345;
+    start.title = title;
+    return start;
   }
   bool IsEnabled(const char* id) const {
     for (const SimulatorCommand& command : SimulatorCommands()) {
@@ -70,7 +118,9 @@ class Presenter : public testing::Test {
     return false;
   }
 
+  test::TemporaryFolder folder_;
   core::Stopwatch since_start_;
+  AttemptHooks hooks_;
   FakeScreen screen_;
   std::promise<void> loaded_;
   std::optional<SimulatorPresenter> presenter_;  // ends before what it uses
@@ -93,72 +143,89 @@ TEST_F(Presenter, LoadsBesideTheWindow) {
 }
 
 TEST_F(Presenter, KeepsEveryAttemptWhereItIsToldTo) {
-  test::TemporaryFolder folder;
-  Options options;
-  options.task = "peg_transfer";
-  options.level = "normal";
-  options.seed = 5;
-  options.threads = 1;
-  options.recordings = folder.Path() / "kept";
-  Begin(options);
-  Load();
-  for (int i = 0; i < 500 && screen_.control->Advance(0.01).tick < 150; ++i)
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  BeginRecording();
+  ASSERT_TRUE(RunTo(150));
   const auto recording = screen_.control->Recording();
   ASSERT_TRUE(recording.has_value());
   EXPECT_FALSE(recording->failure.has_value());
-  presenter_.reset();  // the window closes
-  auto read = record::ReadRecording(recording->path);
-  ASSERT_TRUE(read.ok()) << read.error().Text();
-  EXPECT_TRUE(read->ending.has_value());
-  EXPECT_EQ(read->description.name, "peg_transfer");
-  EXPECT_EQ(read->description.player, "mouse and keyboard");
-  auto replay = record::Replay::Open(std::move(*read), 1);
-  ASSERT_TRUE(replay.ok()) << replay.error().Text();
-  EXPECT_TRUE(replay->Verify()->IsVerified());
+  presenter_.reset();  // the program ends
+  auto read = ReadWhole(recording->path);
+  EXPECT_EQ(read.description.name, "peg_transfer");
+  EXPECT_EQ(read.description.player, "mouse and keyboard");
+  ExpectVerified(std::move(read));
+}
+
+// A window that was opened beside another one is kept until the program ends; what runs in it is not.
+TEST_F(Presenter, ClosingTheWindowEndsTheAttemptAndTheSimulation) {
+  std::filesystem::path ended;
+  std::promise<void> has_ended;
+  hooks_.on_end = [&](const std::filesystem::path& path) {
+    ended = path;
+    has_ended.set_value();
+  };
+  BeginRecording();
+  ASSERT_TRUE(RunTo(150));
+  presenter_->Close();
+  EXPECT_EQ(screen_.control, nullptr);
+  ASSERT_EQ(has_ended.get_future().wait_for(std::chrono::seconds(20)), std::future_status::ready);
+  ExpectVerified(ReadWhole(ended));
+  EXPECT_EQ(presenter_->Advance(1, 1.0, 500).snapshot, nullptr);
+}
+
+TEST_F(Presenter, WhatIsReadWhenTheWindowClosesDoesNotStart) {
+  Begin(TaskOptions());
+  presenter_->Close();
+  Load();
+  EXPECT_EQ(screen_.control, nullptr);
+  presenter_->Open({"wire_run", {}, {}});  // somebody opens it again
+  Load();
+  EXPECT_NE(screen_.control, nullptr);
+}
+
+// The next task that somebody chooses from the list is not made for the step.
+TEST_F(Presenter, TellsForWhichStepAnAttemptIsMade) {
+  std::vector<centre::StepName> steps;
+  std::mutex mutex;
+  hooks_.on_begin = [&](const std::filesystem::path&, const centre::StepName& step) {
+    const std::lock_guard lock(mutex);
+    steps.push_back(step);
+  };
+  const auto count = [&] {
+    const std::lock_guard lock(mutex);
+    return steps.size();
+  };
+  BeginRecording();
+  ASSERT_TRUE(RunUntil([&](std::uint64_t) { return count() == 1; }));
+  centre::Start start = MakeStart("instrument_navigation", "Instruments");
+  start.step = {"basic-skills", "instruments"};
+  presenter_->Open(start);
+  Load();
+  presenter_->Do(Action::kTogglePause);
+  ASSERT_TRUE(RunUntil([&](std::uint64_t) { return count() == 2; }));
+  presenter_->Open({"wire_run", {}, {}});
+  Load();
+  ASSERT_TRUE(RunUntil([&](std::uint64_t) { return count() == 3; }));
+  EXPECT_EQ(steps, (std::vector<centre::StepName>{{}, start.step, {}}));
 }
 
 TEST_F(Presenter, FinishEndsTheAttemptAndOpensItsPage) {
-  test::TemporaryFolder folder;
-  Options options;
-  options.task = "peg_transfer";
-  options.threads = 1;
-  options.recordings = folder.Path() / "kept";
-  Begin(options);
-  Load();
-  for (int i = 0; i < 500 && screen_.control->Advance(0.01).tick < 150; ++i)
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  BeginRecording();
+  ASSERT_TRUE(RunTo(150));
   EXPECT_TRUE(IsEnabled("finish"));
   presenter_->Do(Action::kFinish);
   ASSERT_EQ(screen_.attempts.size(), 1u);
-  EXPECT_FALSE(screen_.has_exam);
+  EXPECT_FALSE(screen_.exam.has_value());
   EXPECT_TRUE(screen_.control->IsPaused());
   presenter_->Do(Action::kFinish);
   EXPECT_EQ(screen_.attempts.size(), 1u) << "it is over";
-  bool is_whole = false;
-  for (int i = 0; i < 500 && !is_whole; ++i) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    const auto read = record::ReadRecording(screen_.attempts[0]);
-    is_whole = read.ok() && read->ending.has_value();
-  }
-  EXPECT_TRUE(is_whole) << "whole while the window is open";
+  ReadWhole(screen_.attempts[0]);  // while the window is open
 }
 
 TEST_F(Presenter, AnExamHasNoGuidanceAndNoSecondTry) {
-  test::TemporaryFolder folder;
-  Options options;
-  options.task = "peg_transfer";
-  options.threads = 1;
-  options.recordings = folder.Path() / "kept";
-  Begin(options);
-  Load();
+  BeginRecording();
   EXPECT_TRUE(IsEnabled("reset"));
-  centre::Start start;
-  start.description.kind = record::Description::Kind::kTask;
-  start.description.name = "instrument_navigation", start.description.level = "normal";
-  start.description.seed = 12345;
-  start.title = "Exam: Finals";
-  start.is_exam = true;
+  centre::Start start = MakeStart("instrument_navigation", "Exam: Finals");
+  start.exam = centre::ExamSitting{"finals.json", "T-DDDDDD"};
   presenter_->Open(start);
   Load();
   EXPECT_EQ(screen_.control->GetScene().seed, 12345u);
@@ -168,22 +235,17 @@ TEST_F(Presenter, AnExamHasNoGuidanceAndNoSecondTry) {
     EXPECT_FALSE(IsEnabled(id)) << id;
   EXPECT_FALSE(screen_.page.view.has_force_arrows);
   presenter_->Do(Action::kTogglePause);
-  for (int i = 0; i < 500 && screen_.control->Advance(0.01).tick < 150; ++i)
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  ASSERT_TRUE(RunTo(150));
   presenter_->Do(Action::kFinish);
   ASSERT_EQ(screen_.attempts.size(), 1u);
-  EXPECT_TRUE(screen_.has_exam);
+  ASSERT_TRUE(screen_.exam.has_value());
+  EXPECT_EQ(screen_.exam->examinee, "T-DDDDDD");
+  EXPECT_EQ(screen_.exam->file, "finals.json");
 }
 
 TEST_F(Presenter, SaysThatAttemptsCannotBeKept) {
-  test::TemporaryFolder folder;
-  ASSERT_TRUE(core::WriteFile(folder.Path() / "kept", "a file where the folder should be").ok());
-  Options options;
-  options.task = "peg_transfer";
-  options.threads = 1;
-  options.recordings = folder.Path() / "kept";
-  Begin(options);
-  Load();
+  ASSERT_TRUE(core::WriteFile(folder_.Path() / "kept", "a file where the folder should be").ok());
+  BeginRecording();
   for (int i = 1; i < 500 && screen_.page.event.find("recorded no longer") == std::string::npos; ++i) {
     presenter_->Advance(0.02 * i, 1.0, 700);
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
@@ -296,13 +358,7 @@ Branch MakeBranch(std::uint64_t seed) {
 }
 
 TEST_F(Presenter, TakesOverFromARecording) {
-  test::TemporaryFolder folder;
-  Options options;
-  options.task = "clip_and_cut";
-  options.threads = 1;
-  options.recordings = folder.Path() / "kept";
-  Begin(options);
-  Load();
+  BeginRecording("clip_and_cut");
   Branch branch = MakeBranch(4);
   const scene::Input last = branch.last;
   presenter_->TakeOver(std::move(branch));
@@ -316,26 +372,20 @@ TEST_F(Presenter, TakesOverFromARecording) {
   EXPECT_NEAR(control.GetInput().hands[scene::kRight].pan, last.hands[scene::kRight].pan, 1e-9)
       << "the hands rest where the tools stand";
   presenter_->Do(Action::kTogglePause);
-  for (int i = 0; i < 500 && control.Advance(0.01).tick < 330; ++i)
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  EXPECT_GE(control.Advance(0.01).tick, 330u);
+  EXPECT_TRUE(RunTo(330));
   const auto recording = control.Recording();
   presenter_->Do(Action::kReset);  // the first attempt ends; the next one goes on from nothing
-  for (int i = 0; i < 500 && (control.Advance(0.01).tick > 300 || control.Advance(0.01).tick < 150); ++i)
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  EXPECT_TRUE(RunUntil([](std::uint64_t tick) { return tick >= 150 && tick <= 300; }));
   const auto next = control.Recording();
   presenter_.reset();
   ASSERT_TRUE(recording.has_value() && next.has_value());
-  auto read = record::ReadRecording(recording->path);
-  ASSERT_TRUE(read.ok()) << read.error().Text();
-  EXPECT_EQ(read->FirstTick(), 180u);
-  EXPECT_EQ(read->description.branched_from, "first.trocar");
-  EXPECT_EQ(read->description.branched_id, 77u);
-  EXPECT_EQ(read->description.branched_tick, 180u);
-  EXPECT_EQ(read->description.player, "mouse and keyboard");
-  auto replay = record::Replay::Open(std::move(*read), 1);
-  ASSERT_TRUE(replay.ok()) << replay.error().Text();
-  EXPECT_TRUE(replay->Verify()->IsVerified());
+  auto read = ReadWhole(recording->path);
+  EXPECT_EQ(read.FirstTick(), 180u);
+  EXPECT_EQ(read.description.branched_from, "first.trocar");
+  EXPECT_EQ(read.description.branched_id, 77u);
+  EXPECT_EQ(read.description.branched_tick, 180u);
+  EXPECT_EQ(read.description.player, "mouse and keyboard");
+  ExpectVerified(std::move(read));
   const auto anew = record::ReadRecording(next->path);
   ASSERT_TRUE(anew.ok());
   EXPECT_EQ(anew->FirstTick(), 0u);
@@ -350,13 +400,11 @@ TEST_F(Presenter, LetsTheExpertGoOnFromARecording) {
   SessionControl& control = *screen_.control;
   EXPECT_TRUE(control.IsDemonstration());
   EXPECT_FALSE(control.IsPaused());
-  std::uint64_t least = ~std::uint64_t{0}, tick = 0;
-  for (int i = 0; i < 500 && tick < 300; ++i) {
-    tick = control.Advance(0.01).tick;
+  std::uint64_t least = ~std::uint64_t{0};
+  EXPECT_TRUE(RunUntil([&least](std::uint64_t tick) {
     least = std::min(least, tick);
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  }
-  EXPECT_GE(tick, 300u);
+    return tick >= 300;
+  }));
   EXPECT_GE(least, 180u) << "not from the beginning";
 }
 
@@ -380,11 +428,10 @@ TEST_F(Presenter, RefreshesNumbersNowAndThen) {
 
 TEST_F(Presenter, SavesTheResultWhereItCan) {
   BeginTask();
-  test::TemporaryFolder folder;
-  presenter_->SaveResult(folder.Path() / "result.json");
-  EXPECT_TRUE(core::ReadFile(folder.Path() / "result.json").ok());
+  presenter_->SaveResult(folder_.Path() / "result.json");
+  EXPECT_TRUE(core::ReadFile(folder_.Path() / "result.json").ok());
   EXPECT_EQ(screen_.page.event.rfind("Saved ", 0), 0u);
-  presenter_->SaveResult(folder.Path() / "missing" / "deep" / ("x" + std::string(400, 'y') + ".html"));
+  presenter_->SaveResult(folder_.Path() / "missing" / "deep" / ("x" + std::string(400, 'y') + ".html"));
   EXPECT_EQ(screen_.page.event.rfind("E-", 0), 0u) << screen_.page.event;
 }
 

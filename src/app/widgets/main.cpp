@@ -113,11 +113,15 @@ class Program {
   std::unique_ptr<SimulatorWindow> MakeSimulator(SimulatorWindow::Beginning beginning) {
     SimulatorServices services;
     services.open_centre = [this] { OpenCentre().Presenter().Open(centre::PageKind::kHistory); };
-    services.open_attempt = [this](const std::filesystem::path& recording, bool is_exam) {
-      ShowAttempt(recording, is_exam);
+    services.open_attempt = [this](const std::filesystem::path& recording,
+                                   const std::optional<centre::ExamSitting>& exam) {
+      centre::CentrePresenter& presenter = OpenCentre().Presenter();
+      exam ? presenter.EndExam(*exam, recording) : presenter.ExpectResult(recording);
     };
     if (filing_ != nullptr) {
-      services.hooks.on_begin = [filing = filing_.get()](const auto& path) { filing->Begin(path); };
+      services.hooks.on_begin = [filing = filing_.get()](const auto& path, const auto& step) {
+        filing->Begin(path, step);
+      };
       services.hooks.on_end = [filing = filing_.get()](const auto& path) { filing->End(path); };
     }
     return std::make_unique<SimulatorWindow>(command_.options, since_start_, std::move(services),
@@ -149,12 +153,8 @@ class Program {
 
   std::unique_ptr<centre::CentreWindow> MakeCentre() {
     centre::CentreServices services;
-    services.start = [this](const centre::Start& start) {
-      exam_ = start.is_exam ? OpenCentre().Presenter().Page().exam.file : std::filesystem::path();
-      Simulate(start);
-    };
+    services.start = [this](const centre::Start& start) { Simulate(start); };
     services.start_task = [this](const std::string& task, const std::string& level) {
-      if (filing_ != nullptr) filing_->SetStep({});
       TaskRequest request;
       request.task = task;
       if (!level.empty()) request.choice.level = level;
@@ -209,17 +209,13 @@ class Program {
     if (run.IsAttended()) return;
     Glib::signal_timeout().connect_once(
         [&window, path = run.screenshot] {
-          if (const auto saved = gui::SaveScreenshot(window, path); !saved.ok())
+          if (const auto saved = gui::SaveScreenshot(window, path); !saved.ok()) {
             core::Log(core::LogLevel::kError, saved.error().Text());
+            window.Fail(saved.error());
+          }
           window.close();
         },
         static_cast<unsigned>(1e3 * run.screenshot_after));
-  }
-
-  void ShowAttempt(const std::filesystem::path& recording, bool is_exam) {
-    centre::CentrePresenter& presenter = OpenCentre().Presenter();
-    if (is_exam) return presenter.EndExam(exam_, recording);
-    presenter.ExpectResult(recording);
   }
 
   /// By any thread.
@@ -252,7 +248,6 @@ class Program {
   std::vector<std::unique_ptr<SimulatorWindow>> simulators_;  // that were opened beside it
   std::unique_ptr<centre::CentreWindow> centre_;
   std::unique_ptr<ReplayWindow> replay_;
-  std::filesystem::path exam_;        // that is being sat
   std::function<bool()> has_failed_;  // asked once the windows have closed
 };
 

@@ -10,11 +10,13 @@
 #include <vector>
 
 #include "trocar/gui/background_job.h"
+#include "trocar/gui/file_dialog.h"
+#include "trocar/gui/list_card.h"
 #include "trocar/record/recording_list.h"
 
 namespace trocar::app {
 
-class RecordingChooser : public Gtk::Box {
+class RecordingChooser : public gui::ListCard {
  public:
   /// \param verb  on the buttons: "Watch"
   explicit RecordingChooser(const char* verb);
@@ -23,20 +25,17 @@ class RecordingChooser : public Gtk::Box {
   void Load(const std::filesystem::path& folder);
 
   sigc::signal<void(std::filesystem::path)>& SignalChosen() { return signal_chosen_; }
-  sigc::signal<void()>& SignalClosed() { return signal_closed_; }
 
  private:
   void Fill();
-  void AddRow(const record::RecordingSummary& recording);
-  void AddLine(const Glib::ustring& text);
+  void AddRecording(const record::RecordingSummary& recording);
   void OpenFile();
 
   const char* verb_;
-  Gtk::Box rows_{Gtk::Orientation::VERTICAL};
   std::filesystem::path folder_;
   std::optional<std::filesystem::path> next_folder_;  // asked for while one is read
   sigc::signal<void(std::filesystem::path)> signal_chosen_;
-  sigc::signal<void()> signal_closed_;
+  gui::FileDialog file_dialog_;
   Glib::Dispatcher loaded_;
   gui::BackgroundJob<std::vector<record::RecordingSummary>> loading_{[this] { loaded_.emit(); }};
 };

@@ -118,6 +118,13 @@ void SimulatorWindow::MakeRoutes() {
   picture_.SignalFailed().connect([this](const core::Error& error) { presenter_->Fail(error); });
   picture_.add_tick_callback(sigc::mem_fun(*this, &SimulatorWindow::OnFrame));
   loaded_.connect([this] { presenter_->FinishLoading(); });
+  // other windows may keep the program alive: what nobody sees any more does not run on
+  signal_close_request().connect(
+      [this] {
+        presenter_->Close();
+        return false;
+      },
+      false);
   chooser_.SignalChosen().connect([this](const TaskRequest& request) { presenter_->Open(request); });
   chooser_.SignalClosed().connect([this] { presenter_->CloseTaskList(); });
   recordings_.SignalChosen().connect(
@@ -229,11 +236,12 @@ void SimulatorWindow::OpenReplay(const std::filesystem::path& recording) {
   replay_->present();
 }
 
-void SimulatorWindow::OpenAttempt(const std::filesystem::path& recording, bool is_exam) {
+void SimulatorWindow::OpenAttempt(const std::filesystem::path& recording,
+                                  const std::optional<centre::ExamSitting>& exam) {
   // outside of the frame, which holds the GLArea: a window opens
   Glib::signal_timeout().connect_once(
-      [this, recording, is_exam] {
-        if (services_.open_attempt) services_.open_attempt(recording, is_exam);
+      [this, recording, exam] {
+        if (services_.open_attempt) services_.open_attempt(recording, exam);
       },
       0);
 }
@@ -254,20 +262,12 @@ void SimulatorWindow::OpenDevices() {
 }
 
 void SimulatorWindow::ChooseAndSaveResult() {
-  auto dialog = Gtk::FileChooserNative::create("Save the result", *this, Gtk::FileChooser::Action::SAVE,
-                                               "Save", "Cancel");
-  for (const auto& [name, pattern] :
-       {std::pair{"Page (HTML)", "*.html"}, std::pair{"Data (JSON)", "*.json"}}) {
-    auto filter = Gtk::FileFilter::create();
-    filter->set_name(name);
-    filter->add_pattern(pattern);
-    dialog->add_filter(filter);
-  }
-  dialog->set_current_name("result.html");
-  dialog->signal_response().connect([this, dialog](int response) {
-    if (response == Gtk::ResponseType::ACCEPT) presenter_->SaveResult(dialog->get_file()->get_path());
-  });
-  dialog->show();
+  gui::FileRequest request;
+  request.title = "Save the result";
+  request.new_name = "result.html";
+  request.kinds = {{"Page (HTML)", "*.html"}, {"Data (JSON)", "*.json"}};
+  file_dialog_.Ask(*this, request,
+                   [this](const std::filesystem::path& file) { presenter_->SaveResult(file); });
 }
 
 }  // namespace trocar::app

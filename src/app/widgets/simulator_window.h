@@ -20,6 +20,7 @@
 #include "task_chooser.h"
 #include "trocar/app/simulator_presenter.h"
 #include "trocar/gui/command_bar.h"
+#include "trocar/gui/file_dialog.h"
 #include "trocar/gui/help_card.h"
 
 namespace trocar::app {
@@ -27,7 +28,9 @@ namespace trocar::app {
 /// What other windows do for this one.
 struct SimulatorServices {
   std::function<void()> open_centre;
-  std::function<void(const std::filesystem::path& recording, bool is_exam)> open_attempt;
+  /// \param exam  that was sat, or nothing
+  std::function<void(const std::filesystem::path& recording, const std::optional<centre::ExamSitting>& exam)>
+      open_attempt;
   AttemptHooks hooks;
 };
 
@@ -63,7 +66,8 @@ class SimulatorWindow : public Gtk::ApplicationWindow, private SimulatorScreen {
   core::Status FillTaskList() override;
   void FillRecordingList(const std::filesystem::path& folder) override { recordings_.Load(folder); }
   void OpenReplay(const std::filesystem::path& recording) override;
-  void OpenAttempt(const std::filesystem::path& recording, bool is_exam) override;
+  void OpenAttempt(const std::filesystem::path& recording,
+                   const std::optional<centre::ExamSitting>& exam) override;
   void FillResult(const TaskResult& result) override { result_card_.Show(result); }
   void ReleasePointer() override { hands_->ReleasePointer(); }
   bool IsPointerTaken() const override { return hands_->IsPointerTaken(); }
@@ -84,6 +88,7 @@ class SimulatorWindow : public Gtk::ApplicationWindow, private SimulatorScreen {
   Gtk::Label badge_, hint_, event_, state_, haptics_;
   std::unique_ptr<HandEvents> hands_;
   Glib::Dispatcher loaded_;
+  gui::FileDialog file_dialog_;
   std::unique_ptr<SimulatorPresenter> presenter_;
   std::unique_ptr<DevicePage> device_page_;  // of the presenter's control
   std::unique_ptr<ReplayWindow> replay_;

@@ -3,11 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <system_error>
 #include <utility>
 
 #include "exam_json.h"
-#include "owner_file.h"
+#include "private_key.h"
 #include "signing.h"
 #include "trocar/core/safe_file.h"
 #include "trocar/record/replay.h"
@@ -24,7 +23,6 @@ using nlohmann::json;
 constexpr const char* kFormat = "trocar-certificate";
 constexpr std::size_t kLargestRecording = std::size_t{4} << 30;  // [bytes]
 constexpr core::NumberRange kBytes{1, 4294967296.0};
-constexpr std::string_view kPrivateHead = "trocar-private-key-1 ", kPublicHead = "trocar-public-key-1 ";
 constexpr double kSameMetric = 1e-9;  // of a metric, or of 1 where it is smaller [-]
 /// Before what is signed, so that a signature for something else is none for a certificate.
 constexpr std::string_view kDomain = "trocar-certificate-1\n";
@@ -98,20 +96,6 @@ Error Changed(const std::string& source, const std::string& why) {
           source + ": " + why + "; do not trust it, and ask whoever issued it for the file as it was"};
 }
 
-core::Result<KeySeed> ReadPrivateKey(const fs::path& path) {
-  auto text = ReadOwnerFile(path);
-  if (!text.ok()) return text.error();
-  KeySeed seed{};
-  const bool is_key =
-      text->starts_with(kPrivateHead) && text->ends_with("\n") &&
-      ParseHex(std::string_view(*text).substr(kPrivateHead.size(), text->size() - kPrivateHead.size() - 1),
-               seed);
-  Wipe({reinterpret_cast<std::uint8_t*>(text->data()), text->size()});
-  if (is_key) return seed;
-  return Error{ErrorCode::kKeyInvalid,
-               path.string() + " holds no private key; make one with trocar certificate keygen"};
-}
-
 /// The same metrics, within what the mathematical libraries of two compilers may differ by.
 bool AreSame(const training::AttemptMetrics& a, const training::AttemptMetrics& b) {
   return std::equal(a.values.begin(), a.values.end(), b.values.begin(), b.values.end(),
@@ -170,9 +154,7 @@ core::Result<Replayed> ReplayExam(const ExamSettings& exam, std::span<const std:
   replayed.description = recording->description;
   auto replay = record::Replay::Open(std::move(*recording), settings.threads);
   if (!replay.ok()) return replay.error();
-  const auto half = [&](double share) {
-    if (settings.progress) settings.progress(0.5 * share);
-  };
+  const auto half = [&](double share) { return !settings.progress || settings.progress(0.5 * share); };
   const auto verified = replay->Verify(half);
   if (!verified.ok()) return verified.error();
   if (!verified->IsVerified()) {
@@ -188,9 +170,7 @@ core::Result<Replayed> ReplayExam(const ExamSettings& exam, std::span<const std:
   if (!again.ok()) return again.error();
   again->description.patient = description->patient;
   ReplaySettings second = settings;
-  second.progress = [&](double share) {
-    if (settings.progress) settings.progress(0.5 + 0.5 * share);
-  };
+  second.progress = [&](double share) { return !settings.progress || settings.progress(0.5 + 0.5 * share); };
   auto attempt = MakeAttempt(std::move(*again), second);
   if (!attempt.ok()) return attempt.error();
   replayed.attempt = std::move(*attempt);
@@ -205,38 +185,8 @@ std::string_view CertificateStatement() noexcept {
          "anybody's clinical competence.";
 }
 
-core::Status MakeKeys(const fs::path& name) {
-  const fs::path private_path = name.string() + ".key", public_path = name.string() + ".pub";
-  std::error_code ignored;
-  if (fs::exists(public_path, ignored)) {
-    return Error{ErrorCode::kFileUnwritable,
-                 public_path.string() + " is there already, and keys are not replaced; choose another name"};
-  }
-  KeySeed seed{};
-  DrawRandom(seed);
-  std::string text = std::string(kPrivateHead) + FormatHex(seed) + "\n";
-  const std::string public_text = std::string(kPublicHead) + FormatHex(MakePublicKey(seed)) + "\n";
-  const auto written = WriteOwnerFile(private_path, text);
-  Wipe(seed);
-  Wipe({reinterpret_cast<std::uint8_t*>(text.data()), text.size()});
-  if (!written.ok()) return written.error();
-  return core::WriteFile(public_path, public_text);
-}
-
-core::Result<std::string> ReadPublicKey(const fs::path& path) {
-  const auto text = core::ReadFile(path, 4096);
-  if (!text.ok()) return text.error();
-  PublicKey key{};
-  if (text->starts_with(kPublicHead) && text->ends_with("\n") &&
-      ParseHex(std::string_view(*text).substr(kPublicHead.size(), text->size() - kPublicHead.size() - 1),
-               key))
-    return FormatHex(key);
-  return Error{ErrorCode::kKeyInvalid,
-               path.string() + " holds no public key; take the file NAME.pub of trocar certificate keygen"};
-}
-
 core::Result<std::string> IssueCertificate(const ExamSettings& exam, const fs::path& recording,
-                                           const std::string& examinee, const fs::path& key,
+                                           const std::string& examinee, const SigningKey& key,
                                            const fs::path& cache, const ReplaySettings& settings) {
   if (examinee.empty()) return Error{ErrorCode::kUsage, "a certificate needs the examinee's pseudonym"};
   auto seed = ReadPrivateKey(key);

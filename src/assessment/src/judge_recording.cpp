@@ -20,14 +20,9 @@ using record::Replay;
 
 constexpr std::uint64_t kProgressTicks = 30;  // between two calls
 
-/// "peg_transfer" of "/data/scenes/tasks/peg_transfer.json"
-std::string KeyOf(const std::string& name) {
-  return name.ends_with(".json") ? fs::path(name).stem().string() : name;
-}
-
 Attempt Describe(const record::Description& description) {
   Attempt attempt;
-  attempt.task = KeyOf(description.name);
+  attempt.task = TaskKeyOf(description.name);
   attempt.level = description.level;
   attempt.patient = description.patient;
   attempt.seed = description.seed;
@@ -55,22 +50,40 @@ bool StandsAt(Milestone milestone, const simulation::Simulation& simulation) {
   return false;
 }
 
-/// Plays the recording again up to the attempt's last moment, and computes what it came to.
-core::Result<Attempt> Play(Replay& replay, Attempt attempt, const ReplaySettings& settings) {
+core::Result<Attempt> Complete(Attempt attempt, Replay& replay, const ReplaySettings& settings) {
+  auto played = PlayAttempt(replay, attempt.from, attempt.until, settings);
+  if (!played.ok()) return played.error();
+  attempt.result = std::move(played->result);
+  attempt.score = played->trace.outcome.score;
+  return attempt;
+}
+
+}  // namespace
+
+std::string TaskKeyOf(const std::string& name) {
+  return name.ends_with(".json") ? fs::path(name).stem().string() : name;
+}
+
+core::Result<PlayedAttempt> PlayAttempt(Replay& replay, Milestone from, Milestone until,
+                                        const ReplaySettings& settings) {
   const Recording& recording = replay.GetRecording();
   const auto count = static_cast<double>(std::max<std::size_t>(1, recording.inputs.size()));
   record::TraceBuilder builder(replay.GetSimulation());
   builder.Add(replay.GetSimulation().GetSnapshot());
   MilestoneWatch watch;
-  watch.Begin(attempt.from);
-  const bool is_part = attempt.until != Milestone::kCompleted;
-  while (!replay.IsAtEnd() && !(is_part && watch.HasReached(attempt.until))) {
+  watch.Begin(from);
+  const bool is_part = until != Milestone::kCompleted;
+  while (!replay.IsAtEnd() && !(is_part && watch.HasReached(until))) {
     const std::uint64_t done = replay.Tick() - recording.FirstTick();
     replay.Step();
     const simulation::Snapshot& now = replay.GetSimulation().GetSnapshot();
     builder.Add(now, recording.inputs[done].controls);
     watch.See(now);
-    if (settings.progress && done % kProgressTicks == 0) settings.progress(static_cast<double>(done) / count);
+    if (settings.progress && done % kProgressTicks == 0 &&
+        !settings.progress(static_cast<double>(done) / count)) {
+      return Error{ErrorCode::kCancelled,
+                   "the recording was not computed to its end, so nothing is judged; begin again"};
+    }
   }
   if (replay.GetDivergence()) {
     return Error{
@@ -78,23 +91,21 @@ core::Result<Attempt> Play(Replay& replay, Attempt attempt, const ReplaySettings
         "the recording does not replay to the states that were recorded, so there is nothing to judge; "
         "trocar replay --verify says where it differs"};
   }
-  const training::AttemptTrace trace = builder.Calc();
-  auto metrics = training::CalcAttemptMetrics(trace);
+  PlayedAttempt played;
+  played.trace = builder.Calc();
+  auto metrics = training::CalcAttemptMetrics(played.trace);
   if (!metrics.ok()) return metrics.error();
-  attempt.result.metrics = std::move(*metrics);
-  attempt.result.is_completed = is_part ? watch.HasReached(attempt.until) : trace.outcome.is_completed;
-  if (const auto& task = replay.GetSimulation().GetScene().task)
-    attempt.score = scene::CalcShownScore(*task, replay.GetSimulation().GetSnapshot().task);
-  return attempt;
+  played.result.metrics = std::move(*metrics);
+  if (is_part) played.trace.outcome.is_completed = watch.HasReached(until);
+  played.result.is_completed = played.trace.outcome.is_completed;
+  return played;
 }
-
-}  // namespace
 
 core::Result<Attempt> MakeAttempt(Recording recording, const ReplaySettings& settings) {
   Attempt attempt = Describe(recording.description);
   auto replay = Replay::Open(std::move(recording), settings.threads);
   if (!replay.ok()) return replay.error();
-  return Play(*replay, std::move(attempt), settings);
+  return Complete(std::move(attempt), *replay, settings);
 }
 
 core::Result<Attempt> MakeAttempt(Recording recording, const Course& course, const Step& step,
@@ -134,7 +145,7 @@ core::Result<Attempt> MakeAttempt(Recording recording, const Course& course, con
     return refuse("it does not begin at \"" + std::string(NameOf(step.from)) +
                   "\"; trocar course start prepares that moment");
   }
-  return Play(*replay, std::move(attempt), settings);
+  return Complete(std::move(attempt), *replay, settings);
 }
 
 }  // namespace trocar::assessment

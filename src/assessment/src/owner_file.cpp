@@ -53,7 +53,11 @@ core::Status WriteOwnerFile(const std::filesystem::path& path, std::string_view 
     }
     content.remove_prefix(static_cast<std::size_t>(written));
   }
-  if (::fsync(file.Number()) != 0) return refuse(errno);
+  if (::fsync(file.Number()) != 0) {
+    const int why = errno;
+    ::unlink(path.c_str());
+    return refuse(why);
+  }
   return {};
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <tuple>
 
 #include "trocar/core/assert.h"
 
@@ -14,6 +15,14 @@ namespace {
 
 static_assert(kPublicKeyBytes == crypto_sign_PUBLICKEYBYTES && kKeySeedBytes == crypto_sign_SEEDBYTES &&
               kSignatureBytes == crypto_sign_BYTES);
+static_assert(std::tuple_size_v<decltype(EncryptedSeed::salt)> == crypto_pwhash_argon2id_SALTBYTES &&
+              std::tuple_size_v<decltype(EncryptedSeed::nonce)> == crypto_secretbox_NONCEBYTES &&
+              std::tuple_size_v<decltype(EncryptedSeed::box)> == kKeySeedBytes + crypto_secretbox_MACBYTES);
+// they belong to the file's format: others would give another key
+constexpr unsigned long long kPasses = 3;
+constexpr std::size_t kMemory = std::size_t{256} << 20;  // [bytes]
+
+using BoxKey = std::array<std::uint8_t, crypto_secretbox_KEYBYTES>;
 
 /// Once; the library wants it before its first use.
 void Begin() {
@@ -24,6 +33,16 @@ void Begin() {
 
 const unsigned char* Raw(std::string_view text) {
   return reinterpret_cast<const unsigned char*>(text.data());
+}
+
+core::Result<BoxKey> DeriveKey(std::string_view passphrase, const EncryptedSeed& encrypted) {
+  BoxKey key{};
+  if (crypto_pwhash_argon2id(key.data(), key.size(), passphrase.data(), passphrase.size(),
+                             encrypted.salt.data(), kPasses, kMemory,
+                             crypto_pwhash_argon2id_ALG_ARGON2ID13) == 0)
+    return key;
+  return core::Error{core::ErrorCode::kKeyLocked,
+                     "a private key's passphrase needs 256 MiB of free memory; close other programs"};
 }
 
 }  // namespace
@@ -71,6 +90,30 @@ Signature Sign(const KeySeed& seed, std::string_view text) {
 bool IsSignedBy(const PublicKey& key, const Signature& signature, std::string_view text) {
   Begin();
   return crypto_sign_verify_detached(signature.data(), Raw(text), text.size(), key.data()) == 0;
+}
+
+core::Result<EncryptedSeed> EncryptSeed(const KeySeed& seed, std::string_view passphrase) {
+  Begin();
+  EncryptedSeed encrypted;
+  DrawRandom(encrypted.salt);
+  DrawRandom(encrypted.nonce);
+  auto key = DeriveKey(passphrase, encrypted);
+  if (!key.ok()) return key.error();
+  crypto_secretbox_easy(encrypted.box.data(), seed.data(), seed.size(), encrypted.nonce.data(), key->data());
+  Wipe(*key);
+  return encrypted;
+}
+
+core::Result<std::optional<KeySeed>> DecryptSeed(const EncryptedSeed& encrypted,
+                                                 std::string_view passphrase) {
+  Begin();
+  auto key = DeriveKey(passphrase, encrypted);
+  if (!key.ok()) return key.error();
+  KeySeed seed{};
+  const bool is_open = crypto_secretbox_open_easy(seed.data(), encrypted.box.data(), encrypted.box.size(),
+                                                  encrypted.nonce.data(), key->data()) == 0;
+  Wipe(*key);
+  return is_open ? std::optional(seed) : std::nullopt;
 }
 
 std::string FormatHex(std::span<const std::uint8_t> bytes) {

@@ -10,6 +10,8 @@
 #include <string>
 #include <string_view>
 
+#include "trocar/core/result.h"
+
 namespace trocar::assessment {
 
 inline constexpr std::size_t kHashBytes = 32, kPublicKeyBytes = 32, kKeySeedBytes = 32, kSignatureBytes = 64;
@@ -31,6 +33,19 @@ void Wipe(std::span<std::uint8_t> bytes) noexcept;
 PublicKey MakePublicKey(const KeySeed& seed);
 Signature Sign(const KeySeed& seed, std::string_view text);
 bool IsSignedBy(const PublicKey& key, const Signature& signature, std::string_view text);
+
+/// A seed as it may lie on a disk.
+struct EncryptedSeed {
+  std::array<std::uint8_t, 16> salt{};                 // of the passphrase
+  std::array<std::uint8_t, 24> nonce{};                // of the cipher
+  std::array<std::uint8_t, kKeySeedBytes + 16> box{};  // with its authenticator
+};
+/// Encrypts with XSalsa20-Poly1305, under a key that Argon2id derives from the passphrase with 256 MiB in three passes, so that each
+/// guess costs somebody who has the file most of a second. Sources: RFC 9106; Bernstein, "Cryptography in NaCl", 2009.
+/// \return kKeyLocked where there is no such memory
+core::Result<EncryptedSeed> EncryptSeed(const KeySeed& seed, std::string_view passphrase);
+/// \return nothing where the passphrase is another; kKeyLocked as above
+core::Result<std::optional<KeySeed>> DecryptSeed(const EncryptedSeed& encrypted, std::string_view passphrase);
 
 /// Lower-case hexadecimal digits.
 std::string FormatHex(std::span<const std::uint8_t> bytes);

@@ -40,6 +40,7 @@ struct AttemptFiling::Content {
     fs::path file;
     store::Attempt attempt;
     std::optional<core::FileLock> lock;  // other programs leave it alone
+    bool is_written = false;             // what cannot be written is known to this program alone
   };
   struct Work {
     enum class Kind { kBegin, kEnd } kind = Kind::kBegin;
@@ -58,7 +59,6 @@ struct AttemptFiling::Content {
   std::condition_variable changed;
   std::deque<Work> work;
   std::string person;
-  StepName step;
   FilingStatus status;
   std::optional<Error> away;  // why the courier waits
   std::vector<FiledAttempt> filed;
@@ -75,7 +75,6 @@ struct AttemptFiling::Content {
     {
       const std::lock_guard lock(mutex);
       one.person = person;
-      one.step = step;
       if (one.kind == Work::Kind::kEnd) ++status.measuring;
       work.push_back(std::move(one));
     }
@@ -100,20 +99,28 @@ struct AttemptFiling::Content {
     fs::create_directories(NoteFolder(access.place), ignored);  // what cannot be made cannot be locked
     fs::permissions(NoteFolder(access.place), fs::perms::owner_all, ignored);
     note.file = NoteFolder(access.place) / (one.recording.stem().string() + ".json");
-    auto lock = core::FileLock::Take(fs::path(note.file).replace_extension(".lock"));
-    if (!lock.ok()) return Fail(lock.error());
-    note.lock = std::move(*lock);
-    const auto written = core::WriteFile(note.file, store::WriteAttemptJson(note.attempt));
-    if (!written.ok()) return Fail(written.error());
-    fs::permissions(note.file, fs::perms::owner_read | fs::perms::owner_write, ignored);
+    if (const core::Status written = Write(note); !written.ok()) Fail(written.error());
     notes.insert_or_assign(one.recording, std::move(note));
+  }
+
+  static core::Status Write(Note& note) {
+    auto lock = core::FileLock::Take(fs::path(note.file).replace_extension(".lock"));
+    if (!lock.ok()) return lock.error();
+    const auto written = core::WriteFile(note.file, store::WriteAttemptJson(note.attempt));
+    if (!written.ok()) return written;
+    std::error_code ignored;
+    fs::permissions(note.file, fs::perms::owner_read | fs::perms::owner_write, ignored);
+    note.lock = std::move(*lock);
+    note.is_written = true;
+    return {};
   }
 
   void Forget(const fs::path& recording) {
     const auto found = notes.find(recording);
     if (found == notes.end()) return;
     std::error_code ignored;
-    fs::remove(found->second.file, ignored);
+    // without a lock it may be another program's
+    if (found->second.is_written) fs::remove(found->second.file, ignored);
     notes.erase(found);
   }
 
@@ -132,7 +139,7 @@ struct AttemptFiling::Content {
         continue;
       }
       Work one{Work::Kind::kEnd, attempt->recording, attempt->trainee, FindStepName(*attempt)};
-      notes.insert_or_assign(one.recording, Note{entry.path(), std::move(*attempt), std::move(*lock)});
+      notes.insert_or_assign(one.recording, Note{entry.path(), std::move(*attempt), std::move(*lock), true});
       const std::lock_guard guard(mutex);
       ++status.measuring;
       work.push_back(std::move(one));
@@ -170,7 +177,7 @@ struct AttemptFiling::Content {
       one.step = FindStepName(note->second.attempt);
       // somebody erased the person meanwhile
       std::error_code failure;
-      if (!fs::exists(note->second.file, failure)) return Forget(one.recording);
+      if (note->second.is_written && !fs::exists(note->second.file, failure)) return Forget(one.recording);
     }
     std::error_code ignored;
     FiledAttempt result;
@@ -267,13 +274,8 @@ void AttemptFiling::SetPerson(const std::string& pseudonym) {
   content_->person = pseudonym;
 }
 
-void AttemptFiling::SetStep(const StepName& step) {
-  const std::lock_guard lock(content_->mutex);
-  content_->step = step;
-}
-
-void AttemptFiling::Begin(const fs::path& recording) {
-  content_->Add({Content::Work::Kind::kBegin, recording, {}, {}});
+void AttemptFiling::Begin(const fs::path& recording, const StepName& step) {
+  content_->Add({Content::Work::Kind::kBegin, recording, {}, step});
 }
 
 void AttemptFiling::End(const fs::path& recording) {

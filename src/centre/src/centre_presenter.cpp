@@ -40,7 +40,7 @@ CentrePresenter::CentrePresenter(Access access, int threads, CentreScreen& scree
         on_done_();
       }) {
   page_.history.query.person = access_.person;
-  page_.exam.examinee = access_.person;
+  SetExaminee();
   if (!access_.person.empty()) ReadRole();
 }
 
@@ -234,7 +234,8 @@ void CentrePresenter::BeSomebody(const std::string& text) {
       access_.person = *found->pseudonym;
       is_trainee_ = found->is_trainee;
       page_.who = found->name;
-      page_.exam.examinee = access_.person;
+      // what was sat is certified to who sat it
+      if (page_.exam.recording.empty()) SetExaminee();
       page_.history.query = {access_.person, page_.history.query.task, {}};
       if (filing_ != nullptr) filing_->SetPerson(access_.person);
       if (on_person_) on_person_(access_.person);
@@ -298,7 +299,7 @@ void CentrePresenter::Jump(double time) {
 
 void CentrePresenter::PlayAgain() {
   if (!page_.result) return;
-  if (page_.result->step.IsSet()) return StartStep(page_.result->step.step);
+  if (page_.result->step.IsSet()) return StartStep(page_.result->step);
   screen_->StartTask(shown_.task, shown_.level);
 }
 
@@ -416,9 +417,7 @@ void CentrePresenter::ChooseCourse(const std::string& course) {
   });
 }
 
-void CentrePresenter::StartStep(const std::string& step) {
-  const StepName name{
-      page_.courses.course.empty() && page_.result ? page_.result->step.course : page_.courses.course, step};
+void CentrePresenter::StartStep(const StepName& name) {
   Ask("Making the step ready; where it begins in the middle of an operation the expert operates up to there, "
       "once",
       [this, name]() -> Apply {
@@ -426,7 +425,6 @@ void CentrePresenter::StartStep(const std::string& step) {
             PrepareStart(name, [this](double, const std::string&) { return !is_given_up_.load(); }));
         return [this, start] {
           if (!start->ok()) return Fail(start->error());
-          if (filing_ != nullptr) filing_->SetStep((*start)->step);
           screen_->StartAttempt(**start);
         };
       });
@@ -449,9 +447,15 @@ void CentrePresenter::OpenExamFile(const std::filesystem::path& file) {
     return [this, opened] {
       if (!opened->ok()) return Fail(opened->error());
       page_.exam = **opened;
-      page_.exam.examinee = access_.person;
+      SetExaminee();
     };
   });
+}
+
+/// Whoever works here sits the exam.
+void CentrePresenter::SetExaminee() {
+  page_.exam.examinee = access_.person;
+  page_.exam.examinee_name = access_.person.empty() ? "" : NameOf(access_, access_.person);
 }
 
 void CentrePresenter::StartExam() {
@@ -462,32 +466,35 @@ void CentrePresenter::StartExam() {
     auto start = std::make_shared<core::Result<Start>>(PrepareExam(page));
     return [this, start] {
       if (!start->ok()) return Fail(start->error());
-      if (filing_ != nullptr) filing_->SetStep({});
       screen_->StartAttempt(**start);
     };
   });
 }
 
-void CentrePresenter::EndExam(const std::filesystem::path& file, const std::filesystem::path& recording) {
+void CentrePresenter::EndExam(const ExamSitting& sitting, const std::filesystem::path& recording) {
   page_.kind = PageKind::kExam;
-  Ask("Opening the exam", [this, file, recording]() -> Apply {
-    auto opened = std::make_shared<core::Result<ExamPage>>(OpenExam(file));
+  Ask("Opening the exam", [this, access = access_, sitting, recording]() -> Apply {
+    auto opened = std::make_shared<core::Result<ExamPage>>(OpenExam(sitting.file));
+    if (opened->ok()) {
+      (*opened)->examinee = sitting.examinee;
+      (*opened)->examinee_name = NameOf(access, sitting.examinee);
+    }
     return [this, opened, recording] {
       if (!opened->ok()) return Fail(opened->error());
       page_.exam = **opened;
-      page_.exam.examinee = access_.person;
       page_.exam.recording = recording;
     };
   });
 }
 
-void CentrePresenter::IssueCertificate(const std::filesystem::path& key, const std::filesystem::path& file) {
+void CentrePresenter::IssueCertificate(const assessment::SigningKey& key, const std::filesystem::path& file) {
   Ask("Computing the exam again, to sign what it came to",
       [this, access = access_, page = page_.exam, key, file]() -> Apply {
         auto issued = std::make_shared<core::Result<ExamPage>>(
             IssueExamCertificate(access, page, key, file, [this](double share) {
               share_.store(share);
               on_done_();
+              return !is_given_up_.load();
             }));
         return [this, issued] {
           if (!issued->ok()) return Fail(issued->error());

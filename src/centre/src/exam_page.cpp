@@ -40,26 +40,27 @@ core::Result<Start> PrepareExam(const ExamPage& page) {
   Start start;
   start.description = std::move(*description);
   start.title = "Exam: " + exam->name;
-  start.is_exam = true;
+  start.exam = ExamSitting{page.file, page.examinee};
   return start;
 }
 
-core::Result<ExamPage> IssueExamCertificate(const Access& access, ExamPage page,
-                                            const std::filesystem::path& key,
+core::Result<ExamPage> IssueExamCertificate(const Access& access, ExamPage page, assessment::SigningKey key,
                                             const std::filesystem::path& file,
-                                            const std::function<void(double)>& progress) {
+                                            const std::function<bool(double)>& progress) {
   const auto exam = assessment::ReadExam(page.file);
   if (!exam.ok()) return exam.error();
-  assessment::ReplaySettings settings;
-  settings.progress = progress;
-  const auto text = assessment::IssueCertificate(*exam, page.recording, page.examinee, key, {}, settings);
-  if (!text.ok()) return text.error();
+  // before the work of computing the exam again
   std::error_code failure;
   if (std::filesystem::exists(file, failure)) {
     return core::Error{
         core::ErrorCode::kFileUnwritable,
         file.string() + " is there already; a certificate is not replaced: choose another name"};
   }
+  if (key.passphrase.empty()) key.passphrase = assessment::PassphraseOfEnvironment();
+  assessment::ReplaySettings settings;
+  settings.progress = progress;
+  const auto text = assessment::IssueCertificate(*exam, page.recording, page.examinee, key, {}, settings);
+  if (!text.ok()) return text.error();
   const auto certificate = assessment::ReadCertificate(*text, file.string());
   if (!certificate.ok()) return certificate.error();
   if (const auto written = core::WriteFile(file, *text); !written.ok()) return written.error();

@@ -42,18 +42,18 @@ void Add(const store::Attempt& attempt, Tally& tally) {
   tally.completed += attempt.is_completed ? 1 : 0;
   tally.is_judged = tally.is_judged || attempt.is_passed.has_value();
   tally.is_passed = tally.is_passed || (attempt.is_completed && attempt.is_passed && *attempt.is_passed);
-  if (!attempt.score || attempt.level != tally.level) return;
+  if (!attempt.score || !attempt.is_completed || attempt.level != tally.level) return;
   if (!tally.last) tally.last = attempt.score;  // the newest comes first
   tally.best = std::max(tally.best.value_or(*attempt.score), *attempt.score);
 }
 
-GroupPage::Cell MakeCell(const Tally& tally, const std::string& task) {
+GroupPage::Cell MakeCell(const Tally& tally, TaskBook& tasks, const std::string& task) {
   GroupPage::Cell cell;
   cell.attempts = tally.attempts;
   if (tally.attempts == 0) return cell;
   cell.text = Count(tally.attempts, "attempt");
   if (tally.last) {
-    const bool is_percent = IsScorePercent(task, tally.level);
+    const bool is_percent = tasks.IsScorePercent(task, tally.level);
     cell.text +=
         "\nlast " + ScoreText(*tally.last, is_percent) + ", best " + ScoreText(*tally.best, is_percent);
   } else {
@@ -102,12 +102,14 @@ core::Result<GroupPage> LoadGroup(const Access& access, const std::string& group
     }
   }
   for (const auto& [task, unused] : tallies) page.tasks.push_back({task, TaskNameOf(task)});
+  TaskBook tasks;
   for (const std::string& pseudonym : *members) {
     GroupPage::Member member{pseudonym, NameOf(access, pseudonym), {}};
     for (const GroupPage::Task& task : page.tasks) {
       const auto& of_task = tallies[task.key];
       const auto found = of_task.find(pseudonym);
-      member.cells.push_back(found == of_task.end() ? GroupPage::Cell{} : MakeCell(found->second, task.key));
+      member.cells.push_back(found == of_task.end() ? GroupPage::Cell{}
+                                                    : MakeCell(found->second, tasks, task.key));
     }
     page.members.push_back(std::move(member));
   }

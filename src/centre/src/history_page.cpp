@@ -18,12 +18,12 @@ namespace {
 constexpr int kRows = 20;         // of a page
 constexpr int kMostCurve = 1000;  // attempts of which a curve is drawn: the newest
 
-HistoryPage::Row MakeRow(const Access& access, const store::StoredAttempt& stored) {
+HistoryPage::Row MakeRow(const Access& access, TaskBook& tasks, const store::StoredAttempt& stored) {
   const store::Attempt& attempt = stored.attempt;
   HistoryPage::Row row;
   row.id = stored.id;
   row.when = report::FormatDate(attempt.started);
-  row.task = TaskNameOf(attempt.task) + (attempt.level.empty() ? "" : ", " + attempt.level);
+  row.task = tasks.NameOf(attempt.task) + (attempt.level.empty() ? "" : ", " + attempt.level);
   row.person = NameOf(access, attempt.trainee);
   if (!attempt.is_completed) {
     row.outcome = "not completed";
@@ -34,7 +34,8 @@ HistoryPage::Row MakeRow(const Access& access, const store::StoredAttempt& store
   } else {
     row.outcome = "completed";
   }
-  if (attempt.score) row.score = ScoreText(*attempt.score, IsScorePercent(attempt.task, attempt.level));
+  if (attempt.score && attempt.is_completed)
+    row.score = ScoreText(*attempt.score, tasks.IsScorePercent(attempt.task, attempt.level));
   row.time = report::FormatClock(attempt.seconds);
   std::error_code failure;
   if (!attempt.recording.empty() && std::filesystem::exists(attempt.recording, failure))
@@ -143,7 +144,8 @@ core::Result<HistoryPage> LoadHistory(const Access& access, const HistoryQuery& 
   filter.task = query.task;
   const auto listed = store::ListAttempts(desk->store, desk->viewer, filter, query.page, kRows);
   if (!listed.ok()) return listed.error();
-  for (const store::StoredAttempt& one : listed->attempts) page.rows.push_back(MakeRow(access, one));
+  TaskBook tasks;
+  for (const store::StoredAttempt& one : listed->attempts) page.rows.push_back(MakeRow(access, tasks, one));
   page.next = listed->next;
   if (query.task.empty()) return page;
 
@@ -156,7 +158,10 @@ core::Result<HistoryPage> LoadHistory(const Access& access, const HistoryQuery& 
     failed.push_back(!attempt.is_completed || (attempt.is_passed && !*attempt.is_passed));
   }
   // several people's attempts in one row would be nobody's learning
-  if (!query.person.empty() || access.person.empty()) {
+  const bool is_of_one = std::all_of(attempts->begin(), attempts->end(), [&](const store::Attempt& attempt) {
+    return attempt.trainee == attempts->front().trainee;
+  });
+  if (is_of_one) {
     const std::string task = TaskNameOf(query.task) + (page.level.empty() ? "" : ", " + page.level);
     AddCurve(seconds, task, page);
     AddCusum(failed, task, page);

@@ -6,13 +6,11 @@
 #include <utility>
 
 #include "trocar/assessment/course.h"
-#include "trocar/assessment/milestone.h"
+#include "trocar/assessment/judge_recording.h"
 #include "trocar/core/safe_file.h"
 #include "trocar/record/replay.h"
-#include "trocar/record/trace.h"
 #include "trocar/scene/scene.h"
 #include "trocar/store/keep_attempt.h"
-#include "trocar/training/attempt_metrics.h"
 #include "trocar/training/coach.h"
 #include "trocar/training/validity.h"
 
@@ -24,13 +22,7 @@ using core::Error;
 using core::ErrorCode;
 using nlohmann::json;
 
-constexpr std::uint64_t kProgressTicks = 30;                 // between two calls
 constexpr const char* kDemonstration = "the demonstration";  // as session::Runner names its player
-
-/// "peg_transfer" of "/data/scenes/tasks/peg_transfer.json"
-std::string KeyOf(const std::string& name) {
-  return name.ends_with(".json") ? fs::path(name).stem().string() : name;
-}
 
 /// Keeps in the outcome for which step the attempt was made: the store's attempts know no courses.
 void SetStepName(store::Attempt& attempt, const StepName& step) {
@@ -118,63 +110,11 @@ core::Result<std::optional<assessment::Proficiency>> FindThresholds(const std::s
   return std::optional<assessment::Proficiency>();
 }
 
-/// A recording that was played again.
-struct Played {
-  training::AttemptTrace trace;
-  training::AttemptMetrics metrics;
-  std::string task;  // for a person
-  std::optional<double> score;
-  bool is_score_percent = false;
-  double best_score = 100;
-  bool is_completed = false;
-};
-
-core::Result<Played> Play(record::Replay& replay, const assessment::Step* step,
-                          const std::function<bool(double)>& progress) {
-  const record::Recording& recording = replay.GetRecording();
-  const auto count = static_cast<double>(std::max<std::size_t>(1, recording.inputs.size()));
-  record::TraceBuilder builder(replay.GetSimulation());
-  builder.Add(replay.GetSimulation().GetSnapshot());
-  assessment::MilestoneWatch watch;
-  const auto until = step != nullptr ? step->until : assessment::Milestone::kCompleted;
-  if (step != nullptr) watch.Begin(step->from);
-  const bool is_part = until != assessment::Milestone::kCompleted;
-  while (!replay.IsAtEnd() && !(is_part && watch.HasReached(until))) {
-    const std::uint64_t done = replay.Tick() - recording.FirstTick();
-    replay.Step();
-    builder.Add(replay.GetSimulation().GetSnapshot(), recording.inputs[done].controls);
-    watch.See(replay.GetSimulation().GetSnapshot());
-    if (progress && done % kProgressTicks == 0 && !progress(static_cast<double>(done) / count))
-      return Error{ErrorCode::kCancelled, "the attempt was not measured to its end; open its result again"};
-  }
-  if (replay.GetDivergence()) {
-    return Error{
-        ErrorCode::kRecordingInvalid,
-        "the recording does not replay to the states that were recorded, so there is nothing to judge; "
-        "trocar replay --verify says where it differs"};
-  }
-  Played played;
-  played.trace = builder.Calc();
-  auto metrics = training::CalcAttemptMetrics(played.trace);
-  if (!metrics.ok()) return metrics.error();
-  played.metrics = std::move(*metrics);
-  const scene::Scene& scene = replay.GetSimulation().GetScene();
-  played.task = scene.task ? scene.task->name : scene.name;
-  played.is_completed = is_part ? watch.HasReached(until) : played.trace.outcome.is_completed;
-  if (is_part) played.trace.outcome.is_completed = played.is_completed;
-  if (scene.task) {
-    played.score = scene::CalcShownScore(*scene.task, replay.GetSimulation().GetSnapshot().task);
-    played.is_score_percent = scene.task->reference_points > 0;
-    played.best_score = scene.task->best_score;
-  }
-  return played;
-}
-
 core::Result<store::Attempt> Describe(const record::Recording& recording, const fs::path& path,
                                       const JudgeSettings& settings) {
   auto attempt = store::DescribeAttempt(recording, path);
   if (!attempt.ok()) return attempt.error();
-  attempt->task = KeyOf(attempt->task);
+  attempt->task = assessment::TaskKeyOf(attempt->task);
   // a folder of a user is nobody else's business
   attempt->patient = fs::path(attempt->patient).filename().string();
   attempt->trainee = settings.person;
@@ -215,8 +155,12 @@ core::Result<JudgedAttempt> JudgeRecording(const fs::path& path, const JudgeSett
   }
   auto replay = record::Replay::Open(std::move(*recording), settings.threads);
   if (!replay.ok()) return replay.error();
-  auto played = Play(*replay, step ? &*step : nullptr, settings.progress);
+  using assessment::Milestone;
+  const auto played = assessment::PlayAttempt(*replay, step ? step->from : Milestone::kStart,
+                                              step ? step->until : Milestone::kCompleted,
+                                              {settings.threads, settings.progress});
   if (!played.ok()) return played.error();
+  const assessment::AttemptResult& result = played->result;
 
   std::optional<assessment::Proficiency> proficiency;
   if (step) {
@@ -227,28 +171,27 @@ core::Result<JudgedAttempt> JudgeRecording(const fs::path& path, const JudgeSett
     if (!found.ok()) return found.error();
     proficiency = std::move(*found);
   }
-  judged.attempt.metrics = played->metrics.values;
-  judged.attempt.is_completed = played->is_completed;
-  judged.attempt.score = played->score;
+  judged.attempt.metrics = result.metrics.values;
+  judged.attempt.is_completed = result.is_completed;
+  judged.attempt.score = played->trace.outcome.score;
   if (proficiency) {
-    judged.verdict = assessment::Judge(*proficiency, {played->is_completed, played->metrics});
+    judged.verdict = assessment::Judge(*proficiency, result);
     judged.attempt.is_passed = judged.verdict->is_passed;
   }
   if (step) judged.debriefing = judged.verdict->is_passed ? step->after_pass : step->after_fail;
 
   const auto validity = FindValidity(judged.attempt.task);
   const auto references = MakeReferences(proficiency ? &*proficiency : nullptr, validity);
-  const auto advice = Coach(played->trace, played->metrics, validity);
+  const auto advice = Coach(played->trace, result.metrics, validity);
   report::AttemptReportInput input;
-  input.facts = report::DescribeAttempt(description, played->task);
+  const scene::Scene& scene = replay->GetSimulation().GetScene();
+  input.facts = report::DescribeAttempt(description, scene.task ? scene.task->name : scene.name);
   input.facts.person = settings.person;
   input.facts.recording = path.filename().string();
-  input.facts.is_score_percent = played->is_score_percent;
-  input.facts.best_score = played->best_score;
+  if (scene.task && scene.task->reference_points > 0) input.facts.best_score = scene.task->best_score;
   input.references = references;
   input.advice = advice;
-  judged.report = report::MakeAttemptReport(played->trace, played->metrics, input);
-  judged.report.score = played->score;
+  judged.report = report::MakeAttemptReport(played->trace, result.metrics, input);
   return judged;
 }
 

@@ -53,7 +53,8 @@ void SetVerdict(const JudgedAttempt& judged, ResultPage& page) {
 
 void AddTiles(const JudgedAttempt& judged, ResultPage& page) {
   const report::AttemptReport& r = judged.report;
-  if (r.score) page.tiles.push_back({"Score", ScoreText(*r.score, r.facts.is_score_percent), ""});
+  if (r.score && r.is_completed)
+    page.tiles.push_back({"Score", ScoreText(*r.score, r.facts.best_score.has_value()), ""});
   page.tiles.push_back({"Time", report::FormatClock(r.seconds), "min:s"});
   const auto critical = std::count_if(r.errors.begin(), r.errors.end(), [](const report::ErrorRow& error) {
     return error.severity == training::Severity::kCritical;
@@ -205,6 +206,12 @@ core::Result<std::int64_t> FindStored(Desk& desk, const store::Attempt& attempt)
   return std::int64_t{0};
 }
 
+/// As its recording says; where that is away, as every delivered scene has it.
+double TickSecondsOf(const store::Attempt& attempt) {
+  const auto recording = record::ReadRecording(attempt.recording);
+  return recording.ok() ? recording->description.tick_seconds : 1.0 / 120;
+}
+
 }  // namespace
 
 core::Result<ReviewPage> LoadReview(const Access& access, const store::Attempt& attempt) {
@@ -226,8 +233,7 @@ core::Result<ReviewPage> LoadReview(const Access& access, const store::Attempt& 
   if (page.attempt == 0) return page;
   const auto remarks = store::ListRemarks(desk->store, desk->viewer, page.attempt);
   if (!remarks.ok()) return remarks.error();
-  const auto tick = record::ReadRecording(attempt.recording);
-  const double tick_seconds = tick.ok() ? tick->description.tick_seconds : 1.0 / 120;
+  const double tick_seconds = TickSecondsOf(attempt);
   for (const store::Remark& one : *remarks) {
     const double time = static_cast<double>(one.tick) * tick_seconds;
     page.remarks.push_back({report::FormatClock(time), one.text, NameOf(access, one.author), time});
@@ -250,8 +256,7 @@ core::Status KeepRemark(const Access& access, const ReviewPage& page, double tim
   if (!desk.ok()) return desk.error();
   const auto stored = store::FindAttempt(desk->store, desk->viewer, page.attempt);
   if (!stored.ok()) return stored.error();
-  const auto recording = record::ReadRecording(stored->attempt.recording);
-  const double tick_seconds = recording.ok() ? recording->description.tick_seconds : 1.0 / 120;
+  const double tick_seconds = TickSecondsOf(stored->attempt);
   return store::AddRemark(desk->store, desk->viewer, page.attempt, std::llround(time / tick_seconds), text);
 }
 

@@ -3,6 +3,7 @@
 
 #include <cstdio>
 
+#include "trocar/centre/judged_attempt.h"
 #include "trocar/report/attempt_report.h"
 #include "trocar/scene/scene.h"
 #include "trocar/training/metric_definition.h"
@@ -44,11 +45,20 @@ std::string ScoreText(double score, bool is_percent) {
   return text;
 }
 
-bool IsScorePercent(const std::string& task, const std::string& level) {
-  const auto path = scene::FindTask(task);
-  if (!path.ok()) return false;
-  const auto scene = scene::ReadTask(*path, {level.empty() ? "normal" : level, 1, {}});
-  return scene.ok() && scene->task && scene->task->reference_points > 0;
+const std::string& TaskBook::NameOf(const std::string& task) {
+  const auto found = names_.find(task);
+  return found != names_.end() ? found->second : names_.emplace(task, TaskNameOf(task)).first->second;
+}
+
+bool TaskBook::IsScorePercent(const std::string& task, const std::string& level) {
+  const std::pair key(task, level);
+  if (const auto found = is_percent_.find(key); found != is_percent_.end()) return found->second;
+  bool is_percent = false;
+  if (const auto path = scene::FindTask(task); path.ok()) {
+    const auto scene = scene::ReadTask(*path, {level.empty() ? "normal" : level, 1, {}});
+    is_percent = scene.ok() && scene->task && scene->task->reference_points > 0;
+  }
+  return is_percent_[key] = is_percent;
 }
 
 }  // namespace trocar::centre

@@ -32,6 +32,9 @@ class Filing : public testing::Test {
     }
     return false;
   }
+  void Record(std::uint64_t ticks, const std::string& player = "mouse and keyboard") const {
+    test::RecordAttempt(recording_, test::DescribeTask(kTask, "easy", 3, player), {"novice", 3, ticks, {}});
+  }
   std::vector<store::StoredAttempt> Stored() {
     auto desk = OpenDesk(access_);
     EXPECT_TRUE(desk.ok()) << (desk.ok() ? "" : desk.error().Text());
@@ -64,7 +67,7 @@ TEST_F(Filing, BringsAnAttemptWithItsMetricsIntoTheStoreByItself) {
   AttemptFiling filing(access_, 1, [] {});
   filing.SetPerson("T-AAAAAA");
   filing.Begin(recording_);
-  RecordTask(recording_, "novice", kTask, "easy", 600);
+  Record(600);
   filing.SetPerson("");  // somebody leaves while it is measured: it stays whose it was
   filing.End(recording_);
   ASSERT_TRUE(Settles(filing));
@@ -84,11 +87,49 @@ TEST_F(Filing, BringsAnAttemptWithItsMetricsIntoTheStoreByItself) {
   EXPECT_EQ(CountNotes(), 0u);
 }
 
+// What is played next is nobody's step: the step belongs to the attempt, not to the window.
+TEST_F(Filing, NotesTheStepOfTheAttemptThatWasMadeForIt) {
+  AttemptFiling filing(access_, 1, [] {});
+  const StepName step{"basic-skills", "instruments"};
+  filing.Begin(recording_, step);
+  filing.Begin(folder_.Path() / "next.trocar");
+  Record(300);
+  filing.End(recording_);
+  test::RecordAttempt(folder_.Path() / "next.trocar", test::DescribeTask(kTask, "easy", 4),
+                      {"novice", 4, 300, {}});
+  filing.End(folder_.Path() / "next.trocar");
+  ASSERT_TRUE(Settles(filing));
+  auto desk = OpenDesk(access_);
+  ASSERT_TRUE(desk.ok());
+  const auto stored = Stored();
+  ASSERT_EQ(stored.size(), 2u);
+  for (const store::StoredAttempt& one : stored) {
+    const auto whole = store::FindAttempt(desk->store, desk->viewer, one.id);
+    ASSERT_TRUE(whole.ok());
+    EXPECT_EQ(FindStepName(whole->attempt), whole->attempt.seed == 3 ? step : StepName()) << one.attempt.seed;
+  }
+}
+
+TEST_F(Filing, KnowsWhoseAnAttemptIsWhereItCannotBeNoted) {
+  AddTrainee("T-AAAAAA");
+  ASSERT_TRUE(
+      core::WriteFile(access_.place.SpoolFolder() / "unmeasured", "a file where the folder should be").ok());
+  AttemptFiling filing(access_, 1, [] {});
+  filing.SetPerson("T-AAAAAA");
+  filing.Begin(recording_);
+  Record(300);
+  filing.SetPerson("");
+  filing.End(recording_);
+  ASSERT_TRUE(Settles(filing));
+  ASSERT_EQ(Stored().size(), 1u);
+  EXPECT_EQ(Stored()[0].attempt.trainee, "T-AAAAAA");
+}
+
 TEST_F(Filing, GoesOnWithWhatAProgramThatDiedHasLeft) {
   {
     AttemptFiling killed(access_, 1, [] {});
     killed.Begin(recording_);
-    RecordTask(recording_, "novice", kTask, "easy", 300);
+    Record(300);
     // it ends without having been told that the attempt has
   }
   ASSERT_EQ(CountNotes(), 1u);
@@ -102,7 +143,7 @@ TEST_F(Filing, GoesOnWithWhatAProgramThatDiedHasLeft) {
 TEST_F(Filing, LeavesAloneWhatAnotherProgramIsAt) {
   AttemptFiling first(access_, 1, [] {});
   first.Begin(recording_);
-  RecordTask(recording_, "novice", kTask, "easy", 300);
+  Record(300);
   for (int i = 0; i < 200 && CountNotes() == 0; ++i)
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   ASSERT_EQ(CountNotes(), 1u);
@@ -117,7 +158,7 @@ TEST_F(Filing, SpoolsWhileTheStoreIsAwayAndSaysSo) {
   ASSERT_TRUE(core::WriteFile(folder_.Path() / "no", "a file where the folder should be").ok());
   AttemptFiling filing(access_, 1, [] {});
   filing.Begin(recording_);
-  RecordTask(recording_, "novice", kTask, "easy", 300);
+  Record(300);
   filing.End(recording_);
   for (int i = 0; i < 1200 && (filing.Status().waiting == 0 || !filing.Status().failure); ++i)
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
@@ -131,7 +172,7 @@ TEST_F(Filing, SpoolsWhileTheStoreIsAwayAndSaysSo) {
 
 TEST_F(Filing, DoesNotStoreADemonstration) {
   AttemptFiling filing(access_, 1, [] {});
-  RecordTask(recording_, "novice", kTask, "easy", 300, "the demonstration");
+  Record(300, "the demonstration");
   filing.Begin(recording_);
   filing.End(recording_);
   ASSERT_TRUE(Settles(filing));

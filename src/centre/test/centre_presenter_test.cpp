@@ -47,6 +47,10 @@ class Centre : public testing::Test {
   void Begin(AttemptFiling* filing = nullptr) {
     presenter_.emplace(access_, 1, screen_, filing, [] {});
   }
+  void Record(std::uint64_t ticks) const {
+    test::RecordAttempt(recording_, test::DescribeTask("instrument_navigation", "easy", 3),
+                        {"novice", 3, ticks, {}});
+  }
   /// Lets the presenter finish until a claim holds, for a minute at most.
   template <typename Claim>
   bool Until(Claim claim) {
@@ -122,7 +126,7 @@ TEST_F(Centre, ShowsTheResultOfAnAttemptAndItsHistory) {
   AttemptFiling filing(access_, 1, [] {});
   Begin(&filing);
   filing.Begin(recording_);
-  RecordTask(recording_, "novice", "instrument_navigation", "easy", 900);
+  Record(900);
   filing.End(recording_);
   presenter_->ExpectResult(recording_);
   EXPECT_EQ(screen_.page.kind, PageKind::kResult);
@@ -156,12 +160,42 @@ TEST_F(Centre, StartsAStepOfACourse) {
   ASSERT_TRUE(Settle());
   presenter_->ChooseCourse("basic-skills");
   ASSERT_TRUE(Settle());
-  presenter_->StartStep("instruments");
+  presenter_->StartStep({"basic-skills", "instruments"});
   ASSERT_TRUE(Settle());
   ASSERT_TRUE(screen_.started.has_value());
   EXPECT_EQ(screen_.started->description.name, "instrument_navigation");
   EXPECT_EQ(screen_.started->step, (StepName{"basic-skills", "instruments"}));
-  EXPECT_FALSE(screen_.started->is_exam);
+  EXPECT_FALSE(screen_.started->exam.has_value());
+}
+
+// The certificate is of who sat the exam, not of who stands at the computer when it is issued.
+TEST_F(Centre, AnExamStaysWhoseItIs) {
+  assessment::ExamSettings settings;
+  settings.name = "Finals", settings.task = "instrument_navigation", settings.level = "normal";
+  const auto sealed = assessment::SealExam(settings);
+  ASSERT_TRUE(sealed.ok());
+  const auto file = folder_.Path() / "finals.json";
+  ASSERT_TRUE(assessment::WriteExam(file, *sealed).ok());
+  Begin();
+  presenter_->BeSomebody("Anna Berg");
+  ASSERT_TRUE(Settle());
+  presenter_->OpenExamFile(file);
+  ASSERT_TRUE(Settle());
+  EXPECT_EQ(screen_.page.exam.examinee_name, "Anna Berg");
+  presenter_->StartExam();
+  ASSERT_TRUE(Settle());
+  ASSERT_TRUE(screen_.started && screen_.started->exam);
+  const ExamSitting sitting = *screen_.started->exam;
+  presenter_->BeSomebody("Bert Ahl");
+  ASSERT_TRUE(Settle());
+  presenter_->EndExam(sitting, recording_);
+  ASSERT_TRUE(Settle());
+  EXPECT_EQ(screen_.page.exam.examinee, sitting.examinee);
+  EXPECT_EQ(screen_.page.exam.examinee_name, "Anna Berg");
+  presenter_->BeSomebody("Carl Dahl");
+  ASSERT_TRUE(Settle());
+  EXPECT_EQ(screen_.page.exam.examinee, sitting.examinee) << "it is sat";
+  EXPECT_TRUE(screen_.errors.empty());
 }
 
 TEST_F(Centre, WhoAsksTwiceGetsTheNewer) {

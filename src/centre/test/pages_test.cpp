@@ -3,9 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
+#include <cstdlib>
 
 #include "recorded_attempt.h"
 #include "store_test.h"
+#include "trocar/assessment/certificate.h"
 #include "trocar/centre/course_page.h"
 #include "trocar/centre/exam_page.h"
 #include "trocar/centre/group_page.h"
@@ -92,6 +94,7 @@ TEST_P(Pages, WhatIsNotCompletedIsNotGreen) {
   ASSERT_TRUE(page.ok());
   EXPECT_EQ(page->rows[0].outcome, "not completed");
   EXPECT_EQ(page->rows[0].tone, Tone::kCaution);
+  EXPECT_EQ(page->rows[0].score, "") << "what was not completed has no score";
 }
 
 TEST_P(Pages, TraineesSeeNobodyElsesHistory) {
@@ -100,6 +103,23 @@ TEST_P(Pages, TraineesSeeNobodyElsesHistory) {
   access_.person = other;
   const auto page = LoadHistory(access_, {one, "", ""});
   EXPECT_TRUE(!page.ok() || page->rows.empty());
+  access_.person = one;
+  const auto own = LoadHistory(access_, {one, "", ""});
+  ASSERT_TRUE(own.ok());
+  EXPECT_EQ(own->rows.size(), 1u) << "the control";
+}
+
+TEST_P(Pages, NobodysLearningIsDrawnOfSeveralPeople) {
+  const std::string one = Add(Role::kTrainee), other = Add(Role::kTrainee);
+  for (int day = 1; day <= 6; ++day) Keep(MakeOne(day, one, 60 + day, true));
+  const auto alone = LoadHistory(access_, {"", "peg_transfer", ""});
+  ASSERT_TRUE(alone.ok());
+  EXPECT_EQ(alone->drawings.size(), 2u);
+  for (int day = 7; day <= 12; ++day) Keep(MakeOne(day, other, 60 + day, true));
+  const auto mixed = LoadHistory(access_, {"", "peg_transfer", ""});
+  ASSERT_TRUE(mixed.ok());
+  EXPECT_EQ(mixed->rows.size(), 12u);
+  EXPECT_TRUE(mixed->drawings.empty());
 }
 
 TEST_P(Pages, GroupShowsMembersAndWhatTheyCameTo) {
@@ -220,8 +240,9 @@ class Result : public testing::Test {
  protected:
   static void SetUpTestSuite() {
     folder_ = new test::TemporaryFolder;
-    RecordTask(folder_->Path() / "whole.trocar", "expert", "instrument_navigation", "normal", kUntilOver);
-    RecordTask(folder_->Path() / "part.trocar", "novice", "instrument_navigation", "normal", 600);
+    const auto task = test::DescribeTask("instrument_navigation", "normal", 3);
+    test::RecordAttempt(folder_->Path() / "whole.trocar", task, {"expert", 3, test::kUntilOver, {}});
+    test::RecordAttempt(folder_->Path() / "part.trocar", task, {"novice", 3, 600, {}});
   }
   static void TearDownTestSuite() {
     delete folder_;
@@ -298,8 +319,99 @@ TEST(Exam, IsOpenedWithoutShowingItsSeed) {
   page->examinee = "T-DDDDDD";
   const auto start = PrepareExam(*page);
   ASSERT_TRUE(start.ok()) << start.error().Text();
-  EXPECT_TRUE(start->is_exam);
+  ASSERT_TRUE(start->exam.has_value());
+  EXPECT_EQ(start->exam->examinee, "T-DDDDDD");
+  EXPECT_EQ(start->exam->file, page->file);
   EXPECT_EQ(start->description.seed, sealed->seed);
+}
+
+/// An exam that the scripted expert has sat, with the centre's encrypted key.
+class SatExam : public testing::Test {
+ protected:
+  static constexpr const char* kPassphrase = "seven green herons";
+
+  void SetUp() override {
+    assessment::ExamSettings settings;
+    settings.name = "Finals", settings.task = "instrument_navigation", settings.level = "easy";
+    const auto sealed = assessment::SealExam(settings);
+    ASSERT_TRUE(sealed.ok());
+    ASSERT_TRUE(assessment::WriteExam(Path("finals.json"), *sealed).ok());
+    ASSERT_TRUE(assessment::MakeKeys(Path("centre"), kPassphrase).ok());
+    access_.place = {Path("store.sqlite"), Path("files")};
+    const auto pseudonym = FindPseudonym(access_, "Anna Berg");
+    ASSERT_TRUE(pseudonym.ok());
+    auto page = OpenExam(Path("finals.json"));
+    ASSERT_TRUE(page.ok());
+    page_ = *page;
+    page_.examinee = *pseudonym;
+    const auto start = PrepareExam(page_);
+    ASSERT_TRUE(start.ok());
+    page_.recording = Path("exam.trocar");
+    test::RecordAttempt(page_.recording, start->description, {});
+  }
+  std::filesystem::path Path(const char* name) const { return folder_.Path() / name; }
+  core::Result<ExamPage> Issue(const char* passphrase, const std::function<bool(double)>& progress = {}) {
+    return IssueExamCertificate(access_, page_, {Path("centre.key"), passphrase}, Path("certificate.json"),
+                                progress);
+  }
+
+  test::TemporaryFolder folder_;
+  Access access_;
+  ExamPage page_;
+};
+
+TEST_F(SatExam, IsCertifiedAndTheStoreKeepsACopy) {
+  const auto issued = Issue(kPassphrase);
+  ASSERT_TRUE(issued.ok()) << issued.error().Text();
+  EXPECT_TRUE(issued->is_passed);
+  EXPECT_EQ(issued->finding, "Passed. The certificate is signed.");
+  EXPECT_EQ(issued->certificate, Path("certificate.json"));
+  const auto signer = assessment::ReadPublicKey(Path("centre.pub"));
+  ASSERT_TRUE(signer.ok());
+  const auto verified = assessment::VerifyCertificate(Path("certificate.json"), Path("exam.trocar"), *signer);
+  ASSERT_TRUE(verified.ok()) << verified.error().Text();
+  EXPECT_EQ(verified->examinee, page_.examinee);
+  EXPECT_TRUE(verified->is_completed);
+  auto desk = OpenDesk(access_);
+  ASSERT_TRUE(desk.ok());
+  const auto kept = store::ListCertificates(desk->store, desk->viewer, page_.examinee);
+  ASSERT_TRUE(kept.ok()) << kept.error().Text();
+  ASSERT_EQ(kept->size(), 1u);
+  EXPECT_EQ((*kept)[0].text, *core::ReadFile(Path("certificate.json")));
+}
+
+TEST_F(SatExam, SignsNothingWithoutThePassphraseOrWhereItIsGivenUp) {
+  for (const char* wrong : {"", "seven grey herons"}) {
+    const auto refused = Issue(wrong);
+    ASSERT_FALSE(refused.ok()) << wrong;
+    EXPECT_EQ(refused.error().code, core::ErrorCode::kKeyLocked);
+  }
+  const auto given_up = Issue(kPassphrase, [](double) { return false; });
+  ASSERT_FALSE(given_up.ok());
+  EXPECT_EQ(given_up.error().code, core::ErrorCode::kCancelled);
+  EXPECT_FALSE(std::filesystem::exists(Path("certificate.json")));
+  ::setenv("TROCAR_KEY_PASSPHRASE", kPassphrase, 1);
+  EXPECT_TRUE(Issue("").ok()) << "that of the environment";
+  ::unsetenv("TROCAR_KEY_PASSPHRASE");
+}
+
+TEST_F(SatExam, ReplacesNoCertificateAndSaysSoBeforeTheWork) {
+  ASSERT_TRUE(core::WriteFile(Path("certificate.json"), "somebody's").ok());
+  bool has_worked = false;
+  const auto refused = Issue(kPassphrase, [&has_worked](double) { return has_worked = true; });
+  ASSERT_FALSE(refused.ok());
+  EXPECT_EQ(refused.error().code, core::ErrorCode::kFileUnwritable);
+  EXPECT_FALSE(has_worked);
+  EXPECT_EQ(*core::ReadFile(Path("certificate.json")), "somebody's");
+}
+
+TEST_F(SatExam, IsCertifiedWhereTheStoreIsAway) {
+  ASSERT_TRUE(core::WriteFile(Path("no"), "a file where the folder should be").ok());
+  access_.place.url = Path("no") / "store.sqlite";
+  const auto issued = Issue(kPassphrase);
+  ASSERT_TRUE(issued.ok()) << issued.error().Text();
+  EXPECT_THAT(issued->finding, HasSubstr("The store does not have it yet: E-"));
+  EXPECT_TRUE(std::filesystem::exists(Path("certificate.json")));
 }
 
 }  // namespace

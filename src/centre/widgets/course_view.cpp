@@ -123,7 +123,8 @@ void CourseView::ShowStep(const CoursePage& page) {
   detail_->append(MakeText("So far: " + step.progress, "value"));
   const bool is_locked = step.state == StepState::kLocked;
   Gtk::Button& start = MakeButton(
-      is_locked ? "Practise" : "Start", [this, key = step.key] { presenter_->StartStep(key); },
+      is_locked ? "Practise" : "Start",
+      [this, name = StepName{page.course, step.key}] { presenter_->StartStep(name); },
       is_locked ? nullptr : "primary");
   start.set_halign(Gtk::Align::START);
   start.set_margin_top(8);

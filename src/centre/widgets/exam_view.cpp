@@ -5,106 +5,132 @@
 #include "view_parts.h"
 
 namespace trocar::centre {
+namespace {
 
-ExamView::ExamView() : Gtk::Box(Gtk::Orientation::VERTICAL) {}
+constexpr int kPassphraseWidth = 300;  // [pixels]
+
+}  // namespace
+
+ExamView::ExamView() : Gtk::Box(Gtk::Orientation::VERTICAL) {
+  passphrase_.property_placeholder_text() = "Passphrase of the key, if it has one";
+  passphrase_.set_show_peek_icon(true);
+  passphrase_.set_size_request(kPassphraseWidth, -1);
+  passphrase_.set_valign(Gtk::Align::CENTER);
+}
 
 void ExamView::Show(const CentrePage& shown) {
+  // it outlives the row that it stood in
+  if (auto* row = dynamic_cast<Gtk::Box*>(passphrase_.get_parent())) row->remove(passphrase_);
   Clear(*this);
   const ExamPage& page = shown.exam;
   auto* all = Gtk::make_managed<Gtk::Box>(Gtk::Orientation::VERTICAL);
   all->add_css_class("page");
   all->set_spacing(14);
   all->append(MakeText(page.name.empty() ? "Exam" : page.name, "page-title"));
-  const auto open = [this] {
-    ChooseFile("Open a sealed exam", Gtk::FileChooser::Action::OPEN, "",
-               [this](const std::string& file) { presenter_->OpenExamFile(file); });
-  };
   if (page.file.empty()) {
-    Gtk::Box& card = MakeCard("No exam is open");
-    card.append(MakeText(
-        "An examiner seals the settings of an exam with `trocar exam seal`. Open that file here; what is "
-        "sat under it is recorded, and the certificate says what it came to and nothing of anybody's "
-        "competence.",
-        "value"));
-    Gtk::Button& button = MakeButton("Open an exam…", open, "primary");
-    button.set_halign(Gtk::Align::START);
-    card.append(button);
-    all->append(card);
-    append(MakePage(*all));
-    return;
+    all->append(MakeInvitation());
+  } else {
+    all->append(MakeFacts(page));
+    all->append(MakeSitting(page));
+    all->append(MakeCertificate(page));
   }
-  Gtk::Box& facts = MakeCard("What is sealed");
+  append(MakePage(*all));
+}
+
+Gtk::Box& ExamView::MakeInvitation() {
+  Gtk::Box& card = MakeCard("No exam is open");
+  card.append(MakeText(
+      "An examiner seals the settings of an exam with `trocar exam seal`. Open that file here; what is "
+      "sat under it is recorded, and the certificate says what it came to and nothing of anybody's "
+      "competence.",
+      "value"));
+  Gtk::Button& button = MakeButton(
+      "Open an exam…", [this] { ChooseExam(); }, "primary");
+  button.set_halign(Gtk::Align::START);
+  card.append(button);
+  return card;
+}
+
+Gtk::Box& ExamView::MakeFacts(const ExamPage& page) {
+  Gtk::Box& card = MakeCard("What is sealed");
   auto* table = Gtk::make_managed<Table>(std::vector<std::string>{});
   for (const auto& [name, value] : page.facts) {
     table->AddText(name, "name");
     table->AddText(value, "value", true);
     table->EndRow();
   }
-  facts.append(*table);
-  facts.append(MakeLine("What passes, besides completing", "card-title"));
-  if (page.thresholds.empty()) facts.append(MakeText("Nothing more.", "value"));
-  for (const std::string& threshold : page.thresholds) facts.append(MakeText("•  " + threshold, "value"));
-  all->append(facts);
+  card.append(*table);
+  card.append(MakeLine("What passes, besides completing", "card-title"));
+  if (page.thresholds.empty()) card.append(MakeText("Nothing more.", "value"));
+  for (const std::string& threshold : page.thresholds) card.append(MakeText("•  " + threshold, "value"));
+  return card;
+}
 
-  Gtk::Box& sit = MakeCard("1. Sit the exam");
-  sit.append(MakeText(
-      "Examinee: " + (page.examinee.empty()
-                          ? std::string("nobody yet; say at \"Who are you?\" who you are")
-                          : shown.who + (shown.who == page.examinee ? "" : " (" + page.examinee + ")")),
+Gtk::Box& ExamView::MakeSitting(const ExamPage& page) {
+  Gtk::Box& card = MakeCard("1. Sit the exam");
+  const std::string who =
+      page.examinee_name + (page.examinee_name == page.examinee ? "" : " (" + page.examinee + ")");
+  card.append(MakeText(
+      "Examinee: " + (page.examinee.empty() ? "nobody yet; say at \"Who are you?\" who you are" : who),
       page.examinee.empty() ? "caution" : "value"));
-  sit.append(
+  card.append(
       MakeText("There is no demonstration, no camera holder, no force arrows and no second try. It ends with "
-               "the task, or "
-               "with Finish.",
+               "the task, or with Finish.",
                "value"));
   Gtk::Box& row = gui::MakeRow(8, {});
   Gtk::Button& start = MakeButton(
       "Start the exam", [this] { presenter_->StartExam(); }, "primary");
   start.set_sensitive(!page.examinee.empty() && page.recording.empty());
   row.append(start);
-  row.append(MakeButton("Another exam…", open));
-  sit.append(row);
-  if (!page.recording.empty()) sit.append(MakeText("Sat: " + page.recording.filename().string(), "value"));
-  all->append(sit);
+  row.append(MakeButton("Another exam…", [this] { ChooseExam(); }));
+  card.append(row);
+  if (!page.recording.empty()) card.append(MakeText("Sat: " + page.recording.filename().string(), "value"));
+  return card;
+}
 
-  Gtk::Box& sign = MakeCard("2. Issue the certificate");
-  sign.append(MakeText(
+Gtk::Box& ExamView::MakeCertificate(const ExamPage& page) {
+  Gtk::Box& card = MakeCard("2. Issue the certificate");
+  card.append(MakeText(
       "The exam is computed again from its recording and signed with the centre's private key.", "value"));
-  Gtk::Button& issue = MakeButton(
-      "Issue…", [this, page] { ChooseKey(page); }, "primary");
-  issue.set_halign(Gtk::Align::START);
-  issue.set_sensitive(!page.recording.empty() && page.certificate.empty());
-  sign.append(issue);
-  if (!page.certificate.empty()) {
-    sign.append(MakeText(page.finding, page.is_passed ? "good" : "caution"));
-    sign.append(MakeText("Check it anywhere: trocar certificate verify " + page.certificate.string() + " " +
+  if (page.certificate.empty()) {
+    const bool is_sat = !page.recording.empty();
+    passphrase_.set_sensitive(is_sat);
+    Gtk::Button& issue = MakeButton(
+        "Issue…", [this, name = page.recording.stem().string() + ".json"] { ChooseKey(name); }, "primary");
+    issue.set_sensitive(is_sat);
+    card.append(gui::MakeRow(8, {&passphrase_, &issue}));
+  } else {
+    card.append(MakeText(page.finding, page.is_passed ? "good" : "caution"));
+    card.append(MakeText("Check it anywhere: trocar certificate verify " + page.certificate.string() + " " +
                              page.recording.string() + " --key PUBLIC.pub",
                          "fine"));
   }
-  all->append(sign);
-  append(MakePage(*all));
+  return card;
 }
 
-void ExamView::ChooseKey(const ExamPage& page) {
-  ChooseFile("The centre's private key", Gtk::FileChooser::Action::OPEN, "",
-             [this, page](const std::string& key) {
-               ChooseFile("Save the certificate", Gtk::FileChooser::Action::SAVE,
-                          page.recording.stem().string() + ".json",
-                          [this, key](const std::string& file) { presenter_->IssueCertificate(key, file); });
-             });
+void ExamView::ChooseExam() {
+  gui::FileRequest request;
+  request.title = "Open a sealed exam";
+  file_dialog_.Ask(*this, request,
+                   [this](const std::filesystem::path& file) { presenter_->OpenExamFile(file); });
 }
 
-void ExamView::ChooseFile(const char* title, Gtk::FileChooser::Action action, const std::string& name,
-                          std::function<void(std::string)> chosen) {
-  auto* window = dynamic_cast<Gtk::Window*>(get_root());
-  if (window == nullptr) return;
-  auto dialog = Gtk::FileChooserNative::create(
-      title, *window, action, action == Gtk::FileChooser::Action::SAVE ? "Save" : "Open", "Cancel");
-  if (!name.empty()) dialog->set_current_name(name);
-  dialog->signal_response().connect([dialog, chosen = std::move(chosen)](int response) {
-    if (response == Gtk::ResponseType::ACCEPT) chosen(dialog->get_file()->get_path());
+void ExamView::ChooseKey(const std::string& certificate_name) {
+  gui::FileRequest request;
+  request.title = "The centre's private key";
+  file_dialog_.Ask(*this, request, [this, certificate_name](const std::filesystem::path& key) {
+    ChooseCertificate(key, certificate_name);
   });
-  dialog->show();
+}
+
+void ExamView::ChooseCertificate(const std::filesystem::path& key, const std::string& name) {
+  gui::FileRequest request;
+  request.title = "Save the certificate";
+  request.new_name = name;
+  file_dialog_.Ask(*this, request, [this, key](const std::filesystem::path& file) {
+    presenter_->IssueCertificate({key, passphrase_.get_text().raw()}, file);
+    passphrase_.set_text("");
+  });
 }
 
 }  // namespace trocar::centre

@@ -4,10 +4,11 @@
 
 #include <gtkmm.h>
 
-#include <functional>
+#include <filesystem>
 #include <string>
 
 #include "trocar/centre/centre_presenter.h"
+#include "trocar/gui/file_dialog.h"
 
 namespace trocar::centre {
 
@@ -19,11 +20,17 @@ class ExamView : public Gtk::Box {
   void Show(const CentrePage& page);
 
  private:
-  void ChooseFile(const char* title, Gtk::FileChooser::Action action, const std::string& name,
-                  std::function<void(std::string)> chosen);
-  void ChooseKey(const ExamPage& page);
+  Gtk::Box& MakeInvitation();
+  Gtk::Box& MakeFacts(const ExamPage& page);
+  Gtk::Box& MakeSitting(const ExamPage& page);
+  Gtk::Box& MakeCertificate(const ExamPage& page);
+  void ChooseExam();
+  void ChooseKey(const std::string& certificate_name);
+  void ChooseCertificate(const std::filesystem::path& key, const std::string& name);
 
   CentrePresenter* presenter_ = nullptr;
+  gui::FileDialog file_dialog_;
+  Gtk::PasswordEntry passphrase_;  // of the key; keeps what is typed when the page is shown anew
 };
 
 }  // namespace trocar::centre

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "result_view.h"
 
-#include <array>
-#include <utility>
-
 #include "review_view.h"
 #include "trocar/gui/card.h"
 #include "trocar/report/attempt_report.h"
@@ -204,24 +201,15 @@ Gtk::Box& ResultView::MakeActions(const ResultPage& page) {
 }
 
 void ResultView::ChooseReport() {
-  auto* window = dynamic_cast<Gtk::Window*>(get_root());
-  if (window == nullptr) return;
-  auto dialog = Gtk::FileChooserNative::create("Save the report", *window, Gtk::FileChooser::Action::SAVE,
-                                               "Save", "Cancel");
-  constexpr std::array<std::pair<const char*, const char*>, 4> kKinds = {
-      std::pair{"Page (HTML)", "*.html"}, std::pair{"For print (PDF)", "*.pdf"},
-      std::pair{"Table (CSV)", "*.csv"}, std::pair{"Data (JSON)", "*.json"}};
-  for (const auto& [name, pattern] : kKinds) {
-    auto filter = Gtk::FileFilter::create();
-    filter->set_name(name);
-    filter->add_pattern(pattern);
-    dialog->add_filter(filter);
-  }
-  dialog->set_current_name(file_name_ + ".html");
-  dialog->signal_response().connect([this, dialog](int response) {
-    if (response == Gtk::ResponseType::ACCEPT) presenter_->SaveReport(dialog->get_file()->get_path());
-  });
-  dialog->show();
+  gui::FileRequest request;
+  request.title = "Save the report";
+  request.new_name = file_name_ + ".html";
+  request.kinds = {{"Page (HTML)", "*.html"},
+                   {"For print (PDF)", "*.pdf"},
+                   {"Table (CSV)", "*.csv"},
+                   {"Data (JSON)", "*.json"}};
+  file_dialog_.Ask(*this, request,
+                   [this](const std::filesystem::path& file) { presenter_->SaveReport(file); });
 }
 
 }  // namespace trocar::centre

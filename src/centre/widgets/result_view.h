@@ -5,6 +5,7 @@
 #include <gtkmm.h>
 
 #include "trocar/centre/centre_presenter.h"
+#include "trocar/gui/file_dialog.h"
 
 namespace trocar::centre {
 
@@ -25,6 +26,7 @@ class ResultView : public Gtk::Box {
   void ChooseReport();
 
   CentrePresenter* presenter_ = nullptr;
+  gui::FileDialog file_dialog_;
   std::string file_name_;  // that is suggested for the report
 };
 

@@ -161,8 +161,7 @@ core::Result<report::AttemptReport> ReportWatch::MakeReport(report::AttemptFacts
 
 report::AttemptFacts DescribeScene(const scene::Scene& scene, report::AttemptFacts facts) {
   facts.task = scene.task ? scene.task->name : scene.name;
-  facts.is_score_percent = scene.task && scene.task->reference_points > 0;
-  if (scene.task) facts.best_score = scene.task->best_score;
+  if (scene.task && scene.task->reference_points > 0) facts.best_score = scene.task->best_score;
   return facts;
 }
 

@@ -11,6 +11,7 @@
 #include "command.h"
 #include "console.h"
 #include "judgement_text.h"
+#include "passphrase.h"
 #include "trocar/assessment/certificate.h"
 #include "trocar/assessment/exam.h"
 #include "trocar/core/safe_file.h"
@@ -26,17 +27,35 @@ struct CertificateArguments {
 assessment::ReplaySettings MakeReplaySettings(const CertificateArguments& arguments, ProgressBar& bar) {
   assessment::ReplaySettings settings;
   settings.threads = arguments.threads;
-  settings.progress = [&bar](double share) { bar.Show(share); };
+  settings.progress = [&bar](double share) { return bar.Show(share), true; };
   return settings;
+}
+
+core::Status MakeKeys(const std::string& name) {
+  const auto passphrase = FindNewPassphrase(name + ".key");
+  if (!passphrase.ok()) return passphrase.error();
+  if (const auto made = assessment::MakeKeys(name, *passphrase); !made.ok()) return made;
+  std::printf("%s.key: keep it secret, and a copy in a safe place\n%s.pub: publish it\n", name.c_str(),
+              name.c_str());
+  if (passphrase->empty()) {
+    std::fprintf(
+        stderr,
+        "warning: %s.key is not encrypted; whoever reads it can sign in your name. For an encrypted "
+        "one delete both files, set TROCAR_KEY_PASSPHRASE or begin at a terminal, and make them again\n",
+        name.c_str());
+  }
+  return {};
 }
 
 core::Status Issue(const CertificateArguments& arguments) {
   const auto exam = assessment::ReadExam(arguments.exam);
   if (!exam.ok()) return exam.error();
+  auto passphrase = FindPassphrase(arguments.key);
+  if (!passphrase.ok()) return passphrase.error();
+  const assessment::SigningKey key{arguments.key, std::move(*passphrase)};
   ProgressBar bar("replaying", 1.0);
-  const auto text =
-      assessment::IssueCertificate(*exam, arguments.recording, arguments.examinee, arguments.key,
-                                   arguments.cache, MakeReplaySettings(arguments, bar));
+  const auto text = assessment::IssueCertificate(*exam, arguments.recording, arguments.examinee, key,
+                                                 arguments.cache, MakeReplaySettings(arguments, bar));
   bar.Finish();
   if (!text.ok()) return text.error();
   if (const auto written = core::WriteFile(arguments.output, *text); !written.ok()) return written;
@@ -90,12 +109,11 @@ void AddCertificateCommand(CLI::App& app, Outcome& outcome) {
   keygen->add_option("-o,--output", *name, "Writes NAME.key, only for its owner, and NAME.pub")
       ->required()
       ->type_name("NAME");
-  keygen->callback([=, &outcome] {
-    outcome.status = assessment::MakeKeys(*name);
-    if (outcome.status.ok())
-      std::printf("%s.key: keep it secret, and a copy in a safe place\n%s.pub: publish it\n", name->c_str(),
-                  name->c_str());
-  });
+  keygen->footer(
+      "NAME.key is encrypted with a passphrase: that of TROCAR_KEY_PASSPHRASE, or one that is asked for at "
+      "the "
+      "terminal. Without one it is stored as it is, with a warning.");
+  keygen->callback([=, &outcome] { outcome.status = MakeKeys(*name); });
   auto a = std::make_shared<CertificateArguments>();
   const auto add_common = [a](CLI::App& one) {
     one.add_option("--cache", a->cache, "Folder for the patient; the user's cache folder if not given")
@@ -112,7 +130,11 @@ void AddCertificateCommand(CLI::App& app, Outcome& outcome) {
   issue->add_option("--examinee", a->examinee, "Pseudonym of who was examined")
       ->required()
       ->type_name("PSEUDONYM");
-  issue->add_option("--key", a->key, "Private key")->required()->type_name("FILE");
+  issue
+      ->add_option("--key", a->key,
+                   "Private key; its passphrase is taken from TROCAR_KEY_PASSPHRASE or asked for")
+      ->required()
+      ->type_name("FILE");
   issue->add_option("-o,--output", a->output, "Certificate to write")->required()->type_name("FILE");
   add_common(*issue);
   issue->callback([a, &outcome] { outcome.status = Issue(*a); });

@@ -164,7 +164,7 @@ core::Status Judge(const JudgeArguments& arguments, Outcome& outcome) {
   ProgressBar bar("replaying", 1.0);
   assessment::ReplaySettings settings;
   settings.threads = arguments.threads;
-  settings.progress = [&](double share) { bar.Show(share); };
+  settings.progress = [&](double share) { return bar.Show(share), true; };
   auto attempt = assessment::MakeAttempt(std::move(*recording), *course, *step, arguments.cache, settings);
   bar.Finish();
   if (!attempt.ok()) return attempt.error();

@@ -84,7 +84,7 @@ core::Result<std::vector<Attempt>> Replay(const std::vector<std::string>& files,
     if (!recording.ok()) return recording.error();
     assessment::ReplaySettings settings;
     settings.threads = threads;
-    settings.progress = [&](double share) { bar.Show(done + share); };
+    settings.progress = [&](double share) { return bar.Show(done + share), true; };
     auto attempt = assessment::MakeAttempt(std::move(*recording), settings);
     if (!attempt.ok()) return Error{attempt.error().code, file + ": " + attempt.error().message};
     attempts.push_back(std::move(*attempt));

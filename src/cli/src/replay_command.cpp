@@ -56,7 +56,7 @@ core::Status Verify(Replay& replay, const ReplayArguments& arguments, Outcome& o
   const Recording& recording = replay.GetRecording();
   ProgressBar progress("replaying", 1.0);
   const core::Stopwatch watch;
-  const auto verified = replay.Verify([&](double share) { progress.Show(share); });
+  const auto verified = replay.Verify([&](double share) { return progress.Show(share), true; });
   progress.Finish();
   if (!verified.ok()) return verified.error();
   const double tick = recording.description.tick_seconds;

@@ -196,7 +196,7 @@ void AddPercentile(CLI::App& parent, const Options& options, Outcome& outcome) {
 void Measure(record::Recording recording, store::Attempt& attempt) {
   assessment::ReplaySettings settings;
   ProgressBar progress("measuring", 1.0);
-  settings.progress = [&progress](double share) { progress.Show(share); };
+  settings.progress = [&progress](double share) { return progress.Show(share), true; };
   auto measured = assessment::MakeAttempt(std::move(recording), settings);
   if (!measured.ok()) {
     core::Log(core::LogLevel::kWarning, "kept without metrics: " + measured.error().Text());

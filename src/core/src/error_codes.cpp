@@ -123,6 +123,7 @@ constexpr ErrorEntry kTable[] = {
     {ErrorCode::kCertificateSigner, "E-EXM-006", "a certificate was signed with another key than expected"},
     {ErrorCode::kCertificateRecording, "E-EXM-007", "a recording is not the one that a certificate is of"},
     {ErrorCode::kCertificateOutcome, "E-EXM-008", "a recording does not come to what its certificate says"},
+    {ErrorCode::kKeyLocked, "E-EXM-009", "an encrypted private key was not opened"},
 };
 static_assert(std::size(kTable) == static_cast<std::size_t>(ErrorCode::kCount));
 

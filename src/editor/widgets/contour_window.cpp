@@ -192,22 +192,10 @@ void ContourWindow::UseEditor(ContourEditor* editor) {
 
 void ContourWindow::ChooseFile(FileQuestion what, std::function<void(std::filesystem::path)> act) {
   const ChooserText& text = kChoosers[static_cast<std::size_t>(what)];
-  const bool is_new = *text.name != '\0';
-  chooser_ = Gtk::FileChooserNative::create(
-      text.title, *this, is_new ? Gtk::FileChooser::Action::SAVE : Gtk::FileChooser::Action::OPEN,
-      text.accept, "Cancel");
-  if (is_new) {
-    chooser_->set_current_name(text.name);
-  } else {
-    const auto filter = Gtk::FileFilter::create();
-    filter->set_name("Contours (JSON)");
-    filter->add_pattern("*.json");
-    chooser_->add_filter(filter);
-  }
-  chooser_->signal_response().connect([this, act = std::move(act)](int response) {
-    if (response == static_cast<int>(Gtk::ResponseType::ACCEPT)) act(chooser_->get_file()->get_path());
-  });
-  chooser_->show();
+  gui::FileRequest request;
+  request.title = text.title, request.accept = text.accept, request.new_name = text.name;
+  if (request.new_name.empty()) request.kinds = {{"Contours (JSON)", "*.json"}};
+  file_dialog_.Ask(*this, request, std::move(act));
 }
 
 bool ContourWindow::AskSizes(const images::ImageSeriesOptions& series) {

@@ -153,13 +153,10 @@ void PatientEditorWindow::Ask(gui::Question question) {
 
 void PatientEditorWindow::ChooseFolder(const std::string& name,
                                        std::function<void(std::filesystem::path)> act) {
-  chooser_ = Gtk::FileChooserNative::create("Save the patient's folder", *this,
-                                            Gtk::FileChooser::Action::SAVE, "Save", "Cancel");
-  chooser_->set_current_name(name);
-  chooser_->signal_response().connect([this, act = std::move(act)](int response) {
-    if (response == static_cast<int>(Gtk::ResponseType::ACCEPT)) act(chooser_->get_file()->get_path());
-  });
-  chooser_->show();
+  gui::FileRequest request;
+  request.title = "Save the patient's folder";
+  request.new_name = name;
+  file_dialog_.Ask(*this, request, std::move(act));
 }
 
 void PatientEditorWindow::StartTimer(PatientTimer timer, unsigned milliseconds) {

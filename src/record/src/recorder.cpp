@@ -7,7 +7,7 @@
 #include <chrono>
 #include <cmath>
 #include <condition_variable>
-#include <ctime>
+#include <cstdio>
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -66,14 +66,14 @@ std::string CompilerText() {
 #endif
 }
 
-std::string WallClockText() {
-  const std::time_t now = std::time(nullptr);
-  std::tm local{};
-  ::localtime_r(&now, &local);
-  char text[40];
-  std::string time(text, std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%S%z", &local));
-  time.insert(time.size() - 2, ":");  // RFC 3339: "+01:00"
-  return time;
+std::string JumpText(double jump, double wall) {
+  char text[160];
+  std::snprintf(
+      text, sizeof text,
+      "clock jumped by %+.1f s, to %s: it was set, or the computer slept; times in this recording are "
+      "counted by ticks",
+      jump, FormatWallClock(wall).c_str());
+  return text;
 }
 
 std::uint64_t TicksIn(double seconds, double tick_seconds) {
@@ -85,8 +85,9 @@ std::uint64_t TicksIn(double seconds, double tick_seconds) {
 }  // namespace
 
 struct Recorder::Content {
-  Content(ChunkWriter opened, RecorderSettings wanted, const Simulation& simulation)
+  Content(ChunkWriter opened, RecorderSettings wanted, const Simulation& simulation, ClockReading start)
       : settings(std::move(wanted)),
+        clock_watch(start),
         writer(std::move(opened)),
         scene(simulation.GetScene()),
         tick_seconds(scene.tick_seconds),
@@ -98,7 +99,8 @@ struct Recorder::Content {
         ring(kRingSize) {}
 
   RecorderSettings settings;
-  ChunkWriter writer;  // of the writing thread, once that runs
+  ClockWatch clock_watch;  // of the writing thread
+  ChunkWriter writer;      // of the writing thread, once that runs
   const scene::Scene& scene;
   double tick_seconds;
   std::uint64_t first_tick;
@@ -143,6 +145,8 @@ struct Recorder::Content {
   void WriteKeyframe(const Entry& entry);
   void WriteState(const Entry& entry);
   void WriteEvents(const Entry& entry);
+  void AddMark(std::string text);
+  void SeeClock();
   bool WriteMarks();
   void SyncAndTell();
   void Stop();
@@ -222,6 +226,8 @@ void Recorder::Content::WriteState(const Entry& entry) {
     WriteKeyframe(entry);
   } else if (index) {
     index->Add(entry.tick, states[slot]);
+    // what the disk does not take would fill the memory
+    if (!index->IsOnDisk()) index.reset();
   }
   is_state_free[slot].store(true, std::memory_order_release);
 }
@@ -261,6 +267,18 @@ void Recorder::Content::WriteEntries() {
     tail.store(taken + 1, std::memory_order_release);
   }
   CloseChunk();
+}
+
+void Recorder::Content::AddMark(std::string text) {
+  const std::uint64_t put = head.load(std::memory_order_acquire);
+  const std::uint64_t tick = put > 0 ? ring[(put - 1) % kRingSize].tick : first_tick;
+  const std::lock_guard lock(mutex);
+  marks.push_back({tick, std::move(text)});
+}
+
+void Recorder::Content::SeeClock() {
+  const ClockReading now = settings.clocks();
+  if (const auto jump = clock_watch.See(now)) AddMark(JumpText(*jump, now.wall));
 }
 
 bool Recorder::Content::WriteMarks() {
@@ -315,6 +333,7 @@ void Recorder::Content::Run() {
     }
     const bool has_ticks = head.load() != tail.load();
     WriteEntries();
+    SeeClock();
     const bool has_marks = WriteMarks();
     if (has_ticks || has_marks || is_last) SyncAndTell();
     if (is_last) return;
@@ -339,10 +358,11 @@ core::Result<std::unique_ptr<Recorder>> Recorder::Start(const std::filesystem::p
   description.first_tick = simulation.GetSnapshot().tick;
   description.program = std::string(core::VersionText());
   description.compiler = CompilerText();
-  description.started = WallClockText();
+  const ClockReading start = settings.clocks();
+  description.started = FormatWallClock(start.wall);
   auto writer = ChunkWriter::Open(path, settings.open);
   if (!writer.ok()) return writer.error();
-  auto content = std::make_unique<Content>(std::move(*writer), std::move(settings), simulation);
+  auto content = std::make_unique<Content>(std::move(*writer), std::move(settings), simulation, start);
   const std::string text = WriteDescription(description);
   content->writer.Put(ChunkKind::kDescription, description.first_tick, BytesOf(text));
   // memory for all saved states, so that Add allocates as good as never
@@ -404,11 +424,7 @@ void Recorder::Add(const Input& input, const Simulation& simulation) noexcept {
 }
 
 void Recorder::Mark(std::string text) {
-  Content& c = *content_;
-  const std::uint64_t put = c.head.load(std::memory_order_acquire);
-  const std::uint64_t tick = put > 0 ? c.ring[(put - 1) % kRingSize].tick : c.first_tick;
-  const std::lock_guard lock(c.mutex);
-  c.marks.push_back({tick, std::move(text)});
+  content_->AddMark(std::move(text));
 }
 
 RecorderStatus Recorder::Status() const {

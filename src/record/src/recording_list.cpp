@@ -163,7 +163,9 @@ std::string DescribeOutcome(const std::string& outcome) {
     const auto phase = task->find("phase");
     std::string text = phase != task->end() && phase->is_string() ? phase->get<std::string>() : "";
     std::replace(text.begin(), text.end(), '_', ' ');
-    return text + ", " + NumberText(NumberOf(*task, "score"), "%.1f") + " points";
+    // only the task knows the unit of its score, and what was not completed has none
+    if (text == "completed") text += ", score " + NumberText(NumberOf(*task, "score"), "%.1f");
+    return text;
   }
   if (const auto operation = json.find("operation"); operation != json.end() && operation->is_object()) {
     std::string text = IsTrue(*operation, "completed") ? "completed" : "not completed";

@@ -16,6 +16,7 @@ using simulation::Simulation;
 /// Of the states that are kept of one recording.
 constexpr std::uint64_t kIndexBytesInMemory = std::uint64_t{512} << 20;
 constexpr std::uint64_t kIndexBytesOnDisk = std::uint64_t{2} << 30;
+constexpr std::uint64_t kProgressTicks = 30;  // between two calls
 
 core::Error Refuse(std::string why) {
   return {core::ErrorCode::kRecordingInvalid, std::move(why)};
@@ -188,31 +189,36 @@ core::Result<bool> Replay::FillGap(std::uint64_t tick, double seconds, const GoO
   return index_->Has(Tick());
 }
 
-core::Result<Verification> Replay::Verify(const std::function<void(double)>& progress) {
-  if (const auto restored = simulation_.Restore(*first_); !restored.ok()) return restored.error();
-  next_hash_ = 0;
-  divergence_.reset();
-  // to compare is not to look: nothing is kept
-  const std::uint64_t visit_ticks = std::exchange(visit_ticks_, 0);
+core::Status Replay::CompareAll(const std::function<bool(double)>& progress) {
   const auto count = static_cast<double>(std::max<std::size_t>(1, recording_->inputs.size()));
   std::size_t next_frame = 0;
   const auto& frames = recording_->KeyframeTicks();
   std::vector<std::byte> state;
   while (!IsAtEnd()) {
     Step();
-    if (progress && Tick() % 30 == 0) progress(static_cast<double>(Tick() - recording_->FirstTick()) / count);
+    if (progress && Tick() % kProgressTicks == 0 &&
+        !progress(static_cast<double>(Tick() - recording_->FirstTick()) / count))
+      return core::Error{core::ErrorCode::kCancelled, "the recording was not compared to its end"};
     while (next_frame < frames.size() && frames[next_frame] < Tick()) ++next_frame;
     if (next_frame == frames.size() || frames[next_frame] != Tick() || divergence_) continue;
     // a saved state that is not the one computed would be the wrong place to seek to
     const auto recorded = recording_->ReadKeyframe(next_frame);
-    if (!recorded.ok()) {
-      visit_ticks_ = visit_ticks;
-      return recorded.error();
-    }
+    if (!recorded.ok()) return recorded.error();
     simulation_.Save(state);
     if (state != *recorded) divergence_ = Divergence{Tick(), 0, simulation_.Hash()};
   }
+  return {};
+}
+
+core::Result<Verification> Replay::Verify(const std::function<bool(double)>& progress) {
+  if (const auto restored = simulation_.Restore(*first_); !restored.ok()) return restored.error();
+  next_hash_ = 0;
+  divergence_.reset();
+  // to compare is not to look: nothing is kept
+  const std::uint64_t visit_ticks = std::exchange(visit_ticks_, 0);
+  const core::Status compared = CompareAll(progress);
   visit_ticks_ = visit_ticks;
+  if (!compared.ok()) return compared.error();
   Verification verification;
   verification.ticks = recording_->inputs.size();
   verification.hashes = recording_->hashes.size();

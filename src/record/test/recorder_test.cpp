@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <chrono>
 #include <cstdlib>
 #include <thread>
@@ -107,6 +108,32 @@ TEST_F(RecorderTest, GoesOnFromTheMiddle) {
   EXPECT_EQ(*recording->ReadKeyframe(0), start);
   ASSERT_EQ(recording->marks.size(), 1u);
   EXPECT_EQ(recording->marks[0].tick, 100u);
+}
+
+// Fault R10: what was recorded is counted by ticks; that the clock jumped, when and by how much, stands in the recording.
+TEST_F(RecorderTest, MarksAClockThatJumps) {
+  std::atomic<double> moved{0};
+  RecorderSettings settings = Settings();
+  settings.clocks = [&moved, start = ReadClocks().steady] {
+    ClockReading now = ReadClocks();
+    now.wall = 1.8e9 + (now.steady - start) + moved.load();
+    return now;
+  };
+  auto simulation = Make();
+  auto recorder = Recorder::Start(File(), Describe(), simulation, settings);
+  ASSERT_TRUE(recorder.ok());
+  for (std::uint64_t tick = 0; tick < 60; ++tick) {
+    simulation.Step(InputOf(tick));
+    (*recorder)->Add(InputOf(tick), simulation);
+    if (tick == 29) moved.store(-3600);
+  }
+  ASSERT_TRUE((*recorder)->Finish(simulation).ok());
+  const auto recording = ReadRecording(File());
+  ASSERT_TRUE(recording.ok());
+  EXPECT_EQ(recording->inputs.size(), 60u) << "nothing is lost";
+  ASSERT_EQ(recording->marks.size(), 1u);
+  EXPECT_THAT(recording->marks[0].text, testing::HasSubstr("clock jumped by -3600.0 s"));
+  EXPECT_THAT(recording->description.started, testing::StartsWith("2027-01-1"));
 }
 
 TEST_F(RecorderTest, SaysFromWhichRecordingItBranched) {

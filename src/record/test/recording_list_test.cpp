@@ -76,8 +76,9 @@ TEST_F(RecordingListTest, RefusesWhatReadRecordingRefuses) {
 }
 
 TEST(DescribeOutcome, IsForAPerson) {
-  EXPECT_EQ(DescribeOutcome(R"({"seconds":3,"task":{"phase":"time_over","score":12.34}})"),
-            "time over, 12.3 points");
+  EXPECT_EQ(DescribeOutcome(R"({"seconds":3,"task":{"phase":"completed","score":87.34}})"),
+            "completed, score 87.3");
+  EXPECT_EQ(DescribeOutcome(R"({"seconds":3,"task":{"phase":"time_over","score":12.34}})"), "time over");
   EXPECT_EQ(DescribeOutcome(R"({"operation":{"completed":true,"critical_view":true,"blood_ml":40.2}})"),
             "completed, critical view, 40 mL of blood");
   EXPECT_EQ(DescribeOutcome(R"({"seconds":3})"), "");

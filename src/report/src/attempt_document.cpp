@@ -75,9 +75,9 @@ Tone CompareWithExperts(const MetricRow* row) {
 
 Tiles::Tile ScoreTile(const AttemptReport& report) {
   if (!report.is_completed) return {"Score", "No score", "the task was not completed", Tone::kCaution};
-  return {"Score", core::FormatNumber(*report.score, 3) + (report.facts.is_score_percent ? " %" : ""),
-          report.facts.is_score_percent
-              ? "an able surgeon gets " + core::FormatNumber(report.facts.best_score, 3) + " % at this level"
+  return {"Score", core::FormatNumber(*report.score, 3) + (report.facts.best_score ? " %" : ""),
+          report.facts.best_score
+              ? "an able surgeon gets " + core::FormatNumber(*report.facts.best_score, 3) + " % at this level"
               : "points of the task",
           Tone::kPlain};
 }

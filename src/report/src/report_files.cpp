@@ -168,7 +168,7 @@ std::string FormatJson(const AttemptReport& report) {
       {"sentence", report.outcome}, {"completed", report.is_completed}, {"time_s", report.seconds}};
   if (report.score && report.is_completed) {
     outcome["score"] = *report.score;
-    outcome["score_unit"] = facts.is_score_percent ? "percent" : "points";
+    outcome["score_unit"] = facts.best_score ? "percent" : "points";
   }
   if (report.critical_view_time) outcome["critical_view_s"] = *report.critical_view_time;
   if (report.blood_ml) outcome["blood_ml"] = *report.blood_ml;

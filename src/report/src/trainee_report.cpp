@@ -48,7 +48,7 @@ void AddCurves(const std::vector<AttemptReport>& reports, TraineeReport& trainee
     const auto& attempts = of_task[task];
     if (attempts.size() < kFewestOfACurve) continue;
     LearningCurve time{task, "Time", "s", {}, {}, {}},
-        score{task, "Score", attempts[0]->facts.is_score_percent ? "%" : "points", {}, {}, {}};
+        score{task, "Score", attempts[0]->facts.best_score ? "%" : "points", {}, {}, {}};
     for (const AttemptReport* attempt : attempts) {
       time.values.push_back(attempt->seconds);
       if (attempt->score) score.values.push_back(*attempt->score);

@@ -102,7 +102,7 @@ ordered_json MakeActivity(const AttemptFacts& facts) {
 
 ordered_json MakeScore(const AttemptReport& report) {
   ordered_json score = {{"raw", *report.score}};
-  if (report.facts.is_score_percent) {
+  if (report.facts.best_score) {
     // better than the reference is the best that a scaled score can say
     score["scaled"] = std::clamp(*report.score / kFullScore, 0.0, 1.0);
   }

@@ -76,7 +76,7 @@ inline AttemptFacts MakeFacts() {
   facts.player = "mouse and keyboard";
   facts.program = "0.1.0";
   facts.recording = "attempt.trocar";
-  facts.is_score_percent = true;
+  facts.best_score = 100;
   return facts;
 }
 

@@ -67,7 +67,7 @@ struct ReplayRunner::Content {
     slot.Back() = replay.GetSimulation().GetSnapshot();
     slot.Publish();
   }
-  bool IsWanted() const { return branch_wish.has_value() || goal.load() != tick.load(); }
+  bool IsWanted() const { return branch_wish.has_value() || goal.load() != tick.load() || !is_there.load(); }
   void Follow();
   void SeekTo(std::uint64_t wanted);
   void Branch(const BranchWish& wish);
@@ -85,7 +85,9 @@ void ReplayRunner::Content::SeekTo(std::uint64_t wanted) {
     return goal.load() == wanted && !is_stopping.load();
   });
   const std::uint64_t now = replay.Tick();
-  if (now == wanted || (now < wanted && wanted - now < near_ticks)) Publish();
+  // the goal may be another one by now, and just where it stands
+  const bool is_shown = now == goal.load() || (now < wanted && wanted - now < near_ticks);
+  if (is_shown) Publish();
   const std::lock_guard lock(mutex);
   divergence = replay.GetDivergence();
   if (!status.ok()) {
@@ -95,7 +97,7 @@ void ReplayRunner::Content::SeekTo(std::uint64_t wanted) {
     core::Log(core::LogLevel::kWarning, "the replay cannot go there: " + status.error().Text());
   }
   tick.store(now);
-  is_there.store(goal.load() == now);
+  is_there.store(is_shown && goal.load() == now);
 }
 
 void ReplayRunner::Content::Branch(const BranchWish& wish) {

@@ -38,7 +38,9 @@ struct SimulatorPage {
 
 /// Told of recordings that begin and that have ended, by the simulation's thread; either may be empty.
 struct AttemptHooks {
-  std::function<void(const std::filesystem::path&)> on_begin, on_end;
+  /// \param step  of a course, for which the attempt is made
+  std::function<void(const std::filesystem::path&, const centre::StepName& step)> on_begin;
+  std::function<void(const std::filesystem::path&)> on_end;
 };
 
 /// What the presenter needs of a window.
@@ -59,7 +61,9 @@ class SimulatorScreen {
   /// A window of its own plays a recording.
   virtual void OpenReplay(const std::filesystem::path& recording) = 0;
   /// An attempt that a person made is over, and is recorded: its page.
-  virtual void OpenAttempt(const std::filesystem::path& recording, bool is_exam) = 0;
+  /// \param exam  that was sat, or nothing
+  virtual void OpenAttempt(const std::filesystem::path& recording,
+                           const std::optional<centre::ExamSitting>& exam) = 0;
   virtual void ReleasePointer() = 0;
   virtual bool IsPointerTaken() const = 0;
   virtual void FocusPicture() = 0;
@@ -86,6 +90,9 @@ class SimulatorPresenter {
   /// Gives up the scene that is shown and goes on from a moment of a recording: paused, until the person's hands are ready;
   /// the expert begins at once. Nothing while a scene is being read.
   void TakeOver(Branch branch);
+  /// The window has closed: nothing runs any more, and the attempt's recording ends.
+  void Close();
+
   /// Pauses, and plays a recording in a window of its own.
   void OpenRecording(const std::filesystem::path& recording);
 
@@ -139,7 +146,7 @@ class SimulatorPresenter {
   void GoOn();
   void Finish();
   void EndAttempt();
-  bool IsExam() const { return start_ && start_->is_exam; }
+  bool IsExam() const { return start_ && start_->exam; }
   void Drop();
   void Refresh();
   void Announce(const std::string& text, bool is_warning = false);
@@ -163,7 +170,7 @@ class SimulatorPresenter {
   SimulatorScreen* screen_;
   SimulatorPage page_;
   UnattendedPlay unattended_;
-  bool is_fulcrum_mirrored_ = false, has_script_ = false;
+  bool is_fulcrum_mirrored_ = false, has_script_ = false, is_closed_ = false;
   std::unique_ptr<SessionControl> control_;  // null while loading
   StageMeter stages_;
   FrameMeter frames_;

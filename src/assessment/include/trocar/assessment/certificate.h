@@ -16,6 +16,7 @@
 
 #include "trocar/assessment/exam.h"
 #include "trocar/assessment/judge_recording.h"
+#include "trocar/assessment/signing_key.h"
 #include "trocar/core/result.h"
 #include "trocar/training/metric_value.h"
 
@@ -39,23 +40,12 @@ struct Certificate {
 /// The sentence that stands in every certificate.
 std::string_view CertificateStatement() noexcept;
 
-// --- keys
-
-/// Makes NAME.key, which only its owner may read, and NAME.pub.
-/// \return kFileUnwritable, also where one of them is there already
-core::Status MakeKeys(const std::filesystem::path& name);
-/// \return 64 hexadecimal digits; the file's error, or kKeyInvalid
-core::Result<std::string> ReadPublicKey(const std::filesystem::path& path);
-
-// --- certificates
-
 /// Computes the recording again, twice: for outcome and hashes, and for the metrics.
-/// \param key       private
 /// \param examinee  pseudonym, not empty
-/// \return the text of the certificate; kKeyInvalid, kKeyUnsafe; kCertificateRecording where the recording is not of this exam, not
+/// \return the text of the certificate; kKeyInvalid, kKeyUnsafe, kKeyLocked; kCertificateRecording where the recording is not of this exam, not
 /// finished or damaged; kCertificateOutcome where it does not replay
 core::Result<std::string> IssueCertificate(const ExamSettings& exam, const std::filesystem::path& recording,
-                                           const std::string& examinee, const std::filesystem::path& key,
+                                           const std::string& examinee, const SigningKey& key,
                                            const std::filesystem::path& cache = {},
                                            const ReplaySettings& settings = {});
 

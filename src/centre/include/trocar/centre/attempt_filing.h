@@ -42,11 +42,11 @@ class AttemptFiling {
   AttemptFiling(const AttemptFiling&) = delete;
   AttemptFiling& operator=(const AttemptFiling&) = delete;
 
-  /// Whose the attempts that begin from now on are, and for which step they are made.
+  /// Whose the attempts that begin from now on are.
   void SetPerson(const std::string& pseudonym);
-  void SetStep(const StepName& step);
   /// A recording begins, or has ended. \note Hands over and returns.
-  void Begin(const std::filesystem::path& recording);
+  /// \param step  for which it is made
+  void Begin(const std::filesystem::path& recording, const StepName& step = {});
   void End(const std::filesystem::path& recording);
 
   FilingStatus Status() const;

@@ -101,13 +101,13 @@ class CentrePresenter {
 
   // courses, groups, exams
   void ChooseCourse(const std::string& course);
-  void StartStep(const std::string& step);
+  void StartStep(const StepName& step);
   void ChooseGroup(const std::string& group);
   void OpenExamFile(const std::filesystem::path& file);
   void StartExam();
   /// The exam's recording has ended.
-  void EndExam(const std::filesystem::path& file, const std::filesystem::path& recording);
-  void IssueCertificate(const std::filesystem::path& key, const std::filesystem::path& file);
+  void EndExam(const ExamSitting& sitting, const std::filesystem::path& recording);
+  void IssueCertificate(const assessment::SigningKey& key, const std::filesystem::path& file);
 
   const CentrePage& Page() const { return page_; }
   bool IsBusy() const { return job_.IsRunning(); }
@@ -126,6 +126,7 @@ class CentrePresenter {
   void ReadReview();
   void ReadRole();
   void UseResult(const JudgedAttempt& judged);
+  void SetExaminee();
   void FollowFiling();
   void Fail(const core::Error& error);
   void Refresh(bool is_other);

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,15 +15,21 @@
 
 namespace trocar::centre {
 
+/// An exam and who sits it: the certificate is theirs, whoever works at the computer when it is issued.
+struct ExamSitting {
+  std::filesystem::path file;
+  std::string examinee;  ///< pseudonym
+};
+
 /// What the simulator is asked to open.
 struct Start {
   record::Description description;  ///< of the scene
   std::filesystem::path
       state;  ///< in the middle of an operation, as assessment::PrepareStep made it; empty: the first tick
-  std::string state_surgeon;  ///< who came so far
-  std::string title;          ///< for a person
-  StepName step;              ///< for which it is made
-  bool is_exam = false;       ///< without guidance, and once only
+  std::string state_surgeon;        ///< who came so far
+  std::string title;                ///< for a person
+  StepName step;                    ///< for which it is made
+  std::optional<ExamSitting> exam;  ///< without guidance, and once only; nothing: it is no exam
 };
 
 struct CoursePage {

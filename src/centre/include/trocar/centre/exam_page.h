@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "trocar/assessment/exam.h"
+#include "trocar/assessment/signing_key.h"
 #include "trocar/centre/access.h"
 #include "trocar/centre/course_page.h"
 
@@ -20,7 +21,8 @@ struct ExamPage {
   std::string name;
   std::vector<std::pair<std::string, std::string>> facts;
   std::vector<std::string> thresholds;  ///< in words
-  std::string examinee;                 ///< pseudonym
+  std::string examinee;                 ///< pseudonym of who sits it, or has sat it
+  std::string examinee_name;            ///< for a person; the pseudonym where no name is known
   std::filesystem::path recording;      ///< of the exam that was sat; empty before
   std::filesystem::path certificate;    ///< that was issued; empty before
   bool is_passed = false;
@@ -34,11 +36,11 @@ core::Result<ExamPage> OpenExam(const std::filesystem::path& file);
 core::Result<Start> PrepareExam(const ExamPage& page);
 
 /// Signs what the recording came to, writes it, checks it as anybody would, and keeps it in the store.
-/// \param key  private
-/// \return the page with its certificate; the certificate's error
-core::Result<ExamPage> IssueExamCertificate(const Access& access, ExamPage page,
-                                            const std::filesystem::path& key,
+/// \param key       with an empty passphrase that of the environment is taken
+/// \param progress  as in assessment::ReplaySettings
+/// \return the page with its certificate; the certificate's error; kFileUnwritable where `file` is there already
+core::Result<ExamPage> IssueExamCertificate(const Access& access, ExamPage page, assessment::SigningKey key,
                                             const std::filesystem::path& file,
-                                            const std::function<void(double)>& progress);
+                                            const std::function<bool(double)>& progress);
 
 }  // namespace trocar::centre

@@ -38,8 +38,9 @@ class CentreWindow : public Gtk::ApplicationWindow, private CentreScreen {
   CentrePresenter& Presenter() { return *presenter_; }
   /// The filing has news. From any thread.
   void Wake() { news_.emit(); }
-  /// What went wrong so that the program has to say so; nothing does.
+  /// What went wrong, if anything did: the program's exit status follows it.
   const std::optional<core::Error>& GetFailure() const { return failure_; }
+  void Fail(const core::Error& error) { failure_ = error; }
 
  private:
   void MakeContent();

@@ -128,6 +128,7 @@ enum class ErrorCode {
   kCertificateSigner,
   kCertificateRecording,
   kCertificateOutcome,
+  kKeyLocked,
   kCount
 };
 

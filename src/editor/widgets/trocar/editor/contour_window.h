@@ -15,6 +15,7 @@
 #include "trocar/editor/contour_slice_bar.h"
 #include "trocar/editor/series_bar.h"
 #include "trocar/gui/command_bar.h"
+#include "trocar/gui/file_dialog.h"
 #include "trocar/gui/help_card.h"
 #include "trocar/gui/message_bars.h"
 
@@ -69,7 +70,7 @@ class ContourWindow : public Gtk::ApplicationWindow, private ContourScreen {
   Gtk::Label hint_, place_, series_text_, state_;
   Gtk::ProgressBar busy_;
   Gtk::Button stop_build_{"Stop"};
-  Glib::RefPtr<Gtk::FileChooserNative> chooser_;
+  gui::FileDialog file_dialog_;
   std::array<sigc::connection, static_cast<std::size_t>(ContourTimer::kCount)> timers_;
   Glib::Dispatcher loaded_, built_, progressed_, surfaces_changed_;
   std::unique_ptr<ContourPresenter> presenter_;

@@ -12,6 +12,7 @@
 #include "trocar/editor/patient_editor_panel.h"
 #include "trocar/editor/patient_editor_presenter.h"
 #include "trocar/gui/command_bar.h"
+#include "trocar/gui/file_dialog.h"
 #include "trocar/gui/tips.h"
 
 namespace trocar::editor {
@@ -50,7 +51,7 @@ class PatientEditorWindow : public Gtk::ApplicationWindow, private PatientScreen
   MeshView view_;
   PatientEditorPanel panel_;
   Gtk::Label status_, hint_;
-  Glib::RefPtr<Gtk::FileChooserNative> chooser_;
+  gui::FileDialog file_dialog_;
   std::array<sigc::connection, static_cast<std::size_t>(PatientTimer::kCount)> timers_;
   Glib::Dispatcher loaded_, checked_;
   std::unique_ptr<PatientEditorPresenter> presenter_;

@@ -5,12 +5,14 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
 #include <string>
 
 #include "trocar/core/result.h"
+#include "trocar/record/clocks.h"
 #include "trocar/record/recording.h"
 #include "trocar/record/storage.h"
 #include "trocar/simulation/simulation.h"
@@ -27,6 +29,8 @@ struct RecorderSettings {
   /// Where no person's time counts: Add waits for a writer that falls behind. Else the recording would end there.
   bool waits = false;
   OpenStorage open = MakeFile;
+  /// Looked at by the writing thread: a wall clock that jumps is marked in the recording.
+  std::function<ClockReading()> clocks = ReadClocks;
 };
 
 struct RecorderStatus {

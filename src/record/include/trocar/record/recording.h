@@ -65,7 +65,7 @@ struct EventMark {
   bool is_error = false;
 };
 
-/// A remark that somebody made while it was recorded.
+/// A remark that somebody made while it was recorded, or the recorder's own of a wall clock that jumped.
 struct TextMark {
   std::uint64_t tick = 0;
   std::string text;

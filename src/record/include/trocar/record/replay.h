@@ -77,8 +77,9 @@ class Replay {
   const std::optional<Divergence>& GetDivergence() const { return divergence_; }
 
   /// From the first tick to the last, comparing hashes, keyframes and outcome. Uses no kept state.
-  /// \param progress  called with the share done, 0 to 1; may be empty
-  core::Result<Verification> Verify(const std::function<void(double)>& progress = {});
+  /// \param progress  told the share done, 0 to 1; false gives up; may be empty
+  /// \return kCancelled where progress gave up; a keyframe's error
+  core::Result<Verification> Verify(const std::function<bool(double)>& progress = {});
 
   /// Takes over here: one more simulation that stands where this one does, to be played on by somebody else.
   /// \param threads  of its solver
@@ -89,6 +90,7 @@ class Replay {
   Replay(std::shared_ptr<const Recording> recording, Model model, simulation::Simulation simulation,
          int threads, double visit_seconds);
   core::Status GoTo(std::uint64_t tick);
+  core::Status CompareAll(const std::function<bool(double)>& progress);
   void Keep();
   std::uint64_t TicksIn(double seconds) const;
 

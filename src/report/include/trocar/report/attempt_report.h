@@ -34,9 +34,9 @@ struct AttemptFacts {
   std::string player;     ///< "expert, seed 3", "mouse and keyboard"
   std::string program;    ///< version
   std::string recording;  ///< file name without its folder; may be empty
-  bool is_score_percent =
-      false;                ///< of an able surgeon's points, at most best_score; otherwise it is in points
-  double best_score = 100;  ///< scene::Task::best_score: what an able surgeon is shown at this level [%]
+  /// The score that an able surgeon gets at this level, and nobody more: scene::Task::best_score [%]. Nothing: the score is in
+  /// points without a limit.
+  std::optional<double> best_score;
 };
 /// Of a recording. \param task  its name for a person
 AttemptFacts DescribeAttempt(const record::Description& description, std::string task);
@@ -99,7 +99,7 @@ struct AttemptReport {
   std::string outcome;  ///< a sentence
   bool is_completed = false;
   bool is_operation = false;
-  std::optional<double> score;               ///< see AttemptFacts::is_score_percent
+  std::optional<double> score;               ///< see AttemptFacts::best_score
   double seconds = 0;                        ///< from the first tick to the last
   std::optional<double> task_seconds;        ///< of a task, from the first movement
   std::optional<double> critical_view_time;  ///< [s]

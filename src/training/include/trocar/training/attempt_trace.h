@@ -103,7 +103,7 @@ struct AttemptOutcome {
   std::string
       phase;  ///< of a task: scene::PhaseName; of an operation "completed" or "unfinished"; else empty
   bool is_completed = false;    ///< the task or the operation was brought to its end
-  std::optional<double> score;  ///< of the task: points, or per cent of the reference
+  std::optional<double> score;  ///< of the task, as a person is shown it: scene::CalcShownScore
   double task_time = 0;         ///< of a task, since the first movement [s]
 };
 
