@@ -17,15 +17,12 @@ namespace {
 using std::chrono::seconds;
 using trocar::test::Fail;
 using trocar::test::kLongest;
+using trocar::test::Place;
 using trocar::test::Screen;
 using trocar::test::WaitFor;
 using trocar::test::WindowPicture;
 
 constexpr int kKnob = 12;  // rows of the bar's knob [pixels]
-
-struct Place {
-  int x, y;
-};
 
 /// Middle of the bar's knob, among the lowest rows.
 std::optional<Place> FindKnob(const WindowPicture& picture) {
@@ -105,24 +102,14 @@ int Watch(const Screen& screen, Window window) {
   return 0;
 }
 
-int Check(Display* display, const char* folder) {
-  const Screen screen(display, folder);
+int Check(const Screen& screen) {
   if (!WaitFor(kLongest, [&] { return !screen.Find().empty(); })) return Fail("no window opens");
   const Window replay = screen.Find().back();
   screen.Focus(replay);
-  if (const int status = Watch(screen, replay); status != 0) {
-    screen.Save("failed.png");
-    return status;
-  }
+  if (const int status = Watch(screen, replay); status != 0) return status;
   screen.Press(XK_t);
-  std::optional<Window> taken;
-  const bool is_open = WaitFor(kLongest, [&] {
-    for (const Window window : screen.Find()) {
-      if (window != replay) taken = window;
-    }
-    return taken.has_value();
-  });
-  if (!is_open) return Fail("nobody takes over");
+  const auto taken = screen.WaitForOther({replay});
+  if (!taken) return Fail("nobody takes over");
   std::this_thread::sleep_for(seconds(3));
   screen.Focus(*taken);
   screen.Save("6_taken_over.png");
@@ -130,21 +117,15 @@ int Check(Display* display, const char* folder) {
   std::this_thread::sleep_for(seconds(4));
   screen.Save("7_operating.png");
   screen.Press(XK_q, XK_Control_L);
-  if (!WaitFor(kLongest, [&] { return screen.Find().size() == 1; })) return Fail("the window does not close");
+  if (!screen.WaitUntilClosed(*taken)) return Fail("the window does not close");
   screen.Focus(replay);
   screen.Press(XK_w, XK_Control_L);
-  if (!WaitFor(kLongest, [&] { return screen.Find().empty(); })) return Fail("the replay does not close");
+  if (!screen.WaitUntilClosed(replay)) return Fail("the replay does not close");
   return 0;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 2) return Fail("usage: replay_window_check FOLDER");
-  Display* display = XOpenDisplay(nullptr);
-  if (display == nullptr) return Fail("there is no display");
-  XSetErrorHandler(trocar::test::IgnoreError);
-  const int status = Check(display, argv[1]);
-  XCloseDisplay(display);
-  return status;
+  return trocar::test::RunCheck(argc, argv, Check);
 }

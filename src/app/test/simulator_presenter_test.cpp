@@ -8,8 +8,11 @@
 #include <mutex>
 #include <thread>
 
+#include "trocar/agent/surgeon.h"
+#include "trocar/assessment/play_state.h"
 #include "trocar/core/safe_file.h"
 #include "trocar/record/replay.h"
+#include "trocar/scene/scene.h"
 #include "trocar/scene/task.h"
 #include "trocar_test/temporary_folder.h"
 
@@ -241,6 +244,48 @@ TEST_F(Presenter, AnExamHasNoGuidanceAndNoSecondTry) {
   ASSERT_TRUE(screen_.exam.has_value());
   EXPECT_EQ(screen_.exam->examinee, "T-DDDDDD");
   EXPECT_EQ(screen_.exam->file, "finals.json");
+}
+
+class PresenterSlow : public Presenter {};
+
+// A step that begins in the middle of an operation: where the scripted expert has stood, with the tools that it has left.
+TEST_F(PresenterSlow, APreparedStepGoesOnWhereTheExpertStood) {
+  constexpr std::uint64_t kPrepared = 240;
+  const std::string who = "expert, seed 7";
+  auto operation = scene::FindOperation("cholecystectomy", {}, 7);
+  ASSERT_TRUE(operation.ok() && operation->has_value());
+  const auto shared = std::make_shared<const scene::Scene>(std::move(**operation));
+  auto simulation = simulation::Simulation::Make(shared, 1);
+  auto surgeon = agent::MakeSurgeon("expert", shared, 7);
+  ASSERT_TRUE(simulation.ok() && surgeon.ok());
+  for (std::uint64_t tick = 0; tick < kPrepared; ++tick)
+    simulation->Step((*surgeon)->Act(simulation->GetSnapshot()));
+  centre::Start start;
+  start.description.kind = record::Description::Kind::kOperation;
+  start.description.name = "cholecystectomy", start.description.seed = 7;
+  start.state = folder_.Path() / "step.state";
+  start.state_surgeon = who;
+  start.title = "Clip and cut";
+  ASSERT_TRUE(assessment::SavePlay(start.state, who, *simulation, **surgeon).ok());
+
+  BeginRecording();
+  presenter_->Open(start);
+  Load();
+  ASSERT_NE(screen_.control, nullptr) << screen_.page.event;
+  EXPECT_TRUE(screen_.control->IsPaused()) << "until the hands are ready";
+  EXPECT_EQ(screen_.control->Advance(0.01).tick, kPrepared);
+  EXPECT_EQ(screen_.control->GetInput().controls[scene::kRight].tool,
+            simulation->GetSnapshot().operation.tools[scene::kRight]);
+  presenter_->Do(Action::kTogglePause);
+  ASSERT_TRUE(RunTo(kPrepared + 130));
+  presenter_->Do(Action::kFinish);
+  ASSERT_EQ(screen_.attempts.size(), 1u);
+  auto recording = ReadWhole(screen_.attempts[0]);
+  EXPECT_EQ(recording.FirstTick(), kPrepared);
+  ExpectVerified(std::move(recording));
+  presenter_->Do(Action::kReset);  // it begins there again
+  Load();
+  EXPECT_EQ(screen_.control->Advance(0.01).tick, kPrepared);
 }
 
 TEST_F(Presenter, SaysThatAttemptsCannotBeKept) {

@@ -9,7 +9,7 @@ check=$1 output=$2
 shift 2
 "$@" >"$output" 2>&1 &
 window=$!
-"$check"
+"$check" "$(dirname "$output")"
 status=$?
 kill $window 2>/dev/null
 wait $window 2>/dev/null

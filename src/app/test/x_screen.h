@@ -2,11 +2,16 @@
 /// \file x_screen.h  A display as a person uses it: windows, real clicks and keys, pictures.
 #pragma once
 
+#include <X11/XKBlib.h>
 #include <X11/Xlib.h>
 #include <X11/Xutil.h>
 #include <X11/extensions/XTest.h>
+#include <X11/keysym.h>
 
+#include <algorithm>
 #include <chrono>
+#include <cstdlib>
+#include <optional>
 #include <string>
 #include <thread>
 #include <utility>
@@ -23,6 +28,39 @@ using std::chrono::seconds;
 inline constexpr unsigned kLeastWidth = 600;  // of a window: a tip or a list is smaller [pixels]
 inline constexpr seconds kLongest{90};        // for what a busy computer does
 
+/// A colour of assets/looks/window.css.
+struct Colour {
+  int red, green, blue;
+  bool Is(const unsigned char* pixel) const {
+    return std::abs(pixel[0] - red) < 3 && std::abs(pixel[1] - green) < 3 && std::abs(pixel[2] - blue) < 3;
+  }
+};
+inline constexpr Colour kCautionColour{0x33, 0x29, 0x0f}, kPassedColour{0x16, 0x30, 0x1f},
+    kButtonColour{0x1d, 0x7a, 0x8c}, kLookColour{0xff, 0xc2, 0x4d};
+
+inline int CountColour(const WindowPicture& picture, Colour colour) {
+  return picture.Count(0, 0, picture.width, picture.height,
+                       [colour](const unsigned char* pixel) { return colour.Is(pixel); });
+}
+
+struct Place {
+  int x = 0, y = 0;
+};
+
+/// In the first row that has a run of so many pixels of the colour: the middle of it, a little below. The header bar is left out.
+inline std::optional<Place> FindField(const WindowPicture& picture, Colour colour, int width) {
+  constexpr unsigned kHeader = 60;
+  for (unsigned y = kHeader; y < picture.height; ++y) {
+    int run = 0;
+    for (unsigned x = 0; x < picture.width; ++x) {
+      run = colour.Is(picture.At(x, y)) ? run + 1 : 0;
+      if (run >= width) return Place{static_cast<int>(x) - width / 2, static_cast<int>(y) + 8};
+    }
+  }
+  return std::nullopt;
+}
+
+/// A window may be gone between two questions.
 inline int IgnoreError(Display*, XErrorEvent*) {
   return 0;
 }
@@ -40,20 +78,56 @@ class Screen {
  public:
   Screen(Display* display, std::string folder) : display_(display), folder_(std::move(folder)) {}
 
-  /// Windows of the program, the topmost last.
-  std::vector<Window> Find() const {
+  struct Shown {
+    Window window;
+    int x, y;
+    unsigned width, height;
+  };
+  /// All that is seen, tips and lists among it, the topmost last.
+  std::vector<Shown> FindAll() const {
     Window root = DefaultRootWindow(display_), parent = 0, *children = nullptr;
     unsigned count = 0;
-    std::vector<Window> found;
+    std::vector<Shown> found;
     if (XQueryTree(display_, root, &root, &parent, &children, &count) == 0) return found;
     for (unsigned i = 0; i < count; ++i) {
-      XWindowAttributes attributes;
-      if (XGetWindowAttributes(display_, children[i], &attributes) != 0 &&
-          attributes.map_state == IsViewable && attributes.width >= static_cast<int>(kLeastWidth))
-        found.push_back(children[i]);
+      XWindowAttributes now;
+      if (XGetWindowAttributes(display_, children[i], &now) != 0 && now.map_state == IsViewable &&
+          now.width > 1 && now.height > 1)
+        found.push_back(
+            {children[i], now.x, now.y, static_cast<unsigned>(now.width), static_cast<unsigned>(now.height)});
     }
     if (children != nullptr) XFree(children);
     return found;
+  }
+  /// Windows of the program, the topmost last.
+  std::vector<Window> Find() const {
+    std::vector<Window> found;
+    for (const Shown& one : FindAll()) {
+      if (one.width >= kLeastWidth) found.push_back(one.window);
+    }
+    return found;
+  }
+  /// Waits for a window that is none of these. \return nothing where none opens
+  std::optional<Window> WaitForOther(const std::vector<Window>& known) const {
+    std::optional<Window> other;
+    WaitFor(kLongest, [&] {
+      for (const Window window : Find()) {
+        if (std::find(known.begin(), known.end(), window) == known.end()) other = window;
+      }
+      return other.has_value();
+    });
+    return other;
+  }
+  bool WaitUntilClosed(Window window, Clock::duration longest = kLongest) const {
+    return WaitFor(longest, [&] {
+      const auto now = Find();
+      return std::find(now.begin(), now.end(), window) == now.end();
+    });
+  }
+  const std::string& Folder() const { return folder_; }
+  void MovePointer(int x, int y) const {
+    XTestFakeMotionEvent(display_, -1, x, y, 0);
+    XSync(display_, False);
   }
   void Focus(Window window) const {
     XRaiseWindow(display_, window);
@@ -83,6 +157,21 @@ class Screen {
     if (held != 0) XTestFakeKeyEvent(display_, code(held), False, 20);
     XSync(display_, False);
     std::this_thread::sleep_for(milliseconds(150));
+  }
+  /// Types a line of ASCII text.
+  void Type(const std::string& text) const {
+    for (const char c : text) {
+      // the key symbols of these characters are their codes
+      const auto symbol = static_cast<KeySym>(static_cast<unsigned char>(c));
+      const KeyCode code = XKeysymToKeycode(display_, symbol);
+      const bool is_shifted = XkbKeycodeToKeysym(display_, code, 0, 0) != symbol;
+      if (is_shifted) XTestFakeKeyEvent(display_, XKeysymToKeycode(display_, XK_Shift_L), True, 10);
+      XTestFakeKeyEvent(display_, code, True, 10);
+      XTestFakeKeyEvent(display_, code, False, 10);
+      if (is_shifted) XTestFakeKeyEvent(display_, XKeysymToKeycode(display_, XK_Shift_L), False, 10);
+      XSync(display_, False);
+      std::this_thread::sleep_for(milliseconds(20));
+    }
   }
   WindowPicture Look() const {
     const int width = DisplayWidth(display_, 0), height = DisplayHeight(display_, 0);
@@ -114,5 +203,18 @@ class Screen {
   Display* display_;
   std::string folder_;
 };
+
+/// The program of a check: CHECK FOLDER. Where the check fails, the screen is saved.
+inline int RunCheck(int argc, char** argv, int (*check)(const Screen&)) {
+  if (argc != 2) return Fail("usage: CHECK FOLDER, where pictures are saved");
+  Display* display = XOpenDisplay(nullptr);
+  if (display == nullptr) return Fail("there is no display");
+  XSetErrorHandler(IgnoreError);
+  const Screen screen(display, argv[1]);
+  const int status = check(screen);
+  if (status != 0) screen.Save("failed.png");
+  XCloseDisplay(display);
+  return status;
+}
 
 }  // namespace trocar::test
