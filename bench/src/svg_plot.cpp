@@ -12,6 +12,7 @@
 #include "trocar/core/markup.h"
 #include "trocar/core/text_table.h"
 #include "trocar/report/axis.h"
+#include "trocar/report/drawing.h"
 
 namespace trocar::bench {
 namespace {
@@ -47,33 +48,20 @@ struct Extent {
   double Length() const { return high - low; }
 };
 
-std::string Pixels(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.1f", value);
-  return text;
-}
-
 std::string Text(double x, double y, std::string_view anchor, std::string_view style,
                  std::string_view content) {
-  return "<text x=\"" + Pixels(x) + "\" y=\"" + Pixels(y) + "\" text-anchor=\"" + std::string(anchor) +
-         "\" class=\"" + std::string(style) + "\">" + EscapeMarkup(content) + "</text>\n";
+  return "<text x=\"" + report::FormatPixels(x) + "\" y=\"" + report::FormatPixels(y) + "\" text-anchor=\"" +
+         std::string(anchor) + "\" class=\"" + std::string(style) + "\">" + EscapeMarkup(content) +
+         "</text>\n";
 }
 
 /// Commands of an SVG path through the points; a gap where a point is not finite.
 template <typename Map>
-std::string PathCommands(const std::vector<Vec2>& points, const Map& map) {
-  std::string commands;
-  bool is_down = false;
-  for (const Vec2& point : points) {
-    if (!std::isfinite(point.x) || !std::isfinite(point.y)) {
-      is_down = false;
-      continue;
-    }
-    const Vec2 pixel = map(point);
-    commands += (is_down ? "L" : "M") + Pixels(pixel.x) + " " + Pixels(pixel.y);
-    is_down = true;
+std::string PathCommands(std::vector<Vec2> points, const Map& map) {
+  for (Vec2& point : points) {
+    if (std::isfinite(point.x) && std::isfinite(point.y)) point = map(point);
   }
-  return commands;
+  return report::FormatPath(points);
 }
 
 }  // namespace
@@ -149,18 +137,18 @@ std::string FormatSvgPlot(const PlotSettings& settings, const std::vector<PlotLi
   // grid, marks and their numbers
   for (const auto& [mark, label] : FindMarks(x.low, x.high, 8, settings.is_log_x)) {
     const double at = map({mark, y.low}).x;
-    svg += "<path class=\"grid\" d=\"M" + Pixels(at) + " " + Pixels(kTop) + "V" + Pixels(kTop + height) +
-           "\"/>\n";
+    svg += "<path class=\"grid\" d=\"M" + report::FormatPixels(at) + " " + report::FormatPixels(kTop) + "V" +
+           report::FormatPixels(kTop + height) + "\"/>\n";
     svg += Text(at, kTop + height + 15, "middle", "mark", label);
   }
   for (const auto& [mark, label] : FindMarks(y.low, y.high, 5, settings.is_log_y)) {
     const double at = map({x.low, mark}).y;
-    svg += "<path class=\"grid\" d=\"M" + Pixels(kLeft) + " " + Pixels(at) + "H" + Pixels(kLeft + width) +
-           "\"/>\n";
+    svg += "<path class=\"grid\" d=\"M" + report::FormatPixels(kLeft) + " " + report::FormatPixels(at) + "H" +
+           report::FormatPixels(kLeft + width) + "\"/>\n";
     svg += Text(kLeft - 6, at + 4, "end", "mark", label);
   }
   svg += Text(kLeft + width / 2, settings.height - 8.0, "middle", "label", settings.x_label);
-  svg += "<text transform=\"translate(14 " + Pixels(kTop + height / 2) +
+  svg += "<text transform=\"translate(14 " + report::FormatPixels(kTop + height / 2) +
          ") rotate(-90)\" text-anchor=\"middle\" class=\"label\">" + EscapeMarkup(settings.y_label) +
          "</text>\n";
   // lines and legend
@@ -179,8 +167,8 @@ std::string FormatSvgPlot(const PlotSettings& settings, const std::vector<PlotLi
       at = 16;
     }
     svg += Text(legend, at, "start", "mark", lines[i].name);
-    svg += "<path class=\"line\" " + stroke + " d=\"M" + Pixels(legend - 28) + " " +
-           (has_column ? Pixels(at - 4) : "12") + "h24\"/>\n";
+    svg += "<path class=\"line\" " + stroke + " d=\"M" + report::FormatPixels(legend - 28) + " " +
+           (has_column ? report::FormatPixels(at - 4) : "12") + "h24\"/>\n";
     legend -= 40;
   }
   return svg + "</svg>\n";

@@ -3,9 +3,11 @@
 /// own.
 #include <gtkmm.h>
 
+#include <clocale>
 #include <cstdio>
 #include <cstdlib>
 #include <functional>
+#include <locale>
 #include <memory>
 #include <mutex>
 #include <thread>
@@ -51,7 +53,11 @@ class Program {
   }
 
   int Run() {
+    gtk_disable_setlocale();  // glibmm has done it, and what follows would be undone
     const auto application = Gtk::Application::create("", Gio::Application::Flags::NON_UNIQUE);
+    // in files, certificates and SQL numbers have a point, whatever the language of the desktop
+    std::locale::global(std::locale(std::locale(), std::locale::classic(), std::locale::numeric));
+    std::setlocale(LC_NUMERIC, "C");
     application_ = application.get();
     application->signal_activate().connect([&] {
       ApplyLook();

@@ -13,6 +13,7 @@
 
 #include "attempt_page.h"
 #include "command.h"
+#include "group_values.h"
 #include "trocar/assessment/learning.h"
 #include "trocar/core/safe_file.h"
 #include "trocar/report/report_files.h"
@@ -22,7 +23,8 @@ namespace {
 
 struct ReportArguments {
   std::vector<std::string> files;
-  std::string output, person;
+  std::string output, person, group;
+  StoreOptions store;
   int threads = 1;
   bool is_dictionary = false;
 };
@@ -60,6 +62,8 @@ core::Status Report(ReportArguments arguments) {
                            ? std::filesystem::path(arguments.files[0]).replace_extension(".html").string()
                            : "trainee.html";
   }
+  if (!arguments.group.empty() && arguments.files.size() > 1)
+    return core::Error{core::ErrorCode::kUsage, "--group compares one attempt: name one recording"};
   // a wrong ending is told before minutes of replaying
   if (const auto kind = FindReportKind(arguments.output); !kind.ok()) return kind.error();
   std::vector<report::AttemptReport> reports;
@@ -72,6 +76,14 @@ core::Status Report(ReportArguments arguments) {
                    [](const report::AttemptReport& a, const report::AttemptReport& b) {
                      return a.facts.started < b.facts.started;
                    });
+  if (!arguments.group.empty()) {
+    store::StoreSettings settings;
+    settings.only_look = true;
+    auto session = OpenSession(arguments.store, settings);
+    if (!session.ok()) return session.error();
+    if (auto compared = CompareWithGroup(reports[0], *session, arguments.group); !compared.ok())
+      return compared;
+  }
   core::Status written;
   if (reports.size() == 1) {
     written = WriteReport(reports[0], arguments.output);
@@ -103,6 +115,19 @@ void AddReportCommand(CLI::App& app, Outcome& outcome) {
       ->type_name("FILE");
   command->add_option("--person", arguments->person, "Pseudonym of whose attempt it is")
       ->type_name("PSEUDONYM");
+  command
+      ->add_option(
+          "--group", arguments->group,
+          "Compare with this group's people in the radar, where at least five have completed the task")
+      ->type_name("GROUP");
+  command
+      ->add_option("--store", arguments->store.url,
+                   "Where the group is: SQLite file or postgresql://... (else TROCAR_STORE, else your own)")
+      ->type_name("URL");
+  command
+      ->add_option("--as", arguments->store.viewer,
+                   "Ask the store as this person: see what their role allows")
+      ->type_name("PSEUDONYM");
   command->add_option("--threads", arguments->threads, "Of the solver; the report is the same for any number")
       ->check(CLI::Range(1, 256))
       ->type_name("T")
@@ -113,6 +138,7 @@ void AddReportCommand(CLI::App& app, Outcome& outcome) {
       "Several recordings give the trainee's report: attempts, curves, what to practise.\n"
       "Examples:\n"
       "  trocar report attempt.trocar -o attempt.pdf --person T-7F3K2Q\n"
+      "  trocar report attempt.trocar --group evening\n"
       "  trocar report monday.trocar tuesday.trocar --person T-7F3K2Q -o trainee.html");
   command->callback([arguments, &outcome] { outcome.status = Report(*arguments); });
 }

@@ -367,10 +367,13 @@ void AddKeeping(CLI::App& parent, const Options& options, Outcome& outcome) {
     if (options->is_json)
       PrintStoreJson({{"attempts", report->attempts},
                       {"recordings", report->recordings},
+                      {"left", report->left},
                       {"backup", report->backup.string()}});
     else
       std::printf("%lld attempts and %d recordings are removed; backup: %s\n",
                   static_cast<long long>(report->attempts), report->recordings, report->backup.c_str());
+    if (!options->is_json)
+      for (const std::string& left : report->left) std::printf("not removed here: %s\n", left.c_str());
     return {};
   });
 }

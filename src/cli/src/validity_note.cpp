@@ -11,28 +11,30 @@
 
 namespace trocar::cli {
 
-core::Result<training::Validity> ReadValidity(const std::string& path) {
+namespace {
+
+/// A file of assets/, or the one that was named in its place. \param parse  (text, source)
+template <typename Parse>
+auto ReadAsset(const std::string& path, const char* name, const Parse& parse) -> decltype(parse("", "")) {
   std::filesystem::path file = path;
   if (path.empty()) {
     const auto data = scene::FindDataFolder();
     if (!data.ok()) return data.error();
-    file = *data / "assets" / training::kValidityFile;
+    file = *data / "assets" / name;
   }
   const auto text = core::ReadFile(file);
   if (!text.ok()) return text.error();
-  return training::ParseValidity(*text, file.string());
+  return parse(*text, file.string());
+}
+
+}  // namespace
+
+core::Result<training::Validity> ReadValidity(const std::string& path) {
+  return ReadAsset(path, training::kValidityFile, training::ParseValidity);
 }
 
 core::Result<training::CoachRules> ReadCoachRules(const std::string& path) {
-  std::filesystem::path file = path;
-  if (path.empty()) {
-    const auto data = scene::FindDataFolder();
-    if (!data.ok()) return data.error();
-    file = *data / "assets" / training::kCoachRulesFile;
-  }
-  const auto text = core::ReadFile(file);
-  if (!text.ok()) return text.error();
-  return training::ParseCoachRules(*text, file.string());
+  return ReadAsset(path, training::kCoachRulesFile, training::ParseCoachRules);
 }
 
 std::string TaskKey(const std::string& description_name) {

@@ -97,6 +97,44 @@ TEST_F(ReportCommand, OfSeveralRecordingsIsTheTrainees) {
   EXPECT_EQ(RunTrocar({"report", File("a.trocar"), File("b.trocar"), "-o", File("t.csv")}).status, 2);
 }
 
+TEST_F(ReportCommand, ComparesWithAGroupOfFiveAndNotOfFour) {
+  const std::string store = File("s.sqlite");
+  const auto run = [&](std::vector<std::string> words) {
+    words.insert(words.end(), {"--store", store});
+    const Printed printed = RunTrocar(words);
+    EXPECT_EQ(printed.status, 0) << printed.err;
+    return printed.out.substr(0, printed.out.find('\n'));
+  };
+  run({"store", "group", "add", "evening <b>"});
+  std::vector<std::string> people;
+  for (int i = 0; i < 5; ++i) {
+    people.push_back(run({"store", "trainee", "add"}));
+    run({"store", "group", "join", "evening <b>", people.back()});
+    const std::string name = std::to_string(i) + ".trocar";
+    ASSERT_EQ(RunTrocar({"play", "intermediate", "--task", "instrument_navigation", "--seed",
+                         std::to_string(i + 1), "--record", File(name)})
+                  .status,
+              0);
+    run({"store", "add", File(name), "--trainee", people.back()});
+    run({"report", File("0.trocar"), "-o", File("a.html"), "--group", "evening <b>"});
+    const std::string page = Read("a.html");
+    EXPECT_EQ(page.find("Middle half of the group") != std::string::npos, i == 4) << i;
+    EXPECT_THAT(page, HasSubstr(i == 4 ? "Group &quot;evening &lt;b&gt;&quot;: 5 people"
+                                       : "only " + std::to_string(i + 1) + " of its people"));
+    for (const std::string& person : people) EXPECT_THAT(page, Not(HasSubstr(person)));
+  }
+  // who is not in the group learns nothing of it, and still has the report
+  const std::string stranger = run({"store", "trainee", "add"});
+  run({"report", File("0.trocar"), "-o", File("b.html"), "--group", "evening <b>", "--as", stranger});
+  EXPECT_THAT(Read("b.html"), HasSubstr("is left out: only members"));
+  EXPECT_THAT(
+      RunTrocar({"report", File("0.trocar"), "-o", File("c.html"), "--group", "none", "--store", store}).err,
+      HasSubstr("E-STO-008"));
+  EXPECT_EQ(
+      RunTrocar({"report", File("0.trocar"), File("1.trocar"), "-o", File("c.html"), "--group", "g"}).status,
+      2);
+}
+
 TEST_F(ReportCommand, RefusesAnEndingAndARecordingThatAreNone) {
   EXPECT_EQ(RunTrocar({"report"}).status, 2);
   EXPECT_EQ(RunTrocar({"report", File("none.trocar"), "-o", File("a.doc")}).status, 2);

@@ -284,13 +284,24 @@ Table MakeAttemptTable(const AttemptReport& report) {
   return table;
 }
 
+std::string DescribeGroup(const GroupFacts& group, bool has_radar) {
+  const std::string name = "Group \"" + group.name + "\"";
+  if (!group.why_not.empty()) return name + " is left out: " + group.why_not + ".";
+  if (!has_radar)
+    return name + " is left out: there is no expert set of this task, by whose spread it is drawn.";
+  return name + ": " + std::to_string(group.people) +
+         " people who have completed this task at this level, each by the latest attempt.";
+}
+
 Section MakeHands(const AttemptReport& report) {
   Section section{"How the hands worked", {}};
   Figures figures{{DrawPaths(report, PathView::kFromFront), DrawPaths(report, PathView::kFromHead)}};
-  if (auto radar = DrawRadar(report)) {
-    figures.drawings.push_back(std::move(*radar));
-  }
+  auto radar = DrawRadar(report);
+  const bool has_radar = radar.has_value();
+  if (has_radar) figures.drawings.push_back(std::move(*radar));
   section.blocks.emplace_back(std::move(figures));
+  if (report.group)
+    section.blocks.emplace_back(Paragraph{DescribeGroup(*report.group, has_radar), Tone::kMuted});
   section.blocks.emplace_back(MakeHandTable(report));
   section.blocks.emplace_back(MakeAttemptTable(report));
   const bool has_mark = std::any_of(report.metrics.begin(), report.metrics.end(),

@@ -33,6 +33,13 @@ double CalcDeviation(const MetricRow& row, double value) {
   return std::clamp(sign * (value - mean) / deviation, kWorst, kBest);
 }
 
+/// Between the two values about it, so that it is seldom one person's. \param ascending  not empty
+double CalcQuantile(const std::vector<double>& ascending, double share) {
+  const double place = share * static_cast<double>(ascending.size() - 1);
+  const auto below = static_cast<std::size_t>(place), above = std::min(below + 1, ascending.size() - 1);
+  return std::lerp(ascending[below], ascending[above], place - static_cast<double>(below));
+}
+
 std::vector<const MetricRow*> ChooseAxes(const AttemptReport& report) {
   std::vector<const MetricRow*> axes;
   for (const MetricRow& row : report.metrics) {
@@ -115,16 +122,14 @@ void AddDeviations(Drawing& drawing, const std::vector<const MetricRow*>& axes) 
     const MetricRow& row = *axes[i];
     const double y = frame.y.high - 0.5 - static_cast<double>(i);
     if (!row.group.empty()) {
-      const auto at = [&](double share) {
-        return CalcDeviation(
-            row,
-            row.group[static_cast<std::size_t>(share * static_cast<double>(row.group.size() - 1) + 0.5)]);
-      };
+      const auto at = [&](double share) { return CalcDeviation(row, CalcQuantile(row.group, share)); };
       const double low = std::min(at(0.25), at(0.75)), high = std::max(at(0.25), at(0.75));
       const Vec2 from = frame.Map({low, y + 0.18}), to = frame.Map({high, y - 0.18});
       drawing.shapes.emplace_back(
           Area{MakeRectangle(from.x, from.y, std::max(to.x - from.x, 1.0), to.y - from.y), Ink::kGroup, 0.35,
                "Middle half of the group"});
+      const double median = frame.Map({at(0.5), y}).x;
+      drawing.shapes.emplace_back(Line{{{median, from.y}, {median, to.y}}, Ink::kGroup, 2});
     }
     const Vec2 here = frame.Map({CalcDeviation(row, row.value), y});
     drawing.shapes.emplace_back(
@@ -135,18 +140,21 @@ void AddDeviations(Drawing& drawing, const std::vector<const MetricRow*>& axes) 
   }
 }
 
-/// The middle half of the group as a ring of two edges.
+bool HasGroup(const std::vector<const MetricRow*>& axes) {
+  return std::all_of(axes.begin(), axes.end(), [](const MetricRow* row) { return !row->group.empty(); });
+}
+
+/// The middle half of the group as a ring of two edges, and the median as a line.
 void AddGroup(Drawing& drawing, const RadarShape& radar, const std::vector<const MetricRow*>& axes) {
-  std::vector<Vec2> outer, inner;
+  std::vector<Vec2> outer, inner, median;
   for (std::size_t i = 0; i < axes.size(); ++i) {
-    const std::vector<double>& group = axes[i]->group;
-    if (group.empty()) return;
     const auto at = [&](double share) {
-      return group[static_cast<std::size_t>(share * static_cast<double>(group.size() - 1) + 0.5)];
+      return CalcDeviation(*axes[i], CalcQuantile(axes[i]->group, share));
     };
-    const double a = CalcDeviation(*axes[i], at(0.25)), b = CalcDeviation(*axes[i], at(0.75));
+    const double a = at(0.25), b = at(0.75);
     outer.push_back(radar.At(i, std::max(a, b)));
     inner.push_back(radar.At(i, std::min(a, b)));
+    median.push_back(radar.At(i, at(0.5)));
   }
   // outwards around, then back around the hole
   std::vector<Vec2> band = outer;
@@ -154,6 +162,8 @@ void AddGroup(Drawing& drawing, const RadarShape& radar, const std::vector<const
   band.push_back(inner.front());
   band.insert(band.end(), inner.rbegin(), inner.rend());
   drawing.shapes.emplace_back(Area{band, Ink::kGroup, 0.3, "Middle half of the group"});
+  median.push_back(median.front());
+  drawing.shapes.emplace_back(Line{median, Ink::kGroup, 1.6});
 }
 
 }  // namespace
@@ -204,7 +214,8 @@ std::optional<Drawing> DrawRadar(const AttemptReport& report) {
   const RadarShape radar{kRadarCentre, kRadarRadius, axes.size()};
   drawing.shapes.emplace_back(Area{radar.Ring(kBest), Ink::kPanel, 1, ""});
   for (const double ring : {-2.0, kBest}) drawing.shapes.emplace_back(Line{radar.Ring(ring), Ink::kGrid, 1});
-  AddGroup(drawing, radar, axes);
+  const bool has_group = HasGroup(axes);
+  if (has_group) AddGroup(drawing, radar, axes);
   drawing.shapes.emplace_back(Line{radar.Ring(0), Ink::kExpert, 1.6, Dash::kDashed});
   std::vector<Vec2> outline;
   std::string values;
@@ -224,7 +235,7 @@ std::optional<Drawing> DrawRadar(const AttemptReport& report) {
              axes[i]->name + ": " + FormatShown(axes[i]->value) + " " + axes[i]->unit});
   std::vector<LegendEntry> legend = {{"this attempt", Ink::kThis},
                                      {"experts' mean", Ink::kExpert, Dash::kDashed}};
-  if (!axes.front()->group.empty()) legend.push_back({"group, middle half", Ink::kGroup, Dash::kSolid, true});
+  if (has_group) legend.push_back({"group: middle half, median", Ink::kGroup, Dash::kSolid, true});
   AddDeviations(drawing, axes);
   AddLegend(drawing, 60, 384, legend);
   drawing.description =

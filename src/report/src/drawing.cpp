@@ -13,12 +13,6 @@ namespace {
 // of the letters of a sans-serif face, relative to their size
 constexpr double kLetter = 0.53;
 
-std::string Pixels(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.1f", value);
-  return text;
-}
-
 std::string DashAttribute(Dash dash) {
   switch (dash) {
     case Dash::kDashed:
@@ -31,20 +25,6 @@ std::string DashAttribute(Dash dash) {
   return "";
 }
 
-std::string PathCommands(const std::vector<Vec2>& points) {
-  std::string commands;
-  bool is_down = false;
-  for (const Vec2& point : points) {
-    if (!std::isfinite(point.x) || !std::isfinite(point.y)) {
-      is_down = false;
-      continue;
-    }
-    commands += (is_down ? "L" : "M") + Pixels(point.x) + " " + Pixels(point.y);
-    is_down = true;
-  }
-  return commands;
-}
-
 /// A shape's end: with its tip inside, or none.
 std::string Close(std::string_view element, const std::string& tip) {
   if (tip.empty()) return "/>\n";
@@ -52,33 +32,35 @@ std::string Close(std::string_view element, const std::string& tip) {
 }
 
 std::string Format(const Line& line) {
-  return "<path class=\"l-" + std::string(NameOf(line.ink)) + "\" stroke-width=\"" + Pixels(line.width) +
-         "\"" + DashAttribute(line.dash) + " d=\"" + PathCommands(line.points) + "\"/>\n";
+  return "<path class=\"l-" + std::string(NameOf(line.ink)) + "\" stroke-width=\"" +
+         FormatPixels(line.width) + "\"" + DashAttribute(line.dash) + " d=\"" + FormatPath(line.points) +
+         "\"/>\n";
 }
 
 std::string Format(const Area& area) {
   std::string svg = "<path class=\"a-" + std::string(NameOf(area.ink)) + "\"";
-  if (area.opacity < 1) svg += " fill-opacity=\"" + Pixels(area.opacity) + "\"";
-  return svg + " d=\"" + PathCommands(area.points) + "Z\"" + Close("path", area.tip);
+  if (area.opacity < 1) svg += " fill-opacity=\"" + FormatPixels(area.opacity) + "\"";
+  return svg + " d=\"" + FormatPath(area.points) + "Z\"" + Close("path", area.tip);
 }
 
 std::string Format(const Mark& mark) {
   const std::string style = " class=\"m-" + std::string(NameOf(mark.ink)) + "\"";
   if (mark.kind != MarkKind::kDot) {
-    return "<path" + style + " d=\"" + PathCommands(MakeMarkOutline(mark)) + "Z\"" + Close("path", mark.tip);
+    return "<path" + style + " d=\"" + FormatPath(MakeMarkOutline(mark)) + "Z\"" + Close("path", mark.tip);
   }
-  return "<circle" + style + " cx=\"" + Pixels(mark.at.x) + "\" cy=\"" + Pixels(mark.at.y) + "\" r=\"" +
-         Pixels(mark.radius) + "\"" + Close("circle", mark.tip);
+  return "<circle" + style + " cx=\"" + FormatPixels(mark.at.x) + "\" cy=\"" + FormatPixels(mark.at.y) +
+         "\" r=\"" + FormatPixels(mark.radius) + "\"" + Close("circle", mark.tip);
 }
 
 std::string Format(const Label& label) {
   constexpr const char* kAnchors[] = {"start", "middle", "end"};
-  std::string svg = "<text class=\"t-" + std::string(NameOf(label.ink)) + "\" x=\"" + Pixels(label.at.x) +
-                    "\" y=\"" + Pixels(label.at.y) + "\" font-size=\"" + Pixels(label.size) +
-                    "\" text-anchor=\"" + kAnchors[static_cast<int>(label.anchor)] + "\"";
+  std::string svg = "<text class=\"t-" + std::string(NameOf(label.ink)) + "\" x=\"" +
+                    FormatPixels(label.at.x) + "\" y=\"" + FormatPixels(label.at.y) + "\" font-size=\"" +
+                    FormatPixels(label.size) + "\" text-anchor=\"" +
+                    kAnchors[static_cast<int>(label.anchor)] + "\"";
   if (label.is_bold) svg += " font-weight=\"600\"";
   if (label.is_upward)
-    svg += " transform=\"rotate(-90 " + Pixels(label.at.x) + " " + Pixels(label.at.y) + ")\"";
+    svg += " transform=\"rotate(-90 " + FormatPixels(label.at.x) + " " + FormatPixels(label.at.y) + ")\"";
   return svg + ">" + EscapeShown(label.text) + "</text>\n";
 }
 
@@ -132,10 +114,30 @@ std::string CutToWidth(std::string_view text, double size, double width) {
   return cut + "…";
 }
 
+std::string FormatPixels(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.1f", value);
+  return text;
+}
+
+std::string FormatPath(const std::vector<Vec2>& points) {
+  std::string commands;
+  bool is_down = false;
+  for (const Vec2& point : points) {
+    if (!std::isfinite(point.x) || !std::isfinite(point.y)) {
+      is_down = false;
+      continue;
+    }
+    commands += (is_down ? "L" : "M") + FormatPixels(point.x) + " " + FormatPixels(point.y);
+    is_down = true;
+  }
+  return commands;
+}
+
 std::string FormatSvg(const Drawing& drawing, std::string_view id) {
   const std::string name(id);
-  std::string svg = "<svg role=\"img\" viewBox=\"0 0 " + Pixels(drawing.width) + " " +
-                    Pixels(drawing.height) + "\" aria-labelledby=\"" + name + "-t " + name +
+  std::string svg = "<svg role=\"img\" viewBox=\"0 0 " + FormatPixels(drawing.width) + " " +
+                    FormatPixels(drawing.height) + "\" aria-labelledby=\"" + name + "-t " + name +
                     "-d\">\n<title id=\"" + name + "-t\">" + EscapeShown(drawing.title) +
                     "</title>\n<desc id=\"" + name + "-d\">" + EscapeShown(drawing.description) + "</desc>\n";
   for (const Shape& shape : drawing.shapes)

@@ -5,6 +5,7 @@
 
 #include "palette.h"
 #include "pdf_canvas.h"
+#include "trocar/core/printable.h"
 #include "trocar/report/document.h"
 
 namespace trocar::report {
@@ -157,11 +158,18 @@ class PageFlow {
     return style;
   }
 
+  /// A row is not parted: of a text that would be longer than a page the middle is left out.
+  static std::string CellText(const Cell& cell, double width) {
+    constexpr double kLine = 1.6 * kCellSize;  // with room for letters that are higher
+    const double letters = std::floor(width / kCellSize) * std::floor((kBottom - kTop) / kLine);
+    return core::Printable(cell.text, static_cast<std::size_t>(std::max(letters, 16.0)));
+  }
+
   double MeasureRow(const Table& table, const std::vector<Cell>& row, const std::vector<double>& widths) {
     double height = 0;
     for (std::size_t i = 0; i < row.size(); ++i)
-      height =
-          std::max(height, canvas_.MeasureText(row[i].text, widths[i], CellStyle(table, i, row[i].tone)));
+      height = std::max(height, canvas_.MeasureText(CellText(row[i], widths[i]), widths[i],
+                                                    CellStyle(table, i, row[i].tone)));
     return height;
   }
 
@@ -178,7 +186,8 @@ class PageFlow {
                 double height) {
     double left = kMargin;
     for (std::size_t i = 0; i < row.size(); ++i) {
-      canvas_.AddText(row[i].text, left, y_ + kCellRoom, widths[i], CellStyle(table, i, row[i].tone));
+      canvas_.AddText(CellText(row[i], widths[i]), left, y_ + kCellRoom, widths[i],
+                      CellStyle(table, i, row[i].tone));
       left += widths[i] + kCellGap;
     }
     y_ += height + 2 * kCellRoom;

@@ -197,7 +197,7 @@ std::optional<XapiStatement> ReadStatement(const fs::path& path) {
   auto text = core::ReadFile(path, kMostBytes);
   if (!text.ok()) return std::nullopt;
   const auto json = nlohmann::json::parse(*text, nullptr, false);
-  if (!json.is_object() || json.value("id", "") != path.stem().string()) return std::nullopt;
+  if (!json.is_object() || !json.contains("id") || json["id"] != path.stem().string()) return std::nullopt;
   return XapiStatement{path.stem().string(), std::move(*text)};
 }
 
@@ -290,9 +290,9 @@ core::Result<std::size_t> XapiQueue::Erase(const std::string& pseudonym) {
       const auto text = core::ReadFile(path, kMostBytes);
       if (!text.ok()) return text.error();
       const auto json = nlohmann::json::parse(*text, nullptr, false);
-      const auto name = json.is_discarded() ? nlohmann::json()
-                                            : json.value(nlohmann::json::json_pointer("/actor/account/name"),
-                                                         nlohmann::json());
+      const auto name = !json.is_object() ? nlohmann::json()
+                                          : json.value(nlohmann::json::json_pointer("/actor/account/name"),
+                                                       nlohmann::json());
       if (name != pseudonym) continue;
       fs::remove(path, failure);
       if (failure) return Unwritable(path);

@@ -113,6 +113,57 @@ TEST(Radar, IsAbsentWithoutAnExpertSet) {
   EXPECT_FALSE(DrawRadar(report).has_value());
 }
 
+/// Of the group, on every axis, 1 to 3 deviations of the experts' mean beyond it.
+AttemptReport MakeReportWithGroup() {
+  AttemptReport report = test::MakeTaskReport();
+  for (MetricRow& row : report.metrics) {
+    if (!row.expert_mean) continue;
+    row.expert_deviation = std::fabs(*row.expert_mean);
+    const double worse = row.better == training::BetterWhen::kLower ? 1 : -1;
+    for (const double many : {1.0, 1.0, 2.0, 3.0, 3.0})
+      row.group.push_back(*row.expert_mean + worse * many * *row.expert_deviation);
+    std::sort(row.group.begin(), row.group.end());
+  }
+  return report;
+}
+
+TEST(Radar, DrawsTheGroupsMedianAndItsMiddleHalf) {
+  const auto drawing = DrawRadar(MakeReportWithGroup());
+  ASSERT_TRUE(drawing.has_value());
+  ExpectInside(*drawing);
+  const auto radius = [](Vec2 point) { return std::hypot(point.x - 232, point.y - 192); };
+  int medians = 0, bands = 0;
+  for (const Shape& shape : drawing->shapes) {
+    const Line* line = std::get_if<Line>(&shape);
+    if (line != nullptr && line->ink == Ink::kGroup && line->points.size() > 2) {
+      ++medians;
+      for (const Vec2 point : line->points) EXPECT_NEAR(radius(point), 112 * 2.0 / 6, 1e-6);
+    }
+    const Area* area = std::get_if<Area>(&shape);
+    if (area == nullptr || area->ink != Ink::kGroup || area->points.front().x > 480) continue;
+    ++bands;
+    EXPECT_NEAR(radius(area->points.front()), 112 * 3.0 / 6, 1e-6);
+    EXPECT_NEAR(radius(area->points.back()), 112 * 1.0 / 6, 1e-6);
+  }
+  EXPECT_EQ(medians, 1);
+  EXPECT_EQ(bands, 1);
+}
+
+TEST(Radar, LeavesOutAGroupThatLacksAnAxis) {
+  AttemptReport report = MakeReportWithGroup();
+  for (MetricRow& row : report.metrics) {
+    if (row.group.empty()) continue;
+    row.group.clear();
+    break;
+  }
+  const auto drawing = DrawRadar(report);
+  ASSERT_TRUE(drawing.has_value());
+  for (const Shape& shape : drawing->shapes) {
+    const Label* label = std::get_if<Label>(&shape);
+    EXPECT_TRUE(label == nullptr || label->text.find("group") == std::string::npos) << label->text;
+  }
+}
+
 TEST(Radar, LeavesOutWhatDoesNotSeparateLevels) {
   const auto drawing = DrawRadar(test::MakeTaskReport());
   ASSERT_TRUE(drawing.has_value());

@@ -77,6 +77,7 @@ AttemptReport Fill(AttemptReport report, const std::string& text) {
   for (Advice& advice : report.advice)
     advice.sentence = advice.why = advice.exercise = advice.practise = text;
   for (MetricRow& row : report.metrics) row.name = row.about = row.unit = text;
+  report.group = GroupFacts{text, 7, report.is_operation ? text : ""};
   report.doublet = DoubletView{"p", "q", 1, text};
   report.pictures = {{"p", text}};
   report.origin = {{text, text}};

@@ -31,7 +31,8 @@ std::string ReadText(const std::string& pdf) {
 TEST(Pdf, SaysTheSameAsThePage) {
   const AttemptReport report = test::MakeOperationReport();
   const std::string pdf = FormatPdf(MakeDocument(report));
-  const std::string text = ReadText(pdf);
+  // where lines are broken depends on the letters that are installed
+  const std::string text = std::regex_replace(ReadText(pdf), std::regex("\\s+"), " ");
   if (text.empty()) GTEST_SKIP() << "pdftotext is not installed: tools/install-packages --test";
   for (const char* words :
        {"Cholecystectomy", "T-7F3K2Q", "24 November 2026, 22:50", "The operation was completed in 4 min.",

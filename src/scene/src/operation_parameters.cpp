@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trocar/scene/operation_parameters.h"
 
+#include <initializer_list>
+#include <string_view>
+
 #include "trocar/core/json.h"
 
 namespace trocar::scene {
@@ -48,6 +51,15 @@ std::size_t Index(Fluid fluid) {
   return static_cast<std::size_t>(fluid);
 }
 
+/// A group of figures, which says where they come from.
+JsonView OpenGroup(const JsonView& root, std::string_view name,
+                   std::initializer_list<std::string_view> keys) {
+  const JsonView group = root.Object(name);
+  group.AllowOnly(keys);
+  (void)group.Text("source");
+  return group;
+}
+
 void ReadFluid(const JsonView& view, surgery::FluidProperties& fluid) {
   view.AllowOnly({"viscosity_pa_s", "density_kg_m3"});
   fluid.viscosity = view.Number("viscosity_pa_s", kViscosity);
@@ -61,17 +73,14 @@ void ReadJunction(const JsonView& view, surgery::FlowJunction& junction) {
 }
 
 void ReadFluids(const JsonView& root, OperationParameters& made) {
-  const JsonView group = root.Object("fluids");
-  group.AllowOnly({"bile", "blood", "source"});
-  (void)group.Text("source");
+  const JsonView group = OpenGroup(root, "fluids", {"bile", "blood", "source"});
   ReadFluid(group.Object("bile"), made.fluids[Index(Fluid::kBile)]);
   ReadFluid(group.Object("blood"), made.fluids[Index(Fluid::kBlood)]);
 }
 
 void ReadSupplies(const JsonView& root, OperationParameters& made) {
-  const JsonView group = root.Object("supplies");
-  group.AllowOnly({"aorta", "artery_bed", "liver", "bowel", "gallbladder", "lumen_share", "source"});
-  (void)group.Text("source");
+  const JsonView group = OpenGroup(
+      root, "supplies", {"aorta", "artery_bed", "liver", "bowel", "gallbladder", "lumen_share", "source"});
   ReadJunction(group.Object("aorta"), made.supplies.aorta);
   ReadJunction(group.Object("artery_bed"), made.supplies.artery_bed);
   ReadJunction(group.Object("liver"), made.supplies.liver);
@@ -81,19 +90,17 @@ void ReadSupplies(const JsonView& root, OperationParameters& made) {
 }
 
 void ReadVessels(const JsonView& root, OperationParameters& made) {
-  const JsonView group = root.Object("vessels");
-  group.AllowOnly({"most_sealed_radius_m", "least_filling", "source"});
-  (void)group.Text("source");
+  const JsonView group = OpenGroup(root, "vessels", {"most_sealed_radius_m", "least_filling", "source"});
   made.vessels.most_sealed_radius = group.Number("most_sealed_radius_m", kRadius);
   made.vessels.least_filling = group.Number("least_filling", kShare);
 }
 
 void ReadClips(const JsonView& root, OperationParameters& made) {
-  const JsonView group = root.Object("clips");
-  group.AllowOnly({"pressure_pa", "pull_n", "crossed_share", "thick_radius_m", "partial_power",
-                   "slip_speed_m_s", "fastest_slip_m_s", "width_m", "height_m", "gap_m", "catch_beside_m",
-                   "drawn_away_m", "pulled_before_m", "source"});
-  (void)group.Text("source");
+  const JsonView group =
+      OpenGroup(root, "clips",
+                {"pressure_pa", "pull_n", "crossed_share", "thick_radius_m", "partial_power",
+                 "slip_speed_m_s", "fastest_slip_m_s", "width_m", "height_m", "gap_m", "catch_beside_m",
+                 "drawn_away_m", "pulled_before_m", "source"});
   made.vessels.clips.pressure = group.Number("pressure_pa", kClipPressure);
   made.vessels.clips.pull = group.Number("pull_n", kClipPull);
   made.vessels.clips.crossed_share = group.Number("crossed_share", kShare);
@@ -111,10 +118,10 @@ void ReadClips(const JsonView& root, OperationParameters& made) {
 }
 
 void ReadStones(const JsonView& root, OperationParameters& made) {
-  const JsonView group = root.Object("stones");
-  group.AllowOnly({"out_speed_m_s", "out_gap_m", "suction_reach_m", "closed_share", "open_share",
-                   "let_go_rad", "near_hinge_share", "jaw_reach_share", "source"});
-  (void)group.Text("source");
+  const JsonView group =
+      OpenGroup(root, "stones",
+                {"out_speed_m_s", "out_gap_m", "suction_reach_m", "closed_share", "open_share", "let_go_rad",
+                 "near_hinge_share", "jaw_reach_share", "source"});
   made.stones.out_speed = group.Number("out_speed_m_s", kSpeed);
   made.stones.out_gap = group.Number("out_gap_m", kLength);
   made.stones.suction_reach = group.Number("suction_reach_m", kLength);
@@ -126,9 +133,8 @@ void ReadStones(const JsonView& root, OperationParameters& made) {
 }
 
 void ReadJudgement(const JsonView& root, OperationParameters& made) {
-  const JsonView group = root.Object("judgement");
-  group.AllowOnly({"much_blood_m3", "near_duct_m", "idle_s", "tip_in_m", "blind_s", "source"});
-  (void)group.Text("source");
+  const JsonView group = OpenGroup(
+      root, "judgement", {"much_blood_m3", "near_duct_m", "idle_s", "tip_in_m", "blind_s", "source"});
   made.judgement.much_blood = group.Number("much_blood_m3", kVolume);
   made.judgement.near_duct = group.Number("near_duct_m", kLength);
   made.judgement.idle_seconds = group.Number("idle_s", kAllowedSeconds);
@@ -137,20 +143,18 @@ void ReadJudgement(const JsonView& root, OperationParameters& made) {
 }
 
 void ReadBed(const JsonView& root, OperationParameters& made) {
-  const JsonView group = root.Object("bed");
-  group.AllowOnly({"volume_m3", "clot_s", "source"});
-  (void)group.Text("source");
+  const JsonView group = OpenGroup(root, "bed", {"volume_m3", "clot_s", "source"});
   made.bed.bed_volume = group.Number("volume_m3", kVolume);
   made.bed.clot_seconds = group.Number("clot_s", kSeconds);
 }
 
 void ReadHeat(const JsonView& root, OperationParameters& made) {
-  const JsonView group = root.Object("heat");
-  group.AllowOnly({"specific_heat_j_kg_k", "conductivity_w_m_k", "water_share", "latent_heat_j_kg",
-                   "perfusion_per_s", "damage_rate_per_s", "damage_energy_j_mol", "char_temperature_c",
-                   "most_temperature_c", "layer_depth_m", "fibre_width_m", "fibre_density_kg_m3",
-                   "least_strand_mass_kg", "least_node_mass_kg", "quarter_power_m", "source"});
-  (void)group.Text("source");
+  const JsonView group =
+      OpenGroup(root, "heat",
+                {"specific_heat_j_kg_k", "conductivity_w_m_k", "water_share", "latent_heat_j_kg",
+                 "perfusion_per_s", "damage_rate_per_s", "damage_energy_j_mol", "char_temperature_c",
+                 "most_temperature_c", "layer_depth_m", "fibre_width_m", "fibre_density_kg_m3",
+                 "least_strand_mass_kg", "least_node_mass_kg", "quarter_power_m", "source"});
   made.heat.tissue.specific_heat = group.Number("specific_heat_j_kg_k", kSpecificHeat);
   made.heat.tissue.conductivity = group.Number("conductivity_w_m_k", kConductivity);
   made.heat.tissue.water_share = group.Number("water_share", kLeastShare);
@@ -169,10 +173,10 @@ void ReadHeat(const JsonView& root, OperationParameters& made) {
 }
 
 void ReadElectrode(const JsonView& root, OperationParameters& made) {
-  const JsonView group = root.Object("electrode");
-  group.AllowOnly({"cut_power_w", "cut_reach_m", "coagulate_power_w", "coagulate_reach_m", "seal_reach_m",
-                   "seal_heat_j", "burnt_hole_m2", "burnt_rim_m", "smoke_by_heat_per_j", "source"});
-  (void)group.Text("source");
+  const JsonView group =
+      OpenGroup(root, "electrode",
+                {"cut_power_w", "cut_reach_m", "coagulate_power_w", "coagulate_reach_m", "seal_reach_m",
+                 "seal_heat_j", "burnt_hole_m2", "burnt_rim_m", "smoke_by_heat_per_j", "source"});
   made.electrode.cut.power = group.Number("cut_power_w", kWatts);
   made.electrode.cut.reach = group.Number("cut_reach_m", kLength);
   made.electrode.coagulate.power = group.Number("coagulate_power_w", kWatts);
@@ -185,10 +189,9 @@ void ReadElectrode(const JsonView& root, OperationParameters& made) {
 }
 
 void ReadSuction(const JsonView& root, OperationParameters& made) {
-  const JsonView group = root.Object("suction");
-  group.AllowOnly({"rinse_rate_m3_s", "aspirate_rate_m3_s", "pool_reach_m", "smoke_rate_per_s",
-                   "smoke_fade_per_s", "source"});
-  (void)group.Text("source");
+  const JsonView group = OpenGroup(root, "suction",
+                                   {"rinse_rate_m3_s", "aspirate_rate_m3_s", "pool_reach_m",
+                                    "smoke_rate_per_s", "smoke_fade_per_s", "source"});
   made.suction.rinse_rate = group.Number("rinse_rate_m3_s", kFlowRate);
   made.suction.aspirate_rate = group.Number("aspirate_rate_m3_s", kFlowRate);
   made.suction.pool_reach = group.Number("pool_reach_m", kLength);

@@ -26,13 +26,16 @@ std::string Place::Text() const {
   const std::size_t begin = text.find("://") + 3;
   // of "user:password@host" and "?password=..."
   const std::size_t end = text.find_first_of("/?", begin);
-  const std::size_t at = text.rfind('@', end);
+  std::size_t at = text.rfind('@', end);
+  // a password with a "/" of its own is no address, and is not shown for all that
+  if (at == std::string::npos || at < begin) at = text.rfind('@', text.find('?', begin));
   const std::size_t colon = text.find(':', begin);
   if (at != std::string::npos && at > begin && colon != std::string::npos && colon < at)
     text.erase(colon, at - colon);
-  if (const std::size_t field = text.find("password="); field != std::string::npos)
-    text.erase(field, text.find('&', field) == std::string::npos ? std::string::npos
-                                                                 : text.find('&', field) + 1 - field);
+  for (std::size_t field = 0; (field = text.find("password=")) != std::string::npos;) {
+    const std::size_t next = text.find('&', field);
+    text.erase(field, next == std::string::npos ? next : next + 1 - field);
+  }
   return text;
 }
 

@@ -5,7 +5,6 @@
 #include <charconv>
 #include <chrono>
 #include <condition_variable>
-#include <cstdio>
 #include <exception>
 #include <mutex>
 #include <pqxx/pqxx>
@@ -116,10 +115,10 @@ core::Error MakeError(const std::string& state) {
   return Away("error " + state);
 }
 
+/// The shortest that is the same number; not by the user's language, as printf.
 std::string NumberText(double value) {
   char text[40];
-  std::snprintf(text, sizeof text, "%.17g", value);
-  return text;
+  return {text, std::to_chars(text, text + sizeof text, value).ptr};
 }
 
 class PostgresDatabase final : public Database {

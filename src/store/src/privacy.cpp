@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // All that is known of a person, or nothing of them any more.
 #include <algorithm>
+#include <cctype>
 #include <cstdint>
 #include <cstring>
 #include <fstream>
@@ -57,6 +58,15 @@ std::string EraseRecording(const RecordingFile& recording) {
     if (const auto gone = EraseFile(path); !gone.ok()) return gone.error().message;
   }
   return "";
+}
+
+/// \param why_not  of EraseRecording
+template <typename Report>
+void NoteErasure(std::string why_not, Report& report) {
+  if (why_not.empty())
+    ++report.recordings;
+  else
+    report.left.push_back(std::move(why_not));
 }
 
 core::Result<std::vector<RecordingFile>> ListRecordings(Database& database, const std::string& where,
@@ -154,14 +164,38 @@ core::Result<std::vector<std::string>> ListForeignBackups(Database& database) {
   return paths;
 }
 
+/// Whether a text names a pseudonym: "T-1" is not in "T-10" or "XT-1".
+bool Mentions(std::string_view text, std::string_view pseudonym) {
+  const auto is_letter = [&](std::size_t at) {
+    return at < text.size() && std::isalnum(static_cast<unsigned char>(text[at])) != 0;
+  };
+  for (std::size_t at = 0; (at = text.find(pseudonym, at)) != std::string_view::npos; ++at) {
+    if (!(at > 0 && is_letter(at - 1)) && !is_letter(at + pseudonym.size())) return true;
+  }
+  return false;
+}
+
+/// What others wrote about a person.
+core::Status DeleteMentions(Database& database, const std::string& table, const std::string& pseudonym) {
+  // SQLite's LIKE knows no capitals, and neither knows where a word ends
+  const auto found =
+      database.RunLong("SELECT id, content FROM " + table + " WHERE content LIKE $1 ESCAPE '\\'",
+                       {AnywherePattern(pseudonym)});
+  if (!found.ok()) return found.error();
+  for (const Row& row : found->rows) {
+    if (!Mentions(row.Text(1), pseudonym)) continue;
+    if (auto gone = database.Run("DELETE FROM " + table + " WHERE id = $1", {row.Int(0)}); !gone.ok())
+      return gone.error();
+  }
+  return {};
+}
+
 core::Result<std::int64_t> DeletePerson(Database& database, const Person& person) {
   return InTransaction(database, Access::kWrite, [&]() -> core::Result<std::int64_t> {
     const auto count = database.Run("SELECT COUNT(*) FROM attempt WHERE person_id = $1", {person.id});
     if (!count.ok()) return count.error();
-    const std::string pattern = AnywherePattern(person.pseudonym);
-    for (const char* sql : {"DELETE FROM remark WHERE content LIKE $1 ESCAPE '\\'",
-                            "DELETE FROM certificate WHERE content LIKE $1 ESCAPE '\\'"}) {
-      if (auto gone = database.RunLong(sql, {pattern}); !gone.ok()) return gone.error();
+    for (const char* table : {"remark", "certificate"}) {
+      if (auto gone = DeleteMentions(database, table, person.pseudonym); !gone.ok()) return gone.error();
     }
     // everything else that is theirs goes with them (ON DELETE CASCADE)
     if (auto gone = database.RunLong("DELETE FROM person WHERE id = $1", {person.id}); !gone.ok())
@@ -262,11 +296,7 @@ core::Result<EraseReport> ErasePerson(Store& store, const Viewer& viewer, std::s
     if (!recordings.ok()) return recordings.error();
     for (const RecordingFile& recording : *recordings) {
       if (recording.path.empty()) continue;  // kept without one
-      std::string why = EraseRecording(recording);
-      if (why.empty())
-        ++report.recordings;
-      else
-        report.left.push_back(std::move(why));
+      NoteErasure(EraseRecording(recording), report);
     }
     const auto deleted = DeletePerson(database, *person);
     if (!deleted.ok()) return deleted.error();
@@ -324,7 +354,8 @@ core::Result<TidyReport> Tidy(Store& store, const Viewer& viewer, std::int64_t n
       if (!old.ok()) return old.error();
       std::set<std::int64_t> people;
       for (const Row& row : old->rows) {
-        report.recordings += EraseRecording({row.Text(1), row.Text(2)}).empty() ? 1 : 0;
+        // one that was kept without a recording has none to remove
+        if (!row.Text(1).empty()) NoteErasure(EraseRecording({row.Text(1), row.Text(2)}), report);
         if (const auto person = row.IntOrNull(3)) people.insert(*person);
         if (auto gone = database.Run("DELETE FROM attempt WHERE id = $1", {row.Int(0)}); !gone.ok())
           return gone.error();

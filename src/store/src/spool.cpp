@@ -258,6 +258,8 @@ void Spool::ForgetJournal(std::int64_t before_ms) const {
 
 core::Result<int> Spool::Erase(std::string_view trainee) const {
   int erased = 0;
+  std::string letters = ordered_json(EncodeText(trainee)).dump();  // as it stands in a file, in quotes
+  letters = letters.substr(1, letters.size() - 2);
   for (const fs::path& folder :
        {folder_, folder_ / "held", folder_ / "damaged", folder_ / "unmeasured", journal_}) {
     if (folder.empty()) continue;
@@ -270,7 +272,7 @@ core::Result<int> Spool::Erase(std::string_view trainee) const {
       const auto attempt = ReadAttemptJson(*text, file.filename().string());
       // in a damaged one, the letters alone tell
       const bool is_theirs =
-          attempt.ok() ? attempt->trainee == trainee : text->find(EncodeText(trainee)) != std::string::npos;
+          attempt.ok() ? attempt->trainee == trainee : text->find(letters) != std::string::npos;
       if (!is_theirs) continue;
       if (auto gone = EraseFile(file); !gone.ok()) return gone.error();
       ++erased;

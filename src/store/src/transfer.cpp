@@ -285,8 +285,10 @@ core::Status ImportSqlite(const fs::path& file, RowImporter& importer) {
   });
 }
 
-/// RFC 4180.
-std::string CsvField(const std::string& text) {
+/// RFC 4180. A spreadsheet must not take a stranger's text for a formula.
+std::string CsvField(std::string text) {
+  if (!text.empty() && std::string_view("=+-@\t\r").find(text[0]) != std::string_view::npos)
+    text.insert(0, 1, '\'');
   if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
   std::string quoted = "\"";
   for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);

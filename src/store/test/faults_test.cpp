@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // A database that is locked, full, away, read-only, damaged, deleted or of another schema: each with its code, and nothing lost.
 #include <fcntl.h>
+#include <linux/capability.h>
 #include <signal.h>
 #include <sys/stat.h>
+#include <sys/syscall.h>
 #include <unistd.h>
+
+#include <array>
 
 #include "schema.h"
 #include "store_test.h"
@@ -83,21 +87,50 @@ TEST_P(SqliteFaults, Full) {
   EXPECT_GOOD(Verify(Open()));
 }
 
+/// Nothing is read-only to root: as long as it lives, this thread has no more rights to files than any other account.
+class OrdinaryRights {
+ public:
+  OrdinaryRights() {
+    if (::geteuid() != 0) return;
+    EXPECT_EQ(::syscall(SYS_capget, &header_, before_.data()), 0);
+    auto fewer = before_;
+    constexpr unsigned kRights[] = {CAP_DAC_OVERRIDE, CAP_DAC_READ_SEARCH, CAP_FOWNER};
+    for (const unsigned right : kRights) fewer[CAP_TO_INDEX(right)].effective &= ~CAP_TO_MASK(right);
+    EXPECT_EQ(::syscall(SYS_capset, &header_, fewer.data()), 0);
+  }
+  ~OrdinaryRights() {
+    if (::geteuid() == 0) {
+      EXPECT_EQ(::syscall(SYS_capset, &header_, before_.data()), 0);
+    }
+  }
+  OrdinaryRights(const OrdinaryRights&) = delete;
+  OrdinaryRights& operator=(const OrdinaryRights&) = delete;
+
+ private:
+  __user_cap_header_struct header_{_LINUX_CAPABILITY_VERSION_3, 0};
+  std::array<__user_cap_data_struct, _LINUX_CAPABILITY_U32S_3> before_{};
+};
+
 TEST_P(SqliteFaults, CannotBeWritten) {
+  Deliver(0, 1);
   CloseStore();
+  const test::TemporaryFolder elsewhere;
+  const Place place{place_.url, elsewhere.Path() / "files"};
   ASSERT_EQ(::chmod(place_.url.c_str(), 0444), 0);
   ASSERT_EQ(::chmod(folder_.Path().c_str(), 0555), 0);
-  std::vector<std::string> words = {
-      TROCAR_STORE_WRITER, place_.url, "/tmp/trocar-store-" + std::to_string(::getpid()), trainee_, "1", "1"};
-  // nothing is read-only to root
-  if (::geteuid() == 0)
-    words.insert(words.begin(), {"/usr/bin/setpriv", "--reuid=nobody", "--regid=nogroup", "--clear-groups"});
-  const auto result = test::RunProcess(words);
-  EXPECT_THAT(result.out, HasSubstr("kept 1"));
-  EXPECT_THAT(result.out, HasSubstr("waiting E-STO-006")) << result.err;
+  {
+    const OrdinaryRights rights;
+    ASSERT_LT(::open(place_.url.c_str(), O_WRONLY), 0) << "the test shows nothing";
+    const KeepReport report = Get(KeepAttempt(place, MakeAttempt(1, trainee_)));
+    EXPECT_FALSE(report.is_in_store);
+    ASSERT_TRUE(report.failure.has_value());
+    EXPECT_EQ(report.failure->code, core::ErrorCode::kStoreReadOnly) << report.failure->Text();
+    EXPECT_EQ(Spool(place).CountWaiting(), 1u);
+  }
   ASSERT_EQ(::chmod(folder_.Path().c_str(), 0755), 0);
-  std::error_code ignored;
-  fs::remove_all(words[words.size() - 4], ignored);
+  ASSERT_EQ(::chmod(place_.url.c_str(), 0600), 0);
+  Reopen();
+  EXPECT_EQ(Spool(place).Deliver(Open()).added, 1);
 }
 
 TEST_P(SqliteFaults, DeletedWhileItIsOpen) {
@@ -307,6 +340,34 @@ TEST_P(PostgresFaults, LockedByAnotherProgram) {
   EXPECT_EQ(spool().Deliver(Open()).added, 1) << "the connection is still good";
 }
 
+// What a server answers whose disk is full: 53100 from any of the tables that an attempt goes into.
+TEST_P(PostgresFaults, FullDiskOfTheServer) {
+  EXPECT_GOOD(server().Administer(
+      "CREATE FUNCTION no_room() RETURNS trigger LANGUAGE plpgsql AS "
+      "$$BEGIN RAISE EXCEPTION 'could not extend file' USING ERRCODE = 'disk_full'; END$$",
+      database_));
+  int number = 0;
+  for (const std::string table : {"attempt", "metric", "standing"}) {
+    SCOPED_TRACE(table);
+    EXPECT_GOOD(server().Administer("CREATE TRIGGER full_disk BEFORE INSERT ON " + table +
+                                        " FOR EACH STATEMENT EXECUTE FUNCTION no_room()",
+                                    database_));
+    EXPECT_GOOD(spool().Keep(MakeAttempt(number, trainee_)));
+    const DeliveryReport report = spool().Deliver(Open());
+    ASSERT_TRUE(report.failure.has_value());
+    EXPECT_EQ(report.failure->code, core::ErrorCode::kStoreFull) << report.failure->Text();
+    EXPECT_THAT(report.failure->message, HasSubstr("free space there"));
+    EXPECT_EQ(report.damaged, 0);
+    EXPECT_EQ(spool().CountWaiting(), 1u);
+    EXPECT_EQ(Count("attempt"), number) << "half an attempt was kept";
+    EXPECT_EQ(Count("metric"), 5 * number);
+    EXPECT_GOOD(server().Administer("DROP TRIGGER full_disk ON " + table, database_));
+    EXPECT_EQ(spool().Deliver(Open()).added, 1) << "the connection is still good";
+    ++number;
+  }
+  ExpectArrivesOnce(0);
+}
+
 TEST_P(PostgresFaults, AwayOrOfAnotherSchema) {
   const auto nowhere =
       Store::Open({"postgresql://someone:secret@/x?host=/nowhere", folder_.Path() / "n"}, Quick());
@@ -314,6 +375,7 @@ TEST_P(PostgresFaults, AwayOrOfAnotherSchema) {
   EXPECT_EQ(nowhere.error().code, core::ErrorCode::kStoreAway);
   EXPECT_THAT(nowhere.error().message, testing::Not(HasSubstr("secret")));
   EXPECT_EQ((Place{"postgresql://u:secret@h/d?password=more&x=1", {}}).Text(), "postgresql://u@h/d?x=1");
+  EXPECT_EQ((Place{"postgresql://u:se/cret@h/d?password=a&password=b", {}}).Text(), "postgresql://u@h/d?");
   EXPECT_TRUE(Open().GetDatabase().Run("UPDATE setting SET value = '99' WHERE name = 'schema'").ok());
   EXPECT_CODE(OpenResult(), kStoreSchema);
   Place other = MakePlace("other");

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 #include <pwd.h>
+#include <stdlib.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -11,47 +13,62 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "database.h"
 #include "trocar_test/process.h"
-#include "trocar_test/temporary_folder.h"
 
 namespace trocar::store {
 
 class PostgresServer {
  public:
   PostgresServer() {
-    namespace fs = std::filesystem;
     std::error_code failure;
-    std::vector<fs::path> found;
-    for (const auto& entry : fs::directory_iterator("/usr/lib/postgresql", failure))
-      found.push_back(entry.path() / "bin");
-    if (found.empty()) return;
-    programs_ = *std::max_element(found.begin(), found.end());
+    // the clients alone install a folder, too
+    for (const auto& entry : std::filesystem::directory_iterator("/usr/lib/postgresql", failure)) {
+      const auto folder = entry.path() / "bin";
+      if (std::filesystem::exists(folder / "initdb", failure)) programs_ = std::max(programs_, folder);
+    }
+    if (programs_.empty()) {
+      trouble_ = "PostgreSQL is not installed; run tools/install-packages --test";
+      return;
+    }
+    folder_ = MakeFolder();
     // the server refuses to run as root
     if (::geteuid() == 0) {
       const passwd* account = ::getpwnam("postgres");
-      if (account == nullptr) return;
-      if (::chown(folder_.Path().c_str(), account->pw_uid, account->pw_gid) != 0) return;
+      if (account == nullptr || ::chown(folder_.c_str(), account->pw_uid, account->pw_gid) != 0) {
+        trouble_ = "root cannot give a folder to the account postgres";
+        return;
+      }
       as_other_ = {"/usr/bin/setpriv", "--reuid=postgres", "--regid=postgres", "--clear-groups"};
     }
     const test::ProcessResult made =
         test::RunProcess(Words({programs_ / "initdb", "-D", Data(), "--no-sync", "-A", "trust", "-U",
                                 "postgres", "-E", "UTF8", "--locale=C.UTF-8"}));
+    trouble_ = made.out + made.err;
     if (made.status == 0) Start();
   }
-  ~PostgresServer() { Stop(SIGINT); }
+  ~PostgresServer() {
+    Stop(SIGINT);
+    std::error_code ignored;
+    if (!folder_.empty()) std::filesystem::remove_all(folder_, ignored);
+  }
+  PostgresServer(const PostgresServer&) = delete;
+  PostgresServer& operator=(const PostgresServer&) = delete;
 
   bool IsRunning() { return server_ != nullptr && !server_->HasEnded(); }
-  std::string Data() const { return folder_.Path() / "data"; }
+  /// What its programs said, where it does not run.
+  std::string Trouble() const { return trouble_ + (server_ == nullptr ? "" : server_->Err()); }
+  std::string Data() const { return folder_ / "data"; }
   test::Process& Server() { return *server_; }
 
   void Start() {
     server_ = std::make_unique<test::Process>(
-        Words({programs_ / "postgres", "-D", Data(), "-k", folder_.Path(), "-h", "", "-c", "fsync=off", "-c",
+        Words({programs_ / "postgres", "-D", Data(), "-k", folder_, "-h", "", "-c", "fsync=off", "-c",
                "shared_buffers=16MB", "-c", "autovacuum=off"}));
     for (int i = 0; i < 600 && !server_->HasEnded(); ++i) {
       if (OpenPostgres(Url("postgres"), 2, 2).ok()) return;
@@ -66,7 +83,7 @@ class PostgresServer {
     server_->Wait();
   }
   std::string Url(const std::string& database) const {
-    return "postgresql://postgres@/" + database + "?host=" + folder_.Path().string();
+    return "postgresql://postgres@/" + database + "?host=" + folder_.string();
   }
   /// A statement as its administrator.
   core::Status Administer(const std::string& sql, const std::string& database = "postgres") {
@@ -87,8 +104,25 @@ class PostgresServer {
     return all;
   }
 
-  test::TemporaryFolder folder_;
-  std::filesystem::path programs_;
+  /// Below the first folder that any account reaches and that leaves room for a socket's name: a TMPDIR may be deep, or root's own.
+  static std::filesystem::path MakeFolder() {
+    constexpr std::size_t kMostSocketPath = 107,
+                          kSocketName = 40;  // [bytes] of Linux; "/trocar-test-XXXXXX/.s.PGSQL.5432"
+    for (const std::filesystem::path& parent :
+         {std::filesystem::temp_directory_path(), std::filesystem::path("/tmp")}) {
+      bool is_open = parent.is_absolute() && parent.native().size() + kSocketName < kMostSocketPath;
+      for (auto folder = parent; is_open && folder.has_relative_path(); folder = folder.parent_path()) {
+        struct stat info {};
+        is_open = ::stat(folder.c_str(), &info) == 0 && (info.st_mode & S_IXOTH) != 0;
+      }
+      std::string path = parent / "trocar-test-XXXXXX";
+      if (is_open && ::mkdtemp(path.data()) != nullptr) return path;
+    }
+    throw std::runtime_error("no folder for a PostgreSQL server");
+  }
+
+  std::filesystem::path folder_, programs_;
+  std::string trouble_;
   std::vector<std::string> as_other_;
   std::unique_ptr<test::Process> server_;
 };

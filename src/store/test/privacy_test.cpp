@@ -103,6 +103,24 @@ TEST_P(Privacy, ErasureLeavesNotOneByte) {
   EXPECT_GOOD(Verify(Open()));
 }
 
+TEST_P(Privacy, ErasureOfOneLeavesWhatIsOfANamesake) {
+  for (const char* person : {"T-1", "T-10", "t-1"}) {
+    Add(Role::kTrainee, person);
+    EXPECT_GOOD(AddCertificate(Open(), kOwner, {person, person, std::string("of ") + person + ", passed"}));
+  }
+  const std::int64_t id = Get(ListAttempts(Open(), kOwner, {other_, "", ""})).attempts.at(0).id;
+  for (const char* remark : {"as good as T-10", "XT-1", "like t-1", "like T-1's", "T-1"})
+    EXPECT_GOOD(AddRemark(Open(), kOwner, id, 2, remark));
+  EXPECT_GOOD(ErasePerson(Open(), kOwner, "T-1"));
+  EXPECT_THAT(Get(ListCertificates(Open(), kOwner, "T-10")), SizeIs(1));
+  EXPECT_THAT(Get(ListCertificates(Open(), kOwner, "t-1")), SizeIs(1));
+  EXPECT_EQ(Count("certificate WHERE certificate_key = 'T-1'"), 0);
+  std::vector<std::string> left;
+  for (const Remark& remark : Get(ListRemarks(Open(), kOwner, id)))
+    if (remark.tick == 2) left.push_back(remark.text);
+  EXPECT_THAT(left, testing::UnorderedElementsAre("as good as T-10", "XT-1", "like t-1"));
+}
+
 // Control: rows that were deleted without Purge are still found, so that the search above means something.
 TEST_P(Privacy, DeletedRowsAloneLeaveBytes) {
   if (GetParam() == Kind::kSqlite) {
@@ -182,9 +200,14 @@ TEST_P(Privacy, OldAttemptsGoWithTheirTime) {
   EXPECT_EQ(Get(Tidy(Open(), kOwner, now)).attempts, 0) << "without a limit everything stays";
   EXPECT_CODE(SetRetention(Open(), kOwner, -1), kStoreInvalid);
   EXPECT_GOOD(SetRetention(Open(), kOwner, 26));
+  const std::string gone =
+      Get(ListAttempts(Open(), kOwner, {gone_, "", ""})).attempts.at(0).attempt.recording;
+  fs::remove(gone);
   const TidyReport report = Get(Tidy(Open(), kOwner, now));
   EXPECT_EQ(report.attempts, 44);
-  EXPECT_EQ(report.recordings, 44);
+  EXPECT_EQ(report.recordings, 43);
+  EXPECT_THAT(report.left, testing::ElementsAre(testing::HasSubstr(gone)))
+      << "nobody else knows of it any more";
   EXPECT_GOOD(VerifyBackup(report.backup));
   EXPECT_EQ(Count("attempt"), 6);
   EXPECT_THAT(Find("LONG-AGO"), IsEmpty());

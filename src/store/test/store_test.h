@@ -17,6 +17,7 @@
 #include "trocar/store/people.h"
 #include "trocar/store/spool.h"
 #include "trocar/store/store.h"
+#include "trocar_test/temporary_folder.h"
 
 namespace trocar::store {
 
@@ -105,7 +106,7 @@ class StoreTest : public testing::TestWithParam<Kind> {
     if (kind == Kind::kPostgres) {
       PostgresServer& server = PostgresServer::Get();
       if (!server.IsRunning()) {
-        ADD_FAILURE() << "no PostgreSQL server could be started; run tools/install-packages --test";
+        ADD_FAILURE() << "no PostgreSQL server could be started: " << server.Trouble();
         return place;
       }
       const std::string database =

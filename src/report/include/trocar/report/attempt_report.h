@@ -94,6 +94,13 @@ struct DoubletView {
   std::string verdict;
 };
 
+/// With whom an attempt was compared.
+struct GroupFacts {
+  std::string name;
+  std::size_t people = 0;  ///< whose values stand in MetricRow::group
+  std::string why_not;     ///< a sentence where they do not; else empty
+};
+
 struct AttemptReport {
   AttemptFacts facts;
   std::string outcome;  ///< a sentence
@@ -109,6 +116,7 @@ struct AttemptReport {
   std::vector<training::PhaseSpan> phases;
   std::vector<MetricRow> metrics;  ///< in the order of the definitions
   std::vector<Advice> advice;
+  std::optional<GroupFacts> group;
   std::optional<DoubletView> doublet;
   std::vector<Picture> pictures;
   std::string film;  ///< file beside the page; may be empty

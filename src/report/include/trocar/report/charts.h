@@ -20,7 +20,7 @@ enum class PathView { kFromFront, kFromHead };
 Drawing DrawPaths(const AttemptReport& report, PathView view);
 
 /// At most eight metrics on axes from the centre; each in standard deviations from the expert set's mean, better outwards. Inside a
-/// metric's axis the group's middle half is shown where there is a group.
+/// metric's axis the group's middle half and median are shown where there is a group.
 /// \return nothing where fewer than three metrics have an expert set
 std::optional<Drawing> DrawRadar(const AttemptReport& report);
 

@@ -95,6 +95,11 @@ double GuessTextWidth(std::string_view text, double size);
 /// `text`, or its beginning with "…" where it is wider than `width` [px]; empty where not even that fits.
 std::string CutToWidth(std::string_view text, double size, double width);
 
+/// A length or place in SVG, to a tenth [px].
+std::string FormatPixels(double value);
+/// Commands of an SVG path through the points [px]; a gap where a point is not finite.
+std::string FormatPath(const std::vector<Vec2>& points);
+
 /// SVG element with title and description; colours by class, see html_page.h.
 /// \param id  unique in the page
 std::string FormatSvg(const Drawing& drawing, std::string_view id);

@@ -60,6 +60,7 @@ core::Result<int> ReadRetention(Store& store);
 struct TidyReport {
   std::int64_t attempts = 0;
   int recordings = 0;
+  std::vector<std::string> left;  ///< recordings that are not here, or could not be removed; for a person
   std::filesystem::path backup;
 };
 /// Removes attempts that are older than they may be, with their recordings; gives their bytes back; makes a backup.
