@@ -255,7 +255,7 @@ core::Result<std::unique_ptr<Database>> OpenSqlite(const std::string& path, doub
   if (code != SQLITE_OK) return MakeError(code, path);
   ::sqlite3_extended_result_codes(raw, 1);
   auto database = std::make_unique<SqliteDatabase>(std::move(connection), path, busy_seconds);
-  // no temporary files: they would leave people's rows outside of the store's folder, and cost more than the rest of a large import
+  // no temporary files: people's rows would lie outside of the store's folder
   if (auto set = database->RunScript("PRAGMA trusted_schema=OFF; PRAGMA foreign_keys=ON; PRAGMA "
                                      "secure_delete=ON; PRAGMA cache_size=-65536; PRAGMA temp_store=MEMORY");
       !set.ok())
