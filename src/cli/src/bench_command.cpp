@@ -78,8 +78,8 @@ core::Status Run(const BenchArguments& arguments) {
 }  // namespace
 
 void AddBenchCommand(CLI::App& app, Outcome& outcome) {
-  CLI::App* command =
-      app.add_subcommand("bench", "Measure how fast this computer is; every timed answer is checked");
+  CLI::App* command = app.add_subcommand(
+      "bench", "Measure how fast this computer is; a wrong result is an error, and gets no time");
   auto arguments = std::make_shared<BenchArguments>();
   command->add_option("suite", arguments->suite, "Which suite (--list)")->type_name("SUITE");
   command->add_flag("--list", arguments->is_list, "List the suites");

@@ -3,6 +3,8 @@
 
 #include <zlib.h>
 
+#include <cstring>
+
 namespace trocar::record {
 namespace {
 
@@ -10,10 +12,11 @@ std::uint32_t AddTo(std::uint32_t checksum, const void* data, std::size_t size) 
   return static_cast<std::uint32_t>(::crc32_z(checksum, static_cast<const Bytef*>(data), size));
 }
 
-template <typename T>
-void Put(const T& value, std::vector<std::byte>& bytes) {
-  const auto view = std::as_bytes(std::span(&value, 1));
-  bytes.insert(bytes.end(), view.begin(), view.end());
+void Put(const void* data, std::size_t size, std::vector<std::byte>& bytes) {
+  if (size == 0) return;
+  const std::size_t begin = bytes.size();
+  bytes.resize(begin + size);
+  std::memcpy(bytes.data() + begin, data, size);
 }
 
 }  // namespace
@@ -35,7 +38,7 @@ std::vector<std::byte> MakeFileHeader(std::uint64_t file_id) {
   header.file_id = file_id;
   header.checksum = CalcHeaderChecksum(header);
   std::vector<std::byte> bytes;
-  Put(header, bytes);
+  Put(&header, sizeof header, bytes);
   return bytes;
 }
 
@@ -47,8 +50,8 @@ void PutChunk(std::uint64_t file_id, std::uint64_t number, ChunkKind kind, std::
   header.tick = tick;
   header.size = static_cast<std::uint32_t>(content.size());
   header.checksum = CalcChunkChecksum(file_id, header, content);
-  Put(header, bytes);
-  bytes.insert(bytes.end(), content.begin(), content.end());
+  Put(&header, sizeof header, bytes);
+  Put(content.data(), content.size(), bytes);
 }
 
 }  // namespace trocar::record

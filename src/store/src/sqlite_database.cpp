@@ -255,8 +255,9 @@ core::Result<std::unique_ptr<Database>> OpenSqlite(const std::string& path, doub
   if (code != SQLITE_OK) return MakeError(code, path);
   ::sqlite3_extended_result_codes(raw, 1);
   auto database = std::make_unique<SqliteDatabase>(std::move(connection), path, busy_seconds);
+  // no temporary files: people's rows would lie outside of the store's folder
   if (auto set = database->RunScript("PRAGMA trusted_schema=OFF; PRAGMA foreign_keys=ON; PRAGMA "
-                                     "secure_delete=ON; PRAGMA cache_size=-16384");
+                                     "secure_delete=ON; PRAGMA cache_size=-65536; PRAGMA temp_store=MEMORY");
       !set.ok())
     return set.error();
   if (is_look) return std::unique_ptr<Database>(std::move(database));

@@ -130,6 +130,32 @@ TEST_P(Privacy, DeletedRowsAloneLeaveBytes) {
   EXPECT_THAT(Find("REMARK-ON-QUUX"), Not(IsEmpty()));
 }
 
+// SQLite would put what a long statement may have to take back into an unnamed file in /var/tmp. Control: told to, it does.
+TEST_P(Privacy, NothingLiesOutsideOfTheFolderWhileMuchIsWritten) {
+  if (GetParam() == Kind::kPostgres) return;  // its server's folder
+  Database& database = Open().GetDatabase();
+  const auto count_unnamed = [&] {
+    EXPECT_GOOD(database.Begin(Access::kWrite));
+    for (const char* sql :
+         {"INSERT INTO remark (attempt_id, tick, content, written_ms) SELECT a.id, 1, hex(zeroblob(2000)), 0 "
+          "FROM attempt a, attempt b",
+          "UPDATE remark SET content = content || content"}) {
+      EXPECT_TRUE(database.Run(sql).ok());
+    }
+    int count = 0;
+    for (const auto& entry : fs::directory_iterator("/proc/self/fd")) {
+      std::error_code gone;
+      const std::string file = fs::read_symlink(entry.path(), gone).string();
+      count += file.ends_with("(deleted)") && !file.starts_with(folder_.Path().string());
+    }
+    database.Rollback();
+    return count;
+  };
+  EXPECT_EQ(count_unnamed(), 0);
+  EXPECT_TRUE(database.Run("PRAGMA temp_store=FILE").ok());
+  EXPECT_GT(count_unnamed(), 0);
+}
+
 TEST_P(Privacy, ErasureNamesWhatItCannotReach) {
   const fs::path elsewhere = folder_.Path() / "usb" / "b.sqlite";
   EXPECT_GOOD(BackUp(Open(), kOwner, elsewhere));

@@ -30,6 +30,7 @@ bool IsNotNegative(double x) {
 core::Status CheckSettings(const MetricSettings& settings) {
   if (!IsPositive(settings.sample_rate_hz)) return RefuseMetrics("sample_rate_hz must be greater than 0");
   if (!IsPositive(settings.cutoff_hz)) return RefuseMetrics("cutoff_hz must be greater than 0");
+  if (!IsPositive(settings.jerk_cutoff_hz)) return RefuseMetrics("jerk_cutoff_hz must be greater than 0");
   if (!IsPositive(settings.idle_window)) return RefuseMetrics("idle_window must be greater than 0");
   if (!(settings.release_share > 0.0 && settings.release_share <= 1.0))
     return RefuseMetrics("release_share must lie in (0, 1]");

@@ -83,10 +83,12 @@ void MeasureMovements(const MotionTrack& track, const AttemptPart& part, std::st
   for (const Movement& movement : track.movements) {
     if (!part.has_sample[movement.first]) continue;
     ++count;
-    const auto profile = std::span(track.speed).subspan(movement.first, movement.last - movement.first + 1);
+    const std::size_t length = movement.last - movement.first + 1;
+    const auto profile = std::span(track.speed).subspan(movement.first, length);
     sparc.Add(CalcSparc(profile, settings.sample_rate_hz, settings.sparc));
-    jerk.Add(CalcDimensionlessJerk(profile, settings.sample_rate_hz));
-    log_jerk.Add(CalcLogDimensionlessJerk(profile, settings.sample_rate_hz));
+    const auto slow_profile = std::span(track.jerk_speed).subspan(movement.first, length);
+    jerk.Add(CalcDimensionlessJerk(slow_profile, settings.sample_rate_hz));
+    log_jerk.Add(CalcLogDimensionlessJerk(slow_profile, settings.sample_rate_hz));
     straight += math::Distance(track.tip[movement.first], track.tip[movement.last]);
     for (std::size_t k = movement.first; k < movement.last; ++k)
       path += math::Distance(track.tip[k], track.tip[k + 1]);

@@ -14,21 +14,21 @@ namespace {
 /// One number of each sample, at the even rate and filtered.
 template <typename Sample, typename Get>
 std::vector<double> SmoothSignal(std::span<const Sample> samples, double dt, const MetricSettings& settings,
-                                 Get&& get) {
+                                 double cutoff_hz, Get&& get) {
   std::vector<double> raw;
   raw.reserve(samples.size());
   for (const Sample& sample : samples) raw.push_back(get(sample));
   const double step = 1.0 / settings.sample_rate_hz;
-  return FilterLowPass(ResampleEvenly(raw, dt, step), step, settings.cutoff_hz);
+  return FilterLowPass(ResampleEvenly(raw, dt, step), step, cutoff_hz);
 }
 
 template <typename Sample, typename Get>
 std::vector<Vec3> SmoothVector(std::span<const Sample> samples, double dt, const MetricSettings& settings,
-                               Get&& get) {
+                               double cutoff_hz, Get&& get) {
   std::array<std::vector<double>, 3> part;
   for (int axis = 0; axis < 3; ++axis) {
     part[static_cast<std::size_t>(axis)] =
-        SmoothSignal(samples, dt, settings, [&](const Sample& s) { return get(s)[axis]; });
+        SmoothSignal(samples, dt, settings, cutoff_hz, [&](const Sample& s) { return get(s)[axis]; });
   }
   std::vector<Vec3> joined(part[0].size());
   for (std::size_t k = 0; k < joined.size(); ++k) joined[k] = {part[0][k], part[1][k], part[2][k]};
@@ -146,7 +146,6 @@ void MeasureTrack(MotionTrack& track, const MetricSettings& settings) {
   for (Vec3& axis : track.axis) axis = math::Normalized(axis);
   track.speed = CalcSpeed(track.tip, step);
   track.slow_speed = CalcSlowSpeed(track.tip, settings);
-  track.squared_jerk = CalcSquaredJerk(track.tip, step);
   track.tip_step = CalcSteps(track.tip, settings.noise_step, math::Distance);
   track.axis_step = CalcSteps(track.axis, settings.angle_noise_step, AngleBetween);
   track.is_resting = FindRests(track.slow_speed, settings);
@@ -157,13 +156,19 @@ void MeasureTrack(MotionTrack& track, const MetricSettings& settings) {
 
 MotionTrack MakeMotionTrack(std::span<const ToolSample> samples, double dt, const MetricSettings& settings) {
   MotionTrack track;
-  track.tip = SmoothVector(samples, dt, settings, [](const ToolSample& s) { return s.tip; });
-  track.axis = SmoothVector(samples, dt, settings, [](const ToolSample& s) { return s.axis; });
-  track.insertion = SmoothSignal(samples, dt, settings, [](const ToolSample& s) { return s.insertion; });
+  const double cutoff_hz = settings.cutoff_hz, step = 1.0 / settings.sample_rate_hz;
+  const auto tip_of = [](const ToolSample& s) { return s.tip; };
+  track.tip = SmoothVector(samples, dt, settings, cutoff_hz, tip_of);
+  track.axis = SmoothVector(samples, dt, settings, cutoff_hz, [](const ToolSample& s) { return s.axis; });
+  track.insertion =
+      SmoothSignal(samples, dt, settings, cutoff_hz, [](const ToolSample& s) { return s.insertion; });
   const std::vector<double> unwrapped = Unwrap(samples);
   const std::vector<double> spin =
-      SmoothSignal(std::span(unwrapped), dt, settings, [](double angle) { return angle; });
+      SmoothSignal(std::span(unwrapped), dt, settings, cutoff_hz, [](double angle) { return angle; });
   MeasureTrack(track, settings);
+  const std::vector<Vec3> slow_tip = SmoothVector(samples, dt, settings, settings.jerk_cutoff_hz, tip_of);
+  track.jerk_speed = CalcSpeed(slow_tip, step);
+  track.squared_jerk = CalcSquaredJerk(slow_tip, step);
   track.depth_step = CalcSteps(track.insertion, settings.noise_step, CalcDifference);
   track.spin_step = CalcSteps(spin, settings.angle_noise_step, CalcDifference);
   return track;
@@ -172,8 +177,10 @@ MotionTrack MakeMotionTrack(std::span<const ToolSample> samples, double dt, cons
 MotionTrack MakeMotionTrack(std::span<const CameraSample> samples, double dt,
                             const MetricSettings& settings) {
   MotionTrack track;
-  track.tip = SmoothVector(samples, dt, settings, [](const CameraSample& s) { return s.lens; });
-  track.axis = SmoothVector(samples, dt, settings, [](const CameraSample& s) { return s.direction; });
+  track.tip =
+      SmoothVector(samples, dt, settings, settings.cutoff_hz, [](const CameraSample& s) { return s.lens; });
+  track.axis = SmoothVector(samples, dt, settings, settings.cutoff_hz,
+                            [](const CameraSample& s) { return s.direction; });
   MeasureTrack(track, settings);
   return track;
 }

@@ -20,11 +20,13 @@ struct Movement {
 
 /// All arrays have one entry per resampled time k / sample_rate_hz.
 struct MotionTrack {
-  std::vector<Vec3> tip;             // m; of the laparoscope its lens
-  std::vector<Vec3> axis;            // unit; of the laparoscope its line of sight
-  std::vector<double> insertion;     // m
-  std::vector<double> speed;         // m/s, of the tip
-  std::vector<double> slow_speed;    // m/s, over idle_window
+  std::vector<Vec3> tip;           // m; of the laparoscope its lens
+  std::vector<Vec3> axis;          // unit; of the laparoscope its line of sight
+  std::vector<double> insertion;   // m
+  std::vector<double> speed;       // m/s, of the tip
+  std::vector<double> slow_speed;  // m/s, over idle_window
+  // of the tip's motion below jerk_cutoff_hz; none of the laparoscope
+  std::vector<double> jerk_speed;    // m/s
   std::vector<double> squared_jerk;  // m^2/s^6, 0 in the first and last two
   // how much each sample adds to a path; 0 where it lies too near the last that counted
   std::vector<double> tip_step, depth_step;  // m

@@ -45,6 +45,7 @@ TEST(MetricDefinitions, NameTheSettingsOfTheProgram) {
   const MetricSettings s;
   const std::map<std::string, double> settings = {{"sample_rate_hz", s.sample_rate_hz},
                                                   {"cutoff_hz", s.cutoff_hz},
+                                                  {"jerk_cutoff_hz", s.jerk_cutoff_hz},
                                                   {"noise_step", s.noise_step},
                                                   {"angle_noise_step", s.angle_noise_step},
                                                   {"movement_start_speed", s.movement_start_speed},

@@ -109,5 +109,17 @@ TEST(MetricRobustness, DependsOnTheLowPass) {
   EXPECT_GT(noisy, (1 + 3 * FindMetric("path_length")->tolerance->noise) * quiet);
 }
 
+// Nor would jerk be: with the low-pass of all other metrics the noise weighs more than the motion.
+TEST(MetricRobustness, TakesJerkBelowALowerCutoff) {
+  MetricSettings as_others = Settings();
+  as_others.jerk_cutoff_hz = as_others.cutoff_hz;
+  for (const char* metric : {"motion_smoothness", "dimensionless_jerk", "log_dimensionless_jerk"}) {
+    const double quiet = ValueOf(Measure(MakeReaches(120.0, 0.0, 0), as_others), metric);
+    const double noisy = ValueOf(Measure(MakeReaches(120.0, 2e-4, 1), as_others), metric);
+    EXPECT_GT(std::fabs(noisy / quiet - 1), 5 * FindMetric(metric)->tolerance->noise) << metric;
+    EXPECT_LE(FindMetric(metric)->tolerance->noise, 0.16) << metric;
+  }
+}
+
 }  // namespace
 }  // namespace trocar::training

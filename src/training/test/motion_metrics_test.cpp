@@ -92,7 +92,7 @@ TEST(MotionMetrics, KnowsAMinimumJerkMovement) {
   });
   MetricSettings whole;
   whole.noise_step = 0.0;
-  whole.cutoff_hz = 40.0;
+  whole.cutoff_hz = whole.jerk_cutoff_hz = 40.0;
   whole.movement_end_speed = 0.0;
   const AttemptMetrics m = Measure(reach, whole);
   EXPECT_NEAR(ValueOf(m, "path_length"), 0.2, 1e-4);
@@ -222,6 +222,7 @@ TEST(AttemptMetrics, RefusesBadSettingsAndSamples) {
   const std::function<void(MetricSettings&)> faults[] = {
       [](MetricSettings& s) { s.sample_rate_hz = 0; },
       [](MetricSettings& s) { s.cutoff_hz = std::nan(""); },
+      [](MetricSettings& s) { s.jerk_cutoff_hz = 0; },
       [](MetricSettings& s) { s.noise_step = -1; },
       [](MetricSettings& s) { s.release_share = 0; },
       [](MetricSettings& s) { s.idle_window = 0; },

@@ -15,6 +15,9 @@ namespace trocar::training {
 struct MetricSettings {
   double sample_rate_hz = 100.0;  ///< of the resampled signals, > 0
   double cutoff_hz = 6.0;         ///< of the low-pass, > 0
+  /// Of the low-pass before jerk is taken, > 0. A third derivative amplifies noise with the cube of its frequency: at 6 Hz the
+  /// 0.2 mm rms of a tracker weigh more than a reach of a second, at 2.5 Hz a tenth as much as it.
+  double jerk_cutoff_hz = 2.5;
   /// Tremor and tracker noise: a new point counts only when it lies this far from the last that counted [m], >= 0.
   double noise_step = 0.5e-3;
   /// The same for the directions of shaft and sight, and for spin: a quarter degree [rad], >= 0.
