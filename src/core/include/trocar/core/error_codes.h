@@ -128,6 +128,9 @@ enum class ErrorCode {
   kCertificateSigner,
   kCertificateRecording,
   kCertificateOutcome,
+  // environments for reinforcement learning
+  kActionInvalid,
+  kEnvironmentState,
   kCount
 };
 
