@@ -102,7 +102,7 @@ std::vector<std::string> HandEvents::SetKeys(const std::map<std::string, device:
 KeyMeaning HandEvents::FindMeaning(guint keyval, bool control) const {
   const auto own = own_keys_.find(gdk_keyval_to_lower(keyval));
   if (own != own_keys_.end() && !control) return {own->second, device::Motion::kCount};
-  return FindKeyMeaning(keyval, control);
+  return FindKeyMeaning(control ? keyval : MirrorKey(keyval, layout_), control);
 }
 
 bool HandEvents::OnKeyPressed(guint keyval, guint, Gdk::ModifierType state) {
@@ -176,8 +176,11 @@ void HandEvents::OnButton(guint button, bool is_down) {
     return;
   }
   if (control_->IsPaused()) is_down = false;
-  if (button == kLeftButton) control_->Device().SetKey(device::Motion::kCloseJaw, is_down);
-  if (button == kRightButton) control_->Device().SetKey(device::Motion::kOpenJaw, is_down);
+  const bool is_mirrored = layout_ == KeyLayout::kLeftHanded;
+  const guint closing = is_mirrored ? kRightButton : kLeftButton;
+  const guint opening = is_mirrored ? kLeftButton : kRightButton;
+  if (button == closing) control_->Device().SetKey(device::Motion::kCloseJaw, is_down);
+  if (button == opening) control_->Device().SetKey(device::Motion::kOpenJaw, is_down);
 }
 
 }  // namespace trocar::app

@@ -12,6 +12,7 @@
 #include "device_page.h"
 #include "failure_card.h"
 #include "hand_events.h"
+#include "home_card.h"
 #include "panel.h"
 #include "picture.h"
 #include "recording_chooser.h"
@@ -27,6 +28,9 @@ namespace trocar::app {
 /// What other windows do for this one.
 struct SimulatorServices {
   std::function<void()> open_centre;
+  std::function<void(const std::string& course)> open_course;
+  /// As SimulatorScreen::BeSomebody.
+  std::function<core::Result<std::string>(const std::optional<std::string>&)> be_somebody;
   std::function<void(const std::filesystem::path& recording, bool is_exam)> open_attempt;
   AttemptHooks hooks;
 };
@@ -50,6 +54,7 @@ class SimulatorWindow : public Gtk::ApplicationWindow, private SimulatorScreen {
  private:
   void MakeContent();
   void MakeOverlay();
+  void MakeQuestion();
   void MakeRoutes();
   bool OnFrame(const Glib::RefPtr<Gdk::FrameClock>& clock);
   void OpenDevices();
@@ -69,6 +74,8 @@ class SimulatorWindow : public Gtk::ApplicationWindow, private SimulatorScreen {
   bool IsPointerTaken() const override { return hands_->IsPointerTaken(); }
   void FocusPicture() override { picture_.grab_focus(); }
   void DoInWindow(Action action) override;
+  core::Result<std::string> BeSomebody(const std::optional<std::string>& text) override;
+  void OpenCourse(const std::string& course) override;
 
   SimulatorServices services_;
   gui::Tips tips_;
@@ -76,12 +83,14 @@ class SimulatorWindow : public Gtk::ApplicationWindow, private SimulatorScreen {
   Gtk::Overlay overlay_;
   Picture picture_;
   Panel panel_;
-  gui::HelpCard help_card_{SimulatorHelp()};
+  gui::HelpCard help_card_{SimulatorHelp()}, mirrored_help_card_{SimulatorHelp(KeyLayout::kLeftHanded)};
+  HomeCard home_;
+  Gtk::Box question_{Gtk::Orientation::VERTICAL};
   TaskChooser chooser_;
   RecordingChooser recordings_{"Watch"};
   ResultCard result_card_;
   FailureCard failure_card_;
-  Gtk::Label badge_, hint_, event_, state_, haptics_;
+  Gtk::Label badge_, hint_, event_, state_, haptics_, mode_, progress_, tutorial_, asked_;
   std::unique_ptr<HandEvents> hands_;
   Glib::Dispatcher loaded_;
   std::unique_ptr<SimulatorPresenter> presenter_;
