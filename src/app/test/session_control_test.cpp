@@ -218,7 +218,7 @@ TEST_F(SessionControlTest, HeldKeyMovesTheToolOfTheSimulation) {
   control->ChooseHand(device::kLeftHand);
   ASSERT_TRUE(AdvanceUntil([](const simulation::Snapshot& now) { return now.tick > 2; }));
   const math::Vec3 start = control->Advance(0).instruments[scene::kLeft].X_world_tool.translation;
-  const math::Pose X_world_view = control->Advance(0).X_world_laparoscope;
+  const math::Pose X_world_view = control->CalcView(control->Advance(0));
   const math::Vec3 right = math::Rotate(X_world_view.rotation, {1, 0, 0});
   control->Device().SetKey(Motion::kRight, true);
   EXPECT_TRUE(AdvanceUntil([&](const simulation::Snapshot& now) {

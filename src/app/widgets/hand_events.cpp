@@ -85,6 +85,12 @@ bool HandEvents::IsFocusInPanel() const {
   return focus != nullptr && focus != &picture_ && !focus->is_ancestor(picture_);
 }
 
+/// In a field for text, letters are letters.
+bool HandEvents::IsTyping() const {
+  const Gtk::Widget* focus = window_.get_focus();
+  return focus != nullptr && GTK_IS_EDITABLE(focus->gobj());
+}
+
 std::vector<std::string> HandEvents::SetKeys(const std::map<std::string, device::HandAct>& keys) {
   std::vector<std::string> refused;
   own_keys_.clear();
@@ -111,6 +117,9 @@ bool HandEvents::OnKeyPressed(guint keyval, guint, Gdk::ModifierType state) {
   const KeyMeaning meaning = FindMeaning(keyval, (state & ModifierType::CONTROL_MASK) != ModifierType{});
   if (meaning.action == Action::kNone) return false;
   if (IsFocusInPanel() && !WorksInPanel(meaning.action)) return false;
+  const bool is_letter =
+      (state & ModifierType::CONTROL_MASK) == ModifierType{} && gdk_keyval_to_unicode(keyval) > ' ';
+  if (is_letter && IsTyping()) return false;
   const bool is_repeat = std::find(held_.begin(), held_.end(), keyval) != held_.end();
   if (is_repeat) return true;
   held_.push_back(keyval);

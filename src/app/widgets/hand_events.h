@@ -45,6 +45,7 @@ class HandEvents {
   void OnButton(guint button, bool is_down);
   void ReleaseAll();
   bool IsFocusInPanel() const;
+  bool IsTyping() const;
   KeyMeaning FindMeaning(guint keyval, bool control) const;
 
   Gtk::Window& window_;

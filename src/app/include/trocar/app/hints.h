@@ -30,7 +30,7 @@ std::string HintText(const Situation& situation);
 std::string BadgeText(const Situation& situation);
 /// What mouse and keys do now, in one line; no longer than kLongestMode characters.
 std::string ModeText(const Situation& situation);
-inline constexpr std::size_t kLongestMode = 150;
+inline constexpr std::size_t kLongestMode = 170;
 /// "Running", "Paused", "Demonstration", "Loading the patient"
 std::string StateText(const Situation& situation);
 
