@@ -32,7 +32,7 @@ core::Status PrintPictures() {
   return {};
 }
 
-core::Status MakePictures(const PicturesArguments& arguments) {
+core::Status MakePictures(const PicturesArguments& arguments, Outcome& outcome) {
   if (arguments.is_list) return PrintPictures();
   view::SeriesOptions options;
   const auto size = ReadSize(arguments.size);
@@ -55,11 +55,15 @@ core::Status MakePictures(const PicturesArguments& arguments) {
   if (!pictures) return pictures.error();
   if (auto status = part.Keep(); !status) return status;
   std::vector<std::vector<std::string>> rows = {{"picture", "at [s]", "draw [ms]", "what"}};
-  for (const view::SeriesPicture& picture : *pictures)
+  std::size_t missing = 0;
+  for (const view::SeriesPicture& picture : *pictures) {
+    missing += picture.has_come ? 0 : 1;
     rows.push_back({picture.name, FormatNumber(picture.time, 4), FormatNumber(1e3 * picture.draw_median, 3),
                     picture.about});
+  }
   std::fputs(FormatTable(rows).c_str(), stdout);
-  std::printf("%s holds %zu pictures\n", arguments.output.c_str(), pictures->size());
+  std::printf("%s holds %zu pictures\n", arguments.output.c_str(), pictures->size() - missing);
+  outcome.has_finding = missing > 0;
   return {};
 }
 
@@ -99,7 +103,7 @@ void AddPicturesCommand(CLI::App& app, Outcome& outcome) {
       "Examples:\n"
       "  trocar pictures -o docs/pictures --size 480x270\n"
       "  trocar pictures -o out/now --moments out/moments    again after each change of the looks");
-  command->callback([arguments, &outcome] { outcome.status = MakePictures(*arguments); });
+  command->callback([arguments, &outcome] { outcome.status = MakePictures(*arguments, outcome); });
 }
 
 }  // namespace trocar::cli

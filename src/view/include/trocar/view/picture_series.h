@@ -52,10 +52,11 @@ struct SeriesPicture {
   std::string name, about;
   double time = 0;         ///< of the attempt [s]
   double draw_median = 0;  ///< Update, Draw and reading back [s]
+  bool has_come = true;    ///< false: the moment never came; `about` says so, and there is no file
 };
 
 /// Plays what it must, and writes NAME.png for every shot.
-/// \return kUsage (a size, or a name that no shot has), kScriptInvalid for a moment that never came, or the errors of
+/// \return kUsage (a size, or a name that no shot has), or the errors of
 ///         scene, simulation, graphics and files
 /// \note Takes an OpenGL context of its own on the calling thread.
 core::Result<std::vector<SeriesPicture>> MakePictureSeries(const SeriesOptions& options);
