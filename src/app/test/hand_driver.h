@@ -114,7 +114,7 @@ class HandDriver {
                 dy = static_cast<int>(std::lround(-d.y / metres / far));
       if (dx == 0 && dy == 0) return;
       x_ += dx, y_ += dy;
-      screen_->Move(x_, y_);
+      screen_->MovePointer(x_, y_);
       Go(metres * dx, -metres * dy, 0);
       std::this_thread::sleep_for(milliseconds(30));
     }
