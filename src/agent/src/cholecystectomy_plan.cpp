@@ -106,7 +106,7 @@ void CholecystectomySurgeon::ClearTriangle(int rounds) {
 }
 
 void CholecystectomySurgeon::PlanTriangle(const SurgeonAct& act, const Snapshot& seen) {
-  std::vector<std::uint32_t> fat = TriangleStrands();
+  std::vector<std::uint32_t> fat = known_.window_strands;
   std::vector<std::uint32_t> covering;
   if (!AreTubesBare(seen)) covering = CoveringStrands();
   const bool is_clear = seen.operation.facts.cleared_share >= kCleared && covering.empty();

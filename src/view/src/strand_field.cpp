@@ -18,7 +18,6 @@ using render::Material;
 constexpr double kFibreWidth = 0.00022;                    // m, of areolar tissue
 constexpr double kAdhesionWidth = 0.0007;                  // m
 constexpr double kEndSpread = 0.0007;                      // m, of a fibre's root about its node
-constexpr double kFatRadius = 0.0021;                      // m, of a lobule, 0.7 to 1.3 times
 constexpr double kFatSpread = 0.0016;                      // m, from the strand
 constexpr double kFilmOverlap = 1.6;                       // breadth of a film in distances to its neighbour
 constexpr double kLeastFilm = 0.0010, kMostFilm = 0.0045;  // m
@@ -86,7 +85,7 @@ void StrandField::AddTo(render::Frame& frame, const simulation::Snapshot& snapsh
         for (const double along : {0.3, 0.7}) {
           const Vec3 centre =
               math::Lerp(a, b, along + random.Uniform(-0.15, 0.15)) + PickOffset(random, kFatSpread);
-          frame.blobs.push_back({centre, kFatRadius * random.Uniform(0.7, 1.3), Material::kFat,
+          frame.blobs.push_back({centre, scene::kLobuleRadius * random.Uniform(0.7, 1.3), Material::kFat,
                                  3 * seed + (along < 0.5 ? 0U : 1U)});
         }
         break;

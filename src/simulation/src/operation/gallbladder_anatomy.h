@@ -32,6 +32,16 @@ surgery::GallbladderAttachment MakeAttachment(const anatomy::Patient& patient,
                                               std::span<const scene::SurfaceInfo> surfaces,
                                               std::span<const scene::StrandInfo> strands);
 
+/// The part of the hepatocystic triangle that the critical view has to show.
+/// \param rest        (nodes) [m]
+/// \param main_ducts  nodes of ducts that must stay
+/// \param kept_fat    see training::JudgementSettings [m]
+training::TriangleWindow MakeTriangleWindow(std::span<const scene::SurfaceInfo> surfaces,
+                                            std::span<const scene::StrandInfo> strands,
+                                            std::span<const math::Vec3> rest,
+                                            std::span<const std::uint32_t> main_ducts, double kept_fat);
+
+/// All but the triangle's window.
 /// \param rest  (nodes) [m]
 training::DissectedAnatomy MakeDissectedAnatomy(const anatomy::Patient& patient,
                                                 std::span<const scene::SurfaceInfo> surfaces,
