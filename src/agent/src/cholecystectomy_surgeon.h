@@ -233,14 +233,14 @@ class CholecystectomySurgeon final : public Surgeon {
     std::int32_t gallbladder = -1, liver = -1;  // of surfaces
     std::vector<Vec3> rest;
     std::vector<std::vector<std::uint32_t>>
-        tube_nodes;                            // (tubes) from the gallbladder's end, where one enters it
-    std::vector<std::uint32_t> neck_nodes;     // around the infundibulum
-    std::vector<std::size_t> entering;         // tubes that enter the gallbladder
-    std::vector<std::uint32_t> end_strands;    // where they do
+        tube_nodes;                             // (tubes) from the gallbladder's end, where one enters it
+    std::vector<std::uint32_t> neck_nodes;      // around the infundibulum
+    std::vector<std::size_t> entering;          // tubes that enter the gallbladder
+    std::vector<std::uint32_t> end_strands;     // where they do
     std::vector<std::uint32_t> window_strands;  // fat over the hepatocystic triangle's window
-    std::vector<std::uint32_t> main_nodes;     // of ducts and arteries that must stay
-    std::vector<std::uint32_t> main_ducts;     // of the ducts among them
-    std::vector<std::uint32_t> careful_nodes;  // of those arteries, and of small ducts of the bed
+    std::vector<std::uint32_t> main_nodes;      // of ducts and arteries that must stay
+    std::vector<std::uint32_t> main_ducts;      // of the ducts among them
+    std::vector<std::uint32_t> careful_nodes;   // of those arteries, and of small ducts of the bed
     std::uint32_t neck = 0, hold = 0, fundus = 0, liver_node = 0;
     Vec3 bed_normal;  // from the liver towards the gallbladder, at rest
   };

@@ -17,20 +17,21 @@ core::Result<ModelDescription> DescribeModel(const Scene& scene) {
   if (!tissue.ok()) return tissue.error();
   ModelDescription description;
   const auto vessels = scene::MakePatientVessels(scene.patient);
-  std::vector<std::uint32_t> main_ducts;
+  std::vector<std::uint32_t> main_ducts, main_arteries;
   for (std::size_t t = 0; vessels.ok() && t < scene.patient.tubes.size(); ++t) {
     const SurfaceInfo& surface = tissue->surfaces[scene.patient.organs.size() + t];
     std::vector<training::VesselRole>& roles = description.tube_roles.emplace_back();
     for (std::uint32_t k = 0; k < surface.node_count; ++k) {
       roles.push_back(vessels->anatomy.roles[vessels->map.Find(t, vessels->map.arcs[t][k]).vessel]);
       const bool is_duct = scene.patient.tubes[t].kind == anatomy::TubeKind::kDuct;
-      if (is_duct && !training::MayBeDivided(roles.back())) main_ducts.push_back(surface.first_node + k);
+      if (!training::MayBeDivided(roles.back()))
+        (is_duct ? main_ducts : main_arteries).push_back(surface.first_node + k);
     }
   }
   if (scene.operation.has_value()) {
     description.window_strands =
         MakeTriangleWindow(tissue->surfaces, tissue->strands, tissue->definition.rest, main_ducts,
-                           scene.operation->parameters.judgement.kept_fat)
+                           main_arteries, scene.operation->parameters.judgement)
             .Strands();
   }
   description.surfaces = std::move(tissue->surfaces);

@@ -36,7 +36,7 @@ void DissectionMonitor::Update(const tissue::TissueState& tissue, const surgery:
                                std::span<const surgery::OrganSurface> organs,
                                const instrument::Camera& camera) noexcept {
   const auto is_intact = [&](std::uint32_t strand) { return tissue.strand_is_intact[strand] != 0; };
-  facts_.cleared_share = anatomy_.triangle.CalcOpenShare(tissue.strand_is_intact);
+  facts_.cleared_share = anatomy_.triangle.CalcClearedShare(tissue.strand_is_intact);
 
   std::array<int, kBins> all{}, left{};
   for (std::size_t i = 0; i < bed_bins_.size(); ++i) {

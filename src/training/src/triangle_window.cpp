@@ -3,14 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace trocar::training {
 
 using math::Vec3;
 namespace {
 
-constexpr double kPatch = 0.001;  // side of a patch: half of a lobule's radius [m]
+constexpr double kPatch = 0.001;  // side of a patch by which the area is measured [m]
 
 /// A place in the triangle's plane [m].
 struct Flat {
@@ -29,13 +28,6 @@ class Plane {
  private:
   Vec3 origin_, x_, y_;
 };
-
-double DistanceToSegment(const Flat& p, const Flat& a, const Flat& b) {
-  const double dx = b.x - a.x, dy = b.y - a.y, squared = dx * dx + dy * dy;
-  const double along =
-      squared > 0.0 ? std::clamp(((p.x - a.x) * dx + (p.y - a.y) * dy) / squared, 0.0, 1.0) : 0.0;
-  return std::hypot(p.x - a.x - along * dx, p.y - a.y - along * dy);
-}
 
 bool IsInside(std::span<const Flat> outline, const Flat& p) {
   bool is_inside = false;
@@ -74,49 +66,32 @@ TriangleWindow::TriangleWindow(const TriangleBorders& borders, std::span<const T
     outline.push_back(plane.Project(borders.hepatic_duct[i]));
   for (const Vec3& p : borders.main_ducts) kept.push_back(plane.Project(p));
 
-  const std::vector<Flat> all = CutIntoPatches(outline);
-  std::vector<Flat> patches;
-  std::copy_if(all.begin(), all.end(), std::back_inserter(patches), [&](const Flat& patch) {
-    return std::none_of(kept.begin(), kept.end(), [&](const Flat& duct) {
-      return std::hypot(patch.x - duct.x, patch.y - duct.y) < settings.kept_fat;
+  const auto is_kept = [&](const Flat& p) {
+    return std::any_of(kept.begin(), kept.end(), [&](const Flat& duct) {
+      return std::hypot(p.x - duct.x, p.y - duct.y) < settings.kept_fat;
     });
-  });
-  if (patches.empty()) patches = all;
-
-  covering_.starts.assign(1, 0);
-  for (const Flat& patch : patches) {
-    for (const TriangleFat& strand : fat) {
-      const double distance =
-          DistanceToSegment(patch, plane.Project(strand.ends[0]), plane.Project(strand.ends[1]));
-      if (distance < settings.lobule_radius) covering_.values.push_back(strand.strand);
-    }
-    covering_.starts.push_back(static_cast<std::uint32_t>(covering_.values.size()));
+  };
+  const std::vector<Flat> patches = CutIntoPatches(outline);
+  const auto open = static_cast<std::size_t>(
+      std::count_if(patches.begin(), patches.end(), [&](const Flat& patch) { return !is_kept(patch); }));
+  const bool has_border = open > 0;
+  area_ = kPatch * kPatch * static_cast<double>(has_border ? open : patches.size());
+  for (const TriangleFat& strand : fat) {
+    const Vec3 middle = 0.5 * (strand.ends[0] + strand.ends[1]);
+    const Flat seen = plane.Project(middle);
+    const bool is_sheath = std::any_of(
+        borders.main_arteries.begin(), borders.main_arteries.end(),
+        [&](const Vec3& artery) { return math::Distance(middle, artery) < settings.kept_sheath; });
+    if (IsInside(outline, seen) && !(has_border && is_kept(seen)) && !is_sheath)
+      strands_.push_back(strand.strand);
   }
 }
 
-double TriangleWindow::CalcOpenShare(std::span<const std::uint8_t> is_intact) const noexcept {
-  const std::size_t count = covering_.Count();
-  if (count == 0) return 1.0;
-  std::size_t open = 0;
-  for (std::size_t patch = 0; patch < count; ++patch) {
-    const auto strands = covering_.Row(patch);
-    open += std::none_of(strands.begin(), strands.end(),
-                         [&](std::uint32_t strand) { return is_intact[strand] != 0; })
-                ? 1
-                : 0;
-  }
-  return static_cast<double>(open) / static_cast<double>(count);
-}
-
-std::vector<std::uint32_t> TriangleWindow::Strands() const {
-  std::vector<std::uint32_t> strands = covering_.values;
-  std::sort(strands.begin(), strands.end());
-  strands.erase(std::unique(strands.begin(), strands.end()), strands.end());
-  return strands;
-}
-
-double TriangleWindow::Area() const noexcept {
-  return kPatch * kPatch * static_cast<double>(covering_.Count());
+double TriangleWindow::CalcClearedShare(std::span<const std::uint8_t> is_intact) const noexcept {
+  if (strands_.empty()) return 1.0;
+  const auto left = std::count_if(strands_.begin(), strands_.end(),
+                                  [&](std::uint32_t strand) { return is_intact[strand] != 0; });
+  return 1.0 - static_cast<double>(left) / static_cast<double>(strands_.size());
 }
 
 }  // namespace trocar::training

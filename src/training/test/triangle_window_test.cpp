@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <vector>
 
 namespace trocar::training {
@@ -10,7 +11,7 @@ namespace trocar::training {
 using math::Vec3;
 namespace {
 
-constexpr TriangleWindowSettings kSettings{0.005, 0.002};
+constexpr TriangleWindowSettings kSettings{0.005, 0.003};
 
 /// A right angle between a cystic duct of 30 mm along x and a hepatic duct of 20 mm along y, which goes on downwards as
 /// the common bile duct.
@@ -33,46 +34,55 @@ std::vector<TriangleFat> MakeLump(const Vec3& middle, std::uint32_t count) {
   return fat;
 }
 
-double OpenShare(const std::vector<TriangleFat>& fat) {
+/// Share of the window's fat that is gone when a second lump is all that is left of two.
+double ClearedBut(const std::vector<TriangleFat>& left) {
+  std::vector<TriangleFat> fat = MakeLump({0.015, 0.004, 0}, 20);
+  const std::size_t gone = fat.size();
+  for (TriangleFat strand : left) {
+    strand.strand += static_cast<std::uint32_t>(gone);
+    fat.push_back(strand);
+  }
   const TriangleWindow window(MakeBorders(), fat, kSettings);
-  return window.CalcOpenShare(std::vector<std::uint8_t>(fat.size(), 1));
+  std::vector<std::uint8_t> is_intact(fat.size(), 1);
+  std::fill(is_intact.begin(), is_intact.begin() + static_cast<std::ptrdiff_t>(gone), std::uint8_t{0});
+  return window.CalcClearedShare(is_intact);
 }
 
 TEST(TriangleWindow, IsTheTriangleLessTheBorderBesideTheMainDuct) {
   const TriangleWindow window(MakeBorders(), {}, kSettings);
   // what is left is a triangle of 25 mm by 16.7 mm
   EXPECT_NEAR(window.Area(), 0.5 * 0.025 * 0.025 * 20 / 30, 15e-6);
-  EXPECT_EQ(window.CalcOpenShare({}), 1.0);
+  EXPECT_EQ(window.CalcClearedShare({}), 1.0);
 }
 
-TEST(TriangleWindow, ALumpOverTheTriangleNearTheMainDuctCovers) {
-  // 7 mm beside the hepatic duct
-  const double open = OpenShare(MakeLump({0.007, 0.006, 0}, 20));
-  EXPECT_LT(open, 0.95);
-  EXPECT_GT(open, 0.6);
+TEST(TriangleWindow, ALumpOverTheTriangleNearTheMainDuctCounts) {
+  // 7 mm beside the hepatic duct, where the rule once left fat out
+  EXPECT_NEAR(ClearedBut(MakeLump({0.007, 0.006, 0}, 20)), 0.5, 0.2);
 }
 
 TEST(TriangleWindow, WhatLiesBeforeOrBehindCoversAlike) {
-  const double open = OpenShare(MakeLump({0.010, 0.004, 0}, 10));
-  EXPECT_LT(open, 1.0);
-  EXPECT_EQ(OpenShare(MakeLump({0.010, 0.004, 0.008}, 10)), open);
-  EXPECT_EQ(OpenShare(MakeLump({0.010, 0.004, -0.008}, 10)), open);
+  const double cleared = ClearedBut(MakeLump({0.010, 0.004, 0}, 10));
+  EXPECT_LT(cleared, 0.8);
+  EXPECT_EQ(ClearedBut(MakeLump({0.010, 0.004, 0.008}, 10)), cleared);
+  EXPECT_EQ(ClearedBut(MakeLump({0.010, 0.004, -0.008}, 10)), cleared);
 }
 
 TEST(TriangleWindow, FatOnAndBeyondTheMainDuctAndBelowTheCysticDuctMayStay) {
-  EXPECT_EQ(OpenShare(MakeLump({0, 0.010, 0}, 20)), 1.0);
-  EXPECT_EQ(OpenShare(MakeLump({-0.010, 0.010, 0}, 20)), 1.0);
-  EXPECT_EQ(OpenShare(MakeLump({0.015, -0.006, 0}, 20)), 1.0);
+  EXPECT_EQ(ClearedBut(MakeLump({0, 0.010, 0}, 20)), 1.0);
+  EXPECT_EQ(ClearedBut(MakeLump({-0.010, 0.010, 0}, 20)), 1.0);
+  EXPECT_EQ(ClearedBut(MakeLump({0.015, -0.006, 0}, 20)), 1.0);
 }
 
-TEST(TriangleWindow, OpensOnlyWhenTheLastStrandOverAPatchIsDivided) {
-  const std::vector<TriangleFat> fat = MakeLump({0.010, 0.004, 0}, 2);
-  const TriangleWindow window(MakeBorders(), fat, kSettings);
-  EXPECT_EQ(window.Strands(), (std::vector<std::uint32_t>{0, 1}));
-  const double covered = 1.0 - window.CalcOpenShare(std::vector<std::uint8_t>{1, 1});
-  const double by_one = 1.0 - window.CalcOpenShare(std::vector<std::uint8_t>{0, 1});
-  EXPECT_GT(by_one, 0.5 * covered) << "one of two in the same place hides nearly as much";
-  EXPECT_EQ(window.CalcOpenShare(std::vector<std::uint8_t>{0, 0}), 1.0);
+// A lump before the artery hides the window, the sheath on it does not.
+TEST(TriangleWindow, TheSheathOfAMainArteryMayStayButNotWhatLiesBeforeIt) {
+  TriangleBorders borders = MakeBorders();
+  for (int i = 0; i <= 10; ++i) borders.main_arteries.push_back({0.006 + 0.0015 * i, 0.006, 0});
+  const std::vector<TriangleFat> fat = {{0, {Vec3{0.012, 0.0065, 0.001}, Vec3{0.012, 0.0075, 0.002}}},
+                                        {1, {Vec3{0.012, 0.006, 0.004}, Vec3{0.012, 0.006, 0.006}}}};
+  const TriangleWindow window(borders, fat, kSettings);
+  EXPECT_EQ(window.Strands(), std::vector<std::uint32_t>{1});
+  EXPECT_EQ(window.CalcClearedShare(std::vector<std::uint8_t>{1, 1}), 0.0);
+  EXPECT_EQ(window.CalcClearedShare(std::vector<std::uint8_t>{1, 0}), 1.0);
 }
 
 TEST(TriangleWindow, ATriangleNarrowerThanTheBorderIsAllWindow) {
@@ -81,14 +91,15 @@ TEST(TriangleWindow, ATriangleNarrowerThanTheBorderIsAllWindow) {
   borders.main_ducts = borders.hepatic_duct;
   const TriangleWindow window(borders, MakeLump({0.001, 0.004, 0}, 5), kSettings);
   EXPECT_GT(window.Area(), 20e-6);
-  EXPECT_LT(window.CalcOpenShare(std::vector<std::uint8_t>(5, 1)), 0.8);
+  EXPECT_EQ(window.CalcClearedShare(std::vector<std::uint8_t>(5, 1)), 0.0);
+  EXPECT_EQ(window.Strands().size(), 5u);
 }
 
 TEST(TriangleWindow, IsNoneWithoutDucts) {
   const TriangleWindow window({}, MakeLump({}, 3), kSettings);
   EXPECT_EQ(window.Area(), 0.0);
   EXPECT_TRUE(window.Strands().empty());
-  EXPECT_EQ(window.CalcOpenShare(std::vector<std::uint8_t>{1, 1, 1}), 1.0);
+  EXPECT_EQ(window.CalcClearedShare(std::vector<std::uint8_t>{1, 1, 1}), 1.0);
 }
 
 }  // namespace

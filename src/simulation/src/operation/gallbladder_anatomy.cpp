@@ -155,7 +155,9 @@ training::DissectedAnatomy MakeDissectedAnatomy(const anatomy::Patient& patient,
 
 training::TriangleWindow MakeTriangleWindow(std::span<const SurfaceInfo> surfaces,
                                             std::span<const StrandInfo> strands, std::span<const Vec3> rest,
-                                            std::span<const std::uint32_t> main_ducts, double kept_fat) {
+                                            std::span<const std::uint32_t> main_ducts,
+                                            std::span<const std::uint32_t> main_arteries,
+                                            const training::JudgementSettings& settings) {
   using Kind = StrandInfo::Kind;
   std::vector<std::uint32_t> cystic, hepatic;
   FindDucts(surfaces, rest, cystic, hepatic);
@@ -163,12 +165,13 @@ training::TriangleWindow MakeTriangleWindow(std::span<const SurfaceInfo> surface
   for (const std::uint32_t node : cystic) borders.cystic_duct.push_back(rest[node]);
   for (const std::uint32_t node : hepatic) borders.hepatic_duct.push_back(rest[node]);
   for (const std::uint32_t node : main_ducts) borders.main_ducts.push_back(rest[node]);
+  for (const std::uint32_t node : main_arteries) borders.main_arteries.push_back(rest[node]);
   std::vector<training::TriangleFat> fat;
   for (std::uint32_t i = 0; i < strands.size(); ++i) {
     if (strands[i].kind != Kind::kTriangle && strands[i].kind != Kind::kPeritoneum) continue;
     fat.push_back({i, {rest[strands[i].a], rest[strands[i].b]}});
   }
-  return {borders, fat, {kept_fat, scene::kLobuleRadius}};
+  return {borders, fat, {settings.kept_fat, settings.kept_sheath}};
 }
 
 surgery::GallstoneSettings FindGallstones(const Scene& scene) {

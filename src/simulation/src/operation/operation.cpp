@@ -101,8 +101,8 @@ core::Status Operation::MakeTubes() {
     for (std::uint32_t k = 0; k < surface.node_count; ++k) {
       const surgery::VesselPlace place = vessels_->Map().Find(t, vessels_->Map().arcs[t][k]);
       if (training::MayBeDivided(facts_.biliary.roles[place.vessel])) continue;
-      if (patient.tubes[t].kind == anatomy::TubeKind::kDuct)
-        facts_.main_ducts.push_back(surface.first_node + k);
+      const bool is_duct = patient.tubes[t].kind == anatomy::TubeKind::kDuct;
+      (is_duct ? facts_.main_ducts : facts_.main_arteries).push_back(surface.first_node + k);
     }
   }
   for (surgery::EnteringTube& tube : FindEnteringTubes(patient, made_->surfaces, strands_)) {
@@ -409,7 +409,7 @@ training::OperationJudge Operation::MakeJudge() const {
   training::DissectedAnatomy anatomy =
       MakeDissectedAnatomy(scene_->patient, tissue.surfaces, strands_, tissue.definition.rest);
   anatomy.triangle = MakeTriangleWindow(tissue.surfaces, strands_, tissue.definition.rest, facts_.main_ducts,
-                                        settings.kept_fat);
+                                        facts_.main_arteries, settings);
   return {training::DissectionMonitor(std::move(anatomy), tissue.definition.rest), facts_.gallbladder >= 0,
           settings};
 }

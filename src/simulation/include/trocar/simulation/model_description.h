@@ -25,7 +25,7 @@ struct ModelDescription {
   std::vector<Vec3> rest;             ///< (nodes) at rest, world frame [m]
   /// (tubes)(nodes of it) what the duct or artery is to the surgeon there; empty where they make no network
   std::vector<std::vector<training::VesselRole>> tube_roles;
-  /// Of an operation: strands of fat and peritoneum that cover the window of the hepatocystic triangle.
+  /// Of an operation: strands of fat and peritoneum over the window of the hepatocystic triangle.
   std::vector<std::uint32_t> window_strands;
 };
 

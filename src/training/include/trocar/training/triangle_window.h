@@ -2,9 +2,9 @@
 /// \file triangle_window.h  The window of the hepatocystic triangle: where the eye has to see through it, and which fat
 /// covers it.
 ///
-/// The triangle lies between cystic duct, common hepatic duct and the liver's edge. It is cut into patches along its
-/// plane, so that a patch is the same from the front and from behind. What lies before or behind a patch covers it,
-/// whatever else it lies near. The main ducts need not be exposed: a border beside them is no part of the window.
+/// The triangle lies between cystic duct, common hepatic duct and the liver's edge. It is seen along its normal: what
+/// lies before it hides it from the front, what lies behind it hides it from behind. Main ducts and arteries need not be
+/// exposed: a border beside the ducts is no part of the window, and the sheath of an artery in it may stay.
 /// Source: Strasberg 1995 and 2010 (criterion and borders), Sanford and Strasberg 2014 (scored on a view from the front
 /// and one from behind).
 #pragma once
@@ -15,7 +15,6 @@
 #include <span>
 #include <vector>
 
-#include "trocar/geometry/mesh_topology.h"
 #include "trocar/math/vector.h"
 
 namespace trocar::training {
@@ -24,6 +23,7 @@ namespace trocar::training {
 struct TriangleBorders {
   std::vector<math::Vec3> cystic_duct, hepatic_duct;  ///< from where they meet on
   std::vector<math::Vec3> main_ducts;                 ///< points of every duct that must stay
+  std::vector<math::Vec3> main_arteries;              ///< likewise
 };
 
 /// A strand of fat or peritoneum at rest.
@@ -33,8 +33,8 @@ struct TriangleFat {
 };
 
 struct TriangleWindowSettings {
-  double kept_fat = 0.005;       ///< beside the middle line of a main duct, which need not be cleared [m]
-  double lobule_radius = 0.002;  ///< of the fat around a strand [m]
+  double kept_fat = 0.005;     ///< beside the middle line of a main duct, as seen [m]
+  double kept_sheath = 0.003;  ///< about the middle line of a main artery [m]
 };
 
 class TriangleWindow {
@@ -45,18 +45,19 @@ class TriangleWindow {
   TriangleWindow(const TriangleBorders& borders, std::span<const TriangleFat> fat,
                  const TriangleWindowSettings& settings);
 
-  /// Share of the window that nothing covers, 0 to 1; 1 without a window [-].
+  /// Share of the strands before, in and behind the window that are divided, 0 to 1; 1 without any [-].
   /// \param is_intact  (strands) 0 for each that was divided
   /// \note Real-time safe.
-  double CalcOpenShare(std::span<const std::uint8_t> is_intact) const noexcept;
+  double CalcClearedShare(std::span<const std::uint8_t> is_intact) const noexcept;
 
-  /// Strands that cover some of it at the start, ascending.
-  std::vector<std::uint32_t> Strands() const;
-  /// Area [m^2].
-  double Area() const noexcept;
+  /// Those strands, ascending.
+  const std::vector<std::uint32_t>& Strands() const noexcept { return strands_; }
+  /// [m^2]
+  double Area() const noexcept { return area_; }
 
  private:
-  geometry::Rows covering_;  // (patches) strands
+  std::vector<std::uint32_t> strands_;
+  double area_ = 0;
 };
 
 }  // namespace trocar::training
