@@ -2,7 +2,9 @@
 #include "strand_field.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 #include "trocar/core/assert.h"
@@ -18,7 +20,6 @@ using render::Material;
 constexpr double kFibreWidth = 0.00022;                    // m, of areolar tissue
 constexpr double kAdhesionWidth = 0.0007;                  // m
 constexpr double kEndSpread = 0.0007;                      // m, of a fibre's root about its node
-constexpr double kFatRadius = 0.0021;                      // m, of a lobule, 0.7 to 1.3 times
 constexpr double kFatSpread = 0.0016;                      // m, from the strand
 constexpr double kFilmOverlap = 1.6;                       // breadth of a film in distances to its neighbour
 constexpr double kLeastFilm = 0.0010, kMostFilm = 0.0045;  // m
@@ -63,6 +64,19 @@ StrandField::StrandField(std::span<const scene::StrandInfo> strands, std::span<c
 
 void StrandField::AddTo(render::Frame& frame, const simulation::Snapshot& snapshot) const {
   const std::vector<std::uint8_t>& intact = snapshot.operation.strand_is_intact;
+  // a lobule is as full as its strands are whole: balls overlap so much that a tenth of them would look like all
+  std::vector<std::array<std::uint16_t, 2>> fat(snapshot.positions.size());  // all, intact
+  for (std::size_t i = 0; i < strands_.size(); ++i) {
+    if (strands_[i].info.kind != Kind::kTriangle) continue;
+    const bool is_intact = i >= intact.size() || intact[i] != 0;
+    for (const std::uint32_t node : {strands_[i].info.a, strands_[i].info.b}) {
+      ++fat[node][0];
+      fat[node][1] += is_intact ? 1 : 0;
+    }
+  }
+  const auto filling = [&fat](std::uint32_t node) {
+    return static_cast<double>(fat[node][1]) / static_cast<double>(std::max<std::uint16_t>(1, fat[node][0]));
+  };
   for (std::size_t i = 0; i < strands_.size(); ++i) {
     if (i < intact.size() && intact[i] == 0) continue;
     const Strand& strand = strands_[i];
@@ -81,15 +95,19 @@ void StrandField::AddTo(render::Frame& frame, const simulation::Snapshot& snapsh
       case Kind::kAdhesion:
         add_fibre(kAdhesionWidth);
         break;
-      case Kind::kTriangle:
+      case Kind::kTriangle: {
         add_fibre(kFibreWidth);
+        const double radius =
+            scene::kLobuleRadius * std::cbrt(std::min(filling(strand.info.a), filling(strand.info.b)));
         for (const double along : {0.3, 0.7}) {
           const Vec3 centre =
               math::Lerp(a, b, along + random.Uniform(-0.15, 0.15)) + PickOffset(random, kFatSpread);
-          frame.blobs.push_back({centre, kFatRadius * random.Uniform(0.7, 1.3), Material::kFat,
+          // 0.7 to 1.3 times a lobule
+          frame.blobs.push_back({centre, radius * random.Uniform(0.7, 1.3), Material::kFat,
                                  3 * seed + (along < 0.5 ? 0U : 1U)});
         }
         break;
+      }
       case Kind::kPeritoneum:
         frame.fibres.push_back({a, b, strand.breadth, 0.3 * wave, Material::kFilm, 3 * seed});
         break;
