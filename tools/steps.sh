@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# Shared by ./run, ./test and .ci/run, which source it. Expects $root, the repository.
+# Shared by ./run, ./test, .ci/run and tools/install-python, which source it. Expects $root, the repository.
 
 say() { printf '\n== %s\n' "$*"; }
 

@@ -44,6 +44,14 @@ TEST(Layers, EveryIncludeOfTheBenchmarksFollowsAnArrow) {
   EXPECT_GT(looked_at, 20);
 }
 
+TEST(Layers, EveryIncludeOfThePythonPackageFollowsAnArrow) {
+  int looked_at = 0;
+  for (const Breach& breach : FindBreachesOfModule(ReadLayers(), kRoot, "python", &looked_at)) {
+    ADD_FAILURE() << breach.file << ":" << breach.line << ": " << breach.what;
+  }
+  EXPECT_GE(looked_at, 6);
+}
+
 std::vector<Restriction> ReadRestrictions() {
   const auto text = core::ReadFile(kRoot / "tools/layers.txt");
   EXPECT_TRUE(text.ok()) << text.error().Text();

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "trocar/app/window_settings.h"
 #include "trocar/core/version.h"
 #include "trocar/device/force_device_spec.h"
 #include "trocar/editor/contour_script.h"
@@ -105,6 +106,9 @@ void ChooseRecordings(bool is_off, Options& options) {
 }
 
 void AddRun(CLI::App& app, Options& options) {
+  app.add_option("--settings", options.settings,
+                 "File that keeps the window's settings (default: window.json beside devices.json in "
+                 "~/.config/trocar; none with --screenshot)");
   app.add_flag("--fullscreen", options.is_fullscreen, "Start in full screen (F11 switches)");
   app.add_flag("--demonstration", options.is_demonstration,
                "Start with the demonstration: the script moves both hands");
@@ -246,6 +250,8 @@ core::Result<CommandLine> ParseCommandLine(int argc, const char* const* argv) {
   if (const core::Status set = SetAxes(axes, command.contours.series); !set) return set.error();
   command.patient_editor.tool = *editor::FindEditorTool(tool);
   ChooseRecordings(keeps_none, command.options);
+  if (command.options.settings.empty() && command.options.run.IsAttended())
+    command.options.settings = FindWindowSettings();
   command.contours.run = command.patient_editor.run = command.options.run;
   return command;
 }

@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 
+#include "trocar/app/level_horizon.h"
 #include "trocar/app/pointer_map.h"
 #include "trocar/device/force_device_spec.h"
 #include "trocar/session/hand_joints.h"
@@ -22,6 +24,11 @@ using session::SampleOf;
 constexpr double kLookDistance = 0.08;
 /// Part of a shaft that stays outside for the hand [m].
 constexpr double kHandlePart = 0.03;
+/// A mouse feels no resistance: its hand goes at most so far ahead of the tool that something stops, and is then taken back
+/// a little, so that turning round answers at once [m].
+constexpr double kMostLead = 0.025, kLeadKept = 0.020;
+/// A scope bent by less than this is straight [rad].
+constexpr double kStraight = 1e-6;
 
 device::MouseKeyboardSettings DeviceSettings(const scene::Scene& scene) {
   device::MouseKeyboardSettings settings;
@@ -69,7 +76,7 @@ void SessionControl::PlaceAtHome() {
 }
 
 void SessionControl::GoOnFrom(const scene::Input& last) {
-  const simulation::Snapshot& snapshot = runner_.Latest();
+  const simulation::Snapshot& snapshot = Look();
   device_.ReleaseAll();
   for (const Channel hand : {device::kLeftHand, device::kRightHand})
     device_.Place(hand, SampleOf(snapshot.instruments[hand].joints));
@@ -87,7 +94,7 @@ void SessionControl::LetExpertGoOn() {
 }
 
 const simulation::Snapshot& SessionControl::Advance(double dt) {
-  const simulation::Snapshot& snapshot = runner_.Latest();
+  const simulation::Snapshot& snapshot = Look();
   time_ = snapshot.time;
   if (haptic_loop_ != nullptr) haptic_record_.Add(since_start_.Seconds(), haptic_loop_->Latest());
   if (server_ != nullptr && snapshot.tick != served_tick_) {
@@ -108,16 +115,16 @@ const simulation::Snapshot& SessionControl::Advance(double dt) {
 
   std::array<HandSample, device::kChannelCount> samples;
   if (!runner_.IsPaused()) {
+    LimitLead(snapshot);
+    const math::Pose X_world_view = CalcView(snapshot);
     device_.Read(samples);
     for (const Channel channel : {device::kLeftHand, device::kRightHand, device::kLaparoscope})
-      device_.SetPointerMap(channel,
-                            CalcPointerMap(JointsOf(samples[channel]), snapshot.X_world_laparoscope));
+      device_.SetPointerMap(channel, CalcPointerMap(JointsOf(samples[channel]), X_world_view));
     const Channel chosen = device_.GetChosen();
     const math::Vec3 p_world_followed = chosen == device::kLaparoscope
-                                            ? snapshot.X_world_laparoscope * math::Vec3{0, 0, -kLookDistance}
+                                            ? X_world_view * math::Vec3{0, 0, -kLookDistance}
                                             : snapshot.instruments[chosen].X_world_tool.translation;
-    device_.SetMetresPerPixel(
-        CalcMetresPerPixel(snapshot.X_world_laparoscope, p_world_followed, field_of_view_, pixels_));
+    device_.SetMetresPerPixel(CalcMetresPerPixel(X_world_view, p_world_followed, field_of_view_, pixels_));
     device_.Advance(dt);
   }
   device_.Read(samples);
@@ -131,6 +138,24 @@ const simulation::Snapshot& SessionControl::Advance(double dt) {
   return snapshot;
 }
 
+math::Pose SessionControl::CalcView(const simulation::Snapshot& snapshot) const {
+  const bool is_straight = std::fabs(runner_.GetScene().laparoscope.view_angle) < kStraight;
+  return is_straight ? LevelHorizon(snapshot.X_world_laparoscope) : snapshot.X_world_laparoscope;
+}
+
+void SessionControl::LimitLead(const simulation::Snapshot& snapshot) {
+  const Channel chosen = device_.GetChosen();
+  if (chosen == device::kLaparoscope || is_demonstration_) return;
+  const simulation::InstrumentSnapshot& seen = snapshot.instruments[chosen];
+  const math::Vec3 lead = seen.X_world_device.translation - seen.X_world_tool.translation;
+  const double length = math::Norm(lead);
+  if (!(length > kMostLead)) return;
+  const math::Vec3 p_world = seen.X_world_tool.translation + (kLeadKept / length) * lead;
+  const TrocarJoints& joints = input_.hands[chosen];
+  device_.Place(chosen, SampleOf(instrument::FindJoints(runner_.GetScene().instruments[chosen].p_world_port,
+                                                        p_world, joints.spin, joints.jaw)));
+}
+
 void SessionControl::UseDevice(std::unique_ptr<device::Driver> driver, const device::ButtonMap& buttons) {
   session::PlaceAtHome(runner_.GetScene(), *driver);
   device_thread_.reset();  // one device's line, buttons and messages end before the other's begin
@@ -142,8 +167,8 @@ void SessionControl::UseDevice(std::unique_ptr<device::Driver> driver, const dev
 core::Status SessionControl::UseHaptics(std::string_view name, const device::ButtonMap& buttons) {
   auto driver = device::MakeForceDriver(name);
   if (!driver) return driver.error();
-  const auto settings = session::MakeHapticSettings(**driver, runner_.GetScene(),
-                                                    runner_.Latest().X_world_laparoscope, buttons);
+  const auto settings =
+      session::MakeHapticSettings(**driver, runner_.GetScene(), Look().X_world_laparoscope, buttons);
   if (!settings) return settings.error();
   auto loop = session::HapticLoop::Start(std::move(*driver), *settings, haptic_link_);
   if (!loop) return loop.error();

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trocar/app/simulator_commands.h"
 
+#include <string_view>
+
 namespace trocar::app {
 namespace {
 
@@ -76,14 +78,23 @@ constexpr SimulatorCommand kCommands[] = {
      .keys = {{{'q'}}},
      .help = {"Instruments", "", "spin the instrument (hold)"}},
     {.id = "spin-right", .action = Move(Motion::kSpinRight), .keys = {{{'e'}}}},
+    {.id = "home",
+     .action = Do(Action::kOpenHome),
+     .needs = kNoFailure,
+     .keys = {{{key::kHome}}},
+     .help = {"View", "", "home page: what you can train"},
+     .button = {ButtonSide::kStart, "Home", "What you can train, your results, and who you are"}},
     {.id = "tasks",
      .action = Do(Action::kToggleTaskList),
      .needs = kNoFailure,
+     .keys = {{Ctrl('o')}},
+     .help = {"View", "", "training tasks and operations"},
      .button = {ButtonSide::kStart, "Tasks", "Choose a training task or an operation"}},
     {.id = "recordings",
      .action = Do(Action::kToggleRecordingList),
      .needs = kNoFailure,
-     .button = {ButtonSide::kStart, "Recordings", "Watch an attempt again, and take over where you like"}},
+     .keys = {{Ctrl('l')}},
+     .help = {"View", "", "recordings: watch an attempt again, take over where you like"}},
     {.id = "run",
      .action = Do(Action::kTogglePause),
      .needs = kScene,
@@ -112,11 +123,16 @@ constexpr SimulatorCommand kCommands[] = {
     {.id = "real-trocar",
      .action = Do(Action::kToggleFulcrum),
      .keys = {{{'t'}}},
-     .help = {"Instruments", "", "real trocar: the mouse is the handle, the tip goes the other way"},
-     .button = {ButtonSide::kStart, "Real trocar",
-                "As in a real trocar: the mouse is the handle, so the tip goes the other way. Off: the tip "
-                "follows the mouse",
-                true}},
+     .help = {"Instruments", "", "real trocar: the mouse is the handle, the tip goes the other way"}},
+    {.id = "slow-motion",
+     .action = Do(Action::kToggleSlowMotion),
+     .needs = kGuidance,
+     .keys = {{{'4'}}},
+     .help = {"Simulation", "", "slow motion, for practice: such an attempt is not kept"}},
+    {.id = "left-handed",
+     .action = Do(Action::kToggleLeftHanded),
+     .keys = {{{'5'}}},
+     .help = {"Instruments", "", "left-handed: mouse buttons and letters change sides"}},
     {.id = "check-pose",
      .action = Do(Action::kCheckPose),
      .needs = kHaptics,
@@ -188,22 +204,39 @@ constexpr SimulatorCommand kCommands[] = {
      .keys = {{Ctrl('t')}},
      .help = {"View", "", "training centre: history, courses, group, exams"},
      .button = {ButtonSide::kEnd, "Training", "History, courses, groups, exams"}},
+    {.id = "tutorial",
+     .action = Do(Action::kToggleTutorial),
+     .needs = kGuidance,
+     .keys = {{{'7'}}},
+     .help = {"View", "", "tutorial: each control by doing it; again leaves it"},
+     .button = {ButtonSide::kEnd, "Tutorial", "Learn each control by doing it", true}},
+    {.id = "guides",
+     .action = Do(Action::kToggleGuides),
+     .needs = kGuidance,
+     .keys = {{{'3'}}},
+     .help = {"View", "", "guides: lines that show depth, rings round what is next"},
+     .button = {ButtonSide::kEnd, "Guides",
+                "Lines from the tips to what lies below, and rings round what comes next", true}},
+    {.id = "panel",
+     .action = Do(Action::kTogglePanel),
+     .needs = kGuidance,
+     .keys = {{{'6'}}},
+     .help = {"View", "", "numbers and settings beside the picture"},
+     .button = {ButtonSide::kEnd, "Numbers", "Forces, measures and the settings of the simulation", true}},
     {.id = "devices",
      .action = Do(Action::kOpenDevices),
      .needs = kScene,
-     .button = {ButtonSide::kEnd, "Devices",
-                "Find, try and calibrate devices, and choose what holds the instruments"}},
+     .keys = {{Ctrl('d')}},
+     .help = {"View", "", "devices: find, try and calibrate what holds the instruments"}},
     {.id = "forces",
      .action = Do(Action::kToggleForces),
      .needs = kGuidance,
      .keys = {{{'f'}}},
-     .help = {"View", "", "force arrows"},
-     .button = {ButtonSide::kEnd, "Forces", "Arrows for the forces on the instruments", true}},
+     .help = {"View", "", "force arrows"}},
     {.id = "mask",
      .action = Do(Action::kToggleMask),
      .keys = {{{'m'}}},
-     .help = {"View", "", "round mask of the laparoscope"},
-     .button = {ButtonSide::kEnd, "Mask", "Round mask of the laparoscope", true}},
+     .help = {"View", "", "round mask of the laparoscope"}},
     {.id = "fullscreen",
      .action = Do(Action::kToggleFullscreen),
      .keys = {{{key::kF11}}},
@@ -234,9 +267,36 @@ std::span<const SimulatorCommand> SimulatorCommands() noexcept {
   return kCommands;
 }
 
-std::vector<gui::KeyHelp> SimulatorHelp() {
+std::uint32_t MirrorKey(std::uint32_t keyval, KeyLayout layout) noexcept {
+  if (layout == KeyLayout::kRightHanded) return keyval;
+  // rows of the keyboard; each key changes places with the one as far from the other end
+  constexpr std::string_view kRows[] = {"qwertyuiop", "asdfghjkl;", "zxcvbnm,./"};
+  const bool is_capital = keyval >= 'A' && keyval <= 'Z';
+  const std::uint32_t letter = is_capital ? keyval - 'A' + 'a' : keyval;
+  for (const std::string_view row : kRows) {
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      if (static_cast<std::uint32_t>(row[i]) == letter)
+        return static_cast<std::uint32_t>(row[row.size() - 1 - i]);
+    }
+  }
+  return keyval;
+}
+
+std::vector<gui::KeyHelp> SimulatorHelp(KeyLayout layout) {
   constexpr const char* kGroups[] = {"Instruments", "Operation", "Laparoscope", "Simulation", "View"};
-  return MakeKeyHelp(SimulatorCommands(), kGroups);
+  std::vector<SimulatorCommand> commands(SimulatorCommands().begin(), SimulatorCommands().end());
+  for (SimulatorCommand& command : commands) {
+    for (gui::KeyStroke& stroke : command.keys) {
+      if (!stroke.control) stroke.key = MirrorKey(stroke.key, layout);
+    }
+    if (layout == KeyLayout::kRightHanded) continue;
+    if (std::string_view(command.help.gesture) == "Left button") {
+      command.help.gesture = "Right button";
+    } else if (std::string_view(command.help.gesture) == "Right button") {
+      command.help.gesture = "Left button";
+    }
+  }
+  return MakeKeyHelp(std::span<const SimulatorCommand>(commands), kGroups);
 }
 
 KeyMeaning FindKeyMeaning(std::uint32_t keyval, bool control) noexcept {
@@ -279,12 +339,6 @@ Action FindAction(device::HandAct act) noexcept {
 bool WorksInPanel(Action action) noexcept {
   const SimulatorCommand* command = FindCommand(SimulatorCommands(), Do(action));
   return command != nullptr && command->works_everywhere;
-}
-
-const char* ShortHelp() noexcept {
-  return "1 2 Tab hand  ·  mouse, wheel move  ·  left / right button close / open jaws  ·  Q E spin  ·  "
-         "X Z tool  ·  V N current  ·  J K rinse, suck  ·  U assistant  ·  "
-         "C laparoscope  ·  Space pause  ·  H help";
 }
 
 }  // namespace trocar::app

@@ -28,12 +28,26 @@ SimulatorPresenter::SimulatorPresenter(const Options& options, const core::Stopw
       since_start_(since_start),
       screen_(&screen),
       unattended_(options),
-      loading_(std::move(on_loaded)) {}
+      loading_(std::move(on_loaded)) {
+  if (options_.settings.empty()) return;
+  LoadedWindowSettings loaded = LoadWindowSettings(options_.settings);
+  settings_ = std::move(loaded.settings);
+  if (!loaded.complaint) return;
+  core::Log(core::LogLevel::kWarning, loaded.complaint->Text());
+  // shown with the first page: the screen is not ready yet
+  page_.event = "The window's settings are the usual ones: " + loaded.complaint->Text();
+  page_.is_event_warning = true;
+  page_.home.problem = loaded.complaint;
+  options_.settings.clear();  // the file stays as it is, for whoever can mend it
+}
 
 // loading
 
 void SimulatorPresenter::Start() {
   is_closed_ = false;
+  const bool is_named = !options_.scene.empty() || !options_.task.empty() || options_.is_task_list ||
+                        options_.is_demonstration || !options_.run.IsAttended();
+  if (!start_ && !is_named) return OpenHome();
   if (start_) {
     loading_.Start([options = options_, start = *start_] { return MakeStartedSimulation(options, start); });
   } else {
@@ -45,11 +59,12 @@ void SimulatorPresenter::Start() {
 void SimulatorPresenter::FinishLoading() {
   auto simulation = loading_.Take();
   if (page_.failure || is_closed_) return;
-  if (!simulation.ok()) return Fail(simulation.error());
+  if (!simulation.ok()) return unattended_.IsOn() ? Fail(simulation.error()) : LeadOn(simulation.error());
   record::Description description =
       start_ ? start_->description : DescribeChosenScene(options_, simulation->GetScene());
   if (start_) description.player = (start_->exam ? "exam, " : "") + DescribeHands(options_);
   if (!Use(std::move(simulation).value(), std::move(description))) return;
+  KeepLast();
   if (start_) {
     page_.title = "Trocar: " + start_->title;
     if (!start_->state.empty()) GoOn();
@@ -68,7 +83,8 @@ bool SimulatorPresenter::Use(simulation::Simulation simulation, record::Descript
     return false;
   };
   std::optional<session::AttemptKeeping> keeping;
-  if (!options_.recordings.empty()) {
+  // what is tried in the tutorial is no attempt
+  if (!options_.recordings.empty() && !tutorial_.IsOn()) {
     keeping = {options_.recordings, std::move(description), {}, hooks_.on_end};
     if (hooks_.on_begin) {
       keeping->on_begin = [begin = hooks_.on_begin, step = start_ ? start_->step : centre::StepName()](
@@ -79,7 +95,7 @@ bool SimulatorPresenter::Use(simulation::Simulation simulation, record::Descript
   if (!control) return fail(control.error());
   control_ = std::move(control).value();
   has_script_ = control_->HasScript();
-  control_->SetMirrorFulcrum(is_fulcrum_mirrored_);
+  control_->SetMirrorFulcrum(settings_.is_fulcrum_mirrored);
   if (const auto used = UseDevices(); !used) return fail(used.error());
   if (options_.igtl_port >= 0) {
     if (const core::Status served = control_->Serve(options_.igtl_port); !served) return fail(served.error());
@@ -147,13 +163,15 @@ void SimulatorPresenter::OpenRecordingList() {
   screen_->FillRecordingList(options_.recordings.empty() ? record::FindRecordingFolder()
                                                          : options_.recordings);
   screen_->ReleasePointer();
-  page_.is_result_open = page_.is_help_open = page_.is_task_list_open = false;
+  page_.is_help_open = false;
+  CloseCards();
   page_.is_recording_list_open = true;
   Refresh();
 }
 
 void SimulatorPresenter::CloseRecordingList() {
   page_.is_recording_list_open = false;
+  if (control_ == nullptr && !loading_.IsRunning()) page_.is_home_open = true;
   Refresh();
 }
 
@@ -218,8 +236,10 @@ void SimulatorPresenter::Drop() {
   stages_ = {};
   error_log_ = {};
   seen_events_ = 0;
+  asked_ = Action::kNone;
+  attempt_seconds_ = 0;
   is_result_known_ = is_attempt_over_ = false;
-  page_.is_task_list_open = page_.is_result_open = page_.is_recording_list_open = false;
+  CloseCards();
 }
 
 // commands
@@ -270,12 +290,23 @@ gui::ButtonState SimulatorPresenter::FindButton(const SimulatorCommand& command)
                    (control_ != nullptr && control_->Haptics() != nullptr);
   state.label = command.button.label;
   if (action == Action::kTogglePause && control_ != nullptr && !control_->IsPaused()) state.label = "Pause";
-  state.tip = gui::TipText(command.button.tip, command.keys);
+  std::array<gui::KeyStroke, 2> keys = command.keys;
+  for (gui::KeyStroke& stroke : keys) {
+    if (!stroke.control) stroke.key = MirrorKey(stroke.key, Layout());
+  }
+  state.tip = gui::TipText(command.button.tip, keys);
   return state;
 }
 
 void SimulatorPresenter::Do(Action action) {
   if (!IsEnabled(action)) return Refresh();
+  if (MustAsk(action)) {
+    asked_ = action;
+    screen_->ReleasePointer();
+    if (control_ != nullptr) control_->SetPaused(true);
+    return Refresh();
+  }
+  asked_ = Action::kNone;
   const Handler* handler = gui::FindHandler(Handlers(), action);
   if (handler == nullptr) {
     screen_->DoInWindow(action);
@@ -310,10 +341,32 @@ std::span<const SimulatorPresenter::Handler> SimulatorPresenter::Handlers() noex
       {Action::kCheckPose, [](Self& self) { self.control_->Haptics()->BeginCheckPose(); }},
       {Action::kToggleFulcrum,
        [](Self& self) {
-         self.is_fulcrum_mirrored_ = !self.is_fulcrum_mirrored_;
-         if (self.control_ != nullptr) self.control_->SetMirrorFulcrum(self.is_fulcrum_mirrored_);
+         self.settings_.is_fulcrum_mirrored = !self.settings_.is_fulcrum_mirrored;
+         if (self.control_ != nullptr) self.control_->SetMirrorFulcrum(self.settings_.is_fulcrum_mirrored);
+         self.KeepSettings();
        },
-       [](const Self& self) { return self.is_fulcrum_mirrored_; }},
+       [](const Self& self) { return self.settings_.is_fulcrum_mirrored; }},
+      {Action::kToggleLeftHanded, [](Self& self) { self.ToggleLeftHanded(); },
+       [](const Self& self) { return self.settings_.is_left_handed; }},
+      {Action::kToggleSlowMotion,
+       [](Self& self) { self.control_->SetSlowMotion(!self.control_->IsSlowMotion()); },
+       [](const Self& self) { return self.control_ != nullptr && self.control_->IsSlowMotion(); }},
+      // first meeting
+      {Action::kOpenHome, [](Self& self) { self.OpenHome(); }},
+      {Action::kToggleTutorial, [](Self& self) { self.ToggleTutorial(); },
+       [](const Self& self) { return self.tutorial_.IsOn(); }},
+      {Action::kToggleGuides,
+       [](Self& self) {
+         self.settings_.has_guides = !self.settings_.has_guides;
+         self.KeepSettings();
+       },
+       [](const Self& self) { return self.settings_.has_guides; }},
+      {Action::kTogglePanel,
+       [](Self& self) {
+         self.settings_.has_panel = !self.settings_.has_panel;
+         self.KeepSettings();
+       },
+       [](const Self& self) { return self.settings_.has_panel; }},
       // the picture and what lies over it
       {Action::kToggleForces,
        [](Self& self) { self.page_.view.has_force_arrows = !self.page_.view.has_force_arrows; },
@@ -343,7 +396,9 @@ void SimulatorPresenter::ReleaseAll() {
   if (control_ != nullptr && control_->Haptics() != nullptr) control_->Haptics()->Stop();
   screen_->ReleasePointer();
   screen_->FocusPicture();
-  page_.is_help_open = page_.is_task_list_open = page_.is_result_open = page_.is_recording_list_open = false;
+  page_.is_help_open = false;
+  CloseCards();
+  if (control_ == nullptr && !loading_.IsRunning()) page_.is_home_open = true;  // there is nothing else
 }
 
 void SimulatorPresenter::SetPaused(bool is_paused) {
@@ -373,13 +428,15 @@ void SimulatorPresenter::OpenTaskList() {
   if (page_.failure) return;
   if (const core::Status filled = screen_->FillTaskList(); !filled) return Fail(filled.error());
   screen_->ReleasePointer();
-  page_.is_result_open = page_.is_help_open = page_.is_recording_list_open = false;
+  page_.is_help_open = false;
+  CloseCards();
   page_.is_task_list_open = true;
   Refresh();
 }
 
 void SimulatorPresenter::CloseTaskList() {
   page_.is_task_list_open = false;
+  if (control_ == nullptr && !loading_.IsRunning()) page_.is_home_open = true;
   Refresh();
 }
 
@@ -463,6 +520,8 @@ SimulatorPresenter::FrameWork SimulatorPresenter::Advance(double now, double fie
   control_->SetPicture(field_of_view, pixels);
   const simulation::Snapshot& snapshot = control_->Advance(dt);
   work.snapshot = &snapshot;
+  attempt_seconds_ = snapshot.time;
+  FollowTutorial(snapshot);
   stages_.Add(snapshot);
   ShowEvents(snapshot);
   if (control_->GetScene().task) {
@@ -553,23 +612,14 @@ void SimulatorPresenter::ShowHaptics() {
 }
 
 void SimulatorPresenter::Refresh() {
-  Situation situation;
-  situation.is_loaded = control_ != nullptr;
-  if (control_ != nullptr) {
-    situation.is_paused = control_->IsPaused();
-    situation.is_demonstration = control_->IsDemonstration();
-    situation.is_demonstration_over = control_->IsDemonstrationOver();
-    situation.is_laparoscope_held = control_->IsLaparoscopeHeld();
-    situation.has_camera_holder = control_->HasCameraHolder();
-    situation.is_right_hand = control_->GetHand() == device::kRightHand;
-    situation.is_fulcrum_mirrored = control_->IsFulcrumMirrored();
-  }
-  situation.is_pointer_taken = screen_->IsPointerTaken();
+  const Situation situation = MakeSituation();
   page_.hint = page_.failure ? "" : HintText(situation);
   page_.badge = page_.failure ? "" : BadgeText(situation);
+  page_.mode = page_.failure ? "" : ModeText(situation);
   page_.state = page_.failure ? "Stopped" : StateText(situation);
   if (control_ != nullptr)
     page_.state += "   ·   " + std::to_string(static_cast<int>(PictureRate() + 0.5)) + " pictures/s";
+  RefreshFirstMeeting();
   screen_->Show(page_);
 }
 

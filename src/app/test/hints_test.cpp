@@ -8,15 +8,18 @@ namespace {
 
 TEST(Hints, LeadThroughTheFirstMinute) {
   Situation now;
+  EXPECT_EQ(HintText(now), "") << "at home";
+  EXPECT_EQ(StateText(now), "");
+  now.is_loading = true;
   EXPECT_EQ(HintText(now), "Loading the patient …");
   EXPECT_EQ(BadgeText(now), "");
   now.is_loaded = true;
-  EXPECT_EQ(HintText(now), "Paused. Space starts.");
+  EXPECT_EQ(HintText(now), "Paused. Space goes on.");
   now.is_paused = false;
   EXPECT_NE(HintText(now).find("Click into the picture"), std::string::npos);
   now.is_pointer_taken = true;
   EXPECT_EQ(HintText(now), "") << "who operates is not disturbed";
-  EXPECT_EQ(BadgeText(now), "Right hand  ·  Esc gives the mouse back");
+  EXPECT_EQ(BadgeText(now), "Right hand");
   now.is_laparoscope_held = true;
   EXPECT_EQ(BadgeText(now), "Laparoscope");
 }
@@ -34,6 +37,42 @@ TEST(Hints, DemonstrationSaysHowToTakeOver) {
 TEST(Hints, BadgeNamesTheHandAndTheTrocarMode) {
   Situation now{.is_loaded = true, .is_paused = false, .is_right_hand = false, .is_fulcrum_mirrored = true};
   EXPECT_EQ(BadgeText(now), "Left hand  ·  real trocar");
+}
+
+TEST(Hints, BadgeSaysWhetherJawsAreOpenClosedOrHold) {
+  Situation now{.is_loaded = true, .is_paused = false, .left_jaws = "holds ring 1", .right_jaws = "open"};
+  EXPECT_EQ(BadgeText(now), "Left hand holds ring 1  ·  ▶ Right hand open");
+  now.is_right_hand = false;
+  now.is_slow = true;
+  EXPECT_EQ(BadgeText(now), "▶ Left hand holds ring 1  ·  Right hand open  ·  slow motion");
+}
+
+// Every mode says in one line what mouse and keys do.
+TEST(Hints, EveryModeFitsInALine) {
+  int said = 0;
+  for (int bits = 0; bits < 512; ++bits) {
+    Situation now;
+    now.is_loaded = (bits & 1) != 0;
+    now.is_paused = (bits & 2) != 0;
+    now.is_demonstration = (bits & 4) != 0;
+    now.is_laparoscope_held = (bits & 8) != 0;
+    now.is_pointer_taken = (bits & 16) != 0;
+    now.is_right_hand = (bits & 32) != 0;
+    now.is_left_handed = (bits & 64) != 0;
+    now.has_tools = (bits & 128) != 0;
+    if ((bits & 256) != 0) now.device = "Gamepad";
+    const std::string text = ModeText(now);
+    EXPECT_FALSE(text.empty());
+    std::size_t characters = 0;
+    for (const char c : text) characters += (c & 0xc0) != 0x80 ? 1 : 0;
+    EXPECT_LE(characters, kLongestMode) << text;
+    ++said;
+  }
+  EXPECT_EQ(said, 512);
+  Situation now{.is_loaded = true, .is_paused = false, .is_pointer_taken = true};
+  EXPECT_NE(ModeText(now).find("left button closes, right opens"), std::string::npos);
+  now.is_left_handed = true;
+  EXPECT_NE(ModeText(now).find("right button closes, left opens"), std::string::npos);
 }
 
 }  // namespace

@@ -116,7 +116,9 @@ int Check(const Screen& screen) {
   screen.Press(XK_space);  // the hands are ready
   std::this_thread::sleep_for(seconds(4));
   screen.Save("7_operating.png");
-  screen.Press(XK_q, XK_Control_L);
+  screen.Press(XK_q, XK_Control_L);  // asks
+  std::this_thread::sleep_for(seconds(1));
+  if (screen.Find().size() > 1) screen.Press(XK_q, XK_Control_L);
   if (!screen.WaitUntilClosed(*taken)) return Fail("the window does not close");
   screen.Focus(replay);
   screen.Press(XK_w, XK_Control_L);

@@ -52,6 +52,44 @@ TEST_F(SessionControlTest, StartsPausedAtHomeWithTheScenesSettings) {
   EXPECT_EQ(control->GetSettings(), control->GetScene().settings);
 }
 
+// A mouse feels no board: its hand goes not far below, and comes back at once.
+TEST_F(SessionControlTest, TheHandStaysNearAToolThatSomethingStops) {
+  Open(std::string(TROCAR_SOURCE_DIR) + "/scenes/tasks/peg_transfer.json");
+  control->SetPaused(false);
+  control->Device().SetKey(Motion::kIn, true);
+  const auto lead = [](const simulation::Snapshot& now) {
+    const auto& hand = now.instruments[scene::kRight];
+    return math::Distance(hand.X_world_device.translation, hand.X_world_tool.translation);
+  };
+  ASSERT_TRUE(AdvanceUntil([&](const simulation::Snapshot& now) { return lead(now) > 0.018; })) << "pressed";
+  double most = 0;
+  for (int frame = 0; frame < 120; ++frame) {
+    most = std::max(most, lead(control->Advance(1.0 / 60)));
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  EXPECT_LT(most, 0.032);
+  control->Device().SetKey(Motion::kIn, false);
+  const double depth = control->GetInput().hands[scene::kRight].depth;
+  control->Device().SetKey(Motion::kOut, true);
+  EXPECT_TRUE(AdvanceUntil([&](const simulation::Snapshot& now) { return lead(now) < 1e-3; }));
+  EXPECT_LT(control->GetInput().hands[scene::kRight].depth, depth);
+}
+
+// Looking round with a straight scope does not roll the picture, and the tip goes up with the mouse as it is seen.
+TEST_F(SessionControlTest, TheHorizonStaysLevelWithAStraightScope) {
+  Open(std::string(TROCAR_SOURCE_DIR) + "/scenes/tasks/peg_transfer.json");
+  control->SetPaused(false);
+  control->HoldLaparoscope(true);
+  control->Device().SetKey(Motion::kRight, true);
+  ASSERT_TRUE(
+      AdvanceUntil([](const simulation::Snapshot& now) { return std::fabs(now.laparoscope.pan) > 0.25; }));
+  control->Device().SetKey(Motion::kRight, false);
+  const simulation::Snapshot& now = control->Now();
+  const math::Vec3 side{1, 0, 0};
+  EXPECT_GT(std::fabs(math::Rotate(now.X_world_laparoscope.rotation, side).z), 0.1) << "the scope has rolled";
+  EXPECT_NEAR(math::Rotate(control->CalcView(now).rotation, side).z, 0.0, 1e-9);
+}
+
 TEST_F(SessionControlTest, PedalsBelongToTheChosenHandAndAPauseReleasesThem) {
   control->SetPaused(false);
   control->ChooseHand(device::kLeftHand);
@@ -180,7 +218,7 @@ TEST_F(SessionControlTest, HeldKeyMovesTheToolOfTheSimulation) {
   control->ChooseHand(device::kLeftHand);
   ASSERT_TRUE(AdvanceUntil([](const simulation::Snapshot& now) { return now.tick > 2; }));
   const math::Vec3 start = control->Advance(0).instruments[scene::kLeft].X_world_tool.translation;
-  const math::Pose X_world_view = control->Advance(0).X_world_laparoscope;
+  const math::Pose X_world_view = control->CalcView(control->Advance(0));
   const math::Vec3 right = math::Rotate(X_world_view.rotation, {1, 0, 0});
   control->Device().SetKey(Motion::kRight, true);
   EXPECT_TRUE(AdvanceUntil([&](const simulation::Snapshot& now) {

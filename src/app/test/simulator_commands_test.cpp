@@ -59,6 +59,27 @@ TEST(SimulatorCommands, NamedKeysDoWhatTheHelpSays) {
   EXPECT_EQ(FindKeyMeaning('r', true).action, Action::kNone) << "Ctrl+R is no reset";
 }
 
+TEST(SimulatorCommands, LeftHandedLettersChangePlaces) {
+  std::set<std::uint32_t> reached;
+  for (std::uint32_t key = 0; key < 0x10000; ++key) {
+    const std::uint32_t mirrored = MirrorKey(key, KeyLayout::kLeftHanded);
+    EXPECT_EQ(MirrorKey(key, KeyLayout::kRightHanded), key);
+    if (key >= 'A' && key <= 'Z') continue;  // as the small letter
+    EXPECT_EQ(MirrorKey(mirrored, KeyLayout::kLeftHanded), key);
+    EXPECT_TRUE(reached.insert(mirrored).second) << key;
+  }
+  EXPECT_EQ(MirrorKey('q', KeyLayout::kLeftHanded), static_cast<std::uint32_t>('p'));
+  EXPECT_EQ(MirrorKey('G', KeyLayout::kLeftHanded), static_cast<std::uint32_t>('h'));
+  bool is_closing_right = false, has_spin = false;
+  for (const gui::KeyHelp& row : SimulatorHelp(KeyLayout::kLeftHanded)) {
+    is_closing_right = is_closing_right || (row.keys.find("Right button") != std::string::npos &&
+                                            row.meaning.find("close the jaws") != std::string::npos);
+    has_spin = has_spin || (row.keys == "P   I" && row.meaning.find("spin") != std::string::npos);
+  }
+  EXPECT_TRUE(is_closing_right);
+  EXPECT_TRUE(has_spin);
+}
+
 TEST(SimulatorCommands, EveryActOfAButtonIsAnActionOfItsOwn) {
   std::set<Action> actions;
   for (std::size_t i = 1; i < device::kActCount; ++i) {

@@ -37,6 +37,14 @@ struct FakeScreen : SimulatorScreen {
   bool IsPointerTaken() const override { return is_pointer_taken; }
   void FocusPicture() override { ++focused; }
   void DoInWindow(Action action) override { done.push_back(action); }
+  core::Result<std::string> BeSomebody(const std::optional<std::string>& text) override {
+    if (text) who = *text;
+    return who;
+  }
+  void OpenCourse(const std::string& course) override { courses.push_back(course); }
+
+  std::string who;
+  std::vector<std::string> courses;
 
   SimulatorPage page;
   SessionControl* control = nullptr;
@@ -305,12 +313,132 @@ TEST_F(Presenter, SaysWhatCannotBeLoaded) {
   options.scene = "no_such_scene.json";
   Begin(options);
   Load();
-  ASSERT_TRUE(screen_.page.failure);
-  EXPECT_EQ(screen_.page.failure->code, core::ErrorCode::kFileMissing);
-  EXPECT_EQ(screen_.page.state, "Stopped");
-  EXPECT_FALSE(IsEnabled("tasks"));
-  EXPECT_TRUE(screen_.done.empty()) << "a person reads the card";
+  EXPECT_FALSE(screen_.page.failure) << "it leads on";
+  EXPECT_TRUE(screen_.page.is_home_open);
+  ASSERT_TRUE(screen_.page.home.problem);
+  EXPECT_EQ(screen_.page.home.problem->code, core::ErrorCode::kFileMissing);
+  EXPECT_TRUE(IsEnabled("tasks"));
+  EXPECT_TRUE(screen_.done.empty());
   presenter_->Do(Action::kReset);  // nothing to do it with
+  presenter_->Choose(HomeChoice::kBasicSkills);
+  EXPECT_TRUE(screen_.page.is_task_list_open);
+  presenter_->CloseTaskList();
+  EXPECT_TRUE(screen_.page.is_home_open) << "there is nothing else";
+  TaskRequest request;
+  request.task = "peg_transfer";
+  presenter_->Open(request);
+  Load();
+  EXPECT_NE(screen_.control, nullptr);
+  EXPECT_FALSE(screen_.page.is_home_open);
+}
+
+TEST_F(Presenter, BeginsAtHomeWhereNothingIsNamed) {
+  screen_.who = "Nobody in particular";
+  Begin({});
+  EXPECT_TRUE(screen_.page.is_home_open);
+  EXPECT_TRUE(screen_.page.home.is_tutorial_suggested);
+  EXPECT_EQ(screen_.page.home.who, "Nobody in particular");
+  presenter_->BeSomebody("Anna Berg");
+  EXPECT_EQ(screen_.page.home.who, "Anna Berg");
+  presenter_->Choose(HomeChoice::kParts);
+  EXPECT_EQ(screen_.courses, std::vector<std::string>{"cholecystectomy"});
+  presenter_->Choose(HomeChoice::kResults);
+  EXPECT_EQ(screen_.done, std::vector{Action::kOpenCentre});
+  presenter_->Do(Action::kReleasePointer);
+  EXPECT_TRUE(screen_.page.is_home_open) << "Esc leads nowhere";
+}
+
+TEST_F(Presenter, SaysThatItsSettingsCannotBeReadAndLeavesThem) {
+  const test::TemporaryFolder folder;
+  Options options;
+  options.settings = folder.Path() / "window.json";
+  ASSERT_TRUE(core::WriteFile(options.settings, "{broken").ok());
+  Begin(options);
+  ASSERT_TRUE(screen_.page.home.problem);
+  EXPECT_TRUE(screen_.page.is_event_warning);
+  presenter_->Do(Action::kToggleLeftHanded);
+  EXPECT_TRUE(screen_.page.is_left_handed) << "it works, and is not kept";
+  EXPECT_EQ(*core::ReadFile(options.settings), "{broken");
+}
+
+TEST_F(Presenter, KeepsSettingsAndContinues) {
+  const test::TemporaryFolder folder;
+  Options options;
+  options.settings = folder.Path() / "window.json";
+  options.task = "peg_transfer";
+  options.threads = 1;
+  Begin(options);
+  Load();
+  presenter_->Do(Action::kToggleLeftHanded);
+  presenter_->Do(Action::kToggleGuides);
+  presenter_->Do(Action::kTogglePanel);
+  EXPECT_TRUE(screen_.page.is_panel_open);
+  presenter_.reset();
+  Options again;
+  again.settings = options.settings;
+  again.threads = 1;
+  Begin(again);
+  EXPECT_TRUE(screen_.page.is_left_handed);
+  EXPECT_FALSE(presenter_->HasGuides());
+  EXPECT_EQ(screen_.page.home.last, "peg transfer");
+  presenter_->Choose(HomeChoice::kContinue);
+  Load();
+  EXPECT_EQ(presenter_->GetOptions().task, "peg_transfer");
+  EXPECT_TRUE(screen_.page.is_panel_open);
+}
+
+TEST_F(Presenter, AsksBeforeAnAttemptIsThrownAway) {
+  BeginTask();
+  presenter_->Do(Action::kQuit);
+  EXPECT_EQ(screen_.done, std::vector{Action::kQuit}) << "nothing was done yet";
+  screen_.done.clear();
+  for (int i = 0; i < 1500 && presenter_->Advance(0.01 * i, 1.0, 500).snapshot->time < 5.5; ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  for (const Action action : {Action::kQuit, Action::kToggleDemonstration}) {
+    presenter_->Do(action);
+    EXPECT_FALSE(screen_.page.question.empty());
+    EXPECT_TRUE(screen_.control->IsPaused());
+    EXPECT_TRUE(screen_.done.empty());
+    EXPECT_FALSE(screen_.control->IsDemonstration());
+    presenter_->Answer(false);
+    EXPECT_TRUE(screen_.page.question.empty());
+  }
+  presenter_->Do(Action::kToggleDemonstration);
+  presenter_->Do(Action::kReleasePointer);
+  EXPECT_TRUE(screen_.page.question.empty()) << "Esc is no";
+  presenter_->Do(Action::kQuit);
+  presenter_->Do(Action::kQuit);  // once more is yes
+  EXPECT_EQ(screen_.done, std::vector{Action::kQuit});
+}
+
+TEST_F(Presenter, TheTutorialIsNoAttemptAndGoesOnWhereItWasLeft) {
+  const test::TemporaryFolder folder;
+  Options options;
+  options.settings = folder.Path() / "window.json";
+  options.recordings = folder.Path() / "kept";
+  options.threads = 1;
+  Begin(options);
+  presenter_->Choose(HomeChoice::kTutorial);
+  Load();
+  EXPECT_NE(screen_.page.tutorial.find("1 of 10"), std::string::npos);
+  screen_.is_pointer_taken = true;
+  presenter_->Advance(1.0, 1.0, 500);
+  EXPECT_NE(screen_.page.tutorial.find("2 of 10"), std::string::npos);
+  EXPECT_FALSE(screen_.control->Recording().has_value());
+  presenter_->Do(Action::kToggleTutorial);
+  EXPECT_EQ(screen_.page.tutorial, "");
+  presenter_.reset();
+  Begin(options);
+  EXPECT_EQ(screen_.page.home.tutorial, "Go on: 2 of 10");
+}
+
+TEST_F(Presenter, SlowMotionIsPracticeOnly) {
+  BeginTask();
+  presenter_->Do(Action::kToggleSlowMotion);
+  EXPECT_TRUE(screen_.control->IsSlowMotion());
+  EXPECT_NE(screen_.page.badge.find("slow motion"), std::string::npos);
+  presenter_->Do(Action::kToggleSlowMotion);
+  EXPECT_FALSE(screen_.control->IsSlowMotion());
 }
 
 TEST_F(Presenter, ClosesARunThatNobodyWatchesWhenItFails) {

@@ -173,6 +173,22 @@ class Screen {
       std::this_thread::sleep_for(milliseconds(20));
     }
   }
+  void Hold(KeySym key, milliseconds time) const {
+    const KeyCode code = XKeysymToKeycode(display_, key);
+    XTestFakeKeyEvent(display_, code, True, 20);
+    XSync(display_, False);
+    std::this_thread::sleep_for(time);
+    XTestFakeKeyEvent(display_, code, False, 0);
+    XSync(display_, False);
+    std::this_thread::sleep_for(milliseconds(200));
+  }
+  /// The wheel. \param step  1: away from the person, -1: towards
+  void Turn(int step) const {
+    const unsigned button = step > 0 ? 4 : 5;
+    XTestFakeButtonEvent(display_, button, True, 0);
+    XTestFakeButtonEvent(display_, button, False, 5);
+    XSync(display_, False);
+  }
   WindowPicture Look() const {
     const int width = DisplayWidth(display_, 0), height = DisplayHeight(display_, 0);
     XImage* image = XGetImage(display_, DefaultRootWindow(display_), 0, 0, static_cast<unsigned>(width),

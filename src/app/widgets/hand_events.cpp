@@ -85,6 +85,12 @@ bool HandEvents::IsFocusInPanel() const {
   return focus != nullptr && focus != &picture_ && !focus->is_ancestor(picture_);
 }
 
+/// In a field for text, letters are letters.
+bool HandEvents::IsTyping() const {
+  const Gtk::Widget* focus = window_.get_focus();
+  return focus != nullptr && GTK_IS_EDITABLE(focus->gobj());
+}
+
 std::vector<std::string> HandEvents::SetKeys(const std::map<std::string, device::HandAct>& keys) {
   std::vector<std::string> refused;
   own_keys_.clear();
@@ -102,7 +108,7 @@ std::vector<std::string> HandEvents::SetKeys(const std::map<std::string, device:
 KeyMeaning HandEvents::FindMeaning(guint keyval, bool control) const {
   const auto own = own_keys_.find(gdk_keyval_to_lower(keyval));
   if (own != own_keys_.end() && !control) return {own->second, device::Motion::kCount};
-  return FindKeyMeaning(keyval, control);
+  return FindKeyMeaning(control ? keyval : MirrorKey(keyval, layout_), control);
 }
 
 bool HandEvents::OnKeyPressed(guint keyval, guint, Gdk::ModifierType state) {
@@ -111,6 +117,9 @@ bool HandEvents::OnKeyPressed(guint keyval, guint, Gdk::ModifierType state) {
   const KeyMeaning meaning = FindMeaning(keyval, (state & ModifierType::CONTROL_MASK) != ModifierType{});
   if (meaning.action == Action::kNone) return false;
   if (IsFocusInPanel() && !WorksInPanel(meaning.action)) return false;
+  const bool is_letter =
+      (state & ModifierType::CONTROL_MASK) == ModifierType{} && gdk_keyval_to_unicode(keyval) > ' ';
+  if (is_letter && IsTyping()) return false;
   const bool is_repeat = std::find(held_.begin(), held_.end(), keyval) != held_.end();
   if (is_repeat) return true;
   held_.push_back(keyval);
@@ -176,8 +185,11 @@ void HandEvents::OnButton(guint button, bool is_down) {
     return;
   }
   if (control_->IsPaused()) is_down = false;
-  if (button == kLeftButton) control_->Device().SetKey(device::Motion::kCloseJaw, is_down);
-  if (button == kRightButton) control_->Device().SetKey(device::Motion::kOpenJaw, is_down);
+  const bool is_mirrored = layout_ == KeyLayout::kLeftHanded;
+  const guint closing = is_mirrored ? kRightButton : kLeftButton;
+  const guint opening = is_mirrored ? kLeftButton : kRightButton;
+  if (button == closing) control_->Device().SetKey(device::Motion::kCloseJaw, is_down);
+  if (button == opening) control_->Device().SetKey(device::Motion::kOpenJaw, is_down);
 }
 
 }  // namespace trocar::app

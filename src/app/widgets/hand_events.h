@@ -28,6 +28,8 @@ class HandEvents {
   /// \param keys  by name, as GDK has it: "F13", "b"
   /// \return the names that are no key, or Escape, which always stops the force
   std::vector<std::string> SetKeys(const std::map<std::string, device::HandAct>& keys);
+  /// Left-handed, letters and mouse buttons change sides.
+  void SetLayout(KeyLayout layout) { layout_ = layout; }
   bool IsPointerTaken() const { return is_taken_; }
   void ReleasePointer();
   /// Everything but motion.
@@ -43,12 +45,14 @@ class HandEvents {
   void OnButton(guint button, bool is_down);
   void ReleaseAll();
   bool IsFocusInPanel() const;
+  bool IsTyping() const;
   KeyMeaning FindMeaning(guint keyval, bool control) const;
 
   Gtk::Window& window_;
   Gtk::Widget& picture_;
   Gtk::Widget& panel_;
   SessionControl* control_ = nullptr;
+  KeyLayout layout_ = KeyLayout::kRightHanded;
   bool is_taken_ = false;
   bool has_last_ = false;
   double last_x_ = 0, last_y_ = 0;  // [pixels]

@@ -119,6 +119,21 @@ class Program {
   std::unique_ptr<SimulatorWindow> MakeSimulator(SimulatorWindow::Beginning beginning) {
     SimulatorServices services;
     services.open_centre = [this] { OpenCentre().Presenter().Open(centre::PageKind::kHistory); };
+    services.open_course = [this](const std::string& course) {
+      centre::CentrePresenter& presenter = OpenCentre().Presenter();
+      presenter.Open(centre::PageKind::kCourses);
+      presenter.ChooseCourse(course);
+    };
+    services.be_somebody = [this](const std::optional<std::string>& text) -> core::Result<std::string> {
+      if (text) {
+        auto pseudonym = centre::FindPseudonym(access_, *text);
+        if (!pseudonym.ok()) return pseudonym.error();
+        access_.person = std::move(*pseudonym);
+        if (centre_ != nullptr) centre_->Presenter().BeSomebody(access_.person);
+        if (filing_ != nullptr) filing_->SetPerson(access_.person);
+      }
+      return centre::NameOf(access_, access_.person);
+    };
     services.open_attempt = [this](const std::filesystem::path& recording,
                                    const std::optional<centre::ExamSitting>& exam) {
       centre::CentrePresenter& presenter = OpenCentre().Presenter();

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "picture.h"
 
+#include <epoxy/gl.h>
+
+#include "trocar/gui/software_renderer.h"
+
 namespace trocar::app {
 
 Picture::Picture() {
@@ -46,7 +50,11 @@ void Picture::on_realize() {
           std::string("the window gets no OpenGL 3.3 (") + error->message +
               "): install the graphics driver, or Mesa's software driver (package libgl1-mesa-dri); "
               "LIBGL_ALWAYS_SOFTWARE=1 forces the latter"});
+    return;
   }
+  make_current();
+  const auto* renderer = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
+  is_drawn_by_processor_ = renderer != nullptr && gui::IsSoftwareRenderer(renderer);
 }
 
 void Picture::on_unrealize() {
@@ -68,7 +76,9 @@ bool Picture::on_render(const Glib::RefPtr<Gdk::GLContext>&) {
     }
     view_.emplace(std::move(made).value());
   }
-  if (view_->GetOptions() != options_) view_->SetOptions(options_);
+  view::ViewOptions options = options_;
+  if (is_drawn_by_processor_) options.quality = render::Quality::kLow;
+  if (view_->GetOptions() != options) view_->SetOptions(options);
   view_->SetOverlay(overlay_);
   view_->Update(*snapshot_);
   view_->Draw(get_width() * get_scale_factor(), get_height() * get_scale_factor());

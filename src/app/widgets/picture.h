@@ -52,6 +52,7 @@ class Picture : public Gtk::GLArea {
   const simulation::Snapshot* snapshot_ = nullptr;
   std::optional<view::LaparoscopeView> view_;
   view::ViewOptions options_;
+  bool is_drawn_by_processor_ = false;
   view::Overlay overlay_;
   bool has_failed_ = false;
   sigc::signal<void()> signal_drawn_;

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "play_screenshot.h"
+#include "trocar/app/guides.h"
 #include "trocar/gui/labels.h"
 
 namespace trocar::app {
@@ -60,27 +61,57 @@ void SimulatorWindow::MakeOverlay() {
   hint_.add_css_class("hint");
   hint_.set_halign(Gtk::Align::CENTER);
   hint_.set_valign(Gtk::Align::END);
-  for (Gtk::Label* label : {&badge_, &hint_}) label->set_can_target(false);
-  for (Gtk::Widget* card :
-       {static_cast<Gtk::Widget*>(&help_card_), static_cast<Gtk::Widget*>(&chooser_),
-        static_cast<Gtk::Widget*>(&recordings_), static_cast<Gtk::Widget*>(&result_card_)})
+  progress_.add_css_class("badge");
+  progress_.set_halign(Gtk::Align::END);
+  progress_.set_valign(Gtk::Align::START);
+  tutorial_.add_css_class("hint");
+  tutorial_.add_css_class("warning");
+  tutorial_.set_halign(Gtk::Align::CENTER);
+  tutorial_.set_valign(Gtk::Align::START);
+  tutorial_.set_margin_top(56);
+  MakeQuestion();
+  const std::initializer_list<Gtk::Widget*> labels = {&badge_, &progress_, &tutorial_, &hint_};
+  const std::initializer_list<Gtk::Widget*> cards = {
+      &home_, &help_card_, &mirrored_help_card_, &chooser_, &recordings_, &result_card_, &question_};
+  for (Gtk::Widget* label : labels) {
+    label->set_can_target(false);
+    overlay_.add_overlay(*label);
+  }
+  overlay_.add_overlay(failure_card_);
+  for (Gtk::Widget* card : cards) {
     card->set_visible(false);
-  for (Gtk::Widget* widget :
-       {static_cast<Gtk::Widget*>(&badge_), static_cast<Gtk::Widget*>(&hint_),
-        static_cast<Gtk::Widget*>(&failure_card_), static_cast<Gtk::Widget*>(&help_card_),
-        static_cast<Gtk::Widget*>(&chooser_), static_cast<Gtk::Widget*>(&recordings_),
-        static_cast<Gtk::Widget*>(&result_card_)})
-    overlay_.add_overlay(*widget);
+    overlay_.add_overlay(*card);
+  }
+}
+
+/// Before an attempt is thrown away.
+void SimulatorWindow::MakeQuestion() {
+  question_.add_css_class("help");
+  question_.set_halign(Gtk::Align::CENTER);
+  question_.set_valign(Gtk::Align::CENTER);
+  question_.set_spacing(12);
+  asked_.add_css_class("key-text");
+  auto* answers = Gtk::make_managed<Gtk::Box>();
+  answers->set_spacing(8);
+  answers->set_halign(Gtk::Align::END);
+  auto* no = Gtk::make_managed<Gtk::Button>("No, go on");
+  no->add_css_class("primary");
+  auto* yes = Gtk::make_managed<Gtk::Button>("Yes");
+  no->signal_clicked().connect([this] { presenter_->Answer(false); });
+  yes->signal_clicked().connect([this] { presenter_->Answer(true); });
+  answers->append(*yes);
+  answers->append(*no);
+  question_.append(asked_);
+  question_.append(*answers);
 }
 
 void SimulatorWindow::MakeContent() {
   MakeOverlay();
-  auto* keys = Gtk::make_managed<Gtk::Label>(ShortHelp());
-  keys->add_css_class("keys");
-  keys->set_ellipsize(Pango::EllipsizeMode::END);
+  mode_.add_css_class("keys");
+  mode_.set_wrap(true);  // in a narrow window two lines, never a part of one
   auto* left = Gtk::make_managed<Gtk::Box>(Gtk::Orientation::VERTICAL);
   left->append(overlay_);
-  left->append(*keys);
+  left->append(mode_);
 
   auto* middle = Gtk::make_managed<Gtk::Box>();
   middle->append(*left);
@@ -117,6 +148,8 @@ void SimulatorWindow::MakeRoutes() {
   picture_.SignalDrawn().connect([this] { presenter_->CountPicture(); });
   picture_.SignalFailed().connect([this](const core::Error& error) { presenter_->Fail(error); });
   picture_.add_tick_callback(sigc::mem_fun(*this, &SimulatorWindow::OnFrame));
+  home_.SignalChosen().connect([this](HomeChoice choice) { presenter_->Choose(choice); });
+  home_.SignalPerson().connect([this](const std::string& text) { presenter_->BeSomebody(text); });
   loaded_.connect([this] { presenter_->FinishLoading(); });
   // other windows may keep the program alive: what nobody sees any more does not run on
   signal_close_request().connect(
@@ -141,6 +174,12 @@ bool SimulatorWindow::OnFrame(const Glib::RefPtr<Gdk::FrameClock>& clock) {
                                         picture_.FieldOfView(), picture_.CirclePixels());
   if (work.snapshot == nullptr) return true;
   picture_.SetSnapshot(work.snapshot);
+  SessionControl& control = *presenter_->Control();
+  view::Overlay overlay;
+  overlay.X_world_camera = control.CalcView(*work.snapshot);
+  if (presenter_->HasGuides())
+    overlay.trails = MakeGuides(control.GetScene(), control.Surfaces(), *work.snapshot);
+  picture_.SetOverlay(std::move(overlay));
   picture_.queue_render();
   if (work.are_forces_due) {
     panel_.Presenter().ShowState(*work.snapshot);
@@ -161,7 +200,18 @@ void SimulatorWindow::Show(const SimulatorPage& page) {
   if (get_title().raw() != page.title) set_title(page.title);
   bar_.Show([this](const SimulatorCommand& command) { return presenter_->FindButton(command); });
   if (picture_.GetOptions() != page.view) picture_.SetOptions(page.view);
-  help_card_.set_visible(page.is_help_open);
+  const KeyLayout layout = presenter_->Layout();
+  hands_->SetLayout(layout);
+  help_card_.set_visible(page.is_help_open && layout == KeyLayout::kRightHanded);
+  mirrored_help_card_.set_visible(page.is_help_open && layout == KeyLayout::kLeftHanded);
+  if (page.is_home_open) home_.Show(page.home);
+  home_.set_visible(page.is_home_open);
+  panel_.set_visible(page.is_panel_open);
+  asked_.set_text(page.question);
+  question_.set_visible(!page.question.empty());
+  mode_.set_text(page.mode);
+  gui::SetTextOrHide(progress_, page.progress);
+  gui::SetTextOrHide(tutorial_, page.tutorial);
   chooser_.set_visible(page.is_task_list_open);
   recordings_.set_visible(page.is_recording_list_open);
   result_card_.set_visible(page.is_result_open);
@@ -221,6 +271,14 @@ void SimulatorWindow::DoInWindow(Action action) {
     default:
       break;
   }
+}
+
+core::Result<std::string> SimulatorWindow::BeSomebody(const std::optional<std::string>& text) {
+  return services_.be_somebody ? services_.be_somebody(text) : std::string();
+}
+
+void SimulatorWindow::OpenCourse(const std::string& course) {
+  if (services_.open_course) services_.open_course(course);
 }
 
 void SimulatorWindow::OpenReplay(const std::filesystem::path& recording) {

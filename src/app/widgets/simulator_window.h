@@ -12,6 +12,7 @@
 #include "device_page.h"
 #include "failure_card.h"
 #include "hand_events.h"
+#include "home_card.h"
 #include "panel.h"
 #include "picture.h"
 #include "recording_chooser.h"
@@ -31,6 +32,9 @@ struct SimulatorServices {
   /// \param exam  that was sat, or nothing
   std::function<void(const std::filesystem::path& recording, const std::optional<centre::ExamSitting>& exam)>
       open_attempt;
+  std::function<void(const std::string& course)> open_course;
+  /// As SimulatorScreen::BeSomebody.
+  std::function<core::Result<std::string>(const std::optional<std::string>&)> be_somebody;
   AttemptHooks hooks;
 };
 
@@ -53,6 +57,7 @@ class SimulatorWindow : public Gtk::ApplicationWindow, private SimulatorScreen {
  private:
   void MakeContent();
   void MakeOverlay();
+  void MakeQuestion();
   void MakeRoutes();
   bool OnFrame(const Glib::RefPtr<Gdk::FrameClock>& clock);
   void OpenDevices();
@@ -73,6 +78,8 @@ class SimulatorWindow : public Gtk::ApplicationWindow, private SimulatorScreen {
   bool IsPointerTaken() const override { return hands_->IsPointerTaken(); }
   void FocusPicture() override { picture_.grab_focus(); }
   void DoInWindow(Action action) override;
+  core::Result<std::string> BeSomebody(const std::optional<std::string>& text) override;
+  void OpenCourse(const std::string& course) override;
 
   SimulatorServices services_;
   gui::Tips tips_;
@@ -80,12 +87,14 @@ class SimulatorWindow : public Gtk::ApplicationWindow, private SimulatorScreen {
   Gtk::Overlay overlay_;
   Picture picture_;
   Panel panel_;
-  gui::HelpCard help_card_{SimulatorHelp()};
+  gui::HelpCard help_card_{SimulatorHelp()}, mirrored_help_card_{SimulatorHelp(KeyLayout::kLeftHanded)};
+  HomeCard home_;
+  Gtk::Box question_{Gtk::Orientation::VERTICAL};
   TaskChooser chooser_;
   RecordingChooser recordings_{"Watch"};
   ResultCard result_card_;
   FailureCard failure_card_;
-  Gtk::Label badge_, hint_, event_, state_, haptics_;
+  Gtk::Label badge_, hint_, event_, state_, haptics_, mode_, progress_, tutorial_, asked_;
   std::unique_ptr<HandEvents> hands_;
   Glib::Dispatcher loaded_;
   gui::FileDialog file_dialog_;

@@ -26,6 +26,7 @@ struct Outcome {
 void AddWindowCommand(CLI::App& app, Outcome& outcome);
 void AddDemoCommand(CLI::App& app, Outcome& outcome);
 void AddPlayCommand(CLI::App& app, Outcome& outcome);
+void AddPicturesCommand(CLI::App& app, Outcome& outcome);
 void AddSimulateCommand(CLI::App& app, Outcome& outcome);
 void AddReportCommand(CLI::App& app, Outcome& outcome);
 void AddRatingCommand(CLI::App& app, Outcome& outcome);

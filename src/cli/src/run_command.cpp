@@ -78,6 +78,7 @@ int ParseAndRun(int argc, char** argv) {
   AddWindowCommand(app, outcome);
   AddDemoCommand(app, outcome);
   AddPlayCommand(app, outcome);
+  AddPicturesCommand(app, outcome);
   AddSimulateCommand(app, outcome);
   AddReplayCommand(app, outcome);
   AddCoachCommand(app, outcome);

@@ -124,6 +124,9 @@ constexpr ErrorEntry kTable[] = {
     {ErrorCode::kCertificateRecording, "E-EXM-007", "a recording is not the one that a certificate is of"},
     {ErrorCode::kCertificateOutcome, "E-EXM-008", "a recording does not come to what its certificate says"},
     {ErrorCode::kKeyLocked, "E-EXM-009", "an encrypted private key was not opened"},
+    {ErrorCode::kActionInvalid, "E-ENV-001", "an action for an environment has a wrong shape or value"},
+    {ErrorCode::kEnvironmentState, "E-ENV-002",
+     "an environment or pool was called out of turn, or is closed"},
 };
 static_assert(std::size(kTable) == static_cast<std::size_t>(ErrorCode::kCount));
 

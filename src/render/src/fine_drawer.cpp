@@ -19,6 +19,8 @@ constexpr std::uint32_t kBlobSides = 7;
 /// Least half width in pixels: thinner ones would come and go from frame to frame.
 constexpr double kLeastPixels = 0.6;
 /// A fibre of fewer pixels is straight, one of fewer than the second has one bend.
+constexpr double kSheetWidth = 0.0009;                     // m; wider ones are sheets
+constexpr double kThreadWaist = 0.50, kSheetWaist = 0.45;  // width in the middle, in that of the roots
 constexpr double kStraightPixels = 12, kBentPixels = 40;
 
 std::uint32_t Mix(std::uint32_t seed) {
@@ -130,23 +132,32 @@ void FineDrawer::DrawFibres(const Looks& looks, std::span<const Fibre> fibres, c
     }
     const auto first = static_cast<std::uint32_t>(corners_.size());
     const std::array<float, 4> albedo = PickColour(look, fibre.seed);
+    // a sheet is clear at its edges, so that it seems to run on into its neighbours; a thread is not
+    const bool is_sheet = fibre.width > kSheetWidth;
     const std::array<float, 3> passing = {look.emission, look.opacity, 1.0f};
+    const std::array<float, 3> edge_passing = {look.emission, is_sheet ? 0.0f : look.opacity, 1.0f};
     for (std::size_t i = 0; i <= steps; ++i) {
       const Vec3 tangent = centres[std::min(i + 1, steps)] - centres[i > 0 ? i - 1 : 0];
       const Vec3 to_eye = -math::Normalized(centres[i]),
                  across = math::Normalized(math::Cross(tangent, to_eye), u);
       // broader where it takes root
       const double root = 2.0 * static_cast<double>(i) / static_cast<double>(steps) - 1.0;
-      const double half = std::max(0.5 * fibre.width * (0.62 + 0.38 * root * root),
+      const double waist = is_sheet ? kSheetWaist : kThreadWaist;
+      const double half = std::max(0.5 * fibre.width * (waist + (1.0 - waist) * root * root),
                                    kLeastPixels * -centres[i].z / viewport.focal);
-      for (const double side : {-1.0, 1.0}) {
+      for (const double side : {-1.0, 0.0, 1.0}) {
+        if (side == 0.0 && !is_sheet) continue;
         corners_.push_back({ToFloat(centres[i] + (side * half) * across),
-                            ToFloat((0.85 * side) * across + 0.53 * to_eye), albedo, passing});
+                            ToFloat((0.85 * side) * across + 0.53 * to_eye), albedo,
+                            side == 0.0 ? passing : edge_passing});
       }
     }
+    const std::uint32_t columns = is_sheet ? 3 : 2;
     for (std::uint32_t i = 0; i < steps; ++i) {
-      const std::uint32_t at = first + 2 * i;
-      indices_.insert(indices_.end(), {at, at + 1, at + 2, at + 1, at + 3, at + 2});
+      for (std::uint32_t column = 0; column + 1 < columns; ++column) {
+        const std::uint32_t at = first + columns * i + column, next = at + columns;
+        indices_.insert(indices_.end(), {at, at + 1, next, at + 1, next + 1, next});
+      }
     }
   }
   Draw();

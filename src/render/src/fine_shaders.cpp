@@ -30,7 +30,7 @@ void main() {
   vec2 pixel = (1.0 + gl_Position.xy / gl_Position.w) * u_mask.xy;
   v_colour = WithBrightness(Finish(2.1 * colour, a_position, pixel));
   // a film is clearest where it is seen square on
-  if (a_passing.y < 1.0) v_colour.a = min(1.0, a_passing.y * (1.3 - 0.5 * facing) + 0.6 * a_albedo.a * wet);
+  if (a_passing.y < 1.0) v_colour.a = min(1.0, a_passing.y * (1.3 - 0.5 * facing + 2.0 * a_albedo.a * wet));
 }
 )";
 

@@ -31,10 +31,32 @@ void SetShades(const Program& program, const std::vector<Shade>& shades, const m
   program.Set("u_shade_count", static_cast<int>(count));
 }
 
+/// The lamp in the lid, the rings that it finds in its way, and what metal mirrors in such a box.
+void SetOverhead(const Program& program, const Looks& looks, const Frame& frame,
+                 const math::Pose& X_camera_world) {
+  const Vec3 up = math::Rotate(X_camera_world.rotation, frame.overhead.up);
+  const bool is_on = frame.overhead.power > 0.0;
+  glUniform4f(program.Find("u_overhead"), ToFloat(up.x), ToFloat(up.y), ToFloat(up.z),
+              ToFloat(std::max(0.0, frame.overhead.power)));
+  std::array<float, 4 * kMaxRingShades> rings{};
+  const std::size_t count = is_on ? std::min(frame.ring_shades.size(), kMaxRingShades) : 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Vec3 centre = X_camera_world * frame.ring_shades[i].centre;
+    for (int k = 0; k < 3; ++k) rings[4 * i + static_cast<std::size_t>(k)] = ToFloat(centre[k]);
+    rings[4 * i + 3] = ToFloat(frame.ring_shades[i].radius);
+  }
+  glUniform4fv(program.Find("u_ring"), kMaxRingShades, rings.data());
+  program.Set("u_ring_count", static_cast<int>(count));
+  program.Set("u_ring_section", ToFloat(std::max(1e-4, frame.ring_section)));
+  const auto& room =
+      looks.effects[static_cast<std::size_t>(is_on ? Effect::kMirroredBox : Effect::kMirroredTissue)];
+  program.Set("u_room", Colour{ToFloat(room[0]), ToFloat(room[1]), ToFloat(room[2])});
+}
+
 }  // namespace
 
 void SetFrameUniforms(const Program& program, const Looks& looks, const Frame& frame,
-                      const math::Pose& X_camera_world, int width, int height) {
+                      const math::Pose& X_camera_world, double exposure, int width, int height) {
   glUseProgram(program.name);
   program.Set("u_clip_from_camera", MakeProjection(frame.camera, width, height));
   program.Set("u_light", ToFloat(looks.light_offset));
@@ -43,7 +65,9 @@ void SetFrameUniforms(const Program& program, const Looks& looks, const Frame& f
                                               ToFloat(std::fmod(0.6 * frame.time, 200.0 * M_PI))});
   program.Set("u_mask", Colour{ToFloat(0.5 * width), ToFloat(0.5 * height),
                                frame.has_mask ? ToFloat(0.5 * kMaskDiameter * height) : 0.0f});
+  program.Set("u_exposure", ToFloat(exposure));
   SetShades(program, frame.shades, X_camera_world);
+  SetOverhead(program, looks, frame, X_camera_world);
 }
 
 }  // namespace trocar::render

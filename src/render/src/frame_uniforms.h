@@ -10,8 +10,9 @@
 namespace trocar::render {
 
 /// Sets them in one program, which becomes the current one.
+/// \param exposure       of the camera [-]
 /// \param width, height  of the picture [pixels]
 void SetFrameUniforms(const Program& program, const Looks& looks, const Frame& frame,
-                      const math::Pose& X_camera_world, int width, int height);
+                      const math::Pose& X_camera_world, double exposure, int width, int height);
 
 }  // namespace trocar::render

@@ -94,9 +94,10 @@ void ReadEffects(const JsonView& view, Looks& looks) {
 
 std::string_view EffectName(Effect effect) noexcept {
   static constexpr std::string_view kNames[] = {
-      "smoke",           "blanched",      "scorched",        "charred",       "blood_film",
-      "bile_film",       "thin_rim",      "shade",           "bounce",        "tissue_highlight",
-      "metal_highlight", "mirrored_lens", "mirrored_tissue", "mirrored_wall", "strand_shade"};
+      "smoke",           "blanched",         "scorched",        "charred",
+      "blood_film",      "bile_film",        "thin_rim",        "shade",
+      "bounce",          "tissue_highlight", "metal_highlight", "mirrored_lens",
+      "mirrored_tissue", "mirrored_wall",    "mirrored_box",    "strand_shade"};
   static_assert(std::size(kNames) == static_cast<std::size_t>(Effect::kCount));
   return kNames[static_cast<std::size_t>(effect)];
 }
@@ -106,7 +107,7 @@ core::Result<Looks> ReadLooks(const std::filesystem::path& path) {
   if (!document.ok()) return document.error();
   const JsonView root = document->Root();
   root.AllowOnly({"format", "version", "about", "light_offset_m", "smoke_per_m", "pigment", "trainer_light",
-                  "effects_linear", "materials"});
+                  "trainer_lid", "effects_linear", "materials"});
   if (root.Text("format") != "trocar-looks") root.Complain("format must be \"trocar-looks\"");
   if (root.Integer("version") != 1) root.Complain("version must be 1");
   Looks looks;
@@ -114,6 +115,7 @@ core::Result<Looks> ReadLooks(const std::filesystem::path& path) {
     looks.light_offset = {offset[0], offset[1], offset[2]};
   looks.smoke = root.Number("smoke_per_m", {0, 10000});
   looks.trainer_light = root.Number("trainer_light", {0, 100});
+  looks.trainer_lid = root.Number("trainer_lid", {0, 100});
   ReadEffects(root.Object("effects_linear"), looks);
   const JsonView pigment = root.Object("pigment");
   pigment.AllowOnly({"blood", "bile", "rinse"});

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "camera_matrices.h"
+#include "exposure_meter.h"
 #include "fine_drawer.h"
 #include "frame_uniforms.h"
 #include "puddle_look.h"
@@ -50,6 +51,7 @@ struct Renderer::Content {
   SurfaceDrawer surface_drawer;
   FineDrawer fine;
   RoundPicture round;
+  ExposureMeter meter;
   SurfaceId rod, cone, puddle;
 
   core::Status Make() {
@@ -61,7 +63,9 @@ struct Renderer::Content {
     };
     rod = add(MakeUnitRod(), Material::kForce);
     cone = add(MakeUnitCone(), Material::kForce);
-    puddle = add(MakeUnitPuddle(), Material::kBlood);
+    // the last but one ring and the shore are clearer: a meniscus has no edge
+    const geometry::TriangleMesh flat = MakeUnitPuddle();
+    puddle = surfaces.Add(flat.triangles, flat.positions, Material::kBlood, CalcPuddleOpacity());
     return {};
   }
 
@@ -71,10 +75,10 @@ struct Renderer::Content {
     surface_drawer.Draw(surface, X_camera_surface, scale, looks[surface.material]);
   }
 
-  void SetUniforms(const Frame& frame, const Pose& X_camera_world, int width, int height) {
+  void SetUniforms(const Frame& frame, const Pose& X_camera_world, double exposure, int width, int height) {
     for (const Program& program : surface_drawer.GetPrograms())
-      SetFrameUniforms(program, looks, frame, X_camera_world, width, height);
-    SetFrameUniforms(fine.GetProgram(), looks, frame, X_camera_world, width, height);
+      SetFrameUniforms(program, looks, frame, X_camera_world, exposure, width, height);
+    SetFrameUniforms(fine.GetProgram(), looks, frame, X_camera_world, exposure, width, height);
   }
 
   void DrawScene(const Frame& frame, const Viewport& viewport) {
@@ -192,8 +196,23 @@ void Renderer::Draw(const Frame& frame, int width, int height) {
   }
   GLint target = 0;
   glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &target);
+  if (!frame.has_automatic_exposure) {
+    DrawOnce(frame, frame.exposure, static_cast<unsigned>(target), width, height);
+    return;
+  }
+  do {
+    const double exposure = frame.exposure * c.meter.Next(frame.time);
+    DrawOnce(frame, exposure, static_cast<unsigned>(target), width, height);
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, static_cast<GLuint>(target));
+    c.meter.Look(frame.has_mask, width, height);
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, static_cast<GLuint>(target));
+  } while (c.meter.IsToBeDrawnAgain());
+}
+
+void Renderer::DrawOnce(const Frame& frame, double exposure, unsigned target, int width, int height) {
+  Content& c = *content_;
   const bool is_smoothed = frame.has_smooth_edges && !frame.is_wireframe && c.round.Bind(width, height);
-  if (!is_smoothed) glBindFramebuffer(GL_DRAW_FRAMEBUFFER, static_cast<GLuint>(target));
+  if (!is_smoothed) glBindFramebuffer(GL_DRAW_FRAMEBUFFER, target);
   ClearPicture(frame, width, height);
   // first, at the near plane: what lies outside the circle is then never shaded
   glDisable(GL_CULL_FACE);
@@ -204,14 +223,14 @@ void Renderer::Draw(const Frame& frame, int width, int height) {
   glFrontFace(GL_CCW);
   if (frame.is_wireframe) glPolygonMode(GL_FRONT_AND_BACK, GL_LINE);
   const Pose X_camera_world = math::Inverse(frame.camera.X_world_camera);
-  c.SetUniforms(frame, X_camera_world, width, height);
-  c.surface_drawer.Begin();
+  c.SetUniforms(frame, X_camera_world, exposure, width, height);
+  c.surface_drawer.Begin(frame.quality);
   c.DrawScene(frame, {X_camera_world, CalcFocalLength(frame.camera, height), 0.5 * width, 0.5 * height});
   if (frame.is_wireframe) glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
   SurfaceDrawer::End();
   if (is_smoothed) {
-    glBindFramebuffer(GL_FRAMEBUFFER, static_cast<GLuint>(target));
-    c.round.DrawSmoothed(frame.has_mask, width, height);
+    glBindFramebuffer(GL_FRAMEBUFFER, target);
+    c.round.DrawSmoothed(frame.has_mask, frame.quality == Quality::kHigh, width, height);
   }
   glBindVertexArray(0);
   glUseProgram(0);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "round_picture.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>
@@ -14,6 +15,7 @@ namespace trocar::render {
 namespace {
 
 constexpr int kSegments = 128;
+constexpr int kGlowShrink = 8;                  // pixels of the picture to one of the glow
 constexpr int kFanFirst = 2 * (kSegments + 1);  // vertex after the ring's strip
 
 /// Half axes of the picture's circle in clip space.
@@ -24,7 +26,9 @@ std::array<float, 2> CalcCircle(int width, int height) {
 }  // namespace
 
 RoundPicture::~RoundPicture() {
-  for (const Program& program : {mask_, smooth_}) glDeleteProgram(program.name);
+  for (const Program& program : {mask_, smooth_, smooth_fine_, glow_}) glDeleteProgram(program.name);
+  glDeleteFramebuffers(2, glow_framebuffers_.data());
+  glDeleteTextures(2, glow_pictures_.data());
   glDeleteVertexArrays(1, &ring_);
   glDeleteBuffers(1, &ring_vertices_);
   glDeleteFramebuffers(1, &framebuffer_);
@@ -36,9 +40,15 @@ core::Status RoundPicture::Make() {
   const auto mask = MakeProgram({kMaskVertexShader}, {kMaskFragmentShader});
   if (!mask) return mask.error();
   mask_ = *mask;
-  const auto smooth = MakeProgram({kScreenVertexShader}, {kSmoothFragmentShader});
+  const auto smooth = MakeProgram({kScreenVertexShader}, {kVersion, kSmoothFragmentShader});
   if (!smooth) return smooth.error();
   smooth_ = *smooth;
+  const auto smooth_fine = MakeProgram({kScreenVertexShader}, {kVersion, kFine, kSmoothFragmentShader});
+  if (!smooth_fine) return smooth_fine.error();
+  smooth_fine_ = *smooth_fine;
+  const auto glow = MakeProgram({kFullVertexShader}, {kGlowFragmentShader});
+  if (!glow) return glow.error();
+  glow_ = *glow;
   MakeRing();
   return {};
 }
@@ -98,23 +108,80 @@ bool RoundPicture::Bind(int width, int height) {
   return is_complete;
 }
 
-void RoundPicture::DrawSmoothed(bool has_mask, int width, int height) {
+/// The bright parts of the own picture at an eighth of its size, blurred across and down. Leaves the target changed.
+void RoundPicture::MakeGlow(int width, int height) {
+  const int small_width = std::max(1, width / kGlowShrink), small_height = std::max(1, height / kGlowShrink);
+  if (glow_framebuffers_[0] == 0) {
+    glGenFramebuffers(2, glow_framebuffers_.data());
+    glGenTextures(2, glow_pictures_.data());
+  }
+  if (small_width != glow_width_ || small_height != glow_height_) {
+    glow_width_ = small_width, glow_height_ = small_height;
+    for (std::size_t i = 0; i < 2; ++i) {
+      glBindTexture(GL_TEXTURE_2D, glow_pictures_[i]);
+      glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, small_width, small_height, 0, GL_RGBA, GL_UNSIGNED_BYTE,
+                   nullptr);
+      for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
+        glTexParameteri(GL_TEXTURE_2D, filter, GL_LINEAR);
+      for (const GLenum wrap : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T})
+        glTexParameteri(GL_TEXTURE_2D, wrap, GL_CLAMP_TO_EDGE);
+      glBindFramebuffer(GL_FRAMEBUFFER, glow_framebuffers_[i]);
+      glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, glow_pictures_[i], 0);
+    }
+  }
+  glViewport(0, 0, small_width, small_height);
+  glUseProgram(glow_.name);
+  glow_.Set("u_picture", 0);
+  const std::array<float, 2> texel = {ToFloat(1.0 / small_width), ToFloat(1.0 / small_height)};
+  glow_.Set("u_texel", texel);
+  glBindVertexArray(ring_);
+  const auto pass = [&](std::size_t target, GLuint source, const std::array<float, 2>& step) {
+    glBindFramebuffer(GL_FRAMEBUFFER, glow_framebuffers_[target]);
+    glBindTexture(GL_TEXTURE_2D, source);
+    glow_.Set("u_step", step);
+    glDrawArrays(GL_TRIANGLE_FAN, kFanFirst, kSegments + 1);
+  };
+  pass(0, picture_, {0, 0});
+  pass(1, glow_pictures_[0], {texel[0], 0});
+  pass(0, glow_pictures_[1], {0, texel[1]});
+}
+
+void RoundPicture::DrawSmoothed(bool has_mask, bool has_glow, int width, int height) {
   glDisable(GL_DEPTH_TEST);
   glDisable(GL_CULL_FACE);
+  glActiveTexture(GL_TEXTURE0);
+  if (has_glow) {
+    GLint target = 0;
+    glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &target);
+    MakeGlow(width, height);
+    glBindFramebuffer(GL_FRAMEBUFFER, static_cast<GLuint>(target));
+    glViewport(0, 0, width, height);
+  }
   glClearColor(0, 0, 0, 1);
   glClear(GL_COLOR_BUFFER_BIT);
-  glUseProgram(smooth_.name);
-  glActiveTexture(GL_TEXTURE0);
+  const Program& smooth = has_glow ? smooth_fine_ : smooth_;
+  glUseProgram(smooth.name);
+  if (has_glow) {
+    glActiveTexture(GL_TEXTURE1);
+    glBindTexture(GL_TEXTURE_2D, glow_pictures_[0]);
+    smooth.Set("u_glow", 1);
+    glActiveTexture(GL_TEXTURE0);
+  }
   glBindTexture(GL_TEXTURE_2D, picture_);
-  smooth_.Set("u_picture", 0);
-  smooth_.Set("u_texel", std::array<float, 2>{ToFloat(1.0 / width), ToFloat(1.0 / height)});
+  smooth.Set("u_picture", 0);
+  smooth.Set("u_texel", std::array<float, 2>{ToFloat(1.0 / width), ToFloat(1.0 / height)});
   // without a mask a circle round the whole picture
   const double wide = 1.5 * std::hypot(width, height);
-  smooth_.Set("u_inner", has_mask ? CalcCircle(width, height)
-                                  : std::array<float, 2>{ToFloat(wide / width), ToFloat(wide / height)});
+  smooth.Set("u_inner", has_mask ? CalcCircle(width, height)
+                                 : std::array<float, 2>{ToFloat(wide / width), ToFloat(wide / height)});
   glBindVertexArray(ring_);
   glDrawArrays(GL_TRIANGLE_FAN, kFanFirst, kSegments + 1);
   glBindTexture(GL_TEXTURE_2D, 0);
+  if (has_glow) {
+    glActiveTexture(GL_TEXTURE1);
+    glBindTexture(GL_TEXTURE_2D, 0);
+    glActiveTexture(GL_TEXTURE0);
+  }
 }
 
 }  // namespace trocar::render

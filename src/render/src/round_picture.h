@@ -4,6 +4,8 @@
 
 #include <epoxy/gl.h>
 
+#include <array>
+
 #include "shader_program.h"
 #include "trocar/core/result.h"
 
@@ -28,12 +30,16 @@ class RoundPicture {
   bool Bind(int width, int height);
 
   /// Copies the own picture into the bound framebuffer with soft edges; outside the circle it is black.
-  void DrawSmoothed(bool has_mask, int width, int height);
+  /// \param has_glow  light that the lens scatters about highlights, too
+  void DrawSmoothed(bool has_mask, bool has_glow, int width, int height);
 
  private:
   void MakeRing();
+  void MakeGlow(int width, int height);
 
-  Program mask_, smooth_;
+  Program mask_, smooth_, smooth_fine_, glow_;
+  std::array<GLuint, 2> glow_framebuffers_{}, glow_pictures_{};
+  int glow_width_ = 0, glow_height_ = 0;
   GLuint ring_ = 0, ring_vertices_ = 0;
   GLuint framebuffer_ = 0, picture_ = 0, depth_ = 0;
   int width_ = 0, height_ = 0;  // of the own picture

@@ -4,8 +4,14 @@
 #include <array>
 #include <charconv>
 #include <iterator>
+#include <string>
+
+#include "trocar/render/tone_curve.h"
 
 namespace trocar::render {
+
+const char* const kVersion = "#version 330 core\n";
+const char* const kFine = "#define FINE\n";
 
 const char* const kSurfaceVertexShader = R"(#version 330 core
 layout(location = 0) in vec3 a_position;
@@ -32,7 +38,9 @@ float CalcToolShade(vec3 p, vec3 n) {
     vec3 to = a + t * along - p;
     float squared = dot(to, to) + 1e-9, radius = u_shade_a[i].w;
     float up = clamp(dot(n, to) * inversesqrt(squared) * 0.7 + 0.3, 0.0, 1.0);
-    open *= 1.0 - 0.9 * up * min(1.0, 2.2 * radius * radius / squared);
+    // close by it is as dark as a cleft; farther off a long shaft hides a share of the sky that falls with its distance
+    float near = radius * inversesqrt(squared);
+    open *= 1.0 - up * min(0.9, 1.7 * near * near + 0.22 * near);
   }
   return open;
 }
@@ -47,7 +55,7 @@ void main() {
 }
 )";
 
-const char* const kFragmentHead = R"(#version 330 core
+const char* const kFragmentHead = R"(
 in vec3 v_position;
 in vec3 v_normal;
 in vec4 v_rest;
@@ -60,6 +68,7 @@ uniform vec3 u_light;        // head light beside the lens
 uniform float u_power;       // of the light, in units that a surface 0.1 m away shows unchanged
 uniform vec3 u_mask;         // centre x, y and radius [pixels]; radius 0: none
 uniform vec2 u_smoke;        // how thick [1/m], how far it has drifted [-]
+uniform float u_exposure;    // of the camera [-]
 
 // Light at a distance whose inverse is given. The bundle of fibres is wide, so that it does not burn out at the lens.
 float CalcLight(float inverse_distance, float cosine_to_axis) {
@@ -75,18 +84,19 @@ vec3 AddSmoke(vec3 light, vec3 position) {
   return mix(kSmoke * min(u_power, 1.5), light, clear);
 }
 
-// Exposure, film curve, the lens's darker rim, the mask's soft edge, sRGB.
+// Exposure, film curve (tone_curve.h), the lens's darker rim, the mask's soft edge. The curve rises everywhere and stays
+// below 1, and strong light loses its colour: nothing turns a highlight grey or black.
 vec3 Finish(vec3 light, vec3 position, vec2 pixel) {
   if (u_smoke.x > 0.0) light = AddSmoke(light, position);
-  light = light * (1.0 + 0.20 * light) / (1.0 + light);
+  light = clamp(light * u_exposure, 0.0, kMostLight);
+  float strongest = max(max(light.r, light.g), light.b), squared = strongest * strongest;
+  light += (strongest - light) * (squared / (squared + kWhitening * kWhitening));
+  light = light * (light + kFilm.x) / (light * (light + kFilm.y) + kFilm.z);
   if (u_mask.z > 0.0) {
     float r = distance(pixel, u_mask.xy) / u_mask.z;
     light *= (1.0 - 0.45 * r * r * r * r) * clamp((1.0 - r) * 60.0, 0.0, 1.0);
   }
-  vec3 s1 = sqrt(min(light, vec3(1.0)));
-  vec3 s2 = sqrt(s1);
-  vec3 s3 = sqrt(s2);
-  return 0.662002687 * s1 + 0.684122060 * s2 - 0.323583601 * s3 - 0.0225411470 * light;
+  return sqrt(light);
 }
 
 vec4 WithBrightness(vec3 colour) { return vec4(colour, dot(colour, vec3(0.299, 0.587, 0.114))); }
@@ -131,10 +141,13 @@ void main() {
     // the edges of a burn and of a film of liquid follow the tissue's grain
     float grain = 0.5 * detail.r + 0.5 * broad.r - 0.5;
     float cooked = clamp(v_mark.x + 0.5 * grain * v_mark.x, 0.0, 1.0);
-    albedo = mix(albedo, kBlanched * (0.85 + 0.3 * detail.r), 0.9 * cooked);
-    vec2 film = smoothstep(0.12, 0.60, v_mark.zw + 0.6 * grain);
-    albedo = mix(albedo, kBileFilm, 0.75 * film.y);
-    albedo = mix(albedo, kBloodFilm, 0.90 * film.x);
+    albedo = mix(albedo, kBlanched * (0.7 + 0.6 * detail.r) * mix(vec3(1.0), sqrt(albedo), 0.5), 0.85 * cooked);
+    vec2 film = smoothstep(0.10, 0.75, v_mark.zw + 0.5 * grain);
+    // a thin film colours what is under it, a thick one hides it
+    albedo *= mix(vec3(1.0), sqrt(kBileFilm), film.y);
+    albedo = mix(albedo, kBileFilm, 0.6 * film.y * film.y);
+    albedo *= mix(vec3(1.0), sqrt(kBloodFilm), film.x);
+    albedo = mix(albedo, kBloodFilm, 0.85 * film.x * film.x);
     float brown = smoothstep(0.05, 0.40, v_mark.y + 0.35 * grain * sqrt(v_mark.y));
     float black = smoothstep(0.35, 0.80, v_mark.y + 0.50 * grain);
     albedo = mix(mix(albedo, kScorched, brown), kCharred, black);
@@ -148,8 +161,21 @@ void main() {
   // folds and the shade of tools stay reddish: light reaches them through tissue
   vec3 shade = mix(kShade, vec3(1.0), ambient);
   float half_cosine = max(0.5 * (to_lamp + dot(bumpy, to_eye)), 0.0);
-  // the wet film is broken up by fine noise
-  float wet = wet_share * exp2(u_gloss.y * (half_cosine - 1.0)) * (0.4 + 1.2 * detail.r) * ambient;
+  // the wet coat has a smoother surface of its own; it pools in hollows and thins out between them
+  vec3 coat = normalize(n - 0.35 * u_bump * slope + 0.16 * (vec3(detail.r, broad.r, detail.g) - 0.5));
+  float coat_cosine = max(0.5 * (dot(coat, l) + dot(coat, to_eye)), 0.0);
+  float sharpness = u_gloss.y;
+#ifdef FINE
+  // a highlight smaller than a pixel is spread over it (Tokuyoshi and Kaplanyan 2019)
+  vec3 turn_x = dFdx(n), turn_y = dFdy(n);
+  float spread = min(0.25 * (dot(turn_x, turn_x) + dot(turn_y, turn_y)), 0.09);
+  float softened = 1.0 / (1.0 + 1.4 * sharpness * spread);
+  sharpness *= softened;
+#else
+  float softened = 1.0;
+#endif
+  float thickness = smoothstep(0.28, 0.66, 0.6 * detail.r + 0.4 * broad.g) * (0.35 + 1.3 * broad.r);
+  float wet = 1.6 * wet_share * softened * exp2(sharpness * (coat_cosine - 1.0)) * thickness * ambient;
   float sheen = sheen_share * exp2(18.0 * (half_cosine - 1.0));
   vec3 bounce = kBounce * (0.4 + 0.6 * ambient);
   vec3 colour = albedo * (diffuse * shade * light + bounce * (0.4 + light)) + (wet + sheen) * min(light, 2.0) * kTissueHighlight;
@@ -158,10 +184,43 @@ void main() {
 )";
 
 const char* const kToolFragmentShader = R"(
+uniform sampler3D u_pattern;
 uniform vec3 u_low, u_high;
 uniform vec3 u_gloss;        // wet, wet exponent, sheen
 uniform float u_grooves;     // depth of fine grooves across the shaft
 uniform vec3 u_axis;         // of the shaft, along which it was polished
+uniform vec3 u_room;         // what is mirrored from all round
+uniform vec4 u_overhead;     // lamp of a box trainer: direction to it, power
+uniform vec4 u_shade_a[4];   // capsules and, below, lying rings that take its light
+uniform vec3 u_shade_b[4];
+uniform int u_shade_count;
+uniform vec4 u_ring[12];     // centre, radius
+uniform int u_ring_count;
+uniform float u_ring_section;
+
+// Share of the overhead light that reaches a place: shadows are the softer the higher what casts them.
+float CalcOverheadShade(vec3 p) {
+  vec3 up = u_overhead.xyz;
+  float open = 1.0;
+  for (int i = 0; i < u_shade_count; ++i) {
+    vec3 a = u_shade_a[i].xyz - p, along = u_shade_b[i] - u_shade_a[i].xyz;
+    float rise = dot(along, up), start = dot(a, up);
+    vec3 flat_a = a - start * up, flat_along = along - rise * up;
+    float t = clamp(-dot(flat_a, flat_along) / (dot(flat_along, flat_along) + 1e-9), 0.0, 1.0);
+    vec3 aside = flat_a + t * flat_along;
+    float height = start + t * rise, radius = u_shade_a[i].w, soft = 0.6 * radius + 0.22 * max(height, 0.0);
+    float cover = clamp((radius + soft - length(aside)) / (2.0 * soft), 0.0, 1.0);
+    open *= 1.0 - 0.75 * cover * cover * (radius / (radius + 0.06 * max(height, 0.0))) * step(0.6 * radius, height);
+  }
+  for (int i = 0; i < u_ring_count; ++i) {
+    vec3 to = u_ring[i].xyz - p;
+    float height = dot(to, up), soft = 0.5 * u_ring_section + 0.22 * max(height, 0.0);
+    float aside = abs(length(to - height * up) - u_ring[i].w);
+    float cover = clamp((u_ring_section + soft - aside) / (2.0 * soft), 0.0, 1.0);
+    open *= 1.0 - 0.7 * cover * cover * (u_ring_section / (u_ring_section + 0.06 * max(height, 0.0))) * step(0.6 * u_ring_section, height);
+  }
+  return open;
+}
 
 void main() {
   float inverse_distance = inversesqrt(dot(v_position, v_position));
@@ -172,21 +231,32 @@ void main() {
   float light = CalcLight(inverse_distance, to_eye.z);
   float facing = max(dot(n, to_eye), 0.0);
 
-  // what the metal mirrors: warm tissue all round, the dark middle of the lens, grooves of the grinding
-  vec3 mirrored = 2.0 * dot(n, to_eye) * n - to_eye;
-  float away = 0.5 - 0.5 * mirrored.z;
-  vec3 room = mix(kMirroredLens, kMirroredTissue, away * away) * (0.55 + 0.45 * mirrored.y);
+  // brushed across the shaft, worn where it is touched: streaks that run round it, and clouds of fine scratches
+  vec4 streaks = texture(u_pattern, vec3(9.0, 9.0, 420.0) * v_rest.xyz);
+  vec4 clouds = texture(u_pattern, 45.0 * v_rest.xyz);
+  float metal = min(1.0, 12.0 * u_grooves);
+  float brushed = 1.0 + metal * (0.9 * (streaks.r - 0.5) + 0.5 * (clouds.r - 0.5));
   float grooves = 1.0 - u_grooves * (0.5 + 0.5 * sin(v_rest.z * 5200.0));
 
+  // what the metal mirrors: tissue or box all round, the dark middle of the lens
+  vec3 mirrored = 2.0 * dot(n, to_eye) * n - to_eye;
+  float away = 0.5 - 0.5 * mirrored.z;
+  vec3 room = mix(kMirroredLens, u_room, away * away) * (0.55 + 0.45 * mirrored.y);
+
   float cosine = clamp(dot(n, l), 0.0, 1.0);
-  float along = dot(u_axis, h);
+  float along = dot(u_axis, h) + metal * 0.05 * (streaks.r - 0.5);
   float streak = exp2(-u_gloss.y * along * along) * cosine * cosine;
   float point = exp2(4.0 * u_gloss.y * (max(dot(n, h), 0.0) - 1.0));
   float rim = 1.0 - facing;
-  vec3 base = mix(u_low, u_high, cosine * cosine);
+  vec3 base = mix(u_low, u_high, cosine * cosine) * brushed;
   vec3 colour = base * (0.55 * cosine + 0.04) * light * grooves;
-  colour += (u_gloss.z + 0.12 * rim * rim * rim) * room * (0.25 + 0.75 * min(light, 1.5));
-  colour += u_gloss.x * (0.30 * streak + 0.8 * point) * min(light, 2.0) * kMetalHighlight;
+  colour += (u_gloss.z + 0.12 * rim * rim * rim) * room * brushed * (0.25 + 0.75 * min(light, 1.5));
+  colour += u_gloss.x * (0.30 * streak * brushed + 0.8 * point) * min(light, 2.0) * kMetalHighlight;
+  if (u_overhead.w > 0.0) {
+    float up = dot(n, u_overhead.xyz), open = CalcOverheadShade(v_position);
+    colour = colour * (0.6 + 0.4 * open) + u_overhead.w * mix(u_low, u_high, 0.75) * brushed * open * (0.30 + 0.20 * up + 0.5 * max(up, 0.0));
+    colour += u_overhead.w * u_gloss.z * open * room * max(mirrored.y, 0.0);
+  }
   o_colour = WithBrightness(Finish(1.6 * colour, v_position, gl_FragCoord.xy));
 }
 )";
@@ -197,10 +267,13 @@ uniform vec2 u_inner;
 void main() { gl_Position = vec4(a_position.xy * u_inner, 0.0, 1.0); }
 )";
 
-const char* const kSmoothFragmentShader = R"(#version 330 core
+const char* const kSmoothFragmentShader = R"(
 out vec4 o_colour;
 uniform sampler2D u_picture;  // alpha: brightness
 uniform vec2 u_texel;
+#ifdef FINE
+uniform sampler2D u_glow;     // light that the lens scatters about highlights
+#endif
 void main() {
   vec2 at = gl_FragCoord.xy * u_texel;
   vec4 here = texture(u_picture, at);
@@ -213,7 +286,39 @@ void main() {
   float high = max(max(nw.a, ne.a), max(sw.a, se.a));
   float share = clamp((high - low - 0.03) * 16.0, 0.0, 1.0);
   vec3 smoothed = 0.25 * (nw.rgb + ne.rgb + sw.rgb + se.rgb);
-  o_colour = vec4(mix(here.rgb, smoothed, share), 1.0);
+  vec3 colour = mix(here.rgb, smoothed, share);
+#ifdef FINE
+  // added as on a screen: it comes nearer to white and never beyond
+  colour += (1.0 - colour) * 0.45 * texture(u_glow, at).rgb;
+#endif
+  o_colour = vec4(colour, 1.0);
+}
+)";
+
+const char* const kFullVertexShader = R"(#version 330 core
+layout(location = 0) in vec3 a_position;  // of the mask's ring, which covers the picture when it is large enough
+void main() { gl_Position = vec4(3.0 * a_position.xy, 0.0, 1.0); }
+)";
+
+const char* const kGlowFragmentShader = R"(#version 330 core
+out vec4 o_colour;
+uniform sampler2D u_picture;
+uniform vec2 u_texel;  // of the target
+uniform vec2 u_step;   // between taps, in the source; 0, 0: the first pass, which keeps what is bright
+void main() {
+  vec2 at = gl_FragCoord.xy * u_texel;
+  vec3 sum = vec3(0.0);
+  if (u_step == vec2(0.0)) {
+    for (int i = 0; i < 4; ++i) {
+      vec3 light = texture(u_picture, at + (vec2(i & 1, i >> 1) - 0.5) * 0.5 * u_texel).rgb;
+      float bright = max(max(light.r, light.g), light.b);
+      sum += light * smoothstep(0.86, 1.0, bright);
+    }
+    o_colour = vec4(0.25 * sum, 1.0);
+    return;
+  }
+  for (int i = -4; i <= 4; ++i) sum += (0.205 - 0.047 * abs(float(i))) * texture(u_picture, at + float(i) * u_step).rgb;
+  o_colour = vec4(min(sum, 1.0), 1.0);
 }
 )";
 
@@ -232,23 +337,37 @@ uniform vec3 u_colour;
 void main() { o_colour = vec4(u_colour, 1.0); }
 )";
 
+namespace {
+
+/// A number as GLSL reads it: as many digits as tell it from every other, and no locale's comma.
+std::string FormatFloat(double number) {
+  std::array<char, 32> digits{};
+  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), number).ptr;
+  std::string text(digits.data(), end);
+  return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
+}
+
+}  // namespace
+
 std::string MakeEffectColours(const Looks& looks) {
   static constexpr const char* kNames[] = {
-      "kSmoke",          "kBlanched",     "kScorched",       "kCharred",      "kBloodFilm",
-      "kBileFilm",       "kThinRim",      "kShade",          "kBounce",       "kTissueHighlight",
-      "kMetalHighlight", "kMirroredLens", "kMirroredTissue", "kMirroredWall", "kStrandShade"};
+      "kSmoke",          "kBlanched",        "kScorched",       "kCharred",
+      "kBloodFilm",      "kBileFilm",        "kThinRim",        "kShade",
+      "kBounce",         "kTissueHighlight", "kMetalHighlight", "kMirroredLens",
+      "kMirroredTissue", "kMirroredWall",    "kMirroredBox",    "kStrandShade"};
   static_assert(std::size(kNames) == static_cast<std::size_t>(Effect::kCount));
   std::string source;
   for (std::size_t i = 0; i < looks.effects.size(); ++i) {
     source += std::string("const vec3 ") + kNames[i] + " = vec3(";
     for (std::size_t k = 0; k < 3; ++k) {
-      // as many digits as tell the number from every other, and no locale's comma
-      std::array<char, 32> digits{};
-      const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), looks.effects[i][k]).ptr;
-      source.append(k == 0 ? "" : ", ").append(digits.data(), end);
+      source.append(k == 0 ? "" : ", ").append(FormatFloat(looks.effects[i][k]));
     }
     source += ");\n";
   }
+  source += "const vec3 kFilm = vec3(" + FormatFloat(kFilmA) + ", " + FormatFloat(kFilmB) + ", " +
+            FormatFloat(kFilmC) + ");\n";
+  source += "const float kMostLight = " + FormatFloat(kMostLight) +
+            ", kWhitening = " + FormatFloat(kWhitening) + ";\n";
   return source;
 }
 

@@ -14,7 +14,11 @@ extern const char* const kShadingFunctions;     ///< goes between, after MakeEff
 extern const char* const kTissueFragmentShader;
 extern const char* const kToolFragmentShader;
 extern const char* const kScreenVertexShader;    ///< the picture's circle or rectangle
-extern const char* const kSmoothFragmentShader;  ///< softens stairs where brightness jumps
+extern const char* const kVersion;               ///< first line of a source that the line kFine may follow
+extern const char* const kFine;                  ///< defines FINE: with what Quality::kHigh adds
+extern const char* const kSmoothFragmentShader;  ///< softens stairs where brightness jumps, adds the glow
+extern const char* const kFullVertexShader;      ///< the whole target
+extern const char* const kGlowFragmentShader;    ///< what is bright, then blurred along one axis
 extern const char* const kMaskVertexShader;      ///< black frame round the picture, nearest of all
 extern const char* const kMaskFragmentShader;
 

@@ -43,28 +43,34 @@ SurfaceDrawer::~SurfaceDrawer() {
 
 core::Status SurfaceDrawer::Make(const Looks& looks) {
   const std::string colours = MakeEffectColours(looks);
-  const auto tissue = MakeProgram({kSurfaceVertexShader},
-                                  {kFragmentHead, colours.c_str(), kShadingFunctions, kTissueFragmentShader});
-  if (!tissue) return tissue.error();
-  tissue_ = *tissue;
-  const auto tool = MakeProgram({kSurfaceVertexShader},
-                                {kFragmentHead, colours.c_str(), kShadingFunctions, kToolFragmentShader});
+  for (const bool is_fine : {false, true}) {
+    const auto tissue =
+        MakeProgram({kSurfaceVertexShader}, {kVersion, is_fine ? kFine : "", kFragmentHead, colours.c_str(),
+                                             kShadingFunctions, kTissueFragmentShader});
+    if (!tissue) return tissue.error();
+    tissue_[is_fine ? 1 : 0] = *tissue;
+  }
+  const auto tool = MakeProgram({kSurfaceVertexShader}, {kVersion, kFragmentHead, colours.c_str(),
+                                                         kShadingFunctions, kToolFragmentShader});
   if (!tool) return tool.error();
   tool_ = *tool;
-  const auto clear = MakeProgram({kClearVertexShader},
-                                 {kFragmentHead, colours.c_str(), kShadingFunctions, kClearFragmentShader});
+  const auto clear = MakeProgram({kClearVertexShader}, {kVersion, kFragmentHead, colours.c_str(),
+                                                        kShadingFunctions, kClearFragmentShader});
   if (!clear) return clear.error();
   clear_ = *clear;
   noise_.Make();
   return {};
 }
 
-void SurfaceDrawer::Begin() {
+void SurfaceDrawer::Begin(Quality quality) {
   glVertexAttrib4f(3, 0, 0, 0, 0);  // of surfaces without marks
   noise_.Bind();
-  glUseProgram(tissue_.name);
-  tissue_.Set("u_pattern", 0);
-  tissue_.Set("u_bumps", 1);
+  is_fine_ = quality == Quality::kHigh;
+  for (const Program& program : {Tissue(), tool_}) {
+    glUseProgram(program.name);
+    program.Set("u_pattern", 0);
+    program.Set("u_bumps", 1);
+  }
 }
 
 void SurfaceDrawer::End() {
@@ -73,7 +79,7 @@ void SurfaceDrawer::End() {
 
 void SurfaceDrawer::Draw(const Surface& surface, const math::Pose& X_camera_surface, const math::Vec3& scale,
                          const MaterialLook& look) {
-  const Program& program = look.opacity < 1.0f ? clear_ : look.is_tissue ? tissue_ : tool_;
+  const Program& program = look.opacity < 1.0f ? clear_ : look.is_tissue ? Tissue() : tool_;
   glUseProgram(program.name);
   program.Set("u_camera_from_surface", MakeMatrix(X_camera_surface, scale));
   program.Set("u_rotation", MakeRotation(X_camera_surface.rotation));

@@ -23,10 +23,10 @@ class SurfaceDrawer {
   core::Status Make(const Looks& looks);
 
   /// For the uniforms that the renderer sets once a frame.
-  std::array<Program, 3> GetPrograms() const { return {tool_, clear_, tissue_}; }
+  std::array<Program, 4> GetPrograms() const { return {tool_, clear_, tissue_[0], tissue_[1]}; }
 
   /// Before the first surface of a frame, after those uniforms; and after the last.
-  void Begin();
+  void Begin(Quality quality);
   static void End();
 
   /// \param scale  along the surface's own axes, before its pose [-]
@@ -35,7 +35,11 @@ class SurfaceDrawer {
             const MaterialLook& look);
 
  private:
-  Program tissue_, tool_, clear_;
+  const Program& Tissue() const { return tissue_[is_fine_ ? 1 : 0]; }
+
+  std::array<Program, 2> tissue_;  // plain, fine
+  Program tool_, clear_;
+  bool is_fine_ = false;
   NoiseTextures noise_;
 };
 

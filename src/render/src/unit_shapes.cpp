@@ -48,4 +48,13 @@ geometry::TriangleMesh MakeUnitPuddle() {
   return mesh;
 }
 
+std::vector<double> CalcPuddleOpacity() {
+  std::vector<double> shares(1 + std::size_t{kPuddleSides} * kPuddleRings, 1.0);
+  for (std::size_t side = 0; side < kPuddleSides; ++side) {
+    shares[shares.size() - 1 - side] = 0.0;
+    shares[shares.size() - 1 - side - kPuddleSides] = 0.85;
+  }
+  return shares;
+}
+
 }  // namespace trocar::render

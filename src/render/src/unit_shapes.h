@@ -12,5 +12,7 @@ geometry::TriangleMesh MakeUnitCone();
 
 /// Level liquid of radius about 1 with an uneven shore, domed by surface tension, facing +z.
 geometry::TriangleMesh MakeUnitPuddle();
+/// (vertices of MakeUnitPuddle) share of its opacity: it ends softly at the shore [-]
+std::vector<double> CalcPuddleOpacity();
 
 }  // namespace trocar::render

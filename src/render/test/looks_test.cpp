@@ -48,7 +48,8 @@ TEST_F(LooksFile, ThatIsDeliveredGivesEveryMaterialItsLook) {
   EXPECT_FALSE((*looks)[Material::kSteel].is_tissue);
   EXPECT_EQ((*looks)[Material::kSteel].opacity, 1.0f);
   EXPECT_EQ(looks->light_offset, (math::Vec3{0, 0.0035, 0.001}));
-  EXPECT_EQ(looks->trainer_light, 1.8);
+  EXPECT_EQ(looks->trainer_light, 1.2);
+  EXPECT_EQ(looks->trainer_lid, 0.55);
   EXPECT_EQ(looks->effects[static_cast<std::size_t>(Effect::kBloodFilm)],
             (std::array<double, 3>{0.17, 0.005, 0.006}));
 }
@@ -68,7 +69,7 @@ TEST_F(LooksFile, IsRefusedWhereItIsWrong) {
   ExpectRefused("\"liver\": {", "\"lever\": {", kJsonField);
   ExpectRefused("trocar-looks", "trocar-look", kJsonField);
   ExpectRefused("\"rinse\": 0.1", "\"rinse\": 0", kJsonField);
-  ExpectRefused("\"trainer_light\": 1.8", "\"trainer_light\": -1", kJsonField);
+  ExpectRefused("\"trainer_light\": 1.2", "\"trainer_light\": -1", kJsonField);
   ExpectRefused("\"smoke\": [0.66", "\"smoke\": [1.66", kJsonField);
   ExpectRefused("\"smoke\": [", "\"smokes\": [", kJsonField);
   ExpectRefused("{", "", kJsonSyntax);

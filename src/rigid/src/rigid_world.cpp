@@ -428,6 +428,11 @@ void RigidWorld::MoveTool(std::uint32_t tool, const Pose (&X_world_parts)[kToolP
     TROCAR_ASSERT(IsFinite(X_world_parts[part]));
     content_->tools[tool].to[static_cast<std::size_t>(part)] = ToBullet(X_world_parts[part]);
   }
+  // what jaws have held still falls asleep, and a tool that moves again does not wake it by itself
+  const std::int32_t held = HeldBy(tool);
+  if (held < 0) return;
+  btRigidBody& body = *content_->bodies[static_cast<std::size_t>(held)].body;
+  if (!body.isActive()) body.activate(true);
 }
 
 void RigidWorld::SetGravity(const Vec3& gravity) {

@@ -42,6 +42,7 @@ struct Runner::Content {
   core::NewestSlot<Snapshot> snapshot_slot;
   std::atomic<bool> is_stopping{false}, is_paused{true}, is_scripted{false}, is_end_wanted{false};
   std::atomic<int> resets_wanted{0};
+  std::atomic<double> speed{1};
   std::atomic<std::uint64_t> ticks{0}, late_ticks{0};
   std::atomic<double> tick_median{0}, tick_p99{0};
   std::atomic<bool> is_real_time{false};
@@ -119,6 +120,10 @@ void Runner::Content::Run() {
       const bool is_felt = !is_scripted.load(std::memory_order_relaxed);
       if (is_felt && haptics != nullptr) haptic_hands.Take(*haptics, now);
       record::RoundJoints(now);
+      if (speed.load(std::memory_order_relaxed) < 1.0) {
+        attempts.End(simulation);
+        attempts.Close();
+      }
       attempts.BeforeStep(simulation, !is_felt);
       simulation.Step(now);
       attempts.AfterStep(now, simulation);
@@ -132,7 +137,7 @@ void Runner::Content::Run() {
         durations.clear();
       }
     }
-    next += period;
+    next += static_cast<std::int64_t>(static_cast<double>(period) / speed.load(std::memory_order_relaxed));
     const std::int64_t now = core::NowNanoseconds();
     if (now > next + period / 2) {
       // late: never a burst of ticks to catch up (faults D9)
@@ -174,6 +179,12 @@ bool Runner::HasScript() const {
 }
 bool Runner::IsScriptOver() const {
   return content_->is_script_over.load();
+}
+void Runner::SetSpeed(double speed) {
+  content_->speed.store(speed > kSlowest ? std::min(speed, 1.0) : kSlowest);
+}
+double Runner::GetSpeed() const {
+  return content_->speed.load();
 }
 void Runner::SetPaused(bool is_paused) {
   content_->is_paused.store(is_paused);

@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <functional>
 #include <thread>
 
@@ -156,6 +157,25 @@ TEST_F(RunnerTest, GoesOnWhereAttemptsCannotBeKept) {
   runner.SetPaused(false);
   ASSERT_TRUE(Eventually([&] { return runner.Latest().tick > 20; }));
   EXPECT_EQ(runner.RecordingStatus().value().failure.value().code, core::ErrorCode::kFileUnwritable);
+}
+
+// Slow motion changes when a tick runs, never what it computes; such an attempt is practice.
+TEST(Runner, SlowMotionIsClamped) {
+  auto scene = scene::ReadTask(*scene::FindTask("peg_transfer"));
+  ASSERT_TRUE(scene.ok());
+  auto simulation =
+      simulation::Simulation::Make(std::make_shared<const scene::Scene>(std::move(scene).value()), 1);
+  ASSERT_TRUE(simulation.ok());
+  Runner runner(std::move(simulation).value());
+  EXPECT_EQ(runner.GetSpeed(), 1.0);
+  runner.SetSpeed(0.35);
+  EXPECT_EQ(runner.GetSpeed(), 0.35);
+  runner.SetSpeed(5);
+  EXPECT_EQ(runner.GetSpeed(), 1.0);
+  for (const double broken : {0.0, -1.0, std::nan("")}) {
+    runner.SetSpeed(broken);
+    EXPECT_EQ(runner.GetSpeed(), Runner::kSlowest);
+  }
 }
 
 }  // namespace

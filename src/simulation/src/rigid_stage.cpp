@@ -30,6 +30,8 @@ constexpr double kGripFriction = 1.0, kLeastPinch = 3.0, kMostPinch = 20.0;
 constexpr double kObstacleStiffness = 400.0;
 /// Obstacles this near already limit the tool, so that it does not enter and come out again [m].
 constexpr double kObstacleReach = 0.002;
+/// Beyond that, as far as the tool may go in this tick, but no farther [m].
+constexpr double kMostObstacleMotion = 0.010;
 
 void FindParts(const instrument::Tool& tool, double jaw, const Pose& X_world_tool,
                ToolCapsule (&capsules)[rigid::kToolPartCount], Pose (&X)[rigid::kToolPartCount]) {
@@ -102,18 +104,25 @@ void RigidStage::FindObstacles(const Scene& scene,
     const auto h = static_cast<std::size_t>(hand);
     ToolCapsule capsules[rigid::kToolPartCount];
     Pose X[rigid::kToolPartCount];
-    FindParts(scene.instruments[h].tool, joints[h].jaw, contacts.Device(hand), capsules, X);
-    world_->FindObstacles(static_cast<std::uint32_t>(hand), X, kObstacleReach, obstacles_);
+    // from the tool that is seen, which is outside: a hand that presses may have its jaws below the board already
+    const Pose &X_proxy = contacts.Proxy(hand), &X_device = contacts.Device(hand);
+    const Pose X_device_proxy = X_device * math::Inverse(X_proxy);
+    FindParts(scene.instruments[h].tool, joints[h].jaw, X_proxy, capsules, X);
+    const double motion = math::Distance(X_proxy.translation, X_device.translation);
+    world_->FindObstacles(static_cast<std::uint32_t>(hand), X,
+                          kObstacleReach + std::min(motion, kMostObstacleMotion), obstacles_);
     hands_[h].obstacles = 0;
     hands_[h].obstacle_force = {};
     double deepest = 0;
     for (const rigid::ToolObstacle& one : obstacles_) {
-      contacts.AddLimit(hand, {one.point, one.normal, -one.depth});
-      if (!(one.depth > 0)) continue;
+      const Vec3 on_device = X_device_proxy * one.point;
+      const double clearance = math::Dot(one.normal, one.point - on_device) - one.depth;
+      contacts.AddLimit(hand, {on_device, one.normal, clearance});
+      if (!(clearance < 0)) continue;
       hands_[h].obstacles |= std::uint64_t{1} << one.body;
-      if (one.depth > deepest) {
-        deepest = one.depth;
-        hands_[h].obstacle_force = (-kObstacleStiffness * one.depth) * one.normal;
+      if (-clearance > deepest) {
+        deepest = -clearance;
+        hands_[h].obstacle_force = (kObstacleStiffness * clearance) * one.normal;
       }
     }
   }

@@ -134,6 +134,9 @@ core::Status Simulation::Content::Restore(core::StateArchive& archive) {
   VisitState(archive);
   if (!archive.ok()) return Refuse("the saved state does not fit: " + archive.Failure());
   if (!archive.IsAtEnd()) return Refuse("the saved state goes on after its last field");
+  // the volumes as of the last good tick: a bad one that follows takes them back
+  for (std::size_t i = 0; i < world.conserved.organs.size(); ++i)
+    world.good_conserved.organs[i].volume = world.conserved.organs[i].volume;
   // what is asked between ticks, the force on a hand among it, sees the load of the last one
   const tissue::VolumeResponses& responses = world.conserved.responses;
   tick.load = {tick.gravity - kImagingGravity,

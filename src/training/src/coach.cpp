@@ -31,7 +31,7 @@ std::vector<std::string> FindPlaceholders(const std::string& text) {
 
 void CheckWords(const core::JsonView& view, const char* key, const std::string& text, bool has_expert) {
   for (const std::string& word : FindPlaceholders(text)) {
-    if (word == "value" || word == "hand" || (word == "expert" && has_expert)) continue;
+    if (word == "value" || word == "times" || word == "hand" || (word == "expert" && has_expert)) continue;
     view.Complain(std::string(key) + " shows {" + word + "}, which is not known there");
   }
 }
@@ -152,6 +152,12 @@ std::string Number(double value, int decimals) {
   return text;
 }
 
+/// "once", "twice", "3 times"
+std::string Times(double count) {
+  const std::string number = Number(count, 0);
+  return number == "1" ? "once" : number == "2" ? "twice" : number + " times";
+}
+
 std::string HandWords(int hand) {
   return hand == instrument::kLeft    ? "the left hand"
          : hand == instrument::kRight ? "the right hand"
@@ -168,6 +174,7 @@ Advice Speak(const CoachRule& rule, const AdviceNumbers& numbers, const std::opt
   advice.source = rule.source;
   advice.numbers = numbers;
   advice.sentence = numbers.expert_mean ? rule.sentence : rule.sentence_alone;
+  advice.sentence = Fill(advice.sentence, "times", Times(numbers.value));
   advice.sentence = Fill(advice.sentence, "value", Number(rule.shown_scale * numbers.value, rule.decimals));
   if (numbers.expert_mean)
     advice.sentence =

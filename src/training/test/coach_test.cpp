@@ -164,8 +164,8 @@ constexpr const char* kRules = R"({"format": "trocar-coach-rules", "version": 1,
   {"id": "shakes", "topic": "tremor", "measure": "coach:tremor", "threshold_sd": 3, "sd_floor": 0.00002, "shown_scale": 1000,
    "decimals": 2, "sentence": "{hand} trembled by {value} mm, experts by {expert} mm.", "why": "w", "exercise": "peg_transfer",
    "practise": "p", "source": "s"},
-  {"id": "fell", "topic": "grip", "measure": "event:dropped", "absolute": 1, "weight": 2, "decimals": 0, "sentence": "Fell {value} times.",
-   "sentence_alone": "Fell {value} times.", "why": "w", "exercise": "peg_transfer", "practise": "p", "source": "s"},
+  {"id": "fell", "topic": "grip", "measure": "event:dropped", "absolute": 1, "weight": 2, "decimals": 0, "sentence": "Fell {times}.",
+   "sentence_alone": "Fell {times}.", "why": "w", "exercise": "peg_transfer", "practise": "p", "source": "s"},
   {"id": "fell_often", "topic": "grip", "measure": "event:dropped", "absolute": 1, "decimals": 0, "sentence": "Again.",
    "sentence_alone": "Again.", "why": "w", "exercise": "peg_transfer", "practise": "p", "source": "s"},
   {"id": "roams", "topic": "path", "measure": "metric:path_length/left", "threshold_sd": 2, "sentence": "{value} m.", "why": "w",
@@ -210,7 +210,7 @@ TEST(Coach, SpeaksOnceOfATopicAndOnlyOfAbsolutesWithoutExperts) {
   const auto advice = CoachAttempt(trace, {}, *rules, nullptr);
   ASSERT_EQ(advice.size(), 1u);
   EXPECT_EQ(advice[0].rule, "fell");
-  EXPECT_EQ(advice[0].sentence, "Fell 2 times.");
+  EXPECT_EQ(advice[0].sentence, "Fell twice.");
   EXPECT_EQ(advice[0].look, "Look at 0:03: the right hand.");
   EXPECT_FALSE(advice[0].numbers.expert_mean.has_value());
   EXPECT_TRUE(CoachAttempt(MakeAttempt(10), {}, *rules, nullptr).empty());
@@ -228,7 +228,7 @@ TEST(CoachRules, RefuseWhatTheyCannotSay) {
   EXPECT_TRUE(refuses("coach:tremor", "coach:humour"));
   EXPECT_TRUE(refuses("{expert} mm.", "{surgeon} mm."));
   EXPECT_TRUE(
-      refuses("\"sentence_alone\": \"Fell {value} times.\"", "\"sentence_alone\": \"Fell {expert} times.\""));
+      refuses("\"sentence_alone\": \"Fell {times}.\"", "\"sentence_alone\": \"Fell {expert}.\""));
   EXPECT_TRUE(refuses("\"absolute\": 1, \"weight\": 2,", "\"weight\": 2,"));
   EXPECT_TRUE(refuses("\"fell_often\"", "\"fell\""));
   EXPECT_TRUE(refuses("\"threshold_sd\": 3", "\"treshold_sd\": 3"));

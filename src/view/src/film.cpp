@@ -16,6 +16,9 @@ constexpr double kWidth = 0.0035;      // m, of the slowest run
 constexpr double kWidthGain = 0.0045;  // m
 constexpr double kFullOoze = 5e-10;    // m^3/s, of a fibre of the bed that has just been torn
 constexpr double kOozeWidth = 0.0030, kOozeLength = 0.004;  // m
+constexpr double kShore = 0.0028;                           // m above a pool's level that is wet
+constexpr double kShoreWidth = 1.25;                        // of its radius that it may wet
+constexpr std::uint8_t kRawBlood = 96;                      // film of blood on torn tissue, of 255
 constexpr double kLength = 0.006, kLengthGain = 0.034;      // m
 
 }  // namespace
@@ -33,7 +36,7 @@ Film::Film(const simulation::Snapshot& snapshot) : down_(math::Normalized(snapsh
   for (const simulation::OozeSnapshot& ooze : std::span(operation.oozes).first(operation.ooze_count)) {
     const double flow = std::clamp(std::sqrt(ooze.rate / kFullOoze), 0.0, 1.0);
     runs_.push_back(
-        {ooze.position, kOozeWidth * (0.5 + 0.5 * flow), kOozeLength * flow, 0.25 + 0.5 * flow, true});
+        {ooze.position, kOozeWidth * (0.5 + 0.5 * flow), kOozeLength * flow, 0.35 + 0.55 * flow, true});
   }
 }
 
@@ -49,6 +52,27 @@ void Film::Wet(const Vec3& p_world, render::SurfaceMark& mark) const {
     std::uint8_t& film = run.is_blood ? mark.blood : mark.bile;
     film = std::max(film, wet);
   }
+  for (const render::Puddle& pool : pools_) {
+    const Vec3 from = p_world - pool.centre;
+    const double above = math::Dot(from, pool.up), side = math::Norm(from - above * pool.up);
+    const double share = std::clamp((kShore - above) / (2.0 * kShore), 0.0, 1.0) *
+                         std::clamp(4.0 * (kShoreWidth - side / pool.radius), 0.0, 1.0);
+    const double all = pool.blood + pool.bile + pool.rinse;
+    const auto wet = [&](double part) {
+      return static_cast<std::uint8_t>(255.0 * share * std::min(1.0, 1.5 * part / all));
+    };
+    mark.blood = std::max(mark.blood, wet(pool.blood));
+    mark.bile = std::max(mark.bile, wet(pool.bile));
+  }
+}
+
+void Film::AddPool(const render::Puddle& puddle) {
+  if (puddle.radius > 0.0 && puddle.blood + puddle.bile + puddle.rinse > 0.0) pools_.push_back(puddle);
+}
+
+void Film::Wet(const Vec3& p_world, std::size_t row, render::SurfaceMark& mark) const {
+  Wet(p_world, mark);
+  if (row < raw_.size() && raw_[row] != 0) mark.blood = std::max(mark.blood, kRawBlood);
 }
 
 }  // namespace trocar::view

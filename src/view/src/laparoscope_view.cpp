@@ -14,6 +14,7 @@
 #include "clip_shapes.h"
 #include "hand_tools.h"
 #include "liquids.h"
+#include "loose_ends.h"
 #include "object_view.h"
 #include "organ_shape.h"
 #include "stone_view.h"
@@ -41,7 +42,11 @@ using simulation::Snapshot;
 constexpr double kOcclusionReach = 0.030;  // m; farther folds cast no soft shade
 constexpr double kSmallestForce = 0.02;    // N; below, an arrow would only flicker
 constexpr double kLongestArrow = 0.045;    // m
-constexpr double kPathWidth = 0.0007;      // m
+constexpr double kPoolChange = 0.0003;     // m; less does not change what is wet
+constexpr double kArrowSetback =
+    0.028;  // m from the tip back along the shaft: the working point stays in sight
+constexpr double kArrowRadius = 0.0008;                                        // m
+constexpr double kPathWidth = 0.0007;                                          // m
 constexpr double kGhostWidth = 0.0014, kGhostJaw = 0.018, kGhostShaft = 0.15;  // m
 
 /// Ambient occlusion of a surface that will move: averaged over neighbours and never dark, because where it lies
@@ -80,6 +85,15 @@ struct LaparoscopeView::Content {
   std::optional<StrandField> strands;
   std::optional<Pool> pool;
   std::vector<render::SurfaceDraw> background;
+  /// Scenery on which liquid lies.
+  struct Ground {
+    render::SurfaceId surface;
+    std::vector<Vec3> positions;
+    std::vector<render::SurfaceMark> marks;
+  };
+  std::vector<Ground> ground_shapes;
+  render::Puddle wet_by;  // of the last marks on them
+  std::vector<std::uint8_t> raw_rows;
   ObjectView objects;
   BandView bands;
   double light_scale = 1;
@@ -126,6 +140,9 @@ struct LaparoscopeView::Content {
     for (const OrganShape& organ : organs) surround(organ);
     for (const TubeShape& tube : tubes) surround(tube);
     auto parts = render::MakeAbdomen(inside, simulation::FindOmentumBalls(surfaces, start.positions));
+    FatBody ends = CoverEnds(surfaces, start);
+    if (!ends.Mesh().triangles.empty())
+      parts.insert(parts.begin(), {"ligament", Material::kFat, ends.Mesh()});
     for (auto& part : parts) meshes.push_back(part.mesh);
     std::vector<const TriangleMesh*> occluders;
     for (const TriangleMesh& mesh : meshes) occluders.push_back(&mesh);
@@ -149,10 +166,27 @@ struct LaparoscopeView::Content {
       background.push_back({renderer.AddSurface(part.mesh, part.material, ambient_occlusion), {}});
       // the wall is a dome over everything
       if (part.material == Material::kPeritoneum) continue;
+      ground_shapes.push_back({background.back().surface, part.mesh.positions, {}});
       const std::vector<GroundPiece> pieces = MakeGround(part.mesh);
       ground.insert(ground.end(), pieces.begin(), pieces.end());
     }
     pool.emplace(std::move(ground));
+  }
+
+  /// Fat round the ends of ducts and vessels that the patient's model does not follow.
+  FatBody CoverEnds(std::span<const SurfaceInfo> surfaces, const Snapshot& start) const {
+    std::vector<TubeLine> lines;
+    for (const SurfaceInfo& info : surfaces) {
+      if (!info.triangles.empty()) continue;
+      const auto nodes = std::span(start.positions).subspan(info.first_node, info.node_count);
+      lines.emplace_back(nodes.begin(), nodes.end());
+    }
+    std::vector<Vec3> near;
+    for (const OrganShape& organ : organs)
+      near.insert(near.end(), organ.Positions().begin(), organ.Positions().end());
+    FatBody body;
+    body.Make(CoverLooseEnds(lines, near));
+    return body;
   }
 
   /// A model of tissue in a box trainer: nothing lies near it.
@@ -187,7 +221,11 @@ struct LaparoscopeView::Content {
 
   void UpdateShapes(const Snapshot& snapshot) {
     FollowTopology(snapshot);
-    const Film film(snapshot);
+    Film film(snapshot);
+    for (const render::Puddle& puddle : frame.puddles) film.AddPool(puddle);
+    strands->FindRaw(snapshot, raw_rows);
+    film.SetRaw(raw_rows);
+    WetGround(film);
     // small surfaces first: they mostly lie in front, and what is hidden costs nothing
     for (TubeShape& tube : tubes) {
       tube.Update(snapshot, film);
@@ -207,6 +245,21 @@ struct LaparoscopeView::Content {
     }
   }
 
+  /// The pool's shore on the scenery; it is asked anew when the pool has changed.
+  void WetGround(const Film& film) {
+    const render::Puddle now = frame.puddles.empty() ? render::Puddle{} : frame.puddles.back();
+    if (math::Distance(now.centre, wet_by.centre) < kPoolChange &&
+        std::abs(now.radius - wet_by.radius) < kPoolChange)
+      return;
+    wet_by = now;
+    for (Ground& ground : ground_shapes) {
+      ground.marks.assign(ground.positions.size(), {});
+      for (std::size_t v = 0; v < ground.positions.size(); ++v)
+        film.Wet(ground.positions[v], ground.marks[v]);
+      renderer.UpdateMarks(ground.surface, ground.marks);
+    }
+  }
+
   void UpdateArrows() {
     frame.arrows.clear();
     if (!options.has_force_arrows) return;
@@ -214,7 +267,7 @@ struct LaparoscopeView::Content {
       const double force = math::Norm(forces[i]);
       if (!(force > kSmallestForce)) continue;
       const double length = std::min(kLongestArrow, options.arrow_scale * force);
-      frame.arrows.push_back({tips[i], (length / force) * forces[i]});
+      frame.arrows.push_back({tips[i], (length / force) * forces[i], kArrowRadius});
     }
   }
 };
@@ -264,6 +317,7 @@ core::Result<LaparoscopeView> LaparoscopeView::Make(const scene::Scene& scene,
   } else {
     content->AddModel();
     content->light_scale = looks->trainer_light;
+    content->frame.overhead = {math::Normalized(-start.gravity, {0, 0, 1}), looks->trainer_lid};
     content->background.push_back(
         {content->renderer.AddSurface(MakeTrainerBox(scene), Material::kSleeve), {}});
   }
@@ -298,18 +352,19 @@ void LaparoscopeView::Update(const Snapshot& snapshot) {
   c.tools.AddTo(c.frame, snapshot);
   c.clips.AddTo(c.renderer, c.frame, snapshot.operation);
   c.stones.AddTo(c.renderer, c.frame, snapshot.operation);
-  c.UpdateShapes(snapshot);
-  c.strands->AddTo(c.frame, snapshot);
-  AddStreams(c.frame, snapshot);
   if (c.pool) c.pool->AddTo(c.frame, snapshot);
+  c.UpdateShapes(snapshot);
+  c.strands->AddTo(c.renderer, c.frame, snapshot);
+  AddStreams(c.frame, snapshot);
   c.frame.smoke = snapshot.operation.smoke;
   c.frame.time = snapshot.time;
   for (std::size_t i = 0; i < c.forces.size(); ++i) {
     c.forces[i] = snapshot.instruments[i].force;
-    c.tips[i] = snapshot.instruments[i].X_world_tool.translation;
+    c.tips[i] = snapshot.instruments[i].X_world_tool * Vec3{0, 0, kArrowSetback};
   }
   c.bands.Append(snapshot, c.frame.surfaces);
   c.objects.Append(snapshot, c.frame.surfaces);
+  c.objects.AppendShades(snapshot, c.frame);
   c.UpdateArrows();
 }
 
@@ -319,6 +374,8 @@ void LaparoscopeView::Draw(int width, int height) {
   c.frame.is_wireframe = c.options.is_wireframe;
   c.frame.has_smooth_edges = c.options.has_smooth_edges;
   c.frame.light_power = c.light_scale * std::clamp(c.options.light_power, 0.0, 4.0);
+  c.frame.has_automatic_exposure = c.options.has_automatic_exposure;
+  c.frame.quality = c.options.quality;
   c.UpdateArrows();
   const std::size_t foreground = c.frame.surfaces.size();
   if (c.options.has_background)

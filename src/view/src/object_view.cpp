@@ -195,6 +195,8 @@ void ObjectView::Add(render::Renderer& renderer, const scene::Scene& scene,
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     const scene::SceneObject& object = scene.objects[i];
     for (const RigidShape& shape : object.body.shapes) {
+      if (shape.kind == RigidShape::Kind::kRing && object.Moves())
+        rings_.push_back({i, shape.X_body_shape, shape.size.x, shape.size.y});
       const bool is_sharp = shape.kind == RigidShape::Kind::kBox;
       const TriangleMesh mesh = MakeShape(shape);
       parts_.push_back({renderer.AddSurface(is_sharp ? Facet(mesh) : mesh, MaterialOf(object.colour)), i,
@@ -220,6 +222,16 @@ void ObjectView::Append(const simulation::Snapshot& snapshot,
       X = {math::RotationBetween({0, 0, 1}, math::Normalized(b - a, {0, 0, 1})), math::Lerp(a, b, mark.t)};
     }
     surfaces.push_back({is_next ? mark.next : mark.idle, X});
+  }
+}
+
+void ObjectView::AppendShades(const simulation::Snapshot& snapshot, render::Frame& frame) const {
+  frame.ring_shades.clear();
+  for (const Ring& ring : rings_) {
+    if (frame.ring_shades.size() == render::kMaxRingShades) break;
+    const Pose X_world_ring = snapshot.objects[ring.object].X_world_object * ring.X_object_ring;
+    frame.ring_shades.push_back({X_world_ring.translation, ring.radius});
+    frame.ring_section = ring.section;
   }
 }
 

@@ -19,12 +19,19 @@ class ObjectView {
   void Add(render::Renderer& renderer, const scene::Scene& scene, const simulation::Snapshot& start);
   /// Appends what a snapshot shows to a frame; what is to be done next is marked brightly.
   void Append(const simulation::Snapshot& snapshot, std::vector<render::SurfaceDraw>& surfaces) const;
+  /// The rings that may throw a shadow.
+  void AppendShades(const simulation::Snapshot& snapshot, render::Frame& frame) const;
 
  private:
   struct Part {
     render::SurfaceId surface;
     std::size_t object = 0;
     math::Pose X_object_part;
+  };
+  struct Ring {
+    std::size_t object = 0;
+    math::Pose X_object_ring;
+    double radius = 0, section = 0;  // [m]
   };
   struct Mark {
     render::SurfaceId idle, next;
@@ -40,6 +47,7 @@ class ObjectView {
 
   std::optional<scene::Task> task_;
   std::vector<Part> parts_;
+  std::vector<Ring> rings_;
   std::vector<Mark> marks_;
 };
 

@@ -108,7 +108,7 @@ void OrganShape::Update(const simulation::Snapshot& snapshot, const Film& film) 
   bool has_any = false;
   for (std::size_t v = 0; v < rows_.size(); ++v) {
     marks_[v] = HeatMark(operation, rows_[v]);
-    film.Wet(positions_[v], marks_[v]);
+    film.Wet(positions_[v], rows_[v], marks_[v]);
     has_any = has_any || marks_[v] != render::SurfaceMark{};
   }
   // what has never been marked needs no upload

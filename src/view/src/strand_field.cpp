@@ -2,12 +2,12 @@
 #include "strand_field.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 
 #include "trocar/core/assert.h"
+#include "trocar/geometry/mesh_measures.h"
 #include "trocar/math/random.h"
 
 namespace trocar::view {
@@ -17,9 +17,13 @@ using Kind = scene::StrandInfo::Kind;
 using math::Vec3;
 using render::Material;
 
-constexpr double kFibreWidth = 0.00022;                    // m, of areolar tissue
-constexpr double kAdhesionWidth = 0.0007;                  // m
-constexpr double kEndSpread = 0.0007;                      // m, of a fibre's root about its node
+constexpr double kFibreWidth = 0.00016;    // m, of areolar tissue
+constexpr double kShownLength = 0.0035;    // m; a shorter strand lies between what it joins and is not seen
+constexpr double kWebBreadth = 1.3;        // of the bed's web in distances to its neighbour
+constexpr double kFatChange = 0.00012;     // m; less movement leaves the fat's surface as it is
+constexpr double kAdhesionWidth = 0.0007;  // m
+constexpr double kEndSpread = 0.0007;      // m, of a fibre's root about its node
+constexpr double kLeastLobule = 0.7, kMostLobule = 1.3;    // times a lobule's radius
 constexpr double kFatSpread = 0.0016;                      // m, from the strand
 constexpr double kFilmOverlap = 1.6;                       // breadth of a film in distances to its neighbour
 constexpr double kLeastFilm = 0.0010, kMostFilm = 0.0045;  // m
@@ -35,53 +39,54 @@ double CalcWave(double rest_length, double length) {
   return kWave * std::min(rest_length, length) + 0.25 * std::sqrt(slack);
 }
 
+/// A film as wide as the distance to the next strand of its kind, so that neighbours make one sheet.
+double CalcBreadth(const Vec3& middle, std::span<const Vec3> others, double overlap) {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const Vec3& other : others) {
+    const double distance = math::Distance(other, middle);
+    if (distance > 0.0) nearest = std::min(nearest, distance);
+  }
+  return std::clamp(overlap * nearest, kLeastFilm, kMostFilm);
+}
+
 }  // namespace
 
 StrandField::StrandField(std::span<const scene::StrandInfo> strands, std::span<const Vec3> start) {
-  std::vector<Vec3> middles;  // of the peritoneum's strands
+  std::vector<Vec3> peritoneum, bed;  // middles of their strands
   const auto middle_of = [&start](const scene::StrandInfo& info) {
     return 0.5 * (start[info.a] + start[info.b]);
   };
   for (const scene::StrandInfo& info : strands) {
     TROCAR_ASSERT(info.a < start.size() && info.b < start.size());
-    if (info.kind == Kind::kPeritoneum) middles.push_back(middle_of(info));
+    if (info.kind == Kind::kPeritoneum) peritoneum.push_back(middle_of(info));
+    if (info.kind == Kind::kBed) bed.push_back(middle_of(info));
   }
-  for (const scene::StrandInfo& info : strands) {
+  for (std::size_t i = 0; i < strands.size(); ++i) {
+    const scene::StrandInfo& info = strands[i];
     double breadth = 0;
-    if (info.kind == Kind::kPeritoneum) {
-      // once, at the start; the square of some hundreds
-      double nearest = std::numeric_limits<double>::infinity();
-      const Vec3 middle = middle_of(info);
-      for (const Vec3& other : middles) {
-        const double distance = math::Distance(other, middle);
-        if (distance > 0.0) nearest = std::min(nearest, distance);
-      }
-      breadth = std::clamp(kFilmOverlap * nearest, kLeastFilm, kMostFilm);
-    }
+    // once, at the start; the square of some hundreds
+    if (info.kind == Kind::kPeritoneum) breadth = CalcBreadth(middle_of(info), peritoneum, kFilmOverlap);
+    if (info.kind == Kind::kBed) breadth = CalcBreadth(middle_of(info), bed, kWebBreadth);
     strands_.push_back({info, math::Distance(start[info.a], start[info.b]), breadth});
+    if (info.kind != Kind::kTriangle) continue;
+    math::Random random(i);
+    for (const double middle : {0.3, 0.7}) {
+      const double along = middle + random.Uniform(-0.15, 0.15);
+      const Vec3 offset = PickOffset(random, kFatSpread);
+      lobules_.push_back({i, along, offset, math::Lerp(start[info.a], start[info.b], along) + offset,
+                          scene::kLobuleRadius * random.Uniform(kLeastLobule, kMostLobule)});
+    }
   }
 }
 
-void StrandField::AddTo(render::Frame& frame, const simulation::Snapshot& snapshot) const {
+void StrandField::AddTo(render::Renderer& renderer, render::Frame& frame,
+                        const simulation::Snapshot& snapshot) {
   const std::vector<std::uint8_t>& intact = snapshot.operation.strand_is_intact;
-  // a lobule is as full as its strands are whole: balls overlap so much that a tenth of them would look like all
-  std::vector<std::array<std::uint16_t, 2>> fat(snapshot.positions.size());  // all, intact
-  for (std::size_t i = 0; i < strands_.size(); ++i) {
-    if (strands_[i].info.kind != Kind::kTriangle) continue;
-    const bool is_intact = i >= intact.size() || intact[i] != 0;
-    for (const std::uint32_t node : {strands_[i].info.a, strands_[i].info.b}) {
-      ++fat[node][0];
-      fat[node][1] += is_intact ? 1 : 0;
-    }
-  }
-  const auto filling = [&fat](std::uint32_t node) {
-    return static_cast<double>(fat[node][1]) / static_cast<double>(std::max<std::uint16_t>(1, fat[node][0]));
-  };
   for (std::size_t i = 0; i < strands_.size(); ++i) {
     if (i < intact.size() && intact[i] == 0) continue;
     const Strand& strand = strands_[i];
     const Vec3 a = snapshot.positions[strand.info.a], b = snapshot.positions[strand.info.b];
-    const double wave = CalcWave(strand.rest_length, math::Distance(a, b));
+    const double length = math::Distance(a, b), wave = CalcWave(strand.rest_length, length);
     const auto seed = static_cast<std::uint32_t>(i);
     math::Random random(i);
     const auto add_fibre = [&](double width) {
@@ -90,24 +95,17 @@ void StrandField::AddTo(render::Frame& frame, const simulation::Snapshot& snapsh
     };
     switch (strand.info.kind) {
       case Kind::kBed:
-        add_fibre(kFibreWidth * random.Uniform(0.7, 1.5));
+        if (length < kShownLength) break;
+        // a web that thins out as it is drawn, and a thread in every second of them
+        frame.fibres.push_back({a, b, strand.breadth, 0.3 * wave, Material::kFilm, 3 * seed});
+        if (i % 2 == 0) add_fibre(kFibreWidth * random.Uniform(0.7, 1.5));
         break;
       case Kind::kAdhesion:
         add_fibre(kAdhesionWidth);
         break;
-      case Kind::kTriangle: {
-        add_fibre(kFibreWidth);
-        const double radius =
-            scene::kLobuleRadius * std::cbrt(std::min(filling(strand.info.a), filling(strand.info.b)));
-        for (const double along : {0.3, 0.7}) {
-          const Vec3 centre =
-              math::Lerp(a, b, along + random.Uniform(-0.15, 0.15)) + PickOffset(random, kFatSpread);
-          // 0.7 to 1.3 times a lobule
-          frame.blobs.push_back({centre, radius * random.Uniform(0.7, 1.3), Material::kFat,
-                                 3 * seed + (along < 0.5 ? 0U : 1U)});
-        }
+      case Kind::kTriangle:
+        if (length >= kShownLength) add_fibre(kFibreWidth);
         break;
-      }
       case Kind::kPeritoneum:
         frame.fibres.push_back({a, b, strand.breadth, 0.3 * wave, Material::kFilm, 3 * seed});
         break;
@@ -117,6 +115,62 @@ void StrandField::AddTo(render::Frame& frame, const simulation::Snapshot& snapsh
         break;  // the tube itself shows it
     }
   }
+  AddFat(renderer, frame, snapshot);
+}
+
+void StrandField::FindRaw(const simulation::Snapshot& snapshot, std::vector<std::uint8_t>& rows) const {
+  const std::vector<std::uint8_t>& intact = snapshot.operation.strand_is_intact;
+  rows.clear();
+  for (std::size_t i = 0; i < std::min(strands_.size(), intact.size()); ++i) {
+    if (intact[i] != 0 || strands_[i].info.kind != Kind::kBed) continue;
+    rows.resize(snapshot.positions.size(), 0);
+    rows[strands_[i].info.a] = rows[strands_[i].info.b] = 1;
+  }
+}
+
+void StrandField::AddFat(render::Renderer& renderer, render::Frame& frame,
+                         const simulation::Snapshot& snapshot) {
+  const std::vector<std::uint8_t>& intact = snapshot.operation.strand_is_intact;
+  const auto is_intact = [&intact](std::size_t strand) {
+    return strand >= intact.size() || intact[strand] != 0;
+  };
+  // a lobule is as full as its strands are whole: they overlap so much that a tenth of them would look like all
+  nodes_.assign(snapshot.positions.size(), {});
+  for (std::size_t i = 0; i < strands_.size(); ++i) {
+    if (strands_[i].info.kind != Kind::kTriangle) continue;
+    for (const std::uint32_t node : {strands_[i].info.a, strands_[i].info.b}) {
+      ++nodes_[node].strands;
+      nodes_[node].intact += is_intact(i) ? 1 : 0;
+    }
+  }
+  wanted_.clear();
+  for (const Lobule& lobule : lobules_) {
+    if (!is_intact(lobule.strand)) continue;
+    const scene::StrandInfo& info = strands_[lobule.strand].info;
+    const double filling = std::min(nodes_[info.a].Filling(), nodes_[info.b].Filling());
+    wanted_.push_back(
+        {math::Lerp(snapshot.positions[info.a], snapshot.positions[info.b], lobule.along) + lobule.offset,
+         lobule.rest, lobule.radius * std::cbrt(filling)});
+  }
+  const bool is_same = std::equal(wanted_.begin(), wanted_.end(), shown_.begin(), shown_.end(),
+                                  [](const FatLobule& a, const FatLobule& b) {
+                                    return a.rest == b.rest && a.radius == b.radius &&
+                                           math::SquaredNorm(a.centre - b.centre) < kFatChange * kFatChange;
+                                  });
+  if (!is_same) {
+    renderer.RemoveSurface(surface_);
+    surface_ = {};
+    fat_.Make(wanted_);
+    const geometry::TriangleMesh& mesh = fat_.Mesh();
+    if (!mesh.triangles.empty()) {
+      surface_ = renderer.AddSurface(mesh.triangles, fat_.Rest(), Material::kFat, fat_.AmbientOcclusion());
+      normals_.resize(mesh.positions.size());
+      geometry::CalcVertexNormals(mesh.positions, mesh.triangles, normals_);
+      renderer.UpdateSurface(surface_, mesh.positions, normals_);
+    }
+    shown_ = wanted_;
+  }
+  if (!fat_.Mesh().triangles.empty()) frame.surfaces.push_back({surface_, {}});
 }
 
 }  // namespace trocar::view

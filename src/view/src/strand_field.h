@@ -2,10 +2,12 @@
 /// \file strand_field.h  The connective tissue that dissection divides: fibres, lobules of fat, a film of peritoneum.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
-#include "trocar/render/frame.h"
+#include "fat_body.h"
+#include "trocar/render/renderer.h"
 #include "trocar/simulation/operation_snapshot.h"
 #include "trocar/simulation/snapshot.h"
 
@@ -18,16 +20,41 @@ class StrandField {
   /// \pre the strands' rows lie in `start` (TROCAR_ASSERT)
   StrandField(std::span<const scene::StrandInfo> strands, std::span<const math::Vec3> start);
 
-  /// Adds the strands that still hold; all of them where the snapshot does not say.
-  void AddTo(render::Frame& frame, const simulation::Snapshot& snapshot) const;
+  /// Adds the strands that still hold; all of them where the snapshot does not say. Their fat is one surface, made anew
+  /// when it has changed.
+  void AddTo(render::Renderer& renderer, render::Frame& frame, const simulation::Snapshot& snapshot);
+
+  /// Marks the ends of the bed's strands that are divided.
+  /// \param[out] rows  (rows of Snapshot::positions); empty where none is
+  void FindRaw(const simulation::Snapshot& snapshot, std::vector<std::uint8_t>& rows) const;
 
  private:
   struct Strand {
     scene::StrandInfo info;
     double rest_length;  // [m]
-    double breadth;      // of the film of a peritoneal strand [m]
+    double breadth;      // of its film: of a peritoneal strand, or of the web of the bed [m]
   };
+  /// A lobule on a strand: where along it, and how far beside.
+  struct Lobule {
+    std::size_t strand;
+    double along;
+    math::Vec3 offset, rest;
+    double radius;  // where all strands are whole [m]
+  };
+  /// How many strands of fat meet in a node.
+  struct FatNode {
+    std::uint16_t strands = 0, intact = 0;
+    double Filling() const { return static_cast<double>(intact) / static_cast<double>(strands); }
+  };
+  void AddFat(render::Renderer& renderer, render::Frame& frame, const simulation::Snapshot& snapshot);
+
   std::vector<Strand> strands_;
+  std::vector<Lobule> lobules_;
+  std::vector<FatNode> nodes_;  // (rows of Snapshot::positions)
+  FatBody fat_;
+  std::vector<FatLobule> shown_, wanted_;  // of the surface that is uploaded; of this snapshot
+  std::vector<math::Vec3> normals_;
+  render::SurfaceId surface_;
 };
 
 }  // namespace trocar::view

@@ -63,6 +63,7 @@ class OperationViewTest : public testing::Test {
     ViewOptions options;
     options.has_background = has_background;
     options.has_smooth_edges = false;
+    options.has_automatic_exposure = false;  // these tests compare brightness
     view_->SetOptions(options);
   }
 

@@ -28,8 +28,9 @@ struct Options {
   std::filesystem::path replay;         ///< recording to play in place of a simulation; empty: none
   std::filesystem::path replay_beside;  ///< with `replay`: another one beside it; empty: none
   double replay_at = 0;                 ///< with `replay`: moment at which it begins [s]
-  std::string store;    ///< where attempts go, as store::FindPlace reads it; empty: the person's own
-  std::string trainee;  ///< who operates: name or pseudonym; empty: nobody in particular
+  std::string store;  ///< where attempts go, as store::FindPlace reads it; empty: the person's own
+  std::filesystem::path settings;  ///< file of the window's settings; empty: none are kept
+  std::string trainee;             ///< who operates: name or pseudonym; empty: nobody in particular
   std::string
       page;  ///< open the training centre at "history", "courses", "group" or "exam"; empty: the simulator
   std::filesystem::path exam;  ///< with `page` "exam": sealed file to open; empty: none

@@ -70,6 +70,12 @@ class SessionControl {
 
   void SetPaused(bool is_paused);
   bool IsPaused() const { return runner_.IsPaused(); }
+  /// The newest state, as the last Advance() saw it.
+  const simulation::Snapshot& Now() { return now_ != nullptr ? *now_ : Look(); }
+  /// At kSlowMotion of the clock: for practice, see Runner::SetSpeed.
+  void SetSlowMotion(bool is_slow) { runner_.SetSpeed(is_slow ? kSlowMotion : 1.0); }
+  bool IsSlowMotion() const { return runner_.GetSpeed() < 1.0; }
+  static constexpr double kSlowMotion = 0.35;
   /// Back to the first tick, hands at home; keeps running or paused, and the settings.
   void Reset();
   /// The attempt is over: what is recorded ends here, and nothing more is until the next reset.
@@ -125,6 +131,8 @@ class SessionControl {
   /// Of the attempt that runs or ran last; nothing where none is kept.
   std::optional<record::RecorderStatus> Recording() const { return runner_.RecordingStatus(); }
   session::RunnerStatistics Statistics() const { return runner_.Statistics(); }
+  /// The camera of the picture: the laparoscope's, with a level horizon where the scope is straight.
+  math::Pose CalcView(const simulation::Snapshot& snapshot) const;
   /// What the person wants by mouse, keys and panel, and where devices hold the hands.
   const scene::Input& GetInput() const { return input_; }
   /// What the last Advance() gave to the simulation: the pedals of devices are in it, too.
@@ -133,8 +141,11 @@ class SessionControl {
  private:
   SessionControl(simulation::Simulation simulation, const device::MouseKeyboardSettings& settings,
                  std::optional<session::AttemptKeeping> keeping);
+  /// The newest state; what Look() gave before is gone.
+  const simulation::Snapshot& Look() { return *(now_ = &runner_.Latest()); }
   void PlaceAtHome();
   void ApplyDevice();
+  void LimitLead(const simulation::Snapshot& snapshot);
   void ApplyStylusButtons();
   bool MayAct() const { return !IsPaused() && !is_demonstration_; }
 
@@ -152,6 +163,7 @@ class SessionControl {
   core::Stopwatch since_start_;
   std::unique_ptr<net::IgtlServer> server_;  // may be null
   std::uint64_t served_tick_ = 0;
+  const simulation::Snapshot* now_ = nullptr;
   scene::Input input_, sent_;
   device::Channel hand_ = device::kRightHand;
   bool is_demonstration_ = false;

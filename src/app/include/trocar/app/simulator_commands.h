@@ -34,9 +34,15 @@ enum class Action {
   kToggleDemonstration,
   kToggleForces,
   kToggleMask,
+  kToggleGuides,  ///< marks that help to see depth, and what comes next
   kToggleFulcrum,
+  kToggleSlowMotion,
+  kToggleLeftHanded,
   kToggleForceFeedback,
   kCheckPose,
+  kOpenHome,
+  kToggleTutorial,
+  kTogglePanel,  ///< numbers and settings beside the picture
   kToggleTaskList,
   kToggleRecordingList,
   kOpenDevices,
@@ -67,10 +73,15 @@ enum class SimulatorNeeds {
 
 using SimulatorCommand = gui::Command<KeyMeaning, SimulatorNeeds>;
 
+/// Which side of the keyboard lies under the hand that holds no mouse.
+enum class KeyLayout : std::uint8_t { kRightHanded, kLeftHanded };
+/// Where a key's meaning lies in a layout: left-handed, letters change places with their mirror image on the keyboard.
+std::uint32_t MirrorKey(std::uint32_t keyval, KeyLayout layout) noexcept;
+
 /// All of them; those with a button in the order of the header bar, from the left.
 std::span<const SimulatorCommand> SimulatorCommands() noexcept;
 /// The help page.
-std::vector<gui::KeyHelp> SimulatorHelp();
+std::vector<gui::KeyHelp> SimulatorHelp(KeyLayout layout = KeyLayout::kRightHanded);
 
 /// Meaning of a key in the picture.
 ///
@@ -86,8 +97,5 @@ SimulatorNeeds FindNeeds(Action action) noexcept;
 
 /// True if the key has its meaning even while a slider of the panel has the keyboard.
 bool WorksInPanel(Action action) noexcept;
-
-/// The permanent line under the picture.
-const char* ShortHelp() noexcept;
 
 }  // namespace trocar::app

@@ -11,13 +11,17 @@
 #include <vector>
 
 #include "trocar/app/branch.h"
+#include "trocar/app/hints.h"
+#include "trocar/app/home.h"
 #include "trocar/app/options.h"
 #include "trocar/app/read_outs.h"
 #include "trocar/app/session_control.h"
 #include "trocar/app/simulator_commands.h"
 #include "trocar/app/task_request.h"
 #include "trocar/app/task_result.h"
+#include "trocar/app/tutorial.h"
 #include "trocar/app/unattended_play.h"
+#include "trocar/app/window_settings.h"
 #include "trocar/centre/course_page.h"
 #include "trocar/core/clock.h"
 #include "trocar/gui/background_job.h"
@@ -29,6 +33,12 @@ namespace trocar::app {
 struct SimulatorPage {
   std::string title = "Trocar";
   std::string hint, badge, state, event, haptics;
+  std::string mode;      ///< what mouse and keys do now
+  std::string progress;  ///< of the task or the operation: time, goals or phase, what comes next
+  std::string tutorial;  ///< what is to be done now; empty: it is off
+  std::string question;  ///< before something is thrown away; empty: none
+  HomePage home;
+  bool is_home_open = false, is_panel_open = false, is_left_handed = false;
   bool is_event_warning = false;
   bool is_help_open = false, is_task_list_open = false, is_result_open = false;
   bool is_recording_list_open = false;
@@ -67,6 +77,10 @@ class SimulatorScreen {
   virtual void ReleasePointer() = 0;
   virtual bool IsPointerTaken() const = 0;
   virtual void FocusPicture() = 0;
+  /// Name of who operates; turns a name or pseudonym into that person first, where there is a text.
+  virtual core::Result<std::string> BeSomebody(const std::optional<std::string>& text) = 0;
+  /// The page of a course in the training centre.
+  virtual void OpenCourse(const std::string& course) = 0;
   /// What is the window's alone: full screen, panes, the page of devices, the end.
   virtual void DoInWindow(Action action) = 0;
 };
@@ -102,6 +116,13 @@ class SimulatorPresenter {
   /// How the command's button looks now.
   gui::ButtonState FindButton(const SimulatorCommand& command) const;
 
+  void OpenHome();
+  void Choose(HomeChoice choice);
+  /// Who operates from now on. \param text  name or pseudonym; empty: nobody in particular
+  void BeSomebody(const std::string& text);
+  /// To the question that is asked. \param is_yes  does what was asked for
+  void Answer(bool is_yes);
+
   void OpenTaskList();
   void CloseTaskList();
   void OpenRecordingList();
@@ -136,6 +157,10 @@ class SimulatorPresenter {
   SessionControl* Control() { return control_.get(); }
   const Options& GetOptions() const { return options_; }
   const SimulatorPage& Page() const { return page_; }
+  KeyLayout Layout() const {
+    return settings_.is_left_handed ? KeyLayout::kLeftHanded : KeyLayout::kRightHanded;
+  }
+  bool HasGuides() const { return settings_.has_guides && !IsExam(); }
 
  private:
   bool Meets(SimulatorNeeds needs) const;
@@ -149,6 +174,16 @@ class SimulatorPresenter {
   bool IsExam() const { return start_ && start_->exam; }
   void Drop();
   void Refresh();
+  Situation MakeSituation();
+  void RefreshFirstMeeting();
+  void FollowTutorial(const simulation::Snapshot& snapshot);
+  void ToggleTutorial();
+  bool MustAsk(Action action) const;
+  void CloseCards();
+  void LeadOn(const core::Error& error);
+  void KeepLast();
+  void KeepSettings();
+  void ToggleLeftHanded();
   void Announce(const std::string& text, bool is_warning = false);
   void ShowEvents(const simulation::Snapshot& snapshot);
   void ShowHaptics();
@@ -170,7 +205,11 @@ class SimulatorPresenter {
   SimulatorScreen* screen_;
   SimulatorPage page_;
   UnattendedPlay unattended_;
-  bool is_fulcrum_mirrored_ = false, has_script_ = false, is_closed_ = false;
+  WindowSettings settings_;
+  Tutorial tutorial_;
+  Action asked_ = Action::kNone;  // that waits for an answer
+  double attempt_seconds_ = 0;    // of the newest snapshot
+  bool has_script_ = false, is_closed_ = false;
   std::unique_ptr<SessionControl> control_;  // null while loading
   StageMeter stages_;
   FrameMeter frames_;

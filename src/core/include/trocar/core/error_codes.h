@@ -129,6 +129,9 @@ enum class ErrorCode {
   kCertificateRecording,
   kCertificateOutcome,
   kKeyLocked,
+  // environments for reinforcement learning
+  kActionInvalid,
+  kEnvironmentState,
   kCount
 };
 

@@ -51,6 +51,25 @@ struct Shade {
 };
 inline constexpr std::size_t kMaxShades = 4;
 
+/// A ring that lies, for example on a peg: it takes light from what is under it where there is an overhead light.
+struct RingShade {
+  math::Vec3 centre;  ///< world frame [m]
+  double radius = 0;  ///< of its circle [m]
+};
+inline constexpr std::size_t kMaxRingShades = 12;
+
+/// A lamp in the lid of a box trainer: it throws shadows straight down.
+struct OverheadLight {
+  math::Vec3 up{0, 0, 1};  ///< direction to it, world frame, unit
+  double power = 0;        ///< light on what faces it, 0 none [-]
+};
+
+/// What a picture may cost. The lowest leaves out what is dear where the processor draws.
+enum class Quality {
+  kLow,  ///< no glow of highlights, no filtering of their edges
+  kHigh
+};
+
 /// A fine thread between two places, for example of connective tissue: it faces the lens, is a little wavy, and keeps
 /// some width however far it is.
 struct Fibre {
@@ -81,6 +100,13 @@ struct Puddle {
 struct Frame {
   Camera camera;
   double light_power = 1;  ///< head light beside the lens; 1 exposes tissue at 0.10 m well [-]
+  double exposure = 1;     ///< of the camera; with automatic exposure it is on top of that [-]
+  /// The camera finds its exposure by its last pictures and the frames' times.
+  bool has_automatic_exposure = false;
+  Quality quality = Quality::kHigh;
+  OverheadLight overhead;
+  double ring_section = 0.002;         ///< radius of the rings' section [m]
+  std::vector<RingShade> ring_shades;  ///< the first kMaxRingShades count
   /// Drawn in this order; nearest first is fastest.
   std::vector<SurfaceDraw> surfaces;
   std::vector<Fibre> fibres;  ///< drawn after everything else

@@ -54,6 +54,7 @@ enum class Effect {
   kMirroredLens,     ///< what metal mirrors around the lens
   kMirroredTissue,   ///< what metal mirrors beside it
   kMirroredWall,     ///< what liquids mirror
+  kMirroredBox,      ///< what metal mirrors in a box trainer
   kStrandShade,      ///< what is left of the light on the far side of strands and drops
   kCount
 };
@@ -67,6 +68,7 @@ struct Looks {
   std::array<double, 3> pigment{};  ///< how strongly blood, bile and rinse colour a mixture [-]
   double trainer_light =
       1;  ///< power of the light in a box trainer, whose walls are darker than tissue and farther [-]
+  double trainer_lid = 0;  ///< power of the lamp in its lid [-]
   /// Linear, 0 to 1.
   std::array<std::array<double, 3>, static_cast<std::size_t>(Effect::kCount)> effects{};
 

@@ -61,10 +61,13 @@ class Renderer {
   /// Draws into the bound framebuffer, which must have depth. Leaves depth test, culling and masks off, so
   /// that a toolkit can go on; leaves no program and no vertex array bound.
   /// \param width, height  of the framebuffer [pixels]; nothing happens when either is below 1
-  /// \note The same frame gives the same pixels. Surfaces that were removed are left out.
+  /// \note The same frame gives the same pixels; with automatic exposure, the same frames since the renderer was made do.
+  ///       Surfaces that were removed are left out.
   void Draw(const Frame& frame, int width, int height);
 
  private:
+  void DrawOnce(const Frame& frame, double exposure, unsigned target, int width, int height);
+
   struct Content;
   explicit Renderer(std::unique_ptr<Content> content);
   std::unique_ptr<Content> content_;

@@ -62,6 +62,12 @@ class Runner {
   bool HasScript() const;
   /// The script has come to its end, or the expert has done all there is to do.
   bool IsScriptOver() const;
+  /// Slow motion: simulated seconds in a second of the clock, at most 1. An attempt that was slowed down is practice: what is
+  /// recorded of it ends there, and nothing more is recorded before a reset at full speed.
+  /// \param speed  clamped to kSlowest and 1
+  void SetSpeed(double speed);
+  double GetSpeed() const;
+  static constexpr double kSlowest = 0.1;
   void SetPaused(bool is_paused);
   bool IsPaused() const;
   /// Back to tick 0; keeps paused or running.

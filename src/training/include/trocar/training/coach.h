@@ -33,7 +33,7 @@ struct CoachRule {
   double weight = 1;       ///< of a standard deviation beyond the mean, or of a multiple of `absolute` [-]
   double shown_scale = 1;  ///< from the measure's unit to what the sentence shows
   int decimals = 1;        ///< of what it shows
-  std::string sentence;    ///< with {value}, {expert}, {hand}
+  std::string sentence;    ///< with {value}, {times}, {expert}, {hand}
   std::string sentence_alone;  ///< the same without {expert}; empty: nothing is said without an expert set
   std::string why;
   std::string exercise;  ///< key of a delivered task

@@ -22,7 +22,9 @@ struct ViewOptions {
   bool has_background = true;  ///< decoration: abdominal wall, omentum, bowel
   bool has_smooth_edges = true;
   bool is_wireframe = false;
-  double light_power = 1;      ///< [-], 0 to 4
+  double light_power = 1;  ///< [-], 0 to 4
+  bool has_automatic_exposure = true;
+  render::Quality quality = render::Quality::kHigh;
   double arrow_scale = 0.008;  ///< length of a force arrow [m/N]
 
   friend bool operator==(const ViewOptions&, const ViewOptions&) = default;

@@ -1,0 +1,485 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "binding.h"
+#include "running.h"
+#include "trocar/agent/surgeon.h"
+#include "trocar/core/json.h"
+#include "trocar/core/state_hash.h"
+#include "trocar/scene/task.h"
+#include "trocar/simulation/state_file.h"
+
+namespace trocar::python {
+namespace {
+
+using scene::Input;
+using scene::kHandCount;
+using simulation::Simulation;
+using simulation::Snapshot;
+
+constexpr double kMillilitre = 1e6;  // per m^3
+constexpr std::array<const char*, kHandCount> kHandNames = {"left", "right"};
+constexpr std::array<const char*, 4> kCommandNames = {"wait", "retract", "relax", "release"};
+
+core::Result<scene::Scene> ReadAny(const std::string& task, const std::string& level, std::uint64_t seed,
+                                   const std::filesystem::path& patient) {
+  auto operation = scene::FindOperation(task, patient, seed);
+  if (!operation) return operation.error();
+  if (*operation) return std::move(**operation);
+  const auto path = scene::FindTask(task);
+  if (!path) return path.error();
+  const auto document = core::JsonDocument::Read(*path);
+  if (!document) return document.error();
+  if (document->Root().Has("rules")) return scene::ReadTask(*path, {level, seed, patient});
+  auto scene = scene::ReadScene(*path, patient);
+  if (scene.ok()) scene->seed = seed;
+  return scene;
+}
+
+std::unique_ptr<Running> MakeRunning(const std::string& task, const std::string& level, std::uint64_t seed,
+                                     const std::string& patient, int threads) {
+  if (threads < 1 || threads > 256)
+    throw Failure({core::ErrorCode::kUsage, "a simulation has 1 to 256 threads"});
+  const py::gil_scoped_release release;
+  auto scene = std::make_shared<const scene::Scene>(Take(ReadAny(task, level, seed, patient)));
+  auto simulation = Take(Simulation::Make(scene, threads));
+  return std::make_unique<Running>(Running{std::move(scene), std::move(simulation)});
+}
+
+// --- input
+
+using Row = py::array_t<double, py::array::c_style | py::array::forcecast>;
+
+instrument::TrocarJoints ToJoints(const double* at) {
+  return {at[0], at[1], at[2], at[3], at[4]};
+}
+void FromJoints(const instrument::TrocarJoints& joints, double* at) {
+  at[0] = joints.pan, at[1] = joints.tilt, at[2] = joints.spin, at[3] = joints.depth, at[4] = joints.jaw;
+}
+
+void CheckNumbers(const Row& row, py::ssize_t count, const char* what) {
+  if (row.size() != count) {
+    throw Failure({core::ErrorCode::kActionInvalid, std::string(what) + " are " + std::to_string(count) +
+                                                        " numbers, not " + std::to_string(row.size())});
+  }
+  for (py::ssize_t i = 0; i < count; ++i) {
+    if (!std::isfinite(row.data()[i]))
+      throw Failure(
+          {core::ErrorCode::kActionInvalid, std::string(what) + " hold a number that is NaN or infinite"});
+  }
+}
+
+template <bool scene::HandControls::*kMember>
+void BindPedal(py::class_<Input>& type, const char* name, const char* about) {
+  type.def_property(
+      name,
+      [](const Input& input) {
+        return py::make_tuple(input.controls[0].*kMember, input.controls[1].*kMember);
+      },
+      [](Input& input, const std::array<bool, kHandCount>& on) {
+        for (int hand = 0; hand < kHandCount; ++hand) input.controls[hand].*kMember = on[hand];
+      },
+      about);
+}
+
+void BindInput(py::module_& module) {
+  py::class_<Input> type(module, "Input",
+                         "What reaches one tick from outside: hands, pedals, camera, assistant.");
+  type.def_property(
+          "hands",
+          [](const Input& input) {
+            py::array_t<double> array({kHandCount, 5});
+            for (int hand = 0; hand < kHandCount; ++hand)
+              FromJoints(input.hands[hand], array.mutable_data(hand));
+            return array;
+          },
+          [](Input& input, const Row& rows) {
+            CheckNumbers(rows, 5 * kHandCount, "the joints of both hands");
+            for (int hand = 0; hand < kHandCount; ++hand)
+              input.hands[hand] = ToJoints(rows.data() + 5 * hand);
+          },
+          "(2, 5) pan, tilt, spin [rad], depth [m], jaw [rad] of the left and the right hand. Assign the "
+          "whole array.")
+      .def_property(
+          "laparoscope",
+          [](const Input& input) {
+            py::array_t<double> array(5);
+            FromJoints(input.laparoscope, array.mutable_data());
+            return array;
+          },
+          [](Input& input, const Row& row) {
+            CheckNumbers(row, 5, "the joints of the laparoscope");
+            input.laparoscope = ToJoints(row.data());
+          },
+          "(5) pan, tilt, spin of the light post [rad], depth [m]; the last is not used. Assign the whole "
+          "array.")
+      .def_property(
+          "tools",
+          [](const Input& input) { return py::make_tuple(input.controls[0].tool, input.controls[1].tool); },
+          [](Input& input, const std::array<std::uint8_t, kHandCount>& tools) {
+            for (int hand = 0; hand < kHandCount; ++hand) input.controls[hand].tool = tools[hand];
+          },
+          "(2) wanted tool of each hand, by its place in Simulation.trays.")
+      .def_property(
+          "assistant",
+          [](const Input& input) { return kCommandNames[static_cast<std::size_t>(input.assistant)]; },
+          [](Input& input, const std::string& command) {
+            for (std::size_t i = 0; i < kCommandNames.size(); ++i) {
+              if (command != kCommandNames[i]) continue;
+              input.assistant = static_cast<scene::AssistantCommand>(i);
+              return;
+            }
+            throw Failure({core::ErrorCode::kUnknownName, "the assistant knows no \"" + command +
+                                                              "\"; say wait, retract, relax or release"});
+          },
+          "\"wait\", \"retract\", \"relax\" or \"release\".")
+      .def_property(
+          "holds_camera", [](const Input& input) { return input.settings.holds_camera; },
+          [](Input& input, bool holds) { input.settings.holds_camera = holds; },
+          "The automatic holder moves the laparoscope.")
+      .def(
+          "copy", [](const Input& input) { return input; }, "Another one with the same values.")
+      .def("__eq__", [](const Input& a, const Input& b) { return a == b; });
+  BindPedal<&scene::HandControls::cut>(type, "cut", "(2) yellow pedal of each hand.");
+  BindPedal<&scene::HandControls::coagulate>(type, "coagulate", "(2) blue pedal of each hand.");
+  BindPedal<&scene::HandControls::rinse>(type, "rinse", "(2) irrigation of each hand.");
+  BindPedal<&scene::HandControls::aspirate>(type, "aspirate", "(2) suction of each hand.");
+}
+
+// --- snapshot
+
+py::object SurfaceName(const Running& running, std::int32_t surface) {
+  if (surface < 0) return py::none();
+  return py::str(running.simulation.Surfaces()[static_cast<std::size_t>(surface)].name);
+}
+py::object ObjectName(const Running& running, std::int32_t object) {
+  if (object < 0) return py::none();
+  return py::str(running.scene->objects[static_cast<std::size_t>(object)].name);
+}
+
+py::dict DescribeInstrument(const Running& running, int hand) {
+  const simulation::InstrumentSnapshot& tool = running.simulation.GetSnapshot().instruments[hand];
+  py::dict out;
+  py::array_t<double> joints(5);
+  FromJoints(tool.joints, joints.mutable_data());
+  out["pose"] = ToMatrix(tool.X_world_tool);
+  out["joints"] = joints;
+  out["force"] = ToArray(tool.force);
+  out["pinch"] = tool.pinch;
+  out["is_grasping"] = tool.is_grasping;
+  out["is_touching"] = tool.is_touching;
+  out["is_touching_tool"] = tool.is_touching_tool;
+  out["surface"] = SurfaceName(running, tool.organ);
+  out["object"] = ObjectName(running, tool.object);
+  return out;
+}
+
+py::dict DescribeTask(const Running& running) {
+  const Snapshot& now = running.simulation.GetSnapshot();
+  const scene::Task& task = *running.scene->task;
+  py::dict out, goals, errors;
+  for (std::size_t i = 0; i < task.goals.size(); ++i) {
+    py::dict goal;
+    goal["is_done"] = now.task.goals[i].is_done;
+    goal["is_open"] = now.task.goals[i].is_open;
+    goal["steps_done"] = now.task.goals[i].steps_done;
+    goal["steps"] = task.goals[i].steps.size();
+    goals[py::str(task.goals[i].name)] = goal;
+  }
+  for (std::size_t i = 0; i < task.errors.size(); ++i)
+    errors[py::str(task.errors[i].name)] = now.task.errors[i];
+  out["phase"] = std::string(scene::PhaseName(now.task.phase));
+  out["is_over"] = now.task.IsOver();
+  out["time"] = now.task.time;
+  out["score"] = scene::CalcShownScore(task, now.task);
+  out["goals"] = goals;
+  out["errors"] = errors;
+  return out;
+}
+
+py::dict DescribeOperation(const Running& running) {
+  const simulation::OperationSnapshot& now = running.simulation.GetSnapshot().operation;
+  const auto& fluids = now.fluids.fluids;
+  py::dict out;
+  out["phase"] = std::string(training::NameOf(now.phase));
+  out["cleared"] = now.facts.cleared_share;
+  out["detached"] = now.facts.detached_share;
+  out["structures_entering"] = now.facts.structures_entering;
+  out["is_gallbladder_free"] = now.is_gallbladder_free;
+  out["is_in_bag"] = now.is_in_bag;
+  out["is_completed"] = now.is_completed;
+  out["errors"] = now.errors;
+  out["critical_errors"] = now.critical_errors;
+  out["clips"] = now.clip_count;
+  out["cuts"] = now.tube_cut_count;
+  out["blood_ml"] = kMillilitre * fluids[static_cast<std::size_t>(surgery::Fluid::kBlood)].left;
+  out["bile_ml"] = kMillilitre * fluids[static_cast<std::size_t>(surgery::Fluid::kBile)].left;
+  out["smoke"] = now.smoke;
+  return out;
+}
+
+py::dict DescribeSnapshot(const Running& running) {
+  const Snapshot& now = running.simulation.GetSnapshot();
+  py::dict out, instruments, organs, objects;
+  for (int hand = 0; hand < kHandCount; ++hand)
+    instruments[kHandNames[hand]] = DescribeInstrument(running, hand);
+  for (std::size_t i = 0; i < now.organs.size(); ++i) {
+    py::dict organ;
+    organ["volume"] = now.organs[i].volume;
+    organ["pressure"] = now.organs[i].pressure;
+    organ["leaked"] = now.organs[i].leaked;
+    organs[py::str(running.simulation.Surfaces()[i].name)] = organ;
+  }
+  for (std::size_t i = 0; i < now.objects.size(); ++i) {
+    const scene::ObjectSnapshot& object = now.objects[i];
+    py::dict entry;
+    entry["pose"] = ToMatrix(object.X_world_object);
+    entry["velocity"] = ToArray(object.velocity);
+    entry["held_by"] = py::make_tuple((object.held_by & 1) != 0, (object.held_by & 2) != 0);
+    entry["touched_by"] = py::make_tuple((object.touched_by & 1) != 0, (object.touched_by & 2) != 0);
+    entry["is_at_rest"] = object.is_at_rest;
+    objects[py::str(running.scene->objects[i].name)] = entry;
+  }
+  out["tick"] = now.tick;
+  out["time"] = now.time;
+  out["instruments"] = instruments;
+  out["organs"] = organs;
+  out["objects"] = objects;
+  out["task"] = running.scene->task ? py::object(DescribeTask(running)) : py::none();
+  out["operation"] = running.scene->operation ? py::object(DescribeOperation(running)) : py::none();
+  out["camera"] = ToMatrix(now.X_world_laparoscope);
+  out["contacts"] = now.contacts;
+  out["residual"] = now.residual;
+  return out;
+}
+
+py::list DescribeEvents(const Running& running, std::uint64_t since) {
+  const Snapshot& now = running.simulation.GetSnapshot();
+  py::list out;
+  const std::uint64_t oldest =
+      now.event_count > simulation::kEventRing ? now.event_count - simulation::kEventRing : 0;
+  for (std::uint64_t n = std::max(since, oldest); n < now.event_count; ++n) {
+    const scene::Event& event = now.events[n % simulation::kEventRing];
+    py::dict entry;
+    entry["event"] = std::string(scene::EventName(event.kind));
+    entry["tick"] = event.tick;
+    entry["hand"] =
+        event.hand < 0 ? py::object(py::none()) : py::str(kHandNames[static_cast<std::size_t>(event.hand)]);
+    entry["surface"] = SurfaceName(running, event.organ);
+    entry["object"] = ObjectName(running, event.object);
+    entry["force"] = event.force;
+    entry["error"] =
+        event.error < 0
+            ? py::object(py::none())
+            : py::str(std::string(training::NameOf(static_cast<training::OperationError>(event.error))));
+    out.append(entry);
+  }
+  return out;
+}
+
+py::object DescribeCriticalView(const Running& running) {
+  const auto result = running.simulation.GetOperationResult();
+  if (!result) return py::none();
+  py::dict out;
+  out["criteria"] = result->critical_view.criteria;
+  out["score"] = result->critical_view.Sum();
+  out["is_achieved"] = result->critical_view.IsAchieved();
+  out["was_achieved"] = result->was_critical_view_achieved;
+  out["is_seen_from_front"] = result->critical_view.is_seen_from_front;
+  out["is_seen_from_behind"] = result->critical_view.is_seen_from_behind;
+  out["missing"] = training::ExplainCriticalView(result->facts, result->critical_view);
+  return out;
+}
+
+py::list DescribeErrors(const Running& running) {
+  py::list out;
+  if (const auto result = running.simulation.GetOperationResult()) {
+    for (const training::ErrorEntry& error : result->errors.Entries()) {
+      py::dict entry;
+      entry["error"] = std::string(training::NameOf(error.error));
+      entry["about"] = std::string(training::ExplanationOf(error.error));
+      entry["severity"] = std::string(training::NameOf(training::SeverityOf(error.error)));
+      entry["time"] = error.time;
+      entry["place"] = ToArray(error.place);
+      entry["hand"] = error.hand < 0
+                          ? py::object(py::none())
+                          : py::str(error.hand < kHandCount ? kHandNames[static_cast<std::size_t>(error.hand)]
+                                                            : "assistant");
+      out.append(entry);
+    }
+  }
+  return out;
+}
+
+py::list DescribeSurfaces(const Running& running) {
+  py::list out;
+  for (const scene::SurfaceInfo& surface : running.simulation.Surfaces()) {
+    py::dict entry;
+    entry["name"] = surface.name;
+    entry["first_node"] = surface.first_node;
+    entry["node_count"] = surface.node_count;
+    py::array_t<std::uint32_t> triangles(
+        {static_cast<py::ssize_t>(surface.triangles.size()), py::ssize_t{3}});
+    auto at = triangles.mutable_unchecked<2>();
+    for (std::size_t i = 0; i < surface.triangles.size(); ++i) {
+      for (int k = 0; k < 3; ++k)
+        at(static_cast<py::ssize_t>(i), k) = surface.triangles[i][static_cast<std::size_t>(k)];
+    }
+    entry["triangles"] = triangles;
+    out.append(entry);
+  }
+  return out;
+}
+
+void BindRunning(py::module_& module) {
+  py::class_<Running>(module, "Simulation", "One running surgery. Not for two threads at a time.")
+      .def(py::init(&MakeRunning), py::arg("task"), py::kw_only(), py::arg("level") = "normal",
+           py::arg("seed") = 1, py::arg("patient") = "", py::arg("threads") = 1)
+      .def_property_readonly("name", [](const Running& r) { return r.scene->name; })
+      .def_property_readonly(
+          "tick_seconds", [](const Running& r) { return r.scene->tick_seconds; }, "[s]")
+      .def_property_readonly("tick", [](const Running& r) { return r.simulation.GetSnapshot().tick; })
+      .def_property_readonly(
+          "time", [](const Running& r) { return r.simulation.GetSnapshot().time; }, "[s]")
+      .def_property_readonly(
+          "trays",
+          [](const Running& r) {
+            std::array<std::vector<std::string>, kHandCount> trays;
+            for (int hand = 0; hand < kHandCount; ++hand) {
+              for (const instrument::Tool& tool : r.scene->instruments[hand].tray)
+                trays[hand].push_back(tool.name);
+            }
+            return py::make_tuple(trays[0], trays[1]);
+          },
+          "Names of the tools of each hand.")
+      .def(
+          "home", [](const Running& r) { return scene::CalcScriptInput(*r.scene, 0); },
+          "Hands and camera where the scene begins.")
+      .def(
+          "script_input",
+          [](const Running& r) { return scene::CalcScriptInput(*r.scene, r.simulation.GetSnapshot().time); },
+          "What the scene's own script does in the next tick.")
+      .def(
+          "step",
+          [](Running& r, const Input& input, int ticks) {
+            if (ticks < 0) throw Failure({core::ErrorCode::kUsage, "a number of ticks is not negative"});
+            for (int tick = 0; tick < ticks; ++tick) r.simulation.Step(input);
+          },
+          py::arg("input"), py::arg("ticks") = 1, py::call_guard<py::gil_scoped_release>(),
+          "Goes on by `ticks` ticks with the same input.")
+      .def(
+          "step_script",
+          [](Running& r, int ticks) {
+            for (int tick = 0; tick < ticks; ++tick)
+              r.simulation.Step(scene::CalcScriptInput(*r.scene, r.simulation.GetSnapshot().time));
+          },
+          py::arg("ticks") = 1, py::call_guard<py::gil_scoped_release>(),
+          "Goes on as the scene's own script says.")
+      .def(
+          "reset", [](Running& r) { r.simulation.Reset(); }, py::call_guard<py::gil_scoped_release>(),
+          "Back to the first tick.")
+      .def("snapshot", &DescribeSnapshot, "What the last tick published, copied: SI units, world frame.")
+      .def(
+          "positions",
+          [](const Running& r) { return ToArray(std::span(r.simulation.GetSnapshot().positions)); },
+          "(nodes, 3) of organs, then of ducts and vessels, world frame [m]; a copy.")
+      .def("surfaces", &DescribeSurfaces,
+           "Which rows of positions() are which organ, duct or vessel; triangles at rest.")
+      .def("events", &DescribeEvents, py::arg("since") = 0,
+           "The newest events, at most eight, from number `since` on; event_count numbers them.")
+      .def_property_readonly("event_count",
+                             [](const Running& r) { return r.simulation.GetSnapshot().event_count; })
+      .def("critical_view", &DescribeCriticalView,
+           "Criteria of the critical view and what is missing; None in a task.")
+      .def("errors", &DescribeErrors, "Errors of an operation so far, in their order.")
+      .def(
+          "save",
+          [](const Running& r) {
+            std::vector<std::byte> bytes;
+            r.simulation.Save(bytes);
+            return py::bytes(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+          },
+          "The state as bytes.")
+      .def(
+          "restore",
+          [](Running& r, const py::bytes& bytes) {
+            const std::string_view view = bytes;
+            Check(r.simulation.Restore(std::as_bytes(std::span(view.data(), view.size()))));
+          },
+          py::arg("state"), "Takes up a saved state of the same model.")
+      .def(
+          "save_file",
+          [](const Running& r, const std::string& path) {
+            Check(simulation::WriteStateFile(path, r.simulation));
+          },
+          py::arg("path"), "As `trocar simulate --save`.")
+      .def(
+          "restore_file",
+          [](Running& r, const std::string& path) {
+            (void)Take(simulation::ReadStateFile(path, r.simulation));
+          },
+          py::arg("path"), "As `trocar simulate --restore`.")
+      .def(
+          "hash", [](const Running& r) { return core::HashText(r.simulation.Hash()); },
+          "Fingerprint of the state, as the commands print it.")
+      .def(
+          "play",
+          [](Running& r, agent::Surgeon& surgeon, int ticks) {
+            int done = 0;
+            for (; done < ticks && !surgeon.HasFinished(); ++done)
+              r.simulation.Step(surgeon.Act(r.simulation.GetSnapshot()));
+            return done;
+          },
+          py::arg("surgeon"), py::arg("ticks"), py::call_guard<py::gil_scoped_release>(),
+          "Lets a scripted surgeon go on for at most `ticks` ticks; returns how many it took.");
+  py::class_<agent::Surgeon>(module, "Surgeon", "A scripted surgeon of one simulation's scene.")
+      .def(py::init([](const std::string& name, const Running& r, std::uint64_t seed) {
+             return Take(agent::MakeSurgeon(name, r.scene, seed));
+           }),
+           py::arg("name"), py::arg("simulation"), py::arg("seed") = 1)
+      .def(
+          "act", [](agent::Surgeon& s, const Running& r) { return s.Act(r.simulation.GetSnapshot()); },
+          py::arg("simulation"), "The input of the next tick.")
+      .def_property_readonly("has_finished", &agent::Surgeon::HasFinished)
+      .def_property_readonly("doing", [](const agent::Surgeon& s) { return std::string(s.Doing()); });
+}
+
+}  // namespace
+
+void BindSimulation(py::module_& module) {
+  BindInput(module);
+  BindRunning(module);
+  module.def(
+      "tasks",
+      [] {
+        py::dict out;
+        for (const scene::TaskEntry& task : Take(scene::ListTasks())) {
+          py::dict entry;
+          entry["name"] = task.name;
+          entry["about"] = task.about;
+          entry["levels"] = task.levels;
+          out[py::str(task.key)] = entry;
+        }
+        return out;
+      },
+      "The delivered tasks by key.");
+  module.def(
+      "surgeons",
+      [](const Running& running) {
+        py::dict out;
+        for (const agent::SurgeonEntry& entry : agent::ListSurgeons()) {
+          if (entry.suits(*running.scene)) out[entry.name] = entry.about;
+        }
+        return out;
+      },
+      py::arg("simulation"), "Scripted surgeons that can do a simulation's scene, and what each is.");
+}
+
+}  // namespace trocar::python

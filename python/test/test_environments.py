@@ -1,0 +1,200 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Environments against the published interface, and against bad input."""
+import multiprocessing
+import unittest
+
+import numpy as np
+
+import trocar
+
+
+def code_of(call):
+    try:
+        call()
+    except trocar.Error as error:
+        return error.code
+    return None
+
+
+def first_reward(task):
+    env = trocar.make(task)
+    env.reset(seed=1)
+    return env.step(np.zeros(env.action_space.shape, np.float32))[1]
+
+
+class Interface(unittest.TestCase):
+    def test_every_task_holds_the_interface(self):
+        for task in trocar.environments():
+            if task == "cholecystectomy":
+                continue
+            for actions in ("joints", "tip", "discrete"):
+                with self.subTest(task=task, actions=actions):
+                    trocar.check_env(trocar.make(task, actions=actions, layouts=2), steps=3)
+
+    def test_operation_holds_the_interface(self):
+        trocar.check_env(trocar.make("cholecystectomy", actions="tip"), steps=2)
+
+    def test_mixtures_hold_the_interface(self):
+        for observation in ("picture", "mixture"):
+            with self.subTest(observation=observation):
+                trocar.check_env(trocar.make("lift_and_grasp", observation=observation, layouts=2, render_mode="rgb_array"), steps=2)
+
+    def test_pool_holds_the_interface(self):
+        for mode in ("NextStep", "SameStep"):
+            with self.subTest(mode=mode):
+                trocar.check_vector_env(trocar.make_vec("peg_transfer", 3, autoreset_mode=mode, most_seconds=0.5), steps=8)
+
+    def test_checker_finds_what_is_wrong(self):
+        class Random(trocar.Environment):
+            def step(self, action):
+                observation, reward, *rest = super().step(action)
+                return (observation, reward + np.random.rand(), *rest)
+
+        class Outside(trocar.Environment):
+            def reset(self, **settings):
+                observation, info = super().reset(**settings)
+                return observation[:-1], info
+
+        class Short(trocar.Environment):
+            def step(self, action):
+                return super().step(action)[:4]
+
+        for wrong in (Random, Outside, Short):
+            with self.subTest(wrong=wrong.__name__), self.assertRaises(AssertionError):
+                trocar.check_env(wrong("peg_transfer"), steps=2)
+
+
+class Meaning(unittest.TestCase):
+    def test_reward_is_the_weighted_sum_of_features(self):
+        weights = {name: 0.0 for name in trocar.FEATURES}
+        weights.update(path=3.0, time=-2.0)
+        env = trocar.make("peg_transfer", weights=weights)
+        env.reset(seed=1)
+        _, reward, _, _, info = env.step(np.full(env.action_space.shape, 0.5, np.float32))
+        self.assertGreater(info["features"]["path"], 0)
+        self.assertAlmostEqual(reward, 3 * info["features"]["path"] - 2 * info["features"]["time"], places=12)
+        self.assertAlmostEqual(info["features"]["time"], 0.1, places=9)
+
+    def test_state_says_where_the_tips_are(self):
+        env = trocar.make("peg_transfer", actions="tip")
+        field = next(f for f in env.state_fields if f["name"] == "right.tip")
+        tip = slice(field["first"], field["first"] + field["count"])
+        before, _ = env.reset(seed=1)
+        action = np.zeros(env.action_space.shape, np.float32)
+        action[[f["name"] for f in env.action_fields].index("right.x")] = -0.5
+        after = env.step(action)[0]
+        np.testing.assert_allclose(after[tip] - before[tip], [-0.006, 0, 0], atol=5e-4)
+
+    def test_pool_is_as_many_environments(self):
+        pool, env = trocar.make_vec("peg_transfer", 3, threads=2), trocar.make("peg_transfer")
+        states, _ = pool.reset(seed=7)
+        state, _ = env.reset(seed=9)
+        np.testing.assert_array_equal(states[2], state)
+        pool.action_space.seed(1)
+        for _ in range(5):
+            actions = pool.action_space.sample()
+            states, rewards, *_ = pool.step(actions)
+            state, reward, *_ = env.step(actions[2])
+            np.testing.assert_array_equal(states[2], state)
+            self.assertEqual(rewards[2], reward)
+
+    def test_send_and_recv_serve_some(self):
+        pool = trocar.make_vec("peg_transfer", 4, threads=2)
+        pool.reset(seed=1)
+        pool.send(np.zeros((4, pool.model.action_size)))
+        seen = []
+        while len(seen) < 4:
+            states, rewards, _, _, infos = pool.recv(1)
+            self.assertEqual((states.shape[0], rewards.shape), (1, (1,)))
+            seen += list(infos["env_id"])
+        self.assertEqual(sorted(seen), [0, 1, 2, 3])
+        self.assertEqual(code_of(lambda: pool.recv(1)), "E-ENV-002")
+
+    def test_ends_are_told_apart_and_reset_as_declared(self):
+        pool = trocar.make_vec("peg_transfer", 2, autoreset_mode="SameStep", most_seconds=0.2)
+        first, _ = pool.reset(seed=1)
+        pool.step(np.zeros((2, 10)))
+        states, _, terminated, truncated, infos = pool.step(np.zeros((2, 10)))
+        self.assertTrue(truncated.all() and not terminated.any())
+        np.testing.assert_array_equal(states, first)
+        self.assertAlmostEqual(infos["final_obs"][0][-1], 1, places=5)
+
+    def test_views_are_read_only(self):
+        pool = trocar.make_vec("peg_transfer", 2, copy=False)
+        states, _ = pool.reset(seed=1)
+        with self.assertRaises(ValueError):
+            states[0, 0] = 1
+
+    def test_parallel_view_is_the_same_environment(self):
+        together, apart = trocar.make("camera_navigation_0"), trocar.make_parallel("camera_navigation_0")
+        together.reset(seed=1)
+        apart.reset(seed=1)
+        self.assertEqual(apart.agents, ["left", "right", "camera"])
+        together.action_space.seed(2)
+        action = together.action_space.sample()
+        names = [field["name"].split(".")[0] for field in together.action_fields]
+        parts = {agent: action[[name == agent for name in names]] for agent in apart.agents}
+        observation, reward, *_ = together.step(action)
+        observations, rewards, *_ = apart.step(parts)
+        for agent in apart.possible_agents:
+            np.testing.assert_array_equal(observations[agent], observation)
+            self.assertEqual(rewards[agent], reward)
+        self.assertEqual(code_of(lambda: apart.step({"left": parts["left"]})), "E-ENV-001")
+
+
+class BadInput(unittest.TestCase):
+    def test_actions(self):
+        env = trocar.make("peg_transfer")
+        good = np.zeros(10, np.float32)
+        self.assertEqual(code_of(lambda: env.step(good)), "E-ENV-002")
+        env.reset(seed=1)
+        for wrong in (good[:9], np.zeros((2, 5)), np.full(10, np.nan), np.full(10, 1.01), "up", None, [[1], [2, 3]]):
+            self.assertEqual(code_of(lambda: env.step(wrong)), "E-ENV-001", repr(wrong))
+        discrete = trocar.make("peg_transfer", actions="discrete")
+        discrete.reset(seed=1)
+        for wrong in ([0, 99], [-1, 0], [0.5, 0]):
+            self.assertEqual(code_of(lambda: discrete.step(wrong)), "E-ENV-001", repr(wrong))
+        discrete.step([1, 10])
+
+    def test_closed(self):
+        env, pool = trocar.make("peg_transfer"), trocar.make_vec("peg_transfer", 2)
+        env.reset(seed=1)
+        env.close()
+        env.close()
+        pool.close()
+        for call in (env.reset, lambda: env.step(np.zeros(10)), pool.reset, lambda: pool.step(np.zeros((2, 10)))):
+            self.assertEqual(code_of(call), "E-ENV-002")
+
+    def test_pool(self):
+        pool, other = trocar.make_vec("peg_transfer", 2), trocar.make_vec("peg_transfer", 2)
+        self.assertEqual(code_of(lambda: pool.step(np.zeros((2, 10)))), "E-ENV-002")
+        pool.reset(seed=1)
+        other.reset(seed=1)  # two pools do not know each other
+        for shape in ((2, 9), (1, 10), (20,)):
+            self.assertEqual(code_of(lambda: pool.send(np.zeros(shape))), "E-ENV-001")
+        self.assertEqual(code_of(lambda: pool.send(np.zeros((2, 10)), [0, 0])), "E-CLI-001")
+        self.assertEqual(code_of(lambda: pool.send(np.zeros((1, 10)), [2])), "E-CLI-001")
+        pool.send(np.zeros((2, 10)))
+        self.assertEqual(code_of(lambda: pool.send(np.zeros((2, 10)))), "E-ENV-002")
+        pool.recv()
+        np.testing.assert_array_equal(pool.step(np.ones((2, 10)))[0].shape, other.step(np.ones((2, 10)))[0].shape)
+
+    def test_settings(self):
+        for code, settings in (("E-SCN-003", {"task": "juggling"}), ("E-SCN-003", {"actions": "wishes"}),
+                               ("E-SCN-003", {"weights": {"joy": 1.0}}), ("E-CLI-001", {"layouts": 0}),
+                               ("E-CLI-001", {"actions_per_second": 1000.0}), ("E-SCN-003", {"observation": "smell"})):
+            with self.subTest(settings=settings):
+                self.assertEqual(code_of(lambda: trocar.make(**{"task": "peg_transfer", **settings})), code)
+        self.assertEqual(code_of(lambda: trocar.make_vec("peg_transfer", 0)), "E-CLI-001")
+
+
+class Processes(unittest.TestCase):
+    def test_fork_and_spawn_work_and_agree(self):
+        expected = first_reward("peg_transfer")
+        for method in ("fork", "spawn"):
+            with self.subTest(method=method), multiprocessing.get_context(method).Pool(1) as workers:
+                self.assertEqual(workers.apply(first_reward, ("peg_transfer",)), expected)
+
+
+if __name__ == "__main__":
+    unittest.main()

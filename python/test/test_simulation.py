@@ -1,0 +1,175 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The package's simulation: the same bits as the program's, state, read-outs, pictures, errors."""
+import json
+import os
+import subprocess
+import threading
+import unittest
+from pathlib import Path
+
+import numpy as np
+
+import trocar
+
+ROOT = Path(__file__).resolve().parents[2]
+RETRACTION = str(ROOT / "scenes/retraction.json")
+
+
+def program(*arguments):
+    """What the command prints as JSON."""
+    environment = {**os.environ, "TROCAR_DATA_DIR": str(ROOT)}
+    done = subprocess.run([os.environ["TROCAR_PROGRAM"], *arguments, "--json"], stdout=subprocess.PIPE, check=True,
+                          env=environment)
+    return json.loads(done.stdout)
+
+
+class SameBits(unittest.TestCase):
+    def test_script_gives_the_programs_hash(self):
+        simulation = trocar.Simulation(RETRACTION, seed=0)
+        simulation.step_script(40)
+        self.assertEqual(simulation.hash(), program("simulate", RETRACTION, "--seed", "0", "--ticks", "40")["hash"])
+
+    def test_surgeon_gives_the_programs_hash(self):
+        simulation = trocar.Simulation("lift_and_grasp", seed=3)
+        surgeon = trocar.Surgeon("expert", simulation, seed=3)
+        simulation.play(surgeon, 120 * 600)
+        self.assertTrue(surgeon.has_finished)
+        self.assertEqual(simulation.hash(), program("play", "expert", "--task", "lift_and_grasp", "--seed", "3")["hash"])
+        self.assertEqual(simulation.snapshot()["task"]["phase"], "completed")
+
+    def test_inputs_through_python_give_the_same_bits(self):
+        within, through = (trocar.Simulation("peg_transfer") for _ in range(2))
+        surgeons = [trocar.Surgeon("novice", simulation) for simulation in (within, through)]
+        within.play(surgeons[0], 60)
+        for _ in range(60):
+            acted = surgeons[1].act(through)
+            copied = through.home()
+            copied.hands, copied.laparoscope = acted.hands, acted.laparoscope
+            copied.cut, copied.coagulate, copied.tools = acted.cut, acted.coagulate, acted.tools
+            through.step(copied)
+        self.assertEqual(within.hash(), through.hash())
+
+
+class State(unittest.TestCase):
+    def test_restored_state_goes_on_to_the_same_bits(self):
+        simulation = trocar.Simulation("peg_transfer")
+        begin = simulation.home()
+        begin.hands = begin.hands + np.array([[0.05, 0, 0, 0.01, 0], [0, 0.05, 0, 0, 0.2]])
+        simulation.step(begin, 20)
+        state, before = simulation.save(), simulation.hash()
+        simulation.step(begin, 20)
+        after = simulation.hash()
+        self.assertNotEqual(before, after)
+        simulation.restore(state)
+        self.assertEqual(simulation.hash(), before)
+        simulation.step(begin, 20)
+        self.assertEqual(simulation.hash(), after)
+
+    def test_damaged_state_is_refused(self):
+        simulation = trocar.Simulation("peg_transfer")
+        state = bytearray(simulation.save())
+        state[len(state) // 2] ^= 1
+        before = simulation.hash()
+        with self.assertRaises(trocar.Error) as caught:
+            simulation.restore(bytes(state))
+        self.assertEqual(caught.exception.code, "E-SIM-006")
+        self.assertEqual(simulation.hash(), before)
+
+
+class ReadOuts(unittest.TestCase):
+    def test_forces_and_contacts_say_which_organ(self):
+        simulation = trocar.Simulation(RETRACTION, seed=0)
+        touched = set()
+        for _ in range(40):  # the left hand comes to the fundus after five seconds
+            simulation.step_script(18)
+            for tool in simulation.snapshot()["instruments"].values():
+                if tool["is_touching"] and tool["surface"]:
+                    touched.add(tool["surface"])
+                    self.assertGreater(np.linalg.norm(tool["force"]) + tool["pinch"], 0)
+        self.assertTrue(touched, "no tool touched an organ in six seconds of retraction")
+        names = [surface["name"] for surface in simulation.surfaces()]
+        self.assertLessEqual(touched, set(names))
+
+    def test_positions_belong_to_surfaces(self):
+        simulation = trocar.Simulation(RETRACTION, seed=0)
+        positions = simulation.positions()
+        self.assertEqual(positions.shape[1], 3)
+        self.assertEqual(sum(surface["node_count"] for surface in simulation.surfaces()), len(positions))
+        self.assertTrue(np.isfinite(positions).all())
+
+    def test_operation_says_what_its_critical_view_lacks(self):
+        simulation = trocar.Simulation("cholecystectomy")
+        simulation.step(simulation.home(), 2)
+        view = simulation.critical_view()
+        self.assertFalse(view["is_achieved"])
+        self.assertTrue(view["missing"])
+        self.assertEqual(simulation.snapshot()["operation"]["phase"], "Preparation")
+        self.assertEqual(simulation.errors(), [])
+        self.assertIsNone(trocar.Simulation("peg_transfer").critical_view())
+
+
+class Pictures(unittest.TestCase):
+    def test_camera_draws_what_changes(self):
+        simulation = trocar.Simulation("peg_transfer")
+        camera = trocar.Camera(96, 64)
+        first = camera.draw(simulation)
+        self.assertEqual((first.shape, first.dtype), ((64, 96, 3), np.uint8))
+        self.assertGreater(first.std(), 5)
+        np.testing.assert_array_equal(first, camera.draw(simulation))
+        moved = simulation.home()
+        moved.hands = moved.hands + np.array([[0.2, 0, 0, 0.02, 0]] * 2)
+        simulation.step(moved, 60)
+        self.assertGreater(np.abs(first.astype(int) - camera.draw(simulation)).mean(), 0.5)
+
+    def test_camera_may_be_used_by_another_thread(self):
+        simulation, camera, seen = trocar.Simulation("peg_transfer"), trocar.Camera(32, 32), []
+        camera.draw(simulation)
+        thread = threading.Thread(target=lambda: seen.append(camera.draw(simulation)))
+        thread.start()
+        thread.join()
+        np.testing.assert_array_equal(seen[0], camera.draw(simulation))
+
+
+class Errors(unittest.TestCase):
+    def check(self, code, call):
+        with self.assertRaises(trocar.Error) as caught:
+            call()
+        self.assertEqual(caught.exception.code, code)
+        self.assertTrue(caught.exception.message and caught.exception.remedy)
+        self.assertEqual(caught.exception.meaning, trocar.error_table()[code])
+
+    def test_errors_carry_codes(self):
+        simulation = trocar.Simulation("peg_transfer")
+        inputs = simulation.home()
+        self.check("E-SCN-003", lambda: trocar.Simulation("juggling"))
+        self.check("E-CLI-001", lambda: trocar.Simulation("peg_transfer", threads=0))
+        self.check("E-SCN-003", lambda: trocar.Surgeon("nobody", simulation))
+        self.check("E-CLI-001", lambda: simulation.step(inputs, -1))
+        self.check("E-CLI-001", lambda: trocar.Camera(4, 4))
+        self.check("E-ENV-001", lambda: setattr(inputs, "hands", np.zeros(9)))
+        self.check("E-ENV-001", lambda: setattr(inputs, "hands", np.full((2, 5), np.nan)))
+        self.check("E-SCN-003", lambda: setattr(inputs, "assistant", "dance"))
+
+    def test_errors_travel_between_processes(self):
+        import pickle
+        error = trocar.Error("E-ENV-001", "wrong; do right", "a meaning")
+        copy = pickle.loads(pickle.dumps(error))
+        self.assertEqual((copy.code, copy.remedy, str(copy)), ("E-ENV-001", "do right", str(error)))
+
+
+class Package(unittest.TestCase):
+    def test_stubs_name_what_is_there(self):
+        import ast
+        from trocar import _trocar
+        text = Path(_trocar.__file__).with_name("_trocar.pyi").read_text()
+        for node in ast.parse(text).body:
+            if isinstance(node, ast.ClassDef):
+                members = {part.target.id if isinstance(part, ast.AnnAssign) else part.name for part in node.body}
+                there = {name for name in vars(getattr(_trocar, node.name)) if not name.startswith("_")}
+                self.assertEqual(members - {"__init__"}, there, node.name)
+            elif isinstance(node, ast.FunctionDef):
+                self.assertTrue(callable(getattr(_trocar, node.name)))
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,264 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Tasks and the operation as environments after Gymnasium's interface, single and as a pool.
+
+Gymnasium is not needed. Where it can be imported, the classes here are its ``Env`` and ``VectorEnv``, and the spaces are its own.
+"""
+from __future__ import annotations
+
+from typing import Any, Optional, Sequence
+
+import numpy as np
+
+from . import _trocar
+from .errors import Error, closed
+from .spaces import Box, Dict, action_space, batch_space
+
+try:
+    from gymnasium import Env as _Env
+    from gymnasium.vector import VectorEnv as _VectorEnv
+except ImportError:
+    _Env = _VectorEnv = object
+try:
+    from gymnasium.vector import AutoresetMode as _AutoresetMode
+except ImportError:
+    _AutoresetMode = str
+
+OBSERVATIONS = ("state", "picture", "mixture")
+
+
+def environments() -> list[str]:
+    """What ``make`` knows: the delivered tasks and the operation."""
+    return sorted(_trocar.tasks()) + ["cholecystectomy"]
+
+
+def _as_action(action: Any) -> np.ndarray:
+    try:
+        return np.ascontiguousarray(action, dtype=np.float64)
+    except (TypeError, ValueError) as wrong:
+        raise Error("E-ENV-001", f"an action is an array of numbers; this is none: {wrong}") from wrong
+
+
+def _state_space(model: _trocar.EnvironmentModel) -> Box:
+    return Box(-np.inf, np.inf, (model.state_size,), np.float32)
+
+
+class Environment(_Env):
+    """One environment. ``reset`` and ``step`` follow Gymnasium; see docs/python.md for actions, states and rewards.
+
+    ``observation`` is "state" ((n,) float32 in SI units; ``state_fields`` names them), "picture" ((height, width, 3) uint8)
+    or "mixture" (a dict of both).
+    """
+
+    metadata = {"render_modes": ["rgb_array"], "render_fps": 10}
+    spec = None
+
+    def __init__(self, task: str, *, level: str = "normal", patient: str = "", seed: int = 1, layouts: int = 1,
+                 actions: str = "joints", observation: str = "state", picture_size: tuple[int, int] = (84, 84),
+                 actions_per_second: float = 10.0, most_seconds: float = 0.0, moves_camera: bool = False,
+                 weights: Optional[dict[str, float]] = None, render_mode: Optional[str] = None) -> None:
+        if observation not in OBSERVATIONS:
+            raise Error("E-SCN-003", f'there is no observation "{observation}"; choose state, picture or mixture')
+        if render_mode not in (None, "rgb_array"):
+            raise Error("E-SCN-003", f'there is no render_mode "{render_mode}"; choose rgb_array or None')
+        self.model = _trocar.EnvironmentModel(
+            task, level=level, patient=patient, seed=seed, layouts=layouts, actions=actions,
+            actions_per_second=actions_per_second, most_seconds=most_seconds, moves_camera=moves_camera,
+            weights=weights or {})
+        self.metadata = {**self.metadata, "render_fps": actions_per_second}
+        self.task, self.render_mode, self.observation = task, render_mode, observation
+        self.action_fields, self.state_fields = self.model.action_fields, self.model.state_fields
+        self.action_space = action_space(self.action_fields)
+        width, height = picture_size
+        picture = Box(0, 255, (height, width, 3), np.uint8)
+        self.observation_space = {"state": _state_space(self.model), "picture": picture,
+                                  "mixture": Dict({"state": _state_space(self.model), "picture": picture})}[observation]
+        self._size, self._camera = (width, height), None
+        self._environment: Optional[_trocar.Environment] = _trocar.Environment(self.model)
+        self._np_random = None
+
+    @property
+    def unwrapped(self):
+        return self
+
+    @property
+    def np_random(self):
+        if self._np_random is None:
+            self._np_random = np.random.default_rng()
+        return self._np_random
+
+    def _open(self) -> _trocar.Environment:
+        if self._environment is None:
+            raise closed("environment")
+        return self._environment
+
+    def _draw(self) -> np.ndarray:
+        if self._camera is None:
+            self._camera = _trocar.Camera(*self._size)
+        return self._camera.draw(self._open())
+
+    def _observe(self):
+        state = np.empty(self.model.state_size, np.float32)
+        if self.observation != "picture":
+            self._open().observe(state)
+        return {"state": lambda: state, "picture": self._draw,
+                "mixture": lambda: {"state": state, "picture": self._draw()}}[self.observation]()
+
+    def reset(self, *, seed: Optional[int] = None, options: Optional[dict] = None):
+        """Begins an episode. ``seed`` chooses among the layouts; without one the row of episodes goes on."""
+        if seed is not None:
+            if seed < 0:
+                raise Error("E-CLI-001", f"a seed is not negative; this is {seed}")
+            self._np_random = np.random.default_rng(seed)
+        self._open().reset(seed)
+        return self._observe(), {"layout": self._open().layout}
+
+    def step(self, action: Any):
+        """(observation, reward, terminated, truncated, info); info has the reward's features and whether it succeeded."""
+        action = _as_action(action)
+        if action.shape != self.action_space.shape:
+            raise Error("E-ENV-001", f"the action has the shape {action.shape}; it wants {self.action_space.shape}")
+        reward, terminated, truncated, success, features = self._open().step(action)
+        return self._observe(), reward, terminated, truncated, {"is_success": success, "features": features}
+
+    def render(self) -> Optional[np.ndarray]:
+        return self._draw() if self.render_mode == "rgb_array" else None
+
+    def hash(self) -> str:
+        """Fingerprint of the simulation's state, as the commands print it."""
+        return self._open().hash()
+
+    def close(self) -> None:
+        self._environment = self._camera = None
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_: Any) -> bool:
+        self.close()
+        return False
+
+    def __str__(self) -> str:
+        return f"<trocar.Environment {self.task}>"
+
+
+class VectorEnvironment(_VectorEnv):
+    """A pool: many environments of one model, stepped by C++ threads, all states in one array.
+
+    ``reset`` and ``step`` follow Gymnasium's ``VectorEnv``. ``send`` and ``recv`` do the same in two parts, for all
+    environments or some. With ``copy=False`` the arrays are views of the pool's own memory, which the next call writes.
+    """
+
+    metadata: dict = {"render_modes": [], "autoreset_mode": "NextStep"}
+    render_mode = None
+    spec = None
+
+    def __init__(self, task: str, num_envs: int, *, level: str = "normal", patient: str = "", seed: int = 1,
+                 layouts: int = 1, actions: str = "joints", actions_per_second: float = 10.0, most_seconds: float = 0.0,
+                 moves_camera: bool = False, weights: Optional[dict[str, float]] = None, threads: int = 0,
+                 autoreset_mode: Any = "NextStep", copy: bool = True) -> None:
+        mode = getattr(autoreset_mode, "value", autoreset_mode)
+        self.model = _trocar.EnvironmentModel(
+            task, level=level, patient=patient, seed=seed, layouts=layouts, actions=actions,
+            actions_per_second=actions_per_second, most_seconds=most_seconds, moves_camera=moves_camera,
+            weights=weights or {})
+        self._pool: Optional[_trocar.Pool] = _trocar.Pool(self.model, count=num_envs, threads=threads, autoreset=mode,
+                                                          seed=seed)
+        self.metadata = {**self.metadata, "autoreset_mode": _AutoresetMode(mode)}
+        self.task, self.num_envs, self.copy, self.threads = task, num_envs, copy, self._pool.threads
+        self.closed = False
+        self.action_fields, self.state_fields = self.model.action_fields, self.model.state_fields
+        self.single_action_space = action_space(self.action_fields)
+        self.single_observation_space = _state_space(self.model)
+        self.action_space = batch_space(self.single_action_space, num_envs)
+        self.observation_space = batch_space(self.single_observation_space, num_envs)
+        self._rows = self._pool.rows()
+        self._none = np.empty(0, np.int32)
+
+    def _open(self) -> _trocar.Pool:
+        if self._pool is None:
+            raise closed("pool")
+        return self._pool
+
+    def _take(self, name: str, ids: Optional[np.ndarray]) -> np.ndarray:
+        rows = self._rows[name]
+        if ids is not None:
+            return rows[ids]
+        return rows.copy() if self.copy else rows
+
+    def reset(self, *, seed: Optional[int] = None, options: Optional[dict] = None):
+        """Environment i gets ``seed`` + i. ``options={"reset_mask": mask}`` resets only those of the mask."""
+        mask = (options or {}).get("reset_mask")
+        ids = self._none if mask is None else np.flatnonzero(np.asarray(mask)).astype(np.int32)
+        count = self.num_envs if mask is None else len(ids)
+        if seed is not None and (not np.isscalar(seed) or seed < 0):
+            raise Error("E-CLI-001", "a pool's seed is one number, not negative; environment i gets it plus i")
+        if count:
+            self._open().reset(ids, seed)
+            self._open().receive(count)
+        return self._take("state", None), {}
+
+    def send(self, actions: Any, env_ids: Optional[Sequence[int]] = None) -> None:
+        """Hands actions (len(env_ids), action_size) to the threads and returns; all environments without ``env_ids``."""
+        ids = self._none if env_ids is None else np.ascontiguousarray(env_ids, np.int32)
+        actions = _as_action(actions)
+        size = self.model.action_size
+        expected = (self.num_envs if env_ids is None else len(ids), size)
+        if actions.shape != expected:
+            raise Error("E-ENV-001", f"actions have the shape {actions.shape}; this pool wants {expected}")
+        if env_ids is not None and len(ids) == 0:
+            return
+        self._open().send(actions, ids)
+
+    def recv(self, batch_size: Optional[int] = None):
+        """Waits for ``batch_size`` environments that are at work, all of them without it.
+
+        (observations, rewards, terminated, truncated, infos); infos["env_id"] says of which environments the rows are.
+        """
+        pool = self._open()
+        ids = pool.receive(pool.at_work if batch_size is None else batch_size)
+        rows = None if len(ids) == self.num_envs else ids
+        terminated, truncated = (self._take(name, rows).astype(bool) for name in ("terminated", "truncated"))
+        infos: dict[str, Any] = {
+            "env_id": ids,
+            "is_success": self._take("success", rows).astype(bool),
+            "was_reset": self._take("was_reset", rows).astype(bool),
+            "features": self._take("features", rows),
+        }
+        if self.metadata["autoreset_mode"] == _AutoresetMode("SameStep"):
+            ended = terminated | truncated
+            if ended.any():
+                final = np.full(len(ids), None, dtype=object)
+                states = self._take("final_state", rows)
+                for i in np.flatnonzero(ended):
+                    final[i] = states[i].copy()
+                infos["final_obs"], infos["_final_obs"] = final, ended
+        return self._take("state", rows), self._take("reward", rows), terminated, truncated, infos
+
+    def step(self, actions: Any):
+        self.send(actions)
+        return self.recv()
+
+    def close(self, **_: Any) -> None:
+        self._pool = None
+        self._rows = {}
+        self.closed = True
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_: Any) -> bool:
+        self.close()
+        return False
+
+    def __str__(self) -> str:
+        return f"<trocar.VectorEnvironment {self.task} x {self.num_envs}>"
+
+
+def make(task: str, **settings: Any) -> Environment:
+    """An environment of a task's key, "cholecystectomy", or a file; settings as of :class:`Environment`."""
+    return Environment(task, **settings)
+
+
+def make_vec(task: str, num_envs: int = 1, **settings: Any) -> VectorEnvironment:
+    """A pool of ``num_envs`` environments; settings as of :class:`VectorEnvironment`."""
+    return VectorEnvironment(task, num_envs, **settings)

@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file course.h  Simulations that are played, and the states on their way, for tests of saving and restoring.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <ostream>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "published.h"
+#include "task_play.h"
+#include "trocar/math/random.h"
+
+namespace trocar::agent {
+
+/// A scene, and who acts in it.
+struct Course {
+  std::string name;               ///< of a delivered task, or of a scene file
+  std::string surgeon;            ///< "" for the scene's script, "fumbler" for a Fumbler
+  int ticks = 0;                  ///< at most
+  int points = 0;                 ///< random ticks at which it is saved
+  int events = 12;                ///< after which it is saved as well, at most
+  bool changes_settings = false;  ///< as ChangeSettings() does
+};
+
+inline void PrintTo(const Course& course, std::ostream* out) {
+  *out << course.name << " " << course.surgeon;
+}
+
+inline std::string NameOf(const testing::TestParamInfo<Course>& info) {
+  return info.param.name + (info.param.surgeon.empty() ? "" : "_" + info.param.surgeon) +
+         (info.param.changes_settings ? "_changes_settings" : "");
+}
+
+inline constexpr int kGoesOn = 240;  // ticks after a point
+
+inline std::shared_ptr<const Scene> ReadCourse(const Course& course) {
+  const auto file = std::filesystem::path(TROCAR_SOURCE_DIR) / "scenes" / (course.name + ".json");
+  if (!std::filesystem::exists(file)) return ReadDelivered(course.name);
+  auto scene = scene::ReadScene(file);
+  EXPECT_TRUE(scene.ok()) << scene.error().Text();
+  return std::make_shared<const Scene>(std::move(*scene));
+}
+
+/// One tick of it goes wrong, and the guard takes the tick back.
+inline tissue::SolverSettings DivergingSolver() {
+  tissue::SolverSettings settings;
+  settings.kind = tissue::SolverKind::kRelaxationPaper;
+  settings.relaxation.alpha = 1e6;  // far beyond the bound of stability [m/N]
+  return settings;
+}
+
+/// Hands that go where anything is and do there whatever a hand and a foot can do, under settings that change: they bring a
+/// state where no plan leads. Now and then a tick goes wrong.
+class Fumbler {
+ public:
+  explicit Fumbler(std::uint64_t seed) : random_(seed) {}
+
+  Input Act(const Scene& scene, const Snapshot& seen) {
+    if (tick_ == 0) {
+      for (int hand = 0; hand < scene::kHandCount; ++hand) input_.hands[hand] = scene.instruments[hand].home;
+      input_.laparoscope = scene.laparoscope.home;
+    }
+    for (int hand = 0; hand < scene::kHandCount; ++hand) {
+      if (tick_ % kReachTicks == static_cast<std::size_t>(hand)) Reach(scene, seen, hand);
+    }
+    if (tick_ % kSettingsTicks == kSettingsTicks - 1) ChangeSettings();
+    input_.settings.solver = {};
+    const bool freezes = tick_ >= kFreezes && tick_ < kFreezes + 4;
+    if (tick_ % kBadTicks == kBadTicks - 1 || freezes) input_.settings.solver = DivergingSolver();
+    ++tick_;
+    return input_;
+  }
+
+ private:
+  static constexpr std::size_t kReachTicks = 40, kSettingsTicks = 90, kBadTicks = 151;
+  static constexpr std::size_t kFreezes =
+      1300;  // so many bad ticks in a row here that the tissue stands still
+
+  bool Chance(double share) { return random_.Uniform() < share; }
+
+  void Reach(const Scene& scene, const Snapshot& seen, int hand) {
+    const scene::InstrumentSetup& setup = scene.instruments[hand];
+    math::Vec3 place = setup.p_world_port;
+    if (!seen.positions.empty()) {
+      place = seen.positions[static_cast<std::size_t>(random_.Uniform() *
+                                                      static_cast<double>(seen.positions.size()))];
+    } else if (!seen.objects.empty()) {
+      place =
+          seen.objects[static_cast<std::size_t>(random_.Uniform() * static_cast<double>(seen.objects.size()))]
+              .X_world_object.translation;
+    }
+    place += math::Vec3{random_.Uniform(-0.005, 0.005), random_.Uniform(-0.005, 0.005),
+                        random_.Uniform(-0.005, 0.005)};
+    const double jaw = Chance(0.5) ? 0.0 : setup.tool.max_jaw;
+    input_.hands[hand] = instrument::FindJoints(setup.p_world_port, place, random_.Uniform(-1.5, 1.5), jaw);
+    if (Chance(0.1)) input_.hands[hand].depth = 0.02;  // back into the trocar
+    scene::HandControls& controls = input_.controls[hand];
+    controls.cut = Chance(0.3), controls.coagulate = Chance(0.3);
+    controls.rinse = Chance(0.3), controls.aspirate = Chance(0.3);
+    if (Chance(0.3) && !setup.tray.empty())
+      controls.tool = static_cast<std::uint8_t>(random_.Uniform() * static_cast<double>(setup.tray.size()));
+    input_.assistant = static_cast<scene::AssistantCommand>(random_.NextWord() % 4);
+  }
+
+  void ChangeSettings() {
+    input_.settings.head_up = random_.Uniform(-0.5, 0.5);
+    input_.settings.right_up = random_.Uniform(-0.5, 0.5);
+    input_.settings.holds_camera = Chance(0.5);
+    input_.settings.stiffness_scale = random_.Uniform(0.6, 2.0);
+    input_.settings.shape_scale = random_.Uniform(0.8, 1.5);
+  }
+
+  math::Random random_;
+  Input input_;
+  std::size_t tick_ = 0;
+};
+
+/// Cuts, clips, stones, things taken: where a state is the least like the one of before.
+inline std::uint64_t CountEvents(const Snapshot& snapshot) {
+  const simulation::OperationSnapshot& operation = snapshot.operation;
+  std::uint64_t count = operation.topology_version + operation.clip_count + snapshot.task.error_count;
+  for (const simulation::StoneSnapshot& stone : operation.stones)
+    count += stone.place != simulation::StonePlace::kInside ? 1 : 0;
+  for (const simulation::InstrumentSnapshot& tool : snapshot.instruments) count += tool.is_grasping ? 1 : 0;
+  return count;
+}
+
+/// An instructor who tilts the table, stiffens the tissue for a while, again and again, and leaves the camera to its holder.
+inline void ChangeSettings(std::size_t tick, scene::LiveSettings& settings) {
+  settings.holds_camera = true;
+  if (tick / 90 % 2 == 0) return;
+  settings.head_up = 0.3;
+  settings.stiffness_scale *= 1.5;
+  settings.shape_scale *= 1.2;
+}
+
+struct Point {
+  std::size_t tick = 0;
+  std::vector<std::byte> bytes;
+  std::uint64_t hash = 0, hash_after = 0;            ///< of the state, now and kGoesOn ticks later
+  std::uint64_t published = 0, published_after = 0;  ///< of what others see
+};
+
+/// One course with its inputs, and the states on its way.
+struct Recording {
+  std::shared_ptr<const simulation::SimulationModel> model;
+  std::vector<Input> inputs;
+  std::vector<Point> points;
+};
+
+inline Recording Record(const Course& course, std::shared_ptr<const Scene> scene) {
+  Recording recording;
+  auto model = simulation::MakeSimulationModel(scene);
+  EXPECT_TRUE(model.ok()) << model.error().Text();
+  recording.model = *model;
+  Simulation simulation = std::move(*Simulation::Make(recording.model, 1));
+  const std::uint64_t seed = std::hash<std::string>()(course.name);
+  Fumbler fumbler(seed);
+  std::unique_ptr<Surgeon> surgeon;
+  if (!course.surgeon.empty() && course.surgeon != "fumbler")
+    surgeon = std::move(*MakeSurgeon(course.surgeon, scene, 1));
+  math::Random random(seed);
+  std::set<std::size_t> chosen;
+  for (int i = 0; i < course.points; ++i)
+    chosen.insert(static_cast<std::size_t>(random.Uniform(0.0, 1.0) * course.ticks));
+  std::uint64_t events = 0;
+  int events_saved = 0;
+  std::map<std::size_t, std::size_t> ends;  // tick to point
+  for (std::size_t tick = 0; tick < static_cast<std::size_t>(course.ticks + kGoesOn); ++tick) {
+    if (const auto end = ends.find(tick); end != ends.end()) {
+      recording.points[end->second].hash_after = simulation.Hash();
+      recording.points[end->second].published_after = CalcPublishedHash(simulation);
+    }
+    const Snapshot& seen = simulation.GetSnapshot();
+    const bool is_event = CountEvents(seen) != events && events_saved < course.events;
+    events = CountEvents(seen);
+    if (is_event) ++events_saved;
+    const bool is_over = surgeon != nullptr && surgeon->HasFinished();
+    if (is_over && (ends.empty() || tick > ends.rbegin()->first)) break;
+    const bool has_time = tick < static_cast<std::size_t>(course.ticks);
+    if ((chosen.count(tick) != 0 || is_event) && has_time && !is_over) {
+      ends[tick + kGoesOn] = recording.points.size();
+      Point& point = recording.points.emplace_back();
+      point.tick = tick;
+      simulation.Save(point.bytes);
+      point.hash = simulation.Hash();
+      point.published = CalcPublishedHash(simulation);
+    }
+    Input input = surgeon != nullptr            ? surgeon->Act(seen)
+                  : course.surgeon == "fumbler" ? fumbler.Act(*scene, seen)
+                                                : scene::CalcScriptInput(simulation.GetScene(), seen.time);
+    if (course.changes_settings) ChangeSettings(tick, input.settings);
+    recording.inputs.push_back(input);
+    simulation.Step(input);
+  }
+  return recording;
+}
+
+}  // namespace trocar::agent

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/app/tutorial.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace trocar::app {
+namespace {
+
+// how much of a motion shows that it was understood
+constexpr double kMovedAcross = 0.015, kMovedDeep = 0.008;  // m
+constexpr double kOpen = 0.5, kClosed = 0.1, kSpun = 0.35;  // rad
+constexpr double kLooked = 0.06;                            // rad
+
+enum Lesson { kTake, kMove, kDepth, kOpenJaws, kCloseJaws, kSpin, kOtherHand, kLook, kRing, kPause };
+
+struct LessonText {
+  const char *right_handed, *left_handed;
+};
+// in the order of Lesson
+constexpr LessonText kTexts[kTutorialSteps] = {
+    {"Click into the picture: the mouse takes the right instrument.", nullptr},
+    {"Move the mouse: the tip follows it across the picture.", nullptr},
+    {"Turn the wheel: the tip goes deeper into the picture, and back out.", nullptr},
+    {"Hold the right mouse button (or B): the jaws open.",
+     "Hold the left mouse button (or N): the jaws open."},
+    {"Hold the left mouse button (or G): the jaws close.",
+     "Hold the right mouse button (or H): the jaws close."},
+    {"Hold Q or E: the instrument spins about its shaft.",
+     "Hold P or I: the instrument spins about its shaft."},
+    {"Press Tab: the mouse takes the other hand; this one keeps its place and its grip.", nullptr},
+    {"Hold C and move the mouse: the laparoscope looks round. Let C go again.",
+     "Hold Comma and move the mouse: the laparoscope looks round. Let Comma go again."},
+    {"Take a ring: jaws open, the dashed line on its rim, wheel down to it, close. Then open them: it falls.",
+     nullptr},
+    {"Press Space: everything stands still. Press it again to go on.", nullptr}};
+
+double CalcTurn(const instrument::TrocarJoints& a, const instrument::TrocarJoints& b) {
+  return std::hypot(a.pan - b.pan, a.tilt - b.tilt);
+}
+
+bool IsAnyHeld(const simulation::Snapshot& snapshot) {
+  return std::any_of(snapshot.instruments.begin(), snapshot.instruments.end(),
+                     [](const simulation::InstrumentSnapshot& one) { return one.object >= 0; });
+}
+
+}  // namespace
+
+void Tutorial::Begin(int step) {
+  is_on_ = true;
+  step_ = std::clamp(step, 0, kTutorialSteps);
+  has_start_ = false;
+}
+
+void Tutorial::Remember(const TutorialSight& sight) {
+  start_ = *sight.input;
+  start_hand_ = sight.hand;
+  was_open_ = was_held_ = was_paused_ = false;
+  has_start_ = true;
+}
+
+bool Tutorial::Observe(const TutorialSight& sight) {
+  if (!is_on_ || IsDone() || sight.snapshot == nullptr || sight.input == nullptr) return false;
+  if (!has_start_) Remember(sight);
+  if (!IsStepDone(sight)) return false;
+  ++step_;
+  Remember(sight);
+  return true;
+}
+
+bool Tutorial::IsStepDone(const TutorialSight& sight) {
+  const auto hand = static_cast<std::size_t>(sight.hand);
+  const instrument::TrocarJoints &now = sight.input->hands[hand], &start = start_.hands[hand];
+  switch (step_) {
+    case kTake:
+      return sight.is_pointer_taken;
+    case kMove:
+      return now.depth * CalcTurn(now, start) > kMovedAcross;
+    case kDepth:
+      return std::fabs(now.depth - start.depth) > kMovedDeep;
+    case kOpenJaws:
+      return now.jaw > kOpen;
+    case kCloseJaws:
+      was_open_ = was_open_ || now.jaw > kOpen;
+      return was_open_ && now.jaw < kClosed;
+    case kSpin:
+      return std::fabs(now.spin - start.spin) > kSpun;
+    case kOtherHand:
+      return sight.hand != start_hand_;
+    case kLook:
+      was_held_ = was_held_ || (sight.is_laparoscope_held &&
+                                CalcTurn(sight.input->laparoscope, start_.laparoscope) > kLooked);
+      return was_held_ && !sight.is_laparoscope_held;
+    case kRing:
+      was_held_ = was_held_ || IsAnyHeld(*sight.snapshot);
+      return was_held_ && !IsAnyHeld(*sight.snapshot);
+    case kPause:
+      was_paused_ = was_paused_ || sight.is_paused;
+      return was_paused_ && !sight.is_paused;
+    default:
+      return false;
+  }
+}
+
+std::string Tutorial::Text(bool is_left_handed) const {
+  if (!is_on_) return "";
+  const std::string leave = "   (7 leaves the tutorial)";
+  if (IsDone())
+    return "Done: these are all the controls. Now try the task: the bright ring shows what comes next." +
+           leave;
+  const LessonText& text = kTexts[step_];
+  return std::to_string(step_ + 1) + " of " + std::to_string(kTutorialSteps) + ":  " +
+         (is_left_handed && text.left_handed != nullptr ? text.left_handed : text.right_handed) + leave;
+}
+
+}  // namespace trocar::app

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "home_card.h"
+
+#include "trocar/gui/labels.h"
+
+namespace trocar::app {
+namespace {
+
+constexpr int kWidth = 620;  // pixels
+
+}  // namespace
+
+HomeCard::HomeCard() : Gtk::Box(Gtk::Orientation::VERTICAL) {
+  add_css_class("help");
+  set_halign(Gtk::Align::CENTER);
+  set_valign(Gtk::Align::CENTER);
+  set_spacing(8);
+  set_size_request(kWidth, -1);
+  auto* title = Gtk::make_managed<Gtk::Label>("What do you want to train?");
+  title->add_css_class("page-title");
+  title->set_xalign(0);
+  append(*title);
+
+  auto* person = Gtk::make_managed<Gtk::Box>();
+  person->set_spacing(8);
+  who_.add_css_class("name");
+  who_.set_xalign(0);
+  who_.set_hexpand(true);
+  name_.set_placeholder_text("Your name, or nothing");
+  name_.set_tooltip_text(
+      "Your results are kept under a pseudonym; the name stays in a protected file on this computer");
+  const auto give = [this] { signal_person_.emit(name_.get_text()); };
+  name_.signal_activate().connect(give);
+  auto* be = Gtk::make_managed<Gtk::Button>("That is me");
+  be->signal_clicked().connect(give);
+  person->append(who_);
+  person->append(name_);
+  person->append(*be);
+  append(*person);
+
+  problem_.add_css_class("bad");
+  problem_.set_wrap(true);
+  problem_.set_max_width_chars(70);
+  problem_.set_xalign(0);
+  problem_.set_visible(false);
+  append(problem_);
+
+  for (const HomeEntry& entry : HomeEntries()) {
+    Row row{Gtk::make_managed<Gtk::Button>(), Gtk::make_managed<Gtk::Label>(entry.title),
+            Gtk::make_managed<Gtk::Label>(entry.about)};
+    row.title->add_css_class("key-text");
+    row.about->add_css_class("name");
+    auto* text = Gtk::make_managed<Gtk::Box>(Gtk::Orientation::VERTICAL);
+    for (Gtk::Label* label : {row.title, row.about}) {
+      label->set_xalign(0);
+      text->append(*label);
+    }
+    row.button->set_child(*text);
+    row.button->add_css_class("step");
+    row.button->signal_clicked().connect([this, choice = entry.choice] { signal_chosen_.emit(choice); });
+    append(*row.button);
+    rows_[entry.choice] = row;
+  }
+}
+
+void HomeCard::Show(const HomePage& page) {
+  gui::SetTextOrHide(who_, page.who.empty() ? "" : "You are: " + page.who);
+  gui::SetTextOrHide(problem_, page.problem ? page.problem->Text() : "");
+  rows_[HomeChoice::kContinue].button->set_visible(!page.last.empty());
+  rows_[HomeChoice::kContinue].about->set_text(page.last);
+  rows_[HomeChoice::kTutorial].title->set_text("Tutorial: " + page.tutorial);
+  gui::SetClass(*rows_[HomeChoice::kTutorial].button, "primary", page.is_tutorial_suggested);
+  gui::SetClass(*rows_[HomeChoice::kContinue].button, "primary", !page.is_tutorial_suggested);
+}
+
+}  // namespace trocar::app

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file home_card.h  The widgets of the home page.
+#pragma once
+
+#include <gtkmm.h>
+
+#include <map>
+
+#include "trocar/app/home.h"
+
+namespace trocar::app {
+
+class HomeCard : public Gtk::Box {
+ public:
+  HomeCard();
+
+  void Show(const HomePage& page);
+  sigc::signal<void(HomeChoice)>& SignalChosen() { return signal_chosen_; }
+  /// Name or pseudonym that was typed.
+  sigc::signal<void(std::string)>& SignalPerson() { return signal_person_; }
+
+ private:
+  struct Row {
+    Gtk::Button* button;
+    Gtk::Label *title, *about;
+  };
+  Gtk::Label who_, problem_;
+  Gtk::Entry name_;
+  std::map<HomeChoice, Row> rows_;
+  sigc::signal<void(HomeChoice)> signal_chosen_;
+  sigc::signal<void(std::string)> signal_person_;
+};
+
+}  // namespace trocar::app
