@@ -16,7 +16,6 @@ namespace {
 
 using Kind = StrandInfo::Kind;
 
-constexpr double kMainDistance = 0.010;   // what lies this near to what must stay is left alone [m]
 constexpr double kBare = 0.0103;          // of each of them, for the view [m]
 constexpr double kSkeletonised = 0.0125;  // of each tube that enters, from the gallbladder on [m]
 /// A hold lies this far from where the work is, clear of the liver.
@@ -47,12 +46,6 @@ double CholecystectomySurgeon::CalcAzimuth(const Snapshot& seen, const Vec3& eye
   return std::remainder(azimuth - picture_.first_azimuth, 2.0 * M_PI);
 }
 
-bool CholecystectomySurgeon::IsNearMain(const Vec3& p, double distance) const {
-  return std::any_of(known_.main_nodes.begin(), known_.main_nodes.end(), [&](std::uint32_t node) {
-    return math::SquaredDistance(known_.rest[node], p) < distance * distance;
-  });
-}
-
 /// How far a segment is from where a duct or artery that is whole enters the gallbladder [m].
 double CholecystectomySurgeon::EndDistance(const Snapshot& seen, const collision::Segment& segment) const {
   double least = std::numeric_limits<double>::infinity();
@@ -66,18 +59,6 @@ double CholecystectomySurgeon::EndDistance(const Snapshot& seen, const collision
     if (is_whole) least = distance;
   }
   return std::sqrt(least);
-}
-
-/// Fat and peritoneum of the triangle but for what lies around what must stay.
-std::vector<std::uint32_t> CholecystectomySurgeon::TriangleStrands() const {
-  std::vector<std::uint32_t> found;
-  for (std::uint32_t i = 0; i < known_.strands.size(); ++i) {
-    if (known_.strands[i].kind != Kind::kTriangle && known_.strands[i].kind != Kind::kPeritoneum) continue;
-    if (!IsNearMain(0.5 * (known_.rest[known_.strands[i].a] + known_.rest[known_.strands[i].b]),
-                    kMainDistance))
-      found.push_back(i);
-  }
-  return found;
 }
 
 /// Fibres that cover the ends of the tubes that enter the gallbladder.

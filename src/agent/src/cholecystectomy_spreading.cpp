@@ -11,8 +11,8 @@ namespace {
 
 constexpr double kBack = 0.008;       // of the tip before the next spread [m]
 constexpr double kOpenSeconds = 1.0;  // that it waits for opening jaws [s]
-constexpr std::size_t kFew = 3;       // fibres: a spread that parts fewer was hardly worth it
-constexpr int kMostFruitless = 4;     // such spreads in a row
+constexpr std::size_t kFew = 2;       // fibres: a spread that parts fewer was hardly worth it
+constexpr int kMostFruitless = 8;     // such spreads in a row
 constexpr double kPoor = 0.3;         // of what was hoped for
 
 }  // namespace
@@ -71,7 +71,7 @@ bool CholecystectomySurgeon::GoOnSpreading(Spreading& work, const Snapshot& seen
       return false;
     case Spreading::Stage::kEnter:
       if (hand.IsMoving()) return false;
-      hand.SetJaw(tool.max_jaw);
+      hand.SetJaw(work.pose.opening * tool.max_jaw);
       work.stage = Spreading::Stage::kOpen;
       act_seconds_ = 0;
       return false;

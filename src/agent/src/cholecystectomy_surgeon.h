@@ -168,10 +168,8 @@ class CholecystectomySurgeon final : public Surgeon {
   void Remove();
 
   // knowledge
-  std::vector<std::uint32_t> TriangleStrands() const;
   std::vector<std::uint32_t> CoveringStrands() const;
   std::vector<std::uint32_t> BedStrands(double share) const;
-  bool IsNearMain(const Vec3& p, double distance) const;
   double EndDistance(const Snapshot& seen, const collision::Segment& segment) const;
   double CalcAzimuth(const Snapshot& seen, const Vec3& eye) const;
   bool AreTubesBare(const Snapshot& seen) const;
@@ -235,13 +233,14 @@ class CholecystectomySurgeon final : public Surgeon {
     std::int32_t gallbladder = -1, liver = -1;  // of surfaces
     std::vector<Vec3> rest;
     std::vector<std::vector<std::uint32_t>>
-        tube_nodes;                            // (tubes) from the gallbladder's end, where one enters it
-    std::vector<std::uint32_t> neck_nodes;     // around the infundibulum
-    std::vector<std::size_t> entering;         // tubes that enter the gallbladder
-    std::vector<std::uint32_t> end_strands;    // where they do
-    std::vector<std::uint32_t> main_nodes;     // of ducts and arteries that must stay
-    std::vector<std::uint32_t> main_ducts;     // of the ducts among them
-    std::vector<std::uint32_t> careful_nodes;  // of those arteries, and of small ducts of the bed
+        tube_nodes;                             // (tubes) from the gallbladder's end, where one enters it
+    std::vector<std::uint32_t> neck_nodes;      // around the infundibulum
+    std::vector<std::size_t> entering;          // tubes that enter the gallbladder
+    std::vector<std::uint32_t> end_strands;     // where they do
+    std::vector<std::uint32_t> window_strands;  // fat over the hepatocystic triangle's window
+    std::vector<std::uint32_t> main_nodes;      // of ducts and arteries that must stay
+    std::vector<std::uint32_t> main_ducts;      // of the ducts among them
+    std::vector<std::uint32_t> careful_nodes;   // of those arteries, and of small ducts of the bed
     std::uint32_t neck = 0, hold = 0, fundus = 0, liver_node = 0;
     Vec3 bed_normal;  // from the liver towards the gallbladder, at rest
   };

@@ -148,6 +148,7 @@ void Spreading::VisitState(core::StateArchive& archive) {
   archive.Field("tries", tries);
   archive.Field("stage", stage);
   archive.Field("pose_tip", pose.tip);
+  archive.Field("pose_opening", pose.opening);
   archive.Field("pose_worth", pose.worth);
   archive.Field("left_before", left_before);
   archive.Field("aim", aim);

@@ -15,9 +15,11 @@ constexpr std::size_t kMostAims = 60;    // fibres at which jaws are thought of
 constexpr std::size_t kMostLooked = 24;  // poses, the best first, whose way to the organs is looked at
 constexpr int kSpins = 6;                // over half a turn; jaws open alike to both sides
 constexpr std::uint8_t kMostTries = 3;
-constexpr double kBeyond = 0.15;         // of the jaws, how far their tips go beyond the fibre
-constexpr double kBesideTube = 0.0012;   // of a jaw's middle line, from the skin of a duct [m]
-constexpr double kPushed = 5000.0;       // cost of pushing a duct or an organ, in fibres by metre [1/m]
+constexpr double kBeyond = 0.15;  // of the jaws, how far their tips go beyond the fibre
+constexpr double kOpenings[] = {1.0, 0.65, 0.45};
+constexpr double kBesideTube =
+    0.0006;                         // of a jaw's middle line, from the skin of a duct, which gives way [m]
+constexpr double kPushed = 5000.0;  // cost of pushing a duct or an organ, in fibres by metre [1/m]
 constexpr double kBesideOrgan = 0.0012;  // likewise from an organ [m]
 constexpr double kLeastWorth = 0.8;
 /// A spread takes a second, and longer after a way or a turn [1/m], [1/rad].
@@ -31,9 +33,10 @@ double SectorDistance(double along, double aside, double length, double wide) {
   return std::hypot(along - on * std::cos(wide), aside - on * std::sin(wide));
 }
 
-/// Worth of opening jaws at a pose.
-double CalcWorth(const SpreadField& field, const Pose& X_world_tool) {
-  const double length = field.tool->jaw_length, wide = 0.5 * field.tool->max_jaw, narrow = kNarrow * wide;
+/// Worth of opening jaws so far at a pose.
+double CalcWorth(const SpreadField& field, const Pose& X_world_tool, double opening) {
+  const double length = field.tool->jaw_length, widest = 0.5 * field.tool->max_jaw;
+  const double wide = opening * widest, narrow = kNarrow * widest;
   const Pose X_tool_world = math::Inverse(X_world_tool);
   double worth = 0;
   for (std::size_t i = 0; i < field.fibres.size(); ++i) {
@@ -55,12 +58,13 @@ double CalcWorth(const SpreadField& field, const Pose& X_world_tool) {
   return worth;
 }
 
-double FindClearance(const SpreadField& field, const Pose& X) {
+double FindClearance(const SpreadField& field, const Pose& X, double opening) {
   const Vec3 hinge = X * instrument::JawHinge(*field.tool);
   double least = field.clearance({hinge, X.translation});
   for (const int side : {+1, -1})
     least = std::min(
-        least, field.clearance({hinge, X * instrument::JawTip(*field.tool, field.tool->max_jaw, side)}));
+        least,
+        field.clearance({hinge, X * instrument::JawTip(*field.tool, opening * field.tool->max_jaw, side)}));
   return least;
 }
 
@@ -84,8 +88,11 @@ std::optional<SpreadPose> FindSpread(const SpreadField& field, std::span<const s
       pose.spin = M_PI * turn / kSpins - 0.5 * M_PI;
       const Pose X =
           instrument::CalcToolPose(field.port, instrument::FindJoints(field.port, pose.tip, pose.spin, 0.0));
-      pose.worth = CalcWorth(field, X) - 0.3 * tries[i];
-      if (pose.worth > kLeastWorth) poses.push_back(pose);
+      for (const double opening : kOpenings) {
+        pose.opening = opening;
+        pose.worth = CalcWorth(field, X, opening) - 0.3 * tries[i];
+        if (pose.worth > kLeastWorth) poses.push_back(pose);
+      }
     }
   }
   const auto rate = [&](const SpreadPose& pose) {
@@ -99,7 +106,7 @@ std::optional<SpreadPose> FindSpread(const SpreadField& field, std::span<const s
   for (SpreadPose pose : poses) {
     const Pose X =
         instrument::CalcToolPose(field.port, instrument::FindJoints(field.port, pose.tip, pose.spin, 0.0));
-    pose.worth -= kPushed * std::max(0.0, kBesideOrgan - FindClearance(field, X));
+    pose.worth -= kPushed * std::max(0.0, kBesideOrgan - FindClearance(field, X, pose.opening));
     if (pose.worth > kLeastWorth && (!best || rate(pose) > rate(*best))) best = pose;
   }
   return best;

@@ -34,6 +34,7 @@ struct SpreadField {
 struct SpreadPose {
   Vec3 tip;             ///< [m]
   double spin = 0;      ///< [rad]
+  double opening = 1;   ///< of the jaws, as a share: less where a duct is near [-]
   double worth = 0;     ///< of what parts
   std::size_t aim = 0;  ///< the fibre that it was found for
 };

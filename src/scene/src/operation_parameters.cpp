@@ -133,10 +133,13 @@ void ReadStones(const JsonView& root, OperationParameters& made) {
 }
 
 void ReadJudgement(const JsonView& root, OperationParameters& made) {
-  const JsonView group = OpenGroup(
-      root, "judgement", {"much_blood_m3", "near_duct_m", "idle_s", "tip_in_m", "blind_s", "source"});
+  const JsonView group = OpenGroup(root, "judgement",
+                                   {"much_blood_m3", "near_duct_m", "kept_fat_m", "kept_sheath_m", "idle_s",
+                                    "tip_in_m", "blind_s", "source"});
   made.judgement.much_blood = group.Number("much_blood_m3", kVolume);
   made.judgement.near_duct = group.Number("near_duct_m", kLength);
+  made.judgement.kept_fat = group.Number("kept_fat_m", kLength);
+  made.judgement.kept_sheath = group.Number("kept_sheath_m", kLength);
   made.judgement.idle_seconds = group.Number("idle_s", kAllowedSeconds);
   made.judgement.tip_in = group.Number("tip_in_m", kDepth);
   made.judgement.blind_seconds = group.Number("blind_s", kAllowedSeconds);

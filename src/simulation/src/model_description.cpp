@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "operation/gallbladder_anatomy.h"
 #include "operation/operation.h"
 #include "trocar/scene/patient_tissue.h"
 #include "trocar/scene/patient_vessels.h"
@@ -16,11 +17,22 @@ core::Result<ModelDescription> DescribeModel(const Scene& scene) {
   if (!tissue.ok()) return tissue.error();
   ModelDescription description;
   const auto vessels = scene::MakePatientVessels(scene.patient);
+  std::vector<std::uint32_t> main_ducts, main_arteries;
   for (std::size_t t = 0; vessels.ok() && t < scene.patient.tubes.size(); ++t) {
     const SurfaceInfo& surface = tissue->surfaces[scene.patient.organs.size() + t];
     std::vector<training::VesselRole>& roles = description.tube_roles.emplace_back();
-    for (std::uint32_t k = 0; k < surface.node_count; ++k)
+    for (std::uint32_t k = 0; k < surface.node_count; ++k) {
       roles.push_back(vessels->anatomy.roles[vessels->map.Find(t, vessels->map.arcs[t][k]).vessel]);
+      const bool is_duct = scene.patient.tubes[t].kind == anatomy::TubeKind::kDuct;
+      if (!training::MayBeDivided(roles.back()))
+        (is_duct ? main_ducts : main_arteries).push_back(surface.first_node + k);
+    }
+  }
+  if (scene.operation.has_value()) {
+    description.window_strands =
+        MakeTriangleWindow(tissue->surfaces, tissue->strands, tissue->definition.rest, main_ducts,
+                           main_arteries, scene.operation->parameters.judgement)
+            .Strands();
   }
   description.surfaces = std::move(tissue->surfaces);
   description.strands = std::move(tissue->strands);

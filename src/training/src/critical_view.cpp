@@ -54,9 +54,9 @@ std::vector<std::string> ExplainCriticalView(const DissectionFacts& facts, const
                                              const CriticalViewSettings& settings) {
   std::vector<std::string> reasons;
   if (score.criteria[0] < 2) {
-    reasons.push_back("The hepatocystic triangle is not clear: " + Percent(facts.cleared_share) +
-                      " of fat and fibrous tissue is gone, " + Percent(settings.cleared_share) +
-                      " is needed.");
+    reasons.push_back("The hepatocystic triangle is not clear: " + Percent(1.0 - facts.cleared_share) +
+                      " of the fat over its window is left, " + Percent(1.0 - settings.cleared_share) +
+                      " may be.");
   }
   if (score.criteria[1] < 2) {
     reasons.push_back("The gallbladder is still on the cystic plate: " + Percent(facts.detached_share) +

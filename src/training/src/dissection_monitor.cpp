@@ -36,9 +36,7 @@ void DissectionMonitor::Update(const tissue::TissueState& tissue, const surgery:
                                std::span<const surgery::OrganSurface> organs,
                                const instrument::Camera& camera) noexcept {
   const auto is_intact = [&](std::uint32_t strand) { return tissue.strand_is_intact[strand] != 0; };
-  const auto& triangle = anatomy_.triangle;
-  const auto intact = static_cast<double>(std::count_if(triangle.begin(), triangle.end(), is_intact));
-  facts_.cleared_share = triangle.empty() ? 1.0 : 1.0 - intact / static_cast<double>(triangle.size());
+  facts_.cleared_share = anatomy_.triangle.CalcClearedShare(tissue.strand_is_intact);
 
   std::array<int, kBins> all{}, left{};
   for (std::size_t i = 0; i < bed_bins_.size(); ++i) {

@@ -80,7 +80,7 @@ TEST(ExplainCriticalView, SaysWhatIsMissingAndNothingWhenAchieved) {
   view.Update(facts, kTick);
   const auto reasons = ExplainCriticalView(facts, view.Score());
   ASSERT_EQ(reasons.size(), 3u);
-  EXPECT_NE(reasons[0].find("30 %"), std::string::npos);
+  EXPECT_NE(reasons[0].find("70 % of the fat"), std::string::npos);
   EXPECT_NE(reasons[1].find("10 %"), std::string::npos);
   EXPECT_NE(reasons[2].find("3 structures"), std::string::npos);
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 #include "trocar/core/assert.h"
@@ -22,9 +23,9 @@ constexpr double kWebBreadth = 1.3;        // of the bed's web in distances to i
 constexpr double kFatChange = 0.00012;     // m; less movement leaves the fat's surface as it is
 constexpr double kAdhesionWidth = 0.0007;  // m
 constexpr double kEndSpread = 0.0007;      // m, of a fibre's root about its node
-constexpr double kFatRadius = 0.0021;      // m, of a lobule, 0.7 to 1.3 times
-constexpr double kFatSpread = 0.0016;      // m, from the strand
-constexpr double kFilmOverlap = 1.6;       // breadth of a film in distances to its neighbour
+constexpr double kLeastLobule = 0.7, kMostLobule = 1.3;    // times a lobule's radius
+constexpr double kFatSpread = 0.0016;                      // m, from the strand
+constexpr double kFilmOverlap = 1.6;                       // breadth of a film in distances to its neighbour
 constexpr double kLeastFilm = 0.0010, kMostFilm = 0.0045;  // m
 constexpr double kWave = 0.07;                             // of a strand's length, at rest
 
@@ -73,7 +74,7 @@ StrandField::StrandField(std::span<const scene::StrandInfo> strands, std::span<c
       const double along = middle + random.Uniform(-0.15, 0.15);
       const Vec3 offset = PickOffset(random, kFatSpread);
       lobules_.push_back({i, along, offset, math::Lerp(start[info.a], start[info.b], along) + offset,
-                          kFatRadius * random.Uniform(0.7, 1.3)});
+                          scene::kLobuleRadius * random.Uniform(kLeastLobule, kMostLobule)});
     }
   }
 }
@@ -130,17 +131,30 @@ void StrandField::FindRaw(const simulation::Snapshot& snapshot, std::vector<std:
 void StrandField::AddFat(render::Renderer& renderer, render::Frame& frame,
                          const simulation::Snapshot& snapshot) {
   const std::vector<std::uint8_t>& intact = snapshot.operation.strand_is_intact;
+  const auto is_intact = [&intact](std::size_t strand) {
+    return strand >= intact.size() || intact[strand] != 0;
+  };
+  // a lobule is as full as its strands are whole: they overlap so much that a tenth of them would look like all
+  nodes_.assign(snapshot.positions.size(), {});
+  for (std::size_t i = 0; i < strands_.size(); ++i) {
+    if (strands_[i].info.kind != Kind::kTriangle) continue;
+    for (const std::uint32_t node : {strands_[i].info.a, strands_[i].info.b}) {
+      ++nodes_[node].strands;
+      nodes_[node].intact += is_intact(i) ? 1 : 0;
+    }
+  }
   wanted_.clear();
   for (const Lobule& lobule : lobules_) {
-    if (lobule.strand < intact.size() && intact[lobule.strand] == 0) continue;
+    if (!is_intact(lobule.strand)) continue;
     const scene::StrandInfo& info = strands_[lobule.strand].info;
+    const double filling = std::min(nodes_[info.a].Filling(), nodes_[info.b].Filling());
     wanted_.push_back(
         {math::Lerp(snapshot.positions[info.a], snapshot.positions[info.b], lobule.along) + lobule.offset,
-         lobule.rest, lobule.radius});
+         lobule.rest, lobule.radius * std::cbrt(filling)});
   }
   const bool is_same = std::equal(wanted_.begin(), wanted_.end(), shown_.begin(), shown_.end(),
                                   [](const FatLobule& a, const FatLobule& b) {
-                                    return a.rest == b.rest &&
+                                    return a.rest == b.rest && a.radius == b.radius &&
                                            math::SquaredNorm(a.centre - b.centre) < kFatChange * kFatChange;
                                   });
   if (!is_same) {

@@ -2,6 +2,7 @@
 /// \file strand_field.h  The connective tissue that dissection divides: fibres, lobules of fat, a film of peritoneum.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -38,12 +39,18 @@ class StrandField {
     std::size_t strand;
     double along;
     math::Vec3 offset, rest;
-    double radius;
+    double radius;  // where all strands are whole [m]
+  };
+  /// How many strands of fat meet in a node.
+  struct FatNode {
+    std::uint16_t strands = 0, intact = 0;
+    double Filling() const { return static_cast<double>(intact) / static_cast<double>(strands); }
   };
   void AddFat(render::Renderer& renderer, render::Frame& frame, const simulation::Snapshot& snapshot);
 
   std::vector<Strand> strands_;
   std::vector<Lobule> lobules_;
+  std::vector<FatNode> nodes_;  // (rows of Snapshot::positions)
   FatBody fat_;
   std::vector<FatLobule> shown_, wanted_;  // of the surface that is uploaded; of this snapshot
   std::vector<math::Vec3> normals_;

@@ -52,10 +52,9 @@ geometry::Rows ListFibres(std::span<const StrandInfo> strands, std::size_t node_
   return rows;
 }
 
-/// Cystic and common hepatic duct, from where they meet on.
+/// Nodes of the cystic and the common hepatic duct, from where they meet on.
 void FindDucts(std::span<const SurfaceInfo> surfaces, std::span<const Vec3> rest,
-               training::DissectedAnatomy& found) {
-  auto &cystic = found.cystic_duct, &hepatic = found.hepatic_duct;
+               std::vector<std::uint32_t>& cystic, std::vector<std::uint32_t>& hepatic) {
   const std::int32_t gallbladder = FindSurface(surfaces, OrganRole::kGallbladder);
   const auto list = [&](TubeRole role) {
     const std::int32_t tube = FindSurface(surfaces, role);
@@ -136,7 +135,6 @@ training::DissectedAnatomy MakeDissectedAnatomy(const anatomy::Patient& patient,
                           *neck = patient.LandmarkOf(LandmarkRole::kInfundibulum);
   for (std::uint32_t i = 0; i < strands.size(); ++i) {
     const Kind kind = strands[i].kind;
-    if (kind == Kind::kTriangle || kind == Kind::kPeritoneum) found.triangle.push_back(i);
     if (kind != Kind::kBed || fundus == nullptr || neck == nullptr) continue;
     const Vec3 axis = fundus->position - neck->position;
     found.bed.push_back(
@@ -146,13 +144,34 @@ training::DissectedAnatomy MakeDissectedAnatomy(const anatomy::Patient& patient,
   const std::int32_t gallbladder = FindSurface(surfaces, OrganRole::kGallbladder);
   if (gallbladder < 0) return found;
   found.entering = FindEnteringTubes(patient, surfaces, strands);
-  FindDucts(surfaces, rest, found);
+  FindDucts(surfaces, rest, found.cystic_duct, found.hepatic_duct);
   const SurfaceInfo& organ = surfaces[static_cast<std::size_t>(gallbladder)];
   for (std::uint32_t k = 0; neck != nullptr && k < organ.node_count; ++k) {
     if (math::Distance(rest[organ.first_node + k], neck->position) <= kNeckRadius)
       found.neck.push_back(organ.first_node + k);
   }
   return found;
+}
+
+training::TriangleWindow MakeTriangleWindow(std::span<const SurfaceInfo> surfaces,
+                                            std::span<const StrandInfo> strands, std::span<const Vec3> rest,
+                                            std::span<const std::uint32_t> main_ducts,
+                                            std::span<const std::uint32_t> main_arteries,
+                                            const training::JudgementSettings& settings) {
+  using Kind = StrandInfo::Kind;
+  std::vector<std::uint32_t> cystic, hepatic;
+  FindDucts(surfaces, rest, cystic, hepatic);
+  training::TriangleBorders borders;
+  for (const std::uint32_t node : cystic) borders.cystic_duct.push_back(rest[node]);
+  for (const std::uint32_t node : hepatic) borders.hepatic_duct.push_back(rest[node]);
+  for (const std::uint32_t node : main_ducts) borders.main_ducts.push_back(rest[node]);
+  for (const std::uint32_t node : main_arteries) borders.main_arteries.push_back(rest[node]);
+  std::vector<training::TriangleFat> fat;
+  for (std::uint32_t i = 0; i < strands.size(); ++i) {
+    if (strands[i].kind != Kind::kTriangle && strands[i].kind != Kind::kPeritoneum) continue;
+    fat.push_back({i, {rest[strands[i].a], rest[strands[i].b]}});
+  }
+  return {borders, fat, {settings.kept_fat, settings.kept_sheath, scene::kLobuleRadius}};
 }
 
 surgery::GallstoneSettings FindGallstones(const Scene& scene) {

@@ -11,6 +11,7 @@
 #include "trocar/surgery/gallbladder_attachment.h"
 #include "trocar/surgery/gallstone_spill.h"
 #include "trocar/training/dissection_monitor.h"
+#include "trocar/training/operation_judge.h"
 
 namespace trocar::simulation {
 
@@ -32,6 +33,17 @@ surgery::GallbladderAttachment MakeAttachment(const anatomy::Patient& patient,
                                               std::span<const scene::SurfaceInfo> surfaces,
                                               std::span<const scene::StrandInfo> strands);
 
+/// The part of the hepatocystic triangle that the critical view has to show.
+/// \param rest        (nodes) [m]
+/// \param main_ducts, main_arteries  nodes of those that must stay
+training::TriangleWindow MakeTriangleWindow(std::span<const scene::SurfaceInfo> surfaces,
+                                            std::span<const scene::StrandInfo> strands,
+                                            std::span<const math::Vec3> rest,
+                                            std::span<const std::uint32_t> main_ducts,
+                                            std::span<const std::uint32_t> main_arteries,
+                                            const training::JudgementSettings& settings);
+
+/// All but the triangle's window.
 /// \param rest  (nodes) [m]
 training::DissectedAnatomy MakeDissectedAnatomy(const anatomy::Patient& patient,
                                                 std::span<const scene::SurfaceInfo> surfaces,

@@ -19,7 +19,6 @@ namespace {
 
 /// A tool that is exchanged is out of the way at this depth [m], for this long [s].
 constexpr double kOutside = 0.031, kExchangeSeconds = 0.5;
-constexpr double kMainDistance = 0.010;  // fibres nearer to what must stay are left alone [m]
 /// Where blood and bile gather, seen from the infundibulum: to the right and behind, in Morison's pouch [m].
 constexpr Vec3 kPouch{-0.015, 0.0, -0.025};
 constexpr double kBelowAll = -0.03;  // under the lowest organ: what falls beside everything stops there [m]
@@ -49,9 +48,9 @@ core::Status Operation::MakeAll() {
   facts_.gallbladder = scene::FindSurface(tissue.surfaces, roles::OrganRole::kGallbladder);
   if (const auto status = MakeOrgans(); !status.ok()) return status;
   if (const auto status = MakeTubes(); !status.ok()) return status;
-  FindDissectedStrands();
+  FindBandStrands();
   heat_ = surgery::Electrosurgery(tissue.definition, tissue.heat_mass, scene_->operation->parameters.heat);
-  attachment_ = MakeAttachment(scene_->patient, tissue.surfaces, facts_.dissected);
+  attachment_ = MakeAttachment(scene_->patient, tissue.surfaces, strands_);
   MakeAssistant();
   const anatomy::Landmark* neck = scene_->patient.LandmarkOf(roles::LandmarkRole::kInfundibulum);
   facts_.p_pool = (neck != nullptr ? neck->position : Vec3{}) + kPouch;
@@ -102,9 +101,8 @@ core::Status Operation::MakeTubes() {
     for (std::uint32_t k = 0; k < surface.node_count; ++k) {
       const surgery::VesselPlace place = vessels_->Map().Find(t, vessels_->Map().arcs[t][k]);
       if (training::MayBeDivided(facts_.biliary.roles[place.vessel])) continue;
-      facts_.main_nodes.push_back(surface.first_node + k);
-      if (patient.tubes[t].kind == anatomy::TubeKind::kDuct)
-        facts_.main_ducts.push_back(surface.first_node + k);
+      const bool is_duct = patient.tubes[t].kind == anatomy::TubeKind::kDuct;
+      (is_duct ? facts_.main_ducts : facts_.main_arteries).push_back(surface.first_node + k);
     }
   }
   for (surgery::EnteringTube& tube : FindEnteringTubes(patient, made_->surfaces, strands_)) {
@@ -116,18 +114,8 @@ core::Status Operation::MakeTubes() {
   return {};
 }
 
-/// What lies around ducts that must stay is none of the dissection's business. Bands of a model are parted one by one.
-void Operation::FindDissectedStrands() {
-  const std::vector<Vec3>& rest = made_->definition.rest;
-  facts_.dissected = strands_;
-  for (StrandInfo& strand : facts_.dissected) {
-    if (strand.kind != StrandInfo::Kind::kTriangle && strand.kind != StrandInfo::Kind::kPeritoneum) continue;
-    const Vec3 middle = 0.5 * (rest[strand.a] + rest[strand.b]);
-    const bool is_near =
-        std::any_of(facts_.main_nodes.begin(), facts_.main_nodes.end(),
-                    [&](std::uint32_t node) { return math::Distance(rest[node], middle) < kMainDistance; });
-    if (is_near) strand.kind = StrandInfo::Kind::kEnd;
-  }
+/// Bands of a model are parted one by one.
+void Operation::FindBandStrands() {
   facts_.band_starts.assign(1, 0);
   for (std::size_t band = 0; scene_->model && band < scene_->model->bands.size(); ++band) {
     for (std::uint32_t i = 0; i < strands_.size(); ++i) {
@@ -417,10 +405,13 @@ void Operation::AddTo(OperationResult& result) const {
 
 training::OperationJudge Operation::MakeJudge() const {
   const PatientTissue& tissue = *made_;
-  return {training::DissectionMonitor(MakeDissectedAnatomy(scene_->patient, tissue.surfaces, facts_.dissected,
-                                                           tissue.definition.rest),
-                                      tissue.definition.rest),
-          facts_.gallbladder >= 0, scene_->operation->parameters.judgement};
+  const training::JudgementSettings& settings = Judgement();
+  training::DissectedAnatomy anatomy =
+      MakeDissectedAnatomy(scene_->patient, tissue.surfaces, strands_, tissue.definition.rest);
+  anatomy.triangle = MakeTriangleWindow(tissue.surfaces, strands_, tissue.definition.rest, facts_.main_ducts,
+                                        facts_.main_arteries, settings);
+  return {training::DissectionMonitor(std::move(anatomy), tissue.definition.rest), facts_.gallbladder >= 0,
+          settings};
 }
 
 training::OperationObservation Operation::Observe(const HandsNow& hands, const TissueNow& tissue,

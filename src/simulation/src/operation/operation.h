@@ -172,7 +172,7 @@ class Operation {
   core::Status MakeAll();
   core::Status MakeOrgans();
   core::Status MakeTubes();
-  void FindDissectedStrands();
+  void FindBandStrands();
   void MakeAssistant();
   void MakeOoze();
   double WidestTool(int hand) const noexcept;
@@ -212,9 +212,7 @@ class Operation {
   /// What is asked of the patient again and again; constant.
   struct AnatomyFacts {
     std::int32_t liver = -1, gallbladder = -1;
-    std::vector<std::uint32_t> main_nodes;  // of ducts and arteries that must stay
-    std::vector<std::uint32_t> main_ducts;  // of the ducts among them
-    std::vector<StrandInfo> dissected;
+    std::vector<std::uint32_t> main_ducts, main_arteries;  // nodes of those that must stay
     training::BiliaryAnatomy biliary;                      // of the vessels
     Vec3 p_pool;                                           // where blood and bile gather
     double deepest = 0;                                    // z below which nothing falls [m]

@@ -46,6 +46,9 @@ inline std::int32_t FindSurface(std::span<const SurfaceInfo> surfaces, roles::Tu
   return -1;
 }
 
+/// Radius of a full lobule of fat about a strand of the hepatocystic triangle: as it is drawn, and what it hides [m].
+inline constexpr double kLobuleRadius = 0.0021;
+
 /// One of the strands that dissection divides.
 struct StrandInfo {
   std::uint32_t a = 0, b = 0;  ///< rows of Snapshot::positions

@@ -2,6 +2,7 @@
 /// \file model_description.h  What of a scene's tissue is constant, in the rows of Snapshot: its surfaces, strands and vessels.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "trocar/core/result.h"
@@ -24,6 +25,8 @@ struct ModelDescription {
   std::vector<Vec3> rest;             ///< (nodes) at rest, world frame [m]
   /// (tubes)(nodes of it) what the duct or artery is to the surgeon there; empty where they make no network
   std::vector<std::vector<training::VesselRole>> tube_roles;
+  /// Of an operation: strands of fat and peritoneum over the window of the hepatocystic triangle.
+  std::vector<std::uint32_t> window_strands;
 };
 
 /// Compiles the scene's tissue as the simulation does, and keeps what is constant.

@@ -13,6 +13,7 @@
 #include "trocar/surgery/organ_surface.h"
 #include "trocar/tissue/rest_frame.h"
 #include "trocar/training/critical_view.h"
+#include "trocar/training/triangle_window.h"
 
 namespace trocar::training {
 
@@ -23,7 +24,7 @@ struct DissectedAnatomy {
     std::uint32_t strand = 0;
     double along = 0;  ///< 0 at the infundibulum to 1 at the fundus, at rest [-]
   };
-  std::vector<std::uint32_t> triangle;  ///< strands of fat and peritoneum in the hepatocystic triangle
+  TriangleWindow triangle;
   std::vector<BedFibre> bed;
   std::vector<surgery::EnteringTube> entering;
   geometry::Rows fibres;  ///< (nodes) strands of fat, peritoneum and adhesions at each

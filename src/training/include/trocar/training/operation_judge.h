@@ -49,6 +49,8 @@ struct OperationObservation {
 struct JudgementSettings {
   double much_blood = 50e-6;   ///< [m^3]
   double near_duct = 0.005;    ///< of current to a duct that must stay [m]
+  double kept_fat = 0.005;     ///< beside the middle line of such a duct, which need not be exposed [m]
+  double kept_sheath = 0.003;  ///< about the middle line of an artery that must stay, likewise [m]
   double idle_seconds = 0.25;  ///< of current into nothing that no eye would note [s]
   double tip_in = 0.08;        ///< a tool this deep has been pushed in [m]
   double blind_seconds = 1.5;  ///< for which it may be outside the picture then [s]

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+// The built-in patient's critical view: what the eye sees of the hepatocystic triangle is what is judged.
+#include <algorithm>
+
+#include "operation_harness.h"
+#include "trocar/simulation/model_description.h"
+
+namespace trocar::simulation {
+namespace {
+
+using Kind = StrandInfo::Kind;
+
+class TriangleOfPatient : public OperationHarness {
+ protected:
+  void SetUp() override {
+    auto made = DescribeModel(*OperationScene());
+    ASSERT_TRUE(made.ok()) << made.error().Text();
+    model_description_ = std::move(*made);
+    MakeOperation();
+  }
+
+  bool IsFat(std::uint32_t strand) const {
+    const Kind kind = operation_->Strands()[strand].kind;
+    return kind == Kind::kTriangle || kind == Kind::kPeritoneum;
+  }
+  /// From the middle of a strand to the nearest point of what must stay [m].
+  double DistanceToMain(std::uint32_t strand) const {
+    const StrandInfo& info = operation_->Strands()[strand];
+    const Vec3 middle = 0.5 * (state_.position[info.a] + state_.position[info.b]);
+    double least = 1;
+    const std::size_t organs = OperationScene()->patient.organs.size();
+    for (std::size_t t = 0; t < model_description_.tube_roles.size(); ++t) {
+      const auto& roles = model_description_.tube_roles[t];
+      for (std::uint32_t k = 0; k < roles.size(); ++k) {
+        if (training::MayBeDivided(roles[k])) continue;
+        const std::uint32_t node = model_description_.surfaces[organs + t].first_node + k;
+        least = std::min(least, math::Distance(state_.position[node], middle));
+      }
+    }
+    return least;
+  }
+  void Divide(std::uint32_t strand) { state_.strand_is_intact[strand] = 0; }
+
+  ModelDescription model_description_;
+};
+
+// The old rule left out whatever lay within 10 mm of a main duct or artery, which is nearly the whole triangle.
+TEST_F(TriangleOfPatient, IsNotClearWhileALumpLiesOverItNearAMainDuct) {
+  for (std::uint32_t i = 0; i < operation_->Strands().size(); ++i) {
+    if (IsFat(i) && DistanceToMain(i) >= 0.010) Divide(i);
+  }
+  Judge();
+  const OperationResult result = Result();
+  EXPECT_LT(result.facts.cleared_share, 0.4);
+  EXPECT_EQ(result.critical_view.criteria[0], 0);
+  const auto reasons = training::ExplainCriticalView(result.facts, result.critical_view);
+  ASSERT_FALSE(reasons.empty());
+  EXPECT_NE(reasons[0].find("hepatocystic triangle is not clear"), std::string::npos);
+}
+
+TEST_F(TriangleOfPatient, IsClearWhenNothingCoversItThoughTheMainDuctsKeepTheirFat) {
+  for (const std::uint32_t strand : model_description_.window_strands) Divide(strand);
+  Judge();
+  EXPECT_EQ(Result().facts.cleared_share, 1.0);
+  EXPECT_EQ(Result().critical_view.criteria[0], 2);
+  std::size_t kept = 0;
+  for (std::uint32_t i = 0; i < operation_->Strands().size(); ++i)
+    kept += IsFat(i) && state_.strand_is_intact[i] != 0 ? 1 : 0;
+  EXPECT_GT(kept, 100u) << "the common hepatic duct need not be exposed";
+}
+
+}  // namespace
+}  // namespace trocar::simulation
