@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "../src/label_names.h"
+#include "label_names.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

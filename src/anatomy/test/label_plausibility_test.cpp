@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Label maps that cannot be a person's, each with the likely reason, and what is said of those that are taken.
-#include "../src/label_plausibility.h"
+#include "label_plausibility.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <vector>
 
-#include "../src/exposure_meter.h"
+#include "exposure_meter.h"
 #include "test_scene.h"
 #include "trocar/geometry/primitives.h"
 

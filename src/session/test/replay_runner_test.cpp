@@ -50,7 +50,8 @@ class ReplayRunnerTest : public scene::SmallScene {
     return std::move(*replay);
   }
   static bool Eventually(const std::function<bool()>& claim) {
-    for (int i = 0; i < 4000; ++i) {
+    // what is learnt beside the play waits for a processor that has nothing else to do
+    for (int i = 0; i < 24'000; ++i) {
       if (claim()) return true;
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
     }

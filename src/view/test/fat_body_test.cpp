@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "../src/fat_body.h"
+#include "fat_body.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "../src/loose_ends.h"
+#include "loose_ends.h"
 
 #include <gtest/gtest.h>
 
