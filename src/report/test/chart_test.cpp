@@ -120,6 +120,7 @@ AttemptReport MakeReportWithGroup() {
     if (!row.expert_mean) continue;
     row.expert_deviation = std::fabs(*row.expert_mean);
     const double worse = row.better == training::BetterWhen::kLower ? 1 : -1;
+    row.group.clear();
     for (const double many : {1.0, 1.0, 2.0, 3.0, 3.0})
       row.group.push_back(*row.expert_mean + worse * many * *row.expert_deviation);
     std::sort(row.group.begin(), row.group.end());
