@@ -54,7 +54,8 @@ class Camera {
                                               simulation.GetSnapshot(), simulation.Strands());
       if (!made) return made.error();
       view_.emplace(std::move(*made));
-      view_->SetOptions({.has_force_arrows = false});
+      // exposure control remembers earlier pictures: here a picture is a function of the state alone
+      view_->SetOptions({.has_force_arrows = false, .has_automatic_exposure = false});
       scene_ = &simulation.GetScene();
       model_ = simulation.ModelFingerprint();
     }
