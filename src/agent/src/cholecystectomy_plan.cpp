@@ -30,8 +30,7 @@ constexpr double kAside = 0.4;                          // of a view from the fr
 constexpr double kDistances[] = {0.060, 0.072, 0.050};  // of the lens from the duct [m]
 constexpr double kSkin = 0.004;      // sight ends at the skin of a duct, not at its axis [m]
 constexpr double kNeckStep = 0.008;  // of the hold about the duct, to show the other side of the neck [m]
-constexpr double kLeastTurn = 0.05;  // of the neck, for which a step goes on the same way [rad]
-constexpr int kNeckTurns = 9;
+constexpr int kNeckTurns = 7;
 constexpr double kPeelShare = 0.2;  // of the bed's fibres that are left: where the gallbladder peels off [-]
 /// How far the flap is folded back at first [m], and how steeply [-].
 constexpr double kFold = 0.030, kFoldUp = 0.6;
@@ -242,18 +241,16 @@ std::optional<instrument::TrocarJoints> CholecystectomySurgeon::FindSideView(con
 }
 
 /// Looks at the triangle from one side of its front; where the picture does not get there, the left hand turns the
-/// neck towards it, farther with each try: about the duct, or across it when that turns the neck no more.
+/// neck towards it, farther with each try.
 void CholecystectomySurgeon::LookFromSide(int side, int tries) {
   SurgeonAct& act = Decide(SurgeonAct::Kind::kLookFromSide, "look from aside");
   act.side = side;
   act.count = tries;
-  act.amount = -M_PI;
 }
 
 void CholecystectomySurgeon::PlanLookFromSide(const SurgeonAct& act, const Snapshot& seen) {
   const auto& score = seen.operation.critical_view;
-  const bool is_seen = act.side > 0 ? score.is_seen_from_behind : score.is_seen_from_front;
-  if (is_seen || score.Sum() < 6) return;
+  if (score.IsAchieved() || score.Sum() < 6) return;
   if (const auto view = FindSideView(seen, act.side)) {
     Add(SurgeonAct::Kind::kLookFrom, "look from aside", 8.0).camera = *view;
     Wait(1.3);
@@ -264,17 +261,8 @@ void CholecystectomySurgeon::PlanLookFromSide(const SurgeonAct& act, const Snaps
   const Vec3 axis = math::Normalized(TubePoint(seen, duct, 0.0) - TubePoint(seen, duct, 1.0));
   const Vec3 arm = HandOf(kLeft).Tip() - TubePoint(seen, duct, 0.0);
   const Vec3 off_axis = math::Normalized(arm - math::Dot(arm, axis) * axis, known_.bed_normal);
-  // what the neck itself has turned, wherever the lens is
-  const double turned = act.side * CalcAzimuth(seen, scene_->laparoscope.p_world_port);
-  const bool goes_across = act.is_on || turned - act.amount < kLeastTurn;
-  const Vec3 across = act.is_on ? act.by : -kNeckStep * off_axis;
-  DrawGently(kLeft, goes_across ? across : -act.side * kNeckStep * math::Cross(axis, off_axis));
-  SurgeonAct& next = Decide(SurgeonAct::Kind::kLookFromSide, "look from aside");
-  next.side = act.side;
-  next.count = act.count - 1;
-  next.is_on = goes_across;
-  next.by = across;
-  next.amount = turned;
+  DrawGently(kLeft, -act.side * kNeckStep * math::Cross(axis, off_axis));
+  LookFromSide(act.side, act.count - 1);
 }
 
 /// The first fibres of those that are left, from the neck on: there the gallbladder peels off. At least one.

@@ -23,6 +23,8 @@ using scene::SurfaceInfo;
 namespace {
 
 /// What lies this near to the infundibulum turns with the neck [m].
+/// About a strand [m]: the inner half of its lobule (scene::kLobuleRadius), which hides what lies behind it.
+constexpr double kCountedRadius = 0.001;
 constexpr double kNeckRadius = 0.015;
 constexpr std::uint64_t kStoneSeed = 0x73746f6e6573;  // the stones' own stream
 
@@ -171,7 +173,7 @@ training::TriangleWindow MakeTriangleWindow(std::span<const SurfaceInfo> surface
     if (strands[i].kind != Kind::kTriangle && strands[i].kind != Kind::kPeritoneum) continue;
     fat.push_back({i, {rest[strands[i].a], rest[strands[i].b]}});
   }
-  return {borders, fat, {settings.kept_fat, settings.kept_sheath, scene::kLobuleRadius}};
+  return {borders, fat, {settings.kept_fat, settings.kept_sheath, kCountedRadius}};
 }
 
 surgery::GallstoneSettings FindGallstones(const Scene& scene) {
