@@ -227,8 +227,7 @@ TEST(CoachRules, RefuseWhatTheyCannotSay) {
   };
   EXPECT_TRUE(refuses("coach:tremor", "coach:humour"));
   EXPECT_TRUE(refuses("{expert} mm.", "{surgeon} mm."));
-  EXPECT_TRUE(
-      refuses("\"sentence_alone\": \"Fell {times}.\"", "\"sentence_alone\": \"Fell {expert}.\""));
+  EXPECT_TRUE(refuses("\"sentence_alone\": \"Fell {times}.\"", "\"sentence_alone\": \"Fell {expert}.\""));
   EXPECT_TRUE(refuses("\"absolute\": 1, \"weight\": 2,", "\"weight\": 2,"));
   EXPECT_TRUE(refuses("\"fell_often\"", "\"fell\""));
   EXPECT_TRUE(refuses("\"threshold_sd\": 3", "\"treshold_sd\": 3"));

@@ -18,7 +18,8 @@ namespace trocar::training {
 
 /// What a tick knows of the dissection; all of it from geometry and from the graph of tubes.
 struct DissectionFacts {
-  double cleared_share = 0;  ///< of the fat over the triangle's window at the start: see TriangleWindow, 0 to 1 [-]
+  double cleared_share =
+      0;  ///< of the fat over the triangle's window at the start: see TriangleWindow, 0 to 1 [-]
   double detached_share =
       0;  ///< of the bed's length, counted from the infundibulum without a gap, 0 to 1 [-]
   int structures_entering = 0;  ///< tubes that enter the gallbladder and are not cut
