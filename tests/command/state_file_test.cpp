@@ -38,6 +38,9 @@ TEST_F(StateFile, TakesTheSurgeonAlong) {
   ExpectError(Run({"play", "novice", "--task", "hook_dissection", "--restore", file}), "E-SIM-006");
   ExpectError(Run({"play", "expert", "--task", "hook_dissection", "--seed", "2", "--restore", file}),
               "E-SIM-006");
+  // a state that stands after the last second is not taken for an attempt that ended
+  ExpectError(Run({"play", "expert", "--task", "hook_dissection", "--restore", file, "--seconds", "1"}),
+              "E-CLI-001", 2);
   ExpectError(Run({"play", "expert", "--task", "hook_dissection", "--restore", file, "-o", Path("out")}),
               "E-CLI-001", 2);
 }

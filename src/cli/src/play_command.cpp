@@ -232,11 +232,8 @@ core::Result<PlayReport> PlayBlind(std::shared_ptr<const scene::Scene> scene, ag
   auto made = simulation::Simulation::Make(scene, arguments.threads);
   if (!made) return made.error();
   simulation::Simulation simulation = std::move(*made);
-  if (!arguments.files.restore.empty()) {
-    if (auto restored = RestorePlay(arguments.files.restore, arguments.files.who, simulation, surgeon);
-        !restored)
-      return restored.error();
-  }
+  if (auto restored = GoOn(arguments.files, arguments.most_seconds, simulation, surgeon); !restored)
+    return restored.error();
   auto recording = AttemptRecording::Start(arguments.record, DescribePlay(arguments), simulation);
   if (!recording.ok()) return recording.error();
   RunReport run_report = MakeRunReport(*scene, arguments);
@@ -375,7 +372,9 @@ void AddPlayCommand(CLI::App& app, Outcome& outcome) {
       ->check(CLI::Range(1, 256))
       ->type_name("T")
       ->capture_default_str();
-  command->add_option("--seconds", arguments->most_seconds, "Simulated time after which a surgeon is stopped")
+  command
+      ->add_option("--seconds", arguments->most_seconds,
+                   "Simulated time after which a surgeon is stopped, counted from the attempt's start")
       ->check(CLI::Range(1.0, 3600.0))
       ->type_name("S")
       ->capture_default_str();

@@ -136,6 +136,19 @@ double Share(const Snapshot& now) {
 
 }  // namespace
 
+core::Status GoOn(const PlayFiles& files, double most_seconds, simulation::Simulation& simulation,
+                  agent::Surgeon& surgeon) {
+  if (files.restore.empty()) return {};
+  if (auto restored = assessment::RestorePlay(files.restore, files.who, simulation, surgeon); !restored)
+    return restored;
+  const double time = simulation.GetSnapshot().time;
+  if (time < most_seconds) return {};
+  return core::Error{core::ErrorCode::kUsage,
+                     "\"" + files.restore.string() + "\" stands at " + FormatNumber(time, 4) +
+                         " s, and --seconds " + FormatNumber(most_seconds, 4) +
+                         " counts from the attempt's start: give more seconds, or leave the option out"};
+}
+
 core::Status PlayOperation(std::shared_ptr<const scene::Scene> scene, agent::Surgeon& surgeon,
                            OperationPlay play) {
   Run run;
@@ -151,10 +164,7 @@ core::Status PlayOperation(std::shared_ptr<const scene::Scene> scene, agent::Sur
     auto made = simulation::Simulation::Make(scene, play.threads);
     if (!made.ok()) return made.error();
     simulation::Simulation simulation = std::move(*made);
-    if (!play.files.restore.empty()) {
-      if (auto restored = RestorePlay(play.files.restore, play.files.who, simulation, surgeon); !restored)
-        return restored;
-    }
+    if (auto restored = GoOn(play.files, play.most_seconds, simulation, surgeon); !restored) return restored;
     auto recording = AttemptRecording::Start(play.record, play.description, simulation);
     if (!recording.ok()) return recording.error();
     play.report.Start(simulation);

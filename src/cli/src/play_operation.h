@@ -12,11 +12,11 @@
 #include "trocar/assessment/play_state.h"
 #include "trocar/core/result.h"
 #include "trocar/record/recording.h"
+#include "trocar/simulation/simulation.h"
 
 namespace trocar::cli {
 
 using assessment::PlayFiles;
-using assessment::RestorePlay;
 using assessment::SavePlay;
 
 struct OperationPlay {
@@ -30,6 +30,11 @@ struct OperationPlay {
   record::Description description;  ///< of that recording
   RunReport report;
 };
+
+/// Goes on from files.restore, where one is named.
+/// \return an error as of RestorePlay, or where that state stands after most_seconds [s] already.
+core::Status GoOn(const PlayFiles& files, double most_seconds, simulation::Simulation& simulation,
+                  agent::Surgeon& surgeon);
 
 /// Runs to the surgeon's end and prints what it came to.
 core::Status PlayOperation(std::shared_ptr<const scene::Scene> scene, agent::Surgeon& surgeon,

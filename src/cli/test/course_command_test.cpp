@@ -150,7 +150,7 @@ TEST(CourseStartWhole, PreparesThePartThatIsThenPlayedAndJudged) {
   ASSERT_FALSE(state.empty());
   EXPECT_NE(start().out.find("kept from before"), std::string::npos);
   const Printed played = RunTrocar({"play", "expert", "--task", "cholecystectomy", "--restore", state,
-                                    "--record", path("part.trocar"), "--seconds", "220", "--json"});
+                                    "--record", path("part.trocar"), "--json"});
   ASSERT_EQ(played.status, 0) << played.err;
   const Printed judged =
       RunTrocar({"course", "judge", "cholecystectomy", "clip-and-cut", path("part.trocar"), "--json"});
