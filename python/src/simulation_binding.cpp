@@ -206,7 +206,7 @@ py::dict DescribeTask(const Running& running) {
 
 py::dict DescribeOperation(const Running& running) {
   const simulation::OperationSnapshot& now = running.simulation.GetSnapshot().operation;
-  const auto& fluids = now.fluids.fluids;
+  const auto& fluids = now.flow.ledger.fluids;
   py::dict out;
   out["phase"] = std::string(training::NameOf(now.phase));
   out["cleared"] = now.facts.cleared_share;
