@@ -206,7 +206,7 @@ py::dict DescribeTask(const Running& running) {
 
 py::dict DescribeOperation(const Running& running) {
   const simulation::OperationSnapshot& now = running.simulation.GetSnapshot().operation;
-  const auto& fluids = now.fluids.fluids;
+  const auto& fluids = now.flow.ledger.fluids;
   py::dict out;
   out["phase"] = std::string(training::NameOf(now.phase));
   out["cleared"] = now.facts.cleared_share;
@@ -439,6 +439,9 @@ void BindRunning(py::module_& module) {
           },
           py::arg("surgeon"), py::arg("ticks"), py::call_guard<py::gil_scoped_release>(),
           "Lets a scripted surgeon go on for at most `ticks` ticks; returns how many it took.");
+}
+
+void BindSurgeon(py::module_& module) {
   py::class_<agent::Surgeon>(module, "Surgeon", "A scripted surgeon of one simulation's scene.")
       .def(py::init([](const std::string& name, const Running& r, std::uint64_t seed) {
              return Take(agent::MakeSurgeon(name, r.scene, seed));
@@ -456,6 +459,7 @@ void BindRunning(py::module_& module) {
 void BindSimulation(py::module_& module) {
   BindInput(module);
   BindRunning(module);
+  BindSurgeon(module);
   module.def(
       "tasks",
       [] {

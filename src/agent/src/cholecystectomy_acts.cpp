@@ -94,8 +94,8 @@ bool CholecystectomySurgeon::IsDone(const SurgeonAct& act, const Snapshot& seen)
   switch (act.kind) {
     case Kind::kAssist:
       return act.command == AssistantCommand::kRelease
-                 ? !seen.operation.is_assistant_holding
-                 : seen.operation.is_assistant_holding || !seen.operation.has_assistant;
+                 ? !seen.operation.assistant.is_holding
+                 : seen.operation.assistant.is_holding || !seen.operation.assistant.is_there;
     case Kind::kReach:
     case Kind::kLineUp:
     case Kind::kLineUpClip:

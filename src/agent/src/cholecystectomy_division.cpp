@@ -219,8 +219,8 @@ void CholecystectomySurgeon::StopBleeding(int rounds) {
 
 void CholecystectomySurgeon::PlanCoagulation(const SurgeonAct& act, const Snapshot& seen) {
   if (act.count <= 0) return;
-  const auto& leaks = seen.operation.leaks;
-  const auto end = leaks.begin() + static_cast<std::ptrdiff_t>(seen.operation.leak_count);
+  const auto& leaks = seen.operation.flow.leaks;
+  const auto end = leaks.begin() + static_cast<std::ptrdiff_t>(seen.operation.flow.leak_count);
   const auto leak = std::find_if(leaks.begin(), end, [&](const LeakSnapshot& found) {
     const bool is_near_main =
         std::any_of(known_.main_nodes.begin(), known_.main_nodes.end(), [&](std::uint32_t node) {

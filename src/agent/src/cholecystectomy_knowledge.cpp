@@ -180,9 +180,9 @@ std::vector<double> CholecystectomySurgeon::ClipsOn(const Snapshot& seen, std::s
 
 bool CholecystectomySurgeon::IsDivided(const Snapshot& seen, std::size_t tube) const {
   const auto surface = static_cast<std::uint32_t>(scene_->patient.organs.size() + tube);
-  const auto& pieces = seen.operation.tube_pieces;
+  const auto& pieces = seen.operation.topology.tube_pieces;
   const auto count = std::count_if(
-      pieces.begin(), pieces.begin() + static_cast<std::ptrdiff_t>(seen.operation.tube_piece_count),
+      pieces.begin(), pieces.begin() + static_cast<std::ptrdiff_t>(seen.operation.topology.tube_piece_count),
       [&](const TubePiece& piece) { return piece.surface == surface; });
   return static_cast<std::size_t>(count) >= known_.tube_nodes[tube].size();
 }

@@ -49,7 +49,8 @@ Input TaskSurgeon::Act(const Snapshot& seen) {
   if (seen.task.IsOver()) has_finished_ = true;
   if (start_.empty()) {
     start_ = seen.positions;
-    const auto pieces = std::span(seen.operation.tube_pieces).first(seen.operation.tube_piece_count);
+    const auto pieces =
+        std::span(seen.operation.topology.tube_pieces).first(seen.operation.topology.tube_piece_count);
     for (const TubePiece& piece : pieces) start_pieces_.push_back({piece.a, piece.b});
   }
   if (acts_.empty() && !has_finished_) Plan(seen);

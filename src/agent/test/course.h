@@ -128,7 +128,7 @@ class Fumbler {
 /// Cuts, clips, stones, things taken: where a state is the least like the one of before.
 inline std::uint64_t CountEvents(const Snapshot& snapshot) {
   const simulation::OperationSnapshot& operation = snapshot.operation;
-  std::uint64_t count = operation.topology_version + operation.clip_count + snapshot.task.error_count;
+  std::uint64_t count = operation.topology.version + operation.clip_count + snapshot.task.error_count;
   for (const simulation::StoneSnapshot& stone : operation.stones)
     count += stone.place != simulation::StonePlace::kInside ? 1 : 0;
   for (const simulation::InstrumentSnapshot& tool : snapshot.instruments) count += tool.is_grasping ? 1 : 0;

@@ -118,14 +118,14 @@ TEST(Operation, BloodAndBileAreAccountedFor) {
   EXPECT_GT(blood.left, 10e-6) << "half a minute of an open cystic artery";
   for (const auto& account : result.fluids.fluids)
     EXPECT_NEAR(account.left, account.pooled + account.aspirated, 1e-3 * account.left);
-  EXPECT_GT(simulation.GetSnapshot().operation.leak_count, 0u);
+  EXPECT_GT(simulation.GetSnapshot().operation.flow.leak_count, 0u);
 }
 
 TEST(Operation, BeginsAgainAsItBeganAndRepeats) {
   Simulation simulation = MakeOperation();
   const std::uint64_t start = simulation.Hash();
   (void)Play("cuts_unclipped", simulation, 5.0);
-  ASSERT_GT(simulation.GetSnapshot().operation.topology_version, 0u) << "something was cut";
+  ASSERT_GT(simulation.GetSnapshot().operation.topology.version, 0u) << "something was cut";
   const std::uint64_t end = simulation.Hash();
   simulation.Reset();
   EXPECT_EQ(simulation.Hash(), start);
@@ -145,11 +145,11 @@ TEST(Operation, ATickThatCutsSolvesHalfAsMuch) {
   while (!(*surgeon)->HasFinished() && simulation.GetSnapshot().time < 5.0) {
     simulation.Step((*surgeon)->Act(simulation.GetSnapshot()));
     const Snapshot& seen = simulation.GetSnapshot();
-    if (seen.operation.topology_version == topology) {
+    if (seen.operation.topology.version == topology) {
       most_without = std::max(most_without, seen.iterations);
       continue;
     }
-    topology = seen.operation.topology_version;
+    topology = seen.operation.topology.version;
     ++cuts;
     EXPECT_LE(seen.iterations, (most + 1) / 2);
     EXPECT_GT(seen.iterations, 0);

@@ -29,13 +29,14 @@ class PublishedHash {
 
 inline void AddSurgery(PublishedHash& hash, const simulation::OperationSnapshot& seen) {
   hash.Add(seen.tools, seen.has_current, seen.clips_left, seen.strand_is_intact, seen.blanching,
-           seen.charring, seen.first_triangle, seen.triangle_count, seen.topology_version);
-  for (std::size_t organ = 0; organ < seen.triangle_count.size(); ++organ) {
-    const auto first = seen.first_triangle[organ];
-    for (const auto& triangle : std::span(seen.triangles).subspan(first, seen.triangle_count[organ]))
+           seen.charring, seen.topology.first_triangle, seen.topology.triangle_count, seen.topology.version);
+  for (std::size_t organ = 0; organ < seen.topology.triangle_count.size(); ++organ) {
+    const auto first = seen.topology.first_triangle[organ];
+    for (const auto& triangle :
+         std::span(seen.topology.triangles).subspan(first, seen.topology.triangle_count[organ]))
       hash.Add(triangle);
   }
-  for (const auto& piece : std::span(seen.tube_pieces).first(seen.tube_piece_count))
+  for (const auto& piece : std::span(seen.topology.tube_pieces).first(seen.topology.tube_piece_count))
     hash.Add(piece.a, piece.b, piece.radius_a, piece.radius_b, piece.surface);
   for (const auto& clip : std::span(seen.clips).first(seen.clip_count))
     hash.Add(clip.X_world_clip, clip.gap, clip.is_lost, clip.is_crossed, clip.closure, clip.p_rest);
@@ -43,12 +44,13 @@ inline void AddSurgery(PublishedHash& hash, const simulation::OperationSnapshot&
   hash.Add(seen.band_is_whole);
   for (const auto& sheet : seen.sheets)
     hash.Add(sheet.cut_length, sheet.farthest, sheet.off_area, sheet.is_free, sheet.p_farthest);
-  for (const auto& leak : std::span(seen.leaks).first(seen.leak_count))
+  for (const auto& leak : std::span(seen.flow.leaks).first(seen.flow.leak_count))
     hash.Add(leak.position, leak.direction, leak.fluid, leak.rate);
-  for (const auto& ooze : std::span(seen.oozes).first(seen.ooze_count)) hash.Add(ooze.position, ooze.rate);
+  for (const auto& ooze : std::span(seen.flow.oozes).first(seen.flow.ooze_count))
+    hash.Add(ooze.position, ooze.rate);
   for (const auto& stone : seen.stones) hash.Add(stone.position, stone.radius, stone.place, stone.hand);
-  hash.Add(seen.fluids, seen.p_world_pool, seen.smoke, seen.X_world_assistant, seen.assistant_jaw,
-           seen.is_assistant_holding);
+  hash.Add(seen.flow.ledger, seen.flow.p_world_pool, seen.smoke, seen.assistant.X_world_tool,
+           seen.assistant.jaw, seen.assistant.is_holding);
   hash.Add(seen.facts.cleared_share, seen.facts.detached_share, seen.facts.structures_entering,
            seen.critical_view.criteria, seen.critical_view.is_seen_from_front,
            seen.critical_view.is_seen_from_behind, seen.phase, seen.errors, seen.critical_errors,

@@ -136,10 +136,11 @@ std::optional<double> FindDistanceAhead(const scene::Scene& scene,
   }
   const simulation::OperationSnapshot& cut = snapshot.operation;
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
-    const bool is_cut = i < cut.first_triangle.size() && !cut.triangles.empty();
-    const auto triangles =
-        is_cut ? std::span(cut.triangles).subspan(cut.first_triangle[i], cut.triangle_count[i])
-               : std::span(surfaces[i].triangles);
+    const bool is_cut = i < cut.topology.first_triangle.size() && !cut.topology.triangles.empty();
+    const auto triangles = is_cut
+                               ? std::span(cut.topology.triangles)
+                                     .subspan(cut.topology.first_triangle[i], cut.topology.triangle_count[i])
+                               : std::span(surfaces[i].triangles);
     const Vec3* nodes = snapshot.positions.data() + (is_cut ? 0 : surfaces[i].first_node);
     for (const geometry::Triangle& t : triangles)
       take(Meet(from, direction, nodes[t[0]], nodes[t[1]], nodes[t[2]]));

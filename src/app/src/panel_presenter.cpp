@@ -69,12 +69,12 @@ OperationPage MakeOperationPage(const scene::Scene& scene, const scene::Input& i
                        ToolLabel(scene, snapshot, static_cast<scene::Hand>(hand));
   }
   if (page.clips.empty()) page.clips = kNothing;
-  page.blood = DescribeFluid(operation.fluids, surgery::Fluid::kBlood);
-  page.bile = DescribeFluid(operation.fluids, surgery::Fluid::kBile);
+  page.blood = DescribeFluid(operation.flow.ledger, surgery::Fluid::kBlood);
+  page.bile = DescribeFluid(operation.flow.ledger, surgery::Fluid::kBile);
   page.stones = DescribeStones(operation.stones);
-  page.has_assistant = operation.has_assistant;
+  page.has_assistant = operation.assistant.is_there;
   page.command = input.assistant;
-  page.assistant = page.has_assistant ? DescribeAssistant(input.assistant, operation.is_assistant_holding)
+  page.assistant = page.has_assistant ? DescribeAssistant(input.assistant, operation.assistant.is_holding)
                                       : "none in this scene";
   return page;
 }

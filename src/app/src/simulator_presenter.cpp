@@ -114,7 +114,7 @@ void SimulatorPresenter::GoOn() {
   last.settings = control_->GetScene().settings;
   for (std::size_t hand = 0; hand < last.controls.size(); ++hand)
     last.controls[hand].tool = now.operation.tools[hand];
-  if (now.operation.is_assistant_holding) last.assistant = scene::AssistantCommand::kRetract;
+  if (now.operation.assistant.is_holding) last.assistant = scene::AssistantCommand::kRetract;
   const std::uint64_t events = now.event_count;
   control_->GoOnFrom(last);
   seen_events_ = events;

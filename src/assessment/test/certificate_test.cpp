@@ -67,20 +67,29 @@ TEST_F(Certificates, SurvivesAndIsVerifiedByReplay) {
   EXPECT_NE(verified->outcome.find("\"completed\""), std::string::npos) << verified->outcome;
 }
 
-TEST_F(Certificates, EverySingleBitThatIsTurnedIsFound) {
-  ASSERT_TRUE(ReadCertificate(*text_, "whole").ok()) << "the control";
-  std::string text = *text_;
-  std::size_t refused = 0;
-  for (std::size_t bit = 0; bit < 8 * text.size(); ++bit) {
+/// \param step  from one bit to the next
+void ExpectTurnedBitsFound(const std::string& whole, std::size_t step) {
+  ASSERT_TRUE(ReadCertificate(whole, "whole").ok()) << "the control";
+  std::string text = whole;
+  for (std::size_t bit = 0; bit < 8 * text.size(); bit += step) {
     const auto flip = static_cast<char>(1 << (bit % 8));
     text[bit / 8] = static_cast<char>(text[bit / 8] ^ flip);
     const auto read = ReadCertificate(text, "flipped");
     ASSERT_FALSE(read.ok()) << "bit " << bit << " of byte " << bit / 8;
     ASSERT_EQ(read.error().code, ErrorCode::kCertificateInvalid) << "bit " << bit;
-    ++refused;
     text[bit / 8] = static_cast<char>(text[bit / 8] ^ flip);
   }
-  EXPECT_EQ(refused, 8 * text_->size());
+}
+
+// The slow test turns every bit.
+TEST_F(Certificates, ABitThatIsTurnedInAnyByteIsFound) {
+  ExpectTurnedBitsFound(*text_, 7);
+}
+
+class CertificatesSlow : public Certificates {};
+
+TEST_F(CertificatesSlow, EverySingleBitThatIsTurnedIsFound) {
+  ExpectTurnedBitsFound(*text_, 1);
 }
 
 TEST_F(Certificates, EveryLengthThatIsCutIsFound) {

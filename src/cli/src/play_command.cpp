@@ -65,8 +65,8 @@ class Watcher {
 
   void See(const Snapshot& snapshot) {
     tick_ms_.push_back(1e3 * snapshot.tick_seconds);
-    if (snapshot.operation.topology_version != topology_) {
-      topology_ = snapshot.operation.topology_version;
+    if (snapshot.operation.topology.version != topology_) {
+      topology_ = snapshot.operation.topology.version;
       cut_tick_max_ms_ = std::max(cut_tick_max_ms_, 1e3 * snapshot.tick_seconds);
     }
     const scene::TaskSnapshot& task = snapshot.task;
@@ -81,8 +81,9 @@ class Watcher {
     PlayReport report;
     report.task = last.task;
     report.blood_ml =
-        kMillilitre * last.operation.fluids.fluids[static_cast<int>(surgery::Fluid::kBlood)].left;
-    report.bile_ml = kMillilitre * last.operation.fluids.fluids[static_cast<int>(surgery::Fluid::kBile)].left;
+        kMillilitre * last.operation.flow.ledger.fluids[static_cast<int>(surgery::Fluid::kBlood)].left;
+    report.bile_ml =
+        kMillilitre * last.operation.flow.ledger.fluids[static_cast<int>(surgery::Fluid::kBile)].left;
     report.tick_p99_ms = core::CalcPercentile(tick_ms_, 0.99);
     report.cut_tick_max_ms = cut_tick_max_ms_;
     report.seconds = last.time;

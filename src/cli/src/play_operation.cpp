@@ -35,9 +35,9 @@ struct Run {
 
   void See(const Snapshot& now) {
     tick_ms.push_back(1e3 * now.tick_seconds);
-    if (now.operation.topology_version != topology && now.tick > 1)
+    if (now.operation.topology.version != topology && now.tick > 1)
       cut_tick_max_ms = std::max(cut_tick_max_ms, tick_ms.back());
-    topology = now.operation.topology_version;
+    topology = now.operation.topology.version;
     seconds = now.time;
   }
 };

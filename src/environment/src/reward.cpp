@@ -108,7 +108,7 @@ Standing CalcStanding(const simulation::Simulation& simulation) {
     standing.detached = operation.facts.detached_share;
     standing.critical_view = operation.critical_view.Sum();
   }
-  standing.blood = now.operation.fluids.fluids[static_cast<std::size_t>(surgery::Fluid::kBlood)].left;
+  standing.blood = now.operation.flow.ledger.fluids[static_cast<std::size_t>(surgery::Fluid::kBlood)].left;
   return standing;
 }
 

@@ -158,7 +158,7 @@ void StateLayout::Write(const simulation::Simulation& simulation, double time_sh
       out.Put(static_cast<int>(operation.phase) == phase);
     out.Put(operation.is_gallbladder_free);
     out.Put(operation.is_in_bag);
-    const auto& fluids = operation.fluids.fluids;
+    const auto& fluids = operation.flow.ledger.fluids;
     out.Put(kMillilitre * fluids[static_cast<std::size_t>(surgery::Fluid::kBlood)].left);
     out.Put(kMillilitre * fluids[static_cast<std::size_t>(surgery::Fluid::kBile)].left);
     out.Put(operation.smoke);

@@ -82,52 +82,91 @@ std::uint64_t TicksIn(double seconds, double tick_seconds) {
              : 0;
 }
 
+/// How many ticks lie between two of each kind; 0: none are written.
+struct Intervals {
+  Intervals(const RecorderSettings& settings, double tick_seconds)
+      : hash(TicksIn(settings.hash_seconds, tick_seconds)),
+        keyframe(TicksIn(settings.keyframe_seconds, tick_seconds)),
+        index(TicksIn(settings.index_seconds, tick_seconds)),
+        chunk(TicksIn(kChunkSeconds, tick_seconds)) {}
+
+  std::uint64_t hash, keyframe, index, chunk;
+};
+
+/// From the simulation's thread to the writing one, without a lock.
+struct Handover {
+  std::vector<Entry> ring = std::vector<Entry>(kRingSize);
+  std::atomic<std::uint64_t> head{0}, tail{0};  // entries put and taken
+  std::array<std::vector<std::byte>, kStateSlots> states;
+  std::array<std::atomic<bool>, kStateSlots> is_state_free{true, true, true};
+  std::atomic<bool> has_overrun{false};
+
+  int TakeStateSlot();
+};
+
+int Handover::TakeStateSlot() {
+  for (std::size_t slot = 0; slot < kStateSlots; ++slot) {
+    if (is_state_free[slot].load(std::memory_order_acquire)) {
+      is_state_free[slot].store(false, std::memory_order_relaxed);
+      return static_cast<int>(slot);
+    }
+  }
+  return -1;
+}
+/// What the simulation's thread has handed over so far, and when it saves the next states.
+struct Progress {
+  std::uint64_t events = 0, errors = 0, next_keyframe = 0, next_index = 0;
+  training::Phase phase{};
+};
+
+/// Inputs that the writing thread gathers.
+struct InputChunk {
+  InputEncoder encoder;
+  bool is_new_row = true;
+  std::vector<std::byte> bytes;
+  std::uint64_t first = 0;
+  std::uint32_t count = 0;
+};
+
+/// Of the writing thread.
+struct KeyframeGroup {
+  std::optional<StatePlanes> base;
+  int size = 0;
+};
+
+/// The index beside the recording, of the writing thread.
+struct IndexBeside {
+  std::filesystem::path path;
+  std::optional<StateIndex> states;  // none where none is wanted, or the recording has gone to another file
+};
+
 }  // namespace
 
 struct Recorder::Content {
   Content(ChunkWriter opened, RecorderSettings wanted, const Simulation& simulation, ClockReading start)
       : settings(std::move(wanted)),
-        clock_watch(start),
-        writer(std::move(opened)),
         scene(simulation.GetScene()),
-        tick_seconds(scene.tick_seconds),
         first_tick(simulation.GetSnapshot().tick),
-        hash_ticks(TicksIn(settings.hash_seconds, tick_seconds)),
-        keyframe_ticks(TicksIn(settings.keyframe_seconds, tick_seconds)),
-        index_ticks(TicksIn(settings.index_seconds, tick_seconds)),
-        chunk_ticks(TicksIn(kChunkSeconds, tick_seconds)),
-        ring(kRingSize) {}
+        intervals(settings, scene.tick_seconds),
+        clock_watch(start),
+        writer(std::move(opened)) {}
 
   RecorderSettings settings;
-  ClockWatch clock_watch;  // of the writing thread
-  ChunkWriter writer;      // of the writing thread, once that runs
   const scene::Scene& scene;
-  double tick_seconds;
   std::uint64_t first_tick;
-  std::uint64_t hash_ticks, keyframe_ticks, index_ticks, chunk_ticks;
+  Intervals intervals;
 
-  // from the simulation's thread to the writer
-  std::vector<Entry> ring;
-  std::atomic<std::uint64_t> head{0}, tail{0};  // entries put and taken
-  std::array<std::vector<std::byte>, kStateSlots> states;
-  std::array<std::atomic<bool>, kStateSlots> is_state_free{true, true, true};
-  std::atomic<bool> has_overrun{false};
-  // of the simulation's thread
-  std::uint64_t seen_events = 0, seen_errors = 0, next_keyframe = 0, next_index = 0;
-  training::Phase seen_phase{};
+  Progress progress;  // of the simulation's thread
+  Handover handover;
 
-  // of the writing thread
-  InputEncoder encoder;
-  bool is_new_row = true;
-  std::vector<std::byte> content_bytes;
-  std::optional<StatePlanes> group_base;  // of the keyframes
-  int in_group = 0;
-  std::filesystem::path index_path;
-  std::optional<StateIndex> index;  // none where none is wanted, or the recording has gone to another file
-  std::uint64_t first_of_chunk = 0;
-  std::uint32_t in_chunk = 0;
+  // of the writing thread, once that runs
+  ClockWatch clock_watch;
+  ChunkWriter writer;
+  InputChunk chunk;
+  KeyframeGroup group;
+  IndexBeside index;
 
-  mutable std::mutex mutex;  // of what follows; never taken by Add
+  mutable std::mutex mutex;  // of the next four; never taken by Add
   std::condition_variable wake;
   bool is_stopping = false;
   std::vector<TextMark> marks;
@@ -137,7 +176,6 @@ struct Recorder::Content {
   std::thread thread;
 
   void NoteEvents(const simulation::Snapshot& now, Entry& entry);
-  int TakeStateSlot();
   void SaveState(const Simulation& simulation, Entry& entry);
   void Run();
   void WriteEntries();
@@ -155,81 +193,72 @@ struct Recorder::Content {
 void Recorder::Content::NoteEvents(const simulation::Snapshot& now, Entry& entry) {
   const std::uint64_t oldest =
       now.event_count > simulation::kEventRing ? now.event_count - simulation::kEventRing : 0;
-  for (std::uint64_t n = std::max(seen_events, oldest); n < now.event_count; ++n)
+  for (std::uint64_t n = std::max(progress.events, oldest); n < now.event_count; ++n)
     entry.events[entry.event_count++] = now.events[n % simulation::kEventRing];
-  seen_events = now.event_count;
+  progress.events = now.event_count;
   const auto ring_size = static_cast<std::uint64_t>(now.task.last_errors.size());
   const std::uint64_t most = std::min<std::uint64_t>(ring_size, entry.errors.size());
   const std::uint64_t first = now.task.error_count > most ? now.task.error_count - most : 0;
-  for (std::uint64_t n = std::max(seen_errors, first); n < now.task.error_count; ++n)
+  for (std::uint64_t n = std::max(progress.errors, first); n < now.task.error_count; ++n)
     entry.errors[entry.error_count++] = now.task.last_errors[n % ring_size];
-  seen_errors = now.task.error_count;
+  progress.errors = now.task.error_count;
   entry.phase.reset();
-  if (scene.operation && now.operation.phase != seen_phase) entry.phase = seen_phase = now.operation.phase;
-}
-
-int Recorder::Content::TakeStateSlot() {
-  for (std::size_t slot = 0; slot < kStateSlots; ++slot) {
-    if (is_state_free[slot].load(std::memory_order_acquire)) {
-      is_state_free[slot].store(false, std::memory_order_relaxed);
-      return static_cast<int>(slot);
-    }
-  }
-  return -1;
+  if (scene.operation && now.operation.phase != progress.phase)
+    entry.phase = progress.phase = now.operation.phase;
 }
 
 /// A keyframe or a state of the index, where one is due.
 void Recorder::Content::SaveState(const Simulation& simulation, Entry& entry) {
   entry.state_slot = -1;
-  entry.is_keyframe = keyframe_ticks != 0 && entry.tick >= next_keyframe;
-  const bool is_index = index_ticks != 0 && entry.tick >= next_index;
+  entry.is_keyframe = intervals.keyframe != 0 && entry.tick >= progress.next_keyframe;
+  const bool is_index = intervals.index != 0 && entry.tick >= progress.next_index;
   if (!entry.is_keyframe && !is_index) return;
-  entry.state_slot = TakeStateSlot();
+  entry.state_slot = handover.TakeStateSlot();
   // where nobody waits, so that the same attempt gives the same bytes however slow the disk
   while (entry.state_slot < 0 && settings.waits && !has_failed.load()) {
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    entry.state_slot = TakeStateSlot();
+    entry.state_slot = handover.TakeStateSlot();
   }
   if (entry.state_slot < 0) return;
-  simulation.Save(states[static_cast<std::size_t>(entry.state_slot)]);
-  if (entry.is_keyframe) next_keyframe = entry.tick + keyframe_ticks;
-  if (is_index) next_index = entry.tick + index_ticks;
+  simulation.Save(handover.states[static_cast<std::size_t>(entry.state_slot)]);
+  if (entry.is_keyframe) progress.next_keyframe = entry.tick + intervals.keyframe;
+  if (is_index) progress.next_index = entry.tick + intervals.index;
 }
 
 void Recorder::Content::CloseChunk() {
-  if (in_chunk == 0) return;
-  const std::uint32_t head_word = in_chunk | (is_new_row ? kNewRow : 0);
+  if (chunk.count == 0) return;
+  const std::uint32_t head_word = chunk.count | (chunk.is_new_row ? kNewRow : 0);
   std::array<std::byte, 4> count{};
   for (std::size_t i = 0; i < count.size(); ++i) count[i] = static_cast<std::byte>(head_word >> (8 * i));
-  std::copy(count.begin(), count.end(), content_bytes.begin());
-  writer.Put(ChunkKind::kInputs, first_of_chunk, content_bytes);
-  in_chunk = 0;
-  is_new_row = false;
+  std::copy(count.begin(), count.end(), chunk.bytes.begin());
+  writer.Put(ChunkKind::kInputs, chunk.first, chunk.bytes);
+  chunk.count = 0;
+  chunk.is_new_row = false;
 }
 
 void Recorder::Content::WriteKeyframe(const Entry& entry) {
   CloseChunk();
-  const auto& state = states[static_cast<std::size_t>(entry.state_slot)];
-  if (in_group == 0) group_base.reset();
-  writer.Put(ChunkKind::kKeyframe, entry.tick, CompressState(state, group_base ? &*group_base : nullptr),
+  const auto& state = handover.states[static_cast<std::size_t>(entry.state_slot)];
+  if (group.size == 0) group.base.reset();
+  writer.Put(ChunkKind::kKeyframe, entry.tick, CompressState(state, group.base ? &*group.base : nullptr),
              false);
-  if (in_group == 0) group_base.emplace(state);
-  in_group = (in_group + 1) % kKeyframeGroup;
+  if (group.size == 0) group.base.emplace(state);
+  group.size = (group.size + 1) % kKeyframeGroup;
   // whoever begins at a keyframe needs no input before it
-  encoder.Reset();
-  is_new_row = true;
+  chunk.encoder.Reset();
+  chunk.is_new_row = true;
 }
 
 void Recorder::Content::WriteState(const Entry& entry) {
   const auto slot = static_cast<std::size_t>(entry.state_slot);
   if (entry.is_keyframe) {
     WriteKeyframe(entry);
-  } else if (index) {
-    index->Add(entry.tick, states[slot]);
+  } else if (index.states) {
+    index.states->Add(entry.tick, handover.states[slot]);
     // what the disk does not take would fill the memory
-    if (!index->IsOnDisk()) index.reset();
+    if (!index.states->IsOnDisk()) index.states.reset();
   }
-  is_state_free[slot].store(true, std::memory_order_release);
+  handover.is_state_free[slot].store(true, std::memory_order_release);
 }
 
 void Recorder::Content::WriteEvents(const Entry& entry) {
@@ -243,16 +272,16 @@ void Recorder::Content::WriteEvents(const Entry& entry) {
 }
 
 void Recorder::Content::WriteEntries() {
-  std::uint64_t taken = tail.load(std::memory_order_relaxed);
-  const std::uint64_t put = head.load(std::memory_order_acquire);
+  std::uint64_t taken = handover.tail.load(std::memory_order_relaxed);
+  const std::uint64_t put = handover.head.load(std::memory_order_acquire);
   for (; taken < put; ++taken) {
-    const Entry& entry = ring[taken % kRingSize];
-    if (in_chunk == 0) {
-      first_of_chunk = entry.tick - 1;
-      content_bytes.assign(4, std::byte{});
+    const Entry& entry = handover.ring[taken % kRingSize];
+    if (chunk.count == 0) {
+      chunk.first = entry.tick - 1;
+      chunk.bytes.assign(4, std::byte{});
     }
-    encoder.Encode(entry.input, content_bytes);
-    if (++in_chunk >= chunk_ticks) CloseChunk();
+    chunk.encoder.Encode(entry.input, chunk.bytes);
+    if (++chunk.count >= intervals.chunk) CloseChunk();
     if (entry.has_hash) {
       CloseChunk();
       std::array<std::byte, 8> hash{};
@@ -264,14 +293,14 @@ void Recorder::Content::WriteEntries() {
       WriteEvents(entry);
     }
     if (entry.state_slot >= 0) WriteState(entry);
-    tail.store(taken + 1, std::memory_order_release);
+    handover.tail.store(taken + 1, std::memory_order_release);
   }
   CloseChunk();
 }
 
 void Recorder::Content::AddMark(std::string text) {
-  const std::uint64_t put = head.load(std::memory_order_acquire);
-  const std::uint64_t tick = put > 0 ? ring[(put - 1) % kRingSize].tick : first_tick;
+  const std::uint64_t put = handover.head.load(std::memory_order_acquire);
+  const std::uint64_t tick = put > 0 ? handover.ring[(put - 1) % kRingSize].tick : first_tick;
   const std::lock_guard lock(mutex);
   marks.push_back({tick, std::move(text)});
 }
@@ -292,16 +321,16 @@ bool Recorder::Content::WriteMarks() {
 }
 
 void Recorder::Content::SyncAndTell() {
-  const std::uint64_t written = tail.load(std::memory_order_relaxed);
+  const std::uint64_t written = handover.tail.load(std::memory_order_relaxed);
   const int files = writer.FileCount();
   const core::Status synced = writer.Sync();
   if (writer.FileCount() != files) {
-    in_group = 0;  // the keyframe that others are told apart from stayed behind
-    if (index) {
+    group.size = 0;  // the keyframe that others are told apart from stayed behind
+    if (index.states) {
       // it is of the file that is given up
-      index.reset();
+      index.states.reset();
       std::error_code ignored;
-      std::filesystem::remove(index_path, ignored);
+      std::filesystem::remove(index.path, ignored);
     }
   }
   const Space space = writer.GetSpace();
@@ -315,7 +344,7 @@ void Recorder::Content::SyncAndTell() {
     return;
   }
   kept.store(written);
-  const double seconds = static_cast<double>(written) * tick_seconds;
+  const double seconds = static_cast<double>(written) * scene.tick_seconds;
   if (seconds > 1 && status.bytes > 0)
     status.seconds_left = static_cast<double>(space.free) * seconds / static_cast<double>(status.bytes);
   status.is_space_low = status.seconds_left < kLowSeconds ||
@@ -331,7 +360,7 @@ void Recorder::Content::Run() {
       wake.wait_for(lock, kWritePeriod, [&] { return is_stopping; });
       is_last = is_stopping;
     }
-    const bool has_ticks = head.load() != tail.load();
+    const bool has_ticks = handover.head.load() != handover.tail.load();
     WriteEntries();
     SeeClock();
     const bool has_marks = WriteMarks();
@@ -366,29 +395,29 @@ core::Result<std::unique_ptr<Recorder>> Recorder::Start(const std::filesystem::p
   const std::string text = WriteDescription(description);
   content->writer.Put(ChunkKind::kDescription, description.first_tick, BytesOf(text));
   // memory for all saved states, so that Add allocates as good as never
-  for (auto& state : content->states) simulation.Save(state);
+  for (auto& state : content->handover.states) simulation.Save(state);
   if (description.first_tick > 0) {
     content->writer.Put(ChunkKind::kKeyframe, description.first_tick,
-                        CompressState(content->states[0], nullptr));
-    content->group_base.emplace(content->states[0]);
-    content->in_group = 1;
+                        CompressState(content->handover.states[0], nullptr));
+    content->group.base.emplace(content->handover.states[0]);
+    content->group.size = 1;
   }
   if (const core::Status synced = content->writer.Sync(); !synced.ok()) return synced.error();
   content->status.path = content->writer.Path();
   content->status.bytes = content->writer.Bytes();
-  content->seen_events = simulation.GetSnapshot().event_count;
-  content->seen_errors = simulation.GetSnapshot().task.error_count;
-  content->seen_phase = simulation.GetSnapshot().operation.phase;
-  content->next_keyframe = description.first_tick + content->keyframe_ticks;
-  content->next_index = description.first_tick + content->index_ticks;
-  if (content->index_ticks > 0) {
-    content->index_path = IndexPathOf(content->writer.Path());
-    content->index.emplace(StateIndexSettings{content->index_path, content->writer.FileId(),
-                                              description.model, content->settings.index_bytes});
+  content->progress.events = simulation.GetSnapshot().event_count;
+  content->progress.errors = simulation.GetSnapshot().task.error_count;
+  content->progress.phase = simulation.GetSnapshot().operation.phase;
+  content->progress.next_keyframe = description.first_tick + content->intervals.keyframe;
+  content->progress.next_index = description.first_tick + content->intervals.index;
+  if (content->intervals.index > 0) {
+    content->index.path = IndexPathOf(content->writer.Path());
+    content->index.states.emplace(StateIndexSettings{content->index.path, content->writer.FileId(),
+                                                     description.model, content->settings.index_bytes});
     // one that cannot be written is left to whoever replays
-    if (!content->index->IsOnDisk()) content->index.reset();
+    if (!content->index.states->IsOnDisk()) content->index.states.reset();
   }
-  if (!content->index) content->index_ticks = 0;
+  if (!content->index.states) content->intervals.index = 0;
   content->thread = std::thread([c = content.get()] { c->Run(); });
   return std::unique_ptr<Recorder>(new Recorder(std::move(content)));
 }
@@ -401,26 +430,27 @@ Recorder::~Recorder() {
 
 void Recorder::Add(const Input& input, const Simulation& simulation) noexcept {
   Content& c = *content_;
-  if (c.has_overrun.load(std::memory_order_relaxed) || c.has_failed.load(std::memory_order_relaxed)) return;
-  const std::uint64_t put = c.head.load(std::memory_order_relaxed);
-  while (put - c.tail.load(std::memory_order_acquire) >= kRingSize) {
+  if (c.handover.has_overrun.load(std::memory_order_relaxed) || c.has_failed.load(std::memory_order_relaxed))
+    return;
+  const std::uint64_t put = c.handover.head.load(std::memory_order_relaxed);
+  while (put - c.handover.tail.load(std::memory_order_acquire) >= kRingSize) {
     if (!c.settings.waits) {
-      c.has_overrun.store(true, std::memory_order_relaxed);
+      c.handover.has_overrun.store(true, std::memory_order_relaxed);
       return;
     }
     if (c.has_failed.load()) return;
     std::this_thread::sleep_for(kWritePeriod);
   }
   const simulation::Snapshot& now = simulation.GetSnapshot();
-  Entry& entry = c.ring[put % kRingSize];
+  Entry& entry = c.handover.ring[put % kRingSize];
   entry.input = input;
   entry.tick = now.tick;
   entry.event_count = entry.error_count = 0;
   c.NoteEvents(now, entry);
-  entry.has_hash = c.hash_ticks != 0 && now.tick % c.hash_ticks == 0;
+  entry.has_hash = c.intervals.hash != 0 && now.tick % c.intervals.hash == 0;
   if (entry.has_hash) entry.hash = simulation.Hash();
   c.SaveState(simulation, entry);
-  c.head.store(put + 1, std::memory_order_release);
+  c.handover.head.store(put + 1, std::memory_order_release);
 }
 
 void Recorder::Mark(std::string text) {
@@ -431,9 +461,9 @@ RecorderStatus Recorder::Status() const {
   const Content& c = *content_;
   const std::lock_guard lock(c.mutex);
   RecorderStatus status = c.status;
-  status.added = c.head.load();
+  status.added = c.handover.head.load();
   status.kept = c.kept.load();
-  if (!status.failure && c.has_overrun.load()) {
+  if (!status.failure && c.handover.has_overrun.load()) {
     status.failure =
         core::Error{core::ErrorCode::kFileUnwritable,
                     status.path.string() +

@@ -284,7 +284,7 @@ void TraceBuilder::Content::AddJudgement(const Snapshot& now) {
     trace.phases.push_back({std::string(phase), time, time});
   }
   trace.phases.back().end = time;
-  const auto& fluids = now.operation.fluids.fluids;
+  const auto& fluids = now.operation.flow.ledger.fluids;
   last.fluids = {time, fluids[static_cast<std::size_t>(surgery::Fluid::kBlood)].left,
                  fluids[static_cast<std::size_t>(surgery::Fluid::kBile)].left};
   if (trace.fluids.empty() || time - trace.fluids.back().time >= kFluidSeconds)

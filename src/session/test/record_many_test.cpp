@@ -138,7 +138,7 @@ class RecordMany : public testing::Test {
       simulation->Step(input);
       (*recorder)->Add(input, *simulation);
     }
-    if (simulation->GetSnapshot().operation.topology_version > 0) ++counts_.cuts;
+    if (simulation->GetSnapshot().operation.topology.version > 0) ++counts_.cuts;
     if (const auto finished = (*recorder)->Finish(*simulation); !finished.ok())
       return "!" + finished.error().Text();
     return player;

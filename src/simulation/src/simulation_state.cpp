@@ -150,7 +150,7 @@ core::Status Simulation::Content::Restore(core::StateArchive& archive) {
   tick.torn_count = tick.torn_spring_count = 0;
   tick.has_cut = false;
   tick.solved_condition = world.tissue.condition;
-  if (world.operation != nullptr) snapshot.operation.topology_version = ~std::uint32_t{0};
+  if (world.operation != nullptr) snapshot.operation.topology.version = ~std::uint32_t{0};
   Publish();
   snapshot.task = judgement.task;
   return {};

@@ -66,8 +66,6 @@ class ToolContacts {
   /// Refits the trees, and places the tools that are seen.
   void Update(const Scene& scene, const ToolsNow& now, const tissue::TissueState& tissue) noexcept;
 
-  /// What the organs lie in.
-  const surgery::Cavity& GetCavity() const { return cavity_; }
   std::span<const surgery::OrganSurface> Organs() const { return organs_; }
   const surgery::TubeSet& Tubes() const { return tubes_; }
   const surgery::ContactSet& Contacts() const { return contacts_; }

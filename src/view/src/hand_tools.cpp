@@ -111,13 +111,13 @@ void HandTools::AddTo(render::Frame& frame, const simulation::Snapshot& snapshot
 
 void HandTools::AddAssistant(render::Frame& frame, const simulation::Snapshot& snapshot) const {
   const simulation::OperationSnapshot& operation = snapshot.operation;
-  if (!operation.has_assistant) return;
+  if (!operation.assistant.is_there) return;
   for (const Part& part : assistant_.parts) {
-    const Pose X_tool_part = instrument::CalcPartPose(assistant_.tool, part.kind, operation.assistant_jaw);
-    frame.surfaces.push_back({part.surface, operation.X_world_assistant * X_tool_part});
+    const Pose X_tool_part = instrument::CalcPartPose(assistant_.tool, part.kind, operation.assistant.jaw);
+    frame.surfaces.push_back({part.surface, operation.assistant.X_world_tool * X_tool_part});
   }
-  frame.shades.push_back({operation.X_world_assistant * Vec3{0, 0, 0.5 * assistant_.tool.jaw_width},
-                          operation.X_world_assistant * Vec3{0, 0, kShadeLength},
+  frame.shades.push_back({operation.assistant.X_world_tool * Vec3{0, 0, 0.5 * assistant_.tool.jaw_width},
+                          operation.assistant.X_world_tool * Vec3{0, 0, kShadeLength},
                           assistant_.tool.shaft_radius});
 }
 

@@ -202,21 +202,23 @@ struct LaparoscopeView::Content {
   /// Cuts: takes over connectivity where the snapshot brings one that is new.
   void FollowTopology(const Snapshot& snapshot) {
     const simulation::OperationSnapshot& operation = snapshot.operation;
-    if (topology_version == operation.topology_version) return;
+    if (topology_version == operation.topology.version) return;
     // back at the start, or nearer to it: rows may come to mean something else
-    if (topology_version && operation.topology_version < *topology_version) memory = memory_at_start;
-    topology_version = operation.topology_version;
+    if (topology_version && operation.topology.version < *topology_version) memory = memory_at_start;
+    topology_version = operation.topology.version;
     memory.Resize(snapshot.positions.size());
-    const auto triangles = std::span(operation.triangles);
+    const auto triangles = std::span(operation.topology.triangles);
     for (std::size_t i = 0;
-         i < std::min(organs.size(), operation.first_triangle.size()) && !triangles.empty(); ++i) {
-      organs[i].SetTriangles(triangles.subspan(operation.first_triangle[i], operation.triangle_count[i]),
-                             snapshot.positions, memory);
+         i < std::min(organs.size(), operation.topology.first_triangle.size()) && !triangles.empty(); ++i) {
+      organs[i].SetTriangles(
+          triangles.subspan(operation.topology.first_triangle[i], operation.topology.triangle_count[i]),
+          snapshot.positions, memory);
     }
-    const std::size_t pieces = std::min(operation.tube_piece_count, operation.tube_pieces.size());
+    const std::size_t pieces =
+        std::min(operation.topology.tube_piece_count, operation.topology.tube_pieces.size());
     if (pieces == 0) return;
     for (TubeShape& tube : tubes)
-      tube.SetPieces(std::span(operation.tube_pieces).first(pieces), memory, snapshot.positions);
+      tube.SetPieces(std::span(operation.topology.tube_pieces).first(pieces), memory, snapshot.positions);
   }
 
   void UpdateShapes(const Snapshot& snapshot) {

@@ -70,8 +70,8 @@ void AddDrip(render::Frame& frame, const simulation::LeakSnapshot& leak, const V
 void AddStreams(render::Frame& frame, const simulation::Snapshot& snapshot) {
   const simulation::OperationSnapshot& operation = snapshot.operation;
   const Vec3 down = math::Normalized(snapshot.gravity, {0, 0, -1});
-  for (std::size_t i = 0; i < std::min(operation.leak_count, operation.leaks.size()); ++i) {
-    const simulation::LeakSnapshot& leak = operation.leaks[i];
+  for (std::size_t i = 0; i < std::min(operation.flow.leak_count, operation.flow.leaks.size()); ++i) {
+    const simulation::LeakSnapshot& leak = operation.flow.leaks[i];
     if (!(leak.rate > kLeastRate)) continue;
     const Material liquid = leak.fluid == surgery::Fluid::kBlood ? Material::kBlood : Material::kBile;
     const auto seed = static_cast<std::uint32_t>(64 * i);
@@ -91,11 +91,11 @@ std::vector<GroundPiece> MakeGround(const geometry::TriangleMesh& mesh) {
 }
 
 void Pool::AddTo(render::Frame& frame, const simulation::Snapshot& snapshot) const {
-  const surgery::FluidLedger& fluids = snapshot.operation.fluids;
+  const surgery::FluidLedger& fluids = snapshot.operation.flow.ledger;
   const double volume = fluids.Pooled();
   if (!(volume > kLeastPool)) return;
   const Vec3 up = -math::Normalized(snapshot.gravity, {0, 0, -1});
-  const Vec3 lowest = snapshot.operation.p_world_pool;
+  const Vec3 lowest = snapshot.operation.flow.p_world_pool;
   struct Column {
     double height, area, side;
   };

@@ -165,7 +165,8 @@ void ObjectView::AddMark(render::Renderer& renderer, std::size_t index, const si
   TriangleMesh mesh = MakeMark(region);
   Pose X{{}, region.centre};
   if (region.mark == scene::RegionMark::kBand) {
-    const auto pieces = std::span(start.operation.tube_pieces).first(start.operation.tube_piece_count);
+    const auto pieces =
+        std::span(start.operation.topology.tube_pieces).first(start.operation.topology.tube_piece_count);
     double nearest = std::numeric_limits<double>::infinity(), radius = 0;
     for (const simulation::TubePiece& piece : pieces) {
       const Vec3 &a = start.positions[piece.a], &b = start.positions[piece.b];

@@ -61,13 +61,13 @@ bool IsFree(const Snapshot& now) {
   return now.operation.is_gallbladder_free;
 }
 bool IsAspirating(const Snapshot& now) {
-  return now.operation.fluids.rinse_aspirated > 1e-6;
+  return now.operation.flow.ledger.rinse_aspirated > 1e-6;
 }
 bool IsInBag(const Snapshot& now) {
   return now.operation.is_in_bag;
 }
 bool Bleeds(const Snapshot& now) {
-  const auto leaks = std::span(now.operation.leaks).first(now.operation.leak_count);
+  const auto leaks = std::span(now.operation.flow.leaks).first(now.operation.flow.leak_count);
   return std::any_of(leaks.begin(), leaks.end(), [](const simulation::LeakSnapshot& leak) {
     return leak.fluid == surgery::Fluid::kBlood && leak.rate > 1e-7;
   });

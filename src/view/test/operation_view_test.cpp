@@ -217,18 +217,18 @@ TEST_F(OperationViewTest, ACutOrganShowsItsNewSurface) {
   now_.positions.resize(now_.positions.size() + 8);  // spare rows
   MakeView();
   const Image whole = Draw();
-  now_.operation.triangles = surfaces_[0].triangles;
-  now_.operation.first_triangle = {0};
-  now_.operation.triangle_count = {static_cast<std::uint32_t>(surfaces_[0].triangles.size())};
-  now_.operation.topology_version = 1;
+  now_.operation.topology.triangles = surfaces_[0].triangles;
+  now_.operation.topology.first_triangle = {0};
+  now_.operation.topology.triangle_count = {static_cast<std::uint32_t>(surfaces_[0].triangles.size())};
+  now_.operation.topology.version = 1;
   EXPECT_EQ(Draw(), whole) << "the same triangles, the same picture";
   // a window in front
   std::vector<geometry::Triangle> kept;
   for (const auto& triangle : surfaces_[0].triangles)
     if (math::Distance(now_.positions[triangle[0]], {0, 0, -0.085}) > 0.006) kept.push_back(triangle);
-  now_.operation.triangles = kept;
-  now_.operation.triangle_count[0] = static_cast<std::uint32_t>(kept.size());
-  now_.operation.topology_version = 2;
+  now_.operation.topology.triangles = kept;
+  now_.operation.topology.triangle_count[0] = static_cast<std::uint32_t>(kept.size());
+  now_.operation.topology.version = 2;
   const Change change = CountChanges(whole, Draw(), {0, 0, -0.085}, 0.012);
   EXPECT_GT(change.near, 100);
   EXPECT_EQ(change.far, 0);
@@ -236,13 +236,13 @@ TEST_F(OperationViewTest, ACutOrganShowsItsNewSurface) {
   const auto spare = static_cast<std::uint32_t>(now_.positions.size() - 1);
   now_.positions[spare] = {0, 0, -0.083};
   kept.push_back({spare, surfaces_[0].triangles[0][0], surfaces_[0].triangles[0][1]});
-  now_.operation.triangles = kept;
-  now_.operation.triangle_count[0] = static_cast<std::uint32_t>(kept.size());
-  now_.operation.topology_version = 3;
+  now_.operation.topology.triangles = kept;
+  now_.operation.topology.triangle_count[0] = static_cast<std::uint32_t>(kept.size());
+  now_.operation.topology.version = 3;
   Draw();
-  now_.operation.triangles = surfaces_[0].triangles;
-  now_.operation.triangle_count[0] = static_cast<std::uint32_t>(surfaces_[0].triangles.size());
-  now_.operation.topology_version = 0;
+  now_.operation.topology.triangles = surfaces_[0].triangles;
+  now_.operation.topology.triangle_count[0] = static_cast<std::uint32_t>(surfaces_[0].triangles.size());
+  now_.operation.topology.version = 0;
   EXPECT_EQ(Draw(), whole) << "reset";
 }
 
@@ -250,9 +250,10 @@ TEST_F(OperationViewTest, ACutDuctEndsInTwoStumpsWithADarkLumen) {
   MakeView();
   const Image whole = Draw();
   for (std::uint32_t i = 0; i + 1 < kDuctNodes; ++i)
-    if (i != 5) now_.operation.tube_pieces.push_back({ball_count_ + i, ball_count_ + i + 1, 0.002, 0.002, 1});
-  now_.operation.tube_piece_count = now_.operation.tube_pieces.size();
-  now_.operation.topology_version = 1;
+    if (i != 5)
+      now_.operation.topology.tube_pieces.push_back({ball_count_ + i, ball_count_ + i + 1, 0.002, 0.002, 1});
+  now_.operation.topology.tube_piece_count = now_.operation.topology.tube_pieces.size();
+  now_.operation.topology.version = 1;
   const Vec3 gap = 0.5 * (DuctNode(5) + DuctNode(6));
   const Change change = CountChanges(whole, Draw(), gap, 0.014);
   EXPECT_GT(change.near, 20);
@@ -276,10 +277,10 @@ TEST_F(OperationViewTest, ACutDuctEndsInTwoStumpsWithADarkLumen) {
 TEST_F(OperationViewTest, BloodRunsDripsAndWetsBelowALeak) {
   MakeView();
   const Image dry = Draw();
-  simulation::LeakSnapshot& leak = now_.operation.leaks[0];
+  simulation::LeakSnapshot& leak = now_.operation.flow.leaks[0];
   leak = {{0, 0.006, -0.0863}, {0, 0, 1}, surgery::Fluid::kBlood, 1e-6};
   EXPECT_EQ(Draw(), dry) << "not counted yet";
-  now_.operation.leak_count = 1;
+  now_.operation.flow.leak_count = 1;
   const Image bleeding = Draw();
   const Change change = CountChanges(dry, bleeding, leak.position, 0.060);
   EXPECT_GT(change.near, 100);
@@ -294,30 +295,30 @@ TEST_F(OperationViewTest, BloodRunsDripsAndWetsBelowALeak) {
 TEST_F(OperationViewTest, ThePoolGrowsWithWhatIsInIt) {
   MakeView();
   now_.gravity = {0, -5, -9};
-  now_.operation.p_world_pool = {0, -0.02, -0.115};
+  now_.operation.flow.p_world_pool = {0, -0.02, -0.115};
   const Image dry = Draw();
   int before = 0;
   for (const double volume : {0.5e-6, 4e-6, 20e-6}) {
-    now_.operation.fluids = {};
-    now_.operation.fluids.Leak(surgery::Fluid::kBlood, volume);
+    now_.operation.flow.ledger = {};
+    now_.operation.flow.ledger.Leak(surgery::Fluid::kBlood, volume);
     const Change change = CountChanges(dry, Draw(), {0, -0.02, -0.10}, 0.2);
     EXPECT_GT(change.near, before + 30) << volume;
     EXPECT_GT(change.mean[0], 1.8 * change.mean[1]) << "blood is red";
     before = change.near;
   }
-  now_.operation.fluids.Aspirate(1);
+  now_.operation.flow.ledger.Aspirate(1);
   EXPECT_EQ(Draw(), dry);
 }
 
 TEST_F(OperationViewTest, ThePoolLiesInTheHollowsOfTheGround) {
   MakeView({}, true);
   now_.gravity = {0, 0, -9.81};
-  now_.operation.p_world_pool = {0, -0.02, -0.13};
-  now_.operation.fluids.Leak(surgery::Fluid::kBlood, 10e-6);
+  now_.operation.flow.p_world_pool = {0, -0.02, -0.13};
+  now_.operation.flow.ledger.Leak(surgery::Fluid::kBlood, 10e-6);
   view_->Update(now_);
   ASSERT_EQ(view_->GetFrame().puddles.size(), 1u);
   const double few = view_->GetFrame().puddles[0].centre.z;
-  now_.operation.fluids.Leak(surgery::Fluid::kBlood, 20e-6);
+  now_.operation.flow.ledger.Leak(surgery::Fluid::kBlood, 20e-6);
   view_->Update(now_);
   EXPECT_GT(view_->GetFrame().puddles[0].centre.z, few) << "more stands higher";
 }
@@ -349,9 +350,9 @@ TEST_F(OperationViewTest, StonesAreSeenOnceTheyAreOut) {
 TEST_F(OperationViewTest, WhereTheBedOozesTheTissueIsRed) {
   MakeView();
   const Image dry = Draw();
-  now_.operation.oozes[0] = {{0, 0.006, -0.0863}, 5e-10};
+  now_.operation.flow.oozes[0] = {{0, 0.006, -0.0863}, 5e-10};
   EXPECT_EQ(Draw(), dry) << "not counted yet";
-  now_.operation.ooze_count = 1;
+  now_.operation.flow.ooze_count = 1;
   const Image wet = Draw();
   const Change change = CountChanges(dry, wet, {0, 0.004, -0.0863}, 0.010);
   EXPECT_GT(change.near, 15);
@@ -387,9 +388,9 @@ TEST_F(OperationViewTest, SmokeVeilsThePictureAndClears) {
 TEST_F(OperationViewTest, TheAssistantsGrasperIsSeenWhenThereIsOne) {
   MakeView();
   const Image alone = Draw();
-  now_.operation.X_world_assistant = {math::RotationAbout({1, 0, 0}, -0.5 * M_PI), {-0.025, 0.0, -0.09}};
+  now_.operation.assistant.X_world_tool = {math::RotationAbout({1, 0, 0}, -0.5 * M_PI), {-0.025, 0.0, -0.09}};
   EXPECT_EQ(Draw(), alone);
-  now_.operation.has_assistant = true;
+  now_.operation.assistant.is_there = true;
   EXPECT_GT(CountChanges(alone, Draw(), {-0.025, 0.015, -0.09}, 0.02).near, 100);
 }
 

@@ -36,7 +36,6 @@ class Assistant {
   math::Pose CalcPose() const { return instrument::CalcToolPose(setup_.p_world_port, joints_); }
   surgery::Grasp& Held() { return grasp_; }
   const surgery::Grasp& Held() const { return grasp_; }
-  const AssistantSetup& Setup() const { return setup_; }
   void VisitState(core::StateArchive& archive);
 
  private:

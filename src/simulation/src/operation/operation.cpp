@@ -327,16 +327,16 @@ void Operation::Size(OperationSnapshot& snapshot) const {
   snapshot.band_is_whole.assign(facts_.band_starts.size() - 1, 1);
   snapshot.sheets.assign(sheets_.size(), {});
   snapshot.stones.assign(stones_.Size(), {});
-  snapshot.tube_pieces.assign(vessels_->Tubes().Graph().edges.size() + kSpare.tubes / 2, {});
+  snapshot.topology.tube_pieces.assign(vessels_->Tubes().Graph().edges.size() + kSpare.tubes / 2, {});
   std::size_t triangles = 0;
-  snapshot.first_triangle.clear();
+  snapshot.topology.first_triangle.clear();
   for (const surgery::CuttableOrgan& organ : organs_) {
-    snapshot.first_triangle.push_back(static_cast<std::uint32_t>(triangles));
+    snapshot.topology.first_triangle.push_back(static_cast<std::uint32_t>(triangles));
     triangles += organ.Mesh().TriangleCapacity();
   }
-  snapshot.triangles.assign(triangles, {});
-  snapshot.triangle_count.assign(organs_.size(), 0);
-  snapshot.topology_version = std::numeric_limits<std::uint32_t>::max();
+  snapshot.topology.triangles.assign(triangles, {});
+  snapshot.topology.triangle_count.assign(organs_.size(), 0);
+  snapshot.topology.version = std::numeric_limits<std::uint32_t>::max();
 }
 
 void Operation::Publish(const tissue::TissueState& tissue, OperationSnapshot& snapshot) const noexcept {
@@ -357,32 +357,33 @@ void Operation::Publish(const tissue::TissueState& tissue, OperationSnapshot& sn
         std::all_of(own.begin(), own.end(), [&](std::uint32_t i) { return tissue.strand_is_intact[i] != 0; });
   }
   heat_.Publish(snapshot.blanching, snapshot.charring);
-  if (snapshot.topology_version != topology_version_) {
+  if (snapshot.topology.version != topology_version_) {
     for (std::size_t i = 0; i < organs_.size(); ++i) {
       const surgery::CuttableOrgan& organ = organs_[i];
       const auto triangles = organ.Mesh().Triangles();
-      snapshot.triangle_count[i] = static_cast<std::uint32_t>(triangles.size());
+      snapshot.topology.triangle_count[i] = static_cast<std::uint32_t>(triangles.size());
       for (std::size_t t = 0; t < triangles.size(); ++t) {
         for (std::size_t k = 0; k < 3; ++k)
-          snapshot.triangles[snapshot.first_triangle[i] + t][k] = organ.Node(triangles[t][k]);
+          snapshot.topology.triangles[snapshot.topology.first_triangle[i] + t][k] =
+              organ.Node(triangles[t][k]);
       }
     }
-    snapshot.topology_version = topology_version_;
+    snapshot.topology.version = topology_version_;
   }
-  snapshot.tube_piece_count = vessels_->PublishPieces(organs_.size(), snapshot.tube_pieces);
+  snapshot.topology.tube_piece_count = vessels_->PublishPieces(organs_.size(), snapshot.topology.tube_pieces);
   snapshot.clip_count = vessels_->PublishClips(tissue.position, snapshot.clips);
   snapshot.tube_cut_count = vessels_->PublishCuts(snapshot.tube_cuts);
-  snapshot.leak_count = vessels_->PublishLeaks(tissue.position, snapshot.leaks);
-  snapshot.ooze_count = ooze_.Publish(tissue.position, snapshot.oozes);
+  snapshot.flow.leak_count = vessels_->PublishLeaks(tissue.position, snapshot.flow.leaks);
+  snapshot.flow.ooze_count = ooze_.Publish(tissue.position, snapshot.flow.oozes);
   stones_.Publish(snapshot.stones);
-  snapshot.fluids = fluids_;
-  snapshot.p_world_pool = facts_.p_pool;
+  snapshot.flow.ledger = fluids_;
+  snapshot.flow.p_world_pool = facts_.p_pool;
   snapshot.smoke = smoke_;
-  snapshot.has_assistant = assistant_.has_value();
+  snapshot.assistant.is_there = assistant_.has_value();
   if (assistant_) {
-    snapshot.X_world_assistant = assistant_->CalcPose();
-    snapshot.assistant_jaw = assistant_->Joints().jaw;
-    snapshot.is_assistant_holding = assistant_->Held().IsHolding();
+    snapshot.assistant.X_world_tool = assistant_->CalcPose();
+    snapshot.assistant.jaw = assistant_->Joints().jaw;
+    snapshot.assistant.is_holding = assistant_->Held().IsHolding();
   }
   snapshot.is_gallbladder_free = retrieval_.is_gallbladder_free;
   snapshot.is_in_bag = retrieval_.is_in_bag;

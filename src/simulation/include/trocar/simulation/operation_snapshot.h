@@ -26,6 +26,35 @@ using surgery::StonePlace;
 using surgery::StoneSnapshot;
 using surgery::TubePiece;
 
+/// What cutting has made of surfaces and tubes.
+struct TopologySnapshot {
+  std::uint32_t version = 0;  ///< grows when triangles or tube pieces change
+  /// Triangles of each organ over the rows of Snapshot::positions: organ i has triangles[first[i]] to
+  /// triangles[first[i] + count[i]]. Empty where the scene has nothing that cuts: SurfaceInfo::triangles hold.
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  std::vector<std::uint32_t> first_triangle, triangle_count;  ///< (organs)
+  std::vector<TubePiece> tube_pieces;                         ///< the first tube_piece_count count
+  std::size_t tube_piece_count = 0;
+};
+
+/// What runs out, and where it gathers.
+struct FlowSnapshot {
+  std::array<LeakSnapshot, 32> leaks{};  ///< the first leak_count count
+  std::size_t leak_count = 0;
+  std::array<OozeSnapshot, 32> oozes{};  ///< the first ooze_count count: those that bleed most
+  std::size_t ooze_count = 0;
+  surgery::FluidLedger ledger;
+  math::Vec3 p_world_pool;  ///< lowest place, where blood, bile and rinse gather [m]
+};
+
+/// The third hand.
+struct AssistantSnapshot {
+  bool is_there = false;
+  math::Pose X_world_tool;  ///< of its grasper
+  double jaw = 0;           ///< [rad]
+  bool is_holding = false;
+};
+
 /// Fixed sizes while a scene runs, so that copying allocates nothing.
 struct OperationSnapshot {
   std::array<std::uint8_t, kHandCount> tools{};  ///< in use, by place in InstrumentSetup::tray
@@ -35,31 +64,17 @@ struct OperationSnapshot {
   std::vector<std::uint8_t> strand_is_intact;
   /// (nodes) 0 to 1 [-]; empty where the scene has no electrode
   std::vector<float> blanching, charring;
-  /// Triangles of each organ over the rows of Snapshot::positions: organ i has triangles[first[i]] to
-  /// triangles[first[i] + count[i]]. Empty where the scene has nothing that cuts: SurfaceInfo::triangles hold.
-  std::vector<std::array<std::uint32_t, 3>> triangles;
-  std::vector<std::uint32_t> first_triangle, triangle_count;  ///< (organs)
-  std::uint32_t topology_version = 0;                         ///< grows when triangles or tube pieces change
-  std::vector<TubePiece> tube_pieces;                         ///< the first tube_piece_count count
-  std::size_t tube_piece_count = 0;
+  TopologySnapshot topology;
   std::vector<ClipSnapshot> clips;  ///< the first clip_count count
   std::size_t clip_count = 0;
   std::array<math::Vec3, 32> tube_cuts{};  ///< the first tube_cut_count count: where at rest, world frame [m]
   std::size_t tube_cut_count = 0;
   std::vector<std::uint8_t> band_is_whole;   ///< (ModelSetup::bands)
   std::vector<training::PatternCut> sheets;  ///< (ModelSetup::sheets)
-  std::array<LeakSnapshot, 32> leaks{};
-  std::size_t leak_count = 0;
-  std::array<OozeSnapshot, 32> oozes{};  ///< the first ooze_count count: those that bleed most
-  std::size_t ooze_count = 0;
-  std::vector<StoneSnapshot> stones;  ///< the patient's gallstones
-  surgery::FluidLedger fluids;
-  math::Vec3 p_world_pool;  ///< lowest place, where blood, bile and rinse gather [m]
-  double smoke = 0;         ///< in the view, 0 none to 1 thick [-]
-  bool has_assistant = false;
-  math::Pose X_world_assistant;  ///< of the third grasper
-  double assistant_jaw = 0;      ///< [rad]
-  bool is_assistant_holding = false;
+  std::vector<StoneSnapshot> stones;         ///< the patient's gallstones
+  FlowSnapshot flow;
+  double smoke = 0;  ///< in the view, 0 none to 1 thick [-]
+  AssistantSnapshot assistant;
   /// How the dissection stands.
   struct Facts {
     double cleared_share = 0, detached_share = 0;

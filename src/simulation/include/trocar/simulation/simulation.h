@@ -45,7 +45,15 @@ enum class StatePart : std::uint8_t {
 };
 
 /// One running surgery: a model, a state, and scratch. The same model and the same inputs give the same bits, for any
-/// number of threads.
+/// number of threads. It has no clock and no hands of its own: whoever steps it says when, and with which Input.
+///
+///     auto scene = std::make_shared<const Scene>(*scene::ReadScene("scenes/retraction.json"));
+///     Simulation simulation = std::move(*Simulation::Make(scene, 1));
+///     Input input = scene::CalcScriptInput(*scene, 0.0);      // or hands of one's own, as joints in the trocars
+///     simulation.Step(input);
+///     simulation.GetSnapshot().positions;                     // nodes after the tick [m]
+///
+/// A whole program is samples/headless_scene.cpp.
 class Simulation {
  public:
   /// \param threads  used by the solver, >= 1
@@ -60,7 +68,7 @@ class Simulation {
   Simulation& operator=(Simulation&&) noexcept;
   ~Simulation();
 
-  /// One tick.
+  /// One tick, of Scene::tick_seconds: see docs/step.md.
   /// \note No lock or file. Allocates only in a tick in which a blade parts an organ, a duct or a vessel.
   void Step(const Input& input) noexcept;
   /// One tick in which nothing is judged or published: the world is the same after it, the snapshot that of before.
@@ -68,35 +76,23 @@ class Simulation {
   /// Back to the first tick.
   void Reset();
 
+  const Scene& GetScene() const;
+  /// Organs, then tubes; constant.
+  std::span<const SurfaceInfo> Surfaces() const;
+  /// What dissection divides, constant; empty where the scene is no operation.
+  std::span<const StrandInfo> Strands() const;
+  /// What Make, Step, Restore or Reset has published last; overwritten by the next of them.
+  const Snapshot& GetSnapshot() const;
+  /// How the operation stands; nothing where the scene is none.
+  /// \note Allocates.
+  std::optional<OperationResult> GetOperationResult() const;
+
   /// All that decides the future, as bytes with format, model and checksum, for a file, another process or Restore.
   /// \param[out] bytes  replaced; its memory is used again
   void Save(std::vector<std::byte>& bytes) const;
   /// Takes up a saved state: from then on the same inputs give the same bits as where it was saved.
   /// \return kStateInvalid where it is damaged, of another format or another model; then all is as it was
   core::Status Restore(std::span<const std::byte> bytes);
-
-  const Scene& GetScene() const;
-  /// Organs, then tubes; constant.
-  std::span<const SurfaceInfo> Surfaces() const;
-  /// What dissection divides, constant; empty where the scene is no operation.
-  std::span<const StrandInfo> Strands() const;
-  /// How the operation stands; nothing where the scene is none.
-  /// \note Allocates.
-  std::optional<OperationResult> GetOperationResult() const;
-  /// State after the last Step(); valid until the next.
-  const Snapshot& GetSnapshot() const;
-  /// Cuts out the tissue around one tool for the haptic loop, after a Step.
-  /// \note Real-time safe: no allocation, lock or throw.
-  void CutPatch(Hand hand, haptics::LocalPatch& patch) noexcept;
-  /// How far the tissue was from equilibrium when the last tick's solve ended: the largest distance of a node
-  /// to the equilibrium that an exact solver reaches from there under the same load and with the same volumes,
-  /// over the largest distance of any node from rest [-]. NaN where that solver does not come to rest.
-  /// \note For tests and benchmarks: takes many times as long as a tick, and allocates.
-  double CalcEquilibriumError() const;
-  /// Name of the GPU that solves; empty when the processor does.
-  std::string_view GpuName() const;
-  /// Why the GPU that was asked for does not solve, from the tick in which it failed; else nullptr.
-  const core::Error* GpuError() const;
   /// Fingerprint of the model: scene, patient and tissue at rest. States of one model fit each other.
   std::uint64_t ModelFingerprint() const;
   /// Fingerprint of the state.
@@ -105,6 +101,19 @@ class Simulation {
   std::vector<std::pair<std::string, std::uint64_t>> HashFields() const;
   /// Restore for tests: leaves one field out, "world/tissue/position" for instance, which keeps its value.
   core::Status RestoreWithout(std::span<const std::byte> bytes, const std::string& field);
+
+  /// Cuts out the tissue around one tool for the haptic loop, after a Step.
+  /// \note Real-time safe: no allocation, lock or throw.
+  void CutPatch(Hand hand, haptics::LocalPatch& patch) noexcept;
+  /// Name of the GPU that solves; empty when the processor does.
+  std::string_view GpuName() const;
+  /// Why the GPU that was asked for does not solve, from the tick in which it failed; else nullptr.
+  const core::Error* GpuError() const;
+  /// How far the tissue was from equilibrium when the last tick's solve ended: the largest distance of a node
+  /// to the equilibrium that an exact solver reaches from there under the same load and with the same volumes,
+  /// over the largest distance of any node from rest [-]. NaN where that solver does not come to rest.
+  /// \note For tests and benchmarks: takes many times as long as a tick, and allocates.
+  double CalcEquilibriumError() const;
 
  private:
   struct Content;
