@@ -21,12 +21,13 @@ using core::Result;
 constexpr std::string_view kSetByUser = "set by the user";
 constexpr std::string_view kSeries = "cystic_duct_series", kInsertion = "cystic_duct_insertion",
                            kLengthClass = "cystic_duct_class", kDuctLength = "cystic_duct_length";
+constexpr std::string_view kSubvesicalDuct = NameOf(TubeRole::kSubvesicalDuct);
 constexpr double kCentralShare = 1.959964;  // standard deviations on either side of the central 95 % [-]
 constexpr double kHalfOfScale = 0.5;        // of what has a scale but no distribution
 
 /// Variations that are combined, in the order in which they depend on each other.
 constexpr std::string_view kVariations[] = {kInsertion, kLengthClass, "double_cystic_artery", "moynihan_hump",
-                                            "subvesical_duct"};
+                                            kSubvesicalDuct};
 
 /// Points for what makes it easy to mistake a main duct or artery for one that may be divided, or leaves little room for
 /// clips. General knowledge: no source gives such weights.
@@ -42,7 +43,7 @@ constexpr Difficulty kDifficulties[] = {{kInsertion, "parallel", 3},
                                         {kLengthClass, "short", 2},
                                         {"double_cystic_artery", "yes", 1},
                                         {"moynihan_hump", "yes", 3},
-                                        {"subvesical_duct", "yes", 1}};
+                                        {kSubvesicalDuct, "yes", 1}};
 
 /// What ducts, arteries and tissue are like that no image of liver and gallbladder shows.
 struct Unseen {
@@ -64,7 +65,7 @@ constexpr Unseen kUnseen[] = {{kSeries, true, 0},
                               {"hepatic_artery_diameter", true, 0},
                               {"double_cystic_artery", true, 0},
                               {"moynihan_hump", true, 0},
-                              {"subvesical_duct", true, 0},
+                              {kSubvesicalDuct, true, 0},
                               {"subvesical_duct_diameter", true, 0},
                               {"gallbladder_wall", false, +1},
                               {"hydrops", false, 0},
