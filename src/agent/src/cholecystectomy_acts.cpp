@@ -170,11 +170,12 @@ void CholecystectomySurgeon::PlanOn(const SurgeonAct& act, const Snapshot& seen)
     case Kind::kLookFromSide:
       return PlanLookFromSide(act, seen);
     case Kind::kTimeOut:
-      stops_ = !has_view_;
+      if (!has_view_) BailOut(ExplainMissingView(seen));
       return;
     case Kind::kCheckStumps:
-      stops_ = !std::all_of(known_.entering.begin(), known_.entering.end(),
-                            [&](std::size_t tube) { return IsDivided(seen, tube); });
+      if (!std::all_of(known_.entering.begin(), known_.entering.end(),
+                       [&](std::size_t tube) { return IsDivided(seen, tube); }))
+        BailOut("a duct or artery that enters the gallbladder has no room for clips and a cut between them");
       return;
     case Kind::kFreeFromBed:
       return PlanBed(act, seen);
@@ -198,6 +199,10 @@ void CholecystectomySurgeon::PlanOn(const SurgeonAct& act, const Snapshot& seen)
     case Kind::kCoagulate:
       Burn(kRight, act.place, act.seconds);
       return Withdraw();
+    case Kind::kTurnNeck:
+      return TurnNeck(seen, act.side, act.amount);
+    case Kind::kFundusFirst:
+      return PlanFundusFirst(act, seen);
     default:
       return;
   }
@@ -213,6 +218,12 @@ void CholecystectomySurgeon::VisitState(core::StateArchive& archive) {
   archive.Field("has_looked", picture_.has_looked);
   archive.Field("has_view", has_view_);
   archive.Field("stops", stops_);
+  archive.Field("bail_out", bail_out_);
+  archive.Field("triangle_ways_left", triangle_ways_left_);
+  archive.Field("has_begun_at_fundus", has_begun_at_fundus_);
+  archive.Field("fibres_left", progress_.fibres_left);
+  archive.Field("stuck_seconds", progress_.stuck_seconds);
+  archive.Field("seconds", progress_.seconds);
   VisitQueue(archive, "acts", acts_);
   archive.Field("dissection", dissection_);
   archive.Field("spreading", spreading_);

@@ -113,6 +113,11 @@ bool CholecystectomySurgeon::MayHold(const HoldFilter& may, std::uint32_t node) 
   if (may.kind == HoldFilter::Kind::kAny) return true;
   const double along = math::Dot(known_.rest[node] - known_.rest[known_.neck], BedAxis());
   if (may.kind == HoldFilter::Kind::kInfundibulum) return along < kInfundibulum;
+  if (may.kind == HoldFilter::Kind::kFundus) {
+    const double whole = math::Dot(known_.rest[known_.fundus] - known_.rest[known_.neck], BedAxis());
+    const double beyond = along - may.peels;
+    return along > whole - kInfundibulum || (beyond > kLeastFlap && beyond < kMostFlap);
+  }
   const double before = may.peels - along;
   return before > kLeastFlap && before < kMostFlap;
 }

@@ -19,7 +19,7 @@ namespace {
 using instrument::ToolKind;
 
 constexpr double kLowerShare = 0.44;  // of the bed that is freed before the view [-]
-constexpr int kRounds = 4, kBedRounds = 12;
+constexpr int kRounds = 4, kBedRounds = 12, kRoundsOfWay = 2;
 constexpr double kPedicleWeight = 3.0;  // of fibres on the cystic duct and artery, among others
 constexpr double kBesideView = 0.05;    // of a tool, out of the way of the view [m]
 constexpr double kGrip = 0.07;          // of the jaws: 14 N of pinch
@@ -31,6 +31,8 @@ constexpr double kDistances[] = {0.060, 0.072, 0.050};  // of the lens from the 
 constexpr double kSkin = 0.004;      // sight ends at the skin of a duct, not at its axis [m]
 constexpr double kNeckStep = 0.008;  // of the hold about the duct, to show the other side of the neck [m]
 constexpr int kNeckTurns = 7;
+/// Of the hold about the duct, so that tools come to the other side of the triangle [m].
+constexpr double kOpenNeck = 0.014;
 constexpr double kPeelShare = 0.2;  // of the bed's fibres that are left: where the gallbladder peels off [-]
 /// How far the flap is folded back at first [m], and how steeply [-].
 constexpr double kFold = 0.030, kFoldUp = 0.6;
@@ -110,7 +112,8 @@ void CholecystectomySurgeon::PlanTriangle(const SurgeonAct& act, const Snapshot&
   std::vector<std::uint32_t> covering;
   if (!AreTubesBare(seen)) covering = CoveringStrands();
   const bool is_clear = seen.operation.facts.cleared_share >= kCleared && covering.empty();
-  if (is_clear || act.count <= 0) return;
+  if (is_clear) return;
+  if (act.count <= 0) return OpenTriangle();
   Spreading work;
   work.strands = covering;
   work.weights.assign(covering.size(), kPedicleWeight);
@@ -144,6 +147,30 @@ void CholecystectomySurgeon::CheckTriangle(const SurgeonAct& act, const Snapshot
   ClearTriangle(act.count - 1);
 }
 
+/// Fat that neither tool comes to lies behind the duct or under the neck: the left hand turns the neck to one side, then to
+/// the other, and takes it elsewhere, as far as ways are left.
+void CholecystectomySurgeon::OpenTriangle() {
+  if (triangle_ways_left_ <= 0) return;
+  const int way = kTriangleWays - triangle_ways_left_--;
+  if (way >= kTriangleWays / 2) HoldOn(Place::AtNode(known_.neck));
+  SurgeonAct& turn = Decide(SurgeonAct::Kind::kTurnNeck, "turn the neck");
+  turn.side = way % 2 == 0 ? 1 : -1;
+  // the second way comes from the first one's side
+  turn.amount = way == 1 ? 2 * kOpenNeck : kOpenNeck;
+  ClearTriangle(kRoundsOfWay);
+}
+
+/// Draws what the left hand holds about the cystic duct.
+/// \param side  from where the neck is to be seen, +1 or -1
+void CholecystectomySurgeon::TurnNeck(const Snapshot& seen, int side, double by) {
+  if (!seen.instruments[kLeft].is_grasping) return;
+  const std::size_t duct = FindTube(TubeRole::kCysticDuct);
+  const Vec3 axis = math::Normalized(TubePoint(seen, duct, 0.0) - TubePoint(seen, duct, 1.0));
+  const Vec3 arm = HandOf(kLeft).Tip() - TubePoint(seen, duct, 0.0);
+  const Vec3 off_axis = math::Normalized(arm - math::Dot(arm, axis) * axis, known_.bed_normal);
+  DrawGently(kLeft, -side * by * math::Cross(axis, off_axis));
+}
+
 void CholecystectomySurgeon::FreeLowerThird(int rounds) {
   Decide(SurgeonAct::Kind::kFreeLowerThird, "look at the bed").count = rounds;
 }
@@ -151,11 +178,13 @@ void CholecystectomySurgeon::FreeLowerThird(int rounds) {
 void CholecystectomySurgeon::PlanLowerThird(const SurgeonAct& act, const Snapshot& seen) {
   const std::vector<std::uint32_t> lower = BedStrands(kLowerShare);
   const bool is_enough = seen.operation.critical_view.criteria[1] == 2;
-  if (is_enough || ShareLeft(seen, lower) == 0.0 || act.count <= 0) return;
+  if (is_enough || ShareLeft(seen, lower) == 0.0) return;
+  if (act.count <= 0) {
+    if (!has_begun_at_fundus_) FreeFromFundus(kBedRounds);
+    return;
+  }
   const Vec3 axis = BedAxis();
-  std::vector<double> order;
-  for (const std::uint32_t i : lower)
-    order.push_back(0.5 * math::Dot(known_.rest[known_.strands[i].a] - known_.rest[known_.neck], axis));
+  const std::vector<double> order = BedOrder(lower);
   // by the infundibulum, which is drawn off the liver, to the sides and back over what is not free
   const Vec3 back = math::Normalized(axis - math::Dot(axis, known_.bed_normal) * known_.bed_normal);
   const Vec3 way = math::Normalized(known_.bed_normal + back);
@@ -165,6 +194,40 @@ void CholecystectomySurgeon::PlanLowerThird(const SurgeonAct& act, const Snapsho
   Dissect(
       {"the lower third of the bed", lower, order, 0.97, DissectionGoal::Until::kLowerThirdFree, 0.028, way});
   FreeLowerThird(act.count - 1);
+}
+
+/// Where the lower third does not come off from the infundibulum on: from the fundus on, until it does. The assistant lets
+/// go of the fundus meanwhile.
+void CholecystectomySurgeon::FreeFromFundus(int rounds) {
+  has_begun_at_fundus_ = true;
+  Add(SurgeonAct::Kind::kAssist, "assistant: release", 4.0).command = AssistantCommand::kRelease;
+  Decide(SurgeonAct::Kind::kFundusFirst, "fundus first").count = rounds;
+  Add(SurgeonAct::Kind::kAssist, "assistant: retract", 8.0).command = AssistantCommand::kRetract;
+}
+
+void CholecystectomySurgeon::PlanFundusFirst(const SurgeonAct& act, const Snapshot& seen) {
+  const std::vector<std::uint32_t> bed = BedStrands(1.0);
+  const bool is_enough = seen.operation.critical_view.criteria[1] == 2;
+  const double share_left = ShareLeft(seen, bed);
+  const bool has_gained = act.amount == 0.0 || share_left < act.amount;
+  if (is_enough || share_left == 0.0 || act.count <= 0 || !has_gained) return;
+  const Vec3 axis = BedAxis();
+  const std::vector<std::uint32_t> peel = PeelStrands(seen, bed, true);
+  const Place left = MiddleOf(peel);
+  const HoldFilter is_free{
+      HoldFilter::Kind::kFundus,
+      math::Dot(known_.rest[known_.strands[peel[peel.size() / 2]].a] - known_.rest[known_.neck], axis)};
+  const Vec3 back = math::Normalized(axis - math::Dot(axis, known_.bed_normal) * known_.bed_normal);
+  const Vec3 fold = math::Normalized(kFoldUp * known_.bed_normal - back);
+  Take(ToolKind::kHook);
+  LookAt(left, 0.0, 0.100);
+  HoldOn(left, kHoldTries, is_free);
+  DrawGently(kLeft, kFold * fold);
+  Dissect({"the gallbladder from the fundus on", bed, BedOrder(bed, true), 1.0,
+           DissectionGoal::Until::kBedStep, 0.070, fold, is_free, share_left});
+  SurgeonAct& next = Decide(SurgeonAct::Kind::kFundusFirst, "fundus first");
+  next.count = act.count - 1;
+  next.amount = share_left;
 }
 
 /// Both views; where something is missing, back to it first. A second cystic artery is divided before: only two structures
@@ -257,18 +320,28 @@ void CholecystectomySurgeon::PlanLookFromSide(const SurgeonAct& act, const Snaps
     return;
   }
   if (act.count <= 0 || !seen.instruments[kLeft].is_grasping) return;
-  const std::size_t duct = FindTube(TubeRole::kCysticDuct);
-  const Vec3 axis = math::Normalized(TubePoint(seen, duct, 0.0) - TubePoint(seen, duct, 1.0));
-  const Vec3 arm = HandOf(kLeft).Tip() - TubePoint(seen, duct, 0.0);
-  const Vec3 off_axis = math::Normalized(arm - math::Dot(arm, axis) * axis, known_.bed_normal);
-  DrawGently(kLeft, -act.side * kNeckStep * math::Cross(axis, off_axis));
+  TurnNeck(seen, act.side, kNeckStep);
   LookFromSide(act.side, act.count - 1);
 }
 
-/// The first fibres of those that are left, from the neck on: there the gallbladder peels off. At least one.
+/// What comes first where the bed is opened from the infundibulum or from the fundus on [m].
+std::vector<double> CholecystectomySurgeon::BedOrder(const std::vector<std::uint32_t>& bed,
+                                                     bool is_from_fundus) const {
+  const Vec3 axis = BedAxis();
+  std::vector<double> order;
+  for (const std::uint32_t i : bed) {
+    const double along = 0.5 * math::Dot(known_.rest[known_.strands[i].a] - known_.rest[known_.neck], axis);
+    order.push_back(is_from_fundus ? -along : along);
+  }
+  return order;
+}
+
+/// The first fibres of those that are left, from the neck or from the fundus on: there the gallbladder peels off. At least
+/// one.
 /// \pre one is left
 std::vector<std::uint32_t> CholecystectomySurgeon::PeelStrands(const Snapshot& seen,
-                                                               const std::vector<std::uint32_t>& bed) const {
+                                                               const std::vector<std::uint32_t>& bed,
+                                                               bool is_from_fundus) const {
   const Vec3 axis = math::Normalized(known_.rest[known_.fundus] - known_.rest[known_.neck]);
   std::vector<std::pair<double, std::uint32_t>> along;
   for (const std::uint32_t i : bed) {
@@ -276,6 +349,7 @@ std::vector<std::uint32_t> CholecystectomySurgeon::PeelStrands(const Snapshot& s
       along.emplace_back(math::Dot(known_.rest[known_.strands[i].a] - known_.rest[known_.neck], axis), i);
   }
   std::sort(along.begin(), along.end());
+  if (is_from_fundus) std::reverse(along.begin(), along.end());
   along.resize(std::max<std::size_t>(1, static_cast<std::size_t>(kPeelShare * along.size())));
   std::vector<std::uint32_t> peel;
   for (const auto& [place, strand] : along) peel.push_back(strand);
@@ -296,11 +370,12 @@ void CholecystectomySurgeon::FreeFromBed(int rounds) {
 
 void CholecystectomySurgeon::PlanBed(const SurgeonAct& act, const Snapshot& seen) {
   const std::vector<std::uint32_t> bed = BedStrands(1.0);
-  if (ShareLeft(seen, bed) == 0.0 || act.count <= 0) return;
+  if (ShareLeft(seen, bed) == 0.0) return;
+  if (act.count <= 0)
+    return BailOut(
+        "duct and artery are divided, but the gallbladder does not come off its bed whatever it is held by");
   const Vec3 axis = BedAxis();
-  std::vector<double> order;
-  for (const std::uint32_t i : bed)
-    order.push_back(0.5 * math::Dot(known_.rest[known_.strands[i].a] - known_.rest[known_.neck], axis));
+  const std::vector<double> order = BedOrder(bed);
   const std::vector<std::uint32_t> peel = PeelStrands(seen, bed);
   const Place left = MiddleOf(peel);
   // what is free is folded back over what is not: there the fibres lie open
@@ -316,6 +391,34 @@ void CholecystectomySurgeon::PlanBed(const SurgeonAct& act, const Snapshot& seen
   Dissect({"the gallbladder from its bed", bed, order, 1.0, DissectionGoal::Until::kBedStep, 0.070, fold,
            is_free, ShareLeft(seen, bed)});
   FreeFromBed(act.count - 1);
+}
+
+/// Ends the operation here: what is done is safe, and a person would convert it or ask for help.
+void CholecystectomySurgeon::BailOut(std::string reason) {
+  stops_ = true;
+  bail_out_ = std::move(reason);
+  LeaveFibre(dissection_);
+}
+
+/// What keeps the critical view away, as it looks to the surgeon.
+std::string CholecystectomySurgeon::ExplainMissingView(const Snapshot& seen) const {
+  const training::CriticalViewScore& score = seen.operation.critical_view;
+  const auto percent = [](double share) { return std::to_string(std::lround(100 * share)) + " %"; };
+  std::string why;
+  const auto add = [&](const std::string& text) { why += (why.empty() ? "" : "; ") + text; };
+  if (score.criteria[0] < 2)
+    add("beside what must stay no tool reaches the rest of the fat: " +
+        percent(seen.operation.facts.cleared_share) + " of the triangle's window is clear");
+  if (score.criteria[1] < 2) {
+    add(std::string("the lower third does not come off the cystic plate") +
+        (has_begun_at_fundus_ ? ", from the fundus on neither" : "") + ": " +
+        percent(seen.operation.facts.detached_share) + " of the bed is free");
+  }
+  if (score.criteria[2] < 2)
+    add(std::to_string(seen.operation.facts.structures_entering) +
+        " structures enter the gallbladder, and not each of them could be bared");
+  if (score.Sum() == 6) add("front and back of the triangle could not both be brought into the picture");
+  return "no critical view: " + why;
 }
 
 void CholecystectomySurgeon::Remove() {

@@ -26,6 +26,9 @@ constexpr double kFollowSeconds = 0.3;  // a tip is out of there before the pict
 constexpr double kFollowDistance = 0.09;  // of the lens from what it follows [m]
 constexpr double kNeckRadius = 0.015;     // what lies so near to the infundibulum turns with the neck [m]
 constexpr double kWorks = 0.06;           // a tool this deep is at work [m]
+constexpr std::uint64_t kProgressTicks = 120;  // between two counts of the fibres
+constexpr double kMostStuck = 120.0;           // of dissection that parts nothing [s]
+constexpr double kMostSeconds = 2400.0;        // without the critical view [s]
 
 HandMotion MakeHand(const Scene& scene, int hand, const HandSkill& skill, std::uint64_t seed) {
   const InstrumentSetup& setup = scene.instruments[static_cast<std::size_t>(hand)];
@@ -63,7 +66,8 @@ CholecystectomySurgeon::CholecystectomySurgeon(std::shared_ptr<const Scene> scen
     has_finished_ = true;
   } else {
     Learn(std::move(*model));
-    error_scenario == OperationErrorScenario::kNone ? PlanOperation() : PlanErrorScenario(error_scenario);
+    operates_ = error_scenario == OperationErrorScenario::kNone;
+    operates_ ? PlanOperation() : PlanErrorScenario(error_scenario);
   }
 }
 
@@ -184,6 +188,30 @@ Vec3 CholecystectomySurgeon::TubeDirection(const Snapshot& seen, std::size_t tub
   return math::Normalized(TubePoint(seen, tube, share + 0.08) - TubePoint(seen, tube, share - 0.08));
 }
 
+/// Counts the fibres once a second while it dissects. Without the critical view it ends the operation after a time in
+/// which a careful surgeon would no longer go on.
+/// \return whether what is under way is worth going on with
+bool CholecystectomySurgeon::WatchProgress(const SurgeonAct& act, const Snapshot& seen) {
+  progress_.seconds += scene_->tick_seconds;
+  if (operates_ && !has_view_ && progress_.seconds > kMostSeconds) BailOut(ExplainMissingView(seen));
+  const bool dissects = act.kind == SurgeonAct::Kind::kDissect || act.kind == SurgeonAct::Kind::kSpread;
+  if (!dissects) {
+    progress_.stuck_seconds = 0;
+    return true;
+  }
+  progress_.stuck_seconds += scene_->tick_seconds;
+  if (seen.tick % kProgressTicks == 0) {
+    const auto& is_intact = seen.operation.strand_is_intact;
+    const auto left =
+        is_intact.size() - static_cast<std::size_t>(std::count(is_intact.begin(), is_intact.end(), 0));
+    if (left != progress_.fibres_left) progress_.stuck_seconds = 0;
+    progress_.fibres_left = left;
+  }
+  if (progress_.stuck_seconds < kMostStuck) return true;
+  LeaveFibre(dissection_);
+  return false;
+}
+
 Input CholecystectomySurgeon::Act(const Snapshot& seen) {
   const double dt = scene_->tick_seconds;
   if (!picture_.has_looked && !known_.tube_nodes.empty()) {
@@ -193,7 +221,11 @@ Input CholecystectomySurgeon::Act(const Snapshot& seen) {
   }
   has_view_ = has_view_ || seen.operation.critical_view.IsAchieved();
   if (stops_) acts_.clear();
-  if (acts_.empty()) has_finished_ = true;
+  if (acts_.empty()) {
+    if (operates_ && bail_out_.empty() && !seen.operation.is_completed)
+      bail_out_ = "the gallbladder is off its bed but could not be brought out in the bag";
+    has_finished_ = true;
+  }
   if (!acts_.empty()) {
     SurgeonAct& act = acts_.front();
     if (!has_begun_) {
@@ -203,7 +235,8 @@ Input CholecystectomySurgeon::Act(const Snapshot& seen) {
       doing_ = act.doing;
     }
     act_seconds_ += dt;
-    if (IsDone(act, seen) || act_seconds_ > act.time_limit) {
+    const bool gets_on = WatchProgress(act, seen);
+    if (IsDone(act, seen) || act_seconds_ > act.time_limit || !gets_on) {
       acts_.pop_front();
       has_begun_ = false;
       acts_.insert(acts_.begin(), std::make_move_iterator(inserted_.begin()),

@@ -69,10 +69,12 @@ class CholecystectomySurgeon final : public Surgeon {
   Input Act(const Snapshot& seen) override;
   bool HasFinished() const override { return has_finished_; }
   std::string_view Doing() const override { return doing_; }
+  std::string_view BailOutReason() const override { return bail_out_; }
   void VisitState(core::StateArchive& archive) override;
 
  private:
   static constexpr int kHoldTries = 3;
+  static constexpr int kTriangleWays = 4;   // other ways to hold the neck, where fat cannot be reached
   static constexpr double kCleared = 0.91;  // of the triangle: a little more than the view asks [-]
   static constexpr std::uint64_t kNever = ~std::uint64_t{0};
 
@@ -139,6 +141,13 @@ class CholecystectomySurgeon final : public Surgeon {
   void ClearTriangle(int rounds);
   void PlanTriangle(const SurgeonAct& act, const Snapshot& seen);
   void CheckTriangle(const SurgeonAct& act, const Snapshot& seen);
+  void OpenTriangle();
+  void TurnNeck(const Snapshot& seen, int side, double by);
+  void FreeFromFundus(int rounds);
+  void PlanFundusFirst(const SurgeonAct& act, const Snapshot& seen);
+  void BailOut(std::string reason);
+  bool WatchProgress(const SurgeonAct& act, const Snapshot& seen);
+  std::string ExplainMissingView(const Snapshot& seen) const;
   void PlanLowerThird(const SurgeonAct& act, const Snapshot& seen);
   void PlanCriticalView(const SurgeonAct& act, const Snapshot& seen);
   void PlanLookFromSide(const SurgeonAct& act, const Snapshot& seen);
@@ -176,7 +185,9 @@ class CholecystectomySurgeon final : public Surgeon {
   bool IsTriangleClear(const Snapshot& seen) const;
   bool MayHold(const HoldFilter& may, std::uint32_t node) const;
   Vec3 BedAxis() const;  // from the infundibulum to the fundus, at rest
-  std::vector<std::uint32_t> PeelStrands(const Snapshot& seen, const std::vector<std::uint32_t>& bed) const;
+  std::vector<std::uint32_t> PeelStrands(const Snapshot& seen, const std::vector<std::uint32_t>& bed,
+                                         bool is_from_fundus = false) const;
+  std::vector<double> BedOrder(const std::vector<std::uint32_t>& bed, bool is_from_fundus = false) const;
   Place MiddleOf(std::vector<std::uint32_t> strands) const;
   double ShareLeft(const Snapshot& seen, const std::vector<std::uint32_t>& strands) const;
   TubeLine LineOf(const Snapshot& seen, std::size_t tube) const;
@@ -246,8 +257,18 @@ class CholecystectomySurgeon final : public Surgeon {
   };
   Knowledge known_;
 
-  bool has_view_ = false;                       // the critical view was achieved
-  bool stops_ = false;                          // bails out: it is not safe to go on
+  bool has_view_ = false;  // the critical view was achieved
+  bool stops_ = false;     // bails out: it is not safe to go on
+  bool operates_ = true;   // means to finish; constant
+  std::string bail_out_;   // why it stopped
+  int triangle_ways_left_ = kTriangleWays;
+  bool has_begun_at_fundus_ = false;
+  /// Whether the work gets on: fibres that are left, and since when none parted while it dissected.
+  struct Progress {
+    std::size_t fibres_left = 0;
+    double stuck_seconds = 0, seconds = 0;  // the latter since it began [s]
+  };
+  Progress progress_;
   std::vector<collision::TriangleTree> trees_;  // (organs)
   std::uint64_t trees_tick_ = kNever;           // of the snapshot that they follow
   std::deque<SurgeonAct> acts_,

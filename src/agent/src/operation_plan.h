@@ -63,7 +63,8 @@ struct HoldFilter {
   enum class Kind : std::uint8_t {
     kAny,
     kInfundibulum,
-    kFree  ///< the flap that has been freed, before `peels`
+    kFree,   ///< the flap that has been freed, before `peels`
+    kFundus  ///< the fundus, or the flap that has been freed beyond `peels`
   } kind = Kind::kAny;
   double peels = 0;  ///< where the gallbladder peels off its bed, from the infundibulum on [m]
 
@@ -116,7 +117,9 @@ struct SurgeonAct {
     kCheckDivision,
     kCheckPlacedClip,
     kStopBleeding,
-    kCoagulate
+    kCoagulate,
+    kTurnNeck,
+    kFundusFirst
   } kind = Kind::kWait;
   std::string doing;
   double time_limit = 0;  ///< after which it is left [s]

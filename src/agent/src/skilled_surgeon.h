@@ -21,6 +21,7 @@ class SkilledSurgeon final : public Surgeon {
   Input Act(const Snapshot& seen) override;
   bool HasFinished() const override { return hands_->HasFinished(); }
   std::string_view Doing() const override { return hands_->Doing(); }
+  std::string_view BailOutReason() const override { return hands_->BailOutReason(); }
   void VisitState(core::StateArchive& archive) override;
 
  private:

@@ -429,6 +429,18 @@ std::vector<Tube> MakeTemplateTubes(const TriangleMesh& liver, const TriangleMes
   return tubes;
 }
 
+std::optional<Vec3> CalcTriangleMiddle(const Patient& patient) {
+  const auto middle_of = [&](TubeRole role) -> const Vec3* {
+    const int tube = patient.TubeOf(role);
+    if (tube < 0) return nullptr;
+    const auto& line = patient.tubes[static_cast<std::size_t>(tube)].line.points;
+    return &line[line.size() / 2];
+  };
+  const Vec3 *cystic = middle_of(TubeRole::kCysticDuct), *hepatic = middle_of(TubeRole::kCommonHepaticDuct);
+  if (cystic == nullptr || hepatic == nullptr) return std::nullopt;
+  return 0.5 * (*cystic + *hepatic);
+}
+
 double CalcLengthMm(const contours::TubePoints& tube) {
   double sum = 0;
   for (std::size_t i = 1; i < tube.points.size(); ++i) {

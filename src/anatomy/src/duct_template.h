@@ -2,6 +2,7 @@
 /// \file duct_template.h  Ducts and arteries where no picture shows them: placed between landmarks.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -30,6 +31,10 @@ std::vector<contours::TubePoints> PlaceDucts(const geometry::TriangleMesh& liver
 std::vector<Tube> MakeTemplateTubes(const geometry::TriangleMesh& liver,
                                     const geometry::TriangleMesh& gallbladder, const math::Vec3& neck,
                                     std::span<const Parameter> parameters);
+
+/// Middle of the hepatocystic triangle: between the middles of the cystic and the common hepatic duct, world frame [m].
+/// \return nothing where one of them is missing
+std::optional<math::Vec3> CalcTriangleMiddle(const Patient& patient);
 
 /// Length of the polygon through a tube's points, in the frame of PlaceDucts [mm].
 double CalcLengthMm(const contours::TubePoints& tube);

@@ -221,15 +221,8 @@ core::Result<Patient> AssemblePatient(const contours::ControlPoints& points,
                        {NameOf(LandmarkRole::kInfundibulum), infundibulum},
                        {NameOf(LandmarkRole::kGallbladderBody), body}};
   if (edge != nullptr) patient.landmarks.push_back({NameOf(LandmarkRole::kLiverEdge), *edge});
-  const auto middle_of = [&](TubeRole role) -> const Vec3* {
-    const int tube = patient.TubeOf(role);
-    if (tube < 0) return nullptr;
-    const auto& line = patient.tubes[tube].line.points;
-    return &line[line.size() / 2];
-  };
-  const Vec3 *cystic = middle_of(TubeRole::kCysticDuct), *hepatic = middle_of(TubeRole::kCommonHepaticDuct);
-  if (cystic && hepatic)
-    patient.landmarks.push_back({NameOf(LandmarkRole::kHepatocysticTriangle), 0.5 * (*cystic + *hepatic)});
+  if (const auto middle = CalcTriangleMiddle(patient))
+    patient.landmarks.push_back({NameOf(LandmarkRole::kHepatocysticTriangle), *middle});
   for (const contours::LandmarkPoint& placed : points.landmarks) {
     patient.landmarks.push_back({placed.name, frame.FromPixel(placed.slice, placed.pixel)});
   }

@@ -29,10 +29,8 @@ constexpr double kMaxPixels = 4e6;  // of one slice after it was given square pi
 // the same in the class maps total (version 2), total_v1 and total_mr
 constexpr int kTotalSpleen = 1, kTotalGallbladder = 4, kTotalLiver = 5;
 
-constexpr const char* kWhereNone =
-    ". If the map shows another region of the body, or the organ was taken out before, there is nothing to "
-    "operate "
-    "on: a patient needs both";
+/// TotalSegmentator's lobes of the lung, version 2.
+constexpr int kTotalFirstLung = 10, kTotalLastLung = 14;
 
 Error Mismatch(const std::string& why) {
   return {ErrorCode::kLabelsMismatch, why};
@@ -76,6 +74,35 @@ std::string LowerCase(std::string text) {
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   std::erase_if(text, [](char c) { return c == ' ' || c == '_' || c == '-'; });
   return text;
+}
+
+/// Whether a map shows the chest: its names speak of lungs or heart, or most of its voxels are lungs by number.
+bool IsOfThorax(const images::LabelVolume& volume, const LabelCounts& counts) {
+  for (const auto& [name, label] : volume.names) {
+    const std::string plain = LowerCase(name);
+    if ((plain.starts_with("lung") || plain.starts_with("heart")) && CountOf(counts, label) > 0) return true;
+  }
+  if (!volume.names.empty()) return false;
+  std::size_t all = 0, lungs = 0;
+  for (const auto& [label, count] : counts) {
+    if (label != 0) all += count;
+    if (label >= kTotalFirstLung && label <= kTotalLastLung) lungs += count;
+  }
+  return 2 * lungs > all;
+}
+
+/// What it means that an organ's label is not there.
+std::string ExplainAbsence(bool is_liver_there, const images::LabelVolume& volume,
+                           const LabelCounts& counts) {
+  const bool is_of_thorax = IsOfThorax(volume, counts);
+  if (is_liver_there) {
+    return std::string(". Where the gallbladder was taken out before") +
+           (is_of_thorax ? ", or a scan of the chest ends above it" : "") +
+           ", there is nothing to take out: operate on a patient who has one (trocar anatomy generate), or "
+           "practise without a patient (trocar play --list names the tasks)";
+  }
+  return is_of_thorax ? ". It looks like a map of the chest, with lungs or a heart: take one of the abdomen"
+                      : ". If the map shows another region of the body, take one of the abdomen";
 }
 
 /// The end of the gallbladder that is more cranial and posterior.
@@ -186,16 +213,18 @@ core::Result<OrganLabels> FindLabels(const images::LabelVolume& volume, const La
   // a number in place of a name that the file does not have would take some other organ
   const std::pair<const char*, int> both[] = {{NameOf(OrganRole::kLiver), found.liver},
                                               {NameOf(OrganRole::kGallbladder), found.gallbladder}};
+  const bool is_liver_there = found.liver > 0 && CountOf(counts, found.liver) > 0;
+  const std::string absence = ExplainAbsence(is_liver_there, volume, counts);
   for (const auto& [name, label] : both) {
     if (label != 0) continue;
     return Mismatch("the label map names its labels, and none of them is the " + std::string(name) +
-                    "; say which one it is with --" + name + kWhereNone);
+                    "; say which one it is with --" + name + absence);
   }
   for (const auto& [name, label] : both) {
     if (label > 0 && CountOf(counts, label) > 0) continue;
     return Mismatch("the label map has no label " + std::to_string(label) + ", which should be the " + name +
                     " (found by: " + found.convention + "); it has " + ListLabels(counts) +
-                    "; name the right one with --" + name + kWhereNone);
+                    "; name the right one with --" + name + absence);
   }
   if (found.liver == found.gallbladder) {
     return Mismatch("liver and gallbladder have the same label " + std::to_string(found.liver) +

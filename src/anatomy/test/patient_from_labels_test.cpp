@@ -299,7 +299,45 @@ TEST_F(FromLabels, RefusesWhatIsNoPerson) {
   EXPECT_THAT(Failure(Write("cm.nii", centimetres)).message, HasSubstr("centimetres"));
   const core::Error none = Failure(Write("none.nii", FormatNifti(MakeLabels(1, 0))));
   EXPECT_EQ(none.code, ErrorCode::kLabelsMismatch);
-  EXPECT_THAT(none.message, HasSubstr("taken out before"));
+  EXPECT_THAT(none.message, testing::AllOf(HasSubstr("taken out before"), HasSubstr("trocar play --list")));
+}
+
+TEST_F(FromLabels, KnowsAMapOfTheChest) {
+  // lungs by TotalSegmentator's numbers
+  const core::Error numbers = Failure(Write("lungs.nii", FormatNifti(MakeLabels(10, 12))));
+  EXPECT_EQ(numbers.code, ErrorCode::kLabelsMismatch);
+  EXPECT_THAT(numbers.message, HasSubstr("map of the chest"));
+  const core::Error names =
+      Failure(Write("named.nii", WithLabelTable(FormatNifti(MakeLabels(7, 8)),
+                                                {{7, "lung_upper_lobe_left"}, {8, "heart"}})));
+  EXPECT_EQ(names.code, ErrorCode::kLabelsMismatch);
+  EXPECT_THAT(names.message, HasSubstr("map of the chest"));
+  // the top of the liver is in a scan of the chest, the gallbladder is not
+  const core::Error dome =
+      Failure(Write("dome.nii", WithLabelTable(FormatNifti(MakeLabels(5, 8)), {{5, "liver"}, {8, "heart"}})));
+  EXPECT_THAT(dome.message, testing::AllOf(HasSubstr("ends above it"), HasSubstr("--gallbladder")));
+  // another region
+  EXPECT_THAT(Failure(Write("hips.nii", FormatNifti(MakeLabels(77, 78)))).message,
+              HasSubstr("another region of the body"));
+}
+
+TEST_F(FromLabels, RefusesTwoLivers) {
+  // the body twice, beside each other
+  auto labels = MakeLabels(1, 2);
+  for (int k = 0; k < kZ; ++k) {
+    for (int j = 0; j < kY; ++j) {
+      for (int i = 0; i < kX / 2; ++i) {
+        const auto row = (static_cast<std::size_t>(k) * kY + j) * kX;
+        labels[row + i] = labels[row + kX / 4 + i];
+        labels[row + kX - 1 - i] = labels[row + i];
+      }
+      const auto row = (static_cast<std::size_t>(k) * kY + j) * kX;
+      for (int i = kX / 2 - 2; i < kX / 2 + 2; ++i) labels[row + i] = 0;
+    }
+  }
+  const core::Error error = Failure(Write("twins.nii", FormatNifti(labels)));
+  EXPECT_EQ(error.code, ErrorCode::kLabelsMismatch);
+  EXPECT_THAT(error.message, HasSubstr("--largest-part"));
 }
 
 TEST_F(FromLabels, SaysWhatItLeavesOut) {

@@ -189,11 +189,13 @@ void AddAnatomyCommand(CLI::App& app, Outcome& outcome) {
       "           -o out/patient");
   build->callback([arguments, &outcome] { outcome.status = Build(*arguments); });
   AddAnatomyCheckCommand(*anatomy, outcome);
+  AddAnatomyCompleteCommand(*anatomy, outcome);
   AddAnatomyContoursCommand(*anatomy, outcome);
   AddAnatomyExportCommand(*anatomy, outcome);
   AddAnatomyRehearseCommand(*anatomy, outcome);
   AddAnatomyEditCommand(*anatomy, outcome);
   AddAnatomyLabelEdgesCommand(*anatomy, outcome);
+  AddAnatomyMeasureCommand(*anatomy, outcome);
   AddAnatomyPhantomCommand(*anatomy, outcome);
   AddAnatomyViewCommand(*anatomy, outcome);
   AddAnatomyImagesCommand(*anatomy, outcome);

@@ -48,11 +48,13 @@ core::Result<std::vector<anatomy::ParameterSetting>> ParseSettings(const std::ve
 /// Below `trocar anatomy`.
 void AddAnatomyGenerateCommand(CLI::App& anatomy, Outcome& outcome);
 void AddAnatomyCheckCommand(CLI::App& anatomy, Outcome& outcome);
+void AddAnatomyCompleteCommand(CLI::App& anatomy, Outcome& outcome);
 void AddAnatomyContoursCommand(CLI::App& anatomy, Outcome& outcome);
 void AddAnatomyExportCommand(CLI::App& anatomy, Outcome& outcome);
 void AddAnatomyRehearseCommand(CLI::App& anatomy, Outcome& outcome);
 void AddAnatomyEditCommand(CLI::App& anatomy, Outcome& outcome);
 void AddAnatomyLabelEdgesCommand(CLI::App& anatomy, Outcome& outcome);
+void AddAnatomyMeasureCommand(CLI::App& anatomy, Outcome& outcome);
 void AddAnatomyPhantomCommand(CLI::App& anatomy, Outcome& outcome);
 void AddAnatomyViewCommand(CLI::App& anatomy, Outcome& outcome);
 void AddAnatomyImagesCommand(CLI::App& anatomy, Outcome& outcome);

@@ -15,6 +15,7 @@
 #include "trocar/core/statistics.h"
 #include "trocar/simulation/simulation.h"
 #include "trocar/training/injury.h"
+#include "trocar/training/operation_end.h"
 #include "trocar/view/demo.h"
 
 namespace trocar::cli {
@@ -56,8 +57,15 @@ ordered_json ErrorJson(const training::ErrorEntry& entry) {
   return json;
 }
 
-ordered_json MakeJson(const OperationResult& result, const Run& run) {
+training::OperationEnd EndOf(const OperationResult& result, const std::string& bail_out) {
+  return training::JudgeEnd(result.is_completed, !bail_out.empty(), result.errors, result.injuries);
+}
+
+/// \param bail_out  why it was ended early; "" where it was not
+ordered_json MakeJson(const OperationResult& result, const Run& run, const std::string& bail_out) {
   ordered_json json = {{"completed", result.is_completed},
+                       {"end", training::NameOf(EndOf(result, bail_out))},
+                       {"bail_out", bail_out},
                        {"critical_view", result.was_critical_view_achieved},
                        {"critical_errors", ordered_json::array()},
                        {"errors", ordered_json::array()}};
@@ -88,9 +96,16 @@ ordered_json MakeJson(const OperationResult& result, const Run& run) {
   return json;
 }
 
-void PrintForPerson(const scene::Scene& scene, const OperationResult& result, const Run& run) {
+void PrintForPerson(const scene::Scene& scene, const OperationResult& result, const Run& run,
+                    const std::string& bail_out) {
   std::printf("%s: %s after %s s\n", scene.name.c_str(), result.is_completed ? "completed" : "not completed",
               FormatNumber(run.seconds, 4).c_str());
+  if (!bail_out.empty()) {
+    std::printf("Ended early: %s.\n%s\n", bail_out.c_str(),
+                EndOf(result, bail_out) == training::OperationEnd::kConversion
+                    ? "Nothing that must stay was harmed: it counts as a conversion, not as a failure."
+                    : "It came too late to count as a conversion: see the errors.");
+  }
   std::printf("Critical view of safety: %s\n",
               result.was_critical_view_achieved ? "achieved" : "not achieved");
   if (!result.was_critical_view_achieved) {
@@ -200,10 +215,11 @@ core::Status PlayOperation(std::shared_ptr<const scene::Scene> scene, agent::Sur
     if (played->operation) result = *played->operation;
   }
   progress.Finish();
+  const std::string bail_out(surgeon.BailOutReason());
   if (play.is_json) {
-    std::printf("%s\n", MakeJson(result, run).dump(2).c_str());
+    std::printf("%s\n", MakeJson(result, run, bail_out).dump(2).c_str());
   } else {
-    PrintForPerson(*scene, result, run);
+    PrintForPerson(*scene, result, run, bail_out);
   }
   return {};
 }

@@ -35,6 +35,9 @@ class Surgeon {
   virtual void VisitState(core::StateArchive& archive) = 0;
   /// What is being done, for a person: "ring_3: hand over".
   virtual std::string_view Doing() const = 0;
+  /// Why an operation was ended before its end because going on would not be safe; "" while it goes on, where it was
+  /// finished, and where nobody meant to finish it.
+  virtual std::string_view BailOutReason() const { return {}; }
 };
 
 /// One kind of surgeon. Several may have the same name when they suit different scenes.
