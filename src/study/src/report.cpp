@@ -63,7 +63,7 @@ std::string PlotNumber(const StudyPlan& plan, std::span<const Row> rows, std::si
                most = *std::max_element(values.begin(), values.end());
   return bench::FormatSvgPlot({.title = number,
                                .x_label = plan.parameters[parameter].name,
-                               .y_label = number,
+                               .y_label = "",
                                .is_log_x = least > 0 && most >= 20 * least},
                               {middle, low, high});
 }
