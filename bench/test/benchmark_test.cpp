@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <string_view>
+
 namespace trocar::bench {
 namespace {
 
@@ -27,6 +29,23 @@ TEST(TimeShortest, CountsTheOnlyRunOfNoRepeats) {
       0, [] {}, [&] { ++run; });
   EXPECT_EQ(run, 1);
   EXPECT_LT(seconds, 1e6);
+}
+
+// About a minute: each environment is measured for two seconds.
+TEST(EnvironmentBenchmarkSlow, MeasuresEveryEnvironmentAndItsPictures) {
+  const auto result = RunEnvironmentBenchmark({.threads = 2, .steps = 100});
+  ASSERT_TRUE(result.ok()) << result.error().Text();
+  const auto value_of = [&](std::string_view name) {
+    for (const BenchmarkCase& entry : result->cases)
+      if (entry.name == name) return entry.value;
+    return -1.0;
+  };
+  for (const char* name :
+       {"peg_transfer/rate", "cholecystectomy/rate", "cholecystectomy/memory_each", "peg_transfer/pictures",
+        "cholecystectomy/pictures", "pool/rate", "processes/rate"})
+    EXPECT_GT(value_of(name), 0) << name;
+  EXPECT_GE(value_of("soak/actions"), 100);
+  EXPECT_EQ(result->ratios.front().name, "pool/processes");
 }
 
 TEST(WrongAnswer, HasTheCodeOfABenchmarkThatMeansNothing) {

@@ -142,6 +142,34 @@ class Meaning(unittest.TestCase):
         self.assertEqual(code_of(lambda: apart.step({"left": parts["left"]})), "E-ENV-001")
 
 
+class Geometry(unittest.TestCase):
+    def test_observations_of_geometry_lie_in_their_spaces(self):
+        for observation in ("depth", "masks", "normals", ("state", "picture", "depth", "masks", "normals")):
+            with self.subTest(observation=observation):
+                env = trocar.make("peg_transfer", observation=observation, picture_size=(48, 32))
+                seen, _ = env.reset(seed=1)
+                self.assertIn(seen, env.observation_space)
+        self.assertEqual((seen["depth"].shape, seen["masks"].dtype, seen["normals"].shape),
+                         ((32, 48), np.uint8, (32, 48, 3)))
+        self.assertIn(trocar.CLASSES["object"], seen["masks"])
+        np.testing.assert_array_equal(seen["depth"] > 0, seen["masks"] > 0)
+        trocar.check_env(trocar.make("peg_transfer", observation=("masks", "depth"), picture_size=(32, 32)), steps=2)
+
+    def test_a_pixel_of_the_gallbladder_leads_back_to_it(self):
+        simulation = trocar.Simulation("cholecystectomy", seed=1)
+        seen = trocar.Camera(160, 120).geometry(simulation)
+        row, column = np.nonzero(seen["classes"] == trocar.CLASSES["gallbladder"])
+        self.assertGreater(len(row), 50)
+        depth = seen["depth"][row, column].astype(float)
+        ray = np.stack([(column + 0.5 - 80) / seen["focal_length"], -(row + 0.5 - 60) / seen["focal_length"],
+                        -np.ones(len(row))], axis=1)
+        points = (depth[:, None] * ray) @ seen["pose"][:3, :3].T + seen["pose"][:3, 3]
+        surface = next(s for s in simulation.surfaces() if s["name"] == "gallbladder")
+        nodes = simulation.positions()[surface["first_node"]:surface["first_node"] + surface["node_count"]]
+        nearest = np.sqrt(((points[:, None] - nodes[None]) ** 2).sum(-1)).min(1)
+        self.assertLess(nearest.max(), 0.004)
+
+
 class BadInput(unittest.TestCase):
     def test_actions(self):
         env = trocar.make("peg_transfer")

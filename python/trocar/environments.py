@@ -5,7 +5,7 @@ Gymnasium is not needed. Where it can be imported, the classes here are its ``En
 """
 from __future__ import annotations
 
-from typing import Any, Optional, Sequence
+from typing import Any, Optional, Sequence, Union
 
 import numpy as np
 
@@ -23,7 +23,9 @@ try:
 except ImportError:
     _AutoresetMode = str
 
-OBSERVATIONS = ("state", "picture", "mixture")
+OBSERVATIONS = ("state", "picture", "depth", "masks", "normals")
+MIXTURE = ("state", "picture")
+FARTHEST = 2.0  # m; the renderer draws nothing beyond 1 m
 
 
 def environments() -> list[str]:
@@ -45,19 +47,24 @@ def _state_space(model: _trocar.EnvironmentModel) -> Box:
 class Environment(_Env):
     """One environment. ``reset`` and ``step`` follow Gymnasium; see docs/python.md for actions, states and rewards.
 
-    ``observation`` is "state" ((n,) float32 in SI units; ``state_fields`` names them), "picture" ((height, width, 3) uint8)
-    or "mixture" (a dict of both).
+    ``observation`` is "state" ((n,) float32 in SI units; ``state_fields`` names them), "picture" ((height, width, 3) uint8),
+    "depth" ((height, width) float32 in metres, 0 where nothing is), "masks" ((height, width) uint8 after ``trocar.CLASSES``),
+    "normals" ((height, width, 3) float32, unit, in the camera's frame), or several of these: then a dict. "mixture" is
+    ("state", "picture").
     """
 
     metadata = {"render_modes": ["rgb_array"], "render_fps": 10}
     spec = None
 
     def __init__(self, task: str, *, level: str = "normal", patient: str = "", seed: int = 1, layouts: int = 1,
-                 actions: str = "joints", observation: str = "state", picture_size: tuple[int, int] = (84, 84),
+                 actions: str = "joints", observation: Union[str, Sequence[str]] = "state", picture_size: tuple[int, int] = (84, 84),
                  actions_per_second: float = 10.0, most_seconds: float = 0.0, moves_camera: bool = False,
                  weights: Optional[dict[str, float]] = None, render_mode: Optional[str] = None) -> None:
-        if observation not in OBSERVATIONS:
-            raise Error("E-SCN-003", f'there is no observation "{observation}"; choose state, picture or mixture')
+        is_one = isinstance(observation, str) and observation != "mixture"
+        parts = MIXTURE if observation == "mixture" else (observation,) if is_one else tuple(observation)
+        for part in parts or ("",):
+            if part not in OBSERVATIONS:
+                raise Error("E-SCN-003", f'there is no observation "{part}"; choose {", ".join(OBSERVATIONS)} or mixture')
         if render_mode not in (None, "rgb_array"):
             raise Error("E-SCN-003", f'there is no render_mode "{render_mode}"; choose rgb_array or None')
         self.model = _trocar.EnvironmentModel(
@@ -69,9 +76,12 @@ class Environment(_Env):
         self.action_fields, self.state_fields = self.model.action_fields, self.model.state_fields
         self.action_space = action_space(self.action_fields)
         width, height = picture_size
-        picture = Box(0, 255, (height, width, 3), np.uint8)
-        self.observation_space = {"state": _state_space(self.model), "picture": picture,
-                                  "mixture": Dict({"state": _state_space(self.model), "picture": picture})}[observation]
+        spaces = {"state": _state_space(self.model), "picture": Box(0, 255, (height, width, 3), np.uint8),
+                  "depth": Box(0, FARTHEST, (height, width), np.float32),
+                  "masks": Box(0, max(_trocar.CLASSES.values()), (height, width), np.uint8),
+                  "normals": Box(-1, 1, (height, width, 3), np.float32)}
+        self._parts, self._is_one = parts, is_one
+        self.observation_space = spaces[parts[0]] if is_one else Dict({part: spaces[part] for part in parts})
         self._size, self._camera = (width, height), None
         self._environment: Optional[_trocar.Environment] = _trocar.Environment(self.model)
         self._np_random = None
@@ -96,12 +106,24 @@ class Environment(_Env):
             self._camera = _trocar.Camera(*self._size)
         return self._camera.draw(self._open())
 
+    def _geometry(self) -> dict[str, Any]:
+        if self._camera is None:
+            self._camera = _trocar.Camera(*self._size)
+        seen = self._camera.geometry(self._open())
+        # single precision rounds the unit vectors' components beyond 1 at times
+        return {"depth": seen["depth"], "masks": seen["classes"], "normals": np.clip(seen["normals"], -1, 1)}
+
     def _observe(self):
-        state = np.empty(self.model.state_size, np.float32)
-        if self.observation != "picture":
-            self._open().observe(state)
-        return {"state": lambda: state, "picture": self._draw,
-                "mixture": lambda: {"state": state, "picture": self._draw()}}[self.observation]()
+        seen: dict[str, np.ndarray] = {}
+        if "state" in self._parts:
+            seen["state"] = np.empty(self.model.state_size, np.float32)
+            self._open().observe(seen["state"])
+        if "picture" in self._parts:
+            seen["picture"] = self._draw()
+        if {"depth", "masks", "normals"} & set(self._parts):
+            geometry = self._geometry()
+            seen.update({part: geometry[part] for part in self._parts if part in geometry})
+        return seen[self._parts[0]] if self._is_one else seen
 
     def reset(self, *, seed: Optional[int] = None, options: Optional[dict] = None):
         """Begins an episode. ``seed`` chooses among the layouts; without one the row of episodes goes on."""

@@ -12,6 +12,8 @@ TABLE = "src/roles/include/trocar/roles/roles.h"
 # Tables of other people's words that contain the same ones. Nothing is compared with an organ's name there.
 OTHER_TABLES = {
     "src/scene/src/operation_parameters.cpp": "fields of an operation's parameters: what liver and gallbladder give and take",
+    "src/dataset/src/class_tables.cpp": "classes of public data sets as those write them",
+    "src/view/src/labels.cpp": "classes of segmentation as files and Python write them",
     "src/training/src/triplet.cpp": "targets as CholecT50 writes them",
     "src/anatomy/src/patient_parameters.cpp": "parameters of a generated patient, one of which asks for a subvesical duct",
 }

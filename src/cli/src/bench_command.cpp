@@ -96,6 +96,12 @@ void AddBenchCommand(CLI::App& app, Outcome& outcome) {
       ->type_name("N")
       ->capture_default_str();
   command
+      ->add_option("--steps", arguments->options.steps,
+                   "Random actions of the soak over all environments, whose states must stay finite")
+      ->check(CLI::Range(100, 100'000'000))
+      ->type_name("N")
+      ->capture_default_str();
+  command
       ->add_option("--url", arguments->options.url,
                    "An empty PostgreSQL database for the store (postgresql://...)")
       ->type_name("URL");

@@ -38,6 +38,7 @@ void AddLevelsCommand(CLI::App& app, Outcome& outcome);
 void AddExamCommand(CLI::App& app, Outcome& outcome);
 void AddCertificateCommand(CLI::App& app, Outcome& outcome);
 void AddCoachCommand(CLI::App& app, Outcome& outcome);
+void AddDatasetCommand(CLI::App& app, Outcome& outcome);
 void AddStudyCommand(CLI::App& app, Outcome& outcome);
 void AddMetricsCommand(CLI::App& app, Outcome& outcome);
 void AddStoreCommand(CLI::App& app, Outcome& outcome);

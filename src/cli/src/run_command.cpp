@@ -82,6 +82,7 @@ int ParseAndRun(int argc, char** argv) {
   AddSimulateCommand(app, outcome);
   AddReplayCommand(app, outcome);
   AddCoachCommand(app, outcome);
+  AddDatasetCommand(app, outcome);
   AddStudyCommand(app, outcome);
   AddMetricsCommand(app, outcome);
   AddReportCommand(app, outcome);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file study_command.cpp  `trocar study`: which metrics find out what scripted people were made to be.
+/// \file study_command.cpp  `trocar study`: which metrics find out what scripted people were made to be; with a plan, any
+/// study of parameters, patients, surgeons and seeds.
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
@@ -15,6 +16,7 @@
 #include "trocar/bench/benchmark.h"
 #include "trocar/bench/validity_study.h"
 #include "trocar/core/safe_file.h"
+#include "trocar/study/study.h"
 
 namespace trocar::cli {
 namespace {
@@ -23,6 +25,9 @@ struct StudyArguments {
   bench::StudyOptions options;
   std::string output;
   bool has_levels_only = false;
+  std::string plan, backend = "local", worker;
+  int attempts = 3;
+  std::vector<std::string> launch;
 };
 
 core::Status WriteStudy(const StudyArguments& arguments, const std::vector<bench::StudyAttempt>& attempts) {
@@ -77,13 +82,79 @@ core::Status Study(const StudyArguments& arguments, Outcome& outcome) {
   return {};
 }
 
+/// Runs of a plan; as a worker, a share of them.
+core::Status RunPlan(const StudyArguments& arguments, Outcome& outcome) {
+  study::StudyOptions options;
+  options.plan_file = arguments.plan;
+  options.folder = arguments.output;
+  options.workers = arguments.options.jobs;
+  options.attempts = arguments.attempts;
+  options.launch = arguments.launch;
+  std::error_code failure;
+  options.program = std::filesystem::read_symlink("/proc/self/exe", failure);
+  const auto backend = study::FindBackend(arguments.backend);
+  if (!backend)
+    return core::Error{core::ErrorCode::kUsage,
+                       "--backend is local, slurm or mpi; this is \"" + arguments.backend + "\""};
+  options.backend = *backend;
+  const auto plan = study::ReadPlan(options.plan_file);
+  if (!plan) return plan.error();
+  if (!arguments.worker.empty()) {
+    const auto worker = study::FindWorker(arguments.worker);
+    if (!worker) return worker.error();
+    return study::Work(options, *plan, *worker);
+  }
+  ProgressBar progress("runs", 1.0);
+  const auto summary = study::RunStudy(options, *plan, [&](double share) { progress.Show(share); });
+  progress.Finish();
+  if (!summary) return summary.error();
+  std::printf("%zu of %zu runs are done; %zu failed\n", summary->done, summary->runs, summary->failed);
+  for (const std::string& line : summary->failures) std::printf("  %s\n", line.c_str());
+  if (summary->done < summary->runs) {
+    std::printf("The same command goes on.\n");
+    outcome.has_finding = true;
+  }
+  const std::filesystem::path folder = arguments.output;
+  std::printf("Table: %s, %s\nPage: %s\n", (folder / "runs.csv").c_str(), (folder / "runs.sqlite").c_str(),
+              (folder / "report.html").c_str());
+  return {};
+}
+
 }  // namespace
 
 void AddStudyCommand(CLI::App& app, Outcome& outcome) {
-  CLI::App* command = app.add_subcommand(
-      "study", "Find out which metrics separate scripted novices from experts, and how well they repeat");
+  CLI::App* command = app.add_subcommand("study",
+                                         "Run a plan of parameters, patients, surgeons and seeds, here or on "
+                                         "a cluster; without a plan, find out which "
+                                         "metrics separate scripted novices from experts");
   auto a = std::make_shared<StudyArguments>();
   a->options.tasks = {"instrument_navigation"};
+  command
+      ->add_option("plan", a->plan,
+                   "A plan (schemas/study-plan.schema.json; samples/studies); --jobs, -o and the four below "
+                   "belong to it")
+      ->type_name("PLAN.json");
+  command
+      ->add_option("--backend", a->backend,
+                   "Of a plan: local (processes here), slurm (a job array), mpi (mpirun)")
+      ->type_name("BACKEND")
+      ->capture_default_str();
+  command->add_option("--attempts", a->attempts, "Of a plan: that a run gets before it is named as failed")
+      ->check(CLI::Range(1, 100))
+      ->type_name("N")
+      ->capture_default_str();
+  command
+      ->add_option(
+          "--launch", a->launch,
+          "Of a plan: one more option for sbatch or mpirun, as --launch=--partition=short; may repeat")
+      ->allow_extra_args(false)
+      ->type_name("OPTION");
+  command
+      ->add_option("--worker", a->worker,
+                   "Of a plan: do only this share of the runs (INDEX/COUNT, or auto in a Slurm array or "
+                   "under mpirun), and "
+                   "collect nothing")
+      ->type_name("I/N");
   command
       ->add_option("--task", a->options.tasks,
                    "Names of training tasks, with commas between (trocar play --list)")
@@ -115,7 +186,8 @@ void AddStudyCommand(CLI::App& app, Outcome& outcome) {
       ->type_name("K")
       ->capture_default_str();
   command
-      ->add_option("--jobs", a->options.jobs, "Attempts at a time; the findings are the same for any number")
+      ->add_option("--jobs", a->options.jobs,
+                   "Attempts or workers at a time; what comes out is the same for any number")
       ->check(CLI::Range(1, 256))
       ->type_name("J")
       ->capture_default_str();
@@ -136,8 +208,16 @@ void AddStudyCommand(CLI::App& app, Outcome& outcome) {
       ->type_name("DIR");
   command->footer(
       "The people are made by a program: what separates them may not separate residents.\n"
-      "Example: trocar study --task instrument_navigation,peg_transfer --people 50 --jobs 4 -o study");
-  command->callback([a, &outcome] { outcome.status = Study(*a, outcome); });
+      "A plan's results are kept by the SHA-256 of their inputs: a study that was stopped goes on with the "
+      "same command, a run\n"
+      "that fails is tried again and then named, none counts twice. DIR gets runs.csv, runs.sqlite and "
+      "report.html.\n"
+      "Examples:\n"
+      "  trocar study --task instrument_navigation,peg_transfer --people 50 --jobs 4 -o study\n"
+      "  trocar study samples/studies/stiffness.json --jobs 2 -o out/stiffness\n"
+      "  trocar study plan.json --backend slurm --jobs 64 --launch=--time=2:00:00 -o out/plan");
+  command->callback(
+      [a, &outcome] { outcome.status = a->plan.empty() ? Study(*a, outcome) : RunPlan(*a, outcome); });
 }
 
 }  // namespace trocar::cli

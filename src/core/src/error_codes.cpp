@@ -127,6 +127,13 @@ constexpr ErrorEntry kTable[] = {
     {ErrorCode::kActionInvalid, "E-ENV-001", "an action for an environment has a wrong shape or value"},
     {ErrorCode::kEnvironmentState, "E-ENV-002",
      "an environment or pool was called out of turn, or is closed"},
+    {ErrorCode::kDatasetInvalid, "E-DAT-001",
+     "a data set is unfinished or damaged, or is not what its card says"},
+    {ErrorCode::kStudyInvalid, "E-STU-001", "the plan of a study cannot be used"},
+    {ErrorCode::kStudyChanged, "E-STU-002",
+     "the plan of a study, or the program, has changed since the study began"},
+    {ErrorCode::kClusterAway, "E-STU-003",
+     "Slurm or MPI, which shall run a study, is not there or does not take the job"},
 };
 static_assert(std::size(kTable) == static_cast<std::size_t>(ErrorCode::kCount));
 

@@ -107,7 +107,8 @@ core::Status FineDrawer::Make(const Looks& looks) {
   return {};
 }
 
-void FineDrawer::DrawFibres(const Looks& looks, std::span<const Fibre> fibres, const Viewport& viewport) {
+void FineDrawer::DrawFibres(const Looks& looks, std::span<const Fibre> fibres, const Viewport& viewport,
+                            const Program* program) {
   corners_.clear();
   indices_.clear();
   const Frame3 X_camera_world(viewport.X_camera_world);
@@ -160,10 +161,11 @@ void FineDrawer::DrawFibres(const Looks& looks, std::span<const Fibre> fibres, c
       }
     }
   }
-  Draw();
+  Draw(program);
 }
 
-void FineDrawer::DrawBlobs(const Looks& looks, std::span<const Blob> blobs, const Viewport& viewport) {
+void FineDrawer::DrawBlobs(const Looks& looks, std::span<const Blob> blobs, const Viewport& viewport,
+                           const Program* program) {
   corners_.clear();
   indices_.clear();
   std::array<std::array<double, 2>, kBlobSides> circle;
@@ -194,12 +196,12 @@ void FineDrawer::DrawBlobs(const Looks& looks, std::span<const Blob> blobs, cons
       indices_.insert(indices_.end(), {first, first + 1 + i, first + 1 + (i + 1) % kBlobSides});
     }
   }
-  Draw();
+  Draw(program);
 }
 
-void FineDrawer::Draw() {
+void FineDrawer::Draw(const Program* program) {
   if (indices_.empty()) return;
-  glUseProgram(program_.name);
+  glUseProgram(program != nullptr ? program->name : program_.name);
   glBindVertexArray(array_);
   glBindBuffer(GL_ARRAY_BUFFER, corners_on_card_);
   // a fresh store each time, so that the driver need not wait for the draw that still reads the old one

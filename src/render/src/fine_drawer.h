@@ -40,9 +40,12 @@ class FineDrawer {
   /// For the uniforms that the renderer sets once a frame.
   const Program& GetProgram() const { return program_; }
 
-  /// \pre blending is on
-  void DrawFibres(const Looks& looks, std::span<const Fibre> fibres, const Viewport& viewport);
-  void DrawBlobs(const Looks& looks, std::span<const Blob> blobs, const Viewport& viewport);
+  /// \param program  in place of its own, with the same places of position and normal
+  /// \pre blending is on, where the program is its own
+  void DrawFibres(const Looks& looks, std::span<const Fibre> fibres, const Viewport& viewport,
+                  const Program* program = nullptr);
+  void DrawBlobs(const Looks& looks, std::span<const Blob> blobs, const Viewport& viewport,
+                 const Program* program = nullptr);
 
   /// Triangles of the last call.
   std::size_t TriangleCount() const { return indices_.size() / 3; }
@@ -60,7 +63,7 @@ class FineDrawer {
   /// How far a fibre leaves its line at each step, along two directions across it, for a wave of 1.
   using Wave = std::array<std::array<float, 2>, kMostSteps + 1>;
 
-  void Draw();
+  void Draw(const Program* program);
 
   Program program_;
   GLuint array_ = 0, corners_on_card_ = 0, indices_on_card_ = 0;

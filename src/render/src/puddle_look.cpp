@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "puddle_look.h"
 
+#include <algorithm>
+
 #include "single_precision.h"
 
 namespace trocar::render {
@@ -27,6 +29,13 @@ MaterialLook MixLook(const Looks& looks, const Puddle& puddle) {
     mixed.opacity += ToFloat(amounts[i] / all) * look.opacity;
   }
   return mixed;
+}
+
+Material FindLiquid(const Looks& looks, const Puddle& puddle) {
+  const std::array<double, 3> tints = {looks.pigment[0] * puddle.blood, looks.pigment[1] * puddle.bile,
+                                       looks.pigment[2] * puddle.rinse};
+  constexpr std::array<Material, 3> kLiquids = {Material::kBlood, Material::kBile, Material::kRinse};
+  return kLiquids[static_cast<std::size_t>(std::max_element(tints.begin(), tints.end()) - tints.begin())];
 }
 
 }  // namespace trocar::render

@@ -9,5 +9,7 @@ namespace trocar::render {
 
 /// What a puddle looks like: it is as clear as its liquids by their shares, and as coloured as their pigments.
 MaterialLook MixLook(const Looks& looks, const Puddle& puddle);
+/// The liquid that gives a puddle most of its colour.
+Material FindLiquid(const Looks& looks, const Puddle& puddle);
 
 }  // namespace trocar::render

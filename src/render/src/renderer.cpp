@@ -5,12 +5,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
+#include <vector>
 
 #include "camera_matrices.h"
 #include "exposure_meter.h"
 #include "fine_drawer.h"
 #include "frame_uniforms.h"
+#include "geometry_drawer.h"
 #include "puddle_look.h"
 #include "round_picture.h"
 #include "single_precision.h"
@@ -52,6 +55,7 @@ struct Renderer::Content {
   FineDrawer fine;
   RoundPicture round;
   ExposureMeter meter;
+  GeometryDrawer geometry;
   SurfaceId rod, cone, puddle;
 
   core::Status Make() {
@@ -121,6 +125,38 @@ struct Renderer::Content {
     glEnable(GL_CULL_FACE);
     glDepthMask(GL_TRUE);
     glDisable(GL_BLEND);
+  }
+
+  void DrawGeometry(const Frame& frame, const MaterialLabels& labels, const Viewport& viewport) {
+    glEnable(GL_CULL_FACE);
+    for (const SurfaceDraw& draw : frame.surfaces) {
+      const Surface* surface = surfaces.Find(draw.surface);
+      if (surface != nullptr && draw.label != 0)
+        geometry.Draw(*surface, viewport.X_camera_world * draw.X_world_surface, {1, 1, 1}, draw.label);
+    }
+    for (const Puddle& p : frame.puddles) {
+      const std::uint16_t label = labels[static_cast<std::size_t>(FindLiquid(looks, p))];
+      if (!(p.radius > 0.0) || label == 0) continue;
+      const Pose X_world_puddle{math::RotationBetween({0, 0, 1}, p.up), p.centre};
+      geometry.Draw(*surfaces.Find(puddle), viewport.X_camera_world * X_world_puddle,
+                    {p.radius, p.radius, p.radius}, label);
+    }
+    glDisable(GL_CULL_FACE);  // blobs and ribbons face the eye
+    std::vector<Fibre> fibres;
+    std::vector<Blob> blobs;
+    for (std::size_t material = 0; material < labels.size(); ++material) {
+      if (labels[material] == 0) continue;
+      const auto is_of = [material](const auto& piece) {
+        return static_cast<std::size_t>(piece.material) == material;
+      };
+      fibres.clear();
+      blobs.clear();
+      std::copy_if(frame.fibres.begin(), frame.fibres.end(), std::back_inserter(fibres), is_of);
+      std::copy_if(frame.blobs.begin(), frame.blobs.end(), std::back_inserter(blobs), is_of);
+      const Program& program = geometry.BeginFine(labels[material]);
+      fine.DrawBlobs(looks, blobs, viewport, &program);
+      fine.DrawFibres(looks, fibres, viewport, &program);
+    }
   }
 
   void DrawArrow(const Arrow& arrow, const Pose& X_camera_world) {
@@ -236,6 +272,55 @@ void Renderer::DrawOnce(const Frame& frame, double exposure, unsigned target, in
   glUseProgram(0);
   glDisable(GL_CULL_FACE);
   glDisable(GL_DEPTH_TEST);
+}
+
+core::Status Renderer::DrawGeometry(const Frame& frame, const MaterialLabels& fine, int width, int height,
+                                    GeometryPicture& picture) {
+  Content& c = *content_;
+  for (const GLenum state :
+       {GL_BLEND, GL_SCISSOR_TEST, GL_STENCIL_TEST, GL_FRAMEBUFFER_SRGB, GL_POLYGON_OFFSET_FILL}) {
+    glDisable(state);
+  }
+  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+  glDepthMask(GL_TRUE);
+  glEnable(GL_DEPTH_TEST);
+  glDepthFunc(GL_LESS);
+  glDepthRange(0.0, 1.0);
+  glCullFace(GL_BACK);
+  glFrontFace(GL_CCW);
+  if (const auto status = c.geometry.Begin(MakeProjection(frame.camera, width, height), width, height);
+      !status)
+    return status;
+  const Pose X_camera_world = math::Inverse(frame.camera.X_world_camera);
+  c.DrawGeometry(frame, fine,
+                 {X_camera_world, CalcFocalLength(frame.camera, height), 0.5 * width, 0.5 * height});
+  c.geometry.Read(picture);
+  glBindVertexArray(0);
+  glUseProgram(0);
+  glDisable(GL_CULL_FACE);
+  glDisable(GL_DEPTH_TEST);
+  if (!frame.has_mask) return {};
+  const double radius = 0.5 * kMaskDiameter * height;
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      if (std::hypot(x + 0.5 - 0.5 * width, y + 0.5 - 0.5 * height) <= radius) continue;
+      const auto i =
+          static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+      picture.labels[i] = 0;
+      picture.depth[i] = 0;
+      std::fill_n(picture.normals.begin() + static_cast<std::ptrdiff_t>(3 * i), 3, 0.0f);
+    }
+  }
+  return {};
+}
+
+geometry::TriangleMesh Renderer::ReadSurface(SurfaceId id) const {
+  const Surface* surface = content_->surfaces.Find(id);
+  return surface != nullptr ? SurfaceStore::Read(*surface) : geometry::TriangleMesh{};
+}
+
+double CalcFocalPixels(const Camera& camera, int height) {
+  return CalcFocalLength(camera, height);
 }
 
 math::Vec2 CalcPixel(const Camera& camera, const Vec3& p_world, int width, int height) {

@@ -124,4 +124,22 @@ void SurfaceStore::UploadTriangles(Surface& surface, std::span<const Triangle> t
   glBindVertexArray(0);
 }
 
+geometry::TriangleMesh SurfaceStore::Read(const Surface& surface) {
+  geometry::TriangleMesh mesh;
+  std::vector<MovingVertex> vertices(surface.vertex_count);
+  glBindBuffer(GL_ARRAY_BUFFER, surface.moving);
+  glGetBufferSubData(GL_ARRAY_BUFFER, 0, static_cast<GLsizeiptr>(vertices.size() * sizeof(MovingVertex)),
+                     vertices.data());
+  glBindBuffer(GL_ARRAY_BUFFER, 0);
+  for (const MovingVertex& vertex : vertices)
+    mesh.positions.push_back({vertex.position[0], vertex.position[1], vertex.position[2]});
+  mesh.triangles.resize(static_cast<std::size_t>(surface.index_count) / 3);
+  glBindVertexArray(surface.array);
+  glGetBufferSubData(GL_ELEMENT_ARRAY_BUFFER, 0,
+                     static_cast<GLsizeiptr>(mesh.triangles.size() * sizeof(Triangle)),
+                     mesh.triangles.data());
+  glBindVertexArray(0);
+  return mesh;
+}
+
 }  // namespace trocar::render

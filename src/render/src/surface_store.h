@@ -49,6 +49,8 @@ class SurfaceStore {
   static void UploadMarks(Surface& surface, std::span<const SurfaceMark> marks);
   /// \pre indices below nv (TROCAR_ASSERT)
   static void UploadTriangles(Surface& surface, std::span<const geometry::Triangle> triangles);
+  /// Back from the graphics card, as it moves now.
+  static geometry::TriangleMesh Read(const Surface& surface);
 
  private:
   /// A vertex of the streamed buffer.

@@ -2,6 +2,7 @@
 #include "band_view.h"
 
 #include "object_view.h"
+#include "trocar/view/labels.h"
 
 namespace trocar::view {
 
@@ -32,7 +33,8 @@ void BandView::Append(const simulation::Snapshot& snapshot,
     const math::Vec3 &a = snapshot.positions[piece.a], &b = snapshot.positions[piece.b];
     surfaces.push_back(
         {piece.surface,
-         {math::RotationBetween({0, 0, 1}, math::Normalized(b - a, {0, 0, 1})), math::Lerp(a, b, 0.5)}});
+         {math::RotationBetween({0, 0, 1}, math::Normalized(b - a, {0, 0, 1})), math::Lerp(a, b, 0.5)},
+         MakeLabel(LabelClass::kTissueModel)});
   }
 }
 

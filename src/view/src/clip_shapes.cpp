@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "trocar/geometry/mesh_measures.h"
+#include "trocar/view/labels.h"
 
 namespace trocar::view {
 namespace {
@@ -80,7 +81,7 @@ void ClipShapes::AddTo(render::Renderer& renderer, render::Frame& frame,
       renderer.UpdateSurface(shown_[i].surface, mesh.positions, normals);
       shown_[i].gap = clip.gap;
     }
-    frame.surfaces.push_back({shown_[i].surface, clip.X_world_clip});
+    frame.surfaces.push_back({shown_[i].surface, clip.X_world_clip, MakeLabel(LabelClass::kClip, i)});
   }
 }
 

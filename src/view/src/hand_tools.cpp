@@ -6,6 +6,7 @@
 
 #include "trocar/geometry/tube.h"
 #include "trocar/math/random.h"
+#include "trocar/view/labels.h"
 
 namespace trocar::view {
 namespace {
@@ -16,11 +17,12 @@ using math::Pose;
 using math::Vec3;
 using render::Material;
 
-constexpr double kSleeveRadius = 0.0042;   // m, of a 5 mm trocar
-constexpr double kSleeveInside = 0.012;    // m that it stands out of the wall, inwards
-constexpr double kSleeveOutside = 0.060;   // m
-constexpr double kSleeveMaxBore = 0.0034;  // m; a thicker shaft gets a wider sleeve
-constexpr double kShadeLength = 0.120;     // m of a shaft that shades tissue
+constexpr double kSleeveRadius = 0.0042;       // m, of a 5 mm trocar
+constexpr double kSleeveInside = 0.012;        // m that it stands out of the wall, inwards
+constexpr double kSleeveOutside = 0.060;       // m
+constexpr double kSleeveMaxBore = 0.0034;      // m; a thicker shaft gets a wider sleeve
+constexpr double kShadeLength = 0.120;         // m of a shaft that shades tissue
+constexpr std::size_t kAssistantInstance = 2;  // after both hands
 constexpr int kSparks = 7;
 constexpr double kSparkLength = 0.0028;  // m, of the longest
 
@@ -98,9 +100,11 @@ void HandTools::AddTo(render::Frame& frame, const simulation::Snapshot& snapshot
       const bool is_clip = part.kind == Kind::kUpperClip || part.kind == Kind::kLowerClip;
       if (is_clip && snapshot.operation.clips_left[i] <= 0) continue;
       const Pose X_tool_part = instrument::CalcPartPose(shown.tool, part.kind, now.joints.jaw);
-      frame.surfaces.push_back({part.surface, now.X_world_tool * X_tool_part});
+      frame.surfaces.push_back(
+          {part.surface, now.X_world_tool * X_tool_part, MakeLabel(FindLabelClass(shown.tool.kind), i)});
     }
-    frame.surfaces.push_back({hand.sleeve, {now.X_world_tool.rotation, hand.p_world_port}});
+    frame.surfaces.push_back(
+        {hand.sleeve, {now.X_world_tool.rotation, hand.p_world_port}, MakeLabel(LabelClass::kTrocar, i)});
     frame.shades.push_back({now.X_world_tool * Vec3{0, 0, 0.5 * shown.tool.jaw_width},
                             now.X_world_tool * Vec3{0, 0, kShadeLength}, shown.tool.shaft_radius});
     if (snapshot.operation.has_current[i])
@@ -114,7 +118,8 @@ void HandTools::AddAssistant(render::Frame& frame, const simulation::Snapshot& s
   if (!operation.assistant.is_there) return;
   for (const Part& part : assistant_.parts) {
     const Pose X_tool_part = instrument::CalcPartPose(assistant_.tool, part.kind, operation.assistant.jaw);
-    frame.surfaces.push_back({part.surface, operation.assistant.X_world_tool * X_tool_part});
+    frame.surfaces.push_back({part.surface, operation.assistant.X_world_tool * X_tool_part,
+                              MakeLabel(FindLabelClass(assistant_.tool.kind), kAssistantInstance)});
   }
   frame.shades.push_back({operation.assistant.X_world_tool * Vec3{0, 0, 0.5 * assistant_.tool.jaw_width},
                           operation.assistant.X_world_tool * Vec3{0, 0, kShadeLength},

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <numeric>
 #include <optional>
 #include <string>
 #include <utility>
@@ -26,6 +27,7 @@
 #include "trocar/render/background.h"
 #include "trocar/scene/scene.h"
 #include "trocar/simulation/ground.h"
+#include "trocar/view/labels.h"
 #include "tube_shape.h"
 
 namespace trocar::view {
@@ -39,6 +41,7 @@ using render::Material;
 using scene::SurfaceInfo;
 using simulation::Snapshot;
 
+constexpr const char* kCoverName = "ligament";
 constexpr double kOcclusionReach = 0.030;  // m; farther folds cast no soft shade
 constexpr double kSmallestForce = 0.02;    // N; below, an arrow would only flicker
 constexpr double kLongestArrow = 0.045;    // m
@@ -77,6 +80,7 @@ struct LaparoscopeView::Content {
   ViewOptions options;
   std::vector<OrganShape> organs;
   std::vector<TubeShape> tubes;
+  std::vector<std::uint16_t> organ_labels, tube_labels;
   RowMemory memory, memory_at_start;
   std::optional<std::uint32_t> topology_version;  // that the shapes have
   HandTools tools;
@@ -103,7 +107,7 @@ struct LaparoscopeView::Content {
 
   explicit Content(render::Renderer made) : renderer(std::move(made)) {}
 
-  core::Status AddShapes(std::span<const SurfaceInfo> surfaces, const Snapshot& start) {
+  core::Status AddShapes(std::span<const SurfaceInfo> surfaces, const Snapshot& start, bool has_patient) {
     const Film film(start);
     memory.Resize(start.positions.size());
     for (std::uint32_t i = 0; i < surfaces.size(); ++i) {
@@ -120,8 +124,10 @@ struct LaparoscopeView::Content {
       TROCAR_ASSERT(std::size_t{info.first_node} + info.node_count <= start.positions.size());
       if (info.triangles.empty()) {
         tubes.emplace_back(info, i, *material).Update(start, film);
+        tube_labels.push_back(MakeLabel(FindLabelClass(info, has_patient), i));
       } else {
         organs.emplace_back(info, *material).Update(start, film);
+        organ_labels.push_back(MakeLabel(FindLabelClass(info, has_patient), i));
       }
     }
     return {};
@@ -142,7 +148,7 @@ struct LaparoscopeView::Content {
     auto parts = render::MakeAbdomen(inside, simulation::FindOmentumBalls(surfaces, start.positions));
     FatBody ends = CoverEnds(surfaces, start);
     if (!ends.Mesh().triangles.empty())
-      parts.insert(parts.begin(), {"ligament", Material::kFat, ends.Mesh()});
+      parts.insert(parts.begin(), {kCoverName, Material::kFat, ends.Mesh()});
     for (auto& part : parts) meshes.push_back(part.mesh);
     std::vector<const TriangleMesh*> occluders;
     for (const TriangleMesh& mesh : meshes) occluders.push_back(&mesh);
@@ -163,7 +169,10 @@ struct LaparoscopeView::Content {
       geometry::CalcVertexNormals(part.mesh.positions, part.mesh.triangles, normals);
       const auto ambient_occlusion =
           render::CalcAmbientOcclusion(occluders, part.mesh.positions, normals, kOcclusionReach);
-      background.push_back({renderer.AddSurface(part.mesh, part.material, ambient_occlusion), {}});
+      const LabelClass label =
+          part.name == kCoverName ? LabelClass::kLigamentFat : FindLabelClass(part.material);
+      background.push_back(
+          {renderer.AddSurface(part.mesh, part.material, ambient_occlusion), {}, MakeLabel(label)});
       // the wall is a dome over everything
       if (part.material == Material::kPeritoneum) continue;
       ground_shapes.push_back({background.back().surface, part.mesh.positions, {}});
@@ -229,21 +238,22 @@ struct LaparoscopeView::Content {
     film.SetRaw(raw_rows);
     WetGround(film);
     // small surfaces first: they mostly lie in front, and what is hidden costs nothing
-    for (TubeShape& tube : tubes) {
+    for (std::size_t i = 0; i < tubes.size(); ++i) {
+      TubeShape& tube = tubes[i];
       tube.Update(snapshot, film);
       tube.Upload(renderer, memory);
-      frame.surfaces.push_back({tube.Lumens(), {}});
-      frame.surfaces.push_back({tube.Surface(), {}});
+      frame.surfaces.push_back({tube.Lumens(), {}, tube_labels[i]});
+      frame.surfaces.push_back({tube.Surface(), {}, tube_labels[i]});
     }
-    std::vector<OrganShape*> order;
-    for (OrganShape& organ : organs) order.push_back(&organ);
-    std::stable_sort(order.begin(), order.end(), [](const OrganShape* a, const OrganShape* b) {
-      return a->Positions().size() < b->Positions().size();
+    std::vector<std::size_t> order(organs.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+      return organs[a].Positions().size() < organs[b].Positions().size();
     });
-    for (OrganShape* organ : order) {
-      organ->Update(snapshot, film);
-      organ->Upload(renderer, memory);
-      frame.surfaces.push_back({organ->Surface(), {}});
+    for (const std::size_t i : order) {
+      organs[i].Update(snapshot, film);
+      organs[i].Upload(renderer, memory);
+      frame.surfaces.push_back({organs[i].Surface(), {}, organ_labels[i]});
     }
   }
 
@@ -310,7 +320,7 @@ core::Result<LaparoscopeView> LaparoscopeView::Make(const scene::Scene& scene,
   auto renderer = render::Renderer::Make(*looks);
   if (!renderer) return renderer.error();
   auto content = std::make_unique<Content>(std::move(*renderer));
-  if (auto status = content->AddShapes(surfaces, start); !status) return status.error();
+  if (auto status = content->AddShapes(surfaces, start, scene.HasPatient()); !status) return status.error();
   content->tools.Add(content->renderer, scene);
   content->objects.Add(content->renderer, scene, start);
   content->bands.Add(content->renderer, scene, strands, start.positions);
@@ -320,8 +330,9 @@ core::Result<LaparoscopeView> LaparoscopeView::Make(const scene::Scene& scene,
     content->AddModel();
     content->light_scale = looks->trainer_light;
     content->frame.overhead = {math::Normalized(-start.gravity, {0, 0, 1}), looks->trainer_lid};
-    content->background.push_back(
-        {content->renderer.AddSurface(MakeTrainerBox(scene), Material::kSleeve), {}});
+    content->background.push_back({content->renderer.AddSurface(MakeTrainerBox(scene), Material::kSleeve),
+                                   {},
+                                   MakeLabel(LabelClass::kTrainerBox)});
   }
   content->strands.emplace(strands, start.positions);
   content->frame.camera.field_of_view = scene.laparoscope.field_of_view;
@@ -393,6 +404,39 @@ void LaparoscopeView::Draw(int width, int height) {
   c.frame.camera.X_world_camera = X_world_laparoscope;
   c.frame.fibres.resize(fibres);
   c.frame.surfaces.resize(foreground);
+}
+
+core::Status LaparoscopeView::DrawGeometry(int width, int height, render::GeometryPicture& picture) {
+  Content& c = *content_;
+  c.frame.has_mask = c.options.has_mask;
+  const std::size_t foreground = c.frame.surfaces.size();
+  if (c.options.has_background)
+    c.frame.surfaces.insert(c.frame.surfaces.end(), c.background.begin(), c.background.end());
+  const Pose X_world_laparoscope = c.frame.camera.X_world_camera;
+  if (c.overlay.X_world_camera) c.frame.camera.X_world_camera = *c.overlay.X_world_camera;
+  core::Status drawn = c.renderer.DrawGeometry(c.frame, MakeMaterialLabels(), width, height, picture);
+  c.frame.camera.X_world_camera = X_world_laparoscope;
+  c.frame.surfaces.resize(foreground);
+  return drawn;
+}
+
+std::vector<LabelledMesh> LaparoscopeView::ReadMeshes() const {
+  const Content& c = *content_;
+  std::vector<LabelledMesh> meshes;
+  const auto read = [&](const render::SurfaceDraw& draw) {
+    LabelledMesh mesh{c.renderer.ReadSurface(draw.surface), draw.label};
+    for (Vec3& p : mesh.mesh.positions) p = draw.X_world_surface * p;
+    meshes.push_back(std::move(mesh));
+  };
+  for (const render::SurfaceDraw& draw : c.frame.surfaces) read(draw);
+  if (c.options.has_background) {
+    for (const render::SurfaceDraw& draw : c.background) read(draw);
+  }
+  return meshes;
+}
+
+double LaparoscopeView::FocalLength(int height) const {
+  return render::CalcFocalPixels(content_->frame.camera, height);
 }
 
 }  // namespace trocar::view

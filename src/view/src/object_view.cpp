@@ -8,6 +8,7 @@
 
 #include "trocar/geometry/primitives.h"
 #include "trocar/geometry/tube.h"
+#include "trocar/view/labels.h"
 
 namespace trocar::view {
 namespace {
@@ -212,7 +213,8 @@ void ObjectView::Add(render::Renderer& renderer, const scene::Scene& scene,
 void ObjectView::Append(const simulation::Snapshot& snapshot,
                         std::vector<render::SurfaceDraw>& surfaces) const {
   for (const Part& part : parts_)
-    surfaces.push_back({part.surface, snapshot.objects[part.object].X_world_object * part.X_object_part});
+    surfaces.push_back({part.surface, snapshot.objects[part.object].X_world_object * part.X_object_part,
+                        MakeLabel(LabelClass::kObject, part.object)});
   if (!task_) return;
   const std::vector<int> next = FindNextRegions(snapshot.task);
   for (const Mark& mark : marks_) {
@@ -222,7 +224,7 @@ void ObjectView::Append(const simulation::Snapshot& snapshot,
       const Vec3 &a = snapshot.positions[mark.a], &b = snapshot.positions[mark.b];
       X = {math::RotationBetween({0, 0, 1}, math::Normalized(b - a, {0, 0, 1})), math::Lerp(a, b, mark.t)};
     }
-    surfaces.push_back({is_next ? mark.next : mark.idle, X});
+    surfaces.push_back({is_next ? mark.next : mark.idle, X, MakeLabel(LabelClass::kMark, mark.region)});
   }
 }
 

@@ -7,6 +7,7 @@
 #include "trocar/geometry/primitives.h"
 #include "trocar/math/noise.h"
 #include "trocar/math/random.h"
+#include "trocar/view/labels.h"
 
 namespace trocar::view {
 namespace {
@@ -60,7 +61,7 @@ void StoneView::AddTo(render::Renderer& renderer, render::Frame& frame,
       if (shape.radius > 0.0) renderer.RemoveSurface(shape.surface);
       shape = {renderer.AddSurface(MakeStone(stone.radius, i), render::Material::kStone), stone.radius};
     }
-    frame.surfaces.push_back({shape.surface, {{}, stone.position}});
+    frame.surfaces.push_back({shape.surface, {{}, stone.position}, MakeLabel(LabelClass::kGallstone, i)});
   }
 }
 

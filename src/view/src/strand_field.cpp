@@ -9,6 +9,7 @@
 #include "trocar/core/assert.h"
 #include "trocar/geometry/mesh_measures.h"
 #include "trocar/math/random.h"
+#include "trocar/view/labels.h"
 
 namespace trocar::view {
 namespace {
@@ -170,7 +171,8 @@ void StrandField::AddFat(render::Renderer& renderer, render::Frame& frame,
     }
     shown_ = wanted_;
   }
-  if (!fat_.Mesh().triangles.empty()) frame.surfaces.push_back({surface_, {}});
+  if (!fat_.Mesh().triangles.empty())
+    frame.surfaces.push_back({surface_, {}, MakeLabel(LabelClass::kTriangleFat)});
 }
 
 }  // namespace trocar::view

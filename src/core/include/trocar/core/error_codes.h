@@ -132,6 +132,11 @@ enum class ErrorCode {
   // environments for reinforcement learning
   kActionInvalid,
   kEnvironmentState,
+  // data sets and studies
+  kDatasetInvalid,
+  kStudyInvalid,
+  kStudyChanged,
+  kClusterAway,
   kCount
 };
 

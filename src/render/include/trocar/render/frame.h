@@ -35,6 +35,7 @@ struct Camera {
 struct SurfaceDraw {
   SurfaceId surface;
   math::Pose X_world_surface;
+  std::uint16_t label = 0;  ///< in a GeometryPicture; 0 leaves it out of that
 };
 
 /// An arrow of light blue, for example a force at a tool's tip. Nothing hides it.

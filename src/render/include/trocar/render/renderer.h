@@ -9,6 +9,7 @@
 #include "trocar/core/result.h"
 #include "trocar/geometry/triangle_mesh.h"
 #include "trocar/render/frame.h"
+#include "trocar/render/geometry_picture.h"
 #include "trocar/render/looks.h"
 
 namespace trocar::render {
@@ -65,6 +66,17 @@ class Renderer {
   ///       Surfaces that were removed are left out.
   void Draw(const Frame& frame, int width, int height);
 
+  /// What lies at each pixel of the picture that Draw() would make. Light, smoke and arrows play no part; what light passes
+  /// through counts as if it did not. Leaves another framebuffer bound.
+  /// \param fine  labels of fibres, blobs and puddles by their material
+  /// \param[in,out] picture  memory is used again
+  /// \return kNoGraphics for a size that the driver does not have, or kShaderFailed
+  core::Status DrawGeometry(const Frame& frame, const MaterialLabels& fine, int width, int height,
+                            GeometryPicture& picture);
+
+  /// The surface as the graphics card has it, in single precision; for tests. Empty for one that was removed.
+  geometry::TriangleMesh ReadSurface(SurfaceId surface) const;
+
  private:
   void DrawOnce(const Frame& frame, double exposure, unsigned target, int width, int height);
 
@@ -72,6 +84,9 @@ class Renderer {
   explicit Renderer(std::unique_ptr<Content> content);
   std::unique_ptr<Content> content_;
 };
+
+/// Of a picture of that height [pixels].
+double CalcFocalPixels(const Camera& camera, int height);
 
 /// Where a world point falls in the picture [pixels], x from the left, y from the top; what lies behind the
 /// lens is not finite.

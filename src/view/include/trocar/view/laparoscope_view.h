@@ -48,6 +48,11 @@ std::vector<Trail> MakePathTrails(std::span<const math::Vec3> left, std::span<co
 /// Shafts and jaws of the tools of another attempt, in white.
 std::vector<Trail> MakeGhosts(const simulation::Snapshot& other);
 
+struct LabelledMesh {
+  geometry::TriangleMesh mesh;  ///< world frame [m]
+  std::uint16_t label = 0;      ///< of labels.h
+};
+
 /// Organs, ducts, vessels, instruments and trocars of one scene in one OpenGL context, what surgery has changed, and the
 /// abdomen round them. The context must be current whenever a member is called and at destruction.
 class LaparoscopeView {
@@ -76,6 +81,14 @@ class LaparoscopeView {
   /// Draws the last snapshot into the bound framebuffer.
   /// \param width, height  of it [pixels]
   void Draw(int width, int height);
+
+  /// What lies at each pixel of the picture that Draw() makes: depth, normal and label (labels.h).
+  /// \return the renderer's error
+  core::Status DrawGeometry(int width, int height, render::GeometryPicture& picture);
+  /// The surfaces of that picture in the world, as the graphics card has them; for tests and for measuring.
+  std::vector<LabelledMesh> ReadMeshes() const;
+  /// Of the laparoscope's camera in a picture of that height [pixels]; its principal point is the picture's middle.
+  double FocalLength(int height) const;
 
   /// The frame that Draw() draws, for read-outs and tests.
   const render::Frame& GetFrame() const;

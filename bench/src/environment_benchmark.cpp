@@ -1,0 +1,294 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file environment_benchmark.cpp  What an environment for learning costs: time, pictures, memory, and whether it bears
+/// random actions.
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "processor_time.h"
+#include "trocar/bench/benchmark.h"
+#include "trocar/environment/pool.h"
+#include "trocar/math/random.h"
+#include "trocar/render/offscreen_context.h"
+#include "trocar/render/offscreen_target.h"
+#include "trocar/scene/task.h"
+#include "trocar/view/laparoscope_view.h"
+
+namespace trocar::bench {
+namespace {
+
+using environment::Environment;
+using environment::EnvironmentModel;
+using environment::Pool;
+
+constexpr double kSeconds = 2;        // of each measurement
+constexpr std::size_t kFurther = 8;   // environments whose memory is measured together
+constexpr double kPageBytes = 4096;   // of /proc/self/statm
+constexpr int kStepsThatRepeat = 10;  // for which two environments must agree
+constexpr int kPictureSide = 84;      // pixels
+constexpr const char* kPoolTask = "peg_transfer";
+constexpr const char* kOperation = "cholecystectomy";
+
+double ResidentBytes() {
+  std::ifstream file("/proc/self/statm");
+  double all = 0, resident = 0;
+  file >> all >> resident;
+  return kPageBytes * resident;
+}
+
+core::Result<std::shared_ptr<EnvironmentModel>> MakeModel(const std::string& task) {
+  return EnvironmentModel::Make({.task = task, .actions = environment::ActionKind::kTip});
+}
+
+/// Random actions that move both hands and press nothing.
+std::vector<double> DrawActions(const EnvironmentModel& model, std::size_t count, math::Random& random) {
+  std::vector<double> actions;
+  for (std::size_t i = 0; i < count; ++i) {
+    for (const environment::Field& field : model.ActionFields())
+      actions.push_back(field.unit == "-" ? -1.0 : random.Uniform(-1, 1));
+  }
+  return actions;
+}
+
+/// Ticks a second of processor time of one environment.
+core::Result<double> MeasureAlone(const std::shared_ptr<EnvironmentModel>& model, std::uint64_t seed) {
+  auto environment = Environment::Make(model);
+  if (!environment) return environment.error();
+  if (const auto reset = environment->Reset(seed); !reset) return reset.error();
+  math::Random random(seed);
+  double steps = 0;
+  const WorkStopwatch stopwatch(1);
+  while (stopwatch.Seconds() < kSeconds) {
+    if (environment->IsOver()) {
+      if (const auto reset = environment->Reset(); !reset) return reset.error();
+    }
+    const auto outcome = environment->Step(DrawActions(*model, 1, random));
+    if (!outcome) return outcome.error();
+    if (!std::isfinite(outcome->reward)) return WrongAnswer(model->Settings().task, "a reward is not finite");
+    ++steps;
+  }
+  return steps * model->TicksPerAction() / stopwatch.Seconds();
+}
+
+/// Ticks a second of all its threads' processor time.
+core::Result<double> MeasurePool(const std::shared_ptr<EnvironmentModel>& model, int count) {
+  auto made = Pool::Make(model, {.count = count, .threads = count});
+  if (!made) return made.error();
+  Pool& pool = **made;
+  std::vector<std::int32_t> ids;
+  if (const auto reset = pool.Reset({}, 1); !reset) return reset.error();
+  if (const auto begun = pool.Receive(static_cast<std::size_t>(count), ids); !begun) return begun.error();
+  math::Random random(1);
+  double steps = 0;
+  const WorkStopwatch stopwatch(1);
+  while (stopwatch.Seconds() < kSeconds) {
+    const auto actions = DrawActions(*model, static_cast<std::size_t>(count), random);
+    if (const auto sent = pool.Send(actions, {}); !sent) return sent.error();
+    if (const auto got = pool.Receive(static_cast<std::size_t>(count), ids); !got) return got.error();
+    steps += count;
+  }
+  return steps * model->TicksPerAction() / stopwatch.Seconds();
+}
+
+/// The same of as many processes at a time, each with an environment of its own: their mean.
+core::Result<double> MeasureProcesses(const std::string& task, int count) {
+  std::vector<std::pair<pid_t, int>> children;
+  for (int i = 0; i < count; ++i) {
+    std::array<int, 2> ends{};
+    if (pipe(ends.data()) != 0) return WrongAnswer("processes", "no pipe can be made");
+    const pid_t child = fork();
+    if (child == 0) {
+      const auto model = MakeModel(task);
+      double rate = -1;
+      if (model.ok()) {
+        const auto measured = MeasureAlone(*model, 1 + static_cast<std::uint64_t>(i));
+        if (measured.ok()) rate = *measured;
+      }
+      const bool is_told = write(ends[1], &rate, sizeof rate) == sizeof rate;
+      _exit(is_told ? 0 : 1);
+    }
+    close(ends[1]);
+    children.emplace_back(child, ends[0]);
+  }
+  double sum = 0;
+  bool is_whole = true;
+  for (const auto& [child, end] : children) {
+    double rate = -1;
+    is_whole = child > 0 && read(end, &rate, sizeof rate) == sizeof rate && rate > 0 && is_whole;
+    sum += rate;
+    close(end);
+    if (child > 0) waitpid(child, nullptr, 0);
+  }
+  if (!is_whole) return WrongAnswer("processes", "one of them failed");
+  return sum / count;
+}
+
+/// Two environments of the same seed and actions must agree, or their times mean nothing.
+core::Status CheckRepeats(const std::shared_ptr<EnvironmentModel>& model) {
+  std::array<std::uint64_t, 2> hashes{};
+  for (std::uint64_t& hash : hashes) {
+    auto environment = Environment::Make(model);
+    if (!environment) return environment.error();
+    if (const auto reset = environment->Reset(1); !reset) return reset.error();
+    math::Random random(1);
+    for (int i = 0; i < kStepsThatRepeat && !environment->IsOver(); ++i) {
+      if (const auto outcome = environment->Step(DrawActions(*model, 1, random)); !outcome)
+        return outcome.error();
+    }
+    hash = environment->GetSimulation().Hash();
+  }
+  if (hashes[0] != hashes[1]) return WrongAnswer(model->Settings().task, "the same actions give other bits");
+  return {};
+}
+
+/// [B] of each further environment of one model.
+core::Result<double> MeasureMemory(const std::shared_ptr<EnvironmentModel>& model) {
+  std::vector<Environment> environments;
+  environments.reserve(kFurther + 1);
+  double before = 0;
+  for (std::size_t i = 0; i <= kFurther; ++i) {
+    auto made = Environment::Make(model);
+    if (!made) return made.error();
+    environments.push_back(std::move(*made));
+    if (const auto reset = environments.back().Reset(1); !reset) return reset.error();
+    math::Random random(1);
+    for (int step = 0; step < 2; ++step) {
+      if (const auto outcome = environments.back().Step(DrawActions(*model, 1, random)); !outcome)
+        return outcome.error();
+    }
+    if (i == 0) before = ResidentBytes();
+  }
+  return (ResidentBytes() - before) / static_cast<double>(kFurther);
+}
+
+/// Actions a second of processor time, the drawing threads' too, whose observation is a picture, drawn as the package for Python does.
+core::Result<double> MeasurePictures(const std::shared_ptr<EnvironmentModel>& model) {
+  auto context = render::OffscreenContext::Make();
+  if (!context) return context.error();
+  auto target = render::OffscreenTarget::Make(kPictureSide, kPictureSide);
+  if (!target) return target.error();
+  auto environment = Environment::Make(model);
+  if (!environment) return environment.error();
+  if (const auto reset = environment->Reset(1); !reset) return reset.error();
+  const simulation::Simulation& simulation = environment->GetSimulation();
+  auto view = view::LaparoscopeView::Make(simulation.GetScene(), simulation.Surfaces(),
+                                          simulation.GetSnapshot(), simulation.Strands());
+  if (!view) return view.error();
+  view->SetOptions({.has_force_arrows = false, .has_automatic_exposure = false});
+  render::Image image;
+  math::Random random(1);
+  double steps = 0;
+  const WorkStopwatch stopwatch(1);
+  while (stopwatch.Seconds() < kSeconds && !environment->IsOver()) {
+    if (const auto outcome = environment->Step(DrawActions(*model, 1, random)); !outcome)
+      return outcome.error();
+    view->Update(simulation.GetSnapshot());
+    target->Bind();
+    view->Draw(kPictureSide, kPictureSide);
+    target->Read(image);
+    ++steps;
+  }
+  const bool is_blank = std::all_of(image.pixels.begin(), image.pixels.end(),
+                                    [&](std::uint8_t byte) { return byte == image.pixels.front(); });
+  if (is_blank) return WrongAnswer(model->Settings().task, "a picture shows nothing");
+  return steps / stopwatch.Seconds();
+}
+
+/// Random actions, pedals too, one episode after the other.
+/// \return  [B] by which the process grew after the first fifth
+core::Result<double> Soak(const std::shared_ptr<EnvironmentModel>& model, int steps) {
+  auto environment = Environment::Make(model);
+  if (!environment) return environment.error();
+  if (const auto reset = environment->Reset(1); !reset) return reset.error();
+  math::Random random(1);
+  std::vector<float> state(model->StateSize());
+  std::vector<double> action(model->ActionSize());
+  double before = 0;
+  for (int step = 0; step < steps; ++step) {
+    if (step == steps / 5) before = ResidentBytes();
+    if (environment->IsOver()) {
+      if (const auto reset = environment->Reset(); !reset) return reset.error();
+    }
+    for (double& value : action) value = random.Uniform(-1, 1);
+    const auto outcome = environment->Step(action);
+    if (!outcome) return outcome.error();
+    environment->Observe(state);
+    const bool is_finite = std::isfinite(outcome->reward) &&
+                           std::all_of(state.begin(), state.end(), [](float v) { return std::isfinite(v); });
+    if (!is_finite)
+      return WrongAnswer(model->Settings().task,
+                         "not finite after " + std::to_string(step + 1) + " random actions");
+  }
+  return ResidentBytes() - before;
+}
+
+core::Status SoakAll(std::span<const scene::TaskEntry> tasks, int steps, BenchmarkResult& result) {
+  const int each = std::max(5, steps / static_cast<int>(tasks.size()));
+  double grown = 0;
+  for (const scene::TaskEntry& task : tasks) {
+    const auto model = MakeModel(task.key);
+    if (!model) return model.error();
+    const auto bytes = Soak(*model, each);
+    if (!bytes) return bytes.error();
+    grown = std::max(grown, *bytes);
+  }
+  result.cases.push_back(
+      {"soak/actions", static_cast<double>(each) * static_cast<double>(tasks.size()), "1"});
+  result.cases.push_back({"soak/most_growth", 1e-6 * grown, "MB"});
+  return {};
+}
+
+}  // namespace
+
+core::Result<BenchmarkResult> RunEnvironmentBenchmark(const BenchmarkOptions& options) {
+  const int count = std::max(1, options.threads);
+  // before this process has models and threads of its own
+  const auto processes = MeasureProcesses(kPoolTask, count);
+  if (!processes) return processes.error();
+
+  BenchmarkResult result;
+  result.notes.push_back(
+      "seconds are of processor time; random motions of both tips, 10 actions a second; the pool and the "
+      "processes with " +
+      std::to_string(count) + " (--threads)");
+  auto tasks = scene::ListTasks();
+  if (!tasks) return tasks.error();
+  tasks->push_back({.key = kOperation});
+  for (const scene::TaskEntry& task : *tasks) {
+    const auto model = MakeModel(task.key);
+    if (!model) return model.error();
+    if (const auto repeats = CheckRepeats(*model); !repeats) return repeats.error();
+    const auto rate = MeasureAlone(*model, 1);
+    if (!rate) return rate.error();
+    result.cases.push_back({task.key + "/rate", *rate, "ticks/s"});
+    const auto memory = MeasureMemory(*model);
+    if (!memory) return memory.error();
+    result.cases.push_back({task.key + "/memory_each", 1e-6 * *memory, "MB"});
+  }
+  for (const char* task : {kPoolTask, kOperation}) {
+    const auto model = MakeModel(task);
+    if (!model) return model.error();
+    const auto rate = MeasurePictures(*model);
+    if (!rate) return rate.error();
+    result.cases.push_back({std::string(task) + "/pictures", *rate, "actions/s"});
+  }
+  if (const auto soaked = SoakAll(*tasks, options.steps, result); !soaked) return soaked.error();
+  const auto model = MakeModel(kPoolTask);
+  if (!model) return model.error();
+  const auto pool = MeasurePool(*model, count);
+  if (!pool) return pool.error();
+  result.cases.push_back({"pool/rate", *pool, "ticks/s"});
+  result.cases.push_back({"processes/rate", *processes, "ticks/s"});
+  result.ratios.push_back({"pool/processes", *pool / *processes});
+  return result;
+}
+
+}  // namespace trocar::bench

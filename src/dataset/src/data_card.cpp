@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "data_card.h"
+
+#include <sodium.h>
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "trocar/core/safe_file.h"
+#include "trocar/core/state_hash.h"
+#include "trocar/core/version.h"
+
+namespace trocar::dataset {
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr int kCardVersion = 1;
+constexpr const char* kLicence = "Apache-2.0";
+/// Of every layout.
+constexpr std::array<const char*, 4> kCommonGaps = {
+    "Everything is simulated: what was learnt here has to be shown on real pictures before it means anything "
+    "there.",
+    "Tools do not wear, and lenses do not fog or get dirty.",
+    "Colon, stomach, duodenum, omentum and abdominal wall are decoration: they do not deform.",
+    "The surgeon is a program; people move otherwise."};
+
+std::string ToHex(const std::array<unsigned char, crypto_hash_sha256_BYTES>& hash) {
+  std::string text(2 * hash.size() + 1, '\0');
+  sodium_bin2hex(text.data(), text.size(), hash.data(), hash.size());
+  text.pop_back();
+  return text;
+}
+
+core::Result<std::string> HashFile(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  crypto_hash_sha256_state state;
+  crypto_hash_sha256_init(&state);
+  std::vector<char> block(1 << 20);
+  while (file) {
+    file.read(block.data(), static_cast<std::streamsize>(block.size()));
+    crypto_hash_sha256_update(&state, reinterpret_cast<const unsigned char*>(block.data()),
+                              static_cast<unsigned long long>(file.gcount()));
+  }
+  if (!file.eof())
+    return core::Error{core::ErrorCode::kFileUnreadable,
+                       path.string() + " cannot be read again; check the disk"};
+  std::array<unsigned char, crypto_hash_sha256_BYTES> hash;
+  crypto_hash_sha256_final(&state, hash.data());
+  return ToHex(hash);
+}
+
+ordered_json DescribePlan(const Plan& plan) {
+  auto patients = ordered_json::array();
+  for (const auto& patient : plan.patients) patients.push_back(patient.filename().string());
+  return {{"layout", NameOf(plan.layout)},
+          {"task", plan.task},
+          {"level", plan.level},
+          {"surgeon", plan.surgeon},
+          {"patients", patients},
+          {"seeds", {plan.first_seed, plan.last_seed}},
+          {"width", plan.width},
+          {"height", plan.height},
+          {"every_seconds", plan.every},
+          {"most_seconds", plan.most_seconds},
+          {"has_variation", plan.has_variation}};
+}
+
+std::string FormatReadme(const Plan& plan, const ordered_json& card) {
+  std::string text =
+      "# A data set made by Trocar\n\nLayout: " + std::string(NameOf(plan.layout)) +
+      ". Licence: " + kLicence + ". Program: trocar " + std::string(core::VersionText()) +
+      ".\n\nSimulated, not recorded: scripted surgeon \"" + plan.surgeon + "\" in \"" + plan.task +
+      "\", seeds " + std::to_string(plan.first_seed) + " to " + std::to_string(plan.last_seed) + ", " +
+      std::to_string(plan.width) + " x " + std::to_string(plan.height) +
+      " pixels. The same plan gives the same bytes, with the same program and graphics driver:\n\n    " +
+      card["command"].get<std::string>() +
+      "\n\nCheck it: trocar dataset verify DIR, or sha256sum -c SHA256SUMS.\n\n"
+      "| seed | patient | frames | seconds | came to | state |\n|---|---|---|---|---|---|\n";
+  for (const auto& video : card["videos"]) {
+    text += "| " + video["seed"].dump() + " | " + video["patient"].get<std::string>() + " | " +
+            video["frames"].dump() + " | " + video["seconds"].dump() + " | " +
+            video["outcome"].get<std::string>() + " | `" + video["state_hash"].get<std::string>() + "` |\n";
+  }
+  text += "\n## Known gaps\n\n";
+  for (const auto& gap : card["known_gaps"]) text += "- " + gap.get<std::string>() + "\n";
+  text += "\nClasses, variation of each video and everything else: card.json.\n";
+  return text;
+}
+
+std::string FormatCommand(const Plan& plan) {
+  ordered_json number = plan.every;
+  std::string text = "trocar dataset --layout " + std::string(NameOf(plan.layout)) + " --task " + plan.task +
+                     " --surgeon " + plan.surgeon + " --seeds " + std::to_string(plan.first_seed) + ":" +
+                     std::to_string(plan.last_seed) + " --size " + std::to_string(plan.width) + "x" +
+                     std::to_string(plan.height) + " --every " + number.dump() + " --most-seconds ";
+  number = plan.most_seconds;
+  text += number.dump();
+  if (plan.level != Plan{}.level) text += " --level " + plan.level;
+  for (const auto& patient : plan.patients) text += " --patient " + patient.filename().string();
+  if (!plan.has_variation) text += " --no-variation";
+  return text + " -o DIR";
+}
+
+}  // namespace
+
+core::Result<CardSummary> WriteCard(const std::filesystem::path& folder, const Plan& plan,
+                                    const LayoutSet& layout, std::span<const VideoResult> videos) {
+  if (sodium_init() < 0)
+    return core::Error{core::ErrorCode::kOutOfMemory, "libsodium cannot begin; try again"};
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder))
+    if (entry.is_regular_file()) names.push_back(entry.path().lexically_relative(folder).generic_string());
+  std::sort(names.begin(), names.end());
+  std::string sums;
+  for (const std::string& name : names) {
+    const auto hash = HashFile(folder / name);
+    if (!hash) return hash.error();
+    sums += *hash + "  " + name + "\n";
+  }
+  if (auto s = core::WriteFile(folder / "SHA256SUMS", sums); !s) return s.error();
+  const auto hash = HashFile(folder / "SHA256SUMS");
+  if (!hash) return hash.error();
+
+  ordered_json card = {{"format", "trocar-dataset"},
+                       {"version", kCardVersion},
+                       {"program", "trocar " + std::string(core::VersionText())},
+                       {"licence", kLicence},
+                       {"command", FormatCommand(plan)},
+                       {"plan", DescribePlan(plan)},
+                       {"videos", ordered_json::array()},
+                       {"classes", layout.Classes()},
+                       {"known_gaps", ordered_json::array()},
+                       {"files", names.size()},
+                       {"sha256sums", *hash}};
+  for (const VideoResult& video : videos)
+    card["videos"].push_back({{"seed", video.seed},
+                              {"patient", video.patient},
+                              {"frames", video.frames},
+                              {"seconds", video.seconds},
+                              {"outcome", video.outcome},
+                              {"state_hash", core::HashText(video.hash)},
+                              {"variation", ToJson(video.variation)}});
+  for (const std::string& gap : layout.Gaps()) card["known_gaps"].push_back(gap);
+  for (const char* gap : kCommonGaps) card["known_gaps"].push_back(gap);
+  if (auto s = core::WriteFile(folder / "README.md", FormatReadme(plan, card)); !s) return s.error();
+  if (auto s = core::WriteFile(folder / "card.json", card.dump(2) + "\n"); !s) return s.error();
+  return CardSummary{*hash, names.size()};
+}
+
+}  // namespace trocar::dataset

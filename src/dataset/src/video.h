@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file video.h  One attempt of a scripted surgeon as a row of labelled frames.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "acts.h"
+#include "trocar/dataset/dataset.h"
+#include "trocar/render/geometry_picture.h"
+#include "trocar/render/image.h"
+#include "trocar/simulation/simulation.h"
+#include "variation.h"
+
+namespace trocar::dataset {
+
+/// Of the public data sets' videos: their frame numbers count at this rate.
+inline constexpr double kFramesPerSecond = 25;
+
+struct Frame {
+  std::size_t index = 0;     ///< in the video, from 0
+  std::uint64_t number = 0;  ///< at 25 frames a second
+  render::Image colour;
+  render::GeometryPicture geometry;
+  double focal_length = 0;  ///< [pixels]
+  std::vector<Act> acts;    ///< of tools that are in the picture
+};
+
+/// What writes a video in one layout. A writer lives on the thread of its video.
+class VideoWriter {
+ public:
+  virtual ~VideoWriter() = default;
+  /// \return the error of a file
+  virtual core::Status Add(const Frame& frame, const simulation::Simulation& simulation) = 0;
+  /// Each tick of the simulation, before the frame that it may be.
+  virtual void Look(const simulation::Simulation& /*simulation*/) {}
+  virtual core::Status Finish() = 0;
+};
+
+struct VideoResult {
+  std::uint64_t seed = 0;
+  std::string patient;  ///< folder's name, or empty for the scene's own
+  Variation variation;
+  std::size_t frames = 0;
+  double seconds = 0;      ///< of simulated time
+  std::uint64_t hash = 0;  ///< of the simulation's last state
+  std::string outcome;     ///< "completed", "time over", ...
+};
+
+/// Where one video goes.
+struct VideoTask {
+  const Plan* plan = nullptr;
+  std::size_t index = 0;         ///< of the video, from 0
+  std::filesystem::path folder;  ///< of the data set
+};
+
+/// \return the scene's, simulation's, graphics' or a file's error
+core::Result<VideoResult> MakeVideo(
+    const VideoTask& task,
+    const std::function<std::unique_ptr<VideoWriter>(const simulation::Simulation& simulation)>& make_writer);
+
+}  // namespace trocar::dataset

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file geometry_picture.h  What lies at each pixel of a picture: depth, normal and label. For learning and for measuring,
+/// not for people.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "trocar/render/material.h"
+
+namespace trocar::render {
+
+/// Labels of what is drawn by material alone: fibres, blobs and puddles. 0 leaves them out.
+using MaterialLabels = std::array<std::uint16_t, static_cast<std::size_t>(Material::kCount)>;
+
+/// Rows from the top. Nothing lies at a pixel of label 0, nor outside of the round picture where the frame has a mask.
+struct GeometryPicture {
+  int width = 0, height = 0;   ///< [pixels]
+  std::vector<float> depth;    ///< (height * width) along the line of sight from the lens [m]; 0: nothing
+  std::vector<float> normals;  ///< (height * width * 3) unit, camera frame: +x right, +y up, +z to the eye
+  std::vector<std::uint16_t> labels;  ///< (height * width) SurfaceDraw::label, or of the material
+};
+
+}  // namespace trocar::render

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file geometry_drawer.h  Draws normals, depth and labels into buffers of its own.
+#pragma once
+
+#include <epoxy/gl.h>
+
+#include "shader_program.h"
+#include "surface_store.h"
+#include "trocar/core/result.h"
+#include "trocar/math/pose.h"
+#include "trocar/render/geometry_picture.h"
+
+namespace trocar::render {
+
+/// Needs the OpenGL context of the renderer that owns it.
+class GeometryDrawer {
+ public:
+  GeometryDrawer() = default;
+  GeometryDrawer(const GeometryDrawer&) = delete;
+  GeometryDrawer& operator=(const GeometryDrawer&) = delete;
+  ~GeometryDrawer();
+
+  /// Binds the buffers, clears them, and sets what holds for the whole picture. Makes the program at the first call.
+  /// \return kShaderFailed with the compiler's words; kNoGraphics where the driver has no such framebuffer
+  core::Status Begin(const Matrix4& clip_from_camera, int width, int height);
+  void Draw(const Surface& surface, const math::Pose& X_camera_surface, const math::Vec3& scale,
+            std::uint16_t label);
+  /// For vertices in the camera's frame that somebody else draws.
+  const Program& BeginFine(std::uint16_t label);
+  /// Copies the picture, first row at the top.
+  void Read(GeometryPicture& picture);
+
+ private:
+  core::Status Resize(int width, int height);
+
+  Program program_;
+  GLint label_place_ = -1;
+  GLuint framebuffer_ = 0, normals_ = 0, labels_ = 0, depth_ = 0;
+  int width_ = 0, height_ = 0;
+  std::vector<float> staging_;  // normal and depth of every pixel
+};
+
+}  // namespace trocar::render

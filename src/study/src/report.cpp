@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <functional>
+#include <limits>
+#include <map>
+
+#include "study_folder.h"
+#include "table.h"
+#include "trocar/bench/svg_plot.h"
+#include "trocar/core/markup.h"
+#include "trocar/core/safe_file.h"
+#include "trocar/core/statistics.h"
+#include "trocar/core/text_table.h"
+
+namespace trocar::study {
+namespace {
+
+using core::FormatNumber;
+
+constexpr const char* kStyle =
+    "body{font:16px/1.5 system-ui,\"DejaVu Sans\",sans-serif;color:#1d2327;margin:0 "
+    "auto;max-width:60rem;padding:1.5rem}"
+    "table{border-collapse:collapse;font-size:.9rem}th,td{text-align:left;padding:.3rem "
+    ".6rem;border-bottom:1px solid #dcdcde}"
+    "svg{width:100%;height:auto;background:#fafafa;border:1px solid #dcdcde}"
+    "svg text{font:12px system-ui,\"DejaVu Sans\",sans-serif;fill:#1d2327}svg "
+    ".title{font-size:14px;font-weight:600}"
+    "svg .grid{stroke:#dcdcde}svg .line{fill:none;stroke-width:1.8}.bad{color:#a4161a;font-weight:600}";
+constexpr std::size_t kMostFailuresShown = 50;
+
+double FindNumber(const Row& row, const std::string& name) {
+  for (const auto& [column, value] : row.result.numbers)
+    if (column == name) return value;
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
+/// Numbers that are not the same in all runs.
+std::vector<std::string> ListVarying(std::span<const Row> rows) {
+  std::vector<std::string> names;
+  if (rows.empty()) return names;
+  for (const auto& [name, first] : rows.front().result.numbers) {
+    const double value = first;
+    if (std::any_of(rows.begin(), rows.end(),
+                    [&, n = name](const Row& row) { return FindNumber(row, n) != value; }))
+      names.push_back(name);
+  }
+  return names;
+}
+
+/// Middle, and where the middle eight of ten lie, over the values of one parameter.
+std::string PlotNumber(const StudyPlan& plan, std::span<const Row> rows, std::size_t parameter,
+                       const std::string& number) {
+  std::map<double, std::vector<double>> groups;
+  for (const Row& row : rows) groups[row.run.values[parameter]].push_back(FindNumber(row, number));
+  bench::PlotLine low{"10 %", {}}, middle{"median", {}}, high{"90 %", {}};
+  for (auto& [value, numbers] : groups) {
+    low.points.push_back({value, core::CalcPercentile(numbers, 0.1)});
+    middle.points.push_back({value, core::CalcPercentile(numbers, 0.5)});
+    high.points.push_back({value, core::CalcPercentile(numbers, 0.9)});
+  }
+  const auto& values = plan.parameters[parameter].values;
+  const double least = *std::min_element(values.begin(), values.end()),
+               most = *std::max_element(values.begin(), values.end());
+  return bench::FormatSvgPlot({.title = number,
+                               .x_label = plan.parameters[parameter].name,
+                               .y_label = "",
+                               .is_log_x = least > 0 && most >= 20 * least},
+                              {middle, low, high});
+}
+
+std::string FormatGroups(std::span<const Row> rows, const std::vector<std::string>& names,
+                         const std::function<std::string(const Row&)>& group_of, const std::string& head) {
+  std::map<std::string, std::vector<const Row*>> groups;
+  for (const Row& row : rows) groups[group_of(row)].push_back(&row);
+  std::string text = "<table><tr><th>" + head + "</th><th>runs</th>";
+  for (const std::string& name : names) text += "<th>" + core::EscapeMarkup(name) + "</th>";
+  text += "</tr>\n";
+  for (const auto& [group, members] : groups) {
+    text += "<tr><td>" + core::EscapeMarkup(group.empty() ? "the scene's own" : group) + "</td><td>" +
+            std::to_string(members.size()) + "</td>";
+    for (const std::string& name : names) {
+      std::vector<double> numbers;
+      for (const Row* row : members) numbers.push_back(FindNumber(*row, name));
+      text += "<td>" + FormatNumber(core::CalcPercentile(numbers, 0.5), 4) + "</td>";
+    }
+    text += "</tr>\n";
+  }
+  return text + "</table>\n";
+}
+
+}  // namespace
+
+core::Status WriteReport(const std::filesystem::path& path, const StudyPlan& plan, std::span<const Row> rows,
+                         const StudySummary& summary) {
+  std::string page = "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>" +
+                     core::EscapeMarkup(plan.name) + "</title><style>" + kStyle +
+                     "</style></head><body>\n<h1>" + core::EscapeMarkup(plan.name) + "</h1>\n<p>" +
+                     core::EscapeMarkup(plan.about) + "</p>\n<p>" + std::to_string(summary.done) + " of " +
+                     std::to_string(summary.runs) + " runs are done";
+  if (summary.done + summary.failed < summary.runs)
+    page += "; <span class=\"bad\">the same command goes on</span>";
+  page += ".</p>\n";
+  if (!summary.failures.empty()) {
+    page += "<h2>Runs that failed</h2>\n<ul class=\"bad\">\n";
+    for (std::size_t i = 0; i < std::min(kMostFailuresShown, summary.failures.size()); ++i)
+      page += "<li>" + core::EscapeMarkup(summary.failures[i]) + "</li>\n";
+    page += "</ul>\n";
+  }
+  const std::vector<std::string> names = ListVarying(rows);
+  if (!rows.empty()) {
+    page +=
+        "<h2>Medians</h2>\n" + FormatGroups(
+                                   rows, names, [](const Row& row) { return row.run.surgeon; }, "surgeon");
+    if (plan.patients.size() > 1)
+      page += FormatGroups(
+          rows, names, [](const Row& row) { return row.run.patient.filename().string(); }, "patient");
+  }
+  for (std::size_t parameter = 0; parameter < plan.parameters.size() && !rows.empty(); ++parameter) {
+    if (plan.parameters[parameter].values.size() < 2) continue;
+    page += "<h2>" + core::EscapeMarkup(plan.parameters[parameter].name) + "</h2>\n";
+    for (const std::string& name : names) page += PlotNumber(plan, rows, parameter, name) + "\n";
+  }
+  return core::WriteFile(path, page + "</body></html>\n");
+}
+
+}  // namespace trocar::study

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "study_folder.h"
+
+#include <nlohmann/json.hpp>
+
+#include "trocar/core/safe_file.h"
+#include "trocar/core/version.h"
+
+namespace trocar::study {
+namespace {
+
+using nlohmann::ordered_json;
+
+/// Whoever reads this text sees at a glance what differs.
+ordered_json DescribeStudy(const std::string& plan_print, const std::string& program_print) {
+  return {{"format", "trocar-study-folder"},
+          {"version", 1},
+          {"program", "trocar " + std::string(core::VersionText())},
+          {"program_sha256", program_print},
+          {"plan_sha256", plan_print}};
+}
+
+}  // namespace
+
+core::Status StudyFolder::Begin(const std::filesystem::path& plan_file) const {
+  const auto program = FingerprintFile("/proc/self/exe");
+  if (!program) return program.error();
+  const auto plan = FingerprintFile(plan_file);
+  if (!plan) return plan.error();
+  const std::filesystem::path head = folder_ / "study.json";
+  const ordered_json mine = DescribeStudy(*plan, *program);
+  std::error_code ignored;
+  if (!std::filesystem::exists(head, ignored)) return core::WriteFile(head, mine.dump(2) + "\n");
+  const auto text = core::ReadFile(head);
+  if (!text) return text.error();
+  const auto theirs = ordered_json::parse(*text, nullptr, false);
+  if (theirs == mine) return {};
+  const bool is_program = theirs.is_object() && theirs.value("plan_sha256", "") == *plan;
+  return core::Error{
+      core::ErrorCode::kStudyChanged,
+      head.string() + ": this study began with another " + (is_program ? "program" : "plan") +
+          "; results of two would be mixed. Begin a new folder (-o), or go on with the one that it had"};
+}
+
+std::filesystem::path StudyFolder::ResultPath(const Run& run) const {
+  return folder_ / "results" / run.key.substr(0, 2) / (run.key + ".json");
+}
+std::filesystem::path StudyFolder::FailurePath(const Run& run) const {
+  return folder_ / "failures" / (run.key + ".json");
+}
+
+std::optional<RunResult> StudyFolder::FindResult(const Run& run) const {
+  const auto text = core::ReadFile(ResultPath(run));
+  if (!text) return std::nullopt;
+  const auto json = ordered_json::parse(*text, nullptr, false);
+  if (!json.is_object() || json.value("key", "") != run.key || !json.contains("numbers")) return std::nullopt;
+  RunResult result;
+  result.outcome = json.value("outcome", "");
+  result.state_hash = json.value("state_hash", "");
+  for (const auto& [name, value] : json["numbers"].items())
+    result.numbers.emplace_back(name, value.get<double>());
+  return result;
+}
+
+core::Status StudyFolder::Keep(const StudyPlan& plan, const Run& run, const RunResult& result) const {
+  ordered_json json = {{"key", run.key},
+                       {"run", Describe(plan, run)},
+                       {"outcome", result.outcome},
+                       {"state_hash", result.state_hash},
+                       {"numbers", ordered_json::object()}};
+  for (const auto& [name, value] : result.numbers) json["numbers"][name] = value;
+  return core::WriteFile(ResultPath(run), json.dump(2) + "\n");
+}
+
+core::Status StudyFolder::NoteFailure(const StudyPlan& plan, const Run& run, const std::string& why) const {
+  const ordered_json json = {{"key", run.key}, {"run", Describe(plan, run)}, {"why", why}};
+  return core::WriteFile(FailurePath(run),
+                         json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n");
+}
+
+void StudyFolder::ForgetFailure(const Run& run) const {
+  std::error_code ignored;
+  std::filesystem::remove(FailurePath(run), ignored);
+}
+
+std::optional<std::string> StudyFolder::FindFailure(const Run& run) const {
+  const auto text = core::ReadFile(FailurePath(run));
+  if (!text) return std::nullopt;
+  const auto json = ordered_json::parse(*text, nullptr, false);
+  return json.is_object() ? json.value("why", "") : std::string("its note is damaged");
+}
+
+std::string Describe(const StudyPlan& plan, const Run& run) {
+  std::string text = "surgeon=" + run.surgeon + " patient=" + run.patient.filename().string() +
+                     " seed=" + std::to_string(run.seed);
+  for (std::size_t i = 0; i < run.values.size(); ++i)
+    text += " " + plan.parameters[i].name + "=" + ordered_json(run.values[i]).dump();
+  return text;
+}
+
+}  // namespace trocar::study

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "table.h"
+
+#include <sqlite3.h>
+
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "trocar/core/partial_path.h"
+#include "trocar/core/safe_file.h"
+
+namespace trocar::study {
+namespace {
+
+constexpr std::size_t kInputColumns = 5;  // before the parameters
+
+std::string FormatExactly(double value) {
+  return nlohmann::json(value).dump();  // the shortest text that is read back as the same number
+}
+
+std::vector<std::string> ListColumns(const StudyPlan& plan, std::span<const Row> rows) {
+  std::vector<std::string> columns = {"index", "key", "surgeon", "patient", "seed"};
+  for (const ParameterValues& parameter : plan.parameters) columns.push_back(parameter.name);
+  columns.insert(columns.end(), {"outcome", "state_hash"});
+  if (!rows.empty())
+    for (const auto& [name, value] : rows.front().result.numbers) columns.push_back(name);
+  return columns;
+}
+
+std::string Quote(const std::string& text) {
+  if (text.find_first_of(",\"\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + "\"";
+}
+
+std::vector<std::string> ListValues(const Row& row) {
+  std::vector<std::string> values = {std::to_string(row.run.index), row.run.key, row.run.surgeon,
+                                     row.run.patient.filename().string(), std::to_string(row.run.seed)};
+  for (const double value : row.run.values) values.push_back(FormatExactly(value));
+  values.insert(values.end(), {row.result.outcome, row.result.state_hash});
+  for (const auto& [name, value] : row.result.numbers) values.push_back(FormatExactly(value));
+  return values;
+}
+
+struct CloseDatabase {
+  void operator()(sqlite3* database) const { sqlite3_close(database); }
+};
+struct CloseStatement {
+  void operator()(sqlite3_stmt* statement) const { sqlite3_finalize(statement); }
+};
+
+}  // namespace
+
+core::Status WriteCsv(const std::filesystem::path& path, const StudyPlan& plan, std::span<const Row> rows) {
+  std::string text;
+  const auto add = [&](const std::vector<std::string>& values) {
+    for (std::size_t i = 0; i < values.size(); ++i) text += (i > 0 ? "," : "") + Quote(values[i]);
+    text += "\n";
+  };
+  add(ListColumns(plan, rows));
+  for (const Row& row : rows) add(ListValues(row));
+  return core::WriteFile(path, text);
+}
+
+core::Status WriteSqlite(const std::filesystem::path& path, const StudyPlan& plan,
+                         std::span<const Row> rows) {
+  const core::PartialPath part(path);
+  sqlite3* opened = nullptr;
+  const int status = sqlite3_open(part.Path().c_str(), &opened);
+  const std::unique_ptr<sqlite3, CloseDatabase> database(opened);
+  const auto failed = [&] {
+    return core::Error{
+        core::ErrorCode::kFileUnwritable,
+        path.string() + ": " + sqlite3_errmsg(opened) + "; check the folder, its rights and the space left"};
+  };
+  if (status != SQLITE_OK) return failed();
+  const std::vector<std::string> columns = ListColumns(plan, rows);
+  // texts: key, surgeon, patient; outcome and state_hash behind the parameters
+  const std::size_t outcome = kInputColumns + plan.parameters.size();
+  const auto is_text = [&](std::size_t i) { return (i >= 1 && i <= 3) || i == outcome || i == outcome + 1; };
+  std::string make = "CREATE TABLE runs (", insert = "INSERT INTO runs VALUES (";
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    const bool is_whole = i == 0 || i == kInputColumns - 1;
+    make += (i > 0 ? ", \"" : "\"") + columns[i] +
+            (is_text(i) ? "\" TEXT"
+             : is_whole ? "\" INTEGER"
+                        : "\" REAL");
+    if (columns[i] == "key") make += " UNIQUE";
+    insert += i > 0 ? ", ?" : "?";
+  }
+  const std::string begin = make + "); BEGIN";
+  if (sqlite3_exec(opened, begin.c_str(), nullptr, nullptr, nullptr) != SQLITE_OK) return failed();
+  sqlite3_stmt* prepared = nullptr;
+  insert += ")";
+  if (sqlite3_prepare_v2(opened, insert.c_str(), -1, &prepared, nullptr) != SQLITE_OK) return failed();
+  const std::unique_ptr<sqlite3_stmt, CloseStatement> statement(prepared);
+  for (const Row& row : rows) {
+    const std::vector<std::string> values = ListValues(row);
+    for (std::size_t i = 0; i < values.size(); ++i)
+      sqlite3_bind_text(prepared, static_cast<int>(i + 1), values[i].c_str(), -1, SQLITE_TRANSIENT);
+    if (sqlite3_step(prepared) != SQLITE_DONE) return failed();
+    sqlite3_reset(prepared);
+  }
+  if (sqlite3_exec(opened, "COMMIT", nullptr, nullptr, nullptr) != SQLITE_OK) return failed();
+  std::error_code failure;
+  std::filesystem::rename(part.Path(), path, failure);
+  if (failure)
+    return core::Error{core::ErrorCode::kFileUnwritable,
+                       path.string() + ": " + failure.message() + "; check the folder"};
+  return {};
+}
+
+}  // namespace trocar::study

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file table.h  What a study came to: one table, as CSV and SQLite, and a page with plots.
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "trocar/study/study.h"
+
+namespace trocar::study {
+
+/// A run that is done.
+struct Row {
+  Run run;
+  RunResult result;
+};
+
+/// \return kFileUnwritable
+core::Status WriteCsv(const std::filesystem::path& path, const StudyPlan& plan, std::span<const Row> rows);
+/// Table `runs`, one row a run; made anew.
+core::Status WriteSqlite(const std::filesystem::path& path, const StudyPlan& plan, std::span<const Row> rows);
+core::Status WriteReport(const std::filesystem::path& path, const StudyPlan& plan, std::span<const Row> rows,
+                         const StudySummary& summary);
+
+}  // namespace trocar::study

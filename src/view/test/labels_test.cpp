@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/view/labels.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <set>
+
+#include "trocar/agent/surgeon.h"
+#include "trocar/render/offscreen_context.h"
+#include "trocar/scene/task.h"
+#include "trocar/view/laparoscope_view.h"
+
+namespace trocar::view {
+namespace {
+
+using math::Vec3;
+
+constexpr int kWidth = 320, kHeight = 240;
+constexpr double kNear = 0.004;              // m, before the lens: what the renderer cuts off
+constexpr double kDepthTolerance = 0.00002;  // m, of single precision
+
+bool IsOrgan(LabelClass label) {
+  return label >= LabelClass::kLiver && label <= LabelClass::kArtery;
+}
+bool IsFine(LabelClass label) {
+  return label >= LabelClass::kConnectiveTissue && label <= LabelClass::kRinse;
+}
+
+/// What a ray through the middle of each pixel meets first.
+struct RayCast {
+  std::vector<double> depth;
+  std::vector<std::uint16_t> label;
+  std::vector<Vec3> normal;  // camera frame, of the triangle
+};
+
+RayCast CastRays(const std::vector<LabelledMesh>& meshes, const math::Pose& X_world_camera, double focal) {
+  RayCast cast;
+  cast.depth.assign(kWidth * kHeight, std::numeric_limits<double>::infinity());
+  cast.label.assign(kWidth * kHeight, 0);
+  cast.normal.assign(kWidth * kHeight, {});
+  const math::Pose X_camera_world = math::Inverse(X_world_camera);
+  for (const LabelledMesh& labelled : meshes) {
+    if (labelled.label == 0) continue;
+    std::vector<Vec3> points;
+    for (const Vec3& p : labelled.mesh.positions) points.push_back(X_camera_world * p);
+    for (const auto& t : labelled.mesh.triangles) {
+      const Vec3 &a = points[t[0]], &b = points[t[1]], &c = points[t[2]];
+      const Vec3 e1 = b - a, e2 = c - a, normal = math::Cross(e1, e2);
+      if (math::Dot(normal, a) >= 0) continue;  // seen from behind
+      int x0 = 0, x1 = kWidth - 1, y0 = 0, y1 = kHeight - 1;
+      if (std::max({a.z, b.z, c.z}) < -kNear) {
+        const auto column = [&](const Vec3& p) { return 0.5 * kWidth - 0.5 - focal * p.x / p.z; };
+        const auto row = [&](const Vec3& p) { return 0.5 * kHeight - 0.5 + focal * p.y / p.z; };
+        x0 = std::max(x0, static_cast<int>(std::floor(std::min({column(a), column(b), column(c)}))));
+        x1 = std::min(x1, static_cast<int>(std::ceil(std::max({column(a), column(b), column(c)}))));
+        y0 = std::max(y0, static_cast<int>(std::floor(std::min({row(a), row(b), row(c)}))));
+        y1 = std::min(y1, static_cast<int>(std::ceil(std::max({row(a), row(b), row(c)}))));
+      }
+      for (int y = y0; y <= y1; ++y) {
+        for (int x = x0; x <= x1; ++x) {
+          const Vec3 ray{(x + 0.5 - 0.5 * kWidth) / focal, -(y + 0.5 - 0.5 * kHeight) / focal, -1};
+          const Vec3 p = math::Cross(ray, e2);
+          const double determinant = math::Dot(e1, p);
+          if (determinant == 0) continue;
+          const double u = math::Dot(-a, p) / determinant;
+          const Vec3 q = math::Cross(-a, e1);
+          const double v = math::Dot(ray, q) / determinant, depth = math::Dot(e2, q) / determinant;
+          const auto i = static_cast<std::size_t>(y * kWidth + x);
+          if (u < 0 || v < 0 || u + v > 1 || depth < kNear || depth >= cast.depth[i]) continue;
+          cast.depth[i] = depth;
+          cast.label[i] = labelled.label;
+          cast.normal[i] = math::Normalized(normal);
+        }
+      }
+    }
+  }
+  return cast;
+}
+
+class LabelsTest : public testing::Test {
+ protected:
+  void Show(std::shared_ptr<const scene::Scene> scene, int ticks) {
+    auto simulation = simulation::Simulation::Make(scene, 1);
+    ASSERT_TRUE(simulation.ok()) << simulation.error().Text();
+    auto surgeon = agent::MakeSurgeon("expert", scene, 1);
+    ASSERT_TRUE(surgeon.ok()) << surgeon.error().Text();
+    for (int i = 0; i < ticks; ++i) simulation->Step((*surgeon)->Act(simulation->GetSnapshot()));
+    auto context = render::OffscreenContext::Make();
+    ASSERT_TRUE(context.ok()) << context.error().Text();
+    context_.emplace(std::move(*context));
+    auto view = LaparoscopeView::Make(*scene, simulation->Surfaces(), simulation->GetSnapshot(),
+                                      simulation->Strands());
+    ASSERT_TRUE(view.ok()) << view.error().Text();
+    view_.emplace(std::move(*view));
+    view_->SetOptions({.has_mask = has_mask_});
+    view_->Update(simulation->GetSnapshot());
+    const auto drawn = view_->DrawGeometry(kWidth, kHeight, picture_);
+    ASSERT_TRUE(drawn.ok()) << drawn.error().Text();
+    for (const std::uint16_t label : picture_.labels) seen_.insert(ClassOf(label));
+  }
+  static std::shared_ptr<const scene::Scene> Operation() {
+    auto scene = scene::FindOperation("cholecystectomy", {}, 1);
+    EXPECT_TRUE(scene.ok() && *scene);
+    return std::make_shared<const scene::Scene>(std::move(**scene));
+  }
+
+  bool has_mask_ = false;
+  std::optional<render::OffscreenContext> context_;
+  std::optional<LaparoscopeView> view_;
+  render::GeometryPicture picture_;
+  std::set<LabelClass> seen_;
+};
+
+TEST_F(LabelsTest, AgreeWithRaysOnEveryVisibleOrganPixelOfTheBuiltInPatient) {
+  Show(Operation(), 360);
+  const RayCast cast =
+      CastRays(view_->ReadMeshes(), view_->GetFrame().camera.X_world_camera, view_->FocalLength(kHeight));
+  std::size_t organ = 0, same = 0, same_depth = 0, same_side = 0;
+  for (std::size_t i = 0; i < picture_.labels.size(); ++i) {
+    const std::uint16_t drawn = picture_.labels[i], met = cast.label[i];
+    // what fibres and drops hide is seen by no ray: they are no surfaces
+    if (!IsOrgan(ClassOf(drawn)) && (!IsOrgan(ClassOf(met)) || IsFine(ClassOf(drawn)))) continue;
+    ++organ;
+    if (drawn != met) continue;
+    ++same;
+    if (std::abs(picture_.depth[i] - cast.depth[i]) < kDepthTolerance) ++same_depth;
+    const Vec3 normal{picture_.normals[3 * i], picture_.normals[3 * i + 1], picture_.normals[3 * i + 2]};
+    EXPECT_NEAR(math::Norm(normal), 1.0, 1e-4);
+    if (math::Dot(normal, cast.normal[i]) > 0.5) ++same_side;
+  }
+  ASSERT_GT(organ, picture_.labels.size() / 5) << "the organs are in the picture";
+  const auto share = [&](std::size_t count) {
+    return static_cast<double>(count) / static_cast<double>(organ);
+  };
+  RecordProperty("organ_pixels", static_cast<int>(organ));
+  RecordProperty("wrong_labels", static_cast<int>(organ - same));
+  EXPECT_GE(share(same), 0.999);
+  EXPECT_GE(share(same_depth), 0.998);
+  EXPECT_GE(share(same_side), 0.98);
+}
+
+TEST_F(LabelsTest, NameOrgansAndScenery) {
+  Show(Operation(), 360);
+  for (const LabelClass label : {LabelClass::kLiver, LabelClass::kGallbladder, LabelClass::kOmentum,
+                                 LabelClass::kAbdominalWall, LabelClass::kTriangleFat})
+    EXPECT_EQ(seen_.count(label), 1U) << NameOf(label);
+  EXPECT_EQ(seen_.count(LabelClass::kNothing), 0U) << "the wall encloses everything";
+}
+
+TEST_F(LabelsTest, AreNothingOutsideOfTheRoundPicture) {
+  has_mask_ = true;
+  Show(Operation(), 1);
+  EXPECT_EQ(picture_.labels.front(), 0);
+  EXPECT_EQ(picture_.depth.front(), 0.0f);
+  EXPECT_NE(picture_.labels[kWidth * kHeight / 2 + kWidth / 2], 0);
+}
+
+TEST_F(LabelsTest, TellTheThingsOfATaskApart) {
+  const auto path = scene::FindTask("peg_transfer");
+  ASSERT_TRUE(path.ok());
+  auto scene = scene::ReadTask(*path, {});
+  ASSERT_TRUE(scene.ok());
+  Show(std::make_shared<const scene::Scene>(std::move(*scene)), 240);
+  std::set<std::uint8_t> objects;
+  for (const std::uint16_t label : picture_.labels)
+    if (ClassOf(label) == LabelClass::kObject) objects.insert(InstanceOf(label));
+  EXPECT_GT(objects.size(), 6U) << "pegs and rings";
+  EXPECT_EQ(seen_.count(LabelClass::kTrainerBox), 1U);
+  EXPECT_EQ(seen_.count(LabelClass::kGrasper), 1U);
+}
+
+TEST(LabelClass, NamesAreWholeAndDiffer) {
+  std::set<std::string_view> names;
+  for (std::size_t i = 0; i < kLabelClassCount; ++i) names.insert(NameOf(static_cast<LabelClass>(i)));
+  EXPECT_EQ(names.size(), kLabelClassCount);
+  EXPECT_EQ(names.count(""), 0U);
+}
+
+}  // namespace
+}  // namespace trocar::view
