@@ -83,7 +83,7 @@ TEST_F(CommandLine, DoctorSaysOfEachCheckWhatItFoundAndMeans) {
     is_missing = is_missing || check.at("state") == "missing";
   }
   EXPECT_THAT(names, testing::IsSupersetOf({"data", "opengl", "video", "display", "window", "gpu",
-                                            "real-time", "input", "serial", "3d-mouse"}));
+                                            "real-time", "input", "serial", "3d-mouse", "sound"}));
   EXPECT_EQ(result.status, is_missing ? 1 : 0);
   EXPECT_THAT(Run({"doctor"}).out, HasSubstr("opengl"));
 }

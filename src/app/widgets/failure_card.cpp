@@ -3,6 +3,8 @@
 
 #include <string>
 
+#include "trocar/core/translate.h"
+
 namespace trocar::app {
 
 FailureCard::FailureCard() : Gtk::Box(Gtk::Orientation::VERTICAL) {
@@ -26,8 +28,12 @@ void FailureCard::Show(const core::Error& error) {
     append(*label);
   };
   line(std::string(core::CodeText(error.code)), "code");
+  // what the code means, in the person's language; where it happened and what mends it is English
+  if (const std::string meaning = core::TranslatedMeaning(error.code); !meaning.empty())
+    line(meaning, "text");
   line(error.message, "text");
-  line("`trocar doctor` checks graphics, display and data and says how to mend them.", "text");
+  line(core::Translate("`trocar doctor` checks graphics, display and data and says how to mend them."),
+       "text");
   set_visible(true);
 }
 

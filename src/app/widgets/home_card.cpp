@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "home_card.h"
 
+#include "trocar/core/translate.h"
 #include "trocar/gui/labels.h"
 
 namespace trocar::app {
@@ -16,7 +17,7 @@ HomeCard::HomeCard() : Gtk::Box(Gtk::Orientation::VERTICAL) {
   set_valign(Gtk::Align::CENTER);
   set_spacing(8);
   set_size_request(kWidth, -1);
-  auto* title = Gtk::make_managed<Gtk::Label>("What do you want to train?");
+  auto* title = Gtk::make_managed<Gtk::Label>(core::Translate("What do you want to train?"));
   title->add_css_class("page-title");
   title->set_xalign(0);
   append(*title);
@@ -26,12 +27,12 @@ HomeCard::HomeCard() : Gtk::Box(Gtk::Orientation::VERTICAL) {
   who_.add_css_class("name");
   who_.set_xalign(0);
   who_.set_hexpand(true);
-  name_.set_placeholder_text("Your name, or nothing");
-  name_.set_tooltip_text(
-      "Your results are kept under a pseudonym; the name stays in a protected file on this computer");
+  name_.set_placeholder_text(core::Translate("Your name, or nothing"));
+  name_.set_tooltip_text(core::Translate(
+      "Your results are kept under a pseudonym; the name stays in a protected file on this computer"));
   const auto give = [this] { signal_person_.emit(name_.get_text()); };
   name_.signal_activate().connect(give);
-  auto* be = Gtk::make_managed<Gtk::Button>("That is me");
+  auto* be = Gtk::make_managed<Gtk::Button>(core::Translate("That is me"));
   be->signal_clicked().connect(give);
   person->append(who_);
   person->append(name_);
@@ -46,8 +47,8 @@ HomeCard::HomeCard() : Gtk::Box(Gtk::Orientation::VERTICAL) {
   append(problem_);
 
   for (const HomeEntry& entry : HomeEntries()) {
-    Row row{Gtk::make_managed<Gtk::Button>(), Gtk::make_managed<Gtk::Label>(entry.title),
-            Gtk::make_managed<Gtk::Label>(entry.about)};
+    Row row{Gtk::make_managed<Gtk::Button>(), Gtk::make_managed<Gtk::Label>(core::Translate(entry.title)),
+            Gtk::make_managed<Gtk::Label>(core::Translate(entry.about))};
     row.title->add_css_class("key-text");
     row.about->add_css_class("name");
     auto* text = Gtk::make_managed<Gtk::Box>(Gtk::Orientation::VERTICAL);
@@ -64,11 +65,11 @@ HomeCard::HomeCard() : Gtk::Box(Gtk::Orientation::VERTICAL) {
 }
 
 void HomeCard::Show(const HomePage& page) {
-  gui::SetTextOrHide(who_, page.who.empty() ? "" : "You are: " + page.who);
+  gui::SetTextOrHide(who_, page.who.empty() ? "" : core::Translate("You are: ") + page.who);
   gui::SetTextOrHide(problem_, page.problem ? page.problem->Text() : "");
   rows_[HomeChoice::kContinue].button->set_visible(!page.last.empty());
   rows_[HomeChoice::kContinue].about->set_text(page.last);
-  rows_[HomeChoice::kTutorial].title->set_text("Tutorial: " + page.tutorial);
+  rows_[HomeChoice::kTutorial].title->set_text(core::Translate("Tutorial: ") + page.tutorial);
   gui::SetClass(*rows_[HomeChoice::kTutorial].button, "primary", page.is_tutorial_suggested);
   gui::SetClass(*rows_[HomeChoice::kContinue].button, "primary", !page.is_tutorial_suggested);
 }

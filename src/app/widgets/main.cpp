@@ -21,6 +21,7 @@
 #include "trocar/centre/centre_window.h"
 #include "trocar/core/log.h"
 #include "trocar/core/partial_path.h"
+#include "trocar/core/translate.h"
 #include "trocar/editor/contour_window.h"
 #include "trocar/editor/patient_editor_window.h"
 #include "trocar/gui/composition.h"
@@ -58,6 +59,7 @@ class Program {
     // in files, certificates and SQL numbers have a point, whatever the language of the desktop
     std::locale::global(std::locale(std::locale(), std::locale::classic(), std::locale::numeric));
     std::setlocale(LC_NUMERIC, "C");
+    core::UseLanguage(core::FindLocaleFolder());  // again: the line before has taken the language back
     application_ = application.get();
     application->signal_activate().connect([&] {
       ApplyLook();
@@ -277,6 +279,7 @@ class Program {
 
 int main(int argc, char** argv) {
   using namespace trocar;
+  core::UseLanguage(core::FindLocaleFolder());
   const core::Result<app::CommandLine> command = app::ParseCommandLine(argc, argv);
   if (!command) {
     std::fprintf(stderr, "%s\n", command.error().Text().c_str());

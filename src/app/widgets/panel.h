@@ -14,6 +14,8 @@ class Panel : public Gtk::ScrolledWindow, private PanelScreen {
   Panel();
 
   PanelPresenter& Presenter() { return presenter_; }
+  /// Adds a card below the others.
+  void Add(gui::Card& card) { cards_.append(card); }
 
  private:
   // PanelScreen

@@ -3,6 +3,7 @@
 
 #include <string_view>
 
+#include "trocar/core/translate.h"
 #include "trocar/gui/labels.h"
 
 namespace trocar::app {
@@ -14,7 +15,7 @@ constexpr int kNameWidth = 104, kValueWidth = 72;
 constexpr double kSliderStep = 1.0 / 400;
 constexpr const char* kSolverGroup = "Solver";  // of SettingRows(): the solver is chosen there, too
 
-Gtk::Label* MakeName(const char* text, int width) {
+Gtk::Label* MakeName(const std::string& text, int width) {
   auto* name = Gtk::make_managed<Gtk::Label>(text);
   gui::SetStyle(*name, "name");
   name->set_size_request(width, -1);
@@ -60,10 +61,10 @@ void TaskCard::Show(const TaskReadOut& page) {
 // hands
 
 HandsCard::HandsCard() : gui::Card("Force on the instruments") {
-  set_tooltip_text(
+  set_tooltip_text(core::Translate(
       "Force of the tissue on each instrument. The marks show where it becomes a warning and where tissue "
       "may tear: "
-      "gallbladder 8 and 12 N, liver 3 and 6 N.");
+      "gallbladder 8 and 12 N, liver 3 and 6 N."));
   for (Row& row : rows_) {
     auto* words = Gtk::make_managed<Gtk::Box>(Gtk::Orientation::VERTICAL);
     words->set_hexpand(true);
@@ -80,8 +81,8 @@ HandsCard::HandsCard() : gui::Card("Force on the instruments") {
     append(row.bar);
     if (&row != &rows_.back()) row.bar.set_margin_bottom(6);
   }
-  rows_[scene::kLeft].name.set_text("1  Left hand");
-  rows_[scene::kRight].name.set_text("2  Right hand");
+  rows_[scene::kLeft].name.set_text(core::Translate("1  Left hand"));
+  rows_[scene::kRight].name.set_text(core::Translate("2  Right hand"));
 }
 
 void HandsCard::Show(const HandPages& page) {
@@ -108,8 +109,11 @@ OperationCard::OperationCard(PanelPresenter& presenter) : gui::Card("Operation")
   blood_ = &AddLine("Blood", "Lost so far, and what of it lies in the abdomen [mL]");
   bile_ = &AddLine("Bile", "Lost so far, and what of it lies in the abdomen [mL]");
   stones_ = &AddLine("Stones", "Out of the gallbladder through a hole in its wall");
-  assistant_.set_model(Gtk::StringList::create({"wait", "retract the fundus", "relax", "release"}));
-  assistant_.set_tooltip_text("Command to the assistant with the third grasper (U: the next one)");
+  assistant_.set_model(
+      Gtk::StringList::create({core::Translate("wait"), core::Translate("retract the fundus"),
+                               core::Translate("relax"), core::Translate("release")}));
+  assistant_.set_tooltip_text(
+      core::Translate("Command to the assistant with the third grasper (U: the next one)"));
   assistant_.property_selected().signal_changed().connect([this, &presenter] {
     if (!is_showing_) presenter.CommandAssistant(assistant_.get_selected());
   });
@@ -120,11 +124,15 @@ OperationCard::OperationCard(PanelPresenter& presenter) : gui::Card("Operation")
 void OperationCard::AddTray(PanelPresenter& presenter, scene::Hand hand) {
   Gtk::DropDown& tray = trays_[static_cast<std::size_t>(hand)];
   tray.set_hexpand(true);
-  tray.set_tooltip_text("Exchanges the tool through this trocar (X next, Z previous, for the chosen hand)");
+  tray.set_tooltip_text(
+      core::Translate("Exchanges the tool through this trocar (X next, Z previous, for the chosen hand)"));
   tray.property_selected().signal_changed().connect([this, &presenter, &tray, hand] {
     if (!is_showing_) presenter.ChooseTool(hand, tray.get_selected());
   });
-  append(gui::MakeRow(0, {MakeName(hand == scene::kLeft ? "Left tool" : "Right tool", kNameWidth), &tray}));
+  append(gui::MakeRow(
+      0, {MakeName(hand == scene::kLeft ? core::Translate("Left tool") : core::Translate("Right tool"),
+                   kNameWidth),
+          &tray}));
 }
 
 void OperationCard::ShowScene(const ScenePage& page) {
@@ -169,7 +177,7 @@ void SettingsCards::AddCard(PanelPresenter& presenter, const char* group) {
   cards_.push_back(std::make_unique<gui::Card>(group));
   if (is_first) {
     defaults_.add_css_class("small");
-    defaults_.set_tooltip_text("Puts every slider back to what the scene says");
+    defaults_.set_tooltip_text(core::Translate("Puts every slider back to what the scene says"));
     defaults_.set_focus_on_click(false);
     defaults_.signal_clicked().connect([&presenter] { presenter.RestoreSettings(); });
     cards_.back()->SetTitleEnd(defaults_);
@@ -179,9 +187,10 @@ void SettingsCards::AddCard(PanelPresenter& presenter, const char* group) {
 
 void SettingsCards::AddSolver(PanelPresenter& presenter) {
   std::vector<std::string> names;
-  for (const SolverChoice& choice : SolverChoices()) names.emplace_back(choice.label);
+  for (const SolverChoice& choice : SolverChoices()) names.push_back(core::Translate(choice.label));
   SetNames(solver_, names);
-  solver_.set_tooltip_text("Chebyshev: fast, the one to operate with. Relaxation: the paper's reference.");
+  solver_.set_tooltip_text(
+      core::Translate("Chebyshev: fast, the one to operate with. Relaxation: the paper's reference."));
   solver_.property_selected().signal_changed().connect([this, &presenter] {
     if (!is_showing_) presenter.ChooseSolver(solver_.get_selected());
   });
@@ -201,8 +210,9 @@ void SettingsCards::AddRow(PanelPresenter& presenter, std::size_t place) {
   row.slider.signal_value_changed().connect([this, &presenter, &row, place] {
     if (!is_showing_) presenter.SetSetting(place, row.slider.get_value());
   });
-  Gtk::Box& line = gui::MakeRow(0, {MakeName(setting.label, kNameWidth), &row.slider, &row.value});
-  line.set_tooltip_text(setting.tooltip);
+  Gtk::Box& line =
+      gui::MakeRow(0, {MakeName(core::Translate(setting.label), kNameWidth), &row.slider, &row.value});
+  line.set_tooltip_text(core::Translate(setting.tooltip));
   cards_.back()->append(line);
 }
 

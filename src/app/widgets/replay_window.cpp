@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "replay_window.h"
 
+#include <limits>
 #include <string>
 #include <utility>
 
+#include "picture_folder.h"
 #include "trocar/gui/card.h"
 #include "trocar/gui/labels.h"
+#include "trocar/gui/window_screenshot.h"
 
 namespace trocar::app {
 namespace {
@@ -27,7 +30,8 @@ const char* StyleOf(ReplayMark::Kind kind) {
 
 ReplayWindow::ReplayWindow(const Options& options, std::function<void(Branch)> take_over)
     : bar_(ReplayCommands(), tips_, [this](const ReplayCommand& command) { presenter_->Do(command.action); }),
-      take_over_(std::move(take_over)) {
+      take_over_(std::move(take_over)),
+      recording_(options.replay) {
   set_title("Trocar: replay");
   add_css_class("trocar");
   set_default_size(kWidth, kHeight);
@@ -132,6 +136,7 @@ void ReplayWindow::MakeContent() {
   auto* all = Gtk::make_managed<Gtk::Box>(Gtk::Orientation::VERTICAL);
   all->append(*middle);
   all->append(*line);
+  all->append(film_bar_);
   all->append(*status);
   set_child(*all);
 }
@@ -230,12 +235,51 @@ void ReplayWindow::TakeOver(Branch branch) {
 }
 
 void ReplayWindow::DoInWindow(ReplayAction action) {
-  if (action == ReplayAction::kToggleFullscreen) {
-    is_fullscreen() ? unfullscreen() : fullscreen();
-  } else if (action == ReplayAction::kClose) {
-    // never within a frame, which holds the GLArea
-    Glib::signal_timeout().connect_once([this] { close(); }, 0);
+  switch (action) {
+    case ReplayAction::kToggleFullscreen:
+      is_fullscreen() ? unfullscreen() : fullscreen();
+      break;
+    case ReplayAction::kSavePicture:
+      // outside of the frame, which holds the GLArea
+      Glib::signal_timeout().connect_once([this] { SavePicture(); }, 0);
+      break;
+    case ReplayAction::kSaveClip:
+      if (const auto file = MakePictureName(".webm"); file.ok()) {
+        StartFilm(presenter_->Time(), kClipSeconds, *file);
+      } else {
+        presenter_->Tell(file.error().Text(), true);
+      }
+      break;
+    case ReplayAction::kSaveVideo:
+      file_dialog_.Ask(
+          *this, {"Save the video", "", recording_.stem().string() + ".webm", {{"Video (WebM)", "*.webm"}}},
+          [this](const std::filesystem::path& file) {
+            StartFilm(std::numeric_limits<double>::infinity(), 0, file);
+          });
+      break;
+    case ReplayAction::kClose:
+      // never within a frame, which holds the GLArea
+      Glib::signal_timeout().connect_once([this] { close(); }, 0);
+      break;
+    default:
+      break;
   }
+}
+
+void ReplayWindow::SavePicture() {
+  const auto file = MakePictureName(".png");
+  const core::Status saved = file.ok() ? gui::SaveWidgetPicture(sides_[ReplayPresenter::kOwn].picture, *file)
+                                       : core::Status(file.error());
+  presenter_->Tell(saved.ok() ? "Saved " + file->string() : saved.error().Text(), !saved.ok());
+}
+
+void ReplayWindow::StartFilm(double until, double last_seconds, const std::filesystem::path& video) {
+  FilmRequest request;
+  request.recording = recording_;
+  request.video = video;
+  request.until = until;
+  request.last_seconds = last_seconds;
+  film_bar_.Start(std::move(request));
 }
 
 }  // namespace trocar::app

@@ -10,11 +10,13 @@
 #include <optional>
 
 #include "failure_card.h"
+#include "film_bar.h"
 #include "picture.h"
 #include "recording_chooser.h"
 #include "replay_bar.h"
 #include "trocar/app/replay_presenter.h"
 #include "trocar/gui/command_bar.h"
+#include "trocar/gui/file_dialog.h"
 #include "trocar/gui/help_card.h"
 
 namespace trocar::app {
@@ -39,6 +41,8 @@ class ReplayWindow : public Gtk::ApplicationWindow, private ReplayScreen {
   void MakeContent();
   void MakeSide(std::size_t side);
   void MakeRoutes();
+  void SavePicture();
+  void StartFilm(double until, double last_seconds, const std::filesystem::path& video);
   bool OnKey(guint keyval, guint keycode, Gdk::ModifierType state);
   bool OnFrame(const Glib::RefPtr<Gdk::FrameClock>& clock);
 
@@ -63,6 +67,9 @@ class ReplayWindow : public Gtk::ApplicationWindow, private ReplayScreen {
   Gtk::Label clock_, state_, message_;
   std::function<void(Branch)> take_over_;
   Glib::Dispatcher loaded_;
+  gui::FileDialog file_dialog_;
+  std::filesystem::path recording_;
+  FilmBar film_bar_{[this](const std::string& text, bool is_warning) { presenter_->Tell(text, is_warning); }};
   std::unique_ptr<ReplayPresenter> presenter_;
 };
 

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "trocar/app/read_outs.h"
+#include "trocar/core/translate.h"
 
 namespace trocar::app {
 namespace {
@@ -33,17 +34,18 @@ ResultCard::ResultCard() : Gtk::Box(Gtk::Orientation::VERTICAL) {
   scroller->set_size_request(kWidth, -1);
   scroller->set_child(lines_);
   append(*scroller);
-  auto* note = Gtk::make_managed<Gtk::Label>("Training feedback, not certified assessment.");
+  auto* note = Gtk::make_managed<Gtk::Label>(core::Translate("Training feedback, not certified assessment."));
   note->add_css_class("fine");
   note->set_xalign(0);
   append(*note);
 
   auto* buttons = Gtk::make_managed<Gtk::Box>();
   buttons->set_spacing(8);
-  const std::pair<const char*, sigc::signal<void()>*> all[] = {{"Again", &signal_again_},
-                                                               {"Other task", &signal_other_},
-                                                               {"Save …", &signal_save_},
-                                                               {"Close", &signal_closed_}};
+  const std::pair<std::string, sigc::signal<void()>*> all[] = {
+      {core::Translate("Again"), &signal_again_},
+      {core::Translate("Other task"), &signal_other_},
+      {core::Translate("Save …"), &signal_save_},
+      {core::Translate("Close"), &signal_closed_}};
   for (const auto& one : all) {
     auto* button = Gtk::make_managed<Gtk::Button>(one.first);
     if (one.second == &signal_again_) button->add_css_class("primary");
@@ -71,19 +73,22 @@ void ResultCard::Show(const TaskResult& result) {
   while (Gtk::Widget* old = lines_.get_first_child()) lines_.remove(*old);
   line_count_ = 0;
   title_.set_text(result.task + ", " + result.level +
-                  (result.is_demonstration ? ", shown by the expert" : ""));
-  verdict_.set_text(result.verdict + " after " + FormatTime(result.time));
-  score_.set_text("Score " + FormatScore(result));
+                  (result.is_demonstration ? core::Translate(", shown by the expert") : std::string()));
+  verdict_.set_text(result.verdict + core::Translate(" after ") + FormatTime(result.time));
+  score_.set_text(core::Translate("Score ") + FormatScore(result));
   const bool is_completed = result.phase == scene::TaskPhase::kCompleted;
   score_.set_css_classes({is_completed ? "force" : "note"});
   for (const TaskResult::GoalRow& goal : result.goals)
     AddLine(goal.is_done ? "✓" : "—", goal.name, "", "meaning");
   if (result.errors.empty())
-    AddLine("", is_completed ? "No errors." : "No errors, but not all goals were reached.", "", "meaning");
+    AddLine("",
+            is_completed ? core::Translate("No errors.")
+                         : core::Translate("No errors, but not all goals were reached."),
+            "", "meaning");
   for (const TaskResult::ErrorRow& error : result.errors)
     AddLine(FormatTime(error.time), error.about + (error.by.empty() ? "" : " (" + error.by + ")"),
             error.severity, "note");
-  if (!result.recording.empty()) AddLine("", "Recorded: " + result.recording, "", "meaning");
+  if (!result.recording.empty()) AddLine("", core::Translate("Recorded: ") + result.recording, "", "meaning");
 }
 
 }  // namespace trocar::app

@@ -4,9 +4,12 @@
 #include <string>
 #include <utility>
 
+#include "picture_folder.h"
 #include "play_screenshot.h"
 #include "trocar/app/guides.h"
+#include "trocar/core/user_folder.h"
 #include "trocar/gui/labels.h"
+#include "trocar/gui/window_screenshot.h"
 
 namespace trocar::app {
 namespace {
@@ -31,6 +34,7 @@ SimulatorWindow::SimulatorWindow(const Options& options, const core::Stopwatch& 
       options, since_start, static_cast<SimulatorScreen&>(*this), [this] { loaded_.emit(); },
       services_.hooks);
   MakeRoutes();
+  MakeSound(options);
   panel_.set_sensitive(false);  // until there is something to set
   if (options.is_fullscreen) fullscreen();
   picture_.grab_focus();
@@ -134,6 +138,7 @@ void SimulatorWindow::MakeContent() {
   auto* all = Gtk::make_managed<Gtk::Box>(Gtk::Orientation::VERTICAL);
   all->append(*middle);
   all->append(haptics_);
+  all->append(film_bar_);
   all->append(*status);
   set_child(*all);
 }
@@ -181,6 +186,7 @@ bool SimulatorWindow::OnFrame(const Glib::RefPtr<Gdk::FrameClock>& clock) {
     overlay.trails = MakeGuides(control.GetScene(), control.Surfaces(), *work.snapshot);
   picture_.SetOverlay(std::move(overlay));
   picture_.queue_render();
+  HearFrame(*work.snapshot);
   if (work.are_forces_due) {
     panel_.Presenter().ShowState(*work.snapshot);
   }
@@ -229,6 +235,7 @@ void SimulatorWindow::Show(const SimulatorPage& page) {
 void SimulatorWindow::UseControl(SessionControl* control) {
   device_page_.reset();
   picture_.SetSnapshot(nullptr);
+  if (sound_ != nullptr) sound_->Rest();
   if (control != nullptr) {
     picture_.SetScene(&control->GetScene(), control->Surfaces(), control->Strands());
   } else {
@@ -251,6 +258,7 @@ std::vector<std::string> SimulatorWindow::UseKeys(const std::map<std::string, de
 }
 
 void SimulatorWindow::DoInWindow(Action action) {
+  if (ChangeSound(action)) return;
   switch (action) {
     case Action::kToggleFullscreen:
       is_fullscreen() ? unfullscreen() : fullscreen();
@@ -263,6 +271,13 @@ void SimulatorWindow::DoInWindow(Action action) {
       break;
     case Action::kOpenCentre:
       if (services_.open_centre) services_.open_centre();
+      break;
+    case Action::kSavePicture:
+      // outside of the frame, which holds the GLArea
+      Glib::signal_timeout().connect_once([this] { SavePicture(); }, 0);
+      break;
+    case Action::kSaveClip:
+      SaveClip();
       break;
     case Action::kQuit:
       // never within a frame, which holds the GLArea
@@ -317,6 +332,72 @@ void SimulatorWindow::OpenDevices() {
   device_page_->set_transient_for(*this);
   get_application()->add_window(*device_page_);
   device_page_->present();
+}
+
+void SimulatorWindow::SavePicture() {
+  const auto file = MakePictureName(".png");
+  const core::Status saved = file.ok() ? gui::SaveWidgetPicture(picture_, *file) : core::Status(file.error());
+  presenter_->Tell(saved.ok() ? "Saved " + file->string() : saved.error().Text(), !saved.ok());
+}
+
+void SimulatorWindow::SaveClip() {
+  const auto recording = presenter_->Control()->Recording();
+  if (!recording || recording->failure)
+    return presenter_->Tell("This attempt is not recorded, so that there is no clip of it.", true);
+  const auto file = MakePictureName(".webm");
+  if (!file.ok()) return presenter_->Tell(file.error().Text(), true);
+  FilmRequest request;
+  request.recording = recording->path;
+  request.video = *file;
+  request.last_seconds = kClipSeconds;
+  film_bar_.Start(std::move(request));
+}
+
+/// A run without a person is silent.
+void SimulatorWindow::MakeSound(const Options& options) {
+  panel_.Add(sound_card_);
+  if (!options.run.IsAttended()) return;
+  const std::filesystem::path folder =
+      options.settings.empty() ? core::FindConfigFolder() : options.settings.parent_path();
+  sound_ = std::make_unique<WindowSound>(folder / "sound.json");
+  sound_card_.Show(sound_->Settings(), sound_->Describe());
+  sound_card_.SignalChanged().connect([this](const sound::SoundSettings& settings) {
+    sound_->Set(settings);
+    sound_card_.Show(sound_->Settings(), sound_->Describe());
+  });
+}
+
+void SimulatorWindow::HearFrame(const simulation::Snapshot& snapshot) {
+  if (sound_ == nullptr) return;
+  SessionControl& control = *presenter_->Control();
+  sound_->Hear(control.GetScene(), snapshot, control.GetSentInput(), !control.IsPaused());
+  // what an instructor would say: what to do, or that something went wrong
+  const SimulatorPage& page = presenter_->Page();
+  sound_->Say(!page.tutorial.empty() ? page.tutorial : page.is_event_warning ? page.event : std::string());
+}
+
+/// \return whether the action is one of the sound's
+bool SimulatorWindow::ChangeSound(Action action) {
+  if (sound_ == nullptr) return false;
+  switch (action) {
+    case Action::kToggleSound:
+      sound_->ToggleMute();
+      break;
+    case Action::kToggleSpeech:
+      sound_->ToggleSpeech();
+      break;
+    case Action::kLouder:
+      sound_->ChangeVolume(1);
+      break;
+    case Action::kQuieter:
+      sound_->ChangeVolume(-1);
+      break;
+    default:
+      return false;
+  }
+  sound_card_.Show(sound_->Settings(), sound_->Describe());
+  presenter_->Tell(sound_->Describe());
+  return true;
 }
 
 void SimulatorWindow::ChooseAndSaveResult() {

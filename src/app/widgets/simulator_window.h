@@ -11,6 +11,7 @@
 
 #include "device_page.h"
 #include "failure_card.h"
+#include "film_bar.h"
 #include "hand_events.h"
 #include "home_card.h"
 #include "panel.h"
@@ -18,6 +19,7 @@
 #include "recording_chooser.h"
 #include "replay_window.h"
 #include "result_card.h"
+#include "sound_card.h"
 #include "task_chooser.h"
 #include "trocar/app/simulator_presenter.h"
 #include "trocar/gui/command_bar.h"
@@ -63,6 +65,11 @@ class SimulatorWindow : public Gtk::ApplicationWindow, private SimulatorScreen {
   void OpenDevices();
   void SwitchPane();
   void ChooseAndSaveResult();
+  void SavePicture();
+  void SaveClip();
+  void MakeSound(const Options& options);
+  void HearFrame(const simulation::Snapshot& snapshot);
+  bool ChangeSound(Action action);
 
   // SimulatorScreen
   void Show(const SimulatorPage& page) override;
@@ -93,12 +100,15 @@ class SimulatorWindow : public Gtk::ApplicationWindow, private SimulatorScreen {
   TaskChooser chooser_;
   RecordingChooser recordings_{"Watch"};
   ResultCard result_card_;
+  SoundCard sound_card_;
   FailureCard failure_card_;
   Gtk::Label badge_, hint_, event_, state_, haptics_, mode_, progress_, tutorial_, asked_;
   std::unique_ptr<HandEvents> hands_;
   Glib::Dispatcher loaded_;
   gui::FileDialog file_dialog_;
   std::unique_ptr<SimulatorPresenter> presenter_;
+  FilmBar film_bar_{[this](const std::string& text, bool is_warning) { presenter_->Tell(text, is_warning); }};
+  std::unique_ptr<WindowSound> sound_;       // null where nobody is there to hear
   std::unique_ptr<DevicePage> device_page_;  // of the presenter's control
   std::unique_ptr<ReplayWindow> replay_;
 };

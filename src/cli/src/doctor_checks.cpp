@@ -26,6 +26,8 @@
 #include "trocar/render/offscreen_context.h"
 #include "trocar/render/video_writer.h"
 #include "trocar/scene/scene.h"
+#include "trocar/sound/player.h"
+#include "trocar/sound/speech.h"
 #include "trocar/tissue_cuda/gpu_solver.h"
 
 namespace trocar::cli {
@@ -343,6 +345,20 @@ Finding CheckThreeDMouse(const fs::path& root) {
           "not needed: mouse and keyboard hold the instruments too", ""};
 }
 
+Finding CheckSound(const fs::path& root, const std::string& speaker) {
+  const std::string output = sound::FindSoundOutput(root);
+  if (output.empty()) {
+    return {"sound", Health::kLimited, "no sound card", "the simulator's window is silent; all else works",
+            "connect a sound card, or log in where PulseAudio or PipeWire runs"};
+  }
+  if (speaker.empty()) {
+    return {"sound", Health::kLimited, output + "; no espeak-ng", "tones are heard, words are not spoken",
+            "install the package espeak-ng"};
+  }
+  return {"sound", Health::kGood, output + "; " + speaker,
+          "the window sounds current, clips and pulse, and speaks", ""};
+}
+
 Finding CheckDataFolder() {
   const core::Result<fs::path> folder = scene::FindDataFolder();
   const std::string remedy =
@@ -373,7 +389,8 @@ std::vector<Finding> CheckAll() {
           CheckRealTime(),
           CheckInputDevices("/"),
           CheckSerialDevices("/"),
-          CheckThreeDMouse("/")};
+          CheckThreeDMouse("/"),
+          CheckSound("/", sound::FindSpeechProgram())};
 }
 
 }  // namespace trocar::cli

@@ -38,6 +38,9 @@ Finding CheckRealTime();
 Finding CheckInputDevices(const std::filesystem::path& root);
 Finding CheckSerialDevices(const std::filesystem::path& root);
 Finding CheckThreeDMouse(const std::filesystem::path& root);
+/// \param root     of the file system, as sound::FindSoundOutput
+/// \param speaker  program that speaks, or nothing
+Finding CheckSound(const std::filesystem::path& root, const std::string& speaker);
 Finding CheckDataFolder();
 
 /// All of them, in the order in which a person reads them.

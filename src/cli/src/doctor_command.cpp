@@ -45,7 +45,8 @@ void PrintForPerson(const std::vector<Finding>& findings) {
 
 void AddDoctorCommand(CLI::App& app, Outcome& outcome) {
   CLI::App* command = app.add_subcommand(
-      "doctor", "Check graphics, GPU, display, real-time permission, devices and data; say how to mend them");
+      "doctor",
+      "Check graphics, GPU, display, real-time permission, devices, sound and data; say how to mend them");
   auto is_json = std::make_shared<bool>(false);
   command->add_flag("--json", *is_json,
                     "Machine-readable: {\"checks\": [{name, state, found, meaning, remedy}]}");

@@ -8,6 +8,7 @@
 #include "command.h"
 #include "console.h"
 #include "trocar/core/error_codes.h"
+#include "trocar/core/translate.h"
 
 namespace trocar::cli {
 namespace {
@@ -16,7 +17,7 @@ void PrintTable() {
   std::vector<std::vector<std::string>> rows = {{"code", "meaning"}};
   for (const core::ErrorEntry& entry : core::ErrorTable()) {
     if (entry.code != core::ErrorCode::kNone)
-      rows.push_back({std::string(entry.text), std::string(entry.meaning)});
+      rows.push_back({std::string(entry.text), core::Translate(entry.meaning)});
   }
   std::fputs(FormatTable(rows).c_str(), stdout);
 }

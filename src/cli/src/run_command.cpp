@@ -13,6 +13,7 @@
 
 #include "command.h"
 #include "trocar/core/partial_path.h"
+#include "trocar/core/translate.h"
 #include "trocar/core/version.h"
 
 namespace trocar::cli {
@@ -45,6 +46,8 @@ constexpr const char* kExamples =
 
 int Fail(const core::Error& error, int exit_status) {
   std::fflush(stdout);
+  const std::string meaning = core::TranslatedMeaning(error.code);
+  if (!meaning.empty()) std::fprintf(stderr, "trocar: %s\n", meaning.c_str());
   std::fprintf(stderr, "trocar: %s\n", error.Text().c_str());
   return exit_status;
 }
@@ -142,6 +145,7 @@ constexpr const char* kNoMemory =
 int RunCommand(int argc, char** argv) {
   core::RemovePartialPathsOnSignals();
   std::set_terminate(OnTerminate);
+  core::UseLanguage(core::FindLocaleFolder());
   // the last fence: nothing below should throw, and if memory ends the person still gets a line
   try {
     return ParseAndRun(argc, argv);

@@ -91,6 +91,22 @@ TEST_F(Environment, DisplayWithoutAServerIsNotTakenForOne) {
   EXPECT_EQ(CheckDisplay().health, Health::kLimited);
 }
 
+TEST_F(Environment, SilenceIsALimitThatNamesWhatToConnect) {
+  ::unsetenv("PULSE_SERVER");
+  test::TemporaryFolder folder;
+  const Finding silent = CheckSound(folder.Path(), "/usr/bin/espeak-ng");
+  EXPECT_EQ(silent.health, Health::kLimited);
+  EXPECT_THAT(silent.remedy, HasSubstr("sound card"));
+  std::filesystem::create_directories(folder.Path() / "proc/asound");
+  ASSERT_TRUE(
+      core::WriteFile(folder.Path() / "proc/asound/cards", " 0 [Card           ]: HDA-Intel - A card\n")
+          .ok());
+  EXPECT_THAT(CheckSound(folder.Path(), "").remedy, HasSubstr("espeak-ng"));
+  const Finding good = CheckSound(folder.Path(), "/usr/bin/espeak-ng");
+  EXPECT_EQ(good.health, Health::kGood);
+  EXPECT_THAT(good.found, HasSubstr("HDA-Intel - A card"));
+}
+
 TEST(CheckWindow, SeesWhetherTheProgramIsThere) {
   test::TemporaryFolder folder;
   EXPECT_EQ(CheckWindow(folder.Path()).health, Health::kLimited);

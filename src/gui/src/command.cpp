@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trocar/gui/command.h"
 
+#include "trocar/core/translate.h"
+
 namespace trocar::gui {
 namespace {
 
@@ -36,18 +38,19 @@ void Join(std::string& text, const std::string& more, const char* between) {
 }  // namespace
 
 std::string KeyText(const KeyStroke& stroke) {
-  return std::string(stroke.control ? "Ctrl+" : "") + (stroke.shift ? "Shift+" : "") + NameOf(stroke.key);
+  return std::string(stroke.control ? "Ctrl+" : "") + (stroke.shift ? core::Translate("Shift+") : "") +
+         core::Translate(NameOf(stroke.key));
 }
 
 void AppendHelp(std::span<const KeyStroke> keys, const CommandHelp& help, std::vector<KeyHelp>& rows) {
   if (*help.group != '\0') rows.push_back({help.group, "", ""});
   if (rows.empty()) return;
   KeyHelp& row = rows.back();
-  Join(row.keys, help.gesture, kBetweenKeys);
+  Join(row.keys, core::Translate(help.gesture), kBetweenKeys);
   for (const KeyStroke& stroke : keys) {
     if (stroke.key != 0) Join(row.keys, KeyText(stroke), kBetweenKeys);
   }
-  Join(row.meaning, help.meaning, ", ");
+  Join(row.meaning, core::Translate(help.meaning), ", ");
 }
 
 std::vector<KeyHelp> SortByGroup(std::vector<KeyHelp> rows, std::span<const char* const> groups) {
@@ -63,9 +66,10 @@ std::vector<KeyHelp> SortByGroup(std::vector<KeyHelp> rows, std::span<const char
 std::string TipText(const char* tip, std::span<const KeyStroke> keys) {
   std::string names;
   for (const KeyStroke& stroke : keys) {
-    if (stroke.key != 0) Join(names, KeyText(stroke), " or ");
+    if (stroke.key != 0) Join(names, KeyText(stroke), core::Translate(" or ").c_str());
   }
-  return names.empty() ? tip : std::string(tip) + " (" + names + ")";
+  const std::string text = core::Translate(tip);
+  return names.empty() ? text : text + " (" + names + ")";
 }
 
 }  // namespace trocar::gui

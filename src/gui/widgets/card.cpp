@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trocar/gui/card.h"
 
+#include "trocar/core/translate.h"
+
 namespace trocar::gui {
 namespace {
 
@@ -11,7 +13,7 @@ constexpr int kNarrowest = 10;  // of a text that wraps: the panel gives the wid
 Card::Card(const char* title, int spacing) : Gtk::Box(Gtk::Orientation::VERTICAL, spacing) {
   add_css_class("card");
   if (title == nullptr) return;
-  title_.set_text(title);
+  title_.set_text(core::Translate(title));
   SetStyle(title_, "card-title");
   title_.set_hexpand(true);
   title_line_.append(title_);
@@ -23,13 +25,13 @@ void Card::SetTitleEnd(Gtk::Widget& widget) {
 }
 
 Gtk::Label& Card::AddLine(const char* name, const char* tip) {
-  auto* label = Gtk::make_managed<Gtk::Label>(name);
+  auto* label = Gtk::make_managed<Gtk::Label>(core::Translate(name));
   SetStyle(*label, "name");
   label->set_hexpand(true);
   auto* value = Gtk::make_managed<Gtk::Label>("—");
   SetStyle(*value, "value", Gtk::Align::END);
   Gtk::Box& line = MakeRow(0, {label, value});
-  line.set_tooltip_text(tip);
+  line.set_tooltip_text(core::Translate(tip));
   append(line);
   return *value;
 }

@@ -3,6 +3,8 @@
 
 #include <string_view>
 
+#include "trocar/core/translate.h"
+
 namespace trocar::gui {
 
 HelpCard::HelpCard(const std::vector<KeyHelp>& rows) {
@@ -17,7 +19,7 @@ HelpCard::HelpCard(const std::vector<KeyHelp>& rows) {
   for (const KeyHelp& help : rows) {
     if (help.group != group) {
       group = help.group;
-      auto* title = Gtk::make_managed<Gtk::Label>(help.group);
+      auto* title = Gtk::make_managed<Gtk::Label>(core::Translate(help.group));
       title->add_css_class("card-title");
       title->set_halign(Gtk::Align::START);
       grid->attach(*title, 0, row++, 2, 1);

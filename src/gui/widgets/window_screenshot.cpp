@@ -3,15 +3,18 @@
 
 namespace trocar::gui {
 
-core::Result<bool> TrySaveScreenshot(Gtk::Window& window, const std::filesystem::path& path) {
-  const auto paintable = Gtk::WidgetPaintable::create(window);
+namespace {
+
+/// False where it has nothing to show yet.
+core::Result<bool> TrySave(Gtk::Widget& widget, const std::filesystem::path& path) {
+  const auto paintable = Gtk::WidgetPaintable::create(widget);
   const auto snapshot = Gtk::Snapshot::create();
-  paintable->snapshot(snapshot, window.get_width(), window.get_height());
+  paintable->snapshot(snapshot, widget.get_width(), widget.get_height());
   GskRenderNode* node = gtk_snapshot_to_node(snapshot->gobj());
-  GdkTexture* texture =
-      node == nullptr
-          ? nullptr
-          : gsk_renderer_render_texture(gtk_native_get_renderer(GTK_NATIVE(window.gobj())), node, nullptr);
+  GtkNative* native = gtk_widget_get_native(widget.gobj());
+  GdkTexture* texture = node == nullptr || native == nullptr
+                            ? nullptr
+                            : gsk_renderer_render_texture(gtk_native_get_renderer(native), node, nullptr);
   const bool is_saved = texture != nullptr && gdk_texture_save_to_png(texture, path.c_str());
   const bool is_drawn = texture != nullptr;
   if (is_drawn) g_object_unref(texture);
@@ -22,12 +25,26 @@ core::Result<bool> TrySaveScreenshot(Gtk::Window& window, const std::filesystem:
                      "cannot write " + path.string() + ": check the folder and its permissions"};
 }
 
-core::Status SaveScreenshot(Gtk::Window& window, const std::filesystem::path& path) {
-  const auto saved = TrySaveScreenshot(window, path);
+core::Status Save(Gtk::Widget& widget, const std::filesystem::path& path) {
+  const auto saved = TrySave(widget, path);
   if (!saved.ok()) return saved.error();
   if (*saved) return {};
   return core::Error{core::ErrorCode::kNoGraphics,
                      "the window shows nothing that " + path.string() + " could hold; try again"};
+}
+
+}  // namespace
+
+core::Result<bool> TrySaveScreenshot(Gtk::Window& window, const std::filesystem::path& path) {
+  return TrySave(window, path);
+}
+
+core::Status SaveScreenshot(Gtk::Window& window, const std::filesystem::path& path) {
+  return Save(window, path);
+}
+
+core::Status SaveWidgetPicture(Gtk::Widget& widget, const std::filesystem::path& path) {
+  return Save(widget, path);
 }
 
 }  // namespace trocar::gui

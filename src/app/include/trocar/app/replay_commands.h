@@ -31,6 +31,9 @@ enum class ReplayAction {
   kWhatIf,
   kToggleHelp,
   kCloseCards,
+  kSavePicture,
+  kSaveClip,   ///< a video of the minute before this moment
+  kSaveVideo,  ///< of the whole recording
   kToggleFullscreen,
   kClose,
 };

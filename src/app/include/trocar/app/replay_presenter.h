@@ -102,6 +102,8 @@ class ReplayPresenter {
   /// \param now  of the frame clock [s]
   std::array<SideWork, kSides> Advance(double now);
 
+  /// Says what the window has done by itself.
+  void Tell(const std::string& text, bool is_warning = false) { Say(text, is_warning); }
   const ReplayPage& Page() const { return page_; }
   double Time() const { return page_.time; }
   double Speed() const;

@@ -47,6 +47,12 @@ enum class Action {
   kToggleRecordingList,
   kOpenDevices,
   kOpenCentre,  ///< history, courses, groups, exams
+  kSavePicture,
+  kSaveClip,     ///< a video of the last minute
+  kToggleSound,  ///< mute, or what was heard before
+  kToggleSpeech,
+  kLouder,
+  kQuieter,
   kToggleFullscreen,
   kToggleHelp,
   kReleasePointer,

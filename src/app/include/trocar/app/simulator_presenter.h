@@ -148,6 +148,8 @@ class SimulatorPresenter {
   /// What a run that is not attended prints.
   PlayReport MakeReport(int width, int height) const;
 
+  /// Says what the window has done by itself.
+  void Tell(const std::string& text, bool is_warning = false) { Announce(text, is_warning); }
   /// Stops the simulation and says so; the first failure stays.
   void Fail(const core::Error& error);
   const std::optional<core::Error>& GetFailure() const { return page_.failure; }

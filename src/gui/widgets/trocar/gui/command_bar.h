@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "trocar/core/translate.h"
 #include "trocar/gui/command.h"
 #include "trocar/gui/tips.h"
 
@@ -53,7 +54,8 @@ class CommandBar : public Gtk::HeaderBar {
       const ButtonState state = state_of(*entry.row);
       entry.button->set_visible(state.is_shown);
       entry.button->set_sensitive(state.is_enabled);
-      if (entry.button->get_label().raw() != state.label) entry.button->set_label(state.label);
+      const std::string label = core::Translate(state.label);
+      if (entry.button->get_label().raw() != label) entry.button->set_label(label);
       if (entry.toggle != nullptr) entry.toggle->set_active(state.is_checked);
       tips_.Set(*entry.button, state.tip);
     }
@@ -68,8 +70,9 @@ class CommandBar : public Gtk::HeaderBar {
   };
 
   Gtk::Button& Make(const Row& row) {
-    auto* toggle = row.button.is_toggle ? Gtk::make_managed<Gtk::ToggleButton>(row.button.label) : nullptr;
-    Gtk::Button* button = toggle != nullptr ? toggle : Gtk::make_managed<Gtk::Button>(row.button.label);
+    const std::string label = core::Translate(row.button.label);
+    auto* toggle = row.button.is_toggle ? Gtk::make_managed<Gtk::ToggleButton>(label) : nullptr;
+    Gtk::Button* button = toggle != nullptr ? toggle : Gtk::make_managed<Gtk::Button>(label);
     button->set_focus_on_click(false);
     if (row.button.is_primary) button->add_css_class("primary");
     if (row.button.least_width > 0) button->set_size_request(row.button.least_width, -1);

@@ -16,4 +16,8 @@ core::Status SaveScreenshot(Gtk::Window& window, const std::filesystem::path& pa
 /// Likewise; false where the window has nothing to show yet, as while it is laid out anew.
 core::Result<bool> TrySaveScreenshot(Gtk::Window& window, const std::filesystem::path& path);
 
+/// A part of a window: what the widget shows, without what lies over it.
+/// \return as SaveScreenshot
+core::Status SaveWidgetPicture(Gtk::Widget& widget, const std::filesystem::path& path);
+
 }  // namespace trocar::gui

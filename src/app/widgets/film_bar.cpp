@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "film_bar.h"
+
+#include <utility>
+
+#include "trocar/app/replay_presenter.h"
+#include "trocar/core/log.h"
+#include "trocar/core/translate.h"
+#include "trocar/gui/labels.h"
+
+namespace trocar::app {
+namespace {
+
+constexpr unsigned kPeriod = 100;  // between looks at the progress [ms]
+
+}  // namespace
+
+FilmBar::FilmBar(std::function<void(const std::string&, bool)> say)
+    : Gtk::Box(Gtk::Orientation::HORIZONTAL), say_(std::move(say)), job_([this] { done_.emit(); }) {
+  add_css_class("status");
+  set_spacing(8);
+  set_visible(false);
+  bar_.set_hexpand(true);
+  bar_.set_valign(Gtk::Align::CENTER);
+  cancel_.set_label(core::Translate("Cancel"));
+  cancel_.add_css_class("small");
+  cancel_.set_focus_on_click(false);
+  cancel_.set_tooltip_text(core::Translate("Give the video up; nothing is written"));
+  append(text_);
+  append(bar_);
+  append(cancel_);
+  cancel_.signal_clicked().connect([this] { is_cancelled_ = true; });
+  done_.connect([this] { Finish(); });
+}
+
+FilmBar::~FilmBar() {
+  is_cancelled_ = true;  // the job's end waits for it
+  timer_.disconnect();
+}
+
+void FilmBar::Start(FilmRequest request) {
+  if (job_.IsRunning()) return say_(core::Translate("A video is being made already; cancel it first."), true);
+  request_ = std::move(request);
+  is_cancelled_ = false;
+  progress_.Set("Reading", 0);
+  job_.Start([this, request = request_] { return MakeFilm(request, progress_, is_cancelled_); });
+  set_visible(true);
+  ShowProgress();
+  timer_ = Glib::signal_timeout().connect([this] { return ShowProgress(); }, kPeriod);
+}
+
+bool FilmBar::ShowProgress() {
+  const gui::JobProgress::Value now = progress_.Get();
+  gui::SetText(text_, core::Translate("Video: ") + core::Translate(now.what) + " …");
+  bar_.set_fraction(now.fraction);
+  return true;
+}
+
+void FilmBar::Finish() {
+  timer_.disconnect();
+  set_visible(false);
+  const core::Result<Film> status = job_.Take();
+  if (status.ok())
+    return say_(core::Translate("Saved ") + FormatClock(status->until - status->from) +
+                    core::Translate(" min:s in ") + request_.video.string(),
+                false);
+  if (status.error().code == core::ErrorCode::kCancelled)
+    return say_(core::Translate("The video was given up."), false);
+  core::Log(core::LogLevel::kError, status.error().Text());
+  say_(status.error().Text(), true);
+}
+
+}  // namespace trocar::app
