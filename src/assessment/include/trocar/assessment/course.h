@@ -35,7 +35,7 @@ struct Step {
   std::string goal;                                                   ///< one sentence
   std::string briefing;                                               ///< before the attempt
   std::string after_pass, after_fail;                                 ///< debriefing
-  std::string task, level;                                            ///< a task with its level (of an operation: empty is normal), or ...
+  std::string task, level;                                            ///< a task with its level, or ...
   std::string operation;                                              ///< ... an operation
   PatientChoice patient;                                              ///< of an operation
   Milestone from = Milestone::kStart, until = Milestone::kCompleted;  ///< of an operation
