@@ -84,7 +84,7 @@ core::Result<Preparation> PrepareStep(const Step& step, const PreparationSetting
   preparation.patient = std::move(*patient);
   preparation.was_cached = true;
   if (step.from == Milestone::kStart) return preparation;
-  auto found = scene::FindOperation(step.operation, preparation.patient, settings.surgeon_seed);
+  auto found = scene::FindOperation(step.operation, preparation.patient, settings.surgeon_seed, step.level);
   if (!found.ok()) return found.error();
   if (!*found) {
     return Error{ErrorCode::kUnknownName,

@@ -195,6 +195,7 @@ core::Result<Start> PrepareStart(const StepName& name,
   start.state = prepared->state;
   start.state_surgeon = prepared->surgeon;
   start.title = step->name;
+  start.from = step->from, start.until = step->until;
   start.step = name;
   return start;
 }

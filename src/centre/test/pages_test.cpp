@@ -8,6 +8,7 @@
 #include "recorded_attempt.h"
 #include "store_test.h"
 #include "trocar/assessment/certificate.h"
+#include "trocar/centre/best_results.h"
 #include "trocar/centre/course_page.h"
 #include "trocar/centre/exam_page.h"
 #include "trocar/centre/group_page.h"
@@ -69,6 +70,30 @@ TEST_P(Pages, HistoryListsTheNewestFirstByPages) {
   ASSERT_EQ(rest->rows.size(), 5u);
   EXPECT_EQ(rest->rows.back().outcome, "not passed");
   EXPECT_TRUE(rest->next.empty());
+}
+
+TEST_P(Pages, BestResultsAreOneOwnOfEachTaskAndLevel) {
+  const std::string who = Add(Role::kTrainee), other = Add(Role::kTrainee);
+  Keep(MakeOne(1, who, 90, true));  // score 99
+  Keep(MakeOne(2, who, 60, true));
+  Keep(MakeOne(3, other, 30, true));
+  store::Attempt given_up = MakeOne(4, who, 5, {});
+  given_up.is_completed = false;
+  Keep(given_up);
+  given_up = MakeOne(5, who, 5, {});
+  given_up.task = "cholecystectomy", given_up.level = "hard", given_up.is_completed = false;
+  Keep(given_up);
+  access_.person = who;
+  const auto best = LoadBestResults(access_);
+  ASSERT_TRUE(best.ok()) << best.error().Text();
+  const BestResult& rings = best->at({"peg_transfer", "normal"});
+  EXPECT_EQ(rings.attempts, 3u);
+  EXPECT_EQ(rings.completed, 2u);
+  EXPECT_EQ(rings.score, 99);
+  EXPECT_EQ(rings.seconds, 60) << "what was given up counts for no time";
+  EXPECT_EQ(DescribeBest(*best, "peg_transfer", "normal"), "Best 99.0 %, 1:00; 3 attempts");
+  EXPECT_EQ(DescribeBest(*best, "cholecystectomy", "hard"), "Not completed in 1 attempt");
+  EXPECT_EQ(DescribeBest(*best, "wire_run", "easy"), "Not tried yet");
 }
 
 TEST_P(Pages, HistoryOfATaskShowsHowItIsLearnt) {

@@ -201,7 +201,12 @@ core::Status PrintList() {
   }
   const auto operation = scene::FindOperation("cholecystectomy", {}, 0);
   if (!operation) return operation.error();
-  if (*operation) PrintTask("cholecystectomy", "", **operation);
+  const auto operation_levels = scene::ListOperationLevels();
+  if (!operation_levels) return operation_levels.error();
+  std::string levels;
+  for (const scene::OperationLevel& level : *operation_levels)
+    levels += (levels.empty() ? "" : ", ") + level.key;
+  if (*operation) PrintTask("cholecystectomy", levels, **operation);
   std::printf("\n");
   std::vector<std::vector<std::string>> rows;
   rows = {{"surgeon", "error", "about"}};
@@ -209,6 +214,11 @@ core::Status PrintList() {
     rows.push_back({entry.name, *entry.error == 0 ? "-" : entry.error, entry.about});
   std::fputs(FormatTable(rows).c_str(), stdout);
   return {};
+}
+
+/// Of an operation: at the normal level recordings and courses say nothing.
+std::string LevelToKeep(const std::string& level) {
+  return level == scene::kNormalLevel ? "" : level;
 }
 
 record::Description DescribePlay(const PlayArguments& arguments) {
@@ -220,7 +230,7 @@ record::Description DescribePlay(const PlayArguments& arguments) {
 
 RunReport MakeRunReport(const scene::Scene& scene, const PlayArguments& arguments) {
   report::AttemptFacts facts = report::DescribeAttempt(DescribePlay(arguments), "");
-  if (!scene.task) facts.level.clear();
+  if (!scene.task) facts.level = scene.operation ? LevelToKeep(scene.operation->level.key) : "";
   facts.person = arguments.person;
   facts.program = core::VersionText();
   facts.task_key = TaskKey(facts.task_key);
@@ -308,10 +318,11 @@ core::Status PlayOne(scene::Scene scene, const PlayArguments& arguments) {
   if (!size) return size.error();
   record::Description description = DescribePlay(arguments);
   description.kind = record::Description::Kind::kOperation;
-  description.level.clear();
+  description.level = LevelToKeep(arguments.level);
+  const double seconds = std::min(arguments.most_seconds, shared->operation->level.time_limit);
   return PlayOperation(
       shared, **surgeon,
-      {arguments.output, (*size)[0], (*size)[1], arguments.threads, arguments.most_seconds, arguments.is_json,
+      {arguments.output, (*size)[0], (*size)[1], arguments.threads, seconds, arguments.is_json,
        arguments.files, arguments.record, std::move(description), MakeRunReport(*shared, arguments)});
 }
 
@@ -333,7 +344,7 @@ core::Status Play(const PlayArguments& arguments, Outcome& outcome) {
     // a wrong ending is told before minutes of playing
     if (const auto kind = FindReportKind(arguments.report); !kind.ok()) return kind.error();
   }
-  auto operation = scene::FindOperation(arguments.task, arguments.patient, arguments.seed);
+  auto operation = scene::FindOperation(arguments.task, arguments.patient, arguments.seed, arguments.level);
   if (!operation.ok()) return operation.error();
   if (*operation) return PlayOne(std::move(**operation), arguments);
   const auto path = scene::FindTask(arguments.task);
@@ -360,7 +371,9 @@ void AddPlayCommand(CLI::App& app, Outcome& outcome) {
       ->type_name("SURGEON");
   command->add_option("--task", arguments->task, "Name of a task (--list), or a task file (JSON)")
       ->type_name("TASK");
-  command->add_option("--level", arguments->level, "Difficulty, one of the task's")
+  command
+      ->add_option("--level", arguments->level,
+                   "Difficulty, one of the task's or of the operation's (--list)")
       ->type_name("LEVEL")
       ->capture_default_str();
   command->add_option("--patient", arguments->patient, "Patient folder in place of the task's own")

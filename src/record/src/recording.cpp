@@ -186,7 +186,7 @@ std::filesystem::path FindRecordingFolder() {
 
 core::Result<scene::Scene> MakeScene(const Description& d) {
   if (d.kind == Description::Kind::kOperation) {
-    auto operation = scene::FindOperation(d.name, d.patient, d.seed);
+    auto operation = scene::FindOperation(d.name, d.patient, d.seed, d.level);
     if (!operation.ok()) return operation.error();
     if (*operation) return std::move(**operation);
     return core::Error{core::ErrorCode::kUnknownName,

@@ -4,6 +4,7 @@
 #include <initializer_list>
 #include <string_view>
 
+#include "patched_json.h"
 #include "trocar/core/json.h"
 
 namespace trocar::scene {
@@ -204,8 +205,9 @@ void ReadSuction(const JsonView& root, OperationParameters& made) {
 
 }  // namespace
 
-core::Result<OperationParameters> ReadOperationParameters(const std::filesystem::path& path) {
-  auto document = core::JsonDocument::Read(path);
+core::Result<OperationParameters> ReadOperationParameters(const std::filesystem::path& path,
+                                                          const std::string& patch) {
+  auto document = ReadPatched(path, patch);
   if (!document.ok()) return document.error();
   const JsonView root = document->Root();
   root.AllowOnly({"format", "version", "about", "fluids", "supplies", "vessels", "clips", "stones", "bed",

@@ -10,6 +10,7 @@
 
 #include "field_ranges.h"
 #include "material_file.h"
+#include "patched_json.h"
 #include "scene_objects.h"
 #include "scene_reader.h"
 #include "script.h"
@@ -112,7 +113,7 @@ core::Status ReadParameters(const core::JsonView& root, const std::filesystem::p
     if (!data.ok()) return data.error();
     path = *data / kOperationParametersFile;
   }
-  const auto read = ReadOperationParameters(path);
+  const auto read = ReadOperationParameters(path, operation.level.parameters_patch);
   if (!read.ok()) return read.error();
   operation.parameters = *read;
   return {};
@@ -200,7 +201,8 @@ void ReadSettings(const core::JsonView& root, LiveSettings& settings) {
 
 core::Result<Scene> ReadSceneFields(const core::JsonDocument& document, const core::JsonView& view,
                                     const std::filesystem::path& folder,
-                                    const std::filesystem::path& patient_folder) {
+                                    const std::filesystem::path& patient_folder,
+                                    const OperationLevel& level) {
   view.AllowOnly({"format", "version", "name", "about", "patient", "tick_hz", "seed", "settings", "materials",
                   "instruments", "laparoscope", "script", "operation", "objects", "model"});
   Scene scene;
@@ -244,6 +246,7 @@ core::Result<Scene> ReadSceneFields(const core::JsonDocument& document, const co
   const std::string script = view.TextOr("script", "");
   if (const auto status = document.Check(); !status.ok()) return status.error();
   if (scene.operation) {
+    scene.operation->level = level;
     if (const auto status = ReadParameters(view, folder, *scene.operation); !status.ok())
       return status.error();
   }
@@ -255,9 +258,11 @@ core::Result<Scene> ReadSceneFields(const core::JsonDocument& document, const co
   return scene;
 }
 
-core::Result<Scene> ReadScene(const std::filesystem::path& path,
-                              const std::filesystem::path& patient_folder) {
-  auto document = core::JsonDocument::Read(path);
+namespace {
+
+core::Result<Scene> ReadSceneAt(const std::filesystem::path& path,
+                                const std::filesystem::path& patient_folder, const OperationLevel& level) {
+  auto document = ReadPatched(path, level.scene_patch);
   if (!document.ok()) return document.error();
   const core::JsonView root = document->Root();
   const std::string format = root.Text("format");
@@ -265,12 +270,19 @@ core::Result<Scene> ReadScene(const std::filesystem::path& path,
   if (format != "trocar-scene") root.Complain("format must be \"trocar-scene\" (or \"trocar-task\")");
   if (root.Integer("version") != 1) root.Complain("version must be 1");
   if (root.Text("name").empty()) root.Complain("the scene needs a name");
-  return ReadSceneFields(*document, root, path.parent_path(), patient_folder);
+  return ReadSceneFields(*document, root, path.parent_path(), patient_folder, level);
+}
+
+}  // namespace
+
+core::Result<Scene> ReadScene(const std::filesystem::path& path,
+                              const std::filesystem::path& patient_folder) {
+  return ReadSceneAt(path, patient_folder, {});
 }
 
 core::Result<std::optional<Scene>> FindOperation(const std::string& name,
                                                  const std::filesystem::path& patient_folder,
-                                                 std::uint64_t seed) {
+                                                 std::uint64_t seed, const std::string& level) {
   std::filesystem::path path = name;
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(path, ignored)) {
@@ -282,7 +294,9 @@ core::Result<std::optional<Scene>> FindOperation(const std::string& name,
   const auto document = core::JsonDocument::Read(path);
   if (!document.ok()) return document.error();
   if (!document->Root().Has("operation")) return std::optional<Scene>();
-  auto scene = ReadScene(path, patient_folder);
+  const auto chosen = FindOperationLevel(level);
+  if (!chosen.ok()) return chosen.error();
+  auto scene = ReadSceneAt(path, patient_folder, *chosen);
   if (!scene.ok()) return scene.error();
   scene->seed = seed;
   return std::optional<Scene>(std::move(*scene));

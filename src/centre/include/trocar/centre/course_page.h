@@ -26,7 +26,9 @@ struct Start {
   record::Description description;  ///< of the scene
   std::filesystem::path
       state;  ///< in the middle of an operation, as assessment::PrepareStep made it; empty: the first tick
-  std::string state_surgeon;        ///< who came so far
+  std::string state_surgeon;  ///< who came so far
+  /// Of an operation: what of it is done, after which the attempt is over.
+  assessment::Milestone from = assessment::Milestone::kStart, until = assessment::Milestone::kCompleted;
   std::string title;                ///< for a person
   StepName step;                    ///< for which it is made
   std::optional<ExamSitting> exam;  ///< without guidance, and once only; nothing: it is no exam

@@ -26,7 +26,7 @@ struct Description {
   enum class Kind : std::uint8_t { kScene, kTask, kOperation };
   Kind kind = Kind::kScene;
   std::string name;         ///< key or path
-  std::string level;        ///< of a task
+  std::string level;        ///< of a task; of an operation empty at scene::kNormalLevel
   std::string patient;      ///< folder in place of the scene's own, or empty
   std::uint64_t seed = 0;   ///< of the scene
   double tick_seconds = 0;  ///< [s]

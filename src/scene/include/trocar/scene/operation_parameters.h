@@ -74,7 +74,9 @@ struct OperationParameters {
 inline constexpr const char* kOperationParametersFile = "assets/operation/parameters.json";
 
 /// Reads a table (schemas/operation.schema.json); every figure must be there.
+/// \param patch  JSON merge patch (RFC 7386) on it; empty: none
 /// \return the file's error: kFileMissing, kJsonSyntax or kJsonField with the place
-core::Result<OperationParameters> ReadOperationParameters(const std::filesystem::path& path);
+core::Result<OperationParameters> ReadOperationParameters(const std::filesystem::path& path,
+                                                          const std::string& patch = {});
 
 }  // namespace trocar::scene

@@ -15,6 +15,7 @@
 #include "trocar/core/result.h"
 #include "trocar/instrument/tool.h"
 #include "trocar/scene/input.h"
+#include "trocar/scene/operation_level.h"
 #include "trocar/scene/operation_parameters.h"
 #include "trocar/scene/scene_object.h"
 #include "trocar/scene/task.h"
@@ -71,6 +72,7 @@ struct OperationSetup {
   /// Of a patient whose parameters say nothing of stones.
   surgery::GallstoneSettings gallstones;
   OperationParameters parameters;
+  OperationLevel level;
 };
 
 /// A cord between two fixed points, of pieces one after the other: divided when one of them is.
@@ -168,9 +170,11 @@ std::optional<instrument::TrocarJoints> FindView(const LaparoscopeSetup& setup, 
 Input CalcScriptInput(const Scene& scene, double time);
 
 /// The scene of that name, or at that path, where it is an operation.
-/// \return nothing where there is none: then it is a task; the file's error where it is one that cannot be read
+/// \param level  of ListOperationLevels; empty: kNormalLevel
+/// \return nothing where there is none: then it is a task; the file's error where it is one that cannot be read; kUnknownName
+///         where there is no such level
 core::Result<std::optional<Scene>> FindOperation(const std::string& name,
                                                  const std::filesystem::path& patient_folder,
-                                                 std::uint64_t seed);
+                                                 std::uint64_t seed, const std::string& level = {});
 
 }  // namespace trocar::scene

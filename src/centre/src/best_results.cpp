@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/centre/best_results.h"
+
+#include <algorithm>
+
+#include "trocar/report/attempt_report.h"
+#include "trocar/store/attempts.h"
+#include "words.h"
+
+namespace trocar::centre {
+namespace {
+
+constexpr int kPage = 1000, kMostPages = 5;
+
+}  // namespace
+
+core::Result<BestResults> LoadBestResults(const Access& access) {
+  auto desk = OpenDesk(access);
+  if (!desk.ok()) return desk.error();
+  store::AttemptFilter filter;
+  filter.trainee = access.person;
+  BestResults results;
+  TaskBook tasks;
+  std::string from;
+  for (int count = 0; count < kMostPages; ++count) {
+    const auto page = store::ListAttempts(desk->store, desk->viewer, filter, from, kPage);
+    if (!page.ok()) return page.error();
+    for (const store::StoredAttempt& stored : page->attempts) {
+      const store::Attempt& attempt = stored.attempt;
+      if (attempt.trainee != access.person) continue;  // without a person the owner sees everyone's
+      BestResult& best = results[{attempt.task, attempt.level}];
+      if (best.attempts++ == 0) best.is_score_percent = tasks.IsScorePercent(attempt.task, attempt.level);
+      if (!attempt.is_completed) continue;
+      ++best.completed;
+      if (attempt.score) best.score = std::max(best.score.value_or(*attempt.score), *attempt.score);
+      best.seconds = std::min(best.seconds.value_or(attempt.seconds), attempt.seconds);
+    }
+    from = page->next;
+    if (from.empty()) break;
+  }
+  return results;
+}
+
+std::string DescribeBest(const BestResults& results, const std::string& task, const std::string& level) {
+  const auto found = results.find({task, level});
+  if (found == results.end()) return "Not tried yet";
+  const BestResult& best = found->second;
+  if (best.completed == 0) return "Not completed in " + Count(best.attempts, "attempt");
+  std::string text = "Best ";
+  if (best.score) text += ScoreText(*best.score, best.is_score_percent) + ", ";
+  return text + report::FormatClock(best.seconds.value_or(0)) + "; " + Count(best.attempts, "attempt");
+}
+
+}  // namespace trocar::centre

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trocar/scene/operation_level.h"
+
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "patched_json.h"
+#include "trocar/core/safe_file.h"
+#include "trocar/scene/scene.h"
+
+namespace trocar::scene {
+namespace {
+
+constexpr core::NumberRange kTimeLimit{10, 36000};  // [s]
+
+OperationLevel ReadLevel(const core::JsonView& view) {
+  view.AllowOnly({"key", "about", "guidance", "time_limit_s", "part_time_limit_s", "scene", "parameters"});
+  OperationLevel level;
+  level.key = view.Text("key");
+  level.about = view.Text("about");
+  level.has_guidance = view.BooleanOr("guidance", true);
+  level.time_limit = view.NumberOr("time_limit_s", level.time_limit, kTimeLimit);
+  level.part_time_limit = view.NumberOr("part_time_limit_s", level.part_time_limit, kTimeLimit);
+  // what they change is read, and complained about, where they are applied
+  if (view.Has("scene")) (void)view.Object("scene");
+  if (view.Has("parameters")) (void)view.Object("parameters");
+  return level;
+}
+
+}  // namespace
+
+core::Result<core::JsonDocument> ReadPatched(const std::filesystem::path& path, const std::string& patch) {
+  if (patch.empty()) return core::JsonDocument::Read(path);
+  // both have been found to be JSON before they are put together
+  const auto text = core::ReadFile(path);
+  if (!text.ok()) return text.error();
+  if (const auto good = core::JsonDocument::Parse(*text, path.string()); !good.ok()) return good.error();
+  auto json = nlohmann::json::parse(*text, nullptr, false);
+  const auto changes = nlohmann::json::parse(patch, nullptr, false);
+  if (changes.is_discarded())
+    return core::Error{core::ErrorCode::kJsonSyntax, path.string() + ": what a level changes is no JSON"};
+  json.merge_patch(changes);
+  return core::JsonDocument::Parse(json.dump(), path.string());
+}
+
+core::Result<std::vector<OperationLevel>> ReadOperationLevels(const std::filesystem::path& path) {
+  const auto text = core::ReadFile(path);
+  if (!text.ok()) return text.error();
+  auto document = core::JsonDocument::Parse(*text, path.string());
+  if (!document.ok()) return document.error();
+  const core::JsonView root = document->Root();
+  root.AllowOnly({"format", "version", "about", "levels"});
+  if (root.Text("format") != "trocar-operation-levels")
+    root.Complain("format must be \"trocar-operation-levels\"");
+  if (root.Integer("version") != 1) root.Complain("version must be 1");
+  const auto json = nlohmann::json::parse(*text, nullptr, false);
+  std::vector<OperationLevel> levels;
+  bool has_normal = false;
+  for (const core::JsonView& view : root.Array("levels")) {
+    OperationLevel level = ReadLevel(view);
+    for (const OperationLevel& other : levels) {
+      if (other.key == level.key) view.Complain("there are two levels \"" + level.key + "\"");
+    }
+    const nlohmann::json& node = json["levels"][levels.size()];
+    if (node.is_object() && node.contains("scene")) level.scene_patch = node["scene"].dump();
+    if (node.is_object() && node.contains("parameters")) level.parameters_patch = node["parameters"].dump();
+    if (level.key == kNormalLevel) {
+      has_normal = true;
+      if (!level.scene_patch.empty() || !level.parameters_patch.empty())
+        view.Complain("at \"normal\" an operation is as its scene says; leave scene and parameters out");
+    }
+    levels.push_back(std::move(level));
+  }
+  if (!has_normal) root.Complain("there must be a level \"normal\"");
+  if (const auto status = document->Check(); !status.ok()) return status.error();
+  return levels;
+}
+
+core::Result<std::vector<OperationLevel>> ListOperationLevels() {
+  const auto data = FindDataFolder();
+  if (!data.ok()) return data.error();
+  return ReadOperationLevels(*data / kOperationLevelsFile);
+}
+
+core::Result<OperationLevel> FindOperationLevel(const std::string& key) {
+  auto levels = ListOperationLevels();
+  if (!levels.ok()) return levels.error();
+  std::string known;
+  for (OperationLevel& level : *levels) {
+    if (level.key == (key.empty() ? kNormalLevel : key)) return std::move(level);
+    known += (known.empty() ? "" : ", ") + level.key;
+  }
+  return core::Error{core::ErrorCode::kUnknownName,
+                     "an operation has no level \"" + key + "\"; it has " + known};
+}
+
+}  // namespace trocar::scene
