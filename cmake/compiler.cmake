@@ -18,17 +18,20 @@ endif()
 
 add_library(trocar_compile_options INTERFACE)
 # sqrt without errno and comparisons without traps change no result and let loops run in lanes
+target_compile_options(trocar_compile_options INTERFACE -ffp-contract=off -fno-math-errno -fno-trapping-math)
+# what concerns our own files only: a program that uses the installed libraries chooses its warnings itself
 target_compile_options(trocar_compile_options INTERFACE
-  -ffp-contract=off -fno-math-errno -fno-trapping-math -Wall -Wextra -Wshadow -Wnon-virtual-dtor -Wno-missing-field-initializers)
+  "$<BUILD_INTERFACE:-Wall;-Wextra;-Wshadow;-Wnon-virtual-dtor;-Wno-missing-field-initializers>")
 # __FILE__ and debug information name files from the repository on: objects do not depend on where a clone lies
-target_compile_options(trocar_compile_options INTERFACE -ffile-prefix-map=${PROJECT_SOURCE_DIR}=.)
+target_compile_options(trocar_compile_options INTERFACE $<BUILD_INTERFACE:-ffile-prefix-map=${PROJECT_SOURCE_DIR}=.>)
+target_compile_features(trocar_compile_options INTERFACE $<INSTALL_INTERFACE:cxx_std_20>)
 # Once the optimiser has inlined it, GCC 12 takes std::string's own copying for an overlap (its bug 105651), by the page.
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 14)
-  target_compile_options(trocar_compile_options INTERFACE -Wno-restrict)
+  target_compile_options(trocar_compile_options INTERFACE $<BUILD_INTERFACE:-Wno-restrict>)
 endif()
 # says only that a file is not the first of its unit
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND TROCAR_UNITY)
-  target_compile_options(trocar_compile_options INTERFACE -Wno-subobject-linkage)
+  target_compile_options(trocar_compile_options INTERFACE $<BUILD_INTERFACE:-Wno-subobject-linkage>)
 endif()
 if(TROCAR_ENABLE_ASSERTS OR CMAKE_BUILD_TYPE STREQUAL "Debug")
   target_compile_definitions(trocar_compile_options INTERFACE TROCAR_ENABLE_ASSERTS=1)

@@ -19,7 +19,9 @@ core::Result<fs::path> FindDataFolder() {
       places.push_back(program.parent_path() / "../share/trocar");
       places.push_back(program.parent_path());
     }
+#ifdef TROCAR_SOURCE_TREE
     places.emplace_back(TROCAR_SOURCE_TREE);
+#endif
   }
   std::string tried;
   for (const fs::path& place : places) {

@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: Apache-2.0
+# What `cmake --install` puts where: programs, their data, and the libraries for programs outside this tree.
+# tools/build-package makes Debian packages of it.
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+
+# Programs. Those that only other programs start lie in libexec, where they are looked for.
+install(TARGETS trocar RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT programs)
+install(TARGETS trocar-import trocar-supervisor
+  RUNTIME DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/trocar COMPONENT programs)
+if(TARGET trocar-window)
+  install(TARGETS trocar-window RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT programs)
+  install(FILES packaging/org.trocar.Trocar.desktop
+    DESTINATION ${CMAKE_INSTALL_DATADIR}/applications COMPONENT programs)
+  install(FILES packaging/org.trocar.Trocar.metainfo.xml
+    DESTINATION ${CMAKE_INSTALL_DATADIR}/metainfo COMPONENT programs)
+  install(FILES packaging/org.trocar.Trocar.svg
+    DESTINATION ${CMAKE_INSTALL_DATADIR}/icons/hicolor/scalable/apps COMPONENT programs)
+endif()
+
+# Rights of devices and of the real-time loop. udev and PAM read them where the prefix is /usr.
+install(FILES packaging/60-trocar.rules DESTINATION lib/udev/rules.d COMPONENT programs)
+install(FILES packaging/limits.conf DESTINATION ${CMAKE_INSTALL_FULL_SYSCONFDIR}/security/limits.d
+  RENAME trocar.conf COMPONENT programs)
+
+# Manual pages, from what each command prints as its help; only where they were made (ninja man_pages).
+find_program(TROCAR_PYTHON3 python3)
+if(TROCAR_PYTHON3)
+  add_custom_command(OUTPUT ${PROJECT_BINARY_DIR}/man/trocar.1
+    COMMAND ${TROCAR_PYTHON3} ${PROJECT_SOURCE_DIR}/tools/make-man-pages $<TARGET_FILE:trocar> ${PROJECT_BINARY_DIR}/man
+    DEPENDS trocar ${PROJECT_SOURCE_DIR}/tools/make-man-pages
+    COMMENT "manual pages" VERBATIM)
+  add_custom_target(man_pages DEPENDS ${PROJECT_BINARY_DIR}/man/trocar.1)
+  install(DIRECTORY ${PROJECT_BINARY_DIR}/man/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT programs
+    OPTIONAL FILES_MATCHING PATTERN "*.1")
+endif()
+
+# Data. A program in bin/ finds it in ../share/trocar.
+install(DIRECTORY assets scenes schemas DESTINATION ${CMAKE_INSTALL_DATADIR}/trocar COMPONENT data)
+
+install(DIRECTORY ${PROJECT_BINARY_DIR}/locale/ DESTINATION ${CMAKE_INSTALL_LOCALEDIR} COMPONENT data OPTIONAL
+  FILES_MATCHING PATTERN "*.mo")
+
+# Libraries: all modules but those that only our own programs use.
+set(exported ${TROCAR_MODULES})
+list(REMOVE_ITEM exported assessment store report gui centre editor app bench cli)
+set(exported_targets)
+foreach(module IN LISTS exported)
+  if(TARGET trocar_${module})
+    set_target_properties(trocar_${module} PROPERTIES EXPORT_NAME ${module})
+    list(APPEND exported_targets trocar_${module})
+  endif()
+endforeach()
+add_custom_target(libraries DEPENDS ${exported_targets})
+set_target_properties(trocar_compile_options PROPERTIES EXPORT_NAME compile_options)
+set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/Trocar)
+install(TARGETS trocar_compile_options ${exported_targets} EXPORT TrocarTargets
+  ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development
+  FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT development)
+install(EXPORT TrocarTargets NAMESPACE Trocar:: DESTINATION ${package_folder} COMPONENT development)
+configure_package_config_file(cmake/TrocarConfig.cmake.in ${PROJECT_BINARY_DIR}/TrocarConfig.cmake
+  INSTALL_DESTINATION ${package_folder} NO_SET_AND_CHECK_MACRO)
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/TrocarConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/TrocarConfig.cmake ${PROJECT_BINARY_DIR}/TrocarConfigVersion.cmake
+  DESTINATION ${package_folder} COMPONENT development)
+
+# what an installation holds
+add_custom_target(installation DEPENDS programs libraries)
+if(TARGET man_pages)
+  add_dependencies(installation man_pages)
+endif()

@@ -1,0 +1,35 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# check_installation.sh REPOSITORY BUILD_FOLDER CMAKE: installs into a folder of its own, and looks whether programs find their data
+# there, man pages and desktop files are sound, and a project outside the tree builds against the libraries.
+set -euo pipefail
+repository=$1 build=$2 cmake=$3
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+# a build that was made for tests has no man pages yet
+"$cmake" --build "$build" --target installation >"$work/log" 2>&1 || { tail -n 20 "$work/log"; exit 1; }
+DESTDIR=$work/root "$cmake" --install "$build" --prefix /usr >"$work/log" 2>&1 || { tail -n 20 "$work/log"; exit 1; }
+root=$work/root/usr
+
+echo "-- programs and data"
+unset TROCAR_DATA_DIR
+"$root/bin/trocar" --version
+cd "$work" # nothing of the source tree is near
+"$root/bin/trocar" doctor --json >doctor.json || true
+grep -A2 '"name": "data"' doctor.json | grep -q "$root/share/trocar" || { cat doctor.json; exit 1; }
+LANGUAGE=es LC_ALL=C.UTF-8 "$root/bin/trocar" errors | grep -q 'no se puede leer'
+for page in "$root"/share/man/man1/*.1; do
+  [ -z "$(man --warnings -E UTF-8 -l -Tutf8 -Z "$page" 2>&1 >/dev/null)" ] || { echo "$page is no sound page"; exit 1; }
+done
+[ "$(ls "$root"/share/man/man1 | wc -l)" -gt 20 ]
+if command -v desktop-file-validate >/dev/null; then desktop-file-validate "$root"/share/applications/*.desktop; fi
+if command -v appstreamcli >/dev/null; then appstreamcli validate --no-net "$root"/share/metainfo/*.xml; fi
+
+echo "-- a program outside the tree"
+"$cmake" -G Ninja -S "$repository/tests/outside_program" -B "$work/outside" -DCMAKE_PREFIX_PATH="$root" \
+  -DCMAKE_BUILD_TYPE=Release >"$work/log" 2>&1 || { tail -n 20 "$work/log"; exit 1; }
+"$cmake" --build "$work/outside" >"$work/log" 2>&1 || { tail -n 20 "$work/log"; exit 1; }
+hash=$("$work/outside/outside_program" "$root/share/trocar/scenes/retraction.json" 20)
+"$root/bin/trocar" simulate "$root/share/trocar/scenes/retraction.json" --ticks 20 --json | grep -q "\"hash\": \"$hash\"" ||
+  { echo "its state hash $hash is not the program's"; exit 1; }
+echo "check_installation: whole; state hash $hash"
