@@ -45,11 +45,11 @@ Target ActWatch::TargetOf(std::int32_t surface) const {
 
 void ActWatch::Look(const simulation::Snapshot& now, const scene::Input& input) {
   const simulation::OperationSnapshot& operation = now.operation;
-  const bool was_cut = operation.tube_cut_count > cuts_ || operation.topology_version > topology_;
+  const bool was_cut = operation.tube_cut_count > cuts_ || operation.topology.version > topology_;
   const bool was_clipped = operation.clip_count > clips_;
   cuts_ = operation.tube_cut_count;
   clips_ = operation.clip_count;
-  topology_ = operation.topology_version;
+  topology_ = operation.topology.version;
   bool has_bag = false;
   for (std::size_t hand = 0; hand < scene::kHandCount; ++hand)
     has_bag = has_bag || ToolOf(*scene_, now, hand).kind == ToolKind::kBag;

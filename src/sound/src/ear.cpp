@@ -41,7 +41,7 @@ SoundState Ear::Listen(const scene::Scene& scene, const simulation::Snapshot& sn
   }
   // over a box trainer there is no monitor
   state.has_pulse = !scene.patient.organs.empty();
-  const auto& blood = snapshot.operation.fluids.fluids[static_cast<std::size_t>(surgery::Fluid::kBlood)];
+  const auto& blood = snapshot.operation.flow.ledger.fluids[static_cast<std::size_t>(surgery::Fluid::kBlood)];
   state.signs = CalcVitalSigns(blood.left);
   return state;
 }

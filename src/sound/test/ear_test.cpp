@@ -68,9 +68,9 @@ TEST(Ear, MonitorFollowsLostBloodAndIsNotThereOverABox) {
   Ear ear;
   EXPECT_TRUE(ear.Listen(scene, snapshot, {}, true).has_pulse);
   EXPECT_EQ(ear.Listen(scene, snapshot, {}, true).signs, CalcVitalSigns(0));
-  snapshot.operation.fluids.Leak(surgery::Fluid::kBile, 1e-3);
+  snapshot.operation.flow.ledger.Leak(surgery::Fluid::kBile, 1e-3);
   EXPECT_EQ(ear.Listen(scene, snapshot, {}, true).signs, CalcVitalSigns(0));
-  snapshot.operation.fluids.Leak(surgery::Fluid::kBlood, 1e-3);
+  snapshot.operation.flow.ledger.Leak(surgery::Fluid::kBlood, 1e-3);
   EXPECT_EQ(ear.Listen(scene, snapshot, {}, true).signs, CalcVitalSigns(1e-3));
   EXPECT_FALSE(ear.Listen(scene, snapshot, {}, false).has_pulse);
   scene.patient.organs.clear();
