@@ -58,9 +58,11 @@ def circle():
         "tip": lambda t: (0.03 * math.cos(rate * t), 0.03 * math.sin(rate * t), -0.1),
         "axis": lambda t: (math.sin(cone) * math.cos(rate * t), math.sin(cone) * math.sin(rate * t), -math.cos(cone)),
         "spin": lambda t: math.remainder(math.pi * t / 8 + 2.5, 2 * math.pi),
-        "insertion": lambda t: 0.12 + 0.01 * math.sin(rate * t)})
+        "insertion": lambda t: 0.12 + 0.01 * math.sin(rate * t)},
+        ideal_path={"left": 2 * math.pi * 0.03}, outcome={"phase": "completed", "is_completed": True, "task_time": 8})
     return "Two rounds of a circle of 30 mm in 8 s; the shaft sweeps a cone of 30 degrees, the spin goes half a turn and wraps.", made, [
         known("path_length", 4 * math.pi * 0.03, 1e-3, "two circumferences"),
+        known("economy_of_motion", 0.5, 2e-3, "once round would have been enough"),
         known("spin_path", math.pi, 0.01, "half a turn"),
         known("angular_path", math.pi + 4 * math.pi * math.sin(cone), 0.03, "spin, and two circles of latitude"),
         known("angular_area", 2 * cone, 0.01, "the cone's whole angle, both ways"),

@@ -46,6 +46,7 @@ ordered_json ToJson(const training::Advice& advice) {
                        {"time_s", OrNull(advice.time)},
                        {"hand", nullptr},
                        {"value", advice.numbers.value},
+                       {"most", OrNull(advice.numbers.most)},
                        {"expert_mean", OrNull(advice.numbers.expert_mean)},
                        {"expert_sd", OrNull(advice.numbers.expert_sd)},
                        {"deviation", advice.numbers.deviation},

@@ -17,7 +17,8 @@ static_assert(std::endian::native == std::endian::little, "a recording is little
 
 inline constexpr std::array<char, 8> kMagic{'T', 'R', 'O', 'C', 'R', 'E', 'C', '\n'};
 /// Counts up whenever the meaning of a byte changes. Older formats stay readable.
-inline constexpr std::uint32_t kFormat = 1;
+/// 2: joints off the grid are packed in bits (input_codec.cpp).
+inline constexpr std::uint32_t kFormat = 2;
 
 struct FileHeader {
   std::array<char, 8> magic = kMagic;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trocar/record/input_codec.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 
@@ -18,7 +19,8 @@ constexpr double kMostMultiple = 9007199254740992.0;  // 2^53
 enum class JointCode : std::uint32_t {
   kSame,   // bit for bit the last one
   kGrid,   // both on the grid: how far from where a steady motion would lead
-  kOther,  // its bits, exclusive-or those of where a steady motion would lead
+  kOther,  // of format 1: its bits, exclusive-or those of where a steady motion would lead
+  kBits  // its place among all doubles, less that of where a steady acceleration would lead, in as many bits as it needs
 };
 constexpr std::uint32_t kControlsChange = 1u << 30;
 constexpr std::uint32_t kSettingsChange = 1u << 31;
@@ -72,11 +74,77 @@ double Predict(double last, double before_last) {
   return std::isfinite(next) ? next : 0.0;
 }
 
-/// Low bytes of a word, after their count.
-void PutLowBytes(std::uint64_t word, std::vector<std::byte>& bytes) {
-  const int count = (std::bit_width(word) + 7) / 8;
-  bytes.push_back(static_cast<std::byte>(count));
-  for (int i = 0; i < count; ++i) bytes.push_back(static_cast<std::byte>(word >> (8 * i)));
+/// Where a steady acceleration leads: hands of programs move smoothly.
+double PredictBent(double last, double before_last, double third_last) {
+  const double next = 3 * last - 3 * before_last + third_last;
+  return std::isfinite(next) ? next : 0.0;
+}
+
+/// The place of a double among all of them: neighbours differ by one, of either sign, and every place has one.
+std::uint64_t PlaceOf(double value) {
+  const auto bits = std::bit_cast<std::uint64_t>(value);
+  return bits >> 63 != 0 ? bits ^ 0x7fffffffffffffffULL : bits;
+}
+double AtPlace(std::uint64_t place) {
+  return std::bit_cast<double>(place >> 63 != 0 ? place ^ 0x7fffffffffffffffULL : place);
+}
+
+/// Bits one after the other, the lowest first.
+class BitWriter {
+ public:
+  explicit BitWriter(std::vector<std::byte>& bytes) : bytes_(bytes) {}
+  void Put(std::uint64_t word, int count) {
+    for (int i = 0; i < count; ++i, ++filled_) {
+      if (filled_ % 8 == 0) bytes_.push_back(std::byte{0});
+      bytes_.back() |= static_cast<std::byte>((word >> i & 1) << (filled_ % 8));
+    }
+  }
+
+ private:
+  std::vector<std::byte>& bytes_;
+  int filled_ = 0;
+};
+
+class BitReader {
+ public:
+  explicit BitReader(std::span<const std::byte>& bytes) : bytes_(bytes) {}
+  bool Take(int count, std::uint64_t& word) {
+    word = 0;
+    for (int i = 0; i < count; ++i) {
+      if (left_ == 0) {
+        if (!TakeByte(bytes_, now_)) return false;
+        left_ = 8;
+      }
+      word |= static_cast<std::uint64_t>(now_ >> (8 - left_) & 1) << i;
+      --left_;
+    }
+    return true;
+  }
+
+ private:
+  std::span<const std::byte>& bytes_;
+  std::uint8_t now_ = 0;
+  int left_ = 0;
+};
+
+/// A word by its width, six bits, and the bits below its highest one; from this width on all 64.
+constexpr int kWholeWord = 63;
+
+void PutWord(std::uint64_t word, BitWriter& bits) {
+  const int width = std::min(static_cast<int>(std::bit_width(word)), kWholeWord);
+  bits.Put(static_cast<std::uint64_t>(width), 6);
+  bits.Put(word, width == kWholeWord ? 64 : std::max(0, width - 1));
+}
+
+bool TakeWord(BitReader& bits, std::uint64_t& word) {
+  std::uint64_t width = 0;
+  if (!bits.Take(6, width)) return false;
+  if (width == kWholeWord) return bits.Take(64, word);
+  word = 0;
+  if (width == 0) return true;
+  if (!bits.Take(static_cast<int>(width) - 1, word)) return false;
+  word |= std::uint64_t{1} << (width - 1);
+  return true;
 }
 
 bool TakeLowBytes(std::span<const std::byte>& bytes, std::uint64_t& word) {
@@ -158,6 +226,8 @@ void InputEncoder::Encode(const Input& input, std::vector<std::byte>& bytes) {
   const std::size_t start = bytes.size();
   bytes.insert(bytes.end(), head.begin(), head.end());
   std::uint32_t codes = 0;
+  std::vector<std::byte> packed;  // of all joints off the grid: after the others
+  BitWriter bits(packed);
   for (std::size_t i = 0; i < kJointCount; ++i) {
     JointCode code = JointCode::kSame;
     std::int64_t now = 0, one = 0, two = 0;
@@ -168,13 +238,13 @@ void InputEncoder::Encode(const Input& input, std::vector<std::byte>& bytes) {
       code = JointCode::kGrid;
       PutVarint(ZigZag(now - (2 * one - two)), bytes);
     } else {
-      code = JointCode::kOther;
-      PutLowBytes(std::bit_cast<std::uint64_t>(joints[i]) ^
-                      std::bit_cast<std::uint64_t>(Predict(last[i], before_last_[i])),
-                  bytes);
+      code = JointCode::kBits;
+      const double expected = PredictBent(last[i], before_last_[i], third_last_[i]);
+      PutWord(ZigZag(static_cast<std::int64_t>(PlaceOf(joints[i]) - PlaceOf(expected))), bits);
     }
     codes |= static_cast<std::uint32_t>(code) << (2 * i);
   }
+  bytes.insert(bytes.end(), packed.begin(), packed.end());
   if (Controls now = ControlsOf(input); now != ControlsOf(last_)) {
     codes |= kControlsChange;
     PutFields(now, bytes);
@@ -184,6 +254,7 @@ void InputEncoder::Encode(const Input& input, std::vector<std::byte>& bytes) {
     PutFields(now, bytes);
   }
   for (std::size_t i = 0; i < head.size(); ++i) bytes[start + i] = static_cast<std::byte>(codes >> (8 * i));
+  third_last_ = before_last_;
   before_last_ = last;
   last_ = input;
 }
@@ -213,9 +284,17 @@ bool InputDecoder::Decode(std::span<const std::byte>& bytes, Input& input) {
         joints[i] =
             std::bit_cast<double>(word ^ std::bit_cast<std::uint64_t>(Predict(last[i], before_last_[i])));
         break;
-      default:
-        return false;
+      case JointCode::kBits:
+        break;
     }
+  }
+  BitReader bits(bytes);
+  for (std::size_t i = 0; i < kJointCount; ++i) {
+    if (static_cast<JointCode>(codes >> (2 * i) & 3) != JointCode::kBits) continue;
+    std::uint64_t word = 0;
+    if (!TakeWord(bits, word)) return false;
+    const double expected = PredictBent(last[i], before_last_[i], third_last_[i]);
+    joints[i] = AtPlace(PlaceOf(expected) + static_cast<std::uint64_t>(UnZigZag(word)));
   }
   Input now = last_;
   SetJoints(joints, now);
@@ -226,6 +305,7 @@ bool InputDecoder::Decode(std::span<const std::byte>& bytes, Input& input) {
     now.assistant = controls.assistant;
   }
   if ((codes & kSettingsChange) != 0 && !TakeFields(bytes, now.settings)) return false;
+  third_last_ = before_last_;
   before_last_ = last;
   last_ = now;
   input = now;

@@ -139,6 +139,9 @@ TraceBuilder::TraceBuilder(const simulation::Simulation& simulation) : content_(
   if (c.task) {
     for (const scene::Goal& goal : c.task->goals)
       c.trace.goals.push_back({goal.name, std::nullopt, goal.points});
+    for (std::size_t hand = 0; hand < c.trace.ideal_path.size(); ++hand) {
+      if (!c.task->ideal_path[hand].empty()) c.trace.ideal_path[hand] = CalcIdealPathLength(*c.task, hand);
+    }
   }
 }
 TraceBuilder::TraceBuilder(TraceBuilder&&) noexcept = default;

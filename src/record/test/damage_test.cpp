@@ -101,11 +101,11 @@ TEST_F(Damage, AChunkOfAnotherFileIsNone) {
 }
 
 TEST_F(Damage, ALaterFormatIsRefusedWithWhatToDo) {
-  bytes_[8] = std::byte{2};
+  bytes_[8] = std::byte{200};
   const auto recording = ReadRecording(bytes_, "later");
   ASSERT_FALSE(recording.ok());
   EXPECT_EQ(recording.error().code, core::ErrorCode::kRecordingInvalid);
-  EXPECT_THAT(recording.error().message, testing::HasSubstr("format 2"));
+  EXPECT_THAT(recording.error().message, testing::HasSubstr("format 200"));
 }
 
 TEST_F(Damage, WhatIsNoRecordingIsRefused) {

@@ -3,8 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <bit>
+#include <cstdint>
 #include <filesystem>
 
+#include "trocar/record/input_codec.h"
 #include "trocar/record/recording.h"
 #include "trocar/record/recording_list.h"
 #include "trocar/record/replay.h"
@@ -40,6 +43,27 @@ TEST(Format, OneIsReadForEver) {
   const auto summary = ReadSummary(FileOf(1));
   ASSERT_TRUE(summary.ok());
   EXPECT_DOUBLE_EQ(summary->seconds, 1.5);
+}
+
+// The same attempt in format 2, written by another program than this (a script, from the description of the bytes).
+TEST(Format, TwoHasTheInputsOfOneToTheBit) {
+  const auto one = ReadRecording(FileOf(1)), two = ReadRecording(FileOf(2));
+  ASSERT_TRUE(one.ok() && two.ok());
+  EXPECT_EQ(two->damage, "");
+  EXPECT_EQ(two->description.seed, 3u);
+  ASSERT_EQ(two->inputs.size(), one->inputs.size());
+  for (std::size_t tick = 0; tick < one->inputs.size(); ++tick) {
+    const auto of_one = ListJoints(one->inputs[tick]), of_two = ListJoints(two->inputs[tick]);
+    for (std::size_t i = 0; i < kJointCount; ++i) {
+      ASSERT_EQ(std::bit_cast<std::uint64_t>(of_two[i]), std::bit_cast<std::uint64_t>(of_one[i]))
+          << "tick " << tick << ", joint " << i;
+    }
+    EXPECT_EQ(two->inputs[tick].controls, one->inputs[tick].controls);
+    EXPECT_EQ(two->inputs[tick].settings, one->inputs[tick].settings);
+  }
+  ASSERT_TRUE(two->ending.has_value());
+  EXPECT_EQ(two->ending->hash, one->ending->hash);
+  EXPECT_LT(std::filesystem::file_size(FileOf(2)), std::filesystem::file_size(FileOf(1)));
 }
 
 TEST(Format, OneIsReplayedWhereItsTaskIsStillTheSame) {

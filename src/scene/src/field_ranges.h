@@ -86,6 +86,7 @@ inline constexpr Range kTimeLimitS{1, 36'000};
 inline constexpr Range kPoints{0, 1e6};  ///< points, penalty, points_per_second_left
 inline constexpr Range kReferencePoints{0, 1e9};
 inline constexpr Range kStage{0, 1000};
+inline constexpr Range kGrip{0, 15};  ///< grip of a stop, counted from 0
 inline constexpr Range kSeconds{0, 3600};
 inline constexpr Range kHeightMm{0, 1000};  ///< height_mm, fall_mm, near_mm, far_mm
 inline constexpr Range kNewtons{0, 1000};

@@ -5,6 +5,7 @@
 #include <system_error>
 
 #include "field_ranges.h"
+#include "ideal_path.h"
 #include "scene_reader.h"
 #include "task_rules.h"
 #include "trocar/core/json.h"
@@ -109,7 +110,7 @@ core::Result<Scene> ReadTask(const fs::path& path, const TaskChoice& choice) {
   if (!document.ok()) return document.error();
   const JsonView root = document->Root();
   root.AllowOnly({"format", "version", "name", "about", "levels", "level_scores", "parameters", "scene",
-                  "regions", "rules"});
+                  "regions", "rules", "ideal_path"});
   if (root.Integer("version") != 1) root.Complain("version must be 1");
   const std::string name = root.Text("name"), about = root.Text("about");
   auto scene = ReadSceneFields(*document, root.Object("scene"), path.parent_path(), choice.patient_folder);
@@ -117,6 +118,7 @@ core::Result<Scene> ReadTask(const fs::path& path, const TaskChoice& choice) {
   scene->name = name;
   scene->seed = choice.seed;
   Task task = ReadTaskRules(root, *scene);
+  ReadIdealPath(root, *scene, task);
   task.best_score = ReadBestScore(root, levels, choice.level);
   if (const auto status = document->Check(); !status.ok()) return status.error();
   task.name = name;

@@ -6,6 +6,7 @@
 
 #include "field_ranges.h"
 #include "scene_objects.h"
+#include "task_names.h"
 #include "trocar/scene/event.h"
 
 namespace trocar::scene {
@@ -17,40 +18,16 @@ using core::JsonView;
 constexpr double kDegree = M_PI / 180.0;
 constexpr std::size_t kMaxRegions = 256, kMaxGoals = 256, kMaxErrors = 64;
 
-/// Replaces {each} by the item that a repeated goal or error stands for.
-std::string Fill(std::string text, const std::string& item) {
-  constexpr std::string_view kEach = "{each}";
-  for (std::size_t at = text.find(kEach); at != std::string::npos; at = text.find(kEach, at + item.size()))
-    text.replace(at, kEach.size(), item);
-  return text;
-}
-
-template <typename Things>
-std::string JoinNames(const Things& things) {
-  std::string all;
-  for (const auto& one : things) all += (all.empty() ? "" : ", ") + one.name;
-  return all.empty() ? "none" : all;
-}
-
-template <typename Things>
-int FindName(const JsonView& view, const Things& things, const std::string& name, const char* what) {
-  for (std::size_t i = 0; i < things.size(); ++i) {
-    if (things[i].name == name) return static_cast<int>(i);
-  }
-  view.Complain("there is no " + std::string(what) + " \"" + name + "\"; known are " + JoinNames(things),
-                ErrorCode::kUnknownName);
-  return -1;
-}
-
 class RulesReader {
  public:
   RulesReader(const Scene& scene, Task& task) : scene_(scene), task_(task) {}
 
   void ReadRegion(const JsonView& view) {
-    view.AllowOnly({"name", "about", "centre_mm", "radius_mm", "half_mm", "facing", "mark"});
+    view.AllowOnly(
+        {"name", "about", "centre_mm", "at", "offset_mm", "radius_mm", "half_mm", "facing", "mark"});
     Region region;
     region.name = view.Text("name");
-    region.centre = ReadPointMm(view, "centre_mm");
+    region.centre = ReadCentre(view);
     if (view.Has("radius_mm") == view.Has("half_mm")) {
       view.Complain("a region has either radius_mm (a ball) or half_mm (a box)", ErrorCode::kSceneInvalid);
     } else if (view.Has("radius_mm")) {
@@ -69,6 +46,17 @@ class RulesReader {
       region.mark = static_cast<RegionMark>(found - std::begin(kMarks));
     }
     task_.regions.push_back(std::move(region));
+  }
+
+  /// A point, or a landmark of the patient as it lies at rest.
+  math::Vec3 ReadCentre(const JsonView& view) const {
+    if (!view.Has("at")) return ReadPointMm(view, "centre_mm");
+    if (view.Has("centre_mm"))
+      view.Complain("a region lies at centre_mm or at a landmark, not both", ErrorCode::kSceneInvalid);
+    const int landmark = FindName(view, scene_.patient.landmarks, view.Text("at"), "landmark");
+    const math::Vec3 offset = view.Has("offset_mm") ? ReadPointMm(view, "offset_mm") : math::Vec3{};
+    return landmark < 0 ? offset
+                        : scene_.patient.landmarks[static_cast<std::size_t>(landmark)].position + offset;
   }
 
   /// What the laparoscope has to see, from where.
@@ -240,15 +228,6 @@ class RulesReader {
 
   static bool IsOfTissue(ConditionKind kind) {
     return kind >= ConditionKind::kOperationError && kind < ConditionKind::kCount;
-  }
-
-  /// The items that an entry is repeated for; one nameless item without "for_each".
-  static std::vector<std::string> ReadItems(const JsonView& view) {
-    if (!view.Has("for_each")) return {""};
-    std::vector<std::string> items;
-    for (const JsonView& item : view.Array("for_each")) items.push_back(item.AsText());
-    if (items.empty()) view.Complain("for_each is empty", ErrorCode::kSceneInvalid);
-    return items;
   }
 
   static int ReadHand(const JsonView& view, const char* key) {

@@ -221,6 +221,62 @@ TEST(Tasks, AllDeliveredOnesAreReadAtEveryLevel) {
   EXPECT_TRUE(FindTask("peg_transfer").ok());
 }
 
+/// The good task with an ideal path of that text for the left hand.
+std::string WithPath(const std::string& stops) {
+  std::string text = kTask;
+  return text.replace(text.rfind('}'), 1, R"(, "ideal_path": {"left": [)" + stops + "]}}");
+}
+
+// Stops are what the file names, at the start, with straight lines between; the first line begins at the tip.
+TEST_F(TaskFile, KnowsAnIdealPath) {
+  const auto none = Read(kTask);
+  ASSERT_TRUE(none.ok() && none->task);
+  EXPECT_EQ(CalcIdealPathLength(*none->task, 0), 0.0);
+  const auto scene = Read(WithPath(R"({"object": "{each}", "offset_mm": [0, 0, 4]})"));
+  EXPECT_EQ(scene.error().code, core::ErrorCode::kUnknownName)
+      << "{each} stands for nothing outside of a group";
+  const auto good = Read(WithPath(
+      R"({"for_each": ["cube"], "stops": [{"object": "{each}", "offset_mm": [0, 0, 4]}, {"region": "up"}]},
+         {"at_mm": [0, 0, -90]})"));
+  ASSERT_TRUE(good.ok()) << good.error().Text();
+  const auto& path = good->task->ideal_path[kLeft];
+  ASSERT_EQ(path.size(), 4u);
+  const math::Vec3 cube = good->objects[0].body.X_world_body.translation;
+  EXPECT_LT(math::Distance(path[0], {-0.03, 0.01, -0.095}), 1e-12) << "where the tip starts";
+  EXPECT_LT(math::Distance(path[1], cube + math::Vec3{0, 0, 0.004}), 1e-12);
+  EXPECT_NEAR(CalcIdealPathLength(*good->task, 0),
+              math::Distance(path[0], path[1]) + math::Distance(path[1], {0, 0, -0.1}) + 0.01, 1e-12);
+  EXPECT_EQ(CalcIdealPathLength(*good->task, 1), 0.0) << "the right hand has none";
+  for (const char* bad :
+       {R"({"region": "down"})", R"({"band": "red"})", R"({"circle": "sheet"})", R"({"object": "cup"})"})
+    EXPECT_EQ(Read(WithPath(bad)).error().code, core::ErrorCode::kUnknownName) << bad;
+  for (const char* bad :
+       {R"({"object": "cube", "grip": 1})", R"({"region": "up", "at_mm": [0, 0, 0]})", "{}", ""})
+    EXPECT_EQ(Read(WithPath(bad)).error().code, core::ErrorCode::kSceneInvalid) << bad;
+}
+
+// Every delivered task in which a tip has a way to go states it; the two of the laparoscope do not.
+TEST(DeliveredTasks, StateTheirIdealPaths) {
+  const auto tasks = ListTasks();
+  ASSERT_TRUE(tasks.ok());
+  for (const TaskEntry& entry : *tasks) {
+    const auto scene = ReadTask(entry.path, {"normal", 1, {}});
+    ASSERT_TRUE(scene.ok());
+    const bool is_of_camera = entry.key.starts_with("camera_navigation");
+    EXPECT_EQ(CalcIdealPathLength(*scene->task, 1) > 0.05, !is_of_camera) << entry.key;
+  }
+  const auto length = [](const char* task, std::size_t hand) {
+    return CalcIdealPathLength(*ReadTask(*FindTask(task), {"normal", 1, {}})->task, hand);
+  };
+  // six rings up and across, six back: each 16 mm up and 16 mm down, with the ways between
+  EXPECT_GT(length("peg_transfer", 0), 12 * (0.016 + 0.03));
+  EXPECT_LT(length("peg_transfer", 0), 12 * 0.14);
+  // round the circle: its radius lies in 19 to 21 mm, and the tip starts within 60 mm of it
+  EXPECT_GT(length("pattern_cut", 1), 2 * M_PI * 0.019);
+  EXPECT_LT(length("pattern_cut", 1), 2 * M_PI * 0.021 + 0.06);
+  EXPECT_EQ(length("pattern_cut", 0), 0.0);
+}
+
 TEST(FindView, ShowsThePointInTheMiddleAtItsDistance) {
   LaparoscopeSetup setup;
   setup.p_world_port = {0, -0.11, -0.005};

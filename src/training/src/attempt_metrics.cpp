@@ -48,9 +48,6 @@ core::Status CheckSettings(const MetricSettings& settings) {
       !IsPositive(settings.sparc.cutoff_hz) || !IsNotNegative(settings.sparc.amplitude_limit))
     return RefuseMetrics(
         "SPARC needs a pad level of 0 to 6, a cutoff greater than 0 and a limit of at least 0");
-  for (const std::optional<double>& ideal : settings.ideal_path_lengths) {
-    if (ideal && !IsPositive(*ideal)) return RefuseMetrics("an ideal path length must be greater than 0 m");
-  }
   return {};
 }
 
@@ -77,6 +74,9 @@ core::Status CheckTrace(const AttemptTrace& trace) {
   }
   for (const AttemptEvent& event : trace.events) {
     if (!std::isfinite(event.time)) return RefuseMetrics("the time of an event is not finite");
+  }
+  for (const std::optional<double>& ideal : trace.ideal_path) {
+    if (ideal && !IsPositive(*ideal)) return RefuseMetrics("an ideal path must be longer than 0 m");
   }
   for (const PhaseSpan& span : trace.phases) {
     if (!std::isfinite(span.start) || !std::isfinite(span.end) || span.name.empty())
@@ -120,7 +120,9 @@ core::Result<AttemptMetrics> CalcAttemptMetrics(const AttemptTrace& trace, const
     for (int hand = 0; hand < instrument::kHandCount; ++hand) {
       if (part.hand >= 0 && part.hand != hand) continue;
       const auto h = static_cast<std::size_t>(hand);
-      MeasureHandMotion(tracks[h], settings.ideal_path_lengths[h], part, HandName(hand), settings, list);
+      // whoever stopped half way has not gone the whole path
+      const auto ideal_path = trace.outcome.is_completed ? trace.ideal_path[h] : std::nullopt;
+      MeasureHandMotion(tracks[h], ideal_path, part, HandName(hand), settings, list);
       MeasureHandTicks(trace, hand, part, settings, list);
       MeasureHandEvents(trace, hand, part, settings, list);
     }

@@ -31,7 +31,9 @@ std::vector<std::string> FindPlaceholders(const std::string& text) {
 
 void CheckWords(const core::JsonView& view, const char* key, const std::string& text, bool has_expert) {
   for (const std::string& word : FindPlaceholders(text)) {
-    if (word == "value" || word == "times" || word == "hand" || (word == "expert" && has_expert)) continue;
+    if (word == "value" || word == "most" || word == "times" || word == "hand" ||
+        (word == "expert" && has_expert))
+      continue;
     view.Complain(std::string(key) + " shows {" + word + "}, which is not known there");
   }
 }
@@ -81,6 +83,7 @@ CoachRule ReadRule(const core::JsonView& view) {
 struct Found {
   double value = 0;
   std::optional<CoachMoment> moment;
+  std::optional<double> most;
 };
 
 /// What a rule asks for; nothing where it is not defined for the attempt.
@@ -89,7 +92,7 @@ std::optional<Found> FindMeasure(const std::string& measure, const AttemptTrace&
   const std::string_view text = measure;
   if (text.starts_with(kEvent)) {
     const CoachMeasure count = CountEvents(trace, measure.substr(kEvent.size()));
-    return Found{count.value, count.moment};
+    return Found{count.value, count.moment, std::nullopt};
   }
   if (text.starts_with(kMetric)) {
     const std::string_view name = text.substr(kMetric.size());
@@ -97,10 +100,10 @@ std::optional<Found> FindMeasure(const std::string& measure, const AttemptTrace&
     const std::string_view hand = slash == std::string_view::npos ? "" : name.substr(slash + 1);
     const double* value = metrics.Find(name.substr(0, slash), hand);
     if (value == nullptr) return std::nullopt;
-    return Found{*value, std::nullopt};
+    return Found{*value, std::nullopt, std::nullopt};
   }
   for (const CoachMeasure& one : measures) {
-    if (text.substr(kCoach.size()) == one.name) return Found{one.value, one.moment};
+    if (text.substr(kCoach.size()) == one.name) return Found{one.value, one.moment, one.most};
   }
   return std::nullopt;
 }
@@ -175,6 +178,8 @@ Advice Speak(const CoachRule& rule, const AdviceNumbers& numbers, const std::opt
   advice.numbers = numbers;
   advice.sentence = numbers.expert_mean ? rule.sentence : rule.sentence_alone;
   advice.sentence = Fill(advice.sentence, "times", Times(numbers.value));
+  advice.sentence = Fill(advice.sentence, "most",
+                         Number(rule.shown_scale * numbers.most.value_or(numbers.value), rule.decimals));
   advice.sentence = Fill(advice.sentence, "value", Number(rule.shown_scale * numbers.value, rule.decimals));
   if (numbers.expert_mean)
     advice.sentence =
@@ -220,8 +225,10 @@ std::vector<Advice> CoachAttempt(const AttemptTrace& trace, const AttemptMetrics
   for (const CoachRule& rule : rules.rules) {
     const auto found = FindMeasure(rule.measure, trace, metrics, measures);
     if (!found) continue;
-    const auto numbers = Weigh(rule, found->value, FindReference(rule.measure, reference));
-    if (numbers) all.push_back(Speak(rule, *numbers, found->moment));
+    auto numbers = Weigh(rule, found->value, FindReference(rule.measure, reference));
+    if (!numbers) continue;
+    numbers->most = found->most;
+    all.push_back(Speak(rule, *numbers, found->moment));
   }
   // what costs as much keeps the order of the rules
   std::stable_sort(all.begin(), all.end(),

@@ -148,7 +148,7 @@ CoachMeasure CalcOneHandWaits(const AttemptTrace& trace, const Motions& motions)
 }
 
 CoachMeasure CalcPeakForce(const AttemptTrace& trace) {
-  CoachMeasure measure{"peak_force", 0, std::nullopt};
+  CoachMeasure measure{"peak_force", 0, std::nullopt, std::nullopt};
   std::vector<double> loads;
   double most = 0;
   for (std::size_t h = 0; h < trace.hands.size(); ++h) {
@@ -162,6 +162,7 @@ CoachMeasure CalcPeakForce(const AttemptTrace& trace) {
     }
   }
   measure.value = core::CalcPercentile(std::move(loads), kPeakShare);
+  measure.most = most;
   return measure;
 }
 

@@ -18,6 +18,7 @@ constexpr const char* kFormat = "trocar-trace";
 constexpr int kVersion = 1;
 constexpr const char* kHandNames[] = {"left", "right"};
 constexpr core::NumberRange kNotNegative{0.0, 1e300};
+constexpr core::NumberRange kLength{1e-9, 1e300};
 
 struct NumberColumn {
   const char* name;
@@ -108,6 +109,9 @@ ordered_json EndJson(const AttemptTrace& trace) {
   json["outcome"] = {
       {"phase", outcome.phase}, {"is_completed", outcome.is_completed}, {"task_time", outcome.task_time}};
   WriteOptional(json["outcome"], "score", outcome.score);
+  for (std::size_t hand = 0; hand < trace.ideal_path.size(); ++hand) {
+    if (trace.ideal_path[hand]) json["ideal_path"][kHandNames[hand]] = *trace.ideal_path[hand];
+  }
   return json;
 }
 
@@ -240,6 +244,13 @@ void ReadOutcome(const JsonView& root, AttemptTrace& trace) {
   if (root.Has("critical_view_time"))
     trace.critical_view_time = root.Number("critical_view_time", kNotNegative);
   trace.is_operation = root.BooleanOr("is_operation", false);
+  if (root.Has("ideal_path")) {
+    const JsonView view = root.Object("ideal_path");
+    view.AllowOnly({"left", "right"});
+    for (std::size_t hand = 0; hand < trace.ideal_path.size(); ++hand) {
+      if (view.Has(kHandNames[hand])) trace.ideal_path[hand] = view.Number(kHandNames[hand], kLength);
+    }
+  }
   if (!root.Has("outcome")) return;
   const JsonView view = root.Object("outcome");
   view.AllowOnly({"phase", "is_completed", "score", "task_time"});
@@ -334,7 +345,7 @@ core::Result<AttemptTrace> ParseTraceJson(std::string_view text, const std::stri
     root.Complain("format must be \"trocar-trace\" and version 1");
   root.AllowOnly({"format", "version", "dt", "ticks", "tool_names", "organ_names", "hands", "camera",
                   "events", "phases", "clips", "fluids", "goals", "stones_spilled", "stones_lost",
-                  "critical_view_time", "is_operation", "outcome"});
+                  "critical_view_time", "is_operation", "outcome", "ideal_path"});
   trace.dt = root.Number("dt", {1e-6, 10.0});
   // two hours at 1 kHz
   const auto ticks = static_cast<std::size_t>(root.Integer("ticks", {0, 7.2e6}));

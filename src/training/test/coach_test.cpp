@@ -10,6 +10,7 @@
 #include <string>
 
 #include "trocar/core/safe_file.h"
+#include "trocar/training/attempt_metrics.h"
 #include "trocar/training/coach_measures.h"
 #include "trocar/training/validity.h"
 
@@ -110,6 +111,7 @@ TEST(CoachMeasures, ForceEnergyAndViewAreFoundWhereTheyAre) {
   for (std::size_t i = 1800; i < 2160; ++i) trace.hands[0][i].in_view = false;
   const auto measures = CalcCoachMeasures(trace);
   EXPECT_NEAR(Get(measures, "peak_force").value, 4, 0.5);
+  EXPECT_EQ(Get(measures, "peak_force").most, 6) << "what a plot of the force peaks at";
   EXPECT_NEAR(Get(measures, "peak_force").moment->time, 700 * kDt, 1e-9);
   EXPECT_EQ(Get(measures, "peak_force").moment->hand, instrument::kLeft);
   EXPECT_NEAR(Get(measures, "energy_in_air").value, 0.5, 1e-9);
@@ -214,6 +216,29 @@ TEST(Coach, SpeaksOnceOfATopicAndOnlyOfAbsolutesWithoutExperts) {
   EXPECT_EQ(advice[0].look, "Look at 0:03: the right hand.");
   EXPECT_FALSE(advice[0].numbers.expert_mean.has_value());
   EXPECT_TRUE(CoachAttempt(MakeAttempt(10), {}, *rules, nullptr).empty());
+}
+
+// The report's plot peaks at the greatest force; the coach judges by what is passed in a hundredth of the loaded time, and says both.
+TEST(Coach, SaysThePeakOfThePlotBesideTheForceThatItJudgesBy) {
+  const auto text = core::ReadFile(std::filesystem::path(TROCAR_SOURCE_DIR) / "assets" / kCoachRulesFile);
+  ASSERT_TRUE(text.ok());
+  const auto rules = ParseCoachRules(*text, kCoachRulesFile);
+  ASSERT_TRUE(rules.ok()) << rules.error().Text();
+  AttemptTrace trace = MakeAttempt(30);
+  for (std::size_t i = 600; i < 1200; ++i) trace.hands[1][i].force = 14;
+  trace.hands[1][900].force = 24;
+  const auto metrics = CalcAttemptMetrics(trace);
+  ASSERT_TRUE(metrics.ok());
+  EXPECT_EQ(*metrics->Find("max_force", "right"), 24);
+  const TaskValidity reference{"any", "normal", {{"coach:peak_force", "", true, 1, 0.5, 0.1, 50}}};
+  const auto advice = CoachAttempt(trace, *metrics, *rules, &reference);
+  const auto force =
+      std::find_if(advice.begin(), advice.end(), [](const Advice& one) { return one.rule == "force"; });
+  ASSERT_NE(force, advice.end());
+  EXPECT_THAT(force->sentence, HasSubstr("more than 14.0 N"));
+  EXPECT_THAT(force->sentence, HasSubstr("once with 24.0 N"));
+  EXPECT_EQ(force->numbers.most, 24);
+  EXPECT_NEAR(*force->time, 900 * kDt, 1e-9) << "the moment is that of the peak";
 }
 
 TEST(CoachRules, RefuseWhatTheyCannotSay) {

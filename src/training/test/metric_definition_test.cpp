@@ -78,9 +78,7 @@ TEST(MetricDefinitions, NameTheSettingsOfTheProgram) {
 TEST(MetricDefinitions, AreWhatIsComputed) {
   std::set<std::string> computed;
   for (const MetricVector& vector : ReadMetricVectors()) {
-    MetricSettings settings;
-    settings.ideal_path_lengths = {0.1, 0.1};
-    for (const MetricValue& value : Measure(vector.trace, settings).values) {
+    for (const MetricValue& value : Measure(vector.trace).values) {
       computed.insert(value.metric);
       const MetricDefinition* d = FindMetric(value.metric);
       ASSERT_NE(d, nullptr) << value.metric;

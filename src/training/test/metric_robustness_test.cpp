@@ -51,6 +51,8 @@ AttemptTrace MakeReaches(double rate, double noise, unsigned seed) {
     };
   };
   AttemptTrace trace = MakeTrace(kSeconds, shaken(0.0), shaken(0.4), rate);
+  trace.ideal_path = {0.5, 0.5};
+  trace.outcome.is_completed = true;
   for (std::size_t i = 0; i < trace.Ticks(); ++i) {
     const double t = static_cast<double>(i) * trace.dt;
     const Vec3 wobble = noise > 0.0 ? Vec3{tremble(random), tremble(random), tremble(random)} : Vec3{0, 0, 0};
@@ -60,12 +62,6 @@ AttemptTrace MakeReaches(double rate, double noise, unsigned seed) {
          0.0});
   }
   return trace;
-}
-
-MetricSettings Settings() {
-  MetricSettings settings;
-  settings.ideal_path_lengths = {0.5, 0.5};
-  return settings;
 }
 
 /// Compares each value with a stated tolerance; it must not be so wide that it says nothing.
@@ -87,22 +83,21 @@ void ExpectWithin(const AttemptMetrics& reference, const AttemptMetrics& other, 
 }
 
 TEST(MetricRobustness, HoldsAtOtherSamplingRates) {
-  const AttemptMetrics reference = Measure(MakeReaches(120.0, 0.0, 0), Settings());
+  const AttemptMetrics reference = Measure(MakeReaches(120.0, 0.0, 0));
   for (const double rate : {60.0, 240.0}) {
-    ExpectWithin(reference, Measure(MakeReaches(rate, 0.0, 0), Settings()), false,
-                 rate < 100 ? "60 Hz" : "240 Hz");
+    ExpectWithin(reference, Measure(MakeReaches(rate, 0.0, 0)), false, rate < 100 ? "60 Hz" : "240 Hz");
   }
 }
 
 TEST(MetricRobustness, HoldsWithTrackerNoise) {
-  const AttemptMetrics reference = Measure(MakeReaches(120.0, 0.0, 0), Settings());
+  const AttemptMetrics reference = Measure(MakeReaches(120.0, 0.0, 0));
   for (unsigned seed = 1; seed <= 5; ++seed)
-    ExpectWithin(reference, Measure(MakeReaches(120.0, 2e-4, seed), Settings()), true, "noise");
+    ExpectWithin(reference, Measure(MakeReaches(120.0, 2e-4, seed)), true, "noise");
 }
 
 // The tolerance is no fig leaf: without the low-pass the same noise leaves it.
 TEST(MetricRobustness, DependsOnTheLowPass) {
-  MetricSettings raw = Settings();
+  MetricSettings raw;
   raw.cutoff_hz = 60.0;
   const double quiet = ValueOf(Measure(MakeReaches(120.0, 0.0, 0), raw), "path_length");
   const double noisy = ValueOf(Measure(MakeReaches(120.0, 2e-4, 1), raw), "path_length");
@@ -111,7 +106,7 @@ TEST(MetricRobustness, DependsOnTheLowPass) {
 
 // Nor would jerk be: with the low-pass of all other metrics the noise weighs more than the motion.
 TEST(MetricRobustness, TakesJerkBelowALowerCutoff) {
-  MetricSettings as_others = Settings();
+  MetricSettings as_others;
   as_others.jerk_cutoff_hz = as_others.cutoff_hz;
   for (const char* metric : {"motion_smoothness", "dimensionless_jerk", "log_dimensionless_jerk"}) {
     const double quiet = ValueOf(Measure(MakeReaches(120.0, 0.0, 0), as_others), metric);

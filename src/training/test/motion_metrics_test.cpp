@@ -35,7 +35,7 @@ TEST(MotionMetrics, MeasuresAStraightLine) {
 TEST(MotionMetrics, MeasuresACircle) {
   // two rounds of radius 3 cm in 8 s; the shaft sweeps a cone of 30 degrees, the spin goes half a turn and wraps
   const double radius = 0.03, rate = 2.0 * kPi / 4.0, cone = kPi / 6.0;
-  const AttemptTrace trace = MakeTrace(8.0, [&](double t) {
+  AttemptTrace trace = MakeTrace(8.0, [&](double t) {
     ToolSample sample = TipAt({radius * std::cos(rate * t), radius * std::sin(rate * t), 0.1});
     sample.axis = {std::sin(cone) * std::cos(rate * t), std::sin(cone) * std::sin(rate * t), -std::cos(cone)};
     sample.spin = std::remainder(kPi * t / 8.0 + 2.5, 2.0 * kPi);
@@ -50,9 +50,11 @@ TEST(MotionMetrics, MeasuresACircle) {
   EXPECT_NEAR(ValueOf(m, "angular_area"), 2.0 * cone, 0.01);
   EXPECT_NEAR(ValueOf(m, "angular_volume"), std::cbrt(4.0 * cone * cone * 0.02), 0.003);
   EXPECT_LT(ValueOf(m, "movement_straightness"), 0.01) << "it comes back to where it began";
-  MetricSettings given;
-  given.ideal_path_lengths = {2.0 * kPi * radius};
-  EXPECT_NEAR(ValueOf(Measure(trace, given), "economy_of_motion"), 0.5, 0.003);
+  trace.ideal_path = {2.0 * kPi * radius};
+  EXPECT_EQ(Measure(trace).Find("economy_of_motion", "left"), nullptr) << "it was not completed";
+  trace.outcome.is_completed = true;
+  EXPECT_NEAR(ValueOf(Measure(trace), "economy_of_motion"), 0.5, 0.003);
+  EXPECT_EQ(Measure(trace).Find("economy_of_motion", "right"), nullptr) << "of that hand nothing is stated";
 }
 
 TEST(MotionMetrics, LeavesWhatAnIdleToolCannotHaveUndefined) {
@@ -229,7 +231,6 @@ TEST(AttemptMetrics, RefusesBadSettingsAndSamples) {
       [](MetricSettings& s) { s.movement_end_speed = 1; },
       [](MetricSettings& s) { s.safe_duct_distance = std::nan(""); },
       [](MetricSettings& s) { s.sparc.pad_level = kMaxPadLevel + 1; },
-      [](MetricSettings& s) { s.ideal_path_lengths = {0.0}; },
   };
   for (const auto& fault : faults) {
     MetricSettings settings;
@@ -247,6 +248,7 @@ TEST(AttemptMetrics, RefusesBadSettingsAndSamples) {
         t.phases.push_back({"", 0, 1});
       },
       [](AttemptTrace& t) { t.dt = 0; },
+      [](AttemptTrace& t) { t.ideal_path = {0.0}; },
   };
   for (const auto& spoil : spoils) {
     AttemptTrace bad = good;

@@ -26,7 +26,7 @@ std::array<double, kJointCount> ListJoints(const Input& input) noexcept;
 void RoundJoints(Input& input) noexcept;
 
 /// Encodes inputs one after the other. A joint costs two bits where it rests, about three bytes where it moves on the grid of
-/// RoundJoints, at most nine elsewhere; feet, tools and settings cost only where they change.
+/// RoundJoints, about five elsewhere, at most nine; feet, tools and settings cost only where they change.
 class InputEncoder {
  public:
   /// Appends one tick.
@@ -36,10 +36,10 @@ class InputEncoder {
 
  private:
   Input last_;
-  std::array<double, kJointCount> before_last_{};
+  std::array<double, kJointCount> before_last_{}, third_last_{};
 };
 
-/// Decodes what an InputEncoder wrote, from a Reset on and in the same order.
+/// Decodes what an InputEncoder wrote, this one or that of format 1, from a Reset on and in the same order.
 class InputDecoder {
  public:
   /// Takes the next tick's input off the front of `bytes`.
@@ -49,7 +49,7 @@ class InputDecoder {
 
  private:
   Input last_;
-  std::array<double, kJointCount> before_last_{};
+  std::array<double, kJointCount> before_last_{}, third_last_{};
 };
 
 }  // namespace trocar::record

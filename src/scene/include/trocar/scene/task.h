@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <limits>
@@ -15,6 +16,7 @@
 
 #include "trocar/core/result.h"
 #include "trocar/core/state_archive.h"
+#include "trocar/instrument/hand.h"
 #include "trocar/math/vector.h"
 #include "trocar/training/operation_error.h"
 
@@ -124,7 +126,13 @@ struct Task {
   double points_per_second_left = 0;
   double reference_points = 0;  ///< of an able surgeon: TaskSnapshot::score is 100 for these; 0: in points
   double best_score = 100;      ///< what a person is shown for the reference's points, or more, at this level
+  /// The way of each hand's tip in straight lines, from where it starts [m], world frame; empty where a hand has none.
+  std::array<std::vector<math::Vec3>, instrument::kHandCount> ideal_path;
 };
+
+/// Length of a hand's ideal path [m]; 0 where it has none.
+/// \param hand  < instrument::kHandCount
+double CalcIdealPathLength(const Task& task, std::size_t hand) noexcept;
 
 enum class TaskPhase : std::uint8_t { kNone, kReady, kRunning, kCompleted, kTimeOver, kEnded };
 /// "none", "ready", "running", "completed", "time_over", "ended"

@@ -124,6 +124,8 @@ struct AttemptTrace {
   std::optional<double> critical_view_time;  ///< when the critical view of safety was first achieved [s]
   bool is_operation = false;  ///< a patient is operated on: errors, phases and fluids are judged
   AttemptOutcome outcome;
+  /// Of the task: how far each hand's tip would go in straight lines [m], > 0; nothing where the task says nothing.
+  std::array<std::optional<double>, instrument::kHandCount> ideal_path;
 
   std::size_t Ticks() const { return hands[0].size(); }
   /// From the first tick to the last [s].

@@ -57,6 +57,7 @@ core::Result<CoachRules> ParseCoachRules(std::string_view text, const std::strin
 /// What a rule was decided by.
 struct AdviceNumbers {
   double value = 0;                              ///< in the measure's unit
+  std::optional<double> most;                    ///< the single greatest one, where `value` is not that
   std::optional<double> expert_mean, expert_sd;  ///< of the expert set; nothing where there is none
   double deviation = 0;  ///< standard deviations beyond the mean, or multiples of the absolute threshold [-]
   double threshold = 0;  ///< that it has passed, of the same [-]

@@ -24,13 +24,15 @@ struct CoachMeasure {
   std::string name;
   double value = 0;  ///< see CalcCoachMeasures; finite
   std::optional<CoachMoment> moment;
+  /// The single greatest value, where `value` is not that: of "peak_force", the peak of a report's plot [N].
+  std::optional<double> most;
 };
 
 /// In this order:
 ///
 /// "tremor" [m]: root mean square of the tip's motion between 5 and 20 Hz, of the hand that trembles more.
 /// "one_hand_waits" [-]: of the time in which a hand moves, in which the other has rested for a second or more.
-/// "peak_force" [N]: that is passed in one hundredth of the time in which a tool is loaded.
+/// "peak_force" [N]: that is passed in one hundredth of the time in which a tool is loaded; a single blow does not make it.
 /// "energy_in_air" [s]: a current pedal is down and no current flows.
 /// "tips_unseen" [-]: part of the time in which a tip is out of the picture for half a second or more.
 /// "detour" [-]: of the movements longer than 20 mm, by how much the paths are longer than straight lines.

@@ -2,10 +2,6 @@
 /// \file metric_settings.h  Thresholds of the metrics. The defaults are those of docs/metrics.json; a test compares the two.
 #pragma once
 
-#include <array>
-#include <optional>
-
-#include "trocar/instrument/hand.h"
 #include "trocar/training/smoothness.h"
 
 namespace trocar::training {
@@ -36,9 +32,6 @@ struct MetricSettings {
   double collision_gap = 0.5;  ///< instruments that part for less long have not parted [s], >= 0
   double safe_duct_distance = 0.005;  ///< of current from a main bile duct [m], >= 0
   SparcSettings sparc;
-  /// Shortest path of the task for each hand [m], > 0. Where absent, economy of motion is undefined: the straight line from
-  /// first to last position says nothing of a hand that comes back.
-  std::array<std::optional<double>, instrument::kHandCount> ideal_path_lengths;
 };
 
 }  // namespace trocar::training
