@@ -7,13 +7,17 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <variant>
 
 #include "device_page.h"
 #include "failure_card.h"
 #include "hand_events.h"
 #include "home_card.h"
+#include "key_card.h"
+#include "opening_card.h"
 #include "panel.h"
+#include "patient_list_card.h"
 #include "picture.h"
 #include "recording_chooser.h"
 #include "replay_window.h"
@@ -32,7 +36,9 @@ struct SimulatorServices {
   /// \param exam  that was sat, or nothing
   std::function<void(const std::filesystem::path& recording, const std::optional<centre::ExamSitting>& exam)>
       open_attempt;
-  std::function<void(const std::string& course)> open_course;
+  /// The best results of whoever operates, from the store, are read beside the window's thread.
+  /// \return what reads them
+  std::function<std::function<core::Result<centre::BestResults>()>()> load_best;
   /// As SimulatorScreen::BeSomebody.
   std::function<core::Result<std::string>(const std::optional<std::string>&)> be_somebody;
   AttemptHooks hooks;
@@ -63,12 +69,17 @@ class SimulatorWindow : public Gtk::ApplicationWindow, private SimulatorScreen {
   void OpenDevices();
   void SwitchPane();
   void ChooseAndSaveResult();
+  void ShowHelp();
+  void FocusCard(const SimulatorPage& page);
+  KeyCardServices MakeKeyCardServices();
 
   // SimulatorScreen
   void Show(const SimulatorPage& page) override;
   void UseControl(SessionControl* control) override;
   std::vector<std::string> UseKeys(const std::map<std::string, device::HandAct>& keys) override;
-  core::Status FillTaskList() override;
+  void FillTaskList(const TaskPage& page) override { chooser_.Show(page); }
+  void RequestBest() override;
+  void FillPatientList(const std::filesystem::path& chosen) override { patients_.Load(chosen); }
   void FillRecordingList(const std::filesystem::path& folder) override { recordings_.Load(folder); }
   void OpenReplay(const std::filesystem::path& recording) override;
   void OpenAttempt(const std::filesystem::path& recording,
@@ -79,7 +90,6 @@ class SimulatorWindow : public Gtk::ApplicationWindow, private SimulatorScreen {
   void FocusPicture() override { picture_.grab_focus(); }
   void DoInWindow(Action action) override;
   core::Result<std::string> BeSomebody(const std::optional<std::string>& text) override;
-  void OpenCourse(const std::string& course) override;
 
   SimulatorServices services_;
   gui::Tips tips_;
@@ -87,8 +97,13 @@ class SimulatorWindow : public Gtk::ApplicationWindow, private SimulatorScreen {
   Gtk::Overlay overlay_;
   Picture picture_;
   Panel panel_;
-  gui::HelpCard help_card_{SimulatorHelp()}, mirrored_help_card_{SimulatorHelp(KeyLayout::kLeftHanded)};
+  Gtk::Box help_;  // of the keys as they are now
+  std::optional<std::pair<KeyLayout, KeyBindings::Own>> shown_help_;
+  Gtk::Widget* focused_card_ = nullptr;
   HomeCard home_;
+  OpeningCard opening_;
+  PatientListCard patients_;
+  KeyCard keys_;
   Gtk::Box question_{Gtk::Orientation::VERTICAL};
   TaskChooser chooser_;
   RecordingChooser recordings_{"Watch"};
@@ -96,7 +111,8 @@ class SimulatorWindow : public Gtk::ApplicationWindow, private SimulatorScreen {
   FailureCard failure_card_;
   Gtk::Label badge_, hint_, event_, state_, haptics_, mode_, progress_, tutorial_, asked_;
   std::unique_ptr<HandEvents> hands_;
-  Glib::Dispatcher loaded_;
+  Glib::Dispatcher loaded_, best_loaded_;
+  gui::BackgroundJob<core::Result<centre::BestResults>> loading_best_;
   gui::FileDialog file_dialog_;
   std::unique_ptr<SimulatorPresenter> presenter_;
   std::unique_ptr<DevicePage> device_page_;  // of the presenter's control
