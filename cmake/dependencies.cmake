@@ -102,9 +102,9 @@ if("sound" IN_LIST TROCAR_MODULES AND NOT TARGET PkgConfig::GSTREAMER)
 endif()
 if("gui" IN_LIST TROCAR_MODULES AND TROCAR_BUILD_WINDOW)
   pkg_check_modules(GTKMM REQUIRED IMPORTED_TARGET gtkmm-4.0)
+  # holds the pointer over the picture; in tests clicks and presses keys
+  pkg_check_modules(X11 REQUIRED IMPORTED_TARGET x11)
   if(TROCAR_BUILD_TESTS)
-    # moves the pointer over the windows, clicks, and presses keys
-    pkg_check_modules(X11 REQUIRED IMPORTED_TARGET x11)
     pkg_check_modules(XTST REQUIRED IMPORTED_TARGET xtst)
   endif()
 endif()

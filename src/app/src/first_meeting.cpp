@@ -2,9 +2,12 @@
 // Of the simulator's presenter: the home page, the tutorial, what a person has set, and what is asked before an attempt is
 // thrown away.
 #include <algorithm>
+#include <cmath>
+#include <system_error>
 #include <utility>
 
 #include "trocar/app/guides.h"
+#include "trocar/app/patient_list.h"
 #include "trocar/app/read_outs.h"
 #include "trocar/app/simulator_presenter.h"
 #include "trocar/core/log.h"
@@ -14,7 +17,6 @@ namespace {
 
 /// A shorter attempt is not worth a question [s].
 constexpr double kWorthAsking = 5.0;
-constexpr const char* kOperation = "cholecystectomy";
 
 /// "CalotTriangleDissection": "Calot triangle dissection".
 std::string SplitWords(std::string_view name) {
@@ -27,7 +29,8 @@ std::string SplitWords(std::string_view name) {
   return text;
 }
 
-std::string DescribeProgress(const scene::Scene& scene, const simulation::Snapshot& snapshot) {
+std::string DescribeProgress(const scene::Scene& scene, const simulation::Snapshot& snapshot,
+                             const OperationEnd& end) {
   constexpr const char* kBetween = "   ·   ";
   if (scene.task) {
     const TaskReadOut task = DescribeTask(*scene.task, snapshot.task);
@@ -35,6 +38,8 @@ std::string DescribeProgress(const scene::Scene& scene, const simulation::Snapsh
   }
   std::string text = FormatTime(snapshot.time);
   if (!scene.operation) return text;
+  if (std::isfinite(end.TimeLimit()))
+    text = FormatTime(end.Elapsed(snapshot)) + " / " + FormatTime(end.TimeLimit());
   text += kBetween + SplitWords(training::NameOf(snapshot.operation.phase));
   for (const scene::Hand hand : {scene::kLeft, scene::kRight})
     text += kBetween + ToolLabel(scene, snapshot, hand);
@@ -45,6 +50,7 @@ std::string DescribeProgress(const scene::Scene& scene, const simulation::Snapsh
 
 void SimulatorPresenter::CloseCards() {
   page_.is_task_list_open = page_.is_result_open = page_.is_recording_list_open = page_.is_home_open = false;
+  page_.is_patient_list_open = page_.is_key_list_open = false;
 }
 
 void SimulatorPresenter::OpenHome() {
@@ -63,9 +69,19 @@ void SimulatorPresenter::LeadOn(const core::Error& error) {
   core::Log(core::LogLevel::kError, error.Text());
   options_.task.clear();
   options_.scene.clear();
+  options_.operation.part.clear();
   start_.reset();
   tutorial_.Leave();
   page_.home.problem = error;
+  // a patient that has vanished is not asked for again; the home page says who is operated on now
+  std::error_code ignored;
+  const bool is_gone = !options_.operation.patient.empty() &&
+                       !std::filesystem::exists(options_.operation.patient / "patient.json", ignored);
+  if (is_gone) {
+    options_.operation.patient.clear();
+    settings_.patient.clear();
+    KeepSettings();
+  }
   OpenHome();
 }
 
@@ -81,6 +97,8 @@ void SimulatorPresenter::Choose(HomeChoice choice) {
         return Refresh();
       }
       request.task = settings_.last_task;
+      request.part = settings_.last_part;
+      request.choice.patient_folder = options_.operation.patient;
       request.choice.level = settings_.last_level;
       request.choice.seed = settings_.last_seed;
       return request.task.empty() ? Refresh() : Open(request);
@@ -88,12 +106,13 @@ void SimulatorPresenter::Choose(HomeChoice choice) {
       if (tutorial_.IsOn()) tutorial_.Leave();
       return ToggleTutorial();
     case HomeChoice::kBasicSkills:
-      return OpenTaskList();
+      return OpenTaskList(TaskSection::kBasicSkills);
     case HomeChoice::kOperation:
-      request.task = kOperation;
-      return Open(request);
-    case HomeChoice::kParts:
-      return screen_->OpenCourse(kOperation);
+      return OpenTaskList(TaskSection::kOperation);
+    case HomeChoice::kPatients:
+      return OpenPatientList();
+    case HomeChoice::kKeys:
+      return OpenKeyList();
     case HomeChoice::kResults:
       return Do(Action::kOpenCentre);
     case HomeChoice::kRecordings:
@@ -104,6 +123,7 @@ void SimulatorPresenter::Choose(HomeChoice choice) {
 void SimulatorPresenter::BeSomebody(const std::string& text) {
   const auto who = screen_->BeSomebody(text);
   page_.home.problem.reset();
+  best_.clear();  // they were somebody else's
   if (who.ok()) {
     page_.home.who = *who;
   } else {
@@ -124,8 +144,10 @@ void SimulatorPresenter::KeepSettings() {
 }
 
 void SimulatorPresenter::KeepLast() {
-  if (start_ || options_.task.empty() || tutorial_.IsOn() || unattended_.IsOn()) return;
+  const bool is_part = start_ && !start_->step.IsSet() && !start_->exam;
+  if ((start_ && !is_part) || options_.task.empty() || tutorial_.IsOn() || unattended_.IsOn()) return;
   settings_.last_task = options_.task;
+  settings_.last_part = options_.operation.part;
   settings_.last_level = options_.level;
   settings_.last_seed = options_.seed;
   KeepSettings();
@@ -133,10 +155,12 @@ void SimulatorPresenter::KeepLast() {
 
 void SimulatorPresenter::ToggleLeftHanded() {
   settings_.is_left_handed = !settings_.is_left_handed;
+  bindings_.SetLayout(settings_.is_left_handed ? KeyLayout::kLeftHanded : KeyLayout::kRightHanded);
   if (control_ != nullptr) control_->Device().ReleaseAll();
-  Announce(settings_.is_left_handed
-               ? "Left-handed: mouse buttons and letters have changed sides. F1 shows them."
-               : "Right-handed.");
+  Announce(
+      settings_.is_left_handed
+          ? bindings_.Fill("Left-handed: mouse buttons and letters have changed sides. {help} shows them.")
+          : "Right-handed.");
   KeepSettings();
 }
 
@@ -151,6 +175,7 @@ void SimulatorPresenter::ToggleTutorial() {
   tutorial_.Begin(settings_.tutorial_step >= kTutorialSteps ? 0 : settings_.tutorial_step);
   TaskRequest request;
   request.task = kTutorialTask;
+  request.choice.patient_folder = options_.operation.patient;
   Open(request);
 }
 
@@ -190,7 +215,7 @@ void SimulatorPresenter::Answer(bool is_yes) {
 Situation SimulatorPresenter::MakeSituation() {
   Situation situation;
   situation.is_pointer_taken = screen_->IsPointerTaken();
-  situation.is_left_handed = settings_.is_left_handed;
+  situation.bindings = &bindings_;
   situation.is_fulcrum_mirrored = settings_.is_fulcrum_mirrored;
   situation.is_loaded = control_ != nullptr;
   situation.is_loading = loading_.IsRunning();
@@ -215,9 +240,10 @@ Situation SimulatorPresenter::MakeSituation() {
 void SimulatorPresenter::RefreshFirstMeeting() {
   page_.is_left_handed = settings_.is_left_handed;
   page_.is_panel_open = settings_.has_panel && control_ != nullptr && !IsExam();
-  page_.tutorial = page_.failure ? "" : tutorial_.Text(settings_.is_left_handed);
-  page_.progress =
-      control_ == nullptr || page_.failure ? "" : DescribeProgress(control_->GetScene(), control_->Now());
+  page_.tutorial = page_.failure ? "" : tutorial_.Text(bindings_);
+  page_.progress = control_ == nullptr || page_.failure
+                       ? ""
+                       : DescribeProgress(control_->GetScene(), control_->Now(), operation_end_);
   page_.question = asked_ == Action::kQuit
                        ? "Leave Trocar? The attempt ends here; what is recorded of it is kept."
                    : asked_ == Action::kToggleDemonstration
@@ -225,6 +251,7 @@ void SimulatorPresenter::RefreshFirstMeeting() {
                        : "";
   if (!page_.is_home_open) return;
   page_.home = MakeHomePage(settings_, page_.home.who, page_.home.problem);
+  page_.home.patient = ShortPatientName(options_.operation.patient);
   if (control_ != nullptr) page_.home.last = "Back to the operation that is open";
   page_.hint.clear();
   page_.badge.clear();

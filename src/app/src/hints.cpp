@@ -1,15 +1,51 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trocar/app/hints.h"
 
+#include <string_view>
+
 namespace trocar::app {
+namespace {
+
+std::string Fill(const Situation& situation, std::string_view text) {
+  static const KeyBindings kFirst;
+  return (situation.bindings != nullptr ? *situation.bindings : kFirst).Fill(text);
+}
+
+std::string ModeTemplate(const Situation& situation) {
+  if (!situation.is_loaded) return "Choose above what to train  ·  {help} all keys";
+  if (situation.is_paused) return "Paused: mouse and keys move nothing  ·  {run} goes on  ·  {help} all keys";
+  if (situation.is_demonstration)
+    return "The script holds both hands  ·  {demonstration} takes over  ·  {run} pauses  ·  {help} all keys";
+  if (situation.is_laparoscope_held)
+    return "Laparoscope: mouse looks round  ·  wheel in and out  ·  let {hold-laparoscope} or the "
+           "{button:look} "
+           "button go: hands again";
+  const std::string hand = situation.is_right_hand ? "Right hand" : "Left hand";
+  if (!situation.device.empty())
+    return situation.device + " holds the hands  ·  {run} pauses  ·  {help} all keys";
+  if (!situation.is_pointer_taken)
+    return hand +
+           ": click into the picture to take it with the mouse, or use the arrow keys  ·  {help} all keys";
+  std::string text = hand +
+                     ": mouse moves  ·  wheel in, out  ·  {button:close} button closes, {button:open} "
+                     "opens";
+  text += situation.is_right_hand ? "  ·  {left-hand} left hand" : "  ·  {right-hand} right hand";
+  if (situation.has_tools) text += "  ·  {next-tool} tool";
+  return text + "  ·  hold {hold-laparoscope}: look  ·  Esc frees the mouse  ·  {help} all keys";
+}
+
+}  // namespace
 
 std::string HintText(const Situation& situation) {
   if (!situation.is_loaded) return situation.is_loading ? "Loading the patient …" : "";
-  if (situation.is_paused) return "Paused. Space goes on.";
-  if (situation.is_demonstration_over) return "The demonstration is over. P takes over, R plays it again.";
-  if (situation.is_demonstration) return "Demonstration: the script holds both instruments. P takes over.";
+  if (situation.is_paused) return Fill(situation, "Paused. {run} goes on.");
+  if (situation.is_demonstration_over)
+    return Fill(situation, "The demonstration is over. {demonstration} takes over, {reset} plays it again.");
+  if (situation.is_demonstration)
+    return Fill(situation, "Demonstration: the script holds both instruments. {demonstration} takes over.");
   if (situation.is_laparoscope_held) return "";
-  if (!situation.is_pointer_taken) return "Click into the picture to take the instruments. H shows all keys.";
+  if (!situation.is_pointer_taken)
+    return Fill(situation, "Click into the picture to take the instruments. {help} shows all keys.");
   return "";
 }
 
@@ -34,26 +70,7 @@ std::string BadgeText(const Situation& situation) {
 }
 
 std::string ModeText(const Situation& situation) {
-  if (!situation.is_loaded) return "Choose above what to train  ·  H all keys";
-  const bool is_mirrored = situation.is_left_handed;
-  const std::string help = is_mirrored ? "F1 all keys" : "H all keys";
-  if (situation.is_paused) return "Paused: mouse and keys move nothing  ·  Space goes on  ·  " + help;
-  if (situation.is_demonstration)
-    return std::string("The script holds both hands  ·  ") + (is_mirrored ? "Q" : "P") +
-           " takes over  ·  Space pauses  ·  " + help;
-  if (situation.is_laparoscope_held)
-    return std::string("Laparoscope: mouse looks round  ·  wheel in and out  ·  let ") +
-           (is_mirrored ? "Comma" : "C") + " or the middle button go: hands again";
-  const std::string hand = situation.is_right_hand ? "Right hand" : "Left hand";
-  if (!situation.device.empty()) return situation.device + " holds the hands  ·  Space pauses  ·  " + help;
-  if (!situation.is_pointer_taken)
-    return hand + ": click into the picture to take it with the mouse, or use the arrow keys  ·  " + help;
-  std::string text = hand + ": mouse moves  ·  wheel in, out  ·  ";
-  text += is_mirrored ? "right button closes, left opens" : "left button closes, right opens";
-  text += situation.is_right_hand ? "  ·  1 left hand" : "  ·  2 right hand";
-  if (situation.has_tools) text += is_mirrored ? "  ·  . tool" : "  ·  X tool";
-  text += is_mirrored ? "  ·  hold Comma: look" : "  ·  hold C: look";
-  return text + "  ·  Esc frees the mouse  ·  " + help;
+  return Fill(situation, ModeTemplate(situation));
 }
 
 std::string StateText(const Situation& situation) {

@@ -27,6 +27,13 @@ void AddScene(CLI::App& app, Options& options) {
                      "Training task to open: its name, as `trocar play --list` shows it, or a file")
           ->excludes("--scene");
   app.add_option("--level", options.level, "With --task: its difficulty")->needs(task)->capture_default_str();
+  app.add_option("--part", options.operation.part,
+                 "With --task cholecystectomy: this part of it, where the scripted expert has left it: "
+                 "critical-view, clip-and-cut or bed")
+      ->needs(task);
+  app.add_option(
+      "--patient", options.operation.patient,
+      "Patient folder that operations are done on (default: who was chosen last, or the built-in one)");
   app.add_flag("--tasks", options.is_task_list, "Start with the list of training tasks to choose from")
       ->excludes(task);
   app.add_option("--seed", options.seed, "With --task: of its random parameters")

@@ -50,6 +50,9 @@ HandPages MakeHandPages(const scene::Scene& scene, const simulation::Snapshot& s
     page.thresholds = FindForceThresholds(scene.patient.RoleOfOrgan(instrument.organ));
     page.level = JudgeForce(page.force_n, page.thresholds);
     page.contact = DescribeContact(instrument, scene.patient);
+    // said in words, too: colours are not seen by everybody
+    if (page.level == ForceLevel::kWarning) page.contact += ": strong";
+    if (page.level == ForceLevel::kDanger) page.contact += ": may tear";
     page.is_chosen = static_cast<std::size_t>(chosen) == hand;
   }
   return pages;

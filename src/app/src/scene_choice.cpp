@@ -28,7 +28,7 @@ core::Result<scene::Scene> ReadChosenScene(const Options& options) {
     if (!data) return data.error();
     return scene::ReadScene(*data / "scenes" / kDefaultScene);
   }
-  auto operation = scene::FindOperation(options.task, {}, options.seed);
+  auto operation = scene::FindOperation(options.task, options.operation.patient, options.seed, options.level);
   if (!operation) return operation.error();
   if (operation->has_value()) return std::move(**operation);
   const auto task = scene::FindTask(options.task);
@@ -44,6 +44,23 @@ core::Result<simulation::Simulation> MakeChosenSimulation(const Options& options
   if (!scene) return scene.error();
   return simulation::Simulation::Make(std::make_shared<const scene::Scene>(std::move(scene).value()),
                                       ThreadsOf(options));
+}
+
+core::Result<LoadedScene> MakeChosenScene(const Options& options, const PartProgress& progress) {
+  if (options.operation.part.empty()) {
+    auto made = MakeChosenSimulation(options);
+    if (!made) return made.error();
+    return LoadedScene{std::move(*made), std::nullopt};
+  }
+  if (options.task != kOperation) {
+    return core::Error{core::ErrorCode::kUnknownName,
+                       "\"" + options.task + "\" has no parts; " + kOperation + " has"};
+  }
+  auto start = PreparePart(options, progress);
+  if (!start) return start.error();
+  auto made = MakeStartedSimulation(options, *start);
+  if (!made) return made.error();
+  return LoadedScene{std::move(*made), std::move(*start)};
 }
 
 core::Result<simulation::Simulation> MakeStartedSimulation(const Options& options,
@@ -68,6 +85,11 @@ record::Description DescribeChosenScene(const Options& options, const scene::Sce
   record::Description description;
   description.kind = options.task.empty() ? Kind::kScene : scene.task ? Kind::kTask : Kind::kOperation;
   description.name = options.task;
+  if (description.kind == Kind::kOperation) {
+    description.level = KeepLevel(options.level);
+    if (!options.operation.patient.empty())
+      description.patient = std::filesystem::absolute(options.operation.patient).string();
+  }
   if (description.kind == Kind::kTask) description.level = options.level;
   if (description.kind == Kind::kScene) {
     const auto data = scene::FindDataFolder();

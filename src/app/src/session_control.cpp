@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "trocar/app/guides.h"
 #include "trocar/app/level_horizon.h"
 #include "trocar/app/pointer_map.h"
 #include "trocar/device/force_device_spec.h"
@@ -27,6 +28,8 @@ constexpr double kHandlePart = 0.03;
 /// A mouse feels no resistance: its hand goes at most so far ahead of the tool that something stops, and is then taken back
 /// a little, so that turning round answers at once [m].
 constexpr double kMostLead = 0.025, kLeadKept = 0.020;
+/// The wheel's snap leaves so much between the tip and what lies ahead [m].
+constexpr double kSnapGap = 0.001;
 /// A scope bent by less than this is straight [rad].
 constexpr double kStraight = 1e-6;
 
@@ -126,6 +129,7 @@ const simulation::Snapshot& SessionControl::Advance(double dt) {
                                             : snapshot.instruments[chosen].X_world_tool.translation;
     device_.SetMetresPerPixel(CalcMetresPerPixel(X_world_view, p_world_followed, field_of_view_, pixels_));
     device_.Advance(dt);
+    wheel_under_way_ *= std::exp(-dt / device::MouseKeyboardSettings().wheel_time);
   }
   device_.Read(samples);
   for (const Channel hand : {device::kLeftHand, device::kRightHand})
@@ -318,6 +322,24 @@ void SessionControl::SwitchHand() {
 void SessionControl::HoldLaparoscope(bool is_held) {
   if (is_held) SetCameraHolder(false);
   device_.Choose(is_held ? device::kLaparoscope : hand_);
+}
+
+void SessionControl::Scroll(double steps) {
+  const bool goes_in = steps > 0 && has_depth_snap_ && !is_fulcrum_mirrored_ && !IsLaparoscopeHeld();
+  if (!goes_in) return device_.Scroll(steps);
+  const simulation::Snapshot& now = Now();
+  const math::Vec3 away = math::Rotate(CalcView(now).rotation, math::Vec3{0, 0, -1});
+  // where the hand is, not the tool, which follows it
+  const math::Vec3 tip =
+      instrument::CalcToolPose(GetScene().instruments[hand_].p_world_port, input_.hands[hand_]).translation;
+  const auto ahead = FindDistanceAhead(GetScene(), Surfaces(), now, tip, away);
+  const double step = device::MouseKeyboardSettings().metres_per_step;
+  const double left = ahead ? *ahead - kSnapGap - wheel_under_way_ : 2 * steps * step;
+  // at it already: the person wants to go on, once what was turned has been walked
+  const bool is_at_it = ahead && *ahead < 2 * kSnapGap;
+  const double given = is_at_it ? steps : std::clamp(left / step, 0.0, steps);
+  wheel_under_way_ += given * step;
+  device_.Scroll(given);
 }
 
 void SessionControl::SetMirrorFulcrum(bool is_mirrored) {

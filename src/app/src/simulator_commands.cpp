@@ -95,6 +95,16 @@ constexpr SimulatorCommand kCommands[] = {
      .needs = kNoFailure,
      .keys = {{Ctrl('l')}},
      .help = {"View", "", "recordings: watch an attempt again, take over where you like"}},
+    {.id = "patients",
+     .action = Do(Action::kTogglePatientList),
+     .needs = kNoFailure,
+     .keys = {{Ctrl('p')}},
+     .help = {"View", "", "patients: who is operated on, new ones"}},
+    {.id = "keys",
+     .action = Do(Action::kToggleKeyList),
+     .needs = kNoFailure,
+     .keys = {{Ctrl('k')}},
+     .help = {"View", "", "keys and buttons: what they do, and how to change it"}},
     {.id = "run",
      .action = Do(Action::kTogglePause),
      .needs = kScene,
@@ -124,9 +134,13 @@ constexpr SimulatorCommand kCommands[] = {
      .action = Do(Action::kToggleFulcrum),
      .keys = {{{'t'}}},
      .help = {"Instruments", "", "real trocar: the mouse is the handle, the tip goes the other way"}},
+    {.id = "depth-snap",
+     .action = Do(Action::kToggleDepthSnap),
+     .keys = {{{'8'}}},
+     .help = {"Instruments", "", "the wheel stops where the tip meets something, or goes on"}},
     {.id = "slow-motion",
      .action = Do(Action::kToggleSlowMotion),
-     .needs = kGuidance,
+     .needs = kHelp,
      .keys = {{{'4'}}},
      .help = {"Simulation", "", "slow motion, for practice: such an attempt is not kept"}},
     {.id = "left-handed",
@@ -212,7 +226,7 @@ constexpr SimulatorCommand kCommands[] = {
      .button = {ButtonSide::kEnd, "Tutorial", "Learn each control by doing it", true}},
     {.id = "guides",
      .action = Do(Action::kToggleGuides),
-     .needs = kGuidance,
+     .needs = kHelp,
      .keys = {{{'3'}}},
      .help = {"View", "", "guides: lines that show depth, rings round what is next"},
      .button = {ButtonSide::kEnd, "Guides",
@@ -304,23 +318,6 @@ std::uint32_t MirrorKey(std::uint32_t keyval, KeyLayout layout) noexcept {
     }
   }
   return keyval;
-}
-
-std::vector<gui::KeyHelp> SimulatorHelp(KeyLayout layout) {
-  constexpr const char* kGroups[] = {"Instruments", "Operation", "Laparoscope", "Simulation", "View"};
-  std::vector<SimulatorCommand> commands(SimulatorCommands().begin(), SimulatorCommands().end());
-  for (SimulatorCommand& command : commands) {
-    for (gui::KeyStroke& stroke : command.keys) {
-      if (!stroke.control) stroke.key = MirrorKey(stroke.key, layout);
-    }
-    if (layout == KeyLayout::kRightHanded) continue;
-    if (std::string_view(command.help.gesture) == "Left button") {
-      command.help.gesture = "Right button";
-    } else if (std::string_view(command.help.gesture) == "Right button") {
-      command.help.gesture = "Left button";
-    }
-  }
-  return MakeKeyHelp(std::span<const SimulatorCommand>(commands), kGroups);
 }
 
 KeyMeaning FindKeyMeaning(std::uint32_t keyval, bool control) noexcept {

@@ -6,11 +6,8 @@
 #include <span>
 #include <utility>
 
-#include "trocar/app/hints.h"
-#include "trocar/app/scene_choice.h"
 #include "trocar/core/log.h"
 #include "trocar/core/safe_file.h"
-#include "trocar/device/device_spec.h"
 
 namespace trocar::app {
 namespace {
@@ -32,6 +29,9 @@ SimulatorPresenter::SimulatorPresenter(const Options& options, const core::Stopw
   if (options_.settings.empty()) return;
   LoadedWindowSettings loaded = LoadWindowSettings(options_.settings);
   settings_ = std::move(loaded.settings);
+  UseBindings();
+  // whoever names a patient means this one, and is asked again the next time
+  if (options_.operation.patient.empty()) options_.operation.patient = settings_.patient;
   if (!loaded.complaint) return;
   core::Log(core::LogLevel::kWarning, loaded.complaint->Text());
   // shown with the first page: the screen is not ready yet
@@ -39,207 +39,6 @@ SimulatorPresenter::SimulatorPresenter(const Options& options, const core::Stopw
   page_.is_event_warning = true;
   page_.home.problem = loaded.complaint;
   options_.settings.clear();  // the file stays as it is, for whoever can mend it
-}
-
-// loading
-
-void SimulatorPresenter::Start() {
-  is_closed_ = false;
-  const bool is_named = !options_.scene.empty() || !options_.task.empty() || options_.is_task_list ||
-                        options_.is_demonstration || !options_.run.IsAttended();
-  if (!start_ && !is_named) return OpenHome();
-  if (start_) {
-    loading_.Start([options = options_, start = *start_] { return MakeStartedSimulation(options, start); });
-  } else {
-    loading_.Start([options = options_] { return MakeChosenSimulation(options); });
-  }
-  Refresh();
-}
-
-void SimulatorPresenter::FinishLoading() {
-  auto simulation = loading_.Take();
-  if (page_.failure || is_closed_) return;
-  if (!simulation.ok()) return unattended_.IsOn() ? Fail(simulation.error()) : LeadOn(simulation.error());
-  record::Description description =
-      start_ ? start_->description : DescribeChosenScene(options_, simulation->GetScene());
-  if (start_) description.player = (start_->exam ? "exam, " : "") + DescribeHands(options_);
-  if (!Use(std::move(simulation).value(), std::move(description))) return;
-  KeepLast();
-  if (start_) {
-    page_.title = "Trocar: " + start_->title;
-    if (!start_->state.empty()) GoOn();
-    // a person begins when the hands are ready
-    return Announce(start_->title + ". Start when your hands are ready.");
-  }
-  Announce("Ready.");
-  if (options_.is_demonstration || unattended_.IsOn()) SetDemonstration(true);
-  SetPaused(false);
-}
-
-/// Shows a simulation, paused. \return false where something failed
-bool SimulatorPresenter::Use(simulation::Simulation simulation, record::Description description) {
-  const auto fail = [this](const core::Error& error) {
-    Fail(error);
-    return false;
-  };
-  std::optional<session::AttemptKeeping> keeping;
-  // what is tried in the tutorial is no attempt
-  if (!options_.recordings.empty() && !tutorial_.IsOn()) {
-    keeping = {options_.recordings, std::move(description), {}, hooks_.on_end};
-    if (hooks_.on_begin) {
-      keeping->on_begin = [begin = hooks_.on_begin, step = start_ ? start_->step : centre::StepName()](
-                              const std::filesystem::path& path) { begin(path, step); };
-    }
-  }
-  auto control = SessionControl::Make(std::move(simulation), std::move(keeping));
-  if (!control) return fail(control.error());
-  control_ = std::move(control).value();
-  has_script_ = control_->HasScript();
-  control_->SetMirrorFulcrum(settings_.is_fulcrum_mirrored);
-  if (const auto used = UseDevices(); !used) return fail(used.error());
-  if (options_.igtl_port >= 0) {
-    if (const core::Status served = control_->Serve(options_.igtl_port); !served) return fail(served.error());
-    core::Log(core::LogLevel::kInfo,
-              "OpenIGTLink: viewers may connect to localhost:" + std::to_string(control_->ServedPort()));
-  }
-  screen_->UseControl(control_.get());
-  page_.title = "Trocar: " + control_->GetScene().name;
-  return true;
-}
-
-/// The hands take the instruments in the middle of an operation, as whoever came so far has left them.
-void SimulatorPresenter::GoOn() {
-  const simulation::Snapshot& now = control_->Advance(0);
-  scene::Input last;
-  last.settings = control_->GetScene().settings;
-  for (std::size_t hand = 0; hand < last.controls.size(); ++hand)
-    last.controls[hand].tool = now.operation.tools[hand];
-  if (now.operation.assistant.is_holding) last.assistant = scene::AssistantCommand::kRetract;
-  const std::uint64_t events = now.event_count;
-  control_->GoOnFrom(last);
-  seen_events_ = events;
-}
-
-void SimulatorPresenter::TakeOver(Branch branch) {
-  if (loading_.IsRunning() || page_.failure) return;
-  is_closed_ = false;
-  Drop();
-  start_.reset();
-  const record::Description& from = branch.description;
-  options_.task = from.kind == record::Description::Kind::kScene ? "" : from.name;
-  options_.scene = from.kind == record::Description::Kind::kScene ? from.name : "";
-  if (from.kind == record::Description::Kind::kTask) options_.level = from.level;
-  options_.seed = from.seed;
-  options_.is_demonstration = false;
-  record::Description description = from;
-  description.player = DescribeHands(options_);
-  const std::uint64_t events = branch.simulation.GetSnapshot().event_count;
-  if (!Use(std::move(branch.simulation), std::move(description))) return;
-  control_->GoOnFrom(branch.last);
-  seen_events_ = events;
-  char moment[48];
-  std::snprintf(moment, sizeof moment, " at %.1f s",
-                static_cast<double>(from.branched_tick) * from.tick_seconds);
-  if (branch.is_experts) {
-    control_->LetExpertGoOn();
-    SetPaused(false);
-    Announce("The expert goes on from " + from.branched_from + moment + ".");
-  } else {
-    Announce("Taken over from " + from.branched_from + moment + ". Start when your hands are ready.");
-  }
-  screen_->FocusPicture();
-  Refresh();
-}
-
-void SimulatorPresenter::OpenRecording(const std::filesystem::path& recording) {
-  page_.is_recording_list_open = false;
-  if (control_ != nullptr) control_->SetPaused(true);
-  screen_->OpenReplay(recording);
-  Refresh();
-}
-
-void SimulatorPresenter::OpenRecordingList() {
-  if (page_.failure) return;
-  screen_->FillRecordingList(options_.recordings.empty() ? record::FindRecordingFolder()
-                                                         : options_.recordings);
-  screen_->ReleasePointer();
-  page_.is_help_open = false;
-  CloseCards();
-  page_.is_recording_list_open = true;
-  Refresh();
-}
-
-void SimulatorPresenter::CloseRecordingList() {
-  page_.is_recording_list_open = false;
-  if (control_ == nullptr && !loading_.IsRunning()) page_.is_home_open = true;
-  Refresh();
-}
-
-/// What the options name, with the person's settings.
-core::Status SimulatorPresenter::UseDevices() {
-  const device::LoadedStore loaded = device::LoadDeviceStore(device::FindDeviceStore());
-  if (loaded.complaint) core::Log(core::LogLevel::kWarning, loaded.complaint->Text());
-  for (const std::string& key : screen_->UseKeys(loaded.store.keys)) {
-    core::Log(
-        core::LogLevel::kWarning,
-        "the key \"" + key + "\" of the device settings can have no act; docs/devices.md says which can");
-  }
-  if (!options_.haptics.empty()) {
-    const device::ButtonMap buttons = loaded.store.Buttons("haptics");
-    if (auto started = control_->UseHaptics(options_.haptics, buttons); !started) return started;
-  }
-  if (options_.device.empty()) return {};
-  auto driver = device::MakeDriver(options_.device, loaded.store, device::SystemClock());
-  if (!driver) return driver.error();
-  control_->UseDevice(std::move(driver).value(), device::FindButtons(options_.device, loaded.store));
-  return {};
-}
-
-void SimulatorPresenter::Open(const TaskRequest& request) {
-  if (loading_.IsRunning()) return;
-  Drop();
-  options_.task = request.task;
-  options_.scene = request.scene;
-  options_.level = request.choice.level;
-  options_.seed = request.choice.seed;
-  options_.is_demonstration = false;
-  start_.reset();
-  screen_->FocusPicture();
-  Start();
-}
-
-void SimulatorPresenter::Open(const centre::Start& start) {
-  if (loading_.IsRunning()) return;
-  Drop();
-  options_.task = start.description.name;
-  options_.scene.clear();
-  options_.level = start.description.level;
-  options_.seed = start.description.seed;
-  options_.is_demonstration = false;
-  start_ = start;
-  if (start.exam) page_.view.has_force_arrows = false;
-  screen_->FocusPicture();
-  Start();
-}
-
-void SimulatorPresenter::Close() {
-  is_closed_ = true;
-  SaveHapticRecord();
-  Drop();
-}
-
-/// Ends the scene that is shown.
-void SimulatorPresenter::Drop() {
-  screen_->ReleasePointer();
-  screen_->UseControl(nullptr);
-  control_.reset();
-  stages_ = {};
-  error_log_ = {};
-  seen_events_ = 0;
-  asked_ = Action::kNone;
-  attempt_seconds_ = 0;
-  is_result_known_ = is_attempt_over_ = false;
-  CloseCards();
 }
 
 // commands
@@ -257,6 +56,8 @@ bool SimulatorPresenter::Meets(SimulatorNeeds needs) const {
       return is_good && control_ != nullptr && has_script_ && !IsExam();
     case SimulatorNeeds::kGuidance:
       return is_good && control_ != nullptr && !IsExam();
+    case SimulatorNeeds::kHelp:
+      return is_good && control_ != nullptr && IsGuided();
     case SimulatorNeeds::kHaptics:
       return is_good && control_ != nullptr && control_->Haptics() != nullptr;
   }
@@ -290,11 +91,7 @@ gui::ButtonState SimulatorPresenter::FindButton(const SimulatorCommand& command)
                    (control_ != nullptr && control_->Haptics() != nullptr);
   state.label = command.button.label;
   if (action == Action::kTogglePause && control_ != nullptr && !control_->IsPaused()) state.label = "Pause";
-  std::array<gui::KeyStroke, 2> keys = command.keys;
-  for (gui::KeyStroke& stroke : keys) {
-    if (!stroke.control) stroke.key = MirrorKey(stroke.key, Layout());
-  }
-  state.tip = gui::TipText(command.button.tip, keys);
+  state.tip = gui::TipText(command.button.tip, bindings_.StrokesOf(command));
   return state;
 }
 
@@ -348,6 +145,15 @@ std::span<const SimulatorPresenter::Handler> SimulatorPresenter::Handlers() noex
        [](const Self& self) { return self.settings_.is_fulcrum_mirrored; }},
       {Action::kToggleLeftHanded, [](Self& self) { self.ToggleLeftHanded(); },
        [](const Self& self) { return self.settings_.is_left_handed; }},
+      {Action::kToggleDepthSnap,
+       [](Self& self) {
+         self.settings_.has_depth_snap = !self.settings_.has_depth_snap;
+         if (self.control_ != nullptr) self.control_->SetDepthSnap(self.settings_.has_depth_snap);
+         self.Announce(self.settings_.has_depth_snap ? "The wheel stops where the tip meets something."
+                                                     : "The wheel goes on where the tip meets something.");
+         self.KeepSettings();
+       },
+       [](const Self& self) { return self.settings_.has_depth_snap; }},
       {Action::kToggleSlowMotion,
        [](Self& self) { self.control_->SetSlowMotion(!self.control_->IsSlowMotion()); },
        [](const Self& self) { return self.control_ != nullptr && self.control_->IsSlowMotion(); }},
@@ -381,6 +187,12 @@ std::span<const SimulatorPresenter::Handler> SimulatorPresenter::Handlers() noex
        [](Self& self) {
          self.page_.is_recording_list_open ? self.CloseRecordingList() : self.OpenRecordingList();
        }},
+      {Action::kTogglePatientList,
+       [](Self& self) {
+         self.page_.is_patient_list_open ? self.ClosePatientList() : self.OpenPatientList();
+       }},
+      {Action::kToggleKeyList,
+       [](Self& self) { self.page_.is_key_list_open ? self.CloseKeyList() : self.OpenKeyList(); }},
       {Action::kReleasePointer, [](Self& self) { self.ReleaseAll(); }},
   };
   return kHandlers;
@@ -391,8 +203,9 @@ void SimulatorPresenter::ToggleForceFeedback() {
   IsForceOn() ? haptics.Stop() : haptics.RequestArm();
 }
 
-/// Esc: no force, no pointer, no card over the picture.
+/// Esc: no force, no pointer, no card over the picture, nothing that is prepared.
 void SimulatorPresenter::ReleaseAll() {
+  if (preparing_ != nullptr) preparing_->is_cancelled = true;
   if (control_ != nullptr && control_->Haptics() != nullptr) control_->Haptics()->Stop();
   screen_->ReleasePointer();
   screen_->FocusPicture();
@@ -424,9 +237,14 @@ void SimulatorPresenter::Reset() {
 
 // tasks
 
-void SimulatorPresenter::OpenTaskList() {
+void SimulatorPresenter::OpenTaskList(TaskSection section) {
   if (page_.failure) return;
-  if (const core::Status filled = screen_->FillTaskList(); !filled) return Fail(filled.error());
+  auto page = LoadTaskPage(section, options_.operation.patient);
+  if (!page.ok()) return Fail(page.error());
+  page_.tasks = std::move(*page);
+  if (!best_.empty()) AddBestResults(best_, page_.tasks);
+  screen_->FillTaskList(page_.tasks);
+  screen_->RequestBest();
   screen_->ReleasePointer();
   page_.is_help_open = false;
   CloseCards();
@@ -434,8 +252,39 @@ void SimulatorPresenter::OpenTaskList() {
   Refresh();
 }
 
+void SimulatorPresenter::ShowBest(const centre::BestResults& results) {
+  if (results == best_ && !best_.empty()) return;
+  best_ = results;
+  AddBestResults(best_, page_.tasks);
+  if (page_.is_task_list_open) screen_->FillTaskList(page_.tasks);
+}
+
 void SimulatorPresenter::CloseTaskList() {
   page_.is_task_list_open = false;
+  if (control_ == nullptr && !loading_.IsRunning()) page_.is_home_open = true;
+  Refresh();
+}
+
+void SimulatorPresenter::OpenRecording(const std::filesystem::path& recording) {
+  page_.is_recording_list_open = false;
+  if (control_ != nullptr) control_->SetPaused(true);
+  screen_->OpenReplay(recording);
+  Refresh();
+}
+
+void SimulatorPresenter::OpenRecordingList() {
+  if (page_.failure) return;
+  screen_->FillRecordingList(options_.recordings.empty() ? record::FindRecordingFolder()
+                                                         : options_.recordings);
+  screen_->ReleasePointer();
+  page_.is_help_open = false;
+  CloseCards();
+  page_.is_recording_list_open = true;
+  Refresh();
+}
+
+void SimulatorPresenter::CloseRecordingList() {
+  page_.is_recording_list_open = false;
   if (control_ == nullptr && !loading_.IsRunning()) page_.is_home_open = true;
   Refresh();
 }
@@ -459,6 +308,23 @@ void SimulatorPresenter::EndAttempt() {
   if (!recording || recording->failure || unattended_.IsOn() || control_->IsDemonstration()) return;
   page_.is_result_open = false;
   screen_->OpenAttempt(recording->path, start_ ? start_->exam : std::nullopt);
+}
+
+/// The whole is done, or the part that it was about, or the time of its level is over.
+void SimulatorPresenter::EndOperation(const simulation::Snapshot& snapshot) {
+  if (!control_->GetScene().operation || is_attempt_over_) return;
+  const OperationEnd::Reason reason = operation_end_.See(snapshot);
+  if (reason == OperationEnd::Reason::kNone) return;
+  screen_->ReleasePointer();
+  control_->SetPaused(true);
+  Announce(std::string(Describe(reason)), reason == OperationEnd::Reason::kTimeOver);
+  EndAttempt();
+}
+
+bool SimulatorPresenter::IsGuided() const {
+  if (IsExam()) return false;
+  return control_ == nullptr || !control_->GetScene().operation ||
+         control_->GetScene().operation->level.has_guidance;
 }
 
 void SimulatorPresenter::Finish() {
@@ -516,6 +382,10 @@ SimulatorPresenter::FrameWork SimulatorPresenter::Advance(double now, double fie
   const double dt = last_frame_ > 0.0 ? now - last_frame_ : 0.0;
   last_frame_ = now;
   FrameWork work;
+  if (control_ == nullptr && preparing_ != nullptr && now - last_times_ > kTimesPeriod) {
+    last_times_ = now;
+    Refresh();
+  }
   if (control_ == nullptr || page_.failure) return work;
   control_->SetPicture(field_of_view, pixels);
   const simulation::Snapshot& snapshot = control_->Advance(dt);
@@ -526,9 +396,8 @@ SimulatorPresenter::FrameWork SimulatorPresenter::Advance(double now, double fie
   ShowEvents(snapshot);
   if (control_->GetScene().task) {
     ShowTask(snapshot.task);
-  } else if (snapshot.operation.is_completed && !is_attempt_over_) {
-    Announce("The operation is completed. Reset begins another.");
-    EndAttempt();
+  } else {
+    EndOperation(snapshot);
   }
   if (const std::string message = control_->TakeDeviceMessage(); !message.empty())
     Announce(message, page_.is_event_warning);
@@ -617,6 +486,9 @@ void SimulatorPresenter::Refresh() {
   page_.badge = page_.failure ? "" : BadgeText(situation);
   page_.mode = page_.failure ? "" : ModeText(situation);
   page_.state = page_.failure ? "Stopped" : StateText(situation);
+  page_.opening = preparing_ == nullptr      ? ""
+                  : preparing_->is_cancelled ? "Giving it up …"
+                                             : preparing_->progress.Get().what;
   if (control_ != nullptr)
     page_.state += "   ·   " + std::to_string(static_cast<int>(PictureRate() + 0.5)) + " pictures/s";
   RefreshFirstMeeting();

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
 namespace trocar::app {
 namespace {
@@ -14,26 +15,19 @@ constexpr double kLooked = 0.06;                            // rad
 
 enum Lesson { kTake, kMove, kDepth, kOpenJaws, kCloseJaws, kSpin, kOtherHand, kLook, kRing, kPause };
 
-struct LessonText {
-  const char *right_handed, *left_handed;
-};
-// in the order of Lesson
-constexpr LessonText kTexts[kTutorialSteps] = {
-    {"Click into the picture: the mouse takes the right instrument.", nullptr},
-    {"Move the mouse: the tip follows it across the picture.", nullptr},
-    {"Turn the wheel: the tip goes deeper into the picture, and back out.", nullptr},
-    {"Hold the right mouse button (or B): the jaws open.",
-     "Hold the left mouse button (or N): the jaws open."},
-    {"Hold the left mouse button (or G): the jaws close.",
-     "Hold the right mouse button (or H): the jaws close."},
-    {"Hold Q or E: the instrument spins about its shaft.",
-     "Hold P or I: the instrument spins about its shaft."},
-    {"Press Tab: the mouse takes the other hand; this one keeps its place and its grip.", nullptr},
-    {"Hold C and move the mouse: the laparoscope looks round. Let C go again.",
-     "Hold Comma and move the mouse: the laparoscope looks round. Let Comma go again."},
-    {"Take a ring: jaws open, the dashed line on its rim, wheel down to it, close. Then open them: it falls.",
-     nullptr},
-    {"Press Space: everything stands still. Press it again to go on.", nullptr}};
+// in the order of Lesson; names of keys and buttons are put in by KeyBindings::Fill
+constexpr std::string_view kTexts[kTutorialSteps] = {
+    "Click into the picture: the mouse takes the right instrument.",
+    "Move the mouse: the tip follows it across the picture.",
+    "Turn the wheel: the tip goes deeper into the picture, and back out.",
+    "Hold the {button:open} mouse button (or {open-jaws}): the jaws open.",
+    "Hold the {button:close} mouse button (or {close-jaws}): the jaws close.",
+    "Hold {spin-left} or {spin-right}: the instrument spins about its shaft.",
+    "Press {other-hand}: the mouse takes the other hand; this one keeps its place and its grip.",
+    "Hold {hold-laparoscope} and move the mouse: the laparoscope looks round. Let {hold-laparoscope} go "
+    "again.",
+    "Take a ring: jaws open, the dashed line on its rim, wheel down to it, close. Then open them: it falls.",
+    "Press {run}: everything stands still. Press it again to go on."};
 
 double CalcTurn(const instrument::TrocarJoints& a, const instrument::TrocarJoints& b) {
   return std::hypot(a.pan - b.pan, a.tilt - b.tilt);
@@ -102,15 +96,14 @@ bool Tutorial::IsStepDone(const TutorialSight& sight) {
   }
 }
 
-std::string Tutorial::Text(bool is_left_handed) const {
+std::string Tutorial::Text(const KeyBindings& bindings) const {
   if (!is_on_) return "";
-  const std::string leave = "   (7 leaves the tutorial)";
+  const std::string leave = bindings.Fill("   ({tutorial} leaves the tutorial)");
   if (IsDone())
     return "Done: these are all the controls. Now try the task: the bright ring shows what comes next." +
            leave;
-  const LessonText& text = kTexts[step_];
   return std::to_string(step_ + 1) + " of " + std::to_string(kTutorialSteps) + ":  " +
-         (is_left_handed && text.left_handed != nullptr ? text.left_handed : text.right_handed) + leave;
+         bindings.Fill(kTexts[step_]) + leave;
 }
 
 }  // namespace trocar::app

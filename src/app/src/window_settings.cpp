@@ -15,9 +15,17 @@ constexpr const char* kFormat = "trocar-window-settings";
 constexpr int kVersion = 1;
 constexpr double kMostSeed = 2147483647;
 
+std::map<std::string, std::string> ReadTexts(const core::JsonView& root, const char* key) {
+  std::map<std::string, std::string> texts;
+  if (!root.Has(key)) return texts;
+  const core::JsonView view = root.Object(key);
+  for (const std::string& name : view.Keys()) texts[name] = view.Text(name);
+  return texts;
+}
+
 WindowSettings ReadSettings(const core::JsonView& root) {
-  root.AllowOnly(
-      {"format", "version", "left_handed", "real_trocar", "guides", "panel", "last", "tutorial_step"});
+  root.AllowOnly({"format", "version", "left_handed", "real_trocar", "guides", "panel", "depth_snap",
+                  "patient", "keys", "buttons", "last", "tutorial_step"});
   if (root.Text("format") != kFormat) root.Complain("is no file of the window's settings");
   root.Integer("version", {kVersion, kVersion});
   WindowSettings settings;
@@ -26,10 +34,15 @@ WindowSettings ReadSettings(const core::JsonView& root) {
   settings.has_guides = root.BooleanOr("guides", settings.has_guides);
   settings.has_panel = root.BooleanOr("panel", settings.has_panel);
   settings.tutorial_step = root.IntegerOr("tutorial_step", 0, {0, kTutorialSteps});
+  settings.has_depth_snap = root.BooleanOr("depth_snap", settings.has_depth_snap);
+  settings.patient = root.TextOr("patient", "");
+  settings.keys = ReadTexts(root, "keys");
+  settings.buttons = ReadTexts(root, "buttons");
   if (!root.Has("last")) return settings;
   const core::JsonView last = root.Object("last");
-  last.AllowOnly({"task", "level", "seed"});
+  last.AllowOnly({"task", "part", "level", "seed"});
   settings.last_task = last.Text("task");
+  settings.last_part = last.TextOr("part", "");
   settings.last_level = last.TextOr("level", settings.last_level);
   settings.last_seed = static_cast<std::uint64_t>(last.IntegerOr("seed", 1, {0, kMostSeed}));
   return settings;
@@ -64,13 +77,20 @@ core::Status SaveWindowSettings(const std::filesystem::path& path, const WindowS
                                  {"real_trocar", settings.is_fulcrum_mirrored},
                                  {"guides", settings.has_guides},
                                  {"panel", settings.has_panel},
+                                 {"depth_snap", settings.has_depth_snap},
                                  {"tutorial_step", settings.tutorial_step}};
-  if (!settings.last_task.empty())
+  if (!settings.patient.empty()) json["patient"] = settings.patient;
+  if (!settings.keys.empty()) json["keys"] = settings.keys;
+  if (!settings.buttons.empty()) json["buttons"] = settings.buttons;
+  if (!settings.last_task.empty()) {
     json["last"] = {
         {"task", settings.last_task}, {"level", settings.last_level}, {"seed", settings.last_seed}};
+    if (!settings.last_part.empty()) json["last"]["part"] = settings.last_part;
+  }
   std::error_code ignored;
   std::filesystem::create_directories(path.parent_path(), ignored);
-  return core::WriteFile(path, json.dump(2) + "\n");
+  return core::WriteFile(path,
+                         json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
 }
 
 }  // namespace trocar::app

@@ -45,9 +45,11 @@ class HandDriver {
     }
     if (bottom < top + 300) return false;
     pixels_ = render::kMaskDiameter * (bottom - top + 1);
-    x_ = static_cast<int>(picture.width) / 2, y_ = static_cast<int>(top + bottom) / 2;
-    screen_->Click(x_, y_);
+    screen_->SwitchOffAcceleration();
+    screen_->Click(static_cast<int>(picture.width) / 2, static_cast<int>(top + bottom) / 2);
     std::this_thread::sleep_for(milliseconds(600));
+    // each turn of the wheel is a step of its own, as this driver reckons
+    screen_->Press(XK_8);
     return true;
   }
 
@@ -113,8 +115,7 @@ class HandDriver {
       const int dx = static_cast<int>(std::lround(d.x / metres / far)),
                 dy = static_cast<int>(std::lround(-d.y / metres / far));
       if (dx == 0 && dy == 0) return;
-      x_ += dx, y_ += dy;
-      screen_->MovePointer(x_, y_);
+      screen_->MoveBy(dx, dy);
       Go(metres * dx, -metres * dy, 0);
       std::this_thread::sleep_for(milliseconds(30));
     }
@@ -140,7 +141,6 @@ class HandDriver {
   std::array<instrument::TrocarJoints, scene::kHandCount> joints_;
   scene::Hand hand_ = scene::kRight;
   double pixels_ = 700;
-  int x_ = 0, y_ = 0;  // of the pointer [pixels]
 };
 
 }  // namespace trocar::test

@@ -50,6 +50,8 @@ TEST(Hints, BadgeSaysWhetherJawsAreOpenClosedOrHold) {
 // Every mode says in one line what mouse and keys do.
 TEST(Hints, EveryModeFitsInALine) {
   int said = 0;
+  KeyBindings left_handed, own;
+  left_handed.SetLayout(KeyLayout::kLeftHanded);
   for (int bits = 0; bits < 512; ++bits) {
     Situation now;
     now.is_loaded = (bits & 1) != 0;
@@ -58,7 +60,7 @@ TEST(Hints, EveryModeFitsInALine) {
     now.is_laparoscope_held = (bits & 8) != 0;
     now.is_pointer_taken = (bits & 16) != 0;
     now.is_right_hand = (bits & 32) != 0;
-    now.is_left_handed = (bits & 64) != 0;
+    if ((bits & 64) != 0) now.bindings = &left_handed;
     now.has_tools = (bits & 128) != 0;
     if ((bits & 256) != 0) now.device = "Gamepad";
     const std::string text = ModeText(now);
@@ -71,8 +73,15 @@ TEST(Hints, EveryModeFitsInALine) {
   EXPECT_EQ(said, 512);
   Situation now{.is_loaded = true, .is_paused = false, .is_pointer_taken = true};
   EXPECT_NE(ModeText(now).find("left button closes, right opens"), std::string::npos);
-  now.is_left_handed = true;
+  now.bindings = &left_handed;
   EXPECT_NE(ModeText(now).find("right button closes, left opens"), std::string::npos);
+  EXPECT_NE(ModeText(now).find("hold Comma: look"), std::string::npos) << ModeText(now);
+  // what a person has set is said, too
+  ASSERT_TRUE(own.SetKey("hold-laparoscope", 'm').ok());
+  own.SetButton(ButtonAct::kCloseJaws, MouseButton::kMiddle);
+  now.bindings = &own;
+  EXPECT_NE(ModeText(now).find("hold M: look"), std::string::npos) << ModeText(now);
+  EXPECT_NE(ModeText(now).find("middle button closes, right opens"), std::string::npos) << ModeText(now);
 }
 
 }  // namespace

@@ -75,6 +75,36 @@ TEST_F(SessionControlTest, TheHandStaysNearAToolThatSomethingStops) {
   EXPECT_LT(control->GetInput().hands[scene::kRight].depth, depth);
 }
 
+// A beginner turns the wheel until something is reached: the tip ends before it, and a further turn presses.
+TEST_F(SessionControlTest, TheWheelStopsBeforeWhatTheTipMeets) {
+  Open(std::string(TROCAR_SOURCE_DIR) + "/scenes/tasks/peg_transfer.json");
+  const auto turn_down = [&](int turns) {
+    for (int turn = 0; turn < turns; ++turn) {
+      control->Scroll(1);
+      for (int frame = 0; frame < 12; ++frame) control->Advance(1.0 / 60);
+    }
+    const math::Vec3& port = control->GetScene().instruments[scene::kRight].p_world_port;
+    return instrument::CalcToolPose(port, control->GetInput().hands[scene::kRight]).translation.z;
+  };
+  constexpr double kBoard = -0.140;  // [m]
+  control->SetPaused(false);
+  control->SetDepthSnap(true);
+  int turns = 0;
+  double z = 0, former = 1;
+  for (; turns < 40; ++turns) {
+    z = turn_down(1);
+    if (std::fabs(z - former) < 0.0015 && z < kBoard + 0.01) break;
+    former = z;
+  }
+  EXPECT_GT(z, kBoard) << "it ends above the board";
+  EXPECT_LT(z, kBoard + 0.005);
+  EXPECT_GT(turns, 5);
+  EXPECT_LT(turn_down(2), z - 0.003) << "and then goes on";
+  control->Reset();
+  control->SetDepthSnap(false);
+  EXPECT_LT(turn_down(turns + 2), kBoard - 0.003) << "without it the hand goes on at once";
+}
+
 // Looking round with a straight scope does not roll the picture, and the tip goes up with the mouse as it is seen.
 TEST_F(SessionControlTest, TheHorizonStaysLevelWithAStraightScope) {
   Open(std::string(TROCAR_SOURCE_DIR) + "/scenes/tasks/peg_transfer.json");

@@ -6,6 +6,7 @@
 #include <set>
 #include <string>
 
+#include "trocar/app/key_bindings.h"
 #include "trocar_test/sound_commands.h"
 
 namespace trocar::app {
@@ -15,7 +16,7 @@ using device::Motion;
 
 TEST(SimulatorCommands, AreSound) {
   test::ExpectSoundCommands(SimulatorCommands());
-  test::ExpectWholeHelp(SimulatorCommands(), SimulatorHelp());
+  test::ExpectWholeHelp(SimulatorCommands(), KeyBindings().Help());
 }
 
 TEST(SimulatorCommands, EveryMotionHasAKey) {
@@ -71,7 +72,9 @@ TEST(SimulatorCommands, LeftHandedLettersChangePlaces) {
   EXPECT_EQ(MirrorKey('q', KeyLayout::kLeftHanded), static_cast<std::uint32_t>('p'));
   EXPECT_EQ(MirrorKey('G', KeyLayout::kLeftHanded), static_cast<std::uint32_t>('h'));
   bool is_closing_right = false, has_spin = false;
-  for (const gui::KeyHelp& row : SimulatorHelp(KeyLayout::kLeftHanded)) {
+  KeyBindings left_handed;
+  left_handed.SetLayout(KeyLayout::kLeftHanded);
+  for (const gui::KeyHelp& row : left_handed.Help()) {
     is_closing_right = is_closing_right || (row.keys.find("Right button") != std::string::npos &&
                                             row.meaning.find("close the jaws") != std::string::npos);
     has_spin = has_spin || (row.keys == "P   I" && row.meaning.find("spin") != std::string::npos);
@@ -102,7 +105,7 @@ TEST(SimulatorCommands, PanelKeepsTheKeysThatSlidersNeed) {
 
 TEST(SimulatorCommands, HelpNamesEveryKeyThatActs) {
   std::string all;
-  for (const gui::KeyHelp& row : SimulatorHelp()) all += " " + row.keys + " ";
+  for (const gui::KeyHelp& row : KeyBindings().Help()) all += " " + row.keys + " ";
   for (std::uint32_t key = 'a'; key <= 'z'; ++key) {
     const std::string name(1, static_cast<char>(key - 'a' + 'A'));
     const bool is_named = all.find(" " + name + " ") != std::string::npos;

@@ -9,6 +9,8 @@
 #include <thread>
 
 #include "trocar/agent/surgeon.h"
+#include "trocar/anatomy/generate_patient.h"
+#include "trocar/anatomy/patient.h"
 #include "trocar/assessment/play_state.h"
 #include "trocar/core/safe_file.h"
 #include "trocar/record/replay.h"
@@ -19,12 +21,16 @@
 namespace trocar::app {
 namespace {
 
+namespace fs = std::filesystem;
+
 /// Remembers what it was told, as a window without widgets.
 struct FakeScreen : SimulatorScreen {
   void Show(const SimulatorPage& shown) override { page = shown; }
   void UseControl(SessionControl* used) override { control = used; }
   std::vector<std::string> UseKeys(const std::map<std::string, device::HandAct>&) override { return {}; }
-  core::Status FillTaskList() override { return list_status; }
+  void FillTaskList(const TaskPage& shown) override { tasks = shown; }
+  void RequestBest() override { ++best_requests; }
+  void FillPatientList(const std::filesystem::path& chosen) override { listed_patient = chosen; }
   void FillResult(const TaskResult&) override { ++results; }
   void OpenAttempt(const std::filesystem::path& recording,
                    const std::optional<centre::ExamSitting>& sitting) override {
@@ -41,14 +47,14 @@ struct FakeScreen : SimulatorScreen {
     if (text) who = *text;
     return who;
   }
-  void OpenCourse(const std::string& course) override { courses.push_back(course); }
 
   std::string who;
-  std::vector<std::string> courses;
+  TaskPage tasks;
+  std::filesystem::path listed_patient;
+  int best_requests = 0;
 
   SimulatorPage page;
   SessionControl* control = nullptr;
-  core::Status list_status;
   std::filesystem::path listed, replayed;
   std::vector<std::filesystem::path> attempts;  // whose pages were opened
   std::optional<centre::ExamSitting> exam;      // of the last of them
@@ -340,8 +346,13 @@ TEST_F(Presenter, BeginsAtHomeWhereNothingIsNamed) {
   EXPECT_EQ(screen_.page.home.who, "Nobody in particular");
   presenter_->BeSomebody("Anna Berg");
   EXPECT_EQ(screen_.page.home.who, "Anna Berg");
-  presenter_->Choose(HomeChoice::kParts);
-  EXPECT_EQ(screen_.courses, std::vector<std::string>{"cholecystectomy"});
+  presenter_->Choose(HomeChoice::kOperation);
+  EXPECT_TRUE(screen_.page.is_task_list_open);
+  ASSERT_EQ(screen_.tasks.groups.size(), 1u);
+  EXPECT_EQ(screen_.tasks.groups[0].rows.size(), 4u) << "the whole and its three parts";
+  EXPECT_EQ(screen_.best_requests, 1);
+  presenter_->CloseTaskList();
+  EXPECT_TRUE(screen_.page.is_home_open);
   presenter_->Choose(HomeChoice::kResults);
   EXPECT_EQ(screen_.done, std::vector{Action::kOpenCentre});
   presenter_->Do(Action::kReleasePointer);
@@ -359,6 +370,115 @@ TEST_F(Presenter, SaysThatItsSettingsCannotBeReadAndLeavesThem) {
   presenter_->Do(Action::kToggleLeftHanded);
   EXPECT_TRUE(screen_.page.is_left_handed) << "it works, and is not kept";
   EXPECT_EQ(*core::ReadFile(options.settings), "{broken");
+}
+
+// faults.md G6: what was there is gone; the page says so, and the built-in patient is operated on from then on.
+TEST_F(Presenter, APatientThatHasVanishedIsSaidAndLeadsOn) {
+  const test::TemporaryFolder folder;
+  Options options;
+  options.settings = folder.Path() / "window.json";
+  WindowSettings settings;
+  settings.patient = (folder.Path() / "seed-7").string();
+  ASSERT_TRUE(SaveWindowSettings(options.settings, settings).ok());
+  Begin(options);
+  EXPECT_EQ(screen_.page.home.patient, "seed 7");
+  presenter_->Choose(HomeChoice::kOperation);
+  presenter_->Open(screen_.tasks.groups.at(0).rows.at(0).request);
+  Load();
+  EXPECT_TRUE(screen_.page.is_home_open);
+  ASSERT_TRUE(screen_.page.home.problem);
+  EXPECT_EQ(screen_.page.home.problem->code, core::ErrorCode::kFileMissing);
+  EXPECT_EQ(screen_.page.home.patient, "the built-in patient");
+  EXPECT_EQ(LoadWindowSettings(options.settings).settings.patient, "");
+}
+
+TEST_F(Presenter, AnOperationIsOnThePatientWhoWasChosenAtTheLevel) {
+  const fs::path seven = folder_.Path() / "seed-7";
+  const auto made = anatomy::GeneratePatient(7);
+  ASSERT_TRUE(made.ok() && anatomy::WritePatient(seven, *made).ok());
+  Options options;
+  options.threads = 1;
+  options.settings = folder_.Path() / "window.json";
+  options.recordings = folder_.Path() / "kept";
+  Begin(options);
+  presenter_->Choose(HomeChoice::kPatients);
+  EXPECT_TRUE(screen_.page.is_patient_list_open);
+  presenter_->ChoosePatient(seven);
+  presenter_->ClosePatientList();
+  EXPECT_TRUE(screen_.page.is_home_open);
+  EXPECT_EQ(screen_.page.home.patient, "seed 7");
+  presenter_->Choose(HomeChoice::kOperation);
+  TaskRequest part = screen_.tasks.groups.at(0).rows.at(1).request;
+  part.choice.level = "hard";
+  presenter_->Open(part);
+  Load();
+  ASSERT_NE(screen_.control, nullptr);
+  EXPECT_EQ(screen_.control->GetScene().patient.name, "Generated patient, seed 7");
+  EXPECT_EQ(screen_.control->GetScene().operation->level.key, "hard");
+  EXPECT_FALSE(presenter_->HasGuides()) << "none at this level";
+  EXPECT_FALSE(IsEnabled("guides"));
+  EXPECT_FALSE(IsEnabled("slow-motion"));
+  EXPECT_TRUE(IsEnabled("reset"));
+  screen_.control->SetPaused(false);  // the hands are ready
+  EXPECT_TRUE(RunTo(130));
+  presenter_->Advance(1.0, 1.0, 500);
+  EXPECT_NE(screen_.page.progress.find(" / 15:00"), std::string::npos) << screen_.page.progress;
+  presenter_->Close();
+  const auto kept = std::distance(fs::directory_iterator(folder_.Path() / "kept"), fs::directory_iterator());
+  EXPECT_GE(kept, 1);
+  for (const auto& file : fs::directory_iterator(folder_.Path() / "kept")) {
+    if (file.path().extension() != ".trocar") continue;
+    const record::Recording recording = ReadWhole(file.path());
+    EXPECT_EQ(recording.description.patient, seven.string());
+    EXPECT_EQ(recording.description.level, "hard");
+    ExpectVerified(ReadWhole(file.path()));
+  }
+  EXPECT_EQ(LoadWindowSettings(options.settings).settings.last_part, "critical-view");
+}
+
+TEST_F(Presenter, APreparationThatIsGivenUpLeadsHome) {
+  ::setenv("TROCAR_CACHE_HOME", (folder_.Path() / "cache").c_str(), 1);
+  Options options;
+  options.threads = 1;
+  Begin(options);
+  presenter_->Choose(HomeChoice::kOperation);
+  presenter_->Open(screen_.tasks.groups.at(0).rows.at(3).request);  // the bed, minutes away
+  for (int i = 0; i < 1000 && screen_.page.opening.find("expert") == std::string::npos; ++i) {
+    presenter_->Advance(1.0 + i, 1.0, 500);
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  EXPECT_NE(screen_.page.opening.find("The expert brings the operation"), std::string::npos);
+  presenter_->CancelOpening();
+  Load();
+  ::unsetenv("TROCAR_CACHE_HOME");
+  EXPECT_TRUE(screen_.page.is_home_open);
+  EXPECT_FALSE(screen_.page.home.problem) << "nobody made a mistake";
+  EXPECT_EQ(screen_.control, nullptr);
+}
+
+TEST_F(Presenter, KeysAreChangedKeptAndTakenBack) {
+  Options options;
+  options.settings = folder_.Path() / "window.json";
+  Begin(options);
+  presenter_->Choose(HomeChoice::kKeys);
+  EXPECT_TRUE(screen_.page.is_key_list_open);
+  EXPECT_TRUE(presenter_->ChangeKey("run", 'm').ok());
+  EXPECT_FALSE(presenter_->ChangeKey("run", gui::key::kEscape).ok());
+  presenter_->ChangeButton(ButtonAct::kCloseJaws, MouseButton::kRight);
+  EXPECT_EQ(presenter_->Bindings().Find('m', false).action, Action::kTogglePause);
+  const WindowSettings kept = LoadWindowSettings(options.settings).settings;
+  EXPECT_EQ(kept.keys.at("run"), "m");
+  EXPECT_EQ(kept.buttons.at("close"), "right");
+  presenter_->RestoreKeys();
+  EXPECT_TRUE(LoadWindowSettings(options.settings).settings.keys.empty());
+  presenter_->UndoKeys();
+  EXPECT_EQ(LoadWindowSettings(options.settings).settings, kept) << "what was regretted";
+  presenter_->UndoKeys();
+  presenter_->UndoKeys();
+  EXPECT_FALSE(presenter_->CanUndoKeys());
+  EXPECT_EQ(presenter_->Bindings().GetOwn(), KeyBindings::Own());
+  EXPECT_TRUE(presenter_->ChangeKey("help", 'j').ok());
+  EXPECT_NE(screen_.page.mode.find("J all keys"), std::string::npos) << screen_.page.mode;
 }
 
 TEST_F(Presenter, KeepsSettingsAndContinues) {
@@ -583,8 +703,9 @@ TEST_F(Presenter, LetsTheExpertGoOnFromARecording) {
 
 TEST_F(Presenter, FailsWhereTheListCannotBeRead) {
   BeginTask();
-  screen_.list_status = core::Error{core::ErrorCode::kFileMissing, "no tasks"};
+  ::setenv("TROCAR_DATA_DIR", "/nowhere", 1);
   presenter_->OpenTaskList();
+  ::unsetenv("TROCAR_DATA_DIR");
   EXPECT_FALSE(screen_.page.is_task_list_open);
   EXPECT_TRUE(presenter_->GetFailure());
 }

@@ -46,13 +46,13 @@ std::vector<std::vector<std::function<void(Person&)>>> Lessons() {
 TEST(Tutorial, GoesOnWhenEachControlWasUsed) {
   Person person;
   Tutorial tutorial;
-  EXPECT_EQ(tutorial.Text(false), "");
+  EXPECT_EQ(tutorial.Text(KeyBindings()), "");
   tutorial.Begin(0);
   const auto lessons = Lessons();
   ASSERT_EQ(lessons.size(), static_cast<std::size_t>(kTutorialSteps));
   for (int step = 0; step < kTutorialSteps; ++step) {
     EXPECT_EQ(tutorial.Step(), step);
-    EXPECT_NE(tutorial.Text(false).find(std::to_string(step + 1) + " of 10"), std::string::npos);
+    EXPECT_NE(tutorial.Text(KeyBindings()).find(std::to_string(step + 1) + " of 10"), std::string::npos);
     const auto& frames = lessons[static_cast<std::size_t>(step)];
     for (std::size_t frame = 0; frame < frames.size(); ++frame) {
       EXPECT_FALSE(tutorial.Observe(person.sight)) << step << ": nothing has been done yet";
@@ -61,7 +61,7 @@ TEST(Tutorial, GoesOnWhenEachControlWasUsed) {
     EXPECT_TRUE(tutorial.Observe(person.sight)) << step;
   }
   EXPECT_TRUE(tutorial.IsDone());
-  EXPECT_EQ(tutorial.Text(false).rfind("Done", 0), 0u);
+  EXPECT_EQ(tutorial.Text(KeyBindings()).rfind("Done", 0), 0u);
   EXPECT_FALSE(tutorial.Observe(person.sight));
 }
 
@@ -91,8 +91,10 @@ TEST(Tutorial, CanBeLeftAndResumed) {
   Person person;
   Tutorial tutorial;
   tutorial.Begin(4);
-  EXPECT_NE(tutorial.Text(false).find("left mouse button"), std::string::npos);
-  EXPECT_NE(tutorial.Text(true).find("right mouse button"), std::string::npos);
+  EXPECT_NE(tutorial.Text(KeyBindings()).find("left mouse button"), std::string::npos);
+  KeyBindings left_handed;
+  left_handed.SetLayout(KeyLayout::kLeftHanded);
+  EXPECT_NE(tutorial.Text(left_handed).find("right mouse button"), std::string::npos);
   tutorial.Leave();
   EXPECT_FALSE(tutorial.IsOn());
   EXPECT_FALSE(tutorial.Observe(person.sight));

@@ -20,7 +20,12 @@ TEST(WindowSettings, ComeBackAsTheyWere) {
   settings.is_left_handed = settings.is_fulcrum_mirrored = settings.has_panel = true;
   settings.has_guides = false;
   settings.last_task = "peg_transfer";
+  settings.last_part = "bed";
   settings.last_level = "hard";
+  settings.has_depth_snap = false;
+  settings.patient = "/patients/seed-7";
+  settings.keys = {{"close-jaws", "m"}, {"in", "Page_Up"}};
+  settings.buttons = {{"close", "right"}, {"open", "left"}};
   settings.last_seed = 7;
   settings.tutorial_step = 3;
   ASSERT_TRUE(SaveWindowSettings(path, settings).ok());

@@ -129,6 +129,24 @@ class Screen {
     XTestFakeMotionEvent(display_, -1, x, y, 0);
     XSync(display_, False);
   }
+  /// As a mouse that is pushed.
+  void MoveBy(int dx, int dy) const {
+    XTestFakeRelativeMotionEvent(display_, dx, dy, 0);
+    XSync(display_, False);
+  }
+  /// A pixel of the mouse is a pixel of the screen from now on.
+  void SwitchOffAcceleration() const {
+    XChangePointerControl(display_, True, True, 1, 1, 1000);
+    XSync(display_, False);
+  }
+  Place Pointer() const {
+    Window root = 0, child = 0;
+    int x = 0, y = 0, ignored_x = 0, ignored_y = 0;
+    unsigned mask = 0;
+    XQueryPointer(display_, DefaultRootWindow(display_), &root, &child, &x, &y, &ignored_x, &ignored_y,
+                  &mask);
+    return {x, y};
+  }
   void Focus(Window window) const {
     XRaiseWindow(display_, window);
     XSetInputFocus(display_, window, RevertToPointerRoot, CurrentTime);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <utility>
 
 namespace trocar::app {
 namespace {
@@ -27,12 +28,12 @@ std::optional<Pedal> FindPedal(Action action) {
   }
 }
 
-constexpr guint kLeftButton = 1, kMiddleButton = 2, kRightButton = 3;
+constexpr guint kFirstButton = 1, kLastButton = 3;
 
 }  // namespace
 
 HandEvents::HandEvents(Gtk::Window& window, Gtk::Widget& picture, Gtk::Widget& panel)
-    : window_(window), picture_(picture), panel_(panel) {
+    : window_(window), picture_(picture), panel_(panel), lock_(picture) {
   const auto keys = Gtk::EventControllerKey::create();
   keys->set_propagation_phase(Gtk::PropagationPhase::CAPTURE);
   keys->signal_key_pressed().connect(sigc::mem_fun(*this, &HandEvents::OnKeyPressed), false);
@@ -41,8 +42,12 @@ HandEvents::HandEvents(Gtk::Window& window, Gtk::Widget& picture, Gtk::Widget& p
 
   const auto motion = Gtk::EventControllerMotion::create();
   motion->signal_motion().connect(sigc::mem_fun(*this, &HandEvents::OnMotion));
-  motion->signal_enter().connect([this](double, double) { has_last_ = false; });
-  motion->signal_leave().connect([this] { has_last_ = false; });
+  motion->signal_enter().connect([this](double, double) {
+    if (!lock_.IsHeld()) lock_.Forget();
+  });
+  motion->signal_leave().connect([this] {
+    if (!lock_.IsHeld()) lock_.Forget();
+  });
   picture.add_controller(motion);
 
   const auto buttons = Gtk::EventControllerLegacy::create();
@@ -54,7 +59,7 @@ HandEvents::HandEvents(Gtk::Window& window, Gtk::Widget& picture, Gtk::Widget& p
   wheel->signal_scroll().connect(
       [this](double, double dy) {
         if (control_ == nullptr || control_->IsPaused()) return true;
-        if (is_taken_ || control_->IsLaparoscopeHeld()) control_->Device().Scroll(-dy);
+        if (is_taken_ || control_->IsLaparoscopeHeld()) control_->Scroll(-dy);
         return true;
       },
       false);
@@ -67,8 +72,15 @@ HandEvents::HandEvents(Gtk::Window& window, Gtk::Widget& picture, Gtk::Widget& p
 
 void HandEvents::ReleasePointer() {
   is_taken_ = false;
-  has_last_ = false;
-  picture_.set_cursor("");
+  FollowPause();
+}
+
+void HandEvents::FollowPause() {
+  const bool is_wanted = is_taken_ && control_ != nullptr && !control_->IsPaused();
+  if (is_wanted == is_held_wanted_) return;
+  is_held_wanted_ = is_wanted;
+  is_wanted ? static_cast<void>(lock_.Take()) : lock_.Release();
+  picture_.set_cursor(is_wanted ? "none" : "");
 }
 
 void HandEvents::ReleaseAll() {
@@ -108,17 +120,28 @@ std::vector<std::string> HandEvents::SetKeys(const std::map<std::string, device:
 KeyMeaning HandEvents::FindMeaning(guint keyval, bool control) const {
   const auto own = own_keys_.find(gdk_keyval_to_lower(keyval));
   if (own != own_keys_.end() && !control) return {own->second, device::Motion::kCount};
-  return FindKeyMeaning(control ? keyval : MirrorKey(keyval, layout_), control);
+  return bindings_.Find(keyval, control);
+}
+
+void HandEvents::AskKey(std::function<void(std::uint32_t)> told) {
+  if (const auto former = std::exchange(asked_, std::move(told))) former(0);
 }
 
 bool HandEvents::OnKeyPressed(guint keyval, guint, Gdk::ModifierType state) {
   using Gdk::ModifierType;
+  if (asked_) {
+    // a key of its own only: Shift and Ctrl are still to be followed by one
+    if (keyval >= GDK_KEY_Shift_L && keyval <= GDK_KEY_Hyper_R) return true;
+    const auto told = std::exchange(asked_, nullptr);
+    told(keyval == GDK_KEY_Escape ? 0 : keyval);
+    return true;
+  }
   if ((state & (ModifierType::ALT_MASK | ModifierType::SUPER_MASK)) != ModifierType{}) return false;
-  const KeyMeaning meaning = FindMeaning(keyval, (state & ModifierType::CONTROL_MASK) != ModifierType{});
+  const bool has_control = (state & ModifierType::CONTROL_MASK) != ModifierType{};
+  const KeyMeaning meaning = FindMeaning(keyval, has_control);
   if (meaning.action == Action::kNone) return false;
-  if (IsFocusInPanel() && !WorksInPanel(meaning.action)) return false;
-  const bool is_letter =
-      (state & ModifierType::CONTROL_MASK) == ModifierType{} && gdk_keyval_to_unicode(keyval) > ' ';
+  if (!has_control && IsFocusInPanel() && !WorksInPanel(meaning.action)) return false;
+  const bool is_letter = !has_control && gdk_keyval_to_unicode(keyval) > ' ';
   if (is_letter && IsTyping()) return false;
   const bool is_repeat = std::find(held_.begin(), held_.end(), keyval) != held_.end();
   if (is_repeat) return true;
@@ -153,12 +176,9 @@ void HandEvents::OnKeyReleased(guint keyval, guint, Gdk::ModifierType) {
 }
 
 void HandEvents::OnMotion(double x, double y) {
-  if (has_last_ && control_ != nullptr && !control_->IsPaused() &&
-      (is_taken_ || control_->IsLaparoscopeHeld()))
-    control_->Device().MovePointer(x - last_x_, y - last_y_);
-  has_last_ = true;
-  last_x_ = x;
-  last_y_ = y;
+  const auto motion = lock_.See(x, y);
+  if (!motion || control_ == nullptr || control_->IsPaused()) return;
+  if (is_taken_ || control_->IsLaparoscopeHeld()) control_->Device().MovePointer(motion->dx, motion->dy);
 }
 
 bool HandEvents::OnPicturePointer(const Glib::RefPtr<const Gdk::Event>& event) {
@@ -170,26 +190,24 @@ bool HandEvents::OnPicturePointer(const Glib::RefPtr<const Gdk::Event>& event) {
 
 void HandEvents::OnButton(guint button, bool is_down) {
   if (is_down) picture_.grab_focus();
-  if (control_ == nullptr) return;
-  if (button == kMiddleButton) {
+  if (control_ == nullptr || button < kFirstButton || button > kLastButton) return;
+  const auto act = bindings_.ActOf(static_cast<MouseButton>(button));
+  if (act == ButtonAct::kLook) {
     control_->HoldLaparoscope(is_down);
     return;
   }
   if (is_down && !is_taken_) {
     // the click that takes the pointer moves no jaw
-    if (button == kLeftButton && !control_->IsDemonstration()) {
+    if (button == kFirstButton && !control_->IsDemonstration()) {
       is_taken_ = true;
-      picture_.set_cursor("none");
+      FollowPause();
       signal_taken_.emit();
     }
     return;
   }
   if (control_->IsPaused()) is_down = false;
-  const bool is_mirrored = layout_ == KeyLayout::kLeftHanded;
-  const guint closing = is_mirrored ? kRightButton : kLeftButton;
-  const guint opening = is_mirrored ? kLeftButton : kRightButton;
-  if (button == closing) control_->Device().SetKey(device::Motion::kCloseJaw, is_down);
-  if (button == opening) control_->Device().SetKey(device::Motion::kOpenJaw, is_down);
+  if (act == ButtonAct::kCloseJaws) control_->Device().SetKey(device::Motion::kCloseJaw, is_down);
+  if (act == ButtonAct::kOpenJaws) control_->Device().SetKey(device::Motion::kOpenJaw, is_down);
 }
 
 }  // namespace trocar::app

@@ -4,10 +4,13 @@
 
 #include <gtkmm.h>
 
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
 
+#include "pointer_lock.h"
+#include "trocar/app/key_bindings.h"
 #include "trocar/app/session_control.h"
 #include "trocar/app/simulator_commands.h"
 
@@ -16,9 +19,8 @@ namespace trocar::app {
 /// Takes the pointer with a click into the picture, gives it back with Esc or when the window loses the
 /// keyboard.
 ///
-/// GTK 4 cannot hold a pointer inside a widget. So the hidden pointer moves the tip while it is over the
-/// picture; where it leaves, the hand stands still, and where it comes back the hand goes on: lift and set
-/// down again, as a mouse.
+/// Where the display lets nobody hold the pointer (PointerLock), the hidden pointer moves the tip while it is over the picture;
+/// where it leaves, the hand stands still, and where it comes back the hand goes on: lift and set down again, as a mouse.
 class HandEvents {
  public:
   HandEvents(Gtk::Window& window, Gtk::Widget& picture, Gtk::Widget& panel);
@@ -28,10 +30,16 @@ class HandEvents {
   /// \param keys  by name, as GDK has it: "F13", "b"
   /// \return the names that are no key, or Escape, which always stops the force
   std::vector<std::string> SetKeys(const std::map<std::string, device::HandAct>& keys);
-  /// Left-handed, letters and mouse buttons change sides.
-  void SetLayout(KeyLayout layout) { layout_ = layout; }
+  /// What keys and buttons do.
+  void SetBindings(const KeyBindings& bindings) { bindings_ = bindings; }
+  /// The next key that is pressed is told to the function and does nothing else; Esc tells 0.
+  void AskKey(std::function<void(std::uint32_t)> told);
   bool IsPointerTaken() const { return is_taken_; }
+  /// Whether a pointer that is taken stays over the picture.
+  bool CanHoldPointer() const { return lock_.CanHold(); }
   void ReleasePointer();
+  /// The pointer is free while the simulation is paused, and held again when it goes on. Once a frame.
+  void FollowPause();
   /// Everything but motion.
   sigc::signal<void(Action)>& SignalAction() { return signal_action_; }
   /// A click into the picture has taken the pointer.
@@ -52,11 +60,11 @@ class HandEvents {
   Gtk::Widget& picture_;
   Gtk::Widget& panel_;
   SessionControl* control_ = nullptr;
-  KeyLayout layout_ = KeyLayout::kRightHanded;
-  bool is_taken_ = false;
-  bool has_last_ = false;
-  double last_x_ = 0, last_y_ = 0;  // [pixels]
-  std::vector<guint> held_;         // key symbols, so that repeats toggle nothing
+  KeyBindings bindings_;
+  std::function<void(std::uint32_t)> asked_;  // waits for a key; may be empty
+  PointerLock lock_;
+  bool is_taken_ = false, is_held_wanted_ = false;
+  std::vector<guint> held_;  // key symbols, so that repeats toggle nothing
   std::map<guint, Action> own_keys_;
   sigc::signal<void(Action)> signal_action_;
   sigc::signal<void()> signal_taken_;

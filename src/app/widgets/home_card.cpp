@@ -7,7 +7,7 @@
 namespace trocar::app {
 namespace {
 
-constexpr int kWidth = 620;  // pixels
+constexpr int kWidth = 620, kMostHeight = 480;  // pixels
 
 }  // namespace
 
@@ -30,6 +30,7 @@ HomeCard::HomeCard() : Gtk::Box(Gtk::Orientation::VERTICAL) {
   name_.set_placeholder_text(core::Translate("Your name, or nothing"));
   name_.set_tooltip_text(core::Translate(
       "Your results are kept under a pseudonym; the name stays in a protected file on this computer"));
+  gui::SetAccessibleName(name_, core::Translate("Your name, or nothing"));
   const auto give = [this] { signal_person_.emit(name_.get_text()); };
   name_.signal_activate().connect(give);
   auto* be = Gtk::make_managed<Gtk::Button>(core::Translate("That is me"));
@@ -39,6 +40,10 @@ HomeCard::HomeCard() : Gtk::Box(Gtk::Orientation::VERTICAL) {
   person->append(*be);
   append(*person);
 
+  patient_.add_css_class("name");
+  patient_.set_xalign(0);
+  append(patient_);
+
   problem_.add_css_class("bad");
   problem_.set_wrap(true);
   problem_.set_max_width_chars(70);
@@ -46,6 +51,14 @@ HomeCard::HomeCard() : Gtk::Box(Gtk::Orientation::VERTICAL) {
   problem_.set_visible(false);
   append(problem_);
 
+  auto* entries = Gtk::make_managed<Gtk::Box>(Gtk::Orientation::VERTICAL);
+  entries->set_spacing(6);
+  auto* scroller = Gtk::make_managed<Gtk::ScrolledWindow>();
+  scroller->set_policy(Gtk::PolicyType::NEVER, Gtk::PolicyType::AUTOMATIC);
+  scroller->set_propagate_natural_height(true);
+  scroller->set_max_content_height(kMostHeight);
+  scroller->set_child(*entries);
+  append(*scroller);
   for (const HomeEntry& entry : HomeEntries()) {
     Row row{Gtk::make_managed<Gtk::Button>(), Gtk::make_managed<Gtk::Label>(core::Translate(entry.title)),
             Gtk::make_managed<Gtk::Label>(core::Translate(entry.about))};
@@ -59,19 +72,29 @@ HomeCard::HomeCard() : Gtk::Box(Gtk::Orientation::VERTICAL) {
     row.button->set_child(*text);
     row.button->add_css_class("step");
     row.button->signal_clicked().connect([this, choice = entry.choice] { signal_chosen_.emit(choice); });
-    append(*row.button);
+    entries->append(*row.button);
     rows_[entry.choice] = row;
   }
 }
 
 void HomeCard::Show(const HomePage& page) {
   gui::SetTextOrHide(who_, page.who.empty() ? "" : core::Translate("You are: ") + page.who);
-  gui::SetTextOrHide(problem_, page.problem ? page.problem->Text() : "");
+  gui::SetTextOrHide(patient_, page.patient.empty() ? "" : core::Translate("Operations are on ") + page.patient);
+  gui::SetTextOrHide(problem_, page.problem ? "\u26a0 " + page.problem->Text() : "");
   rows_[HomeChoice::kContinue].button->set_visible(!page.last.empty());
   rows_[HomeChoice::kContinue].about->set_text(page.last);
   rows_[HomeChoice::kTutorial].title->set_text(core::Translate("Tutorial: ") + page.tutorial);
   gui::SetClass(*rows_[HomeChoice::kTutorial].button, "primary", page.is_tutorial_suggested);
   gui::SetClass(*rows_[HomeChoice::kContinue].button, "primary", !page.is_tutorial_suggested);
+}
+
+void HomeCard::FocusFirst() {
+  for (const HomeEntry& entry : HomeEntries()) {
+    Gtk::Button* button = rows_[entry.choice].button;
+    if (!button->get_visible()) continue;
+    button->grab_focus();
+    return;
+  }
 }
 
 }  // namespace trocar::app

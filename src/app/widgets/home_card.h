@@ -15,6 +15,8 @@ class HomeCard : public Gtk::Box {
   HomeCard();
 
   void Show(const HomePage& page);
+  /// Gives the keyboard to the first thing that can be chosen, not to the name.
+  void FocusFirst();
   sigc::signal<void(HomeChoice)>& SignalChosen() { return signal_chosen_; }
   /// Name or pseudonym that was typed.
   sigc::signal<void(std::string)>& SignalPerson() { return signal_person_; }
@@ -24,7 +26,7 @@ class HomeCard : public Gtk::Box {
     Gtk::Button* button;
     Gtk::Label *title, *about;
   };
-  Gtk::Label who_, problem_;
+  Gtk::Label who_, patient_, problem_;
   Gtk::Entry name_;
   std::map<HomeChoice, Row> rows_;
   sigc::signal<void(HomeChoice)> signal_chosen_;

@@ -54,7 +54,6 @@ class Program {
   }
 
   int Run() {
-    gtk_disable_setlocale();  // glibmm has done it, and what follows would be undone
     const auto application = Gtk::Application::create("", Gio::Application::Flags::NON_UNIQUE);
     // in files, certificates and SQL numbers have a point, whatever the language of the desktop
     std::locale::global(std::locale(std::locale(), std::locale::classic(), std::locale::numeric));
@@ -121,10 +120,8 @@ class Program {
   std::unique_ptr<SimulatorWindow> MakeSimulator(SimulatorWindow::Beginning beginning) {
     SimulatorServices services;
     services.open_centre = [this] { OpenCentre().Presenter().Open(centre::PageKind::kHistory); };
-    services.open_course = [this](const std::string& course) {
-      centre::CentrePresenter& presenter = OpenCentre().Presenter();
-      presenter.Open(centre::PageKind::kCourses);
-      presenter.ChooseCourse(course);
+    services.load_best = [this]() -> std::function<core::Result<centre::BestResults>()> {
+      return [access = access_] { return centre::LoadBestResults(access); };
     };
     services.be_somebody = [this](const std::optional<std::string>& text) -> core::Result<std::string> {
       if (text) {
@@ -290,6 +287,7 @@ int main(int argc, char** argv) {
     return EXIT_SUCCESS;
   }
   app::Program program(*command);
+  gtk_disable_setlocale();  // glibmm does it, and what Run() sets after that would be undone
   if (!gtk_init_check()) {
     const core::Error error{core::ErrorCode::kNoDisplay,
                             "no display can be opened: start from a desktop session or set DISPLAY "

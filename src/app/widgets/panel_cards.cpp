@@ -91,7 +91,7 @@ void HandsCard::Show(const HandPages& page) {
     gui::SetText(row.force, page[hand].force);
     gui::SetClass(row.force, "warning", page[hand].level == ForceLevel::kWarning);
     gui::SetClass(row.force, "danger", page[hand].level == ForceLevel::kDanger);
-    gui::SetText(row.contact, page[hand].contact);
+    gui::SetText(row.contact, (page[hand].is_chosen ? "▶ " : "") + page[hand].contact);
     row.bar.Show(page[hand].force_n, page[hand].thresholds);
     gui::SetClass(row.name, "chosen", page[hand].is_chosen);
   }

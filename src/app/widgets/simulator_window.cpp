@@ -22,7 +22,9 @@ SimulatorWindow::SimulatorWindow(const Options& options, const core::Stopwatch& 
                                  SimulatorServices services, Beginning beginning)
     : services_(std::move(services)),
       bar_(SimulatorCommands(), tips_,
-           [this](const SimulatorCommand& command) { presenter_->Do(command.action.action); }) {
+           [this](const SimulatorCommand& command) { presenter_->Do(command.action.action); }),
+      keys_(MakeKeyCardServices()),
+      loading_best_([this] { best_loaded_.emit(); }) {
   set_title("Trocar");
   add_css_class("trocar");
   set_default_size(kWidth, kHeight);
@@ -57,6 +59,7 @@ SimulatorWindow::~SimulatorWindow() {
 
 void SimulatorWindow::MakeOverlay() {
   overlay_.set_child(picture_);
+  gui::SetAccessibleName(picture_, "Picture of the laparoscope");
   overlay_.set_hexpand(true);
   overlay_.set_vexpand(true);
   badge_.add_css_class("badge");
@@ -74,9 +77,11 @@ void SimulatorWindow::MakeOverlay() {
   tutorial_.set_valign(Gtk::Align::START);
   tutorial_.set_margin_top(56);
   MakeQuestion();
+  help_.set_halign(Gtk::Align::CENTER);
+  help_.set_valign(Gtk::Align::CENTER);
   const std::initializer_list<Gtk::Widget*> labels = {&badge_, &progress_, &tutorial_, &hint_};
   const std::initializer_list<Gtk::Widget*> cards = {
-      &home_, &help_card_, &mirrored_help_card_, &chooser_, &recordings_, &result_card_, &question_};
+      &home_, &help_, &chooser_, &patients_, &keys_, &opening_, &recordings_, &result_card_, &question_};
   for (Gtk::Widget* label : labels) {
     label->set_can_target(false);
     overlay_.add_overlay(*label);
@@ -148,7 +153,10 @@ void SimulatorWindow::MakeRoutes() {
     tips_.End();
     presenter_->Do(action);
   });
-  hands_->SignalTaken().connect([this] { tips_.End(); });
+  hands_->SignalTaken().connect([this] {
+    tips_.End();
+    if (!hands_->CanHoldPointer()) presenter_->SayPointerIsFree();
+  });
   property_is_active().signal_changed().connect([this] { tips_.End(); });
   picture_.SignalDrawn().connect([this] { presenter_->CountPicture(); });
   picture_.SignalFailed().connect([this](const core::Error& error) { presenter_->Fail(error); });
@@ -165,6 +173,20 @@ void SimulatorWindow::MakeRoutes() {
       false);
   chooser_.SignalChosen().connect([this](const TaskRequest& request) { presenter_->Open(request); });
   chooser_.SignalClosed().connect([this] { presenter_->CloseTaskList(); });
+  chooser_.SignalPatients().connect([this] { presenter_->OpenPatientList(); });
+  patients_.SignalChosen().connect(
+      [this](const std::filesystem::path& folder) { presenter_->ChoosePatient(folder); });
+  patients_.SignalClosed().connect([this] { presenter_->ClosePatientList(); });
+  keys_.SignalClosed().connect([this] {
+    hands_->AskKey(nullptr);
+    presenter_->CloseKeyList();
+  });
+  opening_.SignalCancelled().connect([this] { presenter_->CancelOpening(); });
+  best_loaded_.connect([this] {
+    // a store that is away is said where results are shown; here there are just none
+    const auto best = loading_best_.Take();
+    if (best.ok()) presenter_->ShowBest(*best);
+  });
   recordings_.SignalChosen().connect(
       [this](const std::filesystem::path& path) { presenter_->OpenRecording(path); });
   recordings_.SignalClosed().connect([this] { presenter_->CloseRecordingList(); });
@@ -206,10 +228,15 @@ void SimulatorWindow::Show(const SimulatorPage& page) {
   if (get_title().raw() != page.title) set_title(page.title);
   bar_.Show([this](const SimulatorCommand& command) { return presenter_->FindButton(command); });
   if (picture_.GetOptions() != page.view) picture_.SetOptions(page.view);
-  const KeyLayout layout = presenter_->Layout();
-  hands_->SetLayout(layout);
-  help_card_.set_visible(page.is_help_open && layout == KeyLayout::kRightHanded);
-  mirrored_help_card_.set_visible(page.is_help_open && layout == KeyLayout::kLeftHanded);
+  hands_->SetBindings(presenter_->Bindings());
+  hands_->FollowPause();
+  if (page.is_help_open) ShowHelp();
+  help_.set_visible(page.is_help_open);
+  FocusCard(page);
+  if (page.is_key_list_open) keys_.Show(presenter_->Bindings(), presenter_->CanUndoKeys());
+  keys_.set_visible(page.is_key_list_open);
+  patients_.set_visible(page.is_patient_list_open);
+  opening_.Show(page.opening);
   if (page.is_home_open) home_.Show(page.home);
   home_.set_visible(page.is_home_open);
   panel_.set_visible(page.is_panel_open);
@@ -232,6 +259,29 @@ void SimulatorWindow::Show(const SimulatorPage& page) {
   panel_.set_sensitive(false);
 }
 
+/// Whoever has only a keyboard gets into a card that opens.
+void SimulatorWindow::FocusCard(const SimulatorPage& page) {
+  Gtk::Widget* card = page.is_home_open           ? static_cast<Gtk::Widget*>(&home_)
+                      : page.is_task_list_open    ? static_cast<Gtk::Widget*>(&chooser_)
+                      : page.is_patient_list_open ? static_cast<Gtk::Widget*>(&patients_)
+                      : page.is_key_list_open     ? static_cast<Gtk::Widget*>(&keys_)
+                                                  : nullptr;
+  if (card == focused_card_) return;
+  focused_card_ = card;
+  if (card == nullptr) {
+    picture_.grab_focus();
+    return;
+  }
+  // once it is there to be focused
+  Glib::signal_timeout().connect_once(
+      [this, card] {
+        if (card != focused_card_ || !card->get_visible()) return;
+        card == &home_ ? home_.FocusFirst()
+                       : static_cast<void>(card->child_focus(Gtk::DirectionType::TAB_FORWARD));
+      },
+      0);
+}
+
 void SimulatorWindow::UseControl(SessionControl* control) {
   device_page_.reset();
   picture_.SetSnapshot(nullptr);
@@ -247,10 +297,31 @@ void SimulatorWindow::UseControl(SessionControl* control) {
   tips_.Adopt(panel_);  // the patient's is another one
 }
 
-core::Status SimulatorWindow::FillTaskList() {
-  const core::Status filled = chooser_.Load();
-  tips_.Adopt(chooser_);
-  return filled;
+void SimulatorWindow::RequestBest() {
+  if (services_.load_best && !loading_best_.IsRunning()) loading_best_.Start(services_.load_best());
+}
+
+void SimulatorWindow::ShowHelp() {
+  const KeyBindings& bindings = presenter_->Bindings();
+  std::pair<KeyLayout, KeyBindings::Own> now{bindings.Layout(), bindings.GetOwn()};
+  if (shown_help_ == now) return;
+  shown_help_ = std::move(now);
+  while (Gtk::Widget* child = help_.get_first_child()) help_.remove(*child);
+  help_.append(*Gtk::make_managed<gui::HelpCard>(bindings.Help()));
+}
+
+KeyCardServices SimulatorWindow::MakeKeyCardServices() {
+  KeyCardServices services;
+  services.ask_key = [this](std::function<void(std::uint32_t)> told) { hands_->AskKey(std::move(told)); };
+  services.change_key = [this](const std::string& id, std::uint32_t key) {
+    return presenter_->ChangeKey(id, key);
+  };
+  services.change_button = [this](ButtonAct act, MouseButton button) {
+    presenter_->ChangeButton(act, button);
+  };
+  services.restore = [this] { presenter_->RestoreKeys(); };
+  services.undo = [this] { presenter_->UndoKeys(); };
+  return services;
 }
 
 std::vector<std::string> SimulatorWindow::UseKeys(const std::map<std::string, device::HandAct>& keys) {
@@ -290,10 +361,6 @@ void SimulatorWindow::DoInWindow(Action action) {
 
 core::Result<std::string> SimulatorWindow::BeSomebody(const std::optional<std::string>& text) {
   return services_.be_somebody ? services_.be_somebody(text) : std::string();
-}
-
-void SimulatorWindow::OpenCourse(const std::string& course) {
-  if (services_.open_course) services_.open_course(course);
 }
 
 void SimulatorWindow::OpenReplay(const std::filesystem::path& recording) {

@@ -7,6 +7,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <variant>
 
 #include "device_page.h"
@@ -14,7 +15,10 @@
 #include "film_bar.h"
 #include "hand_events.h"
 #include "home_card.h"
+#include "key_card.h"
+#include "opening_card.h"
 #include "panel.h"
+#include "patient_list_card.h"
 #include "picture.h"
 #include "recording_chooser.h"
 #include "replay_window.h"
@@ -34,7 +38,9 @@ struct SimulatorServices {
   /// \param exam  that was sat, or nothing
   std::function<void(const std::filesystem::path& recording, const std::optional<centre::ExamSitting>& exam)>
       open_attempt;
-  std::function<void(const std::string& course)> open_course;
+  /// The best results of whoever operates, from the store, are read beside the window's thread.
+  /// \return what reads them
+  std::function<std::function<core::Result<centre::BestResults>()>()> load_best;
   /// As SimulatorScreen::BeSomebody.
   std::function<core::Result<std::string>(const std::optional<std::string>&)> be_somebody;
   AttemptHooks hooks;
@@ -70,12 +76,17 @@ class SimulatorWindow : public Gtk::ApplicationWindow, private SimulatorScreen {
   void MakeSound(const Options& options);
   void HearFrame(const simulation::Snapshot& snapshot);
   bool ChangeSound(Action action);
+  void ShowHelp();
+  void FocusCard(const SimulatorPage& page);
+  KeyCardServices MakeKeyCardServices();
 
   // SimulatorScreen
   void Show(const SimulatorPage& page) override;
   void UseControl(SessionControl* control) override;
   std::vector<std::string> UseKeys(const std::map<std::string, device::HandAct>& keys) override;
-  core::Status FillTaskList() override;
+  void FillTaskList(const TaskPage& page) override { chooser_.Show(page); }
+  void RequestBest() override;
+  void FillPatientList(const std::filesystem::path& chosen) override { patients_.Load(chosen); }
   void FillRecordingList(const std::filesystem::path& folder) override { recordings_.Load(folder); }
   void OpenReplay(const std::filesystem::path& recording) override;
   void OpenAttempt(const std::filesystem::path& recording,
@@ -86,7 +97,6 @@ class SimulatorWindow : public Gtk::ApplicationWindow, private SimulatorScreen {
   void FocusPicture() override { picture_.grab_focus(); }
   void DoInWindow(Action action) override;
   core::Result<std::string> BeSomebody(const std::optional<std::string>& text) override;
-  void OpenCourse(const std::string& course) override;
 
   SimulatorServices services_;
   gui::Tips tips_;
@@ -94,8 +104,13 @@ class SimulatorWindow : public Gtk::ApplicationWindow, private SimulatorScreen {
   Gtk::Overlay overlay_;
   Picture picture_;
   Panel panel_;
-  gui::HelpCard help_card_{SimulatorHelp()}, mirrored_help_card_{SimulatorHelp(KeyLayout::kLeftHanded)};
+  Gtk::Box help_;  // of the keys as they are now
+  std::optional<std::pair<KeyLayout, KeyBindings::Own>> shown_help_;
+  Gtk::Widget* focused_card_ = nullptr;
   HomeCard home_;
+  OpeningCard opening_;
+  PatientListCard patients_;
+  KeyCard keys_;
   Gtk::Box question_{Gtk::Orientation::VERTICAL};
   TaskChooser chooser_;
   RecordingChooser recordings_{"Watch"};
@@ -104,7 +119,8 @@ class SimulatorWindow : public Gtk::ApplicationWindow, private SimulatorScreen {
   FailureCard failure_card_;
   Gtk::Label badge_, hint_, event_, state_, haptics_, mode_, progress_, tutorial_, asked_;
   std::unique_ptr<HandEvents> hands_;
-  Glib::Dispatcher loaded_;
+  Glib::Dispatcher loaded_, best_loaded_;
+  gui::BackgroundJob<core::Result<centre::BestResults>> loading_best_;
   gui::FileDialog file_dialog_;
   std::unique_ptr<SimulatorPresenter> presenter_;
   FilmBar film_bar_{[this](const std::string& text, bool is_warning) { presenter_->Tell(text, is_warning); }};

@@ -2,17 +2,22 @@
 #include "task_chooser.h"
 
 #include <algorithm>
+#include <string>
+#include <vector>
 
-#include "trocar/core/json.h"
-#include "trocar/scene/scene.h"
+#include "trocar/gui/card.h"
+#include "trocar/gui/labels.h"
 
 namespace trocar::app {
 namespace {
 
-constexpr int kListWidth = 660, kLevelWidth = 96;  // [pixels]
+constexpr int kListWidth = 760, kLevelWidth = 96;  // [pixels]
 constexpr double kMostSeed = 2147483647;
-/// Scenes that are no tasks, in the data folder's scenes/.
-constexpr const char* kScenes[] = {"cholecystectomy.json", "demonstration.json"};
+
+/// What differs at the level, and one's best result at it.
+std::string DescribeLevel(const TaskPage::Level& level) {
+  return level.about + (level.about.empty() || level.best.empty() ? "" : ". ") + level.best;
+}
 
 }  // namespace
 
@@ -20,53 +25,58 @@ TaskChooser::TaskChooser() : gui::ListCard(kListWidth) {
   auto* label = Gtk::make_managed<Gtk::Label>("Seed of the task");
   label->add_css_class("name");
   seed_.set_adjustment(Gtk::Adjustment::create(1, 0, kMostSeed, 1, 10));
+  gui::SetAccessibleName(seed_, "Seed of the task");
   seed_.set_tooltip_text("Moves what a task leaves open; the same seed gives the same task");
-  AddFoot({label, &seed_});
+  patients_.signal_clicked().connect([this] { signal_patients_.emit(); });
+  AddFoot({label, &seed_, &patients_});
 }
 
-core::Status TaskChooser::Load() {
-  if (is_loaded_) return {};
-  const auto tasks = scene::ListTasks();
-  if (!tasks) return tasks.error();
-  const auto data = scene::FindDataFolder();
-  if (!data) return data.error();
-  AddTitle("Training tasks");
-  for (const scene::TaskEntry& task : *tasks) {
-    TaskRequest request;
-    request.task = task.key;
-    AddTask(task.name, task.about, task.levels, request);
+void TaskChooser::Show(const TaskPage& page) {
+  ClearRows();
+  for (const TaskPage::Group& group : page.groups) {
+    AddTitle(group.title);
+    for (const TaskPage::Row& row : group.rows) AddTask(row);
   }
-  AddTitle("On a patient");
-  for (const char* file : kScenes) {
-    TaskRequest request;
-    request.scene = *data / "scenes" / file;
-    auto document = core::JsonDocument::Read(request.scene);
-    if (!document) return document.error();
-    AddTask(document->Root().Text("name"), document->Root().TextOr("about", ""), {}, request);
-    if (const auto status = document->Check(); !status) return status.error();
-  }
-  is_loaded_ = true;
-  return {};
+  patients_.set_visible(page.section != TaskSection::kBasicSkills);
 }
 
-void TaskChooser::AddTask(const std::string& name, const std::string& about,
-                          const std::vector<std::string>& levels, TaskRequest request) {
-  auto* level = levels.empty() ? nullptr : Gtk::make_managed<Gtk::DropDown>();
-  if (level != nullptr) {
-    level->set_model(Gtk::StringList::create({levels.begin(), levels.end()}));
-    const auto normal = std::find(levels.begin(), levels.end(), request.choice.level);
-    level->set_selected(static_cast<guint>(normal - levels.begin()));
-    level->set_size_request(kLevelWidth, -1);
-  }
+void TaskChooser::AddTask(const TaskPage::Row& row) {
+  Gtk::Label* about = gui::MakeLabel(row.about, "fine");
+  about->set_tooltip_text(row.about);
+  Gtk::Label* best = gui::MakeLabel("", "name");
   auto* start = Gtk::make_managed<Gtk::Button>("Start");
-  start->set_tooltip_text(name);
-  start->signal_clicked().connect([this, level, levels, request]() mutable {
-    if (level != nullptr && level->get_selected() < levels.size())
-      request.choice.level = levels[level->get_selected()];
+  start->set_tooltip_text(row.name);
+  gui::SetAccessibleName(*start, "Start " + row.name);
+  if (row.levels.empty()) {
+    start->signal_clicked().connect([this, request = row.request]() mutable {
+      request.choice.seed = static_cast<std::uint64_t>(seed_.get_value_as_int());
+      signal_chosen_.emit(request);
+    });
+    return AddPictureRow(row.picture, row.name, {about, best}, {start});
+  }
+  auto* level = Gtk::make_managed<Gtk::DropDown>();
+  std::vector<Glib::ustring> keys;
+  for (const TaskPage::Level& one : row.levels) keys.emplace_back(one.key);
+  level->set_model(Gtk::StringList::create(keys));
+  gui::SetAccessibleName(*level, "Level of " + row.name);
+  const auto normal = std::find(keys.begin(), keys.end(), Glib::ustring(row.request.choice.level));
+  level->set_selected(static_cast<guint>(normal == keys.end() ? 0 : normal - keys.begin()));
+  level->set_size_request(kLevelWidth, -1);
+  const auto show = [level, best, levels = row.levels] {
+    if (level->get_selected() < levels.size()) {
+      const std::string text = DescribeLevel(levels[level->get_selected()]);
+      gui::SetText(*best, text);
+      best->set_tooltip_text(text);
+    }
+  };
+  level->property_selected().signal_changed().connect(show);
+  show();
+  start->signal_clicked().connect([this, level, keys, request = row.request]() mutable {
+    if (level->get_selected() < keys.size()) request.choice.level = keys[level->get_selected()].raw();
     request.choice.seed = static_cast<std::uint64_t>(seed_.get_value_as_int());
     signal_chosen_.emit(request);
   });
-  level != nullptr ? AddRow(name, about, {level, start}) : AddRow(name, about, {start});
+  AddPictureRow(row.picture, row.name, {about, best}, {level, start});
 }
 
 }  // namespace trocar::app

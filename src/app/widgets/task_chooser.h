@@ -4,10 +4,7 @@
 
 #include <gtkmm.h>
 
-#include <string>
-#include <vector>
-
-#include "trocar/app/task_request.h"
+#include "trocar/app/task_page.h"
 #include "trocar/gui/list_card.h"
 
 namespace trocar::app {
@@ -16,17 +13,17 @@ class TaskChooser : public gui::ListCard {
  public:
   TaskChooser();
 
-  /// Fills the list with what is delivered, once. \return the first file's error
-  core::Status Load();
+  void Show(const TaskPage& page);
   sigc::signal<void(TaskRequest)>& SignalChosen() { return signal_chosen_; }
+  sigc::signal<void()>& SignalPatients() { return signal_patients_; }
 
  private:
-  void AddTask(const std::string& name, const std::string& about, const std::vector<std::string>& levels,
-               TaskRequest request);
+  void AddTask(const TaskPage::Row& row);
 
   Gtk::SpinButton seed_;
-  bool is_loaded_ = false;
+  Gtk::Button patients_{"Another patient…"};
   sigc::signal<void(TaskRequest)> signal_chosen_;
+  sigc::signal<void()> signal_patients_;
 };
 
 }  // namespace trocar::app

@@ -11,22 +11,23 @@ struct NamedKey {
   const char* name;
 };
 constexpr NamedKey kNamedKeys[] = {
-    {' ', "Space"},           {',', "Comma"},          {key::kBackSpace, "Backspace"},
-    {key::kTab, "Tab"},       {key::kReturn, "Enter"}, {key::kEscape, "Esc"},
-    {key::kHome, "Home"},     {key::kLeft, "Left"},    {key::kUp, "Up"},
-    {key::kRight, "Right"},   {key::kDown, "Down"},    {key::kPageUp, "Page Up"},
-    {key::kEnd, "End"},       {key::kF1, "F1"},        {key::kPageDown, "Page Down"},
-    {key::kInsert, "Insert"}, {key::kF6, "F6"},        {key::kF11, "F11"},
+    {' ', "Space"},          {',', "Comma"},           {key::kBackSpace, "Backspace"},
+    {key::kTab, "Tab"},      {key::kReturn, "Enter"},  {key::kEscape, "Esc"},
+    {key::kHome, "Home"},    {key::kLeft, "Left"},     {key::kUp, "Up"},
+    {key::kRight, "Right"},  {key::kDown, "Down"},     {key::kPageUp, "Page Up"},
+    {key::kEnd, "End"},      {key::kInsert, "Insert"}, {key::kPageDown, "Page Down"},
     {key::kDelete, "Delete"}};
+constexpr std::uint32_t kF12 = 0xffc9;
 
 constexpr const char* kBetweenKeys = "   ";
 
-std::string NameOf(std::uint32_t key) {
+std::string NameOf(std::uint32_t symbol) {
   for (const NamedKey& each : kNamedKeys) {
-    if (each.key == key) return each.name;
+    if (each.key == symbol) return each.name;
   }
-  if (key >= 'a' && key <= 'z') key -= 'a' - 'A';
-  return std::string(1, static_cast<char>(key));
+  if (symbol >= key::kF1 && symbol <= kF12) return "F" + std::to_string(symbol - key::kF1 + 1);
+  if (symbol >= 'a' && symbol <= 'z') symbol -= 'a' - 'A';
+  return std::string(1, static_cast<char>(symbol));
 }
 
 void Join(std::string& text, const std::string& more, const char* between) {

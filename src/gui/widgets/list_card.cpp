@@ -6,7 +6,8 @@
 namespace trocar::gui {
 namespace {
 
-constexpr int kHeight = 520;  // at most, of the rows [pixels]
+constexpr int kHeight = 520;                             // at most, of the rows [pixels]
+constexpr int kPictureWidth = 112, kPictureHeight = 70;  // [pixels]
 
 }  // namespace
 
@@ -41,10 +42,35 @@ void ListCard::AddRow(const std::string& name, const std::string& about,
   auto* text = Gtk::make_managed<Gtk::Box>(Gtk::Orientation::VERTICAL);
   text->set_hexpand(true);
   text->append(*MakeLabel(name, "key"));
-  Gtk::Label* line = MakeLabel(about, "fine");
-  line->set_tooltip_text(about);
-  text->append(*line);
+  if (!about.empty()) {
+    Gtk::Label* line = MakeLabel(about, "fine");
+    line->set_tooltip_text(about);
+    text->append(*line);
+  }
   Gtk::Box& row = MakeRow(8, {text});
+  for (Gtk::Widget* widget : beside) {
+    widget->set_valign(Gtk::Align::CENTER);
+    row.append(*widget);
+  }
+  rows_.append(row);
+}
+
+void ListCard::AddPictureRow(const std::filesystem::path& picture, const std::string& name,
+                             std::initializer_list<Gtk::Widget*> lines,
+                             std::initializer_list<Gtk::Widget*> beside) {
+  auto* image = Gtk::make_managed<Gtk::Picture>();
+  if (!picture.empty()) image->set_filename(picture.string());
+  image->set_alternative_text(name);
+  image->set_can_shrink(true);
+  image->set_size_request(kPictureWidth, kPictureHeight);
+  image->set_halign(Gtk::Align::START);
+  image->add_css_class("thumbnail");
+  auto* text = Gtk::make_managed<Gtk::Box>(Gtk::Orientation::VERTICAL);
+  text->set_hexpand(true);
+  text->set_valign(Gtk::Align::CENTER);
+  text->append(*MakeLabel(name, "key"));
+  for (Gtk::Widget* line : lines) text->append(*line);
+  Gtk::Box& row = MakeRow(12, {image, text});
   for (Gtk::Widget* widget : beside) {
     widget->set_valign(Gtk::Align::CENTER);
     row.append(*widget);

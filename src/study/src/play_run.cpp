@@ -90,7 +90,7 @@ core::Result<RunResult> PlayRun(const StudyPlan& plan, const Run& run) {
   }
 
   const simulation::OperationSnapshot& operation = now.operation;
-  const auto& blood = operation.fluids.fluids[static_cast<std::size_t>(surgery::Fluid::kBlood)];
+  const auto& blood = operation.flow.ledger.fluids[static_cast<std::size_t>(surgery::Fluid::kBlood)];
   std::uint64_t task_errors = 0;
   for (const std::uint32_t count : now.task.errors) task_errors += count;
   RunResult result;

@@ -222,7 +222,13 @@ std::vector<SeriesSitting> ListPictureSeries() {
       {"wire_run", "expert", {{"17-wire-run", "a ring along a wire", IsLaterThan<9>}}},
       {"pattern_cut", "expert", {{"18-pattern-cut", "pattern cut", IsLaterThan<6>}}},
       {"clip_and_cut", "expert", {{"19-clip-and-cut", "clip and cut", IsLaterThan<6>}}},
-      {"hook_dissection", "expert", {{"20-hook-dissection", "hook dissection", IsLaterThan<6>}}}};
+      {"hook_dissection", "expert", {{"20-hook-dissection", "hook dissection", IsLaterThan<6>}}},
+      {"camera_navigation_0",
+       "expert",
+       {{"21-straight-camera-navigation", "camera navigation with a straight scope", IsLaterThan<6>}}},
+      {"object_transport",
+       "expert",
+       {{"22-object-transport", "transport of a thing from hand to hand", IsLaterThan<7>}}}};
 }
 
 core::Result<std::vector<SeriesPicture>> MakePictureSeries(const SeriesOptions& options) {

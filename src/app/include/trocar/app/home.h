@@ -11,10 +11,20 @@
 
 namespace trocar::app {
 
-enum class HomeChoice { kContinue, kTutorial, kBasicSkills, kOperation, kParts, kResults, kRecordings };
+enum class HomeChoice {
+  kContinue,
+  kTutorial,
+  kBasicSkills,
+  kOperation,  ///< and its parts
+  kPatients,
+  kResults,
+  kRecordings,
+  kKeys
+};
 
 struct HomePage {
   std::string who;                     ///< "Anna Berg", "Nobody in particular"
+  std::string patient;                 ///< who is operated on: "the built-in patient"
   std::string last;                    ///< of "Continue": "Peg transfer, normal"; empty: nothing to continue
   std::string tutorial;                ///< "Start", "Go on: 3 of 10", "Again"
   bool is_tutorial_suggested = false;  ///< nothing has been trained here yet

@@ -13,12 +13,19 @@
 
 namespace trocar::app {
 
+/// On whom is operated, and what of it.
+struct OperationOptions {
+  std::filesystem::path patient;  ///< folder in place of the scene's own; empty: none
+  std::string part;               ///< key of an OperationPart; empty: the whole
+};
+
 /// Of the simulator and the page of devices.
 struct Options {
   std::filesystem::path scene;   ///< empty: the built-in demonstration
   std::string task;              ///< training task by its name or file, in place of `scene`; empty: none
   std::string level = "normal";  ///< of that task
   std::uint64_t seed = 1;        ///< of that task
+  OperationOptions operation;    ///< with a task that is one
   bool is_task_list = false;     ///< start with the list of tasks
   int threads = 0;               ///< of the solver; 0: chosen by the number of processors
   std::string device;   ///< hands of a device, as `trocar devices list` names it; empty: mouse and keyboard

@@ -2,8 +2,10 @@
 /// \file scene_choice.h  Which scene the simulator window plays: a file, a training task or an operation, by its name.
 #pragma once
 
+#include <optional>
 #include <string>
 
+#include "trocar/app/operation_part.h"
 #include "trocar/app/options.h"
 #include "trocar/centre/course_page.h"
 #include "trocar/record/recording.h"
@@ -19,6 +21,14 @@ core::Result<scene::Scene> ReadChosenScene(const Options& options);
 
 /// Likewise, ready to run.
 core::Result<simulation::Simulation> MakeChosenSimulation(const Options& options);
+
+/// What was read, and where it begins where that is not the first tick.
+struct LoadedScene {
+  simulation::Simulation simulation;
+  std::optional<centre::Start> start;
+};
+/// Likewise; a part of an operation where the scripted expert has left it.
+core::Result<LoadedScene> MakeChosenScene(const Options& options, const PartProgress& progress);
 
 /// What a step of a course or an exam asks for, where it begins: at the first tick, or where the expert has left an operation.
 /// \return the scene's error; kStateInvalid where the state is of another scene

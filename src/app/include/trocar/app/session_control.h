@@ -111,6 +111,10 @@ class SessionControl {
   /// Retract, relax, release, wait, and again.
   void StepAssistant();
 
+  /// Turns of the wheel. With the snap one that would take the tip into something ends before it; the next goes on.
+  void Scroll(double steps);
+  void SetDepthSnap(bool is_on) { has_depth_snap_ = is_on; }
+
   void SetMirrorFulcrum(bool is_mirrored);
   bool IsFulcrumMirrored() const { return is_fulcrum_mirrored_; }
 
@@ -167,7 +171,8 @@ class SessionControl {
   scene::Input input_, sent_;
   device::Channel hand_ = device::kRightHand;
   bool is_demonstration_ = false;
-  bool is_fulcrum_mirrored_ = false;
+  bool is_fulcrum_mirrored_ = false, has_depth_snap_ = false;
+  double wheel_under_way_ = 0;  // turned and not walked yet [m]
   double field_of_view_ = 1.0;  // [rad]
   double pixels_ = 700;
   double time_ = 0;  // of the newest snapshot [s]

@@ -36,6 +36,7 @@ enum class Action {
   kToggleMask,
   kToggleGuides,  ///< marks that help to see depth, and what comes next
   kToggleFulcrum,
+  kToggleDepthSnap,  ///< the wheel ends where the tip meets something
   kToggleSlowMotion,
   kToggleLeftHanded,
   kToggleForceFeedback,
@@ -45,6 +46,8 @@ enum class Action {
   kTogglePanel,  ///< numbers and settings beside the picture
   kToggleTaskList,
   kToggleRecordingList,
+  kTogglePatientList,
+  kToggleKeyList,
   kOpenDevices,
   kOpenCentre,  ///< history, courses, groups, exams
   kSavePicture,
@@ -74,6 +77,7 @@ enum class SimulatorNeeds {
   kScene,     ///< a simulation runs, and nothing has failed
   kScript,    ///< likewise, it has a script or an expert, and it is no exam
   kGuidance,  ///< likewise, and it is no exam
+  kHelp,      ///< likewise, and the operation's level has guides and slow motion
   kHaptics,   ///< likewise, and a haptic device holds a hand
 };
 
@@ -86,9 +90,6 @@ std::uint32_t MirrorKey(std::uint32_t keyval, KeyLayout layout) noexcept;
 
 /// All of them; those with a button in the order of the header bar, from the left.
 std::span<const SimulatorCommand> SimulatorCommands() noexcept;
-/// The help page.
-std::vector<gui::KeyHelp> SimulatorHelp(KeyLayout layout = KeyLayout::kRightHanded);
-
 /// Meaning of a key in the picture.
 ///
 /// \param keyval   X11 key symbol, as GDK gives it; letters in either case

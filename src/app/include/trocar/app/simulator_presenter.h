@@ -2,6 +2,7 @@
 /// \file simulator_presenter.h  What the simulator window does, without a widget: loading, commands, frames, tasks.
 #pragma once
 
+#include <atomic>
 #include <functional>
 #include <map>
 #include <memory>
@@ -13,10 +14,14 @@
 #include "trocar/app/branch.h"
 #include "trocar/app/hints.h"
 #include "trocar/app/home.h"
+#include "trocar/app/key_bindings.h"
+#include "trocar/app/operation_part.h"
 #include "trocar/app/options.h"
 #include "trocar/app/read_outs.h"
+#include "trocar/app/scene_choice.h"
 #include "trocar/app/session_control.h"
 #include "trocar/app/simulator_commands.h"
+#include "trocar/app/task_page.h"
 #include "trocar/app/task_request.h"
 #include "trocar/app/task_result.h"
 #include "trocar/app/tutorial.h"
@@ -38,10 +43,12 @@ struct SimulatorPage {
   std::string tutorial;  ///< what is to be done now; empty: it is off
   std::string question;  ///< before something is thrown away; empty: none
   HomePage home;
+  TaskPage tasks;
+  std::string opening;  ///< what is prepared beside the window; empty: nothing that takes long
   bool is_home_open = false, is_panel_open = false, is_left_handed = false;
   bool is_event_warning = false;
   bool is_help_open = false, is_task_list_open = false, is_result_open = false;
-  bool is_recording_list_open = false;
+  bool is_recording_list_open = false, is_patient_list_open = false, is_key_list_open = false;
   view::ViewOptions view;
   std::optional<core::Error> failure;
 };
@@ -63,8 +70,11 @@ class SimulatorScreen {
   virtual void UseControl(SessionControl* control) = 0;
   /// \return names of keys that can have no act
   virtual std::vector<std::string> UseKeys(const std::map<std::string, device::HandAct>& keys) = 0;
-  /// Fills the list of tasks. \return the first file's error
-  virtual core::Status FillTaskList() = 0;
+  virtual void FillTaskList(const TaskPage& page) = 0;
+  /// Asks for the person's best results, beside the window; SimulatorPresenter::ShowBest is told them.
+  virtual void RequestBest() = 0;
+  /// Reads the list of patients anew, beside the window.
+  virtual void FillPatientList(const std::filesystem::path& chosen) = 0;
   virtual void FillResult(const TaskResult& result) = 0;
   /// Reads the list of recordings anew, beside the window.
   virtual void FillRecordingList(const std::filesystem::path& folder) = 0;
@@ -79,8 +89,6 @@ class SimulatorScreen {
   virtual void FocusPicture() = 0;
   /// Name of who operates; turns a name or pseudonym into that person first, where there is a text.
   virtual core::Result<std::string> BeSomebody(const std::optional<std::string>& text) = 0;
-  /// The page of a course in the training centre.
-  virtual void OpenCourse(const std::string& course) = 0;
   /// What is the window's alone: full screen, panes, the page of devices, the end.
   virtual void DoInWindow(Action action) = 0;
 };
@@ -92,10 +100,19 @@ class SimulatorPresenter {
   SimulatorPresenter(const Options& options, const core::Stopwatch& since_start, SimulatorScreen& screen,
                      std::function<void()> on_loaded, AttemptHooks hooks = {});
 
+  /// What is being prepared is given up.
+  ~SimulatorPresenter() {
+    if (preparing_ != nullptr) preparing_->is_cancelled = true;
+  }
+  SimulatorPresenter(const SimulatorPresenter&) = delete;
+  SimulatorPresenter& operator=(const SimulatorPresenter&) = delete;
+
   /// Begins to read the scene that the options name.
   void Start();
   /// Takes over what has been read.
   void FinishLoading();
+  /// What is being read or prepared is not wanted any more.
+  void CancelOpening();
   /// Gives up the scene that is shown and reads the one that was chosen; nothing while one is being read.
   void Open(const TaskRequest& request);
   /// Likewise with a step of a course, or an exam.
@@ -123,8 +140,31 @@ class SimulatorPresenter {
   /// To the question that is asked. \param is_yes  does what was asked for
   void Answer(bool is_yes);
 
-  void OpenTaskList();
+  void OpenTaskList(TaskSection section = TaskSection::kAll);
   void CloseTaskList();
+  /// Of the person who is there now.
+  void ShowBest(const centre::BestResults& results);
+
+  /// Who is operated on from the next operation on.
+  /// \param folder  empty: the built-in one
+  void ChoosePatient(const std::filesystem::path& folder);
+  void OpenPatientList();
+  void ClosePatientList();
+
+  /// A hand was taken, and the display lets nobody hold the pointer.
+  void SayPointerIsFree();
+
+  // keys and buttons, each change of which can be undone
+  const KeyBindings& Bindings() const { return bindings_; }
+  void OpenKeyList();
+  void CloseKeyList();
+  /// \return why the key cannot be used
+  core::Status ChangeKey(const std::string& id, std::uint32_t key);
+  void ChangeButton(ButtonAct act, MouseButton button);
+  void RestoreKeys();
+  void UndoKeys();
+  bool CanUndoKeys() const { return !former_bindings_.empty(); }
+
   void OpenRecordingList();
   void CloseRecordingList();
   void CloseResult();
@@ -159,10 +199,7 @@ class SimulatorPresenter {
   SessionControl* Control() { return control_.get(); }
   const Options& GetOptions() const { return options_; }
   const SimulatorPage& Page() const { return page_; }
-  KeyLayout Layout() const {
-    return settings_.is_left_handed ? KeyLayout::kLeftHanded : KeyLayout::kRightHanded;
-  }
-  bool HasGuides() const { return settings_.has_guides && !IsExam(); }
+  bool HasGuides() const { return settings_.has_guides && IsGuided(); }
 
  private:
   bool Meets(SimulatorNeeds needs) const;
@@ -173,7 +210,13 @@ class SimulatorPresenter {
   void GoOn();
   void Finish();
   void EndAttempt();
+  void EndOperation(const simulation::Snapshot& snapshot);
   bool IsExam() const { return start_ && start_->exam; }
+  /// Whether help may be shown: neither in an exam nor at a level without it.
+  bool IsGuided() const;
+  void GiveUpOpening();
+  void UseBindings();
+  void KeepBindings(KeyBindings::Own former);
   void Drop();
   void Refresh();
   Situation MakeSituation();
@@ -208,6 +251,10 @@ class SimulatorPresenter {
   SimulatorPage page_;
   UnattendedPlay unattended_;
   WindowSettings settings_;
+  KeyBindings bindings_;
+  std::vector<KeyBindings::Own> former_bindings_;  // the newest last
+  centre::BestResults best_;
+  OperationEnd operation_end_;
   Tutorial tutorial_;
   Action asked_ = Action::kNone;  // that waits for an answer
   double attempt_seconds_ = 0;    // of the newest snapshot
@@ -223,7 +270,13 @@ class SimulatorPresenter {
   std::uint64_t seen_events_ = 0;
   double first_picture_ = 0;                                  // since the start of the program [s]
   double last_frame_ = 0, last_forces_ = 0, last_times_ = 0;  // of the frame clock [s]
-  gui::BackgroundJob<core::Result<simulation::Simulation>> loading_;
+  /// Shared with the thread that reads and prepares.
+  struct Preparing {
+    gui::JobProgress progress;
+    std::atomic<bool> is_cancelled = false;
+  };
+  std::shared_ptr<Preparing> preparing_;  // null where nothing is being read
+  gui::BackgroundJob<core::Result<LoadedScene>> loading_;
 };
 
 }  // namespace trocar::app

@@ -12,6 +12,7 @@ namespace trocar::app {
 /// A task with its level and seed, or a scene.
 struct TaskRequest {
   std::string task;             ///< key; empty: `scene` is meant
+  std::string part;             ///< of an operation; empty: the whole
   std::filesystem::path scene;  ///< file
   scene::TaskChoice choice;
 };

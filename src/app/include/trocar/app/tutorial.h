@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "trocar/app/key_bindings.h"
 #include "trocar/device/mouse_keyboard.h"
 #include "trocar/scene/input.h"
 #include "trocar/simulation/snapshot.h"
@@ -35,7 +36,7 @@ class Tutorial {
   /// \return true where it went on
   bool Observe(const TutorialSight& sight);
   /// "3 of 10: turn the wheel ...": what is to be done now, or that all is done; empty while it is off.
-  std::string Text(bool is_left_handed) const;
+  std::string Text(const KeyBindings& bindings) const;
 
  private:
   bool IsStepDone(const TutorialSight& sight);

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 
@@ -16,7 +17,12 @@ struct WindowSettings {
   bool is_fulcrum_mirrored = false;  ///< as in a real trocar; false for beginners
   bool has_guides = true;
   bool has_panel = false;
-  std::string last_task;  ///< as Options::task; empty: none yet
+  bool has_depth_snap = true;               ///< the wheel ends where the tip meets something, for beginners
+  std::string patient;                      ///< folder of who is operated on; empty: the built-in one
+  std::map<std::string, std::string> keys;  ///< of a command, by its id: name of the key that does it
+  std::map<std::string, std::string> buttons;  ///< "close", "open", "look": "left", "middle" or "right"
+  std::string last_task;                       ///< as Options::task; empty: none yet
+  std::string last_part;                       ///< of an operation; empty: the whole
   std::string last_level = "normal";
   std::uint64_t last_seed = 1;
   int tutorial_step = 0;  ///< at which it goes on, 0 to kTutorialSteps; that one: it has been done

@@ -18,6 +18,14 @@ inline void SetTextOrHide(Gtk::Label& label, const std::string& text) {
   if (label.get_visible() == text.empty()) label.set_visible(!text.empty());
 }
 
+/// What a screen reader says of a widget whose text does not say it.
+inline void SetAccessibleName(Gtk::Widget& widget, const std::string& name) {
+  Glib::Value<Glib::ustring> value;
+  value.init(Glib::Value<Glib::ustring>::value_type());
+  value.set(name);
+  widget.update_property(Gtk::Accessible::Property::LABEL, value);
+}
+
 inline void SetClass(Gtk::Widget& widget, const char* name, bool is_on) {
   is_on ? widget.add_css_class(name) : widget.remove_css_class(name);
 }

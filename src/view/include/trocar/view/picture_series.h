@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file picture_series.h  Twenty pictures of the operation and of the training tasks: what is to be looked at after each
+/// \file picture_series.h  Twenty-two pictures of the operation and of the training tasks: what is to be looked at after each
 /// change of the picture.
 #pragma once
 

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file patient_list_card.h  Patients with their pictures, over the picture: who is operated on, and new ones.
+#pragma once
+
+#include <gtkmm.h>
+
+#include <filesystem>
+
+#include "trocar/app/patient_desk.h"
+#include "trocar/gui/file_dialog.h"
+#include "trocar/gui/list_card.h"
+
+namespace trocar::app {
+
+class PatientListCard : public gui::ListCard {
+ public:
+  PatientListCard();
+  ~PatientListCard() override;
+
+  /// Reads the list anew.
+  void Load(const std::filesystem::path& chosen);
+  /// The folder; empty: the built-in one.
+  sigc::signal<void(std::filesystem::path)>& SignalChosen() { return signal_chosen_; }
+
+ private:
+  void MakeFoot();
+  void Show();
+  void ShowProgress();
+  void AddPatient(const PatientEntry& patient);
+  void AskForLabels();
+  void Begin();
+  void OnNews();
+
+  Gtk::Label problem_, doing_;
+  Gtk::ProgressBar progress_;
+  Gtk::Button cancel_{"Cancel"}, generate_{"Make it"}, import_{"From a label map…"};
+  Gtk::SpinButton seed_;
+  Gtk::Box under_way_;
+  gui::FileDialog file_dialog_;
+  sigc::connection pulse_;
+  Glib::Dispatcher news_;
+  sigc::signal<void(std::filesystem::path)> signal_chosen_;
+  PatientDesk desk_;  // ends before what it uses
+};
+
+}  // namespace trocar::app

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file pointer_lock.h  Keeps the hidden pointer over the picture while it moves a hand, so that a hand is never left behind.
+///
+/// GTK 4 has no such thing, so it is the platform's: under X11 the pointer is grabbed, confined to the window, and set back to the
+/// picture's middle before it comes to an edge. Elsewhere nothing holds it, and CanHold() says so.
+#pragma once
+
+#include <gtkmm.h>
+
+#include <optional>
+
+namespace trocar::app {
+
+class PointerLock {
+ public:
+  explicit PointerLock(Gtk::Widget& picture) : picture_(picture) {}
+  ~PointerLock() { Release(); }
+  PointerLock(const PointerLock&) = delete;
+  PointerLock& operator=(const PointerLock&) = delete;
+
+  /// Whether the picture's display lets a pointer be held: X11 does.
+  bool CanHold() const;
+  /// \return whether it is held now; another program may hold it
+  bool Take();
+  void Release();
+  bool IsHeld() const { return is_held_; }
+
+  struct Motion {
+    double dx = 0, dy = 0;  ///< [pixels]
+  };
+  /// The pointer is seen somewhere in the picture. \return how it was moved; nothing where that is not known
+  std::optional<Motion> See(double x, double y);
+  /// It has left, or comes back: the next place is a beginning.
+  void Forget() { has_last_ = is_jumping_ = false; }
+
+ private:
+  Motion JumpToMiddle();
+
+  Gtk::Widget& picture_;
+  bool is_held_ = false;
+  bool has_last_ = false;
+  double last_x_ = 0, last_y_ = 0;  // [pixels]
+  bool is_jumping_ = false;         // it has been set to the middle, and is not seen there yet
+  int seen_while_jumping_ = 0;
+};
+
+}  // namespace trocar::app
