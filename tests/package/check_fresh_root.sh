@@ -25,6 +25,8 @@ mkdir -p "$fresh/dev/shm"
 mount -t proc proc "$fresh/proc"
 mount -t tmpfs tmpfs "$fresh/dev/shm"
 cp /etc/resolv.conf "$fresh/etc/resolv.conf" 2>/dev/null || true
+# nobody needs this system after a power cut: without waiting for the disk it is there in a quarter of the time
+echo force-unsafe-io >"$fresh/etc/dpkg/dpkg.cfg.d/check"
 printf 'Dpkg::Use-Pty "0";\nAPT::Install-Recommends "0";\n' >"$fresh/etc/apt/apt.conf.d/90check"
 
 # each command alone: a home that does not exist yet, English, no display

@@ -16,8 +16,9 @@ unset TROCAR_DATA_DIR
 "$root/bin/trocar" --version
 cd "$work" # nothing of the source tree is near
 "$root/bin/trocar" doctor --json >doctor.json || true
-grep -A2 '"name": "data"' doctor.json | grep -q "$root/share/trocar" || { cat doctor.json; exit 1; }
-LANGUAGE=es LC_ALL=C.UTF-8 "$root/bin/trocar" errors | grep -q 'no se puede leer'
+grep -q "\"found\": \"$root/share/trocar" doctor.json || { cat doctor.json; exit 1; }
+LANGUAGE=es LC_ALL=C.UTF-8 "$root/bin/trocar" errors >errors.txt
+grep -q 'no se puede leer' errors.txt || { echo "Spanish is missing"; exit 1; }
 for page in "$root"/share/man/man1/*.1; do
   [ -z "$(man --warnings -E UTF-8 -l -Tutf8 -Z "$page" 2>&1 >/dev/null)" ] || { echo "$page is no sound page"; exit 1; }
 done
@@ -30,6 +31,7 @@ echo "-- a program outside the tree"
   -DCMAKE_BUILD_TYPE=Release >"$work/log" 2>&1 || { tail -n 20 "$work/log"; exit 1; }
 "$cmake" --build "$work/outside" >"$work/log" 2>&1 || { tail -n 20 "$work/log"; exit 1; }
 hash=$("$work/outside/outside_program" "$root/share/trocar/scenes/retraction.json" 20)
-"$root/bin/trocar" simulate "$root/share/trocar/scenes/retraction.json" --ticks 20 --json | grep -q "\"hash\": \"$hash\"" ||
+"$root/bin/trocar" simulate "$root/share/trocar/scenes/retraction.json" --ticks 20 --json >simulated.json
+grep -q "\"hash\": \"$hash\"" simulated.json ||
   { echo "its state hash $hash is not the program's"; exit 1; }
 echo "check_installation: whole; state hash $hash"

@@ -3,7 +3,7 @@
 file(REMOVE_RECURSE ${FOLDER})
 file(MAKE_DIRECTORY ${FOLDER}/recordings)
 include(${CMAKE_CURRENT_LIST_DIR}/window_run.cmake)
-trocar(played play expert --task peg_transfer --seconds 12 --seed 3 --record ${FOLDER}/recordings/first.trocar)
+trocar(played play expert --task peg_transfer --seconds 3 --seed 3 --record ${FOLDER}/recordings/first.trocar)
 set(ENV{TROCAR_STORE} ${FOLDER}/store.sqlite)
 set(ENV{TROCAR_DATA_HOME} ${FOLDER}/data)
 set(ENV{XDG_CONFIG_HOME} ${FOLDER}/config)

@@ -19,9 +19,7 @@ core::Result<fs::path> FindDataFolder() {
       places.push_back(program.parent_path() / "../share/trocar");
       places.push_back(program.parent_path());
     }
-#ifdef TROCAR_SOURCE_TREE
-    places.emplace_back(TROCAR_SOURCE_TREE);
-#endif
+    places.emplace_back(TROCAR_COMPILED_DATA_FOLDER);
   }
   std::string tried;
   for (const fs::path& place : places) {
