@@ -103,8 +103,11 @@ void CholecystectomySurgeon::CheckHold(const SurgeonAct& act, const Snapshot& se
 }
 
 /// The hepatocystic triangle: bluntly, beside ducts too; what is left elsewhere, with the hook.
-void CholecystectomySurgeon::ClearTriangle(int rounds) {
-  Decide(SurgeonAct::Kind::kClearTriangle, "look at the triangle").count = rounds;
+/// \param is_second_look  the critical view was looked for and not found
+void CholecystectomySurgeon::ClearTriangle(int rounds, bool is_second_look) {
+  SurgeonAct& act = Decide(SurgeonAct::Kind::kClearTriangle, "look at the triangle");
+  act.count = rounds;
+  act.is_on = is_second_look;
 }
 
 void CholecystectomySurgeon::PlanTriangle(const SurgeonAct& act, const Snapshot& seen) {
@@ -113,7 +116,7 @@ void CholecystectomySurgeon::PlanTriangle(const SurgeonAct& act, const Snapshot&
   if (!AreTubesBare(seen)) covering = CoveringStrands();
   const bool is_clear = seen.operation.facts.cleared_share >= kCleared && covering.empty();
   if (is_clear) return;
-  if (act.count <= 0) return OpenTriangle();
+  if (act.count <= 0) return OpenTriangle(act, seen);
   Spreading work;
   work.strands = covering;
   work.weights.assign(covering.size(), kPedicleWeight);
@@ -128,6 +131,7 @@ void CholecystectomySurgeon::PlanTriangle(const SurgeonAct& act, const Snapshot&
   SurgeonAct& next = Decide(SurgeonAct::Kind::kCheckTriangle, "look at the triangle");
   next.strands = std::move(fat);
   next.count = act.count;
+  next.is_on = act.is_on;
 }
 
 void CholecystectomySurgeon::CheckTriangle(const SurgeonAct& act, const Snapshot& seen) {
@@ -144,20 +148,22 @@ void CholecystectomySurgeon::CheckTriangle(const SurgeonAct& act, const Snapshot
     Take(ToolKind::kHook);
     Dissect({"the hepatocystic triangle", left, order, 1.0, DissectionGoal::Until::kTriangleClear});
   }
-  ClearTriangle(act.count - 1);
+  ClearTriangle(act.count - 1, act.is_on);
 }
 
 /// Fat that neither tool comes to lies behind the duct or under the neck: the left hand turns the neck to one side, then to
 /// the other, and takes it elsewhere, as far as ways are left.
-void CholecystectomySurgeon::OpenTriangle() {
-  if (triangle_ways_left_ <= 0) return;
+void CholecystectomySurgeon::OpenTriangle(const SurgeonAct& act, const Snapshot& seen) {
+  // fibres on duct and artery alone may come off with the lower third
+  const bool is_fat_left = seen.operation.facts.cleared_share < kCleared;
+  if (triangle_ways_left_ <= 0 || (!is_fat_left && !act.is_on)) return;
   const int way = kTriangleWays - triangle_ways_left_--;
   if (way >= kTriangleWays / 2) HoldOn(Place::AtNode(known_.neck));
   SurgeonAct& turn = Decide(SurgeonAct::Kind::kTurnNeck, "turn the neck");
   turn.side = way % 2 == 0 ? 1 : -1;
   // the second way comes from the first one's side
   turn.amount = way == 1 ? 2 * kOpenNeck : kOpenNeck;
-  ClearTriangle(kRoundsOfWay);
+  ClearTriangle(kRoundsOfWay, act.is_on);
 }
 
 /// Draws what the left hand holds about the cystic duct.
@@ -238,7 +244,7 @@ void CholecystectomySurgeon::ShowCriticalView(int rounds) {
 
 void CholecystectomySurgeon::PlanCriticalView(const SurgeonAct& act, const Snapshot& seen) {
   if (seen.operation.critical_view.IsAchieved() || act.count <= 0) return;
-  ClearTriangle(2);
+  ClearTriangle(2, act.count < kRounds);
   FreeLowerThird(2);
   Decide(SurgeonAct::Kind::kDivideExtraArtery, "count what enters");
   Place out_of_the_way = Place::AtNode(known_.neck);

@@ -138,10 +138,10 @@ class CholecystectomySurgeon final : public Surgeon {
   void ChooseHold(const SurgeonAct& act, const Snapshot& seen);
   void TakeHold(const SurgeonAct& act, const Snapshot& seen);
   void CheckHold(const SurgeonAct& act, const Snapshot& seen);
-  void ClearTriangle(int rounds);
+  void ClearTriangle(int rounds, bool is_second_look = false);
   void PlanTriangle(const SurgeonAct& act, const Snapshot& seen);
   void CheckTriangle(const SurgeonAct& act, const Snapshot& seen);
-  void OpenTriangle();
+  void OpenTriangle(const SurgeonAct& act, const Snapshot& seen);
   void TurnNeck(const Snapshot& seen, int side, double by);
   void FreeFromFundus(int rounds);
   void PlanFundusFirst(const SurgeonAct& act, const Snapshot& seen);

@@ -410,7 +410,9 @@ void AddPlayCommand(CLI::App& app, Outcome& outcome) {
       ->type_name("FILE");
   command->add_option("--person", arguments->person, "Pseudonym that stands in the report")
       ->type_name("PSEUDONYM");
-  command->add_flag("--json", arguments->is_json, "Machine-readable");
+  command->add_flag("--json", arguments->is_json,
+                    "Machine-readable; of an operation also how it ended (\"end\": completed, conversion or\n"
+                    "unfinished) and why it was ended early (\"bail_out\")");
   command->add_flag("--list", arguments->is_list, "Show tasks and surgeons, and do nothing");
   command->footer(
       "The same task, level, surgeon and seed give the same hash.\n"

@@ -57,6 +57,9 @@ TEST(PlayCommand, AnOperationSaysWhatHasBecomeOfTheStones) {
   EXPECT_EQ(json["stones"]["inside"], json["stones"]["all"]);
   EXPECT_EQ(json["stones"]["spilled_not_retrieved"], 0);
   EXPECT_EQ(json["bed_blood_ml"], 0.0);
+  // stopped by the clock: nobody said that it was not safe to go on
+  EXPECT_EQ(json["end"], "unfinished");
+  EXPECT_EQ(json["bail_out"], "");
 }
 
 TEST(PlayCommand, RefusesWhatItDoesNotKnow) {
