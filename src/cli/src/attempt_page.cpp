@@ -34,23 +34,41 @@ std::string DescribeScore(const training::CriticalViewScore& score) {
          of(score.criteria[1]) + ", two and only two structures " + of(score.criteria[2]);
 }
 
+/// A simulation as it was at a moment.
+core::Result<simulation::Simulation> RestoreMoment(const scene::Scene& scene,
+                                                   const view::CriticalViewMoments::Moment& moment) {
+  auto made = simulation::Simulation::Make(
+      std::shared_ptr<const scene::Scene>(std::shared_ptr<const scene::Scene>(), &scene), 1);
+  if (!made.ok()) return made.error();
+  if (const auto restored = made->Restore(moment.state); !restored.ok()) return restored.error();
+  return made;
+}
+
 /// Both pictures, or why there are none.
-report::DoubletView DrawDoublet(const simulation::Simulation& simulation, double seconds) {
+core::Result<report::DoubletView> DrawDoublet(const scene::Scene& scene,
+                                              const view::CriticalViewMoments& moments,
+                                              const training::CriticalViewScore& score) {
   report::DoubletView view;
-  view.time = seconds;
-  const auto doublet = view::RenderCriticalViewDoublet(simulation, kPictureWidth, kPictureHeight);
+  view.front_time = moments.Front().time;
+  view.back_time = moments.Behind().time;
+  const auto front = RestoreMoment(scene, moments.Front()), back = RestoreMoment(scene, moments.Behind());
+  if (!front.ok()) return front.error();
+  if (!back.ok()) return back.error();
+  const auto doublet = view::RenderCriticalViewDoublet(*front, *back, kPictureWidth, kPictureHeight);
   if (!doublet.ok()) {
     view.verdict = "It was achieved. It could not be drawn here: " + doublet.error().Text();
     return view;
   }
-  const auto front = render::FormatPng(doublet->front.image), back = render::FormatPng(doublet->back.image);
-  if (front.ok() && back.ok()) {
-    view.front_png = *front;
-    view.back_png = *back;
+  const auto front_png = render::FormatPng(doublet->front.image),
+             back_png = render::FormatPng(doublet->back.image);
+  if (front_png.ok() && back_png.ok()) {
+    view.front_png = *front_png;
+    view.back_png = *back_png;
   }
-  view.verdict = "Achieved: " + DescribeScore(simulation.GetSnapshot().operation.critical_view) +
-                 "; seen from the front and from behind. The pictures show the moment from both sides, for a "
-                 "person to judge.";
+  view.verdict =
+      "Achieved: " + DescribeScore(score) +
+      "; seen from the front and from behind. Each picture shows the moment at which that view came to "
+      "count, for a person to judge.";
   return view;
 }
 
@@ -135,25 +153,21 @@ void ReportWatch::AfterStep(const simulation::Simulation& simulation,
                             const std::array<scene::HandControls, scene::kHandCount>& controls) {
   const simulation::Snapshot& now = simulation.GetSnapshot();
   trace_->Add(now, controls);
-  last_score_ = now.operation.critical_view;
-  if (critical_view_state_.empty() && last_score_.IsAchieved()) {
-    simulation.Save(critical_view_state_);
-    critical_view_time_ = now.time;
-  }
+  if (!critical_view_.IsAchieved()) last_score_ = now.operation.critical_view;
+  critical_view_.AfterStep(now.operation.critical_view, now.time,
+                           [&](std::vector<std::byte>& state) { simulation.Save(state); });
 }
 
 core::Result<report::AttemptReport> ReportWatch::MakeReport(report::AttemptFacts facts) const {
   auto made = ReportTrace(trace_->Calc(), std::move(facts));
   if (!made.ok()) return made.error();
   report::AttemptReport report = std::move(*made);
-  if (!critical_view_state_.empty()) {
-    auto moment = simulation::Simulation::Make(
-        std::shared_ptr<const scene::Scene>(std::shared_ptr<const scene::Scene>(), scene_), 1);
-    if (!moment.ok()) return moment.error();
-    if (const auto restored = moment->Restore(critical_view_state_); !restored.ok()) return restored.error();
-    report.doublet = DrawDoublet(*moment, critical_view_time_);
+  if (critical_view_.IsAchieved()) {
+    auto doublet = DrawDoublet(*scene_, critical_view_, last_score_);
+    if (!doublet.ok()) return doublet.error();
+    report.doublet = std::move(*doublet);
   } else if (report.is_operation) {
-    report.doublet = report::DoubletView{"", "", report.seconds,
+    report.doublet = report::DoubletView{"", "", report.seconds, report.seconds,
                                          "Not achieved. At the end: " + DescribeScore(last_score_) + "."};
   }
   return report;

@@ -15,6 +15,7 @@
 #include "trocar/report/attempt_report.h"
 #include "trocar/report/trainee_report.h"
 #include "trocar/simulation/simulation.h"
+#include "trocar/view/critical_view_picture.h"
 #include "trocar/view/demo.h"
 
 namespace trocar::cli {
@@ -51,14 +52,13 @@ class ReportWatch {
   /// After each step. \param controls  that were given to it
   void AfterStep(const simulation::Simulation& simulation,
                  const std::array<scene::HandControls, scene::kHandCount>& controls);
-  /// The critical view of safety is drawn from both sides, as it was when it was first achieved.
+  /// The critical view of safety is drawn from both sides, each as it was when that view came to count.
   core::Result<report::AttemptReport> MakeReport(report::AttemptFacts facts) const;
 
  private:
   std::optional<record::TraceBuilder> trace_;
   const scene::Scene* scene_ = nullptr;
-  std::vector<std::byte> critical_view_state_;  // when it was first achieved
-  double critical_view_time_ = 0;               // [s]
+  view::CriticalViewMoments critical_view_;  // when it was first achieved
   training::CriticalViewScore last_score_;
 };
 

@@ -101,28 +101,46 @@ core::Status Verify(Replay& replay, const ReplayArguments& arguments, Outcome& o
   return {};
 }
 
-/// Pictures of the moment at which the view was achieved, or of `at`, or of the end.
+/// Steps until the view is achieved, or to the end.
+view::CriticalViewMoments FindCriticalView(Replay& replay) {
+  view::CriticalViewMoments moments;
+  ProgressBar progress("looking for the critical view", 1.0);
+  const auto last = static_cast<double>(replay.GetRecording().LastTick());
+  while (!replay.IsAtEnd() && !moments.IsAchieved()) {
+    replay.Step();
+    const simulation::Simulation& simulation = replay.GetSimulation();
+    moments.AfterStep(simulation.GetSnapshot().operation.critical_view, simulation.GetSnapshot().time,
+                      [&](std::vector<std::byte>& state) { simulation.Save(state); });
+    if (replay.Tick() % 120 == 0) progress.Show(static_cast<double>(replay.Tick()) / last);
+  }
+  progress.Finish();
+  return moments;
+}
+
+/// Pictures of the moments at which the two views came to count, or of `at`, or of the end.
 core::Status DrawCriticalView(Replay& replay, const ReplayArguments& arguments) {
   const auto size = ReadSize(arguments.video.size);
   if (!size.ok()) return size.error();
   if (!replay.GetSimulation().GetOperationResult())
     return core::Error{core::ErrorCode::kUsage, "--critical-view needs the recording of an operation"};
   const Recording& recording = replay.GetRecording();
-  const auto is_achieved = [&] {
-    return replay.GetSimulation().GetSnapshot().operation.critical_view.IsAchieved();
-  };
+  view::CriticalViewMoments moments;
   if (arguments.at >= 0) {
     if (const auto status = replay.Seek(TickAt(recording, arguments.at)); !status.ok()) return status;
   } else {
-    ProgressBar progress("looking for the critical view", 1.0);
-    while (!replay.IsAtEnd() && !is_achieved()) {
-      replay.Step();
-      if (replay.Tick() % 120 == 0)
-        progress.Show(static_cast<double>(replay.Tick()) / static_cast<double>(recording.LastTick()));
-    }
-    progress.Finish();
+    moments = FindCriticalView(replay);
   }
-  const auto doublet = view::RenderCriticalViewDoublet(replay.GetSimulation(), (*size)[0], (*size)[1]);
+  const double seconds = static_cast<double>(replay.Tick()) * recording.description.tick_seconds;
+  auto front = replay.Branch(1), back = replay.Branch(1);
+  if (!front.ok()) return front.error();
+  if (!back.ok()) return back.error();
+  if (moments.IsAchieved()) {
+    if (auto status = front->Restore(moments.Front().state); !status.ok()) return status;
+    if (auto status = back->Restore(moments.Behind().state); !status.ok()) return status;
+  }
+  const double front_seconds = moments.IsAchieved() ? moments.Front().time : seconds,
+               back_seconds = moments.IsAchieved() ? moments.Behind().time : seconds;
+  const auto doublet = view::RenderCriticalViewDoublet(*front, *back, (*size)[0], (*size)[1]);
   if (!doublet.ok()) return doublet.error();
   const std::filesystem::path folder = arguments.video.output;
   std::error_code failure;
@@ -133,25 +151,25 @@ core::Status DrawCriticalView(Replay& replay, const ReplayArguments& arguments) 
   if (auto status = write("front.png", doublet->front); !status.ok()) return status;
   if (auto status = write("back.png", doublet->back); !status.ok()) return status;
   const simulation::OperationResult result = *replay.GetSimulation().GetOperationResult();
-  const double seconds = static_cast<double>(replay.Tick()) * recording.description.tick_seconds;
   const auto& score = result.critical_view;
   if (arguments.is_json) {
-    const auto picture = [](const char* name, const view::CriticalViewPicture& p) {
-      return ordered_json{{"file", name}, {"azimuth_rad", p.azimuth}, {"shows_triangle", p.shows_triangle}};
+    const auto picture = [](const char* name, double at, const view::CriticalViewPicture& p) {
+      return ordered_json{
+          {"file", name}, {"at_s", at}, {"azimuth_rad", p.azimuth}, {"shows_triangle", p.shows_triangle}};
     };
     const ordered_json json = {{"at_s", seconds},
                                {"achieved", score.IsAchieved()},
                                {"triangle", score.criteria[0]},
                                {"plate", score.criteria[1]},
                                {"two_structures", score.criteria[2]},
-                               {"front", picture("front.png", doublet->front)},
-                               {"back", picture("back.png", doublet->back)}};
+                               {"front", picture("front.png", front_seconds, doublet->front)},
+                               {"back", picture("back.png", back_seconds, doublet->back)}};
     std::printf("%s\n", json.dump(2).c_str());
     return {};
   }
-  std::printf("%s holds front.png and back.png of %s s: the critical view is %s\n",
-              arguments.video.output.c_str(), FormatNumber(seconds, 4).c_str(),
-              score.IsAchieved() ? "achieved" : "not achieved");
+  std::printf("%s holds front.png of %s s and back.png of %s s: the critical view is %s\n",
+              arguments.video.output.c_str(), FormatNumber(front_seconds, 4).c_str(),
+              FormatNumber(back_seconds, 4).c_str(), score.IsAchieved() ? "achieved" : "not achieved");
   std::printf("Triangle cleared %d of 2, lower third off the plate %d of 2, two structures %d of 2\n",
               score.criteria[0], score.criteria[1], score.criteria[2]);
   for (const std::string& reason : training::ExplainCriticalView(result.facts, score))
@@ -295,10 +313,10 @@ void AddReplayCommand(CLI::App& app, Outcome& outcome) {
   command->add_flag(
       "--ghosts", a->video.has_ghosts,
       "Show the ways of both tips in the last seconds, and with --side-by-side the other's tools, too");
-  command->add_flag(
-      "--critical-view", a->is_critical_view,
-      "Of an operation: two pictures, front.png and back.png, of the moment at which the critical view was "
-      "achieved (or of --at, or of the end), to be scored by a person");
+  command->add_flag("--critical-view", a->is_critical_view,
+                    "Of an operation: two pictures, front.png and back.png, each of the moment at which that "
+                    "view came to count for an achieved critical view (or both of --at, or of the end), to "
+                    "be scored by a person");
   command->add_option("--at", a->at, "Moment from which to go on otherwise [s]")
       ->check(CLI::Range(0.0, 1e6))
       ->type_name("S");

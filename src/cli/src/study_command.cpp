@@ -157,7 +157,7 @@ void AddStudyCommand(CLI::App& app, Outcome& outcome) {
       ->type_name("I/N");
   command
       ->add_option("--task", a->options.tasks,
-                   "Names of training tasks, with commas between (trocar play --list)")
+                   "Names of training tasks (trocar play --list), or files, with commas between")
       ->delimiter(',')
       ->type_name("TASK,...")
       ->capture_default_str();
@@ -177,6 +177,13 @@ void AddStudyCommand(CLI::App& app, Outcome& outcome) {
       ->check(CLI::Range(1, 20))
       ->type_name("R")
       ->capture_default_str();
+  command
+      ->add_option(
+          "--patients", a->options.patients,
+          "Generated patients on which each of them does a task that has a patient: for the reliability "
+          "over patients")
+      ->check(CLI::Range(2, 100))
+      ->type_name("P");
   command->add_option("--spread", a->options.spread, "By which share people of a group differ")
       ->check(CLI::Range(0.0, 1.0))
       ->type_name("SHARE")

@@ -385,9 +385,9 @@ Document MakeDocument(const AttemptReport& report) {
         {"Critical view of safety",
          {Paragraph{report.doublet->verdict, Tone::kPlain},
           Pictures{{{report.doublet->front_png,
-                     "From the front, at " + FormatClock(std::round(report.doublet->time))},
+                     "From the front, at " + FormatClock(std::round(report.doublet->front_time))},
                     {report.doublet->back_png,
-                     "From behind, at " + FormatClock(std::round(report.doublet->time))}}}}});
+                     "From behind, at " + FormatClock(std::round(report.doublet->back_time))}}}}});
   }
   if (!report.pictures.empty() || !report.film.empty()) {
     Section seen{"What was seen", {}};

@@ -120,11 +120,12 @@ TEST(AttemptDocument, MarksMeasuresThatDoNotSeparateLevels) {
 TEST(AttemptDocument, ShowsTheDoubletWhereThereIsOne) {
   AttemptReport report = test::MakeOperationReport();
   EXPECT_EQ(FindBlock<Pictures>(MakeDocument(report), "Critical view of safety"), nullptr);
-  report.doublet = DoubletView{"front", "back", 93.6, "Three criteria, both views."};
+  report.doublet = DoubletView{"front", "back", 93.6, 121.2, "Three criteria, both views."};
   const Document document = MakeDocument(report);
   const Pictures* pictures = FindBlock<Pictures>(document, "Critical view of safety");
   ASSERT_NE(pictures, nullptr);
   EXPECT_EQ(pictures->pictures[0].caption, "From the front, at 1:34");
+  EXPECT_EQ(pictures->pictures[1].caption, "From behind, at 2:01");
 }
 
 TEST(DescribeAttempt, KeepsFoldersOfThePersonOut) {

@@ -78,7 +78,7 @@ AttemptReport Fill(AttemptReport report, const std::string& text) {
     advice.sentence = advice.why = advice.exercise = advice.practise = text;
   for (MetricRow& row : report.metrics) row.name = row.about = row.unit = text;
   report.group = GroupFacts{text, 7, report.is_operation ? text : ""};
-  report.doublet = DoubletView{"p", "q", 1, text};
+  report.doublet = DoubletView{"p", "q", 1, 2, text};
   report.pictures = {{"p", text}};
   report.origin = {{text, text}};
   return report;

@@ -25,7 +25,7 @@ std::size_t Count(const std::string& text, const std::string& word) {
 
 std::string MakePage() {
   AttemptReport report = test::MakeOperationReport();
-  report.doublet = DoubletView{"\x89PNG front", "\x89PNG back", 93.6, "Three criteria, both views."};
+  report.doublet = DoubletView{"\x89PNG front", "\x89PNG back", 93.6, 121.2, "Three criteria, both views."};
   return FormatHtml(MakeDocument(report));
 }
 

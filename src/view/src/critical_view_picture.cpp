@@ -143,14 +143,19 @@ Sight FindSight(const Ducts& ducts, const Occluders& organs, const math::Pose& X
 
 core::Result<CriticalViewDoublet> RenderCriticalViewDoublet(const simulation::Simulation& simulation,
                                                             int width, int height) {
+  return RenderCriticalViewDoublet(simulation, simulation, width, height);
+}
+
+core::Result<CriticalViewDoublet> RenderCriticalViewDoublet(const simulation::Simulation& front,
+                                                            const simulation::Simulation& back, int width,
+                                                            int height) {
   if (width < 16 || width > 4096 || height < 16 || height > 4096)
     return core::Error{core::ErrorCode::kUsage, "a picture must have 16 to 4096 pixels a side"};
-  const auto ducts = FindDucts(simulation);
-  if (!ducts.ok()) return ducts.error();
-  const auto result = simulation.GetOperationResult();
+  for (const simulation::Simulation* side : {&front, &back}) {
+    if (const auto ducts = FindDucts(*side); !ducts.ok()) return ducts.error();
+  }
   // patterns stick to the rest shapes: those of a simulation that has not begun; the scene outlives it
-  const std::shared_ptr<const scene::Scene> scene(std::shared_ptr<const scene::Scene>(),
-                                                  &simulation.GetScene());
+  const std::shared_ptr<const scene::Scene> scene(std::shared_ptr<const scene::Scene>(), &front.GetScene());
   auto fresh = simulation::Simulation::Make(scene, 1);
   if (!fresh.ok()) return fresh.error();
   auto context = render::OffscreenContext::Make();
@@ -164,15 +169,16 @@ core::Result<CriticalViewDoublet> RenderCriticalViewDoublet(const simulation::Si
   options.has_background = false;  // the lens may stand in it
   view->SetOptions(options);
 
-  const Occluders organs(simulation);
-  Snapshot shown = simulation.GetSnapshot();
-  shown.operation.smoke = 0;
-  const math::Pose X_world_laparoscope = shown.X_world_laparoscope;
-  const double azimuth =
-      result && std::isfinite(result->facts.view_azimuth) ? result->facts.view_azimuth : 0.0;
-  const auto draw = [&](int side) {
+  const auto draw = [&](const simulation::Simulation& simulation, int side) {
+    const auto ducts = FindDucts(simulation);
+    const Occluders organs(simulation);
+    Snapshot shown = simulation.GetSnapshot();
+    shown.operation.smoke = 0;
+    const auto result = simulation.GetOperationResult();
+    const double azimuth =
+        result && std::isfinite(result->facts.view_azimuth) ? result->facts.view_azimuth : 0.0;
     const Sight sight =
-        FindSight(*ducts, organs, X_world_laparoscope, scene->laparoscope.field_of_view, azimuth, side);
+        FindSight(*ducts, organs, shown.X_world_laparoscope, scene->laparoscope.field_of_view, azimuth, side);
     shown.X_world_laparoscope = sight.X_world_camera;
     view->Update(shown);
     target->Bind();
@@ -184,9 +190,25 @@ core::Result<CriticalViewDoublet> RenderCriticalViewDoublet(const simulation::Si
     return picture;
   };
   CriticalViewDoublet doublet;
-  doublet.front = draw(-1);
-  doublet.back = draw(+1);
+  doublet.front = draw(front, -1);
+  doublet.back = draw(back, +1);
   return doublet;
+}
+
+void CriticalViewMoments::AfterStep(const training::CriticalViewScore& score, double time,
+                                    const std::function<void(std::vector<std::byte>&)>& save) {
+  if (is_achieved_) return;
+  const std::array<bool, 2> is_seen = {score.is_seen_from_front, score.is_seen_from_behind};
+  for (std::size_t side = 0; side < moments_.size(); ++side) {
+    Moment& moment = moments_[side];
+    if (!is_seen[side]) {
+      moment.state.clear();
+    } else if (moment.state.empty()) {
+      moment.time = time;
+      save(moment.state);
+    }
+  }
+  is_achieved_ = score.IsAchieved();
 }
 
 }  // namespace trocar::view

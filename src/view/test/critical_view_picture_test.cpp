@@ -36,6 +36,51 @@ TEST(CriticalViewDoublet, ShowsTwoSidesAndLeavesTheStateAlone) {
   EXPECT_EQ(again->front.image, doublet->front.image);
 }
 
+// The views are seen one after the other: each picture is of its own moment.
+TEST(CriticalViewDoublet, DrawsEachSideAtItsOwnMoment) {
+  auto first = MakeOperation(), second = MakeOperation();
+  ASSERT_TRUE(first.ok() && second.ok());
+  for (int i = 0; i < 3; ++i) first->Step({});
+  scene::Input elsewhere = scene::CalcScriptInput(second->GetScene(), 0);
+  elsewhere.hands[0].depth += 0.03;
+  for (int i = 0; i < 30; ++i) second->Step(elsewhere);
+  const auto early = RenderCriticalViewDoublet(*first, 320, 180),
+             late = RenderCriticalViewDoublet(*second, 320, 180),
+             both = RenderCriticalViewDoublet(*first, *second, 320, 180);
+  ASSERT_TRUE(early.ok() && late.ok() && both.ok());
+  EXPECT_NE(early->back.image, late->back.image);
+  EXPECT_EQ(both->front.image, early->front.image);
+  EXPECT_EQ(both->back.image, late->back.image);
+}
+
+TEST(CriticalViewMoments, AreThoseAtWhichTheViewsOfTheVerdictCameToCount) {
+  CriticalViewMoments moments;
+  int saved = 0;
+  const auto step = [&](double time, int points, bool from_front, bool from_behind) {
+    moments.AfterStep({{points, points, points}, from_front, from_behind}, time,
+                      [&](std::vector<std::byte>& state) {
+                        state.assign(1, std::byte{1});
+                        ++saved;
+                      });
+  };
+  step(1, 1, false, false);
+  step(2, 2, true, false);
+  EXPECT_FALSE(moments.IsAchieved());
+  step(3, 1, false, false);  // a criterion was lost: what was seen is forgotten
+  step(4, 2, false, true);
+  step(5, 2, false, true);
+  step(6, 2, true, true);
+  step(7, 2, true, true);
+  step(8, 1, false, false);
+  EXPECT_TRUE(moments.IsAchieved());
+  EXPECT_EQ(moments.Front().time, 6);
+  EXPECT_EQ(moments.Behind().time, 4);
+  EXPECT_EQ(moments.Time(), 6);
+  EXPECT_FALSE(moments.Front().state.empty());
+  EXPECT_FALSE(moments.Behind().state.empty());
+  EXPECT_EQ(saved, 3) << "once a view";
+}
+
 TEST(CriticalViewDoublet, RefusesASceneWithoutDuctsAndASizeOfNothing) {
   const auto path = scene::FindTask("peg_transfer");
   auto scene = scene::ReadTask(*path);

@@ -87,10 +87,10 @@ struct HandSeries {
       from_head;  ///< [mm]: to the patient's left and the head; to the left and the front
 };
 
-/// The doublet view of the critical view of safety: one moment from two sides.
+/// The doublet view of the critical view of safety: two sides, each at its own moment.
 struct DoubletView {
   std::string front_png, back_png;
-  double time = 0;  ///< [s]
+  double front_time = 0, back_time = 0;  ///< [s]
   std::string verdict;
 };
 

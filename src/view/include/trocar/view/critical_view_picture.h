@@ -1,15 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-/// \file critical_view_picture.h  The critical view of safety as two pictures of one moment, from the front and from behind:
-/// the "doublet" by which people score it.
+/// \file critical_view_picture.h  The critical view of safety as two pictures, from the front and from behind: the "doublet" by
+/// which people score it.
 /// Source: Sanford and Strasberg, "A simple effective method for generation of a permanent record of the critical view of
 /// safety during laparoscopic cholecystectomy by intraoperative 'doublet' photography", J Am Coll Surg 2014.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
+#include <functional>
+#include <vector>
 
 #include "trocar/core/result.h"
 #include "trocar/render/image.h"
 #include "trocar/simulation/simulation.h"
+#include "trocar/training/critical_view.h"
 
 namespace trocar::view {
 
@@ -35,5 +40,34 @@ struct CriticalViewDoublet {
 /// \note Takes an OpenGL context of its own on the calling thread and gives it up at the end.
 core::Result<CriticalViewDoublet> RenderCriticalViewDoublet(const simulation::Simulation& simulation,
                                                             int width = 1280, int height = 720);
+
+/// As above, each side of another moment of the same operation.
+core::Result<CriticalViewDoublet> RenderCriticalViewDoublet(const simulation::Simulation& front,
+                                                            const simulation::Simulation& back, int width,
+                                                            int height);
+
+/// Keeps the states in which the two views of an achieved critical view came to count. A view counts for the verdict once it was
+/// seen long enough, and is forgotten where a criterion is no longer whole.
+class CriticalViewMoments {
+ public:
+  struct Moment {
+    double time = 0;               ///< [s]
+    std::vector<std::byte> state;  ///< saved; empty: there is none
+  };
+
+  /// After each tick, until the view is achieved; later ones change nothing.
+  /// \param save  called where the state is to be kept: Simulation::Save
+  void AfterStep(const training::CriticalViewScore& score, double time,
+                 const std::function<void(std::vector<std::byte>&)>& save);
+  bool IsAchieved() const { return is_achieved_; }
+  /// Of the achieved view; the later of the two is the verdict's.
+  const Moment& Front() const { return moments_[0]; }
+  const Moment& Behind() const { return moments_[1]; }
+  double Time() const { return std::max(moments_[0].time, moments_[1].time); }
+
+ private:
+  std::array<Moment, 2> moments_;
+  bool is_achieved_ = false;
+};
 
 }  // namespace trocar::view
