@@ -30,6 +30,8 @@ struct Course {
   int points = 0;                 ///< random ticks at which it is saved
   int events = 12;                ///< after which it is saved as well, at most
   bool changes_settings = false;  ///< as ChangeSettings() does
+  int from = 0;                   ///< no point before this tick
+  bool has_equal_trays = false;   ///< the left hand is offered the right one's tools, too
 };
 
 inline void PrintTo(const Course& course, std::ostream* out) {
@@ -38,17 +40,23 @@ inline void PrintTo(const Course& course, std::ostream* out) {
 
 inline std::string NameOf(const testing::TestParamInfo<Course>& info) {
   return info.param.name + (info.param.surgeon.empty() ? "" : "_" + info.param.surgeon) +
-         (info.param.changes_settings ? "_changes_settings" : "");
+         (info.param.changes_settings ? "_changes_settings" : "") +
+         (info.param.has_equal_trays ? "_equal_trays" : "") + (info.param.from > 0 ? "_late" : "");
 }
 
 inline constexpr int kGoesOn = 240;  // ticks after a point
 
 inline std::shared_ptr<const Scene> ReadCourse(const Course& course) {
   const auto file = std::filesystem::path(TROCAR_SOURCE_DIR) / "scenes" / (course.name + ".json");
-  if (!std::filesystem::exists(file)) return ReadDelivered(course.name);
-  auto scene = scene::ReadScene(file);
-  EXPECT_TRUE(scene.ok()) << scene.error().Text();
-  return std::make_shared<const Scene>(std::move(*scene));
+  auto read = std::filesystem::exists(file) ? scene::ReadScene(file)
+                                            : core::Result<Scene>(*ReadDelivered(course.name));
+  EXPECT_TRUE(read.ok()) << read.error().Text();
+  if (course.has_equal_trays) {
+    auto& left = read->instruments[scene::kLeft];
+    const auto& right = read->instruments[scene::kRight];
+    left.tool = right.tool, left.tray = right.tray;
+  }
+  return std::make_shared<const Scene>(std::move(*read));
 }
 
 /// One tick of it goes wrong, and the guard takes the tick back.
@@ -128,7 +136,8 @@ class Fumbler {
 /// Cuts, clips, stones, things taken: where a state is the least like the one of before.
 inline std::uint64_t CountEvents(const Snapshot& snapshot) {
   const simulation::OperationSnapshot& operation = snapshot.operation;
-  std::uint64_t count = operation.topology.version + operation.clip_count + snapshot.task.error_count;
+  std::uint64_t count =
+      operation.topology.version + operation.clip_count + operation.errors + snapshot.task.error_count;
   for (const simulation::StoneSnapshot& stone : operation.stones)
     count += stone.place != simulation::StonePlace::kInside ? 1 : 0;
   for (const simulation::InstrumentSnapshot& tool : snapshot.instruments) count += tool.is_grasping ? 1 : 0;
@@ -172,7 +181,8 @@ inline Recording Record(const Course& course, std::shared_ptr<const Scene> scene
   math::Random random(seed);
   std::set<std::size_t> chosen;
   for (int i = 0; i < course.points; ++i)
-    chosen.insert(static_cast<std::size_t>(random.Uniform(0.0, 1.0) * course.ticks));
+    chosen.insert(
+        static_cast<std::size_t>(course.from + random.Uniform(0.0, 1.0) * (course.ticks - course.from)));
   std::uint64_t events = 0;
   int events_saved = 0;
   std::map<std::size_t, std::size_t> ends;  // tick to point
@@ -182,7 +192,8 @@ inline Recording Record(const Course& course, std::shared_ptr<const Scene> scene
       recording.points[end->second].published_after = CalcPublishedHash(simulation);
     }
     const Snapshot& seen = simulation.GetSnapshot();
-    const bool is_event = CountEvents(seen) != events && events_saved < course.events;
+    const bool is_event = CountEvents(seen) != events && events_saved < course.events &&
+                          tick >= static_cast<std::size_t>(course.from);
     events = CountEvents(seen);
     if (is_event) ++events_saved;
     const bool is_over = surgeon != nullptr && surgeon->HasFinished();

@@ -5,7 +5,9 @@
 // state_fields_test.cpp.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstddef>
+#include <cstdlib>
 #include <fstream>
 #include <memory>
 #include <span>
@@ -26,7 +28,16 @@ void GoOn(const Recording& recording, const Point& point, Simulation& simulation
     simulation.Step(recording.inputs[tick]);
 }
 
-void CheckCourse(const Course& course) {
+/// A hurried tester's: at TROCAR_STATE_POINTS random ticks, and after as many events.
+Course Limit(Course course) {
+  if (const char* most = std::getenv("TROCAR_STATE_POINTS"))
+    course.points = std::min(course.points, std::atoi(most)),
+    course.events = std::min(course.events, std::atoi(most));
+  return course;
+}
+
+void CheckCourse(const Course& whole) {
+  const Course course = Limit(whole);
   const auto scene = ReadCourse(course);
   const Recording recording = Record(course, scene);
   ASSERT_GE(recording.points.size(), 2U) << course.name;
@@ -89,7 +100,7 @@ INSTANTIATE_TEST_SUITE_P(
         Course{"object_transport", "expert", 4000, 20}, Course{"pattern_cut", "cuts_aside", 2200, 20},
         Course{"peg_transfer", "loses", 9000, 20}, Course{"wire_run", "expert", 4000, 20},
         Course{"cholecystectomy", "fumbler", 1500, 20, 0}, Course{"retraction", "fumbler", 1500, 20, 0},
-        Course{"clip_and_cut", "fumbler", 1500, 20, false}, Course{"peg_transfer", "fumbler", 1500, 20, 0}),
+        Course{"clip_and_cut", "fumbler", 1500, 20, 0}, Course{"peg_transfer", "fumbler", 1500, 20, 0}),
     NameOf);
 
 // A bad tick is taken back to the last good one, which is of the state as well.

@@ -5,6 +5,9 @@
 // What a field decides is looked for outside of the field: in the other fields and in what is published. So a field that is
 // neither saved nor hashed would be noticed as well, by SimulationState.GoesOnToTheSameBits, and a field that nobody reads is
 // found to be none of the state.
+//
+// With TROCAR_STATE_FIELDS_SEARCH=1 in the environment the slow courses also look for the fields that the table knows nowhere, which
+// takes many times as long.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -12,6 +15,7 @@
 #include <algorithm>
 #include <array>
 #include <csignal>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
@@ -284,15 +288,18 @@ Found LeaveOutEach(const Recording& recording, const Table& table,
       const std::optional<Effect> effect = control.LeaveOut(field);
       if (!effect) continue;
       ++tries[field];
-      found.effects[field] = std::max(found.effects[field], *effect);
+      Effect& most = found.effects[field];
+      if (looks_for_unproved && *effect > most)
+        std::cout << "missed: " << field << std::endl;  // at once: a search may be stopped
+      most = std::max(most, *effect);
     }
   }
   return found;
 }
 
-/// \param looks_for_unproved  whether fields that are nowhere missed are tried, too
-void CheckCourse(const Course& course, const std::string& name, bool looks_for_unproved) {
+void CheckCourse(const Course& course, const std::string& name) {
   const Table table = ReadTable();
+  const bool looks_for_unproved = std::getenv("TROCAR_STATE_FIELDS_SEARCH") != nullptr;
   const auto entry = table.by_course.find(name);
   const std::map<std::string, Effect> listed =
       entry != table.by_course.end() ? entry->second : std::map<std::string, Effect>{};
@@ -319,7 +326,7 @@ void CheckCourse(const Course& course, const std::string& name, bool looks_for_u
 
 class StateFields : public testing::TestWithParam<Course> {};
 TEST_P(StateFields, AreMissed) {
-  CheckCourse(GetParam(), NameOf({GetParam(), 0}), false);
+  CheckCourse(GetParam(), NameOf({GetParam(), 0}));
 }
 INSTANTIATE_TEST_SUITE_P(Courses, StateFields,
                          testing::Values(Course{"pattern_cut", "expert", 1600, 2, 4},
@@ -328,32 +335,36 @@ INSTANTIATE_TEST_SUITE_P(Courses, StateFields,
 
 class StateFieldsSlow : public testing::TestWithParam<Course> {};
 TEST_P(StateFieldsSlow, AreMissed) {
-  CheckCourse(GetParam(), NameOf({GetParam(), 0}), true);
+  CheckCourse(GetParam(), NameOf({GetParam(), 0}));
 }
 INSTANTIATE_TEST_SUITE_P(
     Courses, StateFieldsSlow,
     testing::Values(
         Course{"retraction", "", 3000, 2, 4}, Course{"retraction", "", 900, 6, 0, true},
-        Course{"retraction", "fumbler", 700, 4, 4}, Course{"tearing", "", 1500, 2, 4},
-        Course{"demonstration", "", 1500, 2, 4}, Course{"camera_navigation_30", "expert", 1600, 2, 4},
+        Course{"retraction", "fumbler", 700, 4, 4}, Course{"demonstration", "", 1500, 2, 4},
+        Course{"tearing", "", 1500, 2, 4}, Course{"peg_transfer", "loses", 4000, 2, 4},
+        Course{"camera_navigation_30", "expert", 1600, 2, 4},
         Course{"clip_and_cut", "crosses_clips", 1800, 2, 4}, Course{"clip_and_cut", "fumbler", 1500, 6, 4},
         Course{"hook_dissection", "burns_spared", 1100, 2, 4},
         Course{"hook_dissection", "fumbler", 1500, 6, 4},
         Course{"instrument_navigation", "clashes", 2400, 2, 4}, Course{"lift_and_grasp", "drops", 2400, 2, 4},
         Course{"object_transport", "pulls_apart", 2400, 2, 4},
         Course{"pattern_cut", "cuts_aside", 2200, 2, 4}, Course{"pattern_cut", "fumbler", 1500, 6, 4},
-        Course{"peg_transfer", "loses", 4000, 2, 4}, Course{"wire_run", "touches_wire", 2400, 2, 4},
-        Course{"cholecystectomy", "fumbler", 1500, 6, 0}),
+        Course{"wire_run", "touches_wire", 2400, 2, 4}, Course{"cholecystectomy", "fumbler", 1500, 6, 0},
+        Course{"cholecystectomy", "slips_clip", 2700, 3, 2, false, 1250},
+        Course{"cholecystectomy", "expert", 900, 3, 1, false, 300},
+        Course{"peg_transfer", "loses", 5000, 2, 6, false, 1500},
+        Course{"clip_and_cut", "fumbler", 4000, 6, 16, false, 200, true},
+        Course{"hook_dissection", "fumbler", 4000, 8, 8, false, 200, true},
+        Course{"pattern_cut", "fumbler", 4000, 8, 16, false, 200, true}),
     NameOf);
 
 class StateFieldsWhole : public testing::TestWithParam<Course> {};
 TEST_P(StateFieldsWhole, AreMissed) {
-  CheckCourse(GetParam(), NameOf({GetParam(), 0}), true);
+  CheckCourse(GetParam(), NameOf({GetParam(), 0}));
 }
 INSTANTIATE_TEST_SUITE_P(Courses, StateFieldsWhole,
-                         testing::Values(Course{"cholecystectomy", "leaves_stones", 60'000, 16, 0},
-                                         Course{"cholecystectomy", "slips_clip", 60'000, 16, 0}),
-                         NameOf);
+                         testing::Values(Course{"cholecystectomy", "leaves_stones", 60'000, 16, 0}), NameOf);
 
 // Every field that a scene begins with stands in the table.
 TEST(StateFieldsTable, ListsEach) {

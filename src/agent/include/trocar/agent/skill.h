@@ -22,10 +22,10 @@ struct SurgeonSkill {
   double pause = 0.05;         ///< before each act, at most [s]
   double miss_share = 0;       ///< of grasps that first close beside the thing [-]
   double camera_speed = 0.09;  ///< of the lens [m/s]
-  double anticipation =
-      0;  ///< how often the free hand goes ahead to its next work while the other one moves [-], 0 to 1
-  double wrong_plan =
-      0;  ///< how often a step begins at another goal's thing, and has to begin again [-], 0 to 0.5
+  /// How often the free hand goes ahead to its next work while the other one moves [-], 0 to 1.
+  double anticipation = 0;
+  /// How often a step begins at another goal's thing, and has to begin again [-], 0 to 0.5.
+  double wrong_plan = 0;
   double press = 0;         ///< how far tools go past what they take, into what lies behind [m], >= 0
   double early_pedal = 0;   ///< for which the pedal is pressed before the electrode touches [s], >= 0
   double delay = 0;         ///< from seeing to acting [s], 0 to 0.5

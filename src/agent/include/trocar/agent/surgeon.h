@@ -44,8 +44,8 @@ class Surgeon {
 struct SurgeonEntry {
   const char* name;   ///< "expert", "novice", "drops_object"
   const char* about;  ///< one line
-  const char*
-      error;  ///< ErrorRule::name (or an operation's error) that this one commits; "" for the able ones
+  /// ErrorRule::name (or an operation's error) that this one commits; "" for the able ones.
+  const char* error;
   bool (*suits)(const Scene& scene);
   std::unique_ptr<Surgeon> (*make)(std::shared_ptr<const Scene> scene, std::uint64_t seed);
 };
