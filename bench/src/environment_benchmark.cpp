@@ -34,6 +34,7 @@ constexpr std::size_t kFurther = 8;   // environments whose memory is measured t
 constexpr double kPageBytes = 4096;   // of /proc/self/statm
 constexpr int kStepsThatRepeat = 10;  // for which two environments must agree
 constexpr int kPictureSide = 84;      // pixels
+constexpr int kPoolActions = 150;     // of each environment
 constexpr const char* kPoolTask = "peg_transfer";
 constexpr const char* kOperation = "cholecystectomy";
 
@@ -78,7 +79,27 @@ core::Result<double> MeasureAlone(const std::shared_ptr<EnvironmentModel>& model
   return steps * model->TicksPerAction() / stopwatch.Seconds();
 }
 
-/// Ticks a second of all its threads' processor time.
+/// Processor seconds of so many actions of one environment.
+core::Result<double> TimeActions(const std::shared_ptr<EnvironmentModel>& model, std::uint64_t seed,
+                                 int count) {
+  auto environment = Environment::Make(model);
+  if (!environment) return environment.error();
+  if (const auto reset = environment->Reset(seed); !reset) return reset.error();
+  math::Random random(seed);
+  const WorkStopwatch stopwatch(1);
+  for (int i = 0; i < count; ++i) {
+    const std::vector<double> action = DrawActions(*model, 1, random);
+    if (environment->IsOver()) {
+      // as a pool does: the action is not used
+      if (const auto reset = environment->Reset(); !reset) return reset.error();
+      continue;
+    }
+    if (const auto outcome = environment->Step(action); !outcome) return outcome.error();
+  }
+  return stopwatch.Seconds();
+}
+
+/// Ticks a second of all its threads' processor time. Environment i does what process i does.
 core::Result<double> MeasurePool(const std::shared_ptr<EnvironmentModel>& model, int count) {
   auto made = Pool::Make(model, {.count = count, .threads = count});
   if (!made) return made.error();
@@ -86,19 +107,22 @@ core::Result<double> MeasurePool(const std::shared_ptr<EnvironmentModel>& model,
   std::vector<std::int32_t> ids;
   if (const auto reset = pool.Reset({}, 1); !reset) return reset.error();
   if (const auto begun = pool.Receive(static_cast<std::size_t>(count), ids); !begun) return begun.error();
-  math::Random random(1);
-  double steps = 0;
+  std::vector<math::Random> hands;
+  for (int i = 0; i < count; ++i) hands.emplace_back(1 + static_cast<std::uint64_t>(i));
   const WorkStopwatch stopwatch(1);
-  while (stopwatch.Seconds() < kSeconds) {
-    const auto actions = DrawActions(*model, static_cast<std::size_t>(count), random);
+  for (int step = 0; step < kPoolActions; ++step) {
+    std::vector<double> actions;
+    for (math::Random& random : hands) {
+      const std::vector<double> drawn = DrawActions(*model, 1, random);
+      actions.insert(actions.end(), drawn.begin(), drawn.end());
+    }
     if (const auto sent = pool.Send(actions, {}); !sent) return sent.error();
     if (const auto got = pool.Receive(static_cast<std::size_t>(count), ids); !got) return got.error();
-    steps += count;
   }
-  return steps * model->TicksPerAction() / stopwatch.Seconds();
+  return count * kPoolActions * model->TicksPerAction() / stopwatch.Seconds();
 }
 
-/// The same of as many processes at a time, each with an environment of its own: their mean.
+/// The same of as many processes at a time, each with an environment of its own.
 core::Result<double> MeasureProcesses(const std::string& task, int count) {
   std::vector<std::pair<pid_t, int>> children;
   for (int i = 0; i < count; ++i) {
@@ -107,12 +131,12 @@ core::Result<double> MeasureProcesses(const std::string& task, int count) {
     const pid_t child = fork();
     if (child == 0) {
       const auto model = MakeModel(task);
-      double rate = -1;
+      double seconds = -1;
       if (model.ok()) {
-        const auto measured = MeasureAlone(*model, 1 + static_cast<std::uint64_t>(i));
-        if (measured.ok()) rate = *measured;
+        const auto measured = TimeActions(*model, 1 + static_cast<std::uint64_t>(i), kPoolActions);
+        if (measured.ok()) seconds = *measured / (*model)->TicksPerAction();
       }
-      const bool is_told = write(ends[1], &rate, sizeof rate) == sizeof rate;
+      const bool is_told = write(ends[1], &seconds, sizeof seconds) == sizeof seconds;
       _exit(is_told ? 0 : 1);
     }
     close(ends[1]);
@@ -121,14 +145,14 @@ core::Result<double> MeasureProcesses(const std::string& task, int count) {
   double sum = 0;
   bool is_whole = true;
   for (const auto& [child, end] : children) {
-    double rate = -1;
-    is_whole = child > 0 && read(end, &rate, sizeof rate) == sizeof rate && rate > 0 && is_whole;
-    sum += rate;
+    double seconds = -1;
+    is_whole = child > 0 && read(end, &seconds, sizeof seconds) == sizeof seconds && seconds > 0 && is_whole;
+    sum += seconds;
     close(end);
     if (child > 0) waitpid(child, nullptr, 0);
   }
   if (!is_whole) return WrongAnswer("processes", "one of them failed");
-  return sum / count;
+  return count * kPoolActions / sum;
 }
 
 /// Two environments of the same seed and actions must agree, or their times mean nothing.
