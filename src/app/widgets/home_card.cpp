@@ -79,7 +79,8 @@ HomeCard::HomeCard() : Gtk::Box(Gtk::Orientation::VERTICAL) {
 
 void HomeCard::Show(const HomePage& page) {
   gui::SetTextOrHide(who_, page.who.empty() ? "" : core::Translate("You are: ") + page.who);
-  gui::SetTextOrHide(patient_, page.patient.empty() ? "" : core::Translate("Operations are on ") + page.patient);
+  gui::SetTextOrHide(patient_,
+                     page.patient.empty() ? "" : core::Translate("Operations are on ") + page.patient);
   gui::SetTextOrHide(problem_, page.problem ? "\u26a0 " + page.problem->Text() : "");
   rows_[HomeChoice::kContinue].button->set_visible(!page.last.empty());
   rows_[HomeChoice::kContinue].about->set_text(page.last);
