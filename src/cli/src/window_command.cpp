@@ -17,8 +17,8 @@ namespace trocar::cli {
 namespace {
 
 struct WindowOptions {
-  std::string scene, task, level, device, haptics, record, recordings, replay, beside, store, trainee, page,
-      exam;
+  std::string scene, task, level, part, patient, device, haptics, record, recordings, replay, beside, store,
+      trainee, page, exam;
   bool has_list = false, keeps_none = false;
   int igtl_port = -1;
 };
@@ -32,6 +32,8 @@ std::vector<std::string> FormatArguments(const WindowOptions& options) {
   add("--scene", options.scene);
   add("--task", options.task);
   add("--level", options.level);
+  add("--part", options.part);
+  add("--patient", options.patient);
   if (options.has_list) arguments.emplace_back("--tasks");
   add("--device", options.device);
   add("--haptics", options.haptics);
@@ -63,6 +65,18 @@ void AddWindowCommand(CLI::App& app, Outcome& outcome) {
   command->add_option("--level", options->level, "With --task: its difficulty")
       ->needs(one)
       ->type_name("LEVEL");
+  command
+      ->add_option("--part", options->part,
+                   "With --task cholecystectomy: this part of it, where the scripted expert has left it: "
+                   "critical-view, clip-and-cut or bed")
+      ->needs(one)
+      ->type_name("PART");
+  command
+      ->add_option(
+          "--patient", options->patient,
+          "Patient folder that operations are done on (default: who was chosen last, or the built-in "
+          "one)")
+      ->type_name("DIR");
   command->add_flag("--tasks", options->has_list, "Start with the list of training tasks to choose from")
       ->excludes(one);
   command
@@ -121,6 +135,7 @@ void AddWindowCommand(CLI::App& app, Outcome& outcome) {
   command->footer(
       "Examples: trocar window scenes/demonstration.json\n"
       "          trocar window --task wire_run --level easy\n"
+      "          trocar window --task cholecystectomy --part bed --patient my_patient\n"
       "          trocar window --replay attempt.trocar --beside expert.trocar\n"
       "          trocar window --page courses --trainee \"Anna Berg\"\n"
       "          trocar window --device liberty:/dev/ttyUSB0+jaw:/dev/ttyACM0");

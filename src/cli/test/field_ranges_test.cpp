@@ -137,10 +137,16 @@ void List(const Schema& schema, const Json& node, const std::string& place, int 
     List(schema, resolved["additionalProperties"], place + ".*", depth + 1, places);
 }
 
-/// Goals and errors have the same conditions, by one definition in the schema and one reader: what is tried in either counts.
+/// Goals and errors have the same conditions, and the ways of both hands the same stops, by one definition in the schema and
+/// one reader: what is tried in either counts.
 std::string SharedPlace(const std::string& place) {
   for (const std::string condition : {".rules.goals[].steps[]", ".rules.errors[].when"}) {
     if (place.starts_with(condition)) return ".condition" + place.substr(condition.size());
+  }
+  for (const std::string way : {".ideal_path.left[]", ".ideal_path.right[]"}) {
+    for (const std::string& stop : {way + ".stops[]", way}) {
+      if (place.starts_with(stop)) return ".stop" + place.substr(stop.size());
+    }
   }
   return place;
 }
@@ -317,6 +323,8 @@ TEST_F(FieldRanges, SchemaAndReaderAgreeOnTasks) {
                {"facing_deg", 30},      {"near_mm", 10},    {"far_mm", 100}};
   Json task = TaskAround(BoardScene(Tubes()));
   task["level_scores"] = {{"normal", 85}};
+  task["ideal_path"] = {
+      {"left", {{{"object", "board"}, {"grip", 0}, {"offset_mm", {0, 0, 1}}}, {{"at_mm", {0, 0, -100}}}}}};
   task["rules"] = {{"time_limit_s", 100},
                    {"points_per_second_left", 1},
                    {"reference_points", 100},
