@@ -177,13 +177,6 @@ void AddStudyCommand(CLI::App& app, Outcome& outcome) {
       ->check(CLI::Range(1, 20))
       ->type_name("R")
       ->capture_default_str();
-  command
-      ->add_option(
-          "--patients", a->options.patients,
-          "Generated patients on which each of them does a task that has a patient: for the reliability "
-          "over patients")
-      ->check(CLI::Range(2, 100))
-      ->type_name("P");
   command->add_option("--spread", a->options.spread, "By which share people of a group differ")
       ->check(CLI::Range(0.0, 1.0))
       ->type_name("SHARE")

@@ -13,7 +13,9 @@ class DatasetCommandTest : public testing::Test {
  protected:
   void SetUp() override { fs::remove_all(folder_); }
   void TearDown() override { fs::remove_all(folder_); }
-  fs::path folder_ = fs::path(testing::TempDir()) / "dataset_command_test";
+  fs::path folder_ =
+      fs::path(testing::TempDir()) /
+      (std::string("dataset_command_") + testing::UnitTest::GetInstance()->current_test_info()->name());
 };
 
 TEST_F(DatasetCommandTest, MakesASetThatItsReaderAccepts) {

@@ -342,6 +342,8 @@ TEST_F(FieldRanges, SchemaAndReaderAgreeOnTasks) {
                        error({{"kind", "cut_area_off"}, {"sheet", "gauze"}, {"area_mm2", 20}})}}};
   Json operation = TaskAround(OperationScene());
   operation["scene"]["operation"].erase("gallstones");
+  operation["regions"].push_back(
+      {{"name", "at"}, {"at", "fundus"}, {"offset_mm", {0, 0, 1}}, {"radius_mm", 5}});
   operation["rules"] = {{"goals", goal({{{"kind", "tip_in_region"}, {"region", "ball"}}})}};
   ExpectAgreement("task", {task, sheets, operation}, SceneReader());
 }

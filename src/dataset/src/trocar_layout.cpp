@@ -112,7 +112,7 @@ class TrocarWriter : public VideoWriter {
     std::vector<float> positions;
     for (const math::Vec3& p : now.positions)
       for (const double coordinate : {p.x, p.y, p.z}) positions.push_back(static_cast<float>(coordinate));
-    Put("positions", {now.positions.size(), 3}, positions);
+    if (!positions.empty()) Put("positions", {now.positions.size(), 3}, positions);
     const auto& criteria = now.operation.critical_view.criteria;
     Put<std::uint8_t>("phase", {}, {static_cast<std::uint8_t>(now.operation.phase)});
     Put<std::uint8_t>("critical_view", {3},

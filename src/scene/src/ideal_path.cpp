@@ -37,7 +37,7 @@ class PathReader {
       view.Complain("a stop names one of region, object, at_mm, band and circle", ErrorCode::kSceneInvalid);
       return;
     }
-    offset_ = view.Has("offset_mm") ? ReadPointMm(view, "offset_mm") : Vec3{};
+    offset_ = view.Has("offset_mm") ? ReadPointMm(view, "offset_mm", range::kOffsetMm) : Vec3{};
     if (view.Has("region")) {
       const int region = FindName(view, task_.regions, Fill(view.Text("region"), item), "region");
       if (region >= 0) Add(task_.regions[static_cast<std::size_t>(region)].centre);

@@ -54,7 +54,8 @@ class RulesReader {
     if (view.Has("centre_mm"))
       view.Complain("a region lies at centre_mm or at a landmark, not both", ErrorCode::kSceneInvalid);
     const int landmark = FindName(view, scene_.patient.landmarks, view.Text("at"), "landmark");
-    const math::Vec3 offset = view.Has("offset_mm") ? ReadPointMm(view, "offset_mm") : math::Vec3{};
+    const math::Vec3 offset =
+        view.Has("offset_mm") ? ReadPointMm(view, "offset_mm", range::kOffsetMm) : math::Vec3{};
     return landmark < 0 ? offset
                         : scene_.patient.landmarks[static_cast<std::size_t>(landmark)].position + offset;
   }

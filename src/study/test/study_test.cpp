@@ -65,7 +65,8 @@ class StudyTest : public testing::Test {
     return count;
   }
 
-  fs::path folder_ = fs::path(testing::TempDir()) / "study_test";
+  fs::path folder_ = fs::path(testing::TempDir()) /
+                     (std::string("study_") + testing::UnitTest::GetInstance()->current_test_info()->name());
   StudyOptions options_;
 };
 
