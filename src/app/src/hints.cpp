@@ -7,8 +7,8 @@ namespace trocar::app {
 namespace {
 
 std::string Fill(const Situation& situation, std::string_view text) {
-  static const KeyBindings kFirst;
-  return (situation.bindings != nullptr ? *situation.bindings : kFirst).Fill(text);
+  static const KeyBindings first;
+  return (situation.bindings != nullptr ? *situation.bindings : first).Fill(text);
 }
 
 std::string ModeTemplate(const Situation& situation) {
