@@ -37,6 +37,8 @@ endif()
 
 # Data. A program in bin/ finds it in ../share/trocar.
 install(DIRECTORY assets scenes schemas DESTINATION ${CMAKE_INSTALL_DATADIR}/trocar COMPONENT data)
+# `trocar dataset verify` starts it
+install(PROGRAMS tools/verify-dataset DESTINATION ${CMAKE_INSTALL_DATADIR}/trocar/tools COMPONENT data)
 
 install(DIRECTORY ${PROJECT_BINARY_DIR}/locale/ DESTINATION ${CMAKE_INSTALL_LOCALEDIR} COMPONENT data OPTIONAL
   FILES_MATCHING PATTERN "*.mo")

@@ -19,6 +19,10 @@ cd "$work" # nothing of the source tree is near
 grep -q "\"found\": \"$root/share/trocar" doctor.json || { cat doctor.json; exit 1; }
 LANGUAGE=es LC_ALL=C.UTF-8 "$root/bin/trocar" errors >errors.txt
 grep -q 'no se puede leer' errors.txt || { echo "Spanish is missing"; exit 1; }
+if python3 -c 'import h5py, numpy' 2>/dev/null; then
+  "$root/bin/trocar" dataset --layout trocar --task peg_transfer --size 64x48 --every 0.5 --most-seconds 1 -o set
+  "$root/bin/trocar" dataset verify set
+fi
 for page in "$root"/share/man/man1/*.1; do
   [ -z "$(man --warnings -E UTF-8 -l -Tutf8 -Z "$page" 2>&1 >/dev/null)" ] || { echo "$page is no sound page"; exit 1; }
 done

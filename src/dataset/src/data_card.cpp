@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "data_card.h"
 
-#include <sodium.h>
-
 #include <algorithm>
 #include <array>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "trocar/core/safe_file.h"
+#include "trocar/core/sha256.h"
 #include "trocar/core/state_hash.h"
 #include "trocar/core/version.h"
 
@@ -26,31 +24,6 @@ constexpr std::array<const char*, 4> kCommonGaps = {
     "Tools do not wear, and lenses do not fog or get dirty.",
     "Colon, stomach, duodenum, omentum and abdominal wall are decoration: they do not deform.",
     "The surgeon is a program; people move otherwise."};
-
-std::string ToHex(const std::array<unsigned char, crypto_hash_sha256_BYTES>& hash) {
-  std::string text(2 * hash.size() + 1, '\0');
-  sodium_bin2hex(text.data(), text.size(), hash.data(), hash.size());
-  text.pop_back();
-  return text;
-}
-
-core::Result<std::string> HashFile(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  crypto_hash_sha256_state state;
-  crypto_hash_sha256_init(&state);
-  std::vector<char> block(1 << 20);
-  while (file) {
-    file.read(block.data(), static_cast<std::streamsize>(block.size()));
-    crypto_hash_sha256_update(&state, reinterpret_cast<const unsigned char*>(block.data()),
-                              static_cast<unsigned long long>(file.gcount()));
-  }
-  if (!file.eof())
-    return core::Error{core::ErrorCode::kFileUnreadable,
-                       path.string() + " cannot be read again; check the disk"};
-  std::array<unsigned char, crypto_hash_sha256_BYTES> hash;
-  crypto_hash_sha256_final(&state, hash.data());
-  return ToHex(hash);
-}
 
 ordered_json DescribePlan(const Plan& plan) {
   auto patients = ordered_json::array();
@@ -108,20 +81,18 @@ std::string FormatCommand(const Plan& plan) {
 
 core::Result<CardSummary> WriteCard(const std::filesystem::path& folder, const Plan& plan,
                                     const LayoutSet& layout, std::span<const VideoResult> videos) {
-  if (sodium_init() < 0)
-    return core::Error{core::ErrorCode::kOutOfMemory, "libsodium cannot begin; try again"};
   std::vector<std::string> names;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(folder))
     if (entry.is_regular_file()) names.push_back(entry.path().lexically_relative(folder).generic_string());
   std::sort(names.begin(), names.end());
   std::string sums;
   for (const std::string& name : names) {
-    const auto hash = HashFile(folder / name);
+    const auto hash = core::CalcSha256OfFile(folder / name);
     if (!hash) return hash.error();
     sums += *hash + "  " + name + "\n";
   }
   if (auto s = core::WriteFile(folder / "SHA256SUMS", sums); !s) return s.error();
-  const auto hash = HashFile(folder / "SHA256SUMS");
+  const auto hash = core::CalcSha256OfFile(folder / "SHA256SUMS");
   if (!hash) return hash.error();
 
   ordered_json card = {{"format", "trocar-dataset"},

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fcntl.h>
-#include <sodium.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
-#include <fstream>
 #include <system_error>
 #include <vector>
 
@@ -17,6 +15,7 @@
 #include "sql.h"
 #include "tables.h"
 #include "trocar/core/safe_file.h"
+#include "trocar/core/sha256.h"
 #include "trocar/store/maintenance.h"
 #include "trocar/store/people.h"
 #include "trocar/store/spool.h"
@@ -28,31 +27,6 @@ namespace fs = std::filesystem;
 using core::ErrorCode;
 
 constexpr std::size_t kKeptBackups = 5;  // in the store's own folder
-
-core::Result<std::string> CalcSha256(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream)
-    return core::Error{ErrorCode::kFileMissing, file.string() + " cannot be opened; check the path"};
-  [[maybe_unused]] const int started = ::sodium_init();  // again does nothing
-  TROCAR_ASSERT(started >= 0);
-  crypto_hash_sha256_state state;
-  ::crypto_hash_sha256_init(&state);
-  std::vector<char> part(1u << 20);
-  while (stream) {
-    stream.read(part.data(), static_cast<std::streamsize>(part.size()));
-    ::crypto_hash_sha256_update(&state, reinterpret_cast<const unsigned char*>(part.data()),
-                                static_cast<unsigned long long>(stream.gcount()));
-  }
-  if (!stream.eof())
-    return core::Error{ErrorCode::kFileUnreadable,
-                       file.string() + " cannot be read to its end; check the disk"};
-  unsigned char hash[crypto_hash_sha256_BYTES];
-  ::crypto_hash_sha256_final(&state, hash);
-  static constexpr std::string_view kDigits = "0123456789abcdef";
-  std::string text;
-  for (const unsigned char byte : hash) text += {kDigits[byte >> 4], kDigits[byte & 15]};
-  return text;
-}
 
 /// Every table of another store into an empty one, with its ids.
 core::Status CopyTables(Database& from, Database& to) {
@@ -145,7 +119,7 @@ core::Result<fs::path> BackUp(Store& store, const Viewer& viewer, fs::path file)
     fs::remove(partial, failure);
     return copied.error();
   }
-  const auto hash = CalcSha256(partial);
+  const auto hash = core::CalcSha256OfFile(partial);
   if (!hash.ok()) return hash.error();
   if (auto written =
           WritePrivateFile(file.string() + ".sha256", *hash + "  " + file.filename().string() + "\n");
@@ -173,7 +147,7 @@ core::Result<fs::path> BackUp(Store& store, const Viewer& viewer, fs::path file)
 core::Status VerifyBackup(const fs::path& file) {
   const auto line = core::ReadFile(file.string() + ".sha256", 4096);
   if (!line.ok()) return line.error();
-  const auto hash = CalcSha256(file);
+  const auto hash = core::CalcSha256OfFile(file);
   if (!hash.ok()) return hash.error();
   if (line->substr(0, line->find(' ')) != *hash)
     return core::Error{ErrorCode::kStoreDamaged,

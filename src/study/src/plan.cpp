@@ -1,22 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trocar/study/plan.h"
 
-#include <sodium.h>
-
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "trocar/core/json.h"
 #include "trocar/core/safe_file.h"
+#include "trocar/core/sha256.h"
 
 namespace trocar::study {
 namespace {
 
 constexpr std::uint64_t kMostRuns = 1'000'000;
 constexpr double kMostSeed = 2147483647;
-constexpr std::size_t kPrintBytes = 16;
+constexpr std::size_t kPrintDigits = 32;
 
 constexpr Parameter kParameters[] = {
     {"stiffness_scale", "on every structural and attachment spring [-]", 0.05, 20,
@@ -39,13 +37,6 @@ constexpr Parameter kParameters[] = {
     {"field_of_view", "of the laparoscope [rad]", 0.3, 2.4,
      [](scene::Scene& s, double v) { s.laparoscope.field_of_view = v; }},
 };
-
-std::string ToHex(const std::array<unsigned char, crypto_hash_sha256_BYTES>& hash) {
-  std::string text(2 * kPrintBytes + 1, '\0');
-  sodium_bin2hex(text.data(), text.size(), hash.data(), kPrintBytes);
-  text.pop_back();
-  return text;
-}
 
 /// Of all files of a folder, by their names.
 core::Result<std::string> FingerprintFolder(const std::filesystem::path& folder) {
@@ -107,27 +98,13 @@ std::span<const Parameter> Parameters() noexcept {
 }
 
 std::string Fingerprint(std::string_view text) {
-  std::array<unsigned char, crypto_hash_sha256_BYTES> hash;
-  crypto_hash_sha256(hash.data(), reinterpret_cast<const unsigned char*>(text.data()), text.size());
-  return ToHex(hash);
+  return core::CalcSha256(text).substr(0, kPrintDigits);
 }
 
 core::Result<std::string> FingerprintFile(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  crypto_hash_sha256_state state;
-  crypto_hash_sha256_init(&state);
-  std::vector<char> block(1 << 20);
-  while (file) {
-    file.read(block.data(), static_cast<std::streamsize>(block.size()));
-    crypto_hash_sha256_update(&state, reinterpret_cast<const unsigned char*>(block.data()),
-                              static_cast<unsigned long long>(file.gcount()));
-  }
-  if (!file.eof())
-    return core::Error{core::ErrorCode::kFileUnreadable,
-                       path.string() + " cannot be read; check the file and its rights"};
-  std::array<unsigned char, crypto_hash_sha256_BYTES> hash;
-  crypto_hash_sha256_final(&state, hash.data());
-  return ToHex(hash);
+  auto digits = core::CalcSha256OfFile(path);
+  if (digits) digits->resize(kPrintDigits);
+  return digits;
 }
 
 core::Result<StudyPlan> ReadPlan(const std::filesystem::path& path) {

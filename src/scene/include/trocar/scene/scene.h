@@ -136,7 +136,7 @@ struct Scene {
   bool HasPatient() const { return !patient.organs.empty() && !model; }
 };
 
-/// Folder that holds assets/ and scenes/: TROCAR_DATA_DIR, else beside the program, else its source tree.
+/// Folder that holds assets/ and scenes/: TROCAR_DATA_DIR, else beside the program, else where it was built or installed.
 /// \return kFileMissing with the places that were tried
 core::Result<std::filesystem::path> FindDataFolder();
 

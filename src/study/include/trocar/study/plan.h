@@ -57,7 +57,7 @@ struct Run {
 /// Parameters change slowest, seeds quickest. Equal inputs have equal keys, whatever the plan's name.
 std::vector<Run> ListRuns(const StudyPlan& plan);
 
-/// 32 digits of the SHA-256 of a text, or of a file's bytes. \return kFileUnreadable
+/// 32 digits of the SHA-256 of a text, or of a file's bytes. \return as of core::CalcSha256OfFile
 std::string Fingerprint(std::string_view text);
 core::Result<std::string> FingerprintFile(const std::filesystem::path& path);
 
