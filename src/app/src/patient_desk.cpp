@@ -33,6 +33,14 @@ std::string NameOf(const fs::path& labels) {
   return kept.empty() ? "imported" : kept;
 }
 
+/// Many programs call every map "segmentation": one that is called like a patient who is there is somebody else's.
+std::string FreeName(const fs::path& folder, const std::string& name) {
+  std::error_code ignored;
+  std::string free = name;
+  for (int n = 2; fs::exists(folder / free, ignored); ++n) free = name + "-" + std::to_string(n);
+  return free;
+}
+
 }  // namespace
 
 PatientDesk::PatientDesk(fs::path folder, std::function<void()> on_news)
@@ -100,7 +108,7 @@ void PatientDesk::Generate(std::uint64_t seed) {
 }
 
 void PatientDesk::Import(const fs::path& labels) {
-  Make(NameOf(labels), "Reading " + labels.filename().string(),
+  Make(FreeName(folder_, NameOf(labels)), "Reading " + labels.filename().string(),
        [labels](const fs::path& folder, Work& work) -> core::Status {
          anatomy::LabelOptions options;
          options.labels = labels;

@@ -86,6 +86,15 @@ TEST_F(Patients, ALabelMapThatIsNoneSaysSo) {
   EXPECT_TRUE(fs::is_empty(Kept()));
 }
 
+TEST_F(Patients, AnImportIsNeverTakenForAPatientOfTheSameName) {
+  ASSERT_TRUE(core::WriteFile(Kept() / "segmentation" / "patient.json", "{}").ok());
+  const fs::path file = folder_.Path() / "segmentation.nii";
+  ASSERT_TRUE(core::WriteFile(file, "no image").ok());
+  desk_->Import(file);
+  EXPECT_FALSE(Wait().has_value()) << "that would be another person";
+  EXPECT_TRUE(desk_->Look().problem.has_value()) << "the map was read";
+}
+
 TEST_F(Patients, ABrokenOneIsListedWithItsProblem) {
   ASSERT_TRUE(core::WriteFile(Kept() / "broken" / "patient.json", "{").ok());
   desk_->Choose(folder_.Path() / "gone");

@@ -36,7 +36,8 @@ class PatientDesk {
   void List();
   /// A plausible patient from a seed, at "seed-SEED" of the folder; one that is there is chosen.
   void Generate(std::uint64_t seed);
-  /// A patient from a label map of liver and gallbladder (NIfTI, NRRD): at the file's name.
+  /// A patient from a label map of liver and gallbladder (NIfTI, NRRD): at the file's name, with a number behind it where
+  /// that is taken.
   void Import(const std::filesystem::path& labels);
   /// What is under way comes to nothing.
   void Cancel();
