@@ -20,6 +20,9 @@
 namespace trocar::tissue {
 namespace {
 
+using math::AddIsotropic;
+using math::Invert;
+
 /// Share of a spring's stiffness that its node feels across the spring even where the spring is slack: stands
 /// for the stiffness that arises as soon as the spring turns, and bounds the step of an unsupported node [-].
 constexpr double kTransverseShare = 0.2;

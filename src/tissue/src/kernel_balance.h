@@ -56,7 +56,7 @@ inline Doubles Sqrt(Doubles v) {
   return (Doubles)_mm512_sqrt_pd((__m512d)v);
 #elif TROCAR_LANES == 8
   return (Doubles)_mm256_sqrt_pd((__m256d)v);
-#elif defined(TROCAR_HAS_X86)
+#elif defined(__SSE2__)
   return (Doubles)_mm_sqrt_pd((__m128d)v);
 #else
   for (std::uint32_t lane = 0; lane < kDoubles; ++lane) v[lane] = __builtin_sqrt(v[lane]);

@@ -4,89 +4,24 @@
 #pragma once
 
 #include "kernels.h"
-#include "trocar/math/float_lanes.h"
-
-#if defined(__SSE2__)
-#define TROCAR_HAS_X86 1
-#endif
+#include "trocar/math/fused_lanes.h"
 
 namespace trocar::tissue {
 namespace {
 
+using math::AddSquaredNorm;
 using math::All;
+using math::BeginTogether;
+using math::KeepInRegister;
+using math::kKeepsOrder;
 using math::Lanes;
 using math::Larger;
 using math::Load;
+using math::MulAdd;
+using math::ShiftUp;
 using math::Sqrt;
 using math::Store;
 using Vector = math::LaneVector;
-
-/// a b + c, rounded once where the level has an instruction for it.
-#if TROCAR_LANES == 16
-inline Lanes MulAdd(Lanes a, Lanes b, Lanes c) {
-  return (Lanes)_mm512_fmadd_ps((__m512)a, (__m512)b, (__m512)c);
-}
-#elif TROCAR_LANES == 8
-inline Lanes MulAdd(Lanes a, Lanes b, Lanes c) {
-  return (Lanes)_mm256_fmadd_ps((__m256)a, (__m256)b, (__m256)c);
-}
-#else
-inline Lanes MulAdd(Lanes a, Lanes b, Lanes c) {
-  return a * b + c;
-}
-#endif
-
-#if TROCAR_LANES == 16
-#define TROCAR_LANE_INDICES(OFFSET)                                                                       \
-  OFFSET, OFFSET + 1, OFFSET + 2, OFFSET + 3, OFFSET + 4, OFFSET + 5, OFFSET + 6, OFFSET + 7, OFFSET + 8, \
-      OFFSET + 9, OFFSET + 10, OFFSET + 11, OFFSET + 12, OFFSET + 13, OFFSET + 14, OFFSET + 15
-#elif TROCAR_LANES == 8
-#define TROCAR_LANE_INDICES(OFFSET) \
-  OFFSET, OFFSET + 1, OFFSET + 2, OFFSET + 3, OFFSET + 4, OFFSET + 5, OFFSET + 6, OFFSET + 7
-#else
-#define TROCAR_LANE_INDICES(OFFSET) OFFSET, OFFSET + 1, OFFSET + 2, OFFSET + 3
-#endif
-
-/// Lane i of the result is lane i - 1 of `v`; lane 0 is the last of `before`.
-inline Lanes ShiftUp(Lanes before, Lanes v) {
-  return __builtin_shufflevector(before, v, TROCAR_LANE_INDICES(TROCAR_LANES - 1));
-}
-
-/// Makes the compiler load once what it would take from memory at each use: the kernels wait for loads.
-inline void KeepInRegister([[maybe_unused]] Lanes& v) {
-#if TROCAR_LANES == 16
-  __asm__("" : "+v"(v));
-#elif defined(TROCAR_HAS_X86)
-  __asm__("" : "+x"(v));
-#endif
-}
-
-/// Whether the compiler leaves instructions about as they are written, and in registers what it is told to keep
-/// there. clang 14 does not: it spills more than it saves.
-#if defined(__clang__) || !defined(TROCAR_HAS_X86)
-inline constexpr bool kKeepsOrder = false;
-#else
-inline constexpr bool kKeepsOrder = true;
-#endif
-
-inline void KeepInRegister(Vector& v) {
-  if constexpr (kKeepsOrder) KeepInRegister(v.x), KeepInRegister(v.y), KeepInRegister(v.z);
-}
-/// Begins nothing that uses one of these before it has begun them all.
-inline void BeginTogether([[maybe_unused]] Lanes& a, [[maybe_unused]] Lanes& b) {
-#if !defined(__clang__) && TROCAR_LANES == 16
-  __asm__("" : "+v"(a), "+v"(b));
-#elif !defined(__clang__) && defined(TROCAR_HAS_X86)
-  __asm__("" : "+x"(a), "+x"(b));
-#endif
-}
-inline void BeginTogether([[maybe_unused]] Lanes& a, [[maybe_unused]] Lanes& b, [[maybe_unused]] Lanes& c) {
-#if !defined(__clang__) && TROCAR_LANES == 16
-  __asm__("" : "+v"(a), "+v"(b), "+v"(c));
-#elif !defined(__clang__) && defined(TROCAR_HAS_X86)
-  __asm__("" : "+x"(a), "+x"(b), "+x"(c));
-#endif
-}
 
 /// TROCAR_LANES nodes side by side.
 inline Vector LoadNodes(const Float4* nodes) {
@@ -142,7 +77,7 @@ inline void StoreNodes(Float4* nodes, const Vector& v) {
     const __m512 xy = _mm512_maskz_permutex2var_ps(0x3333, (__m512)v.x, from, (__m512)v.y);
     _mm512_storeu_ps(&nodes[4 * part].x, _mm512_mask_permutexvar_ps(xy, 0x4444, from, (__m512)v.z));
   }
-#elif defined(TROCAR_HAS_X86)
+#elif defined(__SSE2__)
   for (int part = 0; part < TROCAR_LANES; part += 4) {
     __m128 x, y, z, w = _mm_setzero_ps();
     __builtin_memcpy(&x, reinterpret_cast<const char*>(&v.x) + 4 * part, sizeof x);
@@ -157,14 +92,6 @@ inline void StoreNodes(Float4* nodes, const Vector& v) {
 #else
   for (int lane = 0; lane < TROCAR_LANES; ++lane) nodes[lane] = {v.x[lane], v.y[lane], v.z[lane], 0.0f};
 #endif
-}
-
-inline Vector MulAdd(Lanes s, const Vector& v, const Vector& to) {
-  return {MulAdd(s, v.x, to.x), MulAdd(s, v.y, to.y), MulAdd(s, v.z, to.z)};
-}
-/// |v|^2 + to
-inline Lanes AddSquaredNorm(const Vector& v, Lanes to) {
-  return MulAdd(v.z, v.z, MulAdd(v.y, v.y, MulAdd(v.x, v.x, to)));
 }
 
 /// to + m v for symmetric 3 x 3 matrices that lie kSliceNodes apart: xx, xy, xz, yy, yz, zz.

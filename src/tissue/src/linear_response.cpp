@@ -5,40 +5,16 @@
 #include <cmath>
 
 #include "trocar/core/assert.h"
+#include "trocar/math/symmetric3.h"
 #include "trocar/tissue/spring_law.h"
 
 namespace trocar::tissue {
 namespace {
 
-using Symmetric3 = std::array<double, 6>;  // xx, xy, xz, yy, yz, zz
-
-void AddIsotropic(Symmetric3& m, double k) noexcept {
-  m[0] += k, m[3] += k, m[5] += k;
-}
-
-void AddSquare(Symmetric3& m, const Vec3& v) noexcept {
-  m[0] += v.x * v.x, m[1] += v.x * v.y, m[2] += v.x * v.z;
-  m[3] += v.y * v.y, m[4] += v.y * v.z, m[5] += v.z * v.z;
-}
-
-/// Inverse of a positive definite matrix; zero for a node that nothing holds.
-Symmetric3 Invert(const Symmetric3& m) noexcept {
-  const double a = m[3] * m[5] - m[4] * m[4], b = m[2] * m[4] - m[1] * m[5], c = m[1] * m[4] - m[2] * m[3];
-  const double determinant = m[0] * a + m[1] * b + m[2] * c;
-  if (!(determinant > 0.0)) return {};
-  const double s = 1.0 / determinant;
-  return {s * a,
-          s * b,
-          s * c,
-          s * (m[0] * m[5] - m[2] * m[2]),
-          s * (m[1] * m[2] - m[0] * m[4]),
-          s * (m[0] * m[3] - m[1] * m[1])};
-}
-
-Vec3 Multiply(const Symmetric3& m, const Vec3& v) noexcept {
-  return {m[0] * v.x + m[1] * v.y + m[2] * v.z, m[1] * v.x + m[3] * v.y + m[4] * v.z,
-          m[2] * v.x + m[4] * v.y + m[5] * v.z};
-}
+using math::AddDirection;
+using math::AddIsotropic;
+using math::Invert;
+using math::Symmetric3;
 
 double SumOfProducts(std::span<const Vec3> a, std::span<const Vec3> b) noexcept {
   double sum = 0;
@@ -74,7 +50,7 @@ void LinearResponse::SetStiffness(const TissueState& state, const TissueLoad& lo
       Link& link = springs_[h];
       link.isotropic = stiffness * across;
       link.along = length > 0.0 ? (std::sqrt(stiffness * (1.0 - across)) / length) * along : Vec3{};
-      AddSquare(block, link.along);
+      AddDirection(block, link.along, 1.0);
       AddIsotropic(block, link.isotropic);
     }
     spring_block_[i] = block;

@@ -14,14 +14,17 @@
 #include <span>
 #include <vector>
 
-#include "aligned_vector.h"
 #include "hierarchy_topology.h"
 #include "line_smoother.h"
 #include "slice_layout.h"
-#include "symmetric3.h"
+#include "trocar/math/aligned_vector.h"
+#include "trocar/math/symmetric3.h"
 #include "workers.h"
 
 namespace trocar::tissue {
+
+using math::AlignedVector;
+using math::Symmetric3;
 
 /// One level's matrix and the vectors of a cycle.
 struct LinkLevel {

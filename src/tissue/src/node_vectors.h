@@ -6,12 +6,14 @@
 #include <array>
 #include <cmath>
 
-#include "aligned_vector.h"
 #include "kernels.h"
+#include "trocar/math/aligned_vector.h"
 #include "trocar/math/vector.h"
 #include "workers.h"
 
 namespace trocar::tissue {
+
+using math::AlignedVector;
 
 /// Nodes a thread takes at a time; fixed, so that sums do not depend on the number of threads.
 inline constexpr std::uint32_t kVectorChunk = 896;

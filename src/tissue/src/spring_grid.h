@@ -12,12 +12,14 @@
 #include <span>
 #include <vector>
 
-#include "aligned_vector.h"
 #include "kernels.h"
+#include "trocar/math/aligned_vector.h"
 #include "trocar/tissue/tissue_model.h"
 #include "workers.h"
 
 namespace trocar::tissue {
+
+using math::AlignedVector;
 
 /// Rows and columns of a model whose node (row, column) has the index row * columns + column and whose
 /// springs go to at most its eight neighbours.

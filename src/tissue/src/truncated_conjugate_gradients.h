@@ -9,7 +9,7 @@
 #include <cmath>
 
 #include "node_vectors.h"
-#include "smallest_ritz.h"
+#include "trocar/math/smallest_ritz.h"
 
 namespace trocar::tissue {
 
@@ -25,7 +25,7 @@ struct TruncatedReport {
   int iterations = 0;
   bool met_negative_curvature = false;
   bool reached_radius = false;
-  double smallest_ritz = INFINITY;  ///< see SmallestRitz
+  double smallest_ritz = INFINITY;  ///< see math::SmallestRitz
 };
 
 /// Solves K step = r.
@@ -46,7 +46,7 @@ TruncatedReport SolveTruncated(const Kernels& kernels, Workers& workers, int max
   std::copy(v.z.begin(), v.z.end(), v.p.begin());
   double reached = 0;  // bound of the longest move so far
   double beta = 0;
-  SmallestRitz ritz;
+  math::SmallestRitz ritz;
   double rz = CalcDot(kernels, workers, v.r, v.z);
   const double rounding = kLinearRounding * rz;
   while (report.iterations < max_iterations && rz > rounding) {

@@ -12,7 +12,6 @@
 #include "line_smoother.h"
 #include "linearisation.h"
 #include "local_solve.h"
-#include "smallest_ritz.h"
 #include "solver_model.h"
 #include "test_systems.h"
 #include "trocar/tissue/equilibrium.h"
@@ -205,7 +204,9 @@ TEST(LinkHierarchy, ArraysBeginAtCacheLines) {
   const Patient patient;
   const TissueModel model = MakeTissueModel(patient.definition);
   const Evaluated here(model, {}, MakeRestState(model), Levels().back());
-  const auto is_aligned = [](const void* p) { return reinterpret_cast<std::uintptr_t>(p) % kCacheLine == 0; };
+  const auto is_aligned = [](const void* p) {
+    return reinterpret_cast<std::uintptr_t>(p) % math::kCacheLine == 0;
+  };
   for (const LinkLevel& level : here.hierarchy.Levels()) {
     for (const auto* values : {&level.off_diagonal, &level.diagonal_excess, &level.inverse, &level.is_free})
       EXPECT_TRUE(is_aligned(values->data()));
@@ -454,26 +455,5 @@ TEST(LocalSolve, IsASmallPartOfTheModelOrNone) {
 }
 
 // Conjugate gradients on a diagonal matrix whose eigenvalues are known.
-TEST(SmallestRitz, SinksToTheSmallestEigenvalue) {
-  const std::vector<double> eigenvalues = {0.013, 0.2, 0.31, 0.5, 0.62, 0.7, 0.81, 0.9, 1.0, 1.1};
-  std::vector<double> r(eigenvalues.size(), 1.0), p = r;
-  SmallestRitz ritz;
-  EXPECT_EQ(ritz.Value(), INFINITY);
-  double beta = 0, last = INFINITY;
-  for (std::size_t step = 0; step < eigenvalues.size(); ++step) {
-    double rr = 0, pq = 0, next = 0;
-    for (std::size_t i = 0; i < r.size(); ++i) rr += r[i] * r[i], pq += p[i] * eigenvalues[i] * p[i];
-    const double alpha = rr / pq;
-    ritz.Add(alpha, beta);
-    EXPECT_LE(ritz.Value(), last);
-    EXPECT_GE(ritz.Value(), 0.97 * eigenvalues[0]);
-    last = ritz.Value();
-    for (std::size_t i = 0; i < r.size(); ++i) r[i] -= alpha * eigenvalues[i] * p[i], next += r[i] * r[i];
-    beta = next / rr;
-    for (std::size_t i = 0; i < r.size(); ++i) p[i] = r[i] + beta * p[i];
-  }
-  EXPECT_NEAR(ritz.Value(), eigenvalues[0], 0.03 * eigenvalues[0]);
-}
-
 }  // namespace
 }  // namespace trocar::tissue

@@ -10,7 +10,7 @@
 #include <cmath>
 #include <cstddef>
 
-namespace trocar::tissue {
+namespace trocar::math {
 
 /// Smallest Ritz value of a run of conjugate gradients, step by step.
 class SmallestRitz {
@@ -58,4 +58,4 @@ class SmallestRitz {
   double last_alpha_ = 0, value_ = INFINITY;
 };
 
-}  // namespace trocar::tissue
+}  // namespace trocar::math

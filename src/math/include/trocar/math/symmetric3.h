@@ -6,12 +6,12 @@
 
 #include "trocar/math/vector.h"
 
-namespace trocar::tissue {
+namespace trocar::math {
 
 using Symmetric3 = std::array<double, 6>;
 
 /// m += stiffness u u^T
-inline void AddDirection(Symmetric3& m, const math::Vec3& u, double stiffness) noexcept {
+inline void AddDirection(Symmetric3& m, const Vec3& u, double stiffness) noexcept {
   m[0] += stiffness * u.x * u.x, m[1] += stiffness * u.x * u.y, m[2] += stiffness * u.x * u.z;
   m[3] += stiffness * u.y * u.y, m[4] += stiffness * u.y * u.z, m[5] += stiffness * u.z * u.z;
 }
@@ -21,7 +21,12 @@ inline void AddIsotropic(Symmetric3& m, double stiffness) noexcept {
   m[0] += stiffness, m[3] += stiffness, m[5] += stiffness;
 }
 
-/// Inverse of a positive definite block; zero for a node that nothing holds.
+inline Vec3 Multiply(const Symmetric3& m, const Vec3& v) noexcept {
+  return {m[0] * v.x + m[1] * v.y + m[2] * v.z, m[1] * v.x + m[3] * v.y + m[4] * v.z,
+          m[2] * v.x + m[4] * v.y + m[5] * v.z};
+}
+
+/// Inverse of a positive definite matrix; zero where it is singular, as of a node that nothing holds.
 inline Symmetric3 Invert(const Symmetric3& m) noexcept {
   const double c00 = m[3] * m[5] - m[4] * m[4], c01 = m[2] * m[4] - m[1] * m[5],
                c02 = m[1] * m[4] - m[2] * m[3];
@@ -36,4 +41,4 @@ inline Symmetric3 Invert(const Symmetric3& m) noexcept {
           s * (m[0] * m[3] - m[1] * m[1])};
 }
 
-}  // namespace trocar::tissue
+}  // namespace trocar::math

@@ -6,7 +6,7 @@
 #include <new>
 #include <vector>
 
-namespace trocar::tissue {
+namespace trocar::math {
 
 /// Bytes of a cache line and of the widest vector register.
 inline constexpr std::size_t kCacheLine = 64;
@@ -34,4 +34,4 @@ struct CacheLineAllocator {
 template <typename T>
 using AlignedVector = std::vector<T, CacheLineAllocator<T>>;
 
-}  // namespace trocar::tissue
+}  // namespace trocar::math
